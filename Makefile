@@ -1,0 +1,83 @@
+# make            builds ./imtet                      make run        set-up, build, quick study
+# make test       every test, plain and sanitized     make bench      what the README's figures are made with
+# make MODE=debug|asan|tsan ...                       make format     clang-format over the sources
+# make install PREFIX=/usr/local DESTDIR=
+
+MODE    ?= release
+BUILD   := build/$(MODE)
+PREFIX  ?= /usr/local
+VERSION := 0.1.0
+REVISION := $(shell git describe --always --dirty 2>/dev/null || echo unknown)
+
+CC      ?= cc
+CFLAGS.release := -O2 -g
+CFLAGS.debug   := -O0 -g3
+CFLAGS.asan    := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer
+CFLAGS.tsan    := -O1 -g -fsanitize=thread -fno-omit-frame-pointer
+
+WARNINGS := -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion -Wstrict-prototypes -Wmissing-prototypes -Wvla -Werror
+CPPFLAGS += -Isrc -MMD -MP -D_GNU_SOURCE
+# Contraction to fused multiply-add is rounding once instead of twice; NaN and Inf stay what they are.
+CFLAGS   += -std=c17 -fopenmp -ffp-contract=fast $(WARNINGS) $(CFLAGS.$(MODE))
+LDFLAGS  += -fopenmp $(CFLAGS.$(MODE))
+LDLIBS   += -lsundials_cvode -lsundials_nvecserial -lsundials_sunmatrixdense -lsundials_sunlinsoldense \
+            -lsundials_sunnonlinsolnewton -lsundials_sunnonlinsolfixedpoint \
+            -lnlopt -llapacke -lopenblas -linih -ljansson -lm
+# Our own kernels are written for the vectorizer; everything else is happy with -O2.
+$(BUILD)/src/sim/%.o: CFLAGS.release := -O3 -g
+
+SRC     := $(wildcard src/*/*.c src/*/*/*.c)
+LIB_OBJ := $(SRC:%.c=$(BUILD)/%.o)
+LIB     := $(BUILD)/libimtet.a
+TEST_SRC := $(wildcard tests/test_*.c)
+TESTS   := $(TEST_SRC:%.c=$(BUILD)/%)
+PROGRAM := $(if $(filter release,$(MODE)),imtet,$(BUILD)/imtet)
+
+.PHONY: all setup run test test-here bench format install clean
+.SECONDARY:
+all: $(PROGRAM)
+
+setup:
+	@scripts/setup
+
+run: setup
+	@$(MAKE) --no-print-directory -j2 all
+	./imtet optimize configs/quick.ini
+
+test: setup
+	@$(MAKE) --no-print-directory -j2 MODE=release test-here
+	@$(MAKE) --no-print-directory -j2 MODE=asan test-here
+
+# A test finds the program under test in $$IMTET and the repository in its working directory.
+test-here: $(PROGRAM) $(TESTS)
+	@set -e; export IMTET=$(abspath $(PROGRAM)); for t in $(TESTS); do echo "== $$t"; $$t; done
+
+$(PROGRAM): $(BUILD)/src/main.o $(LIB)
+	$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
+
+$(LIB): $(LIB_OBJ)
+	@rm -f $@
+	$(AR) rcs $@ $^
+
+$(BUILD)/tests/%: $(BUILD)/tests/%.o $(LIB)
+	$(CC) $(LDFLAGS) -o $@ $^ -lcmocka $(LDLIBS)
+
+$(BUILD)/%.o: %.c
+	@mkdir -p $(@D)
+	$(CC) $(CPPFLAGS) $(CFLAGS) -c $< -o $@
+
+$(BUILD)/src/cmd/%.o $(BUILD)/src/run/%.o $(BUILD)/src/main.o: CPPFLAGS += -DIMTET_VERSION='"$(VERSION)"' \
+    -DIMTET_REVISION='"$(REVISION)"' -DIMTET_CFLAGS='"$(CFLAGS.$(MODE))"' -DIMTET_CONFIGS='"$(CONFIG_DIR)"'
+CONFIG_DIR ?= $(abspath configs)
+
+format:
+	clang-format -i $(wildcard src/*.c src/*/*.[ch] src/*/*/*.[ch] tests/*.[ch])
+
+install: all
+	install -D -m 755 imtet $(DESTDIR)$(PREFIX)/bin/imtet
+	@for f in $$(cd configs && find . -type f); do install -D -m 644 configs/$$f $(DESTDIR)$(PREFIX)/share/imtet/configs/$$f; done
+
+clean:
+	rm -rf build imtet
+
+-include $(shell find build -name '*.d' 2>/dev/null)

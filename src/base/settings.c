@@ -1,0 +1,362 @@
+#include "base/settings.h"
+
+#include <errno.h>
+#include <float.h>
+#include <ini.h>
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+typedef enum { REAL, WHOLE, CHOICE, TEXT } Kind;
+
+typedef struct {
+    const char *key, *unit;
+    Kind kind;
+    size_t offset;
+    const char *standard; /* default, as one would type it */
+    double min, max;      /* REAL and WHOLE */
+    const char *words;    /* CHOICE: "a|b|c", in the order of its enum */
+    const char *help;
+} Option;
+
+#define AT(field) offsetof(Settings, field)
+
+static const Option OPTIONS[] = {
+    /* key, unit, kind, field, default, min, max, words, help */
+    {"building.model", "-", TEXT, AT(building.model), "guyan", 0, 0, NULL,
+     "guyan | appendix | a folder with K.csv [N/m] and M.csv [kg]"},
+    {"building.damping", "-", REAL, AT(building.damping), "0.03", 0, 10, NULL, "damping ratio of every building mode"},
+    {"building.first_storey_m", "m", REAL, AT(building.first_storey_m), "5.4864", 0.1, 100, NULL,
+     "height of the first storey: where the core's first node is"},
+    {"building.storey_m", "m", REAL, AT(building.storey_m), "3.9624", 0.1, 100, NULL, "height of every further storey"},
+
+    {"core.section", "-", CHOICE, AT(core.section), "box", 0, 0, "box|plate|effective",
+     "box: square tube of side side_m; plate: solid, width_m wide, thickness deep; effective: area and inertia given"},
+    {"core.side_m", "m", REAL, AT(core.side_m), "11.3", 0.1, 200, NULL, "outer side of the box"},
+    {"core.width_m", "m", REAL, AT(core.width_m), "11.3", 0.1, 200, NULL, "width of the plate"},
+    {"core.damping", "-", REAL, AT(core.damping), "0.03", 0, 10, NULL, "damping ratio of every core mode"},
+    {"core.youngs_modulus_pa", "Pa", REAL, AT(core.youngs_modulus_pa), "2.1e11", 1, 1e14, NULL, "of the core's steel"},
+    {"core.density_kg_m3", "kg/m3", REAL, AT(core.density_kg_m3), "7850", 1, 1e5, NULL, "of the core's steel"},
+    {"core.area_base_m2", "m2", REAL, AT(core.area_base_m2), "1.567", 1e-9, 1e4, NULL, "effective: first storey"},
+    {"core.area_top_m2", "m2", REAL, AT(core.area_top_m2), "0.811", 1e-9, 1e4, NULL, "effective: last storey"},
+    {"core.inertia_base_m4", "m4", REAL, AT(core.inertia_base_m4), "25.62", 1e-9, 1e6, NULL, "effective: first storey"},
+    {"core.inertia_top_m4", "m4", REAL, AT(core.inertia_top_m4), "24.05", 1e-9, 1e6, NULL, "effective: last storey"},
+
+    {"contact.law", "-", CHOICE, AT(contact.law), "paper", 0, 0, "paper|exact",
+     "paper: a = 1.5 (1 - r); exact: a chosen so that an isolated impact rebounds with r"},
+    {"contact.restitution", "-", REAL, AT(contact.restitution), "0.7", 0, 1, NULL, "r of the contact law"},
+    {"contact.v0_floor_m_s", "m/s", REAL, AT(contact.v0_floor_m_s), "1e-3", 1e-12, 10, NULL,
+     "least approach speed that the contact law is given"},
+    {"contact.radius_m", "m", REAL, AT(contact.radius_m), "0.1", 1e-6, 1e3, NULL, "radius of the contacting body"},
+    {"contact.youngs_modulus_pa", "Pa", REAL, AT(contact.youngs_modulus_pa), "2.1e11", 1, 1e14, NULL,
+     "of both bodies"},
+    {"contact.poisson", "-", REAL, AT(contact.poisson), "0.3", 0, 0.5, NULL, "Poisson's ratio of both bodies"},
+
+    {"motion.record", "-", TEXT, AT(motion.record), "builtin:kobe-like", 0, 0, NULL,
+     "a ground motion file, or builtin:kobe-like | builtin:elcentro-like | builtin:sylmar-like"},
+    {"motion.pga_g", "g", REAL, AT(motion.pga_g), "0.3", 0, 1e6, NULL, "scaled to this peak; 0: as recorded"},
+    {"motion.stretch", "-", REAL, AT(motion.stretch), "3.1", 1e-3, 1e3, NULL, "time is multiplied by this"},
+    {"motion.unit", "-", CHOICE, AT(motion.unit), "from_file", 0, 0, "from_file|m_s2|cm_s2|g",
+     "of the acceleration, where the file does not say"},
+
+    {"sim.engine", "-", CHOICE, AT(sim.engine), "fast", 0, 0, "fast|cvode",
+     "fast: exact modal flow with resolved contacts; cvode: SUNDIALS with roots, slow, for trust"},
+    {"sim.accuracy", "-", CHOICE, AT(sim.accuracy), "standard", 0, 0, "coarse|standard|fine", "steps per contact"},
+    {"sim.duration_s", "s", REAL, AT(sim.duration_s), "0", 0, 1e6, NULL, "stop here; 0: at the end of the motion"},
+    {"sim.residual_max", "-", REAL, AT(sim.residual_max), "0.01", 1e-12, 1, NULL,
+     "a run whose energy books are open by more than this share of the input is refined, then failed"},
+
+    {"design.gap_min_m", "m", REAL, AT(design.gap_min_m), "0.001", 0, 10, NULL, "search box: least gap"},
+    {"design.gap_max_m", "m", REAL, AT(design.gap_max_m), "0.5", 1e-6, 10, NULL, "search box: widest gap"},
+    {"design.thickness_min_m", "m", REAL, AT(design.thickness_min_m), "0.004", 1e-6, 10, NULL,
+     "search box: thinnest core wall"},
+    {"design.thickness_max_m", "m", REAL, AT(design.thickness_max_m), "0.04", 1e-6, 10, NULL,
+     "search box: thickest core wall"},
+
+    {"search.seed", "-", WHOLE, AT(search.seed), "1", 0, 4294967295.0, NULL, "same seed and settings: same bytes"},
+    {"search.threads", "-", WHOLE, AT(search.threads), "0", 0, 1024, NULL, "0: one per processor"},
+    {"search.population", "-", WHOLE, AT(search.population), "92", 4, 100000, NULL, "designs per generation"},
+    {"search.initial", "-", WHOLE, AT(search.initial), "184", 4, 1000000, NULL, "designs of the Latin hypercube start"},
+    {"search.generations", "-", WHOLE, AT(search.generations), "1000", 1, 1e9, NULL, "stop after so many"},
+    {"search.max_evals", "-", WHOLE, AT(search.max_evals), "2000", 4, 1e9, NULL, "stop after so many simulations"},
+    {"search.max_hours", "h", REAL, AT(search.max_hours), "0", 0, 1e4, NULL, "stop after so long; 0: no limit"},
+    {"search.nondominated_share", "-", REAL, AT(search.nondominated_share), "1", 0, 1, NULL,
+     "stop when this share of all simulated designs is nondominated; 1: never"},
+    {"search.trust_error", "-", REAL, AT(search.trust_error), "0.05", 0, 10, NULL,
+     "a prediction stands where its leave-one-out based error is below this share of every objective's range"},
+    {"search.crossover_probability", "-", REAL, AT(search.crossover_probability), "1", 0, 1, NULL, "of a pair (SBX)"},
+    {"search.crossover_eta", "-", REAL, AT(search.crossover_eta), "20", 0, 1000, NULL, "distribution index of SBX"},
+    {"search.mutation_eta", "-", REAL, AT(search.mutation_eta), "20", 0, 1000, NULL,
+     "distribution index of polynomial mutation"},
+    {"search.mutation_rate", "-", REAL, AT(search.mutation_rate), "1", 0, 100, NULL,
+     "variables mutated per design, on average"},
+    {"search.surrogate_max", "-", WHOLE, AT(search.surrogate_max), "600", 10, 5000, NULL,
+     "most designs that the response surface is built on"},
+
+    {"run.out", "-", TEXT, AT(run.out), "results/study", 0, 0, NULL, "the run's folder"},
+};
+
+enum { N_OPTIONS = sizeof OPTIONS / sizeof OPTIONS[0] };
+
+static void *field_of(Settings *s, const Option *o)
+{
+    return (char *)s + o->offset;
+}
+
+static const void *field_of_const(const Settings *s, const Option *o)
+{
+    return (const char *)s + o->offset;
+}
+
+/* Index of value in "a|b|c", or -1. */
+static int word_index(const char *words, const char *value)
+{
+    const size_t length = strlen(value);
+    for (int i = 0; words; i++) {
+        const char *end = strchr(words, '|');
+        const size_t n = end ? (size_t)(end - words) : strlen(words);
+        if (n == length && strncmp(words, value, n) == 0)
+            return i;
+        words = end ? end + 1 : NULL;
+    }
+    return -1;
+}
+
+static void print_word(FILE *out, const char *words, long index)
+{
+    while (index-- > 0)
+        words = strchr(words, '|') + 1;
+    fprintf(out, "%.*s", (int)strcspn(words, "|"), words);
+}
+
+static Status parse_number(const Option *o, const char *value, double *number, Err *err)
+{
+    char *end;
+    errno = 0;
+    *number = strtod(value, &end);
+    if (end == value || *end)
+        return fail(err, STATUS_BAD_DATA, "%s: '%s' is not a number [%s]", o->key, value, o->unit);
+    if (!(*number >= o->min && *number <= o->max)) /* also rejects NaN */
+        return fail(err, STATUS_BAD_DATA, "%s: %s is outside %g..%g %s", o->key, value, o->min, o->max, o->unit);
+    if (o->kind == WHOLE && *number != (double)(long)*number)
+        return fail(err, STATUS_BAD_DATA, "%s: %s is not a whole number", o->key, value);
+    return STATUS_OK;
+}
+
+static Status assign(Settings *s, const Option *o, const char *value, Err *err)
+{
+    double number;
+    switch (o->kind) {
+    case REAL:
+        TRY(parse_number(o, value, &number, err));
+        *(double *)field_of(s, o) = number;
+        return STATUS_OK;
+    case WHOLE:
+        TRY(parse_number(o, value, &number, err));
+        *(long *)field_of(s, o) = (long)number;
+        return STATUS_OK;
+    case CHOICE: {
+        const int i = word_index(o->words, value);
+        if (i < 0)
+            return fail(err, STATUS_BAD_DATA, "%s: '%s' is not one of %s", o->key, value, o->words);
+        *(long *)field_of(s, o) = i;
+        return STATUS_OK;
+    }
+    case TEXT:
+        if (!value[0])
+            return fail(err, STATUS_BAD_DATA, "%s: is empty", o->key);
+        if (strlen(value) >= SETTINGS_TEXT_MAX)
+            return fail(err, STATUS_BAD_DATA, "%s: is longer than %d characters", o->key, SETTINGS_TEXT_MAX - 1);
+        snprintf(field_of(s, o), SETTINGS_TEXT_MAX, "%s", value);
+        return STATUS_OK;
+    }
+    return STATUS_INTERNAL;
+}
+
+void settings_defaults(Settings *s)
+{
+    memset(s, 0, sizeof *s);
+    for (int i = 0; i < N_OPTIONS; i++)
+        assign(s, &OPTIONS[i], OPTIONS[i].standard, NULL);
+}
+
+static Status find_option(const char *key, const Option **found, Err *err)
+{
+    const char *keys[N_OPTIONS];
+    for (int i = 0; i < N_OPTIONS; i++) {
+        keys[i] = OPTIONS[i].key;
+        if (strcmp(key, keys[i]) == 0) {
+            *found = &OPTIONS[i];
+            return STATUS_OK;
+        }
+    }
+    const char *near = nearest_word(key, keys, N_OPTIONS);
+    return near ? fail(err, STATUS_BAD_DATA, "%s: no such setting; did you mean %s?", key, near)
+                : fail(err, STATUS_BAD_DATA, "%s: no such setting; `imtet settings` lists them all", key);
+}
+
+static Status set_key(Settings *s, const char *key, const char *value, Err *err)
+{
+    const Option *o;
+    TRY(find_option(key, &o, err));
+    return assign(s, o, value, err);
+}
+
+typedef struct {
+    Settings *s;
+    const char *path;
+    FILE *faults;
+    FILE *file;
+    int n_faults, line;
+    unsigned char seen[N_OPTIONS];
+    Err *first;
+} Reading;
+
+static void report_fault(Reading *r, int line, const char *text)
+{
+    if (r->n_faults++ == 0)
+        fail(r->first, STATUS_BAD_DATA, "%s:%d: %s", r->path, line, text);
+    if (r->faults)
+        fprintf(r->faults, "%s:%d: %s\n", r->path, line, text);
+}
+
+/* A path that was written in a settings file is meant from that file's folder. */
+static void anchor_path(const Reading *r, char path[SETTINGS_TEXT_MAX])
+{
+    const char *slash = strrchr(r->path, '/');
+    if (!slash || path[0] == '/' || strncmp(path, "builtin:", 8) == 0)
+        return;
+    char anchored[2 * SETTINGS_TEXT_MAX];
+    snprintf(anchored, sizeof anchored, "%.*s/%s", (int)(slash - r->path), r->path, path);
+    if (strlen(anchored) < SETTINGS_TEXT_MAX && access(anchored, F_OK) == 0)
+        memcpy(path, anchored, strlen(anchored) + 1);
+}
+
+/* Counts lines for the messages, and refuses what the library would cut in two without a word. */
+static char *next_line(char *line, int size, void *user)
+{
+    Reading *r = user;
+    if (!fgets(line, size, r->file))
+        return NULL;
+    r->line++;
+    const size_t length = strlen(line);
+    if (length + 1 == (size_t)size && line[length - 1] != '\n')
+        report_fault(r, r->line, "the line is too long");
+    return line;
+}
+
+static int take_pair(void *user, const char *section, const char *name, const char *value)
+{
+    Reading *r = user;
+    const int line = r->line;
+    char key[128];
+    Err err = {0};
+    const Option *o;
+    snprintf(key, sizeof key, "%s%s%s", section, section[0] ? "." : "", name);
+    if (find_option(key, &o, &err) != STATUS_OK || assign(r->s, o, value, &err) != STATUS_OK) {
+        report_fault(r, line, err.text);
+        return 1;
+    }
+    if (r->seen[o - OPTIONS]++) {
+        snprintf(err.text, sizeof err.text, "%s: is set twice; remove one of the two lines", key);
+        report_fault(r, line, err.text);
+    }
+    const int is_model_name = o->offset == AT(building.model) && (!strcmp(value, "guyan") || !strcmp(value, "appendix"));
+    if (o->offset == AT(motion.record) || (o->offset == AT(building.model) && !is_model_name))
+        anchor_path(r, field_of(r->s, o));
+    return 1;
+}
+
+Status settings_read(Settings *s, const char *path, FILE *faults, int *n_faults, Err *err)
+{
+    Reading r = {.s = s, .path = path, .faults = faults, .first = err};
+    r.file = fopen(path, "rb");
+    if (!r.file)
+        return fail(err, STATUS_MISSING, "%s: %s", path, strerror(errno));
+    const int bad_line = ini_parse_stream(next_line, &r, take_pair, &r);
+    const int read_error = ferror(r.file);
+    fclose(r.file);
+    if (read_error)
+        return fail(err, STATUS_MISSING, "%s: cannot be read (is it a folder?)", path);
+    if (bad_line > 0)
+        report_fault(&r, bad_line, "neither [section] nor key = value");
+    Err rule = {0};
+    if (settings_check(s, &rule) != STATUS_OK)
+        report_fault(&r, 0, rule.text);
+    if (n_faults)
+        *n_faults = r.n_faults;
+    return r.n_faults ? STATUS_BAD_DATA : STATUS_OK;
+}
+
+Status settings_set(Settings *s, const char *assignment, Err *err)
+{
+    char key[128];
+    const char *equals = strchr(assignment, '=');
+    if (!equals || equals == assignment || (size_t)(equals - assignment) >= sizeof key)
+        return fail(err, STATUS_USAGE, "--set %s: write --set section.key=value", assignment);
+    snprintf(key, sizeof key, "%.*s", (int)(equals - assignment), assignment);
+    return set_key(s, key, equals + 1, err);
+}
+
+Status settings_check(const Settings *s, Err *err)
+{
+    if (s->design.gap_min_m >= s->design.gap_max_m)
+        return fail(err, STATUS_BAD_DATA, "design.gap_min_m: %g must be below design.gap_max_m = %g",
+                    s->design.gap_min_m, s->design.gap_max_m);
+    if (s->design.thickness_min_m >= s->design.thickness_max_m)
+        return fail(err, STATUS_BAD_DATA, "design.thickness_min_m: %g must be below design.thickness_max_m = %g",
+                    s->design.thickness_min_m, s->design.thickness_max_m);
+    if (s->core.section == CORE_BOX && 2 * s->design.thickness_max_m > s->core.side_m)
+        return fail(err, STATUS_BAD_DATA, "design.thickness_max_m: two walls of %g m do not fit into core.side_m = %g",
+                    s->design.thickness_max_m, s->core.side_m);
+    if (s->search.initial > s->search.max_evals)
+        return fail(err, STATUS_BAD_DATA, "search.initial: %ld is more than search.max_evals = %ld allows",
+                    s->search.initial, s->search.max_evals);
+    return STATUS_OK;
+}
+
+/* The fewest digits that read back as the same number. */
+static void print_real(FILE *out, double value)
+{
+    char text[40];
+    for (int digits = 6; digits <= 17; digits++) {
+        snprintf(text, sizeof text, "%.*g", digits, value);
+        if (strtod(text, NULL) == value)
+            break;
+    }
+    fputs(text, out);
+}
+
+static void describe(const Option *o, FILE *out)
+{
+    fprintf(out, "; %s", o->help);
+    if (o->kind == REAL || o->kind == WHOLE)
+        fprintf(out, " [%s, %g..%g]", o->unit, o->min, o->max);
+    if (o->kind == CHOICE)
+        fprintf(out, " (%s)", o->words);
+    fputc('\n', out);
+}
+
+void settings_write(const Settings *s, FILE *out, int described)
+{
+    const char *section = "";
+    for (int i = 0; i < N_OPTIONS; i++) {
+        const Option *o = &OPTIONS[i];
+        const int n = (int)strcspn(o->key, ".");
+        if (strncmp(section, o->key, (size_t)n + 1) != 0)
+            fprintf(out, "%s[%.*s]\n", i ? "\n" : "", n, o->key);
+        section = o->key;
+        if (described)
+            describe(o, out);
+        fprintf(out, "%s = ", o->key + n + 1);
+        const void *field = field_of_const(s, o);
+        switch (o->kind) {
+        case REAL: print_real(out, *(const double *)field); break;
+        case WHOLE: fprintf(out, "%ld", *(const long *)field); break;
+        case CHOICE: print_word(out, o->words, *(const long *)field); break;
+        case TEXT: fputs(field, out); break;
+        }
+        fputc('\n', out);
+    }
+}

@@ -1,0 +1,84 @@
+/* base/settings.h -- every setting of a study in one struct, described by one table (settings.c).
+ *
+ *   [section]            an INI file; a key is "section.key"
+ *   key = value          a setting that is not written keeps its default
+ *
+ * The reader, the range check, `--set section.key=value`, `imtet settings` and the copy saved with a run are loops
+ * over the table: a new setting is one line there and one field here. Rules that tie settings together stand below
+ * the table (settings_check).
+ *
+ * Ownership  Settings is a plain value: copy it freely.   Threads  no state. */
+#ifndef IMTET_BASE_SETTINGS_H
+#define IMTET_BASE_SETTINGS_H
+
+#include <stddef.h>
+#include <stdio.h>
+
+#include "base/status.h"
+
+enum { SETTINGS_TEXT_MAX = 512 };
+
+typedef enum { CORE_BOX, CORE_PLATE, CORE_EFFECTIVE } CoreSection;
+typedef enum { LAW_PAPER, LAW_EXACT } ContactLaw;
+typedef enum { ACCURACY_COARSE, ACCURACY_STANDARD, ACCURACY_FINE } Accuracy;
+typedef enum { ENGINE_FAST, ENGINE_CVODE } Engine;
+typedef enum { UNIT_FROM_FILE, UNIT_M_S2, UNIT_CM_S2, UNIT_G } MotionUnit;
+
+typedef struct {
+    struct {
+        char model[SETTINGS_TEXT_MAX]; /* guyan | appendix | a folder with K.csv and M.csv */
+        double damping;                /* [-] of every mode */
+        double first_storey_m, storey_m;
+    } building;
+    struct {
+        long section; /* CoreSection */
+        double side_m, width_m, damping, youngs_modulus_pa, density_kg_m3;
+        double area_base_m2, area_top_m2, inertia_base_m4, inertia_top_m4;
+    } core;
+    struct {
+        long law; /* ContactLaw */
+        double restitution, v0_floor_m_s, radius_m, youngs_modulus_pa, poisson;
+    } contact;
+    struct {
+        char record[SETTINGS_TEXT_MAX]; /* a file or builtin:NAME */
+        double pga_g;                   /* 0: as recorded */
+        double stretch;                 /* t -> stretch t */
+        long unit;                      /* MotionUnit */
+    } motion;
+    struct {
+        long engine, accuracy;
+        double duration_s; /* 0: the whole motion */
+        double residual_max;
+    } sim;
+    struct { /* the search box */
+        double gap_min_m, gap_max_m, thickness_min_m, thickness_max_m;
+    } design;
+    struct {
+        long seed, threads, population, initial, generations, max_evals;
+        double max_hours, nondominated_share, trust_error;
+        double crossover_probability, crossover_eta, mutation_eta, mutation_rate;
+        long surrogate_max; /* most designs that the response surface is built on */
+    } search;
+    struct {
+        char out[SETTINGS_TEXT_MAX]; /* the run's folder */
+    } run;
+} Settings;
+
+void settings_defaults(Settings *s);
+
+/* Reads an INI file over what s holds. All faults are reported, not only the first: one line each into `faults`
+ * ("FILE:LINE: key: what is wrong and what to do"), whose number is returned through n_faults; err has the first.
+ * Relative paths of building.model and motion.record are taken from the folder of the INI file if such a file is
+ * there, else from the working directory. faults may be NULL. */
+Status settings_read(Settings *s, const char *path, FILE *faults, int *n_faults, Err *err);
+
+/* "section.key=value" as given to --set. */
+Status settings_set(Settings *s, const char *assignment, Err *err);
+
+/* The rules that tie settings together. */
+Status settings_check(const Settings *s, Err *err);
+
+/* A valid INI file: with `described`, preceded key by key by its meaning, unit and range. */
+void settings_write(const Settings *s, FILE *out, int described);
+
+#endif

@@ -1,0 +1,77 @@
+#include "base/status.h"
+
+#include <limits.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+Status fail(Err *err, Status code, const char *format, ...)
+{
+    if (err) {
+        va_list args;
+        va_start(args, format);
+        err->code = code;
+        vsnprintf(err->text, sizeof err->text, format, args);
+        va_end(args);
+    }
+    return code;
+}
+
+static const struct {
+    int exit_code;
+    const char *words;
+} LIST[] = {
+#define X(name, exit_code, words) {exit_code, words},
+    STATUS_LIST(X)
+#undef X
+};
+
+const char *status_words(Status code)
+{
+    return LIST[code].words;
+}
+
+int status_exit_code(Status code)
+{
+    return LIST[code].exit_code;
+}
+
+/* Levenshtein distance over at most 63 characters of each word, one row at a time. */
+static int edit_distance(const char *a, const char *b)
+{
+    enum { MOST = 63 };
+    int row[MOST + 1];
+    const int n = (int)strnlen(b, MOST);
+    for (int j = 0; j <= n; j++)
+        row[j] = j;
+    for (int i = 0; i < MOST && a[i]; i++) {
+        int diagonal = row[0];
+        row[0] = i + 1;
+        for (int j = 0; j < n; j++) {
+            const int replaced = diagonal + (a[i] != b[j]);
+            diagonal = row[j + 1];
+            int best = replaced;
+            if (diagonal + 1 < best)
+                best = diagonal + 1;
+            if (row[j] + 1 < best)
+                best = row[j] + 1;
+            row[j + 1] = best;
+        }
+    }
+    return row[n];
+}
+
+const char *nearest_word(const char *word, const char *const list[], int n)
+{
+    const char *nearest = NULL;
+    int least = INT_MAX;
+    for (int i = 0; i < n; i++) {
+        const int d = edit_distance(word, list[i]);
+        if (d < least) {
+            least = d;
+            nearest = list[i];
+        }
+    }
+    const int longest = (int)strlen(word) > 8 ? (int)strlen(word) / 2 : 4;
+    return least <= longest ? nearest : NULL;
+}

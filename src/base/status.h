@@ -1,0 +1,48 @@
+/* base/status.h -- one list of what can go wrong, its words and the exit code it becomes.
+ *
+ * Every function that can fail returns a Status and writes one sentence into the caller's Err: what, where (file,
+ * line, key), the number that was found and what to do. Only main and src/cmd print or exit.
+ *
+ * Threads  an Err belongs to one thread; nothing here is shared. */
+#ifndef IMTET_BASE_STATUS_H
+#define IMTET_BASE_STATUS_H
+
+/*    name           exit  words                                                  (exit codes as in sysexits.h) */
+#define STATUS_LIST(X)                                                                                                 \
+    X(OK, 0, "ok")                                                                                                     \
+    X(USAGE, 2, "the command line is not understood")                                                                  \
+    X(BAD_DATA, 65, "a file or a setting holds something that cannot be used")                                         \
+    X(MISSING, 66, "an input file is not there or cannot be read")                                                     \
+    X(INTERNAL, 70, "the program failed")                                                                              \
+    X(NO_MEMORY, 71, "out of memory")                                                                                  \
+    X(IO, 74, "a file could not be written")
+
+typedef enum {
+#define X(name, exit_code, words) STATUS_##name,
+    STATUS_LIST(X)
+#undef X
+        STATUS_COUNT
+} Status;
+
+typedef struct {
+    Status code;
+    char text[480];
+} Err;
+
+/* Writes the sentence and returns code, so that `return fail(err, STATUS_IO, "...")` reads as one thought. */
+__attribute__((format(printf, 3, 4))) Status fail(Err *err, Status code, const char *format, ...);
+
+const char *status_words(Status code);
+int status_exit_code(Status code);
+
+/* The word of list[0..n) nearest to `word` by edit distance, or NULL if none is near enough to be meant. */
+const char *nearest_word(const char *word, const char *const list[], int n);
+
+#define TRY(expr)                                                                                                      \
+    do {                                                                                                               \
+        Status try_status_ = (expr);                                                                                   \
+        if (try_status_ != STATUS_OK)                                                                                  \
+            return try_status_;                                                                                        \
+    } while (0)
+
+#endif

@@ -1,0 +1,59 @@
+/* moga/search.h -- the surrogate-assisted search for the Pareto front.
+ *
+ *   1 Latin hypercube start, simulated
+ *   2 a radial basis response surface on what has been simulated
+ *   3 tournament selection, SBX, polynomial mutation: one offspring population
+ *   4 every offspring predicted; where the leave-one-out based error estimate is small the prediction stands,
+ *     otherwise the design is simulated and becomes a new centre
+ *   5 environmental selection with reference directions (NSGA-III); back to 2
+ *
+ * Predicted designs may live in the population; only simulated ones enter the archive, and the front is made of the
+ * archive alone.
+ *
+ * Reproducible  random streams are keyed by (seed, generation, individual): the same bytes at any thread count
+ * Ownership     search_run owns all it allocates; a SearchView is valid inside the callback only
+ * Sources       Deb and Jain, IEEE Trans. Evol. Comput. 18 (2014) 577-601 (NSGA-III); Deb and Agrawal, Complex Systems 9
+ *               (1995) 115-148 (SBX); Rippa, Adv. Comput. Math. 11 (1999) 193-210 (leave-one-out). */
+#ifndef IMTET_MOGA_SEARCH_H
+#define IMTET_MOGA_SEARCH_H
+
+#include <stdint.h>
+
+#include "moga/problem.h"
+
+typedef enum { KIND_SAMPLED, KIND_INFILL } EvaluationKind;
+
+typedef struct {
+    uint32_t seed;
+    size_t population, initial, generations, max_evals, surrogate_max;
+    double max_seconds;        /* 0: no limit */
+    double nondominated_share; /* stop when this share of the archive is nondominated; 1: never */
+    double trust_error;        /* share of an objective's range in the archive */
+    double crossover_probability, crossover_eta, mutation_eta, mutation_rate;
+} SearchConfig;
+
+typedef enum { STOP_NONE, STOP_GENERATIONS, STOP_EVALUATIONS, STOP_TIME, STOP_SHARE, STOP_ASKED } StopReason;
+const char *stop_reason_words(StopReason reason);
+
+/* Everything simulated so far, in the order of simulation; row i is design number i + 1. */
+typedef struct {
+    size_t n, n_var, n_obj, n_con;
+    const double *X, *F, *G;       /* (n, n_var) (n, n_obj) (n, n_con) */
+    const unsigned char *ok;       /* (n) 0: the simulation failed */
+    const unsigned char *kind;     /* (n) EvaluationKind */
+    const size_t *generation;      /* (n) */
+    const unsigned char *on_front; /* (n) feasible, ok and nondominated */
+    size_t n_front, n_failed;
+    size_t generation_now;
+    size_t n_predicted;            /* offspring of this generation whose prediction stood */
+    double surrogate_error;        /* median leave-one-out error, share of range, worst objective; NaN: no surface yet */
+    double seconds;
+} SearchView;
+
+/* Called after the start and after every generation; return non-zero to stop. */
+typedef int (*ObserveFn)(const SearchView *view, void *user);
+
+Status search_run(const Problem *problem, const SearchConfig *config, ObserveFn observe, void *user,
+                  StopReason *reason, Err *err);
+
+#endif

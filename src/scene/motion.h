@@ -1,0 +1,38 @@
+/* scene/motion.h -- a ground acceleration history, linear between equidistant samples.
+ *
+ *   a(t) = accel[k] + (accel[k+1] - accel[k]) (t - t_k) / dt,   t_k = k dt,   k = 0..n-1,   duration (n-1) dt
+ *
+ * Life cycle  motion_load -> motion_prepare -> ... -> motion_free      (an empty Motion may be freed)
+ * Ownership   accel belongs to the Motion
+ * Units       SI; the unit of a file is converted once, here
+ * Threads     read-only after motion_prepare
+ * Errors      every fault of a file names file, line and what was found */
+#ifndef IMTET_SCENE_MOTION_H
+#define IMTET_SCENE_MOTION_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/settings.h"
+#include "base/status.h"
+
+typedef struct {
+    double *accel; /* [m/s2] (n) */
+    size_t n;
+    double dt_s;
+    char name[128];     /* as given by the user: a path or builtin:NAME */
+    char format[32];    /* what the reader took it for: "csv", "at2", "builtin" */
+    uint64_t file_hash; /* FNV-1a of the file's bytes, or of the generated samples */
+} Motion;
+
+/* source: a path (two-column CSV time,acceleration, or PEER AT2) or builtin:kobe-like | builtin:elcentro-like |
+ * builtin:sylmar-like. unit: UNIT_FROM_FILE demands that the file says it; otherwise it must not contradict the file. */
+Status motion_load(Motion *m, const char *source, MotionUnit unit, Err *err);
+
+/* t -> stretch t; then scaled so that max |accel| = pga_g * 9.81 m/s2 (pga_g = 0: as recorded). */
+Status motion_prepare(Motion *m, double pga_g, double stretch, Err *err);
+
+double motion_peak(const Motion *m); /* [m/s2] */
+void motion_free(Motion *m);
+
+#endif
