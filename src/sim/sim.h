@@ -16,9 +16,8 @@
 
 #include "base/settings.h"
 #include "base/status.h"
+#include "scene/building.h"
 #include "scene/motion.h"
-
-enum { FLOORS_MAX = 64 };
 
 typedef enum {
     SCENE_IMPACT,  /* building and core with gaps */

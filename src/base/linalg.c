@@ -1,0 +1,71 @@
+#include "base/linalg.h"
+
+#include <lapacke.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Rows of A are columns for LAPACK: the same thing for a symmetric matrix, and no copies are made. */
+
+static void fix_sign(int n, double *mode)
+{
+    int largest = 0;
+    for (int j = 1; j < n; j++)
+        if (fabs(mode[j]) > fabs(mode[largest]))
+            largest = j;
+    if (mode[largest] < 0)
+        for (int j = 0; j < n; j++)
+            mode[j] = -mode[j];
+}
+
+Status linalg_modes(int n, const double K[], const double M[], double omega[], double phi[], Err *err)
+{
+    const size_t nn = (size_t)n * (size_t)n;
+    double *A = malloc(2 * nn * sizeof *A);
+    if (!A)
+        return fail(err, STATUS_NO_MEMORY, "modes: no memory for %d x %d matrices", n, n);
+    double *B = A + nn;
+    memcpy(A, K, nn * sizeof *A);
+    memcpy(B, M, nn * sizeof *B);
+    const int info = LAPACKE_dsygv(LAPACK_COL_MAJOR, 1, 'V', 'L', n, A, n, B, n, omega);
+    if (info == 0) {
+        const double rounding = 1e-12 * fabs(omega[n - 1]);
+        for (int i = 0; i < n && omega[0] >= -rounding; i++)
+            omega[i] = sqrt(fmax(omega[i], 0.0));
+        for (int i = 0; i < n; i++) {
+            fix_sign(n, A + i * n);
+            for (int j = 0; j < n; j++)
+                phi[j * n + i] = A[i * n + j];
+        }
+    }
+    free(A);
+    if (info > n)
+        return fail(err, STATUS_BAD_DATA, "modes: the mass matrix is not positive definite (pivot %d)", info - n);
+    if (info != 0)
+        return fail(err, STATUS_INTERNAL, "modes: LAPACK dsygv did not converge (info %d)", info);
+    if (omega[0] < 0)
+        return fail(err, STATUS_BAD_DATA, "modes: the stiffness matrix is not positive: lowest w^2 = %g", omega[0]);
+    return STATUS_OK;
+}
+
+Status linalg_solve_spd(int n, int m, double A[], double B[], Err *err)
+{
+    int info = LAPACKE_dpotrf(LAPACK_ROW_MAJOR, 'L', n, A, n);
+    if (info == 0)
+        info = LAPACKE_dpotrs(LAPACK_ROW_MAJOR, 'L', n, m, A, n, B, m);
+    if (info != 0)
+        return fail(err, STATUS_BAD_DATA, "a symmetric %d x %d matrix is not positive definite (pivot %d)", n, n, info);
+    return STATUS_OK;
+}
+
+int linalg_indefinite_at(int n, const double A[])
+{
+    const size_t nn = (size_t)n * (size_t)n;
+    double *copy = malloc(nn * sizeof *copy);
+    if (!copy)
+        return -1;
+    memcpy(copy, A, nn * sizeof *copy);
+    const int info = LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'L', n, copy, n);
+    free(copy);
+    return info;
+}

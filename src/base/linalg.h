@@ -1,0 +1,21 @@
+/* base/linalg.h -- the few dense operations that the scene needs, on LAPACK. Matrices are square (n, n) row-major;
+ * symmetric ones are read in full.
+ *
+ * Threads  no state; BLAS is expected to run on one thread (main sees to it) */
+#ifndef IMTET_BASE_LINALG_H
+#define IMTET_BASE_LINALG_H
+
+#include "base/status.h"
+
+/* K x = w^2 M x, ascending: omega[i] = sqrt(w^2) [rad/s], phi (n, n) with column i = mode i, phi' M phi = 1, the largest
+ * entry by magnitude of every mode positive. A negative w^2 within rounding counts as zero. K and M are kept. */
+Status linalg_modes(int n, const double K[], const double M[], double omega[], double phi[], Err *err);
+
+/* X: A X = B with A symmetric positive definite (n, n), B (n, m) row-major and overwritten. A is overwritten. */
+Status linalg_solve_spd(int n, int m, double A[], double B[], Err *err);
+
+/* Row of the first pivot that is not positive in a Cholesky factorisation, counted from 1; 0: positive definite.
+ * -1: no memory. */
+int linalg_indefinite_at(int n, const double A[]);
+
+#endif

@@ -1,0 +1,133 @@
+#include "scene/core_beam.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/linalg.h"
+
+typedef struct {
+    double area, inertia; /* [m2], [m4] */
+} Section;
+
+static Section section_at(const Settings *s, double share, double t)
+{
+    switch ((CoreSection)s->core.section) {
+    case CORE_BOX: {
+        const double outer = s->core.side_m, inner = outer - 2 * t;
+        return (Section){outer * outer - inner * inner, (pow(outer, 4) - pow(inner, 4)) / 12};
+    }
+    case CORE_PLATE:
+        return (Section){s->core.width_m * t, s->core.width_m * t * t * t / 12};
+    case CORE_EFFECTIVE:
+        break;
+    }
+    return (Section){s->core.area_base_m2 + (s->core.area_top_m2 - s->core.area_base_m2) * share,
+                     s->core.inertia_base_m4 + (s->core.inertia_top_m4 - s->core.inertia_base_m4) * share};
+}
+
+/* Stiffness and consistent mass of a beam element of length l; unknowns: deflection, rotation at each end. */
+static void hermite_element(double EI, double mass_per_m, double l, double k[4][4], double m[4][4])
+{
+    const double k_shape[4][4] = {{12, 6 * l, -12, 6 * l},
+                                  {6 * l, 4 * l * l, -6 * l, 2 * l * l},
+                                  {-12, -6 * l, 12, -6 * l},
+                                  {6 * l, 2 * l * l, -6 * l, 4 * l * l}};
+    const double m_shape[4][4] = {{156, 22 * l, 54, -13 * l},
+                                  {22 * l, 4 * l * l, 13 * l, -3 * l * l},
+                                  {54, 13 * l, 156, -22 * l},
+                                  {-13 * l, -3 * l * l, -22 * l, 4 * l * l}};
+    for (int i = 0; i < 4; i++)
+        for (int j = 0; j < 4; j++) {
+            k[i][j] = EI / (l * l * l) * k_shape[i][j];
+            m[i][j] = mass_per_m * l / 420 * m_shape[i][j];
+        }
+}
+
+/* Unknowns: deflections 0..n-1, then rotations n..2n-1; node 0 of the beam is clamped. Returns the total mass. */
+static double assemble(const Settings *s, int n, double t_base, double t_top, double K[], double M[])
+{
+    const int size = 2 * n;
+    double mass = 0;
+    for (int e = 0; e < n; e++) {
+        const double share = n > 1 ? (double)e / (n - 1) : 0;
+        const double l = e == 0 ? s->building.first_storey_m : s->building.storey_m;
+        const Section a = section_at(s, share, t_base + (t_top - t_base) * share);
+        const double mass_per_m = s->core.density_kg_m3 * a.area;
+        double k[4][4], m[4][4];
+        hermite_element(s->core.youngs_modulus_pa * a.inertia, mass_per_m, l, k, m);
+        const int at[4] = {e - 1, e == 0 ? -1 : n + e - 1, e, n + e};
+        for (int i = 0; i < 4; i++)
+            for (int j = 0; j < 4; j++)
+                if (at[i] >= 0 && at[j] >= 0) {
+                    K[at[i] * size + at[j]] += k[i][j];
+                    M[at[i] * size + at[j]] += m[i][j];
+                }
+        mass += mass_per_m * l;
+    }
+    return mass;
+}
+
+/* out (n, n) = T' A T with T = [1; R], A (2n, 2n), R (n, n). */
+static void condense(int n, const double A[], const double R[], double work[], double out[])
+{
+    const int size = 2 * n;
+    for (int i = 0; i < size; i++) /* work (2n, n) = A T */
+        for (int j = 0; j < n; j++) {
+            double sum = A[i * size + j];
+            for (int k = 0; k < n; k++)
+                sum += A[i * size + n + k] * R[k * n + j];
+            work[i * n + j] = sum;
+        }
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < n; j++) {
+            double sum = work[i * n + j];
+            for (int k = 0; k < n; k++)
+                sum += R[k * n + i] * work[(n + k) * n + j];
+            out[i * n + j] = sum;
+        }
+    for (int i = 0; i < n; i++) /* symmetric but for rounding */
+        for (int j = 0; j < i; j++)
+            out[i * n + j] = out[j * n + i] = 0.5 * (out[i * n + j] + out[j * n + i]);
+}
+
+static Status remove_rotations(CoreBeam *c, const double K[], const double M[], double store[], Err *err)
+{
+    const int n = c->n, size = 2 * n;
+    double *Krr = store, *R = Krr + n * n, *work = R + n * n;
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < n; j++) {
+            Krr[i * n + j] = K[(n + i) * size + n + j];
+            R[i * n + j] = -K[(n + i) * size + j];
+        }
+    TRY(linalg_solve_spd(n, n, Krr, R, err));
+    condense(n, K, R, work, c->K);
+    condense(n, M, R, work, c->M);
+    return STATUS_OK;
+}
+
+Status core_beam_make(CoreBeam *c, const Settings *s, int n, double t_base_m, double t_top_m, Err *err)
+{
+    const size_t size = 2 * (size_t)n;
+    if (s->core.section != CORE_EFFECTIVE && !(t_base_m > 0 && t_top_m > 0))
+        return fail(err, STATUS_BAD_DATA, "core: wall thickness %g -> %g m must be positive", t_base_m, t_top_m);
+    if (s->core.section == CORE_BOX && !(2 * fmax(t_base_m, t_top_m) <= s->core.side_m))
+        return fail(err, STATUS_BAD_DATA, "core: two walls of %g m do not fit into core.side_m = %g m",
+                    fmax(t_base_m, t_top_m), s->core.side_m);
+    double *K = calloc(2 * size * size + 4 * size * size, sizeof *K);
+    if (!K)
+        return fail(err, STATUS_NO_MEMORY, "core: no memory for %d storeys", n);
+    double *M = K + size * size;
+    memset(c, 0, sizeof *c);
+    c->n = n;
+    c->mass_kg = assemble(s, n, t_base_m, t_top_m, K, M);
+    Status status = remove_rotations(c, K, M, M + size * size, err);
+    if (status == STATUS_OK)
+        status = linalg_modes(n, c->K, c->M, c->omega, c->phi, err);
+    free(K);
+    for (int i = 0; i < n && status == STATUS_OK; i++)
+        for (int j = 0; j < n; j++)
+            for (int k = 0; k < n; k++)
+                c->gamma[i] += c->phi[j * n + i] * c->M[j * n + k];
+    return status;
+}

@@ -1,0 +1,28 @@
+/* scene/core_beam.h -- the light, stiff core as an Euler-Bernoulli cantilever with one node per floor.
+ *
+ * One Hermite element per storey, constant section inside it, consistent mass; the rotations are removed by Guyan
+ * reduction:  T = [1; -Krr^-1 Kru],  Kc = T' K T,  Mc = T' M T. Clamped at the ground. Thickness, and with `effective`
+ * area and inertia, vary linearly with the storey number j = 1..n: t_j = t_base + (t_top - t_base) (j-1)/(n-1).
+ *
+ *   box        A = B^2 - (B-2t)^2,  I = (B^4 - (B-2t)^4)/12
+ *   plate      A = b t,             I = b t^3/12
+ *   effective  A and I given at the first and last storey; the thicknesses are ignored
+ *
+ * Mode shapes are mass-normalised as in scene/building.h. Threads  no state. */
+#ifndef IMTET_SCENE_CORE_BEAM_H
+#define IMTET_SCENE_CORE_BEAM_H
+
+#include "base/settings.h"
+#include "scene/building.h"
+
+typedef struct {
+    int n;
+    double mass_kg;                                           /* of the whole core, ground node's share included */
+    double K[FLOORS_MAX * FLOORS_MAX], M[FLOORS_MAX * FLOORS_MAX]; /* (n, n) */
+    double phi[FLOORS_MAX * FLOORS_MAX];                      /* (n, n) column i is mode i */
+    double omega[FLOORS_MAX], gamma[FLOORS_MAX];
+} CoreBeam;
+
+Status core_beam_make(CoreBeam *c, const Settings *s, int n, double t_base_m, double t_top_m, Err *err);
+
+#endif

@@ -1,0 +1,60 @@
+#include "sim/contact.h"
+
+/* Zero when e is the rebound that belongs to a; rises with e, -ln(1+a) + a below zero at e = 0. */
+static double mismatch(double a, double e)
+{
+    return a * (1 + e) - log1p(a) + log1p(-a * e);
+}
+
+/* The root of mismatch in e: between 0, where it is positive, and min(1, 1/a), where it is negative. */
+double contact_rebound(double a)
+{
+    if (a < 1e-9)
+        return 1 - 2.0 / 3.0 * a;
+    double low = 0, high = a > 1 ? 1 / a : 1;
+    for (int i = 0; i < 200 && high - low > 1e-16 * high; i++) {
+        const double e = 0.5 * (low + high);
+        if (mismatch(a, e) > 0)
+            low = e;
+        else
+            high = e;
+    }
+    return 0.5 * (low + high);
+}
+
+double contact_damping(double e)
+{
+    double low = 0, high = 1 / e;
+    for (int i = 0; i < 200 && high - low > 1e-16 * high; i++) {
+        const double a = 0.5 * (low + high);
+        if (contact_rebound(a) > e)
+            low = a;
+        else
+            high = a;
+    }
+    return 0.5 * (low + high);
+}
+
+double contact_hertz_penetration(double k, double m, double v)
+{
+    return pow(1.25 * m * v * v / k, 0.4);
+}
+
+double contact_hertz_duration(double k, double m, double v)
+{
+    return 2.943275184 * contact_hertz_penetration(k, m, v) / v; /* 2 int_0^1 dx / sqrt(1 - x^2.5) */
+}
+
+Status contact_make(Contact *c, const Settings *s, Err *err)
+{
+    const double r = s->contact.restitution, nu = s->contact.poisson;
+    if (s->contact.law == LAW_EXACT && r < 0.01)
+        return fail(err, STATUS_BAD_DATA,
+                    "contact.restitution: %g cannot be reached with contact.law = exact (a grows without bound); use 0.01 "
+                    "or more, or contact.law = paper",
+                    r);
+    c->k = 2 * s->contact.youngs_modulus_pa * sqrt(s->contact.radius_m) / (3 * (1 - nu * nu));
+    c->a = s->contact.law == LAW_EXACT ? contact_damping(r) : 1.5 * (1 - r);
+    c->v0_floor = s->contact.v0_floor_m_s;
+    return STATUS_OK;
+}

@@ -1,0 +1,30 @@
+/* sim/engine.h -- what every integrator of the model looks like.
+ *
+ *   run(model, motion, options, result)    from rest at t = 0 to options.duration
+ *
+ * An engine fills all of SimResult but mcore_kg and seconds (the caller's). Energies as in sim/sim.h; maxima are over
+ * continuous time. After the last sample the ground stands still (a = 0 from there on, also where the last sample is
+ * not zero). An engine never answers wrongly in silence: what it cannot do is an outcome with a reason.
+ * Threads  an engine may allocate in its own run; it shares nothing. */
+#ifndef IMTET_SIM_ENGINE_H
+#define IMTET_SIM_ENGINE_H
+
+#include "sim/model.h"
+#include "sim/sim.h"
+
+typedef struct {
+    double duration; /* [s] > 0 */
+    Accuracy accuracy;
+} EngineOptions;
+
+typedef Status (*EngineFn)(const SimModel *model, const Motion *motion, const EngineOptions *options, SimResult *result,
+                           Err *err);
+
+Status engine_cvode(const SimModel *model, const Motion *motion, const EngineOptions *options, SimResult *result,
+                    Err *err);
+
+/* The linear zero-gap building: floors and core move together, M + Mc, K + Kc, C + Cc. */
+Status engine_tied(const Settings *s, const Building *b, const CoreBeam *core, const Motion *motion,
+                   const EngineOptions *options, SimResult *result, Err *err);
+
+#endif

@@ -1,0 +1,89 @@
+#include "sim/model.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int padded(int n)
+{
+    return (n + 7) & ~7;
+}
+
+Status model_create(SimModel *model, int n, Err *err)
+{
+    memset(model, 0, sizeof *model);
+    const size_t n_pad = (size_t)padded(n), m_max = (size_t)padded(2 * n);
+    const size_t need = 2 * m_max * n_pad + 3 * m_max + 2 * n_pad;
+    double *p = aligned_alloc(64, need * sizeof *p);
+    if (!p)
+        return fail(err, STATUS_NO_MEMORY, "model: no memory for %d floors", n);
+    model->store = p;
+    model->n = n;
+    model->n_pad = (int)n_pad;
+    model->R = p;
+    model->RT = model->R + m_max * n_pad;
+    model->omega = model->RT + m_max * n_pad;
+    model->zeta = model->omega + m_max;
+    model->gamma = model->zeta + m_max;
+    model->gap = model->gamma + m_max;
+    model->mass_eff = model->gap + n_pad;
+    return STATUS_OK;
+}
+
+static void set_mode(SimModel *model, int i, double omega, double zeta, double gamma, const double phi[], double sign)
+{
+    const int n = model->n;
+    model->omega[i] = omega;
+    model->zeta[i] = zeta;
+    model->gamma[i] = gamma;
+    for (int j = 0; j < n; j++)
+        model->R[i * model->n_pad + j] = model->RT[j * model->m_pad + i] = sign * phi[j * n];
+}
+
+static Status set_gaps(SimModel *model, const double gaps[], Err *err)
+{
+    for (int j = 0; j < model->n_pad; j++)
+        model->gap[j] = 1e300;
+    for (int j = 0; gaps && j < model->n; j++) {
+        if (!(gaps[j] >= 0) || isinf(gaps[j]))
+            return fail(err, STATUS_BAD_DATA, "gap_%02d_m: %g; a gap is zero or more and finite", j + 1, gaps[j]);
+        model->gap[j] = gaps[j];
+    }
+    return STATUS_OK;
+}
+
+Status model_set(SimModel *model, const Settings *s, const Building *b, const CoreBeam *core, const double gaps[],
+                 Err *err)
+{
+    const int n = b->n;
+    model->nb = n;
+    model->nc = core ? n : 0;
+    model->m = model->nb + model->nc;
+    model->m_pad = padded(model->m);
+    memset(model->R, 0, sizeof(double) * (size_t)(model->m_pad * model->n_pad));
+    memset(model->RT, 0, sizeof(double) * (size_t)(model->m_pad * model->n_pad));
+    for (int i = 0; i < model->m_pad; i++) {
+        model->omega[i] = 1;
+        model->zeta[i] = 0.5;
+        model->gamma[i] = 0;
+    }
+    for (int i = 0; i < n; i++)
+        set_mode(model, i, b->omega[i], s->building.damping, b->gamma[i], b->phi + i, 1);
+    for (int i = 0; i < model->nc; i++)
+        set_mode(model, n + i, core->omega[i], s->core.damping, core->gamma[i], core->phi + i, -1);
+    for (int j = 0; j < model->n_pad; j++) {
+        double sum = 0;
+        for (int i = 0; i < model->m; i++)
+            sum += model->R[i * model->n_pad + j] * model->R[i * model->n_pad + j];
+        model->mass_eff[j] = sum > 0 ? 1 / sum : 1e300;
+    }
+    model->core_mass_kg = core ? core->mass_kg : 0;
+    TRY(contact_make(&model->contact, s, err));
+    return set_gaps(model, core ? gaps : NULL, err);
+}
+
+void model_free(SimModel *model)
+{
+    free(model->store);
+    memset(model, 0, sizeof *model);
+}

@@ -1,0 +1,45 @@
+/* sim/model.h -- one design, ready to be integrated: both structures as modes, and the contacts between them.
+ *
+ *   q_i'' + 2 zeta_i w_i q_i' + w_i^2 q_i = -gamma_i a(t) + sum_j R_ij f_j(t)      i = 0..m-1
+ *   w_j  = u_j - v_j = sum_i R_ij q_i                                              j = 0..n-1
+ *   f_j  = -s F(p_j, p_j', v0_j),  s = sign(w_j),  p_j = |w_j| - gap_j
+ *
+ * Modes 0..nb-1 are the building's (R_ij = phi_ji), nb..m-1 the core's (R_ij = -phi_ji); u_j = sum_{i<nb} R_ij q_i.
+ * The absolute acceleration of floor j is sum_{i<nb} R_ij (-2 zeta_i w_i q_i' - w_i^2 q_i + contact part of mode i),
+ * since the building keeps all its modes.
+ *
+ * Layout   rows padded with zeros to a multiple of 8, 64-byte aligned: floors to n_pad, modes to m_pad.
+ * Padding  a padded floor has an unreachable gap, a padded mode has omega = 1 and no coupling.
+ * Life     model_create for the largest case, model_set per design, model_free. Threads  one owner at a time. */
+#ifndef IMTET_SIM_MODEL_H
+#define IMTET_SIM_MODEL_H
+
+#include "base/settings.h"
+#include "scene/building.h"
+#include "scene/core_beam.h"
+#include "sim/contact.h"
+
+typedef struct {
+    int n, nb, nc, m;  /* floors, building modes, core modes, nb + nc */
+    int n_pad, m_pad;
+    double *R;         /* (m_pad, n_pad) [1/sqrt(kg)] a row per mode */
+    double *RT;        /* (n_pad, m_pad) the same, a row per floor */
+    double *omega;     /* (m_pad) [rad/s] */
+    double *zeta;      /* (m_pad) [-] */
+    double *gamma;     /* (m_pad) [sqrt(kg)] */
+    double *gap;       /* (n_pad) [m] */
+    double *mass_eff;  /* (n_pad) [kg] 1/sum_i R_ij^2: what a short contact at floor j has to turn round */
+    double core_mass_kg;
+    Contact contact;
+    void *store;
+} SimModel;
+
+/* Room for n floors with up to n core modes. */
+Status model_create(SimModel *model, int n, Err *err);
+
+/* gaps (n) [m]; core NULL: the building alone (nc = 0, no gap can close). A negative or non-finite gap is refused. */
+Status model_set(SimModel *model, const Settings *s, const Building *b, const CoreBeam *core, const double gaps[],
+                 Err *err);
+void model_free(SimModel *model);
+
+#endif
