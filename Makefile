@@ -26,9 +26,16 @@ LDLIBS   += -lsundials_cvode -lsundials_nvecserial -lsundials_sunmatrixdense -ls
 # Our own kernels are written for the vectorizer; everything else is happy with -O2.
 $(BUILD)/src/sim/%.o: CFLAGS.release := -O3 -g
 
-SRC     := $(wildcard src/*/*.c src/*/*/*.c)
+KERNELS := base avx2 avx512
+KERNEL_FLAGS.avx2   := -march=x86-64-v3
+KERNEL_FLAGS.avx512 := -march=x86-64-v4 -mprefer-vector-width=512
+ifneq ($(shell uname -m),x86_64)
+KERNELS := base
+endif
+
+SRC     := $(filter-out src/sim/fast/kernel.c,$(wildcard src/*/*.c src/*/*/*.c))
 MATRICES := $(wildcard configs/sac20/guyan/*.csv configs/sac20/appendix/*.csv)
-LIB_OBJ := $(SRC:%.c=$(BUILD)/%.o) $(MATRICES:%=$(BUILD)/%.o)
+LIB_OBJ := $(SRC:%.c=$(BUILD)/%.o) $(KERNELS:%=$(BUILD)/src/sim/fast/kernel_%.o) $(MATRICES:%=$(BUILD)/%.o)
 LIB     := $(BUILD)/libimtet.a
 TEST_SRC := $(wildcard tests/test_*.c)
 TESTS   := $(TEST_SRC:%.c=$(BUILD)/%)
@@ -66,6 +73,11 @@ $(BUILD)/tests/%: $(BUILD)/tests/%.o $(LIB)
 $(BUILD)/%.o: %.c
 	@mkdir -p $(@D)
 	$(CC) $(CPPFLAGS) $(CFLAGS) -c $< -o $@
+
+# The fast engine's kernel, once per instruction set; fast.c chooses at run time.
+$(BUILD)/src/sim/fast/kernel_%.o: src/sim/fast/kernel.c
+	@mkdir -p $(@D)
+	$(CC) $(CPPFLAGS) $(CFLAGS) -fno-math-errno -fno-trapping-math $(KERNEL_FLAGS.$*) -DFAST_KERNEL=fast_kernel_$* -c $< -o $@
 
 # The two 20-floor buildings are part of the program: a file becomes the symbols _binary_PATH_start and _end.
 $(BUILD)/%.csv.o: %.csv

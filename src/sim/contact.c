@@ -1,6 +1,6 @@
 #include "sim/contact.h"
 
-/* Zero when e is the rebound that belongs to a; rises with e, -ln(1+a) + a below zero at e = 0. */
+/* Zero when e is the rebound that belongs to a; falls with e. */
 static double mismatch(double a, double e)
 {
     return a * (1 + e) - log1p(a) + log1p(-a * e);

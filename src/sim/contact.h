@@ -36,15 +36,15 @@ double contact_hertz_penetration(double k, double m, double v);
 double contact_hertz_duration(double k, double m, double v);
 
 typedef struct {
-    double force, raw;  /* [N] clamped and as the law says */
-    double dp, dv;      /* d force/d p [N/m], d force/d p' [N s/m] */
+    double force, raw, hertz; /* [N] clamped, as the law says, its elastic part k p^1.5 */
+    double dp, dv;            /* d force/d p [N/m], d force/d p' [N s/m] */
 } ContactForce;
 
 /* p > 0; v0 already floored. */
 static inline ContactForce contact_force(const Contact *c, double p, double p_dot, double v0)
 {
     const double root = sqrt(p), hertz = c->k * p * root, loss = 1.0 + c->a * p_dot / v0;
-    ContactForce f = {.raw = hertz * loss, .dp = 1.5 * c->k * root * loss, .dv = hertz * c->a / v0};
+    ContactForce f = {.raw = hertz * loss, .hertz = hertz, .dp = 1.5 * c->k * root * loss, .dv = hertz * c->a / v0};
     f.force = f.raw;
     if (!(f.raw > 0) && loss <= 0) /* keeps NaN */
         f.force = f.dp = f.dv = 0;

@@ -1,0 +1,95 @@
+#include "sim/fast/fast.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "sim/fast/kernel.h"
+
+/* Hands out slices of one block, in doubles; without a base it only counts. */
+typedef struct {
+    char *base;
+    size_t used;
+} Carve;
+
+static void *carve(Carve *c, size_t count)
+{
+    void *slice = c->base ? c->base + c->used : NULL;
+    c->used += (count * sizeof(double) + 63) & ~(size_t)63;
+    return slice;
+}
+
+static void layout(FastWork *k, Carve *c)
+{
+    const size_t n = (size_t)k->n, n_pad = (size_t)k->n_pad, m_max = 2 * n_pad;
+    v8 **const modes[] = {&k->omega, &k->zeta, &k->gamma, &k->wd_inverse, &k->decay, &k->flex, &k->q,  &k->v,
+                          &k->load,  &k->work, &k->ground, &k->q1,        &k->v1,    &k->amplitude,   &k->qa, &k->va,
+                          &k->qb,    &k->vb,   &k->za,    &k->ja,         &k->zb,    &k->jb,   &k->bound, &k->bound_a};
+    v8 **const floors[] = {&k->w,   &k->wd,  &k->w1,  &k->wd1, &k->f0,  &k->f1,  &k->fb,     &k->gap,    &k->u0,
+                           &k->u0d, &k->u1,  &k->u1d, &k->a0,  &k->a0d, &k->a1,  &k->a1d,    &k->e_u,    &k->e_w,
+                           &k->e_a, &k->peak_u, &k->peak_d, &k->peak_a, &k->c0, &k->c0d, &k->c1, &k->c1d};
+    for (size_t i = 0; i < sizeof modes / sizeof modes[0]; i++)
+        *modes[i] = carve(c, m_max);
+    for (size_t i = 0; i < sizeof floors / sizeof floors[0]; i++)
+        *floors[i] = carve(c, n_pad);
+    for (int i = 0; i < 9; i++)
+        k->seen[i / 3][i % 3] = carve(c, n_pad);
+    k->R = carve(c, m_max * n_pad);
+    k->R_abs = carve(c, m_max * n_pad);
+    k->RT = carve(c, m_max * n_pad);
+    for (int i = 0; i <= LEVEL_MAX; i++) {
+        Level *l = &k->level[i];
+        l->coef = carve(c, FLOW_ROWS * m_max);
+        l->slow = carve(c, m_max);
+        l->kappa = carve(c, m_max);
+        l->kappa_accel = carve(c, m_max);
+        l->response = carve(c, RESPONSES * n * n_pad);
+    }
+}
+
+Status fast_create(FastWork **out, int n_floors, Err *err)
+{
+    *out = NULL;
+    FastWork *k = calloc(1, sizeof *k);
+    if (!k)
+        return fail(err, STATUS_NO_MEMORY, "fast: no memory for its work space");
+    k->n = n_floors;
+    k->n_pad = (n_floors + LANES - 1) / LANES * LANES;
+    k->nf = k->n_pad / LANES;
+    Carve count = {0};
+    layout(k, &count);
+    k->store = aligned_alloc(64, count.used);
+    if (!k->store) {
+        free(k);
+        return fail(err, STATUS_NO_MEMORY, "fast: no memory for %zu bytes of work space", count.used);
+    }
+    memset(k->store, 0, count.used);
+    Carve slices = {.base = k->store};
+    layout(k, &slices);
+    *out = k;
+    return STATUS_OK;
+}
+
+void fast_free(FastWork *work)
+{
+    if (work)
+        free(work->store);
+    free(work);
+}
+
+/* The widest vectors that this processor has. */
+static FastKernel *best_kernel(void)
+{
+#ifdef __x86_64__
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq"))
+        return fast_kernel_avx512;
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+        return fast_kernel_avx2;
+#endif
+    return fast_kernel_base;
+}
+
+void fast_run(FastWork *work, const SimModel *model, const Motion *motion, double duration, double steps_per_contact,
+              double peak_tolerance, SimResult *result)
+{
+    best_kernel()(work, model, motion, duration, steps_per_contact, peak_tolerance, result);
+}

@@ -1,0 +1,32 @@
+/* sim/fast/fast.h -- the engine `fast`: exact modal flow, resolved contacts, certified flights.
+ *
+ * Time      every sampling interval of the motion is halved as often as needed: steps of 2^-L intervals, aligned, so
+ *           that no step straddles a kink of the ground motion and all propagators are tabled per level L.
+ * Flight    without contact the modes flow exactly. A step is accepted when no gap can close inside it and no peak can
+ *           hide in it: slow modes (w h below FAST_MODE) by the Bezier hull of the Hermite cubic plus its error bound
+ *           (w h)^4/384 A, fast ones by their amplitude A around the quasi-static answer.
+ * Contact   steps of a fixed share of a Hertz contact's duration. Over a step the force of floor j is
+ *           f(x) = F0 (1-x) + F1 x + 6 (mean - (F0+F1)/2) x (1-x), which the modes answer exactly; F1 and the mean come
+ *           from the force law along the Hermite cubic of the penetration (touch.h), implicitly: Newton per floor,
+ *           Gauss-Seidel over floors, on the n x n responses of w to those forces. Closings and openings inside a step
+ *           are located on the cubic. Order 4 between events, 3.5 across them.
+ * Energy    the work of every load on every mode is integrated exactly; what a mode damps is work minus energy. The
+ *           residual compares the work that the modes took from contacts with the books that the force law kept.
+ * Maxima    flights: extremum of the Hermite cubic; contacts: parabola through three steps.
+ *
+ * Life cycle  fast_create -> fast_run ... -> fast_free. Threads  one FastWork per thread. No allocation in fast_run. */
+#ifndef IMTET_SIM_FAST_FAST_H
+#define IMTET_SIM_FAST_FAST_H
+
+#include "sim/engine.h"
+
+typedef struct FastWork FastWork;
+
+Status fast_create(FastWork **out, int n_floors, Err *err);
+void fast_free(FastWork *work); /* NULL is fine */
+
+/* steps_per_contact: of an undisturbed Hertz contact at the largest speed between floor and core. */
+void fast_run(FastWork *work, const SimModel *model, const Motion *motion, double duration, double steps_per_contact,
+              double peak_tolerance, SimResult *result);
+
+#endif

@@ -1,0 +1,793 @@
+/* Compiled once per instruction set with FAST_KERNEL naming the entry; see fast.h for the method. */
+#include "sim/fast/kernel.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "sim/fast/touch.h"
+
+/* Above this w h a mode is bounded by its amplitude, below it the Hermite cubic follows it. */
+static const double FAST_MODE = 1.5;
+
+/* Relative to what a step moves. */
+static const double NEWTON_TOLERANCE = 1e-13, SWEEP_TOLERANCE = 1e-12;
+
+static double *scalars(v8 *p)
+{
+    return (double *)p;
+}
+
+static const double *scalars_const(const v8 *p)
+{
+    return (const double *)p;
+}
+
+/* ---- tables of one step length ------------------------------------------------------------------------------- */
+
+static void level_flow(FastWork *k, Level *l)
+{
+    const double *omega = scalars_const(k->omega), *zeta = scalars_const(k->zeta);
+    flow_coefficients((size_t)k->m_pad, omega, zeta, l->h, scalars(l->coef), (size_t)k->m_pad);
+    for (int i = 0; i < k->m_pad; i++) {
+        const double over = zeta[i] > 0.99 ? zeta[i] + sqrt(fmax(zeta[i] * zeta[i] - 1, 0)) : 1;
+        const double wh = omega[i] * over * l->h, error = wh * wh * wh * wh / 384;
+        const int slow = wh < FAST_MODE;
+        /* overdamped: |x| + |x' + zeta w x| t instead of the amplitude of a sine, at most sqrt(2) times its root */
+        const double bound = (slow ? error : 1) * (over > 1 ? sqrt(2.0) : 1);
+        scalars(l->slow)[i] = slow;
+        scalars(l->kappa)[i] = bound;
+        scalars(l->kappa_accel)[i] = bound * omega[i] * omega[i] * (1 + 2 * zeta[i]);
+    }
+    l->has_flow = 1;
+}
+
+/* w at the end of the step answers a ramp x and a bubble x (1 - x) of force at floor j with column j of these. */
+static void level_response(FastWork *k, Level *l)
+{
+    const double *coef = scalars_const(l->coef);
+    const int size = k->n * k->n_pad;
+    memset(l->response, 0, sizeof(double) * (size_t)(RESPONSES * size));
+    for (int i = 0; i < k->m_pad; i++) {
+        const double *row = k->R + i * k->n_pad;
+        const double w1 = coef[(FLOW_Q + 3) * k->m_pad + i], w2 = coef[(FLOW_Q + 4) * k->m_pad + i];
+        const double v1 = coef[(FLOW_V + 3) * k->m_pad + i], v2 = coef[(FLOW_V + 4) * k->m_pad + i];
+        const double unit[RESPONSES] = {[RAMP_W] = w1, [BUBBLE_W] = w1 - w2, [RAMP_V] = v1, [BUBBLE_V] = v1 - v2};
+        for (int r = 0; r < RESPONSES; r++)
+            for (int j = 0; j < k->n; j++) {
+                const double c = unit[r] * row[j];
+                double *out = l->response + r * size + j * k->n_pad;
+                for (int f = 0; f < k->n_pad; f++)
+                    out[f] += c * row[f];
+            }
+    }
+    l->has_response = 1;
+}
+
+static Level *level_ready(FastWork *k, int index, int with_response)
+{
+    Level *l = &k->level[index];
+    if (!l->has_flow) {
+        l->h = ldexp(k->base, -index);
+        level_flow(k, l);
+    }
+    if (with_response && !l->has_response)
+        level_response(k, l);
+    return l;
+}
+
+static void set_base(FastWork *k, double base)
+{
+    if (base == k->base)
+        return;
+    k->base = base;
+    for (int i = 0; i <= LEVEL_MAX; i++)
+        k->level[i].has_flow = k->level[i].has_response = 0;
+}
+
+/* ---- a design's modes and a state of rest --------------------------------------------------------------------- */
+
+static void copy_mode(FastWork *k, const SimModel *model, int from, int to)
+{
+    scalars(k->omega)[to] = model->omega[from];
+    scalars(k->zeta)[to] = model->zeta[from];
+    scalars(k->gamma)[to] = model->gamma[from];
+    for (int j = 0; j < k->n_pad; j++) {
+        const double r = model->R[from * model->n_pad + j];
+        k->R[to * k->n_pad + j] = k->RT[j * k->m_pad + to] = r;
+        k->R_abs[to * k->n_pad + j] = fabs(r);
+    }
+}
+
+static void take_model(FastWork *k, const SimModel *model, double base)
+{
+    k->model = model;
+    k->nb_pad = (model->nb + LANES - 1) / LANES * LANES;
+    k->m_pad = k->nb_pad + (model->nc + LANES - 1) / LANES * LANES;
+    k->bf = k->nb_pad / LANES;
+    k->mf = k->m_pad / LANES;
+    memset(k->R, 0, sizeof(double) * (size_t)(k->m_pad * k->n_pad));
+    memset(k->R_abs, 0, sizeof(double) * (size_t)(k->m_pad * k->n_pad));
+    memset(k->RT, 0, sizeof(double) * (size_t)(k->m_pad * k->n_pad));
+    for (int i = 0; i < k->m_pad; i++) {
+        scalars(k->omega)[i] = 1;
+        scalars(k->zeta)[i] = 0.5;
+        scalars(k->gamma)[i] = 0;
+    }
+    for (int i = 0; i < model->nb; i++)
+        copy_mode(k, model, i, i);
+    for (int i = 0; i < model->nc; i++)
+        copy_mode(k, model, model->nb + i, k->nb_pad + i);
+    for (int i = 0; i < k->m_pad; i++) {
+        const double omega = scalars(k->omega)[i], zeta = scalars(k->zeta)[i];
+        scalars(k->decay)[i] = 2 * zeta * omega;
+        scalars(k->wd_inverse)[i] = zeta > 0.99 || omega == 0 ? base : 1 / (omega * sqrt(1 - zeta * zeta));
+        scalars(k->flex)[i] = omega > 0 ? 1 / (omega * omega) : 0;
+    }
+    memcpy(k->gap, model->gap, sizeof(double) * (size_t)k->n_pad);
+}
+
+static void start_at_rest(FastWork *k)
+{
+    const v8 zero = {0};
+    for (int i = 0; i < k->mf; i++)
+        k->q[i] = k->v[i] = k->load[i] = k->work[i] = k->ground[i] = zero;
+    for (int f = 0; f < k->nf; f++)
+        k->w[f] = k->wd[f] = k->f0[f] = k->f1[f] = k->fb[f] = k->peak_u[f] = k->peak_d[f] = k->peak_a[f] = zero;
+    memset(k->side, 0, sizeof k->side);
+    k->n_touching = 0;
+    k->n_seen = -1;
+    k->speed = 0;
+    k->contact_lost = k->contact_clamped = k->deepest = 0;
+    k->impacts = k->floored = k->steps = k->flights = k->forces = 0;
+}
+
+/* ---- flight ------------------------------------------------------------------------------------------------- */
+
+static void flight_modes(FastWork *k, const Level *l, double a0, double a1)
+{
+    const v8 *c = l->coef;
+    const int mf = k->mf;
+    const double rate = (a1 - a0) / l->h;
+    for (int i = 0; i < mf; i++) {
+        const v8 q = k->q[i], v = k->v[i], p0 = -k->gamma[i] * a0, p1 = -k->gamma[i] * (a1 - a0);
+        k->q1[i] = c[FLOW_Q * mf + i] * q + c[(FLOW_Q + 1) * mf + i] * v + c[(FLOW_Q + 2) * mf + i] * p0 +
+                   c[(FLOW_Q + 3) * mf + i] * p1;
+        k->v1[i] = c[FLOW_V * mf + i] * q + c[(FLOW_V + 1) * mf + i] * v + c[(FLOW_V + 2) * mf + i] * p0 +
+                   c[(FLOW_V + 3) * mf + i] * p1;
+        /* quasi-static answer to the linear load, and the free vibration around it */
+        const v8 flex = k->flex[i], decay = k->decay[i], stiff = k->omega[i] * k->omega[i], slow = l->slow[i];
+        const v8 static_v = -k->gamma[i] * rate * flex, static_0 = (p0 - decay * static_v) * flex,
+                 static_1 = static_0 + l->h * static_v;
+        const v8 x = q - static_0, xd = (v - static_v + 0.5 * decay * x) * k->wd_inverse[i];
+        k->amplitude[i] = v8_sqrt(x * x + xd * xd);
+        k->qa[i] = static_0 + slow * x;
+        k->va[i] = static_v + slow * (v - static_v);
+        k->qb[i] = static_1 + slow * (k->q1[i] - static_1);
+        k->vb[i] = static_v + slow * (k->v1[i] - static_v);
+        k->za[i] = -decay * k->va[i] - stiff * k->qa[i];
+        k->zb[i] = -decay * k->vb[i] - stiff * k->qb[i];
+        k->ja[i] = -decay * (p0 + k->za[i]) - stiff * k->va[i];
+        k->jb[i] = -decay * (p0 + p1 + k->zb[i]) - stiff * k->vb[i];
+    }
+}
+
+static void flight_floors(FastWork *k, const Level *l)
+{
+    const v8 *R = (const v8 *)k->R, *R_abs = (const v8 *)k->R_abs;
+    const int core = k->nb_pad, core_count = k->m_pad - k->nb_pad;
+    const double *const state[4] = {scalars_const(k->qa), scalars_const(k->va), scalars_const(k->qb),
+                                    scalars_const(k->vb)};
+    v8 *const floors[4] = {k->u0, k->u0d, k->u1, k->u1d};
+    rows_times(4, R, k->nf, core, state, floors);
+    const double *const accel[4] = {scalars_const(k->za), scalars_const(k->ja), scalars_const(k->zb),
+                                    scalars_const(k->jb)};
+    v8 *const accels[4] = {k->a0, k->a0d, k->a1, k->a1d};
+    rows_times(4, R, k->nf, core, accel, accels);
+    v8 *bound = k->bound, *bound_a = k->bound_a;
+    for (int i = 0; i < k->mf; i++) {
+        bound[i] = l->kappa[i] * k->amplitude[i];
+        bound_a[i] = l->kappa_accel[i] * k->amplitude[i];
+    }
+    const double *const bounds[2] = {scalars_const(bound), scalars_const(bound_a)};
+    v8 *const errors[2] = {k->e_u, k->e_a};
+    rows_times(2, R_abs, k->nf, core, bounds, errors);
+    if (core_count == 0)
+        return;
+    const double *const core_state[4] = {state[0] + core, state[1] + core, state[2] + core, state[3] + core};
+    v8 *const core_floors[4] = {k->c0, k->c0d, k->c1, k->c1d};
+    rows_times(4, R + core * k->nf, k->nf, core_count, core_state, core_floors);
+    const double *const core_bound[1] = {bounds[0] + core};
+    v8 *const core_error[1] = {k->e_w};
+    rows_times(1, R_abs + core * k->nf, k->nf, core_count, core_bound, core_error);
+}
+
+/* Largest |value| of the cubic through both ends anywhere in the step: its Bezier control points enclose it. */
+static v8 hull(v8 y0, v8 d0, v8 y1, v8 d1, double h)
+{
+    const double third = h / 3;
+    return v8_max(v8_max(v8_abs(y0), v8_abs(y0 + third * d0)), v8_max(v8_abs(y1 - third * d1), v8_abs(y1)));
+}
+
+static int gaps_stay_open(FastWork *k, double h)
+{
+    if (k->m_pad == k->nb_pad)
+        return 1;
+    m8 closed = {0};
+    for (int f = 0; f < k->nf; f++) {
+        const v8 w0 = k->u0[f] + k->c0[f], w0d = k->u0d[f] + k->c0d[f], w1 = k->u1[f] + k->c1[f],
+                 w1d = k->u1d[f] + k->c1d[f];
+        closed |= ~(hull(w0, w0d, w1, w1d, h) + k->e_u[f] + k->e_w[f] < k->gap[f]);
+    }
+    return !m8_any(closed);
+}
+
+static double largest_on_cubic(double h, double y0, double d0, double y1, double d1)
+{
+    const Path q = path_make(h, y0, d0, y1, d1);
+    double turns[2], most = fmax(fabs(y0), fabs(y1));
+    const int n = path_turns(&q, turns);
+    for (int i = 0; i < n; i++)
+        most = fmax(most, fabs(path_at(&q, turns[i])));
+    return most;
+}
+
+/* Raises peak where the step may exceed it; 0: the error bound hides what the peak is. */
+static int raise_peaks(v8 *peak, int n, int nf, const v8 *y0, const v8 *d0, const v8 *y1, const v8 *d1, const v8 *e,
+                       double h, double tolerance)
+{
+    for (int f = 0; f < nf; f++) {
+        const v8 reach = hull(y0[f], d0[f], y1[f], d1[f], h) + e[f];
+        if (!m8_any(reach > peak[f]))
+            continue;
+        for (int lane = 0; lane < LANES && f * LANES + lane < n; lane++) {
+            if (!(reach[lane] > peak[f][lane]))
+                continue;
+            const double most = largest_on_cubic(h, y0[f][lane], d0[f][lane], y1[f][lane], d1[f][lane]);
+            if (!(most + e[f][lane] > peak[f][lane]))
+                continue;
+            if (!(e[f][lane] <= tolerance * fmax(peak[f][lane], most)))
+                return 0;
+            if (most > peak[f][lane])
+                peak[f][lane] = most;
+        }
+    }
+    return 1;
+}
+
+/* Interstorey differences of floor values, the ground being 0. */
+static void storeys(const FastWork *k, const v8 *u, v8 *d)
+{
+    const double *from = scalars_const(u);
+    double *to = scalars(d);
+    to[0] = from[0];
+    for (int j = 1; j < k->n; j++)
+        to[j] = from[j] - from[j - 1];
+    for (int j = k->n; j < k->n_pad; j++)
+        to[j] = 0;
+}
+
+static int peaks_in_flight(FastWork *k, double h, double tolerance)
+{
+    v8 d0[FLOORS_PAD_MAX / LANES], d0d[FLOORS_PAD_MAX / LANES], d1[FLOORS_PAD_MAX / LANES],
+        d1d[FLOORS_PAD_MAX / LANES], e[FLOORS_PAD_MAX / LANES];
+    storeys(k, k->u0, d0);
+    storeys(k, k->u0d, d0d);
+    storeys(k, k->u1, d1);
+    storeys(k, k->u1d, d1d);
+    storeys(k, k->e_u, e);
+    for (int j = 1; j < k->n; j++)
+        scalars(e)[j] += 2 * scalars(k->e_u)[j - 1];
+    return raise_peaks(k->peak_u, k->n, k->nf, k->u0, k->u0d, k->u1, k->u1d, k->e_u, h, tolerance) &&
+           raise_peaks(k->peak_d, k->n, k->nf, d0, d0d, d1, d1d, e, h, tolerance) &&
+           raise_peaks(k->peak_a, k->n, k->nf, k->a0, k->a0d, k->a1, k->a1d, k->e_a, h, tolerance);
+}
+
+static double largest(const v8 *a, int nf)
+{
+    v8 most = v8_abs(a[0]);
+    for (int f = 1; f < nf; f++)
+        most = v8_max(most, v8_abs(a[f]));
+    double m = 0;
+    for (int lane = 0; lane < LANES; lane++)
+        m = fmax(m, most[lane]);
+    return m;
+}
+
+/* Work of the ground over the step: [p q] - int p' q dt, mode by mode. */
+static void book_flight(FastWork *k, const Level *l, double a0, double a1)
+{
+    const v8 *c = l->coef;
+    const int mf = k->mf;
+    for (int i = 0; i < mf; i++) {
+        const v8 p0 = -k->gamma[i] * a0, p1 = -k->gamma[i] * (a1 - a0);
+        const v8 mean = c[FLOW_I * mf + i] * k->q[i] + c[(FLOW_I + 1) * mf + i] * k->v[i] +
+                        c[(FLOW_I + 2) * mf + i] * p0 + c[(FLOW_I + 3) * mf + i] * p1;
+        k->ground[i] += (p0 + p1) * k->q1[i] - p0 * k->q[i] - p1 * mean;
+    }
+}
+
+static void swap(v8 **a, v8 **b)
+{
+    v8 *t = *a;
+    *a = *b;
+    *b = t;
+}
+
+/* One step without contact; 0 when it cannot be certified and nothing has changed. */
+static int flight(FastWork *k, const Level *l, double a0, double a1, double tolerance)
+{
+    k->flights++;
+    flight_modes(k, l, a0, a1);
+    flight_floors(k, l);
+    if (!gaps_stay_open(k, l->h) || !peaks_in_flight(k, l->h, tolerance))
+        return 0;
+    book_flight(k, l, a0, a1);
+    swap(&k->q, &k->q1);
+    swap(&k->v, &k->v1);
+    for (int f = 0; f < k->nf && k->m_pad > k->nb_pad; f++)
+        k->wd[f] = k->u1d[f] + k->c1d[f];
+    k->speed = k->m_pad > k->nb_pad ? largest(k->wd, k->nf) : 0;
+    k->n_seen = -1;
+    return 1;
+}
+
+/* ---- contact ------------------------------------------------------------------------------------------------ */
+
+static void outputs(FastWork *k, const v8 *q, const v8 *v, v8 *u, v8 *drift, v8 *accel)
+{
+    v8 *z = k->za;
+    for (int i = 0; i < k->bf; i++)
+        z[i] = k->load[i] - k->decay[i] * v[i] - k->omega[i] * k->omega[i] * q[i];
+    const double *const state[2] = {scalars_const(q), scalars_const(z)};
+    v8 *const floors[2] = {u, accel};
+    rows_times(2, (const v8 *)k->R, k->nf, k->nb_pad, state, floors);
+    storeys(k, u, drift);
+}
+
+/* From flight to contact steps: w and w' exactly, and a first sample for the peaks. */
+static void land(FastWork *k)
+{
+    const double *const state[2] = {scalars_const(k->q), scalars_const(k->v)};
+    v8 *const floors[2] = {k->w, k->wd};
+    rows_times(2, (const v8 *)k->R, k->nf, k->m_pad, state, floors);
+    outputs(k, k->q, k->v, k->seen[0][0], k->seen[0][1], k->seen[0][2]);
+    k->n_seen = 1;
+}
+
+static void contact_predict(FastWork *k, const Level *l, double a0, double a1)
+{
+    const v8 *c = l->coef;
+    const int mf = k->mf;
+    for (int i = 0; i < mf; i++) {
+        const v8 q = k->q[i], v = k->v[i], p0 = k->load[i] - k->gamma[i] * a0,
+                 p1 = -k->gamma[i] * (a1 - a0) - k->load[i];
+        k->q1[i] = c[FLOW_Q * mf + i] * q + c[(FLOW_Q + 1) * mf + i] * v + c[(FLOW_Q + 2) * mf + i] * p0 +
+                   c[(FLOW_Q + 3) * mf + i] * p1;
+        k->v1[i] = c[FLOW_V * mf + i] * q + c[(FLOW_V + 1) * mf + i] * v + c[(FLOW_V + 2) * mf + i] * p0 +
+                   c[(FLOW_V + 3) * mf + i] * p1;
+    }
+    const double *const state[2] = {scalars_const(k->q1), scalars_const(k->v1)};
+    v8 *const floors[2] = {k->w1, k->wd1};
+    rows_times(2, (const v8 *)k->R, k->nf, k->m_pad, state, floors);
+}
+
+/* Gives floor j the force f1 at the end and the bubble fb; w1 and w1' of all floors follow. */
+static void apply_force(FastWork *k, const Level *l, int j, double f1, double fb)
+{
+    const int nf = k->nf, size = k->n * nf;
+    const v8 *r = (const v8 *)l->response + j * nf;
+    const double d1 = f1 - scalars(k->f1)[j], db = fb - scalars(k->fb)[j];
+    for (int f = 0; f < nf; f++) {
+        k->w1[f] += r[RAMP_W * size + f] * d1 + r[BUBBLE_W * size + f] * db;
+        k->wd1[f] += r[RAMP_V * size + f] * d1 + r[BUBBLE_V * size + f] * db;
+    }
+    scalars(k->f1)[j] = f1;
+    scalars(k->fb)[j] = fb;
+}
+
+/* Newton's method for the force at the end, F, and its mean, M, of floor j with all other floors held:
+ *   p1 = p - A F - B M,  p1' = p' - C F - D M,  (F, M) = law along the path to p1, p1'
+ * Returns the change in w1 relative to what the step moves, or -1 when it does not converge. */
+static double solve_floor(FastWork *k, const Level *l, int j, int side, Touch *t)
+{
+    const int at = j * k->n_pad + j, size = k->n * k->n_pad;
+    const double *r = l->response;
+    const double s = side, gap = scalars(k->gap)[j], p0 = s * scalars(k->w)[j] - gap, v0 = s * scalars(k->wd)[j];
+    const double f0 = -s * scalars(k->f0)[j], w_b = r[BUBBLE_W * size + at], v_b = r[BUBBLE_V * size + at];
+    const double A = r[RAMP_W * size + at] - 3 * w_b, B = 6 * w_b, C = r[RAMP_V * size + at] - 3 * v_b, D = 6 * v_b;
+    double F = -s * scalars(k->f1)[j], M = (-s * scalars(k->fb)[j] + 3 * f0 + 3 * F) / 6;
+    const double F_was = F, M_was = M;
+    const double p = s * scalars(k->w1)[j] - gap + A * F + B * M, v = s * scalars(k->wd1)[j] + C * F + D * M;
+    const double scale_p = fabs(p0) + fabs(p) + l->h * (fabs(v0) + fabs(v)), scale_v = fabs(v0) + fabs(v);
+    enum { MOST = 25 };
+    int i;
+    for (i = 0; i < MOST; i++) {
+        const double p1 = p - A * F - B * M, v1 = v - C * F - D * M;
+        touch_step(t, &k->model->contact, l->h, p0, v0, p1, v1, k->side[j] != 0, k->v0[j]);
+        k->forces++;
+        const double rF = F - t->end, rM = M - t->mean;
+        const double J11 = 1 + t->end_p * A + t->end_v * C, J12 = t->end_p * B + t->end_v * D;
+        const double J21 = t->mean_p * A + t->mean_v * C, J22 = 1 + t->mean_p * B + t->mean_v * D;
+        const double det = J11 * J22 - J12 * J21;
+        const double dF = (rF * J22 - rM * J12) / det, dM = (J11 * rM - J21 * rF) / det;
+        if (!isfinite(dF) || !isfinite(dM))
+            return -1;
+        F -= dF;
+        M -= dM;
+        if (fabs(A * dF) + fabs(B * dM) <= NEWTON_TOLERANCE * scale_p &&
+            fabs(C * dF) + fabs(D * dM) <= NEWTON_TOLERANCE * scale_v)
+            break;
+    }
+    if (i == MOST)
+        return -1;
+    apply_force(k, l, j, -s * F, -s * (6 * M - 3 * f0 - 3 * F));
+    F -= F_was;
+    M -= M_was;
+    return fmax(fabs(A * F + B * M) / scale_p, fabs(C * F + D * M) / scale_v);
+}
+
+typedef struct {
+    int n, floor[FLOORS_PAD_MAX], side[FLOORS_PAD_MAX];
+    unsigned char listed[FLOORS_PAD_MAX];
+    Touch touch[FLOORS_PAD_MAX];
+} Active;
+
+/* Lists the floors whose path may leave the gap; returns how many were new. */
+static int find_closings(FastWork *k, const Level *l, Active *active)
+{
+    int found = 0;
+    for (int f = 0; f < k->nf; f++) {
+        const m8 out = ~(hull(k->w[f], k->wd[f], k->w1[f], k->wd1[f], l->h) <= k->gap[f]);
+        if (!m8_any(out))
+            continue;
+        for (int lane = 0; lane < LANES; lane++) {
+            const int j = f * LANES + lane;
+            if (!out[lane] || active->listed[j] || j >= k->n)
+                continue;
+            const double third = l->h / 3, w0 = k->w[f][lane], w1 = k->w1[f][lane];
+            const double control[4] = {w1, w0 + third * k->wd[f][lane], w1 - third * k->wd1[f][lane], w0};
+            double furthest = control[0];
+            for (int c = 1; c < 4 && !(fabs(w1) > k->gap[f][lane]); c++)
+                furthest = fabs(control[c]) > fabs(furthest) ? control[c] : furthest;
+            active->listed[j] = 1;
+            active->floor[active->n] = j;
+            active->side[active->n++] = furthest < 0 ? -1 : 1;
+            found++;
+        }
+    }
+    return found;
+}
+
+static void list_touching(FastWork *k, Active *active)
+{
+    active->n = 0;
+    memset(active->listed, 0, sizeof active->listed);
+    for (int j = 0; k->n_touching && j < k->n; j++)
+        if (k->side[j]) {
+            active->listed[j] = 1;
+            active->floor[active->n] = j;
+            active->side[active->n++] = k->side[j];
+        }
+}
+
+/* The forces of all floors at once; 0 when they cannot be had at this step length. */
+static int solve_contacts(FastWork *k, const Level *l, Active *active)
+{
+    enum { SWEEPS = 60 };
+    list_touching(k, active);
+    for (int i = 0; i < active->n; i++) /* as if the forces stayed as they are */
+        apply_force(k, l, active->floor[i], scalars(k->f0)[active->floor[i]], 0);
+    for (int sweep = 0; sweep < SWEEPS; sweep++) {
+        double change = 0;
+        for (int i = 0; i < active->n; i++) {
+            const double c = solve_floor(k, l, active->floor[i], active->side[i], &active->touch[i]);
+            if (c < 0)
+                return 0;
+            change = fmax(change, c);
+        }
+        if ((active->n < 2 || change <= SWEEP_TOLERANCE) && !find_closings(k, l, active))
+            return 1;
+    }
+    return 0;
+}
+
+/* A floor that crossed from one wall to the other inside the step wants a shorter one. */
+static int sides_hold(const FastWork *k, const Active *active)
+{
+    for (int i = 0; i < active->n; i++) {
+        const int j = active->floor[i];
+        if (-active->side[i] * scalars_const(k->w1)[j] > scalars_const(k->gap)[j])
+            return 0;
+    }
+    return 1;
+}
+
+static void forget_forces(FastWork *k)
+{
+    const v8 zero = {0};
+    for (int f = 0; f < k->nf; f++)
+        k->f1[f] = k->fb[f] = zero;
+}
+
+/* The modes take the forces that were found, and the books are kept. */
+static void contact_update(FastWork *k, const Level *l, const Active *active, double a0, double a1)
+{
+    const v8 *c = l->coef, zero = {0};
+    const int mf = k->mf;
+    v8 *load1 = k->qa, *bubble = k->va;
+    for (int i = 0; i < mf; i++)
+        load1[i] = bubble[i] = zero;
+    for (int n = 0; n < active->n; n++) {
+        const v8 *row = (const v8 *)k->RT + active->floor[n] * mf;
+        const double f1 = scalars(k->f1)[active->floor[n]], fb = scalars(k->fb)[active->floor[n]];
+        for (int i = 0; i < mf; i++) {
+            load1[i] += row[i] * f1;
+            bubble[i] += row[i] * fb;
+        }
+    }
+    for (int i = 0; i < mf; i++) {
+        const v8 q = k->q[i], v = k->v[i], load = k->load[i], b = bubble[i];
+        const v8 q1 = k->q1[i] + c[(FLOW_Q + 3) * mf + i] * (load1[i] + b) - c[(FLOW_Q + 4) * mf + i] * b;
+        const v8 v1 = k->v1[i] + c[(FLOW_V + 3) * mf + i] * (load1[i] + b) - c[(FLOW_V + 4) * mf + i] * b;
+        const v8 g0 = -k->gamma[i] * a0, g1 = -k->gamma[i] * (a1 - a0), rise = load1[i] - load + b;
+        const v8 p0 = g0 + load, p1 = g1 + rise;
+        const v8 mean = c[FLOW_I * mf + i] * q + c[(FLOW_I + 1) * mf + i] * v + c[(FLOW_I + 2) * mf + i] * p0 +
+                        c[(FLOW_I + 3) * mf + i] * p1 - c[(FLOW_I + 4) * mf + i] * b;
+        const v8 first = c[FLOW_K * mf + i] * q + c[(FLOW_K + 1) * mf + i] * v + c[(FLOW_K + 2) * mf + i] * p0 +
+                         c[(FLOW_K + 3) * mf + i] * p1 - c[(FLOW_K + 4) * mf + i] * b;
+        k->ground[i] += (g0 + g1) * q1 - g0 * q - g1 * mean;
+        k->work[i] += load1[i] * q1 - load * q - rise * mean + 2 * b * first;
+        k->q1[i] = q1;
+        k->v1[i] = v1;
+        k->load[i] = load1[i];
+    }
+    swap(&k->q, &k->q1);
+    swap(&k->v, &k->v1);
+}
+
+static void book_contacts(FastWork *k, const Active *active)
+{
+    k->n_touching = 0;
+    for (int i = 0; i < active->n; i++) {
+        const int j = active->floor[i];
+        const Touch *t = &active->touch[i];
+        k->contact_lost += t->lost;
+        k->contact_clamped += t->clamped;
+        k->deepest = fmax(k->deepest, t->deepest);
+        k->impacts += t->closings;
+        k->floored += t->floored;
+        k->side[j] = active->side[i] * scalars(k->w1)[j] > scalars(k->gap)[j] ? active->side[i] : 0;
+        k->v0[j] = t->v0;
+        k->n_touching += k->side[j] != 0;
+    }
+    swap(&k->w, &k->w1);
+    swap(&k->wd, &k->wd1);
+    swap(&k->f0, &k->f1);
+    forget_forces(k);
+    k->speed = largest(k->wd, k->nf);
+}
+
+/* Extremum of the parabola through three samples, the middle one being the largest. */
+static double parabola_top(double h0, double h1, double y0, double y1, double y2)
+{
+    const double left = (y1 - y0) / h0, right = (y2 - y1) / h1;
+    const double curvature = (right - left) / (h0 + h1), slope = (left * h1 + right * h0) / (h0 + h1);
+    return curvature != 0 ? y1 - slope * slope / (4 * curvature) : y1;
+}
+
+static void peaks_in_contact(FastWork *k, double h)
+{
+    v8 *oldest[3];
+    for (int y = 0; y < 3; y++) { /* the newest samples go where the oldest were */
+        oldest[y] = k->seen[2][y];
+        k->seen[2][y] = k->seen[1][y];
+        k->seen[1][y] = k->seen[0][y];
+        k->seen[0][y] = oldest[y];
+    }
+    k->seen_h[1] = k->seen_h[0];
+    k->seen_h[0] = h;
+    outputs(k, k->q, k->v, k->seen[0][0], k->seen[0][1], k->seen[0][2]);
+    if (k->n_seen < 3)
+        k->n_seen++;
+    v8 *const peaks[3] = {k->peak_u, k->peak_d, k->peak_a};
+    for (int y = 0; y < 3; y++)
+        for (int f = 0; f < k->nf; f++) {
+            const v8 now = v8_abs(k->seen[0][y][f]), middle = v8_abs(k->seen[1][y][f]);
+            peaks[y][f] = v8_max(now, peaks[y][f]);
+            if (k->n_seen < 3)
+                continue;
+            const v8 first = v8_abs(k->seen[2][y][f]);
+            const m8 top = (middle > now) & (middle >= first) & (middle * 1.25 > peaks[y][f]);
+            if (!m8_any(top))
+                continue;
+            for (int lane = 0; lane < LANES; lane++)
+                if (top[lane]) {
+                    const double most = fabs(parabola_top(k->seen_h[1], k->seen_h[0], k->seen[2][y][f][lane],
+                                                          k->seen[1][y][f][lane], k->seen[0][y][f][lane]));
+                    if (most > peaks[y][f][lane])
+                        peaks[y][f][lane] = most;
+                }
+        }
+}
+
+/* One step with whatever contacts it holds; 0 when it must be shorter and nothing has changed. */
+static int contact_step(FastWork *k, const Level *l, double a0, double a1)
+{
+    Active active;
+    if (k->n_seen < 0)
+        land(k);
+    k->steps++;
+    contact_predict(k, l, a0, a1);
+    if (!solve_contacts(k, l, &active) || !sides_hold(k, &active)) {
+        forget_forces(k);
+        return 0;
+    }
+    contact_update(k, l, &active, a0, a1);
+    book_contacts(k, &active);
+    peaks_in_contact(k, l->h);
+    return 1;
+}
+
+/* ---- time --------------------------------------------------------------------------------------------------- */
+
+/* The level whose step is the wanted share of the shortest Hertz contact at the present speed (or the finest). */
+static int contact_level(const FastWork *k, double shortest_at_1, double steps_per_contact)
+{
+    const double duration = shortest_at_1 * pow(fmax(k->speed, 1e-9), -0.2);
+    const double halvings = log2(k->base * steps_per_contact / duration);
+    return halvings <= 0 ? 0 : halvings >= LEVEL_MAX ? LEVEL_MAX : (int)ceil(halvings);
+}
+
+/* Duration of the shortest contact at 1 m/s; it goes with speed^-0.2. */
+static double shortest_contact(const SimModel *model)
+{
+    double least = 1e300;
+    for (int j = 0; j < model->n; j++)
+        least = fmin(least, contact_hertz_duration(model->contact.k, model->mass_eff[j], 1.0));
+    return least;
+}
+
+/* One sampling interval, ground acceleration from a0 to a1; 0 when no step is short enough. */
+static int interval(FastWork *k, double a0, double a1, double shortest, double steps_per_contact, double tolerance)
+{
+    const uint32_t whole = UINT32_C(1) << LEVEL_MAX;
+    uint32_t at = 0;
+    while (at < whole) {
+        const int aligned = at ? LEVEL_MAX - __builtin_ctz(at) : 0;
+        const int finest = k->m_pad > k->nb_pad ? contact_level(k, shortest, steps_per_contact) : LEVEL_MAX;
+        int level = k->flight_level > aligned ? k->flight_level : aligned, done = 0;
+        for (; !done && !k->n_touching && level < finest; level++) {
+            const uint32_t step = whole >> level;
+            done = flight(k, level_ready(k, level, 0), a0 + (a1 - a0) * at / whole,
+                          a0 + (a1 - a0) * (at + step) / whole, tolerance);
+            if (done) {
+                at += step;
+                k->flight_level = level > 0 ? level - 1 : 0;
+            }
+        }
+        if (done)
+            continue;
+        k->flight_level = finest > 0 ? finest - 1 : 0;
+        for (level = finest > aligned ? finest : aligned; !done && level <= LEVEL_MAX; level++) {
+            const uint32_t step = whole >> level;
+            done = contact_step(k, level_ready(k, level, 1), a0 + (a1 - a0) * at / whole,
+                                a0 + (a1 - a0) * (at + step) / whole);
+            if (done)
+                at += step;
+        }
+        if (!done)
+            return 0;
+    }
+    return 1;
+}
+
+static int state_is_finite(const FastWork *k)
+{
+    v8 sum = {0};
+    for (int i = 0; i < k->mf; i++)
+        sum += k->q[i] * 0.0 + k->v[i] * 0.0;
+    double all = 0;
+    for (int lane = 0; lane < LANES; lane++)
+        all += sum[lane];
+    return all == 0;
+}
+
+static int fly(FastWork *k, const Motion *motion, double duration, double steps_per_contact, double tolerance)
+{
+    const double shortest = shortest_contact(k->model);
+    const long full = (long)floor(duration / motion->dt_s * (1 + 1e-14));
+    const long samples = (long)motion->n;
+    k->flight_level = 0;
+    set_base(k, 0);
+    set_base(k, motion->dt_s);
+    for (long i = 0; i < full; i++) {
+        const double a0 = i + 1 < samples ? motion->accel[i] : 0, a1 = i + 1 < samples ? motion->accel[i + 1] : 0;
+        if (!interval(k, a0, a1, shortest, steps_per_contact, tolerance) || !state_is_finite(k))
+            return 0;
+    }
+    const double rest = duration - (double)full * motion->dt_s;
+    if (rest > 1e-9 * motion->dt_s) {
+        const double a0 = full + 1 < samples ? motion->accel[full] : 0;
+        const double slope = full + 1 < samples ? (motion->accel[full + 1] - a0) / motion->dt_s : 0;
+        set_base(k, rest);
+        return interval(k, a0, a0 + slope * rest, shortest, steps_per_contact, tolerance) && state_is_finite(k);
+    }
+    return 1;
+}
+
+/* ---- results ------------------------------------------------------------------------------------------------ */
+
+static double still_stored(const FastWork *k)
+{
+    double stored = 0;
+    for (int j = 0; j < k->n; j++)
+        if (k->side[j])
+            stored += contact_stored(&k->model->contact,
+                                     k->side[j] * scalars_const(k->w)[j] - scalars_const(k->gap)[j]);
+    return stored;
+}
+
+static double share(double part, double whole)
+{
+    return whole > 0 ? 100 * part / whole : 0;
+}
+
+static void sum_energies(const FastWork *k, SimResult *r)
+{
+    double contact_work = 0;
+    double damped[MODES_PAD_MAX + 2 * LANES];
+    for (int i = 0; i < k->m_pad; i++) {
+        const double q = scalars_const(k->q)[i], v = scalars_const(k->v)[i], w = scalars_const(k->omega)[i];
+        const double energy = 0.5 * (v * v + w * w * q * q);
+        const double ground = scalars_const(k->ground)[i], contact = scalars_const(k->work)[i];
+        damped[i] = ground + contact - energy;
+        r->input_energy_j += ground;
+        contact_work += contact;
+        r->kinetic_strain_j += energy;
+        *(i < k->nb_pad ? &r->damped_building_j : &r->damped_core_j) += damped[i];
+    }
+    r->contact_loss_j = k->contact_lost;
+    r->clamp_j = k->contact_clamped;
+    r->contact_stored_j = still_stored(k);
+    const double books = -contact_work - r->contact_loss_j - r->clamp_j - r->contact_stored_j;
+    r->energy_residual = r->input_energy_j > 0 ? fabs(books) / r->input_energy_j : 0;
+    for (int i = 0; i < k->model->nb; i++)
+        r->mode_share_pct[i] = share(damped[i], r->input_energy_j);
+    r->ed1_pct = r->mode_share_pct[0];
+    for (int i = 4; i < 10 && i < k->model->nb; i++)
+        r->ed5_10_pct += r->mode_share_pct[i];
+    r->edcs_pct = share(r->damped_core_j, r->input_energy_j);
+}
+
+static void take_peaks(const FastWork *k, SimResult *r)
+{
+    for (int j = 0; j < k->n; j++) {
+        r->peak_displacement_m[j] = scalars_const(k->peak_u)[j];
+        r->peak_drift_m[j] = scalars_const(k->peak_d)[j];
+        r->peak_acceleration_g[j] = scalars_const(k->peak_a)[j] / 9.81;
+        r->j1_m = fmax(r->j1_m, r->peak_displacement_m[j]);
+        r->j2_m = fmax(r->j2_m, r->peak_drift_m[j]);
+        r->j3_g = fmax(r->j3_g, r->peak_acceleration_g[j]);
+    }
+}
+
+FastKernel FAST_KERNEL;
+
+void FAST_KERNEL(FastWork *k, const SimModel *model, const Motion *motion, double duration, double steps_per_contact,
+                 double peak_tolerance, SimResult *result)
+{
+    memset(result, 0, sizeof *result);
+    take_model(k, model, motion->dt_s);
+    start_at_rest(k);
+    const int arrived = fly(k, motion, duration, steps_per_contact, peak_tolerance);
+    result->n_floors = model->n;
+    result->n_modes = model->nb;
+    if (!arrived)
+        result->outcome = state_is_finite(k) ? RUN_OUT_OF_STEPS : RUN_NOT_FINITE;
+    take_peaks(k, result);
+    sum_energies(k, result);
+    result->impacts = k->impacts;
+    result->penetration_max_m = k->deepest;
+    result->steps = k->steps + k->flights;
+    result->force_evaluations = k->forces;
+}

@@ -1,0 +1,66 @@
+/* sim/fast/kernel.h -- the work space of the fast engine, and its kernel compiled once per instruction set. */
+#ifndef IMTET_SIM_FAST_KERNEL_H
+#define IMTET_SIM_FAST_KERNEL_H
+
+#include "sim/engine.h"
+#include "sim/fast/vec.h"
+#include "sim/flow.h"
+
+enum {
+    LEVEL_MAX = 24,           /* the shortest step is 2^-24 of a sampling interval */
+    FLOORS_PAD_MAX = FLOORS_MAX,
+    MODES_PAD_MAX = 2 * FLOORS_MAX
+};
+
+/* Responses of w (and w') at the end of a step to unit forces: (n, n_pad) each. */
+enum { RAMP_W, BUBBLE_W, RAMP_V, BUBBLE_V, RESPONSES };
+
+typedef struct {
+    double h;              /* [s] */
+    int has_flow, has_response;
+    v8 *coef;              /* (FLOW_ROWS, m_pad) */
+    v8 *slow;              /* (m_pad) 1: the Hermite cubic follows this mode, 0: it does not */
+    v8 *kappa;             /* (m_pad) error of the cubic, or 1, per unit of amplitude */
+    v8 *kappa_accel;       /* (m_pad) the same for -2 zeta w q' - w^2 q */
+    double *response;      /* (RESPONSES, n, n_pad) */
+} Level;
+
+typedef struct FastWork {
+    void *store;
+    const SimModel *model;
+    int n, n_pad, nb_pad, m_pad; /* building modes first, padded apart: core modes start at nb_pad */
+    int nf, mf, bf;              /* n_pad, m_pad, nb_pad in vectors of eight */
+    double base;                 /* [s] the interval that the levels divide */
+    Level level[LEVEL_MAX + 1];
+
+    /* modes */
+    v8 *omega, *zeta, *gamma, *wd_inverse, *decay, *flex, *q, *v, *load, *work, *ground;   /* (m_pad) */
+    v8 *q1, *v1, *amplitude, *qa, *va, *qb, *vb, *za, *ja, *zb, *jb, *bound, *bound_a;     /* (m_pad) */
+    double *R, *R_abs; /* (m_pad, n_pad) */
+    double *RT;        /* (n_pad, m_pad) */
+
+    /* floors */
+    v8 *w, *wd, *w1, *wd1, *f0, *f1, *fb, *gap;        /* (n_pad) */
+    v8 *c0, *c0d, *c1, *c1d;                           /* (n_pad) the core's part of w in flight */
+    v8 *u0, *u0d, *u1, *u1d, *a0, *a0d, *a1, *a1d, *e_u, *e_w, *e_a; /* (n_pad) */
+    v8 *peak_u, *peak_d, *peak_a;                      /* (n_pad) */
+    v8 *seen[3][3];                                    /* [how long ago][u, drift, accel] (n_pad) */
+    double seen_h[2];                                  /* steps between them */
+    int n_seen; /* -1: in flight, w and w' are not current */
+    double v0[FLOORS_PAD_MAX];
+    int side[FLOORS_PAD_MAX];                          /* 0 open, +1 or -1 touching */
+    int n_touching;
+    int flight_level;  /* where the next flight is tried */
+    double speed;      /* [m/s] largest |w'| */
+
+    /* books */
+    double contact_lost, contact_clamped, deepest;
+    long impacts, floored, steps, flights, forces;
+} FastWork;
+
+typedef void FastKernel(FastWork *k, const SimModel *model, const Motion *motion, double duration, double steps_per_contact,
+                        double peak_tolerance, SimResult *result);
+
+FastKernel fast_kernel_base, fast_kernel_avx2, fast_kernel_avx512;
+
+#endif

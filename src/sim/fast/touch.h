@@ -1,0 +1,171 @@
+/* sim/fast/touch.h -- one contact over one step, given its penetration at both ends.
+ *
+ * Inside the step the penetration is the cubic p(x) through p0, p0', p1, p1' (Hermite; error O(h^4)), x = t/h. Where it
+ * is positive the force law is integrated by Gauss points, spaced by x ~ y^2 next to a closing or an opening where
+ * F ~ t^1.5 would spoil their order. Closings inside the step are located on the cubic and set v0.
+ *
+ * The result is what the modes need: the force at the end and its mean over the step, with derivatives for Newton's
+ * method, and the energy books along the same path. */
+#ifndef IMTET_SIM_FAST_TOUCH_H
+#define IMTET_SIM_FAST_TOUCH_H
+
+#include "sim/contact.h"
+
+typedef struct {
+    double end, mean;            /* [N] force at x = 1; int_0^1 F dx */
+    double end_p, end_v;         /* d end / d p1, d p1' */
+    double mean_p, mean_v;       /* d mean / d p1, d p1' */
+    double v0;                   /* [m/s] of the contact that is open at x = 1 */
+    int closings, floored;       /* new contacts in this step, those whose v0 was below the floor */
+    double lost, clamped;        /* [J] int k p^1.5 a p'^2/v0 dt, int (F - F_raw) p' dt */
+    double deepest;              /* [m] */
+} Touch;
+
+typedef struct {
+    double c[4]; /* p(x) = c0 + c1 x + c2 x^2 + c3 x^3 */
+    double h;
+} Path;
+
+static inline Path path_make(double h, double p0, double v0, double p1, double v1)
+{
+    return (Path){{p0, h * v0, 3 * (p1 - p0) - h * (2 * v0 + v1), 2 * (p0 - p1) + h * (v0 + v1)}, h};
+}
+
+static inline double path_at(const Path *q, double x)
+{
+    return q->c[0] + x * (q->c[1] + x * (q->c[2] + x * q->c[3]));
+}
+
+static inline double path_speed(const Path *q, double x)
+{
+    return (q->c[1] + x * (2 * q->c[2] + x * 3 * q->c[3])) / q->h;
+}
+
+/* The root of a monotone piece with a change of sign: Newton, kept inside the bracket. */
+static inline double path_root(const Path *q, double low, double high)
+{
+    const int rising = path_at(q, low) < path_at(q, high);
+    double x = 0.5 * (low + high);
+    for (int i = 0; i < 60; i++) {
+        const double p = path_at(q, x);
+        if ((p > 0) == rising)
+            high = x;
+        else
+            low = x;
+        const double slope = path_speed(q, x) * q->h, next = x - p / slope;
+        const double x_new = next > low && next < high ? next : 0.5 * (low + high);
+        if (fabs(x_new - x) < 1e-15)
+            return x_new;
+        x = x_new;
+    }
+    return x;
+}
+
+/* Turning points inside (0, 1), ascending; returns how many. */
+static inline int path_turns(const Path *q, double x[2])
+{
+    const double a = 3 * q->c[3], b = q->c[2], c = q->c[1]; /* a x^2 + 2 b x + c */
+    const double d = b * b - a * c;
+    if (!(d > 0))
+        return 0;
+    const double w = -(b + copysign(sqrt(d), b));
+    double r1 = w / a, r2 = c / w;
+    if (r1 > r2) {
+        const double t = r1;
+        r1 = r2;
+        r2 = t;
+    }
+    int n = 0;
+    if (r1 > 0 && r1 < 1)
+        x[n++] = r1;
+    if (r2 > 0 && r2 < 1)
+        x[n++] = r2;
+    return n;
+}
+
+/* Adds the part [xa, xb] of the path, on which p > 0. */
+static inline void touch_add(Touch *t, const Contact *c, const Path *q, double xa, double xb, double v0)
+{
+    /* Gauss-Legendre on [0, 1], four points */
+    static const double NODE[4] = {0.06943184420297371, 0.33000947820757187, 0.6699905217924281, 0.9305681557970263};
+    static const double WEIGHT[4] = {0.17392742256872692, 0.32607257743127307, 0.32607257743127307,
+                                     0.17392742256872692};
+    const double length = xb - xa;
+    const int closing = xa > 0, opening = xb < 1;
+    for (int i = 0; i < 4; i++) {
+        const double y = NODE[i];
+        double share = y, slope = 1; /* x = xa + length share(y) */
+        if (closing && opening) {
+            share = y * y * (3 - 2 * y);
+            slope = 6 * y * (1 - y);
+        } else if (closing) {
+            share = y * y;
+            slope = 2 * y;
+        } else if (opening) {
+            share = y * (2 - y);
+            slope = 2 - 2 * y;
+        }
+        const double x = xa + length * share, weight = WEIGHT[i] * slope * length;
+        const double p = path_at(q, x), v = path_speed(q, x);
+        if (p <= 0)
+            continue;
+        const ContactForce f = contact_force(c, p, v, v0);
+        t->mean += weight * f.force;
+        /* dp/dp1 = x^2 (3 - 2x), dp/dp1' = h x^2 (x - 1) and their slopes */
+        t->mean_p += weight * (f.dp * x * x * (3 - 2 * x) + f.dv * 6 * x * (1 - x) / q->h);
+        t->mean_v += weight * (f.dp * q->h * x * x * (x - 1) + f.dv * x * (3 * x - 2));
+        t->lost += weight * q->h * (f.raw - f.hertz) * v;
+        t->clamped += weight * q->h * (f.force - f.raw) * v;
+        t->deepest = fmax(t->deepest, p);
+    }
+}
+
+/* closed: a contact is open at x = 0 with approach speed v0. */
+static inline void touch_step(Touch *t, const Contact *c, double h, double p0, double v_0, double p1, double v_1, int closed,
+                              double v0)
+{
+    const Path q = path_make(h, p0, v_0, p1, v_1);
+    double knots[4] = {0}, turns[2];
+    int n = 0;
+    *t = (Touch){.v0 = v0};
+    /* the control polygon encloses the path: all of it positive or negative settles the common cases */
+    const double b1 = p0 + q.c[1] / 3, b2 = p1 - h * v_1 / 3;
+    if (closed && p0 > 0 && b1 > 0 && b2 > 0 && p1 > 0) {
+        touch_add(t, c, &q, 0, 1, v0);
+    } else if (p0 > 0 || b1 > 0 || b2 > 0 || p1 > 0) {
+        const int n_turns = path_turns(&q, turns);
+        for (int i = 0; i < n_turns; i++)
+            knots[++n] = turns[i];
+        knots[++n] = 1;
+        double from = 0;
+        int touching = closed && p0 > 0;
+        for (int i = 0; i < n; i++) {
+            const double low = knots[i], high = knots[i + 1];
+            const int above = (i + 1 == n ? p1 : path_at(&q, high)) > 0;
+            if (above == touching)
+                continue;
+            const double x = (path_at(&q, low) > 0) == above ? low : path_root(&q, low, high);
+            if (touching) {
+                touch_add(t, c, &q, from, x, t->v0);
+            } else {
+                const double speed = fabs(path_speed(&q, x));
+                t->closings++;
+                t->floored += speed < c->v0_floor;
+                t->v0 = fmax(speed, c->v0_floor);
+                from = x;
+            }
+            touching = !touching;
+        }
+        if (touching)
+            touch_add(t, c, &q, from, 1, t->v0);
+    }
+    if (p1 > 0) {
+        const ContactForce f = contact_force(c, p1, v_1, t->v0);
+        t->end = f.force;
+        t->end_p = f.dp;
+        t->end_v = f.dv;
+        t->deepest = fmax(t->deepest, p1);
+    }
+}
+
+#endif

@@ -1,0 +1,86 @@
+#include "sim/flow.h"
+
+#include <math.h>
+
+/* Power series in h; derivatives of g at 0 obey g_{m+2} = -2 zeta w g_{m+1} - w^2 g_m, g_0 = 0, g_1 = 1. */
+static void by_series(double omega, double zeta, double h, double y[FLOW_INTEGRALS])
+{
+    enum { TERMS = 48 };
+    const double b = 2 * zeta * omega * h, c = omega * omega * h * h;
+    double g_m = 0, g_next = 1; /* g_m h^(m-1) */
+    for (int k = 0; k < FLOW_INTEGRALS; k++)
+        y[k] = 0;
+    double power[FLOW_INTEGRALS + 1]; /* h^k */
+    power[0] = 1;
+    for (int k = 0; k < FLOW_INTEGRALS; k++)
+        power[k + 1] = power[k] * h;
+    double inverse_factorial = 1; /* 1/(m-1)! */
+    for (int m = 1; m < TERMS; m++) {
+        const double g_new = -b * g_next - c * g_m;
+        g_m = g_next;
+        g_next = g_new;
+        if (m > 1)
+            inverse_factorial /= m - 1;
+        double term = g_m * inverse_factorial; /* of y0; then of y1, ... */
+        for (int k = 0; k < FLOW_INTEGRALS; k++) {
+            y[k] += term * power[k];
+            term /= m + k;
+        }
+    }
+}
+
+/* sin(sqrt(z))/sqrt(z), continued to sinh for z < 0. */
+static double sinc_of_square(double z)
+{
+    if (fabs(z) < 1e-2)
+        return 1 - z / 6 * (1 - z / 20 * (1 - z / 42 * (1 - z / 72)));
+    return z > 0 ? sin(sqrt(z)) / sqrt(z) : sinh(sqrt(-z)) / sqrt(-z);
+}
+
+static void by_recursion(double omega, double zeta, double h, double y[FLOW_INTEGRALS])
+{
+    const double decay = zeta * omega, wd2 = omega * omega * (1 - zeta * zeta), z = wd2 * h * h;
+    if (z < -400) { /* far above critical damping sinh would overflow: two real exponentials */
+        const double root = sqrt(-wd2), slow = omega * omega / (decay + root), fast = decay + root;
+        y[1] = (exp(-slow * h) - exp(-fast * h)) / (2 * root);
+        y[0] = (fast * exp(-fast * h) - slow * exp(-slow * h)) / (2 * root);
+    } else {
+        const double e = exp(-decay * h);
+        y[1] = e * h * sinc_of_square(z);
+        y[0] = e * (z > 0 ? cos(sqrt(z)) : cosh(sqrt(-z))) - decay * y[1];
+    }
+    double monomial = 1; /* h^k/k! */
+    for (int k = 0; k + 2 < FLOW_INTEGRALS; k++) {
+        y[k + 2] = (monomial - y[k] - 2 * decay * y[k + 1]) / (omega * omega);
+        monomial *= h / (k + 1);
+    }
+}
+
+void flow_integrals(double omega, double zeta, double h, double y[FLOW_INTEGRALS])
+{
+    const double fastest = omega * h * (zeta > 1 ? 2 * zeta : 1);
+    if (fastest < 2)
+        by_series(omega, zeta, h, y);
+    else
+        by_recursion(omega, zeta, h, y);
+}
+
+void flow_coefficients(size_t n, const double omega[], const double zeta[], double h, double coef[], size_t stride)
+{
+    for (size_t i = 0; i < n; i++) {
+        double y[FLOW_INTEGRALS];
+        flow_integrals(omega[i], zeta[i], h, y);
+        const double b = 2 * zeta[i] * omega[i], c = omega[i] * omega[i];
+        const double row[FLOW_ROWS] = {
+            y[0] + b * y[1],       y[1],     y[2],     y[3] / h,       2 * y[4] / (h * h),
+            -c * y[1],             y[0],     y[1],     y[2] / h,       2 * y[3] / (h * h),
+            (y[1] + b * y[2]) / h, y[2] / h, y[3] / h, y[4] / (h * h), 2 * y[5] / (h * h * h),
+        };
+        for (int k = 0; k < FLOW_K; k++)
+            coef[(size_t)k * stride + i] = row[k];
+        /* int x q = int q - (1/h) int int q, and the double integral is one index further on */
+        const double twice[5] = {(y[2] + b * y[3]) / h, y[3] / h, y[4] / h, y[5] / (h * h), 2 * y[6] / (h * h * h)};
+        for (int k = 0; k < 5; k++)
+            coef[(size_t)(FLOW_K + k) * stride + i] = row[FLOW_I + k] - twice[k] / h;
+    }
+}

@@ -1,0 +1,204 @@
+#include "sim/sim.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "base/linalg.h"
+#include "scene/core_beam.h"
+#include "sim/engine.h"
+#include "sim/fast/fast.h"
+#include "sim/model.h"
+
+struct Scene {
+    Settings settings;
+    const Motion *motion; /* borrowed */
+    Building building;
+    EngineOptions options;
+};
+
+struct SimWorker {
+    const Scene *scene;
+    SimModel model;
+    CoreBeam core;
+    FastWork *fast;
+};
+
+/* What the accuracy setting means for the fast engine. */
+static const struct {
+    double steps_per_contact; /* of an undisturbed Hertz contact */
+    double peak_tolerance;    /* share of a peak that may hide inside a flight step */
+} ACCURACY[] = {
+    [ACCURACY_COARSE] = {1, 1e-2},
+    [ACCURACY_STANDARD] = {2, 1e-3},
+    [ACCURACY_FINE] = {24, 1e-6},
+};
+
+/* A run whose books stay open is repeated with so many times the steps before it is given up. */
+static const double REFINEMENTS[] = {1, 4, 16};
+
+const char *run_outcome_words(RunOutcome outcome)
+{
+    static const char *const WORDS[] = {
+#define X(name, words) words,
+        RUN_OUTCOME_LIST(X)
+#undef X
+    };
+    return WORDS[outcome];
+}
+
+Status scene_create(Scene **out, const Settings *s, const Motion *motion, Err *err)
+{
+    *out = NULL;
+    Scene *scene = calloc(1, sizeof *scene);
+    if (!scene)
+        return fail(err, STATUS_NO_MEMORY, "scene: out of memory");
+    scene->settings = *s;
+    scene->motion = motion;
+    scene->options.accuracy = (Accuracy)s->sim.accuracy;
+    scene->options.duration = s->sim.duration_s;
+    if (scene->options.duration == 0 && motion)
+        scene->options.duration = (double)(motion->n - 1) * motion->dt_s;
+    const Status status = building_load(&scene->building, s->building.model, err);
+    if (status == STATUS_OK)
+        *out = scene;
+    else
+        free(scene);
+    return status;
+}
+
+void scene_free(Scene *scene)
+{
+    if (scene)
+        building_free(&scene->building);
+    free(scene);
+}
+
+int scene_n_floors(const Scene *scene)
+{
+    return scene->building.n;
+}
+
+static Status zero_gap_modes(const Building *b, const CoreBeam *c, double hz[], Err *err)
+{
+    const int n = b->n, nn = n * n;
+    double *K = malloc(3 * (size_t)nn * sizeof *K);
+    if (!K)
+        return fail(err, STATUS_NO_MEMORY, "modes: no memory for %d floors", n);
+    double *M = K + nn, *phi = M + nn;
+    for (int i = 0; i < nn; i++) {
+        K[i] = b->K[i] + c->K[i];
+        M[i] = b->M[i] + c->M[i];
+    }
+    const Status status = linalg_modes(n, K, M, hz, phi, err);
+    free(K);
+    for (int i = 0; i < n && status == STATUS_OK; i++)
+        hz[i] /= 2 * M_PI;
+    return status;
+}
+
+Status scene_frequencies(const Scene *scene, const double x[], double building_hz[], double core_hz[],
+                         double zero_gap_hz[], double *core_mass_kg, Err *err)
+{
+    const int n = scene->building.n;
+    CoreBeam *core = malloc(sizeof *core);
+    if (!core)
+        return fail(err, STATUS_NO_MEMORY, "modes: out of memory");
+    Status status = core_beam_make(core, &scene->settings, n, x[n], x[n + 1], err);
+    if (status == STATUS_OK)
+        status = zero_gap_modes(&scene->building, core, zero_gap_hz, err);
+    for (int i = 0; i < n && status == STATUS_OK; i++) {
+        building_hz[i] = scene->building.omega[i] / (2 * M_PI);
+        core_hz[i] = core->omega[i] / (2 * M_PI);
+    }
+    *core_mass_kg = core->mass_kg;
+    free(core);
+    return status;
+}
+
+Status sim_worker_create(SimWorker **out, const Scene *scene, Err *err)
+{
+    *out = NULL;
+    SimWorker *w = calloc(1, sizeof *w);
+    if (!w)
+        return fail(err, STATUS_NO_MEMORY, "simulator: out of memory");
+    w->scene = scene;
+    Status status = model_create(&w->model, scene->building.n, err);
+    if (status == STATUS_OK)
+        status = fast_create(&w->fast, scene->building.n, err);
+    if (status == STATUS_OK)
+        *out = w;
+    else
+        sim_worker_free(w);
+    return status;
+}
+
+void sim_worker_free(SimWorker *worker)
+{
+    if (!worker)
+        return;
+    model_free(&worker->model);
+    fast_free(worker->fast);
+    free(worker);
+}
+
+static void judge(SimResult *r, double residual_max)
+{
+    const double all[] = {r->j1_m, r->j2_m, r->j3_g, r->ed1_pct, r->ed5_10_pct, r->edcs_pct, r->energy_residual};
+    for (size_t i = 0; i < sizeof all / sizeof all[0] && r->outcome == RUN_OK; i++)
+        if (!isfinite(all[i]))
+            r->outcome = RUN_NOT_FINITE;
+    if (r->outcome == RUN_OK && r->energy_residual > residual_max) {
+        r->outcome = RUN_BOOKS_OPEN;
+        snprintf(r->reason, sizeof r->reason, "energy books open by %.3g of the input, allowed %.3g", r->energy_residual,
+                 residual_max);
+    }
+    if (r->outcome != RUN_OK && !r->reason[0])
+        snprintf(r->reason, sizeof r->reason, "%s", run_outcome_words(r->outcome));
+}
+
+static void run_fast(SimWorker *w, SimResult *result)
+{
+    const Scene *scene = w->scene;
+    const int level = scene->options.accuracy;
+    for (size_t i = 0; i < sizeof REFINEMENTS / sizeof REFINEMENTS[0]; i++) {
+        fast_run(w->fast, &w->model, scene->motion, scene->options.duration,
+                 REFINEMENTS[i] * ACCURACY[level].steps_per_contact, ACCURACY[level].peak_tolerance, result);
+        judge(result, scene->settings.sim.residual_max);
+        if (result->outcome == RUN_OK)
+            return;
+    }
+}
+
+static double seconds_now(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+Status sim_run(SimWorker *w, SceneKind kind, const double x[], SimResult *result, Err *err)
+{
+    const Scene *scene = w->scene;
+    const int n = scene->building.n;
+    const double start = seconds_now();
+    memset(result, 0, sizeof *result);
+    if (kind != SCENE_NO_CORE)
+        TRY(core_beam_make(&w->core, &scene->settings, n, x[n], x[n + 1], err));
+    if (kind == SCENE_TIED) {
+        TRY(engine_tied(&scene->settings, &scene->building, &w->core, scene->motion, &scene->options, result, err));
+        judge(result, scene->settings.sim.residual_max);
+    } else {
+        TRY(model_set(&w->model, &scene->settings, &scene->building, kind == SCENE_IMPACT ? &w->core : NULL, x, err));
+        if (scene->settings.sim.engine == ENGINE_CVODE) {
+            TRY(engine_cvode(&w->model, scene->motion, &scene->options, result, err));
+            judge(result, scene->settings.sim.residual_max);
+        } else {
+            run_fast(w, result);
+        }
+    }
+    result->mcore_kg = kind == SCENE_NO_CORE ? 0 : w->core.mass_kg;
+    result->seconds = seconds_now() - start;
+    return STATUS_OK;
+}
