@@ -26,7 +26,8 @@ typedef struct {
 } Motion;
 
 /* source: a path (two-column CSV time,acceleration, or PEER AT2) or builtin:kobe-like | builtin:elcentro-like |
- * builtin:sylmar-like. unit: UNIT_FROM_FILE demands that the file says it; otherwise it must not contradict the file. */
+ * builtin:sylmar-like. unit: UNIT_FROM_FILE demands that the file says it; otherwise it must not contradict the file;
+ * it does not matter to a built-in motion. */
 Status motion_load(Motion *m, const char *source, MotionUnit unit, Err *err);
 
 /* t -> stretch t; then scaled so that max |accel| = pga_g * 9.81 m/s2 (pga_g = 0: as recorded). */

@@ -1,0 +1,35 @@
+/* tests/check.h -- comparisons that cmocka leaves to us. */
+#ifndef IMTET_TESTS_CHECK_H
+#define IMTET_TESTS_CHECK_H
+
+#include "base/status.h" /* before cmocka.h, which defines a macro fail() */
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+/* |actual - wanted| <= tolerance |wanted|; NaN fails. */
+static inline void check_close(double actual, double wanted, double tolerance, const char *what, const char *file,
+                               int line)
+{
+    if (!(fabs(actual - wanted) <= tolerance * fabs(wanted))) {
+        print_error("%s is %.17g, wanted %.17g within %g\n", what, actual, wanted, tolerance);
+        _fail(file, line);
+    }
+}
+#define assert_close(actual, wanted, relative_tolerance)                                                               \
+    check_close(actual, wanted, relative_tolerance, #actual, __FILE__, __LINE__)
+
+static inline void check_ok(Status status, const Err *err, const char *what, const char *file, int line)
+{
+    if (status != STATUS_OK) {
+        print_error("%s: %s: %s\n", what, status_words(status), err->text);
+        _fail(file, line);
+    }
+}
+#define CHECK_OK(status, err) check_ok(status, err, #status, __FILE__, __LINE__)
+
+#endif

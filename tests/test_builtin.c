@@ -1,0 +1,307 @@
+/* Generated motions: what they promise by themselves, and how near they are to the records that they stand in for. */
+#include "check.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <lapacke.h>
+
+#include "base/table.h"
+#include "scene/motion.h"
+#include "scene/spectrum.h"
+
+static const double G = 9.81;
+
+enum { N_MOTIONS = 3, N_FLOORS = 20, N_BUILDINGS = 2, N_PERIODS = 60 };
+
+static const struct {
+    const char *source, *record;
+    double stretch, pga_m_s2, duration_s;
+    double J[N_BUILDINGS][3]; /* of the record: [m], [m], [g], see below */
+} MOTIONS[N_MOTIONS] = {
+    {"builtin:kobe-like", "kobe_jma_ns.csv", 3.1, 8.18, 32, {{1.648, 0.1475, 0.901}, {1.652, 0.1573, 0.864}}},
+    {"builtin:elcentro-like", "elcentro_ns.csv", 3.0, 3.42, 40, {{1.356, 0.1094, 0.779}, {1.500, 0.1211, 0.815}}},
+    {"builtin:sylmar-like",
+     "northridge_sylmar_ns.csv",
+     3.0,
+     8.27,
+     24,
+     {{1.749, 0.1589, 0.815}, {1.615, 0.1660, 0.809}}},
+};
+
+static const char *const BUILDINGS[N_BUILDINGS] = {"configs/sac20/guyan", "configs/sac20/appendix"};
+
+/* ---- the building alone: M u'' + C u' + K u = -M 1 a, 3 % in every mode ------------------------------------------ */
+
+typedef struct {
+    double w[N_FLOORS];             /* [rad/s] */
+    double phi[N_FLOORS][N_FLOORS]; /* (floor, mode), mass-normalised */
+    double gamma[N_FLOORS];         /* phi' M 1 */
+} Modes;
+
+static void read_matrix(const char *folder, const char *name, double A[N_FLOORS * N_FLOORS])
+{
+    char path[128];
+    Table t;
+    Err err;
+    snprintf(path, sizeof path, "%s/%s.csv", folder, name);
+    CHECK_OK(table_read(&t, path, 0, &err), &err);
+    assert_int_equal(t.n_rows * t.n_cols, N_FLOORS * N_FLOORS);
+    memcpy(A, t.values, N_FLOORS * N_FLOORS * sizeof *A);
+    table_free(&t);
+}
+
+static void modes_of(const char *folder, Modes *b)
+{
+    double K[N_FLOORS * N_FLOORS], M[N_FLOORS * N_FLOORS], factor[N_FLOORS * N_FLOORS], w2[N_FLOORS];
+    read_matrix(folder, "K", K);
+    read_matrix(folder, "M", M);
+    memcpy(factor, M, sizeof M);
+    assert_int_equal(LAPACKE_dsygv(LAPACK_ROW_MAJOR, 1, 'V', 'U', N_FLOORS, K, N_FLOORS, factor, N_FLOORS, w2), 0);
+    for (int i = 0; i < N_FLOORS; i++) {
+        b->w[i] = sqrt(w2[i]);
+        b->gamma[i] = 0;
+        for (int f = 0; f < N_FLOORS; f++) {
+            b->phi[f][i] = K[f * N_FLOORS + i];
+            for (int k = 0; k < N_FLOORS; k++)
+                b->gamma[i] += K[f * N_FLOORS + i] * M[f * N_FLOORS + k];
+        }
+    }
+}
+
+typedef struct {
+    double q[N_FLOORS], v[N_FLOORS];
+} Modal;
+
+/* Over h under a + s tau: the particular solution p0 + p1 tau, and the free vibration that makes up the rest. */
+static void modal_step(const Modes *b, const double e[3][N_FLOORS], double a, double s, double h, Modal *y)
+{
+    for (int i = 0; i < N_FLOORS; i++) {
+        const double w = b->w[i], zeta = 0.03, wd = w * sqrt(1 - zeta * zeta);
+        const double p1 = -b->gamma[i] * s / (w * w), p0 = (-b->gamma[i] * a - 2 * zeta * w * p1) / (w * w);
+        const double A = y->q[i] - p0, B = (y->v[i] - p1 + zeta * w * A) / wd;
+        const double x = e[2][i] * (A * e[0][i] + B * e[1][i]);
+        y->q[i] = p0 + p1 * h + x;
+        y->v[i] = p1 - zeta * w * x + e[2][i] * wd * (B * e[0][i] - A * e[1][i]);
+    }
+}
+
+/* u'' + a 1 = -sum phi (2 zeta w q' + w^2 q) */
+static void take_peaks(const Modes *b, const Modal *y, double J[3])
+{
+    double below = 0;
+    for (int f = 0; f < N_FLOORS; f++) {
+        double u = 0, accel = 0;
+        for (int i = 0; i < N_FLOORS; i++) {
+            u += b->phi[f][i] * y->q[i];
+            accel += b->phi[f][i] * b->w[i] * (0.06 * y->v[i] + b->w[i] * y->q[i]);
+        }
+        J[0] = fmax(J[0], fabs(u));
+        J[1] = fmax(J[1], fabs(u - below));
+        J[2] = fmax(J[2], fabs(accel) / G);
+        below = u;
+    }
+}
+
+/* J1 [m], J2 [m], J3 [g], sampled every dt / 6, about a hundredth of a second. */
+static void building_alone(const Motion *m, const char *folder, double J[3])
+{
+    enum { SUB = 6 };
+    Modes b;
+    Modal y = {0};
+    double e[3][N_FLOORS];
+    const double h = m->dt_s / SUB;
+    modes_of(folder, &b);
+    for (int i = 0; i < N_FLOORS; i++) {
+        e[0][i] = cos(b.w[i] * sqrt(1 - 0.03 * 0.03) * h);
+        e[1][i] = sin(b.w[i] * sqrt(1 - 0.03 * 0.03) * h);
+        e[2][i] = exp(-0.03 * b.w[i] * h);
+    }
+    J[0] = J[1] = J[2] = 0;
+    for (size_t k = 0; k + 1 < m->n; k++) {
+        const double s = (m->accel[k + 1] - m->accel[k]) / m->dt_s;
+        for (int j = 0; j < SUB; j++) {
+            modal_step(&b, e, m->accel[k] + s * j * h, s, h, &y);
+            take_peaks(&b, &y, J);
+        }
+    }
+}
+
+static Motion prepared(int k)
+{
+    Motion m;
+    Err err;
+    CHECK_OK(motion_load(&m, MOTIONS[k].source, UNIT_FROM_FILE, &err), &err);
+    CHECK_OK(motion_prepare(&m, 0.3, MOTIONS[k].stretch, &err), &err);
+    return m;
+}
+
+/* 0 where there is no such record */
+static int prepared_record(int k, Motion *m)
+{
+    char path[128];
+    Err err;
+    snprintf(path, sizeof path, "../shared/records/%s", MOTIONS[k].record);
+    const Status s = motion_load(m, path, UNIT_FROM_FILE, &err);
+    if (s == STATUS_MISSING)
+        return 0;
+    CHECK_OK(s, &err);
+    CHECK_OK(motion_prepare(m, 0.3, MOTIONS[k].stretch, &err), &err);
+    return 1;
+}
+
+/* ---- tests ----------------------------------------------------------------------------------------------------- */
+
+static void test_generated_motions_have_the_stated_peak_and_duration(void **state)
+{
+    (void)state;
+    for (int k = 0; k < N_MOTIONS; k++) {
+        Motion m;
+        Err err;
+        MotionFigures f;
+        CHECK_OK(motion_load(&m, MOTIONS[k].source, UNIT_G, &err), &err); /* the unit of files does not matter */
+        motion_figures(&m, &f);
+        for (size_t i = 0; i < m.n; i++)
+            assert_true(isfinite(m.accel[i]));
+        assert_close(f.pga_m_s2, MOTIONS[k].pga_m_s2, 1e-15);
+        assert_close(f.duration_s, MOTIONS[k].duration_s, 1e-12);
+        assert_string_equal(m.name, MOTIONS[k].source);
+        assert_string_equal(m.format, "builtin");
+        motion_free(&m);
+    }
+}
+
+static void test_generated_motions_leave_the_ground_at_rest(void **state)
+{
+    (void)state;
+    for (int k = 0; k < N_MOTIONS; k++) {
+        Motion m;
+        Err err;
+        MotionFigures f;
+        CHECK_OK(motion_load(&m, MOTIONS[k].source, UNIT_FROM_FILE, &err), &err);
+        motion_figures(&m, &f);
+        double v = 0;
+        for (size_t i = 0; i + 1 < m.n; i++)
+            v += m.dt_s * (m.accel[i] + m.accel[i + 1]) / 2;
+        assert_true(m.accel[0] == 0 && m.accel[m.n - 1] == 0);
+        assert_true(fabs(v) < 0.01 * f.pgv_m_s);
+        assert_true(f.pgd_m < 0.6);
+        motion_free(&m);
+    }
+}
+
+static void test_a_generated_motion_is_the_same_every_time(void **state)
+{
+    (void)state;
+    uint64_t hash[N_MOTIONS];
+    for (int k = 0; k < N_MOTIONS; k++) {
+        Motion m[2];
+        Err err;
+        for (int i = 0; i < 2; i++)
+            CHECK_OK(motion_load(&m[i], MOTIONS[k].source, UNIT_FROM_FILE, &err), &err);
+        assert_memory_equal(m[0].accel, m[1].accel, m[0].n * sizeof(double));
+        assert_true(m[0].file_hash == m[1].file_hash);
+        hash[k] = m[0].file_hash;
+        motion_free(&m[0]);
+        motion_free(&m[1]);
+    }
+    assert_true(hash[0] != hash[1] && hash[1] != hash[2] && hash[0] != hash[2]);
+}
+
+static void test_an_unknown_name_is_refused_with_the_known_ones(void **state)
+{
+    (void)state;
+    Motion m;
+    Err err;
+    assert_int_equal(motion_load(&m, "builtin:kobe", UNIT_FROM_FILE, &err), STATUS_BAD_DATA);
+    assert_non_null(strstr(err.text, "builtin:kobe: there is no such motion; take kobe-like"));
+    motion_free(&m);
+}
+
+static void test_the_building_alone_answers_as_it_does_to_the_records(void **state)
+{
+    (void)state;
+    for (int k = 0; k < N_MOTIONS; k++) {
+        Motion m = prepared(k);
+        for (int b = 0; b < N_BUILDINGS; b++) {
+            double J[3];
+            building_alone(&m, BUILDINGS[b], J);
+            print_message("%-21s %-22s J1 %.4f m (%.4f)  J2 %.5f m (%.4f)  J3 %.4f g (%.3f)\n", MOTIONS[k].source,
+                          BUILDINGS[b], J[0], MOTIONS[k].J[b][0], J[1], MOTIONS[k].J[b][1], J[2], MOTIONS[k].J[b][2]);
+            for (int i = 0; i < 3; i++)
+                assert_close(J[i], MOTIONS[k].J[b][i], 0.05);
+        }
+        motion_free(&m);
+    }
+}
+
+static void test_the_answers_listed_above_are_those_of_the_records(void **state)
+{
+    (void)state;
+    int n_read = 0;
+    for (int k = 0; k < N_MOTIONS; k++) {
+        Motion m;
+        if (!prepared_record(k, &m))
+            continue;
+        n_read++;
+        for (int b = 0; b < N_BUILDINGS; b++) {
+            double J[3];
+            building_alone(&m, BUILDINGS[b], J);
+            for (int i = 0; i < 3; i++)
+                assert_close(J[i], MOTIONS[k].J[b][i], 2e-3);
+        }
+        motion_free(&m);
+    }
+    if (n_read == 0) {
+        print_message("skipped: there are no records in ../shared/records\n");
+        skip();
+    }
+}
+
+static void test_spectra_are_near_those_of_the_records(void **state)
+{
+    (void)state;
+    double T[N_PERIODS], psa[2][N_PERIODS];
+    int n_read = 0;
+    for (int i = 0; i < N_PERIODS; i++)
+        T[i] = 0.3 * pow(6 / 0.3, i / (N_PERIODS - 1.0));
+    for (int k = 0; k < N_MOTIONS; k++) {
+        Motion record, m;
+        if (!prepared_record(k, &record))
+            continue;
+        n_read++;
+        m = prepared(k);
+        spectrum_psa(&m, 0.05, N_PERIODS, T, psa[0]);
+        spectrum_psa(&record, 0.05, N_PERIODS, T, psa[1]);
+        double mean = 0, worst = 0;
+        for (int i = 0; i < N_PERIODS; i++) {
+            const double off = fabs(psa[0][i] / psa[1][i] - 1);
+            mean += off / N_PERIODS;
+            worst = fmax(worst, off);
+        }
+        print_message("%-21s spectrum off by %.2f %% on average, %.1f %% at most\n", MOTIONS[k].source, 100 * mean,
+                      100 * worst);
+        assert_true(mean < 0.15);
+        motion_free(&m);
+        motion_free(&record);
+    }
+    if (n_read == 0) {
+        print_message("skipped: there are no records in ../shared/records\n");
+        skip();
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_generated_motions_have_the_stated_peak_and_duration),
+        cmocka_unit_test(test_generated_motions_leave_the_ground_at_rest),
+        cmocka_unit_test(test_a_generated_motion_is_the_same_every_time),
+        cmocka_unit_test(test_an_unknown_name_is_refused_with_the_known_ones),
+        cmocka_unit_test(test_the_building_alone_answers_as_it_does_to_the_records),
+        cmocka_unit_test(test_the_answers_listed_above_are_those_of_the_records),
+        cmocka_unit_test(test_spectra_are_near_those_of_the_records),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
