@@ -26,13 +26,10 @@ struct SimWorker {
 };
 
 /* What the accuracy setting means for the fast engine. */
-static const struct {
-    double steps_per_contact; /* of an undisturbed Hertz contact */
-    double peak_tolerance;    /* share of a peak that may hide inside a flight step */
-} ACCURACY[] = {
-    [ACCURACY_COARSE] = {1, 1e-2},
-    [ACCURACY_STANDARD] = {2, 1e-3},
-    [ACCURACY_FINE] = {24, 1e-6},
+static const FastKnobs ACCURACY[] = {
+    [ACCURACY_COARSE] = {1, 1e-3, 1e-2},
+    [ACCURACY_STANDARD] = {2, 1e-4, 1e-3},
+    [ACCURACY_FINE] = {24, 1e-12, 1e-6},
 };
 
 /* A run whose books stay open is repeated with so many times the steps before it is given up. */
@@ -161,10 +158,10 @@ static void judge(SimResult *r, double residual_max)
 static void run_fast(SimWorker *w, SimResult *result)
 {
     const Scene *scene = w->scene;
-    const int level = scene->options.accuracy;
     for (size_t i = 0; i < sizeof REFINEMENTS / sizeof REFINEMENTS[0]; i++) {
-        fast_run(w->fast, &w->model, scene->motion, scene->options.duration,
-                 REFINEMENTS[i] * ACCURACY[level].steps_per_contact, ACCURACY[level].peak_tolerance, result);
+        FastKnobs knobs = ACCURACY[scene->options.accuracy];
+        knobs.steps_per_contact *= REFINEMENTS[i];
+        fast_run(w->fast, &w->model, scene->motion, scene->options.duration, &knobs, result);
         judge(result, scene->settings.sim.residual_max);
         if (result->outcome == RUN_OK)
             return;

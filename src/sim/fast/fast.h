@@ -25,8 +25,14 @@ typedef struct FastWork FastWork;
 Status fast_create(FastWork **out, int n_floors, Err *err);
 void fast_free(FastWork *work); /* NULL is fine */
 
-/* steps_per_contact: of an undisturbed Hertz contact at the largest speed between floor and core. */
-void fast_run(FastWork *work, const SimModel *model, const Motion *motion, double duration, double steps_per_contact,
-              double peak_tolerance, SimResult *result);
+/* What accuracy costs. */
+typedef struct {
+    double steps_per_contact; /* of an undisturbed Hertz contact at the largest speed between floor and core */
+    double solver_tolerance;  /* of the contact forces of one step, relative to what the step moves */
+    double peak_tolerance;    /* share of a peak that may hide inside a flight step */
+} FastKnobs;
+
+void fast_run(FastWork *work, const SimModel *model, const Motion *motion, double duration, const FastKnobs *knobs,
+              SimResult *result);
 
 #endif

@@ -9,9 +9,6 @@
 /* Above this w h a mode is bounded by its amplitude, below it the Hermite cubic follows it. */
 static const double FAST_MODE = 1.5;
 
-/* Relative to what a step moves. */
-static const double NEWTON_TOLERANCE = 1e-13, SWEEP_TOLERANCE = 1e-12;
-
 static double *scalars(v8 *p)
 {
     return (double *)p;
@@ -132,7 +129,7 @@ static void start_at_rest(FastWork *k)
     for (int i = 0; i < k->mf; i++)
         k->q[i] = k->v[i] = k->load[i] = k->work[i] = k->ground[i] = zero;
     for (int f = 0; f < k->nf; f++)
-        k->w[f] = k->wd[f] = k->f0[f] = k->f1[f] = k->fb[f] = k->peak_u[f] = k->peak_d[f] = k->peak_a[f] = zero;
+        k->w[f] = k->wd[f] = k->f0[f] = k->f1[f] = k->fb[f] = k->f_before[f] = k->peak_u[f] = k->peak_d[f] = k->peak_a[f] = zero;
     memset(k->side, 0, sizeof k->side);
     k->n_touching = 0;
     k->n_seen = -1;
@@ -314,12 +311,12 @@ static void swap(v8 **a, v8 **b)
 }
 
 /* One step without contact; 0 when it cannot be certified and nothing has changed. */
-static int flight(FastWork *k, const Level *l, double a0, double a1, double tolerance)
+static int flight(FastWork *k, const Level *l, double a0, double a1)
 {
     k->flights++;
     flight_modes(k, l, a0, a1);
     flight_floors(k, l);
-    if (!gaps_stay_open(k, l->h) || !peaks_in_flight(k, l->h, tolerance))
+    if (!gaps_stay_open(k, l->h) || !peaks_in_flight(k, l->h, k->knobs->peak_tolerance))
         return 0;
     book_flight(k, l, a0, a1);
     swap(&k->q, &k->q1);
@@ -352,6 +349,7 @@ static void land(FastWork *k)
     rows_times(2, (const v8 *)k->R, k->nf, k->m_pad, state, floors);
     outputs(k, k->q, k->v, k->seen[0][0], k->seen[0][1], k->seen[0][2]);
     k->n_seen = 1;
+    k->h_before = 1;
 }
 
 static void contact_predict(FastWork *k, const Level *l, double a0, double a1)
@@ -385,45 +383,31 @@ static void apply_force(FastWork *k, const Level *l, int j, double f1, double fb
     scalars(k->fb)[j] = fb;
 }
 
-/* Newton's method for the force at the end, F, and its mean, M, of floor j with all other floors held:
+/* One step of Newton's method for the force at the end, F, and its mean, M, of floor j with all other floors held:
  *   p1 = p - A F - B M,  p1' = p' - C F - D M,  (F, M) = law along the path to p1, p1'
- * Returns the change in w1 relative to what the step moves, or -1 when it does not converge. */
-static double solve_floor(FastWork *k, const Level *l, int j, int side, Touch *t)
+ * Returns the change in w1 and w1' relative to what the step moves, or -1 when there is none. */
+static double improve_floor(FastWork *k, const Level *l, int j, int side, Touch *t)
 {
     const int at = j * k->n_pad + j, size = k->n * k->n_pad;
     const double *r = l->response;
     const double s = side, gap = scalars(k->gap)[j], p0 = s * scalars(k->w)[j] - gap, v0 = s * scalars(k->wd)[j];
     const double f0 = -s * scalars(k->f0)[j], w_b = r[BUBBLE_W * size + at], v_b = r[BUBBLE_V * size + at];
     const double A = r[RAMP_W * size + at] - 3 * w_b, B = 6 * w_b, C = r[RAMP_V * size + at] - 3 * v_b, D = 6 * v_b;
-    double F = -s * scalars(k->f1)[j], M = (-s * scalars(k->fb)[j] + 3 * f0 + 3 * F) / 6;
-    const double F_was = F, M_was = M;
-    const double p = s * scalars(k->w1)[j] - gap + A * F + B * M, v = s * scalars(k->wd1)[j] + C * F + D * M;
-    const double scale_p = fabs(p0) + fabs(p) + l->h * (fabs(v0) + fabs(v)), scale_v = fabs(v0) + fabs(v);
-    enum { MOST = 25 };
-    int i;
-    for (i = 0; i < MOST; i++) {
-        const double p1 = p - A * F - B * M, v1 = v - C * F - D * M;
-        touch_step(t, &k->model->contact, l->h, p0, v0, p1, v1, k->side[j] != 0, k->v0[j]);
-        k->forces++;
-        const double rF = F - t->end, rM = M - t->mean;
-        const double J11 = 1 + t->end_p * A + t->end_v * C, J12 = t->end_p * B + t->end_v * D;
-        const double J21 = t->mean_p * A + t->mean_v * C, J22 = 1 + t->mean_p * B + t->mean_v * D;
-        const double det = J11 * J22 - J12 * J21;
-        const double dF = (rF * J22 - rM * J12) / det, dM = (J11 * rM - J21 * rF) / det;
-        if (!isfinite(dF) || !isfinite(dM))
-            return -1;
-        F -= dF;
-        M -= dM;
-        if (fabs(A * dF) + fabs(B * dM) <= NEWTON_TOLERANCE * scale_p &&
-            fabs(C * dF) + fabs(D * dM) <= NEWTON_TOLERANCE * scale_v)
-            break;
-    }
-    if (i == MOST)
+    const double F = -s * scalars(k->f1)[j], M = (-s * scalars(k->fb)[j] + 3 * f0 + 3 * F) / 6;
+    const double p1 = s * scalars(k->w1)[j] - gap, v1 = s * scalars(k->wd1)[j];
+    touch_step(t, &k->model->contact, l->h, p0, v0, p1, v1, k->side[j] != 0, k->v0[j]);
+    k->forces++;
+    const double rF = F - t->end, rM = M - t->mean;
+    const double J11 = 1 + t->end_p * A + t->end_v * C, J12 = t->end_p * B + t->end_v * D;
+    const double J21 = t->mean_p * A + t->mean_v * C, J22 = 1 + t->mean_p * B + t->mean_v * D;
+    const double det = J11 * J22 - J12 * J21;
+    const double dF = (rF * J22 - rM * J12) / det, dM = (J11 * rM - J21 * rF) / det;
+    if (!isfinite(dF) || !isfinite(dM))
         return -1;
-    apply_force(k, l, j, -s * F, -s * (6 * M - 3 * f0 - 3 * F));
-    F -= F_was;
-    M -= M_was;
-    return fmax(fabs(A * F + B * M) / scale_p, fabs(C * F + D * M) / scale_v);
+    apply_force(k, l, j, -s * (F - dF), -s * (6 * (M - dM) - 3 * f0 - 3 * (F - dF)));
+    const double free_p = p1 + A * F + B * M, free_v = v1 + C * F + D * M;
+    const double scale_v = fabs(v0) + fabs(free_v), scale_p = fabs(p0) + fabs(free_p) + l->h * scale_v;
+    return fmax((fabs(A * dF) + fabs(B * dM)) / scale_p, (fabs(C * dF) + fabs(D * dM)) / scale_v);
 }
 
 typedef struct {
@@ -470,22 +454,30 @@ static void list_touching(FastWork *k, Active *active)
         }
 }
 
-/* The forces of all floors at once; 0 when they cannot be had at this step length. */
-static int solve_contacts(FastWork *k, const Level *l, Active *active)
+/* Starts from the force going on as it went in the step before. */
+static void guess_force(FastWork *k, const Level *l, int j)
 {
-    enum { SWEEPS = 60 };
+    const double f0 = scalars(k->f0)[j], f1 = f0 + (f0 - scalars(k->f_before)[j]) * l->h / k->h_before;
+    apply_force(k, l, j, f1 * f0 > 0 ? f1 : f0, 0);
+}
+
+/* The forces of all floors at once: Newton by floor, Gauss-Seidel over the floors; 0 when they cannot be had at this step
+ * length. */
+static int solve_contacts(FastWork *k, const Level *l, double tolerance, Active *active)
+{
+    enum { SWEEPS = 80 };
     list_touching(k, active);
-    for (int i = 0; i < active->n; i++) /* as if the forces stayed as they are */
-        apply_force(k, l, active->floor[i], scalars(k->f0)[active->floor[i]], 0);
+    for (int i = 0; i < active->n; i++)
+        guess_force(k, l, active->floor[i]);
     for (int sweep = 0; sweep < SWEEPS; sweep++) {
         double change = 0;
         for (int i = 0; i < active->n; i++) {
-            const double c = solve_floor(k, l, active->floor[i], active->side[i], &active->touch[i]);
-            if (c < 0)
+            const double c = improve_floor(k, l, active->floor[i], active->side[i], &active->touch[i]);
+            if (!(c >= 0))
                 return 0;
             change = fmax(change, c);
         }
-        if ((active->n < 2 || change <= SWEEP_TOLERANCE) && !find_closings(k, l, active))
+        if (change <= tolerance && !find_closings(k, l, active))
             return 1;
     }
     return 0;
@@ -545,7 +537,7 @@ static void contact_update(FastWork *k, const Level *l, const Active *active, do
     swap(&k->v, &k->v1);
 }
 
-static void book_contacts(FastWork *k, const Active *active)
+static void book_contacts(FastWork *k, const Active *active, double h)
 {
     k->n_touching = 0;
     for (int i = 0; i < active->n; i++) {
@@ -562,7 +554,11 @@ static void book_contacts(FastWork *k, const Active *active)
     }
     swap(&k->w, &k->w1);
     swap(&k->wd, &k->wd1);
-    swap(&k->f0, &k->f1);
+    v8 *const free_slot = k->f_before;
+    k->f_before = k->f0;
+    k->f0 = k->f1;
+    k->f1 = free_slot;
+    k->h_before = h;
     forget_forces(k);
     k->speed = largest(k->wd, k->nf);
 }
@@ -618,12 +614,12 @@ static int contact_step(FastWork *k, const Level *l, double a0, double a1)
         land(k);
     k->steps++;
     contact_predict(k, l, a0, a1);
-    if (!solve_contacts(k, l, &active) || !sides_hold(k, &active)) {
+    if (!solve_contacts(k, l, k->knobs->solver_tolerance, &active) || !sides_hold(k, &active)) {
         forget_forces(k);
         return 0;
     }
     contact_update(k, l, &active, a0, a1);
-    book_contacts(k, &active);
+    book_contacts(k, &active, l->h);
     peaks_in_contact(k, l->h);
     return 1;
 }
@@ -631,10 +627,10 @@ static int contact_step(FastWork *k, const Level *l, double a0, double a1)
 /* ---- time --------------------------------------------------------------------------------------------------- */
 
 /* The level whose step is the wanted share of the shortest Hertz contact at the present speed (or the finest). */
-static int contact_level(const FastWork *k, double shortest_at_1, double steps_per_contact)
+static int contact_level(const FastWork *k)
 {
-    const double duration = shortest_at_1 * pow(fmax(k->speed, 1e-9), -0.2);
-    const double halvings = log2(k->base * steps_per_contact / duration);
+    const double duration = k->shortest_at_1 * pow(fmax(k->speed, 1e-9), -0.2);
+    const double halvings = log2(k->base * k->knobs->steps_per_contact / duration);
     return halvings <= 0 ? 0 : halvings >= LEVEL_MAX ? LEVEL_MAX : (int)ceil(halvings);
 }
 
@@ -648,18 +644,18 @@ static double shortest_contact(const SimModel *model)
 }
 
 /* One sampling interval, ground acceleration from a0 to a1; 0 when no step is short enough. */
-static int interval(FastWork *k, double a0, double a1, double shortest, double steps_per_contact, double tolerance)
+static int interval(FastWork *k, double a0, double a1)
 {
     const uint32_t whole = UINT32_C(1) << LEVEL_MAX;
     uint32_t at = 0;
     while (at < whole) {
         const int aligned = at ? LEVEL_MAX - __builtin_ctz(at) : 0;
-        const int finest = k->m_pad > k->nb_pad ? contact_level(k, shortest, steps_per_contact) : LEVEL_MAX;
+        const int finest = k->m_pad > k->nb_pad ? contact_level(k) : LEVEL_MAX;
         int level = k->flight_level > aligned ? k->flight_level : aligned, done = 0;
         for (; !done && !k->n_touching && level < finest; level++) {
             const uint32_t step = whole >> level;
             done = flight(k, level_ready(k, level, 0), a0 + (a1 - a0) * at / whole,
-                          a0 + (a1 - a0) * (at + step) / whole, tolerance);
+                          a0 + (a1 - a0) * (at + step) / whole);
             if (done) {
                 at += step;
                 k->flight_level = level > 0 ? level - 1 : 0;
@@ -692,9 +688,9 @@ static int state_is_finite(const FastWork *k)
     return all == 0;
 }
 
-static int fly(FastWork *k, const Motion *motion, double duration, double steps_per_contact, double tolerance)
+static int fly(FastWork *k, const Motion *motion, double duration)
 {
-    const double shortest = shortest_contact(k->model);
+    k->shortest_at_1 = shortest_contact(k->model);
     const long full = (long)floor(duration / motion->dt_s * (1 + 1e-14));
     const long samples = (long)motion->n;
     k->flight_level = 0;
@@ -702,7 +698,7 @@ static int fly(FastWork *k, const Motion *motion, double duration, double steps_
     set_base(k, motion->dt_s);
     for (long i = 0; i < full; i++) {
         const double a0 = i + 1 < samples ? motion->accel[i] : 0, a1 = i + 1 < samples ? motion->accel[i + 1] : 0;
-        if (!interval(k, a0, a1, shortest, steps_per_contact, tolerance) || !state_is_finite(k))
+        if (!interval(k, a0, a1) || !state_is_finite(k))
             return 0;
     }
     const double rest = duration - (double)full * motion->dt_s;
@@ -710,7 +706,7 @@ static int fly(FastWork *k, const Motion *motion, double duration, double steps_
         const double a0 = full + 1 < samples ? motion->accel[full] : 0;
         const double slope = full + 1 < samples ? (motion->accel[full + 1] - a0) / motion->dt_s : 0;
         set_base(k, rest);
-        return interval(k, a0, a0 + slope * rest, shortest, steps_per_contact, tolerance) && state_is_finite(k);
+        return interval(k, a0, a0 + slope * rest) && state_is_finite(k);
     }
     return 1;
 }
@@ -773,13 +769,14 @@ static void take_peaks(const FastWork *k, SimResult *r)
 
 FastKernel FAST_KERNEL;
 
-void FAST_KERNEL(FastWork *k, const SimModel *model, const Motion *motion, double duration, double steps_per_contact,
-                 double peak_tolerance, SimResult *result)
+void FAST_KERNEL(FastWork *k, const SimModel *model, const Motion *motion, double duration, const FastKnobs *knobs,
+                 SimResult *result)
 {
+    k->knobs = knobs;
     memset(result, 0, sizeof *result);
     take_model(k, model, motion->dt_s);
     start_at_rest(k);
-    const int arrived = fly(k, motion, duration, steps_per_contact, peak_tolerance);
+    const int arrived = fly(k, motion, duration);
     result->n_floors = model->n;
     result->n_modes = model->nb;
     if (!arrived)

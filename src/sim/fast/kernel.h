@@ -2,7 +2,7 @@
 #ifndef IMTET_SIM_FAST_KERNEL_H
 #define IMTET_SIM_FAST_KERNEL_H
 
-#include "sim/engine.h"
+#include "sim/fast/fast.h"
 #include "sim/fast/vec.h"
 #include "sim/flow.h"
 
@@ -40,7 +40,7 @@ typedef struct FastWork {
     double *RT;        /* (n_pad, m_pad) */
 
     /* floors */
-    v8 *w, *wd, *w1, *wd1, *f0, *f1, *fb, *gap;        /* (n_pad) */
+    v8 *w, *wd, *w1, *wd1, *f0, *f1, *fb, *f_before, *gap; /* (n_pad) */
     v8 *c0, *c0d, *c1, *c1d;                           /* (n_pad) the core's part of w in flight */
     v8 *u0, *u0d, *u1, *u1d, *a0, *a0d, *a1, *a1d, *e_u, *e_w, *e_a; /* (n_pad) */
     v8 *peak_u, *peak_d, *peak_a;                      /* (n_pad) */
@@ -52,14 +52,17 @@ typedef struct FastWork {
     int n_touching;
     int flight_level;  /* where the next flight is tried */
     double speed;      /* [m/s] largest |w'| */
+    double h_before;   /* [s] step that led from f_before to f0 */
+    double shortest_at_1; /* [s] shortest Hertz contact of any floor at 1 m/s */
+    const FastKnobs *knobs;
 
     /* books */
     double contact_lost, contact_clamped, deepest;
     long impacts, floored, steps, flights, forces;
 } FastWork;
 
-typedef void FastKernel(FastWork *k, const SimModel *model, const Motion *motion, double duration, double steps_per_contact,
-                        double peak_tolerance, SimResult *result);
+typedef void FastKernel(FastWork *k, const SimModel *model, const Motion *motion, double duration,
+                        const FastKnobs *knobs, SimResult *result);
 
 FastKernel fast_kernel_base, fast_kernel_avx2, fast_kernel_avx512;
 
