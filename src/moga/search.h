@@ -1,19 +1,23 @@
 /* moga/search.h -- the surrogate-assisted search for the Pareto front.
  *
  *   1 Latin hypercube start, simulated
- *   2 a radial basis response surface on what has been simulated
- *   3 tournament selection, SBX, polynomial mutation: one offspring population
- *   4 every offspring predicted; where the leave-one-out based error estimate is small the prediction stands,
- *     otherwise the design is simulated and becomes a new centre
- *   5 environmental selection with reference directions (NSGA-III); back to 2
+ *   2 a radial basis response surface on what has been simulated (moga/surface.h)
+ *   3 tournament selection, SBX, polynomial mutation: one offspring population, bred over a few generations on the
+ *     surface; where the surface explains too little, plain children
+ *   4 every offspring predicted; where the leave-one-out based error estimate is small the prediction stands, of the
+ *     others those that promise most are simulated and become new centres (moga/infill.h), the rest is forgotten.
+ *     A few predictions that stand are checked by simulation, first those that have stood for long
+ *   5 environmental selection with reference directions (NSGA-III, moga/survival.h); back to 2
  *
  * Predicted designs may live in the population; only simulated ones enter the archive, and the front is made of the
  * archive alone.
  *
  * Reproducible  random streams are keyed by (seed, generation, individual): the same bytes at any thread count
+ * Never twice   a design that is in the archive, failed ones too, is not simulated again
+ * Threads       the problem's evaluate gets one call per generation with the whole batch; set BLAS to one thread
  * Ownership     search_run owns all it allocates; a SearchView is valid inside the callback only
- * Sources       Deb and Jain, IEEE Trans. Evol. Comput. 18 (2014) 577-601 (NSGA-III); Deb and Agrawal, Complex Systems 9
- *               (1995) 115-148 (SBX); Rippa, Adv. Comput. Math. 11 (1999) 193-210 (leave-one-out). */
+ * Sources       Deb and Jain, IEEE Trans. Evol. Comput. 18 (2014) 577-601 (NSGA-III); Deb and Agrawal, Complex
+ *               Systems 9 (1995) 115-148 (SBX); Rippa, Adv. Comput. Math. 11 (1999) 193-210 (leave-one-out). */
 #ifndef IMTET_MOGA_SEARCH_H
 #define IMTET_MOGA_SEARCH_H
 
@@ -45,15 +49,15 @@ typedef struct {
     const unsigned char *on_front; /* (n) feasible, ok and nondominated */
     size_t n_front, n_failed;
     size_t generation_now;
-    size_t n_predicted;            /* offspring of this generation whose prediction stood */
-    double surrogate_error;        /* median leave-one-out error, share of range, worst objective; NaN: no surface yet */
+    size_t n_predicted;     /* offspring of this generation whose prediction stood */
+    double surrogate_error; /* median leave-one-out error, share of range, worst objective; NaN: no surface yet */
     double seconds;
 } SearchView;
 
 /* Called after the start and after every generation; return non-zero to stop. */
 typedef int (*ObserveFn)(const SearchView *view, void *user);
 
-Status search_run(const Problem *problem, const SearchConfig *config, ObserveFn observe, void *user,
-                  StopReason *reason, Err *err);
+Status search_run(const Problem *problem, const SearchConfig *config, ObserveFn observe, void *user, StopReason *reason,
+                  Err *err);
 
 #endif

@@ -1,0 +1,39 @@
+/* base/carve.h -- one allocation, laid out once.
+ *
+ * A layout function calls carve for each array. The first pass (base NULL) only counts, the second hands out slices:
+ *
+ *   Carve c = {0};
+ *   layout(m, &c);
+ *   m->store = carve_store(&c);                          NULL: out of memory
+ *   layout(m, &(Carve){.base = m->store});
+ *
+ * Every slice starts on a cache line. The store is zeroed and released by free. */
+#ifndef IMTET_BASE_CARVE_H
+#define IMTET_BASE_CARVE_H
+
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { CARVE_LINE = 64 };
+
+typedef struct {
+    char *base;  /* NULL while counting */
+    size_t used; /* bytes */
+} Carve;
+
+static inline void *carve(Carve *c, size_t n, size_t size)
+{
+    char *slice = c->base ? c->base + c->used : NULL;
+    c->used += (n * size + CARVE_LINE - 1) / CARVE_LINE * CARVE_LINE;
+    return slice;
+}
+
+static inline void *carve_store(const Carve *c)
+{
+    const size_t size = c->used ? c->used : CARVE_LINE;
+    void *store = aligned_alloc(CARVE_LINE, size);
+    return store ? memset(store, 0, size) : NULL;
+}
+
+#endif

@@ -1,0 +1,121 @@
+#include "moga/archive.h"
+
+#include <math.h>
+
+#include "base/carve.h"
+#include "moga/dominance.h"
+
+static void layout(Archive *a, Carve *c)
+{
+    a->X = carve(c, a->n_max * a->n_var, sizeof(double));
+    a->F = carve(c, a->n_max * a->n_obj, sizeof(double));
+    a->G = carve(c, a->n_max * a->n_con, sizeof(double));
+    a->violation = carve(c, a->n_max, sizeof(double));
+    a->generation = carve(c, a->n_max, sizeof(size_t));
+    a->front = carve(c, a->n_max, sizeof(size_t));
+    a->ok = carve(c, a->n_max, 1);
+    a->kind = carve(c, a->n_max, 1);
+    a->on_front = carve(c, a->n_max, 1);
+}
+
+static Status resize(Archive *a, size_t n_max, Err *err)
+{
+    Archive old = *a;
+    Carve c = {0};
+    a->n_max = n_max;
+    layout(a, &c);
+    void *store = carve_store(&c);
+    if (!store) {
+        *a = old;
+        return fail(err, STATUS_NO_MEMORY, "no memory for an archive of %zu designs", n_max);
+    }
+    layout(a, &(Carve){.base = store});
+    a->store = store;
+    if (old.n > 0) {
+        memcpy(a->X, old.X, old.n * a->n_var * sizeof *a->X);
+        memcpy(a->F, old.F, old.n * a->n_obj * sizeof *a->F);
+        memcpy(a->G, old.G, old.n * a->n_con * sizeof *a->G);
+        memcpy(a->violation, old.violation, old.n * sizeof *a->violation);
+        memcpy(a->generation, old.generation, old.n * sizeof *a->generation);
+        memcpy(a->front, old.front, old.n_front * sizeof *a->front);
+        memcpy(a->ok, old.ok, old.n);
+        memcpy(a->kind, old.kind, old.n);
+        memcpy(a->on_front, old.on_front, old.n);
+    }
+    free(old.store);
+    return STATUS_OK;
+}
+
+Status archive_init(Archive *a, size_t n_max, size_t n_var, size_t n_obj, size_t n_con, Err *err)
+{
+    *a = (Archive){.n_var = n_var, .n_obj = n_obj, .n_con = n_con};
+    return resize(a, n_max > 0 ? n_max : 1, err);
+}
+
+void archive_free(Archive *a)
+{
+    free(a->store);
+    *a = (Archive){0};
+}
+
+static int all_finite(size_t n, const double v[])
+{
+    for (size_t i = 0; i < n; i++)
+        if (!isfinite(v[i]))
+            return 0;
+    return 1;
+}
+
+/* The front is compared with the newcomer alone: dominated by a member it stays outside, else it replaces those that it
+ * dominates. */
+static void update_front(Archive *a, size_t row)
+{
+    const double *f = a->F + row * a->n_obj;
+    for (size_t i = 0; i < a->n_front; i++)
+        if (dominates(a->n_obj, a->F + a->front[i] * a->n_obj, f))
+            return;
+    size_t kept = 0;
+    for (size_t i = 0; i < a->n_front; i++) {
+        const size_t member = a->front[i];
+        if (dominates(a->n_obj, f, a->F + member * a->n_obj))
+            a->on_front[member] = 0;
+        else
+            a->front[kept++] = member;
+    }
+    a->on_front[row] = 1;
+    a->front[kept] = row;
+    a->n_front = kept + 1;
+}
+
+Status archive_insert(Archive *a, size_t n, const double X[], const double F[], const double G[],
+                      const unsigned char ok[], unsigned char kind, size_t generation, Err *err)
+{
+    if (a->n + n > a->n_max)
+        TRY(resize(a, a->n + n > 2 * a->n_max ? a->n + n : 2 * a->n_max, err));
+    for (size_t i = 0; i < n; i++) {
+        const size_t row = a->n++;
+        memcpy(a->X + row * a->n_var, X + i * a->n_var, a->n_var * sizeof *X);
+        memcpy(a->F + row * a->n_obj, F + i * a->n_obj, a->n_obj * sizeof *F);
+        if (a->n_con > 0)
+            memcpy(a->G + row * a->n_con, G + i * a->n_con, a->n_con * sizeof *G);
+        a->ok[row] = ok[i] && all_finite(a->n_obj, F + i * a->n_obj) &&
+                     (a->n_con == 0 || all_finite(a->n_con, G + i * a->n_con));
+        a->kind[row] = kind;
+        a->generation[row] = generation;
+        a->on_front[row] = 0;
+        a->violation[row] = a->ok[row] ? violation_of(a->n_con, a->G + row * a->n_con) : INFINITY;
+        if (!a->ok[row])
+            a->n_failed++;
+        else if (!(a->violation[row] > 0.0))
+            update_front(a, row);
+    }
+    return STATUS_OK;
+}
+
+size_t archive_find(const Archive *a, const double x[])
+{
+    for (size_t i = 0; i < a->n; i++)
+        if (a->X[i * a->n_var] == x[0] && memcmp(a->X + i * a->n_var, x, a->n_var * sizeof *x) == 0)
+            return i;
+    return a->n;
+}

@@ -1,0 +1,29 @@
+/* moga/directions.h -- evenly spread reference directions: points of the simplex sum_k w_k = 1, w >= 0.
+ *
+ *   one layer   all w whose entries are multiples of 1/p: (p + m - 1 over m - 1) of them
+ *   two layers  an outer one and a smaller inner one, shrunk by half towards the middle: in many objectives one layer
+ *               either has only border points or far too many
+ *
+ * Life cycle  directions_create -> read W -> directions_free
+ * Sources     Das and Dennis, SIAM J. Optim. 8 (1998) 631-657; Deb and Jain (see moga/search.h) for the layers. */
+#ifndef IMTET_MOGA_DIRECTIONS_H
+#define IMTET_MOGA_DIRECTIONS_H
+
+#include <stddef.h>
+
+#include "base/status.h"
+
+typedef struct {
+    size_t n, n_obj;
+    size_t outer, inner; /* divisions of the two layers; inner 0: one layer */
+    double *W;           /* (n, n_obj) */
+} Directions;
+
+/* Divisions for a population: the most directions that it can fill, but at least one per objective. */
+void directions_choose(size_t n_obj, size_t population, size_t *outer, size_t *inner);
+size_t directions_count(size_t n_obj, size_t outer, size_t inner);
+
+Status directions_create(Directions *d, size_t n_obj, size_t outer, size_t inner, Err *err);
+void directions_free(Directions *d);
+
+#endif

@@ -1,0 +1,95 @@
+#include "moga/dominance.h"
+
+#include <stdint.h>
+
+int dominates(size_t n_obj, const double a[], const double b[])
+{
+    int better = 0;
+    for (size_t k = 0; k < n_obj; k++) {
+        if (!(a[k] <= b[k]))
+            return 0;
+        better |= a[k] < b[k];
+    }
+    return better;
+}
+
+int dominates_constrained(size_t n_obj, const double a[], double violation_a, const double b[], double violation_b)
+{
+    if (violation_a > 0.0 || violation_b > 0.0)
+        return violation_a < violation_b;
+    return dominates(n_obj, a, b);
+}
+
+double violation_of(size_t n_con, const double g[])
+{
+    double sum = 0.0;
+    for (size_t k = 0; k < n_con; k++)
+        sum += g[k] > 0.0 ? g[k] : 0.0;
+    return sum;
+}
+
+typedef struct {
+    size_t n_obj;
+    const double *F, *violation;
+} Points;
+
+static double violation_at(const Points *p, size_t i)
+{
+    return p->violation ? p->violation[i] : 0.0;
+}
+
+/* An order in which nobody is dominated by a later one: violation, then objectives one after the other, then place. */
+static int comes_first(const Points *p, size_t a, size_t b)
+{
+    if (violation_at(p, a) != violation_at(p, b))
+        return violation_at(p, a) < violation_at(p, b);
+    for (size_t k = 0; k < p->n_obj; k++) {
+        const double fa = p->F[a * p->n_obj + k], fb = p->F[b * p->n_obj + k];
+        if (fa != fb)
+            return fa < fb;
+    }
+    return a < b;
+}
+
+/* Merge sort: qsort has no room for what the order depends on. */
+static void sort_points(const Points *p, size_t n, size_t order[], size_t spare[])
+{
+    if (n < 2)
+        return;
+    const size_t half = n / 2;
+    sort_points(p, half, order, spare);
+    sort_points(p, n - half, order + half, spare);
+    for (size_t i = 0; i < half; i++)
+        spare[i] = order[i];
+    for (size_t i = 0, j = half, k = 0; i < half; k++)
+        order[k] = j < n && comes_first(p, order[j], spare[i]) ? order[j++] : spare[i++];
+}
+
+/* Each point in turn goes into the first layer none of whose members dominates it; layers are linked lists. */
+size_t nondominated_sort(size_t n, size_t n_obj, const double F[], const double violation[], size_t rank[],
+                         size_t scratch[])
+{
+    const Points points = {n_obj, F, violation};
+    size_t *order = scratch, *head = scratch + n, *next = scratch + 2 * n, n_layers = 0;
+    for (size_t i = 0; i < n; i++)
+        order[i] = i;
+    sort_points(&points, n, order, head);
+    for (size_t i = 0; i < n; i++) {
+        const size_t a = order[i];
+        size_t layer = 0;
+        for (; layer < n_layers; layer++) {
+            size_t b = head[layer];
+            while (b != SIZE_MAX && !dominates_constrained(n_obj, F + b * n_obj, violation_at(&points, b),
+                                                           F + a * n_obj, violation_at(&points, a)))
+                b = next[b];
+            if (b == SIZE_MAX)
+                break;
+        }
+        if (layer == n_layers)
+            head[n_layers++] = SIZE_MAX;
+        next[a] = head[layer];
+        head[layer] = a;
+        rank[a] = layer;
+    }
+    return n_layers;
+}

@@ -1,0 +1,84 @@
+#include "moga/frame.h"
+
+#include <float.h>
+#include <math.h>
+
+/* Best and worst of each objective; width = worst - best, 1 where all are equal. */
+static void fit_box(Frame *frame, size_t n, const size_t list[], const double F[])
+{
+    const size_t m = frame->n_obj;
+    for (size_t k = 0; k < m; k++) {
+        double least = DBL_MAX, most = -DBL_MAX;
+        for (size_t i = 0; i < n; i++) {
+            least = fmin(least, F[list[i] * m + k]);
+            most = fmax(most, F[list[i] * m + k]);
+        }
+        frame->ideal[k] = least;
+        frame->width[k] = most > least ? most - least : 1.0;
+    }
+}
+
+/* The point that is least far off axis k: it minimises the achievement function max_j z_j / w_j with w = 1 on the axis
+ * and 1e-6 off it; the sum breaks ties between points that are all on the axis. */
+static size_t extreme_point(const Frame *frame, size_t k, size_t n, const size_t list[], const double F[])
+{
+    const size_t m = frame->n_obj;
+    double least = INFINITY;
+    size_t found = list[0];
+    for (size_t i = 0; i < n; i++) {
+        double worst = 0.0;
+        for (size_t j = 0; j < m; j++)
+            worst = fmax(worst, frame_scale(frame, j, F[list[i] * m + j]) * (j == k ? 1.0 : 1e6));
+        if (worst < least) {
+            least = worst;
+            found = list[i];
+        }
+    }
+    return found;
+}
+
+/* Gaussian elimination with row pivots of A (m, m + 1) in place; 0 if singular. Solution in the last column. */
+static int solve(size_t m, double A[])
+{
+    const size_t w = m + 1;
+    for (size_t c = 0; c < m; c++) {
+        size_t pivot = c;
+        for (size_t i = c + 1; i < m; i++)
+            if (fabs(A[i * w + c]) > fabs(A[pivot * w + c]))
+                pivot = i;
+        if (!(fabs(A[pivot * w + c]) > 1e-10))
+            return 0;
+        for (size_t j = 0; j < w; j++) {
+            const double kept = A[c * w + j];
+            A[c * w + j] = A[pivot * w + j];
+            A[pivot * w + j] = kept;
+        }
+        for (size_t i = 0; i < m; i++) {
+            const double share = i == c ? 0.0 : A[i * w + c] / A[c * w + c];
+            for (size_t j = c; share != 0.0 && j < w; j++)
+                A[i * w + j] -= share * A[c * w + j];
+        }
+    }
+    for (size_t c = 0; c < m; c++)
+        A[c * w + m] /= A[c * w + c];
+    return 1;
+}
+
+void frame_fit(Frame *frame, size_t n, const size_t list[], const double F[])
+{
+    const size_t m = frame->n_obj, w = m + 1;
+    fit_box(frame, n, list, F);
+    for (size_t k = 0; k < m; k++) {
+        const size_t i = extreme_point(frame, k, n, list, F);
+        for (size_t j = 0; j < m; j++)
+            frame->plane[k * w + j] = frame_scale(frame, j, F[i * m + j]);
+        frame->plane[k * w + m] = 1.0;
+    }
+    if (!solve(m, frame->plane))
+        return;
+    for (size_t k = 0; k < m; k++) /* the plane sum_k z_k b_k = 1 cuts axis k at 1 / b_k, in units of the box */
+        if (!(frame->plane[k * w + m] < 1e6 && frame->plane[k * w + m] > 0.0))
+            return;
+    for (size_t k = 0; k < m; k++)
+        frame->width[k] *= fmin(1.0 / frame->plane[k * w + m], 1.0);
+}

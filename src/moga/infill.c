@@ -1,0 +1,147 @@
+#include "moga/infill.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdint.h>
+
+#include "base/carve.h"
+#include "moga/frame.h"
+
+static const double PBI_THETA = 5.0;
+
+struct Infill {
+    size_t n_obj, n_dir, n_max, n;
+    Frame frame;
+    double *unit;                          /* (n_dir, n_obj) */
+    double *least;                         /* (n_dir) to beat */
+    double *pbi;                           /* (n, n_dir) of the candidates */
+    const double *violation, *uncertainty; /* (n) */
+    void *store;
+};
+
+static void layout(Infill *q, Carve *c)
+{
+    const size_t m = q->n_obj;
+    q->frame.ideal = carve(c, m, sizeof(double));
+    q->frame.width = carve(c, m, sizeof(double));
+    q->frame.plane = carve(c, m * (m + 1), sizeof(double));
+    q->unit = carve(c, q->n_dir * m, sizeof(double));
+    q->least = carve(c, q->n_dir, sizeof(double));
+    q->pbi = carve(c, q->n_max * q->n_dir, sizeof(double));
+}
+
+Status infill_create(Infill **out, size_t candidates_max, const Directions *directions, Err *err)
+{
+    Infill *q = calloc(1, sizeof *q);
+    *out = q;
+    if (!q)
+        return fail(err, STATUS_NO_MEMORY, "no memory for the choice of designs to simulate");
+    q->n_obj = q->frame.n_obj = directions->n_obj;
+    q->n_dir = directions->n;
+    q->n_max = candidates_max;
+    Carve c = {0};
+    layout(q, &c);
+    q->store = carve_store(&c);
+    if (!q->store) {
+        infill_free(q);
+        *out = NULL;
+        return fail(err, STATUS_NO_MEMORY, "no memory for the choice among %zu designs", candidates_max);
+    }
+    layout(q, &(Carve){.base = q->store});
+    for (size_t r = 0; r < q->n_dir; r++) {
+        const double *w = directions->W + r * q->n_obj;
+        double square = 0.0;
+        for (size_t k = 0; k < q->n_obj; k++)
+            square += w[k] * w[k];
+        for (size_t k = 0; k < q->n_obj; k++)
+            q->unit[r * q->n_obj + k] = w[k] / sqrt(square);
+    }
+    return STATUS_OK;
+}
+
+void infill_free(Infill *q)
+{
+    if (q)
+        free(q->store);
+    free(q);
+}
+
+static double pbi_value(const Infill *q, size_t r, const double f[])
+{
+    double along = 0.0, off = 0.0;
+    const double *w = q->unit + r * q->n_obj;
+    for (size_t k = 0; k < q->n_obj; k++)
+        along += frame_scale(&q->frame, k, f[k]) * w[k];
+    for (size_t k = 0; k < q->n_obj; k++) {
+        const double side = frame_scale(&q->frame, k, f[k]) - along * w[k];
+        off += side * side;
+    }
+    return along + PBI_THETA * sqrt(off);
+}
+
+void infill_measure(Infill *q, size_t n, const size_t front[], const double F[])
+{
+    frame_fit(&q->frame, n, front, F);
+    for (size_t r = 0; r < q->n_dir; r++) {
+        q->least[r] = DBL_MAX;
+        for (size_t i = 0; i < n; i++)
+            q->least[r] = fmin(q->least[r], pbi_value(q, r, F + front[i] * q->n_obj));
+    }
+}
+
+double infill_distance(const Infill *q, const double f[])
+{
+    double nearest = DBL_MAX;
+    for (size_t r = 0; r < q->n_dir; r++)
+        nearest = fmin(nearest, pbi_value(q, r, f) - q->least[r]);
+    return nearest;
+}
+
+void infill_offer(Infill *q, size_t n, const double F[], const double violation[], const double uncertainty[])
+{
+    q->n = n;
+    q->violation = violation;
+    q->uncertainty = uncertainty;
+    for (size_t i = 0; i < n; i++)
+        for (size_t r = 0; r < q->n_dir; r++)
+            q->pbi[i * q->n_dir + r] = pbi_value(q, r, F + i * q->n_obj);
+}
+
+static double gain_of(const Infill *q, size_t i)
+{
+    double gain = 0.0;
+    for (size_t r = 0; r < q->n_dir; r++)
+        gain += fmax(q->least[r] - q->pbi[i * q->n_dir + r], 0.0);
+    return gain;
+}
+
+/* Feasible before infeasible, then gain or violation, then uncertainty. */
+static int is_better(const Infill *q, size_t a, double gain_a, size_t b, double gain_b)
+{
+    if (q->violation[a] != q->violation[b])
+        return q->violation[a] < q->violation[b];
+    if (gain_a != gain_b)
+        return gain_a > gain_b;
+    return q->uncertainty[a] > q->uncertainty[b];
+}
+
+size_t infill_pick(Infill *q, unsigned char allowed[])
+{
+    size_t best = SIZE_MAX;
+    double most = 0.0;
+    for (size_t i = 0; i < q->n; i++) {
+        if (!allowed[i])
+            continue;
+        const double gain = gain_of(q, i);
+        if (best == SIZE_MAX || is_better(q, i, gain, best, most)) {
+            most = gain;
+            best = i;
+        }
+    }
+    if (best == SIZE_MAX)
+        return best;
+    allowed[best] = 0;
+    for (size_t r = 0; r < q->n_dir; r++)
+        q->least[r] = fmin(q->least[r], q->pbi[best * q->n_dir + r]);
+    return best;
+}

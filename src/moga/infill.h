@@ -1,0 +1,36 @@
+/* moga/infill.h -- which predicted designs are worth a simulation.
+ *
+ *   PBI(f, w) = d1 + theta d2      d1 along direction w from the ideal, d2 off it, in normalised objectives
+ *   gain(c)   = sum_w max(0, least_w - PBI(f_c, w))
+ *
+ * least_w is the least value of the archive. Designs are picked one after the other, the greatest gain first; what is
+ * picked lowers least_w, so that a batch spreads over the directions instead of crowding at one promising place. Where
+ * nobody promises a gain, the least certain prediction is picked; where nobody is feasible, the least violating.
+ *
+ * Life cycle  infill_create -> (infill_measure -> infill_offer -> infill_pick ...) ... -> infill_free
+ * Memory      all of it in infill_create
+ * Threads     one Infill per thread
+ * Source      Zhang and Li, IEEE Trans. Evol. Comput. 11 (2007) 712-731 (PBI). */
+#ifndef IMTET_MOGA_INFILL_H
+#define IMTET_MOGA_INFILL_H
+
+#include "moga/directions.h"
+
+typedef struct Infill Infill;
+
+Status infill_create(Infill **out, size_t candidates_max, const Directions *directions, Err *err);
+void infill_free(Infill *q); /* NULL is fine */
+
+/* Normalises by the rows front[0..n) of F and takes their PBI values as the ones to beat. */
+void infill_measure(Infill *q, size_t n, const size_t front[], const double F[]);
+
+/* How far f is from being the best of any direction, 0 for those that are: small is near the front. */
+double infill_distance(const Infill *q, const double f[]);
+
+/* n predicted designs: F (n, n_obj), violation (n), how uncertain each is (n); borrowed until the last pick. */
+void infill_offer(Infill *q, size_t n, const double F[], const double violation[], const double uncertainty[]);
+
+/* Best candidate c with allowed[c] set, which is then cleared; SIZE_MAX when there is none. */
+size_t infill_pick(Infill *q, unsigned char allowed[]);
+
+#endif

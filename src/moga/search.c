@@ -1,0 +1,420 @@
+#include "moga/search.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <time.h>
+
+#include "base/carve.h"
+#include "moga/archive.h"
+#include "moga/directions.h"
+#include "moga/dominance.h"
+#include "moga/group.h"
+#include "moga/infill.h"
+#include "moga/surface.h"
+#include "moga/survival.h"
+#include "moga/variation.h"
+
+enum {
+    INNER_GENERATIONS = 10, /* on the surface, between two batches */
+    BATCH_SHARE = 6,        /* a batch is this part of the population ... */
+    CHECK_SHARE = 4,        /* ... and this part of it checks predictions that stand */
+    AGE_MAX = 3             /* a prediction that stood so often is checked first */
+};
+
+typedef struct {
+    const Problem *problem;
+    const SearchConfig *config;
+    Archive archive;
+    Directions directions;
+    Survival *survival;
+    Infill *infill;
+    Surface *surface;
+    Group population, pool, offspring;
+    size_t generation, n_predicted, batch_max;
+    size_t *chosen;                  /* (pool) */
+    double *child;                   /* (2, n_var) */
+    double *X, *F, *G;               /* (batch) of one call of evaluate */
+    unsigned char *ok;               /* (batch) */
+    unsigned char *allowed, *picked; /* (pool) offspring that may still be, that have been sent to simulation */
+    void *store;
+    struct timespec start;
+} Search;
+
+const char *stop_reason_words(StopReason reason)
+{
+    static const char *const words[] = {
+        [STOP_NONE] = "not stopped",
+        [STOP_GENERATIONS] = "all generations done",
+        [STOP_EVALUATIONS] = "all simulations spent",
+        [STOP_TIME] = "time limit reached",
+        [STOP_SHARE] = "the wanted share of the archive is nondominated",
+        [STOP_ASKED] = "stopped on request",
+    };
+    return words[reason];
+}
+
+static double seconds_since(const struct timespec *start)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)(now.tv_sec - start->tv_sec) + 1e-9 * (double)(now.tv_nsec - start->tv_nsec);
+}
+
+/* -- simulation: the only way into the archive ------------------------------------------------------------------ */
+
+static int in_batch(const Search *s, size_t n, const double x[])
+{
+    for (size_t i = 0; i < n; i++)
+        if (memcmp(s->X + i * s->problem->n_var, x, s->problem->n_var * sizeof *x) == 0)
+            return 1;
+    return 0;
+}
+
+/* Appends x to a batch of n unless it is known, the batch is full or the simulations are spent; returns the new n. */
+static size_t batch_add(Search *s, size_t n, const double x[])
+{
+    if (n >= s->batch_max || s->archive.n + n >= s->config->max_evals || in_batch(s, n, x) ||
+        archive_find(&s->archive, x) < s->archive.n)
+        return n;
+    memcpy(s->X + n * s->problem->n_var, x, s->problem->n_var * sizeof *x);
+    return n + 1;
+}
+
+static Status simulate_batch(Search *s, size_t n, EvaluationKind kind, Err *err)
+{
+    const Problem *p = s->problem;
+    if (n == 0)
+        return STATUS_OK;
+    TRY(p->evaluate(n, s->X, s->F, s->G, s->ok, p->user, err));
+    return archive_insert(&s->archive, n, s->X, s->F, s->G, s->ok, (unsigned char)kind, s->generation, err);
+}
+
+/* Simulated designs of the archive's rows first.. join the pool; failed ones do not. */
+static void add_simulated(Search *s, Group *group, size_t first)
+{
+    const Archive *a = &s->archive;
+    for (size_t row = first; row < a->n; row++) {
+        if (!a->ok[row])
+            continue;
+        const size_t i = group_add(group, a->X + row * a->n_var);
+        memcpy(group->F + i * a->n_obj, a->F + row * a->n_obj, a->n_obj * sizeof *a->F);
+        group->violation[i] = a->violation[row];
+        group->row[i] = row;
+    }
+}
+
+static void survive(Search *s, Group *group, uint32_t step)
+{
+    Random random = random_stream(s->config->seed, RANDOM_NICHING, (uint32_t)s->generation, step);
+    const size_t n =
+        survival_select(s->survival, group->n, group->F, group->violation, s->config->population, &random, s->chosen);
+    group_keep(group, n, s->chosen);
+}
+
+/* -- variation ------------------------------------------------------------------------------------------------------
+ */
+
+static const double *tournament(const Group *g, Random *random)
+{
+    const size_t a = random_below(random, g->n), b = random_below(random, g->n), m = g->n_obj;
+    const int b_wins = dominates_constrained(m, g->F + b * m, g->violation[b], g->F + a * m, g->violation[a]);
+    return g->X + (b_wins ? b : a) * g->n_var;
+}
+
+/* Appends n children of the group's first n_parents members to it. Child pair j of step has its own streams. */
+static void breed(Search *s, Group *group, size_t n, uint32_t step)
+{
+    const Problem *p = s->problem;
+    const SearchConfig *c = s->config;
+    Group parents = *group;
+    for (size_t j = 0; 2 * j < n; j++) {
+        const uint32_t name = step * (uint32_t)c->population + (uint32_t)j;
+        Random choice = random_stream(c->seed, RANDOM_PARENTS, (uint32_t)s->generation, name);
+        Random change = random_stream(c->seed, RANDOM_VARIATION, (uint32_t)s->generation, name);
+        const double *mother = tournament(&parents, &choice), *father = tournament(&parents, &choice);
+        crossover_sbx(&change, p->n_var, p->lower, p->upper, c->crossover_probability, c->crossover_eta, mother, father,
+                      s->child, s->child + p->n_var);
+        for (size_t i = 0; i < 2 && 2 * j + i < n; i++) {
+            double *x = s->child + i * p->n_var;
+            mutate_polynomial(&change, p->n_var, p->lower, p->upper, c->mutation_rate / (double)p->n_var,
+                              c->mutation_eta, x);
+            if (p->repair)
+                p->repair(x, p->user);
+            group_add(group, x);
+        }
+    }
+}
+
+/* -- one generation -------------------------------------------------------------------------------------------------
+ */
+
+/* Where there is nobody to breed from (every simulation failed so far), another Latin hypercube. */
+static Status sample_again(Search *s, Err *err)
+{
+    const Problem *p = s->problem;
+    const size_t first = s->archive.n;
+    size_t n = 0;
+    latin_hypercube(s->config->seed, (uint32_t)s->generation, s->config->population, p->n_var, p->lower, p->upper,
+                    s->pool.X, s->chosen);
+    for (size_t i = 0; i < s->config->population; i++) {
+        if (p->repair)
+            p->repair(s->pool.X + i * p->n_var, p->user);
+        n = batch_add(s, n, s->pool.X + i * p->n_var);
+    }
+    TRY(simulate_batch(s, n, KIND_SAMPLED, err));
+    add_simulated(s, &s->population, first);
+    return STATUS_OK;
+}
+
+/* The offspring population: what survives some generations of variation and selection on the surface and has not been
+ * simulated. Without a surface that can be relied on, plain children of the population. */
+static void make_offspring(Search *s)
+{
+    const int guided = surface_stands(s->surface);
+    s->pool.n = s->offspring.n = 0;
+    for (size_t i = 0; i < s->population.n; i++)
+        group_copy_member(&s->pool, &s->population, i);
+    for (uint32_t step = 0; step < (guided ? INNER_GENERATIONS : 1); step++) {
+        const size_t n_parents = s->pool.n;
+        breed(s, &s->pool, s->config->population, step);
+        if (!guided)
+            break;
+        surface_predict(s->surface, &s->pool, n_parents);
+        survive(s, &s->pool, 1 + step);
+    }
+    for (size_t i = 0; i < s->pool.n; i++)
+        if (s->pool.row[i] == PREDICTED)
+            group_copy_member(&s->offspring, &s->pool, i);
+}
+
+static int is_trusted(const Search *s, const Group *g, size_t i)
+{
+    return surface_stands(s->surface) && g->uncertainty[i] < s->config->trust_error;
+}
+
+/* Plain children are simulated in their order. */
+static size_t choose_plain_batch(Search *s, size_t batch)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < s->offspring.n && n < batch; i++) {
+        n = batch_add(s, n, s->offspring.X + i * s->offspring.n_var);
+        s->picked[i] = 1;
+    }
+    return n;
+}
+
+/* First predictions that do not stand or have stood for long, then a few of those that do. */
+static size_t choose_batch(Search *s)
+{
+    const Group *g = &s->offspring;
+    const size_t batch = s->config->population / BATCH_SHARE + 1, check = batch / CHECK_SHARE + 1;
+    size_t n = 0;
+    memset(s->picked, 0, g->n);
+    if (!surface_stands(s->surface))
+        return choose_plain_batch(s, batch);
+    infill_offer(s->infill, g->n, g->F, g->violation, g->uncertainty);
+    for (int round = 0; round < 2; round++) {
+        const size_t limit = round == 0 ? batch - check : n + check;
+        for (size_t i = 0; i < g->n; i++)
+            s->allowed[i] = !s->picked[i] && (round == 1 || !is_trusted(s, g, i) || g->age[i] >= AGE_MAX);
+        for (size_t i; n < limit && (i = infill_pick(s->infill, s->allowed)) != SIZE_MAX;) {
+            n = batch_add(s, n, g->X + i * g->n_var);
+            s->picked[i] = 1;
+        }
+    }
+    return n;
+}
+
+/* The front to be improved; where nothing is feasible yet, the population. */
+static void measure_front(Search *s)
+{
+    for (size_t i = 0; i < s->population.n; i++)
+        s->chosen[i] = i;
+    if (s->archive.n_front > 0)
+        infill_measure(s->infill, s->archive.n_front, s->archive.front, s->archive.F);
+    else
+        infill_measure(s->infill, s->population.n, s->chosen, s->population.F);
+}
+
+/* Next population: from the simulated members of the present one, the batch, and the predictions that stand. */
+static void renew_population(Search *s, size_t first_new)
+{
+    Group *population = &s->population, *pool = &s->pool, *offspring = &s->offspring;
+    pool->n = 0;
+    for (size_t i = 0; i < population->n; i++)
+        if (population->row[i] != PREDICTED)
+            group_copy_member(pool, population, i);
+    for (size_t i = 0; i < offspring->n; i++)
+        if (!s->picked[i] && is_trusted(s, offspring, i)) {
+            s->n_predicted += offspring->age[i]++ == 0;
+            group_copy_member(pool, offspring, i);
+        }
+    add_simulated(s, pool, first_new);
+    survive(s, pool, 0);
+    group_copy(population, pool);
+}
+
+static Status next_generation(Search *s, Err *err)
+{
+    const size_t first_new = s->archive.n;
+    s->n_predicted = 0;
+    if (s->population.n < 2)
+        return sample_again(s, err);
+    measure_front(s);
+    TRY(surface_fit(s->surface, &s->archive, s->infill, err));
+    surface_predict(s->surface, &s->population, 0);
+    make_offspring(s);
+    TRY(simulate_batch(s, choose_batch(s), KIND_INFILL, err));
+    renew_population(s, first_new);
+    return STATUS_OK;
+}
+
+static Status first_generation(Search *s, Err *err)
+{
+    const Problem *p = s->problem;
+    size_t n = 0;
+    latin_hypercube(s->config->seed, 0, s->config->initial, p->n_var, p->lower, p->upper, s->pool.X, s->chosen);
+    for (size_t i = 0; i < s->config->initial; i++) {
+        if (p->repair)
+            p->repair(s->pool.X + i * p->n_var, p->user);
+        n = batch_add(s, n, s->pool.X + i * p->n_var);
+    }
+    TRY(simulate_batch(s, n, KIND_SAMPLED, err));
+    add_simulated(s, &s->pool, 0);
+    survive(s, &s->pool, 0);
+    group_copy(&s->population, &s->pool);
+    return STATUS_OK;
+}
+
+/* -- the loop -------------------------------------------------------------------------------------------------------
+ */
+
+static StopReason reason_to_stop(const Search *s)
+{
+    const SearchConfig *c = s->config;
+    const Archive *a = &s->archive;
+    if (a->n >= c->max_evals)
+        return STOP_EVALUATIONS;
+    if (s->generation >= c->generations)
+        return STOP_GENERATIONS;
+    if (c->nondominated_share < 1.0 && (double)a->n_front >= c->nondominated_share * (double)a->n)
+        return STOP_SHARE;
+    return c->max_seconds > 0.0 && seconds_since(&s->start) >= c->max_seconds ? STOP_TIME : STOP_NONE;
+}
+
+static int report(const Search *s, ObserveFn observe, void *user)
+{
+    const Archive *a = &s->archive;
+    const SearchView view = {
+        .n = a->n,
+        .n_var = a->n_var,
+        .n_obj = a->n_obj,
+        .n_con = a->n_con,
+        .X = a->X,
+        .F = a->F,
+        .G = a->G,
+        .ok = a->ok,
+        .kind = a->kind,
+        .generation = a->generation,
+        .on_front = a->on_front,
+        .n_front = a->n_front,
+        .n_failed = a->n_failed,
+        .generation_now = s->generation,
+        .n_predicted = s->n_predicted,
+        .surrogate_error = surface_error(s->surface),
+        .seconds = seconds_since(&s->start),
+    };
+    return observe && observe(&view, user) ? 1 : 0;
+}
+
+static Status run_loop(Search *s, ObserveFn observe, void *user, StopReason *reason, Err *err)
+{
+    *reason = STOP_NONE;
+    for (s->generation = 0; *reason == STOP_NONE; s->generation += *reason == STOP_NONE) {
+        TRY(s->generation == 0 ? first_generation(s, err) : next_generation(s, err));
+        *reason = reason_to_stop(s);
+        if (report(s, observe, user) && *reason == STOP_NONE)
+            *reason = STOP_ASKED;
+    }
+    return STATUS_OK;
+}
+
+static Status check(const Problem *p, const SearchConfig *c, Err *err)
+{
+    if (p->n_var < 1 || p->n_obj < 1)
+        return fail(err, STATUS_BAD_DATA, "search: %zu variables and %zu objectives, wanted at least one of each",
+                    p->n_var, p->n_obj);
+    if (c->population < 4 || c->initial < 4 || c->max_evals < 1 || c->surrogate_max < 4)
+        return fail(err, STATUS_BAD_DATA,
+                    "search: population %zu, initial %zu and surrogate_max %zu must be 4 at least, max_evals %zu 1",
+                    c->population, c->initial, c->surrogate_max, c->max_evals);
+    for (size_t d = 0; d < p->n_var; d++)
+        if (!(p->lower[d] <= p->upper[d]) || !isfinite(p->lower[d]) || !isfinite(p->upper[d]))
+            return fail(err, STATUS_BAD_DATA, "search: variable %zu has bounds %g and %g, lower must not exceed upper",
+                        d + 1, p->lower[d], p->upper[d]);
+    return STATUS_OK;
+}
+
+static void layout(Search *s, size_t n_pool, Carve *c)
+{
+    const Problem *p = s->problem;
+    s->chosen = carve(c, n_pool, sizeof(size_t));
+    s->child = carve(c, 2 * p->n_var, sizeof(double));
+    s->X = carve(c, s->batch_max * p->n_var, sizeof(double));
+    s->F = carve(c, s->batch_max * p->n_obj, sizeof(double));
+    s->G = carve(c, s->batch_max * p->n_con, sizeof(double));
+    s->ok = carve(c, s->batch_max, 1);
+    s->allowed = carve(c, n_pool, 1);
+    s->picked = carve(c, n_pool, 1);
+}
+
+static Status create(Search *s, Err *err)
+{
+    const Problem *p = s->problem;
+    const size_t population = s->config->population, initial = s->config->initial;
+    const size_t n_pool = initial > 3 * population ? initial : 3 * population;
+    size_t outer, inner;
+    s->batch_max = initial > population ? initial : population;
+    directions_choose(p->n_obj, population, &outer, &inner);
+    TRY(directions_create(&s->directions, p->n_obj, outer, inner, err));
+    TRY(archive_init(&s->archive, 2 * initial, p->n_var, p->n_obj, p->n_con, err));
+    TRY(survival_create(&s->survival, n_pool, &s->directions, err));
+    TRY(infill_create(&s->infill, n_pool, &s->directions, err));
+    TRY(surface_create(&s->surface, p, s->config->surrogate_max, n_pool, err));
+    TRY(group_create(&s->population, 2 * population, p->n_var, p->n_obj, err));
+    TRY(group_create(&s->offspring, n_pool, p->n_var, p->n_obj, err));
+    TRY(group_create(&s->pool, n_pool, p->n_var, p->n_obj, err));
+    Carve c = {0};
+    layout(s, n_pool, &c);
+    s->store = carve_store(&c);
+    if (!s->store)
+        return fail(err, STATUS_NO_MEMORY, "no memory for a search with population %zu", population);
+    layout(s, n_pool, &(Carve){.base = s->store});
+    return STATUS_OK;
+}
+
+static void release(Search *s)
+{
+    directions_free(&s->directions);
+    archive_free(&s->archive);
+    survival_free(s->survival);
+    infill_free(s->infill);
+    surface_free(s->surface);
+    group_free(&s->population);
+    group_free(&s->offspring);
+    group_free(&s->pool);
+    free(s->store);
+}
+
+Status search_run(const Problem *problem, const SearchConfig *config, ObserveFn observe, void *user, StopReason *reason,
+                  Err *err)
+{
+    Search s = {.problem = problem, .config = config};
+    TRY(check(problem, config, err));
+    clock_gettime(CLOCK_MONOTONIC, &s.start);
+    Status status = create(&s, err);
+    if (status == STATUS_OK)
+        status = run_loop(&s, observe, user, reason, err);
+    release(&s);
+    return status;
+}

@@ -1,0 +1,219 @@
+#include "moga/surface.h"
+
+#include <float.h>
+#include <math.h>
+
+#include "base/carve.h"
+#include "moga/dominance.h"
+
+/* Below this mean leave-one-out R2 of the objectives the surface guides no better than chance. */
+static const double LEAST_EXPLAINED = 0.2;
+
+struct Surface {
+    const Problem *problem;
+    Rbf *rbf;
+    size_t n_out, n_max, n_archive_max, predict_max;
+    size_t n, n_tuned; /* centres; archive's size at the last tuning */
+    int fitted;
+    double *U, *F;     /* (n_max, n_var) (n_max, n_out) centres */
+    double *range;     /* (n_out) of each output in the archive */
+    double *errors;    /* (n_max) sorted for the median */
+    double *u, *f, *e; /* (predict_max, n_var) (predict_max, n_out) twice */
+    void *store;
+    size_t *chosen, *spare; /* (n_archive_max) rows in use; they grow with the archive */
+    double *distance;       /* (n_archive_max) */
+};
+
+static void layout(Surface *s, Carve *c)
+{
+    const size_t n_var = s->problem->n_var;
+    s->U = carve(c, s->n_max * n_var, sizeof(double));
+    s->F = carve(c, s->n_max * s->n_out, sizeof(double));
+    s->range = carve(c, s->n_out, sizeof(double));
+    s->errors = carve(c, s->n_max, sizeof(double));
+    s->u = carve(c, s->predict_max * n_var, sizeof(double));
+    s->f = carve(c, s->predict_max * s->n_out, sizeof(double));
+    s->e = carve(c, s->predict_max * s->n_out, sizeof(double));
+}
+
+Status surface_create(Surface **out, const Problem *problem, size_t surrogate_max, size_t predict_max, Err *err)
+{
+    Surface *s = calloc(1, sizeof *s);
+    *out = s;
+    if (!s)
+        return fail(err, STATUS_NO_MEMORY, "no memory for the response surface");
+    s->problem = problem;
+    s->n_out = problem->n_obj + problem->n_con;
+    s->n_max = surrogate_max;
+    s->predict_max = predict_max;
+    Status status = rbf_create(&s->rbf, surrogate_max, problem->n_var, s->n_out, err);
+    if (status == STATUS_OK) {
+        Carve c = {0};
+        layout(s, &c);
+        s->store = carve_store(&c);
+        if (!s->store)
+            status = fail(err, STATUS_NO_MEMORY, "no memory for %zu predictions", predict_max);
+    }
+    if (status != STATUS_OK) {
+        surface_free(s);
+        *out = NULL;
+        return status;
+    }
+    layout(s, &(Carve){.base = s->store});
+    return STATUS_OK;
+}
+
+void surface_free(Surface *s)
+{
+    if (s) {
+        rbf_free(s->rbf);
+        free(s->store);
+        free(s->chosen);
+        free(s->spare);
+        free(s->distance);
+    }
+    free(s);
+}
+
+static Status grow(Surface *s, size_t n, Err *err)
+{
+    if (n <= s->n_archive_max)
+        return STATUS_OK;
+    free(s->chosen);
+    free(s->spare);
+    free(s->distance);
+    s->n_archive_max = 2 * n;
+    s->chosen = calloc(2 * n, sizeof *s->chosen);
+    s->spare = calloc(2 * n, sizeof *s->spare);
+    s->distance = calloc(2 * n, sizeof *s->distance);
+    if (!s->chosen || !s->spare || !s->distance) {
+        s->n_archive_max = 0;
+        return fail(err, STATUS_NO_MEMORY, "no memory for the choice among %zu designs", n);
+    }
+    return STATUS_OK;
+}
+
+/* Merge sort of rows by distance, equal ones by row. */
+static void sort_by_distance(const double distance[], size_t n, size_t rows[], size_t spare[])
+{
+    if (n < 2)
+        return;
+    const size_t half = n / 2;
+    sort_by_distance(distance, half, rows, spare);
+    sort_by_distance(distance, n - half, rows + half, spare);
+    memcpy(spare, rows, half * sizeof *rows);
+    for (size_t i = 0, j = half, k = 0; i < half; k++)
+        rows[k] = j < n && distance[rows[j]] < distance[spare[i]] ? rows[j++] : spare[i++];
+}
+
+/* Rows of the centres, in chosen; returns how many. */
+static size_t choose_centres(Surface *s, const Archive *a, const Infill *near)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < a->n; i++)
+        if (a->ok[i])
+            s->chosen[n++] = i;
+    if (n <= s->n_max)
+        return n;
+    for (size_t i = 0; i < n; i++)
+        s->distance[s->chosen[i]] = infill_distance(near, a->F + s->chosen[i] * a->n_obj);
+    sort_by_distance(s->distance, n, s->chosen, s->spare);
+    const size_t n_near = s->n_max - s->n_max / 4, n_rest = n - n_near, n_spread = s->n_max - n_near;
+    for (size_t i = 0; i < a->n; i++) /* the rest in the order of simulation again: as distance of itself */
+        s->distance[i] = (double)i;
+    sort_by_distance(s->distance, n_rest, s->chosen + n_near, s->spare);
+    for (size_t i = 0; i < n_spread; i++)
+        s->chosen[n_near + i] = s->chosen[n_near + i * n_rest / n_spread];
+    return s->n_max;
+}
+
+static void to_unit_cube(const Problem *p, const double x[], double u[])
+{
+    for (size_t d = 0; d < p->n_var; d++)
+        u[d] = p->upper[d] > p->lower[d] ? (x[d] - p->lower[d]) / (p->upper[d] - p->lower[d]) : 0.0;
+}
+
+static void measure_ranges(Surface *s, const Archive *a)
+{
+    for (size_t k = 0; k < s->n_out; k++) {
+        double least = DBL_MAX, most = -DBL_MAX;
+        for (size_t i = 0; i < a->n; i++) {
+            if (!a->ok[i])
+                continue;
+            const double v = k < a->n_obj ? a->F[i * a->n_obj + k] : a->G[i * a->n_con + k - a->n_obj];
+            least = fmin(least, v);
+            most = fmax(most, v);
+        }
+        s->range[k] = most > least ? most - least : 1.0;
+    }
+}
+
+Status surface_fit(Surface *s, const Archive *a, const Infill *near, Err *err)
+{
+    s->fitted = 0;
+    if (a->n - a->n_failed < 4 || a->n - a->n_failed < s->problem->n_var / 2)
+        return STATUS_OK;
+    TRY(grow(s, a->n, err));
+    s->n = choose_centres(s, a, near);
+    for (size_t i = 0; i < s->n; i++) {
+        const size_t row = s->chosen[i];
+        to_unit_cube(s->problem, a->X + row * a->n_var, s->U + i * a->n_var);
+        memcpy(s->F + i * s->n_out, a->F + row * a->n_obj, a->n_obj * sizeof *s->F);
+        memcpy(s->F + i * s->n_out + a->n_obj, a->G + row * a->n_con, a->n_con * sizeof *s->F);
+    }
+    measure_ranges(s, a);
+    TRY(rbf_fit(s->rbf, s->n, s->U, s->F, err));
+    if (s->n_tuned == 0 || a->n >= s->n_tuned + (s->n_tuned + 9) / 10) {
+        TRY(rbf_tune(s->rbf, err));
+        s->n_tuned = a->n;
+    }
+    s->fitted = 1;
+    return STATUS_OK;
+}
+
+int surface_stands(const Surface *s)
+{
+    double explained = 0.0;
+    for (size_t k = 0; s->fitted && k < s->problem->n_obj; k++)
+        explained += fmax(rbf_explained(s->rbf, k), 0.0) / (double)s->problem->n_obj;
+    return explained > LEAST_EXPLAINED;
+}
+
+static int compare_doubles(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+double surface_error(const Surface *s)
+{
+    double worst = s->fitted ? 0.0 : NAN;
+    for (size_t k = 0; s->fitted && k < s->problem->n_obj; k++) {
+        const double *e = rbf_leave_one_out(s->rbf, k);
+        for (size_t i = 0; i < s->n; i++)
+            s->errors[i] = fabs(e[i]) / s->range[k];
+        qsort(s->errors, s->n, sizeof *s->errors, compare_doubles);
+        worst = fmax(worst, 0.5 * (s->errors[(s->n - 1) / 2] + s->errors[s->n / 2]));
+    }
+    return worst;
+}
+
+void surface_predict(Surface *s, Group *group, size_t first)
+{
+    const Problem *p = s->problem;
+    if (!s->fitted)
+        return;
+#pragma omp parallel for schedule(static)
+    for (size_t i = first; i < group->n; i++) {
+        if (group->row[i] != PREDICTED)
+            continue;
+        double *u = s->u + i * p->n_var, *f = s->f + i * s->n_out, *e = s->e + i * s->n_out, worst = 0.0;
+        to_unit_cube(p, group->X + i * p->n_var, u);
+        rbf_eval(s->rbf, u, f, e);
+        for (size_t k = 0; k < s->n_out; k++)
+            worst = fmax(worst, e[k] / s->range[k]);
+        memcpy(group->F + i * p->n_obj, f, p->n_obj * sizeof *f);
+        group->violation[i] = violation_of(p->n_con, f + p->n_obj);
+        group->uncertainty[i] = worst;
+    }
+}

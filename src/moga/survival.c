@@ -1,0 +1,179 @@
+#include "moga/survival.h"
+
+#include <math.h>
+#include <stdint.h>
+
+#include "base/carve.h"
+#include "moga/dominance.h"
+#include "moga/frame.h"
+
+struct Survival {
+    size_t n_max, n_obj, n_dir;
+    double *unit; /* (n_dir, n_obj) directions of length 1 */
+    Frame frame;
+    size_t *rank;     /* (n_max) */
+    size_t *scratch;  /* (3 n_max) */
+    size_t *list;     /* (n_max) rows of one layer */
+    size_t *niche;    /* (n_max) direction of each row */
+    double *distance; /* (n_max) from it */
+    size_t *members;  /* (n_dir) chosen so far */
+    size_t *ties;     /* (n_dir or n_max) */
+    unsigned char *taken;
+    void *store;
+};
+
+static void layout(Survival *s, Carve *c)
+{
+    const size_t n = s->n_max, m = s->n_obj, r = s->n_dir;
+    s->unit = carve(c, r * m, sizeof(double));
+    s->frame.ideal = carve(c, m, sizeof(double));
+    s->frame.width = carve(c, m, sizeof(double));
+    s->frame.plane = carve(c, m * (m + 1), sizeof(double));
+    s->rank = carve(c, n, sizeof(size_t));
+    s->scratch = carve(c, 3 * n, sizeof(size_t));
+    s->list = carve(c, n, sizeof(size_t));
+    s->niche = carve(c, n, sizeof(size_t));
+    s->distance = carve(c, n, sizeof(double));
+    s->members = carve(c, r, sizeof(size_t));
+    s->ties = carve(c, n > r ? n : r, sizeof(size_t));
+    s->taken = carve(c, n, 1);
+}
+
+Status survival_create(Survival **out, size_t n_max, const Directions *directions, Err *err)
+{
+    Survival *s = calloc(1, sizeof *s);
+    *out = s;
+    if (!s)
+        return fail(err, STATUS_NO_MEMORY, "no memory for the environmental selection");
+    s->n_max = n_max;
+    s->n_obj = s->frame.n_obj = directions->n_obj;
+    s->n_dir = directions->n;
+    Carve c = {0};
+    layout(s, &c);
+    s->store = carve_store(&c);
+    if (!s->store) {
+        survival_free(s);
+        *out = NULL;
+        return fail(err, STATUS_NO_MEMORY, "no memory for the environmental selection of %zu designs", n_max);
+    }
+    layout(s, &(Carve){.base = s->store});
+    for (size_t r = 0; r < s->n_dir; r++) {
+        const double *w = directions->W + r * s->n_obj;
+        double square = 0.0;
+        for (size_t k = 0; k < s->n_obj; k++)
+            square += w[k] * w[k];
+        for (size_t k = 0; k < s->n_obj; k++)
+            s->unit[r * s->n_obj + k] = w[k] / sqrt(square);
+    }
+    return STATUS_OK;
+}
+
+void survival_free(Survival *s)
+{
+    if (s)
+        free(s->store);
+    free(s);
+}
+
+/* Nearest direction and the distance of the normalised objectives from its line. */
+static void associate(Survival *s, size_t i, const double f[])
+{
+    const size_t m = s->n_obj;
+    double square = 0.0, longest = -INFINITY;
+    for (size_t k = 0; k < m; k++) {
+        const double z = frame_scale(&s->frame, k, f[k]);
+        square += z * z;
+    }
+    for (size_t r = 0; r < s->n_dir; r++) {
+        double along = 0.0;
+        for (size_t k = 0; k < m; k++)
+            along += frame_scale(&s->frame, k, f[k]) * s->unit[r * m + k];
+        if (along > longest) {
+            longest = along;
+            s->niche[i] = r;
+        }
+    }
+    s->distance[i] = sqrt(fmax(square - longest * longest, 0.0));
+}
+
+static size_t rows_of_layer(Survival *s, size_t n, size_t layer)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < n; i++)
+        if (s->rank[i] == layer)
+            s->list[count++] = i;
+    return count;
+}
+
+/* One of the directions that still have candidates and, among those, the fewest members. */
+static size_t emptiest_direction(Survival *s, size_t n_list, Random *random)
+{
+    size_t fewest = SIZE_MAX, n_ties = 0;
+    for (size_t j = 0; j < n_list; j++) {
+        const size_t r = s->niche[s->list[j]];
+        if (!s->taken[s->list[j]] && s->members[r] < fewest)
+            fewest = s->members[r];
+    }
+    for (size_t r = 0; r < s->n_dir; r++) {
+        size_t j = 0;
+        while (s->members[r] == fewest && j < n_list && (s->taken[s->list[j]] || s->niche[s->list[j]] != r))
+            j++;
+        if (s->members[r] == fewest && j < n_list)
+            s->ties[n_ties++] = r;
+    }
+    return s->ties[random_below(random, n_ties)];
+}
+
+/* For a direction without members the nearest candidate, else any of them. */
+static size_t candidate_of(Survival *s, size_t r, size_t n_list, Random *random)
+{
+    size_t n_ties = 0, nearest = SIZE_MAX;
+    for (size_t j = 0; j < n_list; j++) {
+        const size_t i = s->list[j];
+        if (s->taken[i] || s->niche[i] != r)
+            continue;
+        s->ties[n_ties++] = i;
+        if (nearest == SIZE_MAX || s->distance[i] < s->distance[nearest])
+            nearest = i;
+    }
+    return s->members[r] == 0 ? nearest : s->ties[random_below(random, n_ties)];
+}
+
+static void fill_niches(Survival *s, size_t n_list, size_t wanted, Random *random)
+{
+    while (wanted-- > 0) {
+        const size_t r = emptiest_direction(s, n_list, random), i = candidate_of(s, r, n_list, random);
+        s->taken[i] = 1;
+        s->members[r]++;
+    }
+}
+
+size_t survival_select(Survival *s, size_t n, const double F[], const double violation[], size_t keep, Random *random,
+                       size_t chosen[])
+{
+    const size_t n_layers = nondominated_sort(n, s->n_obj, F, violation, s->rank, s->scratch);
+    size_t n_chosen = 0, layer = 0, n_list = 0;
+    memset(s->taken, 0, n);
+    memset(s->members, 0, s->n_dir * sizeof *s->members);
+    if (n > 0)
+        frame_fit(&s->frame, rows_of_layer(s, n, 0), s->list, F);
+    for (size_t i = 0; i < n; i++)
+        associate(s, i, F + i * s->n_obj);
+    for (; layer < n_layers; layer++) {
+        n_list = rows_of_layer(s, n, layer);
+        if (n_chosen + n_list > keep)
+            break;
+        for (size_t j = 0; j < n_list; j++) {
+            s->taken[s->list[j]] = 1;
+            s->members[s->niche[s->list[j]]]++;
+        }
+        n_chosen += n_list;
+    }
+    if (layer < n_layers)
+        fill_niches(s, n_list, keep - n_chosen, random);
+    n_chosen = 0;
+    for (size_t i = 0; i < n; i++)
+        if (s->taken[i])
+            chosen[n_chosen++] = i;
+    return n_chosen;
+}

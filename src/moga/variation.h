@@ -1,0 +1,32 @@
+/* moga/variation.h -- new designs from old ones, and from nothing.
+ *
+ *   simulated binary crossover   children spread around their parents as one-point crossover of binary strings would;
+ *                                eta large: close to the parents
+ *   polynomial mutation          one variable moved by a share of its box
+ *   Latin hypercube              n samples, exactly one in each of the n slices of every variable
+ *
+ * All stay within lower..upper; a variable whose bounds are equal stays there.
+ * Threads  no state but the random stream handed in
+ * Sources  Deb and Agrawal, Complex Systems 9 (1995) 115-148; the bounded forms as in Deb's NSGA-II code;
+ *          McKay, Beckman and Conover, Technometrics 21 (1979) 239-245. */
+#ifndef IMTET_MOGA_VARIATION_H
+#define IMTET_MOGA_VARIATION_H
+
+#include <stddef.h>
+
+#include "base/random.h"
+
+/* Two children of two parents. With the given probability the pair is crossed, else copied; of a crossed pair each
+ * variable is recombined with probability 1/2. */
+void crossover_sbx(Random *r, size_t n_var, const double lower[], const double upper[], double probability, double eta,
+                   const double mother[], const double father[], double child1[], double child2[]);
+
+/* Each variable of x is mutated with the given probability. */
+void mutate_polynomial(Random *r, size_t n_var, const double lower[], const double upper[], double probability,
+                       double eta, double x[]);
+
+/* X (n, n_var); slices holds n numbers. Streams (seed, sampling, generation, variable). */
+void latin_hypercube(uint32_t seed, uint32_t generation, size_t n, size_t n_var, const double lower[],
+                     const double upper[], double X[], size_t slices[]);
+
+#endif

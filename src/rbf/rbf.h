@@ -1,0 +1,60 @@
+/* rbf/rbf.h -- radial basis response surface of several outputs, with its own leave-one-out errors.
+ *
+ *   s(x) = b . p(x) + sum_j w_j phi(r(x, c_j)),    r^2 = sum_d theta_d (x_d - c_jd)^2          for each output
+ *
+ * phi is positive definite (Gaussian or Matern 5/2), p a constant, linear or diagonal quadratic tail, and every output
+ * has its own kernel, tail, length scales theta and nugget (a ridge on the kernel matrix: 1e-8 for smooth answers,
+ * more where the answers are noisy or designs nearly equal). Scales and nugget maximise the likelihood, kernel and
+ * tail have the least leave-one-out error; both are looked for by rbf_tune and kept by rbf_fit.
+ *
+ * Error of a prediction  root mean square of the centres' leave-one-out errors, weighted with 1/r^4: a local average
+ * Life cycle  rbf_create -> (rbf_fit -> (rbf_tune) -> rbf_eval ...) ... -> rbf_free; call rbf_tune now and then
+ * Memory      all of it in rbf_create, for at most n_max centres
+ * Threads     rbf_fit and rbf_tune share the outputs out over OpenMP threads (set BLAS to one); rbf_eval only reads
+ * Shapes      row-major X (n, n_dim), F (n, n_out); x scaled to the unit cube
+ * Errors      near-equal centres raise the nugget until the matrix factors; BAD_DATA if that does not help (NaN)
+ * Sources     Rippa, Adv. Comput. Math. 11 (1999) 193-210 (leave-one-out); Rasmussen and Williams, Gaussian Processes
+ *             for Machine Learning (2006) ch. 2 and 5 (kernels, tail, likelihood). */
+#ifndef IMTET_RBF_RBF_H
+#define IMTET_RBF_RBF_H
+
+#include <stddef.h>
+
+#include "base/status.h"
+
+typedef struct Rbf Rbf;
+
+typedef enum { RBF_GAUSS, RBF_MATERN, RBF_N_KERNELS } RbfKernel;
+typedef enum { RBF_CONSTANT, RBF_LINEAR, RBF_QUADRATIC, RBF_N_TAILS } RbfTail;
+
+/* How one output is modelled. */
+typedef struct {
+    RbfKernel kernel;
+    RbfTail tail;
+    double nugget; /* [-] share of the output's variance */
+} RbfForm;
+
+Status rbf_create(Rbf **out, size_t n_max, size_t n_dim, size_t n_out, Err *err);
+void rbf_free(Rbf *m); /* NULL is fine */
+
+/* Interpolates F at X with the forms and scales that the model has; rbf_create starts with Matern, linear tail,
+ * theta = 1 / n_dim. */
+Status rbf_fit(Rbf *m, size_t n, const double X[], const double F[], Err *err);
+
+/* Looks for better forms and scales, starting from the present ones, on the data of the last rbf_fit (an even choice
+ * of at most 250 of them), and fits again. */
+Status rbf_tune(Rbf *m, Err *err);
+
+/* f (n_out) and error (n_out), which may be NULL. */
+void rbf_eval(const Rbf *m, const double x[], double f[], double error[]);
+
+size_t rbf_n(const Rbf *m);
+const double *rbf_leave_one_out(const Rbf *m, size_t output); /* (n) f_i minus the prediction made without i */
+double rbf_explained(const Rbf *m, size_t output);            /* 1 - leave-one-out variance / variance; 1: perfect */
+
+RbfForm rbf_form(const Rbf *m, size_t output);
+void rbf_set_form(Rbf *m, size_t output, RbfForm form);           /* used by the next rbf_fit */
+const double *rbf_scales(const Rbf *m, size_t output);            /* theta (n_dim) */
+void rbf_set_scales(Rbf *m, size_t output, const double theta[]); /* used by the next rbf_fit */
+
+#endif

@@ -1,0 +1,431 @@
+#include <stdlib.h>
+#include <string.h>
+
+#include "check.h"
+#include "moga/archive.h"
+#include "moga/directions.h"
+#include "moga/dominance.h"
+#include "moga/frame.h"
+#include "moga/hypervolume.h"
+#include "moga/infill.h"
+#include "moga/survival.h"
+#include "moga/variation.h"
+
+/* Numbers on a coarse grid, so that equal and dominated points are frequent. */
+static void coarse_points(uint32_t seed, size_t n, size_t m, double F[])
+{
+    Random r = random_stream(seed, RANDOM_TEST, 0, 0);
+    for (size_t i = 0; i < n * m; i++)
+        F[i] = (double)random_below(&r, 6);
+}
+
+/* -- dominance --------------------------------------------------------------------------------------------------------
+ */
+
+/* Peeling by definition: rank r are those that only points of lower rank dominate. */
+static void test_nondominated_sort_equals_peeling_by_definition(void **state)
+{
+    (void)state;
+    enum { N = 60, SEEDS = 200 };
+    double F[N * 4], violation[N];
+    size_t rank[N], scratch[3 * N];
+    for (uint32_t seed = 0; seed < SEEDS; seed++) {
+        const size_t m = 1 + seed % 4;
+        coarse_points(seed, N, m, F);
+        for (size_t i = 0; i < N; i++)
+            violation[i] = seed % 3 == 0 ? (double)(i % 3) : 0.0;
+        const size_t layers = nondominated_sort(N, m, F, violation, rank, scratch);
+        size_t most = 0;
+        for (size_t i = 0; i < N; i++) {
+            most = rank[i] > most ? rank[i] : most;
+            int by_layer_above = rank[i] == 0;
+            for (size_t j = 0; j < N; j++)
+                if (dominates_constrained(m, F + j * m, violation[j], F + i * m, violation[i])) {
+                    assert_true(rank[j] < rank[i]);
+                    by_layer_above |= rank[j] + 1 == rank[i];
+                }
+            assert_true(by_layer_above);
+        }
+        assert_int_equal(layers, most + 1);
+    }
+}
+
+/* -- hypervolume ------------------------------------------------------------------------------------------------------
+ */
+
+static double exact(size_t n, size_t m, const double F[], double reference)
+{
+    double corner[8];
+    for (size_t k = 0; k < m; k++)
+        corner[k] = reference;
+    Err err = {0};
+    Hypervolume hv;
+    CHECK_OK(hypervolume_exact(n, m, F, corner, &hv, &err), &err);
+    return hv.volume;
+}
+
+static void test_hypervolume_of_boxes_and_of_a_known_union(void **state)
+{
+    (void)state;
+    const double box[] = {0.5, 0.25, 0.0, 0.75};
+    assert_close(exact(1, 4, box, 1.0), 0.5 * 0.75 * 1.0 * 0.25, 1e-14);
+    const double stairs[] = {1, 3, 2, 2, 3, 1};
+    assert_close(exact(3, 2, stairs, 4.0), 6.0, 1e-14);
+    /* three slabs: 3 (1 . 2 . 2) - 3 (1 . 1 . 2) + 1 in the cube of side 2 */
+    const double slabs[] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    assert_close(exact(3, 3, slabs, 2.0), 12.0 - 6.0 + 1.0, 1e-14);
+    const double outside[] = {0.5, 3.0};
+    assert_true(exact(1, 2, outside, 2.0) == 0.0);
+    assert_true(exact(0, 2, outside, 2.0) == 0.0);
+}
+
+/* On integer coordinates the volume is the number of unit cells that some point covers. */
+static void test_hypervolume_counts_the_cells_of_a_grid(void **state)
+{
+    (void)state;
+    double F[12 * 4];
+    for (uint32_t seed = 0; seed < 100; seed++) {
+        coarse_points(seed, 12, 4, F);
+        size_t cells = 0;
+        for (size_t cell = 0; cell < 6 * 6 * 6 * 6; cell++) {
+            const double at[] = {(double)(cell % 6), (double)(cell / 6 % 6), (double)(cell / 36 % 6),
+                                 (double)(cell / 216)};
+            int covered = 0;
+            for (size_t i = 0; i < 12; i++)
+                covered |= F[i * 4] <= at[0] && F[i * 4 + 1] <= at[1] && F[i * 4 + 2] <= at[2] && F[i * 4 + 3] <= at[3];
+            cells += (size_t)covered;
+        }
+        assert_close(exact(12, 4, F, 6.0), (double)cells, 1e-12);
+    }
+}
+
+static void sphere_points(uint32_t seed, size_t n, size_t m, double F[])
+{
+    Random r = random_stream(seed, RANDOM_TEST, 1, 0);
+    for (size_t i = 0; i < n; i++) {
+        double square = 0.0;
+        for (size_t k = 0; k < m; k++) {
+            F[i * m + k] = fabs(random_normal(&r));
+            square += F[i * m + k] * F[i * m + k];
+        }
+        for (size_t k = 0; k < m; k++)
+            F[i * m + k] /= sqrt(square);
+    }
+}
+
+static void test_hypervolume_ignores_order_and_never_shrinks_when_a_point_is_added(void **state)
+{
+    (void)state;
+    enum { N = 20, M = 5 };
+    double F[N * M], G[N * M];
+    for (uint32_t seed = 0; seed < 20; seed++) {
+        sphere_points(seed, N, M, F);
+        for (size_t i = 0; i < N; i++)
+            memcpy(G + i * M, F + (N - 1 - i) * M, M * sizeof *F);
+        assert_close(exact(N, M, G, 1.1), exact(N, M, F, 1.1), 1e-12);
+        double last = 0.0;
+        for (size_t n = 1; n <= N; n++) {
+            const double now = exact(n, M, F, 1.1);
+            assert_true(now >= last * (1 - 1e-12));
+            last = now;
+        }
+    }
+}
+
+static void test_the_estimate_is_within_four_standard_errors_of_the_exact_hypervolume(void **state)
+{
+    (void)state;
+    enum { N = 25, M = 7 };
+    double F[N * M], lower[M] = {0}, reference[M];
+    for (size_t k = 0; k < M; k++)
+        reference[k] = 1.1;
+    Err err = {0};
+    for (uint32_t seed = 0; seed < 10; seed++) {
+        Hypervolume estimate;
+        sphere_points(seed, N, M, F);
+        CHECK_OK(hypervolume_estimate(N, M, F, lower, reference, 20000, seed, &estimate, &err), &err);
+        assert_true(estimate.standard_error > 0.0);
+        assert_true(fabs(estimate.volume - exact(N, M, F, 1.1)) < 4 * estimate.standard_error);
+    }
+}
+
+/* -- directions -------------------------------------------------------------------------------------------------------
+ */
+
+static void test_reference_directions_are_as_many_as_binomials_say_and_lie_on_the_simplex(void **state)
+{
+    (void)state;
+    const struct {
+        size_t m, outer, inner, n;
+    } cases[] = {{2, 4, 0, 5}, {3, 12, 0, 91}, {7, 3, 1, 84 + 7}, {8, 3, 2, 120 + 36}, {1, 1, 0, 1}};
+    for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {
+        const size_t m = cases[c].m;
+        Directions d;
+        Err err = {0};
+        CHECK_OK(directions_create(&d, m, cases[c].outer, cases[c].inner, &err), &err);
+        assert_int_equal(d.n, cases[c].n);
+        for (size_t i = 0; i < d.n; i++) {
+            double sum = 0.0;
+            for (size_t k = 0; k < m; k++) {
+                assert_true(d.W[i * m + k] >= 0.0);
+                sum += d.W[i * m + k];
+            }
+            assert_close(sum, 1.0, 1e-14);
+            for (size_t j = 0; j < i; j++)
+                assert_memory_not_equal(d.W + i * m, d.W + j * m, m * sizeof *d.W);
+        }
+        directions_free(&d);
+    }
+}
+
+static void test_directions_fill_the_population_asked_for(void **state)
+{
+    (void)state;
+    const size_t objectives[] = {2, 3, 5, 7, 10}, populations[] = {20, 92, 300};
+    for (size_t i = 0; i < 5; i++)
+        for (size_t j = 0; j < 3; j++) {
+            size_t outer, inner;
+            directions_choose(objectives[i], populations[j], &outer, &inner);
+            const size_t n = directions_count(objectives[i], outer, inner);
+            assert_true(n <= populations[j]);
+            assert_true(n >= objectives[i] && directions_count(objectives[i], outer + 1, 0) > populations[j]);
+        }
+}
+
+/* -- variation --------------------------------------------------------------------------------------------------------
+ */
+
+/* A pair that is far from its bounds is spread evenly to both sides, so the mean of the children is that of the
+ * parents; bounds one-sided would move it. */
+static void test_crossover_stays_in_bounds_and_keeps_the_mean_of_the_parents(void **state)
+{
+    (void)state;
+    enum { PAIRS = 20000 };
+    const double lower[] = {-5.0, 0.0, 2.0}, upper[] = {7.0, 1.0, 2.0};
+    const double mother[] = {0.0, 0.0, 2.0}, father[] = {2.0, 0.9, 2.0};
+    double sum = 0.0, a[3], b[3];
+    size_t moved = 0;
+    Random r = random_stream(1, RANDOM_TEST, 0, 0);
+    for (int i = 0; i < PAIRS; i++) {
+        crossover_sbx(&r, 3, lower, upper, 0.9, 2.0, mother, father, a, b);
+        for (size_t d = 0; d < 3; d++) {
+            assert_true(a[d] >= lower[d] && a[d] <= upper[d]);
+            assert_true(b[d] >= lower[d] && b[d] <= upper[d]);
+        }
+        sum += 0.5 * (a[0] + b[0]) / PAIRS;
+        moved += a[0] != mother[0];
+    }
+    assert_true(fabs(sum - 1.0) < 0.01);
+    assert_true(fabs((double)moved / PAIRS - 0.45) < 0.02);
+}
+
+static void test_mutation_stays_in_bounds_and_touches_the_wanted_share_of_variables(void **state)
+{
+    (void)state;
+    enum { TRIES = 20000 };
+    const double lower[] = {-5.0, 0.0, 2.0}, upper[] = {7.0, 1.0, 2.0};
+    Random r = random_stream(1, RANDOM_TEST, 0, 0);
+    size_t touched = 0;
+    double shift = 0.0;
+    for (int i = 0; i < TRIES; i++) {
+        double x[] = {1.0, 0.01, 2.0};
+        mutate_polynomial(&r, 3, lower, upper, 0.25, 20.0, x);
+        for (size_t d = 0; d < 3; d++)
+            assert_true(x[d] >= lower[d] && x[d] <= upper[d]);
+        touched += x[0] != 1.0;
+        shift += (x[0] - 1.0) / 12.0 / TRIES;
+    }
+    assert_true(fabs((double)touched / TRIES - 0.25) < 0.02);
+    assert_true(fabs(shift) < 1e-3);
+}
+
+static void test_a_latin_hypercube_has_one_sample_in_every_slice_of_every_variable(void **state)
+{
+    (void)state;
+    enum { N = 50, D = 6 };
+    double X[N * D];
+    size_t slices[N];
+    const double lower[D] = {-1, 0, 2, 5, -8, 0}, upper[D] = {1, 10, 4, 6, 8, 1e6};
+    latin_hypercube(3, 0, N, D, lower, upper, X, slices);
+    for (size_t d = 0; d < D; d++) {
+        size_t count[N] = {0};
+        for (size_t i = 0; i < N; i++)
+            count[(size_t)(N * (X[i * D + d] - lower[d]) / (upper[d] - lower[d]))]++;
+        for (size_t k = 0; k < N; k++)
+            assert_int_equal(count[k], 1);
+    }
+}
+
+/* -- survival ---------------------------------------------------------------------------------------------------------
+ */
+
+/* The intercepts of points on the plane f1/2 + f2/4 + f3/10 = 1 are 2, 4 and 10, also after a shift. */
+static void test_normalisation_finds_the_intercepts_of_a_plane(void **state)
+{
+    (void)state;
+    const double F[] = {12, 100, -5, 10, 104, -5, 10, 100, 5, 10.5, 101, 0};
+    const size_t list[] = {0, 1, 2, 3};
+    double ideal[3], width[3], plane[12];
+    Frame frame = {.n_obj = 3, .ideal = ideal, .width = width, .plane = plane};
+    frame_fit(&frame, 4, list, F);
+    assert_close(width[0], 2, 1e-9);
+    assert_close(width[1], 4, 1e-9);
+    assert_close(width[2], 10, 1e-9);
+    assert_close(ideal[2], -5, 1e-12);
+}
+
+static void test_survival_keeps_the_wanted_number_the_best_layers_and_the_corners_of_the_front(void **state)
+{
+    (void)state;
+    enum { N = 200, M = 3, KEEP = 40 };
+    double F[N * M];
+    size_t chosen[N], rank[N], scratch[3 * N];
+    size_t outer, inner;
+    Directions d;
+    Survival *s;
+    Err err = {0};
+    directions_choose(M, KEEP, &outer, &inner);
+    CHECK_OK(directions_create(&d, M, outer, inner, &err), &err);
+    CHECK_OK(survival_create(&s, N, &d, &err), &err);
+    for (uint32_t seed = 0; seed < 50; seed++) {
+        sphere_points(seed, N, M, F);
+        for (size_t i = 0; i < N; i++)
+            for (size_t k = 0; k < M; k++)
+                F[i * M + k] *= (i % 4 == 0 ? 2.0 : 1.0) * (k == 0 ? 1e4 : 1.0);
+        for (size_t k = 0; k < M; k++)
+            for (size_t j = 0; j < M; j++)
+                F[k * M + j] = j != k ? 0.0 : k == 0 ? 1e4 : 1.0;
+        Random random = random_stream(seed, RANDOM_NICHING, 0, 0);
+        const size_t n = survival_select(s, N, F, NULL, KEEP, &random, chosen);
+        assert_int_equal(n, KEEP);
+        assert_true(chosen[0] == 0 && chosen[1] == 1 && chosen[2] == 2);
+        nondominated_sort(N, M, F, NULL, rank, scratch);
+        size_t worst_kept = 0, best_left = N;
+        for (size_t i = 0, j = 0; i < N; i++) {
+            const int kept = j < n && chosen[j] == i;
+            j += (size_t)kept;
+            if (kept && rank[i] > worst_kept)
+                worst_kept = rank[i];
+            if (!kept && rank[i] < best_left)
+                best_left = rank[i];
+        }
+        assert_true(worst_kept <= best_left);
+    }
+    assert_int_equal(survival_select(s, 5, F, NULL, KEEP, &(Random){0}, chosen), 5);
+    survival_free(s);
+    directions_free(&d);
+}
+
+static void test_feasible_designs_survive_before_infeasible_ones(void **state)
+{
+    (void)state;
+    enum { N = 30, M = 2 };
+    double F[N * M], violation[N];
+    size_t chosen[N];
+    Directions d;
+    Survival *s;
+    Err err = {0};
+    CHECK_OK(directions_create(&d, M, 9, 0, &err), &err);
+    CHECK_OK(survival_create(&s, N, &d, &err), &err);
+    for (size_t i = 0; i < N; i++) { /* the infeasible ones would dominate */
+        F[i * M] = (double)i;
+        F[i * M + 1] = i < 20 ? -(double)i : 100.0 - (double)i;
+        violation[i] = i < 20 ? 1.0 + (double)i : 0.0;
+    }
+    assert_int_equal(survival_select(s, N, F, violation, 12, &(Random){0}, chosen), 12);
+    assert_int_equal(chosen[0], 0); /* the two least violating, then all ten feasible ones */
+    assert_int_equal(chosen[1], 1);
+    for (size_t i = 2; i < 12; i++)
+        assert_int_equal(chosen[i], 18 + i);
+    survival_free(s);
+    directions_free(&d);
+}
+
+/* -- archive and infill -----------------------------------------------------------------------------------------------
+ */
+
+static void test_front_flags_equal_a_brute_force_filter_after_every_insertion(void **state)
+{
+    (void)state;
+    enum { N = 80, M = 3 };
+    double F[N * M], G[N], X[N];
+    unsigned char ok[N];
+    Err err = {0};
+    for (uint32_t seed = 0; seed < 20; seed++) {
+        Archive a;
+        CHECK_OK(archive_init(&a, 3, 1, M, 1, &err), &err);
+        coarse_points(seed, N, M, F);
+        for (size_t i = 0; i < N; i++) {
+            X[i] = (double)i;
+            G[i] = i % 7 == 3 ? 0.5 : -1.0;
+            ok[i] = i % 10 != 4;
+        }
+        F[20 * M] = NAN; /* counts as failed */
+        for (size_t i = 0; i < N; i++) {
+            CHECK_OK(archive_insert(&a, 1, X + i, F + i * M, G + i, ok + i, 0, i, &err), &err);
+            size_t n_front = 0;
+            for (size_t j = 0; j <= i; j++) {
+                int wanted = ok[j] && G[j] <= 0.0 && j != 20;
+                for (size_t l = 0; l <= i && wanted; l++)
+                    wanted = !(ok[l] && G[l] <= 0.0 && l != 20 && dominates(M, F + l * M, F + j * M));
+                assert_int_equal(a.on_front[j], wanted);
+                n_front += (size_t)wanted;
+            }
+            assert_int_equal(a.n_front, n_front);
+        }
+        assert_int_equal(a.n_failed, 8 + 1);
+        assert_int_equal(archive_find(&a, X + 33), 33);
+        assert_int_equal(archive_find(&a, (const double[]){0.5}), N);
+        archive_free(&a);
+    }
+}
+
+static void test_a_batch_spreads_over_the_directions_instead_of_crowding(void **state)
+{
+    (void)state;
+    const double front[] = {2, 0, 0, 2, 1.5, 1.5};
+    const size_t rows[] = {0, 1, 2};
+    /* two twins near the middle, one smaller gain elsewhere, one without any gain, one that is infeasible */
+    const double offered[] = {0.5, 0.5, 0.5, 0.5, 1.6, 0.1, 3, 3, 0, 0};
+    const double violation[] = {0, 0, 0, 0, 1}, uncertainty[] = {0.1, 0.1, 0.1, 0.2, 0.3};
+    unsigned char allowed[] = {1, 1, 1, 1, 1};
+    Directions d;
+    Infill *q;
+    Err err = {0};
+    CHECK_OK(directions_create(&d, 2, 10, 0, &err), &err);
+    CHECK_OK(infill_create(&q, 5, &d, &err), &err);
+    infill_measure(q, 3, rows, front);
+    assert_true(infill_distance(q, front) == 0.0);
+    assert_true(infill_distance(q, offered + 6) > 0.0);
+    infill_offer(q, 5, offered, violation, uncertainty);
+    assert_int_equal(infill_pick(q, allowed), 0);
+    assert_int_equal(infill_pick(q, allowed), 2);
+    assert_int_equal(infill_pick(q, allowed), 3); /* the least certain of those without gain */
+    assert_int_equal(infill_pick(q, allowed), 1);
+    assert_int_equal(infill_pick(q, allowed), 4);
+    assert_true(infill_pick(q, allowed) == SIZE_MAX);
+    infill_free(q);
+    directions_free(&d);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_nondominated_sort_equals_peeling_by_definition),
+        cmocka_unit_test(test_hypervolume_of_boxes_and_of_a_known_union),
+        cmocka_unit_test(test_hypervolume_counts_the_cells_of_a_grid),
+        cmocka_unit_test(test_hypervolume_ignores_order_and_never_shrinks_when_a_point_is_added),
+        cmocka_unit_test(test_the_estimate_is_within_four_standard_errors_of_the_exact_hypervolume),
+        cmocka_unit_test(test_reference_directions_are_as_many_as_binomials_say_and_lie_on_the_simplex),
+        cmocka_unit_test(test_directions_fill_the_population_asked_for),
+        cmocka_unit_test(test_crossover_stays_in_bounds_and_keeps_the_mean_of_the_parents),
+        cmocka_unit_test(test_mutation_stays_in_bounds_and_touches_the_wanted_share_of_variables),
+        cmocka_unit_test(test_a_latin_hypercube_has_one_sample_in_every_slice_of_every_variable),
+        cmocka_unit_test(test_normalisation_finds_the_intercepts_of_a_plane),
+        cmocka_unit_test(test_survival_keeps_the_wanted_number_the_best_layers_and_the_corners_of_the_front),
+        cmocka_unit_test(test_feasible_designs_survive_before_infeasible_ones),
+        cmocka_unit_test(test_front_flags_equal_a_brute_force_filter_after_every_insertion),
+        cmocka_unit_test(test_a_batch_spreads_over_the_directions_instead_of_crowding),
+    };
+    return cmocka_run_group_tests_name("moga", tests, NULL, NULL);
+}

@@ -1,0 +1,196 @@
+#include <string.h>
+
+#include "base/random.h"
+#include "check.h"
+#include "rbf/rbf.h"
+
+enum { N = 60, D = 4, OUT = 2 };
+
+static double bowl(const double x[])
+{
+    return 3.0 + sin(3.0 * x[0]) * cos(2.0 * x[1]) + x[2] * x[2] - 0.5 * x[3];
+}
+
+static double plane(const double x[])
+{
+    return -2e5 + 3e4 * x[0] - 7e4 * x[1] + 1e4 * x[2] + 2e3 * x[3];
+}
+
+static void scatter(uint32_t seed, size_t n, double X[], double F[])
+{
+    Random r = random_stream(seed, RANDOM_TEST, 0, 0);
+    for (size_t i = 0; i < n; i++) {
+        for (size_t d = 0; d < D; d++)
+            X[i * D + d] = random_uniform(&r);
+        F[i * OUT] = bowl(X + i * D);
+        F[i * OUT + 1] = plane(X + i * D);
+    }
+}
+
+static Rbf *fitted(size_t n, const double X[], const double F[], int tune)
+{
+    Err err = {0};
+    Rbf *m;
+    CHECK_OK(rbf_create(&m, N, D, OUT, &err), &err);
+    CHECK_OK(rbf_fit(m, n, X, F, &err), &err);
+    if (tune)
+        CHECK_OK(rbf_tune(m, &err), &err);
+    return m;
+}
+
+static void test_the_surface_goes_through_its_data(void **state)
+{
+    (void)state;
+    double X[N * D], F[N * OUT], f[OUT];
+    scatter(1, N, X, F);
+    for (int tune = 0; tune < 2; tune++) {
+        Rbf *m = fitted(N, X, F, tune);
+        for (int i = 0; i < N; i++) {
+            rbf_eval(m, X + i * D, f, NULL);
+            assert_true(fabs(f[0] - F[i * OUT]) < 1e-4);
+        }
+        rbf_free(m);
+    }
+}
+
+static void test_linear_functions_are_reproduced_everywhere(void **state)
+{
+    (void)state;
+    double X[N * D], F[N * OUT], Y[N * D], wanted[N * OUT], f[OUT];
+    scatter(1, N, X, F);
+    scatter(2, N, Y, wanted);
+    Rbf *m = fitted(N, X, F, 0);
+    for (int i = 0; i < N; i++) {
+        rbf_eval(m, Y + i * D, f, NULL);
+        assert_close(f[1], wanted[i * OUT + 1], 1e-9);
+    }
+    assert_true(rbf_explained(m, 1) > 1 - 1e-12);
+    rbf_free(m);
+}
+
+static void test_tuning_lowers_the_error_at_unseen_points(void **state)
+{
+    (void)state;
+    double X[N * D], F[N * OUT], Y[N * D], wanted[N * OUT], f[OUT], square[2] = {0};
+    scatter(1, N, X, F);
+    scatter(2, N, Y, wanted);
+    for (int tune = 0; tune < 2; tune++) {
+        Rbf *m = fitted(N, X, F, tune);
+        for (int i = 0; i < N; i++) {
+            rbf_eval(m, Y + i * D, f, NULL);
+            square[tune] += (f[0] - wanted[i * OUT]) * (f[0] - wanted[i * OUT]) / N;
+        }
+        rbf_free(m);
+    }
+    assert_true(square[1] < square[0]);
+    assert_true(sqrt(square[1]) < 5e-3);
+}
+
+/* Every kernel, tail and nugget, against surfaces that were each fitted without one centre. Standardisation scales data
+ * and answer alike and the nugget is relative to the kernel, so leaving a centre out changes neither. */
+static void test_closed_form_leave_one_out_errors_equal_refits(void **state)
+{
+    (void)state;
+    enum { FEW = 30 };
+    double X[FEW * D], F[FEW * OUT], X1[FEW * D], F1[FEW * OUT], f[OUT];
+    scatter(3, FEW, X, F);
+    Err err = {0};
+    Rbf *all, *without;
+    CHECK_OK(rbf_create(&all, N, D, OUT, &err), &err);
+    CHECK_OK(rbf_create(&without, N, D, OUT, &err), &err);
+    for (int kernel = 0; kernel < RBF_N_KERNELS; kernel++)
+        for (int tail = 0; tail < RBF_N_TAILS; tail++)
+            for (int noisy = 0; noisy < 2; noisy++) {
+                const RbfForm form = {(RbfKernel)kernel, (RbfTail)tail, noisy ? 1e-2 : 1e-7};
+                const double theta[D] = {2.0, 1.0, 0.5, 0.7};
+                rbf_set_form(all, 0, form);
+                rbf_set_form(without, 0, form);
+                rbf_set_scales(all, 0, theta);
+                rbf_set_scales(without, 0, theta);
+                CHECK_OK(rbf_fit(all, FEW, X, F, &err), &err);
+                for (size_t out = 0; out < FEW; out += 7) {
+                    for (size_t i = 0, j = 0; i < FEW; i++) {
+                        if (i == out)
+                            continue;
+                        memcpy(X1 + j * D, X + i * D, D * sizeof *X);
+                        memcpy(F1 + j++ * OUT, F + i * OUT, OUT * sizeof *F);
+                    }
+                    CHECK_OK(rbf_fit(without, FEW - 1, X1, F1, &err), &err);
+                    rbf_eval(without, X + out * D, f, NULL);
+                    assert_true(fabs(rbf_leave_one_out(all, 0)[out] - (F[out * OUT] - f[0])) < 2e-6);
+                }
+            }
+    rbf_free(all);
+    rbf_free(without);
+}
+
+static void test_equal_designs_with_different_answers_are_averaged(void **state)
+{
+    (void)state;
+    double X[N * D], F[N * OUT], f[OUT];
+    scatter(4, N, X, F);
+    memcpy(X + D, X, D * sizeof *X);
+    F[OUT] = F[0] + 0.2;
+    Rbf *m = fitted(N, X, F, 1);
+    rbf_eval(m, X, f, NULL);
+    assert_true(fabs(f[0] - (F[0] + 0.1)) < 0.08);
+    rbf_free(m);
+}
+
+static void test_the_error_estimate_is_of_the_size_of_the_true_error(void **state)
+{
+    (void)state;
+    double X[N * D], F[N * OUT], Y[N * D], wanted[N * OUT], f[OUT], e[OUT], square = 0, estimate = 0;
+    scatter(1, N, X, F);
+    scatter(2, N, Y, wanted);
+    Rbf *m = fitted(N, X, F, 0);
+    for (int i = 0; i < N; i++) {
+        rbf_eval(m, Y + i * D, f, e);
+        square += (f[0] - wanted[i * OUT]) * (f[0] - wanted[i * OUT]);
+        estimate += e[0] * e[0];
+    }
+    assert_true(estimate > square / 4 && estimate < square * 9);
+    rbf_free(m);
+}
+
+static void test_a_constant_output_is_predicted_without_error(void **state)
+{
+    (void)state;
+    double X[N * D], F[N * OUT], f[OUT], e[OUT];
+    scatter(1, N, X, F);
+    for (int i = 0; i < N; i++)
+        F[i * OUT] = 4.0;
+    Rbf *m = fitted(N, X, F, 1);
+    rbf_eval(m, (const double[D]){0.1, 0.9, 0.4, 0.2}, f, e);
+    assert_close(f[0], 4.0, 1e-12);
+    assert_true(e[0] < 1e-12);
+    rbf_free(m);
+}
+
+static void test_a_value_that_is_not_finite_is_refused(void **state)
+{
+    (void)state;
+    double X[N * D], F[N * OUT];
+    scatter(1, N, X, F);
+    F[17 * OUT] = NAN;
+    Err err = {0};
+    Rbf *m;
+    CHECK_OK(rbf_create(&m, N, D, OUT, &err), &err);
+    assert_int_equal(rbf_fit(m, N, X, F, &err), STATUS_BAD_DATA);
+    rbf_free(m);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_the_surface_goes_through_its_data),
+        cmocka_unit_test(test_linear_functions_are_reproduced_everywhere),
+        cmocka_unit_test(test_tuning_lowers_the_error_at_unseen_points),
+        cmocka_unit_test(test_closed_form_leave_one_out_errors_equal_refits),
+        cmocka_unit_test(test_equal_designs_with_different_answers_are_averaged),
+        cmocka_unit_test(test_the_error_estimate_is_of_the_size_of_the_true_error),
+        cmocka_unit_test(test_a_constant_output_is_predicted_without_error),
+        cmocka_unit_test(test_a_value_that_is_not_finite_is_refused),
+    };
+    return cmocka_run_group_tests_name("rbf", tests, NULL, NULL);
+}

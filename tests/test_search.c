@@ -1,0 +1,429 @@
+#include <stdlib.h>
+#include <string.h>
+
+#include <cblas.h>
+#include <omp.h>
+
+#include "base/random.h"
+#include "check.h"
+#include "moga/dominance.h"
+#include "moga/hypervolume.h"
+#include "moga/search.h"
+#include "moga/variation.h"
+
+enum { VAR_MAX = 22, OBJ_MAX = 7, ROWS_MAX = 600 };
+
+/* A textbook problem with everything that a test wants to see or to break. */
+typedef struct {
+    Problem problem;
+    double lower[VAR_MAX], upper[VAR_MAX];
+    int fail_share_percent, all_alike_noise;
+    size_t n_calls, n_rows, n_repeated;
+    double seen[ROWS_MAX][VAR_MAX];
+} World;
+
+/* The last view of a search, copied out. */
+typedef struct {
+    size_t n, n_front, n_failed, views, stop_at_view, predicted, last_generation;
+    double X[ROWS_MAX * VAR_MAX], F[ROWS_MAX * OBJ_MAX], G[ROWS_MAX], error;
+    unsigned char ok[ROWS_MAX], on_front[ROWS_MAX], kind[ROWS_MAX];
+    size_t generation[ROWS_MAX];
+} Seen;
+
+/* Deb, Thiele, Laumanns and Zumbler, CEC 2002: the front is the positive part of the unit sphere,
+ * sum f^2 = (1 + g)^2, g = sum over the last variables of (x - 1/2)^2. */
+static void dtlz2(size_t n_var, size_t m, const double x[], double f[])
+{
+    double g = 0.0;
+    for (size_t d = m - 1; d < n_var; d++)
+        g += (x[d] - 0.5) * (x[d] - 0.5);
+    for (size_t k = 0; k < m; k++) {
+        f[k] = 1.0 + g;
+        for (size_t d = 0; d + k + 1 < m; d++)
+            f[k] *= cos(x[d] * M_PI_2);
+        if (k > 0)
+            f[k] *= sin(x[m - 1 - k] * M_PI_2);
+    }
+}
+
+static uint32_t bits_of(const double x[])
+{
+    uint64_t bits;
+    memcpy(&bits, x, sizeof bits);
+    return (uint32_t)(bits ^ bits >> 32);
+}
+
+static Status evaluate(size_t n, const double X[], double F[], double G[], unsigned char ok[], void *user, Err *err)
+{
+    (void)err;
+    World *w = user;
+    const size_t n_var = w->problem.n_var, m = w->problem.n_obj;
+    w->n_calls++;
+    for (size_t i = 0; i < n; i++) {
+        const double *x = X + i * n_var;
+        Random chance = random_stream(bits_of(x), RANDOM_TEST, 0, 0);
+        for (size_t j = 0; j < w->n_rows; j++)
+            w->n_repeated += memcmp(w->seen[j], x, n_var * sizeof *x) == 0;
+        memcpy(w->seen[w->n_rows++], x, n_var * sizeof *x);
+        dtlz2(n_var, m, x, F + i * m);
+        for (size_t k = 0; w->all_alike_noise && k < m; k++)
+            F[i * m + k] = random_normal(&chance);
+        ok[i] = random_below(&chance, 100) >= (size_t)w->fail_share_percent;
+        if (!ok[i])
+            for (size_t k = 0; k < m; k++)
+                F[i * m + k] = -1e9; /* would dominate everything */
+        if (w->problem.n_con > 0)
+            G[i] = 0.3 - x[0];
+    }
+    return STATUS_OK;
+}
+
+static void world(World *w, size_t n_var, size_t n_obj)
+{
+    memset(w, 0, sizeof *w);
+    for (size_t d = 0; d < n_var; d++)
+        w->upper[d] = 1.0;
+    w->problem = (Problem){n_var, n_obj, 0, w->lower, w->upper, evaluate, NULL, w};
+}
+
+static SearchConfig config(size_t initial, size_t max_evals)
+{
+    return (SearchConfig){.seed = 1,
+                          .population = 48,
+                          .initial = initial,
+                          .generations = 200,
+                          .max_evals = max_evals,
+                          .surrogate_max = 200,
+                          .nondominated_share = 1,
+                          .trust_error = 0.05,
+                          .crossover_probability = 1,
+                          .crossover_eta = 20,
+                          .mutation_eta = 20,
+                          .mutation_rate = 1};
+}
+
+static int observe(const SearchView *v, void *user)
+{
+    Seen *s = user;
+    s->n = v->n;
+    s->n_front = v->n_front;
+    s->n_failed = v->n_failed;
+    s->predicted += v->n_predicted;
+    s->error = v->surrogate_error;
+    s->last_generation = v->generation_now;
+    memcpy(s->X, v->X, v->n * v->n_var * sizeof *v->X);
+    memcpy(s->F, v->F, v->n * v->n_obj * sizeof *v->F);
+    memcpy(s->G, v->G, v->n * v->n_con * sizeof *v->G);
+    memcpy(s->ok, v->ok, v->n);
+    memcpy(s->kind, v->kind, v->n);
+    memcpy(s->on_front, v->on_front, v->n);
+    memcpy(s->generation, v->generation, v->n * sizeof *v->generation);
+    return ++s->views == s->stop_at_view;
+}
+
+static StopReason run(World *w, const SearchConfig *c, Seen *seen)
+{
+    Err err = {0};
+    StopReason reason = STOP_NONE;
+    CHECK_OK(search_run(&w->problem, c, observe, seen, &reason, &err), &err);
+    assert_int_equal(seen->n, w->n_rows);
+    assert_int_equal(w->n_repeated, 0);
+    assert_true(seen->n <= c->max_evals);
+    return reason;
+}
+
+static double volume(size_t n, size_t m, const double F[])
+{
+    double lower[OBJ_MAX] = {0}, reference[OBJ_MAX];
+    for (size_t k = 0; k < m; k++)
+        reference[k] = 1.5;
+    Hypervolume hv;
+    Err err = {0};
+    CHECK_OK(hypervolume(n, m, F, lower, reference, 1, &hv, &err), &err);
+    return hv.volume;
+}
+
+static double volume_of_hypercube(const World *w, size_t n)
+{
+    const size_t n_var = w->problem.n_var, m = w->problem.n_obj;
+    double X[ROWS_MAX * VAR_MAX], F[ROWS_MAX * OBJ_MAX];
+    size_t slices[ROWS_MAX];
+    latin_hypercube(1, 0, n, n_var, w->lower, w->upper, X, slices);
+    for (size_t i = 0; i < n; i++)
+        dtlz2(n_var, m, X + i * n_var, F + i * m);
+    return volume(n, m, F);
+}
+
+static World here;
+static Seen seen, again;
+
+static int fresh(void **state)
+{
+    (void)state;
+    openblas_set_num_threads(1);
+    memset(&seen, 0, sizeof seen);
+    memset(&again, 0, sizeof again);
+    return 0;
+}
+
+static void test_three_objectives_beat_a_latin_hypercube_of_the_same_size(void **state)
+{
+    (void)state;
+    world(&here, 8, 3);
+    const SearchConfig c = config(40, 120);
+    assert_int_equal(run(&here, &c, &seen), STOP_EVALUATIONS);
+    assert_int_equal(seen.n, 120);
+    /* the whole front would give 1.5^3 - pi/6; the sample reaches half of what the search does */
+    assert_true(volume(seen.n, 3, seen.F) > 0.9 * (3.375 - M_PI / 6));
+    assert_true(volume(seen.n, 3, seen.F) > 1.3 * volume_of_hypercube(&here, 120));
+}
+
+static void test_seven_objectives_beat_a_latin_hypercube_of_the_same_size(void **state)
+{
+    (void)state;
+    world(&here, 22, 7);
+    const SearchConfig c = config(120, 240);
+    assert_int_equal(run(&here, &c, &seen), STOP_EVALUATIONS);
+    assert_true(volume(seen.n, 7, seen.F) > 3 * volume_of_hypercube(&here, 240));
+    for (size_t i = 0; i < seen.n; i++) {
+        assert_int_equal(seen.kind[i], i < 120 ? KIND_SAMPLED : KIND_INFILL);
+        assert_true(i == 0 || seen.generation[i] >= seen.generation[i - 1]);
+    }
+    assert_true(seen.error > 0.0 && seen.error < 0.05);
+}
+
+static void test_the_same_seed_gives_the_same_bytes_at_any_thread_count(void **state)
+{
+    (void)state;
+    const int threads = omp_get_max_threads();
+    const SearchConfig c = config(50, 120);
+    omp_set_num_threads(1);
+    world(&here, 10, 4);
+    run(&here, &c, &seen);
+    omp_set_num_threads(3);
+    world(&here, 10, 4);
+    run(&here, &c, &again);
+    omp_set_num_threads(threads);
+    assert_memory_equal(&seen, &again, sizeof seen);
+
+    SearchConfig other = c;
+    other.seed = 2;
+    world(&here, 10, 4);
+    memset(&again, 0, sizeof again);
+    run(&here, &other, &again);
+    assert_memory_not_equal(seen.X, again.X, sizeof seen.X);
+}
+
+static void test_front_flags_equal_a_brute_force_filter(void **state)
+{
+    (void)state;
+    world(&here, 10, 4);
+    const SearchConfig c = config(50, 150);
+    run(&here, &c, &seen);
+    for (size_t i = 0; i < seen.n; i++) {
+        int dominated = 0;
+        for (size_t j = 0; j < seen.n; j++)
+            dominated |= dominates(4, seen.F + j * 4, seen.F + i * 4);
+        assert_int_equal(seen.on_front[i], !dominated);
+    }
+}
+
+static void test_failed_simulations_never_reach_the_front(void **state)
+{
+    (void)state;
+    world(&here, 8, 3);
+    here.fail_share_percent = 10;
+    const SearchConfig c = config(40, 160);
+    assert_int_equal(run(&here, &c, &seen), STOP_EVALUATIONS);
+    size_t failed = 0;
+    for (size_t i = 0; i < seen.n; i++) {
+        failed += !seen.ok[i];
+        assert_true(seen.ok[i] || !seen.on_front[i]);
+    }
+    assert_int_equal(failed, seen.n_failed);
+    assert_true(failed > 4 && failed < 40);
+    assert_true(seen.n_front > 20);
+}
+
+static void test_a_world_where_everything_fails_ends_with_an_empty_front(void **state)
+{
+    (void)state;
+    world(&here, 8, 3);
+    here.fail_share_percent = 100;
+    const SearchConfig c = config(40, 130);
+    assert_int_equal(run(&here, &c, &seen), STOP_EVALUATIONS);
+    assert_int_equal(seen.n_failed, 130);
+    assert_int_equal(seen.n_front, 0);
+}
+
+static void test_constraints_hold_on_the_front(void **state)
+{
+    (void)state;
+    world(&here, 8, 3);
+    here.problem.n_con = 1;
+    const SearchConfig c = config(40, 120);
+    run(&here, &c, &seen);
+    size_t feasible = 0;
+    for (size_t i = 0; i < seen.n; i++) {
+        assert_close(seen.G[i] + 1.0, 1.3 - seen.X[i * 8], 1e-12);
+        assert_true(!seen.on_front[i] || seen.G[i] <= 0.0);
+        feasible += i >= 40 && seen.G[i] <= 0.0;
+    }
+    assert_true(feasible > 60); /* of 80: the search knows where not to look */
+}
+
+static void test_a_start_without_a_feasible_design_finds_the_feasible_region(void **state)
+{
+    (void)state;
+    world(&here, 8, 3);
+    here.problem.n_con = 1;
+    here.upper[0] = 0.31; /* feasible: x0 >= 0.3, one thirtieth of the box */
+    const SearchConfig c = config(10, 60);
+    run(&here, &c, &seen);
+    assert_true(seen.n_front > 5);
+}
+
+static void first_not_below_second(double x[], void *user)
+{
+    (void)user;
+    if (x[0] < x[1])
+        x[0] = x[1];
+}
+
+static void test_repaired_and_frozen_variables_are_respected(void **state)
+{
+    (void)state;
+    world(&here, 8, 3);
+    here.problem.repair = first_not_below_second;
+    here.lower[5] = here.upper[5] = 0.25;
+    const SearchConfig c = config(30, 90);
+    run(&here, &c, &seen);
+    for (size_t i = 0; i < seen.n; i++) {
+        assert_true(seen.X[i * 8] >= seen.X[i * 8 + 1]);
+        assert_true(seen.X[i * 8 + 5] == 0.25);
+    }
+}
+
+static void test_no_budget_is_ever_exceeded(void **state)
+{
+    (void)state;
+    const size_t budgets[] = {1, 7, 40, 41, 53};
+    for (size_t i = 0; i < sizeof budgets / sizeof budgets[0]; i++) {
+        world(&here, 6, 2);
+        const SearchConfig c = config(40, budgets[i]);
+        assert_int_equal(run(&here, &c, &seen), STOP_EVALUATIONS);
+        assert_int_equal(seen.n, budgets[i]);
+    }
+}
+
+static void test_every_way_to_stop_is_named(void **state)
+{
+    (void)state;
+    SearchConfig c = config(40, 500);
+    c.generations = 3;
+    world(&here, 6, 2);
+    assert_int_equal(run(&here, &c, &seen), STOP_GENERATIONS);
+    assert_int_equal(seen.last_generation, 3);
+    assert_int_equal(here.n_calls, 4); /* one call for each batch */
+
+    c.nondominated_share = 0.01;
+    world(&here, 6, 2);
+    assert_int_equal(run(&here, &c, &seen), STOP_SHARE);
+    c.nondominated_share = 1.0;
+
+    fresh(NULL);
+    seen.stop_at_view = 2;
+    world(&here, 6, 2);
+    assert_int_equal(run(&here, &c, &seen), STOP_ASKED);
+    assert_int_equal(seen.last_generation, 1);
+
+    c.max_seconds = 1e-9;
+    world(&here, 6, 2);
+    assert_int_equal(run(&here, &c, &seen), STOP_TIME);
+    for (int reason = STOP_NONE; reason <= STOP_ASKED; reason++)
+        assert_true(strlen(stop_reason_words((StopReason)reason)) > 5);
+}
+
+/* With an error limit that nothing exceeds all predictions stand, and still a few are checked in each generation. */
+static void test_a_search_that_trusts_everything_still_simulates_a_few(void **state)
+{
+    (void)state;
+    world(&here, 8, 3);
+    SearchConfig c = config(40, 400);
+    c.trust_error = 10;
+    c.generations = 12;
+    assert_int_equal(run(&here, &c, &seen), STOP_GENERATIONS);
+    assert_true(seen.predicted > 12 * 5);
+    for (size_t g = 1; g <= 12; g++) {
+        size_t simulated = 0;
+        for (size_t i = 0; i < seen.n; i++)
+            simulated += seen.generation[i] == g;
+        assert_true(simulated >= 1);
+    }
+    const size_t all = seen.n;
+    c.trust_error = 0;
+    world(&here, 8, 3);
+    fresh(NULL);
+    run(&here, &c, &seen);
+    assert_int_equal(seen.predicted, 0);
+    assert_true(seen.n >= all);
+}
+
+static void test_answers_without_any_pattern_fall_back_to_plain_offspring(void **state)
+{
+    (void)state;
+    world(&here, 8, 3);
+    here.all_alike_noise = 1;
+    const SearchConfig c = config(60, 150);
+    assert_int_equal(run(&here, &c, &seen), STOP_EVALUATIONS);
+    assert_int_equal(seen.predicted, 0);
+    assert_true(seen.error > 0.05);
+}
+
+static void test_an_archive_beyond_the_surface_s_size_is_thinned(void **state)
+{
+    (void)state;
+    world(&here, 8, 3);
+    SearchConfig c = config(40, 200);
+    c.surrogate_max = 60;
+    assert_int_equal(run(&here, &c, &seen), STOP_EVALUATIONS);
+    assert_true(volume(seen.n, 3, seen.F) > 0.9 * (3.375 - M_PI / 6));
+}
+
+static void test_settings_that_make_no_sense_are_refused_by_name(void **state)
+{
+    (void)state;
+    Err err = {0};
+    StopReason reason;
+    world(&here, 6, 2);
+    SearchConfig c = config(40, 50);
+    c.population = 2;
+    assert_int_equal(search_run(&here.problem, &c, NULL, NULL, &reason, &err), STATUS_BAD_DATA);
+    assert_non_null(strstr(err.text, "population"));
+    c = config(40, 50);
+    here.lower[3] = 2.0;
+    assert_int_equal(search_run(&here.problem, &c, NULL, NULL, &reason, &err), STATUS_BAD_DATA);
+    assert_non_null(strstr(err.text, "variable 4"));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup(test_three_objectives_beat_a_latin_hypercube_of_the_same_size, fresh),
+        cmocka_unit_test_setup(test_seven_objectives_beat_a_latin_hypercube_of_the_same_size, fresh),
+        cmocka_unit_test_setup(test_the_same_seed_gives_the_same_bytes_at_any_thread_count, fresh),
+        cmocka_unit_test_setup(test_front_flags_equal_a_brute_force_filter, fresh),
+        cmocka_unit_test_setup(test_failed_simulations_never_reach_the_front, fresh),
+        cmocka_unit_test_setup(test_a_world_where_everything_fails_ends_with_an_empty_front, fresh),
+        cmocka_unit_test_setup(test_constraints_hold_on_the_front, fresh),
+        cmocka_unit_test_setup(test_a_start_without_a_feasible_design_finds_the_feasible_region, fresh),
+        cmocka_unit_test_setup(test_repaired_and_frozen_variables_are_respected, fresh),
+        cmocka_unit_test_setup(test_no_budget_is_ever_exceeded, fresh),
+        cmocka_unit_test_setup(test_every_way_to_stop_is_named, fresh),
+        cmocka_unit_test_setup(test_a_search_that_trusts_everything_still_simulates_a_few, fresh),
+        cmocka_unit_test_setup(test_answers_without_any_pattern_fall_back_to_plain_offspring, fresh),
+        cmocka_unit_test_setup(test_an_archive_beyond_the_surface_s_size_is_thinned, fresh),
+        cmocka_unit_test_setup(test_settings_that_make_no_sense_are_refused_by_name, fresh),
+    };
+    return cmocka_run_group_tests_name("search", tests, NULL, NULL);
+}
