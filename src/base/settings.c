@@ -1,5 +1,6 @@
 #include "base/settings.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <float.h>
 #include <ini.h>
@@ -38,10 +39,10 @@ static const Option OPTIONS[] = {
     {"core.damping", "-", REAL, AT(core.damping), "0.03", 0, 10, NULL, "damping ratio of every core mode"},
     {"core.youngs_modulus_pa", "Pa", REAL, AT(core.youngs_modulus_pa), "2.1e11", 1, 1e14, NULL, "of the core's steel"},
     {"core.density_kg_m3", "kg/m3", REAL, AT(core.density_kg_m3), "7850", 1, 1e5, NULL, "of the core's steel"},
-    {"core.area_base_m2", "m2", REAL, AT(core.area_base_m2), "1.567", 1e-9, 1e4, NULL, "effective: first storey"},
-    {"core.area_top_m2", "m2", REAL, AT(core.area_top_m2), "0.811", 1e-9, 1e4, NULL, "effective: last storey"},
-    {"core.inertia_base_m4", "m4", REAL, AT(core.inertia_base_m4), "25.62", 1e-9, 1e6, NULL, "effective: first storey"},
-    {"core.inertia_top_m4", "m4", REAL, AT(core.inertia_top_m4), "24.05", 1e-9, 1e6, NULL, "effective: last storey"},
+    {"core.area_base_m2", "m2", REAL, AT(core.area_base_m2), "1.5671", 1e-9, 1e4, NULL, "effective: first storey"},
+    {"core.area_top_m2", "m2", REAL, AT(core.area_top_m2), "0.81086", 1e-9, 1e4, NULL, "effective: last storey"},
+    {"core.inertia_base_m4", "m4", REAL, AT(core.inertia_base_m4), "25.615", 1e-9, 1e6, NULL, "effective: first storey"},
+    {"core.inertia_top_m4", "m4", REAL, AT(core.inertia_top_m4), "24.0546", 1e-9, 1e6, NULL, "effective: last storey"},
 
     {"contact.law", "-", CHOICE, AT(contact.law), "paper", 0, 0, "paper|exact",
      "paper: a = 1.5 (1 - r); exact: a chosen so that an isolated impact rebounds with r"},
@@ -49,8 +50,7 @@ static const Option OPTIONS[] = {
     {"contact.v0_floor_m_s", "m/s", REAL, AT(contact.v0_floor_m_s), "1e-3", 1e-12, 10, NULL,
      "least approach speed that the contact law is given"},
     {"contact.radius_m", "m", REAL, AT(contact.radius_m), "0.1", 1e-6, 1e3, NULL, "radius of the contacting body"},
-    {"contact.youngs_modulus_pa", "Pa", REAL, AT(contact.youngs_modulus_pa), "2.1e11", 1, 1e14, NULL,
-     "of both bodies"},
+    {"contact.youngs_modulus_pa", "Pa", REAL, AT(contact.youngs_modulus_pa), "2.1e11", 1, 1e14, NULL, "of both bodies"},
     {"contact.poisson", "-", REAL, AT(contact.poisson), "0.3", 0, 0.5, NULL, "Poisson's ratio of both bodies"},
 
     {"motion.record", "-", TEXT, AT(motion.record), "builtin:kobe-like", 0, 0, NULL,
@@ -64,7 +64,7 @@ static const Option OPTIONS[] = {
      "fast: exact modal flow with resolved contacts; cvode: SUNDIALS with roots, slow, for trust"},
     {"sim.accuracy", "-", CHOICE, AT(sim.accuracy), "standard", 0, 0, "coarse|standard|fine", "steps per contact"},
     {"sim.duration_s", "s", REAL, AT(sim.duration_s), "0", 0, 1e6, NULL, "stop here; 0: at the end of the motion"},
-    {"sim.residual_max", "-", REAL, AT(sim.residual_max), "0.01", 1e-12, 1, NULL,
+    {"sim.residual_max", "-", REAL, AT(sim.residual_max), "0.001", 1e-12, 1, NULL,
      "a run whose energy books are open by more than this share of the input is refined, then failed"},
 
     {"design.gap_min_m", "m", REAL, AT(design.gap_min_m), "0.001", 0, 10, NULL, "search box: least gap"},
@@ -77,7 +77,8 @@ static const Option OPTIONS[] = {
     {"search.seed", "-", WHOLE, AT(search.seed), "1", 0, 4294967295.0, NULL, "same seed and settings: same bytes"},
     {"search.threads", "-", WHOLE, AT(search.threads), "0", 0, 1024, NULL, "0: one per processor"},
     {"search.population", "-", WHOLE, AT(search.population), "92", 4, 100000, NULL, "designs per generation"},
-    {"search.initial", "-", WHOLE, AT(search.initial), "184", 4, 1000000, NULL, "designs of the Latin hypercube start"},
+    {"search.initial", "-", WHOLE, AT(search.initial), "184", 4, 1000000, NULL,
+     "designs of the Latin hypercube start, no more than max_evals"},
     {"search.generations", "-", WHOLE, AT(search.generations), "1000", 1, 1e9, NULL, "stop after so many"},
     {"search.max_evals", "-", WHOLE, AT(search.max_evals), "2000", 4, 1e9, NULL, "stop after so many simulations"},
     {"search.max_hours", "h", REAL, AT(search.max_hours), "0", 0, 1e4, NULL, "stop after so long; 0: no limit"},
@@ -168,6 +169,11 @@ static Status assign(Settings *s, const Option *o, const char *value, Err *err)
             return fail(err, STATUS_BAD_DATA, "%s: is empty", o->key);
         if (strlen(value) >= SETTINGS_TEXT_MAX)
             return fail(err, STATUS_BAD_DATA, "%s: is longer than %d characters", o->key, SETTINGS_TEXT_MAX - 1);
+        if (strpbrk(value, "\r\n") || strstr(value, " ;") || isspace((unsigned char)value[0]) ||
+            isspace((unsigned char)value[strlen(value) - 1]))
+            return fail(err, STATUS_BAD_DATA,
+                        "%s: '%.60s' cannot be kept in a settings file (line ends, ' ;', blanks around it)", o->key,
+                        value);
         snprintf(field_of(s, o), SETTINGS_TEXT_MAX, "%s", value);
         return STATUS_OK;
     }
@@ -198,7 +204,7 @@ static Status find_option(const char *key, const Option **found, Err *err)
 
 static Status set_key(Settings *s, const char *key, const char *value, Err *err)
 {
-    const Option *o;
+    const Option *o = NULL;
     TRY(find_option(key, &o, err));
     return assign(s, o, value, err);
 }
@@ -208,8 +214,11 @@ typedef struct {
     const char *path;
     FILE *faults;
     FILE *file;
+    char *text; /* the line at hand, whole */
+    size_t capacity;
+    const char *long_value; /* in text: what did not fit into the library's line */
     int n_faults, line;
-    unsigned char seen[N_OPTIONS];
+    int seen[N_OPTIONS]; /* the line that set it, 0: none */
     Err *first;
 } Reading;
 
@@ -233,39 +242,116 @@ static void anchor_path(const Reading *r, char path[SETTINGS_TEXT_MAX])
         memcpy(path, anchored, strlen(anchored) + 1);
 }
 
-/* Counts lines for the messages, and refuses what the library would cut in two without a word. */
+/* Stands for a value that waits in long_value; no settings file holds this byte. */
+static const char ELSEWHERE[] = "\x01";
+
+/* The library takes lines of `size` - 1 bytes, too few for a long path: such a value waits in long_value. */
+static void hand_over(Reading *r, char *text, char *line, int size)
+{
+    r->long_value = NULL;
+    if (strlen(text) < (size_t)size) {
+        memcpy(line, text, strlen(text) + 1);
+        return;
+    }
+    char *equals = strchr(text, '=');
+    char *note = strstr(text, " ;");
+    if (text[0] == ';' || text[0] == '#') {
+        line[0] = 0;
+    } else if (!equals || equals - text + 4 > size) {
+        report_fault(r, r->line, "the line is too long");
+        line[0] = 0;
+    } else {
+        if (note)
+            *note = 0;
+        r->long_value = equals + 1 + strspn(equals + 1, " \t");
+        snprintf(line, (size_t)size, "%.*s%s", (int)(equals + 1 - text), text, ELSEWHERE);
+    }
+}
+
+/* Counts lines for the messages and refuses what the library would skip or join without a word: it reports its first
+ * bad line only, and takes an indented line for a continuation of the one above. */
 static char *next_line(char *line, int size, void *user)
 {
     Reading *r = user;
-    if (!fgets(line, size, r->file))
+    const ssize_t n = getline(&r->text, &r->capacity, r->file);
+    if (n < 0)
         return NULL;
     r->line++;
-    const size_t length = strlen(line);
-    if (length + 1 == (size_t)size && line[length - 1] != '\n')
-        report_fault(r, r->line, "the line is too long");
+    line[0] = 0;
+    char *text = r->text;
+    const int has_nul = strlen(text) != (size_t)n;
+    if (r->line == 1 && strncmp(text, "\xEF\xBB\xBF", 3) == 0)
+        text += 3;
+    text += strspn(text, " \t");
+    for (char *end = text + strlen(text); end > text && isspace((unsigned char)end[-1]);)
+        *--end = 0;
+    if (has_nul)
+        report_fault(r, r->line, "holds a NUL byte; this is not a settings file");
+    else if (strchr(";#", text[0]) || (text[0] == '[' && strchr(text, ']')) || strchr(text, '='))
+        hand_over(r, text, line, size);
+    else
+        report_fault(r, r->line, "neither [section] nor key = value");
     return line;
 }
 
 static int take_pair(void *user, const char *section, const char *name, const char *value)
 {
     Reading *r = user;
-    const int line = r->line;
     char key[128];
     Err err = {0};
-    const Option *o;
+    const Option *o = NULL;
+    if (strcmp(value, ELSEWHERE) == 0 && r->long_value)
+        value = r->long_value;
     snprintf(key, sizeof key, "%s%s%s", section, section[0] ? "." : "", name);
     if (find_option(key, &o, &err) != STATUS_OK || assign(r->s, o, value, &err) != STATUS_OK) {
-        report_fault(r, line, err.text);
+        report_fault(r, r->line, err.text);
         return 1;
     }
-    if (r->seen[o - OPTIONS]++) {
-        snprintf(err.text, sizeof err.text, "%s: is set twice; remove one of the two lines", key);
-        report_fault(r, line, err.text);
+    int *seen = &r->seen[o - OPTIONS];
+    if (*seen) {
+        fail(&err, STATUS_BAD_DATA, "%s: was set in line %d already; remove one of the two", key, *seen);
+        report_fault(r, r->line, err.text);
     }
-    const int is_model_name = o->offset == AT(building.model) && (!strcmp(value, "guyan") || !strcmp(value, "appendix"));
+    *seen = r->line;
+    const int is_model_name =
+        o->offset == AT(building.model) && (!strcmp(value, "guyan") || !strcmp(value, "appendix"));
     if (o->offset == AT(motion.record) || (o->offset == AT(building.model) && !is_model_name))
         anchor_path(r, field_of(r->s, o));
     return 1;
+}
+
+/* The rules that tie settings together: each broken one is handed to `broken` with the fields it ties. */
+typedef void (*BrokenFn)(const size_t fields[3], const char *text, void *user);
+
+static void check_rules(const Settings *s, BrokenFn broken, void *user)
+{
+    Err e;
+    if (s->design.gap_min_m >= s->design.gap_max_m) {
+        fail(&e, STATUS_BAD_DATA, "design.gap_min_m: %g must be below design.gap_max_m = %g", s->design.gap_min_m,
+             s->design.gap_max_m);
+        broken((size_t[]){AT(design.gap_min_m), AT(design.gap_max_m), AT(design.gap_max_m)}, e.text, user);
+    }
+    if (s->design.thickness_min_m >= s->design.thickness_max_m) {
+        fail(&e, STATUS_BAD_DATA, "design.thickness_min_m: %g must be below design.thickness_max_m = %g",
+             s->design.thickness_min_m, s->design.thickness_max_m);
+        broken((size_t[]){AT(design.thickness_min_m), AT(design.thickness_max_m), AT(design.thickness_max_m)}, e.text,
+               user);
+    }
+    if (s->core.section == CORE_BOX && 2 * s->design.thickness_max_m > s->core.side_m) {
+        fail(&e, STATUS_BAD_DATA, "design.thickness_max_m: two walls of %g m do not fit into core.side_m = %g",
+             s->design.thickness_max_m, s->core.side_m);
+        broken((size_t[]){AT(design.thickness_max_m), AT(core.side_m), AT(core.section)}, e.text, user);
+    }
+}
+
+static void report_broken(const size_t fields[3], const char *text, void *user)
+{
+    Reading *r = user;
+    int line = 0;
+    for (int k = 0; k < 3 && !line; k++)
+        for (int i = 0; i < N_OPTIONS && !line; i++)
+            line = OPTIONS[i].offset == fields[k] ? r->seen[i] : 0;
+    report_fault(r, line, text);
 }
 
 Status settings_read(Settings *s, const char *path, FILE *faults, int *n_faults, Err *err)
@@ -277,13 +363,12 @@ Status settings_read(Settings *s, const char *path, FILE *faults, int *n_faults,
     const int bad_line = ini_parse_stream(next_line, &r, take_pair, &r);
     const int read_error = ferror(r.file);
     fclose(r.file);
+    free(r.text);
     if (read_error)
         return fail(err, STATUS_MISSING, "%s: cannot be read (is it a folder?)", path);
-    if (bad_line > 0)
+    if (bad_line > 0 && r.n_faults == 0)
         report_fault(&r, bad_line, "neither [section] nor key = value");
-    Err rule = {0};
-    if (settings_check(s, &rule) != STATUS_OK)
-        report_fault(&r, 0, rule.text);
+    check_rules(s, report_broken, &r);
     if (n_faults)
         *n_faults = r.n_faults;
     return r.n_faults ? STATUS_BAD_DATA : STATUS_OK;
@@ -299,21 +384,19 @@ Status settings_set(Settings *s, const char *assignment, Err *err)
     return set_key(s, key, equals + 1, err);
 }
 
+static void keep_first(const size_t fields[3], const char *text, void *user)
+{
+    (void)fields;
+    Err *first = user;
+    if (first->code == STATUS_OK)
+        fail(first, STATUS_BAD_DATA, "%s", text);
+}
+
 Status settings_check(const Settings *s, Err *err)
 {
-    if (s->design.gap_min_m >= s->design.gap_max_m)
-        return fail(err, STATUS_BAD_DATA, "design.gap_min_m: %g must be below design.gap_max_m = %g",
-                    s->design.gap_min_m, s->design.gap_max_m);
-    if (s->design.thickness_min_m >= s->design.thickness_max_m)
-        return fail(err, STATUS_BAD_DATA, "design.thickness_min_m: %g must be below design.thickness_max_m = %g",
-                    s->design.thickness_min_m, s->design.thickness_max_m);
-    if (s->core.section == CORE_BOX && 2 * s->design.thickness_max_m > s->core.side_m)
-        return fail(err, STATUS_BAD_DATA, "design.thickness_max_m: two walls of %g m do not fit into core.side_m = %g",
-                    s->design.thickness_max_m, s->core.side_m);
-    if (s->search.initial > s->search.max_evals)
-        return fail(err, STATUS_BAD_DATA, "search.initial: %ld is more than search.max_evals = %ld allows",
-                    s->search.initial, s->search.max_evals);
-    return STATUS_OK;
+    Err first = {0};
+    check_rules(s, keep_first, &first);
+    return first.code == STATUS_OK ? STATUS_OK : fail(err, first.code, "%s", first.text);
 }
 
 /* The fewest digits that read back as the same number. */
@@ -352,10 +435,18 @@ void settings_write(const Settings *s, FILE *out, int described)
         fprintf(out, "%s = ", o->key + n + 1);
         const void *field = field_of_const(s, o);
         switch (o->kind) {
-        case REAL: print_real(out, *(const double *)field); break;
-        case WHOLE: fprintf(out, "%ld", *(const long *)field); break;
-        case CHOICE: print_word(out, o->words, *(const long *)field); break;
-        case TEXT: fputs(field, out); break;
+        case REAL:
+            print_real(out, *(const double *)field);
+            break;
+        case WHOLE:
+            fprintf(out, "%ld", *(const long *)field);
+            break;
+        case CHOICE:
+            print_word(out, o->words, *(const long *)field);
+            break;
+        case TEXT:
+            fputs(field, out);
+            break;
         }
         fputc('\n', out);
     }

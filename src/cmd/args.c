@@ -1,0 +1,182 @@
+#include "cmd/args.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { OPTIONS_MAX = 32 };
+
+Status args_unknown(const char *what, const char *word, const char *const known[], int n, const char *where, Err *err)
+{
+    const char *near = nearest_word(word, known, n);
+    return near ? fail(err, STATUS_USAGE, "unknown %s '%.60s'; did you mean %s?", what, word, near)
+                : fail(err, STATUS_USAGE, "unknown %s '%.60s'; %s lists them", what, word, where);
+}
+
+static Status find_option(const Command *c, const char *word, size_t length, const ArgOption **found, Err *err)
+{
+    const char *names[OPTIONS_MAX];
+    char name[64], where[64];
+    int n = 0;
+    snprintf(name, sizeof name, "%.*s", (int)length, word);
+    for (const ArgOption *o = c->options; o->name && n < OPTIONS_MAX - 1; o++) {
+        names[n++] = o->name;
+        *found = o;
+        if (strcmp(o->name, name) == 0)
+            return STATUS_OK;
+    }
+    names[n++] = "--help";
+    snprintf(where, sizeof where, "`imtet %s --help`", c->name);
+    return args_unknown("option", name, names, n, where, err);
+}
+
+static Status take_option(Args *args, int argc, char *const argv[], int *i, Err *err)
+{
+    const char *word = argv[*i];
+    const size_t length = strcspn(word, "=");
+    const ArgOption *o = NULL;
+    TRY(find_option(args->command, word, length, &o, err));
+    Given given = {o, NULL};
+    if (!o->value && word[length])
+        return fail(err, STATUS_USAGE, "%s takes no value", o->name);
+    if (o->value && word[length])
+        given.value = word + length + 1;
+    else if (o->value && *i + 1 < argc && strncmp(argv[*i + 1], "--", 2) != 0)
+        given.value = argv[++*i];
+    if (o->value && (!given.value || !given.value[0]))
+        return fail(err, STATUS_USAGE, "%s needs a value: %s %s", o->name, o->name, o->value);
+    if (!o->many && args_has(args, o->name))
+        return fail(err, STATUS_USAGE, "%s is given twice", o->name);
+    args->given[args->n_given++] = given;
+    return STATUS_OK;
+}
+
+static Status take_operand(Args *args, const char *word, Err *err)
+{
+    const Command *c = args->command;
+    if (!c->operand)
+        return fail(err, STATUS_USAGE, "imtet %s takes no operand, found '%.60s'", c->name, word);
+    if (args->operand)
+        return fail(err, STATUS_USAGE, "imtet %s takes one %s, found '%.60s' after '%.60s'", c->name, c->operand, word,
+                    args->operand);
+    args->operand = word;
+    return STATUS_OK;
+}
+
+static int asks_for_help(const char *word)
+{
+    return strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0;
+}
+
+Status args_parse(Args *args, const Command *command, int argc, char *const argv[], Err *err)
+{
+    memset(args, 0, sizeof *args);
+    args->command = command;
+    for (int i = 0; i < argc; i++)
+        args->help = args->help || asks_for_help(argv[i]);
+    if (args->help)
+        return STATUS_OK;
+    args->given = calloc((size_t)argc + 1, sizeof *args->given);
+    if (!args->given)
+        return fail(err, STATUS_NO_MEMORY, "no memory for %d options", argc);
+    for (int i = 0; i < argc; i++)
+        TRY(argv[i][0] == '-' && argv[i][1] ? take_option(args, argc, argv, &i, err)
+                                            : take_operand(args, argv[i], err));
+    if (command->operand && !args->operand)
+        return fail(err, STATUS_USAGE, "imtet %s needs a %s; for example: %s", command->name, command->operand,
+                    command->example);
+    return STATUS_OK;
+}
+
+const char *args_value(const Args *args, const char *name)
+{
+    for (int i = 0; i < args->n_given; i++)
+        if (strcmp(args->given[i].option->name, name) == 0)
+            return args->given[i].value;
+    return NULL;
+}
+
+int args_has(const Args *args, const char *name)
+{
+    for (int i = 0; i < args->n_given; i++)
+        if (strcmp(args->given[i].option->name, name) == 0)
+            return 1;
+    return 0;
+}
+
+void args_free(Args *args)
+{
+    free(args->given);
+    memset(args, 0, sizeof *args);
+}
+
+void command_help(const Command *command, FILE *out)
+{
+    fprintf(out, "example: %s\n\n%s\n\n", command->example, command->details);
+    fprintf(out, "usage: imtet %s%s%s%s\n\n", command->name, command->operand ? " " : "",
+            command->operand ? command->operand : "", command->options->name ? " [options]" : "");
+    for (const ArgOption *o = command->options; o->name; o++) {
+        char left[48];
+        snprintf(left, sizeof left, "%s%s%s", o->name, o->value ? " " : "", o->value ? o->value : "");
+        fprintf(out, "  %-25s %s%s%s\n", left, o->help, o->setting ? "  = --set " : "", o->setting ? o->setting : "");
+    }
+    fprintf(out, "  %-25s this text\n", "--help");
+}
+
+static Status apply_one(const Given *g, Settings *s, Err *err)
+{
+    if (strcmp(g->option->name, "--set") == 0)
+        return settings_set(s, g->value, err);
+    if (!g->option->setting)
+        return STATUS_OK;
+    char *assignment = NULL;
+    if (asprintf(&assignment, "%s=%s", g->option->setting, g->value) < 0)
+        return fail(err, STATUS_NO_MEMORY, "no memory for %s", g->option->name);
+    Err why = {0};
+    const Status status = settings_set(s, assignment, &why);
+    free(assignment);
+    return status == STATUS_OK ? STATUS_OK : fail(err, status, "%s: %s", g->option->name, why.text);
+}
+
+static void count_fault(FILE *faults, int *n_faults, const char *text)
+{
+    if (faults)
+        fprintf(faults, "%s\n", text);
+    if (n_faults)
+        ++*n_faults;
+}
+
+Status args_apply(const Args *args, Settings *s, FILE *faults, int *n_faults, Err *err)
+{
+    Status first = STATUS_OK;
+    for (int i = 0; i < args->n_given; i++) {
+        Err e = {0};
+        const Status status = apply_one(&args->given[i], s, &e);
+        if (status == STATUS_OK)
+            continue;
+        count_fault(faults, n_faults, e.text);
+        if (first == STATUS_OK)
+            first = fail(err, status, "%s", e.text);
+        if (!faults)
+            break;
+    }
+    return first;
+}
+
+Status args_settings(const Args *args, Settings *s, FILE *faults, int *n_faults, Err *err)
+{
+    int n_file = 0;
+    Err e = {0};
+    settings_defaults(s);
+    const Status file = settings_read(s, args->operand, faults, &n_file, err);
+    if (n_faults)
+        *n_faults = n_file;
+    if (file != STATUS_OK && (!faults || n_file == 0))
+        return file;
+    const Status options = args_apply(args, s, faults, n_faults, file == STATUS_OK ? err : &e);
+    if (file != STATUS_OK || options != STATUS_OK)
+        return file != STATUS_OK ? file : options;
+    const Status rules = settings_check(s, err);
+    if (rules != STATUS_OK)
+        count_fault(faults, n_faults, err->text);
+    return rules;
+}

@@ -1,0 +1,102 @@
+/* cmd/args.h -- the command line, described by tables.
+ *
+ *   imtet COMMAND [OPERAND] [--option [VALUE]] ...      options and operand in any order; --option=VALUE as well
+ *
+ * Life cycle  args_parse -> args_value ... -> args_free
+ * Ownership   names and values point into argv and the tables */
+#ifndef IMTET_CMD_ARGS_H
+#define IMTET_CMD_ARGS_H
+
+#include "base/settings.h"
+#include "base/status.h"
+
+typedef struct {
+    const char *name;    /* "--record" */
+    const char *value;   /* what follows it ("FILE"), NULL for a switch */
+    const char *setting; /* the setting that it writes, NULL: the command reads it */
+    int many;            /* may be given more than once */
+    const char *help;
+} ArgOption;
+
+typedef struct Args Args;
+
+typedef struct {
+    const char *name, *operand; /* operand NULL: takes none */
+    const char *summary, *example, *details;
+    const ArgOption *options; /* up to the first without a name */
+    Status (*run)(const Args *args, Err *err);
+} Command;
+
+typedef struct {
+    const ArgOption *option;
+    const char *value; /* NULL for a switch */
+} Given;
+
+struct Args {
+    const Command *command;
+    const char *operand;
+    int help; /* --help was asked for: nothing else was checked */
+    int n_given;
+    Given *given; /* (n_given) in the order of the command line */
+};
+
+/* argv: what follows the command's name. */
+Status args_parse(Args *args, const Command *command, int argc, char *const argv[], Err *err);
+const char *args_value(const Args *args, const char *name); /* NULL when it was not given */
+int args_has(const Args *args, const char *name);
+void args_free(Args *args);
+
+/* "unknown WHAT WORD; did you mean ...?" */
+Status args_unknown(const char *what, const char *word, const char *const known[], int n, const char *where, Err *err);
+
+void command_help(const Command *command, FILE *out);
+
+/* Defaults, then the operand's file, then the options in their order, then the rules between settings. With `faults`
+ * every fault is written there and counted, else the first one ends it. */
+Status args_settings(const Args *args, Settings *s, FILE *faults, int *n_faults, Err *err);
+
+/* Only the options, over what s holds. */
+Status args_apply(const Args *args, Settings *s, FILE *faults, int *n_faults, Err *err);
+
+#define OPTION_SET                                                                                                     \
+    {                                                                                                                  \
+        "--set", "SECTION.KEY=VALUE", NULL, 1, "any setting; may be repeated (`imtet settings` lists them)"            \
+    }
+#define OPTION_RECORD                                                                                                  \
+    {                                                                                                                  \
+        "--record", "FILE", "motion.record", 0, "ground motion: CSV, PEER AT2 or builtin:NAME"                         \
+    }
+#define OPTION_PGA                                                                                                     \
+    {                                                                                                                  \
+        "--pga", "G", "motion.pga_g", 0, "scale the motion to this peak [g]; 0: as recorded"                           \
+    }
+#define OPTION_STRETCH                                                                                                 \
+    {                                                                                                                  \
+        "--stretch", "S", "motion.stretch", 0, "multiply its time by this"                                             \
+    }
+#define OPTION_UNIT                                                                                                    \
+    {                                                                                                                  \
+        "--unit", "UNIT", "motion.unit", 0, "m_s2 | cm_s2 | g, where the file does not say"                            \
+    }
+#define OPTION_DURATION                                                                                                \
+    {                                                                                                                  \
+        "--duration", "T", "sim.duration_s", 0, "stop after T seconds; 0: at the motion's end"                         \
+    }
+#define OPTION_ENGINE                                                                                                  \
+    {                                                                                                                  \
+        "--engine", "NAME", "sim.engine", 0, "fast | cvode"                                                            \
+    }
+#define OPTION_JSON                                                                                                    \
+    {                                                                                                                  \
+        "--json", NULL, NULL, 0, "everything, as JSON, on standard output"                                             \
+    }
+#define OPTION_CSV                                                                                                     \
+    {                                                                                                                  \
+        "--csv", "FILE", NULL, 0, "the table as CSV into FILE; -: standard output"                                     \
+    }
+#define OPTION_END                                                                                                     \
+    {                                                                                                                  \
+        NULL, NULL, NULL, 0, NULL                                                                                      \
+    }
+
+#endif

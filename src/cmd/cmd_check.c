@@ -1,0 +1,87 @@
+#include <string.h>
+
+#include "cmd/commands.h"
+#include "run/world.h"
+#include "scene/building.h"
+
+typedef struct {
+    int n;
+} Faults;
+
+static int note(Faults *faults, Status status, const char *key, const Err *e)
+{
+    if (status != STATUS_OK) {
+        fprintf(stderr, "%s: %s\n", key, e->text);
+        faults->n++;
+    }
+    return status == STATUS_OK;
+}
+
+static int check_building(const Settings *s, Faults *faults)
+{
+    Err e = {0};
+    Building b;
+    if (!note(faults, building_load(&b, s->building.model, &e), "building.model", &e))
+        return 0;
+    printf("building  %s: %d floors, first mode %.4f Hz\n", s->building.model, b.n, b.omega[0] / 6.283185307179586);
+    building_free(&b);
+    return 1;
+}
+
+static int check_motion(const Settings *s, Faults *faults)
+{
+    Err e = {0};
+    Motion m = {0};
+    Status status = motion_load(&m, s->motion.record, (MotionUnit)s->motion.unit, &e);
+    if (status == STATUS_OK)
+        status = motion_prepare(&m, s->motion.pga_g, s->motion.stretch, &e);
+    if (!note(faults, status, "motion.record", &e)) {
+        motion_free(&m);
+        return 0;
+    }
+    printf("motion    %s: %zu samples, %.4g s, peak %.4g g\n", s->motion.record, m.n, (double)(m.n - 1) * m.dt_s,
+           motion_peak(&m) / 9.81);
+    if (s->sim.duration_s > (double)(m.n - 1) * m.dt_s)
+        fprintf(stderr, "sim.duration_s: %g s is longer than the motion; the run ends with the motion\n",
+                s->sim.duration_s);
+    motion_free(&m);
+    return 1;
+}
+
+static void check_scene(const Settings *s, Faults *faults)
+{
+    Err e = {0};
+    World w;
+    if (note(faults, world_open(&w, s, &e), "scene", &e))
+        world_close(&w);
+}
+
+static Status run(const Args *args, Err *err)
+{
+    Settings s;
+    Faults faults = {0};
+    const Status status = args_settings(args, &s, stderr, &faults.n, err);
+    if (status == STATUS_MISSING || status == STATUS_USAGE)
+        return status;
+    const int building = check_building(&s, &faults);
+    const int motion = check_motion(&s, &faults);
+    if (building && motion && faults.n == 0)
+        check_scene(&s, &faults);
+    if (faults.n)
+        return fail(err, STATUS_BAD_DATA, "%s: %d fault%s", args->operand, faults.n, faults.n == 1 ? "" : "s");
+    printf("%s: everything is in order\n", args->operand);
+    return STATUS_OK;
+}
+
+static const ArgOption OPTIONS[] = {OPTION_RECORD, OPTION_PGA, OPTION_STRETCH, OPTION_UNIT, OPTION_SET, OPTION_END};
+
+const Command CMD_CHECK = {
+    .name = "check",
+    .operand = "CONFIG",
+    .summary = "everything that is wrong with a configuration",
+    .example = "imtet check configs/quick.ini",
+    .details = "Reads CONFIG, the building's matrices and the ground motion and names every fault on standard error,\n"
+               "not only the first. Exit status 65 if there is any.",
+    .options = OPTIONS,
+    .run = run,
+};

@@ -1,0 +1,99 @@
+#include "base/design.h"
+#include "cmd/commands.h"
+#include "cmd/show.h"
+#include "run/world.h"
+
+/* Where no design is given: the wall of the paper's Table 1, linear from 12 mm to 6.4 mm. */
+static const double T_BASE_M = 0.012, T_TOP_M = 0.0064;
+
+typedef struct {
+    int n;
+    double building[FLOORS_MAX], core[FLOORS_MAX], zero_gap[FLOORS_MAX];
+    double core_mass_kg, t_base_m, t_top_m;
+} Modes;
+
+static Status choose_walls(const Args *args, Modes *m, Err *err)
+{
+    const char *path = args_value(args, "--design");
+    Designs d;
+    m->t_base_m = T_BASE_M;
+    m->t_top_m = T_TOP_M;
+    if (!path)
+        return STATUS_OK;
+    TRY(design_read(&d, path, m->n, err));
+    m->t_base_m = d.x[m->n];
+    m->t_top_m = d.x[m->n + 1];
+    design_free(&d);
+    return STATUS_OK;
+}
+
+static Status compute(const Args *args, const Scene *scene, Modes *m, Err *err)
+{
+    double x[FLOORS_MAX + 2] = {0};
+    m->n = scene_n_floors(scene);
+    TRY(choose_walls(args, m, err));
+    x[m->n] = m->t_base_m;
+    x[m->n + 1] = m->t_top_m;
+    return scene_frequencies(scene, x, m->building, m->core, m->zero_gap, &m->core_mass_kg, err);
+}
+
+static Status print_json(const Modes *m, const Settings *s, Err *err)
+{
+    json_t *o = json_object();
+    json_object_set_new(o, "building", json_string(s->building.model));
+    json_object_set_new(o, "t_base_m", json_number(m->t_base_m));
+    json_object_set_new(o, "t_top_m", json_number(m->t_top_m));
+    json_object_set_new(o, "core_mass_kg", json_number(m->core_mass_kg));
+    json_object_set_new(o, "building_hz", json_numbers((size_t)m->n, m->building));
+    json_object_set_new(o, "core_hz", json_numbers((size_t)m->n, m->core));
+    json_object_set_new(o, "zero_gap_hz", json_numbers((size_t)m->n, m->zero_gap));
+    return show_json(o, err);
+}
+
+static void print_table(const Modes *m, const Settings *s)
+{
+    printf("building %s, %d floors; core of %.4g kg", s->building.model, m->n, m->core_mass_kg);
+    if (s->core.section == CORE_EFFECTIVE)
+        printf(" (effective section)\n\n");
+    else
+        printf(", wall %g to %g mm\n\n", 1e3 * m->t_base_m, 1e3 * m->t_top_m);
+    printf("mode  building_hz      core_hz  zero_gap_hz\n");
+    for (int i = 0; i < m->n; i++)
+        printf("%4d %12.4f %12.4f %12.4f\n", i + 1, m->building[i], m->core[i], m->zero_gap[i]);
+}
+
+static Status run(const Args *args, Err *err)
+{
+    Settings s;
+    World w;
+    Modes m = {0};
+    TRY(args_settings(args, &s, NULL, NULL, err));
+    TRY(world_open_still(&w, &s, err));
+    Status status = compute(args, w.scene, &m, err);
+    world_close(&w);
+    if (status == STATUS_OK && args_has(args, "--json"))
+        status = print_json(&m, &s, err);
+    else if (status == STATUS_OK)
+        print_table(&m, &s);
+    return status;
+}
+
+static const ArgOption OPTIONS[] = {
+    {"--design", "FILE", NULL, 0, "take the core's wall from the first row of a design file"},
+    OPTION_JSON,
+    OPTION_SET,
+    OPTION_END,
+};
+
+const Command CMD_MODES = {
+    .name = "modes",
+    .operand = "CONFIG",
+    .summary = "natural frequencies of building, core and zero-gap assembly",
+    .example = "imtet modes configs/quick.ini",
+    .details =
+        "Natural frequencies [Hz] of the building, of the core and of the two tied together without gaps. Without\n"
+        "--design the core's wall runs from 12 mm in the first storey to 6.4 mm in the last; an effective section\n"
+        "(core.section) does not depend on it.",
+    .options = OPTIONS,
+    .run = run,
+};

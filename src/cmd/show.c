@@ -1,0 +1,106 @@
+#include "cmd/show.h"
+
+#include <math.h>
+#include <stdio.h>
+
+json_t *json_number(double value)
+{
+    return isfinite(value) ? json_real(value) : json_null();
+}
+
+json_t *json_numbers(size_t n, const double values[])
+{
+    json_t *list = json_array();
+    for (size_t i = 0; i < n; i++)
+        json_array_append_new(list, json_number(values[i]));
+    return list;
+}
+
+const char *scene_word(SceneKind kind)
+{
+    switch (kind) {
+    case SCENE_IMPACT:
+        return "impact";
+    case SCENE_NO_CORE:
+        return "no_core";
+    case SCENE_TIED:
+        return "tied";
+    }
+    return "unknown";
+}
+
+json_t *json_result(SceneKind kind, const SimResult *r)
+{
+    json_t *o = json_object();
+    json_object_set_new(o, "scene", json_string(scene_word(kind)));
+    json_object_set_new(o, "outcome", json_string(outcome_word(r->outcome)));
+    json_object_set_new(o, "reason", json_string(r->reason));
+    for (int k = 0; k < N_MEASURES - 1; k++)
+        json_object_set_new(o, measure(k)->name, json_number(measure_value(r, k)));
+    json_object_set_new(o, "impacts", json_integer(r->impacts));
+
+    const size_t n_floors = (size_t)r->n_floors, n_modes = (size_t)r->n_modes;
+    json_object_set_new(o, "peak_displacement_m", json_numbers(n_floors, r->peak_displacement_m));
+    json_object_set_new(o, "peak_drift_m", json_numbers(n_floors, r->peak_drift_m));
+    json_object_set_new(o, "peak_acceleration_g", json_numbers(n_floors, r->peak_acceleration_g));
+    json_object_set_new(o, "mode_share_pct", json_numbers(n_modes, r->mode_share_pct));
+
+    json_object_set_new(o, "damped_building_j", json_number(r->damped_building_j));
+    json_object_set_new(o, "damped_core_j", json_number(r->damped_core_j));
+    json_object_set_new(o, "kinetic_strain_j", json_number(r->kinetic_strain_j));
+    json_object_set_new(o, "contact_loss_j", json_number(r->contact_loss_j));
+    json_object_set_new(o, "contact_stored_j", json_number(r->contact_stored_j));
+    json_object_set_new(o, "clamp_j", json_number(r->clamp_j));
+    json_object_set_new(o, "penetration_max_m", json_number(r->penetration_max_m));
+    json_object_set_new(o, "steps", json_integer(r->steps));
+    json_object_set_new(o, "force_evaluations", json_integer(r->force_evaluations));
+    json_object_set_new(o, "seconds", json_number(r->seconds));
+    return o;
+}
+
+Status show_json(json_t *all, Err *err)
+{
+    const int failed = !all || json_dumpf(all, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) != 0;
+    json_decref(all);
+    putchar('\n');
+    return failed ? fail(err, STATUS_IO, "standard output: cannot be written") : STATUS_OK;
+}
+
+void show_result_names(const char *label)
+{
+    printf("%-28s", label);
+    for (int k = 0; k < N_OBJECTIVES; k++)
+        printf(" %10s", measure(k)->name);
+    printf(" %8s %9s\n", "impacts", "residual");
+}
+
+void show_result(const char *label, const SimResult *r)
+{
+    printf("%-28.28s", label);
+    for (int k = 0; k < N_OBJECTIVES; k++)
+        printf(" %10.4g", measure_value(r, k));
+    printf(" %8ld %9.1e", r->impacts, r->energy_residual);
+    if (r->outcome != RUN_OK)
+        printf("  %s", outcome_word(r->outcome));
+    putchar('\n');
+}
+
+void show_objective_names(void)
+{
+    printf("%-18s %7s", "", "design");
+    for (int k = 0; k < N_OBJECTIVES; k++)
+        printf(" %10s", measure(k)->name);
+    putchar('\n');
+}
+
+void show_objectives(const char *label, long id, const double natural[N_OBJECTIVES])
+{
+    printf("%-18s", label);
+    if (id > 0)
+        printf(" %7ld", id);
+    else
+        printf(" %7s", "-");
+    for (int k = 0; k < N_OBJECTIVES; k++)
+        printf(" %10.4g", natural[k]);
+    putchar('\n');
+}

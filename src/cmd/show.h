@@ -1,0 +1,26 @@
+/* cmd/show.h -- results as JSON, CSV and tables for people. */
+#ifndef IMTET_CMD_SHOW_H
+#define IMTET_CMD_SHOW_H
+
+#include <jansson.h>
+
+#include "run/measures.h"
+
+json_t *json_number(double value); /* null where it is not finite */
+json_t *json_numbers(size_t n, const double values[]);
+json_t *json_result(SceneKind kind, const SimResult *r);
+
+/* On standard output, 17 digits; takes the reference. */
+Status show_json(json_t *all, Err *err);
+
+const char *scene_word(SceneKind kind);
+
+/* One line per simulation: label, objectives, impacts, outcome where it is not ok. */
+void show_result_names(const char *label);
+void show_result(const char *label, const SimResult *r);
+
+/* One line of objectives: label, a design's number (0: none). */
+void show_objective_names(void);
+void show_objectives(const char *label, long id, const double natural[N_OBJECTIVES]);
+
+#endif

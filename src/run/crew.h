@@ -1,0 +1,25 @@
+/* run/crew.h -- one simulator per thread, and the one parallel loop of the program.
+ *
+ * Life cycle  crew_create -> crew_run ... -> crew_free
+ * Ownership   borrows the Scene, which must outlive it
+ * Threads     call it from one thread; tasks are shared out one by one and stored by index, so the results do not
+ *             depend on how many threads there are */
+#ifndef IMTET_RUN_CREW_H
+#define IMTET_RUN_CREW_H
+
+#include "sim/sim.h"
+
+typedef struct Crew Crew;
+
+typedef struct {
+    SceneKind kind;
+    const double *x; /* (n_floors + 2); NULL for SCENE_NO_CORE */
+} SimTask;
+
+/* threads 0: one per processor */
+Status crew_create(Crew **out, const Scene *scene, long threads, Err *err);
+int crew_size(const Crew *crew);
+Status crew_run(Crew *crew, size_t n, const SimTask tasks[], SimResult results[], Err *err);
+void crew_free(Crew *crew); /* NULL is fine */
+
+#endif

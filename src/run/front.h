@@ -1,0 +1,31 @@
+/* run/front.h -- the front of a run, read back from its folder, and the designs that stand out in it.
+ *
+ * Knee       the design nearest to the ideal point when every objective is scaled to 0..1 over the front (Euclid)
+ * Ownership  front_read allocates, front_free releases (an empty Front is fine)
+ * Values     natural signs, as in front.csv */
+#ifndef IMTET_RUN_FRONT_H
+#define IMTET_RUN_FRONT_H
+
+#include "base/table.h"
+#include "run/measures.h"
+
+typedef struct {
+    Table table; /* id, variables, objectives */
+    size_t n;
+    int n_var;
+} Front;
+
+Status front_read(Front *front, const char *folder, Err *err);
+long front_id(const Front *front, size_t i);
+const double *front_x(const Front *front, size_t i); /* (n_var) */
+const double *front_f(const Front *front, size_t i); /* (N_OBJECTIVES) */
+
+/* Each wants n > 0. Ties go to the first. */
+size_t front_best(const Front *front, int objective);
+size_t front_knee(const Front *front);
+
+/* Row of that design, or n when it is not on the front. */
+size_t front_find(const Front *front, long id);
+void front_free(Front *front);
+
+#endif

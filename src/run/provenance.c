@@ -1,0 +1,105 @@
+#include "run/provenance.h"
+
+#include <cblas.h>
+#include <inttypes.h>
+#include <jansson.h>
+#include <limits.h>
+#include <nlopt.h>
+#include <sundials/sundials_version.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "run/output.h"
+#include "scene/building.h"
+
+#ifndef IMTET_VERSION
+#define IMTET_VERSION "unknown"
+#endif
+#ifndef IMTET_REVISION
+#define IMTET_REVISION "unknown"
+#endif
+#ifndef IMTET_CFLAGS
+#define IMTET_CFLAGS "unknown"
+#endif
+
+const char *program_version(void)
+{
+    return IMTET_VERSION;
+}
+
+const char *program_revision(void)
+{
+    return IMTET_REVISION;
+}
+
+/* inih and Random123 do not say their versions; the Debian release does. */
+static json_t *libraries(void)
+{
+    char sundials[32] = "unknown", nlopt[32];
+    int major, minor, fix;
+    SUNDIALSGetVersion(sundials, (int)sizeof sundials);
+    nlopt_version(&major, &minor, &fix);
+    snprintf(nlopt, sizeof nlopt, "%d.%d.%d", major, minor, fix);
+    return json_pack("{s:s, s:s, s:s, s:s, s:s, s:s}", "sundials", sundials, "nlopt", nlopt, "openblas",
+                     openblas_get_config(), "jansson", jansson_version_str(), "inih", "as packaged by the system",
+                     "random123", "as packaged by the system");
+}
+
+/* PRETTY_NAME of the operating system: with it the versions of all packages are known. */
+static void system_name(char name[128])
+{
+    char line[256];
+    snprintf(name, 128, "unknown");
+    FILE *f = fopen("/etc/os-release", "r");
+    while (f && fgets(line, sizeof line, f))
+        sscanf(line, "PRETTY_NAME=\"%127[^\"\n]", name);
+    if (f)
+        fclose(f);
+}
+
+static json_t *machine(int threads)
+{
+    char host[256] = "unknown", system[128], started[32];
+    struct tm parts;
+    const time_t now = time(NULL);
+    gethostname(host, sizeof host - 1);
+    system_name(system);
+    gmtime_r(&now, &parts);
+    strftime(started, sizeof started, "%FT%TZ", &parts);
+    return json_pack("{s:s, s:s, s:i, s:s}", "host", host, "system", system, "threads", threads, "started", started);
+}
+
+static json_t *inputs(const World *w, uint64_t building_hash, int n_floors)
+{
+    char record[24], matrices[24];
+    snprintf(record, sizeof record, "%016" PRIx64, w->motion.file_hash);
+    snprintf(matrices, sizeof matrices, "%016" PRIx64, building_hash);
+    return json_pack("{s:s, s:s, s:s, s:I, s:f, s:s, s:i, s:s}", "record", w->settings.motion.record, "record_format",
+                     w->motion.format, "record_fnv1a", record, "samples", (json_int_t)w->motion.n, "step_s",
+                     w->motion.dt_s, "building", w->settings.building.model, "floors", n_floors, "matrices_fnv1a",
+                     matrices);
+}
+
+Status provenance_write(const char *folder, const World *w, int threads, Err *err)
+{
+    char path[PATH_MAX];
+    Building b;
+    Output o;
+    snprintf(path, sizeof path, "%s/provenance.json", folder);
+    TRY(building_load(&b, w->settings.building.model, err));
+    json_t *all = json_pack("{s:s, s:s, s:s, s:s, s:s, s:I, s:o*, s:o*, s:o*}", "program", "imtet", "version",
+                            IMTET_VERSION, "revision", IMTET_REVISION, "compiler", __VERSION__, "flags", IMTET_CFLAGS,
+                            "seed", (json_int_t)w->settings.search.seed, "libraries", libraries(), "machine",
+                            machine(threads), "inputs", inputs(w, b.hash, b.n));
+    building_free(&b);
+    if (!all)
+        return fail(err, STATUS_NO_MEMORY, "%s: cannot be put together", path);
+    Status status = output_open(&o, path, err);
+    if (status == STATUS_OK) {
+        json_dumpf(all, o.stream, JSON_INDENT(2) | JSON_REAL_PRECISION(17)); /* a failed write is seen on closing */
+        fputc('\n', o.stream);
+        status = output_close(&o, err);
+    }
+    json_decref(all);
+    return status;
+}

@@ -1,0 +1,14 @@
+/* run/provenance.h -- what a run was made of: program, compiler, libraries, machine, inputs.
+ * Threads  call it from one thread. */
+#ifndef IMTET_RUN_PROVENANCE_H
+#define IMTET_RUN_PROVENANCE_H
+
+#include "run/world.h"
+
+const char *program_version(void);  /* 0.1.0 */
+const char *program_revision(void); /* as git describes it, or unknown */
+
+/* FOLDER/provenance.json */
+Status provenance_write(const char *folder, const World *w, int threads, Err *err);
+
+#endif

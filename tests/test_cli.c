@@ -1,0 +1,559 @@
+/* The program as a person meets it: runs $IMTET in the repository's root and reads what it prints. */
+#include "check.h"
+
+#include <jansson.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "base/table.h"
+
+typedef struct {
+    int code; /* exit status */
+    char *out, *err;
+} Said;
+
+typedef struct {
+    char folder[64]; /* of this test program's files */
+} Place;
+
+static Place place;
+
+static char *text_of(const char *path)
+{
+    Err err = {0};
+    char *text;
+    size_t length;
+    CHECK_OK(file_read(path, &text, &length, &err), &err);
+    return text;
+}
+
+/* Runs `imtet ARGUMENTS` through the shell; @ in the format stands for the test's own folder. */
+__attribute__((format(printf, 2, 3))) static void run(Said *said, const char *format, ...)
+{
+    char arguments[2048], spread[4096], command[8192], out[128], err[128];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(arguments, sizeof arguments, format, list);
+    va_end(list);
+    size_t n = 0;
+    for (const char *p = arguments; *p && n + sizeof place.folder < sizeof spread; p++)
+        n += (size_t)(*p == '@' ? sprintf(spread + n, "%s", place.folder) : sprintf(spread + n, "%c", *p));
+    snprintf(out, sizeof out, "%s/out", place.folder);
+    snprintf(err, sizeof err, "%s/err", place.folder);
+    snprintf(command, sizeof command, "exec >%s 2>%s; '%s' %s", out, err, getenv("IMTET"), spread);
+    const int status = system(command);
+    said->code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    said->out = text_of(out);
+    said->err = text_of(err);
+}
+
+static void forget(Said *said)
+{
+    free(said->out);
+    free(said->err);
+}
+
+/* Runs, and expects that exit status and that text on standard error. */
+static void expect(int code, const char *message, const char *arguments)
+{
+    Said s;
+    run(&s, "%s", arguments);
+    if (s.code != code || !strstr(s.err, message))
+        fail_msg("imtet %s\n  exit %d (wanted %d), said: %s  wanted: %s", arguments, s.code, code, s.err, message);
+    forget(&s);
+}
+
+static char *output_of(const char *arguments)
+{
+    Said s;
+    run(&s, "%s", arguments);
+    if (s.code != 0)
+        fail_msg("imtet %s\n  exit %d, said: %s", arguments, s.code, s.err);
+    free(s.err);
+    return s.out;
+}
+
+static json_t *json_of(const char *arguments)
+{
+    json_error_t error;
+    char *text = output_of(arguments);
+    json_t *o = json_loads(text, 0, &error);
+    if (!o)
+        fail_msg("imtet %s: %s", arguments, error.text);
+    free(text);
+    return o;
+}
+
+static double number(const json_t *o, const char *key)
+{
+    const json_t *value = json_object_get(o, key);
+    if (!json_is_number(value))
+        fail_msg("%s is missing or no number", key);
+    return json_number_value(value);
+}
+
+static char *in_place(const char *name)
+{
+    char *path = NULL;
+    assert_true(asprintf(&path, "%s/%s", place.folder, name) > 0);
+    return path;
+}
+
+static void write_in_place(const char *name, const char *text)
+{
+    char *path = in_place(name);
+    FILE *f = fopen(path, "w");
+    assert_non_null(f);
+    assert_true(fputs(text, f) >= 0);
+    assert_int_equal(fclose(f), 0);
+    free(path);
+}
+
+static char *read_in_place(const char *name)
+{
+    char *path = in_place(name), *text = text_of(path);
+    free(path);
+    return text;
+}
+
+/* A design file of 20 floors: gap_j = gap * j. */
+static void write_designs(const char *name, int n, const double gap[], const double t_base[], const double t_top[])
+{
+    char *text = NULL;
+    size_t length = 0;
+    FILE *f = open_memstream(&text, &length);
+    for (int j = 1; j <= 20; j++)
+        fprintf(f, "gap_%02d_m,", j);
+    fprintf(f, "t_base_m,t_top_m\n");
+    for (int i = 0; i < n; i++) {
+        for (int j = 1; j <= 20; j++)
+            fprintf(f, "%.17g,", gap[i] * j);
+        fprintf(f, "%.17g,%.17g\n", t_base[i], t_top[i]);
+    }
+    fclose(f);
+    write_in_place(name, text);
+    free(text);
+}
+
+/* ---------------------------------------------------------------------------------------------- help and usage --- */
+
+static void test_every_command_explains_itself_with_an_example_first(void **state)
+{
+    (void)state;
+    static const char *const COMMANDS[] = {"",      "optimize", "simulate", "evaluate", "export",
+                                           "modes", "spectrum", "check",    "settings"};
+    for (size_t i = 0; i < sizeof COMMANDS / sizeof COMMANDS[0]; i++) {
+        char arguments[64];
+        snprintf(arguments, sizeof arguments, "%s --help", COMMANDS[i]);
+        char *help = output_of(arguments);
+        assert_int_equal(strncmp(help, "example: imtet ", 15), 0);
+        assert_non_null(strstr(help, "usage: imtet"));
+        free(help);
+    }
+    char *version = output_of("--version");
+    assert_int_equal(strncmp(version, "imtet ", 6), 0);
+    free(version);
+}
+
+static void test_a_misunderstood_command_line_ends_with_2_and_a_suggestion(void **state)
+{
+    (void)state;
+    expect(2, "no command", "");
+    expect(2, "did you mean optimize?", "optimise configs/quick.ini");
+    expect(2, "did you mean --design?", "simulate configs/quick.ini --desing none");
+    expect(2, "did you mean --json?", "modes configs/quick.ini --jsno");
+    expect(2, "--help", "modes configs/quick.ini --qqqqqqqqqqqqqqqqqqqqqqqq");
+    expect(2, "needs a CONFIG", "modes");
+    expect(2, "takes one CONFIG", "modes configs/quick.ini configs/kobe.ini");
+    expect(2, "takes no operand", "settings configs/quick.ini");
+    expect(2, "--record needs a value", "simulate configs/quick.ini --record");
+    expect(2, "--record needs a value", "simulate configs/quick.ini --record --json");
+    expect(2, "--json takes no value", "modes configs/quick.ini --json=yes");
+    expect(2, "given twice", "simulate configs/quick.ini --pga 1 --pga 2");
+    expect(2, "--design FILE is missing", "simulate configs/quick.ini");
+    expect(2, "--tied needs a core", "simulate configs/quick.ini --design none --tied");
+    expect(2, "--set nonsense: write --set section.key=value", "modes configs/quick.ini --set nonsense");
+    expect(2, "--csv FILE is missing", "export results");
+    expect(2, "--record FILE is missing", "evaluate results --design 1");
+}
+
+static void test_bad_settings_and_data_end_with_65(void **state)
+{
+    (void)state;
+    expect(65, "did you mean motion.stretch?", "modes configs/quick.ini --set motion.strech=2");
+    expect(65, "--pga: motion.pga_g: -1 is outside", "simulate configs/quick.ini --design none --pga -1");
+    expect(65, "not one of fast|cvode", "simulate configs/quick.ini --design none --engine magic");
+    expect(65, "tests/bad/config/nan.ini:3: building.damping", "modes tests/bad/config/nan.ini");
+    expect(65, "tests/bad/motion/nan.csv",
+           "simulate configs/quick.ini --design none --record tests/bad/motion/nan.csv");
+    expect(65, "tests/bad/motion/nan.csv", "spectrum tests/bad/motion/nan.csv");
+    expect(65, "a design of 20 floors has gap_03_m there",
+           "simulate configs/quick.ini --design tests/bad/design/negative_gap.csv");
+}
+
+static void test_missing_inputs_end_with_66(void **state)
+{
+    (void)state;
+    expect(66, "nowhere.ini", "modes nowhere.ini");
+    expect(66, "nowhere.csv", "simulate configs/quick.ini --design nowhere.csv");
+    expect(66, "nowhere.csv", "simulate configs/quick.ini --design none --record nowhere.csv");
+    expect(66, "nowhere.csv", "spectrum nowhere.csv");
+    expect(66, "nowhere", "export nowhere --csv @/front.csv");
+    expect(66, "nowhere", "evaluate nowhere --design 1 --record builtin:kobe-like");
+}
+
+static void test_output_that_cannot_be_written_ends_with_74(void **state)
+{
+    (void)state;
+    expect(74, "/dev/full", "spectrum builtin:kobe-like --csv /dev/full");
+    expect(74, "/no/such/folder/a.csv", "spectrum builtin:kobe-like --csv @/no/such/folder/a.csv");
+    expect(74, "standard output", "settings >/dev/full");
+    expect(74, "standard output", "spectrum builtin:kobe-like --json >/dev/full");
+    expect(74, "configs/quick.ini/run", "optimize configs/quick.ini --out configs/quick.ini/run");
+}
+
+/* -------------------------------------------------------------------------------------------- settings and check ---
+ */
+
+static void test_the_printed_settings_are_the_default_file_and_in_order(void **state)
+{
+    (void)state;
+    char *printed = output_of("settings"), *kept = text_of("configs/default.ini");
+    if (strcmp(printed, kept) != 0)
+        fail_msg("they differ; if the settings were meant to change: imtet settings > configs/default.ini");
+    write_in_place("printed.ini", printed);
+    free(output_of("check @/printed.ini"));
+    free(output_of("check configs/quick.ini"));
+    free(printed);
+    free(kept);
+}
+
+static void test_check_names_every_fault_at_once(void **state)
+{
+    (void)state;
+    write_in_place("many.ini", "[motion]\nrecord = not-there.csv\npga_g = nan\nstretc = 3\n[core]\nsection = tube\n"
+                               "[building]\nmodel = /not/there\n");
+    Said s;
+    run(&s, "check @/many.ini --set search.sead=3");
+    assert_int_equal(s.code, 65);
+    static const char *const WANTED[] = {"many.ini:3: motion.pga_g",
+                                         "many.ini:4: motion.stretc",
+                                         "many.ini:6: core.section",
+                                         "did you mean search.seed?",
+                                         "not-there.csv",
+                                         "/not/there",
+                                         "6 faults"};
+    for (size_t i = 0; i < sizeof WANTED / sizeof WANTED[0]; i++)
+        if (!strstr(s.err, WANTED[i]))
+            fail_msg("'%s' is not in: %s", WANTED[i], s.err);
+    forget(&s);
+}
+
+/* ------------------------------------------------------------------------------------------------- one-shot answers
+ * --- */
+
+static void check_hz(const json_t *o, const char *key, size_t n, const double want[], double tolerance)
+{
+    const json_t *list = json_object_get(o, key);
+    assert_true(json_array_size(list) == 20);
+    for (size_t i = 0; i < n; i++)
+        assert_close(json_real_value(json_array_get(list, i)), want[i], tolerance);
+}
+
+/* Frequencies of the condensed frame and of the 12 to 6.4 mm box, computed independently. */
+static void test_modes_of_tower_and_box_core_are_known(void **state)
+{
+    (void)state;
+    json_t *o = json_of("modes configs/default.ini --json");
+    check_hz(o, "building_hz", 5, (const double[]){0.2643, 0.7599, 1.3113, 1.8448, 2.4209}, 1e-3);
+    check_hz(o, "core_hz", 5, (const double[]){2.492, 13.64, 36.69, 71.11, 117.0}, 1e-3);
+    assert_close(number(o, "core_mass_kg"), 2.650e5, 1e-3);
+    json_decref(o);
+}
+
+/* Table 1 of the paper, printed to 0.01 Hz. */
+static void test_modes_of_the_effective_core_are_those_of_the_paper(void **state)
+{
+    (void)state;
+    json_t *o = json_of("modes configs/default.ini --json --set building.model=appendix --set core.section=effective");
+    const json_t *core = json_object_get(o, "core_hz"), *tied = json_object_get(o, "zero_gap_hz");
+    static const double CORE[] = {2.29, 13.22, 36.19, 70.49, 116.25}, TIED[] = {0.75, 4.29, 11.82, 23.08, 38.12};
+    for (size_t i = 0; i < 5; i++) {
+        assert_true(fabs(json_real_value(json_array_get(core, i)) - CORE[i]) < 0.006);
+        assert_true(fabs(json_real_value(json_array_get(tied, i)) - TIED[i]) < 0.006);
+    }
+    json_decref(o);
+}
+
+static void test_modes_take_the_wall_from_a_design(void **state)
+{
+    (void)state;
+    write_designs("wall.csv", 1, (double[]){0.01}, (double[]){0.012}, (double[]){0.0064});
+    char *plain = output_of("modes configs/quick.ini"),
+         *given = output_of("modes configs/quick.ini --design @/wall.csv");
+    assert_string_equal(plain, given);
+    free(plain);
+    free(given);
+}
+
+static void test_the_spectrum_is_the_same_as_json_and_as_csv(void **state)
+{
+    (void)state;
+    Err err = {0};
+    Table t;
+    json_t *o = json_of("spectrum builtin:kobe-like --pga 0.3 --stretch 3.1 --json --csv @/spectrum.csv");
+    char *path = in_place("spectrum.csv");
+    CHECK_OK(table_read(&t, path, 1, &err), &err);
+    assert_close(number(o, "pga_g"), 0.3, 1e-12);
+    const json_t *psa = json_object_get(o, "psa_m_s2");
+    assert_int_equal(json_array_size(psa), t.n_rows);
+    for (size_t i = 0; i < t.n_rows; i++)
+        assert_true(json_real_value(json_array_get(psa, i)) == t.values[i * t.n_cols + 1]);
+    table_free(&t);
+    free(path);
+    json_decref(o);
+}
+
+/* A short stretch of shaking: enough for some hundred impacts, short enough for a test. */
+#define SHORT " --set motion.stretch=1 --set sim.duration_s=8 "
+
+static void test_simulate_gives_the_same_numbers_as_json_and_as_csv(void **state)
+{
+    (void)state;
+    static const char *const KEYS[] = {"j1_m",     "j2_m",     "j3_g",           "ed1_pct",         "ed5_10_pct",
+                                       "edcs_pct", "mcore_kg", "input_energy_j", "energy_residual", "impacts"};
+    write_designs("two.csv", 2, (double[]){0.001, 0.004}, (double[]){0.012, 0.03}, (double[]){0.0064, 0.01});
+    json_t *list = json_of("simulate configs/quick.ini" SHORT "--design @/two.csv --json");
+    free(output_of("simulate configs/quick.ini" SHORT "--design @/two.csv --csv @/results.csv"));
+    char *csv = read_in_place("results.csv"), *line = csv, *rest = csv;
+    assert_int_equal(json_array_size(list), 2);
+    line = strsep(&rest, "\n");
+    assert_string_equal(line,
+                        "design,j1_m,j2_m,j3_g,ed1_pct,ed5_10_pct,edcs_pct,mcore_kg,input_energy_j,energy_residual,"
+                        "impacts,outcome");
+    for (size_t i = 0; i < 2; i++) {
+        const json_t *o = json_array_get(list, i);
+        assert_string_equal(json_string_value(json_object_get(o, "outcome")), "ok");
+        assert_int_equal(json_array_size(json_object_get(o, "peak_drift_m")), 20);
+        line = strsep(&rest, "\n");
+        assert_int_equal(strtol(strsep(&line, ","), NULL, 10), (long)i + 1);
+        for (size_t k = 0; k < 10; k++)
+            assert_true(strtod(strsep(&line, ","), NULL) == number(o, KEYS[k]));
+        assert_string_equal(line, "ok");
+        assert_true(number(o, "impacts") > 0);
+    }
+    free(csv);
+    json_decref(list);
+}
+
+static void test_the_building_alone_and_the_tied_one_have_no_impacts(void **state)
+{
+    (void)state;
+    write_designs("one.csv", 1, (double[]){0.002}, (double[]){0.012}, (double[]){0.0064});
+    json_t *alone = json_of("simulate configs/quick.ini" SHORT "--design none --json");
+    json_t *tied = json_of("simulate configs/quick.ini" SHORT "--design @/one.csv --tied --json");
+    assert_true(number(alone, "impacts") == 0 && number(tied, "impacts") == 0);
+    assert_true(number(alone, "mcore_kg") == 0);
+    assert_close(number(tied, "mcore_kg"), 2.650e5, 1e-3);
+    json_decref(alone);
+    json_decref(tied);
+}
+
+static void test_a_top_heavy_design_is_simulated_with_a_warning(void **state)
+{
+    (void)state;
+    write_designs("top.csv", 1, (double[]){0.002}, (double[]){0.006}, (double[]){0.012});
+    Said s;
+    run(&s, "simulate configs/quick.ini" SHORT "--design @/top.csv");
+    assert_int_equal(s.code, 0);
+    assert_non_null(strstr(s.err, "top.csv:2: t_top_m 0.012 is thicker than t_base_m 0.006"));
+    forget(&s);
+}
+
+/* ------------------------------------------------------------------------------------------------------- the study ---
+ */
+
+#define SMALL_STUDY                                                                                                    \
+    "optimize configs/quick.ini --set motion.stretch=1 --set sim.duration_s=4 --set search.initial=28 "                \
+    "--set search.population=16 --max-evals 40 "
+
+static void test_the_front_has_the_same_bytes_at_any_number_of_threads(void **state)
+{
+    (void)state;
+    static const int THREADS[] = {1, 2, 5};
+    char arguments[512], name[64], *front[3], *all[3];
+    for (int i = 0; i < 3; i++) {
+        snprintf(arguments, sizeof arguments, SMALL_STUDY "--threads %d --out @/threads-%d", THREADS[i], THREADS[i]);
+        free(output_of(arguments));
+        snprintf(name, sizeof name, "threads-%d/front.csv", THREADS[i]);
+        front[i] = read_in_place(name);
+        snprintf(name, sizeof name, "threads-%d/evaluations.csv", THREADS[i]);
+        all[i] = read_in_place(name);
+    }
+    for (int i = 1; i < 3; i++) {
+        assert_string_equal(front[0], front[i]);
+        assert_string_equal(all[0], all[i]);
+        free(front[i]);
+        free(all[i]);
+    }
+    free(front[0]);
+    free(all[0]);
+}
+
+static void test_a_run_is_repeated_from_its_own_folder(void **state)
+{
+    (void)state;
+    free(output_of("optimize @/threads-2/settings.ini --out @/again"));
+    char *first = read_in_place("threads-2/front.csv"), *second = read_in_place("again/front.csv");
+    assert_string_equal(first, second);
+    free(first);
+    free(second);
+    char *path = in_place("again/provenance.json");
+    json_t *o = json_load_file(path, 0, NULL);
+    assert_non_null(o);
+    assert_true(json_integer_value(json_object_get(o, "seed")) == 1);
+    assert_non_null(json_object_get(json_object_get(o, "libraries"), "sundials"));
+    assert_int_equal(json_string_length(json_object_get(json_object_get(o, "inputs"), "record_fnv1a")), 16);
+    json_decref(o);
+    free(path);
+}
+
+static int dominates(const double a[7], const double b[7])
+{
+    static const double SENSE[] = {1, 1, 1, 1, -1, -1, 1};
+    int better = 0;
+    for (int k = 0; k < 7; k++) {
+        if (SENSE[k] * a[k] > SENSE[k] * b[k])
+            return 0;
+        better = better || a[k] != b[k];
+    }
+    return better;
+}
+
+static void test_the_front_holds_nondominated_designs_in_the_search_box(void **state)
+{
+    (void)state;
+    Err err = {0};
+    Table t;
+    char *path = in_place("threads-1/front.csv");
+    CHECK_OK(table_read(&t, path, 1, &err), &err);
+    assert_int_equal(t.n_cols, 1 + 22 + 7);
+    for (size_t i = 0; i < t.n_rows; i++) {
+        const double *a = t.values + i * t.n_cols;
+        for (int j = 1; j <= 20; j++)
+            assert_true(a[j] >= 0.001 && a[j] <= 0.5);
+        assert_true(a[22] <= a[21] && a[22] >= 0.004 && a[21] <= 0.04);
+        for (size_t l = 0; l < t.n_rows; l++)
+            assert_false(dominates(t.values + l * t.n_cols + 23, a + 23));
+    }
+    table_free(&t);
+    free(path);
+}
+
+static void test_a_folder_with_a_run_is_refused_or_numbered(void **state)
+{
+    (void)state;
+    Said s;
+    char *before = read_in_place("threads-1/front.csv");
+    run(&s, SMALL_STUDY "--out @/threads-1");
+    assert_int_equal(s.code, 74);
+    assert_non_null(strstr(s.err, "holds a run already"));
+    forget(&s);
+    char *after = read_in_place("threads-1/front.csv");
+    assert_string_equal(before, after);
+    run(&s, SMALL_STUDY "--set run.out=@/threads-1");
+    assert_int_equal(s.code, 0);
+    assert_non_null(strstr(s.out, "threads-1-2/front.csv"));
+    forget(&s);
+    free(before);
+    free(after);
+}
+
+static void test_the_export_is_the_front(void **state)
+{
+    (void)state;
+    free(output_of("export @/threads-1 --csv @/exported.csv"));
+    char *front = read_in_place("threads-1/front.csv"), *exported = read_in_place("exported.csv");
+    assert_string_equal(front, exported);
+    free(front);
+    free(exported);
+}
+
+static long first_id(const char *front)
+{
+    return strtol(strchr(front, '\n') + 1, NULL, 10);
+}
+
+static void test_a_design_of_the_front_is_evaluated_on_other_motions(void **state)
+{
+    (void)state;
+    char *front = read_in_place("threads-1/front.csv"), arguments[256];
+    snprintf(arguments, sizeof arguments,
+             "evaluate @/threads-1 --design %ld --record builtin:kobe-like --record builtin:elcentro-like --json",
+             first_id(front));
+    json_t *o = json_of(arguments);
+    const json_t *records = json_object_get(o, "records");
+    assert_int_equal(json_array_size(records), 2);
+    assert_string_equal(json_string_value(json_object_get(json_array_get(records, 1), "record")),
+                        "builtin:elcentro-like");
+
+    /* on the motion of the run itself: the numbers of the front, in its first objective's column */
+    const char *row = strchr(front, '\n') + 1;
+    for (int i = 0; i < 23; i++)
+        row = strchr(row, ',') + 1;
+    const json_t *own = json_array_get(records, 0);
+    assert_true(number(json_object_get(own, "with_core"), "j1_m") == strtod(row, NULL));
+    assert_true(number(json_object_get(own, "no_core"), "impacts") == 0);
+    json_decref(o);
+    free(front);
+    expect(65, "no such id on the front", "evaluate @/threads-1 --design 123456 --record builtin:kobe-like");
+    char *table = output_of("evaluate @/threads-1 --design knee --record builtin:sylmar-like");
+    assert_non_null(strstr(table, "no core"));
+    free(table);
+}
+
+static int make_place(void **state)
+{
+    (void)state;
+    snprintf(place.folder, sizeof place.folder, "/tmp/imtet-cli-XXXXXX");
+    return getenv("IMTET") && mkdtemp(place.folder) ? 0 : -1;
+}
+
+static int clear_place(void **state)
+{
+    (void)state;
+    char command[128];
+    snprintf(command, sizeof command, "rm -rf '%s'", place.folder);
+    return system(command);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_every_command_explains_itself_with_an_example_first),
+        cmocka_unit_test(test_a_misunderstood_command_line_ends_with_2_and_a_suggestion),
+        cmocka_unit_test(test_bad_settings_and_data_end_with_65),
+        cmocka_unit_test(test_missing_inputs_end_with_66),
+        cmocka_unit_test(test_output_that_cannot_be_written_ends_with_74),
+        cmocka_unit_test(test_the_printed_settings_are_the_default_file_and_in_order),
+        cmocka_unit_test(test_check_names_every_fault_at_once),
+        cmocka_unit_test(test_modes_of_tower_and_box_core_are_known),
+        cmocka_unit_test(test_modes_of_the_effective_core_are_those_of_the_paper),
+        cmocka_unit_test(test_modes_take_the_wall_from_a_design),
+        cmocka_unit_test(test_the_spectrum_is_the_same_as_json_and_as_csv),
+        cmocka_unit_test(test_simulate_gives_the_same_numbers_as_json_and_as_csv),
+        cmocka_unit_test(test_the_building_alone_and_the_tied_one_have_no_impacts),
+        cmocka_unit_test(test_a_top_heavy_design_is_simulated_with_a_warning),
+        cmocka_unit_test(test_the_front_has_the_same_bytes_at_any_number_of_threads),
+        cmocka_unit_test(test_a_run_is_repeated_from_its_own_folder),
+        cmocka_unit_test(test_the_front_holds_nondominated_designs_in_the_search_box),
+        cmocka_unit_test(test_a_folder_with_a_run_is_refused_or_numbered),
+        cmocka_unit_test(test_the_export_is_the_front),
+        cmocka_unit_test(test_a_design_of_the_front_is_evaluated_on_other_motions),
+    };
+    return cmocka_run_group_tests(tests, make_place, clear_place);
+}

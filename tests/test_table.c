@@ -1,0 +1,183 @@
+/* Tables of numbers, and the design files built on them. */
+#include "bad_inputs.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/design.h"
+#include "base/table.h"
+
+static Status parse(Table *t, const char *text, int has_header, Err *err)
+{
+    return table_parse(t, "there.csv", text, strlen(text), has_header, err);
+}
+
+static void expect_refusal(const char *text, int has_header, const char *wanted)
+{
+    Err err = {0};
+    Table t;
+    assert_int_equal(parse(&t, text, has_header, &err), STATUS_BAD_DATA);
+    if (!strstr(err.text, wanted))
+        print_error("'%s' does not hold '%s'\n", err.text, wanted);
+    assert_non_null(strstr(err.text, wanted));
+    table_free(&t);
+}
+
+static void test_numbers_come_out_as_they_were_written(void **state)
+{
+    (void)state;
+    Err err = {0};
+    Table t;
+    CHECK_OK(parse(&t, "a,b,c\n1,-2.5,3e-7\n0.1,1e300,-0\n", 1, &err), &err);
+    const double want[] = {1, -2.5, 3e-7, 0.1, 1e300, -0.0};
+    assert_int_equal(t.n_rows, 2);
+    assert_int_equal(t.n_cols, 3);
+    assert_memory_equal(t.values, want, sizeof want);
+    table_free(&t);
+}
+
+static void test_comments_blank_lines_and_foreign_line_ends_are_skipped(void **state)
+{
+    (void)state;
+    Err err = {0};
+    Table t;
+    CHECK_OK(parse(&t, "# who\r\n\r\n  # what\r\n 1 , 2 \r\n\r\n\t3\t,4\r\n# end", 0, &err), &err);
+    const double want[] = {1, 2, 3, 4};
+    assert_int_equal(t.n_rows, 2);
+    assert_null(t.names);
+    assert_memory_equal(t.values, want, sizeof want);
+    table_free(&t);
+}
+
+static void test_a_column_is_found_by_its_name(void **state)
+{
+    (void)state;
+    Err err = {0};
+    Table t;
+    CHECK_OK(parse(&t, " time_s , accel_m_s2\n0,1\n", 1, &err), &err);
+    assert_int_equal(table_column(&t, "accel_m_s2"), 1);
+    assert_int_equal(table_column(&t, "time_s"), 0);
+    assert_int_equal(table_column(&t, "time"), -1);
+    table_free(&t);
+}
+
+static void test_a_last_line_without_an_end_counts(void **state)
+{
+    (void)state;
+    Err err = {0};
+    Table t;
+    CHECK_OK(parse(&t, "1\n2\n3", 0, &err), &err);
+    assert_int_equal(t.n_rows, 3);
+    table_free(&t);
+}
+
+static void test_each_fault_names_file_line_and_column(void **state)
+{
+    (void)state;
+    expect_refusal("1,2\n3\n", 0, "there.csv:2: column 2 of 2 is missing");
+    expect_refusal("1,2\n3,4,5\n", 0, "there.csv:2: more than 2 columns");
+    expect_refusal("1,2\n3,4,\n", 0, "there.csv:2: more than 2 columns");
+    expect_refusal("1,2\n,4\n", 0, "there.csv:2: column 1 of 2 is missing");
+    expect_refusal("# c\n\n1,2\n3,x\n", 0, "there.csv:4: column 2");
+    expect_refusal("1 2\n", 0, "there.csv:1: column 1 is not a number");
+    expect_refusal("1,2m\n", 0, "there.csv:1: ");
+    expect_refusal("1,nan\n", 0, "there.csv:1: column 2 is nan");
+    expect_refusal("1,-inf\n", 0, "there.csv:1: column 2 is -inf");
+    expect_refusal("1,1e999\n", 0, "there.csv:1: column 2 is inf");
+    expect_refusal("", 0, "holds no numbers");
+    expect_refusal("# nothing\n", 0, "holds no numbers");
+    expect_refusal("a,b\n", 1, "holds no numbers");
+}
+
+/* A trailing comma must not fetch its number from the line below. */
+static void test_a_missing_last_number_is_not_taken_from_the_next_line(void **state)
+{
+    (void)state;
+    expect_refusal("1,2,3\n4,5,\n6,7,8\n", 0, "there.csv:2: column 3 of 3 is missing");
+}
+
+static void test_a_missing_file_is_told_from_a_bad_one(void **state)
+{
+    (void)state;
+    Err err = {0};
+    Table t;
+    assert_int_equal(table_read(&t, "tests/bad/not_there.csv", 0, &err), STATUS_MISSING);
+    assert_non_null(strstr(err.text, "tests/bad/not_there.csv"));
+    assert_int_equal(table_read(&t, "tests", 0, &err), STATUS_MISSING);
+}
+
+static const char DESIGNS[] = "# two designs for two floors\n"
+                              "gap_01_m,gap_02_m,t_base_m,t_top_m\n"
+                              "\n"
+                              "0.01,0,0.012,0.0064\n"
+                              "# the thick one\n"
+                              "0.03,0.04,0.02,0.03\n";
+
+static void write_file(const char *path, const char *text)
+{
+    FILE *f = fopen(path, "w");
+    assert_non_null(f);
+    assert_true(fputs(text, f) >= 0);
+    assert_int_equal(fclose(f), 0);
+}
+
+static void test_a_design_file_gives_its_rows_and_their_lines(void **state)
+{
+    (void)state;
+    Err err = {0};
+    Designs d;
+    char path[] = "/tmp/imtet-design-XXXXXX";
+    const int fd = mkstemp(path);
+    assert_true(fd >= 0);
+    write_file(path, DESIGNS);
+    CHECK_OK(design_read(&d, path, 2, &err), &err);
+    const double want[] = {0.01, 0, 0.012, 0.0064, 0.03, 0.04, 0.02, 0.03};
+    assert_int_equal(d.n, 2);
+    assert_memory_equal(d.x, want, sizeof want);
+    assert_int_equal(d.line[0], 4);
+    assert_int_equal(d.line[1], 6);
+    design_free(&d);
+    remove(path);
+}
+
+static void test_variables_are_named_by_floor_from_the_bottom(void **state)
+{
+    (void)state;
+    static const char *const WANT[] = {"gap_01_m", "gap_02_m", "gap_03_m", "t_base_m", "t_top_m"};
+    char name[TABLE_NAME_MAX];
+    for (int j = 0; j < 5; j++) {
+        design_variable_name(3, j, name);
+        assert_string_equal(name, WANT[j]);
+    }
+}
+
+static Status read_two_floors(const char *path, Err *err)
+{
+    Designs d;
+    const Status status = design_read(&d, path, 2, err);
+    design_free(&d);
+    return status;
+}
+
+static void test_every_bad_design_file_is_refused_with_its_fault(void **state)
+{
+    (void)state;
+    assert_true(all_refused("tests/bad/design", read_two_floors) >= 15);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_numbers_come_out_as_they_were_written),
+        cmocka_unit_test(test_comments_blank_lines_and_foreign_line_ends_are_skipped),
+        cmocka_unit_test(test_a_column_is_found_by_its_name),
+        cmocka_unit_test(test_a_last_line_without_an_end_counts),
+        cmocka_unit_test(test_each_fault_names_file_line_and_column),
+        cmocka_unit_test(test_a_missing_last_number_is_not_taken_from_the_next_line),
+        cmocka_unit_test(test_a_missing_file_is_told_from_a_bad_one),
+        cmocka_unit_test(test_a_design_file_gives_its_rows_and_their_lines),
+        cmocka_unit_test(test_variables_are_named_by_floor_from_the_bottom),
+        cmocka_unit_test(test_every_bad_design_file_is_refused_with_its_fault),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
