@@ -1,0 +1,484 @@
+/* The engines that others are judged by: CVODE with events, and the exact propagator of the tied structure. */
+#include "check.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/linalg.h"
+#include "base/table.h"
+#include "sim/engine.h"
+
+static const char RECORDS[] = "../shared/records/", EARLY_WINDOW[] = "../shared/reference/early_window.csv";
+
+typedef struct {
+    Settings s;
+    Building b;
+    CoreBeam core;
+    SimModel model;
+    double gaps[FLOORS_MAX];
+} Stage;
+
+/* Gap_j = gap j, the Guyan frame, the paper's Table 1 core. */
+static void stage_set(Stage *stage, double gap)
+{
+    Err err;
+    memset(stage, 0, sizeof *stage);
+    settings_defaults(&stage->s);
+    stage->s.core.section = CORE_EFFECTIVE;
+    CHECK_OK(building_load(&stage->b, "guyan", &err), &err);
+    CHECK_OK(core_beam_make(&stage->core, &stage->s, stage->b.n, 1, 1, &err), &err);
+    for (int j = 0; j < stage->b.n; j++)
+        stage->gaps[j] = gap * (j + 1);
+    CHECK_OK(model_create(&stage->model, stage->b.n, &err), &err);
+    CHECK_OK(model_set(&stage->model, &stage->s, &stage->b, &stage->core, stage->gaps, &err), &err);
+}
+
+static void stage_without_core(Stage *stage)
+{
+    Err err;
+    stage_set(stage, 0);
+    CHECK_OK(model_set(&stage->model, &stage->s, &stage->b, NULL, NULL, &err), &err);
+}
+
+static void stage_free(Stage *stage)
+{
+    model_free(&stage->model);
+    building_free(&stage->b);
+}
+
+/* Scaled to 0.3 g and stretched; 0 when the record is not there. */
+static int record_read(Motion *m, const char *name, double stretch)
+{
+    Table t;
+    Err err;
+    char path[256];
+    memset(m, 0, sizeof *m);
+    snprintf(path, sizeof path, "%s%s", RECORDS, name);
+    if (table_read(&t, path, 1, &err) != STATUS_OK) {
+        print_message("%s is not there: skipped\n", path);
+        return 0;
+    }
+    const int column = table_column(&t, "accel_m_s2");
+    double peak = 0;
+    assert_true(column > 0);
+    m->n = t.n_rows;
+    m->accel = malloc(m->n * sizeof *m->accel);
+    assert_non_null(m->accel);
+    for (size_t k = 0; k < m->n; k++) {
+        m->accel[k] = t.values[k * t.n_cols + (size_t)column];
+        peak = fmax(peak, fabs(m->accel[k]));
+    }
+    for (size_t k = 0; k < m->n; k++)
+        m->accel[k] *= 0.3 * 9.81 / peak;
+    m->dt_s = (t.values[t.n_cols] - t.values[0]) * stretch;
+    table_free(&t);
+    return 1;
+}
+
+/* 3 s of two sines, sampled every 50 ms; the last sample is not zero. */
+enum { SINES_N = 61 };
+static Motion sines(double accel[SINES_N], double scale)
+{
+    Motion m = {.accel = accel, .n = SINES_N, .dt_s = 0.05};
+    for (int k = 0; k < SINES_N; k++)
+        accel[k] = scale * (3 * sin(2.5 * m.dt_s * k) + 2 * sin(8.2 * m.dt_s * k));
+    return m;
+}
+
+static SimResult run_cvode(const Stage *stage, const Motion *m, double duration, Accuracy accuracy)
+{
+    SimResult r;
+    Err err;
+    CHECK_OK(engine_cvode(&stage->model, m, &(EngineOptions){duration, accuracy}, &r, &err), &err);
+    return r;
+}
+
+static SimResult run_tied(const Stage *stage, const Motion *m, double duration, Accuracy accuracy)
+{
+    SimResult r;
+    Err err;
+    CHECK_OK(engine_tied(&stage->s, &stage->b, &stage->core, m, &(EngineOptions){duration, accuracy}, &r, &err), &err);
+    return r;
+}
+
+static void assert_ok(const SimResult *r)
+{
+    if (r->outcome != RUN_OK)
+        print_error("%s\n", r->reason);
+    assert_int_equal(r->outcome, RUN_OK);
+}
+
+/* The printed value, one unit of its last common digit either way. */
+static void assert_digits(const char *quantity, double actual)
+{
+    FILE *f = fopen(EARLY_WINDOW, "r");
+    char line[200], name[40];
+    double wanted;
+    int digits, found = 0;
+    assert_non_null(f);
+    while (fgets(line, sizeof line, f))
+        if (sscanf(line, "%39[^,],%lf,%*[^,],%d", name, &wanted, &digits) == 3 && !strcmp(name, quantity)) {
+            const double unit = pow(10, floor(log10(wanted)) + 1 - digits);
+            print_message("%-12s %.9g, printed %.9g\n", quantity, actual, wanted);
+            assert_true(fabs(actual - wanted) <= 1.001 * unit);
+            found = 1;
+        }
+    fclose(f);
+    assert_int_equal(found, 1);
+}
+
+static void test_the_early_window_has_the_digits_that_two_integrators_share(void **state)
+{
+    (void)state;
+    Motion m;
+    Stage stage;
+    FILE *printed = fopen(EARLY_WINDOW, "r");
+    if (!printed)
+        print_message("%s is not there: skipped\n", EARLY_WINDOW);
+    if (!printed || (fclose(printed), !record_read(&m, "northridge_sylmar_ns.csv", 3.0)))
+        skip();
+    stage_set(&stage, 0.008);
+    const SimResult r = run_cvode(&stage, &m, 11, ACCURACY_FINE);
+    assert_ok(&r);
+    assert_digits("j1", r.j1_m);
+    assert_digits("j2", r.j2_m);
+    assert_digits("j3", r.j3_g);
+    assert_digits("ed1", r.ed1_pct);
+    assert_digits("ed5_10", r.ed5_10_pct);
+    assert_digits("edcs", r.edcs_pct);
+    assert_digits("input_energy", r.input_energy_j);
+    assert_true(r.energy_residual < 1e-7);
+    assert_true(r.impacts > 90);
+    stage_free(&stage);
+    free(m.accel);
+}
+
+static void test_the_bare_building_in_kobe_moves_as_printed(void **state)
+{
+    (void)state;
+    Motion m;
+    Stage stage;
+    if (!record_read(&m, "kobe_jma_ns.csv", 3.1))
+        skip();
+    stage_without_core(&stage);
+    const SimResult r = run_cvode(&stage, &m, (double)(m.n - 1) * m.dt_s, ACCURACY_COARSE);
+    assert_ok(&r);
+    assert_close(r.j1_m, 1.648, 0.003);
+    assert_close(r.j2_m, 0.1475, 0.003);
+    assert_close(r.j3_g, 0.901, 0.003);
+    assert_close(r.ed1_pct, 88.8, 0.003);
+    assert_int_equal(r.impacts, 0);
+    assert_true(r.edcs_pct == 0);
+    assert_true(r.energy_residual < 1e-4);
+    stage_free(&stage);
+    free(m.accel);
+}
+
+/* One free mass, one free core mass at rest. A triangular pulse of 2 s brings the mass to 1 m/s and 1 m; it has passed
+ * the remaining half metre and closes the gap at t = 2.5 s. The core does not feel the ground (gamma = 0). */
+static const double IMPACT_AT = 2.5, MASS = 1e5, CORE_MASS = 3e5, REDUCED = 0.75e5;
+
+static SimResult single_impact(double a, double duration)
+{
+    SimModel model;
+    SimResult r;
+    Err err;
+    double pulse[] = {0, -1, 0};
+    const Motion m = {.accel = pulse, .n = 3, .dt_s = 1};
+    CHECK_OK(model_create(&model, 1, &err), &err);
+    model.nb = model.nc = 1;
+    model.m = 2;
+    model.m_pad = 8;
+    memset(model.R, 0, sizeof *model.R * 8 * (size_t)model.n_pad);
+    memset(model.RT, 0, sizeof *model.RT * 8 * (size_t)model.n_pad);
+    model.R[0] = model.RT[0] = 1 / sqrt(MASS);
+    model.R[model.n_pad] = model.RT[1] = -1 / sqrt(CORE_MASS);
+    for (int i = 0; i < 8; i++)
+        model.omega[i] = model.zeta[i] = model.gamma[i] = 0;
+    model.gamma[0] = sqrt(MASS);
+    model.gap[0] = 1.5;
+    model.contact = (Contact){.k = 4.8650e10, .a = a, .v0_floor = 1e-3};
+    CHECK_OK(engine_cvode(&model, &m, &(EngineOptions){duration, ACCURACY_FINE}, &r, &err), &err);
+    assert_ok(&r);
+    model_free(&model);
+    return r;
+}
+
+/* lost = m v^2 (1 - e^2) / 2 with the reduced mass m, and e from a (1+e) = ln((1+a)/(1-a e)). */
+static void test_an_isolated_impact_rebounds_as_the_law_integrates(void **state)
+{
+    (void)state;
+    static const double TABLE[][2] = {{.3, .58128804}, {.5, .66296220}, {.7, .76799979}, {.9, .90901574}};
+    for (size_t i = 0; i < sizeof TABLE / sizeof TABLE[0]; i++) {
+        const double a = 1.5 * (1 - TABLE[i][0]);
+        const SimResult r = single_impact(a, IMPACT_AT + 0.1);
+        const double e = sqrt(1 - 2 * r.contact_loss_j / REDUCED);
+        print_message("r = %.1f: rebound %.9f, error %.1e\n", TABLE[i][0], e, e / TABLE[i][1] - 1);
+        assert_close(e, TABLE[i][1], 1e-6);
+        assert_close(a * (1 + e), log((1 + a) / (1 - a * e)), 1e-6);
+        assert_close(r.input_energy_j, 0.5 * MASS, 1e-8);
+        assert_int_equal(r.impacts, 1);
+        assert_true(fabs(r.clamp_j) < 1e-6 && r.contact_stored_j == 0 && r.energy_residual < 1e-7);
+    }
+}
+
+/* Hertz: p_max = (5 m v^2 / 4 k)^0.4, duration 2.943275184 p_max / v; with r = 0.7 0.902920 and 1.03332 times that. */
+static void test_an_isolated_impact_is_as_deep_and_as_long_as_hertz_says(void **state)
+{
+    (void)state;
+    const struct {
+        double a, depth, length, tolerance;
+    } law[] = {{0, 1, 1, 1e-6}, {0.45, 0.902920, 1.03332, 1e-5}};
+    const double depth = pow(1.25 * REDUCED / 4.8650e10, 0.4), length = 2.943275184 * depth;
+    for (int i = 0; i < 2; i++) {
+        const double end = law[i].length * length, margin = end * law[i].tolerance;
+        const SimResult before = single_impact(law[i].a, IMPACT_AT + end - margin);
+        const SimResult after = single_impact(law[i].a, IMPACT_AT + end + margin);
+        assert_close(after.penetration_max_m, law[i].depth * depth, law[i].tolerance);
+        assert_true(before.contact_stored_j > 0);
+        assert_true(after.contact_stored_j == 0);
+    }
+}
+
+static void test_a_mirrored_motion_has_the_mirrored_answer(void **state)
+{
+    (void)state;
+    Stage stage;
+    double accel[SINES_N], mirrored[SINES_N];
+    const Motion m = sines(accel, 1), mirror = sines(mirrored, -1);
+    stage_set(&stage, 0.002);
+    const SimResult r = run_cvode(&stage, &m, 1.2, ACCURACY_STANDARD);
+    const SimResult s = run_cvode(&stage, &mirror, 1.2, ACCURACY_STANDARD);
+    assert_ok(&r);
+    assert_true(r.impacts > 10);
+    assert_int_equal(r.impacts, s.impacts);
+    assert_close(s.j1_m, r.j1_m, 1e-12);
+    assert_close(s.j2_m, r.j2_m, 1e-12);
+    assert_close(s.j3_g, r.j3_g, 1e-12);
+    assert_close(s.edcs_pct, r.edcs_pct, 1e-12);
+    assert_true(r.energy_residual < 1e-5);
+    stage_free(&stage);
+}
+
+static void test_finer_tolerances_come_nearer_to_the_finest(void **state)
+{
+    (void)state;
+    Stage stage;
+    double accel[SINES_N];
+    const Motion m = sines(accel, 1);
+    stage_set(&stage, 0.002);
+    const SimResult fine = run_cvode(&stage, &m, 0.8, ACCURACY_FINE);
+    const SimResult standard = run_cvode(&stage, &m, 0.8, ACCURACY_STANDARD);
+    const SimResult coarse = run_cvode(&stage, &m, 0.8, ACCURACY_COARSE);
+    assert_true(fine.impacts > 5);
+    assert_true(fine.energy_residual < 1e-7);
+    assert_close(standard.j3_g, fine.j3_g, 1e-5);
+    assert_close(standard.edcs_pct, fine.edcs_pct, 1e-5);
+    assert_close(coarse.j3_g, fine.j3_g, 1e-3);
+    assert_close(coarse.edcs_pct, fine.edcs_pct, 1e-3);
+    stage_free(&stage);
+}
+
+/* Every floor rests on one side or the other; leaving one is touching the other. */
+static void test_gaps_of_zero_close_their_books(void **state)
+{
+    (void)state;
+    Stage stage;
+    double accel[SINES_N];
+    const Motion m = sines(accel, 1);
+    stage_set(&stage, 0);
+    const SimResult r = run_cvode(&stage, &m, 0.7, ACCURACY_STANDARD);
+    assert_ok(&r);
+    assert_true(r.impacts >= stage.b.n);
+    assert_true(r.energy_residual < 1e-4);
+    stage_free(&stage);
+}
+
+static void test_no_shaking_is_no_response(void **state)
+{
+    (void)state;
+    Stage stage;
+    double accel[SINES_N];
+    const Motion m = sines(accel, 0);
+    stage_set(&stage, 0.01);
+    const SimResult r = run_cvode(&stage, &m, 1, ACCURACY_STANDARD), t = run_tied(&stage, &m, 1, ACCURACY_STANDARD);
+    assert_ok(&r);
+    assert_ok(&t);
+    assert_true(r.j1_m == 0 && r.j3_g == 0 && r.ed1_pct == 0 && r.energy_residual == 0);
+    assert_true(t.j1_m == 0 && t.j3_g == 0 && t.ed1_pct == 0 && t.energy_residual == 0);
+    stage_free(&stage);
+}
+
+static void test_a_motion_with_nan_is_a_failed_outcome(void **state)
+{
+    (void)state;
+    Stage stage;
+    double accel[SINES_N];
+    const Motion m = sines(accel, 1);
+    accel[7] = NAN;
+    stage_set(&stage, 0.002);
+    const SimResult r = run_cvode(&stage, &m, 3, ACCURACY_STANDARD), t = run_tied(&stage, &m, 3, ACCURACY_STANDARD);
+    assert_int_equal(r.outcome, RUN_NOT_FINITE);
+    assert_int_equal(t.outcome, RUN_NOT_FINITE);
+    assert_true(r.reason[0] && t.reason[0]);
+    stage_free(&stage);
+}
+
+enum { N = 20, PARTS = 100 };
+
+typedef struct {
+    double q, v;
+} Oscillator;
+
+/* The modes of K + Kc, M + Mc without damping, and the peaks of their sum. */
+typedef struct {
+    double omega[N], phi[N * N], gamma[N];
+    Oscillator mode[N];
+    double j1, j2, j3;
+} Pair;
+
+static void pair_set(Pair *pair, const Stage *stage)
+{
+    static double K[N * N], M[N * N];
+    Err err;
+    memset(pair, 0, sizeof *pair);
+    for (int i = 0; i < N * N; i++) {
+        K[i] = stage->b.K[i] + stage->core.K[i];
+        M[i] = stage->b.M[i] + stage->core.M[i];
+    }
+    CHECK_OK(linalg_modes(N, K, M, pair->omega, pair->phi, &err), &err);
+    for (int i = 0; i < N; i++)
+        for (int j = 0; j < N; j++)
+            for (int k = 0; k < N; k++)
+                pair->gamma[i] += pair->phi[j * N + i] * M[j * N + k];
+}
+
+/* q'' + w^2 q = -gamma (a + slope t): a free oscillation about the line -gamma (a + slope t) / w^2. */
+static Oscillator swing(Oscillator o, double w, double gamma, double a, double slope, double t)
+{
+    const double line = -gamma / (w * w), x = o.q - line * a, v = o.v - line * slope;
+    const double c = cos(w * t), s = sin(w * t);
+    return (Oscillator){x * c + v / w * s + line * (a + slope * t), v * c - w * x * s + line * slope};
+}
+
+/* Absolute acceleration: sum phi (q'' + gamma a) = -sum phi w^2 q. */
+static void pair_note_peaks(Pair *pair, const Oscillator mode[N])
+{
+    double below = 0;
+    for (int j = 0; j < N; j++) {
+        double u = 0, absolute = 0;
+        for (int i = 0; i < N; i++) {
+            u += pair->phi[j * N + i] * mode[i].q;
+            absolute -= pair->phi[j * N + i] * pair->omega[i] * pair->omega[i] * mode[i].q;
+        }
+        pair->j1 = fmax(pair->j1, fabs(u));
+        pair->j2 = fmax(pair->j2, fabs(u - below));
+        pair->j3 = fmax(pair->j3, fabs(absolute) / 9.81);
+        below = u;
+    }
+}
+
+static void pair_shake(Pair *pair, const Motion *m)
+{
+    for (size_t k = 0; k + 1 < m->n; k++) {
+        const double a = m->accel[k], slope = (m->accel[k + 1] - a) / m->dt_s;
+        Oscillator now[N];
+        for (int part = 1; part <= PARTS; part++) {
+            for (int i = 0; i < N; i++)
+                now[i] = swing(pair->mode[i], pair->omega[i], pair->gamma[i], a, slope, m->dt_s * part / PARTS);
+            pair_note_peaks(pair, now);
+        }
+        memcpy(pair->mode, now, sizeof now);
+    }
+}
+
+static void test_without_damping_the_tied_pair_is_a_sum_of_closed_forms(void **state)
+{
+    (void)state;
+    Stage stage;
+    Pair pair;
+    double accel[SINES_N], energy = 0;
+    const Motion m = sines(accel, 1);
+    stage_set(&stage, 0);
+    stage.s.building.damping = stage.s.core.damping = 0;
+    pair_set(&pair, &stage);
+    pair_shake(&pair, &m);
+    for (int i = 0; i < N; i++)
+        energy += 0.5 * (pow(pair.mode[i].v, 2) + pow(pair.omega[i] * pair.mode[i].q, 2));
+    const SimResult r = run_tied(&stage, &m, 3, ACCURACY_FINE);
+    assert_ok(&r);
+    assert_close(r.j1_m, pair.j1, 1e-5);
+    assert_close(r.j2_m, pair.j2, 1e-5);
+    assert_close(r.j3_g, pair.j3, 1e-5);
+    assert_close(r.kinetic_strain_j, energy, 1e-9);
+    assert_close(r.input_energy_j, energy, 1e-8);
+    assert_true(r.damped_building_j == 0 && r.damped_core_j == 0);
+    stage_free(&stage);
+}
+
+static void test_the_books_of_the_tied_pair_close(void **state)
+{
+    (void)state;
+    Stage stage;
+    double accel[SINES_N];
+    const Motion m = sines(accel, 1);
+    stage_set(&stage, 0);
+    const SimResult fine = run_tied(&stage, &m, 2.345, ACCURACY_FINE);
+    const SimResult coarse = run_tied(&stage, &m, 2.345, ACCURACY_COARSE);
+    assert_ok(&fine);
+    assert_true(fine.energy_residual < 1e-8 && coarse.energy_residual < 1e-6);
+    assert_true(fine.edcs_pct > 1);
+    assert_close(coarse.kinetic_strain_j, fine.kinetic_strain_j, 1e-10);
+    assert_close(coarse.j3_g, fine.j3_g, 1e-4);
+    assert_close(coarse.edcs_pct, fine.edcs_pct, 1e-6);
+    stage_free(&stage);
+}
+
+/* A core of next to no stiffness and mass leaves the bare building; cut short between samples, and run past the end. */
+static void test_tied_to_next_to_nothing_the_building_is_the_bare_one(void **state)
+{
+    (void)state;
+    Stage stage;
+    Err err;
+    double accel[SINES_N];
+    const Motion m = sines(accel, 1);
+    static const double DURATION[] = {1.234, 3, 4.321};
+    stage_without_core(&stage);
+    stage.s.core.area_base_m2 = stage.s.core.area_top_m2 = 1e-9;
+    stage.s.core.inertia_base_m4 = stage.s.core.inertia_top_m4 = 1e-9;
+    CHECK_OK(core_beam_make(&stage.core, &stage.s, stage.b.n, 1, 1, &err), &err);
+    for (size_t i = 0; i < sizeof DURATION / sizeof DURATION[0]; i++) {
+        const SimResult t = run_tied(&stage, &m, DURATION[i], ACCURACY_FINE);
+        const SimResult r = run_cvode(&stage, &m, DURATION[i], ACCURACY_FINE);
+        assert_ok(&t);
+        assert_ok(&r);
+        assert_close(t.j1_m, r.j1_m, 1e-7);
+        assert_close(t.j2_m, r.j2_m, 1e-6);
+        assert_close(t.j3_g, r.j3_g, 1e-5);
+        assert_close(t.kinetic_strain_j, r.kinetic_strain_j, 1e-7);
+        assert_close(t.input_energy_j, r.input_energy_j, 1e-7);
+        for (int k = 0; k < 10; k++)
+            assert_close(t.mode_share_pct[k], r.mode_share_pct[k], 1e-5);
+    }
+    stage_free(&stage);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_the_early_window_has_the_digits_that_two_integrators_share),
+        cmocka_unit_test(test_the_bare_building_in_kobe_moves_as_printed),
+        cmocka_unit_test(test_an_isolated_impact_rebounds_as_the_law_integrates),
+        cmocka_unit_test(test_an_isolated_impact_is_as_deep_and_as_long_as_hertz_says),
+        cmocka_unit_test(test_a_mirrored_motion_has_the_mirrored_answer),
+        cmocka_unit_test(test_finer_tolerances_come_nearer_to_the_finest),
+        cmocka_unit_test(test_gaps_of_zero_close_their_books),
+        cmocka_unit_test(test_no_shaking_is_no_response),
+        cmocka_unit_test(test_a_motion_with_nan_is_a_failed_outcome),
+        cmocka_unit_test(test_without_damping_the_tied_pair_is_a_sum_of_closed_forms),
+        cmocka_unit_test(test_the_books_of_the_tied_pair_close),
+        cmocka_unit_test(test_tied_to_next_to_nothing_the_building_is_the_bare_one),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
