@@ -330,6 +330,9 @@ static void test_simulate_gives_the_same_numbers_as_json_and_as_csv(void **state
     json_t *list = json_of("simulate configs/quick.ini" SHORT "--design @/two.csv --json");
     free(output_of("simulate configs/quick.ini" SHORT "--design @/two.csv --csv @/results.csv"));
     char *csv = read_in_place("results.csv"), *line = csv, *rest = csv;
+    char *streamed = output_of("simulate configs/quick.ini" SHORT "--design @/two.csv --csv -");
+    assert_string_equal(streamed, csv);
+    free(streamed);
     assert_int_equal(json_array_size(list), 2);
     line = strsep(&rest, "\n");
     assert_string_equal(line,

@@ -12,16 +12,16 @@ Status output_open(Output *o, const char *path, Err *err)
 {
     struct stat there;
     memset(o, 0, sizeof *o);
-    if (strcmp(path, "-") == 0)
-        path = "/dev/stdout";
-    const int in_place = lstat(path, &there) == 0 && !S_ISREG(there.st_mode);
+    const int to_stdout = strcmp(path, "-") == 0;
+    const int in_place = to_stdout || (lstat(path, &there) == 0 && !S_ISREG(there.st_mode));
     const int n = snprintf(o->path, sizeof o->path, "%s", path);
     const int m = snprintf(o->temporary, sizeof o->temporary, "%s.%ld.tmp", path, (long)getpid());
     if (n >= PATH_MAX || m >= PATH_MAX)
         return fail(err, STATUS_IO, "%.200s...: the path is too long", path);
     if (in_place)
         o->temporary[0] = 0;
-    o->stream = fopen(in_place ? o->path : o->temporary, "w");
+    /* Not /dev/stdout: opening that anew would cut off what a file behind it holds already. */
+    o->stream = to_stdout ? fdopen(dup(STDOUT_FILENO), "w") : fopen(in_place ? o->path : o->temporary, "w");
     if (!o->stream)
         return fail(err, STATUS_IO, "%s: cannot be written: %s", path, strerror(errno));
     return STATUS_OK;
