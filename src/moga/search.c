@@ -16,7 +16,7 @@
 
 enum {
     INNER_GENERATIONS = 10, /* on the surface, between two batches */
-    BATCH_SHARE = 6,        /* a batch is this part of the population ... */
+    BATCH_SHARE = 8,        /* a batch is this part of the population ... */
     CHECK_SHARE = 4,        /* ... and this part of it checks predictions that stand */
     AGE_MAX = 3             /* a prediction that stood so often is checked first */
 };
@@ -179,12 +179,13 @@ static void make_offspring(Search *s)
         breed(s, &s->pool, s->config->population, step);
         if (!guided)
             break;
-        surface_predict(s->surface, &s->pool, n_parents);
+        surface_predict(s->surface, &s->pool, n_parents, 0);
         survive(s, &s->pool, 1 + step);
     }
     for (size_t i = 0; i < s->pool.n; i++)
         if (s->pool.row[i] == PREDICTED)
             group_copy_member(&s->offspring, &s->pool, i);
+    surface_predict(s->surface, &s->offspring, 0, 1);
 }
 
 static int is_trusted(const Search *s, const Group *g, size_t i)
@@ -262,7 +263,7 @@ static Status next_generation(Search *s, Err *err)
         return sample_again(s, err);
     measure_front(s);
     TRY(surface_fit(s->surface, &s->archive, s->infill, err));
-    surface_predict(s->surface, &s->population, 0);
+    surface_predict(s->surface, &s->population, 0, 0);
     make_offspring(s);
     TRY(simulate_batch(s, choose_batch(s), KIND_INFILL, err));
     renew_population(s, first_new);
@@ -373,6 +374,8 @@ static Status create(Search *s, Err *err)
     const Problem *p = s->problem;
     const size_t population = s->config->population, initial = s->config->initial;
     const size_t n_pool = initial > 3 * population ? initial : 3 * population;
+    const size_t most = s->config->max_evals > 4 ? s->config->max_evals : 4; /* centres there can ever be */
+    const size_t centres = s->config->surrogate_max < most ? s->config->surrogate_max : most;
     size_t outer, inner;
     s->batch_max = initial > population ? initial : population;
     directions_choose(p->n_obj, population, &outer, &inner);
@@ -380,7 +383,7 @@ static Status create(Search *s, Err *err)
     TRY(archive_init(&s->archive, 2 * initial, p->n_var, p->n_obj, p->n_con, err));
     TRY(survival_create(&s->survival, n_pool, &s->directions, err));
     TRY(infill_create(&s->infill, n_pool, &s->directions, err));
-    TRY(surface_create(&s->surface, p, s->config->surrogate_max, n_pool, err));
+    TRY(surface_create(&s->surface, p, centres, n_pool, err));
     TRY(group_create(&s->population, 2 * population, p->n_var, p->n_obj, err));
     TRY(group_create(&s->offspring, n_pool, p->n_var, p->n_obj, err));
     TRY(group_create(&s->pool, n_pool, p->n_var, p->n_obj, err));

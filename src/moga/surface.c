@@ -198,7 +198,7 @@ double surface_error(const Surface *s)
     return worst;
 }
 
-void surface_predict(Surface *s, Group *group, size_t first)
+void surface_predict(Surface *s, Group *group, size_t first, int with_uncertainty)
 {
     const Problem *p = s->problem;
     if (!s->fitted)
@@ -209,8 +209,8 @@ void surface_predict(Surface *s, Group *group, size_t first)
             continue;
         double *u = s->u + i * p->n_var, *f = s->f + i * s->n_out, *e = s->e + i * s->n_out, worst = 0.0;
         to_unit_cube(p, group->X + i * p->n_var, u);
-        rbf_eval(s->rbf, u, f, e);
-        for (size_t k = 0; k < s->n_out; k++)
+        rbf_eval(s->rbf, u, f, with_uncertainty ? e : NULL);
+        for (size_t k = 0; with_uncertainty && k < s->n_out; k++)
             worst = fmax(worst, e[k] / s->range[k]);
         memcpy(group->F + i * p->n_obj, f, p->n_obj * sizeof *f);
         group->violation[i] = violation_of(p->n_con, f + p->n_obj);

@@ -30,7 +30,8 @@ int surface_stands(const Surface *s);
 /* Median leave-one-out error as a share of the objective's range, of the worst objective; NaN: no surface. */
 double surface_error(const Surface *s);
 
-/* Fills F, violation and uncertainty of the members first..n-1 of the group that are not simulated. */
-void surface_predict(Surface *s, Group *group, size_t first);
+/* Fills F and violation of the members first..n-1 of the group that are not simulated, and their uncertainty where
+ * that is wanted: it costs a third more. */
+void surface_predict(Surface *s, Group *group, size_t first, int with_uncertainty);
 
 #endif
