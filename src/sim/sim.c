@@ -25,13 +25,6 @@ struct SimWorker {
     FastWork *fast;
 };
 
-/* What the accuracy setting means for the fast engine. */
-static const FastKnobs ACCURACY[] = {
-    [ACCURACY_COARSE] = {1, 1e-3, 1e-2},
-    [ACCURACY_STANDARD] = {2, 1e-4, 1e-3},
-    [ACCURACY_FINE] = {24, 1e-12, 1e-6},
-};
-
 /* A run whose books stay open is repeated with so many times the steps before it is given up. */
 static const double REFINEMENTS[] = {1, 4, 16};
 
@@ -159,7 +152,7 @@ static void run_fast(SimWorker *w, SimResult *result)
 {
     const Scene *scene = w->scene;
     for (size_t i = 0; i < sizeof REFINEMENTS / sizeof REFINEMENTS[0]; i++) {
-        FastKnobs knobs = ACCURACY[scene->options.accuracy];
+        FastKnobs knobs = fast_knobs(scene->options.accuracy);
         knobs.steps_per_contact *= REFINEMENTS[i];
         fast_run(w->fast, &w->model, scene->motion, scene->options.duration, &knobs, result);
         judge(result, scene->settings.sim.residual_max);

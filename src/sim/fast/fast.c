@@ -1,22 +1,9 @@
 #include "sim/fast/fast.h"
 
 #include <stdlib.h>
-#include <string.h>
 
+#include "base/carve.h"
 #include "sim/fast/kernel.h"
-
-/* Hands out slices of one block, in doubles; without a base it only counts. */
-typedef struct {
-    char *base;
-    size_t used;
-} Carve;
-
-static void *carve(Carve *c, size_t count)
-{
-    void *slice = c->base ? c->base + c->used : NULL;
-    c->used += (count * sizeof(double) + 63) & ~(size_t)63;
-    return slice;
-}
 
 static void layout(FastWork *k, Carve *c)
 {
@@ -28,21 +15,21 @@ static void layout(FastWork *k, Carve *c)
                            &k->u0d, &k->u1,  &k->u1d, &k->a0,  &k->a0d, &k->a1,  &k->a1d,    &k->e_u,    &k->e_w,
                            &k->e_a, &k->peak_u, &k->peak_d, &k->peak_a, &k->c0, &k->c0d, &k->c1, &k->c1d};
     for (size_t i = 0; i < sizeof modes / sizeof modes[0]; i++)
-        *modes[i] = carve(c, m_max);
+        *modes[i] = carve(c, m_max, sizeof(double));
     for (size_t i = 0; i < sizeof floors / sizeof floors[0]; i++)
-        *floors[i] = carve(c, n_pad);
+        *floors[i] = carve(c, n_pad, sizeof(double));
     for (int i = 0; i < 9; i++)
-        k->seen[i / 3][i % 3] = carve(c, n_pad);
-    k->R = carve(c, m_max * n_pad);
-    k->R_abs = carve(c, m_max * n_pad);
-    k->RT = carve(c, m_max * n_pad);
+        k->seen[i / 3][i % 3] = carve(c, n_pad, sizeof(double));
+    k->R = carve(c, m_max * n_pad, sizeof(double));
+    k->R_abs = carve(c, m_max * n_pad, sizeof(double));
+    k->RT = carve(c, m_max * n_pad, sizeof(double));
     for (int i = 0; i <= LEVEL_MAX; i++) {
         Level *l = &k->level[i];
-        l->coef = carve(c, FLOW_ROWS * m_max);
-        l->slow = carve(c, m_max);
-        l->kappa = carve(c, m_max);
-        l->kappa_accel = carve(c, m_max);
-        l->response = carve(c, RESPONSES * n * n_pad);
+        l->coef = carve(c, FLOW_ROWS * m_max, sizeof(double));
+        l->slow = carve(c, m_max, sizeof(double));
+        l->kappa = carve(c, m_max, sizeof(double));
+        l->kappa_accel = carve(c, m_max, sizeof(double));
+        l->response = carve(c, RESPONSES * n * n_pad, sizeof(double));
     }
 }
 
@@ -57,14 +44,12 @@ Status fast_create(FastWork **out, int n_floors, Err *err)
     k->nf = k->n_pad / LANES;
     Carve count = {0};
     layout(k, &count);
-    k->store = aligned_alloc(64, count.used);
+    k->store = carve_store(&count);
     if (!k->store) {
         free(k);
         return fail(err, STATUS_NO_MEMORY, "fast: no memory for %zu bytes of work space", count.used);
     }
-    memset(k->store, 0, count.used);
-    Carve slices = {.base = k->store};
-    layout(k, &slices);
+    layout(k, &(Carve){.base = k->store});
     *out = k;
     return STATUS_OK;
 }
@@ -86,6 +71,16 @@ static FastKernel *best_kernel(void)
         return fast_kernel_avx2;
 #endif
     return fast_kernel_base;
+}
+
+FastKnobs fast_knobs(Accuracy accuracy)
+{
+    static const FastKnobs KNOBS[] = {
+        [ACCURACY_COARSE] = {1, 1e-3, 1e-2},
+        [ACCURACY_STANDARD] = {2, 1e-4, 1e-3},
+        [ACCURACY_FINE] = {80, 1e-12, 1e-6},
+    };
+    return KNOBS[accuracy];
 }
 
 void fast_run(FastWork *work, const SimModel *model, const Motion *motion, double duration, const FastKnobs *knobs,

@@ -32,6 +32,8 @@ typedef struct {
     double peak_tolerance;    /* share of a peak that may hide inside a flight step */
 } FastKnobs;
 
+FastKnobs fast_knobs(Accuracy accuracy);
+
 void fast_run(FastWork *work, const SimModel *model, const Motion *motion, double duration, const FastKnobs *knobs,
               SimResult *result);
 

@@ -369,6 +369,12 @@ static void contact_predict(FastWork *k, const Level *l, double a0, double a1)
     rows_times(2, (const v8 *)k->R, k->nf, k->m_pad, state, floors);
 }
 
+/* What both walls do to one floor over a step; as Touch, in w instead of p. */
+typedef struct {
+    double end, mean, end_w, end_v, mean_w, mean_v, v0, lost, clamped;
+    int closings, floored;
+} Press;
+
 /* Gives floor j the force f1 at the end and the bubble fb; w1 and w1' of all floors follow. */
 static void apply_force(FastWork *k, const Level *l, int j, double f1, double fb)
 {
@@ -383,37 +389,68 @@ static void apply_force(FastWork *k, const Level *l, int j, double f1, double fb
     scalars(k->fb)[j] = fb;
 }
 
+/* The force law along the path of floor j to w1, w1', both walls: a path may leave one and reach the other. Forces push
+ * the floor to the negative side. */
+static void press(FastWork *k, const Level *l, int j, double w1, double w1d, Press *out)
+{
+    const double w0 = scalars(k->w)[j], w0d = scalars(k->wd)[j], gap = scalars(k->gap)[j], third = l->h / 3;
+    const double b1 = w0 + third * w0d, b2 = w1 - third * w1d; /* with w0 and w1 they enclose the path */
+    const double highest = fmax(fmax(w0, b1), fmax(b2, w1)), lowest = fmin(fmin(w0, b1), fmin(b2, w1));
+    *out = (Press){0};
+    for (int wall = 0; wall < 2; wall++) {
+        const double s = wall == 0 ? 1 : -1;
+        if (!(wall == 0 ? highest > gap : -lowest > gap) && isfinite(w1))
+            continue;
+        Touch t;
+        touch_step(&t, &k->model->contact, l->h, s * w0 - gap, s * w0d, s * w1 - gap, s * w1d, k->side[j] == s,
+                   fmax(k->v0[j], k->model->contact.v0_floor));
+        k->forces++;
+        out->end += s * t.end;
+        out->mean += s * t.mean;
+        out->end_w += t.end_p;
+        out->end_v += t.end_v;
+        out->mean_w += t.mean_p;
+        out->mean_v += t.mean_v;
+        out->lost += t.lost;
+        out->clamped += t.clamped;
+        out->closings += t.closings;
+        out->floored += t.floored;
+        if (s * w1 > gap)
+            out->v0 = t.v0;
+    }
+}
+
 /* One step of Newton's method for the force at the end, F, and its mean, M, of floor j with all other floors held:
- *   p1 = p - A F - B M,  p1' = p' - C F - D M,  (F, M) = law along the path to p1, p1'
- * Returns the change in w1 and w1' relative to what the step moves, or -1 when there is none. */
-static double improve_floor(FastWork *k, const Level *l, int j, int side, Touch *t)
+ *   w1 = w - A F - B M,  w1' = w' - C F - D M,  (F, M) = law along the path to w1, w1'
+ * Returns the change in w1 and w1' relative to what the step moves, or NaN when there is none. */
+static double improve_floor(FastWork *k, const Level *l, int j, Press *t)
 {
     const int at = j * k->n_pad + j, size = k->n * k->n_pad;
     const double *r = l->response;
-    const double s = side, gap = scalars(k->gap)[j], p0 = s * scalars(k->w)[j] - gap, v0 = s * scalars(k->wd)[j];
-    const double f0 = -s * scalars(k->f0)[j], w_b = r[BUBBLE_W * size + at], v_b = r[BUBBLE_V * size + at];
+    const double f0 = -scalars(k->f0)[j], w_b = r[BUBBLE_W * size + at], v_b = r[BUBBLE_V * size + at];
     const double A = r[RAMP_W * size + at] - 3 * w_b, B = 6 * w_b, C = r[RAMP_V * size + at] - 3 * v_b, D = 6 * v_b;
-    const double F = -s * scalars(k->f1)[j], M = (-s * scalars(k->fb)[j] + 3 * f0 + 3 * F) / 6;
-    const double p1 = s * scalars(k->w1)[j] - gap, v1 = s * scalars(k->wd1)[j];
-    touch_step(t, &k->model->contact, l->h, p0, v0, p1, v1, k->side[j] != 0, k->v0[j]);
-    k->forces++;
+    const double F = -scalars(k->f1)[j], M = (-scalars(k->fb)[j] + 3 * f0 + 3 * F) / 6;
+    const double w1 = scalars(k->w1)[j], w1d = scalars(k->wd1)[j];
+    press(k, l, j, w1, w1d, t);
     const double rF = F - t->end, rM = M - t->mean;
-    const double J11 = 1 + t->end_p * A + t->end_v * C, J12 = t->end_p * B + t->end_v * D;
-    const double J21 = t->mean_p * A + t->mean_v * C, J22 = 1 + t->mean_p * B + t->mean_v * D;
+    const double J11 = 1 + t->end_w * A + t->end_v * C, J12 = t->end_w * B + t->end_v * D;
+    const double J21 = t->mean_w * A + t->mean_v * C, J22 = 1 + t->mean_w * B + t->mean_v * D;
     const double det = J11 * J22 - J12 * J21;
     const double dF = (rF * J22 - rM * J12) / det, dM = (J11 * rM - J21 * rF) / det;
     if (!isfinite(dF) || !isfinite(dM))
-        return -1;
-    apply_force(k, l, j, -s * (F - dF), -s * (6 * (M - dM) - 3 * f0 - 3 * (F - dF)));
-    const double free_p = p1 + A * F + B * M, free_v = v1 + C * F + D * M;
-    const double scale_v = fabs(v0) + fabs(free_v), scale_p = fabs(p0) + fabs(free_p) + l->h * scale_v;
-    return fmax((fabs(A * dF) + fabs(B * dM)) / scale_p, (fabs(C * dF) + fabs(D * dM)) / scale_v);
+        return NAN;
+    apply_force(k, l, j, -(F - dF), -(6 * (M - dM) - 3 * f0 - 3 * (F - dF)));
+    /* what moves: the penetration, not the distance from the middle of the gap */
+    const double free_w = w1 + A * F + B * M, free_v = w1d + C * F + D * M, w0 = scalars(k->w)[j];
+    const double gap = scalars(k->gap)[j], scale_v = fabs(scalars(k->wd)[j]) + fabs(free_v);
+    const double scale_w = fabs(fabs(w0) - gap) + fabs(fabs(free_w) - gap) + l->h * scale_v;
+    return fmax((fabs(A * dF) + fabs(B * dM)) / scale_w, (fabs(C * dF) + fabs(D * dM)) / scale_v);
 }
 
 typedef struct {
-    int n, floor[FLOORS_PAD_MAX], side[FLOORS_PAD_MAX];
+    int n, floor[FLOORS_PAD_MAX];
     unsigned char listed[FLOORS_PAD_MAX];
-    Touch touch[FLOORS_PAD_MAX];
+    Press press[FLOORS_PAD_MAX];
 } Active;
 
 /* Lists the floors whose path may leave the gap; returns how many were new. */
@@ -428,14 +465,8 @@ static int find_closings(FastWork *k, const Level *l, Active *active)
             const int j = f * LANES + lane;
             if (!out[lane] || active->listed[j] || j >= k->n)
                 continue;
-            const double third = l->h / 3, w0 = k->w[f][lane], w1 = k->w1[f][lane];
-            const double control[4] = {w1, w0 + third * k->wd[f][lane], w1 - third * k->wd1[f][lane], w0};
-            double furthest = control[0];
-            for (int c = 1; c < 4 && !(fabs(w1) > k->gap[f][lane]); c++)
-                furthest = fabs(control[c]) > fabs(furthest) ? control[c] : furthest;
             active->listed[j] = 1;
-            active->floor[active->n] = j;
-            active->side[active->n++] = furthest < 0 ? -1 : 1;
+            active->floor[active->n++] = j;
             found++;
         }
     }
@@ -449,8 +480,7 @@ static void list_touching(FastWork *k, Active *active)
     for (int j = 0; k->n_touching && j < k->n; j++)
         if (k->side[j]) {
             active->listed[j] = 1;
-            active->floor[active->n] = j;
-            active->side[active->n++] = k->side[j];
+            active->floor[active->n++] = j;
         }
 }
 
@@ -472,7 +502,7 @@ static int solve_contacts(FastWork *k, const Level *l, double tolerance, Active 
     for (int sweep = 0; sweep < SWEEPS; sweep++) {
         double change = 0;
         for (int i = 0; i < active->n; i++) {
-            const double c = improve_floor(k, l, active->floor[i], active->side[i], &active->touch[i]);
+            const double c = improve_floor(k, l, active->floor[i], &active->press[i]);
             if (!(c >= 0))
                 return 0;
             change = fmax(change, c);
@@ -481,17 +511,6 @@ static int solve_contacts(FastWork *k, const Level *l, double tolerance, Active 
             return 1;
     }
     return 0;
-}
-
-/* A floor that crossed from one wall to the other inside the step wants a shorter one. */
-static int sides_hold(const FastWork *k, const Active *active)
-{
-    for (int i = 0; i < active->n; i++) {
-        const int j = active->floor[i];
-        if (-active->side[i] * scalars_const(k->w1)[j] > scalars_const(k->gap)[j])
-            return 0;
-    }
-    return 1;
 }
 
 static void forget_forces(FastWork *k)
@@ -542,14 +561,17 @@ static void book_contacts(FastWork *k, const Active *active, double h)
     k->n_touching = 0;
     for (int i = 0; i < active->n; i++) {
         const int j = active->floor[i];
-        const Touch *t = &active->touch[i];
+        const Press *t = &active->press[i];
+        const double w0 = scalars(k->w)[j], w1 = scalars(k->w1)[j], gap = scalars(k->gap)[j];
         k->contact_lost += t->lost;
         k->contact_clamped += t->clamped;
-        k->deepest = fmax(k->deepest, t->deepest);
         k->impacts += t->closings;
         k->floored += t->floored;
-        k->side[j] = active->side[i] * scalars(k->w1)[j] > scalars(k->gap)[j] ? active->side[i] : 0;
+        k->side[j] = w1 > gap ? 1 : -w1 > gap ? -1 : 0;
         k->v0[j] = t->v0;
+        if (t->mean != 0)
+            k->deepest =
+                fmax(k->deepest, largest_on_cubic(h, w0, scalars(k->wd)[j], w1, scalars(k->wd1)[j]) - gap);
         k->n_touching += k->side[j] != 0;
     }
     swap(&k->w, &k->w1);
@@ -614,7 +636,7 @@ static int contact_step(FastWork *k, const Level *l, double a0, double a1)
         land(k);
     k->steps++;
     contact_predict(k, l, a0, a1);
-    if (!solve_contacts(k, l, k->knobs->solver_tolerance, &active) || !sides_hold(k, &active)) {
+    if (!solve_contacts(k, l, k->knobs->solver_tolerance, &active)) {
         forget_forces(k);
         return 0;
     }
@@ -718,8 +740,8 @@ static double still_stored(const FastWork *k)
     double stored = 0;
     for (int j = 0; j < k->n; j++)
         if (k->side[j])
-            stored += contact_stored(&k->model->contact,
-                                     k->side[j] * scalars_const(k->w)[j] - scalars_const(k->gap)[j]);
+            stored +=
+                contact_stored(&k->model->contact, fabs(scalars_const(k->w)[j]) - scalars_const(k->gap)[j]);
     return stored;
 }
 

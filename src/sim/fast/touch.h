@@ -18,7 +18,6 @@ typedef struct {
     double v0;                   /* [m/s] of the contact that is open at x = 1 */
     int closings, floored;       /* new contacts in this step, those whose v0 was below the floor */
     double lost, clamped;        /* [J] int k p^1.5 a p'^2/v0 dt, int (F - F_raw) p' dt */
-    double deepest;              /* [m] */
 } Touch;
 
 typedef struct {
@@ -116,7 +115,6 @@ static inline void touch_add(Touch *t, const Contact *c, const Path *q, double x
         t->mean_v += weight * (f.dp * q->h * x * x * (x - 1) + f.dv * x * (3 * x - 2));
         t->lost += weight * q->h * (f.raw - f.hertz) * v;
         t->clamped += weight * q->h * (f.force - f.raw) * v;
-        t->deepest = fmax(t->deepest, p);
     }
 }
 
@@ -164,7 +162,6 @@ static inline void touch_step(Touch *t, const Contact *c, double h, double p0, d
         t->end = f.force;
         t->end_p = f.dp;
         t->end_v = f.dv;
-        t->deepest = fmax(t->deepest, p1);
     }
 }
 

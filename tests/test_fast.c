@@ -1,0 +1,427 @@
+/* The engine `fast` against closed forms, symmetry, conservation and printed numbers. */
+#include "check.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/table.h"
+#include "sim/fast/fast.h"
+#include "sim/sim.h"
+
+/* ---- one ball and a wall ------------------------------------------------------------------------------------ */
+
+/* A free mass behind a gap, set in motion by a short push of the ground, and a core too heavy to move. */
+typedef struct {
+    double m, k, v, r; /* [kg], [N/m^1.5], [m/s], [-] */
+    FastKnobs knobs;
+} Ball;
+
+typedef struct {
+    SimResult result;
+    double speed, penetration, duration, closing; /* Hertz's, and when it closes */
+    double dt;
+} Bounce;
+
+static void set_ball(SimModel *model, const Ball *ball, double gap, Err *err)
+{
+    CHECK_OK(model_create(model, 1, err), err);
+    model->nb = model->nc = 1;
+    model->m = 2;
+    model->m_pad = 8;
+    memset(model->R, 0, 64 * sizeof *model->R);
+    memset(model->RT, 0, 64 * sizeof *model->RT);
+    for (int i = 0; i < 8; i++) {
+        model->omega[i] = model->zeta[i] = model->gamma[i] = 0;
+        model->gap[i] = 1e300;
+        model->mass_eff[i] = 1e300;
+    }
+    model->R[0] = model->RT[0] = 1 / sqrt(ball->m);
+    model->R[8] = model->RT[1] = 1e-30;
+    model->gamma[0] = sqrt(ball->m);
+    model->mass_eff[0] = ball->m;
+    model->gap[0] = gap;
+    model->contact = (Contact){ball->k, 1.5 * (1 - ball->r), 1e-300};
+}
+
+/* Push: a(t) a triangle of two samples, so that the speed afterwards is v; the ball then flies 3 dt to the wall. With
+ * `until` >= 0 the run stops there, in units of Hertz's duration after closing. */
+static void bounce(const Ball *ball, double until, Bounce *b)
+{
+    Err err = {0};
+    SimModel model;
+    FastWork *work;
+    b->penetration = contact_hertz_penetration(ball->k, ball->m, ball->v);
+    b->duration = contact_hertz_duration(ball->k, ball->m, ball->v);
+    b->speed = ball->v;
+    b->dt = 7.3 * b->duration;
+    double accel[12] = {0, -ball->v / b->dt};
+    /* after the triangle (2 dt) the ball has gone v dt */
+    const Motion motion = {.accel = accel, .n = 12, .dt_s = b->dt};
+    b->closing = 5 * b->dt;
+    set_ball(&model, ball, ball->v * b->dt + ball->v * 3 * b->dt, &err);
+    CHECK_OK(fast_create(&work, 1, &err), &err);
+    const double end = until >= 0 ? b->closing + until * b->duration : 8 * b->dt;
+    fast_run(work, &model, &motion, end, &ball->knobs, &b->result);
+    fast_free(work);
+    model_free(&model);
+}
+
+static void test_rebound_has_its_closed_form_over_twelve_decades_of_mass_stiffness_and_speed(void **state)
+{
+    (void)state;
+    const double table[][2] = {{.3, .58128804}, {.5, .66296220}, {.7, .76799979}, {.9, .90901574}};
+    const double decades[] = {1e-6, 1e-3, 1, 1e3, 1e6};
+    for (int r = 0; r < 4; r++)
+        for (int i = 0; i < 5; i++)
+            for (int which = 0; which < 3; which++) {
+                const double d = decades[i];
+                Ball ball = {1000 * (which == 0 ? d : 1), 4.865e10 * (which == 1 ? d : 1), 0.3 * (which == 2 ? d : 1),
+                             table[r][0], fast_knobs(ACCURACY_FINE)};
+                Bounce b;
+                bounce(&ball, -1, &b);
+                assert_int_equal(b.result.outcome, RUN_OK);
+                assert_int_equal(b.result.impacts, 1);
+                assert_close(b.result.input_energy_j, 0.5 * ball.m * ball.v * ball.v, 1e-10);
+                assert_close(sqrt(b.result.kinetic_strain_j / b.result.input_energy_j), table[r][1], 1e-6);
+                assert_close(sqrt(1 - b.result.contact_loss_j / b.result.input_energy_j), table[r][1], 1e-6);
+            }
+}
+
+static void test_hertz_impact_has_its_penetration_force_and_duration(void **state)
+{
+    (void)state;
+    Ball ball = {280000, 4.865e10, 0.4, 1, fast_knobs(ACCURACY_FINE)};
+    Bounce b;
+    bounce(&ball, -1, &b);
+    assert_close(b.result.kinetic_strain_j, b.result.input_energy_j, 1e-8);
+    assert_close(b.result.penetration_max_m, b.penetration, 1e-4);
+    assert_close(b.result.j3_g * 9.81 * ball.m, ball.k * pow(b.penetration, 1.5), 1e-4);
+    bounce(&ball, 1 - 1e-4, &b);
+    assert_true(b.result.contact_stored_j > 0);
+    bounce(&ball, 1 + 1e-4, &b);
+    assert_true(b.result.contact_stored_j == 0);
+}
+
+static void test_damped_impact_has_its_known_penetration_force_and_duration(void **state)
+{
+    (void)state;
+    Ball ball = {280000, 4.865e10, 0.4, 0.7, fast_knobs(ACCURACY_FINE)};
+    Bounce b;
+    bounce(&ball, -1, &b);
+    assert_close(b.result.penetration_max_m, 0.902920 * b.penetration, 1e-4);
+    assert_close(b.result.j3_g * 9.81 * ball.m, 0.911023 * ball.k * pow(b.penetration, 1.5), 1e-4);
+    bounce(&ball, 1.03332 - 1e-4, &b);
+    assert_true(b.result.contact_stored_j > 0);
+    bounce(&ball, 1.03332 + 1e-4, &b);
+    assert_true(b.result.contact_stored_j == 0);
+}
+
+static void test_rebound_converges_with_at_least_third_order(void **state)
+{
+    (void)state;
+    const double exact = contact_rebound(0.45);
+    double worst[2] = {0};
+    for (int fine = 0; fine < 2; fine++)
+        for (int i = 0; i < 40; i++) { /* the closing falls anywhere in a step */
+            Ball ball = {1000, 4.865e10, 0.3 * (1 + 0.01 * i), 0.7, {fine ? 32 : 8, 1e-13, 1e-6}};
+            Bounce b;
+            bounce(&ball, -1, &b);
+            worst[fine] = fmax(worst[fine],
+                               fabs(sqrt(b.result.kinetic_strain_j / b.result.input_energy_j) - exact));
+        }
+    if (!(log(worst[0] / worst[1]) / log(4) > 3)) {
+        print_error("rebound errors %.3g and %.3g: order %.2f\n", worst[0], worst[1],
+                    log(worst[0] / worst[1]) / log(4));
+        fail();
+    }
+}
+
+static void test_one_step_per_contact_makes_no_energy_in_silence(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 60; i++) {
+        Ball ball = {1000, 4.865e10, 0.1 * (1 + 0.03 * i), 1 - 0.1 * (i % 5), {0.25 * (1 + i % 8), 1e-6, 1e-3}};
+        Bounce b;
+        bounce(&ball, -1, &b);
+        const double made = b.result.kinetic_strain_j / b.result.input_energy_j - 1;
+        assert_true(b.result.outcome == RUN_OK);
+        assert_true(made < 1e-3 + 2 * b.result.energy_residual);
+    }
+}
+
+/* ---- the tower ---------------------------------------------------------------------------------------------- */
+
+typedef struct {
+    Settings settings;
+    Motion motion;
+    Scene *scene;
+    SimWorker *worker;
+    double x[22];
+} Tower;
+
+static void tower_open(Tower *t)
+{
+    Err err = {0};
+    CHECK_OK(motion_load(&t->motion, t->settings.motion.record, UNIT_FROM_FILE, &err), &err);
+    CHECK_OK(motion_prepare(&t->motion, t->settings.motion.pga_g, t->settings.motion.stretch, &err), &err);
+    CHECK_OK(scene_create(&t->scene, &t->settings, &t->motion, &err), &err);
+    CHECK_OK(sim_worker_create(&t->worker, t->scene, &err), &err);
+    for (int j = 0; j < 20; j++)
+        t->x[j] = 0.008 * (j + 1);
+    t->x[20] = 0.012;
+    t->x[21] = 0.0064;
+}
+
+static void tower_close(Tower *t)
+{
+    sim_worker_free(t->worker);
+    scene_free(t->scene);
+    motion_free(&t->motion);
+}
+
+static SimResult tower_run(Tower *t, SceneKind kind)
+{
+    SimResult r;
+    Err err = {0};
+    CHECK_OK(sim_run(t->worker, kind, t->x, &r, &err), &err);
+    return r;
+}
+
+static int record_is_there(const char *path)
+{
+    if (access(path, R_OK) == 0)
+        return 1;
+    print_message("skipped: %s is not there\n", path);
+    return 0;
+}
+
+static void test_early_window_has_the_digits_that_independent_integrators_share(void **state)
+{
+    (void)state;
+    Tower t = {0};
+    settings_defaults(&t.settings);
+    snprintf(t.settings.motion.record, SETTINGS_TEXT_MAX, "../shared/records/northridge_sylmar_ns.csv");
+    if (!record_is_there(t.settings.motion.record))
+        skip();
+    t.settings.core.section = CORE_EFFECTIVE;
+    t.settings.motion.stretch = 3.0;
+    t.settings.sim.duration_s = 11;
+    t.settings.sim.accuracy = ACCURACY_FINE;
+    tower_open(&t);
+    const SimResult fine = tower_run(&t, SCENE_IMPACT);
+    assert_close(fine.j1_m, 0.370445, 3e-6);
+    assert_close(fine.j2_m, 0.032808, 2e-5);
+    assert_close(fine.j3_g, 4.859, 1.1e-4);
+    assert_close(fine.ed1_pct, 2.719, 2e-4);
+    assert_close(fine.ed5_10_pct, 1.574, 4e-4);
+    assert_close(fine.edcs_pct, 1.634, 4e-4);
+    assert_close(fine.input_energy_j, 1.3096e6, 5e-5);
+    assert_true(fine.energy_residual < 1e-4);
+    tower_close(&t);
+    t.settings.sim.accuracy = ACCURACY_STANDARD;
+    tower_open(&t);
+    const SimResult standard = tower_run(&t, SCENE_IMPACT);
+    assert_close(standard.j1_m, fine.j1_m, 1e-3);
+    assert_close(standard.j2_m, fine.j2_m, 3e-3);
+    assert_close(standard.j3_g, fine.j3_g, 2e-2);
+    assert_close(standard.ed1_pct, fine.ed1_pct, 1e-2);
+    assert_close(standard.ed5_10_pct, fine.ed5_10_pct, 1e-2);
+    assert_close(standard.edcs_pct, fine.edcs_pct, 1e-2);
+    tower_close(&t);
+}
+
+static void test_kobe_without_a_core_has_its_known_response(void **state)
+{
+    (void)state;
+    Tower t = {0};
+    settings_defaults(&t.settings);
+    snprintf(t.settings.motion.record, SETTINGS_TEXT_MAX, "../shared/records/kobe_jma_ns.csv");
+    if (!record_is_there(t.settings.motion.record))
+        skip();
+    tower_open(&t);
+    const SimResult r = tower_run(&t, SCENE_NO_CORE);
+    assert_close(r.j1_m, 1.648, 3e-3);
+    assert_close(r.j2_m, 0.1475, 3e-3);
+    assert_close(r.j3_g, 0.901, 3e-3);
+    assert_close(r.ed1_pct, 88.8, 3e-3);
+    tower_close(&t);
+}
+
+static void builtin_tower(Tower *t)
+{
+    *t = (Tower){0};
+    settings_defaults(&t->settings);
+    t->settings.sim.duration_s = 14;
+    snprintf(t->settings.motion.record, SETTINGS_TEXT_MAX, "builtin:sylmar-like");
+    tower_open(t);
+}
+
+static void test_a_gap_that_never_closes_is_the_building_alone(void **state)
+{
+    (void)state;
+    Tower t;
+    builtin_tower(&t);
+    for (int j = 0; j < 20; j++)
+        t.x[j] = 50;
+    const SimResult apart = tower_run(&t, SCENE_IMPACT), alone = tower_run(&t, SCENE_NO_CORE);
+    assert_int_equal(apart.impacts, 0);
+    assert_close(apart.j1_m, alone.j1_m, 1e-3);
+    assert_close(apart.j2_m, alone.j2_m, 1e-3);
+    assert_close(apart.j3_g, alone.j3_g, 1e-3);
+    assert_close(apart.damped_building_j, alone.damped_building_j, 1e-9);
+    tower_close(&t);
+}
+
+static void test_energy_books_close_and_damping_never_gives(void **state)
+{
+    (void)state;
+    Tower t;
+    builtin_tower(&t);
+    const SimResult r = tower_run(&t, SCENE_IMPACT);
+    assert_true(r.impacts > 20);
+    assert_true(r.energy_residual < 1e-3);
+    for (int i = 0; i < r.n_modes; i++)
+        assert_true(r.mode_share_pct[i] > 0);
+    assert_true(r.contact_loss_j > 0 && r.damped_core_j > 0);
+    const double spent = r.kinetic_strain_j + r.damped_building_j + r.damped_core_j + r.contact_loss_j + r.clamp_j +
+                         r.contact_stored_j;
+    assert_close(spent, r.input_energy_j, 1e-3);
+    tower_close(&t);
+}
+
+static void test_a_mirrored_motion_mirrors_the_response_to_the_last_bit(void **state)
+{
+    (void)state;
+    Tower t;
+    builtin_tower(&t);
+    const SimResult there = tower_run(&t, SCENE_IMPACT);
+    for (size_t i = 0; i < t.motion.n; i++)
+        t.motion.accel[i] = -t.motion.accel[i];
+    const SimResult mirrored = tower_run(&t, SCENE_IMPACT);
+    assert_memory_equal(&there.j1_m, &mirrored.j1_m, 6 * sizeof(double));
+    assert_int_equal(there.impacts, mirrored.impacts);
+    tower_close(&t);
+}
+
+static void test_a_worker_gives_the_same_bytes_whatever_it_did_before(void **state)
+{
+    (void)state;
+    Tower t;
+    builtin_tower(&t);
+    SimResult first = tower_run(&t, SCENE_IMPACT);
+    t.x[3] = 0.1;
+    tower_run(&t, SCENE_IMPACT);
+    tower_run(&t, SCENE_NO_CORE);
+    t.x[3] = 0.032;
+    SimResult again = tower_run(&t, SCENE_IMPACT);
+    first.seconds = again.seconds = 0;
+    assert_memory_equal(&first, &again, sizeof first);
+    tower_close(&t);
+}
+
+static void test_response_is_linear_until_the_first_contact(void **state)
+{
+    (void)state;
+    Tower t;
+    builtin_tower(&t);
+    SimResult one = tower_run(&t, SCENE_NO_CORE);
+    for (size_t i = 0; i < t.motion.n; i++)
+        t.motion.accel[i] *= 1e-9;
+    const SimResult small = tower_run(&t, SCENE_IMPACT);
+    assert_int_equal(small.impacts, 0);
+    assert_close(small.j1_m, 1e-9 * one.j1_m, 1e-3);
+    assert_close(small.ed1_pct * small.input_energy_j, 1e-18 * one.input_energy_j * one.ed1_pct, 1e-2);
+    tower_close(&t);
+}
+
+static void test_motion_that_is_not_a_number_fails_the_run_and_says_so(void **state)
+{
+    (void)state;
+    Tower t;
+    builtin_tower(&t);
+    t.motion.accel[40] = NAN;
+    const SimResult r = tower_run(&t, SCENE_IMPACT);
+    assert_int_not_equal(r.outcome, RUN_OK);
+    assert_true(r.reason[0]);
+    tower_close(&t);
+}
+
+static void test_a_negative_gap_is_no_design(void **state)
+{
+    (void)state;
+    Tower t;
+    Err err = {0};
+    SimResult r;
+    builtin_tower(&t);
+    t.x[4] = -0.001;
+    assert_int_equal(sim_run(t.worker, SCENE_IMPACT, t.x, &r, &err), STATUS_BAD_DATA);
+    assert_non_null(strstr(err.text, "gap_05_m"));
+    tower_close(&t);
+}
+
+static void test_zero_gaps_tend_to_the_tied_building(void **state)
+{
+    (void)state;
+    Tower t;
+    builtin_tower(&t);
+    for (int j = 0; j < 20; j++)
+        t.x[j] = 0;
+    const SimResult touching = tower_run(&t, SCENE_IMPACT), tied = tower_run(&t, SCENE_TIED);
+    assert_int_equal(touching.outcome, RUN_OK);
+    assert_close(touching.j1_m, tied.j1_m, 0.02);
+    assert_close(touching.input_energy_j, tied.input_energy_j, 0.02);
+    tower_close(&t);
+}
+
+static void test_standard_accuracy_agrees_with_cvode_on_another_building_core_and_motion(void **state)
+{
+    (void)state;
+    Tower t = {0};
+    settings_defaults(&t.settings);
+    snprintf(t.settings.building.model, SETTINGS_TEXT_MAX, "appendix");
+    snprintf(t.settings.motion.record, SETTINGS_TEXT_MAX, "builtin:elcentro-like");
+    t.settings.motion.stretch = 3;
+    t.settings.sim.duration_s = 9;
+    tower_open(&t);
+    for (int j = 0; j < 20; j++)
+        t.x[j] = 0.004 * (j + 1) + 0.002 * (j % 3);
+    const SimResult fast = tower_run(&t, SCENE_IMPACT);
+    tower_close(&t);
+    t.settings.sim.engine = ENGINE_CVODE;
+    tower_open(&t);
+    for (int j = 0; j < 20; j++)
+        t.x[j] = 0.004 * (j + 1) + 0.002 * (j % 3);
+    const SimResult cvode = tower_run(&t, SCENE_IMPACT);
+    tower_close(&t);
+    assert_true(cvode.impacts > 5);
+    assert_close(fast.j1_m, cvode.j1_m, 1e-3);
+    assert_close(fast.j2_m, cvode.j2_m, 3e-3);
+    assert_close(fast.j3_g, cvode.j3_g, 2e-2);
+    assert_close(fast.ed1_pct, cvode.ed1_pct, 1e-2);
+    assert_close(fast.ed5_10_pct, cvode.ed5_10_pct, 1e-2);
+    assert_close(fast.edcs_pct, cvode.edcs_pct, 1e-2);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_rebound_has_its_closed_form_over_twelve_decades_of_mass_stiffness_and_speed),
+        cmocka_unit_test(test_hertz_impact_has_its_penetration_force_and_duration),
+        cmocka_unit_test(test_damped_impact_has_its_known_penetration_force_and_duration),
+        cmocka_unit_test(test_rebound_converges_with_at_least_third_order),
+        cmocka_unit_test(test_one_step_per_contact_makes_no_energy_in_silence),
+        cmocka_unit_test(test_early_window_has_the_digits_that_independent_integrators_share),
+        cmocka_unit_test(test_kobe_without_a_core_has_its_known_response),
+        cmocka_unit_test(test_a_gap_that_never_closes_is_the_building_alone),
+        cmocka_unit_test(test_energy_books_close_and_damping_never_gives),
+        cmocka_unit_test(test_a_mirrored_motion_mirrors_the_response_to_the_last_bit),
+        cmocka_unit_test(test_a_worker_gives_the_same_bytes_whatever_it_did_before),
+        cmocka_unit_test(test_response_is_linear_until_the_first_contact),
+        cmocka_unit_test(test_motion_that_is_not_a_number_fails_the_run_and_says_so),
+        cmocka_unit_test(test_a_negative_gap_is_no_design),
+        cmocka_unit_test(test_zero_gaps_tend_to_the_tied_building),
+        cmocka_unit_test(test_standard_accuracy_agrees_with_cvode_on_another_building_core_and_motion),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
