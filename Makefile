@@ -3,6 +3,8 @@
 # make MODE=debug|asan|tsan ...                       make format     clang-format over the sources
 # make install PREFIX=/usr/local DESTDIR=
 
+V       ?= 0                                         # V=1 shows every command
+Q       := $(if $(filter 1,$(V)),,@)
 MODE    ?= release
 BUILD   := build/$(MODE)
 PREFIX  ?= /usr/local
@@ -61,28 +63,32 @@ test-here: $(PROGRAM) $(TESTS)
 	@set -e; export IMTET=$(abspath $(PROGRAM)); for t in $(TESTS); do echo "== $$t"; $$t; done
 
 $(PROGRAM): $(BUILD)/src/main.o $(LIB)
-	$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
+	@echo '  LD  $@'
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
 
 $(LIB): $(LIB_OBJ)
 	@rm -f $@
-	$(AR) rcs $@ $^
+	$(Q)$(AR) rcs $@ $^
 
 $(BUILD)/tests/%: $(BUILD)/tests/%.o $(LIB)
-	$(CC) $(LDFLAGS) -o $@ $^ -lcmocka $(LDLIBS)
+	@echo '  LD  $@'
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^ -lcmocka $(LDLIBS)
 
 $(BUILD)/%.o: %.c
 	@mkdir -p $(@D)
-	$(CC) $(CPPFLAGS) $(CFLAGS) -c $< -o $@
+	@echo '  CC  $@'
+	$(Q)$(CC) $(CPPFLAGS) $(CFLAGS) -c $< -o $@
 
 # The fast engine's kernel, once per instruction set; fast.c chooses at run time.
 $(BUILD)/src/sim/fast/kernel_%.o: src/sim/fast/kernel.c
 	@mkdir -p $(@D)
-	$(CC) $(CPPFLAGS) $(CFLAGS) -fno-math-errno -fno-trapping-math $(KERNEL_FLAGS.$*) -DFAST_KERNEL=fast_kernel_$* -c $< -o $@
+	@echo '  CC  $@'
+	$(Q)$(CC) $(CPPFLAGS) $(CFLAGS) -fno-math-errno -fno-trapping-math -Wno-psabi $(KERNEL_FLAGS.$*) -DFAST_KERNEL=fast_kernel_$* -c $< -o $@
 
 # The two 20-floor buildings are part of the program: a file becomes the symbols _binary_PATH_start and _end.
 $(BUILD)/%.csv.o: %.csv
 	@mkdir -p $(@D)
-	$(LD) -r -b binary -z noexecstack -o $@ $<
+	$(Q)$(LD) -r -b binary -z noexecstack -o $@ $<
 
 $(BUILD)/src/cmd/%.o $(BUILD)/src/run/%.o $(BUILD)/src/main.o: CPPFLAGS += -DIMTET_VERSION='"$(VERSION)"' \
     -DIMTET_REVISION='"$(REVISION)"' -DIMTET_CFLAGS='"$(CFLAGS.$(MODE))"'

@@ -41,7 +41,7 @@ static void set_ball(SimModel *model, const Ball *ball, double gap, Err *err)
     model->gamma[0] = sqrt(ball->m);
     model->mass_eff[0] = ball->m;
     model->gap[0] = gap;
-    model->contact = (Contact){ball->k, 1.5 * (1 - ball->r), 1e-300};
+    model->contact = (Contact){.k = ball->k, .a = 1.5 * (1 - ball->r), .v0_floor = 1e-300};
 }
 
 /* Push: a(t) a triangle of two samples, so that the speed afterwards is v; the ball then flies 3 dt to the wall. With

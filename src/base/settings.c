@@ -23,6 +23,12 @@ typedef struct {
 
 #define AT(field) offsetof(Settings, field)
 
+/* "fast|cvode|...": the first name brings no bar with it. */
+#define X(upper, lower) "|" #lower
+static const char ENGINE_BARS[] = ENGINE_LIST(X);
+#undef X
+#define ENGINE_WORDS (ENGINE_BARS + 1)
+
 static const Option OPTIONS[] = {
     /* key, unit, kind, field, default, min, max, words, help */
     {"building.model", "-", TEXT, AT(building.model), "guyan", 0, 0, NULL,
@@ -44,8 +50,9 @@ static const Option OPTIONS[] = {
     {"core.inertia_base_m4", "m4", REAL, AT(core.inertia_base_m4), "25.6201", 1e-9, 1e6, NULL, "effective: first storey"},
     {"core.inertia_top_m4", "m4", REAL, AT(core.inertia_top_m4), "24.0503", 1e-9, 1e6, NULL, "effective: last storey"},
 
-    {"contact.law", "-", CHOICE, AT(contact.law), "paper", 0, 0, "paper|exact",
-     "paper: a = 1.5 (1 - r); exact: a chosen so that an isolated impact rebounds with r"},
+    {"contact.law", "-", CHOICE, AT(contact.law), "paper", 0, 0,
+     "paper|exact|lankarani-nikravesh|flores|jankowski",
+     "paper: a = 1.5 (1 - r); exact: a chosen so that an isolated impact rebounds with r; the others by their authors"},
     {"contact.restitution", "-", REAL, AT(contact.restitution), "0.7", 0, 1, NULL, "r of the contact law"},
     {"contact.v0_floor_m_s", "m/s", REAL, AT(contact.v0_floor_m_s), "1e-3", 1e-12, 10, NULL,
      "least approach speed that the contact law is given"},
@@ -60,7 +67,7 @@ static const Option OPTIONS[] = {
     {"motion.unit", "-", CHOICE, AT(motion.unit), "from_file", 0, 0, "from_file|m_s2|cm_s2|g",
      "of the acceleration, where the file does not say"},
 
-    {"sim.engine", "-", CHOICE, AT(sim.engine), "fast", 0, 0, "fast|cvode",
+    {"sim.engine", "-", CHOICE, AT(sim.engine), "fast", 0, 0, ENGINE_WORDS,
      "fast: exact modal flow with resolved contacts; cvode: SUNDIALS with roots, slow, for trust"},
     {"sim.accuracy", "-", CHOICE, AT(sim.accuracy), "standard", 0, 0, "coarse|standard|fine", "steps per contact"},
     {"sim.duration_s", "s", REAL, AT(sim.duration_s), "0", 0, 1e6, NULL, "stop here; 0: at the end of the motion"},

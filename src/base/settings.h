@@ -19,9 +19,18 @@
 enum { SETTINGS_TEXT_MAX = 512 };
 
 typedef enum { CORE_BOX, CORE_PLATE, CORE_EFFECTIVE } CoreSection;
-typedef enum { LAW_PAPER, LAW_EXACT } ContactLaw;
+typedef enum { LAW_PAPER, LAW_EXACT, LAW_LANKARANI_NIKRAVESH, LAW_FLORES, LAW_JANKOWSKI } ContactLaw;
 typedef enum { ACCURACY_COARSE, ACCURACY_STANDARD, ACCURACY_FINE } Accuracy;
-typedef enum { ENGINE_FAST, ENGINE_CVODE } Engine;
+/* Every integrator of the model, by the name of the setting; sim/engine.c has a line for each. */
+#define ENGINE_LIST(X)                                                                                                 \
+    X(FAST, fast)                                                                                                      \
+    X(CVODE, cvode)
+typedef enum {
+#define X(upper, lower) ENGINE_##upper,
+    ENGINE_LIST(X)
+#undef X
+        ENGINE_COUNT
+} Engine;
 typedef enum { UNIT_FROM_FILE, UNIT_M_S2, UNIT_CM_S2, UNIT_G } MotionUnit;
 
 typedef struct {

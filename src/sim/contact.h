@@ -1,10 +1,16 @@
 /* sim/contact.h -- the force between a floor and the core while they touch.
  *
- *   F = k p^1.5 (1 + a p'/v0),  p > 0 penetration [m],  v0 approach speed when this contact closed [m/s],  F >= 0
+ *   F = k p^1.5 (1 + a p'/v0) + c p',  p > 0 penetration [m],  v0 approach speed when this contact closed [m/s],  F >= 0
  *   k = 2 E sqrt(R) / (3 (1 - nu^2))                                            [N/m^1.5]
  *
- *   paper   a = 1.5 (1 - r). An isolated impact then rebounds not with r but with e from a (1+e) = ln((1+a)/(1-a e)).
- *   exact   a solves that equation for e = r, so that an isolated impact rebounds with r.
+ *   paper                a = 1.5 (1 - r). An isolated impact then rebounds not with r but with e from
+ *                        a (1+e) = ln((1+a)/(1-a e)).
+ *   exact                a solves that equation for e = r, so that an isolated impact rebounds with r.
+ *   lankarani-nikravesh  a = 0.75 (1 - r^2)            J. Mech. Des. 112 (1990) 369-376
+ *   flores               a = 1.6 (1 - r) / r           Flores et al., Multibody Syst. Dyn. 25 (2011) 357-375
+ *   jankowski            a = 0, c = 2 xi sqrt(m k sqrt(p)) while p' > 0, else 0; m the effective mass of the contact,
+ *                        xi = 9 sqrt(5)/2 (1 - r^2) / (r (r (9 pi - 16) + 16))
+ *                        Earthquake Eng. Struct. Dyn. 34 (2005) 595-611; 35 (2006) 517-524
  *
  * The law would pull when separation is faster than v0/a: such tension is clamped at zero and what the clamp removes is
  * booked. v0 is never taken smaller than v0_floor. Source: Hunt and Crossley, J. Appl. Mech. 42 (1975) 440-445; Marhefka
@@ -20,6 +26,7 @@
 typedef struct {
     double k;        /* [N/m^1.5] */
     double a;        /* [-] */
+    double xi;       /* [-] */
     double v0_floor; /* [m/s] */
 } Contact;
 
@@ -40,13 +47,19 @@ typedef struct {
     double dp, dv;            /* d force/d p [N/m], d force/d p' [N s/m] */
 } ContactForce;
 
-/* p > 0; v0 already floored. */
-static inline ContactForce contact_force(const Contact *c, double p, double p_dot, double v0)
+/* p > 0; v0 already floored; mass [kg] of the contact: what it has to turn round. */
+static inline ContactForce contact_force(const Contact *c, double mass, double p, double p_dot, double v0)
 {
     const double root = sqrt(p), hertz = c->k * p * root, loss = 1.0 + c->a * p_dot / v0;
     ContactForce f = {.raw = hertz * loss, .hertz = hertz, .dp = 1.5 * c->k * root * loss, .dv = hertz * c->a / v0};
+    if (c->xi > 0 && p_dot > 0) {
+        const double dashpot = 2 * c->xi * sqrt(mass * c->k * root);
+        f.raw += dashpot * p_dot;
+        f.dp += 0.25 * dashpot * p_dot / p;
+        f.dv += dashpot;
+    }
     f.force = f.raw;
-    if (!(f.raw > 0) && loss <= 0) /* keeps NaN */
+    if (f.raw <= 0) /* keeps NaN */
         f.force = f.dp = f.dv = 0;
     return f;
 }

@@ -15,11 +15,29 @@
 typedef struct {
     double duration; /* [s] > 0 */
     Accuracy accuracy;
+    double knob; /* what the engine's own accuracy is set by, EngineEntry.knob; 0: as `accuracy` says */
 } EngineOptions;
 
 typedef Status (*EngineFn)(const SimModel *model, const Motion *motion, const EngineOptions *options, SimResult *result,
                            Err *err);
 
+typedef enum {
+    KNOB_STEP,             /* [s] fixed step */
+    KNOB_TOLERANCE,        /* [-] relative tolerance */
+    KNOB_STEPS_PER_CONTACT /* [-] */
+} EngineKnob;
+
+typedef struct {
+    const char *name, *words;
+    EngineKnob knob;
+    EngineFn run;
+} EngineEntry;
+
+/* By Engine, the setting sim.engine. */
+const EngineEntry *engine_entry(Engine engine);
+
+Status engine_fast(const SimModel *model, const Motion *motion, const EngineOptions *options, SimResult *result,
+                   Err *err);
 Status engine_cvode(const SimModel *model, const Motion *motion, const EngineOptions *options, SimResult *result,
                     Err *err);
 

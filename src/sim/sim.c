@@ -181,8 +181,9 @@ Status sim_run(SimWorker *w, SceneKind kind, const double x[], SimResult *result
         judge(result, scene->settings.sim.residual_max);
     } else {
         TRY(model_set(&w->model, &scene->settings, &scene->building, kind == SCENE_IMPACT ? &w->core : NULL, x, err));
-        if (scene->settings.sim.engine == ENGINE_CVODE) {
-            TRY(engine_cvode(&w->model, scene->motion, &scene->options, result, err));
+        const Engine engine = (Engine)scene->settings.sim.engine;
+        if (engine != ENGINE_FAST) {
+            TRY(engine_entry(engine)->run(&w->model, scene->motion, &scene->options, result, err));
             judge(result, scene->settings.sim.residual_max);
         } else {
             run_fast(w, result);

@@ -88,3 +88,16 @@ void fast_run(FastWork *work, const SimModel *model, const Motion *motion, doubl
 {
     best_kernel()(work, model, motion, duration, knobs, result);
 }
+
+Status engine_fast(const SimModel *model, const Motion *motion, const EngineOptions *options, SimResult *result,
+                   Err *err)
+{
+    FastWork *work;
+    FastKnobs knobs = fast_knobs(options->accuracy);
+    if (options->knob > 0)
+        knobs.steps_per_contact = options->knob;
+    TRY(fast_create(&work, model->n, err));
+    fast_run(work, model, motion, options->duration, &knobs, result);
+    fast_free(work);
+    return STATUS_OK;
+}

@@ -402,7 +402,7 @@ static void press(FastWork *k, const Level *l, int j, double w1, double w1d, Pre
         if (!(wall == 0 ? highest > gap : -lowest > gap) && isfinite(w1))
             continue;
         Touch t;
-        touch_step(&t, &k->model->contact, l->h, s * w0 - gap, s * w0d, s * w1 - gap, s * w1d, k->side[j] == s,
+        touch_step(&t, &k->model->contact, k->model->mass_eff[j], l->h, s * w0 - gap, s * w0d, s * w1 - gap, s * w1d, k->side[j] == s,
                    fmax(k->v0[j], k->model->contact.v0_floor));
         k->forces++;
         out->end += s * t.end;

@@ -83,7 +83,7 @@ static inline int path_turns(const Path *q, double x[2])
 }
 
 /* Adds the part [xa, xb] of the path, on which p > 0. */
-static inline void touch_add(Touch *t, const Contact *c, const Path *q, double xa, double xb, double v0)
+static inline void touch_add(Touch *t, const Contact *c, double mass, const Path *q, double xa, double xb, double v0)
 {
     /* Gauss-Legendre on [0, 1], four points */
     static const double NODE[4] = {0.06943184420297371, 0.33000947820757187, 0.6699905217924281, 0.9305681557970263};
@@ -108,7 +108,7 @@ static inline void touch_add(Touch *t, const Contact *c, const Path *q, double x
         const double p = path_at(q, x), v = path_speed(q, x);
         if (p <= 0)
             continue;
-        const ContactForce f = contact_force(c, p, v, v0);
+        const ContactForce f = contact_force(c, mass, p, v, v0);
         t->mean += weight * f.force;
         /* dp/dp1 = x^2 (3 - 2x), dp/dp1' = h x^2 (x - 1) and their slopes */
         t->mean_p += weight * (f.dp * x * x * (3 - 2 * x) + f.dv * 6 * x * (1 - x) / q->h);
@@ -119,8 +119,8 @@ static inline void touch_add(Touch *t, const Contact *c, const Path *q, double x
 }
 
 /* closed: a contact is open at x = 0 with approach speed v0. */
-static inline void touch_step(Touch *t, const Contact *c, double h, double p0, double v_0, double p1, double v_1, int closed,
-                              double v0)
+static inline void touch_step(Touch *t, const Contact *c, double mass, double h, double p0, double v_0, double p1,
+                              double v_1, int closed, double v0)
 {
     const Path q = path_make(h, p0, v_0, p1, v_1);
     double knots[4] = {0}, turns[2];
@@ -129,7 +129,7 @@ static inline void touch_step(Touch *t, const Contact *c, double h, double p0, d
     /* the control polygon encloses the path: all of it positive or negative settles the common cases */
     const double b1 = p0 + q.c[1] / 3, b2 = p1 - h * v_1 / 3;
     if (closed && p0 > 0 && b1 > 0 && b2 > 0 && p1 > 0) {
-        touch_add(t, c, &q, 0, 1, v0);
+        touch_add(t, c, mass, &q, 0, 1, v0);
     } else if (p0 > 0 || b1 > 0 || b2 > 0 || p1 > 0) {
         const int n_turns = path_turns(&q, turns);
         for (int i = 0; i < n_turns; i++)
@@ -144,7 +144,7 @@ static inline void touch_step(Touch *t, const Contact *c, double h, double p0, d
                 continue;
             const double x = (path_at(&q, low) > 0) == above ? low : path_root(&q, low, high);
             if (touching) {
-                touch_add(t, c, &q, from, x, t->v0);
+                touch_add(t, c, mass, &q, from, x, t->v0);
             } else {
                 const double speed = fabs(path_speed(&q, x));
                 t->closings++;
@@ -155,10 +155,10 @@ static inline void touch_step(Touch *t, const Contact *c, double h, double p0, d
             touching = !touching;
         }
         if (touching)
-            touch_add(t, c, &q, from, 1, t->v0);
+            touch_add(t, c, mass, &q, from, 1, t->v0);
     }
     if (p1 > 0) {
-        const ContactForce f = contact_force(c, p1, v_1, t->v0);
+        const ContactForce f = contact_force(c, mass, p1, v_1, t->v0);
         t->end = f.force;
         t->end_p = f.dp;
         t->end_v = f.dv;

@@ -86,7 +86,7 @@ static void add_contacts(const Run *r, const double y[], double g[], double *los
         const double p = r->side[j] * w - model->gap[j], p_dot = r->side[j] * w_dot;
         if (p <= 0) /* past the root: the law's continuation, continuous with its first derivative */
             continue;
-        const ContactForce f = contact_force(&model->contact, p, p_dot, r->v0[j]);
+        const ContactForce f = contact_force(&model->contact, model->mass_eff[j], p, p_dot, r->v0[j]);
         const double *row = model->RT + (size_t)j * (size_t)model->m_pad;
         for (int i = 0; i < model->m; i++)
             g[i] -= r->side[j] * f.force * row[i];
@@ -228,7 +228,7 @@ static void set_tolerances(const Run *r, double level)
         tolerance[i] = level * momentum * momentum;
 }
 
-static int prepare(Run *r, Accuracy accuracy)
+static int prepare(Run *r, const EngineOptions *options)
 {
     static const double RTOL[] = {[ACCURACY_COARSE] = 1e-6, [ACCURACY_STANDARD] = 1e-8, [ACCURACY_FINE] = 1e-10};
     const int roots = r->model->nc > 0 ? r->model->n : 0, size = 3 * r->model->m + 3;
@@ -246,8 +246,8 @@ static int prepare(Run *r, Accuracy accuracy)
         return -1;
     use_own_loops(r->y);
     N_VConst(0, r->y);
-    r->rtol = RTOL[accuracy];
-    set_tolerances(r, 0.1 * RTOL[accuracy]);
+    r->rtol = options->knob > 0 ? options->knob : RTOL[options->accuracy];
+    set_tolerances(r, 0.1 * r->rtol);
     r->iteration = SUNNonlinSol_FixedPoint(r->y, 0, r->context);
     if (!r->iteration || CVodeSetErrHandlerFn(r->cvode, keep_message, r) || CVodeSetUserData(r->cvode, r) ||
         CVodeInit(r->cvode, right_hand_side, 0, r->y) || CVodeWFtolerances(r->cvode, error_weights) ||
@@ -444,7 +444,7 @@ Status engine_cvode(const SimModel *model, const Motion *motion, const EngineOpt
     result->n_floors = model->n;
     result->n_modes = model->nb;
     Status status = STATUS_OK;
-    if (prepare(&r, options->accuracy)) {
+    if (prepare(&r, options)) {
         status = fail(err, STATUS_NO_MEMORY, "cvode: could not be set up: %s", r.message[0] ? r.message : "no memory");
     } else {
         result->outcome = walk(&r);
