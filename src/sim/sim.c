@@ -41,6 +41,9 @@ const char *run_outcome_words(RunOutcome outcome)
 Status scene_create(Scene **out, const Settings *s, const Motion *motion, Err *err)
 {
     *out = NULL;
+    if (motion && (motion->n < 2 || !(motion->dt_s > 0 && isfinite(motion->dt_s))))
+        return fail(err, STATUS_BAD_DATA, "%s: %zu samples, %g s apart, are no motion; two or more are needed",
+                    motion->name, motion->n, motion->dt_s);
     Scene *scene = calloc(1, sizeof *scene);
     if (!scene)
         return fail(err, STATUS_NO_MEMORY, "scene: out of memory");
@@ -141,8 +144,8 @@ static void judge(SimResult *r, double residual_max)
             r->outcome = RUN_NOT_FINITE;
     if (r->outcome == RUN_OK && r->energy_residual > residual_max) {
         r->outcome = RUN_BOOKS_OPEN;
-        snprintf(r->reason, sizeof r->reason, "energy books open by %.3g of the input, allowed %.3g", r->energy_residual,
-                 residual_max);
+        snprintf(r->reason, sizeof r->reason, "energy books open by %.3g of the input, allowed %.3g",
+                 r->energy_residual, residual_max);
     }
     if (r->outcome != RUN_OK && !r->reason[0])
         snprintf(r->reason, sizeof r->reason, "%s", run_outcome_words(r->outcome));
@@ -190,6 +193,8 @@ Status sim_run(SimWorker *w, SceneKind kind, const double x[], SimResult *result
         }
     }
     result->mcore_kg = kind == SCENE_NO_CORE ? 0 : w->core.mass_kg;
+    result->penetration_ratio = result->penetration_max_m / scene->settings.contact.radius_m;
+    result->beyond_contact_law = result->penetration_ratio > PENETRATION_RATIO_MAX;
     result->seconds = seconds_now() - start;
     return STATUS_OK;
 }

@@ -36,27 +36,31 @@ typedef enum {
     RUN_OUTCOME_LIST(X)
 #undef X
 } RunOutcome;
+/* Hertz's theory wants a contact that is small against the radius. What lies beyond is flagged: the figures are those
+ * of the model, but the model is no longer that of two bodies of steel. */
+#define PENETRATION_RATIO_MAX 0.1
 const char *run_outcome_words(RunOutcome outcome);
 
 typedef struct {
     RunOutcome outcome;
     char reason[160]; /* empty when outcome is RUN_OK */
 
-    double j1_m, j2_m, j3_g;                 /* max |u|, max interstorey drift, max absolute acceleration / 9.81 */
-    double ed1_pct, ed5_10_pct, edcs_pct;    /* shares of input_energy_j dissipated by modes 1, 5..10, the core */
+    double j1_m, j2_m, j3_g;              /* max |u|, max interstorey drift, max absolute acceleration / 9.81 */
+    double ed1_pct, ed5_10_pct, edcs_pct; /* shares of input_energy_j dissipated by modes 1, 5..10, the core */
     double mcore_kg;
-    double input_energy_j;                   /* - int a (1'M u' + 1'Mc v') dt */
-    double energy_residual;                  /* |input - kinetic - strain - damped - contacts| / input */
-    long impacts;                            /* closings of any gap */
+    double input_energy_j;  /* - int a (1'M u' + 1'Mc v') dt */
+    double energy_residual; /* |input - kinetic - strain - damped - contacts| / input */
+    long impacts, floored;  /* closings of any gap; those slower than the floor under v0 */
 
     int n_floors, n_modes;
     double peak_displacement_m[FLOORS_MAX], peak_drift_m[FLOORS_MAX], peak_acceleration_g[FLOORS_MAX];
-    double mode_share_pct[FLOORS_MAX];       /* of input_energy_j, dissipated by each building mode */
+    double mode_share_pct[FLOORS_MAX];                /* of input_energy_j, dissipated by each building mode */
     double contact_loss_j, contact_stored_j, clamp_j; /* lost in contacts, still stored, removed by the tension clamp */
     double damped_building_j, damped_core_j, kinetic_strain_j; /* the last at the end of the run */
-    double penetration_max_m;
-    long steps, force_evaluations;           /* what the run cost */
-    double seconds;                          /* wall time */
+    double penetration_max_m, penetration_ratio;               /* [-] over the contact's radius */
+    int beyond_contact_law;                                    /* penetration_ratio is above PENETRATION_RATIO_MAX */
+    long steps, force_evaluations;                             /* what the run cost */
+    double seconds;                                            /* wall time */
 } SimResult;
 
 typedef struct Scene Scene;

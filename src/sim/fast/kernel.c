@@ -806,6 +806,7 @@ void FAST_KERNEL(FastWork *k, const SimModel *model, const Motion *motion, doubl
     take_peaks(k, result);
     sum_energies(k, result);
     result->impacts = k->impacts;
+    result->floored = k->floored;
     result->penetration_max_m = k->deepest;
     result->steps = k->steps + k->flights;
     result->force_evaluations = k->forces;

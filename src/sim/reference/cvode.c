@@ -31,7 +31,7 @@ typedef struct {
     double t_kink, accel, slope; /* ground acceleration: accel + slope (t - t_kink) */
     int side[FLOORS_MAX];        /* 0 open, else the sign of w while closed */
     double v0[FLOORS_MAX];       /* approach speed when it closed, floored [m/s] */
-    long impacts, steps, steps_max, evaluations;
+    long impacts, floored, steps, steps_max, evaluations;
     double rtol;
     int finite; /* what was last evaluated */
 
@@ -73,7 +73,7 @@ static void relative_motion(const SimModel *model, int j, const double y[], doub
 }
 
 /* Adds the contacts' modal forces R_ij f_j to g. Where their power goes [W]:
- *     F p' = k p^1.5 p' (stored) + k p^1.5 (a p'/v0) p' (lost) + (F - F_raw) p' (clamp, never positive) */
+ *     F p' = k p^1.5 p' (stored) + (F_raw - k p^1.5) p' (lost) + (F - F_raw) p' (clamp, never positive) */
 static void add_contacts(const Run *r, const double y[], double g[], double *lost, double *clamp)
 {
     const SimModel *model = r->model;
@@ -90,7 +90,7 @@ static void add_contacts(const Run *r, const double y[], double g[], double *los
         const double *row = model->RT + (size_t)j * (size_t)model->m_pad;
         for (int i = 0; i < model->m; i++)
             g[i] -= r->side[j] * f.force * row[i];
-        *lost += f.hertz * model->contact.a / r->v0[j] * p_dot * p_dot;
+        *lost += (f.raw - f.hertz) * p_dot;
         *clamp += (f.force - f.raw) * p_dot;
     }
 }
@@ -311,6 +311,7 @@ static void close_gap(Run *r, int j, int side, double p_dot)
     r->side[j] = side;
     r->v0[j] = fmax(p_dot, r->model->contact.v0_floor);
     r->impacts++;
+    r->floored += p_dot < r->model->contact.v0_floor;
 }
 
 /* Flips the floors whose root was found. A floor whose root was not seen, because it was zero when the integrator
@@ -409,6 +410,7 @@ static void report(const Run *r, SimResult *result)
     result->steps = r->steps;
     result->force_evaluations = r->evaluations;
     result->impacts = r->impacts;
+    result->floored = r->floored;
     result->input_energy_j = y[3 * m];
     result->contact_loss_j = y[3 * m + 1];
     result->clamp_j = y[3 * m + 2];
