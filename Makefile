@@ -43,7 +43,7 @@ TEST_SRC := $(wildcard tests/test_*.c)
 TESTS   := $(TEST_SRC:%.c=$(BUILD)/%)
 PROGRAM := $(if $(filter release,$(MODE)),imtet,$(BUILD)/imtet)
 
-.PHONY: all setup run test test-here bench format install clean
+.PHONY: all setup run test test-here bench format install clean .FORCE
 .SECONDARY:
 all: $(PROGRAM)
 
@@ -90,8 +90,14 @@ $(BUILD)/%.csv.o: %.csv
 	@mkdir -p $(@D)
 	$(Q)$(LD) -r -b binary -z noexecstack -o $@ $<
 
-$(BUILD)/src/cmd/%.o $(BUILD)/src/run/%.o $(BUILD)/src/main.o: CPPFLAGS += -DIMTET_VERSION='"$(VERSION)"' \
+$(BUILD)/src/run/provenance.o: CPPFLAGS += -DIMTET_VERSION='"$(VERSION)"' \
     -DIMTET_REVISION='"$(REVISION)"' -DIMTET_CFLAGS='"$(CFLAGS.$(MODE))"'
+
+# Compiled again when version or revision changed, so that a run's folder names the sources that it came from.
+$(BUILD)/revision: .FORCE
+	@mkdir -p $(@D)
+	@echo '$(VERSION) $(REVISION)' | cmp -s - $@ || echo '$(VERSION) $(REVISION)' > $@
+$(BUILD)/src/run/provenance.o: $(BUILD)/revision
 
 format:
 	clang-format -i $(wildcard src/*.c src/*/*.[ch] src/*/*/*.[ch] tests/*.[ch])

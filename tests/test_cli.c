@@ -2,10 +2,12 @@
 #include "check.h"
 
 #include <jansson.h>
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -380,9 +382,10 @@ static void test_a_top_heavy_design_is_simulated_with_a_warning(void **state)
 /* ------------------------------------------------------------------------------------------------------- the study ---
  */
 
-#define SMALL_STUDY                                                                                                    \
+#define SMALL_STUDY_OF(max_evals)                                                                                      \
     "optimize configs/quick.ini --set motion.stretch=1 --set sim.duration_s=4 --set search.initial=28 "                \
-    "--set search.population=16 --max-evals 40 "
+    "--set search.population=16 --max-evals " #max_evals " "
+#define SMALL_STUDY SMALL_STUDY_OF(40)
 
 static void test_the_front_has_the_same_bytes_at_any_number_of_threads(void **state)
 {
@@ -519,6 +522,83 @@ static void test_a_design_of_the_front_is_evaluated_on_other_motions(void **stat
     free(table);
 }
 
+/* kill -9 as soon as there is a front; most of the 4000 simulations are still to come. */
+static void test_a_run_that_is_killed_leaves_its_last_finished_generation(void **state)
+{
+    (void)state;
+    Said s;
+    run(&s, "%s", SMALL_STUDY_OF(4000) "--threads 1 --out @/killed & n=0; "
+            "while [ ! -s @/killed/front.csv ] && [ $n -lt 1200 ]; do n=$((n+1)); sleep 0.05; done; "
+            "kill -9 $! && ! wait $!");
+    if (s.code != 0)
+        fail_msg("exit %d, said: %s", s.code, s.err);
+    forget(&s);
+    free(output_of("export @/killed --csv @/rescued.csv"));
+    char *front = read_in_place("rescued.csv"), *all = read_in_place("killed/evaluations.csv"), *row = front;
+    assert_int_equal(front[strlen(front) - 1], '\n');
+    while ((row = strchr(row, '\n')) && row[1]) { /* each design of the front is among the simulations */
+        char start[96];
+        snprintf(start, sizeof start, "\n%ld,", strtol(++row, NULL, 10));
+        assert_non_null(strstr(all, start));
+    }
+    free(front);
+    free(all);
+    free(output_of("evaluate @/killed --design knee --record builtin:elcentro-like --duration 4"));
+}
+
+/* ------------------------------------------------------------------------------------------- another building --- */
+
+/* A shear building of five floors, all alike: its circular frequencies are 2 sqrt(k/m) sin((2i - 1) pi / 22). */
+static void write_five_floors(double k, double m)
+{
+    char stiffness[512] = "", mass[512] = "";
+    size_t nk = 0, nm = 0;
+    for (int i = 0; i < 5; i++)
+        for (int j = 0; j < 5; j++) {
+            const double v = i == j ? (i < 4 ? 2 * k : k) : abs(i - j) == 1 ? -k : 0;
+            nk += (size_t)snprintf(stiffness + nk, sizeof stiffness - nk, "%g%s", v, j < 4 ? "," : "\n");
+            nm += (size_t)snprintf(mass + nm, sizeof mass - nm, "%g%s", i == j ? m : 0, j < 4 ? "," : "\n");
+        }
+    char *folder = in_place("five");
+    assert_int_equal(mkdir(folder, 0777), 0);
+    free(folder);
+    write_in_place("five/K.csv", stiffness);
+    write_in_place("five/M.csv", mass);
+    write_in_place("five.ini", "[building]\nmodel = five\nfirst_storey_m = 4\nstorey_m = 3\n[core]\nside_m = 5\n"
+                               "[motion]\nstretch = 1\n[sim]\nduration_s = 15\n"
+                               "[search]\ninitial = 20\npopulation = 12\nmax_evals = 30\n");
+    write_in_place("five.csv", "gap_01_m,gap_02_m,gap_03_m,gap_04_m,gap_05_m,t_base_m,t_top_m\n"
+                               "0.01,0.02,0.03,0.04,0.05,0.012,0.0064\n");
+}
+
+static void test_a_building_of_five_floors_goes_all_the_way(void **state)
+{
+    (void)state;
+    const double k = 4e8, m = 6e5;
+    write_five_floors(k, m);
+    free(output_of("check @/five.ini"));
+    json_t *o = json_of("modes @/five.ini --json");
+    for (int i = 0; i < 5; i++)
+        assert_close(json_real_value(json_array_get(json_object_get(o, "building_hz"), (size_t)i)),
+                     sqrt(k / m) * sin((2 * i + 1) * M_PI / 22) / M_PI, 1e-9);
+    json_decref(o);
+
+    json_t *fast = json_of("simulate @/five.ini --design @/five.csv --set sim.accuracy=fine --json");
+    json_t *slow = json_of("simulate @/five.ini --design @/five.csv --engine cvode --json");
+    assert_int_equal(json_array_size(json_object_get(fast, "peak_drift_m")), 5);
+    assert_true(number(fast, "impacts") > 10);
+    assert_close(number(fast, "j1_m"), number(slow, "j1_m"), 1e-3);
+    json_decref(fast);
+    json_decref(slow);
+
+    free(output_of("optimize @/five.ini --out @/five.run"));
+    char *front = read_in_place("five.run/front.csv");
+    assert_int_equal(strncmp(front, "id,gap_01_m,gap_02_m,gap_03_m,gap_04_m,gap_05_m,t_base_m,", 57), 0);
+    free(front);
+    free(output_of("evaluate @/five.run --design knee --record builtin:elcentro-like"));
+    expect(65, "a design of 20 floors has gap_06_m there", "simulate configs/quick.ini --design @/five.csv");
+}
+
 static int make_place(void **state)
 {
     (void)state;
@@ -557,6 +637,8 @@ int main(void)
         cmocka_unit_test(test_a_folder_with_a_run_is_refused_or_numbered),
         cmocka_unit_test(test_the_export_is_the_front),
         cmocka_unit_test(test_a_design_of_the_front_is_evaluated_on_other_motions),
+        cmocka_unit_test(test_a_run_that_is_killed_leaves_its_last_finished_generation),
+        cmocka_unit_test(test_a_building_of_five_floors_goes_all_the_way),
     };
     return cmocka_run_group_tests(tests, make_place, clear_place);
 }

@@ -140,13 +140,16 @@ static void print_word(FILE *out, const char *words, long index)
 
 static Status parse_number(const Option *o, const char *value, double *number, Err *err)
 {
+    const char *unit = strcmp(o->unit, "-") == 0 ? "" : o->unit;
     char *end;
     errno = 0;
     *number = strtod(value, &end);
     if (end == value || *end)
-        return fail(err, STATUS_BAD_DATA, "%s: '%s' is not a number [%s]", o->key, value, o->unit);
+        return fail(err, STATUS_BAD_DATA, "%s: '%s' is not a number%s%s%s", o->key, value, *unit ? " [" : "", unit,
+                    *unit ? "]" : "");
     if (!(*number >= o->min && *number <= o->max)) /* also rejects NaN */
-        return fail(err, STATUS_BAD_DATA, "%s: %s is outside %g..%g %s", o->key, value, o->min, o->max, o->unit);
+        return fail(err, STATUS_BAD_DATA, "%s: %s is outside %.10g..%.10g%s%s", o->key, value, o->min, o->max,
+                    *unit ? " " : "", unit);
     if (o->kind == WHOLE && *number != (double)(long)*number)
         return fail(err, STATUS_BAD_DATA, "%s: %s is not a whole number", o->key, value);
     return STATUS_OK;
@@ -422,7 +425,7 @@ static void describe(const Option *o, FILE *out)
 {
     fprintf(out, "; %s", o->help);
     if (o->kind == REAL || o->kind == WHOLE)
-        fprintf(out, " [%s, %g..%g]", o->unit, o->min, o->max);
+        fprintf(out, " [%s, %.10g..%.10g]", o->unit, o->min, o->max);
     if (o->kind == CHOICE)
         fprintf(out, " (%s)", o->words);
     fputc('\n', out);

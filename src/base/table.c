@@ -89,6 +89,15 @@ static Status room_for_row(Table *t, Reader *r, Err *err)
     return STATUS_OK;
 }
 
+/* Length of the cell that begins here, for a message. */
+static int shown(const char *cell, const char *end)
+{
+    int n = 0;
+    while (cell + n < end && cell[n] != ',' && n < 20)
+        n++;
+    return n;
+}
+
 static Status read_row(Table *t, Reader *r, const char *line, const char *end, Err *err)
 {
     if (t->n_cols == 0) {
@@ -102,8 +111,8 @@ static Status read_row(Table *t, Reader *r, const char *line, const char *end, E
         char *stop;
         row[j] = strtod(line, &stop);
         if (stop == line || stop > end)
-            return fail(err, STATUS_BAD_DATA, "%s:%d: column %zu of %zu is missing or not a number: '%.20s'", r->path,
-                        r->line, j + 1, t->n_cols, line < end ? line : "");
+            return fail(err, STATUS_BAD_DATA, "%s:%d: column %zu of %zu is missing or not a number: '%.*s'", r->path,
+                        r->line, j + 1, t->n_cols, shown(line, end), line);
         if (!isfinite(row[j]))
             return fail(err, STATUS_BAD_DATA, "%s:%d: column %zu is %g; only finite numbers are accepted", r->path,
                         r->line, j + 1, row[j]);
@@ -111,8 +120,8 @@ static Status read_row(Table *t, Reader *r, const char *line, const char *end, E
             stop++;
         const int last = j + 1 == t->n_cols;
         if (stop < end && *stop != ',')
-            return fail(err, STATUS_BAD_DATA, "%s:%d: column %zu is not a number: '%.20s'", r->path, r->line, j + 1,
-                        line);
+            return fail(err, STATUS_BAD_DATA, "%s:%d: column %zu is not a number: '%.*s'", r->path, r->line, j + 1,
+                        shown(line, end), line);
         if (last && stop < end)
             return fail(err, STATUS_BAD_DATA, "%s:%d: more than %zu columns", r->path, r->line, t->n_cols);
         line = stop + 1;

@@ -74,8 +74,7 @@ static json_t *describe(const World *w, const SimResult results[N_SCENES])
 
 static void print_pair(const World *w, const SimResult results[N_SCENES])
 {
-    printf("%s: %.4g s, peak %.4g g\n", w->motion.name, (double)(w->motion.n - 1) * w->motion.dt_s,
-           motion_peak(&w->motion) / 9.81);
+    show_motion(&w->motion, w->settings.sim.duration_s);
     show_result_names("");
     for (int i = 0; i < N_SCENES; i++)
         show_result(i == WITH_CORE ? "with core" : "no core", &results[i]);

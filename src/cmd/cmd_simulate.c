@@ -109,10 +109,11 @@ static Status write_csv(const Job *job, const char *path, Err *err)
     return output_close(&o, err);
 }
 
-static void print_table(const Job *job, const Motion *m)
+static void print_table(const Job *job, const World *w)
 {
     char label[32];
-    printf("%s, %.4g s, peak %.4g g\n\n", m->name, (double)(m->n - 1) * m->dt_s, motion_peak(m) / 9.81);
+    show_motion(&w->motion, w->settings.sim.duration_s);
+    putchar('\n');
     show_result_names(job->kind == SCENE_TIED ? "tied, no gaps" : "");
     for (size_t i = 0; i < job->n; i++) {
         snprintf(label, sizeof label, "design %zu", i + 1);
@@ -120,14 +121,14 @@ static void print_table(const Job *job, const Motion *m)
     }
 }
 
-static Status print(const Args *args, const Job *job, const Motion *m, Err *err)
+static Status print(const Args *args, const Job *job, const World *w, Err *err)
 {
     if (args_has(args, "--csv"))
         TRY(write_csv(job, args_value(args, "--csv"), err));
     if (args_has(args, "--json"))
-        return print_json(job, m, err);
+        return print_json(job, &w->motion, err);
     if (!args_has(args, "--csv"))
-        print_table(job, m);
+        print_table(job, w);
     return STATUS_OK;
 }
 
@@ -143,7 +144,7 @@ static Status run(const Args *args, Err *err)
     if (status == STATUS_OK)
         status = simulate(&w, &job, err);
     if (status == STATUS_OK)
-        status = print(args, &job, &w.motion, err);
+        status = print(args, &job, &w, err);
     free(job.tasks);
     free(job.results);
     design_free(&job.designs);

@@ -69,6 +69,15 @@ Status show_json(json_t *all, Err *err)
     return failed ? fail(err, STATUS_IO, "standard output: cannot be written") : STATUS_OK;
 }
 
+void show_motion(const Motion *m, double duration_s)
+{
+    const double length = (double)(m->n - 1) * m->dt_s;
+    printf("%s: ", m->name);
+    if (duration_s > 0 && duration_s < length)
+        printf("the first %.4g of ", duration_s);
+    printf("%.4g s, peak %.4g g\n", length, motion_peak(m) / 9.81);
+}
+
 void show_result_names(const char *label)
 {
     printf("%-28s", label);

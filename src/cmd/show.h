@@ -15,6 +15,9 @@ Status show_json(json_t *all, Err *err);
 
 const char *scene_word(SceneKind kind);
 
+/* What shakes: name, length (and how much of it was simulated; duration_s 0: all), peak. */
+void show_motion(const Motion *m, double duration_s);
+
 /* One line per simulation: label, objectives, impacts, outcome where it is not ok. */
 void show_result_names(const char *label);
 void show_result(const char *label, const SimResult *r);

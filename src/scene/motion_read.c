@@ -263,6 +263,22 @@ static double shortest_near(double x, double slack)
     return x;
 }
 
+/* Names the step that is least like the others: there the sample is missing, while the drift that it causes is noticed
+ * elsewhere. The step of the others is what it breaks. */
+static Status fail_at_oddest_step(const char *path, const Rows *r, double dt, double digit, Err *err)
+{
+    const Row *row = r->row, *odd = &row[1];
+    for (size_t i = 2; i < r->n; i++)
+        if (fabs(row[i].t - row[i - 1].t - dt) > fabs(odd[0].t - odd[-1].t - dt))
+            odd = &row[i];
+    const double step = odd[0].t - odd[-1].t, others = (double)(r->n - 2);
+    const double usual = shortest_near((row[r->n - 1].t - row[0].t - step) / others, digit / others);
+    return fail(err, STATUS_BAD_DATA,
+                "%s:%d: time %.10g s breaks the uniform step of %.6g s: it comes %.6g s after the line before; a sample "
+                "is missing, or the file must be resampled",
+                path, odd->line, odd->t, usual, step);
+}
+
 /* The common step. A printed time is off by half a unit of its last digit at most, and so are the first and the last
  * one, which give the step: one unit in all, or 1e-5 of the time where six significant digits were printed, or 1e-3 of
  * a step in any case. A missing or doubled sample is off by half a step or more wherever it stands; hence the cap. */
@@ -286,11 +302,7 @@ static Status uniform_step(const char *path, const Rows *r, double *dt, Err *err
         const double want = row[0].t + (double)i * *dt;
         const double printed = fmax(digit, 1e-5 * fabs(row[i].t));
         if (fabs(row[i].t - want) > fmin(fmax(printed, 1e-3 * *dt), 0.3 * *dt))
-            return fail(
-                err, STATUS_BAD_DATA,
-                "%s:%d: time %.10g s breaks the uniform step of %.6g s (%.10g s expected); a sample is missing, "
-                "or the file must be resampled",
-                path, row[i].line, row[i].t, *dt, want);
+            return fail_at_oddest_step(path, r, *dt, digit, err);
     }
     return STATUS_OK;
 }
