@@ -29,6 +29,7 @@ void fast_free(FastWork *work); /* NULL is fine */
 typedef struct {
     double steps_per_contact; /* of an undisturbed Hertz contact at the largest speed between floor and core */
     double solver_tolerance;  /* of the contact forces of one step, relative to what the step moves */
+    double energy_tolerance;  /* of one step longer than that, share of the input energy so far; 0: none is longer */
     double peak_tolerance;    /* share of a peak that may hide inside a flight step */
 } FastKnobs;
 

@@ -420,33 +420,6 @@ static void press(FastWork *k, const Level *l, int j, double w1, double w1d, Pre
     }
 }
 
-/* One step of Newton's method for the force at the end, F, and its mean, M, of floor j with all other floors held:
- *   w1 = w - A F - B M,  w1' = w' - C F - D M,  (F, M) = law along the path to w1, w1'
- * Returns the change in w1 and w1' relative to what the step moves, or NaN when there is none. */
-static double improve_floor(FastWork *k, const Level *l, int j, Press *t)
-{
-    const int at = j * k->n_pad + j, size = k->n * k->n_pad;
-    const double *r = l->response;
-    const double f0 = -scalars(k->f0)[j], w_b = r[BUBBLE_W * size + at], v_b = r[BUBBLE_V * size + at];
-    const double A = r[RAMP_W * size + at] - 3 * w_b, B = 6 * w_b, C = r[RAMP_V * size + at] - 3 * v_b, D = 6 * v_b;
-    const double F = -scalars(k->f1)[j], M = (-scalars(k->fb)[j] + 3 * f0 + 3 * F) / 6;
-    const double w1 = scalars(k->w1)[j], w1d = scalars(k->wd1)[j];
-    press(k, l, j, w1, w1d, t);
-    const double rF = F - t->end, rM = M - t->mean;
-    const double J11 = 1 + t->end_w * A + t->end_v * C, J12 = t->end_w * B + t->end_v * D;
-    const double J21 = t->mean_w * A + t->mean_v * C, J22 = 1 + t->mean_w * B + t->mean_v * D;
-    const double det = J11 * J22 - J12 * J21;
-    const double dF = (rF * J22 - rM * J12) / det, dM = (J11 * rM - J21 * rF) / det;
-    if (!isfinite(dF) || !isfinite(dM))
-        return NAN;
-    apply_force(k, l, j, -(F - dF), -(6 * (M - dM) - 3 * f0 - 3 * (F - dF)));
-    /* what moves: the penetration, not the distance from the middle of the gap */
-    const double free_w = w1 + A * F + B * M, free_v = w1d + C * F + D * M, w0 = scalars(k->w)[j];
-    const double gap = scalars(k->gap)[j], scale_v = fabs(scalars(k->wd)[j]) + fabs(free_v);
-    const double scale_w = fabs(fabs(w0) - gap) + fabs(fabs(free_w) - gap) + l->h * scale_v;
-    return fmax((fabs(A * dF) + fabs(B * dM)) / scale_w, (fabs(C * dF) + fabs(D * dM)) / scale_v);
-}
-
 typedef struct {
     int n, floor[FLOORS_PAD_MAX];
     unsigned char listed[FLOORS_PAD_MAX];
@@ -491,22 +464,112 @@ static void guess_force(FastWork *k, const Level *l, int j)
     apply_force(k, l, j, f1 * f0 > 0 ? f1 : f0, 0);
 }
 
-/* The forces of all floors at once: Newton by floor, Gauss-Seidel over the floors; 0 when they cannot be had at this step
- * length. */
+/* x (n) := A^-1 x by elimination with row exchange; A (n, n) row-major is spent. 0: singular or not finite. */
+static int eliminate(int n, double *A, double *x)
+{
+    for (int c = 0; c < n; c++) {
+        int top = c;
+        for (int r = c + 1; r < n; r++)
+            if (fabs(A[r * n + c]) > fabs(A[top * n + c]))
+                top = r;
+        if (!(fabs(A[top * n + c]) > 0) || !isfinite(A[top * n + c]))
+            return 0;
+        for (int j = c; top != c && j < n; j++) {
+            const double t = A[c * n + j];
+            A[c * n + j] = A[top * n + j];
+            A[top * n + j] = t;
+        }
+        const double t = x[c];
+        x[c] = x[top];
+        x[top] = t;
+        for (int r = c + 1; r < n; r++) {
+            const double f = A[r * n + c] / A[c * n + c];
+            for (int j = c + 1; j < n; j++)
+                A[r * n + j] -= f * A[c * n + j];
+            x[r] -= f * x[c];
+        }
+    }
+    for (int c = n - 1; c >= 0; c--) {
+        for (int j = c + 1; j < n; j++)
+            x[c] -= A[c * n + j] * x[j];
+        x[c] /= A[c * n + c];
+    }
+    return 1;
+}
+
+/* One step of Newton's method for the forces at the end, F_i, and their means, M_i, of all active floors:
+ *   w1_i  = free - sum_j (A_ij F_j + B_ij M_j),   w1_i' = free' - sum_j (C_ij F_j + D_ij M_j),
+ *   (F_i, M_i) = law along the path to w1_i, w1_i'
+ * Returns the largest change of w1 and w1' relative to what the step moves, or NaN when there is none. */
+static double improve_forces(FastWork *k, const Level *l, Active *active)
+{
+    enum { MOST = 2 * FLOORS_PAD_MAX };
+    const int n = active->n, size = k->n * k->n_pad;
+    double J[MOST * MOST], x[MOST], A[FLOORS_PAD_MAX * 4];
+    for (int i = 0; i < n; i++) {
+        const int fi = active->floor[i];
+        Press *t = &active->press[i];
+        press(k, l, fi, scalars(k->w1)[fi], scalars(k->wd1)[fi], t);
+        const double f0 = -scalars(k->f0)[fi], F = -scalars(k->f1)[fi];
+        x[2 * i] = F - t->end;
+        x[2 * i + 1] = (-scalars(k->fb)[fi] + 3 * f0 + 3 * F) / 6 - t->mean;
+        for (int j = 0; j < n; j++) {
+            const double *r = l->response + fi * k->n_pad + active->floor[j];
+            const double w_b = r[BUBBLE_W * size], v_b = r[BUBBLE_V * size];
+            const double w_F = r[RAMP_W * size] - 3 * w_b, v_F = r[RAMP_V * size] - 3 * v_b;
+            double *row = J + 4 * i * n + 2 * j;
+            row[0] = t->end_w * w_F + t->end_v * v_F;
+            row[1] = 6 * (t->end_w * w_b + t->end_v * v_b);
+            row[2 * n] = t->mean_w * w_F + t->mean_v * v_F;
+            row[2 * n + 1] = 6 * (t->mean_w * w_b + t->mean_v * v_b);
+            if (i == j) {
+                row[0] += 1;
+                row[2 * n + 1] += 1;
+                A[4 * i] = w_F;
+                A[4 * i + 1] = 6 * w_b;
+                A[4 * i + 2] = v_F;
+                A[4 * i + 3] = 6 * v_b;
+            }
+        }
+    }
+    if (!eliminate(2 * n, J, x))
+        return NAN;
+    double change = 0;
+    for (int i = 0; i < n; i++) {
+        const int j = active->floor[i];
+        const double f0 = -scalars(k->f0)[j], F = -scalars(k->f1)[j], dF = x[2 * i], dM = x[2 * i + 1];
+        const double M = (-scalars(k->fb)[j] + 3 * f0 + 3 * F) / 6;
+        /* what moves: the penetration with and without the force, not the distance from the middle of the gap */
+        const double w0 = scalars(k->w)[j], gap = scalars(k->gap)[j];
+        const double free_w = scalars(k->w1)[j] + A[4 * i] * F + A[4 * i + 1] * M;
+        const double free_v = scalars(k->wd1)[j] + A[4 * i + 2] * F + A[4 * i + 3] * M;
+        const double scale_v = fabs(scalars(k->wd)[j]) + fabs(free_v);
+        const double scale_w = fabs(fabs(w0) - gap) + fabs(fabs(free_w) - gap) + l->h * scale_v;
+        const double c = fmax((fabs(A[4 * i] * dF) + fabs(A[4 * i + 1] * dM)) / scale_w,
+                              (fabs(A[4 * i + 2] * dF) + fabs(A[4 * i + 3] * dM)) / scale_v);
+        if (!(c <= change))
+            change = c;
+    }
+    for (int i = 0; i < n && isfinite(change); i++) {
+        const int j = active->floor[i];
+        const double f0 = -scalars(k->f0)[j], F = -scalars(k->f1)[j], dF = x[2 * i], dM = x[2 * i + 1];
+        const double M = (-scalars(k->fb)[j] + 3 * f0 + 3 * F) / 6;
+        apply_force(k, l, j, -(F - dF), -(6 * (M - dM) - 3 * f0 - 3 * (F - dF)));
+    }
+    return change;
+}
+
+/* The forces of all floors at once by Newton's method; 0 when they cannot be had at this step length. */
 static int solve_contacts(FastWork *k, const Level *l, double tolerance, Active *active)
 {
-    enum { SWEEPS = 80 };
+    enum { MOST = 40 };
     list_touching(k, active);
     for (int i = 0; i < active->n; i++)
         guess_force(k, l, active->floor[i]);
-    for (int sweep = 0; sweep < SWEEPS; sweep++) {
-        double change = 0;
-        for (int i = 0; i < active->n; i++) {
-            const double c = improve_floor(k, l, active->floor[i], &active->press[i]);
-            if (!(c >= 0))
-                return 0;
-            change = fmax(change, c);
-        }
+    for (int i = 0; i < MOST; i++) {
+        const double change = active->n ? improve_forces(k, l, active) : 0;
+        if (!(change >= 0))
+            return 0;
         if (change <= tolerance && !find_closings(k, l, active))
             return 1;
     }
@@ -520,12 +583,12 @@ static void forget_forces(FastWork *k)
         k->f1[f] = k->fb[f] = zero;
 }
 
-/* The modes take the forces that were found, and the books are kept. */
-static void contact_update(FastWork *k, const Level *l, const Active *active, double a0, double a1)
+/* What the modes would be with the forces that were found; returns the work [J] that they did on all modes. */
+static double contact_update(FastWork *k, const Level *l, const Active *active, double a0, double a1)
 {
     const v8 *c = l->coef, zero = {0};
     const int mf = k->mf;
-    v8 *load1 = k->qa, *bubble = k->va;
+    v8 *load1 = k->qa, *bubble = k->va, taken = zero;
     for (int i = 0; i < mf; i++)
         load1[i] = bubble[i] = zero;
     for (int n = 0; n < active->n; n++) {
@@ -546,17 +609,32 @@ static void contact_update(FastWork *k, const Level *l, const Active *active, do
                         c[(FLOW_I + 3) * mf + i] * p1 - c[(FLOW_I + 4) * mf + i] * b;
         const v8 first = c[FLOW_K * mf + i] * q + c[(FLOW_K + 1) * mf + i] * v + c[(FLOW_K + 2) * mf + i] * p0 +
                          c[(FLOW_K + 3) * mf + i] * p1 - c[(FLOW_K + 4) * mf + i] * b;
-        k->ground[i] += (g0 + g1) * q1 - g0 * q - g1 * mean;
-        k->work[i] += load1[i] * q1 - load * q - rise * mean + 2 * b * first;
+        const v8 work = load1[i] * q1 - load * q - rise * mean + 2 * b * first;
+        k->work1[i] = k->work[i] + work;
+        k->ground1[i] = k->ground[i] + (g0 + g1) * q1 - g0 * q - g1 * mean;
         k->q1[i] = q1;
         k->v1[i] = v1;
-        k->load[i] = load1[i];
+        taken += work;
     }
-    swap(&k->q, &k->q1);
-    swap(&k->v, &k->v1);
+    return lanes_sum(taken);
 }
 
-static void book_contacts(FastWork *k, const Active *active, double h)
+/* How far the energy that the modes gave to the contacts, by their exact motion, is from what the force law took along
+ * its cubic paths: zero but for the error of the step. */
+static double step_mismatch(const FastWork *k, const Active *active, double work)
+{
+    double taken = 0;
+    for (int i = 0; i < active->n; i++) {
+        const int j = active->floor[i];
+        const double gap = scalars_const(k->gap)[j];
+        taken += active->press[i].lost + active->press[i].clamped;
+        taken += contact_stored(&k->model->contact, fabs(scalars_const(k->w1)[j]) - gap) -
+                 contact_stored(&k->model->contact, fabs(scalars_const(k->w)[j]) - gap);
+    }
+    return fabs(work + taken);
+}
+
+static void accept_contacts(FastWork *k, const Active *active, double h)
 {
     k->n_touching = 0;
     for (int i = 0; i < active->n; i++) {
@@ -574,6 +652,11 @@ static void book_contacts(FastWork *k, const Active *active, double h)
                 fmax(k->deepest, largest_on_cubic(h, w0, scalars(k->wd)[j], w1, scalars(k->wd1)[j]) - gap);
         k->n_touching += k->side[j] != 0;
     }
+    swap(&k->q, &k->q1);
+    swap(&k->v, &k->v1);
+    swap(&k->load, &k->qa);
+    swap(&k->work, &k->work1);
+    swap(&k->ground, &k->ground1);
     swap(&k->w, &k->w1);
     swap(&k->wd, &k->wd1);
     v8 *const free_slot = k->f_before;
@@ -628,8 +711,16 @@ static void peaks_in_contact(FastWork *k, double h)
         }
 }
 
+static int closes(const Active *active)
+{
+    for (int i = 0; i < active->n; i++)
+        if (active->press[i].closings)
+            return 1;
+    return 0;
+}
+
 /* One step with whatever contacts it holds; 0 when it must be shorter and nothing has changed. */
-static int contact_step(FastWork *k, const Level *l, double a0, double a1)
+static int contact_step(FastWork *k, const Level *l, double a0, double a1, int finest)
 {
     Active active;
     if (k->n_seen < 0)
@@ -640,8 +731,18 @@ static int contact_step(FastWork *k, const Level *l, double a0, double a1)
         forget_forces(k);
         return 0;
     }
-    contact_update(k, l, &active, a0, a1);
-    book_contacts(k, &active, l->h);
+    if (!finest && closes(&active)) {
+        forget_forces(k);
+        return 0;
+    }
+    const double work = contact_update(k, l, &active, a0, a1);
+    const double mismatch = step_mismatch(k, &active, work), allowed = k->knobs->energy_tolerance * k->energy_scale;
+    if (!finest && !(mismatch <= allowed)) {
+        forget_forces(k);
+        return 0;
+    }
+    k->may_grow = mismatch <= allowed / 32;
+    accept_contacts(k, &active, l->h);
     peaks_in_contact(k, l->h);
     return 1;
 }
@@ -665,11 +766,21 @@ static double shortest_contact(const SimModel *model)
     return least;
 }
 
+/* What the energy of one step's error is measured by: the input so far. */
+static double energy_scale(const FastWork *k)
+{
+    v8 sum = {0};
+    for (int i = 0; i < k->mf; i++)
+        sum += k->ground[i];
+    return fabs(lanes_sum(sum));
+}
+
 /* One sampling interval, ground acceleration from a0 to a1; 0 when no step is short enough. */
 static int interval(FastWork *k, double a0, double a1)
 {
     const uint32_t whole = UINT32_C(1) << LEVEL_MAX;
     uint32_t at = 0;
+    k->energy_scale = energy_scale(k);
     while (at < whole) {
         const int aligned = at ? LEVEL_MAX - __builtin_ctz(at) : 0;
         const int finest = k->m_pad > k->nb_pad ? contact_level(k) : LEVEL_MAX;
@@ -681,17 +792,22 @@ static int interval(FastWork *k, double a0, double a1)
             if (done) {
                 at += step;
                 k->flight_level = level > 0 ? level - 1 : 0;
+                k->touch_level = LEVEL_MAX;
             }
         }
         if (done)
             continue;
         k->flight_level = finest > 0 ? finest - 1 : 0;
-        for (level = finest > aligned ? finest : aligned; !done && level <= LEVEL_MAX; level++) {
+        if (k->touch_level > finest || k->knobs->energy_tolerance == 0)
+            k->touch_level = finest;
+        for (level = k->touch_level > aligned ? k->touch_level : aligned; !done && level <= LEVEL_MAX; level++) {
             const uint32_t step = whole >> level;
             done = contact_step(k, level_ready(k, level, 1), a0 + (a1 - a0) * at / whole,
-                                a0 + (a1 - a0) * (at + step) / whole);
-            if (done)
+                                a0 + (a1 - a0) * (at + step) / whole, level >= finest);
+            if (done) {
                 at += step;
+                k->touch_level = k->may_grow && level > 0 ? level - 1 : level;
+            }
         }
         if (!done)
             return 0;
@@ -716,6 +832,7 @@ static int fly(FastWork *k, const Motion *motion, double duration)
     const long full = (long)floor(duration / motion->dt_s * (1 + 1e-14));
     const long samples = (long)motion->n;
     k->flight_level = 0;
+    k->touch_level = LEVEL_MAX;
     set_base(k, 0);
     set_base(k, motion->dt_s);
     for (long i = 0; i < full; i++) {

@@ -34,7 +34,8 @@ typedef struct FastWork {
     Level level[LEVEL_MAX + 1];
 
     /* modes */
-    v8 *omega, *zeta, *gamma, *wd_inverse, *decay, *flex, *q, *v, *load, *work, *ground;   /* (m_pad) */
+    v8 *omega, *zeta, *gamma, *wd_inverse, *decay, *flex, *q, *v, *load, *work, *ground; /* (m_pad) */
+    v8 *work1, *ground1;
     v8 *q1, *v1, *amplitude, *qa, *va, *qb, *vb, *za, *ja, *zb, *jb, *bound, *bound_a;     /* (m_pad) */
     double *R, *R_abs; /* (m_pad, n_pad) */
     double *RT;        /* (n_pad, m_pad) */
@@ -51,6 +52,9 @@ typedef struct FastWork {
     int side[FLOORS_PAD_MAX];                          /* 0 open, +1 or -1 touching */
     int n_touching;
     int flight_level;  /* where the next flight is tried */
+    int touch_level;   /* where the next contact step is tried */
+    int may_grow;      /* the last contact step could have been twice as long */
+    double energy_scale; /* [J] */
     double speed;      /* [m/s] largest |w'| */
     double h_before;   /* [s] step that led from f_before to f0 */
     double shortest_at_1; /* [s] shortest Hertz contact of any floor at 1 m/s */

@@ -32,6 +32,32 @@ static inline v8 v8_abs(v8 a)
     return (v8)((m8)a & INT64_MAX);
 }
 
+typedef double v4 __attribute__((vector_size(32)));
+typedef int64_t m4 __attribute__((vector_size(32)));
+
+static inline v4 v4_where(m4 m, v4 a, v4 b)
+{
+    return (v4)(((m4)a & m) | ((m4)b & ~m));
+}
+
+static inline v4 v4_sqrt(v4 a)
+{
+    v4 r;
+    for (int i = 0; i < 4; i++)
+        r[i] = __builtin_sqrt(a[i]);
+    return r;
+}
+
+static inline double v4_sum(v4 a)
+{
+    return (a[0] + a[1]) + (a[2] + a[3]);
+}
+
+static inline double lanes_sum(v8 a)
+{
+    return ((a[0] + a[1]) + (a[2] + a[3])) + ((a[4] + a[5]) + (a[6] + a[7]));
+}
+
 static inline int m8_any(m8 m)
 {
     int64_t any = 0;
