@@ -29,8 +29,9 @@ LDLIBS   += -lsundials_cvode -lsundials_nvecserial -lsundials_sunmatrixdense -ls
 $(BUILD)/src/sim/%.o: CFLAGS.release := -O3 -g
 
 KERNELS := base avx2 avx512
-KERNEL_FLAGS.avx2   := -march=x86-64-v3
-KERNEL_FLAGS.avx512 := -march=x86-64-v4 -mprefer-vector-width=512
+KERNEL_FLAGS.base   := -DFAST_LANES=2
+KERNEL_FLAGS.avx2   := -DFAST_LANES=4 -march=x86-64-v3
+KERNEL_FLAGS.avx512 := -DFAST_LANES=8 -march=x86-64-v4 -mprefer-vector-width=512
 ifneq ($(shell uname -m),x86_64)
 KERNELS := base
 endif

@@ -8,10 +8,10 @@
 static void layout(FastWork *k, Carve *c)
 {
     const size_t n = (size_t)k->n, n_pad = (size_t)k->n_pad, m_max = 2 * n_pad;
-    v8 **const modes[] = {&k->omega, &k->zeta, &k->gamma, &k->wd_inverse, &k->decay, &k->flex, &k->q,  &k->v,
+    vec **const modes[] = {&k->omega, &k->zeta, &k->gamma, &k->wd_inverse, &k->decay, &k->flex, &k->q,  &k->v,
                           &k->load,  &k->work, &k->ground, &k->q1,        &k->v1,    &k->amplitude,   &k->qa, &k->va,
                           &k->qb,    &k->vb,   &k->za,    &k->ja,         &k->zb,    &k->jb,   &k->bound, &k->bound_a, &k->work1, &k->ground1};
-    v8 **const floors[] = {&k->w,   &k->wd,  &k->w1,  &k->wd1, &k->f0,  &k->f1,  &k->fb, &k->f_before, &k->gap,    &k->u0,
+    vec **const floors[] = {&k->w,   &k->wd,  &k->w1,  &k->wd1, &k->f0,  &k->f1,  &k->fb, &k->f_before, &k->gap,    &k->u0,
                            &k->u0d, &k->u1,  &k->u1d, &k->a0,  &k->a0d, &k->a1,  &k->a1d,    &k->e_u,    &k->e_w,
                            &k->e_a, &k->peak_u, &k->peak_d, &k->peak_a, &k->c0, &k->c0d, &k->c1, &k->c1d};
     for (size_t i = 0; i < sizeof modes / sizeof modes[0]; i++)
@@ -40,8 +40,7 @@ Status fast_create(FastWork **out, int n_floors, Err *err)
     if (!k)
         return fail(err, STATUS_NO_MEMORY, "fast: no memory for its work space");
     k->n = n_floors;
-    k->n_pad = (n_floors + LANES - 1) / LANES * LANES;
-    k->nf = k->n_pad / LANES;
+    k->n_pad = (n_floors + PAD - 1) / PAD * PAD;
     Carve count = {0};
     layout(k, &count);
     k->store = carve_store(&count);
@@ -77,7 +76,7 @@ FastKnobs fast_knobs(Accuracy accuracy)
 {
     static const FastKnobs KNOBS[] = {
         [ACCURACY_COARSE] = {1, 1e-3, 1e-4, 1e-2},
-        [ACCURACY_STANDARD] = {2, 1e-4, 3e-6, 1e-3},
+        [ACCURACY_STANDARD] = {2, 3e-3, 3e-6, 1e-3},
         [ACCURACY_FINE] = {80, 1e-12, 0, 1e-6},
     };
     return KNOBS[accuracy];

@@ -9,12 +9,18 @@
 /* Above this w h a mode is bounded by its amplitude, below it the Hermite cubic follows it. */
 static const double FAST_MODE = 1.5;
 
-static double *scalars(v8 *p)
+/* The greater; b where a is not a number. Faster than fmax, which must look at both. */
+static inline double larger(double a, double b)
+{
+    return a > b ? a : b;
+}
+
+static double *scalars(vec *p)
 {
     return (double *)p;
 }
 
-static const double *scalars_const(const v8 *p)
+static const double *scalars_const(const vec *p)
 {
     return (const double *)p;
 }
@@ -98,8 +104,9 @@ static void copy_mode(FastWork *k, const SimModel *model, int from, int to)
 static void take_model(FastWork *k, const SimModel *model, double base)
 {
     k->model = model;
-    k->nb_pad = (model->nb + LANES - 1) / LANES * LANES;
-    k->m_pad = k->nb_pad + (model->nc + LANES - 1) / LANES * LANES;
+    k->nb_pad = (model->nb + PAD - 1) / PAD * PAD;
+    k->m_pad = k->nb_pad + (model->nc + PAD - 1) / PAD * PAD;
+    k->nf = k->n_pad / LANES;
     k->bf = k->nb_pad / LANES;
     k->mf = k->m_pad / LANES;
     memset(k->R, 0, sizeof(double) * (size_t)(k->m_pad * k->n_pad));
@@ -125,7 +132,7 @@ static void take_model(FastWork *k, const SimModel *model, double base)
 
 static void start_at_rest(FastWork *k)
 {
-    const v8 zero = {0};
+    const vec zero = {0};
     for (int i = 0; i < k->mf; i++)
         k->q[i] = k->v[i] = k->load[i] = k->work[i] = k->ground[i] = zero;
     for (int f = 0; f < k->nf; f++)
@@ -142,21 +149,21 @@ static void start_at_rest(FastWork *k)
 
 static void flight_modes(FastWork *k, const Level *l, double a0, double a1)
 {
-    const v8 *c = l->coef;
+    const vec *c = l->coef;
     const int mf = k->mf;
     const double rate = (a1 - a0) / l->h;
     for (int i = 0; i < mf; i++) {
-        const v8 q = k->q[i], v = k->v[i], p0 = -k->gamma[i] * a0, p1 = -k->gamma[i] * (a1 - a0);
+        const vec q = k->q[i], v = k->v[i], p0 = -k->gamma[i] * a0, p1 = -k->gamma[i] * (a1 - a0);
         k->q1[i] = c[FLOW_Q * mf + i] * q + c[(FLOW_Q + 1) * mf + i] * v + c[(FLOW_Q + 2) * mf + i] * p0 +
                    c[(FLOW_Q + 3) * mf + i] * p1;
         k->v1[i] = c[FLOW_V * mf + i] * q + c[(FLOW_V + 1) * mf + i] * v + c[(FLOW_V + 2) * mf + i] * p0 +
                    c[(FLOW_V + 3) * mf + i] * p1;
         /* quasi-static answer to the linear load, and the free vibration around it */
-        const v8 flex = k->flex[i], decay = k->decay[i], stiff = k->omega[i] * k->omega[i], slow = l->slow[i];
-        const v8 static_v = -k->gamma[i] * rate * flex, static_0 = (p0 - decay * static_v) * flex,
+        const vec flex = k->flex[i], decay = k->decay[i], stiff = k->omega[i] * k->omega[i], slow = l->slow[i];
+        const vec static_v = -k->gamma[i] * rate * flex, static_0 = (p0 - decay * static_v) * flex,
                  static_1 = static_0 + l->h * static_v;
-        const v8 x = q - static_0, xd = (v - static_v + 0.5 * decay * x) * k->wd_inverse[i];
-        k->amplitude[i] = v8_sqrt(x * x + xd * xd);
+        const vec x = q - static_0, xd = (v - static_v + 0.5 * decay * x) * k->wd_inverse[i];
+        k->amplitude[i] = vec_sqrt(x * x + xd * xd);
         k->qa[i] = static_0 + slow * x;
         k->va[i] = static_v + slow * (v - static_v);
         k->qb[i] = static_1 + slow * (k->q1[i] - static_1);
@@ -170,52 +177,52 @@ static void flight_modes(FastWork *k, const Level *l, double a0, double a1)
 
 static void flight_floors(FastWork *k, const Level *l)
 {
-    const v8 *R = (const v8 *)k->R, *R_abs = (const v8 *)k->R_abs;
+    const vec *R = (const vec *)k->R, *R_abs = (const vec *)k->R_abs;
     const int core = k->nb_pad, core_count = k->m_pad - k->nb_pad;
     const double *const state[4] = {scalars_const(k->qa), scalars_const(k->va), scalars_const(k->qb),
                                     scalars_const(k->vb)};
-    v8 *const floors[4] = {k->u0, k->u0d, k->u1, k->u1d};
+    vec *const floors[4] = {k->u0, k->u0d, k->u1, k->u1d};
     rows_times(4, R, k->nf, core, state, floors);
     const double *const accel[4] = {scalars_const(k->za), scalars_const(k->ja), scalars_const(k->zb),
                                     scalars_const(k->jb)};
-    v8 *const accels[4] = {k->a0, k->a0d, k->a1, k->a1d};
+    vec *const accels[4] = {k->a0, k->a0d, k->a1, k->a1d};
     rows_times(4, R, k->nf, core, accel, accels);
-    v8 *bound = k->bound, *bound_a = k->bound_a;
+    vec *bound = k->bound, *bound_a = k->bound_a;
     for (int i = 0; i < k->mf; i++) {
         bound[i] = l->kappa[i] * k->amplitude[i];
         bound_a[i] = l->kappa_accel[i] * k->amplitude[i];
     }
     const double *const bounds[2] = {scalars_const(bound), scalars_const(bound_a)};
-    v8 *const errors[2] = {k->e_u, k->e_a};
+    vec *const errors[2] = {k->e_u, k->e_a};
     rows_times(2, R_abs, k->nf, core, bounds, errors);
     if (core_count == 0)
         return;
     const double *const core_state[4] = {state[0] + core, state[1] + core, state[2] + core, state[3] + core};
-    v8 *const core_floors[4] = {k->c0, k->c0d, k->c1, k->c1d};
+    vec *const core_floors[4] = {k->c0, k->c0d, k->c1, k->c1d};
     rows_times(4, R + core * k->nf, k->nf, core_count, core_state, core_floors);
     const double *const core_bound[1] = {bounds[0] + core};
-    v8 *const core_error[1] = {k->e_w};
+    vec *const core_error[1] = {k->e_w};
     rows_times(1, R_abs + core * k->nf, k->nf, core_count, core_bound, core_error);
 }
 
 /* Largest |value| of the cubic through both ends anywhere in the step: its Bezier control points enclose it. */
-static v8 hull(v8 y0, v8 d0, v8 y1, v8 d1, double h)
+static vec hull(vec y0, vec d0, vec y1, vec d1, double h)
 {
     const double third = h / 3;
-    return v8_max(v8_max(v8_abs(y0), v8_abs(y0 + third * d0)), v8_max(v8_abs(y1 - third * d1), v8_abs(y1)));
+    return vec_max(vec_max(vec_abs(y0), vec_abs(y0 + third * d0)), vec_max(vec_abs(y1 - third * d1), vec_abs(y1)));
 }
 
 static int gaps_stay_open(FastWork *k, double h)
 {
     if (k->m_pad == k->nb_pad)
         return 1;
-    m8 closed = {0};
+    mask closed = {0};
     for (int f = 0; f < k->nf; f++) {
-        const v8 w0 = k->u0[f] + k->c0[f], w0d = k->u0d[f] + k->c0d[f], w1 = k->u1[f] + k->c1[f],
+        const vec w0 = k->u0[f] + k->c0[f], w0d = k->u0d[f] + k->c0d[f], w1 = k->u1[f] + k->c1[f],
                  w1d = k->u1d[f] + k->c1d[f];
         closed |= ~(hull(w0, w0d, w1, w1d, h) + k->e_u[f] + k->e_w[f] < k->gap[f]);
     }
-    return !m8_any(closed);
+    return !any(closed);
 }
 
 static double largest_on_cubic(double h, double y0, double d0, double y1, double d1)
@@ -229,12 +236,12 @@ static double largest_on_cubic(double h, double y0, double d0, double y1, double
 }
 
 /* Raises peak where the step may exceed it; 0: the error bound hides what the peak is. */
-static int raise_peaks(v8 *peak, int n, int nf, const v8 *y0, const v8 *d0, const v8 *y1, const v8 *d1, const v8 *e,
+static int raise_peaks(vec *peak, int n, int nf, const vec *y0, const vec *d0, const vec *y1, const vec *d1, const vec *e,
                        double h, double tolerance)
 {
     for (int f = 0; f < nf; f++) {
-        const v8 reach = hull(y0[f], d0[f], y1[f], d1[f], h) + e[f];
-        if (!m8_any(reach > peak[f]))
+        const vec reach = hull(y0[f], d0[f], y1[f], d1[f], h) + e[f];
+        if (!any(reach > peak[f]))
             continue;
         for (int lane = 0; lane < LANES && f * LANES + lane < n; lane++) {
             if (!(reach[lane] > peak[f][lane]))
@@ -252,7 +259,7 @@ static int raise_peaks(v8 *peak, int n, int nf, const v8 *y0, const v8 *d0, cons
 }
 
 /* Interstorey differences of floor values, the ground being 0. */
-static void storeys(const FastWork *k, const v8 *u, v8 *d)
+static void storeys(const FastWork *k, const vec *u, vec *d)
 {
     const double *from = scalars_const(u);
     double *to = scalars(d);
@@ -265,7 +272,7 @@ static void storeys(const FastWork *k, const v8 *u, v8 *d)
 
 static int peaks_in_flight(FastWork *k, double h, double tolerance)
 {
-    v8 d0[FLOORS_PAD_MAX / LANES], d0d[FLOORS_PAD_MAX / LANES], d1[FLOORS_PAD_MAX / LANES],
+    vec d0[FLOORS_PAD_MAX / LANES], d0d[FLOORS_PAD_MAX / LANES], d1[FLOORS_PAD_MAX / LANES],
         d1d[FLOORS_PAD_MAX / LANES], e[FLOORS_PAD_MAX / LANES];
     storeys(k, k->u0, d0);
     storeys(k, k->u0d, d0d);
@@ -279,11 +286,11 @@ static int peaks_in_flight(FastWork *k, double h, double tolerance)
            raise_peaks(k->peak_a, k->n, k->nf, k->a0, k->a0d, k->a1, k->a1d, k->e_a, h, tolerance);
 }
 
-static double largest(const v8 *a, int nf)
+static double largest(const vec *a, int nf)
 {
-    v8 most = v8_abs(a[0]);
+    vec most = vec_abs(a[0]);
     for (int f = 1; f < nf; f++)
-        most = v8_max(most, v8_abs(a[f]));
+        most = vec_max(most, vec_abs(a[f]));
     double m = 0;
     for (int lane = 0; lane < LANES; lane++)
         m = fmax(m, most[lane]);
@@ -293,19 +300,19 @@ static double largest(const v8 *a, int nf)
 /* Work of the ground over the step: [p q] - int p' q dt, mode by mode. */
 static void book_flight(FastWork *k, const Level *l, double a0, double a1)
 {
-    const v8 *c = l->coef;
+    const vec *c = l->coef;
     const int mf = k->mf;
     for (int i = 0; i < mf; i++) {
-        const v8 p0 = -k->gamma[i] * a0, p1 = -k->gamma[i] * (a1 - a0);
-        const v8 mean = c[FLOW_I * mf + i] * k->q[i] + c[(FLOW_I + 1) * mf + i] * k->v[i] +
+        const vec p0 = -k->gamma[i] * a0, p1 = -k->gamma[i] * (a1 - a0);
+        const vec mean = c[FLOW_I * mf + i] * k->q[i] + c[(FLOW_I + 1) * mf + i] * k->v[i] +
                         c[(FLOW_I + 2) * mf + i] * p0 + c[(FLOW_I + 3) * mf + i] * p1;
         k->ground[i] += (p0 + p1) * k->q1[i] - p0 * k->q[i] - p1 * mean;
     }
 }
 
-static void swap(v8 **a, v8 **b)
+static void swap(vec **a, vec **b)
 {
-    v8 *t = *a;
+    vec *t = *a;
     *a = *b;
     *b = t;
 }
@@ -330,14 +337,14 @@ static int flight(FastWork *k, const Level *l, double a0, double a1)
 
 /* ---- contact ------------------------------------------------------------------------------------------------ */
 
-static void outputs(FastWork *k, const v8 *q, const v8 *v, v8 *u, v8 *drift, v8 *accel)
+static void outputs(FastWork *k, const vec *q, const vec *v, vec *u, vec *drift, vec *accel)
 {
-    v8 *z = k->za;
+    vec *z = k->za;
     for (int i = 0; i < k->bf; i++)
         z[i] = k->load[i] - k->decay[i] * v[i] - k->omega[i] * k->omega[i] * q[i];
     const double *const state[2] = {scalars_const(q), scalars_const(z)};
-    v8 *const floors[2] = {u, accel};
-    rows_times(2, (const v8 *)k->R, k->nf, k->nb_pad, state, floors);
+    vec *const floors[2] = {u, accel};
+    rows_times(2, (const vec *)k->R, k->nf, k->nb_pad, state, floors);
     storeys(k, u, drift);
 }
 
@@ -345,8 +352,8 @@ static void outputs(FastWork *k, const v8 *q, const v8 *v, v8 *u, v8 *drift, v8 
 static void land(FastWork *k)
 {
     const double *const state[2] = {scalars_const(k->q), scalars_const(k->v)};
-    v8 *const floors[2] = {k->w, k->wd};
-    rows_times(2, (const v8 *)k->R, k->nf, k->m_pad, state, floors);
+    vec *const floors[2] = {k->w, k->wd};
+    rows_times(2, (const vec *)k->R, k->nf, k->m_pad, state, floors);
     outputs(k, k->q, k->v, k->seen[0][0], k->seen[0][1], k->seen[0][2]);
     k->n_seen = 1;
     k->h_before = 1;
@@ -354,10 +361,10 @@ static void land(FastWork *k)
 
 static void contact_predict(FastWork *k, const Level *l, double a0, double a1)
 {
-    const v8 *c = l->coef;
+    const vec *c = l->coef;
     const int mf = k->mf;
     for (int i = 0; i < mf; i++) {
-        const v8 q = k->q[i], v = k->v[i], p0 = k->load[i] - k->gamma[i] * a0,
+        const vec q = k->q[i], v = k->v[i], p0 = k->load[i] - k->gamma[i] * a0,
                  p1 = -k->gamma[i] * (a1 - a0) - k->load[i];
         k->q1[i] = c[FLOW_Q * mf + i] * q + c[(FLOW_Q + 1) * mf + i] * v + c[(FLOW_Q + 2) * mf + i] * p0 +
                    c[(FLOW_Q + 3) * mf + i] * p1;
@@ -365,8 +372,8 @@ static void contact_predict(FastWork *k, const Level *l, double a0, double a1)
                    c[(FLOW_V + 3) * mf + i] * p1;
     }
     const double *const state[2] = {scalars_const(k->q1), scalars_const(k->v1)};
-    v8 *const floors[2] = {k->w1, k->wd1};
-    rows_times(2, (const v8 *)k->R, k->nf, k->m_pad, state, floors);
+    vec *const floors[2] = {k->w1, k->wd1};
+    rows_times(2, (const vec *)k->R, k->nf, k->m_pad, state, floors);
 }
 
 /* What both walls do to one floor over a step; as Touch, in w instead of p. */
@@ -379,7 +386,7 @@ typedef struct {
 static void apply_force(FastWork *k, const Level *l, int j, double f1, double fb)
 {
     const int nf = k->nf, size = k->n * nf;
-    const v8 *r = (const v8 *)l->response + j * nf;
+    const vec *r = (const vec *)l->response + j * nf;
     const double d1 = f1 - scalars(k->f1)[j], db = fb - scalars(k->fb)[j];
     for (int f = 0; f < nf; f++) {
         k->w1[f] += r[RAMP_W * size + f] * d1 + r[BUBBLE_W * size + f] * db;
@@ -391,19 +398,18 @@ static void apply_force(FastWork *k, const Level *l, int j, double f1, double fb
 
 /* The force law along the path of floor j to w1, w1', both walls: a path may leave one and reach the other. Forces push
  * the floor to the negative side. */
-static void press(FastWork *k, const Level *l, int j, double w1, double w1d, Press *out)
+static void press(FastWork *k, double h, int j, double w1, double w1d, Press *out)
 {
-    const double w0 = scalars(k->w)[j], w0d = scalars(k->wd)[j], gap = scalars(k->gap)[j], third = l->h / 3;
+    const double w0 = scalars(k->w)[j], w0d = scalars(k->wd)[j], gap = scalars(k->gap)[j], third = h / 3;
     const double b1 = w0 + third * w0d, b2 = w1 - third * w1d; /* with w0 and w1 they enclose the path */
-    const double highest = fmax(fmax(w0, b1), fmax(b2, w1)), lowest = fmin(fmin(w0, b1), fmin(b2, w1));
     *out = (Press){0};
     for (int wall = 0; wall < 2; wall++) {
         const double s = wall == 0 ? 1 : -1;
-        if (!(wall == 0 ? highest > gap : -lowest > gap) && isfinite(w1))
+        if (s * w0 <= gap && s * b1 <= gap && s * b2 <= gap && s * w1 <= gap)
             continue;
         Touch t;
-        touch_step(&t, &k->model->contact, k->model->mass_eff[j], l->h, s * w0 - gap, s * w0d, s * w1 - gap, s * w1d, k->side[j] == s,
-                   fmax(k->v0[j], k->model->contact.v0_floor));
+        touch_step(&t, &k->model->contact, k->model->mass_eff[j], h, s * w0 - gap, s * w0d, s * w1 - gap, s * w1d,
+                   k->side[j] == s, larger(k->v0[j], k->model->contact.v0_floor));
         k->forces++;
         out->end += s * t.end;
         out->mean += s * t.mean;
@@ -420,10 +426,21 @@ static void press(FastWork *k, const Level *l, int j, double w1, double w1d, Pre
     }
 }
 
+/* The floors that may touch in this step, and the small dense problem of their forces:
+ *   w1_i  = free_i  - sum_j (g[i][j].w_end F_j + .w_mean M_j),   w1_i' with .v_end, .v_mean,
+ *   (F_i, M_i) = force at the end and mean force by the law along the path to w1_i, w1_i' */
+typedef struct {
+    double w_end, w_mean, v_end, v_mean;
+} Reply;
+
 typedef struct {
     int n, floor[FLOORS_PAD_MAX];
     unsigned char listed[FLOORS_PAD_MAX];
+    double w1[FLOORS_PAD_MAX], wd1[FLOORS_PAD_MAX], F[FLOORS_PAD_MAX], M[FLOORS_PAD_MAX];
+    double scale_w[FLOORS_PAD_MAX], scale_v[FLOORS_PAD_MAX]; /* what the step moves */
     Press press[FLOORS_PAD_MAX];
+    Reply g[FLOORS_PAD_MAX * FLOORS_PAD_MAX];                /* (n, n) */
+    double J[4 * FLOORS_PAD_MAX * FLOORS_PAD_MAX];           /* (2n, 2n) */
 } Active;
 
 /* Lists the floors whose path may leave the gap; returns how many were new. */
@@ -431,8 +448,8 @@ static int find_closings(FastWork *k, const Level *l, Active *active)
 {
     int found = 0;
     for (int f = 0; f < k->nf; f++) {
-        const m8 out = ~(hull(k->w[f], k->wd[f], k->w1[f], k->wd1[f], l->h) <= k->gap[f]);
-        if (!m8_any(out))
+        const mask out = ~(hull(k->w[f], k->wd[f], k->w1[f], k->wd1[f], l->h) <= k->gap[f]);
+        if (!any(out))
             continue;
         for (int lane = 0; lane < LANES; lane++) {
             const int j = f * LANES + lane;
@@ -455,13 +472,6 @@ static void list_touching(FastWork *k, Active *active)
             active->listed[j] = 1;
             active->floor[active->n++] = j;
         }
-}
-
-/* Starts from the force going on as it went in the step before. */
-static void guess_force(FastWork *k, const Level *l, int j)
-{
-    const double f0 = scalars(k->f0)[j], f1 = f0 + (f0 - scalars(k->f_before)[j]) * l->h / k->h_before;
-    apply_force(k, l, j, f1 * f0 > 0 ? f1 : f0, 0);
 }
 
 /* x (n) := A^-1 x by elimination with row exchange; A (n, n) row-major is spent. 0: singular or not finite. */
@@ -497,66 +507,81 @@ static int eliminate(int n, double *A, double *x)
     return 1;
 }
 
-/* One step of Newton's method for the forces at the end, F_i, and their means, M_i, of all active floors:
- *   w1_i  = free - sum_j (A_ij F_j + B_ij M_j),   w1_i' = free' - sum_j (C_ij F_j + D_ij M_j),
- *   (F_i, M_i) = law along the path to w1_i, w1_i'
- * Returns the largest change of w1 and w1' relative to what the step moves, or NaN when there is none. */
-static double improve_forces(FastWork *k, const Level *l, Active *active)
+/* Takes in floors n_before..n-1, whose w1 and w1' are free of their own force, with a first guess of it: going on as
+ * in the step before. */
+static void take_in(FastWork *k, const Level *l, Active *a, int n_before)
 {
-    enum { MOST = 2 * FLOORS_PAD_MAX };
-    const int n = active->n, size = k->n * k->n_pad;
-    double J[MOST * MOST], x[MOST], A[FLOORS_PAD_MAX * 4];
-    for (int i = 0; i < n; i++) {
-        const int fi = active->floor[i];
-        Press *t = &active->press[i];
-        press(k, l, fi, scalars(k->w1)[fi], scalars(k->wd1)[fi], t);
-        const double f0 = -scalars(k->f0)[fi], F = -scalars(k->f1)[fi];
-        x[2 * i] = F - t->end;
-        x[2 * i + 1] = (-scalars(k->fb)[fi] + 3 * f0 + 3 * F) / 6 - t->mean;
-        for (int j = 0; j < n; j++) {
-            const double *r = l->response + fi * k->n_pad + active->floor[j];
+    const int size = k->n * k->n_pad;
+    for (int i = n_before; i < a->n; i++) {
+        const int j = a->floor[i];
+        const double w0 = scalars(k->w)[j], v0 = scalars(k->wd)[j], gap = scalars(k->gap)[j];
+        const double w1 = scalars(k->w1)[j], v1 = scalars(k->wd1)[j];
+        a->scale_v[i] = fabs(v0) + fabs(v1);
+        a->scale_w[i] = fabs(fabs(w0) - gap) + fabs(fabs(w1) - gap) + l->h * a->scale_v[i];
+        const double f0 = scalars(k->f0)[j], f1 = f0 + (f0 - scalars(k->f_before)[j]) * l->h / k->h_before;
+        apply_force(k, l, j, f1 * f0 > 0 ? f1 : f0, 0);
+    }
+    for (int i = 0; i < a->n; i++) {
+        const int j = a->floor[i];
+        a->w1[i] = scalars(k->w1)[j];
+        a->wd1[i] = scalars(k->wd1)[j];
+        a->F[i] = -scalars(k->f1)[j];
+        a->M[i] = (-scalars(k->fb)[j] - 3 * scalars(k->f0)[j] + 3 * a->F[i]) / 6;
+        for (int c = 0; c < a->n; c++) {
+            const double *r = l->response + j * k->n_pad + a->floor[c];
             const double w_b = r[BUBBLE_W * size], v_b = r[BUBBLE_V * size];
-            const double w_F = r[RAMP_W * size] - 3 * w_b, v_F = r[RAMP_V * size] - 3 * v_b;
-            double *row = J + 4 * i * n + 2 * j;
-            row[0] = t->end_w * w_F + t->end_v * v_F;
-            row[1] = 6 * (t->end_w * w_b + t->end_v * v_b);
-            row[2 * n] = t->mean_w * w_F + t->mean_v * v_F;
-            row[2 * n + 1] = 6 * (t->mean_w * w_b + t->mean_v * v_b);
-            if (i == j) {
-                row[0] += 1;
-                row[2 * n + 1] += 1;
-                A[4 * i] = w_F;
-                A[4 * i + 1] = 6 * w_b;
-                A[4 * i + 2] = v_F;
-                A[4 * i + 3] = 6 * v_b;
-            }
+            a->g[i * a->n + c] =
+                (Reply){r[RAMP_W * size] - 3 * w_b, 6 * w_b, r[RAMP_V * size] - 3 * v_b, 6 * v_b};
         }
     }
-    if (!eliminate(2 * n, J, x))
-        return NAN;
-    double change = 0;
+}
+
+/* One step of Newton's method. Returns the largest change of w1 and w1' relative to what the step moves, or NaN when
+ * there is none. */
+static double improve_forces(FastWork *k, double h, Active *a)
+{
+    const int n = a->n;
+    double x[2 * FLOORS_PAD_MAX], change = 0;
     for (int i = 0; i < n; i++) {
-        const int j = active->floor[i];
-        const double f0 = -scalars(k->f0)[j], F = -scalars(k->f1)[j], dF = x[2 * i], dM = x[2 * i + 1];
-        const double M = (-scalars(k->fb)[j] + 3 * f0 + 3 * F) / 6;
-        /* what moves: the penetration with and without the force, not the distance from the middle of the gap */
-        const double w0 = scalars(k->w)[j], gap = scalars(k->gap)[j];
-        const double free_w = scalars(k->w1)[j] + A[4 * i] * F + A[4 * i + 1] * M;
-        const double free_v = scalars(k->wd1)[j] + A[4 * i + 2] * F + A[4 * i + 3] * M;
-        const double scale_v = fabs(scalars(k->wd)[j]) + fabs(free_v);
-        const double scale_w = fabs(fabs(w0) - gap) + fabs(fabs(free_w) - gap) + l->h * scale_v;
-        const double c = fmax((fabs(A[4 * i] * dF) + fabs(A[4 * i + 1] * dM)) / scale_w,
-                              (fabs(A[4 * i + 2] * dF) + fabs(A[4 * i + 3] * dM)) / scale_v);
+        Press *t = &a->press[i];
+        press(k, h, a->floor[i], a->w1[i], a->wd1[i], t);
+        x[2 * i] = a->F[i] - t->end;
+        x[2 * i + 1] = a->M[i] - t->mean;
+        double *row = a->J + 4 * i * n;
+        for (int j = 0; j < n; j++, row += 2) {
+            const Reply *g = &a->g[i * n + j];
+            row[0] = t->end_w * g->w_end + t->end_v * g->v_end + (i == j);
+            row[1] = t->end_w * g->w_mean + t->end_v * g->v_mean;
+            row[2 * n] = t->mean_w * g->w_end + t->mean_v * g->v_end;
+            row[2 * n + 1] = t->mean_w * g->w_mean + t->mean_v * g->v_mean + (i == j);
+        }
+    }
+    if (!eliminate(2 * n, a->J, x))
+        return NAN;
+    for (int i = 0; i < n; i++) {
+        double dw = 0, dv = 0;
+        for (int j = 0; j < n; j++) {
+            const Reply *g = &a->g[i * n + j];
+            dw += g->w_end * x[2 * j] + g->w_mean * x[2 * j + 1];
+            dv += g->v_end * x[2 * j] + g->v_mean * x[2 * j + 1];
+        }
+        a->w1[i] += dw;
+        a->wd1[i] += dv;
+        a->F[i] -= x[2 * i];
+        a->M[i] -= x[2 * i + 1];
+        const double c = larger(fabs(dw) / a->scale_w[i], fabs(dv) / a->scale_v[i]);
         if (!(c <= change))
             change = c;
     }
-    for (int i = 0; i < n && isfinite(change); i++) {
-        const int j = active->floor[i];
-        const double f0 = -scalars(k->f0)[j], F = -scalars(k->f1)[j], dF = x[2 * i], dM = x[2 * i + 1];
-        const double M = (-scalars(k->fb)[j] + 3 * f0 + 3 * F) / 6;
-        apply_force(k, l, j, -(F - dF), -(6 * (M - dM) - 3 * f0 - 3 * (F - dF)));
-    }
     return change;
+}
+
+static void hand_out(FastWork *k, const Level *l, const Active *a)
+{
+    for (int i = 0; i < a->n; i++) {
+        const int j = a->floor[i];
+        apply_force(k, l, j, -a->F[i], -(6 * a->M[i] + 3 * scalars(k->f0)[j] - 3 * a->F[i]));
+    }
 }
 
 /* The forces of all floors at once by Newton's method; 0 when they cannot be had at this step length. */
@@ -564,13 +589,21 @@ static int solve_contacts(FastWork *k, const Level *l, double tolerance, Active 
 {
     enum { MOST = 40 };
     list_touching(k, active);
-    for (int i = 0; i < active->n; i++)
-        guess_force(k, l, active->floor[i]);
+    int before = 0;
+    if (active->n == 0 && !find_closings(k, l, active))
+        return 1;
     for (int i = 0; i < MOST; i++) {
-        const double change = active->n ? improve_forces(k, l, active) : 0;
+        if (active->n > before) {
+            take_in(k, l, active, before);
+            before = active->n;
+        }
+        const double change = improve_forces(k, l->h, active);
         if (!(change >= 0))
             return 0;
-        if (change <= tolerance && !find_closings(k, l, active))
+        if (change > tolerance)
+            continue;
+        hand_out(k, l, active);
+        if (!find_closings(k, l, active))
             return 1;
     }
     return 0;
@@ -578,7 +611,7 @@ static int solve_contacts(FastWork *k, const Level *l, double tolerance, Active 
 
 static void forget_forces(FastWork *k)
 {
-    const v8 zero = {0};
+    const vec zero = {0};
     for (int f = 0; f < k->nf; f++)
         k->f1[f] = k->fb[f] = zero;
 }
@@ -586,13 +619,13 @@ static void forget_forces(FastWork *k)
 /* What the modes would be with the forces that were found; returns the work [J] that they did on all modes. */
 static double contact_update(FastWork *k, const Level *l, const Active *active, double a0, double a1)
 {
-    const v8 *c = l->coef, zero = {0};
+    const vec *c = l->coef, zero = {0};
     const int mf = k->mf;
-    v8 *load1 = k->qa, *bubble = k->va, taken = zero;
+    vec *load1 = k->qa, *bubble = k->va, taken = zero;
     for (int i = 0; i < mf; i++)
         load1[i] = bubble[i] = zero;
     for (int n = 0; n < active->n; n++) {
-        const v8 *row = (const v8 *)k->RT + active->floor[n] * mf;
+        const vec *row = (const vec *)k->RT + active->floor[n] * mf;
         const double f1 = scalars(k->f1)[active->floor[n]], fb = scalars(k->fb)[active->floor[n]];
         for (int i = 0; i < mf; i++) {
             load1[i] += row[i] * f1;
@@ -600,16 +633,16 @@ static double contact_update(FastWork *k, const Level *l, const Active *active, 
         }
     }
     for (int i = 0; i < mf; i++) {
-        const v8 q = k->q[i], v = k->v[i], load = k->load[i], b = bubble[i];
-        const v8 q1 = k->q1[i] + c[(FLOW_Q + 3) * mf + i] * (load1[i] + b) - c[(FLOW_Q + 4) * mf + i] * b;
-        const v8 v1 = k->v1[i] + c[(FLOW_V + 3) * mf + i] * (load1[i] + b) - c[(FLOW_V + 4) * mf + i] * b;
-        const v8 g0 = -k->gamma[i] * a0, g1 = -k->gamma[i] * (a1 - a0), rise = load1[i] - load + b;
-        const v8 p0 = g0 + load, p1 = g1 + rise;
-        const v8 mean = c[FLOW_I * mf + i] * q + c[(FLOW_I + 1) * mf + i] * v + c[(FLOW_I + 2) * mf + i] * p0 +
+        const vec q = k->q[i], v = k->v[i], load = k->load[i], b = bubble[i];
+        const vec q1 = k->q1[i] + c[(FLOW_Q + 3) * mf + i] * (load1[i] + b) - c[(FLOW_Q + 4) * mf + i] * b;
+        const vec v1 = k->v1[i] + c[(FLOW_V + 3) * mf + i] * (load1[i] + b) - c[(FLOW_V + 4) * mf + i] * b;
+        const vec g0 = -k->gamma[i] * a0, g1 = -k->gamma[i] * (a1 - a0), rise = load1[i] - load + b;
+        const vec p0 = g0 + load, p1 = g1 + rise;
+        const vec mean = c[FLOW_I * mf + i] * q + c[(FLOW_I + 1) * mf + i] * v + c[(FLOW_I + 2) * mf + i] * p0 +
                         c[(FLOW_I + 3) * mf + i] * p1 - c[(FLOW_I + 4) * mf + i] * b;
-        const v8 first = c[FLOW_K * mf + i] * q + c[(FLOW_K + 1) * mf + i] * v + c[(FLOW_K + 2) * mf + i] * p0 +
+        const vec first = c[FLOW_K * mf + i] * q + c[(FLOW_K + 1) * mf + i] * v + c[(FLOW_K + 2) * mf + i] * p0 +
                          c[(FLOW_K + 3) * mf + i] * p1 - c[(FLOW_K + 4) * mf + i] * b;
-        const v8 work = load1[i] * q1 - load * q - rise * mean + 2 * b * first;
+        const vec work = load1[i] * q1 - load * q - rise * mean + 2 * b * first;
         k->work1[i] = k->work[i] + work;
         k->ground1[i] = k->ground[i] + (g0 + g1) * q1 - g0 * q - g1 * mean;
         k->q1[i] = q1;
@@ -659,7 +692,7 @@ static void accept_contacts(FastWork *k, const Active *active, double h)
     swap(&k->ground, &k->ground1);
     swap(&k->w, &k->w1);
     swap(&k->wd, &k->wd1);
-    v8 *const free_slot = k->f_before;
+    vec *const free_slot = k->f_before;
     k->f_before = k->f0;
     k->f0 = k->f1;
     k->f1 = free_slot;
@@ -678,7 +711,7 @@ static double parabola_top(double h0, double h1, double y0, double y1, double y2
 
 static void peaks_in_contact(FastWork *k, double h)
 {
-    v8 *oldest[3];
+    vec *oldest[3];
     for (int y = 0; y < 3; y++) { /* the newest samples go where the oldest were */
         oldest[y] = k->seen[2][y];
         k->seen[2][y] = k->seen[1][y];
@@ -690,16 +723,16 @@ static void peaks_in_contact(FastWork *k, double h)
     outputs(k, k->q, k->v, k->seen[0][0], k->seen[0][1], k->seen[0][2]);
     if (k->n_seen < 3)
         k->n_seen++;
-    v8 *const peaks[3] = {k->peak_u, k->peak_d, k->peak_a};
+    vec *const peaks[3] = {k->peak_u, k->peak_d, k->peak_a};
     for (int y = 0; y < 3; y++)
         for (int f = 0; f < k->nf; f++) {
-            const v8 now = v8_abs(k->seen[0][y][f]), middle = v8_abs(k->seen[1][y][f]);
-            peaks[y][f] = v8_max(now, peaks[y][f]);
+            const vec now = vec_abs(k->seen[0][y][f]), middle = vec_abs(k->seen[1][y][f]);
+            peaks[y][f] = vec_max(now, peaks[y][f]);
             if (k->n_seen < 3)
                 continue;
-            const v8 first = v8_abs(k->seen[2][y][f]);
-            const m8 top = (middle > now) & (middle >= first) & (middle * 1.25 > peaks[y][f]);
-            if (!m8_any(top))
+            const vec first = vec_abs(k->seen[2][y][f]);
+            const mask top = (middle > now) & (middle >= first) & (middle * 1.25 > peaks[y][f]);
+            if (!any(top))
                 continue;
             for (int lane = 0; lane < LANES; lane++)
                 if (top[lane]) {
@@ -769,7 +802,7 @@ static double shortest_contact(const SimModel *model)
 /* What the energy of one step's error is measured by: the input so far. */
 static double energy_scale(const FastWork *k)
 {
-    v8 sum = {0};
+    vec sum = {0};
     for (int i = 0; i < k->mf; i++)
         sum += k->ground[i];
     return fabs(lanes_sum(sum));
@@ -817,7 +850,7 @@ static int interval(FastWork *k, double a0, double a1)
 
 static int state_is_finite(const FastWork *k)
 {
-    v8 sum = {0};
+    vec sum = {0};
     for (int i = 0; i < k->mf; i++)
         sum += k->q[i] * 0.0 + k->v[i] * 0.0;
     double all = 0;

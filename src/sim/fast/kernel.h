@@ -6,7 +6,10 @@
 #include "sim/fast/vec.h"
 #include "sim/flow.h"
 
+/* The vectors below are storage only to fast.c: each kernel reads them in its own width, and every array is padded to
+ * the widest. */
 enum {
+    PAD = 8,
     LEVEL_MAX = 24,           /* the shortest step is 2^-24 of a sampling interval */
     FLOORS_PAD_MAX = FLOORS_MAX,
     MODES_PAD_MAX = 2 * FLOORS_MAX
@@ -18,10 +21,10 @@ enum { RAMP_W, BUBBLE_W, RAMP_V, BUBBLE_V, RESPONSES };
 typedef struct {
     double h;              /* [s] */
     int has_flow, has_response;
-    v8 *coef;              /* (FLOW_ROWS, m_pad) */
-    v8 *slow;              /* (m_pad) 1: the Hermite cubic follows this mode, 0: it does not */
-    v8 *kappa;             /* (m_pad) error of the cubic, or 1, per unit of amplitude */
-    v8 *kappa_accel;       /* (m_pad) the same for -2 zeta w q' - w^2 q */
+    vec *coef;              /* (FLOW_ROWS, m_pad) */
+    vec *slow;              /* (m_pad) 1: the Hermite cubic follows this mode, 0: it does not */
+    vec *kappa;             /* (m_pad) error of the cubic, or 1, per unit of amplitude */
+    vec *kappa_accel;       /* (m_pad) the same for -2 zeta w q' - w^2 q */
     double *response;      /* (RESPONSES, n, n_pad) */
 } Level;
 
@@ -29,23 +32,23 @@ typedef struct FastWork {
     void *store;
     const SimModel *model;
     int n, n_pad, nb_pad, m_pad; /* building modes first, padded apart: core modes start at nb_pad */
-    int nf, mf, bf;              /* n_pad, m_pad, nb_pad in vectors of eight */
+    int nf, mf, bf;              /* n_pad, m_pad, nb_pad in vectors of LANES */
     double base;                 /* [s] the interval that the levels divide */
     Level level[LEVEL_MAX + 1];
 
     /* modes */
-    v8 *omega, *zeta, *gamma, *wd_inverse, *decay, *flex, *q, *v, *load, *work, *ground; /* (m_pad) */
-    v8 *work1, *ground1;
-    v8 *q1, *v1, *amplitude, *qa, *va, *qb, *vb, *za, *ja, *zb, *jb, *bound, *bound_a;     /* (m_pad) */
+    vec *omega, *zeta, *gamma, *wd_inverse, *decay, *flex, *q, *v, *load, *work, *ground; /* (m_pad) */
+    vec *work1, *ground1;
+    vec *q1, *v1, *amplitude, *qa, *va, *qb, *vb, *za, *ja, *zb, *jb, *bound, *bound_a;     /* (m_pad) */
     double *R, *R_abs; /* (m_pad, n_pad) */
     double *RT;        /* (n_pad, m_pad) */
 
     /* floors */
-    v8 *w, *wd, *w1, *wd1, *f0, *f1, *fb, *f_before, *gap; /* (n_pad) */
-    v8 *c0, *c0d, *c1, *c1d;                           /* (n_pad) the core's part of w in flight */
-    v8 *u0, *u0d, *u1, *u1d, *a0, *a0d, *a1, *a1d, *e_u, *e_w, *e_a; /* (n_pad) */
-    v8 *peak_u, *peak_d, *peak_a;                      /* (n_pad) */
-    v8 *seen[3][3];                                    /* [how long ago][u, drift, accel] (n_pad) */
+    vec *w, *wd, *w1, *wd1, *f0, *f1, *fb, *f_before, *gap; /* (n_pad) */
+    vec *c0, *c0d, *c1, *c1d;                           /* (n_pad) the core's part of w in flight */
+    vec *u0, *u0d, *u1, *u1d, *a0, *a0d, *a1, *a1d, *e_u, *e_w, *e_a; /* (n_pad) */
+    vec *peak_u, *peak_d, *peak_a;                      /* (n_pad) */
+    vec *seen[3][3];                                    /* [how long ago][u, drift, accel] (n_pad) */
     double seen_h[2];                                  /* steps between them */
     int n_seen; /* -1: in flight, w and w' are not current */
     double v0[FLOORS_PAD_MAX];

@@ -127,11 +127,12 @@ static inline void touch_add(Touch *t, const Contact *c, double mass, const Path
     }
     const v4 x = xa + length * share, weight = length * WEIGHT * slope;
     const v4 p = q->c[0] + x * (q->c[1] + x * (q->c[2] + x * q->c[3]));
-    const v4 v = (q->c[1] + x * (2 * q->c[2] + x * 3 * q->c[3])) / q->h;
+    const double per_h = 1 / q->h;
+    const v4 v = (q->c[1] + x * (2 * q->c[2] + x * 3 * q->c[3])) * per_h;
     const ContactForce4 f = contact_force4(c, mass, p, v, v0);
     t->mean += v4_sum(weight * f.force);
     /* dp/dp1 = x^2 (3 - 2x), dp/dp1' = h x^2 (x - 1) and their slopes */
-    t->mean_p += v4_sum(weight * (f.dp * x * x * (3 - 2 * x) + f.dv * 6 * x * (1 - x) / q->h));
+    t->mean_p += v4_sum(weight * (f.dp * x * x * (3 - 2 * x) + f.dv * 6 * x * (1 - x) * per_h));
     t->mean_v += v4_sum(weight * (f.dp * q->h * x * x * (x - 1) + f.dv * x * (3 * x - 2)));
     t->lost += q->h * v4_sum(weight * (f.raw - f.hertz) * v);
     t->clamped += q->h * v4_sum(weight * (f.force - f.raw) * v);

@@ -1,4 +1,5 @@
-/* sim/fast/vec.h -- eight doubles at a time, in the compiler's own vector language: one source for SSE2, AVX2, AVX-512. */
+/* sim/fast/vec.h -- FAST_LANES doubles at a time, in the compiler's own vector language: one source for SSE2 (2 lanes),
+ * AVX2 (4) and AVX-512 (8). A vector type wider than the registers would be legal and slow. */
 #ifndef IMTET_SIM_FAST_VEC_H
 #define IMTET_SIM_FAST_VEC_H
 
@@ -7,29 +8,32 @@
 /* Vectors are passed between static functions of one file only, so no caller can disagree about how. */
 #pragma GCC diagnostic ignored "-Wpsabi"
 
-typedef double v8 __attribute__((vector_size(64)));
-typedef int64_t m8 __attribute__((vector_size(64))); /* all ones where true */
+#ifndef FAST_LANES
+#define FAST_LANES 8
+#endif
+enum { LANES = FAST_LANES };
 
-enum { LANES = 8 };
+typedef double vec __attribute__((vector_size(8 * FAST_LANES)));
+typedef int64_t mask __attribute__((vector_size(8 * FAST_LANES))); /* all ones where true */
 
 /* The greater of the two; b where either is not a number. */
-static inline v8 v8_max(v8 a, v8 b)
+static inline vec vec_max(vec a, vec b)
 {
-    const m8 m = a > b;
-    return (v8)(((m8)a & m) | ((m8)b & ~m));
+    const mask m = a > b;
+    return (vec)(((mask)a & m) | ((mask)b & ~m));
 }
 
-static inline v8 v8_sqrt(v8 a)
+static inline vec vec_sqrt(vec a)
 {
-    v8 r;
+    vec r;
     for (int i = 0; i < LANES; i++)
         r[i] = __builtin_sqrt(a[i]);
     return r;
 }
 
-static inline v8 v8_abs(v8 a)
+static inline vec vec_abs(vec a)
 {
-    return (v8)((m8)a & INT64_MAX);
+    return (vec)((mask)a & INT64_MAX);
 }
 
 typedef double v4 __attribute__((vector_size(32)));
@@ -53,12 +57,15 @@ static inline double v4_sum(v4 a)
     return (a[0] + a[1]) + (a[2] + a[3]);
 }
 
-static inline double lanes_sum(v8 a)
+static inline double lanes_sum(vec a)
 {
-    return ((a[0] + a[1]) + (a[2] + a[3])) + ((a[4] + a[5]) + (a[6] + a[7]));
+    double sum = 0;
+    for (int i = 0; i < LANES; i++)
+        sum += a[i];
+    return sum;
 }
 
-static inline int m8_any(m8 m)
+static inline int any(mask m)
 {
     int64_t any = 0;
     for (int i = 0; i < LANES; i++)
@@ -68,13 +75,13 @@ static inline int m8_any(m8 m)
 
 /* Y_r = sum_i X_r[i] A[i] for `count` rows i of A, each of `blocks` vectors; r = 0..n_rhs-1. The compiler unrolls over the
  * constant n_rhs and keeps the sums in registers. */
-static inline __attribute__((always_inline)) void rows_times(int n_rhs, const v8 *A, int blocks, int count,
-                                                             const double *const X[], v8 *const Y[])
+static inline __attribute__((always_inline)) void rows_times(int n_rhs, const vec *A, int blocks, int count,
+                                                             const double *const X[], vec *const Y[])
 {
     for (int b = 0; b < blocks; b++) {
-        v8 sum[4] = {{0}}, more[4] = {{0}};
+        vec sum[4] = {{0}}, more[4] = {{0}};
         for (int i = 0; i < count; i += 2) {
-            const v8 a0 = A[i * blocks + b], a1 = A[(i + 1) * blocks + b];
+            const vec a0 = A[i * blocks + b], a1 = A[(i + 1) * blocks + b];
             for (int r = 0; r < n_rhs; r++) {
                 sum[r] += a0 * X[r][i];
                 more[r] += a1 * X[r][i + 1];
