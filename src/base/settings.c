@@ -47,11 +47,11 @@ static const Option OPTIONS[] = {
     {"core.density_kg_m3", "kg/m3", REAL, AT(core.density_kg_m3), "7850", 1, 1e5, NULL, "of the core's steel"},
     {"core.area_base_m2", "m2", REAL, AT(core.area_base_m2), "1.567", 1e-9, 1e4, NULL, "effective: first storey"},
     {"core.area_top_m2", "m2", REAL, AT(core.area_top_m2), "0.811", 1e-9, 1e4, NULL, "effective: last storey"},
-    {"core.inertia_base_m4", "m4", REAL, AT(core.inertia_base_m4), "25.6201", 1e-9, 1e6, NULL, "effective: first storey"},
+    {"core.inertia_base_m4", "m4", REAL, AT(core.inertia_base_m4), "25.6201", 1e-9, 1e6, NULL,
+     "effective: first storey"},
     {"core.inertia_top_m4", "m4", REAL, AT(core.inertia_top_m4), "24.0503", 1e-9, 1e6, NULL, "effective: last storey"},
 
-    {"contact.law", "-", CHOICE, AT(contact.law), "paper", 0, 0,
-     "paper|exact|lankarani-nikravesh|flores|jankowski",
+    {"contact.law", "-", CHOICE, AT(contact.law), "paper", 0, 0, "paper|exact|lankarani-nikravesh|flores|jankowski",
      "paper: a = 1.5 (1 - r); exact: a chosen so that an isolated impact rebounds with r; the others by their authors"},
     {"contact.restitution", "-", REAL, AT(contact.restitution), "0.7", 0, 1, NULL, "r of the contact law"},
     {"contact.v0_floor_m_s", "m/s", REAL, AT(contact.v0_floor_m_s), "1e-3", 1e-12, 10, NULL,
@@ -81,6 +81,25 @@ static const Option OPTIONS[] = {
     {"design.thickness_max_m", "m", REAL, AT(design.thickness_max_m), "0.04", 1e-6, 10, NULL,
      "search box: thickest core wall"},
 
+    {"problem.kind", "-", CHOICE, AT(problem.kind), "tower", 0, 0, "tower|external|dtlz2|wfg4",
+     "tower: gaps and walls of the scene; external: a simulator of your own; the others: problems with a known front"},
+    {"problem.command", "-", TEXT, AT(problem.command), "none", 0, 0, NULL,
+     "external: the worker, started without a shell once per thread; docs/external.md has the protocol"},
+    {"problem.timeout_s", "s", REAL, AT(problem.timeout_s), "600", 1e-3, 1e7, NULL,
+     "external: a worker that is silent for so long has failed and is replaced"},
+    {"problem.variables", "-", WHOLE, AT(problem.variables), "22", 1, 10000, NULL, "their number; not of a tower"},
+    {"problem.objectives", "-", WHOLE, AT(problem.objectives), "7", 1, 100, NULL, "their number; not of a tower"},
+    {"problem.lower", "-", TEXT, AT(problem.lower), "0", 0, 0, NULL, "external: one number for all, or a comma list"},
+    {"problem.upper", "-", TEXT, AT(problem.upper), "1", 0, 0, NULL, "external: one number for all, or a comma list"},
+    {"problem.senses", "-", TEXT, AT(problem.senses), "min", 0, 0, NULL,
+     "external: min or max, one for all objectives, or a comma list"},
+    {"problem.variable_names", "-", TEXT, AT(problem.variable_names), "auto", 0, 0, NULL,
+     "comma list; auto: x1, x2, ..."},
+    {"problem.objective_names", "-", TEXT, AT(problem.objective_names), "auto", 0, 0, NULL,
+     "comma list; auto: f1, f2, ..."},
+    {"problem.noise", "-", REAL, AT(problem.noise), "0", 0, 1, NULL,
+     "dtlz2, wfg4: standard deviation of the answers, share of their value"},
+
     {"search.seed", "-", WHOLE, AT(search.seed), "1", 0, 4294967295.0, NULL, "same seed and settings: same bytes"},
     {"search.threads", "-", WHOLE, AT(search.threads), "0", 0, 1024, NULL, "0: one per processor"},
     {"search.population", "-", WHOLE, AT(search.population), "92", 4, 100000, NULL, "designs per generation"},
@@ -101,6 +120,8 @@ static const Option OPTIONS[] = {
      "variables mutated per design, on average"},
     {"search.surrogate_max", "-", WHOLE, AT(search.surrogate_max), "600", 10, 5000, NULL,
      "most designs that the response surface is built on"},
+    {"search.limits", "-", TEXT, AT(search.limits), "none", 0, 0, NULL,
+     "what objectives must keep, as j3_g<=5,edcs_pct>=3; none"},
 
     {"run.out", "-", TEXT, AT(run.out), "results/study", 0, 0, NULL, "the run's folder"},
 };
@@ -346,6 +367,10 @@ static void check_rules(const Settings *s, BrokenFn broken, void *user)
              s->design.thickness_min_m, s->design.thickness_max_m);
         broken((size_t[]){AT(design.thickness_min_m), AT(design.thickness_max_m), AT(design.thickness_max_m)}, e.text,
                user);
+    }
+    if (s->problem.kind == PROBLEM_EXTERNAL && strcmp(s->problem.command, "none") == 0) {
+        fail(&e, STATUS_BAD_DATA, "problem.command: is none; problem.kind = external wants the worker's command");
+        broken((size_t[]){AT(problem.command), AT(problem.kind), AT(problem.kind)}, e.text, user);
     }
     if (s->core.section == CORE_BOX && 2 * s->design.thickness_max_m > s->core.side_m) {
         fail(&e, STATUS_BAD_DATA, "design.thickness_max_m: two walls of %g m do not fit into core.side_m = %g",

@@ -31,6 +31,7 @@ typedef enum {
 #undef X
         ENGINE_COUNT
 } Engine;
+typedef enum { PROBLEM_TOWER, PROBLEM_EXTERNAL, PROBLEM_DTLZ2, PROBLEM_WFG4 } ProblemKind;
 typedef enum { UNIT_FROM_FILE, UNIT_M_S2, UNIT_CM_S2, UNIT_G } MotionUnit;
 
 typedef struct {
@@ -62,11 +63,22 @@ typedef struct {
     struct { /* the search box */
         double gap_min_m, gap_max_m, thickness_min_m, thickness_max_m;
     } design;
+    struct {       /* what is searched; all but kind only where it is not the tower */
+        long kind; /* ProblemKind */
+        char command[SETTINGS_TEXT_MAX];
+        double timeout_s;
+        long variables, objectives;
+        char lower[SETTINGS_TEXT_MAX], upper[SETTINGS_TEXT_MAX]; /* one number or a comma list */
+        char senses[SETTINGS_TEXT_MAX];                          /* min or max, one word or a list */
+        char variable_names[SETTINGS_TEXT_MAX], objective_names[SETTINGS_TEXT_MAX];
+        double noise; /* [-] of a textbook problem's answers */
+    } problem;
     struct {
         long seed, threads, population, initial, generations, max_evals;
         double max_hours, nondominated_share, trust_error;
         double crossover_probability, crossover_eta, mutation_eta, mutation_rate;
         long surrogate_max; /* most designs that the response surface is built on */
+        char limits[SETTINGS_TEXT_MAX];
     } search;
     struct {
         char out[SETTINGS_TEXT_MAX]; /* the run's folder */

@@ -84,7 +84,7 @@ Status args_apply(const Args *args, Settings *s, FILE *faults, int *n_faults, Er
     }
 #define OPTION_ENGINE                                                                                                  \
     {                                                                                                                  \
-        "--engine", "NAME", "sim.engine", 0, "as the setting sim.engine"                                                            \
+        "--engine", "NAME", "sim.engine", 0, "as the setting sim.engine"                                               \
     }
 #define OPTION_JSON                                                                                                    \
     {                                                                                                                  \

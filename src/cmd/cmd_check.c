@@ -1,7 +1,7 @@
 #include <string.h>
 
 #include "cmd/commands.h"
-#include "run/world.h"
+#include "run/subject.h"
 #include "scene/building.h"
 
 typedef struct {
@@ -56,6 +56,22 @@ static void check_scene(const Settings *s, Faults *faults)
         world_close(&w);
 }
 
+/* A problem that is no tower: opened as a search would; workers are not started yet. */
+static Status check_other(const Args *args, const Settings *s, Faults *faults, Err *err)
+{
+    Err e = {0};
+    Subject *subject;
+    if (faults->n == 0 && note(faults, subject_open(&subject, s, &e), "problem", &e)) {
+        const Schema *schema = subject_schema(subject);
+        printf("problem   %zu variables, %zu objectives\n", schema->n_var, schema->n_obj);
+        subject_close(subject);
+    }
+    if (faults->n)
+        return fail(err, STATUS_BAD_DATA, "%s: %d fault%s", args->operand, faults->n, faults->n == 1 ? "" : "s");
+    printf("%s: everything is in order\n", args->operand);
+    return STATUS_OK;
+}
+
 static Status run(const Args *args, Err *err)
 {
     Settings s;
@@ -63,6 +79,8 @@ static Status run(const Args *args, Err *err)
     const Status status = args_settings(args, &s, stderr, &faults.n, err);
     if (status == STATUS_MISSING || status == STATUS_USAGE)
         return status;
+    if (s.problem.kind != PROBLEM_TOWER)
+        return check_other(args, &s, &faults, err);
     const int building = check_building(&s, &faults);
     const int motion = check_motion(&s, &faults);
     if (building && motion && faults.n == 0)

@@ -50,6 +50,8 @@ static Status simulate(const World *w, const Chosen *c, SimResult results[N_SCEN
 {
     Crew *crew;
     SimTask tasks[N_SCENES];
+    if (w->settings.problem.kind != PROBLEM_TOWER)
+        return fail(err, STATUS_BAD_DATA, "this run searched another problem than the tower: no ground motion applies");
     if (scene_n_floors(w->scene) + 2 != c->front.n_var)
         return fail(err, STATUS_BAD_DATA, "the front has designs of %d floors, the building has %d", c->front.n_var - 2,
                     scene_n_floors(w->scene));

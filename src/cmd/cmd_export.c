@@ -5,12 +5,12 @@
 #include "run/front.h"
 #include "run/output.h"
 
-static Status copy(const char *folder, const char *path, Err *err)
+static Status copy(const char *folder, const char *name, const char *path, Err *err)
 {
     char from[PATH_MAX], *text;
     size_t length;
     Output o;
-    snprintf(from, sizeof from, "%s/front.csv", folder);
+    snprintf(from, sizeof from, "%s/%s", folder, name);
     TRY(file_read(from, &text, &length, err));
     Status status = output_open(&o, path, err);
     if (status == STATUS_OK) {
@@ -25,24 +25,28 @@ static Status run(const Args *args, Err *err)
 {
     Front front;
     if (!args_has(args, "--csv"))
-        return fail(err, STATUS_USAGE, "--csv FILE is missing: where the front goes");
+        return fail(err, STATUS_USAGE, "--csv FILE is missing: where the table goes");
     TRY(front_read(&front, args->operand, err)); /* a damaged front is not handed on */
     front_free(&front);
-    return copy(args->operand, args_value(args, "--csv"), err);
+    return copy(args->operand, args_has(args, "--all") ? "evaluations.csv" : "front.csv", args_value(args, "--csv"),
+                err);
 }
 
 static const ArgOption OPTIONS[] = {
-    {"--csv", "FILE", NULL, 0, "where the front goes: id, variables, objectives"},
+    {"--csv", "FILE", NULL, 0, "where it goes; -: standard output"},
+    {"--all", NULL, NULL, 0, "every design that was evaluated, with its outcome, instead of the front"},
     OPTION_END,
 };
 
 const Command CMD_EXPORT = {
     .name = "export",
     .operand = "RUN",
-    .summary = "the front of a run as CSV",
+    .summary = "the front of a run, or all of it, as CSV",
     .example = "imtet export results/quick --csv front.csv",
-    .details = "Copies the front of the folder RUN: one row per design with id, variables [m] and objectives in their\n"
-               "natural signs. results/README.md explains every column.",
+    .details =
+        "Copies the front of the folder RUN: one row per design with id, variables [m] and objectives in their\n"
+        "natural signs. With --all every evaluated design, failed ones too: id, generation, kind, outcome and reason\n"
+        "before the variables. results/README.md explains every column.",
     .options = OPTIONS,
     .run = run,
 };

@@ -22,23 +22,26 @@ static void tell(const SearchView *view, void *user)
             view->seconds, t->terminal ? "  " : "\n");
 }
 
-static void print_front(const Front *front, const SimResult *no_core)
+static void print_front(const Front *front, const StudySummary *summary)
 {
-    char label[32];
-    double alone[N_OBJECTIVES];
-    show_objective_names();
-    for (int k = 0; k < N_OBJECTIVES; k++) {
+    char label[TABLE_NAME_MAX + 8];
+    show_objective_names(&front->schema);
+    for (size_t k = 0; k < front->n_obj; k++) {
         const size_t i = front_best(front, k);
-        snprintf(label, sizeof label, "best %s", measure(k)->name);
-        show_objectives(label, front_id(front, i), front_f(front, i));
-        alone[k] = measure_value(no_core, k);
+        snprintf(label, sizeof label, "best %s", schema_objective(&front->schema, k)->name);
+        show_objectives(label, front_id(front, i), front->n_obj, front_f(front, i));
     }
     const size_t knee = front_knee(front);
-    show_objectives("knee", front_id(front, knee), front_f(front, knee));
-    show_objectives("no core", 0, alone);
-    printf("\nj1 displacement, j2 interstorey drift, j3 acceleration, ed1 share of mode 1, mcore: less is better;\n"
-           "ed5_10 share of modes 5 to 10, edcs share of the core: more is better.\n"
-           "knee: nearest to the ideal point when every objective is scaled to 0..1 over the front.\n");
+    show_objectives("knee", front_id(front, knee), front->n_obj, front_f(front, knee));
+    if (summary->has_no_core) {
+        double alone[N_OBJECTIVES];
+        for (int k = 0; k < N_OBJECTIVES; k++)
+            alone[k] = measure_value(&summary->no_core, k);
+        show_objectives("no core", 0, N_OBJECTIVES, alone);
+        printf("\nj1 displacement, j2 interstorey drift, j3 acceleration, ed1 share of mode 1, mcore: less is better;\n"
+               "ed5_10 share of modes 5 to 10, edcs share of the core: more is better.");
+    }
+    printf("\nknee: nearest to the ideal point when every objective is scaled to 0..1 over the front.\n");
 }
 
 static Status report(const StudySummary *summary, Err *err)
@@ -51,7 +54,7 @@ static Status report(const StudySummary *summary, Err *err)
     printf("front: %s/front.csv\n%zu nondominated of %zu simulated designs, %zu simulations failed, %.1f s (%s)\n\n",
            summary->folder, summary->n_front, summary->n_simulated, summary->n_failed, summary->seconds,
            stop_reason_words(summary->stopped));
-    print_front(&front, &summary->no_core);
+    print_front(&front, summary);
     front_free(&front);
     return STATUS_OK;
 }
@@ -91,7 +94,8 @@ const Command CMD_OPTIMIZE = {
     .details =
         "Searches gaps and wall thicknesses for the designs that no other one beats in all seven objectives, and\n"
         "writes them to DIR/front.csv generation by generation (results/README.md explains every file and\n"
-        "column). Without --out the folder is run.out of CONFIG, with a number added where that holds a run.",
+        "column). Without --out the folder is run.out of CONFIG, with a number added where that holds a run.\n"
+        "With problem.kind = external the simulator is a program of your own (docs/external.md).",
     .options = OPTIONS,
     .run = run,
 };

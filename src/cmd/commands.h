@@ -5,6 +5,6 @@
 #include "cmd/args.h"
 
 extern const Command CMD_OPTIMIZE, CMD_SIMULATE, CMD_EVALUATE, CMD_EXPORT, CMD_MODES, CMD_SPECTRUM, CMD_CHECK,
-    CMD_SETTINGS;
+    CMD_SETTINGS, CMD_PROBLEM;
 
 #endif

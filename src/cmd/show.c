@@ -99,22 +99,22 @@ void show_result(const char *label, const SimResult *r)
     putchar('\n');
 }
 
-void show_objective_names(void)
+void show_objective_names(const Schema *schema)
 {
     printf("%-18s %7s", "", "design");
-    for (int k = 0; k < N_OBJECTIVES; k++)
-        printf(" %10s", measure(k)->name);
+    for (size_t k = 0; k < schema->n_obj; k++)
+        printf(" %10s", schema_objective(schema, k)->name);
     putchar('\n');
 }
 
-void show_objectives(const char *label, long id, const double natural[N_OBJECTIVES])
+void show_objectives(const char *label, long id, size_t n_obj, const double natural[])
 {
     printf("%-18s", label);
     if (id > 0)
         printf(" %7ld", id);
     else
         printf(" %7s", "-");
-    for (int k = 0; k < N_OBJECTIVES; k++)
+    for (size_t k = 0; k < n_obj; k++)
         printf(" %10.4g", natural[k]);
     putchar('\n');
 }

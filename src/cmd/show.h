@@ -5,6 +5,7 @@
 #include <jansson.h>
 
 #include "run/measures.h"
+#include "run/schema.h"
 
 json_t *json_number(double value); /* null where it is not finite */
 json_t *json_numbers(size_t n, const double values[]);
@@ -23,7 +24,7 @@ void show_result_names(const char *label);
 void show_result(const char *label, const SimResult *r);
 
 /* One line of objectives: label, a design's number (0: none). */
-void show_objective_names(void);
-void show_objectives(const char *label, long id, const double natural[N_OBJECTIVES]);
+void show_objective_names(const Schema *schema);
+void show_objectives(const char *label, long id, size_t n_obj, const double natural[]);
 
 #endif

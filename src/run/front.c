@@ -5,27 +5,40 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
-#include "base/design.h"
+#include "run/measures.h"
 
 static Status check_columns(const Front *front, const char *path, Err *err)
 {
-    char want[TABLE_NAME_MAX];
     const Table *t = &front->table;
-    for (size_t j = 0; front->n_var >= 3 && j < t->n_cols; j++) {
-        const int k = (int)j - 1 - front->n_var;
-        if (j == 0)
-            snprintf(want, sizeof want, "id");
-        else if (k < 0)
-            design_variable_name(front->n_var - 2, (int)j - 1, want);
-        else
-            snprintf(want, sizeof want, "%s", measure(k)->name);
+    for (size_t j = 0; j < t->n_cols; j++) {
+        const char *want = j == 0 ? "id" : front->schema.column[j - 1].name;
         if (strcmp(t->names[j], want) != 0)
             return fail(err, STATUS_BAD_DATA, "%s: column %zu is '%s', expected %s", path, j + 1, t->names[j], want);
     }
-    if (front->n_var < 3)
-        return fail(err, STATUS_BAD_DATA, "%s: %zu columns are not a front", path, t->n_cols);
     return STATUS_OK;
+}
+
+/* A tower's number of floors is told by the columns, all else by the run's settings. */
+static Status find_schema(Front *front, const char *folder, const char *path, Err *err)
+{
+    char settings[PATH_MAX + 32];
+    Settings s;
+    snprintf(settings, sizeof settings, "%s/settings.ini", folder);
+    settings_defaults(&s);
+    if (access(settings, F_OK) == 0)
+        TRY(settings_read(&s, settings, NULL, NULL, err));
+    const size_t n_cols = front->table.n_cols;
+    if (s.problem.kind == PROBLEM_TOWER && n_cols < 4 + N_OBJECTIVES)
+        return fail(err, STATUS_BAD_DATA, "%s: %zu columns are not a front", path, n_cols);
+    TRY(schema_of(&front->schema, &s, (int)n_cols - 3 - N_OBJECTIVES, err));
+    if (n_cols != 1 + front->schema.n_var + front->schema.n_obj)
+        return fail(err, STATUS_BAD_DATA, "%s: %zu columns are not a front of %zu variables and %zu objectives", path,
+                    n_cols, front->schema.n_var, front->schema.n_obj);
+    front->n_var = (int)front->schema.n_var;
+    front->n_obj = front->schema.n_obj;
+    return check_columns(front, path, err);
 }
 
 Status front_read(Front *front, const char *folder, Err *err)
@@ -36,8 +49,7 @@ Status front_read(Front *front, const char *folder, Err *err)
         return fail(err, STATUS_MISSING, "%.200s...: the path is too long", folder);
     TRY(table_read(&front->table, path, 1, err));
     front->n = front->table.n_rows;
-    front->n_var = (int)front->table.n_cols - 1 - N_OBJECTIVES;
-    const Status status = check_columns(front, path, err);
+    const Status status = find_schema(front, folder, path, err);
     if (status != STATUS_OK)
         front_free(front);
     return status;
@@ -63,9 +75,14 @@ const double *front_f(const Front *front, size_t i)
     return row(front, i) + 1 + front->n_var;
 }
 
-size_t front_best(const Front *front, int objective)
+static double sense_of(const Front *front, size_t k)
 {
-    const double sense = measure(objective)->sense;
+    return schema_objective(&front->schema, k)->sense;
+}
+
+size_t front_best(const Front *front, size_t objective)
+{
+    const double sense = sense_of(front, objective);
     size_t best = 0;
     for (size_t i = 1; i < front->n; i++)
         if (sense * front_f(front, i)[objective] < sense * front_f(front, best)[objective])
@@ -73,24 +90,28 @@ size_t front_best(const Front *front, int objective)
     return best;
 }
 
-size_t front_knee(const Front *front)
+void front_box(const Front *front, double ideal[], double span[])
 {
-    double ideal[N_OBJECTIVES], span[N_OBJECTIVES];
-    for (int k = 0; k < N_OBJECTIVES; k++) {
-        const double sense = measure(k)->sense;
+    for (size_t k = 0; k < front->n_obj; k++) {
+        const double sense = sense_of(front, k);
         double worst = -INFINITY;
         ideal[k] = sense * front_f(front, front_best(front, k))[k];
         for (size_t i = 0; i < front->n; i++)
             worst = fmax(worst, sense * front_f(front, i)[k]);
-        span[k] = worst - ideal[k];
+        span[k] = worst > ideal[k] ? worst - ideal[k] : 1.0;
     }
+}
+
+size_t front_knee(const Front *front)
+{
+    double ideal[OBJECTIVES_MAX], span[OBJECTIVES_MAX], least = INFINITY;
     size_t knee = 0;
-    double least = INFINITY;
+    front_box(front, ideal, span);
     for (size_t i = 0; i < front->n; i++) {
         double d2 = 0;
-        for (int k = 0; k < N_OBJECTIVES; k++) {
-            const double d = measure(k)->sense * front_f(front, i)[k] - ideal[k];
-            d2 += span[k] > 0 ? d * d / (span[k] * span[k]) : 0;
+        for (size_t k = 0; k < front->n_obj; k++) {
+            const double d = (sense_of(front, k) * front_f(front, i)[k] - ideal[k]) / span[k];
+            d2 += d * d;
         }
         if (d2 < least) {
             least = d2;
@@ -111,5 +132,6 @@ size_t front_find(const Front *front, long id)
 void front_free(Front *front)
 {
     table_free(&front->table);
+    schema_free(&front->schema);
     memset(front, 0, sizeof *front);
 }

@@ -7,22 +7,26 @@
 #define IMTET_RUN_FRONT_H
 
 #include "base/table.h"
-#include "run/measures.h"
+#include "run/schema.h"
 
 typedef struct {
     Table table; /* id, variables, objectives */
-    size_t n;
+    Schema schema;
+    size_t n, n_obj;
     int n_var;
 } Front;
 
 Status front_read(Front *front, const char *folder, Err *err);
 long front_id(const Front *front, size_t i);
 const double *front_x(const Front *front, size_t i); /* (n_var) */
-const double *front_f(const Front *front, size_t i); /* (N_OBJECTIVES) */
+const double *front_f(const Front *front, size_t i); /* (n_obj) */
 
 /* Each wants n > 0. Ties go to the first. */
-size_t front_best(const Front *front, int objective);
+size_t front_best(const Front *front, size_t objective);
 size_t front_knee(const Front *front);
+
+/* Best value and width of every objective (n_obj), minimised; a width of 0 counts as 1. */
+void front_box(const Front *front, double ideal[], double span[]);
 
 /* Row of that design, or n when it is not on the front. */
 size_t front_find(const Front *front, long id);

@@ -69,7 +69,7 @@ static json_t *machine(int threads)
     return json_pack("{s:s, s:s, s:i, s:s}", "host", host, "system", system, "threads", threads, "started", started);
 }
 
-static json_t *inputs(const World *w, uint64_t building_hash, int n_floors)
+static json_t *inputs_of_tower(const World *w, uint64_t building_hash, int n_floors)
 {
     char record[24], matrices[24];
     snprintf(record, sizeof record, "%016" PRIx64, w->motion.file_hash);
@@ -80,18 +80,30 @@ static json_t *inputs(const World *w, uint64_t building_hash, int n_floors)
                      matrices);
 }
 
-Status provenance_write(const char *folder, const World *w, int threads, Err *err)
+static Status inputs(json_t **out, const Settings *s, const World *w, Err *err)
+{
+    Building b;
+    if (!w) {
+        *out = json_pack("{s:s}", "command", s->problem.kind == PROBLEM_EXTERNAL ? s->problem.command : "built in");
+        return STATUS_OK;
+    }
+    TRY(building_load(&b, s->building.model, err));
+    *out = inputs_of_tower(w, b.hash, b.n);
+    building_free(&b);
+    return STATUS_OK;
+}
+
+Status provenance_write(const char *folder, const Settings *s, const World *w, int threads, Err *err)
 {
     char path[PATH_MAX];
-    Building b;
     Output o;
+    json_t *made_of = NULL;
     snprintf(path, sizeof path, "%s/provenance.json", folder);
-    TRY(building_load(&b, w->settings.building.model, err));
-    json_t *all = json_pack("{s:s, s:s, s:s, s:s, s:s, s:I, s:o*, s:o*, s:o*}", "program", "imtet", "version",
-                            IMTET_VERSION, "revision", IMTET_REVISION, "compiler", __VERSION__, "flags", IMTET_CFLAGS,
-                            "seed", (json_int_t)w->settings.search.seed, "libraries", libraries(), "machine",
-                            machine(threads), "inputs", inputs(w, b.hash, b.n));
-    building_free(&b);
+    TRY(inputs(&made_of, s, w, err));
+    json_t *all =
+        json_pack("{s:s, s:s, s:s, s:s, s:s, s:I, s:o*, s:o*, s:o*}", "program", "imtet", "version", IMTET_VERSION,
+                  "revision", IMTET_REVISION, "compiler", __VERSION__, "flags", IMTET_CFLAGS, "seed",
+                  (json_int_t)s->search.seed, "libraries", libraries(), "machine", machine(threads), "inputs", made_of);
     if (!all)
         return fail(err, STATUS_NO_MEMORY, "%s: cannot be put together", path);
     Status status = output_open(&o, path, err);

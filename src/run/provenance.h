@@ -8,7 +8,7 @@
 const char *program_version(void);  /* 0.1.0 */
 const char *program_revision(void); /* as git describes it, or unknown */
 
-/* FOLDER/provenance.json */
-Status provenance_write(const char *folder, const World *w, int threads, Err *err);
+/* FOLDER/provenance.json; w NULL: no tower */
+Status provenance_write(const char *folder, const Settings *s, const World *w, int threads, Err *err);
 
 #endif

@@ -9,12 +9,11 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "base/design.h"
 #include "run/output.h"
 
 struct RunStore {
     char folder[PATH_MAX - 64];
-    int n_floors;
+    const Schema *schema;
     FILE *evaluations, *log;
 };
 
@@ -83,16 +82,15 @@ static Status find_folder(RunStore *store, const char *folder, int exact, Err *e
     return STATUS_OK;
 }
 
-static void write_names(FILE *f, const char *before, int n_floors, int n_measures)
+static void write_names(FILE *f, const char *before, const Schema *schema, size_t n_extra)
 {
-    char name[TABLE_NAME_MAX];
     fputs(before, f);
-    for (int j = 0; j < n_floors + 2; j++) {
-        design_variable_name(n_floors, j, name);
-        fprintf(f, ",%s", name);
-    }
-    for (int k = 0; k < n_measures; k++)
-        fprintf(f, ",%s", measure(k)->name);
+    for (size_t j = 0; j < schema->n_var; j++)
+        fprintf(f, ",%s", schema_variable(schema, j)->name);
+    for (size_t k = 0; k < schema->n_obj; k++)
+        fprintf(f, ",%s", schema_objective(schema, k)->name);
+    for (size_t k = 0; k < n_extra; k++)
+        fprintf(f, ",%s", schema_extra(schema, k)->name);
     fputc('\n', f);
 }
 
@@ -103,17 +101,17 @@ static Status open_evaluations(RunStore *store, Err *err)
     store->evaluations = fopen(path, "wx");
     if (!store->evaluations)
         return fail(err, STATUS_IO, "%s: cannot be written: %s", path, strerror(errno));
-    write_names(store->evaluations, "id,generation,kind,outcome,reason", store->n_floors, N_MEASURES);
+    write_names(store->evaluations, "id,generation,kind,outcome,reason", store->schema, store->schema->n_extra);
     return output_sync(store->evaluations, path, err);
 }
 
-Status store_create(RunStore **out, const char *folder, int exact, int n_floors, Err *err)
+Status store_create(RunStore **out, const char *folder, int exact, const Schema *schema, Err *err)
 {
     *out = NULL;
     RunStore *store = calloc(1, sizeof *store);
     if (!store)
         return fail(err, STATUS_NO_MEMORY, "no memory for a run");
-    store->n_floors = n_floors;
+    store->schema = schema;
     Status status = find_folder(store, folder, exact, err);
     if (status == STATUS_OK)
         status = open_evaluations(store, err);
@@ -140,25 +138,6 @@ Status store_settings(RunStore *store, const Settings *s, Err *err)
     return output_close(&o, err);
 }
 
-/* Commas and line ends would need quoting in a CSV file; a reason reads as well without them. */
-static void plain_text(char *text)
-{
-    for (; *text; text++)
-        if (*text == ',' || *text == '"' || (unsigned char)*text < ' ')
-            *text = *text == ',' ? ';' : ' ';
-}
-
-void verdict_of(const SimResult *r, Verdict *v)
-{
-    double f[N_OBJECTIVES];
-    const int lost = r->outcome == RUN_OK && !measure_objectives(r, f);
-    snprintf(v->outcome, sizeof v->outcome, "%s", outcome_word(lost ? RUN_NOT_FINITE : r->outcome));
-    snprintf(v->reason, sizeof v->reason, "%s", lost ? "an objective is not finite" : r->reason);
-    plain_text(v->reason);
-    for (int k = N_OBJECTIVES; k < N_MEASURES; k++)
-        v->described[k - N_OBJECTIVES] = measure_value(r, k);
-}
-
 static void write_numbers(FILE *f, size_t n, const double values[])
 {
     for (size_t j = 0; j < n; j++) {
@@ -167,11 +146,11 @@ static void write_numbers(FILE *f, size_t n, const double values[])
     }
 }
 
-static void write_objectives(FILE *f, const double minimised[])
+static void write_objectives(const Schema *schema, FILE *f, const double minimised[])
 {
-    for (int k = 0; k < N_OBJECTIVES; k++) {
+    for (size_t k = 0; k < schema->n_obj; k++) {
         fputc(',', f);
-        print_number(f, measure(k)->sense * minimised[k]);
+        print_number(f, schema_objective(schema, k)->sense * minimised[k]);
     }
 }
 
@@ -184,10 +163,10 @@ Status store_evaluations(RunStore *store, const SearchView *view, size_t first, 
         fprintf(f, "%zu,%zu,%s,%s,%s", i + 1, view->generation[i], KIND_WORDS[view->kind[i]], v->outcome, v->reason);
         write_numbers(f, view->n_var, &view->X[i * view->n_var]);
         if (view->ok[i])
-            write_objectives(f, &view->F[i * view->n_obj]);
-        else
-            fputs(",,,,,,,", f);
-        write_numbers(f, N_MEASURES - N_OBJECTIVES, v->described);
+            write_objectives(store->schema, f, &view->F[i * view->n_obj]);
+        for (size_t k = 0; !view->ok[i] && k < view->n_obj; k++)
+            fputc(',', f);
+        write_numbers(f, store->schema->n_extra, v->extra);
         fputc('\n', f);
     }
     path_in(store, "evaluations.csv", path);
@@ -200,13 +179,13 @@ Status store_front(RunStore *store, const SearchView *view, Err *err)
     Output o;
     path_in(store, "front.csv", path);
     TRY(output_open(&o, path, err));
-    write_names(o.stream, "id", store->n_floors, N_OBJECTIVES);
+    write_names(o.stream, "id", store->schema, 0);
     for (size_t i = 0; i < view->n; i++) {
         if (!view->on_front[i])
             continue;
         fprintf(o.stream, "%zu", i + 1);
         write_numbers(o.stream, view->n_var, &view->X[i * view->n_var]);
-        write_objectives(o.stream, &view->F[i * view->n_obj]);
+        write_objectives(store->schema, o.stream, &view->F[i * view->n_obj]);
         fputc('\n', o.stream);
     }
     return output_close(&o, err);

@@ -14,20 +14,13 @@
 #define IMTET_RUN_STORE_H
 
 #include "moga/search.h"
-#include "run/measures.h"
+#include "run/schema.h"
 
 typedef struct RunStore RunStore;
 
-/* What a simulation left behind besides the objectives that the search keeps. */
-typedef struct {
-    char outcome[16], reason[160];
-    double described[N_MEASURES - N_OBJECTIVES]; /* measures that are not objectives */
-} Verdict;
-void verdict_of(const SimResult *r, Verdict *v);
-
 /* folder: where the run goes. Where it holds a run already: refused if `exact`, else the first free of folder-2,
- * folder-3, ... is taken. */
-Status store_create(RunStore **out, const char *folder, int exact, int n_floors, Err *err);
+ * folder-3, ... is taken. Borrows the schema. */
+Status store_create(RunStore **out, const char *folder, int exact, const Schema *schema, Err *err);
 const char *store_folder(const RunStore *store);
 
 Status store_settings(RunStore *store, const Settings *s, Err *err);

@@ -5,21 +5,17 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "run/crew.h"
-#include "run/measures.h"
+#include <omp.h>
+
 #include "run/provenance.h"
 #include "run/store.h"
-#include "run/world.h"
+#include "run/subject.h"
 
 typedef struct {
-    World world;
-    Crew *crew;
+    const Settings *settings;
+    Subject *subject;
     RunStore *store;
-    int n_floors;
-    double lower[FLOORS_MAX + 2], upper[FLOORS_MAX + 2];
-
-    Verdict *pending; /* of the simulations that are not in evaluations.csv yet, in their order */
-    size_t n_pending, pending_max, n_stored;
+    size_t n_stored; /* simulations in evaluations.csv */
 
     StudyProgressFn progress;
     void *user;
@@ -28,62 +24,16 @@ typedef struct {
     Err *err;
 } Study;
 
-static void swap_if_top_heavy(double x[], void *user)
-{
-    /* Swapping keeps both thicknesses in the box and the sample spread out; clipping would pile designs up on
-     * t_top = t_base. */
-    const Study *study = user;
-    double *t_base = &x[study->n_floors], *t_top = t_base + 1;
-    if (*t_top > *t_base) {
-        const double thicker = *t_top;
-        *t_top = *t_base;
-        *t_base = thicker;
-    }
-}
-
-static Status room_for(Study *study, size_t more, Err *err)
-{
-    const size_t need = study->n_pending + more;
-    if (need <= study->pending_max)
-        return STATUS_OK;
-    Verdict *wider = realloc(study->pending, 2 * need * sizeof *wider);
-    if (!wider)
-        return fail(err, STATUS_NO_MEMORY, "no memory for %zu verdicts", 2 * need);
-    study->pending = wider;
-    study->pending_max = 2 * need;
-    return STATUS_OK;
-}
-
-static Status simulate_designs(size_t n, const double X[], double F[], double G[], unsigned char ok[], void *user,
-                               Err *err)
-{
-    Study *study = user;
-    (void)G; /* no constraints: what cannot be built is repaired, what cannot be simulated has failed */
-    TRY(room_for(study, n, err));
-    SimTask *tasks = calloc(n, sizeof *tasks);
-    SimResult *results = calloc(n, sizeof *results);
-    Status status = tasks && results ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for %zu simulations", n);
-    for (size_t i = 0; status == STATUS_OK && i < n; i++)
-        tasks[i] = (SimTask){SCENE_IMPACT, &X[i * (size_t)(study->n_floors + 2)]};
-    if (status == STATUS_OK)
-        status = crew_run(study->crew, n, tasks, results, err);
-    for (size_t i = 0; status == STATUS_OK && i < n; i++) {
-        ok[i] = (unsigned char)measure_objectives(&results[i], &F[i * N_OBJECTIVES]);
-        verdict_of(&results[i], &study->pending[study->n_pending++]);
-    }
-    free(tasks);
-    free(results);
-    return status;
-}
-
 static Status write_generation(Study *study, const SearchView *view, Err *err)
 {
-    if (study->n_stored + study->n_pending != view->n)
+    size_t n_new;
+    const Verdict *verdicts = subject_verdicts(study->subject, &n_new);
+    if (study->n_stored + n_new != view->n)
         return fail(err, STATUS_INTERNAL, "the search knows of %zu simulations, %zu were made", view->n,
-                    study->n_stored + study->n_pending);
-    TRY(store_evaluations(study->store, view, study->n_stored, study->pending, err));
+                    study->n_stored + n_new);
+    TRY(store_evaluations(study->store, view, study->n_stored, verdicts, err));
     study->n_stored = view->n;
-    study->n_pending = 0;
+    subject_forget(study->subject);
     TRY(store_front(study->store, view, err));
     char surface[24] = "-";
     if (isfinite(view->surrogate_error))
@@ -119,7 +69,7 @@ static void make_absolute(char path[SETTINGS_TEXT_MAX])
 
 static Settings settings_as_used(const Study *study)
 {
-    Settings used = study->world.settings;
+    Settings used = *study->settings;
     struct stat there;
     if (strncmp(used.motion.record, "builtin:", 8) != 0)
         make_absolute(used.motion.record);
@@ -130,28 +80,39 @@ static Settings settings_as_used(const Study *study)
     return used;
 }
 
+static Status simulate_without_core(Study *study, Err *err)
+{
+    Crew *crew = subject_crew(study->subject);
+    study->summary->has_no_core = crew != NULL;
+    return crew ? crew_run(crew, 1, &(SimTask){SCENE_NO_CORE, NULL}, &study->summary->no_core, err) : STATUS_OK;
+}
+
+static Status log_start(Study *study, const Settings *used, Err *err)
+{
+    const Schema *schema = subject_schema(study->subject);
+    const int threads = subject_threads(study->subject);
+    if (subject_world(study->subject))
+        return store_log(study->store, err, "%zu floors, %s, pga %g g, stretch %g, %d threads, seed %ld",
+                         schema->n_var - 2, used->motion.record, used->motion.pga_g, used->motion.stretch, threads,
+                         used->search.seed);
+    return store_log(study->store, err, "%zu variables, %zu objectives, %d threads, seed %ld", schema->n_var,
+                     schema->n_obj, threads, used->search.seed);
+}
+
 static Status prepare(Study *study, const Settings *s, int exact, Err *err)
 {
-    TRY(world_open(&study->world, s, err));
-    TRY(crew_create(&study->crew, study->world.scene, s->search.threads, err));
-    study->n_floors = scene_n_floors(study->world.scene);
-    for (int j = 0; j < study->n_floors + 2; j++) {
-        study->lower[j] = j < study->n_floors ? s->design.gap_min_m : s->design.thickness_min_m;
-        study->upper[j] = j < study->n_floors ? s->design.gap_max_m : s->design.thickness_max_m;
-    }
-    TRY(crew_run(study->crew, 1, &(SimTask){SCENE_NO_CORE, NULL}, &study->summary->no_core, err));
-
-    TRY(store_create(&study->store, s->run.out, exact, study->n_floors, err));
+    TRY(subject_open(&study->subject, s, err));
+    TRY(simulate_without_core(study, err));
+    TRY(store_create(&study->store, s->run.out, exact, subject_schema(study->subject), err));
     snprintf(study->summary->folder, sizeof study->summary->folder, "%s", store_folder(study->store));
     const Settings used = settings_as_used(study);
     TRY(store_settings(study->store, &used, err));
-    TRY(provenance_write(store_folder(study->store), &study->world, crew_size(study->crew), err));
-    return store_log(study->store, err, "%d floors, %s, pga %g g, stretch %g, %d threads, seed %ld", study->n_floors,
-                     used.motion.record, used.motion.pga_g, used.motion.stretch, crew_size(study->crew),
-                     used.search.seed);
+    TRY(provenance_write(store_folder(study->store), s, subject_world(study->subject), subject_threads(study->subject),
+                         err));
+    return log_start(study, &used, err);
 }
 
-static SearchConfig search_config(const Settings *s)
+SearchConfig study_search_config(const Settings *s)
 {
     const long initial = s->search.initial < s->search.max_evals ? s->search.initial : s->search.max_evals;
     return (SearchConfig){
@@ -173,17 +134,9 @@ static SearchConfig search_config(const Settings *s)
 
 static Status search(Study *study, Err *err)
 {
-    const Problem problem = {
-        .n_var = (size_t)study->n_floors + 2,
-        .n_obj = N_OBJECTIVES,
-        .lower = study->lower,
-        .upper = study->upper,
-        .evaluate = simulate_designs,
-        .repair = swap_if_top_heavy,
-        .user = study,
-    };
-    const SearchConfig config = search_config(&study->world.settings);
-    TRY(search_run(&problem, &config, observe, study, &study->summary->stopped, err));
+    const SearchConfig config = study_search_config(study->settings);
+    omp_set_num_threads(subject_threads(study->subject));
+    TRY(search_run(subject_problem(study->subject), &config, observe, study, &study->summary->stopped, err));
     TRY(study->status);
     return store_log(study->store, err, "stopped: %s; %zu simulated, %zu failed, %zu on the front, %.1f s",
                      stop_reason_words(study->summary->stopped), study->summary->n_simulated, study->summary->n_failed,
@@ -192,28 +145,19 @@ static Status search(Study *study, Err *err)
 
 Status study_run(const Settings *s, int exact, StudyProgressFn progress, void *user, StudySummary *summary, Err *err)
 {
-    Study *study = calloc(1, sizeof *study);
-    if (!study)
-        return fail(err, STATUS_NO_MEMORY, "no memory for a study");
     memset(summary, 0, sizeof *summary);
-    study->progress = progress;
-    study->user = user;
-    study->summary = summary;
-    study->err = err;
-    Status status = prepare(study, s, exact, err);
+    Study study = {.settings = s, .progress = progress, .user = user, .summary = summary, .err = err};
+    Status status = prepare(&study, s, exact, err);
     if (status == STATUS_OK)
-        status = search(study, err);
-    if (status != STATUS_OK && study->store) {
+        status = search(&study, err);
+    if (status != STATUS_OK && study.store) {
         Err ignored; /* the fault itself is what the caller must hear of */
-        store_log(study->store, &ignored, "failed: %s", err->text);
+        store_log(study.store, &ignored, "failed: %s", err->text);
     } else if (status == STATUS_OK) {
-        status = store_close(study->store, err);
-        study->store = NULL;
+        status = store_close(study.store, err);
+        study.store = NULL;
     }
-    store_free(study->store);
-    crew_free(study->crew);
-    world_close(&study->world);
-    free(study->pending);
-    free(study);
+    store_free(study.store);
+    subject_close(study.subject);
     return status;
 }

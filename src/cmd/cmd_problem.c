@@ -1,0 +1,119 @@
+#include <omp.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cmd/commands.h"
+#include "run/output.h"
+#include "run/study.h"
+#include "run/subject.h"
+
+/* The table under way. */
+typedef struct {
+    const Subject *subject;
+    FILE *f;
+    int noisy;
+    size_t n_front, n;
+    double seconds;
+} Writing;
+
+static void write_row(const Writing *w, const double x[], const double f[])
+{
+    const Schema *schema = subject_schema(w->subject);
+    double exact[OBJECTIVES_MAX];
+    for (size_t j = 0; j < schema->n_var; j++) {
+        fputs(j ? "," : "", w->f);
+        print_number(w->f, x[j]);
+    }
+    subject_exact(w->subject, x, exact);
+    for (int pass = !w->noisy; pass < 2; pass++)
+        for (size_t k = 0; k < schema->n_obj; k++) {
+            fputc(',', w->f);
+            print_number(w->f, pass ? exact[k] : f[k]);
+        }
+    fputc('\n', w->f);
+}
+
+static void write_header(const Writing *w)
+{
+    const Schema *schema = subject_schema(w->subject);
+    for (size_t j = 0; j < schema->n_var; j++)
+        fprintf(w->f, "%s%s", j ? "," : "", schema_variable(schema, j)->name);
+    for (size_t k = 0; w->noisy && k < schema->n_obj; k++)
+        fprintf(w->f, ",seen_%s", schema_objective(schema, k)->name);
+    for (size_t k = 0; k < schema->n_obj; k++)
+        fprintf(w->f, ",%s", schema_objective(schema, k)->name);
+    fputc('\n', w->f);
+}
+
+static int write_new(const SearchView *view, void *user)
+{
+    Writing *w = user;
+    for (size_t i = w->n; i < view->n; i++)
+        write_row(w, view->X + i * view->n_var, view->F + i * view->n_obj);
+    w->n = view->n;
+    w->n_front = view->n_front;
+    w->seconds = view->seconds;
+    return 0;
+}
+
+static Status search(const Args *args, const Settings *s, const Subject *subject, Err *err)
+{
+    Output o;
+    StopReason reason;
+    const SearchConfig config = study_search_config(s);
+    TRY(output_open(&o, args_value(args, "--csv"), err));
+    Writing w = {.subject = subject, .f = o.stream, .noisy = s->problem.noise > 0.0};
+    write_header(&w);
+    omp_set_num_threads(subject_threads(subject));
+    const Status status = search_run(subject_problem(subject), &config, write_new, &w, &reason, err);
+    if (status != STATUS_OK) {
+        output_abandon(&o);
+        return status;
+    }
+    fprintf(stderr, "%s: %zu evaluated, %zu nondominated, %.2f s (%s)\n", args->operand, w.n, w.n_front, w.seconds,
+            stop_reason_words(reason));
+    return output_close(&o, err);
+}
+
+static Status run(const Args *args, Err *err)
+{
+    static const char *const NAMES[] = {"dtlz2", "wfg4"};
+    Settings s;
+    Subject *subject;
+    char kind[64];
+    if (strcmp(args->operand, NAMES[0]) != 0 && strcmp(args->operand, NAMES[1]) != 0)
+        return args_unknown("problem", args->operand, NAMES, 2, "`imtet problem --help`", err);
+    if (!args_has(args, "--csv"))
+        return fail(err, STATUS_USAGE, "--csv FILE is missing: where the table goes");
+    settings_defaults(&s);
+    snprintf(kind, sizeof kind, "problem.kind=%s", args->operand);
+    TRY(settings_set(&s, kind, err));
+    TRY(args_apply(args, &s, NULL, NULL, err));
+    TRY(settings_check(&s, err));
+    TRY(subject_open(&subject, &s, err));
+    const Status status = search(args, &s, subject, err);
+    subject_close(subject);
+    return status;
+}
+
+static const ArgOption OPTIONS[] = {
+    {"--max-evals", "N", "search.max_evals", 0, "stop after so many evaluations"},
+    {"--seed", "N", "search.seed", 0, "same seed, same settings: same bytes"},
+    {"--threads", "N", "search.threads", 0, "0: one per processor"},
+    OPTION_CSV,
+    OPTION_SET,
+    OPTION_END,
+};
+
+const Command CMD_PROBLEM = {
+    .name = "problem",
+    .operand = "NAME",
+    .summary = "the search on a problem whose front is known: dtlz2, wfg4",
+    .example = "imtet problem dtlz2 --max-evals 500 --seed 1 --csv dtlz2.csv",
+    .details =
+        "Searches a test problem of 22 variables and 7 objectives (problem.variables, problem.objectives) and writes\n"
+        "every evaluated design, one row each in their order: variables, then objectives. With problem.noise the\n"
+        "answers that the search saw stand before the exact objectives.",
+    .options = OPTIONS,
+    .run = run,
+};

@@ -1,0 +1,397 @@
+#include <jansson.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "base/random.h"
+#include "check.h"
+#include "problem/external.h"
+#include "problem/textbook.h"
+#include "run/schema.h"
+#include "run/subject.h"
+
+enum { VAR = 22, OBJ = 7 };
+
+/* -- textbook problems ----------------------------------------------------------------------------------------------
+ */
+
+typedef struct {
+    const char *problem;
+    double x[VAR], f[OBJ];
+} Vector;
+
+/* From pymoo's definitions. */
+static const Vector VECTORS[] = {
+    {"DTLZ2",
+     {0.6369616873214543,   0.2697867137638703,   0.04097352393619469, 0.016527635528529094, 0.8132702392002724,
+      0.9127555772777217,   0.6066357757671799,   0.7294965609839984,  0.5436249914654229,   0.9350724237877682,
+      0.8158535541215322,   0.002738500170148095, 0.8574042765875693,  0.033585575305464355, 0.7296554464299441,
+      0.17565562060255901,  0.8631789223498866,   0.5414612202490917,  0.2997118905373848,   0.42268722119765845,
+      0.028319671145462966, 0.12428327649956394},
+     {0.05136228908963543, 0.3724397592963827, 1.2448092946683758, 0.033766582413433444, 0.08383564892860178,
+      0.5880195392361441, 2.229690804765558}},
+    {"DTLZ2",
+     {0.6706244146936303,  0.6471895115742501, 0.6153851114812539,  0.38367755426188344, 0.997209935789211,
+      0.9808353387762301,  0.6855419844806947, 0.6504592762678163,  0.6884467305709401,  0.3889214239791038,
+      0.13509650502241122, 0.7214883401940817, 0.5253543224757259,  0.31024187555895566, 0.4858353588317891,
+      0.8894878343490003,  0.9340435159562497, 0.35779519670907023, 0.5715298307297609,  0.32186939107594215,
+      0.5943000301996968,  0.33791122550713326},
+     {2.8221249308499954e-05, 0.0009371821164236585, 0.21393604041589143, 0.1472059592895, 0.3762271208748524,
+      0.7386610404490843, 1.5264361632577785}},
+    {"WFG4",
+     {0.8328302590691092, 1.4514725883164763,  5.636847280388883,  5.177327491414728,  5.898510378815461,
+      11.360932640821876, 5.627460441800157,   10.979187469284156, 3.0339008600393313, 16.677543984943345,
+      7.219214019865753,  11.474526273414536,  0.713884163981751,  4.11254322150597,   24.431055051313777,
+      21.624942643987588, 0.16750740250295393, 27.423104547813974, 23.81884771668542,  37.919458052393054,
+      39.078723029385685, 18.558490647417493},
+     {0.4950812816133456, 0.5498118270259136, 0.6013352139563748, 0.9760009416722084, 1.2459914741757427,
+      1.6957522379391914, 14.354465569839618}},
+    {"WFG4",
+     {0.2222812872157347, 1.6780826815731444, 2.380900838917257,  4.000177013855022, 2.492730875664452,
+      3.9147737150507727, 0.8963749293624628, 12.03853965803153,  5.028256463264845, 13.616465102845707,
+      6.088022630786975,  20.19268659890612,  6.194391287954459,  3.376896230004473, 23.43019744169829,
+      7.298888070468685,  5.935212315647875,  20.554386975631907, 2.373748996799403, 22.34054617988378,
+      0.7713598421070427, 18.8493251111285},
+     {0.3384828961524231, 0.3407657250513603, 0.3524738196670899, 0.36209368618812454, 0.6799845675556181,
+      5.237854556103108, 13.107951046004702}},
+};
+
+static void check_vector(const char *problem, const double x[], const double f[])
+{
+    double got[OBJ];
+    if (strcmp(problem, "DTLZ2") == 0)
+        textbook_dtlz2(VAR, OBJ, x, got);
+    else
+        textbook_wfg4(VAR, OBJ, textbook_wfg4_position(VAR, OBJ), x, got);
+    for (size_t k = 0; k < OBJ; k++)
+        assert_true(fabs(got[k] - f[k]) < 1e-9);
+}
+
+static void test_textbook_problems_give_the_numbers_of_an_independent_program(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < sizeof VECTORS / sizeof VECTORS[0]; i++)
+        check_vector(VECTORS[i].problem, VECTORS[i].x, VECTORS[i].f);
+}
+
+static void take(const json_t *list, size_t n, double v[])
+{
+    assert_int_equal(json_array_size(list), n);
+    for (size_t i = 0; i < n; i++)
+        v[i] = json_number_value(json_array_get(list, i));
+}
+
+/* IMTET_VECTORS: a file of {"problem","x","f"} lines. */
+static void test_textbook_problems_agree_with_a_file_of_vectors_where_there_is_one(void **state)
+{
+    (void)state;
+    const char *path = getenv("IMTET_VECTORS");
+    FILE *file = fopen(path ? path : "../shared/moo/test_vectors.jsonl", "r");
+    char line[16384];
+    if (!file)
+        skip();
+    while (fgets(line, sizeof line, file)) {
+        json_t *o = json_loads(line, 0, NULL);
+        double x[VAR], f[OBJ];
+        take(json_object_get(o, "x"), VAR, x);
+        take(json_object_get(o, "f"), OBJ, f);
+        check_vector(json_string_value(json_object_get(o, "problem")), x, f);
+        json_decref(o);
+    }
+    fclose(file);
+}
+
+/* On the front of DTLZ2 sum f^2 = 1, of WFG4 sum (f_k / 2 k)^2 = 1; off it both are larger. */
+static void test_optimal_designs_lie_on_the_known_fronts(void **state)
+{
+    (void)state;
+    for (uint32_t seed = 0; seed < 200; seed++) {
+        Random r = random_stream(seed, RANDOM_TEST, 0, 0);
+        double x[VAR], z[VAR], f[OBJ], sphere = 0.0, ellipsoid = 0.0;
+        for (size_t d = 0; d < VAR; d++) {
+            x[d] = d < OBJ - 1 ? random_uniform(&r) : 0.5;
+            z[d] = 2.0 * (double)(d + 1) * (d < 12 ? random_uniform(&r) : 0.35);
+        }
+        textbook_dtlz2(VAR, OBJ, x, f);
+        for (size_t k = 0; k < OBJ; k++)
+            sphere += f[k] * f[k];
+        textbook_wfg4(VAR, OBJ, 12, z, f);
+        for (size_t k = 0; k < OBJ; k++)
+            ellipsoid += f[k] * f[k] / (4.0 * (double)((k + 1) * (k + 1)));
+        assert_close(sphere, 1.0, 1e-12);
+        assert_close(ellipsoid, 1.0, 1e-12);
+    }
+}
+
+/* -- workers --------------------------------------------------------------------------------------------------------
+ */
+
+enum { N = 12 };
+
+typedef struct {
+    double X[N * 3], F[N * 2];
+    Answer answers[N];
+    double seconds;
+} Asked;
+
+static void ask(Asked *a, const char *command, size_t workers, double timeout_s)
+{
+    Err err = {0};
+    External *e;
+    struct timespec start, end;
+    Random r = random_stream(1, RANDOM_TEST, 0, 0);
+    for (size_t i = 0; i < N * 3; i++)
+        a->X[i] = random_uniform(&r) - 0.5;
+    CHECK_OK(external_open(&e, command, workers, timeout_s, 3, 2, &err), &err);
+    clock_gettime(CLOCK_MONOTONIC, &start);
+    for (size_t half = 0; half < 2; half++) /* two batches: workers live on between them */
+        CHECK_OK(external_run(e, N / 2, a->X + half * 3 * N / 2, a->F + half * N, a->answers + half * N / 2, &err),
+                 &err);
+    clock_gettime(CLOCK_MONOTONIC, &end);
+    a->seconds = (double)(end.tv_sec - start.tv_sec) + 1e-9 * (double)(end.tv_nsec - start.tv_nsec);
+    external_close(e);
+}
+
+static void expect_every_third(const char *mode, AnswerOutcome third, const char *reason, double timeout_s)
+{
+    char command[64];
+    snprintf(command, sizeof command, "sh tests/worker.sh %s", mode);
+    for (size_t workers = 1; workers <= 3; workers += 2) {
+        Asked a;
+        ask(&a, command, workers, timeout_s);
+        for (size_t i = 0; i < N; i++) {
+            const AnswerOutcome want = (i + 1) % 3 == 0 ? third : ANSWER_OK;
+            if (a.answers[i].outcome != want)
+                fail_msg("%s, design %zu: %s (%s)", mode, i + 1, answer_word(a.answers[i].outcome),
+                         a.answers[i].reason);
+            if (want == ANSWER_OK) {
+                assert_true(a.F[2 * i] == a.X[3 * i]); /* 17 digits there and back */
+                assert_true(a.F[2 * i + 1] == a.X[3 * i + 1]);
+            } else if (!strstr(a.answers[i].reason, reason)) {
+                fail_msg("%s: '%s' does not say '%s'", mode, a.answers[i].reason, reason);
+            }
+        }
+        assert_true(a.seconds < 30);
+    }
+}
+
+static void test_a_good_worker_answers_every_design(void **state)
+{
+    (void)state;
+    expect_every_third("good", ANSWER_OK, "", 20);
+    expect_every_third("spaced", ANSWER_OK, "", 20);
+    expect_every_third("slowly", ANSWER_OK, "", 20);
+}
+
+static void test_a_reported_error_fails_that_design_with_its_reason(void **state)
+{
+    (void)state;
+    expect_every_third("error", ANSWER_ERROR, "no, \"never\" this one", 20);
+}
+
+static void test_a_worker_that_dies_fails_one_design_and_is_replaced(void **state)
+{
+    (void)state;
+    expect_every_third("dies", ANSWER_DEAD, "ended", 20);
+    expect_every_third("killed", ANSWER_DEAD, "ended", 20);
+}
+
+static void test_a_silent_worker_fails_one_design_and_is_replaced(void **state)
+{
+    (void)state;
+    expect_every_third("silent", ANSWER_TIMEOUT, "0.4 s", 0.4);
+}
+
+static void test_a_talkative_worker_fails_one_design_and_is_replaced(void **state)
+{
+    (void)state;
+    expect_every_third("garbled", ANSWER_GARBLED, "convergence reached", 20);
+    expect_every_third("huge", ANSWER_GARBLED, "more than", 20);
+    expect_every_third("flood", ANSWER_GARBLED, "iteration", 20);
+    expect_every_third("nothing", ANSWER_GARBLED, "neither", 20);
+    expect_every_third("stranger", ANSWER_GARBLED, "123456", 20);
+}
+
+static void test_answers_that_are_no_objectives_fail_the_design_alone(void **state)
+{
+    (void)state;
+    expect_every_third("null", ANSWER_NOT_FINITE, "2 finite numbers", 20);
+    expect_every_third("short", ANSWER_NOT_FINITE, "2 finite numbers", 20);
+}
+
+static void test_a_worker_that_never_behaves_fails_every_design_and_nothing_hangs(void **state)
+{
+    (void)state;
+    Asked a;
+    ask(&a, "sh tests/worker.sh unasked", 2, 5);
+    for (size_t i = 0; i < N; i++)
+        assert_int_equal(a.answers[i].outcome, ANSWER_GARBLED);
+    ask(&a, "sh tests/worker.sh deaf", 3, 0.1);
+    for (size_t i = 0; i < N; i++)
+        assert_int_equal(a.answers[i].outcome, ANSWER_TIMEOUT);
+    ask(&a, "true", 2, 5);
+    for (size_t i = 0; i < N; i++)
+        assert_int_equal(a.answers[i].outcome, ANSWER_DEAD);
+}
+
+static void test_words_of_the_command_may_be_quoted_and_no_shell_reads_them(void **state)
+{
+    (void)state;
+    Asked a;
+    ask(&a, "  sh  'tests/worker.sh' \"go\\\"od\" '$(exit)' a\\ b  ", 1, 20);
+    for (size_t i = 0; i < N; i++)
+        assert_int_equal(a.answers[i].outcome, ANSWER_OK);
+    Err err = {0};
+    External *e;
+    assert_int_equal(external_open(&e, "sh 'tests", 1, 1, 3, 2, &err), STATUS_BAD_DATA);
+    assert_non_null(strstr(err.text, "quote"));
+    assert_int_equal(external_open(&e, "   ", 1, 1, 3, 2, &err), STATUS_BAD_DATA);
+}
+
+static void test_a_command_that_does_not_exist_ends_the_search_by_name(void **state)
+{
+    (void)state;
+    Err err = {0};
+    External *e;
+    double x[3] = {0}, f[2];
+    Answer answer;
+    CHECK_OK(external_open(&e, "no-such-simulator --fast", 1, 1, 3, 2, &err), &err);
+    assert_int_equal(external_run(e, 1, x, f, &answer, &err), STATUS_BAD_DATA);
+    assert_non_null(strstr(err.text, "no-such-simulator"));
+    external_close(e);
+}
+
+/* -- subjects -------------------------------------------------------------------------------------------------------
+ */
+
+static Settings external_settings(void)
+{
+    static const char *const SET[] = {"problem.kind=external",
+                                      "problem.command=sh tests/worker.sh good",
+                                      "problem.variables=3",
+                                      "problem.objectives=2",
+                                      "problem.lower=-1,0,2",
+                                      "problem.upper=3",
+                                      "problem.senses=max,min",
+                                      "problem.objective_names=profit, cost",
+                                      "search.limits=profit>=-0.5,cost <= 2"};
+    Settings s;
+    Err err = {0};
+    settings_defaults(&s);
+    for (size_t i = 0; i < sizeof SET / sizeof SET[0]; i++)
+        CHECK_OK(settings_set(&s, SET[i], &err), &err);
+    return s;
+}
+
+static void test_an_external_subject_has_the_bounds_senses_names_and_limits_of_its_settings(void **state)
+{
+    (void)state;
+    const Settings s = external_settings();
+    Err err = {0};
+    Subject *subject;
+    CHECK_OK(subject_open(&subject, &s, &err), &err);
+    const Problem *p = subject_problem(subject);
+    const Schema *schema = subject_schema(subject);
+    assert_true(p->n_var == 3 && p->n_obj == 2 && p->n_con == 2);
+    assert_true(p->lower[0] == -1 && p->lower[1] == 0 && p->lower[2] == 2 && p->upper[0] == 3 && p->upper[2] == 3);
+    assert_string_equal(schema_objective(schema, 1)->name, "cost");
+    assert_string_equal(schema_variable(schema, 2)->name, "x3");
+
+    const double X[] = {-0.75, 1, 2, 0.25, 3, 2};
+    double F[4], G[4];
+    unsigned char ok[2];
+    CHECK_OK(p->evaluate(2, X, F, G, ok, p->user, &err), &err);
+    assert_true(ok[0] && ok[1] && F[0] == 0.75 && F[1] == 1 && F[2] == -0.25 && F[3] == 3);
+    assert_close(G[0], 0.5, 1e-15); /* -0.5 - -0.75 of 0.5 */
+    assert_true(G[1] == -0.5 && G[2] < 0);
+    assert_close(G[3], 0.5, 1e-15);
+    size_t n;
+    assert_string_equal(subject_verdicts(subject, &n)[1].outcome, "ok");
+    assert_int_equal(n, 2);
+    subject_close(subject);
+}
+
+static void refused(const char *assignment, const char *said)
+{
+    Settings s = external_settings();
+    Err err = {0};
+    Subject *subject;
+    CHECK_OK(settings_set(&s, assignment, &err), &err);
+    const Status status = subject_open(&subject, &s, &err);
+    if (status != STATUS_BAD_DATA || !strstr(err.text, said))
+        fail_msg("%s: status %d, said '%s', wanted '%s'", assignment, (int)status, err.text, said);
+}
+
+static void test_lists_that_do_not_fit_are_refused_by_name(void **state)
+{
+    (void)state;
+    refused("problem.lower=0,1", "problem.lower: 2 numbers for 3");
+    refused("problem.lower=0,,1", "problem.lower: number 2");
+    refused("problem.upper=0,1,two", "problem.upper: 'two'");
+    refused("problem.upper=0", "problem.lower");
+    refused("problem.senses=min,max,min", "problem.senses");
+    refused("problem.senses=less", "problem.senses");
+    refused("problem.variable_names=a,b", "problem.variable_names");
+    refused("problem.objective_names=a,a", "twice");
+    refused("search.limits=speed<=3", "speed is no objective");
+    refused("search.limits=cost=3", "search.limits");
+    refused("search.limits=cost<=", "no number");
+}
+
+static void test_noise_has_the_spread_asked_for_and_the_same_seed_the_same_noise(void **state)
+{
+    (void)state;
+    enum { DRAWS = 2000 };
+    Settings s;
+    Err err = {0};
+    settings_defaults(&s);
+    CHECK_OK(settings_set(&s, "problem.kind=dtlz2", &err), &err);
+    CHECK_OK(settings_set(&s, "problem.noise=0.03", &err), &err);
+    double first[OBJ], x[VAR], exact[OBJ], sum = 0, square = 0;
+    for (size_t d = 0; d < VAR; d++)
+        x[d] = 0.4;
+    for (int again = 0; again < 2; again++) {
+        Subject *subject;
+        CHECK_OK(subject_open(&subject, &s, &err), &err);
+        const Problem *p = subject_problem(subject);
+        for (int i = 0; i < DRAWS; i++) {
+            double f[OBJ];
+            unsigned char ok;
+            CHECK_OK(p->evaluate(1, x, f, NULL, &ok, p->user, &err), &err);
+            if (again == 0 && i == 0)
+                memcpy(first, f, sizeof f);
+            else if (i == 0)
+                assert_memory_equal(first, f, sizeof f);
+            subject_exact(subject, x, exact);
+            sum += (f[0] / exact[0] - 1) / (2 * DRAWS);
+            square += (f[0] / exact[0] - 1) * (f[0] / exact[0] - 1) / (2 * DRAWS);
+        }
+        subject_close(subject);
+    }
+    assert_true(fabs(sum) < 0.003);
+    assert_close(sqrt(square), 0.03, 0.06);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_textbook_problems_give_the_numbers_of_an_independent_program),
+        cmocka_unit_test(test_textbook_problems_agree_with_a_file_of_vectors_where_there_is_one),
+        cmocka_unit_test(test_optimal_designs_lie_on_the_known_fronts),
+        cmocka_unit_test(test_a_good_worker_answers_every_design),
+        cmocka_unit_test(test_a_reported_error_fails_that_design_with_its_reason),
+        cmocka_unit_test(test_a_worker_that_dies_fails_one_design_and_is_replaced),
+        cmocka_unit_test(test_a_silent_worker_fails_one_design_and_is_replaced),
+        cmocka_unit_test(test_a_talkative_worker_fails_one_design_and_is_replaced),
+        cmocka_unit_test(test_answers_that_are_no_objectives_fail_the_design_alone),
+        cmocka_unit_test(test_a_worker_that_never_behaves_fails_every_design_and_nothing_hangs),
+        cmocka_unit_test(test_words_of_the_command_may_be_quoted_and_no_shell_reads_them),
+        cmocka_unit_test(test_a_command_that_does_not_exist_ends_the_search_by_name),
+        cmocka_unit_test(test_an_external_subject_has_the_bounds_senses_names_and_limits_of_its_settings),
+        cmocka_unit_test(test_lists_that_do_not_fit_are_refused_by_name),
+        cmocka_unit_test(test_noise_has_the_spread_asked_for_and_the_same_seed_the_same_noise),
+    };
+    return cmocka_run_group_tests_name("problem", tests, NULL, NULL);
+}

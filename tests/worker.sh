@@ -1,0 +1,30 @@
+# A simulator for tests of the JSON lines protocol: f = (x1, x2). Every third request it misbehaves as $1 says.
+[ "$1" = unasked ] && echo "welcome to the simulator"
+[ "$1" = deaf ] && exec sleep 60
+while read -r line; do
+    id=${line#*:}
+    id=${id%%,*}
+    x=${line#*[}
+    x=${x%]*}
+    x1=${x%%,*}
+    x2=${x#*,}
+    x2=${x2%%,*}
+    good="{\"id\":$id,\"f\":[$x1,$x2]}"
+    [ $((id % 3)) -ne 0 ] && mode=good || mode=$1
+    case $mode in
+    error) echo "{\"id\":$id,\"error\":\"no, \\\"never\\\" this one\"}" ;;
+    dies) exit 3 ;;
+    killed) kill -9 $$ ;;
+    silent) sleep 60 ;;
+    garbled) echo "convergence reached" ;;
+    huge) head -c 2000000 /dev/zero | tr '\0' a ;;
+    flood) yes "iteration" ;;
+    null) echo "{\"id\":$id,\"f\":[1,null]}" ;;
+    short) echo "{\"id\":$id,\"f\":[1]}" ;;
+    nothing) echo "{\"id\":$id}" ;;
+    stranger) echo "{\"id\":123456,\"f\":[1,2]}" ;;
+    spaced) printf '\n   \n%s\n' "$good" ;;
+    slowly) printf '%s' "{\"id\":$id,"; sleep 0.05; echo "\"f\":[$x1,$x2]}" ;;
+    *) echo "$good" ;;
+    esac
+done
