@@ -527,9 +527,10 @@ static void test_a_run_that_is_killed_leaves_its_last_finished_generation(void *
 {
     (void)state;
     Said s;
-    run(&s, "%s", SMALL_STUDY_OF(4000) "--threads 1 --out @/killed & n=0; "
-            "while [ ! -s @/killed/front.csv ] && [ $n -lt 1200 ]; do n=$((n+1)); sleep 0.05; done; "
-            "kill -9 $! && ! wait $!");
+    run(&s, "%s",
+        SMALL_STUDY_OF(4000) "--threads 1 --out @/killed & n=0; "
+                             "while [ ! -s @/killed/front.csv ] && [ $n -lt 1200 ]; do n=$((n+1)); sleep 0.05; done; "
+                             "kill -9 $! && ! wait $!");
     if (s.code != 0)
         fail_msg("exit %d, said: %s", s.code, s.err);
     forget(&s);
@@ -614,6 +615,74 @@ static int clear_place(void **state)
     return system(command);
 }
 
+/* ------------------------------------------------------------------------------------------- problems of others ---
+ */
+
+static const char EXTERNAL_INI[] = "[problem]\nkind = external\ncommand = sh tests/worker.sh dies\nvariables = 3\n"
+                                   "objectives = 2\nsenses = min,max\n[search]\nmax_evals = 45\ninitial = 30\n"
+                                   "population = 12\n";
+
+static void test_an_external_simulator_is_searched_and_every_design_exported(void **state)
+{
+    (void)state;
+    Table t;
+    Err err = {0};
+    write_in_place("external.ini", EXTERNAL_INI);
+    free(output_of("check @/external.ini"));
+    char *said = output_of("optimize @/external.ini --out @/external --threads 2");
+    assert_non_null(strstr(said, "best f2"));
+    free(said);
+    free(output_of("export @/external --csv @/front.csv"));
+    free(output_of("export @/external --all --csv @/all.csv"));
+    char *path = in_place("front.csv"), *all = read_in_place("all.csv");
+    CHECK_OK(table_read(&t, path, 1, &err), &err);
+    for (size_t i = 0; i < t.n_rows; i++) {
+        const double *row = t.values + i * t.n_cols;
+        assert_true(row[1] == row[4] && row[2] == row[5]); /* f = (x1, x2) */
+    }
+    int lines = 0, dead = 0;
+    for (char *line = all; *line; line = strchr(line, '\n') + 1)
+        lines++;
+    for (char *at = all; (at = strstr(at, ",dead,the worker ended")); at++)
+        dead++;
+    assert_int_equal(lines, 46);
+    assert_int_equal(dead, 15); /* every third of 45 */
+    table_free(&t);
+    free(path);
+    free(all);
+    expect(65, "another problem", "evaluate @/external --design knee --record builtin:kobe-like");
+    expect(65, "no-such-program", "optimize @/external.ini --out @/none --set problem.command=no-such-program");
+    expect(65, "problem.command", "optimize @/external.ini --out @/none --set problem.command=none");
+}
+
+static void test_a_textbook_problem_is_written_design_by_design(void **state)
+{
+    (void)state;
+    Table t;
+    Err err = {0};
+    free(output_of("problem dtlz2 --max-evals 60 --seed 3 --threads 1 --csv @/one.csv --set search.initial=50"));
+    free(output_of("problem dtlz2 --max-evals 60 --seed 3 --threads 3 --csv @/three.csv --set search.initial=50"));
+    char *path = in_place("one.csv"), *one = read_in_place("one.csv"), *three = read_in_place("three.csv");
+    assert_string_equal(one, three);
+    CHECK_OK(table_read(&t, path, 1, &err), &err);
+    assert_int_equal(t.n_rows, 60);
+    assert_int_equal(t.n_cols, 29);
+    for (size_t i = 0; i < t.n_rows; i++) {
+        double g = 1, square = 0;
+        for (size_t d = 6; d < 22; d++)
+            g += (t.values[i * 29 + d] - 0.5) * (t.values[i * 29 + d] - 0.5);
+        for (size_t k = 22; k < 29; k++)
+            square += t.values[i * 29 + k] * t.values[i * 29 + k];
+        assert_close(square, g * g, 1e-12);
+    }
+    table_free(&t);
+    free(path);
+    free(one);
+    free(three);
+    expect(2, "did you mean wfg4", "problem wfg --csv @/no.csv");
+    expect(2, "--csv", "problem wfg4");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -637,6 +706,8 @@ int main(void)
         cmocka_unit_test(test_a_folder_with_a_run_is_refused_or_numbered),
         cmocka_unit_test(test_the_export_is_the_front),
         cmocka_unit_test(test_a_design_of_the_front_is_evaluated_on_other_motions),
+        cmocka_unit_test(test_an_external_simulator_is_searched_and_every_design_exported),
+        cmocka_unit_test(test_a_textbook_problem_is_written_design_by_design),
         cmocka_unit_test(test_a_run_that_is_killed_leaves_its_last_finished_generation),
         cmocka_unit_test(test_a_building_of_five_floors_goes_all_the_way),
     };
