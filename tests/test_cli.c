@@ -188,7 +188,7 @@ static void test_bad_settings_and_data_end_with_65(void **state)
     (void)state;
     expect(65, "did you mean motion.stretch?", "modes configs/quick.ini --set motion.strech=2");
     expect(65, "--pga: motion.pga_g: -1 is outside", "simulate configs/quick.ini --design none --pga -1");
-    expect(65, "not one of fast|cvode", "simulate configs/quick.ini --design none --engine magic");
+    expect(65, "not one of fast|cvode|", "simulate configs/quick.ini --design none --engine magic");
     expect(65, "tests/bad/config/nan.ini:3: building.damping", "modes tests/bad/config/nan.ini");
     expect(65, "tests/bad/motion/nan.csv",
            "simulate configs/quick.ini --design none --record tests/bad/motion/nan.csv");

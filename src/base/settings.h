@@ -24,7 +24,13 @@ typedef enum { ACCURACY_COARSE, ACCURACY_STANDARD, ACCURACY_FINE } Accuracy;
 /* Every integrator of the model, by the name of the setting; sim/engine.c has a line for each. */
 #define ENGINE_LIST(X)                                                                                                 \
     X(FAST, fast)                                                                                                      \
-    X(CVODE, cvode)
+    X(CVODE, cvode)                                                                                                    \
+    X(ETDRK4, etdrk4)                                                                                                  \
+    X(LAGGED, lagged)                                                                                                  \
+    X(NEWMARK, newmark)                                                                                                \
+    X(HHT, hht)                                                                                                        \
+    X(CENTRAL, central)                                                                                                \
+    X(RADAU, radau)
 typedef enum {
 #define X(upper, lower) ENGINE_##upper,
     ENGINE_LIST(X)

@@ -6,6 +6,12 @@ static const EngineEntry ENTRIES[] = {
     [ENGINE_FAST] = {"fast", "exact modal flow, resolved contacts, certified flights", KNOB_STEPS_PER_CONTACT,
                      engine_fast},
     [ENGINE_CVODE] = {"cvode", "SUNDIALS CVODE, Adams, contacts by roots", KNOB_TOLERANCE, engine_cvode},
+    [ENGINE_ETDRK4] = {"etdrk4", "exponential Runge-Kutta of order 4, fixed step", KNOB_STEP, engine_etdrk4},
+    [ENGINE_LAGGED] = {"lagged", "exact modal flow, contact forces held over a fixed step", KNOB_STEP, engine_lagged},
+    [ENGINE_NEWMARK] = {"newmark", "Newmark's average acceleration, Newton, fixed step", KNOB_STEP, engine_newmark},
+    [ENGINE_HHT] = {"hht", "generalised alpha (0.8 at infinity), Newton, fixed step", KNOB_STEP, engine_hht},
+    [ENGINE_CENTRAL] = {"central", "central differences, fixed step", KNOB_STEP, engine_central},
+    [ENGINE_RADAU] = {"radau", "Radau IIA of order 5, Newton, fixed step", KNOB_STEP, engine_radau},
 };
 _Static_assert(sizeof ENTRIES / sizeof ENTRIES[0] == ENGINE_COUNT, "every engine of the setting has a line here");
 

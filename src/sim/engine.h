@@ -13,9 +13,22 @@
 #include "sim/sim.h"
 
 typedef struct {
+    int floor;       /* from 0 */
+    double t, speed; /* when its gap closed [s], how fast [m/s] */
+} Closing;
+
+/* The first closings of any gap, in the order in which the engine found them. */
+typedef struct {
+    int n, n_max;
+    Closing *at; /* (n_max) */
+} ClosingLog;
+
+typedef struct {
     double duration; /* [s] > 0 */
     Accuracy accuracy;
-    double knob; /* what the engine's own accuracy is set by, EngineEntry.knob; 0: as `accuracy` says */
+    double knob;          /* what the engine's own accuracy is set by, EngineEntry.knob; 0: as `accuracy` says */
+    double *end_state;    /* (2 m) q and q' where the run ended; NULL: not wanted */
+    ClosingLog *closings; /* filled from closings->n on; NULL: not wanted */
 } EngineOptions;
 
 typedef Status (*EngineFn)(const SimModel *model, const Motion *motion, const EngineOptions *options, SimResult *result,
@@ -36,10 +49,11 @@ typedef struct {
 /* By Engine, the setting sim.engine. */
 const EngineEntry *engine_entry(Engine engine);
 
-Status engine_fast(const SimModel *model, const Motion *motion, const EngineOptions *options, SimResult *result,
-                   Err *err);
-Status engine_cvode(const SimModel *model, const Motion *motion, const EngineOptions *options, SimResult *result,
-                    Err *err);
+#define X(upper, lower)                                                                                                \
+    Status engine_##lower(const SimModel *model, const Motion *motion, const EngineOptions *options,                   \
+                          SimResult *result, Err *err);
+ENGINE_LIST(X)
+#undef X
 
 /* The linear zero-gap building: floors and core move together, M + Mc, K + Kc, C + Cc. */
 Status engine_tied(const Settings *s, const Building *b, const CoreBeam *core, const Motion *motion,

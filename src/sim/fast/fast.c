@@ -88,6 +88,17 @@ void fast_run(FastWork *work, const SimModel *model, const Motion *motion, doubl
     best_kernel()(work, model, motion, duration, knobs, result);
 }
 
+void fast_state(const FastWork *work, double state[])
+{
+    const int nb = work->model->nb, nc = work->model->nc, m = nb + nc;
+    const double *q = (const double *)work->q, *v = (const double *)work->v;
+    for (int i = 0; i < m; i++) {
+        const int at = i < nb ? i : work->nb_pad + i - nb;
+        state[i] = q[at];
+        state[m + i] = v[at];
+    }
+}
+
 Status engine_fast(const SimModel *model, const Motion *motion, const EngineOptions *options, SimResult *result,
                    Err *err)
 {
@@ -97,6 +108,8 @@ Status engine_fast(const SimModel *model, const Motion *motion, const EngineOpti
         knobs.steps_per_contact = options->knob;
     TRY(fast_create(&work, model->n, err));
     fast_run(work, model, motion, options->duration, &knobs, result);
+    if (options->end_state)
+        fast_state(work, options->end_state);
     fast_free(work);
     return STATUS_OK;
 }
