@@ -68,7 +68,7 @@ static const Option OPTIONS[] = {
      "of the acceleration, where the file does not say"},
 
     {"sim.engine", "-", CHOICE, AT(sim.engine), "fast", 0, 0, ENGINE_WORDS,
-     "fast: exact modal flow with resolved contacts; cvode: SUNDIALS with roots, slow, for trust"},
+     "fast: the one to use; the others are slower and exist to be compared with"},
     {"sim.accuracy", "-", CHOICE, AT(sim.accuracy), "standard", 0, 0, "coarse|standard|fine", "steps per contact"},
     {"sim.duration_s", "s", REAL, AT(sim.duration_s), "0", 0, 1e6, NULL, "stop here; 0: at the end of the motion"},
     {"sim.residual_max", "-", REAL, AT(sim.residual_max), "0.001", 1e-12, 1, NULL,
