@@ -6,8 +6,9 @@
 #include "cmd/commands.h"
 #include "run/provenance.h"
 
-static const Command *const COMMANDS[] = {&CMD_OPTIMIZE, &CMD_SIMULATE, &CMD_EVALUATE, &CMD_EXPORT,
-                                          &CMD_MODES,    &CMD_SPECTRUM, &CMD_CHECK,    &CMD_SETTINGS, &CMD_PROBLEM};
+#define X(name) &CMD_##name,
+static const Command *const COMMANDS[] = {COMMAND_LIST(X)};
+#undef X
 enum { N_COMMANDS = sizeof COMMANDS / sizeof COMMANDS[0] };
 
 static void print_usage(FILE *out)

@@ -22,6 +22,7 @@ typedef enum {
     RANDOM_NICHING,
     RANDOM_HYPERVOLUME,
     RANDOM_NOISE,
+    RANDOM_ENSEMBLE,
     RANDOM_TEST
 } RandomPurpose;
 

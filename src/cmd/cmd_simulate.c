@@ -5,6 +5,7 @@
 #include "cmd/commands.h"
 #include "cmd/show.h"
 #include "run/crew.h"
+#include "run/ensemble.h"
 #include "run/output.h"
 #include "run/world.h"
 
@@ -14,7 +15,24 @@ typedef struct {
     size_t n;
     SimTask *tasks;     /* (n) */
     SimResult *results; /* (n) */
+    int members;        /* of an ensemble per design; 0: none */
+    Ensemble *ensembles; /* (n) or NULL */
 } Job;
+
+static Status choose_members(const Args *args, Job *job, Err *err)
+{
+    const char *text = args_value(args, "--ensemble");
+    char *end;
+    if (!text)
+        return STATUS_OK;
+    const long members = strtol(text, &end, 10);
+    if (*end || members < 2 || members > 100000)
+        return fail(err, STATUS_USAGE, "--ensemble %s: a whole number from 2 to 100000 is needed", text);
+    if (job->kind != SCENE_IMPACT)
+        return fail(err, STATUS_USAGE, "--ensemble changes gaps a little: it needs a design with gaps, not none or --tied");
+    job->members = (int)members;
+    return STATUS_OK;
+}
 
 static Status choose_kind(const Args *args, Job *job, Err *err)
 {
@@ -25,7 +43,7 @@ static Status choose_kind(const Args *args, Job *job, Err *err)
     if (none && tied)
         return fail(err, STATUS_USAGE, "--tied needs a core: give --design FILE instead of none");
     job->kind = none ? SCENE_NO_CORE : tied ? SCENE_TIED : SCENE_IMPACT;
-    return STATUS_OK;
+    return choose_members(args, job, err);
 }
 
 static void warn_top_heavy(const Designs *d, const char *path)
@@ -50,7 +68,9 @@ static Status lay_out_job(const Args *args, Job *job, int n_floors, Err *err)
     }
     job->tasks = calloc(job->n, sizeof *job->tasks);
     job->results = calloc(job->n, sizeof *job->results);
-    if (!job->tasks || !job->results)
+    if (job->members)
+        job->ensembles = calloc(job->n, sizeof *job->ensembles);
+    if (!job->tasks || !job->results || (job->members && !job->ensembles))
         return fail(err, STATUS_NO_MEMORY, "no memory for %zu simulations", job->n);
     for (size_t i = 0; i < job->n; i++)
         job->tasks[i] = (SimTask){job->kind, job->designs.x ? &job->designs.x[i * (size_t)(n_floors + 2)] : NULL};
@@ -61,8 +81,13 @@ static Status simulate(const World *w, Job *job, Err *err)
 {
     Crew *crew;
     const long wanted = w->settings.search.threads;
-    TRY(crew_create(&crew, w->scene, job->n == 1 ? 1 : wanted, err));
-    const Status status = crew_run(crew, job->n, job->tasks, job->results, err);
+    TRY(crew_create(&crew, w->scene, job->n == 1 && !job->members ? 1 : wanted, err));
+    Status status = STATUS_OK;
+    if (!job->members)
+        status = crew_run(crew, job->n, job->tasks, job->results, err);
+    for (size_t i = 0; job->members && status == STATUS_OK && i < job->n; i++)
+        status = ensemble_run(crew, scene_n_floors(w->scene), job->tasks[i].x, job->members, ENSEMBLE_CHANGE,
+                              (uint32_t)w->settings.search.seed, &job->ensembles[i], &job->results[i], err);
     crew_free(crew);
     for (size_t i = 0; status == STATUS_OK && i < job->n; i++)
         if (job->results[i].outcome != RUN_OK)
@@ -77,6 +102,8 @@ static json_t *describe(const Job *job, size_t i, const Motion *m)
     json_object_set_new(o, "design", json_integer((json_int_t)i + 1));
     json_object_set_new(o, "record", json_string(m->name));
     json_object_update_new(o, json_result(job->kind, &job->results[i]));
+    if (job->ensembles)
+        json_object_set_new(o, "ensemble", json_ensemble(&job->ensembles[i]));
     return o;
 }
 
@@ -97,12 +124,20 @@ static Status write_csv(const Job *job, const char *path, Err *err)
     fprintf(o.stream, "design");
     for (int k = 0; k < N_MEASURES; k++)
         fprintf(o.stream, ",%s", measure(k)->name);
+    for (int k = 0; job->ensembles && k < N_MEASURES; k++)
+        fprintf(o.stream, ",%s_mean,%s_sd", measure(k)->name, measure(k)->name);
     fprintf(o.stream, ",outcome\n");
     for (size_t i = 0; i < job->n; i++) {
         fprintf(o.stream, "%zu", i + 1);
         for (int k = 0; k < N_MEASURES; k++) {
             fputc(',', o.stream);
             print_number(o.stream, measure_value(&job->results[i], k));
+        }
+        for (int k = 0; job->ensembles && k < N_MEASURES; k++) {
+            fputc(',', o.stream);
+            print_number(o.stream, job->ensembles[i].mean[k]);
+            fputc(',', o.stream);
+            print_number(o.stream, job->ensembles[i].spread[k]);
         }
         fprintf(o.stream, ",%s\n", outcome_word(job->results[i].outcome));
     }
@@ -118,6 +153,8 @@ static void print_table(const Job *job, const World *w)
     for (size_t i = 0; i < job->n; i++) {
         snprintf(label, sizeof label, "design %zu", i + 1);
         show_result(job->kind == SCENE_NO_CORE ? "no core" : label, &job->results[i]);
+        if (job->ensembles)
+            show_ensemble(&job->ensembles[i]);
     }
 }
 
@@ -147,6 +184,7 @@ static Status run(const Args *args, Err *err)
         status = print(args, &job, &w, err);
     free(job.tasks);
     free(job.results);
+    free(job.ensembles);
     design_free(&job.designs);
     world_close(&w);
     return status;
@@ -155,6 +193,7 @@ static Status run(const Args *args, Err *err)
 static const ArgOption OPTIONS[] = {
     {"--design", "FILE", NULL, 0, "designs to simulate, one per row; none: the building alone"},
     {"--tied", NULL, NULL, 0, "floors and core move together: the linear building without gaps"},
+    {"--ensemble", "N", NULL, 0, "N runs with gaps changed by 1e-8 of themselves: mean and spread of every result"},
     OPTION_RECORD,
     OPTION_PGA,
     OPTION_STRETCH,

@@ -1,10 +1,23 @@
-/* cmd/commands.h -- every subcommand, one file each. */
+/* cmd/commands.h -- every subcommand, one file each, in the order of `imtet --help`. */
 #ifndef IMTET_CMD_COMMANDS_H
 #define IMTET_CMD_COMMANDS_H
 
 #include "cmd/args.h"
 
-extern const Command CMD_OPTIMIZE, CMD_SIMULATE, CMD_EVALUATE, CMD_EXPORT, CMD_MODES, CMD_SPECTRUM, CMD_CHECK,
-    CMD_SETTINGS, CMD_PROBLEM;
+#define COMMAND_LIST(X)                                                                                                \
+    X(OPTIMIZE)                                                                                                        \
+    X(SIMULATE)                                                                                                        \
+    X(EVALUATE)                                                                                                        \
+    X(EXPORT)                                                                                                          \
+    X(HORIZON)                                                                                                         \
+    X(MODES)                                                                                                           \
+    X(SPECTRUM)                                                                                                        \
+    X(PROBLEM)                                                                                                         \
+    X(CHECK)                                                                                                           \
+    X(SETTINGS)
+
+#define X(name) extern const Command CMD_##name;
+COMMAND_LIST(X)
+#undef X
 
 #endif

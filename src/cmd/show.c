@@ -61,6 +61,20 @@ json_t *json_result(SceneKind kind, const SimResult *r)
     return o;
 }
 
+json_t *json_ensemble(const Ensemble *e)
+{
+    json_t *o = json_object(), *mean = json_object(), *spread = json_object();
+    for (int k = 0; k < N_MEASURES; k++) {
+        json_object_set_new(mean, measure(k)->name, json_number(e->mean[k]));
+        json_object_set_new(spread, measure(k)->name, json_number(e->spread[k]));
+    }
+    json_object_set_new(o, "members", json_integer(e->members));
+    json_object_set_new(o, "finished", json_integer(e->finished));
+    json_object_set_new(o, "mean", mean);
+    json_object_set_new(o, "spread", spread);
+    return o;
+}
+
 Status show_json(json_t *all, Err *err)
 {
     const int failed = !all || json_dumpf(all, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) != 0;
@@ -117,4 +131,22 @@ void show_objectives(const char *label, long id, size_t n_obj, const double natu
     for (size_t k = 0; k < n_obj; k++)
         printf(" %10.4g", natural[k]);
     putchar('\n');
+}
+
+static void show_moments(const char *word, int count, int of, const double values[])
+{
+    char label[64];
+    snprintf(label, sizeof label, "  %s of %d", word, count);
+    if (count < of)
+        snprintf(label, sizeof label, "  %s of %d (%d failed)", word, count, of - count);
+    printf("%-28s", label);
+    for (int k = 0; k < N_OBJECTIVES; k++)
+        printf(" %10.4g", values[k]);
+    printf(" %8.3g %9.1e\n", values[N_MEASURES - 1], values[N_MEASURES - 2]);
+}
+
+void show_ensemble(const Ensemble *e)
+{
+    show_moments("mean", e->finished, e->members, e->mean);
+    show_moments("standard deviation", e->finished, e->members, e->spread);
 }

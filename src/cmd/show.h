@@ -4,12 +4,16 @@
 
 #include <jansson.h>
 
+#include "run/ensemble.h"
 #include "run/measures.h"
 #include "run/schema.h"
 
 json_t *json_number(double value); /* null where it is not finite */
 json_t *json_numbers(size_t n, const double values[]);
 json_t *json_result(SceneKind kind, const SimResult *r);
+
+/* members, finished, mean {}, spread {} */
+json_t *json_ensemble(const Ensemble *e);
 
 /* On standard output, 17 digits; takes the reference. */
 Status show_json(json_t *all, Err *err);
@@ -22,6 +26,9 @@ void show_motion(const Motion *m, double duration_s);
 /* One line per simulation: label, objectives, impacts, outcome where it is not ok. */
 void show_result_names(const char *label);
 void show_result(const char *label, const SimResult *r);
+
+/* Two lines: mean and standard deviation of every measure. */
+void show_ensemble(const Ensemble *e);
 
 /* One line of objectives: label, a design's number (0: none). */
 void show_objective_names(const Schema *schema);

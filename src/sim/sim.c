@@ -136,6 +136,11 @@ void sim_worker_free(SimWorker *worker)
     free(worker);
 }
 
+void sim_worker_sample(SimWorker *worker, SimSampleFn sample, void *user)
+{
+    fast_sample(worker->fast, sample, user);
+}
+
 static void judge(SimResult *r, double residual_max)
 {
     const double all[] = {r->j1_m, r->j2_m, r->j3_g, r->ed1_pct, r->ed5_10_pct, r->edcs_pct, r->energy_residual};

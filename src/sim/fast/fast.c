@@ -72,6 +72,12 @@ static FastKernel *best_kernel(void)
     return fast_kernel_base;
 }
 
+void fast_sample(FastWork *work, SimSampleFn sample, void *user)
+{
+    work->sample = sample;
+    work->sample_user = user;
+}
+
 FastKnobs fast_knobs(Accuracy accuracy)
 {
     static const FastKnobs KNOBS[] = {

@@ -25,6 +25,9 @@ typedef struct FastWork FastWork;
 Status fast_create(FastWork **out, int n_floors, Err *err);
 void fast_free(FastWork *work); /* NULL is fine */
 
+/* Every run from now on shows its state at every sample of the motion; NULL: none does. */
+void fast_sample(FastWork *work, SimSampleFn sample, void *user);
+
 /* What accuracy costs. */
 typedef struct {
     double steps_per_contact; /* of an undisturbed Hertz contact at the largest speed between floor and core */

@@ -859,6 +859,12 @@ static int state_is_finite(const FastWork *k)
     return all == 0;
 }
 
+static void show(const FastWork *k, double t)
+{
+    if (k->sample)
+        k->sample(t, k->m_pad, scalars_const(k->omega), scalars_const(k->q), scalars_const(k->v), k->sample_user);
+}
+
 static int fly(FastWork *k, const Motion *motion, double duration)
 {
     k->shortest_at_1 = shortest_contact(k->model);
@@ -868,10 +874,12 @@ static int fly(FastWork *k, const Motion *motion, double duration)
     k->touch_level = LEVEL_MAX;
     set_base(k, 0);
     set_base(k, motion->dt_s);
+    show(k, 0);
     for (long i = 0; i < full; i++) {
         const double a0 = i + 1 < samples ? motion->accel[i] : 0, a1 = i + 1 < samples ? motion->accel[i + 1] : 0;
         if (!interval(k, a0, a1) || !state_is_finite(k))
             return 0;
+        show(k, (double)(i + 1) * motion->dt_s);
     }
     const double rest = duration - (double)full * motion->dt_s;
     if (rest > 1e-9 * motion->dt_s) {

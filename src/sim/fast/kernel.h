@@ -63,6 +63,9 @@ typedef struct FastWork {
     double shortest_at_1; /* [s] shortest Hertz contact of any floor at 1 m/s */
     const FastKnobs *knobs;
 
+    SimSampleFn sample; /* may be NULL */
+    void *sample_user;
+
     /* books */
     double contact_lost, contact_clamped, deepest;
     long impacts, floored, steps, flights, forces;

@@ -1,0 +1,104 @@
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/design.h"
+#include "cmd/commands.h"
+#include "cmd/show.h"
+#include "run/crew.h"
+#include "run/ensemble.h"
+#include "run/horizon.h"
+
+enum { MEMBERS = 16 };
+static const double CHANGE = 1e-12; /* of the gaps, between the two runs that are compared */
+
+static Status find(const World *w, const double x[], Horizon *h, Ensemble *e, Err *err)
+{
+    Crew *crew;
+    TRY(horizon_find(w, x, CHANGE, h, err));
+    TRY(crew_create(&crew, w->scene, w->settings.search.threads, err));
+    const Status status = ensemble_run(crew, scene_n_floors(w->scene), x, MEMBERS, ENSEMBLE_CHANGE,
+                                       (uint32_t)w->settings.search.seed, e, NULL, err);
+    crew_free(crew);
+    return status;
+}
+
+static Status print_json(const Horizon *h, const Ensemble *e, Err *err)
+{
+    json_t *o = json_object();
+    json_object_set_new(o, "end_s", json_number(h->end_s));
+    json_object_set_new(o, "distance", json_numbers(HORIZON_LEVELS, HORIZON_LEVEL));
+    json_object_set_new(o, "reached_s", json_numbers(HORIZON_LEVELS, h->reached_s));
+    json_object_set_new(o, "distance_at_end", json_number(h->distance_at_end));
+    json_object_set_new(o, "ensemble", json_ensemble(e));
+    return show_json(o, err);
+}
+
+static void print_table(const World *w, const Horizon *h, const Ensemble *e)
+{
+    show_motion(&w->motion, w->settings.sim.duration_s);
+    printf("\ntwo runs whose gaps differ by %g of themselves are apart by\n", CHANGE);
+    for (int i = 0; i < HORIZON_LEVELS; i++)
+        if (isnan(h->reached_s[i]))
+            printf("  %-8g never (the run ends at %.4g s)\n", HORIZON_LEVEL[i], h->end_s);
+        else
+            printf("  %-8g after %.4g s\n", HORIZON_LEVEL[i], h->reached_s[i]);
+    printf("distance: root of energy of the difference over largest energy so far; at the end %.2g\n\n",
+           h->distance_at_end);
+    show_result_names("");
+    show_ensemble(e);
+}
+
+static Status answer(const Args *args, const World *w, const double x[], Err *err)
+{
+    Horizon h;
+    Ensemble e;
+    TRY(find(w, x, &h, &e, err));
+    if (args_has(args, "--json"))
+        return print_json(&h, &e, err);
+    print_table(w, &h, &e);
+    return STATUS_OK;
+}
+
+static Status run(const Args *args, Err *err)
+{
+    Settings s;
+    World w;
+    Designs d;
+    const char *path = args_value(args, "--design");
+    if (!path)
+        return fail(err, STATUS_USAGE, "--design FILE is missing");
+    TRY(args_settings(args, &s, NULL, NULL, err));
+    if (s.sim.engine != ENGINE_FAST)
+        return fail(err, STATUS_USAGE, "horizon: only the engine fast shows its states; leave sim.engine as it is");
+    TRY(world_open(&w, &s, err));
+    Status status = design_read(&d, path, scene_n_floors(w.scene), err);
+    if (status == STATUS_OK) {
+        status = answer(args, &w, d.x, err);
+        design_free(&d);
+    }
+    world_close(&w);
+    return status;
+}
+
+static const ArgOption OPTIONS[] = {
+    {"--design", "FILE", NULL, 0, "the design in the first row of this file"},
+    OPTION_RECORD,
+    OPTION_PGA,
+    OPTION_STRETCH,
+    OPTION_UNIT,
+    OPTION_DURATION,
+    OPTION_JSON,
+    OPTION_SET,
+    OPTION_END,
+};
+
+const Command CMD_HORIZON = {
+    .name = "horizon",
+    .operand = "CONFIG",
+    .summary = "how long one run foretells another, and the spread of every result",
+    .example = "imtet horizon configs/quick.ini --design my-design.csv",
+    .details = "Impacts magnify differences: two runs that differ in the last digit part ways after some hundreds of them.\n"
+               "Before the predictability horizon results can be compared digit by digit, after it only by mean and spread.",
+    .options = OPTIONS,
+    .run = run,
+};
