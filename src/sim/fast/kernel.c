@@ -83,8 +83,11 @@ static void set_base(FastWork *k, double base)
     if (base == k->base)
         return;
     k->base = base;
-    for (int i = 0; i <= LEVEL_MAX; i++)
+    for (int i = 0; i <= LEVEL_MAX; i++) {
         k->level[i].has_flow = k->level[i].has_response = 0;
+        /* a contact lasts shortest_at_1 speed^-0.2 */
+        k->level[i].speed_max = pow(k->shortest_at_1 / (ldexp(base, -i) * k->knobs->steps_per_contact), 5);
+    }
 }
 
 /* ---- a design's modes and a state of rest --------------------------------------------------------------------- */
@@ -175,6 +178,13 @@ static void flight_modes(FastWork *k, const Level *l, double a0, double a1)
     }
 }
 
+/* Largest |value| of the cubic through both ends anywhere in the step: its Bezier control points enclose it. */
+static vec hull(vec y0, vec d0, vec y1, vec d1, double h)
+{
+    const double third = h / 3;
+    return vec_max(vec_max(vec_abs(y0), vec_abs(y0 + third * d0)), vec_max(vec_abs(y1 - third * d1), vec_abs(y1)));
+}
+
 static void flight_floors(FastWork *k, const Level *l)
 {
     const vec *R = (const vec *)k->R, *R_abs = (const vec *)k->R_abs;
@@ -183,17 +193,12 @@ static void flight_floors(FastWork *k, const Level *l)
                                     scalars_const(k->vb)};
     vec *const floors[4] = {k->u0, k->u0d, k->u1, k->u1d};
     rows_times(4, R, k->nf, core, state, floors);
-    const double *const accel[4] = {scalars_const(k->za), scalars_const(k->ja), scalars_const(k->zb),
-                                    scalars_const(k->jb)};
-    vec *const accels[4] = {k->a0, k->a0d, k->a1, k->a1d};
-    rows_times(4, R, k->nf, core, accel, accels);
-    vec *bound = k->bound, *bound_a = k->bound_a;
     for (int i = 0; i < k->mf; i++) {
-        bound[i] = l->kappa[i] * k->amplitude[i];
-        bound_a[i] = l->kappa_accel[i] * k->amplitude[i];
+        k->bound[i] = l->kappa[i] * k->amplitude[i];
+        k->bound_a[i] = hull(k->za[i], k->ja[i], k->zb[i], k->jb[i], l->h) + l->kappa_accel[i] * k->amplitude[i];
     }
-    const double *const bounds[2] = {scalars_const(bound), scalars_const(bound_a)};
-    vec *const errors[2] = {k->e_u, k->e_a};
+    const double *const bounds[2] = {scalars_const(k->bound), scalars_const(k->bound_a)};
+    vec *const errors[2] = {k->e_u, k->reach_a};
     rows_times(2, R_abs, k->nf, core, bounds, errors);
     if (core_count == 0)
         return;
@@ -205,11 +210,17 @@ static void flight_floors(FastWork *k, const Level *l)
     rows_times(1, R_abs + core * k->nf, k->nf, core_count, core_bound, core_error);
 }
 
-/* Largest |value| of the cubic through both ends anywhere in the step: its Bezier control points enclose it. */
-static vec hull(vec y0, vec d0, vec y1, vec d1, double h)
+static void flight_accelerations(FastWork *k, const Level *l)
 {
-    const double third = h / 3;
-    return vec_max(vec_max(vec_abs(y0), vec_abs(y0 + third * d0)), vec_max(vec_abs(y1 - third * d1), vec_abs(y1)));
+    const double *const accel[4] = {scalars_const(k->za), scalars_const(k->ja), scalars_const(k->zb),
+                                    scalars_const(k->jb)};
+    vec *const accels[4] = {k->a0, k->a0d, k->a1, k->a1d};
+    rows_times(4, (const vec *)k->R, k->nf, k->nb_pad, accel, accels);
+    for (int i = 0; i < k->bf; i++)
+        k->bound_a[i] = l->kappa_accel[i] * k->amplitude[i];
+    const double *const bound[1] = {scalars_const(k->bound_a)};
+    vec *const error[1] = {k->e_a};
+    rows_times(1, (const vec *)k->R_abs, k->nf, k->nb_pad, bound, error);
 }
 
 static int gaps_stay_open(FastWork *k, double h)
@@ -270,8 +281,23 @@ static void storeys(const FastWork *k, const vec *u, vec *d)
         to[j] = 0;
 }
 
-static int peaks_in_flight(FastWork *k, double h, double tolerance)
+static int accelerations_in_flight(FastWork *k, const Level *l, double tolerance)
 {
+    flight_accelerations(k, l);
+    return raise_peaks(k->peak_a, k->n, k->nf, k->a0, k->a0d, k->a1, k->a1d, k->e_a, l->h, tolerance);
+}
+
+static int exceeds(const vec *reach, const vec *peak, int nf)
+{
+    mask over = {0};
+    for (int f = 0; f < nf; f++)
+        over |= ~(reach[f] <= peak[f]);
+    return any(over);
+}
+
+static int peaks_in_flight(FastWork *k, const Level *l, double tolerance)
+{
+    const double h = l->h;
     vec d0[FLOORS_PAD_MAX / LANES], d0d[FLOORS_PAD_MAX / LANES], d1[FLOORS_PAD_MAX / LANES],
         d1d[FLOORS_PAD_MAX / LANES], e[FLOORS_PAD_MAX / LANES];
     storeys(k, k->u0, d0);
@@ -283,7 +309,7 @@ static int peaks_in_flight(FastWork *k, double h, double tolerance)
         scalars(e)[j] += 2 * scalars(k->e_u)[j - 1];
     return raise_peaks(k->peak_u, k->n, k->nf, k->u0, k->u0d, k->u1, k->u1d, k->e_u, h, tolerance) &&
            raise_peaks(k->peak_d, k->n, k->nf, d0, d0d, d1, d1d, e, h, tolerance) &&
-           raise_peaks(k->peak_a, k->n, k->nf, k->a0, k->a0d, k->a1, k->a1d, k->e_a, h, tolerance);
+           (!exceeds(k->reach_a, k->peak_a, k->nf) || accelerations_in_flight(k, l, tolerance));
 }
 
 static double largest(const vec *a, int nf)
@@ -323,7 +349,7 @@ static int flight(FastWork *k, const Level *l, double a0, double a1)
     k->flights++;
     flight_modes(k, l, a0, a1);
     flight_floors(k, l);
-    if (!gaps_stay_open(k, l->h) || !peaks_in_flight(k, l->h, k->knobs->peak_tolerance))
+    if (!gaps_stay_open(k, l->h) || !peaks_in_flight(k, l, k->knobs->peak_tolerance))
         return 0;
     book_flight(k, l, a0, a1);
     swap(&k->q, &k->q1);
@@ -440,7 +466,8 @@ typedef struct {
     double scale_w[FLOORS_PAD_MAX], scale_v[FLOORS_PAD_MAX]; /* what the step moves */
     Press press[FLOORS_PAD_MAX];
     Reply g[FLOORS_PAD_MAX * FLOORS_PAD_MAX];                /* (n, n) */
-    double J[4 * FLOORS_PAD_MAX * FLOORS_PAD_MAX];           /* (2n, 2n) */
+    double J[4 * FLOORS_PAD_MAX * FLOORS_PAD_MAX];           /* (2n, 2n) factors of Newton's matrix */
+    int order[2 * FLOORS_PAD_MAX];
 } Active;
 
 /* Lists the floors whose path may leave the gap; returns how many were new. */
@@ -474,37 +501,49 @@ static void list_touching(FastWork *k, Active *active)
         }
 }
 
-/* x (n) := A^-1 x by elimination with row exchange; A (n, n) row-major is spent. 0: singular or not finite. */
-static int eliminate(int n, double *A, double *x)
+/* A (n, n) row-major := its factors L U with row exchange order[]; 0: singular or not finite. */
+static int factorise(int n, double *A, int order[])
 {
     for (int c = 0; c < n; c++) {
         int top = c;
         for (int r = c + 1; r < n; r++)
             if (fabs(A[r * n + c]) > fabs(A[top * n + c]))
                 top = r;
-        if (!(fabs(A[top * n + c]) > 0) || !isfinite(A[top * n + c]))
+        const double pivot = A[top * n + c];
+        if (!(fabs(pivot) > 0) || !isfinite(pivot))
             return 0;
-        for (int j = c; top != c && j < n; j++) {
-            const double t = A[c * n + j];
+        order[c] = top;
+        for (int j = 0; top != c && j < n; j++) {
+            const double kept = A[c * n + j];
             A[c * n + j] = A[top * n + j];
-            A[top * n + j] = t;
+            A[top * n + j] = kept;
         }
-        const double t = x[c];
-        x[c] = x[top];
-        x[top] = t;
+        const double inverse = 1 / pivot;
         for (int r = c + 1; r < n; r++) {
-            const double f = A[r * n + c] / A[c * n + c];
-            for (int j = c + 1; j < n; j++)
-                A[r * n + j] -= f * A[c * n + j];
-            x[r] -= f * x[c];
+            const double f = A[r * n + c] *= inverse;
+            if (f != 0)
+                for (int j = c + 1; j < n; j++)
+                    A[r * n + j] -= f * A[c * n + j];
         }
-    }
-    for (int c = n - 1; c >= 0; c--) {
-        for (int j = c + 1; j < n; j++)
-            x[c] -= A[c * n + j] * x[j];
-        x[c] /= A[c * n + c];
     }
     return 1;
+}
+
+static void substitute(int n, const double *A, const int order[], double x[])
+{
+    for (int c = 0; c < n; c++) {
+        const double kept = x[c];
+        x[c] = x[order[c]];
+        x[order[c]] = kept;
+    }
+    for (int r = 1; r < n; r++)
+        for (int c = 0; c < r; c++)
+            x[r] -= A[r * n + c] * x[c];
+    for (int r = n - 1; r >= 0; r--) {
+        for (int c = r + 1; c < n; c++)
+            x[r] -= A[r * n + c] * x[c];
+        x[r] /= A[r * n + r];
+    }
 }
 
 /* Takes in floors n_before..n-1, whose w1 and w1' are free of their own force, with a first guess of it: going on as
@@ -536,17 +575,12 @@ static void take_in(FastWork *k, const Level *l, Active *a, int n_before)
     }
 }
 
-/* One step of Newton's method. Returns the largest change of w1 and w1' relative to what the step moves, or NaN when
- * there is none. */
-static double improve_forces(FastWork *k, double h, Active *a)
+/* Newton's matrix I + (slopes of the law) (replies of w1, w1'), factorised; 0: singular. */
+static int take_slopes(Active *a)
 {
     const int n = a->n;
-    double x[2 * FLOORS_PAD_MAX], change = 0;
     for (int i = 0; i < n; i++) {
-        Press *t = &a->press[i];
-        press(k, h, a->floor[i], a->w1[i], a->wd1[i], t);
-        x[2 * i] = a->F[i] - t->end;
-        x[2 * i + 1] = a->M[i] - t->mean;
+        const Press *t = &a->press[i];
         double *row = a->J + 4 * i * n;
         for (int j = 0; j < n; j++, row += 2) {
             const Reply *g = &a->g[i * n + j];
@@ -556,8 +590,23 @@ static double improve_forces(FastWork *k, double h, Active *a)
             row[2 * n + 1] = t->mean_w * g->w_mean + t->mean_v * g->v_mean + (i == j);
         }
     }
-    if (!eliminate(2 * n, a->J, x))
+    return factorise(2 * n, a->J, a->order);
+}
+
+/* One step of Newton's method, with the matrix of this state or (not fresh) of an earlier one. Returns the largest change
+ * of w1 and w1' relative to what the step moves, or NaN when there is none. */
+static double improve_forces(FastWork *k, double h, Active *a, int fresh)
+{
+    const int n = a->n;
+    double x[2 * FLOORS_PAD_MAX], change = 0;
+    for (int i = 0; i < n; i++) {
+        press(k, h, a->floor[i], a->w1[i], a->wd1[i], &a->press[i]);
+        x[2 * i] = a->F[i] - a->press[i].end;
+        x[2 * i + 1] = a->M[i] - a->press[i].mean;
+    }
+    if (fresh && !take_slopes(a))
         return NAN;
+    substitute(2 * n, a->J, a->order, x);
     for (int i = 0; i < n; i++) {
         double dw = 0, dv = 0;
         for (int j = 0; j < n; j++) {
@@ -589,17 +638,21 @@ static int solve_contacts(FastWork *k, const Level *l, double tolerance, Active 
 {
     enum { MOST = 40 };
     list_touching(k, active);
-    int before = 0;
+    int before = 0, fresh = 1;
+    double last = 0;
     if (active->n == 0 && !find_closings(k, l, active))
         return 1;
     for (int i = 0; i < MOST; i++) {
         if (active->n > before) {
             take_in(k, l, active, before);
             before = active->n;
+            fresh = 1;
         }
-        const double change = improve_forces(k, l->h, active);
+        const double change = improve_forces(k, l->h, active, fresh);
         if (!(change >= 0))
             return 0;
+        fresh = change > 0.1 * last; /* an old matrix serves while it gains a digit a step */
+        last = change;
         if (change > tolerance)
             continue;
         hand_out(k, l, active);
@@ -785,9 +838,10 @@ static int contact_step(FastWork *k, const Level *l, double a0, double a1, int f
 /* The level whose step is the wanted share of the shortest Hertz contact at the present speed (or the finest). */
 static int contact_level(const FastWork *k)
 {
-    const double duration = k->shortest_at_1 * pow(fmax(k->speed, 1e-9), -0.2);
-    const double halvings = log2(k->base * k->knobs->steps_per_contact / duration);
-    return halvings <= 0 ? 0 : halvings >= LEVEL_MAX ? LEVEL_MAX : (int)ceil(halvings);
+    int level = 0;
+    while (level < LEVEL_MAX && k->speed > k->level[level].speed_max)
+        level++;
+    return level;
 }
 
 /* Duration of the shortest contact at 1 m/s; it goes with speed^-0.2. */
@@ -806,6 +860,15 @@ static double energy_scale(const FastWork *k)
     for (int i = 0; i < k->mf; i++)
         sum += k->ground[i];
     return fabs(lanes_sum(sum));
+}
+
+/* Will an open gap have closed after h at the present speed? */
+static int closing_ahead(const FastWork *k, double h)
+{
+    mask ahead = {0};
+    for (int f = 0; f < k->nf; f++)
+        ahead |= (vec_abs(k->w[f] + h * k->wd[f]) > k->gap[f]) & (vec_abs(k->w[f]) <= k->gap[f]);
+    return any(ahead);
 }
 
 /* One sampling interval, ground acceleration from a0 to a1; 0 when no step is short enough. */
@@ -833,6 +896,8 @@ static int interval(FastWork *k, double a0, double a1)
         k->flight_level = finest > 0 ? finest - 1 : 0;
         if (k->touch_level > finest || k->knobs->energy_tolerance == 0)
             k->touch_level = finest;
+        while (k->touch_level < finest && k->n_seen >= 0 && closing_ahead(k, ldexp(k->base, -k->touch_level)))
+            k->touch_level++;
         for (level = k->touch_level > aligned ? k->touch_level : aligned; !done && level <= LEVEL_MAX; level++) {
             const uint32_t step = whole >> level;
             done = contact_step(k, level_ready(k, level, 1), a0 + (a1 - a0) * at / whole,

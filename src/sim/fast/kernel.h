@@ -20,6 +20,7 @@ enum { RAMP_W, BUBBLE_W, RAMP_V, BUBBLE_V, RESPONSES };
 
 typedef struct {
     double h;              /* [s] */
+    double speed_max;      /* [m/s] fine enough for contacts up to here */
     int has_flow, has_response;
     vec *coef;              /* (FLOW_ROWS, m_pad) */
     vec *slow;              /* (m_pad) 1: the Hermite cubic follows this mode, 0: it does not */
@@ -46,7 +47,7 @@ typedef struct FastWork {
     /* floors */
     vec *w, *wd, *w1, *wd1, *f0, *f1, *fb, *f_before, *gap; /* (n_pad) */
     vec *c0, *c0d, *c1, *c1d;                           /* (n_pad) the core's part of w in flight */
-    vec *u0, *u0d, *u1, *u1d, *a0, *a0d, *a1, *a1d, *e_u, *e_w, *e_a; /* (n_pad) */
+    vec *u0, *u0d, *u1, *u1d, *a0, *a0d, *a1, *a1d, *e_u, *e_w, *e_a, *reach_a; /* (n_pad) */
     vec *peak_u, *peak_d, *peak_a;                      /* (n_pad) */
     vec *seen[3][3];                                    /* [how long ago][u, drift, accel] (n_pad) */
     double seen_h[2];                                  /* steps between them */

@@ -77,7 +77,7 @@ static inline double path_root(const Path *q, double low, double high)
             low = x;
         const double slope = path_speed(q, x) * q->h, next = x - p / slope;
         const double x_new = next > low && next < high ? next : 0.5 * (low + high);
-        if (fabs(x_new - x) < 1e-15)
+        if (fabs(x_new - x) < 1e-14)
             return x_new;
         x = x_new;
     }
