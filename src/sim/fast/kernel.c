@@ -139,7 +139,7 @@ static void start_at_rest(FastWork *k)
     for (int i = 0; i < k->mf; i++)
         k->q[i] = k->v[i] = k->load[i] = k->work[i] = k->ground[i] = zero;
     for (int f = 0; f < k->nf; f++)
-        k->w[f] = k->wd[f] = k->f0[f] = k->f1[f] = k->fb[f] = k->f_before[f] = k->peak_u[f] = k->peak_d[f] = k->peak_a[f] = zero;
+        k->w[f] = k->wd[f] = k->f0[f] = k->f1[f] = k->fb[f] = k->f_before[f] = k->fb_before[f] = k->peak_u[f] = k->peak_d[f] = k->peak_a[f] = zero;
     memset(k->side, 0, sizeof k->side);
     k->n_touching = 0;
     k->n_seen = -1;
@@ -546,8 +546,8 @@ static void substitute(int n, const double *A, const int order[], double x[])
     }
 }
 
-/* Takes in floors n_before..n-1, whose w1 and w1' are free of their own force, with a first guess of it: going on as
- * in the step before. */
+/* Takes in floors n_before..n-1, whose w1 and w1' are free of their own force, with a first guess of it: the polynomial
+ * of the step before goes on. */
 static void take_in(FastWork *k, const Level *l, Active *a, int n_before)
 {
     const int size = k->n * k->n_pad;
@@ -557,8 +557,12 @@ static void take_in(FastWork *k, const Level *l, Active *a, int n_before)
         const double w1 = scalars(k->w1)[j], v1 = scalars(k->wd1)[j];
         a->scale_v[i] = fabs(v0) + fabs(v1);
         a->scale_w[i] = fabs(fabs(w0) - gap) + fabs(fabs(w1) - gap) + l->h * a->scale_v[i];
-        const double f0 = scalars(k->f0)[j], f1 = f0 + (f0 - scalars(k->f_before)[j]) * l->h / k->h_before;
-        apply_force(k, l, j, f1 * f0 > 0 ? f1 : f0, 0);
+        const double f0 = scalars(k->f0)[j], r = l->h / k->h_before, b = scalars(k->fb_before)[j];
+        const double f1 = f0 + r * (f0 - scalars(k->f_before)[j]) - b * r * (1 + r);
+        if (f1 * f0 > 0)
+            apply_force(k, l, j, f1, b * r * r);
+        else
+            apply_force(k, l, j, f0, 0);
     }
     for (int i = 0; i < a->n; i++) {
         const int j = a->floor[i];
@@ -749,6 +753,7 @@ static void accept_contacts(FastWork *k, const Active *active, double h)
     k->f_before = k->f0;
     k->f0 = k->f1;
     k->f1 = free_slot;
+    swap(&k->fb, &k->fb_before);
     k->h_before = h;
     forget_forces(k);
     k->speed = largest(k->wd, k->nf);
