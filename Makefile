@@ -22,7 +22,7 @@ CPPFLAGS += -Isrc -MMD -MP -D_GNU_SOURCE
 # Contraction to fused multiply-add is rounding once instead of twice; NaN and Inf stay what they are.
 CFLAGS   += -std=c17 -fopenmp -ffp-contract=fast $(WARNINGS) $(CFLAGS.$(MODE))
 LDFLAGS  += -fopenmp $(CFLAGS.$(MODE))
-LDLIBS   += -lsundials_cvode -lsundials_nvecserial -lsundials_sunmatrixdense -lsundials_sunlinsoldense \
+LDLIBS   += -lsundials_cvode -lsundials_arkode -lsundials_nvecserial -lsundials_sunmatrixdense -lsundials_sunlinsoldense \
             -lsundials_sunnonlinsolnewton -lsundials_sunnonlinsolfixedpoint \
             -lnlopt -llapacke -lopenblas -linih -ljansson -lm
 # Our own kernels are written for the vectorizer; everything else is happy with -O2.

@@ -25,6 +25,12 @@ typedef enum { ACCURACY_COARSE, ACCURACY_STANDARD, ACCURACY_FINE } Accuracy;
 #define ENGINE_LIST(X)                                                                                                 \
     X(FAST, fast)                                                                                                      \
     X(CVODE, cvode)                                                                                                    \
+    X(CVODE_BDF, cvode_bdf)                                                                                            \
+    X(CVODE_BDF_TUNED, cvode_bdf_tuned)                                                                                \
+    X(ARKODE_ERK, arkode_erk)                                                                                          \
+    X(ARKODE_ERK_NOEVENTS, arkode_erk_noevents)                                                                        \
+    X(ARKODE_DIRK, arkode_dirk)                                                                                        \
+    X(ARKODE_IMEX, arkode_imex)                                                                                        \
     X(ETDRK4, etdrk4)                                                                                                  \
     X(LAGGED, lagged)                                                                                                  \
     X(NEWMARK, newmark)                                                                                                \

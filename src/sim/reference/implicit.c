@@ -46,8 +46,7 @@ void implicit_free(Implicit *x)
     memset(x, 0, sizeof *x);
 }
 
-/* x of J x = b, in b; J (n, n) row-major is overwritten. 0: singular. */
-static int eliminate(int n, double J[], double b[])
+int dense_solve(int n, double J[], double b[])
 {
     for (int k = 0; k < n; k++) {
         int pivot = k;
@@ -134,7 +133,7 @@ int implicit_solve(Implicit *x, const Contacts *c)
             return 0;
         if (worst <= FORCE_TOLERANCE * largest)
             return 1;
-        if (!eliminate(n, x->jacobian, x->rhs))
+        if (!dense_solve(n, x->jacobian, x->rhs))
             return 0;
         for (int a = 0; a < n; a++)
             x->f[x->in_contact[a]] += x->rhs[a];

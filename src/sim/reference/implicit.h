@@ -27,6 +27,9 @@ typedef struct {
 Status implicit_create(Implicit *x, int n, int stages, Err *err);
 void implicit_free(Implicit *x);
 
+/* x of J x = b, in b; J (n, n) row-major is overwritten. 0: singular. */
+int dense_solve(int n, double J[], double b[]);
+
 /* 0: Newton did not converge. */
 int implicit_solve(Implicit *x, const Contacts *c);
 

@@ -1,0 +1,350 @@
+#include "sim/reference/ode.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "sim/reference/clones.h"
+#include "sim/reference/vectors.h"
+
+double *ode_values(N_Vector v)
+{
+    return NV_DATA_S(v);
+}
+
+int ode_size(const Ode *o)
+{
+    return o->with_books ? 3 * o->model->m + 3 : 2 * o->model->m;
+}
+
+int ode_n_roots(const Ode *o)
+{
+    return o->locate && o->model->nc > 0 ? o->model->n : 0;
+}
+
+/* Ground acceleration; where the integrator stops at samples, the present interval's straight line to both sides. */
+static double ground(const Ode *o, double t)
+{
+    const Motion *motion = o->motion;
+    const long last = (long)motion->n - 2;
+    const long k = o->stop_at_samples ? o->interval : (long)floor(t / motion->dt_s);
+    if (k > last || k < 0)
+        return 0;
+    const double slope = (motion->accel[k + 1] - motion->accel[k]) / motion->dt_s;
+    return motion->accel[k] + slope * (t - (double)k * motion->dt_s);
+}
+
+CLONED static void spring_and_dashpot(const SimModel *model, const double q[], const double v[], double dv[])
+{
+#pragma GCC ivdep
+    for (int i = 0; i < model->m; i++)
+        dv[i] = -model->omega[i] * (2 * model->zeta[i] * v[i] + model->omega[i] * q[i]);
+}
+
+CLONED static double energy_rates(const SimModel *model, const double v[], double damped[])
+{
+#pragma GCC ivdep
+    for (int i = 0; i < model->m; i++)
+        damped[i] = 2 * model->zeta[i] * model->omega[i] * v[i] * v[i];
+    return dot_product(model->m, model->gamma, v);
+}
+
+/* dq' = contacts - gamma a added to what is there; 0 where the result is finite. */
+CLONED static int add_loads(Ode *o, double t, const double y[], double dv[], double *a, ContactPower *power)
+{
+    const SimModel *model = o->model;
+    double check = 0;
+    *a = ground(o, t);
+    *power = contacts_add(&o->contacts, y, y + model->m, dv);
+    for (int i = 0; i < model->m; i++) {
+        dv[i] -= model->gamma[i] * *a;
+        check += dv[i];
+    }
+    o->ledger.evaluations++;
+    o->finite = isfinite(check) != 0;
+    return o->finite ? 0 : -1;
+}
+
+int ode_right_hand_side(sunrealtype t, N_Vector y_vector, N_Vector y_dot_vector, void *user)
+{
+    Ode *o = user;
+    const SimModel *model = o->model;
+    const int m = model->m;
+    const double *y = ode_values(y_vector), *v = y + m;
+    double *dq = ode_values(y_dot_vector), *dv = dq + m, a;
+    ContactPower power;
+    memcpy(dq, v, sizeof *v * (size_t)m);
+    spring_and_dashpot(model, y, v, dv);
+    const int failed = add_loads(o, t, y, dv, &a, &power);
+    if (o->with_books) {
+        double *rest = dv + 2 * m;
+        rest[0] = -a * energy_rates(model, v, dv + m);
+        rest[1] = power.lost;
+        rest[2] = power.clamp;
+    }
+    return failed;
+}
+
+int ode_linear_part(sunrealtype t, N_Vector y_vector, N_Vector y_dot_vector, void *user)
+{
+    (void)t;
+    const Ode *o = user;
+    const int m = o->model->m;
+    const double *y = ode_values(y_vector), *v = y + m;
+    double *dq = ode_values(y_dot_vector);
+    memcpy(dq, v, sizeof *v * (size_t)m);
+    spring_and_dashpot(o->model, y, v, dq + m);
+    return 0;
+}
+
+int ode_nonlinear_part(sunrealtype t, N_Vector y_vector, N_Vector y_dot_vector, void *user)
+{
+    Ode *o = user;
+    double *dq = ode_values(y_dot_vector), a;
+    ContactPower power;
+    memset(dq, 0, sizeof *dq * 2 * (size_t)o->model->m);
+    return add_loads(o, t, ode_values(y_vector), dq + o->model->m, &a, &power);
+}
+
+/* One root per floor, its penetration: rising through zero when open, falling when closed. */
+int ode_penetrations(sunrealtype t, N_Vector y, sunrealtype *p, void *user)
+{
+    (void)t;
+    Ode *o = user;
+    const SimModel *model = o->model;
+    double check = 0, w[FLOORS_MAX];
+    floors_from_modes(model, 0, model->m, ode_values(y), w);
+    for (int j = 0; j < model->n; j++) {
+        const int side = o->contacts.side[j];
+        p[j] = (side ? side * w[j] : fabs(w[j])) - model->gap[j];
+        check += p[j];
+    }
+    o->finite = isfinite(check) != 0; /* SUNDIALS takes NaN for "no root" */
+    return o->finite ? 0 : -1;
+}
+
+void ode_keep_message(int code, const char *module, const char *function, char *text, void *user)
+{
+    (void)module;
+    (void)function;
+    Ode *o = user;
+    if (code < 0)
+        snprintf(o->message, sizeof o->message, "%s", text);
+}
+
+/* weight_i = 1 / (rtol |y_i| + tolerance_i) */
+CLONED static void set_weights(long n, double rtol, const double y[], const double tolerance[], double weight[])
+{
+    for (long i = 0; i < n; i++)
+        weight[i] = 1 / (rtol * fabs(y[i]) + tolerance[i]);
+}
+
+int ode_error_weights(N_Vector y, N_Vector weight, void *user)
+{
+    const Ode *o = user;
+    set_weights(NV_LENGTH_S(y), o->rtol, ode_values(y), ode_values(o->tolerance), ode_values(weight));
+    return 0;
+}
+
+/* Error allowed in every component, as a share `level` of the scale that the motion sets: speed v = PGA/w_1, so that
+ *     q_i' : sqrt(M) v      q_i : sqrt(M) v / w_i      energies : M v^2,        M = sum gamma_i^2  [kg] */
+static void set_tolerances(const Ode *o, double level)
+{
+    const SimModel *model = o->model;
+    const int m = model->m;
+    double mass = 0, pga = 0, slowest = HUGE_VAL, *tolerance = ode_values(o->tolerance);
+    for (int i = 0; i < m; i++) {
+        mass += model->gamma[i] * model->gamma[i];
+        slowest = fmin(slowest, fmax(model->omega[i], 1));
+    }
+    for (size_t k = 0; k < o->motion->n; k++)
+        pga = fmax(pga, fabs(o->motion->accel[k]));
+    const double speed = fmax(pga, 1e-6) / slowest, momentum = sqrt(fmax(mass, 1e-6)) * speed;
+    for (int i = 0; i < m; i++) {
+        tolerance[i] = level * momentum / fmax(model->omega[i], 1);
+        tolerance[m + i] = level * momentum;
+    }
+    for (int i = 2 * m; i < ode_size(o); i++)
+        tolerance[i] = level * momentum * momentum;
+}
+
+int ode_prepare(Ode *o, const double rtol[3])
+{
+    const SimModel *model = o->model;
+    double fastest = 1;
+    for (int i = 0; i < model->m; i++)
+        fastest = fmax(fastest, model->omega[i] * (1 + 2 * model->zeta[i]));
+    o->steps_max = (long)fmin(1e6 + 4 * fastest * o->options->duration, 1e12); /* explicit steps are near 1/fastest */
+    o->contacts = (Contacts){.model = model, .by_sight = !o->locate, .log = o->options->closings};
+    ledger_start(&o->ledger, model);
+    if (SUNContext_Create(NULL, &o->context))
+        return -1;
+    o->y = N_VNew_Serial(ode_size(o), o->context);
+    o->tolerance = N_VNew_Serial(ode_size(o), o->context);
+    if (!o->y || !o->tolerance)
+        return -1;
+    vectors_use_own_loops(o->y);
+    o->between = N_VClone(o->y);
+    if (!o->between)
+        return -1;
+    N_VConst(0, o->y);
+    o->rtol = o->options->knob > 0 ? o->options->knob : rtol[o->options->accuracy];
+    set_tolerances(o, 0.1 * o->rtol);
+    return 0;
+}
+
+void ode_release(Ode *o)
+{
+    N_VDestroy(o->y);
+    N_VDestroy(o->tolerance);
+    N_VDestroy(o->between);
+    SUNContext_Free(&o->context);
+}
+
+/* Notes the peaks at a state, and its powers for so many seconds. */
+static void look(Ode *o, double t, const double y[], double seconds)
+{
+    const SimModel *model = o->model;
+    double contact[MODES_MAX] = {0};
+    o->a_looked = ground(o, t);
+    o->power_looked = contacts_add(&o->contacts, y, y + model->m, contact);
+    memcpy(o->v_looked, y + model->m, sizeof *y * (size_t)model->m);
+    ledger_look(&o->ledger, t, y, y + model->m, contact);
+    if (!o->with_books)
+        ledger_add(&o->ledger, seconds, o->v_looked, o->a_looked, &o->power_looked);
+}
+
+/* The step just made from t_before to t, by the integrator's own interpolant: Gauss-Lobatto, four points a panel. */
+static int look_at_step(Ode *o, double t_before, double t)
+{
+    static const double X[] = {0.27639320225002103, 0.72360679774997897, 1}, WEIGHT[] = {5 / 12.0, 5 / 12.0, 1 / 12.0};
+    const double panels = ceil((t - t_before) / o->panel), h = (t - t_before) / panels;
+    for (double k = 0; k < panels; k++) {
+        if (!o->with_books)
+            ledger_add(&o->ledger, h / 12, o->v_looked, o->a_looked, &o->power_looked);
+        for (int i = 0; i < 3; i++) {
+            const int at_end = i == 2 && k == panels - 1;
+            const double at = at_end ? t : t_before + h * (k + X[i]);
+            if (!at_end && o->solver->interpolate(o, at, o->between))
+                return -1;
+            look(o, at, ode_values(at_end ? o->y : o->between), h * WEIGHT[i]);
+        }
+    }
+    return 0;
+}
+
+static int start_anew(Ode *o, double t, double t_stop)
+{
+    int directions[FLOORS_MAX];
+    for (int j = 0; j < o->model->n; j++)
+        directions[j] = o->contacts.side[j] ? -1 : 1;
+    if (o->solver->restart(o, t) || (ode_n_roots(o) > 0 && o->solver->look_for(o, directions)))
+        return -1;
+    return o->solver->stop_at(o, t_stop);
+}
+
+/* For the approach speeds of gaps that close unseen in the next step. */
+static void remember_start(Ode *o, double t)
+{
+    const SimModel *model = o->model;
+    Contacts *c = &o->contacts;
+    const double *y = ode_values(o->y);
+    c->t_before = t;
+    memcpy(c->q_before, y, sizeof *y * (size_t)model->m);
+    memcpy(c->v_before, y + model->m, sizeof *y * (size_t)model->m);
+    spring_and_dashpot(model, y, y + model->m, c->a_before);
+    contacts_add(c, y, y + model->m, c->a_before);
+    for (int i = 0; i < model->m; i++)
+        c->a_before[i] -= model->gamma[i] * ground(o, t);
+}
+
+/* Contacts at the end of a step: 1 where the integrator has to start anew. */
+static int switch_contacts(Ode *o, double t, int flag)
+{
+    int found[FLOORS_MAX] = {0};
+    double w[FLOORS_MAX];
+    const double *y = ode_values(o->y);
+    if (o->model->nc == 0)
+        return 0;
+    if (o->locate) {
+        if (flag == ODE_ROOT)
+            o->solver->found(o, found);
+        return contacts_switch(&o->contacts, t, y, y + o->model->m, found);
+    }
+    floors_from_modes(o->model, 0, o->model->m, y, w);
+    contacts_settle(&o->contacts, w);
+    return 0;
+}
+
+/* From *t to t_stop. */
+static RunOutcome cross(Ode *o, double *t, double t_stop)
+{
+    if (o->solver->stop_at(o, t_stop))
+        return RUN_ENGINE_FAILED;
+    while (t_stop - *t > 1e-12 * (1 + t_stop)) {
+        if (o->ledger.steps++ >= o->steps_max)
+            return RUN_OUT_OF_STEPS;
+        const double t_before = *t;
+        if (!o->locate)
+            remember_start(o, t_before);
+        const int flag = o->solver->step(o, t_stop, t);
+        if (flag < 0) /* it has tried again with shorter steps before it says so */
+            return o->finite ? RUN_ENGINE_FAILED : RUN_NOT_FINITE;
+        if (look_at_step(o, t_before, *t))
+            return RUN_ENGINE_FAILED;
+        if (switch_contacts(o, *t, flag) && start_anew(o, *t, t_stop))
+            return RUN_ENGINE_FAILED;
+    }
+    return RUN_OK;
+}
+
+/* Every straight stretch of the motion in turn, or the motion as a whole; then the ground at rest. */
+static RunOutcome walk(Ode *o)
+{
+    const double duration = o->options->duration, dt = o->motion->dt_s;
+    const long samples = (long)o->motion->n;
+    double t = 0;
+    look(o, 0, ode_values(o->y), 0);
+    if (start_anew(o, 0, duration))
+        return RUN_ENGINE_FAILED;
+    for (long k = o->stop_at_samples ? 0 : samples - 2; k + 1 < samples && t < duration; k++) {
+        o->interval = k;
+        const RunOutcome outcome = cross(o, &t, fmin((double)(k + 1) * dt, duration));
+        if (outcome != RUN_OK)
+            return outcome;
+    }
+    o->interval = samples;
+    if (t < duration && start_anew(o, t, duration)) /* the acceleration may jump */
+        return RUN_ENGINE_FAILED;
+    return cross(o, &t, duration);
+}
+
+static void explain(const Ode *o, double t, SimResult *result)
+{
+    if (result->outcome == RUN_OUT_OF_STEPS)
+        snprintf(result->reason, sizeof result->reason, "t = %.6g s: %ld steps did not reach %g s", t, o->ledger.steps,
+                 o->options->duration);
+    else if (result->outcome == RUN_NOT_FINITE)
+        snprintf(result->reason, sizeof result->reason, "t = %.6g s: motion or response is not a finite number", t);
+    else
+        snprintf(result->reason, sizeof result->reason, "t = %.6g s: %s: %s", t, o->solver->package, o->message);
+}
+
+Status ode_run(Ode *o, SimResult *result)
+{
+    const int m = o->model->m;
+    const double *y = ode_values(o->y);
+    result->outcome = walk(o);
+    if (result->outcome != RUN_OK) {
+        explain(o, o->ledger.peaks.count ? o->ledger.peaks.ring[(o->ledger.peaks.count + 2) % 3].t : 0, result);
+        return STATUS_OK;
+    }
+    if (o->with_books) {
+        memcpy(o->ledger.damped, y + 2 * m, sizeof *y * (size_t)m);
+        o->ledger.input = y[3 * m];
+        o->ledger.lost = y[3 * m + 1];
+        o->ledger.clamp = y[3 * m + 2];
+    }
+    ledger_report(&o->ledger, &o->contacts, o->options, y, y + m, result);
+    return STATUS_OK;
+}
