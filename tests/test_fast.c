@@ -382,7 +382,7 @@ static void test_standard_accuracy_agrees_with_cvode_on_another_building_core_an
     snprintf(t.settings.building.model, SETTINGS_TEXT_MAX, "appendix");
     snprintf(t.settings.motion.record, SETTINGS_TEXT_MAX, "builtin:elcentro-like");
     t.settings.motion.stretch = 3;
-    t.settings.sim.duration_s = 9;
+    t.settings.sim.duration_s = 8;
     tower_open(&t);
     for (int j = 0; j < 20; j++)
         t.x[j] = 0.004 * (j + 1) + 0.002 * (j % 3);

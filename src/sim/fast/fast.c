@@ -82,7 +82,7 @@ FastKnobs fast_knobs(Accuracy accuracy)
 {
     static const FastKnobs KNOBS[] = {
         [ACCURACY_COARSE] = {1, 1e-2, 3e-5, 1e-2},
-        [ACCURACY_STANDARD] = {2, 3e-3, 3e-6, 1e-3},
+        [ACCURACY_STANDARD] = {2, 3e-3, 1e-6, 1e-3},
         [ACCURACY_FINE] = {80, 1e-12, 0, 1e-6},
     };
     return KNOBS[accuracy];
