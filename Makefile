@@ -42,9 +42,11 @@ LIB_OBJ := $(SRC:%.c=$(BUILD)/%.o) $(KERNELS:%=$(BUILD)/src/sim/fast/kernel_%.o)
 LIB     := $(BUILD)/libimtet.a
 TEST_SRC := $(wildcard tests/test_*.c)
 TESTS   := $(TEST_SRC:%.c=$(BUILD)/%)
+STABILITY     := $(BUILD)/tests/stability/stability
+STABILITY_OBJ := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/stability/*.c))
 PROGRAM := $(if $(filter release,$(MODE)),imtet,$(BUILD)/imtet)
 
-.PHONY: all setup run test test-here bench format install clean .FORCE
+.PHONY: all setup run test test-here stability stability-long laws bench format install clean .FORCE
 .SECONDARY:
 all: $(PROGRAM)
 
@@ -60,8 +62,21 @@ test: setup
 	@$(MAKE) --no-print-directory -j2 MODE=asan test-here
 
 # A test finds the program under test in $$IMTET and the repository in its working directory.
-test-here: $(PROGRAM) $(TESTS)
-	@set -e; export IMTET=$(abspath $(PROGRAM)); for t in $(TESTS); do echo "== $$t"; $$t; done
+test-here: $(PROGRAM) $(TESTS) $(STABILITY)
+	@set -e; export IMTET=$(abspath $(PROGRAM)); for t in $(TESTS); do echo "== $$t"; $$t; done; \
+	echo "== $(STABILITY)"; $(STABILITY) --quick --seconds 5; $(STABILITY) --laws
+
+# Every engine through every case; stability-long has the cases of 1e6 and 1e7 steps. The page is theirs.
+stability: $(STABILITY)
+	@$(STABILITY) --out docs/stability.md
+
+stability-long: $(STABILITY)
+	@$(STABILITY) --long --seconds 600 --out docs/stability.md
+
+# The rebound curves of the contact laws, and what the floor under v0 changes.
+laws: $(STABILITY)
+	@$(STABILITY) --laws --out docs/contact-laws.md --csv $(BUILD)/contact-laws.csv
+	@scripts/plot-laws $(BUILD)/contact-laws.csv docs/contact-laws
 
 $(PROGRAM): $(BUILD)/src/main.o $(LIB)
 	@echo '  LD  $@'
@@ -72,6 +87,10 @@ $(LIB): $(LIB_OBJ)
 	$(Q)$(AR) rcs $@ $^
 
 $(BUILD)/tests/%: $(BUILD)/tests/%.o $(LIB)
+	@echo '  LD  $@'
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^ -lcmocka $(LDLIBS)
+
+$(STABILITY): $(STABILITY_OBJ) $(LIB)
 	@echo '  LD  $@'
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ -lcmocka $(LDLIBS)
 
@@ -101,7 +120,7 @@ $(BUILD)/revision: .FORCE
 $(BUILD)/src/run/provenance.o: $(BUILD)/revision
 
 format:
-	clang-format -i $(wildcard src/*.c src/*/*.[ch] src/*/*/*.[ch] tests/*.[ch])
+	clang-format -i $(wildcard src/*.c src/*/*.[ch] src/*/*/*.[ch] tests/*.[ch] tests/*/*.[ch])
 
 install: all
 	install -D -m 755 imtet $(DESTDIR)$(PREFIX)/bin/imtet

@@ -14,6 +14,8 @@
 #ifndef IMTET_SIM_SIM_H
 #define IMTET_SIM_SIM_H
 
+#include <math.h>
+
 #include "base/settings.h"
 #include "base/status.h"
 #include "scene/building.h"
@@ -62,6 +64,13 @@ typedef struct {
     long steps, force_evaluations;                             /* what the run cost */
     double seconds;                                            /* wall time */
 } SimResult;
+
+/* What the residual is a share of: the input, or what came out where the ground has taken back all that it gave. */
+static inline double energy_books_scale(double input, double out)
+{
+    const double scale = input > 0 ? input : fmax(-input, out);
+    return scale > 0 ? scale : 1;
+}
 
 typedef struct Scene Scene;
 typedef struct SimWorker SimWorker;

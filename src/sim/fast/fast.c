@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "base/carve.h"
+#include "base/denormal.h"
 #include "sim/fast/kernel.h"
 
 static void layout(FastWork *k, Carve *c)
@@ -91,7 +92,9 @@ FastKnobs fast_knobs(Accuracy accuracy)
 void fast_run(FastWork *work, const SimModel *model, const Motion *motion, double duration, const FastKnobs *knobs,
               SimResult *result)
 {
+    const unsigned mode = denormal_off();
     best_kernel()(work, model, motion, duration, knobs, result);
+    denormal_restore(mode);
 }
 
 void fast_state(const FastWork *work, double state[])

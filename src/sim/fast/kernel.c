@@ -996,7 +996,7 @@ static void sum_energies(const FastWork *k, SimResult *r)
     r->clamp_j = k->contact_clamped;
     r->contact_stored_j = still_stored(k);
     const double books = -contact_work - r->contact_loss_j - r->clamp_j - r->contact_stored_j;
-    r->energy_residual = r->input_energy_j > 0 ? fabs(books) / r->input_energy_j : 0;
+    r->energy_residual = fabs(books) / energy_books_scale(r->input_energy_j, r->input_energy_j - books);
     for (int i = 0; i < k->model->nb; i++)
         r->mode_share_pct[i] = share(damped[i], r->input_energy_j);
     r->ed1_pct = r->mode_share_pct[0];

@@ -107,7 +107,7 @@ static inline void books_close(SimResult *result, int nb, int nc, const double d
     result->edcs_pct = percent * core;
     const double out = result->kinetic_strain_j + building + core + result->contact_stored_j + result->contact_loss_j +
                        result->clamp_j;
-    result->energy_residual = input > 0 ? fabs(input - out) / input : 0;
+    result->energy_residual = fabs(input - out) / energy_books_scale(input, out);
     if (!isfinite(input - out)) {
         result->outcome = RUN_NOT_FINITE;
         snprintf(result->reason, sizeof result->reason, "the energies are not finite at the end of the run");
