@@ -111,7 +111,7 @@ static void convergence(Trial *t)
     const double order = log(coarse / fine) / log(16) / (by_tolerance ? 3 : 1);
     trial_remark(t, "Errors %.2g, %.2g, %.2g at %s 1 : 1/%d : 1/%d: order %.2f", coarse, middle, fine,
                  by_tolerance ? "tolerances" : "steps", by_tolerance ? 64 : 4, by_tolerance ? 4096 : 16, order);
-    trial_note(t, NULL, fine, by_tolerance ? 1e-4 : 5e-3, "rebound error at the finest setting; order %.2f", order);
+    trial_note(t, NULL, fine, by_tolerance ? 1e-4 : 2e-2, "rebound error at the finest setting; order %.2f", order);
     trial_note(t, NULL, order > (by_tolerance ? 0.3 : 0.8) || fine < 1e-10 ? 0 : 1, 0.5, "order of convergence %.2f",
                order);
 }
@@ -182,8 +182,8 @@ typedef struct {
     Contact contact;
     Motion motion;
     double duration, contact_duration, free_step, knob; /* knob < 0: as trial_knob says */
-    double energy_scale, length_scale;                  /* 0: the oracle's own */
-    double fine, standard;                              /* allowed; 0: 1e-3 and 3e-2 */
+    double energy_scale;                                /* 0: the oracle's turnover */
+    double standard;                                    /* allowed at standard; 0: 3e-2 */
 } Run;
 
 static SimResult run_engine(Trial *t, const Run *x)
@@ -196,20 +196,24 @@ static SimResult run_engine(Trial *t, const Run *x)
     return r;
 }
 
+/* Both accuracies; the last result, at standard. */
 static SimResult against_oracle(Trial *t, const Run *x, const char *what)
 {
     Oracle o;
-    oracle_run(&o, &x->bob, &x->contact, &x->motion, x->duration, x->free_step, x->contact_duration / 2000);
-    const SimResult r = run_engine(t, x);
-    const double energy = x->energy_scale > 0 ? x->energy_scale : o.turnover;
-    const double length = x->length_scale > 0 ? x->length_scale : o.peak_u;
-    const double allowed = trial_allowed(t, x->fine > 0 ? x->fine : 1e-3, x->standard > 0 ? x->standard : 3e-2);
-    trial_compare(t, &r, r.kinetic_strain_j, o.kinetic_strain, energy, allowed, "%s: energy at the end", what);
-    trial_compare(t, &r, r.j1_m, o.peak_u, length, allowed, "%s: largest displacement", what);
-    trial_compare(t, &r, r.input_energy_j, o.input, energy, allowed, "%s: input energy", what);
-    trial_compare(t, &r, r.clamp_j, o.clamp, energy, allowed, "%s: energy of the clamp", what);
-    trial_compare(t, &r, r.contact_loss_j, o.lost, energy, allowed, "%s: energy lost in contact", what);
-    trial_compare(t, &r, r.damped_building_j, o.damped, energy, allowed, "%s: energy damped", what);
+    SimResult r = {0};
+    oracle_run(&o, &x->bob, &x->contact, &x->motion, x->duration, x->free_step, x->contact_duration / 1000);
+    TRIAL_EACH_ACCURACY(t)
+    {
+        r = run_engine(t, x);
+        const double energy = x->energy_scale > 0 ? x->energy_scale : o.turnover;
+        const double allowed = trial_allowed(t, 1e-3, x->standard > 0 ? x->standard : 3e-2);
+        trial_compare(t, &r, r.kinetic_strain_j, o.kinetic_strain, energy, allowed, "%s: energy at the end", what);
+        trial_compare(t, &r, r.j1_m, o.peak_u, o.peak_u, allowed, "%s: largest displacement", what);
+        trial_compare(t, &r, r.input_energy_j, o.input, energy, allowed, "%s: input energy", what);
+        trial_compare(t, &r, r.clamp_j, o.clamp, energy, allowed, "%s: energy of the clamp", what);
+        trial_compare(t, &r, r.contact_loss_j, o.lost, energy, allowed, "%s: energy lost in contact", what);
+        trial_compare(t, &r, r.damped_building_j, o.damped, energy, allowed, "%s: energy damped", what);
+    }
     return r;
 }
 
@@ -231,19 +235,16 @@ static void grazing(Trial *t)
              .free_step = 1e-4,
              .knob = -1,
              .energy_scale = 0.5 * m * v * v};
-    TRIAL_EACH_ACCURACY(t)
-    {
-        for (int e = 3; e <= 15; e++)
-            for (int side = -1; side <= 1; side += 2) {
-                char what[60];
-                x.bob.gap = top * (1 + side * pow(10, -e));
-                x.contact_duration = contact_hertz_duration(STEEL, m, fmax(sqrt(2 * pull * top * pow(10, -e)), 1e-3));
-                snprintf(what, sizeof what, "gap = peak (1 %c 1e-%d)", side > 0 ? '+' : '-', e);
-                const SimResult r = against_oracle(t, &x, what);
-                if (side > 0 && e < 12)
-                    trial_note(t, &r, (double)r.impacts, trial_allowed(t, 0.5, 1.5), "%s: impacts", what);
-            }
-    }
+    for (int e = 3; e <= 15; e++)
+        for (int side = -1; side <= 1; side += 2) {
+            char what[60];
+            x.bob.gap = top * (1 + side * pow(10, -e));
+            x.contact_duration = contact_hertz_duration(STEEL, m, fmax(sqrt(2 * pull * top * pow(10, -e)), 1e-3));
+            snprintf(what, sizeof what, "gap = peak (1 %c 1e-%d)", side > 0 ? '+' : '-', e);
+            const SimResult r = against_oracle(t, &x, what);
+            if (side > 0 && e < (t->engine == ENGINE_FAST ? 12 : 4)) /* the others' flight is not exact */
+                trial_note(t, &r, (double)r.impacts, 0.5, "%s: impacts", what);
+        }
 }
 
 static void start_at_the_wall(Trial *t)
@@ -253,20 +254,17 @@ static void start_at_the_wall(Trial *t)
     const double dt = 0.01, m = 1000, duration = contact_hertz_duration(STEEL, m, 0.3);
     for (int i = 0; i < N; i++)
         accel[i] = -12 * sin(2 * M_PI * i / (N - 1.0));
-    TRIAL_EACH_ACCURACY(t)
-    {
-        for (int f = 3; f <= 6; f += 3) {
-            char what[60];
-            snprintf(what, sizeof what, "no gap, at rest, v0 floor 1e-%d m/s", f);
-            const Run x = {.bob = {.mass = m, .omega = 20, .zeta = 0.03},
-                           .contact = paper_law(STEEL, 0.7, pow(10, -f)),
-                           .motion = {accel, N, dt, "", "", 0},
-                           .duration = 0.6,
-                           .contact_duration = duration,
-                           .free_step = 1e-5,
-                           .knob = -1};
-            against_oracle(t, &x, what);
-        }
+    for (int f = 3; f <= 6; f += 3) {
+        char what[60];
+        snprintf(what, sizeof what, "no gap, at rest, v0 floor 1e-%d m/s", f);
+        const Run x = {.bob = {.mass = m, .omega = 20, .zeta = 0.03},
+                       .contact = paper_law(STEEL, 0.7, pow(10, -f)),
+                       .motion = {accel, N, dt, "", "", 0},
+                       .duration = 0.6,
+                       .contact_duration = duration,
+                       .free_step = 1e-5,
+                       .knob = -1};
+        against_oracle(t, &x, what);
     }
 }
 
@@ -277,42 +275,36 @@ static void slow_touch_fast_pull_off(Trial *t)
     const double dt = 0.002, m = 1000, v = 2e-3;
     for (int i = 0; i < N; i++)
         accel[i] = i == 1 ? -v / dt : i < 10 ? 0 : i < 20 ? -20 : i < 24 ? 400 : 0;
-    TRIAL_EACH_ACCURACY(t)
-    {
-        for (int r = 0; r < 3; r++) {
-            char what[60];
-            snprintf(what, sizeof what, "touch at 2 mm/s, pull at 400 m/s2, r = %g", 0.5 * r);
-            const Run x = {.bob = {.mass = m, .gap = v * 4 * dt},
-                           .contact = paper_law(STEEL, 0.5 * r, 1e-3),
-                           .motion = {accel, N, dt, "", "", 0},
-                           .duration = 0.07,
-                           .contact_duration = contact_hertz_duration(STEEL, m, 0.1),
-                           .free_step = 1e-5,
-                           .knob = -1};
-            against_oracle(t, &x, what);
-        }
+    for (int r = 0; r < 3; r++) {
+        char what[60];
+        snprintf(what, sizeof what, "touch at 2 mm/s, pull at 400 m/s2, r = %g", 0.5 * r);
+        const Run x = {.bob = {.mass = m, .gap = v * 4 * dt},
+                       .contact = paper_law(STEEL, 0.5 * r, 1e-3),
+                       .motion = {accel, N, dt, "", "", 0},
+                       .duration = 0.07,
+                       .contact_duration = contact_hertz_duration(STEEL, m, 0.1),
+                       .free_step = 1e-5,
+                       .knob = -1};
+        against_oracle(t, &x, what);
     }
 }
 
 static void within_one_step(Trial *t)
 {
     const double m = 1, v = 10, duration = contact_hertz_duration(STEEL, m, v);
-    TRIAL_EACH_ACCURACY(t)
-    {
-        for (int i = 0; i < 3; i++) {
-            char what[60];
-            const double dt = duration * (i == 0 ? 137.1 : i == 1 ? 1.13e4 : 1.03e5);
-            double accel[3] = {0, -v / dt, 0};
-            snprintf(what, sizeof what, "intervals of %.3g contact durations", dt / duration);
-            const Run x = {.bob = {.mass = m, .gap = 1.07 * v * dt},
-                           .contact = paper_law(STEEL, 0.7, 1e-3),
-                           .motion = {accel, 3, dt, "", "", 0},
-                           .duration = 6.9 * dt,
-                           .contact_duration = duration,
-                           .free_step = dt / 100,
-                           .knob = 0};
-            against_oracle(t, &x, what);
-        }
+    for (int i = 0; i < 3; i++) {
+        char what[60];
+        const double dt = duration * (i == 0 ? 137.1 : i == 1 ? 1.13e4 : 1.03e5);
+        double accel[3] = {0, -v / dt, 0};
+        snprintf(what, sizeof what, "intervals of %.3g contact durations", dt / duration);
+        const Run x = {.bob = {.mass = m, .gap = 1.07 * v * dt},
+                       .contact = paper_law(STEEL, 0.7, 1e-3),
+                       .motion = {accel, 3, dt, "", "", 0},
+                       .duration = 6.9 * dt,
+                       .contact_duration = duration,
+                       .free_step = dt / 100,
+                       .knob = 0};
+        against_oracle(t, &x, what);
     }
 }
 
@@ -322,22 +314,19 @@ static void step_does_not_divide(Trial *t)
     double accel[N];
     for (int i = 0; i < N; i++)
         accel[i] = 3 * sin(0.09 * i) + 2 * sin(0.31 * i);
-    TRIAL_EACH_ACCURACY(t)
-    {
-        for (int i = 0; i < 4; i++) {
-            char what[60];
-            const double dt = 0.0137 * (1 + 0.217 * i), duration = contact_hertz_duration(STEEL, 1e5, 0.3);
-            snprintf(what, sizeof what, "interval %.6g s, %.6g intervals long", dt, 71.37 + 0.41 * i);
-            const Run x = {.bob = {.mass = 1e5, .omega = 7, .zeta = 0.03, .gap = 0.05},
-                           .contact = paper_law(STEEL, 0.7, 1e-3),
-                           .motion = {accel, N, dt, "", "", 0},
-                           .duration = dt * (71.37 + 0.41 * i),
-                           .contact_duration = duration,
-                           .free_step = 1e-4,
-                           .standard = 0.1,
-                           .knob = trial_knob(t, 0.371 * duration, 0.371 * trial_steps(t))};
-            against_oracle(t, &x, what);
-        }
+    for (int i = 0; i < 4; i++) {
+        char what[60];
+        const double dt = 0.0137 * (1 + 0.217 * i), duration = contact_hertz_duration(STEEL, 1e5, 0.3);
+        snprintf(what, sizeof what, "interval %.6g s, %.6g intervals long", dt, 71.37 + 0.41 * i);
+        const Run x = {.bob = {.mass = 1e5, .omega = 7, .zeta = 0.03, .gap = 0.05},
+                       .contact = paper_law(STEEL, 0.7, 1e-3),
+                       .motion = {accel, N, dt, "", "", 0},
+                       .duration = dt * (71.37 + 0.41 * i),
+                       .contact_duration = duration,
+                       .free_step = 1e-4,
+                       .standard = 0.1,
+                       .knob = -1};
+        against_oracle(t, &x, what);
     }
 }
 
@@ -349,25 +338,21 @@ static void damping_ratios(Trial *t)
     const double dt = 0.05, duration = contact_hertz_duration(STEEL, 1e4, 0.3);
     for (int i = 0; i < N; i++)
         accel[i] = 3 * sin(0.09 * i) + 2 * sin(0.31 * i);
-    TRIAL_EACH_ACCURACY(t)
-    {
-        for (int z = 0; z < 6; z++)
-            for (int w = 0; w < 3; w++)
-                for (int touch = 0; touch < 2; touch++) {
-                    char what[80];
-                    snprintf(what, sizeof what, "zeta = %.10g, w = %g, %s", ZETA[z], OMEGA[w],
-                             touch ? "touching" : "free");
-                    const Run x = {.bob = {.mass = 1e4, .omega = OMEGA[w], .zeta = ZETA[z], .gap = touch ? 0.02 : 1e3},
-                                   .contact = paper_law(STEEL, 0.7, 1e-3),
-                                   .motion = {accel, N, dt, "", "", 0},
-                                   .duration = 1.7,
-                                   .contact_duration = duration,
-                                   .free_step = 4e-4,
-                                   .standard = 0.1,
-                                   .knob = -1};
-                    against_oracle(t, &x, what);
-                }
-    }
+    for (int z = 0; z < 6; z++)
+        for (int w = 0; w < 3; w++)
+            for (int touch = 0; touch < 2; touch++) {
+                char what[80];
+                snprintf(what, sizeof what, "zeta = %.10g, w = %g, %s", ZETA[z], OMEGA[w], touch ? "touching" : "free");
+                const Run x = {.bob = {.mass = 1e4, .omega = OMEGA[w], .zeta = ZETA[z], .gap = touch ? 0.02 : 1e3},
+                               .contact = paper_law(STEEL, 0.7, 1e-3),
+                               .motion = {accel, N, dt, "", "", 0},
+                               .duration = 1.7,
+                               .contact_duration = duration,
+                               .free_step = 4e-4,
+                               .standard = 0.1,
+                               .knob = -1};
+                against_oracle(t, &x, what);
+            }
 }
 
 /* ---- resonance, rest, endless bounces, long runs --------------------------------------------------------------- */
@@ -379,32 +364,29 @@ static void half_periods(Trial *t)
     double accel[N];
     const double omega = 2 * M_PI * 5;
     memcpy(accel, SAMPLE, sizeof accel);
-    TRIAL_EACH_ACCURACY(t)
-    {
-        for (int k = 1; k <= 10; k += 3)
-            for (int off = -1; off <= 1; off++) {
-                char what[60];
-                const double h = k * M_PI / omega * (1 + 1e-9 * off);
-                snprintf(what, sizeof what, "interval %d pi / w", k);
-                Run x = {.bob = {.mass = 1, .omega = omega, .gap = 1e3},
-                         .energy_scale = 0.5 / (omega * omega),
-                         .contact = paper_law(STEEL, 0.7, 1e-3),
-                         .motion = {accel, N, h, "", "", 0},
-                         .duration = 14 * h,
-                         .contact_duration = h,
-                         .free_step = 2e-4};
-                against_oracle(t, &x, what); /* even intervals almost cancel: measured by the energy of one sample */
-                if (trial_engine(t)->knob != KNOB_STEP)
-                    continue;
-                /* a step as long as that cannot be accurate, but free vibration must neither grow nor die in silence */
-                x.knob = h;
-                const SimResult early = run_engine(t, &x);
-                x.duration = 414 * h;
-                const SimResult late = run_engine(t, &x);
-                trial_compare(t, &late, late.kinetic_strain_j, early.kinetic_strain_j, early.kinetic_strain_j, 1e-3,
-                              "step %d pi / w: energy of 400 steps of free vibration", k);
-            }
-    }
+    for (int k = 1; k <= 10; k += 3)
+        for (int off = -1; off <= 1; off++) {
+            char what[60];
+            const double h = k * M_PI / omega * (1 + 1e-9 * off);
+            snprintf(what, sizeof what, "interval %d pi / w", k);
+            Run x = {.bob = {.mass = 1, .omega = omega, .gap = 1e3},
+                     .energy_scale = 0.5 / (omega * omega),
+                     .contact = paper_law(STEEL, 0.7, 1e-3),
+                     .motion = {accel, N, h, "", "", 0},
+                     .duration = 14 * h,
+                     .contact_duration = h,
+                     .free_step = 2e-4};
+            against_oracle(t, &x, what); /* even intervals almost cancel: measured by the energy of one sample */
+            if (trial_engine(t)->knob != KNOB_STEP)
+                continue;
+            /* a step as long as that cannot be accurate, but free vibration must neither grow nor die in silence */
+            x.knob = h;
+            const SimResult early = run_engine(t, &x);
+            x.duration = 414 * h;
+            const SimResult late = run_engine(t, &x);
+            trial_compare(t, &late, late.kinetic_strain_j, early.kinetic_strain_j, early.kinetic_strain_j, 1e-3,
+                          "step %d pi / w: energy of 400 steps of free vibration", k);
+        }
 }
 
 static void static_rest(Trial *t)
@@ -451,12 +433,12 @@ static void endless_bounces(Trial *t)
              .contact_duration = shortest,
              .free_step = 1e-3,
              .knob = -1};
+    x.duration = 0.6 * end;
+    against_oracle(t, &x, "after the first bounces");
+    x.duration = end + 1;
     TRIAL_EACH_ACCURACY(t)
     {
         const double energy = m * g * h;
-        x.duration = 0.6 * end;
-        against_oracle(t, &x, "after the first bounces");
-        x.duration = end + 1;
         const SimResult r = run_engine(t, &x);
         trial_compare(t, &r, r.kinetic_strain_j, 0, energy, trial_allowed(t, 1e-9, 1e-6),
                       "energy of motion at the end");
@@ -478,34 +460,29 @@ static void many_steps(Trial *t)
 {
     const double n = t->size == SIZE_QUICK ? 2e4 : t->size == SIZE_FULL ? 2e5 : 1e7;
     const double dt = 0.02, omega = 2 * M_PI;
-    double accel[3] = {0, -1 / dt, 0};
-    TRIAL_EACH_ACCURACY(t)
-    {
-        Run x = {.bob = {.mass = 1000, .omega = omega, .gap = 1e3},
-                 .contact = paper_law(STEEL, 0.7, 1e-3),
-                 .motion = {accel, 3, dt, "", "", 0},
-                 .duration = 2.37 * dt,
-                 .knob = 0,
-                 .contact_duration = 1};
-        const SimResult early = run_engine(t, &x);
-        x.duration = n * dt;
-        const SimResult late = run_engine(t, &x);
-        trial_compare(t, &late, late.kinetic_strain_j, early.kinetic_strain_j, early.kinetic_strain_j,
-                      trial_allowed(t, 1e-3, 1e-2), "undamped energy after %g intervals", n);
-        trial_compare(t, &late, late.energy_residual, 0, 1, 1e-3, "energy residual after %g intervals", n);
-        /* exp(-zeta w t) passes the least normal number long before the end, or never */
-        double seconds[2];
-        for (int still = 0; still < 2; still++) {
-            x.bob.zeta = still ? 0.9 : 1e-9;
-            const double start = (double)clock();
-            const SimResult r = run_engine(t, &x);
-            seconds[still] = ((double)clock() - start) / CLOCKS_PER_SEC;
-            if (still)
-                trial_compare(t, &r, r.damped_building_j, r.input_energy_j, r.input_energy_j, 1e-3,
-                              "energy damped in the end, of the input");
-        }
-        trial_note(t, NULL, seconds[1] / seconds[0], 3, "time of a run that dies away over that of one that does not");
+    double accel[3] = {0, -1 / dt, 0}, seconds[2];
+    t->accuracy = ACCURACY_STANDARD;
+    Run x = {.bob = {.mass = 1000, .omega = omega, .gap = 1e3},
+             .contact = paper_law(STEEL, 0.7, 1e-3),
+             .motion = {accel, 3, dt, "", "", 0},
+             .duration = 2.37 * dt,
+             .knob = trial_engine(t)->knob == KNOB_STEP ? dt : 0};
+    const SimResult early = run_engine(t, &x);
+    x.duration = n * dt;
+    const SimResult late = run_engine(t, &x);
+    trial_compare(t, &late, late.kinetic_strain_j, early.kinetic_strain_j, early.kinetic_strain_j, 1e-3,
+                  "undamped energy after %g intervals", n);
+    /* exp(-zeta w t) passes the least normal number long before the end, or never */
+    for (int still = 0; still < 2; still++) {
+        x.bob.zeta = still ? 0.9 : 1e-9;
+        const double start = (double)clock();
+        const SimResult r = run_engine(t, &x);
+        seconds[still] = ((double)clock() - start) / CLOCKS_PER_SEC;
+        if (still)
+            trial_compare(t, &r, r.damped_building_j, r.input_energy_j, r.input_energy_j, 1e-3,
+                          "energy damped in the end, of the input");
     }
+    trial_note(t, NULL, seconds[1] / seconds[0], 3, "time of a run that dies away over that of one that does not");
 }
 
 /* Without losses the motion from the turning point on is the motion to it, backwards: the same push stops the mass. */

@@ -113,6 +113,7 @@ static void close_gap(Contacts *c, int j, int side, double t, double speed)
     c->side[j] = side;
     c->v0[j] = fmax(speed, c->model->contact.v0_floor);
     c->impacts++;
+    c->floored += speed < c->model->contact.v0_floor;
     if (c->log && c->log->n < c->log->n_max)
         c->log->at[c->log->n++] = (Closing){.floor = j, .t = t, .speed = speed};
 }

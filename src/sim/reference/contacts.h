@@ -21,7 +21,7 @@ typedef struct {
     double v0[FLOORS_MAX]; /* approach speed when it closed, floored [m/s] */
     double t_before;       /* [s] by sight only: the start of the step */
     double q_before[MODES_MAX], v_before[MODES_MAX], a_before[MODES_MAX]; /* modal motion there */
-    long impacts;
+    long impacts, floored; /* closings, those slower than the floor under v0 */
     ClosingLog *log; /* NULL: none */
 } Contacts;
 

@@ -49,6 +49,7 @@ void ledger_report(const Ledger *l, const Contacts *c, const EngineOptions *opti
     result->steps = l->steps;
     result->force_evaluations = l->evaluations;
     result->impacts = c->impacts;
+    result->floored = c->floored;
     result->input_energy_j = l->input;
     result->contact_loss_j = l->lost;
     result->clamp_j = l->clamp;

@@ -2,6 +2,8 @@
 
 #include <string.h>
 
+#include "base/denormal.h"
+
 /* Peaks are looked for no more often than this [s]. */
 static const double LOOK_EVERY = 1e-3, LOOK_IN_CONTACT = 1e-4;
 
@@ -117,7 +119,9 @@ Status march(const MarchMethod *method, void *work, const SimModel *model, const
     result->n_floors = model->n;
     result->n_modes = model->nb;
     const double step_max = options->knob > 0 ? options->knob : method->step[options->accuracy];
+    const unsigned mode = denormal_off();
     result->outcome = walk(&m, method, work, motion, options->duration, step_max);
+    denormal_restore(mode);
     if (result->outcome == RUN_OK)
         ledger_report(&m.ledger, &m.contacts, options, m.q, m.v, result);
     else

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/denormal.h"
 #include "sim/reference/clones.h"
 #include "sim/reference/vectors.h"
 
@@ -159,7 +160,7 @@ static void set_tolerances(const Ode *o, double level)
     }
     for (size_t k = 0; k < o->motion->n; k++)
         pga = fmax(pga, fabs(o->motion->accel[k]));
-    const double speed = fmax(pga, 1e-6) / slowest, momentum = sqrt(fmax(mass, 1e-6)) * speed;
+    const double speed = (pga > 0 ? pga : 1) / slowest, momentum = sqrt(fmax(mass, 1e-6)) * speed;
     for (int i = 0; i < m; i++) {
         tolerance[i] = level * momentum / fmax(model->omega[i], 1);
         tolerance[m + i] = level * momentum;
@@ -258,22 +259,84 @@ static void remember_start(Ode *o, double t)
         c->a_before[i] -= model->gamma[i] * ground(o, t);
 }
 
-/* Contacts at the end of a step: 1 where the integrator has to start anew. */
-static int switch_contacts(Ode *o, double t, int flag)
+/* Contacts at the end of a step, `found` those whose root was: 1 where the integrator has to start anew. */
+static int switch_contacts(Ode *o, double t, const int found[])
 {
-    int found[FLOORS_MAX] = {0};
     double w[FLOORS_MAX];
     const double *y = ode_values(o->y);
     if (o->model->nc == 0)
         return 0;
-    if (o->locate) {
-        if (flag == ODE_ROOT)
-            o->solver->found(o, found);
+    if (o->locate)
         return contacts_switch(&o->contacts, t, y, y + o->model->m, found);
-    }
     floors_from_modes(o->model, 0, o->model->m, y, w);
     contacts_settle(&o->contacts, w);
     return 0;
+}
+
+typedef struct {
+    double w[FLOORS_MAX], w_dot[FLOORS_MAX];
+} Floors;
+
+static void floors_now(const Ode *o, Floors *f)
+{
+    const SimModel *model = o->model;
+    if (!o->locate || model->nc == 0)
+        return;
+    floors_from_modes(model, 0, model->m, ode_values(o->y), f->w);
+    floors_from_modes(model, 0, model->m, ode_values(o->y) + model->m, f->w_dot);
+}
+
+/* The time in (low, high) where side w - level, or side w' with `speed`, of floor j changes sign, by dense output; the
+ * end where it is positive. */
+static double change_of_sign(Ode *o, int j, int side, int speed, double level, double low, double high)
+{
+    const SimModel *model = o->model;
+    for (int i = 0; i < 60 && high - low > 1e-15 * high; i++) {
+        const double mid = 0.5 * (low + high);
+        if (o->solver->interpolate(o, mid, o->between))
+            return high;
+        const double *y = ode_values(o->between) + (speed ? model->m : 0);
+        const int past =
+            speed ? side * relative_displacement(model, j, y) < 0 : side * relative_displacement(model, j, y) > level;
+        *(past ? &high : &low) = mid;
+    }
+    return high;
+}
+
+/* When the gap of an open floor closed, where its path has turned back within the step; else infinity. */
+static double unseen_closing(Ode *o, int j, double t_before, double t, const Floors *from, const Floors *to)
+{
+    const double gap = o->model->gap[j], third = (t - t_before) / 3;
+    const int side = to->w[j] > 0 ? 1 : -1;
+    if (o->contacts.side[j] || !(side * from->w_dot[j] > 0 && side * to->w_dot[j] < 0) || side * from->w[j] > gap ||
+        side * to->w[j] > gap || /* the cubic's control points enclose it */
+        fmax(side * (from->w[j] + third * from->w_dot[j]), side * (to->w[j] - third * to->w_dot[j])) <= gap)
+        return HUGE_VAL;
+    const double top = change_of_sign(o, j, side, 1, 0, t_before, t);
+    if (o->solver->interpolate(o, top, o->between) ||
+        !(side * relative_displacement(o->model, j, ode_values(o->between)) > gap))
+        return HUGE_VAL;
+    return change_of_sign(o, j, side, 0, gap, t_before, top);
+}
+
+/* A gap that closes and opens again inside one step changes no sign that a root is found by. Goes back to the first
+ * such closing, if any: 1, and found[] says which floor. */
+static int go_back(Ode *o, double t_before, double *t, const Floors *from, const Floors *to, int found[])
+{
+    double first = HUGE_VAL;
+    int floor = -1;
+    for (int j = 0; j < ode_n_roots(o); j++) {
+        const double closing = unseen_closing(o, j, t_before, *t, from, to);
+        if (closing < first) {
+            first = closing;
+            floor = j;
+        }
+    }
+    if (floor < 0 || o->solver->interpolate(o, first, o->y))
+        return 0;
+    found[floor] = 1;
+    *t = first;
+    return 1;
 }
 
 /* From *t to t_stop. */
@@ -281,6 +344,8 @@ static RunOutcome cross(Ode *o, double *t, double t_stop)
 {
     if (o->solver->stop_at(o, t_stop))
         return RUN_ENGINE_FAILED;
+    Floors from, to;
+    floors_now(o, &from);
     while (t_stop - *t > 1e-12 * (1 + t_stop)) {
         if (o->ledger.steps++ >= o->steps_max)
             return RUN_OUT_OF_STEPS;
@@ -290,9 +355,16 @@ static RunOutcome cross(Ode *o, double *t, double t_stop)
         const int flag = o->solver->step(o, t_stop, t);
         if (flag < 0) /* it has tried again with shorter steps before it says so */
             return o->finite ? RUN_ENGINE_FAILED : RUN_NOT_FINITE;
+        int found[FLOORS_MAX] = {0};
+        floors_now(o, &to);
+        if (go_back(o, t_before, t, &from, &to, found))
+            floors_now(o, &to);
+        else if (flag == ODE_ROOT)
+            o->solver->found(o, found);
+        from = to;
         if (look_at_step(o, t_before, *t))
             return RUN_ENGINE_FAILED;
-        if (switch_contacts(o, *t, flag) && start_anew(o, *t, t_stop))
+        if (switch_contacts(o, *t, found) && start_anew(o, *t, t_stop))
             return RUN_ENGINE_FAILED;
     }
     return RUN_OK;
@@ -334,7 +406,9 @@ Status ode_run(Ode *o, SimResult *result)
 {
     const int m = o->model->m;
     const double *y = ode_values(o->y);
+    const unsigned mode = denormal_off();
     result->outcome = walk(o);
+    denormal_restore(mode);
     if (result->outcome != RUN_OK) {
         explain(o, o->ledger.peaks.count ? o->ledger.peaks.ring[(o->ledger.peaks.count + 2) % 3].t : 0, result);
         return STATUS_OK;
