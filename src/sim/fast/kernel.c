@@ -841,10 +841,11 @@ static int contact_step(FastWork *k, const Level *l, double a0, double a1, int f
 /* ---- time --------------------------------------------------------------------------------------------------- */
 
 /* The level whose step is the wanted share of the shortest Hertz contact at the present speed (or the finest). */
-static int contact_level(const FastWork *k)
+static int contact_level(const FastWork *k, double gain)
 {
+    const double speed = k->speed + gain;
     int level = 0;
-    while (level < LEVEL_MAX && k->speed > k->level[level].speed_max)
+    while (level < LEVEL_MAX && speed > k->level[level].speed_max)
         level++;
     return level;
 }
@@ -882,9 +883,11 @@ static int interval(FastWork *k, double a0, double a1)
     const uint32_t whole = UINT32_C(1) << LEVEL_MAX;
     uint32_t at = 0;
     k->energy_scale = energy_scale(k);
+    /* at rest for a moment is no reason for a step in which the ground makes speed again */
+    const double gain = 0.1 * k->base * fmax(fabs(a0), fabs(a1));
     while (at < whole) {
         const int aligned = at ? LEVEL_MAX - __builtin_ctz(at) : 0;
-        const int finest = k->m_pad > k->nb_pad ? contact_level(k) : LEVEL_MAX;
+        const int finest = k->m_pad > k->nb_pad ? contact_level(k, gain) : LEVEL_MAX;
         int level = k->flight_level > aligned ? k->flight_level : aligned, done = 0;
         for (; !done && !k->n_touching && level < finest; level++) {
             const uint32_t step = whole >> level;
