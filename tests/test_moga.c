@@ -408,6 +408,75 @@ static void test_a_batch_spreads_over_the_directions_instead_of_crowding(void **
     directions_free(&d);
 }
 
+/* The chosen are farther apart than twice as many drawn at random are in the mean, and the axes are there. */
+static void test_spread_directions_have_the_axes_and_keep_apart(void **state)
+{
+    (void)state;
+    for (size_t m = 2; m <= 7; m++) {
+        Directions d;
+        Err err = {0};
+        const size_t n = 40;
+        CHECK_OK(directions_spread(&d, m, n, &err), &err);
+        double least = INFINITY;
+        for (size_t i = 0; i < n; i++) {
+            double sum = 0.0;
+            for (size_t k = 0; k < m; k++) {
+                assert_true(d.W[i * m + k] >= 0.0);
+                assert_true(i >= m || d.W[i * m + k] == (i == k));
+                sum += d.W[i * m + k];
+            }
+            assert_close(sum, 1.0, 1e-12);
+            for (size_t j = 0; j < i; j++) {
+                double apart = 0.0;
+                for (size_t k = 0; k < m; k++)
+                    apart += (d.W[i * m + k] - d.W[j * m + k]) * (d.W[i * m + k] - d.W[j * m + k]);
+                least = fmin(least, sqrt(apart));
+            }
+        }
+        /* in two objectives 40 on a line of length sqrt(2); in more there is more room */
+        assert_true(least > (m == 2 ? 0.35 * sqrt(2.0) / 39 : 0.05));
+        directions_free(&d);
+    }
+}
+
+static void test_the_slope_of_pbi_equals_differences(void **state)
+{
+    (void)state;
+    enum { M = 4, ROWS = 30 };
+    double F[ROWS * M], slope[M];
+    size_t rows[ROWS];
+    Random r = random_stream(5, RANDOM_TEST, 0, 0);
+    for (size_t i = 0; i < ROWS; i++) {
+        rows[i] = i;
+        for (size_t k = 0; k < M; k++)
+            F[i * M + k] = (double)(k + 1) * random_uniform(&r);
+    }
+    Directions d;
+    Infill *q;
+    Err err = {0};
+    CHECK_OK(directions_spread(&d, M, 12, &err), &err);
+    CHECK_OK(infill_create(&q, ROWS, &d, &err), &err);
+    infill_measure(q, ROWS, rows, F);
+    for (size_t direction = 0; direction < d.n; direction++) {
+        double f[M], unused[M];
+        assert_true(infill_best(q, direction) < ROWS);
+        for (size_t k = 0; k < M; k++)
+            f[k] = 0.3 + random_uniform(&r);
+        infill_slope(q, direction, f, slope);
+        for (size_t k = 0; k < M; k++) {
+            const double at = f[k], h = 1e-6;
+            f[k] = at + h;
+            const double up = infill_slope(q, direction, f, unused);
+            f[k] = at - h;
+            const double down = infill_slope(q, direction, f, unused);
+            f[k] = at;
+            assert_true(fabs(slope[k] - (up - down) / (2 * h)) < 1e-6);
+        }
+    }
+    infill_free(q);
+    directions_free(&d);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -426,6 +495,8 @@ int main(void)
         cmocka_unit_test(test_feasible_designs_survive_before_infeasible_ones),
         cmocka_unit_test(test_front_flags_equal_a_brute_force_filter_after_every_insertion),
         cmocka_unit_test(test_a_batch_spreads_over_the_directions_instead_of_crowding),
+        cmocka_unit_test(test_spread_directions_have_the_axes_and_keep_apart),
+        cmocka_unit_test(test_the_slope_of_pbi_equals_differences),
     };
     return cmocka_run_group_tests_name("moga", tests, NULL, NULL);
 }

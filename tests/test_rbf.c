@@ -180,6 +180,36 @@ static void test_a_value_that_is_not_finite_is_refused(void **state)
     rbf_free(m);
 }
 
+static void test_the_slope_of_the_surface_equals_differences_for_every_form(void **state)
+{
+    (void)state;
+    double X[N * D], F[N * OUT], f[OUT], up[OUT], down[OUT], J[OUT * D];
+    scatter(7, N, X, F);
+    for (int form = 0; form < RBF_N_KERNELS * RBF_N_TAILS; form++) {
+        Rbf *m = fitted(N, X, F, 1);
+        Err err = {0};
+        for (size_t k = 0; k < OUT; k++)
+            rbf_set_form(m, k, (RbfForm){(RbfKernel)(form / RBF_N_TAILS), (RbfTail)(form % RBF_N_TAILS), 1e-6});
+        CHECK_OK(rbf_fit(m, N, X, F, &err), &err);
+        double x[D] = {0.31, 0.62, 0.48, 0.77}, y[OUT];
+        rbf_slope(m, x, f, J);
+        rbf_eval(m, x, y, NULL);
+        for (size_t k = 0; k < OUT; k++)
+            assert_close(f[k], y[k], 1e-10);
+        for (size_t d = 0; d < D; d++) {
+            const double at = x[d], h = 1e-5;
+            x[d] = at + h;
+            rbf_eval(m, x, up, NULL);
+            x[d] = at - h;
+            rbf_eval(m, x, down, NULL);
+            x[d] = at;
+            assert_true(fabs(J[d] - (up[0] - down[0]) / (2 * h)) < 1e-4);
+            assert_true(fabs(J[D + d] - (up[1] - down[1]) / (2 * h)) < 10.0); /* of 1e5 */
+        }
+        rbf_free(m);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -191,6 +221,7 @@ int main(void)
         cmocka_unit_test(test_the_error_estimate_is_of_the_size_of_the_true_error),
         cmocka_unit_test(test_a_constant_output_is_predicted_without_error),
         cmocka_unit_test(test_a_value_that_is_not_finite_is_refused),
+        cmocka_unit_test(test_the_slope_of_the_surface_equals_differences_for_every_form),
     };
     return cmocka_run_group_tests_name("rbf", tests, NULL, NULL);
 }

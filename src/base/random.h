@@ -23,7 +23,9 @@ typedef enum {
     RANDOM_HYPERVOLUME,
     RANDOM_NOISE,
     RANDOM_ENSEMBLE,
-    RANDOM_TEST
+    RANDOM_TEST,
+    RANDOM_DIRECTIONS,
+    RANDOM_DESCENT
 } RandomPurpose;
 
 typedef struct {

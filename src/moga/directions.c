@@ -1,7 +1,11 @@
 #include "moga/directions.h"
 
+#include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
+
+#include "base/random.h"
 
 /* (p + m - 1 over m - 1), SIZE_MAX where it does not fit. */
 static size_t layer_count(size_t n_obj, size_t p)
@@ -79,6 +83,68 @@ Status directions_create(Directions *d, size_t n_obj, size_t outer, size_t inner
         return STATUS_OK;
     directions_free(d);
     return fail(err, STATUS_NO_MEMORY, "no memory for %zu reference directions", n);
+}
+
+/* Candidate j of the spread: the axes, then uniform on the positive part of the sphere. */
+static void candidate(size_t n_obj, size_t j, double w[])
+{
+    Random random = random_stream(0, RANDOM_DIRECTIONS, 0, (uint32_t)j);
+    double square = 0.0;
+    for (size_t k = 0; k < n_obj; k++) {
+        w[k] = j < n_obj ? (double)(j == k) : fabs(random_normal(&random));
+        square += w[k] * w[k];
+    }
+    for (size_t k = 0; k < n_obj; k++)
+        w[k] /= sqrt(square);
+}
+
+static double square_apart(size_t n_obj, const double a[], const double b[])
+{
+    double sum = 0.0;
+    for (size_t k = 0; k < n_obj; k++)
+        sum += (a[k] - b[k]) * (a[k] - b[k]);
+    return sum;
+}
+
+/* Of all candidates the one that is farthest from those chosen, again and again; the axes come first. */
+static void choose_spread(size_t n, size_t n_obj, size_t n_candidates, const double C[], double nearest[], double *W)
+{
+    for (size_t j = 0; j < n_candidates; j++)
+        nearest[j] = INFINITY;
+    for (size_t i = 0; i < n; i++) {
+        size_t far = 0;
+        for (size_t j = 1; j < n_candidates; j++)
+            far = nearest[j] > nearest[far] ? j : far;
+        const size_t chosen = i < n_obj ? i : far;
+        memcpy(W + i * n_obj, C + chosen * n_obj, n_obj * sizeof *W);
+        for (size_t j = 0; j < n_candidates; j++)
+            nearest[j] = fmin(nearest[j], square_apart(n_obj, C + j * n_obj, C + chosen * n_obj));
+    }
+    for (size_t i = 0; i < n; i++) {
+        double sum = 0.0;
+        for (size_t k = 0; k < n_obj; k++)
+            sum += W[i * n_obj + k];
+        for (size_t k = 0; k < n_obj; k++)
+            W[i * n_obj + k] /= sum;
+    }
+}
+
+Status directions_spread(Directions *d, size_t n_obj, size_t n, Err *err)
+{
+    const size_t n_candidates = n_obj + 20 * n;
+    *d = (Directions){.n = n, .n_obj = n_obj};
+    d->W = calloc(n * n_obj, sizeof *d->W);
+    double *C = calloc(n_candidates * (n_obj + 1), sizeof *C);
+    if (d->W && C) {
+        for (size_t j = 0; j < n_candidates; j++)
+            candidate(n_obj, j, C + j * n_obj);
+        choose_spread(n, n_obj, n_candidates, C, C + n_candidates * n_obj, d->W);
+    }
+    free(C);
+    if (d->W && C)
+        return STATUS_OK;
+    directions_free(d);
+    return fail(err, STATUS_NO_MEMORY, "no memory for %zu directions", n);
 }
 
 void directions_free(Directions *d)

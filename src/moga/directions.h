@@ -24,6 +24,9 @@ void directions_choose(size_t n_obj, size_t population, size_t *outer, size_t *i
 size_t directions_count(size_t n_obj, size_t outer, size_t inner);
 
 Status directions_create(Directions *d, size_t n_obj, size_t outer, size_t inner, Err *err);
+/* n >= n_obj directions as far from each other as can be on the sphere, the axes among them: as dense in the middle as
+ * on the border, for any n. Outer and inner are 0. */
+Status directions_spread(Directions *d, size_t n_obj, size_t n, Err *err);
 void directions_free(Directions *d);
 
 #endif

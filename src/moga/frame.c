@@ -4,7 +4,7 @@
 #include <math.h>
 
 /* Best and worst of each objective; width = worst - best, 1 where all are equal. */
-static void fit_box(Frame *frame, size_t n, const size_t list[], const double F[])
+void frame_fit_box(Frame *frame, size_t n, const size_t list[], const double F[])
 {
     const size_t m = frame->n_obj;
     for (size_t k = 0; k < m; k++) {
@@ -67,7 +67,7 @@ static int solve(size_t m, double A[])
 void frame_fit(Frame *frame, size_t n, const size_t list[], const double F[])
 {
     const size_t m = frame->n_obj, w = m + 1;
-    fit_box(frame, n, list, F);
+    frame_fit_box(frame, n, list, F);
     for (size_t k = 0; k < m; k++) {
         const size_t i = extreme_point(frame, k, n, list, F);
         for (size_t j = 0; j < m; j++)

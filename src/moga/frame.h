@@ -20,6 +20,9 @@ typedef struct {
 /* From the rows list[0..n) of F (., n_obj), n >= 1. */
 void frame_fit(Frame *frame, size_t n, const size_t list[], const double F[]);
 
+/* The same with width = worst minus ideal: what a front that is still growing sideways is measured with. */
+void frame_fit_box(Frame *frame, size_t n, const size_t list[], const double F[]);
+
 static inline double frame_scale(const Frame *frame, size_t k, double f)
 {
     return (f - frame->ideal[k]) / frame->width[k];

@@ -14,6 +14,7 @@ struct Infill {
     Frame frame;
     double *unit;                          /* (n_dir, n_obj) */
     double *least;                         /* (n_dir) to beat */
+    size_t *best;                          /* (n_dir) row that has it */
     double *pbi;                           /* (n, n_dir) of the candidates */
     const double *violation, *uncertainty; /* (n) */
     void *store;
@@ -24,9 +25,9 @@ static void layout(Infill *q, Carve *c)
     const size_t m = q->n_obj;
     q->frame.ideal = carve(c, m, sizeof(double));
     q->frame.width = carve(c, m, sizeof(double));
-    q->frame.plane = carve(c, m * (m + 1), sizeof(double));
     q->unit = carve(c, q->n_dir * m, sizeof(double));
     q->least = carve(c, q->n_dir, sizeof(double));
+    q->best = carve(c, q->n_dir, sizeof(size_t));
     q->pbi = carve(c, q->n_max * q->n_dir, sizeof(double));
 }
 
@@ -81,12 +82,40 @@ static double pbi_value(const Infill *q, size_t r, const double f[])
 
 void infill_measure(Infill *q, size_t n, const size_t front[], const double F[])
 {
-    frame_fit(&q->frame, n, front, F);
+    frame_fit_box(&q->frame, n, front, F);
     for (size_t r = 0; r < q->n_dir; r++) {
         q->least[r] = DBL_MAX;
-        for (size_t i = 0; i < n; i++)
-            q->least[r] = fmin(q->least[r], pbi_value(q, r, F + front[i] * q->n_obj));
+        for (size_t i = 0; i < n; i++) {
+            const double pbi = pbi_value(q, r, F + front[i] * q->n_obj);
+            if (pbi < q->least[r]) {
+                q->least[r] = pbi;
+                q->best[r] = front[i];
+            }
+        }
     }
+}
+
+size_t infill_best(const Infill *q, size_t direction)
+{
+    return q->best[direction];
+}
+
+double infill_slope(const Infill *q, size_t direction, const double f[], double slope[])
+{
+    double along = 0.0, off = 0.0;
+    const double *w = q->unit + direction * q->n_obj;
+    for (size_t k = 0; k < q->n_obj; k++)
+        along += frame_scale(&q->frame, k, f[k]) * w[k];
+    for (size_t k = 0; k < q->n_obj; k++) {
+        const double side = frame_scale(&q->frame, k, f[k]) - along * w[k];
+        off += side * side;
+    }
+    off = sqrt(off);
+    for (size_t k = 0; k < q->n_obj; k++) { /* the side is at right angles to w, so d off / d z_k = side_k / off */
+        const double side = frame_scale(&q->frame, k, f[k]) - along * w[k];
+        slope[k] = (w[k] + (off > 0.0 ? PBI_THETA * side / off : 0.0)) / q->frame.width[k];
+    }
+    return along + PBI_THETA * off;
 }
 
 double infill_distance(const Infill *q, const double f[])

@@ -27,6 +27,10 @@ void infill_measure(Infill *q, size_t n, const size_t front[], const double F[])
 /* How far f is from being the best of any direction, 0 for those that are: small is near the front. */
 double infill_distance(const Infill *q, const double f[]);
 
+/* The direction's best row among those measured, its value to beat, and PBI with its derivatives by f (n_obj). */
+size_t infill_best(const Infill *q, size_t direction);
+double infill_slope(const Infill *q, size_t direction, const double f[], double slope[]);
+
 /* n predicted designs: F (n, n_obj), violation (n), how uncertain each is (n); borrowed until the last pick. */
 void infill_offer(Infill *q, size_t n, const double F[], const double violation[], const double uncertainty[]);
 

@@ -16,22 +16,25 @@
 
 enum {
     INNER_GENERATIONS = 10, /* on the surface, between two batches */
-    BATCH_SHARE = 8,        /* a batch is this part of the population ... */
-    CHECK_SHARE = 4,        /* ... and this part of it checks predictions that stand */
-    AGE_MAX = 3             /* a prediction that stood so often is checked first */
+    WISHES_MAX = 400,
+    BATCH_SHARE = 8, /* a batch is this part of the population ... */
+    CHECK_SHARE = 4, /* ... and this part of it checks predictions that stand */
+    AGE_MAX = 3      /* a prediction that stood so often is checked first */
 };
 
 typedef struct {
     const Problem *problem;
     const SearchConfig *config;
     Archive archive;
-    Directions directions;
+    Directions directions, wishes; /* of survival, of the choice of simulations */
     Survival *survival;
     Infill *infill;
     Surface *surface;
     Group population, pool, offspring;
     size_t generation, n_predicted, batch_max;
     size_t *chosen;                  /* (pool) */
+    size_t *followed;                /* (wishes) in the order of this generation */
+    double *descended;               /* (pool, n_var) */
     double *child;                   /* (2, n_var) */
     double *X, *F, *G;               /* (batch) of one call of evaluate */
     unsigned char *ok;               /* (batch) */
@@ -166,6 +169,31 @@ static Status sample_again(Search *s, Err *err)
     return STATUS_OK;
 }
 
+/* Simulations between two fits of the surface: more as they accumulate, so that fitting never takes over. */
+static size_t batch_size(const Search *s)
+{
+    const size_t population = s->config->population, least = population / BATCH_SHARE + 1, grown = s->archive.n / 40;
+    return grown < least ? least : grown < population / 2 ? grown : population / 2;
+}
+
+/* Some directions, drawn anew each time, are followed down the surface. */
+static void add_descended(Search *s)
+{
+    const Problem *p = s->problem;
+    size_t n = 2 * batch_size(s);
+    Random random = random_stream(s->config->seed, RANDOM_DESCENT, (uint32_t)s->generation, 0);
+    n = n < s->wishes.n ? n : s->wishes.n;
+    for (size_t r = 0; r < s->wishes.n; r++)
+        s->followed[r] = r;
+    random_shuffle(&random, s->wishes.n, s->followed);
+    surface_descend(s->surface, &s->archive, s->infill, n, s->followed, s->descended);
+    for (size_t i = 0; i < n; i++) {
+        if (p->repair)
+            p->repair(s->descended + i * p->n_var, p->user);
+        group_add(&s->offspring, s->descended + i * p->n_var);
+    }
+}
+
 /* The offspring population: what survives some generations of variation and selection on the surface and has not been
  * simulated. Without a surface that can be relied on, plain children of the population. */
 static void make_offspring(Search *s)
@@ -185,6 +213,8 @@ static void make_offspring(Search *s)
     for (size_t i = 0; i < s->pool.n; i++)
         if (s->pool.row[i] == PREDICTED)
             group_copy_member(&s->offspring, &s->pool, i);
+    if (guided && s->archive.n_front > 0)
+        add_descended(s);
     surface_predict(s->surface, &s->offspring, 0, 1);
 }
 
@@ -208,7 +238,7 @@ static size_t choose_plain_batch(Search *s, size_t batch)
 static size_t choose_batch(Search *s)
 {
     const Group *g = &s->offspring;
-    const size_t batch = s->config->population / BATCH_SHARE + 1, check = batch / CHECK_SHARE + 1;
+    const size_t batch = batch_size(s), check = batch / CHECK_SHARE + 1;
     size_t n = 0;
     memset(s->picked, 0, g->n);
     if (!surface_stands(s->surface))
@@ -270,12 +300,21 @@ static Status next_generation(Search *s, Err *err)
     return STATUS_OK;
 }
 
+/* Enough for a first surface of this many variables, and no more than half of the budget. */
+static size_t initial_size(const Search *s)
+{
+    const size_t wanted = 4 * s->problem->n_var + 12, half = (s->config->max_evals + 1) / 2;
+    if (s->config->initial > 0)
+        return s->config->initial;
+    return wanted < half ? wanted : half > 4 ? half : 4;
+}
+
 static Status first_generation(Search *s, Err *err)
 {
     const Problem *p = s->problem;
     size_t n = 0;
-    latin_hypercube(s->config->seed, 0, s->config->initial, p->n_var, p->lower, p->upper, s->pool.X, s->chosen);
-    for (size_t i = 0; i < s->config->initial; i++) {
+    latin_hypercube(s->config->seed, 0, initial_size(s), p->n_var, p->lower, p->upper, s->pool.X, s->chosen);
+    for (size_t i = 0; i < initial_size(s); i++) {
         if (p->repair)
             p->repair(s->pool.X + i * p->n_var, p->user);
         n = batch_add(s, n, s->pool.X + i * p->n_var);
@@ -345,7 +384,7 @@ static Status check(const Problem *p, const SearchConfig *c, Err *err)
     if (p->n_var < 1 || p->n_obj < 1)
         return fail(err, STATUS_BAD_DATA, "search: %zu variables and %zu objectives, wanted at least one of each",
                     p->n_var, p->n_obj);
-    if (c->population < 4 || c->initial < 4 || c->max_evals < 1 || c->surrogate_max < 4)
+    if (c->population < 4 || (c->initial > 0 && c->initial < 4) || c->max_evals < 1 || c->surrogate_max < 4)
         return fail(err, STATUS_BAD_DATA,
                     "search: population %zu, initial %zu and surrogate_max %zu must be 4 at least, max_evals %zu 1",
                     c->population, c->initial, c->surrogate_max, c->max_evals);
@@ -360,6 +399,8 @@ static void layout(Search *s, size_t n_pool, Carve *c)
 {
     const Problem *p = s->problem;
     s->chosen = carve(c, n_pool, sizeof(size_t));
+    s->followed = carve(c, s->wishes.n, sizeof(size_t));
+    s->descended = carve(c, n_pool * p->n_var, sizeof(double));
     s->child = carve(c, 2 * p->n_var, sizeof(double));
     s->X = carve(c, s->batch_max * p->n_var, sizeof(double));
     s->F = carve(c, s->batch_max * p->n_obj, sizeof(double));
@@ -369,10 +410,17 @@ static void layout(Search *s, size_t n_pool, Carve *c)
     s->picked = carve(c, n_pool, 1);
 }
 
+/* Directions of the choice of simulations: as many as the budget can serve, five simulations each. */
+static size_t wishes_for(size_t n_obj, const SearchConfig *c)
+{
+    const size_t served = c->max_evals / 5, least = n_obj > c->population ? n_obj : c->population;
+    return n_obj < 2 ? 1 : served < least ? least : served < WISHES_MAX ? served : WISHES_MAX;
+}
+
 static Status create(Search *s, Err *err)
 {
     const Problem *p = s->problem;
-    const size_t population = s->config->population, initial = s->config->initial;
+    const size_t population = s->config->population, initial = initial_size(s);
     const size_t n_pool = initial > 3 * population ? initial : 3 * population;
     const size_t most = s->config->max_evals > 4 ? s->config->max_evals : 4; /* centres there can ever be */
     const size_t centres = s->config->surrogate_max < most ? s->config->surrogate_max : most;
@@ -380,9 +428,10 @@ static Status create(Search *s, Err *err)
     s->batch_max = initial > population ? initial : population;
     directions_choose(p->n_obj, population, &outer, &inner);
     TRY(directions_create(&s->directions, p->n_obj, outer, inner, err));
+    TRY(directions_spread(&s->wishes, p->n_obj, wishes_for(p->n_obj, s->config), err));
     TRY(archive_init(&s->archive, 2 * initial, p->n_var, p->n_obj, p->n_con, err));
     TRY(survival_create(&s->survival, n_pool, &s->directions, err));
-    TRY(infill_create(&s->infill, n_pool, &s->directions, err));
+    TRY(infill_create(&s->infill, n_pool, &s->wishes, err));
     TRY(surface_create(&s->surface, p, centres, n_pool, err));
     TRY(group_create(&s->population, 2 * population, p->n_var, p->n_obj, err));
     TRY(group_create(&s->offspring, n_pool, p->n_var, p->n_obj, err));
@@ -399,6 +448,7 @@ static Status create(Search *s, Err *err)
 static void release(Search *s)
 {
     directions_free(&s->directions);
+    directions_free(&s->wishes);
     archive_free(&s->archive);
     survival_free(s->survival);
     infill_free(s->infill);

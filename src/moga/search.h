@@ -3,7 +3,8 @@
  *   1 Latin hypercube start, simulated
  *   2 a radial basis response surface on what has been simulated (moga/surface.h)
  *   3 tournament selection, SBX, polynomial mutation: one offspring population, bred over a few generations on the
- *     surface; where the surface explains too little, plain children
+ *     surface, and designs that descend the surface along reference directions; where the surface explains too little,
+ *     plain children
  *   4 every offspring predicted; where the leave-one-out based error estimate is small the prediction stands, of the
  *     others those that promise most are simulated and become new centres (moga/infill.h), the rest is forgotten.
  *     A few predictions that stand are checked by simulation, first those that have stood for long
@@ -29,7 +30,8 @@ typedef enum { KIND_SAMPLED, KIND_INFILL } EvaluationKind;
 
 typedef struct {
     uint32_t seed;
-    size_t population, initial, generations, max_evals, surrogate_max;
+    size_t population, generations, max_evals, surrogate_max;
+    size_t initial; /* 0: by the number of variables */
     double max_seconds;        /* 0: no limit */
     double nondominated_share; /* stop when this share of the archive is nondominated; 1: never */
     double trust_error;        /* share of an objective's range in the archive */

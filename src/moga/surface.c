@@ -18,11 +18,14 @@ struct Surface {
     double *U, *F;     /* (n_max, n_var) (n_max, n_out) centres */
     double *range;     /* (n_out) of each output in the archive */
     double *errors;    /* (n_max) sorted for the median */
+    double *descent;   /* (predict_max, descent_length) */
     double *u, *f, *e; /* (predict_max, n_var) (predict_max, n_out) twice */
     void *store;
     size_t *chosen, *spare; /* (n_archive_max) rows in use; they grow with the archive */
     double *distance;       /* (n_archive_max) */
 };
+
+static size_t descent_length(const Surface *s);
 
 static void layout(Surface *s, Carve *c)
 {
@@ -34,6 +37,7 @@ static void layout(Surface *s, Carve *c)
     s->u = carve(c, s->predict_max * n_var, sizeof(double));
     s->f = carve(c, s->predict_max * s->n_out, sizeof(double));
     s->e = carve(c, s->predict_max * s->n_out, sizeof(double));
+    s->descent = carve(c, s->predict_max * descent_length(s), sizeof(double));
 }
 
 Status surface_create(Surface **out, const Problem *problem, size_t surrogate_max, size_t predict_max, Err *err)
@@ -215,5 +219,84 @@ void surface_predict(Surface *s, Group *group, size_t first, int with_uncertaint
         memcpy(group->F + i * p->n_obj, f, p->n_obj * sizeof *f);
         group->violation[i] = violation_of(p->n_con, f + p->n_obj);
         group->uncertainty[i] = worst;
+    }
+}
+
+enum { DESCENT_STEPS = 30 };
+
+/* What one descent needs: in a row, so that one carve holds those of all directions. */
+typedef struct {
+    double *u, *best, *g, *last, *step, *f, *slope, *J;
+} Descent;
+
+static size_t descent_length(const Surface *s)
+{
+    const size_t d = s->problem->n_var;
+    return 5 * d + 2 * s->n_out + s->n_out * d;
+}
+
+static Descent descent_on(const Surface *s, double *store)
+{
+    const size_t d = s->problem->n_var;
+    return (Descent){store,
+                     store + d,
+                     store + 2 * d,
+                     store + 3 * d,
+                     store + 4 * d,
+                     store + 5 * d,
+                     store + 5 * d + s->n_out,
+                     store + 5 * d + 2 * s->n_out};
+}
+
+/* PBI of the prediction and its derivatives by u, in g. */
+static double value_and_slope(const Surface *s, const Infill *near, size_t direction, Descent *w)
+{
+    const size_t n_var = s->problem->n_var;
+    rbf_slope(s->rbf, w->u, w->f, w->J);
+    const double value = infill_slope(near, direction, w->f, w->slope);
+    for (size_t d = 0; d < n_var; d++) {
+        w->g[d] = 0.0;
+        for (size_t k = 0; k < s->problem->n_obj; k++)
+            w->g[d] += w->slope[k] * w->J[k * n_var + d];
+    }
+    return value;
+}
+
+static void descend(const Surface *s, const Infill *near, size_t direction, Descent *w)
+{
+    const size_t n_var = s->problem->n_var;
+    double least = INFINITY;
+    for (size_t d = 0; d < n_var; d++) {
+        w->step[d] = 0.05;
+        w->last[d] = 0.0;
+    }
+    for (int step = 0; step < DESCENT_STEPS; step++) {
+        const double value = value_and_slope(s, near, direction, w);
+        if (value < least) {
+            least = value;
+            memcpy(w->best, w->u, n_var * sizeof *w->u);
+        }
+        for (size_t d = 0; d < n_var; d++) {
+            const double agreed = w->g[d] * w->last[d];
+            w->step[d] *= agreed > 0.0 ? 1.2 : agreed < 0.0 ? 0.5 : 1.0;
+            w->last[d] = agreed < 0.0 ? 0.0 : w->g[d];
+            if (w->last[d] != 0.0)
+                w->u[d] = fmin(fmax(w->u[d] - copysign(fmin(w->step[d], 0.2), w->g[d]), 0.0), 1.0);
+        }
+    }
+}
+
+void surface_descend(Surface *s, const Archive *a, const Infill *near, size_t n, const size_t directions[], double X[])
+{
+    const Problem *p = s->problem;
+    const size_t length = descent_length(s);
+#pragma omp parallel for schedule(dynamic, 1)
+    for (size_t i = 0; i < n; i++) {
+        Descent w = descent_on(s, s->descent + i * length);
+        to_unit_cube(p, a->X + infill_best(near, directions[i]) * p->n_var, w.u);
+        descend(s, near, directions[i], &w);
+        for (size_t d = 0; d < p->n_var; d++)
+            X[i * p->n_var + d] =
+                fmin(fmax(p->lower[d] + w.best[d] * (p->upper[d] - p->lower[d]), p->lower[d]), p->upper[d]);
     }
 }

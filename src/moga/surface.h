@@ -34,4 +34,8 @@ double surface_error(const Surface *s);
  * that is wanted: it costs a third more. */
 void surface_predict(Surface *s, Group *group, size_t first, int with_uncertainty);
 
+/* Designs lowered along directions of `near` by descent on the surface (resilient back-propagation), each from the row
+ * of the archive that is best in its direction: X (n, n_var). */
+void surface_descend(Surface *s, const Archive *a, const Infill *near, size_t n, const size_t directions[], double X[]);
+
 #endif

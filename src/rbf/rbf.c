@@ -200,9 +200,19 @@ WIDE static double moment(size_t n, const double v[], const double c[], double a
     return sum;
 }
 
+/* sum_i q[i] (at - c[i]) */
+WIDE static double offset_moment(size_t n, const double q[], const double c[], double at)
+{
+    double sum = 0.0;
+#pragma omp simd reduction(+ : sum)
+    for (size_t i = 0; i < n; i++)
+        sum += q[i] * (at - c[i]);
+    return sum;
+}
+
 /* r2[i] = squared scaled distance of x to centres first..first+count-1 of C (n_dim, stride). */
 WIDE static void distances(size_t n_dim, size_t stride, const double C[], const double theta[], const double x[],
-                      size_t x_stride, size_t first, size_t count, double r2[])
+                           size_t x_stride, size_t first, size_t count, double r2[])
 {
     for (size_t i = 0; i < count; i++)
         r2[i] = 0.0;
@@ -573,6 +583,50 @@ void rbf_eval(const Rbf *m, const double x[], double f[], double error[])
 {
     for (size_t k = 0; k < m->n_out; k++)
         eval_output(m, &m->output[k], x, &f[k], error ? &error[k] : NULL);
+}
+
+/* q[i] = w[i] d phi / d (r^2), and the sum of w phi. */
+WIDE static double weighted_slopes(RbfKernel kernel, size_t n, const double r2[], const double w[], double q[])
+{
+    double value = 0.0;
+#pragma omp simd reduction(+ : value)
+    for (size_t i = 0; i < n; i++) {
+        const double a = sqrt(5.0 * r2[i]), e = exp_down(kernel == RBF_GAUSS ? -r2[i] : -a);
+        value += w[i] * (kernel == RBF_GAUSS ? e : (1.0 + a + a * a / 3.0) * e);
+        q[i] = w[i] * (kernel == RBF_GAUSS ? -e : -5.0 / 6.0 * (1.0 + a) * e);
+    }
+    return value;
+}
+
+static double tail_slope(size_t n_dim, const Output *o, size_t d, double x)
+{
+    return (o->n_tail > 1 ? 2.0 * o->tail[1 + d] : 0.0) +
+           (o->n_tail > 1 + n_dim ? 4.0 * (2.0 * x - 1.0) * o->tail[1 + n_dim + d] : 0.0);
+}
+
+static void slope_output(const Rbf *m, const Output *o, const double x[], double *f, double g[])
+{
+    double r2[CHUNK], q[CHUNK], value = 0.0;
+    for (size_t c = 0; c < o->n_tail; c++)
+        value += o->tail[c] * tail_value(m->n_dim, c, x, 1);
+    for (size_t d = 0; d < m->n_dim; d++)
+        g[d] = 0.0;
+    for (size_t first = 0; first < m->n; first += CHUNK) {
+        const size_t count = m->n - first < CHUNK ? m->n - first : CHUNK;
+        distances(m->n_dim, m->n_max, m->C, o->theta, x, 1, first, count, r2);
+        value += weighted_slopes(o->form.kernel, count, r2, o->weight + first, q);
+        for (size_t d = 0; d < m->n_dim; d++)
+            g[d] += offset_moment(count, q, m->C + d * m->n_max + first, x[d]);
+    }
+    *f = o->mean + o->scale * value;
+    for (size_t d = 0; d < m->n_dim; d++)
+        g[d] = o->scale * (2.0 * o->theta[d] * g[d] + tail_slope(m->n_dim, o, d, x[d]));
+}
+
+void rbf_slope(const Rbf *m, const double x[], double f[], double J[])
+{
+    for (size_t k = 0; k < m->n_out; k++)
+        slope_output(m, &m->output[k], x, &f[k], J + k * m->n_dim);
 }
 
 size_t rbf_n(const Rbf *m)

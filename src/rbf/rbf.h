@@ -48,6 +48,9 @@ Status rbf_tune(Rbf *m, Err *err);
 /* f (n_out) and error (n_out), which may be NULL. */
 void rbf_eval(const Rbf *m, const double x[], double f[], double error[]);
 
+/* f (n_out) and its derivatives J (n_out, n_dim). */
+void rbf_slope(const Rbf *m, const double x[], double f[], double J[]);
+
 size_t rbf_n(const Rbf *m);
 const double *rbf_leave_one_out(const Rbf *m, size_t output); /* (n) f_i minus the prediction made without i */
 double rbf_explained(const Rbf *m, size_t output);            /* 1 - leave-one-out variance / variance; 1: perfect */
