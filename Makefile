@@ -45,6 +45,7 @@ LIB     := $(BUILD)/libimtet.a
 TEST_SRC := $(wildcard tests/test_*.c)
 TESTS   := $(TEST_SRC:%.c=$(BUILD)/%)
 STABILITY     := $(BUILD)/tests/stability/stability
+STABILITY.asan := --engine fast
 STABILITY_OBJ := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/stability/*.c))
 PROGRAM := $(if $(filter release,$(MODE)),imtet,$(BUILD)/imtet)
 
@@ -66,7 +67,7 @@ test: setup
 # A test finds the program under test in $$IMTET and the repository in its working directory.
 test-here: $(PROGRAM) $(TESTS) $(STABILITY)
 	@set -e; export IMTET=$(abspath $(PROGRAM)); for t in $(TESTS); do echo "== $$t"; $$t; done; \
-	echo "== $(STABILITY)"; $(STABILITY) --quick --seconds 5; $(STABILITY) --laws
+	echo "== $(STABILITY)"; $(STABILITY) --quick --seconds 3 $(STABILITY.$(MODE)); $(STABILITY) --laws
 
 # Every engine through every case; stability-long has the cases of 1e6 and 1e7 steps. The page is theirs.
 stability: $(STABILITY)

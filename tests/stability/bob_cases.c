@@ -121,7 +121,7 @@ static void twelve_decades(Trial *t)
     static const double R[] = {0, 0.3, 0.5, 0.7, 0.9, 0.99}, DECADE[] = {1e-6, 1e-3, 1, 1e3, 1e6};
     TRIAL_EACH_ACCURACY(t)
     {
-        for (int r = 0; r < 6; r++)
+        for (int r = 0; r < 6; r += t->size == SIZE_QUICK ? 3 : 1)
             for (int d = 0; d < 5; d++)
                 for (int which = 0; which < (DECADE[d] == 1 ? 1 : 3); which++) {
                     const double f = DECADE[d];
@@ -167,7 +167,7 @@ static void long_steps(Trial *t)
             flagged += r->outcome == RUN_OK && r->energy_residual > 1e-3;
             refused += r->outcome != RUN_OK;
             if (r->outcome == RUN_OK && r->energy_residual <= 1e-3)
-                trial_note(t, r, fmax(0, r->kinetic_strain_j / out.energy - 1), 2e-3,
+                trial_note(t, r, fmax(0, r->kinetic_strain_j / out.energy - 1), 1e-2,
                            "energy made without a flag, step %g durations (or tolerance %g), r = %g", LENGTH[l],
                            1e-3 * LENGTH[l], x.r);
         }
@@ -182,8 +182,8 @@ typedef struct {
     Contact contact;
     Motion motion;
     double duration, contact_duration, free_step, knob; /* knob < 0: as trial_knob says */
-    double energy_scale;                                /* 0: the oracle's turnover */
-    double standard;                                    /* allowed at standard; 0: 3e-2 */
+    double energy_scale;                                /* at least the oracle's turnover */
+    double fine, standard;                              /* allowed; 0: 1e-3, 3e-2 */
 } Run;
 
 static SimResult run_engine(Trial *t, const Run *x)
@@ -205,8 +205,8 @@ static SimResult against_oracle(Trial *t, const Run *x, const char *what)
     TRIAL_EACH_ACCURACY(t)
     {
         r = run_engine(t, x);
-        const double energy = x->energy_scale > 0 ? x->energy_scale : o.turnover;
-        const double allowed = trial_allowed(t, 1e-3, x->standard > 0 ? x->standard : 3e-2);
+        const double energy = fmax(x->energy_scale, o.turnover);
+        const double allowed = trial_allowed(t, x->fine > 0 ? x->fine : 1e-3, x->standard > 0 ? x->standard : 3e-2);
         trial_compare(t, &r, r.kinetic_strain_j, o.kinetic_strain, energy, allowed, "%s: energy at the end", what);
         trial_compare(t, &r, r.j1_m, o.peak_u, o.peak_u, allowed, "%s: largest displacement", what);
         trial_compare(t, &r, r.input_energy_j, o.input, energy, allowed, "%s: input energy", what);
@@ -234,6 +234,8 @@ static void grazing(Trial *t)
              .duration = 0.5,
              .free_step = 1e-4,
              .knob = -1,
+             .fine = 5e-3,
+             .standard = 0.1, /* the speed at the wall is the root of how deep the gap would be passed */
              .energy_scale = 0.5 * m * v * v};
     for (int e = 3; e <= 15; e++)
         for (int side = -1; side <= 1; side += 2) {
@@ -364,19 +366,21 @@ static void half_periods(Trial *t)
     double accel[N];
     const double omega = 2 * M_PI * 5;
     memcpy(accel, SAMPLE, sizeof accel);
-    for (int k = 1; k <= 10; k += 3)
-        for (int off = -1; off <= 1; off++) {
+    const int quick = t->size == SIZE_QUICK;
+    for (int k = 1; k <= (quick ? 4 : 10); k += 3)
+        for (int off = quick ? 0 : -1; off <= 1; off++) {
             char what[60];
             const double h = k * M_PI / omega * (1 + 1e-9 * off);
             snprintf(what, sizeof what, "interval %d pi / w", k);
             Run x = {.bob = {.mass = 1, .omega = omega, .gap = 1e3},
-                     .energy_scale = 0.5 / (omega * omega),
+                     .energy_scale = 4.5 / (omega * omega),
                      .contact = paper_law(STEEL, 0.7, 1e-3),
                      .motion = {accel, N, h, "", "", 0},
                      .duration = 14 * h,
                      .contact_duration = h,
                      .free_step = 2e-4};
-            against_oracle(t, &x, what); /* even intervals almost cancel: measured by the energy of one sample */
+            against_oracle(t, &x,
+                           what); /* even intervals almost cancel: measured by the energy of the largest sample */
             if (trial_engine(t)->knob != KNOB_STEP)
                 continue;
             /* a step as long as that cannot be accurate, but free vibration must neither grow nor die in silence */
@@ -440,7 +444,7 @@ static void endless_bounces(Trial *t)
     {
         const double energy = m * g * h;
         const SimResult r = run_engine(t, &x);
-        trial_compare(t, &r, r.kinetic_strain_j, 0, energy, trial_allowed(t, 1e-9, 1e-6),
+        trial_compare(t, &r, r.kinetic_strain_j, 0, energy, trial_allowed(t, 1e-9, 1e-5),
                       "energy of motion at the end");
         trial_compare(t, &r, r.input_energy_j, m * g * (h + p), energy, trial_allowed(t, 1e-4, 1e-2),
                       "work of gravity");
@@ -548,7 +552,7 @@ static SimResult ball_row(Trial *t, const int order[BALLS], double duration, dou
             kinetic += 0.5 * bobs[j].mass * speed * speed;
         }
         const double left = fmax(further.kinetic_strain_j - kinetic, 0);
-        *momentum_error = (sum + sqrt(2 * core * left) - total) / (core * v);
+        *momentum_error = (sum + sqrt(2 * core * left) - total) / total;
     }
     model_free(&model);
     return r;
@@ -561,13 +565,12 @@ static void simultaneous(Trial *t)
     {
         double error;
         const SimResult first = ball_row(t, ORDER[0], 0.15, &error);
-        trial_note(t, &first, fabs(error), trial_allowed(t, 1e-3, 3e-2),
-                   "momentum, in units of the core's at that speed");
+        trial_note(t, &first, fabs(error), trial_allowed(t, 1e-5, 3e-3), "momentum");
         trial_note(t, &first, first.impacts >= BALLS ? 0 : 1, 0.5, "all four touch");
         for (int i = 1; i < 4; i++) {
             const SimResult r = ball_row(t, ORDER[i], 0.15, NULL);
             trial_compare(t, &r, r.kinetic_strain_j, first.kinetic_strain_j, first.kinetic_strain_j,
-                          trial_allowed(t, 1e-9, 1e-4), "energy with floors in another order");
+                          trial_allowed(t, 1e-9, 1e-3), "energy with floors in another order");
             for (int j = 0; j < BALLS; j++)
                 for (int k = 0; k < BALLS; k++)
                     if (ORDER[i][j] == ORDER[0][k])
