@@ -266,7 +266,7 @@ static int stability(const Arguments *a)
 
 int main(int argc, char **argv)
 {
-    Arguments a = {.size = SIZE_FULL, .seconds = 60};
+    Arguments a = {.size = SIZE_FULL, .seconds = 20};
     for (int i = 1; i < argc; i++) {
         const char *value = i + 1 < argc ? argv[i + 1] : NULL;
         if (!strcmp(argv[i], "--quick"))

@@ -15,9 +15,9 @@ static void open_tower(const Trial *t, Tower *tower, double seconds)
     tower->settings.sim.accuracy = t->accuracy;
 }
 
-static double seconds_for(const Trial *t)
+static double seconds_for(const Trial *t, double full)
 {
-    return t->size == SIZE_QUICK ? 2 : 6;
+    return t->size != SIZE_QUICK ? full : t->engine == ENGINE_FAST ? full / 3 : full / 6;
 }
 
 /* The errors that accuracy `standard` promises, times `factor`. */
@@ -48,7 +48,7 @@ static void zero_gap(Trial *t)
 {
     Tower tower;
     t->accuracy = ACCURACY_STANDARD;
-    open_tower(t, &tower, seconds_for(t));
+    open_tower(t, &tower, seconds_for(t, 6));
     tower_set_gaps(&tower, 0);
     const SimResult touching = tower_run(&tower, SCENE_IMPACT), tied = tower_run(&tower, SCENE_TIED);
     trial_compare(t, &touching, touching.j1_m, tied.j1_m, tied.j1_m, 0.03, "J1 against the tied building");
@@ -104,7 +104,7 @@ static void huge_gap(Trial *t)
     TRIAL_EACH_ACCURACY(t)
     {
         Tower tower;
-        open_tower(t, &tower, seconds_for(t));
+        open_tower(t, &tower, seconds_for(t, 6));
         tower_set_gaps(&tower, 50);
         const SimResult r = tower_run(&tower, SCENE_IMPACT);
         const double wanted = largest_displacement(&tower);
@@ -137,7 +137,7 @@ static void stiff_and_soft_core(Trial *t)
     for (int i = 0; i < 4; i += t->size == SIZE_QUICK ? 3 : 1) {
         Tower tower;
         char what[40];
-        open_tower(t, &tower, t->size == SIZE_QUICK ? 0.5 : 3);
+        open_tower(t, &tower, seconds_for(t, 3));
         tower.settings.core.youngs_modulus_pa *= FACTOR[i];
         const SimResult r = tower_run(&tower, SCENE_IMPACT), wanted = finest(&tower);
         snprintf(what, sizeof what, "core stiffness x %g", FACTOR[i]);
@@ -195,7 +195,7 @@ static void core_modes(Trial *t)
 {
     t->accuracy = t->engine == ENGINE_FAST ? ACCURACY_FINE : ACCURACY_STANDARD;
     Tower tower;
-    open_tower(t, &tower, seconds_for(t));
+    open_tower(t, &tower, seconds_for(t, 6));
     const SimResult all = run_truncated(t, &tower, 20);
     for (int nc = 10; nc >= 5; nc -= 5) {
         const SimResult r = run_truncated(t, &tower, nc);
@@ -216,7 +216,7 @@ static void mirrored(Trial *t)
 {
     Tower tower;
     t->accuracy = ACCURACY_STANDARD;
-    open_tower(t, &tower, seconds_for(t));
+    open_tower(t, &tower, seconds_for(t, 6));
     const SimResult there = tower_run(&tower, SCENE_IMPACT);
     for (size_t i = 0; i < tower.motion.n; i++)
         tower.motion.accel[i] *= -1;
@@ -239,7 +239,7 @@ static void padded(Trial *t)
 {
     Tower tower;
     t->accuracy = ACCURACY_STANDARD;
-    open_tower(t, &tower, seconds_for(t));
+    open_tower(t, &tower, seconds_for(t, 6));
     const double duration = (double)(tower.motion.n - 1) * tower.motion.dt_s;
     tower.motion.accel[tower.motion.n - 1] = 0; /* else a ramp to zero would be put in */
     const SimResult bare = tower_run(&tower, SCENE_IMPACT);
@@ -285,7 +285,7 @@ static void strength(Trial *t)
     SimResult first = {0};
     for (int i = 0; i < 6; i += t->size == SIZE_QUICK && i % 3 == 0 ? 2 : 1) {
         Tower tower;
-        open_tower(t, &tower, t->size == SIZE_QUICK ? 1 : 3);
+        open_tower(t, &tower, seconds_for(t, 3));
         for (size_t k = 0; k < tower.motion.n; k++)
             tower.motion.accel[k] *= SCALE[i];
         const SimResult r = tower_run(&tower, SCENE_IMPACT);
@@ -318,7 +318,7 @@ static void threads(Trial *t)
     enum { RUNS = 4 };
     Tower tower;
     t->accuracy = ACCURACY_STANDARD;
-    open_tower(t, &tower, t->size == SIZE_QUICK ? 1 : 3);
+    open_tower(t, &tower, seconds_for(t, 3));
     const int n = t->size == SIZE_QUICK ? 2 : RUNS;
     SimResult alone = tower_run(&tower, SCENE_IMPACT), together[RUNS];
     alone.seconds = 0;
@@ -363,7 +363,7 @@ static void vector_width(Trial *t)
         FastWork *work;
         SimResult first = {0};
         Err err = {0};
-        open_tower(t, &tower, t->size == SIZE_QUICK ? 1 : 3);
+        open_tower(t, &tower, seconds_for(t, 3));
         CHECK_OK(building_load(&b, tower.settings.building.model, &err), &err);
         CHECK_OK(core_beam_make(&core, &tower.settings, b.n, tower.x[20], tower.x[21], &err), &err);
         CHECK_OK(model_create(&model, b.n, &err), &err);
