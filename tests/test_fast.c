@@ -1,5 +1,5 @@
 /* The engine `fast` against closed forms, symmetry, conservation and printed numbers. */
-#include "check.h"
+#include "bob.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -23,27 +23,6 @@ typedef struct {
     double dt;
 } Bounce;
 
-static void set_ball(SimModel *model, const Ball *ball, double gap, Err *err)
-{
-    CHECK_OK(model_create(model, 1, err), err);
-    model->nb = model->nc = 1;
-    model->m = 2;
-    model->m_pad = 8;
-    memset(model->R, 0, 64 * sizeof *model->R);
-    memset(model->RT, 0, 64 * sizeof *model->RT);
-    for (int i = 0; i < 8; i++) {
-        model->omega[i] = model->zeta[i] = model->gamma[i] = 0;
-        model->gap[i] = 1e300;
-        model->mass_eff[i] = 1e300;
-    }
-    model->R[0] = model->RT[0] = 1 / sqrt(ball->m);
-    model->R[8] = model->RT[1] = 1e-30;
-    model->gamma[0] = sqrt(ball->m);
-    model->mass_eff[0] = ball->m;
-    model->gap[0] = gap;
-    model->contact = (Contact){.k = ball->k, .a = 1.5 * (1 - ball->r), .v0_floor = 1e-300};
-}
-
 /* Push: a(t) a triangle of two samples, so that the speed afterwards is v; the ball then flies 3 dt to the wall. With
  * `until` >= 0 the run stops there, in units of Hertz's duration after closing. */
 static void bounce(const Ball *ball, double until, Bounce *b)
@@ -59,7 +38,8 @@ static void bounce(const Ball *ball, double until, Bounce *b)
     /* after the triangle (2 dt) the ball has gone v dt */
     const Motion motion = {.accel = accel, .n = 12, .dt_s = b->dt};
     b->closing = 5 * b->dt;
-    set_ball(&model, ball, ball->v * b->dt + ball->v * 3 * b->dt, &err);
+    bobs_model(&model, 1, &(Bob){.mass = ball->m, .gap = ball->v * b->dt + ball->v * 3 * b->dt}, 0,
+               &(Contact){.k = ball->k, .a = 1.5 * (1 - ball->r), .v0_floor = 1e-300});
     CHECK_OK(fast_create(&work, 1, &err), &err);
     const double end = until >= 0 ? b->closing + until * b->duration : 8 * b->dt;
     fast_run(work, &model, &motion, end, &ball->knobs, &b->result);

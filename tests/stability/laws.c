@@ -213,8 +213,8 @@ static void write_page(const char *path, Measured m[LAWS][N_R])
             "\n## What the floor under v0 and the law change in the tower\n\n"
             "`builtin:sylmar-like` at 0.3 g, stretched by 3, the first 11 s; core section `effective`, gaps of 8 mm "
             "times the storey's number; accuracy `fine`. Changes are against the paper's law with the default floor. "
-            "The clamp's energy is what the bodies keep because the law may not pull: its sign is that of an "
-            "output.\n");
+            "The clamp's energy is negative: what the law would have taken by pulling, and counted as lost, is given "
+            "back.\n");
     write_scene(f);
     fclose(f);
 }
