@@ -9,12 +9,14 @@
 static void layout(FastWork *k, Carve *c)
 {
     const size_t n = (size_t)k->n, n_pad = (size_t)k->n_pad, m_max = 2 * n_pad;
-    vec **const modes[] = {&k->omega, &k->zeta, &k->gamma, &k->wd_inverse, &k->decay, &k->flex, &k->q,  &k->v,
-                          &k->load,  &k->work, &k->ground, &k->q1,        &k->v1,    &k->amplitude,   &k->qa, &k->va,
-                          &k->qb,    &k->vb,   &k->za,    &k->ja,         &k->zb,    &k->jb,   &k->bound, &k->bound_a, &k->work1, &k->ground1};
-    vec **const floors[] = {&k->w,   &k->wd,  &k->w1,  &k->wd1, &k->f0,  &k->f1,  &k->fb, &k->f_before, &k->fb_before, &k->gap,    &k->u0,
-                           &k->u0d, &k->u1,  &k->u1d, &k->a0,  &k->a0d, &k->a1,  &k->a1d,    &k->e_u,    &k->e_w,
-                           &k->e_a, &k->reach_a, &k->peak_u, &k->peak_d, &k->peak_a, &k->c0, &k->c0d, &k->c1, &k->c1d};
+    vec **const modes[] = {&k->omega, &k->zeta,  &k->gamma,   &k->wd_inverse, &k->decay,  &k->flex, &k->q,
+                           &k->v,     &k->load,  &k->work,    &k->ground,     &k->q1,     &k->v1,   &k->amplitude,
+                           &k->qa,    &k->va,    &k->qb,      &k->vb,         &k->za,     &k->ja,   &k->zb,
+                           &k->jb,    &k->bound, &k->bound_a, &k->work1,      &k->ground1};
+    vec **const floors[] = {&k->w,         &k->wd,  &k->w1,  &k->wd1, &k->f0,  &k->f1,      &k->fb,     &k->f_before,
+                            &k->fb_before, &k->gap, &k->u0,  &k->u0d, &k->u1,  &k->u1d,     &k->a0,     &k->a0d,
+                            &k->a1,        &k->a1d, &k->e_u, &k->e_w, &k->e_a, &k->reach_a, &k->peak_u, &k->peak_d,
+                            &k->peak_a,    &k->c0,  &k->c0d, &k->c1,  &k->c1d};
     for (size_t i = 0; i < sizeof modes / sizeof modes[0]; i++)
         *modes[i] = carve(c, m_max, sizeof(double));
     for (size_t i = 0; i < sizeof floors / sizeof floors[0]; i++)

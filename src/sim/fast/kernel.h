@@ -10,7 +10,7 @@
  * the widest. */
 enum {
     PAD = 8,
-    LEVEL_MAX = 24,           /* the shortest step is 2^-24 of a sampling interval */
+    LEVEL_MAX = 24, /* the shortest step is 2^-24 of a sampling interval */
     FLOORS_PAD_MAX = FLOORS_MAX,
     MODES_PAD_MAX = 2 * FLOORS_MAX
 };
@@ -19,14 +19,14 @@ enum {
 enum { RAMP_W, BUBBLE_W, RAMP_V, BUBBLE_V, RESPONSES };
 
 typedef struct {
-    double h;              /* [s] */
-    double speed_max;      /* [m/s] fine enough for contacts up to here */
+    double h;         /* [s] */
+    double speed_max; /* [m/s] fine enough for contacts up to here */
     int has_flow, has_response;
-    vec *coef;              /* (FLOW_ROWS, m_pad) */
-    vec *slow;              /* (m_pad) 1: the Hermite cubic follows this mode, 0: it does not */
-    vec *kappa;             /* (m_pad) error of the cubic, or 1, per unit of amplitude */
-    vec *kappa_accel;       /* (m_pad) the same for -2 zeta w q' - w^2 q */
-    double *response;      /* (RESPONSES, n, n_pad) */
+    vec *coef;        /* (FLOW_ROWS, m_pad) */
+    vec *slow;        /* (m_pad) 1: the Hermite cubic follows this mode, 0: it does not */
+    vec *kappa;       /* (m_pad) error of the cubic, or 1, per unit of amplitude */
+    vec *kappa_accel; /* (m_pad) the same for -2 zeta w q' - w^2 q */
+    double *response; /* (RESPONSES, n, n_pad) */
 } Level;
 
 typedef struct FastWork {
@@ -40,27 +40,27 @@ typedef struct FastWork {
     /* modes */
     vec *omega, *zeta, *gamma, *wd_inverse, *decay, *flex, *q, *v, *load, *work, *ground; /* (m_pad) */
     vec *work1, *ground1;
-    vec *q1, *v1, *amplitude, *qa, *va, *qb, *vb, *za, *ja, *zb, *jb, *bound, *bound_a;     /* (m_pad) */
-    double *R, *R_abs; /* (m_pad, n_pad) */
-    double *RT;        /* (n_pad, m_pad) */
+    vec *q1, *v1, *amplitude, *qa, *va, *qb, *vb, *za, *ja, *zb, *jb, *bound, *bound_a; /* (m_pad) */
+    double *R, *R_abs;                                                                  /* (m_pad, n_pad) */
+    double *RT;                                                                         /* (n_pad, m_pad) */
 
     /* floors */
     vec *w, *wd, *w1, *wd1, *f0, *f1, *fb, *f_before, *fb_before, *gap; /* (n_pad) */
-    vec *c0, *c0d, *c1, *c1d;                           /* (n_pad) the core's part of w in flight */
+    vec *c0, *c0d, *c1, *c1d;                                           /* (n_pad) the core's part of w in flight */
     vec *u0, *u0d, *u1, *u1d, *a0, *a0d, *a1, *a1d, *e_u, *e_w, *e_a, *reach_a; /* (n_pad) */
-    vec *peak_u, *peak_d, *peak_a;                      /* (n_pad) */
-    vec *seen[3][3];                                    /* [how long ago][u, drift, accel] (n_pad) */
-    double seen_h[2];                                  /* steps between them */
-    int n_seen; /* -1: in flight, w and w' are not current */
+    vec *peak_u, *peak_d, *peak_a;                                              /* (n_pad) */
+    vec *seen[3][3];  /* [how long ago][u, drift, accel] (n_pad) */
+    double seen_h[2]; /* steps between them */
+    int n_seen;       /* -1: in flight, w and w' are not current */
     double v0[FLOORS_PAD_MAX];
-    int side[FLOORS_PAD_MAX];                          /* 0 open, +1 or -1 touching */
+    int side[FLOORS_PAD_MAX]; /* 0 open, +1 or -1 touching */
     int n_touching;
-    int flight_level;  /* where the next flight is tried */
-    int touch_level;   /* where the next contact step is tried */
-    int may_grow;      /* the last contact step could have been twice as long */
-    double energy_scale; /* [J] */
-    double speed;      /* [m/s] largest |w'| */
-    double h_before;   /* [s] step that led from f_before to f0 */
+    int flight_level;     /* where the next flight is tried */
+    int touch_level;      /* where the next contact step is tried */
+    int may_grow;         /* the last contact step could have been twice as long */
+    double energy_scale;  /* [J] */
+    double speed;         /* [m/s] largest |w'| */
+    double h_before;      /* [s] step that led from f_before to f0 */
     double shortest_at_1; /* [s] shortest Hertz contact of any floor at 1 m/s */
     const FastKnobs *knobs;
 

@@ -73,8 +73,8 @@ static inline int any(mask m)
     return any != 0;
 }
 
-/* Y_r = sum_i X_r[i] A[i] for `count` rows i of A, each of `blocks` vectors; r = 0..n_rhs-1. The compiler unrolls over the
- * constant n_rhs and keeps the sums in registers. */
+/* Y_r = sum_i X_r[i] A[i] for `count` rows i of A, each of `blocks` vectors; r = 0..n_rhs-1. The compiler unrolls over
+ * the constant n_rhs and keeps the sums in registers. */
 static inline __attribute__((always_inline)) void rows_times(int n_rhs, const vec *A, int blocks, int count,
                                                              const double *const X[], vec *const Y[])
 {

@@ -1,0 +1,157 @@
+/* sim/fast/contact_step.h -- one step with contacts: predict, solve for the forces, let the modes take them, keep the
+ * books. Part of the kernel: static functions, compiled once per instruction set. See fast.h for the method. */
+#ifndef IMTET_SIM_FAST_CONTACT_STEP_H
+#define IMTET_SIM_FAST_CONTACT_STEP_H
+
+#include "sim/fast/forces.h"
+
+/* From flight to contact steps: w and w' exactly, and a first sample for the peaks. */
+static void land(FastWork *k)
+{
+    const double *const state[2] = {scalars_const(k->q), scalars_const(k->v)};
+    vec *const floors[2] = {k->w, k->wd};
+    rows_times(2, (const vec *)k->R, k->nf, k->m_pad, state, floors);
+    outputs(k, k->q, k->v, k->seen[0][0], k->seen[0][1], k->seen[0][2]);
+    k->n_seen = 1;
+    k->h_before = 1;
+}
+
+static void contact_predict(FastWork *k, const Level *l, double a0, double a1)
+{
+    const vec *c = l->coef;
+    const int mf = k->mf;
+    for (int i = 0; i < mf; i++) {
+        const vec q = k->q[i], v = k->v[i], p0 = k->load[i] - k->gamma[i] * a0,
+                  p1 = -k->gamma[i] * (a1 - a0) - k->load[i];
+        k->q1[i] = c[FLOW_Q * mf + i] * q + c[(FLOW_Q + 1) * mf + i] * v + c[(FLOW_Q + 2) * mf + i] * p0 +
+                   c[(FLOW_Q + 3) * mf + i] * p1;
+        k->v1[i] = c[FLOW_V * mf + i] * q + c[(FLOW_V + 1) * mf + i] * v + c[(FLOW_V + 2) * mf + i] * p0 +
+                   c[(FLOW_V + 3) * mf + i] * p1;
+    }
+    const double *const state[2] = {scalars_const(k->q1), scalars_const(k->v1)};
+    vec *const floors[2] = {k->w1, k->wd1};
+    rows_times(2, (const vec *)k->R, k->nf, k->m_pad, state, floors);
+}
+
+/* What the modes would be with the forces that were found; returns the work [J] that they did on all modes. */
+static double contact_update(FastWork *k, const Level *l, const Active *active, double a0, double a1)
+{
+    const vec *c = l->coef, zero = {0};
+    const int mf = k->mf;
+    vec *load1 = k->qa, *bubble = k->va, taken = zero;
+    for (int i = 0; i < mf; i++)
+        load1[i] = bubble[i] = zero;
+    for (int n = 0; n < active->n; n++) {
+        const vec *row = (const vec *)k->RT + active->floor[n] * mf;
+        const double f1 = scalars(k->f1)[active->floor[n]], fb = scalars(k->fb)[active->floor[n]];
+        for (int i = 0; i < mf; i++) {
+            load1[i] += row[i] * f1;
+            bubble[i] += row[i] * fb;
+        }
+    }
+    for (int i = 0; i < mf; i++) {
+        const vec q = k->q[i], v = k->v[i], load = k->load[i], b = bubble[i];
+        const vec q1 = k->q1[i] + c[(FLOW_Q + 3) * mf + i] * (load1[i] + b) - c[(FLOW_Q + 4) * mf + i] * b;
+        const vec v1 = k->v1[i] + c[(FLOW_V + 3) * mf + i] * (load1[i] + b) - c[(FLOW_V + 4) * mf + i] * b;
+        const vec g0 = -k->gamma[i] * a0, g1 = -k->gamma[i] * (a1 - a0), rise = load1[i] - load + b;
+        const vec p0 = g0 + load, p1 = g1 + rise;
+        const vec mean = c[FLOW_I * mf + i] * q + c[(FLOW_I + 1) * mf + i] * v + c[(FLOW_I + 2) * mf + i] * p0 +
+                         c[(FLOW_I + 3) * mf + i] * p1 - c[(FLOW_I + 4) * mf + i] * b;
+        const vec first = c[FLOW_K * mf + i] * q + c[(FLOW_K + 1) * mf + i] * v + c[(FLOW_K + 2) * mf + i] * p0 +
+                          c[(FLOW_K + 3) * mf + i] * p1 - c[(FLOW_K + 4) * mf + i] * b;
+        const vec work = load1[i] * q1 - load * q - rise * mean + 2 * b * first;
+        k->work1[i] = k->work[i] + work;
+        k->ground1[i] = k->ground[i] + (g0 + g1) * q1 - g0 * q - g1 * mean;
+        k->q1[i] = q1;
+        k->v1[i] = v1;
+        taken += work;
+    }
+    return lanes_sum(taken);
+}
+
+/* How far the energy that the modes gave to the contacts, by their exact motion, is from what the force law took along
+ * its cubic paths: zero but for the error of the step. */
+static double step_mismatch(const FastWork *k, const Active *active, double work)
+{
+    double taken = 0;
+    for (int i = 0; i < active->n; i++) {
+        const int j = active->floor[i];
+        const double gap = scalars_const(k->gap)[j];
+        taken += active->press[i].lost + active->press[i].clamped;
+        taken += contact_stored(&k->model->contact, fabs(scalars_const(k->w1)[j]) - gap) -
+                 contact_stored(&k->model->contact, fabs(scalars_const(k->w)[j]) - gap);
+    }
+    return fabs(work + taken);
+}
+
+static void accept_contacts(FastWork *k, const Active *active, double h)
+{
+    k->n_touching = 0;
+    for (int i = 0; i < active->n; i++) {
+        const int j = active->floor[i];
+        const Press *t = &active->press[i];
+        const double w0 = scalars(k->w)[j], w1 = scalars(k->w1)[j], gap = scalars(k->gap)[j];
+        k->contact_lost += t->lost;
+        k->contact_clamped += t->clamped;
+        k->impacts += t->closings;
+        k->floored += t->floored;
+        k->side[j] = w1 > gap ? 1 : -w1 > gap ? -1 : 0;
+        k->v0[j] = t->v0;
+        if (t->mean != 0)
+            k->deepest = fmax(k->deepest, largest_on_cubic(h, w0, scalars(k->wd)[j], w1, scalars(k->wd1)[j]) - gap);
+        k->n_touching += k->side[j] != 0;
+    }
+    swap(&k->q, &k->q1);
+    swap(&k->v, &k->v1);
+    swap(&k->load, &k->qa);
+    swap(&k->work, &k->work1);
+    swap(&k->ground, &k->ground1);
+    swap(&k->w, &k->w1);
+    swap(&k->wd, &k->wd1);
+    vec *const free_slot = k->f_before;
+    k->f_before = k->f0;
+    k->f0 = k->f1;
+    k->f1 = free_slot;
+    swap(&k->fb, &k->fb_before);
+    k->h_before = h;
+    forget_forces(k);
+    k->speed = largest(k->wd, k->nf);
+}
+
+static int closes(const Active *active)
+{
+    for (int i = 0; i < active->n; i++)
+        if (active->press[i].closings)
+            return 1;
+    return 0;
+}
+
+/* One step with whatever contacts it holds; 0 when it must be shorter and nothing has changed. */
+static int contact_step(FastWork *k, const Level *l, double a0, double a1, int finest)
+{
+    Active active;
+    if (k->n_seen < 0)
+        land(k);
+    k->steps++;
+    contact_predict(k, l, a0, a1);
+    if (!solve_contacts(k, l, k->knobs->solver_tolerance, &active)) {
+        forget_forces(k);
+        return 0;
+    }
+    if (!finest && closes(&active)) {
+        forget_forces(k);
+        return 0;
+    }
+    const double work = contact_update(k, l, &active, a0, a1);
+    const double mismatch = step_mismatch(k, &active, work), allowed = k->knobs->energy_tolerance * k->energy_scale;
+    if (!finest && !(mismatch <= allowed)) {
+        forget_forces(k);
+        return 0;
+    }
+    k->may_grow = mismatch <= allowed / 32;
+    accept_contacts(k, &active, l->h);
+    peaks_in_contact(k, l->h);
+    return 1;
+}
+
+#endif

@@ -1,0 +1,282 @@
+/* sim/fast/forces.h -- the contact forces of one step: the force law along the paths of all touching floors, by
+ * Newton's method. Part of the kernel: static functions, compiled once per instruction set. See fast.h for the method.
+ */
+#ifndef IMTET_SIM_FAST_FORCES_H
+#define IMTET_SIM_FAST_FORCES_H
+
+#include <math.h>
+#include <string.h>
+
+#include "sim/fast/peaks.h"
+
+/* What both walls do to one floor over a step; as Touch, in w instead of p. */
+typedef struct {
+    double end, mean, end_w, end_v, mean_w, mean_v, v0, lost, clamped;
+    int closings, floored;
+} Press;
+
+/* Gives floor j the force f1 at the end and the bubble fb; w1 and w1' of all floors follow. */
+static void apply_force(FastWork *k, const Level *l, int j, double f1, double fb)
+{
+    const int nf = k->nf, size = k->n * nf;
+    const vec *r = (const vec *)l->response + j * nf;
+    const double d1 = f1 - scalars(k->f1)[j], db = fb - scalars(k->fb)[j];
+    for (int f = 0; f < nf; f++) {
+        k->w1[f] += r[RAMP_W * size + f] * d1 + r[BUBBLE_W * size + f] * db;
+        k->wd1[f] += r[RAMP_V * size + f] * d1 + r[BUBBLE_V * size + f] * db;
+    }
+    scalars(k->f1)[j] = f1;
+    scalars(k->fb)[j] = fb;
+}
+
+/* The force law along the path of floor j to w1, w1', both walls: a path may leave one and reach the other. Forces push
+ * the floor to the negative side. */
+static void press(FastWork *k, double h, int j, double w1, double w1d, Press *out)
+{
+    const double w0 = scalars(k->w)[j], w0d = scalars(k->wd)[j], gap = scalars(k->gap)[j], third = h / 3;
+    const double b1 = w0 + third * w0d, b2 = w1 - third * w1d; /* with w0 and w1 they enclose the path */
+    *out = (Press){0};
+    for (int wall = 0; wall < 2; wall++) {
+        const double s = wall == 0 ? 1 : -1;
+        if (s * w0 <= gap && s * b1 <= gap && s * b2 <= gap && s * w1 <= gap)
+            continue;
+        Touch t;
+        touch_step(&t, &k->model->contact, k->model->mass_eff[j], h, s * w0 - gap, s * w0d, s * w1 - gap, s * w1d,
+                   k->side[j] == s, larger(k->v0[j], k->model->contact.v0_floor));
+        k->forces++;
+        out->end += s * t.end;
+        out->mean += s * t.mean;
+        out->end_w += t.end_p;
+        out->end_v += t.end_v;
+        out->mean_w += t.mean_p;
+        out->mean_v += t.mean_v;
+        out->lost += t.lost;
+        out->clamped += t.clamped;
+        out->closings += t.closings;
+        out->floored += t.floored;
+        if (s * w1 > gap)
+            out->v0 = t.v0;
+    }
+}
+
+/* The floors that may touch in this step, and the small dense problem of their forces:
+ *   w1_i  = free_i  - sum_j (g[i][j].w_end F_j + .w_mean M_j),   w1_i' with .v_end, .v_mean,
+ *   (F_i, M_i) = force at the end and mean force by the law along the path to w1_i, w1_i' */
+typedef struct {
+    double w_end, w_mean, v_end, v_mean;
+} Reply;
+
+typedef struct {
+    int n, floor[FLOORS_PAD_MAX];
+    unsigned char listed[FLOORS_PAD_MAX];
+    double w1[FLOORS_PAD_MAX], wd1[FLOORS_PAD_MAX], F[FLOORS_PAD_MAX], M[FLOORS_PAD_MAX];
+    double scale_w[FLOORS_PAD_MAX], scale_v[FLOORS_PAD_MAX]; /* what the step moves */
+    Press press[FLOORS_PAD_MAX];
+    Reply g[FLOORS_PAD_MAX * FLOORS_PAD_MAX];      /* (n, n) */
+    double J[4 * FLOORS_PAD_MAX * FLOORS_PAD_MAX]; /* (2n, 2n) factors of Newton's matrix */
+    int order[2 * FLOORS_PAD_MAX];
+} Active;
+
+/* Lists the floors whose path may leave the gap; returns how many were new. */
+static int find_closings(FastWork *k, const Level *l, Active *active)
+{
+    int found = 0;
+    for (int f = 0; f < k->nf; f++) {
+        const mask out = ~(hull(k->w[f], k->wd[f], k->w1[f], k->wd1[f], l->h) <= k->gap[f]);
+        if (!any(out))
+            continue;
+        for (int lane = 0; lane < LANES; lane++) {
+            const int j = f * LANES + lane;
+            if (!out[lane] || active->listed[j] || j >= k->n)
+                continue;
+            active->listed[j] = 1;
+            active->floor[active->n++] = j;
+            found++;
+        }
+    }
+    return found;
+}
+
+static void list_touching(FastWork *k, Active *active)
+{
+    active->n = 0;
+    memset(active->listed, 0, sizeof active->listed);
+    for (int j = 0; k->n_touching && j < k->n; j++)
+        if (k->side[j]) {
+            active->listed[j] = 1;
+            active->floor[active->n++] = j;
+        }
+}
+
+/* A (n, n) row-major := its factors L U with row exchange order[]; 0: singular or not finite. */
+static int factorise(int n, double *A, int order[])
+{
+    for (int c = 0; c < n; c++) {
+        int top = c;
+        for (int r = c + 1; r < n; r++)
+            if (fabs(A[r * n + c]) > fabs(A[top * n + c]))
+                top = r;
+        const double pivot = A[top * n + c];
+        if (!(fabs(pivot) > 0) || !isfinite(pivot))
+            return 0;
+        order[c] = top;
+        for (int j = 0; top != c && j < n; j++) {
+            const double kept = A[c * n + j];
+            A[c * n + j] = A[top * n + j];
+            A[top * n + j] = kept;
+        }
+        const double inverse = 1 / pivot;
+        for (int r = c + 1; r < n; r++) {
+            const double f = A[r * n + c] *= inverse;
+            if (f != 0)
+                for (int j = c + 1; j < n; j++)
+                    A[r * n + j] -= f * A[c * n + j];
+        }
+    }
+    return 1;
+}
+
+static void substitute(int n, const double *A, const int order[], double x[])
+{
+    for (int c = 0; c < n; c++) {
+        const double kept = x[c];
+        x[c] = x[order[c]];
+        x[order[c]] = kept;
+    }
+    for (int r = 1; r < n; r++)
+        for (int c = 0; c < r; c++)
+            x[r] -= A[r * n + c] * x[c];
+    for (int r = n - 1; r >= 0; r--) {
+        for (int c = r + 1; c < n; c++)
+            x[r] -= A[r * n + c] * x[c];
+        x[r] /= A[r * n + r];
+    }
+}
+
+/* Takes in floors n_before..n-1, whose w1 and w1' are free of their own force, with a first guess of it: the polynomial
+ * of the step before goes on. */
+static void take_in(FastWork *k, const Level *l, Active *a, int n_before)
+{
+    const int size = k->n * k->n_pad;
+    for (int i = n_before; i < a->n; i++) {
+        const int j = a->floor[i];
+        const double w0 = scalars(k->w)[j], v0 = scalars(k->wd)[j], gap = scalars(k->gap)[j];
+        const double w1 = scalars(k->w1)[j], v1 = scalars(k->wd1)[j];
+        a->scale_v[i] = fabs(v0) + fabs(v1);
+        a->scale_w[i] = fabs(fabs(w0) - gap) + fabs(fabs(w1) - gap) + l->h * a->scale_v[i];
+        const double f0 = scalars(k->f0)[j], r = l->h / k->h_before, b = scalars(k->fb_before)[j];
+        const double f1 = f0 + r * (f0 - scalars(k->f_before)[j]) - b * r * (1 + r);
+        if (f1 * f0 > 0)
+            apply_force(k, l, j, f1, b * r * r);
+        else
+            apply_force(k, l, j, f0, 0);
+    }
+    for (int i = 0; i < a->n; i++) {
+        const int j = a->floor[i];
+        a->w1[i] = scalars(k->w1)[j];
+        a->wd1[i] = scalars(k->wd1)[j];
+        a->F[i] = -scalars(k->f1)[j];
+        a->M[i] = (-scalars(k->fb)[j] - 3 * scalars(k->f0)[j] + 3 * a->F[i]) / 6;
+        for (int c = 0; c < a->n; c++) {
+            const double *r = l->response + j * k->n_pad + a->floor[c];
+            const double w_b = r[BUBBLE_W * size], v_b = r[BUBBLE_V * size];
+            a->g[i * a->n + c] = (Reply){r[RAMP_W * size] - 3 * w_b, 6 * w_b, r[RAMP_V * size] - 3 * v_b, 6 * v_b};
+        }
+    }
+}
+
+/* Newton's matrix I + (slopes of the law) (replies of w1, w1'), factorised; 0: singular. */
+static int take_slopes(Active *a)
+{
+    const int n = a->n;
+    for (int i = 0; i < n; i++) {
+        const Press *t = &a->press[i];
+        double *row = a->J + 4 * i * n;
+        for (int j = 0; j < n; j++, row += 2) {
+            const Reply *g = &a->g[i * n + j];
+            row[0] = t->end_w * g->w_end + t->end_v * g->v_end + (i == j);
+            row[1] = t->end_w * g->w_mean + t->end_v * g->v_mean;
+            row[2 * n] = t->mean_w * g->w_end + t->mean_v * g->v_end;
+            row[2 * n + 1] = t->mean_w * g->w_mean + t->mean_v * g->v_mean + (i == j);
+        }
+    }
+    return factorise(2 * n, a->J, a->order);
+}
+
+/* One step of Newton's method, with the matrix of this state or (not fresh) of an earlier one. Returns the largest
+ * change of w1 and w1' relative to what the step moves, or NaN when there is none. */
+static double improve_forces(FastWork *k, double h, Active *a, int fresh)
+{
+    const int n = a->n;
+    double x[2 * FLOORS_PAD_MAX], change = 0;
+    for (int i = 0; i < n; i++) {
+        press(k, h, a->floor[i], a->w1[i], a->wd1[i], &a->press[i]);
+        x[2 * i] = a->F[i] - a->press[i].end;
+        x[2 * i + 1] = a->M[i] - a->press[i].mean;
+    }
+    if (fresh && !take_slopes(a))
+        return NAN;
+    substitute(2 * n, a->J, a->order, x);
+    for (int i = 0; i < n; i++) {
+        double dw = 0, dv = 0;
+        for (int j = 0; j < n; j++) {
+            const Reply *g = &a->g[i * n + j];
+            dw += g->w_end * x[2 * j] + g->w_mean * x[2 * j + 1];
+            dv += g->v_end * x[2 * j] + g->v_mean * x[2 * j + 1];
+        }
+        a->w1[i] += dw;
+        a->wd1[i] += dv;
+        a->F[i] -= x[2 * i];
+        a->M[i] -= x[2 * i + 1];
+        const double c = larger(fabs(dw) / a->scale_w[i], fabs(dv) / a->scale_v[i]);
+        if (!(c <= change))
+            change = c;
+    }
+    return change;
+}
+
+static void hand_out(FastWork *k, const Level *l, const Active *a)
+{
+    for (int i = 0; i < a->n; i++) {
+        const int j = a->floor[i];
+        apply_force(k, l, j, -a->F[i], -(6 * a->M[i] + 3 * scalars(k->f0)[j] - 3 * a->F[i]));
+    }
+}
+
+/* The forces of all floors at once by Newton's method; 0 when they cannot be had at this step length. */
+static int solve_contacts(FastWork *k, const Level *l, double tolerance, Active *active)
+{
+    enum { MOST = 40 };
+    list_touching(k, active);
+    int before = 0, fresh = 1;
+    double last = 0;
+    if (active->n == 0 && !find_closings(k, l, active))
+        return 1;
+    for (int i = 0; i < MOST; i++) {
+        if (active->n > before) {
+            take_in(k, l, active, before);
+            before = active->n;
+            fresh = 1;
+        }
+        const double change = improve_forces(k, l->h, active, fresh);
+        if (!(change >= 0))
+            return 0;
+        fresh = change > 0.1 * last; /* an old matrix serves while it gains a digit a step */
+        last = change;
+        if (change > tolerance)
+            continue;
+        hand_out(k, l, active);
+        if (!find_closings(k, l, active))
+            return 1;
+    }
+    return 0;
+}
+
+static void forget_forces(FastWork *k)
+{
+    const vec zero = {0};
+    for (int f = 0; f < k->nf; f++)
+        k->f1[f] = k->fb[f] = zero;
+}
+
+#endif

@@ -1,0 +1,168 @@
+/* sim/fast/tables.h -- the tables of one step length, a design in the engine's own layout, and the state of rest.
+ * Part of the kernel: static functions, compiled once per instruction set. See fast.h for the method. */
+#ifndef IMTET_SIM_FAST_TABLES_H
+#define IMTET_SIM_FAST_TABLES_H
+
+#include <math.h>
+#include <string.h>
+
+#include "sim/fast/kernel.h"
+
+/* Above this w h a mode is bounded by its amplitude, below it the Hermite cubic follows it. */
+static const double FAST_MODE = 1.5;
+
+/* The greater; b where a is not a number. Faster than fmax, which must look at both. */
+static inline double larger(double a, double b)
+{
+    return a > b ? a : b;
+}
+
+static double *scalars(vec *p)
+{
+    return (double *)p;
+}
+
+static const double *scalars_const(const vec *p)
+{
+    return (const double *)p;
+}
+
+static void swap(vec **a, vec **b)
+{
+    vec *t = *a;
+    *a = *b;
+    *b = t;
+}
+
+static double largest(const vec *a, int nf)
+{
+    vec most = vec_abs(a[0]);
+    for (int f = 1; f < nf; f++)
+        most = vec_max(most, vec_abs(a[f]));
+    double m = 0;
+    for (int lane = 0; lane < LANES; lane++)
+        m = fmax(m, most[lane]);
+    return m;
+}
+
+static void level_flow(FastWork *k, Level *l)
+{
+    const double *omega = scalars_const(k->omega), *zeta = scalars_const(k->zeta);
+    flow_coefficients((size_t)k->m_pad, omega, zeta, l->h, scalars(l->coef), (size_t)k->m_pad);
+    for (int i = 0; i < k->m_pad; i++) {
+        const double over = zeta[i] > 0.99 ? zeta[i] + sqrt(fmax(zeta[i] * zeta[i] - 1, 0)) : 1;
+        const double wh = omega[i] * over * l->h, error = wh * wh * wh * wh / 384;
+        const int slow = wh < FAST_MODE;
+        /* overdamped: |x| + |x' + zeta w x| t instead of the amplitude of a sine, at most sqrt(2) times its root */
+        const double bound = (slow ? error : 1) * (over > 1 ? sqrt(2.0) : 1);
+        scalars(l->slow)[i] = slow;
+        scalars(l->kappa)[i] = bound;
+        scalars(l->kappa_accel)[i] = bound * omega[i] * omega[i] * (1 + 2 * zeta[i]);
+    }
+    l->has_flow = 1;
+}
+
+/* w at the end of the step answers a ramp x and a bubble x (1 - x) of force at floor j with column j of these. */
+static void level_response(FastWork *k, Level *l)
+{
+    const double *coef = scalars_const(l->coef);
+    const int size = k->n * k->n_pad;
+    memset(l->response, 0, sizeof(double) * (size_t)(RESPONSES * size));
+    for (int i = 0; i < k->m_pad; i++) {
+        const double *row = k->R + i * k->n_pad;
+        const double w1 = coef[(FLOW_Q + 3) * k->m_pad + i], w2 = coef[(FLOW_Q + 4) * k->m_pad + i];
+        const double v1 = coef[(FLOW_V + 3) * k->m_pad + i], v2 = coef[(FLOW_V + 4) * k->m_pad + i];
+        const double unit[RESPONSES] = {[RAMP_W] = w1, [BUBBLE_W] = w1 - w2, [RAMP_V] = v1, [BUBBLE_V] = v1 - v2};
+        for (int r = 0; r < RESPONSES; r++)
+            for (int j = 0; j < k->n; j++) {
+                const double c = unit[r] * row[j];
+                double *out = l->response + r * size + j * k->n_pad;
+                for (int f = 0; f < k->n_pad; f++)
+                    out[f] += c * row[f];
+            }
+    }
+    l->has_response = 1;
+}
+
+static Level *level_ready(FastWork *k, int index, int with_response)
+{
+    Level *l = &k->level[index];
+    if (!l->has_flow) {
+        l->h = ldexp(k->base, -index);
+        level_flow(k, l);
+    }
+    if (with_response && !l->has_response)
+        level_response(k, l);
+    return l;
+}
+
+static void set_base(FastWork *k, double base)
+{
+    if (base == k->base)
+        return;
+    k->base = base;
+    for (int i = 0; i <= LEVEL_MAX; i++) {
+        k->level[i].has_flow = k->level[i].has_response = 0;
+        /* a contact lasts shortest_at_1 speed^-0.2 */
+        k->level[i].speed_max = pow(k->shortest_at_1 / (ldexp(base, -i) * k->knobs->steps_per_contact), 5);
+    }
+}
+
+static void copy_mode(FastWork *k, const SimModel *model, int from, int to)
+{
+    scalars(k->omega)[to] = model->omega[from];
+    scalars(k->zeta)[to] = model->zeta[from];
+    scalars(k->gamma)[to] = model->gamma[from];
+    for (int j = 0; j < k->n_pad; j++) {
+        const double r = model->R[from * model->n_pad + j];
+        k->R[to * k->n_pad + j] = k->RT[j * k->m_pad + to] = r;
+        k->R_abs[to * k->n_pad + j] = fabs(r);
+    }
+}
+
+static void take_model(FastWork *k, const SimModel *model, double base)
+{
+    k->model = model;
+    k->nb_pad = (model->nb + PAD - 1) / PAD * PAD;
+    k->m_pad = k->nb_pad + (model->nc + PAD - 1) / PAD * PAD;
+    k->nf = k->n_pad / LANES;
+    k->bf = k->nb_pad / LANES;
+    k->mf = k->m_pad / LANES;
+    memset(k->R, 0, sizeof(double) * (size_t)(k->m_pad * k->n_pad));
+    memset(k->R_abs, 0, sizeof(double) * (size_t)(k->m_pad * k->n_pad));
+    memset(k->RT, 0, sizeof(double) * (size_t)(k->m_pad * k->n_pad));
+    for (int i = 0; i < k->m_pad; i++) {
+        scalars(k->omega)[i] = 1;
+        scalars(k->zeta)[i] = 0.5;
+        scalars(k->gamma)[i] = 0;
+    }
+    for (int i = 0; i < model->nb; i++)
+        copy_mode(k, model, i, i);
+    for (int i = 0; i < model->nc; i++)
+        copy_mode(k, model, model->nb + i, k->nb_pad + i);
+    for (int i = 0; i < k->m_pad; i++) {
+        const double omega = scalars(k->omega)[i], zeta = scalars(k->zeta)[i];
+        scalars(k->decay)[i] = 2 * zeta * omega;
+        scalars(k->wd_inverse)[i] = zeta > 0.99 || omega == 0 ? base : 1 / (omega * sqrt(1 - zeta * zeta));
+        scalars(k->flex)[i] = omega > 0 ? 1 / (omega * omega) : 0;
+    }
+    memcpy(k->gap, model->gap, sizeof(double) * (size_t)k->n_pad);
+}
+
+static void start_at_rest(FastWork *k)
+{
+    const vec zero = {0};
+    for (int i = 0; i < k->mf; i++)
+        k->q[i] = k->v[i] = k->load[i] = k->work[i] = k->ground[i] = zero;
+    for (int f = 0; f < k->nf; f++)
+        k->w[f] = k->wd[f] = k->f0[f] = k->f1[f] = k->fb[f] = k->f_before[f] = k->fb_before[f] = k->peak_u[f] =
+            k->peak_d[f] = k->peak_a[f] = zero;
+    memset(k->side, 0, sizeof k->side);
+    k->n_touching = 0;
+    k->n_seen = -1;
+    k->speed = 0;
+    k->contact_lost = k->contact_clamped = k->deepest = 0;
+    k->impacts = k->floored = k->steps = k->flights = k->forces = 0;
+}
+
+#endif
