@@ -5,7 +5,9 @@
  * An engine fills all of SimResult but mcore_kg, penetration_ratio, beyond_contact_law and seconds (the caller's).
  * Energies as in sim/sim.h; maxima are over continuous time. After the last sample the ground stands still (a = 0 from
  * there on, also where the last sample is not zero). An engine never answers wrongly in silence: what it cannot do is
- * an outcome with a reason. Threads  an engine may allocate in its own run; it shares nothing. */
+ * an outcome with a reason.
+ *
+ * Threads  an engine may allocate in its own run; it shares nothing. */
 #ifndef IMTET_SIM_ENGINE_H
 #define IMTET_SIM_ENGINE_H
 

@@ -114,7 +114,7 @@ static void gather(Board *b, const CaseGroup *group, const Arguments *a)
     int first = 1;
     for (int i = 0; i < group->n && b->n < CASES_MAX; i++) {
         const Case *c = &group->cases[i];
-        if ((c->long_only && a->size != SIZE_LONG) || (a->one_case && strcmp(a->one_case, c->name) != 0))
+        if (a->one_case && strcmp(a->one_case, c->name) != 0)
             continue;
         b->cases[b->n] = c;
         b->group[b->n++] = first ? group->title : NULL;

@@ -391,18 +391,18 @@ static void vector_width(Trial *t)
 }
 
 static const Case CASES[] = {
-    {"zero-gap", "no gap on any floor tends to the tied building, without a storm of events", zero_gap, 0},
-    {"huge-gap", "a gap that never closes gives the closed form of the building alone", huge_gap, 0},
-    {"negative-gap", "a gap that is negative or no number is refused by name", negative_gap, 0},
-    {"core-stiffness", "a core 1e-6 to 1e6 times as stiff, against `fast` at fine", stiff_and_soft_core, 0},
-    {"core-modes", "10 and 5 core modes instead of 20, without residual flexibility: what truncation costs", core_modes,
-     0},
-    {"mirrored-record", "a mirrored record gives the mirrored response", mirrored, 0},
-    {"zero-padded-record", "zeros before or behind the record change no objective", padded, 0},
-    {"not-a-record", "NaN, Inf, 1e308 or no samples are refused", not_a_record, 0},
-    {"strength", "strength x 1e-12 to 1e3: linear until the first contact, flagged when too deep", strength, 0},
-    {"threads", "several runs at once give the bytes of one alone", threads, 0},
-    {"vector-width", "the kernels for SSE2, AVX2 and AVX-512 agree", vector_width, 0},
+    {"zero-gap", "no gap on any floor tends to the tied building, without a storm of events", zero_gap},
+    {"huge-gap", "a gap that never closes gives the closed form of the building alone", huge_gap},
+    {"negative-gap", "a gap that is negative or no number is refused by name", negative_gap},
+    {"core-stiffness", "a core 1e-6 to 1e6 times as stiff, against `fast` at fine", stiff_and_soft_core},
+    {"core-modes", "10 and 5 core modes instead of 20, without residual flexibility: what truncation costs",
+     core_modes},
+    {"mirrored-record", "a mirrored record gives the mirrored response", mirrored},
+    {"zero-padded-record", "zeros before or behind the record change no objective", padded},
+    {"not-a-record", "NaN, Inf, 1e308 or no samples are refused", not_a_record},
+    {"strength", "strength x 1e-12 to 1e3: linear until the first contact, flagged when too deep", strength},
+    {"threads", "several runs at once give the bytes of one alone", threads},
+    {"vector-width", "the kernels for SSE2, AVX2 and AVX-512 agree", vector_width},
 };
 
 const CaseGroup TOWER_CASES = {"The tower and its core", CASES, sizeof CASES / sizeof CASES[0]};

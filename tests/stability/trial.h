@@ -32,7 +32,6 @@ typedef struct {
 typedef struct {
     const char *name, *sentence;
     void (*run)(Trial *t);
-    int long_only; /* with --long only */
 } Case;
 
 typedef struct {
