@@ -16,7 +16,7 @@ static const double G = 9.81;
 
 static Status parse(Motion *m, const char *text, MotionUnit unit, Err *err)
 {
-    return motion_parse(m, "text", text, strlen(text), unit, err);
+    return motion_parse(m, "text", text, strlen(text), &(MotionHow){.unit = unit}, err);
 }
 
 /* Text that must be read as a[0..3] = 1 2 -3 0 m/s2 with a step of 0.02 s. */
@@ -140,9 +140,9 @@ static void test_every_bad_file_is_refused_with_its_reason(void **state)
         {"infinite.csv", ":4: found inf"},
         {"word.csv", ":3: 'oops' is not a number"},
         {"half_number.csv", ":3: '2.0x' is not a number"},
-        {"second_header.csv", ":3: 'time_s,accel_m_s2' is not a number"},
-        {"one_column.csv", ":2: '0.1' has no second column"},
-        {"three_columns.csv", ":2: '0.00,1.0,0.0' has more than two columns"},
+        {"second_header.csv", ":3: 'time_s' is not a number"},
+        {"one_column.csv", ":2: has one column and does not say its step; set motion.dt_s"},
+        {"three_columns.csv", "holds 2 channels: 1 'north', 2 'east'; choose one by motion.channel"},
         {"missing_sample.csv", ":6: time 0.1 s breaks the uniform step of 0.02 s: it comes 0.04 s after"},
         {"doubled_time.csv", ":4: time 0.02 s does not come after 0.02 s"},
         {"backward.csv", ":4: time 0.02 s does not come after 0.04 s"},
@@ -153,7 +153,7 @@ static void test_every_bad_file_is_refused_with_its_reason(void **state)
         {"no_step.at2", ":4: no usable time step in 'NPTS=  2, DT= SEC'"},
         {"no_count.at2", ":4: no usable number of points"},
         {"nan.at2", ":5: found nan"},
-        {"stars.at2", ":5: '******** .4E-01' is not a number"},
+        {"stars.at2", ":5: '********' is not a number"},
         {"velocity.at2", ":3: not an acceleration: 'VELOCITY TIME SERIES"},
         {"no_unit.at2", "set motion.unit"},
     };

@@ -66,6 +66,12 @@ static const Option OPTIONS[] = {
     {"motion.stretch", "-", REAL, AT(motion.stretch), "3.1", 1e-3, 1e3, NULL, "time is multiplied by this"},
     {"motion.unit", "-", CHOICE, AT(motion.unit), "from_file", 0, 0, "from_file|m_s2|cm_s2|g",
      "of the acceleration, where the file does not say"},
+    {"motion.channel", "-", TEXT, AT(motion.channel), "auto", 0, 0, NULL,
+     "name or number (from 1) of the component, where the file has several; auto: there is only one"},
+    {"motion.dt_s", "s", REAL, AT(motion.dt_s), "0", 0, 100, NULL,
+     "step of a file that has neither step nor times; 0: the file says it"},
+    {"motion.resample_dt_s", "s", REAL, AT(motion.resample_dt_s), "0", 0, 100, NULL,
+     "unequal times are resampled to this step by straight lines; 0: they are refused"},
 
     {"sim.engine", "-", CHOICE, AT(sim.engine), "fast", 0, 0, ENGINE_WORDS,
      "fast: the one to use; the others are slower and exist to be compared with"},

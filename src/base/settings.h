@@ -62,10 +62,12 @@ typedef struct {
         double restitution, v0_floor_m_s, radius_m, youngs_modulus_pa, poisson;
     } contact;
     struct {
-        char record[SETTINGS_TEXT_MAX]; /* a file or builtin:NAME */
-        double pga_g;                   /* 0: as recorded */
-        double stretch;                 /* t -> stretch t */
-        long unit;                      /* MotionUnit */
+        char record[SETTINGS_TEXT_MAX];  /* a file or builtin:NAME */
+        double pga_g;                    /* 0: as recorded */
+        double stretch;                  /* t -> stretch t */
+        long unit;                       /* MotionUnit */
+        char channel[SETTINGS_TEXT_MAX]; /* name, number or auto */
+        double dt_s, resample_dt_s;      /* 0: from the file; 0: never */
     } motion;
     struct {
         long engine, accuracy;

@@ -64,7 +64,7 @@ Status args_apply(const Args *args, Settings *s, FILE *faults, int *n_faults, Er
     }
 #define OPTION_RECORD                                                                                                  \
     {                                                                                                                  \
-        "--record", "FILE", "motion.record", 0, "ground motion: CSV, PEER AT2 or builtin:NAME"                         \
+        "--record", "FILE", "motion.record", 0, "ground motion file or builtin:NAME"                                   \
     }
 #define OPTION_PGA                                                                                                     \
     {                                                                                                                  \
@@ -77,6 +77,10 @@ Status args_apply(const Args *args, Settings *s, FILE *faults, int *n_faults, Er
 #define OPTION_UNIT                                                                                                    \
     {                                                                                                                  \
         "--unit", "UNIT", "motion.unit", 0, "m_s2 | cm_s2 | g, where the file does not say"                            \
+    }
+#define OPTION_CHANNEL                                                                                                 \
+    {                                                                                                                  \
+        "--channel", "NAME", "motion.channel", 0, "component, by name or number, where a file has several"             \
     }
 #define OPTION_DURATION                                                                                                \
     {                                                                                                                  \

@@ -32,7 +32,7 @@ static int check_motion(const Settings *s, Faults *faults)
 {
     Err e = {0};
     Motion m = {0};
-    Status status = motion_load(&m, s->motion.record, (MotionUnit)s->motion.unit, &e);
+    Status status = motion_open(&m, s, &e);
     if (status == STATUS_OK)
         status = motion_prepare(&m, s->motion.pga_g, s->motion.stretch, &e);
     if (!note(faults, status, "motion.record", &e)) {

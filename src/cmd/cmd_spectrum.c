@@ -87,7 +87,10 @@ static Status run(const Args *args, Err *err)
     s.motion.pga_g = 0;
     s.motion.stretch = 1;
     TRY(args_apply(args, &s, NULL, NULL, err));
-    TRY(motion_load(&m, args->operand, (MotionUnit)s.motion.unit, err));
+    if (strlen(args->operand) >= sizeof s.motion.record)
+        return fail(err, STATUS_MISSING, "%.60s...: the path is too long", args->operand);
+    snprintf(s.motion.record, sizeof s.motion.record, "%s", args->operand);
+    TRY(motion_open(&m, &s, err));
     Status status = motion_prepare(&m, s.motion.pga_g, s.motion.stretch, err);
     if (status == STATUS_OK) {
         compute(&m, &spectrum);

@@ -15,7 +15,7 @@ Status world_open(World *w, const Settings *s, Err *err)
 {
     memset(w, 0, sizeof *w);
     w->settings = *s;
-    TRY(motion_load(&w->motion, s->motion.record, (MotionUnit)s->motion.unit, err));
+    TRY(motion_open(&w->motion, s, err));
     const Status status = motion_prepare(&w->motion, s->motion.pga_g, s->motion.stretch, err);
     if (status != STATUS_OK) {
         world_close(w);

@@ -9,12 +9,26 @@
 
 static const double G = 9.81; /* [m/s2] */
 
-Status motion_load(Motion *m, const char *source, MotionUnit unit, Err *err)
+static Status load(Motion *m, const char *source, const MotionHow *how, Err *err)
 {
     static const char prefix[] = "builtin:";
     if (strncmp(source, prefix, sizeof prefix - 1) == 0)
-        return builtin_motion(m, source + sizeof prefix - 1, err); /* in m/s2, whatever `unit` says of files */
-    return motion_read(m, source, unit, err);
+        return builtin_motion(m, source + sizeof prefix - 1, err); /* in m/s2, one channel, whatever is said of files */
+    return motion_read(m, source, how, err);
+}
+
+Status motion_load(Motion *m, const char *source, MotionUnit unit, Err *err)
+{
+    return load(m, source, &(MotionHow){.unit = unit}, err);
+}
+
+Status motion_open(Motion *m, const Settings *s, Err *err)
+{
+    const MotionHow how = {.unit = (MotionUnit)s->motion.unit,
+                           .channel = s->motion.channel,
+                           .dt_s = s->motion.dt_s,
+                           .resample_dt_s = s->motion.resample_dt_s};
+    return load(m, s->motion.record, &how, err);
 }
 
 Status motion_prepare(Motion *m, double pga_g, double stretch, Err *err)

@@ -21,14 +21,18 @@ typedef struct {
     size_t n;
     double dt_s;
     char name[128];     /* as given by the user: a path or builtin:NAME */
-    char format[32];    /* what the reader took it for: "csv", "at2", "builtin" */
+    char format[32];    /* what the reader took it for: "csv", "at2", ..., "builtin" */
+    char channel[32];   /* its name in the file; empty where it has none */
     uint64_t file_hash; /* FNV-1a of the file's bytes, or of the generated samples */
 } Motion;
 
-/* source: a path (two-column CSV time,acceleration, or PEER AT2) or builtin:kobe-like | builtin:elcentro-like |
+/* source: a path (scene/motion_read.h has the kinds of file) or builtin:kobe-like | builtin:elcentro-like |
  * builtin:sylmar-like. unit: UNIT_FROM_FILE demands that the file says it; otherwise it must not contradict the file;
  * it does not matter to a built-in motion. */
 Status motion_load(Motion *m, const char *source, MotionUnit unit, Err *err);
+
+/* motion.record as the further settings of the section want it read; still as recorded. */
+Status motion_open(Motion *m, const Settings *s, Err *err);
 
 /* t -> stretch t; then scaled so that max |accel| = pga_g * 9.81 m/s2 (pga_g = 0: as recorded). */
 Status motion_prepare(Motion *m, double pga_g, double stretch, Err *err);

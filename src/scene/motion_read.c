@@ -8,6 +8,7 @@
 #include <strings.h>
 
 #include "base/table.h"
+#include "scene/formats/record.h"
 
 static const double G = 9.81; /* [m/s2] per g, as everywhere in this program */
 
@@ -15,107 +16,11 @@ static const double G = 9.81; /* [m/s2] per g, as everywhere in this program */
  * taken for m/s2 shows 35 g). */
 static const double LARGEST_PEAK_G = 20.0;
 
-/* ---- lines ---------------------------------------------------------------------------------------------------- */
+/* Asked in this order; the last one takes what no other did. */
+static const MotionFormat *const FORMATS[] = {&FORMAT_KNET,   &FORMAT_ESM,   &FORMAT_JMA, &FORMAT_GEONET, &FORMAT_SMC,
+                                              &FORMAT_COSMOS, &FORMAT_CSMIP, &FORMAT_AT2, &FORMAT_COLUMNS};
 
-typedef struct {
-    const char *path, *next, *end; /* of the text that is left */
-    int number;                    /* of the line below, from 1 */
-    const char *from, *to;         /* the line without blanks at its ends */
-} Lines;
-
-static int lines_next(Lines *l)
-{
-    if (l->next >= l->end)
-        return 0;
-    const char *stop = memchr(l->next, '\n', (size_t)(l->end - l->next));
-    l->from = l->next;
-    l->to = stop ? stop : l->end;
-    l->next = stop ? stop + 1 : l->end;
-    l->number++;
-    while (l->to > l->from && isspace((unsigned char)l->to[-1]))
-        l->to--;
-    while (l->from < l->to && isspace((unsigned char)*l->from))
-        l->from++;
-    return 1;
-}
-
-/* Enough of the line for a message. */
-static int shown(const Lines *l)
-{
-    return (int)(l->to - l->from < 40 ? l->to - l->from : 40);
-}
-
-/* Line of the first byte that no text file holds, 0 if there is none. */
-static int binary_line(const char *text, size_t length)
-{
-    int line = 1;
-    for (size_t i = 0; i < length; i++) {
-        const unsigned char c = (unsigned char)text[i];
-        if (c < ' ' && !isspace(c))
-            return line;
-        line += c == '\n';
-    }
-    return 0;
-}
-
-static const char *find_word(const char *from, const char *to, const char *word)
-{
-    const size_t length = strlen(word);
-    for (; from + length <= to; from++)
-        if (strncasecmp(from, word, length) == 0)
-            return from;
-    return NULL;
-}
-
-/* ---- units ---------------------------------------------------------------------------------------------------- */
-
-static const struct {
-    const char *word;
-    MotionUnit unit;
-} UNIT_WORDS[] = {
-    {"m/s2", UNIT_M_S2},          {"m/s^2", UNIT_M_S2},    {"m/s**2", UNIT_M_S2},
-    {"m/s/s", UNIT_M_S2},         {"m_s2", UNIT_M_S2},     {"m/s\xc2\xb2", UNIT_M_S2},
-    {"m/sec2", UNIT_M_S2},        {"m/sec^2", UNIT_M_S2},  {"m/sec/sec", UNIT_M_S2},
-    {"m s-2", UNIT_M_S2},         {"cm/s2", UNIT_CM_S2},   {"cm/s^2", UNIT_CM_S2},
-    {"cm/s**2", UNIT_CM_S2},      {"cm/s/s", UNIT_CM_S2},  {"cm_s2", UNIT_CM_S2},
-    {"cm/s\xc2\xb2", UNIT_CM_S2}, {"cm/sec2", UNIT_CM_S2}, {"cm/sec^2", UNIT_CM_S2},
-    {"cm/sec/sec", UNIT_CM_S2},   {"cm s-2", UNIT_CM_S2},  {"gal", UNIT_CM_S2},
-    {"gals", UNIT_CM_S2},         {"g", UNIT_G},
-};
-
-static const char *const UNIT_NAMES[] = {
-    [UNIT_FROM_FILE] = "from_file", [UNIT_M_S2] = "m_s2", [UNIT_CM_S2] = "cm_s2", [UNIT_G] = "g"};
-
-/* Does the word at `at` of the line from..to stand for a unit? Not inside a longer word, not the g of "e.g." or
- * "g = 9.81", and not behind a number: "peak 0.3 g" is a quantity that someone mentions. */
-static int is_unit(const char *from, const char *to, const char *at, size_t length)
-{
-    const char *before = at, *behind = at + length;
-    if (at > from && (isalnum((unsigned char)at[-1]) || strchr(".%\\", at[-1])))
-        return 0;
-    if (behind < to && (isalnum((unsigned char)*behind) || strchr("^*/", *behind)))
-        return 0;
-    while (behind < to && isspace((unsigned char)*behind))
-        behind++;
-    if (behind < to && *behind == '=')
-        return 0;
-    while (before > from && isspace((unsigned char)before[-1]))
-        before--;
-    return before == from || !isdigit((unsigned char)before[-1]);
-}
-
-/* Set of the units that a line names, one bit (1 << MotionUnit) each. */
-static unsigned units_named(const char *from, const char *to)
-{
-    unsigned set = 0;
-    for (size_t i = 0; i < sizeof UNIT_WORDS / sizeof *UNIT_WORDS; i++) {
-        const char *word = UNIT_WORDS[i].word;
-        for (const char *at = from; (at = find_word(at, to, word)); at++)
-            if (is_unit(from, to, at, strlen(word)))
-                set |= 1u << UNIT_WORDS[i].unit;
-    }
-    return set;
-}
+/* ---- which unit ----------------------------------------------------------------------------------------------- */
 
 /* The one unit that file and setting agree on. */
 static Status settle_unit(const char *path, unsigned named, MotionUnit *unit, Err *err)
@@ -140,114 +45,106 @@ static Status settle_unit(const char *path, unsigned named, MotionUnit *unit, Er
     return STATUS_OK;
 }
 
-/* ---- samples -------------------------------------------------------------------------------------------------- */
+/* ---- which channel -------------------------------------------------------------------------------------------- */
 
-typedef struct {
-    double t, a;  /* [s], [unit of the file] */
-    int line;     /* where it stands */
-    int decimals; /* of the time as printed */
-} Row;
-
-typedef struct {
-    Row *row;
-    size_t n, capacity;
-} Rows;
-
-static Status rows_add(Rows *r, const char *path, Row row, Err *err)
+static int is_acceleration(const Channel *c)
 {
-    if (r->n == r->capacity) {
-        const size_t capacity = r->capacity ? 2 * r->capacity : 4096;
-        Row *wider = realloc(r->row, capacity * sizeof *wider);
-        if (!wider)
-            return fail(err, STATUS_NO_MEMORY, "%s: no memory for %zu samples", path, capacity);
-        r->row = wider;
-        r->capacity = capacity;
-    }
-    r->row[r->n++] = row;
-    return STATUS_OK;
+    return strncasecmp(c->name, "vel", 3) != 0 && strncasecmp(c->name, "dis", 3) != 0;
 }
 
-/* One finite number that begins at *p; *p moves behind it and the blanks that follow. */
-static Status read_number(const Lines *l, const char **p, double *x, Err *err)
+/* "1 'NS', 2 'EW'" */
+static void list_channels(const Record *r, char list[240])
 {
-    char *stop;
-    *x = strtod(*p, &stop);
-    if (stop == *p || stop > l->to || (stop < l->to && !isspace((unsigned char)*stop) && !strchr(",;", *stop)))
-        return fail(err, STATUS_BAD_DATA, "%s:%d: '%.*s' is not a number", l->path, l->number,
-                    (int)(l->to - *p < 40 ? l->to - *p : 40), *p);
-    if (!isfinite(*x))
-        return fail(err, STATUS_BAD_DATA, "%s:%d: found %g; only finite numbers are accepted", l->path, l->number, *x);
-    for (*p = stop; *p < l->to && isspace((unsigned char)**p); (*p)++)
-        ;
-    return STATUS_OK;
+    size_t used = 0;
+    list[0] = 0;
+    for (size_t i = 0; i < r->n_channels && used + CHANNEL_NAME_MAX + 16 < 240; i++)
+        used += (size_t)snprintf(list + used, 240 - used, "%s%zu '%s'", i ? ", " : "", i + 1, r->channel[i].name);
 }
 
-/* The samples in m/s2 become the motion's. */
-static Status take_samples(Motion *m, const char *path, const Rows *r, double dt, MotionUnit unit, Err *err)
+/* Letters and digits only, in small letters, so that N-S is NS and "360 Deg" is 360deg. */
+static void plain_name(const char *name, char plain[64])
 {
-    const double to_m_s2 = unit == UNIT_M_S2 ? 1.0 : unit == UNIT_CM_S2 ? 0.01 : G;
-    size_t peak = 0;
-    for (size_t i = 0; i < r->n; i++)
-        peak = fabs(r->row[i].a) > fabs(r->row[peak].a) ? i : peak;
-    if (fabs(r->row[peak].a) * to_m_s2 > LARGEST_PEAK_G * G)
-        return fail(err, STATUS_BAD_DATA, "%s:%d: an acceleration of %g %s is beyond %g g; is the unit right?", path,
-                    r->row[peak].line, r->row[peak].a, UNIT_NAMES[unit], LARGEST_PEAK_G);
-    m->accel = malloc(r->n * sizeof *m->accel);
-    if (!m->accel)
-        return fail(err, STATUS_NO_MEMORY, "%s: no memory for %zu samples", path, r->n);
-    for (size_t i = 0; i < r->n; i++)
-        m->accel[i] = to_m_s2 * r->row[i].a;
-    m->n = r->n;
-    m->dt_s = dt;
-    return STATUS_OK;
+    size_t n = 0;
+    for (; *name && n < 63; name++)
+        if (isalnum((unsigned char)*name))
+            plain[n++] = (char)tolower((unsigned char)*name);
+    plain[n] = 0;
 }
 
-/* ---- csv ------------------------------------------------------------------------------------------------------ */
-
-/* Digits behind the decimal point of a number as printed, less its exponent. */
-static int count_decimals(const char *from, const char *to)
+/* How many channels have a name that is the wanted one (exactly) or begins with it; *found is the last of them. */
+static int count_named(const Record *r, const char *wanted, int exactly, const Channel **found)
 {
-    int n = 0, behind_point = 0;
-    for (; from < to; from++) {
-        if (*from == '.')
-            behind_point = 1;
-        else if (isdigit((unsigned char)*from))
-            n += behind_point;
-        else if (*from == 'e' || *from == 'E')
-            return n - (int)strtol(from + 1, NULL, 10);
-        else if (*from != '+' && *from != '-')
-            break;
+    char want[64], have[64];
+    int n = 0;
+    plain_name(wanted, want);
+    for (size_t i = 0; i < r->n_channels; i++) {
+        plain_name(r->channel[i].name, have);
+        if (!want[0] || (exactly ? strcmp(want, have) != 0 : strncmp(want, have, strlen(want)) != 0))
+            continue;
+        *found = &r->channel[i];
+        n++;
     }
     return n;
 }
 
-/* A line that names columns begins like a word and is no number (nan and inf are numbers). */
-static int is_header(const Lines *l)
+static const Channel *only_acceleration(const Record *r)
 {
-    char *stop;
-    if (!isalpha((unsigned char)*l->from) && !strchr("\"'[(", *l->from))
-        return 0;
-    strtod(l->from, &stop);
-    return stop == l->from || (*stop != ',' && *stop != ';' && !isspace((unsigned char)*stop));
+    const Channel *only = NULL;
+    for (size_t i = 0; i < r->n_channels; i++) {
+        if (!is_acceleration(&r->channel[i]))
+            continue;
+        if (only)
+            return NULL;
+        only = &r->channel[i];
+    }
+    return only;
 }
 
-static Status read_row(const Lines *l, Row *row, Err *err)
+/* A name comes before a number, for azimuths are names. */
+static const Channel *named_or_numbered(const Record *r, const char *wanted)
 {
-    const char *p = l->from;
-    row->line = l->number;
-    row->decimals = count_decimals(l->from, l->to);
-    TRY(read_number(l, &p, &row->t, err));
-    if (p < l->to && strchr(",;", *p))
-        for (p++; p < l->to && isspace((unsigned char)*p); p++)
-            ;
-    if (p == l->to)
-        return fail(err, STATUS_BAD_DATA, "%s:%d: '%.*s' has no second column; time and acceleration are expected",
-                    l->path, l->number, shown(l), l->from);
-    TRY(read_number(l, &p, &row->a, err));
-    if (p < l->to)
-        return fail(err, STATUS_BAD_DATA, "%s:%d: '%.*s' has more than two columns; time and acceleration are expected",
-                    l->path, l->number, shown(l), l->from);
+    const Channel *c = NULL;
+    char *end;
+    if (count_named(r, wanted, 1, &c) == 1)
+        return c;
+    const long number = strtol(wanted, &end, 10);
+    if (end != wanted && !*end && number >= 1 && number <= (long)r->n_channels)
+        return &r->channel[number - 1];
+    return count_named(r, wanted, 0, &c) == 1 ? c : NULL;
+}
+
+static Status choose_channel(const Record *r, const char *path, const char *wanted, const Channel **out, Err *err)
+{
+    char list[240];
+    const int automatic = !wanted || strcmp(wanted, "auto") == 0;
+    *out = automatic ? only_acceleration(r) : named_or_numbered(r, wanted);
+    list_channels(r, list);
+    if (!*out && automatic)
+        return fail(err, STATUS_BAD_DATA, "%s: holds %zu channels: %s; choose one by motion.channel (--channel)", path,
+                    r->n_channels, list);
+    if (!*out)
+        return fail(err, STATUS_BAD_DATA, "%s: motion.channel '%.40s' is not exactly one of its channels: %s", path,
+                    wanted, list);
+    if (!is_acceleration(*out))
+        return fail(err, STATUS_BAD_DATA, "%s: its channel '%s' is not an acceleration", path, (*out)->name);
+    if ((*out)->n < 2)
+        return fail(err, STATUS_BAD_DATA, "%s: holds %zu sample%s; at least two are needed", path, (*out)->n,
+                    (*out)->n == 1 ? "" : "s");
     return STATUS_OK;
+}
+
+/* ---- the step ------------------------------------------------------------------------------------------------- */
+
+/* The rows of one channel. */
+typedef struct {
+    const char *path;
+    const Row *base;
+    size_t stride, n;
+} Series;
+
+static const Row *row_at(const Series *s, size_t i)
+{
+    return &s->base[i * s->stride];
 }
 
 /* The shortest decimal number within `slack` of x: times printed with few digits say 0.02, not 0.0200003. */
@@ -263,167 +160,149 @@ static double shortest_near(double x, double slack)
     return x;
 }
 
+static double step_before(const Series *s, size_t i)
+{
+    return row_at(s, i)->t - row_at(s, i - 1)->t;
+}
+
 /* Names the step that is least like the others: there the sample is missing, while the drift that it causes is noticed
  * elsewhere. The step of the others is what it breaks. */
-static Status fail_at_oddest_step(const char *path, const Rows *r, double dt, double digit, Err *err)
+static Status fail_at_oddest_step(const Series *s, double dt, double digit, Err *err)
 {
-    const Row *row = r->row, *odd = &row[1];
-    for (size_t i = 2; i < r->n; i++)
-        if (fabs(row[i].t - row[i - 1].t - dt) > fabs(odd[0].t - odd[-1].t - dt))
-            odd = &row[i];
-    const double step = odd[0].t - odd[-1].t, others = (double)(r->n - 2);
-    const double usual = shortest_near((row[r->n - 1].t - row[0].t - step) / others, digit / others);
-    return fail(err, STATUS_BAD_DATA,
-                "%s:%d: time %.10g s breaks the uniform step of %.6g s: it comes %.6g s after the line before; a sample "
-                "is missing, or the file must be resampled",
-                path, odd->line, odd->t, usual, step);
+    size_t odd = 1;
+    for (size_t i = 2; i < s->n; i++)
+        if (fabs(step_before(s, i) - dt) > fabs(step_before(s, odd) - dt))
+            odd = i;
+    const double step = step_before(s, odd), others = fmax((double)s->n - 2, 1);
+    const double span = row_at(s, s->n - 1)->t - row_at(s, 0)->t;
+    return fail(
+        err, STATUS_BAD_DATA,
+        "%s:%d: time %.10g s breaks the uniform step of %.6g s: it comes %.6g s after the line before; a sample "
+        "is missing, or the file must be resampled: set motion.resample_dt_s",
+        s->path, row_at(s, odd)->line, row_at(s, odd)->t, shortest_near((span - step) / others, digit / others), step);
+}
+
+static Status times_increase(const Series *s, Err *err)
+{
+    for (size_t i = 1; i < s->n; i++)
+        if (!(step_before(s, i) > 0))
+            return fail(err, STATUS_BAD_DATA, "%s:%d: time %.10g s does not come after %.10g s", s->path,
+                        row_at(s, i)->line, row_at(s, i)->t, row_at(s, i - 1)->t);
+    return STATUS_OK;
 }
 
 /* The common step. A printed time is off by half a unit of its last digit at most, and so are the first and the last
  * one, which give the step: one unit in all, or 1e-5 of the time where six significant digits were printed, or 1e-3 of
  * a step in any case. A missing or doubled sample is off by half a step or more wherever it stands; hence the cap. */
-static Status uniform_step(const char *path, const Rows *r, double *dt, Err *err)
+static Status uniform_step(const Series *s, double *dt, Err *err)
 {
-    const Row *row = r->row;
-    const double span = row[r->n - 1].t - row[0].t, intervals = (double)(r->n - 1);
-    int decimals = row[0].decimals;
-    for (size_t i = 1; i < r->n; i++) {
-        decimals = row[i].decimals > decimals ? row[i].decimals : decimals;
-        if (!(row[i].t > row[i - 1].t))
-            return fail(err, STATUS_BAD_DATA, "%s:%d: time %.10g s does not come after %.10g s", path, row[i].line,
-                        row[i].t, row[i - 1].t);
-    }
+    const double begin = row_at(s, 0)->t, span = row_at(s, s->n - 1)->t - begin, intervals = (double)(s->n - 1);
+    int decimals = row_at(s, 0)->decimals;
+    for (size_t i = 1; i < s->n; i++)
+        decimals = row_at(s, i)->decimals > decimals ? row_at(s, i)->decimals : decimals;
     const double digit = pow(10.0, -decimals);
     *dt = shortest_near(span / intervals, digit / intervals);
     if (!(*dt > 0) || !isfinite(span))
-        return fail(err, STATUS_BAD_DATA, "%s: %zu samples from %g s to %g s have no usable step", path, r->n, row[0].t,
-                    row[r->n - 1].t);
-    for (size_t i = 0; i < r->n; i++) {
-        const double want = row[0].t + (double)i * *dt;
-        const double printed = fmax(digit, 1e-5 * fabs(row[i].t));
-        if (fabs(row[i].t - want) > fmin(fmax(printed, 1e-3 * *dt), 0.3 * *dt))
-            return fail_at_oddest_step(path, r, *dt, digit, err);
+        return fail(err, STATUS_BAD_DATA, "%s: %zu samples from %g s to %g s have no usable step", s->path, s->n, begin,
+                    row_at(s, s->n - 1)->t);
+    for (size_t i = 0; i < s->n; i++) {
+        const double t = row_at(s, i)->t, printed = fmax(digit, 1e-5 * fabs(t));
+        if (fabs(t - begin - (double)i * *dt) > fmin(fmax(printed, 1e-3 * *dt), 0.3 * *dt))
+            return fail_at_oddest_step(s, *dt, digit, err);
     }
     return STATUS_OK;
 }
 
-static Status read_csv_rows(Lines *l, Rows *r, unsigned *named, Err *err)
+/* ---- samples -------------------------------------------------------------------------------------------------- */
+
+static Status check_peak(const Series *s, double to_m_s2, MotionUnit unit, double scale, Err *err)
 {
-    unsigned in_comments = 0, in_header = 0;
-    int seen_header = 0;
-    while (lines_next(l)) {
-        if (l->from == l->to)
-            continue;
-        if (*l->from == '#') {
-            in_comments |= units_named(l->from, l->to);
-        } else if (!seen_header && r->n == 0 && is_header(l)) {
-            seen_header = 1;
-            in_header = units_named(l->from, l->to);
-        } else {
-            Row row;
-            TRY(read_row(l, &row, err));
-            TRY(rows_add(r, l->path, row, err));
-        }
-    }
-    *named = in_header ? in_header : in_comments;
+    const Row *peak = row_at(s, 0);
+    for (size_t i = 0; i < s->n; i++)
+        peak = fabs(row_at(s, i)->a) > fabs(peak->a) ? row_at(s, i) : peak;
+    if (!(fabs(peak->a) * to_m_s2 <= LARGEST_PEAK_G * G))
+        return fail(err, STATUS_BAD_DATA, "%s:%d: an acceleration of %g %s is beyond %g g; is the unit right?", s->path,
+                    peak->line, scale * peak->a, UNIT_NAMES[unit], LARGEST_PEAK_G);
     return STATUS_OK;
 }
 
-static Status parse_csv(Motion *m, Lines *l, Rows *r, MotionUnit unit, Err *err)
+static Status allocate(Motion *m, const char *path, size_t n, double dt, Err *err)
 {
-    unsigned named;
-    double dt = 0;
-    TRY(read_csv_rows(l, r, &named, err));
-    if (r->n < 2)
-        return fail(err, STATUS_BAD_DATA, "%s: holds %zu sample%s; at least two are needed", l->path, r->n,
-                    r->n == 1 ? "" : "s");
-    TRY(uniform_step(l->path, r, &dt, err));
-    TRY(settle_unit(l->path, named, &unit, err));
-    snprintf(m->format, sizeof m->format, "csv");
-    return take_samples(m, l->path, r, dt, unit, err);
-}
-
-/* ---- at2 ------------------------------------------------------------------------------------------------------ */
-
-/* "NPTS=  3930, DT=   .0050 SEC" or "3930   0.0050   NPTS, DT" */
-static int is_npts_line(const Lines *l)
-{
-    return *l->from != '#' && find_word(l->from, l->to, "NPTS") && find_word(l->from, l->to, "DT");
-}
-
-static Status read_npts_line(const Lines *l, size_t *n, double *dt, Err *err)
-{
-    const char *npts = find_word(l->from, l->to, "NPTS"), *step = find_word(l->from, l->to, "DT");
-    const char *equals = memchr(npts, '=', (size_t)(l->to - npts));
-    double count = NAN, seconds = NAN;
-    char *stop;
-    if (equals) {
-        count = strtod(equals + 1, NULL);
-        equals = memchr(step, '=', (size_t)(l->to - step));
-        if (equals)
-            seconds = strtod(equals + 1, NULL);
-    } else {
-        count = strtod(l->from, &stop);
-        seconds = strtod(stop, NULL);
-    }
-    if (!(count >= 2 && count <= 1e8 && count == floor(count)))
-        return fail(err, STATUS_BAD_DATA, "%s:%d: no usable number of points (2 or more) in '%.*s'", l->path, l->number,
-                    shown(l), l->from);
-    if (!(seconds > 0 && isfinite(seconds)))
-        return fail(err, STATUS_BAD_DATA, "%s:%d: no usable time step in '%.*s'", l->path, l->number, shown(l),
-                    l->from);
-    *n = (size_t)count;
-    *dt = seconds;
+    m->accel = malloc(n * sizeof *m->accel);
+    if (!m->accel)
+        return fail(err, STATUS_NO_MEMORY, "%s: no memory for %zu samples", path, n);
+    m->n = n;
+    m->dt_s = dt;
     return STATUS_OK;
 }
 
-static Status read_at2_header(Lines *l, unsigned *named, size_t *n, double *dt, Err *err)
+/* Straight lines between the samples, at begin + k dt up to the end. A step so short that it would multiply the file
+ * many times is a mistake. */
+static Status resample(Motion *m, const Series *s, double dt, double to_m_s2, Err *err)
 {
-    *named = 0;
-    while (lines_next(l)) {
-        if (is_npts_line(l))
-            return read_npts_line(l, n, dt, err);
-        if (find_word(l->from, l->to, "VELOCITY TIME") || find_word(l->from, l->to, "DISPLACEMENT TIME"))
-            return fail(err, STATUS_BAD_DATA, "%s:%d: not an acceleration: '%.*s'", l->path, l->number, shown(l),
-                        l->from);
-        if (find_word(l->from, l->to, "UNIT"))
-            *named |= units_named(l->from, l->to);
+    const double begin = row_at(s, 0)->t, span = row_at(s, s->n - 1)->t - begin, most = 1e6 + 16 * (double)s->n;
+    const double n = floor(span / dt * (1 + 1e-12)) + 1;
+    if (!(n >= 2 && n <= most))
+        return fail(err, STATUS_BAD_DATA, "%s: motion.resample_dt_s = %g would make %.0f samples of %zu in %g s",
+                    s->path, dt, n, s->n, span);
+    TRY(allocate(m, s->path, (size_t)n, dt, err));
+    for (size_t k = 0, i = 0; k < m->n; k++) {
+        const double t = begin + (double)k * dt;
+        while (i + 2 < s->n && row_at(s, i + 1)->t <= t)
+            i++;
+        const Row *a = row_at(s, i), *b = row_at(s, i + 1);
+        m->accel[k] = to_m_s2 * (a->a + (b->a - a->a) * fmin((t - a->t) / (b->t - a->t), 1));
     }
-    return fail(err, STATUS_INTERNAL, "%s: no line with NPTS and DT", l->path);
+    return STATUS_OK;
 }
 
-static Status parse_at2(Motion *m, Lines *l, Rows *r, MotionUnit unit, Err *err)
+/* The samples in m/s2 become the motion's. */
+static Status take_samples(Motion *m, const char *path, const Record *r, const Channel *c, const MotionHow *how,
+                           Err *err)
 {
-    unsigned named;
-    size_t n = 0;
-    double dt = 0;
-    TRY(read_at2_header(l, &named, &n, &dt, err));
-    while (lines_next(l))
-        for (const char *p = l->from; p < l->to;) {
-            Row row = {.line = l->number};
-            TRY(read_number(l, &p, &row.a, err));
-            if (r->n == n)
-                return fail(err, STATUS_BAD_DATA, "%s:%d: more samples than the %zu that its header announces", l->path,
-                            l->number, n);
-            TRY(rows_add(r, l->path, row, err));
-        }
-    if (r->n != n)
-        return fail(err, STATUS_BAD_DATA, "%s:%d: ends after %zu samples, but its header announces %zu", l->path,
-                    l->number, r->n, n);
-    TRY(settle_unit(l->path, named, &unit, err));
-    snprintf(m->format, sizeof m->format, "at2");
-    return take_samples(m, l->path, r, dt, unit, err);
+    MotionUnit unit = how->unit;
+    double dt = c->dt;
+    const Series s = {.path = path, .base = r->row + c->first, .stride = c->stride, .n = c->n};
+    Err uneven = {0};
+    Status status = STATUS_OK;
+    if (dt == 0) {
+        TRY(times_increase(&s, err));
+        status = uniform_step(&s, &dt, &uneven);
+    }
+    if (status != STATUS_OK && how->resample_dt_s == 0)
+        return fail(err, status, "%s", uneven.text);
+    TRY(settle_unit(path, c->units, &unit, err));
+    const double to_m_s2 = c->scale * (unit == UNIT_M_S2 ? 1.0 : unit == UNIT_CM_S2 ? 0.01 : G);
+    TRY(check_peak(&s, to_m_s2, unit, c->scale, err));
+    if (status != STATUS_OK)
+        return resample(m, &s, how->resample_dt_s, to_m_s2, err);
+    TRY(allocate(m, path, c->n, dt, err));
+    for (size_t i = 0; i < m->n; i++)
+        m->accel[i] = to_m_s2 * row_at(&s, i)->a;
+    return STATUS_OK;
 }
 
-/* ---- either --------------------------------------------------------------------------------------------------- */
+/* ---- the file ------------------------------------------------------------------------------------------------- */
 
-/* PEER files have the count and the step in line 4; a line or two more of header does no harm. */
-static int looks_like_at2(Lines l)
+/* Line of the first byte that no text file holds, 0 if there is none. */
+static int binary_line(const char *text, size_t length)
 {
-    while (l.number < 8 && lines_next(&l))
-        if (is_npts_line(&l))
-            return 1;
+    int line = 1;
+    for (size_t i = 0; i < length; i++) {
+        const unsigned char c = (unsigned char)text[i];
+        if (c < ' ' && !isspace(c))
+            return line;
+        line += c == '\n';
+    }
     return 0;
+}
+
+static const MotionFormat *recognise(Lines l)
+{
+    size_t i = 0;
+    while (!FORMATS[i]->recognise(l))
+        i++;
+    return FORMATS[i];
 }
 
 uint64_t motion_hash(const void *data, size_t n)
@@ -435,9 +314,27 @@ uint64_t motion_hash(const void *data, size_t n)
     return hash;
 }
 
-Status motion_parse(Motion *m, const char *path, const char *text, size_t length, MotionUnit unit, Err *err)
+static Status read_format(Motion *m, Record *r, Lines *l, const MotionHow *how, Err *err)
 {
+    const MotionFormat *format = recognise(*l);
+    const ReadHints hints = {.dt_s = how->dt_s};
+    const Channel *c = NULL;
+    TRY(format->read(r, l, &hints, err));
+    TRY(choose_channel(r, l->path, how->channel, &c, err));
+    TRY(take_samples(m, l->path, r, c, how, err));
+    snprintf(m->name, sizeof m->name, "%s", l->path);
+    snprintf(m->format, sizeof m->format, "%s", format->name);
+    snprintf(m->channel, sizeof m->channel, "%s", c->name);
+    return STATUS_OK;
+}
+
+Status motion_parse(Motion *m, const char *path, const char *text, size_t length, const MotionHow *how, Err *err)
+{
+    static const char dos_end = 0x1a; /* Ctrl-Z, which old programs put at the end of a text */
     memset(m, 0, sizeof *m);
+    const uint64_t hash = motion_hash(text, length);
+    while (length && text[length - 1] == dos_end)
+        length--;
     const int binary = binary_line(text, length);
     if (length == 0)
         return fail(err, STATUS_BAD_DATA, "%s: is empty", path);
@@ -446,23 +343,23 @@ Status motion_parse(Motion *m, const char *path, const char *text, size_t length
                     binary);
     const size_t mark = length >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0 ? 3 : 0; /* UTF-8 byte order mark */
     Lines l = {.path = path, .next = text + mark, .end = text + length};
-    Rows rows = {0};
-    const Status s = looks_like_at2(l) ? parse_at2(m, &l, &rows, unit, err) : parse_csv(m, &l, &rows, unit, err);
-    free(rows.row);
-    if (s != STATUS_OK)
-        return s;
-    snprintf(m->name, sizeof m->name, "%s", path);
-    m->file_hash = motion_hash(text, length);
-    return STATUS_OK;
+    Record *r = calloc(1, sizeof *r);
+    if (!r)
+        return fail(err, STATUS_NO_MEMORY, "%s: no memory for its channels", path);
+    const Status s = read_format(m, r, &l, how, err);
+    record_free(r);
+    free(r);
+    m->file_hash = s == STATUS_OK ? hash : 0;
+    return s;
 }
 
-Status motion_read(Motion *m, const char *path, MotionUnit unit, Err *err)
+Status motion_read(Motion *m, const char *path, const MotionHow *how, Err *err)
 {
     char *text;
     size_t length;
     memset(m, 0, sizeof *m);
     TRY(file_read(path, &text, &length, err));
-    const Status s = motion_parse(m, path, text, length, unit, err);
+    const Status s = motion_parse(m, path, text, length, how, err);
     free(text);
     return s;
 }

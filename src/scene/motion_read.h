@@ -1,12 +1,14 @@
-/* scene/motion_read.h -- files that hold a ground acceleration.
+/* scene/motion_read.h -- files that hold a ground acceleration, in the forms that people have them.
  *
- *   csv  # comments; perhaps one line that names the columns; then time [s], acceleration per line, equal steps.
- *        The unit is looked for in the column names, and if they do not tell, in the comments: m/s2, cm/s2, gal or g
- *        in the usual spellings (m_s2, m/s^2, m/sec/sec ...).
- *   at2  PEER strong motion data base: four header lines, the last with the number of points and the step in either
- *        of its two usual forms, then the samples
+ *   at2      PEER                              cosmos   COSMOS 1.20 V1, V2
+ *   csmip    CSMIP (CDMG, CGS), USGS V1, V2    smc      USGS SMC
+ *   knet     K-NET, KiK-net                    esm      Engineering Strong Motion data base, ASCII
+ *   geonet   GeoNet V1A, V2A                   jma      JMA, CSV
+ *   csv      plain text: one, two or many columns
  *
- * The kind of file is told by its content, not by its name. Lines may end in LF or CRLF.
+ * The kind of file is told by its content, not by its name. Lines end in LF or CRLF; bytes beyond ASCII are let pass in
+ * words. docs/motions.md says what is read from each; scene/formats has one file per form.
+ *
  * Ownership  m->accel is allocated; motion_free releases it (after a failure there is nothing to free)
  * Threads    no state */
 #ifndef IMTET_SCENE_MOTION_READ_H
@@ -14,10 +16,17 @@
 
 #include "scene/motion.h"
 
-Status motion_read(Motion *m, const char *path, MotionUnit unit, Err *err);
+typedef struct {
+    MotionUnit unit;     /* of the acceleration; must not contradict the file */
+    const char *channel; /* name or number (from 1) of the one that is wanted; NULL or "auto": there must be only one */
+    double dt_s;         /* step of a file that has neither step nor times; 0: such a file is refused */
+    double resample_dt_s; /* unequal times are resampled to this step by straight lines; 0: they are refused */
+} MotionHow;
+
+Status motion_read(Motion *m, const char *path, const MotionHow *how, Err *err);
 
 /* The same from text in memory; `path` only names it in messages. */
-Status motion_parse(Motion *m, const char *path, const char *text, size_t length, MotionUnit unit, Err *err);
+Status motion_parse(Motion *m, const char *path, const char *text, size_t length, const MotionHow *how, Err *err);
 
 /* 64-bit FNV-1a of n bytes, http://www.isthe.com/chongo/tech/comp/fnv */
 uint64_t motion_hash(const void *data, size_t n);

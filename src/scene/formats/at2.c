@@ -1,0 +1,59 @@
+/* PEER strong motion data base, *.AT2: four lines of header (now and then one or two more), then the samples, as a rule
+ * 5E15.7. Line 3 names the quantity and its unit; line 4 has the number of points and the step in one of two forms,
+ *
+ *   NPTS=  3930, DT=   .0050 SEC                 3930    0.0050    NPTS, DT
+ */
+#include <math.h>
+#include <string.h>
+
+#include "scene/formats/record.h"
+
+static int is_npts_line(const Lines *l)
+{
+    return l->from < l->to && *l->from != '#' && line_has(l, "NPTS") && line_has(l, "DT");
+}
+
+static int recognise(Lines l)
+{
+    while (l.number < 8 && lines_next(&l))
+        if (is_npts_line(&l))
+            return 1;
+    return 0;
+}
+
+static BlockForm read_npts_line(const Lines *l)
+{
+    BlockForm form = {.count = NAN, .dt = NAN, .width = 15};
+    double x[2];
+    size_t n;
+    Err ignored = {0};
+    if (memchr(l->from, '=', (size_t)(l->to - l->from))) {
+        number_behind(l->from, l->to, "NPTS", &form.count);
+        number_behind(l->from, l->to, "DT", &form.dt);
+    } else if (line_numbers(l, 0, 2, x, &n, &ignored) == STATUS_OK && n == 2) {
+        form.count = x[0];
+        form.dt = x[1];
+    }
+    return form;
+}
+
+static Status read(Record *r, Lines *l, const ReadHints *hints, Err *err)
+{
+    Channel *c;
+    unsigned units = 0;
+    (void)hints;
+    while (lines_next(l) && !is_npts_line(l)) {
+        if (line_has(l, "VELOCITY TIME") || line_has(l, "DISPLACEMENT TIME"))
+            return fail(err, STATUS_BAD_DATA, "%s:%d: not an acceleration: '%.*s'", l->path, l->number, line_shown(l),
+                        l->from);
+        if (line_has(l, "UNIT"))
+            units |= units_named(l->from, l->to);
+    }
+    const BlockForm form = read_npts_line(l);
+    TRY(record_channel(r, l, &c, err));
+    c->units = units;
+    TRY(record_block(r, l, &form, err));
+    return record_block_ends(l, form.count, err);
+}
+
+const MotionFormat FORMAT_AT2 = {"at2", recognise, read};

@@ -1,0 +1,261 @@
+/* Plain text: one, two or many columns of numbers, parted by blanks, tabs, commas or semicolons.
+ *
+ *   comments  begin with # % ! or //; they may tell the unit (m/s2, cm/s2, gal, g in the usual spellings) and the step
+ *             ("dt = 0.01", "sampling rate: 100")
+ *   names     lines of words above the numbers; the last of them names the columns, a unit there wins
+ *   times     the first column, unless there is only one, or the names or the numbers say that it is none; then the
+ * step must be known, and numbers without names are read line by line as one long column 1,5;2,5   with semicolons and
+ * no points the comma is a decimal one
+ */
+#include "scene/formats/columns.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Digits behind the decimal point of a number as printed, less its exponent. */
+static int count_decimals(const char *from, const char *to)
+{
+    int n = 0, behind_point = 0;
+    for (; from < to; from++) {
+        if (*from == '.' || *from == ',') {
+            behind_point = 1;
+        } else if (isdigit((unsigned char)*from)) {
+            n += behind_point;
+        } else if (*from != '+' && *from != '-') {
+            double exponent = 0;
+            if (number_behind(from, to, "", &exponent) || number_behind(from + 1, to, "", &exponent))
+                n -= (int)fmax(fmin(exponent, 400), -400);
+            break;
+        }
+    }
+    return n;
+}
+
+static int has_decimal_commas(const Lines *l)
+{
+    const size_t n = (size_t)(l->to - l->from);
+    return memchr(l->from, ';', n) && memchr(l->from, ',', n) && !memchr(l->from, '.', n);
+}
+
+Status columns_add(Columns *columns, Record *r, const Lines *l, Err *err)
+{
+    const int with_comma = has_decimal_commas(l);
+    size_t n = 0;
+    for (const char *p = l->from; p < l->to; n++) {
+        const char *from = p, *to = field_next(l, &p, with_comma);
+        Row row = {.line = l->number, .decimals = n == 0 ? count_decimals(from, to) : 0};
+        TRY(field_number(l, from, to, with_comma, &row.a, err));
+        if (n > CHANNELS_MAX)
+            return fail(err, STATUS_BAD_DATA, "%s:%d: more than %d channels", l->path, l->number, CHANNELS_MAX);
+        TRY(record_add(r, l, row, err));
+    }
+    if (columns->n_rows++ == 0)
+        columns->width = n;
+    if (n != columns->width && !columns->odd_line) {
+        columns->odd_line = l->number;
+        columns->odd_width = n;
+    }
+    return STATUS_OK;
+}
+
+Status columns_check(const Columns *columns, const Lines *l, Err *err)
+{
+    if (columns->odd_line)
+        return fail(err, STATUS_BAD_DATA, "%s:%d: has %zu column%s where the lines above have %zu", l->path,
+                    columns->odd_line, columns->odd_width, columns->odd_width == 1 ? "" : "s", columns->width);
+    return STATUS_OK;
+}
+
+int column_name(const Lines *l, const char **p, const char **from, const char **to)
+{
+    int marked = 0;
+    for (const char *q = l->from; q < l->to; q++)
+        marked |= strchr(",;\t", *q) && *q;
+    const char *parting = marked ? ",;\t" : " ";
+    while (!marked && *p < l->to && **p == ' ')
+        ++*p;
+    if (*p >= l->to)
+        return 0;
+    for (*from = *p; *p < l->to && !(strchr(parting, **p) && **p); ++*p)
+        ;
+    *to = *p;
+    *p += *p < l->to;
+    return 1;
+}
+
+/* ---- what stands above the numbers ---------------------------------------------------------------------------- */
+
+typedef struct {
+    unsigned in_comments; /* units */
+    double dt;            /* [s] 0: not told */
+    Lines names;          /* from == NULL: no such line */
+} Preface;
+
+static int is_comment(const Lines *l)
+{
+    return strchr("#%!", *l->from) || line_begins(l, "//");
+}
+
+/* A line of words begins like a word and is no number (nan and inf are numbers). */
+static int is_words(const Lines *l)
+{
+    double x;
+    if (!isalpha((unsigned char)*l->from) && !strchr("\"'[(", *l->from))
+        return 0;
+    const char *p = l->from, *to = field_next(l, &p, 0);
+    return field_number(l, l->from, to, 0, &x, &(Err){0}) != STATUS_OK && !number_behind(l->from, to, "", &x) &&
+           !(to - l->from == 3 && (line_begins(l, "nan") || line_begins(l, "inf")));
+}
+
+/* x of "word ... = x" or "word ... : x" */
+static int told(const Lines *l, const char *word, double *x)
+{
+    for (const char *at = l->from; (at = find_word(at, l->to, word)); at++) {
+        if (at > l->from && isalnum((unsigned char)at[-1]))
+            continue;
+        const char *mark = at + strlen(word);
+        while (mark < l->to && *mark != '=' && *mark != ':')
+            mark++;
+        if (mark < l->to && number_behind(mark, l->to, "", x) && *x > 0 && *x <= 1e6)
+            return 1;
+    }
+    return 0;
+}
+
+static void take_comment(const Lines *l, Preface *preface)
+{
+    static const char *const steps[] = {"dt", "time step", "step"};
+    static const char *const rates[] = {"sampling rate", "sampling frequency", "samples per second"};
+    double x;
+    preface->in_comments |= units_named(l->from, l->to);
+    for (size_t i = 0; i < sizeof steps / sizeof *steps; i++)
+        if (preface->dt == 0 && told(l, steps[i], &x))
+            preface->dt = x;
+    for (size_t i = 0; i < sizeof rates / sizeof *rates; i++)
+        if (preface->dt == 0 && told(l, rates[i], &x))
+            preface->dt = 1 / x;
+}
+
+static Status read_rows(Record *r, Lines *l, Preface *preface, Columns *columns, Err *err)
+{
+    while (lines_next_filled(l)) {
+        if (is_comment(l)) {
+            take_comment(l, preface);
+        } else if (r->n == 0 && is_words(l)) {
+            if (preface->names.from)
+                take_comment(&preface->names, preface);
+            preface->names = *l;
+        } else {
+            TRY(columns_add(columns, r, l, err));
+        }
+    }
+    return STATUS_OK;
+}
+
+/* ---- which column is what ------------------------------------------------------------------------------------- */
+
+static size_t count_names(const Lines *names)
+{
+    size_t n = 0;
+    const char *p = names->from, *from, *to;
+    while (names->from && column_name(names, &p, &from, &to))
+        n++;
+    return n;
+}
+
+static int names_times(const Lines *names)
+{
+    Channel c;
+    const char *p = names->from, *from, *to;
+    if (!column_name(names, &p, &from, &to))
+        return 0;
+    channel_name(&c, from, to);
+    return strncasecmp(c.name, "time", 4) == 0 || strncasecmp(c.name, "sec", 3) == 0 ||
+           (tolower((unsigned char)c.name[0]) == 't' && !isalnum((unsigned char)c.name[1]));
+}
+
+static int times_increase(const Record *r, const Columns *columns)
+{
+    for (size_t i = columns->width; i < r->n; i += columns->width)
+        if (!(r->row[i].a > r->row[i - columns->width].a))
+            return 0;
+    return !columns->odd_line;
+}
+
+static void set_times(Record *r, size_t width)
+{
+    for (size_t i = 0; i < r->n; i++) {
+        r->row[i].t = r->row[i - i % width].a;
+        r->row[i].decimals = r->row[i - i % width].decimals;
+    }
+}
+
+static Status one_long_column(Record *r, const Lines *l, const Preface *preface, unsigned units, Err *err)
+{
+    Channel *c;
+    TRY(record_channel(r, l, &c, err));
+    *c = (Channel){.scale = 1, .units = units, .dt = preface->dt, .stride = 1, .n = r->n};
+    return STATUS_OK;
+}
+
+/* Columns `first` and on become channels. A column that names no unit has that of the line of names as a whole where it
+ * is the only one, else that of the comments. */
+static Status name_channels(Record *r, const Lines *l, const Preface *preface, const Columns *columns, size_t first,
+                            Err *err)
+{
+    const Lines *names = &preface->names;
+    const int named = count_names(names) == columns->width;
+    const unsigned in_names =
+        names->from && (columns->width - first == 1 || !named) ? units_named(names->from, names->to) : 0;
+    const char *p = names->from, *from = NULL, *to = NULL;
+    for (size_t k = 0; k < columns->width; k++) {
+        Channel *c;
+        if (named)
+            column_name(names, &p, &from, &to);
+        if (k < first)
+            continue;
+        TRY(record_channel(r, l, &c, err));
+        *c = (Channel){
+            .scale = 1, .dt = first ? 0 : preface->dt, .first = k, .stride = columns->width, .n = columns->n_rows};
+        if (named)
+            channel_name(c, from, to);
+        c->units = named ? units_named(from, to) : 0;
+        c->units = c->units ? c->units : in_names ? in_names : preface->in_comments;
+    }
+    return STATUS_OK;
+}
+
+static int recognise(Lines l)
+{
+    (void)l;
+    return 1;
+}
+
+static Status read(Record *r, Lines *l, const ReadHints *hints, Err *err)
+{
+    Preface preface = {0};
+    Columns columns = {0};
+    TRY(read_rows(r, l, &preface, &columns, err));
+    if (columns.n_rows < 2 && columns.width < 3)
+        return fail(err, STATUS_BAD_DATA, "%s: holds %zu sample%s; at least two are needed", l->path, columns.n_rows,
+                    columns.n_rows == 1 ? "" : "s");
+    preface.dt = preface.dt > 0 ? preface.dt : hints->dt_s;
+    const int named = count_names(&preface.names) == columns.width;
+    const unsigned units = preface.names.from ? units_named(preface.names.from, preface.names.to) : 0;
+    int timeless = columns.width == 1 || (named && preface.dt > 0 && !names_times(&preface.names));
+    const int wrapped = columns.width > 1 && !named && preface.dt > 0 && !times_increase(r, &columns);
+    if (columns.width == 1 && !(preface.dt > 0))
+        return fail(err, STATUS_BAD_DATA,
+                    "%s:%d: has one column and does not say its step; set motion.dt_s, or give times beside it",
+                    l->path, r->row[0].line);
+    if (wrapped)
+        return one_long_column(r, l, &preface, units ? units : preface.in_comments, err);
+    TRY(columns_check(&columns, l, err));
+    if (!timeless)
+        set_times(r, columns.width);
+    return name_channels(r, l, &preface, &columns, !timeless, err);
+}
+
+const MotionFormat FORMAT_COLUMNS = {"csv", recognise, read};

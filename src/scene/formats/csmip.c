@@ -1,0 +1,182 @@
+/* CSMIP (CDMG, CGS) and the USGS files of the same layout, V1 and V2 (CSMIP report OSMS 85-03), one or more channels:
+ * lines of text, 100 integers 16I5, 50 (V1) or 100 (V2) reals 8F10, then a line that says what follows, such as
+ *
+ *   13200 Accelerogram points at 200 pts/sec in units of g .      Format: (8f9.6)               V1, digital
+ *   12000 points of accel data equally spaced at  .005 sec, in cm/sec2. (8f10.6)                V2
+ *
+ * and the samples; V2 goes on with velocities and displacements. V1 of a film recorder has no such line: pairs of time
+ * and acceleration, 10F7.3, whose number and unit (as a rule g/10) stand in the text. */
+#include <ctype.h>
+#include <math.h>
+#include <string.h>
+
+#include "scene/formats/record.h"
+
+enum { TEXT_LINES_MAX = 60, INTEGER_LINES = 7, REAL_LINES_V1 = 7, REAL_LINES_MAX = 20 };
+
+static int begins_channel(const Lines *l)
+{
+    return line_begins(l, "Uncorrected accelerogram") || line_begins(l, "Corrected accelerogram");
+}
+
+static int recognise(Lines l)
+{
+    return lines_next(&l) && begins_channel(&l);
+}
+
+typedef struct {
+    int is_v2;
+    double count, dt; /* NAN: the text does not say */
+    Lines at_count;
+} Text;
+
+static int has_letters(const Lines *l)
+{
+    for (const char *p = l->from; p < l->to; p++)
+        if (isalpha((unsigned char)*p) && !strchr("eEdD", *p))
+            return 1;
+    return 0;
+}
+
+/* 16I5: nothing but digits, signs and blanks. */
+static int is_integers(const Lines *l)
+{
+    int digits = 0;
+    for (const char *p = l->from; p < l->to; p++) {
+        if (!isdigit((unsigned char)*p) && *p != ' ' && *p != '-')
+            return 0;
+        digits += isdigit((unsigned char)*p) != 0;
+    }
+    return digits >= 16;
+}
+
+static void take_text(const Lines *l, Text *t, Channel *c)
+{
+    const char *colon = memchr(l->from, ':', (size_t)(l->to - l->from));
+    if (line_begins(l, "Chan") && colon)
+        channel_name(c, colon + 1, l->to);
+    if (number_behind(l->from, l->to, "of points", &t->count))
+        t->at_count = *l;
+    number_behind(l->from, l->to, "spaced intervals of", &t->dt);
+    if (!line_begins(l, "Units of"))
+        return;
+    const int tenths = line_has(l, "g/10");
+    c->units = tenths ? 1u << UNIT_G : units_named(l->from, l->to);
+    c->scale = tenths ? 0.1 : 1;
+}
+
+/* Up to the last line of the integer header. */
+static Status read_text(Lines *l, Text *t, Channel *c, Err *err)
+{
+    *t = (Text){.is_v2 = line_begins(l, "Corrected"), .count = NAN, .dt = NAN, .at_count = *l};
+    for (int i = 0; i < TEXT_LINES_MAX; i++) {
+        if (!lines_next(l))
+            return fail_too_short(l, "header", err);
+        if (!is_integers(l)) {
+            take_text(l, t, c);
+            continue;
+        }
+        return lines_skip(l, INTEGER_LINES - 1) ? STATUS_OK : fail_too_short(l, "header", err);
+    }
+    return fail(err, STATUS_BAD_DATA, "%s:%d: no integer header in the %d lines above", l->path, l->number,
+                TEXT_LINES_MAX);
+}
+
+/* Past the real header. Now l is at the line that announces the samples, or, pairs, at the one before them. */
+static Status find_samples(Lines *l, const Text *t, int *pairs, Err *err)
+{
+    *pairs = 0;
+    for (int i = 0; i < REAL_LINES_MAX; i++) {
+        const Lines ahead = lines_ahead(l);
+        if (!ahead.from)
+            return fail_too_short(l, "samples", err);
+        if (!t->is_v2 && i == REAL_LINES_V1 && !has_letters(&ahead)) {
+            *pairs = 1;
+            return STATUS_OK;
+        }
+        *l = ahead;
+        if (has_letters(l))
+            return STATUS_OK;
+    }
+    return fail(err, STATUS_BAD_DATA, "%s:%d: no line that announces the samples above this one", l->path, l->number);
+}
+
+/* "... at 200 pts/sec ..." or "... equally spaced at .005 sec ..." */
+static double announced_step(const Lines *l, double from_text)
+{
+    double x;
+    if (!number_behind(l->from, l->to, " at ", &x))
+        return from_text;
+    return line_has(l, "pts/s") || line_has(l, "points/s") || line_has(l, "samples/s") ? 1 / x : x;
+}
+
+static Status read_pairs(Record *r, Lines *l, const Text *t, Channel *c, Err *err)
+{
+    enum { WIDTH = 7, PER_LINE_MAX = 64 };
+    double x[PER_LINE_MAX];
+    const Lines *at = &t->at_count;
+    if (!(t->count >= 2 && t->count <= 1e8))
+        return fail(err, STATUS_BAD_DATA, "%s:%d: no usable number of points (2 or more) in '%.*s'", l->path,
+                    at->number, line_shown(at), at->from);
+    while ((double)c->n < t->count) {
+        size_t n;
+        const Lines ahead = lines_ahead(l);
+        if (!ahead.from || line_is_marker(&ahead))
+            return fail(err, STATUS_BAD_DATA, "%s:%d: ends after %zu samples, but its header announces %.0f", l->path,
+                        l->number, c->n, t->count);
+        *l = ahead;
+        TRY(line_numbers(l, WIDTH, PER_LINE_MAX, x, &n, err));
+        if (n % 2 || (double)(c->n + n / 2) > t->count)
+            return fail(err, STATUS_BAD_DATA,
+                        "%s:%d: %zu numbers are not pairs of time and acceleration up to the %.0f "
+                        "that its header announces",
+                        l->path, l->number, n, t->count);
+        for (size_t i = 0; i < n; i += 2)
+            TRY(record_add(r, l, (Row){.t = x[i], .a = x[i + 1], .line = l->number, .decimals = 3}, err));
+        c->n += n / 2;
+    }
+    return STATUS_OK;
+}
+
+static Status read_block(Record *r, Lines *l, const Text *t, Channel *c, Err *err)
+{
+    BlockForm form = {.count = NAN, .dt = announced_step(l, t->dt), .width = format_width(l)};
+    number_behind(l->from, l->to, "", &form.count);
+    const unsigned units = units_named(l->from, l->to);
+    if (line_has(l, "veloc") || line_has(l, "displ"))
+        return fail(err, STATUS_BAD_DATA, "%s:%d: not an acceleration: '%.*s'", l->path, l->number, line_shown(l),
+                    l->from);
+    if (line_has(l, "g/10")) {
+        c->units = 1u << UNIT_G;
+        c->scale = 0.1;
+    } else if (units) {
+        c->units = units;
+        c->scale = 1;
+    }
+    TRY(record_block(r, l, &form, err));
+    const Lines ahead = lines_ahead(l);
+    return ahead.from && has_letters(&ahead) ? STATUS_OK : record_block_ends(l, form.count, err);
+}
+
+static Status read_channel(Record *r, Lines *l, Err *err)
+{
+    Text text;
+    Channel *c;
+    int pairs;
+    TRY(record_channel(r, l, &c, err));
+    TRY(read_text(l, &text, c, err));
+    TRY(find_samples(l, &text, &pairs, err));
+    return pairs ? read_pairs(r, l, &text, c, err) : read_block(r, l, &text, c, err);
+}
+
+/* Velocities, displacements and end marks lie between the channels. */
+static Status read(Record *r, Lines *l, const ReadHints *hints, Err *err)
+{
+    (void)hints;
+    while (lines_next_filled(l))
+        if (begins_channel(l))
+            TRY(read_channel(r, l, err));
+    return STATUS_OK;
+}
+
+const MotionFormat FORMAT_CSMIP = {"csmip", recognise, read};

@@ -1,0 +1,77 @@
+/* K-NET and KiK-net, one component per file (NIED, https://www.kyoshin.bosai.go.jp): 17 lines "key  value", of which
+ *
+ *   Sampling Freq(Hz) 100Hz      Duration Time(s) 300      Dir. N-S      Scale Factor 3920(gal)/6182761
+ *
+ * and the last is "Memo.", then counts, eight to a line. A count times the scale factor is in gal; its zero is the
+ * recorder's, not the ground's. */
+#include <math.h>
+#include <string.h>
+
+#include "scene/formats/record.h"
+
+typedef struct {
+    Lines frequency, duration, direction, factor;
+} Header;
+
+static int recognise(Lines l)
+{
+    return lines_next(&l) && line_begins(&l, "Origin Time");
+}
+
+static Status read_header(Lines *l, Header *h, Err *err)
+{
+    while (lines_next(l)) {
+        if (line_begins(l, "Sampling Freq"))
+            h->frequency = *l;
+        else if (line_begins(l, "Duration Time"))
+            h->duration = *l;
+        else if (line_begins(l, "Dir."))
+            h->direction = *l;
+        else if (line_begins(l, "Scale Factor"))
+            h->factor = *l;
+        else if (line_begins(l, "Memo"))
+            return STATUS_OK;
+    }
+    return fail_too_short(l, "line 'Memo.', which begins the samples", err);
+}
+
+/* "3920(gal)/6182761" */
+static double scale_factor(const Lines *l)
+{
+    double gal, counts;
+    const char *slash = memchr(l->from, '/', (size_t)(l->to - l->from));
+    const int ok = slash && number_behind(l->from, slash, "Factor", &gal) && number_behind(slash, l->to, "/", &counts);
+    return ok && find_word(l->from, slash, "gal") ? gal / counts : NAN;
+}
+
+static Status read(Record *r, Lines *l, const ReadHints *hints, Err *err)
+{
+    Header h = {0};
+    Channel *c;
+    double hertz = NAN, seconds = NAN;
+    (void)hints;
+    TRY(read_header(l, &h, err));
+    if (!h.frequency.from || !h.duration.from || !h.factor.from || !h.direction.from)
+        return fail(err, STATUS_BAD_DATA, "%s:%d: no line '%s' before this one", l->path, l->number,
+                    !h.frequency.from  ? "Sampling Freq(Hz)"
+                    : !h.duration.from ? "Duration Time(s)"
+                    : !h.factor.from   ? "Scale Factor"
+                                       : "Dir.");
+    number_behind(h.frequency.from, h.frequency.to, "(Hz)", &hertz);
+    number_behind(h.duration.from, h.duration.to, "(s)", &seconds);
+    TRY(record_channel(r, l, &c, err));
+    channel_name(c, h.direction.from + strlen("Dir."), h.direction.to);
+    c->units = 1u << UNIT_CM_S2;
+    c->scale = scale_factor(&h.factor);
+    if (!(c->scale > 0 && isfinite(c->scale)))
+        return fail(err, STATUS_BAD_DATA, "%s:%d: no usable scale factor, as 3920(gal)/6182761, in '%.*s'", l->path,
+                    h.factor.number, line_shown(&h.factor), h.factor.from);
+    if (!(hertz > 0 && hertz <= 1e5))
+        return fail(err, STATUS_BAD_DATA, "%s:%d: no usable sampling frequency in '%.*s'", l->path, h.frequency.number,
+                    line_shown(&h.frequency), h.frequency.from);
+    const BlockForm form = {.count = round(hertz * seconds), .dt = 1 / hertz};
+    TRY(record_block(r, l, &form, err));
+    return record_block_ends(l, form.count, err);
+}
+
+const MotionFormat FORMAT_KNET = {"knet", recognise, read};

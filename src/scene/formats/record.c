@@ -1,0 +1,119 @@
+#include "scene/formats/record.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+Status record_add(Record *r, const Lines *l, Row row, Err *err)
+{
+    if (r->n == r->capacity) {
+        const size_t capacity = r->capacity ? 2 * r->capacity : 1024;
+        Row *wider = realloc(r->row, capacity * sizeof *wider);
+        if (!wider)
+            return fail(err, STATUS_NO_MEMORY, "%s: no memory for %zu samples", l->path, capacity);
+        r->row = wider;
+        r->capacity = capacity;
+    }
+    r->row[r->n++] = row;
+    return STATUS_OK;
+}
+
+void record_free(Record *r)
+{
+    free(r->row);
+    r->row = NULL;
+    r->n = r->capacity = r->n_channels = 0;
+}
+
+void channel_name(Channel *c, const char *from, const char *to)
+{
+    size_t n = 0;
+    while (from < to && (isspace((unsigned char)*from) || strchr("\"'", *from)))
+        from++;
+    while (to > from && (isspace((unsigned char)to[-1]) || strchr("\"'", to[-1])))
+        to--;
+    for (; from < to && n + 1 < sizeof c->name; from++)
+        c->name[n++] = isprint((unsigned char)*from) ? *from : '?';
+    c->name[n] = 0;
+}
+
+Status record_channel(Record *r, const Lines *l, Channel **out, Err *err)
+{
+    if (r->n_channels == CHANNELS_MAX)
+        return fail(err, STATUS_BAD_DATA, "%s:%d: more than %d channels", l->path, l->number, CHANNELS_MAX);
+    *out = &r->channel[r->n_channels++];
+    **out = (Channel){.scale = 1, .first = r->n, .stride = 1};
+    return STATUS_OK;
+}
+
+int line_is_marker(const Lines *l)
+{
+    if (line_begins(l, "nan") || line_begins(l, "inf"))
+        return 0;
+    return isalpha((unsigned char)*l->from) || strchr("/|#&", *l->from);
+}
+
+static Status check_form(const Lines *l, const BlockForm *form, Err *err)
+{
+    if (!(form->count >= 2 && form->count <= 1e8 && form->count == floor(form->count)))
+        return fail(err, STATUS_BAD_DATA, "%s:%d: no usable number of points (2 or more) in '%.*s'", l->path, l->number,
+                    line_shown(l), l->from);
+    if (!(form->dt > 0 && form->dt <= 1e6))
+        return fail(err, STATUS_BAD_DATA, "%s:%d: no usable time step in '%.*s'", l->path, l->number, line_shown(l),
+                    l->from);
+    return STATUS_OK;
+}
+
+Status record_block(Record *r, Lines *l, const BlockForm *form, Err *err)
+{
+    enum { PER_LINE_MAX = 64 };
+    double x[PER_LINE_MAX];
+    Channel *c = &r->channel[r->n_channels - 1];
+    TRY(check_form(l, form, err));
+    const size_t wanted = (size_t)form->count;
+    Lines ahead = lines_ahead(l);
+    for (c->dt = form->dt; c->n < wanted && ahead.from && !line_is_marker(&ahead); ahead = lines_ahead(l)) {
+        size_t n;
+        *l = ahead;
+        TRY(line_numbers(l, form->width, PER_LINE_MAX, x, &n, err));
+        if (n > wanted - c->n)
+            return fail(err, STATUS_BAD_DATA, "%s:%d: more samples than the %zu that its header announces", l->path,
+                        l->number, wanted);
+        for (size_t i = 0; i < n; i++)
+            TRY(record_add(r, l, (Row){.a = x[i], .line = l->number}, err));
+        c->n += n;
+    }
+    if (c->n != wanted)
+        return fail(err, STATUS_BAD_DATA, "%s:%d: ends after %zu samples, but its header announces %zu", l->path,
+                    l->number, c->n, wanted);
+    return STATUS_OK;
+}
+
+Status record_block_ends(const Lines *l, double count, Err *err)
+{
+    const Lines ahead = lines_ahead(l);
+    if (ahead.from && !line_is_marker(&ahead))
+        return fail(err, STATUS_BAD_DATA, "%s:%d: more samples than the %.0f that its header announces", ahead.path,
+                    ahead.number, count);
+    return STATUS_OK;
+}
+
+Status fail_too_short(const Lines *l, const char *what, Err *err)
+{
+    return fail(err, STATUS_BAD_DATA, "%s:%d: the file ends before its %s", l->path, l->number, what);
+}
+
+Status header_numbers(Lines *l, int width, size_t n, double x[], Err *err)
+{
+    for (size_t done = 0, more; done < n; done += more) {
+        if (!lines_next(l))
+            return fail_too_short(l, "header", err);
+        TRY(line_numbers(l, width, n - done, x + done, &more, err));
+        if (more == 0)
+            return fail(err, STATUS_BAD_DATA, "%s:%d: the header has %zu numbers, %zu are expected", l->path, l->number,
+                        done, n);
+    }
+    return STATUS_OK;
+}

@@ -1,0 +1,74 @@
+/* scene/formats/record.h -- what the readers of the file formats hand over: every channel of a file, as written there.
+ *
+ * Life cycle  Record r = {0} -> read -> record_free      (also after a failure)
+ * Ownership   row belongs to the Record
+ * Units       of the file: a sample is scale * row[first + i stride].a in the channel's unit */
+#ifndef IMTET_SCENE_FORMATS_RECORD_H
+#define IMTET_SCENE_FORMATS_RECORD_H
+
+#include "scene/formats/text.h"
+
+enum { CHANNELS_MAX = 128, CHANNEL_NAME_MAX = 32 };
+
+typedef struct {
+    double t, a;  /* [s] where the file has times, [unit of the file] */
+    int line;     /* where it stands */
+    int decimals; /* of the time as printed */
+} Row;
+
+typedef struct {
+    char name[CHANNEL_NAME_MAX]; /* as in the file; may be empty */
+    unsigned units;              /* that the file names, one bit (1 << MotionUnit) each */
+    double scale;
+    double dt; /* [s] 0: the rows have times */
+    size_t first, stride, n;
+} Channel;
+
+typedef struct {
+    Row *row;
+    size_t n, capacity;
+    Channel channel[CHANNELS_MAX];
+    size_t n_channels;
+} Record;
+
+typedef struct {
+    double dt_s; /* of a file that has neither times nor a step; 0: none was given */
+} ReadHints;
+
+/* One way in which people have ground motions. */
+typedef struct {
+    const char *name;
+    int (*recognise)(Lines l); /* by what the first lines hold */
+    Status (*read)(Record *r, Lines *l, const ReadHints *hints, Err *err);
+} MotionFormat;
+
+extern const MotionFormat FORMAT_AT2, FORMAT_COSMOS, FORMAT_CSMIP, FORMAT_SMC, FORMAT_KNET, FORMAT_ESM, FORMAT_GEONET,
+    FORMAT_JMA, FORMAT_COLUMNS;
+
+Status record_add(Record *r, const Lines *l, Row row, Err *err);
+void record_free(Record *r);
+
+/* A channel without a name that begins with the next row. */
+Status record_channel(Record *r, const Lines *l, Channel **out, Err *err);
+void channel_name(Channel *c, const char *from, const char *to); /* blanks and quotes around it dropped, ASCII only */
+
+typedef struct {
+    double count, dt; /* as read: whole and positive ones are accepted */
+    int width;        /* columns of numbers that run together; 0: none */
+} BlockForm;
+
+/* Exactly `count` samples into the last channel, from the line after l's; a line of words ends them early. */
+Status record_block(Record *r, Lines *l, const BlockForm *form, Err *err);
+
+/* Begins like a word, a comment or an end marker, and not like nan, inf or Fortran's stars. */
+int line_is_marker(const Lines *l);
+
+/* No further number may stand behind a block. */
+Status record_block_ends(const Lines *l, double count, Err *err);
+
+/* n numbers in columns of `width`, on as many lines as they need. */
+Status header_numbers(Lines *l, int width, size_t n, double x[], Err *err);
+
+Status fail_too_short(const Lines *l, const char *what, Err *err);
+
+#endif

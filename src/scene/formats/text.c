@@ -1,0 +1,257 @@
+#include "scene/formats/text.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+/* ---- lines ---------------------------------------------------------------------------------------------------- */
+
+int lines_next(Lines *l)
+{
+    if (l->next >= l->end)
+        return 0;
+    const char *stop = memchr(l->next, '\n', (size_t)(l->end - l->next));
+    l->raw = l->from = l->next;
+    l->to = stop ? stop : l->end;
+    l->next = stop ? stop + 1 : l->end;
+    l->number++;
+    while (l->to > l->from && isspace((unsigned char)l->to[-1]))
+        l->to--;
+    while (l->from < l->to && isspace((unsigned char)*l->from))
+        l->from++;
+    return 1;
+}
+
+int lines_skip(Lines *l, int n)
+{
+    for (int i = 0; i < n; i++)
+        if (!lines_next(l))
+            return 0;
+    return 1;
+}
+
+int lines_next_filled(Lines *l)
+{
+    while (lines_next(l))
+        if (l->from < l->to)
+            return 1;
+    return 0;
+}
+
+Lines lines_ahead(const Lines *l)
+{
+    Lines ahead = *l;
+    if (!lines_next_filled(&ahead))
+        ahead.from = ahead.to = NULL;
+    return ahead;
+}
+
+int line_shown(const Lines *l)
+{
+    return (int)(l->to - l->from < 40 ? l->to - l->from : 40);
+}
+
+int line_begins(const Lines *l, const char *word)
+{
+    const size_t n = strlen(word);
+    return (size_t)(l->to - l->from) >= n && strncasecmp(l->from, word, n) == 0;
+}
+
+const char *find_word(const char *from, const char *to, const char *word)
+{
+    const size_t length = strlen(word);
+    for (; from + length <= to; from++)
+        if (strncasecmp(from, word, length) == 0)
+            return from;
+    return NULL;
+}
+
+int line_has(const Lines *l, const char *word)
+{
+    return find_word(l->from, l->to, word) != NULL;
+}
+
+/* ---- numbers -------------------------------------------------------------------------------------------------- */
+
+enum { NUMBER_MAX = 64 };
+
+/* A C string of the field as strtod wants it: Fortran's exponent letter D is E, a decimal comma is a point. */
+static int tidy(const char *from, const char *to, int with_comma, char text[NUMBER_MAX])
+{
+    const size_t n = (size_t)(to - from);
+    if (n == 0 || n >= NUMBER_MAX)
+        return 0;
+    for (size_t i = 0; i < n; i++) {
+        const int is_exponent = (from[i] == 'D' || from[i] == 'd') && i && strchr("0123456789.", from[i - 1]);
+        text[i] = is_exponent ? 'E' : with_comma && from[i] == ',' ? '.' : from[i];
+    }
+    text[n] = 0;
+    return 1;
+}
+
+Status field_number(const Lines *l, const char *from, const char *to, int with_comma, double *x, Err *err)
+{
+    char text[NUMBER_MAX], *stop = NULL;
+    while (from < to && isspace((unsigned char)*from))
+        from++;
+    while (to > from && isspace((unsigned char)to[-1]))
+        to--;
+    const int is_text = tidy(from, to, with_comma, text);
+    if (is_text)
+        *x = strtod(text, &stop);
+    if (!is_text || stop == text || *stop)
+        return fail(err, STATUS_BAD_DATA, "%s:%d: '%.*s' is not a number", l->path, l->number,
+                    (int)(to - from < 40 ? to - from : 40), from);
+    if (!isfinite(*x))
+        return fail(err, STATUS_BAD_DATA, "%s:%d: found %g; only finite numbers are accepted", l->path, l->number, *x);
+    return STATUS_OK;
+}
+
+const char *field_next(const Lines *l, const char **p, int with_comma)
+{
+    const char *parting = with_comma ? ";" : ",;";
+    const char *end = *p;
+    while (end < l->to && !isspace((unsigned char)*end) && !strchr(parting, *end))
+        end++;
+    const char *next = end;
+    int seen_mark = 0;
+    while (next < l->to && (isspace((unsigned char)*next) || (!seen_mark && strchr(parting, *next))))
+        seen_mark |= !isspace((unsigned char)*next++);
+    *p = next;
+    return end;
+}
+
+int number_behind(const char *from, const char *to, const char *word, double *x)
+{
+    char text[NUMBER_MAX], *stop;
+    const char *p = find_word(from, to, word);
+    if (!p)
+        return 0;
+    for (p += strlen(word); p < to && strchr(" \t=:(", *p) && *p; p++)
+        ;
+    const size_t n = (size_t)(to - p) < sizeof text - 1 ? (size_t)(to - p) : sizeof text - 1;
+    memcpy(text, p, n);
+    text[n] = 0;
+    *x = strtod(text, &stop);
+    return stop != text && isfinite(*x);
+}
+
+static Status parted_numbers(const Lines *l, int width, size_t max, double x[], size_t *n, Err *err)
+{
+    *n = 0;
+    for (const char *p = l->from; p < l->to && *n < max;) {
+        const char *from = p, *to = field_next(l, &p, 0);
+        if (width && to - from > width && !memchr(from, '.', (size_t)(to - from)))
+            return fail(err, STATUS_BAD_DATA, "%s:%d: '%.*s' is wider than %d characters", l->path, l->number,
+                        (int)(to - from < 40 ? to - from : 40), from, width);
+        TRY(field_number(l, from, to, 0, &x[*n], err));
+        ++*n;
+    }
+    return STATUS_OK;
+}
+
+static Status column_numbers(const Lines *l, int width, size_t max, double x[], size_t *n, Err *err)
+{
+    *n = 0;
+    for (const char *p = l->raw; p < l->to && *n < max; p += width) {
+        TRY(field_number(l, p, l->to - p < width ? l->to : p + width, 0, &x[*n], err));
+        ++*n;
+    }
+    return STATUS_OK;
+}
+
+Status line_numbers(const Lines *l, int width, size_t max, double x[], size_t *n, Err *err)
+{
+    Err e = {0};
+    const Status parted = parted_numbers(l, width, max, x, n, err);
+    if (parted == STATUS_OK || width <= 0)
+        return parted;
+    return column_numbers(l, width, max, x, n, &e) == STATUS_OK ? STATUS_OK : parted;
+}
+
+int format_width(const Lines *l)
+{
+    for (const char *p = l->from; p < l->to; p++) {
+        int repeat = 0, width = 0;
+        if (*p != '(')
+            continue;
+        const char *q = p + 1;
+        while (q < l->to && isdigit((unsigned char)*q) && repeat < 1000)
+            repeat = 10 * repeat + *q++ - '0';
+        if (repeat == 0 || q >= l->to || !strchr("fFeEgGiI", *q))
+            continue;
+        for (q++; q < l->to && isdigit((unsigned char)*q) && width < 1000;)
+            width = 10 * width + *q++ - '0';
+        if (width > 1 && width < NUMBER_MAX)
+            return width;
+    }
+    return 0;
+}
+
+/* ---- units ---------------------------------------------------------------------------------------------------- */
+
+static const struct {
+    const char *word;
+    MotionUnit unit;
+} UNIT_WORDS[] = {
+    {"m/s2", UNIT_M_S2},
+    {"m/s^2", UNIT_M_S2},
+    {"m/s**2", UNIT_M_S2},
+    {"m/s/s", UNIT_M_S2},
+    {"m_s2", UNIT_M_S2},
+    {"m/s\xc2\xb2", UNIT_M_S2},
+    {"m/s\xb2", UNIT_M_S2},
+    {"m/sec2", UNIT_M_S2},
+    {"m/sec^2", UNIT_M_S2},
+    {"m/sec/sec", UNIT_M_S2},
+    {"m s-2", UNIT_M_S2},
+    {"cm/s2", UNIT_CM_S2},
+    {"cm/s^2", UNIT_CM_S2},
+    {"cm/s**2", UNIT_CM_S2},
+    {"cm/s/s", UNIT_CM_S2},
+    {"cm_s2", UNIT_CM_S2},
+    {"cm/sec2", UNIT_CM_S2},
+    {"cm/s\xc2\xb2", UNIT_CM_S2},
+    {"cm/s\xb2", UNIT_CM_S2},
+    {"gals", UNIT_CM_S2},
+    {"cm/sec^2", UNIT_CM_S2},
+    {"cm/sec/sec", UNIT_CM_S2},
+    {"gal", UNIT_CM_S2},
+    {"cm s-2", UNIT_CM_S2},
+    {"g", UNIT_G},
+};
+
+const char *const UNIT_NAMES[] = {
+    [UNIT_FROM_FILE] = "from_file", [UNIT_M_S2] = "m_s2", [UNIT_CM_S2] = "cm_s2", [UNIT_G] = "g"};
+
+/* Does the word at `at` of the line from..to stand for a unit? Not inside a longer word, not the g of "e.g." or
+ * "g = 9.81", and not behind a number: "peak 0.3 g" is a quantity that someone mentions. */
+static int is_unit(const char *from, const char *to, const char *at, size_t length)
+{
+    const char *before = at, *behind = at + length;
+    if (at > from && (isalnum((unsigned char)at[-1]) || strchr(".%\\", at[-1])))
+        return 0;
+    if (behind < to && (isalnum((unsigned char)*behind) || strchr("^*/", *behind)))
+        return 0;
+    while (behind < to && isspace((unsigned char)*behind))
+        behind++;
+    if (behind < to && *behind == '=')
+        return 0;
+    while (before > from && isspace((unsigned char)before[-1]))
+        before--;
+    return before == from || !isdigit((unsigned char)before[-1]);
+}
+
+unsigned units_named(const char *from, const char *to)
+{
+    unsigned set = 0;
+    for (size_t i = 0; i < sizeof UNIT_WORDS / sizeof *UNIT_WORDS; i++) {
+        const char *word = UNIT_WORDS[i].word;
+        for (const char *at = from; (at = find_word(at, to, word)); at++)
+            if (is_unit(from, to, at, strlen(word)))
+                set |= 1u << UNIT_WORDS[i].unit;
+    }
+    return set;
+}

@@ -1,0 +1,404 @@
+/* Ground motions in the forms that people have them: tests/motion holds one small synthetic specimen of each, written
+ * after the published descriptions. All hold the same three components, whose 16th sample is their peak. */
+#include "check.h"
+
+#include <ctype.h>
+#include <dirent.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/table.h"
+#include "scene/motion_read.h"
+
+enum { N_SAMPLES = 43, PEAK_AT = 15 };
+static const double PEAK_GAL[] = {-123.4, 98.7, 85.6}, DT = 0.01;
+
+static const struct {
+    const char *file, *format, *channel;
+    int component;
+    const char *name;
+    double tolerance; /* of digits in the file */
+} SPECIMENS[] = {
+    {"equals.at2", "at2", "auto", 0, "", 1e-6},
+    {"columns.at2", "at2", "auto", 0, "", 1e-6},
+    {"run_together.at2", "at2", "auto", 0, "", 1e-7},
+    {"one.cosmos.v1", "cosmos", "auto", 0, "Other", 1e-9},
+    {"three.cosmos.v2", "cosmos", "340", 0, "340 deg", 1e-9},
+    {"three.cosmos.v2", "cosmos", "2", 1, "70 deg", 1e-9},
+    {"three.cosmos.v2", "cosmos", "up", 2, "Up", 1e-9},
+    {"three.csmip.v1", "csmip", "360 Deg", 0, "360 Deg", 1e-5},
+    {"three.csmip.v1", "csmip", "90", 1, "90 Deg", 1e-5},
+    {"three.csmip.v1", "csmip", "3", 2, "Up", 2e-5},
+    {"three.csmip.v2", "csmip", "1", 0, "360 Deg", 1e-9},
+    {"three.csmip.v2", "csmip", "90deg", 1, "90 Deg", 1e-9},
+    {"three.csmip.v2", "csmip", "UP", 2, "Up", 1e-9},
+    {"film.csmip.v1", "csmip", "auto", 0, "360 Deg", 1e-3},
+    {"one.smc", "smc", "auto", 0, "360", 1e-9},
+    {"one.knet", "knet", "ns", 0, "N-S", 1e-5},
+    {"one.kiknet", "knet", "1", 1, "4", 1e-5},
+    {"one.esm", "esm", "HNE", 0, "HNE", 1e-9},
+    {"three.v1a", "geonet", "N28W", 0, "N28W", 1e-9},
+    {"three.v1a", "geonet", "3", 2, "Up", 1e-9},
+    {"three.v2a", "geonet", "S62W", 1, "S62W", 1e-9},
+    {"jma.csv", "jma", "NS", 0, "NS", 1e-9},
+    {"jma.csv", "jma", "EW", 1, "EW", 1e-9},
+    {"jma.csv", "jma", "3", 2, "UD", 1e-9},
+    {"one_column.txt", "csv", "auto", 0, "", 1e-9},
+    {"two_columns.txt", "csv", "auto", 0, NULL, 1e-9},
+    {"many_columns.csv", "csv", "NS", 0, "NS", 1e-9},
+    {"many_columns.csv", "csv", "2", 1, "EW", 1e-9},
+    {"decimal_comma.csv", "csv", "auto", 0, "NS [cm/s2]", 1e-9},
+    {"wrapped.txt", "csv", "auto", 0, "", 1e-9},
+};
+enum { N_SPECIMENS = sizeof SPECIMENS / sizeof *SPECIMENS };
+
+static void specimen_path(const char *file, char path[128])
+{
+    snprintf(path, 128, "tests/motion/%s", file);
+}
+
+static void test_a_specimen_of_every_format_is_read_to_its_step_length_and_peak(void **state)
+{
+    (void)state;
+    for (int i = 0; i < N_SPECIMENS; i++) {
+        char path[128];
+        Motion m;
+        Err err;
+        specimen_path(SPECIMENS[i].file, path);
+        CHECK_OK(motion_read(&m, path, &(MotionHow){.channel = SPECIMENS[i].channel}, &err), &err);
+        const double want = 0.01 * PEAK_GAL[SPECIMENS[i].component];
+        if (strcmp(m.format, SPECIMENS[i].format) != 0 || m.n != N_SAMPLES || fabs(m.dt_s - DT) > 1e-12 ||
+            !(fabs(m.accel[PEAK_AT] - want) <= SPECIMENS[i].tolerance * fabs(want)) ||
+            motion_peak(&m) != fabs(m.accel[PEAK_AT]))
+            fail_msg("%s: %s, %zu samples every %.9g s, %.9g at the peak of %.9g", path, m.format, m.n, m.dt_s,
+                     m.accel[PEAK_AT], want);
+        if (SPECIMENS[i].name)
+            assert_string_equal(m.channel, SPECIMENS[i].name);
+        motion_free(&m);
+    }
+}
+
+/* ---- changed specimens ---------------------------------------------------------------------------------------- */
+
+typedef struct {
+    char *text;
+    size_t length;
+} Text;
+
+static Text read_specimen(const char *file)
+{
+    char path[128];
+    Text t;
+    Err err;
+    specimen_path(file, path);
+    CHECK_OK(file_read(path, &t.text, &t.length, &err), &err);
+    return t;
+}
+
+/* The text with every `from` written as `to` (only the first one unless `all`). */
+static Text changed(Text t, const char *from, const char *to, int all)
+{
+    Text out = {malloc(2 * t.length + 4096), 0};
+    assert_non_null(out.text);
+    int n = 0;
+    for (size_t i = 0; i < t.length;) {
+        if ((all || n == 0) && strncmp(t.text + i, from, strlen(from)) == 0) {
+            memcpy(out.text + out.length, to, strlen(to));
+            out.length += strlen(to);
+            i += strlen(from);
+            n++;
+        } else {
+            out.text[out.length++] = t.text[i++];
+        }
+    }
+    out.text[out.length] = 0;
+    if (n == 0)
+        fail_msg("there is no '%s' to change", from);
+    free(t.text);
+    return out;
+}
+
+static void test_line_ends_and_blanks_at_line_ends_do_not_matter(void **state)
+{
+    (void)state;
+    static const char *const ends[] = {"\n", "\r\n", "   \r\n", "\t\n"};
+    for (int i = 0; i < N_SPECIMENS; i++)
+        for (size_t k = 0; k < sizeof ends / sizeof *ends; k++) {
+            Text t = read_specimen(SPECIMENS[i].file);
+            if (memchr(t.text, '\r', t.length))
+                t = changed(t, "\r", "", 1);
+            t = changed(t, "\n", ends[k], 1);
+            t.text[t.length++] = 0x1a; /* the end mark of DOS */
+            Motion m;
+            Err err;
+            CHECK_OK(motion_parse(&m, SPECIMENS[i].file, t.text, t.length,
+                                  &(MotionHow){.channel = SPECIMENS[i].channel}, &err),
+                     &err);
+            assert_int_equal(m.n, N_SAMPLES);
+            motion_free(&m);
+            free(t.text);
+        }
+}
+
+static const struct {
+    const char *file, *from, *to, *says;
+} WRONG[] = {
+    {"equals.at2", "43,", "44,", ":13: ends after 43 samples, but its header announces 44"},
+    {"equals.at2", "43,", "42,", ":13: more samples than the 42"},
+    {"columns.at2", "43 ", "4.5 ", ":4: no usable number of points"},
+    {"columns.at2", "0.0100", "-.0100", ":4: no usable time step"},
+    {"run_together.at2", "-1.29459735E-02", "***************", "-3.37410805' is not a number"},
+    {"three.cosmos.v2", "(8F10.5)", "(8F10.5)\n 1.0", ":53: more samples than the 43 that its header announces"},
+    {"three.cosmos.v2", "43 acceleration pts", "44 acceleration pts", ":52: ends after 43 samples"},
+    {"three.cosmos.v2", "  10.000000", "9999.000000", ":46: 43 points every 9.999 s are 429.957 s"},
+    {"one.cosmos.v1", "approx    0 secs", "approx   50 secs", ":46: 43 points every 0.01 s are 0.43 s, but"},
+    {"one.cosmos.v1", "units=cm/sec2(04)", "units=counts (50)", ":46: raw counts, not an acceleration"},
+    {"one.cosmos.v1", "units=cm/sec2(04)", "units=inches (99)", "set motion.unit"},
+    {"one.cosmos.v1", "ed acceleration", "ed velocity", ":1: not an acceleration"},
+    {"one.cosmos.v1", "follow on  17 lines", "fellow", ":25: '100 Real-header values"},
+    {"one.cosmos.v1", "with 13", "with 12", ":13: 'Values used when"},
+    {"three.csmip.v1", "43 Accelerogram", "48 Accelerogram", ":34: ends after 43 samples, but its header announces 48"},
+    {"three.csmip.v1", "43 Accelerogram", "40 Accelerogram", ":34: more samples than the 40"},
+    {"three.csmip.v1", "at 100 pts", "at 000 pts", ":28: no usable time step"},
+    {"three.csmip.v2", "43 points of accel", "xx points of accel", ":46: no usable number of points"},
+    {"three.csmip.v2", "of accel data", "of veloc data", ":46: not an acceleration"},
+    {"film.csmip.v1", "=     43 ", "=     44 ", ": ends after 43 samples, but its header announces 44"},
+    {"film.csmip.v1", "  0.150 -1", "  0.950 -1", "does not come after 0.95 s"},
+    {"film.csmip.v1", "  0.150 -1", "  0.158 -1", "breaks the uniform step of"},
+    {"film.csmip.v1", "SEC AND G/10", "SEC AND INCHES", "set motion.unit"},
+    {"one.smc", "2 CORRECTED ACCELEROGRAM", "3 VELOCITY", ":1: not an acceleration"},
+    {"one.smc", "        43", "    -32768", "no usable number of points: the header above says -32768"},
+    {"one.smc", "        43", "        44", ":36: ends after 43 samples, but its header announces 44"},
+    {"one.smc", "  1.0000000E+02", "  0.0000000E+00", "no usable sampling rate"},
+    {"one.smc", "         3", "         2", ":29: ends after 0 samples"},
+    {"one.knet", "3920(gal)/6182761", "3920(gal)", ":14: no usable scale factor"},
+    {"one.knet", "3920(gal)/6182761", "3920(gal)/0", ":14: no usable scale factor"},
+    {"one.knet", "100Hz", "Hz", ":11: no usable sampling frequency"},
+    {"one.knet", "0.43", "0.44", ":23: ends after 43 samples, but its header announces 44"},
+    {"one.knet", "0.43", "0.42", ":23: more samples than the 42"},
+    {"one.knet", "Scale Factor", "Scale", ":17: no line 'Scale Factor' before"},
+    {"one.knet", "Memo.", "", "the file ends before its line 'Memo.'"},
+    {"one.esm", "NDATA: 43", "NDATA: 45", ":68: ends after 43 samples, but its header announces 45"},
+    {"one.esm", "NDATA: 43", "NDATA: many", ":12: 'many' is not a number"},
+    {"one.esm", "NDATA: 43", "NDAT: 43", ": no NDATA in the header"},
+    {"one.esm", "DATA_TYPE: ACC", "DATA_TYPE: DISPL", ":19: not an acceleration"},
+    {"one.esm", "UNITS: cm/s^2", "UNITS: furlongs", "set motion.unit"},
+    {"three.v1a", "Component", "Direction", ":13: 'Direction N28W' does not name a component"},
+    {"three.v1a", "      43       0       0      43", "      44       0       0      43",
+     ":31: ends after 43 samples, but its header announces 44"},
+    {"three.v1a", "      43       0       0      43", "       0       0       0      43",
+     ":20: no usable number of points"},
+    {"three.v1a", "0.0100  0.0100", "0.0100  0.0000", ":26: no usable time step"},
+    {"three.v1a", "1.00 mm/s/s", "1.00 counts", "set motion.unit"},
+    {"three.v2a", "      43      43      43", "      43      43      53", "begin a component"},
+    {"jma.csv", "100Hz", "none", ":7: no usable SAMPLING RATE"},
+    {"jma.csv", "gal(cm/s/s)", "counts", "set motion.unit"},
+    {"jma.csv", "NS,EW,UD", "NS,EW", ":7: names 2 columns, but 3 follow"},
+    {"jma.csv", "  -123.400,", "", ":23: has 2 columns where the lines above have 3"},
+    {"jma.csv", "-123.400", "-123.4.0", ":23: '-123.4.0' is not a number"},
+    {"one_column.txt", "dt = 0.01 s", "", ":2: has one column and does not say its step; set motion.dt_s"},
+    {"many_columns.csv", "0.15,-123.4", "0.15", ":18: has 4 columns where the lines above have 5"},
+    {"many_columns.csv", "0.15,", "0.14,", ":18: time 0.14 s does not come after 0.14 s"},
+    {"decimal_comma.csv", "-123,4", "-123,,4", ":17: '-123,,4' is not a number"},
+    {"wrapped.txt", "dt:", "at:", ":7: has 3 columns where the lines above have 8"},
+};
+
+/* What a wrong specimen is asked for: its first channel, unless several are the point. */
+static const MotionHow FIRST = {.channel = "1"};
+
+static void test_a_specimen_wrong_in_one_way_is_refused_with_line_and_reason(void **state)
+{
+    (void)state;
+    int n_accepted = 0;
+    for (size_t i = 0; i < sizeof WRONG / sizeof *WRONG; i++) {
+        Text t = changed(read_specimen(WRONG[i].file), WRONG[i].from, WRONG[i].to, 0);
+        Motion m;
+        Err err = {0};
+        const Status s = motion_parse(&m, WRONG[i].file, t.text, t.length, &FIRST, &err);
+        if (s != STATUS_BAD_DATA || m.accel || strncmp(err.text, WRONG[i].file, strlen(WRONG[i].file)) != 0 ||
+            !strstr(err.text, WRONG[i].says))
+            print_error("%s with '%s': the message should contain '%s' and is '%s'\n", WRONG[i].file, WRONG[i].to,
+                        WRONG[i].says, s == STATUS_OK ? "(none)" : err.text);
+        n_accepted += s != STATUS_BAD_DATA || !strstr(err.text, WRONG[i].says);
+        motion_free(&m);
+        free(t.text);
+    }
+    assert_int_equal(n_accepted, 0);
+}
+
+/* ---- channels, steps, units ----------------------------------------------------------------------------------- */
+
+static void refused(const char *file, const MotionHow *how, const char *says)
+{
+    char path[128];
+    Motion m;
+    Err err = {0};
+    specimen_path(file, path);
+    assert_int_equal(motion_read(&m, path, how, &err), STATUS_BAD_DATA);
+    if (!strstr(err.text, says))
+        fail_msg("%s: the message should contain '%s' and is '%s'", path, says, err.text);
+}
+
+static void test_a_channel_must_be_chosen_where_there_are_several(void **state)
+{
+    (void)state;
+    refused("jma.csv", &(MotionHow){0}, "holds 3 channels: 1 'NS', 2 'EW', 3 'UD'; choose one by motion.channel");
+    refused("jma.csv", &(MotionHow){.channel = "4"}, "'4' is not exactly one of its channels: 1 'NS'");
+    refused("jma.csv", &(MotionHow){.channel = "vertical"}, "'vertical' is not exactly one of its channels");
+    refused("many_columns.csv", &(MotionHow){.channel = "velocity"}, "its channel 'velocity' is not an acceleration");
+    refused("one.knet", &(MotionHow){.channel = "E-W"}, "'E-W' is not exactly one of its channels: 1 'N-S'");
+}
+
+static void test_a_column_of_velocities_is_not_taken_for_an_acceleration(void **state)
+{
+    (void)state;
+    static const char text[] = "time_s,accel_m_s2,velocity\n0.00,1.0,0.0\n0.02,2.0,0.1\n";
+    Motion m;
+    Err err;
+    CHECK_OK(motion_parse(&m, "text", text, strlen(text), &(MotionHow){0}, &err), &err);
+    assert_string_equal(m.channel, "accel_m_s2");
+    assert_close(m.accel[1], 2, 0);
+    motion_free(&m);
+}
+
+static void test_unequal_steps_are_resampled_by_straight_lines_only_when_asked(void **state)
+{
+    (void)state;
+    refused("irregular.csv", &(MotionHow){0}, "breaks the uniform step");
+    refused("irregular.csv", &(MotionHow){.resample_dt_s = 1e-9}, "would make");
+    static const char text[] = "t,a_m_s2\n0,0\n0.1,1\n0.3,3\n0.4,0\n1.0,6\n";
+    Motion m;
+    Err err;
+    CHECK_OK(motion_parse(&m, "text", text, strlen(text), &(MotionHow){.resample_dt_s = 0.05}, &err), &err);
+    assert_int_equal(m.n, 21);
+    for (size_t i = 0; i < m.n; i++) {
+        const double t = 0.05 * (double)i;
+        const double want = t < 0.3 ? 10 * t : t < 0.4 ? 3 - 30 * (t - 0.3) : 10 * (t - 0.4);
+        assert_true(fabs(m.accel[i] - want) < 1e-12);
+    }
+    motion_free(&m);
+}
+
+static void test_an_equal_step_is_left_alone_by_the_wish_to_resample(void **state)
+{
+    (void)state;
+    Motion m;
+    Err err;
+    CHECK_OK(motion_read(&m, "tests/motion/two_columns.txt", &(MotionHow){.resample_dt_s = 0.5}, &err), &err);
+    assert_close(m.dt_s, DT, 0);
+    motion_free(&m);
+}
+
+static void test_the_step_of_a_bare_column_can_be_given(void **state)
+{
+    (void)state;
+    static const char text[] = "1\n2\n-3\n0\n";
+    Motion m;
+    Err err;
+    const MotionHow how = {.unit = UNIT_M_S2, .dt_s = 0.02};
+    CHECK_OK(motion_parse(&m, "text", text, strlen(text), &how, &err), &err);
+    assert_int_equal(m.n, 4);
+    assert_close(m.dt_s, 0.02, 0);
+    motion_free(&m);
+}
+
+static void test_a_setting_may_not_contradict_the_unit_of_any_format(void **state)
+{
+    (void)state;
+    for (int i = 0; i < N_SPECIMENS; i++) {
+        const int in_g = strstr(SPECIMENS[i].file, ".at2") || strstr(SPECIMENS[i].file, "csmip.v1");
+        refused(SPECIMENS[i].file, &(MotionHow){.channel = SPECIMENS[i].channel, .unit = in_g ? UNIT_CM_S2 : UNIT_G},
+                "motion.unit is");
+    }
+}
+
+/* ---- mutations ------------------------------------------------------------------------------------------------ */
+
+static uint64_t next_random(uint64_t *x)
+{
+    uint64_t z = *x += 0x9e3779b97f4a7c15u; /* SplitMix64, Steele et al. 2014 */
+    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ z >> 27) * 0x94d049bb133111ebu;
+    return z ^ z >> 31;
+}
+
+/* A byte changed, a stretch taken out, doubled or overwritten, the end cut off. The result ends where its memory
+ * ends, so that a step beyond is seen by the address sanitizer. */
+static Text mutated(const Text *t, uint64_t *random)
+{
+    static const char *const WORDS[] = {"-", "9e99", "\n",      ",",    "1e-300",  "NPTS=2, DT=1",
+                                        "|", "nan",  "(9F1.0)", "\xff", "99999999"};
+    const size_t at = next_random(random) % t->length, room = t->length - at;
+    const size_t some = next_random(random) % 90 % room;
+    const char *word = WORDS[next_random(random) % (sizeof WORDS / sizeof *WORDS)];
+    const int kind = (int)(next_random(random) % 5);
+    const size_t cut = kind == 1 ? some : kind == 3 ? strlen(word) < room ? strlen(word) : room : kind == 4 ? room : 0;
+    const char *put = kind == 2 ? t->text + at : word;
+    const size_t n_put = kind == 2 ? some : kind == 0 || kind == 3 ? strlen(word) : 0;
+    const size_t length = t->length - cut + n_put;
+    Text out = {malloc(length ? length : 1), length};
+    assert_non_null(out.text);
+    memcpy(out.text, t->text, at);
+    memcpy(out.text + at, put, n_put);
+    memcpy(out.text + at + n_put, t->text + at + cut, t->length - at - cut);
+    return out;
+}
+
+static void check_mutant(const char *file, const Text *t, const MotionHow *how)
+{
+    Motion m;
+    Err err = {0};
+    const Status s = motion_parse(&m, file, t->text, t->length, how, &err);
+    if (s == STATUS_OK) {
+        assert_true(m.n >= 2 && m.dt_s > 0 && isfinite(m.dt_s));
+        assert_true(motion_peak(&m) <= 20 * 9.81 * (1 + 1e-12));
+        for (size_t i = 0; i < m.n; i++)
+            assert_true(isfinite(m.accel[i]));
+    } else {
+        assert_int_equal(s, STATUS_BAD_DATA);
+        assert_null(m.accel);
+        assert_true(strncmp(err.text, file, strlen(file)) == 0);
+    }
+    motion_free(&m);
+}
+
+static void test_five_thousand_mutants_are_read_or_refused(void **state)
+{
+    (void)state;
+    enum { EACH = 170 };
+    uint64_t random = 1;
+    for (int i = 0; i < N_SPECIMENS; i++) {
+        const Text t = read_specimen(SPECIMENS[i].file);
+        for (int k = 0; k < EACH; k++) {
+            const MotionHow how = {
+                .channel = k % 3 ? "1" : "auto", .dt_s = k % 2 * 0.01, .resample_dt_s = k % 5 * 0.01};
+            Text one = mutated(&t, &random);
+            for (int more = k % 4; more > 0 && one.length; more--) {
+                const Text next = mutated(&one, &random);
+                free(one.text);
+                one = next;
+            }
+            check_mutant(SPECIMENS[i].file, &one, &how);
+            free(one.text);
+        }
+        free(t.text);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_a_specimen_of_every_format_is_read_to_its_step_length_and_peak),
+        cmocka_unit_test(test_line_ends_and_blanks_at_line_ends_do_not_matter),
+        cmocka_unit_test(test_a_specimen_wrong_in_one_way_is_refused_with_line_and_reason),
+        cmocka_unit_test(test_a_channel_must_be_chosen_where_there_are_several),
+        cmocka_unit_test(test_a_column_of_velocities_is_not_taken_for_an_acceleration),
+        cmocka_unit_test(test_unequal_steps_are_resampled_by_straight_lines_only_when_asked),
+        cmocka_unit_test(test_an_equal_step_is_left_alone_by_the_wish_to_resample),
+        cmocka_unit_test(test_the_step_of_a_bare_column_can_be_given),
+        cmocka_unit_test(test_a_setting_may_not_contradict_the_unit_of_any_format),
+        cmocka_unit_test(test_five_thousand_mutants_are_read_or_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
