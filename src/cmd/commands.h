@@ -12,6 +12,7 @@
     X(HORIZON)                                                                                                         \
     X(MODES)                                                                                                           \
     X(SPECTRUM)                                                                                                        \
+    X(BENCH)                                                                                                           \
     X(PROBLEM)                                                                                                         \
     X(CHECK)                                                                                                           \
     X(SETTINGS)

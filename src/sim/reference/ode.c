@@ -8,6 +8,10 @@
 #include "sim/reference/clones.h"
 #include "sim/reference/vectors.h"
 
+/* So many steps in a row, each shorter than this share of the time, get nowhere: events that breed events. */
+enum { STUCK_MAX = 2000 };
+static const double NOWHERE = 1e-9;
+
 double *ode_values(N_Vector v)
 {
     return NV_DATA_S(v);
@@ -350,6 +354,8 @@ static RunOutcome cross(Ode *o, double *t, double t_stop)
         if (o->ledger.steps++ >= o->steps_max)
             return RUN_OUT_OF_STEPS;
         const double t_before = *t;
+        if (o->stuck >= STUCK_MAX)
+            return RUN_ENGINE_FAILED;
         if (!o->locate)
             remember_start(o, t_before);
         const int flag = o->solver->step(o, t_stop, t);
@@ -364,6 +370,7 @@ static RunOutcome cross(Ode *o, double *t, double t_stop)
         from = to;
         if (look_at_step(o, t_before, *t))
             return RUN_ENGINE_FAILED;
+        o->stuck = *t - t_before < NOWHERE * (1 + *t) ? o->stuck + 1 : 0;
         if (switch_contacts(o, *t, found) && start_anew(o, *t, t_stop))
             return RUN_ENGINE_FAILED;
     }
@@ -398,6 +405,8 @@ static void explain(const Ode *o, double t, SimResult *result)
                  o->options->duration);
     else if (result->outcome == RUN_NOT_FINITE)
         snprintf(result->reason, sizeof result->reason, "t = %.6g s: motion or response is not a finite number", t);
+    else if (o->stuck >= STUCK_MAX)
+        snprintf(result->reason, sizeof result->reason, "t = %.6g s: %d steps in a row got nowhere", t, STUCK_MAX);
     else
         snprintf(result->reason, sizeof result->reason, "t = %.6g s: %s: %s", t, o->solver->package, o->message);
 }

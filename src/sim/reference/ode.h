@@ -45,6 +45,7 @@ struct Ode {
     double v_looked[MODES_MAX], a_looked; /* where peaks were last looked for: velocities, ground, contacts */
     ContactPower power_looked;
     long steps_max;
+    int stuck;  /* steps in a row that got nowhere */
     int finite; /* what was last evaluated */
 
     SUNContext context;

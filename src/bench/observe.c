@@ -1,0 +1,97 @@
+#include "bench/observe.h"
+
+#include <math.h>
+#include <string.h>
+#include <time.h>
+
+/* Runs shorter than this [s] are timed three times. */
+static const double SHORT = 0.3;
+
+static const double SHARE_FLOOR_PCT = 0.1;
+
+const char *const BENCH_OBJECTIVE_NAMES[BENCH_OBJECTIVES] = {"j1", "j2", "j3", "ed1", "ed5_10", "edcs"};
+
+double seconds_now(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static Status run_once(const Stage *stage, Engine engine, Accuracy accuracy, double knob, Observed *o, double *seconds,
+                       Err *err)
+{
+    ClosingLog log = {.n_max = BENCH_CLOSINGS, .at = o->closings};
+    const EngineOptions options = {stage->duration, accuracy, knob, o->state, &log};
+    const double start = seconds_now();
+    TRY(engine_entry(engine)->run(&stage->model, &stage->motion, &options, &o->result, err));
+    *seconds = seconds_now() - start;
+    o->n_closings = log.n;
+    return STATUS_OK;
+}
+
+static double median_of_three(const double t[3])
+{
+    return fmax(fmin(t[0], t[1]), fmin(fmax(t[0], t[1]), t[2]));
+}
+
+Status observe(const Stage *stage, Engine engine, Accuracy accuracy, double knob, Observed *o, Err *err)
+{
+    double t[3];
+    memset(o, 0, sizeof *o);
+    TRY(run_once(stage, engine, accuracy, knob, o, &t[0], err));
+    o->seconds = t[0];
+    if (t[0] < SHORT) {
+        TRY(run_once(stage, engine, accuracy, knob, o, &t[1], err));
+        TRY(run_once(stage, engine, accuracy, knob, o, &t[2], err));
+        o->seconds = median_of_three(t);
+    }
+    return STATUS_OK;
+}
+
+static double energy_of(const SimModel *model, const double state[], const double minus[])
+{
+    double sum = 0;
+    for (int i = 0; i < model->m; i++) {
+        const double q = state[i] - (minus ? minus[i] : 0), v = state[model->m + i] - (minus ? minus[model->m + i] : 0);
+        sum += 0.5 * (v * v + pow(model->omega[i] * q, 2));
+    }
+    return sum;
+}
+
+/* The reference's first closings against the first of the same floor; speeds below the contact law's floor are alike.
+ */
+static void compare_closings(const Stage *stage, const Observed *o, const Observed *reference, Errors *e)
+{
+    const double slow = stage->model.contact.v0_floor;
+    e->first_s = e->first_speed = o->n_closings > 0 && reference->n_closings > 0 ? 0 : NAN;
+    for (int i = 0; i < reference->n_closings && i < BENCH_FIRST && o->n_closings > 0; i++) {
+        const Closing *b = &reference->closings[i], *a = NULL;
+        for (int k = 0; k < o->n_closings && !a; k++)
+            if (o->closings[k].floor == b->floor)
+                a = &o->closings[k];
+        if (!a) {
+            e->first_s = e->first_speed = NAN;
+            return;
+        }
+        e->first_s = fmax(e->first_s, fabs(a->t - b->t));
+        e->first_speed = fmax(e->first_speed, fabs(fmax(a->speed, slow) / fmax(b->speed, slow) - 1));
+    }
+}
+
+Errors errors_between(const Stage *stage, const Observed *o, const Observed *reference)
+{
+    const SimResult *a = &o->result, *b = &reference->result;
+    const double found[] = {a->j1_m, a->j2_m, a->j3_g, a->ed1_pct, a->ed5_10_pct, a->edcs_pct};
+    const double wanted[] = {b->j1_m, b->j2_m, b->j3_g, b->ed1_pct, b->ed5_10_pct, b->edcs_pct};
+    Errors e = {0};
+    for (int k = 0; k < BENCH_OBJECTIVES; k++) {
+        e.each[k] = fabs(found[k] - wanted[k]) / fmax(fabs(wanted[k]), k < 3 ? 1e-300 : SHARE_FLOOR_PCT);
+        if (!(e.each[k] <= e.objectives)) /* keeps NaN */
+            e.objectives = e.each[k];
+    }
+    const SimModel *model = &stage->model;
+    e.state = sqrt(energy_of(model, o->state, reference->state) / energy_of(model, reference->state, NULL));
+    compare_closings(stage, o, reference, &e);
+    return e;
+}

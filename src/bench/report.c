@@ -1,0 +1,156 @@
+#include <math.h>
+#include <string.h>
+
+#include "bench/sweep.h"
+#include "run/measures.h"
+#include "run/output.h"
+
+/* Books open by more than this share of the input are a failure that the engine itself shows; an error larger than
+ * WRONG with books better than that is a wrong answer in silence. */
+static const double BOOKS_OPEN = 1e-3, WRONG = 0.1;
+
+int sweep_row_failed(const SweepRow *row)
+{
+    return row->seen.result.outcome != RUN_OK || !isfinite(row->error.objectives);
+}
+
+int sweep_silently_wrong(const SweepRow *row)
+{
+    return !sweep_row_failed(row) && row->error.objectives > WRONG && row->seen.result.energy_residual < BOOKS_OPEN;
+}
+
+static int scene_index(const BenchScene *scene)
+{
+    return (int)(scene - bench_scene(0));
+}
+
+static void put(FILE *out, double value)
+{
+    fputc(',', out);
+    if (isfinite(value))
+        fprintf(out, "%.6g", value);
+}
+
+void sweep_write_csv(const Sweep *s, FILE *out)
+{
+    fprintf(out, "scene,engine,knob,seconds,error_objectives");
+    for (int k = 0; k < BENCH_OBJECTIVES; k++)
+        fprintf(out, ",error_%s", BENCH_OBJECTIVE_NAMES[k]);
+    fprintf(out, ",error_state,error_first_s,error_first_speed,residual,floor,impacts,steps,force_evaluations,outcome,"
+                 "reason\n");
+    for (size_t i = 0; i < s->n; i++) {
+        const SweepRow *row = &s->rows[i];
+        const SimResult *r = &row->seen.result;
+        const int failed = sweep_row_failed(row);
+        fprintf(out, "%s,%s,%s", row->scene->name, engine_entry(row->engine)->name, row->knob);
+        put(out, row->seen.seconds);
+        put(out, failed ? NAN : row->error.objectives);
+        for (int k = 0; k < BENCH_OBJECTIVES; k++)
+            put(out, failed ? NAN : row->error.each[k]);
+        put(out, failed ? NAN : row->error.state);
+        put(out, failed ? NAN : row->error.first_s);
+        put(out, failed ? NAN : row->error.first_speed);
+        put(out, failed ? NAN : r->energy_residual);
+        put(out, sweep_floor(s, scene_index(row->scene)));
+        fprintf(out, ",%ld,%ld,%ld,%s,\"%s\"\n", r->impacts, r->steps, r->force_evaluations, outcome_word(r->outcome),
+                r->reason);
+    }
+}
+
+/* The fastest row of an engine on a scene whose error is at most `error`; NULL: there is none. */
+static const SweepRow *fastest(const Sweep *s, int scene, Engine engine, double error)
+{
+    const SweepRow *best = NULL;
+    for (size_t i = 0; i < s->n; i++) {
+        const SweepRow *row = &s->rows[i];
+        if (row->scene == bench_scene(scene) && row->engine == engine && !sweep_row_failed(row) &&
+            row->error.objectives <= error && (!best || row->seen.seconds < best->seen.seconds))
+            best = row;
+    }
+    return best;
+}
+
+static int was_run(const Sweep *s, int scene, Engine engine)
+{
+    for (size_t i = 0; i < s->n; i++)
+        if (s->rows[i].scene == bench_scene(scene) && s->rows[i].engine == engine)
+            return 1;
+    return 0;
+}
+
+static void write_cell(const SweepRow *row, const SweepRow *fast, FILE *out)
+{
+    if (!row) {
+        fprintf(out, " not reached | | |");
+        return;
+    }
+    fprintf(out, " %s | %.3g |", row->knob, 1e3 * row->seen.seconds);
+    if (fast)
+        fprintf(out, " %.3g |", row->seen.seconds / fast->seen.seconds);
+    else
+        fprintf(out, " |");
+}
+
+static void write_scene(const Sweep *s, int scene, FILE *out)
+{
+    static const double LEVELS[] = {1e-2, 1e-3};
+    fprintf(out, "\n## %s: %s\n\n", bench_scene(scene)->name, bench_scene(scene)->what);
+    fprintf(out, "%.3g s, %ld impacts. The two references agree to %.1e; smaller errors than %.1e are not shown.\n\n",
+            s->duration[scene], s->impacts[scene], s->agreement[scene], sweep_floor(s, scene));
+    fprintf(out, "| engine | knob at error 1e-2 | ms | x fast | knob at error 1e-3 | ms | x fast |\n"
+                 "|---|---|---|---|---|---|---|\n");
+    for (int k = 0; k < ENGINE_COUNT; k++) {
+        if (!was_run(s, scene, (Engine)k))
+            continue;
+        fprintf(out, "| %s |", engine_entry((Engine)k)->name);
+        for (int l = 0; l < 2; l++)
+            write_cell(fastest(s, scene, (Engine)k, LEVELS[l]), fastest(s, scene, ENGINE_FAST, LEVELS[l]), out);
+        fputc('\n', out);
+    }
+}
+
+static void write_failures(const Sweep *s, FILE *out)
+{
+    int n = 0;
+    fprintf(out,
+            "\n## What failed\n\nA run that does not finish, whose energy books stay open by more than %g of the input,"
+            "\nor that is off by more than %g although its books close (silently wrong).\n\n"
+            "| scene | engine | knob | how |\n|---|---|---|---|\n",
+            BOOKS_OPEN, WRONG);
+    for (size_t i = 0; i < s->n; i++) {
+        const SweepRow *row = &s->rows[i];
+        const SimResult *r = &row->seen.result;
+        const int open = !sweep_row_failed(row) && r->energy_residual >= BOOKS_OPEN;
+        if (!sweep_row_failed(row) && !sweep_silently_wrong(row) && !open)
+            continue;
+        fprintf(out, "| %s | %s | %s | ", row->scene->name, engine_entry(row->engine)->name, row->knob);
+        if (sweep_row_failed(row))
+            fprintf(out, "%s: %s |\n", outcome_word(r->outcome), r->reason);
+        else if (open)
+            fprintf(out, "books open by %.2g, error %.2g |\n", r->energy_residual, row->error.objectives);
+        else
+            fprintf(out, "silently wrong: error %.2g, books %.1e |\n", row->error.objectives, r->energy_residual);
+        n++;
+    }
+    if (n == 0)
+        fprintf(out, "| none | | | |\n");
+}
+
+void sweep_write_markdown(const Sweep *s, const Motion *motion, FILE *out)
+{
+    fprintf(out,
+            "# Speed against accuracy\n\nWritten by `make chart`; do not edit. Motion: %s. One thread, wall time.\n",
+            motion->name);
+    fprintf(out,
+            "Error: the largest relative error of J1, J2, J3 and of the shares of mode 1, modes 5 to 10 and the core"
+            "\n(a share below 0.1 %% counts as 0.1 %%). x fast: time over that of `fast` at the same error.\n\n"
+            "![speed against accuracy](chart.svg)\n\n| engine | what it is | knob |\n|---|---|---|\n");
+    static const char *const KNOBS[] = {"step [s]", "relative tolerance", "steps per contact"};
+    for (int k = 0; k < ENGINE_COUNT; k++)
+        fprintf(out, "| %s | %s | %s |\n", engine_entry((Engine)k)->name, engine_entry((Engine)k)->words,
+                KNOBS[engine_entry((Engine)k)->knob]);
+    for (int k = 0; k < N_BENCH_SCENES; k++)
+        if (s->agreement[k] > 0)
+            write_scene(s, k, out);
+    write_failures(s, out);
+}

@@ -1,0 +1,159 @@
+#include "bench/throughput.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { DESIGNS = 24, DESIGNS_QUICK = 4, JUDGED = 6 };
+
+static const double WINDOW_S = 8, PLAIN_STEP = 2e-4, BDF_RTOL = 1e-6, REFERENCE_STEPS = 320;
+
+/* From coarse to fine. */
+static const double STEPS[] = {4e-3, 2e-3, 1.5e-3, 1e-3, 5e-4, 2e-4},
+                    TOLERANCES[] = {3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5};
+enum { LADDER = 6 };
+
+typedef struct {
+    const Settings *settings;
+    const Motion *whole;
+    Motion window;
+    Stage stage; /* one design at a time, on the window or the whole */
+    int n, n_judged;
+    FILE *out;
+    Observed *seen, *reference;
+} Throughput;
+
+static Status take(Throughput *t, int design, int whole, Err *err)
+{
+    Stage *stage = &t->stage;
+    stage->motion = whole ? *t->whole : t->window;
+    const double length = (double)(stage->motion.n - 1) * stage->motion.dt_s;
+    stage->duration = whole ? length : fmin(WINDOW_S, length);
+    bench_irregular_gaps((uint32_t)design, stage->building.n, stage->gaps);
+    return model_set(&stage->model, t->settings, &stage->building, stage->core, stage->gaps, err);
+}
+
+static int ascending(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static double median(int n, double x[])
+{
+    qsort(x, (size_t)n, sizeof *x, ascending);
+    return n % 2 ? x[n / 2] : 0.5 * (x[n / 2 - 1] + x[n / 2]);
+}
+
+static Status run_fast(Throughput *t, Err *err)
+{
+    double ms[DESIGNS], all = 0;
+    long steps = 0, forces = 0, impacts = 0, failed = 0;
+    for (int k = 0; k < t->n; k++) {
+        TRY(take(t, k, 1, err));
+        TRY(observe(&t->stage, ENGINE_FAST, ACCURACY_STANDARD, 0, t->seen, err));
+        const SimResult *r = &t->seen->result;
+        ms[k] = 1e3 * t->seen->seconds;
+        all += t->seen->seconds;
+        steps += r->steps;
+        forces += r->force_evaluations;
+        impacts += r->impacts;
+        failed += r->outcome != RUN_OK || !(r->energy_residual <= t->settings->sim.residual_max);
+    }
+    const double middle = median(t->n, ms);
+    fprintf(t->out, "fast, standard: %d designs, %.5g s each, one thread\n", t->n, t->stage.duration);
+    fprintf(t->out, "  per design      %.3g ms median, %.3g least, %.3g most; %.4g designs a second\n", middle, ms[0],
+            ms[t->n - 1], (double)t->n / all);
+    fprintf(t->out, "  counted         %.0f steps, %.0f force evaluations, %.0f impacts per design; %ld failed\n",
+            (double)steps / t->n, (double)forces / t->n, (double)impacts / t->n, failed);
+    fprintf(t->out, "  work            steps %ld force_evaluations %ld\n", steps, forces);
+    return STATUS_OK;
+}
+
+/* Median over the judged designs of the error in the window. */
+static Status judge(Throughput *t, Engine engine, double knob, double *error, Err *err)
+{
+    double errors[JUDGED];
+    for (int k = 0; k < t->n_judged; k++) {
+        TRY(take(t, k, 0, err));
+        TRY(observe(&t->stage, ENGINE_FAST, ACCURACY_FINE, REFERENCE_STEPS, t->reference, err));
+        TRY(observe(&t->stage, engine, ACCURACY_STANDARD, knob, t->seen, err));
+        const Errors e = errors_between(&t->stage, t->seen, t->reference);
+        errors[k] = t->seen->result.outcome == RUN_OK && isfinite(e.objectives) ? e.objectives : HUGE_VAL;
+    }
+    *error = median(t->n_judged, errors);
+    return STATUS_OK;
+}
+
+/* The coarsest of a ladder of knobs whose error is at most `allowed` (else the finest). */
+static Status equal_error(Throughput *t, Engine engine, const double ladder[LADDER], double allowed, double *knob,
+                          double *error, Err *err)
+{
+    for (int i = 0; i < LADDER; i++) {
+        *knob = ladder[i];
+        TRY(judge(t, engine, ladder[i], error, err));
+        if (*error <= allowed)
+            break;
+    }
+    return STATUS_OK;
+}
+
+/* Time of an engine over that of fast at standard accuracy, on the same designs, one after the other. */
+static Status compare(Throughput *t, const char *label, Engine engine, double knob, int designs, int whole, Err *err)
+{
+    double other = 0, fast = 0;
+    int failed = 0;
+    for (int k = 0; k < designs; k++) {
+        TRY(take(t, k, whole, err));
+        TRY(observe(&t->stage, ENGINE_FAST, ACCURACY_STANDARD, 0, t->seen, err));
+        fast += t->seen->seconds;
+        TRY(observe(&t->stage, engine, ACCURACY_STANDARD, knob, t->seen, err));
+        other += t->seen->seconds;
+        failed += t->seen->result.outcome != RUN_OK;
+    }
+    fprintf(t->out, "  %-34s %9.4g %10.4g ms %8.3g ms %8.4g x   %d designs, %.4g s%s\n", label, knob,
+            1e3 * other / designs, 1e3 * fast / designs, other / fast, designs, t->stage.duration,
+            failed ? ", some failed" : "");
+    return STATUS_OK;
+}
+
+static Status compare_all(Throughput *t, int quick, Err *err)
+{
+    double allowed, step, step_error, rtol, rtol_error, plain;
+    TRY(judge(t, ENGINE_FAST, 0, &allowed, err));
+    TRY(equal_error(t, ENGINE_ETDRK4, STEPS, allowed, &step, &step_error, err));
+    TRY(equal_error(t, ENGINE_ARKODE_IMEX, TOLERANCES, allowed, &rtol, &rtol_error, err));
+    TRY(judge(t, ENGINE_ETDRK4, PLAIN_STEP, &plain, err));
+    fprintf(t->out,
+            "\nerror in the strong window (%.3g s, median of %d designs; largest of J1..J3 and shares):\n"
+            "  fast standard %.1e, etdrk4 at %g %.1e, at %g %.1e, arkode_imex at %g %.1e\n\n",
+            fmin(WINDOW_S, (double)(t->window.n - 1) * t->window.dt_s), t->n_judged, allowed, PLAIN_STEP, plain, step,
+            step_error, rtol, rtol_error);
+    fprintf(t->out, "  %-34s %9s %13s %11s %10s\n", "against", "knob", "per design", "fast", "ratio");
+    TRY(compare(t, "plain ETDRK4", ENGINE_ETDRK4, PLAIN_STEP, quick ? 1 : 4, 1, err));
+    TRY(compare(t, "ETDRK4 at equal error", ENGINE_ETDRK4, step, quick ? 2 : 8, 1, err));
+    TRY(compare(t, "ARKODE IMEX at equal error", ENGINE_ARKODE_IMEX, rtol, quick ? 2 : 8, 1, err));
+    return compare(t, "CVODE BDF, strong window only", ENGINE_CVODE_BDF, BDF_RTOL, quick ? 1 : 2, 0, err);
+}
+
+Status throughput_print(const Settings *s, const Motion *motion, int quick, FILE *out, Err *err)
+{
+    Throughput t = {.settings = s,
+                    .whole = motion,
+                    .n = quick ? DESIGNS_QUICK : DESIGNS,
+                    .n_judged = quick ? 2 : JUDGED,
+                    .out = out};
+    double start;
+    t.window = bench_window(motion, &start);
+    t.seen = malloc(2 * sizeof *t.seen);
+    if (!t.seen)
+        return fail(err, STATUS_NO_MEMORY, "bench: out of memory");
+    t.reference = t.seen + 1;
+    Status status = stage_open(&t.stage, bench_scene(2), s, motion, quick, err);
+    if (status == STATUS_OK)
+        status = run_fast(&t, err);
+    if (status == STATUS_OK)
+        status = compare_all(&t, quick, err);
+    stage_close(&t.stage);
+    free(t.seen);
+    return status;
+}

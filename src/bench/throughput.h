@@ -1,0 +1,11 @@
+/* bench/throughput.h -- how many designs a second, and against whom: 24 designs with irregular gaps of 10 to 200 mm,
+ * the whole motion, one thread, all in one process. Engines that are too slow for that run fewer designs or only the
+ * strong window, and `fast` is timed on the same. Threads  none */
+#ifndef IMTET_BENCH_THROUGHPUT_H
+#define IMTET_BENCH_THROUGHPUT_H
+
+#include "bench/observe.h"
+
+Status throughput_print(const Settings *s, const Motion *motion, int quick, FILE *out, Err *err);
+
+#endif
