@@ -1,0 +1,123 @@
+/* The bench measures what it says: its scenes, its errors, its tables. */
+#include "check.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bench/sweep.h"
+
+typedef struct {
+    Settings s;
+    Motion m;
+} Ground;
+
+static void ground_open(Ground *g)
+{
+    Err err;
+    settings_defaults(&g->s);
+    CHECK_OK(motion_load(&g->m, "builtin:kobe-like", UNIT_FROM_FILE, &err), &err);
+    CHECK_OK(motion_prepare(&g->m, g->s.motion.pga_g, g->s.motion.stretch, &err), &err);
+}
+
+static void test_irregular_gaps_are_the_same_every_time_and_within_their_bounds(void **state)
+{
+    (void)state;
+    double first[20], again[20], other[20];
+    bench_irregular_gaps(3, 20, first);
+    bench_irregular_gaps(3, 20, again);
+    bench_irregular_gaps(4, 20, other);
+    assert_memory_equal(first, again, sizeof first);
+    assert_memory_not_equal(first, other, sizeof first);
+    for (int j = 0; j < 20; j++)
+        assert_true(first[j] >= 0.01 && first[j] <= 0.2);
+}
+
+static void test_scenes_have_as_many_impacts_as_their_names_say(void **state)
+{
+    (void)state;
+    static const long LEAST[] = {0, 1, 20, 10, 20}, MOST[] = {0, 1, 100000, 100000, 100000};
+    Ground g;
+    ground_open(&g);
+    for (int k = 0; k < N_BENCH_SCENES; k++) {
+        Stage stage = {0};
+        Err err;
+        static Observed o;
+        CHECK_OK(stage_open(&stage, bench_scene(k), &g.s, &g.m, 1, &err), &err);
+        CHECK_OK(observe(&stage, ENGINE_FAST, ACCURACY_STANDARD, 0, &o, &err), &err);
+        print_message("%s: %ld impacts\n", stage.scene->name, o.result.impacts);
+        assert_int_equal(o.result.outcome, RUN_OK);
+        assert_true(o.result.impacts >= LEAST[k] && o.result.impacts <= MOST[k]);
+        stage_close(&stage);
+    }
+    motion_free(&g.m);
+}
+
+static void test_an_error_is_zero_against_itself_and_first_order_in_a_change(void **state)
+{
+    (void)state;
+    static Observed o, changed;
+    Stage stage = {0};
+    Ground g;
+    Err err;
+    ground_open(&g);
+    CHECK_OK(stage_open(&stage, bench_scene(2), &g.s, &g.m, 1, &err), &err);
+    CHECK_OK(observe(&stage, ENGINE_ETDRK4, ACCURACY_STANDARD, 1e-3, &o, &err), &err);
+    changed = o;
+    changed.result.j3_g *= 1.001;
+    changed.closings[0].t += 1e-3;
+    for (int i = 0; i < 2 * stage.model.m; i++)
+        changed.state[i] *= 1.01;
+    const Errors none = errors_between(&stage, &o, &o), some = errors_between(&stage, &changed, &o);
+    assert_true(none.objectives == 0 && none.state == 0 && none.first_s == 0 && none.first_speed == 0);
+    assert_close(some.objectives, 1e-3, 1e-9);
+    assert_close(some.state, 1e-2, 1e-9);
+    assert_close(some.first_s, 1e-3, 1e-9);
+    stage_close(&stage);
+    motion_free(&g.m);
+}
+
+static void test_a_sweep_has_a_row_for_every_setting_and_a_known_floor(void **state)
+{
+    (void)state;
+    const SweepPlan plan = {1u << ENGINE_FAST | 1u << ENGINE_NEWMARK, 0.2};
+    Sweep sweep = {0};
+    Stage stage = {0};
+    Ground g;
+    Err err;
+    char *csv = NULL;
+    size_t size;
+    ground_open(&g);
+    CHECK_OK(stage_open(&stage, bench_scene(0), &g.s, &g.m, 1, &err), &err);
+    stage.duration = 2;
+    FILE *quiet = fopen("/dev/null", "w");
+    assert_non_null(quiet);
+    CHECK_OK(sweep_scene(&sweep, 0, &stage, &plan, quiet, &err), &err);
+    fclose(quiet);
+    assert_true(sweep.n >= 6);
+    assert_true(sweep_floor(&sweep, 0) < 1e-5);
+    FILE *f = open_memstream(&csv, &size);
+    assert_non_null(f);
+    sweep_write_csv(&sweep, f);
+    fclose(f);
+    size_t lines = 0;
+    for (const char *c = csv; *c; c++)
+        lines += *c == '\n';
+    assert_int_equal(lines, sweep.n + 1);
+    assert_true(strncmp(csv, "scene,engine,knob,seconds,error_objectives", 42) == 0);
+    free(csv);
+    sweep_free(&sweep);
+    stage_close(&stage);
+    motion_free(&g.m);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_irregular_gaps_are_the_same_every_time_and_within_their_bounds),
+        cmocka_unit_test(test_scenes_have_as_many_impacts_as_their_names_say),
+        cmocka_unit_test(test_an_error_is_zero_against_itself_and_first_order_in_a_change),
+        cmocka_unit_test(test_a_sweep_has_a_row_for_every_setting_and_a_known_floor),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
