@@ -8,7 +8,7 @@ enum { BENCH_OBJECTIVES = 6, BENCH_CLOSINGS = 24, BENCH_FIRST = 3 };
 
 typedef struct {
     SimResult result;
-    double seconds;                   /* wall time: the median of three where they are short */
+    double seconds;                   /* of processor time: the median of three where they are short */
     double state[4 * FLOORS_MAX];     /* q and q' at the end */
     double energy;                    /* [J] of that state, without the contacts */
     Closing closings[BENCH_CLOSINGS]; /* the first */
@@ -29,6 +29,7 @@ Status observe(const Stage *stage, Engine engine, Accuracy accuracy, double knob
 /* A share below 0.1 % of the input energy is compared as if it were 0.1 %. */
 Errors errors_between(const Stage *stage, const Observed *o, const Observed *reference);
 
-double seconds_now(void);
+/* Of this thread: other work on the machine disturbs it less than it does the time of day. */
+double processor_seconds(void);
 
 #endif

@@ -36,8 +36,9 @@ void sweep_write_csv(const Sweep *s, FILE *out)
     fprintf(out, "scene,engine,knob,seconds,error_objectives");
     for (int k = 0; k < BENCH_OBJECTIVES; k++)
         fprintf(out, ",error_%s", BENCH_OBJECTIVE_NAMES[k]);
-    fprintf(out, ",error_state,error_first_s,error_first_speed,residual,floor,impacts,steps,force_evaluations,outcome,"
-                 "reason\n");
+    fprintf(out,
+            ",error_state,error_first_s,error_first_speed,residual,floor,noise,impacts,steps,force_evaluations,outcome,"
+            "reason\n");
     for (size_t i = 0; i < s->n; i++) {
         const SweepRow *row = &s->rows[i];
         const SimResult *r = &row->seen.result;
@@ -52,6 +53,7 @@ void sweep_write_csv(const Sweep *s, FILE *out)
         put(out, failed ? NAN : row->error.first_speed);
         put(out, failed ? NAN : r->energy_residual);
         put(out, sweep_floor(s, scene_index(row->scene)));
+        put(out, s->noise > 0 ? s->noise : NAN);
         fprintf(out, ",%ld,%ld,%ld,%s,\"%s\"\n", r->impacts, r->steps, r->force_evaluations, outcome_word(r->outcome),
                 r->reason);
     }
@@ -138,9 +140,10 @@ static void write_failures(const Sweep *s, FILE *out)
 
 void sweep_write_markdown(const Sweep *s, const Motion *motion, FILE *out)
 {
-    fprintf(out,
-            "# Speed against accuracy\n\nWritten by `make chart`; do not edit. Motion: %s. One thread, wall time.\n",
-            motion->name);
+    fprintf(
+        out,
+        "# Speed against accuracy\n\nWritten by `make chart`; do not edit. Motion: %s. One thread, processor time.\n",
+        motion->name);
     fprintf(out,
             "Error: the largest relative error of J1, J2, J3 and of the shares of mode 1, modes 5 to 10 and the core"
             "\n(a share below 0.1 %% counts as 0.1 %%). x fast: time over that of `fast` at the same error.\n\n"

@@ -99,7 +99,7 @@ Status stage_open(Stage *stage, const BenchScene *scene, const Settings *s, cons
     if (!stage->core)
         return fail(err, STATUS_NO_MEMORY, "bench: out of memory");
     TRY(building_load(&stage->building, s->building.model, err));
-    TRY(core_beam_make(stage->core, s, stage->building.n, 0.012, 0.0064, err));
+    TRY(core_beam_make(stage->core, s, stage->building.n, BENCH_WALL_BASE, BENCH_WALL_TOP, err));
     TRY(model_create(&stage->model, stage->building.n, err));
     set_gaps(stage);
     return strcmp(scene->name, "one-impact") == 0 ? find_one_impact(stage, s, err) : set_model(stage, s, err);

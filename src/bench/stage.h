@@ -20,6 +20,9 @@ typedef struct {
     double window_s;
 } BenchScene;
 
+/* Wall of the core in the first and last storey [m]. */
+static const double BENCH_WALL_BASE = 0.012, BENCH_WALL_TOP = 0.0064;
+
 enum { N_BENCH_SCENES = 5 };
 const BenchScene *bench_scene(int k);
 

@@ -113,9 +113,9 @@ Status sweep_scene(Sweep *s, int scene, const Stage *stage, const SweepPlan *pla
     for (int k = 0; k < ENGINE_COUNT && status == STATUS_OK; k++) {
         if (!(plan->engines >> k & 1))
             continue;
-        const double start = seconds_now();
+        const double start = processor_seconds();
         status = sweep_engine(s, stage, (Engine)k, reference, plan->limit_s, err);
-        fprintf(progress, "  %-20s %.1f s\n", engine_entry((Engine)k)->name, seconds_now() - start);
+        fprintf(progress, "  %-20s %.1f s\n", engine_entry((Engine)k)->name, processor_seconds() - start);
     }
     free(reference);
     return status;

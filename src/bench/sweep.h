@@ -25,6 +25,8 @@ typedef struct {
     double agreement[N_BENCH_SCENES]; /* of the two references; 0: the scene was not run */
     long impacts[N_BENCH_SCENES];
     double duration[N_BENCH_SCENES];
+    double
+        noise; /* largest relative spread of an objective over an ensemble, whole motion, irregular gaps; 0: unknown */
 } Sweep;
 
 typedef struct {
@@ -35,6 +37,9 @@ typedef struct {
 /* Appends the rows of one scene; says on `progress` what it does. */
 Status sweep_scene(Sweep *s, int scene, const Stage *stage, const SweepPlan *plan, FILE *progress, Err *err);
 void sweep_free(Sweep *s);
+
+/* Sets noise. settings, motion: as prepared for the stages. */
+Status sweep_find_noise(Sweep *s, const Settings *settings, const Motion *motion, Err *err);
 
 double sweep_floor(const Sweep *s, int scene);
 

@@ -6,6 +6,7 @@
 
 #include "bench/observe.h"
 
-Status throughput_print(const Settings *s, const Motion *motion, int quick, FILE *out, Err *err);
+/* quick: four designs, shorter comparisons. count: the fast engine on four designs, nothing to compare with. */
+Status throughput_print(const Settings *s, const Motion *motion, int quick, int count, FILE *out, Err *err);
 
 #endif

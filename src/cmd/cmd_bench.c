@@ -79,6 +79,8 @@ static Status run_sweep(const Args *args, Bench *b, Err *err)
         if (b->scenes >> k & 1)
             status = run_scene(b, k, err);
     TRY(status);
+    if (!b->quick)
+        TRY(sweep_find_noise(&b->sweep, &b->settings, &b->motion, err));
     if (args_has(args, "--markdown"))
         TRY(write_to(args_value(args, "--markdown"), b, 1, err));
     if (args_has(args, "--csv"))
@@ -93,8 +95,9 @@ static Status run(const Args *args, Err *err)
     Bench b = {0};
     Status status = prepare(args, &b, err);
     if (status == STATUS_OK)
-        status = args_has(args, "--throughput") ? throughput_print(&b.settings, &b.motion, b.quick, stdout, err)
-                                                : run_sweep(args, &b, err);
+        status = args_has(args, "--throughput")
+                     ? throughput_print(&b.settings, &b.motion, b.quick, args_has(args, "--count"), stdout, err)
+                     : run_sweep(args, &b, err);
     sweep_free(&b.sweep);
     motion_free(&b.motion);
     return status;
@@ -104,6 +107,7 @@ static const ArgOption OPTIONS[] = {
     {"--scene", "NAME,...", NULL, 0, "linear, one-impact, irregular, tiny, zero; all unless given"},
     {"--engine", "NAME,...", NULL, 0, "as the setting sim.engine; all unless given"},
     {"--throughput", NULL, NULL, 0, "instead: designs per second over the whole motion, and ratios of engines"},
+    {"--count", NULL, NULL, 0, "with --throughput: four designs by the fast engine, and nothing else"},
     {"--quick", NULL, NULL, 0, "half the time, fewer settings and designs"},
     {"--markdown", "FILE", NULL, 0, "tables of what each engine needs for a given error, and of what failed"},
     OPTION_CSV,
