@@ -49,7 +49,7 @@ STABILITY.asan := --engine fast
 STABILITY_OBJ := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/stability/*.c))
 PROGRAM := $(if $(filter release,$(MODE)),imtet,$(BUILD)/imtet)
 
-.PHONY: all setup run test test-here stability stability-long laws bench format install clean .FORCE
+.PHONY: all setup run test test-here stability stability-long laws bench chart format install clean .FORCE
 .SECONDARY:
 all: $(PROGRAM)
 
@@ -121,6 +121,16 @@ $(BUILD)/revision: .FORCE
 	@mkdir -p $(@D)
 	@echo '$(VERSION) $(REVISION)' | cmp -s - $@ || echo '$(VERSION) $(REVISION)' > $@
 $(BUILD)/src/run/provenance.o: $(BUILD)/revision
+
+# Figures of speed; a record that is not there is replaced by the built-in motion. Both want a quiet machine.
+BENCH_RECORD ?= $(or $(wildcard ../shared/records/kobe_jma_ns.csv),builtin:kobe-like)
+bench: $(PROGRAM)
+	@bench/guard $(abspath $(PROGRAM))
+	@$(abspath $(PROGRAM)) bench --throughput --record $(BENCH_RECORD)
+
+chart: $(PROGRAM)
+	@$(abspath $(PROGRAM)) bench --record $(BENCH_RECORD) --csv docs/chart.csv --markdown docs/chart.md
+	@scripts/plot-chart docs/chart.csv docs/chart
 
 format:
 	clang-format -i $(wildcard src/*.c src/*/*.[ch] src/*/*/*.[ch] tests/*.[ch] tests/*/*.[ch])

@@ -142,12 +142,14 @@ void sweep_write_markdown(const Sweep *s, const Motion *motion, FILE *out)
 {
     fprintf(
         out,
-        "# Speed against accuracy\n\nWritten by `make chart`; do not edit. Motion: %s. One thread, processor time.\n",
+        "# Speed against accuracy\n\nWritten by `make chart`; do not edit. Motion: %s. One thread, processor time.\n"
+        "Error: the largest relative error of J1, J2, J3 and of the shares of mode 1, modes 5 to 10 and the core\n"
+        "(a share below 0.1 %% counts as 0.1 %%). x fast: time over that of `fast` at the same error.\n",
         motion->name);
-    fprintf(out,
-            "Error: the largest relative error of J1, J2, J3 and of the shares of mode 1, modes 5 to 10 and the core"
-            "\n(a share below 0.1 %% counts as 0.1 %%). x fast: time over that of `fast` at the same error.\n\n"
-            "![speed against accuracy](chart.svg)\n\n| engine | what it is | knob |\n|---|---|---|\n");
+    if (s->noise > 0)
+        fprintf(out, "Over the whole motion the least certain objective has a spread of %.2g (dashed in the chart).\n",
+                s->noise);
+    fprintf(out, "\n![speed against accuracy](chart.svg)\n\n| engine | what it is | knob |\n|---|---|---|\n");
     static const char *const KNOBS[] = {"step [s]", "relative tolerance", "steps per contact"};
     for (int k = 0; k < ENGINE_COUNT; k++)
         fprintf(out, "| %s | %s | %s |\n", engine_entry((Engine)k)->name, engine_entry((Engine)k)->words,
