@@ -406,6 +406,48 @@ static void test_settings_that_make_no_sense_are_refused_by_name(void **state)
     assert_non_null(strstr(err.text, "variable 4"));
 }
 
+static Status evaluate_agreeing(size_t n, const double X[], double F[], double G[], unsigned char ok[], void *user,
+                                Err *err)
+{
+    World *w = user;
+    (void)G;
+    (void)err;
+    for (size_t i = 0; i < n; i++) {
+        double sum = 0.0;
+        for (size_t d = 0; d < w->problem.n_var; d++)
+            sum += X[i * w->problem.n_var + d];
+        F[2 * i] = sum;
+        F[2 * i + 1] = 2.0 * sum;
+        ok[i] = 1;
+    }
+    w->n_rows += n;
+    return STATUS_OK;
+}
+
+/* The corner is found at once; after that the surface proposes what is known already. */
+static void test_a_front_of_a_single_design_still_spends_the_budget(void **state)
+{
+    (void)state;
+    world(&here, 3, 2);
+    here.problem.evaluate = evaluate_agreeing;
+    const SearchConfig c = config(20, 200);
+    assert_int_equal(run(&here, &c, &seen), STOP_EVALUATIONS);
+    assert_int_equal(seen.n_front, 1);
+    assert_int_equal(seen.n, 200);
+}
+
+static void test_a_start_of_size_zero_follows_the_number_of_variables(void **state)
+{
+    (void)state;
+    world(&here, 8, 3);
+    SearchConfig c = config(0, 120);
+    run(&here, &c, &seen);
+    size_t sampled = 0;
+    for (size_t i = 0; i < seen.n; i++)
+        sampled += seen.kind[i] == KIND_SAMPLED;
+    assert_int_equal(sampled, 44);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -424,6 +466,8 @@ int main(void)
         cmocka_unit_test_setup(test_answers_without_any_pattern_fall_back_to_plain_offspring, fresh),
         cmocka_unit_test_setup(test_an_archive_beyond_the_surface_s_size_is_thinned, fresh),
         cmocka_unit_test_setup(test_settings_that_make_no_sense_are_refused_by_name, fresh),
+        cmocka_unit_test_setup(test_a_front_of_a_single_design_still_spends_the_budget, fresh),
+        cmocka_unit_test_setup(test_a_start_of_size_zero_follows_the_number_of_variables, fresh),
     };
     return cmocka_run_group_tests_name("search", tests, NULL, NULL);
 }

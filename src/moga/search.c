@@ -22,6 +22,9 @@ enum {
     AGE_MAX = 3      /* a prediction that stood so often is checked first */
 };
 
+/* Kendall's tau below which the surface no longer leads, and how much one batch counts in its running mean. */
+static const double LEAST_AGREEMENT = 0.15, AGREEMENT_WEIGHT = 0.25;
+
 typedef struct {
     const Problem *problem;
     const SearchConfig *config;
@@ -32,6 +35,8 @@ typedef struct {
     Surface *surface;
     Group population, pool, offspring;
     size_t generation, n_predicted, batch_max;
+    double agreement;                /* running mean of Kendall's tau between predicted and simulated batches */
+    double *foreseen;                /* (batch, n_obj) what was predicted of the batch under way */
     size_t *chosen;                  /* (pool) */
     size_t *followed;                /* (wishes) in the order of this generation */
     double *descended;               /* (pool, n_var) */
@@ -169,6 +174,12 @@ static Status sample_again(Search *s, Err *err)
     return STATUS_OK;
 }
 
+/* Whether the surface leads: it explains its own data, and what it foretold of late batches came in that order. */
+static int is_guided(const Search *s)
+{
+    return surface_stands(s->surface) && s->agreement > LEAST_AGREEMENT;
+}
+
 /* Simulations between two fits of the surface: more as they accumulate, so that fitting never takes over. */
 static size_t batch_size(const Search *s)
 {
@@ -196,9 +207,9 @@ static void add_descended(Search *s)
 
 /* The offspring population: what survives some generations of variation and selection on the surface and has not been
  * simulated. Without a surface that can be relied on, plain children of the population. */
-static void make_offspring(Search *s)
+static void make_offspring(Search *s, int plainly)
 {
-    const int guided = surface_stands(s->surface);
+    const int guided = is_guided(s) && !plainly;
     s->pool.n = s->offspring.n = 0;
     for (size_t i = 0; i < s->population.n; i++)
         group_copy_member(&s->pool, &s->population, i);
@@ -220,7 +231,16 @@ static void make_offspring(Search *s)
 
 static int is_trusted(const Search *s, const Group *g, size_t i)
 {
-    return surface_stands(s->surface) && g->uncertainty[i] < s->config->trust_error;
+    return is_guided(s) && g->uncertainty[i] < s->config->trust_error;
+}
+
+/* Offspring i into the batch, and what is foretold of it. */
+static size_t batch_take(Search *s, size_t n, size_t i)
+{
+    const Group *g = &s->offspring;
+    if (n < s->batch_max)
+        memcpy(s->foreseen + n * g->n_obj, g->F + i * g->n_obj, g->n_obj * sizeof *g->F);
+    return batch_add(s, n, g->X + i * g->n_var);
 }
 
 /* Plain children are simulated in their order. */
@@ -228,7 +248,7 @@ static size_t choose_plain_batch(Search *s, size_t batch)
 {
     size_t n = 0;
     for (size_t i = 0; i < s->offspring.n && n < batch; i++) {
-        n = batch_add(s, n, s->offspring.X + i * s->offspring.n_var);
+        n = batch_take(s, n, i);
         s->picked[i] = 1;
     }
     return n;
@@ -241,7 +261,7 @@ static size_t choose_batch(Search *s)
     const size_t batch = batch_size(s), check = batch / CHECK_SHARE + 1;
     size_t n = 0;
     memset(s->picked, 0, g->n);
-    if (!surface_stands(s->surface))
+    if (!is_guided(s))
         return choose_plain_batch(s, batch);
     infill_offer(s->infill, g->n, g->F, g->violation, g->uncertainty);
     for (int round = 0; round < 2; round++) {
@@ -249,11 +269,49 @@ static size_t choose_batch(Search *s)
         for (size_t i = 0; i < g->n; i++)
             s->allowed[i] = !s->picked[i] && (round == 1 || !is_trusted(s, g, i) || g->age[i] >= AGE_MAX);
         for (size_t i; n < limit && (i = infill_pick(s->infill, s->allowed)) != SIZE_MAX;) {
-            n = batch_add(s, n, g->X + i * g->n_var);
+            n = batch_take(s, n, i);
             s->picked[i] = 1;
         }
     }
     return n;
+}
+
+/* Kendall's tau of two columns of a batch: pairs in the same order less pairs in the opposite one, as a share. */
+static double tau(size_t n, size_t stride, const double a[], const double b[], const unsigned char ok[])
+{
+    long same = 0, pairs = 0;
+    for (size_t i = 0; i < n; i++)
+        for (size_t j = 0; j < i; j++) {
+            const double product = (a[i * stride] - a[j * stride]) * (b[i * stride] - b[j * stride]);
+            if (!ok[i] || !ok[j])
+                continue;
+            same += (product > 0.0) - (product < 0.0);
+            pairs++;
+        }
+    return pairs > 0 ? (double)same / (double)pairs : 0.0;
+}
+
+/* How far the surface foretold the order of the n designs just simulated, in the mean over the objectives. */
+static void judge_surface(Search *s, size_t n)
+{
+    const size_t m = s->problem->n_obj;
+    double mean = 0.0;
+    if (n < 4 || !surface_stands(s->surface))
+        return;
+    for (size_t k = 0; k < m; k++)
+        mean += tau(n, m, s->foreseen + k, s->F + k, s->ok) / (double)m;
+    s->agreement += AGREEMENT_WEIGHT * (mean - s->agreement);
+}
+
+/* Where the surface has nothing new to propose, plain children; where these are all known too, fresh samples. */
+static size_t choose_any_batch(Search *s)
+{
+    const size_t n = choose_batch(s);
+    if (n > 0)
+        return n;
+    make_offspring(s, 1);
+    memset(s->picked, 0, s->offspring.n);
+    return choose_plain_batch(s, batch_size(s));
 }
 
 /* The front to be improved; where nothing is feasible yet, the population. */
@@ -294,8 +352,12 @@ static Status next_generation(Search *s, Err *err)
     measure_front(s);
     TRY(surface_fit(s->surface, &s->archive, s->infill, err));
     surface_predict(s->surface, &s->population, 0, 0);
-    make_offspring(s);
-    TRY(simulate_batch(s, choose_batch(s), KIND_INFILL, err));
+    make_offspring(s, 0);
+    const size_t n = choose_any_batch(s);
+    if (n == 0)
+        return sample_again(s, err);
+    TRY(simulate_batch(s, n, KIND_INFILL, err));
+    judge_surface(s, n);
     renew_population(s, first_new);
     return STATUS_OK;
 }
@@ -401,6 +463,7 @@ static void layout(Search *s, size_t n_pool, Carve *c)
     s->chosen = carve(c, n_pool, sizeof(size_t));
     s->followed = carve(c, s->wishes.n, sizeof(size_t));
     s->descended = carve(c, n_pool * p->n_var, sizeof(double));
+    s->foreseen = carve(c, s->batch_max * p->n_obj, sizeof(double));
     s->child = carve(c, 2 * p->n_var, sizeof(double));
     s->X = carve(c, s->batch_max * p->n_var, sizeof(double));
     s->F = carve(c, s->batch_max * p->n_obj, sizeof(double));
@@ -462,7 +525,7 @@ static void release(Search *s)
 Status search_run(const Problem *problem, const SearchConfig *config, ObserveFn observe, void *user, StopReason *reason,
                   Err *err)
 {
-    Search s = {.problem = problem, .config = config};
+    Search s = {.problem = problem, .config = config, .agreement = 1.0};
     TRY(check(problem, config, err));
     clock_gettime(CLOCK_MONOTONIC, &s.start);
     Status status = create(&s, err);

@@ -7,7 +7,8 @@
  *     plain children
  *   4 every offspring predicted; where the leave-one-out based error estimate is small the prediction stands, of the
  *     others those that promise most are simulated and become new centres (moga/infill.h), the rest is forgotten.
- *     A few predictions that stand are checked by simulation, first those that have stood for long
+ *     A few predictions that stand are checked by simulation, first those that have stood for long. Predicted and true
+ *     order of every batch are compared (Kendall's tau); while they disagree, batches are plain children
  *   5 environmental selection with reference directions (NSGA-III, moga/survival.h); back to 2
  *
  * Predicted designs may live in the population; only simulated ones enter the archive, and the front is made of the
@@ -31,7 +32,7 @@ typedef enum { KIND_SAMPLED, KIND_INFILL } EvaluationKind;
 typedef struct {
     uint32_t seed;
     size_t population, generations, max_evals, surrogate_max;
-    size_t initial; /* 0: by the number of variables */
+    size_t initial;            /* 0: by the number of variables */
     double max_seconds;        /* 0: no limit */
     double nondominated_share; /* stop when this share of the archive is nondominated; 1: never */
     double trust_error;        /* share of an objective's range in the archive */
