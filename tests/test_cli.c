@@ -655,6 +655,33 @@ static void test_an_external_simulator_is_searched_and_every_design_exported(voi
     expect(65, "problem.command", "optimize @/external.ini --out @/none --set problem.command=none");
 }
 
+/* The external run of the test before: f = (x1 min, x2 max). */
+static void test_designs_are_chosen_by_limits_weights_and_wishes_and_polished(void **state)
+{
+    (void)state;
+    free(output_of("optimize @/external.ini --out @/kind --set 'problem.command=sh tests/worker.sh good'"));
+    char *said = output_of("choose @/kind --max f1=0.9 --min f2=0.1 --weights f1=1 --wish f1=0,f2=1");
+    assert_non_null(strstr(said, "knee"));
+    assert_non_null(strstr(said, "weighted"));
+    assert_non_null(strstr(said, "nearest wish"));
+    free(said);
+    expect(65, "no design of the front is within the limits", "choose @/kind --max f1=-5");
+    expect(2, "speed is no objective", "choose @/kind --max speed=5");
+    expect(2, "is not NAME=NUMBER", "choose @/kind --weights f1");
+
+    /* With nothing kept x1 = 0 is the best there is; with all kept nothing may change on this front. */
+    free(output_of("polish @/kind --design knee --improve f1 --keep f1 --evals 120 --csv @/polished.csv"));
+    Table t;
+    Err err = {0};
+    char *path = in_place("polished.csv");
+    CHECK_OK(table_read(&t, path, 1, &err), &err);
+    assert_true(t.values[4] < 0.01 && t.values[4] == t.values[1]);
+    table_free(&t);
+    free(path);
+    expect(65, "no such id", "polish @/kind --design 999999");
+    expect(2, "no algorithm is called", "polish @/kind --design knee --algorithm magic");
+}
+
 static void test_a_textbook_problem_is_written_design_by_design(void **state)
 {
     (void)state;
@@ -707,6 +734,7 @@ int main(void)
         cmocka_unit_test(test_the_export_is_the_front),
         cmocka_unit_test(test_a_design_of_the_front_is_evaluated_on_other_motions),
         cmocka_unit_test(test_an_external_simulator_is_searched_and_every_design_exported),
+        cmocka_unit_test(test_designs_are_chosen_by_limits_weights_and_wishes_and_polished),
         cmocka_unit_test(test_a_textbook_problem_is_written_design_by_design),
         cmocka_unit_test(test_a_run_that_is_killed_leaves_its_last_finished_generation),
         cmocka_unit_test(test_a_building_of_five_floors_goes_all_the_way),

@@ -9,6 +9,8 @@
     X(SIMULATE)                                                                                                        \
     X(EVALUATE)                                                                                                        \
     X(EXPORT)                                                                                                          \
+    X(CHOOSE)                                                                                                          \
+    X(POLISH)                                                                                                          \
     X(HORIZON)                                                                                                         \
     X(MODES)                                                                                                           \
     X(SPECTRUM)                                                                                                        \

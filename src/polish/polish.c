@@ -1,0 +1,211 @@
+#include "polish/polish.h"
+
+#include <math.h>
+#include <nlopt.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+typedef struct {
+    const char *name;
+    nlopt_algorithm algorithm;
+    int takes_constraints;
+} Method;
+
+static const Method METHODS[] = {
+    {"cobyla", NLOPT_LN_COBYLA, 1},
+    {"bobyqa", NLOPT_LN_BOBYQA, 0},
+    {"sbplx", NLOPT_LN_SBPLX, 0},
+    {"isres", NLOPT_GN_ISRES, 1},
+};
+enum { N_METHODS = sizeof METHODS / sizeof METHODS[0] };
+
+static const double WALL = 1e3, PENALTY = 1e2, MARGIN = 5e-3, FIRST_STEP = 0.02;
+
+typedef struct {
+    const Problem *problem;
+    const PolishConfig *config;
+    PolishResult *result;
+    nlopt_opt opt;
+    struct timespec start;
+    double *x, *f, *g; /* of the last evaluation; x (n_var) in its own units */
+    double *scale;     /* (n_obj) */
+    double *u;         /* (n_var) the last evaluated point in the unit cube */
+    double excess;     /* worst of the constraints there, in units of their scale */
+    double least;      /* best allowed value so far */
+    int known, ok;     /* u has been evaluated; it did not fail */
+    Status status;
+    Err *err;
+} Polish;
+
+static double seconds_since(const struct timespec *start)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)(now.tv_sec - start->tv_sec) + 1e-9 * (double)(now.tv_nsec - start->tv_nsec);
+}
+
+static double excess_of(const Polish *p)
+{
+    double worst = -INFINITY;
+    for (size_t k = 0; k < p->problem->n_obj; k++)
+        if (p->config->keep[k] && k != p->config->improve)
+            worst = fmax(worst, (p->f[k] - p->result->f_start[k] - p->config->slack[k]) / p->scale[k]);
+    for (size_t c = 0; c < p->problem->n_con; c++)
+        worst = fmax(worst, p->g[c]);
+    return worst;
+}
+
+static void keep_if_best(Polish *p)
+{
+    const double value = p->f[p->config->improve];
+    if (!p->ok || p->excess > 0.0 || !(value < p->least))
+        return;
+    p->least = value;
+    memcpy(p->result->x, p->x, p->problem->n_var * sizeof *p->x);
+    memcpy(p->result->f, p->f, p->problem->n_obj * sizeof *p->f);
+}
+
+static int spent(const Polish *p)
+{
+    return p->status != STATUS_OK || p->result->n_evaluated >= p->config->max_evals ||
+           (p->config->max_seconds > 0.0 && seconds_since(&p->start) >= p->config->max_seconds);
+}
+
+/* NLopt asks objective and constraint apart: the same point is evaluated once. */
+static void evaluate(Polish *p, const double u[])
+{
+    const Problem *q = p->problem;
+    unsigned char ok = 0;
+    if (p->known && memcmp(u, p->u, q->n_var * sizeof *u) == 0)
+        return;
+    if (spent(p)) {
+        nlopt_force_stop(p->opt);
+        return;
+    }
+    memcpy(p->u, u, q->n_var * sizeof *u);
+    for (size_t d = 0; d < q->n_var; d++)
+        p->x[d] = fmin(fmax(q->lower[d] + u[d] * (q->upper[d] - q->lower[d]), q->lower[d]), q->upper[d]);
+    if (q->repair)
+        q->repair(p->x, q->user);
+    p->status = q->evaluate(1, p->x, p->f, p->g, &ok, q->user, p->err);
+    p->known = 1;
+    p->ok = p->status == STATUS_OK && ok;
+    for (size_t k = 0; k < q->n_obj; k++)
+        p->ok = p->ok && isfinite(p->f[k]);
+    p->result->n_evaluated++;
+    p->result->n_failed += !p->ok;
+    p->excess = p->ok ? excess_of(p) : WALL;
+    keep_if_best(p);
+}
+
+static double value_at(Polish *p)
+{
+    const size_t k = p->config->improve;
+    return p->ok ? fmin((p->f[k] - p->result->f_start[k]) / p->scale[k], WALL) : WALL;
+}
+
+static double objective(unsigned n, const double u[], double gradient[], void *user)
+{
+    (void)n;
+    (void)gradient;
+    Polish *p = user;
+    evaluate(p, u);
+    return value_at(p);
+}
+
+static double penalised(unsigned n, const double u[], double gradient[], void *user)
+{
+    (void)n;
+    (void)gradient;
+    Polish *p = user;
+    evaluate(p, u);
+    const double over =
+        fmax(p->excess + MARGIN, 0.0); /* square: bobyqa's parabola fits no kink; it gives way a little */
+    return fmin(value_at(p) + PENALTY * over * over, WALL);
+}
+
+static double constraint(unsigned n, const double u[], double gradient[], void *user)
+{
+    (void)n;
+    (void)gradient;
+    Polish *p = user;
+    evaluate(p, u);
+    return fmin(fmax(p->excess, -WALL), WALL);
+}
+
+static Status find_method(const char *name, const Method **found, Err *err)
+{
+    for (size_t i = 0; i < N_METHODS; i++)
+        if (strcmp(METHODS[i].name, name) == 0) {
+            *found = &METHODS[i];
+            return STATUS_OK;
+        }
+    return fail(err, STATUS_USAGE, "no algorithm is called '%.40s'; there are cobyla, bobyqa, sbplx, isres", name);
+}
+
+static Status evaluate_start(Polish *p, const double start[], double u[])
+{
+    const Problem *q = p->problem;
+    for (size_t d = 0; d < q->n_var; d++)
+        u[d] = q->upper[d] > q->lower[d] ? (start[d] - q->lower[d]) / (q->upper[d] - q->lower[d]) : 0.0;
+    evaluate(p, u);
+    if (p->status != STATUS_OK)
+        return p->status;
+    if (!p->ok)
+        return fail(p->err, STATUS_BAD_DATA, "the design to be polished cannot be evaluated");
+    memcpy(p->result->f_start, p->f, q->n_obj * sizeof *p->f);
+    memcpy(p->result->f, p->f, q->n_obj * sizeof *p->f);
+    memcpy(p->result->x, p->x, q->n_var * sizeof *p->x);
+    for (size_t k = 0; k < q->n_obj; k++)
+        p->scale[k] = p->f[k] != 0.0 ? fabs(p->f[k]) : 1.0;
+    p->least = p->f[p->config->improve];
+    p->excess = excess_of(p);
+    return STATUS_OK;
+}
+
+static void run_method(Polish *p, const Method *m, double u[])
+{
+    double unused;
+    nlopt_set_lower_bounds1(p->opt, 0.0);
+    nlopt_set_upper_bounds1(p->opt, 1.0);
+    nlopt_set_initial_step1(p->opt, FIRST_STEP);
+    nlopt_set_xtol_rel(p->opt, 1e-6);
+    nlopt_set_maxeval(p->opt, (int)fmin(2.0 * (double)p->config->max_evals + 100.0, 1e9)); /* a second belt */
+    nlopt_set_min_objective(p->opt, m->takes_constraints ? objective : penalised, p);
+    if (m->takes_constraints)
+        nlopt_add_inequality_constraint(p->opt, constraint, p, 1e-9);
+    nlopt_srand(p->config->seed);
+    nlopt_optimize(p->opt, u, &unused); /* whatever it says: the best was kept on the way */
+}
+
+Status polish_run(const Problem *problem, const PolishConfig *config, const double start[], PolishResult *result,
+                  Err *err)
+{
+    const Method *method = NULL;
+    const size_t n = problem->n_var, m = problem->n_obj;
+    TRY(find_method(config->algorithm, &method, err));
+    Polish p = {.problem = problem, .config = config, .result = result, .status = STATUS_OK, .err = err};
+    result->n_evaluated = result->n_failed = 0;
+    double *store = calloc(3 * n + 2 * m + problem->n_con + 1, sizeof *store);
+    p.opt = nlopt_create(method->algorithm, (unsigned)n);
+    Status status = store && p.opt ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for polishing");
+    if (status == STATUS_OK) {
+        double *u = store + 2 * n;
+        p.x = store;
+        p.u = store + n;
+        p.f = store + 3 * n;
+        p.scale = p.f + m;
+        p.g = p.scale + m;
+        clock_gettime(CLOCK_MONOTONIC, &p.start);
+        status = evaluate_start(&p, start, u);
+        if (status == STATUS_OK) {
+            run_method(&p, method, u);
+            status = p.status;
+        }
+        result->seconds = seconds_since(&p.start);
+    }
+    nlopt_destroy(p.opt);
+    free(store);
+    return status;
+}
