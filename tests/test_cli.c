@@ -320,6 +320,53 @@ static void test_the_spectrum_is_the_same_as_json_and_as_csv(void **state)
     json_decref(o);
 }
 
+/* Husid's curve ends at 1, velocity and displacement reach the peaks of the table. */
+static void test_the_histories_reach_the_figures_of_the_motion(void **state)
+{
+    (void)state;
+    Err err = {0};
+    Table t;
+    json_t *o = json_of("spectrum tests/motion/jma.csv --channel EW --json --history @/history.csv");
+    char *path = in_place("history.csv");
+    CHECK_OK(table_read(&t, path, 1, &err), &err);
+    assert_int_equal(t.n_rows, 43);
+    assert_int_equal(t.n_cols, 5);
+    assert_string_equal(json_string_value(json_object_get(o, "format")), "jma");
+    assert_string_equal(json_string_value(json_object_get(o, "channel")), "EW");
+    assert_close(number(o, "pga_m_s2"), 0.987, 1e-12);
+    double largest[5] = {0};
+    for (size_t i = 0; i < t.n_rows; i++)
+        for (size_t j = 0; j < t.n_cols; j++)
+            largest[j] = fmax(largest[j], fabs(t.values[i * t.n_cols + j]));
+    assert_close(largest[0], number(o, "duration_s"), 1e-12);
+    assert_close(largest[1], number(o, "pga_m_s2"), 1e-12);
+    assert_close(largest[2], number(o, "pgv_m_s"), 0.05); /* its peak lies between samples */
+    assert_close(largest[3], number(o, "pgd_m"), 0.05);
+    assert_close(t.values[t.n_rows * t.n_cols - 1], 1, 1e-12);
+    table_free(&t);
+    free(path);
+    json_decref(o);
+}
+
+static void test_the_picture_of_a_motion_is_whole_or_not_there(void **state)
+{
+    (void)state;
+    if (system("command -v gnuplot >/dev/null") == 0) {
+        free(output_of("spectrum tests/motion/one.esm --svg @/motion.svg"));
+        char *svg = read_in_place("motion.svg");
+        assert_non_null(strstr(svg, "tests/motion/one.esm, HNE: 0.126 g"));
+        assert_non_null(strstr(svg, "</svg>"));
+        free(svg);
+    }
+    assert_int_equal(setenv("IMTET_PATH", getenv("PATH"), 1), 0);
+    setenv("PATH", "/nowhere", 1);
+    expect(66, "gnuplot, which draws it, cannot be started; install it", "spectrum builtin:kobe-like --svg @/none.svg");
+    setenv("PATH", getenv("IMTET_PATH"), 1);
+    char *path = in_place("none.svg");
+    assert_int_equal(access(path, F_OK), -1);
+    free(path);
+}
+
 /* A short stretch of shaking: enough for some hundred impacts, short enough for a test. */
 #define SHORT " --set motion.stretch=1 --set sim.duration_s=8 "
 
@@ -520,6 +567,28 @@ static void test_a_design_of_the_front_is_evaluated_on_other_motions(void **stat
     char *table = output_of("evaluate @/threads-1 --design knee --record builtin:sylmar-like");
     assert_non_null(strstr(table, "no core"));
     free(table);
+}
+
+static void test_a_design_is_evaluated_on_every_motion_of_a_folder(void **state)
+{
+    (void)state;
+    json_t *o = json_of("evaluate @/threads-1 --design knee --records tests/motion --channel 1 --pga 0.3 --json");
+    const json_t *records = json_object_get(o, "records"), *unreadable = json_object_get(o, "unreadable");
+    assert_int_equal(json_array_size(records), 20);
+    assert_int_equal(json_array_size(unreadable), 1);
+    for (size_t i = 0; i + 1 < json_array_size(records); i++)
+        assert_true(strcmp(json_string_value(json_object_get(json_array_get(records, i), "record")),
+                           json_string_value(json_object_get(json_array_get(records, i + 1), "record"))) < 0);
+    const json_t *one = json_array_get(unreadable, 0);
+    assert_string_equal(json_string_value(json_object_get(one, "record")), "tests/motion/irregular.csv");
+    assert_non_null(strstr(json_string_value(json_object_get(one, "reason")), "irregular.csv:26: time 0.24 s breaks"));
+    json_decref(o);
+    char *table = output_of("evaluate @/threads-1 --design knee --records tests/motion --channel 1");
+    assert_non_null(strstr(table, "one.knet          no core"));
+    assert_non_null(strstr(table, "not read: tests/motion/irregular.csv:26"));
+    free(table);
+    expect(65, "holds no ground motion that can be read", "evaluate @/threads-1 --design knee --records configs/sac20");
+    expect(66, "nowhere", "evaluate @/threads-1 --design knee --records nowhere");
 }
 
 /* kill -9 as soon as there is a front; most of the 4000 simulations are still to come. */
@@ -724,6 +793,8 @@ int main(void)
         cmocka_unit_test(test_modes_of_the_effective_core_are_those_of_the_paper),
         cmocka_unit_test(test_modes_take_the_wall_from_a_design),
         cmocka_unit_test(test_the_spectrum_is_the_same_as_json_and_as_csv),
+        cmocka_unit_test(test_the_histories_reach_the_figures_of_the_motion),
+        cmocka_unit_test(test_the_picture_of_a_motion_is_whole_or_not_there),
         cmocka_unit_test(test_simulate_gives_the_same_numbers_as_json_and_as_csv),
         cmocka_unit_test(test_the_building_alone_and_the_tied_one_have_no_impacts),
         cmocka_unit_test(test_a_top_heavy_design_is_simulated_with_a_warning),
@@ -733,6 +804,7 @@ int main(void)
         cmocka_unit_test(test_a_folder_with_a_run_is_refused_or_numbered),
         cmocka_unit_test(test_the_export_is_the_front),
         cmocka_unit_test(test_a_design_of_the_front_is_evaluated_on_other_motions),
+        cmocka_unit_test(test_a_design_is_evaluated_on_every_motion_of_a_folder),
         cmocka_unit_test(test_an_external_simulator_is_searched_and_every_design_exported),
         cmocka_unit_test(test_designs_are_chosen_by_limits_weights_and_wishes_and_polished),
         cmocka_unit_test(test_a_textbook_problem_is_written_design_by_design),

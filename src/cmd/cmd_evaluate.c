@@ -1,6 +1,9 @@
+#include <dirent.h>
+#include <errno.h>
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "cmd/commands.h"
 #include "cmd/show.h"
@@ -98,17 +101,136 @@ static Status evaluate_on(const Settings *s, const Chosen *c, json_t *list, Err 
     return status;
 }
 
-static Status evaluate_all(const Args *args, Settings *s, const Chosen *c, json_t *list, Err *err)
+/* ---- every file of a folder ------------------------------------------------------------------------------------ */
+
+typedef struct {
+    json_t *records, *unreadable; /* NULL: to be printed */
+    int n_read;
+    char *refused; /* their lines, for the end of the printed table */
+    size_t refused_length;
+    FILE *refusals; /* writes to `refused` */
+} Folder;
+
+static Status pick_record(Settings *s, const char *path, Err *err)
+{
+    char assignment[SETTINGS_TEXT_MAX + 32];
+    const int n = snprintf(assignment, sizeof assignment, "motion.record=%s", path);
+    if (n < 0 || (size_t)n >= sizeof assignment)
+        return fail(err, STATUS_BAD_DATA, "%.60s...: the path is too long", path);
+    return settings_set(s, assignment, err);
+}
+
+/* What a reader has to say against the file, before anything is built on it. */
+static Status try_record(Settings *s, const char *path, Err *err)
+{
+    Motion m = {0};
+    TRY(pick_record(s, path, err));
+    Status status = motion_open(&m, s, err);
+    if (status == STATUS_OK)
+        status = motion_prepare(&m, s->motion.pga_g, s->motion.stretch, err);
+    motion_free(&m);
+    return status;
+}
+
+static void print_rows(const char *path, const SimResult results[N_SCENES])
+{
+    static const char *const words[N_SCENES] = {"with core", "no core"};
+    const char *slash = strrchr(path, '/');
+    for (int i = 0; i < N_SCENES; i++) {
+        char label[64];
+        snprintf(label, sizeof label, "%-17.17s %s", slash ? slash + 1 : path, words[i]);
+        show_result(label, &results[i]);
+    }
+}
+
+static Status evaluate_file(Settings *s, const Chosen *c, const char *path, Folder *f, Err *err)
+{
+    Err why = {0};
+    World w;
+    SimResult results[N_SCENES];
+    const Status readable = try_record(s, path, &why);
+    if (readable == STATUS_NO_MEMORY)
+        return fail(err, readable, "%s", why.text);
+    if (readable != STATUS_OK && f->unreadable)
+        json_array_append_new(f->unreadable, json_pack("{s:s, s:s}", "record", path, "reason", why.text));
+    if (readable != STATUS_OK) {
+        fprintf(f->refusals, "not read: %s\n", why.text);
+        return STATUS_OK;
+    }
+    f->n_read++;
+    TRY(world_open(&w, s, err));
+    const Status status = simulate(&w, c, results, err);
+    if (status == STATUS_OK && f->records)
+        json_array_append_new(f->records, describe(&w, results));
+    else if (status == STATUS_OK)
+        print_rows(path, results);
+    world_close(&w);
+    return status;
+}
+
+static int is_visible(const struct dirent *e)
+{
+    return e->d_name[0] != '.';
+}
+
+static Status evaluate_files(Settings *s, const Chosen *c, const char *folder, int n, struct dirent **names, Folder *f,
+                             Err *err)
+{
+    if (!f->records)
+        show_result_names("record");
+    for (int i = 0; i < n; i++) {
+        char path[PATH_MAX];
+        struct stat there;
+        const int length = snprintf(path, sizeof path, "%s/%s", folder, names[i]->d_name);
+        if (length < PATH_MAX && stat(path, &there) == 0 && S_ISDIR(there.st_mode))
+            continue;
+        TRY(evaluate_file(s, c, path, f, err));
+    }
+    fflush(f->refusals);
+    if (!f->records)
+        printf("%s%s", f->refused_length ? "\n" : "", f->refused_length ? f->refused : "");
+    if (f->n_read == 0)
+        return fail(err, STATUS_BAD_DATA, "%s: holds no ground motion that can be read", folder);
+    return STATUS_OK;
+}
+
+static int by_name(const struct dirent **a, const struct dirent **b)
+{
+    return strcmp((*a)->d_name, (*b)->d_name); /* the same order in every language */
+}
+
+static Status evaluate_folder(const Args *args, Settings *s, const Chosen *c, json_t *records, json_t *unreadable,
+                              Err *err)
+{
+    const char *folder = args_value(args, "--records");
+    struct dirent **names = NULL;
+    Folder f = {.records = records, .unreadable = unreadable};
+    const int n = scandir(folder, &names, is_visible, by_name);
+    if (n < 0)
+        return fail(err, STATUS_MISSING, "--records %s: %s", folder, strerror(errno));
+    f.refusals = open_memstream(&f.refused, &f.refused_length);
+    const Status status = f.refusals ? evaluate_files(s, c, folder, n, names, &f, err)
+                                     : fail(err, STATUS_NO_MEMORY, "no memory for the files of %s", folder);
+    if (f.refusals)
+        fclose(f.refusals);
+    free(f.refused);
+    for (int i = 0; i < n; i++)
+        free(names[i]);
+    free(names);
+    return status;
+}
+
+/* ---- all ------------------------------------------------------------------------------------------------------- */
+
+static Status evaluate_all(const Args *args, Settings *s, const Chosen *c, json_t *list, json_t *unreadable, Err *err)
 {
     for (int i = 0; i < args->n_given; i++) {
         if (strcmp(args->given[i].option->name, "--record") != 0)
             continue;
-        char assignment[SETTINGS_TEXT_MAX + 32];
-        snprintf(assignment, sizeof assignment, "motion.record=%s", args->given[i].value);
-        TRY(settings_set(s, assignment, err));
+        TRY(pick_record(s, args->given[i].value, err));
         TRY(evaluate_on(s, c, list, err));
     }
-    return STATUS_OK;
+    return args_has(args, "--records") ? evaluate_folder(args, s, c, list, unreadable, err) : STATUS_OK;
 }
 
 static Status show_all(const Args *args, Settings *s, const Chosen *c, Err *err)
@@ -116,12 +238,13 @@ static Status show_all(const Args *args, Settings *s, const Chosen *c, Err *err)
     const long id = front_id(&c->front, c->row);
     if (!args_has(args, "--json")) {
         printf("design %ld of %s\n\n", id, args->operand);
-        return evaluate_all(args, s, c, NULL, err);
+        return evaluate_all(args, s, c, NULL, NULL, err);
     }
-    json_t *list = json_array();
-    const Status status = evaluate_all(args, s, c, list, err);
+    json_t *list = json_array(), *unreadable = json_array();
+    const Status status = evaluate_all(args, s, c, list, unreadable, err);
     if (status != STATUS_OK) {
         json_decref(list);
+        json_decref(unreadable);
         return status;
     }
     json_t *all = json_object();
@@ -129,6 +252,7 @@ static Status show_all(const Args *args, Settings *s, const Chosen *c, Err *err)
     json_object_set_new(all, "design", json_integer(id));
     json_object_set_new(all, "variables_m", json_numbers((size_t)c->front.n_var, front_x(&c->front, c->row)));
     json_object_set_new(all, "records", list);
+    json_object_set_new(all, "unreadable", unreadable);
     return show_json(all, err);
 }
 
@@ -136,8 +260,8 @@ static Status run(const Args *args, Err *err)
 {
     Settings s;
     Chosen c = {0};
-    if (!args_has(args, "--record"))
-        return fail(err, STATUS_USAGE, "--record FILE is missing; it may be repeated");
+    if (!args_has(args, "--record") && !args_has(args, "--records"))
+        return fail(err, STATUS_USAGE, "--record FILE is missing; it may be repeated, or --records FOLDER given");
     TRY(read_run(args, &s, err));
     Status status = choose_design(args, &c, err);
     if (status == STATUS_OK)
@@ -149,11 +273,14 @@ static Status run(const Args *args, Err *err)
 static const ArgOption OPTIONS[] = {
     {"--design", "ID", NULL, 0, "column id of RUN/front.csv, or knee"},
     {"--record", "FILE", NULL, 1, "ground motion; may be repeated"},
+    {"--records", "FOLDER", NULL, 0, "every ground motion in it, sorted, in one table"},
+    OPTION_CHANNEL,
     OPTION_PGA,
     OPTION_STRETCH,
     OPTION_UNIT,
     OPTION_DURATION,
     OPTION_ENGINE,
+    OPTION_SET,
     OPTION_JSON,
     OPTION_END,
 };
@@ -165,7 +292,9 @@ const Command CMD_EVALUATE = {
     .example = "imtet evaluate results/quick --design knee --record builtin:elcentro-like",
     .details =
         "Simulates one design of the front of the folder RUN under each record, with the building without a core\n"
-        "beside it. Peak, stretch and all else are the run's unless an option says otherwise.",
+        "beside it. Files of a folder that cannot be read are listed with the reason. Peak, stretch and all else are "
+        "the\n"
+        "run's unless an option says otherwise.",
     .options = OPTIONS,
     .run = run,
 };

@@ -263,3 +263,19 @@ void motion_figures(const Motion *m, MotionFigures *out)
     out->arias_m_s = PI / (2 * G) * squares;
     out->d5_95_s = squares > 0 ? time_of_level(m, 0.95 * squares) - time_of_level(m, 0.05 * squares) : 0;
 }
+
+void motion_histories(const Motion *m, double v[], double d[], double husid[])
+{
+    v[0] = d[0] = husid[0] = 0;
+    for (size_t i = 0; i + 1 < m->n; i++) {
+        Ground g = ground_at(m, i);
+        g.v = v[i];
+        g.d = d[i];
+        v[i + 1] = velocity(&g, g.dt);
+        d[i + 1] = displacement(&g, g.dt);
+        husid[i + 1] = husid[i] + square_integral(&g, g.dt);
+    }
+    const double all = husid[m->n - 1];
+    for (size_t i = 0; i < m->n && all > 0; i++)
+        husid[i] /= all;
+}

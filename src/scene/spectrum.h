@@ -21,4 +21,7 @@ typedef struct {
 } MotionFigures;
 void motion_figures(const Motion *m, MotionFigures *out);
 
+/* At each sample, all (n): velocity [m/s], displacement [m] and Husid's curve, the share 0..1 of Arias so far. */
+void motion_histories(const Motion *m, double velocity[], double displacement[], double husid[]);
+
 #endif
