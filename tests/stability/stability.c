@@ -266,6 +266,7 @@ static int stability(const Arguments *a)
 
 int main(int argc, char **argv)
 {
+    setvbuf(stdout, NULL, _IOLBF, 0);
     Arguments a = {.size = SIZE_FULL, .seconds = 20};
     for (int i = 1; i < argc; i++) {
         const char *value = i + 1 < argc ? argv[i + 1] : NULL;
