@@ -230,7 +230,7 @@ static void grazing(Trial *t)
     const double top = x4 + v4 * v4 / (2 * pull);
     Run x = {.bob = {.mass = m},
              .contact = paper_law(STEEL, 0.7, 1e-3),
-             .motion = {accel, N, dt, "", "", 0},
+             .motion = {.accel = accel, .n = N, .dt_s = dt},
              .duration = 0.5,
              .free_step = 1e-4,
              .knob = -1,
@@ -261,7 +261,7 @@ static void start_at_the_wall(Trial *t)
         snprintf(what, sizeof what, "no gap, at rest, v0 floor 1e-%d m/s", f);
         const Run x = {.bob = {.mass = m, .omega = 20, .zeta = 0.03},
                        .contact = paper_law(STEEL, 0.7, pow(10, -f)),
-                       .motion = {accel, N, dt, "", "", 0},
+                       .motion = {.accel = accel, .n = N, .dt_s = dt},
                        .duration = 0.6,
                        .contact_duration = duration,
                        .free_step = 1e-5,
@@ -282,7 +282,7 @@ static void slow_touch_fast_pull_off(Trial *t)
         snprintf(what, sizeof what, "touch at 2 mm/s, pull at 400 m/s2, r = %g", 0.5 * r);
         const Run x = {.bob = {.mass = m, .gap = v * 4 * dt},
                        .contact = paper_law(STEEL, 0.5 * r, 1e-3),
-                       .motion = {accel, N, dt, "", "", 0},
+                       .motion = {.accel = accel, .n = N, .dt_s = dt},
                        .duration = 0.07,
                        .contact_duration = contact_hertz_duration(STEEL, m, 0.1),
                        .free_step = 1e-5,
@@ -301,7 +301,7 @@ static void within_one_step(Trial *t)
         snprintf(what, sizeof what, "intervals of %.3g contact durations", dt / duration);
         const Run x = {.bob = {.mass = m, .gap = 1.07 * v * dt},
                        .contact = paper_law(STEEL, 0.7, 1e-3),
-                       .motion = {accel, 3, dt, "", "", 0},
+                       .motion = {.accel = accel, .n = 3, .dt_s = dt},
                        .duration = 6.9 * dt,
                        .contact_duration = duration,
                        .free_step = dt / 100,
@@ -322,7 +322,7 @@ static void step_does_not_divide(Trial *t)
         snprintf(what, sizeof what, "interval %.6g s, %.6g intervals long", dt, 71.37 + 0.41 * i);
         const Run x = {.bob = {.mass = 1e5, .omega = 7, .zeta = 0.03, .gap = 0.05},
                        .contact = paper_law(STEEL, 0.7, 1e-3),
-                       .motion = {accel, N, dt, "", "", 0},
+                       .motion = {.accel = accel, .n = N, .dt_s = dt},
                        .duration = dt * (71.37 + 0.41 * i),
                        .contact_duration = duration,
                        .free_step = 1e-4,
@@ -347,7 +347,7 @@ static void damping_ratios(Trial *t)
                 snprintf(what, sizeof what, "zeta = %.10g, w = %g, %s", ZETA[z], OMEGA[w], touch ? "touching" : "free");
                 const Run x = {.bob = {.mass = 1e4, .omega = OMEGA[w], .zeta = ZETA[z], .gap = touch ? 0.02 : 1e3},
                                .contact = paper_law(STEEL, 0.7, 1e-3),
-                               .motion = {accel, N, dt, "", "", 0},
+                               .motion = {.accel = accel, .n = N, .dt_s = dt},
                                .duration = 1.7,
                                .contact_duration = duration,
                                .free_step = 4e-4,
@@ -375,7 +375,7 @@ static void half_periods(Trial *t)
             Run x = {.bob = {.mass = 1, .omega = omega, .gap = 1e3},
                      .energy_scale = 4.5 / (omega * omega),
                      .contact = paper_law(STEEL, 0.7, 1e-3),
-                     .motion = {accel, N, h, "", "", 0},
+                     .motion = {.accel = accel, .n = N, .dt_s = h},
                      .duration = 14 * h,
                      .contact_duration = h,
                      .free_step = 2e-4};
@@ -404,7 +404,7 @@ static void static_rest(Trial *t)
     const double period = 2 * M_PI / sqrt(1.5 * STEEL * sqrt(p) / m);
     const Run x = {.bob = {.mass = m, .gap = 1e-9},
                    .contact = paper_law(STEEL, 0.7, 1e-3),
-                   .motion = {accel, (size_t)n, dt, "", "", 0},
+                   .motion = {.accel = accel, .n = (size_t)n, .dt_s = dt},
                    .duration = (double)(n - 1) * dt,
                    .knob = -1,
                    .contact_duration = period / 2};
@@ -433,7 +433,7 @@ static void endless_bounces(Trial *t)
     const double shortest = contact_hertz_duration(STEEL, m, sqrt(2 * g * h));
     Run x = {.bob = {.mass = m, .gap = h},
              .contact = {.k = STEEL, .a = contact_damping(e), .v0_floor = 1e-3},
-             .motion = {accel, N, dt, "", "", 0},
+             .motion = {.accel = accel, .n = N, .dt_s = dt},
              .contact_duration = shortest,
              .free_step = 1e-3,
              .knob = -1};
@@ -468,7 +468,7 @@ static void many_steps(Trial *t)
     t->accuracy = ACCURACY_STANDARD;
     Run x = {.bob = {.mass = 1000, .omega = omega, .gap = 1e3},
              .contact = paper_law(STEEL, 0.7, 1e-3),
-             .motion = {accel, 3, dt, "", "", 0},
+             .motion = {.accel = accel, .n = 3, .dt_s = dt},
              .duration = 2.37 * dt,
              .knob = trial_engine(t)->knob == KNOB_STEP ? dt : 0};
     const SimResult early = run_engine(t, &x);
@@ -501,7 +501,7 @@ static void time_reversal(Trial *t)
             accel[1] = accel[N - 2] = -v / dt;
             Run x = {.bob = {.mass = m, .omega = sprung ? 2 : 0, .gap = 1e3},
                      .contact = paper_law(STEEL, 1, 1e-3),
-                     .motion = {accel, N, dt, "", "", 0},
+                     .motion = {.accel = accel, .n = N, .dt_s = dt},
                      .duration = (N - 1) * dt,
                      .knob = -1,
                      .contact_duration = contact_hertz_duration(STEEL, m, v),
