@@ -114,7 +114,7 @@ $(BUILD)/%.csv.o: %.csv
 	$(Q)$(LD) -r -b binary -z noexecstack -o $@ $<
 
 $(BUILD)/src/run/provenance.o: CPPFLAGS += -DIMTET_VERSION='"$(VERSION)"' \
-    -DIMTET_REVISION='"$(REVISION)"' -DIMTET_CFLAGS='"$(CFLAGS.$(MODE))"'
+    -DIMTET_REVISION='"$(REVISION)"' -DIMTET_CFLAGS='"-std=c17 -fopenmp -ffp-contract=fast $(CFLAGS.$(MODE)), src/sim -O3"'
 
 # Compiled again when version or revision changed, so that a run's folder names the sources that it came from.
 $(BUILD)/revision: .FORCE

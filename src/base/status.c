@@ -72,6 +72,6 @@ const char *nearest_word(const char *word, const char *const list[], int n)
             nearest = list[i];
         }
     }
-    const int longest = (int)strlen(word) > 8 ? (int)strlen(word) / 2 : 4;
+    const int longest = 1 + (int)strlen(word) / 3;
     return least <= longest ? nearest : NULL;
 }

@@ -14,11 +14,12 @@ Status file_read(const char *path, char **text, size_t *length, Err *err)
     FILE *f = fopen(path, "rb");
     if (!f)
         return fail(err, STATUS_MISSING, "%s: %s", path, strerror(errno));
+    enum { LARGEST = 1 << 28 }; /* [bytes] far above any record; a device or a wrong file ends here */
     size_t capacity = 1 << 16, n = 0;
     char *buffer = malloc(capacity + 1);
     while (buffer) {
         n += fread(buffer + n, 1, capacity - n, f);
-        if (n < capacity)
+        if (n < capacity || capacity > LARGEST)
             break;
         char *wider = realloc(buffer, 2 * capacity + 1);
         if (!wider) {
@@ -37,6 +38,10 @@ Status file_read(const char *path, char **text, size_t *length, Err *err)
     if (broken) {
         free(buffer);
         return fail(err, STATUS_MISSING, "%s: cannot be read: %s", path, strerror(why));
+    }
+    if (n > LARGEST) {
+        free(buffer);
+        return fail(err, STATUS_BAD_DATA, "%s: larger than %d MiB; this is no text file of numbers", path, LARGEST >> 20);
     }
     buffer[n] = 0;
     *text = buffer;

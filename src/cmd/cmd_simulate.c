@@ -91,8 +91,7 @@ static Status simulate(const World *w, Job *job, Err *err)
     crew_free(crew);
     for (size_t i = 0; status == STATUS_OK && i < job->n; i++)
         if (job->results[i].outcome != RUN_OK)
-            fprintf(stderr, "design %zu: %s (%s)\n", i + 1, run_outcome_words(job->results[i].outcome),
-                    job->results[i].reason);
+            fprintf(stderr, "design %zu failed: %s\n", i + 1, job->results[i].reason);
     return status;
 }
 
@@ -160,6 +159,8 @@ static void print_table(const Job *job, const World *w)
 
 static Status print(const Args *args, const Job *job, const World *w, Err *err)
 {
+    if (args_has(args, "--json") && args_has(args, "--csv") && strcmp(args_value(args, "--csv"), "-") == 0)
+        return fail(err, STATUS_USAGE, "--json and --csv - both want standard output; give --csv a file");
     if (args_has(args, "--csv"))
         TRY(write_csv(job, args_value(args, "--csv"), err));
     if (args_has(args, "--json"))

@@ -164,7 +164,7 @@ static void run_fast(SimWorker *w, SimResult *result)
         knobs.steps_per_contact *= REFINEMENTS[i];
         fast_run(w->fast, &w->model, scene->motion, scene->options.duration, &knobs, result);
         judge(result, scene->settings.sim.residual_max);
-        if (result->outcome == RUN_OK)
+        if (result->outcome != RUN_BOOKS_OPEN)
             return;
     }
 }

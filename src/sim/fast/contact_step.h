@@ -62,6 +62,7 @@ static double contact_update(FastWork *k, const Level *l, const Active *active, 
         const vec work = load1[i] * q1 - load * q - rise * mean + 2 * b * first;
         k->work1[i] = k->work[i] + work;
         k->ground1[i] = k->ground[i] + (g0 + g1) * q1 - g0 * q - g1 * mean;
+        k->drift1[i] = k->drift[i] + momentum_gap(k, l->h, i, q1 - q, v1 - v, mean, p0 + 0.5 * p1 - b * (1.0 / 3));
         k->q1[i] = q1;
         k->v1[i] = v1;
         taken += work;
@@ -106,6 +107,7 @@ static void accept_contacts(FastWork *k, const Active *active, double h)
     swap(&k->load, &k->qa);
     swap(&k->work, &k->work1);
     swap(&k->ground, &k->ground1);
+    swap(&k->drift, &k->drift1);
     swap(&k->w, &k->w1);
     swap(&k->wd, &k->wd1);
     vec *const free_slot = k->f_before;

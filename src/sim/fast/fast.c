@@ -12,7 +12,7 @@ static void layout(FastWork *k, Carve *c)
     vec **const modes[] = {&k->omega, &k->zeta,  &k->gamma,   &k->wd_inverse, &k->decay,  &k->flex, &k->q,
                            &k->v,     &k->load,  &k->work,    &k->ground,     &k->q1,     &k->v1,   &k->amplitude,
                            &k->qa,    &k->va,    &k->qb,      &k->vb,         &k->za,     &k->ja,   &k->zb,
-                           &k->jb,    &k->bound, &k->bound_a, &k->work1,      &k->ground1};
+                           &k->jb,    &k->bound, &k->bound_a, &k->work1,      &k->ground1, &k->drift, &k->drift1};
     vec **const floors[] = {&k->w,         &k->wd,  &k->w1,  &k->wd1, &k->f0,  &k->f1,      &k->fb,     &k->f_before,
                             &k->fb_before, &k->gap, &k->u0,  &k->u0d, &k->u1,  &k->u1d,     &k->a0,     &k->a0d,
                             &k->a1,        &k->a1d, &k->e_u, &k->e_w, &k->e_a, &k->reach_a, &k->peak_u, &k->peak_d,
@@ -63,16 +63,26 @@ void fast_free(FastWork *work)
     free(work);
 }
 
+typedef struct {
+    const char *name;
+    FastKernel *run;
+} Kernel;
+
 /* The widest vectors that this processor has. */
-static FastKernel *best_kernel(void)
+static Kernel best_kernel(void)
 {
 #ifdef __x86_64__
     if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq"))
-        return fast_kernel_avx512;
+        return (Kernel){"avx512", fast_kernel_avx512};
     if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
-        return fast_kernel_avx2;
+        return (Kernel){"avx2", fast_kernel_avx2};
 #endif
-    return fast_kernel_base;
+    return (Kernel){"base", fast_kernel_base};
+}
+
+const char *fast_kernel_name(void)
+{
+    return best_kernel().name;
 }
 
 void fast_sample(FastWork *work, SimSampleFn sample, void *user)
@@ -84,9 +94,9 @@ void fast_sample(FastWork *work, SimSampleFn sample, void *user)
 FastKnobs fast_knobs(Accuracy accuracy)
 {
     static const FastKnobs KNOBS[] = {
-        [ACCURACY_COARSE] = {1, 1e-2, 3e-5, 1e-2},
-        [ACCURACY_STANDARD] = {2, 3e-3, 1e-6, 1e-3},
-        [ACCURACY_FINE] = {80, 1e-12, 0, 1e-6},
+        [ACCURACY_COARSE] = {1, 1e-2, 3e-5, 2e7, 1e-2},
+        [ACCURACY_STANDARD] = {2, 3e-3, 1e-6, 2e7, 1e-3},
+        [ACCURACY_FINE] = {80, 1e-12, 0, 2e8, 1e-6},
     };
     return KNOBS[accuracy];
 }
@@ -95,7 +105,7 @@ void fast_run(FastWork *work, const SimModel *model, const Motion *motion, doubl
               SimResult *result)
 {
     const unsigned mode = denormal_off();
-    best_kernel()(work, model, motion, duration, knobs, result);
+    best_kernel().run(work, model, motion, duration, knobs, result);
     denormal_restore(mode);
 }
 

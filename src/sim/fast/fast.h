@@ -11,7 +11,9 @@
  *           Gauss-Seidel over floors, on the n x n responses of w to those forces. Closings and openings inside a step
  *           are located on the cubic. Order 4 between events, 3.5 across them.
  * Energy    the work of every load on every mode is integrated exactly; what a mode damps is work minus energy. The
- *           residual compares the work that the modes took from contacts with the books that the force law kept.
+ *           residual adds two errors: the work that the modes took from contacts against the books that the force law
+ *           kept, over the input; and what the equations of motion, integrated over the run, are missed by,
+ *           sqrt(sum d_i^2 / 2 E_in), which would show an error in the linear flow.
  * Maxima    flights: extremum of the Hermite cubic; contacts: parabola through three steps.
  *
  * Life cycle  fast_create -> fast_run ... -> fast_free. Threads  one FastWork per thread. No allocation in fast_run. */
@@ -25,6 +27,9 @@ typedef struct FastWork FastWork;
 Status fast_create(FastWork **out, int n_floors, Err *err);
 void fast_free(FastWork *work); /* NULL is fine */
 
+/* "avx512", "avx2" or "base": the kernel that this processor gets. */
+const char *fast_kernel_name(void);
+
 /* Every run from now on shows its state at every sample of the motion; NULL: none does. */
 void fast_sample(FastWork *work, SimSampleFn sample, void *user);
 
@@ -33,6 +38,7 @@ typedef struct {
     double steps_per_contact; /* of an undisturbed Hertz contact at the largest speed between floor and core */
     double solver_tolerance;  /* of the contact forces of one step, relative to what the step moves */
     double energy_tolerance;  /* of one step longer than that, share of the input energy so far; 0: none is longer */
+    double steps_max;         /* steps after which a run is given up */
     double peak_tolerance;    /* share of a peak that may hide inside a flight step */
 } FastKnobs;
 

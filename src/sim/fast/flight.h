@@ -117,6 +117,7 @@ static void book_flight(FastWork *k, const Level *l, double a0, double a1)
         const vec mean = c[FLOW_I * mf + i] * k->q[i] + c[(FLOW_I + 1) * mf + i] * k->v[i] +
                          c[(FLOW_I + 2) * mf + i] * p0 + c[(FLOW_I + 3) * mf + i] * p1;
         k->ground[i] += (p0 + p1) * k->q1[i] - p0 * k->q[i] - p1 * mean;
+        k->drift[i] += momentum_gap(k, l->h, i, k->q1[i] - k->q[i], k->v1[i] - k->v[i], mean, p0 + 0.5 * p1);
     }
 }
 

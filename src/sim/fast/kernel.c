@@ -54,6 +54,8 @@ static int interval(FastWork *k, double a0, double a1)
     /* at rest for a moment is no reason for a step in which the ground makes speed again */
     const double gain = 0.1 * k->base * fmax(fabs(a0), fabs(a1));
     while (at < whole) {
+        if ((double)(k->steps + k->flights) > k->knobs->steps_max)
+            return 0;
         const int aligned = at ? LEVEL_MAX - __builtin_ctz(at) : 0;
         const int finest = k->m_pad > k->nb_pad ? contact_level(k, gain) : LEVEL_MAX;
         int level = k->flight_level > aligned ? k->flight_level : aligned, done = 0;
@@ -148,7 +150,7 @@ static double share(double part, double whole)
 
 static void sum_energies(const FastWork *k, SimResult *r)
 {
-    double contact_work = 0;
+    double contact_work = 0, missed = 0;
     double damped[MODES_PAD_MAX + 2 * LANES];
     for (int i = 0; i < k->m_pad; i++) {
         const double q = scalars_const(k->q)[i], v = scalars_const(k->v)[i], w = scalars_const(k->omega)[i];
@@ -157,6 +159,7 @@ static void sum_energies(const FastWork *k, SimResult *r)
         damped[i] = ground + contact - energy;
         r->input_energy_j += ground;
         contact_work += contact;
+        missed += scalars_const(k->drift)[i] * scalars_const(k->drift)[i];
         r->kinetic_strain_j += energy;
         *(i < k->nb_pad ? &r->damped_building_j : &r->damped_core_j) += damped[i];
     }
@@ -164,7 +167,8 @@ static void sum_energies(const FastWork *k, SimResult *r)
     r->clamp_j = k->contact_clamped;
     r->contact_stored_j = still_stored(k);
     const double books = -contact_work - r->contact_loss_j - r->clamp_j - r->contact_stored_j;
-    r->energy_residual = fabs(books) / energy_books_scale(r->input_energy_j, r->input_energy_j - books);
+    const double scale = energy_books_scale(r->input_energy_j, r->input_energy_j - books);
+    r->energy_residual = fabs(books) / scale + sqrt(missed / (2 * scale));
     for (int i = 0; i < k->model->nb; i++)
         r->mode_share_pct[i] = share(damped[i], r->input_energy_j);
     r->ed1_pct = r->mode_share_pct[0];

@@ -39,7 +39,8 @@ typedef struct FastWork {
 
     /* modes */
     vec *omega, *zeta, *gamma, *wd_inverse, *decay, *flex, *q, *v, *load, *work, *ground; /* (m_pad) */
-    vec *work1, *ground1;
+    vec *drift; /* (m_pad) how far the equation of motion was missed, summed over the steps */
+    vec *work1, *ground1, *drift1;
     vec *q1, *v1, *amplitude, *qa, *va, *qb, *vb, *za, *ja, *zb, *jb, *bound, *bound_a; /* (m_pad) */
     double *R, *R_abs;                                                                  /* (m_pad, n_pad) */
     double *RT;                                                                         /* (n_pad, m_pad) */

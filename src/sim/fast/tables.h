@@ -149,11 +149,18 @@ static void take_model(FastWork *k, const SimModel *model, double base)
     memcpy(k->gap, model->gap, sizeof(double) * (size_t)k->n_pad);
 }
 
+/* The integral of mode i's equation of motion over a step, dv + 2 zeta w dq + w^2 int q dt - int p dt [sqrt(J)]: zero but
+ * for rounding where the coefficients of q, q' and int q agree. mean: of q; load: mean of p. */
+static inline vec momentum_gap(const FastWork *k, double h, int i, vec dq, vec dv, vec mean, vec load)
+{
+    return dv + k->decay[i] * dq + h * (k->omega[i] * k->omega[i] * mean - load);
+}
+
 static void start_at_rest(FastWork *k)
 {
     const vec zero = {0};
     for (int i = 0; i < k->mf; i++)
-        k->q[i] = k->v[i] = k->load[i] = k->work[i] = k->ground[i] = zero;
+        k->q[i] = k->v[i] = k->load[i] = k->work[i] = k->ground[i] = k->drift[i] = zero;
     for (int f = 0; f < k->nf; f++)
         k->w[f] = k->wd[f] = k->f0[f] = k->f1[f] = k->fb[f] = k->f_before[f] = k->fb_before[f] = k->peak_u[f] =
             k->peak_d[f] = k->peak_a[f] = zero;
