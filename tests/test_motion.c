@@ -135,6 +135,7 @@ static void test_every_bad_file_is_refused_with_its_reason(void **state)
         {"only_comments.csv", "holds 0 samples"},
         {"one_sample.csv", "holds 1 sample; at least two"},
         {"no_unit.csv", "set motion.unit"},
+        {"time_ms.csv", "times must be in seconds"},
         {"two_units.csv", "names two units of acceleration, m_s2 and cm_s2"},
         {"nan.csv", ":3: found nan"},
         {"infinite.csv", ":4: found inf"},

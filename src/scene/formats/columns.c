@@ -176,6 +176,27 @@ static int names_times(const Lines *names)
            (tolower((unsigned char)c.name[0]) == 't' && !isalnum((unsigned char)c.name[1]));
 }
 
+/* Times are seconds: a name that says otherwise is refused before it shakes a tower a thousand times too slowly. */
+static Status times_are_seconds(const Lines *names, const char *path, Err *err)
+{
+    static const char *const OTHERS[] = {"ms", "msec", "us", "min", "minutes", "h", "hours"};
+    Channel c;
+    const char *p = names->from, *from, *to;
+    if (!names->from || !column_name(names, &p, &from, &to))
+        return STATUS_OK;
+    channel_name(&c, from, to);
+    for (const char *word = c.name; *word;) {
+        const size_t length = strcspn(word, "_ ()[],");
+        for (size_t i = 0; i < sizeof OTHERS / sizeof OTHERS[0]; i++)
+            if (word != c.name && length == strlen(OTHERS[i]) && strncasecmp(word, OTHERS[i], length) == 0)
+                return fail(err, STATUS_BAD_DATA, "%s: the column of times is '%s'; times must be in seconds", path,
+                            c.name);
+        word += length;
+        word += strspn(word, "_ ()[],");
+    }
+    return STATUS_OK;
+}
+
 static int times_increase(const Record *r, const Columns *columns)
 {
     for (size_t i = columns->width; i < r->n; i += columns->width)
@@ -253,8 +274,11 @@ static Status read(Record *r, Lines *l, const ReadHints *hints, Err *err)
     if (wrapped)
         return one_long_column(r, l, &preface, units ? units : preface.in_comments, err);
     TRY(columns_check(&columns, l, err));
-    if (!timeless)
+    if (!timeless) {
+        if (named)
+            TRY(times_are_seconds(&preface.names, l->path, err));
         set_times(r, columns.width);
+    }
     return name_channels(r, l, &preface, &columns, !timeless, err);
 }
 
