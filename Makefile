@@ -49,7 +49,7 @@ STABILITY.asan := --engine fast
 STABILITY_OBJ := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/stability/*.c))
 PROGRAM := $(if $(filter release,$(MODE)),imtet,$(BUILD)/imtet)
 
-.PHONY: all setup run test test-here stability stability-long laws bench chart format install clean .FORCE
+.PHONY: all setup run test test-here compare stability stability-long laws bench chart format install clean .FORCE
 .SECONDARY:
 all: $(PROGRAM)
 
@@ -131,6 +131,10 @@ bench: $(PROGRAM)
 chart: $(PROGRAM)
 	@$(abspath $(PROGRAM)) bench --record $(BENCH_RECORD) --csv docs/chart.csv --markdown docs/chart.md
 	@scripts/plot-chart docs/chart.csv docs/chart
+
+# The search on problems whose front is known, with and without surrogate; CELLS and SEEDS choose a part of it.
+compare: $(PROGRAM)
+	@scripts/compare --program ./$(PROGRAM) --out docs/search.md $(if $(CELLS),--cells $(CELLS)) $(if $(SEEDS),--seeds $(SEEDS))
 
 format:
 	clang-format -i $(wildcard src/*.c src/*/*.[ch] src/*/*/*.[ch] tests/*.[ch] tests/*/*.[ch])

@@ -436,6 +436,22 @@ static void test_a_front_of_a_single_design_still_spends_the_budget(void **state
     assert_int_equal(seen.n, 200);
 }
 
+static void test_without_a_surrogate_nothing_is_predicted_and_the_front_is_worse(void **state)
+{
+    (void)state;
+    SearchConfig c = config(40, 200);
+    world(&here, 12, 3);
+    run(&here, &c, &seen);
+    const double with = volume(seen.n, 3, seen.F);
+    c.no_surrogate = 1;
+    fresh(NULL);
+    world(&here, 12, 3);
+    run(&here, &c, &seen);
+    assert_int_equal(seen.predicted, 0);
+    assert_true(isnan(seen.error));
+    assert_true(volume(seen.n, 3, seen.F) < with);
+}
+
 static void test_a_start_of_size_zero_follows_the_number_of_variables(void **state)
 {
     (void)state;
@@ -467,6 +483,7 @@ int main(void)
         cmocka_unit_test_setup(test_an_archive_beyond_the_surface_s_size_is_thinned, fresh),
         cmocka_unit_test_setup(test_settings_that_make_no_sense_are_refused_by_name, fresh),
         cmocka_unit_test_setup(test_a_front_of_a_single_design_still_spends_the_budget, fresh),
+        cmocka_unit_test_setup(test_without_a_surrogate_nothing_is_predicted_and_the_front_is_worse, fresh),
         cmocka_unit_test_setup(test_a_start_of_size_zero_follows_the_number_of_variables, fresh),
     };
     return cmocka_run_group_tests_name("search", tests, NULL, NULL);

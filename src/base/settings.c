@@ -126,6 +126,8 @@ static const Option OPTIONS[] = {
      "variables mutated per design, on average"},
     {"search.surrogate_max", "-", WHOLE, AT(search.surrogate_max), "600", 10, 5000, NULL,
      "most designs that the response surface is built on"},
+    {"search.surrogate", "-", CHOICE, AT(search.surrogate), "on", 0, 0, "on|off",
+     "off: a plain evolutionary search, for comparison or where a simulation costs less than a prediction"},
     {"search.limits", "-", TEXT, AT(search.limits), "none", 0, 0, NULL,
      "what objectives must keep, as j3_g<=5,edcs_pct>=3; none"},
 

@@ -92,6 +92,7 @@ typedef struct {
         double max_hours, nondominated_share, trust_error;
         double crossover_probability, crossover_eta, mutation_eta, mutation_rate;
         long surrogate_max; /* most designs that the response surface is built on */
+        long surrogate;     /* 0: on, 1: off */
         char limits[SETTINGS_TEXT_MAX];
     } search;
     struct {

@@ -350,7 +350,8 @@ static Status next_generation(Search *s, Err *err)
     if (s->population.n < 2)
         return sample_again(s, err);
     measure_front(s);
-    TRY(surface_fit(s->surface, &s->archive, s->infill, err));
+    if (!s->config->no_surrogate)
+        TRY(surface_fit(s->surface, &s->archive, s->infill, err));
     surface_predict(s->surface, &s->population, 0, 0);
     make_offspring(s, 0);
     const size_t n = choose_any_batch(s);

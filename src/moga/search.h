@@ -33,6 +33,7 @@ typedef struct {
     uint32_t seed;
     size_t population, generations, max_evals, surrogate_max;
     size_t initial;            /* 0: by the number of variables */
+    int no_surrogate;          /* plain children only */
     double max_seconds;        /* 0: no limit */
     double nondominated_share; /* stop when this share of the archive is nondominated; 1: never */
     double trust_error;        /* share of an objective's range in the archive */
