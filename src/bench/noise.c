@@ -28,28 +28,16 @@ static Status spread_of(Crew *crew, int n, uint32_t design, double *spread, Err 
     return STATUS_OK;
 }
 
-static void sort(int n, double x[])
-{
-    for (int i = 1; i < n; i++)
-        for (int k = i; k > 0 && x[k] < x[k - 1]; k--) {
-            const double t = x[k];
-            x[k] = x[k - 1];
-            x[k - 1] = t;
-        }
-}
-
 Status sweep_find_noise(Sweep *s, const Settings *settings, const Motion *motion, Err *err)
 {
-    double spread[DESIGNS];
+    double spread = 0;
     Scene *scene;
     Crew *crew = NULL;
     TRY(scene_create(&scene, settings, motion, err));
     Status status = crew_create(&crew, scene, 1, err);
-    for (int k = 0; k < DESIGNS && status == STATUS_OK; k++)
-        status = spread_of(crew, scene_n_floors(scene), (uint32_t)k, &spread[k], err);
-    if (status == STATUS_OK) {
-        sort(DESIGNS, spread);
-        s->noise = spread[DESIGNS / 2];
+    for (int k = 0; k < DESIGNS && status == STATUS_OK; k++) {
+        status = spread_of(crew, scene_n_floors(scene), (uint32_t)k, &spread, err);
+        s->noise = fmax(s->noise, spread);
     }
     crew_free(crew);
     scene_free(scene);

@@ -43,7 +43,7 @@ static Status prepare(const Args *args, Bench *b, Err *err)
     TRY(choose(args_value(args, "--scene"), "scene", scenes, N_BENCH_SCENES, &b->scenes, err));
     TRY(choose(args_value(args, "--engine"), "engine", engines, ENGINE_COUNT, &b->plan.engines, err));
     b->quick = args_has(args, "--quick");
-    b->plan.limit_s = b->quick ? 0.3 : 4;
+    b->plan.limit_s = b->quick ? 0.3 : 2;
     settings_defaults(&b->settings);
     TRY(args_apply(args, &b->settings, NULL, NULL, err));
     TRY(settings_check(&b->settings, err));

@@ -92,6 +92,7 @@ static int prepare(Ode *o, Parts *p, const CvodeKind *kind)
            CVodeInit(o->memory, ode_right_hand_side, 0, o->y) || CVodeWFtolerances(o->memory, ode_error_weights) ||
            set_solver(o, p, kind) || CVodeSetMaxHnilWarns(o->memory, -1) || CVodeSetNoInactiveRootWarn(o->memory) ||
            (kind->order_max > 0 && CVodeSetMaxOrd(o->memory, kind->order_max)) ||
+           (kind->method == CV_BDF && kind->order_max == 0 && CVodeSetStabLimDet(o->memory, 1)) ||
            (!kind->stop_at_samples && CVodeSetMaxStep(o->memory, o->motion->dt_s)) ||
            (ode_n_roots(o) > 0 && CVodeRootInit(o->memory, ode_n_roots(o), ode_penetrations));
 }
