@@ -140,6 +140,7 @@ static void write_failures(const Sweep *s, FILE *out)
 
 void sweep_write_markdown(const Sweep *s, const Motion *motion, FILE *out)
 {
+    const char *folder = strrchr(motion->name, '/');
     fprintf(
         out,
         "# Speed against accuracy\n\nWritten by `make chart`; do not edit. Motion: %s. One thread, processor time.\n"
