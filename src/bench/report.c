@@ -146,7 +146,7 @@ void sweep_write_markdown(const Sweep *s, const Motion *motion, FILE *out)
         "# Speed against accuracy\n\nWritten by `make chart`; do not edit. Motion: %s. One thread, processor time.\n"
         "Error: the largest relative error of J1, J2, J3 and of the shares of mode 1, modes 5 to 10 and the core\n"
         "(a share below 0.1 %% counts as 0.1 %%). x fast: time over that of `fast` at the same error.\n",
-        motion->name);
+        folder ? folder + 1 : motion->name);
     if (s->noise > 0)
         fprintf(out,
                 "Dashed: %.2g, the largest spread of any objective of nine designs over the whole motion, gaps changed "
