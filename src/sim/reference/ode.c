@@ -307,6 +307,9 @@ static double change_of_sign(Ode *o, int j, int side, int speed, double level, d
     return high;
 }
 
+/* A top that passes the gap by less than this share of it is rounding, which would open the contact again at once. */
+static const double GRAZE = 1e-11;
+
 /* When the gap of an open floor closed, where its path has turned back within the step; else infinity. */
 static double unseen_closing(Ode *o, int j, double t_before, double t, const Floors *from, const Floors *to)
 {
@@ -318,7 +321,7 @@ static double unseen_closing(Ode *o, int j, double t_before, double t, const Flo
         return HUGE_VAL;
     const double top = change_of_sign(o, j, side, 1, 0, t_before, t);
     if (o->solver->interpolate(o, top, o->between) ||
-        !(side * relative_displacement(o->model, j, ode_values(o->between)) > gap))
+        !(side * relative_displacement(o->model, j, ode_values(o->between)) > gap * (1 + GRAZE)))
         return HUGE_VAL;
     return change_of_sign(o, j, side, 0, gap, t_before, top);
 }
