@@ -107,8 +107,7 @@ static void test_rebound_converges_with_at_least_third_order(void **state)
             Ball ball = {1000, 4.865e10, 0.3 * (1 + 0.01 * i), 0.7, {fine ? 32 : 8, 1e-13, 0, 1e7, 1e-6}};
             Bounce b;
             bounce(&ball, -1, &b);
-            worst[fine] = fmax(worst[fine],
-                               fabs(sqrt(b.result.kinetic_strain_j / b.result.input_energy_j) - exact));
+            worst[fine] = fmax(worst[fine], fabs(sqrt(b.result.kinetic_strain_j / b.result.input_energy_j) - exact));
         }
     if (!(log(worst[0] / worst[1]) / log(4) > 3)) {
         print_error("rebound errors %.3g and %.3g: order %.2f\n", worst[0], worst[1],
@@ -121,7 +120,8 @@ static void test_one_step_per_contact_makes_no_energy_in_silence(void **state)
 {
     (void)state;
     for (int i = 0; i < 60; i++) {
-        Ball ball = {1000, 4.865e10, 0.1 * (1 + 0.03 * i), 1 - 0.1 * (i % 5), {0.25 * (1 + i % 8), 1e-6, 1e-5, 1e7, 1e-3}};
+        Ball ball = {
+            1000, 4.865e10, 0.1 * (1 + 0.03 * i), 1 - 0.1 * (i % 5), {0.25 * (1 + i % 8), 1e-6, 1e-5, 1e7, 1e-3}};
         Bounce b;
         bounce(&ball, -1, &b);
         const double made = b.result.kinetic_strain_j / b.result.input_energy_j - 1;
@@ -264,8 +264,8 @@ static void test_energy_books_close_and_damping_never_gives(void **state)
     for (int i = 0; i < r.n_modes; i++)
         assert_true(r.mode_share_pct[i] > 0);
     assert_true(r.contact_loss_j > 0 && r.damped_core_j > 0);
-    const double spent = r.kinetic_strain_j + r.damped_building_j + r.damped_core_j + r.contact_loss_j + r.clamp_j +
-                         r.contact_stored_j;
+    const double spent =
+        r.kinetic_strain_j + r.damped_building_j + r.damped_core_j + r.contact_loss_j + r.clamp_j + r.contact_stored_j;
     assert_close(spent, r.input_energy_j, 1e-3);
     tower_close(&t);
 }

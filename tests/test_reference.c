@@ -90,7 +90,8 @@ static SimResult run_cvode(const Stage *stage, const Motion *m, double duration,
 {
     SimResult r;
     Err err;
-    CHECK_OK(engine_cvode(&stage->model, m, &(EngineOptions){.duration = duration, .accuracy = accuracy}, &r, &err), &err);
+    CHECK_OK(engine_cvode(&stage->model, m, &(EngineOptions){.duration = duration, .accuracy = accuracy}, &r, &err),
+             &err);
     return r;
 }
 
@@ -98,7 +99,9 @@ static SimResult run_tied(const Stage *stage, const Motion *m, double duration, 
 {
     SimResult r;
     Err err;
-    CHECK_OK(engine_tied(&stage->s, &stage->b, &stage->core, m, &(EngineOptions){.duration = duration, .accuracy = accuracy}, &r, &err), &err);
+    CHECK_OK(engine_tied(&stage->s, &stage->b, &stage->core, m,
+                         &(EngineOptions){.duration = duration, .accuracy = accuracy}, &r, &err),
+             &err);
     return r;
 }
 
@@ -199,7 +202,8 @@ static SimResult single_impact(double a, double duration)
     model.gamma[0] = sqrt(MASS);
     model.gap[0] = 1.5;
     model.contact = (Contact){.k = 4.8650e10, .a = a, .v0_floor = 1e-3};
-    CHECK_OK(engine_cvode(&model, &m, &(EngineOptions){.duration = duration, .accuracy = ACCURACY_FINE}, &r, &err), &err);
+    CHECK_OK(engine_cvode(&model, &m, &(EngineOptions){.duration = duration, .accuracy = ACCURACY_FINE}, &r, &err),
+             &err);
     assert_ok(&r);
     model_free(&model);
     return r;

@@ -150,10 +150,14 @@ static void test_bad_buildings_are_refused_with_file_and_fault(void **state)
 {
     (void)state;
     static const char *const BAD[][2] = {
-        {"not_square", "square"},   {"not_symmetric", "not symmetric: row 2 column 1"},
-        {"indefinite", "not positive definite"}, {"nan", "K.csv:2"},
-        {"words", "not a number"},  {"two_sizes", "M.csv: 2 floors, but K.csv has 3"},
-        {"no_mass", "M.csv"},       {"ragged", "K.csv:2"},
+        {"not_square", "square"},
+        {"not_symmetric", "not symmetric: row 2 column 1"},
+        {"indefinite", "not positive definite"},
+        {"nan", "K.csv:2"},
+        {"words", "not a number"},
+        {"two_sizes", "M.csv: 2 floors, but K.csv has 3"},
+        {"no_mass", "M.csv"},
+        {"ragged", "K.csv:2"},
     };
     for (size_t i = 0; i < sizeof BAD / sizeof BAD[0]; i++) {
         char path[200];

@@ -7,8 +7,9 @@
 
 #include "base/status.h"
 
-/* K x = w^2 M x, ascending: omega[i] = sqrt(w^2) [rad/s], phi (n, n) with column i = mode i, phi' M phi = 1, the largest
- * entry by magnitude of every mode positive. A negative w^2 within rounding counts as zero. K and M are kept. */
+/* K x = w^2 M x, ascending: omega[i] = sqrt(w^2) [rad/s], phi (n, n) with column i = mode i, phi' M phi = 1, the
+ * largest entry by magnitude of every mode positive. A negative w^2 within rounding counts as zero. K and M are kept.
+ */
 Status linalg_modes(int n, const double K[], const double M[], double omega[], double phi[], Err *err);
 
 /* X: A X = B with A symmetric positive definite (n, n), B (n, m) row-major and overwritten. A is overwritten. */

@@ -41,7 +41,8 @@ Status file_read(const char *path, char **text, size_t *length, Err *err)
     }
     if (n > LARGEST) {
         free(buffer);
-        return fail(err, STATUS_BAD_DATA, "%s: larger than %d MiB; this is no text file of numbers", path, LARGEST >> 20);
+        return fail(err, STATUS_BAD_DATA, "%s: larger than %d MiB; this is no text file of numbers", path,
+                    LARGEST >> 20);
     }
     buffer[n] = 0;
     *text = buffer;
@@ -151,7 +152,8 @@ Status table_parse(Table *t, const char *path, const char *text, size_t length, 
         while (line < end && isspace((unsigned char)*line))
             line++;
         if (line < end && *line != '#') {
-            const Status s = has_header && !t->names ? read_names(t, &r, line, end, err) : read_row(t, &r, line, end, err);
+            const Status s =
+                has_header && !t->names ? read_names(t, &r, line, end, err) : read_row(t, &r, line, end, err);
             if (s != STATUS_OK) {
                 table_free(t);
                 return s;

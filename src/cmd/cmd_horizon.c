@@ -97,8 +97,9 @@ const Command CMD_HORIZON = {
     .operand = "CONFIG",
     .summary = "how long one run foretells another, and the spread of every result",
     .example = "imtet horizon configs/quick.ini --design my-design.csv",
-    .details = "Impacts magnify differences: two runs that differ in the last digit part ways after some hundreds of them.\n"
-               "Before the predictability horizon results can be compared digit by digit, after it only by mean and spread.",
+    .details =
+        "Impacts magnify differences: two runs that differ in the last digit part ways after some hundreds of them.\n"
+        "Before the predictability horizon results can be compared digit by digit, after it only by mean and spread.",
     .options = OPTIONS,
     .run = run,
 };

@@ -13,9 +13,9 @@ typedef struct {
     SceneKind kind;
     Designs designs;
     size_t n;
-    SimTask *tasks;     /* (n) */
-    SimResult *results; /* (n) */
-    int members;        /* of an ensemble per design; 0: none */
+    SimTask *tasks;      /* (n) */
+    SimResult *results;  /* (n) */
+    int members;         /* of an ensemble per design; 0: none */
     Ensemble *ensembles; /* (n) or NULL */
 } Job;
 
@@ -29,7 +29,8 @@ static Status choose_members(const Args *args, Job *job, Err *err)
     if (*end || members < 2 || members > 100000)
         return fail(err, STATUS_USAGE, "--ensemble %s: a whole number from 2 to 100000 is needed", text);
     if (job->kind != SCENE_IMPACT)
-        return fail(err, STATUS_USAGE, "--ensemble changes gaps a little: it needs a design with gaps, not none or --tied");
+        return fail(err, STATUS_USAGE,
+                    "--ensemble changes gaps a little: it needs a design with gaps, not none or --tied");
     job->members = (int)members;
     return STATUS_OK;
 }

@@ -67,8 +67,8 @@ static json_t *machine(int threads)
     system_name(system);
     gmtime_r(&now, &parts);
     strftime(started, sizeof started, "%FT%TZ", &parts);
-    return json_pack("{s:s, s:s, s:s, s:i, s:s}", "host", host, "system", system, "kernel", fast_kernel_name(), "threads",
-                     threads, "started", started);
+    return json_pack("{s:s, s:s, s:s, s:i, s:s}", "host", host, "system", system, "kernel", fast_kernel_name(),
+                     "threads", threads, "started", started);
 }
 
 static json_t *inputs_of_tower(const World *w, uint64_t building_hash, int n_floors)

@@ -52,8 +52,8 @@ static Status check_symmetric(int n, double A[], const char *path, Err *err)
     if (pivot < 0)
         return fail(err, STATUS_NO_MEMORY, "%s: no memory to factor %d x %d", path, n, n);
     if (pivot > 0)
-        return fail(err, STATUS_BAD_DATA, "%s: not positive definite: the leading block of %d rows is singular or worse",
-                    path, pivot);
+        return fail(err, STATUS_BAD_DATA,
+                    "%s: not positive definite: the leading block of %d rows is singular or worse", path, pivot);
     return STATUS_OK;
 }
 
@@ -64,7 +64,8 @@ static Status load_matrix(const char *model, const char *matrix, double **A, int
     TRY(read_matrix(&t, model, matrix, path, sizeof path, err));
     Status s = STATUS_OK;
     if (t.n_rows != t.n_cols)
-        s = fail(err, STATUS_BAD_DATA, "%s: %zu rows of %zu columns; a square matrix is needed", path, t.n_rows, t.n_cols);
+        s = fail(err, STATUS_BAD_DATA, "%s: %zu rows of %zu columns; a square matrix is needed", path, t.n_rows,
+                 t.n_cols);
     else if (t.n_rows > FLOORS_MAX)
         s = fail(err, STATUS_BAD_DATA, "%s: %zu floors; at most %d are supported", path, t.n_rows, FLOORS_MAX);
     else

@@ -18,12 +18,12 @@
 enum { FLOORS_MAX = 64 };
 
 typedef struct {
-    int n;              /* floors */
-    double *K, *M;      /* (n, n) [N/m], [kg] */
-    double *phi;        /* (n, n) column i is mode i [1/sqrt(kg)] */
-    double *omega;      /* (n) [rad/s] ascending */
-    double *gamma;      /* (n) [sqrt(kg)] */
-    uint64_t hash;      /* FNV-1a of the numbers */
+    int n;         /* floors */
+    double *K, *M; /* (n, n) [N/m], [kg] */
+    double *phi;   /* (n, n) column i is mode i [1/sqrt(kg)] */
+    double *omega; /* (n) [rad/s] ascending */
+    double *gamma; /* (n) [sqrt(kg)] */
+    uint64_t hash; /* FNV-1a of the numbers */
 } Building;
 
 Status building_load(Building *b, const char *model, Err *err);

@@ -17,9 +17,9 @@
 
 typedef struct {
     int n;
-    double mass_kg;                                           /* of the whole core, ground node's share included */
+    double mass_kg;                                                /* of the whole core, ground node's share included */
     double K[FLOORS_MAX * FLOORS_MAX], M[FLOORS_MAX * FLOORS_MAX]; /* (n, n) */
-    double phi[FLOORS_MAX * FLOORS_MAX];                      /* (n, n) column i is mode i */
+    double phi[FLOORS_MAX * FLOORS_MAX];                           /* (n, n) column i is mode i */
     double omega[FLOORS_MAX], gamma[FLOORS_MAX];
 } CoreBeam;
 

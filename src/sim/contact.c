@@ -50,18 +50,29 @@ Status contact_make(Contact *c, const Settings *s, Err *err)
     const double r = s->contact.restitution, nu = s->contact.poisson;
     const ContactLaw law = (ContactLaw)s->contact.law;
     if (r < 0.01 && (law == LAW_EXACT || law == LAW_FLORES || law == LAW_JANKOWSKI))
-        return fail(err, STATUS_BAD_DATA,
-                    "contact.restitution: %g cannot be had with this contact.law (its damping grows without bound); use "
-                    "0.01 or more, or contact.law = paper",
-                    r);
+        return fail(
+            err, STATUS_BAD_DATA,
+            "contact.restitution: %g cannot be had with this contact.law (its damping grows without bound); use "
+            "0.01 or more, or contact.law = paper",
+            r);
     c->k = 2 * s->contact.youngs_modulus_pa * sqrt(s->contact.radius_m) / (3 * (1 - nu * nu));
     c->a = c->xi = 0;
     switch (law) {
-    case LAW_PAPER: c->a = 1.5 * (1 - r); break;
-    case LAW_EXACT: c->a = contact_damping(r); break;
-    case LAW_LANKARANI_NIKRAVESH: c->a = 0.75 * (1 - r * r); break;
-    case LAW_FLORES: c->a = 1.6 * (1 - r) / r; break;
-    case LAW_JANKOWSKI: c->xi = 4.5 * sqrt(5.0) * (1 - r * r) / (r * (r * (9 * M_PI - 16) + 16)); break;
+    case LAW_PAPER:
+        c->a = 1.5 * (1 - r);
+        break;
+    case LAW_EXACT:
+        c->a = contact_damping(r);
+        break;
+    case LAW_LANKARANI_NIKRAVESH:
+        c->a = 0.75 * (1 - r * r);
+        break;
+    case LAW_FLORES:
+        c->a = 1.6 * (1 - r) / r;
+        break;
+    case LAW_JANKOWSKI:
+        c->xi = 4.5 * sqrt(5.0) * (1 - r * r) / (r * (r * (9 * M_PI - 16) + 16));
+        break;
     }
     c->v0_floor = s->contact.v0_floor_m_s;
     return STATUS_OK;

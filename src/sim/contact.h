@@ -1,7 +1,7 @@
 /* sim/contact.h -- the force between a floor and the core while they touch.
  *
- *   F = k p^1.5 (1 + a p'/v0) + c p',  p > 0 penetration [m],  v0 approach speed when this contact closed [m/s],  F >= 0
- *   k = 2 E sqrt(R) / (3 (1 - nu^2))                                            [N/m^1.5]
+ *   F = k p^1.5 (1 + a p'/v0) + c p',  p > 0 penetration [m],  v0 approach speed when this contact closed [m/s],  F >=
+ * 0 k = 2 E sqrt(R) / (3 (1 - nu^2))                                            [N/m^1.5]
  *
  *   paper                a = 1.5 (1 - r). An isolated impact then rebounds not with r but with e from
  *                        a (1+e) = ln((1+a)/(1-a e)).
@@ -13,9 +13,8 @@
  *                        Earthquake Eng. Struct. Dyn. 34 (2005) 595-611; 35 (2006) 517-524
  *
  * The law would pull when separation is faster than v0/a: such tension is clamped at zero and what the clamp removes is
- * booked. v0 is never taken smaller than v0_floor. Source: Hunt and Crossley, J. Appl. Mech. 42 (1975) 440-445; Marhefka
- * and Orin, IEEE Trans. SMC-A 29 (1999) 566-572 (rebound equation).
- * Threads  no state */
+ * booked. v0 is never taken smaller than v0_floor. Source: Hunt and Crossley, J. Appl. Mech. 42 (1975) 440-445;
+ * Marhefka and Orin, IEEE Trans. SMC-A 29 (1999) 566-572 (rebound equation). Threads  no state */
 #ifndef IMTET_SIM_CONTACT_H
 #define IMTET_SIM_CONTACT_H
 

@@ -72,9 +72,21 @@ void flow_coefficients(size_t n, const double omega[], const double zeta[], doub
         flow_integrals(omega[i], zeta[i], h, y);
         const double b = 2 * zeta[i] * omega[i], c = omega[i] * omega[i];
         const double row[FLOW_ROWS] = {
-            y[0] + b * y[1],       y[1],     y[2],     y[3] / h,       2 * y[4] / (h * h),
-            -c * y[1],             y[0],     y[1],     y[2] / h,       2 * y[3] / (h * h),
-            (y[1] + b * y[2]) / h, y[2] / h, y[3] / h, y[4] / (h * h), 2 * y[5] / (h * h * h),
+            y[0] + b * y[1],
+            y[1],
+            y[2],
+            y[3] / h,
+            2 * y[4] / (h * h),
+            -c * y[1],
+            y[0],
+            y[1],
+            y[2] / h,
+            2 * y[3] / (h * h),
+            (y[1] + b * y[2]) / h,
+            y[2] / h,
+            y[3] / h,
+            y[4] / (h * h),
+            2 * y[5] / (h * h * h),
         };
         for (int k = 0; k < FLOW_K; k++)
             coef[(size_t)k * stride + i] = row[k];

@@ -20,15 +20,15 @@
 #include "sim/contact.h"
 
 typedef struct {
-    int n, nb, nc, m;  /* floors, building modes, core modes, nb + nc */
+    int n, nb, nc, m; /* floors, building modes, core modes, nb + nc */
     int n_pad, m_pad;
-    double *R;         /* (m_pad, n_pad) [1/sqrt(kg)] a row per mode */
-    double *RT;        /* (n_pad, m_pad) the same, a row per floor */
-    double *omega;     /* (m_pad) [rad/s] */
-    double *zeta;      /* (m_pad) [-] */
-    double *gamma;     /* (m_pad) [sqrt(kg)] */
-    double *gap;       /* (n_pad) [m] */
-    double *mass_eff;  /* (n_pad) [kg] 1/sum_i R_ij^2: what a short contact at floor j has to turn round */
+    double *R;        /* (m_pad, n_pad) [1/sqrt(kg)] a row per mode */
+    double *RT;       /* (n_pad, m_pad) the same, a row per floor */
+    double *omega;    /* (m_pad) [rad/s] */
+    double *zeta;     /* (m_pad) [-] */
+    double *gamma;    /* (m_pad) [sqrt(kg)] */
+    double *gap;      /* (n_pad) [m] */
+    double *mass_eff; /* (n_pad) [kg] 1/sum_i R_ij^2: what a short contact at floor j has to turn round */
     double core_mass_kg;
     Contact contact;
     void *store;

@@ -90,7 +90,8 @@ void sim_worker_free(SimWorker *worker); /* NULL is fine */
 
 /* Called by the engine fast with the state at t = 0 and at every sample of the motion: n_modes modal displacements q
  * [m sqrt(kg)] and velocities v, building modes first, each group padded with idle modes. NULL: never. */
-typedef void (*SimSampleFn)(double t, int n_modes, const double omega[], const double q[], const double v[], void *user);
+typedef void (*SimSampleFn)(double t, int n_modes, const double omega[], const double q[], const double v[],
+                            void *user);
 void sim_worker_sample(SimWorker *worker, SimSampleFn sample, void *user);
 
 /* x (n_floors + 2) as above; ignored for SCENE_NO_CORE. */

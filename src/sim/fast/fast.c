@@ -9,9 +9,9 @@
 static void layout(FastWork *k, Carve *c)
 {
     const size_t n = (size_t)k->n, n_pad = (size_t)k->n_pad, m_max = 2 * n_pad;
-    vec **const modes[] = {&k->omega, &k->zeta,  &k->gamma,   &k->wd_inverse, &k->decay,  &k->flex, &k->q,
-                           &k->v,     &k->load,  &k->work,    &k->ground,     &k->q1,     &k->v1,   &k->amplitude,
-                           &k->qa,    &k->va,    &k->qb,      &k->vb,         &k->za,     &k->ja,   &k->zb,
+    vec **const modes[] = {&k->omega, &k->zeta,  &k->gamma,   &k->wd_inverse, &k->decay,   &k->flex,  &k->q,
+                           &k->v,     &k->load,  &k->work,    &k->ground,     &k->q1,      &k->v1,    &k->amplitude,
+                           &k->qa,    &k->va,    &k->qb,      &k->vb,         &k->za,      &k->ja,    &k->zb,
                            &k->jb,    &k->bound, &k->bound_a, &k->work1,      &k->ground1, &k->drift, &k->drift1};
     vec **const floors[] = {&k->w,         &k->wd,  &k->w1,  &k->wd1, &k->f0,  &k->f1,      &k->fb,     &k->f_before,
                             &k->fb_before, &k->gap, &k->u0,  &k->u0d, &k->u1,  &k->u1d,     &k->a0,     &k->a0d,

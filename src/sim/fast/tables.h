@@ -149,8 +149,8 @@ static void take_model(FastWork *k, const SimModel *model, double base)
     memcpy(k->gap, model->gap, sizeof(double) * (size_t)k->n_pad);
 }
 
-/* The integral of mode i's equation of motion over a step, dv + 2 zeta w dq + w^2 int q dt - int p dt [sqrt(J)]: zero but
- * for rounding where the coefficients of q, q' and int q agree. mean: of q; load: mean of p. */
+/* The integral of mode i's equation of motion over a step, dv + 2 zeta w dq + w^2 int q dt - int p dt [sqrt(J)]: zero
+ * but for rounding where the coefficients of q, q' and int q agree. mean: of q; load: mean of p. */
 static inline vec momentum_gap(const FastWork *k, double h, int i, vec dq, vec dv, vec mean, vec load)
 {
     return dv + k->decay[i] * dq + h * (k->omega[i] * k->omega[i] * mean - load);
