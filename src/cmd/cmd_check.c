@@ -1,5 +1,6 @@
 #include <string.h>
 
+#include "base/units.h"
 #include "cmd/commands.h"
 #include "run/subject.h"
 #include "scene/building.h"
@@ -40,7 +41,7 @@ static int check_motion(const Settings *s, Faults *faults)
         return 0;
     }
     printf("motion    %s: %zu samples, %.4g s, peak %.4g g\n", s->motion.record, m.n, (double)(m.n - 1) * m.dt_s,
-           motion_peak(&m) / 9.81);
+           motion_peak(&m) / GRAVITY);
     if (s->sim.duration_s > (double)(m.n - 1) * m.dt_s)
         fprintf(stderr, "sim.duration_s: %g s is longer than the motion; the run ends with the motion\n",
                 s->sim.duration_s);

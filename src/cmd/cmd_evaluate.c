@@ -5,6 +5,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "base/units.h"
 #include "cmd/commands.h"
 #include "cmd/show.h"
 #include "run/crew.h"
@@ -70,7 +71,7 @@ static json_t *describe(const World *w, const SimResult results[N_SCENES])
 {
     json_t *o = json_object();
     json_object_set_new(o, "record", json_string(w->motion.name));
-    json_object_set_new(o, "pga_g", json_number(motion_peak(&w->motion) / 9.81));
+    json_object_set_new(o, "pga_g", json_number(motion_peak(&w->motion) / GRAVITY));
     json_object_set_new(o, "stretch", json_number(w->settings.motion.stretch));
     for (int i = 0; i < N_SCENES; i++)
         json_object_set_new(o, i == WITH_CORE ? "with_core" : "no_core", json_result(SCENES[i], &results[i]));

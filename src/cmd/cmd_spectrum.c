@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/units.h"
 #include "cmd/commands.h"
 #include "cmd/show.h"
 #include "run/gnuplot.h"
@@ -9,7 +10,7 @@
 #include "scene/spectrum.h"
 
 enum { N_PERIODS = 121, PRINTED_EACH = 6 };
-static const double DAMPING = 0.05, SHORTEST_S = 0.02, LONGEST_S = 20, G = 9.81, TWO_PI = 6.283185307179586;
+static const double DAMPING = 0.05, SHORTEST_S = 0.02, LONGEST_S = 20, TWO_PI = 6.283185307179586;
 
 typedef struct {
     const Motion *motion;
@@ -49,7 +50,7 @@ static Status print_json(const Spectrum *s, const Motion *m, Err *err)
     json_object_set_new(o, "samples", json_integer((json_int_t)m->n));
     json_object_set_new(o, "step_s", json_number(m->dt_s));
     json_object_set_new(o, "duration_s", json_number(f->duration_s));
-    json_object_set_new(o, "pga_g", json_number(f->pga_m_s2 / G));
+    json_object_set_new(o, "pga_g", json_number(f->pga_m_s2 / GRAVITY));
     json_object_set_new(o, "pga_m_s2", json_number(f->pga_m_s2));
     json_object_set_new(o, "pgv_m_s", json_number(f->pgv_m_s));
     json_object_set_new(o, "pgd_m", json_number(f->pgd_m));
@@ -124,13 +125,14 @@ static void write_script(FILE *script, const void *user)
     char title[512];
     fprintf(script, "$H << EOD\n");
     for (size_t i = 0; i < m->n; i++)
-        fprintf(script, "%.7g %.6g %.6g %.6g %.6g\n", (double)i * m->dt_s, m->accel[i] / G, s->velocity[i],
+        fprintf(script, "%.7g %.6g %.6g %.6g %.6g\n", (double)i * m->dt_s, m->accel[i] / GRAVITY, s->velocity[i],
                 s->displacement[i], s->husid[i]);
     fprintf(script, "EOD\n$S << EOD\n");
     for (int i = 0; i < N_PERIODS; i++)
-        fprintf(script, "%.6g %.6g %.6g\n", s->T[i], s->psa[i] / G, s->sd[i]);
+        fprintf(script, "%.6g %.6g %.6g\n", s->T[i], s->psa[i] / GRAVITY, s->sd[i]);
     snprintf(title, sizeof title, "%s%s%s: %.3f g, %.3f m/s, %.3f m; Arias %.3f m/s, 5 to 95 %% in %.1f s", m->name,
-             m->channel[0] ? ", " : "", m->channel, f->pga_m_s2 / G, f->pgv_m_s, f->pgd_m, f->arias_m_s, f->d5_95_s);
+             m->channel[0] ? ", " : "", m->channel, f->pga_m_s2 / GRAVITY, f->pgv_m_s, f->pgd_m, f->arias_m_s,
+             f->d5_95_s);
     fprintf(script, "EOD\nEND = %.7g\nset label 1 ", f->duration_s);
     gnuplot_quote(script, title);
     fprintf(script, " at screen 0.5,0.965 center noenhanced\n%s", PANELS);
@@ -140,13 +142,13 @@ static void print_table(const Spectrum *s, const Motion *m)
 {
     const MotionFigures *f = &s->figures;
     printf("%s: %zu samples every %g s\n\n", m->name, m->n, m->dt_s);
-    printf("pga       %8.4f g   (%.4f m/s2)\npgv       %8.4f m/s\npgd       %8.4f m\n", f->pga_m_s2 / G, f->pga_m_s2,
-           f->pgv_m_s, f->pgd_m);
+    printf("pga       %8.4f g   (%.4f m/s2)\npgv       %8.4f m/s\npgd       %8.4f m\n", f->pga_m_s2 / GRAVITY,
+           f->pga_m_s2, f->pgv_m_s, f->pgd_m);
     printf("duration  %8.2f s   (5 to 95 %% of Arias: %.2f s)\narias     %8.4f m/s\ncav       %8.4f m/s\n\n",
            f->duration_s, f->d5_95_s, f->arias_m_s, f->cav_m_s);
     printf("response at %g %% damping\nperiod_s     psa_g   psv_m_s      sd_m\n", 100 * DAMPING);
     for (int i = 0; i < N_PERIODS; i += PRINTED_EACH)
-        printf("%8.4g %9.4g %9.4g %9.4g\n", s->T[i], s->psa[i] / G, s->psv[i], s->sd[i]);
+        printf("%8.4g %9.4g %9.4g %9.4g\n", s->T[i], s->psa[i] / GRAVITY, s->psv[i], s->sd[i]);
 }
 
 /* All that is asked for; the table where nothing is. */

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "base/units.h"
+
 json_t *json_number(double value)
 {
     return isfinite(value) ? json_real(value) : json_null();
@@ -16,7 +18,7 @@ json_t *json_numbers(size_t n, const double values[])
     return list;
 }
 
-const char *scene_word(SceneKind kind)
+static const char *scene_word(SceneKind kind)
 {
     switch (kind) {
     case SCENE_IMPACT:
@@ -89,7 +91,7 @@ void show_motion(const Motion *m, double duration_s)
     printf("%s: ", m->name);
     if (duration_s > 0 && duration_s < length)
         printf("the first %.4g of ", duration_s);
-    printf("%.4g s, peak %.4g g\n", length, motion_peak(m) / 9.81);
+    printf("%.4g s, peak %.4g g\n", length, motion_peak(m) / GRAVITY);
 }
 
 void show_result_names(const char *label)

@@ -18,8 +18,6 @@ json_t *json_ensemble(const Ensemble *e);
 /* On standard output, 17 digits; takes the reference. */
 Status show_json(json_t *all, Err *err);
 
-const char *scene_word(SceneKind kind);
-
 /* What shakes: name, length (and how much of it was simulated; duration_s 0: all), peak. */
 void show_motion(const Motion *m, double duration_s);
 

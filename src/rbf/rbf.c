@@ -629,11 +629,6 @@ void rbf_slope(const Rbf *m, const double x[], double f[], double J[])
         slope_output(m, &m->output[k], x, &f[k], J + k * m->n_dim);
 }
 
-size_t rbf_n(const Rbf *m)
-{
-    return m->n;
-}
-
 const double *rbf_leave_one_out(const Rbf *m, size_t output)
 {
     return m->output[output].leave_one_out;
@@ -644,19 +639,9 @@ double rbf_explained(const Rbf *m, size_t output)
     return m->output[output].explained;
 }
 
-RbfForm rbf_form(const Rbf *m, size_t output)
-{
-    return m->output[output].form;
-}
-
 void rbf_set_form(Rbf *m, size_t output, RbfForm form)
 {
     m->output[output].form = form;
-}
-
-const double *rbf_scales(const Rbf *m, size_t output)
-{
-    return m->output[output].theta;
 }
 
 void rbf_set_scales(Rbf *m, size_t output, const double theta[])

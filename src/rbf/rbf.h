@@ -51,13 +51,10 @@ void rbf_eval(const Rbf *m, const double x[], double f[], double error[]);
 /* f (n_out) and its derivatives J (n_out, n_dim). */
 void rbf_slope(const Rbf *m, const double x[], double f[], double J[]);
 
-size_t rbf_n(const Rbf *m);
 const double *rbf_leave_one_out(const Rbf *m, size_t output); /* (n) f_i minus the prediction made without i */
 double rbf_explained(const Rbf *m, size_t output);            /* 1 - leave-one-out variance / variance; 1: perfect */
 
-RbfForm rbf_form(const Rbf *m, size_t output);
 void rbf_set_form(Rbf *m, size_t output, RbfForm form);           /* used by the next rbf_fit */
-const double *rbf_scales(const Rbf *m, size_t output);            /* theta (n_dim) */
 void rbf_set_scales(Rbf *m, size_t output, const double theta[]); /* used by the next rbf_fit */
 
 #endif

@@ -27,11 +27,6 @@ Status crew_create(Crew **out, const Scene *scene, long threads, Err *err)
     return STATUS_OK;
 }
 
-int crew_size(const Crew *crew)
-{
-    return crew->n;
-}
-
 Status crew_run(Crew *crew, size_t n, const SimTask tasks[], SimResult results[], Err *err)
 {
     Status first_status = STATUS_OK;

@@ -18,7 +18,6 @@ typedef struct {
 
 /* threads 0: one per processor */
 Status crew_create(Crew **out, const Scene *scene, long threads, Err *err);
-int crew_size(const Crew *crew);
 Status crew_run(Crew *crew, size_t n, const SimTask tasks[], SimResult results[], Err *err);
 void crew_free(Crew *crew); /* NULL is fine */
 

@@ -88,10 +88,7 @@ static Status find_modes(Building *b, Err *err)
     b->omega = b->phi + n * n;
     b->gamma = b->omega + n;
     TRY(linalg_modes(n, b->K, b->M, b->omega, b->phi, err));
-    for (int i = 0; i < n; i++)
-        for (int j = 0; j < n; j++)
-            for (int k = 0; k < n; k++)
-                b->gamma[i] += b->phi[j * n + i] * b->M[j * n + k];
+    linalg_participation(n, b->M, b->phi, b->gamma);
     return STATUS_OK;
 }
 

@@ -125,9 +125,7 @@ Status core_beam_make(CoreBeam *c, const Settings *s, int n, double t_base_m, do
     if (status == STATUS_OK)
         status = linalg_modes(n, c->K, c->M, c->omega, c->phi, err);
     free(K);
-    for (int i = 0; i < n && status == STATUS_OK; i++)
-        for (int j = 0; j < n; j++)
-            for (int k = 0; k < n; k++)
-                c->gamma[i] += c->phi[j * n + i] * c->M[j * n + k];
+    if (status == STATUS_OK)
+        linalg_participation(n, c->M, c->phi, c->gamma);
     return status;
 }

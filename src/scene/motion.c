@@ -4,10 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/units.h"
 #include "scene/builtin.h"
 #include "scene/motion_read.h"
-
-static const double G = 9.81; /* [m/s2] */
 
 static Status load(Motion *m, const char *source, const MotionHow *how, Err *err)
 {
@@ -40,7 +39,7 @@ Status motion_prepare(Motion *m, double pga_g, double stretch, Err *err)
     const double peak = motion_peak(m);
     if (pga_g > 0 && !(peak > 0))
         return fail(err, STATUS_BAD_DATA, "%s: is zero throughout; it cannot be scaled to %g g", m->name, pga_g);
-    const double scale = pga_g > 0 ? pga_g * G / peak : 1.0;
+    const double scale = pga_g > 0 ? pga_g * GRAVITY / peak : 1.0;
     for (size_t i = 0; i < m->n; i++)
         m->accel[i] *= scale;
     m->dt_s *= stretch;

@@ -8,9 +8,8 @@
 #include <strings.h>
 
 #include "base/table.h"
+#include "base/units.h"
 #include "scene/formats/record.h"
-
-static const double G = 9.81; /* [m/s2] per g, as everywhere in this program */
 
 /* The strongest ground acceleration ever recorded is near 4 g; far beyond that a unit is wrong (El Centro in cm/s2
  * taken for m/s2 shows 35 g). */
@@ -220,7 +219,7 @@ static Status check_peak(const Series *s, double to_m_s2, MotionUnit unit, doubl
     const Row *peak = row_at(s, 0);
     for (size_t i = 0; i < s->n; i++)
         peak = fabs(row_at(s, i)->a) > fabs(peak->a) ? row_at(s, i) : peak;
-    if (!(fabs(peak->a) * to_m_s2 <= LARGEST_PEAK_G * G))
+    if (!(fabs(peak->a) * to_m_s2 <= LARGEST_PEAK_G * GRAVITY))
         return fail(err, STATUS_BAD_DATA, "%s:%d: an acceleration of %g %s is beyond %g g; is the unit right?", s->path,
                     peak->line, scale * peak->a, UNIT_NAMES[unit], LARGEST_PEAK_G);
     return STATUS_OK;
@@ -272,7 +271,7 @@ static Status take_samples(Motion *m, const char *path, const Record *r, const C
     if (status != STATUS_OK && how->resample_dt_s == 0)
         return fail(err, status, "%s", uneven.text);
     TRY(settle_unit(path, c->units, &unit, err));
-    const double to_m_s2 = c->scale * (unit == UNIT_M_S2 ? 1.0 : unit == UNIT_CM_S2 ? 0.01 : G);
+    const double to_m_s2 = c->scale * (unit == UNIT_M_S2 ? 1.0 : unit == UNIT_CM_S2 ? 0.01 : GRAVITY);
     TRY(check_peak(&s, to_m_s2, unit, c->scale, err));
     if (status != STATUS_OK)
         return resample(m, &s, how->resample_dt_s, to_m_s2, err);

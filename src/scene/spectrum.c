@@ -2,8 +2,9 @@
 
 #include <math.h>
 
+#include "base/units.h"
+
 static const double PI = 3.14159265358979323846;
-static const double G = 9.81; /* [m/s2], in Arias' intensity */
 
 /* ---- oscillator ----------------------------------------------------------------------------------------------- */
 
@@ -260,7 +261,7 @@ void motion_figures(const Motion *m, MotionFigures *out)
         v = velocity(&g, g.dt);
         d = displacement(&g, g.dt);
     }
-    out->arias_m_s = PI / (2 * G) * squares;
+    out->arias_m_s = PI / (2 * GRAVITY) * squares;
     out->d5_95_s = squares > 0 ? time_of_level(m, 0.95 * squares) - time_of_level(m, 0.05 * squares) : 0;
 }
 

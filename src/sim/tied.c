@@ -152,11 +152,9 @@ static Status find_pair_modes(Tied *d, const Building *b, const CoreBeam *core, 
     }
     TRY(linalg_modes(n, K, M, d->omega, psi, err));
     for (int i = 0; i < n; i++)
-        for (int j = 0; j < n; j++) {
+        for (int j = 0; j < n; j++)
             d->psi[i * n + j] = psi[j * n + i];
-            for (int k = 0; k < n; k++)
-                d->gamma[i] += psi[j * n + i] * M[j * n + k];
-        }
+    linalg_participation(n, M, psi, d->gamma);
     return STATUS_OK;
 }
 

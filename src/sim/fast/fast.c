@@ -109,7 +109,8 @@ void fast_run(FastWork *work, const SimModel *model, const Motion *motion, doubl
     denormal_restore(mode);
 }
 
-void fast_state(const FastWork *work, double state[])
+/* q and q' of every mode where the last run ended: state (2 m). */
+static void end_state(const FastWork *work, double state[])
 {
     const int nb = work->model->nb, nc = work->model->nc, m = nb + nc;
     const double *q = (const double *)work->q, *v = (const double *)work->v;
@@ -130,7 +131,7 @@ Status engine_fast(const SimModel *model, const Motion *motion, const EngineOpti
     TRY(fast_create(&work, model->n, err));
     fast_run(work, model, motion, options->duration, &knobs, result);
     if (options->end_state)
-        fast_state(work, options->end_state);
+        end_state(work, options->end_state);
     fast_free(work);
     return STATUS_OK;
 }

@@ -47,7 +47,4 @@ FastKnobs fast_knobs(Accuracy accuracy);
 void fast_run(FastWork *work, const SimModel *model, const Motion *motion, double duration, const FastKnobs *knobs,
               SimResult *result);
 
-/* q and q' of every mode where the last run ended: state (2 m). */
-void fast_state(const FastWork *work, double state[]);
-
 #endif

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/units.h"
 #include "sim/fast/contact_step.h"
 #include "sim/fast/flight.h"
 
@@ -182,7 +183,7 @@ static void take_peaks(const FastWork *k, SimResult *r)
     for (int j = 0; j < k->n; j++) {
         r->peak_displacement_m[j] = scalars_const(k->peak_u)[j];
         r->peak_drift_m[j] = scalars_const(k->peak_d)[j];
-        r->peak_acceleration_g[j] = scalars_const(k->peak_a)[j] / 9.81;
+        r->peak_acceleration_g[j] = scalars_const(k->peak_a)[j] / GRAVITY;
         r->j1_m = fmax(r->j1_m, r->peak_displacement_m[j]);
         r->j2_m = fmax(r->j2_m, r->peak_drift_m[j]);
         r->j3_g = fmax(r->j3_g, r->peak_acceleration_g[j]);

@@ -11,6 +11,7 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "base/units.h"
 #include "sim/sim.h"
 
 typedef enum {
@@ -80,7 +81,7 @@ static inline void peaks_report(const Peaks *p, SimResult *result)
     for (int j = 0; j < p->n; j++) {
         result->peak_displacement_m[j] = p->peak[PEAK_DISPLACEMENT][j];
         result->peak_drift_m[j] = p->peak[PEAK_DRIFT][j];
-        result->peak_acceleration_g[j] = p->peak[PEAK_ACCELERATION][j] / 9.81;
+        result->peak_acceleration_g[j] = p->peak[PEAK_ACCELERATION][j] / GRAVITY;
         result->j1_m = fmax(result->j1_m, result->peak_displacement_m[j]);
         result->j2_m = fmax(result->j2_m, result->peak_drift_m[j]);
         result->j3_g = fmax(result->j3_g, result->peak_acceleration_g[j]);
