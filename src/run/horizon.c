@@ -11,10 +11,12 @@ typedef struct {
     int no_memory;
 } Track;
 
-static void note(double t, int n_modes, const double omega[], const double q[], const double v[], void *user)
+static void note(const SimSample *sample, void *user)
 {
     Track *track = user;
-    const size_t m = (size_t)n_modes;
+    const size_t m = (size_t)sample->n_modes;
+    if (sample->t == 0)
+        track->n = 0;
     if (track->n == track->room) {
         const size_t room = track->room ? 2 * track->room : 1024;
         double *times = realloc(track->t, room * sizeof *times);
@@ -30,10 +32,10 @@ static void note(double t, int n_modes, const double omega[], const double q[], 
     track->n_modes = m;
     double *row = track->state + track->n * 2 * m;
     for (size_t i = 0; i < m; i++) {
-        row[2 * i] = omega[i] * q[i];
-        row[2 * i + 1] = v[i];
+        row[2 * i] = sample->omega[i] * sample->q[i];
+        row[2 * i + 1] = sample->v[i];
     }
-    track->t[track->n++] = t;
+    track->t[track->n++] = sample->t;
 }
 
 static Status follow(const World *world, const double x[], Track *track, Err *err)

@@ -141,6 +141,16 @@ void sim_worker_sample(SimWorker *worker, SimSampleFn sample, void *user)
     fast_sample(worker->fast, sample, user);
 }
 
+void sim_worker_floors(const SimWorker *worker, const SimSample *sample, double u[])
+{
+    const SimModel *model = &worker->model;
+    for (int j = 0; j < model->n; j++) {
+        u[j] = 0;
+        for (int i = 0; i < model->nb; i++)
+            u[j] += model->R[(size_t)i * (size_t)model->n_pad + (size_t)j] * sample->q[i];
+    }
+}
+
 static void judge(SimResult *r, double residual_max)
 {
     const double all[] = {r->j1_m, r->j2_m, r->j3_g, r->ed1_pct, r->ed5_10_pct, r->edcs_pct, r->energy_residual};

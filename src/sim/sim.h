@@ -88,11 +88,23 @@ Status scene_frequencies(const Scene *scene, const double x[], double building_h
 Status sim_worker_create(SimWorker **out, const Scene *scene, Err *err);
 void sim_worker_free(SimWorker *worker); /* NULL is fine */
 
-/* Called by the engine fast with the state at t = 0 and at every sample of the motion: n_modes modal displacements q
- * [m sqrt(kg)] and velocities v, building modes first, each group padded with idle modes. NULL: never. */
-typedef void (*SimSampleFn)(double t, int n_modes, const double omega[], const double q[], const double v[],
-                            void *user);
+/* The state at one instant, the energies since the start: modes 0..n_building-1 are the building's, the others the
+ * core's, each group padded with idle ones. What a mode has damped is ground + contact - (v^2 + omega^2 q^2) / 2. */
+typedef struct {
+    double t; /* [s] */
+    int n_modes, n_building;
+    const double *omega, *q, *v;            /* (n_modes) [rad/s], [m sqrt(kg)], [m sqrt(kg)/s] */
+    const double *ground_j, *contact_j;     /* (n_modes) work done on the mode by the ground and by the contacts */
+    double contact_loss_j, contact_clamp_j; /* as in SimResult */
+} SimSample;
+
+/* Called by the engine fast at t = 0 and at every sample of the motion, again from t = 0 when the run has to be
+ * repeated with shorter steps. NULL: never. */
+typedef void (*SimSampleFn)(const SimSample *sample, void *user);
 void sim_worker_sample(SimWorker *worker, SimSampleFn sample, void *user);
+
+/* Displacements u (n_floors) [m] of the floors at a sample. */
+void sim_worker_floors(const SimWorker *worker, const SimSample *sample, double u[]);
 
 /* x (n_floors + 2) as above; ignored for SCENE_NO_CORE. */
 Status sim_run(SimWorker *worker, SceneKind kind, const double x[], SimResult *result, Err *err);

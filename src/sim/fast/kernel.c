@@ -105,8 +105,20 @@ static int state_is_finite(const FastWork *k)
 
 static void show(const FastWork *k, double t)
 {
+    const SimSample sample = {
+        .t = t,
+        .n_modes = k->m_pad,
+        .n_building = k->nb_pad,
+        .omega = scalars_const(k->omega),
+        .q = scalars_const(k->q),
+        .v = scalars_const(k->v),
+        .ground_j = scalars_const(k->ground),
+        .contact_j = scalars_const(k->work),
+        .contact_loss_j = k->contact_lost,
+        .contact_clamp_j = k->contact_clamped,
+    };
     if (k->sample)
-        k->sample(t, k->m_pad, scalars_const(k->omega), scalars_const(k->q), scalars_const(k->v), k->sample_user);
+        k->sample(&sample, k->sample_user);
 }
 
 static int fly(FastWork *k, const Motion *motion, double duration)
