@@ -28,7 +28,7 @@ LDLIBS   += -lsundials_cvode -lsundials_arkode -lsundials_nvecserial -lsundials_
 # Our own kernels are written for the vectorizer; everything else is happy with -O2.
 $(BUILD)/src/sim/%.o: CFLAGS.release := -O3 -g
 
-$(BUILD)/src/rbf/%.o: CFLAGS.release := -O3 -g -fno-math-errno -fno-trapping-math
+$(BUILD)/src/rbf/%.o $(BUILD)/src/moga/infill.o: CFLAGS.release := -O3 -g -fno-math-errno -fno-trapping-math
 
 KERNELS := base avx2 avx512
 KERNEL_FLAGS.base   := -DFAST_LANES=2

@@ -46,7 +46,7 @@ static void test_the_surface_goes_through_its_data(void **state)
     for (int tune = 0; tune < 2; tune++) {
         Rbf *m = fitted(N, X, F, tune);
         for (int i = 0; i < N; i++) {
-            rbf_eval(m, X + i * D, f, NULL);
+            rbf_eval(m, 1, X + i * D, f, NULL);
             assert_true(fabs(f[0] - F[i * OUT]) < 1e-4);
         }
         rbf_free(m);
@@ -61,7 +61,7 @@ static void test_linear_functions_are_reproduced_everywhere(void **state)
     scatter(2, N, Y, wanted);
     Rbf *m = fitted(N, X, F, 0);
     for (int i = 0; i < N; i++) {
-        rbf_eval(m, Y + i * D, f, NULL);
+        rbf_eval(m, 1, Y + i * D, f, NULL);
         assert_close(f[1], wanted[i * OUT + 1], 1e-9);
     }
     assert_true(rbf_explained(m, 1) > 1 - 1e-12);
@@ -77,7 +77,7 @@ static void test_tuning_lowers_the_error_at_unseen_points(void **state)
     for (int tune = 0; tune < 2; tune++) {
         Rbf *m = fitted(N, X, F, tune);
         for (int i = 0; i < N; i++) {
-            rbf_eval(m, Y + i * D, f, NULL);
+            rbf_eval(m, 1, Y + i * D, f, NULL);
             square[tune] += (f[0] - wanted[i * OUT]) * (f[0] - wanted[i * OUT]) / N;
         }
         rbf_free(m);
@@ -116,7 +116,7 @@ static void test_closed_form_leave_one_out_errors_equal_refits(void **state)
                         memcpy(F1 + j++ * OUT, F + i * OUT, OUT * sizeof *F);
                     }
                     CHECK_OK(rbf_fit(without, FEW - 1, X1, F1, &err), &err);
-                    rbf_eval(without, X + out * D, f, NULL);
+                    rbf_eval(without, 1, X + out * D, f, NULL);
                     assert_true(fabs(rbf_leave_one_out(all, 0)[out] - (F[out * OUT] - f[0])) < 2e-6);
                 }
             }
@@ -132,7 +132,7 @@ static void test_equal_designs_with_different_answers_are_averaged(void **state)
     memcpy(X + D, X, D * sizeof *X);
     F[OUT] = F[0] + 0.2;
     Rbf *m = fitted(N, X, F, 1);
-    rbf_eval(m, X, f, NULL);
+    rbf_eval(m, 1, X, f, NULL);
     assert_true(fabs(f[0] - (F[0] + 0.1)) < 0.08);
     rbf_free(m);
 }
@@ -146,7 +146,7 @@ static void test_the_error_estimate_is_of_the_size_of_the_true_error(void **stat
         scatter(100 + seed, N, Y, wanted);
         Rbf *m = fitted(N, X, F, 0);
         for (int i = 0; i < N; i++) {
-            rbf_eval(m, Y + i * D, f, e);
+            rbf_eval(m, 1, Y + i * D, f, e);
             square += (f[0] - wanted[i * OUT]) * (f[0] - wanted[i * OUT]);
             estimate += e[0] * e[0];
         }
@@ -164,7 +164,7 @@ static void test_a_constant_output_is_predicted_without_error(void **state)
     for (int i = 0; i < N; i++)
         F[i * OUT] = 4.0;
     Rbf *m = fitted(N, X, F, 1);
-    rbf_eval(m, (const double[D]){0.1, 0.9, 0.4, 0.2}, f, e);
+    rbf_eval(m, 1, (const double[D]){0.1, 0.9, 0.4, 0.2}, f, e);
     assert_close(f[0], 4.0, 1e-12);
     assert_true(e[0] < 1e-12);
     rbf_free(m);
@@ -195,16 +195,16 @@ static void test_the_slope_of_the_surface_equals_differences_for_every_form(void
             rbf_set_form(m, k, (RbfForm){(RbfKernel)(form / RBF_N_TAILS), (RbfTail)(form % RBF_N_TAILS), 1e-6});
         CHECK_OK(rbf_fit(m, N, X, F, &err), &err);
         double x[D] = {0.31, 0.62, 0.48, 0.77}, y[OUT];
-        rbf_slope(m, x, f, J);
-        rbf_eval(m, x, y, NULL);
+        rbf_slope(m, 1, x, f, J);
+        rbf_eval(m, 1, x, y, NULL);
         for (size_t k = 0; k < OUT; k++)
             assert_close(f[k], y[k], 1e-10);
         for (size_t d = 0; d < D; d++) {
             const double at = x[d], h = 1e-5;
             x[d] = at + h;
-            rbf_eval(m, x, up, NULL);
+            rbf_eval(m, 1, x, up, NULL);
             x[d] = at - h;
-            rbf_eval(m, x, down, NULL);
+            rbf_eval(m, 1, x, down, NULL);
             x[d] = at;
             assert_true(fabs(J[d] - (up[0] - down[0]) / (2 * h)) < 1e-4);
             assert_true(fabs(J[D + d] - (up[1] - down[1]) / (2 * h)) < 10.0); /* of 1e5 */

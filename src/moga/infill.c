@@ -12,7 +12,8 @@ static const double PBI_THETA = 5.0;
 struct Infill {
     size_t n_obj, n_dir, n_max, n;
     Frame frame;
-    double *unit;                          /* (n_dir, n_obj) */
+    double *unit, *across;                 /* (n_dir, n_obj) directions of length 1; the same, (n_obj, n_dir) */
+    double *row;                           /* (n_dir) */
     double *least;                         /* (n_dir) to beat */
     size_t *best;                          /* (n_dir) row that has it */
     double *pbi;                           /* (n, n_dir) of the candidates */
@@ -26,6 +27,8 @@ static void layout(Infill *q, Carve *c)
     q->frame.ideal = carve(c, m, sizeof(double));
     q->frame.width = carve(c, m, sizeof(double));
     q->unit = carve(c, q->n_dir * m, sizeof(double));
+    q->across = carve(c, q->n_dir * m, sizeof(double));
+    q->row = carve(c, q->n_dir, sizeof(double));
     q->least = carve(c, q->n_dir, sizeof(double));
     q->best = carve(c, q->n_dir, sizeof(size_t));
     q->pbi = carve(c, q->n_max * q->n_dir, sizeof(double));
@@ -55,7 +58,7 @@ Status infill_create(Infill **out, size_t candidates_max, const Directions *dire
         for (size_t k = 0; k < q->n_obj; k++)
             square += w[k] * w[k];
         for (size_t k = 0; k < q->n_obj; k++)
-            q->unit[r * q->n_obj + k] = w[k] / sqrt(square);
+            q->across[k * q->n_dir + r] = q->unit[r * q->n_obj + k] = w[k] / sqrt(square);
     }
     return STATUS_OK;
 }
@@ -67,31 +70,38 @@ void infill_free(Infill *q)
     free(q);
 }
 
-static double pbi_value(const Infill *q, size_t r, const double f[])
+/* PBI values of f in every direction: with |w| = 1, off^2 = |z|^2 - along^2. */
+static void pbi_values(const Infill *q, const double f[], double pbi[])
 {
-    double along = 0.0, off = 0.0;
-    const double *w = q->unit + r * q->n_obj;
-    for (size_t k = 0; k < q->n_obj; k++)
-        along += frame_scale(&q->frame, k, f[k]) * w[k];
+    double square = 0.0;
+    for (size_t r = 0; r < q->n_dir; r++)
+        pbi[r] = 0.0;
     for (size_t k = 0; k < q->n_obj; k++) {
-        const double side = frame_scale(&q->frame, k, f[k]) - along * w[k];
-        off += side * side;
+        const double z = frame_scale(&q->frame, k, f[k]), *w = q->across + k * q->n_dir;
+        square += z * z;
+#pragma omp simd
+        for (size_t r = 0; r < q->n_dir; r++)
+            pbi[r] += z * w[r];
     }
-    return along + PBI_THETA * sqrt(off);
+#pragma omp simd
+    for (size_t r = 0; r < q->n_dir; r++) {
+        const double rest = square - pbi[r] * pbi[r];
+        pbi[r] += PBI_THETA * sqrt(rest > 0.0 ? rest : 0.0);
+    }
 }
 
 void infill_measure(Infill *q, size_t n, const size_t front[], const double F[])
 {
     frame_fit_box(&q->frame, n, front, F);
-    for (size_t r = 0; r < q->n_dir; r++) {
+    for (size_t r = 0; r < q->n_dir; r++)
         q->least[r] = DBL_MAX;
-        for (size_t i = 0; i < n; i++) {
-            const double pbi = pbi_value(q, r, F + front[i] * q->n_obj);
-            if (pbi < q->least[r]) {
-                q->least[r] = pbi;
+    for (size_t i = 0; i < n; i++) {
+        pbi_values(q, F + front[i] * q->n_obj, q->row);
+        for (size_t r = 0; r < q->n_dir; r++)
+            if (q->row[r] < q->least[r]) {
+                q->least[r] = q->row[r];
                 q->best[r] = front[i];
             }
-        }
     }
 }
 
@@ -118,11 +128,12 @@ double infill_slope(const Infill *q, size_t direction, const double f[], double 
     return along + PBI_THETA * off;
 }
 
-double infill_distance(const Infill *q, const double f[])
+double infill_distance(Infill *q, const double f[])
 {
     double nearest = DBL_MAX;
+    pbi_values(q, f, q->row);
     for (size_t r = 0; r < q->n_dir; r++)
-        nearest = fmin(nearest, pbi_value(q, r, f) - q->least[r]);
+        nearest = fmin(nearest, q->row[r] - q->least[r]);
     return nearest;
 }
 
@@ -132,8 +143,7 @@ void infill_offer(Infill *q, size_t n, const double F[], const double violation[
     q->violation = violation;
     q->uncertainty = uncertainty;
     for (size_t i = 0; i < n; i++)
-        for (size_t r = 0; r < q->n_dir; r++)
-            q->pbi[i * q->n_dir + r] = pbi_value(q, r, F + i * q->n_obj);
+        pbi_values(q, F + i * q->n_obj, q->pbi + i * q->n_dir);
 }
 
 static double gain_of(const Infill *q, size_t i)

@@ -25,7 +25,7 @@ void infill_free(Infill *q); /* NULL is fine */
 void infill_measure(Infill *q, size_t n, const size_t front[], const double F[]);
 
 /* How far f is from being the best of any direction, 0 for those that are: small is near the front. */
-double infill_distance(const Infill *q, const double f[]);
+double infill_distance(Infill *q, const double f[]);
 
 /* The direction's best row among those measured, its value to beat, and PBI with its derivatives by f (n_obj). */
 size_t infill_best(const Infill *q, size_t direction);

@@ -18,7 +18,8 @@ struct Surface {
     double *U, *F;     /* (n_max, n_var) (n_max, n_out) centres */
     double *range;     /* (n_out) of each output in the archive */
     double *errors;    /* (n_max) sorted for the median */
-    double *descent;   /* (predict_max, descent_length) */
+    size_t *member;    /* (predict_max) of a group, that want a prediction */
+    double *descent;   /* (predict_max + RBF_BLOCK, descent_length) */
     double *u, *f, *e; /* (predict_max, n_var) (predict_max, n_out) twice */
     void *store;
     size_t *chosen, *spare; /* (n_archive_max) rows in use; they grow with the archive */
@@ -37,7 +38,8 @@ static void layout(Surface *s, Carve *c)
     s->u = carve(c, s->predict_max * n_var, sizeof(double));
     s->f = carve(c, s->predict_max * s->n_out, sizeof(double));
     s->e = carve(c, s->predict_max * s->n_out, sizeof(double));
-    s->descent = carve(c, s->predict_max * descent_length(s), sizeof(double));
+    s->member = carve(c, s->predict_max, sizeof(size_t));
+    s->descent = carve(c, (s->predict_max + RBF_BLOCK) * descent_length(s), sizeof(double));
 }
 
 Status surface_create(Surface **out, const Problem *problem, size_t surrogate_max, size_t predict_max, Err *err)
@@ -50,7 +52,9 @@ Status surface_create(Surface **out, const Problem *problem, size_t surrogate_ma
     s->n_out = problem->n_obj + problem->n_con;
     s->n_max = surrogate_max;
     s->predict_max = predict_max;
-    Status status = rbf_create(&s->rbf, surrogate_max, problem->n_var, s->n_out, err);
+    Status status = STATUS_OK;
+    if (problem->n_var <= RBF_DIM_MAX)
+        status = rbf_create(&s->rbf, surrogate_max, problem->n_var, s->n_out, err);
     if (status == STATUS_OK) {
         Carve c = {0};
         layout(s, &c);
@@ -111,7 +115,7 @@ static void sort_by_distance(const double distance[], size_t n, size_t rows[], s
 }
 
 /* Rows of the centres, in chosen; returns how many. */
-static size_t choose_centres(Surface *s, const Archive *a, const Infill *near)
+static size_t choose_centres(Surface *s, const Archive *a, Infill *near)
 {
     size_t n = 0;
     for (size_t i = 0; i < a->n; i++)
@@ -152,10 +156,10 @@ static void measure_ranges(Surface *s, const Archive *a)
     }
 }
 
-Status surface_fit(Surface *s, const Archive *a, const Infill *near, Err *err)
+Status surface_fit(Surface *s, const Archive *a, Infill *near, Err *err)
 {
     s->fitted = 0;
-    if (a->n - a->n_failed < 4 || a->n - a->n_failed < s->problem->n_var / 2)
+    if (!s->rbf || a->n - a->n_failed < 4 || a->n - a->n_failed < s->problem->n_var / 2)
         return STATUS_OK;
     TRY(grow(s, a->n, err));
     s->n = choose_centres(s, a, near);
@@ -202,88 +206,109 @@ double surface_error(const Surface *s)
     return worst;
 }
 
-void surface_predict(Surface *s, Group *group, size_t first, int with_uncertainty)
+/* Rows of the group that want a prediction, and their designs in the unit cube; returns how many. */
+static size_t gather(Surface *s, const Group *group, size_t first)
+{
+    size_t n = 0;
+    for (size_t i = first; i < group->n; i++)
+        if (group->row[i] == PREDICTED) {
+            to_unit_cube(s->problem, group->X + i * group->n_var, s->u + n * group->n_var);
+            s->member[n++] = i;
+        }
+    return n;
+}
+
+static void fill_member(const Surface *s, Group *group, size_t i, const double f[], const double e[])
 {
     const Problem *p = s->problem;
-    if (!s->fitted)
-        return;
-#pragma omp parallel for schedule(static)
-    for (size_t i = first; i < group->n; i++) {
-        if (group->row[i] != PREDICTED)
-            continue;
-        double *u = s->u + i * p->n_var, *f = s->f + i * s->n_out, *e = s->e + i * s->n_out, worst = 0.0;
-        to_unit_cube(p, group->X + i * p->n_var, u);
-        rbf_eval(s->rbf, u, f, with_uncertainty ? e : NULL);
-        for (size_t k = 0; with_uncertainty && k < s->n_out; k++)
-            worst = fmax(worst, e[k] / s->range[k]);
-        memcpy(group->F + i * p->n_obj, f, p->n_obj * sizeof *f);
-        group->violation[i] = violation_of(p->n_con, f + p->n_obj);
-        group->uncertainty[i] = worst;
-    }
+    double worst = 0.0;
+    for (size_t k = 0; e && k < s->n_out; k++)
+        worst = fmax(worst, e[k] / s->range[k]);
+    memcpy(group->F + i * p->n_obj, f, p->n_obj * sizeof *f);
+    group->violation[i] = violation_of(p->n_con, f + p->n_obj);
+    group->uncertainty[i] = worst;
+}
+
+void surface_predict(Surface *s, Group *group, size_t first, int with_uncertainty)
+{
+    const size_t n_var = s->problem->n_var, n = s->fitted ? gather(s, group, first) : 0;
+#pragma omp parallel for schedule(dynamic, 1)
+    for (size_t i = 0; i < n; i += RBF_BLOCK)
+        rbf_eval(s->rbf, n - i < RBF_BLOCK ? n - i : RBF_BLOCK, s->u + i * n_var, s->f + i * s->n_out,
+                 with_uncertainty ? s->e + i * s->n_out : NULL);
+    for (size_t i = 0; i < n; i++)
+        fill_member(s, group, s->member[i], s->f + i * s->n_out, with_uncertainty ? s->e + i * s->n_out : NULL);
 }
 
 enum { DESCENT_STEPS = 30 };
 
-/* What one descent needs: in a row, so that one carve holds those of all directions. */
+/* One descent's own numbers; u, f and J of a block lie together, as the surface takes them. */
 typedef struct {
-    double *u, *best, *g, *last, *step, *f, *slope, *J;
+    double *best, *g, *last, *step, *slope;
+    double least;
 } Descent;
 
 static size_t descent_length(const Surface *s)
 {
     const size_t d = s->problem->n_var;
-    return 5 * d + 2 * s->n_out + s->n_out * d;
+    return d + s->n_out + s->n_out * d + 4 * d + s->problem->n_obj;
 }
 
 static Descent descent_on(const Surface *s, double *store)
 {
     const size_t d = s->problem->n_var;
-    return (Descent){store,
-                     store + d,
-                     store + 2 * d,
-                     store + 3 * d,
-                     store + 4 * d,
-                     store + 5 * d,
-                     store + 5 * d + s->n_out,
-                     store + 5 * d + 2 * s->n_out};
+    return (Descent){store, store + d, store + 2 * d, store + 3 * d, store + 4 * d, INFINITY};
 }
 
-/* PBI of the prediction and its derivatives by u, in g. */
-static double value_and_slope(const Surface *s, const Infill *near, size_t direction, Descent *w)
+/* One step of resilient back-propagation at u, where the surface is f with the derivatives J. */
+static void descent_step(const Surface *s, const Infill *near, size_t direction, Descent *w, double u[],
+                         const double f[], const double J[])
 {
     const size_t n_var = s->problem->n_var;
-    rbf_slope(s->rbf, w->u, w->f, w->J);
-    const double value = infill_slope(near, direction, w->f, w->slope);
+    const double value = infill_slope(near, direction, f, w->slope);
+    if (value < w->least) {
+        w->least = value;
+        memcpy(w->best, u, n_var * sizeof *u);
+    }
     for (size_t d = 0; d < n_var; d++) {
         w->g[d] = 0.0;
         for (size_t k = 0; k < s->problem->n_obj; k++)
-            w->g[d] += w->slope[k] * w->J[k * n_var + d];
+            w->g[d] += w->slope[k] * J[k * n_var + d];
+        const double agreed = w->g[d] * w->last[d];
+        w->step[d] *= agreed > 0.0 ? 1.2 : agreed < 0.0 ? 0.5 : 1.0;
+        w->last[d] = agreed < 0.0 ? 0.0 : w->g[d];
+        if (w->last[d] != 0.0)
+            u[d] = fmin(fmax(u[d] - copysign(fmin(w->step[d], 0.2), w->g[d]), 0.0), 1.0);
     }
-    return value;
 }
 
-static void descend(const Surface *s, const Infill *near, size_t direction, Descent *w)
+/* n <= RBF_BLOCK descents in step with each other, starting at U; the best of each goes there. */
+static void descend(const Surface *s, const Infill *near, size_t n, const size_t directions[], double *store)
 {
-    const size_t n_var = s->problem->n_var;
-    double least = INFINITY;
-    for (size_t d = 0; d < n_var; d++) {
-        w->step[d] = 0.05;
-        w->last[d] = 0.0;
+    const size_t n_var = s->problem->n_var, own = 4 * n_var + s->problem->n_obj;
+    double *U = store, *F = U + RBF_BLOCK * n_var, *J = F + RBF_BLOCK * s->n_out,
+           *rest = J + RBF_BLOCK * s->n_out * n_var;
+    Descent w[RBF_BLOCK];
+    for (size_t p = 0; p < n; p++) {
+        w[p] = descent_on(s, rest + p * own);
+        for (size_t d = 0; d < n_var; d++) {
+            w[p].step[d] = 0.05;
+            w[p].last[d] = 0.0;
+        }
     }
     for (int step = 0; step < DESCENT_STEPS; step++) {
-        const double value = value_and_slope(s, near, direction, w);
-        if (value < least) {
-            least = value;
-            memcpy(w->best, w->u, n_var * sizeof *w->u);
-        }
-        for (size_t d = 0; d < n_var; d++) {
-            const double agreed = w->g[d] * w->last[d];
-            w->step[d] *= agreed > 0.0 ? 1.2 : agreed < 0.0 ? 0.5 : 1.0;
-            w->last[d] = agreed < 0.0 ? 0.0 : w->g[d];
-            if (w->last[d] != 0.0)
-                w->u[d] = fmin(fmax(w->u[d] - copysign(fmin(w->step[d], 0.2), w->g[d]), 0.0), 1.0);
-        }
+        rbf_slope(s->rbf, n, U, F, J);
+        for (size_t p = 0; p < n; p++)
+            descent_step(s, near, directions[p], &w[p], U + p * n_var, F + p * s->n_out, J + p * s->n_out * n_var);
     }
+    for (size_t p = 0; p < n; p++)
+        memcpy(U + p * n_var, w[p].best, n_var * sizeof *U);
+}
+
+static void from_unit_cube(const Problem *p, const double u[], double x[])
+{
+    for (size_t d = 0; d < p->n_var; d++)
+        x[d] = fmin(fmax(p->lower[d] + u[d] * (p->upper[d] - p->lower[d]), p->lower[d]), p->upper[d]);
 }
 
 void surface_descend(Surface *s, const Archive *a, const Infill *near, size_t n, const size_t directions[], double X[])
@@ -291,12 +316,13 @@ void surface_descend(Surface *s, const Archive *a, const Infill *near, size_t n,
     const Problem *p = s->problem;
     const size_t length = descent_length(s);
 #pragma omp parallel for schedule(dynamic, 1)
-    for (size_t i = 0; i < n; i++) {
-        Descent w = descent_on(s, s->descent + i * length);
-        to_unit_cube(p, a->X + infill_best(near, directions[i]) * p->n_var, w.u);
-        descend(s, near, directions[i], &w);
-        for (size_t d = 0; d < p->n_var; d++)
-            X[i * p->n_var + d] =
-                fmin(fmax(p->lower[d] + w.best[d] * (p->upper[d] - p->lower[d]), p->lower[d]), p->upper[d]);
+    for (size_t i = 0; i < n; i += RBF_BLOCK) {
+        const size_t count = n - i < RBF_BLOCK ? n - i : RBF_BLOCK;
+        double *U = s->descent + i * length;
+        for (size_t j = 0; j < count; j++)
+            to_unit_cube(p, a->X + infill_best(near, directions[i + j]) * p->n_var, U + j * p->n_var);
+        descend(s, near, count, directions + i, U);
+        for (size_t j = 0; j < count; j++)
+            from_unit_cube(p, U + j * p->n_var, X + (i + j) * p->n_var);
     }
 }

@@ -4,6 +4,7 @@
  * three quarters of the centres are those nearest to the front and the rest is spread evenly over the order of
  * simulation, which begins with the Latin hypercube. Scales are tuned again when the archive has grown by a tenth.
  *
+ * Many variables  beyond RBF_DIM_MAX there never is a surface
  * Life cycle  surface_create -> (surface_fit -> surface_predict ...) ... -> surface_free
  * Threads     predictions are shared out over OpenMP threads and stored by index. */
 #ifndef IMTET_MOGA_SURFACE_H
@@ -22,7 +23,7 @@ Status surface_create(Surface **out, const Problem *problem, size_t surrogate_ma
 void surface_free(Surface *s); /* NULL is fine */
 
 /* Fits to the archive; `near` has measured its front. Too few designs for a surface: surface_stands is 0. */
-Status surface_fit(Surface *s, const Archive *archive, const Infill *near, Err *err);
+Status surface_fit(Surface *s, const Archive *archive, Infill *near, Err *err);
 
 /* Whether there is a surface and it explains enough of the objectives to be better than guessing. */
 int surface_stands(const Surface *s);

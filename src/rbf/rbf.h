@@ -11,7 +11,7 @@
  * Life cycle  rbf_create -> (rbf_fit -> (rbf_tune) -> rbf_eval ...) ... -> rbf_free; call rbf_tune now and then
  * Memory      all of it in rbf_create, for at most n_max centres
  * Threads     rbf_fit and rbf_tune share the outputs out over OpenMP threads (set BLAS to one); rbf_eval only reads
- * Shapes      row-major X (n, n_dim), F (n, n_out); x scaled to the unit cube
+ * Shapes      row-major X (n, n_dim), F (n, n_out); x scaled to the unit cube; n_dim <= RBF_DIM_MAX
  * Errors      near-equal centres raise the nugget until the matrix factors; BAD_DATA if that does not help (NaN)
  * Sources     Rippa, Adv. Comput. Math. 11 (1999) 193-210 (leave-one-out); Rasmussen and Williams, Gaussian Processes
  *             for Machine Learning (2006) ch. 2 and 5 (kernels, tail, likelihood). */
@@ -23,6 +23,8 @@
 #include "base/status.h"
 
 typedef struct Rbf Rbf;
+
+enum { RBF_BLOCK = 4, RBF_DIM_MAX = 512 };
 
 typedef enum { RBF_GAUSS, RBF_MATERN, RBF_N_KERNELS } RbfKernel;
 typedef enum { RBF_CONSTANT, RBF_LINEAR, RBF_QUADRATIC, RBF_N_TAILS } RbfTail;
@@ -45,11 +47,12 @@ Status rbf_fit(Rbf *m, size_t n, const double X[], const double F[], Err *err);
  * of at most 250 of them), and fits again. */
 Status rbf_tune(Rbf *m, Err *err);
 
-/* f (n_out) and error (n_out), which may be NULL. */
-void rbf_eval(const Rbf *m, const double x[], double f[], double error[]);
+/* F (n, n_out) at X (n, n_dim), and the errors E (n, n_out), which may be NULL. RBF_BLOCK points cost little more than
+ * one. */
+void rbf_eval(const Rbf *m, size_t n, const double X[], double F[], double E[]);
 
-/* f (n_out) and its derivatives J (n_out, n_dim). */
-void rbf_slope(const Rbf *m, const double x[], double f[], double J[]);
+/* F (n, n_out) and its derivatives J (n, n_out, n_dim). */
+void rbf_slope(const Rbf *m, size_t n, const double X[], double F[], double J[]);
 
 const double *rbf_leave_one_out(const Rbf *m, size_t output); /* (n) f_i minus the prediction made without i */
 double rbf_explained(const Rbf *m, size_t output);            /* 1 - leave-one-out variance / variance; 1: perfect */

@@ -1,0 +1,152 @@
+#include "rbf/kernel.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+#if defined __x86_64__ && !defined __SANITIZE_THREAD__
+#define WIDE __attribute__((target_clones("arch=x86-64-v3", "default")))
+#else
+#define WIDE
+#endif
+
+/* Four numbers, wherever they lie. */
+typedef double Four __attribute__((vector_size(32), aligned(8), may_alias));
+
+/* exp(x) for x <= 0 within 2e-16 relative, without a branch or a call: x = k log 2 + r, |r| <= log(2) / 2, Taylor
+ * series of r; k sits in the low bits of x / log 2 + 1.5 2^52. Below -700 as at -700. */
+static inline double exp_down(double x)
+{
+    static const double SHIFT = 0x1.8p52, LOG2E = 0x1.71547652b82fep0, LN2_HIGH = 0x1.62e42fefa38p-1,
+                        LN2_LOW = 0x1.ef35793c7673p-45;
+    x = x < -700.0 ? -700.0 : x;
+    const double shifted = x * LOG2E + SHIFT, k = shifted - SHIFT, r = (x - k * LN2_HIGH) - k * LN2_LOW;
+    double sum = 1.0 / 6227020800.0;
+    sum = sum * r + 1.0 / 479001600.0;
+    sum = sum * r + 1.0 / 39916800.0;
+    sum = sum * r + 1.0 / 3628800.0;
+    sum = sum * r + 1.0 / 362880.0;
+    sum = sum * r + 1.0 / 40320.0;
+    sum = sum * r + 1.0 / 5040.0;
+    sum = sum * r + 1.0 / 720.0;
+    sum = sum * r + 1.0 / 120.0;
+    sum = sum * r + 1.0 / 24.0;
+    sum = sum * r + 1.0 / 6.0;
+    sum = sum * r + 0.5;
+    sum = sum * r + 1.0;
+    sum = sum * r + 1.0;
+    uint64_t bits;
+    double power;
+    memcpy(&bits, &shifted, sizeof bits);
+    bits = (bits + 1023) << 52;
+    memcpy(&power, &bits, sizeof power);
+    return sum * power;
+}
+
+/* Eight centres and all points of a block at a time: every number that is loaded is used four times at least. */
+WIDE void kernel_distances(size_t n_dim, size_t stride, const double S[], const double x[], size_t first, size_t count,
+                           double r2[RBF_BLOCK][KERNEL_CHUNK])
+{
+    for (size_t i = 0; i < count; i += KERNEL_LANES) {
+        Four low[RBF_BLOCK] = {0}, high[RBF_BLOCK] = {0};
+        for (size_t d = 0; d < n_dim; d++) {
+            const Four *c = (const Four *)(S + d * stride + first + i);
+#pragma GCC unroll 4
+            for (size_t p = 0; p < RBF_BLOCK; p++) {
+                const Four a = c[0] - x[p * n_dim + d], b = c[1] - x[p * n_dim + d];
+                low[p] += a * a;
+                high[p] += b * b;
+            }
+        }
+#pragma GCC unroll 4
+        for (size_t p = 0; p < RBF_BLOCK; p++) {
+            *(Four *)(r2[p] + i) = low[p];
+            *(Four *)(r2[p] + i + 4) = high[p];
+        }
+    }
+}
+
+WIDE void kernel_values(RbfKernel kernel, size_t n, const double r2[], double phi[])
+{
+    if (kernel == RBF_GAUSS) {
+#pragma omp simd
+        for (size_t i = 0; i < n; i++)
+            phi[i] = exp_down(-r2[i]);
+        return;
+    }
+#pragma omp simd
+    for (size_t i = 0; i < n; i++) {
+        const double a = sqrt(5.0 * r2[i]);
+        phi[i] = (1.0 + a + a * a / 3.0) * exp_down(-a);
+    }
+}
+
+WIDE double kernel_slopes(RbfKernel kernel, size_t n, const double r2[], const double w[], double q[])
+{
+    double value = 0.0;
+    if (kernel == RBF_GAUSS) {
+#pragma omp simd reduction(+ : value)
+        for (size_t i = 0; i < n; i++) {
+            const double e = exp_down(-r2[i]);
+            value += w[i] * e;
+            q[i] = -w[i] * e;
+        }
+        return value;
+    }
+#pragma omp simd reduction(+ : value)
+    for (size_t i = 0; i < n; i++) {
+        const double a = sqrt(5.0 * r2[i]), e = exp_down(-a);
+        value += w[i] * (1.0 + a + a * a / 3.0) * e;
+        q[i] = w[i] * (-5.0 / 6.0) * (1.0 + a) * e;
+    }
+    return value;
+}
+
+static inline double sum_of(Four v)
+{
+    return (v[0] + v[1]) + (v[2] + v[3]);
+}
+
+/* Two variables at a time. */
+WIDE void kernel_project(size_t n_dim, size_t stride, const double S[], size_t first, size_t count,
+                         double q[RBF_BLOCK][KERNEL_CHUNK], double *G)
+{
+    for (size_t d = 0; d < n_dim; d += 2) {
+        const size_t next = d + 1 < n_dim ? d + 1 : d;
+        const double *s = S + d * stride + first, *t = S + next * stride + first;
+        Four a[RBF_BLOCK] = {0}, b[RBF_BLOCK] = {0};
+        for (size_t i = 0; i < count; i += 4) {
+            const Four u = *(const Four *)(s + i), v = *(const Four *)(t + i);
+#pragma GCC unroll 4
+            for (size_t p = 0; p < RBF_BLOCK; p++) {
+                a[p] += *(const Four *)(q[p] + i) * u;
+                b[p] += *(const Four *)(q[p] + i) * v;
+            }
+        }
+        for (size_t p = 0; p < RBF_BLOCK; p++) {
+            G[p * n_dim + d] += sum_of(a[p]);
+            if (next > d)
+                G[p * n_dim + next] += sum_of(b[p]);
+        }
+    }
+}
+
+WIDE void kernel_weigh(RbfKernel kernel, size_t n, const double r2[], const double w[], double w_j, double s2,
+                       double v[])
+{
+#pragma omp simd
+    for (size_t i = 0; i < n; i++) {
+        const double a = sqrt(5.0 * r2[i]);
+        const double slope = kernel == RBF_GAUSS ? -exp_down(-r2[i]) : -5.0 / 6.0 * (1.0 + a) * exp_down(-a);
+        v[i] = (w[i] * w_j / s2 - v[i]) * slope;
+    }
+}
+
+WIDE double kernel_moment(size_t n, const double v[], const double c[], double at)
+{
+    double sum = 0.0;
+#pragma omp simd reduction(+ : sum)
+    for (size_t i = 0; i < n; i++)
+        sum += v[i] * (c[i] - at) * (c[i] - at);
+    return sum;
+}

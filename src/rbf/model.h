@@ -1,0 +1,80 @@
+/* rbf/model.h -- what the response surface is made of; shared by rbf.c (fit, prediction) and tune.c, by nobody else. */
+#ifndef IMTET_RBF_MODEL_H
+#define IMTET_RBF_MODEL_H
+
+#include "rbf/rbf.h"
+
+static const double NUGGET_MIN = 1e-8, NUGGET_MAX = 1.0;
+
+/* What the model keeps of one output. */
+typedef struct {
+    RbfForm form;
+    size_t n_tail;      /* columns of the tail really used: fewer when there are too few centres */
+    double mean, scale; /* of F: the surface is built on (f - mean) / scale */
+    double explained;
+    double *theta;         /* (n_dim) */
+    double *S;             /* (n_dim, stride) centres times the root of theta */
+    double *tail;          /* (1 + 2 n_dim) coefficients b */
+    double *weight;        /* (n_max) w */
+    double *leave_one_out; /* (n_max) [unit of f] */
+} Output;
+
+/* What one thread needs to fit one output; matrices column-major as LAPACK likes them, lower triangles. */
+typedef struct {
+    double *C, *S;                                            /* (n_dim, stride) centres of the tuning choice; scaled */
+    double *A;                                                /* (n, n) kernel matrix, its factor, its inverse */
+    double *P;                                                /* (n, n_tail + 1) tail basis and data */
+    double *M;                                                /* (n_tail, n_tail) normal matrix of the tail, factored */
+    double *b;                                                /* (n_tail) */
+    double *y, *w;                                            /* (n) data, weights */
+    double *q;                                                /* (n) diagonal of the projected inverse */
+    double *log_p, *best_p, *gradient, *last_gradient, *step; /* (n_dim + 1) log theta, log nugget */
+    double *theta, *best_theta;                               /* (n_dim) */
+    RbfForm best_form;
+    double least_error;
+} Worker;
+
+struct Rbf {
+    size_t n, n_max, n_dim, n_out, n_workers, n_tail_max;
+    size_t stride;  /* n_max or a little more */
+    size_t n_tuned; /* calls of rbf_tune */
+    double *C;      /* (n_dim, stride) centres */
+    double *F;      /* (n_out, n_max) */
+    Output *output;
+    Worker *worker;
+    Status *status;
+    void *store;
+};
+
+/* S = C times the root of theta, for n centres. */
+void model_scale(const Rbf *m, size_t n, const double C[], const double theta[], double S[]);
+
+/* Points first..first+RBF_BLOCK-1, of n, row by row: x (RBF_BLOCK, n_dim); the last one again where there are fewer. */
+void model_gather(const Rbf *m, const double S[], size_t first, size_t n, double x[]);
+
+/* Lower triangle of the kernel matrix A (n, n) of scaled centres, nugget on the diagonal. */
+void model_matrix(const Rbf *m, size_t n, const double S[], RbfKernel kernel, double nugget, double A[]);
+
+/* Factors the kernel matrix into k->A, raising the nugget by tens where centres are too near each other to tell apart;
+ * 0 where that does not help. */
+int model_factor(const Rbf *m, Worker *k, size_t n, const double S[], RbfForm *form);
+
+/* Twice as many centres as coefficients at least, else a simpler tail. */
+size_t model_tail(RbfTail tail, size_t n, size_t n_dim);
+
+/* Generalised least squares for the tail, then the weights, from the factor in k->A and the data in k->y:
+ *     V = L^-1 P,  z = L^-1 y,     V'V b = V'z,      L' w = z - V b.
+ * Leaves V in k->P, the factor of V'V in k->M. Returns the tail columns used: a variable that no centre moves makes V'V
+ * singular and the tail constant. */
+size_t model_weights(const Rbf *m, Worker *k, size_t n, const double C[], size_t n_tail);
+
+/* L := inv(L) for lower triangular L with leading dimension ld. */
+void model_invert(int n, double L[], int ld);
+
+/* Leave-one-out errors after model_weights, into k->q; spoils A and P. */
+void model_leave_one_out(Worker *k, size_t n, size_t n_tail);
+
+/* Fits every output with its form and scales. */
+Status model_fit(Rbf *m, Err *err);
+
+#endif
