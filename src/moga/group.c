@@ -69,3 +69,20 @@ void group_copy(Group *to, const Group *from)
     for (size_t i = 0; i < from->n; i++)
         group_copy_member(to, from, i);
 }
+
+void group_pack(Group *g, Pack *p, size_t n_rows)
+{
+    size_t n = g->n;
+    pack_size(p, &n, g->n_max);
+    pack(p, g->X, n * g->n_var * sizeof *g->X);
+    pack(p, g->F, n * g->n_obj * sizeof *g->F);
+    pack(p, g->violation, n * sizeof *g->violation);
+    pack(p, g->uncertainty, n * sizeof *g->uncertainty);
+    for (size_t i = 0; i < n && !p->faulty; i++) {
+        size_t code = g->row[i] == PREDICTED ? 0 : g->row[i] + 1;
+        pack_size(p, &code, n_rows);
+        pack_size(p, &g->age[i], SIZE_MAX);
+        g->row[i] = code == 0 ? PREDICTED : code - 1;
+    }
+    g->n = p->faulty ? g->n : n;
+}

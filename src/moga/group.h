@@ -10,6 +10,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/pack.h"
 #include "base/status.h"
 
 static const size_t PREDICTED = SIZE_MAX;
@@ -31,5 +32,8 @@ size_t group_add(Group *g, const double x[]);
 void group_copy_member(Group *to, const Group *from, size_t i); /* appends */
 void group_copy(Group *to, const Group *from);                  /* replaces what was there */
 void group_keep(Group *g, size_t n, const size_t chosen[]);     /* chosen ascending: the rest is dropped */
+
+/* All members; rows are below n_rows or PREDICTED. */
+void group_pack(Group *g, Pack *p, size_t n_rows);
 
 #endif

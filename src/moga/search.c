@@ -5,6 +5,7 @@
 #include <time.h>
 
 #include "base/carve.h"
+#include "base/pack.h"
 #include "moga/archive.h"
 #include "moga/directions.h"
 #include "moga/dominance.h"
@@ -44,6 +45,7 @@ typedef struct {
     double *X, *F, *G;               /* (batch) of one call of evaluate */
     unsigned char *ok;               /* (batch) */
     unsigned char *allowed, *picked; /* (pool) offspring that may still be, that have been sent to simulation */
+    Pack state;                      /* as of the last report */
     void *store;
     struct timespec start;
 } Search;
@@ -363,10 +365,15 @@ static Status next_generation(Search *s, Err *err)
     return STATUS_OK;
 }
 
+static size_t planned_evals(const SearchConfig *c)
+{
+    return c->planned_evals > 0 ? c->planned_evals : c->max_evals;
+}
+
 /* Enough for a first surface of this many variables, and no more than half of the budget. */
 static size_t initial_size(const Search *s)
 {
-    const size_t wanted = 4 * s->problem->n_var + 12, half = (s->config->max_evals + 1) / 2;
+    const size_t wanted = 4 * s->problem->n_var + 12, half = (planned_evals(s->config) + 1) / 2;
     if (s->config->initial > 0)
         return s->config->initial;
     return wanted < half ? wanted : half > 4 ? half : 4;
@@ -405,9 +412,55 @@ static StopReason reason_to_stop(const Search *s)
     return c->max_seconds > 0.0 && seconds_since(&s->start) >= c->max_seconds ? STOP_TIME : STOP_NONE;
 }
 
-static int report(const Search *s, ObserveFn observe, void *user)
+/* -- the state ------------------------------------------------------------------------------------------------------
+ */
+
+enum { STATE_VERSION = 1 };
+
+/* All that the next generation takes from the earlier ones, beside the archive. */
+static void search_pack(Search *s, Pack *p)
+{
+    const Problem *problem = s->problem;
+    pack_expect(p, STATE_VERSION);
+    pack_expect(p, problem->n_var);
+    pack_expect(p, problem->n_obj);
+    pack_expect(p, problem->n_con);
+    pack_expect(p, s->config->population);
+    pack_expect(p, s->archive.n);
+    pack_size(p, &s->generation, UINT32_MAX);
+    pack(p, &s->agreement, sizeof s->agreement);
+    group_pack(&s->population, p, s->archive.n);
+    surface_pack(s->surface, p);
+}
+
+static void save_state(Search *s)
+{
+    s->state.n = 0;
+    s->state.faulty = 0;
+    search_pack(s, &s->state);
+}
+
+static Status restore(Search *s, const SearchStart *start, Err *err)
+{
+    const Problem *p = s->problem;
+    for (size_t i = 0; i < start->n; i++)
+        TRY(archive_insert(&s->archive, 1, start->X + i * p->n_var, start->F + i * p->n_obj,
+                           p->n_con > 0 ? start->G + i * p->n_con : NULL, start->ok + i, start->kind[i],
+                           start->generation[i], err));
+    Pack state = {.bytes = (unsigned char *)(uintptr_t)start->state, .n = start->n_state, .reading = 1};
+    search_pack(s, &state);
+    if (!pack_finished(&state))
+        return fail(err, STATUS_BAD_DATA,
+                    "the state of the search (%zu bytes after %zu simulations) does not fit this search: written by "
+                    "another version, or with other settings",
+                    start->n_state, start->n);
+    return STATUS_OK;
+}
+
+static int report(Search *s, ObserveFn observe, void *user)
 {
     const Archive *a = &s->archive;
+    save_state(s);
     const SearchView view = {
         .n = a->n,
         .n_var = a->n_var,
@@ -426,14 +479,21 @@ static int report(const Search *s, ObserveFn observe, void *user)
         .n_predicted = s->n_predicted,
         .surrogate_error = surface_error(s->surface),
         .seconds = seconds_since(&s->start),
+        .state = pack_finished(&s->state) ? s->state.bytes : NULL,
+        .n_state = s->state.n,
     };
     return observe && observe(&view, user) ? 1 : 0;
 }
 
-static Status run_loop(Search *s, ObserveFn observe, void *user, StopReason *reason, Err *err)
+static Status run_loop(Search *s, const SearchStart *start, ObserveFn observe, void *user, StopReason *reason, Err *err)
 {
     *reason = STOP_NONE;
-    for (s->generation = 0; *reason == STOP_NONE; s->generation += *reason == STOP_NONE) {
+    if (start) {
+        TRY(restore(s, start, err));
+        *reason = reason_to_stop(s);
+        s->generation++;
+    }
+    for (; *reason == STOP_NONE; s->generation += *reason == STOP_NONE) {
         TRY(s->generation == 0 ? first_generation(s, err) : next_generation(s, err));
         *reason = reason_to_stop(s);
         if (report(s, observe, user) && *reason == STOP_NONE)
@@ -477,7 +537,7 @@ static void layout(Search *s, size_t n_pool, Carve *c)
 /* Directions of the choice of simulations: as many as the budget can serve, five simulations each. */
 static size_t wishes_for(size_t n_obj, const SearchConfig *c)
 {
-    const size_t served = c->max_evals / 5, least = n_obj > c->population ? n_obj : c->population;
+    const size_t served = planned_evals(c) / 5, least = n_obj > c->population ? n_obj : c->population;
     return n_obj < 2 ? 1 : served < least ? least : served < WISHES_MAX ? served : WISHES_MAX;
 }
 
@@ -520,18 +580,25 @@ static void release(Search *s)
     group_free(&s->population);
     group_free(&s->offspring);
     group_free(&s->pool);
+    free(s->state.bytes);
     free(s->store);
 }
 
 Status search_run(const Problem *problem, const SearchConfig *config, ObserveFn observe, void *user, StopReason *reason,
                   Err *err)
 {
+    return search_resume(problem, config, NULL, observe, user, reason, err);
+}
+
+Status search_resume(const Problem *problem, const SearchConfig *config, const SearchStart *start, ObserveFn observe,
+                     void *user, StopReason *reason, Err *err)
+{
     Search s = {.problem = problem, .config = config, .agreement = 1.0};
     TRY(check(problem, config, err));
     clock_gettime(CLOCK_MONOTONIC, &s.start);
     Status status = create(&s, err);
     if (status == STATUS_OK)
-        status = run_loop(&s, observe, user, reason, err);
+        status = run_loop(&s, start, observe, user, reason, err);
     release(&s);
     return status;
 }

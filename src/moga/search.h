@@ -17,6 +17,10 @@
  * Reproducible  random streams are keyed by (seed, generation, individual): the same bytes at any thread count
  * Never twice   a design that is in the archive, failed ones too, is not simulated again
  * Threads       the problem's evaluate gets one call per generation with the whole batch; set BLAS to one thread
+ * Goes on       from the simulations and the state of any generation's end (SearchView.state): the rest is then the
+ *               same, bit by bit, as if it had never stopped. The state is what the simulations do not tell:
+ * population, forms and scales of the surface, running means. A new variable that outlives a generation is one more
+ *               line in search_pack (search.c), and STATE_VERSION one higher
  * Ownership     search_run owns all it allocates; a SearchView is valid inside the callback only
  * Sources       Deb and Jain, IEEE Trans. Evol. Comput. 18 (2014) 577-601 (NSGA-III); Deb and Agrawal, Complex
  *               Systems 9 (1995) 115-148 (SBX); Rippa, Adv. Comput. Math. 11 (1999) 193-210 (leave-one-out). */
@@ -32,9 +36,11 @@ typedef enum { KIND_SAMPLED, KIND_INFILL } EvaluationKind;
 typedef struct {
     uint32_t seed;
     size_t population, generations, max_evals, surrogate_max;
-    size_t initial;            /* 0: by the number of variables */
-    int no_surrogate;          /* plain children only */
-    double max_seconds;        /* 0: no limit */
+    size_t planned_evals; /* 0: max_evals. First sample and directions of infill are chosen for so many simulations;
+                             of two searches that differ in max_evals only, one is then the beginning of the other */
+    size_t initial;       /* 0: by the number of variables */
+    int no_surrogate;     /* plain children only */
+    double max_seconds;   /* 0: no limit */
     double nondominated_share; /* stop when this share of the archive is nondominated; 1: never */
     double trust_error;        /* share of an objective's range in the archive */
     double crossover_probability, crossover_eta, mutation_eta, mutation_rate;
@@ -56,12 +62,30 @@ typedef struct {
     size_t n_predicted;     /* offspring of this generation whose prediction stood */
     double surrogate_error; /* median leave-one-out error, share of range, worst objective; NaN: no surface yet */
     double seconds;
+    const void *state; /* (n_state bytes) of the search at this moment; NULL: no memory for it */
+    size_t n_state;
 } SearchView;
+
+/* A moment to go on from: what the view had at the end of a generation. All of it is only read. */
+typedef struct {
+    size_t n;
+    const double *X, *F, *G;
+    const unsigned char *ok, *kind;
+    const size_t *generation;
+    const void *state;
+    size_t n_state;
+} SearchStart;
 
 /* Called after the start and after every generation; return non-zero to stop. */
 typedef int (*ObserveFn)(const SearchView *view, void *user);
 
 Status search_run(const Problem *problem, const SearchConfig *config, ObserveFn observe, void *user, StopReason *reason,
                   Err *err);
+
+/* The same from `start` on (NULL: from the beginning). Problem and configuration must be those of the search that wrote
+ * the state, but for the limits (generations, max_evals with planned_evals set, max_seconds). A state that does not fit
+ * is STATUS_BAD_DATA. A search that has reached its limits simulates nothing and does not call observe. */
+Status search_resume(const Problem *problem, const SearchConfig *config, const SearchStart *start, ObserveFn observe,
+                     void *user, StopReason *reason, Err *err);
 
 #endif

@@ -326,3 +326,9 @@ void surface_descend(Surface *s, const Archive *a, const Infill *near, size_t n,
             from_unit_cube(p, U + j * p->n_var, X + (i + j) * p->n_var);
     }
 }
+
+void surface_pack(Surface *s, Pack *p)
+{
+    pack_size(p, &s->n_tuned, SIZE_MAX);
+    rbf_pack(s->rbf, p);
+}

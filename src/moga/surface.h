@@ -39,4 +39,7 @@ void surface_predict(Surface *s, Group *group, size_t first, int with_uncertaint
  * of the archive that is best in its direction: X (n, n_var). */
 void surface_descend(Surface *s, const Archive *a, const Infill *near, size_t n, const size_t directions[], double X[]);
 
+/* What outlives a generation; the surface itself is fitted anew by the next surface_fit. */
+void surface_pack(Surface *s, Pack *p);
+
 #endif

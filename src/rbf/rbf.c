@@ -389,3 +389,24 @@ void rbf_set_scales(Rbf *m, size_t output, const double theta[])
 {
     memcpy(m->output[output].theta, theta, m->n_dim * sizeof *theta);
 }
+
+static int form_is_known(RbfForm f)
+{
+    return (unsigned)f.kernel < RBF_N_KERNELS && (unsigned)f.tail < RBF_N_TAILS && f.nugget >= 0.0;
+}
+
+void rbf_pack(Rbf *m, Pack *p)
+{
+    pack_size(p, &m->n_tuned, SIZE_MAX);
+    for (size_t k = 0; k < m->n_out; k++) {
+        Output *o = &m->output[k];
+        RbfForm form = o->form;
+        pack(p, &form.kernel, sizeof form.kernel);
+        pack(p, &form.tail, sizeof form.tail);
+        pack(p, &form.nugget, sizeof form.nugget);
+        pack(p, o->theta, m->n_dim * sizeof *o->theta);
+        p->faulty = p->faulty || !form_is_known(form);
+        if (!p->faulty)
+            o->form = form;
+    }
+}

@@ -20,6 +20,7 @@
 
 #include <stddef.h>
 
+#include "base/pack.h"
 #include "base/status.h"
 
 typedef struct Rbf Rbf;
@@ -59,5 +60,8 @@ double rbf_explained(const Rbf *m, size_t output);            /* 1 - leave-one-o
 
 void rbf_set_form(Rbf *m, size_t output, RbfForm form);           /* used by the next rbf_fit */
 void rbf_set_scales(Rbf *m, size_t output, const double theta[]); /* used by the next rbf_fit */
+
+/* Forms, scales and how often they were tuned: with the data of the next rbf_fit all that the model remembers. */
+void rbf_pack(Rbf *m, Pack *p);
 
 #endif

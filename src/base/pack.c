@@ -1,0 +1,52 @@
+#include "base/pack.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static int grow(Pack *p, size_t size)
+{
+    if (size <= p->n_max - p->n)
+        return 1;
+    const size_t n_max = 2 * (p->n + size);
+    unsigned char *wider = realloc(p->bytes, n_max);
+    if (!wider)
+        return 0;
+    p->bytes = wider;
+    p->n_max = n_max;
+    return 1;
+}
+
+void pack(Pack *p, void *value, size_t size)
+{
+    p->faulty = p->faulty || (p->reading ? size > p->n - p->at : !grow(p, size));
+    if (p->faulty || size == 0)
+        return;
+    if (p->reading) {
+        memcpy(value, p->bytes + p->at, size);
+        p->at += size;
+    } else {
+        memcpy(p->bytes + p->n, value, size);
+        p->n += size;
+    }
+}
+
+void pack_size(Pack *p, size_t *value, size_t most)
+{
+    uint64_t wide = *value;
+    pack(p, &wide, sizeof wide);
+    p->faulty = p->faulty || wide > most;
+    if (!p->faulty)
+        *value = (size_t)wide;
+}
+
+void pack_expect(Pack *p, uint64_t value)
+{
+    uint64_t found = value;
+    pack(p, &found, sizeof found);
+    p->faulty = p->faulty || found != value;
+}
+
+int pack_finished(const Pack *p)
+{
+    return !p->faulty && (!p->reading || p->at == p->n);
+}

@@ -1,0 +1,341 @@
+/* A search that goes on from any generation's end makes the same bytes as one that never stopped. */
+#include <stdlib.h>
+#include <string.h>
+
+#include <cblas.h>
+#include <omp.h>
+
+#include "base/pack.h"
+#include "check.h"
+#include "moga/search.h"
+#include "problem/textbook.h"
+
+enum { VAR_MAX = 22, OBJ_MAX = 7, ROWS_MAX = 200, MOMENTS_MAX = 80 };
+
+typedef struct {
+    Problem problem;
+    double lower[VAR_MAX], upper[VAR_MAX];
+    size_t fail_every; /* every so many-th design fails, told by its bytes; 0: none, 1: all */
+    double noise;      /* [-] of the answers, told by the design's bytes too */
+} World;
+
+/* Everything simulated, and the state at the end of every generation. */
+typedef struct {
+    size_t n, n_moments, first_generation, last_generation;
+    double X[ROWS_MAX * VAR_MAX], F[ROWS_MAX * OBJ_MAX], G[ROWS_MAX];
+    unsigned char ok[ROWS_MAX], on_front[ROWS_MAX], kind[ROWS_MAX];
+    size_t generation[ROWS_MAX];
+    size_t rows[MOMENTS_MAX], n_state[MOMENTS_MAX];
+    unsigned char *state[MOMENTS_MAX];
+    StopReason reason;
+} Seen;
+
+static int fails(const World *w, const double x[])
+{
+    uint64_t bits;
+    memcpy(&bits, x, sizeof bits);
+    return w->fail_every > 0 && (bits >> 20) % w->fail_every == 0;
+}
+
+static Status evaluate(size_t n, const double X[], double F[], double G[], unsigned char ok[], void *user, Err *err)
+{
+    (void)err;
+    const World *w = user;
+    for (size_t i = 0; i < n; i++) {
+        const double *x = X + i * w->problem.n_var;
+        textbook_dtlz2(w->problem.n_var, w->problem.n_obj, x, F + i * w->problem.n_obj);
+        for (size_t k = 0; w->noise > 0.0 && k < w->problem.n_obj; k++)
+            F[i * w->problem.n_obj + k] += w->noise * sin(1e6 * x[0] + 1e7 * x[1] + (double)k);
+        ok[i] = (unsigned char)!fails(w, x);
+        if (w->problem.n_con > 0)
+            G[i] = 0.3 - x[0];
+    }
+    return STATUS_OK;
+}
+
+static void world(World *w, size_t n_var, size_t n_obj, size_t n_con)
+{
+    memset(w, 0, sizeof *w);
+    for (size_t d = 0; d < n_var; d++)
+        w->upper[d] = 1.0;
+    w->problem = (Problem){n_var, n_obj, n_con, w->lower, w->upper, evaluate, NULL, w};
+}
+
+static SearchConfig config(size_t initial, size_t max_evals)
+{
+    return (SearchConfig){.seed = 7,
+                          .population = 24,
+                          .initial = initial,
+                          .generations = 60,
+                          .max_evals = max_evals,
+                          .surrogate_max = 40,
+                          .nondominated_share = 1,
+                          .trust_error = 0.2,
+                          .crossover_probability = 1,
+                          .crossover_eta = 20,
+                          .mutation_eta = 20,
+                          .mutation_rate = 1};
+}
+
+static int observe(const SearchView *v, void *user)
+{
+    Seen *s = user;
+    if (s->n_moments == 0)
+        s->first_generation = v->generation_now;
+    assert_true(v->n <= ROWS_MAX && s->n_moments < MOMENTS_MAX);
+    s->n = v->n;
+    s->last_generation = v->generation_now;
+    memcpy(s->X, v->X, v->n * v->n_var * sizeof *v->X);
+    memcpy(s->F, v->F, v->n * v->n_obj * sizeof *v->F);
+    memcpy(s->G, v->G, v->n * v->n_con * sizeof *v->G);
+    memcpy(s->ok, v->ok, v->n);
+    memcpy(s->kind, v->kind, v->n);
+    memcpy(s->on_front, v->on_front, v->n);
+    memcpy(s->generation, v->generation, v->n * sizeof *v->generation);
+    const size_t k = s->n_moments++;
+    s->rows[k] = v->n;
+    s->n_state[k] = v->n_state;
+    s->state[k] = malloc(v->n_state);
+    assert_non_null(v->state);
+    assert_non_null(s->state[k]);
+    memcpy(s->state[k], v->state, v->n_state);
+    return 0;
+}
+
+static void forget(Seen *s)
+{
+    for (size_t k = 0; k < s->n_moments; k++)
+        free(s->state[k]);
+    memset(s, 0, sizeof *s);
+}
+
+static SearchStart moment(const Seen *s, size_t k)
+{
+    return (SearchStart){s->rows[k], s->X, s->F, s->G, s->ok, s->kind, s->generation, s->state[k], s->n_state[k]};
+}
+
+static void run(World *w, const SearchConfig *c, const SearchStart *start, Seen *seen)
+{
+    Err err = {0};
+    memset(seen, 0, sizeof *seen);
+    CHECK_OK(search_resume(&w->problem, c, start, observe, seen, &seen->reason, &err), &err);
+}
+
+static void assert_same_search(const World *w, const Seen *a, const Seen *b)
+{
+    const Problem *p = &w->problem;
+    assert_int_equal(a->n, b->n);
+    assert_int_equal(a->reason, b->reason);
+    assert_int_equal(a->last_generation, b->last_generation);
+    assert_memory_equal(a->X, b->X, a->n * p->n_var * sizeof *a->X);
+    assert_memory_equal(a->F, b->F, a->n * p->n_obj * sizeof *a->F);
+    assert_memory_equal(a->ok, b->ok, a->n);
+    assert_memory_equal(a->kind, b->kind, a->n);
+    assert_memory_equal(a->on_front, b->on_front, a->n);
+    assert_memory_equal(a->generation, b->generation, a->n * sizeof *a->generation);
+    const size_t last_a = a->n_moments - 1, last_b = b->n_moments - 1;
+    assert_int_equal(a->n_state[last_a], b->n_state[last_b]);
+    assert_memory_equal(a->state[last_a], b->state[last_b], a->n_state[last_a]);
+}
+
+static World here;
+static Seen whole, rest;
+
+/* From every `step`-th moment but the last. */
+static void check_every_moment(const SearchConfig *c, size_t step)
+{
+    run(&here, c, NULL, &whole);
+    assert_true(whole.n_moments > step + 1);
+    for (size_t k = 0; k + 1 < whole.n_moments; k += step) {
+        const SearchStart start = moment(&whole, k);
+        run(&here, c, &start, &rest);
+        assert_int_equal(rest.first_generation, k + 1);
+        assert_same_search(&here, &whole, &rest);
+        forget(&rest);
+    }
+    forget(&whole);
+}
+
+static void test_a_search_goes_on_from_any_generation_as_if_it_had_never_stopped(void **state)
+{
+    (void)state;
+    world(&here, 6, 3, 0);
+    const SearchConfig c = config(20, 60);
+    check_every_moment(&c, 1);
+}
+
+static void test_seven_objectives_go_on_the_same(void **state)
+{
+    (void)state;
+    world(&here, 22, 7, 0);
+    const SearchConfig c = config(30, 54);
+    check_every_moment(&c, 3);
+}
+
+static void test_failed_and_infeasible_designs_do_not_change_that(void **state)
+{
+    (void)state;
+    world(&here, 5, 2, 1);
+    here.fail_every = 4;
+    const SearchConfig c = config(16, 52);
+    check_every_moment(&c, 2);
+}
+
+/* The surface foretells badly: what is remembered of that decides about the next batch. */
+static void test_a_surface_that_is_half_believed_goes_on_the_same(void **state)
+{
+    (void)state;
+    world(&here, 4, 2, 0);
+    here.noise = 0.6;
+    const SearchConfig c = config(16, 110);
+    check_every_moment(&c, 8);
+}
+
+static void test_plain_children_and_a_world_where_everything_fails_go_on_the_same(void **state)
+{
+    (void)state;
+    world(&here, 6, 3, 0);
+    SearchConfig c = config(20, 80);
+    c.no_surrogate = 1;
+    check_every_moment(&c, 4);
+    here.fail_every = 1;
+    check_every_moment(&c, 1);
+}
+
+static void test_the_number_of_threads_may_change_in_between(void **state)
+{
+    (void)state;
+    const int threads = omp_get_max_threads();
+    const SearchConfig c = config(20, 48);
+    world(&here, 6, 3, 0);
+    omp_set_num_threads(1);
+    run(&here, &c, NULL, &whole);
+    omp_set_num_threads(3);
+    const SearchStart start = moment(&whole, whole.n_moments / 2);
+    run(&here, &c, &start, &rest);
+    omp_set_num_threads(threads);
+    assert_same_search(&here, &whole, &rest);
+    forget(&rest);
+    forget(&whole);
+}
+
+/* With the same plan the shorter search is the beginning of the longer one. */
+static void test_more_simulations_than_planned_go_on_where_the_plan_ended(void **state)
+{
+    (void)state;
+    world(&here, 6, 3, 0);
+    SearchConfig c = config(0, 40);
+    c.planned_evals = 40;
+    run(&here, &c, NULL, &rest);
+    assert_int_equal(rest.reason, STOP_EVALUATIONS);
+    c.max_evals = 64;
+    run(&here, &c, NULL, &whole);
+    assert_int_equal(whole.n, 64);
+    assert_memory_equal(rest.X, whole.X, rest.n * here.problem.n_var * sizeof *rest.X);
+
+    static Seen longer;
+    const SearchStart start = moment(&rest, rest.n_moments - 1);
+    run(&here, &c, &start, &longer);
+    assert_int_equal(longer.n, 64);
+    assert_memory_equal(rest.X, longer.X, rest.n * here.problem.n_var * sizeof *rest.X);
+    forget(&longer);
+    forget(&rest);
+    forget(&whole);
+}
+
+static void test_a_search_at_its_limit_simulates_nothing_more(void **state)
+{
+    (void)state;
+    world(&here, 6, 3, 0);
+    const SearchConfig c = config(20, 32);
+    run(&here, &c, NULL, &whole);
+    const SearchStart end = moment(&whole, whole.n_moments - 1);
+    run(&here, &c, &end, &rest);
+    assert_int_equal(rest.reason, STOP_EVALUATIONS);
+    assert_int_equal(rest.n_moments, 0);
+    forget(&whole);
+}
+
+static void refuse(const SearchConfig *c, const SearchStart *start)
+{
+    Err err = {0};
+    StopReason reason;
+    assert_int_equal(search_resume(&here.problem, c, start, observe, &rest, &reason, &err), STATUS_BAD_DATA);
+    assert_non_null(strstr(err.text, "does not fit"));
+    assert_int_equal(rest.n_moments, 0);
+}
+
+static void test_a_state_that_is_cut_short_or_of_another_search_is_refused(void **state)
+{
+    (void)state;
+    world(&here, 6, 3, 0);
+    SearchConfig c = config(20, 32);
+    run(&here, &c, NULL, &whole);
+    memset(&rest, 0, sizeof rest);
+    SearchStart start = moment(&whole, 1);
+    for (size_t n = 0; n < start.n_state; n += 1 + n / 16) {
+        SearchStart cut = start;
+        cut.n_state = n;
+        refuse(&c, &cut);
+    }
+    start.n--;
+    refuse(&c, &start);
+    start.n++;
+    c.population++;
+    refuse(&c, &start);
+    forget(&whole);
+}
+
+/* What a Pack reads is what it wrote; a fault stops it before anything is changed. */
+static void test_a_pack_reads_what_it_wrote_and_keeps_the_first_fault(void **state)
+{
+    (void)state;
+    double value = 0.1, back = 0.0;
+    size_t count = 12, counted = 0;
+    Pack out = {0};
+    pack_expect(&out, 3);
+    pack_size(&out, &count, 12);
+    pack(&out, &value, sizeof value);
+    assert_true(pack_finished(&out));
+    Pack in = {.bytes = out.bytes, .n = out.n, .reading = 1};
+    pack_expect(&in, 3);
+    pack_size(&in, &counted, 12);
+    assert_false(pack_finished(&in));
+    pack(&in, &back, sizeof back);
+    assert_true(pack_finished(&in));
+    assert_int_equal(counted, 12);
+    assert_true(back == value);
+    in = (Pack){.bytes = out.bytes, .n = out.n, .reading = 1};
+    back = 0.0;
+    pack_expect(&in, 3);
+    pack_size(&in, &counted, 11);
+    pack(&in, &back, sizeof back);
+    assert_false(pack_finished(&in));
+    assert_true(back == 0.0);
+    free(out.bytes);
+}
+
+static int quiet(void **state)
+{
+    (void)state;
+    openblas_set_num_threads(1);
+    omp_set_num_threads(1); /* more than one has a test of its own */
+    return 0;
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_a_search_goes_on_from_any_generation_as_if_it_had_never_stopped),
+        cmocka_unit_test(test_seven_objectives_go_on_the_same),
+        cmocka_unit_test(test_failed_and_infeasible_designs_do_not_change_that),
+        cmocka_unit_test(test_a_surface_that_is_half_believed_goes_on_the_same),
+        cmocka_unit_test(test_plain_children_and_a_world_where_everything_fails_go_on_the_same),
+        cmocka_unit_test(test_the_number_of_threads_may_change_in_between),
+        cmocka_unit_test(test_more_simulations_than_planned_go_on_where_the_plan_ended),
+        cmocka_unit_test(test_a_search_at_its_limit_simulates_nothing_more),
+        cmocka_unit_test(test_a_state_that_is_cut_short_or_of_another_search_is_refused),
+        cmocka_unit_test(test_a_pack_reads_what_it_wrote_and_keeps_the_first_fault),
+    };
+    return cmocka_run_group_tests_name("resume", tests, quiet, NULL);
+}
