@@ -2,6 +2,7 @@
 # make test       every test, plain and sanitized     make bench      what the README's figures are made with
 # make MODE=debug|asan|tsan ...                       make format     clang-format over the sources
 # make install PREFIX=/usr/local DESTDIR=
+# make fuzz FUZZ_S=600                            the readers under libFuzzer (clang)
 
 V       ?= 0                                         # V=1 shows every command
 Q       := $(if $(filter 1,$(V)),,@)
@@ -16,6 +17,7 @@ CFLAGS.release := -O2 -g
 CFLAGS.debug   := -O0 -g3
 CFLAGS.asan    := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer
 CFLAGS.tsan    := -O1 -g -fsanitize=thread -fno-omit-frame-pointer
+CFLAGS.fuzz    := -O1 -g -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer
 
 WARNINGS := -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion -Wstrict-prototypes -Wmissing-prototypes -Wvla -Werror
 CPPFLAGS += -Isrc -MMD -MP -D_GNU_SOURCE
@@ -49,7 +51,7 @@ STABILITY.asan := --engine fast
 STABILITY_OBJ := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/stability/*.c))
 PROGRAM := $(if $(filter release,$(MODE)),imtet,$(BUILD)/imtet)
 
-.PHONY: all setup run test test-here compare stability stability-long laws bench chart format install clean .FORCE
+.PHONY: faults fuzz fuzz-here all setup run test test-here compare stability stability-long laws bench chart format install clean .FORCE
 .SECONDARY:
 all: $(PROGRAM)
 
@@ -81,6 +83,31 @@ laws: $(STABILITY)
 	@$(STABILITY) --laws --out docs/contact-laws.md --csv $(BUILD)/contact-laws.csv
 	@scripts/plot-laws $(BUILD)/contact-laws.csv docs/contact-laws
 
+# Every reader of foreign bytes under libFuzzer for FUZZ_S seconds in all; what it finds goes to build/fuzz.
+FUZZ_S       ?= 600
+FUZZ_TARGETS := settings motion table worker
+fuzz:
+	@$(MAKE) --no-print-directory MODE=fuzz CC=clang WARNINGS=-w fuzz-here
+	@scripts/fuzz build/fuzz $(FUZZ_S) $(FUZZ_TARGETS)
+
+fuzz-here: $(FUZZ_TARGETS:%=$(BUILD)/tests/fuzz/fuzz_%)
+
+$(BUILD)/tests/fuzz/fuzz_%: tests/fuzz/libfuzzer.c $(BUILD)/tests/fuzz/targets.o $(BUILD)/tests/fuzz/worker.o $(LIB)
+	@echo '  LD  $@'
+	$(Q)$(CC) $(CPPFLAGS) -DFUZZ_TARGET=fuzz_$* $(CFLAGS) $(LDFLAGS) -fsanitize=fuzzer -o $@ $^ $(LDLIBS)
+
+# Every refusal of memory and of writes, one after the other, in short runs; `make test` tries some of them.
+faults: $(PROGRAM) $(BUILD)/tests/test_faults
+	@IMTET=$(abspath $(PROGRAM)) FAULTS=all $(BUILD)/tests/test_faults
+
+$(BUILD)/tests/test_faults: $(BUILD)/tests/fault/nomem.so
+
+$(BUILD)/tests/fault/nomem.so: tests/fault/nomem.c
+	@mkdir -p $(@D)
+	$(Q)$(CC) -D_GNU_SOURCE -std=c17 -O1 $(WARNINGS) -shared -fPIC -o $@ $<
+
+$(BUILD)/tests/test_fuzz_corpus: $(BUILD)/tests/fuzz/targets.o $(BUILD)/tests/fuzz/worker.o
+
 $(PROGRAM): $(BUILD)/src/main.o $(LIB)
 	@echo '  LD  $@'
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
@@ -91,7 +118,7 @@ $(LIB): $(LIB_OBJ)
 
 $(BUILD)/tests/%: $(BUILD)/tests/%.o $(LIB)
 	@echo '  LD  $@'
-	$(Q)$(CC) $(LDFLAGS) -o $@ $^ -lcmocka $(LDLIBS)
+	$(Q)$(CC) $(LDFLAGS) -o $@ $(filter %.o,$^) $(LIB) -lcmocka $(LDLIBS)
 
 $(STABILITY): $(STABILITY_OBJ) $(LIB)
 	@echo '  LD  $@'

@@ -1,7 +1,10 @@
 /* main.c -- picks the subcommand and turns its status into an exit code. */
 #include <cblas.h>
+#include <jansson.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "cmd/commands.h"
 #include "run/provenance.h"
@@ -65,9 +68,21 @@ static Status run(int argc, char *argv[], Err *err)
     return STATUS_OK;
 }
 
+/* What is put together for JSON is either whole or not there: its many small requests for memory have no error to
+ * return, so that one that fails is the end, as by a kill, which every file of a run survives. */
+static void *json_memory(size_t size)
+{
+    void *memory = malloc(size);
+    if (memory)
+        return memory;
+    fprintf(stderr, "imtet: no memory for %zu bytes of JSON\n", size);
+    _exit(status_exit_code(STATUS_NO_MEMORY));
+}
+
 int main(int argc, char *argv[])
 {
     Err err = {0};
+    json_set_alloc_funcs(json_memory, free);
     openblas_set_num_threads(1); /* simulations run side by side; threads below them would fight for the processors */
     Status status = run(argc, argv, &err);
     if ((fflush(stdout) != 0 || ferror(stdout)) && status == STATUS_OK)

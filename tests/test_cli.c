@@ -11,116 +11,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "base/table.h"
-
-typedef struct {
-    int code; /* exit status */
-    char *out, *err;
-} Said;
-
-typedef struct {
-    char folder[64]; /* of this test program's files */
-} Place;
-
-static Place place;
-
-static char *text_of(const char *path)
-{
-    Err err = {0};
-    char *text;
-    size_t length;
-    CHECK_OK(file_read(path, &text, &length, &err), &err);
-    return text;
-}
-
-/* Runs `imtet ARGUMENTS` through the shell; @ in the format stands for the test's own folder. */
-__attribute__((format(printf, 2, 3))) static void run(Said *said, const char *format, ...)
-{
-    char arguments[2048], spread[4096], command[8192], out[128], err[128];
-    va_list list;
-    va_start(list, format);
-    vsnprintf(arguments, sizeof arguments, format, list);
-    va_end(list);
-    size_t n = 0;
-    for (const char *p = arguments; *p && n + sizeof place.folder < sizeof spread; p++)
-        n += (size_t)(*p == '@' ? sprintf(spread + n, "%s", place.folder) : sprintf(spread + n, "%c", *p));
-    snprintf(out, sizeof out, "%s/out", place.folder);
-    snprintf(err, sizeof err, "%s/err", place.folder);
-    snprintf(command, sizeof command, "exec >%s 2>%s; '%s' %s", out, err, getenv("IMTET"), spread);
-    const int status = system(command);
-    said->code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    said->out = text_of(out);
-    said->err = text_of(err);
-}
-
-static void forget(Said *said)
-{
-    free(said->out);
-    free(said->err);
-}
-
-/* Runs, and expects that exit status and that text on standard error. */
-static void expect(int code, const char *message, const char *arguments)
-{
-    Said s;
-    run(&s, "%s", arguments);
-    if (s.code != code || !strstr(s.err, message))
-        fail_msg("imtet %s\n  exit %d (wanted %d), said: %s  wanted: %s", arguments, s.code, code, s.err, message);
-    forget(&s);
-}
-
-static char *output_of(const char *arguments)
-{
-    Said s;
-    run(&s, "%s", arguments);
-    if (s.code != 0)
-        fail_msg("imtet %s\n  exit %d, said: %s", arguments, s.code, s.err);
-    free(s.err);
-    return s.out;
-}
-
-static json_t *json_of(const char *arguments)
-{
-    json_error_t error;
-    char *text = output_of(arguments);
-    json_t *o = json_loads(text, 0, &error);
-    if (!o)
-        fail_msg("imtet %s: %s", arguments, error.text);
-    free(text);
-    return o;
-}
-
-static double number(const json_t *o, const char *key)
-{
-    const json_t *value = json_object_get(o, key);
-    if (!json_is_number(value))
-        fail_msg("%s is missing or no number", key);
-    return json_number_value(value);
-}
-
-static char *in_place(const char *name)
-{
-    char *path = NULL;
-    assert_true(asprintf(&path, "%s/%s", place.folder, name) > 0);
-    return path;
-}
-
-static void write_in_place(const char *name, const char *text)
-{
-    char *path = in_place(name);
-    FILE *f = fopen(path, "w");
-    assert_non_null(f);
-    assert_true(fputs(text, f) >= 0);
-    assert_int_equal(fclose(f), 0);
-    free(path);
-}
-
-static char *read_in_place(const char *name)
-{
-    char *path = in_place(name), *text = text_of(path);
-    free(path);
-    return text;
-}
+#include "program.h"
 
 /* A design file of 20 floors: gap_j = gap * j. */
 static void write_designs(const char *name, int n, const double gap[], const double t_base[], const double t_top[])
@@ -667,21 +558,6 @@ static void test_a_building_of_five_floors_goes_all_the_way(void **state)
     free(front);
     free(output_of("evaluate @/five.run --design knee --record builtin:elcentro-like"));
     expect(65, "a design of 20 floors has gap_06_m there", "simulate configs/quick.ini --design @/five.csv");
-}
-
-static int make_place(void **state)
-{
-    (void)state;
-    snprintf(place.folder, sizeof place.folder, "/tmp/imtet-cli-XXXXXX");
-    return getenv("IMTET") && mkdtemp(place.folder) ? 0 : -1;
-}
-
-static int clear_place(void **state)
-{
-    (void)state;
-    char command[128];
-    snprintf(command, sizeof command, "rm -rf '%s'", place.folder);
-    return system(command);
 }
 
 /* ------------------------------------------------------------------------------------------- problems of others ---

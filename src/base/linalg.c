@@ -18,6 +18,11 @@ static void fix_sign(int n, double *mode)
             mode[j] = -mode[j];
 }
 
+static int lacked_memory(int info)
+{
+    return info == LAPACK_WORK_MEMORY_ERROR || info == LAPACK_TRANSPOSE_MEMORY_ERROR;
+}
+
 Status linalg_modes(int n, const double K[], const double M[], double omega[], double phi[], Err *err)
 {
     const size_t nn = (size_t)n * (size_t)n;
@@ -39,6 +44,8 @@ Status linalg_modes(int n, const double K[], const double M[], double omega[], d
         }
     }
     free(A);
+    if (lacked_memory(info))
+        return fail(err, STATUS_NO_MEMORY, "modes: no memory for LAPACK");
     if (info > n)
         return fail(err, STATUS_BAD_DATA, "modes: the mass matrix is not positive definite (pivot %d)", info - n);
     if (info != 0)
@@ -63,6 +70,8 @@ Status linalg_solve_spd(int n, int m, double A[], double B[], Err *err)
     int info = LAPACKE_dpotrf(LAPACK_ROW_MAJOR, 'L', n, A, n);
     if (info == 0)
         info = LAPACKE_dpotrs(LAPACK_ROW_MAJOR, 'L', n, m, A, n, B, m);
+    if (lacked_memory(info))
+        return fail(err, STATUS_NO_MEMORY, "no memory to solve %d x %d equations", n, n);
     if (info != 0)
         return fail(err, STATUS_BAD_DATA, "a symmetric %d x %d matrix is not positive definite (pivot %d)", n, n, info);
     return STATUS_OK;

@@ -402,13 +402,15 @@ Status settings_read(Settings *s, const char *path, FILE *faults, int *n_faults,
     Reading r = {.s = s, .path = path, .faults = faults, .first = err};
     r.file = fopen(path, "rb");
     if (!r.file)
-        return fail(err, STATUS_MISSING, "%s: %s", path, strerror(errno));
+        return fail(err, status_of_errno(errno, STATUS_MISSING), "%s: %s", path, strerror(errno));
     const int bad_line = ini_parse_stream(next_line, &r, take_pair, &r);
-    const int read_error = ferror(r.file);
+    const int read_error = ferror(r.file), whole = feof(r.file);
     fclose(r.file);
     free(r.text);
     if (read_error)
         return fail(err, STATUS_MISSING, "%s: cannot be read (is it a folder?)", path);
+    if (!whole)
+        return fail(err, STATUS_NO_MEMORY, "%s: no memory to read it", path);
     if (bad_line > 0 && r.n_faults == 0)
         report_fault(&r, bad_line, "neither [section] nor key = value");
     check_rules(s, report_broken, &r);

@@ -1,5 +1,6 @@
 #include "base/status.h"
 
+#include <errno.h>
 #include <limits.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -15,6 +16,11 @@ Status fail(Err *err, Status code, const char *format, ...)
         va_end(args);
     }
     return code;
+}
+
+Status status_of_errno(int why, Status otherwise)
+{
+    return why == ENOMEM ? STATUS_NO_MEMORY : otherwise;
 }
 
 static const struct {

@@ -32,6 +32,9 @@ typedef struct {
 /* Writes the sentence and returns code, so that `return fail(err, STATUS_IO, "...")` reads as one thought. */
 __attribute__((format(printf, 3, 4))) Status fail(Err *err, Status code, const char *format, ...);
 
+/* What a system call's errno amounts to: STATUS_NO_MEMORY, or else `otherwise`. */
+Status status_of_errno(int why, Status otherwise);
+
 const char *status_words(Status code);
 int status_exit_code(Status code);
 

@@ -13,7 +13,7 @@ Status file_read(const char *path, char **text, size_t *length, Err *err)
     *length = 0;
     FILE *f = fopen(path, "rb");
     if (!f)
-        return fail(err, STATUS_MISSING, "%s: %s", path, strerror(errno));
+        return fail(err, status_of_errno(errno, STATUS_MISSING), "%s: %s", path, strerror(errno));
     enum { LARGEST = 1 << 28 }; /* [bytes] far above any record; a device or a wrong file ends here */
     size_t capacity = 1 << 16, n = 0;
     char *buffer = malloc(capacity + 1);

@@ -7,6 +7,7 @@
 
 typedef struct {
     int n;
+    Status fatal; /* no fault of the configuration: nothing more can be said about it */
 } Faults;
 
 static int note(Faults *faults, Status status, const char *key, const Err *e)
@@ -14,6 +15,7 @@ static int note(Faults *faults, Status status, const char *key, const Err *e)
     if (status != STATUS_OK) {
         fprintf(stderr, "%s: %s\n", key, e->text);
         faults->n++;
+        faults->fatal = status == STATUS_NO_MEMORY ? status : faults->fatal;
     }
     return status == STATUS_OK;
 }
@@ -57,6 +59,16 @@ static void check_scene(const Settings *s, Faults *faults)
         world_close(&w);
 }
 
+static Status verdict(const Args *args, const Faults *faults, Err *err)
+{
+    if (faults->fatal != STATUS_OK)
+        return fail(err, faults->fatal, "%s: could not be checked", args->operand);
+    if (faults->n)
+        return fail(err, STATUS_BAD_DATA, "%s: %d fault%s", args->operand, faults->n, faults->n == 1 ? "" : "s");
+    printf("%s: everything is in order\n", args->operand);
+    return STATUS_OK;
+}
+
 /* A problem that is no tower: opened as a search would; workers are not started yet. */
 static Status check_other(const Args *args, const Settings *s, Faults *faults, Err *err)
 {
@@ -67,10 +79,7 @@ static Status check_other(const Args *args, const Settings *s, Faults *faults, E
         printf("problem   %zu variables, %zu objectives\n", schema->n_var, schema->n_obj);
         subject_close(subject);
     }
-    if (faults->n)
-        return fail(err, STATUS_BAD_DATA, "%s: %d fault%s", args->operand, faults->n, faults->n == 1 ? "" : "s");
-    printf("%s: everything is in order\n", args->operand);
-    return STATUS_OK;
+    return verdict(args, faults, err);
 }
 
 static Status run(const Args *args, Err *err)
@@ -78,7 +87,7 @@ static Status run(const Args *args, Err *err)
     Settings s;
     Faults faults = {0};
     const Status status = args_settings(args, &s, stderr, &faults.n, err);
-    if (status == STATUS_MISSING || status == STATUS_USAGE)
+    if (status == STATUS_MISSING || status == STATUS_USAGE || status == STATUS_NO_MEMORY)
         return status;
     if (s.problem.kind != PROBLEM_TOWER)
         return check_other(args, &s, &faults, err);
@@ -86,10 +95,7 @@ static Status run(const Args *args, Err *err)
     const int motion = check_motion(&s, &faults);
     if (building && motion && faults.n == 0)
         check_scene(&s, &faults);
-    if (faults.n)
-        return fail(err, STATUS_BAD_DATA, "%s: %d fault%s", args->operand, faults.n, faults.n == 1 ? "" : "s");
-    printf("%s: everything is in order\n", args->operand);
-    return STATUS_OK;
+    return verdict(args, &faults, err);
 }
 
 static const ArgOption OPTIONS[] = {OPTION_RECORD, OPTION_PGA, OPTION_STRETCH, OPTION_UNIT, OPTION_SET, OPTION_END};

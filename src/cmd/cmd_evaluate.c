@@ -208,7 +208,7 @@ static Status evaluate_folder(const Args *args, Settings *s, const Chosen *c, js
     Folder f = {.records = records, .unreadable = unreadable};
     const int n = scandir(folder, &names, is_visible, by_name);
     if (n < 0)
-        return fail(err, STATUS_MISSING, "--records %s: %s", folder, strerror(errno));
+        return fail(err, status_of_errno(errno, STATUS_MISSING), "--records %s: %s", folder, strerror(errno));
     f.refusals = open_memstream(&f.refused, &f.refused_length);
     const Status status = f.refusals ? evaluate_files(s, c, folder, n, names, &f, err)
                                      : fail(err, STATUS_NO_MEMORY, "no memory for the files of %s", folder);

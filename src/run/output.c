@@ -23,7 +23,7 @@ Status output_open(Output *o, const char *path, Err *err)
     /* Not /dev/stdout: opening that anew would cut off what a file behind it holds already. */
     o->stream = to_stdout ? fdopen(dup(STDOUT_FILENO), "w") : fopen(in_place ? o->path : o->temporary, "w");
     if (!o->stream)
-        return fail(err, STATUS_IO, "%s: cannot be written: %s", path, strerror(errno));
+        return fail(err, status_of_errno(errno, STATUS_IO), "%s: cannot be written: %s", path, strerror(errno));
     return STATUS_OK;
 }
 
@@ -31,10 +31,12 @@ Status output_sync(FILE *stream, const char *path, Err *err)
 {
     errno = 0;
     if (fflush(stream) != 0 || ferror(stream))
-        return fail(err, STATUS_IO, "%s: cannot be written: %s", path, strerror(errno ? errno : EIO));
+        return fail(err, status_of_errno(errno, STATUS_IO), "%s: cannot be written: %s", path,
+                    strerror(errno ? errno : EIO));
     /* A pipe or a terminal has no disk to wait for. */
     if (fsync(fileno(stream)) != 0 && errno != EINVAL && errno != EROFS && errno != ENOTSUP)
-        return fail(err, STATUS_IO, "%s: cannot be brought to the disk: %s", path, strerror(errno));
+        return fail(err, status_of_errno(errno, STATUS_IO), "%s: cannot be brought to the disk: %s", path,
+                    strerror(errno));
     return STATUS_OK;
 }
 
@@ -55,12 +57,13 @@ Status output_close(Output *o, Err *err)
 {
     Status status = output_sync(o->stream, o->path, err);
     if (fclose(o->stream) != 0 && status == STATUS_OK)
-        status = fail(err, STATUS_IO, "%s: cannot be written: %s", o->path, strerror(errno));
+        status = fail(err, status_of_errno(errno, STATUS_IO), "%s: cannot be written: %s", o->path, strerror(errno));
     o->stream = NULL;
     if (!o->temporary[0])
         return status;
     if (status == STATUS_OK && rename(o->temporary, o->path) != 0)
-        status = fail(err, STATUS_IO, "%s: cannot be put in place: %s", o->path, strerror(errno));
+        status =
+            fail(err, status_of_errno(errno, STATUS_IO), "%s: cannot be put in place: %s", o->path, strerror(errno));
     if (status == STATUS_OK)
         sync_folder(o->path);
     else

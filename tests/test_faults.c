@@ -1,0 +1,152 @@
+/* Every request for memory, and every write, refused in turn while the program runs: it says so and ends with the
+ * status that stands for it, or it does without and the result is the same. FAULTS=all in the environment: every single
+ * one, else some of them. */
+#include "program.h"
+
+#include <limits.h>
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+static const int IS_SANITIZED = 1; /* its malloc belongs to the sanitizer, and strace does not go with it */
+#else
+static const int IS_SANITIZED = 0;
+#endif
+
+enum { SOME = 25 };
+
+typedef struct {
+    const char *command; /* @: the test's own folder */
+    const char *result;  /* a file there that must be the same; NULL: standard output */
+} Deed;
+
+static const char OPTIMIZE[] =
+    "optimize configs/quick.ini --max-evals 24 --threads 1 --out @/run --set search.initial=16 "
+    "--set search.population=8 --set sim.duration_s=1";
+
+static const Deed DEEDS[] = {
+    {"settings", NULL},
+    {"check configs/quick.ini", NULL},
+    {"modes configs/quick.ini", NULL},
+    {"simulate configs/quick.ini --design none --duration 2 --csv -", NULL},
+    {"simulate configs/quick.ini --design none --duration 1 --engine cvode --csv -", NULL},
+    {"spectrum tests/motion/three.cosmos.v2 --channel 1 --json", NULL},
+    {"evaluate @/done --design knee --record tests/motion/many_columns.csv --channel NS", NULL},
+    {"choose @/done --wish j1_m=0.3", NULL},
+    {"export @/done --csv @/run", "run"},
+    {OPTIMIZE, "run/front.csv"},
+};
+enum { N_DEEDS = sizeof DEEDS / sizeof DEEDS[0] };
+
+static void remove_run(void)
+{
+    char command[128];
+    snprintf(command, sizeof command, "rm -rf '%s/run'", place.folder);
+    assert_int_equal(system(command), 0);
+}
+
+static char *result_of(const Deed *deed, const Said *said)
+{
+    return deed->result ? read_in_place(deed->result) : strdup(said->out);
+}
+
+/* How one refusal may end. */
+typedef struct {
+    const char *what;
+    int code;     /* of the exit */
+    int or_other; /* also right, for a fault in the midst of something else */
+} Ending;
+
+static void judge(const Deed *deed, long k, const Said *said, const char *wanted, const Ending *ending)
+{
+    if (said->code == ending->code || said->code == ending->or_other) {
+        if (!said->err[0])
+            fail_msg("%s: %s %ld: ends with %d and says nothing", deed->command, ending->what, k, said->code);
+        return;
+    }
+    if (said->code != 0)
+        fail_msg("%s: %s %ld: exit %d: %s", deed->command, ending->what, k, said->code, said->err);
+    char *result = result_of(deed, said);
+    if (strcmp(result, wanted) != 0)
+        fail_msg("%s: %s %ld: exit 0, but the result differs", deed->command, ending->what, k);
+    free(result);
+}
+
+static long steps_between(long n)
+{
+    const char *all = getenv("FAULTS");
+    return (all && strcmp(all, "all") == 0) || n <= SOME ? 1 : n / SOME;
+}
+
+/* ---- memory ---------------------------------------------------------------------------------------------------- */
+
+static void preload(char path[PATH_MAX])
+{
+    const ssize_t n = readlink("/proc/self/exe", path, PATH_MAX - 32);
+    assert_true(n > 0);
+    path[n] = 0;
+    strcpy(strrchr(path, '/'), "/fault/nomem.so");
+}
+
+static void refuse_memory(long k)
+{
+    char shim[PATH_MAX];
+    preload(shim);
+    snprintf(place.under, sizeof place.under, "env LD_PRELOAD='%.120s' NOMEM_AT=%ld NOMEM_COUNT='%s/count' ", shim, k,
+             place.folder);
+}
+
+static long count_requests(void)
+{
+    char *text = read_in_place("count");
+    const long n = strtol(text, NULL, 10);
+    free(text);
+    return n;
+}
+
+static void sweep_memory(const Deed *deed)
+{
+    static const Ending ENDING = {"request for memory", 71, 71};
+    Said said;
+    remove_run();
+    refuse_memory(0);
+    run(&said, "%s", deed->command);
+    assert_int_equal(said.code, 0);
+    char *wanted = result_of(deed, &said);
+    forget(&said);
+    const long n = count_requests(), step = steps_between(n);
+    for (long k = 1; k <= n; k += step) {
+        remove_run();
+        refuse_memory(k);
+        run(&said, "%s", deed->command);
+        place.under[0] = 0;
+        judge(deed, k, &said, wanted, &ENDING);
+        forget(&said);
+    }
+    print_message("%ld of %ld requests for memory refused: imtet %.60s\n", (n + step - 1) / step, n, deed->command);
+    free(wanted);
+}
+
+static void test_without_memory_the_program_says_so_or_gives_the_same_result(void **state)
+{
+    (void)state;
+    if (IS_SANITIZED)
+        skip();
+    for (int i = 0; i < N_DEEDS; i++)
+        sweep_memory(&DEEDS[i]);
+}
+
+static int make_run(void **state)
+{
+    if (make_place(state) != 0)
+        return -1;
+    run(&(Said){0}, "optimize configs/quick.ini --max-evals 24 --threads 1 --out @/done --set search.initial=16 "
+                    "--set search.population=8 --set sim.duration_s=1");
+    return 0;
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_without_memory_the_program_says_so_or_gives_the_same_result),
+    };
+    return cmocka_run_group_tests(tests, make_run, clear_place);
+}
