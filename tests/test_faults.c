@@ -104,7 +104,7 @@ static long count_requests(void)
 
 static void sweep_memory(const Deed *deed)
 {
-    static const Ending ENDING = {"request for memory", 71, 71};
+    static const Ending ENDING = {"request for memory", 71, 74}; /* 74: of a file that is being written */
     Said said;
     remove_run();
     refuse_memory(0);
