@@ -19,6 +19,8 @@ CFLAGS.asan    := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=unde
 CFLAGS.tsan    := -O1 -g -fsanitize=thread -fno-omit-frame-pointer
 CFLAGS.fuzz    := -O1 -g -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer
 
+CFLAGS.coverage := -O1 -g --coverage -fprofile-update=atomic
+
 WARNINGS := -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion -Wstrict-prototypes -Wmissing-prototypes -Wvla -Werror
 CPPFLAGS += -Isrc -MMD -MP -D_GNU_SOURCE
 # Contraction to fused multiply-add is rounding once instead of twice; NaN and Inf stay what they are.
@@ -51,7 +53,7 @@ STABILITY.asan := --engine fast
 STABILITY_OBJ := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/stability/*.c))
 PROGRAM := $(if $(filter release,$(MODE)),imtet,$(BUILD)/imtet)
 
-.PHONY: faults fuzz fuzz-here all setup run test test-here compare stability stability-long laws bench chart format install clean .FORCE
+.PHONY: coverage coverage-here faults fuzz fuzz-here all setup run test test-here compare stability stability-long laws bench chart format install clean .FORCE
 .SECONDARY:
 all: $(PROGRAM)
 
@@ -95,6 +97,17 @@ fuzz-here: $(FUZZ_TARGETS:%=$(BUILD)/tests/fuzz/fuzz_%)
 $(BUILD)/tests/fuzz/fuzz_%: tests/fuzz/libfuzzer.c $(BUILD)/tests/fuzz/targets.o $(BUILD)/tests/fuzz/worker.o $(LIB)
 	@echo '  LD  $@'
 	$(Q)$(CC) $(CPPFLAGS) -DFUZZ_TARGET=fuzz_$* $(CFLAGS) $(LDFLAGS) -fsanitize=fuzzer -o $@ $^ $(LDLIBS)
+
+# Branches that the tests take, by folder, and for readers, settings and store by file; COVER chooses tests.
+COVER ?= $(notdir $(TEST_SRC:%.c=%))
+coverage:
+	@$(MAKE) --no-print-directory MODE=coverage WARNINGS=-w coverage-here
+
+coverage-here: $(PROGRAM) $(TESTS)
+	@find $(BUILD) -name '*.gcda' -delete
+	@for t in $(COVER); do echo "== $$t"; IMTET=$(abspath $(PROGRAM)) FAULTS=all $(BUILD)/tests/$$t >$(BUILD)/$$t.log 2>&1 || \
+	{ cat $(BUILD)/$$t.log; exit 1; }; done
+	@scripts/coverage $(BUILD)
 
 # Every refusal of memory and of writes, one after the other, in short runs; `make test` tries some of them.
 faults: $(PROGRAM) $(BUILD)/tests/test_faults

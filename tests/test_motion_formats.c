@@ -158,6 +158,10 @@ static const struct {
     {"one.cosmos.v1", "ed acceleration", "ed velocity", ":1: not an acceleration"},
     {"one.cosmos.v1", "follow on  17 lines", "fellow", ":25: '100 Real-header values"},
     {"one.cosmos.v1", "with 13", "with 12", ":13: 'Values used when"},
+    {"one.cosmos.v1", "with 13", "with -1", ":1: "},
+    {"one.cosmos.v1", "with 13", "with 9999", ":1: "},
+    {"one.cosmos.v1", "17 lines", "-7 lines", "Real-header values"},
+    {"one.cosmos.v1", "17 lines", "7e9 lines", "Real-header values"},
     {"three.csmip.v1", "43 Accelerogram", "48 Accelerogram", ":34: ends after 43 samples, but its header announces 48"},
     {"three.csmip.v1", "43 Accelerogram", "40 Accelerogram", ":34: more samples than the 40"},
     {"three.csmip.v1", "at 100 pts", "at 000 pts", ":28: no usable time step"},
@@ -167,6 +171,9 @@ static const struct {
     {"film.csmip.v1", "  0.150 -1", "  0.950 -1", "does not come after 0.95 s"},
     {"film.csmip.v1", "  0.150 -1", "  0.158 -1", "breaks the uniform step of"},
     {"film.csmip.v1", "SEC AND G/10", "SEC AND INCHES", "set motion.unit"},
+    {"film.csmip.v1", "=     43 ", "=      1 ", "no usable number of points"},
+    {"film.csmip.v1", "=     43 ", "=    9e9 ", "no usable number of points"},
+    {"one.smc", "  1.0000000E+02", "  1.0000000E+09", "no usable sampling rate"},
     {"one.smc", "2 CORRECTED ACCELEROGRAM", "3 VELOCITY", ":1: not an acceleration"},
     {"one.smc", "        43", "    -32768", "no usable number of points: the header above says -32768"},
     {"one.smc", "        43", "        44", ":36: ends after 43 samples, but its header announces 44"},
@@ -174,6 +181,7 @@ static const struct {
     {"one.smc", "         3", "         2", ":29: ends after 0 samples"},
     {"one.knet", "3920(gal)/6182761", "3920(gal)", ":14: no usable scale factor"},
     {"one.knet", "3920(gal)/6182761", "3920(gal)/0", ":14: no usable scale factor"},
+    {"one.knet", "100Hz", "9e9Hz", ":11: no usable sampling frequency"},
     {"one.knet", "100Hz", "Hz", ":11: no usable sampling frequency"},
     {"one.knet", "0.43", "0.44", ":23: ends after 43 samples, but its header announces 44"},
     {"one.knet", "0.43", "0.42", ":23: more samples than the 42"},
@@ -225,6 +233,46 @@ static void test_a_specimen_wrong_in_one_way_is_refused_with_line_and_reason(voi
         free(t.text);
     }
     assert_int_equal(n_accepted, 0);
+}
+
+/* The specimen `copies` times behind itself. */
+static Text repeated(Text one, size_t copies)
+{
+    Text all = {malloc(copies * one.length + 1), 0};
+    assert_non_null(all.text);
+    for (size_t i = 0; i < copies; i++, all.length += one.length)
+        memcpy(all.text + all.length, one.text, one.length);
+    all.text[all.length] = 0;
+    free(one.text);
+    return all;
+}
+
+static void test_a_file_of_too_many_channels_is_refused(void **state)
+{
+    (void)state;
+    static const char *const FILES[] = {"one.cosmos.v1", "three.csmip.v1", "three.v1a"};
+    for (size_t i = 0; i < sizeof FILES / sizeof *FILES; i++) {
+        Text t = repeated(read_specimen(FILES[i]), 129);
+        Motion m;
+        Err err = {0};
+        assert_int_equal(motion_parse(&m, FILES[i], t.text, t.length, &FIRST, &err), STATUS_BAD_DATA);
+        assert_non_null(strstr(err.text, "more than 128 channels"));
+        free(t.text);
+    }
+    char row[400] = "";
+    for (int i = 0; i < 130; i++)
+        strcat(row, "1 ");
+    Err err = {0};
+    assert_int_equal(motion_parse(&(Motion){0}, "row", row, strlen(row), &FIRST, &err), STATUS_BAD_DATA);
+    assert_non_null(strstr(err.text, "row:1: more than 128 channels"));
+}
+
+static void test_a_file_of_nothing_but_a_byte_order_mark_is_refused(void **state)
+{
+    (void)state;
+    Err err = {0};
+    assert_int_equal(motion_parse(&(Motion){0}, "mark", "\xef\xbb\xbf", 3, &FIRST, &err), STATUS_BAD_DATA);
+    assert_non_null(strstr(err.text, "mark: holds 0 samples"));
 }
 
 /* ---- channels, steps, units ----------------------------------------------------------------------------------- */
@@ -392,6 +440,8 @@ int main(void)
         cmocka_unit_test(test_a_specimen_of_every_format_is_read_to_its_step_length_and_peak),
         cmocka_unit_test(test_line_ends_and_blanks_at_line_ends_do_not_matter),
         cmocka_unit_test(test_a_specimen_wrong_in_one_way_is_refused_with_line_and_reason),
+        cmocka_unit_test(test_a_file_of_too_many_channels_is_refused),
+        cmocka_unit_test(test_a_file_of_nothing_but_a_byte_order_mark_is_refused),
         cmocka_unit_test(test_a_channel_must_be_chosen_where_there_are_several),
         cmocka_unit_test(test_a_column_of_velocities_is_not_taken_for_an_acceleration),
         cmocka_unit_test(test_unequal_steps_are_resampled_by_straight_lines_only_when_asked),

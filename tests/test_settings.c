@@ -193,6 +193,74 @@ static void test_a_misspelt_key_is_answered_with_the_nearest(void **state)
 }
 
 /* Else the copy that is saved with a run would say something else than the run used. */
+static void refused(const char *assignment, Status status, const char *says)
+{
+    Settings s;
+    Err err = {0};
+    settings_defaults(&s);
+    assert_int_equal(settings_set(&s, assignment, &err), status);
+    if (!strstr(err.text, says))
+        fail_msg("%s: the message should contain '%s' and is '%s'", assignment, says, err.text);
+}
+
+static void test_a_misspelt_word_is_answered_with_the_nearest(void **state)
+{
+    (void)state;
+    refused("sim.engine=cvod", STATUS_BAD_DATA, "did you mean cvode?");
+    refused("contact.law=lankarani-nikravech", STATUS_BAD_DATA, "did you mean lankarani-nikravesh?");
+    refused("motion.unit=m/s2", STATUS_BAD_DATA, "did you mean m_s2?");
+    refused("core.section=xxxxxxxxxx", STATUS_BAD_DATA, "is not one of box|plate|effective");
+}
+
+static void test_a_number_that_is_none_is_refused_with_the_unit_that_is_wanted(void **state)
+{
+    (void)state;
+    refused("core.side_m=wide", STATUS_BAD_DATA, "core.side_m: 'wide' is not a number [m]");
+    refused("core.damping=much", STATUS_BAD_DATA, "core.damping: 'much' is not a number");
+    refused("core.side_m=1000", STATUS_BAD_DATA, "core.side_m: 1000 is outside 0.1..200 m");
+}
+
+static void test_an_assignment_has_a_key_and_an_equals_sign(void **state)
+{
+    (void)state;
+    char long_key[300];
+    memset(long_key, 'k', sizeof long_key);
+    strcpy(long_key + 200, "=1");
+    refused("core.side_m", STATUS_USAGE, "write --set section.key=value");
+    refused("=3", STATUS_USAGE, "write --set section.key=value");
+    refused(long_key, STATUS_USAGE, "write --set section.key=value");
+    refused("side=3", STATUS_BAD_DATA, "no such setting");
+}
+
+static void test_a_line_too_long_for_a_key_is_refused(void **state)
+{
+    (void)state;
+    Settings s;
+    Err err = {0};
+    char text[1200] = "[core]\n";
+    memset(text + 7, 'k', 900);
+    strcpy(text + 907, " = 1\n");
+    assert_int_equal(read_text(&s, text, &err), STATUS_BAD_DATA);
+    assert_non_null(strstr(err.text, ":2: the line is too long"));
+    memset(text + 7, 'k', 900);
+    text[907] = 0;
+    assert_int_equal(read_text(&s, text, &err), STATUS_BAD_DATA);
+    assert_non_null(strstr(err.text, ":2: neither [section] nor key = value"));
+}
+
+static void test_a_path_that_becomes_too_long_beside_its_file_stays_what_it_is(void **state)
+{
+    (void)state;
+    Settings s;
+    Err err = {0};
+    char text[600] = "[motion]\nrecord = ";
+    memset(text + 18, 'r', 508);
+    strcpy(text + 526, "\n[building]\nmodel = /no/such/folder\n");
+    CHECK_OK(read_text(&s, text, &err), &err);
+    assert_int_equal(strlen(s.motion.record), 508);
+    assert_string_equal(s.building.model, "/no/such/folder");
+}
+
 static void test_a_text_that_a_file_would_change_is_refused(void **state)
 {
     (void)state;
@@ -284,6 +352,11 @@ int main(void)
         cmocka_unit_test(test_a_long_path_survives_saving),
         cmocka_unit_test(test_what_is_not_written_keeps_its_default),
         cmocka_unit_test(test_a_misspelt_key_is_answered_with_the_nearest),
+        cmocka_unit_test(test_a_misspelt_word_is_answered_with_the_nearest),
+        cmocka_unit_test(test_a_number_that_is_none_is_refused_with_the_unit_that_is_wanted),
+        cmocka_unit_test(test_an_assignment_has_a_key_and_an_equals_sign),
+        cmocka_unit_test(test_a_line_too_long_for_a_key_is_refused),
+        cmocka_unit_test(test_a_path_that_becomes_too_long_beside_its_file_stays_what_it_is),
         cmocka_unit_test(test_a_text_that_a_file_would_change_is_refused),
         cmocka_unit_test(test_all_faults_of_a_file_are_listed_with_their_lines),
         cmocka_unit_test(test_a_path_in_a_file_is_meant_from_its_folder),

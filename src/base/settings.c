@@ -167,6 +167,21 @@ static void print_word(FILE *out, const char *words, long index)
     fprintf(out, "%.*s", (int)strcspn(words, "|"), words);
 }
 
+static Status unknown_word(const Option *o, const char *value, Err *err)
+{
+    enum { WORDS_MAX = 24 };
+    char copy[512], *rest = copy;
+    const char *list[WORDS_MAX];
+    int n = 0;
+    snprintf(copy, sizeof copy, "%s", o->words);
+    for (char *word; n < WORDS_MAX && (word = strsep(&rest, "|"));)
+        list[n++] = word;
+    const char *near = nearest_word(value, list, n);
+    return near ? fail(err, STATUS_BAD_DATA, "%s: '%.60s' is not one of %s; did you mean %s?", o->key, value, o->words,
+                       near)
+                : fail(err, STATUS_BAD_DATA, "%s: '%.60s' is not one of %s", o->key, value, o->words);
+}
+
 static Status parse_number(const Option *o, const char *value, double *number, Err *err)
 {
     const char *unit = strcmp(o->unit, "-") == 0 ? "" : o->unit;
@@ -199,7 +214,7 @@ static Status assign(Settings *s, const Option *o, const char *value, Err *err)
     case CHOICE: {
         const int i = word_index(o->words, value);
         if (i < 0)
-            return fail(err, STATUS_BAD_DATA, "%s: '%s' is not one of %s", o->key, value, o->words);
+            return unknown_word(o, value, err);
         *(long *)field_of(s, o) = i;
         return STATUS_OK;
     }
