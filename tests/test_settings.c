@@ -220,6 +220,34 @@ static void test_a_number_that_is_none_is_refused_with_the_unit_that_is_wanted(v
     refused("core.side_m=1000", STATUS_BAD_DATA, "core.side_m: 1000 is outside 0.1..200 m");
 }
 
+static void test_the_rules_between_settings_hold_without_a_file(void **state)
+{
+    (void)state;
+    Settings s;
+    Err err = {0};
+    settings_defaults(&s);
+    s.problem.kind = PROBLEM_EXTERNAL;
+    s.design.gap_min_m = 1;
+    assert_int_equal(settings_check(&s, &err), STATUS_BAD_DATA);
+    assert_non_null(strstr(err.text, "design.gap_min_m: 1 must be below")); /* the first of two */
+    s.design.gap_min_m = 0;
+    assert_int_equal(settings_check(&s, &err), STATUS_BAD_DATA);
+    assert_non_null(strstr(err.text, "problem.command: is none"));
+    CHECK_OK(settings_set(&s, "problem.command=./worker", &err), &err);
+    CHECK_OK(settings_check(&s, &err), &err);
+}
+
+static void test_a_building_that_is_built_in_is_a_name_and_no_path(void **state)
+{
+    (void)state;
+    Settings s;
+    Err err = {0};
+    CHECK_OK(read_text(&s, "[building]\nmodel = appendix\n[motion]\nrecord = builtin:sylmar-like\n", &err), &err);
+    assert_string_equal(s.building.model, "appendix");
+    assert_string_equal(s.motion.record, "builtin:sylmar-like");
+    assert_int_equal(read_text(&s, "[motion]\nrecord = \x01\n=1\n", &err), STATUS_BAD_DATA);
+}
+
 static void test_an_assignment_has_a_key_and_an_equals_sign(void **state)
 {
     (void)state;
@@ -354,6 +382,8 @@ int main(void)
         cmocka_unit_test(test_a_misspelt_key_is_answered_with_the_nearest),
         cmocka_unit_test(test_a_misspelt_word_is_answered_with_the_nearest),
         cmocka_unit_test(test_a_number_that_is_none_is_refused_with_the_unit_that_is_wanted),
+        cmocka_unit_test(test_the_rules_between_settings_hold_without_a_file),
+        cmocka_unit_test(test_a_building_that_is_built_in_is_a_name_and_no_path),
         cmocka_unit_test(test_an_assignment_has_a_key_and_an_equals_sign),
         cmocka_unit_test(test_a_line_too_long_for_a_key_is_refused),
         cmocka_unit_test(test_a_path_that_becomes_too_long_beside_its_file_stays_what_it_is),
