@@ -13,6 +13,7 @@ while read -r line; do
     [ $((id % 3)) -ne 0 ] && mode=good || mode=$1
     case $mode in
     error) echo "{\"id\":$id,\"error\":\"no, \\\"never\\\" this one\"}" ;;
+    formula) echo "{\"id\":$id,\"error\":\"=1+1,=2\"}" ;;
     dies) exit 3 ;;
     killed) kill -9 $$ ;;
     silent) sleep 60 ;;

@@ -103,6 +103,19 @@ int args_has(const Args *args, const char *name)
     return 0;
 }
 
+int args_gives(const Args *args, const char *key)
+{
+    const size_t length = strlen(key);
+    for (int i = 0; i < args->n_given; i++) {
+        const Given *g = &args->given[i];
+        if (g->option->setting && strcmp(g->option->setting, key) == 0)
+            return 1;
+        if (strcmp(g->option->name, "--set") == 0 && strncmp(g->value, key, length) == 0 && g->value[length] == '=')
+            return 1;
+    }
+    return 0;
+}
+
 void args_free(Args *args)
 {
     free(args->given);

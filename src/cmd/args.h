@@ -44,6 +44,7 @@ struct Args {
 Status args_parse(Args *args, const Command *command, int argc, char *const argv[], Err *err);
 const char *args_value(const Args *args, const char *name); /* NULL when it was not given */
 int args_has(const Args *args, const char *name);
+int args_gives(const Args *args, const char *key); /* a setting, by an option of its own or by --set */
 void args_free(Args *args);
 
 /* "unknown WHAT WORD; did you mean ...?" */

@@ -3,6 +3,7 @@
 #include "cmd/commands.h"
 #include "cmd/show.h"
 #include "run/front.h"
+#include "run/place.h"
 #include "run/study.h"
 
 enum { QUIET_GENERATIONS = 10 };
@@ -64,6 +65,8 @@ static Status run(const Args *args, Err *err)
     Settings s;
     StudySummary summary;
     TRY(args_settings(args, &s, NULL, NULL, err));
+    if (!args_gives(args, "run.out"))
+        TRY(place_check(s.run.out, args->operand, err));
     Telling telling = {isatty(STDERR_FILENO), (size_t)s.search.max_evals};
     const Status status = study_run(&s, args_has(args, "--out"), tell, &telling, &summary, err);
     if (telling.terminal)

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/cell.h"
 #include "base/design.h"
 #include "run/measures.h"
 
@@ -32,10 +33,7 @@ size_t list_count(const char *list)
 void verdict_set(Verdict *v, const char *outcome, const char *reason)
 {
     snprintf(v->outcome, sizeof v->outcome, "%s", outcome);
-    snprintf(v->reason, sizeof v->reason, "%s", reason);
-    for (char *c = v->reason; *c; c++)
-        if (*c == ',' || *c == '"' || (unsigned char)*c < ' ')
-            *c = *c == ',' ? ';' : ' ';
+    cell_text(v->reason, sizeof v->reason, reason);
 }
 
 static Status allocate(Schema *schema, Err *err)
@@ -65,11 +63,13 @@ static Status take_names(const char *key, const char *list, const char *letter, 
     if (given && list_count(list) != n)
         return fail(err, STATUS_BAD_DATA, "%s: %zu names for %zu", key, list_count(list), n);
     for (size_t i = 0; i < n; i++) {
-        char *name = columns[i].name;
+        char *name = columns[i].name, item[TABLE_NAME_MAX - 1];
         if (!given)
             snprintf(name, TABLE_NAME_MAX, "%s%zu", letter, i + 1);
-        else if (!list_item(list, i, name, TABLE_NAME_MAX) || strpbrk(name, "\"\r\n"))
+        else if (!list_item(list, i, item, sizeof item) || strpbrk(item, "\"\r\n"))
             return fail(err, STATUS_BAD_DATA, "%s: name %zu is empty, too long or holds a quote", key, i + 1);
+        else
+            cell_text(name, TABLE_NAME_MAX, item);
         for (size_t j = 0; j < i; j++)
             if (strcmp(columns[j].name, name) == 0)
                 return fail(err, STATUS_BAD_DATA, "%s: %s stands there twice", key, name);

@@ -38,7 +38,7 @@ typedef struct {
     double extra[EXTRA_MAX];
 } Verdict;
 
-/* Commas and line ends would need quoting in a CSV file; a reason reads as well without them. */
+/* The reason becomes a cell of a CSV file (base/cell.h). */
 void verdict_set(Verdict *v, const char *outcome, const char *reason);
 
 /* Item i of "a, b, c" without blanks around it; 0 where there is none or it does not fit. */

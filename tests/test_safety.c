@@ -1,0 +1,163 @@
+/* Files that somebody else wrote do no harm: where a run may go, what a spreadsheet makes of a name, what is run. */
+#include "program.h"
+
+#include <sys/stat.h>
+
+#include "base/cell.h"
+#include "run/place.h"
+
+/* ---- places ---------------------------------------------------------------------------------------------------- */
+
+/* In a folder of its own with results/, a link in it to somewhere else, and one to a folder beside it. */
+static void go_to_a_place_of_its_own(char before[], size_t size)
+{
+    assert_non_null(getcwd(before, size));
+    assert_int_equal(chdir(place.folder), 0);
+    mkdir("results", 0777);
+    mkdir("results/inside", 0777);
+    mkdir("elsewhere", 0777);
+    assert_true(symlink("/tmp", "results/out") == 0);
+    assert_true(symlink("inside", "results/in") == 0);
+    assert_true(symlink("elsewhere", "resultsx") == 0);
+}
+
+static void test_a_settings_file_writes_below_results_only(void **state)
+{
+    (void)state;
+    static const char *const GOOD[] = {"results/study", "./results/a/b", "results/in/new", "results", "results/..a"};
+    static const char *const BAD[] = {"../../etc/x", "/etc/x",          "results/../../x", "results/..", "resultsx/a",
+                                      "elsewhere",   "results/out/new", "results/out",     "~/results",  "./../result"};
+    char before[4096];
+    Err err = {0};
+    go_to_a_place_of_its_own(before, sizeof before);
+    for (size_t i = 0; i < sizeof GOOD / sizeof GOOD[0]; i++)
+        CHECK_OK(place_check(GOOD[i], "some/where/my.ini", &err), &err);
+    for (size_t i = 0; i < sizeof BAD / sizeof BAD[0]; i++) {
+        if (place_check(BAD[i], "some/where/my.ini", &err) != STATUS_BAD_DATA || !strstr(err.text, BAD[i]))
+            fail_msg("%s is accepted, or not named: %s", BAD[i], err.text);
+        assert_non_null(strstr(err.text, "--out"));
+    }
+    assert_int_equal(chdir(before), 0);
+}
+
+static void test_a_run_may_go_on_where_its_own_settings_lie(void **state)
+{
+    (void)state;
+    char own[128], file[160];
+    Err err = {0};
+    snprintf(own, sizeof own, "%s/kept", place.folder);
+    snprintf(file, sizeof file, "%s/settings.ini", own);
+    assert_int_equal(mkdir(own, 0777), 0);
+    CHECK_OK(place_check(own, file, &err), &err);
+    assert_int_equal(place_check(place.folder, file, &err), STATUS_BAD_DATA);
+}
+
+static void test_a_study_is_not_sent_out_of_results_by_its_file_but_by_the_user(void **state)
+{
+    (void)state;
+    static const char STUDY[] = "[problem]\nkind = dtlz2\nvariables = 3\nobjectives = 2\n[search]\npopulation = 8\n"
+                                "initial = 8\nmax_evals = 8\n[run]\nout = ../../etc/x\n";
+    write_in_place("foreign.ini", STUDY);
+    expect(65, "foreign.ini: run.out: ../../etc/x is not below results/", "optimize @/foreign.ini");
+    free(output_of("optimize @/foreign.ini --out @/mine"));
+    free(output_of("optimize @/foreign.ini --set run.out=@/mine-too"));
+    char *front = read_in_place("mine-too/front.csv");
+    assert_int_equal(strncmp(front, "id,", 3), 0);
+    free(front);
+}
+
+/* ---- cells ----------------------------------------------------------------------------------------------------- */
+
+static void test_no_text_begins_a_cell_like_a_formula(void **state)
+{
+    (void)state;
+    static const char *const PAIRS[][2] = {
+        {"=cmd()", "'=cmd()"},
+        {"+1", "'+1"},
+        {"-x", "'-x"},
+        {"@sum", "'@sum"},
+        {"\t=x", " '=x"},
+        {"  =x", "  '=x"},
+        {"a,=b", "a;'=b"},
+        {"a; @b", "a; '@b"},
+        {"a=b-c", "a=b-c"},
+        {"mass_kg", "mass_kg"},
+        {"say \"no\"", "say  no "},
+        {"\r\n-1", "  '-1"},
+        {"", ""},
+    };
+    char cell[64];
+    for (size_t i = 0; i < sizeof PAIRS / sizeof PAIRS[0]; i++) {
+        cell_text(cell, sizeof cell, PAIRS[i][0]);
+        assert_string_equal(cell, PAIRS[i][1]);
+    }
+    char small[4];
+    cell_text(small, sizeof small, "==========");
+    assert_true(strlen(small) < sizeof small);
+}
+
+/* No cell of the file begins like a formula; numbers may have a sign. */
+static void demand_harmless(const char *csv)
+{
+    for (const char *cell = csv; *cell;) {
+        const size_t n = strcspn(cell, ",\n");
+        char *end;
+        strtod(cell, &end);
+        if (n > 0 && strchr("=+-@\t", *cell) && end != cell + n)
+            fail_msg("a cell is '%.*s'", (int)n, cell);
+        cell += n + (cell[n] != 0);
+    }
+}
+
+static void test_names_and_reasons_of_users_are_harmless_in_every_table(void **state)
+{
+    (void)state;
+    static const char STUDY[] =
+        "[problem]\nkind = external\ncommand = sh tests/worker.sh formula\nvariables = 2\nobjectives = 2\n"
+        "variable_names = =cmd(),+x\nobjective_names = -f,@g\n[search]\ninitial = 12\npopulation = 8\nmax_evals = 12\n";
+    write_in_place("formulas.ini", STUDY);
+    free(output_of("optimize @/formulas.ini --out @/formulas --threads 1"));
+    free(output_of("export @/formulas --csv @/front.csv"));
+    free(output_of("export @/formulas --all --csv @/all.csv"));
+    char *front = read_in_place("front.csv"), *all = read_in_place("all.csv");
+    assert_non_null(strstr(front, "id,'=cmd(),'+x,'-f,'@g\n"));
+    assert_non_null(strstr(all, ",'=1+1;'=2"));
+    demand_harmless(front);
+    demand_harmless(all);
+    free(front);
+    free(all);
+    free(output_of("choose @/formulas"));
+}
+
+/* ---- commands -------------------------------------------------------------------------------------------------- */
+
+static void test_the_command_of_a_worker_sees_no_shell_unless_it_names_one(void **state)
+{
+    (void)state;
+    char path[128], text[1024];
+    snprintf(path, sizeof path, "%s/touched", place.folder);
+    for (int with_shell = 0; with_shell < 2; with_shell++) {
+        snprintf(text, sizeof text,
+                 "[problem]\nkind = external\ncommand = %s\nvariables = 2\nobjectives = 2\n"
+                 "[search]\ninitial = 4\npopulation = 4\nmax_evals = 4\n",
+                 with_shell ? "sh -c 'touch $FILE; sh tests/worker.sh good'"
+                            : "sh tests/worker.sh good ; touch $FILE `touch $FILE` && touch $FILE");
+        write_in_place("command.ini", text);
+        setenv("FILE", path, 1);
+        free(output_of(with_shell ? "optimize @/command.ini --out @/with" : "optimize @/command.ini --out @/without"));
+        assert_int_equal(access(path, F_OK) == 0, with_shell);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_a_settings_file_writes_below_results_only),
+        cmocka_unit_test(test_a_run_may_go_on_where_its_own_settings_lie),
+        cmocka_unit_test(test_a_study_is_not_sent_out_of_results_by_its_file_but_by_the_user),
+        cmocka_unit_test(test_no_text_begins_a_cell_like_a_formula),
+        cmocka_unit_test(test_names_and_reasons_of_users_are_harmless_in_every_table),
+        cmocka_unit_test(test_the_command_of_a_worker_sees_no_shell_unless_it_names_one),
+    };
+    return cmocka_run_group_tests(tests, make_place, clear_place);
+}
