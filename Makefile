@@ -44,7 +44,7 @@ endif
 
 SRC     := $(filter-out src/sim/fast/kernel.c,$(wildcard src/*/*.c src/*/*/*.c))
 MATRICES := $(wildcard configs/sac20/guyan/*.csv configs/sac20/appendix/*.csv)
-LIB_OBJ := $(SRC:%.c=$(BUILD)/%.o) $(KERNELS:%=$(BUILD)/src/sim/fast/kernel_%.o) $(MATRICES:%=$(BUILD)/%.o)
+LIB_OBJ := $(SRC:%.c=$(BUILD)/%.o) $(KERNELS:%=$(BUILD)/src/sim/fast/kernel_%.o) $(MATRICES:%=$(BUILD)/%.o) $(BUILD)/web/page.o
 LIB     := $(BUILD)/libimtet.a
 TEST_SRC := $(wildcard tests/test_*.c)
 TESTS   := $(TEST_SRC:%.c=$(BUILD)/%)
@@ -53,7 +53,7 @@ STABILITY.asan := --engine fast
 STABILITY_OBJ := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/stability/*.c))
 PROGRAM := $(if $(filter release,$(MODE)),imtet,$(BUILD)/imtet)
 
-.PHONY: coverage coverage-here faults fuzz fuzz-here all setup run test test-here compare stability stability-long laws bench chart format install clean .FORCE
+.PHONY: coverage coverage-here faults fuzz fuzz-here all web setup run test test-here compare stability stability-long laws bench chart format install clean .FORCE
 .SECONDARY:
 all: $(PROGRAM)
 
@@ -152,6 +152,18 @@ $(BUILD)/src/sim/fast/kernel_%.o: src/sim/fast/kernel.c
 $(BUILD)/%.csv.o: %.csv
 	@mkdir -p $(@D)
 	$(Q)$(LD) -r -b binary -z noexecstack -o $@ $<
+
+# So is the page of the report, its style and scripts inside. web/charts.js is what `make web` bundles from npm.
+build/web/page.html: web/assemble web/page.html web/style.css web/charts.js $(wildcard web/app/*.js)
+	@mkdir -p $(@D)
+	$(Q)web/assemble > $@.part && mv $@.part $@
+
+$(BUILD)/web/page.o: build/web/page.html
+	@mkdir -p $(@D)
+	$(Q)$(LD) -r -b binary -z noexecstack -o $@ $<
+
+web:
+	@cd web && npm ci --ignore-scripts --no-audit --no-fund --silent && node bundle.mjs
 
 $(BUILD)/src/run/provenance.o: CPPFLAGS += -DIMTET_VERSION='"$(VERSION)"' \
     -DIMTET_REVISION='"$(REVISION)"' -DIMTET_CFLAGS='"-std=c17 -fopenmp -ffp-contract=fast $(CFLAGS.$(MODE)), src/sim -O3"'

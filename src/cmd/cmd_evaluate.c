@@ -23,29 +23,16 @@ typedef struct {
 static Status choose_design(const Args *args, Chosen *c, Err *err)
 {
     const char *word = args_value(args, "--design");
-    char *end;
     if (!word)
         return fail(err, STATUS_USAGE, "--design ID is missing; %s/front.csv lists them, knee is one too",
                     args->operand);
     TRY(front_read(&c->front, args->operand, err));
-    if (strcmp(word, "knee") == 0) {
-        c->row = front_knee(&c->front);
-        return STATUS_OK;
-    }
-    c->row = front_find(&c->front, strtol(word, &end, 10));
-    if (end == word || *end || c->row == c->front.n)
-        return fail(err, STATUS_BAD_DATA,
-                    "--design %.40s: no such id on the front; the column id of %s/front.csv has them", word,
-                    args->operand);
-    return STATUS_OK;
+    return front_pick(&c->front, args->operand, word, &c->row, err);
 }
 
 static Status read_run(const Args *args, Settings *s, Err *err)
 {
-    char path[PATH_MAX];
-    snprintf(path, sizeof path, "%s/settings.ini", args->operand);
-    settings_defaults(s);
-    TRY(settings_read(s, path, NULL, NULL, err));
+    TRY(run_settings(s, args->operand, err));
     TRY(args_apply(args, s, NULL, NULL, err));
     return settings_check(s, err);
 }

@@ -11,6 +11,8 @@
     X(EXPORT)                                                                                                          \
     X(CHOOSE)                                                                                                          \
     X(POLISH)                                                                                                          \
+    X(REPORT)                                                                                                          \
+    X(PLOT)                                                                                                            \
     X(HORIZON)                                                                                                         \
     X(MODES)                                                                                                           \
     X(SPECTRUM)                                                                                                        \

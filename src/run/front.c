@@ -129,6 +129,31 @@ size_t front_find(const Front *front, long id)
     return i;
 }
 
+Status front_pick(const Front *front, const char *folder, const char *word, size_t *row, Err *err)
+{
+    char *end;
+    if (front->n == 0)
+        return fail(err, STATUS_BAD_DATA, "%s/front.csv: the front is empty", folder);
+    if (strcmp(word, "knee") == 0) {
+        *row = front_knee(front);
+        return STATUS_OK;
+    }
+    *row = front_find(front, strtol(word, &end, 10));
+    if (end == word || *end || *row == front->n)
+        return fail(err, STATUS_BAD_DATA,
+                    "--design %.40s: no such id on the front; the column id of %s/front.csv has them", word, folder);
+    return STATUS_OK;
+}
+
+Status run_settings(Settings *s, const char *folder, Err *err)
+{
+    char path[PATH_MAX];
+    settings_defaults(s);
+    if (snprintf(path, sizeof path, "%s/settings.ini", folder) >= (int)sizeof path)
+        return fail(err, STATUS_MISSING, "%.200s...: the path is too long", folder);
+    return settings_read(s, path, NULL, NULL, err);
+}
+
 void front_free(Front *front)
 {
     table_free(&front->table);

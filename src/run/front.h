@@ -30,6 +30,12 @@ void front_box(const Front *front, double ideal[], double span[]);
 
 /* Row of that design, or n when it is not on the front. */
 size_t front_find(const Front *front, long id);
+
+/* `word`: an id of the front or "knee"; folder only names it in messages. An empty front has neither. */
+Status front_pick(const Front *front, const char *folder, const char *word, size_t *row, Err *err);
+
+/* FOLDER/settings.ini over the defaults; what a run was made with. */
+Status run_settings(Settings *s, const char *folder, Err *err);
 void front_free(Front *front);
 
 #endif

@@ -1,0 +1,33 @@
+#include "cmd/commands.h"
+#include "cmd/look.h"
+
+static Status run(const Args *args, Err *err)
+{
+    char path[PATH_MAX];
+    Report r;
+    TRY(look_target(args, "pictures", path, err));
+    TRY(look_open(args, &r, err));
+    const Status status = report_pictures(&r, path, err);
+    report_close(&r);
+    if (status == STATUS_OK)
+        printf("%s\n", path);
+    return status;
+}
+
+static const ArgOption OPTIONS[] = {
+    {"--out", "DIR", NULL, 0, "folder of the pictures (default: RUN/pictures)"},
+    OPTIONS_LOOK,
+    OPTION_END,
+};
+
+const Command CMD_PLOT = {
+    .name = "plot",
+    .operand = "RUN",
+    .summary = "pictures of a run for a paper, SVG and PNG, by gnuplot",
+    .example = "imtet plot results/quick --design knee --out pictures",
+    .details = "Draws what `imtet report` shows: the front, the growth of the hypervolume; of one design, simulated "
+               "again, its\n"
+               "gaps, peaks, modal energies, energies and sway over time, and other earthquakes. Wants gnuplot.",
+    .options = OPTIONS,
+    .run = run,
+};

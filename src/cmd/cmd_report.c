@@ -1,0 +1,38 @@
+#include <string.h>
+
+#include "cmd/commands.h"
+#include "cmd/look.h"
+
+static Status run(const Args *args, Err *err)
+{
+    char path[PATH_MAX];
+    Report r;
+    TRY(look_target(args, "report.html", path, err));
+    TRY(look_open(args, &r, err));
+    const Status status = report_page(&r, path, err);
+    report_close(&r);
+    if (status == STATUS_OK && strcmp(path, "-") != 0)
+        printf("%s\n", path);
+    return status;
+}
+
+static const ArgOption OPTIONS[] = {
+    {"--out", "FILE", NULL, 0, "where the page goes (default: RUN/report.html); -: standard output"},
+    OPTIONS_LOOK,
+    OPTION_END,
+};
+
+const Command CMD_REPORT = {
+    .name = "report",
+    .operand = "RUN",
+    .summary = "one HTML page to look at a run: its front, and one design in detail",
+    .example = "imtet report results/quick --design knee",
+    .details =
+        "Writes one file that needs no network: the front in parallel coordinates and a scatter matrix, designs "
+        "chosen\n"
+        "by ranges as a table and as CSV, the growth of the hypervolume; of one design, simulated again, its gaps,\n"
+        "peaks, energies and the sway of a floor, with other earthquakes. --pga, --stretch, --unit and --channel are\n"
+        "for those; else they are scaled as the run's own.",
+    .options = OPTIONS,
+    .run = run,
+};

@@ -1,0 +1,21 @@
+/* cmd/look.h -- what `report` and `plot` have in common: which run, which design, which other earthquakes. */
+#ifndef IMTET_CMD_LOOK_H
+#define IMTET_CMD_LOOK_H
+
+#include "cmd/args.h"
+#include "report/report.h"
+
+/* The run of the operand, ready to be shown; report_close releases it. */
+Status look_open(const Args *args, Report *r, Err *err);
+
+/* --out, or RUN/name. */
+Status look_target(const Args *args, const char *name, char path[PATH_MAX], Err *err);
+
+#define OPTIONS_LOOK                                                                                                   \
+    {"--design", "ID", NULL, 0, "the design shown in detail: column id of RUN/front.csv, or knee (default)"},          \
+        {"--record", "FILE", NULL, 1,                                                                                  \
+         "another earthquake for it; may be repeated (default: the built-in motions but the run's)"},                  \
+        {"--floor", "N", NULL, 0, "whose sway is shown over time (default: the middle one)"}, OPTION_CHANNEL,          \
+        OPTION_PGA, OPTION_STRETCH, OPTION_UNIT
+
+#endif

@@ -1,0 +1,154 @@
+#include "report/detail.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/units.h"
+#include "report/wavelet.h"
+#include "run/crew.h"
+
+static const double QUIET = 0.02; /* of the largest sway */
+
+static Status simulate(const World *w, int n_scenes, const double x[], SimResult results[], Err *err)
+{
+    static const SceneKind SCENES[N_SCENES] = {SCENE_IMPACT, SCENE_NO_CORE, SCENE_TIED};
+    SimTask tasks[N_SCENES];
+    Crew *crew;
+    for (int i = 0; i < n_scenes; i++)
+        tasks[i] = (SimTask){SCENES[i], x};
+    TRY(crew_create(&crew, w->scene, n_scenes, err));
+    const Status status = crew_run(crew, (size_t)n_scenes, tasks, results, err);
+    crew_free(crew);
+    return status;
+}
+
+static void describe(const World *w, const double x[], Detail *d)
+{
+    const int n = d->n_floors;
+    const double t_base = x[n], t_top = x[n + 1], given = w->settings.sim.duration_s;
+    for (int j = 0; j < n; j++) {
+        d->gap_m[j] = x[j];
+        d->wall_m[j] = n > 1 ? t_base + (t_top - t_base) * j / (n - 1) : t_base;
+    }
+    snprintf(d->record, sizeof d->record, "%s", w->motion.name);
+    d->pga_g = motion_peak(&w->motion) / GRAVITY;
+    d->stretch = w->settings.motion.stretch;
+    d->duration_s = given > 0 ? given : (double)(w->motion.n - 1) * w->motion.dt_s;
+}
+
+/* From half the first frequency of the building to beyond its tenth, as far as the samples see. */
+static void take_spectrum(const Detail *d, const History *h, Spectrogram *s)
+{
+    const int tenth = d->n_floors < 10 ? d->n_floors - 1 : 9;
+    const double lowest = 0.5 * d->building_hz[0], seen = 0.45 / h->dt_s;
+    double highest = 1.3 * d->building_hz[tenth];
+    if (highest > seen)
+        highest = seen;
+    for (size_t i = 0; i < SPECTRUM_FREQUENCIES; i++)
+        s->f[i] = lowest * pow(highest / lowest, (double)i / (SPECTRUM_FREQUENCIES - 1));
+    for (size_t k = 0; k < SPECTRUM_TIMES; k++)
+        s->t[k] = h->t[h->n - 1] * (double)k / (SPECTRUM_TIMES - 1);
+    wavelet(h->n, h->dt_s, h->u, SPECTRUM_FREQUENCIES, s->f, SPECTRUM_TIMES, s->t, s->amplitude);
+}
+
+static double largest_sway(const Detail *d)
+{
+    double most = 0;
+    for (int i = 0; i < 2; i++)
+        for (size_t k = 0; k < d->history[i].n; k++)
+            most = fmax(most, fabs(d->history[i].u[k]));
+    return most;
+}
+
+/* Records end long after the building has come to rest: both histories are cut where nothing is to be seen any more. */
+static void cut_quiet_end(Detail *d)
+{
+    const double seen = QUIET * largest_sway(d);
+    size_t n = 2;
+    for (int i = 0; i < 2; i++)
+        for (size_t k = 0; k < d->history[i].n; k++)
+            if (fabs(d->history[i].u[k]) > seen && k + 1 > n)
+                n = k + 1;
+    for (int i = 0; i < 2; i++)
+        if (d->history[i].n > n)
+            d->history[i].n = n;
+}
+
+static Status take_histories(const World *w, const double x[], Detail *d, Err *err)
+{
+    static const SceneKind SCENES[2] = {SCENE_IMPACT, SCENE_NO_CORE};
+    d->spectrum = calloc(2, sizeof *d->spectrum);
+    if (!d->spectrum)
+        return fail(err, STATUS_NO_MEMORY, "no memory for two spectra");
+    for (int i = 0; i < 2; i++)
+        TRY(history_run(w, SCENES[i], x, d->floor, &d->history[i], err));
+    cut_quiet_end(d);
+    for (int i = 0; i < 2; i++)
+        if (d->history[i].n > 1)
+            take_spectrum(d, &d->history[i], &d->spectrum[i]);
+    return STATUS_OK;
+}
+
+static Status take_here(const World *w, int n_var, const double x[], const DetailWish *wish, Detail *d, Err *err)
+{
+    double tied_hz[FLOORS_MAX], mass;
+    d->n_floors = scene_n_floors(w->scene);
+    d->floor = wish->floor < 0 ? (d->n_floors - 1) / 2 : wish->floor;
+    if (d->n_floors + 2 != n_var)
+        return fail(err, STATUS_BAD_DATA, "the front has designs of %d floors, the building has %d", n_var - 2,
+                    d->n_floors);
+    if (d->floor >= d->n_floors)
+        return fail(err, STATUS_BAD_DATA, "--floor %d: the building has %d", d->floor + 1, d->n_floors);
+    describe(w, x, d);
+    TRY(scene_frequencies(w->scene, x, d->building_hz, d->core_hz, tied_hz, &mass, err));
+    TRY(simulate(w, N_SCENES, x, d->result, err));
+    return take_histories(w, x, d, err);
+}
+
+static Status take_elsewhere(const Settings *other, const char *record, const double x[], Elsewhere *e, Err *err)
+{
+    Settings s = *other;
+    World w;
+    SimResult results[2];
+    if (strlen(record) >= sizeof s.motion.record)
+        return fail(err, STATUS_MISSING, "%.60s...: the path is too long", record);
+    snprintf(s.motion.record, sizeof s.motion.record, "%s", record);
+    TRY(world_open(&w, &s, err));
+    const Status status = simulate(&w, 2, x, results, err);
+    snprintf(e->record, sizeof e->record, "%s", w.motion.name);
+    e->pga_g = motion_peak(&w.motion) / GRAVITY;
+    e->stretch = s.motion.stretch;
+    e->with_core = results[0];
+    e->no_core = results[1];
+    world_close(&w);
+    return status;
+}
+
+Status detail_make(const Settings *s, int n_var, const double x[], const DetailWish *wish, Detail *out, Err *err)
+{
+    World w;
+    memset(out, 0, sizeof *out);
+    TRY(world_open(&w, s, err));
+    Status status = take_here(&w, n_var, x, wish, out, err);
+    world_close(&w);
+    if (status == STATUS_OK && wish->n_records > 0) {
+        out->elsewhere = calloc(wish->n_records, sizeof *out->elsewhere);
+        if (!out->elsewhere)
+            status = fail(err, STATUS_NO_MEMORY, "no memory for %zu earthquakes", wish->n_records);
+    }
+    for (; status == STATUS_OK && out->n_elsewhere < wish->n_records; out->n_elsewhere++)
+        status =
+            take_elsewhere(wish->other, wish->records[out->n_elsewhere], x, &out->elsewhere[out->n_elsewhere], err);
+    if (status != STATUS_OK)
+        detail_free(out);
+    return status;
+}
+
+void detail_free(Detail *d)
+{
+    for (int i = 0; i < 2; i++)
+        history_free(&d->history[i]);
+    free(d->spectrum);
+    free(d->elsewhere);
+    memset(d, 0, sizeof *d);
+}

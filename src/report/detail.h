@@ -1,0 +1,50 @@
+/* report/detail.h -- one design of the tower looked at closely: simulated again as the run did it, beside the building
+ * alone and the tied building, then on other earthquakes.
+ *
+ * Ownership  detail_make allocates, detail_free releases (a zeroed Detail is fine) */
+#ifndef IMTET_REPORT_DETAIL_H
+#define IMTET_REPORT_DETAIL_H
+
+#include "report/history.h"
+
+enum { N_SCENES = 3, SPECTRUM_FREQUENCIES = 72, SPECTRUM_TIMES = 320 };
+
+/* Amplitude of the floor's sway by frequency and time (report/wavelet.h). */
+typedef struct {
+    double f[SPECTRUM_FREQUENCIES], t[SPECTRUM_TIMES];       /* [Hz] equidistant in their logarithm, [s] */
+    double amplitude[SPECTRUM_FREQUENCIES * SPECTRUM_TIMES]; /* (f, t) [m] */
+} Spectrogram;
+
+typedef struct {
+    char record[128];
+    double pga_g, stretch;
+    SimResult with_core, no_core;
+} Elsewhere;
+
+typedef struct {
+    int n_floors, floor; /* floor from 0: whose sway is followed */
+    double gap_m[FLOORS_MAX], wall_m[FLOORS_MAX];
+    double building_hz[FLOORS_MAX], core_hz[FLOORS_MAX];
+    char record[128];
+    double pga_g, stretch, duration_s;
+    SimResult result[N_SCENES]; /* by SceneKind */
+    /* until the floor's sway stays below 2 % of its largest */
+    History history[2];    /* SCENE_IMPACT, SCENE_NO_CORE */
+    Spectrogram *spectrum; /* (2) the same */
+    size_t n_elsewhere;
+    Elsewhere *elsewhere; /* (n_elsewhere) */
+} Detail;
+
+/* Other earthquakes: `other` is how they are read, scaled and simulated, its motion.record replaced by each name. */
+typedef struct {
+    int floor; /* from 0; -1: in the middle */
+    const Settings *other;
+    size_t n_records;
+    const char *const *records;
+} DetailWish;
+
+/* s: settings of the run; x (n_var) the design. */
+Status detail_make(const Settings *s, int n_var, const double x[], const DetailWish *wish, Detail *out, Err *err);
+void detail_free(Detail *d);
+
+#endif

@@ -1,0 +1,92 @@
+#include "report/history.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct {
+    History *h;
+    size_t room;
+    int floor;
+    const SimWorker *worker;
+} Track;
+
+static Status make_room(History *h, size_t room, Err *err)
+{
+    double *store = calloc(room * (2 + N_ENERGIES), sizeof *store);
+    if (!store)
+        return fail(err, STATUS_NO_MEMORY, "no memory for a history of %zu samples", room);
+    h->t = store;
+    h->u = store + room;
+    for (size_t k = 0; k < N_ENERGIES; k++)
+        h->energy[k] = store + (2 + k) * room;
+    return STATUS_OK;
+}
+
+static void add_mode(const SimSample *s, int i, double energy[N_ENERGIES])
+{
+    const double wq = s->omega[i] * s->q[i], kinetic = 0.5 * s->v[i] * s->v[i], strain = 0.5 * wq * wq;
+    const double damped = s->ground_j[i] + s->contact_j[i] - kinetic - strain;
+    const int in_building = i < s->n_building;
+    energy[ENERGY_INPUT] += s->ground_j[i];
+    energy[ENERGY_CONTACTS] -= s->contact_j[i];
+    energy[in_building ? ENERGY_KINETIC : ENERGY_CORE] += kinetic;
+    energy[in_building ? ENERGY_STRAIN : ENERGY_CORE] += strain;
+    energy[in_building ? ENERGY_DAMPED_BUILDING : ENERGY_DAMPED_CORE] += damped;
+}
+
+static void note(const SimSample *sample, void *user)
+{
+    Track *track = user;
+    History *h = track->h;
+    double u[FLOORS_MAX], energy[N_ENERGIES] = {0};
+    if (sample->t == 0)
+        h->n = 0;
+    if (h->n == track->room)
+        return;
+    for (int i = 0; i < sample->n_modes; i++)
+        add_mode(sample, i, energy);
+    sim_worker_floors(track->worker, sample, u);
+    h->t[h->n] = sample->t;
+    h->u[h->n] = u[track->floor];
+    for (int k = 0; k < N_ENERGIES; k++)
+        h->energy[k][h->n] = energy[k];
+    h->n++;
+}
+
+static Status follow(const World *world, const Scene *scene, SceneKind kind, const double x[], int floor, History *out,
+                     Err *err)
+{
+    SimWorker *worker;
+    SimResult result;
+    const double wanted = world->settings.sim.duration_s, dt = world->motion.dt_s;
+    const size_t samples = wanted > 0 ? (size_t)(wanted / dt) + 2 : world->motion.n;
+    TRY(make_room(out, samples, err));
+    TRY(sim_worker_create(&worker, scene, err));
+    Track track = {.h = out, .room = samples, .floor = floor, .worker = worker};
+    sim_worker_sample(worker, note, &track);
+    const Status status = sim_run(worker, kind, x, &result, err);
+    sim_worker_free(worker);
+    if (status == STATUS_OK && result.outcome != RUN_OK)
+        out->n = 0;
+    return status;
+}
+
+Status history_run(const World *world, SceneKind kind, const double x[], int floor, History *out, Err *err)
+{
+    Scene *scene;
+    Settings s = world->settings;
+    s.sim.engine = ENGINE_FAST; /* the others have no samples */
+    *out = (History){.dt_s = world->motion.dt_s};
+    TRY(scene_create(&scene, &s, &world->motion, err));
+    const Status status = follow(world, scene, kind, x, floor, out, err);
+    scene_free(scene);
+    if (status != STATUS_OK)
+        history_free(out);
+    return status;
+}
+
+void history_free(History *h)
+{
+    free(h->t);
+    memset(h, 0, sizeof *h);
+}

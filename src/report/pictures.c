@@ -1,0 +1,411 @@
+/* Every picture is a data block of numbers and a script over it; the terminal comes in front of both. */
+#include <errno.h>
+#include <math.h>
+#include <stdarg.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "report/report.h"
+#include "run/gnuplot.h"
+#include "run/measures.h"
+
+enum { HISTORY_POINTS = 2000 };
+
+typedef struct Picture {
+    const char *name;
+    int width, height; /* of the SVG [px] */
+    int wants_detail;
+    void (*write)(FILE *script, const Report *r);
+} Picture;
+
+typedef struct {
+    const Report *report;
+    const Picture *picture;
+    int is_png;
+} Drawing;
+
+/* Okabe and Ito's colours and viridis, readable without colour vision. */
+static const char STYLE[] =
+    "set encoding utf8\n"
+    "WITH = '#0072b2'; WITHOUT = '#d55e00'; TIED = '#8a6d00'; GREEN = '#009e73'\n"
+    "ORANGE = '#e69f00'; SKY = '#56b4e9'; PURPLE = '#cc79a7'; GREY = '#9aa4af'\n"
+    "set palette defined (0 '#440154', 0.25 '#3b528b', 0.5 '#21918c', 0.75 '#5ec962', 1 '#dde318')\n"
+    "set grid lc '#d8d8d8' lt 1 lw 1\nset tics nomirror out\nset border 3\nset key noenhanced\n"
+    "set style fill solid 1 noborder\n";
+
+static void numbers(FILE *script, size_t n, ...)
+{
+    va_list list;
+    va_start(list, n);
+    for (size_t i = 0; i < n; i++) {
+        const double value = va_arg(list, double);
+        if (isfinite(value))
+            fprintf(script, "%s%.6g", i ? " " : "", value);
+        else
+            fprintf(script, "%sNaN", i ? " " : "");
+    }
+    va_end(list);
+    fputc('\n', script);
+}
+
+static const char *file_name(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+/* ---- the front ------------------------------------------------------------------------------------------------- */
+
+static double scaled(const Report *r, size_t row, size_t k)
+{
+    const double value = front_f(&r->front, row)[k];
+    return r->has_detail && k == 6 ? value / 1000 : value; /* the core's mass in tonnes */
+}
+
+static void write_rows(FILE *script, const char *block, const Report *r, size_t first, size_t n)
+{
+    fprintf(script, "$%s << EOD\n", block);
+    for (size_t i = first; i < first + n; i++) {
+        for (size_t k = 0; k < r->front.n_obj; k++)
+            fprintf(script, "%.8g ", scaled(r, i, k));
+        fputc('\n', script);
+    }
+    fputs("EOD\n", script);
+}
+
+/* Columns x and y of the objectives as one panel; the third gives the colour. */
+static void write_panel(FILE *script, const Report *r, size_t x, size_t y, const char *x_label, const char *y_label)
+{
+    fputs("set xlabel ", script);
+    gnuplot_quote(script, x_label);
+    fputs(" noenhanced\nset ylabel ", script);
+    gnuplot_quote(script, y_label);
+    fprintf(script,
+            " noenhanced offset 1.2\n"
+            "plot $FRONT using %zu:%zu:%zu with points pt 7 ps DOT lc palette, "
+            "$KNEE using %zu:%zu with points pt 13 ps 2.6 lc rgb 'white', "
+            "'' using %zu:%zu with points pt 13 ps 1.8 lc rgb WITHOUT",
+            x + 1, y + 1, r->front.n_obj, x + 1, y + 1, x + 1, y + 1);
+    if (r->has_detail)
+        fprintf(script,
+                ", $ALONE using %zu:%zu with points pt 2 ps 1.7 lw 7 lc rgb 'white', "
+                "'' using %zu:%zu with points pt 2 ps 1.5 lw 3 lc rgb 'black'",
+                x + 1, y + 1, x + 1, y + 1);
+    fputs("\nunset label\n", script);
+}
+
+static void write_front(FILE *script, const Report *r)
+{
+    const size_t last = r->front.n_obj - 1, second = last < 1 ? 0 : 1, third = last < 2 ? second : 2;
+    write_rows(script, "FRONT", r, 0, r->front.n);
+    write_rows(script, "KNEE", r, r->knee, 1);
+    fputs("$ALONE << EOD\n", script);
+    for (int k = 0; r->has_detail && k < N_OBJECTIVES; k++)
+        fprintf(script, "%.8g ", measure_value(&r->detail.result[SCENE_NO_CORE], k) / (k == 6 ? 1000 : 1));
+    fprintf(script,
+            "\nEOD\nset multiplot layout 1,3 margins 0.055,0.905,0.135,0.88 spacing 0.066,0\n"
+            "set offsets graph 0.02, graph 0.04, graph 0.04, graph 0.02\nunset key\nunset colorbox\n"
+            "set label 1 '%zu designs of the front' at screen 0.06,0.95 point pt 7 ps 1 lc rgb '#21918c' offset 0.8\n"
+            "set label 2 'the knee' at screen 0.28,0.95 point pt 13 ps 1.8 lc rgb WITHOUT offset 1\n",
+            r->front.n);
+    if (r->has_detail)
+        fputs("set label 3 'the building without a core' at screen 0.39,0.95 point pt 2 ps 1.5 lw 3 lc rgb 'black' "
+              "offset 1\nset xrange [0:*]\nset yrange [0:*]\nset cblabel 'core mass [t]'\n",
+              script);
+    const Schema *s = &r->front.schema;
+    const char *x = schema_objective(s, 0)->name;
+    write_panel(script, r, 0, third, r->has_detail ? "largest displacement J1 [m]" : x,
+                r->has_detail ? "largest acceleration J3 [g]" : schema_objective(s, third)->name);
+    write_panel(script, r, 0, second, r->has_detail ? "largest displacement J1 [m]" : x,
+                r->has_detail ? "largest interstorey drift J2 [m]" : schema_objective(s, second)->name);
+    fputs("set colorbox user origin 0.922,0.135 size 0.013,0.745\n", script);
+    if (!r->has_detail) {
+        fputs("set cblabel ", script);
+        gnuplot_quote(script, schema_objective(s, last)->name);
+        fputs(" noenhanced\n", script);
+    }
+    write_panel(script, r, r->has_detail ? 3 : second, r->has_detail ? 4 : third,
+                r->has_detail ? "energy share of the first mode [%]" : schema_objective(s, second)->name,
+                r->has_detail ? "energy share of modes 5 to 10 [%]" : schema_objective(s, third)->name);
+}
+
+static void write_growth(FILE *script, const Report *r)
+{
+    const Convergence *c = &r->convergence;
+    fputs("$G << EOD\n", script);
+    for (size_t i = 0; i < c->n; i++)
+        numbers(script, 3, c->simulated[i], 100 * c->volume[i], 200 * c->standard_error[i]);
+    fputs("EOD\nset xlabel 'designs simulated'\nset ylabel 'hypervolume [%]'\nset yrange [0:*]\nunset key\n"
+          "plot $G using 1:($2-$3):($2+$3) with filledcurves lc rgb '#b3d4e8', "
+          "'' using 1:2 with lines lw 2.5 lc rgb WITH\n",
+          script);
+}
+
+/* ---- the chosen design ----------------------------------------------------------------------------------------- */
+
+static void write_gaps(FILE *script, const Report *r)
+{
+    const Detail *d = &r->detail;
+    fputs("$D << EOD\n", script);
+    for (int j = 0; j < d->n_floors; j++)
+        numbers(script, 3, (double)j + 1, 1e3 * d->gap_m[j], 1e3 * d->wall_m[j]);
+    fprintf(script,
+            "EOD\nset multiplot layout 1,2 margins 0.09,0.97,0.13,0.95 spacing 0.12,0\nunset key\n"
+            "set yrange [0.3:%d.7]\nset ylabel 'floor'\nset xrange [0:*]\nset xlabel 'gap [mm]'\n"
+            "plot $D using (0):1:(0):2:($1-0.38):($1+0.38) with boxxyerror lc rgb WITH\n"
+            "set xlabel 'wall of the core [mm]'\n"
+            "plot $D using 3:1 with linespoints lw 2.5 pt 7 ps 0.7 lc rgb WITH\nunset multiplot\n",
+            d->n_floors);
+}
+
+static const char SCENE_LINES[] =
+    "plot $P using (column(1+K)):1 with linespoints lw 2.2 pt 7 ps 0.7 lc rgb WITH title 'with core', "
+    "'' using (column(4+K)):1 with linespoints lw 2.2 dt (8,4) pt 13 ps 0.8 lc rgb WITHOUT title 'without core', "
+    "'' using (column(7+K)):1 with linespoints lw 2.2 dt (3,3) pt 9 ps 0.8 lc rgb TIED title 'zero gap'\n";
+
+static void write_peaks(FILE *script, const Report *r)
+{
+    const Detail *d = &r->detail;
+    fputs("$P << EOD\n", script);
+    for (int j = 0; j < d->n_floors; j++) {
+        fprintf(script, "%d ", j + 1);
+        for (int s = 0; s < N_SCENES; s++)
+            fprintf(script, "%.6g %.6g %.6g ", d->result[s].peak_displacement_m[j], d->result[s].peak_drift_m[j],
+                    d->result[s].peak_acceleration_g[j]);
+        fputc('\n', script);
+    }
+    fprintf(script,
+            "EOD\nset multiplot layout 1,3 margins 0.055,0.985,0.14,0.88 spacing 0.055,0\nset xrange [0:*]\n"
+            "set yrange [0.5:%d.5]\nset ylabel 'floor'\nset key at screen 0.5,0.95 center vertical maxrows 1\n"
+            "set xlabel 'largest displacement [m]'\nK = 1\n%sunset key\nunset ylabel\n"
+            "set xlabel 'largest drift between floors [m]'\nK = 2\n%s"
+            "set xlabel 'largest absolute acceleration [g]'\nK = 3\n%sunset multiplot\n",
+            d->n_floors, SCENE_LINES, SCENE_LINES, SCENE_LINES);
+}
+
+/* Shares of the leading modes of up to three responses side by side. */
+static void write_modes_of(FILE *script, const char *block, size_t n, const SimResult *const results[])
+{
+    const int n_modes = results[0]->n_modes < 10 ? results[0]->n_modes : 10;
+    fprintf(script, "$%s << EOD\n", block);
+    for (int i = 0; i < n_modes; i++) {
+        fprintf(script, "%d ", i + 1);
+        for (size_t s = 0; s < n; s++)
+            fprintf(script, "%.6g ", results[s]->mode_share_pct[i]);
+        fputc('\n', script);
+    }
+    fputs("EOD\n", script);
+}
+
+static void write_modes(FILE *script, const Report *r)
+{
+    const SimResult *const all[N_SCENES] = {&r->detail.result[SCENE_IMPACT], &r->detail.result[SCENE_NO_CORE],
+                                            &r->detail.result[SCENE_TIED]};
+    write_modes_of(script, "M", N_SCENES, all);
+    fputs(
+        "set xlabel 'mode of the building'\nset ylabel 'share of the input energy [%]'\nset yrange [0:*]\n"
+        "set style data histograms\nset style histogram clustered gap 1\nset boxwidth 0.9 relative\nset grid noxtics\n"
+        "plot $M using 2:xtic(1) lc rgb WITH title 'with core', '' using 3 lc rgb WITHOUT title 'without core', "
+        "'' using 4 lc rgb TIED title 'zero gap'\n",
+        script);
+}
+
+static void write_history(FILE *script, const char *block, const History *h)
+{
+    const size_t step = h->n / HISTORY_POINTS + 1;
+    fprintf(script, "$%s << EOD\n", block);
+    for (size_t i = 0; i < h->n; i += step) {
+        double sum = 0;
+        fprintf(script, "%.6g %.5g %.5g", h->t[i], h->u[i], h->energy[ENERGY_INPUT][i] / 1e6);
+        static const EnergyKind ORDER[] = {ENERGY_DAMPED_BUILDING, ENERGY_DAMPED_CORE, ENERGY_CONTACTS, ENERGY_CORE,
+                                           ENERGY_STRAIN,          ENERGY_KINETIC};
+        for (size_t k = 0; k < sizeof ORDER / sizeof ORDER[0]; k++)
+            fprintf(script, " %.5g", sum += h->energy[ORDER[k]][i] / 1e6);
+        fputc('\n', script);
+    }
+    fputs("EOD\n", script);
+}
+
+static const char ENERGY_AREAS[] = "plot 0 with lines lc rgb '#000000' notitle, "
+                                   "$H using 1:9 with filledcurves y1=0 lc rgb GREY title 'motion of the building', "
+                                   "'' using 1:8 with filledcurves y1=0 lc rgb SKY title 'strain of the building', "
+                                   "'' using 1:7 with filledcurves y1=0 lc rgb PURPLE title 'moving in the core', "
+                                   "'' using 1:6 with filledcurves y1=0 lc rgb ORANGE title 'lost in impacts', "
+                                   "'' using 1:5 with filledcurves y1=0 lc rgb GREEN title 'damped by the core', "
+                                   "'' using 1:4 with filledcurves y1=0 lc rgb WITH title 'damped by the building', "
+                                   "'' using 1:3 with lines lw 1.5 lc rgb 'black' title 'input by the ground'\n";
+
+static double largest(size_t n, const double values[])
+{
+    double most = 0;
+    for (size_t i = 0; i < n; i++)
+        most = fmax(most, fabs(values[i]));
+    return most;
+}
+
+static void write_energies(FILE *script, const Report *r)
+{
+    const History *h = r->detail.history;
+    const double top = fmax(largest(h[0].n, h[0].energy[ENERGY_INPUT]), largest(h[1].n, h[1].energy[ENERGY_INPUT]));
+    fprintf(script,
+            "set multiplot layout 1,2 margins 0.07,0.98,0.13,0.78 spacing 0.08,0\nset yrange [0:%.6g]\n"
+            "set xlabel 'time [s]'\nset ylabel 'energy [MJ]'\n"
+            "set key at screen 0.5,0.98 center top vertical maxrows 2\nset title 'with core'\n",
+            1.05e-6 * top);
+    write_history(script, "H", &h[0]);
+    fputs(ENERGY_AREAS, script);
+    write_history(script, "H", &h[1]);
+    fprintf(script, "unset key\nset title 'without core'\n%sunset multiplot\n", ENERGY_AREAS);
+}
+
+static void write_spectrum(FILE *script, const char *block, const Spectrogram *s)
+{
+    fprintf(script, "$%s << EOD\n", block);
+    for (size_t i = 0; i < SPECTRUM_FREQUENCIES; i++) {
+        for (size_t k = 0; k < SPECTRUM_TIMES; k++)
+            numbers(script, 3, s->t[k], log10(s->f[i]), s->amplitude[i * SPECTRUM_TIMES + k]);
+        fputc('\n', script);
+    }
+    fputs("EOD\n", script);
+}
+
+/* The colour goes with the square root of the amplitude; its scale is labelled with the amplitude itself. */
+static void write_amplitude_tics(FILE *script, double top)
+{
+    fputs("set cbtics ('0' 0", script);
+    for (double step = pow(10, floor(log10(top)) - 2); step > 0 && step <= top; step *= 10)
+        for (int k = 1; k <= 5; k += k == 1 ? 1 : 3)
+            if (step * k <= top && step * k > 0.008 * top)
+                fprintf(script, ", '%g' %.6g", step * k, sqrt(step * k));
+    fputs(")\n", script);
+}
+
+static void write_sway(FILE *script, const Report *r)
+{
+    static const char *const WORDS[] = {"with core", "without core"};
+    const Detail *d = &r->detail;
+    double limit = 0, top = 0;
+    for (int i = 0; i < 2; i++) {
+        limit = fmax(limit, largest(d->history[i].n, d->history[i].u));
+        top = fmax(top, largest(SPECTRUM_FREQUENCIES * SPECTRUM_TIMES, d->spectrum[i].amplitude));
+    }
+    fprintf(script,
+            "set multiplot\nunset key\nset xrange [0:%.6g]\nset cbrange [0:%.6g]\n"
+            "set ytics add ('0.1' -1, '0.2' -0.69897, '0.5' -0.30103, '1' 0, '2' 0.30103, '5' 0.69897, '10' 1)\n",
+            d->spectrum[0].t[SPECTRUM_TIMES - 1], sqrt(top));
+    write_amplitude_tics(script, top);
+    for (int i = 0; i < 2; i++) {
+        const double left = 0.07 + 0.45 * i;
+        if (d->history[i].n < 2)
+            continue;
+        write_history(script, "H", &d->history[i]);
+        write_spectrum(script, "S", &d->spectrum[i]);
+        fprintf(script,
+                "set lmargin at screen %g\nset rmargin at screen %g\nset tmargin at screen 0.92\nset bmargin at screen "
+                "0.68\nset title 'floor %d, %s'\nset format x ''\nunset xlabel\nset ytics auto\n"
+                "set ylabel 'displacement [m]'\nset yrange [%.6g:%.6g]\nset grid back lc '#d8d8d8'\n"
+                "plot $H using 1:2 with lines lc rgb 'black'\n"
+                "unset title\nset tmargin at screen 0.63\nset bmargin at screen 0.14\nset format x '%%g'\n"
+                "set xlabel 'time [s]'\nset ylabel 'frequency [Hz]'\nset yrange [%.6g:%.6g]\nunset grid\n"
+                "set ytics ('0.1' -1, '0.2' -0.69897, '0.5' -0.30103, '1' 0, '2' 0.30103, '5' 0.69897, '10' 1)\n"
+                "%s\n",
+                left, left + 0.375, d->floor + 1, WORDS[i], -1.05 * limit, 1.05 * limit, log10(d->spectrum[i].f[0]),
+                log10(d->spectrum[i].f[SPECTRUM_FREQUENCIES - 1]),
+                i == 0 ? "unset colorbox"
+                       : "set colorbox user origin 0.915,0.14 size 0.012,0.49\nset cblabel 'amplitude [m]' offset 0.5");
+        for (int mode = 0; mode < 10 && mode < d->n_floors; mode++)
+            fprintf(script,
+                    "set arrow %d from graph 0, first %.6g to graph 1, first %.6g nohead dt (6,6) lc rgb 'white' "
+                    "front\n",
+                    mode + 1, log10(d->building_hz[mode]), log10(d->building_hz[mode]));
+        fputs("plot $S using 1:2:(sqrt($3)) with image\nunset arrow\n", script);
+    }
+    fputs("unset multiplot\n", script);
+}
+
+static void write_elsewhere(FILE *script, const Report *r)
+{
+    const Detail *d = &r->detail;
+    const double rows = (double)d->n_elsewhere;
+    fputs("set multiplot\n", script);
+    for (size_t e = 0; e < d->n_elsewhere; e++) {
+        const Elsewhere *at = &d->elsewhere[e];
+        const SimResult *const pair[] = {&at->with_core, &at->no_core};
+        const double top = 1 - ((double)e + 0.09) / rows, bottom = 1 - ((double)e + 0.86) / rows;
+        write_modes_of(script, "M", 2, pair);
+        fputs("$P << EOD\n", script);
+        for (int j = 0; j < d->n_floors; j++)
+            numbers(script, 3, (double)j + 1, at->with_core.peak_drift_m[j], at->no_core.peak_drift_m[j]);
+        fprintf(script,
+                "EOD\nset tmargin at screen %g\nset bmargin at screen %g\nset lmargin at screen 0.07\n"
+                "set rmargin at screen 0.47\nunset key\nset title ",
+                top, bottom);
+        gnuplot_quote(script, file_name(at->record));
+        fprintf(
+            script,
+            " noenhanced\nset xrange [0:*]\nset yrange [0.5:%d.5]\nset xtics auto\nset xlabel 'largest drift [m]'\n"
+            "set ylabel 'floor'\nset style data lines\n"
+            "plot $P using 2:1 with linespoints lw 2.2 pt 7 ps 0.7 lc rgb WITH title 'with core', "
+            "'' using 3:1 with linespoints lw 2.2 dt (8,4) pt 13 ps 0.8 lc rgb WITHOUT title 'without core'\n"
+            "set lmargin at screen 0.57\nset rmargin at screen 0.98\nset autoscale x\nset yrange [0:*]\n"
+            "set xlabel 'mode of the building'\nset ylabel 'share of the input energy [%%]'\n"
+            "set key top right\nset style data histograms\nset style histogram clustered gap 1\nset boxwidth 0.9 "
+            "relative\n"
+            "plot $M using 2:xtic(1) lc rgb WITH title 'with core', '' using 3 lc rgb WITHOUT title 'without core'\n",
+            d->n_floors);
+    }
+    fputs("unset multiplot\n", script);
+}
+
+/* ---- all of them ----------------------------------------------------------------------------------------------- */
+
+static const Picture PICTURES[] = {
+    {"front", 1200, 420, 0, write_front}, {"growth", 700, 400, 0, write_growth},
+    {"gaps", 900, 460, 1, write_gaps},    {"peaks", 1200, 480, 1, write_peaks},
+    {"modes", 800, 420, 1, write_modes},  {"energies", 1200, 460, 1, write_energies},
+    {"sway", 1200, 600, 1, write_sway},   {"elsewhere", 1000, 400, 1, write_elsewhere},
+};
+
+static void write_script(FILE *script, const void *user)
+{
+    const Drawing *d = user;
+    const Picture *p = d->picture;
+    const size_t rows = p->write == write_elsewhere ? d->report->detail.n_elsewhere : 1;
+    const int height = p->height * (int)rows;
+    if (d->is_png)
+        fprintf(script, "set terminal pngcairo size %d,%d font 'sans,15' background rgb 'white'\nDOT = 0.8\n",
+                p->width * 3 / 2, height * 3 / 2);
+    else
+        fprintf(script, "set terminal svg size %d,%d dynamic font 'sans,13' background rgb 'white'\nDOT = 0.4\n",
+                p->width, height);
+    fputs(STYLE, script);
+    p->write(script, d->report);
+}
+
+static int is_wanted(const Report *r, const Picture *p)
+{
+    const Detail *d = &r->detail;
+    if (p->write == write_growth)
+        return r->convergence.n > 1;
+    if (p->write == write_elsewhere)
+        return d->n_elsewhere > 0;
+    if (p->write == write_energies || p->write == write_sway)
+        return r->has_detail && d->history[0].n > 1 && d->history[1].n > 1;
+    return r->has_detail || !p->wants_detail;
+}
+
+Status report_pictures(const Report *r, const char *folder, Err *err)
+{
+    if (mkdir(folder, 0777) != 0 && errno != EEXIST)
+        return fail(err, STATUS_IO, "%s: cannot be made a folder: %s", folder, strerror(errno));
+    for (size_t i = 0; i < sizeof PICTURES / sizeof PICTURES[0]; i++)
+        for (int is_png = 0; is_png < 2 && is_wanted(r, &PICTURES[i]); is_png++) {
+            const Drawing drawing = {r, &PICTURES[i], is_png};
+            char path[PATH_MAX];
+            if (snprintf(path, sizeof path, "%s/%s.%s", folder, PICTURES[i].name, is_png ? "png" : "svg") >=
+                (int)sizeof path)
+                return fail(err, STATUS_IO, "%.200s...: the path is too long", folder);
+            TRY(gnuplot_draw(path, write_script, &drawing, err));
+        }
+    return STATUS_OK;
+}

@@ -1,0 +1,37 @@
+/* report/report.h -- a finished run as something to look at: one HTML page, or pictures for a paper.
+ *
+ *   page       web/page.html with style, charts and script inside; the run goes in as JSON and as rows of numbers. No
+ *              network, no eval: the page's own policy allows nothing but these very scripts, by their hashes
+ *   pictures   the same by gnuplot, SVG and PNG
+ *
+ * A run of another problem than the tower has no Detail, and its page and pictures no part on a chosen design.
+ *
+ * Life cycle  report_open -> report_page, report_pictures -> report_close      (a zeroed Report may be closed)
+ * Source of all  the run's folder, read only; the chosen design is simulated again */
+#ifndef IMTET_REPORT_REPORT_H
+#define IMTET_REPORT_REPORT_H
+
+#include <limits.h>
+
+#include "report/convergence.h"
+#include "report/detail.h"
+
+typedef struct {
+    char folder[PATH_MAX];
+    Settings settings; /* of the run */
+    Front front;
+    size_t knee, chosen; /* rows of the front */
+    Convergence convergence;
+    int has_detail;
+    Detail detail;
+} Report;
+
+/* design: an id of the front, or "knee". */
+Status report_open(Report *r, const char *folder, const char *design, const DetailWish *wish, Err *err);
+Status report_page(const Report *r, const char *path, Err *err);
+
+/* Pictures FOLDER/NAME.svg and .png, the folder made where it is not there. */
+Status report_pictures(const Report *r, const char *folder, Err *err);
+void report_close(Report *r);
+
+#endif

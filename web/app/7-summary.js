@@ -1,0 +1,83 @@
+// What was run, what stands out, how the front grew, what the run was made of.
+
+function bestRow(c) {
+  let best = 0;
+  for (let i = 1; i < n; i++) if (c.sense * c.raw[i] < c.sense * c.raw[best]) best = i;
+  return best;
+}
+
+function change(value, before) {
+  if (!(before > 0)) return "";
+  const pct = Math.round((100 * (value - before)) / before);
+  if (value > 2 * before) return `${show(value / before)} \u00d7 no core`;
+  return `${pct > 0 ? "+" : "\u2212"}${Math.abs(pct)} % vs no core`;
+}
+
+function cards(row, before) {
+  return element("div", { class: "cards" }, ...objectives.map((c, k) => element("div", { class: "card" },
+    element("div", { class: "what" }, c.what),
+    element("div", { class: "value" }, digits(c.value[row]), " ", element("small", {}, c.unit)),
+    element("div", { class: "change" }, before && k < 3 ? change(c.raw[row], before[k]) : before && k < 6 ? `no core: ${show(before[k])} %` : ""))));
+}
+
+function standoutTable(before) {
+  const rows = objectives.map((c) => [`best ${c.title}`, bestRow(c), c]);
+  const knee = rowOf.get(run.knee);
+  const line = (label, id, values, best, kind) => element("tr", { class: kind }, element("td", {}, label), element("td", {}, id),
+    ...values.map((v, k) => element("td", { class: objectives[k] === best ? "best" : false }, digits(v))));
+  return element("div", { class: "scroll" }, element("table", { id: "standouts" },
+    element("thead", {}, element("tr", {}, element("th", { scope: "col" }, "stands out by"), element("th", { scope: "col" }, "design"),
+      ...objectives.map((c) => element("th", { scope: "col", title: c.what }, ...heading(c))))),
+    element("tbody", {},
+      line("knee", String(run.knee), objectives.map((c) => c.value[knee]), null, "knee"),
+      ...rows.map(([label, i, best]) => line(label, String(ids[i]), objectives.map((c) => c.value[i]), best, "")),
+      before ? line("building without core", "", objectives.map((c, k) => before[k] * c.factor), null, "") : null)));
+}
+
+function summaryPart() {
+  const d = run.detail, before = d && d.no_core.objectives;
+  document.title = `${run.name} \u2013 imtet report`;
+  document.getElementById("title").textContent = `Study ${run.name}`;
+  const simulated = run.evaluated ? `${count(run.evaluated)} designs ${d ? "simulated" : "evaluated"}, ${count(run.failed)} failed, ` : "";
+  document.getElementById("subtitle").textContent = `${simulated}${count(n)} on the front` +
+    (d ? `. Ground motion ${d.record.replace(/.*\//, "")}, peak ${show(d.pga_g)} g, time \u00d7 ${show(d.stretch)}, ${show(d.duration_s)} s` : "");
+  const names = [["summary", "Summary"], ["front", "Front"], ["growth", "Growth"], ["design", `Design ${run.chosen}`], ["provenance", "Provenance"]];
+  document.getElementById("parts").append(...names.filter(([id]) => document.getElementById(id))
+    .map(([id, text]) => element("a", { href: `#${id}` }, text)));
+  document.getElementById("summary").append(
+    element("p", {}, element("strong", {}, `Design ${run.knee}, the knee`), ": nearest to the best of everything, with every objective scaled over the front."),
+    cards(rowOf.get(run.knee), before), standoutTable(before));
+}
+
+function growthPart() {
+  const host = document.getElementById("growth"), c = run.convergence;
+  if (c.simulated.length < 2) return host.remove();
+  const rows = c.simulated.map((x, i) => ({ x, y: 100 * c.volume[i], e: 200 * c.error[i] }));
+  const figure = host.appendChild(element("figure"));
+  drawn(figure, (width) => charts.plot({
+    width, height: 260, marginLeft: 60, ariaLabel: "Hypervolume over the number of designs",
+    x: { label: "designs simulated", tickFormat: count }, y: { label: "hypervolume [%]", grid: true, zero: true, nice: true },
+    marks: [
+      charts.areaY(rows, { x: "x", y1: (r) => r.y - r.e, y2: (r) => r.y + r.e, fill: BLUE, fillOpacity: 0.2 }),
+      charts.lineY(rows, { x: "x", y: "y", stroke: BLUE, strokeWidth: 2 }),
+      charts.dot([rows[rows.length - 1]], { x: "x", y: "y", fill: BLUE, r: 4 }),
+    ],
+  }));
+  const last = rows[rows.length - 1];
+  figure.append(element("figcaption", {}, "Share of the box between the best of every objective and 1.1 times the width of the final front that the designs so far dominate" +
+    (last.e ? `; at the end ${show(last.y)} \u00b1 ${show(last.e / 2)} % (standard error of the estimate; band: twice that)` : `, exact; at the end ${show(last.y)} %`) +
+    ". A curve that still climbs asks for a longer run."));
+}
+
+function provenancePart() {
+  const host = document.getElementById("provenance");
+  const made = run.provenance ? JSON.parse(run.provenance) : {};
+  const facts = [["program", `imtet ${made.version ?? "?"} (${made.revision ?? "?"})`], ["started", made.machine?.started],
+    ["machine", made.machine && `${made.machine.host}, ${made.machine.system}, ${made.machine.threads} threads`],
+    ["seed", made.seed], ["record", made.inputs?.record], ["hash of the record", made.inputs?.record_fnv1a],
+    ["folder", run.folder], ["this page", `imtet ${run.version} (${run.revision})`]];
+  host.append(element("dl", { class: "facts" }, ...facts.filter(([, v]) => v !== undefined && v !== null)
+    .flatMap(([k, v]) => [element("dt", {}, k), element("dd", {}, String(v))])));
+  for (const [title, text] of [["Every setting", run.settings], ["provenance.json", run.provenance]])
+    if (text) host.append(element("details", {}, element("summary", {}, title), element("pre", { tabindex: "0" }, text)));
+}
