@@ -191,9 +191,17 @@ compare: $(PROGRAM)
 format:
 	clang-format -i $(wildcard src/*.c src/*/*.[ch] src/*/*/*.[ch] tests/*.[ch] tests/*/*.[ch])
 
+# Manual pages and completion are written by the program itself.
+SHARE := $(DESTDIR)$(PREFIX)/share
 install: all
 	install -D -m 755 imtet $(DESTDIR)$(PREFIX)/bin/imtet
-	@for f in $$(cd configs && find . -type f); do install -D -m 644 configs/$$f $(DESTDIR)$(PREFIX)/share/imtet/configs/$$f; done
+	@for f in $$(cd configs && find . -type f); do install -D -m 644 configs/$$f $(SHARE)/imtet/configs/$$f; done
+	@install -d $(SHARE)/man/man1 $(SHARE)/bash-completion/completions
+	@./imtet --man > $(SHARE)/man/man1/imtet.1
+	@for c in $$(./imtet --commands); do ./imtet --man $$c > $(SHARE)/man/man1/imtet-$$c.1; done
+	@./imtet --completion > $(SHARE)/bash-completion/completions/imtet
+	@for f in LICENSE CITATION.cff README.md CHANGELOG.md docs/*.md; do install -D -m 644 $$f $(SHARE)/doc/imtet/$$f; done
+	@for f in $(wildcard web/licences/* web/LICENSES*); do install -D -m 644 $$f $(SHARE)/doc/imtet/$$f; done
 
 clean:
 	rm -rf build imtet

@@ -1,4 +1,8 @@
-/* main.c -- picks the subcommand and turns its status into an exit code. */
+/* main.c -- picks the subcommand and turns its status into an exit code.
+ *
+ * Beside the commands: --help, help [COMMAND], --version [--json]; and for `make install`, --commands, --man [COMMAND]
+ * and
+ * --completion. */
 #include <cblas.h>
 #include <jansson.h>
 #include <stdio.h>
@@ -6,44 +10,15 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "cmd/commands.h"
+#include "cmd/manual.h"
+#include "cmd/show.h"
 #include "run/provenance.h"
-
-#define X(name) &CMD_##name,
-static const Command *const COMMANDS[] = {COMMAND_LIST(X)};
-#undef X
-enum { N_COMMANDS = sizeof COMMANDS / sizeof COMMANDS[0] };
-
-static void print_usage(FILE *out)
-{
-    fprintf(out,
-            "example: %s\n\nEarthquake protection by impacts between a tower and an inner core.\n\n"
-            "usage: imtet COMMAND ...\n\n",
-            CMD_OPTIMIZE.example);
-    for (int i = 0; i < N_COMMANDS; i++)
-        fprintf(out, "  %-9s %-7s %s\n", COMMANDS[i]->name, COMMANDS[i]->operand ? COMMANDS[i]->operand : "",
-                COMMANDS[i]->summary);
-    fprintf(out, "\n`imtet COMMAND --help` shows an example and every option. Exit status: 0 done, 2 command line not\n"
-                 "understood, 65 bad data or settings, 66 input missing, 70 program failed, 74 output not written.\n");
-}
-
-static Status find_command(const char *word, const Command **found, Err *err)
-{
-    const char *names[N_COMMANDS];
-    for (int i = 0; i < N_COMMANDS; i++) {
-        names[i] = COMMANDS[i]->name;
-        *found = COMMANDS[i];
-        if (strcmp(word, names[i]) == 0)
-            return STATUS_OK;
-    }
-    return args_unknown(word[0] == '-' ? "option" : "command", word, names, N_COMMANDS, "`imtet --help`", err);
-}
 
 static Status run_command(int argc, char *argv[], Err *err)
 {
     const Command *command;
     Args args;
-    TRY(find_command(argv[1], &command, err));
+    TRY(command_find(argv[1], &command, err));
     Status status = args_parse(&args, command, argc - 2, argv + 2, err);
     if (status == STATUS_OK && args.help)
         command_help(command, stdout);
@@ -53,16 +28,61 @@ static Status run_command(int argc, char *argv[], Err *err)
     return status;
 }
 
+/* A second word may name a command; more are too many. */
+static Status second_word(int argc, char *argv[], const Command **command, Err *err)
+{
+    *command = NULL;
+    if (argc > 3)
+        return fail(err, STATUS_USAGE, "imtet %s takes one command at most, found '%.60s'", argv[1], argv[3]);
+    return argc == 3 ? command_find(argv[2], command, err) : STATUS_OK;
+}
+
+static Status help(int argc, char *argv[], Err *err)
+{
+    const Command *command;
+    TRY(second_word(argc, argv, &command, err));
+    if (command)
+        command_help(command, stdout);
+    else
+        usage_write(stdout);
+    return STATUS_OK;
+}
+
+static Status manual(int argc, char *argv[], Err *err)
+{
+    const Command *command;
+    TRY(second_word(argc, argv, &command, err));
+    manual_write(command, stdout);
+    return STATUS_OK;
+}
+
+static Status version(int argc, char *argv[], Err *err)
+{
+    if (argc > 3 || (argc == 3 && strcmp(argv[2], "--json") != 0))
+        return fail(err, STATUS_USAGE, "imtet --version takes nothing but --json");
+    if (argc == 3)
+        return show_json(program_description(), err);
+    printf("imtet %s (%s)\n", program_version(), program_revision());
+    return STATUS_OK;
+}
+
 static Status run(int argc, char *argv[], Err *err)
 {
     if (argc < 2) {
-        print_usage(stderr);
+        usage_write(stderr);
         return fail(err, STATUS_USAGE, "no command was given");
     }
     if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 || strcmp(argv[1], "help") == 0)
-        print_usage(stdout);
-    else if (strcmp(argv[1], "--version") == 0)
-        printf("imtet %s (%s)\n", program_version(), program_revision());
+        return help(argc, argv, err);
+    if (strcmp(argv[1], "--version") == 0)
+        return version(argc, argv, err);
+    if (strcmp(argv[1], "--man") == 0)
+        return manual(argc, argv, err);
+    if (strcmp(argv[1], "--completion") == 0)
+        completion_write(stdout);
+    else if (strcmp(argv[1], "--commands") == 0)
+        for (int i = 0; command_at(i); i++)
+            puts(command_at(i)->name);
     else
         return run_command(argc, argv, err);
     return STATUS_OK;

@@ -136,6 +136,16 @@ static const Option OPTIONS[] = {
 
 enum { N_OPTIONS = sizeof OPTIONS / sizeof OPTIONS[0] };
 
+const char *settings_key(int i)
+{
+    return i < N_OPTIONS ? OPTIONS[i].key : NULL;
+}
+
+const char *settings_words(int i)
+{
+    return OPTIONS[i].words;
+}
+
 static void *field_of(Settings *s, const Option *o)
 {
     return (char *)s + o->offset;

@@ -114,6 +114,11 @@ Status settings_set(Settings *s, const char *assignment, Err *err);
 /* The rules that tie settings together. */
 Status settings_check(const Settings *s, Err *err);
 
+/* The table itself: key i ("section.key", NULL behind the last), and its words as "a|b|c", NULL where it is no choice.
+ */
+const char *settings_key(int i);
+const char *settings_words(int i);
+
 /* A valid INI file: with `described`, preceded key by key by its meaning, unit and range. */
 void settings_write(const Settings *s, FILE *out, int described);
 

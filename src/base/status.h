@@ -15,7 +15,8 @@
     X(MISSING, 66, "an input file is not there or cannot be read")                                                     \
     X(INTERNAL, 70, "the program failed")                                                                              \
     X(NO_MEMORY, 71, "out of memory")                                                                                  \
-    X(IO, 74, "a file could not be written")
+    X(IO, 74, "a file could not be written")                                                                           \
+    X(STOPPED, 75, "stopped before the end; it can go on")
 
 typedef enum {
 #define X(name, exit_code, words) STATUS_##name,

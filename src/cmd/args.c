@@ -122,19 +122,6 @@ void args_free(Args *args)
     memset(args, 0, sizeof *args);
 }
 
-void command_help(const Command *command, FILE *out)
-{
-    fprintf(out, "example: %s\n\n%s\n\n", command->example, command->details);
-    fprintf(out, "usage: imtet %s%s%s%s\n\n", command->name, command->operand ? " " : "",
-            command->operand ? command->operand : "", command->options->name ? " [options]" : "");
-    for (const ArgOption *o = command->options; o->name; o++) {
-        char left[48];
-        snprintf(left, sizeof left, "%s%s%s", o->name, o->value ? " " : "", o->value ? o->value : "");
-        fprintf(out, "  %-25s %s%s%s\n", left, o->help, o->setting ? "  = --set " : "", o->setting ? o->setting : "");
-    }
-    fprintf(out, "  %-25s this text\n", "--help");
-}
-
 static Status apply_one(const Given *g, Settings *s, Err *err)
 {
     if (strcmp(g->option->name, "--set") == 0)

@@ -50,8 +50,6 @@ void args_free(Args *args);
 /* "unknown WHAT WORD; did you mean ...?" */
 Status args_unknown(const char *what, const char *word, const char *const known[], int n, const char *where, Err *err);
 
-void command_help(const Command *command, FILE *out);
-
 /* Defaults, then the operand's file, then the options in their order, then the rules between settings. With `faults`
  * every fault is written there and counted, else the first one ends it. */
 Status args_settings(const Args *args, Settings *s, FILE *faults, int *n_faults, Err *err);

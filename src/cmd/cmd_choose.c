@@ -32,10 +32,9 @@ static Status take_pair(const Choice *c, const char *option, const char *text, s
         return fail(err, STATUS_USAGE, "%s: '%.60s' is not NAME=NUMBER", option, text);
     snprintf(name, sizeof name, "%.*s", (int)(equals - text), text);
     *value = strtod(equals + 1, &end);
-    *k = schema_find_objective(&c->front.schema, name);
     if (end == equals + 1 || *end || !isfinite(*value))
         return fail(err, STATUS_USAGE, "%s: '%.60s' has no number behind =", option, text);
-    return *k < c->front.n_obj ? STATUS_OK : fail(err, STATUS_USAGE, "%s: %s is no objective", option, name);
+    return schema_pick_objective(&c->front.schema, option, name, STATUS_USAGE, k, err);
 }
 
 /* Only designs within every --max and --min stay allowed. */

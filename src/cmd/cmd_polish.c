@@ -30,12 +30,6 @@ static Status take_number(const Args *args, const char *name, double standard, d
     return STATUS_OK;
 }
 
-static Status find_objective(const Schema *schema, const char *option, const char *name, size_t *k, Err *err)
-{
-    *k = schema_find_objective(schema, name);
-    return *k < schema->n_obj ? STATUS_OK : fail(err, STATUS_USAGE, "%s: %.60s is no objective", option, name);
-}
-
 static Status take_kept(const Args *args, Work *w, Err *err)
 {
     const Schema *schema = &w->front.schema;
@@ -46,7 +40,7 @@ static Status take_kept(const Args *args, Work *w, Err *err)
     for (size_t i = 0; list && strcmp(list, "all") != 0 && i < list_count(list); i++) {
         if (!list_item(list, i, name, sizeof name))
             return fail(err, STATUS_USAGE, "--keep: name %zu is empty or too long", i + 1);
-        TRY(find_objective(schema, "--keep", name, &k, err));
+        TRY(schema_pick_objective(schema, "--keep", name, STATUS_USAGE, &k, err));
         w->keep[k] = 1;
     }
     return STATUS_OK;
@@ -59,7 +53,7 @@ static Status take_options(const Args *args, Work *w, Err *err)
     double evals, seconds, slack;
     w->config.improve = 0;
     if (improve)
-        TRY(find_objective(schema, "--improve", improve, &w->config.improve, err));
+        TRY(schema_pick_objective(schema, "--improve", improve, STATUS_USAGE, &w->config.improve, err));
     TRY(take_kept(args, w, err));
     TRY(take_number(args, "--evals", 200, &evals, err));
     TRY(take_number(args, "--seconds", 0, &seconds, err));

@@ -46,6 +46,12 @@ static json_t *libraries(void)
                      "random123", "as packaged by the system");
 }
 
+json_t *program_description(void)
+{
+    return json_pack("{s:s, s:s, s:s, s:s, s:s, s:o*}", "program", "imtet", "version", IMTET_VERSION, "revision",
+                     IMTET_REVISION, "compiler", __VERSION__, "flags", IMTET_CFLAGS, "libraries", libraries());
+}
+
 /* PRETTY_NAME of the operating system: with it the versions of all packages are known. */
 static void system_name(char name[128])
 {
@@ -76,10 +82,10 @@ static json_t *inputs_of_tower(const World *w, uint64_t building_hash, int n_flo
     char record[24], matrices[24];
     snprintf(record, sizeof record, "%016" PRIx64, w->motion.file_hash);
     snprintf(matrices, sizeof matrices, "%016" PRIx64, building_hash);
-    return json_pack("{s:s, s:s, s:s, s:I, s:f, s:s, s:i, s:s}", "record", w->settings.motion.record, "record_format",
-                     w->motion.format, "record_fnv1a", record, "samples", (json_int_t)w->motion.n, "step_s",
-                     w->motion.dt_s, "building", w->settings.building.model, "floors", n_floors, "matrices_fnv1a",
-                     matrices);
+    return json_pack("{s:s, s:s, s:s, s:s, s:I, s:f, s:s, s:i, s:s}", "record", w->settings.motion.record,
+                     "record_format", w->motion.format, "record_channel", w->motion.channel, "record_fnv1a", record,
+                     "samples", (json_int_t)w->motion.n, "step_s", w->motion.dt_s, "building",
+                     w->settings.building.model, "floors", n_floors, "matrices_fnv1a", matrices);
 }
 
 static Status inputs(json_t **out, const Settings *s, const World *w, Err *err)
@@ -102,11 +108,9 @@ Status provenance_write(const char *folder, const Settings *s, const World *w, i
     json_t *made_of = NULL;
     snprintf(path, sizeof path, "%s/provenance.json", folder);
     TRY(inputs(&made_of, s, w, err));
-    json_t *all =
-        json_pack("{s:s, s:s, s:s, s:s, s:s, s:I, s:o*, s:o*, s:o*}", "program", "imtet", "version", IMTET_VERSION,
-                  "revision", IMTET_REVISION, "compiler", __VERSION__, "flags", IMTET_CFLAGS, "seed",
-                  (json_int_t)s->search.seed, "libraries", libraries(), "machine", machine(threads), "inputs", made_of);
-    if (!all)
+    json_t *all = program_description();
+    if (json_object_set_new(all, "seed", json_integer(s->search.seed)) != 0 ||
+        json_object_set_new(all, "machine", machine(threads)) != 0 || json_object_set_new(all, "inputs", made_of) != 0)
         return fail(err, STATUS_NO_MEMORY, "%s: cannot be put together", path);
     Status status = output_open(&o, path, err);
     if (status == STATUS_OK) {

@@ -3,10 +3,15 @@
 #ifndef IMTET_RUN_PROVENANCE_H
 #define IMTET_RUN_PROVENANCE_H
 
+#include <jansson.h>
+
 #include "run/world.h"
 
 const char *program_version(void);  /* 0.1.0 */
 const char *program_revision(void); /* as git describes it, or unknown */
+
+/* Version, revision, compiler and its flags, libraries. NULL: out of memory. */
+json_t *program_description(void);
 
 /* FOLDER/provenance.json; w NULL: no tower */
 Status provenance_write(const char *folder, const Settings *s, const World *w, int threads, Err *err);

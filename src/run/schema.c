@@ -135,6 +135,24 @@ size_t schema_find_objective(const Schema *schema, const char *name)
     return k;
 }
 
+Status schema_pick_objective(const Schema *schema, const char *where, const char *name, Status status, size_t *k,
+                             Err *err)
+{
+    const char *names[OBJECTIVES_MAX];
+    *k = schema_find_objective(schema, name);
+    if (*k < schema->n_obj)
+        return STATUS_OK;
+    for (size_t i = 0; i < schema->n_obj; i++)
+        names[i] = schema_objective(schema, i)->name;
+    const char *near = nearest_word(name, names, (int)schema->n_obj);
+    if (near)
+        return fail(err, status, "%s: %.60s is no objective; did you mean %s?", where, name, near);
+    char list[200] = "";
+    for (size_t i = 0, n = 0; i < schema->n_obj && n + TABLE_NAME_MAX + 2 < sizeof list; i++)
+        n += (size_t)snprintf(list + n, sizeof list - n, "%s%s", i ? ", " : "", names[i]);
+    return fail(err, status, "%s: %.60s is no objective; there are %s", where, name, list);
+}
+
 void schema_free(Schema *schema)
 {
     free(schema->column);

@@ -276,13 +276,11 @@ static Status take_limit(Subject *s, const char *text, Err *err)
     for (char *last = name + strlen(name); last > name && isspace((unsigned char)last[-1]);)
         *--last = 0;
     Limit *l = &s->limit[s->n_limits++];
-    l->objective = schema_find_objective(&s->schema, name);
+    TRY(schema_pick_objective(&s->schema, "search.limits", name, STATUS_BAD_DATA, &l->objective, err));
     l->sign = *relation == '<' ? 1.0 : -1.0;
     l->bound = strtod(relation + 2, &end);
     if (end == relation + 2 || *end || !isfinite(l->bound))
         return fail(err, STATUS_BAD_DATA, "search.limits: '%.60s': no number behind %c=", text, *relation);
-    if (l->objective == s->schema.n_obj)
-        return fail(err, STATUS_BAD_DATA, "search.limits: %s is no objective", name);
     return STATUS_OK;
 }
 

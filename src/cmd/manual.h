@@ -1,0 +1,19 @@
+/* cmd/manual.h -- what the program says about itself, all of it from the tables of commands, options, settings and exit
+ * codes: nothing here is to be kept in step by hand.
+ *
+ * Threads  no state */
+#ifndef IMTET_CMD_MANUAL_H
+#define IMTET_CMD_MANUAL_H
+
+#include <stdio.h>
+
+#include "cmd/args.h"
+
+const Command *command_at(int i);                                       /* NULL behind the last */
+Status command_find(const char *word, const Command **found, Err *err); /* of that name, or the nearest suggested */
+void command_help(const Command *command, FILE *out);                   /* `imtet COMMAND --help` */
+void usage_write(FILE *out);                                            /* `imtet --help` */
+void manual_write(const Command *command, FILE *out);                   /* a page for man; NULL: imtet(1) */
+void completion_write(FILE *out);                                       /* for bash */
+
+#endif

@@ -1,0 +1,156 @@
+/* What the program says about itself, and the exit codes that it promises. */
+#include "program.h"
+
+#include <ctype.h>
+
+#include "cmd/manual.h"
+
+static void test_every_command_has_a_page_with_all_its_options(void **state)
+{
+    (void)state;
+    for (int i = 0; command_at(i); i++) {
+        const Command *c = command_at(i);
+        char arguments[64], option[64];
+        snprintf(arguments, sizeof arguments, "--man %s", c->name);
+        char *page = output_of(arguments);
+        assert_int_equal(strncmp(page, ".TH IMTET-", 10), 0);
+        for (const ArgOption *o = c->options; o->name; o++) {
+            snprintf(option, sizeof option, ".B \\-\\-%s", o->name + 2);
+            if (!strstr(page, option) && !strchr(o->name + 2, '-'))
+                fail_msg("%s is not in the page of %s", o->name, c->name);
+        }
+        assert_non_null(strstr(page, ".SH EXIT STATUS"));
+        free(page);
+    }
+    char *all = output_of("--man"), *settings = output_of("--man settings");
+    assert_non_null(strstr(all, "imtet\\-optimize"));
+    assert_non_null(strstr(settings, "\nmutation_rate = 1\n"));
+    free(all);
+    free(settings);
+}
+
+static void test_help_of_a_command_is_the_same_both_ways(void **state)
+{
+    (void)state;
+    char *first = output_of("help simulate"), *second = output_of("simulate --help"), *all = output_of("help");
+    assert_string_equal(first, second);
+    assert_int_equal(strncmp(all, "example: imtet ", 15), 0);
+    for (int i = 0; command_at(i); i++)
+        assert_non_null(strstr(all, command_at(i)->summary));
+    free(first);
+    free(second);
+    free(all);
+    expect(2, "did you mean simulate?", "help simulat");
+    expect(2, "did you mean optimize?", "--man optimise");
+    expect(2, "one command at most", "help simulate modes");
+}
+
+static void test_the_version_says_what_the_program_was_built_from(void **state)
+{
+    (void)state;
+    json_t *o = json_of("--version --json");
+    char *line = output_of("--version"), wanted[128];
+    snprintf(wanted, sizeof wanted, "imtet %s (%s)\n", json_string_value(json_object_get(o, "version")),
+             json_string_value(json_object_get(o, "revision")));
+    assert_string_equal(line, wanted);
+    assert_non_null(json_string_value(json_object_get(json_object_get(o, "libraries"), "sundials")));
+    json_decref(o);
+    free(line);
+    expect(2, "nothing but --json", "--version --jsn");
+}
+
+static void test_the_nearest_is_suggested_everywhere(void **state)
+{
+    (void)state;
+    expect(65, "did you mean cvode?", "modes configs/quick.ini --set sim.engine=cvodee");
+    expect(65, "did you mean search.limits?", "modes configs/quick.ini --set search.limit=none");
+    expect(65, "did you mean f1?", "optimize @/two.ini --out @/no --set 'search.limits=f11<=3'");
+    expect(65, "there are f1, f2", "optimize @/two.ini --out @/no --set 'search.limits=displacement<=3'");
+    free(output_of("optimize @/two.ini --out @/two"));
+    expect(2, "did you mean f2?", "choose @/two --max f22=3");
+    expect(2, "did you mean f2?", "polish @/two --design knee --improve f2m");
+}
+
+/* What bash would offer behind these words. */
+static char *offered(const char *words)
+{
+    char command[1024], path[128];
+    snprintf(path, sizeof path, "%s/offered", place.folder);
+    snprintf(command, sizeof command,
+             "'%s' --completion > %s.sh && bash -c 'source %s.sh; COMP_WORDS=(imtet %s); "
+             "COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _imtet; echo \"${COMPREPLY[@]}\"' > %s",
+             getenv("IMTET"), path, path, words, path);
+    assert_int_equal(system(command), 0);
+    return text_of(path);
+}
+
+static void expect_offer(const char *words, const char *wanted)
+{
+    char *offer = offered(words);
+    if (strncmp(offer, wanted, strlen(wanted)) != 0)
+        fail_msg("imtet %s: offered '%s', wanted '%s'", words, offer, wanted);
+    free(offer);
+}
+
+static void test_bash_offers_commands_options_keys_and_words(void **state)
+{
+    (void)state;
+    expect_offer("opti", "optimize\n");
+    expect_offer("help spec", "spectrum\n");
+    expect_offer("simulate --des", "--design\n");
+    expect_offer("simulate x.ini --engine cvode_bdf_", "cvode_bdf_tuned\n");
+    expect_offer("simulate x.ini --set motion.pg", "motion.pga_g=\n");
+    expect_offer("simulate x.ini --set sim.accuracy = f", "fine\n");
+    expect_offer("simulate x.ini --engine = rad", "radau\n");
+    expect_offer("simulate configs/qu", "configs/quick.ini\n");
+    expect_offer("simulate x.ini --record LICEN", "LICENSE\n");
+    expect_offer("simulate x.ini --pga 0", "\n");
+}
+
+/* Every row of the table in the documentation is a status of the program and the other way round. */
+static void test_the_exit_codes_are_those_of_the_documentation(void **state)
+{
+    (void)state;
+    char row[16], *page = text_of("docs/exit-codes.md");
+    int n_rows = 0;
+    for (const char *at = page; (at = strstr(at, "\n| ")); at++)
+        n_rows += isdigit((unsigned char)at[3]) != 0;
+    for (int s = 0; s < STATUS_COUNT; s++) {
+        snprintf(row, sizeof row, "\n| %d | ", status_exit_code((Status)s));
+        if (!strstr(page, row))
+            fail_msg("docs/exit-codes.md does not know %d", status_exit_code((Status)s));
+    }
+    assert_int_equal(n_rows, STATUS_COUNT);
+    free(page);
+}
+
+static void test_a_study_without_one_good_simulation_ends_with_70(void **state)
+{
+    (void)state;
+    expect(70, "none of 8 simulations succeeded", "optimize @/fails.ini --out @/fails --threads 1");
+}
+
+static int make_studies(void **state)
+{
+    if (make_place(state) != 0)
+        return -1;
+    write_in_place("two.ini", "[problem]\nkind = dtlz2\nvariables = 4\nobjectives = 2\n[search]\npopulation = 8\n"
+                              "initial = 8\nmax_evals = 16\n");
+    write_in_place("fails.ini", "[problem]\nkind = external\ncommand = sh -c 'exit 1'\nvariables = 2\nobjectives = 2\n"
+                                "[search]\npopulation = 4\ninitial = 8\nmax_evals = 8\n");
+    return 0;
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_every_command_has_a_page_with_all_its_options),
+        cmocka_unit_test(test_help_of_a_command_is_the_same_both_ways),
+        cmocka_unit_test(test_the_version_says_what_the_program_was_built_from),
+        cmocka_unit_test(test_the_nearest_is_suggested_everywhere),
+        cmocka_unit_test(test_bash_offers_commands_options_keys_and_words),
+        cmocka_unit_test(test_the_exit_codes_are_those_of_the_documentation),
+        cmocka_unit_test(test_a_study_without_one_good_simulation_ends_with_70),
+    };
+    return cmocka_run_group_tests(tests, make_studies, clear_place);
+}
