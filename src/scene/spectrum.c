@@ -9,7 +9,7 @@ static const double PI = 3.14159265358979323846;
 /* ---- oscillator ----------------------------------------------------------------------------------------------- */
 
 typedef struct {
-    double w, zeta, wd; /* [rad/s], [-], damped [rad/s] */
+    double w, zeta, wd, per_ww; /* [rad/s], [-], damped [rad/s], 1 / w^2 */
 } Oscillator;
 
 /* What one interval of length tau does:   h impulse response, its slope h1, I1 = int h, I2 = int I1   (all at tau) */
@@ -54,7 +54,7 @@ typedef struct {
 } State;
 
 /* Ground acceleration a + slope tau. The response to unit initial displacement is h1 + 2 zeta w h. */
-static State advance(const Oscillator *o, const Flow *f, State y, double a, double slope)
+static inline State advance(const Oscillator *o, const Flow *f, State y, double a, double slope)
 {
     const double g = f->h1 + 2 * o->zeta * o->w * f->h;
     return (State){.u = g * y.u + f->h * y.v - a * f->I1 - slope * f->I2,
@@ -130,12 +130,25 @@ static double largest_inside(const Interval *in, double dt, double v_end)
     return largest;
 }
 
-/* Advances y over an interval and returns the largest |u| in it. */
-static double cross(const Oscillator *o, const Flow *f, State *y, double a, double slope, double dt)
+/* Can |u| be larger than `largest` in the interval? It is a line p (what the ground's line leads to in the end) and a
+ * free vibration e about it, whose energy never grows: |u| <= max |p| + root(e(0)^2 + (e'(0) / w)^2). */
+static inline int may_exceed(const Interval *in, double dt, double largest)
+{
+    const Oscillator *o = in->o;
+    const double rise = -in->slope * o->per_ww, p = -in->a * o->per_ww - 2 * o->zeta * o->w * rise * o->per_ww;
+    const double e = in->y.u - p, de = (in->y.v - rise) * o->w * o->per_ww;
+    const double room = largest - fmax(fabs(p), fabs(p + rise * dt));
+    return !(room >= 0 && e * e + de * de <= room * room);
+}
+
+/* Advances y over an interval and returns the largest |u| in it, or `so_far` where that is larger. */
+static double cross(const Oscillator *o, const Flow *f, State *y, double a, double slope, double dt, double so_far)
 {
     const Interval in = {.o = o, .y = *y, .a = a, .slope = slope};
     *y = advance(o, f, in.y, a, slope);
-    return fmax(fabs(y->u), largest_inside(&in, dt, y->v));
+    if (!may_exceed(&in, dt, so_far))
+        return so_far;
+    return fmax(so_far, fmax(fabs(y->u), largest_inside(&in, dt, y->v)));
 }
 
 static double largest_displacement(const Motion *m, const Oscillator *o)
@@ -145,22 +158,23 @@ static double largest_displacement(const Motion *m, const Oscillator *o)
     double largest = 0;
     for (size_t i = 0; i + 1 < m->n; i++) {
         const double slope = (m->accel[i + 1] - m->accel[i]) / m->dt_s;
-        largest = fmax(largest, cross(o, &f, &y, m->accel[i], slope, m->dt_s));
+        largest = cross(o, &f, &y, m->accel[i], slope, m->dt_s, largest);
     }
     const double half_period = PI / o->wd;
     const Flow rest = flow(o, half_period);
-    return fmax(largest, cross(o, &rest, &y, 0, 0, half_period));
+    return cross(o, &rest, &y, 0, 0, half_period, largest);
 }
 
 void spectrum_psa(const Motion *m, double zeta, size_t n, const double T[], double psa[])
 {
+#pragma omp parallel for schedule(dynamic)
     for (size_t i = 0; i < n; i++) {
         if (!(T[i] > 0)) { /* rigid: moves with the ground */
             psa[i] = motion_peak(m);
             continue;
         }
         const double w = 2 * PI / T[i];
-        const Oscillator o = {.w = w, .zeta = zeta, .wd = w * sqrt(1 - zeta * zeta)};
+        const Oscillator o = {.w = w, .zeta = zeta, .wd = w * sqrt(1 - zeta * zeta), .per_ww = 1 / (w * w)};
         psa[i] = w * w * largest_displacement(m, &o);
     }
 }
