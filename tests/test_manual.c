@@ -68,7 +68,25 @@ static void test_the_nearest_is_suggested_everywhere(void **state)
     expect(65, "there are f1, f2", "optimize @/two.ini --out @/no --set 'search.limits=displacement<=3'");
     free(output_of("optimize @/two.ini --out @/two"));
     expect(2, "did you mean f2?", "choose @/two --max f22=3");
+    expect(65, "did you mean knee?", "evaluate @/two --design kneee --record builtin:kobe-like");
+    expect(65, "no such id on the front of", "polish @/two --design 999 --improve f2");
+    expect(2, "--tied: a linear building is solved in closed form",
+           "simulate configs/quick.ini --design no.csv --tied "
+           "--engine cvode");
     expect(2, "did you mean f2?", "polish @/two --design knee --improve f2m");
+}
+
+static void test_an_empty_front_is_called_empty(void **state)
+{
+    (void)state;
+    free(output_of("optimize @/two.ini --out @/hollow"));
+    char *front = read_in_place("hollow/front.csv");
+    front[strcspn(front, "\n") + 1] = 0;
+    write_in_place("hollow/front.csv", front);
+    free(front);
+    expect(65, "the front is empty", "choose @/hollow");
+    expect(65, "the front is empty", "polish @/hollow --design knee");
+    expect(65, "the front is empty", "evaluate @/hollow --design knee --record builtin:kobe-like");
 }
 
 /* What bash would offer behind these words. */
@@ -148,6 +166,7 @@ int main(void)
         cmocka_unit_test(test_help_of_a_command_is_the_same_both_ways),
         cmocka_unit_test(test_the_version_says_what_the_program_was_built_from),
         cmocka_unit_test(test_the_nearest_is_suggested_everywhere),
+        cmocka_unit_test(test_an_empty_front_is_called_empty),
         cmocka_unit_test(test_bash_offers_commands_options_keys_and_words),
         cmocka_unit_test(test_the_exit_codes_are_those_of_the_documentation),
         cmocka_unit_test(test_a_study_without_one_good_simulation_ends_with_70),

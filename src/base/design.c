@@ -78,6 +78,8 @@ Status design_read(Designs *d, const char *path, int n_floors, Err *err)
     Status status = table_parse(&t, path, text, length, 1, err);
     if (status == STATUS_OK)
         status = check_names(&t, path, n_floors, err);
+    if (status == STATUS_OK && t.n_rows == 0)
+        status = fail(err, STATUS_BAD_DATA, "%s: holds no designs", path);
     if (status == STATUS_OK) {
         *d = (Designs){.n = t.n_rows, .n_floors = n_floors, .x = t.values, .line = calloc(t.n_rows, sizeof *d->line)};
         t.values = NULL;

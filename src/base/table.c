@@ -161,7 +161,7 @@ Status table_parse(Table *t, const char *path, const char *text, size_t length, 
         }
         line = next;
     }
-    if (t->n_rows == 0) {
+    if (t->n_rows == 0 && !t->names) {
         table_free(t);
         return fail(err, STATUS_BAD_DATA, "%s: holds no numbers", path);
     }

@@ -2,6 +2,8 @@
  *
  *   # comment and blank lines are skipped; every other line holds the same number of finite numbers
  *
+ * Below a header there may be no line at all; without one that is refused.
+ *
  * Ownership  table_read allocates names and values; table_free releases them (an empty table is fine). */
 #ifndef IMTET_BASE_TABLE_H
 #define IMTET_BASE_TABLE_H

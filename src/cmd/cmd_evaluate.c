@@ -210,6 +210,16 @@ static Status evaluate_folder(const Args *args, Settings *s, const Chosen *c, js
 
 /* ---- all ------------------------------------------------------------------------------------------------------- */
 
+/* Before anything is simulated or printed. */
+static Status try_records(const Args *args, const Settings *s, Err *err)
+{
+    Settings each = *s;
+    for (int i = 0; i < args->n_given; i++)
+        if (strcmp(args->given[i].option->name, "--record") == 0)
+            TRY(try_record(&each, args->given[i].value, err));
+    return STATUS_OK;
+}
+
 static Status evaluate_all(const Args *args, Settings *s, const Chosen *c, json_t *list, json_t *unreadable, Err *err)
 {
     for (int i = 0; i < args->n_given; i++) {
@@ -224,6 +234,7 @@ static Status evaluate_all(const Args *args, Settings *s, const Chosen *c, json_
 static Status show_all(const Args *args, Settings *s, const Chosen *c, Err *err)
 {
     const long id = front_id(&c->front, c->row);
+    TRY(try_records(args, s, err));
     if (!args_has(args, "--json")) {
         printf("design %ld of %s\n\n", id, args->operand);
         return evaluate_all(args, s, c, NULL, NULL, err);

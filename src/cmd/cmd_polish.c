@@ -73,19 +73,13 @@ static Status take_options(const Args *args, Work *w, Err *err)
 
 static Status open_run(const Args *args, Work *w, Err *err)
 {
-    char path[PATH_MAX], *end;
     const char *id = args_value(args, "--design");
     if (!id)
         return fail(err, STATUS_USAGE, "--design ID is missing; %s/front.csv lists them, knee is one too",
                     args->operand);
-    snprintf(path, sizeof path, "%s/settings.ini", args->operand);
-    settings_defaults(&w->settings);
-    TRY(settings_read(&w->settings, path, NULL, NULL, err));
+    TRY(run_settings(&w->settings, args->operand, err));
     TRY(front_read(&w->front, args->operand, err));
-    w->row =
-        strcmp(id, "knee") == 0 && w->front.n > 0 ? front_knee(&w->front) : front_find(&w->front, strtol(id, &end, 10));
-    if (w->row == w->front.n)
-        return fail(err, STATUS_BAD_DATA, "--design %.40s: no such id on the front", id);
+    TRY(front_pick(&w->front, args->operand, id, &w->row, err));
     TRY(take_options(args, w, err));
     return subject_open(&w->subject, &w->settings, err);
 }

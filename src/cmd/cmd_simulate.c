@@ -178,6 +178,10 @@ static Status run(const Args *args, Err *err)
     Job job = {0};
     TRY(choose_kind(args, &job, err));
     TRY(args_settings(args, &s, NULL, NULL, err));
+    if (job.kind == SCENE_TIED && s.sim.engine != ENGINE_FAST)
+        return fail(err, STATUS_USAGE,
+                    "--tied: a linear building is solved in closed form, no other engine does it; leave sim.engine at "
+                    "fast");
     TRY(world_open(&w, &s, err));
     Status status = lay_out_job(args, &job, scene_n_floors(w.scene), err);
     if (status == STATUS_OK)

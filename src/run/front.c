@@ -129,6 +129,15 @@ size_t front_find(const Front *front, long id)
     return i;
 }
 
+static size_t nearest_id(const Front *front, long id)
+{
+    size_t nearest = 0;
+    for (size_t i = 1; i < front->n; i++)
+        if (labs(front_id(front, i) - id) < labs(front_id(front, nearest) - id))
+            nearest = i;
+    return nearest;
+}
+
 Status front_pick(const Front *front, const char *folder, const char *word, size_t *row, Err *err)
 {
     char *end;
@@ -138,10 +147,14 @@ Status front_pick(const Front *front, const char *folder, const char *word, size
         *row = front_knee(front);
         return STATUS_OK;
     }
-    *row = front_find(front, strtol(word, &end, 10));
-    if (end == word || *end || *row == front->n)
+    const long id = strtol(word, &end, 10);
+    if (end == word || *end)
         return fail(err, STATUS_BAD_DATA,
-                    "--design %.40s: no such id on the front; the column id of %s/front.csv has them", word, folder);
+                    "--design %.40s: neither an id of %s/front.csv nor a word; did you mean knee?", word, folder);
+    *row = front_find(front, id);
+    if (*row == front->n)
+        return fail(err, STATUS_BAD_DATA, "--design %ld: no such id on the front of %s; the nearest is %ld", id, folder,
+                    front_id(front, nearest_id(front, id)));
     return STATUS_OK;
 }
 
