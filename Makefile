@@ -28,7 +28,7 @@ CFLAGS   += -std=c17 -fopenmp -ffp-contract=fast $(WARNINGS) $(CFLAGS.$(MODE))
 LDFLAGS  += -fopenmp $(CFLAGS.$(MODE))
 LDLIBS   += -lsundials_cvode -lsundials_arkode -lsundials_nvecserial -lsundials_sunmatrixdense -lsundials_sunlinsoldense \
             -lsundials_sunnonlinsolnewton -lsundials_sunnonlinsolfixedpoint \
-            -lnlopt -llapacke -lopenblas -linih -ljansson -lm
+            -lnlopt -llapacke -lopenblas -linih -ljansson -lsqlite3 -lm
 # Our own kernels are written for the vectorizer; everything else is happy with -O2.
 $(BUILD)/src/sim/%.o: CFLAGS.release := -O3 -g
 

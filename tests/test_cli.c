@@ -398,18 +398,18 @@ static void test_the_front_holds_nondominated_designs_in_the_search_box(void **s
     free(path);
 }
 
-static void test_a_folder_with_a_run_is_refused_or_numbered(void **state)
+static void test_a_run_that_is_finished_is_shown_again_and_a_new_one_gets_a_number(void **state)
 {
     (void)state;
     Said s;
     char *before = read_in_place("threads-1/front.csv");
-    run(&s, SMALL_STUDY "--out @/threads-1");
-    assert_int_equal(s.code, 74);
-    assert_non_null(strstr(s.err, "holds a run already"));
+    run(&s, SMALL_STUDY "--threads 2 --out @/threads-1");
+    assert_int_equal(s.code, 0);
+    assert_non_null(strstr(s.out, "finished before"));
     forget(&s);
     char *after = read_in_place("threads-1/front.csv");
     assert_string_equal(before, after);
-    run(&s, SMALL_STUDY "--set run.out=@/threads-1");
+    run(&s, SMALL_STUDY "--new --set run.out=@/threads-1");
     assert_int_equal(s.code, 0);
     assert_non_null(strstr(s.out, "threads-1-2/front.csv"));
     forget(&s);
@@ -677,7 +677,7 @@ int main(void)
         cmocka_unit_test(test_the_front_has_the_same_bytes_at_any_number_of_threads),
         cmocka_unit_test(test_a_run_is_repeated_from_its_own_folder),
         cmocka_unit_test(test_the_front_holds_nondominated_designs_in_the_search_box),
-        cmocka_unit_test(test_a_folder_with_a_run_is_refused_or_numbered),
+        cmocka_unit_test(test_a_run_that_is_finished_is_shown_again_and_a_new_one_gets_a_number),
         cmocka_unit_test(test_the_export_is_the_front),
         cmocka_unit_test(test_a_design_of_the_front_is_evaluated_on_other_motions),
         cmocka_unit_test(test_a_design_is_evaluated_on_every_motion_of_a_folder),

@@ -112,7 +112,7 @@ static void change_everything(Settings *s)
         {"sim.engine", "cvode"},
         {"sim.accuracy", "fine"},
         {"search.seed", "4294967295"},
-        {"search.max_evals", "1000000000"},
+        {"search.max_evals", "1000000"},
         {"run.out", "a/folder"},
     };
     settings_defaults(s);

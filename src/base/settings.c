@@ -5,6 +5,7 @@
 #include <float.h>
 #include <ini.h>
 #include <limits.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -112,7 +113,7 @@ static const Option OPTIONS[] = {
     {"search.initial", "-", WHOLE, AT(search.initial), "0", 0, 1000000, NULL,
      "designs of the Latin hypercube start, no more than max_evals; 0: by the number of variables"},
     {"search.generations", "-", WHOLE, AT(search.generations), "1000", 1, 1e9, NULL, "stop after so many"},
-    {"search.max_evals", "-", WHOLE, AT(search.max_evals), "2000", 4, 1e9, NULL, "stop after so many simulations"},
+    {"search.max_evals", "-", WHOLE, AT(search.max_evals), "2000", 4, 1e6, NULL, "stop after so many simulations"},
     {"search.max_hours", "h", REAL, AT(search.max_hours), "0", 0, 1e4, NULL, "stop after so long; 0: no limit"},
     {"search.nondominated_share", "-", REAL, AT(search.nondominated_share), "1", 0, 1, NULL,
      "stop when this share of all simulated designs is nondominated; 1: never"},
@@ -170,11 +171,11 @@ static int word_index(const char *words, const char *value)
     return -1;
 }
 
-static void print_word(FILE *out, const char *words, long index)
+static void format_word(char text[SETTINGS_TEXT_MAX], const char *words, long index)
 {
     while (index-- > 0)
         words = strchr(words, '|') + 1;
-    fprintf(out, "%.*s", (int)strcspn(words, "|"), words);
+    snprintf(text, SETTINGS_TEXT_MAX, "%.*s", (int)strcspn(words, "|"), words);
 }
 
 static Status unknown_word(const Option *o, const char *value, Err *err)
@@ -422,26 +423,41 @@ static void report_broken(const size_t fields[3], const char *text, void *user)
     report_fault(r, line, text);
 }
 
+/* Closes the file. */
+static Status read_stream(Reading *r, int *n_faults, Err *err)
+{
+    const int bad_line = ini_parse_stream(next_line, r, take_pair, r);
+    const int read_error = ferror(r->file), whole = feof(r->file);
+    fclose(r->file);
+    free(r->text);
+    if (read_error)
+        return fail(err, STATUS_MISSING, "%s: cannot be read (is it a folder?)", r->path);
+    if (!whole)
+        return fail(err, STATUS_NO_MEMORY, "%s: no memory to read it", r->path);
+    if (bad_line > 0 && r->n_faults == 0)
+        report_fault(r, bad_line, "neither [section] nor key = value");
+    check_rules(r->s, report_broken, r);
+    if (n_faults)
+        *n_faults = r->n_faults;
+    return r->n_faults ? STATUS_BAD_DATA : STATUS_OK;
+}
+
 Status settings_read(Settings *s, const char *path, FILE *faults, int *n_faults, Err *err)
 {
     Reading r = {.s = s, .path = path, .faults = faults, .first = err};
     r.file = fopen(path, "rb");
     if (!r.file)
         return fail(err, status_of_errno(errno, STATUS_MISSING), "%s: %s", path, strerror(errno));
-    const int bad_line = ini_parse_stream(next_line, &r, take_pair, &r);
-    const int read_error = ferror(r.file), whole = feof(r.file);
-    fclose(r.file);
-    free(r.text);
-    if (read_error)
-        return fail(err, STATUS_MISSING, "%s: cannot be read (is it a folder?)", path);
-    if (!whole)
-        return fail(err, STATUS_NO_MEMORY, "%s: no memory to read it", path);
-    if (bad_line > 0 && r.n_faults == 0)
-        report_fault(&r, bad_line, "neither [section] nor key = value");
-    check_rules(s, report_broken, &r);
-    if (n_faults)
-        *n_faults = r.n_faults;
-    return r.n_faults ? STATUS_BAD_DATA : STATUS_OK;
+    return read_stream(&r, n_faults, err);
+}
+
+Status settings_parse(Settings *s, const char *path, const char *text, Err *err)
+{
+    Reading r = {.s = s, .path = path, .first = err};
+    r.file = text[0] ? fmemopen((void *)(uintptr_t)text, strlen(text), "rb") : fopen("/dev/null", "rb");
+    if (!r.file)
+        return fail(err, STATUS_NO_MEMORY, "%s: no memory for its settings", path);
+    return read_stream(&r, NULL, err);
 }
 
 Status settings_set(Settings *s, const char *assignment, Err *err)
@@ -470,15 +486,52 @@ Status settings_check(const Settings *s, Err *err)
 }
 
 /* The fewest digits that read back as the same number. */
-static void print_real(FILE *out, double value)
+static void format_real(double value, char text[SETTINGS_TEXT_MAX])
 {
-    char text[40];
     for (int digits = 6; digits <= 17; digits++) {
-        snprintf(text, sizeof text, "%.*g", digits, value);
+        snprintf(text, SETTINGS_TEXT_MAX, "%.*g", digits, value);
         if (strtod(text, NULL) == value)
             break;
     }
-    fputs(text, out);
+}
+
+static void format_value(const Settings *s, const Option *o, char text[SETTINGS_TEXT_MAX])
+{
+    const void *field = field_of_const(s, o);
+    switch (o->kind) {
+    case REAL:
+        format_real(*(const double *)field, text);
+        break;
+    case WHOLE:
+        snprintf(text, SETTINGS_TEXT_MAX, "%ld", *(const long *)field);
+        break;
+    case CHOICE:
+        format_word(text, o->words, *(const long *)field);
+        break;
+    case TEXT:
+        snprintf(text, SETTINGS_TEXT_MAX, "%s", (const char *)field);
+        break;
+    }
+}
+
+void settings_each(const Settings *s, SettingFn take, void *user)
+{
+    char value[SETTINGS_TEXT_MAX];
+    for (int i = 0; i < N_OPTIONS; i++) {
+        format_value(s, &OPTIONS[i], value);
+        take(OPTIONS[i].key, value, user);
+    }
+}
+
+void settings_compare(const Settings *was, const Settings *is, SettingsDiffFn differs, void *user)
+{
+    char before[SETTINGS_TEXT_MAX], after[SETTINGS_TEXT_MAX];
+    for (int i = 0; i < N_OPTIONS; i++) {
+        format_value(was, &OPTIONS[i], before);
+        format_value(is, &OPTIONS[i], after);
+        if (strcmp(before, after) != 0)
+            differs(OPTIONS[i].key, before, after, user);
+    }
 }
 
 static void describe(const Option *o, FILE *out)
@@ -494,6 +547,7 @@ static void describe(const Option *o, FILE *out)
 void settings_write(const Settings *s, FILE *out, int described)
 {
     const char *section = "";
+    char value[SETTINGS_TEXT_MAX];
     for (int i = 0; i < N_OPTIONS; i++) {
         const Option *o = &OPTIONS[i];
         const int n = (int)strcspn(o->key, ".");
@@ -502,22 +556,7 @@ void settings_write(const Settings *s, FILE *out, int described)
         section = o->key;
         if (described)
             describe(o, out);
-        fprintf(out, "%s = ", o->key + n + 1);
-        const void *field = field_of_const(s, o);
-        switch (o->kind) {
-        case REAL:
-            print_real(out, *(const double *)field);
-            break;
-        case WHOLE:
-            fprintf(out, "%ld", *(const long *)field);
-            break;
-        case CHOICE:
-            print_word(out, o->words, *(const long *)field);
-            break;
-        case TEXT:
-            fputs(field, out);
-            break;
-        }
-        fputc('\n', out);
+        format_value(s, o, value);
+        fprintf(out, "%s = %s\n", o->key + n + 1, value);
     }
 }

@@ -108,6 +108,17 @@ void settings_defaults(Settings *s);
  * there, else from the working directory. faults may be NULL. */
 Status settings_read(Settings *s, const char *path, FILE *faults, int *n_faults, Err *err);
 
+/* The same from text in memory; `path` names it in messages and is where relative paths begin. */
+Status settings_parse(Settings *s, const char *path, const char *text, Err *err);
+
+/* Calls `differs` for every setting that is not the same in both, in the order of the table, values as text. */
+typedef void (*SettingsDiffFn)(const char *key, const char *was, const char *is, void *user);
+void settings_compare(const Settings *was, const Settings *is, SettingsDiffFn differs, void *user);
+
+/* Calls `take` for every setting, in the order of the table. */
+typedef void (*SettingFn)(const char *key, const char *value, void *user);
+void settings_each(const Settings *s, SettingFn take, void *user);
+
 /* "section.key=value" as given to --set. */
 Status settings_set(Settings *s, const char *assignment, Err *err);
 

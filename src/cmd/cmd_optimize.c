@@ -1,26 +1,57 @@
+#include <errno.h>
+#include <limits.h>
+#include <math.h>
+#include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "cmd/commands.h"
 #include "cmd/show.h"
+#include "cmd/signals.h"
 #include "run/front.h"
+#include "run/saved.h"
 #include "run/place.h"
 #include "run/study.h"
 
-enum { QUIET_GENERATIONS = 10 };
+/* How much of a line of the terminal is overwritten by the next. */
+enum { LINE_WIDTH = 100 };
 
 typedef struct {
-    int terminal;
-    size_t max_evals;
+    int terminal, has_told;
 } Telling;
 
-static void tell(const SearchView *view, void *user)
+static void write_duration(double seconds, char text[32])
 {
-    const Telling *t = user;
-    if (!t->terminal && view->generation_now % QUIET_GENERATIONS != 0)
+    const long s = (long)fmin(seconds, 1e7);
+    if (!isfinite(seconds))
+        snprintf(text, 32, "?");
+    else if (s < 3600)
+        snprintf(text, 32, "%ld:%02ld min", s / 60, s % 60);
+    else
+        snprintf(text, 32, "%ld:%02ld h", s / 3600, s / 60 % 60);
+}
+
+/* One line, on a terminal only. */
+static void tell(const StudyProgress *p, void *user)
+{
+    Telling *t = user;
+    const SearchView *v = p->view;
+    char left[32], line[2 * LINE_WIDTH];
+    if (!t->terminal)
         return;
-    fprintf(stderr, "%sgeneration %zu: %zu of %zu simulated, %zu failed, %zu on the front, %.0f s%s",
-            t->terminal ? "\r" : "", view->generation_now, view->n, t->max_evals, view->n_failed, view->n_front,
-            view->seconds, t->terminal ? "  " : "\n");
+    write_duration(study_seconds_left(p), left);
+    snprintf(line, sizeof line,
+             "generation %zu: %zu of %ld simulated, %zu failed, front %zu, hypervolume %.4f, %s left",
+             v->generation_now, v->n, p->settings->search.max_evals, v->n_failed, v->n_front, p->hypervolume, left);
+    fprintf(stderr, "\r%-*s", LINE_WIDTH, line);
+    t->has_told = 1;
+}
+
+static void tell_start(const char *folder, size_t n_simulated, void *user)
+{
+    (void)user;
+    if (n_simulated > 0)
+        fprintf(stderr, "%s: goes on after %zu simulations\n", folder, n_simulated);
 }
 
 static void print_front(const Front *front, const StudySummary *summary)
@@ -53,24 +84,74 @@ static Status report(const StudySummary *summary, Err *err)
                     summary->n_simulated, summary->folder);
     TRY(front_read(&front, summary->folder, err));
     printf("front: %s/front.csv\n%zu nondominated of %zu simulated designs, %zu simulations failed, %.1f s (%s)\n\n",
-           summary->folder, summary->n_front, summary->n_simulated, summary->n_failed, summary->seconds,
+           summary->folder, front.n, summary->n_simulated, summary->n_failed, summary->seconds,
            stop_reason_words(summary->stopped));
     print_front(&front, summary);
+    if (summary->n_simulated == summary->n_before)
+        printf("This run was finished before; nothing new was simulated. --new starts another one.\n");
     front_free(&front);
     return STATUS_OK;
+}
+
+/* The word as a shell takes it. */
+static void print_quoted(FILE *out, const char *word)
+{
+    if (!word[strspn(word, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./+-")]) {
+        fputs(word, out);
+        return;
+    }
+    fputc('\'', out);
+    for (; *word; word++)
+        fputs(*word == '\'' ? "'\\''" : (char[]){*word, 0}, out);
+    fputc('\'', out);
+}
+
+static void tell_how_to_go_on(const StudySummary *summary)
+{
+    fputs("It goes on with:  ", stderr);
+    print_quoted(stderr, program_invocation_name);
+    fputs(" optimize ", stderr);
+    print_quoted(stderr, summary->folder);
+    fputc('\n', stderr);
+}
+
+/* The operand is a settings file, or the folder of a run that is to go on with its own settings. */
+static Status take_settings(const Args *args, Settings *s, Err *err)
+{
+    struct stat there;
+    if (stat(args->operand, &there) != 0 || !S_ISDIR(there.st_mode)) {
+        TRY(args_settings(args, s, NULL, NULL, err));
+        return args_gives(args, "run.out") ? STATUS_OK : place_check(s->run.out, args->operand, err);
+    }
+    char path[PATH_MAX];
+    if (!saved_path(args->operand, path, sizeof path))
+        return fail(err, STATUS_MISSING, "%s: is a folder without a run.sqlite: no run that could go on",
+                    args->operand);
+    TRY(run_settings(s, args->operand, err));
+    if (snprintf(s->run.out, sizeof s->run.out, "%s", args->operand) >= (int)sizeof s->run.out)
+        return fail(err, STATUS_USAGE, "%.200s...: the path is too long", args->operand);
+    TRY(args_apply(args, s, NULL, NULL, err));
+    return settings_check(s, err);
 }
 
 static Status run(const Args *args, Err *err)
 {
     Settings s;
     StudySummary summary;
-    TRY(args_settings(args, &s, NULL, NULL, err));
-    if (!args_gives(args, "run.out"))
-        TRY(place_check(s.run.out, args->operand, err));
-    Telling telling = {isatty(STDERR_FILENO), (size_t)s.search.max_evals};
-    const Status status = study_run(&s, args_has(args, "--out"), tell, &telling, &summary, err);
-    if (telling.terminal)
+    Telling telling = {isatty(STDERR_FILENO), 0};
+    const StudyOptions options = {.fresh = args_has(args, "--new"),
+                                  .force = args_has(args, "--force-settings"),
+                                  .stop = signals_asked,
+                                  .started = tell_start,
+                                  .progress = tell,
+                                  .user = &telling};
+    TRY(take_settings(args, &s, err));
+    signals_catch();
+    const Status status = study_run(&s, &options, &summary, stderr, err);
+    if (telling.has_told)
         fputc('\n', stderr);
+    if (status == STATUS_STOPPED)
+        tell_how_to_go_on(&summary);
     TRY(status);
     return report(&summary, err);
 }
@@ -80,24 +161,30 @@ static const ArgOption OPTIONS[] = {
     OPTION_PGA,
     OPTION_STRETCH,
     OPTION_UNIT,
-    {"--out", "DIR", "run.out", 0, "the run's folder; it must not hold a run yet"},
+    {"--out", "DIR", "run.out", 0, "the run's folder; a run that it holds goes on"},
+    {"--new", NULL, NULL, 0, "a new run in any case: a number is added to a folder that holds one"},
+    {"--force-settings", NULL, NULL, 0, "go on with other limits (simulations, generations, hours)"},
     {"--seed", "N", "search.seed", 0, "same seed, same settings: same front"},
     {"--threads", "N", "search.threads", 0, "0: one per processor"},
     {"--max-evals", "N", "search.max_evals", 0, "stop after so many simulations"},
-    {"--max-hours", "H", "search.max_hours", 0, "stop after so long"},
+    {"--max-hours", "H", "search.max_hours", 0, "stop after so long; it can go on later"},
     OPTION_SET,
     OPTION_END,
 };
 
 const Command CMD_OPTIMIZE = {
     .name = "optimize",
-    .operand = "CONFIG",
+    .operand = "CONFIG|RUN",
     .summary = "search for the Pareto front of designs",
     .example = "imtet optimize configs/quick.ini",
     .details =
         "Searches gaps and wall thicknesses for the designs that no other one beats in all seven objectives, and\n"
         "writes them to DIR/front.csv generation by generation (results/README.md explains every file and\n"
-        "column). Without --out the folder is run.out of CONFIG, with a number added where that holds a run.\n"
+        "column). A run that is there already goes on where it stopped, with the same result as if it never had; its\n"
+        "settings must be the same. `imtet optimize RUN` goes on with a run's own settings. Ctrl-C, SIGTERM and\n"
+        "--max-hours store everything and end with status 75; a second signal ends at once, and costs no more than "
+        "the\n"
+        "simulations under way.\n"
         "With problem.kind = external the simulator is a program of your own (docs/external.md).",
     .options = OPTIONS,
     .run = run,

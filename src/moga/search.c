@@ -306,9 +306,10 @@ static void judge_surface(Search *s, size_t n)
 }
 
 /* Where the surface has nothing new to propose, plain children; where these are all known too, fresh samples. */
-static size_t choose_any_batch(Search *s)
+static size_t choose_any_batch(Search *s, EvaluationKind *kind)
 {
     const size_t n = choose_batch(s);
+    *kind = n > 0 && is_guided(s) ? KIND_INFILL : KIND_OFFSPRING;
     if (n > 0)
         return n;
     make_offspring(s, 1);
@@ -356,10 +357,11 @@ static Status next_generation(Search *s, Err *err)
         TRY(surface_fit(s->surface, &s->archive, s->infill, err));
     surface_predict(s->surface, &s->population, 0, 0);
     make_offspring(s, 0);
-    const size_t n = choose_any_batch(s);
+    EvaluationKind kind;
+    const size_t n = choose_any_batch(s, &kind);
     if (n == 0)
         return sample_again(s, err);
-    TRY(simulate_batch(s, n, KIND_INFILL, err));
+    TRY(simulate_batch(s, n, kind, err));
     judge_surface(s, n);
     renew_population(s, first_new);
     return STATUS_OK;

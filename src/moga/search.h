@@ -31,7 +31,8 @@
 
 #include "moga/problem.h"
 
-typedef enum { KIND_SAMPLED, KIND_INFILL } EvaluationKind;
+/* Latin hypercube; chosen on the surface; plain children, where no surface leads; from outside the search. */
+typedef enum { KIND_SAMPLED, KIND_INFILL, KIND_OFFSPRING, KIND_POLISHED, KIND_COUNT } EvaluationKind;
 
 typedef struct {
     uint32_t seed;

@@ -14,7 +14,10 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { LINE_MAX_BYTES = 1 << 20, READ_BYTES = 1 << 16, WORDS_MAX = 128, GRACE_MS = 1000 };
+enum { LINE_MAX_BYTES = 1 << 20, READ_BYTES = 1 << 16, WORDS_MAX = 128, GRACE_MS = 1000, LOOK_MS = 200 };
+
+/* How long requests under way may still take when no more are wanted. */
+static const double LAST_ANSWERS_S = 5.0;
 
 typedef struct {
     pid_t pid; /* 0: not running */
@@ -25,7 +28,7 @@ typedef struct {
     size_t n_request, n_sent;
     size_t design; /* SIZE_MAX: idle */
     long id;
-    double deadline;
+    double asked, deadline;
 } Worker;
 
 struct External {
@@ -41,8 +44,13 @@ struct External {
 typedef struct {
     size_t n, next, done;
     const double *X;
+    const long *ids; /* (n) or NULL */
     double *F;
     Answer *answers;
+    const Watch *watch;
+    double ending; /* when it was told to stop; 0: it goes on */
+    Status status; /* of the watch */
+    Err *err;
 } Batch;
 
 static double now_s(void)
@@ -196,7 +204,10 @@ __attribute__((format(printf, 5, 6))) static void settle(Batch *b, Worker *w, An
     vsnprintf(a->reason, sizeof a->reason, format, list);
     va_end(list);
     a->outcome = outcome;
+    a->seconds = now_s() - w->asked;
     b->done++;
+    if (b->status == STATUS_OK)
+        b->status = watch_done(b->watch, w->design, b->err);
     w->design = SIZE_MAX;
     if (kill_it)
         worker_kill(w);
@@ -227,10 +238,11 @@ static Status give_design(External *e, Worker *w, Batch *b, Err *err)
         worker_forget(w); /* it ended after its last answer: nobody's fault */
     if (w->pid == 0)
         TRY(worker_start(e, w, err));
-    w->id = e->next_id++;
+    w->id = b->ids ? b->ids[b->next] : e->next_id++;
     TRY(write_request(e, w, b->X + b->next * e->n_var, err));
     w->design = b->next++;
-    w->deadline = now_s() + e->timeout_s;
+    w->asked = now_s();
+    w->deadline = w->asked + e->timeout_s;
     return STATUS_OK;
 }
 
@@ -331,27 +343,56 @@ static void wait_for_workers(External *e)
     if (!(first < INFINITY))
         return;
     const double left_ms = 1e3 * (first - now_s());
-    if (poll(e->poll, 2 * e->n_workers, left_ms > 0.0 ? (int)fmin(ceil(left_ms), 1e6) : 0) <= 0)
+    if (poll(e->poll, 2 * e->n_workers, left_ms > 0.0 ? (int)fmin(ceil(left_ms), LOOK_MS) : 0) <= 0)
         for (size_t i = 0; i < 2 * e->n_workers; i++)
             e->poll[i].revents = 0;
 }
 
-Status external_run(External *e, size_t n, const double X[], double F[], Answer answers[], Err *err)
+/* Idle workers get the next designs, unless it is to end. */
+static Status hand_out(External *e, Batch *b, Err *err)
 {
-    Batch b = {.n = n, .X = X, .F = F, .answers = answers};
-    while (b.done < n) {
-        for (size_t i = 0; i < e->n_workers && b.next < n; i++) {
-            Worker *w = &e->worker[i];
-            if (w->design != SIZE_MAX)
-                continue;
-            TRY(give_design(e, w, &b, err));
-            look_for_answer(e, w, &b); /* a worker that wrote without being asked */
+    if (b->ending == 0.0 && b->done < b->n && !watch_go_on(b->watch))
+        b->ending = now_s();
+    for (size_t i = 0; i < e->n_workers && b->next < b->n && b->ending == 0.0; i++) {
+        Worker *w = &e->worker[i];
+        if (w->design != SIZE_MAX)
+            continue;
+        TRY(give_design(e, w, b, err));
+        look_for_answer(e, w, b); /* a worker that wrote without being asked */
+    }
+    return STATUS_OK;
+}
+
+/* Whoever still works is killed: its design counts as never asked for. */
+static void drop_all(External *e)
+{
+    for (size_t i = 0; i < e->n_workers; i++)
+        if (e->worker[i].design != SIZE_MAX) {
+            e->worker[i].design = SIZE_MAX;
+            worker_kill(&e->worker[i]);
         }
+}
+
+static int is_over(const Batch *b)
+{
+    return b->done == b->n || b->status != STATUS_OK ||
+           (b->ending > 0.0 && (b->done == b->next || now_s() > b->ending + LAST_ANSWERS_S));
+}
+
+Status external_run(External *e, size_t n, const double X[], const long ids[], double F[], Answer answers[],
+                    const Watch *watch, Err *err)
+{
+    Batch b = {.n = n, .X = X, .ids = ids, .F = F, .answers = answers, .watch = watch, .err = err};
+    while (!is_over(&b)) {
+        TRY(hand_out(e, &b, err));
         wait_for_workers(e);
         for (size_t i = 0; i < e->n_workers; i++)
             look_after(e, &e->worker[i], &e->poll[2 * i], &e->poll[2 * i + 1], &b);
     }
-    return STATUS_OK;
+    drop_all(e);
+    if (b.status == STATUS_OK && b.done < n)
+        return fail(err, STATUS_STOPPED, "stopped");
+    return b.status;
 }
 
 Status external_open(External **out, const char *command, size_t workers, double timeout_s, size_t n_var, size_t n_obj,

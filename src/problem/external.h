@@ -17,7 +17,7 @@
 
 #include <stddef.h>
 
-#include "base/status.h"
+#include "base/watch.h"
 
 typedef struct External External;
 
@@ -25,6 +25,7 @@ typedef enum { ANSWER_OK, ANSWER_ERROR, ANSWER_NOT_FINITE, ANSWER_DEAD, ANSWER_T
 typedef struct {
     AnswerOutcome outcome;
     char reason[160];
+    double seconds; /* from the request on */
 } Answer;
 
 /* One word for files: ok, error, ... */
@@ -34,8 +35,11 @@ const char *answer_word(AnswerOutcome outcome);
 Status external_open(External **out, const char *command, size_t workers, double timeout_s, size_t n_var, size_t n_obj,
                      Err *err);
 
-/* X (n, n_var), F (n, n_obj) as the worker gave them, answers (n) */
-Status external_run(External *e, size_t n, const double X[], double F[], Answer answers[], Err *err);
+/* X (n, n_var), F (n, n_obj) as the worker gave them, answers (n); ids (n) of the requests, NULL: counted on. Where the
+ * watch (NULL: nobody) does not let it go on, what is under way gets some seconds to answer, the rest is dropped and
+ * STATUS_STOPPED returned. */
+Status external_run(External *e, size_t n, const double X[], const long ids[], double F[], Answer answers[],
+                    const Watch *watch, Err *err);
 
 /* Closes every worker's input, waits a moment, kills who is left. NULL is fine. */
 void external_close(External *e);

@@ -27,24 +27,56 @@ Status crew_create(Crew **out, const Scene *scene, long threads, Err *err)
     return STATUS_OK;
 }
 
-Status crew_run(Crew *crew, size_t n, const SimTask tasks[], SimResult results[], Err *err)
+/* What ends a batch: of faults the one of the first task, so that the message is the same whoever came first; a fault
+ * of the watch or a stop only where there is no other. */
+typedef struct {
+    size_t first;
+    Status status;
+} End;
+
+static void note_end(End *end, size_t i, Status status, const char *text, Err *err)
 {
-    Status first_status = STATUS_OK;
-    size_t first = n;
+    if (i < end->first || end->status == STATUS_OK) {
+        end->first = i;
+        end->status = fail(err, status, "%s", text);
+    }
+}
+
+Status crew_run_watched(Crew *crew, size_t n, const SimTask tasks[], SimResult results[], const Watch *watch, Err *err)
+{
+    End end = {n, STATUS_OK};
+    int over = 0;
 #pragma omp parallel for schedule(dynamic, 1) num_threads(crew->n)
     for (size_t i = 0; i < n; i++) {
-        Err mine = {0};
-        const Status status =
-            sim_run(crew->worker[omp_get_thread_num()], tasks[i].kind, tasks[i].x, &results[i], &mine);
-        if (status == STATUS_OK)
+        int is_over;
+#pragma omp atomic read
+        is_over = over;
+        if (is_over)
             continue;
-#pragma omp critical(crew_fault)
-        if (i < first) { /* the same message whoever came first */
-            first = i;
-            first_status = fail(err, status, "%s", mine.text);
+        Err mine = {0};
+        const int wanted = watch_go_on(watch);
+        Status status = wanted
+                            ? sim_run(crew->worker[omp_get_thread_num()], tasks[i].kind, tasks[i].x, &results[i], &mine)
+                            : fail(&mine, STATUS_STOPPED, "stopped");
+        const size_t rank = status == STATUS_OK || !wanted ? n : i;
+#pragma omp critical(crew_end)
+        {
+            if (status == STATUS_OK)
+                status = watch_done(watch, i, &mine);
+            if (status != STATUS_OK)
+                note_end(&end, rank, status, mine.text, err);
+        }
+        if (status != STATUS_OK && rank == n) {
+#pragma omp atomic write
+            over = 1;
         }
     }
-    return first_status;
+    return end.status;
+}
+
+Status crew_run(Crew *crew, size_t n, const SimTask tasks[], SimResult results[], Err *err)
+{
+    return crew_run_watched(crew, n, tasks, results, NULL, err);
 }
 
 void crew_free(Crew *crew)

@@ -7,6 +7,7 @@
 #ifndef IMTET_RUN_CREW_H
 #define IMTET_RUN_CREW_H
 
+#include "base/watch.h"
 #include "sim/sim.h"
 
 typedef struct Crew Crew;
@@ -19,6 +20,10 @@ typedef struct {
 /* threads 0: one per processor */
 Status crew_create(Crew **out, const Scene *scene, long threads, Err *err);
 Status crew_run(Crew *crew, size_t n, const SimTask tasks[], SimResult results[], Err *err);
+
+/* The same with somebody looking on (NULL: nobody). Where the watch does not let it go on, what is under way is
+ * finished and STATUS_STOPPED returned. */
+Status crew_run_watched(Crew *crew, size_t n, const SimTask tasks[], SimResult results[], const Watch *watch, Err *err);
 void crew_free(Crew *crew); /* NULL is fine */
 
 #endif

@@ -7,6 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "run/saved.h"
 #include "run/measures.h"
 
 static Status check_columns(const Front *front, const char *path, Err *err)
@@ -41,10 +42,44 @@ static Status find_schema(Front *front, const char *folder, const char *path, Er
     return check_columns(front, path, err);
 }
 
+/* id, variables, objectives of the designs on the front; the columns pass over to it. */
+static Status take_front(Front *front, Saved *h, Err *err)
+{
+    const size_t n_cols = 1 + h->schema.n_var + h->schema.n_obj;
+    front->table = (Table){.n_cols = n_cols, .values = calloc(h->n_front * n_cols + 1, sizeof(double))};
+    if (!front->table.values)
+        return fail(err, STATUS_NO_MEMORY, "no memory for a front of %zu designs", h->n_front);
+    for (size_t i = 0; i < h->n; i++) {
+        if (!h->row[i].on_front)
+            continue;
+        double *to = front->table.values + front->table.n_rows++ * n_cols;
+        to[0] = (double)h->row[i].id;
+        memcpy(to + 1, h->X + i * h->schema.n_var, h->schema.n_var * sizeof *to);
+        memcpy(to + 1 + h->schema.n_var, h->F + i * h->schema.n_obj, h->schema.n_obj * sizeof *to);
+    }
+    front->schema = h->schema;
+    h->schema = (Schema){0};
+    front->n = front->table.n_rows;
+    front->n_var = (int)front->schema.n_var;
+    front->n_obj = front->schema.n_obj;
+    return STATUS_OK;
+}
+
+static Status read_database(Front *front, const char *folder, Err *err)
+{
+    Saved h;
+    TRY(saved_read(&h, folder, err));
+    const Status status = take_front(front, &h, err);
+    saved_free(&h);
+    return status;
+}
+
 Status front_read(Front *front, const char *folder, Err *err)
 {
     char path[PATH_MAX];
     memset(front, 0, sizeof *front);
+    if (saved_path(folder, path, sizeof path))
+        return read_database(front, folder, err);
     if (snprintf(path, sizeof path, "%s/front.csv", folder) >= (int)sizeof path)
         return fail(err, STATUS_MISSING, "%.200s...: the path is too long", folder);
     TRY(table_read(&front->table, path, 1, err));
@@ -156,15 +191,6 @@ Status front_pick(const Front *front, const char *folder, const char *word, size
         return fail(err, STATUS_BAD_DATA, "--design %ld: no such id on the front of %s; the nearest is %ld", id, folder,
                     front_id(front, nearest_id(front, id)));
     return STATUS_OK;
-}
-
-Status run_settings(Settings *s, const char *folder, Err *err)
-{
-    char path[PATH_MAX];
-    settings_defaults(s);
-    if (snprintf(path, sizeof path, "%s/settings.ini", folder) >= (int)sizeof path)
-        return fail(err, STATUS_MISSING, "%.200s...: the path is too long", folder);
-    return settings_read(s, path, NULL, NULL, err);
 }
 
 void front_free(Front *front)

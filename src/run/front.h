@@ -1,5 +1,7 @@
 /* run/front.h -- the front of a run, read back from its folder, and the designs that stand out in it.
  *
+ * It is taken from the run's database; from front.csv where there is none.
+ *
  * Knee       the design nearest to the ideal point when every objective is scaled to 0..1 over the front (Euclid)
  * Ownership  front_read allocates, front_free releases (an empty Front is fine)
  * Values     natural signs, as in front.csv */
@@ -34,7 +36,7 @@ size_t front_find(const Front *front, long id);
 /* `word`: an id of the front or "knee"; folder only names it in messages. An empty front has neither. */
 Status front_pick(const Front *front, const char *folder, const char *word, size_t *row, Err *err);
 
-/* FOLDER/settings.ini over the defaults; what a run was made with. */
+/* What a run was made with: of its database, or of settings.ini where there is none (run/saved.c). */
 Status run_settings(Settings *s, const char *folder, Err *err);
 void front_free(Front *front);
 

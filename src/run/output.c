@@ -40,8 +40,7 @@ Status output_sync(FILE *stream, const char *path, Err *err)
     return STATUS_OK;
 }
 
-/* A rename is on the disk when its folder is. Not every file system allows it: then the file is still whole. */
-static void sync_folder(const char *path)
+void output_sync_folder(const char *path)
 {
     char folder[PATH_MAX];
     const char *slash = strrchr(path, '/');
@@ -65,7 +64,7 @@ Status output_close(Output *o, Err *err)
         status =
             fail(err, status_of_errno(errno, STATUS_IO), "%s: cannot be put in place: %s", o->path, strerror(errno));
     if (status == STATUS_OK)
-        sync_folder(o->path);
+        output_sync_folder(o->path);
     else
         unlink(o->temporary);
     return status;

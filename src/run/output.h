@@ -24,6 +24,10 @@ void output_abandon(Output *o); /* a closed Output is fine */
 /* Flushed to the disk, or STATUS_IO. */
 Status output_sync(FILE *stream, const char *path, Err *err);
 
+/* A rename is on the disk when the folder of `path` is. Not every file system allows it: then the file is still whole.
+ */
+void output_sync_folder(const char *path);
+
 /* The fewest digits (15 to 17) that read back as the same number; nothing for one that is not finite. */
 void print_number(FILE *stream, double value);
 

@@ -5,11 +5,11 @@
 #include <jansson.h>
 #include <limits.h>
 #include <nlopt.h>
+#include <sqlite3.h>
 #include <sundials/sundials_version.h>
 #include <time.h>
 #include <unistd.h>
 
-#include "run/output.h"
 #include "scene/building.h"
 #include "sim/fast/fast.h"
 
@@ -41,9 +41,9 @@ static json_t *libraries(void)
     SUNDIALSGetVersion(sundials, (int)sizeof sundials);
     nlopt_version(&major, &minor, &fix);
     snprintf(nlopt, sizeof nlopt, "%d.%d.%d", major, minor, fix);
-    return json_pack("{s:s, s:s, s:s, s:s, s:s, s:s}", "sundials", sundials, "nlopt", nlopt, "openblas",
-                     openblas_get_config(), "jansson", jansson_version_str(), "inih", "as packaged by the system",
-                     "random123", "as packaged by the system");
+    return json_pack("{s:s, s:s, s:s, s:s, s:s, s:s, s:s}", "sqlite", sqlite3_libversion(), "sundials", sundials,
+                     "nlopt", nlopt, "openblas", openblas_get_config(), "jansson", jansson_version_str(), "inih",
+                     "as packaged by the system", "random123", "as packaged by the system");
 }
 
 json_t *program_description(void)
@@ -77,47 +77,45 @@ static json_t *machine(int threads)
                      "threads", threads, "started", started);
 }
 
-static json_t *inputs_of_tower(const World *w, uint64_t building_hash, int n_floors)
-{
-    char record[24], matrices[24];
-    snprintf(record, sizeof record, "%016" PRIx64, w->motion.file_hash);
-    snprintf(matrices, sizeof matrices, "%016" PRIx64, building_hash);
-    return json_pack("{s:s, s:s, s:s, s:s, s:I, s:f, s:s, s:i, s:s}", "record", w->settings.motion.record,
-                     "record_format", w->motion.format, "record_channel", w->motion.channel, "record_fnv1a", record,
-                     "samples", (json_int_t)w->motion.n, "step_s", w->motion.dt_s, "building",
-                     w->settings.building.model, "floors", n_floors, "matrices_fnv1a", matrices);
-}
-
-static Status inputs(json_t **out, const Settings *s, const World *w, Err *err)
+Status provenance_inputs(Inputs *out, const World *w, Err *err)
 {
     Building b;
-    if (!w) {
-        *out = json_pack("{s:s}", "command", s->problem.kind == PROBLEM_EXTERNAL ? s->problem.command : "built in");
+    *out = (Inputs){0};
+    if (!w)
         return STATUS_OK;
-    }
-    TRY(building_load(&b, s->building.model, err));
-    *out = inputs_of_tower(w, b.hash, b.n);
+    TRY(building_load(&b, w->settings.building.model, err));
+    *out = (Inputs){w->motion.file_hash, b.hash};
     building_free(&b);
     return STATUS_OK;
 }
 
-Status provenance_write(const char *folder, const Settings *s, const World *w, int threads, Err *err)
+static json_t *inputs_of_tower(const World *w, const Inputs *hashes)
 {
-    char path[PATH_MAX];
-    Output o;
-    json_t *made_of = NULL;
-    snprintf(path, sizeof path, "%s/provenance.json", folder);
-    TRY(inputs(&made_of, s, w, err));
+    char record[24], matrices[24];
+    snprintf(record, sizeof record, "%016" PRIx64, hashes->record);
+    snprintf(matrices, sizeof matrices, "%016" PRIx64, hashes->matrices);
+    return json_pack("{s:s, s:s, s:s, s:s, s:I, s:f, s:s, s:i, s:s}", "record", w->settings.motion.record,
+                     "record_format", w->motion.format, "record_channel", w->motion.channel, "record_fnv1a", record,
+                     "samples", (json_int_t)w->motion.n, "step_s", w->motion.dt_s, "building",
+                     w->settings.building.model, "floors", scene_n_floors(w->scene), "matrices_fnv1a", matrices);
+}
+
+static json_t *inputs(const Settings *s, const World *w, const Inputs *hashes)
+{
+    return w ? inputs_of_tower(w, hashes)
+             : json_pack("{s:s}", "command", s->problem.kind == PROBLEM_EXTERNAL ? s->problem.command : "built in");
+}
+
+Status provenance_text(char **out, const Settings *s, const World *w, int threads, Err *err)
+{
+    Inputs hashes;
+    *out = NULL;
+    TRY(provenance_inputs(&hashes, w, err));
     json_t *all = program_description();
-    if (json_object_set_new(all, "seed", json_integer(s->search.seed)) != 0 ||
-        json_object_set_new(all, "machine", machine(threads)) != 0 || json_object_set_new(all, "inputs", made_of) != 0)
-        return fail(err, STATUS_NO_MEMORY, "%s: cannot be put together", path);
-    Status status = output_open(&o, path, err);
-    if (status == STATUS_OK) {
-        json_dumpf(all, o.stream, JSON_INDENT(2) | JSON_REAL_PRECISION(17)); /* a failed write is seen on closing */
-        fputc('\n', o.stream);
-        status = output_close(&o, err);
-    }
+    if (json_object_set_new(all, "seed", json_integer(s->search.seed)) == 0 &&
+        json_object_set_new(all, "machine", machine(threads)) == 0 &&
+        json_object_set_new(all, "inputs", inputs(s, w, &hashes)) == 0)
+        *out = json_dumps(all, JSON_INDENT(2) | JSON_REAL_PRECISION(17));
     json_decref(all);
-    return status;
+    return *out ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for the provenance");
 }

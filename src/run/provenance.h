@@ -13,7 +13,13 @@ const char *program_revision(void); /* as git describes it, or unknown */
 /* Version, revision, compiler and its flags, libraries. NULL: out of memory. */
 json_t *program_description(void);
 
-/* FOLDER/provenance.json; w NULL: no tower */
-Status provenance_write(const char *folder, const Settings *s, const World *w, int threads, Err *err);
+/* As JSON, to be freed by the caller; w NULL: no tower */
+Status provenance_text(char **out, const Settings *s, const World *w, int threads, Err *err);
+
+/* What a run depends on beside its settings: hashes of record and matrices, 0 where there are none. */
+typedef struct {
+    uint64_t record, matrices;
+} Inputs;
+Status provenance_inputs(Inputs *out, const World *w, Err *err);
 
 #endif

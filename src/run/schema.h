@@ -40,6 +40,7 @@ void schema_free(Schema *schema);
 typedef struct {
     char outcome[16], reason[160];
     double extra[EXTRA_MAX];
+    double seconds; /* that it took */
 } Verdict;
 
 /* The reason becomes a cell of a CSV file (base/cell.h). */

@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <limits.h>
+#include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,20 +10,67 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "moga/cover.h"
+#include "run/export.h"
+#include "run/lock.h"
 #include "run/output.h"
 
 struct RunStore {
     char folder[PATH_MAX - 64];
     const Schema *schema;
-    FILE *evaluations, *log;
+    int lock;
+    Database *db;
+    Saved saved; /* of a run that goes on */
+    int has_saved, has_polished;
+
+    int in_transaction;
+    double last_commit;          /* [s] */
+    size_t n_exported;           /* designs in evaluations.csv */
+    unsigned char *was_on_front; /* (n_flags) at the end of the last generation */
+    size_t n_flags;
+    Cover *cover; /* NULL: no design has succeeded yet */
+    size_t n_covered;
+    long session;
+    FILE *evaluations, *log, *events;
 };
 
-static const char *const KIND_WORDS[] = {[KIND_SAMPLED] = "sampled", [KIND_INFILL] = "infill"};
+static double now_s(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static void utc(char text[24])
+{
+    struct tm parts;
+    const time_t now = time(NULL);
+    gmtime_r(&now, &parts);
+    strftime(text, 24, "%FT%TZ", &parts);
+}
 
 static void path_in(const RunStore *store, const char *name, char path[PATH_MAX])
 {
     snprintf(path, PATH_MAX, "%s/%s", store->folder, name);
 }
+
+const char *store_folder(const RunStore *store)
+{
+    return store->folder;
+}
+
+const Saved *store_saved(const RunStore *store)
+{
+    return store->has_saved ? &store->saved : NULL;
+}
+
+double store_hypervolume(const RunStore *store)
+{
+    return store->cover ? cover_share(store->cover) : NAN;
+}
+
+/* -- the folder -----------------------------------------------------------------------------------------------------
+ */
 
 static Status make_folders(const char *folder, Err *err)
 {
@@ -38,157 +86,553 @@ static Status make_folders(const char *folder, Err *err)
     }
 }
 
-static int holds_run(const RunStore *store)
+static int has_file(const RunStore *store, const char *name)
 {
-    static const char *const SIGNS[] = {"front.csv", "settings.ini", "evaluations.csv", "log.txt"};
     char path[PATH_MAX];
-    int found = 0;
-    for (size_t i = 0; i < sizeof SIGNS / sizeof SIGNS[0]; i++) {
-        path_in(store, SIGNS[i], path);
-        found = found || access(path, F_OK) == 0;
-    }
-    return found;
+    path_in(store, name, path);
+    return access(path, F_OK) == 0;
 }
 
-/* The log is created exclusively, so that of two runs started together one is refused. taken: somebody else has it. */
-static Status claim(RunStore *store, int *taken, Err *err)
+/* Of a version without a database: nothing to go on from. */
+static int holds_old_run(const RunStore *store)
+{
+    return !has_file(store, "run.sqlite") && (has_file(store, "front.csv") || has_file(store, "evaluations.csv"));
+}
+
+static Status take_lock(RunStore *store, Err *err)
 {
     char path[PATH_MAX];
-    *taken = holds_run(store);
-    if (*taken)
-        return STATUS_OK;
     TRY(make_folders(store->folder, err));
-    path_in(store, "log.txt", path);
-    store->log = fopen(path, "wx");
-    *taken = !store->log && errno == EEXIST;
-    if (!store->log && !*taken)
-        return fail(err, STATUS_IO, "%s: cannot be written: %s", path, strerror(errno));
-    return STATUS_OK;
+    path_in(store, "lock", path);
+    return lock_take(path, &store->lock, err);
 }
 
-static Status find_folder(RunStore *store, const char *folder, int exact, Err *err)
+static Status take_free_folder(RunStore *store, const char *folder, Err *err)
 {
-    int taken = 1;
-    for (int i = 1; taken; i++) {
-        const int n = i == 1 ? snprintf(store->folder, sizeof store->folder, "%s", folder)
-                             : snprintf(store->folder, sizeof store->folder, "%s-%d", folder, i);
-        if (n >= (int)sizeof store->folder)
+    char lock[PATH_MAX];
+    LockHolder holder;
+    for (int i = 2;; i++) {
+        path_in(store, "lock", lock);
+        if (!has_file(store, "run.sqlite") && !holds_old_run(store) && !lock_is_held(lock, &holder))
+            return take_lock(store, err);
+        if (snprintf(store->folder, sizeof store->folder, "%s-%d", folder, i) >= (int)sizeof store->folder)
             return fail(err, STATUS_IO, "%.200s...: the path is too long", folder);
-        TRY(claim(store, &taken, err));
-        if (taken && exact)
-            return fail(err, STATUS_IO, "%s: holds a run already, and nothing is overwritten; choose another --out",
-                        folder);
     }
-    return STATUS_OK;
 }
 
-static void write_names(FILE *f, const char *before, const Schema *schema, size_t n_extra)
-{
-    fputs(before, f);
-    for (size_t j = 0; j < schema->n_var; j++)
-        fprintf(f, ",%s", schema_variable(schema, j)->name);
-    for (size_t k = 0; k < schema->n_obj; k++)
-        fprintf(f, ",%s", schema_objective(schema, k)->name);
-    for (size_t k = 0; k < n_extra; k++)
-        fprintf(f, ",%s", schema_extra(schema, k)->name);
-    fputc('\n', f);
-}
-
-static Status open_evaluations(RunStore *store, Err *err)
+static Status open_database(RunStore *store, Err *err)
 {
     char path[PATH_MAX];
-    path_in(store, "evaluations.csv", path);
-    store->evaluations = fopen(path, "wx");
-    if (!store->evaluations)
-        return fail(err, STATUS_IO, "%s: cannot be written: %s", path, strerror(errno));
-    write_names(store->evaluations, "id,generation,kind,outcome,reason", store->schema, store->schema->n_extra);
-    return output_sync(store->evaluations, path, err);
+    path_in(store, "run.sqlite", path);
+    return database_open(&store->db, path, DATABASE_WRITE, err);
 }
 
-Status store_create(RunStore **out, const char *folder, int exact, const Schema *schema, Err *err)
+static Status take_run(RunStore *store, Err *err)
+{
+    if (holds_old_run(store))
+        return fail(err, STATUS_IO,
+                    "%s: holds a run without a database, which cannot go on; choose another --out, or --new",
+                    store->folder);
+    TRY(take_lock(store, err));
+    if (!has_file(store, "run.sqlite"))
+        return STATUS_OK;
+    TRY(open_database(store, err));
+    TRY(saved_load(&store->saved, store->db, err));
+    store->has_saved = 1;
+    store->has_polished = store->saved.n > 0 && store->saved.row[store->saved.n - 1].id >= POLISHED_FIRST;
+    return STATUS_OK;
+}
+
+Status store_open(RunStore **out, const char *folder, int fresh, Err *err)
 {
     *out = NULL;
     RunStore *store = calloc(1, sizeof *store);
     if (!store)
         return fail(err, STATUS_NO_MEMORY, "no memory for a run");
-    store->schema = schema;
-    Status status = find_folder(store, folder, exact, err);
+    store->lock = -1;
+    Status status;
+    if (snprintf(store->folder, sizeof store->folder, "%s", folder) >= (int)sizeof store->folder)
+        status = fail(err, STATUS_IO, "%.200s...: the path is too long", folder);
+    else
+        status = fresh ? take_free_folder(store, folder, err) : take_run(store, err);
     if (status == STATUS_OK)
-        status = open_evaluations(store, err);
-    if (status != STATUS_OK) {
+        *out = store;
+    else
         store_free(store);
-        return status;
-    }
-    *out = store;
+    return status;
+}
+
+/* -- the files beside the database ----------------------------------------------------------------------------------
+ */
+
+typedef void (*WriteFn)(FILE *f, const void *content);
+
+static Status write_file(const RunStore *store, const char *name, WriteFn write, const void *content, Err *err)
+{
+    char path[PATH_MAX];
+    Output o;
+    path_in(store, name, path);
+    TRY(output_open(&o, path, err));
+    write(o.stream, content);
+    return output_close(&o, err);
+}
+
+static void put_settings(FILE *f, const void *settings)
+{
+    settings_write(settings, f, 0);
+}
+
+static void put_line(FILE *f, const void *text)
+{
+    fprintf(f, "%s\n", (const char *)text);
+}
+
+static void put_front(FILE *f, const void *saved)
+{
+    export_front(f, saved);
+}
+
+static void put_evaluations(FILE *f, const void *saved)
+{
+    export_evaluations_header(f, &((const Saved *)saved)->schema);
+    export_evaluations(f, saved);
+}
+
+static Status open_to_append(const RunStore *store, const char *name, FILE **f, Err *err)
+{
+    char path[PATH_MAX];
+    path_in(store, name, path);
+    *f = fopen(path, "ae");
+    return *f ? STATUS_OK : fail(err, STATUS_IO, "%s: cannot be written: %s", path, strerror(errno));
+}
+
+static Status open_logs(RunStore *store, Err *err)
+{
+    TRY(open_to_append(store, "log.txt", &store->log, err));
+    return open_to_append(store, "log.jsonl", &store->events, err);
+}
+
+/* -- the database ---------------------------------------------------------------------------------------------------
+ */
+
+static const char TABLES[] =
+    "CREATE TABLE run(id INTEGER PRIMARY KEY CHECK (id = 1), settings TEXT NOT NULL, provenance TEXT NOT NULL,"
+    " planned_evals INTEGER NOT NULL, n_var INTEGER NOT NULL, created TEXT NOT NULL);"
+    "CREATE TABLE evaluation(id INTEGER PRIMARY KEY, generation INTEGER NOT NULL, kind TEXT, outcome TEXT NOT NULL,"
+    " reason TEXT NOT NULL, seconds REAL, x TEXT NOT NULL, f TEXT, spread TEXT, violation REAL, extra TEXT);"
+    "CREATE TABLE generation(number INTEGER PRIMARY KEY, simulated INTEGER NOT NULL, failed INTEGER NOT NULL,"
+    " front INTEGER NOT NULL, predicted INTEGER NOT NULL, surrogate_error REAL, hypervolume REAL, seconds REAL NOT "
+    "NULL,"
+    " finished TEXT NOT NULL);"
+    "CREATE TABLE front(evaluation INTEGER PRIMARY KEY REFERENCES evaluation(id), entered INTEGER NOT NULL,"
+    " left INTEGER);"
+    "CREATE TABLE state(id INTEGER PRIMARY KEY CHECK (id = 1), generation INTEGER NOT NULL, bytes BLOB NOT NULL);"
+    "CREATE TABLE session(number INTEGER PRIMARY KEY, started TEXT NOT NULL, ended TEXT, host TEXT, pid INTEGER,"
+    " program TEXT, threads INTEGER, simulated_before INTEGER, seconds REAL, stopped TEXT, is_final INTEGER);";
+
+/* Names become identifiers of SQL: in double quotes, which are doubled inside. */
+static void put_name(FILE *f, const char *name)
+{
+    fputc('"', f);
+    for (; *name; name++)
+        fputs(*name == '"' ? "\"\"" : (char[]){*name, 0}, f);
+    fputc('"', f);
+}
+
+enum { VIEW_COLUMNS_MAX = 1000 };
+
+/* The evaluations with a column per variable, objective and measure. */
+static Status create_view(RunStore *store, Err *err)
+{
+    const Schema *s = store->schema;
+    const struct {
+        const char *list;
+        size_t first, n;
+    } part[] = {{"x", 0, s->n_var}, {"f", s->n_var, s->n_obj}, {"extra", s->n_var + s->n_obj, s->n_extra}};
+    char *sql = NULL;
+    size_t length;
+    if (s->n_var + s->n_obj + s->n_extra > VIEW_COLUMNS_MAX)
+        return STATUS_OK;
+    FILE *f = open_memstream(&sql, &length);
+    if (!f)
+        return fail(err, STATUS_NO_MEMORY, "no memory for the names of the columns");
+    fputs("CREATE VIEW designs AS SELECT id, generation, kind, outcome, reason, seconds", f);
+    for (size_t p = 0; p < 3; p++)
+        for (size_t j = 0; j < part[p].n; j++) {
+            fprintf(f, ", json_extract(%s, '$[%zu]') AS ", part[p].list, j);
+            put_name(f, s->column[part[p].first + j].name);
+        }
+    fputs(" FROM evaluation", f);
+    const Status status = fclose(f) == 0 ? database_do(store->db, err, sql, "")
+                                         : fail(err, STATUS_NO_MEMORY, "no memory for the names of the columns");
+    free(sql);
+    return status;
+}
+
+static Status settings_text(const Settings *s, char **text, Err *err)
+{
+    size_t length;
+    FILE *f = open_memstream(text, &length);
+    if (f)
+        settings_write(s, f, 0);
+    return f && fclose(f) == 0 ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for the settings");
+}
+
+static Status fill_new_database(RunStore *store, const Settings *used, const char *provenance, Err *err)
+{
+    char created[24], *text = NULL;
+    utc(created);
+    TRY(settings_text(used, &text, err));
+    Status status = database_do(store->db, err, "BEGIN", "");
+    if (status == STATUS_OK)
+        status = database_do(store->db, err, TABLES, "");
+    if (status == STATUS_OK)
+        status = create_view(store, err);
+    if (status == STATUS_OK)
+        status = database_do(store->db, err,
+                             "INSERT INTO run(id, settings, provenance, planned_evals, n_var, created) "
+                             "VALUES (1, ?, ?, ?, ?, ?)",
+                             "ttiit", text, provenance, used->search.max_evals, (long)store->schema->n_var, created);
+    if (status == STATUS_OK)
+        status = database_do(store->db, err, "COMMIT", "");
+    free(text);
+    return status;
+}
+
+/* Made beside its place and renamed: a run has a whole database or none. */
+static Status create_database(RunStore *store, const Settings *used, const char *provenance, Err *err)
+{
+    char path[PATH_MAX], temporary[PATH_MAX + 8];
+    path_in(store, "run.sqlite", path);
+    snprintf(temporary, sizeof temporary, "%s.tmp", path);
+    unlink(temporary);
+    TRY(database_create(&store->db, temporary, err));
+    Status status = fill_new_database(store, used, provenance, err);
+    const Status closed = database_close(store->db, status == STATUS_OK ? err : NULL);
+    store->db = NULL;
+    TRY(status);
+    TRY(closed);
+    if (rename(temporary, path) != 0)
+        return fail(err, STATUS_IO, "%s: cannot be put in place: %s", path, strerror(errno));
+    output_sync_folder(path);
+    return open_database(store, err);
+}
+
+Status store_begin(RunStore *store, const Schema *schema, const Settings *used, const char *provenance, Err *err)
+{
+    store->schema = schema;
+    TRY(create_database(store, used, provenance, err));
+    const Saved empty = {.schema = *schema};
+    TRY(write_file(store, "settings.ini", put_settings, used, err));
+    TRY(write_file(store, "provenance.json", put_line, provenance, err));
+    TRY(write_file(store, "evaluations.csv", put_evaluations, &empty, err));
+    TRY(open_to_append(store, "evaluations.csv", &store->evaluations, err));
+    return open_logs(store, err);
+}
+
+/* Where the search stands: what was on its front, and how many designs its finished generations have. */
+static Status take_up(RunStore *store, Err *err)
+{
+    const Saved *h = &store->saved;
+    size_t n = 0;
+    while (n < h->n && h->row[n].kind != KIND_UNFINISHED && h->row[n].id < POLISHED_FIRST)
+        n++;
+    store->was_on_front = calloc(n + 1, 1);
+    if (!store->was_on_front)
+        return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", n);
+    for (size_t i = 0; i < n; i++)
+        store->was_on_front[i] = h->row[i].entered != NEVER && h->row[i].left == NEVER;
+    store->n_exported = store->n_flags = n;
     return STATUS_OK;
 }
 
-const char *store_folder(const RunStore *store)
+/* The table is made from the search's designs alone and then appended to; polished ones join when it is finished. */
+static void put_search_evaluations(FILE *f, const void *saved)
 {
-    return store->folder;
+    Saved search = *(const Saved *)saved;
+    while (search.n > 0 && search.row[search.n - 1].id >= POLISHED_FIRST)
+        search.n--;
+    put_evaluations(f, &search);
 }
 
-Status store_settings(RunStore *store, const Settings *s, Err *err)
+Status store_go_on(RunStore *store, const Schema *schema, const Settings *used, Err *err)
 {
-    char path[PATH_MAX];
-    Output o;
-    path_in(store, "settings.ini", path);
-    TRY(output_open(&o, path, err));
-    settings_write(s, o.stream, 0);
-    return output_close(&o, err);
+    char *text = NULL;
+    store->schema = schema;
+    TRY(take_up(store, err));
+    TRY(settings_text(used, &text, err));
+    const Status status = database_do(store->db, err, "UPDATE run SET settings = ?", "t", text);
+    free(text);
+    TRY(status);
+    TRY(write_file(store, "settings.ini", put_settings, used, err));
+    TRY(write_file(store, "provenance.json", put_line, store->saved.provenance, err));
+    TRY(write_file(store, "evaluations.csv", put_search_evaluations, &store->saved, err));
+    if (store->saved.n_generations > 0)
+        TRY(write_file(store, "front.csv", put_front, &store->saved, err));
+    TRY(open_to_append(store, "evaluations.csv", &store->evaluations, err));
+    return open_logs(store, err);
 }
 
-static void write_numbers(FILE *f, size_t n, const double values[])
+static Status take_long(sqlite3_stmt *row, void *user, Err *err)
 {
-    for (size_t j = 0; j < n; j++) {
-        fputc(',', f);
-        print_number(f, values[j]);
+    (void)err;
+    *(long *)user = (long)sqlite3_column_int64(row, 0);
+    return STATUS_OK;
+}
+
+Status store_session(RunStore *store, const char *program, int threads, size_t n_simulated, Err *err)
+{
+    char started[24], host[65] = "";
+    utc(started);
+    gethostname(host, sizeof host - 1);
+    TRY(database_do(store->db, err,
+                    "INSERT INTO session(started, host, pid, program, threads, simulated_before, seconds, is_final) "
+                    "VALUES (?, ?, ?, ?, ?, ?, 0, 0)",
+                    "ttitii", started, host, (long)getpid(), program, (long)threads, (long)n_simulated));
+    store->last_commit = now_s();
+    return database_each(store->db, "SELECT last_insert_rowid()", take_long, &store->session, err);
+}
+
+/* -- simulations ----------------------------------------------------------------------------------------------------
+ */
+
+static Status begin(RunStore *store, Err *err)
+{
+    if (store->in_transaction)
+        return STATUS_OK;
+    TRY(database_do(store->db, err, "BEGIN IMMEDIATE", ""));
+    store->in_transaction = 1;
+    return STATUS_OK;
+}
+
+Status store_flush(RunStore *store, Err *err)
+{
+    if (!store->in_transaction)
+        return STATUS_OK;
+    TRY(database_do(store->db, err, "COMMIT", ""));
+    store->in_transaction = 0;
+    store->last_commit = now_s();
+    return STATUS_OK;
+}
+
+/* "[1,2.5,null]" into *text, which the caller frees; NULL where no number is finite. */
+static Status numbers_text(size_t n, const double values[], char **text, Err *err)
+{
+    size_t length, known = 0;
+    *text = NULL;
+    for (size_t i = 0; values && i < n; i++)
+        known += isfinite(values[i]) != 0;
+    if (known == 0)
+        return STATUS_OK;
+    FILE *f = open_memstream(text, &length);
+    for (size_t i = 0; f && i < n; i++) {
+        fputc(i == 0 ? '[' : ',', f);
+        if (isfinite(values[i]))
+            print_number(f, values[i]);
+        else
+            fputs("null", f);
     }
+    if (f)
+        fputc(']', f);
+    return f && fclose(f) == 0 ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for %zu numbers", n);
 }
 
-static void write_objectives(const Schema *schema, FILE *f, const double minimised[])
+static Status insert(Database *db, const Schema *schema, long id, long generation, const char *kind,
+                     const StoredDesign *d, Err *err)
 {
-    for (size_t k = 0; k < schema->n_obj; k++) {
-        fputc(',', f);
-        print_number(f, schema_objective(schema, k)->sense * minimised[k]);
+    const int ok = strcmp(d->verdict.outcome, "ok") == 0;
+    char *x = NULL, *f = NULL, *spread = NULL, *extra = NULL;
+    Status status = numbers_text(schema->n_var, d->x, &x, err);
+    if (status == STATUS_OK && ok)
+        status = numbers_text(schema->n_obj, d->f, &f, err);
+    if (status == STATUS_OK)
+        status = numbers_text(schema->n_obj, d->spread, &spread, err);
+    if (status == STATUS_OK)
+        status = numbers_text(schema->n_extra, d->verdict.extra, &extra, err);
+    if (status == STATUS_OK)
+        status = database_do(db, err,
+                             "INSERT OR REPLACE INTO evaluation(id, generation, kind, outcome, reason, seconds, x, f, "
+                             "spread, violation, extra) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+                             "iitttdtttdt", id, generation, kind, d->verdict.outcome, d->verdict.reason,
+                             d->verdict.seconds, x, f, spread, d->violation, extra);
+    free(x);
+    free(f);
+    free(spread);
+    free(extra);
+    return status;
+}
+
+Status store_simulation(RunStore *store, const Simulation *s, size_t generation, Err *err)
+{
+    const StoredDesign d = {.x = s->x, .f = s->f, .violation = s->violation, .verdict = *s->verdict};
+    TRY(begin(store, err));
+    TRY(insert(store->db, store->schema, (long)s->number, (long)generation, NULL, &d, err));
+    if (d.verdict.seconds >= COMMIT_S || now_s() >= store->last_commit + COMMIT_S)
+        TRY(store_flush(store, err));
+    return STATUS_OK;
+}
+
+/* -- generations ----------------------------------------------------------------------------------------------------
+ */
+
+/* A box about the first designs that succeeded: from a fifth of their range below the best to the worst. */
+static Status create_cover(RunStore *store, const SearchView *v, Err *err)
+{
+    double lower[OBJECTIVES_MAX], reference[OBJECTIVES_MAX];
+    size_t first = 0;
+    while (first < v->n && !v->ok[first])
+        first++;
+    if (first == v->n)
+        return STATUS_OK;
+    for (size_t k = 0; k < v->n_obj; k++) {
+        lower[k] = reference[k] = v->F[first * v->n_obj + k];
+        for (size_t i = first; i < v->n && v->generation[i] == v->generation[first]; i++)
+            if (v->ok[i]) {
+                lower[k] = fmin(lower[k], v->F[i * v->n_obj + k]);
+                reference[k] = fmax(reference[k], v->F[i * v->n_obj + k]);
+            }
+        const double range = reference[k] > lower[k] ? reference[k] - lower[k] : 1.0;
+        lower[k] -= 0.2 * range;
+        reference[k] = fmax(reference[k], lower[k] + range);
     }
+    return cover_create(&store->cover, v->n_obj, lower, reference, 1, err);
 }
 
-Status store_evaluations(RunStore *store, const SearchView *view, size_t first, const Verdict verdicts[], Err *err)
+/* Only members of the front count: who was dominated by an earlier one has nothing to add. */
+static Status measure(RunStore *store, const SearchView *v, Err *err)
 {
-    char path[PATH_MAX];
-    FILE *f = store->evaluations;
-    for (size_t i = first; i < view->n; i++) {
-        const Verdict *v = &verdicts[i - first];
-        fprintf(f, "%zu,%zu,%s,%s,%s", i + 1, view->generation[i], KIND_WORDS[view->kind[i]], v->outcome, v->reason);
-        write_numbers(f, view->n_var, &view->X[i * view->n_var]);
-        if (view->ok[i])
-            write_objectives(store->schema, f, &view->F[i * view->n_obj]);
-        for (size_t k = 0; !view->ok[i] && k < view->n_obj; k++)
-            fputc(',', f);
-        write_numbers(f, store->schema->n_extra, v->extra);
-        fputc('\n', f);
+    if (!store->cover)
+        TRY(create_cover(store, v, err));
+    if (!store->cover)
+        return STATUS_OK;
+    for (size_t i = store->n_covered; i < v->n; i++)
+        if (v->on_front[i])
+            cover_add(store->cover, v->F + i * v->n_obj);
+    store->n_covered = v->n;
+    return STATUS_OK;
+}
+
+static Status store_kinds(RunStore *store, const SearchView *v, Err *err)
+{
+    for (size_t i = store->n_exported; i < v->n; i++)
+        TRY(database_do(store->db, err, "UPDATE evaluation SET kind = ? WHERE id = ?", "ti", kind_word(v->kind[i]),
+                        (long)i + 1));
+    /* what another program or machine had asked for in this generation before it was cut short */
+    return database_do(store->db, err, "DELETE FROM evaluation WHERE kind IS NULL AND id > ?", "i", (long)v->n);
+}
+
+static Status store_front_changes(RunStore *store, const SearchView *v, Err *err)
+{
+    unsigned char *flags = realloc(store->was_on_front, v->n + 1);
+    if (!flags)
+        return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", v->n);
+    store->was_on_front = flags;
+    if (v->n > store->n_flags)
+        memset(flags + store->n_flags, 0, v->n - store->n_flags);
+    store->n_flags = v->n;
+    for (size_t i = 0; i < v->n; i++) {
+        if (v->on_front[i] && !flags[i])
+            TRY(database_do(store->db, err, "INSERT INTO front(evaluation, entered) VALUES (?, ?)", "ii", (long)i + 1,
+                            (long)v->generation_now));
+        if (!v->on_front[i] && flags[i])
+            TRY(database_do(store->db, err, "UPDATE front SET left = ? WHERE evaluation = ?", "ii",
+                            (long)v->generation_now, (long)i + 1));
+        flags[i] = v->on_front[i];
     }
-    path_in(store, "evaluations.csv", path);
-    return output_sync(f, path, err);
+    return STATUS_OK;
 }
 
-Status store_front(RunStore *store, const SearchView *view, Err *err)
+static Status store_moment(RunStore *store, const SearchView *v, double seconds, double session, Err *err)
 {
-    char path[PATH_MAX];
-    Output o;
-    path_in(store, "front.csv", path);
-    TRY(output_open(&o, path, err));
-    write_names(o.stream, "id", store->schema, 0);
-    for (size_t i = 0; i < view->n; i++) {
-        if (!view->on_front[i])
+    char finished[24];
+    utc(finished);
+    if (!v->state)
+        return fail(err, STATUS_NO_MEMORY, "no memory for the state of the search");
+    TRY(database_do(store->db, err,
+                    "INSERT INTO generation(number, simulated, failed, front, predicted, surrogate_error, hypervolume, "
+                    "seconds, finished) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)",
+                    "iiiiidddt", (long)v->generation_now, (long)v->n, (long)v->n_failed, (long)v->n_front,
+                    (long)v->n_predicted, v->surrogate_error, store_hypervolume(store), seconds, finished));
+    TRY(database_do(store->db, err, "UPDATE session SET seconds = ? WHERE number = ?", "di", session, store->session));
+    return database_do(store->db, err, "INSERT OR REPLACE INTO state(id, generation, bytes) VALUES (1, ?, ?)", "ib",
+                       (long)v->generation_now, v->state, v->n_state);
+}
+
+/* What the database now has of this generation, at the end of evaluations.csv. */
+static Status append_evaluations(RunStore *store, const SearchView *v, Err *err)
+{
+    Saved h = {.schema = *store->schema};
+    Status status = saved_load_rows(&h, store->db, (long)store->n_exported + 1, (long)v->n, err);
+    if (status == STATUS_OK && h.n != v->n - store->n_exported)
+        status = fail(err, STATUS_INTERNAL, "%s: the search knows of %zu simulations, %zu are stored",
+                      database_path(store->db), v->n, store->n_exported + h.n);
+    if (status == STATUS_OK)
+        export_evaluations(store->evaluations, &h);
+    h.schema = (Schema){0}; /* borrowed */
+    saved_free(&h);
+    TRY(status);
+    store->n_exported = v->n;
+    errno = 0;
+    return fflush(store->evaluations) == 0 ? STATUS_OK
+                                           : fail(err, STATUS_IO, "%s/evaluations.csv: cannot be written: %s",
+                                                  store->folder, strerror(errno ? errno : EIO));
+}
+
+static void put_view_front(FILE *f, const void *user)
+{
+    const struct {
+        const Schema *schema;
+        const SearchView *view;
+    } *u = user;
+    double natural[OBJECTIVES_MAX];
+    export_front_header(f, u->schema);
+    for (size_t i = 0; i < u->view->n; i++) {
+        if (!u->view->on_front[i])
             continue;
-        fprintf(o.stream, "%zu", i + 1);
-        write_numbers(o.stream, view->n_var, &view->X[i * view->n_var]);
-        write_objectives(store->schema, o.stream, &view->F[i * view->n_obj]);
-        fputc('\n', o.stream);
+        for (size_t k = 0; k < u->schema->n_obj; k++)
+            natural[k] = schema_objective(u->schema, k)->sense * u->view->F[i * u->schema->n_obj + k];
+        export_front_row(f, u->schema, (long)i + 1, u->view->X + i * u->schema->n_var, natural);
     }
-    return output_close(&o, err);
+}
+
+/* The front with polished designs is worked out by Saved. */
+static Status write_whole_tables(RunStore *store, int evaluations_too, Err *err)
+{
+    Saved h;
+    TRY(saved_load(&h, store->db, err));
+    Status status = write_file(store, "front.csv", put_front, &h, err);
+    if (status == STATUS_OK && evaluations_too)
+        status = write_file(store, "evaluations.csv", put_evaluations, &h, err);
+    saved_free(&h);
+    return status;
+}
+
+Status store_generation(RunStore *store, const SearchView *v, double seconds, double session, Err *err)
+{
+    const struct {
+        const Schema *schema;
+        const SearchView *view;
+    } front = {store->schema, v};
+    TRY(measure(store, v, err));
+    TRY(begin(store, err));
+    TRY(store_kinds(store, v, err));
+    TRY(store_front_changes(store, v, err));
+    TRY(store_moment(store, v, seconds, session, err));
+    TRY(store_flush(store, err));
+    TRY(append_evaluations(store, v, err));
+    return store->has_polished ? write_whole_tables(store, 0, err)
+                               : write_file(store, "front.csv", put_view_front, &front, err);
+}
+
+/* -- logs and the end -----------------------------------------------------------------------------------------------
+ */
+
+static Status flush_log(const RunStore *store, FILE *f, const char *name, Err *err)
+{
+    errno = 0;
+    if (fflush(f) != 0 || ferror(f))
+        return fail(err, STATUS_IO, "%s/%s: cannot be written: %s", store->folder, name, strerror(errno ? errno : EIO));
+    return STATUS_OK;
 }
 
 Status store_log(RunStore *store, Err *err, const char *format, ...)
@@ -196,6 +640,8 @@ Status store_log(RunStore *store, Err *err, const char *format, ...)
     char clock[32];
     struct tm parts;
     const time_t now = time(NULL);
+    if (!store->log)
+        return STATUS_OK;
     localtime_r(&now, &parts);
     strftime(clock, sizeof clock, "%F %T", &parts);
     fprintf(store->log, "%s  ", clock);
@@ -204,10 +650,20 @@ Status store_log(RunStore *store, Err *err, const char *format, ...)
     vfprintf(store->log, format, args);
     va_end(args);
     fputc('\n', store->log);
-    errno = 0;
-    if (fflush(store->log) != 0 || ferror(store->log))
-        return fail(err, STATUS_IO, "%s/log.txt: cannot be written: %s", store->folder, strerror(errno ? errno : EIO));
-    return STATUS_OK;
+    return flush_log(store, store->log, "log.txt", err);
+}
+
+Status store_event(RunStore *store, json_t *event, Err *err)
+{
+    char time[24];
+    utc(time);
+    json_object_set_new(event, "time", json_string(time));
+    const int written = event && store->events && json_dumpf(event, store->events, JSON_SORT_KEYS) == 0;
+    json_decref(event);
+    if (!written)
+        return STATUS_OK;
+    fputc('\n', store->events);
+    return flush_log(store, store->events, "log.jsonl", err);
 }
 
 static Status close_file(FILE **f, const RunStore *store, const char *name, Err *err)
@@ -221,21 +677,79 @@ static Status close_file(FILE **f, const RunStore *store, const char *name, Err 
     return status;
 }
 
-Status store_close(RunStore *store, Err *err)
+static Status end_session(RunStore *store, const char *stopped, int is_final, double session, Err *err)
 {
-    const Status evaluations = close_file(&store->evaluations, store, "evaluations.csv", err);
-    const Status log = close_file(&store->log, store, "log.txt", err);
+    char ended[24];
+    utc(ended);
+    TRY(store_flush(store, err));
+    return database_do(store->db, err,
+                       "UPDATE session SET ended = ?, stopped = ?, is_final = ?, seconds = ? WHERE number = ?", "ttidi",
+                       ended, stopped, (long)is_final, session, store->session);
+}
+
+static Status close_all(RunStore *store, const char *stopped, int is_final, double session, Err *err)
+{
+    TRY(end_session(store, stopped, is_final, session, err));
+    if (store->has_polished)
+        TRY(write_whole_tables(store, 1, err));
+    TRY(close_file(&store->evaluations, store, "evaluations.csv", err));
+    TRY(close_file(&store->events, store, "log.jsonl", err));
+    TRY(close_file(&store->log, store, "log.txt", err));
+    const Status status = database_close(store->db, err);
+    store->db = NULL;
+    return status;
+}
+
+Status store_close(RunStore *store, const char *stopped, int is_final, double session, Err *err)
+{
+    const Status status = close_all(store, stopped, is_final, session, err);
     store_free(store);
-    return evaluations != STATUS_OK ? evaluations : log;
+    return status;
 }
 
 void store_free(RunStore *store)
 {
     if (!store)
         return;
-    if (store->evaluations)
-        fclose(store->evaluations);
-    if (store->log)
-        fclose(store->log);
+    FILE *files[] = {store->evaluations, store->events, store->log};
+    for (int i = 0; i < 3; i++)
+        if (files[i])
+            fclose(files[i]);
+    database_close(store->db, NULL);
+    saved_free(&store->saved);
+    free(store->was_on_front);
+    cover_free(store->cover);
+    lock_release(store->lock);
     free(store);
+}
+
+/* -- designs from outside -------------------------------------------------------------------------------------------
+ */
+
+static Status add_all(RunStore *store, size_t n, const StoredDesign designs[], long *first_id, Err *err)
+{
+    const Saved *h = &store->saved;
+    const long generation = h->n_generations > 0 ? h->generation[h->n_generations - 1].number : 0;
+    const long last = h->n > 0 ? h->row[h->n - 1].id : 0;
+    const long first = last >= POLISHED_FIRST ? last + 1 : POLISHED_FIRST;
+    TRY(begin(store, err));
+    for (size_t i = 0; i < n; i++)
+        TRY(insert(store->db, &h->schema, first + (long)i, generation, kind_word(KIND_POLISHED), &designs[i], err));
+    TRY(store_flush(store, err));
+    if (first_id)
+        *first_id = first;
+    return write_whole_tables(store, 1, err);
+}
+
+Status store_add_evaluations(const char *folder, size_t n, const StoredDesign designs[], long *first_id, Err *err)
+{
+    RunStore *store;
+    char path[PATH_MAX];
+    if (!saved_path(folder, path, sizeof path))
+        return fail(err, STATUS_MISSING, "%s/run.sqlite: is not there; the run has no database to add designs to",
+                    folder);
+    TRY(store_open(&store, folder, 0, err));
+    const Status status = add_all(store, n, designs, first_id, err);
+    store_free(store);
+    return status;
 }

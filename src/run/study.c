@@ -1,9 +1,11 @@
 #include "run/study.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <time.h>
 
 #include <omp.h>
 
@@ -12,51 +14,44 @@
 #include "run/subject.h"
 
 typedef struct {
-    const Settings *settings;
+    Settings used;
+    const StudyOptions *options;
     Subject *subject;
     RunStore *store;
-    size_t n_stored; /* simulations in evaluations.csv */
-
-    StudyProgressFn progress;
-    void *user;
     StudySummary *summary;
-    Status status; /* of writing; ends the search */
+    FILE *differences;
+    struct timespec start;
+    double seconds_before;   /* of earlier sessions */
+    size_t generation;       /* that is under way */
+    size_t first_generation; /* of this session */
+    int asked, late;         /* why it stopped */
+    Status status;           /* of writing; ends the search */
     Err *err;
 } Study;
 
-static Status write_generation(Study *study, const SearchView *view, Err *err)
+static double session_seconds(const Study *study)
 {
-    size_t n_new;
-    const Verdict *verdicts = subject_verdicts(study->subject, &n_new);
-    if (study->n_stored + n_new != view->n)
-        return fail(err, STATUS_INTERNAL, "the search knows of %zu simulations, %zu were made", view->n,
-                    study->n_stored + n_new);
-    TRY(store_evaluations(study->store, view, study->n_stored, verdicts, err));
-    study->n_stored = view->n;
-    subject_forget(study->subject);
-    TRY(store_front(study->store, view, err));
-    char surface[24] = "-";
-    if (isfinite(view->surrogate_error))
-        snprintf(surface, sizeof surface, "%.3g", view->surrogate_error);
-    return store_log(study->store, err,
-                     "generation %zu: %zu simulated, %zu failed, front %zu, predictions kept %zu, "
-                     "surrogate error %s, %.1f s",
-                     view->generation_now, view->n, view->n_failed, view->n_front, view->n_predicted, surface,
-                     view->seconds);
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)(now.tv_sec - study->start.tv_sec) + 1e-9 * (double)(now.tv_nsec - study->start.tv_nsec);
 }
 
-static int observe(const SearchView *view, void *user)
+double study_seconds_left(const StudyProgress *p)
 {
-    Study *study = user;
-    study->status = write_generation(study, view, study->err);
-    study->summary->n_simulated = view->n;
-    study->summary->n_failed = view->n_failed;
-    study->summary->n_front = view->n_front;
-    study->summary->seconds = view->seconds;
-    if (study->progress)
-        study->progress(view, study->user);
-    return study->status != STATUS_OK;
+    const SearchView *v = p->view;
+    const Settings *s = p->settings;
+    const double pace = p->session_evals > 0 ? p->session_s / (double)p->session_evals : NAN;
+    double left = pace * ((double)s->search.max_evals - (double)v->n);
+    if (p->session_generations > 0)
+        left = fmin(left, p->session_s / (double)p->session_generations *
+                              (double)(s->search.generations - (long)v->generation_now));
+    if (s->search.max_hours > 0.0)
+        left = fmin(left, 3600.0 * s->search.max_hours - p->session_s);
+    return isfinite(pace) ? fmax(left, 0.0) : NAN;
 }
+
+/* -- settings -------------------------------------------------------------------------------------------------------
+ */
 
 /* A saved path is looked up from anywhere: absolute where it can be. */
 static void make_absolute(char path[SETTINGS_TEXT_MAX])
@@ -67,18 +62,185 @@ static void make_absolute(char path[SETTINGS_TEXT_MAX])
     free(absolute);
 }
 
-static Settings settings_as_used(const Study *study)
+static Settings settings_as_used(const Settings *s, const char *folder)
 {
-    Settings used = *study->settings;
+    Settings used = *s;
     struct stat there;
     if (strncmp(used.motion.record, "builtin:", 8) != 0)
         make_absolute(used.motion.record);
     const int is_name = !strcmp(used.building.model, "guyan") || !strcmp(used.building.model, "appendix");
     if (!is_name && stat(used.building.model, &there) == 0 && S_ISDIR(there.st_mode))
         make_absolute(used.building.model);
-    snprintf(used.run.out, sizeof used.run.out, "%.*s", SETTINGS_TEXT_MAX - 1, store_folder(study->store));
+    snprintf(used.run.out, sizeof used.run.out, "%.*s", SETTINGS_TEXT_MAX - 1, folder);
     return used;
 }
+
+static int is_one_of(const char *key, const char *const list[], size_t n)
+{
+    size_t i = 0;
+    while (i < n && strcmp(key, list[i]) != 0)
+        i++;
+    return i < n;
+}
+
+static const char *const LIMITS[] = {"search.max_evals", "search.generations", "search.max_hours",
+                                     "search.nondominated_share", "problem.timeout_s"};
+
+/* These change no result; files are told apart by what is in them. */
+static const char *const FREE[] = {"search.threads", "run.out", "motion.record", "building.model"};
+
+typedef struct {
+    FILE *lines;
+    size_t n_limits, n_others;
+    char first[200]; /* of the others, else of the limits */
+} Differences;
+
+static void add_difference(Differences *d, const char *key, const char *was, const char *is)
+{
+    const int is_limit = is_one_of(key, LIMITS, sizeof LIMITS / sizeof LIMITS[0]);
+    if (d->n_others == 0 && (!is_limit || d->n_limits == 0))
+        snprintf(d->first, sizeof d->first, "%s is %.60s there, now %.60s", key, was, is);
+    d->n_limits += is_limit != 0;
+    d->n_others += is_limit == 0;
+    if (d->lines)
+        fprintf(d->lines, "%s: %s in the run, now %s%s\n", key, was, is, is_limit ? " (a limit)" : "");
+}
+
+static void compare_one(const char *key, const char *was, const char *is, void *user)
+{
+    if (!is_one_of(key, FREE, sizeof FREE / sizeof FREE[0]))
+        add_difference(user, key, was, is);
+}
+
+static uint64_t stored_hash(const json_t *provenance, const char *key)
+{
+    const char *text = json_string_value(json_object_get(json_object_get(provenance, "inputs"), key));
+    return text ? strtoull(text, NULL, 16) : 0;
+}
+
+static void compare_hash(Differences *d, const char *key, uint64_t was, uint64_t is)
+{
+    char before[40], after[40];
+    snprintf(before, sizeof before, "content %016" PRIx64, was);
+    snprintf(after, sizeof after, "content %016" PRIx64, is);
+    if (was != is)
+        add_difference(d, key, before, after);
+}
+
+static Status compare_inputs(Study *study, Differences *d, Err *err)
+{
+    Inputs now;
+    TRY(provenance_inputs(&now, subject_world(study->subject), err));
+    json_t *provenance = json_loads(store_saved(study->store)->provenance, 0, NULL);
+    compare_hash(d, "motion.record", stored_hash(provenance, "record_fnv1a"), now.record);
+    compare_hash(d, "building.model", stored_hash(provenance, "matrices_fnv1a"), now.matrices);
+    json_decref(provenance);
+    return STATUS_OK;
+}
+
+/* The run goes on with its own settings; limits are taken over where that is wanted. */
+static Status settle_settings(Study *study, Err *err)
+{
+    const char *folder = study->summary->folder;
+    Differences d = {.lines = study->differences};
+    settings_compare(&store_saved(study->store)->settings, &study->used, compare_one, &d);
+    TRY(compare_inputs(study, &d, err));
+    const size_t n = d.n_limits + d.n_others;
+    if (n == 0 || (d.n_others == 0 && study->options->force))
+        return STATUS_OK;
+    return fail(err, STATUS_BAD_DATA, "%s: holds a run with other settings: %s%s; %s", folder, d.first,
+                n > 1 ? ", and more" : "",
+                d.n_others == 0 ? "--force-settings changes limits" : "choose another --out, or --new");
+}
+
+/* -- what the search is told and tells ------------------------------------------------------------------------------
+ */
+
+static int may_go_on(void *user)
+{
+    Study *study = user;
+    const StudyOptions *o = study->options;
+    const double hours = study->used.search.max_hours;
+    if (o->stop && o->stop(o->user)) {
+#pragma omp atomic write
+        study->asked = 1;
+        return 0;
+    }
+    if (hours > 0.0 && session_seconds(study) >= 3600.0 * hours) {
+#pragma omp atomic write
+        study->late = 1;
+        return 0;
+    }
+    return 1;
+}
+
+static Status simulation_done(const Simulation *simulation, void *user, Err *err)
+{
+    Study *study = user;
+    study->summary->n_simulated++;
+    study->summary->n_failed += !simulation->ok;
+    return store_simulation(study->store, simulation, study->generation, err);
+}
+
+/* A design of the generation that was cut short: by its number, if the search asks for the same again. */
+static int recall(size_t number, const double x[], double f[], Verdict *verdict, void *user)
+{
+    const Study *study = user;
+    const Saved *h = store_saved(study->store);
+    const size_t i = h ? saved_find(h, (long)number) : 0;
+    if (!h || i == h->n || memcmp(h->X + i * h->schema.n_var, x, h->schema.n_var * sizeof *x) != 0)
+        return 0;
+    memcpy(f, h->F + i * h->schema.n_obj, h->schema.n_obj * sizeof *f);
+    *verdict = h->row[i].verdict;
+    return 1;
+}
+
+static json_t *generation_event(const SearchView *v, const RunStore *store, double seconds)
+{
+    return json_pack(
+        "{s:s, s:I, s:I, s:I, s:I, s:o, s:o, s:f}", "event", "generation", "number", (json_int_t)v->generation_now,
+        "simulated", (json_int_t)v->n, "failed", (json_int_t)v->n_failed, "front", (json_int_t)v->n_front,
+        "surrogate_error", isfinite(v->surrogate_error) ? json_real(v->surrogate_error) : json_null(), "hypervolume",
+        isfinite(store_hypervolume(store)) ? json_real(store_hypervolume(store)) : json_null(), "seconds", seconds);
+}
+
+static Status write_generation(Study *study, const SearchView *view, Err *err)
+{
+    const double session = session_seconds(study), seconds = study->seconds_before + session;
+    TRY(store_generation(study->store, view, seconds, session, err));
+    TRY(store_event(study->store, generation_event(view, study->store, seconds), err));
+    char surface[24] = "-";
+    if (isfinite(view->surrogate_error))
+        snprintf(surface, sizeof surface, "%.3g", view->surrogate_error);
+    return store_log(study->store, err,
+                     "generation %zu: %zu simulated, %zu failed, front %zu, hypervolume %.4f, predictions kept %zu, "
+                     "surrogate error %s, %.1f s",
+                     view->generation_now, view->n, view->n_failed, view->n_front, store_hypervolume(study->store),
+                     view->n_predicted, surface, seconds);
+}
+
+static int observe(const SearchView *view, void *user)
+{
+    Study *study = user;
+    StudySummary *sum = study->summary;
+    study->status = write_generation(study, view, study->err);
+    study->generation = view->generation_now + 1;
+    sum->n_simulated = view->n;
+    sum->n_failed = view->n_failed;
+    sum->n_front = view->n_front;
+    const StudyProgress p = {.view = view,
+                             .hypervolume = store_hypervolume(study->store),
+                             .session_s = session_seconds(study),
+                             .session_evals = view->n > sum->n_before ? view->n - sum->n_before : 0,
+                             .session_generations = study->generation - study->first_generation,
+                             .settings = &study->used};
+    if (study->options->progress)
+        study->options->progress(&p, study->options->user);
+    return study->status != STATUS_OK || !may_go_on(study);
+}
+
+/* -- beginning ------------------------------------------------------------------------------------------------------
+ */
 
 static Status simulate_without_core(Study *study, Err *err)
 {
@@ -87,29 +249,74 @@ static Status simulate_without_core(Study *study, Err *err)
     return crew ? crew_run(crew, 1, &(SimTask){SCENE_NO_CORE, NULL}, &study->summary->no_core, err) : STATUS_OK;
 }
 
-static Status log_start(Study *study, const Settings *used, Err *err)
+static Status log_start(Study *study, Err *err)
 {
     const Schema *schema = subject_schema(study->subject);
+    const Settings *used = &study->used;
     const int threads = subject_threads(study->subject);
+    const size_t n = study->summary->n_before;
+    char program[96];
+    snprintf(program, sizeof program, "imtet %s (%s)", program_version(), program_revision());
+    TRY(store_session(study->store, program, threads, n, err));
+    TRY(store_event(study->store,
+                    json_pack("{s:s, s:s, s:i, s:I, s:I}", "event", n ? "goes on" : "starts", "program", program,
+                              "threads", threads, "simulated", (json_int_t)n, "max_evals",
+                              (json_int_t)used->search.max_evals),
+                    err));
+    if (n > 0)
+        TRY(store_log(study->store, err, "goes on after %zu simulations", n));
     if (subject_world(study->subject))
-        return store_log(study->store, err, "%zu floors, %s, pga %g g, stretch %g, %d threads, seed %ld",
+        return store_log(study->store, err, "%s: %zu floors, %s, pga %g g, stretch %g, %d threads, seed %ld", program,
                          schema->n_var - 2, used->motion.record, used->motion.pga_g, used->motion.stretch, threads,
                          used->search.seed);
-    return store_log(study->store, err, "%zu variables, %zu objectives, %d threads, seed %ld", schema->n_var,
-                     schema->n_obj, threads, used->search.seed);
+    return store_log(study->store, err, "%s: %zu variables, %zu objectives, %d threads, seed %ld", program,
+                     schema->n_var, schema->n_obj, threads, used->search.seed);
 }
 
-static Status prepare(Study *study, const Settings *s, int exact, Err *err)
+static Status begin(Study *study, Err *err)
+{
+    char *provenance;
+    TRY(provenance_text(&provenance, &study->used, subject_world(study->subject), subject_threads(study->subject),
+                        err));
+    const Status status = store_begin(study->store, subject_schema(study->subject), &study->used, provenance, err);
+    free(provenance);
+    return status;
+}
+
+static Status go_on(Study *study, Err *err)
+{
+    const Saved *h = store_saved(study->store);
+    StudySummary *sum = study->summary;
+    TRY(settle_settings(study, err));
+    for (size_t i = 0; i < h->n; i++)
+        if (h->row[i].id < POLISHED_FIRST) {
+            sum->n_before++;
+            sum->n_failed += !h->row[i].ok;
+        }
+    sum->n_simulated = sum->n_before;
+    sum->n_front = h->n_front;
+    for (size_t i = 0; i < h->n_sessions; i++)
+        study->seconds_before += isfinite(h->session[i].seconds) ? h->session[i].seconds : 0.0;
+    study->generation = h->n_generations > 0 ? (size_t)h->generation[h->n_generations - 1].number + 1 : 0;
+    study->first_generation = study->generation;
+    snprintf(study->used.motion.record, SETTINGS_TEXT_MAX, "%s", h->settings.motion.record);
+    snprintf(study->used.building.model, SETTINGS_TEXT_MAX, "%s", h->settings.building.model);
+    snprintf(study->used.run.out, SETTINGS_TEXT_MAX, "%s", h->settings.run.out);
+    return store_go_on(study->store, subject_schema(study->subject), &study->used, err);
+}
+
+static Status prepare(Study *study, const Settings *s, Err *err)
 {
     TRY(subject_open(&study->subject, s, err));
-    TRY(simulate_without_core(study, err));
-    TRY(store_create(&study->store, s->run.out, exact, subject_schema(study->subject), err));
+    TRY(store_open(&study->store, s->run.out, study->options->fresh, err));
     snprintf(study->summary->folder, sizeof study->summary->folder, "%s", store_folder(study->store));
-    const Settings used = settings_as_used(study);
-    TRY(store_settings(study->store, &used, err));
-    TRY(provenance_write(store_folder(study->store), s, subject_world(study->subject), subject_threads(study->subject),
-                         err));
-    return log_start(study, &used, err);
+    study->summary->max_evals = s->search.max_evals;
+    study->used = settings_as_used(s, study->summary->folder);
+    TRY(store_saved(study->store) ? go_on(study, err) : begin(study, err));
+    TRY(simulate_without_core(study, err));
+    if (study->options->started)
+        study->options->started(study->summary->folder, study->summary->n_before, study->options->user);
+    return log_start(study, err);
 }
 
 SearchConfig study_search_config(const Settings *s)
@@ -133,30 +340,117 @@ SearchConfig study_search_config(const Settings *s)
     };
 }
 
-static Status search(Study *study, Err *err)
+/* -- the search, from where it stands -------------------------------------------------------------------------------
+ */
+
+/* The archive of the finished generations, as the search wants it. */
+typedef struct {
+    SearchStart start;
+    double *F, *G;
+    unsigned char *ok, *kind;
+    size_t *generation;
+} Moment;
+
+static void moment_free(Moment *m)
 {
-    const SearchConfig config = study_search_config(study->settings);
-    omp_set_num_threads(subject_threads(study->subject));
-    TRY(search_run(subject_problem(study->subject), &config, observe, study, &study->summary->stopped, err));
-    TRY(study->status);
-    return store_log(study->store, err, "stopped: %s; %zu simulated, %zu failed, %zu on the front, %.1f s",
-                     stop_reason_words(study->summary->stopped), study->summary->n_simulated, study->summary->n_failed,
-                     study->summary->n_front, study->summary->seconds);
+    free(m->F);
+    free(m->G);
+    free(m->ok);
+    free(m->kind);
+    free(m->generation);
 }
 
-Status study_run(const Settings *s, int exact, StudyProgressFn progress, void *user, StudySummary *summary, Err *err)
+static Status moment_of(Moment *m, const Study *study, Err *err)
+{
+    const Saved *h = store_saved(study->store);
+    const Problem *p = subject_problem(study->subject);
+    size_t n = 0;
+    while (n < h->n && h->row[n].kind != KIND_UNFINISHED && h->row[n].id < POLISHED_FIRST)
+        n++;
+    *m = (Moment){.F = calloc(n * p->n_obj + 1, sizeof *m->F),
+                  .G = calloc(n * p->n_con + 1, sizeof *m->G),
+                  .ok = calloc(n + 1, 1),
+                  .kind = calloc(n + 1, 1),
+                  .generation = calloc(n + 1, sizeof *m->generation)};
+    if (!m->F || !m->G || !m->ok || !m->kind || !m->generation)
+        return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", n);
+    subject_judge(study->subject, n, h->F, m->F, m->G);
+    for (size_t i = 0; i < n; i++) {
+        if (h->row[i].id != (long)i + 1)
+            return fail(err, STATUS_IO, "%s/run.sqlite: is damaged: evaluation %zu is missing", study->summary->folder,
+                        i + 1);
+        m->ok[i] = h->row[i].ok != 0;
+        m->kind[i] = (unsigned char)h->row[i].kind;
+        m->generation[i] = (size_t)h->row[i].generation;
+    }
+    m->start = (SearchStart){n, h->X, m->F, m->G, m->ok, m->kind, m->generation, h->state, h->n_state};
+    return STATUS_OK;
+}
+
+static Status run_search(Study *study, Err *err)
+{
+    const Saved *h = store_saved(study->store);
+    SearchConfig config = study_search_config(&study->used);
+    Moment moment = {0};
+    const int is_under_way = h && h->state;
+    config.max_seconds = 0.0; /* the study has a clock of its own, which it looks at more often */
+    if (h) {
+        const long initial = study->used.search.initial;
+        config.planned_evals = (size_t)h->planned_evals;
+        config.initial = (size_t)(initial < h->planned_evals ? initial : h->planned_evals);
+    }
+    omp_set_num_threads(subject_threads(study->subject));
+    Status status = is_under_way ? moment_of(&moment, study, err) : STATUS_OK;
+    const Observer observer = {may_go_on, simulation_done, recall, study};
+    subject_observe(study->subject, &observer, moment.start.n);
+    if (status == STATUS_OK)
+        status = search_resume(subject_problem(study->subject), &config, is_under_way ? &moment.start : NULL, observe,
+                               study, &study->summary->stopped, err);
+    moment_free(&moment);
+    if (status == STATUS_STOPPED)
+        study->summary->stopped = STOP_ASKED;
+    return status == STATUS_STOPPED ? STATUS_OK : status;
+}
+
+static Status finish(Study *study, Err *err)
+{
+    StudySummary *sum = study->summary;
+    const double session = session_seconds(study);
+    const int is_final = sum->stopped != STOP_ASKED;
+    if (!is_final && study->late)
+        sum->stopped = STOP_TIME;
+    const char *why = stop_reason_words(sum->stopped);
+    sum->seconds = study->seconds_before + session;
+    TRY(store_log(study->store, err, "stopped: %s; %zu simulated, %zu failed, %zu on the front, %.1f s", why,
+                  sum->n_simulated, sum->n_failed, sum->n_front, sum->seconds));
+    TRY(store_event(study->store,
+                    json_pack("{s:s, s:s, s:b, s:I, s:f}", "event", "stops", "why", why, "final", is_final, "simulated",
+                              (json_int_t)sum->n_simulated, "seconds", sum->seconds),
+                    err));
+    RunStore *store = study->store;
+    study->store = NULL;
+    TRY(store_close(store, why, is_final, session, err));
+    return is_final ? STATUS_OK
+                    : fail(err, STATUS_STOPPED, "%.200s: %s after %zu of %ld simulations", sum->folder, why,
+                           sum->n_simulated, sum->max_evals);
+}
+
+Status study_run(const Settings *s, const StudyOptions *options, StudySummary *summary, FILE *differences, Err *err)
 {
     memset(summary, 0, sizeof *summary);
-    Study study = {.settings = s, .progress = progress, .user = user, .summary = summary, .err = err};
-    Status status = prepare(&study, s, exact, err);
+    Study study = {.options = options, .summary = summary, .differences = differences, .err = err};
+    clock_gettime(CLOCK_MONOTONIC, &study.start);
+    Status status = prepare(&study, s, err);
     if (status == STATUS_OK)
-        status = search(&study, err);
+        status = run_search(&study, err);
+    if (status == STATUS_OK)
+        status = study.status;
+    if (status == STATUS_OK)
+        status = finish(&study, err);
     if (status != STATUS_OK && study.store) {
         Err ignored; /* the fault itself is what the caller must hear of */
+        store_flush(study.store, &ignored);
         store_log(study.store, &ignored, "failed: %s", err->text);
-    } else if (status == STATUS_OK) {
-        status = store_close(study.store, err);
-        study.store = NULL;
     }
     store_free(study.store);
     subject_close(study.subject);

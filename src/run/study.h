@@ -2,10 +2,19 @@
  *
  *   of the tower, f = (j1, j2, j3, ed1, -ed5_10, -edcs, mcore), all minimised; other subjects: run/subject.h
  *
- * A simulation that does not finish, or whose numbers are not finite, is a failed design: kept in evaluations.csv with
- * its reason, never on the front.
+ * A simulation that does not finish, or whose numbers are not finite, is a failed design: kept with its reason, never
+ * on the front.
  *
- * Reproducible  front.csv and evaluations.csv are the same bytes at any thread count; times stand in log.txt only. */
+ * Goes on       a run that is there already goes on where it stopped, however it stopped: from the state at the end of
+ *               its last finished generation, simulations made after that taken from the database. front.csv,
+ *               evaluations.csv and the JSON export are then the same bytes as of a run that was never interrupted
+ * Settings      must be those of the run. Limits may be changed where that is asked for (`force`): search.max_evals,
+ *               generations, max_hours, nondominated_share, problem.timeout_s; the number of threads always. What the
+ *               first search.max_evals decides beside the end (size of the first sample, directions of infill) stays as
+ *               planned: with 1500 raised to 3000 the first 1500 designs are those of the shorter run
+ * Stops         when `stop` says so or after search.max_hours of this session, both asked between simulations: what is
+ *               under way is finished, or dropped where an external worker takes seconds, and everything is stored
+ * Reproducible  front.csv and evaluations.csv are the same bytes at any thread count; times stand elsewhere. */
 #ifndef IMTET_RUN_STUDY_H
 #define IMTET_RUN_STUDY_H
 
@@ -15,19 +24,42 @@
 #include "moga/search.h"
 #include "sim/sim.h"
 
-typedef void (*StudyProgressFn)(const SearchView *view, void *user);
+/* The search at the end of a generation, and what the study adds. */
+typedef struct {
+    const SearchView *view;
+    double hypervolume; /* share of a box about the first sample; NAN: no design has succeeded yet */
+    double session_s;   /* since this start */
+    size_t session_evals, session_generations; /* simulated, finished since */
+    const Settings *settings;
+} StudyProgress;
+
+/* Seconds that are left at the present pace, by simulations, generations or hours, whichever ends first; NAN: unknown.
+ */
+double study_seconds_left(const StudyProgress *p);
+
+typedef struct {
+    int fresh;               /* never go on with a run: a number is added to run.out where it holds one */
+    int force;               /* changed limits are taken over */
+    int (*stop)(void *user); /* asked from any thread, often; NULL: never */
+    void (*started)(const char *folder, size_t n_simulated, void *user);
+    void (*progress)(const StudyProgress *p, void *user);
+    void *user;
+} StudyOptions;
 
 typedef struct {
     char folder[PATH_MAX];
     StopReason stopped;
     size_t n_simulated, n_failed, n_front;
-    double seconds;
+    size_t n_before; /* simulations that the run had when this session began */
+    long max_evals;
+    double seconds;    /* of all sessions */
     int has_no_core;   /* of a tower */
     SimResult no_core; /* the building alone under the same motion */
 } StudySummary;
 
-/* exact: run.out must be free; otherwise a number is added to it where it is not. progress may be NULL. */
-Status study_run(const Settings *s, int exact, StudyProgressFn progress, void *user, StudySummary *summary, Err *err);
+/* STATUS_STOPPED: it can go on, and the summary is filled. Settings that differ: STATUS_BAD_DATA,
+ * with the differences in `err` as far as they fit, all of them in `differences` (NULL: not wanted), a line each. */
+Status study_run(const Settings *s, const StudyOptions *options, StudySummary *summary, FILE *differences, Err *err);
 
 /* What the search reads from the settings. */
 SearchConfig study_search_config(const Settings *s);

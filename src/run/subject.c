@@ -6,7 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/carve.h"
 #include "base/random.h"
+#include "moga/dominance.h"
 #include "problem/external.h"
 #include "problem/textbook.h"
 #include "run/measures.h"
@@ -28,13 +30,11 @@ struct Subject {
     World world; /* of a tower */
     Crew *crew;
     External *external;
-    size_t n_noisy; /* textbook answers given: the name of the next one's noise */
+    size_t n_done; /* simulations asked for: the number of the next design is one more */
+    Observer observer;
 
     size_t n_limits;
     Limit limit[LIMITS_MAX];
-
-    Verdict *verdict;
-    size_t n_verdicts, verdicts_max;
 };
 
 const Problem *subject_problem(const Subject *subject)
@@ -62,72 +62,141 @@ int subject_threads(const Subject *subject)
     return subject->threads;
 }
 
-const Verdict *subject_verdicts(const Subject *subject, size_t *n)
+void subject_observe(Subject *subject, const Observer *observer, size_t n_done)
 {
-    *n = subject->n_verdicts;
-    return subject->verdict;
+    subject->observer = *observer;
+    subject->n_done = n_done;
 }
 
-void subject_forget(Subject *subject)
+/* What is to be simulated of one batch, close together. */
+typedef struct {
+    Subject *subject;
+    size_t n;
+    size_t *place;    /* (n) in the batch of the search */
+    long *number;     /* (n) of the designs */
+    double *X, *F;    /* (n, n_var) (n, n_obj) natural */
+    Verdict *verdict; /* (n) */
+    const void *raw;  /* (n) what the simulator gave: SimResult or Answer */
+    void *store;
+} Work;
+
+static void layout(Work *w, size_t n, Carve *c)
 {
-    subject->n_verdicts = 0;
+    w->place = carve(c, n, sizeof *w->place);
+    w->number = carve(c, n, sizeof *w->number);
+    w->X = carve(c, n * w->subject->schema.n_var, sizeof *w->X);
+    w->F = carve(c, n * w->subject->schema.n_obj, sizeof *w->F);
+    w->verdict = carve(c, n, sizeof *w->verdict);
 }
 
-static Status room_for(Subject *s, size_t more, Err *err)
+static Status work_create(Work *w, Subject *s, size_t n, Err *err)
 {
-    const size_t need = s->n_verdicts + more;
-    if (need <= s->verdicts_max)
-        return STATUS_OK;
-    Verdict *wider = realloc(s->verdict, 2 * need * sizeof *wider);
-    if (!wider)
-        return fail(err, STATUS_NO_MEMORY, "no memory for %zu verdicts", 2 * need);
-    s->verdict = wider;
-    s->verdicts_max = 2 * need;
+    Carve c = {0};
+    *w = (Work){.subject = s};
+    layout(w, n, &c);
+    w->store = carve_store(&c);
+    if (!w->store)
+        return fail(err, STATUS_NO_MEMORY, "no memory for %zu simulations", n);
+    layout(w, n, &(Carve){.base = w->store});
     return STATUS_OK;
+}
+
+static int is_ok(const Verdict *v)
+{
+    return strcmp(v->outcome, "ok") == 0;
+}
+
+static void apply_limits(const Subject *s, const double natural[], double g[])
+{
+    for (size_t c = 0; c < s->n_limits; c++) {
+        const Limit *l = &s->limit[c];
+        g[c] = l->sign * (natural[l->objective] - l->bound) / (l->bound != 0.0 ? fabs(l->bound) : 1.0);
+    }
+}
+
+/* Simulation i of the work is done: failed ones have no objectives, and the observer hears of it. */
+static Status tell(const Work *w, size_t i, Err *err)
+{
+    const Subject *s = w->subject;
+    double *f = w->F + i * s->schema.n_obj, g[LIMITS_MAX];
+    const int ok = is_ok(&w->verdict[i]);
+    for (size_t k = 0; !ok && k < s->schema.n_obj; k++)
+        f[k] = NAN;
+    if (!s->observer.done)
+        return STATUS_OK;
+    apply_limits(s, f, g);
+    const Simulation simulation = {
+        .number = (size_t)w->number[i],
+        .x = w->X + i * s->schema.n_var,
+        .f = f,
+        .violation = ok ? violation_of(s->n_limits, g) : INFINITY,
+        .ok = ok,
+        .verdict = &w->verdict[i],
+    };
+    return s->observer.done(&simulation, s->observer.user, err);
 }
 
 /* -- the three kinds of simulation: natural values into F -----------------------------------------------------------
  */
 
-static void judge_tower(const SimResult *r, double f[], unsigned char *ok, Verdict *v)
+static void judge_tower(const SimResult *r, double f[], Verdict *v)
 {
-    *ok = (unsigned char)measure_objectives(r, f);
-    const int lost = r->outcome == RUN_OK && !*ok;
+    const int lost = !measure_objectives(r, f) && r->outcome == RUN_OK;
     verdict_set(v, outcome_word(lost ? RUN_NOT_FINITE : r->outcome), lost ? "an objective is not finite" : r->reason);
     for (int k = 0; k < N_OBJECTIVES; k++)
         f[k] = measure_value(r, k);
     for (int k = N_OBJECTIVES; k < N_MEASURES; k++)
         v->extra[k - N_OBJECTIVES] = measure_value(r, k);
+    v->seconds = r->seconds;
 }
 
-static Status run_tower(Subject *s, size_t n, const double X[], double F[], unsigned char ok[], Err *err)
+static Status tower_done(size_t i, void *user, Err *err)
 {
-    SimTask *tasks = calloc(n, sizeof *tasks);
-    SimResult *results = calloc(n, sizeof *results);
-    Status status = tasks && results ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for %zu simulations", n);
-    for (size_t i = 0; status == STATUS_OK && i < n; i++)
-        tasks[i] = (SimTask){SCENE_IMPACT, &X[i * s->schema.n_var]};
+    const Work *w = user;
+    judge_tower((const SimResult *)w->raw + i, w->F + i * N_OBJECTIVES, &w->verdict[i]);
+    return tell(w, i, err);
+}
+
+static int may_go_on(void *user)
+{
+    const Work *w = user;
+    const Observer *o = &w->subject->observer;
+    return !o->go_on || o->go_on(o->user);
+}
+
+static Status run_tower(Work *w, Err *err)
+{
+    SimTask *tasks = calloc(w->n, sizeof *tasks);
+    SimResult *results = calloc(w->n, sizeof *results);
+    const Watch watch = {may_go_on, tower_done, w};
+    Status status = tasks && results ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for %zu simulations", w->n);
+    w->raw = results;
+    for (size_t i = 0; status == STATUS_OK && i < w->n; i++)
+        tasks[i] = (SimTask){SCENE_IMPACT, w->X + i * w->subject->schema.n_var};
     if (status == STATUS_OK)
-        status = crew_run(s->crew, n, tasks, results, err);
-    for (size_t i = 0; status == STATUS_OK && i < n; i++)
-        judge_tower(&results[i], &F[i * N_OBJECTIVES], &ok[i], &s->verdict[s->n_verdicts + i]);
+        status = crew_run_watched(w->subject->crew, w->n, tasks, results, &watch, err);
     free(tasks);
     free(results);
     return status;
 }
 
-static Status run_external(Subject *s, size_t n, const double X[], double F[], unsigned char ok[], Err *err)
+static Status answer_came(size_t i, void *user, Err *err)
 {
-    Answer *answers = calloc(n, sizeof *answers);
+    const Work *w = user;
+    const Answer *a = (const Answer *)w->raw + i;
+    verdict_set(&w->verdict[i], answer_word(a->outcome), a->reason);
+    w->verdict[i].seconds = a->seconds;
+    return tell(w, i, err);
+}
+
+static Status run_external(Work *w, Err *err)
+{
+    Answer *answers = calloc(w->n, sizeof *answers);
+    const Watch watch = {may_go_on, answer_came, w};
     if (!answers)
-        return fail(err, STATUS_NO_MEMORY, "no memory for %zu answers", n);
-    const Status status = external_run(s->external, n, X, F, answers, err);
-    for (size_t i = 0; status == STATUS_OK && i < n; i++) {
-        ok[i] = answers[i].outcome == ANSWER_OK;
-        verdict_set(&s->verdict[s->n_verdicts + i], answer_word(answers[i].outcome), answers[i].reason);
-        for (size_t k = 0; !ok[i] && k < s->schema.n_obj; k++)
-            F[i * s->schema.n_obj + k] = NAN;
-    }
+        return fail(err, STATUS_NO_MEMORY, "no memory for %zu answers", w->n);
+    w->raw = answers;
+    const Status status = external_run(w->subject->external, w->n, w->X, w->number, w->F, answers, &watch, err);
     free(answers);
     return status;
 }
@@ -141,26 +210,58 @@ void subject_exact(const Subject *s, const double x[], double f[])
         textbook_wfg4(n_var, m, textbook_wfg4_position(n_var, m), x, f);
 }
 
-static Status run_textbook(Subject *s, size_t n, const double X[], double F[], unsigned char ok[])
+static Status run_textbook(Work *w, Err *err)
 {
+    const Subject *s = w->subject;
     const size_t m = s->schema.n_obj;
-    for (size_t i = 0; i < n; i++) {
-        double *f = F + i * m;
-        Random noise = random_stream((uint32_t)s->settings.search.seed, RANDOM_NOISE, 0, (uint32_t)s->n_noisy++);
-        subject_exact(s, X + i * s->schema.n_var, f);
+    for (size_t i = 0; i < w->n; i++) {
+        double *f = w->F + i * m;
+        Random noise = random_stream((uint32_t)s->settings.search.seed, RANDOM_NOISE, 0, (uint32_t)(w->number[i] - 1));
+        if (!may_go_on(w))
+            return fail(err, STATUS_STOPPED, "stopped");
+        subject_exact(s, w->X + i * s->schema.n_var, f);
         for (size_t k = 0; s->settings.problem.noise > 0.0 && k < m; k++)
             f[k] *= 1.0 + s->settings.problem.noise * random_normal(&noise);
-        ok[i] = 1;
-        verdict_set(&s->verdict[s->n_verdicts + i], "ok", "");
+        verdict_set(&w->verdict[i], "ok", "");
+        TRY(tell(w, i, err));
     }
     return STATUS_OK;
 }
 
-static void apply_limits(const Subject *s, const double natural[], double g[])
+static Status run_kind(Work *w, Err *err)
 {
-    for (size_t c = 0; c < s->n_limits; c++) {
-        const Limit *l = &s->limit[c];
-        g[c] = l->sign * (natural[l->objective] - l->bound) / (l->bound != 0.0 ? fabs(l->bound) : 1.0);
+    return w->n == 0              ? STATUS_OK
+           : w->subject->crew     ? run_tower(w, err)
+           : w->subject->external ? run_external(w, err)
+                                  : run_textbook(w, err);
+}
+
+void subject_judge(const Subject *s, size_t n, const double natural[], double F[], double G[])
+{
+    const size_t m = s->schema.n_obj;
+    for (size_t i = 0; i < n; i++) {
+        apply_limits(s, natural + i * m, G + i * s->n_limits);
+        for (size_t k = 0; k < m; k++)
+            F[i * m + k] = schema_objective(&s->schema, k)->sense * natural[i * m + k];
+    }
+}
+
+/* Designs that are known from before get their answers at once, the others are work to do. */
+static void sort_out(Work *w, size_t n, const double X[], double F[], unsigned char ok[])
+{
+    const Subject *s = w->subject;
+    const Observer *o = &s->observer;
+    const size_t n_var = s->schema.n_var, m = s->schema.n_obj;
+    for (size_t i = 0; i < n; i++) {
+        Verdict v;
+        const size_t number = s->n_done + i + 1;
+        if (o->recall && o->recall(number, X + i * n_var, F + i * m, &v, o->user)) {
+            ok[i] = (unsigned char)is_ok(&v);
+            continue;
+        }
+        memcpy(w->X + w->n * n_var, X + i * n_var, n_var * sizeof *X);
+        w->number[w->n] = (long)number;
+        w->place[w->n++] = i;
     }
 }
 
@@ -168,19 +269,18 @@ static Status evaluate(size_t n, const double X[], double F[], double G[], unsig
 {
     Subject *s = user;
     const size_t m = s->schema.n_obj;
-    TRY(room_for(s, n, err));
-    if (s->crew)
-        TRY(run_tower(s, n, X, F, ok, err));
-    else if (s->external)
-        TRY(run_external(s, n, X, F, ok, err));
-    else
-        TRY(run_textbook(s, n, X, F, ok));
-    s->n_verdicts += n;
-    for (size_t i = 0; i < n; i++) {
-        apply_limits(s, F + i * m, G + i * s->n_limits);
-        for (size_t k = 0; k < m; k++)
-            F[i * m + k] *= schema_objective(&s->schema, k)->sense;
+    Work w;
+    TRY(work_create(&w, s, n, err));
+    sort_out(&w, n, X, F, ok);
+    const Status status = run_kind(&w, err);
+    for (size_t i = 0; status == STATUS_OK && i < w.n; i++) {
+        ok[w.place[i]] = (unsigned char)is_ok(&w.verdict[i]);
+        memcpy(F + w.place[i] * m, w.F + i * m, m * sizeof *F);
     }
+    free(w.store);
+    TRY(status);
+    s->n_done += n;
+    subject_judge(s, n, F, F, G);
     return STATUS_OK;
 }
 
@@ -359,6 +459,5 @@ void subject_close(Subject *s)
     world_close(&s->world);
     schema_free(&s->schema);
     free(s->lower);
-    free(s->verdict);
     free(s);
 }

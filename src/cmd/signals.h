@@ -1,0 +1,13 @@
+/* cmd/signals.h -- SIGINT and SIGTERM as a wish to end.
+ *
+ * The first one is only noted, for signals_asked to tell; a second one of either kind ends the program at once. Also
+ * SIGXFSZ, a file beyond the allowed size, is from then on a failed write instead of the end.
+ *
+ * Threads  signals_asked may be called from any. */
+#ifndef IMTET_CMD_SIGNALS_H
+#define IMTET_CMD_SIGNALS_H
+
+void signals_catch(void);
+int signals_asked(void *unused); /* the signal's number, 0: none came */
+
+#endif

@@ -1,0 +1,242 @@
+#include "run/database.h"
+
+#include <limits.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { BUSY_MS = 5000 };
+
+struct Database {
+    sqlite3 *db;
+    char path[PATH_MAX];
+};
+
+const char *database_path(const Database *d)
+{
+    return d->path;
+}
+
+/* -- faults ---------------------------------------------------------------------------------------------------------
+ */
+
+static Status explain(const char *path, int code, const char *said, Err *err)
+{
+    switch (code & 0xff) {
+    case SQLITE_NOMEM:
+        return fail(err, STATUS_NO_MEMORY, "%s: out of memory", path);
+    case SQLITE_FULL:
+        return fail(err, STATUS_IO, "%s: cannot be written: the disk is full; what was stored before can be read",
+                    path);
+    case SQLITE_READONLY:
+    case SQLITE_PERM:
+        return fail(err, STATUS_IO, "%s: cannot be written: file or folder is read-only", path);
+    case SQLITE_BUSY:
+    case SQLITE_LOCKED:
+        return fail(err, STATUS_IO, "%s: is busy: another program has kept it locked for %d s", path, BUSY_MS / 1000);
+    case SQLITE_CORRUPT:
+        return fail(err, STATUS_IO, "%s: is damaged (%s); `sqlite3 FILE .recover` saves what can be read", path, said);
+    case SQLITE_NOTADB:
+        return fail(err, STATUS_IO, "%s: is no database of a run", path);
+    case SQLITE_CANTOPEN:
+        return fail(err, STATUS_IO, "%s: cannot be opened: %s", path, said);
+    default:
+        return fail(err, STATUS_IO, "%s: cannot be read or written: %s", path, said);
+    }
+}
+
+static Status complain(const Database *d, Err *err)
+{
+    return explain(d->path, sqlite3_extended_errcode(d->db), sqlite3_errmsg(d->db), err);
+}
+
+/* -- statements -----------------------------------------------------------------------------------------------------
+ */
+
+static int bind_value(sqlite3_stmt *s, int i, char type, va_list *values)
+{
+    const char *text;
+    const void *bytes;
+    double number;
+    switch (type) {
+    case 'i':
+        return sqlite3_bind_int64(s, i, va_arg(*values, long));
+    case 'd':
+        number = va_arg(*values, double);
+        return isfinite(number) ? sqlite3_bind_double(s, i, number) : sqlite3_bind_null(s, i);
+    case 't':
+        text = va_arg(*values, const char *);
+        return text ? sqlite3_bind_text(s, i, text, -1, SQLITE_TRANSIENT) : sqlite3_bind_null(s, i);
+    default:
+        bytes = va_arg(*values, const void *);
+        return sqlite3_bind_blob64(s, i, bytes, va_arg(*values, size_t), SQLITE_TRANSIENT);
+    }
+}
+
+Status database_do(Database *d, Err *err, const char *sql, const char *types, ...)
+{
+    sqlite3_stmt *s = NULL;
+    if (!types[0])
+        return sqlite3_exec(d->db, sql, NULL, NULL, NULL) == SQLITE_OK ? STATUS_OK : complain(d, err);
+    int code = sqlite3_prepare_v2(d->db, sql, -1, &s, NULL);
+    va_list values;
+    va_start(values, types);
+    for (int i = 0; code == SQLITE_OK && types[i]; i++)
+        code = bind_value(s, i + 1, types[i], &values);
+    va_end(values);
+    if (code == SQLITE_OK)
+        code = sqlite3_step(s);
+    const Status status = code == SQLITE_DONE || code == SQLITE_ROW ? STATUS_OK : complain(d, err);
+    sqlite3_finalize(s);
+    return status;
+}
+
+Status database_each(Database *d, const char *sql, DatabaseRowFn take, void *user, Err *err)
+{
+    sqlite3_stmt *s = NULL;
+    Status status = STATUS_OK;
+    int code = sqlite3_prepare_v2(d->db, sql, -1, &s, NULL);
+    while (code == SQLITE_OK && (code = sqlite3_step(s)) == SQLITE_ROW) {
+        status = take(s, user, err);
+        code = status == STATUS_OK ? SQLITE_OK : SQLITE_DONE;
+    }
+    if (code != SQLITE_DONE)
+        status = complain(d, err);
+    sqlite3_finalize(s);
+    return status;
+}
+
+static Status take_number(sqlite3_stmt *row, void *user, Err *err)
+{
+    (void)err;
+    if (sqlite3_column_type(row, 0) != SQLITE_NULL)
+        *(double *)user = sqlite3_column_double(row, 0);
+    return STATUS_OK;
+}
+
+Status database_number(Database *d, const char *sql, double otherwise, double *value, Err *err)
+{
+    *value = otherwise;
+    return database_each(d, sql, take_number, value, err);
+}
+
+/* -- opening --------------------------------------------------------------------------------------------------------
+ */
+
+static Status open_file(Database **out, const char *path, const char *name, int flags, Err *err)
+{
+    Database *d = calloc(1, sizeof *d);
+    *out = NULL;
+    if (!d || snprintf(d->path, sizeof d->path, "%s", path) >= (int)sizeof d->path) {
+        free(d);
+        return fail(err, d ? STATUS_IO : STATUS_NO_MEMORY, "%.200s: cannot be opened: path too long or no memory",
+                    path);
+    }
+    const int code = sqlite3_open_v2(name, &d->db, flags | SQLITE_OPEN_FULLMUTEX, NULL);
+    if (code != SQLITE_OK) {
+        const Status status = d->db ? complain(d, err) : explain(path, code, sqlite3_errstr(code), err);
+        sqlite3_close(d->db);
+        free(d);
+        return status;
+    }
+    sqlite3_extended_result_codes(d->db, 1);
+    sqlite3_busy_timeout(d->db, BUSY_MS);
+    *out = d;
+    return STATUS_OK;
+}
+
+static Status take_word(sqlite3_stmt *row, void *user, Err *err)
+{
+    (void)err;
+    snprintf(user, 200, "%s", (const char *)sqlite3_column_text(row, 0));
+    return STATUS_OK;
+}
+
+/* Ours, of a format that is known, and whole. */
+static Status check(Database *d, DatabaseMode mode, Err *err)
+{
+    double application, format;
+    char word[200] = "";
+    TRY(database_number(d, "PRAGMA application_id", 0, &application, err));
+    TRY(database_number(d, "PRAGMA user_version", 0, &format, err));
+    if (application != DATABASE_APPLICATION)
+        return fail(err, STATUS_IO, "%s: is no database of a run", d->path);
+    if (format != DATABASE_FORMAT)
+        return fail(err, STATUS_IO, "%s: has format %g, this program reads %d; a newer imtet wrote it", d->path, format,
+                    DATABASE_FORMAT);
+    TRY(database_each(d, mode == DATABASE_WRITE ? "PRAGMA integrity_check(1)" : "PRAGMA quick_check(1)", take_word,
+                      word, err));
+    return strcmp(word, "ok") == 0 ? STATUS_OK : explain(d->path, SQLITE_CORRUPT, word, err);
+}
+
+static Status prepare(Database *d, DatabaseMode mode, Err *err)
+{
+    if (mode == DATABASE_WRITE)
+        TRY(database_do(d, err, "PRAGMA journal_mode=WAL; PRAGMA synchronous=FULL; PRAGMA foreign_keys=ON", ""));
+    return check(d, mode, err);
+}
+
+/* A folder that may not be written to has no place for the files that readers share; where no writer has left a
+ * journal either, the file alone is all there is. */
+static Status open_immutable(Database **out, const char *path, Err *err)
+{
+    char uri[3 * PATH_MAX + 32], *to = uri + sprintf(uri, "file:");
+    struct stat journal;
+    snprintf(uri + 5, PATH_MAX + 5, "%s-wal", path);
+    if (strlen(path) >= PATH_MAX - 8 || (stat(uri + 5, &journal) == 0 && journal.st_size > 0))
+        return explain(path, SQLITE_READONLY, "", err);
+    for (const char *from = path; *from; from++)
+        to += strchr("%?#", *from) ? sprintf(to, "%%%02X", (unsigned)*from) : sprintf(to, "%c", *from);
+    sprintf(to, "?immutable=1");
+    return open_file(out, path, uri, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, err);
+}
+
+Status database_open(Database **out, const char *path, DatabaseMode mode, Err *err)
+{
+    *out = NULL;
+    if (access(path, F_OK) != 0)
+        return fail(err, STATUS_MISSING, "%s: is not there", path);
+    TRY(open_file(out, path, path, mode == DATABASE_WRITE ? SQLITE_OPEN_READWRITE : SQLITE_OPEN_READONLY, err));
+    Status status = prepare(*out, mode, err);
+    if (status != STATUS_OK && mode == DATABASE_READ && access(path, R_OK) == 0) {
+        const int code = sqlite3_errcode((*out)->db) & 0xff;
+        if (code == SQLITE_CANTOPEN || code == SQLITE_READONLY) {
+            database_close(*out, NULL);
+            TRY(open_immutable(out, path, err));
+            status = check(*out, mode, err);
+        }
+    }
+    if (status != STATUS_OK) {
+        database_close(*out, NULL);
+        *out = NULL;
+    }
+    return status;
+}
+
+Status database_create(Database **out, const char *path, Err *err)
+{
+    char sql[128];
+    TRY(open_file(out, path, path, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, err));
+    snprintf(sql, sizeof sql, "PRAGMA synchronous=FULL; PRAGMA application_id=%d; PRAGMA user_version=%d",
+             DATABASE_APPLICATION, DATABASE_FORMAT);
+    const Status status = database_do(*out, err, sql, "");
+    if (status != STATUS_OK) {
+        database_close(*out, NULL);
+        *out = NULL;
+    }
+    return status;
+}
+
+Status database_close(Database *d, Err *err)
+{
+    if (!d)
+        return STATUS_OK;
+    const int code = sqlite3_close(d->db);
+    const Status status = code == SQLITE_OK ? STATUS_OK : explain(d->path, code, sqlite3_errstr(code), err);
+    free(d);
+    return status;
+}

@@ -1,0 +1,23 @@
+/* run/export.h -- a run as CSV and as JSON; results/README.md explains the columns.
+ *
+ * The same bytes for the same evaluations: nothing here depends on the clock or on the number of threads. Failures of
+ * the stream are seen by whoever closes it (run/output.h). */
+#ifndef IMTET_RUN_EXPORT_H
+#define IMTET_RUN_EXPORT_H
+
+#include <stdio.h>
+
+#include "run/saved.h"
+
+/* One design of a front: id, x (n_var), f (n_obj, natural). */
+void export_front_header(FILE *f, const Schema *schema);
+void export_front_row(FILE *f, const Schema *schema, long id, const double x[], const double natural[]);
+
+void export_front(FILE *f, const Saved *h);                    /* front.csv */
+void export_evaluations_header(FILE *f, const Schema *schema); /* evaluations.csv: every finished generation ... */
+void export_evaluations(FILE *f, const Saved *h);              /* ... and polished designs, without the header */
+
+/* Settings, columns, evaluations, front and generations as one object. */
+Status export_json(FILE *f, const Saved *h, Err *err);
+
+#endif
