@@ -88,8 +88,8 @@ static const Option OPTIONS[] = {
     {"design.thickness_max_m", "m", REAL, AT(design.thickness_max_m), "0.04", 1e-6, 10, NULL,
      "search box: thickest core wall"},
 
-    {"problem.kind", "-", CHOICE, AT(problem.kind), "tower", 0, 0, "tower|external|dtlz2|wfg4",
-     "tower: gaps and walls of the scene; external: a simulator of your own; the others: problems with a known front"},
+    {"problem.kind", "-", CHOICE, AT(problem.kind), "tower", 0, 0, "tower|external|dtlz2|wfg4|dtlz1_inverted|dtlz5|dtlz7|wfg5",
+     "tower: gaps and walls of the scene; external: a simulator of your own; the others: problems from textbooks"},
     {"problem.command", "-", TEXT, AT(problem.command), "none", 0, 0, NULL,
      "external: the worker, started without a shell once per thread; docs/external.md has the protocol"},
     {"problem.timeout_s", "s", REAL, AT(problem.timeout_s), "600", 1e-3, 1e7, NULL,
@@ -105,7 +105,7 @@ static const Option OPTIONS[] = {
     {"problem.objective_names", "-", TEXT, AT(problem.objective_names), "auto", 0, 0, NULL,
      "comma list; auto: f1, f2, ..."},
     {"problem.noise", "-", REAL, AT(problem.noise), "0", 0, 1, NULL,
-     "dtlz2, wfg4: standard deviation of the answers, share of their value"},
+     "problems from textbooks: standard deviation of the answers, share of their value"},
 
     {"search.seed", "-", WHOLE, AT(search.seed), "1", 0, 4294967295.0, NULL, "same seed and settings: same bytes"},
     {"search.threads", "-", WHOLE, AT(search.threads), "0", 0, 1024, NULL, "0: one per processor"},

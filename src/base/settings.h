@@ -43,7 +43,8 @@ typedef enum {
 #undef X
         ENGINE_COUNT
 } Engine;
-typedef enum { PROBLEM_TOWER, PROBLEM_EXTERNAL, PROBLEM_DTLZ2, PROBLEM_WFG4 } ProblemKind;
+/* PROBLEM_TEXTBOOK and what follows it: problem/textbook.h, in its order. */
+typedef enum { PROBLEM_TOWER, PROBLEM_EXTERNAL, PROBLEM_TEXTBOOK } ProblemKind;
 typedef enum { UNIT_FROM_FILE, UNIT_M_S2, UNIT_CM_S2, UNIT_G } MotionUnit;
 
 typedef struct {

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "cmd/commands.h"
+#include "problem/textbook.h"
 #include "run/output.h"
 #include "run/study.h"
 #include "run/subject.h"
@@ -77,12 +78,17 @@ static Status search(const Args *args, const Settings *s, const Subject *subject
 
 static Status run(const Args *args, Err *err)
 {
-    static const char *const NAMES[] = {"dtlz2", "wfg4"};
+    const char *names[16];
+    int n_names = 0, known = 0;
     Settings s;
     Subject *subject;
     char kind[64];
-    if (strcmp(args->operand, NAMES[0]) != 0 && strcmp(args->operand, NAMES[1]) != 0)
-        return args_unknown("problem", args->operand, NAMES, 2, "`imtet problem --help`", err);
+    for (; textbook((size_t)n_names); n_names++) {
+        names[n_names] = textbook((size_t)n_names)->name;
+        known |= strcmp(args->operand, names[n_names]) == 0;
+    }
+    if (!known)
+        return args_unknown("problem", args->operand, names, n_names, "`imtet problem --help`", err);
     if (!args_has(args, "--csv"))
         return fail(err, STATUS_USAGE, "--csv FILE is missing: where the table goes");
     settings_defaults(&s);
@@ -108,12 +114,13 @@ static const ArgOption OPTIONS[] = {
 const Command CMD_PROBLEM = {
     .name = "problem",
     .operand = "NAME",
-    .summary = "the search on a problem whose front is known: dtlz2, wfg4",
+    .summary = "the search on a problem from a textbook: dtlz2, wfg4, ...",
     .example = "imtet problem dtlz2 --max-evals 500 --seed 1 --csv dtlz2.csv",
     .details =
         "Searches a test problem of 22 variables and 7 objectives (problem.variables, problem.objectives) and writes\n"
         "every evaluated design, one row each in their order: variables, then objectives. With problem.noise the\n"
-        "answers that the search saw stand before the exact objectives.",
+        "answers that the search saw stand before the exact objectives. Problems: dtlz2, wfg4, dtlz1_inverted,\n"
+        "dtlz5, dtlz7, wfg5.",
     .options = OPTIONS,
     .run = run,
 };

@@ -201,13 +201,14 @@ static Status run_external(Work *w, Err *err)
     return status;
 }
 
+static const Textbook *textbook_of(const Subject *s)
+{
+    return textbook((size_t)(s->settings.problem.kind - PROBLEM_TEXTBOOK));
+}
+
 void subject_exact(const Subject *s, const double x[], double f[])
 {
-    const size_t n_var = s->schema.n_var, m = s->schema.n_obj;
-    if (s->settings.problem.kind == PROBLEM_DTLZ2)
-        textbook_dtlz2(n_var, m, x, f);
-    else
-        textbook_wfg4(n_var, m, textbook_wfg4_position(n_var, m), x, f);
+    textbook_of(s)->evaluate(s->schema.n_var, s->schema.n_obj, x, f);
 }
 
 static Status run_textbook(Work *w, Err *err)
@@ -350,10 +351,9 @@ static Status set_bounds(Subject *s, Err *err)
     const size_t n = s->schema.n_var;
     for (size_t j = 0; j < n; j++) {
         s->lower[j] = !s->crew ? 0.0 : j + 2 < n ? t->design.gap_min_m : t->design.thickness_min_m;
-        s->upper[j] = t->problem.kind == PROBLEM_WFG4 ? 2.0 * (double)(j + 1)
-                      : !s->crew                      ? 1.0
-                      : j + 2 < n                     ? t->design.gap_max_m
-                                                      : t->design.thickness_max_m;
+        s->upper[j] = j + 2 < n ? t->design.gap_max_m : t->design.thickness_max_m;
+        if (t->problem.kind >= PROBLEM_TEXTBOOK)
+            s->upper[j] = textbook_upper(textbook_of(s), j);
     }
     if (!s->external)
         return STATUS_OK;

@@ -3,8 +3,7 @@
  *
  *   problem.kind = tower      gaps and walls; t_top > t_base is repaired by swapping the two
  *                  external   workers that speak JSON lines (problem/external.h)
- *                  dtlz2      problem/textbook.h, with problem.noise where that is set
- *                  wfg4
+ *                  dtlz2 ...  problem/textbook.h, with problem.noise where that is set
  *
  * Limits of the user (search.limits = j3_g<=5,edcs_pct>=3) become constraints: g = (value - limit) / |limit| for <=.
  *
