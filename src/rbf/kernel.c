@@ -43,6 +43,26 @@ static inline double exp_down(double x)
     return sum * power;
 }
 
+WIDE void kernel_warp(size_t n, const double log_u[], const double log_v[], double theta, const double warp[2],
+                      double s[])
+{
+    const double half = 0.5 * sqrt(theta), a = warp[0], b = warp[1];
+#pragma omp simd
+    for (size_t i = 0; i < n; i++)
+        s[i] = half * (exp_down(a * log_u[i]) + 1.0 - exp_down(b * log_v[i]));
+}
+
+WIDE void kernel_warp_slopes(size_t n, const double log_u[], const double log_v[], double theta, const double warp[2],
+                             double by_a[], double by_b[])
+{
+    const double half = 0.5 * sqrt(theta), a = warp[0], b = warp[1];
+#pragma omp simd
+    for (size_t i = 0; i < n; i++) {
+        by_a[i] = half * a * log_u[i] * exp_down(a * log_u[i]);
+        by_b[i] = -half * b * log_v[i] * exp_down(b * log_v[i]);
+    }
+}
+
 /* Eight centres and all points of a block at a time: every number that is loaded is used four times at least. */
 WIDE void kernel_distances(size_t n_dim, size_t stride, const double S[], const double x[], size_t first, size_t count,
                            double r2[RBF_BLOCK][KERNEL_CHUNK])
@@ -53,7 +73,7 @@ WIDE void kernel_distances(size_t n_dim, size_t stride, const double S[], const 
             const Four *c = (const Four *)(S + d * stride + first + i);
 #pragma GCC unroll 4
             for (size_t p = 0; p < RBF_BLOCK; p++) {
-                const Four a = c[0] - x[p * n_dim + d], b = c[1] - x[p * n_dim + d];
+                const Four a = c[0] - x[d * RBF_BLOCK + p], b = c[1] - x[d * RBF_BLOCK + p];
                 low[p] += a * a;
                 high[p] += b * b;
             }
@@ -140,13 +160,4 @@ WIDE void kernel_weigh(RbfKernel kernel, size_t n, const double r2[], const doub
         const double slope = kernel == RBF_GAUSS ? -exp_down(-r2[i]) : -5.0 / 6.0 * (1.0 + a) * exp_down(-a);
         v[i] = (w[i] * w_j / s2 - v[i]) * slope;
     }
-}
-
-WIDE double kernel_moment(size_t n, const double v[], const double c[], double at)
-{
-    double sum = 0.0;
-#pragma omp simd reduction(+ : sum)
-    for (size_t i = 0; i < n; i++)
-        sum += v[i] * (c[i] - at) * (c[i] - at);
-    return sum;
 }

@@ -1,8 +1,8 @@
 /* rbf/kernel.h -- the inner loops of the response surface: distances, kernel values, their derivatives and sums.
  *
  * Compiled once for any machine and once for wide vectors, chosen when the program starts; on one machine the same
- * numbers always give the same bits. Centres lie variable by variable, S (n_dim, stride), each variable multiplied by
- * the square root of its theta; stride is a multiple of KERNEL_LANES and S has KERNEL_LANES numbers to spare behind it.
+ * numbers always give the same bits. Centres lie variable by variable, S (n_dim, stride), warped and scaled;
+ * stride is a multiple of KERNEL_LANES and S has KERNEL_LANES numbers to spare behind it.
  *
  * Threads  pure functions. */
 #ifndef IMTET_RBF_KERNEL_H
@@ -12,8 +12,15 @@
 
 enum { KERNEL_LANES = 8, KERNEL_CHUNK = 64 };
 
-/* r2[p][i] = squared distance of point p to centre first + i, count <= KERNEL_CHUNK; x (RBF_BLOCK, n_dim) scaled like
- * the centres. Numbers behind count, up to a multiple of KERNEL_LANES, are spoilt. */
+/* s = root(theta) (u^a + 1 - v^b) / 2 with v = 1 - u, from log u and log v; warp = a, b. */
+void kernel_warp(size_t n, const double log_u[], const double log_v[], double theta, const double warp[2], double s[]);
+
+/* Its derivatives by log a and log b. */
+void kernel_warp_slopes(size_t n, const double log_u[], const double log_v[], double theta, const double warp[2],
+                        double by_a[], double by_b[]);
+
+/* r2[p][i] = squared distance of point p to centre first + i, count <= KERNEL_CHUNK; x (n_dim, RBF_BLOCK) warped
+ * and scaled like the centres. Numbers behind count, up to a multiple of KERNEL_LANES, are spoilt. */
 void kernel_distances(size_t n_dim, size_t stride, const double S[], const double x[], size_t first, size_t count,
                       double r2[RBF_BLOCK][KERNEL_CHUNK]);
 
@@ -30,8 +37,5 @@ void kernel_project(size_t n_dim, size_t stride, const double S[], size_t first,
 
 /* v[i] = (w[i] w_j / s2 - v[i]) d phi / d (r^2) at r2[i]: the terms of the likelihood's gradient of one column. */
 void kernel_weigh(RbfKernel kernel, size_t n, const double r2[], const double w[], double w_j, double s2, double v[]);
-
-/* sum_i v[i] (c[i] - at)^2 */
-double kernel_moment(size_t n, const double v[], const double c[], double at);
 
 #endif

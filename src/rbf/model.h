@@ -6,14 +6,20 @@
 
 static const double NUGGET_MIN = 1e-8, NUGGET_MAX = 1.0;
 
+/* How one output sees the variables. */
+typedef struct {
+    double *theta;  /* (n_dim) */
+    double warp[2]; /* a, b */
+} Shape;
+
 /* What the model keeps of one output. */
 typedef struct {
     RbfForm form;
     size_t n_tail;      /* columns of the tail really used: fewer when there are too few centres */
     double mean, scale; /* of F: the surface is built on (f - mean) / scale */
     double explained;
-    double *theta;         /* (n_dim) */
-    double *S;             /* (n_dim, stride) centres times the root of theta */
+    Shape shape;
+    double *S;             /* (n_dim, stride) centres, warped and scaled */
     double *tail;          /* (1 + 2 n_dim) coefficients b */
     double *weight;        /* (n_max) w */
     double *leave_one_out; /* (n_max) [unit of f] */
@@ -21,15 +27,17 @@ typedef struct {
 
 /* What one thread needs to fit one output; matrices column-major as LAPACK likes them, lower triangles. */
 typedef struct {
-    double *C, *S;                                            /* (n_dim, stride) centres of the tuning choice; scaled */
+    double *C, *S, *Z;                                        /* centres of the tuning choice; scaled; for gradients */
+    double *by_a, *by_b;                                      /* (n) derivatives by the warp */
     double *A;                                                /* (n, n) kernel matrix, its factor, its inverse */
     double *P;                                                /* (n, n_tail + 1) tail basis and data */
     double *M;                                                /* (n_tail, n_tail) normal matrix of the tail, factored */
     double *b;                                                /* (n_tail) */
     double *y, *w;                                            /* (n) data, weights */
     double *q;                                                /* (n) diagonal of the projected inverse */
-    double *log_p, *best_p, *gradient, *last_gradient, *step; /* (n_dim + 1) log theta, log nugget */
-    double *theta, *best_theta;                               /* (n_dim) */
+    double *log_p, *best_p, *gradient, *last_gradient, *step; /* (n_dim + 3) log of theta, warp, nugget */
+    double *theta;                                            /* (n_dim) of the step under way */
+    Shape shape, best_shape;
     RbfForm best_form;
     double least_error;
 } Worker;
@@ -38,7 +46,7 @@ struct Rbf {
     size_t n, n_max, n_dim, n_out, n_workers, n_tail_max;
     size_t stride;  /* n_max or a little more */
     size_t n_tuned; /* calls of rbf_tune */
-    double *C;      /* (n_dim, stride) centres */
+    double *C;      /* (3, n_dim, stride) centres u, log u, log (1 - u) */
     double *F;      /* (n_out, n_max) */
     Output *output;
     Worker *worker;
@@ -46,10 +54,15 @@ struct Rbf {
     void *store;
 };
 
-/* S = C times the root of theta, for n centres. */
-void model_scale(const Rbf *m, size_t n, const double C[], const double theta[], double S[]);
+/* A variable nearer to its bounds than this is warped as if it were so far away. */
+static const double NEAREST = 1e-4;
 
-/* Points first..first+RBF_BLOCK-1, of n, row by row: x (RBF_BLOCK, n_dim); the last one again where there are fewer. */
+/* S: n centres C (3, n_dim, stride) warped and scaled. */
+void model_scale(const Rbf *m, size_t n, const double C[], const Shape *shape, double S[]);
+
+void model_copy_shape(const Rbf *m, Shape *to, const Shape *from);
+
+/* Points first..first+RBF_BLOCK-1, of n: x (n_dim, RBF_BLOCK); the last one again where there are fewer. */
 void model_gather(const Rbf *m, const double S[], size_t first, size_t n, double x[]);
 
 /* Lower triangle of the kernel matrix A (n, n) of scaled centres, nugget on the diagonal. */

@@ -13,14 +13,14 @@
 static void layout(Rbf *m, Carve *c)
 {
     const size_t n = m->n_max, d = m->n_dim, t = m->n_tail_max, spread = d * m->stride + KERNEL_LANES;
-    m->C = carve(c, spread, sizeof(double));
+    m->C = carve(c, 3 * spread, sizeof(double));
     m->F = carve(c, m->n_out * n, sizeof(double));
     m->status = carve(c, m->n_out, sizeof(Status));
     m->output = carve(c, m->n_out, sizeof(Output));
     m->worker = carve(c, m->n_workers, sizeof(Worker));
     for (size_t k = 0; k < m->n_out; k++) {
         Output counted, *o = c->base ? &m->output[k] : &counted;
-        o->theta = carve(c, d, sizeof(double));
+        o->shape.theta = carve(c, d, sizeof(double));
         o->S = carve(c, spread, sizeof(double));
         o->tail = carve(c, t, sizeof(double));
         o->weight = carve(c, n, sizeof(double));
@@ -28,8 +28,11 @@ static void layout(Rbf *m, Carve *c)
     }
     for (size_t k = 0; k < m->n_workers; k++) {
         Worker counted, *w = c->base ? &m->worker[k] : &counted;
-        w->C = carve(c, spread, sizeof(double));
+        w->C = carve(c, 3 * spread, sizeof(double));
         w->S = carve(c, spread, sizeof(double));
+        w->Z = carve(c, spread, sizeof(double));
+        w->by_a = carve(c, n, sizeof(double));
+        w->by_b = carve(c, n, sizeof(double));
         w->A = carve(c, n * n, sizeof(double));
         w->P = carve(c, n * (t + 1), sizeof(double));
         w->M = carve(c, t * t, sizeof(double));
@@ -37,13 +40,14 @@ static void layout(Rbf *m, Carve *c)
         w->y = carve(c, n, sizeof(double));
         w->w = carve(c, n, sizeof(double));
         w->q = carve(c, n, sizeof(double));
-        w->log_p = carve(c, d + 1, sizeof(double));
-        w->best_p = carve(c, d + 1, sizeof(double));
-        w->gradient = carve(c, d + 1, sizeof(double));
-        w->last_gradient = carve(c, d + 1, sizeof(double));
-        w->step = carve(c, d + 1, sizeof(double));
+        w->log_p = carve(c, d + 3, sizeof(double));
+        w->best_p = carve(c, d + 3, sizeof(double));
+        w->gradient = carve(c, d + 3, sizeof(double));
+        w->last_gradient = carve(c, d + 3, sizeof(double));
+        w->step = carve(c, d + 3, sizeof(double));
         w->theta = carve(c, d, sizeof(double));
-        w->best_theta = carve(c, d, sizeof(double));
+        w->shape.theta = carve(c, d, sizeof(double));
+        w->best_shape.theta = carve(c, d, sizeof(double));
     }
 }
 
@@ -73,7 +77,8 @@ Status rbf_create(Rbf **out, size_t n_max, size_t n_dim, size_t n_out, Err *err)
     for (size_t k = 0; k < n_out; k++) {
         m->output[k].form = (RbfForm){RBF_MATERN, RBF_LINEAR, NUGGET_MIN};
         for (size_t d = 0; d < n_dim; d++)
-            m->output[k].theta[d] = 1.0 / (double)n_dim;
+            m->output[k].shape.theta[d] = 1.0 / (double)n_dim;
+        m->output[k].shape.warp[0] = m->output[k].shape.warp[1] = 1.0;
     }
     return STATUS_OK;
 }
@@ -85,18 +90,26 @@ void rbf_free(Rbf *m)
     free(m);
 }
 
-void model_scale(const Rbf *m, size_t n, const double C[], const double theta[], double S[])
+void model_scale(const Rbf *m, size_t n, const double C[], const Shape *shape, double S[])
 {
-    for (size_t d = 0; d < m->n_dim; d++)
-        for (size_t i = 0; i < n; i++)
-            S[d * m->stride + i] = sqrt(theta[d]) * C[d * m->stride + i];
+    const size_t plane = m->n_dim * m->stride;
+    for (size_t d = 0; d < m->n_dim; d++) {
+        const double *log_u = C + plane + d * m->stride;
+        kernel_warp(n, log_u, log_u + plane, shape->theta[d], shape->warp, S + d * m->stride);
+    }
+}
+
+void model_copy_shape(const Rbf *m, Shape *to, const Shape *from)
+{
+    memcpy(to->theta, from->theta, m->n_dim * sizeof *to->theta);
+    memcpy(to->warp, from->warp, sizeof to->warp);
 }
 
 void model_gather(const Rbf *m, const double S[], size_t first, size_t n, double x[])
 {
-    for (size_t p = 0; p < RBF_BLOCK; p++)
-        for (size_t d = 0; d < m->n_dim; d++)
-            x[p * m->n_dim + d] = S[d * m->stride + (first + p < n ? first + p : n - 1)];
+    for (size_t d = 0; d < m->n_dim; d++)
+        for (size_t p = 0; p < RBF_BLOCK; p++)
+            x[d * RBF_BLOCK + p] = S[d * m->stride + (first + p < n ? first + p : n - 1)];
 }
 
 /* A block of columns at a time, from its first row on, chunk by chunk. */
@@ -220,7 +233,7 @@ static int fit_output(const Rbf *m, Worker *k, Output *o, const double f[])
     for (size_t i = 0; i < n; i++)
         k->y[i] = (f[i] - o->mean) / o->scale;
     RbfForm form = o->form;
-    model_scale(m, n, m->C, o->theta, o->S);
+    model_scale(m, n, m->C, &o->shape, o->S);
     if (!isfinite(o->mean) || !isfinite(o->scale) || !model_factor(m, k, n, o->S, &form))
         return 0;
     o->n_tail = model_weights(m, k, n, m->C, model_tail(form.tail, n, m->n_dim));
@@ -251,6 +264,19 @@ Status model_fit(Rbf *m, Err *err)
     return STATUS_OK;
 }
 
+static double log_away(double u)
+{
+    return log(u < NEAREST ? NEAREST : u);
+}
+
+static void place(Rbf *m, size_t i, size_t d, double u)
+{
+    double *c = m->C + d * m->stride + i;
+    c[0] = u;
+    c[m->n_dim * m->stride] = log_away(u);
+    c[2 * m->n_dim * m->stride] = log_away(1.0 - u);
+}
+
 Status rbf_fit(Rbf *m, size_t n, const double X[], const double F[], Err *err)
 {
     if (n < 2 || n > m->n_max)
@@ -258,7 +284,7 @@ Status rbf_fit(Rbf *m, size_t n, const double X[], const double F[], Err *err)
     m->n = n;
     for (size_t i = 0; i < n; i++) {
         for (size_t d = 0; d < m->n_dim; d++)
-            m->C[d * m->stride + i] = X[i * m->n_dim + d];
+            place(m, i, d, X[i * m->n_dim + d]);
         for (size_t k = 0; k < m->n_out; k++)
             m->F[k * m->n_max + i] = F[i * m->n_out + k];
     }
@@ -268,13 +294,23 @@ Status rbf_fit(Rbf *m, size_t n, const double X[], const double F[], Err *err)
 /* -- prediction -----------------------------------------------------------------------------------------------------
  */
 
-/* n <= RBF_BLOCK points as the output's kernel sees them: x (RBF_BLOCK, n_dim), the last one again where there are
- * fewer. */
-static void scale_points(const Rbf *m, const Output *o, size_t n, const double X[], double x[])
+/* log u and log (1 - u) of n <= RBF_BLOCK points, the last one again where there are fewer: L (2, n_dim, RBF_BLOCK) */
+static void take_logs(const Rbf *m, size_t n, const double X[], double L[])
 {
-    for (size_t p = 0; p < RBF_BLOCK; p++)
-        for (size_t d = 0; d < m->n_dim; d++)
-            x[p * m->n_dim + d] = sqrt(o->theta[d]) * X[(p < n ? p : n - 1) * m->n_dim + d];
+    for (size_t d = 0; d < m->n_dim; d++)
+        for (size_t p = 0; p < RBF_BLOCK; p++) {
+            const double u = X[(p < n ? p : n - 1) * m->n_dim + d];
+            L[d * RBF_BLOCK + p] = log_away(u);
+            L[(m->n_dim + d) * RBF_BLOCK + p] = log_away(1.0 - u);
+        }
+}
+
+/* The points as the output's kernel sees them: x (n_dim, RBF_BLOCK) */
+static void scale_points(const Rbf *m, const Output *o, const double L[], double x[])
+{
+    for (size_t d = 0; d < m->n_dim; d++)
+        kernel_warp(RBF_BLOCK, L + d * RBF_BLOCK, L + (m->n_dim + d) * RBF_BLOCK, o->shape.theta[d], o->shape.warp,
+                    x + d * RBF_BLOCK);
 }
 
 static double tail_sum(const Rbf *m, const Output *o, const double x[])
@@ -296,11 +332,12 @@ static void gather_errors(size_t count, const double r2[], const double e[], dou
 }
 
 /* f and error of point p go to f[p n_out]. */
-static void eval_output(const Rbf *m, const Output *o, size_t n, const double X[], double f[], double error[])
+static void eval_output(const Rbf *m, const Output *o, size_t n, const double X[], const double L[], double f[],
+                        double error[])
 {
     double r2[RBF_BLOCK][KERNEL_CHUNK], phi[KERNEL_CHUNK], x[RBF_BLOCK * RBF_DIM_MAX];
     double value[RBF_BLOCK] = {0}, square[RBF_BLOCK] = {0}, weights[RBF_BLOCK] = {0};
-    scale_points(m, o, n, X, x);
+    scale_points(m, o, L, x);
     for (size_t first = 0; first < m->n; first += KERNEL_CHUNK) {
         const size_t count = m->n - first < KERNEL_CHUNK ? m->n - first : KERNEL_CHUNK;
         kernel_distances(m->n_dim, m->stride, o->S, x, first, count, r2);
@@ -321,10 +358,14 @@ static void eval_output(const Rbf *m, const Output *o, size_t n, const double X[
 
 void rbf_eval(const Rbf *m, size_t n, const double X[], double F[], double E[])
 {
-    for (size_t i = 0; i < n; i += RBF_BLOCK)
+    double L[2 * RBF_BLOCK * RBF_DIM_MAX];
+    for (size_t i = 0; i < n; i += RBF_BLOCK) {
+        const size_t count = n - i < RBF_BLOCK ? n - i : RBF_BLOCK;
+        take_logs(m, count, X + i * m->n_dim, L);
         for (size_t k = 0; k < m->n_out; k++)
-            eval_output(m, &m->output[k], n - i < RBF_BLOCK ? n - i : RBF_BLOCK, X + i * m->n_dim, F + i * m->n_out + k,
+            eval_output(m, &m->output[k], count, X + i * m->n_dim, L, F + i * m->n_out + k,
                         E ? E + i * m->n_out + k : NULL);
+    }
 }
 
 static double tail_slope(size_t n_dim, const Output *o, size_t d, double x)
@@ -333,15 +374,23 @@ static double tail_slope(size_t n_dim, const Output *o, size_t d, double x)
            (o->n_tail > 1 + n_dim ? 4.0 * (2.0 * x - 1.0) * o->tail[1 + n_dim + d] : 0.0);
 }
 
-/* With q = w d phi / d (r^2) and scaled x, c:  df/dx_d = 2 root(theta_d) (x_d sum q - sum q c_d) + tail.
+/* Derivative of the warped and scaled variable by the variable. */
+static double warp_slope(const Shape *shape, size_t d, double u)
+{
+    const double low = fmax(u, NEAREST), high = fmax(1.0 - u, NEAREST), *warp = shape->warp;
+    return 0.5 * sqrt(shape->theta[d]) * (warp[0] * pow(low, warp[0] - 1.0) + warp[1] * pow(high, warp[1] - 1.0));
+}
+
+/* With q = w d phi / d (r^2) and warped x, c:  df/dx_d = 2 (x_d sum q - sum q c_d), then the chain rule; and the tail.
  * J of point p goes to J[p n_out n_dim]. */
-static void slope_output(const Rbf *m, const Output *o, size_t n, const double X[], double f[], double J[])
+static void slope_output(const Rbf *m, const Output *o, size_t n, const double X[], const double L[], double f[],
+                         double J[])
 {
     const size_t n_dim = m->n_dim;
     double r2[RBF_BLOCK][KERNEL_CHUNK], q[RBF_BLOCK][KERNEL_CHUNK] = {{0}}, x[RBF_BLOCK * RBF_DIM_MAX];
     double value[RBF_BLOCK] = {0}, sum[RBF_BLOCK] = {0}, G[RBF_BLOCK * RBF_DIM_MAX];
     memset(G, 0, RBF_BLOCK * n_dim * sizeof *G);
-    scale_points(m, o, n, X, x);
+    scale_points(m, o, L, x);
     for (size_t first = 0; first < m->n; first += KERNEL_CHUNK) {
         const size_t count = m->n - first < KERNEL_CHUNK ? m->n - first : KERNEL_CHUNK;
         kernel_distances(n_dim, m->stride, o->S, x, first, count, r2);
@@ -356,18 +405,22 @@ static void slope_output(const Rbf *m, const Output *o, size_t n, const double X
     for (size_t p = 0; p < n; p++) {
         f[p * m->n_out] = o->mean + o->scale * (value[p] + tail_sum(m, o, X + p * n_dim));
         for (size_t d = 0; d < n_dim; d++)
-            J[p * m->n_out * n_dim + d] =
-                o->scale * (2.0 * sqrt(o->theta[d]) * (x[p * n_dim + d] * sum[p] - G[p * n_dim + d]) +
-                            tail_slope(n_dim, o, d, X[p * n_dim + d]));
+            J[p * m->n_out * n_dim + d] = o->scale * (2.0 * (x[d * RBF_BLOCK + p] * sum[p] - G[p * n_dim + d]) *
+                                                          warp_slope(&o->shape, d, X[p * n_dim + d]) +
+                                                      tail_slope(n_dim, o, d, X[p * n_dim + d]));
     }
 }
 
 void rbf_slope(const Rbf *m, size_t n, const double X[], double F[], double J[])
 {
-    for (size_t i = 0; i < n; i += RBF_BLOCK)
+    double L[2 * RBF_BLOCK * RBF_DIM_MAX];
+    for (size_t i = 0; i < n; i += RBF_BLOCK) {
+        const size_t count = n - i < RBF_BLOCK ? n - i : RBF_BLOCK;
+        take_logs(m, count, X + i * m->n_dim, L);
         for (size_t k = 0; k < m->n_out; k++)
-            slope_output(m, &m->output[k], n - i < RBF_BLOCK ? n - i : RBF_BLOCK, X + i * m->n_dim,
-                         F + i * m->n_out + k, J + (i * m->n_out + k) * m->n_dim);
+            slope_output(m, &m->output[k], count, X + i * m->n_dim, L, F + i * m->n_out + k,
+                         J + (i * m->n_out + k) * m->n_dim);
+    }
 }
 
 const double *rbf_leave_one_out(const Rbf *m, size_t output)
@@ -387,7 +440,7 @@ void rbf_set_form(Rbf *m, size_t output, RbfForm form)
 
 void rbf_set_scales(Rbf *m, size_t output, const double theta[])
 {
-    memcpy(m->output[output].theta, theta, m->n_dim * sizeof *theta);
+    memcpy(m->output[output].shape.theta, theta, m->n_dim * sizeof *theta);
 }
 
 static int form_is_known(RbfForm f)

@@ -9,15 +9,54 @@
 
 enum { TUNE_MAX = 250, TUNE_STEPS_FIRST = 16, TUNE_STEPS = 8 };
 
-static const double THETA_MIN = 1e-4, THETA_MAX = 50.0;
-/* Weak prior on log theta (mean log 1/n_dim): keeps the scale of a variable that the data say nothing about. */
-static const double PRIOR_SPREAD = 2.0;
+/* What is looked for is the logarithm of each: theta of every variable, then a, b of the warp and the nugget. Weak
+ * priors keep what the data say nothing about: log theta near the mean over the variables, log a and log b near 0. */
+static const double THETA_MIN = 1e-4, THETA_MAX = 50.0, THETA_SPREAD = 1.4;
+static const double WARP_MIN = 0.1, WARP_MAX = 8.0, WARP_SPREAD = 0.3;
 
-/* Adds theta_d times the likelihood's derivative by theta_d, from the inverse in A and the scaled centres, to the
- * gradient; returns sum_i (w_i^2 / s2 - inv(A)_ii). Spoils A. */
-static double likelihood_slopes(const Rbf *m, Worker *k, size_t n, RbfKernel kernel, double s2, double gradient[])
+static size_t n_parameters(const Rbf *m)
 {
-    const size_t n_dim = m->n_dim, stride = m->stride;
+    return m->n_dim + 3;
+}
+
+static void read_parameters(const Rbf *m, const double p[], Shape *shape, double *nugget)
+{
+    for (size_t d = 0; d < m->n_dim; d++)
+        shape->theta[d] = exp(p[d]);
+    shape->warp[0] = exp(p[m->n_dim]);
+    shape->warp[1] = exp(p[m->n_dim + 1]);
+    *nugget = exp(p[m->n_dim + 2]);
+}
+
+static double least_parameter(const Rbf *m, size_t i)
+{
+    return log(i < m->n_dim ? THETA_MIN : i < m->n_dim + 2 ? WARP_MIN : NUGGET_MIN);
+}
+
+static double most_parameter(const Rbf *m, size_t i)
+{
+    return log(i < m->n_dim ? THETA_MAX : i < m->n_dim + 2 ? WARP_MAX : NUGGET_MAX);
+}
+
+/* Minus the logarithm of the priors, and its gradient. */
+static double prior(const Rbf *m, const double p[], double gradient[])
+{
+    double mean = 0.0, l = 0.0;
+    for (size_t d = 0; d < m->n_dim; d++)
+        mean += p[d] / (double)m->n_dim;
+    for (size_t i = 0; i < n_parameters(m); i++) {
+        const double spread = i < m->n_dim ? THETA_SPREAD : i < m->n_dim + 2 ? WARP_SPREAD : INFINITY;
+        const double off = (p[i] - (i < m->n_dim ? mean : 0.0)) / spread;
+        l += 0.5 * off * off;
+        gradient[i] = off / spread;
+    }
+    return l;
+}
+
+/* Turns the inverse in A into v_ij = (w_i w_j / s2 - inv(A)_ij) d phi_ij / d (r^2), i > j, with 0 on the diagonal, and
+ * its row sums into q; returns sum_i (w_i^2 / s2 - inv(A)_ii). */
+static double weigh_pairs(const Rbf *m, Worker *k, size_t n, RbfKernel kernel, double s2)
+{
     double trace = 0.0, r2[RBF_BLOCK][KERNEL_CHUNK], x[RBF_BLOCK * RBF_DIM_MAX];
     for (size_t j = 0; j < n; j++)
         trace += k->w[j] * k->w[j] / s2 - k->A[j * n + j];
@@ -25,97 +64,106 @@ static double likelihood_slopes(const Rbf *m, Worker *k, size_t n, RbfKernel ker
         model_gather(m, k->S, j, n, x);
         for (size_t i = j; i < n; i += KERNEL_CHUNK) {
             const size_t count = n - i < KERNEL_CHUNK ? n - i : KERNEL_CHUNK;
-            kernel_distances(n_dim, stride, k->S, x, i, count, r2);
-            for (size_t p = 0; p < RBF_BLOCK && j + p < n; p++) {
-                const size_t skip = i == j ? (p + 1 < count ? p + 1 : count) : 0, from = i + skip;
-                double *v = k->A + (j + p) * n + from;
-                kernel_weigh(kernel, count - skip, r2[p] + skip, k->w + from, k->w[j + p], s2, v);
-                for (size_t d = 0; d < n_dim; d++)
-                    gradient[d] -= kernel_moment(count - skip, v, k->S + d * stride + from, x[p * n_dim + d]);
-            }
+            kernel_distances(m->n_dim, m->stride, k->S, x, i, count, r2);
+            for (size_t p = 0; p < RBF_BLOCK && j + p < n; p++)
+                kernel_weigh(kernel, count, r2[p], k->w + i, k->w[j + p], s2, k->A + (j + p) * n + i);
+        }
+    }
+    memset(k->q, 0, n * sizeof *k->q);
+    for (size_t j = 0; j < n; j++) {
+        double *v = k->A + j * n;
+        v[j] = 0.0;
+        for (size_t i = j + 1; i < n; i++) {
+            k->q[j] += v[i];
+            k->q[i] += v[i];
         }
     }
     return trace;
 }
 
-/* The part of minus the log likelihood that depends on p = (log theta, log nugget), variance and tail profiled out:
+/* Subtracts from the gradient, with v symmetric and s the warped and scaled centres,
+ *     1/2 sum_ij v_ij d (s_i - s_j)^2 / dp = 2 sum_i (q_i s_i - z_i) ds_i/dp,    z = v s
+ * variable by variable: ds/d log theta = s / 2. */
+static void pull_back(const Rbf *m, Worker *k, size_t n, const Shape *shape, double gradient[])
+{
+    const size_t stride = m->stride, plane = m->n_dim * stride;
+    cblas_dsymm(CblasColMajor, CblasLeft, CblasLower, (int)n, (int)m->n_dim, 1.0, k->A, (int)n, k->S, (int)stride, 0.0,
+                k->Z, (int)stride);
+    for (size_t d = 0; d < m->n_dim; d++) {
+        const double *s = k->S + d * stride, *z = k->Z + d * stride, *log_u = k->C + plane + d * stride;
+        kernel_warp_slopes(n, log_u, log_u + plane, shape->theta[d], shape->warp, k->by_a, k->by_b);
+        for (size_t i = 0; i < n; i++) {
+            const double pull = 2.0 * (k->q[i] * s[i] - z[i]);
+            gradient[d] -= 0.5 * pull * s[i];
+            gradient[m->n_dim] -= pull * k->by_a[i];
+            gradient[m->n_dim + 1] -= pull * k->by_b[i];
+        }
+    }
+}
+
+/* The part of minus the log likelihood that depends on p, variance and tail profiled out:
  *     l = n/2 log(s2) + 1/2 log|A|,    s2 = y'w / n
- * plus the prior. Its gradient needs the inverse only once (Rasmussen and Williams, eq. 5.9):
+ * plus the priors. Its gradient needs the inverse only once (Rasmussen and Williams, eq. 5.9):
  *     dl/dp = -1/2 sum_ij (w_i w_j / s2 - inv(A)_ij) dA_ij/dp.
  * INFINITY where the matrix does not factor. */
-static double likelihood(const Rbf *m, Worker *k, size_t n, RbfForm form, double theta[], const double p[],
-                         double gradient[])
+static double likelihood(const Rbf *m, Worker *k, size_t n, RbfForm form, const double p[], double gradient[])
 {
-    const size_t n_dim = m->n_dim;
-    const double prior_mean = -log((double)n_dim), nugget = exp(p[n_dim]);
-    for (size_t d = 0; d < n_dim; d++)
-        theta[d] = exp(p[d]);
-    model_scale(m, n, k->C, theta, k->S);
-    model_matrix(m, n, k->S, form.kernel, nugget, k->A);
+    Shape shape = {.theta = k->theta};
+    read_parameters(m, p, &shape, &form.nugget);
+    model_scale(m, n, k->C, &shape, k->S);
+    model_matrix(m, n, k->S, form.kernel, form.nugget, k->A);
     if (LAPACKE_dpotrf_work(LAPACK_COL_MAJOR, 'L', (int)n, k->A, (int)n) != 0)
         return INFINITY;
-    model_weights(m, k, n, k->C, model_tail(form.tail, n, n_dim));
+    model_weights(m, k, n, k->C, model_tail(form.tail, n, m->n_dim));
     const double s2 = fmax(cblas_ddot((int)n, k->y, 1, k->w, 1) / (double)n, 1e-300);
-    double l = 0.5 * (double)n * log(s2);
+    double l = 0.5 * (double)n * log(s2) + prior(m, p, gradient);
     for (size_t i = 0; i < n; i++)
         l += log(k->A[i * n + i]);
     model_invert((int)n, k->A, (int)n);
     LAPACKE_dlauum_work(LAPACK_COL_MAJOR, 'L', (int)n, k->A, (int)n);
-
-    for (size_t d = 0; d < n_dim; d++) {
-        const double off = (p[d] - prior_mean) / PRIOR_SPREAD;
-        l += 0.5 * off * off;
-        gradient[d] = 0.0;
-    }
-    const double trace = likelihood_slopes(m, k, n, form.kernel, s2, gradient);
-    for (size_t d = 0; d < n_dim; d++)
-        gradient[d] += (p[d] - prior_mean) / (PRIOR_SPREAD * PRIOR_SPREAD);
-    gradient[n_dim] = -0.5 * nugget * trace;
+    gradient[m->n_dim + 2] -= 0.5 * form.nugget * weigh_pairs(m, k, n, form.kernel, s2);
+    pull_back(m, k, n, &shape, gradient);
     return l;
 }
 
 /* Resilient back-propagation: only the signs of the gradient count, which suits likelihoods with their plateaus and
  * cliffs. Blum and Riedmiller, Optimization of Gaussian process hyperparameters using Rprop, ESANN 2013. */
-static void climb(const Rbf *m, Worker *k, size_t n, RbfForm *form, double theta[], int steps)
+static void climb(const Rbf *m, Worker *k, size_t n, RbfForm *form, Shape *shape, int steps)
 {
-    const size_t n_p = m->n_dim + 1;
+    const size_t n_p = n_parameters(m), i_nugget = n_p - 1;
     double *p = k->log_p, *g = k->gradient, *last = k->last_gradient, best = INFINITY;
-    for (size_t d = 0; d < n_p; d++) {
-        p[d] = log(d < m->n_dim ? theta[d] : form->nugget);
-        k->best_p[d] = p[d];
-        k->step[d] = 0.5;
-        last[d] = 0.0;
+    for (size_t i = 0; i < n_p; i++) {
+        p[i] = log(i < m->n_dim ? shape->theta[i] : i < i_nugget ? shape->warp[i - m->n_dim] : form->nugget);
+        k->best_p[i] = p[i];
+        k->step[i] = i < m->n_dim || i == i_nugget ? 0.5 : 0.2;
+        last[i] = 0.0;
     }
     for (int step = 0; step < steps; step++) {
-        const double l = likelihood(m, k, n, *form, theta, p, g);
+        const double l = likelihood(m, k, n, *form, p, g);
         if (l < best) {
             best = l;
             memcpy(k->best_p, p, n_p * sizeof *p);
         } else if (!(l < INFINITY)) {
-            p[m->n_dim] = fmin(p[m->n_dim] + log(10.0), log(NUGGET_MAX));
+            p[i_nugget] = fmin(p[i_nugget] + log(10.0), log(NUGGET_MAX));
             continue;
         }
-        for (size_t d = 0; d < n_p; d++) {
-            const double lowest = log(d < m->n_dim ? THETA_MIN : NUGGET_MIN);
-            const double highest = log(d < m->n_dim ? THETA_MAX : NUGGET_MAX);
-            const double agreed = g[d] * last[d];
-            k->step[d] = agreed > 0.0   ? fmin(1.2 * k->step[d], 2.0)
-                         : agreed < 0.0 ? fmax(0.5 * k->step[d], 1e-3)
-                                        : k->step[d];
-            last[d] = agreed < 0.0 ? 0.0 : g[d];
-            if (last[d] != 0.0)
-                p[d] = fmin(fmax(p[d] - copysign(k->step[d], g[d]), lowest), highest);
+        for (size_t i = 0; i < n_p; i++) {
+            const double agreed = g[i] * last[i];
+            k->step[i] = agreed > 0.0   ? fmin(1.2 * k->step[i], 2.0)
+                         : agreed < 0.0 ? fmax(0.5 * k->step[i], 1e-3)
+                                        : k->step[i];
+            last[i] = agreed < 0.0 ? 0.0 : g[i];
+            if (last[i] != 0.0)
+                p[i] = fmin(fmax(p[i] - copysign(k->step[i], g[i]), least_parameter(m, i)), most_parameter(m, i));
         }
     }
-    for (size_t d = 0; d < m->n_dim; d++)
-        theta[d] = exp(k->best_p[d]);
-    form->nugget = exp(k->best_p[m->n_dim]);
+    read_parameters(m, k->best_p, shape, &form->nugget);
 }
 
 /* Mean square leave-one-out error of a form and scales on the tuning choice. */
-static double trial_error(const Rbf *m, Worker *k, size_t n, RbfForm *form, const double theta[])
+static double trial_error(const Rbf *m, Worker *k, size_t n, RbfForm *form, const Shape *shape)
 {
-    model_scale(m, n, k->C, theta, k->S);
+    model_scale(m, n, k->C, shape, k->S);
     if (!model_factor(m, k, n, k->S, form))
         return INFINITY;
     model_leave_one_out(k, n, model_weights(m, k, n, k->C, model_tail(form->tail, n, m->n_dim)));
@@ -128,7 +176,7 @@ static size_t choose_tuning_set(const Rbf *m, Worker *k, const Output *o, const 
     const size_t n = m->n < TUNE_MAX ? m->n : TUNE_MAX;
     for (size_t i = 0; i < n; i++) {
         const size_t from = i * m->n / n;
-        for (size_t d = 0; d < m->n_dim; d++)
+        for (size_t d = 0; d < 3 * m->n_dim; d++)
             k->C[d * m->stride + i] = m->C[d * m->stride + from];
         k->y[i] = (f[from] - o->mean) / o->scale;
     }
@@ -138,13 +186,13 @@ static size_t choose_tuning_set(const Rbf *m, Worker *k, const Output *o, const 
 /* Climbs with one form from the output's scales; the better of this and the best so far stays in the worker. */
 static void try_form(const Rbf *m, Worker *k, size_t n, const Output *o, RbfForm form, int steps)
 {
-    memcpy(k->theta, o->theta, m->n_dim * sizeof *k->theta);
-    climb(m, k, n, &form, k->theta, steps);
-    const double e = trial_error(m, k, n, &form, k->theta);
+    model_copy_shape(m, &k->shape, &o->shape);
+    climb(m, k, n, &form, &k->shape, steps);
+    const double e = trial_error(m, k, n, &form, &k->shape);
     if (e < k->least_error) {
         k->least_error = e;
         k->best_form = form;
-        memcpy(k->best_theta, k->theta, m->n_dim * sizeof *k->theta);
+        model_copy_shape(m, &k->best_shape, &k->shape);
     }
 }
 
@@ -164,7 +212,7 @@ static void tune_output(const Rbf *m, Worker *k, Output *o, const double f[])
     }
     if (k->least_error < INFINITY) {
         o->form = k->best_form;
-        memcpy(o->theta, k->best_theta, m->n_dim * sizeof *o->theta);
+        model_copy_shape(m, &o->shape, &k->best_shape);
     }
 }
 
