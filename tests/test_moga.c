@@ -286,7 +286,7 @@ static void test_survival_keeps_the_wanted_number_the_best_layers_and_the_corner
     Err err = {0};
     directions_choose(M, KEEP, &outer, &inner);
     CHECK_OK(directions_create(&d, M, outer, inner, &err), &err);
-    CHECK_OK(survival_create(&s, N, &d, &err), &err);
+    CHECK_OK(survival_create(&s, SURVIVAL_NSGA3, N, &d, &err), &err);
     for (uint32_t seed = 0; seed < 50; seed++) {
         sphere_points(seed, N, M, F);
         for (size_t i = 0; i < N; i++)
@@ -296,7 +296,7 @@ static void test_survival_keeps_the_wanted_number_the_best_layers_and_the_corner
             for (size_t j = 0; j < M; j++)
                 F[k * M + j] = j != k ? 0.0 : k == 0 ? 1e4 : 1.0;
         Random random = random_stream(seed, RANDOM_NICHING, 0, 0);
-        const size_t n = survival_select(s, N, F, NULL, KEEP, &random, chosen);
+        const size_t n = survival_select(s, N, F, NULL, KEEP, 0.5, &random, chosen);
         assert_int_equal(n, KEEP);
         assert_true(chosen[0] == 0 && chosen[1] == 1 && chosen[2] == 2);
         nondominated_sort(N, M, F, NULL, rank, scratch);
@@ -311,14 +311,40 @@ static void test_survival_keeps_the_wanted_number_the_best_layers_and_the_corner
         }
         assert_true(worst_kept <= best_left);
     }
-    assert_int_equal(survival_select(s, 5, F, NULL, KEEP, &(Random){0}, chosen), 5);
+    assert_int_equal(survival_select(s, 5, F, NULL, KEEP, 0.5, &(Random){0}, chosen), 5);
     survival_free(s);
     directions_free(&d);
 }
 
-static void test_feasible_designs_survive_before_infeasible_ones(void **state)
+/* One design on every direction, another further out on it: of the first nobody is lost. */
+static void test_every_direction_keeps_its_own_design_in_rvea_and_moead(void **state)
 {
     (void)state;
+    for (SurvivalKind kind = SURVIVAL_RVEA; kind <= SURVIVAL_MOEAD; kind++) {
+        size_t chosen[200];
+        double F[2 * 100 * 3];
+        Directions d;
+        Survival *s;
+        Err err = {0};
+        CHECK_OK(directions_create(&d, 3, 6, 0, &err), &err);
+        CHECK_OK(survival_create(&s, kind, 2 * d.n, &d, &err), &err);
+        for (size_t i = 0; i < d.n; i++)
+            for (size_t k = 0; k < 3; k++) {
+                const double w = d.W[i * 3 + k], length = hypot(hypot(d.W[i * 3], d.W[i * 3 + 1]), d.W[i * 3 + 2]);
+                F[2 * i * 3 + k] = 1000.0 * (double)k + w / length;
+                F[(2 * i + 1) * 3 + k] = 1000.0 * (double)k + 1.5 * w / length;
+            }
+        assert_int_equal(survival_select(s, 2 * d.n, F, NULL, d.n, 1.0, &(Random){0}, chosen), d.n);
+        for (size_t i = 0; i < d.n; i++)
+            assert_int_equal(chosen[i], 2 * i);
+        assert_int_equal(survival_select(s, 2 * d.n, F, NULL, d.n + 5, 1.0, &(Random){0}, chosen), d.n + 5);
+        survival_free(s);
+        directions_free(&d);
+    }
+}
+
+static void feasible_first(SurvivalKind kind)
+{
     enum { N = 30, M = 2 };
     double F[N * M], violation[N];
     size_t chosen[N];
@@ -326,19 +352,26 @@ static void test_feasible_designs_survive_before_infeasible_ones(void **state)
     Survival *s;
     Err err = {0};
     CHECK_OK(directions_create(&d, M, 9, 0, &err), &err);
-    CHECK_OK(survival_create(&s, N, &d, &err), &err);
+    CHECK_OK(survival_create(&s, kind, N, &d, &err), &err);
     for (size_t i = 0; i < N; i++) { /* the infeasible ones would dominate */
         F[i * M] = (double)i;
         F[i * M + 1] = i < 20 ? -(double)i : 100.0 - (double)i;
         violation[i] = i < 20 ? 1.0 + (double)i : 0.0;
     }
-    assert_int_equal(survival_select(s, N, F, violation, 12, &(Random){0}, chosen), 12);
+    assert_int_equal(survival_select(s, N, F, violation, 12, 0.5, &(Random){0}, chosen), 12);
     assert_int_equal(chosen[0], 0); /* the two least violating, then all ten feasible ones */
     assert_int_equal(chosen[1], 1);
     for (size_t i = 2; i < 12; i++)
         assert_int_equal(chosen[i], 18 + i);
     survival_free(s);
     directions_free(&d);
+}
+
+static void test_feasible_designs_survive_before_infeasible_ones(void **state)
+{
+    (void)state;
+    for (SurvivalKind kind = SURVIVAL_NSGA3; kind <= SURVIVAL_MOEAD; kind++)
+        feasible_first(kind);
 }
 
 /* -- archive and infill -----------------------------------------------------------------------------------------------
@@ -393,7 +426,7 @@ static void test_a_batch_spreads_over_the_directions_instead_of_crowding(void **
     Infill *q;
     Err err = {0};
     CHECK_OK(directions_create(&d, 2, 10, 0, &err), &err);
-    CHECK_OK(infill_create(&q, 5, &d, &err), &err);
+    CHECK_OK(infill_create(&q, INFILL_PBI, 5, &d, &err), &err);
     infill_measure(q, 3, rows, front);
     assert_true(infill_distance(q, front) == 0.0);
     assert_true(infill_distance(q, offered + 6) > 0.0);
@@ -439,6 +472,32 @@ static void test_spread_directions_have_the_axes_and_keep_apart(void **state)
     }
 }
 
+/* The mean over rays of length^m, spread over the positive sphere, is the hypervolume up to a constant: of two sets the
+ * one with the greater rays has the greater hypervolume. Here the ratio is known: boxes of edge 1 and 1/2. */
+static void test_the_lengths_of_rays_measure_the_hypervolume(void **state)
+{
+    (void)state;
+    const double front[] = {0, 0.5, 1, 1, 0, 0.5, 0.5, 1, 0}; /* 0..1 in every objective */
+    Directions d;
+    Infill *q;
+    Err err = {0};
+    CHECK_OK(directions_spread(&d, 3, 300, &err), &err);
+    CHECK_OK(infill_create(&q, INFILL_RAYS, 2, &d, &err), &err);
+    infill_measure(q, 3, (const size_t[]){0, 1, 2}, front);
+    double unused[3], ratio = 0.0;
+    for (size_t r = 3; r < d.n; r++) {
+        const double one = infill_slope(q, r, (const double[]){0.1, 0.1, 0.1}, unused);
+        const double half = infill_slope(q, r, (const double[]){0.6, 0.6, 0.6}, unused);
+        assert_close(one / half, 2.0, 1e-9);
+        ratio += pow(one / half, 3.0) / (double)(d.n - 3);
+    }
+    assert_close(ratio, 8.0, 1e-6);
+    assert_close(infill_off(q, 0, (const double[]){0.7, 0, 0}), 0.0, 1e-9);
+    assert_close(infill_off(q, 0, (const double[]){0.7, 0, 0.7}), sqrt(0.5), 1e-9);
+    infill_free(q);
+    directions_free(&d);
+}
+
 static void test_the_slope_of_pbi_equals_differences(void **state)
 {
     (void)state;
@@ -455,7 +514,7 @@ static void test_the_slope_of_pbi_equals_differences(void **state)
     Infill *q;
     Err err = {0};
     CHECK_OK(directions_spread(&d, M, 12, &err), &err);
-    CHECK_OK(infill_create(&q, ROWS, &d, &err), &err);
+    CHECK_OK(infill_create(&q, INFILL_PBI, ROWS, &d, &err), &err);
     infill_measure(q, ROWS, rows, F);
     for (size_t direction = 0; direction < d.n; direction++) {
         double f[M], unused[M];
@@ -492,11 +551,13 @@ int main(void)
         cmocka_unit_test(test_a_latin_hypercube_has_one_sample_in_every_slice_of_every_variable),
         cmocka_unit_test(test_normalisation_finds_the_intercepts_of_a_plane),
         cmocka_unit_test(test_survival_keeps_the_wanted_number_the_best_layers_and_the_corners_of_the_front),
+        cmocka_unit_test(test_every_direction_keeps_its_own_design_in_rvea_and_moead),
         cmocka_unit_test(test_feasible_designs_survive_before_infeasible_ones),
         cmocka_unit_test(test_front_flags_equal_a_brute_force_filter_after_every_insertion),
         cmocka_unit_test(test_a_batch_spreads_over_the_directions_instead_of_crowding),
         cmocka_unit_test(test_spread_directions_have_the_axes_and_keep_apart),
         cmocka_unit_test(test_the_slope_of_pbi_equals_differences),
+        cmocka_unit_test(test_the_lengths_of_rays_measure_the_hypervolume),
     };
     return cmocka_run_group_tests_name("moga", tests, NULL, NULL);
 }

@@ -129,6 +129,8 @@ static const Option OPTIONS[] = {
      "most designs that the response surface is built on"},
     {"search.surrogate", "-", CHOICE, AT(search.surrogate), "on", 0, 0, "on|off",
      "off: a plain evolutionary search, for comparison or where a simulation costs less than a prediction"},
+    {"search.survival", "-", CHOICE, AT(search.survival), "nsga3", 0, 0, "nsga3|rvea|moead",
+     "who lives on from one generation to the next: NSGA-III, RVEA or MOEA/D with PBI"},
     {"search.limits", "-", TEXT, AT(search.limits), "none", 0, 0, NULL,
      "what objectives must keep, as j3_g<=5,edcs_pct>=3; none"},
 

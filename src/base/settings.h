@@ -94,6 +94,7 @@ typedef struct {
         double crossover_probability, crossover_eta, mutation_eta, mutation_rate;
         long surrogate_max; /* most designs that the response surface is built on */
         long surrogate;     /* 0: on, 1: off */
+        long survival;      /* SurvivalKind */
         char limits[SETTINGS_TEXT_MAX];
     } search;
     struct {

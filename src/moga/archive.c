@@ -1,6 +1,7 @@
 #include "moga/archive.h"
 
 #include <math.h>
+#include <stdint.h>
 
 #include "base/carve.h"
 #include "moga/dominance.h"
@@ -13,9 +14,36 @@ static void layout(Archive *a, Carve *c)
     a->violation = carve(c, a->n_max, sizeof(double));
     a->generation = carve(c, a->n_max, sizeof(size_t));
     a->front = carve(c, a->n_max, sizeof(size_t));
+    a->slot = carve(c, a->n_slots, sizeof(size_t));
     a->ok = carve(c, a->n_max, 1);
     a->kind = carve(c, a->n_max, 1);
     a->on_front = carve(c, a->n_max, 1);
+}
+
+/* FNV-1a of the design's bytes. */
+static uint64_t hash(size_t n_var, const double x[])
+{
+    const unsigned char *byte = (const unsigned char *)x;
+    uint64_t h = 0xcbf29ce484222325u;
+    for (size_t i = 0; i < n_var * sizeof *x; i++)
+        h = (h ^ byte[i]) * 0x100000001b3u;
+    return h ^ h >> 32;
+}
+
+/* Where x is, or where it would go: slots hold a row plus one, 0 is free; at most half of them are taken. */
+static size_t slot_of(const Archive *a, const double x[])
+{
+    size_t i = (size_t)hash(a->n_var, x) & (a->n_slots - 1);
+    while (a->slot[i] && memcmp(a->X + (a->slot[i] - 1) * a->n_var, x, a->n_var * sizeof *x) != 0)
+        i = (i + 1) & (a->n_slots - 1);
+    return i;
+}
+
+static void remember(Archive *a, size_t row)
+{
+    size_t *slot = &a->slot[slot_of(a, a->X + row * a->n_var)];
+    if (!*slot)
+        *slot = row + 1;
 }
 
 static Status resize(Archive *a, size_t n_max, Err *err)
@@ -23,6 +51,8 @@ static Status resize(Archive *a, size_t n_max, Err *err)
     Archive old = *a;
     Carve c = {0};
     a->n_max = n_max;
+    for (a->n_slots = 4; a->n_slots < 2 * n_max;)
+        a->n_slots *= 2;
     layout(a, &c);
     void *store = carve_store(&c);
     if (!store) {
@@ -41,6 +71,8 @@ static Status resize(Archive *a, size_t n_max, Err *err)
         memcpy(a->ok, old.ok, old.n);
         memcpy(a->kind, old.kind, old.n);
         memcpy(a->on_front, old.on_front, old.n);
+        for (size_t row = 0; row < old.n; row++)
+            remember(a, row);
     }
     free(old.store);
     return STATUS_OK;
@@ -101,6 +133,7 @@ Status archive_insert(Archive *a, size_t n, const double X[], const double F[], 
         a->ok[row] = ok[i] && all_finite(a->n_obj, F + i * a->n_obj) &&
                      (a->n_con == 0 || all_finite(a->n_con, G + i * a->n_con));
         a->kind[row] = kind;
+        remember(a, row);
         a->generation[row] = generation;
         a->on_front[row] = 0;
         a->violation[row] = a->ok[row] ? violation_of(a->n_con, a->G + row * a->n_con) : INFINITY;
@@ -114,8 +147,6 @@ Status archive_insert(Archive *a, size_t n, const double X[], const double F[], 
 
 size_t archive_find(const Archive *a, const double x[])
 {
-    for (size_t i = 0; i < a->n; i++)
-        if (a->X[i * a->n_var] == x[0] && memcmp(a->X + i * a->n_var, x, a->n_var * sizeof *x) == 0)
-            return i;
-    return a->n;
+    const size_t row = a->slot[slot_of(a, x)];
+    return row ? row - 1 : a->n;
 }

@@ -22,6 +22,7 @@ typedef struct {
     unsigned char *on_front; /* (n) */
     size_t *generation;      /* (n) */
     size_t *front;           /* (n_front) their rows */
+    size_t n_slots, *slot;   /* hash table of the designs */
     void *store;
 } Archive;
 

@@ -8,15 +8,22 @@
 #include "moga/frame.h"
 
 static const double PBI_THETA = 5.0;
+/* Where rays start, in widths of the front: a little behind its worst, so that extreme designs count. */
+static const double RAY_START = 1.1;
+/* A weight is never less: a ray along an axis does not care about the other objectives inside the box. */
+static const double WEIGHT_MIN = 1e-3;
+/* How softly the slope of a ray changes from one objective that holds it back to the next, in widths of the front. */
+static const double RAY_SOFTNESS = 0.05;
 
 struct Infill {
+    InfillKind kind;
     size_t n_obj, n_dir, n_max, n;
     Frame frame;
     double *unit, *across;                 /* (n_dir, n_obj) directions of length 1; the same, (n_obj, n_dir) */
     double *row;                           /* (n_dir) */
     double *least;                         /* (n_dir) to beat */
     size_t *best;                          /* (n_dir) row that has it */
-    double *pbi;                           /* (n, n_dir) of the candidates */
+    double *value;                         /* (n, n_dir) of the candidates */
     const double *violation, *uncertainty; /* (n) */
     void *store;
 };
@@ -31,10 +38,10 @@ static void layout(Infill *q, Carve *c)
     q->row = carve(c, q->n_dir, sizeof(double));
     q->least = carve(c, q->n_dir, sizeof(double));
     q->best = carve(c, q->n_dir, sizeof(size_t));
-    q->pbi = carve(c, q->n_max * q->n_dir, sizeof(double));
+    q->value = carve(c, q->n_max * q->n_dir, sizeof(double));
 }
 
-Status infill_create(Infill **out, size_t candidates_max, const Directions *directions, Err *err)
+Status infill_create(Infill **out, InfillKind kind, size_t candidates_max, const Directions *directions, Err *err)
 {
     Infill *q = calloc(1, sizeof *q);
     *out = q;
@@ -42,6 +49,7 @@ Status infill_create(Infill **out, size_t candidates_max, const Directions *dire
         return fail(err, STATUS_NO_MEMORY, "no memory for the choice of designs to simulate");
     q->n_obj = q->frame.n_obj = directions->n_obj;
     q->n_dir = directions->n;
+    q->kind = kind;
     q->n_max = candidates_max;
     Carve c = {0};
     layout(q, &c);
@@ -70,7 +78,24 @@ void infill_free(Infill *q)
     free(q);
 }
 
-/* PBI values of f in every direction: with |w| = 1, off^2 = |z|^2 - along^2. */
+/* Minus the length of every ray that f dominates. */
+static void ray_values(const Infill *q, const double f[], double value[])
+{
+    for (size_t r = 0; r < q->n_dir; r++)
+        value[r] = -DBL_MAX;
+    for (size_t k = 0; k < q->n_obj; k++) {
+        const double over = frame_scale(&q->frame, k, f[k]) - RAY_START, *w = q->across + k * q->n_dir;
+#pragma omp simd
+        for (size_t r = 0; r < q->n_dir; r++) {
+            const double end = over / (w[r] > WEIGHT_MIN ? w[r] : WEIGHT_MIN);
+            value[r] = end > value[r] ? end : value[r];
+        }
+    }
+    for (size_t r = 0; r < q->n_dir; r++)
+        value[r] = fmin(value[r], 0.0);
+}
+
+/* With |w| = 1, off^2 = |z|^2 - along^2. */
 static void pbi_values(const Infill *q, const double f[], double pbi[])
 {
     double square = 0.0;
@@ -90,13 +115,21 @@ static void pbi_values(const Infill *q, const double f[], double pbi[])
     }
 }
 
+static void values_of(const Infill *q, const double f[], double value[])
+{
+    if (q->kind == INFILL_RAYS)
+        ray_values(q, f, value);
+    else
+        pbi_values(q, f, value);
+}
+
 void infill_measure(Infill *q, size_t n, const size_t front[], const double F[])
 {
     frame_fit_box(&q->frame, n, front, F);
     for (size_t r = 0; r < q->n_dir; r++)
         q->least[r] = DBL_MAX;
     for (size_t i = 0; i < n; i++) {
-        pbi_values(q, F + front[i] * q->n_obj, q->row);
+        values_of(q, F + front[i] * q->n_obj, q->row);
         for (size_t r = 0; r < q->n_dir; r++)
             if (q->row[r] < q->least[r]) {
                 q->least[r] = q->row[r];
@@ -110,10 +143,26 @@ size_t infill_best(const Infill *q, size_t direction)
     return q->best[direction];
 }
 
-double infill_slope(const Infill *q, size_t direction, const double f[], double slope[])
+/* Softly: every objective that nearly holds the ray back has a part in the slope. */
+static double ray_slope(const Infill *q, const double w[], const double f[], double slope[])
+{
+    double length = -DBL_MAX, sum = 0.0;
+    for (size_t k = 0; k < q->n_obj; k++) {
+        slope[k] = (frame_scale(&q->frame, k, f[k]) - RAY_START) / fmax(w[k], WEIGHT_MIN);
+        length = fmax(length, slope[k]);
+    }
+    for (size_t k = 0; k < q->n_obj; k++) {
+        slope[k] = exp((slope[k] - length) / RAY_SOFTNESS);
+        sum += slope[k];
+    }
+    for (size_t k = 0; k < q->n_obj; k++)
+        slope[k] /= sum * fmax(w[k], WEIGHT_MIN) * q->frame.width[k];
+    return length;
+}
+
+static double pbi_slope(const Infill *q, const double w[], const double f[], double slope[])
 {
     double along = 0.0, off = 0.0;
-    const double *w = q->unit + direction * q->n_obj;
     for (size_t k = 0; k < q->n_obj; k++)
         along += frame_scale(&q->frame, k, f[k]) * w[k];
     for (size_t k = 0; k < q->n_obj; k++) {
@@ -128,10 +177,28 @@ double infill_slope(const Infill *q, size_t direction, const double f[], double 
     return along + PBI_THETA * off;
 }
 
+double infill_off(const Infill *q, size_t direction, const double f[])
+{
+    const double *w = q->unit + direction * q->n_obj;
+    double along = 0.0, square = 0.0;
+    for (size_t k = 0; k < q->n_obj; k++) {
+        const double z = frame_scale(&q->frame, k, f[k]);
+        along += z * w[k];
+        square += z * z;
+    }
+    return square > 0.0 ? sqrt(fmax(1.0 - along * along / square, 0.0)) : 0.0;
+}
+
+double infill_slope(const Infill *q, size_t direction, const double f[], double slope[])
+{
+    const double *w = q->unit + direction * q->n_obj;
+    return q->kind == INFILL_RAYS ? ray_slope(q, w, f, slope) : pbi_slope(q, w, f, slope);
+}
+
 double infill_distance(Infill *q, const double f[])
 {
     double nearest = DBL_MAX;
-    pbi_values(q, f, q->row);
+    values_of(q, f, q->row);
     for (size_t r = 0; r < q->n_dir; r++)
         nearest = fmin(nearest, q->row[r] - q->least[r]);
     return nearest;
@@ -143,14 +210,14 @@ void infill_offer(Infill *q, size_t n, const double F[], const double violation[
     q->violation = violation;
     q->uncertainty = uncertainty;
     for (size_t i = 0; i < n; i++)
-        pbi_values(q, F + i * q->n_obj, q->pbi + i * q->n_dir);
+        values_of(q, F + i * q->n_obj, q->value + i * q->n_dir);
 }
 
-static double gain_of(const Infill *q, size_t i)
+static double gain_left(const Infill *q, size_t i)
 {
     double gain = 0.0;
     for (size_t r = 0; r < q->n_dir; r++)
-        gain += fmax(q->least[r] - q->pbi[i * q->n_dir + r], 0.0);
+        gain += fmax(q->least[r] - q->value[i * q->n_dir + r], 0.0);
     return gain;
 }
 
@@ -171,7 +238,7 @@ size_t infill_pick(Infill *q, unsigned char allowed[])
     for (size_t i = 0; i < q->n; i++) {
         if (!allowed[i])
             continue;
-        const double gain = gain_of(q, i);
+        const double gain = gain_left(q, i);
         if (best == SIZE_MAX || is_better(q, i, gain, best, most)) {
             most = gain;
             best = i;
@@ -180,7 +247,12 @@ size_t infill_pick(Infill *q, unsigned char allowed[])
     if (best == SIZE_MAX)
         return best;
     allowed[best] = 0;
-    for (size_t r = 0; r < q->n_dir; r++)
-        q->least[r] = fmin(q->least[r], q->pbi[best * q->n_dir + r]);
+    infill_take(q, best);
     return best;
+}
+
+void infill_take(Infill *q, size_t candidate)
+{
+    for (size_t r = 0; r < q->n_dir; r++)
+        q->least[r] = fmin(q->least[r], q->value[candidate * q->n_dir + r]);
 }

@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdint.h>
+#include <stdlib.h>
 #include <time.h>
 
 #include "base/carve.h"
@@ -25,6 +26,10 @@ enum {
 
 /* Kendall's tau below which the surface no longer leads, and how much one batch counts in its running mean. */
 static const double LEAST_AGREEMENT = 0.15, AGREEMENT_WEIGHT = 0.25;
+/* Where descents end so far off their directions (sine of the angle, median), the front has not the shape of a simplex:
+ * from OFF_LEAST on simulations are chosen by rays too, from OFF_MOST on mostly. One generation's weight in the mean.
+ */
+static const double OFF_LEAST = 0.15, OFF_MOST = 0.35, RAYS_MOST = 0.85, OFF_WEIGHT = 0.2;
 
 typedef struct {
     const Problem *problem;
@@ -32,20 +37,23 @@ typedef struct {
     Archive archive;
     Directions directions, wishes; /* of survival, of the choice of simulations */
     Survival *survival;
-    Infill *infill;
+    Infill *infill[INFILL_KINDS];
     Surface *surface;
     Group population, pool, offspring;
     size_t generation, n_predicted, batch_max;
-    double agreement;                /* running mean of Kendall's tau between predicted and simulated batches */
-    double *foreseen;                /* (batch, n_obj) what was predicted of the batch under way */
-    size_t *chosen;                  /* (pool) */
-    size_t *followed;                /* (wishes) in the order of this generation */
-    double *descended;               /* (pool, n_var) */
-    double *child;                   /* (2, n_var) */
-    double *X, *F, *G;               /* (batch) of one call of evaluate */
-    unsigned char *ok;               /* (batch) */
-    unsigned char *allowed, *picked; /* (pool) offspring that may still be, that have been sent to simulation */
-    Pack state;                      /* as of the last report */
+    double agreement;                   /* running mean of Kendall's tau between predicted and simulated batches */
+    double off;                         /* running mean of how far from their directions descents by PBI end */
+    size_t n_followed, n_followed_rays; /* descents of this generation, the last of the offspring; by rays come first */
+    double *foreseen;                   /* (batch, n_obj) what was predicted of the batch under way */
+    size_t *chosen;                     /* (pool) */
+    double *apart;                      /* (wishes) scratch */
+    size_t *followed;                   /* (wishes) in the order of this generation */
+    double *descended;                  /* (pool, n_var) */
+    double *child;                      /* (2, n_var) */
+    double *X, *F, *G;                  /* (batch) of one call of evaluate */
+    unsigned char *ok;                  /* (batch) */
+    unsigned char *allowed, *picked;    /* (pool) offspring that may still be, that have been sent to simulation */
+    Pack state;                         /* as of the last report */
     void *store;
     struct timespec start;
 } Search;
@@ -113,11 +121,17 @@ static void add_simulated(Search *s, Group *group, size_t first)
     }
 }
 
+static size_t planned_evals(const SearchConfig *c)
+{
+    return c->planned_evals > 0 ? c->planned_evals : c->max_evals;
+}
+
 static void survive(Search *s, Group *group, uint32_t step)
 {
     Random random = random_stream(s->config->seed, RANDOM_NICHING, (uint32_t)s->generation, step);
-    const size_t n =
-        survival_select(s->survival, group->n, group->F, group->violation, s->config->population, &random, s->chosen);
+    const double progress = fmin((double)s->archive.n / (double)planned_evals(s->config), 1.0);
+    const size_t n = survival_select(s->survival, group->n, group->F, group->violation, s->config->population, progress,
+                                     &random, s->chosen);
     group_keep(group, n, s->chosen);
 }
 
@@ -189,6 +203,33 @@ static size_t batch_size(const Search *s)
     return grown < least ? least : grown < population / 2 ? grown : population / 2;
 }
 
+/* Part of a batch that is chosen by rays, the rest by PBI: PBI is the better guide where every direction meets the
+ * front, but where most of them miss it, rays measure what a design adds to the hypervolume whatever the front's shape.
+ */
+static double share_of_rays(const Search *s)
+{
+    return RAYS_MOST * fmin(fmax((s->off - OFF_LEAST) / (OFF_MOST - OFF_LEAST), 0.0), 1.0);
+}
+
+static int compare_doubles(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* How far off their directions this generation's descents by PBI end, as the surface sees them. */
+static void judge_directions(Search *s)
+{
+    const size_t first = s->offspring.n - s->n_followed, n = s->n_followed - s->n_followed_rays;
+    for (size_t j = 0; j < n; j++) {
+        const size_t i = s->n_followed_rays + j;
+        s->apart[j] =
+            infill_off(s->infill[INFILL_PBI], s->followed[i], s->offspring.F + (first + i) * s->problem->n_obj);
+    }
+    qsort(s->apart, n, sizeof *s->apart, compare_doubles);
+    s->off += OFF_WEIGHT * (s->apart[n / 2] - s->off);
+}
+
 /* Some directions, drawn anew each time, are followed down the surface. */
 static void add_descended(Search *s)
 {
@@ -199,7 +240,12 @@ static void add_descended(Search *s)
     for (size_t r = 0; r < s->wishes.n; r++)
         s->followed[r] = r;
     random_shuffle(&random, s->wishes.n, s->followed);
-    surface_descend(s->surface, &s->archive, s->infill, n, s->followed, s->descended);
+    const size_t rays = (size_t)(share_of_rays(s) * (double)n);
+    s->n_followed = n;
+    s->n_followed_rays = rays;
+    surface_descend(s->surface, &s->archive, s->infill[INFILL_RAYS], rays, s->followed, s->descended);
+    surface_descend(s->surface, &s->archive, s->infill[INFILL_PBI], n - rays, s->followed + rays,
+                    s->descended + rays * p->n_var);
     for (size_t i = 0; i < n; i++) {
         if (p->repair)
             p->repair(s->descended + i * p->n_var, p->user);
@@ -212,7 +258,7 @@ static void add_descended(Search *s)
 static void make_offspring(Search *s, int plainly)
 {
     const int guided = is_guided(s) && !plainly;
-    s->pool.n = s->offspring.n = 0;
+    s->pool.n = s->offspring.n = s->n_followed = 0;
     for (size_t i = 0; i < s->population.n; i++)
         group_copy_member(&s->pool, &s->population, i);
     for (uint32_t step = 0; step < (guided ? INNER_GENERATIONS : 1); step++) {
@@ -229,6 +275,8 @@ static void make_offspring(Search *s, int plainly)
     if (guided && s->archive.n_front > 0)
         add_descended(s);
     surface_predict(s->surface, &s->offspring, 0, 1);
+    if (s->n_followed > 0)
+        judge_directions(s);
 }
 
 static int is_trusted(const Search *s, const Group *g, size_t i)
@@ -242,6 +290,7 @@ static size_t batch_take(Search *s, size_t n, size_t i)
     const Group *g = &s->offspring;
     if (n < s->batch_max)
         memcpy(s->foreseen + n * g->n_obj, g->F + i * g->n_obj, g->n_obj * sizeof *g->F);
+    s->picked[i] = 1;
     return batch_add(s, n, g->X + i * g->n_var);
 }
 
@@ -249,9 +298,22 @@ static size_t batch_take(Search *s, size_t n, size_t i)
 static size_t choose_plain_batch(Search *s, size_t batch)
 {
     size_t n = 0;
-    for (size_t i = 0; i < s->offspring.n && n < batch; i++) {
+    for (size_t i = 0; i < s->offspring.n && n < batch; i++)
         n = batch_take(s, n, i);
-        s->picked[i] = 1;
+    return n;
+}
+
+/* Up to `limit` designs among those allowed, by both ways of choosing in turn. */
+static size_t choose_in_turn(Search *s, size_t n, size_t limit)
+{
+    const double share = share_of_rays(s);
+    while (n < limit) {
+        const int rays = floor(share * (double)(n + 1)) > floor(share * (double)n);
+        const size_t i = infill_pick(s->infill[rays ? INFILL_RAYS : INFILL_PBI], s->allowed);
+        if (i == SIZE_MAX)
+            break;
+        infill_take(s->infill[rays ? INFILL_PBI : INFILL_RAYS], i);
+        n = batch_take(s, n, i);
     }
     return n;
 }
@@ -265,15 +327,13 @@ static size_t choose_batch(Search *s)
     memset(s->picked, 0, g->n);
     if (!is_guided(s))
         return choose_plain_batch(s, batch);
-    infill_offer(s->infill, g->n, g->F, g->violation, g->uncertainty);
+    for (int kind = 0; kind < INFILL_KINDS; kind++)
+        infill_offer(s->infill[kind], g->n, g->F, g->violation, g->uncertainty);
     for (int round = 0; round < 2; round++) {
         const size_t limit = round == 0 ? batch - check : n + check;
         for (size_t i = 0; i < g->n; i++)
             s->allowed[i] = !s->picked[i] && (round == 1 || !is_trusted(s, g, i) || g->age[i] >= AGE_MAX);
-        for (size_t i; n < limit && (i = infill_pick(s->infill, s->allowed)) != SIZE_MAX;) {
-            n = batch_take(s, n, i);
-            s->picked[i] = 1;
-        }
+        n = choose_in_turn(s, n, limit);
     }
     return n;
 }
@@ -322,10 +382,11 @@ static void measure_front(Search *s)
 {
     for (size_t i = 0; i < s->population.n; i++)
         s->chosen[i] = i;
-    if (s->archive.n_front > 0)
-        infill_measure(s->infill, s->archive.n_front, s->archive.front, s->archive.F);
-    else
-        infill_measure(s->infill, s->population.n, s->chosen, s->population.F);
+    for (int kind = 0; kind < INFILL_KINDS; kind++)
+        if (s->archive.n_front > 0)
+            infill_measure(s->infill[kind], s->archive.n_front, s->archive.front, s->archive.F);
+        else
+            infill_measure(s->infill[kind], s->population.n, s->chosen, s->population.F);
 }
 
 /* Next population: from the simulated members of the present one, the batch, and the predictions that stand. */
@@ -354,7 +415,7 @@ static Status next_generation(Search *s, Err *err)
         return sample_again(s, err);
     measure_front(s);
     if (!s->config->no_surrogate)
-        TRY(surface_fit(s->surface, &s->archive, s->infill, err));
+        TRY(surface_fit(s->surface, &s->archive, s->infill[INFILL_PBI], err));
     surface_predict(s->surface, &s->population, 0, 0);
     make_offspring(s, 0);
     EvaluationKind kind;
@@ -365,11 +426,6 @@ static Status next_generation(Search *s, Err *err)
     judge_surface(s, n);
     renew_population(s, first_new);
     return STATUS_OK;
-}
-
-static size_t planned_evals(const SearchConfig *c)
-{
-    return c->planned_evals > 0 ? c->planned_evals : c->max_evals;
 }
 
 /* Enough for a first surface of this many variables, and no more than half of the budget. */
@@ -417,7 +473,7 @@ static StopReason reason_to_stop(const Search *s)
 /* -- the state ------------------------------------------------------------------------------------------------------
  */
 
-enum { STATE_VERSION = 1 };
+enum { STATE_VERSION = 2 };
 
 /* All that the next generation takes from the earlier ones, beside the archive. */
 static void search_pack(Search *s, Pack *p)
@@ -431,6 +487,7 @@ static void search_pack(Search *s, Pack *p)
     pack_expect(p, s->archive.n);
     pack_size(p, &s->generation, UINT32_MAX);
     pack(p, &s->agreement, sizeof s->agreement);
+    pack(p, &s->off, sizeof s->off);
     group_pack(&s->population, p, s->archive.n);
     surface_pack(s->surface, p);
 }
@@ -532,6 +589,7 @@ static void layout(Search *s, size_t n_pool, Carve *c)
     s->F = carve(c, s->batch_max * p->n_obj, sizeof(double));
     s->G = carve(c, s->batch_max * p->n_con, sizeof(double));
     s->ok = carve(c, s->batch_max, 1);
+    s->apart = carve(c, s->wishes.n, sizeof(double));
     s->allowed = carve(c, n_pool, 1);
     s->picked = carve(c, n_pool, 1);
 }
@@ -556,8 +614,9 @@ static Status create(Search *s, Err *err)
     TRY(directions_create(&s->directions, p->n_obj, outer, inner, err));
     TRY(directions_spread(&s->wishes, p->n_obj, wishes_for(p->n_obj, s->config), err));
     TRY(archive_init(&s->archive, 2 * initial, p->n_var, p->n_obj, p->n_con, err));
-    TRY(survival_create(&s->survival, n_pool, &s->directions, err));
-    TRY(infill_create(&s->infill, n_pool, &s->wishes, err));
+    TRY(survival_create(&s->survival, s->config->survival, n_pool, &s->directions, err));
+    for (int kind = 0; kind < INFILL_KINDS; kind++)
+        TRY(infill_create(&s->infill[kind], (InfillKind)kind, n_pool, &s->wishes, err));
     TRY(surface_create(&s->surface, p, centres, n_pool, err));
     TRY(group_create(&s->population, 2 * population, p->n_var, p->n_obj, err));
     TRY(group_create(&s->offspring, n_pool, p->n_var, p->n_obj, err));
@@ -577,7 +636,8 @@ static void release(Search *s)
     directions_free(&s->wishes);
     archive_free(&s->archive);
     survival_free(s->survival);
-    infill_free(s->infill);
+    for (int kind = 0; kind < INFILL_KINDS; kind++)
+        infill_free(s->infill[kind]);
     surface_free(s->surface);
     group_free(&s->population);
     group_free(&s->offspring);

@@ -30,6 +30,7 @@
 #include <stdint.h>
 
 #include "moga/problem.h"
+#include "moga/survival.h"
 
 /* Latin hypercube; chosen on the surface; plain children, where no surface leads; from outside the search. */
 typedef enum { KIND_SAMPLED, KIND_INFILL, KIND_OFFSPRING, KIND_POLISHED, KIND_COUNT } EvaluationKind;
@@ -41,7 +42,8 @@ typedef struct {
                              of two searches that differ in max_evals only, one is then the beginning of the other */
     size_t initial;       /* 0: by the number of variables */
     int no_surrogate;     /* plain children only */
-    double max_seconds;   /* 0: no limit */
+    SurvivalKind survival;
+    double max_seconds;        /* 0: no limit */
     double nondominated_share; /* stop when this share of the archive is nondominated; 1: never */
     double trust_error;        /* share of an objective's range in the archive */
     double crossover_probability, crossover_eta, mutation_eta, mutation_rate;

@@ -7,15 +7,20 @@
 #include "moga/dominance.h"
 #include "moga/frame.h"
 
+static const double PBI_THETA = 5.0;
+
 struct Survival {
+    SurvivalKind kind;
     size_t n_max, n_obj, n_dir;
     double *unit; /* (n_dir, n_obj) directions of length 1 */
+    double *gap;  /* (n_dir) angle to the next direction [rad] */
     Frame frame;
     size_t *rank;     /* (n_max) */
     size_t *scratch;  /* (3 n_max) */
     size_t *list;     /* (n_max) rows of one layer */
     size_t *niche;    /* (n_max) direction of each row */
     double *distance; /* (n_max) from it */
+    double *value;    /* (n_max) of a design in its direction or in the one at hand */
     size_t *members;  /* (n_dir) chosen so far */
     size_t *ties;     /* (n_dir or n_max) */
     unsigned char *taken;
@@ -34,17 +39,34 @@ static void layout(Survival *s, Carve *c)
     s->list = carve(c, n, sizeof(size_t));
     s->niche = carve(c, n, sizeof(size_t));
     s->distance = carve(c, n, sizeof(double));
+    s->value = carve(c, n, sizeof(double));
+    s->gap = carve(c, r, sizeof(double));
     s->members = carve(c, r, sizeof(size_t));
     s->ties = carve(c, n > r ? n : r, sizeof(size_t));
     s->taken = carve(c, n, 1);
 }
 
-Status survival_create(Survival **out, size_t n_max, const Directions *directions, Err *err)
+static void measure_gaps(Survival *s)
+{
+    for (size_t r = 0; r < s->n_dir; r++) {
+        double nearest = 0.0;
+        for (size_t q = 0; q < s->n_dir; q++) {
+            double cosine = 0.0;
+            for (size_t k = 0; k < s->n_obj; k++)
+                cosine += s->unit[r * s->n_obj + k] * s->unit[q * s->n_obj + k];
+            nearest = q != r ? fmax(nearest, cosine) : nearest;
+        }
+        s->gap[r] = fmax(acos(fmin(nearest, 1.0)), 1e-6);
+    }
+}
+
+Status survival_create(Survival **out, SurvivalKind kind, size_t n_max, const Directions *directions, Err *err)
 {
     Survival *s = calloc(1, sizeof *s);
     *out = s;
     if (!s)
         return fail(err, STATUS_NO_MEMORY, "no memory for the environmental selection");
+    s->kind = kind;
     s->n_max = n_max;
     s->n_obj = s->frame.n_obj = directions->n_obj;
     s->n_dir = directions->n;
@@ -65,6 +87,7 @@ Status survival_create(Survival **out, size_t n_max, const Directions *direction
         for (size_t k = 0; k < s->n_obj; k++)
             s->unit[r * s->n_obj + k] = w[k] / sqrt(square);
     }
+    measure_gaps(s);
     return STATUS_OK;
 }
 
@@ -148,12 +171,11 @@ static void fill_niches(Survival *s, size_t n_list, size_t wanted, Random *rando
     }
 }
 
-size_t survival_select(Survival *s, size_t n, const double F[], const double violation[], size_t keep, Random *random,
-                       size_t chosen[])
+/* NSGA-III: takes whole layers, then fills the niches from the one that does not fit. */
+static void take_layers(Survival *s, size_t n, const double F[], const double violation[], size_t keep, Random *random)
 {
     const size_t n_layers = nondominated_sort(n, s->n_obj, F, violation, s->rank, s->scratch);
     size_t n_chosen = 0, layer = 0, n_list = 0;
-    memset(s->taken, 0, n);
     memset(s->members, 0, s->n_dir * sizeof *s->members);
     if (n > 0)
         frame_fit(&s->frame, rows_of_layer(s, n, 0), s->list, F);
@@ -171,7 +193,100 @@ size_t survival_select(Survival *s, size_t n, const double F[], const double vio
     }
     if (layer < n_layers)
         fill_niches(s, n_list, keep - n_chosen, random);
-    n_chosen = 0;
+}
+
+/* Length along direction r of the normalised f and distance off it. */
+static void project(const Survival *s, size_t r, const double f[], double *along, double *off)
+{
+    double square = 0.0;
+    *along = 0.0;
+    for (size_t k = 0; k < s->n_obj; k++) {
+        const double z = frame_scale(&s->frame, k, f[k]);
+        *along += z * s->unit[r * s->n_obj + k];
+        square += z * z;
+    }
+    *off = sqrt(fmax(square - *along * *along, 0.0));
+}
+
+/* RVEA's angle-penalised distance in the design's own direction: |z| (1 + m progress^2 angle / gap). */
+static double penalised_distance(const Survival *s, size_t i, const double f[], double progress)
+{
+    double along, off;
+    project(s, s->niche[i], f, &along, &off);
+    const double angle = atan2(off, along);
+    return hypot(along, off) * (1.0 + (double)s->n_obj * progress * progress * angle / s->gap[s->niche[i]]);
+}
+
+/* The design, not yet taken, that is best for direction r: RVEA among those associated with it, MOEA/D among all. */
+static size_t best_for(const Survival *s, size_t r, size_t n_list, const double F[])
+{
+    size_t best = SIZE_MAX;
+    double least = INFINITY;
+    for (size_t j = 0; j < n_list; j++) {
+        const size_t i = s->list[j];
+        double value = s->value[i], along, off;
+        if (s->taken[i] || (s->kind == SURVIVAL_RVEA && s->niche[i] != r))
+            continue;
+        if (s->kind == SURVIVAL_MOEAD) {
+            project(s, r, F + i * s->n_obj, &along, &off);
+            value = along + PBI_THETA * off;
+        }
+        if (value < least) {
+            least = value;
+            best = i;
+        }
+    }
+    return best;
+}
+
+static size_t least_violating(const Survival *s, size_t n, const double violation[])
+{
+    size_t best = SIZE_MAX;
+    for (size_t i = 0; i < n; i++)
+        if (!s->taken[i] && (best == SIZE_MAX || violation[i] < violation[best]))
+            best = i;
+    return best;
+}
+
+/* RVEA and MOEA/D: round after round every direction takes its best feasible design; the rest are the least violating.
+ */
+static void take_in_rounds(Survival *s, size_t n, const double F[], const double violation[], size_t keep,
+                           double progress)
+{
+    size_t n_list = 0, n_taken = 0, before;
+    for (size_t i = 0; i < n; i++)
+        if (!violation || !(violation[i] > 0.0))
+            s->list[n_list++] = i;
+    if (n_list > 0)
+        frame_fit_box(&s->frame, n_list, s->list, F);
+    for (size_t j = 0; j < n_list; j++) {
+        const size_t i = s->list[j];
+        associate(s, i, F + i * s->n_obj);
+        s->value[i] = penalised_distance(s, i, F + i * s->n_obj, progress);
+    }
+    do {
+        before = n_taken;
+        for (size_t r = 0; r < s->n_dir && n_taken < keep; r++) {
+            const size_t i = best_for(s, r, n_list, F);
+            if (i != SIZE_MAX) {
+                s->taken[i] = 1;
+                n_taken++;
+            }
+        }
+    } while (n_taken < keep && n_taken > before);
+    for (; n_taken < keep && n_taken < n; n_taken++)
+        s->taken[least_violating(s, n, violation)] = 1;
+}
+
+size_t survival_select(Survival *s, size_t n, const double F[], const double violation[], size_t keep, double progress,
+                       Random *random, size_t chosen[])
+{
+    size_t n_chosen = 0;
+    memset(s->taken, 0, n);
+    if (s->kind == SURVIVAL_NSGA3)
+        take_layers(s, n, F, violation, keep, random);
+    else
+        take_in_rounds(s, n, F, violation, keep, progress);
     for (size_t i = 0; i < n; i++)
         if (s->taken[i])
             chosen[n_chosen++] = i;

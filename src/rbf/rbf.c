@@ -457,7 +457,8 @@ void rbf_pack(Rbf *m, Pack *p)
         pack(p, &form.kernel, sizeof form.kernel);
         pack(p, &form.tail, sizeof form.tail);
         pack(p, &form.nugget, sizeof form.nugget);
-        pack(p, o->theta, m->n_dim * sizeof *o->theta);
+        pack(p, o->shape.theta, m->n_dim * sizeof *o->shape.theta);
+        pack(p, o->shape.warp, sizeof o->shape.warp);
         p->faulty = p->faulty || !form_is_known(form);
         if (!p->faulty)
             o->form = form;

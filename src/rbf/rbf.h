@@ -1,10 +1,12 @@
 /* rbf/rbf.h -- radial basis response surface of several outputs, with its own leave-one-out errors.
  *
- *   s(x) = b . p(x) + sum_j w_j phi(r(x, c_j)),    r^2 = sum_d theta_d (x_d - c_jd)^2          for each output
+ *   s(x) = b . p(x) + sum_j w_j phi(r(x, c_j)),    r^2 = sum_d theta_d (v(x_d) - v(c_jd))^2     for each output
+ *   v(u) = (u^a + 1 - (1 - u)^b) / 2               stretches what lies near a bound where a, b < 1: a gap of some
+ *                                                  millimetres differs more from the next than one of half a metre
  *
  * phi is positive definite (Gaussian or Matern 5/2), p a constant, linear or diagonal quadratic tail, and every output
- * has its own kernel, tail, length scales theta and nugget (a ridge on the kernel matrix: 1e-8 for smooth answers,
- * more where the answers are noisy or designs nearly equal). Scales and nugget maximise the likelihood, kernel and
+ * has its own kernel, tail, length scales theta, warp a, b and nugget (a ridge on the kernel matrix: 1e-8 for smooth answers,
+ * more where the answers are noisy or designs nearly equal). Scales, warp and nugget maximise the likelihood, kernel and
  * tail have the least leave-one-out error; both are looked for by rbf_tune and kept by rbf_fit.
  *
  * Error of a prediction  root mean square of the centres' leave-one-out errors, weighted with 1/r^4: a local average
@@ -14,7 +16,8 @@
  * Shapes      row-major X (n, n_dim), F (n, n_out); x scaled to the unit cube; n_dim <= RBF_DIM_MAX
  * Errors      near-equal centres raise the nugget until the matrix factors; BAD_DATA if that does not help (NaN)
  * Sources     Rippa, Adv. Comput. Math. 11 (1999) 193-210 (leave-one-out); Rasmussen and Williams, Gaussian Processes
- *             for Machine Learning (2006) ch. 2 and 5 (kernels, tail, likelihood). */
+ *             for Machine Learning (2006) ch. 2 and 5 (kernels, tail, likelihood); Snoek, Swersky, Zemel and Adams,
+ *             Input warping for Bayesian optimization of non-stationary functions, ICML 2014 (the idea of v). */
 #ifndef IMTET_RBF_RBF_H
 #define IMTET_RBF_RBF_H
 
@@ -41,7 +44,7 @@ Status rbf_create(Rbf **out, size_t n_max, size_t n_dim, size_t n_out, Err *err)
 void rbf_free(Rbf *m); /* NULL is fine */
 
 /* Interpolates F at X with the forms and scales that the model has; rbf_create starts with Matern, linear tail,
- * theta = 1 / n_dim. */
+ * theta = 1 / n_dim, no warp. */
 Status rbf_fit(Rbf *m, size_t n, const double X[], const double F[], Err *err);
 
 /* Looks for better forms and scales, starting from the present ones, on the data of the last rbf_fit (an even choice
@@ -61,7 +64,7 @@ double rbf_explained(const Rbf *m, size_t output);            /* 1 - leave-one-o
 void rbf_set_form(Rbf *m, size_t output, RbfForm form);           /* used by the next rbf_fit */
 void rbf_set_scales(Rbf *m, size_t output, const double theta[]); /* used by the next rbf_fit */
 
-/* Forms, scales and how often they were tuned: with the data of the next rbf_fit all that the model remembers. */
+/* Forms, scales, warps and how often they were tuned: with the data of the next rbf_fit all that the model remembers. */
 void rbf_pack(Rbf *m, Pack *p);
 
 #endif

@@ -330,6 +330,7 @@ SearchConfig study_search_config(const Settings *s)
         .max_evals = (size_t)s->search.max_evals,
         .surrogate_max = (size_t)s->search.surrogate_max,
         .no_surrogate = s->search.surrogate == 1,
+        .survival = (SurvivalKind)s->search.survival,
         .max_seconds = 3600 * s->search.max_hours,
         .nondominated_share = s->search.nondominated_share,
         .trust_error = s->search.trust_error,
