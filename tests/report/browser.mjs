@@ -66,5 +66,5 @@ export async function openBrowser({ program = "chromium", width = 1360, height =
     await gone;
     rmSync(profile, { recursive: true, force: true, maxRetries: 5 });
   }
-  return { openPage, close };
+  return { openPage, close, send };
 }

@@ -81,5 +81,8 @@ function prepare(canvas, w, h) {
   return pen;
 }
 
+// A range may be open; its ends on a picture are not.
+const within = (v, [a, b]) => Math.max(Math.min(a, b), Math.min(Math.max(a, b), v));
+
 // Faint where they are many, never invisible.
 const opacity = (many) => Math.max(0.12, Math.min(0.85, 90 / Math.sqrt(many + 1) / 10));

@@ -104,9 +104,8 @@ function parallelCoordinates(host, name, shown) {
   function showRanges() {
     svg.selectAll("g.axis").each(function (axis) {
       const range = state.ranges.get(axis.c);
-      const ends = range ? range.map(axis.y).sort((a, b) => a - b) : null;
-      charts.select(this).select("g.brush").call(axis.brush.move, ends && [Math.max(ends[0], margin.top - 4),
-        Math.min(ends[1], height - margin.bottom + 4)]);
+      const ends = range ? range.map((v) => axis.y(within(v, axis.y.domain()))).sort((a, b) => a - b) : null;
+      charts.select(this).select("g.brush").call(axis.brush.move, ends);
     });
   }
 

@@ -87,14 +87,16 @@ function scatterMatrix(host) {
   function showRanges() {
     svg.selectAll("g.brush").each(function (p) {
       const rx = state.ranges.get(p.cx), ry = state.ranges.get(p.cy);
-      const clamp = (v, a, b) => Math.max(a, Math.min(b, v));
-      charts.select(this).call(p.brush.move, rx && ry ? [
-        [clamp(p.x(rx[0]), p.left, p.left + size.w), clamp(p.y(ry[1]), p.top, p.top + size.h)],
-        [clamp(p.x(rx[1]), p.left, p.left + size.w), clamp(p.y(ry[0]), p.top, p.top + size.h)]] : null);
+      const x = (v) => p.x(within(v, p.x.domain())), y = (v) => p.y(within(v, p.y.domain()));
+      charts.select(this).call(p.brush.move, rx && ry ? [[x(rx[0]), y(ry[1])], [x(rx[1]), y(ry[0])]] : null);
     });
   }
 
-  const unit = (c) => (c.unit ? ` [${c.unit}]` : "");
+  // Title and unit, or what of it fits.
+  function fitting(c, room) {
+    const whole = c.title + (c.unit ? ` [${c.unit}]` : "");
+    return [whole, c.title, c.title.split(" ")[0]].find((text) => 7.2 * text.length < room) ?? "";
+  }
 
   function drawAxes(group, p) {
     group.append("rect").attr("class", "cell").attr("x", p.left).attr("y", p.top).attr("width", size.w).attr("height", size.h);
@@ -102,13 +104,13 @@ function scatterMatrix(host) {
       group.append("g").attr("transform", `translate(${p.left},0)`).call(charts.axisLeft(p.y).ticks(4).tickSize(3).tickFormat(show))
         .call((g) => g.select(".domain").remove());
       group.append("text").attr("class", "title").attr("text-anchor", "middle")
-        .attr("transform", `translate(${p.left - 46},${p.top + size.h / 2}) rotate(-90)`).text(p.cy.title + unit(p.cy));
+        .attr("transform", `translate(${p.left - 46},${p.top + size.h / 2}) rotate(-90)`).text(fitting(p.cy, size.h));
     }
     if (!p.isLow) return;
     for (const v of p.x.ticks(4))
       group.append("text").attr("class", "unit").attr("text-anchor", "middle").attr("x", p.x(v)).attr("y", p.top + size.h + 14).text(show(v));
     group.append("text").attr("class", "title").attr("text-anchor", "middle").attr("x", p.left + size.w / 2)
-      .attr("y", p.top + size.h + 32).text(p.cx.title + unit(p.cx));
+      .attr("y", p.top + size.h + 32).text(fitting(p.cx, size.w));
   }
 
   // The free corner shows the marked design: its variables, tower or not.

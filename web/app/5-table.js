@@ -38,7 +38,7 @@ function designTable(host) {
     draw();
   }
 
-  head.append(element("th", { scope: "col" }, "design"), ...shown.map((c) => element("th", { scope: "col", title: c.what },
+  head.append(element("th", { scope: "col" }, "design"), ...shown.map((c) => element("th", { scope: "col", title: c.what, class: !c.sense && "variable" },
     element("button", { type: "button", onclick: () => sortBy(c) }, c.title), ...heading(c).slice(1))));
 
   function drawHead() {
@@ -54,7 +54,7 @@ function designTable(host) {
     return element("tr", { class: kind, "data-id": ids[i] },
       element("td", {}, element("button", { type: "button", title: "show this design in the pictures", onclick: () => mark(i) }, String(ids[i])),
         ids[i] === run.knee ? " knee" : "", ids[i] === run.chosen && run.chosen !== run.knee ? " chosen" : ""),
-      ...shown.map((c) => element("td", {}, digits(c.value[i]))));
+      ...shown.map((c) => element("td", { class: !c.sense && "variable" }, digits(c.value[i]))));
   }
 
   function turn(by) {

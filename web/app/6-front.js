@@ -32,7 +32,7 @@ function rangeInputs() {
   const inputs = columns.map((c) => {
     const unit = c.unit ? ` [${c.unit}]` : "";
     const [low, high] = ["from", "to"].map((word) => element("input", {
-      type: "text", inputmode: "decimal", "aria-label": `${c.title}${unit} ${word}`, onchange: () => take(c, low, high),
+      type: "text", name: `${c.name} ${word}`, inputmode: "decimal", "aria-label": `${c.title}${unit} ${word}`, onchange: () => take(c, low, high),
     }));
     low.placeholder = show(c.min);
     high.placeholder = show(c.max);
@@ -71,7 +71,8 @@ function frontPart() {
     clear.disabled = state.ranges.size === 0;
   });
   const axes = [["objectives", "objectives"], ["variables", "variables"], ["all", "both"]];
-  const upper = element("figure"), lower = element("figure"), matrix = element("figure"), table = element("div");
+  const [upper, lower, matrix] = Array.from({ length: 3 }, () => element("figure", { class: "scroll" }));
+  const table = element("div");
   host.append(
     element("p", { class: "note" }, "Every line is a design that no other beats in all objectives. Drag along an axis, or over a box of the " +
       "scatter matrix, to keep only the designs within it; drag the range to move it, click beside it to drop it. On an axis of an " +

@@ -41,9 +41,6 @@ function summaryPart() {
   const simulated = run.evaluated ? `${count(run.evaluated)} designs ${d ? "simulated" : "evaluated"}, ${count(run.failed)} failed, ` : "";
   document.getElementById("subtitle").textContent = `${simulated}${count(n)} on the front` +
     (d ? `. Ground motion ${d.record.replace(/.*\//, "")}, peak ${show(d.pga_g)} g, time \u00d7 ${show(d.stretch)}, ${show(d.duration_s)} s` : "");
-  const names = [["summary", "Summary"], ["front", "Front"], ["growth", "Growth"], ["design", `Design ${run.chosen}`], ["provenance", "Provenance"]];
-  document.getElementById("parts").append(...names.filter(([id]) => document.getElementById(id))
-    .map(([id, text]) => element("a", { href: `#${id}` }, text)));
   document.getElementById("summary").append(
     element("p", {}, element("strong", {}, `Design ${run.knee}, the knee`), ": nearest to the best of everything, with every objective scaled over the front."),
     cards(rowOf.get(run.knee), before), standoutTable(before));
@@ -80,4 +77,11 @@ function provenancePart() {
     .flatMap(([k, v]) => [element("dt", {}, k), element("dd", {}, String(v))])));
   for (const [title, text] of [["Every setting", run.settings], ["provenance.json", run.provenance]])
     if (text) host.append(element("details", {}, element("summary", {}, title), element("pre", { tabindex: "0" }, text)));
+}
+
+// Links to the parts that this run has.
+function contents() {
+  const names = [["summary", "Summary"], ["front", "Front"], ["growth", "Growth"], ["design", `Design ${run.chosen}`], ["provenance", "Provenance"]];
+  document.getElementById("parts").append(...names.filter(([id]) => document.getElementById(id))
+    .map(([id, text]) => element("a", { href: `#${id}` }, text)));
 }

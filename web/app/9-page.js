@@ -5,6 +5,7 @@ frontPart();
 growthPart();
 designPart();
 provenancePart();
+contents();
 layoutChanged();
 performance.mark("front drawn");
 

@@ -1,0 +1,422 @@
+/* The report and the pictures of a run: what they are computed from, what is written, and how a browser takes it. */
+#include "check.h"
+
+#include <jansson.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "base/random.h"
+#include "moga/hypervolume.h"
+#include "report/report.h"
+#include "report/wavelet.h"
+
+static char folder[64]; /* of this test program's files */
+
+static const char *in_folder(const char *name)
+{
+    static char path[4][256];
+    static int turn;
+    char *out = path[turn++ % 4];
+    snprintf(out, sizeof path[0], "%s/%s", folder, name);
+    return out;
+}
+
+static int shell(const char *command)
+{
+    const int status = system(command);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+/* `imtet ARGUMENTS`, silent; its exit status. */
+static int imtet(const char *arguments)
+{
+    char command[1024];
+    snprintf(command, sizeof command, "'%s' %s >/dev/null 2>&1", getenv("IMTET"), arguments);
+    return shell(command);
+}
+
+static int imtet_on(const char *before, const char *run, const char *after)
+{
+    char arguments[800];
+    snprintf(arguments, sizeof arguments, "%s %s %s", before, in_folder(run), after);
+    return imtet(arguments);
+}
+
+static char *text_of(const char *path)
+{
+    Err err = {0};
+    char *text;
+    size_t length;
+    CHECK_OK(file_read(path, &text, &length, &err), &err);
+    return text;
+}
+
+static int set_up(void **state)
+{
+    (void)state;
+    strcpy(folder, "/tmp/imtet-report-XXXXXX");
+    if (!mkdtemp(folder))
+        return 1;
+    return imtet_on(
+               "optimize configs/quick.ini --max-evals 60 --set sim.duration_s=45 --set search.population=16 --set "
+               "search.initial=40 --out",
+               "tower", "") != 0 ||
+           imtet_on("optimize configs/quick.ini --set problem.kind=dtlz2 --set problem.variables=5 --set "
+                    "problem.objectives=3 --max-evals 60 --set search.population=16 --set search.initial=40 --out",
+                    "dtlz", "") != 0 ||
+           imtet_on("report", "tower", "") != 0 || imtet_on("report", "dtlz", "") != 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    char command[128];
+    snprintf(command, sizeof command, "rm -rf '%s'", folder);
+    return shell(command);
+}
+
+/* ---- what is computed ------------------------------------------------------------------------------------------ */
+
+static void test_the_wavelet_of_a_steady_swing_is_its_amplitude_at_its_frequency(void **state)
+{
+    (void)state;
+    enum { N = 4000 };
+    const double dt = 0.02, f[] = {1.25, 2.5, 0.625}, t[] = {30, 40, 50}, a = 0.37;
+    double u[N], amplitude[9];
+    for (int k = 0; k < N; k++)
+        u[k] = a * sin(2 * M_PI * 1.25 * k * dt + 0.4);
+    wavelet(N, dt, u, 3, f, 3, t, amplitude);
+    for (int k = 0; k < 3; k++) {
+        assert_close(amplitude[k], a, 1e-3);
+        assert_true(amplitude[3 + k] < 0.02 * a && amplitude[6 + k] < 0.02 * a);
+    }
+}
+
+/* A Gauss-shaped burst of width d at frequency f: |W| = a s/sqrt(s^2 + d^2) ... over its own peak 1/sqrt(1 + (s/d)^2).
+ */
+static void test_the_wavelet_of_a_burst_is_largest_at_its_instant_as_a_product_of_gaussians_says(void **state)
+{
+    (void)state;
+    enum { N = 6000 };
+    const double dt = 0.01, f = 2, at = 30, d = 0.8, s = WAVELET_CYCLES / (2 * M_PI * f);
+    const double t[] = {at, at + 1, at - 1};
+    double u[N], amplitude[3];
+    for (int k = 0; k < N; k++)
+        u[k] = exp(-0.5 * pow((k * dt - at) / d, 2)) * cos(2 * M_PI * f * (k * dt - at));
+    wavelet(N, dt, u, 1, &f, 3, t, amplitude);
+    const double peak = d / sqrt(d * d + s * s), shape = exp(-0.5 / (d * d + s * s));
+    assert_close(amplitude[0], peak, 1e-3);
+    assert_close(amplitude[1], peak * shape, 1e-3);
+    assert_close(amplitude[2], peak * shape, 1e-3);
+}
+
+static void open_tower(Report *r)
+{
+    Err err = {0};
+    Settings other;
+    const char *records[] = {"builtin:sylmar-like"};
+    CHECK_OK(run_settings(&other, in_folder("tower"), &err), &err);
+    const DetailWish wish = {-1, &other, 1, records};
+    CHECK_OK(report_open(r, in_folder("tower"), "knee", &wish, &err), &err);
+}
+
+static void test_energies_add_up_to_the_input_at_every_instant_and_end_as_the_result_says(void **state)
+{
+    (void)state;
+    Report r;
+    World w;
+    Err err = {0};
+    History h;
+    open_tower(&r);
+    CHECK_OK(world_open(&w, &r.settings, &err), &err);
+    for (int s = 0; s < 2; s++) {
+        const SceneKind kind = s ? SCENE_NO_CORE : SCENE_IMPACT;
+        const SimResult *result = &r.detail.result[kind];
+        CHECK_OK(history_run(&w, kind, front_x(&r.front, r.chosen), 19, &h, &err), &err);
+        assert_true(h.n > 200);
+        double most = 0;
+        for (size_t i = 0; i < h.n; i++) {
+            double sum = 0;
+            for (int k = 0; k < ENERGY_INPUT; k++)
+                sum += h.energy[k][i];
+            assert_true(fabs(sum - h.energy[ENERGY_INPUT][i]) <= 1e-9 * result->input_energy_j);
+            most = fmax(most, fabs(h.u[i]));
+        }
+        const size_t end = h.n - 1; /* 45 s are no whole number of samples: the run goes on for a part of one */
+        assert_close(h.energy[ENERGY_INPUT][end], result->input_energy_j, 0.02);
+        assert_close(h.energy[ENERGY_DAMPED_BUILDING][end], result->damped_building_j, 0.02);
+        if (kind == SCENE_IMPACT)
+            assert_close(h.energy[ENERGY_CONTACTS][end], result->contact_loss_j + result->clamp_j, 0.02);
+        else
+            assert_true(h.energy[ENERGY_CONTACTS][end] == 0 && h.energy[ENERGY_CORE][end] == 0);
+        assert_true(most <= result->peak_displacement_m[19] * (1 + 1e-9));
+        assert_close(most, result->peak_displacement_m[19], 0.02);
+        history_free(&h);
+    }
+    world_close(&w);
+    report_close(&r);
+}
+
+static void test_the_chosen_design_is_simulated_as_the_search_did(void **state)
+{
+    (void)state;
+    Report r;
+    open_tower(&r);
+    const double *f = front_f(&r.front, r.chosen);
+    const SimResult *with_core = &r.detail.result[SCENE_IMPACT], *tied = &r.detail.result[SCENE_TIED];
+    assert_true(with_core->j1_m == f[0] && with_core->j3_g == f[2] && with_core->mcore_kg == f[6]);
+    assert_true(r.detail.gap_m[3] == front_x(&r.front, r.chosen)[3]);
+    assert_true(r.detail.wall_m[0] == front_x(&r.front, r.chosen)[20]);
+    assert_close(r.detail.wall_m[19], front_x(&r.front, r.chosen)[21], 1e-12);
+    assert_true(tied->impacts == 0 && tied->j1_m > 0);
+    assert_int_equal(r.detail.n_elsewhere, 1);
+    assert_true(r.detail.elsewhere[0].with_core.j1_m != with_core->j1_m);
+    report_close(&r);
+}
+
+/* Boxes [f, 1.1]^2 over 1.1^2, by hand. */
+static void test_growth_of_two_objectives_is_exact_and_leaves_failures_out(void **state)
+{
+    (void)state;
+    const double generation[] = {0, 0, 0, 1, 2}, nan = NAN;
+    const double F[] = {0, 1, nan, nan, 1, 0, 0.5, 0.5, 0.6, 0.6}, ideal[] = {0, 0}, span[] = {1, 1};
+    Convergence c;
+    Err err = {0};
+    CHECK_OK(convergence_of(5, 2, generation, F, ideal, span, &c, &err), &err);
+    assert_int_equal(c.n, 3);
+    assert_int_equal(c.n_failed, 1);
+    assert_int_equal(c.n_evaluated, 5);
+    assert_true(c.simulated[0] == 3 && c.simulated[2] == 5);
+    assert_close(c.volume[0], (2 * 0.11 - 0.01) / 1.21, 1e-12);
+    assert_close(c.volume[1], (0.36 + 2 * 0.1 * 0.5) / 1.21, 1e-12);
+    assert_true(c.volume[2] == c.volume[1] && c.standard_error[2] == 0);
+    convergence_free(&c);
+}
+
+static void test_growth_of_many_objectives_is_within_its_standard_error_and_never_falls(void **state)
+{
+    (void)state;
+    enum { N = 60, M = 5 };
+    double generation[N], F[N * M], reference[M] = {1.1, 1.1, 1.1, 1.1, 1.1};
+    const double ideal[M] = {0}, span[M] = {1, 1, 1, 1, 1};
+    Random random = random_stream(5, RANDOM_TEST, 0, 0);
+    Convergence c;
+    Hypervolume exact;
+    Err err = {0};
+    for (int i = 0; i < N; i++)
+        generation[i] = i / 10;
+    for (int i = 0; i < N * M; i++)
+        F[i] = random_uniform(&random);
+    CHECK_OK(convergence_of(N, M, generation, F, ideal, span, &c, &err), &err);
+    CHECK_OK(hypervolume_exact(N, M, F, reference, &exact, &err), &err);
+    assert_int_equal(c.n, 6);
+    for (size_t i = 1; i < c.n; i++)
+        assert_true(c.volume[i] >= c.volume[i - 1]);
+    assert_true(c.standard_error[5] > 0);
+    assert_true(fabs(c.volume[5] - exact.volume / pow(1.1, M)) < 4 * c.standard_error[5]);
+    convergence_free(&c);
+}
+
+/* ---- what is written ------------------------------------------------------------------------------------------- */
+
+static char *between(const char *text, const char *open, const char *close)
+{
+    const char *start = strstr(text, open);
+    assert_non_null(start);
+    start += strlen(open);
+    const char *end = strstr(start, close);
+    assert_non_null(end);
+    return strndup(start, (size_t)(end - start));
+}
+
+static void test_the_page_holds_the_rows_of_the_front_to_the_last_digit(void **state)
+{
+    (void)state;
+    static const char *const RUNS[] = {"tower", "dtlz"};
+    for (int i = 0; i < 2; i++) {
+        char path[256];
+        snprintf(path, sizeof path, "%s/%s/report.html", folder, RUNS[i]);
+        char *page = text_of(path);
+        snprintf(path, sizeof path, "%s/%s/front.csv", folder, RUNS[i]);
+        char *front = text_of(path), *rows = between(page, "id=\"rows\">\n", "</script>");
+        assert_string_equal(rows, strchr(front, '\n') + 1);
+        free(rows);
+        free(front);
+        free(page);
+    }
+}
+
+static json_t *run_of(const char *run)
+{
+    char path[256];
+    json_error_t error;
+    snprintf(path, sizeof path, "%s/%s/report.html", folder, run);
+    char *page = text_of(path), *text = between(page, "id=\"run\">", "</script>");
+    json_t *all = json_loads(text, 0, &error);
+    if (!all)
+        fail_msg("%s: %s", path, error.text);
+    free(text);
+    free(page);
+    return all;
+}
+
+static void test_the_policy_allows_nothing_but_hashes(void **state)
+{
+    (void)state;
+    char path[256];
+    snprintf(path, sizeof path, "%s/tower/report.html", folder);
+    char *page = text_of(path), *policy = between(page, "Content-Security-Policy\" content=\"", "\"");
+    assert_non_null(strstr(policy, "default-src 'none'"));
+    assert_null(strstr(policy, "unsafe"));
+    assert_null(strstr(policy, "http"));
+    assert_null(strstr(policy, "*"));
+    free(policy);
+    free(page);
+}
+
+static void test_a_run_of_another_problem_has_no_tower_in_its_report(void **state)
+{
+    (void)state;
+    json_t *tower = run_of("tower"), *dtlz = run_of("dtlz");
+    assert_true(json_is_true(json_object_get(tower, "tower")) && json_is_object(json_object_get(tower, "detail")));
+    assert_true(json_is_false(json_object_get(dtlz, "tower")) && json_is_null(json_object_get(dtlz, "detail")));
+    assert_true(json_array_size(json_object_get(json_object_get(dtlz, "convergence"), "volume")) > 1);
+    json_decref(tower);
+    json_decref(dtlz);
+}
+
+/* Names of objectives are free text; what is written of them must neither end the script nor open a comment. */
+static void test_names_cannot_break_out_of_the_page(void **state)
+{
+    (void)state;
+    char path[256], *settings;
+    assert_int_equal(
+        imtet_on("optimize configs/quick.ini --set problem.kind=dtlz2 --set problem.variables=3 --set "
+                 "problem.objectives=2 --set 'problem.objective_names=</script><b>, <!--x' --max-evals 30 --set "
+                 "search.population=8 --set search.initial=20 --out",
+                 "names", ""),
+        0);
+    assert_int_equal(imtet_on("report", "names", ""), 0);
+    json_t *run = run_of("names");
+    const json_t *objectives = json_object_get(json_object_get(run, "schema"), "objectives");
+    assert_string_equal(json_string_value(json_object_get(json_array_get(objectives, 0), "name")), "</script><b>");
+    snprintf(path, sizeof path, "%s/names/report.html", folder);
+    settings = text_of(path);
+    assert_null(strstr(settings, "</script><b>"));
+    assert_null(strstr(settings, "<!--x"));
+    free(settings);
+    json_decref(run);
+}
+
+static void test_designs_records_and_floors_that_are_not_there_are_refused(void **state)
+{
+    (void)state;
+    assert_int_equal(imtet_on("report", "tower", "--design 999999"), 65);
+    assert_int_equal(imtet_on("report", "tower", "--design kne"), 65);
+    assert_int_equal(imtet_on("report", "tower", "--floor 21"), 65);
+    assert_int_equal(imtet_on("report", "tower", "--floor 0"), 2);
+    assert_int_equal(imtet_on("report", "tower", "--record no-such-file.at2"), 66);
+    assert_int_equal(imtet_on("report", "no-such-run", ""), 66);
+    assert_int_equal(imtet_on("report", "tower", "--out /no/such/folder/x.html"), 74);
+}
+
+static long size_of(const char *run, const char *name)
+{
+    char path[256];
+    struct stat s;
+    snprintf(path, sizeof path, "%s/%s/pictures/%s", folder, run, name);
+    return stat(path, &s) == 0 ? (long)s.st_size : -1;
+}
+
+static void test_pictures_are_drawn_as_svg_and_png_each(void **state)
+{
+    (void)state;
+    static const char *const NAMES[] = {"front", "growth", "gaps", "peaks", "modes", "energies", "sway", "elsewhere"};
+    if (shell("command -v gnuplot >/dev/null") != 0) {
+        print_message("gnuplot is not installed: no pictures to look at\n");
+        skip();
+    }
+    assert_int_equal(imtet_on("plot", "tower", ""), 0);
+    assert_int_equal(imtet_on("plot", "dtlz", ""), 0);
+    for (size_t i = 0; i < sizeof NAMES / sizeof NAMES[0]; i++) {
+        char svg[32], png[32];
+        snprintf(svg, sizeof svg, "%s.svg", NAMES[i]);
+        snprintf(png, sizeof png, "%s.png", NAMES[i]);
+        assert_true(size_of("tower", svg) > 4000 && size_of("tower", png) > 4000);
+        assert_true((size_of("dtlz", svg) > 0) == (i < 2) && (size_of("dtlz", png) > 0) == (i < 2));
+    }
+}
+
+/* ---- a browser ------------------------------------------------------------------------------------------------- */
+
+static void need_browser(void)
+{
+    if (shell("command -v chromium >/dev/null && command -v node >/dev/null") == 0)
+        return;
+    print_message("chromium or node is not installed: the report is not tried in a browser\n");
+    skip();
+}
+
+static void drive(const char *run)
+{
+    char command[512];
+    snprintf(command, sizeof command,
+             "node tests/report/drive.mjs '%s/%s/report.html' >'%s/said' 2>&1 || { cat '%s/said'; exit 1; }", folder,
+             run, folder, folder);
+    assert_int_equal(shell(command), 0);
+}
+
+static void test_a_browser_shows_the_tower_brushes_it_and_downloads_the_selection(void **state)
+{
+    (void)state;
+    need_browser();
+    drive("tower");
+}
+
+static void test_a_browser_shows_another_problem(void **state)
+{
+    (void)state;
+    need_browser();
+    drive("dtlz");
+}
+
+/* The bundle is what its sources make of the libraries; they are there after `make web`. */
+static void test_the_bundle_of_charts_is_what_its_sources_give(void **state)
+{
+    (void)state;
+    char command[256];
+    if (access("web/node_modules/esbuild", F_OK) != 0) {
+        print_message("web/node_modules is not there (make web): the bundle is not made again\n");
+        skip();
+    }
+    snprintf(command, sizeof command, "node web/bundle.mjs '%s/charts.js' && cmp '%s/charts.js' web/charts.js", folder,
+             folder);
+    assert_int_equal(shell(command), 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_the_wavelet_of_a_steady_swing_is_its_amplitude_at_its_frequency),
+        cmocka_unit_test(test_the_wavelet_of_a_burst_is_largest_at_its_instant_as_a_product_of_gaussians_says),
+        cmocka_unit_test(test_energies_add_up_to_the_input_at_every_instant_and_end_as_the_result_says),
+        cmocka_unit_test(test_the_chosen_design_is_simulated_as_the_search_did),
+        cmocka_unit_test(test_growth_of_two_objectives_is_exact_and_leaves_failures_out),
+        cmocka_unit_test(test_growth_of_many_objectives_is_within_its_standard_error_and_never_falls),
+        cmocka_unit_test(test_the_page_holds_the_rows_of_the_front_to_the_last_digit),
+        cmocka_unit_test(test_the_policy_allows_nothing_but_hashes),
+        cmocka_unit_test(test_a_run_of_another_problem_has_no_tower_in_its_report),
+        cmocka_unit_test(test_names_cannot_break_out_of_the_page),
+        cmocka_unit_test(test_designs_records_and_floors_that_are_not_there_are_refused),
+        cmocka_unit_test(test_pictures_are_drawn_as_svg_and_png_each),
+        cmocka_unit_test(test_a_browser_shows_the_tower_brushes_it_and_downloads_the_selection),
+        cmocka_unit_test(test_a_browser_shows_another_problem),
+        cmocka_unit_test(test_the_bundle_of_charts_is_what_its_sources_give),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}
