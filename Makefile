@@ -53,7 +53,7 @@ STABILITY.asan := --engine fast
 STABILITY_OBJ := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/stability/*.c))
 PROGRAM := $(if $(filter release,$(MODE)),imtet,$(BUILD)/imtet)
 
-.PHONY: coverage coverage-here faults fuzz fuzz-here all web setup run test test-here compare stability stability-long laws bench chart format install clean .FORCE
+.PHONY: coverage coverage-here faults fuzz fuzz-here all web report-bench setup run test test-here compare stability stability-long laws bench chart format install clean .FORCE
 .SECONDARY:
 all: $(PROGRAM)
 
@@ -187,6 +187,10 @@ chart: $(PROGRAM)
 # The search on problems whose front is known, with and without surrogate; CELLS and SEEDS choose a part of it.
 compare: $(PROGRAM)
 	@scripts/compare --program ./$(PROGRAM) --out docs/search.md $(if $(CELLS),--cells $(CELLS)) $(if $(SEEDS),--seeds $(SEEDS))
+
+# How long a report of 10,000 designs takes to be painted and brushed; wants chromium and node.
+report-bench: $(PROGRAM)
+	@tests/report/bench $(abspath $(PROGRAM)) build/report-bench
 
 format:
 	clang-format -i $(wildcard src/*.c src/*/*.[ch] src/*/*/*.[ch] tests/*.[ch] tests/*/*.[ch])

@@ -1,11 +1,12 @@
-// web/library.js -> web/charts.js, one classic script that defines `charts`, the licences of all it holds on top.
+// web/library.js -> web/charts.js, one classic script that defines `charts`, the licences of all it holds on top; they
+// also go to web/LICENSES.txt. bundle.mjs [FOLDER] writes the two elsewhere.
 import { existsSync, readFileSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { build } from "esbuild";
 
 const here = dirname(fileURLToPath(import.meta.url));
-const out = process.argv[2] ?? join(here, "charts.js");
+const out = process.argv[2] ?? here;
 
 const { outputFiles, metafile } = await build({
   absWorkingDir: here,
@@ -37,4 +38,5 @@ for (const folder of [...packages].sort()) {
 const licences = [...texts].map(([text, names]) => `${names.join(", ")}\n\n${text}\n`).join("\n---\n\n");
 const code = outputFiles[0].text;
 if (/<\/script/i.test(code + licences) || licences.includes("*/")) throw new Error("cannot stand inside a page");
-writeFileSync(out, `/*!\n${licences}*/\n${code}`);
+writeFileSync(join(out, "LICENSES.txt"), licences);
+writeFileSync(join(out, "charts.js"), `/*!\n${licences}*/\n${code}`);
