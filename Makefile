@@ -53,7 +53,7 @@ STABILITY.asan := --engine fast
 STABILITY_OBJ := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/stability/*.c))
 PROGRAM := $(if $(filter release,$(MODE)),imtet,$(BUILD)/imtet)
 
-.PHONY: coverage coverage-here faults fuzz fuzz-here all web report-bench setup run test test-here compare stability stability-long laws bench chart format install clean .FORCE
+.PHONY: torture coverage coverage-here faults fuzz fuzz-here all web report-bench setup run test test-here compare stability stability-long laws bench chart format install clean .FORCE
 .SECONDARY:
 all: $(PROGRAM)
 
@@ -108,6 +108,11 @@ coverage-here: $(PROGRAM) $(TESTS)
 	@for t in $(COVER); do echo "== $$t"; IMTET=$(abspath $(PROGRAM)) FAULTS=all $(BUILD)/tests/$$t >$(BUILD)/$$t.log 2>&1 || \
 	{ cat $(BUILD)/$$t.log; exit 1; }; done
 	@scripts/coverage $(BUILD)
+
+# kill -9 at random moments, every run resumed to its end; KILLS says how often.
+KILLS ?= 300
+torture: $(PROGRAM) $(BUILD)/tests/test_torture
+	@IMTET=$(abspath $(PROGRAM)) TORTURE_KILLS=$(KILLS) $(BUILD)/tests/test_torture
 
 # Every refusal of memory and of writes, one after the other, in short runs; `make test` tries some of them.
 faults: $(PROGRAM) $(BUILD)/tests/test_faults

@@ -1,0 +1,186 @@
+/* kill -9 at any moment: the run stays readable, what was acknowledged stays, and it ends as if nothing had happened.
+ * TORTURE_KILLS in the environment: how many, 10 if not given; the figures are printed (`make torture`). */
+#include "program.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <spawn.h>
+#include <time.h>
+
+#include "run/saved.h"
+
+typedef struct {
+    const char *name, *settings;
+} Prey;
+
+static const Prey PREYS[] = {
+    {"textbook", "[problem]\nkind = dtlz2\nvariables = 8\nobjectives = 3\nnoise = 0.02\n"
+                 "[search]\ninitial = 24\npopulation = 16\nmax_evals = 120\nsurrogate_max = 40\nthreads = 1\n"},
+    {"tower", "[motion]\nrecord = builtin:kobe-like\nstretch = 1\n[sim]\nduration_s = 8\n"
+              "[search]\ninitial = 24\npopulation = 16\nmax_evals = 50\nsurrogate_max = 30\nthreads = 2\n"},
+    /* an answer takes 40 ms: kills come in the middle of a batch */
+    {"worker", "[problem]\nkind = external\ncommand = sh tests/worker.sh steady\nvariables = 3\nobjectives = 2\n"
+               "[search]\ninitial = 36\npopulation = 12\nmax_evals = 46\nsurrogate_max = 30\nthreads = 2\n"},
+};
+enum { N_PREYS = sizeof PREYS / sizeof PREYS[0] };
+
+typedef struct {
+    long kills, unreadable, acknowledged, lost, in_batch, finished, different;
+} Figures;
+
+static double now_s(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static void rest(double seconds)
+{
+    nanosleep(&(struct timespec){(time_t)seconds, (long)(1e9 * (seconds - floor(seconds)))}, NULL);
+}
+
+static pid_t start(const Prey *prey, const char *folder, int by_folder)
+{
+    char config[128];
+    pid_t pid;
+    posix_spawn_file_actions_t quiet;
+    snprintf(config, sizeof config, "%s/%s.ini", place.folder, prey->name);
+    char *by_config[] = {getenv("IMTET"), "optimize", config, "--out", (char *)folder, NULL};
+    char *goes_on[] = {getenv("IMTET"), "optimize", (char *)folder, NULL};
+    posix_spawn_file_actions_init(&quiet);
+    posix_spawn_file_actions_addopen(&quiet, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+    posix_spawn_file_actions_addopen(&quiet, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+    assert_int_equal(posix_spawn(&pid, getenv("IMTET"), &quiet, NULL, by_folder ? goes_on : by_config, environ), 0);
+    posix_spawn_file_actions_destroy(&quiet);
+    return pid;
+}
+
+/* What the database tells: 0 where there is none yet, -1 where it cannot be read. */
+static int look(const char *folder, Saved *h)
+{
+    char path[256];
+    Err err = {0};
+    memset(h, 0, sizeof *h);
+    if (!saved_path(folder, path, sizeof path))
+        return 0;
+    if (saved_read(h, folder, &err) == STATUS_OK)
+        return 1;
+    print_error("%s\n", err.text);
+    return -1;
+}
+
+/* Evaluations of `before` that are not the same in `after`. */
+static long count_lost(const Saved *before, const Saved *after)
+{
+    long lost = 0;
+    const size_t n_var = before->schema.n_var, m = before->schema.n_obj;
+    for (size_t i = 0; i < before->n; i++) {
+        const size_t j = saved_find(after, before->row[i].id);
+        lost += j == after->n || memcmp(before->X + i * n_var, after->X + j * n_var, n_var * sizeof(double)) != 0 ||
+                (before->row[i].ok && memcmp(before->F + i * m, after->F + j * m, m * sizeof(double)) != 0);
+    }
+    return lost;
+}
+
+static int same_file(const char *a, const char *b, const char *name)
+{
+    char paths[2][256];
+    snprintf(paths[0], sizeof paths[0], "%s/%s", a, name);
+    snprintf(paths[1], sizeof paths[1], "%s/%s", b, name);
+    char *first = text_of(paths[0]), *second = text_of(paths[1]);
+    const int same = strcmp(first, second) == 0;
+    free(first);
+    free(second);
+    return same;
+}
+
+static void remove_folder(const char *folder)
+{
+    char command[256];
+    snprintf(command, sizeof command, "rm -rf '%s'", folder);
+    assert_int_equal(system(command), 0);
+}
+
+static void judge_end(const char *reference, const char *folder, Figures *f)
+{
+    f->finished++;
+    f->different += !same_file(reference, folder, "front.csv") || !same_file(reference, folder, "evaluations.csv");
+    remove_folder(folder);
+}
+
+/* One start, killed after `delay` unless it is finished before; 1: it was killed. */
+static int start_and_kill(const Prey *prey, const char *folder, double delay, Figures *f)
+{
+    Saved before, after;
+    int status;
+    const int has_run = look(folder, &before) == 1;
+    const pid_t pid = start(prey, folder, has_run && f->kills % 2 == 1);
+    saved_free(&before);
+    rest(delay);
+    const int seen = look(folder, &before); /* all of this has been acknowledged */
+    kill(pid, SIGKILL);
+    assert_int_equal(waitpid(pid, &status, 0), pid);
+    const int killed = WIFSIGNALED(status);
+    if (!killed)
+        assert_int_equal(WEXITSTATUS(status), 0);
+    const int found = look(folder, &after);
+    f->unreadable += found < 0 || seen < 0;
+    if (seen == 1) {
+        f->acknowledged += (long)before.n;
+        f->lost += found == 1 ? count_lost(&before, &after) : (long)before.n;
+        f->in_batch += killed && found == 1 && after.n > 0 && after.row[after.n - 1].kind == KIND_UNFINISHED;
+    }
+    saved_free(&before);
+    saved_free(&after);
+    return killed;
+}
+
+static void torture(const Prey *prey, long kills)
+{
+    Figures f = {0};
+    char reference[96], folder[96];
+    snprintf(reference, sizeof reference, "%s/%s-whole", place.folder, prey->name);
+    snprintf(folder, sizeof folder, "%s/%s-killed", place.folder, prey->name);
+    const double begun = now_s();
+    int status;
+    assert_true(waitpid(start(prey, reference, 0), &status, 0) > 0 && WIFEXITED(status) && WEXITSTATUS(status) == 0);
+    const double whole = now_s() - begun;
+    srand(7);
+    while (f.kills < kills) {
+        if (start_and_kill(prey, folder, whole * rand() / RAND_MAX, &f))
+            f.kills++;
+        else
+            judge_end(reference, folder, &f);
+    }
+    assert_true(waitpid(start(prey, folder, 0), &status, 0) > 0 && WIFEXITED(status) && WEXITSTATUS(status) == 0);
+    judge_end(reference, folder, &f);
+    print_message(
+        "%s: %ld kills, %ld of them between the simulations of a batch: %ld unreadable, %ld of %ld acknowledged "
+        "evaluations lost, %ld of %ld fronts different\n",
+        prey->name, f.kills, f.in_batch, f.unreadable, f.lost, f.acknowledged, f.different, f.finished);
+    assert_int_equal(f.unreadable, 0);
+    assert_int_equal(f.lost, 0);
+    assert_int_equal(f.different, 0);
+}
+
+static void test_no_kill_loses_an_evaluation_or_changes_the_front(void **state)
+{
+    (void)state;
+    setenv("OMP_WAIT_POLICY", "passive", 0); /* busy waiting costs more than it saves where processors are few */
+    const char *kills = getenv("TORTURE_KILLS");
+    for (int i = 0; i < N_PREYS; i++) {
+        char name[64];
+        snprintf(name, sizeof name, "%s.ini", PREYS[i].name);
+        write_in_place(name, PREYS[i].settings);
+        torture(&PREYS[i], ((kills ? strtol(kills, NULL, 10) : 10) + N_PREYS - 1) / N_PREYS);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_no_kill_loses_an_evaluation_or_changes_the_front),
+    };
+    return cmocka_run_group_tests_name("torture", tests, make_place, clear_place);
+}
