@@ -81,7 +81,7 @@ Status args_parse(Args *args, const Command *command, int argc, char *const argv
     for (int i = 0; i < argc; i++)
         TRY(argv[i][0] == '-' && argv[i][1] ? take_option(args, argc, argv, &i, err)
                                             : take_operand(args, argv[i], err));
-    if (command->operand && !args->operand)
+    if (command->operand && command->operand[0] != '[' && !args->operand)
         return fail(err, STATUS_USAGE, "imtet %s needs a %s; for example: %s", command->name, command->operand,
                     command->example);
     return STATUS_OK;

@@ -21,7 +21,7 @@ typedef struct {
 typedef struct Args Args;
 
 typedef struct {
-    const char *name, *operand; /* operand NULL: takes none */
+    const char *name, *operand; /* operand NULL: takes none, "[NAME]": may be left out */
     const char *summary, *example, *details;
     const ArgOption *options; /* up to the first without a name */
     Status (*run)(const Args *args, Err *err);

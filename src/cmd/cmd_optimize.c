@@ -20,17 +20,6 @@ typedef struct {
     int terminal, has_told;
 } Telling;
 
-static void write_duration(double seconds, char text[32])
-{
-    const long s = (long)fmin(seconds, 1e7);
-    if (!isfinite(seconds))
-        snprintf(text, 32, "?");
-    else if (s < 3600)
-        snprintf(text, 32, "%ld:%02ld min", s / 60, s % 60);
-    else
-        snprintf(text, 32, "%ld:%02ld h", s / 3600, s / 60 % 60);
-}
-
 /* One line, on a terminal only. */
 static void tell(const StudyProgress *p, void *user)
 {
@@ -39,7 +28,7 @@ static void tell(const StudyProgress *p, void *user)
     char left[32], line[2 * LINE_WIDTH];
     if (!t->terminal)
         return;
-    write_duration(study_seconds_left(p), left);
+    pace_words(pace_left(&p->pace, p->settings), left);
     snprintf(line, sizeof line,
              "generation %zu: %zu of %ld simulated, %zu failed, front %zu, hypervolume %.4f, %s left",
              v->generation_now, v->n, p->settings->search.max_evals, v->n_failed, v->n_front, p->hypervolume, left);

@@ -9,6 +9,8 @@
     X(SIMULATE)                                                                                                        \
     X(EVALUATE)                                                                                                        \
     X(EXPORT)                                                                                                          \
+    X(STATUS)                                                                                                          \
+    X(LIST)                                                                                                            \
     X(CHOOSE)                                                                                                          \
     X(POLISH)                                                                                                          \
     X(REPORT)                                                                                                          \

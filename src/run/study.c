@@ -36,20 +36,6 @@ static double session_seconds(const Study *study)
     return (double)(now.tv_sec - study->start.tv_sec) + 1e-9 * (double)(now.tv_nsec - study->start.tv_nsec);
 }
 
-double study_seconds_left(const StudyProgress *p)
-{
-    const SearchView *v = p->view;
-    const Settings *s = p->settings;
-    const double pace = p->session_evals > 0 ? p->session_s / (double)p->session_evals : NAN;
-    double left = pace * ((double)s->search.max_evals - (double)v->n);
-    if (p->session_generations > 0)
-        left = fmin(left, p->session_s / (double)p->session_generations *
-                              (double)(s->search.generations - (long)v->generation_now));
-    if (s->search.max_hours > 0.0)
-        left = fmin(left, 3600.0 * s->search.max_hours - p->session_s);
-    return isfinite(pace) ? fmax(left, 0.0) : NAN;
-}
-
 /* -- settings -------------------------------------------------------------------------------------------------------
  */
 
@@ -228,12 +214,13 @@ static int observe(const SearchView *view, void *user)
     sum->n_simulated = view->n;
     sum->n_failed = view->n_failed;
     sum->n_front = view->n_front;
-    const StudyProgress p = {.view = view,
-                             .hypervolume = store_hypervolume(study->store),
-                             .session_s = session_seconds(study),
-                             .session_evals = view->n > sum->n_before ? view->n - sum->n_before : 0,
-                             .session_generations = study->generation - study->first_generation,
-                             .settings = &study->used};
+    const StudyProgress p = {view, store_hypervolume(study->store),
+                             (Pace){.simulated = view->n,
+                                    .generations = study->generation,
+                                    .session_simulated = view->n > sum->n_before ? view->n - sum->n_before : 0,
+                                    .session_generations = study->generation - study->first_generation,
+                                    .session_s = session_seconds(study)},
+                             &study->used};
     if (study->options->progress)
         study->options->progress(&p, study->options->user);
     return study->status != STATUS_OK || !may_go_on(study);

@@ -22,20 +22,16 @@
 
 #include "base/settings.h"
 #include "moga/search.h"
+#include "run/pace.h"
 #include "sim/sim.h"
 
 /* The search at the end of a generation, and what the study adds. */
 typedef struct {
     const SearchView *view;
     double hypervolume; /* share of a box about the first sample; NAN: no design has succeeded yet */
-    double session_s;   /* since this start */
-    size_t session_evals, session_generations; /* simulated, finished since */
+    Pace pace;
     const Settings *settings;
 } StudyProgress;
-
-/* Seconds that are left at the present pace, by simulations, generations or hours, whichever ends first; NAN: unknown.
- */
-double study_seconds_left(const StudyProgress *p);
 
 typedef struct {
     int fresh;               /* never go on with a run: a number is added to run.out where it holds one */

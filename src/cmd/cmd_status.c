@@ -1,0 +1,177 @@
+#include <math.h>
+#include <string.h>
+
+#include "cmd/commands.h"
+#include "cmd/show.h"
+#include "run/pace.h"
+
+enum { ROWS_MAX = 12, OUTCOMES_MAX = 16 };
+
+/* Failed simulations by outcome, with the words of the first of each. */
+typedef struct {
+    size_t n_outcomes, count[OUTCOMES_MAX];
+    const Verdict *first[OUTCOMES_MAX];
+} Failures;
+
+static Failures failures_of(const Saved *saved)
+{
+    Failures f = {0};
+    for (size_t i = 0; i < saved->n; i++) {
+        const Verdict *v = &saved->row[i].verdict;
+        size_t k = 0;
+        if (saved->row[i].ok)
+            continue;
+        while (k < f.n_outcomes && strcmp(f.first[k]->outcome, v->outcome) != 0)
+            k++;
+        if (k == OUTCOMES_MAX)
+            continue;
+        if (k == f.n_outcomes)
+            f.first[f.n_outcomes++] = v;
+        f.count[k]++;
+    }
+    return f;
+}
+
+/* -- for people -----------------------------------------------------------------------------------------------------
+ */
+
+static void print_head(const char *folder, const Saved *saved, const Standing *s)
+{
+    char worked[32], left[32];
+    const SavedSession *last = saved->n_sessions > 0 ? &saved->session[saved->n_sessions - 1] : NULL;
+    pace_words(s->seconds, worked);
+    pace_words(pace_left(&s->pace, &saved->settings), left);
+    printf("%s: %s", folder, state_words(s->state));
+    if (s->state == RUN_RUNNING)
+        printf(" (process %ld on %s)", s->holder.pid, s->holder.host);
+    else if (last && last->stopped[0])
+        printf(" (%s)", last->stopped);
+    printf("\n%zu of %ld simulated, %zu failed, %zu on the front", s->pace.simulated, saved->settings.search.max_evals,
+           s->n_failed, saved->n_front);
+    if (s->n_polished > 0)
+        printf(", %zu polished designs", s->n_polished);
+    printf("\n%zu generations in %s, %zu %s; %.3g simulations/s", saved->n_generations, worked, saved->n_sessions,
+           saved->n_sessions == 1 ? "session" : "sessions", pace_per_second(&s->pace));
+    if (s->state != RUN_FINISHED)
+        printf(", %s left", left);
+    if (last)
+        printf("\nstarted %s%s%s", last->started, last->ended[0] ? ", ended " : "", last->ended);
+    puts("");
+    if (s->state == RUN_PAUSED || s->state == RUN_BROKEN_OFF)
+        printf("it goes on with: imtet optimize %s\n", folder);
+}
+
+/* The first, the last, and some evenly between. */
+static void print_generations(const Saved *saved)
+{
+    const size_t n = saved->n_generations, rows = n < ROWS_MAX ? n : ROWS_MAX;
+    char worked[32];
+    if (n == 0)
+        return;
+    printf("\n%12s %10s %8s %8s %12s %12s\n", "generation", "simulated", "failed", "front", "hypervolume", "after");
+    for (size_t r = 0; r < rows; r++) {
+        const SavedGeneration *g = &saved->generation[rows > 1 ? r * (n - 1) / (rows - 1) : 0];
+        pace_words(g->seconds, worked);
+        printf("%12ld %10ld %8ld %8ld %12.4f %12s\n", g->number, g->simulated, g->failed, g->front, g->hypervolume,
+               worked);
+    }
+}
+
+static void print_failures(const Failures *f)
+{
+    for (size_t k = 0; k < f->n_outcomes; k++)
+        printf("%s%12zu %s (%s%s)\n", k ? "" : "\nfailed:\n", f->count[k], f->first[k]->outcome, f->first[k]->reason,
+               f->count[k] > 1 ? ", for example" : "");
+}
+
+/* -- for programs ---------------------------------------------------------------------------------------------------
+ */
+
+static json_t *json_generations(const Saved *saved)
+{
+    json_t *list = json_array();
+    for (size_t i = 0; i < saved->n_generations; i++) {
+        const SavedGeneration *g = &saved->generation[i];
+        json_array_append_new(list,
+                              json_pack("{s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:s}", "number", (json_int_t)g->number,
+                                        "simulated", (json_int_t)g->simulated, "failed", (json_int_t)g->failed, "front",
+                                        (json_int_t)g->front, "hypervolume", json_number(g->hypervolume),
+                                        "surrogate_error", json_number(g->surrogate_error), "seconds",
+                                        json_number(g->seconds), "finished", g->finished));
+    }
+    return list;
+}
+
+static json_t *json_sessions(const Saved *saved)
+{
+    json_t *list = json_array();
+    for (size_t i = 0; i < saved->n_sessions; i++) {
+        const SavedSession *s = &saved->session[i];
+        json_array_append_new(list, json_pack("{s:s, s:s*, s:s*, s:s, s:I, s:I, s:I, s:o}", "started", s->started,
+                                              "ended", s->ended[0] ? s->ended : NULL, "stopped",
+                                              s->stopped[0] ? s->stopped : NULL, "host", s->host, "pid",
+                                              (json_int_t)s->pid, "threads", (json_int_t)s->threads, "simulated_before",
+                                              (json_int_t)s->simulated_before, "seconds", json_number(s->seconds)));
+    }
+    return list;
+}
+
+static json_t *json_failures(const Failures *f)
+{
+    json_t *o = json_object();
+    for (size_t k = 0; k < f->n_outcomes; k++)
+        json_object_set_new(o, f->first[k]->outcome,
+                            json_pack("{s:I, s:s}", "count", (json_int_t)f->count[k], "first", f->first[k]->reason));
+    return o;
+}
+
+static json_t *describe(const char *folder, const Saved *saved, const Standing *s, const Failures *f)
+{
+    json_t *o = json_pack("{s:s, s:s, s:I, s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:o}", "run", folder, "state",
+                          state_words(s->state), "simulated", (json_int_t)s->pace.simulated, "max_evals",
+                          (json_int_t)saved->settings.search.max_evals, "failed", (json_int_t)s->n_failed, "front",
+                          (json_int_t)saved->n_front, "polished", (json_int_t)s->n_polished, "hypervolume",
+                          json_number(s->hypervolume), "simulations_per_second", json_number(pace_per_second(&s->pace)),
+                          "seconds", json_number(s->seconds), "seconds_left",
+                          json_number(s->state == RUN_FINISHED ? 0.0 : pace_left(&s->pace, &saved->settings)));
+    if (s->state == RUN_RUNNING)
+        json_object_set_new(o, "process",
+                            json_pack("{s:I, s:s}", "pid", (json_int_t)s->holder.pid, "host", s->holder.host));
+    json_object_set_new(o, "generations", json_generations(saved));
+    json_object_set_new(o, "failures", json_failures(f));
+    json_object_set_new(o, "sessions", json_sessions(saved));
+    return o;
+}
+
+static Status run(const Args *args, Err *err)
+{
+    Saved saved;
+    Standing standing;
+    TRY(saved_read(&saved, args->operand, err));
+    standing_of(&standing, args->operand, &saved);
+    const Failures failures = failures_of(&saved);
+    Status status = STATUS_OK;
+    if (args_has(args, "--json")) {
+        status = show_json(describe(args->operand, &saved, &standing, &failures), err);
+    } else {
+        print_head(args->operand, &saved, &standing);
+        print_generations(&saved);
+        print_failures(&failures);
+    }
+    saved_free(&saved);
+    return status;
+}
+
+static const ArgOption OPTIONS[] = {OPTION_JSON, OPTION_END};
+
+const Command CMD_STATUS = {
+    .name = "status",
+    .operand = "RUN",
+    .summary = "how far a run is, also while it goes on",
+    .example = "imtet status results/quick",
+    .details =
+        "Progress, pace and time left, the hypervolume generation by generation, failed simulations by reason. The\n"
+        "run may be going on in another terminal: it is only read.",
+    .options = OPTIONS,
+    .run = run,
+};

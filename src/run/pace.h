@@ -1,0 +1,37 @@
+/* run/pace.h -- where a run stands: how fast it goes, how long it still takes, who works on it. */
+#ifndef IMTET_RUN_PACE_H
+#define IMTET_RUN_PACE_H
+
+#include "run/lock.h"
+#include "run/saved.h"
+
+/* Of the search and of this start of it. */
+typedef struct {
+    size_t simulated, generations;                 /* so far */
+    size_t session_simulated, session_generations; /* since this start */
+    double session_s;
+} Pace;
+
+double pace_per_second(const Pace *p); /* simulations; NAN: none yet */
+
+/* Seconds until simulations, generations or hours are spent, whichever is first; NAN: unknown. */
+double pace_left(const Pace *p, const Settings *s);
+
+/* "1:05 min", "3:20 h", "?" */
+void pace_words(double seconds, char text[32]);
+
+typedef enum { RUN_RUNNING, RUN_FINISHED, RUN_PAUSED, RUN_BROKEN_OFF } RunState;
+
+typedef struct {
+    RunState state; /* paused: stopped in good order; broken off: killed. Both can go on */
+    LockHolder holder;
+    Pace pace;
+    size_t n_failed, n_polished;
+    double seconds;     /* of work, all sessions together */
+    double hypervolume; /* of the last generation; NAN: none */
+} Standing;
+
+const char *state_words(RunState state);
+void standing_of(Standing *out, const char *folder, const Saved *saved);
+
+#endif
