@@ -63,6 +63,8 @@ static const Option OPTIONS[] = {
 
     {"motion.record", "-", TEXT, AT(motion.record), "builtin:kobe-like", 0, 0, NULL,
      "a ground motion file, or builtin:kobe-like | builtin:elcentro-like | builtin:sylmar-like"},
+    {"motion.records", "-", TEXT, AT(motion.records), "none", 0, 0, NULL,
+     "more records for the same study, a comma list: a design then answers to all of them (sim.robust)"},
     {"motion.pga_g", "g", REAL, AT(motion.pga_g), "0.3", 0, 1e6, NULL, "scaled to this peak; 0: as recorded"},
     {"motion.stretch", "-", REAL, AT(motion.stretch), "3.1", 1e-3, 1e3, NULL, "time is multiplied by this"},
     {"motion.unit", "-", CHOICE, AT(motion.unit), "from_file", 0, 0, "from_file|m_s2|cm_s2|g",
@@ -80,6 +82,12 @@ static const Option OPTIONS[] = {
     {"sim.duration_s", "s", REAL, AT(sim.duration_s), "0", 0, 1e6, NULL, "stop here; 0: at the end of the motion"},
     {"sim.residual_max", "-", REAL, AT(sim.residual_max), "0.001", 1e-12, 1, NULL,
      "a run whose energy books are open by more than this share of the input is refined, then failed"},
+    {"sim.ensemble", "-", WHOLE, AT(sim.ensemble), "1", 1, 1000, NULL,
+     "simulations of each design in a study, gaps changed a little: the objectives are their means"},
+    {"sim.gap_tolerance_m", "m", REAL, AT(sim.gap_tolerance_m), "0", 0, 1, NULL,
+     "standard deviation of a gap as built; wants sim.ensemble of 2 at least"},
+    {"sim.robust", "-", CHOICE, AT(sim.robust), "worst", 0, 0, "worst|mean",
+     "of several records: the worst of each objective, or the mean"},
 
     {"design.gap_min_m", "m", REAL, AT(design.gap_min_m), "0.001", 0, 10, NULL, "search box: least gap"},
     {"design.gap_max_m", "m", REAL, AT(design.gap_max_m), "0.5", 1e-6, 10, NULL, "search box: widest gap"},
@@ -403,6 +411,10 @@ static void check_rules(const Settings *s, BrokenFn broken, void *user)
              s->design.thickness_min_m, s->design.thickness_max_m);
         broken((size_t[]){AT(design.thickness_min_m), AT(design.thickness_max_m), AT(design.thickness_max_m)}, e.text,
                user);
+    }
+    if (s->sim.gap_tolerance_m > 0.0 && s->sim.ensemble < 2) {
+        fail(&e, STATUS_BAD_DATA, "sim.gap_tolerance_m: wants members to try it on: set sim.ensemble to 2 at least");
+        broken((size_t[]){AT(sim.gap_tolerance_m), AT(sim.ensemble), AT(sim.ensemble)}, e.text, user);
     }
     if (s->problem.kind == PROBLEM_EXTERNAL && strcmp(s->problem.command, "none") == 0) {
         fail(&e, STATUS_BAD_DATA, "problem.command: is none; problem.kind = external wants the worker's command");

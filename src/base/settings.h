@@ -45,6 +45,7 @@ typedef enum {
 } Engine;
 /* PROBLEM_TEXTBOOK and what follows it: problem/textbook.h, in its order. */
 typedef enum { PROBLEM_TOWER, PROBLEM_EXTERNAL, PROBLEM_TEXTBOOK } ProblemKind;
+typedef enum { ROBUST_WORST, ROBUST_MEAN } Robust;
 typedef enum { UNIT_FROM_FILE, UNIT_M_S2, UNIT_CM_S2, UNIT_G } MotionUnit;
 
 typedef struct {
@@ -64,6 +65,7 @@ typedef struct {
     } contact;
     struct {
         char record[SETTINGS_TEXT_MAX];  /* a file or builtin:NAME */
+        char records[SETTINGS_TEXT_MAX]; /* more of them, a comma list, or none */
         double pga_g;                    /* 0: as recorded */
         double stretch;                  /* t -> stretch t */
         long unit;                       /* MotionUnit */
@@ -74,6 +76,8 @@ typedef struct {
         long engine, accuracy;
         double duration_s; /* 0: the whole motion */
         double residual_max;
+        long ensemble, robust;  /* members of a design; Robust */
+        double gap_tolerance_m; /* standard deviation of a gap as built */
     } sim;
     struct { /* the search box */
         double gap_min_m, gap_max_m, thickness_min_m, thickness_max_m;

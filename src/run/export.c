@@ -6,7 +6,7 @@
 
 #include "run/output.h"
 
-static void write_names(FILE *f, const char *before, const Schema *schema, size_t n_extra)
+static void write_names(FILE *f, const char *before, const Schema *schema, size_t n_extra, int with_spread)
 {
     fputs(before, f);
     for (size_t j = 0; j < schema->n_var; j++)
@@ -15,6 +15,8 @@ static void write_names(FILE *f, const char *before, const Schema *schema, size_
         fprintf(f, ",%s", schema_objective(schema, k)->name);
     for (size_t k = 0; k < n_extra; k++)
         fprintf(f, ",%s", schema_extra(schema, k)->name);
+    for (size_t k = 0; with_spread && k < schema->n_obj; k++)
+        fprintf(f, ",spread_%s", schema_objective(schema, k)->name);
     fputc('\n', f);
 }
 
@@ -28,14 +30,17 @@ static void write_numbers(FILE *f, size_t n, const double values[])
 
 void export_front_header(FILE *f, const Schema *schema)
 {
-    write_names(f, "id", schema, 0);
+    write_names(f, "id", schema, 0, schema->has_spread);
 }
 
-void export_front_row(FILE *f, const Schema *schema, long id, const double x[], const double natural[])
+void export_front_row(FILE *f, const Schema *schema, long id, const double x[], const double natural[],
+                      const double spread[])
 {
     fprintf(f, "%ld", id);
     write_numbers(f, schema->n_var, x);
     write_numbers(f, schema->n_obj, natural);
+    if (schema->has_spread)
+        write_numbers(f, schema->n_obj, spread);
     fputc('\n', f);
 }
 
@@ -45,12 +50,13 @@ void export_front(FILE *f, const Saved *h)
     export_front_header(f, schema);
     for (size_t i = 0; i < h->n; i++)
         if (h->row[i].on_front)
-            export_front_row(f, schema, h->row[i].id, h->X + i * schema->n_var, h->F + i * schema->n_obj);
+            export_front_row(f, schema, h->row[i].id, h->X + i * schema->n_var, h->F + i * schema->n_obj,
+                             h->spread + i * schema->n_obj);
 }
 
 void export_evaluations_header(FILE *f, const Schema *schema)
 {
-    write_names(f, "id,generation,kind,outcome,reason", schema, schema->n_extra);
+    write_names(f, "id,generation,kind,outcome,reason", schema, schema->n_extra, 0);
 }
 
 void export_evaluations(FILE *f, const Saved *h)

@@ -10,10 +10,19 @@
 #include "run/saved.h"
 #include "run/measures.h"
 
+/* Of id, variables and objectives; spreads may follow. */
+static size_t n_columns(const Table *t)
+{
+    size_t n = 0;
+    while (n < t->n_cols && strncmp(t->names[n], "spread_", 7) != 0)
+        n++;
+    return n;
+}
+
 static Status check_columns(const Front *front, const char *path, Err *err)
 {
     const Table *t = &front->table;
-    for (size_t j = 0; j < t->n_cols; j++) {
+    for (size_t j = 0; j < n_columns(t); j++) {
         const char *want = j == 0 ? "id" : front->schema.column[j - 1].name;
         if (strcmp(t->names[j], want) != 0)
             return fail(err, STATUS_BAD_DATA, "%s: column %zu is '%s', expected %s", path, j + 1, t->names[j], want);
@@ -30,7 +39,7 @@ static Status find_schema(Front *front, const char *folder, const char *path, Er
     settings_defaults(&s);
     if (access(settings, F_OK) == 0)
         TRY(settings_read(&s, settings, NULL, NULL, err));
-    const size_t n_cols = front->table.n_cols;
+    const size_t n_cols = n_columns(&front->table);
     if (s.problem.kind == PROBLEM_TOWER && n_cols < 4 + N_OBJECTIVES)
         return fail(err, STATUS_BAD_DATA, "%s: %zu columns are not a front", path, n_cols);
     TRY(schema_of(&front->schema, &s, (int)n_cols - 3 - N_OBJECTIVES, err));

@@ -44,7 +44,7 @@ static Status allocate(Schema *schema, Err *err)
 
 static Status schema_of_tower(Schema *schema, int n_floors, Err *err)
 {
-    *schema = (Schema){(size_t)n_floors + 2, N_OBJECTIVES, N_MEASURES - N_OBJECTIVES, NULL};
+    *schema = (Schema){(size_t)n_floors + 2, N_OBJECTIVES, N_MEASURES - N_OBJECTIVES, NULL, 0};
     TRY(allocate(schema, err));
     for (int j = 0; j < n_floors + 2; j++)
         design_variable_name(n_floors, j, schema->column[j].name);
@@ -103,8 +103,12 @@ static Status fill_from_settings(Schema *schema, const Settings *s, Err *err)
 Status schema_of(Schema *schema, const Settings *s, int n_floors, Err *err)
 {
     if (s->problem.kind == PROBLEM_TOWER)
-        return schema_of_tower(schema, n_floors, err);
-    *schema = (Schema){(size_t)s->problem.variables, (size_t)s->problem.objectives, 0, NULL};
+        {
+        TRY(schema_of_tower(schema, n_floors, err));
+        schema->has_spread = s->sim.ensemble > 1;
+        return STATUS_OK;
+    }
+    *schema = (Schema){.n_var = (size_t)s->problem.variables, .n_obj = (size_t)s->problem.objectives};
     TRY(allocate(schema, err));
     const Status status = fill_from_settings(schema, s, err);
     if (status != STATUS_OK)

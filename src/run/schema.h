@@ -20,6 +20,7 @@ typedef struct {
 typedef struct {
     size_t n_var, n_obj, n_extra;
     Column *column;
+    int has_spread; /* front.csv ends with spread_NAME of every objective: each design is several simulations */
 } Schema;
 
 /* n_floors: of a tower, else not read. */

@@ -464,7 +464,7 @@ static Status insert(Database *db, const Schema *schema, long id, long generatio
 
 Status store_simulation(RunStore *store, const Simulation *s, size_t generation, Err *err)
 {
-    const StoredDesign d = {.x = s->x, .f = s->f, .violation = s->violation, .verdict = *s->verdict};
+    const StoredDesign d = {.x = s->x, .f = s->f, .spread = s->spread, .violation = s->violation, .verdict = *s->verdict};
     TRY(begin(store, err));
     TRY(insert(store->db, store->schema, (long)s->number, (long)generation, NULL, &d, err));
     if (d.verdict.seconds >= COMMIT_S || now_s() >= store->last_commit + COMMIT_S)
@@ -499,7 +499,7 @@ static Status create_cover(RunStore *store, const SearchView *v, Err *err)
 }
 
 /* Only members of the front count: who was dominated by an earlier one has nothing to add. */
-static Status measure(RunStore *store, const SearchView *v, Err *err)
+static Status measure_front(RunStore *store, const SearchView *v, Err *err)
 {
     if (!store->cover)
         TRY(create_cover(store, v, err));
@@ -591,7 +591,7 @@ static void put_view_front(FILE *f, const void *user)
             continue;
         for (size_t k = 0; k < u->schema->n_obj; k++)
             natural[k] = schema_objective(u->schema, k)->sense * u->view->F[i * u->schema->n_obj + k];
-        export_front_row(f, u->schema, (long)i + 1, u->view->X + i * u->schema->n_var, natural);
+        export_front_row(f, u->schema, (long)i + 1, u->view->X + i * u->schema->n_var, natural, NULL);
     }
 }
 
@@ -613,14 +613,14 @@ Status store_generation(RunStore *store, const SearchView *v, double seconds, do
         const Schema *schema;
         const SearchView *view;
     } front = {store->schema, v};
-    TRY(measure(store, v, err));
+    TRY(measure_front(store, v, err));
     TRY(begin(store, err));
     TRY(store_kinds(store, v, err));
     TRY(store_front_changes(store, v, err));
     TRY(store_moment(store, v, seconds, session, err));
     TRY(store_flush(store, err));
     TRY(append_evaluations(store, v, err));
-    return store->has_polished ? write_whole_tables(store, 0, err)
+    return store->has_polished || store->schema->has_spread ? write_whole_tables(store, 0, err)
                                : write_file(store, "front.csv", put_view_front, &front, err);
 }
 

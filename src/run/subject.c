@@ -27,8 +27,8 @@ struct Subject {
     double *lower, *upper; /* (n_var) */
     int threads;
 
-    World world; /* of a tower */
-    Crew *crew;
+    Trials *trials; /* of a tower */
+    Crew *crew;     /* its own */
     External *external;
     size_t n_done; /* simulations asked for: the number of the next design is one more */
     Observer observer;
@@ -49,7 +49,7 @@ const Schema *subject_schema(const Subject *subject)
 
 const World *subject_world(const Subject *subject)
 {
-    return subject->crew ? &subject->world : NULL;
+    return subject->trials ? trials_world(subject->trials) : NULL;
 }
 
 Crew *subject_crew(const Subject *subject)
@@ -75,8 +75,9 @@ typedef struct {
     size_t *place;    /* (n) in the batch of the search */
     long *number;     /* (n) of the designs */
     double *X, *F;    /* (n, n_var) (n, n_obj) natural */
+    double *spread;   /* (n, n_obj) NAN where not known */
     Verdict *verdict; /* (n) */
-    const void *raw;  /* (n) what the simulator gave: SimResult or Answer */
+    const void *raw;  /* (n) what the simulator gave: Trial or Answer */
     void *store;
 } Work;
 
@@ -86,6 +87,7 @@ static void layout(Work *w, size_t n, Carve *c)
     w->number = carve(c, n, sizeof *w->number);
     w->X = carve(c, n * w->subject->schema.n_var, sizeof *w->X);
     w->F = carve(c, n * w->subject->schema.n_obj, sizeof *w->F);
+    w->spread = carve(c, n * w->subject->schema.n_obj, sizeof *w->spread);
     w->verdict = carve(c, n, sizeof *w->verdict);
 }
 
@@ -98,6 +100,8 @@ static Status work_create(Work *w, Subject *s, size_t n, Err *err)
     if (!w->store)
         return fail(err, STATUS_NO_MEMORY, "no memory for %zu simulations", n);
     layout(w, n, &(Carve){.base = w->store});
+    for (size_t i = 0; i < n * s->schema.n_obj; i++)
+        w->spread[i] = NAN;
     return STATUS_OK;
 }
 
@@ -129,6 +133,7 @@ static Status tell(const Work *w, size_t i, Err *err)
         .number = (size_t)w->number[i],
         .x = w->X + i * s->schema.n_var,
         .f = f,
+        .spread = w->spread + i * s->schema.n_obj,
         .violation = ok ? violation_of(s->n_limits, g) : INFINITY,
         .ok = ok,
         .verdict = &w->verdict[i],
@@ -139,21 +144,22 @@ static Status tell(const Work *w, size_t i, Err *err)
 /* -- the three kinds of simulation: natural values into F -----------------------------------------------------------
  */
 
-static void judge_tower(const SimResult *r, double f[], Verdict *v)
+static void judge_tower(const Trial *t, double f[], double spread[], Verdict *v)
 {
-    const int lost = !measure_objectives(r, f) && r->outcome == RUN_OK;
+    const SimResult *r = &t->result;
+    double unused[N_OBJECTIVES];
+    const int lost = !measure_objectives(r, unused) && r->outcome == RUN_OK;
     verdict_set(v, outcome_word(lost ? RUN_NOT_FINITE : r->outcome), lost ? "an objective is not finite" : r->reason);
-    for (int k = 0; k < N_OBJECTIVES; k++)
-        f[k] = measure_value(r, k);
-    for (int k = N_OBJECTIVES; k < N_MEASURES; k++)
-        v->extra[k - N_OBJECTIVES] = measure_value(r, k);
-    v->seconds = r->seconds;
+    memcpy(f, t->value, N_OBJECTIVES * sizeof *f);
+    memcpy(spread, t->spread, N_OBJECTIVES * sizeof *spread);
+    memcpy(v->extra, t->value + N_OBJECTIVES, (N_MEASURES - N_OBJECTIVES) * sizeof *v->extra);
+    v->seconds = t->seconds;
 }
 
 static Status tower_done(size_t i, void *user, Err *err)
 {
     const Work *w = user;
-    judge_tower((const SimResult *)w->raw + i, w->F + i * N_OBJECTIVES, &w->verdict[i]);
+    judge_tower((const Trial *)w->raw + i, w->F + i * N_OBJECTIVES, w->spread + i * N_OBJECTIVES, &w->verdict[i]);
     return tell(w, i, err);
 }
 
@@ -166,17 +172,13 @@ static int may_go_on(void *user)
 
 static Status run_tower(Work *w, Err *err)
 {
-    SimTask *tasks = calloc(w->n, sizeof *tasks);
-    SimResult *results = calloc(w->n, sizeof *results);
+    Trial *trials = calloc(w->n, sizeof *trials);
     const Watch watch = {may_go_on, tower_done, w};
-    Status status = tasks && results ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for %zu simulations", w->n);
-    w->raw = results;
-    for (size_t i = 0; status == STATUS_OK && i < w->n; i++)
-        tasks[i] = (SimTask){SCENE_IMPACT, w->X + i * w->subject->schema.n_var};
-    if (status == STATUS_OK)
-        status = crew_run_watched(w->subject->crew, w->n, tasks, results, &watch, err);
-    free(tasks);
-    free(results);
+    if (!trials)
+        return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", w->n);
+    w->raw = trials;
+    const Status status = trials_run(w->subject->trials, w->n, w->X, trials, &watch, err);
+    free(trials);
     return status;
 }
 
@@ -304,9 +306,9 @@ static void swap_if_top_heavy(double x[], void *user)
 static Status open_tower(Subject *s, Err *err)
 {
     const Settings *t = &s->settings;
-    TRY(world_open(&s->world, t, err));
-    TRY(crew_create(&s->crew, s->world.scene, s->threads, err));
-    return schema_of(&s->schema, t, scene_n_floors(s->world.scene), err);
+    TRY(trials_open(&s->trials, t, s->threads, err));
+    s->crew = trials_crew(s->trials);
+    return schema_of(&s->schema, t, scene_n_floors(trials_world(s->trials)->scene), err);
 }
 
 static Status open_external(Subject *s, Err *err)
@@ -455,8 +457,7 @@ void subject_close(Subject *s)
     if (!s)
         return;
     external_close(s->external);
-    crew_free(s->crew);
-    world_close(&s->world);
+    trials_close(s->trials);
     schema_free(&s->schema);
     free(s->lower);
     free(s);

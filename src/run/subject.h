@@ -1,7 +1,8 @@
 /* run/subject.h -- what is searched: the tower, a simulator of somebody else, or a textbook problem, behind one
  * Problem.
  *
- *   problem.kind = tower      gaps and walls; t_top > t_base is repaired by swapping the two
+ *   problem.kind = tower      gaps and walls; t_top > t_base is repaired by swapping the two; every design is as many
+ *                             simulations as sim.ensemble and motion.records ask for (run/trial.h)
  *                  external   workers that speak JSON lines (problem/external.h)
  *                  dtlz2 ...  problem/textbook.h, with problem.noise where that is set
  *
@@ -16,7 +17,7 @@
 #include "moga/problem.h"
 #include "run/crew.h"
 #include "run/schema.h"
-#include "run/world.h"
+#include "run/trial.h"
 
 typedef struct Subject Subject;
 
@@ -31,9 +32,10 @@ int subject_threads(const Subject *subject);
 
 /* One finished simulation; valid during the call. */
 typedef struct {
-    size_t number;       /* of the design: 1, 2, ... in the order in which the search asked */
-    const double *x, *f; /* (n_var); (n_obj) in natural signs, not finite where it failed */
-    double violation;    /* of the user's limits, sum of max(0, g) */
+    size_t number;        /* of the design: 1, 2, ... in the order in which the search asked */
+    const double *x, *f;  /* (n_var); (n_obj) in natural signs, not finite where it failed */
+    const double *spread; /* (n_obj) standard deviations, NAN where not known */
+    double violation;     /* of the user's limits, sum of max(0, g) */
     int ok;
     const Verdict *verdict;
 } Simulation;
