@@ -85,6 +85,14 @@ static double step_mismatch(const FastWork *k, const Active *active, double work
     return fabs(work + taken);
 }
 
+/* The control points enclose the path: only where they go deeper than before is its top looked for. */
+static void go_deeper(FastWork *k, double h, double gap, double w0, double wd0, double w1, double wd1)
+{
+    const double limit = k->deepest + gap, third = h / 3;
+    if (fabs(w0) > limit || fabs(w0 + third * wd0) > limit || fabs(w1 - third * wd1) > limit || fabs(w1) > limit)
+        k->deepest = fmax(k->deepest, largest_on_cubic(h, w0, wd0, w1, wd1) - gap);
+}
+
 static void accept_contacts(FastWork *k, const Active *active, double h)
 {
     k->n_touching = 0;
@@ -99,7 +107,7 @@ static void accept_contacts(FastWork *k, const Active *active, double h)
         k->side[j] = w1 > gap ? 1 : -w1 > gap ? -1 : 0;
         k->v0[j] = t->v0;
         if (t->mean != 0)
-            k->deepest = fmax(k->deepest, largest_on_cubic(h, w0, scalars(k->wd)[j], w1, scalars(k->wd1)[j]) - gap);
+            go_deeper(k, h, gap, w0, scalars(k->wd)[j], w1, scalars(k->wd1)[j]);
         k->n_touching += k->side[j] != 0;
     }
     swap(&k->q, &k->q1);

@@ -25,6 +25,7 @@ static void layout(FastWork *k, Carve *c)
         k->seen[i / 3][i % 3] = carve(c, n_pad, sizeof(double));
     k->R = carve(c, m_max * n_pad, sizeof(double));
     k->R_abs = carve(c, m_max * n_pad, sizeof(double));
+    k->D_abs = carve(c, m_max * n_pad, sizeof(double));
     k->RT = carve(c, m_max * n_pad, sizeof(double));
     for (int i = 0; i <= LEVEL_MAX; i++) {
         Level *l = &k->level[i];

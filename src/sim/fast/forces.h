@@ -73,8 +73,9 @@ typedef struct {
     double scale_w[FLOORS_PAD_MAX], scale_v[FLOORS_PAD_MAX]; /* what the step moves */
     Press press[FLOORS_PAD_MAX];
     Reply g[FLOORS_PAD_MAX * FLOORS_PAD_MAX];      /* (n, n) */
-    double J[4 * FLOORS_PAD_MAX * FLOORS_PAD_MAX]; /* (2n, 2n) factors of Newton's matrix */
-    int order[2 * FLOORS_PAD_MAX];
+    int width;                                     /* of a row of J: 2n padded */
+    vec J[4 * FLOORS_PAD_MAX * FLOORS_PAD_MAX / LANES]; /* (2n, width) Newton's matrix, then its U */
+    double L[4 * FLOORS_PAD_MAX * FLOORS_PAD_MAX];      /* (2n, 2n) */
 } Active;
 
 /* Lists the floors whose path may leave the gap; returns how many were new. */
@@ -108,48 +109,33 @@ static void list_touching(FastWork *k, Active *active)
         }
 }
 
-/* A (n, n) row-major := its factors L U with row exchange order[]; 0: singular or not finite. */
-static int factorise(int n, double *A, int order[])
+/* A = L U of (n, n), rows in their order: the matrix tends to the unit matrix as the step gets shorter, and where a pivot
+ * vanishes Newton does not converge and the step gets shorter. U takes the place of A, of which rows are `width` apart,
+ * its pivots inverted; L (n, n), without its ones, has the columns as rows. */
+static void factorise(int n, int width, double *A, double *L)
 {
     for (int c = 0; c < n; c++) {
-        int top = c;
-        for (int r = c + 1; r < n; r++)
-            if (fabs(A[r * n + c]) > fabs(A[top * n + c]))
-                top = r;
-        const double pivot = A[top * n + c];
-        if (!(fabs(pivot) > 0) || !isfinite(pivot))
-            return 0;
-        order[c] = top;
-        for (int j = 0; top != c && j < n; j++) {
-            const double kept = A[c * n + j];
-            A[c * n + j] = A[top * n + j];
-            A[top * n + j] = kept;
-        }
-        const double inverse = 1 / pivot;
+        const double *pivot_row = A + c * width;
+        const double inverse = 1 / pivot_row[c];
         for (int r = c + 1; r < n; r++) {
-            const double f = A[r * n + c] *= inverse;
-            if (f != 0)
-                for (int j = c + 1; j < n; j++)
-                    A[r * n + j] -= f * A[c * n + j];
+            double *row = A + r * width;
+            const double f = L[c * n + r] = row[c] * inverse;
+            for (int j = c / LANES * LANES; j < width; j += LANES)
+                *(vec *)(row + j) -= f * *(const vec *)(pivot_row + j);
         }
+        A[c * width + c] = inverse;
     }
-    return 1;
 }
 
-static void substitute(int n, const double *A, const int order[], double x[])
+static void substitute(int n, int width, const double *U, const double *L, double x[])
 {
-    for (int c = 0; c < n; c++) {
-        const double kept = x[c];
-        x[c] = x[order[c]];
-        x[order[c]] = kept;
-    }
-    for (int r = 1; r < n; r++)
-        for (int c = 0; c < r; c++)
-            x[r] -= A[r * n + c] * x[c];
+    for (int c = 0; c < n; c++)
+        for (int r = c + 1; r < n; r++)
+            x[r] -= L[c * n + r] * x[c];
     for (int r = n - 1; r >= 0; r--) {
-        for (int c = r + 1; c < n; c++)
-            x[r] -= A[r * n + c] * x[c];
-        x[r] /= A[r * n + r];
+        for (int c = n - 1; c > r; c--)
+            x[r] -= U[r * width + c] * x[c];
+        x[r] *= U[r * width + r];
     }
 }
 
@@ -185,22 +171,22 @@ static void take_in(FastWork *k, const Level *l, Active *a, int n_before)
     }
 }
 
-/* Newton's matrix I + (slopes of the law) (replies of w1, w1'), factorised; 0: singular. */
-static int take_slopes(Active *a)
+/* Newton's matrix I + (slopes of the law) (replies of w1, w1'), factorised. */
+static void take_slopes(Active *a)
 {
-    const int n = a->n;
+    const int n = a->n, width = a->width = (2 * n + LANES - 1) / LANES * LANES;
     for (int i = 0; i < n; i++) {
         const Press *t = &a->press[i];
-        double *row = a->J + 4 * i * n;
+        double *row = (double *)a->J + 2 * i * width;
         for (int j = 0; j < n; j++, row += 2) {
             const Reply *g = &a->g[i * n + j];
             row[0] = t->end_w * g->w_end + t->end_v * g->v_end + (i == j);
             row[1] = t->end_w * g->w_mean + t->end_v * g->v_mean;
-            row[2 * n] = t->mean_w * g->w_end + t->mean_v * g->v_end;
-            row[2 * n + 1] = t->mean_w * g->w_mean + t->mean_v * g->v_mean + (i == j);
+            row[width] = t->mean_w * g->w_end + t->mean_v * g->v_end;
+            row[width + 1] = t->mean_w * g->w_mean + t->mean_v * g->v_mean + (i == j);
         }
     }
-    return factorise(2 * n, a->J, a->order);
+    factorise(2 * n, width, (double *)a->J, a->L);
 }
 
 /* One step of Newton's method, with the matrix of this state or (not fresh) of an earlier one. Returns the largest
@@ -214,9 +200,9 @@ static double improve_forces(FastWork *k, double h, Active *a, int fresh)
         x[2 * i] = a->F[i] - a->press[i].end;
         x[2 * i + 1] = a->M[i] - a->press[i].mean;
     }
-    if (fresh && !take_slopes(a))
-        return NAN;
-    substitute(2 * n, a->J, a->order, x);
+    if (fresh)
+        take_slopes(a);
+    substitute(2 * n, a->width, (const double *)a->J, a->L, x);
     for (int i = 0; i < n; i++) {
         double dw = 0, dv = 0;
         for (int j = 0; j < n; j++) {

@@ -7,7 +7,7 @@
 
 #include "base/units.h"
 #include "sim/fast/contact_step.h"
-#include "sim/fast/flight.h"
+#include "sim/fast/glide.h"
 
 /* The level whose step is the wanted share of the shortest Hertz contact at the present speed (or the finest). */
 static int contact_level(const FastWork *k, double gain)
@@ -121,21 +121,52 @@ static void show(const FastWork *k, double t)
         k->sample(&sample, k->sample_user);
 }
 
+/* Ground acceleration at sample i; after the last one it stands still. */
+static double ground(const Motion *motion, long i)
+{
+    return i < (long)motion->n ? motion->accel[i] : 0;
+}
+
+/* Glides over intervals first.. while it can; returns how many, 0 where the next one must be looked at. */
+static long glide(FastWork *k, const Motion *motion, long first, long end)
+{
+    double impulse = 0;
+    if (!k->may_glide || k->n_touching || first < k->glide_from || end - first < GLIDE_INTERVALS)
+        return 0;
+    for (long i = first; i < first + GLIDE_INTERVALS; i++)
+        impulse += 0.5 * motion->dt_s * (fabs(ground(motion, i)) + fabs(ground(motion, i + 1)));
+    k->glide_from = first + GLIDE_INTERVALS;
+    if (!glides(k, impulse))
+        return 0;
+    const Level *l = level_ready(k, 0, 0);
+    for (long i = first; i < first + GLIDE_INTERVALS; i++) {
+        if (i > first)
+            show(k, (double)i * motion->dt_s);
+        glide_interval(k, l, ground(motion, i), ground(motion, i + 1));
+    }
+    k->flights += GLIDE_INTERVALS;
+    glide_end(k);
+    return GLIDE_INTERVALS;
+}
+
 static int fly(FastWork *k, const Motion *motion, double duration)
 {
     k->shortest_at_1 = shortest_contact(k->model);
     const long full = (long)floor(duration / motion->dt_s * (1 + 1e-14));
     const long samples = (long)motion->n;
     k->flight_level = 0;
+    k->glide_from = 0;
     k->touch_level = LEVEL_MAX;
     set_base(k, 0);
     set_base(k, motion->dt_s);
     show(k, 0);
-    for (long i = 0; i < full; i++) {
+    for (long i = 0; i < full;) {
+        const long glided = glide(k, motion, i, full < samples - 1 ? full : samples - 1);
         const double a0 = i + 1 < samples ? motion->accel[i] : 0, a1 = i + 1 < samples ? motion->accel[i + 1] : 0;
-        if (!interval(k, a0, a1) || !state_is_finite(k))
+        if ((!glided && !interval(k, a0, a1)) || !state_is_finite(k))
             return 0;
-        show(k, (double)(i + 1) * motion->dt_s);
+        i += glided ? glided : 1;
+        show(k, (double)i * motion->dt_s);
     }
     const double rest = duration - (double)full * motion->dt_s;
     if (rest > 1e-9 * motion->dt_s) {

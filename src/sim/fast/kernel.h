@@ -42,7 +42,7 @@ typedef struct FastWork {
     vec *drift; /* (m_pad) how far the equation of motion was missed, summed over the steps */
     vec *work1, *ground1, *drift1;
     vec *q1, *v1, *amplitude, *qa, *va, *qb, *vb, *za, *ja, *zb, *jb, *bound, *bound_a; /* (m_pad) */
-    double *R, *R_abs;                                                                  /* (m_pad, n_pad) */
+    double *R, *R_abs, *D_abs; /* (m_pad, n_pad) of the floors, of their distances from the floor below */
     double *RT;                                                                         /* (n_pad, m_pad) */
 
     /* floors */
@@ -57,6 +57,8 @@ typedef struct FastWork {
     int side[FLOORS_PAD_MAX]; /* 0 open, +1 or -1 touching */
     int n_touching;
     int flight_level;     /* where the next flight is tried */
+    int may_glide;        /* all modes swing: below critical damping, with a frequency */
+    long glide_from;      /* the interval from which a glide is tried */
     int touch_level;      /* where the next contact step is tried */
     int may_grow;         /* the last contact step could have been twice as long */
     double energy_scale;  /* [J] */

@@ -117,6 +117,7 @@ static void copy_mode(FastWork *k, const SimModel *model, int from, int to)
         const double r = model->R[from * model->n_pad + j];
         k->R[to * k->n_pad + j] = k->RT[j * k->m_pad + to] = r;
         k->R_abs[to * k->n_pad + j] = fabs(r);
+        k->D_abs[to * k->n_pad + j] = j < k->n ? fabs(r - (j > 0 ? model->R[from * model->n_pad + j - 1] : 0)) : 0;
     }
 }
 
@@ -130,6 +131,7 @@ static void take_model(FastWork *k, const SimModel *model, double base)
     k->mf = k->m_pad / LANES;
     memset(k->R, 0, sizeof(double) * (size_t)(k->m_pad * k->n_pad));
     memset(k->R_abs, 0, sizeof(double) * (size_t)(k->m_pad * k->n_pad));
+    memset(k->D_abs, 0, sizeof(double) * (size_t)(k->m_pad * k->n_pad));
     memset(k->RT, 0, sizeof(double) * (size_t)(k->m_pad * k->n_pad));
     for (int i = 0; i < k->m_pad; i++) {
         scalars(k->omega)[i] = 1;
@@ -140,11 +142,13 @@ static void take_model(FastWork *k, const SimModel *model, double base)
         copy_mode(k, model, i, i);
     for (int i = 0; i < model->nc; i++)
         copy_mode(k, model, model->nb + i, k->nb_pad + i);
+    k->may_glide = 1;
     for (int i = 0; i < k->m_pad; i++) {
         const double omega = scalars(k->omega)[i], zeta = scalars(k->zeta)[i];
         scalars(k->decay)[i] = 2 * zeta * omega;
         scalars(k->wd_inverse)[i] = zeta > 0.99 || omega == 0 ? base : 1 / (omega * sqrt(1 - zeta * zeta));
         scalars(k->flex)[i] = omega > 0 ? 1 / (omega * omega) : 0;
+        k->may_glide = k->may_glide && omega > 0 && zeta <= 0.99;
     }
     memcpy(k->gap, model->gap, sizeof(double) * (size_t)k->n_pad);
 }

@@ -1,0 +1,85 @@
+/* sim/fast/glide.h -- several sampling intervals at once while the building sways too little to matter: no wall can be
+ * reached and no peak raised, so that the modes and their energy books are all there is to do.
+ * Part of the kernel: static functions, compiled once per instruction set. See fast.h for the method.
+ *
+ * From a state (q, q') on, under a ground acceleration a(t) over a window,
+ *
+ *   |q(t)| <= A + G,   A^2 = q^2 + ((q' + zeta w q) / w_d)^2,   G = |gamma| / w_d int |a| dt
+ *
+ * since |g(t)| <= 1 / w_d for the impulse response g of a mode below critical damping, and
+ * |2 zeta w q' + w^2 q| <= (1 + 2 zeta) w^2 (A + G). */
+#ifndef IMTET_SIM_FAST_GLIDE_H
+#define IMTET_SIM_FAST_GLIDE_H
+
+#include "sim/fast/flight.h"
+
+enum { GLIDE_INTERVALS = 4 };
+
+/* Largest displacement and acceleration of every mode over the window: bound, bound_a. */
+static void glide_bounds(FastWork *k, double impulse)
+{
+    for (int i = 0; i < k->mf; i++) {
+        const vec q = k->q[i], xd = (k->v[i] + 0.5 * k->decay[i] * q) * k->wd_inverse[i];
+        k->bound[i] = vec_sqrt(q * q + xd * xd) + impulse * vec_abs(k->gamma[i]) * k->wd_inverse[i];
+        k->bound_a[i] = k->omega[i] * (k->omega[i] + k->decay[i]) * k->bound[i];
+    }
+}
+
+/* Is no floor's reach above what it may be? */
+static int stays_below(const FastWork *k, const vec *reach, const vec *limit)
+{
+    return !exceeds(reach, limit, k->nf);
+}
+
+static int glides(FastWork *k, double impulse)
+{
+    const vec *R_abs = (const vec *)k->R_abs;
+    const int core = k->nb_pad;
+    glide_bounds(k, impulse);
+    const double *const bounds[2] = {scalars_const(k->bound), scalars_const(k->bound_a)};
+    vec *const reach[2] = {k->u0, k->a0}, *const reach_drift[1] = {k->u1}, *const reach_core[1] = {k->c0};
+    rows_times(2, R_abs, k->nf, core, bounds, reach);
+    rows_times(1, (const vec *)k->D_abs, k->nf, core, bounds, reach_drift);
+    if (!stays_below(k, k->u0, k->peak_u) || !stays_below(k, k->u1, k->peak_d) || !stays_below(k, k->a0, k->peak_a))
+        return 0;
+    if (k->m_pad == core)
+        return 1;
+    const double *const core_bounds[1] = {bounds[0] + core};
+    rows_times(1, R_abs + core * k->nf, k->nf, k->m_pad - core, core_bounds, reach_core);
+    for (int f = 0; f < k->nf; f++)
+        k->u0[f] += k->c0[f];
+    return stays_below(k, k->u0, k->gap);
+}
+
+/* One interval of free flow. */
+static void glide_interval(FastWork *k, const Level *l, double a0, double a1)
+{
+    const vec *c = l->coef;
+    const int mf = k->mf;
+    for (int i = 0; i < mf; i++) {
+        const vec q = k->q[i], v = k->v[i], p0 = -k->gamma[i] * a0, p1 = -k->gamma[i] * (a1 - a0);
+        k->q1[i] = c[FLOW_Q * mf + i] * q + c[(FLOW_Q + 1) * mf + i] * v + c[(FLOW_Q + 2) * mf + i] * p0 +
+                   c[(FLOW_Q + 3) * mf + i] * p1;
+        k->v1[i] = c[FLOW_V * mf + i] * q + c[(FLOW_V + 1) * mf + i] * v + c[(FLOW_V + 2) * mf + i] * p0 +
+                   c[(FLOW_V + 3) * mf + i] * p1;
+    }
+    book_flight(k, l, a0, a1);
+    swap(&k->q, &k->q1);
+    swap(&k->v, &k->v1);
+}
+
+/* After a glide the speed of the gaps must be known again. */
+static void glide_end(FastWork *k)
+{
+    const double *const state[1] = {scalars_const(k->v)};
+    vec *const floors[1] = {k->wd};
+    k->n_seen = -1;
+    k->flight_level = 0;
+    k->touch_level = LEVEL_MAX;
+    if (k->m_pad == k->nb_pad)
+        return;
+    rows_times(1, (const vec *)k->R, k->nf, k->m_pad, state, floors);
+    k->speed = largest(k->wd, k->nf);
+}
+
+#endif
