@@ -11,8 +11,8 @@ static void land(FastWork *k)
     const double *const state[2] = {scalars_const(k->q), scalars_const(k->v)};
     vec *const floors[2] = {k->w, k->wd};
     rows_times(2, (const vec *)k->R, k->nf, k->m_pad, state, floors);
-    outputs(k, k->q, k->v, k->seen[0][0], k->seen[0][1], k->seen[0][2]);
-    k->n_seen = 1;
+    see_start(k);
+    k->landed = 1;
     k->h_before = 1;
 }
 
@@ -31,6 +31,19 @@ static void contact_predict(FastWork *k, const Level *l, double a0, double a1)
     const double *const state[2] = {scalars_const(k->q1), scalars_const(k->v1)};
     vec *const floors[2] = {k->w1, k->wd1};
     rows_times(2, (const vec *)k->R, k->nf, k->m_pad, state, floors);
+}
+
+/* Displacement and acceleration of building modes i in the middle of a step, qb and zb, and at its end, za. The part
+ * that the load does not make follows the Hermite cubic. start, end: the load there; load1, bubble: of the contacts. */
+static inline void middle_of_step(FastWork *k, double h, int i, vec q1, vec v1, vec start, vec end, vec load1,
+                                  vec bubble)
+{
+    const vec q = k->q[i], v = k->v[i], decay = k->decay[i], stiff = k->omega[i] * k->omega[i];
+    const vec z0 = -decay * v - stiff * q, z1 = -decay * v1 - stiff * q1;
+    const vec j0 = -decay * (start + z0) - stiff * v, j1 = -decay * (end + z1) - stiff * v1;
+    k->qb[i] = 0.5 * (q + q1) + 0.125 * h * (v - v1);
+    k->zb[i] = 0.5 * (z0 + z1 + k->load[i] + load1) + 0.125 * h * (j0 - j1) + 0.25 * bubble;
+    k->za[i] = load1 + z1;
 }
 
 /* What the modes would be with the forces that were found; returns the work [J] that they did on all modes. */
@@ -63,6 +76,8 @@ static double contact_update(FastWork *k, const Level *l, const Active *active, 
         k->work1[i] = k->work[i] + work;
         k->ground1[i] = k->ground[i] + (g0 + g1) * q1 - g0 * q - g1 * mean;
         k->drift1[i] = k->drift[i] + momentum_gap(k, l->h, i, q1 - q, v1 - v, mean, p0 + 0.5 * p1 - b * (1.0 / 3));
+        if (i < k->bf)
+            middle_of_step(k, l->h, i, q1, v1, p0, p0 + p1 - b, load1[i], b);
         k->q1[i] = q1;
         k->v1[i] = v1;
         taken += work;
@@ -140,7 +155,7 @@ static int closes(const Active *active)
 static int contact_step(FastWork *k, const Level *l, double a0, double a1, int finest)
 {
     Active active;
-    if (k->n_seen < 0)
+    if (!k->landed)
         land(k);
     k->steps++;
     contact_predict(k, l, a0, a1);
@@ -160,7 +175,7 @@ static int contact_step(FastWork *k, const Level *l, double a0, double a1, int f
     }
     k->may_grow = mismatch <= allowed / 32;
     accept_contacts(k, &active, l->h);
-    peaks_in_contact(k, l->h);
+    peaks_in_contact(k);
     return 1;
 }
 

@@ -135,7 +135,7 @@ static int flight(FastWork *k, const Level *l, double a0, double a1)
     for (int f = 0; f < k->nf && k->m_pad > k->nb_pad; f++)
         k->wd[f] = k->u1d[f] + k->c1d[f];
     k->speed = k->m_pad > k->nb_pad ? largest(k->wd, k->nf) : 0;
-    k->n_seen = -1;
+    k->landed = 0;
     return 1;
 }
 

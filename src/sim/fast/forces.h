@@ -235,7 +235,7 @@ static int solve_contacts(FastWork *k, const Level *l, double tolerance, Active 
     enum { MOST = 40 };
     list_touching(k, active);
     int before = 0, fresh = 1;
-    double last = 0;
+    double last = 1;
     if (active->n == 0 && !find_closings(k, l, active))
         return 1;
     for (int i = 0; i < MOST; i++) {

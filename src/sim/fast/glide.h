@@ -73,7 +73,7 @@ static void glide_end(FastWork *k)
 {
     const double *const state[1] = {scalars_const(k->v)};
     vec *const floors[1] = {k->wd};
-    k->n_seen = -1;
+    k->landed = 0;
     k->flight_level = 0;
     k->touch_level = LEVEL_MAX;
     if (k->m_pad == k->nb_pad)

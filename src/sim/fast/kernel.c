@@ -75,7 +75,7 @@ static int interval(FastWork *k, double a0, double a1)
         k->flight_level = finest > 0 ? finest - 1 : 0;
         if (k->touch_level > finest || k->knobs->energy_tolerance == 0)
             k->touch_level = finest;
-        while (k->touch_level < finest && k->n_seen >= 0 && closing_ahead(k, ldexp(k->base, -k->touch_level)))
+        while (k->touch_level < finest && k->landed && closing_ahead(k, ldexp(k->base, -k->touch_level)))
             k->touch_level++;
         for (level = k->touch_level > aligned ? k->touch_level : aligned; !done && level <= LEVEL_MAX; level++) {
             const uint32_t step = whole >> level;

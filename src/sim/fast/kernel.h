@@ -50,9 +50,8 @@ typedef struct FastWork {
     vec *c0, *c0d, *c1, *c1d;                                           /* (n_pad) the core's part of w in flight */
     vec *u0, *u0d, *u1, *u1d, *a0, *a0d, *a1, *a1d, *e_u, *e_w, *e_a, *reach_a; /* (n_pad) */
     vec *peak_u, *peak_d, *peak_a;                                              /* (n_pad) */
-    vec *seen[3][3];  /* [how long ago][u, drift, accel] (n_pad) */
-    double seen_h[2]; /* steps between them */
-    int n_seen;       /* -1: in flight, w and w' are not current */
+    vec *seen[3][3]; /* [start, middle, end of a contact step][u, drift, accel] (n_pad) */
+    int landed;      /* 0: in flight, w, w' and what is seen are not current */
     double v0[FLOORS_PAD_MAX];
     int side[FLOORS_PAD_MAX]; /* 0 open, +1 or -1 touching */
     int n_touching;

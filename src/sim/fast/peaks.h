@@ -1,4 +1,5 @@
-/* sim/fast/peaks.h -- maxima over continuous time: in flight from the Hermite cubic, in contact from three steps.
+/* sim/fast/peaks.h -- maxima over continuous time: in flight from the Hermite cubic, in contact from the parabola
+ * through start, middle and end of the step.
  * Part of the kernel: static functions, compiled once per instruction set. See fast.h for the method. */
 #ifndef IMTET_SIM_FAST_PEAKS_H
 #define IMTET_SIM_FAST_PEAKS_H
@@ -66,58 +67,56 @@ static void storeys(const FastWork *k, const vec *u, vec *d)
         to[j] = 0;
 }
 
-static void outputs(FastWork *k, const vec *q, const vec *v, vec *u, vec *drift, vec *accel)
+/* Where a flight ends: u, drift and acceleration of the floors. */
+static void see_start(FastWork *k)
 {
-    vec *z = k->za;
     for (int i = 0; i < k->bf; i++)
-        z[i] = k->load[i] - k->decay[i] * v[i] - k->omega[i] * k->omega[i] * q[i];
-    const double *const state[2] = {scalars_const(q), scalars_const(z)};
-    vec *const floors[2] = {u, accel};
+        k->za[i] = k->load[i] - k->decay[i] * k->v[i] - k->omega[i] * k->omega[i] * k->q[i];
+    const double *const state[2] = {scalars_const(k->q), scalars_const(k->za)};
+    vec *const floors[2] = {k->seen[0][0], k->seen[0][2]};
     rows_times(2, (const vec *)k->R, k->nf, k->nb_pad, state, floors);
-    storeys(k, u, drift);
+    storeys(k, k->seen[0][0], k->seen[0][1]);
 }
 
-/* Extremum of the parabola through three samples, the middle one being the largest. */
-static double parabola_top(double h0, double h1, double y0, double y1, double y2)
+/* Middle and end of a contact step: modal displacements qb, q and accelerations zb, za. */
+static void see_step(FastWork *k)
 {
-    const double left = (y1 - y0) / h0, right = (y2 - y1) / h1;
-    const double curvature = (right - left) / (h0 + h1), slope = (left * h1 + right * h0) / (h0 + h1);
-    return curvature != 0 ? y1 - slope * slope / (4 * curvature) : y1;
+    const double *const state[4] = {scalars_const(k->qb), scalars_const(k->zb), scalars_const(k->q),
+                                    scalars_const(k->za)};
+    vec *const floors[4] = {k->seen[1][0], k->seen[1][2], k->seen[2][0], k->seen[2][2]};
+    rows_times(4, (const vec *)k->R, k->nf, k->nb_pad, state, floors);
+    storeys(k, k->seen[1][0], k->seen[1][1]);
+    storeys(k, k->seen[2][0], k->seen[2][1]);
 }
 
-static void peaks_in_contact(FastWork *k, double h)
+/* Largest |value| of the parabola through the start, the middle and the end of a step. */
+static double parabola_top(double y0, double ym, double y1)
 {
-    vec *oldest[3];
-    for (int y = 0; y < 3; y++) { /* the newest samples go where the oldest were */
-        oldest[y] = k->seen[2][y];
-        k->seen[2][y] = k->seen[1][y];
-        k->seen[1][y] = k->seen[0][y];
-        k->seen[0][y] = oldest[y];
-    }
-    k->seen_h[1] = k->seen_h[0];
-    k->seen_h[0] = h;
-    outputs(k, k->q, k->v, k->seen[0][0], k->seen[0][1], k->seen[0][2]);
-    if (k->n_seen < 3)
-        k->n_seen++;
+    const double slope = 4 * ym - 3 * y0 - y1, bend = 2 * (y0 + y1 - 2 * ym), x = -0.5 * slope / bend;
+    const double most = fmax(fmax(fabs(y0), fabs(y1)), fabs(ym));
+    return x > 0 && x < 1 ? fmax(most, fabs(y0 + 0.5 * x * slope)) : most;
+}
+
+static void peaks_in_contact(FastWork *k)
+{
     vec *const peaks[3] = {k->peak_u, k->peak_d, k->peak_a};
-    for (int y = 0; y < 3; y++)
+    see_step(k);
+    for (int y = 0; y < 3; y++) {
+        const vec *start = k->seen[0][y], *middle = k->seen[1][y], *end = k->seen[2][y];
         for (int f = 0; f < k->nf; f++) {
-            const vec now = vec_abs(k->seen[0][y][f]), middle = vec_abs(k->seen[1][y][f]);
-            peaks[y][f] = vec_max(now, peaks[y][f]);
-            if (k->n_seen < 3)
-                continue;
-            const vec first = vec_abs(k->seen[2][y][f]);
-            const mask top = (middle > now) & (middle >= first) & (middle * 1.25 > peaks[y][f]);
-            if (!any(top))
+            /* the control points enclose the parabola */
+            const vec handle = 2 * middle[f] - 0.5 * (start[f] + end[f]);
+            const vec reach = vec_max(vec_max(vec_abs(start[f]), vec_abs(end[f])), vec_abs(handle));
+            const mask above = reach > peaks[y][f];
+            if (!any(above))
                 continue;
             for (int lane = 0; lane < LANES; lane++)
-                if (top[lane]) {
-                    const double most = fabs(parabola_top(k->seen_h[1], k->seen_h[0], k->seen[2][y][f][lane],
-                                                          k->seen[1][y][f][lane], k->seen[0][y][f][lane]));
-                    if (most > peaks[y][f][lane])
-                        peaks[y][f][lane] = most;
-                }
+                if (above[lane])
+                    peaks[y][f][lane] = larger(parabola_top(start[f][lane], middle[f][lane], end[f][lane]),
+                                               peaks[y][f][lane]);
         }
+        swap(&k->seen[0][y], &k->seen[2][y]);
+    }
 }
 
 #endif

@@ -170,7 +170,7 @@ static void start_at_rest(FastWork *k)
             k->peak_d[f] = k->peak_a[f] = zero;
     memset(k->side, 0, sizeof k->side);
     k->n_touching = 0;
-    k->n_seen = -1;
+    k->landed = 0;
     k->speed = 0;
     k->contact_lost = k->contact_clamped = k->deepest = 0;
     k->impacts = k->floored = k->steps = k->flights = k->forces = 0;
