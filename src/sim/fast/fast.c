@@ -95,9 +95,9 @@ void fast_sample(FastWork *work, SimSampleFn sample, void *user)
 FastKnobs fast_knobs(Accuracy accuracy)
 {
     static const FastKnobs KNOBS[] = {
-        [ACCURACY_COARSE] = {1, 1e-2, 3e-5, 2e7, 1e-2},
-        [ACCURACY_STANDARD] = {2, 3e-3, 1e-6, 2e7, 1e-3},
-        [ACCURACY_FINE] = {80, 1e-12, 0, 2e8, 1e-6},
+        [ACCURACY_COARSE] = {1, 1e-2, 3e-5, 2e7, 1e-2, 0.1},
+        [ACCURACY_STANDARD] = {1, 1e-2, 3e-6, 2e7, 3e-3, 0.03},
+        [ACCURACY_FINE] = {80, 1e-12, 0, 2e8, 1e-6, 0},
     };
     return KNOBS[accuracy];
 }
@@ -113,12 +113,12 @@ void fast_run(FastWork *work, const SimModel *model, const Motion *motion, doubl
 /* q and q' of every mode where the last run ended: state (2 m). */
 static void end_state(const FastWork *work, double state[])
 {
-    const int nb = work->model->nb, nc = work->model->nc, m = nb + nc;
+    const int nb = work->model->nb, kept = nb + work->nc, m = work->model->m;
     const double *q = (const double *)work->q, *v = (const double *)work->v;
     for (int i = 0; i < m; i++) {
         const int at = i < nb ? i : work->nb_pad + i - nb;
-        state[i] = q[at];
-        state[m + i] = v[at];
+        state[i] = i < kept ? q[at] : 0;
+        state[m + i] = i < kept ? v[at] : 0;
     }
 }
 

@@ -35,11 +35,12 @@ void fast_sample(FastWork *work, SimSampleFn sample, void *user);
 
 /* What accuracy costs. */
 typedef struct {
-    double steps_per_contact; /* of an undisturbed Hertz contact at the largest speed between floor and core */
-    double solver_tolerance;  /* of the contact forces of one step, relative to what the step moves */
-    double energy_tolerance;  /* of one step longer than that, share of the input energy so far; 0: none is longer */
-    double steps_max;         /* steps after which a run is given up */
-    double peak_tolerance;    /* share of a peak that may hide inside a flight step */
+    double steps_per_contact;    /* of an undisturbed Hertz contact at the largest speed between floor and core */
+    double solver_tolerance;     /* of the contact forces of one step, relative to what the step moves */
+    double energy_tolerance;     /* of one step longer than that, share of the input energy so far; 0: none is longer */
+    double steps_max;            /* steps after which a run is given up */
+    double peak_tolerance;       /* share of a peak that may hide inside a flight step */
+    double flexibility_left_out; /* of the highest core modes, share of a contact's; 0: all modes are kept */
 } FastKnobs;
 
 FastKnobs fast_knobs(Accuracy accuracy);

@@ -31,7 +31,7 @@ static void apply_force(FastWork *k, const Level *l, int j, double f1, double fb
 
 /* The force law along the path of floor j to w1, w1', both walls: a path may leave one and reach the other. Forces push
  * the floor to the negative side. */
-static void press(FastWork *k, double h, int j, double w1, double w1d, Press *out)
+static __attribute__((noinline)) void press(FastWork *k, double h, int j, double w1, double w1d, Press *out)
 {
     const double w0 = scalars(k->w)[j], w0d = scalars(k->wd)[j], gap = scalars(k->gap)[j], third = h / 3;
     const double b1 = w0 + third * w0d, b2 = w1 - third * w1d; /* with w0 and w1 they enclose the path */
@@ -72,9 +72,8 @@ typedef struct {
     double w1[FLOORS_PAD_MAX], wd1[FLOORS_PAD_MAX], F[FLOORS_PAD_MAX], M[FLOORS_PAD_MAX];
     double scale_w[FLOORS_PAD_MAX], scale_v[FLOORS_PAD_MAX]; /* what the step moves */
     Press press[FLOORS_PAD_MAX];
-    Reply g[FLOORS_PAD_MAX * FLOORS_PAD_MAX];      /* (n, n) */
-    int width;                                     /* of a row of J: 2n padded */
-    vec J[4 * FLOORS_PAD_MAX * FLOORS_PAD_MAX / LANES]; /* (2n, width) Newton's matrix, then its U */
+    Reply g[FLOORS_PAD_MAX * FLOORS_PAD_MAX];           /* (n, n) */
+    vec J[4 * FLOORS_PAD_MAX * FLOORS_PAD_MAX / LANES]; /* (2n, row_width) Newton's matrix, then its U */
     double L[4 * FLOORS_PAD_MAX * FLOORS_PAD_MAX];      /* (2n, 2n) */
 } Active;
 
@@ -109,10 +108,16 @@ static void list_touching(FastWork *k, Active *active)
         }
 }
 
-/* A = L U of (n, n), rows in their order: the matrix tends to the unit matrix as the step gets shorter, and where a pivot
- * vanishes Newton does not converge and the step gets shorter. U takes the place of A, of which rows are `width` apart,
- * its pivots inverted; L (n, n), without its ones, has the columns as rows. */
-static void factorise(int n, int width, double *A, double *L)
+/* Rows of Newton's matrix for n floors are so far apart. */
+static inline int row_width(int n)
+{
+    return (2 * n + LANES - 1) / LANES * LANES;
+}
+
+/* A = L U of (n, n), rows in their order: the matrix tends to the unit matrix as the step gets shorter, and where a
+ * pivot vanishes Newton does not converge and the step gets shorter. U takes the place of A, of which rows are `width`
+ * apart, its pivots inverted; L (n, n), without its ones, has the columns as rows. */
+INLINE void factorise(const int n, const int width, double *A, double *L)
 {
     for (int c = 0; c < n; c++) {
         const double *pivot_row = A + c * width;
@@ -127,7 +132,7 @@ static void factorise(int n, int width, double *A, double *L)
     }
 }
 
-static void substitute(int n, int width, const double *U, const double *L, double x[])
+INLINE void substitute(const int n, const int width, const double *U, const double *L, double x[])
 {
     for (int c = 0; c < n; c++)
         for (int r = c + 1; r < n; r++)
@@ -172,9 +177,9 @@ static void take_in(FastWork *k, const Level *l, Active *a, int n_before)
 }
 
 /* Newton's matrix I + (slopes of the law) (replies of w1, w1'), factorised. */
-static void take_slopes(Active *a)
+INLINE void take_slopes(Active *a, const int n)
 {
-    const int n = a->n, width = a->width = (2 * n + LANES - 1) / LANES * LANES;
+    const int width = row_width(n);
     for (int i = 0; i < n; i++) {
         const Press *t = &a->press[i];
         double *row = (double *)a->J + 2 * i * width;
@@ -189,11 +194,10 @@ static void take_slopes(Active *a)
     factorise(2 * n, width, (double *)a->J, a->L);
 }
 
-/* One step of Newton's method, with the matrix of this state or (not fresh) of an earlier one. Returns the largest
- * change of w1 and w1' relative to what the step moves, or NaN when there is none. */
-static double improve_forces(FastWork *k, double h, Active *a, int fresh)
+/* One step of Newton's method on n floors, with the matrix of this state or (not fresh) of an earlier one. Returns the
+ * largest change of w1 and w1' relative to what the step moves; it is not a number where there is none. */
+INLINE double improve(FastWork *k, double h, Active *a, int fresh, const int n)
 {
-    const int n = a->n;
     double x[2 * FLOORS_PAD_MAX], change = 0;
     for (int i = 0; i < n; i++) {
         press(k, h, a->floor[i], a->w1[i], a->wd1[i], &a->press[i]);
@@ -201,8 +205,8 @@ static double improve_forces(FastWork *k, double h, Active *a, int fresh)
         x[2 * i + 1] = a->M[i] - a->press[i].mean;
     }
     if (fresh)
-        take_slopes(a);
-    substitute(2 * n, a->width, (const double *)a->J, a->L, x);
+        take_slopes(a, n);
+    substitute(2 * n, row_width(n), (const double *)a->J, a->L, x);
     for (int i = 0; i < n; i++) {
         double dw = 0, dv = 0;
         for (int j = 0; j < n; j++) {
@@ -219,6 +223,23 @@ static double improve_forces(FastWork *k, double h, Active *a, int fresh)
             change = c;
     }
     return change;
+}
+
+/* The common numbers of floors get code of their own, unrolled. */
+static double improve_forces(FastWork *k, double h, Active *a, int fresh)
+{
+    switch (a->n) {
+    case 1:
+        return improve(k, h, a, fresh, 1);
+    case 2:
+        return improve(k, h, a, fresh, 2);
+    case 3:
+        return improve(k, h, a, fresh, 3);
+    case 4:
+        return improve(k, h, a, fresh, 4);
+    default:
+        return improve(k, h, a, fresh, a->n);
+    }
 }
 
 static void hand_out(FastWork *k, const Level *l, const Active *a)

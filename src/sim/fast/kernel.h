@@ -33,6 +33,7 @@ typedef struct FastWork {
     void *store;
     const SimModel *model;
     int n, n_pad, nb_pad, m_pad; /* building modes first, padded apart: core modes start at nb_pad */
+    int nc;                      /* core modes that are kept */
     int nf, mf, bf;              /* n_pad, m_pad, nb_pad in vectors of LANES */
     double base;                 /* [s] the interval that the levels divide */
     Level level[LEVEL_MAX + 1];
@@ -43,7 +44,7 @@ typedef struct FastWork {
     vec *work1, *ground1, *drift1;
     vec *q1, *v1, *amplitude, *qa, *va, *qb, *vb, *za, *ja, *zb, *jb, *bound, *bound_a; /* (m_pad) */
     double *R, *R_abs, *D_abs; /* (m_pad, n_pad) of the floors, of their distances from the floor below */
-    double *RT;                                                                         /* (n_pad, m_pad) */
+    double *RT;                /* (n_pad, m_pad) */
 
     /* floors */
     vec *w, *wd, *w1, *wd1, *f0, *f1, *fb, *f_before, *fb_before, *gap; /* (n_pad) */

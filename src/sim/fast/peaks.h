@@ -97,24 +97,32 @@ static double parabola_top(double y0, double ym, double y1)
     return x > 0 && x < 1 ? fmax(most, fabs(y0 + 0.5 * x * slope)) : most;
 }
 
+/* The control points enclose the parabola. */
+static vec parabola_reach(vec y0, vec ym, vec y1)
+{
+    return vec_max(vec_max(vec_abs(y0), vec_abs(y1)), vec_abs(2 * ym - 0.5 * (y0 + y1)));
+}
+
+static void raise_in_contact(vec *peak, int nf, const vec *start, const vec *middle, const vec *end)
+{
+    for (int f = 0; f < nf; f++) {
+        const mask above = parabola_reach(start[f], middle[f], end[f]) > peak[f];
+        for (int lane = 0; lane < LANES; lane++)
+            if (above[lane])
+                peak[f][lane] = larger(parabola_top(start[f][lane], middle[f][lane], end[f][lane]), peak[f][lane]);
+    }
+}
+
 static void peaks_in_contact(FastWork *k)
 {
     vec *const peaks[3] = {k->peak_u, k->peak_d, k->peak_a};
     see_step(k);
     for (int y = 0; y < 3; y++) {
-        const vec *start = k->seen[0][y], *middle = k->seen[1][y], *end = k->seen[2][y];
-        for (int f = 0; f < k->nf; f++) {
-            /* the control points enclose the parabola */
-            const vec handle = 2 * middle[f] - 0.5 * (start[f] + end[f]);
-            const vec reach = vec_max(vec_max(vec_abs(start[f]), vec_abs(end[f])), vec_abs(handle));
-            const mask above = reach > peaks[y][f];
-            if (!any(above))
-                continue;
-            for (int lane = 0; lane < LANES; lane++)
-                if (above[lane])
-                    peaks[y][f][lane] = larger(parabola_top(start[f][lane], middle[f][lane], end[f][lane]),
-                                               peaks[y][f][lane]);
-        }
+        mask above = {0};
+        for (int f = 0; f < k->nf; f++)
+            above |= parabola_reach(k->seen[0][y][f], k->seen[1][y][f], k->seen[2][y][f]) > peaks[y][f];
+        if (any(above))
+            raise_in_contact(peaks[y], k->nf, k->seen[0][y], k->seen[1][y], k->seen[2][y]);
         swap(&k->seen[0][y], &k->seen[2][y]);
     }
 }

@@ -121,11 +121,38 @@ static void copy_mode(FastWork *k, const SimModel *model, int from, int to)
     }
 }
 
+/* How much softer the core modes from nc on, left out, would make a contact at 1 m/s: the worst floor's static
+ * flexibility sum R^2 / w^2 over that of the contact at its deepest, 1 / (1.5 k sqrt(p)). */
+static double flexibility_left_out(const SimModel *model, int nc)
+{
+    double worst = 0;
+    for (int j = 0; j < model->n; j++) {
+        const double depth = contact_hertz_penetration(model->contact.k, model->mass_eff[j], 1.0);
+        double sum = 0;
+        for (int i = model->nb + nc; i < model->m; i++) {
+            const double r = model->R[i * model->n_pad + j] / model->omega[i];
+            sum += r * r;
+        }
+        worst = fmax(worst, sum * 1.5 * model->contact.k * sqrt(depth));
+    }
+    return worst;
+}
+
+/* The fewest core modes that will do; whole vectors, since a part of one costs as much. */
+static int core_modes_needed(const SimModel *model, double allowed)
+{
+    int nc = model->nc < PAD ? model->nc : PAD;
+    while (nc < model->nc && !(flexibility_left_out(model, nc) <= allowed))
+        nc = nc + PAD < model->nc ? nc + PAD : model->nc;
+    return nc;
+}
+
 static void take_model(FastWork *k, const SimModel *model, double base)
 {
     k->model = model;
+    k->nc = core_modes_needed(model, k->knobs->flexibility_left_out);
     k->nb_pad = (model->nb + PAD - 1) / PAD * PAD;
-    k->m_pad = k->nb_pad + (model->nc + PAD - 1) / PAD * PAD;
+    k->m_pad = k->nb_pad + (k->nc + PAD - 1) / PAD * PAD;
     k->nf = k->n_pad / LANES;
     k->bf = k->nb_pad / LANES;
     k->mf = k->m_pad / LANES;
@@ -140,7 +167,7 @@ static void take_model(FastWork *k, const SimModel *model, double base)
     }
     for (int i = 0; i < model->nb; i++)
         copy_mode(k, model, i, i);
-    for (int i = 0; i < model->nc; i++)
+    for (int i = 0; i < k->nc; i++)
         copy_mode(k, model, model->nb + i, k->nb_pad + i);
     k->may_glide = 1;
     for (int i = 0; i < k->m_pad; i++) {

@@ -59,25 +59,27 @@ static inline double path_at(const Path *q, double x)
     return q->c[0] + x * (q->c[1] + x * (q->c[2] + x * q->c[3]));
 }
 
-static inline double path_speed(const Path *q, double x)
+/* dp/dx */
+static inline double path_slope(const Path *q, double x)
 {
-    return (q->c[1] + x * (2 * q->c[2] + x * 3 * q->c[3])) / q->h;
+    return q->c[1] + x * (2 * q->c[2] + x * 3 * q->c[3]);
 }
 
-/* The root of a monotone piece with a change of sign: Newton, kept inside the bracket. */
+/* The root of a monotone piece with a change of sign: Newton from the chord, kept inside the bracket. */
 static inline double path_root(const Path *q, double low, double high)
 {
-    const int rising = path_at(q, low) < path_at(q, high);
-    double x = 0.5 * (low + high);
+    const double p_low = path_at(q, low), p_high = path_at(q, high);
+    const int rising = p_low < p_high;
+    double x = low + (high - low) * (p_low / (p_low - p_high));
     for (int i = 0; i < 60; i++) {
         const double p = path_at(q, x);
         if ((p > 0) == rising)
             high = x;
         else
             low = x;
-        const double slope = path_speed(q, x) * q->h, next = x - p / slope;
+        const double next = x - p / path_slope(q, x);
         const double x_new = next > low && next < high ? next : 0.5 * (low + high);
-        if (fabs(x_new - x) < 1e-14)
+        if (fabs(x_new - x) < 1e-9) /* what is left is of its square */
             return x_new;
         x = x_new;
     }
@@ -166,7 +168,7 @@ static inline void touch_step(Touch *t, const Contact *c, double mass, double h,
             if (touching) {
                 touch_add(t, c, mass, &q, from, x, t->v0);
             } else {
-                const double speed = fabs(path_speed(&q, x));
+                const double speed = fabs(path_slope(&q, x) / h);
                 t->closings++;
                 t->floored += speed < c->v0_floor;
                 t->v0 = fmax(speed, c->v0_floor);

@@ -13,6 +13,9 @@
 #endif
 enum { LANES = FAST_LANES };
 
+/* For functions whose constant arguments the compiler is to unroll over. */
+#define INLINE static inline __attribute__((always_inline))
+
 typedef double vec __attribute__((vector_size(8 * FAST_LANES)));
 typedef int64_t mask __attribute__((vector_size(8 * FAST_LANES))); /* all ones where true */
 
@@ -75,8 +78,7 @@ static inline int any(mask m)
 
 /* Y_r = sum_i X_r[i] A[i] for `count` rows i of A, each of `blocks` vectors; r = 0..n_rhs-1. The compiler unrolls over
  * the constant n_rhs and keeps the sums in registers. */
-static inline __attribute__((always_inline)) void rows_times(int n_rhs, const vec *A, int blocks, int count,
-                                                             const double *const X[], vec *const Y[])
+INLINE void rows_times(int n_rhs, const vec *A, int blocks, int count, const double *const X[], vec *const Y[])
 {
     for (int b = 0; b < blocks; b++) {
         vec sum[4] = {{0}}, more[4] = {{0}};
