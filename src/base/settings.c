@@ -78,7 +78,8 @@ static const Option OPTIONS[] = {
 
     {"sim.engine", "-", CHOICE, AT(sim.engine), "fast", 0, 0, ENGINE_WORDS,
      "fast: the one to use; the others are slower and exist to be compared with"},
-    {"sim.accuracy", "-", CHOICE, AT(sim.accuracy), "standard", 0, 0, "coarse|standard|fine", "steps per contact"},
+    {"sim.accuracy", "-", CHOICE, AT(sim.accuracy), "standard", 0, 0, "coarse|standard|fine",
+     "what a run costs and how far it can be trusted (docs/chart.md)"},
     {"sim.duration_s", "s", REAL, AT(sim.duration_s), "0", 0, 1e6, NULL, "stop here; 0: at the end of the motion"},
     {"sim.residual_max", "-", REAL, AT(sim.residual_max), "0.001", 1e-12, 1, NULL,
      "a run whose energy books are open by more than this share of the input is refined, then failed"},

@@ -7,14 +7,16 @@
  *           (w h)^4/384 A, fast ones by their amplitude A around the quasi-static answer.
  * Contact   steps of a fixed share of a Hertz contact's duration. Over a step the force of floor j is
  *           f(x) = F0 (1-x) + F1 x + 6 (mean - (F0+F1)/2) x (1-x), which the modes answer exactly; F1 and the mean come
- *           from the force law along the Hermite cubic of the penetration (touch.h), implicitly: Newton per floor,
- *           Gauss-Seidel over floors, on the n x n responses of w to those forces. Closings and openings inside a step
+ *           from the force law along the Hermite cubic of the penetration (touch.h), implicitly: Newton over
+ *           all touching floors, on the n x n responses of w to those forces. Closings and openings inside a step
  *           are located on the cubic. Order 4 between events, 3.5 across them.
  * Energy    the work of every load on every mode is integrated exactly; what a mode damps is work minus energy. The
  *           residual adds two errors: the work that the modes took from contacts against the books that the force law
  *           kept, over the input; and what the equations of motion, integrated over the run, are missed by,
  *           sqrt(sum d_i^2 / 2 E_in), which would show an error in the linear flow.
- * Maxima    flights: extremum of the Hermite cubic; contacts: parabola through three steps.
+ * Maxima    flights: extremum of the Hermite cubic; contacts: parabola through start, middle and end of each step.
+ * Glide     several intervals at once where bounds of the modes reach no gap and no peak (glide.h).
+ * Core      modes whose static flexibility would hardly soften a contact are left out.
  *
  * Life cycle  fast_create -> fast_run ... -> fast_free. Threads  one FastWork per thread. No allocation in fast_run. */
 #ifndef IMTET_SIM_FAST_FAST_H
