@@ -1,0 +1,730 @@
+/* A run's database: what interrupts a run, what is refused, what stays readable. */
+#include "program.h"
+
+#include <fcntl.h>
+#include <limits.h>
+#include <omp.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/mount.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <time.h>
+
+#include "moga/cover.h"
+#include "moga/hypervolume.h"
+#include "run/lock.h"
+#include "run/export.h"
+#include "run/store.h"
+#include "run/study.h"
+
+static const char TEXTBOOK[] = "[problem]\nkind = dtlz2\nvariables = 6\nobjectives = 3\nnoise = 0.05\n"
+                               "[search]\ninitial = 12\npopulation = 12\nmax_evals = 40\nsurrogate_max = 30\n"
+                               "limits = f1<=1.2\n";
+static const char TOWER[] = "[motion]\nrecord = builtin:kobe-like\nstretch = 1\n[sim]\nduration_s = 6\n"
+                            "[search]\ninitial = 12\npopulation = 8\nmax_evals = 20\nsurrogate_max = 20\n";
+
+/* An answer takes 40 ms. */
+static const char STEADY[] = "[problem]\nkind = external\ncommand = sh tests/worker.sh steady\nvariables = 3\n"
+                             "objectives = 2\n[search]\ninitial = 36\npopulation = 12\nmax_evals = 40\n"
+                             "surrogate_max = 20\nthreads = 2\n";
+
+static char *path_of(const char *name, char path[PATH_MAX])
+{
+    snprintf(path, PATH_MAX, "%s/%s", place.folder, name);
+    return path;
+}
+
+static Settings settings_of(const char *text, const char *out)
+{
+    Settings s;
+    Err err = {0};
+    settings_defaults(&s);
+    CHECK_OK(settings_parse(&s, "here.ini", text, &err), &err);
+    snprintf(s.run.out, sizeof s.run.out, "%s/%s", place.folder, out);
+    if (s.search.threads == 0)
+        s.search.threads = 1;
+    return s;
+}
+
+/* -- interrupted and gone on with -----------------------------------------------------------------------------------
+ */
+
+/* Lets `left` questions pass, then stops. */
+static int stop_after(void *user)
+{
+    int left;
+#pragma omp atomic capture
+    left = --*(int *)user;
+    return left < 0;
+}
+
+/* Sessions of k simulations each (the end of a generation counts too) until nothing is left; their number. */
+static int run_by_pieces(const Settings *s, int k, StudySummary *summary)
+{
+    for (int sessions = 1;; sessions++) {
+        int left = k;
+        Err err = {0};
+        const StudyOptions options = {.stop = stop_after, .user = &left};
+        const Status status = study_run(s, &options, summary, NULL, &err);
+        if (status == STATUS_OK)
+            return sessions;
+        assert_true(sessions < 200);
+        if (status != STATUS_STOPPED)
+            fail_msg("session %d of %d simulations: %s", sessions, k, err.text);
+    }
+}
+
+static char *json_export(const char *folder)
+{
+    char *text = NULL;
+    size_t length;
+    Saved saved;
+    Err err = {0};
+    CHECK_OK(saved_read(&saved, folder, &err), &err);
+    snprintf(saved.settings.run.out, sizeof saved.settings.run.out, "here");
+    FILE *f = open_memstream(&text, &length);
+    CHECK_OK(export_json(f, &saved, &err), &err);
+    fclose(f);
+    saved_free(&saved);
+    return text;
+}
+
+static void assert_same_run(const char *a, const char *b)
+{
+    static const char *const FILES[] = {"evaluations.csv", "front.csv"};
+    char name[2][64], path[2][PATH_MAX];
+    for (int i = 0; i < 2; i++) {
+        snprintf(name[0], sizeof name[0], "%s/%s", a, FILES[i]);
+        snprintf(name[1], sizeof name[1], "%s/%s", b, FILES[i]);
+        char *first = read_in_place(name[0]), *second = read_in_place(name[1]);
+        assert_string_equal(first, second);
+        free(first);
+        free(second);
+    }
+    char *first = json_export(path_of(a, path[0])), *second = json_export(path_of(b, path[1]));
+    assert_string_equal(first, second);
+    free(first);
+    free(second);
+}
+
+/* Stopped after every k-th simulation, for some k. */
+static void check_pieces(const char *text, const char *name, int n_k, const int k[])
+{
+    char whole[64], pieces[64];
+    StudySummary summary, again;
+    snprintf(whole, sizeof whole, "%s-whole", name);
+    Settings s = settings_of(text, whole);
+    assert_int_equal(run_by_pieces(&s, INT_MAX, &summary), 1);
+    assert_int_equal(summary.n_simulated, s.search.max_evals);
+    for (int i = 0; i < n_k; i++) {
+        snprintf(pieces, sizeof pieces, "%s-by-%d", name, k[i]);
+        s = settings_of(text, pieces);
+        assert_true(run_by_pieces(&s, k[i], &again) > 1);
+        assert_int_equal(again.n_simulated, summary.n_simulated);
+        assert_int_equal(again.n_failed, summary.n_failed);
+        assert_int_equal(again.n_front, summary.n_front);
+        assert_same_run(whole, pieces);
+    }
+}
+
+static void test_a_run_stopped_after_every_kth_simulation_is_the_run_that_never_stopped(void **state)
+{
+    (void)state;
+    check_pieces(TEXTBOOK, "textbook", 6, (const int[]){2, 3, 5, 7, 13, 31});
+}
+
+static void test_the_tower_stopped_in_between_is_the_tower_that_was_not(void **state)
+{
+    (void)state;
+    check_pieces(TOWER, "tower", 3, (const int[]){2, 5, 15});
+}
+
+/* Another number of threads, and a search that learns it has more simulations: the same in one piece or in many. */
+static void test_more_simulations_go_on_the_same_whenever_they_are_granted(void **state)
+{
+    (void)state;
+    StudySummary summary;
+    Err err = {0};
+    int left = 17;
+    const StudyOptions forced = {.force = 1}, stopped = {.stop = stop_after, .user = &left};
+    Settings late = settings_of(TEXTBOOK, "late"), early = settings_of(TEXTBOOK, "early");
+    assert_int_equal(run_by_pieces(&late, INT_MAX, &summary), 1);
+    assert_int_equal(study_run(&early, &stopped, &summary, NULL, &err), STATUS_STOPPED);
+    late.search.max_evals = early.search.max_evals = 60;
+    assert_int_equal(study_run(&late, &(StudyOptions){0}, &summary, NULL, &err), STATUS_BAD_DATA);
+    assert_non_null(strstr(err.text, "search.max_evals is 40 there, now 60; --force-settings"));
+    CHECK_OK(study_run(&late, &forced, &summary, NULL, &err), &err);
+    assert_int_equal(summary.n_simulated, 60);
+    early.search.threads = 2;
+    CHECK_OK(study_run(&early, &forced, &summary, NULL, &err), &err);
+    assert_int_equal(summary.n_simulated, 60);
+    char *a = read_in_place("late/evaluations.csv"), *b = read_in_place("early/evaluations.csv");
+    const char *end = a;
+    for (int i = 0; i <= 40; i++)
+        end = strchr(end, '\n') + 1;
+    assert_memory_equal(a, b, (size_t)(end - a)); /* the first 40 */
+    free(a);
+    free(b);
+}
+
+/* -- what is refused ------------------------------------------------------------------------------------------------
+ */
+
+static void refused_with(const Settings *s, int force, const char *said, const char *line)
+{
+    char *lines = NULL;
+    size_t length;
+    Err err = {0};
+    StudySummary summary;
+    const StudyOptions options = {.force = force};
+    FILE *f = open_memstream(&lines, &length);
+    assert_int_equal(study_run(s, &options, &summary, f, &err), STATUS_BAD_DATA);
+    fclose(f);
+    if (!strstr(err.text, said) || !strstr(lines, line))
+        fail_msg("said: %s\nlines: %swanted: %s\n%s", err.text, lines, said, line);
+    free(lines);
+}
+
+static void test_other_settings_are_refused_key_by_key_and_limits_can_be_forced(void **state)
+{
+    (void)state;
+    Settings s = settings_of(TEXTBOOK, "textbook-whole");
+    s.search.seed = 5;
+    s.search.generations = 900;
+    refused_with(&s, 0, "search.seed is 1 there, now 5, and more; choose another --out",
+                 "search.generations: 1000 in the run, now 900 (a limit)\n");
+    refused_with(&s, 1, "search.seed is 1 there", "search.seed: 1 in the run, now 5\n");
+    s.search.seed = 1;
+    refused_with(&s, 0, "--force-settings changes limits", "search.generations");
+    StudySummary summary;
+    Err err = {0};
+    CHECK_OK(study_run(&s, &(StudyOptions){.force = 1}, &summary, NULL, &err), &err);
+    CHECK_OK(study_run(&s, &(StudyOptions){0}, &summary, NULL, &err), &err); /* they are the run's now */
+}
+
+/* The same path, other numbers in it. */
+static void test_a_record_that_has_changed_is_another_setting(void **state)
+{
+    (void)state;
+    StudySummary summary;
+    Settings s = settings_of(TOWER, "record");
+    write_in_place("record.csv", "time_s,accel_m_s2\n0,0\n0.02,1\n0.04,-1\n0.06,0.5\n0.08,0\n");
+    snprintf(s.motion.record, sizeof s.motion.record, "%s/record.csv", place.folder);
+    assert_int_equal(run_by_pieces(&s, INT_MAX, &summary), 1);
+    write_in_place("record.csv", "time_s,accel_m_s2\n0,0\n0.02,1\n0.04,-1\n0.06,0.6\n0.08,0\n");
+    refused_with(&s, 1, "motion.record is content", "motion.record: content ");
+}
+
+/* -- signals and hours ----------------------------------------------------------------------------------------------
+ */
+
+static double now_s(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static void rest(double seconds)
+{
+    nanosleep(&(struct timespec){(time_t)seconds, (long)(1e9 * fmod(seconds, 1))}, NULL);
+}
+
+/* `imtet optimize` in the background, what it says in @/said. */
+static pid_t start(const char *config, const char *out)
+{
+    char paths[3][PATH_MAX];
+    pid_t pid;
+    posix_spawn_file_actions_t quiet;
+    char *words[] = {getenv("IMTET"), "optimize", path_of(config, paths[0]), "--out", path_of(out, paths[1]), NULL};
+    posix_spawn_file_actions_init(&quiet);
+    posix_spawn_file_actions_addopen(&quiet, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+    posix_spawn_file_actions_addopen(&quiet, STDERR_FILENO, path_of("said", paths[2]), O_WRONLY | O_CREAT | O_TRUNC,
+                                     0666);
+    assert_int_equal(posix_spawn(&pid, words[0], &quiet, NULL, words, environ), 0);
+    posix_spawn_file_actions_destroy(&quiet);
+    return pid;
+}
+
+/* Until the run has n evaluations on the disk. */
+static void wait_for(const char *out, size_t n)
+{
+    char folder[PATH_MAX], path[PATH_MAX + 16];
+    const double begun = now_s();
+    for (size_t found = 0; found < n; rest(0.02)) {
+        Saved saved = {0};
+        Err err = {0};
+        if (now_s() > begun + 60)
+            fail_msg("%s: %zu evaluations after a minute, wanted %zu", out, found, n);
+        if (saved_path(path_of(out, folder), path, sizeof path)) {
+            CHECK_OK(saved_read(&saved, folder, &err), &err);
+            found = saved.n;
+            saved_free(&saved);
+        }
+    }
+}
+
+static int wait_end(pid_t pid)
+{
+    int status;
+    assert_int_equal(waitpid(pid, &status, 0), pid);
+    return status;
+}
+
+static void check_signal(int number, const char *out)
+{
+    char resume[128], wanted[192], *said;
+    write_in_place("steady.ini", STEADY);
+    const pid_t pid = start("steady.ini", out);
+    wait_for(out, 4);
+    kill(pid, number);
+    const int status = wait_end(pid);
+    assert_true(WIFEXITED(status));
+    assert_int_equal(WEXITSTATUS(status), 75);
+    said = read_in_place("said");
+    snprintf(resume, sizeof resume, "optimize @/%s", out);
+    snprintf(wanted, sizeof wanted, "%s optimize %s/%s\n", getenv("IMTET"), place.folder, out);
+    if (!strstr(said, wanted) || !strstr(said, "stopped on request after"))
+        fail_msg("said: %s\nwanted: %s", said, wanted);
+    free(said);
+    free(output_of(resume));
+}
+
+static void test_a_signal_stops_within_a_batch_and_the_command_that_is_printed_goes_on(void **state)
+{
+    (void)state;
+    check_signal(SIGINT, "interrupted");
+    check_signal(SIGTERM, "terminated");
+    assert_same_run("interrupted", "terminated");
+}
+
+static void test_a_second_signal_ends_at_once(void **state)
+{
+    (void)state;
+    write_in_place("deaf.ini", "[problem]\nkind = external\ncommand = sh tests/worker.sh deaf\nvariables = 3\n"
+                               "objectives = 2\n[search]\nmax_evals = 8\nthreads = 1\n");
+    const double begun = now_s();
+    const pid_t pid = start("deaf.ini", "deaf");
+    char path[PATH_MAX];
+    while (access(path_of("deaf/run.sqlite", path), F_OK) != 0 && now_s() < begun + 60)
+        rest(0.02);
+    rest(0.2);
+    kill(pid, SIGTERM);
+    rest(0.2);
+    assert_int_equal(waitpid(pid, NULL, WNOHANG), 0); /* it still waits for the answer that is under way */
+    kill(pid, SIGTERM);
+    const int status = wait_end(pid);
+    assert_true(WIFSIGNALED(status) && WTERMSIG(status) == SIGTERM);
+    assert_true(now_s() < begun + 30);
+}
+
+/* 0.2 s of a batch that takes 0.7 s. */
+static void test_hours_are_obeyed_within_a_batch(void **state)
+{
+    (void)state;
+    StudySummary summary;
+    Err err = {0};
+    Settings s = settings_of(STEADY, "hours");
+    s.search.max_hours = 0.2 / 3600;
+    assert_int_equal(study_run(&s, &(StudyOptions){0}, &summary, NULL, &err), STATUS_STOPPED);
+    assert_int_equal(summary.stopped, STOP_TIME);
+    assert_true(summary.n_simulated > 0 && summary.n_simulated < 30);
+    s.search.max_hours = 0;
+    CHECK_OK(study_run(&s, &(StudyOptions){.force = 1}, &summary, NULL, &err), &err);
+    assert_int_equal(summary.n_simulated, 40);
+    char *a = read_in_place("hours/front.csv"), *b = read_in_place("interrupted/front.csv");
+    assert_string_equal(a, b);
+    free(a);
+    free(b);
+}
+
+/* -- other processes, full disks, damage ----------------------------------------------------------------------------
+ */
+
+static void test_a_second_process_is_refused_with_the_first_ones_number(void **state)
+{
+    (void)state;
+    char wanted[64];
+    LockHolder holder;
+    char path[PATH_MAX];
+    const pid_t pid = start("deaf.ini", "locked");
+    while (!lock_is_held(path_of("locked/lock", path), &holder) || holder.pid != pid)
+        rest(0.02);
+    while (access(path_of("locked/run.sqlite", path), F_OK) != 0)
+        rest(0.02);
+    snprintf(wanted, sizeof wanted, "is in use by process %ld on ", (long)pid);
+    expect(74, wanted, "optimize @/deaf.ini --out @/locked");
+    char *said = output_of("status @/locked");
+    assert_non_null(strstr(said, "running (process"));
+    free(said);
+    kill(pid, SIGKILL);
+    wait_end(pid);
+    assert_false(lock_is_held(path_of("locked/lock", path), &holder));
+    said = output_of("status @/locked");
+    assert_non_null(strstr(said, "broken off"));
+    free(said);
+}
+
+/* All of `before` is in the run as it is now. */
+static void assert_nothing_lost(const char *folder, const Saved *before)
+{
+    Saved after;
+    Err err = {0};
+    char path[PATH_MAX];
+    CHECK_OK(saved_read(&after, path_of(folder, path), &err), &err);
+    assert_true(after.n >= before->n);
+    for (size_t i = 0; i < before->n; i++) {
+        const size_t j = saved_find(&after, before->row[i].id), n = before->schema.n_var;
+        assert_true(j < after.n);
+        assert_memory_equal(before->X + i * n, after.X + j * n, n * sizeof(double));
+    }
+    saved_free(&after);
+}
+
+/* No file may grow beyond some blocks: as a full disk, but without one. */
+static void test_a_run_that_can_write_no_more_says_so_and_goes_on_later(void **state)
+{
+    (void)state;
+    Said s;
+    Saved before;
+    Err err = {0};
+    char command[512], path[PATH_MAX];
+    write_in_place("textbook.ini", TEXTBOOK);
+    free(output_of("optimize @/textbook.ini --out @/unlimited"));
+    int refused = 0;
+    for (int blocks = 8; blocks < 400; blocks += 24) {
+        snprintf(command, sizeof command, "rm -rf '%s/small'", place.folder);
+        assert_int_equal(system(command), 0);
+        snprintf(place.under, sizeof place.under, "ulimit -f %d;", blocks);
+        run(&s, "optimize @/textbook.ini --out @/small");
+        place.under[0] = 0;
+        if (s.code == 0) {
+            forget(&s);
+            break;
+        }
+        refused++;
+        if (s.code != 74 || !strstr(s.err, "/small/"))
+            fail_msg("%d blocks: exit %d: %s", blocks, s.code, s.err);
+        forget(&s);
+        memset(&before, 0, sizeof before);
+        if (access(path_of("small/run.sqlite", path), F_OK) == 0)
+            CHECK_OK(saved_read(&before, path_of("small", path), &err), &err);
+        free(output_of("optimize @/textbook.ini --out @/small"));
+        assert_nothing_lost("small", &before);
+        saved_free(&before);
+        assert_same_run("unlimited", "small");
+    }
+    assert_true(refused >= 2);
+}
+
+/* A disk of 300 kB, where this user may mount one. */
+static void test_a_full_disk_is_named_and_what_was_stored_stays_readable(void **state)
+{
+    (void)state;
+    char disk[PATH_MAX], run_of_disk[PATH_MAX];
+    Said s;
+    Saved saved;
+    Err err = {0};
+    assert_int_equal(mkdir(path_of("disk", disk), 0777), 0);
+    if (mount("none", disk, "tmpfs", 0, "size=300k") != 0)
+        skip();
+    run(&s, "optimize @/textbook.ini --max-evals 400 --out @/disk/run");
+    const int right = s.code == 74 && strstr(s.err, "/disk/run/") &&
+                      (strstr(s.err, "the disk is full") || strstr(s.err, "No space left"));
+    const Status readable = saved_read(&saved, path_of("disk/run", run_of_disk), &err);
+    const size_t n = saved.n;
+    saved_free(&saved);
+    umount2(disk, MNT_DETACH);
+    if (!right)
+        print_error("exit %d: %s", s.code, s.err);
+    forget(&s);
+    CHECK_OK(readable, &err);
+    assert_true(right && n > 12);
+}
+
+static void test_a_folder_that_is_read_only_is_named(void **state)
+{
+    (void)state;
+    char folder[PATH_MAX], run_there[PATH_MAX];
+    Saved saved;
+    Err err = {0};
+    assert_int_equal(mkdir(path_of("fixed", folder), 0777), 0);
+    if (mount(folder, folder, NULL, MS_BIND, NULL) != 0)
+        skip();
+    free(output_of("optimize @/textbook.ini --max-evals 20 --out @/fixed/run"));
+    assert_int_equal(mount(folder, folder, NULL, MS_BIND | MS_REMOUNT | MS_RDONLY, NULL), 0);
+    Said new_run, old_run;
+    run(&new_run, "optimize @/textbook.ini --out @/fixed/other");
+    run(&old_run, "optimize @/fixed/run --max-evals 30 --force-settings");
+    const Status readable = saved_read(&saved, path_of("fixed/run", run_there), &err);
+    const size_t n = saved.n;
+    saved_free(&saved);
+    umount2(folder, MNT_DETACH);
+    CHECK_OK(readable, &err);
+    assert_int_equal(n, 20);
+    assert_true(new_run.code == 74 && strstr(new_run.err, "/fixed/other: cannot be made a folder: Read-only"));
+    assert_true(old_run.code == 74 && strstr(old_run.err, "/fixed/run/lock: cannot be written: Read-only"));
+    forget(&new_run);
+    forget(&old_run);
+}
+
+static void test_a_database_that_somebody_keeps_locked_is_busy(void **state)
+{
+    (void)state;
+    sqlite3 *other;
+    char path[PATH_MAX];
+    free(output_of("optimize @/textbook.ini --max-evals 20 --out @/busy"));
+    assert_int_equal(sqlite3_open(path_of("busy/run.sqlite", path), &other), SQLITE_OK);
+    assert_int_equal(sqlite3_exec(other, "BEGIN IMMEDIATE", NULL, NULL, NULL), SQLITE_OK);
+    expect(74, "busy/run.sqlite: is busy", "optimize @/busy --max-evals 30 --force-settings");
+    free(output_of("export @/busy --csv @/while-busy.csv"));
+    sqlite3_close(other);
+    free(output_of("optimize @/busy --max-evals 30 --force-settings"));
+}
+
+static void overwrite(const char *name, long offset, const char *bytes, size_t n)
+{
+    char path[PATH_MAX];
+    FILE *f = fopen(path_of(name, path), "r+b");
+    assert_non_null(f);
+    assert_int_equal(fseek(f, offset, SEEK_SET), 0);
+    assert_int_equal(fwrite(bytes, 1, n, f), n);
+    assert_int_equal(fclose(f), 0);
+}
+
+static void test_damage_is_found_on_opening_whatever_was_hit(void **state)
+{
+    (void)state;
+    static const char JUNK[4096] = "junk";
+    char command[512], path[PATH_MAX];
+    struct stat size;
+    free(output_of("optimize @/textbook.ini --max-evals 30 --out @/sound"));
+    assert_int_equal(stat(path_of("sound/run.sqlite", path), &size), 0);
+    for (long page = 1; page < size.st_size / 4096; page += 3) {
+        snprintf(command, sizeof command, "rm -rf '%s/hurt'; cp -r '%s/sound' '%s/hurt'", place.folder, place.folder,
+                 place.folder);
+        assert_int_equal(system(command), 0);
+        overwrite("hurt/run.sqlite", 4096 * page, JUNK, sizeof JUNK);
+        expect(74, "hurt/run.sqlite: ", "status @/hurt");
+        expect(74, "hurt/run.sqlite: ", "optimize @/hurt");
+        expect(74, "hurt/run.sqlite: ", "export @/hurt --csv @/none.csv");
+    }
+    overwrite("hurt/run.sqlite", 0, "this is a letter", 16);
+    expect(74, "is no database of a run", "status @/hurt");
+    overwrite("sound/run.sqlite", 60, "\0\0\0\x63", 4); /* user_version */
+    expect(74, "has format 99", "status @/sound");
+    char *list = output_of("list @");
+    assert_non_null(strstr(list, "unreadable"));
+    free(list);
+}
+
+/* -- readers, designs from outside, failures ------------------------------------------------------------------------
+ */
+
+static void test_readers_need_the_database_alone_and_the_files_come_back(void **state)
+{
+    (void)state;
+    char command[512];
+    free(output_of("optimize @/textbook.ini --max-evals 30 --out @/alone"));
+    char *front = read_in_place("alone/front.csv"), *all = read_in_place("alone/evaluations.csv");
+    char *settings = read_in_place("alone/settings.ini"), *provenance = read_in_place("alone/provenance.json");
+    snprintf(command, sizeof command, "cd '%s/alone' && rm *.csv *.ini *.json", place.folder);
+    assert_int_equal(system(command), 0);
+    char *exported = output_of("export @/alone --csv -"), *exported_all = output_of("export @/alone --all --csv -");
+    assert_string_equal(exported, front);
+    assert_string_equal(exported_all, all);
+    free(output_of("choose @/alone --max f1=1"));
+    free(output_of("polish @/alone --design knee --evals 10"));
+    free(output_of("optimize @/alone"));
+    char *again[] = {read_in_place("alone/front.csv"), read_in_place("alone/evaluations.csv"),
+                     read_in_place("alone/settings.ini"), read_in_place("alone/provenance.json")};
+    const char *const WANTED[] = {front, all, settings, provenance};
+    for (int i = 0; i < 4; i++) {
+        assert_string_equal(again[i], WANTED[i]);
+        free(again[i]);
+    }
+    free(front);
+    free(all);
+    free(settings);
+    free(provenance);
+    free(exported);
+    free(exported_all);
+}
+
+/* One that beats everything, one that is beaten, one that failed; then the run goes on as if they were not there. */
+static void test_polished_designs_join_the_front_but_not_the_search(void **state)
+{
+    (void)state;
+    char path[PATH_MAX], id[16];
+    long first;
+    Saved saved;
+    Err err = {0};
+    StudySummary summary;
+    int left = 20;
+    Settings s = settings_of(TEXTBOOK, "polished");
+    assert_int_equal(study_run(&s, &(StudyOptions){.stop = stop_after, .user = &left}, &summary, NULL, &err),
+                     STATUS_STOPPED);
+    const double x[6] = {0.5, 0.5, 0.5, 0.5, 0.5, 0.5}, best[3] = {-9, -9, -9}, worse[3] = {5, 5, 5};
+    const double spread[3] = {0.001, NAN, 0.002};
+    const StoredDesign designs[] = {
+        {.x = x, .f = best, .spread = spread, .verdict = {.outcome = "ok", .seconds = 0.5}},
+        {.x = x, .f = worse, .verdict = {.outcome = "ok"}},
+        {.x = x, .verdict = {.outcome = "dead", .reason = "it died"}},
+    };
+    CHECK_OK(store_add_evaluations(path_of("polished", path), 3, designs, &first, &err), &err);
+    assert_int_equal(first, POLISHED_FIRST);
+    char *front = output_of("export @/polished --csv -");
+    snprintf(id, sizeof id, "\n%ld,", first);
+    assert_non_null(strstr(front, id));
+    assert_ptr_equal(strchr(strstr(front, id) + 1, '\n')[1], 0); /* it is the only one left */
+    CHECK_OK(saved_read(&saved, path, &err), &err);
+    const SavedRow *row = &saved.row[saved.n - 3];
+    assert_true(row->kind == KIND_POLISHED && row->on_front && !row[1].on_front && !row[2].on_front && !row[2].ok);
+    assert_true(saved.spread[(saved.n - 3) * 3] == 0.001 && isnan(saved.spread[(saved.n - 3) * 3 + 1]));
+    assert_true(isnan(saved.spread[0]));
+    saved_free(&saved);
+
+    CHECK_OK(study_run(&s, &(StudyOptions){0}, &summary, NULL, &err), &err);
+    char *all = read_in_place("polished/evaluations.csv"), *without = read_in_place("textbook-whole/evaluations.csv");
+    assert_memory_equal(all, without, strlen(without));
+    assert_non_null(strstr(all, ",polished,dead,it died,0.5,"));
+    free(all);
+    free(without);
+    char *end = output_of("export @/polished --csv -");
+    assert_int_equal(strtol(strchr(end, '\n'), NULL, 10), POLISHED_FIRST);
+    assert_ptr_equal(strchr(strstr(end, id) + 1, '\n')[1], 0);
+    free(end);
+    all = read_in_place("polished/front.csv");
+    assert_string_equal(all, front);
+    free(all);
+    free(front);
+}
+
+static void test_one_failure_in_ten_is_survived_and_never_on_the_front(void **state)
+{
+    (void)state;
+    write_in_place("tenth.ini", "[problem]\nkind = external\ncommand = sh tests/worker.sh tenth\nvariables = 3\n"
+                                "objectives = 2\n[search]\ninitial = 40\npopulation = 12\nmax_evals = 100\n"
+                                "surrogate_max = 40\nthreads = 2\n");
+    free(output_of("optimize @/tenth.ini --out @/tenth"));
+    Saved saved;
+    Err err = {0};
+    char path[PATH_MAX];
+    CHECK_OK(saved_read(&saved, path_of("tenth", path), &err), &err);
+    assert_int_equal(saved.n, 100);
+    assert_int_equal(saved.n_failed, 10);
+    assert_true(saved.n_front > 0);
+    for (size_t i = 0; i < saved.n; i++) {
+        assert_int_equal(saved.row[i].ok, saved.row[i].id % 10 != 0);
+        assert_true(saved.row[i].ok || (!saved.row[i].on_front && saved.row[i].entered == NEVER));
+    }
+    saved_free(&saved);
+    json_t *o = json_of("status @/tenth --json");
+    assert_int_equal(number(json_object_get(json_object_get(o, "failures"), "error"), "count"), 10);
+    assert_string_equal(json_string_value(json_object_get(o, "state")), "finished");
+    assert_int_equal(number(o, "failed"), 10);
+    const json_t *generations = json_object_get(o, "generations");
+    double before = 0;
+    for (size_t i = 0; i < json_array_size(generations); i++) {
+        const double volume = number(json_array_get(generations, i), "hypervolume");
+        assert_true(volume >= before && volume <= 1);
+        before = volume;
+    }
+    json_decref(o);
+    o = json_of("list @ --json");
+    int found = 0;
+    for (size_t i = 0; i < json_array_size(o); i++)
+        found += strcmp(json_string_value(json_object_get(json_array_get(o, i), "run")), path) == 0;
+    assert_int_equal(found, 1);
+    json_decref(o);
+}
+
+/* The front generation by generation, from `entered` and `left`, against dominance among all that was simulated then.
+ */
+static void test_the_front_of_every_generation_can_be_told(void **state)
+{
+    (void)state;
+    Saved s;
+    Err err = {0};
+    char path[PATH_MAX];
+    CHECK_OK(saved_read(&s, path_of("tower-whole", path), &err), &err);
+    const size_t m = s.schema.n_obj;
+    for (size_t g = 0; g < s.n_generations; g++) {
+        long on_front = 0;
+        for (size_t i = 0; i < s.n; i++) {
+            const SavedRow *r = &s.row[i];
+            int beaten = !r->ok || r->generation > (long)g;
+            for (size_t j = 0; j < s.n && !beaten; j++) {
+                int worse = 0, better = 0;
+                for (size_t k = 0; k < m && s.row[j].ok; k++) {
+                    const double sense = schema_objective(&s.schema, k)->sense;
+                    const double d = sense * (s.F[j * m + k] - s.F[i * m + k]);
+                    worse = worse || d > 0;
+                    better = better || d < 0;
+                }
+                beaten = s.row[j].generation <= (long)g && better && !worse;
+            }
+            const int told = r->entered != NEVER && r->entered <= (long)g && (r->left == NEVER || r->left > (long)g);
+            assert_int_equal(told, !beaten);
+            on_front += told;
+        }
+        assert_int_equal(on_front, s.generation[g].front);
+    }
+    saved_free(&s);
+}
+
+/* Against the exact volume of some boxes. */
+static void test_the_share_that_is_covered_is_the_hypervolume_of_the_box(void **state)
+{
+    (void)state;
+    const double lower[3] = {0, -1, 2}, reference[3] = {1, 1, 6};
+    const double F[] = {0.2, 0, 3, 0.5, -0.5, 2.5, 0.1, 0.9, 5, 2, 2, 7};
+    Cover *c;
+    Hypervolume exact;
+    Err err = {0};
+    CHECK_OK(cover_create(&c, 3, lower, reference, 1, &err), &err);
+    double before = 0;
+    for (size_t i = 0; i < 4; i++) {
+        cover_add(c, F + 3 * i);
+        assert_true(cover_share(c) >= before);
+        before = cover_share(c);
+        CHECK_OK(hypervolume_exact(i + 1, 3, F, reference, &exact, &err), &err);
+        const double share = exact.volume / 8, error = sqrt(share * (1 - share) / COVER_SAMPLES);
+        assert_true(fabs(cover_share(c) - share) < 4 * error);
+    }
+    cover_free(c);
+}
+
+static int prepare(void **state)
+{
+    setenv("OMP_WAIT_POLICY", "passive", 0);
+    omp_set_num_threads(1);
+    return make_place(state);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_a_run_stopped_after_every_kth_simulation_is_the_run_that_never_stopped),
+        cmocka_unit_test(test_the_tower_stopped_in_between_is_the_tower_that_was_not),
+        cmocka_unit_test(test_more_simulations_go_on_the_same_whenever_they_are_granted),
+        cmocka_unit_test(test_the_front_of_every_generation_can_be_told),
+        cmocka_unit_test(test_polished_designs_join_the_front_but_not_the_search),
+        cmocka_unit_test(test_other_settings_are_refused_key_by_key_and_limits_can_be_forced),
+        cmocka_unit_test(test_a_record_that_has_changed_is_another_setting),
+        cmocka_unit_test(test_a_signal_stops_within_a_batch_and_the_command_that_is_printed_goes_on),
+        cmocka_unit_test(test_a_second_signal_ends_at_once),
+        cmocka_unit_test(test_hours_are_obeyed_within_a_batch),
+        cmocka_unit_test(test_a_second_process_is_refused_with_the_first_ones_number),
+        cmocka_unit_test(test_a_run_that_can_write_no_more_says_so_and_goes_on_later),
+        cmocka_unit_test(test_a_full_disk_is_named_and_what_was_stored_stays_readable),
+        cmocka_unit_test(test_a_folder_that_is_read_only_is_named),
+        cmocka_unit_test(test_a_database_that_somebody_keeps_locked_is_busy),
+        cmocka_unit_test(test_damage_is_found_on_opening_whatever_was_hit),
+        cmocka_unit_test(test_readers_need_the_database_alone_and_the_files_come_back),
+        cmocka_unit_test(test_one_failure_in_ten_is_survived_and_never_on_the_front),
+        cmocka_unit_test(test_the_share_that_is_covered_is_the_hypervolume_of_the_box),
+    };
+    return cmocka_run_group_tests_name("store", tests, prepare, clear_place);
+}
