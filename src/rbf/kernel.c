@@ -4,7 +4,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#if defined __x86_64__ && !defined __SANITIZE_THREAD__
+#if defined __x86_64__ && !defined __clang__ && !defined __SANITIZE_THREAD__
 #define WIDE __attribute__((target_clones("arch=x86-64-v3", "default")))
 #else
 #define WIDE
