@@ -87,16 +87,21 @@ laws: $(STABILITY)
 
 # Every reader of foreign bytes under libFuzzer for FUZZ_S seconds in all; what it finds goes to build/fuzz.
 FUZZ_S       ?= 600
-FUZZ_TARGETS := settings motion table worker
+FUZZ_OBJ     := $(patsubst %,$(BUILD)/tests/fuzz/%.o,targets worker run)
+FUZZ_TARGETS := settings motion table worker database cells
 fuzz:
 	@$(MAKE) --no-print-directory MODE=fuzz CC=clang WARNINGS=-w fuzz-here
 	@scripts/fuzz build/fuzz $(FUZZ_S) $(FUZZ_TARGETS)
 
 fuzz-here: $(FUZZ_TARGETS:%=$(BUILD)/tests/fuzz/fuzz_%)
 
-$(BUILD)/tests/fuzz/fuzz_%: tests/fuzz/libfuzzer.c $(BUILD)/tests/fuzz/targets.o $(BUILD)/tests/fuzz/worker.o $(LIB)
+$(BUILD)/tests/fuzz/target_%.o: tests/fuzz/libfuzzer.c
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(CPPFLAGS) -DFUZZ_TARGET=fuzz_$* $(CFLAGS) -c $< -o $@
+
+$(BUILD)/tests/fuzz/fuzz_%: $(BUILD)/tests/fuzz/target_%.o $(FUZZ_OBJ) $(LIB)
 	@echo '  LD  $@'
-	$(Q)$(CC) $(CPPFLAGS) -DFUZZ_TARGET=fuzz_$* $(CFLAGS) $(LDFLAGS) -fsanitize=fuzzer -o $@ $^ $(LDLIBS)
+	$(Q)$(CC) $(LDFLAGS) -fsanitize=fuzzer -o $@ $^ $(LDLIBS)
 
 # Branches that the tests take, by folder, and for readers, settings and store by file; COVER chooses tests.
 COVER ?= $(notdir $(TEST_SRC:%.c=%))
@@ -124,7 +129,7 @@ $(BUILD)/tests/fault/nomem.so: tests/fault/nomem.c
 	@mkdir -p $(@D)
 	$(Q)$(CC) -D_GNU_SOURCE -std=c17 -O1 $(WARNINGS) -shared -fPIC -o $@ $<
 
-$(BUILD)/tests/test_fuzz_corpus: $(BUILD)/tests/fuzz/targets.o $(BUILD)/tests/fuzz/worker.o
+$(BUILD)/tests/test_fuzz_corpus: $(FUZZ_OBJ)
 
 $(PROGRAM): $(BUILD)/src/main.o $(LIB)
 	@echo '  LD  $@'

@@ -173,6 +173,19 @@ static Status check(Database *d, DatabaseMode mode, Err *err)
     return strcmp(word, "ok") == 0 ? STATUS_OK : explain(d->path, SQLITE_CORRUPT, word, err);
 }
 
+/* A damaged file may claim a row of a gigabyte: none is longer than the file and its journal. The writer needs no
+ * bound, it adds rows of its own. */
+static void bound_rows(Database *d)
+{
+    enum { SLACK = 1 << 20 };
+    char journal[PATH_MAX + 8];
+    struct stat s;
+    long long size = stat(d->path, &s) == 0 ? s.st_size : 0;
+    snprintf(journal, sizeof journal, "%s-wal", d->path);
+    size += stat(journal, &s) == 0 ? s.st_size : 0;
+    sqlite3_limit(d->db, SQLITE_LIMIT_LENGTH, size < INT_MAX / 2 - SLACK ? (int)(2 * size) + SLACK : INT_MAX);
+}
+
 static Status prepare(Database *d, DatabaseMode mode, Err *err)
 {
     if (mode == DATABASE_WRITE)
@@ -201,12 +214,15 @@ Status database_open(Database **out, const char *path, DatabaseMode mode, Err *e
     if (access(path, F_OK) != 0)
         return fail(err, STATUS_MISSING, "%s: is not there", path);
     TRY(open_file(out, path, path, mode == DATABASE_WRITE ? SQLITE_OPEN_READWRITE : SQLITE_OPEN_READONLY, err));
+    if (mode == DATABASE_READ)
+        bound_rows(*out);
     Status status = prepare(*out, mode, err);
     if (status != STATUS_OK && mode == DATABASE_READ && access(path, R_OK) == 0) {
         const int code = sqlite3_errcode((*out)->db) & 0xff;
         if (code == SQLITE_CANTOPEN || code == SQLITE_READONLY) {
             database_close(*out, NULL);
             TRY(open_immutable(out, path, err));
+            bound_rows(*out);
             status = check(*out, mode, err);
         }
     }

@@ -79,7 +79,7 @@ static Status widen(Loading *l, Err *err)
     Saved *h = l->h;
     if (h->n < l->n_max)
         return STATUS_OK;
-    const size_t n = l->n_max > 0 ? 2 * l->n_max : 256;
+    const size_t n = l->n_max > 0 ? 2 * l->n_max : 16;
     void *row = realloc(h->row, n * sizeof *h->row);
     h->row = row ? row : h->row;
     void *X = realloc(h->X, n * h->schema.n_var * sizeof *h->X);
@@ -126,7 +126,7 @@ static Status take_evaluation(sqlite3_stmt *row, void *user, Err *err)
     r->ok = strcmp(r->verdict.outcome, "ok") == 0;
     for (size_t k = 0; k < schema->n_obj; k++)
         r->ok = r->ok && isfinite(f[k]);
-    r->on_front = r->entered != NEVER && r->left == NEVER;
+    r->on_front = r->ok && r->entered != NEVER && r->left == NEVER;
     h->n_failed += !r->ok;
     h->n++;
     return STATUS_OK;
@@ -253,6 +253,8 @@ static Status take_head(sqlite3_stmt *row, void *user, Err *err)
     settings_defaults(&h->settings);
     TRY(settings_parse(&h->settings, database_path(l->d), text_at(row, 0), err));
     h->provenance = strdup(text_at(row, 1));
+    if (!h->provenance)
+        return fail(err, STATUS_NO_MEMORY, "%s: no memory for its provenance", database_path(l->d));
     h->planned_evals = (long)sqlite3_column_int64(row, 2);
     const long n_var = (long)sqlite3_column_int64(row, 3);
     const int is_tower = h->settings.problem.kind == PROBLEM_TOWER;
@@ -265,7 +267,7 @@ static Status load(Loading *l, Err *err)
 {
     Saved *h = l->h;
     Database *d = l->d;
-    TRY(database_each(d, "SELECT settings, provenance, planned_evals, n_var FROM run", take_head, l, err));
+    TRY(database_each(d, "SELECT settings, provenance, planned_evals, n_var FROM run LIMIT 1", take_head, l, err));
     if (!h->schema.column)
         return fail(err, STATUS_IO, "%s: is damaged: it has no settings", database_path(d));
     TRY(saved_load_rows(h, d, 0, LONG_MAX, err));

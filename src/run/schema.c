@@ -70,7 +70,7 @@ static Status take_names(const char *key, const char *list, const char *letter, 
             return fail(err, STATUS_BAD_DATA, "%s: name %zu is empty, too long or holds a quote", key, i + 1);
         else
             cell_text(name, TABLE_NAME_MAX, item);
-        for (size_t j = 0; j < i; j++)
+        for (size_t j = 0; given && j < i; j++)
             if (strcmp(columns[j].name, name) == 0)
                 return fail(err, STATUS_BAD_DATA, "%s: %s stands there twice", key, name);
     }

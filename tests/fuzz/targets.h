@@ -14,10 +14,15 @@ void fuzz_motion(const uint8_t *data, size_t size);   /* a ground motion of any 
 void fuzz_table(const uint8_t *data, size_t size);    /* CSV: numbers with and without a header, and designs */
 void fuzz_worker(const uint8_t *data, size_t size);   /* first line: a command; the rest: what a worker answers */
 
+void fuzz_database(const uint8_t *data, size_t size); /* the database of a run */
+void fuzz_cells(const uint8_t *data, size_t size);    /* what its cells hold, parted by bytes of 30 */
+
 #define FUZZ_LIST(X)                                                                                                   \
     X(settings)                                                                                                        \
     X(motion)                                                                                                          \
     X(table)                                                                                                           \
-    X(worker)
+    X(worker)                                                                                                          \
+    X(database)                                                                                                        \
+    X(cells)
 
 #endif
