@@ -77,27 +77,35 @@ static json_t *machine(int threads)
                      "threads", threads, "started", started);
 }
 
-Status provenance_inputs(Inputs *out, const World *w, Err *err)
+Status provenance_inputs(Inputs *out, const Subject *subject, Err *err)
 {
     Building b;
     *out = (Inputs){0};
-    if (!w)
+    if (!subject_world(subject))
         return STATUS_OK;
-    TRY(building_load(&b, w->settings.building.model, err));
-    *out = (Inputs){w->motion.file_hash, b.hash};
+    TRY(building_load(&b, subject_world(subject)->settings.building.model, err));
+    *out = (Inputs){.record = subject_world(subject)->motion.file_hash, .matrices = b.hash};
     building_free(&b);
+    for (size_t i = 0; i < subject_n_records(subject); i++) /* in their order: FNV-1a of hashes, a word at a time */
+        out->records = (out->records ^ subject_record(subject, i)->motion.file_hash) * UINT64_C(0x100000001b3);
     return STATUS_OK;
+}
+
+static char *hex(uint64_t hash, char text[24])
+{
+    snprintf(text, 24, "%016" PRIx64, hash);
+    return text;
 }
 
 static json_t *inputs_of_tower(const World *w, const Inputs *hashes)
 {
-    char record[24], matrices[24];
-    snprintf(record, sizeof record, "%016" PRIx64, hashes->record);
-    snprintf(matrices, sizeof matrices, "%016" PRIx64, hashes->matrices);
-    return json_pack("{s:s, s:s, s:s, s:s, s:I, s:f, s:s, s:i, s:s}", "record", w->settings.motion.record,
-                     "record_format", w->motion.format, "record_channel", w->motion.channel, "record_fnv1a", record,
-                     "samples", (json_int_t)w->motion.n, "step_s", w->motion.dt_s, "building",
-                     w->settings.building.model, "floors", scene_n_floors(w->scene), "matrices_fnv1a", matrices);
+    char record[24], records[24], matrices[24];
+    return json_pack("{s:s, s:s, s:s, s:s, s:s, s:s, s:I, s:f, s:s, s:i, s:s}", "record", w->settings.motion.record,
+                     "record_format", w->motion.format, "record_channel", w->motion.channel, "record_fnv1a",
+                     hex(hashes->record, record), "records", w->settings.motion.records, "records_fnv1a",
+                     hex(hashes->records, records), "samples", (json_int_t)w->motion.n, "step_s", w->motion.dt_s,
+                     "building", w->settings.building.model, "floors", scene_n_floors(w->scene), "matrices_fnv1a",
+                     hex(hashes->matrices, matrices));
 }
 
 static json_t *inputs(const Settings *s, const World *w, const Inputs *hashes)
@@ -106,15 +114,15 @@ static json_t *inputs(const Settings *s, const World *w, const Inputs *hashes)
              : json_pack("{s:s}", "command", s->problem.kind == PROBLEM_EXTERNAL ? s->problem.command : "built in");
 }
 
-Status provenance_text(char **out, const Settings *s, const World *w, int threads, Err *err)
+Status provenance_text(char **out, const Settings *s, const Subject *subject, Err *err)
 {
     Inputs hashes;
     *out = NULL;
-    TRY(provenance_inputs(&hashes, w, err));
+    TRY(provenance_inputs(&hashes, subject, err));
     json_t *all = program_description();
     if (json_object_set_new(all, "seed", json_integer(s->search.seed)) == 0 &&
-        json_object_set_new(all, "machine", machine(threads)) == 0 &&
-        json_object_set_new(all, "inputs", inputs(s, w, &hashes)) == 0)
+        json_object_set_new(all, "machine", machine(subject_threads(subject))) == 0 &&
+        json_object_set_new(all, "inputs", inputs(s, subject_world(subject), &hashes)) == 0)
         *out = json_dumps(all, JSON_INDENT(2) | JSON_REAL_PRECISION(17));
     json_decref(all);
     return *out ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for the provenance");

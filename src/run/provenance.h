@@ -5,7 +5,7 @@
 
 #include <jansson.h>
 
-#include "run/world.h"
+#include "run/subject.h"
 
 const char *program_version(void);  /* 0.1.0 */
 const char *program_revision(void); /* as git describes it, or unknown */
@@ -13,13 +13,14 @@ const char *program_revision(void); /* as git describes it, or unknown */
 /* Version, revision, compiler and its flags, libraries. NULL: out of memory. */
 json_t *program_description(void);
 
-/* As JSON, to be freed by the caller; w NULL: no tower */
-Status provenance_text(char **out, const Settings *s, const World *w, int threads, Err *err);
+/* As JSON, to be freed by the caller. */
+Status provenance_text(char **out, const Settings *s, const Subject *subject, Err *err);
 
-/* What a run depends on beside its settings: hashes of record and matrices, 0 where there are none. */
+/* What a run depends on beside its settings: hashes of the first record, of all records together, and of the matrices;
+ * 0 where there are none. */
 typedef struct {
-    uint64_t record, matrices;
+    uint64_t record, records, matrices;
 } Inputs;
-Status provenance_inputs(Inputs *out, const World *w, Err *err);
+Status provenance_inputs(Inputs *out, const Subject *subject, Err *err);
 
 #endif

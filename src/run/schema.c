@@ -102,8 +102,7 @@ static Status fill_from_settings(Schema *schema, const Settings *s, Err *err)
 
 Status schema_of(Schema *schema, const Settings *s, int n_floors, Err *err)
 {
-    if (s->problem.kind == PROBLEM_TOWER)
-        {
+    if (s->problem.kind == PROBLEM_TOWER) {
         TRY(schema_of_tower(schema, n_floors, err));
         schema->has_spread = s->sim.ensemble > 1;
         return STATUS_OK;

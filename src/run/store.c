@@ -464,7 +464,8 @@ static Status insert(Database *db, const Schema *schema, long id, long generatio
 
 Status store_simulation(RunStore *store, const Simulation *s, size_t generation, Err *err)
 {
-    const StoredDesign d = {.x = s->x, .f = s->f, .spread = s->spread, .violation = s->violation, .verdict = *s->verdict};
+    const StoredDesign d = {
+        .x = s->x, .f = s->f, .spread = s->spread, .violation = s->violation, .verdict = *s->verdict};
     TRY(begin(store, err));
     TRY(insert(store->db, store->schema, (long)s->number, (long)generation, NULL, &d, err));
     if (d.verdict.seconds >= COMMIT_S || now_s() >= store->last_commit + COMMIT_S)
@@ -620,8 +621,9 @@ Status store_generation(RunStore *store, const SearchView *v, double seconds, do
     TRY(store_moment(store, v, seconds, session, err));
     TRY(store_flush(store, err));
     TRY(append_evaluations(store, v, err));
-    return store->has_polished || store->schema->has_spread ? write_whole_tables(store, 0, err)
-                               : write_file(store, "front.csv", put_view_front, &front, err);
+    return store->has_polished || store->schema->has_spread
+               ? write_whole_tables(store, 0, err)
+               : write_file(store, "front.csv", put_view_front, &front, err);
 }
 
 /* -- logs and the end -----------------------------------------------------------------------------------------------

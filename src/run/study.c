@@ -48,12 +48,31 @@ static void make_absolute(char path[SETTINGS_TEXT_MAX])
     free(absolute);
 }
 
+/* The same for every item of a comma list, as long as the list has room. */
+static void make_all_absolute(char list[SETTINGS_TEXT_MAX])
+{
+    char item[SETTINGS_TEXT_MAX], all[SETTINGS_TEXT_MAX] = "";
+    size_t n = 0;
+    for (size_t i = 0; strcmp(list, "none") != 0 && i < list_count(list); i++) {
+        if (!list_item(list, i, item, sizeof item))
+            return;
+        if (strncmp(item, "builtin:", 8) != 0)
+            make_absolute(item);
+        n += (size_t)snprintf(all + n, sizeof all - n, "%s%s", i ? "," : "", item);
+        if (n >= sizeof all)
+            return;
+    }
+    if (n > 0)
+        memcpy(list, all, n + 1);
+}
+
 static Settings settings_as_used(const Settings *s, const char *folder)
 {
     Settings used = *s;
     struct stat there;
     if (strncmp(used.motion.record, "builtin:", 8) != 0)
         make_absolute(used.motion.record);
+    make_all_absolute(used.motion.records);
     const int is_name = !strcmp(used.building.model, "guyan") || !strcmp(used.building.model, "appendix");
     if (!is_name && stat(used.building.model, &there) == 0 && S_ISDIR(there.st_mode))
         make_absolute(used.building.model);
@@ -116,9 +135,11 @@ static void compare_hash(Differences *d, const char *key, uint64_t was, uint64_t
 static Status compare_inputs(Study *study, Differences *d, Err *err)
 {
     Inputs now;
-    TRY(provenance_inputs(&now, subject_world(study->subject), err));
+    TRY(provenance_inputs(&now, study->subject, err));
     json_t *provenance = json_loads(store_saved(study->store)->provenance, 0, NULL);
     compare_hash(d, "motion.record", stored_hash(provenance, "record_fnv1a"), now.record);
+    if (now.record == stored_hash(provenance, "record_fnv1a"))
+        compare_hash(d, "motion.records", stored_hash(provenance, "records_fnv1a"), now.records);
     compare_hash(d, "building.model", stored_hash(provenance, "matrices_fnv1a"), now.matrices);
     json_decref(provenance);
     return STATUS_OK;
@@ -263,8 +284,7 @@ static Status log_start(Study *study, Err *err)
 static Status begin(Study *study, Err *err)
 {
     char *provenance;
-    TRY(provenance_text(&provenance, &study->used, subject_world(study->subject), subject_threads(study->subject),
-                        err));
+    TRY(provenance_text(&provenance, &study->used, study->subject, err));
     const Status status = store_begin(study->store, subject_schema(study->subject), &study->used, provenance, err);
     free(provenance);
     return status;

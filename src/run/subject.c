@@ -52,6 +52,16 @@ const World *subject_world(const Subject *subject)
     return subject->trials ? trials_world(subject->trials) : NULL;
 }
 
+size_t subject_n_records(const Subject *subject)
+{
+    return subject->trials ? trials_n_records(subject->trials) : 0;
+}
+
+const World *subject_record(const Subject *subject, size_t i)
+{
+    return trials_record(subject->trials, i);
+}
+
 Crew *subject_crew(const Subject *subject)
 {
     return subject->crew;

@@ -27,7 +27,9 @@ void subject_close(Subject *subject); /* NULL is fine */
 const Problem *subject_problem(const Subject *subject);
 const Schema *subject_schema(const Subject *subject);
 const World *subject_world(const Subject *subject); /* NULL: no tower */
-Crew *subject_crew(const Subject *subject);         /* NULL: no tower */
+size_t subject_n_records(const Subject *subject);   /* 0: no tower */
+const World *subject_record(const Subject *subject, size_t i);
+Crew *subject_crew(const Subject *subject); /* NULL: no tower */
 int subject_threads(const Subject *subject);
 
 /* One finished simulation; valid during the call. */

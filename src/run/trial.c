@@ -22,6 +22,16 @@ const World *trials_world(const Trials *t)
     return &t->world[0];
 }
 
+size_t trials_n_records(const Trials *t)
+{
+    return t->n_records;
+}
+
+const World *trials_record(const Trials *t, size_t i)
+{
+    return &t->world[i];
+}
+
 Crew *trials_crew(const Trials *t)
 {
     return t->crew[0];

@@ -27,6 +27,8 @@ Status trials_open(Trials **out, const Settings *s, int threads, Err *err);
 void trials_close(Trials *t); /* NULL is fine */
 
 const World *trials_world(const Trials *t); /* of motion.record */
+size_t trials_n_records(const Trials *t);
+const World *trials_record(const Trials *t, size_t i); /* 0: that of motion.record */
 Crew *trials_crew(const Trials *t);
 size_t trials_per_design(const Trials *t);
 
