@@ -32,7 +32,7 @@ typedef struct {
 typedef struct {
     long number, simulated, failed, front, predicted;
     double surrogate_error; /* NAN: no surface */
-    double hypervolume;     /* share of a box about the first sample that the front dominates; docs/formats.md */
+    double hypervolume;     /* share of a box about the first sample that the front dominates; results/README.md */
     double seconds;         /* of work on the run until then, all sessions together */
     char finished[24];      /* UTC */
 } SavedGeneration;

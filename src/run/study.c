@@ -25,6 +25,7 @@ typedef struct {
     size_t generation;       /* that is under way */
     size_t first_generation; /* of this session */
     int asked, late;         /* why it stopped */
+    int has_new_limits;
     Status status;           /* of writing; ends the search */
     Err *err;
 } Study;
@@ -153,6 +154,7 @@ static Status settle_settings(Study *study, Err *err)
     settings_compare(&store_saved(study->store)->settings, &study->used, compare_one, &d);
     TRY(compare_inputs(study, &d, err));
     const size_t n = d.n_limits + d.n_others;
+    study->has_new_limits = d.n_limits > 0;
     if (n == 0 || (d.n_others == 0 && study->options->force))
         return STATUS_OK;
     return fail(err, STATUS_BAD_DATA, "%s: holds a run with other settings: %s%s; %s", folder, d.first,
@@ -264,6 +266,8 @@ static Status log_start(Study *study, Err *err)
     const int threads = subject_threads(study->subject);
     const size_t n = study->summary->n_before;
     char program[96];
+    if (study->options->started)
+        study->options->started(study->summary->folder, n, study->options->user);
     snprintf(program, sizeof program, "imtet %s (%s)", program_version(), program_revision());
     TRY(store_session(study->store, program, threads, n, err));
     TRY(store_event(study->store,
@@ -320,10 +324,7 @@ static Status prepare(Study *study, const Settings *s, Err *err)
     study->summary->max_evals = s->search.max_evals;
     study->used = settings_as_used(s, study->summary->folder);
     TRY(store_saved(study->store) ? go_on(study, err) : begin(study, err));
-    TRY(simulate_without_core(study, err));
-    if (study->options->started)
-        study->options->started(study->summary->folder, study->summary->n_before, study->options->user);
-    return log_start(study, err);
+    return simulate_without_core(study, err);
 }
 
 SearchConfig study_search_config(const Settings *s)
@@ -443,18 +444,37 @@ static Status finish(Study *study, Err *err)
                            sum->n_simulated, sum->max_evals);
 }
 
+/* A run that came to its end, with the limits that it had then: there is nothing to do. */
+static int is_over(const Study *study)
+{
+    const Saved *h = store_saved(study->store);
+    const SavedSession *last = h && h->n_sessions > 0 ? &h->session[h->n_sessions - 1] : NULL;
+    if (!last || !last->is_final || study->has_new_limits)
+        return 0;
+    StopReason *stopped = &study->summary->stopped;
+    for (*stopped = STOP_GENERATIONS; *stopped < STOP_ASKED; ++*stopped)
+        if (strcmp(stop_reason_words(*stopped), last->stopped) == 0)
+            break;
+    study->summary->seconds = study->seconds_before;
+    return 1;
+}
+
+static Status work(Study *study, Err *err)
+{
+    TRY(log_start(study, err));
+    TRY(run_search(study, err));
+    TRY(study->status);
+    return finish(study, err);
+}
+
 Status study_run(const Settings *s, const StudyOptions *options, StudySummary *summary, FILE *differences, Err *err)
 {
     memset(summary, 0, sizeof *summary);
     Study study = {.options = options, .summary = summary, .differences = differences, .err = err};
     clock_gettime(CLOCK_MONOTONIC, &study.start);
     Status status = prepare(&study, s, err);
-    if (status == STATUS_OK)
-        status = run_search(&study, err);
-    if (status == STATUS_OK)
-        status = study.status;
-    if (status == STATUS_OK)
-        status = finish(&study, err);
+    if (status == STATUS_OK && !is_over(&study))
+        status = work(&study, err);
     if (status != STATUS_OK && study.store) {
         Err ignored; /* the fault itself is what the caller must hear of */
         store_flush(study.store, &ignored);
