@@ -11,16 +11,16 @@ static const int IS_SANITIZED = 1; /* its malloc belongs to the sanitizer, and s
 static const int IS_SANITIZED = 0;
 #endif
 
-enum { SOME = 20, MANY = 800 }; /* refusals of one kind in one command */
+enum { SOME = 10, MANY = 800 }; /* refusals of one kind in one command */
 
 typedef struct {
     const char *command; /* @: the test's own folder */
     const char *result;  /* a file there that must be the same; NULL: standard output */
 } Deed;
 
-static const char OPTIMIZE[] =
-    "optimize configs/quick.ini --max-evals 24 --threads 1 --out @/run --set search.initial=16 "
-    "--set search.population=8 --set sim.duration_s=40";
+#define STUDY(folder)                                                                                                  \
+    "optimize configs/quick.ini --max-evals 24 --threads 1 --out " folder " --set search.initial=16 "                  \
+    "--set search.population=8 --set sim.duration_s=40"
 
 static const Deed DEEDS[] = {
     {"settings", NULL},
@@ -32,7 +32,7 @@ static const Deed DEEDS[] = {
     {"evaluate @/done --design knee --record tests/motion/many_columns.csv --channel NS", NULL},
     {"choose @/done --wish j1_m=0.3", NULL},
     {"export @/done --csv @/run", "run"},
-    {OPTIMIZE, "run/front.csv"},
+    {STUDY("@/run"), "run/front.csv"},
 };
 enum { N_DEEDS = sizeof DEEDS / sizeof DEEDS[0] };
 
@@ -135,19 +135,109 @@ static void test_without_memory_the_program_says_so_or_gives_the_same_result(voi
         sweep_memory(&DEEDS[i]);
 }
 
+/* ---- writes ---------------------------------------------------------------------------------------------------- */
+
+/* What the system refuses, by strace, which changes nothing in the program. */
+typedef struct {
+    const char *call, *error; /* strace counts each call by itself */
+    Ending ending;
+} Refusal;
+
+static const Refusal REFUSALS[] = {
+    {"write", "ENOSPC", {"write", 74, 74}},      {"pwrite64", "ENOSPC", {"pwrite64", 74, 74}},
+    {"ftruncate", "EIO", {"ftruncate", 74, 74}}, {"fsync", "EIO", {"fsync", 74, 74}},
+    {"fdatasync", "EIO", {"fdatasync", 74, 74}}, {"rename", "EACCES", {"rename", 74, 74}},
+};
+
+static int can_trace(void)
+{
+    return system("strace -f -o /dev/null true >/dev/null 2>&1") == 0;
+}
+
+static long count_calls(const Refusal *r, const char *command)
+{
+    Said said;
+    snprintf(place.under, sizeof place.under, "strace -f --seccomp-bpf -e trace=%s -o '%s/calls' ", r->call,
+             place.folder);
+    run(&said, "%s", command);
+    place.under[0] = 0;
+    assert_int_equal(said.code, 0);
+    forget(&said);
+    char *calls = read_in_place("calls");
+    long n = 0;
+    for (const char *at = calls; (at = strchr(at, '\n')); at++)
+        n++;
+    free(calls);
+    return n;
+}
+
+static void refuse_call(const Refusal *r, long k)
+{
+    snprintf(place.under, sizeof place.under,
+             "strace -f --seccomp-bpf -e trace=%s -e inject=%s:error=%s:when=%ld -o /dev/null ", r->call, r->call,
+             r->error, k);
+}
+
+/* What is left goes on to the same end, as if nothing had been. */
+static void go_on(const Deed *deed, long k, const char *wanted)
+{
+    Said said;
+    run(&said, "%s", deed->command);
+    char *result = said.code == 0 ? result_of(deed, &said) : strdup("");
+    if (said.code != 0 || strcmp(result, wanted) != 0)
+        fail_msg("%s: after refusal %ld it does not go on to the same end: exit %d: %s", deed->command, k, said.code,
+                 said.err);
+    free(result);
+    forget(&said);
+}
+
+static void sweep_writes(const Deed *deed, const Refusal *r)
+{
+    Said said;
+    remove_run();
+    const long n = count_calls(r, deed->command), step = steps_between(5 * n);
+    char *wanted = result_of(deed, &(Said){.out = ""});
+    for (long k = 1; k <= n; k += step) {
+        remove_run();
+        refuse_call(r, k);
+        run(&said, "%s", deed->command);
+        place.under[0] = 0;
+        judge(deed, k, &said, wanted, &r->ending);
+        forget(&said);
+        go_on(deed, k, wanted);
+    }
+    print_message("%ld of %ld of %s refused: imtet %.60s\n", (n + step - 1) / step, n, r->call, deed->command);
+    free(wanted);
+}
+
+static void test_a_write_that_fails_is_told_and_the_run_goes_on_to_the_same_front(void **state)
+{
+    (void)state;
+    static const Deed EXPORT = {"export @/done --csv @/run", "run"}, STUDY = {STUDY("@/run"), "run/front.csv"};
+    if (IS_SANITIZED || !can_trace())
+        skip();
+    for (size_t i = 0; i < sizeof REFUSALS / sizeof REFUSALS[0]; i++) {
+        sweep_writes(&EXPORT, &REFUSALS[i]);
+        sweep_writes(&STUDY, &REFUSALS[i]);
+    }
+}
+
 static int make_run(void **state)
 {
     if (make_place(state) != 0)
         return -1;
-    run(&(Said){0}, "optimize configs/quick.ini --max-evals 24 --threads 1 --out @/done --set search.initial=16 "
-                    "--set search.population=8 --set sim.duration_s=40");
-    return 0;
+    Said said;
+    run(&said, STUDY("@/done"));
+    const int code = said.code;
+    forget(&said);
+    return code;
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_without_memory_the_program_says_so_or_gives_the_same_result),
+        cmocka_unit_test(test_a_write_that_fails_is_told_and_the_run_goes_on_to_the_same_front),
     };
     return cmocka_run_group_tests(tests, make_run, clear_place);
 }
