@@ -53,7 +53,7 @@ STABILITY.asan := --engine fast
 STABILITY_OBJ := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/stability/*.c))
 PROGRAM := $(if $(filter release,$(MODE)),imtet,$(BUILD)/imtet)
 
-.PHONY: torture coverage coverage-here faults fuzz fuzz-here all web report-bench setup run test test-here compare stability stability-long laws bench chart format install clean .FORCE
+.PHONY: torture coverage coverage-here faults fuzz fuzz-here all web report-bench pictures setup run test test-here compare stability stability-long laws bench chart format install clean .FORCE
 .SECONDARY:
 all: $(PROGRAM)
 
@@ -197,6 +197,14 @@ chart: $(PROGRAM)
 # The search on problems whose front is known, with and without surrogate; CELLS and SEEDS choose a part of it.
 compare: $(PROGRAM)
 	@scripts/compare --program ./$(PROGRAM) --out docs/search.md $(if $(CELLS),--cells $(CELLS)) $(if $(SEEDS),--seeds $(SEEDS))
+
+# The pictures of a study in docs/pictures: make pictures RUN=results/kobe RECORDS="elcentro.csv sylmar.csv"
+pictures: $(PROGRAM)
+	@./$(PROGRAM) plot $(RUN) $(RECORDS:%=--record %) --out $(BUILD)/pictures
+	@./$(PROGRAM) report $(RUN) $(RECORDS:%=--record %) --out $(BUILD)/pictures/report.html
+	@cp $(foreach p,front peaks modes energies sway elsewhere,$(BUILD)/pictures/$p.png) docs/pictures
+	@node tests/report/picture.mjs $(BUILD)/pictures/report.html docs/pictures/report-front.jpg '#front' 1180 'J3 acceleration [g] to=6' 'J1 sway [m] to=0.8'
+	@node tests/report/picture.mjs $(BUILD)/pictures/report.html docs/pictures/report-design.jpg '#design' 2250
 
 # How long a report of 10,000 designs takes to be painted and brushed; wants chromium and node.
 report-bench: $(PROGRAM)

@@ -75,7 +75,7 @@ async function downloaded() {
 }
 
 const counted = async () => +(await page.evaluate("document.getElementById('count').textContent")).replace(/ of.*/, "").replaceAll(",", "");
-const tableIds = () => page.evaluate("Array.from(document.querySelectorAll('#designs tbody tr'), (tr) => +tr.dataset.id)");
+const tableIds = () => page.evaluate("Array.from(document.querySelectorAll('#designs tbody tr:not([hidden])'), (tr) => +tr.dataset.id)");
 const csvOf = (chosen) => [names.join(","), ...chosen.map((i) => lines[i])].join("\n") + "\n";
 const all = rows.map((_, i) => i);
 

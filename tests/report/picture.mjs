@@ -1,21 +1,27 @@
-// A picture of a report: picture.mjs REPORT.html OUT.png [SELECTOR [WIDTH]]      the whole page, or what the selector finds
+// A picture of a report, JPEG or PNG by its name:
+//   picture.mjs REPORT.html OUT [SELECTOR [HEIGHT [LABEL=VALUE ...]]]
+// What the selector finds, at most HEIGHT high; first the fields of these labels are filled in (J1 sway [m] to=0.7).
 import { writeFileSync } from "node:fs";
 import { resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 import { openBrowser } from "./browser.mjs";
 
-const [report, out, selector = "html", width = "1360"] = process.argv.slice(2);
-const browser = await openBrowser({ width: +width });
+const [report, out, selector = "body", height = "100000", ...fields] = process.argv.slice(2);
+const browser = await openBrowser();
 try {
   const page = await browser.openPage();
   await page.call("Page.navigate", { url: pathToFileURL(resolve(report)).href });
   await page.until("document.documentElement?.dataset.ready === 'yes'");
+  for (const field of fields) {
+    const [label, value] = field.split("=");
+    await page.evaluate(`(() => { const e = document.querySelector('input[aria-label="${label}"]'); e.value = "${value}"; e.dispatchEvent(new Event("change")); })()`);
+  }
+  await new Promise((done) => setTimeout(done, 1000)); // lines come in passes
   const clip = await page.evaluate(`(() => { const r = document.querySelector(${JSON.stringify(selector)}).getBoundingClientRect();
-    return { x: r.x + scrollX, y: r.y + scrollY, width: r.width, height: r.height, scale: 1 }; })()`);
-  const { data } = await page.call("Page.captureScreenshot", { format: "png", clip, captureBeyondViewport: true });
+    return { x: r.x + scrollX, y: r.y + scrollY, width: r.width, height: Math.min(r.height, ${height}), scale: 1 }; })()`);
+  const { data } = await page.call("Page.captureScreenshot", { clip, captureBeyondViewport: true,
+    ...(out.endsWith(".jpg") ? { format: "jpeg", quality: 82 } : { format: "png" }) });
   writeFileSync(out, Buffer.from(data, "base64"));
-  for (const { method, params } of page.events)
-    if (method === "Log.entryAdded" || method === "Runtime.exceptionThrown" || method === "Runtime.consoleAPICalled") console.log(JSON.stringify(params).slice(0, 600));
 } finally {
   await browser.close();
 }

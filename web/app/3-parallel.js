@@ -1,7 +1,7 @@
 // Parallel coordinates: a line per design, an axis per column; a brush on an axis is a range of its column. `name` is
 // what state.axes calls these columns.
 
-const SEGMENTS_PER_FRAME = 7000;
+const SEGMENTS_PER_FRAME = 4000;
 
 function parallelCoordinates(host, name, shown) {
   const isShown = () => state.axes === name || state.axes === "all";

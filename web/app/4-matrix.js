@@ -8,7 +8,7 @@ function scatterMatrix(host) {
   const card = layers.appendChild(element("div", { class: "marked" }));
   const margin = { top: 8, right: 8, bottom: 48, left: 64 }, gap = 10;
   const m = objectives.length;
-  let panels = [], size = 0, width = 0, height = 0, pens, drawnFor;
+  let panels = [], size = 0, width = 0, height = 0, pens, image, drawnFor;
 
   function scale(c, from, to) {
     const pad = 0.05 * (c.max - c.min) || 0.5 * Math.abs(c.max) || 0.5;
@@ -44,7 +44,8 @@ function scatterMatrix(host) {
   // Dots go straight into the pixels: that is what keeps a quarter of a million of them at hand while brushing.
   function putDots(pen, many, rows, colourOf) {
     const { width: w, height: h } = pen.canvas, ratio = w / width;
-    const image = pen.createImageData(w, h), pixels = new Uint32Array(image.data.buffer);
+    if (!image || image.width !== w || image.height !== h) image = pen.createImageData(w, h);
+    const pixels = new Uint32Array(image.data.buffer).fill(0);
     const s = Math.max(1, Math.round(dotSize(many) * ratio)), half = s / 2;
     for (const i of rows) {
       const colour = colourOf(i);

@@ -23,25 +23,52 @@ function download() {
 function designTable(host) {
   const shown = [...objectives, ...variables];
   const sort = { column: objectives[0], down: objectives[0].sense < 0 };
-  let page = 0, rows = [];
+  let page = 0, order;
 
-  const head = element("tr");
-  const body = element("tbody");
-  const pages = element("div", { class: "pages" });
+  const head = element("tr"), body = element("tbody");
+  const back = element("button", { class: "plain", type: "button", onclick: () => turn(-1) }, "Previous");
+  const next = element("button", { class: "plain", type: "button", onclick: () => turn(1) }, "Next");
+  const where = element("span");
   host.append(element("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Selected designs" },
-    element("table", { id: "designs" }, element("thead", {}, head), body)), pages);
+    element("table", { id: "designs" }, element("thead", {}, head), body)), element("div", { class: "pages" }, back, where, next));
+
+  head.append(element("th", { scope: "col" }, "design"), ...shown.map((c) => element("th", { scope: "col", title: c.what, class: !c.sense && "variable" },
+    element("button", { type: "button", onclick: () => sortBy(c) }, c.title), ...heading(c).slice(1))));
+
+  // Rows are made once and filled anew: a brush must not wait for a table.
+  const rows = Array.from({ length: Math.min(PAGE, n) }, () => {
+    const name = element("button", { type: "button", title: "show this design in the pictures" }), note = new Text();
+    const cells = shown.map((c) => element("td", { class: !c.sense && "variable" }, ""));
+    const row = { name, note, cells, tr: element("tr", {}, element("td", {}, name, note), ...cells) };
+    name.addEventListener("click", () => mark(row.design));
+    return row;
+  });
+  body.append(...rows.map((row) => row.tr));
+
+  function fill(row, i) {
+    row.tr.hidden = i === undefined;
+    const isSame = row.design === i && row.isMarked === (i === state.marked);
+    row.design = i;
+    row.isMarked = i === state.marked;
+    if (i === undefined || isSame) return;
+    row.tr.dataset.id = ids[i];
+    row.tr.className = [row.isMarked && "marked", ids[i] === run.knee && "knee"].filter(Boolean).join(" ");
+    row.name.textContent = String(ids[i]);
+    row.note.data = (ids[i] === run.knee ? " knee" : "") + (ids[i] === run.chosen && run.chosen !== run.knee ? " chosen" : "");
+    shown.forEach((c, k) => (row.cells[k].textContent = digits(c.value[i])));
+  }
 
   function sortBy(c) {
     sort.down = sort.column === c ? !sort.down : c.sense < 0;
     sort.column = c;
     page = 0;
+    putInOrder();
     draw();
   }
 
-  head.append(element("th", { scope: "col" }, "design"), ...shown.map((c) => element("th", { scope: "col", title: c.what, class: !c.sense && "variable" },
-    element("button", { type: "button", onclick: () => sortBy(c) }, c.title), ...heading(c).slice(1))));
-
-  function drawHead() {
+  function putInOrder() {
+    const { value } = sort.column, sign = sort.down ? -1 : 1;
+    order = Uint32Array.from({ length: n }, (_, i) => i).sort((a, b) => sign * (value[a] - value[b]) || a - b);
     shown.forEach((c, k) => {
       const th = head.children[k + 1];
       if (c === sort.column) th.setAttribute("aria-sort", sort.down ? "descending" : "ascending");
@@ -49,37 +76,23 @@ function designTable(host) {
     });
   }
 
-  function rowFor(i) {
-    const kind = [i === state.marked && "marked", ids[i] === run.knee && "knee"].filter(Boolean).join(" ");
-    return element("tr", { class: kind, "data-id": ids[i] },
-      element("td", {}, element("button", { type: "button", title: "show this design in the pictures", onclick: () => mark(i) }, String(ids[i])),
-        ids[i] === run.knee ? " knee" : "", ids[i] === run.chosen && run.chosen !== run.knee ? " chosen" : ""),
-      ...shown.map((c) => element("td", { class: !c.sense && "variable" }, digits(c.value[i]))));
-  }
-
   function turn(by) {
     page += by;
-    drawRows();
-  }
-
-  function drawRows() {
-    const last = Math.max(0, Math.ceil(rows.length / PAGE) - 1);
-    page = Math.max(0, Math.min(page, last));
-    body.replaceChildren(...Array.from(rows.slice(page * PAGE, (page + 1) * PAGE), rowFor));
-    pages.replaceChildren(
-      element("button", { class: "plain", type: "button", disabled: page === 0, onclick: () => turn(-1) }, "Previous"),
-      element("span", {}, rows.length ? `${count(page * PAGE + 1)}\u2013${count(Math.min(rows.length, (page + 1) * PAGE))} of ${count(rows.length)}` : "no design within these ranges"),
-      element("button", { class: "plain", type: "button", disabled: page >= last, onclick: () => turn(1) }, "Next"));
+    draw();
   }
 
   function draw() {
-    const { value } = sort.column, sign = sort.down ? -1 : 1;
-    rows = Uint32Array.from({ length: state.nSelected });
-    for (let i = 0, k = 0; i < n; i++) if (state.selected[i]) rows[k++] = i;
-    rows.sort((a, b) => sign * (value[a] - value[b]) || a - b);
-    drawHead();
-    drawRows();
+    const last = Math.max(0, Math.ceil(state.nSelected / PAGE) - 1);
+    page = Math.max(0, Math.min(page, last));
+    const first = page * PAGE, found = [];
+    for (let k = 0, passed = 0; k < n && found.length < PAGE; k++)
+      if (state.selected[order[k]] && passed++ >= first) found.push(order[k]);
+    rows.forEach((row, k) => fill(row, found[k]));
+    back.disabled = page === 0;
+    next.disabled = page >= last;
+    where.textContent = found.length ? `${count(first + 1)}\u2013${count(first + found.length)} of ${count(state.nSelected)}` : "no design within these ranges";
   }
 
+  putInOrder();
   views.selection.push(draw);
 }

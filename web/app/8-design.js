@@ -16,8 +16,8 @@ function figure(host, title, caption, plot, ...above) {
 }
 
 function legend(entries) {
-  return element("div", { class: "legend" }, ...entries.map(([label, colour]) => {
-    const item = element("span", {}, label);
+  return element("div", { class: "legend" }, ...entries.map(([label, colour, mark]) => {
+    const item = element("span", { "data-mark": mark }, label);
     item.style.setProperty("--key", colour);
     return item;
   }));
@@ -26,8 +26,8 @@ function legend(entries) {
 const WITH = "with core", WITHOUT = "without core", TIED = "zero gap";
 const SCENE_COLOUR = new Map([[WITH, BLUE], [WITHOUT, VERMILLION], [TIED, OLIVE]]);
 const SCENE_SYMBOL = new Map([[WITH, "circle"], [WITHOUT, "diamond2"], [TIED, "triangle"]]);
-const SCENE_DASH = new Map([[WITH, null], [WITHOUT, "6 3"], [TIED, "2 2"]]);
-const sceneLegend = (scenes) => legend(scenes.map((s) => [s, SCENE_COLOUR.get(s)]));
+const SCENE_MARK = new Map([[WITH, "\u25cf"], [WITHOUT, "\u25c6"], [TIED, "\u25b2"]]);
+const sceneLegend = (scenes, marks) => legend(scenes.map((s) => [s, SCENE_COLOUR.get(s), marks ? SCENE_MARK.get(s) : null]));
 
 // ---- heights
 
@@ -62,7 +62,7 @@ function peakFigure(host, scenes, key, title, label) {
       charts.ruleX([0]),
     ],
     color: { type: "identity" }, symbol: { type: "identity" },
-  }), sceneLegend(scenes.map(([scene]) => scene)));
+  }), sceneLegend(scenes.map(([scene]) => scene), true));
 }
 
 // ---- modes
