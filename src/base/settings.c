@@ -140,6 +140,8 @@ static const Option OPTIONS[] = {
      "off: a plain evolutionary search, for comparison or where a simulation costs less than a prediction"},
     {"search.survival", "-", CHOICE, AT(search.survival), "nsga3", 0, 0, "nsga3|rvea|moead",
      "who lives on from one generation to the next: NSGA-III, RVEA or MOEA/D with PBI"},
+    {"search.polish", "-", WHOLE, AT(search.polish), "3", 0, 32, NULL,
+     "tower: designs that are polished at the end, with a tenth more simulations; none where that is too few"},
     {"search.limits", "-", TEXT, AT(search.limits), "none", 0, 0, NULL,
      "what objectives must keep, as j3_g<=5,edcs_pct>=3; none"},
 

@@ -99,6 +99,7 @@ typedef struct {
         long surrogate_max; /* most designs that the response surface is built on */
         long surrogate;     /* 0: on, 1: off */
         long survival;      /* SurvivalKind */
+        long polish;        /* designs at the end */
         char limits[SETTINGS_TEXT_MAX];
     } search;
     struct {

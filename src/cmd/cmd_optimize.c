@@ -76,6 +76,9 @@ static Status report(const StudySummary *summary, Err *err)
            summary->folder, front.n, summary->n_simulated, summary->n_failed, summary->seconds,
            stop_reason_words(summary->stopped));
     print_front(&front, summary);
+    if (summary->n_tried_to_polish > 0)
+        printf("polished: %zu of %zu designs became better by more than their spread (search.polish)\n",
+               summary->n_polished, summary->n_tried_to_polish);
     if (summary->n_simulated == summary->n_before)
         printf("This run was finished before; nothing new was simulated. --new starts another one.\n");
     front_free(&front);

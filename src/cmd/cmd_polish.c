@@ -1,22 +1,20 @@
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "cmd/commands.h"
 #include "cmd/show.h"
-#include "polish/polish.h"
 #include "run/front.h"
 #include "run/output.h"
-#include "run/subject.h"
+#include "run/refine.h"
 
 typedef struct {
-    Settings settings;
     Front front;
-    Subject *subject;
-    size_t row;
-    double slack[OBJECTIVES_MAX], f[OBJECTIVES_MAX], f_start[OBJECTIVES_MAX];
+    Saved run;
+    size_t row; /* of the front */
     unsigned char keep[OBJECTIVES_MAX];
-    PolishConfig config;
-    PolishResult result;
+    RefineConfig config;
+    Refined result;
 } Work;
 
 static Status take_number(const Args *args, const char *name, double standard, double *value, Err *err)
@@ -49,24 +47,21 @@ static Status take_options(const Args *args, Work *w, Err *err)
 {
     const Schema *schema = &w->front.schema;
     const char *improve = args_value(args, "--improve");
-    double evals, seconds, slack;
+    double evals, members;
     w->config.improve = 0;
     if (improve)
         TRY(schema_pick_objective(schema, "--improve", improve, STATUS_USAGE, &w->config.improve, err));
     TRY(take_kept(args, w, err));
-    TRY(take_number(args, "--evals", 200, &evals, err));
-    TRY(take_number(args, "--seconds", 0, &seconds, err));
-    TRY(take_number(args, "--slack", 0, &slack, err));
-    for (size_t k = 0; k < schema->n_obj; k++) {
-        const double f = front_f(&w->front, w->row)[k];
-        w->slack[k] = slack * (f < 0 ? -f : f);
-    }
+    TRY(take_number(args, "--evals", 120, &evals, err));
+    TRY(take_number(args, "--members", 4, &members, err));
+    TRY(take_number(args, "--seconds", 0, &w->config.max_seconds, err));
+    TRY(take_number(args, "--slack", 0, &w->config.slack, err));
+    if (!args_has(args, "--slack"))
+        w->config.slack = -1.0;
     w->config.algorithm = args_has(args, "--algorithm") ? args_value(args, "--algorithm") : "cobyla";
     w->config.keep = w->keep;
-    w->config.slack = w->slack;
     w->config.max_evals = evals < 1 ? 1 : (size_t)evals;
-    w->config.max_seconds = seconds;
-    w->config.seed = (uint32_t)w->settings.search.seed;
+    w->config.members = members < 1 ? 1 : (long)members;
     return STATUS_OK;
 }
 
@@ -76,11 +71,10 @@ static Status open_run(const Args *args, Work *w, Err *err)
     if (!id)
         return fail(err, STATUS_USAGE, "--design ID is missing; %s/front.csv lists them, knee is one too",
                     args->operand);
-    TRY(run_settings(&w->settings, args->operand, err));
     TRY(front_read(&w->front, args->operand, err));
     TRY(front_pick(&w->front, args->operand, id, &w->row, err));
     TRY(take_options(args, w, err));
-    return subject_open(&w->subject, &w->settings, err);
+    return saved_read(&w->run, args->operand, err);
 }
 
 /* One row in natural signs, as in front.csv but for the id of the design that it came from. */
@@ -95,44 +89,44 @@ static Status write_csv(const Work *w, const char *path, Err *err)
     fprintf(o.stream, "\n%ld", front_id(&w->front, w->row));
     for (size_t j = 0; j < schema->n_var + schema->n_obj; j++) {
         fputc(',', o.stream);
-        print_number(o.stream, j < schema->n_var ? w->result.x[j] : schema->column[j].sense * w->f[j - schema->n_var]);
+        print_number(o.stream, j < schema->n_var ? w->result.x[j] : w->result.f[j - schema->n_var]);
     }
     fputc('\n', o.stream);
     return output_close(&o, err);
 }
 
-static void show(const Work *w)
+static void show(const Work *w, long id)
 {
     const Schema *schema = &w->front.schema;
+    const Refined *r = &w->result;
     const size_t k = w->config.improve;
-    double before[OBJECTIVES_MAX], after[OBJECTIVES_MAX];
-    for (size_t j = 0; j < schema->n_obj; j++) {
-        before[j] = schema_objective(schema, j)->sense * w->f_start[j];
-        after[j] = schema_objective(schema, j)->sense * w->f[j];
-    }
+    const char *name = schema_objective(schema, k)->name;
     show_objective_names(schema);
-    show_objectives("before", front_id(&w->front, w->row), schema->n_obj, before);
-    show_objectives("polished", 0, schema->n_obj, after);
-    printf("\n%s: %zu evaluations, %zu failed, %.1f s; ", w->config.algorithm, w->result.n_evaluated,
-           w->result.n_failed, w->result.seconds);
-    if (w->f[k] < w->f_start[k])
-        printf(
-            "%s changed by %.3g %%. Repeat it with other seeds or motions before trusting a gain below the spread.\n",
-            schema_objective(schema, k)->name, 100.0 * (after[k] - before[k]) / (before[k] != 0 ? before[k] : 1));
+    show_objectives("before", front_id(&w->front, w->row), schema->n_obj, r->f_start);
+    show_objectives("polished", id, schema->n_obj, r->f);
+    if (isfinite(r->spread_start[k]))
+        show_objectives("spread before", 0, schema->n_obj, r->spread_start);
+    printf("\n%s: %zu designs tried with %ld simulations each, %zu failed, %.1f s\n", w->config.algorithm,
+           r->n_evaluated, w->config.members, r->n_failed, r->seconds);
+    if (!r->has_changed)
+        printf("no improvement of %s was found that keeps the others.\n", name);
+    else if (isfinite(r->gain_error))
+        printf("%s is better by %.3g with a standard error of %.2g, measured anew on both designs: %s.\n", name,
+               r->gain, r->gain_error, refined_counts(r) ? "more than the spread" : "not more than the spread");
     else
-        printf("no improvement of %s was found that keeps the others.\n", schema_objective(schema, k)->name);
+        printf("%s is better by %.3g; one simulation each: nothing is known of the spread.\n", name, r->gain);
+    if (id)
+        printf("stored in the run as design %ld.\n", id);
 }
 
 static Status polish(const Args *args, Work *w, Err *err)
 {
+    long id = 0;
     TRY(open_run(args, w, err));
-    w->result.x = calloc(w->front.schema.n_var, sizeof *w->result.x);
-    w->result.f = w->f;
-    w->result.f_start = w->f_start;
-    if (!w->result.x)
-        return fail(err, STATUS_NO_MEMORY, "no memory for a design");
-    TRY(polish_run(subject_problem(w->subject), &w->config, front_x(&w->front, w->row), &w->result, err));
-    show(w);
+    TRY(refine_design(&w->run, saved_find(&w->run, front_id(&w->front, w->row)), &w->config, &w->result, err));
+    if (refined_counts(&w->result))
+        TRY(refined_store(args->operand, &w->result, &id, err));
+    show(w, id);
     return args_has(args, "--csv") ? write_csv(w, args_value(args, "--csv"), err) : STATUS_OK;
 }
 
@@ -140,9 +134,9 @@ static Status run(const Args *args, Err *err)
 {
     Work w = {0};
     const Status status = polish(args, &w, err);
-    subject_close(w.subject);
+    refined_free(&w.result);
+    saved_free(&w.run);
     front_free(&w.front);
-    free(w.result.x);
     return status;
 }
 
@@ -150,9 +144,10 @@ static const ArgOption OPTIONS[] = {
     {"--design", "ID", NULL, 0, "column id of RUN/front.csv, or knee"},
     {"--improve", "NAME", NULL, 0, "the objective to improve; the first one if not given"},
     {"--keep", "NAMES", NULL, 0, "all, or a comma list: these may not get worse"},
-    {"--slack", "S", NULL, 0, "but by this share of their value; 0 if not given"},
+    {"--slack", "S", NULL, 0, "but by this share of their value; their spread if not given"},
     {"--algorithm", "NAME", NULL, 0, "cobyla | bobyqa | sbplx | isres"},
-    {"--evals", "N", NULL, 0, "stop after so many simulations; 200 if not given"},
+    {"--evals", "N", NULL, 0, "try at most so many designs; 120 if not given"},
+    {"--members", "N", NULL, 0, "simulations of each (the tower's), whose mean counts; 4 if not given"},
     {"--seconds", "T", NULL, 0, "stop after so long; 0: no limit"},
     {"--csv", "FILE", NULL, 0, "the polished design and its objectives into FILE; -: standard output"},
     OPTION_END,
@@ -163,8 +158,10 @@ const Command CMD_POLISH = {
     .operand = "RUN",
     .summary = "improve one objective of a design, the others kept",
     .example = "imtet polish results/quick --design knee --improve j2_m",
-    .details = "Starts at one design of the front of the folder RUN and improves one objective with NLopt on the true\n"
-               "simulation, while the others do not get worse. The run itself is left as it is.",
+    .details =
+        "Improves one objective of a design of RUN with NLopt while the others get no worse than their spread: first\n"
+        "on a response surface of the run's simulations, then on the mean of several simulations. At the end both\n"
+        "designs are simulated anew; a gain beyond the spread goes into the run as a design of the kind polished.",
     .options = OPTIONS,
     .run = run,
 };

@@ -30,6 +30,7 @@ typedef struct {
     struct timespec start;
     double *x, *f, *g; /* of the last evaluation; x (n_var) in its own units */
     double *scale;     /* (n_obj) */
+    double *each;      /* (n_obj + n_con) scratch */
     double *u;         /* (n_var) the last evaluated point in the unit cube */
     double excess;     /* worst of the constraints there, in units of their scale */
     double least;      /* best allowed value so far */
@@ -45,14 +46,24 @@ static double seconds_since(const struct timespec *start)
     return (double)(now.tv_sec - start->tv_sec) + 1e-9 * (double)(now.tv_nsec - start->tv_nsec);
 }
 
-static double excess_of(const Polish *p)
+/* Every constraint of the last evaluation, in units of its scale; returns how many. */
+static size_t excesses(const Polish *p, double excess[])
 {
-    double worst = -INFINITY;
+    size_t n = 0;
     for (size_t k = 0; k < p->problem->n_obj; k++)
         if (p->config->keep[k] && k != p->config->improve)
-            worst = fmax(worst, (p->f[k] - p->result->f_start[k] - p->config->slack[k]) / p->scale[k]);
+            excess[n++] = (p->f[k] - p->result->f_start[k] - p->config->slack[k]) / p->scale[k];
     for (size_t c = 0; c < p->problem->n_con; c++)
-        worst = fmax(worst, p->g[c]);
+        excess[n++] = p->g[c];
+    return n;
+}
+
+static double excess_of(const Polish *p)
+{
+    const size_t n = excesses(p, p->each);
+    double worst = -INFINITY;
+    for (size_t i = 0; i < n; i++)
+        worst = fmax(worst, p->each[i]);
     return worst;
 }
 
@@ -125,13 +136,17 @@ static double penalised(unsigned n, const double u[], double gradient[], void *u
     return fmin(value_at(p) + PENALTY * over * over, WALL);
 }
 
-static double constraint(unsigned n, const double u[], double gradient[], void *user)
+/* One by one: a method that fits a plane to each of them is lost on the kinks of the greatest of all. */
+static void constraints(unsigned n_each, double each[], unsigned n, const double u[], double gradient[], void *user)
 {
     (void)n;
     (void)gradient;
     Polish *p = user;
     evaluate(p, u);
-    return fmin(fmax(p->excess, -WALL), WALL);
+    if (p->ok)
+        excesses(p, each);
+    for (unsigned i = 0; i < n_each; i++)
+        each[i] = p->ok ? fmin(fmax(each[i], -WALL), WALL) : WALL;
 }
 
 static Status find_method(const char *name, const Method **found, Err *err)
@@ -164,6 +179,26 @@ static Status evaluate_start(Polish *p, const double start[], double u[])
     return STATUS_OK;
 }
 
+/* The method begins at the guess where that is the best so far. */
+static Status evaluate_guess(Polish *p, double u[])
+{
+    const Problem *q = p->problem;
+    if (!p->config->guess)
+        return STATUS_OK;
+    double *start = malloc(q->n_var * sizeof *start);
+    if (!start)
+        return fail(p->err, STATUS_NO_MEMORY, "no memory for polishing");
+    memcpy(start, u, q->n_var * sizeof *start);
+    const double least = p->least;
+    for (size_t d = 0; d < q->n_var; d++)
+        u[d] = q->upper[d] > q->lower[d] ? (p->config->guess[d] - q->lower[d]) / (q->upper[d] - q->lower[d]) : 0.0;
+    evaluate(p, u);
+    if (!(p->least < least))
+        memcpy(u, start, q->n_var * sizeof *u);
+    free(start);
+    return p->status;
+}
+
 static void run_method(Polish *p, const Method *m, double u[])
 {
     double unused;
@@ -173,8 +208,9 @@ static void run_method(Polish *p, const Method *m, double u[])
     nlopt_set_xtol_rel(p->opt, 1e-6);
     nlopt_set_maxeval(p->opt, (int)fmin(2.0 * (double)p->config->max_evals + 100.0, 1e9)); /* a second belt */
     nlopt_set_min_objective(p->opt, m->takes_constraints ? objective : penalised, p);
-    if (m->takes_constraints)
-        nlopt_add_inequality_constraint(p->opt, constraint, p, 1e-9);
+    const size_t n_each = excesses(p, p->each);
+    if (m->takes_constraints && n_each > 0)
+        nlopt_add_inequality_mconstraint(p->opt, (unsigned)n_each, constraints, p, NULL);
     nlopt_srand(p->config->seed);
     nlopt_optimize(p->opt, u, &unused); /* whatever it says: the best was kept on the way */
 }
@@ -187,7 +223,7 @@ Status polish_run(const Problem *problem, const PolishConfig *config, const doub
     TRY(find_method(config->algorithm, &method, err));
     Polish p = {.problem = problem, .config = config, .result = result, .status = STATUS_OK, .err = err};
     result->n_evaluated = result->n_failed = 0;
-    double *store = calloc(3 * n + 2 * m + problem->n_con + 1, sizeof *store);
+    double *store = calloc(3 * n + 3 * m + 2 * problem->n_con + 1, sizeof *store);
     p.opt = nlopt_create(method->algorithm, (unsigned)n);
     Status status = store && p.opt ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for polishing");
     if (status == STATUS_OK) {
@@ -196,9 +232,12 @@ Status polish_run(const Problem *problem, const PolishConfig *config, const doub
         p.u = store + n;
         p.f = store + 3 * n;
         p.scale = p.f + m;
-        p.g = p.scale + m;
+        p.each = p.scale + m;
+        p.g = p.each + m + problem->n_con;
         clock_gettime(CLOCK_MONOTONIC, &p.start);
         status = evaluate_start(&p, start, u);
+        if (status == STATUS_OK)
+            status = evaluate_guess(&p, u);
         if (status == STATUS_OK) {
             run_method(&p, method, u);
             status = p.status;

@@ -19,6 +19,7 @@ typedef struct {
     size_t improve;            /* objective */
     const unsigned char *keep; /* (n_obj) */
     const double *slack;       /* (n_obj) [unit of f] a kept objective may be worse by this */
+    const double *guess;       /* (n_var) where the method begins if it is allowed and better than the start; or NULL */
     size_t max_evals;
     double max_seconds; /* 0: no limit */
     uint32_t seed;

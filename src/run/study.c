@@ -10,6 +10,7 @@
 #include <omp.h>
 
 #include "run/provenance.h"
+#include "run/refine.h"
 #include "run/store.h"
 #include "run/subject.h"
 
@@ -26,7 +27,7 @@ typedef struct {
     size_t first_generation; /* of this session */
     int asked, late;         /* why it stopped */
     int has_new_limits;
-    Status status;           /* of writing; ends the search */
+    Status status; /* of writing; ends the search */
     Err *err;
 } Study;
 
@@ -459,12 +460,68 @@ static int is_over(const Study *study)
     return 1;
 }
 
+/* -- polishing ------------------------------------------------------------------------------------------------------
+ */
+
+enum { POLISH_MEMBERS = 2, POLISH_LEAST = 20, POLISH_SHARE = 10, POLISH_MOST = 32 };
+
+/* Designs tried for each that is polished: together a tenth of the simulations; 0: not worth it. */
+static size_t polish_evals(const Settings *s)
+{
+    const long n = s->search.polish < POLISH_MOST ? s->search.polish : POLISH_MOST;
+    const long each = n > 0 ? s->search.max_evals / (POLISH_SHARE * POLISH_MEMBERS * n) : 0;
+    return s->problem.kind == PROBLEM_TOWER && each >= POLISH_LEAST ? (size_t)each : 0;
+}
+
+static Status polish_one(const Saved *h, size_t row, size_t improve, const Settings *s, StudySummary *sum, Err *err)
+{
+    unsigned char keep[OBJECTIVES_MAX];
+    Refined refined;
+    memset(keep, 1, sizeof keep);
+    const RefineConfig config = {.algorithm = "cobyla",
+                                 .improve = improve,
+                                 .keep = keep,
+                                 .slack = -1.0,
+                                 .members = s->sim.ensemble > POLISH_MEMBERS ? s->sim.ensemble : POLISH_MEMBERS,
+                                 .max_evals = polish_evals(s)};
+    Status status = refine_design(h, row, &config, &refined, err);
+    if (status == STATUS_OK && refined_counts(&refined)) {
+        status = refined_store(sum->folder, &refined, NULL, err);
+        sum->n_polished++;
+    }
+    refined_free(&refined);
+    return status;
+}
+
+/* Some spread-out designs of the finished run, each in the objective in which it is best already. */
+static Status polish_some(const Study *study, Err *err)
+{
+    size_t rows[POLISH_MOST], improve[POLISH_MOST];
+    StudySummary *sum = study->summary;
+    const Settings *s = &study->used;
+    Saved h;
+    if (polish_evals(s) == 0 || sum->n_simulated == sum->n_before)
+        return STATUS_OK;
+    TRY(saved_read(&h, sum->folder, err));
+    const size_t n =
+        refine_choose(&h, (size_t)(s->search.polish < POLISH_MOST ? s->search.polish : POLISH_MOST), rows, improve);
+    Status status = STATUS_OK;
+    for (size_t i = 0;
+         status == STATUS_OK && i < n && !(study->options->stop && study->options->stop(study->options->user)); i++) {
+        sum->n_tried_to_polish++;
+        status = polish_one(&h, rows[i], improve[i], s, sum, err);
+    }
+    saved_free(&h);
+    return status;
+}
+
 static Status work(Study *study, Err *err)
 {
     TRY(log_start(study, err));
     TRY(run_search(study, err));
     TRY(study->status);
-    return finish(study, err);
+    TRY(finish(study, err));
+    return polish_some(study, err);
 }
 
 Status study_run(const Settings *s, const StudyOptions *options, StudySummary *summary, FILE *differences, Err *err)

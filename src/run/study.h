@@ -14,6 +14,8 @@
  *               planned: with 1500 raised to 3000 the first 1500 designs are those of the shorter run
  * Stops         when `stop` says so or after search.max_hours of this session, both asked between simulations: what is
  *               under way is finished, or dropped where an external worker takes seconds, and everything is stored
+ * Polishes      search.polish spread-out designs of a finished run of the tower (run/refine.h), with a tenth of its
+ *               simulations; not where that is too little to be of use
  * Reproducible  front.csv and evaluations.csv are the same bytes at any thread count; times stand elsewhere. */
 #ifndef IMTET_RUN_STUDY_H
 #define IMTET_RUN_STUDY_H
@@ -46,6 +48,7 @@ typedef struct {
     char folder[PATH_MAX];
     StopReason stopped;
     size_t n_simulated, n_failed, n_front;
+    size_t n_tried_to_polish, n_polished; /* at the end; of these better by more than their spread */
     size_t n_before; /* simulations that the run had when this session began */
     long max_evals;
     double seconds;    /* of all sessions */
