@@ -53,7 +53,7 @@ STABILITY.asan := --engine fast
 STABILITY_OBJ := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/stability/*.c))
 PROGRAM := $(if $(filter release,$(MODE)),imtet,$(BUILD)/imtet)
 
-.PHONY: torture coverage coverage-here faults fuzz fuzz-here all web report-bench pictures setup run test test-here compare stability stability-long laws bench chart format install clean .FORCE
+.PHONY: tsan tsan-here asan asan-here valgrind torture coverage coverage-here faults fuzz fuzz-here all web report-bench setup run test test-here compare stability stability-long laws bench chart format install clean .FORCE pictures
 .SECONDARY:
 all: $(PROGRAM)
 
@@ -118,6 +118,30 @@ coverage-here: $(PROGRAM) $(TESTS)
 KILLS ?= 300
 torture: $(PROGRAM) $(BUILD)/tests/test_torture
 	@IMTET=$(abspath $(PROGRAM)) TORTURE_KILLS=$(KILLS) $(BUILD)/tests/test_torture
+
+# Threads: clang with LLVM's OpenMP, whose tool tells ThreadSanitizer what a parallel region promises; with gcc's it would
+# see races that are none. First a race that it must find.
+TSAN_TESTS := test_ensemble test_moga test_problem test_polish test_rbf
+tsan:
+	@$(MAKE) --no-print-directory MODE=tsan CC=clang WARNINGS=-w tsan-here
+
+tsan-here: export TSAN_OPTIONS := ignore_noninstrumented_modules=1 exitcode=99
+tsan-here: export OMP_NUM_THREADS := 3
+tsan-here: $(PROGRAM) $(TSAN_TESTS:%=$(BUILD)/tests/%)
+	@$(CC) -fopenmp -O1 -g -fsanitize=thread tests/fault/race.c -o $(BUILD)/race
+	@if $(BUILD)/race >$(BUILD)/race.log 2>&1; then echo "a race was not found: ThreadSanitizer does not work here"; exit 1; fi
+	@scripts/short-run $(PROGRAM)
+	@set -e; for t in $(TSAN_TESTS); do echo "== $$t"; IMTET=$(abspath $(PROGRAM)) $(BUILD)/tests/$$t; done
+
+asan:
+	@$(MAKE) --no-print-directory MODE=asan asan-here
+
+asan-here: $(PROGRAM)
+	@scripts/short-run $(PROGRAM)
+
+VALGRIND := valgrind -q --error-exitcode=99 --leak-check=full --errors-for-leak-kinds=definite --show-leak-kinds=definite
+valgrind: $(PROGRAM)
+	@scripts/short-run ./$(PROGRAM) $(VALGRIND)
 
 # Every refusal of memory and of writes, one after the other, in short runs; `make test` tries some of them.
 faults: $(PROGRAM) $(BUILD)/tests/test_faults
