@@ -1,6 +1,7 @@
 /* A search that goes on from any generation's end makes the same bytes as one that never stopped. */
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include <cblas.h>
 #include <omp.h>
@@ -10,13 +11,14 @@
 #include "moga/search.h"
 #include "problem/textbook.h"
 
-enum { VAR_MAX = 22, OBJ_MAX = 7, ROWS_MAX = 200, MOMENTS_MAX = 80 };
+enum { VAR_MAX = 22, OBJ_MAX = 7, ROWS_MAX = 300, MOMENTS_MAX = 80 };
 
 typedef struct {
     Problem problem;
     double lower[VAR_MAX], upper[VAR_MAX];
     size_t fail_every; /* every so many-th design fails, told by its bytes; 0: none, 1: all */
     double noise;      /* [-] of the answers, told by the design's bytes too */
+    double pause_s;    /* that an answer takes */
 } World;
 
 /* Everything simulated, and the state at the end of every generation. */
@@ -47,6 +49,8 @@ static Status evaluate(size_t n, const double X[], double F[], double G[], unsig
         for (size_t k = 0; w->noise > 0.0 && k < w->problem.n_obj; k++)
             F[i * w->problem.n_obj + k] += w->noise * sin(1e6 * x[0] + 1e7 * x[1] + (double)k);
         ok[i] = (unsigned char)!fails(w, x);
+        if (w->pause_s > 0.0)
+            nanosleep(&(struct timespec){0, (long)(1e9 * w->pause_s)}, NULL);
         if (w->problem.n_con > 0)
             G[i] = 0.3 - x[0];
     }
@@ -196,10 +200,42 @@ static void test_plain_children_and_a_world_where_everything_fails_go_on_the_sam
     (void)state;
     world(&here, 6, 3, 0);
     SearchConfig c = config(20, 80);
-    c.no_surrogate = 1;
+    c.surrogate = SURROGATE_OFF;
     check_every_moment(&c, 4);
     here.fail_every = 1;
     check_every_moment(&c, 1);
+}
+
+/* Answers that cost nothing: the surface cannot pay. What was decided by the clock is kept by a search that goes on, even
+ * where answers have become slow. */
+static void test_costs_are_weighed_once_and_the_decision_is_kept(void **state)
+{
+    (void)state;
+    SearchConfig c = config(20, 300);
+    c.surrogate = SURROGATE_AUTO;
+    world(&here, 6, 3, 0);
+    run(&here, &c, NULL, &whole);
+    size_t plain = 0, k = whole.n_moments / 2 + 2;
+    for (size_t i = whole.rows[k]; i < whole.n; i++)
+        plain += whole.kind[i] == KIND_OFFSPRING;
+    assert_true(plain == whole.n - whole.rows[k] && plain > 50);
+    const SearchStart start = moment(&whole, k);
+    here.pause_s = 0.005;
+    run(&here, &c, &start, &rest);
+    assert_same_search(&here, &whole, &rest);
+    forget(&rest);
+    forget(&whole);
+
+    here.pause_s = 0.02;
+    c = config(20, 110); /* slow from the beginning: it pays, and the search is that with the surface on */
+    c.surrogate = SURROGATE_AUTO;
+    run(&here, &c, NULL, &whole);
+    c.surrogate = SURROGATE_ON;
+    run(&here, &c, NULL, &rest);
+    assert_int_equal(whole.n, rest.n);
+    assert_memory_equal(whole.X, rest.X, rest.n * here.problem.n_var * sizeof *rest.X);
+    forget(&rest);
+    forget(&whole);
 }
 
 static void test_the_number_of_threads_may_change_in_between(void **state)
@@ -331,6 +367,7 @@ int main(void)
         cmocka_unit_test(test_failed_and_infeasible_designs_do_not_change_that),
         cmocka_unit_test(test_a_surface_that_is_half_believed_goes_on_the_same),
         cmocka_unit_test(test_plain_children_and_a_world_where_everything_fails_go_on_the_same),
+        cmocka_unit_test(test_costs_are_weighed_once_and_the_decision_is_kept),
         cmocka_unit_test(test_the_number_of_threads_may_change_in_between),
         cmocka_unit_test(test_more_simulations_than_planned_go_on_where_the_plan_ended),
         cmocka_unit_test(test_a_search_at_its_limit_simulates_nothing_more),

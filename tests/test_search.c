@@ -443,7 +443,7 @@ static void test_without_a_surrogate_nothing_is_predicted_and_the_front_is_worse
     world(&here, 12, 3);
     run(&here, &c, &seen);
     const double with = volume(seen.n, 3, seen.F);
-    c.no_surrogate = 1;
+    c.surrogate = SURROGATE_OFF;
     fresh(NULL);
     world(&here, 12, 3);
     run(&here, &c, &seen);

@@ -97,7 +97,7 @@ typedef struct {
         double max_hours, nondominated_share, trust_error;
         double crossover_probability, crossover_eta, mutation_eta, mutation_rate;
         long surrogate_max; /* most designs that the response surface is built on */
-        long surrogate;     /* 0: on, 1: off */
+        long surrogate;     /* SurrogateUse */
         long survival;      /* SurvivalKind */
         long polish;        /* designs at the end */
         char limits[SETTINGS_TEXT_MAX];

@@ -31,6 +31,12 @@ static const double LEAST_AGREEMENT = 0.15, AGREEMENT_WEIGHT = 0.25;
  */
 static const double OFF_LEAST = 0.15, OFF_MOST = 0.35, RAYS_MOST = 0.85, OFF_WEIGHT = 0.2;
 
+/* A surface costs wall time; with it a search needs a fifth of the simulations of a plain one, mostly less
+ * (docs/search.md). It therefore pays as long as its time for one simulation is below that of PAYS simulations. */
+static const double PAYS = 4.0;
+enum { COST_SAMPLE = 60 }; /* simulations chosen by the surface, before costs are weighed */
+typedef enum { ASIDE_OPEN, ASIDE_NO, ASIDE_YES } Aside;
+
 typedef struct {
     const Problem *problem;
     const SearchConfig *config;
@@ -41,6 +47,9 @@ typedef struct {
     Surface *surface;
     Group population, pool, offspring;
     size_t generation, n_predicted, batch_max;
+    double simulating_s, guided_s;      /* wall time of this session: in the simulator, of our own while guided */
+    size_t n_timed, n_guided;           /* simulations in these times */
+    size_t aside;                       /* Aside */
     double agreement;                   /* running mean of Kendall's tau between predicted and simulated batches */
     double off;                         /* running mean of how far from their directions descents by PBI end */
     size_t n_followed, n_followed_rays; /* descents of this generation, the last of the offspring; by rays come first */
@@ -103,7 +112,10 @@ static Status simulate_batch(Search *s, size_t n, EvaluationKind kind, Err *err)
     const Problem *p = s->problem;
     if (n == 0)
         return STATUS_OK;
+    const double before = seconds_since(&s->start);
     TRY(p->evaluate(n, s->X, s->F, s->G, s->ok, p->user, err));
+    s->simulating_s += seconds_since(&s->start) - before;
+    s->n_timed += n;
     return archive_insert(&s->archive, n, s->X, s->F, s->G, s->ok, (unsigned char)kind, s->generation, err);
 }
 
@@ -190,10 +202,25 @@ static Status sample_again(Search *s, Err *err)
     return STATUS_OK;
 }
 
+/* Once, when enough has been timed: a surface that costs more wall time per simulation than PAYS simulations steps
+ * aside. The decision is part of the state, so that a search that goes on keeps it. */
+static void weigh_costs(Search *s)
+{
+    if (s->config->surrogate != SURROGATE_AUTO || s->aside != ASIDE_OPEN || s->n_guided < COST_SAMPLE)
+        return;
+    const double simulation = s->simulating_s / (double)s->n_timed, own = s->guided_s / (double)s->n_guided;
+    s->aside = own > PAYS * simulation ? ASIDE_YES : ASIDE_NO;
+}
+
+static int may_use_surface(const Search *s)
+{
+    return s->config->surrogate != SURROGATE_OFF && s->aside != ASIDE_YES;
+}
+
 /* Whether the surface leads: it explains its own data, and what it foretold of late batches came in that order. */
 static int is_guided(const Search *s)
 {
-    return surface_stands(s->surface) && s->agreement > LEAST_AGREEMENT;
+    return may_use_surface(s) && surface_stands(s->surface) && s->agreement > LEAST_AGREEMENT;
 }
 
 /* Simulations between two fits of the surface: more as they accumulate, so that fitting never takes over. */
@@ -410,12 +437,16 @@ static void renew_population(Search *s, size_t first_new)
 static Status next_generation(Search *s, Err *err)
 {
     const size_t first_new = s->archive.n;
+    const double start = seconds_since(&s->start), simulating = s->simulating_s;
     s->n_predicted = 0;
     if (s->population.n < 2)
         return sample_again(s, err);
+    weigh_costs(s);
     measure_front(s);
-    if (!s->config->no_surrogate)
+    if (may_use_surface(s))
         TRY(surface_fit(s->surface, &s->archive, s->infill[INFILL_PBI], err));
+    else
+        surface_drop(s->surface);
     surface_predict(s->surface, &s->population, 0, 0);
     make_offspring(s, 0);
     EvaluationKind kind;
@@ -425,6 +456,10 @@ static Status next_generation(Search *s, Err *err)
     TRY(simulate_batch(s, n, kind, err));
     judge_surface(s, n);
     renew_population(s, first_new);
+    if (may_use_surface(s)) {
+        s->guided_s += seconds_since(&s->start) - start - (s->simulating_s - simulating);
+        s->n_guided += n;
+    }
     return STATUS_OK;
 }
 
@@ -473,7 +508,7 @@ static StopReason reason_to_stop(const Search *s)
 /* -- the state ------------------------------------------------------------------------------------------------------
  */
 
-enum { STATE_VERSION = 2 };
+enum { STATE_VERSION = 3 };
 
 /* All that the next generation takes from the earlier ones, beside the archive. */
 static void search_pack(Search *s, Pack *p)
@@ -488,6 +523,7 @@ static void search_pack(Search *s, Pack *p)
     pack_size(p, &s->generation, UINT32_MAX);
     pack(p, &s->agreement, sizeof s->agreement);
     pack(p, &s->off, sizeof s->off);
+    pack_size(p, &s->aside, ASIDE_YES);
     group_pack(&s->population, p, s->archive.n);
     surface_pack(s->surface, p);
 }
@@ -538,6 +574,9 @@ static int report(Search *s, ObserveFn observe, void *user)
         .n_predicted = s->n_predicted,
         .surrogate_error = surface_error(s->surface),
         .seconds = seconds_since(&s->start),
+        .simulation_s = s->n_timed > 0 ? s->simulating_s / (double)s->n_timed : NAN,
+        .own_s = s->n_guided > 0 ? s->guided_s / (double)s->n_guided : NAN,
+        .is_aside = s->aside == ASIDE_YES,
         .state = pack_finished(&s->state) ? s->state.bytes : NULL,
         .n_state = s->state.n,
     };

@@ -14,7 +14,8 @@
  * Predicted designs may live in the population; only simulated ones enter the archive, and the front is made of the
  * archive alone.
  *
- * Reproducible  random streams are keyed by (seed, generation, individual): the same bytes at any thread count
+ * Reproducible  random streams are keyed by (seed, generation, individual): the same bytes at any thread count;
+ *               no clock is asked but for SURROGATE_AUTO and max_seconds
  * Never twice   a design that is in the archive, failed ones too, is not simulated again
  * Threads       the problem's evaluate gets one call per generation with the whole batch; set BLAS to one thread
  * Goes on       from the simulations and the state of any generation's end (SearchView.state): the rest is then the
@@ -35,13 +36,18 @@
 /* Latin hypercube; chosen on the surface; plain children, where no surface leads; from outside the search. */
 typedef enum { KIND_SAMPLED, KIND_INFILL, KIND_OFFSPRING, KIND_POLISHED, KIND_COUNT } EvaluationKind;
 
+/* On; plain children only; or on until its wall time per simulation proves greater than that of four simulations. Auto
+ * is decided once, by the clock, and the decision is kept in the state: a search that goes on repeats it, another one
+ * from the beginning may decide otherwise where the costs are near the limit. */
+typedef enum { SURROGATE_ON, SURROGATE_OFF, SURROGATE_AUTO } SurrogateUse;
+
 typedef struct {
     uint32_t seed;
     size_t population, generations, max_evals, surrogate_max;
     size_t planned_evals; /* 0: max_evals. First sample and directions of infill are chosen for so many simulations;
                              of two searches that differ in max_evals only, one is then the beginning of the other */
     size_t initial;       /* 0: by the number of variables */
-    int no_surrogate;     /* plain children only */
+    SurrogateUse surrogate;
     SurvivalKind survival;
     double max_seconds;        /* 0: no limit */
     double nondominated_share; /* stop when this share of the archive is nondominated; 1: never */
@@ -65,7 +71,10 @@ typedef struct {
     size_t n_predicted;     /* offspring of this generation whose prediction stood */
     double surrogate_error; /* median leave-one-out error, share of range, worst objective; NaN: no surface yet */
     double seconds;
-    const void *state; /* (n_state bytes) of the search at this moment; NULL: no memory for it */
+    double simulation_s, own_s; /* wall time per simulation, of this session: in the simulator (all threads together),
+                                   of surrogate and search while the surface was in use; NAN: none yet */
+    int is_aside;               /* the surface costs more than it saves and is no longer used */
+    const void *state;          /* (n_state bytes) of the search at this moment; NULL: no memory for it */
     size_t n_state;
 } SearchView;
 

@@ -179,6 +179,11 @@ Status surface_fit(Surface *s, const Archive *a, Infill *near, Err *err)
     return STATUS_OK;
 }
 
+void surface_drop(Surface *s)
+{
+    s->fitted = 0;
+}
+
 int surface_stands(const Surface *s)
 {
     double explained = 0.0;

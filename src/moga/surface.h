@@ -25,6 +25,8 @@ void surface_free(Surface *s); /* NULL is fine */
 /* Fits to the archive; `near` has measured its front. Too few designs for a surface: surface_stands is 0. */
 Status surface_fit(Surface *s, const Archive *archive, Infill *near, Err *err);
 
+void surface_drop(Surface *s); /* as if it had never been fitted */
+
 /* Whether there is a surface and it explains enough of the objectives to be better than guessing. */
 int surface_stands(const Surface *s);
 

@@ -238,6 +238,9 @@ static int observe(const SearchView *view, void *user)
     sum->n_simulated = view->n;
     sum->n_failed = view->n_failed;
     sum->n_front = view->n_front;
+    sum->simulation_s = view->simulation_s;
+    sum->own_s = view->own_s;
+    sum->is_aside = view->is_aside;
     const StudyProgress p = {view, store_hypervolume(study->store),
                              (Pace){.simulated = view->n,
                                     .generations = study->generation,
@@ -338,7 +341,7 @@ SearchConfig study_search_config(const Settings *s)
         .generations = (size_t)s->search.generations,
         .max_evals = (size_t)s->search.max_evals,
         .surrogate_max = (size_t)s->search.surrogate_max,
-        .no_surrogate = s->search.surrogate == 1,
+        .surrogate = (SurrogateUse)s->search.surrogate,
         .survival = (SurvivalKind)s->search.survival,
         .max_seconds = 3600 * s->search.max_hours,
         .nondominated_share = s->search.nondominated_share,
@@ -422,6 +425,19 @@ static Status run_search(Study *study, Err *err)
     return status == STATUS_STOPPED ? STATUS_OK : status;
 }
 
+/* What surrogate and search cost beside the simulations, and what came of it. */
+static Status log_costs(const Study *study, Err *err)
+{
+    const StudySummary *sum = study->summary;
+    if (!isfinite(sum->own_s) || !isfinite(sum->simulation_s))
+        return STATUS_OK;
+    return store_log(
+        study->store, err,
+        "wall time per simulation: %.3g ms in the simulator, %.3g ms of surrogate and search (%.0f %%); %s",
+        1e3 * sum->simulation_s, 1e3 * sum->own_s, 100.0 * sum->own_s / (sum->own_s + sum->simulation_s),
+        sum->is_aside ? "the surrogate did not pay and stepped aside" : "the surrogate was used");
+}
+
 static Status finish(Study *study, Err *err)
 {
     StudySummary *sum = study->summary;
@@ -433,6 +449,7 @@ static Status finish(Study *study, Err *err)
     sum->seconds = study->seconds_before + session;
     TRY(store_log(study->store, err, "stopped: %s; %zu simulated, %zu failed, %zu on the front, %.1f s", why,
                   sum->n_simulated, sum->n_failed, sum->n_front, sum->seconds));
+    TRY(log_costs(study, err));
     TRY(store_event(study->store,
                     json_pack("{s:s, s:s, s:b, s:I, s:f}", "event", "stops", "why", why, "final", is_final, "simulated",
                               (json_int_t)sum->n_simulated, "seconds", sum->seconds),

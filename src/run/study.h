@@ -49,9 +49,11 @@ typedef struct {
     StopReason stopped;
     size_t n_simulated, n_failed, n_front;
     size_t n_tried_to_polish, n_polished; /* at the end; of these better by more than their spread */
-    size_t n_before; /* simulations that the run had when this session began */
+    size_t n_before;                      /* simulations that the run had when this session began */
     long max_evals;
-    double seconds;    /* of all sessions */
+    double seconds;             /* of all sessions */
+    double simulation_s, own_s; /* as in SearchView */
+    int is_aside;
     int has_no_core;   /* of a tower */
     SimResult no_core; /* the building alone under the same motion */
 } StudySummary;
