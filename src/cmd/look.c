@@ -5,21 +5,35 @@
 
 enum { RECORDS_MAX = 32 };
 
-/* Those of the command line, or the built-in motions that the run did not use. */
-static Status take_records(const Args *args, const Settings *run, const char *records[RECORDS_MAX], size_t *n, Err *err)
+typedef struct {
+    size_t n;
+    const char *path[RECORDS_MAX];
+    char own[RECORDS_MAX][SETTINGS_TEXT_MAX]; /* those that the run names */
+} Records;
+
+/* Those of the command line, else the further ones of the run, else the built-in motions that it did not use. */
+static Status take_records(const Args *args, const Settings *run, Records *r, Err *err)
 {
     static const char *const BUILT_IN[] = {"builtin:kobe-like", "builtin:elcentro-like", "builtin:sylmar-like"};
-    *n = 0;
+    r->n = 0;
     for (int i = 0; i < args->n_given; i++) {
         if (strcmp(args->given[i].option->name, "--record") != 0)
             continue;
-        if (*n == RECORDS_MAX)
+        if (r->n == RECORDS_MAX)
             return fail(err, STATUS_USAGE, "--record: more than %d earthquakes make no report", RECORDS_MAX);
-        records[(*n)++] = args->given[i].value;
+        r->path[r->n++] = args->given[i].value;
     }
-    for (size_t i = 0; !args_has(args, "--record") && i < sizeof BUILT_IN / sizeof BUILT_IN[0]; i++)
+    if (args_has(args, "--record"))
+        return STATUS_OK;
+    const size_t further = strcmp(run->motion.records, "none") == 0 ? 0 : list_count(run->motion.records);
+    for (size_t i = 0; i < further && r->n < RECORDS_MAX; i++)
+        if (list_item(run->motion.records, i, r->own[r->n], sizeof r->own[0])) {
+            r->path[r->n] = r->own[r->n];
+            r->n++;
+        }
+    for (size_t i = 0; further == 0 && i < sizeof BUILT_IN / sizeof BUILT_IN[0]; i++)
         if (strcmp(run->motion.record, BUILT_IN[i]) != 0)
-            records[(*n)++] = BUILT_IN[i];
+            r->path[r->n++] = BUILT_IN[i];
     return STATUS_OK;
 }
 
@@ -36,11 +50,13 @@ static Status take_floor(const Args *args, int *floor, Err *err)
 
 Status look_open(const Args *args, Report *r, Err *err)
 {
-    const char *design = args_value(args, "--design"), *records[RECORDS_MAX];
+    const char *design = args_value(args, "--design");
     Settings other;
-    DetailWish wish = {.other = &other, .records = records};
+    Records records;
+    DetailWish wish = {.other = &other, .records = records.path};
     TRY(run_settings(&other, args->operand, err));
-    TRY(take_records(args, &other, records, &wish.n_records, err));
+    TRY(take_records(args, &other, &records, err));
+    wish.n_records = records.n;
     TRY(take_floor(args, &wish.floor, err));
     TRY(args_apply(args, &other, NULL, NULL, err));
     return report_open(r, args->operand, design ? design : "knee", &wish, err);
