@@ -325,6 +325,23 @@ static void test_designs_records_and_floors_that_are_not_there_are_refused(void 
     assert_int_equal(imtet_on("report", "tower", "--out /no/such/folder/x.html"), 74);
 }
 
+static void test_a_report_needs_the_database_alone(void **state)
+{
+    (void)state;
+    char command[512];
+    snprintf(command, sizeof command, "mkdir '%s/bare' && cp '%s'/tower/run.sqlite '%s/bare'", folder, folder, folder);
+    assert_int_equal(shell(command), 0);
+    assert_int_equal(imtet_on("report", "bare", ""), 0);
+    json_t *bare = run_of("bare"), *tower = run_of("tower");
+    static const char *const PARTS[] = {"schema", "knee",     "evaluated", "convergence",
+                                        "detail", "settings", "provenance"};
+    for (size_t i = 0; i < sizeof PARTS / sizeof PARTS[0]; i++)
+        assert_true(json_equal(json_object_get(bare, PARTS[i]), json_object_get(tower, PARTS[i])));
+    assert_int_equal(json_integer_value(json_object_get(bare, "evaluated")), 60);
+    json_decref(bare);
+    json_decref(tower);
+}
+
 static long size_of(const char *run, const char *name)
 {
     char path[256];
@@ -395,8 +412,8 @@ static void test_the_bundle_of_charts_is_what_its_sources_give(void **state)
         skip();
     }
     snprintf(command, sizeof command,
-             "cd web && node bundle.mjs '%s' && cmp '%s/charts.js' charts.js && cmp '%s/LICENSES.txt' LICENSES.txt", folder,
-             folder, folder);
+             "cd web && node bundle.mjs '%s' && cmp '%s/charts.js' charts.js && cmp '%s/LICENSES.txt' LICENSES.txt",
+             folder, folder, folder);
     assert_int_equal(shell(command), 0);
 }
 
@@ -414,6 +431,7 @@ int main(void)
         cmocka_unit_test(test_a_run_of_another_problem_has_no_tower_in_its_report),
         cmocka_unit_test(test_names_cannot_break_out_of_the_page),
         cmocka_unit_test(test_designs_records_and_floors_that_are_not_there_are_refused),
+        cmocka_unit_test(test_a_report_needs_the_database_alone),
         cmocka_unit_test(test_pictures_are_drawn_as_svg_and_png_each),
         cmocka_unit_test(test_a_browser_shows_the_tower_brushes_it_and_downloads_the_selection),
         cmocka_unit_test(test_a_browser_shows_another_problem),

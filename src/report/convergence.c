@@ -4,119 +4,14 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "base/random.h"
 #include "moga/dominance.h"
 #include "moga/hypervolume.h"
+#include "run/saved.h"
 
-enum { SAMPLES = 20000, EXACT_MAX = 3, CELLS_MAX = 512 };
+enum { SAMPLES = 20000, EXACT_MAX = 3 };
 static const double MARGIN = 1.1; /* so that the worst of each objective still counts */
-
-/* ---- the file -------------------------------------------------------------------------------------------------- */
-
-/* Cells of one line, cut in place; quotes are respected. Returns their number; *line moves to the next line. */
-static size_t cut_line(char **line, char *cells[CELLS_MAX])
-{
-    size_t n = 0;
-    char *p = *line;
-    int quoted = 0;
-    cells[n++] = p;
-    for (; *p && (quoted || *p != '\n'); p++) {
-        if (*p == '"')
-            quoted = !quoted;
-        if (quoted || *p != ',')
-            continue;
-        *p = 0;
-        if (n < CELLS_MAX)
-            cells[n++] = p + 1;
-    }
-    *line = *p ? p + 1 : p;
-    *p = 0;
-    return n;
-}
-
-typedef struct {
-    size_t n_columns, generation, objective[OBJECTIVES_MAX];
-} Places;
-
-static Status find_places(const Front *front, size_t n, char *cells[], const char *path, Places *at, Err *err)
-{
-    at->n_columns = n;
-    at->generation = n;
-    for (size_t k = 0; k < front->n_obj; k++)
-        at->objective[k] = n;
-    for (size_t i = 0; i < n; i++) {
-        const size_t k = schema_find_objective(&front->schema, cells[i]);
-        if (strcmp(cells[i], "generation") == 0)
-            at->generation = i;
-        else if (k < front->n_obj)
-            at->objective[k] = i;
-    }
-    for (size_t k = 0; k < front->n_obj; k++)
-        if (at->objective[k] == n || at->generation == n)
-            return fail(err, STATUS_BAD_DATA, "%s: no column generation or no column %s", path,
-                        schema_objective(&front->schema, k)->name);
-    return STATUS_OK;
-}
-
-static double number_in(const char *cell)
-{
-    char *end;
-    const double value = strtod(cell, &end);
-    return end == cell ? NAN : value;
-}
-
-static Status parse(const Front *front, char *text, size_t room, const char *path, double generation[], double F[],
-                    size_t *n, Err *err)
-{
-    char *cells[CELLS_MAX], *line = text;
-    Places at;
-    TRY(find_places(front, cut_line(&line, cells), cells, path, &at, err));
-    for (*n = 0; *line && *n < room;) {
-        const size_t count = cut_line(&line, cells);
-        if (count != at.n_columns)
-            return fail(err, STATUS_BAD_DATA, "%s: row %zu has %zu columns, the header %zu", path, *n + 1, count,
-                        at.n_columns);
-        generation[*n] = number_in(cells[at.generation]);
-        for (size_t k = 0; k < front->n_obj; k++)
-            F[*n * front->n_obj + k] = schema_objective(&front->schema, k)->sense * number_in(cells[at.objective[k]]);
-        ++*n;
-    }
-    return STATUS_OK;
-}
-
-static size_t count_lines(const char *text)
-{
-    size_t n = 1;
-    for (; *text; text++)
-        n += *text == '\n';
-    return n;
-}
-
-Status convergence_read(const Front *front, const char *folder, Convergence *out, Err *err)
-{
-    char path[PATH_MAX], *text;
-    size_t length, n = 0;
-    double ideal[OBJECTIVES_MAX], span[OBJECTIVES_MAX];
-    memset(out, 0, sizeof *out);
-    if (snprintf(path, sizeof path, "%s/evaluations.csv", folder) >= (int)sizeof path || access(path, F_OK) != 0 ||
-        front->n == 0)
-        return STATUS_OK;
-    TRY(file_read(path, &text, &length, err));
-    const size_t room = count_lines(text);
-    double *generation = calloc(room * (1 + front->n_obj), sizeof *generation);
-    Status status = generation ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "%s: no memory for %zu rows", path, room);
-    if (status == STATUS_OK)
-        status = parse(front, text, room, path, generation, generation + room, &n, err);
-    if (status == STATUS_OK) {
-        front_box(front, ideal, span);
-        status = convergence_of(n, front->n_obj, generation, generation + room, ideal, span, out, err);
-    }
-    free(generation);
-    free(text);
-    return status;
-}
 
 /* ---- the volume ------------------------------------------------------------------------------------------------ */
 
@@ -181,11 +76,11 @@ static Status follow(size_t n, size_t n_obj, const double generation[], const do
     for (size_t i = 0; i < n; i++) {
         for (size_t k = 0; k < n_obj; k++)
             f[k] = (F[i * n_obj + k] - ideal[k]) / span[k];
-        if (!is_finite(n_obj, f))
-            c->n_failed++;
-        else if (exact)
+        const int reaches = is_finite(n_obj, f);
+        c->n_failed += !reaches;
+        if (reaches && exact)
             n_kept = keep(n_kept, n_obj, work, f);
-        else
+        else if (reaches)
             n_left = reach(n_left, n_obj, work, f);
         if (i + 1 < n && !(generation[i + 1] > generation[i]))
             continue;
@@ -211,6 +106,53 @@ Status convergence_of(size_t n, size_t n_obj, const double generation[], const d
     free(work);
     if (status != STATUS_OK)
         convergence_free(out);
+    return status;
+}
+
+/* ---- the run --------------------------------------------------------------------------------------------------- */
+
+/* What generations have finished; designs that failed or break limits of the user reach nothing. */
+static size_t take_rows(const Saved *h, double generation[], double F[])
+{
+    const size_t n_obj = h->schema.n_obj;
+    size_t n = 0;
+    for (size_t i = 0; i < h->n; i++) {
+        const SavedRow *row = &h->row[i];
+        if (row->kind == KIND_UNFINISHED)
+            continue;
+        generation[n] = (double)row->generation;
+        for (size_t k = 0; k < n_obj; k++)
+            F[n * n_obj + k] =
+                row->ok && !(row->violation > 0) ? schema_objective(&h->schema, k)->sense * h->F[i * n_obj + k] : NAN;
+        n++;
+    }
+    return n;
+}
+
+static Status follow_run(const Front *front, const Saved *h, Convergence *out, Err *err)
+{
+    double ideal[OBJECTIVES_MAX], span[OBJECTIVES_MAX];
+    double *generation = calloc(h->n * (1 + front->n_obj) + 1, sizeof *generation);
+    if (!generation)
+        return fail(err, STATUS_NO_MEMORY, "no memory for %zu evaluations", h->n);
+    const size_t n = take_rows(h, generation, generation + h->n);
+    front_box(front, ideal, span);
+    const Status status = convergence_of(n, front->n_obj, generation, generation + h->n, ideal, span, out, err);
+    out->n_failed = h->n_failed;
+    free(generation);
+    return status;
+}
+
+Status convergence_read(const Front *front, const char *folder, Convergence *out, Err *err)
+{
+    char path[PATH_MAX];
+    Saved h;
+    memset(out, 0, sizeof *out);
+    if (front->n == 0 || !saved_path(folder, path, sizeof path))
+        return STATUS_OK;
+    TRY(saved_read(&h, folder, err));
+    const Status status = follow_run(front, &h, out, err);
+    saved_free(&h);
     return status;
 }
 

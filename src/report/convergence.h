@@ -5,7 +5,7 @@
  * Up to three objectives it is exact (moga/hypervolume.h), else a share of uniform samples of the box, the same ones
  * for every generation, so that the curve never falls; with its standard error.
  *
- * Source     evaluations.csv of the run; designs that failed or break limits count for what the file says of them
+ * Source     the run's database: generations that have finished; a design that failed or breaks a limit reaches nothing
  * Ownership  convergence_read allocates, convergence_free releases (an empty Convergence is fine) */
 #ifndef IMTET_REPORT_CONVERGENCE_H
 #define IMTET_REPORT_CONVERGENCE_H
@@ -19,10 +19,10 @@ typedef struct {
     double *volume, *standard_error; /* (n) [-] */
 } Convergence;
 
-/* FOLDER/evaluations.csv; none is STATUS_OK and an empty Convergence. */
+/* A run without a database is STATUS_OK and an empty Convergence. */
 Status convergence_read(const Front *front, const char *folder, Convergence *out, Err *err);
 
-/* generation (n) ascending, F (n, n_obj) minimised, NaN in a row that failed. */
+/* generation (n) ascending, F (n, n_obj) minimised, NaN in a row that reaches nothing (counted as failed). */
 Status convergence_of(size_t n, size_t n_obj, const double generation[], const double F[], const double ideal[],
                       const double span[], Convergence *out, Err *err);
 void convergence_free(Convergence *c);

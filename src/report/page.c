@@ -28,18 +28,18 @@ static json_t *numbers(size_t n, size_t step, const double values[])
     return list;
 }
 
-/* Text of a file of the run, or null. */
-static json_t *text_of(const char *folder, const char *name)
+/* Every setting of the run. */
+static json_t *json_of_settings(const Settings *s)
 {
-    char path[PATH_MAX], *text;
+    char *text = NULL;
     size_t length;
-    Err ignored;
-    if (snprintf(path, sizeof path, "%s/%s", folder, name) >= (int)sizeof path ||
-        file_read(path, &text, &length, &ignored) != STATUS_OK)
-        return json_null();
-    json_t *string = json_stringn(text, length); /* NULL where it is not UTF-8 */
+    FILE *stream = open_memstream(&text, &length);
+    if (!stream)
+        return NULL;
+    settings_write(s, stream, 0);
+    json_t *string = fclose(stream) == 0 ? json_string(text) : NULL;
     free(text);
-    return string ? string : json_null();
+    return string;
 }
 
 /* ---- the chosen design ----------------------------------------------------------------------------------------- */
@@ -127,7 +127,8 @@ static json_t *json_of_run(const Report *r)
         (json_int_t)c->n_failed, "schema", json_of_names(&r->front.schema), "convergence", "simulated",
         numbers(c->n, 1, c->simulated), "volume", numbers(c->n, 1, c->volume), "error",
         numbers(c->n, 1, c->standard_error), "detail", r->has_detail ? json_of_detail(&r->detail) : json_null(),
-        "settings", text_of(r->folder, "settings.ini"), "provenance", text_of(r->folder, "provenance.json"));
+        "settings", json_of_settings(&r->settings), "provenance",
+        r->provenance ? json_string(r->provenance) : json_null());
 }
 
 /* JSON in which no text can end the script element or begin a comment: < stands only inside strings. */

@@ -21,6 +21,7 @@ typedef struct {
     Settings settings; /* of the run */
     Front front;
     size_t knee, chosen; /* rows of the front */
+    char *provenance;    /* JSON; NULL: the run has none */
     Convergence convergence;
     int has_detail;
     Detail detail;

@@ -17,7 +17,7 @@ function selectedCsv() {
 function download() {
   const url = URL.createObjectURL(new Blob([selectedCsv()], { type: "text/csv" }));
   element("a", { href: url, download: `${run.name}-selection.csv` }).click();
-  setTimeout(() => URL.revokeObjectURL(url), 1000);
+  setTimeout(() => URL.revokeObjectURL(url), 60000);
 }
 
 function designTable(host) {
