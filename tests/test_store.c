@@ -24,6 +24,11 @@ static const char TEXTBOOK[] = "[problem]\nkind = dtlz2\nvariables = 6\nobjectiv
 static const char TOWER[] = "[motion]\nrecord = builtin:kobe-like\nstretch = 1\n[sim]\nduration_s = 6\n"
                             "[search]\ninitial = 12\npopulation = 8\nmax_evals = 20\nsurrogate_max = 20\n";
 
+/* Cheap: as many simulations as polishing wants, half a second of each. */
+static const char POLISHED[] = "[motion]\nrecord = builtin:kobe-like\nstretch = 1\n[sim]\nduration_s = 6\n"
+                               "accuracy = coarse\n[search]\ninitial = 100\npopulation = 100\nmax_evals = 400\n"
+                               "surrogate = off\npolish = 1\n";
+
 /* An answer takes 40 ms. */
 static const char STEADY[] = "[problem]\nkind = external\ncommand = sh tests/worker.sh steady\nvariables = 3\n"
                              "objectives = 2\n[search]\ninitial = 36\npopulation = 12\nmax_evals = 40\n"
@@ -138,6 +143,20 @@ static void test_the_tower_stopped_in_between_is_the_tower_that_was_not(void **s
 {
     (void)state;
     check_pieces(TOWER, "tower", 3, (const int[]){2, 5, 15});
+}
+
+/* The pieces end in the search and in the polishing after it. */
+static void test_a_run_stopped_while_it_polishes_ends_with_the_same_designs(void **state)
+{
+    (void)state;
+    StudySummary summary;
+    Settings s = settings_of(POLISHED, "polish-whole");
+    assert_int_equal(run_by_pieces(&s, INT_MAX, &summary), 1);
+    assert_int_equal(summary.n_tried_to_polish, 1);
+    s = settings_of(POLISHED, "polish-pieces");
+    assert_true(run_by_pieces(&s, 150, &summary) > 2);
+    assert_int_equal(summary.n_tried_to_polish, 1);
+    assert_same_run("polish-whole", "polish-pieces");
 }
 
 /* Another number of threads, and a search that learns it has more simulations: the same in one piece or in many. */
@@ -535,7 +554,9 @@ static void test_readers_need_the_database_alone_and_the_files_come_back(void **
     assert_string_equal(exported, front);
     assert_string_equal(exported_all, all);
     free(output_of("choose @/alone --max f1=1"));
-    free(output_of("polish @/alone --design knee --evals 10"));
+    snprintf(command, sizeof command, "cp -r '%s/alone' '%s/another'", place.folder, place.folder);
+    assert_int_equal(system(command), 0);
+    free(output_of("polish @/another --design knee --evals 10"));
     free(output_of("optimize @/alone"));
     char *again[] = {read_in_place("alone/front.csv"), read_in_place("alone/evaluations.csv"),
                      read_in_place("alone/settings.ini"), read_in_place("alone/provenance.json")};
@@ -708,6 +729,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_a_run_stopped_after_every_kth_simulation_is_the_run_that_never_stopped),
         cmocka_unit_test(test_the_tower_stopped_in_between_is_the_tower_that_was_not),
+        cmocka_unit_test(test_a_run_stopped_while_it_polishes_ends_with_the_same_designs),
         cmocka_unit_test(test_more_simulations_go_on_the_same_whenever_they_are_granted),
         cmocka_unit_test(test_the_front_of_every_generation_can_be_told),
         cmocka_unit_test(test_polished_designs_join_the_front_but_not_the_search),

@@ -8,7 +8,6 @@
 
 #include "polish/polish.h"
 #include "rbf/rbf.h"
-#include "run/store.h"
 #include "run/subject.h"
 
 enum { CENTRES_MAX = 250, SURFACE_EVALS = 2000 };
@@ -251,6 +250,12 @@ static Status hear(const Simulation *simulation, void *user, Err *err)
     return STATUS_OK;
 }
 
+static int may_go_on(void *user)
+{
+    const RefineConfig *c = ((const Refine *)user)->config;
+    return !c->go_on || c->go_on(c->user);
+}
+
 static Status open_subject(Refine *r, long seed_shift, Err *err)
 {
     Settings s = r->run->settings;
@@ -260,7 +265,7 @@ static Status open_subject(Refine *r, long seed_shift, Err *err)
     r->subject = NULL;
     TRY(subject_open(&r->subject, &s, err));
     r->heard = 0;
-    subject_observe(r->subject, &(Observer){.done = hear, .user = r}, 0);
+    subject_observe(r->subject, &(Observer){.go_on = may_go_on, .done = hear, .user = r}, 0);
     return STATUS_OK;
 }
 
@@ -384,11 +389,17 @@ int refined_counts(const Refined *r)
     return r->has_changed && (isfinite(r->gain_error) ? r->gain > 2.0 * r->gain_error : r->gain > 0.0);
 }
 
-Status refined_store(const char *folder, const Refined *r, long *id, Err *err)
+StoredDesign refined_design(const Refined *r)
 {
     StoredDesign d = {.x = r->x, .f = r->f, .spread = r->spread, .violation = r->violation};
     verdict_set(&d.verdict, "ok", "");
     d.verdict.seconds = r->seconds;
+    return d;
+}
+
+Status refined_store(const char *folder, const Refined *r, long *id, Err *err)
+{
+    const StoredDesign d = refined_design(r);
     return store_add_evaluations(folder, 1, &d, id, err);
 }
 

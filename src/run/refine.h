@@ -14,7 +14,7 @@
 #ifndef IMTET_RUN_REFINE_H
 #define IMTET_RUN_REFINE_H
 
-#include "run/saved.h"
+#include "run/store.h"
 
 typedef struct {
     const char *algorithm; /* polish/polish.h */
@@ -24,6 +24,8 @@ typedef struct {
     long members;              /* of a tower; others are asked once */
     size_t max_evals;          /* designs tried on the simulator, those all steps together */
     double max_seconds;        /* 0: no limit */
+    int (*go_on)(void *user);  /* asked before each simulation, NULL: yes; 0: STATUS_STOPPED and nothing is refined */
+    void *user;
 } RefineConfig;
 
 typedef struct {
@@ -42,6 +44,9 @@ void refined_free(Refined *r);
 
 /* Gain beyond doubt, or no spread known and any gain. */
 int refined_counts(const Refined *r);
+
+/* As a run stores it; borrows x, f and spread. */
+StoredDesign refined_design(const Refined *r);
 
 /* Stored beside the designs of the search, as `polished`; the id that it got. Nobody may be working on the run. */
 Status refined_store(const char *folder, const Refined *r, long *id, Err *err);

@@ -158,6 +158,7 @@ static int dominates_row(const Saved *h, size_t i, size_t j)
 static void settle_front(Saved *h)
 {
     const size_t first = saved_find(h, POLISHED_FIRST);
+    h->n_front = 0;
     for (size_t i = first; i < h->n; i++)
         h->row[i].on_front = h->row[i].kind == KIND_POLISHED && h->row[i].ok && !(h->row[i].violation > 0.0);
     for (size_t i = first; i < h->n; i++)
@@ -171,6 +172,15 @@ static void settle_front(Saved *h)
         }
     for (size_t i = 0; i < h->n; i++)
         h->n_front += h->row[i].on_front != 0;
+}
+
+void saved_drop_polished(Saved *h)
+{
+    while (h->n > 0 && h->row[h->n - 1].id >= POLISHED_FIRST)
+        h->n_failed -= !h->row[--h->n].ok;
+    for (size_t i = 0; i < h->n; i++)
+        h->row[i].on_front = h->row[i].ok && h->row[i].entered != NEVER && h->row[i].left == NEVER;
+    settle_front(h);
 }
 
 size_t saved_find(const Saved *h, long id)
@@ -257,6 +267,8 @@ static Status take_head(sqlite3_stmt *row, void *user, Err *err)
         return fail(err, STATUS_NO_MEMORY, "%s: no memory for its provenance", database_path(l->d));
     h->planned_evals = (long)sqlite3_column_int64(row, 2);
     const long n_var = (long)sqlite3_column_int64(row, 3);
+    h->tried_to_polish = (long)sqlite3_column_int64(row, 4);
+    h->polished_at = (long)sqlite3_column_int64(row, 5);
     const int is_tower = h->settings.problem.kind == PROBLEM_TOWER;
     if (n_var < (is_tower ? 3 : 1) || n_var > 10000 || (!is_tower && n_var != h->settings.problem.variables))
         return fail(err, STATUS_IO, "%s: is damaged: it tells of %ld variables", database_path(l->d), n_var);
@@ -267,7 +279,9 @@ static Status load(Loading *l, Err *err)
 {
     Saved *h = l->h;
     Database *d = l->d;
-    TRY(database_each(d, "SELECT settings, provenance, planned_evals, n_var FROM run LIMIT 1", take_head, l, err));
+    TRY(database_each(
+        d, "SELECT settings, provenance, planned_evals, n_var, tried_to_polish, polished_at FROM run LIMIT 1",
+        take_head, l, err));
     if (!h->schema.column)
         return fail(err, STATUS_IO, "%s: is damaged: it has no settings", database_path(d));
     TRY(saved_load_rows(h, d, 0, LONG_MAX, err));

@@ -55,6 +55,8 @@ typedef struct {
     SavedGeneration *generation; /* (n_generations) */
     SavedSession *session;       /* (n_sessions) */
     long planned_evals;
+    long tried_to_polish; /* spread-out designs, at the end of a search of polished_at simulations */
+    long polished_at;
     void *state; /* (n_state bytes) of the search at the end of the last generation; NULL: none is finished yet */
     size_t n_state;
 } Saved;
@@ -68,6 +70,9 @@ Status saved_load(Saved *h, Database *d, Err *err);
 /* The evaluations first..last into a Saved that has a schema and no rows yet. */
 Status saved_load_rows(Saved *h, Database *d, long first, long last, Err *err);
 void saved_free(Saved *h);
+
+/* As if nothing had been polished: the front is that of the search. */
+void saved_drop_polished(Saved *h);
 
 /* Row of that design, or h->n. */
 size_t saved_find(const Saved *h, long id);

@@ -217,7 +217,8 @@ static Status open_logs(RunStore *store, Err *err)
 
 static const char TABLES[] =
     "CREATE TABLE run(id INTEGER PRIMARY KEY CHECK (id = 1), settings TEXT NOT NULL, provenance TEXT NOT NULL,"
-    " planned_evals INTEGER NOT NULL, n_var INTEGER NOT NULL, created TEXT NOT NULL);"
+    " planned_evals INTEGER NOT NULL, n_var INTEGER NOT NULL, created TEXT NOT NULL,"
+    " tried_to_polish INTEGER NOT NULL DEFAULT 0, polished_at INTEGER NOT NULL DEFAULT 0);"
     "CREATE TABLE evaluation(id INTEGER PRIMARY KEY, generation INTEGER NOT NULL, kind TEXT, outcome TEXT NOT NULL,"
     " reason TEXT NOT NULL, seconds REAL, x TEXT NOT NULL, f TEXT, spread TEXT, violation REAL, extra TEXT);"
     "CREATE TABLE generation(number INTEGER PRIMARY KEY, simulated INTEGER NOT NULL, failed INTEGER NOT NULL,"
@@ -728,18 +729,45 @@ void store_free(RunStore *store)
 /* -- designs from outside -------------------------------------------------------------------------------------------
  */
 
+/* Behind the polished ones that are there, as of the last generation. */
+static Status insert_polished(RunStore *store, const Schema *schema, const StoredDesign *design, long *id, Err *err)
+{
+    double last, generation;
+    TRY(database_number(store->db, "SELECT max(id) FROM evaluation", 0, &last, err));
+    TRY(database_number(store->db, "SELECT max(number) FROM generation", 0, &generation, err));
+    *id = last >= POLISHED_FIRST ? (long)last + 1 : POLISHED_FIRST;
+    return insert(store->db, schema, *id, (long)generation, kind_word(KIND_POLISHED), design, err);
+}
+
+Status store_read(RunStore *store, Saved *saved, Err *err)
+{
+    TRY(store_flush(store, err));
+    return saved_load(saved, store->db, err);
+}
+
+Status store_polished(RunStore *store, const StoredDesign *better, size_t n_tried, size_t n_simulated, Err *err)
+{
+    long id;
+    TRY(begin(store, err));
+    if (better) {
+        TRY(insert_polished(store, store->schema, better, &id, err));
+        store->has_polished = 1;
+    }
+    TRY(database_do(store->db, err, "UPDATE run SET tried_to_polish = ?, polished_at = ?", "ii", (long)n_tried,
+                    (long)n_simulated));
+    return store_flush(store, err);
+}
+
 static Status add_all(RunStore *store, size_t n, const StoredDesign designs[], long *first_id, Err *err)
 {
-    const Saved *h = &store->saved;
-    const long generation = h->n_generations > 0 ? h->generation[h->n_generations - 1].number : 0;
-    const long last = h->n > 0 ? h->row[h->n - 1].id : 0;
-    const long first = last >= POLISHED_FIRST ? last + 1 : POLISHED_FIRST;
+    long id = 0;
     TRY(begin(store, err));
-    for (size_t i = 0; i < n; i++)
-        TRY(insert(store->db, &h->schema, first + (long)i, generation, kind_word(KIND_POLISHED), &designs[i], err));
+    for (size_t i = 0; i < n; i++) {
+        TRY(insert_polished(store, &store->saved.schema, &designs[i], &id, err));
+        if (first_id && i == 0)
+            *first_id = id;
+    }
     TRY(store_flush(store, err));
-    if (first_id)
-        *first_id = first;
     return write_whole_tables(store, 1, err);
 }
 

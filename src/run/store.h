@@ -12,7 +12,7 @@
  * COMMIT_S after the one before, and at the end of its batch. What a kill can cost is what was under way and COMMIT_S
  * of simulations. The end of a generation is one transaction: kinds, front, hypervolume, state of the search.
  *
- *   run         settings (INI), provenance (JSON), planned_evals, n_var, created
+ *   run         settings (INI), provenance (JSON), planned_evals, n_var, created, tried_to_polish, polished_at
  *   evaluation  id, generation, kind (NULL: its generation is not finished), outcome, reason, seconds, x, f, spread
  * (JSON lists; NULL: none), violation, extra generation  number, simulated, failed, front, predicted, surrogate_error,
  * hypervolume, seconds, finished front       evaluation, entered, left: it was on the front of the generations entered
@@ -60,6 +60,14 @@ double store_hypervolume(const RunStore *store); /* of the last generation; NAN:
 __attribute__((format(printf, 3, 4))) Status store_log(RunStore *store, Err *err, const char *format, ...);
 Status store_event(RunStore *store, json_t *event, Err *err);
 
+/* The run as the database has it now. */
+Status store_read(RunStore *store, Saved *saved, Err *err);
+
+/* One more design of the finished search has been tried to polish; `better` (NULL: it did not become better) joins the
+ * run as in store_add_evaluations. */
+typedef struct StoredDesign StoredDesign;
+Status store_polished(RunStore *store, const StoredDesign *better, size_t n_tried, size_t n_simulated, Err *err);
+
 /* Why the session ends. is_final: there is nothing to go on with. */
 Status store_close(RunStore *store, const char *stopped, int is_final, double session, Err *err);
 void store_free(RunStore *store); /* NULL is fine */
@@ -67,12 +75,12 @@ void store_free(RunStore *store); /* NULL is fine */
 /* Designs from outside the search, polished ones say, into the archive of a run that nobody works on: they get ids from
  * POLISHED_FIRST on and the kind `polished`, and front.csv and evaluations.csv are written anew. The search does not
  * see them: a run that goes on later does what it would have done without them. first_id may be NULL. */
-typedef struct {
+struct StoredDesign {
     const double *x, *f;  /* (n_var); (n_obj) natural signs, not read unless the outcome is ok */
     const double *spread; /* (n_obj) standard deviations, NAN or NULL where not known */
     double violation;     /* of the user's limits: 0 where they hold */
     Verdict verdict;
-} StoredDesign;
+};
 Status store_add_evaluations(const char *folder, size_t n, const StoredDesign designs[], long *first_id, Err *err);
 
 #endif

@@ -490,8 +490,11 @@ static size_t polish_evals(const Settings *s)
     return s->problem.kind == PROBLEM_TOWER && each >= POLISH_LEAST ? (size_t)each : 0;
 }
 
-static Status polish_one(const Saved *h, size_t row, size_t improve, const Settings *s, StudySummary *sum, Err *err)
+/* The better design is stored with the note that this one has been tried: a run that is cut short goes on behind it. */
+static Status polish_one(Study *study, const Saved *h, size_t row, size_t improve, size_t n_tried, Err *err)
 {
+    StudySummary *sum = study->summary;
+    const Settings *s = &study->used;
     unsigned char keep[OBJECTIVES_MAX];
     Refined refined;
     memset(keep, 1, sizeof keep);
@@ -500,36 +503,45 @@ static Status polish_one(const Saved *h, size_t row, size_t improve, const Setti
                                  .keep = keep,
                                  .slack = -1.0,
                                  .members = s->sim.ensemble > POLISH_MEMBERS ? s->sim.ensemble : POLISH_MEMBERS,
-                                 .max_evals = polish_evals(s)};
+                                 .max_evals = polish_evals(s),
+                                 .go_on = may_go_on,
+                                 .user = study};
     Status status = refine_design(h, row, &config, &refined, err);
-    if (status == STATUS_OK && refined_counts(&refined)) {
-        status = refined_store(sum->folder, &refined, NULL, err);
-        sum->n_polished++;
+    if (status == STATUS_OK) {
+        const StoredDesign better = refined_design(&refined);
+        const int counts = refined_counts(&refined);
+        status = store_polished(study->store, counts ? &better : NULL, n_tried, sum->n_simulated, err);
+        sum->n_polished += counts != 0;
+        sum->n_tried_to_polish++;
     }
     refined_free(&refined);
     return status;
 }
 
 /* Some spread-out designs of the finished run, each in the objective in which it is best already. */
-static Status polish_some(const Study *study, Err *err)
+static Status polish_chosen(Study *study, const Saved *h, Err *err)
 {
     size_t rows[POLISH_MOST], improve[POLISH_MOST];
-    StudySummary *sum = study->summary;
-    const Settings *s = &study->used;
+    const long most = study->used.search.polish;
+    const size_t n = refine_choose(h, (size_t)(most < POLISH_MOST ? most : POLISH_MOST), rows, improve);
+    const size_t tried = h->polished_at == (long)study->summary->n_simulated ? (size_t)h->tried_to_polish : 0;
+    for (size_t i = tried; i < n; i++)
+        TRY(polish_one(study, h, rows[i], improve[i], i + 1, err));
+    return STATUS_OK;
+}
+
+static Status polish_some(Study *study, Err *err)
+{
     Saved h;
-    if (polish_evals(s) == 0 || sum->n_simulated == sum->n_before)
+    if (study->summary->stopped == STOP_ASKED || polish_evals(&study->used) == 0)
         return STATUS_OK;
-    TRY(saved_read(&h, sum->folder, err));
-    const size_t n =
-        refine_choose(&h, (size_t)(s->search.polish < POLISH_MOST ? s->search.polish : POLISH_MOST), rows, improve);
-    Status status = STATUS_OK;
-    for (size_t i = 0;
-         status == STATUS_OK && i < n && !(study->options->stop && study->options->stop(study->options->user)); i++) {
-        sum->n_tried_to_polish++;
-        status = polish_one(&h, rows[i], improve[i], s, sum, err);
-    }
+    TRY(store_read(study->store, &h, err));
+    saved_drop_polished(&h);
+    const Status status = polish_chosen(study, &h, err);
     saved_free(&h);
-    return status;
+    if (status == STATUS_STOPPED)
+        study->summary->stopped = STOP_ASKED;
+    return status == STATUS_STOPPED ? STATUS_OK : status;
 }
 
 static Status work(Study *study, Err *err)
@@ -537,8 +549,8 @@ static Status work(Study *study, Err *err)
     TRY(log_start(study, err));
     TRY(run_search(study, err));
     TRY(study->status);
-    TRY(finish(study, err));
-    return polish_some(study, err);
+    TRY(polish_some(study, err));
+    return finish(study, err);
 }
 
 Status study_run(const Settings *s, const StudyOptions *options, StudySummary *summary, FILE *differences, Err *err)
