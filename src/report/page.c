@@ -118,12 +118,11 @@ static json_t *json_of_run(const Report *r)
     for (size_t n = strlen(name); n > 1 && name[n - 1] == '/'; n--)
         name[n - 1] = 0;
     const char *slash = strrchr(name, '/');
-    const int is_robust = r->settings.sim.ensemble > 1 || strcmp(r->settings.motion.records, "none") != 0;
     return json_pack(
         "{s:s, s:s, s:s, s:s, s:b, s:b, s:I, s:I, s:I, s:I, s:o, s:{s:o, s:o, s:o}, s:o, s:o, s:o}", "version",
         program_version(), "revision", program_revision(), "name", slash && slash[1] ? slash + 1 : name, "folder", name,
-        "tower", r->has_detail, "robust", r->has_detail && is_robust, "knee", (json_int_t)front_id(&r->front, r->knee),
-        "chosen", (json_int_t)front_id(&r->front, r->chosen), "evaluated", (json_int_t)c->n_evaluated, "failed",
+        "tower", r->has_detail, "robust", r->is_robust, "knee", (json_int_t)front_id(&r->front, r->knee), "chosen",
+        (json_int_t)front_id(&r->front, r->chosen), "evaluated", (json_int_t)c->n_evaluated, "failed",
         (json_int_t)c->n_failed, "schema", json_of_names(&r->front.schema), "convergence", "simulated",
         numbers(c->n, 1, c->simulated), "volume", numbers(c->n, 1, c->volume), "error",
         numbers(c->n, 1, c->standard_error), "detail", r->has_detail ? json_of_detail(&r->detail) : json_null(),

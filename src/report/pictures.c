@@ -73,60 +73,89 @@ static void write_rows(FILE *script, const char *block, const Report *r, size_t 
     fputs("EOD\n", script);
 }
 
-/* Columns x and y of the objectives as one panel; the third gives the colour. */
-static void write_panel(FILE *script, const Report *r, size_t x, size_t y, const char *x_label, const char *y_label)
+/* Two objectives against each other; the last one gives the colour. */
+typedef struct {
+    size_t x, y;
+    const char *x_label, *y_label;
+} Panel;
+
+static void write_panel(FILE *script, const Report *r, const Panel *p)
 {
+    const size_t x = p->x + 1, y = p->y + 1;
     fputs("set xlabel ", script);
-    gnuplot_quote(script, x_label);
+    gnuplot_quote(script, p->x_label);
     fputs(" noenhanced\nset ylabel ", script);
-    gnuplot_quote(script, y_label);
+    gnuplot_quote(script, p->y_label);
     fprintf(script,
             " noenhanced offset 1.2\n"
             "plot $FRONT using %zu:%zu:%zu with points pt 7 ps DOT lc palette, "
             "$KNEE using %zu:%zu with points pt 13 ps 2.6 lc rgb 'white', "
             "'' using %zu:%zu with points pt 13 ps 1.8 lc rgb WITHOUT",
-            x + 1, y + 1, r->front.n_obj, x + 1, y + 1, x + 1, y + 1);
-    if (r->has_detail)
+            x, y, r->front.n_obj, x, y, x, y);
+    if (r->has_detail && !r->is_robust)
         fprintf(script,
                 ", $ALONE using %zu:%zu with points pt 2 ps 1.7 lw 7 lc rgb 'white', "
                 "'' using %zu:%zu with points pt 2 ps 1.5 lw 3 lc rgb 'black'",
-                x + 1, y + 1, x + 1, y + 1);
+                x, y, x, y);
     fputs("\nunset label\n", script);
+}
+
+/* Those of the tower, or the first three pairs. Returns how many there are. */
+static size_t choose_panels(const Report *r, Panel panels[3])
+{
+    static const size_t PAIRS[3][2] = {{0, 1}, {0, 2}, {1, 2}};
+    static const Panel TOWER[3] = {
+        {0, 2, "largest displacement J1 [m]", "largest acceleration J3 [g]"},
+        {0, 1, "largest displacement J1 [m]", "largest interstorey drift J2 [m]"},
+        {3, 4, "energy share of the first mode [%]", "energy share of modes 5 to 10 [%]"},
+    };
+    const Schema *s = &r->front.schema;
+    const size_t n = r->front.n_obj > 2 ? 3 : 1;
+    for (size_t i = 0; i < n; i++) {
+        const size_t x = PAIRS[i][0], y = PAIRS[i][1];
+        panels[i] =
+            r->has_detail ? TOWER[i] : (Panel){x, y, schema_objective(s, x)->name, schema_objective(s, y)->name};
+    }
+    return n;
+}
+
+static void write_legend(FILE *script, const Report *r)
+{
+    fprintf(script,
+            "set label 1 '%zu designs of the front' at screen 0.06,0.95 point pt 7 ps 1 lc rgb '#21918c' offset 0.8\n"
+            "set label 2 'the knee' at screen 0.28,0.95 point pt 13 ps 1.8 lc rgb WITHOUT offset 1\n",
+            r->front.n);
+    if (r->has_detail)
+        fputs("set xrange [0:*]\nset yrange [0:*]\n", script);
+    if (r->has_detail && !r->is_robust)
+        fputs("set label 3 'the building without a core' at screen 0.39,0.95 point pt 2 ps 1.5 lw 3 lc rgb 'black' "
+              "offset 1\n",
+              script);
+    fputs("set cblabel ", script);
+    gnuplot_quote(script,
+                  r->has_detail ? "core mass [t]" : schema_objective(&r->front.schema, r->front.n_obj - 1)->name);
+    fputs(" noenhanced\n", script);
 }
 
 static void write_front(FILE *script, const Report *r)
 {
-    const size_t last = r->front.n_obj - 1, second = last < 1 ? 0 : 1, third = last < 2 ? second : 2;
+    Panel panels[3];
+    const size_t n = choose_panels(r, panels);
     write_rows(script, "FRONT", r, 0, r->front.n);
     write_rows(script, "KNEE", r, r->knee, 1);
     fputs("$ALONE << EOD\n", script);
     for (int k = 0; r->has_detail && k < N_OBJECTIVES; k++)
         fprintf(script, "%.8g ", measure_value(&r->detail.result[SCENE_NO_CORE], k) / (k == 6 ? 1000 : 1));
     fprintf(script,
-            "\nEOD\nset multiplot layout 1,3 margins 0.055,0.905,0.135,0.88 spacing 0.066,0\n"
-            "set offsets graph 0.02, graph 0.04, graph 0.04, graph 0.02\nunset key\nunset colorbox\n"
-            "set label 1 '%zu designs of the front' at screen 0.06,0.95 point pt 7 ps 1 lc rgb '#21918c' offset 0.8\n"
-            "set label 2 'the knee' at screen 0.28,0.95 point pt 13 ps 1.8 lc rgb WITHOUT offset 1\n",
-            r->front.n);
-    if (r->has_detail)
-        fputs("set label 3 'the building without a core' at screen 0.39,0.95 point pt 2 ps 1.5 lw 3 lc rgb 'black' "
-              "offset 1\nset xrange [0:*]\nset yrange [0:*]\nset cblabel 'core mass [t]'\n",
-              script);
-    const Schema *s = &r->front.schema;
-    const char *x = schema_objective(s, 0)->name;
-    write_panel(script, r, 0, third, r->has_detail ? "largest displacement J1 [m]" : x,
-                r->has_detail ? "largest acceleration J3 [g]" : schema_objective(s, third)->name);
-    write_panel(script, r, 0, second, r->has_detail ? "largest displacement J1 [m]" : x,
-                r->has_detail ? "largest interstorey drift J2 [m]" : schema_objective(s, second)->name);
-    fputs("set colorbox user origin 0.922,0.135 size 0.013,0.745\n", script);
-    if (!r->has_detail) {
-        fputs("set cblabel ", script);
-        gnuplot_quote(script, schema_objective(s, last)->name);
-        fputs(" noenhanced\n", script);
+            "\nEOD\nset multiplot layout 1,%zu margins 0.055,0.905,0.135,0.88 spacing 0.066,0\n"
+            "set offsets graph 0.02, graph 0.04, graph 0.04, graph 0.02\nunset key\nunset colorbox\n",
+            n);
+    write_legend(script, r);
+    for (size_t i = 0; i < n; i++) {
+        if (i + 1 == n)
+            fputs("set colorbox user origin 0.922,0.135 size 0.013,0.745\n", script);
+        write_panel(script, r, &panels[i]);
     }
-    write_panel(script, r, r->has_detail ? 3 : second, r->has_detail ? 4 : third,
-                r->has_detail ? "energy share of the first mode [%]" : schema_objective(s, second)->name,
-                r->has_detail ? "energy share of modes 5 to 10 [%]" : schema_objective(s, third)->name);
 }
 
 static void write_growth(FILE *script, const Report *r)
@@ -295,7 +324,7 @@ static void write_sway(FILE *script, const Report *r)
             d->spectrum[0].t[SPECTRUM_TIMES - 1], sqrt(top));
     write_amplitude_tics(script, top);
     for (int i = 0; i < 2; i++) {
-        const double left = 0.07 + 0.45 * i;
+        const double left = 0.085 + 0.445 * i;
         if (d->history[i].n < 2)
             continue;
         write_history(script, "H", &d->history[i]);
@@ -309,7 +338,7 @@ static void write_sway(FILE *script, const Report *r)
                 "set xlabel 'time [s]'\nset ylabel 'frequency [Hz]'\nset yrange [%.6g:%.6g]\nunset grid\n"
                 "set ytics ('0.1' -1, '0.2' -0.69897, '0.5' -0.30103, '1' 0, '2' 0.30103, '5' 0.69897, '10' 1)\n"
                 "%s\n",
-                left, left + 0.375, d->floor + 1, WORDS[i], -1.05 * limit, 1.05 * limit, log10(d->spectrum[i].f[0]),
+                left, left + 0.365, d->floor + 1, WORDS[i], -1.05 * limit, 1.05 * limit, log10(d->spectrum[i].f[0]),
                 log10(d->spectrum[i].f[SPECTRUM_FREQUENCIES - 1]),
                 i == 0 ? "unset colorbox"
                        : "set colorbox user origin 0.915,0.14 size 0.012,0.49\nset cblabel 'amplitude [m]' offset 0.5");
@@ -385,6 +414,8 @@ static void write_script(FILE *script, const void *user)
 static int is_wanted(const Report *r, const Picture *p)
 {
     const Detail *d = &r->detail;
+    if (p->write == write_front)
+        return r->front.n_obj > 1;
     if (p->write == write_growth)
         return r->convergence.n > 1;
     if (p->write == write_elsewhere)

@@ -40,6 +40,7 @@ Status report_open(Report *r, const char *folder, const char *design, const Deta
     if (status == STATUS_OK)
         status = take_provenance(r, err);
     r->has_detail = r->settings.problem.kind == PROBLEM_TOWER;
+    r->is_robust = r->has_detail && (r->settings.sim.ensemble > 1 || strcmp(r->settings.motion.records, "none") != 0);
     if (status == STATUS_OK && r->has_detail)
         status = detail_make(&r->settings, r->front.n_var, front_x(&r->front, r->chosen), wish, &r->detail, err);
     if (status != STATUS_OK)

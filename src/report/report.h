@@ -23,6 +23,7 @@ typedef struct {
     size_t knee, chosen; /* rows of the front */
     char *provenance;    /* JSON; NULL: the run has none */
     Convergence convergence;
+    int is_robust; /* objectives are those of several simulations, not of the one in detail */
     int has_detail;
     Detail detail;
 } Report;
