@@ -627,6 +627,46 @@ static void test_designs_are_chosen_by_limits_weights_and_wishes_and_polished(vo
     expect(2, "no algorithm is called", "polish @/kind --design knee --algorithm magic");
 }
 
+/* The first simulations of the second run are the front of the first one; a choice of three begins with the knee. */
+static void test_a_search_begins_with_given_designs_and_a_front_is_thinned(void **state)
+{
+    (void)state;
+    write_in_place("sphere.ini", "[problem]\nkind = dtlz2\nvariables = 4\nobjectives = 3\n"
+                                 "[search]\nmax_evals = 45\ninitial = 30\npopulation = 12\n");
+    free(output_of("optimize @/sphere.ini --out @/earlier"));
+    free(output_of("optimize @/sphere.ini --out @/later --set search.start=@/earlier"));
+    free(output_of("export @/later --all --csv @/all.csv"));
+    free(output_of("export @/earlier --select 3 --csv @/three.csv"));
+    char *front_path = in_place("earlier/front.csv"), *all_path = in_place("all.csv"),
+         *three_path = in_place("three.csv");
+    char *all, *line;
+    size_t length;
+    Table front, three;
+    Err err = {0};
+    CHECK_OK(table_read(&front, front_path, 1, &err), &err);
+    CHECK_OK(table_read(&three, three_path, 1, &err), &err);
+    CHECK_OK(file_read(all_path, &all, &length, &err), &err);
+    line = strchr(all, '\n') + 1;
+    for (size_t i = 0; i < front.n_rows; i++, line = strchr(line, '\n') + 1) {
+        double x = 0.0;
+        assert_int_equal(sscanf(line, "%*d,%*d,%*[a-z],ok,,%lf", &x), 1);
+        assert_true(x == front.values[i * front.n_cols + 1]);
+    }
+    assert_int_equal(three.n_rows, 3);
+    char *said = output_of("choose @/earlier"), knee[40];
+    snprintf(knee, sizeof knee, " %.0f ", three.values[0]);
+    assert_non_null(strstr(said, knee));
+    expect(66, "search.start", "optimize @/sphere.ini --out @/no --set search.start=@/nothing");
+    expect(2, "is no number of designs", "export @/earlier --select many --csv -");
+    free(said);
+    free(all);
+    table_free(&front);
+    table_free(&three);
+    free(front_path);
+    free(all_path);
+    free(three_path);
+}
+
 static void test_a_textbook_problem_is_written_design_by_design(void **state)
 {
     (void)state;
@@ -683,6 +723,7 @@ int main(void)
         cmocka_unit_test(test_a_design_is_evaluated_on_every_motion_of_a_folder),
         cmocka_unit_test(test_an_external_simulator_is_searched_and_every_design_exported),
         cmocka_unit_test(test_designs_are_chosen_by_limits_weights_and_wishes_and_polished),
+        cmocka_unit_test(test_a_search_begins_with_given_designs_and_a_front_is_thinned),
         cmocka_unit_test(test_a_textbook_problem_is_written_design_by_design),
         cmocka_unit_test(test_a_run_that_is_killed_leaves_its_last_finished_generation),
         cmocka_unit_test(test_a_building_of_five_floors_goes_all_the_way),

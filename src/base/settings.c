@@ -121,6 +121,8 @@ static const Option OPTIONS[] = {
     {"search.population", "-", WHOLE, AT(search.population), "92", 4, 100000, NULL, "designs per generation"},
     {"search.initial", "-", WHOLE, AT(search.initial), "0", 0, 1000000, NULL,
      "designs of the Latin hypercube start, no more than max_evals; 0: by the number of variables"},
+    {"search.start", "-", TEXT, AT(search.start), "none", 0, 0, NULL,
+     "designs to begin with: a CSV with a column per variable, or the folder of a run, whose front is taken"},
     {"search.generations", "-", WHOLE, AT(search.generations), "1000", 1, 1e9, NULL, "stop after so many"},
     {"search.max_evals", "-", WHOLE, AT(search.max_evals), "2000", 4, 1e6, NULL, "stop after so many simulations"},
     {"search.max_hours", "h", REAL, AT(search.max_hours), "0", 0, 1e4, NULL, "stop after so long; 0: no limit"},

@@ -101,6 +101,7 @@ typedef struct {
         long survival;      /* SurvivalKind */
         long polish;        /* designs at the end */
         char limits[SETTINGS_TEXT_MAX];
+        char start[SETTINGS_TEXT_MAX]; /* a CSV of designs or a run's folder, or none */
     } search;
     struct {
         char out[SETTINGS_TEXT_MAX]; /* the run's folder */

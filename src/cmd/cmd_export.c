@@ -5,6 +5,7 @@
 #include "run/export.h"
 #include "run/front.h"
 #include "run/output.h"
+#include "run/refine.h"
 
 /* A run without a database has the tables as files. */
 static Status copy_file(const char *folder, const char *name, const char *path, Err *err)
@@ -26,6 +27,25 @@ static Status copy_file(const char *folder, const char *name, const char *path, 
     return status;
 }
 
+/* A well-spread choice of the front: the knee first, then again and again the design farthest from those chosen. */
+static Status write_selected(const Args *args, const Saved *h, FILE *f, Err *err)
+{
+    char *end;
+    const long wanted = strtol(args_value(args, "--select"), &end, 10);
+    if (*end || wanted < 1 || wanted > 1000000)
+        return fail(err, STATUS_USAGE, "--select: '%.40s' is no number of designs", args_value(args, "--select"));
+    size_t *rows = calloc((size_t)wanted, sizeof *rows);
+    if (!rows)
+        return fail(err, STATUS_NO_MEMORY, "no memory for %ld designs", wanted);
+    const size_t n = refine_choose(h, (size_t)wanted, rows, NULL);
+    export_front_header(f, &h->schema);
+    for (size_t i = 0; i < n; i++)
+        export_front_row(f, &h->schema, h->row[rows[i]].id, h->X + rows[i] * h->schema.n_var,
+                         h->F + rows[i] * h->schema.n_obj, h->spread + rows[i] * h->schema.n_obj);
+    free(rows);
+    return STATUS_OK;
+}
+
 static Status write_tables(const Args *args, const Saved *h, Err *err)
 {
     Output o;
@@ -35,7 +55,13 @@ static Status write_tables(const Args *args, const Saved *h, Err *err)
             return STATUS_OK;
     }
     TRY(output_open(&o, args_value(args, "--csv"), err));
-    if (args_has(args, "--all")) {
+    if (args_has(args, "--select")) {
+        Status status = write_selected(args, h, o.stream, err);
+        if (status != STATUS_OK) {
+            output_abandon(&o);
+            return status;
+        }
+    } else if (args_has(args, "--all")) {
         export_evaluations_header(o.stream, &h->schema);
         export_evaluations(o.stream, h);
     } else {
@@ -63,6 +89,7 @@ static Status run(const Args *args, Err *err)
 static const ArgOption OPTIONS[] = {
     {"--csv", "FILE", NULL, 0, "where it goes; -: standard output"},
     {"--all", NULL, NULL, 0, "every design that was evaluated, with its outcome, instead of the front"},
+    {"--select", "N", NULL, 0, "N designs of the front that are spread over it, the knee first, instead of all of it"},
     {"--json", NULL, NULL, 0, "settings, columns, every design and every generation, as JSON on standard output"},
     OPTION_END,
 };

@@ -472,14 +472,35 @@ static size_t initial_size(const Search *s)
     return wanted < half ? wanted : half > 4 ? half : 4;
 }
 
+/* Samples beside n_given designs that are given: what is left of the first sample, but at least a half of it. */
+static size_t n_samples(const Search *s)
+{
+    const size_t initial = initial_size(s), given = s->config->n_given;
+    return given < initial / 2 ? initial - given : initial - initial / 2;
+}
+
+/* Into the box, then into what can be built. */
+static void make_allowed(const Problem *p, double x[])
+{
+    for (size_t d = 0; d < p->n_var; d++)
+        x[d] = fmin(fmax(x[d], p->lower[d]), p->upper[d]);
+    if (p->repair)
+        p->repair(x, p->user);
+}
+
 static Status first_generation(Search *s, Err *err)
 {
     const Problem *p = s->problem;
+    const size_t n_samples_wanted = n_samples(s);
     size_t n = 0;
-    latin_hypercube(s->config->seed, 0, initial_size(s), p->n_var, p->lower, p->upper, s->pool.X, s->chosen);
-    for (size_t i = 0; i < initial_size(s); i++) {
-        if (p->repair)
-            p->repair(s->pool.X + i * p->n_var, p->user);
+    for (size_t i = 0; i < s->config->n_given; i++) {
+        memcpy(s->child, s->config->given + i * p->n_var, p->n_var * sizeof *s->child);
+        make_allowed(p, s->child);
+        n = batch_add(s, n, s->child);
+    }
+    latin_hypercube(s->config->seed, 0, n_samples_wanted, p->n_var, p->lower, p->upper, s->pool.X, s->chosen);
+    for (size_t i = 0; i < n_samples_wanted; i++) {
+        make_allowed(p, s->pool.X + i * p->n_var);
         n = batch_add(s, n, s->pool.X + i * p->n_var);
     }
     TRY(simulate_batch(s, n, KIND_SAMPLED, err));
@@ -643,7 +664,7 @@ static size_t wishes_for(size_t n_obj, const SearchConfig *c)
 static Status create(Search *s, Err *err)
 {
     const Problem *p = s->problem;
-    const size_t population = s->config->population, initial = initial_size(s);
+    const size_t population = s->config->population, initial = s->config->n_given + n_samples(s);
     const size_t n_pool = initial > 3 * population ? initial : 3 * population;
     const size_t most = s->config->max_evals > 4 ? s->config->max_evals : 4; /* centres there can ever be */
     const size_t centres = s->config->surrogate_max < most ? s->config->surrogate_max : most;

@@ -47,6 +47,9 @@ typedef struct {
     size_t planned_evals; /* 0: max_evals. First sample and directions of infill are chosen for so many simulations;
                              of two searches that differ in max_evals only, one is then the beginning of the other */
     size_t initial;       /* 0: by the number of variables */
+    const double *given;  /* (n_given, n_var) designs to be simulated first, moved into the box; the first sample is
+                             then smaller, by a half at most */
+    size_t n_given;
     SurrogateUse surrogate;
     SurvivalKind survival;
     double max_seconds;        /* 0: no limit */

@@ -10,9 +10,10 @@
 enum { TUNE_MAX = 250, TUNE_STEPS_FIRST = 16, TUNE_STEPS = 8 };
 
 /* What is looked for is the logarithm of each: theta of every variable, then a, b of the warp and the nugget. Weak
- * priors keep what the data say nothing about: log theta near the mean over the variables, log a and log b near 0. */
+ * priors keep what the data say nothing about: log theta near the mean over the variables, log a and log b near 0, the
+ * latter the less the more data there are: few can always be explained by a warp. */
 static const double THETA_MIN = 1e-4, THETA_MAX = 50.0, THETA_SPREAD = 1.4;
-static const double WARP_MIN = 0.1, WARP_MAX = 8.0, WARP_SPREAD = 0.3;
+static const double WARP_MIN = 0.1, WARP_MAX = 8.0, WARP_SPREAD = 0.0015 /* per centre */;
 
 static size_t n_parameters(const Rbf *m)
 {
@@ -39,13 +40,13 @@ static double most_parameter(const Rbf *m, size_t i)
 }
 
 /* Minus the logarithm of the priors, and its gradient. */
-static double prior(const Rbf *m, const double p[], double gradient[])
+static double prior(const Rbf *m, size_t n, const double p[], double gradient[])
 {
     double mean = 0.0, l = 0.0;
     for (size_t d = 0; d < m->n_dim; d++)
         mean += p[d] / (double)m->n_dim;
     for (size_t i = 0; i < n_parameters(m); i++) {
-        const double spread = i < m->n_dim ? THETA_SPREAD : i < m->n_dim + 2 ? WARP_SPREAD : INFINITY;
+        const double spread = i < m->n_dim ? THETA_SPREAD : i < m->n_dim + 2 ? WARP_SPREAD * (double)n : INFINITY;
         const double off = (p[i] - (i < m->n_dim ? mean : 0.0)) / spread;
         l += 0.5 * off * off;
         gradient[i] = off / spread;
@@ -116,7 +117,7 @@ static double likelihood(const Rbf *m, Worker *k, size_t n, RbfForm form, const 
         return INFINITY;
     model_weights(m, k, n, k->C, model_tail(form.tail, n, m->n_dim));
     const double s2 = fmax(cblas_ddot((int)n, k->y, 1, k->w, 1) / (double)n, 1e-300);
-    double l = 0.5 * (double)n * log(s2) + prior(m, p, gradient);
+    double l = 0.5 * (double)n * log(s2) + prior(m, n, p, gradient);
     for (size_t i = 0; i < n; i++)
         l += log(k->A[i * n + i]);
     model_invert((int)n, k->A, (int)n);

@@ -439,7 +439,7 @@ size_t refine_choose(const Saved *h, size_t n, size_t rows[], size_t improve[])
         double most = -DBL_MAX;
         for (size_t i = 0; i < h->n; i++) {
             double merit = chosen == 0 ? 0.0 : DBL_MAX;
-            if (!h->row[i].on_front || h->row[i].id >= POLISHED_FIRST)
+            if (!h->row[i].on_front || (improve && h->row[i].id >= POLISHED_FIRST))
                 continue;
             for (size_t k = 0; chosen == 0 && k < m; k++) /* the knee: nearest to the best of everything */
                 merit -= pow(scaled(h, i, k, best, worst), 2.0);
@@ -457,8 +457,10 @@ size_t refine_choose(const Saved *h, size_t n, size_t rows[], size_t improve[])
         if (found == h->n)
             break;
         rows[chosen] = found;
+        if (!improve)
+            continue;
         improve[chosen] = 0;
-        for (size_t k = 1; improve && k < m; k++)
+        for (size_t k = 1; k < m; k++)
             if (scaled(h, found, k, best, worst) < scaled(h, found, improve[chosen], best, worst))
                 improve[chosen] = k;
     }

@@ -51,8 +51,9 @@ StoredDesign refined_design(const Refined *r);
 /* Stored beside the designs of the search, as `polished`; the id that it got. Nobody may be working on the run. */
 Status refined_store(const char *folder, const Refined *r, long *id, Err *err);
 
-/* Spread-out designs of the front, the knee first: rows of h, at most n; returns how many. improve: where each is best
- * compared with the front. */
+/* Spread-out designs of the front, the knee first, then the farthest from those chosen: rows of h, at most n; returns
+ * how many. improve (NULL: not wanted): the objective in which each is best compared with the front; polished designs
+ * are then left out. */
 size_t refine_choose(const Saved *h, size_t n, size_t rows[], size_t improve[]);
 
 #endif

@@ -9,6 +9,7 @@
 
 #include <omp.h>
 
+#include "run/given.h"
 #include "run/provenance.h"
 #include "run/refine.h"
 #include "run/store.h"
@@ -75,6 +76,8 @@ static Settings settings_as_used(const Settings *s, const char *folder)
     if (strncmp(used.motion.record, "builtin:", 8) != 0)
         make_absolute(used.motion.record);
     make_all_absolute(used.motion.records);
+    if (strcmp(used.search.start, "none") != 0)
+        make_absolute(used.search.start);
     const int is_name = !strcmp(used.building.model, "guyan") || !strcmp(used.building.model, "appendix");
     if (!is_name && stat(used.building.model, &there) == 0 && S_ISDIR(there.st_mode))
         make_absolute(used.building.model);
@@ -94,7 +97,7 @@ static const char *const LIMITS[] = {"search.max_evals", "search.generations", "
                                      "search.nondominated_share", "problem.timeout_s"};
 
 /* These change no result; files are told apart by what is in them. */
-static const char *const FREE[] = {"search.threads", "run.out", "motion.record", "building.model"};
+static const char *const FREE[] = {"search.threads", "run.out", "search.start", "motion.record", "building.model"};
 
 typedef struct {
     FILE *lines;
@@ -405,6 +408,7 @@ static Status run_search(Study *study, Err *err)
     const Saved *h = store_saved(study->store);
     SearchConfig config = study_search_config(&study->used);
     Moment moment = {0};
+    double *given = NULL;
     const int is_under_way = h && h->state;
     config.max_seconds = 0.0; /* the study has a clock of its own, which it looks at more often */
     if (h) {
@@ -413,6 +417,8 @@ static Status run_search(Study *study, Err *err)
         config.initial = (size_t)(initial < h->planned_evals ? initial : h->planned_evals);
     }
     omp_set_num_threads(subject_threads(study->subject));
+    TRY(given_read(study->used.search.start, subject_schema(study->subject), &given, &config.n_given, err));
+    config.given = given;
     Status status = is_under_way ? moment_of(&moment, study, err) : STATUS_OK;
     const Observer observer = {may_go_on, simulation_done, recall, study};
     subject_observe(study->subject, &observer, moment.start.n);
@@ -420,6 +426,7 @@ static Status run_search(Study *study, Err *err)
         status = search_resume(subject_problem(study->subject), &config, is_under_way ? &moment.start : NULL, observe,
                                study, &study->summary->stopped, err);
     moment_free(&moment);
+    free(given);
     if (status == STATUS_STOPPED)
         study->summary->stopped = STOP_ASKED;
     return status == STATUS_STOPPED ? STATUS_OK : status;
