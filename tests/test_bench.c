@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bench/sweep.h"
+#include "bench/parted.h"
 
 typedef struct {
     Settings s;
@@ -77,6 +77,17 @@ static void test_an_error_is_zero_against_itself_and_first_order_in_a_change(voi
     motion_free(&g.m);
 }
 
+static void test_the_distance_of_two_samples_is_that_of_their_steps(void **state)
+{
+    (void)state;
+    double a[] = {4, 1, 3, 2}, b[] = {8, 5, 7, 6}, c[] = {2.5, 3.5, 4.5, 5.5}, d[] = {3, 2, 1, 4};
+    assert_close(parted_distance(4, a, 4, b), 1, 1e-15);
+    assert_close(parted_distance(4, a, 4, c), 0.5, 1e-15);
+    assert_close(parted_distance(4, a, 4, d), 0, 1e-15);
+    assert_close(parted_distance(4, a, 2, c), 0.5, 1e-15);
+    assert_close(parted_by_chance(64), 0.24, 1e-2);
+}
+
 static void test_a_sweep_has_a_row_for_every_setting_and_a_known_floor(void **state)
 {
     (void)state;
@@ -117,6 +128,7 @@ int main(void)
         cmocka_unit_test(test_irregular_gaps_are_the_same_every_time_and_within_their_bounds),
         cmocka_unit_test(test_scenes_have_as_many_impacts_as_their_names_say),
         cmocka_unit_test(test_an_error_is_zero_against_itself_and_first_order_in_a_change),
+        cmocka_unit_test(test_the_distance_of_two_samples_is_that_of_their_steps),
         cmocka_unit_test(test_a_sweep_has_a_row_for_every_setting_and_a_known_floor),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

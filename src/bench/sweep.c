@@ -64,6 +64,8 @@ static Status sweep_engine(Sweep *s, const Stage *stage, Engine engine, const Ob
         row->scene = stage->scene;
         row->engine = engine;
         name_knob(setting, row->knob);
+        row->accuracy = setting->accuracy;
+        row->knob_value = setting->knob;
         TRY(observe(stage, engine, setting->accuracy, setting->knob, &row->seen, err));
         row->error = errors_between(stage, &row->seen, reference);
         s->n++;

@@ -15,6 +15,8 @@ typedef struct {
     const BenchScene *scene;
     Engine engine;
     char knob[16];
+    Accuracy accuracy;
+    double knob_value; /* 0: as accuracy says */
     Observed seen;
     Errors error;
 } SweepRow;

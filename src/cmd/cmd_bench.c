@@ -1,6 +1,6 @@
 #include <string.h>
 
-#include "bench/sweep.h"
+#include "bench/parted.h"
 #include "bench/throughput.h"
 #include "cmd/commands.h"
 #include "run/output.h"
@@ -9,10 +9,13 @@ typedef struct {
     Settings settings;
     Motion motion;
     Sweep sweep;
+    Parted parted;
     SweepPlan plan;
     unsigned scenes; /* bit by scene */
     int quick;
 } Bench;
+
+static const double PARTED_LIMIT_S = 0.4; /* for one run; there are 64 */
 
 /* The words of a comma-separated list as bits; NULL: all. */
 static Status choose(const char *list, const char *what, const char *const known[], int n, unsigned *bits, Err *err)
@@ -57,6 +60,8 @@ static Status run_scene(Bench *b, int k, Err *err)
     Status status = stage_open(&stage, bench_scene(k), &b->settings, &b->motion, b->quick, err);
     if (status == STATUS_OK)
         status = sweep_scene(&b->sweep, k, &stage, &b->plan, stderr, err);
+    if (status == STATUS_OK && !b->quick && strcmp(stage.scene->name, "irregular") == 0)
+        status = parted_run(&b->parted, &b->sweep, &stage, &b->settings, PARTED_LIMIT_S, stderr, err);
     stage_close(&stage);
     return status;
 }
@@ -65,10 +70,12 @@ static Status write_to(const char *path, const Bench *b, int markdown, Err *err)
 {
     Output o;
     TRY(output_open(&o, path, err));
-    if (markdown)
+    if (markdown) {
         sweep_write_markdown(&b->sweep, &b->motion, o.stream);
-    else
+        parted_write_markdown(&b->parted, o.stream);
+    } else {
         sweep_write_csv(&b->sweep, o.stream);
+    }
     return output_close(&o, err);
 }
 

@@ -108,6 +108,13 @@ static void go_deeper(FastWork *k, double h, double gap, double w0, double wd0, 
         k->deepest = fmax(k->deepest, largest_on_cubic(h, w0, wd0, w1, wd1) - gap);
 }
 
+static void log_closing(FastWork *k, double h, int floor, const Press *t)
+{
+    ClosingLog *log = k->closings;
+    if (log && t->closings && log->n < log->n_max)
+        log->at[log->n++] = (Closing){.floor = floor, .t = k->now + h * t->closed_at, .speed = t->closed_with};
+}
+
 static void accept_contacts(FastWork *k, const Active *active, double h)
 {
     k->n_touching = 0;
@@ -118,6 +125,7 @@ static void accept_contacts(FastWork *k, const Active *active, double h)
         k->contact_lost += t->lost;
         k->contact_clamped += t->clamped;
         k->impacts += t->closings;
+        log_closing(k, h, j, t);
         k->floored += t->floored;
         k->side[j] = w1 > gap ? 1 : -w1 > gap ? -1 : 0;
         k->v0[j] = t->v0;

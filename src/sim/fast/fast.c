@@ -92,6 +92,11 @@ void fast_sample(FastWork *work, SimSampleFn sample, void *user)
     work->sample_user = user;
 }
 
+void fast_log_closings(FastWork *work, ClosingLog *log)
+{
+    work->closings = log;
+}
+
 FastKnobs fast_knobs(Accuracy accuracy)
 {
     static const FastKnobs KNOBS[] = {
@@ -130,6 +135,7 @@ Status engine_fast(const SimModel *model, const Motion *motion, const EngineOpti
     if (options->knob > 0)
         knobs.steps_per_contact = options->knob;
     TRY(fast_create(&work, model->n, err));
+    fast_log_closings(work, options->closings);
     fast_run(work, model, motion, options->duration, &knobs, result);
     if (options->end_state)
         end_state(work, options->end_state);

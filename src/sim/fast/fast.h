@@ -35,6 +35,9 @@ const char *fast_kernel_name(void);
 /* Every run from now on shows its state at every sample of the motion; NULL: none does. */
 void fast_sample(FastWork *work, SimSampleFn sample, void *user);
 
+/* Every run from now on appends its first closings; NULL: none does. */
+void fast_log_closings(FastWork *work, ClosingLog *log);
+
 /* What accuracy costs. */
 typedef struct {
     double steps_per_contact;    /* of an undisturbed Hertz contact at the largest speed between floor and core */

@@ -11,7 +11,7 @@
 
 /* What both walls do to one floor over a step; as Touch, in w instead of p. */
 typedef struct {
-    double end, mean, end_w, end_v, mean_w, mean_v, v0, lost, clamped;
+    double end, mean, end_w, end_v, mean_w, mean_v, v0, lost, clamped, closed_at, closed_with;
     int closings, floored;
 } Press;
 
@@ -54,6 +54,10 @@ static __attribute__((noinline)) void press(FastWork *k, double h, int j, double
         out->clamped += t.clamped;
         out->closings += t.closings;
         out->floored += t.floored;
+        if (t.closings) {
+            out->closed_at = t.closed_at;
+            out->closed_with = t.closed_with;
+        }
         if (s * w1 > gap)
             out->v0 = t.v0;
     }

@@ -46,8 +46,8 @@ static int closing_ahead(const FastWork *k, double h)
     return any(ahead);
 }
 
-/* One sampling interval, ground acceleration from a0 to a1; 0 when no step is short enough. */
-static int interval(FastWork *k, double a0, double a1)
+/* One sampling interval from `start` [s] on, ground acceleration from a0 to a1; 0 when no step is short enough. */
+static int interval(FastWork *k, double start, double a0, double a1)
 {
     const uint32_t whole = UINT32_C(1) << LEVEL_MAX;
     uint32_t at = 0;
@@ -72,6 +72,7 @@ static int interval(FastWork *k, double a0, double a1)
         }
         if (done)
             continue;
+        k->now = start + k->base * at / whole;
         k->flight_level = finest > 0 ? finest - 1 : 0;
         if (k->touch_level > finest || k->knobs->energy_tolerance == 0)
             k->touch_level = finest;
@@ -163,7 +164,7 @@ static int fly(FastWork *k, const Motion *motion, double duration)
     for (long i = 0; i < full;) {
         const long glided = glide(k, motion, i, full < samples - 1 ? full : samples - 1);
         const double a0 = i + 1 < samples ? motion->accel[i] : 0, a1 = i + 1 < samples ? motion->accel[i + 1] : 0;
-        if ((!glided && !interval(k, a0, a1)) || !state_is_finite(k))
+        if ((!glided && !interval(k, (double)i * motion->dt_s, a0, a1)) || !state_is_finite(k))
             return 0;
         i += glided ? glided : 1;
         show(k, (double)i * motion->dt_s);
@@ -173,7 +174,7 @@ static int fly(FastWork *k, const Motion *motion, double duration)
         const double a0 = full + 1 < samples ? motion->accel[full] : 0;
         const double slope = full + 1 < samples ? (motion->accel[full + 1] - a0) / motion->dt_s : 0;
         set_base(k, rest);
-        return interval(k, a0, a0 + slope * rest) && state_is_finite(k);
+        return interval(k, duration - rest, a0, a0 + slope * rest) && state_is_finite(k);
     }
     return 1;
 }

@@ -70,6 +70,9 @@ typedef struct FastWork {
     SimSampleFn sample; /* may be NULL */
     void *sample_user;
 
+    double now;           /* [s] start of the step under way */
+    ClosingLog *closings; /* may be NULL */
+
     /* books */
     double contact_lost, contact_clamped, deepest;
     long impacts, floored, steps, flights, forces;

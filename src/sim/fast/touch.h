@@ -36,12 +36,13 @@ static inline ContactForce4 contact_force4(const Contact *c, double mass, v4 p_a
 }
 
 typedef struct {
-    double end, mean;      /* [N] force at x = 1; int_0^1 F dx */
-    double end_p, end_v;   /* d end / d p1, d p1' */
-    double mean_p, mean_v; /* d mean / d p1, d p1' */
-    double v0;             /* [m/s] of the contact that is open at x = 1 */
-    int closings, floored; /* new contacts in this step, those whose v0 was below the floor */
-    double lost, clamped;  /* [J] int k p^1.5 a p'^2/v0 dt, int (F - F_raw) p' dt */
+    double end, mean;              /* [N] force at x = 1; int_0^1 F dx */
+    double end_p, end_v;           /* d end / d p1, d p1' */
+    double mean_p, mean_v;         /* d mean / d p1, d p1' */
+    double v0;                     /* [m/s] of the contact that is open at x = 1 */
+    int closings, floored;         /* new contacts in this step, those whose v0 was below the floor */
+    double closed_at, closed_with; /* x and speed [m/s] of the last of them */
+    double lost, clamped;          /* [J] int k p^1.5 a p'^2/v0 dt, int (F - F_raw) p' dt */
 } Touch;
 
 typedef struct {
@@ -172,6 +173,8 @@ static inline void touch_step(Touch *t, const Contact *c, double mass, double h,
                 t->closings++;
                 t->floored += speed < c->v0_floor;
                 t->v0 = fmax(speed, c->v0_floor);
+                t->closed_at = x;
+                t->closed_with = speed;
                 from = x;
             }
             touching = !touching;
