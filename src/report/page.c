@@ -14,6 +14,16 @@ static const char MARK[] = "<!-- the run -->\n";
 
 enum { HISTORY_POINTS = 3000 };
 
+/* Appends and returns the list, or NULL: json_pack then refuses the whole, so that no memory never means a value less.
+ */
+static json_t *append(json_t *list, json_t *value)
+{
+    if (json_array_append_new(list, value) == 0)
+        return list;
+    json_decref(list);
+    return NULL;
+}
+
 static json_t *number(double value)
 {
     return isfinite(value) ? json_real(value) : json_null();
@@ -24,7 +34,7 @@ static json_t *numbers(size_t n, size_t step, const double values[])
 {
     json_t *list = json_array();
     for (size_t i = 0; i < n; i += step)
-        json_array_append_new(list, number(values[i]));
+        list = append(list, number(values[i]));
     return list;
 }
 
@@ -47,11 +57,11 @@ static json_t *json_of_settings(const Settings *s)
 static json_t *json_of_result(const SimResult *r)
 {
     const size_t n = (size_t)r->n_floors, n_modes = (size_t)r->n_modes;
-    json_t *objectives = json_array();
     if (r->outcome != RUN_OK)
         return json_pack("{s:s}", "reason", r->reason);
+    json_t *objectives = json_array();
     for (int k = 0; k < N_OBJECTIVES; k++)
-        json_array_append_new(objectives, number(measure_value(r, k)));
+        objectives = append(objectives, number(measure_value(r, k)));
     return json_pack("{s:o, s:I, s:f, s:f, s:b, s:o, s:o, s:o, s:o}", "objectives", objectives, "impacts",
                      (json_int_t)r->impacts, "input_j", r->input_energy_j, "contact_pct",
                      r->input_energy_j > 0 ? 100 * r->contact_loss_j / r->input_energy_j : 0.0, "beyond_law",
@@ -60,19 +70,24 @@ static json_t *json_of_result(const SimResult *r)
                      numbers(n_modes, 1, r->mode_share_pct));
 }
 
+static json_t *json_of_energies(const History *h, size_t step)
+{
+    return json_pack(
+        "{s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "kinetic", numbers(h->n, step, h->energy[ENERGY_KINETIC]), "strain",
+        numbers(h->n, step, h->energy[ENERGY_STRAIN]), "damped_building",
+        numbers(h->n, step, h->energy[ENERGY_DAMPED_BUILDING]), "core", numbers(h->n, step, h->energy[ENERGY_CORE]),
+        "damped_core", numbers(h->n, step, h->energy[ENERGY_DAMPED_CORE]), "contacts",
+        numbers(h->n, step, h->energy[ENERGY_CONTACTS]), "input", numbers(h->n, step, h->energy[ENERGY_INPUT]));
+}
+
 static json_t *json_of_history(const History *h, const Spectrogram *s)
 {
-    static const char *const NAMES[N_ENERGIES] = {"kinetic",  "strain", "damped_building", "core", "damped_core",
-                                                  "contacts", "input"};
     const size_t step = h->n / HISTORY_POINTS + 1;
-    json_t *energies = json_object();
     if (h->n < 2)
         return json_null();
-    for (int k = 0; k < N_ENERGIES; k++)
-        json_object_set_new(energies, NAMES[k], numbers(h->n, step, h->energy[k]));
     return json_pack("{s:o, s:o, s:o, s:o, s:o, s:o}", "t", numbers(h->n, step, h->t), "u", numbers(h->n, step, h->u),
-                     "energies", energies, "spectrum_f", numbers(SPECTRUM_FREQUENCIES, 1, s->f), "spectrum_t",
-                     numbers(SPECTRUM_TIMES, 1, s->t), "spectrum",
+                     "energies", json_of_energies(h, step), "spectrum_f", numbers(SPECTRUM_FREQUENCIES, 1, s->f),
+                     "spectrum_t", numbers(SPECTRUM_TIMES, 1, s->t), "spectrum",
                      numbers(SPECTRUM_FREQUENCIES * SPECTRUM_TIMES, 1, s->amplitude));
 }
 
@@ -82,9 +97,9 @@ static json_t *json_of_detail(const Detail *d)
     json_t *others = json_array();
     for (size_t i = 0; i < d->n_elsewhere; i++) {
         const Elsewhere *e = &d->elsewhere[i];
-        json_array_append_new(others, json_pack("{s:s, s:f, s:f, s:o, s:o}", "record", e->record, "pga_g", e->pga_g,
-                                                "stretch", e->stretch, "with_core", json_of_result(&e->with_core),
-                                                "no_core", json_of_result(&e->no_core)));
+        others = append(others, json_pack("{s:s, s:f, s:f, s:o, s:o}", "record", e->record, "pga_g", e->pga_g,
+                                          "stretch", e->stretch, "with_core", json_of_result(&e->with_core), "no_core",
+                                          json_of_result(&e->no_core)));
     }
     return json_pack("{s:i, s:o, s:o, s:o, s:o, s:s, s:f, s:f, s:f, s:o, s:o, s:o, s:o, s:o, s:o}", "floor",
                      d->floor + 1, "gap_m", numbers(n, 1, d->gap_m), "wall_m", numbers(n, 1, d->wall_m), "building_hz",
@@ -102,10 +117,10 @@ static json_t *json_of_names(const Schema *schema)
 {
     json_t *variables = json_array(), *objectives = json_array();
     for (size_t j = 0; j < schema->n_var; j++)
-        json_array_append_new(variables, json_string(schema_variable(schema, j)->name));
+        variables = append(variables, json_string(schema_variable(schema, j)->name));
     for (size_t k = 0; k < schema->n_obj; k++) {
         const Column *c = schema_objective(schema, k);
-        json_array_append_new(objectives, json_pack("{s:s, s:f}", "name", c->name, "sense", c->sense));
+        objectives = append(objectives, json_pack("{s:s, s:f}", "name", c->name, "sense", c->sense));
     }
     return json_pack("{s:o, s:o}", "variables", variables, "objectives", objectives);
 }
