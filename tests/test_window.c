@@ -1,0 +1,77 @@
+/* Before the horizon: what `fast` promises of its accuracies, against CVODE, which shares no code with it. */
+#include "check.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "bench/observe.h"
+#include "scene/motion_read.h"
+
+typedef struct {
+    const char *record, *building;
+    CoreSection section;
+    uint32_t gaps; /* of the fixed stream of irregular gaps */
+    double smaller, stretch, seconds;
+} Window;
+
+static const Window WINDOWS[] = {
+    {"builtin:kobe-like", "guyan", CORE_BOX, 3, 1, 3.1, 5},
+    {"builtin:elcentro-like", "appendix", CORE_BOX, 5, 0.5, 2.0, 5},
+    {"builtin:sylmar-like", "guyan", CORE_EFFECTIVE, 7, 0.3, 3.0, 4},
+    {"builtin:kobe-like", "appendix", CORE_EFFECTIVE, 9, 0.2, 1.0, 3},
+    {"builtin:elcentro-like", "guyan", CORE_BOX, 11, 0.1, 4.0, 4},
+};
+enum { WINDOWS_N = sizeof WINDOWS / sizeof WINDOWS[0] };
+
+/* J1, J2, J3, shares of mode 1, modes 5 to 10, the core */
+static const double FINE = 1e-4, STANDARD[BENCH_OBJECTIVES] = {1e-3, 3e-3, 2e-2, 1e-2, 1e-2, 1e-2};
+
+static void open_window(const Window *w, Settings *s, Motion *m, Stage *stage)
+{
+    Err err;
+    settings_defaults(s);
+    snprintf(s->building.model, sizeof s->building.model, "%s", w->building);
+    s->core.section = w->section;
+    CHECK_OK(motion_load(m, w->record, UNIT_FROM_FILE, &err), &err);
+    CHECK_OK(motion_prepare(m, 0.3, w->stretch, &err), &err);
+    CHECK_OK(stage_open(stage, bench_scene(2), s, m, 0, &err), &err);
+    bench_irregular_gaps(w->gaps, stage->building.n, stage->gaps);
+    for (int j = 0; j < stage->building.n; j++)
+        stage->gaps[j] *= w->smaller;
+    CHECK_OK(model_set(&stage->model, s, &stage->building, stage->core, stage->gaps, &err), &err);
+    stage->duration = w->seconds;
+}
+
+static void test_fine_and_standard_accuracy_are_what_they_promise(void **state)
+{
+    (void)state;
+    static Observed reference, fine, standard;
+    for (int i = 0; i < WINDOWS_N; i++) {
+        Settings s;
+        Motion m;
+        Stage stage;
+        Err err;
+        open_window(&WINDOWS[i], &s, &m, &stage);
+        CHECK_OK(observe(&stage, ENGINE_CVODE, ACCURACY_FINE, 0, &reference, &err), &err);
+        CHECK_OK(observe(&stage, ENGINE_FAST, ACCURACY_FINE, 0, &fine, &err), &err);
+        CHECK_OK(observe(&stage, ENGINE_FAST, ACCURACY_STANDARD, 0, &standard, &err), &err);
+        const Errors f = errors_between(&stage, &fine, &reference), e = errors_between(&stage, &standard, &reference);
+        print_message("%s, %s: %ld impacts; fine %.1e; standard J1 %.1e J2 %.1e J3 %.1e shares %.1e %.1e %.1e\n",
+                      WINDOWS[i].record, WINDOWS[i].building, reference.result.impacts, f.objectives, e.each[0],
+                      e.each[1], e.each[2], e.each[3], e.each[4], e.each[5]);
+        assert_true(reference.result.outcome == RUN_OK && reference.result.impacts >= 20);
+        assert_true(f.objectives <= FINE);
+        for (int k = 0; k < BENCH_OBJECTIVES; k++)
+            assert_true(e.each[k] <= STANDARD[k]);
+        stage_close(&stage);
+        motion_free(&m);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_fine_and_standard_accuracy_are_what_they_promise),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
