@@ -1,26 +1,13 @@
-/* A run's database: what interrupts a run, what is refused, what stays readable. */
-#include "program.h"
+/* A run that is interrupted, refused, watched: what it stores and how it goes on. */
+#include "runs.h"
 
-#include <fcntl.h>
-#include <limits.h>
-#include <omp.h>
 #include <signal.h>
-#include <spawn.h>
-#include <sys/mount.h>
-#include <sys/resource.h>
-#include <sys/stat.h>
-#include <time.h>
 
 #include "moga/cover.h"
 #include "moga/hypervolume.h"
-#include "run/lock.h"
-#include "run/export.h"
 #include "run/store.h"
 #include "run/study.h"
 
-static const char TEXTBOOK[] = "[problem]\nkind = dtlz2\nvariables = 6\nobjectives = 3\nnoise = 0.05\n"
-                               "[search]\ninitial = 12\npopulation = 12\nmax_evals = 40\nsurrogate_max = 30\n"
-                               "limits = f1<=1.2\n";
 static const char TOWER[] = "[motion]\nrecord = builtin:kobe-like\nstretch = 1\n[sim]\nduration_s = 6\n"
                             "[search]\ninitial = 12\npopulation = 8\nmax_evals = 20\nsurrogate_max = 20\n";
 
@@ -33,24 +20,6 @@ static const char POLISHED[] = "[motion]\nrecord = builtin:kobe-like\nstretch = 
 static const char STEADY[] = "[problem]\nkind = external\ncommand = sh tests/worker.sh steady\nvariables = 3\n"
                              "objectives = 2\n[search]\ninitial = 36\npopulation = 12\nmax_evals = 40\n"
                              "surrogate_max = 20\nthreads = 2\n";
-
-static char *path_of(const char *name, char path[PATH_MAX])
-{
-    snprintf(path, PATH_MAX, "%s/%s", place.folder, name);
-    return path;
-}
-
-static Settings settings_of(const char *text, const char *out)
-{
-    Settings s;
-    Err err = {0};
-    settings_defaults(&s);
-    CHECK_OK(settings_parse(&s, "here.ini", text, &err), &err);
-    snprintf(s.run.out, sizeof s.run.out, "%s/%s", place.folder, out);
-    if (s.search.threads == 0)
-        s.search.threads = 1;
-    return s;
-}
 
 /* -- interrupted and gone on with -----------------------------------------------------------------------------------
  */
@@ -78,39 +47,6 @@ static int run_by_pieces(const Settings *s, int k, StudySummary *summary)
         if (status != STATUS_STOPPED)
             fail_msg("session %d of %d simulations: %s", sessions, k, err.text);
     }
-}
-
-static char *json_export(const char *folder)
-{
-    char *text = NULL;
-    size_t length;
-    Saved saved;
-    Err err = {0};
-    CHECK_OK(saved_read(&saved, folder, &err), &err);
-    snprintf(saved.settings.run.out, sizeof saved.settings.run.out, "here");
-    FILE *f = open_memstream(&text, &length);
-    CHECK_OK(export_json(f, &saved, &err), &err);
-    fclose(f);
-    saved_free(&saved);
-    return text;
-}
-
-static void assert_same_run(const char *a, const char *b)
-{
-    static const char *const FILES[] = {"evaluations.csv", "front.csv"};
-    char name[2][64], path[2][PATH_MAX];
-    for (int i = 0; i < 2; i++) {
-        snprintf(name[0], sizeof name[0], "%s/%s", a, FILES[i]);
-        snprintf(name[1], sizeof name[1], "%s/%s", b, FILES[i]);
-        char *first = read_in_place(name[0]), *second = read_in_place(name[1]);
-        assert_string_equal(first, second);
-        free(first);
-        free(second);
-    }
-    char *first = json_export(path_of(a, path[0])), *second = json_export(path_of(b, path[1]));
-    assert_string_equal(first, second);
-    free(first);
-    free(second);
 }
 
 /* Stopped after every k-th simulation, for some k. */
@@ -238,34 +174,6 @@ static void test_a_record_that_has_changed_is_another_setting(void **state)
 /* -- signals and hours ----------------------------------------------------------------------------------------------
  */
 
-static double now_s(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-static void rest(double seconds)
-{
-    nanosleep(&(struct timespec){(time_t)seconds, (long)(1e9 * fmod(seconds, 1))}, NULL);
-}
-
-/* `imtet optimize` in the background, what it says in @/said. */
-static pid_t start(const char *config, const char *out)
-{
-    char paths[3][PATH_MAX];
-    pid_t pid;
-    posix_spawn_file_actions_t quiet;
-    char *words[] = {getenv("IMTET"), "optimize", path_of(config, paths[0]), "--out", path_of(out, paths[1]), NULL};
-    posix_spawn_file_actions_init(&quiet);
-    posix_spawn_file_actions_addopen(&quiet, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-    posix_spawn_file_actions_addopen(&quiet, STDERR_FILENO, path_of("said", paths[2]), O_WRONLY | O_CREAT | O_TRUNC,
-                                     0666);
-    assert_int_equal(posix_spawn(&pid, words[0], &quiet, NULL, words, environ), 0);
-    posix_spawn_file_actions_destroy(&quiet);
-    return pid;
-}
-
 /* Until the run has n evaluations on the disk. */
 static void wait_for(const char *out, size_t n)
 {
@@ -282,13 +190,6 @@ static void wait_for(const char *out, size_t n)
             saved_free(&saved);
         }
     }
-}
-
-static int wait_end(pid_t pid)
-{
-    int status;
-    assert_int_equal(waitpid(pid, &status, 0), pid);
-    return status;
 }
 
 static void check_signal(int number, const char *out)
@@ -321,8 +222,7 @@ static void test_a_signal_stops_within_a_batch_and_the_command_that_is_printed_g
 static void test_a_second_signal_ends_at_once(void **state)
 {
     (void)state;
-    write_in_place("deaf.ini", "[problem]\nkind = external\ncommand = sh tests/worker.sh deaf\nvariables = 3\n"
-                               "objectives = 2\n[search]\nmax_evals = 8\nthreads = 1\n");
+    write_in_place("deaf.ini", DEAF);
     const double begun = now_s();
     const pid_t pid = start("deaf.ini", "deaf");
     char path[PATH_MAX];
@@ -358,220 +258,8 @@ static void test_hours_are_obeyed_within_a_batch(void **state)
     free(b);
 }
 
-/* -- other processes, full disks, damage ----------------------------------------------------------------------------
- */
-
-static void test_a_second_process_is_refused_with_the_first_ones_number(void **state)
-{
-    (void)state;
-    char wanted[64];
-    LockHolder holder;
-    char path[PATH_MAX];
-    const pid_t pid = start("deaf.ini", "locked");
-    while (!lock_is_held(path_of("locked/lock", path), &holder) || holder.pid != pid)
-        rest(0.02);
-    while (access(path_of("locked/run.sqlite", path), F_OK) != 0)
-        rest(0.02);
-    snprintf(wanted, sizeof wanted, "is in use by process %ld on ", (long)pid);
-    expect(74, wanted, "optimize @/deaf.ini --out @/locked");
-    char *said = output_of("status @/locked");
-    assert_non_null(strstr(said, "running (process"));
-    free(said);
-    kill(pid, SIGKILL);
-    wait_end(pid);
-    assert_false(lock_is_held(path_of("locked/lock", path), &holder));
-    said = output_of("status @/locked");
-    assert_non_null(strstr(said, "broken off"));
-    free(said);
-}
-
-/* All of `before` is in the run as it is now. */
-static void assert_nothing_lost(const char *folder, const Saved *before)
-{
-    Saved after;
-    Err err = {0};
-    char path[PATH_MAX];
-    CHECK_OK(saved_read(&after, path_of(folder, path), &err), &err);
-    assert_true(after.n >= before->n);
-    for (size_t i = 0; i < before->n; i++) {
-        const size_t j = saved_find(&after, before->row[i].id), n = before->schema.n_var;
-        assert_true(j < after.n);
-        assert_memory_equal(before->X + i * n, after.X + j * n, n * sizeof(double));
-    }
-    saved_free(&after);
-}
-
-/* No file may grow beyond some blocks: as a full disk, but without one. */
-static void test_a_run_that_can_write_no_more_says_so_and_goes_on_later(void **state)
-{
-    (void)state;
-    Said s;
-    Saved before;
-    Err err = {0};
-    char command[512], path[PATH_MAX];
-    write_in_place("textbook.ini", TEXTBOOK);
-    free(output_of("optimize @/textbook.ini --out @/unlimited"));
-    int refused = 0;
-    for (int blocks = 8; blocks < 400; blocks += 24) {
-        snprintf(command, sizeof command, "rm -rf '%s/small'", place.folder);
-        assert_int_equal(system(command), 0);
-        snprintf(place.under, sizeof place.under, "ulimit -f %d;", blocks);
-        run(&s, "optimize @/textbook.ini --out @/small");
-        place.under[0] = 0;
-        if (s.code == 0) {
-            forget(&s);
-            break;
-        }
-        refused++;
-        if (s.code != 74 || !strstr(s.err, "/small/"))
-            fail_msg("%d blocks: exit %d: %s", blocks, s.code, s.err);
-        forget(&s);
-        memset(&before, 0, sizeof before);
-        if (access(path_of("small/run.sqlite", path), F_OK) == 0)
-            CHECK_OK(saved_read(&before, path_of("small", path), &err), &err);
-        free(output_of("optimize @/textbook.ini --out @/small"));
-        assert_nothing_lost("small", &before);
-        saved_free(&before);
-        assert_same_run("unlimited", "small");
-    }
-    assert_true(refused >= 2);
-}
-
-/* A disk of 300 kB, where this user may mount one. */
-static void test_a_full_disk_is_named_and_what_was_stored_stays_readable(void **state)
-{
-    (void)state;
-    char disk[PATH_MAX], run_of_disk[PATH_MAX];
-    Said s;
-    Saved saved;
-    Err err = {0};
-    assert_int_equal(mkdir(path_of("disk", disk), 0777), 0);
-    if (mount("none", disk, "tmpfs", 0, "size=300k") != 0)
-        skip();
-    run(&s, "optimize @/textbook.ini --max-evals 400 --out @/disk/run");
-    const int right = s.code == 74 && strstr(s.err, "/disk/run/") &&
-                      (strstr(s.err, "the disk is full") || strstr(s.err, "No space left"));
-    const Status readable = saved_read(&saved, path_of("disk/run", run_of_disk), &err);
-    const size_t n = saved.n;
-    saved_free(&saved);
-    umount2(disk, MNT_DETACH);
-    if (!right)
-        print_error("exit %d: %s", s.code, s.err);
-    forget(&s);
-    CHECK_OK(readable, &err);
-    assert_true(right && n > 12);
-}
-
-static void test_a_folder_that_is_read_only_is_named(void **state)
-{
-    (void)state;
-    char folder[PATH_MAX], run_there[PATH_MAX];
-    Saved saved;
-    Err err = {0};
-    assert_int_equal(mkdir(path_of("fixed", folder), 0777), 0);
-    if (mount(folder, folder, NULL, MS_BIND, NULL) != 0)
-        skip();
-    free(output_of("optimize @/textbook.ini --max-evals 20 --out @/fixed/run"));
-    assert_int_equal(mount(folder, folder, NULL, MS_BIND | MS_REMOUNT | MS_RDONLY, NULL), 0);
-    Said new_run, old_run;
-    run(&new_run, "optimize @/textbook.ini --out @/fixed/other");
-    run(&old_run, "optimize @/fixed/run --max-evals 30 --force-settings");
-    const Status readable = saved_read(&saved, path_of("fixed/run", run_there), &err);
-    const size_t n = saved.n;
-    saved_free(&saved);
-    umount2(folder, MNT_DETACH);
-    CHECK_OK(readable, &err);
-    assert_int_equal(n, 20);
-    assert_true(new_run.code == 74 && strstr(new_run.err, "/fixed/other: cannot be made a folder: Read-only"));
-    assert_true(old_run.code == 74 && strstr(old_run.err, "/fixed/run/lock: cannot be written: Read-only"));
-    forget(&new_run);
-    forget(&old_run);
-}
-
-static void test_a_database_that_somebody_keeps_locked_is_busy(void **state)
-{
-    (void)state;
-    sqlite3 *other;
-    char path[PATH_MAX];
-    free(output_of("optimize @/textbook.ini --max-evals 20 --out @/busy"));
-    assert_int_equal(sqlite3_open(path_of("busy/run.sqlite", path), &other), SQLITE_OK);
-    assert_int_equal(sqlite3_exec(other, "BEGIN IMMEDIATE", NULL, NULL, NULL), SQLITE_OK);
-    expect(74, "busy/run.sqlite: is busy", "optimize @/busy --max-evals 30 --force-settings");
-    free(output_of("export @/busy --csv @/while-busy.csv"));
-    sqlite3_close(other);
-    free(output_of("optimize @/busy --max-evals 30 --force-settings"));
-}
-
-static void overwrite(const char *name, long offset, const char *bytes, size_t n)
-{
-    char path[PATH_MAX];
-    FILE *f = fopen(path_of(name, path), "r+b");
-    assert_non_null(f);
-    assert_int_equal(fseek(f, offset, SEEK_SET), 0);
-    assert_int_equal(fwrite(bytes, 1, n, f), n);
-    assert_int_equal(fclose(f), 0);
-}
-
-static void test_damage_is_found_on_opening_whatever_was_hit(void **state)
-{
-    (void)state;
-    static const char JUNK[4096] = "junk";
-    char command[512], path[PATH_MAX];
-    struct stat size;
-    free(output_of("optimize @/textbook.ini --max-evals 30 --out @/sound"));
-    assert_int_equal(stat(path_of("sound/run.sqlite", path), &size), 0);
-    for (long page = 1; page < size.st_size / 4096; page += 5) {
-        snprintf(command, sizeof command, "rm -rf '%s/hurt'; cp -r '%s/sound' '%s/hurt'", place.folder, place.folder,
-                 place.folder);
-        assert_int_equal(system(command), 0);
-        overwrite("hurt/run.sqlite", 4096 * page, JUNK, sizeof JUNK);
-        expect(74, "hurt/run.sqlite: ", "status @/hurt");
-        expect(74, "hurt/run.sqlite: ", "optimize @/hurt");
-        expect(74, "hurt/run.sqlite: ", "export @/hurt --csv @/none.csv");
-    }
-    overwrite("hurt/run.sqlite", 0, "this is a letter", 16);
-    expect(74, "is no database of a run", "status @/hurt");
-    overwrite("sound/run.sqlite", 60, "\0\0\0\x63", 4); /* user_version */
-    expect(74, "has format 99", "status @/sound");
-    char *list = output_of("list @");
-    assert_non_null(strstr(list, "unreadable"));
-    free(list);
-}
-
 /* -- readers, designs from outside, failures ------------------------------------------------------------------------
  */
-
-static void test_readers_need_the_database_alone_and_the_files_come_back(void **state)
-{
-    (void)state;
-    char command[512];
-    free(output_of("optimize @/textbook.ini --max-evals 30 --out @/alone"));
-    char *front = read_in_place("alone/front.csv"), *all = read_in_place("alone/evaluations.csv");
-    char *settings = read_in_place("alone/settings.ini"), *provenance = read_in_place("alone/provenance.json");
-    snprintf(command, sizeof command, "cd '%s/alone' && rm *.csv *.ini *.json", place.folder);
-    assert_int_equal(system(command), 0);
-    char *exported = output_of("export @/alone --csv -"), *exported_all = output_of("export @/alone --all --csv -");
-    assert_string_equal(exported, front);
-    assert_string_equal(exported_all, all);
-    free(output_of("choose @/alone --max f1=1"));
-    snprintf(command, sizeof command, "cp -r '%s/alone' '%s/another'", place.folder, place.folder);
-    assert_int_equal(system(command), 0);
-    free(output_of("polish @/another --design knee --evals 10"));
-    free(output_of("optimize @/alone"));
-    char *again[] = {read_in_place("alone/front.csv"), read_in_place("alone/evaluations.csv"),
-                     read_in_place("alone/settings.ini"), read_in_place("alone/provenance.json")};
-    const char *const WANTED[] = {front, all, settings, provenance};
-    for (int i = 0; i < 4; i++) {
-        assert_string_equal(again[i], WANTED[i]);
-        free(again[i]);
-    }
-    free(front);
-    free(all);
-    free(settings);
-    free(provenance);
-    free(exported);
-    free(exported_all);
-}
 
 /* One that beats everything, one that is beaten, one that failed; then the run goes on as if they were not there. */
 static void test_polished_designs_join_the_front_but_not_the_search(void **state)
@@ -717,13 +405,6 @@ static void test_the_share_that_is_covered_is_the_hypervolume_of_the_box(void **
     cover_free(c);
 }
 
-static int prepare(void **state)
-{
-    setenv("OMP_WAIT_POLICY", "passive", 0);
-    omp_set_num_threads(1);
-    return make_place(state);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -738,13 +419,6 @@ int main(void)
         cmocka_unit_test(test_a_signal_stops_within_a_batch_and_the_command_that_is_printed_goes_on),
         cmocka_unit_test(test_a_second_signal_ends_at_once),
         cmocka_unit_test(test_hours_are_obeyed_within_a_batch),
-        cmocka_unit_test(test_a_second_process_is_refused_with_the_first_ones_number),
-        cmocka_unit_test(test_a_run_that_can_write_no_more_says_so_and_goes_on_later),
-        cmocka_unit_test(test_a_full_disk_is_named_and_what_was_stored_stays_readable),
-        cmocka_unit_test(test_a_folder_that_is_read_only_is_named),
-        cmocka_unit_test(test_a_database_that_somebody_keeps_locked_is_busy),
-        cmocka_unit_test(test_damage_is_found_on_opening_whatever_was_hit),
-        cmocka_unit_test(test_readers_need_the_database_alone_and_the_files_come_back),
         cmocka_unit_test(test_one_failure_in_ten_is_survived_and_never_on_the_front),
         cmocka_unit_test(test_the_share_that_is_covered_is_the_hypervolume_of_the_box),
     };

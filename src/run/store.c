@@ -14,6 +14,7 @@
 #include "run/export.h"
 #include "run/lock.h"
 #include "run/output.h"
+#include "run/tables.h"
 
 struct RunStore {
     char folder[PATH_MAX - 64];
@@ -39,14 +40,6 @@ static double now_s(void)
     struct timespec t;
     clock_gettime(CLOCK_MONOTONIC, &t);
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-static void utc(char text[24])
-{
-    struct tm parts;
-    const time_t now = time(NULL);
-    gmtime_r(&now, &parts);
-    strftime(text, 24, "%FT%TZ", &parts);
 }
 
 static void path_in(const RunStore *store, const char *name, char path[PATH_MAX])
@@ -212,117 +205,16 @@ static Status open_logs(RunStore *store, Err *err)
     return open_to_append(store, "log.jsonl", &store->events, err);
 }
 
-/* -- the database ---------------------------------------------------------------------------------------------------
+/* -- a new run, or one that goes on ----------------------------------------------------------------------------------
  */
-
-static const char TABLES[] =
-    "CREATE TABLE run(id INTEGER PRIMARY KEY CHECK (id = 1), settings TEXT NOT NULL, provenance TEXT NOT NULL,"
-    " planned_evals INTEGER NOT NULL, n_var INTEGER NOT NULL, created TEXT NOT NULL,"
-    " tried_to_polish INTEGER NOT NULL DEFAULT 0, polished_at INTEGER NOT NULL DEFAULT 0);"
-    "CREATE TABLE evaluation(id INTEGER PRIMARY KEY, generation INTEGER NOT NULL, kind TEXT, outcome TEXT NOT NULL,"
-    " reason TEXT NOT NULL, seconds REAL, x TEXT NOT NULL, f TEXT, spread TEXT, violation REAL, extra TEXT);"
-    "CREATE TABLE generation(number INTEGER PRIMARY KEY, simulated INTEGER NOT NULL, failed INTEGER NOT NULL,"
-    " front INTEGER NOT NULL, predicted INTEGER NOT NULL, surrogate_error REAL, hypervolume REAL, seconds REAL NOT "
-    "NULL,"
-    " finished TEXT NOT NULL);"
-    "CREATE TABLE front(evaluation INTEGER PRIMARY KEY REFERENCES evaluation(id), entered INTEGER NOT NULL,"
-    " left INTEGER);"
-    "CREATE TABLE state(id INTEGER PRIMARY KEY CHECK (id = 1), generation INTEGER NOT NULL, bytes BLOB NOT NULL);"
-    "CREATE TABLE session(number INTEGER PRIMARY KEY, started TEXT NOT NULL, ended TEXT, host TEXT, pid INTEGER,"
-    " program TEXT, threads INTEGER, simulated_before INTEGER, seconds REAL, stopped TEXT, is_final INTEGER);";
-
-/* Names become identifiers of SQL: in double quotes, which are doubled inside. */
-static void put_name(FILE *f, const char *name)
-{
-    fputc('"', f);
-    for (; *name; name++)
-        fputs(*name == '"' ? "\"\"" : (char[]){*name, 0}, f);
-    fputc('"', f);
-}
-
-enum { VIEW_COLUMNS_MAX = 1000 };
-
-/* The evaluations with a column per variable, objective and measure. */
-static Status create_view(RunStore *store, Err *err)
-{
-    const Schema *s = store->schema;
-    const struct {
-        const char *list;
-        size_t first, n;
-    } part[] = {{"x", 0, s->n_var}, {"f", s->n_var, s->n_obj}, {"extra", s->n_var + s->n_obj, s->n_extra}};
-    char *sql = NULL;
-    size_t length;
-    if (s->n_var + s->n_obj + s->n_extra > VIEW_COLUMNS_MAX)
-        return STATUS_OK;
-    FILE *f = open_memstream(&sql, &length);
-    if (!f)
-        return fail(err, STATUS_NO_MEMORY, "no memory for the names of the columns");
-    fputs("CREATE VIEW designs AS SELECT id, generation, kind, outcome, reason, seconds", f);
-    for (size_t p = 0; p < 3; p++)
-        for (size_t j = 0; j < part[p].n; j++) {
-            fprintf(f, ", json_extract(%s, '$[%zu]') AS ", part[p].list, j);
-            put_name(f, s->column[part[p].first + j].name);
-        }
-    fputs(" FROM evaluation", f);
-    const Status status = fclose(f) == 0 ? database_do(store->db, err, sql, "")
-                                         : fail(err, STATUS_NO_MEMORY, "no memory for the names of the columns");
-    free(sql);
-    return status;
-}
-
-static Status settings_text(const Settings *s, char **text, Err *err)
-{
-    size_t length;
-    FILE *f = open_memstream(text, &length);
-    if (f)
-        settings_write(s, f, 0);
-    return f && fclose(f) == 0 ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for the settings");
-}
-
-static Status fill_new_database(RunStore *store, const Settings *used, const char *provenance, Err *err)
-{
-    char created[24], *text = NULL;
-    utc(created);
-    TRY(settings_text(used, &text, err));
-    Status status = database_do(store->db, err, "BEGIN", "");
-    if (status == STATUS_OK)
-        status = database_do(store->db, err, TABLES, "");
-    if (status == STATUS_OK)
-        status = create_view(store, err);
-    if (status == STATUS_OK)
-        status = database_do(store->db, err,
-                             "INSERT INTO run(id, settings, provenance, planned_evals, n_var, created) "
-                             "VALUES (1, ?, ?, ?, ?, ?)",
-                             "ttiit", text, provenance, used->search.max_evals, (long)store->schema->n_var, created);
-    if (status == STATUS_OK)
-        status = database_do(store->db, err, "COMMIT", "");
-    free(text);
-    return status;
-}
-
-/* Made beside its place and renamed: a run has a whole database or none. */
-static Status create_database(RunStore *store, const Settings *used, const char *provenance, Err *err)
-{
-    char path[PATH_MAX], temporary[PATH_MAX + 8];
-    path_in(store, "run.sqlite", path);
-    snprintf(temporary, sizeof temporary, "%s.tmp", path);
-    unlink(temporary);
-    TRY(database_create(&store->db, temporary, err));
-    Status status = fill_new_database(store, used, provenance, err);
-    const Status closed = database_close(store->db, status == STATUS_OK ? err : NULL);
-    store->db = NULL;
-    TRY(status);
-    TRY(closed);
-    if (rename(temporary, path) != 0)
-        return fail(err, STATUS_IO, "%s: cannot be put in place: %s", path, strerror(errno));
-    output_sync_folder(path);
-    return open_database(store, err);
-}
 
 Status store_begin(RunStore *store, const Schema *schema, const Settings *used, const char *provenance, Err *err)
 {
+    char path[PATH_MAX];
     store->schema = schema;
-    TRY(create_database(store, used, provenance, err));
+    path_in(store, "run.sqlite", path);
+    TRY(tables_create(path, schema, used, provenance, err));
+    TRY(open_database(store, err));
     const Saved empty = {.schema = *schema};
     TRY(write_file(store, "settings.ini", put_settings, used, err));
     TRY(write_file(store, "provenance.json", put_line, provenance, err));
@@ -358,13 +250,9 @@ static void put_search_evaluations(FILE *f, const void *saved)
 
 Status store_go_on(RunStore *store, const Schema *schema, const Settings *used, Err *err)
 {
-    char *text = NULL;
     store->schema = schema;
     TRY(take_up(store, err));
-    TRY(settings_text(used, &text, err));
-    const Status status = database_do(store->db, err, "UPDATE run SET settings = ?", "t", text);
-    free(text);
-    TRY(status);
+    TRY(tables_set_settings(store->db, used, err));
     TRY(write_file(store, "settings.ini", put_settings, used, err));
     TRY(write_file(store, "provenance.json", put_line, store->saved.provenance, err));
     TRY(write_file(store, "evaluations.csv", put_search_evaluations, &store->saved, err));
@@ -384,7 +272,7 @@ static Status take_long(sqlite3_stmt *row, void *user, Err *err)
 Status store_session(RunStore *store, const char *program, int threads, size_t n_simulated, Err *err)
 {
     char started[24], host[65] = "";
-    utc(started);
+    utc_now(started);
     gethostname(host, sizeof host - 1);
     TRY(database_do(store->db, err,
                     "INSERT INTO session(started, host, pid, program, threads, simulated_before, seconds, is_final) "
@@ -416,59 +304,12 @@ Status store_flush(RunStore *store, Err *err)
     return STATUS_OK;
 }
 
-/* "[1,2.5,null]" into *text, which the caller frees; NULL where no number is finite. */
-static Status numbers_text(size_t n, const double values[], char **text, Err *err)
-{
-    size_t length, known = 0;
-    *text = NULL;
-    for (size_t i = 0; values && i < n; i++)
-        known += isfinite(values[i]) != 0;
-    if (known == 0)
-        return STATUS_OK;
-    FILE *f = open_memstream(text, &length);
-    for (size_t i = 0; f && i < n; i++) {
-        fputc(i == 0 ? '[' : ',', f);
-        if (isfinite(values[i]))
-            print_number(f, values[i]);
-        else
-            fputs("null", f);
-    }
-    if (f)
-        fputc(']', f);
-    return f && fclose(f) == 0 ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for %zu numbers", n);
-}
-
-static Status insert(Database *db, const Schema *schema, long id, long generation, const char *kind,
-                     const StoredDesign *d, Err *err)
-{
-    const int ok = strcmp(d->verdict.outcome, "ok") == 0;
-    char *x = NULL, *f = NULL, *spread = NULL, *extra = NULL;
-    Status status = numbers_text(schema->n_var, d->x, &x, err);
-    if (status == STATUS_OK && ok)
-        status = numbers_text(schema->n_obj, d->f, &f, err);
-    if (status == STATUS_OK)
-        status = numbers_text(schema->n_obj, d->spread, &spread, err);
-    if (status == STATUS_OK)
-        status = numbers_text(schema->n_extra, d->verdict.extra, &extra, err);
-    if (status == STATUS_OK)
-        status = database_do(db, err,
-                             "INSERT OR REPLACE INTO evaluation(id, generation, kind, outcome, reason, seconds, x, f, "
-                             "spread, violation, extra) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
-                             "iitttdtttdt", id, generation, kind, d->verdict.outcome, d->verdict.reason,
-                             d->verdict.seconds, x, f, spread, d->violation, extra);
-    free(x);
-    free(f);
-    free(spread);
-    free(extra);
-    return status;
-}
-
 Status store_simulation(RunStore *store, const Simulation *s, size_t generation, Err *err)
 {
     const StoredDesign d = {
         .x = s->x, .f = s->f, .spread = s->spread, .violation = s->violation, .verdict = *s->verdict};
     TRY(begin(store, err));
-    TRY(insert(store->db, store->schema, (long)s->number, (long)generation, NULL, &d, err));
+    TRY(tables_insert(store->db, store->schema, (long)s->number, (long)generation, NULL, &d, err));
     if (d.verdict.seconds >= COMMIT_S || now_s() >= store->last_commit + COMMIT_S)
         TRY(store_flush(store, err));
     return STATUS_OK;
@@ -547,7 +388,7 @@ static Status store_front_changes(RunStore *store, const SearchView *v, Err *err
 static Status store_moment(RunStore *store, const SearchView *v, double seconds, double session, Err *err)
 {
     char finished[24];
-    utc(finished);
+    utc_now(finished);
     if (!v->state)
         return fail(err, STATUS_NO_MEMORY, "no memory for the state of the search");
     TRY(database_do(store->db, err,
@@ -659,7 +500,7 @@ Status store_log(RunStore *store, Err *err, const char *format, ...)
 Status store_event(RunStore *store, json_t *event, Err *err)
 {
     char time[24];
-    utc(time);
+    utc_now(time);
     json_object_set_new(event, "time", json_string(time));
     const int written = event && store->events && json_dumpf(event, store->events, JSON_SORT_KEYS) == 0;
     json_decref(event);
@@ -683,7 +524,7 @@ static Status close_file(FILE **f, const RunStore *store, const char *name, Err 
 static Status end_session(RunStore *store, const char *stopped, int is_final, double session, Err *err)
 {
     char ended[24];
-    utc(ended);
+    utc_now(ended);
     TRY(store_flush(store, err));
     return database_do(store->db, err,
                        "UPDATE session SET ended = ?, stopped = ?, is_final = ?, seconds = ? WHERE number = ?", "ttidi",
@@ -736,7 +577,7 @@ static Status insert_polished(RunStore *store, const Schema *schema, const Store
     TRY(database_number(store->db, "SELECT max(id) FROM evaluation", 0, &last, err));
     TRY(database_number(store->db, "SELECT max(number) FROM generation", 0, &generation, err));
     *id = last >= POLISHED_FIRST ? (long)last + 1 : POLISHED_FIRST;
-    return insert(store->db, schema, *id, (long)generation, kind_word(KIND_POLISHED), design, err);
+    return tables_insert(store->db, schema, *id, (long)generation, kind_word(KIND_POLISHED), design, err);
 }
 
 Status store_read(RunStore *store, Saved *saved, Err *err)

@@ -1,0 +1,115 @@
+/* tests/runs.h -- small runs for tests of the run store, in the test's own folder or as a process of their own. */
+#ifndef IMTET_TESTS_RUNS_H
+#define IMTET_TESTS_RUNS_H
+
+#include "program.h"
+
+#include <fcntl.h>
+#include <limits.h>
+#include <omp.h>
+#include <spawn.h>
+#include <time.h>
+
+#include "run/export.h"
+
+static const char TEXTBOOK[] = "[problem]\nkind = dtlz2\nvariables = 6\nobjectives = 3\nnoise = 0.05\n"
+                               "[search]\ninitial = 12\npopulation = 12\nmax_evals = 40\nsurrogate_max = 30\n"
+                               "limits = f1<=1.2\n";
+/* A worker that never answers. */
+static const char DEAF[] = "[problem]\nkind = external\ncommand = sh tests/worker.sh deaf\nvariables = 3\n"
+                           "objectives = 2\n[search]\nmax_evals = 8\nthreads = 1\n";
+
+static inline char *path_of(const char *name, char path[PATH_MAX])
+{
+    snprintf(path, PATH_MAX, "%s/%s", place.folder, name);
+    return path;
+}
+
+static inline Settings settings_of(const char *text, const char *out)
+{
+    Settings s;
+    Err err = {0};
+    settings_defaults(&s);
+    CHECK_OK(settings_parse(&s, "here.ini", text, &err), &err);
+    snprintf(s.run.out, sizeof s.run.out, "%s/%s", place.folder, out);
+    if (s.search.threads == 0)
+        s.search.threads = 1;
+    return s;
+}
+
+static inline char *json_export(const char *folder)
+{
+    char *text = NULL;
+    size_t length;
+    Saved saved;
+    Err err = {0};
+    CHECK_OK(saved_read(&saved, folder, &err), &err);
+    snprintf(saved.settings.run.out, sizeof saved.settings.run.out, "here");
+    FILE *f = open_memstream(&text, &length);
+    CHECK_OK(export_json(f, &saved, &err), &err);
+    fclose(f);
+    saved_free(&saved);
+    return text;
+}
+
+static inline void assert_same_run(const char *a, const char *b)
+{
+    static const char *const FILES[] = {"evaluations.csv", "front.csv"};
+    char name[2][64], path[2][PATH_MAX];
+    for (int i = 0; i < 2; i++) {
+        snprintf(name[0], sizeof name[0], "%s/%s", a, FILES[i]);
+        snprintf(name[1], sizeof name[1], "%s/%s", b, FILES[i]);
+        char *first = read_in_place(name[0]), *second = read_in_place(name[1]);
+        assert_string_equal(first, second);
+        free(first);
+        free(second);
+    }
+    char *first = json_export(path_of(a, path[0])), *second = json_export(path_of(b, path[1]));
+    assert_string_equal(first, second);
+    free(first);
+    free(second);
+}
+
+static inline double now_s(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static inline void rest(double seconds)
+{
+    nanosleep(&(struct timespec){(time_t)seconds, (long)(1e9 * fmod(seconds, 1))}, NULL);
+}
+
+/* `imtet optimize` in the background, what it says in @/said. */
+static inline pid_t start(const char *config, const char *out)
+{
+    char paths[3][PATH_MAX];
+    pid_t pid;
+    posix_spawn_file_actions_t quiet;
+    char *words[] = {getenv("IMTET"), "optimize", path_of(config, paths[0]), "--out", path_of(out, paths[1]), NULL};
+    posix_spawn_file_actions_init(&quiet);
+    posix_spawn_file_actions_addopen(&quiet, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+    posix_spawn_file_actions_addopen(&quiet, STDERR_FILENO, path_of("said", paths[2]), O_WRONLY | O_CREAT | O_TRUNC,
+                                     0666);
+    assert_int_equal(posix_spawn(&pid, words[0], &quiet, NULL, words, environ), 0);
+    posix_spawn_file_actions_destroy(&quiet);
+    return pid;
+}
+
+static inline int wait_end(pid_t pid)
+{
+    int status;
+    assert_int_equal(waitpid(pid, &status, 0), pid);
+    return status;
+}
+
+static inline int prepare(void **state)
+{
+    setenv("OMP_WAIT_POLICY", "passive", 0);
+    omp_set_num_threads(1);
+    return make_place(state);
+}
+
+#endif
