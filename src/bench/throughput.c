@@ -1,9 +1,13 @@
 #include "bench/throughput.h"
 
 #include <math.h>
+#include <omp.h>
 #include <stdlib.h>
+#include <time.h>
 
-enum { DESIGNS = 24, DESIGNS_QUICK = 4, JUDGED = 6 };
+#include "run/ensemble.h"
+
+enum { DESIGNS = 24, DESIGNS_QUICK = 4, JUDGED = 6, ENSEMBLE_MEMBERS = 8 };
 
 static const double WINDOW_S = 8, PLAIN_STEP = 2e-4, BDF_RTOL = 1e-6, REFERENCE_STEPS = 320;
 
@@ -66,6 +70,66 @@ static Status run_fast(Throughput *t, Err *err)
     fprintf(t->out, "  counted         %.0f steps, %.0f force evaluations, %.0f impacts per design; %ld failed\n",
             (double)steps / t->n, (double)forces / t->n, (double)impacts / t->n, failed);
     fprintf(t->out, "  work            steps %ld force_evaluations %ld\n", steps, forces);
+    return STATUS_OK;
+}
+
+static double wall_seconds(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* Wall time [s] of all designs over a crew, and of an ensemble of design 0. */
+static Status time_crew(Throughput *t, const Scene *scene, int threads, double *all, double *ensemble, Err *err)
+{
+    enum { STRIDE = FLOORS_MAX + 2 };
+    const int n = t->stage.building.n;
+    double X[DESIGNS * STRIDE];
+    SimTask tasks[DESIGNS];
+    Crew *crew;
+    Ensemble e;
+    SimResult *results = calloc(DESIGNS, sizeof *results);
+    if (!results)
+        return fail(err, STATUS_NO_MEMORY, "bench: out of memory");
+    for (int k = 0; k < t->n; k++) {
+        double *x = X + k * STRIDE;
+        bench_irregular_gaps((uint32_t)k, n, x);
+        x[n] = BENCH_WALL_BASE;
+        x[n + 1] = BENCH_WALL_TOP;
+        tasks[k] = (SimTask){SCENE_IMPACT, x};
+    }
+    Status status = crew_create(&crew, scene, threads, err);
+    const double start = wall_seconds();
+    if (status == STATUS_OK)
+        status = crew_run(crew, (size_t)t->n, tasks, results, err);
+    const double middle = wall_seconds();
+    if (status == STATUS_OK)
+        status = ensemble_run(crew, n, X, ENSEMBLE_MEMBERS, ENSEMBLE_CHANGE, 1, &e, NULL, err);
+    *all = middle - start;
+    *ensemble = wall_seconds() - middle;
+    crew_free(crew);
+    free(results);
+    return status;
+}
+
+/* What threads gain, and what the spread of one design costs. */
+static Status run_crews(Throughput *t, Err *err)
+{
+    const int threads = omp_get_num_procs();
+    double one, many, ensemble_one, ensemble_many;
+    Scene *scene;
+    TRY(scene_create(&scene, t->settings, t->whole, err));
+    Status status = time_crew(t, scene, 1, &one, &ensemble_one, err);
+    if (status == STATUS_OK)
+        status = time_crew(t, scene, threads, &many, &ensemble_many, err);
+    scene_free(scene);
+    TRY(status);
+    fprintf(t->out, "  threads         %.4g designs a second on 1, %.4g on %d: %.2f times\n", t->n / one, t->n / many,
+            threads, one / many);
+    fprintf(t->out, "  ensemble of %d   %.3g ms on 1 thread, %.3g ms on %d: %.2f and %.2f times one design\n",
+            ENSEMBLE_MEMBERS, 1e3 * ensemble_one, 1e3 * ensemble_many, threads, ensemble_one * t->n / one,
+            ensemble_many * t->n / one);
     return STATUS_OK;
 }
 
@@ -156,6 +220,8 @@ Status throughput_print(const Settings *s, const Motion *motion, int quick, int 
     Status status = stage_open(&t.stage, bench_scene(2), s, motion, quick, err);
     if (status == STATUS_OK)
         status = run_fast(&t, err);
+    if (status == STATUS_OK && !count)
+        status = run_crews(&t, err);
     if (status == STATUS_OK && !count)
         status = compare_all(&t, quick, err);
     stage_close(&t.stage);
