@@ -123,9 +123,11 @@ static inline int row_width(int n)
  * apart, its pivots inverted; L (n, n), without its ones, has the columns as rows. */
 INLINE void factorise(const int n, const int width, double *A, double *L)
 {
+#pragma GCC unroll 8
     for (int c = 0; c < n; c++) {
         const double *pivot_row = A + c * width;
         const double inverse = 1 / pivot_row[c];
+#pragma GCC unroll 8
         for (int r = c + 1; r < n; r++) {
             double *row = A + r * width;
             const double f = L[c * n + r] = row[c] * inverse;
@@ -138,10 +140,14 @@ INLINE void factorise(const int n, const int width, double *A, double *L)
 
 INLINE void substitute(const int n, const int width, const double *U, const double *L, double x[])
 {
+#pragma GCC unroll 8
     for (int c = 0; c < n; c++)
+#pragma GCC unroll 8
         for (int r = c + 1; r < n; r++)
             x[r] -= L[c * n + r] * x[c];
+#pragma GCC unroll 8
     for (int r = n - 1; r >= 0; r--) {
+#pragma GCC unroll 8
         for (int c = n - 1; c > r; c--)
             x[r] -= U[r * width + c] * x[c];
         x[r] *= U[r * width + r];
