@@ -216,7 +216,35 @@ static void test_a_signal_stops_within_a_batch_and_the_command_that_is_printed_g
     (void)state;
     check_signal(SIGINT, "interrupted");
     check_signal(SIGTERM, "terminated");
+    check_signal(SIGHUP, "hung-up");
     assert_same_run("interrupted", "terminated");
+    assert_same_run("interrupted", "hung-up");
+}
+
+/* `script` gives the program a terminal. */
+static void test_progress_is_one_line_on_a_terminal_and_none_in_a_pipe(void **state)
+{
+    (void)state;
+    Said s;
+    char command[512];
+    write_in_place("textbook.ini", TEXTBOOK);
+    run(&s, "optimize @/textbook.ini --out @/in-a-pipe");
+    assert_int_equal(s.code, 0);
+    assert_string_equal(s.err, "");
+    forget(&s);
+    if (system("command -v script >/dev/null") != 0)
+        skip();
+    snprintf(command, sizeof command,
+             "script -qec '\"%s\" optimize %s/textbook.ini --out %s/on-a-terminal' %s/typed >%s/seen", getenv("IMTET"),
+             place.folder, place.folder, place.folder, place.folder);
+    assert_int_equal(system(command), 0);
+    char *seen = read_in_place("seen");
+    assert_non_null(strstr(seen, "\rgeneration 1: "));
+    assert_non_null(strstr(seen, " of 40 simulated, 0 failed, front "));
+    assert_non_null(strstr(seen, ", hypervolume 0."));
+    assert_non_null(strstr(seen, " min left"));
+    assert_null(strstr(strstr(seen, "\rgeneration 1: "), "\ngeneration"));
+    free(seen);
 }
 
 static void test_a_second_signal_ends_at_once(void **state)
@@ -417,6 +445,7 @@ int main(void)
         cmocka_unit_test(test_other_settings_are_refused_key_by_key_and_limits_can_be_forced),
         cmocka_unit_test(test_a_record_that_has_changed_is_another_setting),
         cmocka_unit_test(test_a_signal_stops_within_a_batch_and_the_command_that_is_printed_goes_on),
+        cmocka_unit_test(test_progress_is_one_line_on_a_terminal_and_none_in_a_pipe),
         cmocka_unit_test(test_a_second_signal_ends_at_once),
         cmocka_unit_test(test_hours_are_obeyed_within_a_batch),
         cmocka_unit_test(test_one_failure_in_ten_is_survived_and_never_on_the_front),

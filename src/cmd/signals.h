@@ -1,6 +1,6 @@
-/* cmd/signals.h -- SIGINT and SIGTERM as a wish to end.
+/* cmd/signals.h -- SIGINT, SIGTERM and SIGHUP (the terminal is gone) as a wish to end.
  *
- * The first one is only noted, for signals_asked to tell; a second one of either kind ends the program at once. Also
+ * The first one is only noted, for signals_asked to tell; a second one of any kind ends the program at once. Also
  * SIGXFSZ, a file beyond the allowed size, is from then on a failed write instead of the end.
  *
  * Threads  signals_asked may be called from any. */
