@@ -219,9 +219,10 @@ chart: $(PROGRAM)
 	@$(abspath $(PROGRAM)) bench --record $(BENCH_RECORD) --csv docs/chart.csv --markdown docs/chart.md
 	@scripts/plot-chart docs/chart.csv docs/chart
 
-# The search on problems whose front is known, with and without surrogate; CELLS and SEEDS choose a part of it.
+# The search on problems from textbooks and on the tower, with and without surrogate; CELLS and SEEDS choose a part of it,
+# KEEP is a folder in which runs stay and are not repeated.
 compare: $(PROGRAM)
-	@scripts/compare --program ./$(PROGRAM) --out docs/search.md $(if $(CELLS),--cells $(CELLS)) $(if $(SEEDS),--seeds $(SEEDS))
+	@scripts/compare --program ./$(PROGRAM) --out docs/search.md $(if $(CELLS),--cells $(CELLS)) $(if $(SEEDS),--seeds $(SEEDS)) $(if $(KEEP),--keep $(KEEP))
 
 # The pictures of a study in docs/pictures: make pictures RUN=results/kobe RECORDS="elcentro.csv sylmar.csv"
 pictures: $(PROGRAM)

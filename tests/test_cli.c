@@ -656,6 +656,11 @@ static void test_a_search_begins_with_given_designs_and_a_front_is_thinned(void 
     char *said = output_of("choose @/earlier"), knee[40];
     snprintf(knee, sizeof knee, " %.0f ", three.values[0]);
     assert_non_null(strstr(said, knee));
+    free(output_of("polish @/earlier --design knee --improve f1 --keep f1 --evals 60")); /* a gain enters the archive */
+    free(output_of("export @/earlier --all --csv @/polished-too.csv"));
+    char *with_polished = read_in_place("polished-too.csv");
+    assert_non_null(strstr(with_polished, ",polished,ok,"));
+    free(with_polished);
     expect(66, "search.start", "optimize @/sphere.ini --out @/no --set search.start=@/nothing");
     expect(2, "is no number of designs", "export @/earlier --select many --csv -");
     free(said);
