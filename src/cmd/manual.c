@@ -55,7 +55,7 @@ void usage_write(FILE *out)
     fprintf(out,
             "\nEarthquake protection by impacts between a tower and an inner core.\n\nusage: imtet COMMAND ...\n\n");
     for (int i = 0; i < N_COMMANDS; i++)
-        fprintf(out, "  %-9s %-7s %s\n", COMMANDS[i]->name, operand_of(COMMANDS[i]), COMMANDS[i]->summary);
+        fprintf(out, "  %-9s %-10s %s\n", COMMANDS[i]->name, operand_of(COMMANDS[i]), COMMANDS[i]->summary);
     fprintf(out,
             "\n`imtet help COMMAND` shows an example and every option, `imtet --version --json` what this program\n"
             "was built from.\n\nexit status\n");
