@@ -156,6 +156,9 @@ $(BUILD)/tests/fault/nomem.so: tests/fault/nomem.c
 
 $(BUILD)/tests/test_fuzz_corpus: $(FUZZ_OBJ)
 
+WRAPPED := sqlite3_step sqlite3_exec sqlite3_prepare_v2 sqlite3_open_v2 calloc malloc realloc open_memstream fopen fflush rename
+$(BUILD)/tests/test_store_faults: LDFLAGS += $(WRAPPED:%=-Wl,--wrap=%)
+
 $(PROGRAM): $(BUILD)/src/main.o $(LIB)
 	@echo '  LD  $@'
 	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
