@@ -450,6 +450,25 @@ static Status write_whole_tables(RunStore *store, int evaluations_too, Err *err)
     return status;
 }
 
+/* All of it or nothing: half a generation beside the state of the one before would be no run that can go on. */
+static Status commit_generation(RunStore *store, const SearchView *v, double seconds, double session, Err *err)
+{
+    TRY(store_flush(store, err)); /* simulations that wait are not lost with it */
+    Status status = begin(store, err);
+    if (status == STATUS_OK)
+        status = store_kinds(store, v, err);
+    if (status == STATUS_OK)
+        status = store_front_changes(store, v, err);
+    if (status == STATUS_OK)
+        status = store_moment(store, v, seconds, session, err);
+    if (status == STATUS_OK)
+        status = store_flush(store, err);
+    if (status != STATUS_OK && store->in_transaction)
+        database_do(store->db, NULL, "ROLLBACK", "");
+    store->in_transaction = 0;
+    return status;
+}
+
 Status store_generation(RunStore *store, const SearchView *v, double seconds, double session, Err *err)
 {
     const struct {
@@ -457,11 +476,7 @@ Status store_generation(RunStore *store, const SearchView *v, double seconds, do
         const SearchView *view;
     } front = {store->schema, v};
     TRY(measure_front(store, v, err));
-    TRY(begin(store, err));
-    TRY(store_kinds(store, v, err));
-    TRY(store_front_changes(store, v, err));
-    TRY(store_moment(store, v, seconds, session, err));
-    TRY(store_flush(store, err));
+    TRY(commit_generation(store, v, seconds, session, err));
     TRY(append_evaluations(store, v, err));
     return store->has_polished || store->schema->has_spread
                ? write_whole_tables(store, 0, err)
