@@ -12,6 +12,7 @@
 #include "moga/dominance.h"
 #include "moga/group.h"
 #include "moga/infill.h"
+#include "moga/order.h"
 #include "moga/surface.h"
 #include "moga/survival.h"
 #include "moga/variation.h"
@@ -147,8 +148,7 @@ static void survive(Search *s, Group *group, uint32_t step)
     group_keep(group, n, s->chosen);
 }
 
-/* -- variation ------------------------------------------------------------------------------------------------------
- */
+/* -- variation ---------------------------------------------------------------------------------------------------- */
 
 static const double *tournament(const Group *g, Random *random)
 {
@@ -181,8 +181,7 @@ static void breed(Search *s, Group *group, size_t n, uint32_t step)
     }
 }
 
-/* -- one generation -------------------------------------------------------------------------------------------------
- */
+/* -- one generation ----------------------------------------------------------------------------------------------- */
 
 /* Where there is nobody to breed from (every simulation failed so far), another Latin hypercube. */
 static Status sample_again(Search *s, Err *err)
@@ -238,12 +237,6 @@ static double share_of_rays(const Search *s)
     return RAYS_MOST * fmin(fmax((s->off - OFF_LEAST) / (OFF_MOST - OFF_LEAST), 0.0), 1.0);
 }
 
-static int compare_doubles(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* How far off their directions this generation's descents by PBI end, as the surface sees them. */
 static void judge_directions(Search *s)
 {
@@ -253,7 +246,7 @@ static void judge_directions(Search *s)
         s->apart[j] =
             infill_off(s->infill[INFILL_PBI], s->followed[i], s->offspring.F + (first + i) * s->problem->n_obj);
     }
-    qsort(s->apart, n, sizeof *s->apart, compare_doubles);
+    sort_numbers(n, s->apart);
     s->off += OFF_WEIGHT * (s->apart[n / 2] - s->off);
 }
 
@@ -365,21 +358,6 @@ static size_t choose_batch(Search *s)
     return n;
 }
 
-/* Kendall's tau of two columns of a batch: pairs in the same order less pairs in the opposite one, as a share. */
-static double tau(size_t n, size_t stride, const double a[], const double b[], const unsigned char ok[])
-{
-    long same = 0, pairs = 0;
-    for (size_t i = 0; i < n; i++)
-        for (size_t j = 0; j < i; j++) {
-            const double product = (a[i * stride] - a[j * stride]) * (b[i * stride] - b[j * stride]);
-            if (!ok[i] || !ok[j])
-                continue;
-            same += (product > 0.0) - (product < 0.0);
-            pairs++;
-        }
-    return pairs > 0 ? (double)same / (double)pairs : 0.0;
-}
-
 /* How far the surface foretold the order of the n designs just simulated, in the mean over the objectives. */
 static void judge_surface(Search *s, size_t n)
 {
@@ -388,7 +366,7 @@ static void judge_surface(Search *s, size_t n)
     if (n < 4 || !surface_stands(s->surface))
         return;
     for (size_t k = 0; k < m; k++)
-        mean += tau(n, m, s->foreseen + k, s->F + k, s->ok) / (double)m;
+        mean += kendall_tau(n, m, s->foreseen + k, s->F + k, s->ok) / (double)m;
     s->agreement += AGREEMENT_WEIGHT * (mean - s->agreement);
 }
 
@@ -491,15 +469,14 @@ static void make_allowed(const Problem *p, double x[])
 static Status first_generation(Search *s, Err *err)
 {
     const Problem *p = s->problem;
-    const size_t n_samples_wanted = n_samples(s);
     size_t n = 0;
     for (size_t i = 0; i < s->config->n_given; i++) {
         memcpy(s->child, s->config->given + i * p->n_var, p->n_var * sizeof *s->child);
         make_allowed(p, s->child);
         n = batch_add(s, n, s->child);
     }
-    latin_hypercube(s->config->seed, 0, n_samples_wanted, p->n_var, p->lower, p->upper, s->pool.X, s->chosen);
-    for (size_t i = 0; i < n_samples_wanted; i++) {
+    latin_hypercube(s->config->seed, 0, n_samples(s), p->n_var, p->lower, p->upper, s->pool.X, s->chosen);
+    for (size_t i = 0; i < n_samples(s); i++) {
         make_allowed(p, s->pool.X + i * p->n_var);
         n = batch_add(s, n, s->pool.X + i * p->n_var);
     }
@@ -510,8 +487,7 @@ static Status first_generation(Search *s, Err *err)
     return STATUS_OK;
 }
 
-/* -- the loop -------------------------------------------------------------------------------------------------------
- */
+/* -- the loop ----------------------------------------------------------------------------------------------------- */
 
 static StopReason reason_to_stop(const Search *s)
 {
@@ -526,8 +502,7 @@ static StopReason reason_to_stop(const Search *s)
     return c->max_seconds > 0.0 && seconds_since(&s->start) >= c->max_seconds ? STOP_TIME : STOP_NONE;
 }
 
-/* -- the state ------------------------------------------------------------------------------------------------------
- */
+/* -- the state ---------------------------------------------------------------------------------------------------- */
 
 enum { STATE_VERSION = 3 };
 

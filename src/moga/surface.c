@@ -5,9 +5,11 @@
 
 #include "base/carve.h"
 #include "moga/dominance.h"
+#include "moga/order.h"
 
-/* Below this mean leave-one-out R2 of the objectives the surface guides no better than chance. */
-static const double LEAST_EXPLAINED = 0.2;
+/* Below this mean leave-one-out R2 of the objectives the surface guides no better than chance: LEAST_EXPLAINED, and
+ * what scales, warp and form find in n answers without any pattern, LUCK / root(n). */
+static const double LEAST_EXPLAINED = 0.2, LUCK = 2.0;
 
 struct Surface {
     const Problem *problem;
@@ -189,13 +191,7 @@ int surface_stands(const Surface *s)
     double explained = 0.0;
     for (size_t k = 0; s->fitted && k < s->problem->n_obj; k++)
         explained += fmax(rbf_explained(s->rbf, k), 0.0) / (double)s->problem->n_obj;
-    return explained > LEAST_EXPLAINED;
-}
-
-static int compare_doubles(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
+    return s->fitted && explained > LEAST_EXPLAINED + LUCK / sqrt((double)s->n);
 }
 
 double surface_error(const Surface *s)
@@ -205,7 +201,7 @@ double surface_error(const Surface *s)
         const double *e = rbf_leave_one_out(s->rbf, k);
         for (size_t i = 0; i < s->n; i++)
             s->errors[i] = fabs(e[i]) / s->range[k];
-        qsort(s->errors, s->n, sizeof *s->errors, compare_doubles);
+        sort_numbers(s->n, s->errors);
         worst = fmax(worst, 0.5 * (s->errors[(s->n - 1) / 2] + s->errors[s->n / 2]));
     }
     return worst;
