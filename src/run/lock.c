@@ -2,8 +2,10 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <signal.h>
 #include <stdio.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 static void read_holder(int fd, LockHolder *holder)
@@ -14,17 +16,38 @@ static void read_holder(int fd, LockHolder *holder)
         sscanf(text, "%ld %71s", &holder->pid, holder->host);
 }
 
+static int is_gone(const LockHolder *holder)
+{
+    char host[72] = "";
+    gethostname(host, sizeof host - 1);
+    return strcmp(host, holder->host) == 0 && kill((pid_t)holder->pid, 0) != 0 && errno == ESRCH;
+}
+
+/* A process that is killed while it starts a worker leaves the lock to it for some moments, until that one has begun
+ * its own program: who is gone gets PATIENCE to let go. */
+static int try_lock(int fd, LockHolder *holder)
+{
+    enum { PATIENCE = 100, PAUSE_NS = 20000000 };
+    struct flock whole = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
+    for (int i = 0; fcntl(fd, F_OFD_SETLK, &whole) != 0; i++) {
+        const int cause = errno;
+        read_holder(fd, holder);
+        if ((cause != EAGAIN && cause != EACCES) || i == PATIENCE || !is_gone(holder))
+            return cause;
+        nanosleep(&(struct timespec){.tv_nsec = PAUSE_NS}, NULL);
+    }
+    return 0;
+}
+
 Status lock_take(const char *path, int *fd, Err *err)
 {
-    struct flock whole = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
+    LockHolder holder = {0};
     char host[65] = "", text[96];
     *fd = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     if (*fd < 0)
         return fail(err, STATUS_IO, "%s: cannot be written: %s", path, strerror(errno));
-    if (fcntl(*fd, F_OFD_SETLK, &whole) != 0) {
-        const int cause = errno;
-        LockHolder holder;
-        read_holder(*fd, &holder);
+    const int cause = try_lock(*fd, &holder);
+    if (cause != 0) {
         close(*fd);
         *fd = -1;
         return cause == EAGAIN || cause == EACCES
@@ -35,10 +58,10 @@ Status lock_take(const char *path, int *fd, Err *err)
     gethostname(host, sizeof host - 1);
     const int n = snprintf(text, sizeof text, "%ld %s\n", (long)getpid(), host);
     if (ftruncate(*fd, 0) != 0 || pwrite(*fd, text, (size_t)n, 0) != n) {
-        const int cause = errno;
+        const int why = errno;
         lock_release(*fd);
         *fd = -1;
-        return fail(err, STATUS_IO, "%s: cannot be written: %s", path, strerror(cause));
+        return fail(err, STATUS_IO, "%s: cannot be written: %s", path, strerror(why));
     }
     return STATUS_OK;
 }
