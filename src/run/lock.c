@@ -81,5 +81,5 @@ int lock_is_held(const char *path, LockHolder *holder)
     const int held = fcntl(fd, F_OFD_GETLK, &whole) == 0 && whole.l_type != F_UNLCK;
     read_holder(fd, holder);
     close(fd);
-    return held;
+    return held && !is_gone(holder);
 }
