@@ -80,6 +80,8 @@ static const Option OPTIONS[] = {
      "fast: the one to use; the others are slower and exist to be compared with"},
     {"sim.accuracy", "-", CHOICE, AT(sim.accuracy), "standard", 0, 0, "coarse|standard|fine",
      "what a run costs and how far it can be trusted (docs/chart.md)"},
+    {"sim.steps_per_contact", "-", REAL, AT(sim.steps_per_contact), "0", 0, 1000, NULL,
+     "engine fast: finer than sim.accuracy, with tolerances to match; 0: as sim.accuracy says"},
     {"sim.duration_s", "s", REAL, AT(sim.duration_s), "0", 0, 1e6, NULL, "stop here; 0: at the end of the motion"},
     {"sim.residual_max", "-", REAL, AT(sim.residual_max), "0.001", 1e-12, 1, NULL,
      "a run whose energy books are open by more than this share of the input is refined, then failed"},

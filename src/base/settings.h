@@ -74,6 +74,7 @@ typedef struct {
     } motion;
     struct {
         long engine, accuracy;
+        double steps_per_contact;
         double duration_s; /* 0: the whole motion */
         double residual_max;
         long ensemble, robust;  /* members of a design; Robust */

@@ -11,9 +11,10 @@ typedef struct {
     double knob;
 } Setting;
 
-static const Setting STEPS_PER_CONTACT[] = {{ACCURACY_COARSE, 0}, {ACCURACY_STANDARD, 0}, {ACCURACY_FINE, 5},
-                                            {ACCURACY_FINE, 10},  {ACCURACY_FINE, 20},    {ACCURACY_FINE, 40},
-                                            {ACCURACY_FINE, 0},   {ACCURACY_COARSE, -1}};
+static const Setting STEPS_PER_CONTACT[] = {{ACCURACY_COARSE, 0},   {ACCURACY_STANDARD, 0}, {ACCURACY_STANDARD, 2},
+                                            {ACCURACY_STANDARD, 4}, {ACCURACY_STANDARD, 8}, {ACCURACY_STANDARD, 16},
+                                            {ACCURACY_FINE, 20},    {ACCURACY_FINE, 40},    {ACCURACY_FINE, 0},
+                                            {ACCURACY_COARSE, -1}};
 static const Setting TOLERANCES[] = {{0, 1e-2}, {0, 1e-3}, {0, 3e-4}, {0, 1e-4}, {0, 3e-5},
                                      {0, 1e-5}, {0, 1e-6}, {0, 1e-7}, {0, 1e-8}, {0, -1}};
 static const Setting STEPS[] = {{0, 1e-2}, {0, 5e-3}, {0, 2e-3}, {0, 1e-3}, {0, 5e-4}, {0, 2e-4},

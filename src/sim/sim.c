@@ -169,9 +169,10 @@ static void judge(SimResult *r, double residual_max)
 static void run_fast(SimWorker *w, SimResult *result)
 {
     const Scene *scene = w->scene;
+    const double wanted = scene->settings.sim.steps_per_contact;
+    const double times = wanted > 0 ? wanted / fast_knobs(scene->options.accuracy).steps_per_contact : 1;
     for (size_t i = 0; i < sizeof REFINEMENTS / sizeof REFINEMENTS[0]; i++) {
-        FastKnobs knobs = fast_knobs(scene->options.accuracy);
-        knobs.steps_per_contact *= REFINEMENTS[i];
+        const FastKnobs knobs = fast_knobs_finer(scene->options.accuracy, times * REFINEMENTS[i]);
         fast_run(w->fast, &w->model, scene->motion, scene->options.duration, &knobs, result);
         judge(result, scene->settings.sim.residual_max);
         if (result->outcome != RUN_BOOKS_OPEN)

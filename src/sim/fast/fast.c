@@ -107,6 +107,17 @@ FastKnobs fast_knobs(Accuracy accuracy)
     return KNOBS[accuracy];
 }
 
+FastKnobs fast_knobs_finer(Accuracy accuracy, double times)
+{
+    FastKnobs knobs = fast_knobs(accuracy);
+    knobs.steps_per_contact *= times;
+    knobs.solver_tolerance /= times * times;
+    knobs.energy_tolerance /= times * times * times;
+    knobs.peak_tolerance /= times;
+    knobs.flexibility_left_out /= times * times;
+    return knobs;
+}
+
 void fast_run(FastWork *work, const SimModel *model, const Motion *motion, double duration, const FastKnobs *knobs,
               SimResult *result)
 {
@@ -132,7 +143,9 @@ Status engine_fast(const SimModel *model, const Motion *motion, const EngineOpti
 {
     FastWork *work;
     FastKnobs knobs = fast_knobs(options->accuracy);
-    if (options->knob > 0)
+    if (options->knob > 0 && options->accuracy != ACCURACY_FINE)
+        knobs = fast_knobs_finer(options->accuracy, options->knob / knobs.steps_per_contact);
+    else if (options->knob > 0)
         knobs.steps_per_contact = options->knob;
     TRY(fast_create(&work, model->n, err));
     fast_log_closings(work, options->closings);

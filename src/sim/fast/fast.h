@@ -50,6 +50,9 @@ typedef struct {
 
 FastKnobs fast_knobs(Accuracy accuracy);
 
+/* The same with so many times the steps per contact, and tolerances to match. */
+FastKnobs fast_knobs_finer(Accuracy accuracy, double times);
+
 void fast_run(FastWork *work, const SimModel *model, const Motion *motion, double duration, const FastKnobs *knobs,
               SimResult *result);
 
