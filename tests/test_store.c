@@ -192,6 +192,29 @@ static void wait_for(const char *out, size_t n)
     }
 }
 
+/* What `status` counts is in both exports, also of the generation that was cut short. */
+static void check_unfinished_is_exported(const char *out)
+{
+    char command[128];
+    size_t n = 0, n_unfinished = 0;
+    snprintf(command, sizeof command, "status @/%s --json", out);
+    json_t *o = json_of(command);
+    const double simulated = number(o, "simulated");
+    json_decref(o);
+    snprintf(command, sizeof command, "export @/%s --all --csv -", out);
+    char *all = output_of(command);
+    for (const char *line = strchr(all, '\n'); line && line[1]; line = strchr(line + 1, '\n'))
+        n++;
+    for (const char *word = all; (word = strstr(word, ",unfinished,ok,,")) != NULL; word++)
+        n_unfinished++;
+    free(all);
+    assert_true((double)n == simulated && n_unfinished > 0);
+    snprintf(command, sizeof command, "export @/%s --json", out);
+    o = json_of(command);
+    assert_true((double)json_array_size(json_object_get(o, "evaluations")) == simulated);
+    json_decref(o);
+}
+
 static void check_signal(int number, const char *out)
 {
     char resume[128], wanted[192], *said;
@@ -199,6 +222,7 @@ static void check_signal(int number, const char *out)
     const pid_t pid = start("steady.ini", out);
     wait_for(out, 4);
     kill(pid, number);
+    kill(pid, number == SIGTERM ? SIGINT : SIGTERM); /* within microseconds, as of `timeout`: the same wish */
     const int status = wait_end(pid);
     assert_true(WIFEXITED(status));
     assert_int_equal(WEXITSTATUS(status), 75);
@@ -208,6 +232,7 @@ static void check_signal(int number, const char *out)
     if (!strstr(said, wanted) || !strstr(said, "stopped on request after"))
         fail_msg("said: %s\nwanted: %s", said, wanted);
     free(said);
+    check_unfinished_is_exported(out);
     free(output_of(resume));
 }
 
@@ -258,7 +283,8 @@ static void test_a_second_signal_ends_at_once(void **state)
         rest(0.02);
     rest(0.2);
     kill(pid, SIGTERM);
-    rest(0.2);
+    kill(pid, SIGINT); /* within microseconds: one wish, as of `timeout` */
+    rest(0.4);
     assert_int_equal(waitpid(pid, NULL, WNOHANG), 0); /* it still waits for the answer that is under way */
     kill(pid, SIGTERM);
     const int status = wait_end(pid);

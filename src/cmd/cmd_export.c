@@ -63,7 +63,7 @@ static Status write_tables(const Args *args, const Saved *h, Err *err)
         }
     } else if (args_has(args, "--all")) {
         export_evaluations_header(o.stream, &h->schema);
-        export_evaluations(o.stream, h);
+        export_evaluations(o.stream, h, 1);
     } else {
         export_front(o.stream, h);
     }
@@ -103,7 +103,8 @@ const Command CMD_EXPORT = {
         "The front of the folder RUN: one row per design with id, variables [m] and objectives in their natural "
         "signs.\n"
         "With --all every evaluated design, failed ones too: id, generation, kind, outcome and reason before the\n"
-        "variables. results/README.md explains every column. The run may still be going on.",
+        "variables; kind is `unfinished` for those of a generation that is under way or was cut short.\n"
+        "results/README.md explains every column. The run may still be going on.",
     .options = OPTIONS,
     .run = run,
 };

@@ -174,9 +174,8 @@ const Command CMD_OPTIMIZE = {
         "writes them to DIR/front.csv generation by generation (results/README.md explains every file and\n"
         "column). A run that is there already goes on where it stopped, with the same result as if it never had; its\n"
         "settings must be the same. `imtet optimize RUN` goes on with a run's own settings. Ctrl-C, SIGTERM and\n"
-        "--max-hours store everything and end with status 75; a second signal ends at once, and costs no more than "
-        "the\n"
-        "simulations under way.\n"
+        "--max-hours store everything and end with status 75; a second signal, 0.2 s later or more, ends at\n"
+        "once and costs the simulations under way and at most 0.2 s of finished ones.\n"
         "With problem.kind = external the simulator is a program of your own (docs/external.md).",
     .options = OPTIONS,
     .run = run,

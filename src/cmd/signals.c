@@ -1,19 +1,37 @@
 #include "cmd/signals.h"
 
 #include <signal.h>
+#include <stdatomic.h>
 #include <stddef.h>
+#include <time.h>
 
 /* A handler has no argument for its state: the one place where the program keeps some of its own. */
 static volatile sig_atomic_t asked;
+static atomic_llong first_ns; /* when the first one came, 0: none did */
+
+/* `timeout` and others signal the process and then its group: that is one wish. */
+static const long long ONE_WISH_NS = 200000000;
 
 static const int WISHES[] = {SIGINT, SIGTERM, SIGHUP};
 enum { N_WISHES = sizeof WISHES / sizeof WISHES[0] };
 
+static long long now_ns(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t); /* allowed in a handler: signal-safety(7) */
+    return 1000000000LL * t.tv_sec + t.tv_nsec;
+}
+
 static void note(int signal_number)
 {
-    asked = signal_number;
-    for (int i = 0; i < N_WISHES; i++)
-        signal(WISHES[i], SIG_DFL);
+    const long long now = now_ns();
+    long long first = 0;
+    if (atomic_compare_exchange_strong(&first_ns, &first, now))
+        asked = signal_number;
+    else if (now - first >= ONE_WISH_NS) {
+        signal(signal_number, SIG_DFL);
+        raise(signal_number); /* comes when the handler returns */
+    }
 }
 
 void signals_catch(void)
@@ -21,6 +39,7 @@ void signals_catch(void)
     const struct sigaction wanted = {.sa_handler = note, .sa_flags = SA_RESTART};
     struct sigaction before;
     asked = 0;
+    atomic_store(&first_ns, 0);
     for (int i = 0; i < N_WISHES; i++)
         if (sigaction(WISHES[i], NULL, &before) == 0 && (WISHES[i] != SIGHUP || before.sa_handler != SIG_IGN))
             sigaction(WISHES[i], &wanted, NULL); /* under nohup the end of the terminal stays without meaning */

@@ -1,7 +1,8 @@
 /* cmd/signals.h -- SIGINT, SIGTERM and SIGHUP (the terminal is gone) as a wish to end.
  *
- * The first one is only noted, for signals_asked to tell; a second one of any kind ends the program at once. Also
- * SIGXFSZ, a file beyond the allowed size, is from then on a failed write instead of the end.
+ * The first one is only noted, for signals_asked to tell; a second one of any kind ends the program at once, unless
+ * it comes within 0.2 s of the first (`timeout` signals the process and then its group). Also SIGXFSZ, a file beyond
+ * the allowed size, is from then on a failed write instead of the end.
  *
  * Threads  signals_asked may be called from any. */
 #ifndef IMTET_CMD_SIGNALS_H

@@ -59,12 +59,12 @@ void export_evaluations_header(FILE *f, const Schema *schema)
     write_names(f, "id,generation,kind,outcome,reason", schema, schema->n_extra, 0);
 }
 
-void export_evaluations(FILE *f, const Saved *h)
+void export_evaluations(FILE *f, const Saved *h, int unfinished_too)
 {
     const Schema *schema = &h->schema;
     for (size_t i = 0; i < h->n; i++) {
         const SavedRow *r = &h->row[i];
-        if (r->kind == KIND_UNFINISHED)
+        if (r->kind == KIND_UNFINISHED && !unfinished_too)
             continue;
         fprintf(f, "%ld,%ld,%s,%s,%s", r->id, r->generation, kind_word(r->kind), r->verdict.outcome, r->verdict.reason);
         write_numbers(f, schema->n_var, h->X + i * schema->n_var);
@@ -150,8 +150,7 @@ Status export_json(FILE *f, const Saved *h, Err *err)
 {
     json_t *evaluations = json_array(), *generations = json_array();
     for (size_t i = 0; i < h->n; i++)
-        if (h->row[i].kind != KIND_UNFINISHED)
-            json_array_append_new(evaluations, json_evaluation(h, i));
+        json_array_append_new(evaluations, json_evaluation(h, i));
     for (size_t g = 0; g < h->n_generations; g++)
         json_array_append_new(generations, json_generation(&h->generation[g]));
     json_t *all = json_pack("{s:o, s:o, s:o, s:o}", "settings", json_settings(&h->settings), "columns",

@@ -14,11 +14,14 @@ void export_front_header(FILE *f, const Schema *schema);
 void export_front_row(FILE *f, const Schema *schema, long id, const double x[], const double natural[],
                       const double spread[]);
 
-void export_front(FILE *f, const Saved *h);                    /* front.csv */
-void export_evaluations_header(FILE *f, const Schema *schema); /* evaluations.csv: every finished generation ... */
-void export_evaluations(FILE *f, const Saved *h);              /* ... and polished designs, without the header */
+void export_front(FILE *f, const Saved *h); /* front.csv */
 
-/* Settings, columns, evaluations, front and generations as one object. */
+/* Every finished generation and polished designs: evaluations.csv. With unfinished_too also what is stored of the
+ * generation that is under way or was cut short, kind `unfinished`. Rows come without the header. */
+void export_evaluations_header(FILE *f, const Schema *schema);
+void export_evaluations(FILE *f, const Saved *h, int unfinished_too);
+
+/* Settings, columns, evaluations (unfinished ones too), front and generations as one object. */
 Status export_json(FILE *f, const Saved *h, Err *err);
 
 #endif

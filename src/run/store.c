@@ -188,7 +188,7 @@ static void put_front(FILE *f, const void *saved)
 static void put_evaluations(FILE *f, const void *saved)
 {
     export_evaluations_header(f, &((const Saved *)saved)->schema);
-    export_evaluations(f, saved);
+    export_evaluations(f, saved, 0);
 }
 
 static Status open_to_append(const RunStore *store, const char *name, FILE **f, Err *err)
@@ -410,7 +410,7 @@ static Status append_evaluations(RunStore *store, const SearchView *v, Err *err)
         status = fail(err, STATUS_INTERNAL, "%s: the search knows of %zu simulations, %zu are stored",
                       database_path(store->db), v->n, store->n_exported + h.n);
     if (status == STATUS_OK)
-        export_evaluations(store->evaluations, &h);
+        export_evaluations(store->evaluations, &h, 0);
     h.schema = (Schema){0}; /* borrowed */
     saved_free(&h);
     TRY(status);
