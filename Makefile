@@ -251,7 +251,7 @@ install: all
 	@./imtet --man > $(SHARE)/man/man1/imtet.1
 	@for c in $$(./imtet --commands); do ./imtet --man $$c > $(SHARE)/man/man1/imtet-$$c.1; done
 	@./imtet --completion > $(SHARE)/bash-completion/completions/imtet
-	@for f in LICENSE CITATION.cff README.md CHANGELOG.md docs/*.md; do install -D -m 644 $$f $(SHARE)/doc/imtet/$$f; done
+	@for f in LICENSE CITATION.cff README.md CHANGELOG.md results/README.md docs/*.* docs/pictures/*; do install -D -m 644 $$f $(SHARE)/doc/imtet/$$f; done
 	@for f in $(wildcard web/licences/* web/LICENSES*); do install -D -m 644 $$f $(SHARE)/doc/imtet/$$f; done
 
 clean:

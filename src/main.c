@@ -28,10 +28,17 @@ static Status run_command(int argc, char *argv[], Err *err)
     return status;
 }
 
+static int is_help(const char *word)
+{
+    return strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0 || strcmp(word, "help") == 0;
+}
+
 /* A second word may name a command; more are too many. */
 static Status second_word(int argc, char *argv[], const Command **command, Err *err)
 {
     *command = NULL;
+    if (argc == 3 && is_help(argv[2]))
+        return STATUS_OK;
     if (argc > 3)
         return fail(err, STATUS_USAGE, "imtet %s takes one command at most, found '%.60s'", argv[1], argv[3]);
     return argc == 3 ? command_find(argv[2], command, err) : STATUS_OK;
@@ -72,8 +79,10 @@ static Status run(int argc, char *argv[], Err *err)
         usage_write(stderr);
         return fail(err, STATUS_USAGE, "no command was given");
     }
-    if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 || strcmp(argv[1], "help") == 0)
+    if (is_help(argv[1]))
         return help(argc, argv, err);
+    if (strcmp(argv[1], "--json") == 0 && argc == 3 && strcmp(argv[2], "--version") == 0)
+        return show_json(program_description(), err);
     if (strcmp(argv[1], "--version") == 0)
         return version(argc, argv, err);
     if (strcmp(argv[1], "--man") == 0)

@@ -54,14 +54,21 @@ static void test_the_version_says_what_the_program_was_built_from(void **state)
              json_string_value(json_object_get(o, "revision")));
     assert_string_equal(line, wanted);
     assert_non_null(json_string_value(json_object_get(json_object_get(o, "libraries"), "sundials")));
+    assert_true(isalpha((unsigned char)json_string_value(json_object_get(o, "compiler"))[0]));
     json_decref(o);
     free(line);
     expect(2, "nothing but --json", "--version --jsn");
+    expect(2, "did you mean --version?", "--versoin");
+    char *first = output_of("--version --json"), *second = output_of("--json --version");
+    assert_string_equal(first, second);
+    free(first);
+    free(second);
 }
 
 static void test_the_nearest_is_suggested_everywhere(void **state)
 {
     (void)state;
+    expect(65, "did you mean builtin:kobe-like?", "spectrum builtin:koobe-like");
     expect(65, "did you mean cvode?", "modes configs/quick.ini --set sim.engine=cvodee");
     expect(65, "did you mean search.limits?", "modes configs/quick.ini --set search.limit=none");
     expect(65, "did you mean f1?", "optimize @/two.ini --out @/no --set 'search.limits=f11<=3'");

@@ -151,7 +151,7 @@ static void test_every_bad_file_is_refused_with_its_reason(void **state)
         {"binary.csv", ":3: holds bytes that no text has"},
         {"too_few.at2", ":6: ends after 10 samples, but its header announces 12"},
         {"too_many.at2", ":6: more samples than the 6"},
-        {"no_step.at2", ":4: no usable time step in 'NPTS=  2, DT= SEC'"},
+        {"no_step.at2", ":4: no usable time step (above 0, at most 1 s) in 'NPTS=  2, DT= SEC'"},
         {"no_count.at2", ":4: no usable number of points"},
         {"nan.at2", ":5: found nan"},
         {"stars.at2", ":5: '********' is not a number"},

@@ -369,6 +369,24 @@ static void test_pictures_are_drawn_as_svg_and_png_each(void **state)
     }
 }
 
+static void test_names_that_begin_like_a_formula_are_labels_of_pictures(void **state)
+{
+    (void)state;
+    char path[256];
+    if (shell("command -v gnuplot >/dev/null") != 0)
+        skip();
+    assert_int_equal(imtet_on("optimize configs/quick.ini --set problem.kind=dtlz2 --set problem.variables=3 --set "
+                              "problem.objectives=2 --set \"problem.objective_names='=c,-d\" --max-evals 30 --set "
+                              "search.population=8 --set search.initial=20 --out",
+                              "formulas", ""),
+                     0);
+    assert_int_equal(imtet_on("plot", "formulas", ""), 0);
+    snprintf(path, sizeof path, "%s/formulas/pictures/front.svg", folder);
+    char *svg = text_of(path);
+    assert_non_null(strstr(svg, ">-d<"));
+    free(svg);
+}
+
 /* ---- a browser ------------------------------------------------------------------------------------------------- */
 
 static void need_browser(void)
@@ -433,6 +451,7 @@ int main(void)
         cmocka_unit_test(test_designs_records_and_floors_that_are_not_there_are_refused),
         cmocka_unit_test(test_a_report_needs_the_database_alone),
         cmocka_unit_test(test_pictures_are_drawn_as_svg_and_png_each),
+        cmocka_unit_test(test_names_that_begin_like_a_formula_are_labels_of_pictures),
         cmocka_unit_test(test_a_browser_shows_the_tower_brushes_it_and_downloads_the_selection),
         cmocka_unit_test(test_a_browser_shows_another_problem),
         cmocka_unit_test(test_the_bundle_of_charts_is_what_its_sources_give),

@@ -3,6 +3,8 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "base/design.h"
 #include "base/table.h"
@@ -168,9 +170,25 @@ static void test_every_bad_design_file_is_refused_with_its_fault(void **state)
     assert_true(all_refused("tests/bad/design", read_two_floors) >= 15);
 }
 
+static void test_a_named_pipe_is_refused_before_it_is_waited_for(void **state)
+{
+    (void)state;
+    char folder[] = "/tmp/imtet-pipe-XXXXXX", path[64], *text;
+    size_t length;
+    Err err = {0};
+    assert_non_null(mkdtemp(folder));
+    snprintf(path, sizeof path, "%s/pipe", folder);
+    assert_int_equal(mkfifo(path, 0600), 0);
+    assert_int_equal(file_read(path, &text, &length, &err), STATUS_MISSING);
+    assert_non_null(strstr(err.text, "is a named pipe"));
+    unlink(path);
+    rmdir(folder);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_a_named_pipe_is_refused_before_it_is_waited_for),
         cmocka_unit_test(test_numbers_come_out_as_they_were_written),
         cmocka_unit_test(test_comments_blank_lines_and_foreign_line_ends_are_skipped),
         cmocka_unit_test(test_a_column_is_found_by_its_name),

@@ -6,11 +6,22 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+
+/* A pipe that somebody left in a folder would be waited for without end; /dev/stdin and the pipes of a shell's <(...)
+ * have a writer. */
+static int is_left_pipe(const char *path)
+{
+    struct stat about;
+    return strncmp(path, "/dev/", 5) != 0 && stat(path, &about) == 0 && S_ISFIFO(about.st_mode);
+}
 
 Status file_read(const char *path, char **text, size_t *length, Err *err)
 {
     *text = NULL;
     *length = 0;
+    if (is_left_pipe(path))
+        return fail(err, STATUS_MISSING, "%s: is a named pipe, not a file; to read from a pipe name /dev/stdin", path);
     FILE *f = fopen(path, "rb");
     if (!f)
         return fail(err, status_of_errno(errno, STATUS_MISSING), "%s: %s", path, strerror(errno));

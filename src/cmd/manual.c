@@ -25,7 +25,9 @@ Status command_find(const char *word, const Command **found, Err *err)
         if (strcmp(word, names[i]) == 0)
             return STATUS_OK;
     }
-    return args_unknown(word[0] == '-' ? "option" : "command", word, names, N_COMMANDS, "`imtet --help`", err);
+    static const char *const OPTIONS[] = {"--help", "--version"};
+    return word[0] == '-' ? args_unknown("option", word, OPTIONS, 2, "`imtet --help`", err)
+                          : args_unknown("command", word, names, N_COMMANDS, "`imtet --help`", err);
 }
 
 static const char *operand_of(const Command *c)

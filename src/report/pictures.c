@@ -100,6 +100,13 @@ static void write_panel(FILE *script, const Report *r, const Panel *p)
     fputs("\nunset label\n", script);
 }
 
+/* A name without the apostrophe that keeps it from being a formula in a spreadsheet (base/cell.h). */
+static const char *label(const Report *r, size_t k)
+{
+    const char *name = schema_objective(&r->front.schema, k)->name;
+    return name + (name[0] == '\'' && name[1] && strchr("=+-@", name[1]));
+}
+
 /* Those of the tower, or the first three pairs. Returns how many there are. */
 static size_t choose_panels(const Report *r, Panel panels[3])
 {
@@ -109,12 +116,10 @@ static size_t choose_panels(const Report *r, Panel panels[3])
         {0, 1, "largest displacement J1 [m]", "largest interstorey drift J2 [m]"},
         {3, 4, "energy share of the first mode [%]", "energy share of modes 5 to 10 [%]"},
     };
-    const Schema *s = &r->front.schema;
     const size_t n = r->front.n_obj > 2 ? 3 : 1;
     for (size_t i = 0; i < n; i++) {
         const size_t x = PAIRS[i][0], y = PAIRS[i][1];
-        panels[i] =
-            r->has_detail ? TOWER[i] : (Panel){x, y, schema_objective(s, x)->name, schema_objective(s, y)->name};
+        panels[i] = r->has_detail ? TOWER[i] : (Panel){x, y, label(r, x), label(r, y)};
     }
     return n;
 }
@@ -132,8 +137,7 @@ static void write_legend(FILE *script, const Report *r)
               "offset 1\n",
               script);
     fputs("set cblabel ", script);
-    gnuplot_quote(script,
-                  r->has_detail ? "core mass [t]" : schema_objective(&r->front.schema, r->front.n_obj - 1)->name);
+    gnuplot_quote(script, r->has_detail ? "core mass [t]" : label(r, r->front.n_obj - 1));
     fputs(" noenhanced\n", script);
 }
 

@@ -1,7 +1,6 @@
 #include "run/gnuplot.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <spawn.h>
 #include <string.h>
 #include <sys/wait.h>
@@ -13,7 +12,7 @@ extern char **environ;
 
 void gnuplot_quote(FILE *script, const char *text)
 {
-    fputc('\'', script);
+    fputs(*text == '\'' ? "' " : "'", script); /* it takes three ' in a row for an empty text and another one */
     for (; *text; text++) {
         if (*text == '\'')
             fputc('\'', script); /* '' stands for ' */
@@ -23,9 +22,8 @@ void gnuplot_quote(FILE *script, const char *text)
     fputc('\'', script);
 }
 
-/* Its exit status, or -1 with errno where it could not be started. What it has to say of faults is dropped: with a
- * script of ours there is none that a user could mend. */
-static int run(FILE *script, FILE *picture)
+/* Its exit status, or -1 with errno where it could not be started. */
+static int run(FILE *script, FILE *picture, FILE *faults)
 {
     char *const words[] = {"gnuplot", "--default-settings", "-", NULL};
     posix_spawn_file_actions_t actions;
@@ -34,7 +32,7 @@ static int run(FILE *script, FILE *picture)
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_adddup2(&actions, fileno(script), STDIN_FILENO);
     posix_spawn_file_actions_adddup2(&actions, fileno(picture), STDOUT_FILENO);
-    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+    posix_spawn_file_actions_adddup2(&actions, fileno(faults), STDERR_FILENO);
     errno = posix_spawnp(&pid, words[0], &actions, NULL, words, environ);
     posix_spawn_file_actions_destroy(&actions);
     if (errno)
@@ -44,19 +42,36 @@ static int run(FILE *script, FILE *picture)
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128;
 }
 
-static Status draw(Output *o, FILE *script, GnuplotScript write, const void *user, Err *err)
+/* The sentence that says what is wrong: the last line that it wrote, behind the script's line and a mark under it. */
+static void last_line(FILE *faults, char text[200])
 {
+    char line[200];
+    text[0] = 0;
+    rewind(faults);
+    while (fgets(line, sizeof line, faults)) {
+        line[strcspn(line, "\r\n")] = 0;
+        const char *words = line + strspn(line, " \t^");
+        if (*words)
+            snprintf(text, 200, "%s", words);
+    }
+}
+
+static Status draw(Output *o, FILE *script, FILE *faults, GnuplotScript write, const void *user, Err *err)
+{
+    char fault[200];
     write(script, user);
     if (fflush(script) != 0 || fseek(script, 0, SEEK_SET) != 0)
         return fail(err, STATUS_IO, "the script for gnuplot could not be written: %s", strerror(errno));
-    const int status = run(script, o->stream);
+    const int status = run(script, o->stream, faults);
     if (status == -1 || status == 127)
         return fail(err, STATUS_MISSING,
                     "%s: gnuplot, which draws it, cannot be started; install it (Debian: apt install gnuplot-nox), or "
                     "take the numbers by --csv and --history",
                     o->path);
+    last_line(faults, fault);
     if (status != 0)
-        return fail(err, STATUS_IO, "%s: gnuplot ended with status %d and drew no picture", o->path, status);
+        return fail(err, STATUS_IO, "%s: gnuplot ended with status %d and drew no picture: %s", o->path, status,
+                    fault[0] ? fault : "it does not say why");
     return STATUS_OK;
 }
 
@@ -64,9 +79,11 @@ Status gnuplot_draw(const char *path, GnuplotScript write, const void *user, Err
 {
     Output o;
     TRY(output_open(&o, path, err));
-    FILE *script = tmpfile();
-    Status status = script ? draw(&o, script, write, user, err)
-                           : fail(err, STATUS_IO, "no temporary file for gnuplot: %s", strerror(errno));
+    FILE *script = tmpfile(), *faults = tmpfile();
+    Status status = script && faults ? draw(&o, script, faults, write, user, err)
+                                     : fail(err, STATUS_IO, "no temporary file for gnuplot: %s", strerror(errno));
+    if (faults)
+        fclose(faults);
     if (script)
         fclose(script);
     if (status != STATUS_OK) {

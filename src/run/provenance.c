@@ -23,6 +23,12 @@
 #define IMTET_CFLAGS "unknown"
 #endif
 
+#ifdef __clang__
+#define COMPILER __VERSION__ /* says its name itself */
+#else
+#define COMPILER "gcc " __VERSION__
+#endif
+
 const char *program_version(void)
 {
     return IMTET_VERSION;
@@ -49,7 +55,7 @@ static json_t *libraries(void)
 json_t *program_description(void)
 {
     return json_pack("{s:s, s:s, s:s, s:s, s:s, s:o*}", "program", "imtet", "version", IMTET_VERSION, "revision",
-                     IMTET_REVISION, "compiler", __VERSION__, "flags", IMTET_CFLAGS, "libraries", libraries());
+                     IMTET_REVISION, "compiler", COMPILER, "flags", IMTET_CFLAGS, "libraries", libraries());
 }
 
 /* PRETTY_NAME of the operating system: with it the versions of all packages are known. */

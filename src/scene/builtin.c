@@ -231,13 +231,24 @@ static const Model *find_model(const char *name)
     return NULL;
 }
 
+static Status fail_unknown(const char *name, Err *err)
+{
+    const char *names[sizeof MODELS / sizeof *MODELS];
+    for (size_t k = 0; k < sizeof MODELS / sizeof *MODELS; k++)
+        names[k] = MODELS[k].name;
+    const char *near = nearest_word(name, names, (int)(sizeof MODELS / sizeof *MODELS));
+    return near ? fail(err, STATUS_BAD_DATA, "builtin:%.60s: there is no such motion; did you mean builtin:%s?", name,
+                       near)
+                : fail(err, STATUS_BAD_DATA,
+                       "builtin:%.60s: there is no such motion; take kobe-like, elcentro-like or sylmar-like", name);
+}
+
 Status builtin_motion(Motion *m, const char *name, Err *err)
 {
     const Model *model = find_model(name);
     memset(m, 0, sizeof *m);
     if (!model)
-        return fail(err, STATUS_BAD_DATA,
-                    "builtin:%.60s: there is no such motion; take kobe-like, elcentro-like or sylmar-like", name);
+        return fail_unknown(name, err);
     m->n = (size_t)lround(model->duration_s / DT_S) + 1;
     m->dt_s = DT_S;
     m->accel = malloc(m->n * sizeof *m->accel);

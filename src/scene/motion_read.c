@@ -268,6 +268,9 @@ static Status take_samples(Motion *m, const char *path, const Record *r, const C
         TRY(times_increase(&s, err));
         status = uniform_step(&s, &dt, &uneven);
     }
+    if (dt > MOTION_STEP_MAX_S)
+        return fail(err, STATUS_BAD_DATA, "%s:%d: a step of %g s; more than %g s is no record of an earthquake", path,
+                    row_at(&s, 0)->line, dt, MOTION_STEP_MAX_S);
     if (status != STATUS_OK && how->resample_dt_s == 0)
         return fail(err, status, "%s", uneven.text);
     TRY(settle_unit(path, c->units, &unit, err));

@@ -178,6 +178,12 @@ const tried = {
   async "it prints"() {
     const { data } = await page.call("Page.printToPDF", { printBackground: true });
     assert.ok(Buffer.from(data, "base64").subarray(0, 5).toString() === "%PDF-");
+    await page.call("Emulation.setEmulatedMedia", { media: "print" });
+    const [ids, headings, others] = JSON.parse(await page.evaluate(`JSON.stringify(["#designs tr:not([hidden]) td:first-child", "#designs th:not(.variable)", "button.plain"].map((cells) =>
+      Array.from(document.querySelectorAll(cells), (cell) => cell.innerText.trim() && cell.querySelector("button")?.getClientRects().length !== 0 && cell.getClientRects().length)))`));
+    await page.call("Emulation.setEmulatedMedia", { media: "" });
+    assert.ok(ids.length && headings.length && [...ids, ...headings].every(Boolean), "ids or headings are not on paper");
+    assert.ok(!others.some(Boolean), "buttons are on paper");
   },
   async "the parts that this run has are there, and no others"() {
     const parts = await page.evaluate("Array.from(document.querySelectorAll('main > section'), (s) => s.id)");

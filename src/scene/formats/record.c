@@ -60,9 +60,9 @@ static Status check_form(const Lines *l, const BlockForm *form, Err *err)
     if (!(form->count >= 2 && form->count <= 1e8 && form->count == floor(form->count)))
         return fail(err, STATUS_BAD_DATA, "%s:%d: no usable number of points (2 or more) in '%.*s'", l->path, l->number,
                     line_shown(l), l->from);
-    if (!(form->dt > 0 && form->dt <= 1e6))
-        return fail(err, STATUS_BAD_DATA, "%s:%d: no usable time step in '%.*s'", l->path, l->number, line_shown(l),
-                    l->from);
+    if (!(form->dt > 0 && form->dt <= MOTION_STEP_MAX_S))
+        return fail(err, STATUS_BAD_DATA, "%s:%d: no usable time step (above 0, at most %g s) in '%.*s'", l->path,
+                    l->number, MOTION_STEP_MAX_S, line_shown(l), l->from);
     return STATUS_OK;
 }
 

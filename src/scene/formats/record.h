@@ -8,6 +8,8 @@
 
 #include "scene/formats/text.h"
 
+#define MOTION_STEP_MAX_S 1.0 /* accelerographs take 50 samples a second or more: a longer step is a mistake */
+
 enum { CHANNELS_MAX = 128, CHANNEL_NAME_MAX = 32 };
 
 typedef struct {

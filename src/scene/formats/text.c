@@ -77,11 +77,12 @@ int line_has(const Lines *l, const char *word)
 
 enum { NUMBER_MAX = 64 };
 
-/* A C string of the field as strtod wants it: Fortran's exponent letter D is E, a decimal comma is a point. */
+/* A C string of the field as strtod wants it: Fortran's exponent letter D is E, a decimal comma is a point. Hexadecimal
+ * numbers, which strtod would take, are none of a record. */
 static int tidy(const char *from, const char *to, int with_comma, char text[NUMBER_MAX])
 {
     const size_t n = (size_t)(to - from);
-    if (n == 0 || n >= NUMBER_MAX)
+    if (n == 0 || n >= NUMBER_MAX || memchr(from, 'x', n) || memchr(from, 'X', n))
         return 0;
     for (size_t i = 0; i < n; i++) {
         const int is_exponent = (from[i] == 'D' || from[i] == 'd') && i && strchr("0123456789.", from[i - 1]);
@@ -135,7 +136,8 @@ int number_behind(const char *from, const char *to, const char *word, double *x)
     memcpy(text, p, n);
     text[n] = 0;
     *x = strtod(text, &stop);
-    return stop != text && isfinite(*x);
+    return stop != text && isfinite(*x) && !memchr(text, 'x', (size_t)(stop - text)) &&
+           !memchr(text, 'X', (size_t)(stop - text));
 }
 
 static Status parted_numbers(const Lines *l, int width, size_t max, double x[], size_t *n, Err *err)
