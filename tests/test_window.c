@@ -68,9 +68,36 @@ static void test_fine_and_standard_accuracy_are_what_they_promise(void **state)
     }
 }
 
+static void test_peaks_of_a_stiff_building_beside_a_core_are_those_of_fine_accuracy(void **state)
+{
+    (void)state;
+    static Observed fine, standard;
+    for (int stiffer = 5; stiffer <= 80; stiffer *= 4) {
+        Settings s;
+        Motion m;
+        Stage stage;
+        Err err;
+        open_window(&(Window){"builtin:elcentro-like", "guyan", CORE_BOX, 1, 1, 1.0, 6}, &s, &m, &stage);
+        for (int i = 0; i < stage.model.m; i++) {
+            stage.model.omega[i] *= stiffer;
+            stage.model.zeta[i] = 0.005;
+        }
+        CHECK_OK(observe(&stage, ENGINE_FAST, ACCURACY_FINE, 0, &fine, &err), &err);
+        CHECK_OK(observe(&stage, ENGINE_FAST, ACCURACY_STANDARD, 0, &standard, &err), &err);
+        const Errors e = errors_between(&stage, &standard, &fine);
+        print_message("%d times as stiff: %ld impacts, J1 %.1e J2 %.1e J3 %.1e\n", stiffer * stiffer,
+                      fine.result.impacts, e.each[0], e.each[1], e.each[2]);
+        for (int k = 0; k < 3; k++)
+            assert_true(e.each[k] <= STANDARD[k]);
+        stage_close(&stage);
+        motion_free(&m);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_peaks_of_a_stiff_building_beside_a_core_are_those_of_fine_accuracy),
         cmocka_unit_test(test_fine_and_standard_accuracy_are_what_they_promise),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -33,6 +33,51 @@ static void contact_predict(FastWork *k, const Level *l, double a0, double a1)
     rows_times(2, (const vec *)k->R, k->nf, k->m_pad, state, floors);
 }
 
+/* Largest distance of a free vibration, amplitude 1, from the Hermite cubic through its ends, and from the parabola
+ * through both ends and the cubic's middle; wh = w h. Where w h is large: what the mode moves and the curve may swing.
+ */
+static inline vec cubic_misses(vec wh)
+{
+    const vec wh2 = wh * wh, all = 2 + 0.25 * wh, small = wh2 * wh2 * (1.0 / 384);
+    return (vec)(((mask)small & (small < all)) | ((mask)all & ~(small < all)));
+}
+
+static inline vec parabola_misses(vec wh)
+{
+    const vec wh2 = wh * wh, all = 2.25 + 0.25 * wh, small = wh2 * (0.00802 * wh + wh2 * (1.0 / 384));
+    return (vec)(((mask)small & (small < all)) | ((mask)all & ~(small < all)));
+}
+
+/* What interpolation over the step misses of the first mf vectors of modes, bound, and of their acceleration, bound_a;
+ * returns what it misses of w [m], whatever the floor. Amplitudes are those around the quasi-static answer to the load.
+ */
+static double contact_bounds(FastWork *k, int mf, double h, double a0, double a1)
+{
+    vec missed = {0};
+    for (int i = 0; i < mf; i++) {
+        const vec flex = k->flex[i], decay = k->decay[i], omega = k->omega[i];
+        const vec x = k->q[i] - flex * (k->load[i] - k->gamma[i] * a0);
+        const vec xd = (k->v[i] + flex * k->gamma[i] * ((a1 - a0) / h) + 0.5 * decay * x) * k->wd_inverse[i];
+        const vec amplitude = vec_sqrt(x * x + xd * xd), wh = (omega + decay) * h;
+        missed += k->most[i] * cubic_misses(wh) * amplitude;
+        k->bound[i] = parabola_misses(wh) * amplitude;
+        k->bound_a[i] = omega * (omega + decay) * k->bound[i];
+    }
+    return lanes_sum(missed);
+}
+
+/* May a floor that is not part of the solution have touched within the step? */
+static int others_reach(const FastWork *k, const Active *active, double h, double missed)
+{
+    for (int f = 0; f < k->nf; f++) {
+        const mask near = ~(hull(k->w[f], k->wd[f], k->w1[f], k->wd1[f], h) + missed < k->gap[f]);
+        for (int lane = 0; any(near) && lane < LANES; lane++)
+            if (near[lane] && f * LANES + lane < k->n && !active->listed[f * LANES + lane])
+                return 1;
+    }
+    return 0;
+}
+
 /* Displacement and acceleration of building modes i in the middle of a step, qb and zb, and at its end, za. The part
  * that the load does not make follows the Hermite cubic. start, end: the load there; load1, bubble: of the contacts. */
 static inline void middle_of_step(FastWork *k, double h, int i, vec q1, vec v1, vec start, vec end, vec load1,
@@ -167,17 +212,22 @@ static int contact_step(FastWork *k, const Level *l, double a0, double a1, int f
         land(k);
     k->steps++;
     contact_predict(k, l, a0, a1);
+    const double missed = contact_bounds(k, finest ? k->bf : k->mf, l->h, a0, a1);
     if (!solve_contacts(k, l, k->knobs->solver_tolerance, &active)) {
         forget_forces(k);
         return 0;
     }
-    if (!finest && closes(&active)) {
+    if (!finest && (closes(&active) || others_reach(k, &active, l->h, missed))) {
         forget_forces(k);
         return 0;
     }
     const double work = contact_update(k, l, &active, a0, a1);
     const double mismatch = step_mismatch(k, &active, work), allowed = k->knobs->energy_tolerance * k->energy_scale;
     if (!finest && !(mismatch <= allowed)) {
+        forget_forces(k);
+        return 0;
+    }
+    if (!see_step(k, fmax(fabs(a0), fabs(a1)))) {
         forget_forces(k);
         return 0;
     }

@@ -9,10 +9,11 @@
 static void layout(FastWork *k, Carve *c)
 {
     const size_t n = (size_t)k->n, n_pad = (size_t)k->n_pad, m_max = 2 * n_pad;
-    vec **const modes[] = {&k->omega, &k->zeta,  &k->gamma,   &k->wd_inverse, &k->decay,   &k->flex,  &k->q,
-                           &k->v,     &k->load,  &k->work,    &k->ground,     &k->q1,      &k->v1,    &k->amplitude,
-                           &k->qa,    &k->va,    &k->qb,      &k->vb,         &k->za,      &k->ja,    &k->zb,
-                           &k->jb,    &k->bound, &k->bound_a, &k->work1,      &k->ground1, &k->drift, &k->drift1};
+    vec **const modes[] = {&k->omega, &k->zeta,      &k->gamma, &k->wd_inverse, &k->decay,  &k->flex,
+                           &k->q,     &k->v,         &k->load,  &k->work,       &k->ground, &k->q1,
+                           &k->v1,    &k->amplitude, &k->qa,    &k->va,         &k->qb,     &k->vb,
+                           &k->za,    &k->ja,        &k->zb,    &k->jb,         &k->bound,  &k->bound_a,
+                           &k->work1, &k->ground1,   &k->drift, &k->drift1,     &k->most,   &k->most_drift};
     vec **const floors[] = {&k->w,         &k->wd,  &k->w1,  &k->wd1, &k->f0,  &k->f1,      &k->fb,     &k->f_before,
                             &k->fb_before, &k->gap, &k->u0,  &k->u0d, &k->u1,  &k->u1d,     &k->a0,     &k->a0d,
                             &k->a1,        &k->a1d, &k->e_u, &k->e_w, &k->e_a, &k->reach_a, &k->peak_u, &k->peak_d,
@@ -101,7 +102,7 @@ FastKnobs fast_knobs(Accuracy accuracy)
 {
     static const FastKnobs KNOBS[] = {
         [ACCURACY_COARSE] = {1, 1e-2, 3e-5, 2e7, 1e-2, 0.1},
-        [ACCURACY_STANDARD] = {1, 1e-2, 3e-6, 2e7, 3e-3, 0.03},
+        [ACCURACY_STANDARD] = {1, 1e-2, 3e-6, 2e7, 1e-3, 0.02},
         [ACCURACY_FINE] = {80, 1e-12, 0, 2e8, 1e-6, 0},
     };
     return KNOBS[accuracy];

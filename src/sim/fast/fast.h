@@ -5,7 +5,8 @@
  * Flight    without contact the modes flow exactly. A step is accepted when no gap can close inside it and no peak can
  *           hide in it: slow modes (w h below FAST_MODE) by the Bezier hull of the Hermite cubic plus its error bound
  *           (w h)^4/384 A, fast ones by their amplitude A around the quasi-static answer.
- * Contact   steps of a fixed share of a Hertz contact's duration. Over a step the force of floor j is
+ * Contact   steps of a fixed share of a Hertz contact's duration, longer ones where the energy books of the step
+ *           close, no gap closes in it and no other wall can be reached. Over a step the force of floor j is
  *           f(x) = F0 (1-x) + F1 x + 6 (mean - (F0+F1)/2) x (1-x), which the modes answer exactly; F1 and the mean come
  *           from the force law along the Hermite cubic of the penetration (touch.h), implicitly: Newton over
  *           all touching floors, on the n x n responses of w to those forces. Closings and openings inside a step
@@ -14,7 +15,8 @@
  *           residual adds two errors: the work that the modes took from contacts against the books that the force law
  *           kept, over the input; and what the equations of motion, integrated over the run, are missed by,
  *           sqrt(sum d_i^2 / 2 E_in), which would show an error in the linear flow.
- * Maxima    flights: extremum of the Hermite cubic; contacts: parabola through start, middle and end of each step.
+ * Maxima    flights: extremum of the Hermite cubic; contacts: parabola through start, middle and end of each step,
+ *           refused where more may hide beside it.
  * Glide     several intervals at once where bounds of the modes reach no gap and no peak (glide.h).
  * Core      modes whose static flexibility would hardly soften a contact are left out.
  *

@@ -42,6 +42,7 @@ typedef struct FastWork {
     vec *omega, *zeta, *gamma, *wd_inverse, *decay, *flex, *q, *v, *load, *work, *ground; /* (m_pad) */
     vec *drift; /* (m_pad) how far the equation of motion was missed, summed over the steps */
     vec *work1, *ground1, *drift1;
+    vec *most, *most_drift; /* (m_pad) largest |R| of a mode over the floors, over the storeys */
     vec *q1, *v1, *amplitude, *qa, *va, *qb, *vb, *za, *ja, *zb, *jb, *bound, *bound_a; /* (m_pad) */
     double *R, *R_abs, *D_abs; /* (m_pad, n_pad) of the floors, of their distances from the floor below */
     double *RT;                /* (n_pad, m_pad) */

@@ -78,17 +78,6 @@ static void see_start(FastWork *k)
     storeys(k, k->seen[0][0], k->seen[0][1]);
 }
 
-/* Middle and end of a contact step: modal displacements qb, q and accelerations zb, za. */
-static void see_step(FastWork *k)
-{
-    const double *const state[4] = {scalars_const(k->qb), scalars_const(k->zb), scalars_const(k->q),
-                                    scalars_const(k->za)};
-    vec *const floors[4] = {k->seen[1][0], k->seen[1][2], k->seen[2][0], k->seen[2][2]};
-    rows_times(4, (const vec *)k->R, k->nf, k->nb_pad, state, floors);
-    storeys(k, k->seen[1][0], k->seen[1][1]);
-    storeys(k, k->seen[2][0], k->seen[2][1]);
-}
-
 /* Largest |value| of the parabola through the start, the middle and the end of a step. */
 static double parabola_top(double y0, double ym, double y1)
 {
@@ -113,10 +102,66 @@ static void raise_in_contact(vec *peak, int nf, const vec *start, const vec *mid
     }
 }
 
+/* Is there a floor where more than `tolerance` of a peak, or of `least`, may hide between the parabola and what it
+ * misses: e, or missed where that is NULL? */
+static int hides(int nf, const vec *start, const vec *middle, const vec *end, const vec *peak, const vec *e,
+                 double missed, double tolerance, double least)
+{
+    mask hidden = {0};
+    for (int f = 0; f < nf; f++) {
+        const vec reach = parabola_reach(start[f], middle[f], end[f]), error = e ? e[f] : (vec){0} + missed;
+        hidden |=
+            (reach + error > peak[f]) & ~(error <= tolerance * vec_max(vec_max(reach, peak[f]), (vec){0} + least));
+    }
+    return any(hidden);
+}
+
+/* Of accelerations, which are certain to less anyway, so many times as much may hide. */
+static const double ACCELERATION_SLACK = 5;
+
+/* Do the curves through the step miss too much of a peak? First by bounds that hold for all floors, then floor by
+ * floor. */
+static int peaks_are_certain(FastWork *k, double ground)
+{
+    /* where the motion sets in every step is a peak: such small ones need not be known */
+    const double sway = ground * scalars(k->flex)[0], least[3] = {sway, sway / k->n, ground};
+    const double tolerance = k->knobs->peak_tolerance;
+    const double allowed[3] = {tolerance, tolerance, ACCELERATION_SLACK * tolerance};
+    vec *const peaks[3] = {k->peak_u, k->peak_d, k->peak_a}, sum[3] = {{0}};
+    for (int i = 0; i < k->bf; i++) {
+        sum[0] += k->most[i] * k->bound[i];
+        sum[1] += k->most_drift[i] * k->bound[i];
+        sum[2] += k->most[i] * k->bound_a[i];
+    }
+    for (int y = 0; y < 3; y++) {
+        vec *const *seen[3] = {&k->seen[0][y], &k->seen[1][y], &k->seen[2][y]};
+        if (!hides(k->nf, *seen[0], *seen[1], *seen[2], peaks[y], NULL, lanes_sum(sum[y]), allowed[y], least[y]))
+            continue;
+        const double *const bound[1] = {scalars_const(y == 2 ? k->bound_a : k->bound)};
+        vec *const e[1] = {k->e_a};
+        rows_times(1, (const vec *)(y == 1 ? k->D_abs : k->R_abs), k->nf, k->nb_pad, bound, e);
+        if (hides(k->nf, *seen[0], *seen[1], *seen[2], peaks[y], k->e_a, 0, allowed[y], least[y]))
+            return 0;
+    }
+    return 1;
+}
+
+/* Middle and end of a contact step, modal displacements qb, q1 and accelerations zb, za; 0: a peak may hide in it.
+ * ground: the largest acceleration of the ground in the step. */
+static int see_step(FastWork *k, double ground)
+{
+    const double *const state[4] = {scalars_const(k->qb), scalars_const(k->zb), scalars_const(k->q1),
+                                    scalars_const(k->za)};
+    vec *const floors[4] = {k->seen[1][0], k->seen[1][2], k->seen[2][0], k->seen[2][2]};
+    rows_times(4, (const vec *)k->R, k->nf, k->nb_pad, state, floors);
+    storeys(k, k->seen[1][0], k->seen[1][1]);
+    storeys(k, k->seen[2][0], k->seen[2][1]);
+    return peaks_are_certain(k, ground);
+}
+
 static void peaks_in_contact(FastWork *k)
 {
     vec *const peaks[3] = {k->peak_u, k->peak_d, k->peak_a};
-    see_step(k);
     for (int y = 0; y < 3; y++) {
         mask above = {0};
         for (int f = 0; f < k->nf; f++)

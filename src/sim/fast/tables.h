@@ -147,6 +147,19 @@ static int core_modes_needed(const SimModel *model, double allowed)
     return nc;
 }
 
+static void find_most(FastWork *k)
+{
+    for (int i = 0; i < k->m_pad; i++) {
+        double most = 0, most_drift = 0;
+        for (int j = 0; j < k->n; j++) {
+            most = larger(k->R_abs[i * k->n_pad + j], most);
+            most_drift = larger(k->D_abs[i * k->n_pad + j], most_drift);
+        }
+        scalars(k->most)[i] = most;
+        scalars(k->most_drift)[i] = most_drift;
+    }
+}
+
 static void take_model(FastWork *k, const SimModel *model, double base)
 {
     k->model = model;
@@ -169,6 +182,7 @@ static void take_model(FastWork *k, const SimModel *model, double base)
         copy_mode(k, model, i, i);
     for (int i = 0; i < k->nc; i++)
         copy_mode(k, model, model->nb + i, k->nb_pad + i);
+    find_most(k);
     k->may_glide = 1;
     for (int i = 0; i < k->m_pad; i++) {
         const double omega = scalars(k->omega)[i], zeta = scalars(k->zeta)[i];
