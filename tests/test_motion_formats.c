@@ -437,9 +437,46 @@ static void test_five_thousand_mutants_are_read_or_refused(void **state)
     }
 }
 
+static Status parse_text(Motion *m, const char *text, Err *err)
+{
+    return motion_parse(m, "there", text, strlen(text), &(MotionHow){0}, err);
+}
+
+static void test_quoted_cells_are_read(void **state)
+{
+    (void)state;
+    Motion m;
+    Err err = {0};
+    assert_int_equal(parse_text(&m, "\"time [s]\",\"acc [m/s^2]\"\n\"0.00\",\"0.1\"\n\"0.01\",\"-1.25\"\n", &err),
+                     STATUS_OK);
+    assert_int_equal(m.n, 2);
+    assert_close(m.dt_s, 0.01, 1e-15);
+    assert_close(m.accel[1], -1.25, 1e-15);
+    motion_free(&m);
+    assert_int_equal(parse_text(&m, "\"time [s]\",\"acc [g]\"\n\"0\",\"0.1\"\n\"1\",\"one\"\n", &err), STATUS_BAD_DATA);
+    assert_non_null(strstr(err.text, "there:3: 'one' is not a number"));
+}
+
+static void test_units_in_other_words_are_taken_or_named(void **state)
+{
+    (void)state;
+    Motion m;
+    Err err = {0};
+    assert_int_equal(parse_text(&m, "A\nB\nUNITS OF CM/SEC**2\nNPTS= 2, DT= .01 SEC\n1. 2.\n", &err), STATUS_OK);
+    assert_close(m.accel[1], 0.02, 1e-15);
+    motion_free(&m);
+    assert_int_equal(parse_text(&m, "A\nB\nACCELERATION IN G\nNPTS= 2, DT= .01 SEC\n1. 2.\n", &err), STATUS_OK);
+    assert_close(m.accel[1], 2 * 9.80665, 1e-3);
+    motion_free(&m);
+    assert_int_equal(parse_text(&m, "time_s,accel_mg\n0,1\n0.01,2\n", &err), STATUS_BAD_DATA);
+    assert_non_null(strstr(err.text, "unit 'mg' is not known"));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_quoted_cells_are_read),
+        cmocka_unit_test(test_units_in_other_words_are_taken_or_named),
         cmocka_unit_test(test_a_specimen_of_every_format_is_read_to_its_step_length_and_peak),
         cmocka_unit_test(test_line_ends_and_blanks_at_line_ends_do_not_matter),
         cmocka_unit_test(test_a_specimen_wrong_in_one_way_is_refused_with_line_and_reason),

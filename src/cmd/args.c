@@ -1,7 +1,9 @@
 #include "cmd/args.h"
 
+#include <dirent.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { OPTIONS_MAX = 32 };
 
@@ -10,6 +12,34 @@ Status args_unknown(const char *what, const char *word, const char *const known[
     const char *near = nearest_word(word, known, n);
     return near ? fail(err, STATUS_USAGE, "unknown %s '%.60s'; did you mean %s?", what, word, near)
                 : fail(err, STATUS_USAGE, "unknown %s '%.60s'; %s lists them", what, word, where);
+}
+
+static int is_visible(const struct dirent *e)
+{
+    return e->d_name[0] != '.';
+}
+
+void args_suggest(const Args *args, Err *err)
+{
+    enum { NAMES_MAX = 1000 };
+    const char *path = args->operand, *slash = path ? strrchr(path, '/') : NULL, *names[NAMES_MAX];
+    const int length = slash ? (int)(slash - path + 1) : 0;
+    char folder[512];
+    struct dirent **entries;
+    if (!path || access(path, F_OK) == 0 || strstr(err->text, "did you mean"))
+        return;
+    snprintf(folder, sizeof folder, "%.*s", length ? length : 1, length ? path : ".");
+    const int n = scandir(folder, &entries, is_visible, alphasort);
+    for (int i = 0; i < n && i < NAMES_MAX; i++)
+        names[i] = entries[i]->d_name;
+    const char *near = n > 0 ? nearest_word(path + length, names, n < NAMES_MAX ? n : NAMES_MAX) : NULL;
+    const size_t used = strlen(err->text);
+    if (near)
+        snprintf(err->text + used, sizeof err->text - used, "; did you mean %.*s%s?", length, path, near);
+    for (int i = 0; i < n; i++)
+        free(entries[i]);
+    if (n >= 0)
+        free(entries);
 }
 
 static Status find_option(const Command *c, const char *word, size_t length, const ArgOption **found, Err *err)

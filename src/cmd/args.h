@@ -47,6 +47,9 @@ int args_has(const Args *args, const char *name);
 int args_gives(const Args *args, const char *key); /* a setting, by an option of its own or by --set */
 void args_free(Args *args);
 
+/* Behind a message about an operand that is not there: the nearest name in its folder, if there is one. */
+void args_suggest(const Args *args, Err *err);
+
 /* "unknown WHAT WORD; did you mean ...?" */
 Status args_unknown(const char *what, const char *word, const char *const known[], int n, const char *where, Err *err);
 

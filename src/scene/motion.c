@@ -11,9 +11,12 @@
 static Status load(Motion *m, const char *source, const MotionHow *how, Err *err)
 {
     static const char prefix[] = "builtin:";
+    static const char *const MOTIONS[] = {"builtin:kobe-like", "builtin:elcentro-like", "builtin:sylmar-like"};
     if (strncmp(source, prefix, sizeof prefix - 1) == 0)
         return builtin_motion(m, source + sizeof prefix - 1, err); /* in m/s2, one channel, whatever is said of files */
-    return motion_read(m, source, how, err);
+    const Status status = motion_read(m, source, how, err);
+    const char *near = status == STATUS_MISSING ? nearest_word(source, MOTIONS, 3) : NULL;
+    return near ? fail(err, status, "%s: there is no such file; did you mean %s?", source, near) : status;
 }
 
 Status motion_load(Motion *m, const char *source, MotionUnit unit, Err *err)

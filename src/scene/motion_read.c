@@ -273,6 +273,11 @@ static Status take_samples(Motion *m, const char *path, const Record *r, const C
                     row_at(&s, 0)->line, dt, MOTION_STEP_MAX_S);
     if (status != STATUS_OK && how->resample_dt_s == 0)
         return fail(err, status, "%s", uneven.text);
+    const char *unknown = unit_unknown(c->name, c->name + strlen(c->name));
+    if (unit == UNIT_FROM_FILE && unknown)
+        return fail(err, STATUS_BAD_DATA,
+                    "%s: its channel '%s': unit '%s' is not known; convert it to m/s2, cm/s2 or g", path, c->name,
+                    unknown);
     TRY(settle_unit(path, c->units, &unit, err));
     const double to_m_s2 = c->scale * (unit == UNIT_M_S2 ? 1.0 : unit == UNIT_CM_S2 ? 0.01 : GRAVITY);
     TRY(check_peak(&s, to_m_s2, unit, c->scale, err));

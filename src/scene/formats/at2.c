@@ -48,6 +48,8 @@ static Status read(Record *r, Lines *l, const ReadHints *hints, Err *err)
                         l->from);
         if (line_has(l, "UNIT"))
             units |= units_named(l->from, l->to);
+        else if (line_has(l, "ACCELERATION") && find_word(l->from, l->to, " IN "))
+            units |= units_named(find_word(l->from, l->to, " IN "), l->to);
     }
     const BlockForm form = read_npts_line(l);
     TRY(record_channel(r, l, &c, err));

@@ -45,6 +45,7 @@ Status columns_add(Columns *columns, Record *r, const Lines *l, Err *err)
     size_t n = 0;
     for (const char *p = l->from; p < l->to; n++) {
         const char *from = p, *to = field_next(l, &p, with_comma);
+        field_strip(&from, &to);
         Row row = {.line = l->number, .decimals = n == 0 ? count_decimals(from, to) : 0};
         TRY(field_number(l, from, to, with_comma, &row.a, err));
         if (n > CHANNELS_MAX)

@@ -92,13 +92,22 @@ static int tidy(const char *from, const char *to, int with_comma, char text[NUMB
     return 1;
 }
 
+void field_strip(const char **from, const char **to)
+{
+    while (*from < *to && isspace((unsigned char)**from))
+        ++*from;
+    while (*to > *from && isspace((unsigned char)(*to)[-1]))
+        --*to;
+    if (*to - *from >= 2 && **from == '"' && (*to)[-1] == '"') {
+        ++*from;
+        --*to;
+    }
+}
+
 Status field_number(const Lines *l, const char *from, const char *to, int with_comma, double *x, Err *err)
 {
     char text[NUMBER_MAX], *stop = NULL;
-    while (from < to && isspace((unsigned char)*from))
-        from++;
-    while (to > from && isspace((unsigned char)to[-1]))
-        to--;
+    field_strip(&from, &to);
     const int is_text = tidy(from, to, with_comma, text);
     if (is_text)
         *x = strtod(text, &stop);
@@ -198,31 +207,15 @@ static const struct {
     const char *word;
     MotionUnit unit;
 } UNIT_WORDS[] = {
-    {"m/s2", UNIT_M_S2},
-    {"m/s^2", UNIT_M_S2},
-    {"m/s**2", UNIT_M_S2},
-    {"m/s/s", UNIT_M_S2},
-    {"m_s2", UNIT_M_S2},
-    {"m/s\xc2\xb2", UNIT_M_S2},
-    {"m/s\xb2", UNIT_M_S2},
-    {"m/sec2", UNIT_M_S2},
-    {"m/sec^2", UNIT_M_S2},
-    {"m/sec/sec", UNIT_M_S2},
-    {"m s-2", UNIT_M_S2},
-    {"cm/s2", UNIT_CM_S2},
-    {"cm/s^2", UNIT_CM_S2},
-    {"cm/s**2", UNIT_CM_S2},
-    {"cm/s/s", UNIT_CM_S2},
-    {"cm_s2", UNIT_CM_S2},
-    {"cm/sec2", UNIT_CM_S2},
-    {"cm/s\xc2\xb2", UNIT_CM_S2},
-    {"cm/s\xb2", UNIT_CM_S2},
-    {"gals", UNIT_CM_S2},
-    {"cm/sec^2", UNIT_CM_S2},
-    {"cm/sec/sec", UNIT_CM_S2},
-    {"gal", UNIT_CM_S2},
-    {"cm s-2", UNIT_CM_S2},
-    {"g", UNIT_G},
+    {"m/s2", UNIT_M_S2},          {"m/s^2", UNIT_M_S2},      {"m/s**2", UNIT_M_S2},
+    {"m/s/s", UNIT_M_S2},         {"m_s2", UNIT_M_S2},       {"m/s\xc2\xb2", UNIT_M_S2},
+    {"m/s\xb2", UNIT_M_S2},       {"m/sec2", UNIT_M_S2},     {"m/sec^2", UNIT_M_S2},
+    {"m/sec**2", UNIT_M_S2},      {"m/sec/sec", UNIT_M_S2},  {"m s-2", UNIT_M_S2},
+    {"cm/s2", UNIT_CM_S2},        {"cm/s^2", UNIT_CM_S2},    {"cm/s**2", UNIT_CM_S2},
+    {"cm/s/s", UNIT_CM_S2},       {"cm_s2", UNIT_CM_S2},     {"cm/sec2", UNIT_CM_S2},
+    {"cm/s\xc2\xb2", UNIT_CM_S2}, {"cm/s\xb2", UNIT_CM_S2},  {"gals", UNIT_CM_S2},
+    {"cm/sec^2", UNIT_CM_S2},     {"cm/sec**2", UNIT_CM_S2}, {"cm/sec/sec", UNIT_CM_S2},
+    {"gal", UNIT_CM_S2},          {"cm s-2", UNIT_CM_S2},    {"g", UNIT_G},
 };
 
 const char *const UNIT_NAMES[] = {
@@ -246,14 +239,29 @@ static int is_unit(const char *from, const char *to, const char *at, size_t leng
     return before == from || !isdigit((unsigned char)before[-1]);
 }
 
+static int names_unit(const char *from, const char *to, const char *word)
+{
+    for (const char *at = from; (at = find_word(at, to, word)); at++)
+        if (is_unit(from, to, at, strlen(word)))
+            return 1;
+    return 0;
+}
+
 unsigned units_named(const char *from, const char *to)
 {
     unsigned set = 0;
-    for (size_t i = 0; i < sizeof UNIT_WORDS / sizeof *UNIT_WORDS; i++) {
-        const char *word = UNIT_WORDS[i].word;
-        for (const char *at = from; (at = find_word(at, to, word)); at++)
-            if (is_unit(from, to, at, strlen(word)))
-                set |= 1u << UNIT_WORDS[i].unit;
-    }
+    for (size_t i = 0; i < sizeof UNIT_WORDS / sizeof *UNIT_WORDS; i++)
+        if (names_unit(from, to, UNIT_WORDS[i].word))
+            set |= 1u << UNIT_WORDS[i].unit;
     return set;
+}
+
+const char *unit_unknown(const char *from, const char *to)
+{
+    static const char *const WORDS[] = {"mg",     "milli-g", "mgal",    "mm/s2", "mm/s^2", "mm_s2", "in/s2",
+                                        "in/s^2", "in_s2",   "in/sec2", "ft/s2", "ft/s^2", "ft_s2", "ft/sec2"};
+    for (size_t i = 0; i < sizeof WORDS / sizeof *WORDS; i++)
+        if (names_unit(from, to, WORDS[i]))
+            return WORDS[i];
+    return NULL;
 }

@@ -32,7 +32,10 @@ const char *find_word(const char *from, const char *to, const char *word); /* wi
 /* The first number in `from`..`to` behind `word` and any of " =:(": 1, else 0. */
 int number_behind(const char *from, const char *to, const char *word, double *x);
 
-/* All of the field is one number, blanks around it allowed. with_comma: 1,5 is one and a half. */
+/* Drops the blanks around a field, and then a pair of double quotes. */
+void field_strip(const char **from, const char **to);
+
+/* All of the field is one number, blanks and quotes around it allowed. with_comma: 1,5 is one and a half. */
 Status field_number(const Lines *l, const char *from, const char *to, int with_comma, double *x, Err *err);
 
 /* The field that begins at *p, whose end is returned; *p moves to the next one (to the line's end after the last). */
@@ -47,6 +50,9 @@ int format_width(const Lines *l);
 
 /* One bit (1 << MotionUnit) for each unit of acceleration that the text names. */
 unsigned units_named(const char *from, const char *to);
+
+/* A unit of acceleration that the text names and nothing here converts; NULL: none. */
+const char *unit_unknown(const char *from, const char *to);
 
 extern const char *const UNIT_NAMES[];
 
