@@ -181,11 +181,25 @@ static void test_damage_is_found_on_opening_whatever_was_hit(void **state)
     }
     overwrite("hurt/run.sqlite", 0, "this is a letter", 16);
     expect(74, "is no database of a run", "status @/hurt");
+    assert_int_equal(truncate(path_of("hurt/run.sqlite", path), 0), 0);
+    expect(74, "is empty, no database of a run; remove it", "optimize @/hurt");
     overwrite("sound/run.sqlite", 60, "\0\0\0\x63", 4); /* user_version */
     expect(74, "has format 99", "status @/sound");
     char *list = output_of("list @");
     assert_non_null(strstr(list, "unreadable"));
     free(list);
+}
+
+static void test_a_run_is_named_by_its_database_or_through_the_root_too(void **state)
+{
+    (void)state;
+    char command[PATH_MAX + 128], path[PATH_MAX];
+    free(output_of("optimize @/textbook.ini --max-evals 30 --out @/named"));
+    free(output_of("status @/named/run.sqlite"));
+    free(output_of("optimize @/named/run.sqlite"));
+    snprintf(command, sizeof command, "status /../../../../../../../..%s", path_of("named", path));
+    free(output_of(command));
+    expect(2, "imtet status: the RUN is an empty word", "status ''");
 }
 
 static void test_readers_need_the_database_alone_and_the_files_come_back(void **state)
@@ -229,6 +243,7 @@ int main(void)
         cmocka_unit_test(test_a_folder_that_is_read_only_is_named),
         cmocka_unit_test(test_a_database_that_somebody_keeps_locked_is_busy),
         cmocka_unit_test(test_damage_is_found_on_opening_whatever_was_hit),
+        cmocka_unit_test(test_a_run_is_named_by_its_database_or_through_the_root_too),
         cmocka_unit_test(test_readers_need_the_database_alone_and_the_files_come_back),
     };
     return cmocka_run_group_tests_name("disk", tests, prepare, clear_place);

@@ -80,6 +80,23 @@ static Status take_option(Args *args, int argc, char *const argv[], int *i, Err 
     return STATUS_OK;
 }
 
+/* A run is its folder; who names the database in it means that. */
+static Status take_run_folder(Args *args, Err *err)
+{
+    static const char DATABASE[] = "run.sqlite";
+    const size_t n = strlen(args->operand), n_name = sizeof DATABASE - 1;
+    if (n < n_name || strcmp(args->operand + n - n_name, DATABASE) != 0)
+        return STATUS_OK;
+    if (n > n_name && args->operand[n - n_name - 1] != '/')
+        return STATUS_OK;
+    size_t n_folder = n - n_name;
+    while (n_folder > 1 && args->operand[n_folder - 1] == '/')
+        n_folder--;
+    args->folder = n_folder == 0 ? strdup(".") : strndup(args->operand, n_folder);
+    args->operand = args->folder;
+    return args->folder ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for a path");
+}
+
 static Status take_operand(Args *args, const char *word, Err *err)
 {
     const Command *c = args->command;
@@ -88,8 +105,10 @@ static Status take_operand(Args *args, const char *word, Err *err)
     if (args->operand)
         return fail(err, STATUS_USAGE, "imtet %s takes one %s, found '%.60s' after '%.60s'", c->name, c->operand, word,
                     args->operand);
+    if (!word[0])
+        return fail(err, STATUS_USAGE, "imtet %s: the %s is an empty word", c->name, c->operand);
     args->operand = word;
-    return STATUS_OK;
+    return strstr(c->operand, "RUN") ? take_run_folder(args, err) : STATUS_OK;
 }
 
 static int asks_for_help(const char *word)
@@ -149,6 +168,7 @@ int args_gives(const Args *args, const char *key)
 void args_free(Args *args)
 {
     free(args->given);
+    free(args->folder);
     memset(args, 0, sizeof *args);
 }
 

@@ -34,8 +34,9 @@ typedef struct {
 
 struct Args {
     const Command *command;
-    const char *operand;
-    int help; /* --help was asked for: nothing else was checked */
+    const char *operand; /* of a RUN its folder, also where run.sqlite in it was named */
+    char *folder;        /* what operand points to then */
+    int help;            /* --help was asked for: nothing else was checked */
     int n_given;
     Given *given; /* (n_given) in the order of the command line */
 };

@@ -26,6 +26,8 @@ static void list_run(const char *name, const char *folder, json_t *list)
     standing_of(&s, folder, &saved);
     const SavedSession *last = saved.n_sessions > 0 ? &saved.session[saved.n_sessions - 1] : NULL;
     const char *started = last ? last->started : "-";
+    char hypervolume[32];
+    number_words(s.hypervolume, 4, hypervolume);
     if (list)
         json_array_append_new(list, json_pack("{s:s, s:s, s:I, s:I, s:I, s:I, s:o, s:s}", "run", folder, "state",
                                               state_words(s.state), "simulated", (json_int_t)s.pace.simulated,
@@ -33,8 +35,8 @@ static void list_run(const char *name, const char *folder, json_t *list)
                                               (json_int_t)s.n_failed, "front", (json_int_t)saved.n_front, "hypervolume",
                                               json_number(s.hypervolume), "started", started));
     else
-        printf("%-24s %-10s %8zu of %-8ld %7zu %7zu %12.4f  %s\n", name, state_words(s.state), s.pace.simulated,
-               saved.settings.search.max_evals, s.n_failed, saved.n_front, s.hypervolume, started);
+        printf("%-24s %-10s %8zu of %-8ld %7zu %7zu %12s  %s\n", name, state_words(s.state), s.pace.simulated,
+               saved.settings.search.max_evals, s.n_failed, saved.n_front, hypervolume, started);
     saved_free(&saved);
 }
 

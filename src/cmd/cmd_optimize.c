@@ -2,6 +2,7 @@
 #include <limits.h>
 #include <math.h>
 #include <string.h>
+#include <sys/ioctl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -13,26 +14,30 @@
 #include "run/place.h"
 #include "run/study.h"
 
-/* How much of a line of the terminal is overwritten by the next. */
-enum { LINE_WIDTH = 100 };
-
 typedef struct {
     int terminal, has_told;
 } Telling;
+
+/* Of standard error's terminal, less one: a line that fills the last column would wrap. */
+static int line_width(void)
+{
+    struct winsize w = {0};
+    return ioctl(STDERR_FILENO, TIOCGWINSZ, &w) == 0 && w.ws_col > 1 ? w.ws_col - 1 : 79;
+}
 
 /* One line, on a terminal only. */
 static void tell(const StudyProgress *p, void *user)
 {
     Telling *t = user;
     const SearchView *v = p->view;
-    char left[32], line[2 * LINE_WIDTH];
+    char left[32], hypervolume[32], line[256];
     if (!t->terminal)
         return;
     pace_words(pace_left(&p->pace, p->settings), left);
-    snprintf(line, sizeof line,
-             "generation %zu: %zu of %ld simulated, %zu failed, front %zu, hypervolume %.4f, %s left",
-             v->generation_now, v->n, p->settings->search.max_evals, v->n_failed, v->n_front, p->hypervolume, left);
-    fprintf(stderr, "\r%-*s", LINE_WIDTH, line);
+    number_words(p->hypervolume, 4, hypervolume);
+    snprintf(line, sizeof line, "generation %zu: %zu of %ld simulated, %zu failed, front %zu, hypervolume %s, %s left",
+             v->generation_now, v->n, p->settings->search.max_evals, v->n_failed, v->n_front, hypervolume, left);
+    fprintf(stderr, "\r%.*s\033[K", line_width(), line); /* the rest of the line before is erased */
     t->has_told = 1;
 }
 

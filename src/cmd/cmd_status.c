@@ -37,10 +37,13 @@ static Failures failures_of(const Saved *saved)
 
 static void print_head(const char *folder, const Saved *saved, const Standing *s)
 {
-    char worked[32], left[32];
+    char worked[32], left[32], pace[32] = "-";
+    const double per_second = pace_per_second(&s->pace);
     const SavedSession *last = saved->n_sessions > 0 ? &saved->session[saved->n_sessions - 1] : NULL;
     pace_words(s->seconds, worked);
     pace_words(pace_left(&s->pace, &saved->settings), left);
+    if (isfinite(per_second))
+        snprintf(pace, sizeof pace, "%.3g", per_second);
     printf("%s: %s", folder, state_words(s->state));
     if (s->state == RUN_RUNNING)
         printf(" (process %ld on %s)", s->holder.pid, s->holder.host);
@@ -50,8 +53,8 @@ static void print_head(const char *folder, const Saved *saved, const Standing *s
            s->n_failed, saved->n_front);
     if (s->n_polished > 0)
         printf(", %zu polished designs", s->n_polished);
-    printf("\n%zu generations in %s, %zu %s; %.3g simulations/s", saved->n_generations, worked, saved->n_sessions,
-           saved->n_sessions == 1 ? "session" : "sessions", pace_per_second(&s->pace));
+    printf("\n%zu generations in %s, %zu %s; %s simulations/s", saved->n_generations, worked, saved->n_sessions,
+           saved->n_sessions == 1 ? "session" : "sessions", pace);
     if (s->state != RUN_FINISHED)
         printf(", %s left", left);
     if (last)
@@ -65,15 +68,15 @@ static void print_head(const char *folder, const Saved *saved, const Standing *s
 static void print_generations(const Saved *saved)
 {
     const size_t n = saved->n_generations, rows = n < ROWS_MAX ? n : ROWS_MAX;
-    char worked[32];
+    char worked[32], hypervolume[32];
     if (n == 0)
         return;
     printf("\n%12s %10s %8s %8s %12s %12s\n", "generation", "simulated", "failed", "front", "hypervolume", "after");
     for (size_t r = 0; r < rows; r++) {
         const SavedGeneration *g = &saved->generation[rows > 1 ? r * (n - 1) / (rows - 1) : 0];
         pace_words(g->seconds, worked);
-        printf("%12ld %10ld %8ld %8ld %12.4f %12s\n", g->number, g->simulated, g->failed, g->front, g->hypervolume,
-               worked);
+        number_words(g->hypervolume, 4, hypervolume);
+        printf("%12ld %10ld %8ld %8ld %12s %12s\n", g->number, g->simulated, g->failed, g->front, hypervolume, worked);
     }
 }
 

@@ -149,6 +149,18 @@ static Status open_file(Database **out, const char *path, const char *name, int 
     return STATUS_OK;
 }
 
+/* SQLite does not follow a path that goes up beyond the root: it gets the folder's real one. Where there is none, path
+ * itself, for SQLite to say what is wrong. */
+static const char *real_path(const char *path, char real[PATH_MAX])
+{
+    char folder[PATH_MAX], found[PATH_MAX];
+    const char *slash = strrchr(path, '/');
+    if (!slash || slash == path || slash - path >= PATH_MAX)
+        return path;
+    snprintf(folder, sizeof folder, "%.*s", (int)(slash - path), path);
+    return realpath(folder, found) && snprintf(real, PATH_MAX, "%s%s", found, slash) < PATH_MAX ? real : path;
+}
+
 static Status take_word(sqlite3_stmt *row, void *user, Err *err)
 {
     (void)err;
@@ -197,12 +209,12 @@ static Status prepare(Database *d, DatabaseMode mode, Err *err)
  * journal either, the file alone is all there is. */
 static Status open_immutable(Database **out, const char *path, Err *err)
 {
-    char uri[3 * PATH_MAX + 32], *to = uri + sprintf(uri, "file:");
+    char real[PATH_MAX], uri[3 * PATH_MAX + 32], *to = uri + sprintf(uri, "file:");
     struct stat journal;
     snprintf(uri + 5, PATH_MAX + 5, "%s-wal", path);
     if (strlen(path) >= PATH_MAX - 8 || (stat(uri + 5, &journal) == 0 && journal.st_size > 0))
         return explain(path, SQLITE_READONLY, "", err);
-    for (const char *from = path; *from; from++)
+    for (const char *from = real_path(path, real); *from; from++)
         to += strchr("%?#", *from) ? sprintf(to, "%%%02X", (unsigned)*from) : sprintf(to, "%c", *from);
     sprintf(to, "?immutable=1");
     return open_file(out, path, uri, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, err);
@@ -210,10 +222,15 @@ static Status open_immutable(Database **out, const char *path, Err *err)
 
 Status database_open(Database **out, const char *path, DatabaseMode mode, Err *err)
 {
+    char real[PATH_MAX];
+    struct stat there;
     *out = NULL;
-    if (access(path, F_OK) != 0)
+    if (stat(path, &there) != 0)
         return fail(err, STATUS_MISSING, "%s: is not there", path);
-    TRY(open_file(out, path, path, mode == DATABASE_WRITE ? SQLITE_OPEN_READWRITE : SQLITE_OPEN_READONLY, err));
+    if (there.st_size == 0)
+        return fail(err, STATUS_IO, "%s: is empty, no database of a run; remove it, and the run begins anew", path);
+    TRY(open_file(out, path, real_path(path, real),
+                  mode == DATABASE_WRITE ? SQLITE_OPEN_READWRITE : SQLITE_OPEN_READONLY, err));
     if (mode == DATABASE_READ)
         bound_rows(*out);
     Status status = prepare(*out, mode, err);
@@ -235,8 +252,8 @@ Status database_open(Database **out, const char *path, DatabaseMode mode, Err *e
 
 Status database_create(Database **out, const char *path, Err *err)
 {
-    char sql[128];
-    TRY(open_file(out, path, path, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, err));
+    char sql[128], real[PATH_MAX];
+    TRY(open_file(out, path, real_path(path, real), SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, err));
     snprintf(sql, sizeof sql, "PRAGMA synchronous=FULL; PRAGMA application_id=%d; PRAGMA user_version=%d",
              DATABASE_APPLICATION, DATABASE_FORMAT);
     const Status status = database_do(*out, err, sql, "");

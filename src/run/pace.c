@@ -7,7 +7,9 @@
 
 double pace_per_second(const Pace *p)
 {
-    return p->session_simulated > 0 && p->session_s > 0.0 ? (double)p->session_simulated / p->session_s : NAN;
+    if (p->session_simulated > 0 && p->session_s > 0.0)
+        return (double)p->session_simulated / p->session_s;
+    return p->simulated > 0 && p->all_s > 0.0 ? (double)p->simulated / p->all_s : NAN;
 }
 
 double pace_left(const Pace *p, const Settings *s)
@@ -27,11 +29,19 @@ void pace_words(double seconds, char text[32])
 {
     const long s = (long)fmin(seconds, 1e8);
     if (!isfinite(seconds))
-        snprintf(text, 32, "?");
+        snprintf(text, 32, "-");
     else if (s < 3600)
         snprintf(text, 32, "%ld:%02ld min", s / 60, s % 60);
     else
         snprintf(text, 32, "%ld:%02ld h", s / 3600, s / 60 % 60);
+}
+
+void number_words(double value, int decimals, char text[32])
+{
+    if (isfinite(value))
+        snprintf(text, 32, "%.*f", decimals, value);
+    else
+        snprintf(text, 32, "-");
 }
 
 const char *state_words(RunState state)
@@ -60,6 +70,22 @@ static void count(Standing *out, const Saved *saved)
     }
 }
 
+/* What a session told; one that was killed told its last generation at most, and its simulations since tell more. */
+static double session_seconds(const Saved *saved, size_t number)
+{
+    const SavedSession *s = &saved->session[number];
+    const double told = isfinite(s->seconds) ? s->seconds : 0.0;
+    const long first = s->simulated_before + 1;
+    const long end = number + 1 < saved->n_sessions ? saved->session[number + 1].simulated_before + 1 : POLISHED_FIRST;
+    double simulated = 0.0;
+    if (s->ended[0])
+        return told;
+    for (size_t i = 0; i < saved->n; i++)
+        if (saved->row[i].id >= first && saved->row[i].id < end && isfinite(saved->row[i].verdict.seconds))
+            simulated += saved->row[i].verdict.seconds;
+    return fmax(told, simulated / fmax((double)s->threads, 1.0));
+}
+
 void standing_of(Standing *out, const char *folder, const Saved *saved)
 {
     char lock[PATH_MAX];
@@ -76,11 +102,13 @@ void standing_of(Standing *out, const char *folder, const Saved *saved)
     if (saved->n_generations > 0)
         out->hypervolume = saved->generation[saved->n_generations - 1].hypervolume;
     for (size_t i = 0; i < saved->n_sessions; i++)
-        out->seconds += isfinite(saved->session[i].seconds) ? saved->session[i].seconds : 0.0;
+        out->seconds += session_seconds(saved, i);
     if (!last)
         return;
-    out->pace.session_s = is_running ? seconds_since(last->started) : last->seconds;
-    out->seconds += is_running ? fmax(out->pace.session_s - last->seconds, 0.0) : 0.0;
+    const double told = session_seconds(saved, saved->n_sessions - 1);
+    out->pace.session_s = is_running ? seconds_since(last->started) : told;
+    out->seconds += is_running ? fmax(out->pace.session_s - told, 0.0) : 0.0;
+    out->pace.all_s = out->seconds;
     out->pace.session_simulated =
         out->pace.simulated > (size_t)last->simulated_before ? out->pace.simulated - (size_t)last->simulated_before : 0;
     for (size_t g = 0; g < saved->n_generations; g++)

@@ -9,16 +9,17 @@
 typedef struct {
     size_t simulated, generations;                 /* so far */
     size_t session_simulated, session_generations; /* since this start */
-    double session_s;
+    double session_s, all_s;                       /* of this start; of all */
 } Pace;
 
-double pace_per_second(const Pace *p); /* simulations; NAN: none yet */
+double pace_per_second(const Pace *p); /* simulations of this start, else of all; NAN: none yet */
 
 /* Seconds until simulations, generations or hours are spent, whichever is first; NAN: unknown. */
 double pace_left(const Pace *p, const Settings *s);
 
-/* "1:05 min", "3:20 h", "?" */
+/* "1:05 min", "3:20 h"; a number with so many decimals; "-" where it is not finite. */
 void pace_words(double seconds, char text[32]);
+void number_words(double value, int decimals, char text[32]);
 
 typedef enum { RUN_RUNNING, RUN_FINISHED, RUN_PAUSED, RUN_BROKEN_OFF } RunState;
 

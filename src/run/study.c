@@ -150,6 +150,16 @@ static Status compare_inputs(Study *study, Differences *d, Err *err)
     return STATUS_OK;
 }
 
+/* A limit below what is there already would leave a run that is neither finished nor can go on. */
+static Status check_limit(const Study *study, size_t n_there, Err *err)
+{
+    const long was = store_saved(study->store)->settings.search.max_evals, now = study->used.search.max_evals;
+    return now == was || now >= (long)n_there
+               ? STATUS_OK
+               : fail(err, STATUS_BAD_DATA, "%s: search.max_evals = %ld is less than the %zu simulations that it holds",
+                      study->summary->folder, now, n_there);
+}
+
 /* The run goes on with its own settings; limits are taken over where that is wanted. */
 static Status settle_settings(Study *study, Err *err)
 {
@@ -249,7 +259,8 @@ static int observe(const SearchView *view, void *user)
                                     .generations = study->generation,
                                     .session_simulated = view->n > sum->n_before ? view->n - sum->n_before : 0,
                                     .session_generations = study->generation - study->first_generation,
-                                    .session_s = session_seconds(study)},
+                                    .session_s = session_seconds(study),
+                                    .all_s = study->seconds_before + session_seconds(study)},
                              &study->used};
     if (study->options->progress)
         study->options->progress(&p, study->options->user);
@@ -317,6 +328,7 @@ static Status go_on(Study *study, Err *err)
         study->seconds_before += isfinite(h->session[i].seconds) ? h->session[i].seconds : 0.0;
     study->generation = h->n_generations > 0 ? (size_t)h->generation[h->n_generations - 1].number + 1 : 0;
     study->first_generation = study->generation;
+    TRY(check_limit(study, sum->n_before, err));
     snprintf(study->used.motion.record, SETTINGS_TEXT_MAX, "%s", h->settings.motion.record);
     snprintf(study->used.building.model, SETTINGS_TEXT_MAX, "%s", h->settings.building.model);
     snprintf(study->used.run.out, SETTINGS_TEXT_MAX, "%s", h->settings.run.out);
