@@ -121,7 +121,7 @@ static void open_tower(Report *r)
     Settings other;
     const char *records[] = {"builtin:sylmar-like"};
     CHECK_OK(run_settings(&other, in_folder("tower"), &err), &err);
-    const DetailWish wish = {-1, &other, 1, records};
+    const DetailWish wish = {.floor = -1, .other = &other, .n_records = 1, .records = records};
     CHECK_OK(report_open(r, in_folder("tower"), "knee", &wish, &err), &err);
 }
 
@@ -321,6 +321,8 @@ static void test_designs_records_and_floors_that_are_not_there_are_refused(void 
     assert_int_equal(imtet_on("report", "tower", "--floor 21"), 65);
     assert_int_equal(imtet_on("report", "tower", "--floor 0"), 2);
     assert_int_equal(imtet_on("report", "tower", "--record no-such-file.at2"), 66);
+    assert_int_equal(imtet_on("report", "tower", "--set motion.record=tests/motion/one.esm"), 65);
+    assert_int_equal(imtet_on("report", "tower", "--set sim.accuracy=fine"), 2);
     assert_int_equal(imtet_on("report", "no-such-run", ""), 66);
     assert_int_equal(imtet_on("report", "tower", "--out /no/such/folder/x.html"), 74);
 }

@@ -14,6 +14,16 @@ Status args_unknown(const char *what, const char *word, const char *const known[
                 : fail(err, STATUS_USAGE, "unknown %s '%.60s'; %s lists them", what, word, where);
 }
 
+Status args_moved_record(const Args *args, const char **path, Err *err)
+{
+    static const char KEY[] = "motion.record=";
+    const char *given = args_value(args, "--set");
+    *path = given ? given + sizeof KEY - 1 : NULL;
+    if (given && (strncmp(given, KEY, sizeof KEY - 1) != 0 || !**path))
+        return fail(err, STATUS_USAGE, "--set %.60s: of a run that is there only motion.record=PATH can be set", given);
+    return STATUS_OK;
+}
+
 static int is_visible(const struct dirent *e)
 {
     return e->d_name[0] != '.';

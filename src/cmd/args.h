@@ -48,6 +48,9 @@ int args_has(const Args *args, const char *name);
 int args_gives(const Args *args, const char *key); /* a setting, by an option of its own or by --set */
 void args_free(Args *args);
 
+/* PATH of --set motion.record=PATH, NULL: not given; nothing else may be set. */
+Status args_moved_record(const Args *args, const char **path, Err *err);
+
 /* Behind a message about an operand that is not there: the nearest name in its folder, if there is one. */
 void args_suggest(const Args *args, Err *err);
 
@@ -61,6 +64,10 @@ Status args_settings(const Args *args, Settings *s, FILE *faults, int *n_faults,
 /* Only the options, over what s holds. */
 Status args_apply(const Args *args, Settings *s, FILE *faults, int *n_faults, Err *err);
 
+#define OPTION_MOVED                                                                                                   \
+    {                                                                                                                  \
+        "--set", "motion.record=PATH", NULL, 0, "where the run's record is now, if it was moved"                       \
+    }
 #define OPTION_SET                                                                                                     \
     {                                                                                                                  \
         "--set", "SECTION.KEY=VALUE", NULL, 1, "any setting; may be repeated (`imtet settings` lists them)"            \

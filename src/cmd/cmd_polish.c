@@ -67,14 +67,16 @@ static Status take_options(const Args *args, Work *w, Err *err)
 
 static Status open_run(const Args *args, Work *w, Err *err)
 {
-    const char *id = args_value(args, "--design");
+    const char *id = args_value(args, "--design"), *moved;
     if (!id)
         return fail(err, STATUS_USAGE, "--design ID is missing; %s/front.csv lists them, knee is one too",
                     args->operand);
     TRY(front_read(&w->front, args->operand, err));
     TRY(front_pick(&w->front, args->operand, id, &w->row, err));
     TRY(take_options(args, w, err));
-    return saved_read(&w->run, args->operand, err);
+    TRY(args_moved_record(args, &moved, err));
+    TRY(saved_read(&w->run, args->operand, err));
+    return saved_find_record(&w->run.settings, w->run.provenance, moved, err);
 }
 
 /* One row in natural signs, as in front.csv but for the id of the design that it came from. */
@@ -150,6 +152,7 @@ static const ArgOption OPTIONS[] = {
     {"--members", "N", NULL, 0, "simulations of each (the tower's), whose mean counts; 4 if not given"},
     {"--seconds", "T", NULL, 0, "stop after so long; 0: no limit"},
     {"--csv", "FILE", NULL, 0, "the polished design and its objectives into FILE; -: standard output"},
+    OPTION_MOVED,
     OPTION_END,
 };
 

@@ -54,6 +54,7 @@ Status look_open(const Args *args, Report *r, Err *err)
     Settings other;
     Records records;
     DetailWish wish = {.other = &other, .records = records.path};
+    TRY(args_moved_record(args, &wish.moved, err));
     TRY(run_settings(&other, args->operand, err));
     TRY(take_records(args, &other, &records, err));
     wish.n_records = records.n;

@@ -37,7 +37,8 @@ typedef struct {
 
 /* Other earthquakes: `other` is how they are read, scaled and simulated, its motion.record replaced by each name. */
 typedef struct {
-    int floor; /* from 0; -1: in the middle */
+    int floor;         /* from 0; -1: in the middle */
+    const char *moved; /* where the run's own record is now; NULL: where it was */
     const Settings *other;
     size_t n_records;
     const char *const *records;
