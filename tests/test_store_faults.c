@@ -1,6 +1,6 @@
-/* Inside a study, the k-th call of one kind to the database, the files or the allocator fails: the study ends with a
- * reason, and the same settings then go on to the same front. FAULTS=60 in the environment: so many of each kind, else
- * a few. The linker puts the functions below in the place of the real ones (Makefile). */
+/* The k-th call of one kind to the database, the files or the allocator fails: the run ends with a reason, and then goes
+ * on to the same result. Every k where the store is driven alone; in a whole study a few of each kind, or FAULTS=60 of
+ * the environment. The linker puts the functions below in the place of the real ones (Makefile). */
 #include "runs.h"
 
 #include <sqlite3.h>
@@ -8,7 +8,7 @@
 #include "run/store.h"
 #include "run/study.h"
 
-enum { SOME = 6 };
+enum { SOME = 3 };
 
 typedef enum { STEP, EXEC, PREPARE, OPEN, CALLOC, MALLOC, REALLOC, MEMSTREAM, FOPEN, FLUSH, RENAME, N_KINDS } Kind;
 static const char *const KINDS[N_KINDS] = {"sqlite3_step",    "sqlite3_exec",   "sqlite3_prepare_v2",
@@ -20,6 +20,8 @@ static struct {
     int armed;
     Kind kind;
     long at, n[N_KINDS];
+    int code; /* what SQLite says of it */
+    int struck;
 } fault;
 
 static int fails(Kind kind)
@@ -27,7 +29,19 @@ static int fails(Kind kind)
     if (!fault.armed)
         return 0;
     fault.n[kind]++;
-    return kind == fault.kind && fault.n[kind] == fault.at;
+    const int now = kind == fault.kind && fault.n[kind] == fault.at;
+    fault.struck = fault.struck || now;
+    return now;
+}
+
+/* at = 0: calls are counted, none fails. */
+static void arm(Kind kind, long at, int code)
+{
+    memset(&fault, 0, sizeof fault);
+    fault.kind = kind;
+    fault.at = at;
+    fault.code = code;
+    fault.armed = 1;
 }
 
 #define WRAP(type, name, kind, failed, parameters, arguments)                                                          \
@@ -54,6 +68,27 @@ WRAP(FILE *, fopen, FOPEN, NULL, (const char *path, const char *mode), (path, mo
 WRAP(int, fflush, FLUSH, EOF, (FILE * f), (f))
 WRAP(int, rename, RENAME, -1, (const char *from, const char *to), (from, to))
 
+#define WRAP_CODE(name)                                                                                                \
+    int __real_##name(sqlite3 *d);                                                                                     \
+    int __wrap_##name(sqlite3 *d);                                                                                     \
+    int __wrap_##name(sqlite3 *d)                                                                                      \
+    {                                                                                                                  \
+        return fault.armed && fault.struck ? fault.code : __real_##name(d);                                            \
+    }
+
+WRAP_CODE(sqlite3_errcode)
+WRAP_CODE(sqlite3_extended_errcode)
+
+static void remove_in_place(const char *name)
+{
+    char command[128];
+    snprintf(command, sizeof command, "rm -rf '%s/%s'", place.folder, name);
+    assert_int_equal(system(command), 0);
+}
+
+/* -- a study --------------------------------------------------------------------------------------------------------
+ */
+
 static Status study(const Settings *s, Err *err)
 {
     StudySummary summary;
@@ -78,16 +113,11 @@ static void run_half(const Settings *s)
 static void fail_once(Kind kind, long at, const char *front)
 {
     Err err = {0};
-    char command[128];
-    snprintf(command, sizeof command, "rm -rf '%s/faulty'", place.folder);
-    assert_int_equal(system(command), 0);
+    remove_in_place("faulty");
     const Settings s = settings_of(TEXTBOOK, "faulty");
     if (at % 2 == 0)
         run_half(&s);
-    memset(&fault, 0, sizeof fault);
-    fault.kind = kind;
-    fault.at = at;
-    fault.armed = 1;
+    arm(kind, at, SQLITE_IOERR);
     const Status status = study(&s, &err);
     fault.armed = 0;
     if (status != STATUS_OK && !err.text[0])
@@ -109,8 +139,7 @@ static void test_a_study_whose_kth_call_fails_goes_on_to_the_same_front(void **s
     const long most = wanted ? strtol(wanted, NULL, 10) : SOME;
     const Settings s = settings_of(TEXTBOOK, "whole");
     long n[N_KINDS];
-    memset(&fault, 0, sizeof fault);
-    fault.armed = 1;
+    arm(0, 0, SQLITE_OK);
     CHECK_OK(study(&s, &err), &err);
     fault.armed = 0;
     memcpy(n, fault.n, sizeof n);
@@ -121,10 +150,297 @@ static void test_a_study_whose_kth_call_fails_goes_on_to_the_same_front(void **s
     free(front);
 }
 
+/* -- the store alone ------------------------------------------------------------------------------------------------
+ */
+
+static const char PLAIN[] = "[problem]\nkind = dtlz2\nvariables = 3\nobjectives = 2\n[search]\nmax_evals = 8\n";
+
+/* Six designs in three generations: all fail; 4 is the front, the first objective the same for all; 6 beats it. */
+enum { N_GENERATIONS = 3, N_DESIGNS = 6, N_POLISHED = 3 };
+static const size_t UNTIL[N_GENERATIONS] = {2, 5, 6}, GENERATION[N_DESIGNS] = {0, 0, 1, 1, 1, 2};
+static const double X[N_DESIGNS][3] = {{0.1}, {0.2}, {0.3}, {0.4}, {0.5}, {0.6}};
+static const double F[N_DESIGNS][2] = {{NAN, NAN}, {NAN, NAN}, {1, 2}, {1, 1}, {NAN, NAN}, {0.5, 0.5}};
+static const unsigned char OK[N_DESIGNS] = {0, 0, 1, 1, 0, 1}, KIND[N_DESIGNS] = {0, 0, 1, 1, 2, 2};
+static const unsigned char FRONT[N_GENERATIONS][N_DESIGNS] = {{0}, {0, 0, 0, 1}, {0, 0, 0, 0, 0, 1}};
+
+static SearchView view_of(size_t g)
+{
+    return (SearchView){.n = UNTIL[g],
+                        .n_var = 3,
+                        .n_obj = 2,
+                        .X = X[0],
+                        .F = F[0],
+                        .ok = OK,
+                        .kind = KIND,
+                        .generation = GENERATION,
+                        .on_front = FRONT[g],
+                        .n_front = g > 0,
+                        .n_failed = g > 0 ? 3 : 2,
+                        .generation_now = g,
+                        .surrogate_error = NAN,
+                        .state = "state",
+                        .n_state = 5};
+}
+
+/* The fourth takes long enough to be committed at once. */
+static Status simulate(RunStore *store, size_t i, Err *err)
+{
+    Verdict v = {.seconds = i == 3 ? 1.0 : 0.001};
+    verdict_set(&v, OK[i] ? "ok" : "dead", OK[i] ? "" : "it died");
+    const Simulation s = {.number = i + 1, .x = X[i], .f = F[i], .ok = OK[i], .verdict = &v};
+    return store_simulation(store, &s, GENERATION[i], err);
+}
+
+static Status generation(RunStore *store, size_t g, Err *err)
+{
+    const SearchView v = view_of(g);
+    for (size_t i = g > 0 ? UNTIL[g - 1] : 0; i < UNTIL[g]; i++)
+        TRY(simulate(store, i, err));
+    TRY(store_generation(store, &v, 1.0, 1.0, err));
+    TRY(store_event(store, json_pack("{s:s, s:i}", "event", "generation", "number", (int)g), err));
+    return store_log(store, err, "generation %zu", g);
+}
+
+static const StoredDesign POLISHED[N_POLISHED] = {{.x = X[0], .f = F[5], .verdict = {.outcome = "ok"}},
+                                                  {.x = X[1], .f = F[3], .verdict = {.outcome = "ok"}},
+                                                  {.x = X[2], .verdict = {.outcome = "dead"}}};
+
+static Status work(RunStore *store, const Settings *s, const Schema *schema, size_t n_generations, Err *err)
+{
+    const Saved *h = store_saved(store);
+    Saved now;
+    TRY(h ? store_go_on(store, schema, s, err) : store_begin(store, schema, s, "{}", err));
+    TRY(store_session(store, "a test", 1, 0, err));
+    for (size_t g = h ? h->n_generations : 0; g < n_generations; g++)
+        TRY(generation(store, g, err));
+    TRY(store_read(store, &now, err));
+    const long tried = now.tried_to_polish;
+    saved_free(&now);
+    if (n_generations == N_GENERATIONS && tried < 1)
+        TRY(store_polished(store, &POLISHED[0], 1, N_DESIGNS, err));
+    return n_generations == N_GENERATIONS ? store_polished(store, NULL, 2, N_DESIGNS, err) : STATUS_OK;
+}
+
+static Status session(const char *folder, const Schema *schema, size_t n_generations, Err *err)
+{
+    RunStore *store;
+    const Settings s = settings_of(PLAIN, "life");
+    TRY(store_open(&store, folder, 0, err));
+    const Status status = work(store, &s, schema, n_generations, err);
+    if (status == STATUS_OK)
+        return store_close(store, "the end", n_generations == N_GENERATIONS, 1.0, err);
+    store_free(store);
+    return status;
+}
+
+/* From wherever the run stands to its end, designs from outside included. */
+static Status life(const char *folder, const Schema *schema, Err *err)
+{
+    Saved h;
+    TRY(session(folder, schema, N_GENERATIONS - 1, err));
+    TRY(session(folder, schema, N_GENERATIONS, err));
+    TRY(saved_read(&h, folder, err));
+    const size_t n = h.n;
+    saved_free(&h);
+    if (n < N_DESIGNS + N_POLISHED)
+        TRY(store_add_evaluations(folder, 2, POLISHED + 1, NULL, err));
+    return session(folder, schema, N_GENERATIONS, err);
+}
+
+/* The tables of a life, one behind the other. */
+static char *tables(void)
+{
+    char *front = read_in_place("life/front.csv"), *all = read_in_place("life/evaluations.csv"), *both;
+    assert_true(asprintf(&both, "%s\n%s", front, all) > 0);
+    free(front);
+    free(all);
+    return both;
+}
+
+static void check_life(Kind kind, long at, const char *folder, const Schema *schema, const char *wanted)
+{
+    Err err = {0}, again = {0};
+    remove_in_place("life");
+    arm(kind, at, SQLITE_IOERR);
+    const Status status = life(folder, schema, &err);
+    fault.armed = 0;
+    if (status != STATUS_OK && !err.text[0])
+        fail_msg("%s %ld: fails and says nothing", KINDS[kind], at);
+    if (life(folder, schema, &again) != STATUS_OK)
+        fail_msg("%s %ld: '%s', and then '%s'", KINDS[kind], at, err.text, again.text);
+    char *now = tables();
+    if (strcmp(now, wanted) != 0)
+        fail_msg("%s %ld: '%s', and then other tables:\n%s\nwanted\n%s", KINDS[kind], at, err.text, now, wanted);
+    free(now);
+}
+
+static void test_whichever_call_of_a_run_fails_it_goes_on_to_the_same_tables(void **state)
+{
+    (void)state;
+    Err err = {0};
+    char folder[PATH_MAX];
+    long n[N_KINDS];
+    Schema schema;
+    const Settings s = settings_of(PLAIN, "life");
+    CHECK_OK(schema_of(&schema, &s, 0, &err), &err);
+    path_of("life", folder);
+    arm(0, 0, SQLITE_OK);
+    CHECK_OK(life(folder, &schema, &err), &err);
+    fault.armed = 0;
+    memcpy(n, fault.n, sizeof n);
+    char *wanted = tables();
+    assert_non_null(strstr(wanted, "\n6,"));
+    for (Kind kind = 0; kind < N_KINDS; kind++)
+        for (long at = 1; at <= n[kind]; at++)
+            check_life(kind, at, folder, &schema, wanted);
+    free(wanted);
+    schema_free(&schema);
+}
+
+/* What SQLite says becomes a status and words; a reader for whom there is no journal reads the file alone. */
+static void test_every_fault_of_the_database_is_said_in_our_words(void **state)
+{
+    (void)state;
+    static const struct {
+        int code;
+        Status status;
+        const char *words;
+    } SAID[] = {{SQLITE_NOMEM, STATUS_NO_MEMORY, "out of memory"}, {SQLITE_FULL, STATUS_IO, "the disk is full"},
+                {SQLITE_PERM, STATUS_IO, "read-only"},             {SQLITE_BUSY, STATUS_IO, "is busy"},
+                {SQLITE_LOCKED, STATUS_IO, "is busy"},             {SQLITE_CORRUPT, STATUS_IO, "is damaged"},
+                {SQLITE_NOTADB, STATUS_IO, "is no database"},      {SQLITE_IOERR, STATUS_IO, "read or written"},
+                {SQLITE_READONLY, STATUS_OK, ""},                  {SQLITE_CANTOPEN, STATUS_OK, ""}};
+    char folder[PATH_MAX], inside[PATH_MAX];
+    RunStore *store;
+    Err err = {0};
+    Schema schema;
+    const Settings s = settings_of(PLAIN, "50% ?#");
+    CHECK_OK(schema_of(&schema, &s, 0, &err), &err);
+    CHECK_OK(session(path_of("50% ?#", folder), &schema, 1, &err), &err);
+    for (size_t i = 0; i < sizeof SAID / sizeof SAID[0]; i++) {
+        Saved h;
+        arm(PREPARE, 1, SAID[i].code);
+        const Status status = saved_read(&h, folder, &err);
+        fault.armed = 0;
+        if (status != SAID[i].status || (status != STATUS_OK && !strstr(err.text, SAID[i].words)))
+            fail_msg("%d: %d, %s", SAID[i].code, status, err.text);
+        if (status == STATUS_OK)
+            assert_int_equal(h.n, UNTIL[0]);
+        saved_free(&h);
+    }
+    CHECK_OK(store_open(&store, folder, 0, &err), &err);
+    CHECK_OK(work(store, &s, &schema, 2, &err), &err);
+    arm(PREPARE, 1, SQLITE_CANTOPEN); /* the journal is in use: the file alone would be an old run */
+    Saved h;
+    assert_int_equal(saved_read(&h, folder, &err), STATUS_IO);
+    fault.armed = 0;
+    assert_non_null(strstr(err.text, "read-only"));
+    store_free(store);
+    schema_free(&schema);
+    Database *d;
+    assert_int_equal(database_create(&d, path_of("nowhere/run.sqlite", inside), &err), STATUS_IO);
+    assert_non_null(strstr(err.text, "cannot be opened"));
+    assert_int_equal(database_open(&d, inside, DATABASE_READ, &err), STATUS_MISSING);
+}
+
+/* place/././.../name, n characters. */
+static const char *long_path(char path[], size_t n, const char *name)
+{
+    size_t i = (size_t)snprintf(path, n, "%s", place.folder);
+    while (i + 2 + strlen(name) < n)
+        i += (size_t)sprintf(path + i, "/.");
+    snprintf(path + i, n + 1 - i, "/%s", name);
+    return path;
+}
+
+static void refused_by_store(const char *folder, int fresh, const char *words)
+{
+    RunStore *store;
+    Err err = {0};
+    assert_int_equal(store_open(&store, folder, fresh, &err), STATUS_IO);
+    assert_null(store);
+    if (!strstr(err.text, words))
+        fail_msg("%s: %s, wanted %s", folder, err.text, words);
+}
+
+static void test_a_folder_that_cannot_hold_the_run_is_named_and_a_fresh_run_takes_the_next(void **state)
+{
+    (void)state;
+    char path[2 * PATH_MAX], other[PATH_MAX], old[PATH_MAX];
+    RunStore *first, *second;
+    Database *d;
+    Err err = {0};
+    CHECK_OK(store_open(&first, path_of("old", old), 0, &err), &err);
+    store_free(first);
+    write_in_place("old/front.csv", "id\n");
+    refused_by_store(old, 0, "holds a run without a database");
+    refused_by_store(path_of("old/front.csv/run", other), 0, "cannot be made a folder");
+    refused_by_store(long_path(path, PATH_MAX, "old"), 0, "the path is too long");
+    refused_by_store(long_path(path, PATH_MAX - 65, "old"), 1, "the path is too long");
+    assert_int_equal(database_create(&d, long_path(path, PATH_MAX + 8, "old"), &err), STATUS_IO);
+    assert_non_null(strstr(err.text, "path too long"));
+    assert_int_equal(store_add_evaluations(old, 1, POLISHED, NULL, &err), STATUS_MISSING);
+
+    CHECK_OK(store_open(&first, old, 1, &err), &err); /* what is there stays */
+    assert_string_equal(store_folder(first), path_of("old-2", other));
+    CHECK_OK(store_open(&second, old, 1, &err), &err); /* the first is at work */
+    assert_string_equal(store_folder(second), path_of("old-3", other));
+    store_free(second);
+    write_in_place("old-3/evaluations.csv", "id\n");
+    CHECK_OK(store_open(&second, old, 1, &err), &err);
+    assert_string_equal(store_folder(second), path_of("old-4", other));
+    store_free(second);
+    store_free(first);
+}
+
+/* Designs for a run that has none yet; and generations that the store cannot keep. */
+static void test_a_generation_that_was_not_simulated_is_refused(void **state)
+{
+    (void)state;
+    char folder[PATH_MAX];
+    RunStore *store;
+    Err err = {0};
+    Schema schema;
+    long first;
+    const Settings s = settings_of(PLAIN, "early");
+    CHECK_OK(schema_of(&schema, &s, 0, &err), &err);
+    CHECK_OK(session(path_of("early", folder), &schema, 0, &err), &err);
+    CHECK_OK(store_add_evaluations(folder, 1, POLISHED, &first, &err), &err);
+    assert_int_equal(first, POLISHED_FIRST);
+    remove_in_place("early");
+    CHECK_OK(session(folder, &schema, 0, &err), &err);
+    CHECK_OK(store_open(&store, folder, 0, &err), &err);
+    CHECK_OK(store_go_on(store, &schema, &s, &err), &err);
+    SearchView v = view_of(0);
+    assert_int_equal(store_generation(store, &v, 0, 0, &err), STATUS_INTERNAL);
+    assert_non_null(strstr(err.text, "the search knows of 2 simulations, 0 are stored"));
+    v.state = NULL;
+    assert_int_equal(store_generation(store, &v, 0, 0, &err), STATUS_NO_MEMORY);
+    store_free(store);
+    schema_free(&schema);
+}
+
+/* Where there is a disk of memory: thousands of commits. */
+static int make_quick_place(void **state)
+{
+    json_set_alloc_funcs(__wrap_malloc, free);
+    if (make_place(state) != 0)
+        return -1;
+    if (access("/dev/shm", W_OK) != 0)
+        return 0;
+    rmdir(place.folder);
+    snprintf(place.folder, sizeof place.folder, "/dev/shm/imtet-XXXXXX");
+    return mkdtemp(place.folder) ? 0 : -1;
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_whichever_call_of_a_run_fails_it_goes_on_to_the_same_tables),
+        cmocka_unit_test(test_every_fault_of_the_database_is_said_in_our_words),
+        cmocka_unit_test(test_a_folder_that_cannot_hold_the_run_is_named_and_a_fresh_run_takes_the_next),
+        cmocka_unit_test(test_a_generation_that_was_not_simulated_is_refused),
         cmocka_unit_test(test_a_study_whose_kth_call_fails_goes_on_to_the_same_front),
     };
-    return cmocka_run_group_tests(tests, make_place, clear_place);
+    return cmocka_run_group_tests_name("store faults", tests, make_quick_place, clear_place);
 }

@@ -191,11 +191,11 @@ static void bound_rows(Database *d)
 {
     enum { SLACK = 1 << 20 };
     char journal[PATH_MAX + 8];
-    struct stat s;
-    long long size = stat(d->path, &s) == 0 ? s.st_size : 0;
+    struct stat file = {0}, beside = {0}; /* of one that is not there: 0 bytes */
     snprintf(journal, sizeof journal, "%s-wal", d->path);
-    size += stat(journal, &s) == 0 ? s.st_size : 0;
-    sqlite3_limit(d->db, SQLITE_LIMIT_LENGTH, size < INT_MAX / 2 - SLACK ? (int)(2 * size) + SLACK : INT_MAX);
+    stat(d->path, &file);
+    stat(journal, &beside);
+    sqlite3_limit(d->db, SQLITE_LIMIT_LENGTH, (int)fmin(2.0 * (double)(file.st_size + beside.st_size) + SLACK, INT_MAX));
 }
 
 static Status prepare(Database *d, DatabaseMode mode, Err *err)
@@ -210,9 +210,10 @@ static Status prepare(Database *d, DatabaseMode mode, Err *err)
 static Status open_immutable(Database **out, const char *path, Err *err)
 {
     char real[PATH_MAX], uri[3 * PATH_MAX + 32], *to = uri + sprintf(uri, "file:");
-    struct stat journal;
+    struct stat journal = {0};
     snprintf(uri + 5, PATH_MAX + 5, "%s-wal", path);
-    if (strlen(path) >= PATH_MAX - 8 || (stat(uri + 5, &journal) == 0 && journal.st_size > 0))
+    stat(uri + 5, &journal);
+    if (journal.st_size > 0)
         return explain(path, SQLITE_READONLY, "", err);
     for (const char *from = real_path(path, real); *from; from++)
         to += strchr("%?#", *from) ? sprintf(to, "%%%02X", (unsigned)*from) : sprintf(to, "%c", *from);
@@ -234,17 +235,17 @@ Status database_open(Database **out, const char *path, DatabaseMode mode, Err *e
     if (mode == DATABASE_READ)
         bound_rows(*out);
     Status status = prepare(*out, mode, err);
-    if (status != STATUS_OK && mode == DATABASE_READ && access(path, R_OK) == 0) {
+    if (status != STATUS_OK && mode == DATABASE_READ) {
         const int code = sqlite3_errcode((*out)->db) & 0xff;
         if (code == SQLITE_CANTOPEN || code == SQLITE_READONLY) {
-            database_close(*out, NULL);
+            database_close(*out);
             TRY(open_immutable(out, path, err));
             bound_rows(*out);
             status = check(*out, mode, err);
         }
     }
     if (status != STATUS_OK) {
-        database_close(*out, NULL);
+        database_close(*out);
         *out = NULL;
     }
     return status;
@@ -258,18 +259,16 @@ Status database_create(Database **out, const char *path, Err *err)
              DATABASE_APPLICATION, DATABASE_FORMAT);
     const Status status = database_do(*out, err, sql, "");
     if (status != STATUS_OK) {
-        database_close(*out, NULL);
+        database_close(*out);
         *out = NULL;
     }
     return status;
 }
 
-Status database_close(Database *d, Err *err)
+void database_close(Database *d)
 {
     if (!d)
-        return STATUS_OK;
-    const int code = sqlite3_close(d->db);
-    const Status status = code == SQLITE_OK ? STATUS_OK : explain(d->path, code, sqlite3_errstr(code), err);
+        return;
+    sqlite3_close(d->db);
     free(d);
-    return status;
 }

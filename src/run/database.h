@@ -27,7 +27,7 @@ typedef enum { DATABASE_WRITE, DATABASE_READ } DatabaseMode;
 /* A new file, or one that a fault left unfinished and is begun again. */
 Status database_create(Database **out, const char *path, Err *err);
 Status database_open(Database **out, const char *path, DatabaseMode mode, Err *err);
-Status database_close(Database *d, Err *err); /* NULL is fine */
+void database_close(Database *d); /* NULL is fine; what was committed is on the disk already */
 const char *database_path(const Database *d);
 
 /* One statement (or several without values) that returns no rows. types: a letter for each ? of it: i long, d double

@@ -327,7 +327,7 @@ Status saved_read(Saved *h, const char *folder, Err *err)
     saved_path(folder, path, sizeof path);
     TRY(database_open(&d, path, DATABASE_READ, err));
     const Status status = saved_load(h, d, err);
-    database_close(d, NULL);
+    database_close(d);
     return status;
 }
 
@@ -347,7 +347,7 @@ Status run_settings(Settings *s, const char *folder, Err *err)
         TRY(database_open(&l.d, path, DATABASE_READ, err));
         settings_defaults(&h.settings);
         const Status status = database_each(l.d, "SELECT settings FROM run", take_settings, &l, err);
-        database_close(l.d, NULL);
+        database_close(l.d);
         *s = h.settings;
         return status;
     }

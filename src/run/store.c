@@ -191,6 +191,15 @@ static void put_evaluations(FILE *f, const void *saved)
     export_evaluations(f, saved, 0);
 }
 
+/* An earlier write that failed is told too, when its cause is gone. */
+static Status flush(const RunStore *store, FILE *f, const char *name, Err *err)
+{
+    errno = EIO;
+    if (fflush(f) != 0 || ferror(f))
+        return fail(err, STATUS_IO, "%s/%s: cannot be written: %s", store->folder, name, strerror(errno));
+    return STATUS_OK;
+}
+
 static Status open_to_append(const RunStore *store, const char *name, FILE **f, Err *err)
 {
     char path[PATH_MAX];
@@ -370,8 +379,7 @@ static Status store_front_changes(RunStore *store, const SearchView *v, Err *err
     if (!flags)
         return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", v->n);
     store->was_on_front = flags;
-    if (v->n > store->n_flags)
-        memset(flags + store->n_flags, 0, v->n - store->n_flags);
+    memset(flags + store->n_flags, 0, v->n - store->n_flags);
     store->n_flags = v->n;
     for (size_t i = 0; i < v->n; i++) {
         if (v->on_front[i] && !flags[i])
@@ -415,10 +423,7 @@ static Status append_evaluations(RunStore *store, const SearchView *v, Err *err)
     saved_free(&h);
     TRY(status);
     store->n_exported = v->n;
-    errno = 0;
-    return fflush(store->evaluations) == 0 ? STATUS_OK
-                                           : fail(err, STATUS_IO, "%s/evaluations.csv: cannot be written: %s",
-                                                  store->folder, strerror(errno ? errno : EIO));
+    return flush(store, store->evaluations, "evaluations.csv", err);
 }
 
 static void put_view_front(FILE *f, const void *user)
@@ -450,20 +455,21 @@ static Status write_whole_tables(RunStore *store, int evaluations_too, Err *err)
     return status;
 }
 
+static Status put_generation(RunStore *store, const SearchView *v, double seconds, double session, Err *err)
+{
+    TRY(begin(store, err));
+    TRY(store_kinds(store, v, err));
+    TRY(store_front_changes(store, v, err));
+    TRY(store_moment(store, v, seconds, session, err));
+    return store_flush(store, err);
+}
+
 /* All of it or nothing: half a generation beside the state of the one before would be no run that can go on. */
 static Status commit_generation(RunStore *store, const SearchView *v, double seconds, double session, Err *err)
 {
     TRY(store_flush(store, err)); /* simulations that wait are not lost with it */
-    Status status = begin(store, err);
-    if (status == STATUS_OK)
-        status = store_kinds(store, v, err);
-    if (status == STATUS_OK)
-        status = store_front_changes(store, v, err);
-    if (status == STATUS_OK)
-        status = store_moment(store, v, seconds, session, err);
-    if (status == STATUS_OK)
-        status = store_flush(store, err);
-    if (status != STATUS_OK && store->in_transaction)
+    const Status status = put_generation(store, v, seconds, session, err);
+    if (store->in_transaction)
         database_do(store->db, NULL, "ROLLBACK", "");
     store->in_transaction = 0;
     return status;
@@ -486,14 +492,6 @@ Status store_generation(RunStore *store, const SearchView *v, double seconds, do
 /* -- logs and the end -----------------------------------------------------------------------------------------------
  */
 
-static Status flush_log(const RunStore *store, FILE *f, const char *name, Err *err)
-{
-    errno = 0;
-    if (fflush(f) != 0 || ferror(f))
-        return fail(err, STATUS_IO, "%s/%s: cannot be written: %s", store->folder, name, strerror(errno ? errno : EIO));
-    return STATUS_OK;
-}
-
 Status store_log(RunStore *store, Err *err, const char *format, ...)
 {
     char clock[32];
@@ -509,7 +507,7 @@ Status store_log(RunStore *store, Err *err, const char *format, ...)
     vfprintf(store->log, format, args);
     va_end(args);
     fputc('\n', store->log);
-    return flush_log(store, store->log, "log.txt", err);
+    return flush(store, store->log, "log.txt", err);
 }
 
 Status store_event(RunStore *store, json_t *event, Err *err)
@@ -517,23 +515,20 @@ Status store_event(RunStore *store, json_t *event, Err *err)
     char time[24];
     utc_now(time);
     json_object_set_new(event, "time", json_string(time));
-    const int written = event && store->events && json_dumpf(event, store->events, JSON_SORT_KEYS) == 0;
+    if (json_dumpf(event, store->events, JSON_SORT_KEYS) == 0) /* no memory for an event: it is left out */
+        fputc('\n', store->events);
     json_decref(event);
-    if (!written)
-        return STATUS_OK;
-    fputc('\n', store->events);
-    return flush_log(store, store->events, "log.jsonl", err);
+    return flush(store, store->events, "log.jsonl", err);
 }
 
 static Status close_file(FILE **f, const RunStore *store, const char *name, Err *err)
 {
     char path[PATH_MAX];
     path_in(store, name, path);
-    Status status = output_sync(*f, path, err);
-    if (fclose(*f) != 0 && status == STATUS_OK)
-        status = fail(err, STATUS_IO, "%s: cannot be written: %s", path, strerror(errno));
+    TRY(output_sync(*f, path, err));
+    fclose(*f); /* all of it is on the disk */
     *f = NULL;
-    return status;
+    return STATUS_OK;
 }
 
 static Status end_session(RunStore *store, const char *stopped, int is_final, double session, Err *err)
@@ -553,10 +548,7 @@ static Status close_all(RunStore *store, const char *stopped, int is_final, doub
         TRY(write_whole_tables(store, 1, err));
     TRY(close_file(&store->evaluations, store, "evaluations.csv", err));
     TRY(close_file(&store->events, store, "log.jsonl", err));
-    TRY(close_file(&store->log, store, "log.txt", err));
-    const Status status = database_close(store->db, err);
-    store->db = NULL;
-    return status;
+    return close_file(&store->log, store, "log.txt", err);
 }
 
 Status store_close(RunStore *store, const char *stopped, int is_final, double session, Err *err)
@@ -574,7 +566,7 @@ void store_free(RunStore *store)
     for (int i = 0; i < 3; i++)
         if (files[i])
             fclose(files[i]);
-    database_close(store->db, NULL);
+    database_close(store->db);
     saved_free(&store->saved);
     free(store->was_on_front);
     cover_free(store->cover);

@@ -114,9 +114,8 @@ Status tables_create(const char *path, const Schema *schema, const Settings *use
     unlink(temporary);
     TRY(database_create(&db, temporary, err));
     const Status status = fill_new_database(db, schema, used, provenance, err);
-    const Status closed = database_close(db, status == STATUS_OK ? err : NULL);
+    database_close(db);
     TRY(status);
-    TRY(closed);
     if (rename(temporary, path) != 0)
         return fail(err, STATUS_IO, "%s: cannot be put in place: %s", path, strerror(errno));
     output_sync_folder(path);

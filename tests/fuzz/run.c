@@ -33,7 +33,7 @@ static void load(const char *path)
         demand_run(&h);
     else if (!err.text[0])
         abort();
-    database_close(d, NULL);
+    database_close(d);
 }
 
 /* SQLite wants a path that stays where it is: a file in memory, of this process alone. */
