@@ -110,8 +110,8 @@ coverage:
 
 coverage-here: $(PROGRAM) $(TESTS)
 	@find $(BUILD) -name '*.gcda' -delete
-	@for t in $(COVER); do echo "== $$t"; IMTET=$(abspath $(PROGRAM)) $(BUILD)/tests/$$t >$(BUILD)/$$t.log 2>&1 || \
-	{ cat $(BUILD)/$$t.log; exit 1; }; done
+	@printf '%s\n' $(COVER) | IMTET=$(abspath $(PROGRAM)) xargs -P $$(nproc) -I % sh -c \
+	'echo "== %"; $(BUILD)/tests/% >$(BUILD)/%.log 2>&1 || { cat $(BUILD)/%.log; exit 1; }'
 	@scripts/coverage $(BUILD)
 
 # kill -9 at random moments, every run resumed to its end; KILLS says how often.
