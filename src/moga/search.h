@@ -21,7 +21,7 @@
  * Goes on       from the simulations and the state of any generation's end (SearchView.state): the rest is then the
  *               same, bit by bit, as if it had never stopped. The state is what the simulations do not tell:
  * population, forms and scales of the surface, running means. A new variable that outlives a generation is one more
- *               line in search_pack (search.c), and STATE_VERSION one higher
+ *               line in state_pack (state.c), and STATE_VERSION one higher
  * Ownership     search_run owns all it allocates; a SearchView is valid inside the callback only
  * Sources       Deb and Jain, IEEE Trans. Evol. Comput. 18 (2014) 577-601 (NSGA-III); Deb and Agrawal, Complex
  *               Systems 9 (1995) 115-148 (SBX); Rippa, Adv. Comput. Math. 11 (1999) 193-210 (leave-one-out). */

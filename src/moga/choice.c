@@ -1,0 +1,74 @@
+#include "moga/searching.h"
+
+#include <math.h>
+
+enum {
+    CHECK_SHARE = 4, /* this part of a batch checks predictions that stand */
+    AGE_MAX = 3      /* a prediction that stood so often is checked first */
+};
+
+/* Offspring i into the batch, and what is foretold of it. */
+static size_t batch_take(Search *s, size_t n, size_t i)
+{
+    const Group *g = &s->offspring;
+    if (n < s->batch_max)
+        memcpy(s->foreseen + n * g->n_obj, g->F + i * g->n_obj, g->n_obj * sizeof *g->F);
+    s->picked[i] = 1;
+    return batch_add(s, n, g->X + i * g->n_var);
+}
+
+/* Plain children are simulated in their order. */
+static size_t choose_plain_batch(Search *s, size_t batch)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < s->offspring.n && n < batch; i++)
+        n = batch_take(s, n, i);
+    return n;
+}
+
+/* Up to `limit` designs among those allowed, by both ways of choosing in turn. */
+static size_t choose_in_turn(Search *s, size_t n, size_t limit)
+{
+    const double share = guide_rays(s);
+    while (n < limit) {
+        const int rays = floor(share * (double)(n + 1)) > floor(share * (double)n);
+        const size_t i = infill_pick(s->infill[rays ? INFILL_RAYS : INFILL_PBI], s->allowed);
+        if (i == SIZE_MAX)
+            break;
+        infill_take(s->infill[rays ? INFILL_PBI : INFILL_RAYS], i);
+        n = batch_take(s, n, i);
+    }
+    return n;
+}
+
+/* First predictions that do not stand or have stood for long, then a few of those that do. */
+static size_t choose_batch(Search *s)
+{
+    const Group *g = &s->offspring;
+    const size_t batch = batch_size(s), check = batch / CHECK_SHARE + 1;
+    size_t n = 0;
+    memset(s->picked, 0, g->n);
+    if (!guide_leads(s))
+        return choose_plain_batch(s, batch);
+    for (int kind = 0; kind < INFILL_KINDS; kind++)
+        infill_offer(s->infill[kind], g->n, g->F, g->violation, g->uncertainty);
+    for (int round = 0; round < 2; round++) {
+        const size_t limit = round == 0 ? batch - check : n + check;
+        for (size_t i = 0; i < g->n; i++)
+            s->allowed[i] = !s->picked[i] && (round == 1 || !guide_trusts(s, g, i) || g->age[i] >= AGE_MAX);
+        n = choose_in_turn(s, n, limit);
+    }
+    return n;
+}
+
+/* Where the surface has nothing new to propose, plain children; where these are all known too, fresh samples. */
+size_t choice_make(Search *s, EvaluationKind *kind)
+{
+    const size_t n = choose_batch(s);
+    *kind = n > 0 && guide_leads(s) ? KIND_INFILL : KIND_OFFSPRING;
+    if (n > 0)
+        return n;
+    offspring_make(s, 1);
+    memset(s->picked, 0, s->offspring.n);
+    return choose_plain_batch(s, batch_size(s));
+}

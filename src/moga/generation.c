@@ -1,0 +1,116 @@
+#include "moga/searching.h"
+
+#include <math.h>
+
+#include "moga/variation.h"
+
+/* Where there is nobody to breed from (every simulation failed so far), another Latin hypercube. */
+static Status sample_again(Search *s, Err *err)
+{
+    const Problem *p = s->problem;
+    const size_t first = s->archive.n;
+    size_t n = 0;
+    latin_hypercube(s->config->seed, (uint32_t)s->generation, s->config->population, p->n_var, p->lower, p->upper,
+                    s->pool.X, s->chosen);
+    for (size_t i = 0; i < s->config->population; i++) {
+        if (p->repair)
+            p->repair(s->pool.X + i * p->n_var, p->user);
+        n = batch_add(s, n, s->pool.X + i * p->n_var);
+    }
+    TRY(batch_simulate(s, n, KIND_SAMPLED, err));
+    batch_join(s, &s->population, first);
+    return STATUS_OK;
+}
+
+/* Next population: from the simulated members of the present one, the batch, and the predictions that stand. */
+static void renew_population(Search *s, size_t first_new)
+{
+    Group *population = &s->population, *pool = &s->pool, *offspring = &s->offspring;
+    pool->n = 0;
+    for (size_t i = 0; i < population->n; i++)
+        if (population->row[i] != PREDICTED)
+            group_copy_member(pool, population, i);
+    for (size_t i = 0; i < offspring->n; i++)
+        if (!s->picked[i] && guide_trusts(s, offspring, i)) {
+            s->n_predicted += offspring->age[i]++ == 0;
+            group_copy_member(pool, offspring, i);
+        }
+    batch_join(s, pool, first_new);
+    offspring_survive(s, pool, 0);
+    group_copy(population, pool);
+}
+
+Status generation_next(Search *s, Err *err)
+{
+    const size_t first_new = s->archive.n;
+    const double start = search_seconds(s), simulating = s->simulating_s;
+    s->n_predicted = 0;
+    if (s->population.n < 2)
+        return sample_again(s, err);
+    guide_weigh_costs(s);
+    guide_measure_front(s);
+    if (guide_may_lead(s))
+        TRY(surface_fit(s->surface, &s->archive, s->infill[INFILL_PBI], err));
+    else
+        surface_drop(s->surface);
+    surface_predict(s->surface, &s->population, 0, 0);
+    offspring_make(s, 0);
+    EvaluationKind kind;
+    const size_t n = choice_make(s, &kind);
+    if (n == 0)
+        return sample_again(s, err);
+    TRY(batch_simulate(s, n, kind, err));
+    guide_judge(s, n);
+    renew_population(s, first_new);
+    if (guide_may_lead(s)) {
+        s->guided_s += search_seconds(s) - start - (s->simulating_s - simulating);
+        s->n_guided += n;
+    }
+    return STATUS_OK;
+}
+
+/* Enough for a first surface of this many variables, and no more than half of the budget. */
+static size_t initial_size(const Search *s)
+{
+    const size_t wanted = 4 * s->problem->n_var + 12, half = (search_planned(s->config) + 1) / 2;
+    if (s->config->initial > 0)
+        return s->config->initial;
+    return wanted < half ? wanted : half > 4 ? half : 4;
+}
+
+/* Samples beside n_given designs that are given: what is left of the first sample, but at least a half of it. */
+size_t generation_samples(const Search *s)
+{
+    const size_t initial = initial_size(s), given = s->config->n_given;
+    return given < initial / 2 ? initial - given : initial - initial / 2;
+}
+
+/* Into the box, then into what can be built. */
+static void make_allowed(const Problem *p, double x[])
+{
+    for (size_t d = 0; d < p->n_var; d++)
+        x[d] = fmin(fmax(x[d], p->lower[d]), p->upper[d]);
+    if (p->repair)
+        p->repair(x, p->user);
+}
+
+Status generation_first(Search *s, Err *err)
+{
+    const Problem *p = s->problem;
+    size_t n = 0;
+    for (size_t i = 0; i < s->config->n_given; i++) {
+        memcpy(s->child, s->config->given + i * p->n_var, p->n_var * sizeof *s->child);
+        make_allowed(p, s->child);
+        n = batch_add(s, n, s->child);
+    }
+    latin_hypercube(s->config->seed, 0, generation_samples(s), p->n_var, p->lower, p->upper, s->pool.X, s->chosen);
+    for (size_t i = 0; i < generation_samples(s); i++) {
+        make_allowed(p, s->pool.X + i * p->n_var);
+        n = batch_add(s, n, s->pool.X + i * p->n_var);
+    }
+    TRY(batch_simulate(s, n, KIND_SAMPLED, err));
+    batch_join(s, &s->pool, 0);
+    offspring_survive(s, &s->pool, 0);
+    group_copy(&s->population, &s->pool);
+    return STATUS_OK;
+}

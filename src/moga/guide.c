@@ -1,0 +1,89 @@
+#include "moga/searching.h"
+
+#include <math.h>
+
+#include "moga/dominance.h"
+#include "moga/order.h"
+
+/* Kendall's tau below which the surface no longer leads, and how much one batch counts in its running mean. */
+static const double LEAST_AGREEMENT = 0.15, AGREEMENT_WEIGHT = 0.25;
+/* Where descents end so far off their directions (sine of the angle, median), the front has not the shape of a simplex:
+ * from OFF_LEAST on simulations are chosen by rays too, from OFF_MOST on mostly. One generation's weight in the mean.
+ */
+static const double OFF_LEAST = 0.15, OFF_MOST = 0.35, RAYS_MOST = 0.85, OFF_WEIGHT = 0.2;
+
+/* A surface costs wall time; with it a search needs a fifth of the simulations of a plain one, mostly less
+ * (docs/search.md). It therefore pays as long as its time for one simulation is below that of PAYS simulations. */
+static const double PAYS = 4.0;
+enum { COST_SAMPLE = 60 }; /* simulations chosen by the surface, before costs are weighed */
+
+/* Once, when enough has been timed: a surface that costs more wall time per simulation than PAYS simulations steps
+ * aside. The decision is part of the state, so that a search that goes on keeps it. */
+void guide_weigh_costs(Search *s)
+{
+    if (s->config->surrogate != SURROGATE_AUTO || s->aside != ASIDE_OPEN || s->n_guided < COST_SAMPLE)
+        return;
+    const double simulation = s->simulating_s / (double)s->n_timed, own = s->guided_s / (double)s->n_guided;
+    s->aside = own > PAYS * simulation ? ASIDE_YES : ASIDE_NO;
+}
+
+int guide_may_lead(const Search *s)
+{
+    return s->config->surrogate != SURROGATE_OFF && s->aside != ASIDE_YES;
+}
+
+/* Whether the surface leads: it explains its own data, and what it foretold of late batches came in that order. */
+int guide_leads(const Search *s)
+{
+    return guide_may_lead(s) && surface_stands(s->surface) && s->agreement > LEAST_AGREEMENT;
+}
+
+/* Part of a batch that is chosen by rays, the rest by PBI: PBI is the better guide where every direction meets the
+ * front, but where most of them miss it, rays measure what a design adds to the hypervolume whatever the front's shape.
+ */
+double guide_rays(const Search *s)
+{
+    return RAYS_MOST * fmin(fmax((s->off - OFF_LEAST) / (OFF_MOST - OFF_LEAST), 0.0), 1.0);
+}
+
+/* How far off their directions this generation's descents by PBI end, as the surface sees them. */
+void guide_judge_directions(Search *s)
+{
+    const size_t first = s->offspring.n - s->n_followed, n = s->n_followed - s->n_followed_rays;
+    for (size_t j = 0; j < n; j++) {
+        const size_t i = s->n_followed_rays + j;
+        s->apart[j] =
+            infill_off(s->infill[INFILL_PBI], s->followed[i], s->offspring.F + (first + i) * s->problem->n_obj);
+    }
+    sort_numbers(n, s->apart);
+    s->off += OFF_WEIGHT * (s->apart[n / 2] - s->off);
+}
+
+int guide_trusts(const Search *s, const Group *g, size_t i)
+{
+    return guide_leads(s) && g->uncertainty[i] < s->config->trust_error;
+}
+
+/* How far the surface foretold the order of the n designs just simulated, in the mean over the objectives. */
+void guide_judge(Search *s, size_t n)
+{
+    const size_t m = s->problem->n_obj;
+    double mean = 0.0;
+    if (n < 4 || !surface_stands(s->surface))
+        return;
+    for (size_t k = 0; k < m; k++)
+        mean += kendall_tau(n, m, s->foreseen + k, s->F + k, s->ok) / (double)m;
+    s->agreement += AGREEMENT_WEIGHT * (mean - s->agreement);
+}
+
+/* The front to be improved; where nothing is feasible yet, the population. */
+void guide_measure_front(Search *s)
+{
+    for (size_t i = 0; i < s->population.n; i++)
+        s->chosen[i] = i;
+    for (int kind = 0; kind < INFILL_KINDS; kind++)
+        if (s->archive.n_front > 0)
+            infill_measure(s->infill[kind], s->archive.n_front, s->archive.front, s->archive.F);
+        else
+            infill_measure(s->infill[kind], s->population.n, s->chosen, s->population.F);
+}

@@ -1,0 +1,97 @@
+#include "moga/searching.h"
+
+#include <math.h>
+
+#include "moga/dominance.h"
+#include "moga/variation.h"
+
+enum { INNER_GENERATIONS = 10 }; /* on the surface, between two batches */
+
+void offspring_survive(Search *s, Group *group, uint32_t step)
+{
+    Random random = random_stream(s->config->seed, RANDOM_NICHING, (uint32_t)s->generation, step);
+    const double progress = fmin((double)s->archive.n / (double)search_planned(s->config), 1.0);
+    const size_t n = survival_select(s->survival, group->n, group->F, group->violation, s->config->population, progress,
+                                     &random, s->chosen);
+    group_keep(group, n, s->chosen);
+}
+
+static const double *tournament(const Group *g, Random *random)
+{
+    const size_t a = random_below(random, g->n), b = random_below(random, g->n), m = g->n_obj;
+    const int b_wins = dominates_constrained(m, g->F + b * m, g->violation[b], g->F + a * m, g->violation[a]);
+    return g->X + (b_wins ? b : a) * g->n_var;
+}
+
+/* Appends n children of the group's first n_parents members to it. Child pair j of step has its own streams. */
+static void breed(Search *s, Group *group, size_t n, uint32_t step)
+{
+    const Problem *p = s->problem;
+    const SearchConfig *c = s->config;
+    Group parents = *group;
+    for (size_t j = 0; 2 * j < n; j++) {
+        const uint32_t name = step * (uint32_t)c->population + (uint32_t)j;
+        Random choice = random_stream(c->seed, RANDOM_PARENTS, (uint32_t)s->generation, name);
+        Random change = random_stream(c->seed, RANDOM_VARIATION, (uint32_t)s->generation, name);
+        const double *mother = tournament(&parents, &choice), *father = tournament(&parents, &choice);
+        crossover_sbx(&change, p->n_var, p->lower, p->upper, c->crossover_probability, c->crossover_eta, mother, father,
+                      s->child, s->child + p->n_var);
+        for (size_t i = 0; i < 2 && 2 * j + i < n; i++) {
+            double *x = s->child + i * p->n_var;
+            mutate_polynomial(&change, p->n_var, p->lower, p->upper, c->mutation_rate / (double)p->n_var,
+                              c->mutation_eta, x);
+            if (p->repair)
+                p->repair(x, p->user);
+            group_add(group, x);
+        }
+    }
+}
+
+/* Some directions, drawn anew each time, are followed down the surface. */
+static void add_descended(Search *s)
+{
+    const Problem *p = s->problem;
+    size_t n = 2 * batch_size(s);
+    Random random = random_stream(s->config->seed, RANDOM_DESCENT, (uint32_t)s->generation, 0);
+    n = n < s->wishes.n ? n : s->wishes.n;
+    for (size_t r = 0; r < s->wishes.n; r++)
+        s->followed[r] = r;
+    random_shuffle(&random, s->wishes.n, s->followed);
+    const size_t rays = (size_t)(guide_rays(s) * (double)n);
+    s->n_followed = n;
+    s->n_followed_rays = rays;
+    surface_descend(s->surface, &s->archive, s->infill[INFILL_RAYS], rays, s->followed, s->descended);
+    surface_descend(s->surface, &s->archive, s->infill[INFILL_PBI], n - rays, s->followed + rays,
+                    s->descended + rays * p->n_var);
+    for (size_t i = 0; i < n; i++) {
+        if (p->repair)
+            p->repair(s->descended + i * p->n_var, p->user);
+        group_add(&s->offspring, s->descended + i * p->n_var);
+    }
+}
+
+/* The offspring population: what survives some generations of variation and selection on the surface and has not been
+ * simulated. Without a surface that can be relied on, plain children of the population. */
+void offspring_make(Search *s, int plainly)
+{
+    const int guided = guide_leads(s) && !plainly;
+    s->pool.n = s->offspring.n = s->n_followed = 0;
+    for (size_t i = 0; i < s->population.n; i++)
+        group_copy_member(&s->pool, &s->population, i);
+    for (uint32_t step = 0; step < (guided ? INNER_GENERATIONS : 1); step++) {
+        const size_t n_parents = s->pool.n;
+        breed(s, &s->pool, s->config->population, step);
+        if (!guided)
+            break;
+        surface_predict(s->surface, &s->pool, n_parents, 0);
+        offspring_survive(s, &s->pool, 1 + step);
+    }
+    for (size_t i = 0; i < s->pool.n; i++)
+        if (s->pool.row[i] == PREDICTED)
+            group_copy_member(&s->offspring, &s->pool, i);
+    if (guided && s->archive.n_front > 0)
+        add_descended(s);
+    surface_predict(s->surface, &s->offspring, 0, 1);
+    if (s->n_followed > 0)
+        guide_judge_directions(s);
+}

@@ -1,0 +1,95 @@
+/* moga/searching.h -- a search under way: what its parts share. For the files named here alone; outsiders read
+ * search.h.
+ *
+ *   search.c      memory, limits, the loop over generations, what the observer is told
+ *   generation.c  one generation from the last one: the steps of the method in their order
+ *   guide.c       whether the surface leads: what it explains, what it foretold, what it costs
+ *   offspring.c   candidates: variation, inner generations and descents on the surface
+ *   choice.c      which candidates are simulated
+ *   batch.c       simulation, the only way into the archive
+ *   state.c       what outlives a generation, as bytes
+ *
+ * Threads  one; only evaluate of the problem and predictions of the surface use several. */
+#ifndef IMTET_MOGA_SEARCHING_H
+#define IMTET_MOGA_SEARCHING_H
+
+#include <string.h>
+#include <time.h>
+
+#include "base/pack.h"
+#include "moga/archive.h"
+#include "moga/directions.h"
+#include "moga/group.h"
+#include "moga/infill.h"
+#include "moga/search.h"
+#include "moga/surface.h"
+
+typedef enum { ASIDE_OPEN, ASIDE_NO, ASIDE_YES } Aside;
+
+typedef struct {
+    const Problem *problem;
+    const SearchConfig *config;
+    Archive archive;
+    Directions directions, wishes; /* of survival, of the choice of simulations */
+    Survival *survival;
+    Infill *infill[INFILL_KINDS];
+    Surface *surface;
+    Group population, pool, offspring;
+    size_t generation, n_predicted, batch_max;
+    double simulating_s, guided_s;      /* wall time of this session: in the simulator, of our own while guided */
+    size_t n_timed, n_guided;           /* simulations in these times */
+    size_t aside;                       /* Aside */
+    double agreement;                   /* running mean of Kendall's tau between predicted and simulated batches */
+    double off;                         /* running mean of how far from their directions descents by PBI end */
+    size_t n_followed, n_followed_rays; /* descents of this generation, the last of the offspring; by rays come first */
+    double *foreseen;                   /* (batch, n_obj) what was predicted of the batch under way */
+    size_t *chosen;                     /* (pool) */
+    double *apart;                      /* (wishes) scratch */
+    size_t *followed;                   /* (wishes) in the order of this generation */
+    double *descended;                  /* (pool, n_var) */
+    double *child;                      /* (2, n_var) */
+    double *X, *F, *G;                  /* (batch) of one call of evaluate */
+    unsigned char *ok;                  /* (batch) */
+    unsigned char *allowed, *picked;    /* (pool) offspring that may still be, that have been sent to simulation */
+    Pack state;                         /* as of the last report */
+    void *store;
+    struct timespec start;
+} Search;
+/* search.c: wall time since its beginning; simulations it was planned for. */
+double search_seconds(const Search *s);
+size_t search_planned(const SearchConfig *c);
+
+/* batch.c: x is appended to a batch of n unless it is known, the batch is full or the simulations are spent; returns
+ * the new n. */
+size_t batch_add(Search *s, size_t n, const double x[]);
+size_t batch_size(const Search *s);
+Status batch_simulate(Search *s, size_t n, EvaluationKind kind, Err *err);
+void batch_join(Search *s, Group *group, size_t first); /* simulated designs of the rows first.. join the group */
+
+/* guide.c */
+void guide_weigh_costs(Search *s);
+int guide_may_lead(const Search *s);                         /* the surface is wanted and worth its time */
+int guide_leads(const Search *s);                            /* ... and can be relied on */
+int guide_trusts(const Search *s, const Group *g, size_t i); /* the prediction of this member stands */
+double guide_rays(const Search *s); /* share of a batch that is chosen by rays, the rest by PBI */
+void guide_judge_directions(Search *s);
+void guide_judge(Search *s, size_t n); /* by the n designs just simulated */
+void guide_measure_front(Search *s);
+
+/* offspring.c: plainly: without the surface. step names the random stream. */
+void offspring_make(Search *s, int plainly);
+void offspring_survive(Search *s, Group *group, uint32_t step);
+
+/* choice.c: how many designs of the batch wait for simulation, and what they are. */
+size_t choice_make(Search *s, EvaluationKind *kind);
+
+/* generation.c */
+Status generation_first(Search *s, Err *err);
+Status generation_next(Search *s, Err *err);
+size_t generation_samples(const Search *s); /* of the first one, beside the given designs */
+
+/* state.c */
+void state_save(Search *s);
+Status state_restore(Search *s, const SearchStart *start, Err *err);
+
+#endif
