@@ -14,8 +14,10 @@ typedef struct {
 } World;
 
 /* f1 = |x - (1, 0, 0)|^2, f2 = 1 + x1: with f2 kept at its start value x1 = 0, the best is (0, 0, 0), f1 = 1. */
-static Status evaluate(size_t n, const double X[], double F[], double G[], unsigned char ok[], void *user, Err *err)
+static Status evaluate(size_t n, const double X[], const size_t draws[], double F[], double G[], unsigned char ok[],
+                       void *user, Err *err)
 {
+    (void)draws;
     World *w = user;
     (void)G;
     for (size_t i = 0; i < n; i++) {
@@ -35,7 +37,7 @@ static Status polish(World *w, const char *algorithm, int keep_second, size_t ev
     static double x[VAR], f[OBJ], f_start[OBJ];
     static const double slack[OBJ] = {0, 0}, start[VAR] = {0, 0.9, -0.6};
     const unsigned char keep[OBJ] = {1, (unsigned char)keep_second};
-    const Problem problem = {VAR, OBJ, 0, LOWER, UPPER, evaluate, NULL, w};
+    const Problem problem = {VAR, OBJ, 0, LOWER, UPPER, evaluate, NULL, w, 0};
     const PolishConfig c = {
         .algorithm = algorithm, .improve = 0, .keep = keep, .slack = slack, .max_evals = evals, .seed = 1};
     *r = (PolishResult){.x = x, .f = f, .f_start = f_start};

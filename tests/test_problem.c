@@ -322,7 +322,7 @@ static void test_an_external_subject_has_the_bounds_senses_names_and_limits_of_i
     unsigned char ok[2];
     Heard heard = {0};
     subject_observe(subject, &(Observer){.done = hear, .user = &heard}, 12);
-    CHECK_OK(p->evaluate(2, X, F, G, ok, p->user, &err), &err);
+    CHECK_OK(p->evaluate(2, X, NULL, F, G, ok, p->user, &err), &err);
     assert_true(ok[0] && ok[1] && F[0] == 0.75 && F[1] == 1 && F[2] == -0.25 && F[3] == 3);
     assert_close(G[0], 0.5, 1e-15); /* -0.5 - -0.75 of 0.5 */
     assert_true(G[1] == -0.5 && G[2] < 0);
@@ -377,7 +377,7 @@ static void test_noise_has_the_spread_asked_for_and_the_same_seed_the_same_noise
         for (int i = 0; i < DRAWS; i++) {
             double f[OBJ];
             unsigned char ok;
-            CHECK_OK(p->evaluate(1, x, f, NULL, &ok, p->user, &err), &err);
+            CHECK_OK(p->evaluate(1, x, NULL, f, NULL, &ok, p->user, &err), &err);
             if (again == 0 && i == 0)
                 memcpy(first, f, sizeof f);
             else if (i == 0)

@@ -39,8 +39,10 @@ static int fails(const World *w, const double x[])
     return w->fail_every > 0 && (bits >> 20) % w->fail_every == 0;
 }
 
-static Status evaluate(size_t n, const double X[], double F[], double G[], unsigned char ok[], void *user, Err *err)
+static Status evaluate(size_t n, const double X[], const size_t draws[], double F[], double G[], unsigned char ok[],
+                       void *user, Err *err)
 {
+    (void)draws;
     (void)err;
     const World *w = user;
     for (size_t i = 0; i < n; i++) {
@@ -62,7 +64,7 @@ static void world(World *w, size_t n_var, size_t n_obj, size_t n_con)
     memset(w, 0, sizeof *w);
     for (size_t d = 0; d < n_var; d++)
         w->upper[d] = 1.0;
-    w->problem = (Problem){n_var, n_obj, n_con, w->lower, w->upper, evaluate, NULL, w};
+    w->problem = (Problem){n_var, n_obj, n_con, w->lower, w->upper, evaluate, NULL, w, 0};
 }
 
 static SearchConfig config(size_t initial, size_t max_evals)

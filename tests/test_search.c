@@ -53,8 +53,10 @@ static uint32_t bits_of(const double x[])
     return (uint32_t)(bits ^ bits >> 32);
 }
 
-static Status evaluate(size_t n, const double X[], double F[], double G[], unsigned char ok[], void *user, Err *err)
+static Status evaluate(size_t n, const double X[], const size_t draws[], double F[], double G[], unsigned char ok[],
+                       void *user, Err *err)
 {
+    (void)draws;
     (void)err;
     World *w = user;
     const size_t n_var = w->problem.n_var, m = w->problem.n_obj;
@@ -83,7 +85,7 @@ static void world(World *w, size_t n_var, size_t n_obj)
     memset(w, 0, sizeof *w);
     for (size_t d = 0; d < n_var; d++)
         w->upper[d] = 1.0;
-    w->problem = (Problem){n_var, n_obj, 0, w->lower, w->upper, evaluate, NULL, w};
+    w->problem = (Problem){n_var, n_obj, 0, w->lower, w->upper, evaluate, NULL, w, 0};
 }
 
 static SearchConfig config(size_t initial, size_t max_evals)
@@ -406,9 +408,10 @@ static void test_settings_that_make_no_sense_are_refused_by_name(void **state)
     assert_non_null(strstr(err.text, "variable 4"));
 }
 
-static Status evaluate_agreeing(size_t n, const double X[], double F[], double G[], unsigned char ok[], void *user,
-                                Err *err)
+static Status evaluate_agreeing(size_t n, const double X[], const size_t draws[], double F[], double G[],
+                                unsigned char ok[], void *user, Err *err)
 {
+    (void)draws;
     World *w = user;
     (void)G;
     (void)err;

@@ -31,7 +31,7 @@ static void run_designs(const Settings *s, int threads, Trial out[DESIGNS])
             X[i * N_VAR + j] = j < 20 ? 0.02 + 0.03 * i + 0.002 * j : j == 20 ? 0.03 : 0.01;
     memset(out, 0, DESIGNS * sizeof *out);
     CHECK_OK(trials_open(&t, s, threads, &err), &err);
-    CHECK_OK(trials_run(t, DESIGNS, X, out, NULL, &err), &err);
+    CHECK_OK(trials_run(t, DESIGNS, X, NULL, out, NULL, &err), &err);
     trials_close(t);
 }
 

@@ -25,7 +25,7 @@ Status batch_simulate(Search *s, size_t n, EvaluationKind kind, Err *err)
     if (n == 0)
         return STATUS_OK;
     const double before = search_seconds(s);
-    TRY(p->evaluate(n, s->X, s->F, s->G, s->ok, p->user, err));
+    TRY(p->evaluate(n, s->X, NULL, s->F, s->G, s->ok, p->user, err));
     s->simulating_s += search_seconds(s) - before;
     s->n_timed += n;
     return archive_insert(&s->archive, n, s->X, s->F, s->G, s->ok, (unsigned char)kind, s->generation, err);

@@ -15,8 +15,10 @@
 
 #include "base/status.h"
 
-typedef Status (*EvaluateFn)(size_t n, const double X[], double F[], double G[], unsigned char ok[], void *user,
-                             Err *err);
+/* draws (n): how many answers there are of each design already; where the problem is noisy the next one is a fresh draw.
+ * NULL: none of any. */
+typedef Status (*EvaluateFn)(size_t n, const double X[], const size_t draws[], double F[], double G[],
+                             unsigned char ok[], void *user, Err *err);
 
 /* Moves x into the set of designs that can be built at all (t_top <= t_base, say); NULL where the box is all. */
 typedef void (*RepairFn)(double x[], void *user);
@@ -27,6 +29,7 @@ typedef struct {
     EvaluateFn evaluate;
     RepairFn repair;
     void *user;
+    int is_noisy; /* the same design simulated again gives another answer */
 } Problem;
 
 #endif

@@ -99,7 +99,7 @@ static void evaluate(Polish *p, const double u[])
         p->x[d] = fmin(fmax(q->lower[d] + u[d] * (q->upper[d] - q->lower[d]), q->lower[d]), q->upper[d]);
     if (q->repair)
         q->repair(p->x, q->user);
-    p->status = q->evaluate(1, p->x, p->f, p->g, &ok, q->user, p->err);
+    p->status = q->evaluate(1, p->x, NULL, p->f, p->g, &ok, q->user, p->err);
     p->known = 1;
     p->ok = p->status == STATUS_OK && ok;
     for (size_t k = 0; k < q->n_obj; k++)

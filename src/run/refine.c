@@ -46,9 +46,11 @@ static void to_cube(const Problem *p, const double x[], double u[])
         u[d] = p->upper[d] > p->lower[d] ? (x[d] - p->lower[d]) / (p->upper[d] - p->lower[d]) : 0.0;
 }
 
-static Status predict(size_t n, const double X[], double F[], double G[], unsigned char ok[], void *user, Err *err)
+static Status predict(size_t n, const double X[], const size_t draws[], double F[], double G[], unsigned char ok[],
+                      void *user, Err *err)
 {
     const Surface *s = user;
+    (void)draws;
     (void)G;
     (void)err;
     for (size_t i = 0; i < n; i++) {
@@ -196,7 +198,7 @@ static Status try_surface(Refine *r, Surface *s, const double bound[], double x[
             r->error[k] *= 0.5;
         return STATUS_OK;
     }
-    TRY(p->evaluate(1, guess, answer, g, &ok, p->user, err));
+    TRY(p->evaluate(1, guess, NULL, answer, g, &ok, p->user, err));
     out->n_evaluated++;
     out->n_failed += !ok;
     if (ok)
@@ -275,7 +277,7 @@ static Status begin(Refine *r, double f[], Refined *out, Err *err)
     const Problem *p = subject_problem(r->subject);
     double G[OBJECTIVES_MAX];
     unsigned char ok = 0;
-    TRY(p->evaluate(1, r->run->X + r->row * p->n_var, f, G, &ok, p->user, err));
+    TRY(p->evaluate(1, r->run->X + r->row * p->n_var, NULL, f, G, &ok, p->user, err));
     out->n_evaluated++;
     if (!ok)
         return fail(err, STATUS_BAD_DATA, "the design to be polished cannot be evaluated");
@@ -321,7 +323,7 @@ static Status compare(Refine *r, Refined *out, Err *err)
         return fail(err, STATUS_NO_MEMORY, "no memory for two designs");
     memcpy(X, r->run->X + r->row * p->n_var, p->n_var * sizeof *X);
     memcpy(X + p->n_var, out->x, p->n_var * sizeof *X);
-    const Status status = p->evaluate(2, X, F, G, ok, p->user, err);
+    const Status status = p->evaluate(2, X, NULL, F, G, ok, p->user, err);
     free(X);
     TRY(status);
     out->n_evaluated += 2;

@@ -84,6 +84,7 @@ typedef struct {
     size_t n;
     size_t *place;    /* (n) in the batch of the search */
     long *number;     /* (n) of the designs */
+    size_t *draws;    /* (n) answers that there are already */
     double *X, *F;    /* (n, n_var) (n, n_obj) natural */
     double *spread;   /* (n, n_obj) NAN where not known */
     Verdict *verdict; /* (n) */
@@ -95,6 +96,7 @@ static void layout(Work *w, size_t n, Carve *c)
 {
     w->place = carve(c, n, sizeof *w->place);
     w->number = carve(c, n, sizeof *w->number);
+    w->draws = carve(c, n, sizeof *w->draws);
     w->X = carve(c, n * w->subject->schema.n_var, sizeof *w->X);
     w->F = carve(c, n * w->subject->schema.n_obj, sizeof *w->F);
     w->spread = carve(c, n * w->subject->schema.n_obj, sizeof *w->spread);
@@ -187,7 +189,7 @@ static Status run_tower(Work *w, Err *err)
     if (!trials)
         return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", w->n);
     w->raw = trials;
-    const Status status = trials_run(w->subject->trials, w->n, w->X, trials, &watch, err);
+    const Status status = trials_run(w->subject->trials, w->n, w->X, w->draws, trials, &watch, err);
     free(trials);
     return status;
 }
@@ -260,7 +262,7 @@ void subject_judge(const Subject *s, size_t n, const double natural[], double F[
 }
 
 /* Designs that are known from before get their answers at once, the others are work to do. */
-static void sort_out(Work *w, size_t n, const double X[], double F[], unsigned char ok[])
+static void sort_out(Work *w, size_t n, const double X[], const size_t draws[], double F[], unsigned char ok[])
 {
     const Subject *s = w->subject;
     const Observer *o = &s->observer;
@@ -274,17 +276,19 @@ static void sort_out(Work *w, size_t n, const double X[], double F[], unsigned c
         }
         memcpy(w->X + w->n * n_var, X + i * n_var, n_var * sizeof *X);
         w->number[w->n] = (long)number;
+        w->draws[w->n] = draws ? draws[i] : 0;
         w->place[w->n++] = i;
     }
 }
 
-static Status evaluate(size_t n, const double X[], double F[], double G[], unsigned char ok[], void *user, Err *err)
+static Status evaluate(size_t n, const double X[], const size_t draws[], double F[], double G[], unsigned char ok[],
+                       void *user, Err *err)
 {
     Subject *s = user;
     const size_t m = s->schema.n_obj;
     Work w;
     TRY(work_create(&w, s, n, err));
-    sort_out(&w, n, X, F, ok);
+    sort_out(&w, n, X, draws, F, ok);
     const Status status = run_kind(&w, err);
     for (size_t i = 0; status == STATUS_OK && i < w.n; i++) {
         ok[w.place[i]] = (unsigned char)is_ok(&w.verdict[i]);

@@ -180,7 +180,8 @@ static Status run_passes(Pass *p, SimTask tasks[], Err *err)
     return STATUS_OK;
 }
 
-Status trials_run(Trials *t, size_t n, const double X[], Trial out[], const Watch *watch, Err *err)
+Status trials_run(Trials *t, size_t n, const double X[], const size_t draws[], Trial out[], const Watch *watch,
+                  Err *err)
 {
     const size_t n_floors = (size_t)scene_n_floors(t->world[0].scene), n_var = n_floors + 2, n_tasks = n * t->members;
     double *varied = calloc(n_tasks * n_var, sizeof *varied);
@@ -195,7 +196,7 @@ Status trials_run(Trials *t, size_t n, const double X[], Trial out[], const Watc
     for (size_t i = 0; i < n_tasks; i++) {
         double *x = varied + i * n_var;
         memcpy(x, X + i / t->members * n_var, n_var * sizeof *x);
-        vary(t, i % t->members, n_floors, x);
+        vary(t, (draws ? draws[i / t->members] * t->members : 0) + i % t->members, n_floors, x);
         tasks[i] = (SimTask){SCENE_IMPACT, x};
         left[i / t->members] = t->members;
     }

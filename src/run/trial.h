@@ -39,7 +39,9 @@ typedef struct {
     double seconds;            /* of all simulations */
 } Trial;
 
-/* n designs X (n, n_floors + 2); the watch hears of each design when its last simulation is done. */
-Status trials_run(Trials *t, size_t n, const double X[], Trial out[], const Watch *watch, Err *err);
+/* n designs X (n, n_floors + 2), of which draws[i] trials were made before (NULL: none): the members of a further trial
+ * go on where those ended. The watch hears of each design when its last simulation is done. */
+Status trials_run(Trials *t, size_t n, const double X[], const size_t draws[], Trial out[], const Watch *watch,
+                  Err *err);
 
 #endif
