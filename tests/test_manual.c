@@ -135,6 +135,12 @@ static void test_bash_offers_commands_options_keys_and_words(void **state)
     expect_offer("simulate configs/qu", "configs/quick.ini\n");
     expect_offer("simulate x.ini --record LICEN", "LICENSE\n");
     expect_offer("simulate x.ini --pga 0", "\n");
+    expect_offer("simulate x.ini --record built", "builtin:kobe-like builtin:elcentro-like builtin:sylmar-like\n");
+    expect_offer("simulate x.ini --record builtin :", "kobe-like elcentro-like sylmar-like\n");
+    expect_offer("simulate x.ini --set motion.record = builtin : k", "kobe-like\n");
+    expect_offer("simulate x.ini --design non", "none\n");
+    expect_offer("evaluate results/x --design k", "knee\n");
+    expect_offer("spectrum LICEN", "LICENSE\n");
 }
 
 /* Every row of the table in the documentation is a status of the program and the other way round. */

@@ -84,6 +84,12 @@ static void test_no_text_begins_a_cell_like_a_formula(void **state)
         {"mass_kg", "mass_kg"},
         {"say \"no\"", "say  no "},
         {"\r\n-1", "  '-1"},
+        {"\u00a0=x", "\u00a0'=x"},
+        {"\u2003 \u3000\ufeff+x", "\u2003 \u3000\ufeff'+x"},
+        {"\uff1dx", "'\uff1dx"},
+        {"a, \uff20b", "a; '\uff20b"},
+        {"\u00a0", "\u00a0"},
+        {"\u00e4=\uff1d", "\u00e4=\uff1d"},
         {"", ""},
     };
     char cell[64];
@@ -93,6 +99,8 @@ static void test_no_text_begins_a_cell_like_a_formula(void **state)
     }
     char small[4];
     cell_text(small, sizeof small, "==========");
+    assert_true(strlen(small) < sizeof small);
+    cell_text(small, sizeof small, "\u3000\u3000=");
     assert_true(strlen(small) < sizeof small);
 }
 

@@ -333,7 +333,7 @@ static void test_a_path_in_a_file_is_meant_from_its_folder(void **state)
     (void)state;
     Err err = {0};
     Settings s;
-    char folder[] = "/tmp/imtet-folder-XXXXXX", ini[64], record[64];
+    char folder[] = "/tmp/imtet-folder-XXXXXX", ini[64], record[64], wanted[128];
     assert_non_null(mkdtemp(folder));
     snprintf(ini, sizeof ini, "%s/a.ini", folder);
     snprintf(record, sizeof record, "%s/quake.csv", folder);
@@ -344,6 +344,11 @@ static void test_a_path_in_a_file_is_meant_from_its_folder(void **state)
     write_text(record, "");
     CHECK_OK(settings_read(&s, ini, NULL, NULL, &err), &err);
     assert_string_equal(s.motion.record, record);
+    write_text(ini, "[motion]\nrecords = quake.csv, builtin:sylmar-like ,not-there.csv\n[search]\nstart = quake.csv\n");
+    CHECK_OK(settings_read(&s, ini, NULL, NULL, &err), &err);
+    snprintf(wanted, sizeof wanted, "%s,builtin:sylmar-like,not-there.csv", record);
+    assert_string_equal(s.motion.records, wanted);
+    assert_string_equal(s.search.start, record);
     remove(ini);
     remove(record);
     rmdir(folder);

@@ -10,6 +10,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/list.h"
+
 typedef enum { REAL, WHOLE, CHOICE, TEXT } Kind;
 
 typedef struct {
@@ -313,10 +315,11 @@ static void report_fault(Reading *r, int line, const char *text)
 }
 
 /* A path that was written in a settings file is meant from that file's folder. */
-static void anchor_path(const Reading *r, char path[SETTINGS_TEXT_MAX])
+static void anchor_path(char path[SETTINGS_TEXT_MAX], void *user)
 {
+    const Reading *r = user;
     const char *slash = strrchr(r->path, '/');
-    if (!slash || path[0] == '/' || strncmp(path, "builtin:", 8) == 0)
+    if (!slash || path[0] == '/' || strncmp(path, "builtin:", 8) == 0 || strcmp(path, "none") == 0)
         return;
     char anchored[2 * SETTINGS_TEXT_MAX];
     snprintf(anchored, sizeof anchored, "%.*s/%s", (int)(slash - r->path), r->path, path);
@@ -397,8 +400,12 @@ static int take_pair(void *user, const char *section, const char *name, const ch
     *seen = r->line;
     const int is_model_name =
         o->offset == AT(building.model) && (!strcmp(value, "guyan") || !strcmp(value, "appendix"));
-    if (o->offset == AT(motion.record) || (o->offset == AT(building.model) && !is_model_name))
-        anchor_path(r, field_of(r->s, o));
+    const int is_path = o->offset == AT(motion.record) || o->offset == AT(search.start) ||
+                        (o->offset == AT(building.model) && !is_model_name);
+    if (is_path)
+        anchor_path(field_of(r->s, o), r);
+    if (o->offset == AT(motion.records))
+        list_change(field_of(r->s, o), anchor_path, r);
     return 1;
 }
 

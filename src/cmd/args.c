@@ -14,13 +14,31 @@ Status args_unknown(const char *what, const char *word, const char *const known[
                 : fail(err, STATUS_USAGE, "unknown %s '%.60s'; %s lists them", what, word, where);
 }
 
-Status args_moved_record(const Args *args, const char **path, Err *err)
+/* What stands behind KEY= of an assignment; NULL: it is another one, or nothing does. */
+static const char *value_of(const char *assignment, const char *key)
 {
-    static const char KEY[] = "motion.record=";
-    const char *given = args_value(args, "--set");
-    *path = given ? given + sizeof KEY - 1 : NULL;
-    if (given && (strncmp(given, KEY, sizeof KEY - 1) != 0 || !**path))
-        return fail(err, STATUS_USAGE, "--set %.60s: of a run that is there only motion.record=PATH can be set", given);
+    const size_t n = strlen(key);
+    return strncmp(assignment, key, n) == 0 && assignment[n] == '=' && assignment[n + 1] ? assignment + n + 1 : NULL;
+}
+
+Status args_moved(const Args *args, Moved *moved, Err *err)
+{
+    *moved = (Moved){NULL, NULL};
+    for (int i = 0; i < args->n_given; i++) {
+        const char *text = args->given[i].value;
+        if (strcmp(args->given[i].option->name, "--set") != 0)
+            continue;
+        const char *record = value_of(text, "motion.record"), *records = value_of(text, "motion.records");
+        if (!record && !records)
+            return fail(err, STATUS_USAGE,
+                        "--set %.60s: of a run that is there only motion.record=PATH and motion.records=PATH,... can "
+                        "be set",
+                        text);
+        if ((record && moved->record) || (records && moved->records))
+            return fail(err, STATUS_USAGE, "--set %s is given twice", record ? "motion.record" : "motion.records");
+        moved->record = record ? record : moved->record;
+        moved->records = records ? records : moved->records;
+    }
     return STATUS_OK;
 }
 

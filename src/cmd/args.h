@@ -9,6 +9,7 @@
 
 #include "base/settings.h"
 #include "base/status.h"
+#include "run/moved.h"
 
 typedef struct {
     const char *name;    /* "--record" */
@@ -48,8 +49,8 @@ int args_has(const Args *args, const char *name);
 int args_gives(const Args *args, const char *key); /* a setting, by an option of its own or by --set */
 void args_free(Args *args);
 
-/* PATH of --set motion.record=PATH, NULL: not given; nothing else may be set. */
-Status args_moved_record(const Args *args, const char **path, Err *err);
+/* Of --set motion.record=PATH and motion.records=PATHS; nothing else may be set. */
+Status args_moved(const Args *args, Moved *moved, Err *err);
 
 /* Behind a message about an operand that is not there: the nearest name in its folder, if there is one. */
 void args_suggest(const Args *args, Err *err);
@@ -66,7 +67,7 @@ Status args_apply(const Args *args, Settings *s, FILE *faults, int *n_faults, Er
 
 #define OPTION_MOVED                                                                                                   \
     {                                                                                                                  \
-        "--set", "motion.record=PATH", NULL, 0, "where the run's record is now, if it was moved"                       \
+        "--set", "motion.record=PATH", NULL, 1, "where the run's record is now, if it was moved; motion.records too"   \
     }
 #define OPTION_SET                                                                                                     \
     {                                                                                                                  \

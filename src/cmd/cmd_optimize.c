@@ -128,7 +128,8 @@ static Status take_settings(const Args *args, Settings *s, Err *err)
     if (snprintf(s->run.out, sizeof s->run.out, "%s", args->operand) >= (int)sizeof s->run.out)
         return fail(err, STATUS_USAGE, "%.200s...: the path is too long", args->operand);
     TRY(args_apply(args, s, NULL, NULL, err));
-    return settings_check(s, err);
+    TRY(settings_check(s, err));
+    return moved_find(s, NULL, &(Moved){NULL, NULL}, err);
 }
 
 static Status run(const Args *args, Err *err)

@@ -67,16 +67,17 @@ static Status take_options(const Args *args, Work *w, Err *err)
 
 static Status open_run(const Args *args, Work *w, Err *err)
 {
-    const char *id = args_value(args, "--design"), *moved;
+    const char *id = args_value(args, "--design");
+    Moved moved;
     if (!id)
         return fail(err, STATUS_USAGE, "--design ID is missing; %s/front.csv lists them, knee is one too",
                     args->operand);
     TRY(front_read(&w->front, args->operand, err));
     TRY(front_pick(&w->front, args->operand, id, &w->row, err));
     TRY(take_options(args, w, err));
-    TRY(args_moved_record(args, &moved, err));
+    TRY(args_moved(args, &moved, err));
     TRY(saved_read(&w->run, args->operand, err));
-    return saved_find_record(&w->run.settings, w->run.provenance, moved, err);
+    return moved_find(&w->run.settings, w->run.provenance, &moved, err);
 }
 
 /* One row in natural signs, as in front.csv but for the id of the design that it came from. */

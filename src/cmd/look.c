@@ -54,12 +54,12 @@ Status look_open(const Args *args, Report *r, Err *err)
     Settings other;
     Records records;
     DetailWish wish = {.other = &other, .records = records.path};
-    TRY(args_moved_record(args, &wish.moved, err));
+    TRY(args_moved(args, &wish.moved, err));
     TRY(run_settings(&other, args->operand, err));
+    TRY(args_apply(args, &other, NULL, NULL, err));
     TRY(take_records(args, &other, &records, err));
     wish.n_records = records.n;
     TRY(take_floor(args, &wish.floor, err));
-    TRY(args_apply(args, &other, NULL, NULL, err));
     return report_open(r, args->operand, design ? design : "knee", &wish, err);
 }
 

@@ -216,39 +216,49 @@ static int is_path(const char *value)
     return strcmp(value, "FILE") == 0 || strcmp(value, "DIR") == 0 || strcmp(value, "FOLDER") == 0;
 }
 
-/* One branch for the option's value; that of another command may have been written already, which does no harm. */
-static void complete_value(FILE *out, const ArgOption *o)
+static const char MOTIONS[] = "builtin:kobe-like|builtin:elcentro-like|builtin:sylmar-like";
+
+/* Words beside those of a setting and besides files. */
+static const char *special_words(const ArgOption *o)
 {
-    const char *words = words_of(o->setting);
-    if (!o->value || strcmp(o->name, "--set") == 0)
-        return;
-    fprintf(out, "    %s) ", o->name);
-    if (words) {
-        fputs("words=\"", out);
-        print_words(out, words);
-        fputs("\"", out);
-    } else {
-        fputs(is_path(o->value) ? "files=f" : "words=", out);
-    }
-    fputs(" ;;\n", out);
+    if (strcmp(o->name, "--record") == 0)
+        return MOTIONS;
+    if (strcmp(o->name, "--design") == 0)
+        return is_path(o->value) ? "none" : "knee";
+    return words_of(o->setting);
+}
+
+/* One branch for what may stand behind that word. */
+static void complete_case(FILE *out, const char *command, const char *word, const char *words, int files)
+{
+    fprintf(out, "    %s\" %s\") files=%s words=\"", command, word, files ? "f" : "");
+    print_words(out, words ? words : "");
+    fputs("\" ;;\n", out);
+}
+
+static void complete_settings(FILE *out)
+{
+    static const char *const PATHS[] = {"motion.records", "building.model", "search.start", "run.out"};
+    for (int i = 0; settings_key(i); i++)
+        if (settings_words(i))
+            complete_case(out, "*", settings_key(i), settings_words(i), 0);
+    complete_case(out, "*", "motion.record", MOTIONS, 1);
+    for (size_t i = 0; i < sizeof PATHS / sizeof PATHS[0]; i++)
+        complete_case(out, "*", PATHS[i], NULL, 1);
+    fputs("    *\" --set\") keys=1 words=\"", out);
+    for (int i = 0; settings_key(i); i++)
+        fprintf(out, "%s%s=", i ? " " : "", settings_key(i));
+    fputs("\" ;;\n", out);
 }
 
 static void complete_values(FILE *out)
 {
-    fputs("    case $asked in\n", out);
-    for (int i = 0; settings_key(i); i++)
-        if (settings_words(i)) {
-            fprintf(out, "    %s) words=\"", settings_key(i));
-            print_words(out, settings_words(i));
-            fputs("\" ;;\n", out);
-        }
-    fputs("    motion.record|building.model|run.out) files=f ;;\n    --set) keys=1 words=\"", out);
-    for (int i = 0; settings_key(i); i++)
-        fprintf(out, "%s%s=", i ? " " : "", settings_key(i));
-    fputs("\" ;;\n", out);
+    fputs("    case \"${COMP_WORDS[1]} $asked\" in\n", out);
+    complete_settings(out);
     for (int i = 0; i < N_COMMANDS; i++)
         for (const ArgOption *o = COMMANDS[i]->options; o->name; o++)
-            complete_value(out, o);
+            if (o->value && strcmp(o->name, "--set") != 0)
+                complete_case(out, COMMANDS[i]->name, o->name, special_words(o), is_path(o->value));
     fputs("    *) asked= ;;\n    esac\n", out);
 }
 
@@ -276,7 +286,11 @@ void completion_write(FILE *out)
           "        COMPREPLY=($(compgen -W \"$commands --help --version\" -- \"$cur\"))\n        return\n    fi\n"
           "    # name=value comes as three words\n"
           "    if [[ $cur == = ]]; then cur=\n"
-          "    elif [[ $asked == = ]]; then asked=${COMP_WORDS[COMP_CWORD-2]}\n    fi\n",
+          "    elif [[ $asked == = ]]; then asked=${COMP_WORDS[COMP_CWORD-2]}\n    fi\n"
+          "    # and so does builtin:NAME\n"
+          "    local first=${COMP_WORDS[COMP_CWORD-2]}:$asked names=\"kobe-like elcentro-like sylmar-like\"\n"
+          "    if [[ $asked$cur == builtin: ]]; then COMPREPLY=($names); return\n"
+          "    elif [[ $first == builtin:: ]]; then COMPREPLY=($(compgen -W \"$names\" -- \"$cur\")); return\n    fi\n",
           out);
     complete_values(out);
     fputs("    if [[ -z $asked ]]; then\n", out);

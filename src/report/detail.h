@@ -6,6 +6,7 @@
 #define IMTET_REPORT_DETAIL_H
 
 #include "report/history.h"
+#include "run/moved.h"
 
 enum { N_SCENES = 3, SPECTRUM_FREQUENCIES = 72, SPECTRUM_TIMES = 320 };
 
@@ -37,8 +38,8 @@ typedef struct {
 
 /* Other earthquakes: `other` is how they are read, scaled and simulated, its motion.record replaced by each name. */
 typedef struct {
-    int floor;         /* from 0; -1: in the middle */
-    const char *moved; /* where the run's own record is now; NULL: where it was */
+    int floor;   /* from 0; -1: in the middle */
+    Moved moved; /* where the run's own records are now */
     const Settings *other;
     size_t n_records;
     const char *const *records;

@@ -40,7 +40,7 @@ Status report_open(Report *r, const char *folder, const char *design, const Deta
     if (status == STATUS_OK)
         status = take_provenance(r, err);
     if (status == STATUS_OK)
-        status = saved_find_record(&r->settings, r->provenance, wish->moved, err);
+        status = moved_find(&r->settings, r->provenance, &wish->moved, err);
     r->has_detail = r->settings.problem.kind == PROBLEM_TOWER;
     r->is_robust = r->has_detail && (r->settings.sim.ensemble > 1 || strcmp(r->settings.motion.records, "none") != 0);
     if (status == STATUS_OK && r->has_detail)

@@ -10,6 +10,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "run/moved.h"
 #include "scene/building.h"
 #include "sim/fast/fast.h"
 
@@ -92,8 +93,8 @@ Status provenance_inputs(Inputs *out, const Subject *subject, Err *err)
     TRY(building_load(&b, subject_world(subject)->settings.building.model, err));
     *out = (Inputs){.record = subject_world(subject)->motion.file_hash, .matrices = b.hash};
     building_free(&b);
-    for (size_t i = 0; i < subject_n_records(subject); i++) /* in their order: FNV-1a of hashes, a word at a time */
-        out->records = (out->records ^ subject_record(subject, i)->motion.file_hash) * UINT64_C(0x100000001b3);
+    for (size_t i = 0; i < subject_n_records(subject); i++)
+        out->records = moved_hash(out->records, subject_record(subject, i)->motion.file_hash);
     return STATUS_OK;
 }
 

@@ -1,16 +1,12 @@
 #include "run/saved.h"
 
-#include <inttypes.h>
-#include <jansson.h>
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include "base/table.h"
 #include "run/front.h"
-#include "scene/motion_read.h"
 
 static const char *const KIND_WORDS[] = {[KIND_SAMPLED] = "sampled",
                                          [KIND_INFILL] = "infill",
@@ -354,41 +350,6 @@ Status run_settings(Settings *s, const char *folder, Err *err)
     if (snprintf(path, sizeof path, "%s/settings.ini", folder) >= (int)sizeof path)
         return fail(err, STATUS_MISSING, "%.200s...: the path is too long", folder);
     return settings_read(s, path, NULL, NULL, err);
-}
-
-/* Is this what the provenance says of the record's content? */
-static int is_recorded(const char *provenance, uint64_t hash)
-{
-    char hex[24];
-    json_t *all = provenance ? json_loads(provenance, 0, NULL) : NULL;
-    const char *known = json_string_value(json_object_get(json_object_get(all, "inputs"), "record_fnv1a"));
-    snprintf(hex, sizeof hex, "%016" PRIx64, hash);
-    const int same = known && strcmp(known, hex) == 0;
-    json_decref(all);
-    return same;
-}
-
-Status saved_find_record(Settings *s, const char *provenance, const char *path, Err *err)
-{
-    char *text;
-    size_t length;
-    const int is_file = s->problem.kind == PROBLEM_TOWER && strncmp(s->motion.record, "builtin:", 8) != 0;
-    if (!path && is_file && access(s->motion.record, R_OK) != 0)
-        return fail(err, STATUS_MISSING,
-                    "%s: the run's record is not there; where it was moved, say so: --set motion.record=PATH",
-                    s->motion.record);
-    if (!path)
-        return STATUS_OK;
-    if (strlen(path) >= sizeof s->motion.record)
-        return fail(err, STATUS_MISSING, "%.60s...: the path is too long", path);
-    TRY(file_read(path, &text, &length, err));
-    const int same = is_recorded(provenance, motion_hash(text, length));
-    free(text);
-    if (!same)
-        return fail(err, STATUS_BAD_DATA, "%s: does not hold what the run's record %.200s held", path,
-                    s->motion.record);
-    snprintf(s->motion.record, sizeof s->motion.record, "%s", path);
-    return STATUS_OK;
 }
 
 void saved_free(Saved *h)

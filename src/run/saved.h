@@ -77,8 +77,4 @@ void saved_drop_polished(Saved *h);
 /* Row of that design, or h->n. */
 size_t saved_find(const Saved *h, long id);
 
-/* The run's earthquake is there: as s says, or at `path` (NULL: not moved), whose content must be what the provenance
- * (NULL: none) says of the record; s then names it. */
-Status saved_find_record(Settings *s, const char *provenance, const char *path, Err *err);
-
 #endif

@@ -7,29 +7,6 @@
 #include "base/design.h"
 #include "run/measures.h"
 
-int list_item(const char *list, size_t i, char item[], size_t size)
-{
-    for (; list && i > 0; i--) {
-        list = strchr(list, ',');
-        list = list ? list + 1 : NULL;
-    }
-    if (!list)
-        return 0;
-    list += strspn(list, " \t");
-    size_t n = strcspn(list, ",");
-    while (n > 0 && (list[n - 1] == ' ' || list[n - 1] == '\t'))
-        n--;
-    return n > 0 && (size_t)snprintf(item, size, "%.*s", (int)n, list) < size;
-}
-
-size_t list_count(const char *list)
-{
-    size_t n = 1;
-    for (; *list; list++)
-        n += *list == ',';
-    return n;
-}
-
 void verdict_set(Verdict *v, const char *outcome, const char *reason)
 {
     snprintf(v->outcome, sizeof v->outcome, "%s", outcome);

@@ -7,6 +7,7 @@
 #ifndef IMTET_RUN_SCHEMA_H
 #define IMTET_RUN_SCHEMA_H
 
+#include "base/list.h"
 #include "base/settings.h"
 #include "base/table.h"
 
@@ -46,9 +47,5 @@ typedef struct {
 
 /* The reason becomes a cell of a CSV file (base/cell.h). */
 void verdict_set(Verdict *v, const char *outcome, const char *reason);
-
-/* Item i of "a, b, c" without blanks around it; 0 where there is none or it does not fit. */
-int list_item(const char *list, size_t i, char item[], size_t size);
-size_t list_count(const char *list);
 
 #endif

@@ -248,15 +248,6 @@ static Status take_up(RunStore *store, Err *err)
     return STATUS_OK;
 }
 
-/* The table is made from the search's designs alone and then appended to; polished ones join when it is finished. */
-static void put_search_evaluations(FILE *f, const void *saved)
-{
-    Saved search = *(const Saved *)saved;
-    while (search.n > 0 && search.row[search.n - 1].id >= POLISHED_FIRST)
-        search.n--;
-    put_evaluations(f, &search);
-}
-
 Status store_go_on(RunStore *store, const Schema *schema, const Settings *used, Err *err)
 {
     store->schema = schema;
@@ -264,7 +255,7 @@ Status store_go_on(RunStore *store, const Schema *schema, const Settings *used, 
     TRY(tables_set_settings(store->db, used, err));
     TRY(write_file(store, "settings.ini", put_settings, used, err));
     TRY(write_file(store, "provenance.json", put_line, store->saved.provenance, err));
-    TRY(write_file(store, "evaluations.csv", put_search_evaluations, &store->saved, err));
+    TRY(write_file(store, "evaluations.csv", put_evaluations, &store->saved, err));
     if (store->saved.n_generations > 0)
         TRY(write_file(store, "front.csv", put_front, &store->saved, err));
     TRY(open_to_append(store, "evaluations.csv", &store->evaluations, err));
@@ -443,14 +434,15 @@ static void put_view_front(FILE *f, const void *user)
     }
 }
 
-/* The front with polished designs is worked out by Saved. */
+/* The front with polished designs is worked out by Saved. Evaluations first: whoever finds a design in front.csv finds
+ * it in evaluations.csv too. */
 static Status write_whole_tables(RunStore *store, int evaluations_too, Err *err)
 {
     Saved h;
     TRY(saved_load(&h, store->db, err));
-    Status status = write_file(store, "front.csv", put_front, &h, err);
-    if (status == STATUS_OK && evaluations_too)
-        status = write_file(store, "evaluations.csv", put_evaluations, &h, err);
+    Status status = evaluations_too ? write_file(store, "evaluations.csv", put_evaluations, &h, err) : STATUS_OK;
+    if (status == STATUS_OK)
+        status = write_file(store, "front.csv", put_front, &h, err);
     saved_free(&h);
     return status;
 }

@@ -43,44 +43,27 @@ static double session_seconds(const Study *study)
  */
 
 /* A saved path is looked up from anywhere: absolute where it can be. */
-static void make_absolute(char path[SETTINGS_TEXT_MAX])
+static void make_absolute(char path[SETTINGS_TEXT_MAX], void *user)
 {
+    (void)user;
+    if (strncmp(path, "builtin:", 8) == 0 || strcmp(path, "none") == 0)
+        return;
     char *absolute = realpath(path, NULL);
     if (absolute && strlen(absolute) < SETTINGS_TEXT_MAX)
         snprintf(path, SETTINGS_TEXT_MAX, "%s", absolute);
     free(absolute);
 }
 
-/* The same for every item of a comma list, as long as the list has room. */
-static void make_all_absolute(char list[SETTINGS_TEXT_MAX])
-{
-    char item[SETTINGS_TEXT_MAX], all[SETTINGS_TEXT_MAX] = "";
-    size_t n = 0;
-    for (size_t i = 0; strcmp(list, "none") != 0 && i < list_count(list); i++) {
-        if (!list_item(list, i, item, sizeof item))
-            return;
-        if (strncmp(item, "builtin:", 8) != 0)
-            make_absolute(item);
-        n += (size_t)snprintf(all + n, sizeof all - n, "%s%s", i ? "," : "", item);
-        if (n >= sizeof all)
-            return;
-    }
-    if (n > 0)
-        memcpy(list, all, n + 1);
-}
-
 static Settings settings_as_used(const Settings *s, const char *folder)
 {
     Settings used = *s;
     struct stat there;
-    if (strncmp(used.motion.record, "builtin:", 8) != 0)
-        make_absolute(used.motion.record);
-    make_all_absolute(used.motion.records);
-    if (strcmp(used.search.start, "none") != 0)
-        make_absolute(used.search.start);
+    make_absolute(used.motion.record, NULL);
+    list_change(used.motion.records, make_absolute, NULL);
+    make_absolute(used.search.start, NULL);
     const int is_name = !strcmp(used.building.model, "guyan") || !strcmp(used.building.model, "appendix");
     if (!is_name && stat(used.building.model, &there) == 0 && S_ISDIR(there.st_mode))
-        make_absolute(used.building.model);
+        make_absolute(used.building.model, NULL);
     snprintf(used.run.out, sizeof used.run.out, "%.*s", SETTINGS_TEXT_MAX - 1, folder);
     return used;
 }
@@ -97,7 +80,7 @@ static const char *const LIMITS[] = {"search.max_evals", "search.generations", "
                                      "search.nondominated_share", "problem.timeout_s"};
 
 /* These change no result; files are told apart by what is in them. */
-static const char *const FREE[] = {"search.threads", "run.out", "search.start", "motion.record", "building.model"};
+static const char *const FREE[] = {"search.threads", "run.out", "search.start", "motion.record", "motion.records", "building.model"};
 
 typedef struct {
     FILE *lines;
@@ -329,8 +312,6 @@ static Status go_on(Study *study, Err *err)
     study->generation = h->n_generations > 0 ? (size_t)h->generation[h->n_generations - 1].number + 1 : 0;
     study->first_generation = study->generation;
     TRY(check_limit(study, sum->n_before, err));
-    snprintf(study->used.motion.record, SETTINGS_TEXT_MAX, "%s", h->settings.motion.record);
-    snprintf(study->used.building.model, SETTINGS_TEXT_MAX, "%s", h->settings.building.model);
     snprintf(study->used.run.out, SETTINGS_TEXT_MAX, "%s", h->settings.run.out);
     return store_go_on(study->store, subject_schema(study->subject), &study->used, err);
 }

@@ -1,0 +1,90 @@
+/* A run whose ground motions were moved: it says so, and takes them from their new place if they are the same. */
+#include "program.h"
+
+#define STUDY                                                                                                          \
+    "optimize configs/quick.ini --set motion.stretch=1 --set sim.duration_s=3 --set search.initial=24 "                \
+    "--set search.population=8 --threads 1 --set search.polish=0 "
+#define FIRST "--set motion.record=@/one.csv"
+#define BOTH FIRST " --set motion.records=@/two.csv,builtin:sylmar-like"
+
+/* A pulse of one period: 4 s in steps of 0.01 s. */
+static void write_record(const char *name, double period_s)
+{
+    char *text = NULL;
+    size_t length = 0;
+    FILE *f = open_memstream(&text, &length);
+    fputs("time_s,accel_m_s2\n", f);
+    for (int i = 0; i <= 400; i++)
+        fprintf(f, "%.2f,%.6f\n", 0.01 * i, 0.01 * i < period_s ? 3 * sin(2 * M_PI * 0.01 * i / period_s) : 0.0);
+    fclose(f);
+    write_in_place(name, text);
+    free(text);
+}
+
+static void rename_in_place(const char *from, const char *to)
+{
+    char *old = in_place(from), *new = in_place(to);
+    assert_int_equal(rename(old, new), 0);
+    free(old);
+    free(new);
+}
+
+static int make_run(void **state)
+{
+    if (make_place(state) != 0)
+        return -1;
+    write_record("first.csv", 1.5);
+    write_record("second.csv", 0.8);
+    free(output_of(STUDY "--out @/run --max-evals 24 --set motion.record=@/first.csv "
+                         "--set motion.records=@/second.csv,builtin:sylmar-like"));
+    rename_in_place("first.csv", "one.csv");
+    rename_in_place("second.csv", "two.csv");
+    return 0;
+}
+
+static void test_every_command_says_which_record_was_moved_and_what_to_do(void **state)
+{
+    (void)state;
+    static const char *const COMMANDS[] = {"report @/run", "plot @/run", "polish @/run --design knee", "optimize @/run"};
+    for (size_t i = 0; i < sizeof COMMANDS / sizeof COMMANDS[0]; i++) {
+        char with_one[256];
+        expect(66, "--set motion.record=PATH", COMMANDS[i]);
+        snprintf(with_one, sizeof with_one, "%s " FIRST, COMMANDS[i]);
+        expect(66, "second.csv: a record of the run is not there; where it was moved, say so: --set motion.records=",
+               with_one);
+    }
+}
+
+static void test_another_content_does_not_take_the_place_of_a_record(void **state)
+{
+    (void)state;
+    expect(65, "does not hold what the run's record",
+           "report @/run --set motion.record=@/two.csv --set motion.records=@/two.csv,builtin:sylmar-like");
+    expect(65, "do not hold what the run's records",
+           "report @/run " FIRST " --set motion.records=builtin:sylmar-like,@/two.csv");
+    expect(65, "do not hold what the run's records", "report @/run " FIRST " --set motion.records=@/two.csv");
+    expect(65, "motion.records is content",
+           "optimize @/run " FIRST " --set motion.records=builtin:sylmar-like,@/two.csv");
+    expect(2, "given twice", "report @/run " FIRST " " FIRST);
+    expect(2, "only motion.record=PATH and motion.records", "report @/run --set motion.pga_g=1");
+}
+
+static void test_records_are_taken_from_where_they_are_now(void **state)
+{
+    (void)state;
+    free(output_of("report @/run " BOTH));
+    free(output_of("polish @/run --design knee --evals 6 --members 1 " BOTH));
+    free(output_of("optimize @/run --max-evals 32 --force-settings " BOTH));
+    free(output_of("report @/run")); /* the run knows its new places from there on */
+    free(output_of("optimize @/run"));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_every_command_says_which_record_was_moved_and_what_to_do),
+        cmocka_unit_test(test_another_content_does_not_take_the_place_of_a_record),
+        cmocka_unit_test(test_records_are_taken_from_where_they_are_now),
+    };
+    return cmocka_run_group_tests(tests, make_run, clear_place);
+}

@@ -1,0 +1,372 @@
+/* Studies as a person makes them: runs $IMTET in the repository's root and looks at what a run leaves behind. */
+#include "check.h"
+
+#include <jansson.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "program.h"
+
+/* ------------------------------------------------------------------------------------------------------- the study ---
+ */
+
+#define SMALL_STUDY_OF(max_evals)                                                                                      \
+    "optimize configs/quick.ini --set motion.stretch=1 --set sim.duration_s=4 --set search.initial=28 "                \
+    "--set search.population=16 --max-evals " #max_evals " "
+#define SMALL_STUDY SMALL_STUDY_OF(40)
+
+static void test_the_front_has_the_same_bytes_at_any_number_of_threads(void **state)
+{
+    (void)state;
+    static const int THREADS[] = {1, 2, 5};
+    char arguments[512], name[64], *front[3], *all[3];
+    for (int i = 0; i < 3; i++) {
+        snprintf(arguments, sizeof arguments, SMALL_STUDY "--threads %d --out @/threads-%d", THREADS[i], THREADS[i]);
+        free(output_of(arguments));
+        snprintf(name, sizeof name, "threads-%d/front.csv", THREADS[i]);
+        front[i] = read_in_place(name);
+        snprintf(name, sizeof name, "threads-%d/evaluations.csv", THREADS[i]);
+        all[i] = read_in_place(name);
+    }
+    for (int i = 1; i < 3; i++) {
+        assert_string_equal(front[0], front[i]);
+        assert_string_equal(all[0], all[i]);
+        free(front[i]);
+        free(all[i]);
+    }
+    free(front[0]);
+    free(all[0]);
+}
+
+static void test_a_run_is_repeated_from_its_own_folder(void **state)
+{
+    (void)state;
+    free(output_of("optimize @/threads-2/settings.ini --out @/again"));
+    char *first = read_in_place("threads-2/front.csv"), *second = read_in_place("again/front.csv");
+    assert_string_equal(first, second);
+    free(first);
+    free(second);
+    char *path = in_place("again/provenance.json");
+    json_t *o = json_load_file(path, 0, NULL);
+    assert_non_null(o);
+    assert_true(json_integer_value(json_object_get(o, "seed")) == 1);
+    assert_non_null(json_object_get(json_object_get(o, "libraries"), "sundials"));
+    assert_int_equal(json_string_length(json_object_get(json_object_get(o, "inputs"), "record_fnv1a")), 16);
+    json_decref(o);
+    free(path);
+}
+
+static int dominates(const double a[7], const double b[7])
+{
+    static const double SENSE[] = {1, 1, 1, 1, -1, -1, 1};
+    int better = 0;
+    for (int k = 0; k < 7; k++) {
+        if (SENSE[k] * a[k] > SENSE[k] * b[k])
+            return 0;
+        better = better || a[k] != b[k];
+    }
+    return better;
+}
+
+static void test_the_front_holds_nondominated_designs_in_the_search_box(void **state)
+{
+    (void)state;
+    Err err = {0};
+    Table t;
+    char *path = in_place("threads-1/front.csv");
+    CHECK_OK(table_read(&t, path, 1, &err), &err);
+    assert_int_equal(t.n_cols, 1 + 22 + 7);
+    for (size_t i = 0; i < t.n_rows; i++) {
+        const double *a = t.values + i * t.n_cols;
+        for (int j = 1; j <= 20; j++)
+            assert_true(a[j] >= 0.001 && a[j] <= 0.5);
+        assert_true(a[22] <= a[21] && a[22] >= 0.004 && a[21] <= 0.04);
+        for (size_t l = 0; l < t.n_rows; l++)
+            assert_false(dominates(t.values + l * t.n_cols + 23, a + 23));
+    }
+    table_free(&t);
+    free(path);
+}
+
+static void test_a_run_that_is_finished_is_shown_again_and_a_new_one_gets_a_number(void **state)
+{
+    (void)state;
+    Said s;
+    char *before = read_in_place("threads-1/front.csv");
+    run(&s, SMALL_STUDY "--threads 2 --out @/threads-1");
+    assert_int_equal(s.code, 0);
+    assert_non_null(strstr(s.out, "finished before"));
+    forget(&s);
+    char *after = read_in_place("threads-1/front.csv");
+    assert_string_equal(before, after);
+    run(&s, SMALL_STUDY "--new --set run.out=@/threads-1");
+    assert_int_equal(s.code, 0);
+    assert_non_null(strstr(s.out, "threads-1-2/front.csv"));
+    forget(&s);
+    free(before);
+    free(after);
+}
+
+static void test_the_export_is_the_front(void **state)
+{
+    (void)state;
+    free(output_of("export @/threads-1 --csv @/exported.csv"));
+    char *front = read_in_place("threads-1/front.csv"), *exported = read_in_place("exported.csv");
+    assert_string_equal(front, exported);
+    free(front);
+    free(exported);
+}
+
+static long first_id(const char *front)
+{
+    return strtol(strchr(front, '\n') + 1, NULL, 10);
+}
+
+static void test_a_design_of_the_front_is_evaluated_on_other_motions(void **state)
+{
+    (void)state;
+    char *front = read_in_place("threads-1/front.csv"), arguments[256];
+    snprintf(arguments, sizeof arguments,
+             "evaluate @/threads-1 --design %ld --record builtin:kobe-like --record builtin:elcentro-like --json",
+             first_id(front));
+    json_t *o = json_of(arguments);
+    const json_t *records = json_object_get(o, "records");
+    assert_int_equal(json_array_size(records), 2);
+    assert_string_equal(json_string_value(json_object_get(json_array_get(records, 1), "record")),
+                        "builtin:elcentro-like");
+
+    /* on the motion of the run itself: the numbers of the front, in its first objective's column */
+    const char *row = strchr(front, '\n') + 1;
+    for (int i = 0; i < 23; i++)
+        row = strchr(row, ',') + 1;
+    const json_t *own = json_array_get(records, 0);
+    assert_true(number(json_object_get(own, "with_core"), "j1_m") == strtod(row, NULL));
+    assert_true(number(json_object_get(own, "no_core"), "impacts") == 0);
+    json_decref(o);
+    free(front);
+    expect(65, "no such id on the front", "evaluate @/threads-1 --design 123456 --record builtin:kobe-like");
+    char *table = output_of("evaluate @/threads-1 --design knee --record builtin:sylmar-like");
+    assert_non_null(strstr(table, "no core"));
+    free(table);
+}
+
+static void test_a_design_is_evaluated_on_every_motion_of_a_folder(void **state)
+{
+    (void)state;
+    json_t *o = json_of("evaluate @/threads-1 --design knee --records tests/motion --channel 1 --pga 0.3 --json");
+    const json_t *records = json_object_get(o, "records"), *unreadable = json_object_get(o, "unreadable");
+    assert_int_equal(json_array_size(records), 20);
+    assert_int_equal(json_array_size(unreadable), 1);
+    for (size_t i = 0; i + 1 < json_array_size(records); i++)
+        assert_true(strcmp(json_string_value(json_object_get(json_array_get(records, i), "record")),
+                           json_string_value(json_object_get(json_array_get(records, i + 1), "record"))) < 0);
+    const json_t *one = json_array_get(unreadable, 0);
+    assert_string_equal(json_string_value(json_object_get(one, "record")), "tests/motion/irregular.csv");
+    assert_non_null(strstr(json_string_value(json_object_get(one, "reason")), "irregular.csv:26: time 0.24 s breaks"));
+    json_decref(o);
+    char *table = output_of("evaluate @/threads-1 --design knee --records tests/motion --channel 1");
+    assert_non_null(strstr(table, "one.knet          no core"));
+    assert_non_null(strstr(table, "not read: tests/motion/irregular.csv:26"));
+    free(table);
+    expect(65, "holds no ground motion that can be read", "evaluate @/threads-1 --design knee --records configs/sac20");
+    expect(66, "nowhere", "evaluate @/threads-1 --design knee --records nowhere");
+}
+
+/* Each design of the table `some` is a row of the table `all`. */
+static void assert_all_in(const char *some, const char *all)
+{
+    char start[32];
+    assert_int_equal(some[strlen(some) - 1], '\n');
+    for (const char *row = some; (row = strchr(row, '\n')) && row[1];) {
+        snprintf(start, sizeof start, "\n%ld,", strtol(++row, NULL, 10));
+        if (!strstr(all, start))
+            fail_msg("design %s is not among the simulations", start + 1);
+    }
+}
+
+/* kill -9 as soon as there is a front; most of the 4000 simulations are still to come. */
+static void test_a_run_that_is_killed_leaves_its_last_finished_generation(void **state)
+{
+    (void)state;
+    Said s;
+    run(&s, "%s",
+        SMALL_STUDY_OF(4000) "--threads 1 --out @/killed & n=0; "
+                             "while [ ! -s @/killed/front.csv ] && [ $n -lt 1200 ]; do n=$((n+1)); sleep 0.05; done; "
+                             "kill -9 $! && ! wait $!");
+    if (s.code != 0)
+        fail_msg("exit %d, said: %s", s.code, s.err);
+    forget(&s);
+    /* the files: a front is put in place after the table that it is from, and both after the database */
+    char *front = read_in_place("killed/front.csv"), *table = read_in_place("killed/evaluations.csv");
+    assert_all_in(front, table);
+    free(output_of("export @/killed --csv @/rescued.csv"));
+    free(output_of("export @/killed --all --csv @/rescued-all.csv"));
+    char *rescued = read_in_place("rescued.csv"), *all = read_in_place("rescued-all.csv");
+    assert_all_in(rescued, all);
+    assert_all_in(front, all);
+    free(front);
+    free(table);
+    free(rescued);
+    free(all);
+    free(output_of("evaluate @/killed --design knee --record builtin:elcentro-like --duration 4"));
+}
+
+/* ------------------------------------------------------------------------------------------- problems of others ---
+ */
+
+static const char EXTERNAL_INI[] = "[problem]\nkind = external\ncommand = sh tests/worker.sh dies\nvariables = 3\n"
+                                   "objectives = 2\nsenses = min,max\n[search]\nmax_evals = 45\ninitial = 30\n"
+                                   "population = 12\n";
+
+static void test_an_external_simulator_is_searched_and_every_design_exported(void **state)
+{
+    (void)state;
+    Table t;
+    Err err = {0};
+    write_in_place("external.ini", EXTERNAL_INI);
+    free(output_of("check @/external.ini"));
+    char *said = output_of("optimize @/external.ini --out @/external --threads 2");
+    assert_non_null(strstr(said, "best f2"));
+    free(said);
+    free(output_of("export @/external --csv @/front.csv"));
+    free(output_of("export @/external --all --csv @/all.csv"));
+    char *path = in_place("front.csv"), *all = read_in_place("all.csv");
+    CHECK_OK(table_read(&t, path, 1, &err), &err);
+    for (size_t i = 0; i < t.n_rows; i++) {
+        const double *row = t.values + i * t.n_cols;
+        assert_true(row[1] == row[4] && row[2] == row[5]); /* f = (x1, x2) */
+    }
+    int lines = 0, dead = 0;
+    for (char *line = all; *line; line = strchr(line, '\n') + 1)
+        lines++;
+    for (char *at = all; (at = strstr(at, ",dead,the worker ended")); at++)
+        dead++;
+    assert_int_equal(lines, 46);
+    assert_int_equal(dead, 15); /* every third of 45 */
+    table_free(&t);
+    free(path);
+    free(all);
+    expect(65, "another problem", "evaluate @/external --design knee --record builtin:kobe-like");
+    expect(65, "no-such-program", "optimize @/external.ini --out @/none --set problem.command=no-such-program");
+    expect(65, "problem.command", "optimize @/external.ini --out @/none --set problem.command=none");
+}
+
+/* The external run of the test before: f = (x1 min, x2 max). */
+static void test_designs_are_chosen_by_limits_weights_and_wishes_and_polished(void **state)
+{
+    (void)state;
+    free(output_of("optimize @/external.ini --out @/kind --set 'problem.command=sh tests/worker.sh good'"));
+    char *said = output_of("choose @/kind --max f1=0.9 --min f2=0.1 --weights f1=1 --wish f1=0,f2=1");
+    assert_non_null(strstr(said, "knee"));
+    assert_non_null(strstr(said, "weighted"));
+    assert_non_null(strstr(said, "nearest wish"));
+    free(said);
+    expect(65, "no design of the front is within the limits", "choose @/kind --max f1=-5");
+    expect(2, "speed is no objective", "choose @/kind --max speed=5");
+    expect(2, "is not NAME=NUMBER", "choose @/kind --weights f1");
+
+    /* With nothing kept x1 = 0 is the best there is; with all kept nothing may change on this front. */
+    free(output_of("polish @/kind --design knee --improve f1 --keep f1 --evals 120 --csv @/polished.csv"));
+    Table t;
+    Err err = {0};
+    char *path = in_place("polished.csv");
+    CHECK_OK(table_read(&t, path, 1, &err), &err);
+    assert_true(t.values[4] < 0.01 && t.values[4] == t.values[1]);
+    table_free(&t);
+    free(path);
+    expect(65, "no such id", "polish @/kind --design 999999");
+    expect(2, "no algorithm is called", "polish @/kind --design knee --algorithm magic");
+}
+
+/* The first simulations of the second run are the front of the first one; a choice of three begins with the knee. */
+static void test_a_search_begins_with_given_designs_and_a_front_is_thinned(void **state)
+{
+    (void)state;
+    write_in_place("sphere.ini", "[problem]\nkind = dtlz2\nvariables = 4\nobjectives = 3\n"
+                                 "[search]\nmax_evals = 45\ninitial = 30\npopulation = 12\n");
+    free(output_of("optimize @/sphere.ini --out @/earlier"));
+    free(output_of("optimize @/sphere.ini --out @/later --set search.start=@/earlier"));
+    free(output_of("export @/later --all --csv @/all.csv"));
+    free(output_of("export @/earlier --select 3 --csv @/three.csv"));
+    char *front_path = in_place("earlier/front.csv"), *all_path = in_place("all.csv"),
+         *three_path = in_place("three.csv");
+    char *all, *line;
+    size_t length;
+    Table front, three;
+    Err err = {0};
+    CHECK_OK(table_read(&front, front_path, 1, &err), &err);
+    CHECK_OK(table_read(&three, three_path, 1, &err), &err);
+    CHECK_OK(file_read(all_path, &all, &length, &err), &err);
+    line = strchr(all, '\n') + 1;
+    for (size_t i = 0; i < front.n_rows; i++, line = strchr(line, '\n') + 1) {
+        double x = 0.0;
+        assert_int_equal(sscanf(line, "%*d,%*d,%*[a-z],ok,,%lf", &x), 1);
+        assert_true(x == front.values[i * front.n_cols + 1]);
+    }
+    assert_int_equal(three.n_rows, 3);
+    char *said = output_of("choose @/earlier"), knee[40];
+    snprintf(knee, sizeof knee, " %.0f ", three.values[0]);
+    assert_non_null(strstr(said, knee));
+    free(output_of("polish @/earlier --design knee --improve f1 --keep f1 --evals 60")); /* a gain enters the archive */
+    free(output_of("export @/earlier --all --csv @/polished-too.csv"));
+    char *with_polished = read_in_place("polished-too.csv");
+    assert_non_null(strstr(with_polished, ",polished,ok,"));
+    free(with_polished);
+    expect(66, "search.start", "optimize @/sphere.ini --out @/no --set search.start=@/nothing");
+    expect(2, "is no number of designs", "export @/earlier --select many --csv -");
+    free(said);
+    free(all);
+    table_free(&front);
+    table_free(&three);
+    free(front_path);
+    free(all_path);
+    free(three_path);
+}
+
+static void test_a_textbook_problem_is_written_design_by_design(void **state)
+{
+    (void)state;
+    Table t;
+    Err err = {0};
+    free(output_of("problem dtlz2 --max-evals 60 --seed 3 --threads 1 --csv @/one.csv --set search.initial=50"));
+    free(output_of("problem dtlz2 --max-evals 60 --seed 3 --threads 3 --csv @/three.csv --set search.initial=50"));
+    char *path = in_place("one.csv"), *one = read_in_place("one.csv"), *three = read_in_place("three.csv");
+    assert_string_equal(one, three);
+    CHECK_OK(table_read(&t, path, 1, &err), &err);
+    assert_int_equal(t.n_rows, 60);
+    assert_int_equal(t.n_cols, 29);
+    for (size_t i = 0; i < t.n_rows; i++) {
+        double g = 1, square = 0;
+        for (size_t d = 6; d < 22; d++)
+            g += (t.values[i * 29 + d] - 0.5) * (t.values[i * 29 + d] - 0.5);
+        for (size_t k = 22; k < 29; k++)
+            square += t.values[i * 29 + k] * t.values[i * 29 + k];
+        assert_close(square, g * g, 1e-12);
+    }
+    table_free(&t);
+    free(path);
+    free(one);
+    free(three);
+    expect(2, "did you mean wfg4", "problem wfg --csv @/no.csv");
+    expect(2, "--csv", "problem wfg4");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_the_front_has_the_same_bytes_at_any_number_of_threads),
+        cmocka_unit_test(test_a_run_is_repeated_from_its_own_folder),
+        cmocka_unit_test(test_the_front_holds_nondominated_designs_in_the_search_box),
+        cmocka_unit_test(test_a_run_that_is_finished_is_shown_again_and_a_new_one_gets_a_number),
+        cmocka_unit_test(test_the_export_is_the_front),
+        cmocka_unit_test(test_a_design_of_the_front_is_evaluated_on_other_motions),
+        cmocka_unit_test(test_a_design_is_evaluated_on_every_motion_of_a_folder),
+        cmocka_unit_test(test_an_external_simulator_is_searched_and_every_design_exported),
+        cmocka_unit_test(test_designs_are_chosen_by_limits_weights_and_wishes_and_polished),
+        cmocka_unit_test(test_a_search_begins_with_given_designs_and_a_front_is_thinned),
+        cmocka_unit_test(test_a_textbook_problem_is_written_design_by_design),
+        cmocka_unit_test(test_a_run_that_is_killed_leaves_its_last_finished_generation),
+    };
+    return cmocka_run_group_tests(tests, make_place, clear_place);
+}
