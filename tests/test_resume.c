@@ -117,7 +117,7 @@ static void forget(Seen *s)
 
 static SearchStart moment(const Seen *s, size_t k)
 {
-    return (SearchStart){s->rows[k], s->X, s->F, s->G, s->ok, s->kind, s->generation, s->state[k], s->n_state[k]};
+    return (SearchStart){s->rows[k], 0, s->X, s->F, s->G, s->ok, s->kind, s->generation, s->state[k], s->n_state[k]};
 }
 
 static void run(World *w, const SearchConfig *c, const SearchStart *start, Seen *seen)

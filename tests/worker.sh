@@ -11,6 +11,7 @@ while read -r line; do
     x2=${x2%%,*}
     good="{\"id\":$id,\"f\":[$x1,$x2]}"
     [ "$1" = steady ] && sleep 0.04
+    [ "$1" = uneven ] && if [ $((id % 10)) -eq 0 ]; then sleep 0.1; else sleep 0.005; fi
     [ "$1" = tenth ] && [ $((id % 10)) -eq 0 ] && good="{\"id\":$id,\"error\":\"every tenth\"}"
     [ $((id % 3)) -ne 0 ] && mode=good || mode=$1
     case $mode in

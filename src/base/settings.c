@@ -144,6 +144,8 @@ static const Option OPTIONS[] = {
      "most designs that the response surface is built on"},
     {"search.surrogate", "-", CHOICE, AT(search.surrogate), "on", 0, 0, "on|off|auto",
      "off: a plain evolutionary search; auto: off where it proves to cost more than four simulations for each, by the clock"},
+    {"search.asynchronous", "-", CHOICE, AT(search.asynchronous), "off", 0, 0, "off|on",
+     "on: no thread waits for the slowest design of a batch; the run then depends on the order in which results come"},
     {"search.survival", "-", CHOICE, AT(search.survival), "nsga3", 0, 0, "nsga3|rvea|moead",
      "who lives on from one generation to the next: NSGA-III, RVEA or MOEA/D with PBI"},
     {"search.polish", "-", WHOLE, AT(search.polish), "3", 0, 32, NULL,

@@ -99,6 +99,7 @@ typedef struct {
         double crossover_probability, crossover_eta, mutation_eta, mutation_rate;
         long surrogate_max; /* most designs that the response surface is built on */
         long surrogate;     /* SurrogateUse */
+        long asynchronous;  /* 0 or 1 */
         long survival;      /* SurvivalKind */
         long polish;        /* designs at the end */
         char limits[SETTINGS_TEXT_MAX];

@@ -2,6 +2,13 @@
 
 enum { BATCH_SHARE = 8 }; /* a batch is this part of the population at least */
 
+/* Simulations between two fits of the surface: more as they accumulate, so that fitting never takes over. */
+size_t batch_size(const Search *s)
+{
+    const size_t population = s->config->population, least = population / BATCH_SHARE + 1, grown = s->archive.n / 40;
+    return grown < least ? least : grown < population / 2 ? grown : population / 2;
+}
+
 static int in_batch(const Search *s, size_t n, const double x[])
 {
     for (size_t i = 0; i < n; i++)
@@ -10,25 +17,111 @@ static int in_batch(const Search *s, size_t n, const double x[])
     return 0;
 }
 
+static size_t n_pending(const Search *s)
+{
+    return s->feed ? feed_pending(s->feed) : 0;
+}
+
 size_t batch_add(Search *s, size_t n, const double x[])
 {
-    if (n >= s->batch_max || s->archive.n + n >= s->config->max_evals || in_batch(s, n, x) ||
-        archive_find(&s->archive, x) < s->archive.n)
+    if (n >= s->batch_max || s->archive.n + n_pending(s) + n >= s->config->max_evals || in_batch(s, n, x) ||
+        archive_find(&s->archive, x) < s->archive.n || (s->feed && feed_has(s->feed, x)))
         return n;
     memcpy(s->X + n * s->problem->n_var, x, s->problem->n_var * sizeof *x);
     return n + 1;
 }
 
-Status batch_simulate(Search *s, size_t n, EvaluationKind kind, Err *err)
+/* -- all at once ----------------------------------------------------------------------------------------------------
+ */
+
+static Status simulate_all(Search *s, size_t n, EvaluationKind kind, Err *err)
 {
     const Problem *p = s->problem;
+    s->n_came = n;
     if (n == 0)
         return STATUS_OK;
-    const double before = search_seconds(s);
+    memset(s->foretold, kind != KIND_SAMPLED && surface_stands(s->surface), n);
     TRY(p->evaluate(n, s->X, NULL, s->F, s->G, s->ok, p->user, err));
-    s->simulating_s += search_seconds(s) - before;
-    s->n_timed += n;
     return archive_insert(&s->archive, n, s->X, s->F, s->G, s->ok, (unsigned char)kind, s->generation, err);
+}
+
+/* -- one by one -----------------------------------------------------------------------------------------------------
+ */
+
+size_t batch_lead_max(const SearchConfig *c, size_t n_workers)
+{
+    return n_workers > 1 ? n_workers + c->population / 4 + 1 : 0;
+}
+
+/* Designs that may be pending when the next batch is chosen: so many that no worker waits meanwhile. */
+static size_t lead(const Search *s)
+{
+    const size_t workers = s->problem->n_workers;
+    const int is_last = s->archive.n + n_pending(s) >= s->config->max_evals || s->generation >= s->config->generations;
+    return workers < 2 || is_last ? 0 : workers + batch_size(s) / 2;
+}
+
+static Status ask(Search *s, size_t n, EvaluationKind kind, Err *err)
+{
+    const Problem *p = s->problem;
+    const int foretold = kind != KIND_SAMPLED && surface_stands(s->surface);
+    for (size_t i = 0; i < n; i++)
+        TRY(feed_ask(s->feed, s->X + i * p->n_var,
+                     &(Asked){0, (unsigned char)kind, (unsigned char)foretold, s->foreseen + i * p->n_obj}, err));
+    return STATUS_OK;
+}
+
+/* Result number i of this generation. */
+static Status take_in(Search *s, size_t i, const Arrived *a, Err *err)
+{
+    const Problem *p = s->problem;
+    memcpy(s->X + i * p->n_var, a->x, p->n_var * sizeof *a->x);
+    memcpy(s->F + i * p->n_obj, a->f, p->n_obj * sizeof *a->f);
+    s->ok[i] = a->ok;
+    s->foretold[i] = a->asked.foretold;
+    if (a->asked.foretold)
+        memcpy(s->foreseen + i * p->n_obj, a->asked.foreseen, p->n_obj * sizeof *a->f);
+    return archive_insert(&s->archive, 1, a->x, a->f, p->n_con > 0 ? a->g : NULL, &a->ok, a->asked.kind, s->generation,
+                          err);
+}
+
+/* All but the youngest `pending` of what is asked for. */
+static Status take_results(Search *s, size_t pending, Err *err)
+{
+    Arrived a;
+    for (s->n_came = 0; feed_pending(s->feed) > pending && s->n_came < s->came_max; s->n_came++) {
+        if (!feed_next(s->feed, &a))
+            return STATUS_STOPPED;
+        TRY(take_in(s, s->n_came, &a, err));
+    }
+    return STATUS_OK;
+}
+
+static Status simulate_in_turn(Search *s, size_t n, EvaluationKind kind, Err *err)
+{
+    TRY(ask(s, n, kind, err));
+    const size_t most = lead(s), pending = feed_pending(s->feed);
+    const size_t least =
+        n == 0 && pending > 0 ? pending - 1 : pending; /* a generation without a new design goes on too */
+    return take_results(s, most < least ? most : least, err);
+}
+
+Status batch_simulate(Search *s, size_t n, EvaluationKind kind, Err *err)
+{
+    const double before = search_seconds(s);
+    const Status status = s->feed ? simulate_in_turn(s, n, kind, err) : simulate_all(s, n, kind, err);
+    s->waited_s += search_seconds(s) - before;
+    s->n_timed += s->n_came;
+    s->simulating_s = s->waited_s;
+    if (s->feed)
+        s->simulating_s = feed_busy(s->feed, &s->n_timed) / (double)s->problem->n_workers;
+    return status;
+}
+
+Status batch_finish(Search *s, Err *err)
+{
+    feed_withdraw(s->feed);
+    return take_results(s, 0, err);
 }
 
 /* Failed ones do not join. */
@@ -43,11 +136,4 @@ void batch_join(Search *s, Group *group, size_t first)
         group->violation[i] = a->violation[row];
         group->row[i] = row;
     }
-}
-
-/* Simulations between two fits of the surface: more as they accumulate, so that fitting never takes over. */
-size_t batch_size(const Search *s)
-{
-    const size_t population = s->config->population, least = population / BATCH_SHARE + 1, grown = s->archive.n / 40;
-    return grown < least ? least : grown < population / 2 ? grown : population / 2;
 }

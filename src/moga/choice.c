@@ -21,7 +21,7 @@ static size_t batch_take(Search *s, size_t n, size_t i)
 static size_t choose_plain_batch(Search *s, size_t batch)
 {
     size_t n = 0;
-    for (size_t i = 0; i < s->offspring.n && n < batch; i++)
+    for (size_t i = 0; i < s->offspring.n - s->n_pending && n < batch; i++)
         n = batch_take(s, n, i);
     return n;
 }
@@ -41,17 +41,27 @@ static size_t choose_in_turn(Search *s, size_t n, size_t limit)
     return n;
 }
 
+/* All may be picked but those that are asked for already. */
+static void forget_picks(Search *s)
+{
+    memset(s->picked, 0, s->offspring.n);
+    memset(s->picked + s->offspring.n - s->n_pending, 1, s->n_pending);
+}
+
 /* First predictions that do not stand or have stood for long, then a few of those that do. */
 static size_t choose_batch(Search *s)
 {
     const Group *g = &s->offspring;
     const size_t batch = batch_size(s), check = batch / CHECK_SHARE + 1;
     size_t n = 0;
-    memset(s->picked, 0, g->n);
+    forget_picks(s);
     if (!guide_leads(s))
         return choose_plain_batch(s, batch);
     for (int kind = 0; kind < INFILL_KINDS; kind++)
         infill_offer(s->infill[kind], g->n, g->F, g->violation, g->uncertainty);
+    for (size_t i = g->n - s->n_pending; i < g->n; i++)
+        for (int kind = 0; kind < INFILL_KINDS; kind++)
+            infill_take(s->infill[kind], i);
     for (int round = 0; round < 2; round++) {
         const size_t limit = round == 0 ? batch - check : n + check;
         for (size_t i = 0; i < g->n; i++)
@@ -69,6 +79,6 @@ size_t choice_make(Search *s, EvaluationKind *kind)
     if (n > 0)
         return n;
     offspring_make(s, 1);
-    memset(s->picked, 0, s->offspring.n);
+    forget_picks(s);
     return choose_plain_batch(s, batch_size(s));
 }

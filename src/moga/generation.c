@@ -43,29 +43,38 @@ static void renew_population(Search *s, size_t first_new)
 Status generation_next(Search *s, Err *err)
 {
     const size_t first_new = s->archive.n;
-    const double start = search_seconds(s), simulating = s->simulating_s;
+    const double start = search_seconds(s), waited = s->waited_s;
     s->n_predicted = 0;
     if (s->population.n < 2)
         return sample_again(s, err);
     guide_weigh_costs(s);
     guide_measure_front(s);
     if (guide_may_lead(s))
-        TRY(surface_fit(s->surface, &s->archive, s->infill[INFILL_PBI], err));
+        TRY(guide_fit(s, err));
     else
         surface_drop(s->surface);
-    surface_predict(s->surface, &s->population, 0, 0);
+    guide_predict(s, &s->population, 0, 0);
     offspring_make(s, 0);
     EvaluationKind kind;
     const size_t n = choice_make(s, &kind);
-    if (n == 0)
+    if (n == 0 && (!s->feed || feed_pending(s->feed) == 0))
         return sample_again(s, err);
     TRY(batch_simulate(s, n, kind, err));
-    guide_judge(s, n);
+    guide_judge(s);
     renew_population(s, first_new);
     if (guide_may_lead(s)) {
-        s->guided_s += search_seconds(s) - start - (s->simulating_s - simulating);
-        s->n_guided += n;
+        s->guided_s += search_seconds(s) - start - (s->waited_s - waited);
+        s->n_guided += s->n_came;
     }
+    return STATUS_OK;
+}
+
+Status generation_last(Search *s, Err *err)
+{
+    const size_t first_new = s->archive.n;
+    s->n_predicted = s->offspring.n = 0;
+    TRY(batch_finish(s, err));
+    renew_population(s, first_new);
     return STATUS_OK;
 }
 

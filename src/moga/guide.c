@@ -64,15 +64,20 @@ int guide_trusts(const Search *s, const Group *g, size_t i)
     return guide_leads(s) && g->uncertainty[i] < s->config->trust_error;
 }
 
-/* How far the surface foretold the order of the n designs just simulated, in the mean over the objectives. */
-void guide_judge(Search *s, size_t n)
+/* How far the surface foretold the order of the results that came, in the mean over the objectives. */
+void guide_judge(Search *s)
 {
     const size_t m = s->problem->n_obj;
+    size_t n = 0;
     double mean = 0.0;
-    if (n < 4 || !surface_stands(s->surface))
+    for (size_t i = 0; i < s->n_came; i++) {
+        n += s->foretold[i];
+        s->foretold[i] &= s->ok[i];
+    }
+    if (n < 4)
         return;
     for (size_t k = 0; k < m; k++)
-        mean += kendall_tau(n, m, s->foreseen + k, s->F + k, s->ok) / (double)m;
+        mean += kendall_tau(s->n_came, m, s->foreseen + k, s->F + k, s->foretold) / (double)m;
     s->agreement += AGREEMENT_WEIGHT * (mean - s->agreement);
 }
 
@@ -86,4 +91,29 @@ void guide_measure_front(Search *s)
             infill_measure(s->infill[kind], s->archive.n_front, s->archive.front, s->archive.F);
         else
             infill_measure(s->infill[kind], s->population.n, s->chosen, s->population.F);
+}
+
+/* -- the surface, timed ---------------------------------------------------------------------------------------------
+ */
+
+Status guide_fit(Search *s, Err *err)
+{
+    const double before = search_seconds(s);
+    const Status status = surface_fit(s->surface, &s->archive, s->infill[INFILL_PBI], err);
+    s->surrogate_s += search_seconds(s) - before;
+    return status;
+}
+
+void guide_predict(Search *s, Group *group, size_t first, int with_uncertainty)
+{
+    const double before = search_seconds(s);
+    surface_predict(s->surface, group, first, with_uncertainty);
+    s->surrogate_s += search_seconds(s) - before;
+}
+
+void guide_descend(Search *s, InfillKind kind, size_t n, const size_t directions[], double X[])
+{
+    const double before = search_seconds(s);
+    surface_descend(s->surface, &s->archive, s->infill[kind], n, directions, X);
+    s->surrogate_s += search_seconds(s) - before;
 }

@@ -60,9 +60,8 @@ static void add_descended(Search *s)
     const size_t rays = (size_t)(guide_rays(s) * (double)n);
     s->n_followed = n;
     s->n_followed_rays = rays;
-    surface_descend(s->surface, &s->archive, s->infill[INFILL_RAYS], rays, s->followed, s->descended);
-    surface_descend(s->surface, &s->archive, s->infill[INFILL_PBI], n - rays, s->followed + rays,
-                    s->descended + rays * p->n_var);
+    guide_descend(s, INFILL_RAYS, rays, s->followed, s->descended);
+    guide_descend(s, INFILL_PBI, n - rays, s->followed + rays, s->descended + rays * p->n_var);
     for (size_t i = 0; i < n; i++) {
         if (p->repair)
             p->repair(s->descended + i * p->n_var, p->user);
@@ -70,12 +69,23 @@ static void add_descended(Search *s)
     }
 }
 
+/* What is asked for already stands behind the offspring, as the surface sees it now. */
+static void add_pending(Search *s)
+{
+    Asked asked;
+    const size_t first = s->offspring.n, most = s->came_max, n = feed_pending(s->feed);
+    s->n_pending = n < most ? n : most;
+    for (size_t i = 0; i < s->n_pending; i++)
+        group_add(&s->offspring, feed_design(s->feed, i, &asked));
+    guide_predict(s, &s->offspring, first, 1);
+}
+
 /* The offspring population: what survives some generations of variation and selection on the surface and has not been
  * simulated. Without a surface that can be relied on, plain children of the population. */
 void offspring_make(Search *s, int plainly)
 {
     const int guided = guide_leads(s) && !plainly;
-    s->pool.n = s->offspring.n = s->n_followed = 0;
+    s->pool.n = s->offspring.n = s->n_followed = s->n_pending = 0;
     for (size_t i = 0; i < s->population.n; i++)
         group_copy_member(&s->pool, &s->population, i);
     for (uint32_t step = 0; step < (guided ? INNER_GENERATIONS : 1); step++) {
@@ -83,7 +93,7 @@ void offspring_make(Search *s, int plainly)
         breed(s, &s->pool, s->config->population, step);
         if (!guided)
             break;
-        surface_predict(s->surface, &s->pool, n_parents, 0);
+        guide_predict(s, &s->pool, n_parents, 0);
         offspring_survive(s, &s->pool, 1 + step);
     }
     for (size_t i = 0; i < s->pool.n; i++)
@@ -91,7 +101,9 @@ void offspring_make(Search *s, int plainly)
             group_copy_member(&s->offspring, &s->pool, i);
     if (guided && s->archive.n_front > 0)
         add_descended(s);
-    surface_predict(s->surface, &s->offspring, 0, 1);
+    guide_predict(s, &s->offspring, 0, 1);
     if (s->n_followed > 0)
         guide_judge_directions(s);
+    if (s->feed)
+        add_pending(s);
 }

@@ -1,6 +1,7 @@
 #include "moga/searching.h"
 
 #include <math.h>
+#include <pthread.h>
 #include <stdlib.h>
 
 #include "base/carve.h"
@@ -70,6 +71,9 @@ static int report(Search *s, ObserveFn observe, void *user)
         .simulation_s = s->n_timed > 0 ? s->simulating_s / (double)s->n_timed : NAN,
         .own_s = s->n_guided > 0 ? s->guided_s / (double)s->n_guided : NAN,
         .is_aside = s->aside == ASIDE_YES,
+        .waited_s = s->waited_s,
+        .surrogate_s = s->surrogate_s,
+        .is_asynchronous = s->feed != NULL,
         .state = pack_finished(&s->state) ? s->state.bytes : NULL,
         .n_state = s->state.n,
     };
@@ -81,8 +85,8 @@ static Status run_loop(Search *s, const SearchStart *start, ObserveFn observe, v
     *reason = STOP_NONE;
     if (start) {
         TRY(state_restore(s, start, err));
-        *reason = reason_to_stop(s);
-        s->generation++;
+        *reason = start->state ? reason_to_stop(s) : STOP_NONE;
+        s->generation += start->state != NULL;
     }
     for (; *reason == STOP_NONE; s->generation += *reason == STOP_NONE) {
         TRY(s->generation == 0 ? generation_first(s, err) : generation_next(s, err));
@@ -90,7 +94,45 @@ static Status run_loop(Search *s, const SearchStart *start, ObserveFn observe, v
         if (report(s, observe, user) && *reason == STOP_NONE)
             *reason = STOP_ASKED;
     }
+    if (!s->feed || feed_pending(s->feed) == 0 || *reason == STOP_ASKED)
+        return STATUS_OK;
+    s->generation++;
+    TRY(generation_last(s, err));
+    report(s, observe, user);
     return STATUS_OK;
+}
+
+/* -- asynchronous: simulation has a thread of its own, which makes as many more as it wants --------------------------
+ */
+
+typedef struct {
+    const Problem *problem;
+    Feed *feed;
+    Status status;
+    Err err;
+} Stream;
+
+static void *simulate(void *user)
+{
+    Stream *t = user;
+    t->status = t->problem->stream(t->feed, t->problem->user, &t->err);
+    feed_close(t->feed);
+    return NULL;
+}
+
+static Status run_beside(Search *s, const SearchStart *start, ObserveFn observe, void *user, StopReason *reason,
+                         Err *err)
+{
+    Stream stream = {.problem = s->problem, .feed = s->feed};
+    pthread_t thread;
+    if (pthread_create(&thread, NULL, simulate, &stream) != 0)
+        return fail(err, STATUS_NO_MEMORY, "no thread for the simulations");
+    const Status status = run_loop(s, start, observe, user, reason, err);
+    feed_close(s->feed);
+    pthread_join(thread, NULL);
+    if (stream.status != STATUS_OK && (status == STATUS_OK || status == STATUS_STOPPED))
+        return fail(err, stream.status, "%s", stream.err.text);
+    return status;
 }
 
 static Status check(const Problem *p, const SearchConfig *c, Err *err)
@@ -115,12 +157,13 @@ static void layout(Search *s, size_t n_pool, Carve *c)
     s->chosen = carve(c, n_pool, sizeof(size_t));
     s->followed = carve(c, s->wishes.n, sizeof(size_t));
     s->descended = carve(c, n_pool * p->n_var, sizeof(double));
-    s->foreseen = carve(c, s->batch_max * p->n_obj, sizeof(double));
+    s->foreseen = carve(c, s->came_max * p->n_obj, sizeof(double));
     s->child = carve(c, 2 * p->n_var, sizeof(double));
-    s->X = carve(c, s->batch_max * p->n_var, sizeof(double));
-    s->F = carve(c, s->batch_max * p->n_obj, sizeof(double));
-    s->G = carve(c, s->batch_max * p->n_con, sizeof(double));
-    s->ok = carve(c, s->batch_max, 1);
+    s->X = carve(c, s->came_max * p->n_var, sizeof(double));
+    s->F = carve(c, s->came_max * p->n_obj, sizeof(double));
+    s->G = carve(c, s->came_max * p->n_con, sizeof(double));
+    s->ok = carve(c, s->came_max, 1);
+    s->foretold = carve(c, s->came_max, 1);
     s->apart = carve(c, s->wishes.n, sizeof(double));
     s->allowed = carve(c, n_pool, 1);
     s->picked = carve(c, n_pool, 1);
@@ -137,11 +180,13 @@ static Status create(Search *s, Err *err)
 {
     const Problem *p = s->problem;
     const size_t population = s->config->population, initial = s->config->n_given + generation_samples(s);
-    const size_t n_pool = initial > 3 * population ? initial : 3 * population;
+    const size_t lead = s->config->asynchronous && p->stream ? batch_lead_max(s->config, p->n_workers) : 0;
+    const size_t n_pool = (initial > 3 * population ? initial : 3 * population) + 2 * lead;
     const size_t most = s->config->max_evals > 4 ? s->config->max_evals : 4; /* centres there can ever be */
     const size_t centres = s->config->surrogate_max < most ? s->config->surrogate_max : most;
     size_t outer, inner;
     s->batch_max = initial > population ? initial : population;
+    s->came_max = s->batch_max + lead;
     directions_choose(p->n_obj, population, &outer, &inner);
     TRY(directions_create(&s->directions, p->n_obj, outer, inner, err));
     TRY(directions_spread(&s->wishes, p->n_obj, wishes_for(p->n_obj, s->config), err));
@@ -150,9 +195,11 @@ static Status create(Search *s, Err *err)
     for (int kind = 0; kind < INFILL_KINDS; kind++)
         TRY(infill_create(&s->infill[kind], (InfillKind)kind, n_pool, &s->wishes, err));
     TRY(surface_create(&s->surface, p, centres, n_pool, err));
-    TRY(group_create(&s->population, 2 * population, p->n_var, p->n_obj, err));
+    TRY(group_create(&s->population, 2 * population + lead, p->n_var, p->n_obj, err));
     TRY(group_create(&s->offspring, n_pool, p->n_var, p->n_obj, err));
     TRY(group_create(&s->pool, n_pool, p->n_var, p->n_obj, err));
+    if (s->config->asynchronous && p->stream)
+        TRY(feed_create(&s->feed, p->n_var, p->n_obj, p->n_con, err));
     Carve c = {0};
     layout(s, n_pool, &c);
     s->store = carve_store(&c);
@@ -174,6 +221,7 @@ static void release(Search *s)
     group_free(&s->population);
     group_free(&s->offspring);
     group_free(&s->pool);
+    feed_free(s->feed);
     free(s->state.bytes);
     free(s->store);
 }
@@ -192,7 +240,8 @@ Status search_resume(const Problem *problem, const SearchConfig *config, const S
     clock_gettime(CLOCK_MONOTONIC, &s.start);
     Status status = create(&s, err);
     if (status == STATUS_OK)
-        status = run_loop(&s, start, observe, user, reason, err);
+        status = s.feed ? run_beside(&s, start, observe, user, reason, err)
+                        : run_loop(&s, start, observe, user, reason, err);
     release(&s);
     return status;
 }

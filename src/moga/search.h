@@ -18,6 +18,13 @@
  *               no clock is asked but for SURROGATE_AUTO and max_seconds
  * Never twice   a design that is in the archive, failed ones too, is not simulated again
  * Threads       the problem's evaluate gets one call per generation with the whole batch; set BLAS to one thread
+ * Asynchronous  no thread waits for the slowest of a batch: the problem's own threads take one design after the other,
+ *               and the next batch is chosen while the last designs of this one wait or are simulated. Those count as
+ *               what the surface predicts, so that no place is chosen twice. The first generation ends with the first
+ *               results that arrive, all but `lead` of those asked for, and so does every other one; lead is 0 at one
+ *               worker, the workers and half a batch more else. Rows of the archive are in the order of arrival, and a
+ *               run is a function of that order alone: the same order, the same bytes, at one worker those of a search
+ *               in batches
  * Goes on       from the simulations and the state of any generation's end (SearchView.state): the rest is then the
  *               same, bit by bit, as if it had never stopped. The state is what the simulations do not tell:
  * population, forms and scales of the surface, running means. A new variable that outlives a generation is one more
@@ -52,6 +59,7 @@ typedef struct {
     size_t n_given;
     SurrogateUse surrogate;
     SurvivalKind survival;
+    int asynchronous;          /* where the problem can; see above */
     double max_seconds;        /* 0: no limit */
     double nondominated_share; /* stop when this share of the archive is nondominated; 1: never */
     double trust_error;        /* share of an objective's range in the archive */
@@ -74,20 +82,22 @@ typedef struct {
     size_t n_predicted;     /* offspring of this generation whose prediction stood */
     double surrogate_error; /* median leave-one-out error, share of range, worst objective; NaN: no surface yet */
     double seconds;
-    double simulation_s, own_s; /* wall time per simulation, of this session: in the simulator (all threads together),
-                                   of surrogate and search while the surface was in use; NAN: none yet */
-    int is_aside;               /* the surface costs more than it saves and is no longer used */
-    const void *state;          /* (n_state bytes) of the search at this moment; NULL: no memory for it */
+    double simulation_s, own_s;   /* wall time per simulation, of this session: in the simulator (all threads together),
+                                     of surrogate and search while the surface was in use; NAN: none yet */
+    double waited_s, surrogate_s; /* of `seconds`: waiting for simulations, at the surface; the rest is search */
+    int is_asynchronous;
+    int is_aside;      /* the surface costs more than it saves and is no longer used */
+    const void *state; /* (n_state bytes) of the search at this moment; NULL: no memory for it */
     size_t n_state;
 } SearchView;
 
 /* A moment to go on from: what the view had at the end of a generation. All of it is only read. */
 typedef struct {
-    size_t n;
+    size_t n, n_later; /* n_later: rows behind the n, whose results came after the state was saved; asynchronous only */
     const double *X, *F, *G;
     const unsigned char *ok, *kind;
-    const size_t *generation;
-    const void *state;
+    const size_t *generation; /* (n) */
+    const void *state;        /* NULL: n is 0, none was saved */
     size_t n_state;
 } SearchStart;
 

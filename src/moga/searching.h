@@ -19,6 +19,7 @@
 #include "base/pack.h"
 #include "moga/archive.h"
 #include "moga/directions.h"
+#include "moga/feed.h"
 #include "moga/group.h"
 #include "moga/infill.h"
 #include "moga/search.h"
@@ -36,8 +37,12 @@ typedef struct {
     Surface *surface;
     Group population, pool, offspring;
     size_t generation, n_predicted, batch_max;
+    size_t n_came, came_max;            /* results that this generation took in, first in X, F, G, ok; most of them */
+    size_t n_pending;                   /* the last of the offspring: asked for already */
+    Feed *feed;                         /* NULL: in batches */
     double simulating_s, guided_s;      /* wall time of this session: in the simulator, of our own while guided */
     size_t n_timed, n_guided;           /* simulations in these times */
+    double waited_s, surrogate_s;       /* wall time of this session: for simulations, at the surface */
     size_t aside;                       /* Aside */
     double agreement;                   /* running mean of Kendall's tau between predicted and simulated batches */
     double off;                         /* running mean of how far from their directions descents by PBI end */
@@ -49,7 +54,7 @@ typedef struct {
     double *descended;                  /* (pool, n_var) */
     double *child;                      /* (2, n_var) */
     double *X, *F, *G;                  /* (batch) of one call of evaluate */
-    unsigned char *ok;                  /* (batch) */
+    unsigned char *ok, *foretold;       /* (batch) */
     unsigned char *allowed, *picked;    /* (pool) offspring that may still be, that have been sent to simulation */
     Pack state;                         /* as of the last report */
     void *store;
@@ -63,7 +68,9 @@ size_t search_planned(const SearchConfig *c);
  * the new n. */
 size_t batch_add(Search *s, size_t n, const double x[]);
 size_t batch_size(const Search *s);
-Status batch_simulate(Search *s, size_t n, EvaluationKind kind, Err *err);
+Status batch_simulate(Search *s, size_t n, EvaluationKind kind, Err *err); /* n asked for, n_came have come */
+Status batch_finish(Search *s, Err *err);                                  /* asynchronous: only what is under way */
+size_t batch_lead_max(const SearchConfig *c, size_t n_workers);
 void batch_join(Search *s, Group *group, size_t first); /* simulated designs of the rows first.. join the group */
 
 /* guide.c */
@@ -73,8 +80,11 @@ int guide_leads(const Search *s);                            /* ... and can be r
 int guide_trusts(const Search *s, const Group *g, size_t i); /* the prediction of this member stands */
 double guide_rays(const Search *s); /* share of a batch that is chosen by rays, the rest by PBI */
 void guide_judge_directions(Search *s);
-void guide_judge(Search *s, size_t n); /* by the n designs just simulated */
+void guide_judge(Search *s); /* by the results that came */
 void guide_measure_front(Search *s);
+Status guide_fit(Search *s, Err *err);
+void guide_predict(Search *s, Group *group, size_t first, int with_uncertainty);
+void guide_descend(Search *s, InfillKind kind, size_t n, const size_t directions[], double X[]);
 
 /* offspring.c: plainly: without the surface. step names the random stream. */
 void offspring_make(Search *s, int plainly);
@@ -86,7 +96,8 @@ size_t choice_make(Search *s, EvaluationKind *kind);
 /* generation.c */
 Status generation_first(Search *s, Err *err);
 Status generation_next(Search *s, Err *err);
-size_t generation_samples(const Search *s); /* of the first one, beside the given designs */
+Status generation_last(Search *s, Err *err); /* asynchronous: takes in what is under way when the search ends */
+size_t generation_samples(const Search *s);  /* of the first one, beside the given designs */
 
 /* state.c */
 void state_save(Search *s);

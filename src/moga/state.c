@@ -1,6 +1,6 @@
 #include "moga/searching.h"
 
-enum { STATE_VERSION = 3 };
+enum { STATE_VERSION = 4 };
 
 /* All that the next generation takes from the earlier ones, beside the archive. */
 static void state_pack(Search *s, Pack *p)
@@ -18,6 +18,8 @@ static void state_pack(Search *s, Pack *p)
     pack_size(p, &s->aside, ASIDE_YES);
     group_pack(&s->population, p, s->archive.n);
     surface_pack(s->surface, p);
+    if (s->feed)
+        feed_pack(s->feed, p);
 }
 
 void state_save(Search *s)
@@ -34,6 +36,11 @@ Status state_restore(Search *s, const SearchStart *start, Err *err)
         TRY(archive_insert(&s->archive, 1, start->X + i * p->n_var, start->F + i * p->n_obj,
                            p->n_con > 0 ? start->G + i * p->n_con : NULL, start->ok + i, start->kind[i],
                            start->generation[i], err));
+    if (s->feed)
+        feed_replay(s->feed, start->n_later, start->X + start->n * p->n_var, start->F + start->n * p->n_obj,
+                    start->G ? start->G + start->n * p->n_con : NULL, start->ok + start->n, start->kind + start->n);
+    if (!start->state)
+        return STATUS_OK;
     Pack state = {.bytes = (unsigned char *)(uintptr_t)start->state, .n = start->n_state, .reading = 1};
     state_pack(s, &state);
     if (!pack_finished(&state))

@@ -40,8 +40,11 @@ struct External {
     struct pollfd *poll; /* (2 n_workers) */
 };
 
-/* One batch under way. */
+/* One batch under way, and who works on it. */
 typedef struct {
+    Worker *worker; /* (n_workers) of the External's */
+    struct pollfd *poll;
+    size_t n_workers;
     size_t n, next, done;
     const double *X;
     const long *ids; /* (n) or NULL */
@@ -329,23 +332,23 @@ static void look_after(External *e, Worker *w, const struct pollfd *in, const st
         settle(b, w, ANSWER_TIMEOUT, 1, "no answer within %g s", e->timeout_s);
 }
 
-static void wait_for_workers(External *e)
+static void wait_for_workers(const Batch *b)
 {
     double first = INFINITY;
-    for (size_t i = 0; i < e->n_workers; i++) {
-        const Worker *w = &e->worker[i];
+    for (size_t i = 0; i < b->n_workers; i++) {
+        const Worker *w = &b->worker[i];
         const int busy = w->design != SIZE_MAX;
-        e->poll[2 * i] = (struct pollfd){busy && w->n_sent < w->n_request ? w->in : -1, POLLOUT, 0};
-        e->poll[2 * i + 1] = (struct pollfd){busy ? w->out : -1, POLLIN, 0};
+        b->poll[2 * i] = (struct pollfd){busy && w->n_sent < w->n_request ? w->in : -1, POLLOUT, 0};
+        b->poll[2 * i + 1] = (struct pollfd){busy ? w->out : -1, POLLIN, 0};
         if (busy)
             first = fmin(first, w->deadline);
     }
     if (!(first < INFINITY))
         return;
     const double left_ms = 1e3 * (first - now_s());
-    if (poll(e->poll, 2 * e->n_workers, left_ms > 0.0 ? (int)fmin(ceil(left_ms), LOOK_MS) : 0) <= 0)
-        for (size_t i = 0; i < 2 * e->n_workers; i++)
-            e->poll[i].revents = 0;
+    if (poll(b->poll, 2 * b->n_workers, left_ms > 0.0 ? (int)fmin(ceil(left_ms), LOOK_MS) : 0) <= 0)
+        for (size_t i = 0; i < 2 * b->n_workers; i++)
+            b->poll[i].revents = 0;
 }
 
 /* Idle workers get the next designs, unless it is to end. */
@@ -353,8 +356,8 @@ static Status hand_out(External *e, Batch *b, Err *err)
 {
     if (b->ending == 0.0 && b->done < b->n && !watch_go_on(b->watch))
         b->ending = now_s();
-    for (size_t i = 0; i < e->n_workers && b->next < b->n && b->ending == 0.0; i++) {
-        Worker *w = &e->worker[i];
+    for (size_t i = 0; i < b->n_workers && b->next < b->n && b->ending == 0.0; i++) {
+        Worker *w = &b->worker[i];
         if (w->design != SIZE_MAX)
             continue;
         TRY(give_design(e, w, b, err));
@@ -364,12 +367,12 @@ static Status hand_out(External *e, Batch *b, Err *err)
 }
 
 /* Whoever still works is killed: its design counts as never asked for. */
-static void drop_all(External *e)
+static void drop_all(const Batch *b)
 {
-    for (size_t i = 0; i < e->n_workers; i++)
-        if (e->worker[i].design != SIZE_MAX) {
-            e->worker[i].design = SIZE_MAX;
-            worker_kill(&e->worker[i]);
+    for (size_t i = 0; i < b->n_workers; i++)
+        if (b->worker[i].design != SIZE_MAX) {
+            b->worker[i].design = SIZE_MAX;
+            worker_kill(&b->worker[i]);
         }
 }
 
@@ -379,20 +382,32 @@ static int is_over(const Batch *b)
            (b->ending > 0.0 && (b->done == b->next || now_s() > b->ending + LAST_ANSWERS_S));
 }
 
+static Status run(External *e, Batch *b)
+{
+    while (!is_over(b)) {
+        TRY(hand_out(e, b, b->err));
+        wait_for_workers(b);
+        for (size_t i = 0; i < b->n_workers; i++)
+            look_after(e, &b->worker[i], &b->poll[2 * i], &b->poll[2 * i + 1], b);
+    }
+    drop_all(b);
+    if (b->status == STATUS_OK && b->done < b->n)
+        return fail(b->err, STATUS_STOPPED, "stopped");
+    return b->status;
+}
+
 Status external_run(External *e, size_t n, const double X[], const long ids[], double F[], Answer answers[],
                     const Watch *watch, Err *err)
 {
-    Batch b = {.n = n, .X = X, .ids = ids, .F = F, .answers = answers, .watch = watch, .err = err};
-    while (!is_over(&b)) {
-        TRY(hand_out(e, &b, err));
-        wait_for_workers(e);
-        for (size_t i = 0; i < e->n_workers; i++)
-            look_after(e, &e->worker[i], &e->poll[2 * i], &e->poll[2 * i + 1], &b);
-    }
-    drop_all(e);
-    if (b.status == STATUS_OK && b.done < n)
-        return fail(err, STATUS_STOPPED, "stopped");
-    return b.status;
+    return run(e, &(Batch){e->worker, e->poll, e->n_workers, .n = n, .X = X, .ids = ids, .F = F, .answers = answers,
+                           .watch = watch, .err = err});
+}
+
+Status external_ask(External *e, size_t worker, const double x[], long id, double f[], Answer *answer,
+                    const Watch *watch, Err *err)
+{
+    return run(e, &(Batch){e->worker + worker, e->poll + 2 * worker, 1, .n = 1, .X = x, .ids = &id, .F = f,
+                           .answers = answer, .watch = watch, .err = err});
 }
 
 Status external_open(External **out, const char *command, size_t workers, double timeout_s, size_t n_var, size_t n_obj,

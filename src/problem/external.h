@@ -10,8 +10,9 @@
  *
  * Life cycle  external_open -> external_run ... -> external_close
  * Processes   started without a shell, each in its own process group; standard error is shared with ours
- * Threads     call it from one thread; which worker gets which design is a matter of time, answers are stored by index
- * Errors      a command that cannot be started at all is STATUS_BAD_DATA; whatever a worker does is not an error */
+ * Threads     call it from one thread, but for external_ask; which worker gets which design is a matter of time,
+ * answers are stored by index Errors      a command that cannot be started at all is STATUS_BAD_DATA; whatever a worker
+ * does is not an error */
 #ifndef IMTET_PROBLEM_EXTERNAL_H
 #define IMTET_PROBLEM_EXTERNAL_H
 
@@ -39,6 +40,10 @@ Status external_open(External **out, const char *command, size_t workers, double
  * watch (NULL: nobody) does not let it go on, what is under way gets some seconds to answer, the rest is dropped and
  * STATUS_STOPPED returned. */
 Status external_run(External *e, size_t n, const double X[], const long ids[], double F[], Answer answers[],
+                    const Watch *watch, Err *err);
+
+/* One design by that worker (0 .. workers-1) alone; each worker may be asked by a thread of its own. */
+Status external_ask(External *e, size_t worker, const double x[], long id, double f[], Answer *answer,
                     const Watch *watch, Err *err);
 
 /* Closes every worker's input, waits a moment, kills who is left. NULL is fine. */

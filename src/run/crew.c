@@ -79,6 +79,23 @@ Status crew_run(Crew *crew, size_t n, const SimTask tasks[], SimResult results[]
     return crew_run_watched(crew, n, tasks, results, NULL, err);
 }
 
+int crew_size(const Crew *crew)
+{
+    return crew->n;
+}
+
+Status crew_run_alone(Crew *crew, int worker, size_t n, const SimTask tasks[], SimResult results[], const Watch *watch,
+                      Err *err)
+{
+    for (size_t i = 0; i < n; i++) {
+        if (!watch_go_on(watch))
+            return fail(err, STATUS_STOPPED, "stopped");
+        TRY(sim_run(crew->worker[worker], tasks[i].kind, tasks[i].x, &results[i], err));
+        TRY(watch_done(watch, i, err));
+    }
+    return STATUS_OK;
+}
+
 void crew_free(Crew *crew)
 {
     for (int i = 0; crew && i < crew->n; i++)

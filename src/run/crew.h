@@ -24,6 +24,11 @@ Status crew_run(Crew *crew, size_t n, const SimTask tasks[], SimResult results[]
 /* The same with somebody looking on (NULL: nobody). Where the watch does not let it go on, what is under way is
  * finished and STATUS_STOPPED returned. */
 Status crew_run_watched(Crew *crew, size_t n, const SimTask tasks[], SimResult results[], const Watch *watch, Err *err);
+
+/* The same on worker 0 .. crew_size - 1 alone, in the caller's thread: every thread may have a worker of its own. */
+int crew_size(const Crew *crew);
+Status crew_run_alone(Crew *crew, int worker, size_t n, const SimTask tasks[], SimResult results[], const Watch *watch,
+                      Err *err);
 void crew_free(Crew *crew); /* NULL is fine */
 
 #endif

@@ -358,8 +358,10 @@ static Status measure_front(RunStore *store, const SearchView *v, Err *err)
 static Status store_kinds(RunStore *store, const SearchView *v, Err *err)
 {
     for (size_t i = store->n_exported; i < v->n; i++)
-        TRY(database_do(store->db, err, "UPDATE evaluation SET kind = ? WHERE id = ?", "ti", kind_word(v->kind[i]),
-                        (long)i + 1));
+        TRY(database_do(store->db, err, "UPDATE evaluation SET kind = ?, generation = ? WHERE id = ?", "tii",
+                        kind_word(v->kind[i]), (long)v->generation[i], (long)i + 1));
+    if (v->is_asynchronous)
+        return STATUS_OK;
     /* what another program or machine had asked for in this generation before it was cut short */
     return database_do(store->db, err, "DELETE FROM evaluation WHERE kind IS NULL AND id > ?", "i", (long)v->n);
 }

@@ -2,6 +2,7 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -27,6 +28,7 @@ typedef struct {
     size_t generation;       /* that is under way */
     size_t first_generation; /* of this session */
     int asked, late;         /* why it stopped */
+    pthread_mutex_t lock;    /* of an asynchronous search: results come while a generation is written */
     int has_new_limits;
     Status status; /* of writing; ends the search */
     Err *err;
@@ -183,9 +185,14 @@ static int may_go_on(void *user)
 static Status simulation_done(const Simulation *simulation, void *user, Err *err)
 {
     Study *study = user;
+    pthread_mutex_lock(&study->lock);
     study->summary->n_simulated++;
     study->summary->n_failed += !simulation->ok;
-    return store_simulation(study->store, simulation, study->generation, err);
+    if (isfinite(simulation->verdict->seconds))
+        study->summary->busy_s += simulation->verdict->seconds;
+    const Status status = store_simulation(study->store, simulation, study->generation, err);
+    pthread_mutex_unlock(&study->lock);
+    return status;
 }
 
 /* A design of the generation that was cut short: by its number, if the search asks for the same again. */
@@ -229,10 +236,14 @@ static int observe(const SearchView *view, void *user)
 {
     Study *study = user;
     StudySummary *sum = study->summary;
+    pthread_mutex_lock(&study->lock);
     study->status = write_generation(study, view, study->err);
     study->generation = view->generation_now + 1;
-    sum->n_simulated = view->n;
-    sum->n_failed = view->n_failed;
+    if (!view->is_asynchronous) {
+        sum->n_simulated = view->n;
+        sum->n_failed = view->n_failed;
+    }
+    pthread_mutex_unlock(&study->lock);
     sum->n_front = view->n_front;
     sum->simulation_s = view->simulation_s;
     sum->own_s = view->own_s;
@@ -339,6 +350,7 @@ SearchConfig study_search_config(const Settings *s)
         .surrogate_max = (size_t)s->search.surrogate_max,
         .surrogate = (SurrogateUse)s->search.surrogate,
         .survival = (SurvivalKind)s->search.survival,
+        .asynchronous = s->search.asynchronous != 0,
         .max_seconds = 3600 * s->search.max_hours,
         .nondominated_share = s->search.nondominated_share,
         .trust_error = s->search.trust_error,
@@ -373,8 +385,11 @@ static Status moment_of(Moment *m, const Study *study, Err *err)
 {
     const Saved *h = store_saved(study->store);
     const Problem *p = subject_problem(study->subject);
-    size_t n = 0;
-    while (n < h->n && h->row[n].kind != KIND_UNFINISHED && h->row[n].id < POLISHED_FIRST)
+    size_t n_finished = 0, n;
+    while (n_finished < h->n && h->row[n_finished].kind != KIND_UNFINISHED && h->row[n_finished].id < POLISHED_FIRST)
+        n_finished++;
+    n = n_finished;
+    while (study->used.search.asynchronous && n < h->n && h->row[n].id < POLISHED_FIRST)
         n++;
     *m = (Moment){.F = calloc(n * p->n_obj + 1, sizeof *m->F),
                   .G = calloc(n * p->n_con + 1, sizeof *m->G),
@@ -389,11 +404,19 @@ static Status moment_of(Moment *m, const Study *study, Err *err)
             return fail(err, STATUS_IO, "%s/run.sqlite: is damaged: evaluation %zu is missing", study->summary->folder,
                         i + 1);
         m->ok[i] = h->row[i].ok != 0;
-        m->kind[i] = (unsigned char)h->row[i].kind;
+        m->kind[i] = (unsigned char)(i < n_finished ? h->row[i].kind : KIND_INFILL);
         m->generation[i] = (size_t)h->row[i].generation;
     }
-    m->start = (SearchStart){n, h->X, m->F, m->G, m->ok, m->kind, m->generation, h->state, h->n_state};
+    m->start = (SearchStart){n_finished, n - n_finished, h->X,          m->F,     m->G,
+                             m->ok,      m->kind,        m->generation, h->state, h->n_state};
     return STATUS_OK;
+}
+
+/* Of surrogate and search: beside simulations that go on, a quarter. */
+static int search_threads(const Study *study)
+{
+    const int threads = subject_threads(study->subject);
+    return study->used.search.asynchronous ? (threads + 3) / 4 : threads;
 }
 
 static Status run_search(Study *study, Err *err)
@@ -402,19 +425,19 @@ static Status run_search(Study *study, Err *err)
     SearchConfig config = study_search_config(&study->used);
     Moment moment = {0};
     double *given = NULL;
-    const int is_under_way = h && h->state;
+    const int is_under_way = h && (h->state || (study->used.search.asynchronous && h->n > 0));
     config.max_seconds = 0.0; /* the study has a clock of its own, which it looks at more often */
     if (h) {
         const long initial = study->used.search.initial;
         config.planned_evals = (size_t)h->planned_evals;
         config.initial = (size_t)(initial < h->planned_evals ? initial : h->planned_evals);
     }
-    omp_set_num_threads(subject_threads(study->subject));
+    omp_set_num_threads(search_threads(study));
     TRY(given_read(study->used.search.start, subject_schema(study->subject), &given, &config.n_given, err));
     config.given = given;
     Status status = is_under_way ? moment_of(&moment, study, err) : STATUS_OK;
     const Observer observer = {may_go_on, simulation_done, recall, study};
-    subject_observe(study->subject, &observer, moment.start.n);
+    subject_observe(study->subject, &observer, moment.start.n + moment.start.n_later);
     if (status == STATUS_OK)
         status = search_resume(subject_problem(study->subject), &config, is_under_way ? &moment.start : NULL, observe,
                                study, &study->summary->stopped, err);
@@ -557,6 +580,7 @@ Status study_run(const Settings *s, const StudyOptions *options, StudySummary *s
 {
     memset(summary, 0, sizeof *summary);
     Study study = {.options = options, .summary = summary, .differences = differences, .err = err};
+    pthread_mutex_init(&study.lock, NULL);
     clock_gettime(CLOCK_MONOTONIC, &study.start);
     Status status = prepare(&study, s, err);
     if (status == STATUS_OK && !is_over(&study))
@@ -568,5 +592,6 @@ Status study_run(const Settings *s, const StudyOptions *options, StudySummary *s
     }
     store_free(study.store);
     subject_close(study.subject);
+    pthread_mutex_destroy(&study.lock);
     return status;
 }

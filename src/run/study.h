@@ -53,6 +53,7 @@ typedef struct {
     long max_evals;
     double seconds;             /* of all sessions */
     double simulation_s, own_s; /* as in SearchView */
+    double busy_s;              /* of this session: in simulations, all threads added */
     int is_aside;
     int has_no_core;   /* of a tower */
     SimResult no_core; /* the building alone under the same motion */

@@ -31,6 +31,7 @@ struct Subject {
     Crew *crew;     /* its own */
     External *external;
     size_t n_done; /* simulations asked for: the number of the next design is one more */
+    long n_asked;  /* of a stream: requests; n_done are then the designs that are done */
     Observer observer;
 
     size_t n_limits;
@@ -76,6 +77,7 @@ void subject_observe(Subject *subject, const Observer *observer, size_t n_done)
 {
     subject->observer = *observer;
     subject->n_done = n_done;
+    subject->n_asked = (long)n_done;
 }
 
 /* What is to be simulated of one batch, close together. */
@@ -194,12 +196,16 @@ static Status run_tower(Work *w, Err *err)
     return status;
 }
 
+static void judge_answer(const Answer *a, Verdict *v)
+{
+    verdict_set(v, answer_word(a->outcome), a->reason);
+    v->seconds = a->seconds;
+}
+
 static Status answer_came(size_t i, void *user, Err *err)
 {
     const Work *w = user;
-    const Answer *a = (const Answer *)w->raw + i;
-    verdict_set(&w->verdict[i], answer_word(a->outcome), a->reason);
-    w->verdict[i].seconds = a->seconds;
+    judge_answer((const Answer *)w->raw + i, &w->verdict[i]);
     return tell(w, i, err);
 }
 
@@ -225,19 +231,24 @@ void subject_exact(const Subject *s, const double x[], double f[])
     textbook_of(s)->evaluate(s->schema.n_var, s->schema.n_obj, x, f);
 }
 
-static Status run_textbook(Work *w, Err *err)
+static void answer_textbook(const Work *w, size_t i)
 {
     const Subject *s = w->subject;
     const size_t m = s->schema.n_obj;
+    double *f = w->F + i * m;
+    Random noise = random_stream((uint32_t)s->settings.search.seed, RANDOM_NOISE, 0, (uint32_t)(w->number[i] - 1));
+    subject_exact(s, w->X + i * s->schema.n_var, f);
+    for (size_t k = 0; s->settings.problem.noise > 0.0 && k < m; k++)
+        f[k] *= 1.0 + s->settings.problem.noise * random_normal(&noise);
+    verdict_set(&w->verdict[i], "ok", "");
+}
+
+static Status run_textbook(Work *w, Err *err)
+{
     for (size_t i = 0; i < w->n; i++) {
-        double *f = w->F + i * m;
-        Random noise = random_stream((uint32_t)s->settings.search.seed, RANDOM_NOISE, 0, (uint32_t)(w->number[i] - 1));
         if (!may_go_on(w))
             return fail(err, STATUS_STOPPED, "stopped");
-        subject_exact(s, w->X + i * s->schema.n_var, f);
-        for (size_t k = 0; s->settings.problem.noise > 0.0 && k < m; k++)
-            f[k] *= 1.0 + s->settings.problem.noise * random_normal(&noise);
-        verdict_set(&w->verdict[i], "ok", "");
+        answer_textbook(w, i);
         TRY(tell(w, i, err));
     }
     return STATUS_OK;
@@ -299,6 +310,89 @@ static Status evaluate(size_t n, const double X[], const size_t draws[], double 
     s->n_done += n;
     subject_judge(s, n, F, F, G);
     return STATUS_OK;
+}
+
+/* -- one by one, every thread for itself ----------------------------------------------------------------------------
+ */
+
+/* What ends a stream: the first fault, a stop only where there is none. */
+typedef struct {
+    Status status;
+    Err *err;
+} End;
+
+static void note_end(End *end, Feed *feed, Status status, const Err *mine)
+{
+#pragma omp critical(subject_end)
+    if (end->status == STATUS_OK || end->status == STATUS_STOPPED)
+        end->status = fail(end->err, status, "%s", mine->text);
+    feed_close(feed);
+}
+
+/* The design of w by this thread's own simulator. */
+static Status simulate_one(Work *w, int thread, Err *err)
+{
+    Subject *s = w->subject;
+    const Watch watch = {may_go_on, NULL, w};
+    Trial trial;
+    Answer answer;
+    if (s->crew) {
+        TRY(trials_run_alone(s->trials, thread, w->X, w->draws[0], &trial, &watch, err));
+        judge_tower(&trial, w->F, w->spread, &w->verdict[0]);
+    } else if (s->external) {
+        TRY(external_ask(s->external, (size_t)thread, w->X, w->number[0], w->F, &answer, &watch, err));
+        judge_answer(&answer, &w->verdict[0]);
+    } else {
+        answer_textbook(w, 0);
+    }
+    return STATUS_OK;
+}
+
+/* Designs are numbered as they are done. */
+static Status hand_in(Work *w, Feed *feed, size_t name, Err *err)
+{
+    Subject *s = w->subject;
+    double F[OBJECTIVES_MAX], G[LIMITS_MAX];
+    w->number[0] = (long)++s->n_done;
+    TRY(tell(w, 0, err));
+    subject_judge(s, 1, w->F, F, G);
+    feed_give(feed, name, F, G, is_ok(&w->verdict[0]));
+    return STATUS_OK;
+}
+
+static Status work_on(Work *w, Feed *feed, int thread, Err *err)
+{
+    Subject *s = w->subject;
+    for (size_t name; (name = feed_take(feed, w->X, w->draws)) != SIZE_MAX;) {
+        Status status;
+        if (!may_go_on(w))
+            return fail(err, STATUS_STOPPED, "stopped");
+#pragma omp atomic capture
+        w->number[0] = ++s->n_asked;
+        TRY(simulate_one(w, thread, err));
+#pragma omp critical(subject_done)
+        status = hand_in(w, feed, name, err);
+        TRY(status);
+    }
+    return STATUS_OK;
+}
+
+static Status stream(Feed *feed, void *user, Err *err)
+{
+    Subject *s = user;
+    End end = {.err = err};
+#pragma omp parallel num_threads((int)s->problem.n_workers)
+    {
+        Work w;
+        Err mine = {0};
+        Status status = work_create(&w, s, 1, &mine);
+        if (status == STATUS_OK)
+            status = work_on(&w, feed, omp_get_thread_num(), &mine);
+        if (status != STATUS_OK)
+            note_end(&end, feed, status, &mine);
+        free(w.store);
+    }
+    return end.status;
 }
 
 /* Swapping keeps both thicknesses in the box and the sample spread out; clipping would pile designs up on
@@ -444,6 +538,8 @@ static Status open(Subject *s, Err *err)
         .lower = s->lower,
         .upper = s->upper,
         .evaluate = evaluate,
+        .stream = stream,
+        .n_workers = s->crew || s->external ? (size_t)s->threads : 1,
         .repair = s->crew ? swap_if_top_heavy : NULL,
         .user = s,
     };

@@ -34,8 +34,8 @@ int subject_threads(const Subject *subject);
 
 /* One finished simulation; valid during the call. */
 typedef struct {
-    size_t number;        /* of the design: 1, 2, ... in the order in which the search asked */
-    const double *x, *f;  /* (n_var); (n_obj) in natural signs, not finite where it failed */
+    size_t number;       /* of the design: 1, 2, ... in the order in which the search asked; asynchronous: of results */
+    const double *x, *f; /* (n_var); (n_obj) in natural signs, not finite where it failed */
     const double *spread; /* (n_obj) standard deviations, NAN where not known */
     double violation;     /* of the user's limits, sum of max(0, g) */
     int ok;

@@ -144,6 +144,7 @@ static void judge(const Trials *t, const SimResult *const results[], Trial *out)
 /* One pass over the designs under record `under`; a design is judged when its last member is done under the last. */
 typedef struct {
     Trials *trials;
+    int worker;          /* that does all of it; -1: the whole crew */
     size_t under, *left; /* left (n): members to be done */
     SimResult *results;  /* (n_records, n, members) */
     size_t n;
@@ -175,13 +176,17 @@ static Status run_passes(Pass *p, SimTask tasks[], Err *err)
 {
     const size_t n_tasks = p->n * p->trials->members;
     const Watch watch = {may_go_on, member_done, p};
-    for (p->under = 0; p->under < p->trials->n_records; p->under++)
-        TRY(crew_run_watched(p->trials->crew[p->under], n_tasks, tasks, p->results + p->under * n_tasks, &watch, err));
+    for (p->under = 0; p->under < p->trials->n_records; p->under++) {
+        Crew *crew = p->trials->crew[p->under];
+        SimResult *results = p->results + p->under * n_tasks;
+        TRY(p->worker < 0 ? crew_run_watched(crew, n_tasks, tasks, results, &watch, err)
+                          : crew_run_alone(crew, p->worker, n_tasks, tasks, results, &watch, err));
+    }
     return STATUS_OK;
 }
 
-Status trials_run(Trials *t, size_t n, const double X[], const size_t draws[], Trial out[], const Watch *watch,
-                  Err *err)
+static Status run(Trials *t, int worker, size_t n, const double X[], const size_t draws[], Trial out[],
+                  const Watch *watch, Err *err)
 {
     const size_t n_floors = (size_t)scene_n_floors(t->world[0].scene), n_var = n_floors + 2, n_tasks = n * t->members;
     double *varied = calloc(n_tasks * n_var, sizeof *varied);
@@ -200,11 +205,22 @@ Status trials_run(Trials *t, size_t n, const double X[], const size_t draws[], T
         tasks[i] = (SimTask){SCENE_IMPACT, x};
         left[i / t->members] = t->members;
     }
-    status = run_passes(&(Pass){t, 0, left, results, n, out, watch}, tasks, err);
+    status = run_passes(&(Pass){t, worker, 0, left, results, n, out, watch}, tasks, err);
 done:
     free(varied);
     free(tasks);
     free(left);
     free(results);
     return status;
+}
+
+Status trials_run(Trials *t, size_t n, const double X[], const size_t draws[], Trial out[], const Watch *watch,
+                  Err *err)
+{
+    return run(t, -1, n, X, draws, out, watch, err);
+}
+
+Status trials_run_alone(Trials *t, int worker, const double x[], size_t draws, Trial *out, const Watch *watch, Err *err)
+{
+    return run(t, worker, 1, x, &draws, out, watch, err);
 }

@@ -44,4 +44,8 @@ typedef struct {
 Status trials_run(Trials *t, size_t n, const double X[], const size_t draws[], Trial out[], const Watch *watch,
                   Err *err);
 
+/* One design by that worker of the crews (0 .. threads - 1) alone, in the caller's thread. */
+Status trials_run_alone(Trials *t, int worker, const double x[], size_t draws, Trial *out, const Watch *watch,
+                        Err *err);
+
 #endif
