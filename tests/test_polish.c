@@ -37,7 +37,7 @@ static Status polish(World *w, const char *algorithm, int keep_second, size_t ev
     static double x[VAR], f[OBJ], f_start[OBJ];
     static const double slack[OBJ] = {0, 0}, start[VAR] = {0, 0.9, -0.6};
     const unsigned char keep[OBJ] = {1, (unsigned char)keep_second};
-    const Problem problem = {VAR, OBJ, 0, LOWER, UPPER, evaluate, NULL, w, 0};
+    const Problem problem = {VAR, OBJ, 0, LOWER, UPPER, evaluate, NULL, w, 0, NULL, 0};
     const PolishConfig c = {
         .algorithm = algorithm, .improve = 0, .keep = keep, .slack = slack, .max_evals = evals, .seed = 1};
     *r = (PolishResult){.x = x, .f = f, .f_start = f_start};

@@ -64,7 +64,7 @@ static void world(World *w, size_t n_var, size_t n_obj, size_t n_con)
     memset(w, 0, sizeof *w);
     for (size_t d = 0; d < n_var; d++)
         w->upper[d] = 1.0;
-    w->problem = (Problem){n_var, n_obj, n_con, w->lower, w->upper, evaluate, NULL, w, 0};
+    w->problem = (Problem){n_var, n_obj, n_con, w->lower, w->upper, evaluate, NULL, w, 0, NULL, 0};
 }
 
 static SearchConfig config(size_t initial, size_t max_evals)
