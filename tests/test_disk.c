@@ -3,6 +3,7 @@
 
 #include <signal.h>
 #include <sys/mount.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 
 #include "run/lock.h"
@@ -138,6 +139,52 @@ static void test_a_folder_that_is_read_only_is_named(void **state)
     forget(&old_run);
 }
 
+static size_t simulated_in(const char *name)
+{
+    char path[PATH_MAX];
+    Saved saved;
+    Err err = {0};
+    const Status status = saved_read(&saved, path_of(name, path), &err);
+    const size_t n = saved.n;
+    saved_free(&saved);
+    if (status != STATUS_OK)
+        print_error("%s\n", err.text);
+    return n;
+}
+
+/* Killed, then put where nothing can be written, with and without what SQLite shares between processes (-shm). */
+static void test_a_killed_run_in_a_read_only_folder_is_read_with_its_journal(void **state)
+{
+    (void)state;
+    static const char STEADY[] = "[problem]\nkind = external\ncommand = sh tests/worker.sh steady\nvariables = 3\n"
+                                 "objectives = 2\n[search]\ninitial = 100\nmax_evals = 120\n";
+    char folder[PATH_MAX], command[1024], path[PATH_MAX];
+    struct stat journal;
+    write_in_place("steady.ini", STEADY);
+    const pid_t pid = start("steady.ini", "killed");
+    do {
+        rest(0.05);
+    } while (stat(path_of("killed/run.sqlite-wal", path), &journal) != 0 || journal.st_size < 80000);
+    kill(pid, SIGKILL);
+    wait_end(pid);
+    assert_int_equal(mkdir(path_of("archive", folder), 0777), 0);
+    if (mount(folder, folder, NULL, MS_BIND, NULL) != 0)
+        skip();
+    snprintf(command, sizeof command,
+             "cd '%s' && cp -r killed archive/all && cp -r killed archive/two && rm archive/two/run.sqlite-shm",
+             place.folder);
+    assert_int_equal(system(command), 0);
+    assert_int_equal(mount(folder, folder, NULL, MS_BIND | MS_REMOUNT | MS_RDONLY, NULL), 0);
+    const size_t n_all = simulated_in("archive/all"), n_two = simulated_in("archive/two");
+    Said said;
+    run(&said, "status @/archive/two");
+    umount2(folder, MNT_DETACH);
+    assert_int_equal(said.code, 0);
+    forget(&said);
+    const size_t n = simulated_in("killed");
+    assert_true(n > 2 && n_all == n && n_two == n);
+}
+
 static void test_a_database_that_somebody_keeps_locked_is_busy(void **state)
 {
     (void)state;
@@ -184,10 +231,56 @@ static void test_damage_is_found_on_opening_whatever_was_hit(void **state)
     assert_int_equal(truncate(path_of("hurt/run.sqlite", path), 0), 0);
     expect(74, "is empty, no database of a run; remove it", "optimize @/hurt");
     overwrite("sound/run.sqlite", 60, "\0\0\0\x63", 4); /* user_version */
-    expect(74, "has format 99", "status @/sound");
+    expect(74, "has format 99, this program reads 2; a newer imtet wrote it", "status @/sound");
+    overwrite("sound/run.sqlite", 60, "\0\0\0\1", 4);
+    expect(74, "has format 1, this program reads 2; an older imtet wrote it", "status @/sound");
+    expect(74, "an older imtet wrote it: only that one can go on", "optimize @/sound");
     char *list = output_of("list @");
     assert_non_null(strstr(list, "unreadable"));
     free(list);
+}
+
+static long peak_kib(void)
+{
+    struct rusage used;
+    assert_int_equal(getrusage(RUSAGE_CHILDREN, &used), 0);
+    return used.ru_maxrss;
+}
+
+/* Somebody's file that would compute rows without end or of a gigabyte is refused, and costs no memory. */
+static void test_a_database_runs_nothing_and_needs_no_more_memory_than_its_size(void **state)
+{
+    (void)state;
+    static const char *const CHANGES[] = {
+        "ALTER TABLE evaluation RENAME TO was; CREATE VIEW evaluation AS WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL "
+        "SELECT i + 1 FROM n) SELECT i AS id, 0 AS generation, 'sampled' AS kind, 'ok' AS outcome, '' AS reason, 0.1 AS "
+        "seconds, x, f, spread, violation, extra FROM n, was WHERE was.id = 1",
+        "ALTER TABLE state RENAME TO was; CREATE VIEW state AS SELECT 1 AS id, 0 AS generation, zeroblob(900000000) AS "
+        "bytes",
+        "CREATE TRIGGER more AFTER INSERT ON session BEGIN DELETE FROM evaluation; END",
+        "CREATE VIRTUAL TABLE words USING fts5(a)",
+        /* a column that is computed: a row of a gigabyte in a small file */
+        "ALTER TABLE state RENAME TO was; CREATE TABLE state(id INTEGER, generation INTEGER, bytes AS "
+        "(zeroblob(900000000))); INSERT INTO state VALUES (1, 0)",
+    };
+    char command[512], path[PATH_MAX];
+    free(output_of("optimize @/textbook.ini --max-evals 30 --out @/own"));
+    free(output_of("status @/own"));
+    const long usual = peak_kib();
+    for (size_t i = 0; i < sizeof CHANGES / sizeof CHANGES[0]; i++) {
+        sqlite3 *db;
+        char *why = NULL;
+        snprintf(command, sizeof command, "rm -rf '%s/sent'; cp -r '%s/own' '%s/sent'", place.folder, place.folder,
+                 place.folder);
+        assert_int_equal(system(command), 0);
+        assert_int_equal(sqlite3_open(path_of("sent/run.sqlite", path), &db), SQLITE_OK);
+        if (sqlite3_exec(db, CHANGES[i], NULL, NULL, &why) != SQLITE_OK)
+            fail_msg("%s: %s", CHANGES[i], why);
+        sqlite3_close(db);
+        expect(74, "sent/run.sqlite: ", "status @/sent");
+        expect(74, "sent/run.sqlite: ", "optimize @/sent --max-evals 40 --force-settings");
+    }
+    assert_true(peak_kib() < usual + 64 * 1024);
 }
 
 static void test_a_run_is_named_by_its_database_or_through_the_root_too(void **state)
@@ -241,8 +334,10 @@ int main(void)
         cmocka_unit_test(test_a_run_that_can_write_no_more_says_so_and_goes_on_later),
         cmocka_unit_test(test_a_full_disk_is_named_and_what_was_stored_stays_readable),
         cmocka_unit_test(test_a_folder_that_is_read_only_is_named),
+        cmocka_unit_test(test_a_killed_run_in_a_read_only_folder_is_read_with_its_journal),
         cmocka_unit_test(test_a_database_that_somebody_keeps_locked_is_busy),
         cmocka_unit_test(test_damage_is_found_on_opening_whatever_was_hit),
+        cmocka_unit_test(test_a_database_runs_nothing_and_needs_no_more_memory_than_its_size),
         cmocka_unit_test(test_a_run_is_named_by_its_database_or_through_the_root_too),
         cmocka_unit_test(test_readers_need_the_database_alone_and_the_files_come_back),
     };

@@ -3,6 +3,9 @@
  * the environment. The linker puts the functions below in the place of the real ones (Makefile). */
 #include "runs.h"
 
+#include <signal.h>
+#include <sys/resource.h>
+
 #include <sqlite3.h>
 
 #include "run/store.h"
@@ -297,7 +300,26 @@ static void test_whichever_call_of_a_run_fails_it_goes_on_to_the_same_tables(voi
     schema_free(&schema);
 }
 
-/* What SQLite says becomes a status and words; a reader for whom there is no journal reads the file alone. */
+static void refused_copy(const char *folder, const char *copies, rlim_t longest, const char *words)
+{
+    Saved h;
+    Err err = {0};
+    struct rlimit was;
+    assert_int_equal(getrlimit(RLIMIT_FSIZE, &was), 0);
+    const struct rlimit limit = {longest < was.rlim_max ? longest : was.rlim_cur, was.rlim_max};
+    setenv("TMPDIR", copies, 1);
+    signal(SIGXFSZ, SIG_IGN);
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &limit), 0);
+    arm(PREPARE, 1, SQLITE_CANTOPEN);
+    assert_int_equal(saved_read(&h, folder, &err), STATUS_IO);
+    fault.armed = 0;
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &was), 0);
+    unsetenv("TMPDIR");
+    if (!strstr(err.text, words))
+        fail_msg("%s, wanted %s", err.text, words);
+}
+
+/* What SQLite says becomes a status and words; who may not share the journal reads a copy of file and journal. */
 static void test_every_fault_of_the_database_is_said_in_our_words(void **state)
 {
     (void)state;
@@ -332,9 +354,12 @@ static void test_every_fault_of_the_database_is_said_in_our_words(void **state)
     CHECK_OK(work(store, &s, &schema, 2, &err), &err);
     arm(PREPARE, 1, SQLITE_CANTOPEN); /* the journal is in use: the file alone would be an old run */
     Saved h;
-    assert_int_equal(saved_read(&h, folder, &err), STATUS_IO);
+    CHECK_OK(saved_read(&h, folder, &err), &err);
     fault.armed = 0;
-    assert_non_null(strstr(err.text, "read-only"));
+    assert_int_equal(h.n, UNTIL[1]);
+    saved_free(&h);
+    refused_copy(folder, "/nowhere", RLIM_INFINITY, "a copy has no place: /nowhere/imtet-");
+    refused_copy(folder, place.folder, 0, "it cannot be copied to");
     store_free(store);
     schema_free(&schema);
     Database *d;

@@ -1,5 +1,7 @@
 #include "run/database.h"
 
+#include <errno.h>
+#include <fcntl.h>
 #include <limits.h>
 #include <math.h>
 #include <stdarg.h>
@@ -145,6 +147,8 @@ static Status open_file(Database **out, const char *path, const char *name, int 
     }
     sqlite3_extended_result_codes(d->db, 1);
     sqlite3_busy_timeout(d->db, BUSY_MS);
+    sqlite3_db_config(d->db, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, NULL);
+    sqlite3_db_config(d->db, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, NULL);
     *out = d;
     return STATUS_OK;
 }
@@ -168,6 +172,30 @@ static Status take_word(sqlite3_stmt *row, void *user, Err *err)
     return STATUS_OK;
 }
 
+static Status check_format(const Database *d, double format, Err *err)
+{
+    if (format > DATABASE_FORMAT)
+        return fail(err, STATUS_IO, "%s: has format %g, this program reads %d; a newer imtet wrote it", d->path, format,
+                    DATABASE_FORMAT);
+    if (format < DATABASE_FORMAT)
+        return fail(err, STATUS_IO,
+                    "%s: has format %g, this program reads %d; an older imtet wrote it: only that one can go on with "
+                    "it, its front.csv and settings.ini can be read by anyone",
+                    d->path, format, DATABASE_FORMAT);
+    return STATUS_OK;
+}
+
+/* A view or a virtual table in the place of a table could compute rows without end. */
+static Status check_tables(Database *d, Err *err)
+{
+    static const char FOREIGN[] = "SELECT count(*) FROM sqlite_schema WHERE name <> 'designs' AND (type NOT IN "
+                                  "('table', 'index') OR coalesce(rootpage, 0) < 2 OR sql LIKE '%virtual%')";
+    double n;
+    TRY(database_number(d, FOREIGN, 0, &n, err));
+    return n == 0 ? STATUS_OK
+                  : fail(err, STATUS_IO, "%s: is no database of a run: it holds views or triggers", d->path);
+}
+
 /* Ours, of a format that is known, and whole. */
 static Status check(Database *d, DatabaseMode mode, Err *err)
 {
@@ -177,16 +205,14 @@ static Status check(Database *d, DatabaseMode mode, Err *err)
     TRY(database_number(d, "PRAGMA user_version", 0, &format, err));
     if (application != DATABASE_APPLICATION)
         return fail(err, STATUS_IO, "%s: is no database of a run", d->path);
-    if (format != DATABASE_FORMAT)
-        return fail(err, STATUS_IO, "%s: has format %g, this program reads %d; a newer imtet wrote it", d->path, format,
-                    DATABASE_FORMAT);
+    TRY(check_format(d, format, err));
+    TRY(check_tables(d, err));
     TRY(database_each(d, mode == DATABASE_WRITE ? "PRAGMA integrity_check(1)" : "PRAGMA quick_check(1)", take_word,
                       word, err));
     return strcmp(word, "ok") == 0 ? STATUS_OK : explain(d->path, SQLITE_CORRUPT, word, err);
 }
 
-/* A damaged file may claim a row of a gigabyte: none is longer than the file and its journal. The writer needs no
- * bound, it adds rows of its own. */
+/* A damaged file may claim a row of a gigabyte: none is longer than the file and its journal. */
 static void bound_rows(Database *d)
 {
     enum { SLACK = 1 << 20 };
@@ -198,6 +224,11 @@ static void bound_rows(Database *d)
     sqlite3_limit(d->db, SQLITE_LIMIT_LENGTH, (int)fmin(2.0 * (double)(file.st_size + beside.st_size) + SLACK, INT_MAX));
 }
 
+void database_grow(Database *d)
+{
+    sqlite3_limit(d->db, SQLITE_LIMIT_LENGTH, INT_MAX);
+}
+
 static Status prepare(Database *d, DatabaseMode mode, Err *err)
 {
     if (mode == DATABASE_WRITE)
@@ -205,20 +236,59 @@ static Status prepare(Database *d, DatabaseMode mode, Err *err)
     return check(d, mode, err);
 }
 
-/* A folder that may not be written to has no place for the files that readers share; where no writer has left a
- * journal either, the file alone is all there is. */
-static Status open_immutable(Database **out, const char *path, Err *err)
+static Status copy_file(const char *from, const char *to, Err *err)
 {
-    char real[PATH_MAX], uri[3 * PATH_MAX + 32], *to = uri + sprintf(uri, "file:");
-    struct stat journal = {0};
-    snprintf(uri + 5, PATH_MAX + 5, "%s-wal", path);
-    stat(uri + 5, &journal);
-    if (journal.st_size > 0)
-        return explain(path, SQLITE_READONLY, "", err);
-    for (const char *from = real_path(path, real); *from; from++)
-        to += strchr("%?#", *from) ? sprintf(to, "%%%02X", (unsigned)*from) : sprintf(to, "%c", *from);
-    sprintf(to, "?immutable=1");
-    return open_file(out, path, uri, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, err);
+    char bytes[1 << 16];
+    ssize_t n = 0;
+    const int in = open(from, O_RDONLY | O_CLOEXEC), out = open(to, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+    while (in >= 0 && out >= 0 && (n = read(in, bytes, sizeof bytes)) > 0)
+        if (write(out, bytes, (size_t)n) != n)
+            break;
+    const int whole = in >= 0 && out >= 0 && n == 0, why = errno;
+    if (in >= 0)
+        close(in);
+    if (out >= 0)
+        close(out);
+    return whole ? STATUS_OK
+                 : fail(err, STATUS_IO, "%s: its folder is read-only, and it cannot be copied to %s: %s", from, to,
+                        strerror(why));
+}
+
+static void remove_copy(const char *folder)
+{
+    static const char *const NAMES[] = {"copy", "copy-wal", "copy-shm"};
+    char path[PATH_MAX + 16];
+    for (size_t i = 0; i < sizeof NAMES / sizeof NAMES[0]; i++) {
+        snprintf(path, sizeof path, "%s/%s", folder, NAMES[i]);
+        unlink(path);
+    }
+    rmdir(folder);
+}
+
+/* A folder that may not be written to has no place for the files that readers share: a copy is read, journal and all.
+ * The copy has no name any more when it is open and ends with the program, however that ends. */
+static Status open_copy(Database **out, const char *path, Err *err)
+{
+    char folder[PATH_MAX], to[PATH_MAX + 16], journal[PATH_MAX + 8];
+    const char *place = getenv("TMPDIR");
+    snprintf(folder, sizeof folder, "%s/imtet-XXXXXX", place && *place ? place : "/tmp");
+    snprintf(journal, sizeof journal, "%s-wal", path);
+    if (!mkdtemp(folder))
+        return fail(err, STATUS_IO, "%s: its folder is read-only, and a copy has no place: %s: %s", path, folder,
+                    strerror(errno));
+    snprintf(to, sizeof to, "%s/copy-wal", folder);
+    Status status = access(journal, F_OK) == 0 ? copy_file(journal, to, err) : STATUS_OK;
+    snprintf(to, sizeof to, "%s/copy", folder);
+    if (status == STATUS_OK)
+        status = copy_file(path, to, err);
+    if (status == STATUS_OK)
+        status = open_file(out, path, to, SQLITE_OPEN_READWRITE, err);
+    if (status == STATUS_OK) {
+        bound_rows(*out);
+        status = check(*out, DATABASE_READ, err);
+    }
+    remove_copy(folder);
+    return status;
 }
 
 Status database_open(Database **out, const char *path, DatabaseMode mode, Err *err)
@@ -232,16 +302,14 @@ Status database_open(Database **out, const char *path, DatabaseMode mode, Err *e
         return fail(err, STATUS_IO, "%s: is empty, no database of a run; remove it, and the run begins anew", path);
     TRY(open_file(out, path, real_path(path, real),
                   mode == DATABASE_WRITE ? SQLITE_OPEN_READWRITE : SQLITE_OPEN_READONLY, err));
-    if (mode == DATABASE_READ)
-        bound_rows(*out);
+    bound_rows(*out);
     Status status = prepare(*out, mode, err);
     if (status != STATUS_OK && mode == DATABASE_READ) {
         const int code = sqlite3_errcode((*out)->db) & 0xff;
         if (code == SQLITE_CANTOPEN || code == SQLITE_READONLY) {
             database_close(*out);
-            TRY(open_immutable(out, path, err));
-            bound_rows(*out);
-            status = check(*out, mode, err);
+            *out = NULL;
+            status = open_copy(out, path, err);
         }
     }
     if (status != STATUS_OK) {

@@ -2,7 +2,8 @@
  *
  *   journal WAL, synchronous FULL: a commit returns when it is on the disk; readers never wait for the writer
  *   application_id tells that the file is ours, user_version its format; both, and the integrity, are checked on
- * opening
+ *   opening. A file from somebody else runs nothing: what is read are tables, no views of its own and no triggers, and
+ *   no row is longer than the file
  *
  * Every write of a run's database goes through database_do.
  *
@@ -18,7 +19,7 @@
 
 #include "base/status.h"
 
-enum { DATABASE_APPLICATION = 0x494d5445 /* "IMTE" */, DATABASE_FORMAT = 1 };
+enum { DATABASE_APPLICATION = 0x494d5445 /* "IMTE" */, DATABASE_FORMAT = 2 /* raised with every change of the tables */ };
 
 typedef struct Database Database;
 
@@ -27,6 +28,7 @@ typedef enum { DATABASE_WRITE, DATABASE_READ } DatabaseMode;
 /* A new file, or one that a fault left unfinished and is begun again. */
 Status database_create(Database **out, const char *path, Err *err);
 Status database_open(Database **out, const char *path, DatabaseMode mode, Err *err);
+void database_grow(Database *d); /* what was there is read: from here on rows may be longer than the file was */
 void database_close(Database *d); /* NULL is fine; what was committed is on the disk already */
 const char *database_path(const Database *d);
 

@@ -294,7 +294,7 @@ static Status load(Loading *l, Err *err)
                       "SELECT started, ended, host, pid, threads, simulated_before, seconds, stopped, is_final FROM "
                       "session ORDER BY number",
                       take_session, l, err));
-    return database_each(d, "SELECT bytes FROM state", take_state, l, err);
+    return database_each(d, "SELECT bytes FROM state LIMIT 1", take_state, l, err);
 }
 
 Status saved_load(Saved *h, Database *d, Err *err)

@@ -131,6 +131,7 @@ static Status take_run(RunStore *store, Err *err)
         return STATUS_OK;
     TRY(open_database(store, err));
     TRY(saved_load(&store->saved, store->db, err));
+    database_grow(store->db);
     store->has_saved = 1;
     store->has_polished = store->saved.n > 0 && store->saved.row[store->saved.n - 1].id >= POLISHED_FIRST;
     return STATUS_OK;
@@ -224,6 +225,7 @@ Status store_begin(RunStore *store, const Schema *schema, const Settings *used, 
     path_in(store, "run.sqlite", path);
     TRY(tables_create(path, schema, used, provenance, err));
     TRY(open_database(store, err));
+    database_grow(store->db);
     const Saved empty = {.schema = *schema};
     TRY(write_file(store, "settings.ini", put_settings, used, err));
     TRY(write_file(store, "provenance.json", put_line, provenance, err));
