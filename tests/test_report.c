@@ -2,6 +2,7 @@
 #include "check.h"
 
 #include <jansson.h>
+#include <limits.h>
 #include <math.h>
 #include <cblas.h>
 #include <stdio.h>
@@ -12,7 +13,7 @@
 #include <unistd.h>
 
 #include "base/random.h"
-#include "moga/hypervolume.h"
+#include "run/saved.h"
 #include "report/report.h"
 #include "report/wavelet.h"
 
@@ -181,46 +182,24 @@ static void test_the_chosen_design_is_simulated_as_the_search_did(void **state)
     report_close(&r);
 }
 
-/* Boxes [f, 1.1]^2 over 1.1^2, by hand. */
-static void test_growth_of_two_objectives_is_exact_and_leaves_failures_out(void **state)
+static void test_growth_is_the_hypervolume_that_status_tells(void **state)
 {
     (void)state;
-    const double generation[] = {0, 0, 0, 1, 2}, nan = NAN;
-    const double F[] = {0, 1, nan, nan, 1, 0, 0.5, 0.5, 0.6, 0.6}, ideal[] = {0, 0}, span[] = {1, 1};
+    char path[PATH_MAX];
     Convergence c;
+    Saved h;
     Err err = {0};
-    CHECK_OK(convergence_of(5, 2, generation, F, ideal, span, &c, &err), &err);
-    assert_int_equal(c.n, 3);
-    assert_int_equal(c.n_failed, 1);
-    assert_int_equal(c.n_evaluated, 5);
-    assert_true(c.simulated[0] == 3 && c.simulated[2] == 5);
-    assert_close(c.volume[0], (2 * 0.11 - 0.01) / 1.21, 1e-12);
-    assert_close(c.volume[1], (0.36 + 2 * 0.1 * 0.5) / 1.21, 1e-12);
-    assert_true(c.volume[2] == c.volume[1] && c.standard_error[2] == 0);
-    convergence_free(&c);
-}
-
-static void test_growth_of_many_objectives_is_within_its_standard_error_and_never_falls(void **state)
-{
-    (void)state;
-    enum { N = 60, M = 5 };
-    double generation[N], F[N * M], reference[M] = {1.1, 1.1, 1.1, 1.1, 1.1};
-    const double ideal[M] = {0}, span[M] = {1, 1, 1, 1, 1};
-    Random random = random_stream(5, RANDOM_TEST, 0, 0);
-    Convergence c;
-    Hypervolume exact;
-    Err err = {0};
-    for (int i = 0; i < N; i++)
-        generation[i] = i / 10;
-    for (int i = 0; i < N * M; i++)
-        F[i] = random_uniform(&random);
-    CHECK_OK(convergence_of(N, M, generation, F, ideal, span, &c, &err), &err);
-    CHECK_OK(hypervolume_exact(N, M, F, reference, &exact, &err), &err);
-    assert_int_equal(c.n, 6);
-    for (size_t i = 1; i < c.n; i++)
-        assert_true(c.volume[i] >= c.volume[i - 1]);
-    assert_true(c.standard_error[5] > 0);
-    assert_true(fabs(c.volume[5] - exact.volume / pow(1.1, M)) < 4 * c.standard_error[5]);
+    snprintf(path, sizeof path, "%s/dtlz", folder);
+    CHECK_OK(convergence_read(path, &c, &err), &err);
+    CHECK_OK(saved_read(&h, path, &err), &err);
+    assert_true(c.n > 1 && c.n == h.n_generations && c.n_evaluated == h.n);
+    for (size_t i = 0; i < c.n; i++) {
+        assert_true(c.volume[i] == h.generation[i].hypervolume && c.volume[i] > 0 && c.volume[i] < 1);
+        assert_true(c.simulated[i] == (double)h.generation[i].simulated);
+        assert_close(c.standard_error[i], sqrt(c.volume[i] * (1 - c.volume[i]) / 20000), 1e-12);
+        assert_true(i == 0 || c.volume[i] >= c.volume[i - 1]);
+    }
+    saved_free(&h);
     convergence_free(&c);
 }
 
@@ -446,8 +425,7 @@ int main(void)
         cmocka_unit_test(test_the_wavelet_of_a_burst_is_largest_at_its_instant_as_a_product_of_gaussians_says),
         cmocka_unit_test(test_energies_add_up_to_the_input_at_every_instant_and_end_as_the_result_says),
         cmocka_unit_test(test_the_chosen_design_is_simulated_as_the_search_did),
-        cmocka_unit_test(test_growth_of_two_objectives_is_exact_and_leaves_failures_out),
-        cmocka_unit_test(test_growth_of_many_objectives_is_within_its_standard_error_and_never_falls),
+        cmocka_unit_test(test_growth_is_the_hypervolume_that_status_tells),
         cmocka_unit_test(test_the_page_holds_the_rows_of_the_front_to_the_last_digit),
         cmocka_unit_test(test_the_policy_allows_nothing_but_hashes),
         cmocka_unit_test(test_a_run_of_another_problem_has_no_tower_in_its_report),

@@ -1,16 +1,18 @@
-/* report/convergence.h -- how the front grew: hypervolume after every generation of a run.
+/* report/convergence.h -- how the front grew: hypervolume after every generation of a run, as `imtet status` tells it.
  *
- *   volume = share of the box [ideal, ideal + 1.1 span] of the last front that the designs so far dominate
+ *   volume = share of a box about the first sample that the designs so far dominate (moga/cover.h, results/README.md)
  *
- * Up to three objectives it is exact (moga/hypervolume.h), else a share of uniform samples of the box, the same ones
- * for every generation, so that the curve never falls; with its standard error.
+ * The samples of the box are the same for every generation, so that the curve never falls; standard_error is that of a
+ * share of so many samples.
  *
- * Source     the run's database: generations that have finished; a design that failed or breaks a limit reaches nothing
+ * Source     the run's database: generations that have finished
  * Ownership  convergence_read allocates, convergence_free releases (an empty Convergence is fine) */
 #ifndef IMTET_REPORT_CONVERGENCE_H
 #define IMTET_REPORT_CONVERGENCE_H
 
-#include "run/front.h"
+#include <stddef.h>
+
+#include "base/status.h"
 
 typedef struct {
     size_t n_evaluated, n_failed;
@@ -20,11 +22,7 @@ typedef struct {
 } Convergence;
 
 /* A run without a database is STATUS_OK and an empty Convergence. */
-Status convergence_read(const Front *front, const char *folder, Convergence *out, Err *err);
-
-/* generation (n) ascending, F (n, n_obj) minimised, NaN in a row that reaches nothing (counted as failed). */
-Status convergence_of(size_t n, size_t n_obj, const double generation[], const double F[], const double ideal[],
-                      const double span[], Convergence *out, Err *err);
+Status convergence_read(const char *folder, Convergence *out, Err *err);
 void convergence_free(Convergence *c);
 
 #endif

@@ -35,7 +35,7 @@ Status report_open(Report *r, const char *folder, const char *design, const Deta
     Status status = front_pick(&r->front, folder, design, &r->chosen, err);
     if (status == STATUS_OK) {
         r->knee = front_knee(&r->front);
-        status = convergence_read(&r->front, folder, &r->convergence, err);
+        status = convergence_read(folder, &r->convergence, err);
     }
     if (status == STATUS_OK)
         status = take_provenance(r, err);

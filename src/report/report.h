@@ -15,6 +15,7 @@
 
 #include "report/convergence.h"
 #include "report/detail.h"
+#include "run/front.h"
 
 typedef struct {
     char folder[PATH_MAX];

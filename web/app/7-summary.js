@@ -63,9 +63,9 @@ function growthPart() {
     ],
   }));
   const last = rows[rows.length - 1];
-  figure.append(element("figcaption", {}, "Share of the box between the best of every objective and 1.1 times the width of the final front that the designs so far dominate" +
-    (last.e ? `; at the end ${show(last.y)} \u00b1 ${show(last.e / 2)} % (standard error of the estimate; band: twice that)` : `, exact; at the end ${show(last.y)} %`) +
-    ". A curve that still climbs asks for a longer run."));
+  figure.append(element("figcaption", {}, "Share of a box that the designs so far dominate, in every objective from the worst of the first sample to a fifth of its range beyond the best " +
+    `(imtet status shows the same); at the end ${show(last.y)} \u00b1 ${show(last.e / 2)} % (standard error of the estimate; band: twice that). ` +
+    "A curve that still climbs asks for a longer run."));
 }
 
 function provenancePart() {
