@@ -53,12 +53,16 @@ STABILITY.asan := --engine fast
 STABILITY_OBJ := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/stability/*.c))
 PROGRAM := $(if $(filter release,$(MODE)),imtet,$(BUILD)/imtet)
 
-.PHONY: tsan tsan-here asan asan-here valgrind torture coverage coverage-here faults fuzz fuzz-here all web report-bench setup run test test-here compare stability stability-long laws bench chart format install clean .FORCE pictures
+.PHONY: tsan tsan-here asan asan-here valgrind torture coverage coverage-here faults fuzz fuzz-here all web report-bench setup setup-browser run test test-here compare stability stability-long laws bench chart format install clean .FORCE pictures
 .SECONDARY:
 all: $(PROGRAM)
 
 setup:
 	@scripts/setup
+
+# Only for the report's tests in a browser, its bundle of charts and its times.
+setup-browser:
+	@scripts/setup packages-browser.txt
 
 run: setup
 	@$(MAKE) --no-print-directory -j2 all
@@ -201,7 +205,7 @@ $(BUILD)/web/page.o: build/web/page.html
 	@mkdir -p $(@D)
 	$(Q)$(LD) -r -b binary -z noexecstack -o $@ $<
 
-web:
+web: setup-browser
 	@cd web && npm ci --ignore-scripts --no-audit --no-fund --silent && node bundle.mjs
 
 $(BUILD)/src/run/provenance.o: CPPFLAGS += -DIMTET_VERSION='"$(VERSION)"' \
@@ -236,8 +240,8 @@ pictures: $(PROGRAM)
 	@node tests/report/picture.mjs $(BUILD)/pictures/report.html docs/pictures/report-front.jpg '#front' 1180 'J3 acceleration [g] to=6' 'J1 sway [m] to=0.8'
 	@node tests/report/picture.mjs $(BUILD)/pictures/report.html docs/pictures/report-design.jpg '#design' 2250
 
-# How long a report of 10,000 designs takes to be painted and brushed; wants chromium and node.
-report-bench: $(PROGRAM)
+# How long a report of 10,000 designs takes to be painted and brushed.
+report-bench: setup-browser $(PROGRAM)
 	@tests/report/bench $(abspath $(PROGRAM)) build/report-bench
 
 format:

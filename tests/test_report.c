@@ -376,7 +376,7 @@ static void need_browser(void)
 {
     if (shell("command -v chromium >/dev/null && command -v node >/dev/null") == 0)
         return;
-    print_message("chromium or node is not installed: the report is not tried in a browser\n");
+    print_message("chromium or node is not installed: the report is not tried in a browser (make setup-browser)\n");
     skip();
 }
 

@@ -30,7 +30,12 @@ async function open() {
   await page.until("document.documentElement?.dataset.ready === 'yes'");
 }
 
-const settle = () => page.evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done))))");
+const frame = () => page.evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done))))");
+async function settle() {
+  await frame();
+  await page.until("!document.documentElement.dataset.busy");
+  await frame();
+}
 const mouse = (type, x, y) => page.call("Input.dispatchMouseEvent", { type, x, y, button: "left", buttons: type === "mouseReleased" ? 0 : 1, clickCount: 1 });
 
 async function boxOf(selector, nth = 0) {
@@ -227,9 +232,10 @@ async function measure() {
   await mouse("mousePressed", box.x + box.width / 2, box.y + 0.1 * box.height);
   for (let k = 1; k <= 40; k++) {
     await mouse("mouseMoved", box.x + box.width / 2, box.y + (0.1 + 0.02 * k) * box.height);
-    await settle();
+    await frame();
   }
   await mouse("mouseReleased", box.x + box.width / 2, box.y + 0.9 * box.height);
+  await settle();
   const times = (await page.evaluate("window.times")).sort((a, b) => a - b);
   const ms = (v) => `${Math.round(v)} ms`;
   console.log(`${rows.length} designs, ${(html.length / 1e6).toFixed(1)} MB: first paint ${ms(paint)}, front drawn ${ms(front)}, all drawn ${ms(whole)}; ` +

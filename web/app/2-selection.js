@@ -9,8 +9,56 @@ const state = {
   marked: rowOf.get(run.chosen),
 };
 
-// What is drawn anew when the selection, and when the axes or colours changed.
+// What is drawn anew when the selection, and when the axes or colours changed. While a range is dragged, only what is in
+// sight follows at once; the rest follows REST_MS after the last change, as do lines that take more than a frame.
 const views = { selection: [], layout: [] };
+const REST_MS = 100;
+let resting; // timer; undefined: at rest
+const atRest = new Set();
+
+// `host` null: too small to wait.
+function follow(host, draw) {
+  const view = { draw, inSight: true, isStale: false };
+  views.selection.push(view);
+  if (!host) return;
+  new IntersectionObserver((entries) => {
+    view.inSight = entries[entries.length - 1].isIntersecting;
+    if (view.inSight && view.isStale) redraw(view);
+  }).observe(host);
+}
+
+function redraw(view) {
+  view.isStale = false;
+  view.draw();
+}
+
+function redrawAll() {
+  for (const view of views.selection) redraw(view);
+}
+
+// In the next frame, or at rest; a task that is not wanted any more is dropped.
+function later(task) {
+  const waits = { task, frame: 0 };
+  if (resting === undefined) waits.frame = requestAnimationFrame(task);
+  else atRest.add(waits);
+  return waits;
+}
+
+function drop(waits) {
+  if (!waits) return;
+  cancelAnimationFrame(waits.frame);
+  atRest.delete(waits);
+}
+
+function rest() {
+  clearTimeout(resting);
+  resting = undefined;
+  for (const view of views.selection) if (view.isStale) redraw(view);
+  for (const waits of atRest) waits.frame = requestAnimationFrame(waits.task);
+  atRest.clear();
+  delete document.documentElement.dataset.busy;
+}
+window.addEventListener("beforeprint", rest);
 
 function findSelected() {
   const { selected } = state;
@@ -28,16 +76,22 @@ let waiting = false;
 function selectionChanged() {
   if (waiting) return;
   waiting = true;
+  document.documentElement.dataset.busy = "yes";
   requestAnimationFrame(() => {
     waiting = false;
     findSelected();
-    for (const draw of views.selection) draw();
+    clearTimeout(resting);
+    resting = setTimeout(rest, REST_MS);
+    for (const view of views.selection) {
+      if (view.inSight) redraw(view);
+      else view.isStale = true;
+    }
   });
 }
 
 function layoutChanged() {
   for (const draw of views.layout) draw();
-  for (const draw of views.selection) draw();
+  redrawAll();
 }
 
 // Ranges given as null are taken away.
@@ -56,7 +110,7 @@ function clearRanges() {
 
 function mark(row) {
   state.marked = row;
-  for (const draw of views.selection) draw();
+  redrawAll();
 }
 
 // Shade of every design, 0..SHADES-1, and the designs in the order of their shades, so that few strokes change colour.

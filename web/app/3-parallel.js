@@ -11,7 +11,7 @@ function parallelCoordinates(host, name, shown) {
   const svg = charts.select(layers).append("svg");
   const margin = { top: 46, right: 40, bottom: 14, left: 46 }, height = shown === objectives ? 400 : 320;
   let width = 0, axes = [], places, x, pens, isBackDrawn;
-  const frames = { back: 0, front: 0 };
+  const frames = { back: null, front: null };
 
   // Better is down on every objective's axis.
   function axisOf(c) {
@@ -47,11 +47,11 @@ function parallelCoordinates(host, name, shown) {
   function inPasses(lane, lines, drawLine, after) {
     const passes = Math.ceil((lines.length * axes.length) / SEGMENTS_PER_FRAME) || 1;
     let pass = 0;
-    cancelAnimationFrame(frames[lane]);
+    drop(frames[lane]);
     const next = () => {
       for (let k = pass; k < lines.length; k += passes) drawLine(lines[k]);
       after();
-      if (++pass < passes) frames[lane] = requestAnimationFrame(next);
+      frames[lane] = ++pass < passes ? later(next) : null;
     };
     next();
   }
@@ -153,7 +153,7 @@ function parallelCoordinates(host, name, shown) {
   }
 
   views.layout.push(layout);
-  views.selection.push(() => {
+  follow(host, () => {
     if (host.hidden) return;
     drawFront();
     showRanges();

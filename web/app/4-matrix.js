@@ -154,7 +154,7 @@ function scatterMatrix(host) {
   }
 
   views.layout.push(layout);
-  views.selection.push(() => {
+  follow(host, () => {
     drawFront();
     showRanges();
     if (drawnFor !== state.marked) drawCard();

@@ -94,5 +94,5 @@ function designTable(host) {
   }
 
   putInOrder();
-  views.selection.push(draw);
+  follow(host, draw);
 }

@@ -52,7 +52,7 @@ function rangeInputs() {
   }
 
   box.append(...inputs.map(({ row }) => row));
-  views.selection.push(() => {
+  follow(null, () => {
     for (const { c, low, high } of inputs) {
       const range = state.ranges.get(c);
       if (document.activeElement !== low) low.value = range && range[0] > -Infinity ? show(range[0]) : "";
@@ -66,7 +66,7 @@ function frontPart() {
   const host = document.getElementById("front");
   const number = element("span", { class: "count", id: "count", role: "status" });
   const clear = element("button", { class: "plain", id: "clear", type: "button", onclick: clearRanges }, "Clear ranges");
-  views.selection.push(() => {
+  follow(null, () => {
     number.textContent = `${count(state.nSelected)} of ${count(n)} designs selected`;
     clear.disabled = state.ranges.size === 0;
   });
