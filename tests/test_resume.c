@@ -92,8 +92,8 @@ static int observe(const SearchView *v, void *user)
     s->n = v->n;
     s->last_generation = v->generation_now;
     memcpy(s->X, v->X, v->n * v->n_var * sizeof *v->X);
-    memcpy(s->F, v->F, v->n * v->n_obj * sizeof *v->F);
-    memcpy(s->G, v->G, v->n * v->n_con * sizeof *v->G);
+    memcpy(s->F, v->Y, v->n * v->n_obj * sizeof *v->Y);
+    memcpy(s->G, v->H, v->n * v->n_con * sizeof *v->H);
     memcpy(s->ok, v->ok, v->n);
     memcpy(s->kind, v->kind, v->n);
     memcpy(s->on_front, v->on_front, v->n);

@@ -173,6 +173,7 @@ static SearchView view_of(size_t g)
                         .n_obj = 2,
                         .X = X[0],
                         .F = F[0],
+                        .Y = F[0],
                         .ok = OK,
                         .kind = KIND,
                         .generation = GENERATION,

@@ -48,6 +48,8 @@ typedef enum { PROBLEM_TOWER, PROBLEM_EXTERNAL, PROBLEM_TEXTBOOK } ProblemKind;
 typedef enum { ROBUST_WORST, ROBUST_MEAN } Robust;
 typedef enum { UNIT_FROM_FILE, UNIT_M_S2, UNIT_CM_S2, UNIT_G } MotionUnit;
 
+typedef enum { NOISY_AUTO, NOISY_NO, NOISY_YES } Noisy;
+
 typedef struct {
     struct {
         char model[SETTINGS_TEXT_MAX]; /* guyan | appendix | a folder with K.csv and M.csv */
@@ -91,6 +93,7 @@ typedef struct {
         char lower[SETTINGS_TEXT_MAX], upper[SETTINGS_TEXT_MAX]; /* one number or a comma list */
         char senses[SETTINGS_TEXT_MAX];                          /* min or max, one word or a list */
         char variable_names[SETTINGS_TEXT_MAX], objective_names[SETTINGS_TEXT_MAX];
+        long noisy;   /* Noisy */
         double noise; /* [-] of a textbook problem's answers */
     } problem;
     struct {
@@ -101,6 +104,8 @@ typedef struct {
         long surrogate;     /* SurrogateUse */
         long asynchronous;  /* 0 or 1 */
         long survival;      /* SurvivalKind */
+        double repeats;     /* share of max_evals */
+        long members_min, members_max; /* answers of a design */
         long polish;        /* designs at the end */
         char limits[SETTINGS_TEXT_MAX];
         char start[SETTINGS_TEXT_MAX]; /* a CSV of designs or a run's folder, or none */

@@ -41,7 +41,8 @@ static Status write_selected(const Args *args, const Saved *h, FILE *f, Err *err
     export_front_header(f, &h->schema);
     for (size_t i = 0; i < n; i++)
         export_front_row(f, &h->schema, h->row[rows[i]].id, h->X + rows[i] * h->schema.n_var,
-                         h->F + rows[i] * h->schema.n_obj, h->spread + rows[i] * h->schema.n_obj);
+                         h->F + rows[i] * h->schema.n_obj, h->spread + rows[i] * h->schema.n_obj,
+                         h->row[rows[i]].members);
     free(rows);
     return STATUS_OK;
 }

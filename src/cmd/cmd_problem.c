@@ -50,7 +50,7 @@ static int write_new(const SearchView *view, void *user)
 {
     Writing *w = user;
     for (size_t i = w->n; i < view->n; i++)
-        write_row(w, view->X + i * view->n_var, view->F + i * view->n_obj);
+        write_row(w, view->X + i * view->n_var, view->Y + i * view->n_obj);
     w->n = view->n;
     w->n_front = view->n_front;
     w->seconds = view->seconds;

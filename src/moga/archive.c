@@ -9,13 +9,21 @@
 static void layout(Archive *a, Carve *c)
 {
     a->X = carve(c, a->n_max * a->n_var, sizeof(double));
+    a->Y = carve(c, a->n_max * a->n_obj, sizeof(double));
+    a->H = carve(c, a->n_max * a->n_con, sizeof(double));
     a->F = carve(c, a->n_max * a->n_obj, sizeof(double));
     a->G = carve(c, a->n_max * a->n_con, sizeof(double));
+    a->S = carve(c, a->n_max * a->n_obj, sizeof(double));
+    a->deviation = carve(c, a->n_max * a->n_obj, sizeof(double));
+    a->error = carve(c, a->n_max * a->n_obj, sizeof(double));
     a->violation = carve(c, a->n_max, sizeof(double));
     a->generation = carve(c, a->n_max, sizeof(size_t));
     a->front = carve(c, a->n_max, sizeof(size_t));
+    a->answers = carve(c, a->n_max, sizeof(size_t));
     a->slot = carve(c, a->n_slots, sizeof(size_t));
+    a->spread = carve(c, a->n_obj, sizeof(Spread));
     a->ok = carve(c, a->n_max, 1);
+    a->usable = carve(c, a->n_max, 1);
     a->kind = carve(c, a->n_max, 1);
     a->on_front = carve(c, a->n_max, 1);
 }
@@ -39,11 +47,13 @@ static size_t slot_of(const Archive *a, const double x[])
     return i;
 }
 
-static void remember(Archive *a, size_t row)
+/* Row of the first simulation of the row's design: its own, where it is the first. */
+static size_t remember(Archive *a, size_t row)
 {
     size_t *slot = &a->slot[slot_of(a, a->X + row * a->n_var)];
     if (!*slot)
         *slot = row + 1;
+    return *slot - 1;
 }
 
 static Status resize(Archive *a, size_t n_max, Err *err)
@@ -63,8 +73,16 @@ static Status resize(Archive *a, size_t n_max, Err *err)
     a->store = store;
     if (old.n > 0) {
         memcpy(a->X, old.X, old.n * a->n_var * sizeof *a->X);
+        memcpy(a->Y, old.Y, old.n * a->n_obj * sizeof *a->Y);
+        memcpy(a->H, old.H, old.n * a->n_con * sizeof *a->H);
         memcpy(a->F, old.F, old.n * a->n_obj * sizeof *a->F);
         memcpy(a->G, old.G, old.n * a->n_con * sizeof *a->G);
+        memcpy(a->S, old.S, old.n * a->n_obj * sizeof *a->S);
+        memcpy(a->deviation, old.deviation, old.n * a->n_obj * sizeof *a->deviation);
+        memcpy(a->error, old.error, old.n * a->n_obj * sizeof *a->error);
+        memcpy(a->answers, old.answers, old.n * sizeof *a->answers);
+        memcpy(a->spread, old.spread, a->n_obj * sizeof *a->spread);
+        memcpy(a->usable, old.usable, old.n);
         memcpy(a->violation, old.violation, old.n * sizeof *a->violation);
         memcpy(a->generation, old.generation, old.n * sizeof *a->generation);
         memcpy(a->front, old.front, old.n_front * sizeof *a->front);
@@ -102,14 +120,15 @@ static int all_finite(size_t n, const double v[])
  * dominates. */
 static void update_front(Archive *a, size_t row)
 {
-    const double *f = a->F + row * a->n_obj;
+    const size_t m = a->n_obj;
+    const double *f = a->F + row * m, *error = a->error + row * m;
     for (size_t i = 0; i < a->n_front; i++)
-        if (dominates(a->n_obj, a->F + a->front[i] * a->n_obj, f))
+        if (dominates_surely(m, a->F + a->front[i] * m, a->error + a->front[i] * m, f, error))
             return;
     size_t kept = 0;
     for (size_t i = 0; i < a->n_front; i++) {
         const size_t member = a->front[i];
-        if (dominates(a->n_obj, f, a->F + member * a->n_obj))
+        if (dominates_surely(m, f, error, a->F + member * m, a->error + member * m))
             a->on_front[member] = 0;
         else
             a->front[kept++] = member;
@@ -117,6 +136,65 @@ static void update_front(Archive *a, size_t row)
     a->on_front[row] = 1;
     a->front[kept] = row;
     a->n_front = kept + 1;
+}
+
+static void set_errors(Archive *a, size_t row)
+{
+    for (size_t k = 0; k < a->n_obj; k++) {
+        const size_t i = row * a->n_obj + k;
+        a->deviation[i] = sqrt(spread_variance(&a->spread[k], a->F[i], a->S[i], a->answers[row]));
+        a->error[i] = a->deviation[i] / sqrt((double)a->answers[row]);
+    }
+}
+
+static void add_design(Archive *a, size_t row)
+{
+    memcpy(a->F + row * a->n_obj, a->Y + row * a->n_obj, a->n_obj * sizeof *a->F);
+    if (a->n_con > 0)
+        memcpy(a->G + row * a->n_con, a->H + row * a->n_con, a->n_con * sizeof *a->G);
+    memset(a->S + row * a->n_obj, 0, a->n_obj * sizeof *a->S);
+    a->answers[row] = 1;
+    a->usable[row] = a->ok[row];
+    a->violation[row] = a->ok[row] ? violation_of(a->n_con, a->G + row * a->n_con) : INFINITY;
+    set_errors(a, row);
+    if (a->usable[row] && !(a->violation[row] > 0.0))
+        update_front(a, row);
+}
+
+/* Welford's running mean and sum of squares. A design with an answer that failed is no longer usable. */
+static void add_repeat(Archive *a, size_t row, size_t design)
+{
+    const double n = (double)++a->answers[design];
+    a->n_repeats++;
+    a->answers[row] = 0;
+    a->usable[row] = 0;
+    a->violation[row] = INFINITY;
+    a->is_stale = 1;
+    a->usable[design] = a->usable[design] && a->ok[row];
+    if (!a->usable[design])
+        return;
+    for (size_t k = 0; k < a->n_obj; k++) {
+        const size_t i = design * a->n_obj + k;
+        const double y = a->Y[row * a->n_obj + k], off = y - a->F[i];
+        a->F[i] += off / n;
+        a->S[i] += off * (y - a->F[i]);
+    }
+    for (size_t k = 0; k < a->n_con; k++)
+        a->G[design * a->n_con + k] += (a->H[row * a->n_con + k] - a->G[design * a->n_con + k]) / n;
+    a->violation[design] = violation_of(a->n_con, a->G + design * a->n_con);
+}
+
+static void add_row(Archive *a, size_t row)
+{
+    const size_t design = remember(a, row), was_usable = a->usable[design];
+    a->on_front[row] = 0;
+    a->n_failed += !a->ok[row];
+    if (design == row)
+        add_design(a, row);
+    else
+        add_repeat(a, row, design);
+    a->n_usable += a->usable[design];
+    a->n_usable -= design == row ? 0 : was_usable;
 }
 
 Status archive_insert(Archive *a, size_t n, const double X[], const double F[], const double G[],
@@ -127,22 +205,39 @@ Status archive_insert(Archive *a, size_t n, const double X[], const double F[], 
     for (size_t i = 0; i < n; i++) {
         const size_t row = a->n++;
         memcpy(a->X + row * a->n_var, X + i * a->n_var, a->n_var * sizeof *X);
-        memcpy(a->F + row * a->n_obj, F + i * a->n_obj, a->n_obj * sizeof *F);
+        memcpy(a->Y + row * a->n_obj, F + i * a->n_obj, a->n_obj * sizeof *F);
         if (a->n_con > 0)
-            memcpy(a->G + row * a->n_con, G + i * a->n_con, a->n_con * sizeof *G);
+            memcpy(a->H + row * a->n_con, G + i * a->n_con, a->n_con * sizeof *G);
         a->ok[row] = ok[i] && all_finite(a->n_obj, F + i * a->n_obj) &&
                      (a->n_con == 0 || all_finite(a->n_con, G + i * a->n_con));
         a->kind[row] = kind;
-        remember(a, row);
         a->generation[row] = generation;
-        a->on_front[row] = 0;
-        a->violation[row] = a->ok[row] ? violation_of(a->n_con, a->G + row * a->n_con) : INFINITY;
-        if (!a->ok[row])
-            a->n_failed++;
-        else if (!(a->violation[row] > 0.0))
-            update_front(a, row);
+        add_row(a, row);
     }
     return STATUS_OK;
+}
+
+/* The list of the front serves for the repeated designs before it is made anew. */
+void archive_settle(Archive *a)
+{
+    size_t n = 0;
+    if (!a->is_stale)
+        return;
+    for (size_t row = 0; row < a->n; row++)
+        if (a->usable[row] && a->answers[row] > 1)
+            a->front[n++] = row;
+    for (size_t k = 0; k < a->n_obj; k++)
+        a->spread[k] = spread_fit(n, a->front, a->answers, a->n_obj, k, a->F, a->S);
+    a->n_front = 0;
+    memset(a->on_front, 0, a->n);
+    for (size_t row = 0; row < a->n; row++) {
+        if (!a->usable[row])
+            continue;
+        set_errors(a, row);
+        if (!(a->violation[row] > 0.0))
+            update_front(a, row);
+    }
+    a->is_stale = 0;
 }
 
 size_t archive_find(const Archive *a, const double x[])

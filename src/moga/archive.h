@@ -1,10 +1,14 @@
 /* moga/archive.h -- everything simulated, in order, and which of it is on the front.
  *
- *   on_front   the simulation finished, every constraint holds, nobody in the archive dominates it
+ *   row        one simulation; a design that is there already is answered once more, and that row is a repeat
+ *   design     the row of its first simulation, which has the mean of all its answers: F, G, violation, and the standard
+ *              error of F (moga/spread.h; 0 until repeats tell of a spread)
+ *   usable     a design all of whose simulations finished with finite numbers
+ *   on_front   usable, every constraint holds, no design of the archive dominates it surely (moga/dominance.h)
  *
- * The flags are right after every insertion. A row whose numbers are not finite counts as failed.
+ * After an insertion without repeats everything is right; after one with repeats archive_settle makes it so.
  *
- * Life cycle  archive_init -> archive_insert ... -> archive_free; grows by doubling, so pointers move
+ * Life cycle  archive_init -> archive_insert (archive_settle) ... -> archive_free; grows by doubling, so pointers move
  * Threads     one writer. */
 #ifndef IMTET_MOGA_ARCHIVE_H
 #define IMTET_MOGA_ARCHIVE_H
@@ -12,17 +16,26 @@
 #include <stddef.h>
 
 #include "base/status.h"
+#include "moga/spread.h"
 
 typedef struct {
-    size_t n, n_max, n_var, n_obj, n_con, n_front, n_failed;
-    double *X, *F, *G;       /* (n, n_var) (n, n_obj) (n, n_con) */
-    double *violation;       /* (n) sum of max(0, g) */
-    unsigned char *ok;       /* (n) */
+    size_t n, n_max, n_var, n_obj, n_con, n_front, n_failed, n_usable, n_repeats;
+    double *X, *Y, *H;       /* (n, n_var) (n, n_obj) (n, n_con) design, objectives and constraints of each simulation */
+    double *F, *G;           /* (n, n_obj) (n, n_con) of designs: means */
+    double *S;               /* (n, n_obj) of designs: sum of squared deviations from the mean */
+    double *deviation;       /* (n, n_obj) of designs: standard deviation of a single answer, as far as repeats tell */
+    double *error;           /* (n, n_obj) of designs: standard error of the mean */
+    double *violation;       /* (n) of designs: sum of max(0, g) */
+    size_t *answers;         /* (n) of designs: how many simulations; of repeats 0 */
+    unsigned char *ok;       /* (n) the simulation finished */
+    unsigned char *usable;   /* (n) */
     unsigned char *kind;     /* (n) */
     unsigned char *on_front; /* (n) */
     size_t *generation;      /* (n) */
-    size_t *front;           /* (n_front) their rows */
+    size_t *front;           /* (n_front) their rows, ascending */
     size_t n_slots, *slot;   /* hash table of the designs */
+    Spread *spread;          /* (n_obj) */
+    int is_stale;
     void *store;
 } Archive;
 
@@ -32,6 +45,9 @@ void archive_free(Archive *a);
 /* Adds n rows; G may be NULL when n_con is 0. */
 Status archive_insert(Archive *a, size_t n, const double X[], const double F[], const double G[],
                       const unsigned char ok[], unsigned char kind, size_t generation, Err *err);
+
+/* After repeats: spread and errors from all of them, and the front anew. */
+void archive_settle(Archive *a);
 
 /* Row of exactly this design, or n if it was never simulated. */
 size_t archive_find(const Archive *a, const double x[]);

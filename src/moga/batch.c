@@ -17,32 +17,37 @@ static int in_batch(const Search *s, size_t n, const double x[])
     return 0;
 }
 
-static size_t n_pending(const Search *s)
+size_t batch_pending(const Search *s)
 {
     return s->feed ? feed_pending(s->feed) : 0;
 }
 
 size_t batch_add(Search *s, size_t n, const double x[])
 {
-    if (n >= s->batch_max || s->archive.n + n_pending(s) + n >= s->config->max_evals || in_batch(s, n, x) ||
-        archive_find(&s->archive, x) < s->archive.n || (s->feed && feed_has(s->feed, x)))
+    if (n >= s->batch_max || s->archive.n + batch_pending(s) + n + s->reserved >= s->config->max_evals ||
+        in_batch(s, n, x) || archive_find(&s->archive, x) < s->archive.n || (s->feed && feed_has(s->feed, x)))
         return n;
     memcpy(s->X + n * s->problem->n_var, x, s->problem->n_var * sizeof *x);
+    s->draws[n] = 0;
     return n + 1;
 }
 
 /* -- all at once ----------------------------------------------------------------------------------------------------
  */
 
-static Status simulate_all(Search *s, size_t n, EvaluationKind kind, Err *err)
+static Status simulate_all(Search *s, size_t n_new, size_t n, EvaluationKind kind, Err *err)
 {
     const Problem *p = s->problem;
+    Archive *a = &s->archive;
     s->n_came = n;
     if (n == 0)
         return STATUS_OK;
-    memset(s->foretold, kind != KIND_SAMPLED && surface_stands(s->surface), n);
-    TRY(p->evaluate(n, s->X, NULL, s->F, s->G, s->ok, p->user, err));
-    return archive_insert(&s->archive, n, s->X, s->F, s->G, s->ok, (unsigned char)kind, s->generation, err);
+    memset(s->foretold, kind != KIND_SAMPLED && surface_stands(s->surface), n_new);
+    memset(s->foretold + n_new, 0, n - n_new);
+    TRY(p->evaluate(n, s->X, s->draws, s->F, s->G, s->ok, p->user, err));
+    TRY(archive_insert(a, n_new, s->X, s->F, s->G, s->ok, (unsigned char)kind, s->generation, err));
+    return archive_insert(a, n - n_new, s->X + n_new * p->n_var, s->F + n_new * p->n_obj, s->G + n_new * p->n_con,
+                          s->ok + n_new, KIND_REPEAT, s->generation, err);
 }
 
 /* -- one by one -----------------------------------------------------------------------------------------------------
@@ -57,17 +62,21 @@ size_t batch_lead_max(const SearchConfig *c, size_t n_workers)
 static size_t lead(const Search *s)
 {
     const size_t workers = s->problem->n_workers;
-    const int is_last = s->archive.n + n_pending(s) >= s->config->max_evals || s->generation >= s->config->generations;
+    const int is_last = s->archive.n + batch_pending(s) >= s->config->max_evals || s->generation >= s->config->generations;
     return workers < 2 || is_last ? 0 : workers + batch_size(s) / 2;
 }
 
-static Status ask(Search *s, size_t n, EvaluationKind kind, Err *err)
+static Status ask(Search *s, size_t n_new, size_t n, EvaluationKind kind, Err *err)
 {
     const Problem *p = s->problem;
     const int foretold = kind != KIND_SAMPLED && surface_stands(s->surface);
-    for (size_t i = 0; i < n; i++)
-        TRY(feed_ask(s->feed, s->X + i * p->n_var,
-                     &(Asked){0, (unsigned char)kind, (unsigned char)foretold, s->foreseen + i * p->n_obj}, err));
+    for (size_t i = 0; i < n; i++) {
+        const Asked asked = {.draws = s->draws[i],
+                             .kind = (unsigned char)(i < n_new ? kind : KIND_REPEAT),
+                             .foretold = foretold && i < n_new,
+                             .foreseen = s->foreseen + i * p->n_obj};
+        TRY(feed_ask(s->feed, s->X + i * p->n_var, &asked, err));
+    }
     return STATUS_OK;
 }
 
@@ -97,19 +106,20 @@ static Status take_results(Search *s, size_t pending, Err *err)
     return STATUS_OK;
 }
 
-static Status simulate_in_turn(Search *s, size_t n, EvaluationKind kind, Err *err)
+static Status simulate_in_turn(Search *s, size_t n_new, size_t n, EvaluationKind kind, Err *err)
 {
-    TRY(ask(s, n, kind, err));
+    TRY(ask(s, n_new, n, kind, err));
     const size_t most = lead(s), pending = feed_pending(s->feed);
     const size_t least =
         n == 0 && pending > 0 ? pending - 1 : pending; /* a generation without a new design goes on too */
     return take_results(s, most < least ? most : least, err);
 }
 
-Status batch_simulate(Search *s, size_t n, EvaluationKind kind, Err *err)
+Status batch_simulate(Search *s, size_t n_new, size_t n, EvaluationKind kind, Err *err)
 {
     const double before = search_seconds(s);
-    const Status status = s->feed ? simulate_in_turn(s, n, kind, err) : simulate_all(s, n, kind, err);
+    const Status status = s->feed ? simulate_in_turn(s, n_new, n, kind, err) : simulate_all(s, n_new, n, kind, err);
+    archive_settle(&s->archive);
     s->waited_s += search_seconds(s) - before;
     s->n_timed += s->n_came;
     s->simulating_s = s->waited_s;
@@ -121,15 +131,17 @@ Status batch_simulate(Search *s, size_t n, EvaluationKind kind, Err *err)
 Status batch_finish(Search *s, Err *err)
 {
     feed_withdraw(s->feed);
-    return take_results(s, 0, err);
+    TRY(take_results(s, 0, err));
+    archive_settle(&s->archive);
+    return STATUS_OK;
 }
 
-/* Failed ones do not join. */
+/* Failed ones and repeats do not join. */
 void batch_join(Search *s, Group *group, size_t first)
 {
     const Archive *a = &s->archive;
     for (size_t row = first; row < a->n; row++) {
-        if (!a->ok[row])
+        if (!a->usable[row])
             continue;
         const size_t i = group_add(group, a->X + row * a->n_var);
         memcpy(group->F + i * a->n_obj, a->F + row * a->n_obj, a->n_obj * sizeof *a->F);

@@ -13,6 +13,18 @@ int dominates(size_t n_obj, const double a[], const double b[])
     return better;
 }
 
+int dominates_surely(size_t n_obj, const double a[], const double error_a[], const double b[], const double error_b[])
+{
+    int better = 0;
+    for (size_t k = 0; k < n_obj; k++) {
+        const double worst = a[k] + error_a[k], best = b[k] - error_b[k];
+        if (!(worst <= best))
+            return 0;
+        better |= worst < best;
+    }
+    return better;
+}
+
 int dominates_constrained(size_t n_obj, const double a[], double violation_a, const double b[], double violation_b)
 {
     if (violation_a > 0.0 || violation_b > 0.0)

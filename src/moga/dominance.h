@@ -1,17 +1,26 @@
 /* moga/dominance.h -- who is better than whom.
  *
  *   a dominates b   no worse in every objective and better in one
+ *   ... surely      the same of a + its error and b - its error, one standard error of the means each: better by more
+ *                   than both errors together, in every objective. Of equal errors that is 1.4 standard deviations of
+ *                   the difference, 92 % in each objective; intervals that overlap decide nothing.
  *   constrained     a feasible design beats an infeasible one, of two infeasible ones the less violating wins
+ *
+ * All are strict partial orders (surely: a product of interval orders): of a > b > c follows a > c whatever the errors,
+ * and who is dominated is dominated by somebody who is not. With errors of 0 surely is the same as plainly.
  *
  * Threads  pure functions
  * Sources  Deb, Pratap, Agarwal and Meyarivan, IEEE Trans. Evol. Comput. 6 (2002) 182-197 (constrained domination);
- *          Zhang, Tian, Cheng and Jin, IEEE Trans. Evol. Comput. 19 (2015) 201-213 (efficient nondominated sort). */
+ *          Zhang, Tian, Cheng and Jin, IEEE Trans. Evol. Comput. 19 (2015) 201-213 (efficient nondominated sort);
+ *          Fishburn, J. Math. Psychol. 7 (1970) 144-149 (interval orders); Teich, EMO 2001, LNCS 1993, 314-328 (Pareto
+ *          fronts of objectives known as intervals). */
 #ifndef IMTET_MOGA_DOMINANCE_H
 #define IMTET_MOGA_DOMINANCE_H
 
 #include <stddef.h>
 
 int dominates(size_t n_obj, const double a[], const double b[]);
+int dominates_surely(size_t n_obj, const double a[], const double error_a[], const double b[], const double error_b[]);
 
 /* violation: sum of max(0, g); 0 is feasible. */
 int dominates_constrained(size_t n_obj, const double a[], double violation_a, const double b[], double violation_b);

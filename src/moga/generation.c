@@ -17,9 +17,21 @@ static Status sample_again(Search *s, Err *err)
             p->repair(s->pool.X + i * p->n_var, p->user);
         n = batch_add(s, n, s->pool.X + i * p->n_var);
     }
-    TRY(batch_simulate(s, n, KIND_SAMPLED, err));
+    TRY(batch_simulate(s, n, n, KIND_SAMPLED, err));
     batch_join(s, &s->population, first);
     return STATUS_OK;
+}
+
+/* As the archive knows the member now: a repeat may have changed it, or have failed. */
+static void copy_simulated(const Search *s, Group *to, const Group *from, size_t i)
+{
+    const Archive *a = &s->archive;
+    const size_t row = from->row[i];
+    if (!a->usable[row])
+        return;
+    group_copy_member(to, from, i);
+    memcpy(to->F + (to->n - 1) * a->n_obj, a->F + row * a->n_obj, a->n_obj * sizeof *a->F);
+    to->violation[to->n - 1] = a->violation[row];
 }
 
 /* Next population: from the simulated members of the present one, the batch, and the predictions that stand. */
@@ -29,7 +41,7 @@ static void renew_population(Search *s, size_t first_new)
     pool->n = 0;
     for (size_t i = 0; i < population->n; i++)
         if (population->row[i] != PREDICTED)
-            group_copy_member(pool, population, i);
+            copy_simulated(s, pool, population, i);
     for (size_t i = 0; i < offspring->n; i++)
         if (!s->picked[i] && guide_trusts(s, offspring, i)) {
             s->n_predicted += offspring->age[i]++ == 0;
@@ -38,6 +50,15 @@ static void renew_population(Search *s, size_t first_new)
     batch_join(s, pool, first_new);
     offspring_survive(s, pool, 0);
     group_copy(population, pool);
+}
+
+static Status repeat_generation(Search *s, size_t n, Err *err)
+{
+    const size_t first_new = s->archive.n;
+    s->offspring.n = 0;
+    TRY(batch_simulate(s, 0, n, KIND_REPEAT, err));
+    renew_population(s, first_new);
+    return STATUS_OK;
 }
 
 Status generation_next(Search *s, Err *err)
@@ -49,6 +70,9 @@ Status generation_next(Search *s, Err *err)
         return sample_again(s, err);
     guide_weigh_costs(s);
     guide_measure_front(s);
+    const size_t n_last = repeat_last(s);
+    if (n_last > 0)
+        return repeat_generation(s, n_last, err);
     if (guide_may_lead(s))
         TRY(guide_fit(s, err));
     else
@@ -59,7 +83,7 @@ Status generation_next(Search *s, Err *err)
     const size_t n = choice_make(s, &kind);
     if (n == 0 && (!s->feed || feed_pending(s->feed) == 0))
         return sample_again(s, err);
-    TRY(batch_simulate(s, n, kind, err));
+    TRY(batch_simulate(s, n, repeat_some(s, n), kind, err));
     guide_judge(s);
     renew_population(s, first_new);
     if (guide_may_lead(s)) {
@@ -79,7 +103,7 @@ Status generation_last(Search *s, Err *err)
 }
 
 /* Enough for a first surface of this many variables, and no more than half of the budget. */
-static size_t initial_size(const Search *s)
+size_t generation_initial(const Search *s)
 {
     const size_t wanted = 4 * s->problem->n_var + 12, half = (search_planned(s->config) + 1) / 2;
     if (s->config->initial > 0)
@@ -90,7 +114,7 @@ static size_t initial_size(const Search *s)
 /* Samples beside n_given designs that are given: what is left of the first sample, but at least a half of it. */
 size_t generation_samples(const Search *s)
 {
-    const size_t initial = initial_size(s), given = s->config->n_given;
+    const size_t initial = generation_initial(s), given = s->config->n_given;
     return given < initial / 2 ? initial - given : initial - initial / 2;
 }
 
@@ -117,7 +141,7 @@ Status generation_first(Search *s, Err *err)
         make_allowed(p, s->pool.X + i * p->n_var);
         n = batch_add(s, n, s->pool.X + i * p->n_var);
     }
-    TRY(batch_simulate(s, n, KIND_SAMPLED, err));
+    TRY(batch_simulate(s, n, n, KIND_SAMPLED, err));
     batch_join(s, &s->pool, 0);
     offspring_survive(s, &s->pool, 0);
     group_copy(&s->population, &s->pool);

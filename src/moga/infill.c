@@ -177,6 +177,14 @@ static double pbi_slope(const Infill *q, const double w[], const double f[], dou
     return along + PBI_THETA * off;
 }
 
+double infill_length(const Infill *q, const double f[])
+{
+    double square = 0.0;
+    for (size_t k = 0; k < q->n_obj; k++)
+        square += frame_scale(&q->frame, k, f[k]) * frame_scale(&q->frame, k, f[k]);
+    return sqrt(square);
+}
+
 double infill_off(const Infill *q, size_t direction, const double f[])
 {
     const double *w = q->unit + direction * q->n_obj;

@@ -29,6 +29,9 @@ void infill_free(Infill *q); /* NULL is fine */
 /* Normalises by the rows front[0..n) of F and takes their values as the ones to beat. */
 void infill_measure(Infill *q, size_t n, const size_t front[], const double F[]);
 
+/* Length of f, seen from the ideal, in widths of the front. */
+double infill_length(const Infill *q, const double f[]);
+
 /* Sine of the angle between f, seen from the ideal, and a direction. */
 double infill_off(const Infill *q, size_t direction, const double f[]);
 

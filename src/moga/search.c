@@ -33,6 +33,21 @@ size_t search_planned(const SearchConfig *c)
     return c->planned_evals > 0 ? c->planned_evals : c->max_evals;
 }
 
+Status search_widen(Search *s, Err *err)
+{
+    if (s->archive.n <= s->n_rows)
+        return STATUS_OK;
+    free(s->wins);
+    free(s->reported);
+    s->n_rows = 2 * s->archive.n;
+    s->wins = calloc(s->n_rows, sizeof *s->wins);
+    s->reported = calloc(s->n_rows, 1);
+    if (s->wins && s->reported)
+        return STATUS_OK;
+    s->n_rows = 0;
+    return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", s->archive.n);
+}
+
 static StopReason reason_to_stop(const Search *s)
 {
     const SearchConfig *c = s->config;
@@ -46,9 +61,23 @@ static StopReason reason_to_stop(const Search *s)
     return c->max_seconds > 0.0 && search_seconds(s) >= c->max_seconds ? STOP_TIME : STOP_NONE;
 }
 
+/* The front with answers enough; where answers are not noisy one is enough. */
+static size_t count_reported(Search *s)
+{
+    const Archive *a = &s->archive;
+    size_t n = 0;
+    memcpy(s->reported, a->on_front, a->n);
+    for (size_t i = 0; i < a->n_front; i++) {
+        s->reported[a->front[i]] = !s->problem->is_noisy || a->answers[a->front[i]] >= s->config->answers_min;
+        n += s->reported[a->front[i]];
+    }
+    return n;
+}
+
 static int report(Search *s, ObserveFn observe, void *user)
 {
     const Archive *a = &s->archive;
+    const size_t n_reported = count_reported(s);
     state_save(s);
     const SearchView view = {
         .n = a->n,
@@ -57,13 +86,17 @@ static int report(Search *s, ObserveFn observe, void *user)
         .n_con = a->n_con,
         .X = a->X,
         .F = a->F,
-        .G = a->G,
+        .deviation = a->deviation,
+        .answers = a->answers,
+        .Y = a->Y,
+        .H = a->H,
         .ok = a->ok,
         .kind = a->kind,
         .generation = a->generation,
-        .on_front = a->on_front,
-        .n_front = a->n_front,
+        .on_front = s->reported,
+        .n_front = n_reported,
         .n_failed = a->n_failed,
+        .n_repeats = a->n_repeats,
         .generation_now = s->generation,
         .n_predicted = s->n_predicted,
         .surrogate_error = surface_error(s->surface),
@@ -85,11 +118,13 @@ static Status run_loop(Search *s, const SearchStart *start, ObserveFn observe, v
     *reason = STOP_NONE;
     if (start) {
         TRY(state_restore(s, start, err));
+        TRY(search_widen(s, err));
         *reason = start->state ? reason_to_stop(s) : STOP_NONE;
         s->generation += start->state != NULL;
     }
     for (; *reason == STOP_NONE; s->generation += *reason == STOP_NONE) {
         TRY(s->generation == 0 ? generation_first(s, err) : generation_next(s, err));
+        TRY(search_widen(s, err));
         *reason = reason_to_stop(s);
         if (report(s, observe, user) && *reason == STOP_NONE)
             *reason = STOP_ASKED;
@@ -98,6 +133,7 @@ static Status run_loop(Search *s, const SearchStart *start, ObserveFn observe, v
         return STATUS_OK;
     s->generation++;
     TRY(generation_last(s, err));
+    TRY(search_widen(s, err));
     report(s, observe, user);
     return STATUS_OK;
 }
@@ -164,6 +200,7 @@ static void layout(Search *s, size_t n_pool, Carve *c)
     s->G = carve(c, s->came_max * p->n_con, sizeof(double));
     s->ok = carve(c, s->came_max, 1);
     s->foretold = carve(c, s->came_max, 1);
+    s->draws = carve(c, s->came_max, sizeof(size_t));
     s->apart = carve(c, s->wishes.n, sizeof(double));
     s->allowed = carve(c, n_pool, 1);
     s->picked = carve(c, n_pool, 1);
@@ -223,6 +260,8 @@ static void release(Search *s)
     group_free(&s->pool);
     feed_free(s->feed);
     free(s->state.bytes);
+    free(s->wins);
+    free(s->reported);
     free(s->store);
 }
 

@@ -40,8 +40,9 @@
 #include "moga/problem.h"
 #include "moga/survival.h"
 
-/* Latin hypercube; chosen on the surface; plain children, where no surface leads; from outside the search. */
-typedef enum { KIND_SAMPLED, KIND_INFILL, KIND_OFFSPRING, KIND_POLISHED, KIND_COUNT } EvaluationKind;
+/* Latin hypercube; chosen on the surface; plain children, where no surface leads; from outside the search; a further answer of a design that is
+ * there. */
+typedef enum { KIND_SAMPLED, KIND_INFILL, KIND_OFFSPRING, KIND_POLISHED, KIND_REPEAT, KIND_COUNT } EvaluationKind;
 
 /* On; plain children only; or on until its wall time per simulation proves greater than that of four simulations. Auto
  * is decided once, by the clock, and the decision is kept in the state: a search that goes on repeats it, another one
@@ -60,6 +61,9 @@ typedef struct {
     SurrogateUse surrogate;
     SurvivalKind survival;
     int asynchronous;          /* where the problem can; see above */
+    double repeats;            /* of a noisy problem: share of max_evals that is spent on designs simulated again */
+    size_t answers_min;        /* ... of each design that is reported to be on the front */
+    size_t answers_max;        /* ... of each design, the first included */
     double max_seconds;        /* 0: no limit */
     double nondominated_share; /* stop when this share of the archive is nondominated; 1: never */
     double trust_error;        /* share of an objective's range in the archive */
@@ -72,12 +76,14 @@ const char *stop_reason_words(StopReason reason);
 /* Everything simulated so far, in the order of simulation; row i is design number i + 1. */
 typedef struct {
     size_t n, n_var, n_obj, n_con;
-    const double *X, *F, *G;       /* (n, n_var) (n, n_obj) (n, n_con) */
+    const double *X, *Y, *H;       /* (n, n_var) (n, n_obj) (n, n_con) designs, and what each simulation answered */
+    const double *F, *deviation;   /* (n, n_obj) of a design's first row: mean of its answers, standard deviation of one */
+    const size_t *answers;         /* (n) of a design's first row, else 0 */
     const unsigned char *ok;       /* (n) 0: the simulation failed */
     const unsigned char *kind;     /* (n) EvaluationKind */
     const size_t *generation;      /* (n) */
-    const unsigned char *on_front; /* (n) feasible, ok and nondominated */
-    size_t n_front, n_failed;
+    const unsigned char *on_front; /* (n) feasible, ok, nondominated and answered answers_min times at least */
+    size_t n_front, n_failed, n_repeats;
     size_t generation_now;
     size_t n_predicted;     /* offspring of this generation whose prediction stood */
     double surrogate_error; /* median leave-one-out error, share of range, worst objective; NaN: no surface yet */
@@ -91,7 +97,8 @@ typedef struct {
     size_t n_state;
 } SearchView;
 
-/* A moment to go on from: what the view had at the end of a generation. All of it is only read. */
+/* A moment to go on from: what the view had at the end of a generation, F and G being its Y and H. All of it is only
+ * read. */
 typedef struct {
     size_t n, n_later; /* n_later: rows behind the n, whose results came after the state was saved; asynchronous only */
     const double *X, *F, *G;

@@ -6,6 +6,7 @@
  *   guide.c       whether the surface leads: what it explains, what it foretold, what it costs
  *   offspring.c   candidates: variation, inner generations and descents on the surface
  *   choice.c      which candidates are simulated
+ *   repeat.c      which designs are simulated again, where answers are noisy
  *   batch.c       simulation, the only way into the archive
  *   state.c       what outlives a generation, as bytes
  *
@@ -55,7 +56,12 @@ typedef struct {
     double *child;                      /* (2, n_var) */
     double *X, *F, *G;                  /* (batch) of one call of evaluate */
     unsigned char *ok, *foretold;       /* (batch) */
+    size_t *draws;                      /* (batch) answers that there are already: 0 of new designs */
     unsigned char *allowed, *picked;    /* (pool) offspring that may still be, that have been sent to simulation */
+    size_t reserved;                    /* simulations that are kept for the last repeats */
+    size_t n_rows;                      /* of the archive, that there is room for in the next two */
+    size_t *wins;                       /* (rows) how much is built on a design */
+    unsigned char *reported;            /* (rows) on the front, with answers enough */
     Pack state;                         /* as of the last report */
     void *store;
     struct timespec start;
@@ -63,14 +69,17 @@ typedef struct {
 /* search.c: wall time since its beginning; simulations it was planned for. */
 double search_seconds(const Search *s);
 size_t search_planned(const SearchConfig *c);
+Status search_widen(Search *s, Err *err); /* room for the archive's rows, after every generation */
 
 /* batch.c: x is appended to a batch of n unless it is known, the batch is full or the simulations are spent; returns
  * the new n. */
 size_t batch_add(Search *s, size_t n, const double x[]);
 size_t batch_size(const Search *s);
-Status batch_simulate(Search *s, size_t n, EvaluationKind kind, Err *err); /* n asked for, n_came have come */
-Status batch_finish(Search *s, Err *err);                                  /* asynchronous: only what is under way */
+/* n designs, of which those from n_new on are repeats, are asked for; n_came results have come. */
+Status batch_simulate(Search *s, size_t n_new, size_t n, EvaluationKind kind, Err *err);
+Status batch_finish(Search *s, Err *err); /* asynchronous: only what is under way */
 size_t batch_lead_max(const SearchConfig *c, size_t n_workers);
+size_t batch_pending(const Search *s); /* asynchronous: asked for, and not in the archive yet */
 void batch_join(Search *s, Group *group, size_t first); /* simulated designs of the rows first.. join the group */
 
 /* guide.c */
@@ -86,6 +95,11 @@ Status guide_fit(Search *s, Err *err);
 void guide_predict(Search *s, Group *group, size_t first, int with_uncertainty);
 void guide_descend(Search *s, InfillKind kind, size_t n, const size_t directions[], double X[]);
 
+/* repeat.c: after the n designs of a batch some that the search builds on; at the end, a batch of those that it reports.
+ * Both return the new n, which is the old one where nothing is to be repeated. */
+size_t repeat_some(Search *s, size_t n);
+size_t repeat_last(Search *s);
+
 /* offspring.c: plainly: without the surface. step names the random stream. */
 void offspring_make(Search *s, int plainly);
 void offspring_survive(Search *s, Group *group, uint32_t step);
@@ -97,7 +111,8 @@ size_t choice_make(Search *s, EvaluationKind *kind);
 Status generation_first(Search *s, Err *err);
 Status generation_next(Search *s, Err *err);
 Status generation_last(Search *s, Err *err); /* asynchronous: takes in what is under way when the search ends */
-size_t generation_samples(const Search *s);  /* of the first one, beside the given designs */
+size_t generation_initial(const Search *s); /* designs of the first one, so many as are wanted for a first surface */
+size_t generation_samples(const Search *s); /* of the first one, beside the given designs */
 
 /* state.c */
 void state_save(Search *s);

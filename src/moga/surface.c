@@ -121,7 +121,7 @@ static size_t choose_centres(Surface *s, const Archive *a, Infill *near)
 {
     size_t n = 0;
     for (size_t i = 0; i < a->n; i++)
-        if (a->ok[i])
+        if (a->usable[i])
             s->chosen[n++] = i;
     if (n <= s->n_max)
         return n;
@@ -148,7 +148,7 @@ static void measure_ranges(Surface *s, const Archive *a)
     for (size_t k = 0; k < s->n_out; k++) {
         double least = DBL_MAX, most = -DBL_MAX;
         for (size_t i = 0; i < a->n; i++) {
-            if (!a->ok[i])
+            if (!a->usable[i])
                 continue;
             const double v = k < a->n_obj ? a->F[i * a->n_obj + k] : a->G[i * a->n_con + k - a->n_obj];
             least = fmin(least, v);
@@ -161,7 +161,7 @@ static void measure_ranges(Surface *s, const Archive *a)
 Status surface_fit(Surface *s, const Archive *a, Infill *near, Err *err)
 {
     s->fitted = 0;
-    if (!s->rbf || a->n - a->n_failed < 4 || a->n - a->n_failed < s->problem->n_var / 2)
+    if (!s->rbf || a->n_usable < 4 || a->n_usable < s->problem->n_var / 2)
         return STATUS_OK;
     TRY(grow(s, a->n, err));
     s->n = choose_centres(s, a, near);

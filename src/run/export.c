@@ -17,6 +17,8 @@ static void write_names(FILE *f, const char *before, const Schema *schema, size_
         fprintf(f, ",%s", schema_extra(schema, k)->name);
     for (size_t k = 0; with_spread && k < schema->n_obj; k++)
         fprintf(f, ",spread_%s", schema_objective(schema, k)->name);
+    if (with_spread)
+        fputs(",members", f);
     fputc('\n', f);
 }
 
@@ -34,13 +36,18 @@ void export_front_header(FILE *f, const Schema *schema)
 }
 
 void export_front_row(FILE *f, const Schema *schema, long id, const double x[], const double natural[],
-                      const double spread[])
+                      const double spread[], long members)
 {
     fprintf(f, "%ld", id);
     write_numbers(f, schema->n_var, x);
     write_numbers(f, schema->n_obj, natural);
-    if (schema->has_spread)
+    if (schema->has_spread) {
         write_numbers(f, schema->n_obj, spread);
+        if (members > 0)
+            fprintf(f, ",%ld", members);
+        else
+            fputc(',', f);
+    }
     fputc('\n', f);
 }
 
@@ -51,7 +58,7 @@ void export_front(FILE *f, const Saved *h)
     for (size_t i = 0; i < h->n; i++)
         if (h->row[i].on_front)
             export_front_row(f, schema, h->row[i].id, h->X + i * schema->n_var, h->F + i * schema->n_obj,
-                             h->spread + i * schema->n_obj);
+                             h->spread + i * schema->n_obj, h->row[i].members);
 }
 
 void export_evaluations_header(FILE *f, const Schema *schema)
@@ -68,7 +75,7 @@ void export_evaluations(FILE *f, const Saved *h, int unfinished_too)
             continue;
         fprintf(f, "%ld,%ld,%s,%s,%s", r->id, r->generation, kind_word(r->kind), r->verdict.outcome, r->verdict.reason);
         write_numbers(f, schema->n_var, h->X + i * schema->n_var);
-        write_numbers(f, schema->n_obj, h->F + i * schema->n_obj);
+        write_numbers(f, schema->n_obj, h->answer + i * schema->n_obj);
         write_numbers(f, schema->n_extra, r->verdict.extra);
         fputc('\n', f);
     }
@@ -123,16 +130,20 @@ static json_t *json_evaluation(const Saved *h, size_t i)
 {
     const SavedRow *r = &h->row[i];
     const Schema *schema = &h->schema;
-    const double *spread = h->spread + i * schema->n_obj;
+    const double *spread = h->spread + i * schema->n_obj, *f = h->answer + i * schema->n_obj;
     json_t *o =
         json_pack("{s:I, s:I, s:s, s:s, s:s, s:o, s:o, s:b}", "id", (json_int_t)r->id, "generation",
                   (json_int_t)r->generation, "kind", kind_word(r->kind), "outcome", r->verdict.outcome, "reason",
                   r->verdict.reason, "x", numbers(schema->n_var, h->X + i * schema->n_var), "f",
-                  r->ok ? numbers(schema->n_obj, h->F + i * schema->n_obj) : json_null(), "on_front", r->on_front);
+                  isfinite(f[0]) ? numbers(schema->n_obj, f) : json_null(), "on_front", r->on_front);
     int known = 0;
     for (size_t k = 0; k < schema->n_obj; k++)
         known = known || isfinite(spread[k]);
     json_object_set_new(o, "spread", known ? numbers(schema->n_obj, spread) : json_null());
+    if (r->members > h->settings.sim.ensemble)
+        json_object_set_new(o, "mean", numbers(schema->n_obj, h->F + i * schema->n_obj));
+    if (schema->has_spread)
+        json_object_set_new(o, "members", json_integer(r->members));
     if (schema->n_extra > 0)
         json_object_set_new(o, "measures", numbers(schema->n_extra, r->verdict.extra));
     return o;

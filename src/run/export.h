@@ -12,7 +12,7 @@
 /* One design of a front: id, x (n_var), f (n_obj, natural); spread (n_obj) is read where the schema has it. */
 void export_front_header(FILE *f, const Schema *schema);
 void export_front_row(FILE *f, const Schema *schema, long id, const double x[], const double natural[],
-                      const double spread[]);
+                      const double spread[], long members);
 
 void export_front(FILE *f, const Saved *h); /* front.csv */
 

@@ -83,7 +83,7 @@ static size_t nearest_rows(const Refine *r, Near near[])
     const double *at = h->X + r->row * p->n_var;
     size_t n = 0;
     for (size_t i = 0; i < h->n; i++) {
-        if (!h->row[i].ok)
+        if (!h->row[i].ok || h->row[i].kind == KIND_REPEAT)
             continue;
         near[n] = (Near){0.0, i};
         for (size_t d = 0; d < p->n_var; d++) {

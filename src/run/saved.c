@@ -7,11 +7,13 @@
 #include <unistd.h>
 
 #include "run/front.h"
+#include "run/repeats.h"
 
 static const char *const KIND_WORDS[] = {[KIND_SAMPLED] = "sampled",
                                          [KIND_INFILL] = "infill",
                                          [KIND_OFFSPRING] = "offspring",
                                          [KIND_POLISHED] = "polished",
+                                         [KIND_REPEAT] = "repeat",
                                          [KIND_UNFINISHED] = "unfinished"};
 
 const char *kind_word(int kind)
@@ -88,7 +90,9 @@ static Status widen(Loading *l, Err *err)
     h->F = F ? F : h->F;
     void *spread = realloc(h->spread, n * h->schema.n_obj * sizeof *h->spread);
     h->spread = spread ? spread : h->spread;
-    if (!row || !X || !F || !spread)
+    void *answer = realloc(h->answer, n * h->schema.n_obj * sizeof *h->answer);
+    h->answer = answer ? answer : h->answer;
+    if (!row || !X || !F || !spread || !answer)
         return fail(err, STATUS_NO_MEMORY, "%s: no memory for %zu evaluations", database_path(l->d), n);
     l->n_max = n;
     return STATUS_OK;
@@ -123,6 +127,9 @@ static Status take_evaluation(sqlite3_stmt *row, void *user, Err *err)
         return damaged(l, "spread", r->id, err);
     if (schema->n_extra > 0 && !parse_numbers(text_at(row, 10), schema->n_extra, r->verdict.extra))
         return damaged(l, "extra", r->id, err);
+    memcpy(h->answer + h->n * schema->n_obj, f, schema->n_obj * sizeof *f);
+    r->members = r->kind == KIND_REPEAT || r->kind == KIND_POLISHED ? 0 : h->settings.sim.ensemble;
+    h->n_repeats += r->kind == KIND_REPEAT;
     r->ok = strcmp(r->verdict.outcome, "ok") == 0;
     for (size_t k = 0; k < schema->n_obj; k++)
         r->ok = r->ok && isfinite(f[k]);
@@ -285,6 +292,7 @@ static Status load(Loading *l, Err *err)
     if (!h->schema.column)
         return fail(err, STATUS_IO, "%s: is damaged: it has no settings", database_path(d));
     TRY(saved_load_rows(h, d, 0, LONG_MAX, err));
+    TRY(repeats_join(h, err));
     settle_front(h);
     TRY(database_each(d,
                       "SELECT number, simulated, failed, front, predicted, surrogate_error, hypervolume, seconds, "
@@ -360,6 +368,7 @@ void saved_free(Saved *h)
     free(h->X);
     free(h->F);
     free(h->spread);
+    free(h->answer);
     free(h->generation);
     free(h->session);
     free(h->state);

@@ -4,6 +4,7 @@
  * 1, 2, ... as they were asked for, polished ones from POLISHED_FIRST on. A simulation of a generation that is still
  * under way (or was cut short) has kind KIND_UNFINISHED; it is on no front yet.
  *
+ * Repeats    a design that was simulated again has the mean of its answers in F (run/repeats.h)
  * Values     natural signs and units, as in front.csv; NAN where there is none (failed, or spread not known)
  * Front      feasible, ok, and nobody dominates it, polished designs included; `entered` and `left` tell of the search
  *            alone in which generations a design was on its front: entered <= g < left
@@ -25,6 +26,7 @@ typedef struct {
     long id, generation, entered, left; /* NEVER */
     int kind;                           /* EvaluationKind or KIND_UNFINISHED */
     int ok, on_front;
+    long members; /* simulations behind F; 0: a repeat, or not known */
     double violation; /* of the user's limits */
     Verdict verdict;
 } SavedRow;
@@ -49,9 +51,10 @@ typedef struct {
     char *provenance; /* JSON */
     Settings settings;
     Schema schema;
-    size_t n, n_front, n_failed, n_generations, n_sessions;
+    size_t n, n_front, n_failed, n_repeats, n_generations, n_sessions;
     SavedRow *row;               /* (n) */
     double *X, *F, *spread;      /* (n, n_var) (n, n_obj) (n, n_obj) */
+    double *answer;              /* (n, n_obj) of this very simulation */
     SavedGeneration *generation; /* (n_generations) */
     SavedSession *session;       /* (n_sessions) */
     long planned_evals;

@@ -77,14 +77,23 @@ static Status fill_from_settings(Schema *schema, const Settings *s, Err *err)
     return take_senses(s->problem.kind == PROBLEM_EXTERNAL ? s->problem.senses : "min", schema->n_obj, objectives, err);
 }
 
+int schema_is_noisy(const Settings *s)
+{
+    const int has_noise = s->problem.kind >= PROBLEM_TEXTBOOK && s->problem.noise > 0.0;
+    const int is_noisy = s->problem.noisy == NOISY_AUTO ? has_noise : s->problem.noisy == NOISY_YES;
+    return is_noisy && s->search.members_max > 1 && s->search.repeats > 0.0;
+}
+
 Status schema_of(Schema *schema, const Settings *s, int n_floors, Err *err)
 {
     if (s->problem.kind == PROBLEM_TOWER) {
         TRY(schema_of_tower(schema, n_floors, err));
-        schema->has_spread = s->sim.ensemble > 1;
+        schema->has_spread = s->sim.ensemble > 1 || schema_is_noisy(s);
         return STATUS_OK;
     }
-    *schema = (Schema){.n_var = (size_t)s->problem.variables, .n_obj = (size_t)s->problem.objectives};
+    *schema = (Schema){.n_var = (size_t)s->problem.variables,
+                       .n_obj = (size_t)s->problem.objectives,
+                       .has_spread = schema_is_noisy(s)};
     TRY(allocate(schema, err));
     const Status status = fill_from_settings(schema, s, err);
     if (status != STATUS_OK)

@@ -21,8 +21,11 @@ typedef struct {
 typedef struct {
     size_t n_var, n_obj, n_extra;
     Column *column;
-    int has_spread; /* front.csv ends with spread_NAME of every objective: each design is several simulations */
+    int has_spread; /* front.csv ends with spread_NAME of every objective and members: designs are several simulations */
 } Schema;
+
+/* Whether designs are simulated again because they answer differently each time. */
+int schema_is_noisy(const Settings *s);
 
 /* n_floors: of a tower, else not read. */
 Status schema_of(Schema *schema, const Settings *s, int n_floors, Err *err);

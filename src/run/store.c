@@ -330,11 +330,11 @@ static Status create_cover(RunStore *store, const SearchView *v, Err *err)
     if (first == v->n)
         return STATUS_OK;
     for (size_t k = 0; k < v->n_obj; k++) {
-        lower[k] = reference[k] = v->F[first * v->n_obj + k];
+        lower[k] = reference[k] = v->Y[first * v->n_obj + k];
         for (size_t i = first; i < v->n && v->generation[i] == v->generation[first]; i++)
             if (v->ok[i]) {
-                lower[k] = fmin(lower[k], v->F[i * v->n_obj + k]);
-                reference[k] = fmax(reference[k], v->F[i * v->n_obj + k]);
+                lower[k] = fmin(lower[k], v->Y[i * v->n_obj + k]);
+                reference[k] = fmax(reference[k], v->Y[i * v->n_obj + k]);
             }
         const double range = reference[k] > lower[k] ? reference[k] - lower[k] : 1.0;
         lower[k] -= 0.2 * range;
@@ -343,9 +343,15 @@ static Status create_cover(RunStore *store, const SearchView *v, Err *err)
     return cover_create(&store->cover, v->n_obj, lower, reference, 1, err);
 }
 
-/* Only members of the front count: who was dominated by an earlier one has nothing to add. */
+/* Only members of the front count: who was dominated by an earlier one has nothing to add. Where repeats move designs
+ * and take them off the front, all of it is measured anew. */
 static Status measure_front(RunStore *store, const SearchView *v, Err *err)
 {
+    if (v->n_repeats > 0) {
+        cover_free(store->cover);
+        store->cover = NULL;
+        store->n_covered = 0;
+    }
     if (!store->cover)
         TRY(create_cover(store, v, err));
     if (!store->cover)
@@ -378,7 +384,8 @@ static Status store_front_changes(RunStore *store, const SearchView *v, Err *err
     store->n_flags = v->n;
     for (size_t i = 0; i < v->n; i++) {
         if (v->on_front[i] && !flags[i])
-            TRY(database_do(store->db, err, "INSERT INTO front(evaluation, entered) VALUES (?, ?)", "ii", (long)i + 1,
+            TRY(database_do(store->db, err, "INSERT INTO front(evaluation, entered) VALUES (?, ?) ON CONFLICT(evaluation) DO UPDATE SET left = NULL",
+                            "ii", (long)i + 1,
                             (long)v->generation_now));
         if (!v->on_front[i] && flags[i])
             TRY(database_do(store->db, err, "UPDATE front SET left = ? WHERE evaluation = ?", "ii",
@@ -434,7 +441,7 @@ static void put_view_front(FILE *f, const void *user)
             continue;
         for (size_t k = 0; k < u->schema->n_obj; k++)
             natural[k] = schema_objective(u->schema, k)->sense * u->view->F[i * u->schema->n_obj + k];
-        export_front_row(f, u->schema, (long)i + 1, u->view->X + i * u->schema->n_var, natural, NULL);
+        export_front_row(f, u->schema, (long)i + 1, u->view->X + i * u->schema->n_var, natural, NULL, 1);
     }
 }
 

@@ -203,7 +203,7 @@ static int recall(size_t number, const double x[], double f[], Verdict *verdict,
     const size_t i = h ? saved_find(h, (long)number) : 0;
     if (!h || i == h->n || memcmp(h->X + i * h->schema.n_var, x, h->schema.n_var * sizeof *x) != 0)
         return 0;
-    memcpy(f, h->F + i * h->schema.n_obj, h->schema.n_obj * sizeof *f);
+    memcpy(f, h->answer + i * h->schema.n_obj, h->schema.n_obj * sizeof *f);
     *verdict = h->row[i].verdict;
     return 1;
 }
@@ -211,8 +211,9 @@ static int recall(size_t number, const double x[], double f[], Verdict *verdict,
 static json_t *generation_event(const SearchView *v, const RunStore *store, double seconds)
 {
     return json_pack(
-        "{s:s, s:I, s:I, s:I, s:I, s:o, s:o, s:f}", "event", "generation", "number", (json_int_t)v->generation_now,
-        "simulated", (json_int_t)v->n, "failed", (json_int_t)v->n_failed, "front", (json_int_t)v->n_front,
+        "{s:s, s:I, s:I, s:I, s:I, s:I, s:o, s:o, s:f}", "event", "generation", "number",
+        (json_int_t)v->generation_now, "simulated", (json_int_t)v->n, "repeats", (json_int_t)v->n_repeats, "failed",
+        (json_int_t)v->n_failed, "front", (json_int_t)v->n_front,
         "surrogate_error", isfinite(v->surrogate_error) ? json_real(v->surrogate_error) : json_null(), "hypervolume",
         isfinite(store_hypervolume(store)) ? json_real(store_hypervolume(store)) : json_null(), "seconds", seconds);
 }
@@ -222,13 +223,15 @@ static Status write_generation(Study *study, const SearchView *view, Err *err)
     const double session = session_seconds(study), seconds = study->seconds_before + session;
     TRY(store_generation(study->store, view, seconds, session, err));
     TRY(store_event(study->store, generation_event(view, study->store, seconds), err));
-    char surface[24] = "-";
+    char surface[24] = "-", repeats[40] = "";
+    if (view->n_repeats > 0)
+        snprintf(repeats, sizeof repeats, " (%zu repeats)", view->n_repeats);
     if (isfinite(view->surrogate_error))
         snprintf(surface, sizeof surface, "%.3g", view->surrogate_error);
     return store_log(study->store, err,
-                     "generation %zu: %zu simulated, %zu failed, front %zu, hypervolume %.4f, predictions kept %zu, "
+                     "generation %zu: %zu simulated%s, %zu failed, front %zu, hypervolume %.4f, predictions kept %zu, "
                      "surrogate error %s, %.1f s",
-                     view->generation_now, view->n, view->n_failed, view->n_front, store_hypervolume(study->store),
+                     view->generation_now, view->n, repeats, view->n_failed, view->n_front, store_hypervolume(study->store),
                      view->n_predicted, surface, seconds);
 }
 
@@ -354,6 +357,9 @@ SearchConfig study_search_config(const Settings *s)
         .max_seconds = 3600 * s->search.max_hours,
         .nondominated_share = s->search.nondominated_share,
         .trust_error = s->search.trust_error,
+        .repeats = s->search.repeats,
+        .answers_min = (size_t)s->search.members_min,
+        .answers_max = (size_t)s->search.members_max,
         .crossover_probability = s->search.crossover_probability,
         .crossover_eta = s->search.crossover_eta,
         .mutation_eta = s->search.mutation_eta,
@@ -398,12 +404,12 @@ static Status moment_of(Moment *m, const Study *study, Err *err)
                   .generation = calloc(n + 1, sizeof *m->generation)};
     if (!m->F || !m->G || !m->ok || !m->kind || !m->generation)
         return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", n);
-    subject_judge(study->subject, n, h->F, m->F, m->G);
+    subject_judge(study->subject, n, h->answer, m->F, m->G);
     for (size_t i = 0; i < n; i++) {
         if (h->row[i].id != (long)i + 1)
             return fail(err, STATUS_IO, "%s/run.sqlite: is damaged: evaluation %zu is missing", study->summary->folder,
                         i + 1);
-        m->ok[i] = h->row[i].ok != 0;
+        m->ok[i] = strcmp(h->row[i].verdict.outcome, "ok") == 0;
         m->kind[i] = (unsigned char)(i < n_finished ? h->row[i].kind : KIND_INFILL);
         m->generation[i] = (size_t)h->row[i].generation;
     }

@@ -542,6 +542,7 @@ static Status open(Subject *s, Err *err)
         .n_workers = s->crew || s->external ? (size_t)s->threads : 1,
         .repair = s->crew ? swap_if_top_heavy : NULL,
         .user = s,
+        .is_noisy = schema_is_noisy(&s->settings),
     };
     return STATUS_OK;
 }

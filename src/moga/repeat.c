@@ -1,0 +1,151 @@
+#include "moga/searching.h"
+
+#include <math.h>
+
+/* Where new designs are worth more than certainty about old ones: no repeats before so many first samples. */
+static const double UNTROUBLED = 4.0;
+/* Part of the repeats that are made while the search goes on; the rest confirms its result. */
+static const double EARLY = 0.25;
+/* A spread below this part of the front's range decides nothing, once so many repeats have been made. */
+static const double NEGLIGIBLE = 1e-3;
+enum { TRIALS = 8 };
+
+static void range_of_front(const Archive *a, size_t k, double *least, double *most)
+{
+    *least = INFINITY;
+    *most = -INFINITY;
+    for (size_t i = 0; i < a->n_front; i++) {
+        *least = fmin(*least, a->F[a->front[i] * a->n_obj + k]);
+        *most = fmax(*most, a->F[a->front[i] * a->n_obj + k]);
+    }
+}
+
+/* Whether the standard deviation of an answer can be seen on the front, in any objective. */
+static int is_noticeable(const Archive *a)
+{
+    double least, most;
+    for (size_t k = 0; k < a->n_obj; k++) {
+        range_of_front(a, k, &least, &most);
+        for (size_t i = 0; i < a->n_front; i++)
+            if (a->deviation[a->front[i] * a->n_obj + k] > NEGLIGIBLE * (most - least))
+                return 1;
+    }
+    return a->n_repeats < TRIALS;
+}
+
+static size_t n_pending_repeats(const Search *s)
+{
+    size_t n = 0;
+    Asked asked;
+    for (size_t i = 0; i < batch_pending(s); i++) {
+        feed_design(s->feed, i, &asked);
+        n += asked.kind == KIND_REPEAT;
+    }
+    return n;
+}
+
+/* Simulations that are left to be asked for. */
+static size_t room_of(const Search *s)
+{
+    const size_t asked = s->archive.n + batch_pending(s);
+    return s->config->max_evals > asked ? s->config->max_evals - asked : 0;
+}
+
+/* Repeats that may still be made, of those that `part` of n simulations bring with them. */
+static size_t repeats_left(const Search *s, size_t n, double part)
+{
+    const double first = UNTROUBLED * (double)generation_initial(s);
+    const double due = floor(part * s->config->repeats * fmax((double)n - first, 0.0));
+    const size_t made = s->archive.n_repeats + n_pending_repeats(s);
+    if (!s->problem->is_noisy || s->config->answers_max < 2 || due <= (double)made || !is_noticeable(&s->archive))
+        return 0;
+    return (size_t)due - made;
+}
+
+/* What everybody looks at first, the best in one objective and the one nearest to the best of everything, counts as
+ * much as all directions together. */
+static void add_landmarks(Search *s)
+{
+    const Archive *a = &s->archive;
+    size_t knee = a->front[0];
+    double nearest = INFINITY;
+    for (size_t k = 0; k < a->n_obj; k++) {
+        size_t best = a->front[0];
+        for (size_t i = 1; i < a->n_front; i++)
+            if (a->F[a->front[i] * a->n_obj + k] < a->F[best * a->n_obj + k])
+                best = a->front[i];
+        s->wins[best] += 2 * s->wishes.n;
+    }
+    for (size_t i = 0; i < a->n_front; i++) {
+        const double away = infill_length(s->infill[INFILL_PBI], a->F + a->front[i] * a->n_obj);
+        if (away < nearest) {
+            nearest = away;
+            knee = a->front[i];
+        }
+    }
+    s->wins[knee] += 2 * s->wishes.n;
+}
+
+/* Of every direction, the design that is best in it. */
+static void count_wins(Search *s)
+{
+    memset(s->wins, 0, s->archive.n * sizeof *s->wins);
+    for (int kind = 0; kind < INFILL_KINDS; kind++)
+        for (size_t r = 0; r < s->wishes.n; r++)
+            s->wins[infill_best(s->infill[kind], r)]++;
+    add_landmarks(s);
+}
+
+/* The design on the front with the most wins to an answer; archive.n where none is left. */
+static size_t pick(const Search *s)
+{
+    const Archive *a = &s->archive;
+    size_t best = a->n;
+    double most = 0.0;
+    for (size_t i = 0; i < a->n_front; i++) {
+        const size_t row = a->front[i];
+        const double value = (double)s->wins[row] / (double)a->answers[row];
+        const int is_pending = s->feed && feed_has(s->feed, a->X + row * a->n_var);
+        if (a->answers[row] < s->config->answers_max && value > most && !is_pending) {
+            most = value;
+            best = row;
+        }
+    }
+    return best;
+}
+
+/* The front has been measured, as it is now. */
+static size_t append(Search *s, size_t n, size_t limit)
+{
+    const size_t n_var = s->problem->n_var;
+    if (s->archive.n_front == 0 || n >= limit)
+        return n;
+    count_wins(s);
+    for (size_t row; n < limit && (row = pick(s)) < s->archive.n; n++) {
+        memcpy(s->X + n * n_var, s->archive.X + row * n_var, n_var * sizeof *s->X);
+        s->draws[n] = s->archive.answers[row];
+        s->wins[row] = 0;
+    }
+    return n;
+}
+
+static size_t lesser(size_t a, size_t b)
+{
+    return a < b ? a : b;
+}
+
+size_t repeat_some(Search *s, size_t n)
+{
+    const size_t room = lesser(s->batch_max, room_of(s)), so_far = s->archive.n + batch_pending(s) + n;
+    return append(s, n, lesser(room, n + repeats_left(s, so_far, EARLY)));
+}
+
+size_t repeat_last(Search *s)
+{
+    const size_t room = room_of(s);
+    s->reserved = repeats_left(s, s->config->max_evals, 1.0);
+    if (room > s->reserved)
+        return 0;
+    s->reserved = 0; /* where nobody is left to repeat, new designs are better than nothing */
+    return append(s, 0, lesser(room, batch_size(s)));
+}
