@@ -33,35 +33,21 @@ static void contact_predict(FastWork *k, const Level *l, double a0, double a1)
     rows_times(2, (const vec *)k->R, k->nf, k->m_pad, state, floors);
 }
 
-/* Largest distance of a free vibration, amplitude 1, from the Hermite cubic through its ends, and from the parabola
- * through both ends and the cubic's middle; wh = w h. Where w h is large: what the mode moves and the curve may swing.
- */
-static inline vec cubic_misses(vec wh)
-{
-    const vec wh2 = wh * wh, all = 2 + 0.25 * wh, small = wh2 * wh2 * (1.0 / 384);
-    return (vec)(((mask)small & (small < all)) | ((mask)all & ~(small < all)));
-}
-
-static inline vec parabola_misses(vec wh)
-{
-    const vec wh2 = wh * wh, all = 2.25 + 0.25 * wh, small = wh2 * (0.00802 * wh + wh2 * (1.0 / 384));
-    return (vec)(((mask)small & (small < all)) | ((mask)all & ~(small < all)));
-}
-
 /* What interpolation over the step misses of the first mf vectors of modes, bound, and of their acceleration, bound_a;
  * returns what it misses of w [m], whatever the floor. Amplitudes are those around the quasi-static answer to the load.
  */
-static double contact_bounds(FastWork *k, int mf, double h, double a0, double a1)
+static double contact_bounds(FastWork *k, const Level *l, int mf, double a0, double a1)
 {
+    const double rate = (a1 - a0) / l->h;
     vec missed = {0};
     for (int i = 0; i < mf; i++) {
-        const vec flex = k->flex[i], decay = k->decay[i], omega = k->omega[i];
+        const vec flex = k->flex[i];
         const vec x = k->q[i] - flex * (k->load[i] - k->gamma[i] * a0);
-        const vec xd = (k->v[i] + flex * k->gamma[i] * ((a1 - a0) / h) + 0.5 * decay * x) * k->wd_inverse[i];
-        const vec amplitude = vec_sqrt(x * x + xd * xd), wh = (omega + decay) * h;
-        missed += k->most[i] * cubic_misses(wh) * amplitude;
-        k->bound[i] = parabola_misses(wh) * amplitude;
-        k->bound_a[i] = omega * (omega + decay) * k->bound[i];
+        const vec xd = (k->v[i] + flex * k->gamma[i] * rate + 0.5 * k->decay[i] * x) * k->wd_inverse[i];
+        const vec amplitude = vec_hypot_above(x, xd);
+        missed += l->cubic[i] * amplitude;
+        k->bound[i] = l->parabola[i] * amplitude;
+        k->bound_a[i] = l->parabola_accel[i] * amplitude;
     }
     return lanes_sum(missed);
 }
@@ -212,7 +198,7 @@ static int contact_step(FastWork *k, const Level *l, double a0, double a1, int f
         land(k);
     k->steps++;
     contact_predict(k, l, a0, a1);
-    const double missed = contact_bounds(k, finest ? k->bf : k->mf, l->h, a0, a1);
+    const double missed = contact_bounds(k, l, finest ? k->bf : k->mf, a0, a1);
     if (!solve_contacts(k, l, k->knobs->solver_tolerance, &active)) {
         forget_forces(k);
         return 0;

@@ -34,6 +34,9 @@ static void layout(FastWork *k, Carve *c)
         l->slow = carve(c, m_max, sizeof(double));
         l->kappa = carve(c, m_max, sizeof(double));
         l->kappa_accel = carve(c, m_max, sizeof(double));
+        l->cubic = carve(c, m_max, sizeof(double));
+        l->parabola = carve(c, m_max, sizeof(double));
+        l->parabola_accel = carve(c, m_max, sizeof(double));
         l->response = carve(c, RESPONSES * n * n_pad, sizeof(double));
     }
 }

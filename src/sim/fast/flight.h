@@ -87,7 +87,7 @@ static int gaps_stay_open(FastWork *k, double h)
 static int accelerations_in_flight(FastWork *k, const Level *l, double tolerance)
 {
     flight_accelerations(k, l);
-    return raise_peaks(k->peak_a, k->n, k->nf, k->a0, k->a0d, k->a1, k->a1d, k->e_a, l->h, tolerance);
+    return raise_peaks(k->peak_a, k->nf, k->a0, k->a0d, k->a1, k->a1d, k->e_a, l->h, tolerance);
 }
 
 static int peaks_in_flight(FastWork *k, const Level *l, double tolerance)
@@ -102,8 +102,8 @@ static int peaks_in_flight(FastWork *k, const Level *l, double tolerance)
     storeys(k, k->e_u, e);
     for (int j = 1; j < k->n; j++)
         scalars(e)[j] += 2 * scalars(k->e_u)[j - 1];
-    return raise_peaks(k->peak_u, k->n, k->nf, k->u0, k->u0d, k->u1, k->u1d, k->e_u, h, tolerance) &&
-           raise_peaks(k->peak_d, k->n, k->nf, d0, d0d, d1, d1d, e, h, tolerance) &&
+    return raise_peaks(k->peak_u, k->nf, k->u0, k->u0d, k->u1, k->u1d, k->e_u, h, tolerance) &&
+           raise_peaks(k->peak_d, k->nf, d0, d0d, d1, d1d, e, h, tolerance) &&
            (!exceeds(k->reach_a, k->peak_a, k->nf) || accelerations_in_flight(k, l, tolerance));
 }
 

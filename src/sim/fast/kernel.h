@@ -26,7 +26,9 @@ typedef struct {
     vec *slow;        /* (m_pad) 1: the Hermite cubic follows this mode, 0: it does not */
     vec *kappa;       /* (m_pad) error of the cubic, or 1, per unit of amplitude */
     vec *kappa_accel; /* (m_pad) the same for -2 zeta w q' - w^2 q */
-    double *response; /* (RESPONSES, n, n_pad) */
+    vec *cubic;       /* (m_pad) what the cubic misses of w on any floor, per unit of a mode's amplitude */
+    vec *parabola, *parabola_accel; /* (m_pad) what the parabola misses of the mode, of its acceleration */
+    double *response;               /* (RESPONSES, n, n_pad) */
 } Level;
 
 typedef struct FastWork {
@@ -51,8 +53,9 @@ typedef struct FastWork {
     vec *w, *wd, *w1, *wd1, *f0, *f1, *fb, *f_before, *fb_before, *gap; /* (n_pad) */
     vec *c0, *c0d, *c1, *c1d;                                           /* (n_pad) the core's part of w in flight */
     vec *u0, *u0d, *u1, *u1d, *a0, *a0d, *a1, *a1d, *e_u, *e_w, *e_a, *reach_a; /* (n_pad) */
-    vec *peak_u, *peak_d, *peak_a;                                              /* (n_pad) */
+    vec *peak_u, *peak_d, *peak_a;                                              /* (n_pad); padding is out of reach */
     vec *seen[3][3]; /* [start, middle, end of a contact step][u, drift, accel] (n_pad) */
+    int rises[3];    /* [u, drift, accel] may this contact step raise a peak? */
     int landed;      /* 0: in flight, w, w' and what is seen are not current */
     double v0[FLOORS_PAD_MAX];
     int side[FLOORS_PAD_MAX]; /* 0 open, +1 or -1 touching */

@@ -25,14 +25,14 @@ static double largest_on_cubic(double h, double y0, double d0, double y1, double
 }
 
 /* Raises peak where the step may exceed it; 0: the error bound hides what the peak is. */
-static int raise_peaks(vec *peak, int n, int nf, const vec *y0, const vec *d0, const vec *y1, const vec *d1,
+static int raise_peaks(vec *peak, int nf, const vec *y0, const vec *d0, const vec *y1, const vec *d1,
                        const vec *e, double h, double tolerance)
 {
     for (int f = 0; f < nf; f++) {
         const vec reach = hull(y0[f], d0[f], y1[f], d1[f], h) + e[f];
         if (!any(reach > peak[f]))
             continue;
-        for (int lane = 0; lane < LANES && f * LANES + lane < n; lane++) {
+        for (int lane = 0; lane < LANES; lane++) {
             if (!(reach[lane] > peak[f][lane]))
                 continue;
             const double most = largest_on_cubic(h, y0[f][lane], d0[f][lane], y1[f][lane], d1[f][lane]);
@@ -55,16 +55,14 @@ static int exceeds(const vec *reach, const vec *peak, int nf)
     return any(over);
 }
 
-/* Interstorey differences of floor values, the ground being 0. */
+/* Interstorey differences of floor values, the ground being 0; padding is anything. */
 static void storeys(const FastWork *k, const vec *u, vec *d)
 {
-    const double *from = scalars_const(u);
-    double *to = scalars(d);
-    to[0] = from[0];
-    for (int j = 1; j < k->n; j++)
-        to[j] = from[j] - from[j - 1];
-    for (int j = k->n; j < k->n_pad; j++)
-        to[j] = 0;
+    vec below = {0};
+    for (int f = 0; f < k->nf; f++) {
+        d[f] = u[f] - lanes_before(below, u[f]);
+        below = u[f];
+    }
 }
 
 /* Where a flight ends: u, drift and acceleration of the floors. */
@@ -96,37 +94,47 @@ static void raise_in_contact(vec *peak, int nf, const vec *start, const vec *mid
 {
     for (int f = 0; f < nf; f++) {
         const mask above = parabola_reach(start[f], middle[f], end[f]) > peak[f];
-        for (int lane = 0; lane < LANES; lane++)
+        for (int lane = 0; any(above) && lane < LANES; lane++)
             if (above[lane])
                 peak[f][lane] = larger(parabola_top(start[f][lane], middle[f][lane], end[f][lane]), peak[f][lane]);
     }
 }
 
-/* Is there a floor where more than `tolerance` of a peak, or of `least`, may hide between the parabola and what it
- * misses: e, or missed where that is NULL? */
-static int hides(int nf, const vec *start, const vec *middle, const vec *end, const vec *peak, const vec *e,
-                 double missed, double tolerance, double least)
+/* Of accelerations, which are certain to less anyway, so many times as much may hide. */
+static const double ACCELERATION_SLACK = 5;
+
+/* Is there a floor where too much of peak y may hide between the parabola and what it misses: e? Where the motion sets
+ * in every step is a peak: parts of `least` need not be known. */
+static int hides_by(const FastWork *k, int y, const vec *peak, const vec *e, double least)
 {
+    const double tolerance = k->knobs->peak_tolerance * (y == 2 ? ACCELERATION_SLACK : 1);
     mask hidden = {0};
-    for (int f = 0; f < nf; f++) {
-        const vec reach = parabola_reach(start[f], middle[f], end[f]), error = e ? e[f] : (vec){0} + missed;
+    for (int f = 0; f < k->nf; f++) {
+        const vec reach = parabola_reach(k->seen[0][y][f], k->seen[1][y][f], k->seen[2][y][f]);
         hidden |=
-            (reach + error > peak[f]) & ~(error <= tolerance * vec_max(vec_max(reach, peak[f]), (vec){0} + least));
+            (reach + e[f] > peak[f]) & ~(e[f] <= tolerance * vec_max(vec_max(reach, peak[f]), (vec){0} + least));
     }
     return any(hidden);
 }
 
-/* Of accelerations, which are certain to less anyway, so many times as much may hide. */
-static const double ACCELERATION_SLACK = 5;
+/* The same, at first by what the parabola misses whatever the floor. ground: largest acceleration of the step. */
+static int hides(FastWork *k, int y, const vec *peak, vec missed, double ground)
+{
+    const double sway = ground * scalars(k->flex)[0], least = y == 0 ? sway : y == 1 ? sway / k->n : ground;
+    for (int f = 0; f < k->nf; f++)
+        k->e_a[f] = missed;
+    if (!hides_by(k, y, peak, k->e_a, least))
+        return 0;
+    const double *const bound[1] = {scalars_const(y == 2 ? k->bound_a : k->bound)};
+    vec *const e[1] = {k->e_a};
+    rows_times(1, (const vec *)(y == 1 ? k->D_abs : k->R_abs), k->nf, k->nb_pad, bound, e);
+    return hides_by(k, y, peak, k->e_a, least);
+}
 
 /* Do the curves through the step miss too much of a peak? First by bounds that hold for all floors, then floor by
- * floor. */
+ * floor. Notes which peaks may rise. */
 static int peaks_are_certain(FastWork *k, double ground)
 {
-    /* where the motion sets in every step is a peak: such small ones need not be known */
-    const double sway = ground * scalars(k->flex)[0], least[3] = {sway, sway / k->n, ground};
-    const double tolerance = k->knobs->peak_tolerance;
-    const double allowed[3] = {tolerance, tolerance, ACCELERATION_SLACK * tolerance};
     vec *const peaks[3] = {k->peak_u, k->peak_d, k->peak_a}, sum[3] = {{0}};
     for (int i = 0; i < k->bf; i++) {
         sum[0] += k->most[i] * k->bound[i];
@@ -134,13 +142,12 @@ static int peaks_are_certain(FastWork *k, double ground)
         sum[2] += k->most[i] * k->bound_a[i];
     }
     for (int y = 0; y < 3; y++) {
-        vec *const *seen[3] = {&k->seen[0][y], &k->seen[1][y], &k->seen[2][y]};
-        if (!hides(k->nf, *seen[0], *seen[1], *seen[2], peaks[y], NULL, lanes_sum(sum[y]), allowed[y], least[y]))
-            continue;
-        const double *const bound[1] = {scalars_const(y == 2 ? k->bound_a : k->bound)};
-        vec *const e[1] = {k->e_a};
-        rows_times(1, (const vec *)(y == 1 ? k->D_abs : k->R_abs), k->nf, k->nb_pad, bound, e);
-        if (hides(k->nf, *seen[0], *seen[1], *seen[2], peaks[y], k->e_a, 0, allowed[y], least[y]))
+        const vec missed = (vec){0} + lanes_sum(sum[y]);
+        mask near = {0};
+        for (int f = 0; f < k->nf; f++)
+            near |= ~(parabola_reach(k->seen[0][y][f], k->seen[1][y][f], k->seen[2][y][f]) + missed <= peaks[y][f]);
+        k->rises[y] = any(near);
+        if (k->rises[y] && hides(k, y, peaks[y], missed, ground))
             return 0;
     }
     return 1;
@@ -163,10 +170,7 @@ static void peaks_in_contact(FastWork *k)
 {
     vec *const peaks[3] = {k->peak_u, k->peak_d, k->peak_a};
     for (int y = 0; y < 3; y++) {
-        mask above = {0};
-        for (int f = 0; f < k->nf; f++)
-            above |= parabola_reach(k->seen[0][y][f], k->seen[1][y][f], k->seen[2][y][f]) > peaks[y][f];
-        if (any(above))
+        if (k->rises[y])
             raise_in_contact(peaks[y], k->nf, k->seen[0][y], k->seen[1][y], k->seen[2][y]);
         swap(&k->seen[0][y], &k->seen[2][y]);
     }

@@ -39,10 +39,20 @@ static double largest(const vec *a, int nf)
     vec most = vec_abs(a[0]);
     for (int f = 1; f < nf; f++)
         most = vec_max(most, vec_abs(a[f]));
-    double m = 0;
-    for (int lane = 0; lane < LANES; lane++)
-        m = fmax(m, most[lane]);
-    return m;
+    return lanes_max(most);
+}
+
+/* Largest distance of a free vibration, amplitude 1, from the Hermite cubic through its ends, and from the parabola
+ * through both ends and the cubic's middle; wh = w h. Where w h is large: what the mode moves and the curve may swing.
+ */
+static double cubic_misses(double wh)
+{
+    return fmin(wh * wh * wh * wh / 384, 2 + 0.25 * wh);
+}
+
+static double parabola_misses(double wh)
+{
+    return fmin(wh * wh * (0.00802 * wh + wh * wh / 384), 2.25 + 0.25 * wh);
 }
 
 static void level_flow(FastWork *k, Level *l)
@@ -58,6 +68,10 @@ static void level_flow(FastWork *k, Level *l)
         scalars(l->slow)[i] = slow;
         scalars(l->kappa)[i] = bound;
         scalars(l->kappa_accel)[i] = bound * omega[i] * omega[i] * (1 + 2 * zeta[i]);
+        const double damped = omega[i] * (1 + 2 * zeta[i]);
+        scalars(l->cubic)[i] = cubic_misses(damped * l->h) * scalars(k->most)[i];
+        scalars(l->parabola)[i] = parabola_misses(damped * l->h);
+        scalars(l->parabola_accel)[i] = parabola_misses(damped * l->h) * omega[i] * damped;
     }
     l->has_flow = 1;
 }
@@ -209,6 +223,8 @@ static void start_at_rest(FastWork *k)
     for (int f = 0; f < k->nf; f++)
         k->w[f] = k->wd[f] = k->f0[f] = k->f1[f] = k->fb[f] = k->f_before[f] = k->fb_before[f] = k->peak_u[f] =
             k->peak_d[f] = k->peak_a[f] = zero;
+    for (int j = k->n; j < k->n_pad; j++)
+        scalars(k->peak_u)[j] = scalars(k->peak_d)[j] = scalars(k->peak_a)[j] = 1e300;
     memset(k->side, 0, sizeof k->side);
     k->n_touching = 0;
     k->landed = 0;

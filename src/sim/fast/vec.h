@@ -4,6 +4,9 @@
 #define IMTET_SIM_FAST_VEC_H
 
 #include <stdint.h>
+#if defined __AVX2__
+#include <immintrin.h>
+#endif
 
 /* Vectors are passed between static functions of one file only, so no caller can disagree about how. */
 #pragma GCC diagnostic ignored "-Wpsabi"
@@ -39,6 +42,13 @@ static inline vec vec_abs(vec a)
     return (vec)((mask)a & INT64_MAX);
 }
 
+/* At least sqrt(a^2 + b^2), at most 8 % more, without a root. */
+static inline vec vec_hypot_above(vec a, vec b)
+{
+    const vec x = vec_abs(a), y = vec_abs(b), most = vec_max(x, y);
+    return most + 0.4142135623730951 * (x + y - most);
+}
+
 typedef double v4 __attribute__((vector_size(32)));
 typedef int64_t m4 __attribute__((vector_size(32)));
 
@@ -60,38 +70,82 @@ static inline double v4_sum(v4 a)
     return (a[0] + a[1]) + (a[2] + a[3]);
 }
 
+/* Every lane gets the one `by` lanes further, round the end. */
+static inline vec lanes_turn(vec a, const int by)
+{
+    mask from;
+    for (int i = 0; i < LANES; i++)
+        from[i] = (i + by) % LANES;
+    return __builtin_shuffle(a, from);
+}
+
 static inline double lanes_sum(vec a)
 {
-    double sum = 0;
+#pragma GCC unroll 3
+    for (int by = LANES / 2; by > 0; by /= 2)
+        a += lanes_turn(a, by);
+    return a[0];
+}
+
+/* The greatest; of no use where one is not a number. */
+static inline double lanes_max(vec a)
+{
+#pragma GCC unroll 3
+    for (int by = LANES / 2; by > 0; by /= 2)
+        a = vec_max(a, lanes_turn(a, by));
+    return a[0];
+}
+
+/* b's lanes one to the right, the last of a before them. */
+static inline vec lanes_before(vec a, vec b)
+{
+    mask from;
     for (int i = 0; i < LANES; i++)
-        sum += a[i];
-    return sum;
+        from[i] = LANES - 1 + i;
+    return __builtin_shuffle(a, b, from);
 }
 
 static inline int any(mask m)
 {
+#if defined __AVX512F__ && FAST_LANES == 8
+    return _mm512_test_epi64_mask((__m512i)m, (__m512i)m) != 0;
+#elif defined __AVX2__ && FAST_LANES == 4
+    return !_mm256_testz_si256((__m256i)m, (__m256i)m);
+#else
     int64_t any = 0;
     for (int i = 0; i < LANES; i++)
         any |= m[i];
     return any != 0;
+#endif
 }
 
-/* Y_r = sum_i X_r[i] A[i] for `count` rows i of A, each of `blocks` vectors; r = 0..n_rhs-1. The compiler unrolls over
- * the constant n_rhs and keeps the sums in registers. */
-INLINE void rows_times(int n_rhs, const vec *A, int blocks, int count, const double *const X[], vec *const Y[])
+/* Blocks first, first + 1 .. (n_blocks of them) of Y_r = sum_i X_r[i] A[i], of `count` rows i of A, each of `blocks`
+ * vectors; r = 0..n_rhs-1. The sums stay in registers: an element of X, once in all lanes, serves all blocks. */
+INLINE void rows_times_blocks(const int n_rhs, const int n_blocks, const vec *A, int blocks, int first, int count,
+                              const double *const X[], vec *const Y[])
 {
-    for (int b = 0; b < blocks; b++) {
-        vec sum[4] = {{0}}, more[4] = {{0}};
-        for (int i = 0; i < count; i += 2) {
-            const vec a0 = A[i * blocks + b], a1 = A[(i + 1) * blocks + b];
-            for (int r = 0; r < n_rhs; r++) {
-                sum[r] += a0 * X[r][i];
-                more[r] += a1 * X[r][i + 1];
-            }
-        }
+    vec sum[4][4] = {{{0}}};
+    for (int i = 0; i < count; i++, A += blocks)
+#pragma GCC unroll 4
         for (int r = 0; r < n_rhs; r++)
-            Y[r][b] = sum[r] + more[r];
-    }
+#pragma GCC unroll 4
+            for (int b = 0; b < n_blocks; b++)
+                sum[r][b] += A[first + b] * X[r][i];
+#pragma GCC unroll 4
+    for (int r = 0; r < n_rhs; r++)
+#pragma GCC unroll 4
+        for (int b = 0; b < n_blocks; b++)
+            Y[r][first + b] = sum[r][b];
+}
+
+/* All blocks, three at a time: twenty floors are three vectors of eight. */
+INLINE void rows_times(const int n_rhs, const vec *A, int blocks, int count, const double *const X[], vec *const Y[])
+{
+    int b = 0;
+    for (; b + 3 <= blocks; b += 3)
+        rows_times_blocks(n_rhs, 3, A, blocks, b, count, X, Y);
+    for (; b < blocks; b++)
+        rows_times_blocks(n_rhs, 1, A, blocks, b, count, X, Y);
 }
 
 #endif
