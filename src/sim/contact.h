@@ -49,8 +49,8 @@ typedef struct {
 /* p > 0; v0 already floored; mass [kg] of the contact: what it has to turn round. */
 static inline ContactForce contact_force(const Contact *c, double mass, double p, double p_dot, double v0)
 {
-    const double root = sqrt(p), hertz = c->k * p * root, loss = 1.0 + c->a * p_dot / v0;
-    ContactForce f = {.raw = hertz * loss, .hertz = hertz, .dp = 1.5 * c->k * root * loss, .dv = hertz * c->a / v0};
+    const double root = sqrt(p), hertz = c->k * p * root, damping = c->a / v0, loss = 1.0 + damping * p_dot;
+    ContactForce f = {.raw = hertz * loss, .hertz = hertz, .dp = 1.5 * c->k * root * loss, .dv = hertz * damping};
     if (c->xi > 0 && p_dot > 0) {
         const double dashpot = 2 * c->xi * sqrt(mass * c->k * root);
         f.raw += dashpot * p_dot;

@@ -38,6 +38,7 @@ static void layout(FastWork *k, Carve *c)
         l->parabola = carve(c, m_max, sizeof(double));
         l->parabola_accel = carve(c, m_max, sizeof(double));
         l->response = carve(c, RESPONSES * n * n_pad, sizeof(double));
+        l->reply = carve(c, n * n, sizeof(v4));
     }
 }
 

@@ -11,7 +11,8 @@
 
 /* What both walls do to one floor over a step; as Touch, in w instead of p. */
 typedef struct {
-    double end, mean, end_w, end_v, mean_w, mean_v, v0, lost, clamped, closed_at, closed_with;
+    m22 slope; /* d (end, mean) / d (w1, w1') */
+    double end, mean, v0, lost, clamped, closed_at, closed_with;
     int closings, floored;
 } Press;
 
@@ -29,29 +30,38 @@ static void apply_force(FastWork *k, const Level *l, int j, double f1, double fb
     scalars(k->fb)[j] = fb;
 }
 
+static inline void press_add(Press *out, const Touch *t, double s)
+{
+    out->end += s * t->end;
+    out->mean += s * t->mean;
+    out->slope += (m22){t->end_p, t->end_v, t->mean_p, t->mean_v};
+    out->lost += t->lost;
+    out->clamped += t->clamped;
+}
+
 /* The force law along the path of floor j to w1, w1', both walls: a path may leave one and reach the other. Forces push
  * the floor to the negative side. */
 static __attribute__((noinline)) void press(FastWork *k, double h, int j, double w1, double w1d, Press *out)
 {
     const double w0 = scalars(k->w)[j], w0d = scalars(k->wd)[j], gap = scalars(k->gap)[j], third = h / 3;
     const double b1 = w0 + third * w0d, b2 = w1 - third * w1d; /* with w0 and w1 they enclose the path */
+    const double mass = k->model->mass_eff[j], v0 = larger(k->v0[j], k->model->contact.v0_floor);
+    const int side = k->side[j];
+    Touch t;
     *out = (Press){0};
-    for (int wall = 0; wall < 2; wall++) {
-        const double s = wall == 0 ? 1 : -1;
+    if (side && side * w0 > gap && side * b1 > gap && side * b2 > gap && side * w1 > gap) {
+        touch_through(&t, &k->model->contact, mass, h, side * w0 - gap, side * w0d, side * w1 - gap, side * w1d, v0);
+        press_add(out, &t, side);
+        out->v0 = v0;
+        k->forces++;
+        return;
+    }
+    for (int s = 1; s >= -1; s -= 2) {
         if (s * w0 <= gap && s * b1 <= gap && s * b2 <= gap && s * w1 <= gap)
             continue;
-        Touch t;
-        touch_step(&t, &k->model->contact, k->model->mass_eff[j], h, s * w0 - gap, s * w0d, s * w1 - gap, s * w1d,
-                   k->side[j] == s, larger(k->v0[j], k->model->contact.v0_floor));
+        touch_step(&t, &k->model->contact, mass, h, s * w0 - gap, s * w0d, s * w1 - gap, s * w1d, side == s, v0);
+        press_add(out, &t, s);
         k->forces++;
-        out->end += s * t.end;
-        out->mean += s * t.mean;
-        out->end_w += t.end_p;
-        out->end_v += t.end_v;
-        out->mean_w += t.mean_p;
-        out->mean_v += t.mean_v;
-        out->lost += t.lost;
-        out->clamped += t.clamped;
         out->closings += t.closings;
         out->floored += t.floored;
         if (t.closings) {
@@ -63,22 +73,17 @@ static __attribute__((noinline)) void press(FastWork *k, double h, int j, double
     }
 }
 
-/* The floors that may touch in this step, and the small dense problem of their forces:
- *   w1_i  = free_i  - sum_j (g[i][j].w_end F_j + .w_mean M_j),   w1_i' with .v_end, .v_mean,
- *   (F_i, M_i) = force at the end and mean force by the law along the path to w1_i, w1_i' */
-typedef struct {
-    double w_end, w_mean, v_end, v_mean;
-} Reply;
-
+/* The floors that may touch in this step, and the small dense problem of their forces. With the pairs y_i = (w1_i,
+ * w1_i') and x_i = (F_i, M_i), force at the end and mean force by the law along the path to y_i,
+ *   y_i = free_i - sum_j g_ij x_j */
 typedef struct {
     int n, floor[FLOORS_PAD_MAX];
     unsigned char listed[FLOORS_PAD_MAX];
-    double w1[FLOORS_PAD_MAX], wd1[FLOORS_PAD_MAX], F[FLOORS_PAD_MAX], M[FLOORS_PAD_MAX];
-    double scale_w[FLOORS_PAD_MAX], scale_v[FLOORS_PAD_MAX]; /* what the step moves */
     Press press[FLOORS_PAD_MAX];
-    Reply g[FLOORS_PAD_MAX * FLOORS_PAD_MAX];           /* (n, n) */
-    vec J[4 * FLOORS_PAD_MAX * FLOORS_PAD_MAX / LANES]; /* (2n, row_width) Newton's matrix, then its U */
-    double L[4 * FLOORS_PAD_MAX * FLOORS_PAD_MAX];      /* (2n, 2n) */
+    p2 y[FLOORS_PAD_MAX], x[FLOORS_PAD_MAX];
+    p2 scale[FLOORS_PAD_MAX];                /* what the step moves, inverted */
+    m22 g[FLOORS_PAD_MAX * FLOORS_PAD_MAX];  /* (n, n) */
+    m22 LU[FLOORS_PAD_MAX * FLOORS_PAD_MAX]; /* (n, n) of Newton's matrix, pivots inverted */
 } Active;
 
 /* Lists the floors whose path may leave the gap; returns how many were new. */
@@ -112,45 +117,40 @@ static void list_touching(FastWork *k, Active *active)
         }
 }
 
-/* Rows of Newton's matrix for n floors are so far apart. */
-static inline int row_width(int n)
-{
-    return (2 * n + LANES - 1) / LANES * LANES;
-}
-
-/* A = L U of (n, n), rows in their order: the matrix tends to the unit matrix as the step gets shorter, and where a
- * pivot vanishes Newton does not converge and the step gets shorter. U takes the place of A, of which rows are `width`
- * apart, its pivots inverted; L (n, n), without its ones, has the columns as rows. */
-INLINE void factorise(const int n, const int width, double *A, double *L)
+/* L U of the matrix of blocks A (n, n), rows in their order: the matrix tends to the unit matrix as the step gets
+ * shorter, and where a pivot vanishes Newton does not converge and the step gets shorter. */
+INLINE void factorise(const int n, m22 *A)
 {
 #pragma GCC unroll 8
     for (int c = 0; c < n; c++) {
-        const double *pivot_row = A + c * width;
-        const double inverse = 1 / pivot_row[c];
+        const m22 inverse = A[c * n + c] = m22_inverse(A[c * n + c]);
 #pragma GCC unroll 8
         for (int r = c + 1; r < n; r++) {
-            double *row = A + r * width;
-            const double f = L[c * n + r] = row[c] * inverse;
-            for (int j = c / LANES * LANES; j < width; j += LANES)
-                *(vec *)(row + j) -= f * *(const vec *)(pivot_row + j);
+            const m22 f = A[r * n + c] = m22_times(A[r * n + c], inverse);
+#pragma GCC unroll 8
+            for (int j = c + 1; j < n; j++)
+                A[r * n + j] -= m22_times(f, A[c * n + j]);
         }
-        A[c * width + c] = inverse;
     }
 }
 
-INLINE void substitute(const int n, const int width, const double *U, const double *L, double x[])
+INLINE void substitute(const int n, const m22 *LU, p2 x[])
 {
 #pragma GCC unroll 8
-    for (int c = 0; c < n; c++)
+    for (int r = 1; r < n; r++) {
+        v4 sum = {0};
 #pragma GCC unroll 8
-        for (int r = c + 1; r < n; r++)
-            x[r] -= L[c * n + r] * x[c];
+        for (int c = 0; c < r; c++)
+            sum += LU[r * n + c] * x[c];
+        x[r] -= p2_sum(sum);
+    }
 #pragma GCC unroll 8
     for (int r = n - 1; r >= 0; r--) {
+        v4 sum = {0};
 #pragma GCC unroll 8
-        for (int c = n - 1; c > r; c--)
-            x[r] -= U[r * width + c] * x[c];
-        x[r] *= U[r * width + r];
+        for (int c = r + 1; c < n; c++)
+            sum += LU[r * n + c] * x[c];
+        x[r] = p2_sum(LU[r * n + r] * (x[r] - p2_sum(sum)));
     }
 }
 
@@ -158,13 +158,11 @@ INLINE void substitute(const int n, const int width, const double *U, const doub
  * of the step before goes on. */
 static void take_in(FastWork *k, const Level *l, Active *a, int n_before)
 {
-    const int size = k->n * k->n_pad;
     for (int i = n_before; i < a->n; i++) {
         const int j = a->floor[i];
         const double w0 = scalars(k->w)[j], v0 = scalars(k->wd)[j], gap = scalars(k->gap)[j];
-        const double w1 = scalars(k->w1)[j], v1 = scalars(k->wd1)[j];
-        a->scale_v[i] = fabs(v0) + fabs(v1);
-        a->scale_w[i] = fabs(fabs(w0) - gap) + fabs(fabs(w1) - gap) + l->h * a->scale_v[i];
+        const double w1 = scalars(k->w1)[j], v1 = scalars(k->wd1)[j], moved = fabs(v0) + fabs(v1);
+        a->scale[i] = 1 / p2_make(fabs(fabs(w0) - gap) + fabs(fabs(w1) - gap) + l->h * moved, moved);
         const double f0 = scalars(k->f0)[j], r = l->h / k->h_before, b = scalars(k->fb_before)[j];
         const double f1 = f0 + r * (f0 - scalars(k->f_before)[j]) - b * r * (1 + r);
         if (f1 * f0 > 0)
@@ -174,65 +172,52 @@ static void take_in(FastWork *k, const Level *l, Active *a, int n_before)
     }
     for (int i = 0; i < a->n; i++) {
         const int j = a->floor[i];
-        a->w1[i] = scalars(k->w1)[j];
-        a->wd1[i] = scalars(k->wd1)[j];
-        a->F[i] = -scalars(k->f1)[j];
-        a->M[i] = (-scalars(k->fb)[j] - 3 * scalars(k->f0)[j] + 3 * a->F[i]) / 6;
-        for (int c = 0; c < a->n; c++) {
-            const double *r = l->response + j * k->n_pad + a->floor[c];
-            const double w_b = r[BUBBLE_W * size], v_b = r[BUBBLE_V * size];
-            a->g[i * a->n + c] = (Reply){r[RAMP_W * size] - 3 * w_b, 6 * w_b, r[RAMP_V * size] - 3 * v_b, 6 * v_b};
-        }
+        const double F = -scalars(k->f1)[j];
+        a->y[i] = p2_make(scalars(k->w1)[j], scalars(k->wd1)[j]);
+        a->x[i] = p2_make(F, (-scalars(k->fb)[j] - 3 * scalars(k->f0)[j] + 3 * F) / 6);
+        for (int c = 0; c < a->n; c++)
+            a->g[i * a->n + c] = l->reply[j * k->n + a->floor[c]];
     }
 }
 
-/* Newton's matrix I + (slopes of the law) (replies of w1, w1'), factorised. */
+/* Newton's matrix 1 + (slopes of the law) g, factorised. */
 INLINE void take_slopes(Active *a, const int n)
 {
-    const int width = row_width(n);
+#pragma GCC unroll 8
     for (int i = 0; i < n; i++) {
-        const Press *t = &a->press[i];
-        double *row = (double *)a->J + 2 * i * width;
-        for (int j = 0; j < n; j++, row += 2) {
-            const Reply *g = &a->g[i * n + j];
-            row[0] = t->end_w * g->w_end + t->end_v * g->v_end + (i == j);
-            row[1] = t->end_w * g->w_mean + t->end_v * g->v_mean;
-            row[width] = t->mean_w * g->w_end + t->mean_v * g->v_end;
-            row[width + 1] = t->mean_w * g->w_mean + t->mean_v * g->v_mean + (i == j);
-        }
+#pragma GCC unroll 8
+        for (int j = 0; j < n; j++)
+            a->LU[i * n + j] = m22_times(a->press[i].slope, a->g[i * n + j]);
+        a->LU[i * n + i] += (m22){1, 0, 0, 1};
     }
-    factorise(2 * n, width, (double *)a->J, a->L);
+    factorise(n, a->LU);
 }
 
 /* One step of Newton's method on n floors, with the matrix of this state or (not fresh) of an earlier one. Returns the
  * largest change of w1 and w1' relative to what the step moves; it is not a number where there is none. */
 INLINE double improve(FastWork *k, double h, Active *a, int fresh, const int n)
 {
-    double x[2 * FLOORS_PAD_MAX], change = 0;
+    p2 x[FLOORS_PAD_MAX];
+    v4 change = {0};
     for (int i = 0; i < n; i++) {
-        press(k, h, a->floor[i], a->w1[i], a->wd1[i], &a->press[i]);
-        x[2 * i] = a->F[i] - a->press[i].end;
-        x[2 * i + 1] = a->M[i] - a->press[i].mean;
+        press(k, h, a->floor[i], a->y[i][0], a->y[i][1], &a->press[i]);
+        x[i] = a->x[i] - p2_make(a->press[i].end, a->press[i].mean);
     }
     if (fresh)
         take_slopes(a, n);
-    substitute(2 * n, row_width(n), (const double *)a->J, a->L, x);
+    substitute(n, a->LU, x);
+#pragma GCC unroll 8
     for (int i = 0; i < n; i++) {
-        double dw = 0, dv = 0;
-        for (int j = 0; j < n; j++) {
-            const Reply *g = &a->g[i * n + j];
-            dw += g->w_end * x[2 * j] + g->w_mean * x[2 * j + 1];
-            dv += g->v_end * x[2 * j] + g->v_mean * x[2 * j + 1];
-        }
-        a->w1[i] += dw;
-        a->wd1[i] += dv;
-        a->F[i] -= x[2 * i];
-        a->M[i] -= x[2 * i + 1];
-        const double c = larger(fabs(dw) / a->scale_w[i], fabs(dv) / a->scale_v[i]);
-        if (!(c <= change))
-            change = c;
+        v4 sum = {0};
+#pragma GCC unroll 8
+        for (int j = 0; j < n; j++)
+            sum += a->g[i * n + j] * x[j];
+        const p2 dy = p2_sum(sum), c = v4_abs(dy * a->scale[i]);
+        a->y[i] += dy;
+        a->x[i] -= x[i];
+        change = v4_larger(change, c);
     }
-    return change;
+    return v4_larger(change, __builtin_shuffle(change, (m4){1, 0, 3, 2}))[0];
 }
 
 /* The common numbers of floors get code of their own, unrolled. */
@@ -256,7 +241,7 @@ static void hand_out(FastWork *k, const Level *l, const Active *a)
 {
     for (int i = 0; i < a->n; i++) {
         const int j = a->floor[i];
-        apply_force(k, l, j, -a->F[i], -(6 * a->M[i] + 3 * scalars(k->f0)[j] - 3 * a->F[i]));
+        apply_force(k, l, j, -a->x[i][0], -(6 * a->x[i][1] + 3 * scalars(k->f0)[j] - 3 * a->x[i][0]));
     }
 }
 

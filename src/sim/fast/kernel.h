@@ -29,6 +29,7 @@ typedef struct {
     vec *cubic;       /* (m_pad) what the cubic misses of w on any floor, per unit of a mode's amplitude */
     vec *parabola, *parabola_accel; /* (m_pad) what the parabola misses of the mode, of its acceleration */
     double *response;               /* (RESPONSES, n, n_pad) */
+    v4 *reply; /* (n, n) of floor i to floor j: d (w1_i, w1_i') / d (F, M) of j, its force at the end and mean force */
 } Level;
 
 typedef struct FastWork {

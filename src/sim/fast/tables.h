@@ -95,6 +95,11 @@ static void level_response(FastWork *k, Level *l)
                     out[f] += c * row[f];
             }
     }
+    for (int i = 0; i < k->n; i++)
+        for (int j = 0; j < k->n; j++) {
+            const double *r = l->response + i * k->n_pad + j, w = r[BUBBLE_W * size], v = r[BUBBLE_V * size];
+            l->reply[i * k->n + j] = (v4){r[RAMP_W * size] - 3 * w, 6 * w, r[RAMP_V * size] - 3 * v, 6 * v};
+        }
     l->has_response = 1;
 }
 

@@ -20,8 +20,9 @@ typedef struct {
 static inline ContactForce4 contact_force4(const Contact *c, double mass, v4 p_any, v4 v, double v0)
 {
     const v4 zero = {0}, p = v4_where(p_any <= zero, zero, p_any); /* keeps NaN */
-    const v4 root = v4_sqrt(p), hertz = c->k * p * root, loss = 1.0 + c->a / v0 * v;
-    ContactForce4 f = {.raw = hertz * loss, .hertz = hertz, .dp = 1.5 * c->k * root * loss, .dv = hertz * (c->a / v0)};
+    const double damping = c->a / v0;
+    const v4 root = v4_sqrt(p), hertz = c->k * p * root, loss = 1.0 + damping * v;
+    ContactForce4 f = {.raw = hertz * loss, .hertz = hertz, .dp = 1.5 * c->k * root * loss, .dv = hertz * damping};
     if (c->xi > 0) {
         const v4 dashpot = v4_where((v > zero) & (p > zero), 2 * c->xi * v4_sqrt(mass * c->k * root), zero);
         f.raw += dashpot * v;
@@ -109,36 +110,84 @@ static inline int path_turns(const Path *q, double x[2])
     return n;
 }
 
-/* Adds the part [xa, xb] of the path, on which p > 0: Gauss-Legendre, four points at once, in y with x = xa + (xb - xa)
- * s(y), s = y^2 after a closing, y (2 - y) before an opening, y^2 (3 - 2 y) with both. */
+/* Four points of a path, what their p and p' owe to the end of it, and the weights of an integral over x. */
+typedef struct {
+    v4 p, v, weight;
+    v4 p_p1, p_v1, v_p1, v_v1; /* d p / d p1, d p / d p1', d p' / d p1, d p' / d p1' */
+} Points;
+
+static inline void touch_sum(Touch *t, const Contact *c, double mass, double h, const Points *at, double v0)
+{
+    const ContactForce4 f = contact_force4(c, mass, at->p, at->v, v0);
+    t->mean += v4_sum(at->weight * f.force);
+    t->mean_p += v4_sum(at->weight * (f.dp * at->p_p1 + f.dv * at->v_p1));
+    t->mean_v += v4_sum(at->weight * (f.dp * at->p_v1 + f.dv * at->v_v1));
+    t->lost += h * v4_sum(at->weight * (f.raw - f.hertz) * at->v);
+    t->clamped += h * v4_sum(at->weight * (f.force - f.raw) * at->v);
+}
+
+/* Gauss-Legendre on [0, 1]. */
+#define GAUSS_WEIGHT ((v4){0.17392742256872692, 0.32607257743127307, 0.32607257743127307, 0.17392742256872692})
+#define GAUSS_POINT ((v4){0.06943184420297371, 0.33000947820757187, 0.6699905217924281, 0.9305681557970263})
+
+/* Adds the part [xa, xb] of the path, on which p > 0: four points in y with x = xa + (xb - xa) s(y), s = y^2 after a
+ * closing, y (2 - y) before an opening, y^2 (3 - 2 y) with both. */
 static inline void touch_add(Touch *t, const Contact *c, double mass, const Path *q, double xa, double xb, double v0)
 {
-    static const v4 WEIGHT = {0.17392742256872692, 0.32607257743127307, 0.32607257743127307, 0.17392742256872692};
-    static const v4 Y = {0.06943184420297371, 0.33000947820757187, 0.6699905217924281, 0.9305681557970263};
-    const double length = xb - xa;
+    const v4 y = GAUSS_POINT;
+    const double length = xb - xa, per_h = 1 / q->h;
     const int closing = xa > 0, opening = xb < 1;
-    v4 share = Y, slope = {1, 1, 1, 1};
+    v4 share = y, slope = {1, 1, 1, 1};
     if (closing && opening) {
-        share = Y * Y * (3 - 2 * Y);
-        slope = 6 * Y * (1 - Y);
+        share = y * y * (3 - 2 * y);
+        slope = 6 * y * (1 - y);
     } else if (closing) {
-        share = Y * Y;
-        slope = 2 * Y;
+        share = y * y;
+        slope = 2 * y;
     } else if (opening) {
-        share = Y * (2 - Y);
-        slope = 2 - 2 * Y;
+        share = y * (2 - y);
+        slope = 2 - 2 * y;
     }
-    const v4 x = xa + length * share, weight = length * WEIGHT * slope;
-    const v4 p = q->c[0] + x * (q->c[1] + x * (q->c[2] + x * q->c[3]));
-    const double per_h = 1 / q->h;
-    const v4 v = (q->c[1] + x * (2 * q->c[2] + x * 3 * q->c[3])) * per_h;
-    const ContactForce4 f = contact_force4(c, mass, p, v, v0);
-    t->mean += v4_sum(weight * f.force);
-    /* dp/dp1 = x^2 (3 - 2x), dp/dp1' = h x^2 (x - 1) and their slopes */
-    t->mean_p += v4_sum(weight * (f.dp * x * x * (3 - 2 * x) + f.dv * 6 * x * (1 - x) * per_h));
-    t->mean_v += v4_sum(weight * (f.dp * q->h * x * x * (x - 1) + f.dv * x * (3 * x - 2)));
-    t->lost += q->h * v4_sum(weight * (f.raw - f.hertz) * v);
-    t->clamped += q->h * v4_sum(weight * (f.force - f.raw) * v);
+    const v4 x = xa + length * share;
+    const Points at = {
+        .p = q->c[0] + x * (q->c[1] + x * (q->c[2] + x * q->c[3])),
+        .v = (q->c[1] + x * (2 * q->c[2] + x * 3 * q->c[3])) * per_h,
+        .weight = length * GAUSS_WEIGHT * slope,
+        .p_p1 = x * x * (3 - 2 * x),
+        .p_v1 = q->h * x * x * (x - 1),
+        .v_p1 = 6 * x * (1 - x) * per_h,
+        .v_v1 = x * (3 * x - 2),
+    };
+    touch_sum(t, c, mass, q->h, &at, v0);
+}
+
+/* The force at the end of a path that ends in contact. */
+static inline void touch_end(Touch *t, const Contact *c, double mass, double p1, double v_1)
+{
+    const ContactForce f = contact_force(c, mass, p1, v_1, t->v0);
+    t->end = f.force;
+    t->end_p = f.dp;
+    t->end_v = f.dv;
+}
+
+/* All of the path is in contact. */
+static inline void touch_through(Touch *t, const Contact *c, double mass, double h, double p0, double v_0, double p1,
+                                 double v_1, double v0)
+{
+    const v4 x = GAUSS_POINT, rise = x * x * (3 - 2 * x), steep = 6 * x * (1 - x);
+    const double per_h = 1 / h;
+    const Points at = {
+        .p = p0 * (1 - rise) + p1 * rise + h * (v_0 * (x * (1 - x) * (1 - x)) + v_1 * (x * x * (x - 1))),
+        .v = (p1 - p0) * per_h * steep + v_0 * (1 - x) * (1 - 3 * x) + v_1 * (x * (3 * x - 2)),
+        .weight = GAUSS_WEIGHT,
+        .p_p1 = rise,
+        .p_v1 = h * (x * x * (x - 1)),
+        .v_p1 = per_h * steep,
+        .v_v1 = x * (3 * x - 2),
+    };
+    *t = (Touch){.v0 = v0};
+    touch_sum(t, c, mass, h, &at, v0);
+    touch_end(t, c, mass, p1, v_1);
 }
 
 /* closed: a contact is open at x = 0 with approach speed v0. */
@@ -149,11 +198,9 @@ static inline void touch_step(Touch *t, const Contact *c, double mass, double h,
     double knots[4] = {0}, turns[2];
     int n = 0;
     *t = (Touch){.v0 = v0};
-    /* the control polygon encloses the path: all of it positive or negative settles the common cases */
+    /* the control polygon encloses the path */
     const double b1 = p0 + q.c[1] / 3, b2 = p1 - h * v_1 / 3;
-    if (closed && p0 > 0 && b1 > 0 && b2 > 0 && p1 > 0) {
-        touch_add(t, c, mass, &q, 0, 1, v0);
-    } else if (p0 > 0 || b1 > 0 || b2 > 0 || p1 > 0) {
+    if (p0 > 0 || b1 > 0 || b2 > 0 || p1 > 0) {
         const int n_turns = path_turns(&q, turns);
         for (int i = 0; i < n_turns; i++)
             knots[++n] = turns[i];
@@ -182,12 +229,8 @@ static inline void touch_step(Touch *t, const Contact *c, double mass, double h,
         if (touching)
             touch_add(t, c, mass, &q, from, 1, t->v0);
     }
-    if (p1 > 0) {
-        const ContactForce f = contact_force(c, mass, p1, v_1, t->v0);
-        t->end = f.force;
-        t->end_p = f.dp;
-        t->end_v = f.dv;
-    }
+    if (p1 > 0)
+        touch_end(t, c, mass, p1, v_1);
 }
 
 #endif

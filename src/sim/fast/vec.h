@@ -65,6 +65,17 @@ static inline v4 v4_sqrt(v4 a)
     return r;
 }
 
+static inline v4 v4_abs(v4 a)
+{
+    return (v4)((m4)a & INT64_MAX);
+}
+
+/* Not a number where either is not. */
+static inline v4 v4_larger(v4 a, v4 b)
+{
+    return v4_where((a >= b) | (a != a), a, b);
+}
+
 static inline double v4_sum(v4 a)
 {
     return (a[0] + a[1]) + (a[2] + a[3]);
@@ -117,6 +128,35 @@ static inline int any(mask m)
         any |= m[i];
     return any != 0;
 #endif
+}
+
+/* A matrix of 2 x 2, row by row, and a vector of 2, twice: (x0, x1, x0, x1). */
+typedef v4 m22;
+typedef v4 p2;
+
+static inline m22 m22_times(m22 a, m22 b)
+{
+    return __builtin_shuffle(a, (m4){0, 0, 2, 2}) * __builtin_shuffle(b, (m4){0, 1, 0, 1}) +
+           __builtin_shuffle(a, (m4){1, 1, 3, 3}) * __builtin_shuffle(b, (m4){2, 3, 2, 3});
+}
+
+/* Not a number where there is none. */
+static inline m22 m22_inverse(m22 a)
+{
+    const v4 products = a * __builtin_shuffle(a, (m4){3, 2, 1, 0}); /* ad bc cb da, hence det -det -det det */
+    return __builtin_shuffle(a, (m4){3, 1, 2, 0}) / (products - __builtin_shuffle(products, (m4){1, 0, 3, 2}));
+}
+
+/* The vector (e0 + e1, e2 + e3): with e = a * x, or a sum of such, it is the product of matrix and vector. */
+static inline p2 p2_sum(v4 e)
+{
+    const v4 sums = e + __builtin_shuffle(e, (m4){1, 0, 3, 2});
+    return __builtin_shuffle(sums, (m4){0, 2, 0, 2});
+}
+
+static inline p2 p2_make(double x0, double x1)
+{
+    return (p2){x0, x1, x0, x1};
 }
 
 /* Blocks first, first + 1 .. (n_blocks of them) of Y_r = sum_i X_r[i] A[i], of `count` rows i of A, each of `blocks`
