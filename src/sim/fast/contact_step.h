@@ -55,13 +55,12 @@ static double contact_bounds(FastWork *k, const Level *l, int mf, double a0, dou
 /* May a floor that is not part of the solution have touched within the step? */
 static int others_reach(const FastWork *k, const Active *active, double h, double missed)
 {
+    uint64_t reached = 0;
     for (int f = 0; f < k->nf; f++) {
         const mask near = ~(hull(k->w[f], k->wd[f], k->w1[f], k->wd1[f], h) + missed < k->gap[f]);
-        for (int lane = 0; any(near) && lane < LANES; lane++)
-            if (near[lane] && f * LANES + lane < k->n && !active->listed[f * LANES + lane])
-                return 1;
+        reached |= (uint64_t)lane_bits(near) << f * LANES;
     }
-    return 0;
+    return (reached & k->floors & ~active->listed) != 0;
 }
 
 /* Displacement and acceleration of building modes i in the middle of a step, qb and zb, and at its end, za. The part
@@ -148,7 +147,7 @@ static void log_closing(FastWork *k, double h, int floor, const Press *t)
 
 static void accept_contacts(FastWork *k, const Active *active, double h)
 {
-    k->n_touching = 0;
+    k->touching = 0;
     for (int i = 0; i < active->n; i++) {
         const int j = active->floor[i];
         const Press *t = &active->press[i];
@@ -162,7 +161,7 @@ static void accept_contacts(FastWork *k, const Active *active, double h)
         k->v0[j] = t->v0;
         if (t->mean != 0)
             go_deeper(k, h, gap, w0, scalars(k->wd)[j], w1, scalars(k->wd1)[j]);
-        k->n_touching += k->side[j] != 0;
+        k->touching |= (uint64_t)(k->side[j] != 0) << j;
     }
     swap(&k->q, &k->q1);
     swap(&k->v, &k->v1);

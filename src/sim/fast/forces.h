@@ -77,8 +77,8 @@ static __attribute__((noinline)) void press(FastWork *k, double h, int j, double
  * w1_i') and x_i = (F_i, M_i), force at the end and mean force by the law along the path to y_i,
  *   y_i = free_i - sum_j g_ij x_j */
 typedef struct {
+    uint64_t listed; /* bit j: floor j is */
     int n, floor[FLOORS_PAD_MAX];
-    unsigned char listed[FLOORS_PAD_MAX];
     Press press[FLOORS_PAD_MAX];
     p2 y[FLOORS_PAD_MAX], x[FLOORS_PAD_MAX];
     p2 scale[FLOORS_PAD_MAX];                /* what the step moves, inverted */
@@ -86,35 +86,22 @@ typedef struct {
     m22 LU[FLOORS_PAD_MAX * FLOORS_PAD_MAX]; /* (n, n) of Newton's matrix, pivots inverted */
 } Active;
 
-/* Lists the floors whose path may leave the gap; returns how many were new. */
-static int find_closings(FastWork *k, const Level *l, Active *active)
+static void list_floors(Active *active, uint64_t floors)
 {
-    int found = 0;
-    for (int f = 0; f < k->nf; f++) {
-        const mask out = ~(hull(k->w[f], k->wd[f], k->w1[f], k->wd1[f], l->h) <= k->gap[f]);
-        if (!any(out))
-            continue;
-        for (int lane = 0; lane < LANES; lane++) {
-            const int j = f * LANES + lane;
-            if (!out[lane] || active->listed[j] || j >= k->n)
-                continue;
-            active->listed[j] = 1;
-            active->floor[active->n++] = j;
-            found++;
-        }
-    }
-    return found;
+    active->listed |= floors;
+    for (; floors; floors &= floors - 1)
+        active->floor[active->n++] = __builtin_ctzll(floors);
 }
 
-static void list_touching(FastWork *k, Active *active)
+/* Lists the floors whose path may leave the gap; returns whether any was new. */
+static int find_closings(FastWork *k, const Level *l, Active *active)
 {
-    active->n = 0;
-    memset(active->listed, 0, sizeof active->listed);
-    for (int j = 0; k->n_touching && j < k->n; j++)
-        if (k->side[j]) {
-            active->listed[j] = 1;
-            active->floor[active->n++] = j;
-        }
+    uint64_t out = 0;
+    for (int f = 0; f < k->nf; f++)
+        out |= (uint64_t)lane_bits(~(hull(k->w[f], k->wd[f], k->w1[f], k->wd1[f], l->h) <= k->gap[f])) << f * LANES;
+    out &= k->floors & ~active->listed;
+    list_floors(active, out);
+    return out != 0;
 }
 
 /* L U of the matrix of blocks A (n, n), rows in their order: the matrix tends to the unit matrix as the step gets
@@ -249,7 +236,9 @@ static void hand_out(FastWork *k, const Level *l, const Active *a)
 static int solve_contacts(FastWork *k, const Level *l, double tolerance, Active *active)
 {
     enum { MOST = 40 };
-    list_touching(k, active);
+    active->listed = 0;
+    active->n = 0;
+    list_floors(active, k->touching);
     int before = 0, fresh = 1;
     double last = 1;
     if (active->n == 0 && !find_closings(k, l, active))

@@ -60,7 +60,7 @@ static int interval(FastWork *k, double start, double a0, double a1)
         const int aligned = at ? LEVEL_MAX - __builtin_ctz(at) : 0;
         const int finest = k->m_pad > k->nb_pad ? contact_level(k, gain) : LEVEL_MAX;
         int level = k->flight_level > aligned ? k->flight_level : aligned, done = 0;
-        for (; !done && !k->n_touching && level < finest; level++) {
+        for (; !done && !k->touching && level < finest; level++) {
             const uint32_t step = whole >> level;
             done =
                 flight(k, level_ready(k, level, 0), a0 + (a1 - a0) * at / whole, a0 + (a1 - a0) * (at + step) / whole);
@@ -132,7 +132,7 @@ static double ground(const Motion *motion, long i)
 static long glide(FastWork *k, const Motion *motion, long first, long end)
 {
     double impulse = 0;
-    if (!k->may_glide || k->n_touching || first < k->glide_from || end - first < GLIDE_INTERVALS)
+    if (!k->may_glide || k->touching || first < k->glide_from || end - first < GLIDE_INTERVALS)
         return 0;
     for (long i = first; i < first + GLIDE_INTERVALS; i++)
         impulse += 0.5 * motion->dt_s * (fabs(ground(motion, i)) + fabs(ground(motion, i + 1)));

@@ -60,7 +60,7 @@ typedef struct FastWork {
     int landed;      /* 0: in flight, w, w' and what is seen are not current */
     double v0[FLOORS_PAD_MAX];
     int side[FLOORS_PAD_MAX]; /* 0 open, +1 or -1 touching */
-    int n_touching;
+    uint64_t floors, touching; /* bit j: floor j is one, touches */
     int flight_level;     /* where the next flight is tried */
     int may_glide;        /* all modes swing: below critical damping, with a frequency */
     long glide_from;      /* the interval from which a glide is tried */

@@ -30,11 +30,8 @@ static int raise_peaks(vec *peak, int nf, const vec *y0, const vec *d0, const ve
 {
     for (int f = 0; f < nf; f++) {
         const vec reach = hull(y0[f], d0[f], y1[f], d1[f], h) + e[f];
-        if (!any(reach > peak[f]))
-            continue;
-        for (int lane = 0; lane < LANES; lane++) {
-            if (!(reach[lane] > peak[f][lane]))
-                continue;
+        for (unsigned bits = lane_bits(reach > peak[f]); bits; bits &= bits - 1) {
+            const int lane = __builtin_ctz(bits);
             const double most = largest_on_cubic(h, y0[f][lane], d0[f][lane], y1[f][lane], d1[f][lane]);
             if (!(most + e[f][lane] > peak[f][lane]))
                 continue;
@@ -77,11 +74,11 @@ static void see_start(FastWork *k)
 }
 
 /* Largest |value| of the parabola through the start, the middle and the end of a step. */
-static double parabola_top(double y0, double ym, double y1)
+static vec parabola_top(vec y0, vec ym, vec y1)
 {
-    const double slope = 4 * ym - 3 * y0 - y1, bend = 2 * (y0 + y1 - 2 * ym), x = -0.5 * slope / bend;
-    const double most = fmax(fmax(fabs(y0), fabs(y1)), fabs(ym));
-    return x > 0 && x < 1 ? fmax(most, fabs(y0 + 0.5 * x * slope)) : most;
+    const vec zero = {0}, slope = 4 * ym - 3 * y0 - y1, x = -0.25 * slope / (y0 + y1 - 2 * ym);
+    const vec turn = (vec)((mask)vec_abs(y0 + 0.5 * x * slope) & (x > zero) & (x < zero + 1));
+    return vec_max(turn, vec_max(vec_max(vec_abs(y0), vec_abs(y1)), vec_abs(ym)));
 }
 
 /* The control points enclose the parabola. */
@@ -92,12 +89,8 @@ static vec parabola_reach(vec y0, vec ym, vec y1)
 
 static void raise_in_contact(vec *peak, int nf, const vec *start, const vec *middle, const vec *end)
 {
-    for (int f = 0; f < nf; f++) {
-        const mask above = parabola_reach(start[f], middle[f], end[f]) > peak[f];
-        for (int lane = 0; any(above) && lane < LANES; lane++)
-            if (above[lane])
-                peak[f][lane] = larger(parabola_top(start[f][lane], middle[f][lane], end[f][lane]), peak[f][lane]);
-    }
+    for (int f = 0; f < nf; f++)
+        peak[f] = vec_max(parabola_top(start[f], middle[f], end[f]), peak[f]);
 }
 
 /* Of accelerations, which are certain to less anyway, so many times as much may hide. */

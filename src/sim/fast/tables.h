@@ -231,7 +231,8 @@ static void start_at_rest(FastWork *k)
     for (int j = k->n; j < k->n_pad; j++)
         scalars(k->peak_u)[j] = scalars(k->peak_d)[j] = scalars(k->peak_a)[j] = 1e300;
     memset(k->side, 0, sizeof k->side);
-    k->n_touching = 0;
+    k->touching = 0;
+    k->floors = UINT64_MAX >> (64 - k->n);
     k->landed = 0;
     k->speed = 0;
     k->contact_lost = k->contact_clamped = k->deepest = 0;

@@ -92,7 +92,9 @@ static inline double path_root(const Path *q, double low, double high)
 static inline int path_turns(const Path *q, double x[2])
 {
     const double a = 3 * q->c[3], b = q->c[2], c = q->c[1]; /* a x^2 + 2 b x + c */
-    const double d = b * b - a * c;
+    const double d = b * b - a * c, middle = c + b, end = c + 2 * b + a; /* control points of the slope: c, middle, end */
+    if ((c > 0 && middle > 0 && end > 0) || (c < 0 && middle < 0 && end < 0))
+        return 0;
     if (!(d > 0))
         return 0;
     const double w = -(b + copysign(sqrt(d), b));

@@ -116,18 +116,24 @@ static inline vec lanes_before(vec a, vec b)
     return __builtin_shuffle(a, b, from);
 }
 
+/* Bit i: lane i is true. */
+static inline unsigned lane_bits(mask m)
+{
+#if defined __AVX512DQ__ && FAST_LANES == 8
+    return _mm512_movepi64_mask((__m512i)m);
+#elif defined __AVX2__ && FAST_LANES == 4
+    return (unsigned)_mm256_movemask_pd((__m256d)m);
+#else
+    unsigned bits = 0;
+    for (int i = 0; i < LANES; i++)
+        bits |= (unsigned)(m[i] & 1) << i;
+    return bits;
+#endif
+}
+
 static inline int any(mask m)
 {
-#if defined __AVX512F__ && FAST_LANES == 8
-    return _mm512_test_epi64_mask((__m512i)m, (__m512i)m) != 0;
-#elif defined __AVX2__ && FAST_LANES == 4
-    return !_mm256_testz_si256((__m256i)m, (__m256i)m);
-#else
-    int64_t any = 0;
-    for (int i = 0; i < LANES; i++)
-        any |= m[i];
-    return any != 0;
-#endif
+    return lane_bits(m) != 0;
 }
 
 /* A matrix of 2 x 2, row by row, and a vector of 2, twice: (x0, x1, x0, x1). */
