@@ -21,7 +21,7 @@ static void flight_modes(FastWork *k, const Level *l, double a0, double a1)
         const vec static_v = -k->gamma[i] * rate * flex, static_0 = (p0 - decay * static_v) * flex,
                   static_1 = static_0 + l->h * static_v;
         const vec x = q - static_0, xd = (v - static_v + 0.5 * decay * x) * k->wd_inverse[i];
-        k->amplitude[i] = vec_sqrt(x * x + xd * xd);
+        k->amplitude[i] = vec_hypot_above(x, xd);
         k->qa[i] = static_0 + slow * x;
         k->va[i] = static_v + slow * (v - static_v);
         k->qb[i] = static_1 + slow * (k->q1[i] - static_1);
@@ -40,14 +40,14 @@ static void flight_floors(FastWork *k, const Level *l)
     const double *const state[4] = {scalars_const(k->qa), scalars_const(k->va), scalars_const(k->qb),
                                     scalars_const(k->vb)};
     vec *const floors[4] = {k->u0, k->u0d, k->u1, k->u1d};
-    rows_times(4, R, k->nf, core, state, floors);
+    rows_times(4, R, k->nf, k->model->nb, state, floors);
     for (int i = 0; i < k->mf; i++) {
         k->bound[i] = l->kappa[i] * k->amplitude[i];
         k->bound_a[i] = hull(k->za[i], k->ja[i], k->zb[i], k->jb[i], l->h) + l->kappa_accel[i] * k->amplitude[i];
     }
     const double *const bounds[2] = {scalars_const(k->bound), scalars_const(k->bound_a)};
     vec *const errors[2] = {k->e_u, k->reach_a};
-    rows_times(2, R_abs, k->nf, core, bounds, errors);
+    rows_times(2, R_abs, k->nf, k->model->nb, bounds, errors);
     if (core_count == 0)
         return;
     const double *const core_state[4] = {state[0] + core, state[1] + core, state[2] + core, state[3] + core};
@@ -63,12 +63,12 @@ static void flight_accelerations(FastWork *k, const Level *l)
     const double *const accel[4] = {scalars_const(k->za), scalars_const(k->ja), scalars_const(k->zb),
                                     scalars_const(k->jb)};
     vec *const accels[4] = {k->a0, k->a0d, k->a1, k->a1d};
-    rows_times(4, (const vec *)k->R, k->nf, k->nb_pad, accel, accels);
+    rows_times(4, (const vec *)k->R, k->nf, k->model->nb, accel, accels);
     for (int i = 0; i < k->bf; i++)
         k->bound_a[i] = l->kappa_accel[i] * k->amplitude[i];
     const double *const bound[1] = {scalars_const(k->bound_a)};
     vec *const error[1] = {k->e_a};
-    rows_times(1, (const vec *)k->R_abs, k->nf, k->nb_pad, bound, error);
+    rows_times(1, (const vec *)k->R_abs, k->nf, k->model->nb, bound, error);
 }
 
 static int gaps_stay_open(FastWork *k, double h)

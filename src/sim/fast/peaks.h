@@ -69,7 +69,7 @@ static void see_start(FastWork *k)
         k->za[i] = k->load[i] - k->decay[i] * k->v[i] - k->omega[i] * k->omega[i] * k->q[i];
     const double *const state[2] = {scalars_const(k->q), scalars_const(k->za)};
     vec *const floors[2] = {k->seen[0][0], k->seen[0][2]};
-    rows_times(2, (const vec *)k->R, k->nf, k->nb_pad, state, floors);
+    rows_times(2, (const vec *)k->R, k->nf, k->model->nb, state, floors);
     storeys(k, k->seen[0][0], k->seen[0][1]);
 }
 
@@ -120,7 +120,7 @@ static int hides(FastWork *k, int y, const vec *peak, vec missed, double ground)
         return 0;
     const double *const bound[1] = {scalars_const(y == 2 ? k->bound_a : k->bound)};
     vec *const e[1] = {k->e_a};
-    rows_times(1, (const vec *)(y == 1 ? k->D_abs : k->R_abs), k->nf, k->nb_pad, bound, e);
+    rows_times(1, (const vec *)(y == 1 ? k->D_abs : k->R_abs), k->nf, k->model->nb, bound, e);
     return hides_by(k, y, peak, k->e_a, least);
 }
 
@@ -153,7 +153,7 @@ static int see_step(FastWork *k, double ground)
     const double *const state[4] = {scalars_const(k->qb), scalars_const(k->zb), scalars_const(k->q1),
                                     scalars_const(k->za)};
     vec *const floors[4] = {k->seen[1][0], k->seen[1][2], k->seen[2][0], k->seen[2][2]};
-    rows_times(4, (const vec *)k->R, k->nf, k->nb_pad, state, floors);
+    rows_times(4, (const vec *)k->R, k->nf, k->model->nb, state, floors);
     storeys(k, k->seen[1][0], k->seen[1][1]);
     storeys(k, k->seen[2][0], k->seen[2][1]);
     return peaks_are_certain(k, ground);
