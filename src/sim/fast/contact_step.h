@@ -13,7 +13,6 @@ static void land(FastWork *k)
     rows_times(2, (const vec *)k->R, k->nf, k->m_pad, state, floors);
     see_start(k);
     k->landed = 1;
-    k->h_before = 1;
 }
 
 static void contact_predict(FastWork *k, const Level *l, double a0, double a1)
@@ -171,12 +170,7 @@ static void accept_contacts(FastWork *k, const Active *active, double h)
     swap(&k->drift, &k->drift1);
     swap(&k->w, &k->w1);
     swap(&k->wd, &k->wd1);
-    vec *const free_slot = k->f_before;
-    k->f_before = k->f0;
-    k->f0 = k->f1;
-    k->f1 = free_slot;
-    swap(&k->fb, &k->fb_before);
-    k->h_before = h;
+    swap(&k->f0, &k->f1);
     forget_forces(k);
     k->speed = largest(k->wd, k->nf);
 }

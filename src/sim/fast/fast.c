@@ -14,8 +14,7 @@ static void layout(FastWork *k, Carve *c)
                            &k->v1,    &k->amplitude, &k->qa,    &k->va,         &k->qb,     &k->vb,
                            &k->za,    &k->ja,        &k->zb,    &k->jb,         &k->bound,  &k->bound_a,
                            &k->work1, &k->ground1,   &k->drift, &k->drift1,     &k->most,   &k->most_drift};
-    vec **const floors[] = {&k->w,         &k->wd,  &k->w1,  &k->wd1, &k->f0,  &k->f1,      &k->fb,     &k->f_before,
-                            &k->fb_before, &k->gap, &k->u0,  &k->u0d, &k->u1,  &k->u1d,     &k->a0,     &k->a0d,
+    vec **const floors[] = {&k->w,         &k->wd,  &k->w1,  &k->wd1, &k->f0,  &k->f1,      &k->fb,     &k->gap, &k->u0,  &k->u0d, &k->u1,  &k->u1d,     &k->a0,     &k->a0d,
                             &k->a1,        &k->a1d, &k->e_u, &k->e_w, &k->e_a, &k->reach_a, &k->peak_u, &k->peak_d,
                             &k->peak_a,    &k->c0,  &k->c0d, &k->c1,  &k->c1d};
     for (size_t i = 0; i < sizeof modes / sizeof modes[0]; i++)

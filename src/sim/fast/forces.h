@@ -141,8 +141,8 @@ INLINE void substitute(const int n, const m22 *LU, p2 x[])
     }
 }
 
-/* Takes in floors n_before..n-1, whose w1 and w1' are free of their own force, with a first guess of it: the polynomial
- * of the step before goes on. */
+/* Takes in floors n_before..n-1, whose w1 and w1' are free of their own force, with a first guess of it: as it
+ * was. */
 static void take_in(FastWork *k, const Level *l, Active *a, int n_before)
 {
     for (int i = n_before; i < a->n; i++) {
@@ -150,12 +150,7 @@ static void take_in(FastWork *k, const Level *l, Active *a, int n_before)
         const double w0 = scalars(k->w)[j], v0 = scalars(k->wd)[j], gap = scalars(k->gap)[j];
         const double w1 = scalars(k->w1)[j], v1 = scalars(k->wd1)[j], moved = fabs(v0) + fabs(v1);
         a->scale[i] = 1 / p2_make(fabs(fabs(w0) - gap) + fabs(fabs(w1) - gap) + l->h * moved, moved);
-        const double f0 = scalars(k->f0)[j], r = l->h / k->h_before, b = scalars(k->fb_before)[j];
-        const double f1 = f0 + r * (f0 - scalars(k->f_before)[j]) - b * r * (1 + r);
-        if (f1 * f0 > 0)
-            apply_force(k, l, j, f1, b * r * r);
-        else
-            apply_force(k, l, j, f0, 0);
+        apply_force(k, l, j, scalars(k->f0)[j], 0);
     }
     for (int i = 0; i < a->n; i++) {
         const int j = a->floor[i];

@@ -51,7 +51,7 @@ typedef struct FastWork {
     double *RT;                /* (n_pad, m_pad) */
 
     /* floors */
-    vec *w, *wd, *w1, *wd1, *f0, *f1, *fb, *f_before, *fb_before, *gap; /* (n_pad) */
+    vec *w, *wd, *w1, *wd1, *f0, *f1, *fb, *gap; /* (n_pad) */
     vec *c0, *c0d, *c1, *c1d;                                           /* (n_pad) the core's part of w in flight */
     vec *u0, *u0d, *u1, *u1d, *a0, *a0d, *a1, *a1d, *e_u, *e_w, *e_a, *reach_a; /* (n_pad) */
     vec *peak_u, *peak_d, *peak_a;                                              /* (n_pad); padding is out of reach */
@@ -68,7 +68,6 @@ typedef struct FastWork {
     int may_grow;         /* the last contact step could have been twice as long */
     double energy_scale;  /* [J] */
     double speed;         /* [m/s] largest |w'| */
-    double h_before;      /* [s] step that led from f_before to f0 */
     double shortest_at_1; /* [s] shortest Hertz contact of any floor at 1 m/s */
     const FastKnobs *knobs;
 

@@ -226,8 +226,7 @@ static void start_at_rest(FastWork *k)
     for (int i = 0; i < k->mf; i++)
         k->q[i] = k->v[i] = k->load[i] = k->work[i] = k->ground[i] = k->drift[i] = zero;
     for (int f = 0; f < k->nf; f++)
-        k->w[f] = k->wd[f] = k->f0[f] = k->f1[f] = k->fb[f] = k->f_before[f] = k->fb_before[f] = k->peak_u[f] =
-            k->peak_d[f] = k->peak_a[f] = zero;
+        k->w[f] = k->wd[f] = k->f0[f] = k->f1[f] = k->fb[f] = k->peak_u[f] = k->peak_d[f] = k->peak_a[f] = zero;
     for (int j = k->n; j < k->n_pad; j++)
         scalars(k->peak_u)[j] = scalars(k->peak_d)[j] = scalars(k->peak_a)[j] = 1e300;
     memset(k->side, 0, sizeof k->side);

@@ -81,7 +81,7 @@ static inline double path_root(const Path *q, double low, double high)
             low = x;
         const double next = x - p / path_slope(q, x);
         const double x_new = next > low && next < high ? next : 0.5 * (low + high);
-        if (fabs(x_new - x) < 1e-9) /* what is left is of its square */
+        if (fabs(x_new - x) < 1e-7) /* what is left is of its square */
             return x_new;
         x = x_new;
     }
@@ -121,10 +121,12 @@ typedef struct {
 static inline void touch_sum(Touch *t, const Contact *c, double mass, double h, const Points *at, double v0)
 {
     const ContactForce4 f = contact_force4(c, mass, at->p, at->v, v0);
-    t->mean += v4_sum(at->weight * f.force);
-    t->mean_p += v4_sum(at->weight * (f.dp * at->p_p1 + f.dv * at->v_p1));
-    t->mean_v += v4_sum(at->weight * (f.dp * at->p_v1 + f.dv * at->v_v1));
-    t->lost += h * v4_sum(at->weight * (f.raw - f.hertz) * at->v);
+    const v4 sums = v4_sums(at->weight * f.force, at->weight * (f.dp * at->p_p1 + f.dv * at->v_p1),
+                            at->weight * (f.dp * at->p_v1 + f.dv * at->v_v1), at->weight * (f.raw - f.hertz) * at->v);
+    t->mean += sums[0];
+    t->mean_p += sums[1];
+    t->mean_v += sums[2];
+    t->lost += h * sums[3];
     t->clamped += h * v4_sum(at->weight * (f.force - f.raw) * at->v);
 }
 

@@ -136,6 +136,14 @@ static inline int any(mask m)
     return lane_bits(m) != 0;
 }
 
+/* The sums of a, b, c and d. */
+static inline v4 v4_sums(v4 a, v4 b, v4 c, v4 d)
+{
+    const v4 ab = __builtin_shuffle(a, b, (m4){0, 4, 2, 6}) + __builtin_shuffle(a, b, (m4){1, 5, 3, 7});
+    const v4 cd = __builtin_shuffle(c, d, (m4){0, 4, 2, 6}) + __builtin_shuffle(c, d, (m4){1, 5, 3, 7});
+    return __builtin_shuffle(ab, cd, (m4){0, 1, 4, 5}) + __builtin_shuffle(ab, cd, (m4){2, 3, 6, 7});
+}
+
 /* A matrix of 2 x 2, row by row, and a vector of 2, twice: (x0, x1, x0, x1). */
 typedef v4 m22;
 typedef v4 p2;
