@@ -13,7 +13,8 @@
 
 #include "sim/fast/flight.h"
 
-enum { GLIDE_INTERVALS = 4 };
+/* Intervals of the first glide, twice as many after each that succeeds. */
+enum { GLIDE_LEAST = 4, GLIDE_MOST = 64 };
 
 /* Largest displacement and acceleration of every mode over the window: bound, bound_a. */
 static void glide_bounds(FastWork *k, double impulse)

@@ -132,22 +132,26 @@ static double ground(const Motion *motion, long i)
 static long glide(FastWork *k, const Motion *motion, long first, long end)
 {
     double impulse = 0;
-    if (!k->may_glide || k->touching || first < k->glide_from || end - first < GLIDE_INTERVALS)
+    if (!k->may_glide || k->touching || first < k->glide_from || end - first < GLIDE_LEAST)
         return 0;
-    for (long i = first; i < first + GLIDE_INTERVALS; i++)
+    const long n = k->glide_wish < end - first ? k->glide_wish : end - first;
+    for (long i = first; i < first + n; i++)
         impulse += 0.5 * motion->dt_s * (fabs(ground(motion, i)) + fabs(ground(motion, i + 1)));
-    k->glide_from = first + GLIDE_INTERVALS;
-    if (!glides(k, impulse))
+    if (!glides(k, impulse)) {
+        k->glide_from = n > GLIDE_LEAST ? first : first + GLIDE_LEAST;
+        k->glide_wish = GLIDE_LEAST;
         return 0;
+    }
+    k->glide_wish = n < GLIDE_MOST ? 2 * n : n;
     const Level *l = level_ready(k, 0, 0);
-    for (long i = first; i < first + GLIDE_INTERVALS; i++) {
+    for (long i = first; i < first + n; i++) {
         if (i > first)
             show(k, (double)i * motion->dt_s);
         glide_interval(k, l, ground(motion, i), ground(motion, i + 1));
     }
-    k->flights += GLIDE_INTERVALS;
+    k->flights += n;
     glide_end(k);
-    return GLIDE_INTERVALS;
+    return n;
 }
 
 static int fly(FastWork *k, const Motion *motion, double duration)
@@ -157,6 +161,7 @@ static int fly(FastWork *k, const Motion *motion, double duration)
     const long samples = (long)motion->n;
     k->flight_level = 0;
     k->glide_from = 0;
+    k->glide_wish = GLIDE_LEAST;
     k->touch_level = LEVEL_MAX;
     set_base(k, 0);
     set_base(k, motion->dt_s);

@@ -63,7 +63,8 @@ typedef struct FastWork {
     uint64_t floors, touching; /* bit j: floor j is one, touches */
     int flight_level;     /* where the next flight is tried */
     int may_glide;        /* all modes swing: below critical damping, with a frequency */
-    long glide_from;      /* the interval from which a glide is tried */
+    long glide_from;      /* the interval from which a glide is tried ... */
+    long glide_wish;      /* ... and over how many */
     int touch_level;      /* where the next contact step is tried */
     int may_grow;         /* the last contact step could have been twice as long */
     double energy_scale;  /* [J] */
