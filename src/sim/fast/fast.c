@@ -105,7 +105,7 @@ FastKnobs fast_knobs(Accuracy accuracy)
 {
     static const FastKnobs KNOBS[] = {
         [ACCURACY_COARSE] = {1, 1e-2, 3e-5, 2e7, 1e-2, 0.1},
-        [ACCURACY_STANDARD] = {1, 1e-2, 3e-6, 2e7, 1e-3, 0.02},
+        [ACCURACY_STANDARD] = {1, 2e-3, 3e-6, 2e7, 1e-3, 0.02},
         [ACCURACY_FINE] = {80, 1e-12, 0, 2e8, 1e-6, 0},
     };
     return KNOBS[accuracy];

@@ -11,7 +11,8 @@
 
 /* What both walls do to one floor over a step; as Touch, in w instead of p. */
 typedef struct {
-    m22 slope; /* d (end, mean) / d (w1, w1') */
+    m22 slope;   /* d (end, mean) / d (w1, w1') */
+    p2 lost_to;  /* d lost / d (w1, w1') */
     double end, mean, v0, lost, clamped, closed_at, closed_with;
     int closings, floored;
 } Press;
@@ -36,6 +37,7 @@ static inline void press_add(Press *out, const Touch *t, double s)
     out->mean += s * t->mean;
     out->slope += (m22){t->end_p, t->end_v, t->mean_p, t->mean_v};
     out->lost += t->lost;
+    out->lost_to += s * p2_make(t->lost_p, t->lost_v);
     out->clamped += t->clamped;
 }
 
@@ -197,9 +199,10 @@ INLINE double improve(FastWork *k, double h, Active *a, int fresh, const int n)
         const p2 dy = p2_sum(sum), c = v4_abs(dy * a->scale[i]);
         a->y[i] += dy;
         a->x[i] -= x[i];
+        a->press[i].lost += p2_dot(a->press[i].lost_to, dy);
         change = v4_larger(change, c);
     }
-    return v4_larger(change, __builtin_shuffle(change, (m4){1, 0, 3, 2}))[0];
+    return v4_larger(change, __builtin_shufflevector(change, change, 1, 0, 3, 2))[0];
 }
 
 /* The common numbers of floors get code of their own, unrolled. */
@@ -247,9 +250,10 @@ static int solve_contacts(FastWork *k, const Level *l, double tolerance, Active 
         const double change = improve_forces(k, l->h, active, fresh);
         if (!(change >= 0))
             return 0;
+        const double left = change * (fresh ? change : change / last); /* of Newton's method, of one with an old matrix */
         fresh = change > 0.1 * last; /* an old matrix serves while it gains a digit a step */
         last = change;
-        if (change > tolerance)
+        if (left > tolerance)
             continue;
         hand_out(k, l, active);
         if (!find_closings(k, l, active))

@@ -57,7 +57,7 @@ static void storeys(const FastWork *k, const vec *u, vec *d)
 {
     vec below = {0};
     for (int f = 0; f < k->nf; f++) {
-        d[f] = u[f] - lanes_before(below, u[f]);
+        d[f] = u[f] - LANES_BEFORE(below, u[f]);
         below = u[f];
     }
 }

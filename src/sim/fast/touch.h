@@ -12,27 +12,29 @@
 #include "sim/contact.h"
 #include "sim/fast/vec.h"
 
-/* contact_force at four points; a point where p is not positive has no force. */
+/* contact_force at four points, with the slopes of force - hertz as far as the clamp does not hold; a point where p is
+ * not positive has no force. */
 typedef struct {
-    v4 force, raw, hertz, dp, dv;
+    v4 force, raw, hertz, dp, dv, loss_dp, loss_dv;
 } ContactForce4;
 
 static inline ContactForce4 contact_force4(const Contact *c, double mass, v4 p_any, v4 v, double v0)
 {
-    const v4 zero = {0}, p = v4_where(p_any <= zero, zero, p_any); /* keeps NaN */
     const double damping = c->a / v0;
-    const v4 root = v4_sqrt(p), hertz = c->k * p * root, loss = 1.0 + damping * v;
-    ContactForce4 f = {.raw = hertz * loss, .hertz = hertz, .dp = 1.5 * c->k * root * loss, .dv = hertz * damping};
+    const v4 zero = {0}, p = v4_where(p_any <= zero, zero, p_any); /* keeps NaN */
+    const v4 root = v4_sqrt(p), stiff = c->k * root, hertz = stiff * p, damped = damping * v;
+    ContactForce4 f = {
+        .raw = hertz + hertz * damped, .hertz = hertz, .loss_dp = 1.5 * stiff * damped, .loss_dv = hertz * damping};
     if (c->xi > 0) {
-        const v4 dashpot = v4_where((v > zero) & (p > zero), 2 * c->xi * v4_sqrt(mass * c->k * root), zero);
+        const v4 dashpot = v4_where((v > zero) & (p > zero), 2 * c->xi * v4_sqrt(mass * stiff), zero);
         f.raw += dashpot * v;
-        f.dp += v4_where(p > zero, 0.25 * dashpot * v / p, zero);
-        f.dv += dashpot;
+        f.loss_dp += v4_where(p > zero, 0.25 * dashpot * v / p, zero);
+        f.loss_dv += dashpot;
     }
     const m4 pulls = f.raw <= zero;
     f.force = v4_where(pulls, zero, f.raw);
-    f.dp = v4_where(pulls, zero, f.dp);
-    f.dv = v4_where(pulls, zero, f.dv);
+    f.dp = v4_where(pulls, zero, f.loss_dp + 1.5 * stiff);
+    f.dv = v4_where(pulls, zero, f.loss_dv);
     return f;
 }
 
@@ -44,6 +46,7 @@ typedef struct {
     int closings, floored;         /* new contacts in this step, those whose v0 was below the floor */
     double closed_at, closed_with; /* x and speed [m/s] of the last of them */
     double lost, clamped;          /* [J] int k p^1.5 a p'^2/v0 dt, int (F - F_raw) p' dt */
+    double lost_p, lost_v;         /* d lost / d p1, d p1' */
 } Touch;
 
 typedef struct {
@@ -121,13 +124,19 @@ typedef struct {
 static inline void touch_sum(Touch *t, const Contact *c, double mass, double h, const Points *at, double v0)
 {
     const ContactForce4 f = contact_force4(c, mass, at->p, at->v, v0);
+    const v4 loss = at->weight * (f.raw - f.hertz), lost = loss * at->v;
+    const v4 by_p = at->weight * f.loss_dp * at->v, by_v = at->weight * f.loss_dv * at->v + loss;
     const v4 sums = v4_sums(at->weight * f.force, at->weight * (f.dp * at->p_p1 + f.dv * at->v_p1),
-                            at->weight * (f.dp * at->p_v1 + f.dv * at->v_v1), at->weight * (f.raw - f.hertz) * at->v);
+                            at->weight * (f.dp * at->p_v1 + f.dv * at->v_v1), lost);
+    const v4 more = v4_sums(at->weight * (f.force - f.raw) * at->v, (v4){0}, by_p * at->p_p1 + by_v * at->v_p1,
+                            by_p * at->p_v1 + by_v * at->v_v1);
     t->mean += sums[0];
     t->mean_p += sums[1];
     t->mean_v += sums[2];
     t->lost += h * sums[3];
-    t->clamped += h * v4_sum(at->weight * (f.force - f.raw) * at->v);
+    t->clamped += h * more[0];
+    t->lost_p += h * more[2];
+    t->lost_v += h * more[3];
 }
 
 /* Gauss-Legendre on [0, 1]. */

@@ -81,39 +81,38 @@ static inline double v4_sum(v4 a)
     return (a[0] + a[1]) + (a[2] + a[3]);
 }
 
-/* Every lane gets the one `by` lanes further, round the end. */
-static inline vec lanes_turn(vec a, const int by)
-{
-    mask from;
-    for (int i = 0; i < LANES; i++)
-        from[i] = (i + by) % LANES;
-    return __builtin_shuffle(a, from);
-}
+/* LANES_TURN: every lane gets the one `by` lanes further, round the end. LANES_BEFORE: b's lanes one to the right, the
+ * last of a before them. */
+#if FAST_LANES == 8
+#define LANES_TURN(a, by)                                                                                              \
+    __builtin_shufflevector(a, a, by, (by + 1) % 8, (by + 2) % 8, (by + 3) % 8, (by + 4) % 8, (by + 5) % 8,            \
+                            (by + 6) % 8, (by + 7) % 8)
+#define LANES_BEFORE(a, b) __builtin_shufflevector(a, b, 7, 8, 9, 10, 11, 12, 13, 14)
+#elif FAST_LANES == 4
+#define LANES_TURN(a, by) __builtin_shufflevector(a, a, by % 4, (by + 1) % 4, (by + 2) % 4, (by + 3) % 4)
+#define LANES_BEFORE(a, b) __builtin_shufflevector(a, b, 3, 4, 5, 6)
+#else
+#define LANES_TURN(a, by) __builtin_shufflevector(a, a, by % 2, (by + 1) % 2)
+#define LANES_BEFORE(a, b) __builtin_shufflevector(a, b, 1, 2)
+#endif
 
 static inline double lanes_sum(vec a)
 {
-#pragma GCC unroll 3
-    for (int by = LANES / 2; by > 0; by /= 2)
-        a += lanes_turn(a, by);
-    return a[0];
+    if (LANES > 4)
+        a += LANES_TURN(a, 4);
+    if (LANES > 2)
+        a += LANES_TURN(a, 2);
+    return a[0] + a[1];
 }
 
 /* The greatest; of no use where one is not a number. */
 static inline double lanes_max(vec a)
 {
-#pragma GCC unroll 3
-    for (int by = LANES / 2; by > 0; by /= 2)
-        a = vec_max(a, lanes_turn(a, by));
-    return a[0];
-}
-
-/* b's lanes one to the right, the last of a before them. */
-static inline vec lanes_before(vec a, vec b)
-{
-    mask from;
-    for (int i = 0; i < LANES; i++)
-        from[i] = LANES - 1 + i;
-    return __builtin_shuffle(a, b, from);
+    if (LANES > 4)
+        a = vec_max(a, LANES_TURN(a, 4));
+    if (LANES > 2)
+        a = vec_max(a, LANES_TURN(a, 2));
+    return a[0] > a[1] ? a[0] : a[1];
 }
 
 /* Bit i: lane i is true. */
@@ -139,9 +138,9 @@ static inline int any(mask m)
 /* The sums of a, b, c and d. */
 static inline v4 v4_sums(v4 a, v4 b, v4 c, v4 d)
 {
-    const v4 ab = __builtin_shuffle(a, b, (m4){0, 4, 2, 6}) + __builtin_shuffle(a, b, (m4){1, 5, 3, 7});
-    const v4 cd = __builtin_shuffle(c, d, (m4){0, 4, 2, 6}) + __builtin_shuffle(c, d, (m4){1, 5, 3, 7});
-    return __builtin_shuffle(ab, cd, (m4){0, 1, 4, 5}) + __builtin_shuffle(ab, cd, (m4){2, 3, 6, 7});
+    const v4 ab = __builtin_shufflevector(a, b, 0, 4, 2, 6) + __builtin_shufflevector(a, b, 1, 5, 3, 7);
+    const v4 cd = __builtin_shufflevector(c, d, 0, 4, 2, 6) + __builtin_shufflevector(c, d, 1, 5, 3, 7);
+    return __builtin_shufflevector(ab, cd, 0, 1, 4, 5) + __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
 }
 
 /* A matrix of 2 x 2, row by row, and a vector of 2, twice: (x0, x1, x0, x1). */
@@ -150,22 +149,28 @@ typedef v4 p2;
 
 static inline m22 m22_times(m22 a, m22 b)
 {
-    return __builtin_shuffle(a, (m4){0, 0, 2, 2}) * __builtin_shuffle(b, (m4){0, 1, 0, 1}) +
-           __builtin_shuffle(a, (m4){1, 1, 3, 3}) * __builtin_shuffle(b, (m4){2, 3, 2, 3});
+    return __builtin_shufflevector(a, a, 0, 0, 2, 2) * __builtin_shufflevector(b, b, 0, 1, 0, 1) +
+           __builtin_shufflevector(a, a, 1, 1, 3, 3) * __builtin_shufflevector(b, b, 2, 3, 2, 3);
 }
 
 /* Not a number where there is none. */
 static inline m22 m22_inverse(m22 a)
 {
-    const v4 products = a * __builtin_shuffle(a, (m4){3, 2, 1, 0}); /* ad bc cb da, hence det -det -det det */
-    return __builtin_shuffle(a, (m4){3, 1, 2, 0}) / (products - __builtin_shuffle(products, (m4){1, 0, 3, 2}));
+    const v4 products = a * __builtin_shufflevector(a, a, 3, 2, 1, 0); /* ad bc cb da, hence det -det -det det */
+    return __builtin_shufflevector(a, a, 3, 1, 2, 0) / (products - __builtin_shufflevector(products, products, 1, 0, 3, 2));
 }
 
 /* The vector (e0 + e1, e2 + e3): with e = a * x, or a sum of such, it is the product of matrix and vector. */
 static inline p2 p2_sum(v4 e)
 {
-    const v4 sums = e + __builtin_shuffle(e, (m4){1, 0, 3, 2});
-    return __builtin_shuffle(sums, (m4){0, 2, 0, 2});
+    const v4 sums = e + __builtin_shufflevector(e, e, 1, 0, 3, 2);
+    return __builtin_shufflevector(sums, sums, 0, 2, 0, 2);
+}
+
+static inline double p2_dot(p2 a, p2 b)
+{
+    const p2 c = a * b;
+    return c[0] + c[1];
 }
 
 static inline p2 p2_make(double x0, double x1)
