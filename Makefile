@@ -36,8 +36,8 @@ $(BUILD)/src/rbf/%.o $(BUILD)/src/moga/infill.o: CFLAGS.release := -O3 -g -fno-m
 
 KERNELS := base avx2 avx512
 KERNEL_FLAGS.base   := -DFAST_LANES=2
-KERNEL_FLAGS.avx2   := -DFAST_LANES=4 -march=x86-64-v3
-KERNEL_FLAGS.avx512 := -DFAST_LANES=8 -march=x86-64-v4 -mprefer-vector-width=512
+KERNEL_FLAGS.avx2   := -DFAST_LANES=4 -march=x86-64-v3 -mtune=haswell
+KERNEL_FLAGS.avx512 := -DFAST_LANES=8 -march=x86-64-v4 -mtune=skylake-avx512 -mprefer-vector-width=512
 ifneq ($(shell uname -m),x86_64)
 KERNELS := base
 endif

@@ -116,6 +116,21 @@ static void test_rebound_converges_with_at_least_third_order(void **state)
     }
 }
 
+static void test_at_every_accuracy_an_impact_rebounds_right_wherever_it_falls_in_a_step(void **state)
+{
+    (void)state;
+    const double allowed[] = {[ACCURACY_COARSE] = 2e-2, [ACCURACY_STANDARD] = 3e-3, [ACCURACY_FINE] = 1e-6};
+    for (int accuracy = ACCURACY_COARSE; accuracy <= ACCURACY_FINE; accuracy++)
+        for (int i = 0; i < 200; i++) {
+            const double r = 0.3 + 0.23 * (i % 4), speed = 0.3 * pow(1.02, i);
+            Ball ball = {1000, 4.865e10, speed, r, fast_knobs((Accuracy)accuracy)};
+            Bounce b;
+            bounce(&ball, -1, &b);
+            const double rebound = sqrt(b.result.kinetic_strain_j / b.result.input_energy_j);
+            assert_true(fabs(rebound - contact_rebound(1.5 * (1 - r))) < allowed[accuracy]);
+        }
+}
+
 static void test_one_step_per_contact_makes_no_energy_in_silence(void **state)
 {
     (void)state;
@@ -390,6 +405,7 @@ int main(void)
         cmocka_unit_test(test_hertz_impact_has_its_penetration_force_and_duration),
         cmocka_unit_test(test_damped_impact_has_its_known_penetration_force_and_duration),
         cmocka_unit_test(test_rebound_converges_with_at_least_third_order),
+        cmocka_unit_test(test_at_every_accuracy_an_impact_rebounds_right_wherever_it_falls_in_a_step),
         cmocka_unit_test(test_one_step_per_contact_makes_no_energy_in_silence),
         cmocka_unit_test(test_early_window_has_the_digits_that_independent_integrators_share),
         cmocka_unit_test(test_kobe_without_a_core_has_its_known_response),

@@ -183,10 +183,15 @@ static int closes(const Active *active)
     return 0;
 }
 
-/* One step with whatever contacts it holds; 0 when it must be shorter and nothing has changed. */
-static int contact_step(FastWork *k, const Level *l, double a0, double a1, int finest)
+/* Steps whose books do not close are halved so often below the length that resolves the shortest contact. */
+enum { HALVED_FOR_BOOKS = 4 };
+
+/* One step with whatever contacts it holds; 0 when it must be shorter and nothing has changed. below: levels below the
+ * one whose step resolves the shortest contact, from which on gaps may close and others be reached. */
+static int contact_step(FastWork *k, const Level *l, double a0, double a1, int below)
 {
     Active active;
+    const int finest = below >= 0;
     if (!k->landed)
         land(k);
     k->steps++;
@@ -202,7 +207,7 @@ static int contact_step(FastWork *k, const Level *l, double a0, double a1, int f
     }
     const double work = contact_update(k, l, &active, a0, a1);
     const double mismatch = step_mismatch(k, &active, work), allowed = k->knobs->energy_tolerance * k->energy_scale;
-    if (!finest && !(mismatch <= allowed)) {
+    if (below < (k->knobs->energy_tolerance > 0 ? HALVED_FOR_BOOKS : 0) && !(mismatch <= allowed)) {
         forget_forces(k);
         return 0;
     }

@@ -14,9 +14,10 @@ static void layout(FastWork *k, Carve *c)
                            &k->v1,    &k->amplitude, &k->qa,    &k->va,         &k->qb,     &k->vb,
                            &k->za,    &k->ja,        &k->zb,    &k->jb,         &k->bound,  &k->bound_a,
                            &k->work1, &k->ground1,   &k->drift, &k->drift1,     &k->most,   &k->most_drift};
-    vec **const floors[] = {&k->w,         &k->wd,  &k->w1,  &k->wd1, &k->f0,  &k->f1,      &k->fb,     &k->gap, &k->u0,  &k->u0d, &k->u1,  &k->u1d,     &k->a0,     &k->a0d,
-                            &k->a1,        &k->a1d, &k->e_u, &k->e_w, &k->e_a, &k->reach_a, &k->peak_u, &k->peak_d,
-                            &k->peak_a,    &k->c0,  &k->c0d, &k->c1,  &k->c1d};
+    vec **const floors[] = {&k->w,      &k->wd,     &k->w1,  &k->wd1, &k->f0,  &k->f1,      &k->fb,
+                            &k->gap,    &k->u0,     &k->u0d, &k->u1,  &k->u1d, &k->a0,      &k->a0d,
+                            &k->a1,     &k->a1d,    &k->e_u, &k->e_w, &k->e_a, &k->reach_a, &k->peak_u,
+                            &k->peak_d, &k->peak_a, &k->c0,  &k->c0d, &k->c1,  &k->c1d};
     for (size_t i = 0; i < sizeof modes / sizeof modes[0]; i++)
         *modes[i] = carve(c, m_max, sizeof(double));
     for (size_t i = 0; i < sizeof floors / sizeof floors[0]; i++)
@@ -104,7 +105,7 @@ void fast_log_closings(FastWork *work, ClosingLog *log)
 FastKnobs fast_knobs(Accuracy accuracy)
 {
     static const FastKnobs KNOBS[] = {
-        [ACCURACY_COARSE] = {1, 1e-2, 3e-5, 2e7, 1e-2, 0.1},
+        [ACCURACY_COARSE] = {0.5, 1e-2, 3e-5, 2e7, 3e-3, 0.1},
         [ACCURACY_STANDARD] = {1, 2e-3, 3e-6, 2e7, 1e-3, 0.02},
         [ACCURACY_FINE] = {80, 1e-12, 0, 2e8, 1e-6, 0},
     };

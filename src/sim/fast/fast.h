@@ -5,8 +5,8 @@
  * Flight    without contact the modes flow exactly. A step is accepted when no gap can close inside it and no peak can
  *           hide in it: slow modes (w h below FAST_MODE) by the Bezier hull of the Hermite cubic plus its error bound
  *           (w h)^4/384 A, fast ones by their amplitude A around the quasi-static answer.
- * Contact   steps of a fixed share of a Hertz contact's duration, longer ones where the energy books of the step
- *           close, no gap closes in it and no other wall can be reached. Over a step the force of floor j is
+ * Contact   steps whose energy books close: of a fixed share of a Hertz contact's duration or shorter where a gap
+ *           closes or another wall may be reached, else longer. Over a step the force of floor j is
  *           f(x) = F0 (1-x) + F1 x + 6 (mean - (F0+F1)/2) x (1-x), which the modes answer exactly; F1 and the mean come
  *           from the force law along the Hermite cubic of the penetration (touch.h), implicitly: Newton over
  *           all touching floors, on the n x n responses of w to those forces. Closings and openings inside a step
@@ -44,7 +44,7 @@ void fast_log_closings(FastWork *work, ClosingLog *log);
 typedef struct {
     double steps_per_contact;    /* of an undisturbed Hertz contact at the largest speed between floor and core */
     double solver_tolerance;     /* of the contact forces of one step, relative to what the step moves */
-    double energy_tolerance;     /* of one step longer than that, share of the input energy so far; 0: none is longer */
+    double energy_tolerance;     /* of one step, share of the input energy so far; 0: all steps are as above */
     double steps_max;            /* steps after which a run is given up */
     double peak_tolerance;       /* share of a peak that may hide inside a flight step */
     double flexibility_left_out; /* of the highest core modes, share of a contact's; 0: all modes are kept */

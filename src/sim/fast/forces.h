@@ -11,8 +11,8 @@
 
 /* What both walls do to one floor over a step; as Touch, in w instead of p. */
 typedef struct {
-    m22 slope;   /* d (end, mean) / d (w1, w1') */
-    p2 lost_to;  /* d lost / d (w1, w1') */
+    m22 slope;  /* d (end, mean) / d (w1, w1') */
+    p2 lost_to; /* d lost / d (w1, w1') */
     double end, mean, v0, lost, clamped, closed_at, closed_with;
     int closings, floored;
 } Press;
@@ -250,8 +250,9 @@ static int solve_contacts(FastWork *k, const Level *l, double tolerance, Active 
         const double change = improve_forces(k, l->h, active, fresh);
         if (!(change >= 0))
             return 0;
-        const double left = change * (fresh ? change : change / last); /* of Newton's method, of one with an old matrix */
-        fresh = change > 0.1 * last; /* an old matrix serves while it gains a digit a step */
+        const double left =
+            change * (fresh ? change : change / last); /* of Newton's method, of one with an old matrix */
+        fresh = change > 0.1 * last;                   /* an old matrix serves while it gains a digit a step */
         last = change;
         if (left > tolerance)
             continue;

@@ -81,7 +81,7 @@ static int interval(FastWork *k, double start, double a0, double a1)
         for (level = k->touch_level > aligned ? k->touch_level : aligned; !done && level <= LEVEL_MAX; level++) {
             const uint32_t step = whole >> level;
             done = contact_step(k, level_ready(k, level, 1), a0 + (a1 - a0) * at / whole,
-                                a0 + (a1 - a0) * (at + step) / whole, level >= finest);
+                                a0 + (a1 - a0) * (at + step) / whole, level - finest);
             if (done) {
                 at += step;
                 k->touch_level = k->may_grow && level > 0 ? level - 1 : level;

@@ -52,24 +52,24 @@ typedef struct FastWork {
 
     /* floors */
     vec *w, *wd, *w1, *wd1, *f0, *f1, *fb, *gap; /* (n_pad) */
-    vec *c0, *c0d, *c1, *c1d;                                           /* (n_pad) the core's part of w in flight */
+    vec *c0, *c0d, *c1, *c1d;                    /* (n_pad) the core's part of w in flight */
     vec *u0, *u0d, *u1, *u1d, *a0, *a0d, *a1, *a1d, *e_u, *e_w, *e_a, *reach_a; /* (n_pad) */
     vec *peak_u, *peak_d, *peak_a;                                              /* (n_pad); padding is out of reach */
     vec *seen[3][3]; /* [start, middle, end of a contact step][u, drift, accel] (n_pad) */
     int rises[3];    /* [u, drift, accel] may this contact step raise a peak? */
     int landed;      /* 0: in flight, w, w' and what is seen are not current */
     double v0[FLOORS_PAD_MAX];
-    int side[FLOORS_PAD_MAX]; /* 0 open, +1 or -1 touching */
+    int side[FLOORS_PAD_MAX];  /* 0 open, +1 or -1 touching */
     uint64_t floors, touching; /* bit j: floor j is one, touches */
-    int flight_level;     /* where the next flight is tried */
-    int may_glide;        /* all modes swing: below critical damping, with a frequency */
-    long glide_from;      /* the interval from which a glide is tried ... */
-    long glide_wish;      /* ... and over how many */
-    int touch_level;      /* where the next contact step is tried */
-    int may_grow;         /* the last contact step could have been twice as long */
-    double energy_scale;  /* [J] */
-    double speed;         /* [m/s] largest |w'| */
-    double shortest_at_1; /* [s] shortest Hertz contact of any floor at 1 m/s */
+    int flight_level;          /* where the next flight is tried */
+    int may_glide;             /* all modes swing: below critical damping, with a frequency */
+    long glide_from;           /* the interval from which a glide is tried ... */
+    long glide_wish;           /* ... and over how many */
+    int touch_level;           /* where the next contact step is tried */
+    int may_grow;              /* the last contact step could have been twice as long */
+    double energy_scale;       /* [J] */
+    double speed;              /* [m/s] largest |w'| */
+    double shortest_at_1;      /* [s] shortest Hertz contact of any floor at 1 m/s */
     const FastKnobs *knobs;
 
     SimSampleFn sample; /* may be NULL */

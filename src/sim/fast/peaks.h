@@ -25,8 +25,8 @@ static double largest_on_cubic(double h, double y0, double d0, double y1, double
 }
 
 /* Raises peak where the step may exceed it; 0: the error bound hides what the peak is. */
-static int raise_peaks(vec *peak, int nf, const vec *y0, const vec *d0, const vec *y1, const vec *d1,
-                       const vec *e, double h, double tolerance)
+static int raise_peaks(vec *peak, int nf, const vec *y0, const vec *d0, const vec *y1, const vec *d1, const vec *e,
+                       double h, double tolerance)
 {
     for (int f = 0; f < nf; f++) {
         const vec reach = hull(y0[f], d0[f], y1[f], d1[f], h) + e[f];
@@ -104,8 +104,7 @@ static int hides_by(const FastWork *k, int y, const vec *peak, const vec *e, dou
     mask hidden = {0};
     for (int f = 0; f < k->nf; f++) {
         const vec reach = parabola_reach(k->seen[0][y][f], k->seen[1][y][f], k->seen[2][y][f]);
-        hidden |=
-            (reach + e[f] > peak[f]) & ~(e[f] <= tolerance * vec_max(vec_max(reach, peak[f]), (vec){0} + least));
+        hidden |= (reach + e[f] > peak[f]) & ~(e[f] <= tolerance * vec_max(vec_max(reach, peak[f]), (vec){0} + least));
     }
     return any(hidden);
 }

@@ -95,7 +95,8 @@ static inline double path_root(const Path *q, double low, double high)
 static inline int path_turns(const Path *q, double x[2])
 {
     const double a = 3 * q->c[3], b = q->c[2], c = q->c[1]; /* a x^2 + 2 b x + c */
-    const double d = b * b - a * c, middle = c + b, end = c + 2 * b + a; /* control points of the slope: c, middle, end */
+    const double d = b * b - a * c, middle = c + b,
+                 end = c + 2 * b + a; /* control points of the slope: c, middle, end */
     if ((c > 0 && middle > 0 && end > 0) || (c < 0 && middle < 0 && end < 0))
         return 0;
     if (!(d > 0))
@@ -141,7 +142,7 @@ static inline void touch_sum(Touch *t, const Contact *c, double mass, double h, 
 
 /* Gauss-Legendre on [0, 1]. */
 #define GAUSS_WEIGHT ((v4){0.17392742256872692, 0.32607257743127307, 0.32607257743127307, 0.17392742256872692})
-#define GAUSS_POINT ((v4){0.06943184420297371, 0.33000947820757187, 0.6699905217924281, 0.9305681557970263})
+#define GAUSS_POINT  ((v4){0.06943184420297371, 0.33000947820757187, 0.6699905217924281, 0.9305681557970263})
 
 /* Adds the part [xa, xb] of the path, on which p > 0: four points in y with x = xa + (xb - xa) s(y), s = y^2 after a
  * closing, y (2 - y) before an opening, y^2 (3 - 2 y) with both. */

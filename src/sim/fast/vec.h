@@ -89,10 +89,10 @@ static inline double v4_sum(v4 a)
                             (by + 6) % 8, (by + 7) % 8)
 #define LANES_BEFORE(a, b) __builtin_shufflevector(a, b, 7, 8, 9, 10, 11, 12, 13, 14)
 #elif FAST_LANES == 4
-#define LANES_TURN(a, by) __builtin_shufflevector(a, a, by % 4, (by + 1) % 4, (by + 2) % 4, (by + 3) % 4)
+#define LANES_TURN(a, by)  __builtin_shufflevector(a, a, by % 4, (by + 1) % 4, (by + 2) % 4, (by + 3) % 4)
 #define LANES_BEFORE(a, b) __builtin_shufflevector(a, b, 3, 4, 5, 6)
 #else
-#define LANES_TURN(a, by) __builtin_shufflevector(a, a, by % 2, (by + 1) % 2)
+#define LANES_TURN(a, by)  __builtin_shufflevector(a, a, by % 2, (by + 1) % 2)
 #define LANES_BEFORE(a, b) __builtin_shufflevector(a, b, 1, 2)
 #endif
 
@@ -157,7 +157,8 @@ static inline m22 m22_times(m22 a, m22 b)
 static inline m22 m22_inverse(m22 a)
 {
     const v4 products = a * __builtin_shufflevector(a, a, 3, 2, 1, 0); /* ad bc cb da, hence det -det -det det */
-    return __builtin_shufflevector(a, a, 3, 1, 2, 0) / (products - __builtin_shufflevector(products, products, 1, 0, 3, 2));
+    return __builtin_shufflevector(a, a, 3, 1, 2, 0) /
+           (products - __builtin_shufflevector(products, products, 1, 0, 3, 2));
 }
 
 /* The vector (e0 + e1, e2 + e3): with e = a * x, or a sum of such, it is the product of matrix and vector. */
