@@ -13,6 +13,7 @@
     X(USAGE, 2, "the command line is not understood")                                                                  \
     X(BAD_DATA, 65, "a file or a setting holds something that cannot be used")                                         \
     X(MISSING, 66, "an input file is not there or cannot be read")                                                     \
+    X(UNMET, 69, "no design meets the limits")                                                                         \
     X(INTERNAL, 70, "the program failed")                                                                              \
     X(NO_MEMORY, 71, "out of memory")                                                                                  \
     X(IO, 74, "a file could not be written")                                                                           \

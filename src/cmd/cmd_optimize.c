@@ -10,6 +10,7 @@
 #include "cmd/show.h"
 #include "cmd/signals.h"
 #include "run/front.h"
+#include "run/nearest.h"
 #include "run/saved.h"
 #include "run/place.h"
 #include "run/study.h"
@@ -70,12 +71,46 @@ static void print_front(const Front *front, const StudySummary *summary)
     printf("\nknee: nearest to the ideal point when every objective is scaled to 0..1 over the front.\n");
 }
 
+static void print_nearest(const Saved *saved, size_t n, const size_t rows[])
+{
+    char label[48];
+    show_objective_names(&saved->schema);
+    for (size_t i = 0; i < n; i++) {
+        snprintf(label, sizeof label, "misses by %.3g", saved->row[rows[i]].violation);
+        show_objectives(label, saved->row[rows[i]].id, saved->schema.n_obj, saved->F + rows[i] * saved->schema.n_obj);
+    }
+    printf("\nmisses by: sum over search.limits of what exceeds them, as a share of the limit.\n");
+}
+
+/* Nothing succeeded, or nothing keeps to search.limits: then who comes nearest. */
+static Status report_no_front(const StudySummary *summary, Err *err)
+{
+    Saved saved;
+    size_t rows[NEAREST_MAX];
+    TRY(saved_read(&saved, summary->folder, err));
+    const size_t n = nearest_rows(&saved, rows);
+    Status status = nearest_write(summary->folder, &saved, n, rows, err);
+    if (status == STATUS_OK && n > 0) {
+        printf("nearest: %s/nearest.csv\n%zu simulated designs, %zu simulations failed, %.1f s (%s)\n\n",
+               summary->folder, summary->n_simulated, summary->n_failed, summary->seconds,
+               stop_reason_words(summary->stopped));
+        print_nearest(&saved, n, rows);
+        status = fail(err, STATUS_UNMET, "search.limits: none of %zu designs keeps %.120s; the front is empty",
+                      summary->n_simulated - summary->n_failed, saved.settings.search.limits);
+    } else if (status == STATUS_OK) {
+        status = fail(err, STATUS_INTERNAL, "none of %zu simulations succeeded; %s/evaluations.csv says why",
+                      summary->n_simulated, summary->folder);
+    }
+    saved_free(&saved);
+    return status;
+}
+
 static Status report(const StudySummary *summary, Err *err)
 {
     Front front;
     if (summary->n_front == 0)
-        return fail(err, STATUS_INTERNAL, "none of %zu simulations succeeded; %s/evaluations.csv says why",
-                    summary->n_simulated, summary->folder);
+        return report_no_front(summary, err);
+    TRY(nearest_write(summary->folder, NULL, 0, NULL, err));
     TRY(front_read(&front, summary->folder, err));
     printf("front: %s/front.csv\n%zu nondominated of %zu simulated designs, %zu simulations failed, %.1f s (%s)\n\n",
            summary->folder, front.n, summary->n_simulated, summary->n_failed, summary->seconds,

@@ -60,6 +60,12 @@ static void print_head(const char *folder, const Saved *saved, const Standing *s
     if (last)
         printf("\nstarted %s%s%s", last->started, last->ended[0] ? ", ended " : "", last->ended);
     puts("");
+    const Effort e = last ? effort_of(saved, saved->n_sessions - 1) : (Effort){.waiting = NAN};
+    if (isfinite(e.waiting)) {
+        char effort[160];
+        effort_words(&e, effort);
+        puts(effort);
+    }
     if (s->state == RUN_PAUSED || s->state == RUN_BROKEN_OFF)
         printf("it goes on with: imtet optimize %s\n", folder);
 }
@@ -110,11 +116,14 @@ static json_t *json_sessions(const Saved *saved)
     json_t *list = json_array();
     for (size_t i = 0; i < saved->n_sessions; i++) {
         const SavedSession *s = &saved->session[i];
-        json_array_append_new(list, json_pack("{s:s, s:s*, s:s*, s:s, s:I, s:I, s:I, s:o}", "started", s->started,
-                                              "ended", s->ended[0] ? s->ended : NULL, "stopped",
-                                              s->stopped[0] ? s->stopped : NULL, "host", s->host, "pid",
-                                              (json_int_t)s->pid, "threads", (json_int_t)s->threads, "simulated_before",
-                                              (json_int_t)s->simulated_before, "seconds", json_number(s->seconds)));
+        const Effort e = effort_of(saved, i);
+        json_array_append_new(
+            list, json_pack("{s:s, s:s*, s:s*, s:s, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:o}", "started", s->started,
+                            "ended", s->ended[0] ? s->ended : NULL, "stopped", s->stopped[0] ? s->stopped : NULL,
+                            "host", s->host, "pid", (json_int_t)s->pid, "threads", (json_int_t)s->threads,
+                            "simulated_before", (json_int_t)s->simulated_before, "seconds", json_number(s->seconds),
+                            "waiting_share", json_number(e.waiting), "surrogate_share", json_number(e.surrogate),
+                            "search_share", json_number(e.search), "busy_share", json_number(e.busy)));
     }
     return list;
 }

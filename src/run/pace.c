@@ -70,20 +70,42 @@ static void count(Standing *out, const Saved *saved)
     }
 }
 
+/* Thread-seconds of a session's simulations. */
+static double simulated_seconds(const Saved *saved, size_t number)
+{
+    const long first = saved->session[number].simulated_before + 1;
+    const long end = number + 1 < saved->n_sessions ? saved->session[number + 1].simulated_before + 1 : POLISHED_FIRST;
+    double seconds = 0.0;
+    for (size_t i = 0; i < saved->n; i++)
+        if (saved->row[i].id >= first && saved->row[i].id < end && isfinite(saved->row[i].verdict.seconds))
+            seconds += saved->row[i].verdict.seconds;
+    return seconds;
+}
+
+Effort effort_of(const Saved *saved, size_t session)
+{
+    const SavedSession *s = &saved->session[session];
+    Effort e = {.waiting = s->waited_s / s->search_s, .surrogate = s->surrogate_s / s->search_s};
+    e.search = 1.0 - e.waiting - e.surrogate;
+    e.busy = simulated_seconds(saved, session) / (s->search_s * fmax((double)s->threads, 1.0));
+    return e;
+}
+
+void effort_words(const Effort *e, char text[160])
+{
+    snprintf(text, 160,
+             "wall time: %.1f %% waiting for simulations, %.1f %% surrogate, %.1f %% search; threads %.1f %% busy",
+             100.0 * e->waiting, 100.0 * e->surrogate, 100.0 * e->search, 100.0 * e->busy);
+}
+
 /* What a session told; one that was killed told its last generation at most, and its simulations since tell more. */
 static double session_seconds(const Saved *saved, size_t number)
 {
     const SavedSession *s = &saved->session[number];
     const double told = isfinite(s->seconds) ? s->seconds : 0.0;
-    const long first = s->simulated_before + 1;
-    const long end = number + 1 < saved->n_sessions ? saved->session[number + 1].simulated_before + 1 : POLISHED_FIRST;
-    double simulated = 0.0;
     if (s->ended[0])
         return told;
-    for (size_t i = 0; i < saved->n; i++)
-        if (saved->row[i].id >= first && saved->row[i].id < end && isfinite(saved->row[i].verdict.seconds))
-            simulated += saved->row[i].verdict.seconds;
-    return fmax(told, simulated / fmax((double)s->threads, 1.0));
+    return fmax(told, simulated_seconds(saved, number) / fmax((double)s->threads, 1.0));
 }
 
 void standing_of(Standing *out, const char *folder, const Saved *saved)

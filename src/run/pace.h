@@ -32,6 +32,18 @@ typedef struct {
     double hypervolume; /* of the last generation; NAN: none */
 } Standing;
 
+/* What a session's wall time went into, as shares of it: the search waited for simulations, was at its surrogate, did
+ * the rest of it (storing included); and how busy with simulations the threads were, at the same time. NAN: not known.
+ * In batches nobody simulates while the search works, and of the threads some wait for the slowest. */
+typedef struct {
+    double waiting, surrogate, search, busy;
+} Effort;
+
+Effort effort_of(const Saved *saved, size_t session);
+
+/* Of wall time, as a sentence. */
+void effort_words(const Effort *e, char text[160]);
+
 const char *state_words(RunState state);
 void standing_of(Standing *out, const char *folder, const Saved *saved);
 

@@ -43,8 +43,9 @@ typedef struct {
 typedef struct {
     char started[24], ended[24], host[72], stopped[128]; /* ended, stopped: empty while it runs or when it was killed */
     long pid, threads, simulated_before;
-    double seconds; /* that it lasted, as far as it told */
-    int is_final;   /* there was nothing more to do */
+    double seconds;                         /* that it lasted, as far as it told */
+    double search_s, waited_s, surrogate_s; /* of the search; of it waiting for simulations, at the surrogate; NAN */
+    int is_final;                           /* there was nothing more to do */
 } SavedSession;
 
 typedef struct {

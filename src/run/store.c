@@ -280,6 +280,10 @@ Status store_session(RunStore *store, const char *program, int threads, size_t n
                     "INSERT INTO session(started, host, pid, program, threads, simulated_before, seconds, is_final) "
                     "VALUES (?, ?, ?, ?, ?, ?, 0, 0)",
                     "ttitii", started, host, (long)getpid(), program, (long)threads, (long)n_simulated));
+    TRY(database_do(store->db, err,
+                    "CREATE TABLE IF NOT EXISTS effort(session INTEGER PRIMARY KEY, seconds REAL, waited REAL, "
+                    "surrogate REAL)",
+                    ""));
     store->last_commit = now_s();
     return database_each(store->db, "SELECT last_insert_rowid()", take_long, &store->session, err);
 }
@@ -407,6 +411,9 @@ static Status store_moment(RunStore *store, const SearchView *v, double seconds,
                     "iiiiidddt", (long)v->generation_now, (long)v->n, (long)v->n_failed, (long)v->n_front,
                     (long)v->n_predicted, v->surrogate_error, store_hypervolume(store), seconds, finished));
     TRY(database_do(store->db, err, "UPDATE session SET seconds = ? WHERE number = ?", "di", session, store->session));
+    TRY(database_do(store->db, err,
+                    "INSERT OR REPLACE INTO effort(session, seconds, waited, surrogate) VALUES (?, ?, ?, ?)", "iddd",
+                    store->session, v->seconds, v->waited_s, v->surrogate_s));
     return database_do(store->db, err, "INSERT OR REPLACE INTO state(id, generation, bytes) VALUES (1, ?, ?)", "ib",
                        (long)v->generation_now, v->state, v->n_state);
 }

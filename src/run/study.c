@@ -82,7 +82,8 @@ static const char *const LIMITS[] = {"search.max_evals", "search.generations", "
                                      "search.nondominated_share", "problem.timeout_s"};
 
 /* These change no result; files are told apart by what is in them. */
-static const char *const FREE[] = {"search.threads", "run.out", "search.start", "motion.record", "motion.records", "building.model"};
+static const char *const FREE[] = {"search.threads", "run.out",        "search.start",
+                                   "motion.record",  "motion.records", "building.model"};
 
 typedef struct {
     FILE *lines;
@@ -250,6 +251,9 @@ static int observe(const SearchView *view, void *user)
     sum->n_front = view->n_front;
     sum->simulation_s = view->simulation_s;
     sum->own_s = view->own_s;
+    sum->search_s = view->seconds;
+    sum->waited_s = view->waited_s;
+    sum->surrogate_s = view->surrogate_s;
     sum->is_aside = view->is_aside;
     const StudyProgress p = {view, store_hypervolume(study->store),
                              (Pace){.simulated = view->n,
@@ -458,6 +462,14 @@ static Status run_search(Study *study, Err *err)
 static Status log_costs(const Study *study, Err *err)
 {
     const StudySummary *sum = study->summary;
+    char text[160];
+    if (sum->search_s > 0.0) {
+        const double waiting = sum->waited_s / sum->search_s, surrogate = sum->surrogate_s / sum->search_s;
+        const Effort e = {waiting, surrogate, 1.0 - waiting - surrogate,
+                          sum->busy_s / sum->search_s / subject_threads(study->subject)};
+        effort_words(&e, text);
+        TRY(store_log(study->store, err, "%s", text));
+    }
     if (!isfinite(sum->own_s) || !isfinite(sum->simulation_s))
         return STATUS_OK;
     return store_log(
