@@ -220,6 +220,8 @@ static void test_answers_that_are_no_objectives_fail_the_design_alone(void **sta
     (void)state;
     expect_every_third("null", ANSWER_NOT_FINITE, "2 finite numbers", 20);
     expect_every_third("short", ANSWER_NOT_FINITE, "2 finite numbers", 20);
+    expect_every_third("nan", ANSWER_NOT_FINITE, "2 finite numbers", 20);
+    expect_every_third("infinity", ANSWER_NOT_FINITE, "2 finite numbers", 20);
 }
 
 static void test_a_worker_that_never_behaves_fails_every_design_and_nothing_hangs(void **state)

@@ -23,6 +23,8 @@ while read -r line; do
     garbled) echo "convergence reached" ;;
     huge) head -c 2000000 /dev/zero | tr '\0' a ;;
     flood) yes "iteration" ;;
+    nan) echo "{\"id\":$id,\"f\":[1,NaN]}" ;;
+    infinity) echo "{\"note\":\"an \\\"inf\\\" is NaN\",\"id\":$id,\"f\":[-Infinity, inf]}" ;;
     null) echo "{\"id\":$id,\"f\":[1,null]}" ;;
     short) echo "{\"id\":$id,\"f\":[1]}" ;;
     nothing) echo "{\"id\":$id}" ;;

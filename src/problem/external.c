@@ -1,5 +1,6 @@
 #include "problem/external.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <jansson.h>
@@ -272,9 +273,32 @@ static int take_objectives(const External *e, const json_t *list, double f[])
     return 1;
 }
 
-static void take_answer(External *e, Worker *w, Batch *b, const char *line, size_t length)
+/* What Python, C and others print for numbers that are none is no JSON: outside strings it becomes "". */
+static void blank_non_numbers(char *line)
+{
+    static const char *const WORDS[] = {"NaN", "-NaN", "nan", "-nan", "Infinity", "-Infinity", "inf", "-inf"};
+    int in_string = 0;
+    for (char *c = line; *c; c++) {
+        if (in_string && *c == '\\' && c[1])
+            c++;
+        else if (*c == '"')
+            in_string = !in_string;
+        for (size_t k = 0; !in_string && k < sizeof WORDS / sizeof WORDS[0]; k++) {
+            const size_t length = strlen(WORDS[k]);
+            if (strncmp(c, WORDS[k], length) != 0 || isalnum((unsigned char)c[length]))
+                continue;
+            memset(c, ' ', length);
+            memset(c, '"', 2);
+            c += length - 1;
+            break;
+        }
+    }
+}
+
+static void take_answer(External *e, Worker *w, Batch *b, char *line, size_t length)
 {
     json_error_t error;
+    blank_non_numbers(line);
     json_t *o = json_loadb(line, length, 0, &error);
     const json_t *f = json_object_get(o, "f"), *why = json_object_get(o, "error"), *id = json_object_get(o, "id");
     if (!json_is_object(o) || !json_is_integer(id))

@@ -87,15 +87,17 @@ Effort effort_of(const Saved *saved, size_t session)
     const SavedSession *s = &saved->session[session];
     Effort e = {.waiting = s->waited_s / s->search_s, .surrogate = s->surrogate_s / s->search_s};
     e.search = 1.0 - e.waiting - e.surrogate;
-    e.busy = simulated_seconds(saved, session) / (s->search_s * fmax((double)s->threads, 1.0));
+    const double simulated = simulated_seconds(saved, session);
+    e.busy = simulated > 0.0 ? simulated / (s->search_s * fmax((double)s->threads, 1.0)) : NAN;
     return e;
 }
 
 void effort_words(const Effort *e, char text[160])
 {
-    snprintf(text, 160,
-             "wall time: %.1f %% waiting for simulations, %.1f %% surrogate, %.1f %% search; threads %.1f %% busy",
-             100.0 * e->waiting, 100.0 * e->surrogate, 100.0 * e->search, 100.0 * e->busy);
+    const int n = snprintf(text, 160, "wall time: %.1f %% waiting for simulations, %.1f %% surrogate, %.1f %% search",
+                           100.0 * e->waiting, 100.0 * e->surrogate, 100.0 * e->search);
+    if (isfinite(e->busy))
+        snprintf(text + n, 160 - (size_t)n, "; threads %.1f %% busy", 100.0 * e->busy);
 }
 
 /* What a session told; one that was killed told its last generation at most, and its simulations since tell more. */

@@ -466,7 +466,7 @@ static Status log_costs(const Study *study, Err *err)
     if (sum->search_s > 0.0) {
         const double waiting = sum->waited_s / sum->search_s, surrogate = sum->surrogate_s / sum->search_s;
         const Effort e = {waiting, surrogate, 1.0 - waiting - surrogate,
-                          sum->busy_s / sum->search_s / subject_threads(study->subject)};
+                          sum->busy_s > 0.0 ? sum->busy_s / sum->search_s / subject_threads(study->subject) : NAN};
         effort_words(&e, text);
         TRY(store_log(study->store, err, "%s", text));
     }

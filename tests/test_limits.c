@@ -1,0 +1,97 @@
+/* search.limits that nothing keeps: an outcome with a name, not a failure of the program. */
+#include "runs.h"
+
+#include "run/nearest.h"
+
+/* f1 + f2 + f3 of dtlz2 is 1 at least on and above its front, the unit sphere: these limits cannot be kept. */
+static const char UNMET[] = "[problem]\nkind = dtlz2\nvariables = 6\nobjectives = 3\n"
+                            "[search]\ninitial = 12\npopulation = 12\nmax_evals = 40\nsurrogate_max = 30\nthreads = 1\n"
+                            "limits = f1<=0.2,f2<=0.2,f3<=0.2\n";
+
+static double missed(const double f[])
+{
+    double sum = 0.0;
+    for (int k = 0; k < 3; k++)
+        sum += fmax(0.0, (f[k] - 0.2) / 0.2);
+    return sum;
+}
+
+static void test_limits_that_nothing_keeps_end_with_the_nearest_designs(void **state)
+{
+    (void)state;
+    Said s;
+    Table nearest;
+    Saved all;
+    Err err = {0};
+    char path[PATH_MAX];
+    write_in_place("unmet.ini", UNMET);
+    run(&s, "optimize @/unmet.ini --out @/unmet");
+    assert_int_equal(s.code, 69);
+    assert_non_null(strstr(s.err, "none of 40 designs keeps f1<=0.2,f2<=0.2,f3<=0.2"));
+    assert_non_null(strstr(s.out, "nearest.csv"));
+    forget(&s);
+
+    CHECK_OK(table_read(&nearest, path_of("unmet/nearest.csv", path), 1, &err), &err);
+    CHECK_OK(saved_read(&all, path_of("unmet", path), &err), &err);
+    assert_int_equal(nearest.n_rows, NEAREST_MAX);
+    assert_int_equal(all.n, 40);
+    double last = 0.0;
+    for (size_t i = 0; i < nearest.n_rows; i++) {
+        const double *row = nearest.values + i * nearest.n_cols;
+        size_t nearer = 0;
+        assert_close(row[1], missed(row + 8), 1e-9);
+        assert_true(row[1] >= last);
+        last = row[1];
+        for (size_t j = 0; j < all.n; j++)
+            nearer += missed(all.F + j * 3) < row[1] - 1e-9;
+        assert_true(nearer <= i);
+    }
+    table_free(&nearest);
+    saved_free(&all);
+
+    char *front = read_in_place("unmet/front.csv");
+    assert_string_equal(strchr(front, '\n'), "\n");
+    free(front);
+    expect(65, "the front is empty", "choose @/unmet");
+}
+
+static void test_a_run_that_keeps_its_limits_has_no_nearest_designs(void **state)
+{
+    (void)state;
+    write_in_place("met.ini", TEXTBOOK);
+    free(output_of("optimize @/met.ini --out @/met --threads 1"));
+    write_in_place("met/nearest.csv", "of an earlier session");
+    free(output_of("optimize @/met"));
+    char *path = in_place("met/nearest.csv");
+    assert_int_not_equal(access(path, F_OK), 0);
+    free(path);
+}
+
+static void test_the_nearest_are_in_the_order_of_what_they_miss_and_failed_ones_are_not_among_them(void **state)
+{
+    (void)state;
+    static const double VIOLATION[] = {5, 3, 9, 3, 1, 8, 2, 7, 6, 4, 0.5, 11, 10, 2.5};
+    static const size_t WANTED[] = {10, 4, 13, 1, 3, 9, 0, 8, 7, 5};
+    enum { N = sizeof VIOLATION / sizeof VIOLATION[0] };
+    SavedRow row[N];
+    size_t rows[NEAREST_MAX];
+    for (size_t i = 0; i < N; i++)
+        row[i] = (SavedRow){.id = (long)i + 1, .ok = i != 6, .violation = VIOLATION[i]};
+    const Saved h = {.n = N, .row = row};
+    assert_int_equal(nearest_rows(&h, rows), NEAREST_MAX);
+    assert_memory_equal(rows, WANTED, sizeof WANTED);
+    const Saved few = {.n = 3, .row = row};
+    assert_int_equal(nearest_rows(&few, rows), 3);
+    assert_int_equal(rows[0], 1);
+    assert_int_equal(rows[2], 2);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_limits_that_nothing_keeps_end_with_the_nearest_designs),
+        cmocka_unit_test(test_a_run_that_keeps_its_limits_has_no_nearest_designs),
+        cmocka_unit_test(test_the_nearest_are_in_the_order_of_what_they_miss_and_failed_ones_are_not_among_them),
+    };
+    return cmocka_run_group_tests_name("limits", tests, prepare, clear_place);
+}
