@@ -32,6 +32,10 @@ static const Deed DEEDS[] = {
     {"evaluate @/done --design knee --record tests/motion/many_columns.csv --channel NS", NULL},
     {"choose @/done --wish j1_m=0.3", NULL},
     {"export @/done --csv @/run", "run"},
+    {"export @/done --json", NULL},
+    {"report @/done --out @/run --record builtin:sylmar-like", "run"},
+    {"plot @/done --out @/run --record builtin:sylmar-like", "run/gaps.svg"},
+    {"status @/done", NULL},
     {STUDY("@/run"), "run/front.csv"},
 };
 enum { N_DEEDS = sizeof DEEDS / sizeof DEEDS[0] };

@@ -265,9 +265,13 @@ static void test_designs_are_chosen_by_limits_weights_and_wishes_and_polished(vo
     expect(65, "no design of the front is within the limits", "choose @/kind --max f1=-5");
     expect(2, "speed is no objective", "choose @/kind --max speed=5");
     expect(2, "is not NAME=NUMBER", "choose @/kind --weights f1");
+    expect(2, "--weights: f2=-1 is negative", "choose @/kind --weights f1=1,f2=-1");
+    expect(2, "all of them are 0", "choose @/kind --weights f1=0");
 
     /* With nothing kept x1 = 0 is the best there is; with all kept nothing may change on this front. */
-    free(output_of("polish @/kind --design knee --improve f1 --keep f1 --evals 120 --csv @/polished.csv"));
+    said = output_of("polish @/kind --design knee --improve f1 --keep f1 --evals 120 --csv @/polished.csv");
+    assert_non_null(strstr(said, "designs tried with 1 simulation each"));
+    free(said);
     Table t;
     Err err = {0};
     char *path = in_place("polished.csv");
@@ -276,6 +280,9 @@ static void test_designs_are_chosen_by_limits_weights_and_wishes_and_polished(vo
     table_free(&t);
     free(path);
     expect(65, "no such id", "polish @/kind --design 999999");
+    expect(2, "--evals: '0' is no whole number from 1", "polish @/kind --design knee --evals 0");
+    expect(2, "--members: '2.5' is no whole number", "polish @/kind --design knee --members 2.5");
+    expect(2, "--slack: '-1' is no number from 0", "polish @/kind --design knee --slack -1");
     expect(2, "no algorithm is called", "polish @/kind --design knee --algorithm magic");
 }
 
@@ -314,7 +321,7 @@ static void test_a_search_begins_with_given_designs_and_a_front_is_thinned(void 
     assert_non_null(strstr(with_polished, ",polished,ok,"));
     free(with_polished);
     expect(66, "search.start", "optimize @/sphere.ini --out @/no --set search.start=@/nothing");
-    expect(2, "is no number of designs", "export @/earlier --select many --csv -");
+    expect(2, "--select: 'many' is no whole number from 1", "export @/earlier --select many --csv -");
     free(said);
     free(all);
     table_free(&front);

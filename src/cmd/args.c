@@ -23,11 +23,9 @@ static const char *value_of(const char *assignment, const char *key)
 
 Status args_moved(const Args *args, Moved *moved, Err *err)
 {
+    const char *text;
     *moved = (Moved){NULL, NULL};
-    for (int i = 0; i < args->n_given; i++) {
-        const char *text = args->given[i].value;
-        if (strcmp(args->given[i].option->name, "--set") != 0)
-            continue;
+    for (int i = 0; (text = args_next(args, "--set", &i));) {
         const char *record = value_of(text, "motion.record"), *records = value_of(text, "motion.records");
         if (!record && !records)
             return fail(err, STATUS_USAGE,
@@ -178,6 +176,37 @@ int args_has(const Args *args, const char *name)
         if (strcmp(args->given[i].option->name, name) == 0)
             return 1;
     return 0;
+}
+
+const char *args_next(const Args *args, const char *name, int *i)
+{
+    while (*i < args->n_given) {
+        const Given *g = &args->given[(*i)++];
+        if (strcmp(g->option->name, name) == 0)
+            return g->value;
+    }
+    return NULL;
+}
+
+Status args_number(const Args *args, const char *name, double least, double most, double otherwise, double *value,
+                   Err *err)
+{
+    const char *text = args_value(args, name);
+    char *end;
+    *value = text ? strtod(text, &end) : otherwise;
+    return !text || (end != text && !*end && *value >= least && *value <= most)
+               ? STATUS_OK
+               : fail(err, STATUS_USAGE, "%s: '%.40s' is no number from %g to %g", name, text, least, most);
+}
+
+Status args_whole(const Args *args, const char *name, long least, long most, long otherwise, long *value, Err *err)
+{
+    const char *text = args_value(args, name);
+    char *end;
+    *value = text ? strtol(text, &end, 10) : otherwise;
+    return !text || (end != text && !*end && *value >= least && *value <= most)
+               ? STATUS_OK
+               : fail(err, STATUS_USAGE, "%s: '%.40s' is no whole number from %ld to %ld", name, text, least, most);
 }
 
 int args_gives(const Args *args, const char *key)

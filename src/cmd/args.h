@@ -46,6 +46,14 @@ struct Args {
 Status args_parse(Args *args, const Command *command, int argc, char *const argv[], Err *err);
 const char *args_value(const Args *args, const char *name); /* NULL when it was not given */
 int args_has(const Args *args, const char *name);
+
+/* The values of an option that may be repeated, one call after the other; i begins at 0, NULL: no more. */
+const char *args_next(const Args *args, const char *name, int *i);
+
+/* The number behind an option, `otherwise` where it was not given: "NAME: 'TEXT' is no ... from LEAST to MOST". */
+Status args_number(const Args *args, const char *name, double least, double most, double otherwise, double *value,
+                   Err *err);
+Status args_whole(const Args *args, const char *name, long least, long most, long otherwise, long *value, Err *err);
 int args_gives(const Args *args, const char *key); /* a setting, by an option of its own or by --set */
 void args_free(Args *args);
 

@@ -37,22 +37,26 @@ static Status take_pair(const Choice *c, const char *option, const char *text, s
     return schema_pick_objective(&c->front.schema, option, name, STATUS_USAGE, k, err);
 }
 
+static Status apply_limit(Choice *c, const char *option, int is_max, const char *text, Err *err)
+{
+    size_t k;
+    double limit;
+    TRY(take_pair(c, option, text, &k, &limit, err));
+    for (size_t i = 0; i < c->front.n; i++)
+        if (is_max ? front_f(&c->front, i)[k] > limit : front_f(&c->front, i)[k] < limit)
+            c->allowed[i] = 0;
+    return STATUS_OK;
+}
+
 /* Only designs within every --max and --min stay allowed. */
 static Status apply_limits(const Args *args, Choice *c, size_t *n_left, Err *err)
 {
+    static const char *const LIMITS[] = {"--min", "--max"};
+    const char *text;
     memset(c->allowed, 1, c->front.n);
-    for (int g = 0; g < args->n_given; g++) {
-        const char *name = args->given[g].option->name;
-        const int is_max = strcmp(name, "--max") == 0;
-        size_t k;
-        double limit;
-        if (!is_max && strcmp(name, "--min") != 0)
-            continue;
-        TRY(take_pair(c, name, args->given[g].value, &k, &limit, err));
-        for (size_t i = 0; i < c->front.n; i++)
-            if (is_max ? front_f(&c->front, i)[k] > limit : front_f(&c->front, i)[k] < limit)
-                c->allowed[i] = 0;
-    }
+    for (int is_max = 0; is_max < 2; is_max++)
+        for (int i = 0; (text = args_next(args, LIMITS[is_max], &i));)
+            TRY(apply_limit(c, LIMITS[is_max], is_max, text, err));
     *n_left = 0;
     for (size_t i = 0; i < c->front.n; i++)
         *n_left += c->allowed[i];
@@ -74,6 +78,20 @@ static Status take_list(const Choice *c, const char *option, const char *list, d
         values[k] = value;
     }
     return STATUS_OK;
+}
+
+/* A negative one would ask for the worst; nothing but zeros asks for nothing. */
+static Status take_weights(const Choice *c, const char *list, double weights[], Err *err)
+{
+    double sum = 0;
+    TRY(take_list(c, "--weights", list, weights, err));
+    for (size_t k = 0; k < c->front.n_obj; k++) {
+        if (weights[k] < 0)
+            return fail(err, STATUS_USAGE, "--weights: %s=%g is negative; every weight asks for more of what is good",
+                        schema_objective(&c->front.schema, k)->name, weights[k]);
+        sum += isnan(weights[k]) ? 0 : weights[k];
+    }
+    return sum > 0 ? STATUS_OK : fail(err, STATUS_USAGE, "--weights: all of them are 0");
 }
 
 typedef double (*CostFn)(const Choice *c, size_t i, const double values[]);
@@ -124,7 +142,7 @@ static Status choose(const Args *args, Choice *c, Err *err)
     double weights[OBJECTIVES_MAX], wishes[OBJECTIVES_MAX];
     TRY(apply_limits(args, c, &n_left, err));
     if (args_has(args, "--weights"))
-        TRY(take_list(c, "--weights", args_value(args, "--weights"), weights, err));
+        TRY(take_weights(c, args_value(args, "--weights"), weights, err));
     if (args_has(args, "--wish"))
         TRY(take_list(c, "--wish", args_value(args, "--wish"), wishes, err));
     printf("%zu of %zu designs are within the limits\n", n_left, c->front.n);

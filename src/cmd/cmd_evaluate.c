@@ -7,28 +7,19 @@
 
 #include "base/units.h"
 #include "cmd/commands.h"
+#include "cmd/look.h"
 #include "cmd/show.h"
 #include "run/crew.h"
 #include "run/front.h"
 #include "run/world.h"
 
-enum { WITH_CORE, WITHOUT_CORE, N_SCENES };
-static const SceneKind SCENES[N_SCENES] = {SCENE_IMPACT, SCENE_NO_CORE};
+enum { WITH_CORE, WITHOUT_CORE, N_CASES };
+static const SceneKind SCENES[N_CASES] = {SCENE_IMPACT, SCENE_NO_CORE};
 
 typedef struct {
     Front front;
     size_t row;
 } Chosen;
-
-static Status choose_design(const Args *args, Chosen *c, Err *err)
-{
-    const char *word = args_value(args, "--design");
-    if (!word)
-        return fail(err, STATUS_USAGE, "--design ID is missing; %s/front.csv lists them, knee is one too",
-                    args->operand);
-    TRY(front_read(&c->front, args->operand, err));
-    return front_pick(&c->front, args->operand, word, &c->row, err);
-}
 
 static Status read_run(const Args *args, Settings *s, Err *err)
 {
@@ -37,39 +28,39 @@ static Status read_run(const Args *args, Settings *s, Err *err)
     return settings_check(s, err);
 }
 
-static Status simulate(const World *w, const Chosen *c, SimResult results[N_SCENES], Err *err)
+static Status simulate(const World *w, const Chosen *c, SimResult results[N_CASES], Err *err)
 {
     Crew *crew;
-    SimTask tasks[N_SCENES];
+    SimTask tasks[N_CASES];
     if (w->settings.problem.kind != PROBLEM_TOWER)
         return fail(err, STATUS_BAD_DATA, "this run searched another problem than the tower: no ground motion applies");
     if (scene_n_floors(w->scene) + 2 != c->front.n_var)
         return fail(err, STATUS_BAD_DATA, "the front has designs of %d floors, the building has %d", c->front.n_var - 2,
                     scene_n_floors(w->scene));
-    for (int i = 0; i < N_SCENES; i++)
+    for (int i = 0; i < N_CASES; i++)
         tasks[i] = (SimTask){SCENES[i], front_x(&c->front, c->row)};
-    TRY(crew_create(&crew, w->scene, N_SCENES, err));
-    const Status status = crew_run(crew, N_SCENES, tasks, results, err);
+    TRY(crew_create(&crew, w->scene, N_CASES, err));
+    const Status status = crew_run(crew, N_CASES, tasks, results, err);
     crew_free(crew);
     return status;
 }
 
-static json_t *describe(const World *w, const SimResult results[N_SCENES])
+static json_t *describe(const World *w, const SimResult results[N_CASES])
 {
     json_t *o = json_object();
     json_object_set_new(o, "record", json_string(w->motion.name));
     json_object_set_new(o, "pga_g", json_number(motion_peak(&w->motion) / GRAVITY));
     json_object_set_new(o, "stretch", json_number(w->settings.motion.stretch));
-    for (int i = 0; i < N_SCENES; i++)
+    for (int i = 0; i < N_CASES; i++)
         json_object_set_new(o, i == WITH_CORE ? "with_core" : "no_core", json_result(SCENES[i], &results[i]));
     return o;
 }
 
-static void print_pair(const World *w, const SimResult results[N_SCENES])
+static void print_pair(const World *w, const SimResult results[N_CASES])
 {
     show_motion(&w->motion, w->settings.sim.duration_s);
     show_result_names("");
-    for (int i = 0; i < N_SCENES; i++)
+    for (int i = 0; i < N_CASES; i++)
         show_result(i == WITH_CORE ? "with core" : "no core", &results[i]);
     putchar('\n');
 }
@@ -78,7 +69,7 @@ static void print_pair(const World *w, const SimResult results[N_SCENES])
 static Status evaluate_on(const Settings *s, const Chosen *c, json_t *list, Err *err)
 {
     World w;
-    SimResult results[N_SCENES];
+    SimResult results[N_CASES];
     TRY(world_open(&w, s, err));
     const Status status = simulate(&w, c, results, err);
     if (status == STATUS_OK && list)
@@ -120,11 +111,11 @@ static Status try_record(Settings *s, const char *path, Err *err)
     return status;
 }
 
-static void print_rows(const char *path, const SimResult results[N_SCENES])
+static void print_rows(const char *path, const SimResult results[N_CASES])
 {
-    static const char *const words[N_SCENES] = {"with core", "no core"};
+    static const char *const words[N_CASES] = {"with core", "no core"};
     const char *slash = strrchr(path, '/');
-    for (int i = 0; i < N_SCENES; i++) {
+    for (int i = 0; i < N_CASES; i++) {
         char label[64];
         snprintf(label, sizeof label, "%-17.17s %s", slash ? slash + 1 : path, words[i]);
         show_result(label, &results[i]);
@@ -135,7 +126,7 @@ static Status evaluate_file(Settings *s, const Chosen *c, const char *path, Fold
 {
     Err why = {0};
     World w;
-    SimResult results[N_SCENES];
+    SimResult results[N_CASES];
     const Status readable = try_record(s, path, &why);
     if (readable == STATUS_NO_MEMORY)
         return fail(err, readable, "%s", why.text);
@@ -214,18 +205,17 @@ static Status evaluate_folder(const Args *args, Settings *s, const Chosen *c, js
 static Status try_records(const Args *args, const Settings *s, Err *err)
 {
     Settings each = *s;
-    for (int i = 0; i < args->n_given; i++)
-        if (strcmp(args->given[i].option->name, "--record") == 0)
-            TRY(try_record(&each, args->given[i].value, err));
+    const char *path;
+    for (int i = 0; (path = args_next(args, "--record", &i));)
+        TRY(try_record(&each, path, err));
     return STATUS_OK;
 }
 
 static Status evaluate_all(const Args *args, Settings *s, const Chosen *c, json_t *list, json_t *unreadable, Err *err)
 {
-    for (int i = 0; i < args->n_given; i++) {
-        if (strcmp(args->given[i].option->name, "--record") != 0)
-            continue;
-        TRY(pick_record(s, args->given[i].value, err));
+    const char *path;
+    for (int i = 0; (path = args_next(args, "--record", &i));) {
+        TRY(pick_record(s, path, err));
         TRY(evaluate_on(s, c, list, err));
     }
     return args_has(args, "--records") ? evaluate_folder(args, s, c, list, unreadable, err) : STATUS_OK;
@@ -262,7 +252,7 @@ static Status run(const Args *args, Err *err)
     if (!args_has(args, "--record") && !args_has(args, "--records"))
         return fail(err, STATUS_USAGE, "--record FILE is missing; it may be repeated, or --records FOLDER given");
     TRY(read_run(args, &s, err));
-    Status status = choose_design(args, &c, err);
+    Status status = look_design(args, &c.front, &c.row, err);
     if (status == STATUS_OK)
         status = show_all(args, &s, &c, err);
     front_free(&c.front);

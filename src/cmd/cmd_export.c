@@ -30,10 +30,8 @@ static Status copy_file(const char *folder, const char *name, const char *path, 
 /* A well-spread choice of the front: the knee first, then again and again the design farthest from those chosen. */
 static Status write_selected(const Args *args, const Saved *h, FILE *f, Err *err)
 {
-    char *end;
-    const long wanted = strtol(args_value(args, "--select"), &end, 10);
-    if (*end || wanted < 1 || wanted > 1000000)
-        return fail(err, STATUS_USAGE, "--select: '%.40s' is no number of designs", args_value(args, "--select"));
+    long wanted;
+    TRY(args_whole(args, "--select", 1, 1000000, 0, &wanted, err));
     size_t *rows = calloc((size_t)wanted, sizeof *rows);
     if (!rows)
         return fail(err, STATUS_NO_MEMORY, "no memory for %ld designs", wanted);

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "cmd/commands.h"
+#include "cmd/look.h"
 #include "cmd/show.h"
 #include "run/front.h"
 #include "run/output.h"
@@ -16,16 +17,6 @@ typedef struct {
     RefineConfig config;
     Refined result;
 } Work;
-
-static Status take_number(const Args *args, const char *name, double standard, double *value, Err *err)
-{
-    const char *text = args_value(args, name);
-    char *end;
-    *value = text ? strtod(text, &end) : standard;
-    if (text && (end == text || *end || !(*value >= 0.0 && *value < 1e9)))
-        return fail(err, STATUS_USAGE, "%s: '%.40s' is no number of 0 or more", name, text);
-    return STATUS_OK;
-}
 
 static Status take_kept(const Args *args, Work *w, Err *err)
 {
@@ -47,33 +38,25 @@ static Status take_options(const Args *args, Work *w, Err *err)
 {
     const Schema *schema = &w->front.schema;
     const char *improve = args_value(args, "--improve");
-    double evals, members;
+    long evals;
     w->config.improve = 0;
     if (improve)
         TRY(schema_pick_objective(schema, "--improve", improve, STATUS_USAGE, &w->config.improve, err));
     TRY(take_kept(args, w, err));
-    TRY(take_number(args, "--evals", 120, &evals, err));
-    TRY(take_number(args, "--members", 4, &members, err));
-    TRY(take_number(args, "--seconds", 0, &w->config.max_seconds, err));
-    TRY(take_number(args, "--slack", 0, &w->config.slack, err));
-    if (!args_has(args, "--slack"))
-        w->config.slack = -1.0;
+    TRY(args_whole(args, "--evals", 1, 1000000, 120, &evals, err));
+    TRY(args_whole(args, "--members", 1, 1000, 4, &w->config.members, err));
+    TRY(args_number(args, "--seconds", 0, 1e9, 0, &w->config.max_seconds, err));
+    TRY(args_number(args, "--slack", 0, 1e6, -1, &w->config.slack, err));
     w->config.algorithm = args_has(args, "--algorithm") ? args_value(args, "--algorithm") : "cobyla";
     w->config.keep = w->keep;
-    w->config.max_evals = evals < 1 ? 1 : (size_t)evals;
-    w->config.members = members < 1 ? 1 : (long)members;
+    w->config.max_evals = (size_t)evals;
     return STATUS_OK;
 }
 
 static Status open_run(const Args *args, Work *w, Err *err)
 {
-    const char *id = args_value(args, "--design");
     Moved moved;
-    if (!id)
-        return fail(err, STATUS_USAGE, "--design ID is missing; %s/front.csv lists them, knee is one too",
-                    args->operand);
-    TRY(front_read(&w->front, args->operand, err));
-    TRY(front_pick(&w->front, args->operand, id, &w->row, err));
+    TRY(look_design(args, &w->front, &w->row, err));
     TRY(take_options(args, w, err));
     TRY(args_moved(args, &moved, err));
     TRY(saved_read(&w->run, args->operand, err));
@@ -109,8 +92,9 @@ static void show(const Work *w, long id)
     show_objectives("polished", id, schema->n_obj, r->f);
     if (isfinite(r->spread_start[k]))
         show_objectives("spread before", 0, schema->n_obj, r->spread_start);
-    printf("\n%s: %zu designs tried with %ld simulations each, %zu failed, %.1f s\n", w->config.algorithm,
-           r->n_evaluated, w->config.members, r->n_failed, r->seconds);
+    const long each = w->run.settings.problem.kind == PROBLEM_TOWER ? w->config.members : 1;
+    printf("\n%s: %zu designs tried with %ld simulation%s each, %zu failed, %.1f s\n", w->config.algorithm,
+           r->n_evaluated, each, each == 1 ? "" : "s", r->n_failed, r->seconds);
     if (!r->has_changed)
         printf("no improvement of %s was found that keeps the others.\n", name);
     else if (isfinite(r->gain_error))

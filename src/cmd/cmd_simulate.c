@@ -21,13 +21,10 @@ typedef struct {
 
 static Status choose_members(const Args *args, Job *job, Err *err)
 {
-    const char *text = args_value(args, "--ensemble");
-    char *end;
-    if (!text)
+    long members;
+    if (!args_has(args, "--ensemble"))
         return STATUS_OK;
-    const long members = strtol(text, &end, 10);
-    if (*end || members < 2 || members > 100000)
-        return fail(err, STATUS_USAGE, "--ensemble %s: a whole number from 2 to 100000 is needed", text);
+    TRY(args_whole(args, "--ensemble", 2, 100000, 0, &members, err));
     if (job->kind != SCENE_IMPACT)
         return fail(err, STATUS_USAGE,
                     "--ensemble changes gaps a little: it needs a design with gaps, not none or --tied");

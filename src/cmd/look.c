@@ -15,13 +15,12 @@ typedef struct {
 static Status take_records(const Args *args, const Settings *run, Records *r, Err *err)
 {
     static const char *const BUILT_IN[] = {"builtin:kobe-like", "builtin:elcentro-like", "builtin:sylmar-like"};
+    const char *path;
     r->n = 0;
-    for (int i = 0; i < args->n_given; i++) {
-        if (strcmp(args->given[i].option->name, "--record") != 0)
-            continue;
+    for (int i = 0; (path = args_next(args, "--record", &i));) {
         if (r->n == RECORDS_MAX)
             return fail(err, STATUS_USAGE, "--record: more than %d earthquakes make no report", RECORDS_MAX);
-        r->path[r->n++] = args->given[i].value;
+        r->path[r->n++] = path;
     }
     if (args_has(args, "--record"))
         return STATUS_OK;
@@ -37,30 +36,31 @@ static Status take_records(const Args *args, const Settings *run, Records *r, Er
     return STATUS_OK;
 }
 
-static Status take_floor(const Args *args, int *floor, Err *err)
-{
-    const char *text = args_value(args, "--floor");
-    char *end;
-    const long n = text ? strtol(text, &end, 10) : 0;
-    if (text && (end == text || *end || n < 1 || n > FLOORS_MAX))
-        return fail(err, STATUS_USAGE, "--floor: '%.40s' is no number of a floor, the lowest is 1", text);
-    *floor = (int)n - 1;
-    return STATUS_OK;
-}
-
 Status look_open(const Args *args, Report *r, Err *err)
 {
     const char *design = args_value(args, "--design");
     Settings other;
     Records records;
+    long floor;
     DetailWish wish = {.other = &other, .records = records.path};
     TRY(args_moved(args, &wish.moved, err));
     TRY(run_settings(&other, args->operand, err));
     TRY(args_apply(args, &other, NULL, NULL, err));
     TRY(take_records(args, &other, &records, err));
     wish.n_records = records.n;
-    TRY(take_floor(args, &wish.floor, err));
+    TRY(args_whole(args, "--floor", 1, FLOORS_MAX, 0, &floor, err));
+    wish.floor = (int)floor - 1;
     return report_open(r, args->operand, design ? design : "knee", &wish, err);
+}
+
+Status look_design(const Args *args, Front *front, size_t *row, Err *err)
+{
+    const char *word = args_value(args, "--design");
+    if (!word)
+        return fail(err, STATUS_USAGE, "--design ID is missing; %s/front.csv lists them, knee is one too",
+                    args->operand);
+    TRY(front_read(front, args->operand, err));
+    return front_pick(front, args->operand, word, row, err);
 }
 
 Status look_target(const Args *args, const char *name, char path[PATH_MAX], Err *err)

@@ -1,4 +1,4 @@
-/* cmd/look.h -- what `report` and `plot` have in common: which run, which design, which other earthquakes. */
+/* cmd/look.h -- what commands that look at a run have in common: which run, which design, which other earthquakes. */
 #ifndef IMTET_CMD_LOOK_H
 #define IMTET_CMD_LOOK_H
 
@@ -7,6 +7,9 @@
 
 /* The run of the operand, ready to be shown; report_close releases it. */
 Status look_open(const Args *args, Report *r, Err *err);
+
+/* The front of the operand's run, and the row that --design names; front_free releases the front, also after a fault. */
+Status look_design(const Args *args, Front *front, size_t *row, Err *err);
 
 /* --out, or RUN/name. */
 Status look_target(const Args *args, const char *name, char path[PATH_MAX], Err *err);
