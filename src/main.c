@@ -4,6 +4,7 @@
  * and
  * --completion. */
 #include <cblas.h>
+#include <fcntl.h>
 #include <jansson.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -110,9 +111,19 @@ static void *json_memory(size_t size)
     _exit(status_exit_code(STATUS_NO_MEMORY));
 }
 
+/* A file that is opened in the place of a standard stream that was closed (`imtet ... >&-`) would get what is meant for
+ * that. What is open for reading only refuses it, as a closed one does. */
+static void hold_standard_streams(void)
+{
+    for (int fd = 0; fd <= 2; fd++)
+        if (fcntl(fd, F_GETFD) < 0 && open("/dev/null", O_RDONLY) < 0)
+            return;
+}
+
 int main(int argc, char *argv[])
 {
     Err err = {0};
+    hold_standard_streams();
     json_set_alloc_funcs(json_memory, free);
     openblas_set_num_threads(1); /* simulations run side by side; threads below them would fight for the processors */
     Status status = run(argc, argv, &err);

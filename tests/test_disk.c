@@ -230,6 +230,9 @@ static void test_damage_is_found_on_opening_whatever_was_hit(void **state)
     expect(74, "is no database of a run", "status @/hurt");
     assert_int_equal(truncate(path_of("hurt/run.sqlite", path), 0), 0);
     expect(74, "is empty, no database of a run; remove it", "optimize @/hurt");
+    assert_int_equal(unlink(path_of("hurt/run.sqlite", path)), 0);
+    assert_int_equal(mkdir(path, 0777), 0);
+    expect(74, "hurt/run.sqlite: is no file", "status @/hurt");
     overwrite("sound/run.sqlite", 60, "\0\0\0\x63", 4); /* user_version */
     expect(74, "has format 99, this program reads 2; a newer imtet wrote it", "status @/sound");
     overwrite("sound/run.sqlite", 60, "\0\0\0\1", 4);
@@ -295,6 +298,22 @@ static void test_a_run_is_named_by_its_database_or_through_the_root_too(void **s
     expect(2, "imtet status: the RUN is an empty word", "status ''");
 }
 
+/* The first files that are opened must not get the numbers of standard output and error. */
+static void test_who_closes_the_standard_streams_finds_nothing_of_them_in_the_run(void **state)
+{
+    (void)state;
+    Said s;
+    free(output_of("optimize @/textbook.ini --max-evals 30 --out @/open"));
+    run(&s, "optimize @/textbook.ini --max-evals 30 --out @/shut <&- >&- 2>&-");
+    assert_int_equal(s.code, 74); /* its table could not be printed */
+    forget(&s);
+    assert_same_run("open", "shut");
+    char *log = read_in_place("shut/log.txt");
+    assert_null(strstr(log, "imtet:"));
+    assert_null(strstr(log, "knee"));
+    free(log);
+}
+
 static void test_readers_need_the_database_alone_and_the_files_come_back(void **state)
 {
     (void)state;
@@ -339,6 +358,7 @@ int main(void)
         cmocka_unit_test(test_damage_is_found_on_opening_whatever_was_hit),
         cmocka_unit_test(test_a_database_runs_nothing_and_needs_no_more_memory_than_its_size),
         cmocka_unit_test(test_a_run_is_named_by_its_database_or_through_the_root_too),
+        cmocka_unit_test(test_who_closes_the_standard_streams_finds_nothing_of_them_in_the_run),
         cmocka_unit_test(test_readers_need_the_database_alone_and_the_files_come_back),
     };
     return cmocka_run_group_tests_name("disk", tests, prepare, clear_place);

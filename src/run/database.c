@@ -298,6 +298,8 @@ Status database_open(Database **out, const char *path, DatabaseMode mode, Err *e
     *out = NULL;
     if (stat(path, &there) != 0)
         return fail(err, STATUS_MISSING, "%s: is not there", path);
+    if (!S_ISREG(there.st_mode))
+        return fail(err, STATUS_IO, "%s: is no file", path);
     if (there.st_size == 0)
         return fail(err, STATUS_IO, "%s: is empty, no database of a run; remove it, and the run begins anew", path);
     TRY(open_file(out, path, real_path(path, real),

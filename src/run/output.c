@@ -32,7 +32,7 @@ Status output_sync(FILE *stream, const char *path, Err *err)
     errno = 0;
     if (fflush(stream) != 0 || ferror(stream))
         return fail(err, status_of_errno(errno, STATUS_IO), "%s: cannot be written: %s", path,
-                    strerror(errno ? errno : EIO));
+                    errno ? strerror(errno) : "an earlier write failed, as on a full disk");
     /* A pipe or a terminal has no disk to wait for. */
     if (fsync(fileno(stream)) != 0 && errno != EINVAL && errno != EROFS && errno != ENOTSUP)
         return fail(err, status_of_errno(errno, STATUS_IO), "%s: cannot be brought to the disk: %s", path,

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 static const char RESULTS[] = "results";
 
@@ -53,6 +54,7 @@ static int is_own_folder(const char *out, const char *settings_file)
 Status place_check(const char *out, const char *settings_file, Err *err)
 {
     char there[PATH_MAX], results[PATH_MAX];
+    struct stat about;
     const char *path = out + (strncmp(out, "./", 2) == 0 ? 2 : 0);
     if (is_own_folder(out, settings_file))
         return STATUS_OK;
@@ -62,7 +64,8 @@ Status place_check(const char *out, const char *settings_file, Err *err)
             "%s: run.out: %.200s is not below %s/, the only place where a settings file may write; name another "
             "one on the command line: --out %.100s",
             settings_file, out, RESULTS, out);
-    if (realpath(RESULTS, results) && (!find_existing(path, there) || !is_below(there, results)))
+    if (realpath(RESULTS, results) && stat(results, &about) == 0 && S_ISDIR(about.st_mode) &&
+        (!find_existing(path, there) || !is_below(there, results)))
         return fail(err, STATUS_BAD_DATA,
                     "%s: run.out: %.200s is a link that leads out of %s/; where this is meant, say so on the command "
                     "line: --out %.100s",

@@ -385,6 +385,8 @@ Status run_settings(Settings *s, const char *folder, Err *err)
     }
     if (snprintf(path, sizeof path, "%s/settings.ini", folder) >= (int)sizeof path)
         return fail(err, STATUS_MISSING, "%.200s...: the path is too long", folder);
+    if (access(path, F_OK) != 0)
+        return fail(err, STATUS_MISSING, "%s: holds no run: neither run.sqlite nor settings.ini is there", folder);
     return settings_read(s, path, NULL, NULL, err);
 }
 
