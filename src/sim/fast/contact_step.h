@@ -17,16 +17,8 @@ static void land(FastWork *k)
 
 static void contact_predict(FastWork *k, const Level *l, double a0, double a1)
 {
-    const vec *c = l->coef;
-    const int mf = k->mf;
-    for (int i = 0; i < mf; i++) {
-        const vec q = k->q[i], v = k->v[i], p0 = k->load[i] - k->gamma[i] * a0,
-                  p1 = -k->gamma[i] * (a1 - a0) - k->load[i];
-        k->q1[i] = c[FLOW_Q * mf + i] * q + c[(FLOW_Q + 1) * mf + i] * v + c[(FLOW_Q + 2) * mf + i] * p0 +
-                   c[(FLOW_Q + 3) * mf + i] * p1;
-        k->v1[i] = c[FLOW_V * mf + i] * q + c[(FLOW_V + 1) * mf + i] * v + c[(FLOW_V + 2) * mf + i] * p0 +
-                   c[(FLOW_V + 3) * mf + i] * p1;
-    }
+    for (int i = 0; i < k->mf; i++)
+        flow_modes(k, l, i, k->load[i] - k->gamma[i] * a0, -k->gamma[i] * (a1 - a0) - k->load[i]);
     const double *const state[2] = {scalars_const(k->q1), scalars_const(k->v1)};
     vec *const floors[2] = {k->w1, k->wd1};
     rows_times(2, (const vec *)k->R, k->nf, k->m_pad, state, floors);

@@ -7,15 +7,10 @@
 
 static void flight_modes(FastWork *k, const Level *l, double a0, double a1)
 {
-    const vec *c = l->coef;
-    const int mf = k->mf;
     const double rate = (a1 - a0) / l->h;
-    for (int i = 0; i < mf; i++) {
+    for (int i = 0; i < k->mf; i++) {
         const vec q = k->q[i], v = k->v[i], p0 = -k->gamma[i] * a0, p1 = -k->gamma[i] * (a1 - a0);
-        k->q1[i] = c[FLOW_Q * mf + i] * q + c[(FLOW_Q + 1) * mf + i] * v + c[(FLOW_Q + 2) * mf + i] * p0 +
-                   c[(FLOW_Q + 3) * mf + i] * p1;
-        k->v1[i] = c[FLOW_V * mf + i] * q + c[(FLOW_V + 1) * mf + i] * v + c[(FLOW_V + 2) * mf + i] * p0 +
-                   c[(FLOW_V + 3) * mf + i] * p1;
+        flow_modes(k, l, i, p0, p1);
         /* quasi-static answer to the linear load, and the free vibration around it */
         const vec flex = k->flex[i], decay = k->decay[i], stiff = k->omega[i] * k->omega[i], slow = l->slow[i];
         const vec static_v = -k->gamma[i] * rate * flex, static_0 = (p0 - decay * static_v) * flex,

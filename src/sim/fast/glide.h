@@ -21,17 +21,13 @@ static void glide_bounds(FastWork *k, double impulse)
 {
     for (int i = 0; i < k->mf; i++) {
         const vec q = k->q[i], xd = (k->v[i] + 0.5 * k->decay[i] * q) * k->wd_inverse[i];
-        k->bound[i] = vec_sqrt(q * q + xd * xd) + impulse * vec_abs(k->gamma[i]) * k->wd_inverse[i];
+        k->bound[i] = vec_hypot_above(q, xd) + impulse * vec_abs(k->gamma[i]) * k->wd_inverse[i];
         k->bound_a[i] = k->omega[i] * (k->omega[i] + k->decay[i]) * k->bound[i];
     }
 }
 
-/* Is no floor's reach above what it may be? */
-static int stays_below(const FastWork *k, const vec *reach, const vec *limit)
-{
-    return !exceeds(reach, limit, k->nf);
-}
-
+/* Is a wall out of reach and every peak, whatever the modes do within glide_bounds? The floors' u0, u1 and a0, which
+ * belong to flights, hold the reach of displacement, drift and acceleration. */
 static int glides(FastWork *k, double impulse)
 {
     const vec *R_abs = (const vec *)k->R_abs;
@@ -39,9 +35,9 @@ static int glides(FastWork *k, double impulse)
     glide_bounds(k, impulse);
     const double *const bounds[2] = {scalars_const(k->bound), scalars_const(k->bound_a)};
     vec *const reach[2] = {k->u0, k->a0}, *const reach_drift[1] = {k->u1}, *const reach_core[1] = {k->c0};
-    rows_times(2, R_abs, k->nf, core, bounds, reach);
-    rows_times(1, (const vec *)k->D_abs, k->nf, core, bounds, reach_drift);
-    if (!stays_below(k, k->u0, k->peak_u) || !stays_below(k, k->u1, k->peak_d) || !stays_below(k, k->a0, k->peak_a))
+    rows_times(2, R_abs, k->nf, k->model->nb, bounds, reach);
+    rows_times(1, (const vec *)k->D_abs, k->nf, k->model->nb, bounds, reach_drift);
+    if (exceeds(k->u0, k->peak_u, k->nf) || exceeds(k->u1, k->peak_d, k->nf) || exceeds(k->a0, k->peak_a, k->nf))
         return 0;
     if (k->m_pad == core)
         return 1;
@@ -49,21 +45,14 @@ static int glides(FastWork *k, double impulse)
     rows_times(1, R_abs + core * k->nf, k->nf, k->m_pad - core, core_bounds, reach_core);
     for (int f = 0; f < k->nf; f++)
         k->u0[f] += k->c0[f];
-    return stays_below(k, k->u0, k->gap);
+    return !exceeds(k->u0, k->gap, k->nf);
 }
 
 /* One interval of free flow. */
 static void glide_interval(FastWork *k, const Level *l, double a0, double a1)
 {
-    const vec *c = l->coef;
-    const int mf = k->mf;
-    for (int i = 0; i < mf; i++) {
-        const vec q = k->q[i], v = k->v[i], p0 = -k->gamma[i] * a0, p1 = -k->gamma[i] * (a1 - a0);
-        k->q1[i] = c[FLOW_Q * mf + i] * q + c[(FLOW_Q + 1) * mf + i] * v + c[(FLOW_Q + 2) * mf + i] * p0 +
-                   c[(FLOW_Q + 3) * mf + i] * p1;
-        k->v1[i] = c[FLOW_V * mf + i] * q + c[(FLOW_V + 1) * mf + i] * v + c[(FLOW_V + 2) * mf + i] * p0 +
-                   c[(FLOW_V + 3) * mf + i] * p1;
-    }
+    for (int i = 0; i < k->mf; i++)
+        flow_modes(k, l, i, -k->gamma[i] * a0, -k->gamma[i] * (a1 - a0));
     book_flight(k, l, a0, a1);
     swap(&k->q, &k->q1);
     swap(&k->v, &k->v1);

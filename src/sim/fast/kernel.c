@@ -122,10 +122,14 @@ static void show(const FastWork *k, double t)
         k->sample(&sample, k->sample_user);
 }
 
-/* Ground acceleration at sample i; after the last one it stands still. */
-static double ground(const Motion *motion, long i)
+typedef struct {
+    double start, end; /* [m/s2] */
+} Ramp;
+
+/* Ground acceleration over interval i; after the last sample it stands still. */
+static Ramp ground(const Motion *motion, long i)
 {
-    return i < (long)motion->n ? motion->accel[i] : 0;
+    return i + 1 < (long)motion->n ? (Ramp){motion->accel[i], motion->accel[i + 1]} : (Ramp){0, 0};
 }
 
 /* Glides over intervals first.. while it can; returns how many, 0 where the next one must be looked at. */
@@ -135,8 +139,10 @@ static long glide(FastWork *k, const Motion *motion, long first, long end)
     if (!k->may_glide || k->touching || first < k->glide_from || end - first < GLIDE_LEAST)
         return 0;
     const long n = k->glide_wish < end - first ? k->glide_wish : end - first;
-    for (long i = first; i < first + n; i++)
-        impulse += 0.5 * motion->dt_s * (fabs(ground(motion, i)) + fabs(ground(motion, i + 1)));
+    for (long i = first; i < first + n; i++) {
+        const Ramp a = ground(motion, i);
+        impulse += 0.5 * motion->dt_s * (fabs(a.start) + fabs(a.end));
+    }
     if (!glides(k, impulse)) {
         k->glide_from = n > GLIDE_LEAST ? first : first + GLIDE_LEAST;
         k->glide_wish = GLIDE_LEAST;
@@ -147,7 +153,8 @@ static long glide(FastWork *k, const Motion *motion, long first, long end)
     for (long i = first; i < first + n; i++) {
         if (i > first)
             show(k, (double)i * motion->dt_s);
-        glide_interval(k, l, ground(motion, i), ground(motion, i + 1));
+        const Ramp a = ground(motion, i);
+        glide_interval(k, l, a.start, a.end);
     }
     k->flights += n;
     glide_end(k);
@@ -158,7 +165,6 @@ static int fly(FastWork *k, const Motion *motion, double duration)
 {
     k->shortest_at_1 = shortest_contact(k->model);
     const long full = (long)floor(duration / motion->dt_s * (1 + 1e-14));
-    const long samples = (long)motion->n;
     k->flight_level = 0;
     k->glide_from = 0;
     k->glide_wish = GLIDE_LEAST;
@@ -167,19 +173,19 @@ static int fly(FastWork *k, const Motion *motion, double duration)
     set_base(k, motion->dt_s);
     show(k, 0);
     for (long i = 0; i < full;) {
-        const long glided = glide(k, motion, i, full < samples - 1 ? full : samples - 1);
-        const double a0 = i + 1 < samples ? motion->accel[i] : 0, a1 = i + 1 < samples ? motion->accel[i + 1] : 0;
-        if ((!glided && !interval(k, (double)i * motion->dt_s, a0, a1)) || !state_is_finite(k))
+        const long glided = glide(k, motion, i, full);
+        const Ramp a = ground(motion, i);
+        if ((!glided && !interval(k, (double)i * motion->dt_s, a.start, a.end)) || !state_is_finite(k))
             return 0;
         i += glided ? glided : 1;
         show(k, (double)i * motion->dt_s);
     }
     const double rest = duration - (double)full * motion->dt_s;
     if (rest > 1e-9 * motion->dt_s) {
-        const double a0 = full + 1 < samples ? motion->accel[full] : 0;
-        const double slope = full + 1 < samples ? (motion->accel[full + 1] - a0) / motion->dt_s : 0;
+        const Ramp a = ground(motion, full);
         set_base(k, rest);
-        return interval(k, duration - rest, a0, a0 + slope * rest) && state_is_finite(k);
+        return interval(k, duration - rest, a.start, a.start + (a.end - a.start) * rest / motion->dt_s) &&
+               state_is_finite(k);
     }
     return 1;
 }

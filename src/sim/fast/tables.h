@@ -220,6 +220,17 @@ static inline vec momentum_gap(const FastWork *k, double h, int i, vec dq, vec d
     return dv + k->decay[i] * dq + h * (k->omega[i] * k->omega[i] * mean - load);
 }
 
+/* Vector i of modes at the end of a step, q1 and v1, under the load p0 + p1 x. */
+static inline void flow_modes(FastWork *k, const Level *l, int i, vec p0, vec p1)
+{
+    const vec *c = l->coef, q = k->q[i], v = k->v[i];
+    const int mf = k->mf;
+    k->q1[i] = c[FLOW_Q * mf + i] * q + c[(FLOW_Q + 1) * mf + i] * v + c[(FLOW_Q + 2) * mf + i] * p0 +
+               c[(FLOW_Q + 3) * mf + i] * p1;
+    k->v1[i] = c[FLOW_V * mf + i] * q + c[(FLOW_V + 1) * mf + i] * v + c[(FLOW_V + 2) * mf + i] * p0 +
+               c[(FLOW_V + 3) * mf + i] * p1;
+}
+
 static void start_at_rest(FastWork *k)
 {
     const vec zero = {0};

@@ -29,14 +29,6 @@ static inline vec vec_max(vec a, vec b)
     return (vec)(((mask)a & m) | ((mask)b & ~m));
 }
 
-static inline vec vec_sqrt(vec a)
-{
-    vec r;
-    for (int i = 0; i < LANES; i++)
-        r[i] = __builtin_sqrt(a[i]);
-    return r;
-}
-
 static inline vec vec_abs(vec a)
 {
     return (vec)((mask)a & INT64_MAX);
