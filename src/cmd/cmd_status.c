@@ -1,8 +1,11 @@
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "cmd/commands.h"
 #include "cmd/show.h"
+#include "moga/cover.h"
+#include "run/advance.h"
 #include "run/pace.h"
 
 enum { ROWS_MAX = 12, OUTCOMES_MAX = 16 };
@@ -71,19 +74,25 @@ static void print_head(const char *folder, const Saved *saved, const Standing *s
 }
 
 /* The first, the last, and some evenly between. */
-static void print_generations(const Saved *saved)
+static void print_generations(const Saved *saved, const double igd[])
 {
     const size_t n = saved->n_generations, rows = n < ROWS_MAX ? n : ROWS_MAX;
-    char worked[32], hypervolume[32];
+    char worked[32], hypervolume[32], advance[32];
     if (n == 0)
         return;
-    printf("\n%12s %10s %8s %8s %12s %12s\n", "generation", "simulated", "failed", "front", "hypervolume", "after");
+    printf("\n%12s %10s %8s %8s %12s %12s %12s\n", "generation", "simulated", "failed", "front", "hypervolume",
+           "IGD+ to last", "after");
     for (size_t r = 0; r < rows; r++) {
-        const SavedGeneration *g = &saved->generation[rows > 1 ? r * (n - 1) / (rows - 1) : 0];
+        const size_t i = rows > 1 ? r * (n - 1) / (rows - 1) : 0;
+        const SavedGeneration *g = &saved->generation[i];
+        number_words(igd[i], 4, advance);
         pace_words(g->seconds, worked);
         number_words(g->hypervolume, 4, hypervolume);
-        printf("%12ld %10ld %8ld %8ld %12s %12s\n", g->number, g->simulated, g->failed, g->front, hypervolume, worked);
+        printf("%12ld %10ld %8ld %8ld %12s %12s %12s\n", g->number, g->simulated, g->failed, g->front, hypervolume,
+               advance, worked);
     }
+    printf("hypervolume: standard error %.4f at most; IGD+: how far from the last front, in its widths\n",
+           cover_error(0.5));
 }
 
 static void print_failures(const Failures *f)
@@ -96,17 +105,18 @@ static void print_failures(const Failures *f)
 /* -- for programs ---------------------------------------------------------------------------------------------------
  */
 
-static json_t *json_generations(const Saved *saved)
+static json_t *json_generations(const Saved *saved, const double igd[])
 {
     json_t *list = json_array();
     for (size_t i = 0; i < saved->n_generations; i++) {
         const SavedGeneration *g = &saved->generation[i];
-        json_array_append_new(list,
-                              json_pack("{s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:s}", "number", (json_int_t)g->number,
-                                        "simulated", (json_int_t)g->simulated, "failed", (json_int_t)g->failed, "front",
-                                        (json_int_t)g->front, "hypervolume", json_number(g->hypervolume),
-                                        "surrogate_error", json_number(g->surrogate_error), "seconds",
-                                        json_number(g->seconds), "finished", g->finished));
+        json_array_append_new(list, json_pack("{s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:s}", "number",
+                                              (json_int_t)g->number, "simulated", (json_int_t)g->simulated, "failed",
+                                              (json_int_t)g->failed, "front", (json_int_t)g->front, "hypervolume",
+                                              json_number(g->hypervolume), "hypervolume_error",
+                                              json_number(cover_error(g->hypervolume)), "igd_plus", json_number(igd[i]),
+                                              "surrogate_error", json_number(g->surrogate_error), "seconds",
+                                              json_number(g->seconds), "finished", g->finished));
     }
     return list;
 }
@@ -137,7 +147,8 @@ static json_t *json_failures(const Failures *f)
     return o;
 }
 
-static json_t *describe(const char *folder, const Saved *saved, const Standing *s, const Failures *f)
+static json_t *describe(const char *folder, const Saved *saved, const Standing *s, const Failures *f,
+                        const double igd[])
 {
     json_t *o = json_pack("{s:s, s:s, s:I, s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:o}", "run", folder, "state",
                           state_words(s->state), "simulated", (json_int_t)s->pace.simulated, "max_evals",
@@ -149,7 +160,7 @@ static json_t *describe(const char *folder, const Saved *saved, const Standing *
     if (s->state == RUN_RUNNING)
         json_object_set_new(o, "process",
                             json_pack("{s:I, s:s}", "pid", (json_int_t)s->holder.pid, "host", s->holder.host));
-    json_object_set_new(o, "generations", json_generations(saved));
+    json_object_set_new(o, "generations", json_generations(saved, igd));
     json_object_set_new(o, "failures", json_failures(f));
     json_object_set_new(o, "sessions", json_sessions(saved));
     return o;
@@ -162,14 +173,16 @@ static Status run(const Args *args, Err *err)
     TRY(saved_read(&saved, args->operand, err));
     standing_of(&standing, args->operand, &saved);
     const Failures failures = failures_of(&saved);
-    Status status = STATUS_OK;
-    if (args_has(args, "--json")) {
-        status = show_json(describe(args->operand, &saved, &standing, &failures), err);
-    } else {
+    double *igd = calloc(saved.n_generations + 1, sizeof *igd);
+    Status status = igd ? advance_of_run(&saved, igd, err) : fail(err, STATUS_NO_MEMORY, "no memory for generations");
+    if (status == STATUS_OK && args_has(args, "--json")) {
+        status = show_json(describe(args->operand, &saved, &standing, &failures, igd), err);
+    } else if (status == STATUS_OK) {
         print_head(args->operand, &saved, &standing);
-        print_generations(&saved);
+        print_generations(&saved, igd);
         print_failures(&failures);
     }
+    free(igd);
     saved_free(&saved);
     return status;
 }

@@ -1,5 +1,6 @@
 #include "moga/cover.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -44,6 +45,11 @@ void cover_add(Cover *c, const double f[])
 double cover_share(const Cover *c)
 {
     return 1.0 - (double)c->n_left / COVER_SAMPLES;
+}
+
+double cover_error(double share)
+{
+    return sqrt(share * (1.0 - share) / COVER_SAMPLES);
 }
 
 void cover_free(Cover *c)

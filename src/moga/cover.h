@@ -23,6 +23,7 @@ typedef struct Cover Cover;
 Status cover_create(Cover **out, size_t n_obj, const double lower[], const double reference[], uint32_t seed, Err *err);
 void cover_add(Cover *c, const double f[]); /* (n_obj) minimised */
 double cover_share(const Cover *c);
-void cover_free(Cover *c); /* NULL is fine */
+double cover_error(double share); /* its standard error */
+void cover_free(Cover *c);        /* NULL is fine */
 
 #endif

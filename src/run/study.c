@@ -10,6 +10,8 @@
 
 #include <omp.h>
 
+#include "moga/cover.h"
+#include "run/advance.h"
 #include "run/given.h"
 #include "run/provenance.h"
 #include "run/refine.h"
@@ -209,31 +211,43 @@ static int recall(size_t number, const double x[], double f[], Verdict *verdict,
     return 1;
 }
 
-static json_t *generation_event(const SearchView *v, const RunStore *store, double seconds)
+static json_t *number_or_null(double value)
 {
-    return json_pack(
-        "{s:s, s:I, s:I, s:I, s:I, s:I, s:o, s:o, s:f}", "event", "generation", "number",
-        (json_int_t)v->generation_now, "simulated", (json_int_t)v->n, "repeats", (json_int_t)v->n_repeats, "failed",
-        (json_int_t)v->n_failed, "front", (json_int_t)v->n_front,
-        "surrogate_error", isfinite(v->surrogate_error) ? json_real(v->surrogate_error) : json_null(), "hypervolume",
-        isfinite(store_hypervolume(store)) ? json_real(store_hypervolume(store)) : json_null(), "seconds", seconds);
+    return isfinite(value) ? json_real(value) : json_null();
+}
+
+static json_t *generation_event(const SearchView *v, double hypervolume, double igd, double seconds)
+{
+    return json_pack("{s:s, s:I, s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:f, s:f, s:f, s:f}", "event", "generation",
+                     "number", (json_int_t)v->generation_now, "simulated", (json_int_t)v->n, "repeats",
+                     (json_int_t)v->n_repeats, "failed", (json_int_t)v->n_failed, "front", (json_int_t)v->n_front,
+                     "surrogate_error", number_or_null(v->surrogate_error), "hypervolume", number_or_null(hypervolume),
+                     "hypervolume_error", number_or_null(cover_error(hypervolume)), "igd_plus", number_or_null(igd),
+                     "seconds", seconds, "search_s", v->seconds, "waited_s", v->waited_s, "surrogate_s",
+                     v->surrogate_s);
 }
 
 static Status write_generation(Study *study, const SearchView *view, Err *err)
 {
     const double session = session_seconds(study), seconds = study->seconds_before + session;
     TRY(store_generation(study->store, view, seconds, session, err));
-    TRY(store_event(study->store, generation_event(view, study->store, seconds), err));
+    const double hypervolume = store_hypervolume(study->store);
+    double igd;
+    TRY(advance_lately(view, &igd, err));
+    TRY(store_event(study->store, generation_event(view, hypervolume, igd, seconds), err));
+    char advance[32];
+    number_words(igd, 4, advance);
     char surface[24] = "-", repeats[40] = "";
     if (view->n_repeats > 0)
         snprintf(repeats, sizeof repeats, " (%zu repeats)", view->n_repeats);
     if (isfinite(view->surrogate_error))
         snprintf(surface, sizeof surface, "%.3g", view->surrogate_error);
-    return store_log(study->store, err,
-                     "generation %zu: %zu simulated%s, %zu failed, front %zu, hypervolume %.4f, predictions kept %zu, "
-                     "surrogate error %s, %.1f s",
-                     view->generation_now, view->n, repeats, view->n_failed, view->n_front, store_hypervolume(study->store),
-                     view->n_predicted, surface, seconds);
+    return store_log(
+        study->store, err,
+        "generation %zu: %zu simulated%s, %zu failed, front %zu, hypervolume %.4f (standard error %.4f), IGD+ since "
+        "nine tenths %s, predictions kept %zu, surrogate error %s, %.1f s",
+        view->generation_now, view->n, repeats, view->n_failed, view->n_front, hypervolume, cover_error(hypervolume),
+        advance, view->n_predicted, surface, seconds);
 }
 
 static int observe(const SearchView *view, void *user)
