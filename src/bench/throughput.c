@@ -133,6 +133,47 @@ static Status run_crews(Throughput *t, Err *err)
     return STATUS_OK;
 }
 
+/* How far the accuracies of fast are from fine in the window: of J1, J2, J3 and the worst share, over all designs. */
+static Status print_errors(Throughput *t, Accuracy accuracy, const char *name, Err *err)
+{
+    enum { J_COUNT = 3, SHOWN = J_COUNT + 1 };
+    static const double PROMISED[SHOWN] = {1e-3, 3e-3, 2e-2, 1e-2};
+    double errors[SHOWN][DESIGNS], seconds = 0;
+    int missed = 0;
+    for (int k = 0; k < t->n; k++) {
+        int kept = 1;
+        TRY(take(t, k, 0, err));
+        TRY(observe(&t->stage, ENGINE_FAST, ACCURACY_FINE, 0, t->reference, err));
+        TRY(observe(&t->stage, ENGINE_FAST, accuracy, 0, t->seen, err));
+        const Errors e = errors_between(&t->stage, t->seen, t->reference);
+        seconds += t->seen->seconds;
+        for (int i = 0; i < SHOWN; i++) {
+            double worst = e.each[i];
+            for (int share = J_COUNT + 1; i == J_COUNT && share < BENCH_OBJECTIVES; share++)
+                worst = fmax(worst, e.each[share]);
+            errors[i][k] = worst;
+            kept = kept && worst <= PROMISED[i];
+        }
+        missed += !kept;
+    }
+    fprintf(t->out, "  %-10s %8.3g ms", name, 1e3 * seconds / t->n);
+    for (int i = 0; i < SHOWN; i++) {
+        const double middle = median(t->n, errors[i]);
+        fprintf(t->out, "   %.0e %.0e %.0e", middle, errors[i][t->n * 9 / 10], errors[i][t->n - 1]);
+    }
+    fprintf(t->out, "   %d of %d\n", missed, t->n);
+    return STATUS_OK;
+}
+
+static Status print_accuracies(Throughput *t, Err *err)
+{
+    fprintf(t->out, "\nerror of fast in the strong window, %d designs: median, 90 %%, most\n", t->n);
+    fprintf(t->out, "  %-10s %11s   %-17s   %-17s   %-17s   %-17s   %s\n", "accuracy", "per design", "J1", "J2", "J3",
+            "worst share", "beyond what standard promises");
+    TRY(print_errors(t, ACCURACY_COARSE, "coarse", err));
+    return print_errors(t, ACCURACY_STANDARD, "standard", err);
+}
+
 /* Median over the judged designs of the error in the window. */
 static Status judge(Throughput *t, Engine engine, double knob, double *error, Err *err)
 {
@@ -222,6 +263,8 @@ Status throughput_print(const Settings *s, const Motion *motion, int quick, int 
         status = run_fast(&t, err);
     if (status == STATUS_OK && !count)
         status = run_crews(&t, err);
+    if (status == STATUS_OK && !count)
+        status = print_accuracies(&t, err);
     if (status == STATUS_OK && !count)
         status = compare_all(&t, quick, err);
     stage_close(&t.stage);
