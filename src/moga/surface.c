@@ -331,5 +331,6 @@ void surface_descend(Surface *s, const Archive *a, const Infill *near, size_t n,
 void surface_pack(Surface *s, Pack *p)
 {
     pack_size(p, &s->n_tuned, SIZE_MAX);
-    rbf_pack(s->rbf, p);
+    if (s->rbf)
+        rbf_pack(s->rbf, p);
 }

@@ -239,19 +239,16 @@ static Status prepare(Database *d, DatabaseMode mode, Err *err)
 static Status copy_file(const char *from, const char *to, Err *err)
 {
     char bytes[1 << 16];
-    ssize_t n = 0;
+    ssize_t n;
     const int in = open(from, O_RDONLY | O_CLOEXEC), out = open(to, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-    while (in >= 0 && out >= 0 && (n = read(in, bytes, sizeof bytes)) > 0)
-        if (write(out, bytes, (size_t)n) != n)
-            break;
-    const int whole = in >= 0 && out >= 0 && n == 0, why = errno;
-    if (in >= 0)
-        close(in);
-    if (out >= 0)
-        close(out);
-    return whole ? STATUS_OK
-                 : fail(err, STATUS_IO, "%s: its folder is read-only, and it cannot be copied to %s: %s", from, to,
-                        strerror(why));
+    while ((n = read(in, bytes, sizeof bytes)) > 0 && write(out, bytes, (size_t)n) == n)
+        ;
+    const int why = errno;
+    close(in); /* of one that is not open: nothing */
+    close(out);
+    return n == 0 ? STATUS_OK
+                  : fail(err, STATUS_IO, "%s: its folder is read-only, and it cannot be copied to %s: %s", from, to,
+                         strerror(why));
 }
 
 static void remove_copy(const char *folder)

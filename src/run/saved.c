@@ -24,7 +24,7 @@ const char *kind_word(int kind)
 static int kind_of(const char *word)
 {
     int kind = 0;
-    while (kind < KIND_UNFINISHED && (!word || strcmp(word, KIND_WORDS[kind]) != 0))
+    while (kind < KIND_UNFINISHED && strcmp(word, KIND_WORDS[kind]) != 0)
         kind++;
     return kind;
 }
@@ -57,11 +57,11 @@ static Status damaged(const Loading *l, const char *what, long id, Err *err)
 /* "[1,2.5,null]"; no text at all: n times NAN. */
 static int parse_numbers(const char *text, size_t n, double values[])
 {
-    for (size_t i = 0; i < n; i++) {
-        char *end;
+    const int known = text[0] != 0;
+    for (size_t i = 0; i < n; i++)
         values[i] = NAN;
-        if (!text[0])
-            continue;
+    for (size_t i = 0; i < n && known; i++) {
+        char *end;
         if (*text++ != (i == 0 ? '[' : ','))
             return 0;
         if (strncmp(text, "null", 4) == 0) {
@@ -73,7 +73,7 @@ static int parse_numbers(const char *text, size_t n, double values[])
             return 0;
         text = end;
     }
-    return !text[0] || strcmp(text, n > 0 ? "]" : "[]") == 0;
+    return !known || strcmp(text, "]") == 0;
 }
 
 static Status widen(Loading *l, Err *err)

@@ -1,0 +1,215 @@
+/* A run read back from its database: what is wrong in one cell is named, and who is on the front is worked out anew. */
+#include "runs.h"
+
+#include <sqlite3.h>
+#include <sys/stat.h>
+
+#include "run/front.h"
+#include "run/lock.h"
+
+/* The sound run, copied, with that change. */
+static const char *changed(const char *sql, char folder[PATH_MAX])
+{
+    char command[512], path[PATH_MAX], *why = NULL;
+    sqlite3 *db;
+    snprintf(command, sizeof command, "rm -rf '%s/other'; cp -r '%s/sound' '%s/other'", place.folder, place.folder,
+             place.folder);
+    assert_int_equal(system(command), 0);
+    assert_int_equal(sqlite3_open(path_of("other/run.sqlite", path), &db), SQLITE_OK);
+    if (sqlite3_exec(db, sql, NULL, NULL, &why) != SQLITE_OK)
+        fail_msg("%s: %s", sql, why);
+    sqlite3_close(db);
+    return path_of("other", folder);
+}
+
+static void test_what_is_wrong_in_one_cell_is_named(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *sql, *words;
+        Status status;
+    } CASES[] = {
+        {"UPDATE evaluation SET x = '' WHERE id = 2", "x of evaluation 2 cannot be read", STATUS_IO},
+        {"UPDATE evaluation SET x = '[0,0,0,0,0,0' WHERE id = 2", "x of evaluation 2", STATUS_IO},
+        {"UPDATE evaluation SET x = '[0,0,0,0,0,0]]' WHERE id = 2", "x of evaluation 2", STATUS_IO},
+        {"UPDATE evaluation SET x = '0,0,0,0,0,0]' WHERE id = 2", "x of evaluation 2", STATUS_IO},
+        {"UPDATE evaluation SET x = '[0,0;0,0,0,0]' WHERE id = 2", "x of evaluation 2", STATUS_IO},
+        {"UPDATE evaluation SET f = '[1,2]' WHERE id = 3", "f of evaluation 3", STATUS_IO},
+        {"UPDATE evaluation SET f = '[1,inf,2]' WHERE id = 3", "f of evaluation 3", STATUS_IO},
+        {"UPDATE evaluation SET f = '[1,,2]' WHERE id = 3", "f of evaluation 3", STATUS_IO},
+        {"UPDATE evaluation SET spread = '[1,2,3,4]' WHERE id = 4", "spread of evaluation 4", STATUS_IO},
+        {"DELETE FROM run", "it has no settings", STATUS_IO},
+        {"UPDATE run SET n_var = 5", "it tells of 5 variables", STATUS_IO},
+        {"UPDATE run SET n_var = 0", "it tells of 0 variables", STATUS_IO},
+        {"UPDATE run SET n_var = 20000", "it tells of 20000 variables", STATUS_IO},
+        {"UPDATE run SET settings = '[problem]' || char(10) || 'kind = nonsense'", "problem.kind", STATUS_BAD_DATA},
+        {"UPDATE run SET settings = '', n_var = 2", "it tells of 2 variables", STATUS_IO}, /* of a tower */
+        {"ALTER TABLE session DROP COLUMN stopped", "no such column: stopped", STATUS_IO},
+    };
+    char folder[PATH_MAX];
+    for (size_t i = 0; i < sizeof CASES / sizeof CASES[0]; i++) {
+        Saved h;
+        Err err = {0};
+        const Status status = saved_read(&h, changed(CASES[i].sql, folder), &err);
+        if (status != CASES[i].status || !strstr(err.text, CASES[i].words))
+            fail_msg("%s: %d, %s", CASES[i].sql, status, err.text);
+        assert_true(h.n == 0 && !h.row && !h.state);
+    }
+}
+
+static void test_values_that_are_not_known_are_nan_and_a_word_that_is_not_known_is_unfinished(void **state)
+{
+    (void)state;
+    Saved h;
+    Err err = {0};
+    char folder[PATH_MAX];
+    CHECK_OK(saved_read(&h,
+                        changed("UPDATE evaluation SET f = '[1,null,3]', spread = NULL, seconds = NULL WHERE id = 1;"
+                                "UPDATE evaluation SET kind = 'guessed' WHERE id = 2;"
+                                "UPDATE state SET bytes = x'';"
+                                "UPDATE effort SET session = 99; UPDATE session SET ended = NULL",
+                                folder),
+                        &err),
+             &err);
+    assert_true(h.row[0].id == 1 && !h.row[0].ok && !h.row[0].on_front && h.F[0] == 1 && isnan(h.F[1]));
+    assert_true(isnan(h.row[0].verdict.seconds) && isnan(h.spread[0]));
+    assert_int_equal(h.row[1].kind, KIND_UNFINISHED);
+    assert_true(h.state && h.n_state == 0);
+    assert_true(h.n_sessions > 0 && isnan(h.session[0].search_s) && h.session[0].ended[0] == 0);
+    saved_free(&h);
+}
+
+/* Feasible, whole, and nobody better: by comparing everybody with everybody. */
+static int belongs_on_front(const Saved *h, size_t i)
+{
+    const size_t m = h->schema.n_obj;
+    for (size_t j = 0; j < h->n; j++) {
+        size_t no_worse = 0, better = 0;
+        if (!h->row[j].ok || h->row[j].violation > 0 || h->row[j].kind == KIND_UNFINISHED)
+            continue;
+        for (size_t k = 0; k < m; k++) {
+            no_worse += h->F[j * m + k] <= h->F[i * m + k];
+            better += h->F[j * m + k] < h->F[i * m + k];
+        }
+        if (no_worse == m && better > 0)
+            return 0;
+    }
+    return h->row[i].ok && !(h->row[i].violation > 0);
+}
+
+static void test_polished_designs_compete_with_the_front_and_can_be_dropped(void **state)
+{
+    (void)state;
+#define ROW(id, outcome, f, violation)                                                                                 \
+    "INSERT INTO evaluation(id, generation, kind, outcome, reason, seconds, x, f, violation) VALUES (" #id             \
+    ", 1, 'polished', '" outcome "', '', 0.1, '[0,0,0,0,0,0]', '" f "', " #violation ");"
+    static const char POLISHED[] = ROW(1000001, "ok", "[0,0,0.9]", 0) ROW(1000002, "ok", "[0,0,1.5]", 0)
+        ROW(1000003, "error", "[0,0,0]", 0) ROW(1000004, "ok", "[0,0,0.1]", 0.5) ROW(1000005, "ok", "[9,9,9]", 0)
+            ROW(1000006, "ok", "[0,0,0.9]", 0);
+    Saved sound, h;
+    Err err = {0};
+    char folder[PATH_MAX];
+    CHECK_OK(saved_read(&sound, path_of("sound", folder), &err), &err);
+    CHECK_OK(saved_read(&h, changed(POLISHED, folder), &err), &err);
+    assert_int_equal(h.n, sound.n + 6);
+    size_t n_front = 0;
+    for (size_t i = 0; i < h.n; i++) {
+        if (h.row[i].on_front != belongs_on_front(&h, i))
+            fail_msg("design %ld", h.row[i].id);
+        n_front += h.row[i].on_front != 0;
+    }
+    assert_int_equal(h.n_front, n_front);
+    assert_true(h.row[sound.n].on_front && !h.row[sound.n + 1].on_front && h.row[sound.n + 5].on_front);
+    assert_int_equal(h.n_failed, sound.n_failed + 1);
+
+    saved_drop_polished(&h);
+    assert_true(h.n == sound.n && h.n_front == sound.n_front && h.n_failed == sound.n_failed);
+    for (size_t i = 0; i < h.n; i++)
+        assert_int_equal(h.row[i].on_front, sound.row[i].on_front);
+    saved_free(&h);
+    saved_free(&sound);
+}
+
+static void test_a_folder_without_a_run_or_with_too_long_a_name_is_told(void **state)
+{
+    (void)state;
+    char path[PATH_MAX], name[PATH_MAX + 64];
+    Settings s;
+    Err err = {0};
+    assert_int_equal(run_settings(&s, path_of("nothing", path), &err), STATUS_MISSING);
+    assert_non_null(strstr(err.text, "holds no run: neither run.sqlite nor settings.ini is there"));
+    memset(name, 'a', sizeof name);
+    name[sizeof name - 1] = 0;
+    assert_int_equal(run_settings(&s, name, &err), STATUS_MISSING);
+    assert_non_null(strstr(err.text, "the path is too long"));
+    assert_false(saved_path(name, path, sizeof path));
+}
+
+/* Names with quotes are columns of the view `designs`; more than a view can hold are not. */
+static void test_the_view_has_a_column_for_every_name_or_there_is_none(void **state)
+{
+    (void)state;
+    char path[PATH_MAX];
+    sqlite3 *db;
+    sqlite3_stmt *row;
+    write_in_place("names.ini", "[problem]\nkind = dtlz2\nvariables = 3\nobjectives = 2\nobjective_names = a b,it's\n"
+                                "[search]\ninitial = 12\npopulation = 8\nmax_evals = 12\n");
+    write_in_place("many.ini", "[problem]\nkind = external\ncommand = sh tests/worker.sh good\nvariables = 1000\n"
+                               "objectives = 2\n[search]\ninitial = 12\npopulation = 8\nmax_evals = 12\n");
+    free(output_of("optimize @/names.ini --out @/names"));
+    assert_int_equal(sqlite3_open(path_of("names/run.sqlite", path), &db), SQLITE_OK);
+    assert_int_equal(sqlite3_prepare_v2(db, "SELECT \"a b\", \"it's\" FROM designs", -1, &row, NULL), SQLITE_OK);
+    assert_int_equal(sqlite3_step(row), SQLITE_ROW);
+    sqlite3_finalize(row);
+    sqlite3_close(db);
+    free(output_of("optimize @/many.ini --out @/many"));
+    assert_int_equal(sqlite3_open(path_of("many/run.sqlite", path), &db), SQLITE_OK);
+    assert_int_equal(sqlite3_prepare_v2(db, "SELECT * FROM designs", -1, &row, NULL), SQLITE_ERROR);
+    sqlite3_close(db);
+}
+
+static void test_a_lock_names_its_holder_and_who_cannot_have_one_is_told_why(void **state)
+{
+    (void)state;
+    char path[PATH_MAX];
+    int first, second;
+    LockHolder holder;
+    Err err = {0};
+    CHECK_OK(lock_take(path_of("lock", path), &first, &err), &err);
+    assert_true(lock_is_held(path, &holder) && holder.pid == getpid());
+    assert_int_equal(lock_take(path, &second, &err), STATUS_IO);
+    assert_int_equal(second, -1);
+    assert_non_null(strstr(err.text, "is in use by process"));
+    write_in_place("lock", ""); /* whoever emptied it: it is held all the same */
+    assert_true(lock_is_held(path, &holder));
+    assert_string_equal(holder.host, "an unknown machine");
+    lock_release(first);
+    assert_false(lock_is_held(path, &holder));
+    assert_int_equal(lock_take("/dev/full", &first, &err), STATUS_IO);
+    assert_int_equal(first, -1);
+    assert_non_null(strstr(err.text, "/dev/full: cannot be written"));
+    assert_int_equal(lock_take(path_of("no/such/folder", path), &first, &err), STATUS_IO);
+    assert_false(lock_is_held(path, &holder));
+}
+
+static int make_sound(void **state)
+{
+    if (prepare(state) != 0)
+        return -1;
+    write_in_place("textbook.ini", TEXTBOOK);
+    free(output_of("optimize @/textbook.ini --out @/sound"));
+    return 0;
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_what_is_wrong_in_one_cell_is_named),
+        cmocka_unit_test(test_values_that_are_not_known_are_nan_and_a_word_that_is_not_known_is_unfinished),
+        cmocka_unit_test(test_polished_designs_compete_with_the_front_and_can_be_dropped),
+        cmocka_unit_test(test_a_folder_without_a_run_or_with_too_long_a_name_is_told),
+        cmocka_unit_test(test_the_view_has_a_column_for_every_name_or_there_is_none),
+        cmocka_unit_test(test_a_lock_names_its_holder_and_who_cannot_have_one_is_told_why),
+    };
+    return cmocka_run_group_tests_name("saved", tests, make_sound, clear_place);
+}
