@@ -1,10 +1,10 @@
 /* moga/archive.h -- everything simulated, in order, and which of it is on the front.
  *
  *   row        one simulation; a design that is there already is answered once more, and that row is a repeat
- *   design     the row of its first simulation, which has the mean of all its answers: F, G, violation, and the standard
- *              error of F (moga/spread.h; 0 until repeats tell of a spread)
- *   usable     a design all of whose simulations finished with finite numbers
- *   on_front   usable, every constraint holds, no design of the archive dominates it surely (moga/dominance.h)
+ *   design     the row of its first simulation, which has the mean of all its answers: F, G, violation, and the
+ * standard error of F (moga/spread.h; 0 until repeats tell of a spread) usable     a design all of whose simulations
+ * finished with finite numbers on_front   usable, every constraint holds, no design of the archive dominates it surely
+ * (moga/dominance.h)
  *
  * After an insertion without repeats everything is right; after one with repeats archive_settle makes it so.
  *
@@ -20,16 +20,16 @@
 
 typedef struct {
     size_t n, n_max, n_var, n_obj, n_con, n_front, n_failed, n_usable, n_repeats;
-    double *X, *Y, *H;       /* (n, n_var) (n, n_obj) (n, n_con) design, objectives and constraints of each simulation */
-    double *F, *G;           /* (n, n_obj) (n, n_con) of designs: means */
-    double *S;               /* (n, n_obj) of designs: sum of squared deviations from the mean */
-    double *deviation;       /* (n, n_obj) of designs: standard deviation of a single answer, as far as repeats tell */
-    double *error;           /* (n, n_obj) of designs: standard error of the mean */
-    double *violation;       /* (n) of designs: sum of max(0, g) */
-    size_t *answers;         /* (n) of designs: how many simulations; of repeats 0 */
-    unsigned char *ok;       /* (n) the simulation finished */
-    unsigned char *usable;   /* (n) */
-    unsigned char *kind;     /* (n) */
+    double *X, *Y, *H;     /* (n, n_var) (n, n_obj) (n, n_con) design, objectives and constraints of each simulation */
+    double *F, *G;         /* (n, n_obj) (n, n_con) of designs: means */
+    double *S;             /* (n, n_obj) of designs: sum of squared deviations from the mean */
+    double *deviation;     /* (n, n_obj) of designs: standard deviation of a single answer, as far as repeats tell */
+    double *error;         /* (n, n_obj) of designs: standard error of the mean */
+    double *violation;     /* (n) of designs: sum of max(0, g) */
+    size_t *answers;       /* (n) of designs: how many simulations; of repeats 0 */
+    unsigned char *ok;     /* (n) the simulation finished */
+    unsigned char *usable; /* (n) */
+    unsigned char *kind;   /* (n) */
     unsigned char *on_front; /* (n) */
     size_t *generation;      /* (n) */
     size_t *front;           /* (n_front) their rows, ascending */

@@ -62,7 +62,8 @@ size_t batch_lead_max(const SearchConfig *c, size_t n_workers)
 static size_t lead(const Search *s)
 {
     const size_t workers = s->problem->n_workers;
-    const int is_last = s->archive.n + batch_pending(s) >= s->config->max_evals || s->generation >= s->config->generations;
+    const int is_last =
+        s->archive.n + batch_pending(s) >= s->config->max_evals || s->generation >= s->config->generations;
     return workers < 2 || is_last ? 0 : workers + batch_size(s) / 2;
 }
 

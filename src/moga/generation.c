@@ -103,7 +103,7 @@ Status generation_last(Search *s, Err *err)
 }
 
 /* Enough for a first surface of this many variables, and no more than half of the budget. */
-size_t generation_initial(const Search *s)
+static size_t initial_size(const Search *s)
 {
     const size_t wanted = 4 * s->problem->n_var + 12, half = (search_planned(s->config) + 1) / 2;
     if (s->config->initial > 0)
@@ -114,7 +114,7 @@ size_t generation_initial(const Search *s)
 /* Samples beside n_given designs that are given: what is left of the first sample, but at least a half of it. */
 size_t generation_samples(const Search *s)
 {
-    const size_t initial = generation_initial(s), given = s->config->n_given;
+    const size_t initial = initial_size(s), given = s->config->n_given;
     return given < initial / 2 ? initial - given : initial - initial / 2;
 }
 

@@ -2,8 +2,8 @@
 
 #include <math.h>
 
-/* Where new designs are worth more than certainty about old ones: no repeats before so many first samples. */
-static const double UNTROUBLED = 4.0;
+/* Where new designs are worth more than certainty about old ones: so many for each variable bring no repeats. */
+static const double UNTROUBLED = 18.0;
 /* Part of the repeats that are made while the search goes on; the rest confirms its result. */
 static const double EARLY = 0.25;
 /* A spread below this part of the front's range decides nothing, once so many repeats have been made. */
@@ -54,7 +54,7 @@ static size_t room_of(const Search *s)
 /* Repeats that may still be made, of those that `part` of n simulations bring with them. */
 static size_t repeats_left(const Search *s, size_t n, double part)
 {
-    const double first = UNTROUBLED * (double)generation_initial(s);
+    const double first = UNTROUBLED * (double)s->problem->n_var;
     const double due = floor(part * s->config->repeats * fmax((double)n - first, 0.0));
     const size_t made = s->archive.n_repeats + n_pending_repeats(s);
     if (!s->problem->is_noisy || s->config->answers_max < 2 || due <= (double)made || !is_noticeable(&s->archive))

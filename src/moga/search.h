@@ -40,8 +40,8 @@
 #include "moga/problem.h"
 #include "moga/survival.h"
 
-/* Latin hypercube; chosen on the surface; plain children, where no surface leads; from outside the search; a further answer of a design that is
- * there. */
+/* Latin hypercube; chosen on the surface; plain children, where no surface leads; from outside the search; a further
+ * answer of a design that is there. */
 typedef enum { KIND_SAMPLED, KIND_INFILL, KIND_OFFSPRING, KIND_POLISHED, KIND_REPEAT, KIND_COUNT } EvaluationKind;
 
 /* On; plain children only; or on until its wall time per simulation proves greater than that of four simulations. Auto
@@ -77,7 +77,8 @@ const char *stop_reason_words(StopReason reason);
 typedef struct {
     size_t n, n_var, n_obj, n_con;
     const double *X, *Y, *H;       /* (n, n_var) (n, n_obj) (n, n_con) designs, and what each simulation answered */
-    const double *F, *deviation;   /* (n, n_obj) of a design's first row: mean of its answers, standard deviation of one */
+    const double *F;               /* (n, n_obj) of a design's first row: mean of its answers */
+    const double *deviation;       /* (n, n_obj) ... and standard deviation of one of them */
     const size_t *answers;         /* (n) of a design's first row, else 0 */
     const unsigned char *ok;       /* (n) 0: the simulation failed */
     const unsigned char *kind;     /* (n) EvaluationKind */

@@ -79,7 +79,7 @@ size_t batch_size(const Search *s);
 Status batch_simulate(Search *s, size_t n_new, size_t n, EvaluationKind kind, Err *err);
 Status batch_finish(Search *s, Err *err); /* asynchronous: only what is under way */
 size_t batch_lead_max(const SearchConfig *c, size_t n_workers);
-size_t batch_pending(const Search *s); /* asynchronous: asked for, and not in the archive yet */
+size_t batch_pending(const Search *s);                  /* asynchronous: asked for, and not in the archive yet */
 void batch_join(Search *s, Group *group, size_t first); /* simulated designs of the rows first.. join the group */
 
 /* guide.c */
@@ -95,8 +95,8 @@ Status guide_fit(Search *s, Err *err);
 void guide_predict(Search *s, Group *group, size_t first, int with_uncertainty);
 void guide_descend(Search *s, InfillKind kind, size_t n, const size_t directions[], double X[]);
 
-/* repeat.c: after the n designs of a batch some that the search builds on; at the end, a batch of those that it reports.
- * Both return the new n, which is the old one where nothing is to be repeated. */
+/* repeat.c: after the n designs of a batch some that the search builds on; at the end, a batch of those that it
+ * reports. Both return the new n, which is the old one where nothing is to be repeated. */
 size_t repeat_some(Search *s, size_t n);
 size_t repeat_last(Search *s);
 
@@ -111,8 +111,7 @@ size_t choice_make(Search *s, EvaluationKind *kind);
 Status generation_first(Search *s, Err *err);
 Status generation_next(Search *s, Err *err);
 Status generation_last(Search *s, Err *err); /* asynchronous: takes in what is under way when the search ends */
-size_t generation_initial(const Search *s); /* designs of the first one, so many as are wanted for a first surface */
-size_t generation_samples(const Search *s); /* of the first one, beside the given designs */
+size_t generation_samples(const Search *s);  /* of the first one, beside the given designs */
 
 /* state.c */
 void state_save(Search *s);

@@ -19,8 +19,8 @@ Spread spread_fit(size_t n, const size_t rows[], const size_t answers[], size_t 
     if (!(squares > 0.0))
         return (Spread){0.0, 0};
     /* -2 log-likelihood: sum nu (1 + log v); a mean of 0 makes the share no model at all */
-    const int is_share =
-        isfinite(relative) && isfinite(logs) && freedom * log(relative / freedom) + logs < freedom * log(squares / freedom);
+    const int is_share = isfinite(relative) && isfinite(logs) &&
+                         freedom * log(relative / freedom) + logs < freedom * log(squares / freedom);
     return (Spread){sqrt((is_share ? relative : squares) / freedom), is_share};
 }
 

@@ -131,11 +131,10 @@ static json_t *json_evaluation(const Saved *h, size_t i)
     const SavedRow *r = &h->row[i];
     const Schema *schema = &h->schema;
     const double *spread = h->spread + i * schema->n_obj, *f = h->answer + i * schema->n_obj;
-    json_t *o =
-        json_pack("{s:I, s:I, s:s, s:s, s:s, s:o, s:o, s:b}", "id", (json_int_t)r->id, "generation",
-                  (json_int_t)r->generation, "kind", kind_word(r->kind), "outcome", r->verdict.outcome, "reason",
-                  r->verdict.reason, "x", numbers(schema->n_var, h->X + i * schema->n_var), "f",
-                  isfinite(f[0]) ? numbers(schema->n_obj, f) : json_null(), "on_front", r->on_front);
+    json_t *o = json_pack("{s:I, s:I, s:s, s:s, s:s, s:o, s:o, s:b}", "id", (json_int_t)r->id, "generation",
+                          (json_int_t)r->generation, "kind", kind_word(r->kind), "outcome", r->verdict.outcome,
+                          "reason", r->verdict.reason, "x", numbers(schema->n_var, h->X + i * schema->n_var), "f",
+                          isfinite(f[0]) ? numbers(schema->n_obj, f) : json_null(), "on_front", r->on_front);
     int known = 0;
     for (size_t k = 0; k < schema->n_obj; k++)
         known = known || isfinite(spread[k]);

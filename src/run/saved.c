@@ -9,12 +9,9 @@
 #include "run/front.h"
 #include "run/repeats.h"
 
-static const char *const KIND_WORDS[] = {[KIND_SAMPLED] = "sampled",
-                                         [KIND_INFILL] = "infill",
-                                         [KIND_OFFSPRING] = "offspring",
-                                         [KIND_POLISHED] = "polished",
-                                         [KIND_REPEAT] = "repeat",
-                                         [KIND_UNFINISHED] = "unfinished"};
+static const char *const KIND_WORDS[] = {
+    [KIND_SAMPLED] = "sampled",   [KIND_INFILL] = "infill", [KIND_OFFSPRING] = "offspring",
+    [KIND_POLISHED] = "polished", [KIND_REPEAT] = "repeat", [KIND_UNFINISHED] = "unfinished"};
 
 const char *kind_word(int kind)
 {

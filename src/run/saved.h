@@ -26,7 +26,7 @@ typedef struct {
     long id, generation, entered, left; /* NEVER */
     int kind;                           /* EvaluationKind or KIND_UNFINISHED */
     int ok, on_front;
-    long members; /* simulations behind F; 0: a repeat, or not known */
+    long members;     /* simulations behind F; 0: a repeat, or not known */
     double violation; /* of the user's limits */
     Verdict verdict;
 } SavedRow;

@@ -388,9 +388,10 @@ static Status store_front_changes(RunStore *store, const SearchView *v, Err *err
     store->n_flags = v->n;
     for (size_t i = 0; i < v->n; i++) {
         if (v->on_front[i] && !flags[i])
-            TRY(database_do(store->db, err, "INSERT INTO front(evaluation, entered) VALUES (?, ?) ON CONFLICT(evaluation) DO UPDATE SET left = NULL",
-                            "ii", (long)i + 1,
-                            (long)v->generation_now));
+            TRY(database_do(store->db, err,
+                            "INSERT INTO front(evaluation, entered) VALUES (?, ?) ON CONFLICT(evaluation) DO UPDATE "
+                            "SET left = NULL",
+                            "ii", (long)i + 1, (long)v->generation_now));
         if (!v->on_front[i] && flags[i])
             TRY(database_do(store->db, err, "UPDATE front SET left = ? WHERE evaluation = ?", "ii",
                             (long)v->generation_now, (long)i + 1));

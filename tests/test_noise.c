@@ -1,0 +1,462 @@
+/* Answers that scatter: what is learnt of the spread, who dominates whom then, what is simulated again and reported. */
+#include "check.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "moga/archive.h"
+#include "moga/dominance.h"
+#include "moga/search.h"
+#include "moga/spread.h"
+#include "base/random.h"
+
+/* -- dominance --------------------------------------------------------------------------------------------------------
+ */
+
+enum { POINTS = 40, M = 3 };
+
+typedef struct {
+    double F[POINTS * M], error[POINTS * M];
+} Cloud;
+
+/* On a coarse grid, so that equal values and intervals that touch are frequent. */
+static void cloud(uint32_t seed, int with_errors, Cloud *c)
+{
+    Random r = random_stream(seed, RANDOM_TEST, 0, 0);
+    for (size_t i = 0; i < POINTS * M; i++) {
+        c->F[i] = (double)random_below(&r, 8);
+        c->error[i] = with_errors ? 0.5 * (double)random_below(&r, 3) : 0.0;
+    }
+}
+
+static int surely(const Cloud *c, size_t a, size_t b)
+{
+    return dominates_surely(M, c->F + a * M, c->error + a * M, c->F + b * M, c->error + b * M);
+}
+
+static void test_without_errors_surely_is_plainly(void **state)
+{
+    (void)state;
+    Cloud c;
+    for (uint32_t seed = 0; seed < 20; seed++) {
+        cloud(seed, 0, &c);
+        for (size_t a = 0; a < POINTS; a++)
+            for (size_t b = 0; b < POINTS; b++)
+                assert_int_equal(surely(&c, a, b), dominates(M, c.F + a * M, c.F + b * M));
+    }
+}
+
+static void test_surely_is_a_strict_partial_order_whatever_the_errors(void **state)
+{
+    (void)state;
+    Cloud c;
+    size_t pairs = 0;
+    for (uint32_t seed = 0; seed < 20; seed++) {
+        cloud(seed, 1, &c);
+        for (size_t a = 0; a < POINTS; a++)
+            for (size_t b = 0; b < POINTS; b++) {
+                if (!surely(&c, a, b))
+                    continue;
+                pairs++;
+                assert_false(surely(&c, b, a));
+                assert_true(dominates(M, c.F + a * M, c.F + b * M));
+                for (size_t d = 0; d < POINTS; d++)
+                    assert_true(!surely(&c, b, d) || surely(&c, a, d));
+            }
+        for (size_t a = 0; a < POINTS; a++)
+            assert_false(surely(&c, a, a));
+    }
+    assert_true(pairs > 100);
+}
+
+/* -- spread ----------------------------------------------------------------------------------------------------------
+ */
+
+enum { DESIGNS = 400 };
+
+/* Two answers each about means from 1 to 5; what spread_fit makes of them. */
+static Spread fit_of(double deviation, double share)
+{
+    double mean[DESIGNS], S[DESIGNS];
+    size_t rows[DESIGNS], answers[DESIGNS];
+    Random r = random_stream(3, RANDOM_TEST, 1, 0);
+    for (size_t i = 0; i < DESIGNS; i++) {
+        const double f = 1.0 + 4.0 * random_uniform(&r), c = deviation + share * f;
+        const double a = f + c * random_normal(&r), b = f + c * random_normal(&r);
+        rows[i] = i;
+        answers[i] = 2;
+        mean[i] = 0.5 * (a + b);
+        S[i] = 0.5 * (a - b) * (a - b);
+    }
+    return spread_fit(DESIGNS, rows, answers, 1, 0, mean, S);
+}
+
+/* The estimate of a deviation from 400 repeats has a standard error of 1 / root(800) of it. */
+static void test_a_constant_deviation_and_a_share_of_the_value_are_told_apart(void **state)
+{
+    (void)state;
+    const Spread constant = fit_of(0.1, 0.0), share = fit_of(0.0, 0.03), none = fit_of(0.0, 0.0);
+    assert_false(constant.is_share);
+    assert_close(constant.deviation, 0.1, 0.12);
+    assert_true(share.is_share);
+    assert_close(share.deviation, 0.03, 0.12);
+    assert_true(none.deviation == 0.0);
+    assert_true(spread_fit(0, NULL, NULL, 1, 0, NULL, NULL).deviation == 0.0);
+    assert_close(spread_variance(&share, 2.0, 0.0, 1), pow(2.0 * share.deviation, 2), 1e-12);
+    assert_close(spread_variance(&(Spread){0.2, 0}, 7.0, 0.06, 2), (0.04 + 0.06) / 2, 1e-12);
+}
+
+/* -- archive ---------------------------------------------------------------------------------------------------------
+ */
+
+/* 60 designs on a line; every third is answered again, some several times. */
+static void insert_noisy(Archive *a, uint32_t seed, int settle_often)
+{
+    Random r = random_stream(seed, RANDOM_TEST, 2, 0);
+    Err err = {0};
+    CHECK_OK(archive_init(a, 4, 1, M, 1, &err), &err);
+    for (size_t i = 0; i < 120; i++) {
+        const double x = i < 60 ? (double)i : (double)(3 * random_below(&r, 20)), g = x < 50.0 ? -1.0 : 1.0;
+        double f[M];
+        for (size_t k = 0; k < M; k++)
+            f[k] = fmod(x * (double)(7 + 4 * k), 10.0) + 1.0 + 0.5 * random_normal(&r);
+        CHECK_OK(archive_insert(a, 1, &x, f, &g, &(unsigned char){1}, 0, i, &err), &err);
+        if (settle_often)
+            archive_settle(a);
+    }
+    archive_settle(a);
+}
+
+static void test_a_design_has_the_mean_and_the_deviation_of_its_answers(void **state)
+{
+    (void)state;
+    Archive a;
+    insert_noisy(&a, 5, 0);
+    assert_int_equal(a.n_repeats, 60);
+    assert_int_equal(a.n_usable, 60);
+    for (size_t row = 0; row < 60; row++)
+        for (size_t k = 0; k < M; k++) {
+            double n = 0.0, mean = 0.0, S = 0.0;
+            for (size_t i = 0; i < a.n; i++)
+                if (a.X[i] == a.X[row]) {
+                    n += 1.0;
+                    mean += a.Y[i * M + k];
+                }
+            mean /= n;
+            for (size_t i = 0; i < a.n; i++)
+                if (a.X[i] == a.X[row])
+                    S += pow(a.Y[i * M + k] - mean, 2.0);
+            assert_int_equal(a.answers[row], (size_t)n);
+            assert_close(a.F[row * M + k], mean, 1e-12);
+            assert_true(fabs(a.S[row * M + k] - S) < 1e-10);
+            const double variance = spread_variance(&a.spread[k], a.F[row * M + k], a.S[row * M + k], a.answers[row]);
+            assert_close(a.error[row * M + k], sqrt(variance / n), 1e-12);
+        }
+    assert_close(a.spread[0].is_share ? 5.5 * a.spread[0].deviation : a.spread[0].deviation, 0.5, 0.5);
+    archive_free(&a);
+}
+
+static void test_the_front_is_what_nobody_dominates_surely_in_whatever_order_answers_come(void **state)
+{
+    (void)state;
+    for (uint32_t seed = 0; seed < 20; seed++) {
+        Archive a, b;
+        size_t n_front = 0;
+        insert_noisy(&a, seed, 0);
+        insert_noisy(&b, seed, 1);
+        for (size_t i = 0; i < a.n; i++) {
+            int wanted = a.usable[i] && a.X[i] < 50.0;
+            for (size_t j = 0; j < a.n && wanted; j++)
+                wanted = !(a.usable[j] && a.X[j] < 50.0 &&
+                           dominates_surely(M, a.F + j * M, a.error + j * M, a.F + i * M, a.error + i * M));
+            assert_int_equal(a.on_front[i], wanted);
+            n_front += (size_t)wanted;
+        }
+        assert_int_equal(a.n_front, n_front);
+        assert_int_equal(b.n_front, n_front);
+        assert_memory_equal(a.front, b.front, n_front * sizeof *a.front);
+        assert_memory_equal(a.error, b.error, 60 * M * sizeof *a.error);
+        archive_free(&a);
+        archive_free(&b);
+    }
+}
+
+static void test_a_design_that_was_lucky_once_falls_out(void **state)
+{
+    (void)state;
+    Archive a;
+    Err err = {0};
+    const double X[] = {0, 1, 0, 1, 0}, F[] = {1.0, 2.0, 1.05, 0.5, 5.0, 6.0, 1.0, 0.52, 5.1, 6.0};
+    CHECK_OK(archive_init(&a, 2, 1, 2, 0, &err), &err);
+    CHECK_OK(archive_insert(&a, 2, X, F, NULL, (const unsigned char[]){1, 1}, 0, 0, &err), &err);
+    assert_int_equal(a.n_front, 2);
+    CHECK_OK(archive_insert(&a, 3, X + 2, F + 4, NULL, (const unsigned char[]){1, 1, 1}, 0, 1, &err), &err);
+    archive_settle(&a);
+    assert_true(a.n_front == 1 && a.front[0] == 1 && !a.on_front[0]);
+    archive_free(&a);
+}
+
+static void test_a_design_with_an_answer_that_failed_is_no_longer_used(void **state)
+{
+    (void)state;
+    Archive a;
+    Err err = {0};
+    const double X[] = {0, 1}, F[] = {1, 1, 2, 2};
+    CHECK_OK(archive_init(&a, 2, 1, 2, 0, &err), &err);
+    CHECK_OK(archive_insert(&a, 2, X, F, NULL, (const unsigned char[]){1, 1}, 0, 0, &err), &err);
+    CHECK_OK(archive_insert(&a, 1, X, F, NULL, (const unsigned char[]){0}, 0, 1, &err), &err);
+    archive_settle(&a);
+    assert_true(!a.usable[0] && a.n_usable == 1 && a.n_failed == 1);
+    assert_true(a.n_front == 1 && a.front[0] == 1);
+    archive_free(&a);
+}
+
+/* -- search ----------------------------------------------------------------------------------------------------------
+ */
+
+enum { VAR = 5, OBJ = 2, ROWS_MAX = 600, MOMENTS_MAX = 200 };
+
+/* Convex front f1 + root... of two distances: minima of (x - 0)^2 and (x - 1)^2 along the diagonal. Additive noise. */
+typedef struct {
+    Problem problem;
+    double lower[VAR], upper[VAR], noise;
+    size_t n_asked, n_repeated;
+} World;
+
+static void exact(const double x[], double f[])
+{
+    f[0] = f[1] = 0.0;
+    for (size_t d = 0; d < VAR; d++) {
+        f[0] += x[d] * x[d] / VAR;
+        f[1] += (x[d] - 1.0) * (x[d] - 1.0) / VAR;
+    }
+}
+
+/* The draw is named by the design and how often it was asked for, so that a search that goes on gets the same. */
+static Status evaluate(size_t n, const double X[], const size_t draws[], double F[], double G[], unsigned char ok[],
+                       void *user, Err *err)
+{
+    World *w = user;
+    (void)G;
+    (void)err;
+    for (size_t i = 0; i < n; i++) {
+        const double *x = X + i * VAR;
+        uint64_t bits;
+        memcpy(&bits, x, sizeof bits);
+        Random r = random_stream((uint32_t)(bits ^ bits >> 32), RANDOM_TEST, 3, (uint32_t)draws[i]);
+        exact(x, F + i * OBJ);
+        for (size_t k = 0; k < OBJ; k++)
+            F[i * OBJ + k] += w->noise * random_normal(&r);
+        ok[i] = 1;
+        w->n_repeated += draws[i] > 0;
+    }
+    w->n_asked += n;
+    return STATUS_OK;
+}
+
+static World world(double noise, int is_noisy)
+{
+    World w = {.noise = noise};
+    for (size_t d = 0; d < VAR; d++)
+        w.upper[d] = 1.0;
+    w.problem = (Problem){.n_var = VAR, .n_obj = OBJ, .evaluate = evaluate, .is_noisy = is_noisy};
+    return w;
+}
+
+static SearchConfig config(uint32_t seed, double repeats, size_t answers_min)
+{
+    return (SearchConfig){.seed = seed,
+                          .population = 16,
+                          .initial = 20,
+                          .generations = 1000,
+                          .max_evals = 200,
+                          .surrogate_max = 24,
+                          .surrogate = SURROGATE_OFF,
+                          .nondominated_share = 1,
+                          .trust_error = 0.05,
+                          .repeats = repeats,
+                          .answers_min = answers_min,
+                          .answers_max = 4,
+                          .crossover_probability = 1,
+                          .crossover_eta = 20,
+                          .mutation_eta = 20,
+                          .mutation_rate = 1};
+}
+
+typedef struct {
+    size_t n, n_front, n_repeats, n_moments, rows[MOMENTS_MAX], n_state[MOMENTS_MAX];
+    double X[ROWS_MAX * VAR], Y[ROWS_MAX * OBJ], F[ROWS_MAX * OBJ];
+    unsigned char ok[ROWS_MAX], kind[ROWS_MAX], on_front[ROWS_MAX], *state[MOMENTS_MAX];
+    size_t answers[ROWS_MAX], generation[ROWS_MAX];
+} Seen;
+
+static int observe(const SearchView *v, void *user)
+{
+    Seen *s = user;
+    assert_true(v->n <= ROWS_MAX && s->n_moments < MOMENTS_MAX);
+    s->n = v->n;
+    s->n_front = v->n_front;
+    s->n_repeats = v->n_repeats;
+    memcpy(s->X, v->X, v->n * VAR * sizeof *v->X);
+    memcpy(s->Y, v->Y, v->n * OBJ * sizeof *v->Y);
+    memcpy(s->F, v->F, v->n * OBJ * sizeof *v->F);
+    memcpy(s->ok, v->ok, v->n);
+    memcpy(s->kind, v->kind, v->n);
+    memcpy(s->on_front, v->on_front, v->n);
+    memcpy(s->answers, v->answers, v->n * sizeof *v->answers);
+    memcpy(s->generation, v->generation, v->n * sizeof *v->generation);
+    const size_t k = s->n_moments++;
+    s->rows[k] = v->n;
+    s->n_state[k] = v->n_state;
+    s->state[k] = malloc(v->n_state);
+    assert_non_null(s->state[k]);
+    memcpy(s->state[k], v->state, v->n_state);
+    return 0;
+}
+
+static void forget(Seen *s)
+{
+    for (size_t k = 0; k < s->n_moments; k++)
+        free(s->state[k]);
+    memset(s, 0, sizeof *s);
+}
+
+static void run(World *w, const SearchConfig *c, const SearchStart *start, Seen *seen)
+{
+    Err err = {0};
+    StopReason reason;
+    memset(seen, 0, sizeof *seen);
+    w->problem.lower = w->lower;
+    w->problem.upper = w->upper;
+    w->problem.user = w;
+    CHECK_OK(search_resume(&w->problem, c, start, observe, seen, &reason, &err), &err);
+    assert_int_equal(reason, STOP_EVALUATIONS);
+}
+
+static Seen seen, again;
+
+static void test_repeats_are_simulations_of_the_budget_and_no_more_than_their_share(void **state)
+{
+    (void)state;
+    World w = world(0.05, 1);
+    const SearchConfig c = config(1, 0.4, 1);
+    size_t repeats = 0, most = 0;
+    run(&w, &c, NULL, &seen);
+    assert_int_equal(seen.n, 200);
+    assert_int_equal(w.n_asked, 200);
+    for (size_t i = 0; i < seen.n; i++) {
+        repeats += seen.kind[i] == KIND_REPEAT;
+        most = seen.answers[i] > most ? seen.answers[i] : most;
+        assert_int_equal(seen.answers[i] == 0, seen.kind[i] == KIND_REPEAT);
+    }
+    assert_true(repeats == seen.n_repeats && repeats == w.n_repeated);
+    assert_int_equal(repeats, (size_t)(0.4 * (200 - 18 * VAR)));
+    assert_true(most > 1 && most <= 4);
+    forget(&seen);
+}
+
+static void test_what_answers_the_same_each_time_is_soon_left_alone(void **state)
+{
+    (void)state;
+    World w = world(0.0, 1), plain = world(0.0, 0);
+    const SearchConfig c = config(1, 0.4, 1);
+    run(&w, &c, NULL, &seen);
+    assert_true(seen.n_repeats >= 8 && seen.n_repeats <= 12 && seen.n == 200);
+    forget(&seen);
+    run(&plain, &c, NULL, &seen);
+    assert_int_equal(plain.n_repeated, 0);
+    for (size_t i = 0; i < seen.n * OBJ; i++)
+        assert_true(seen.F[i] == seen.Y[i]);
+    forget(&seen);
+}
+
+static void test_what_is_reported_has_answers_enough(void **state)
+{
+    (void)state;
+    World w = world(0.05, 1);
+    const SearchConfig c = config(2, 0.4, 2);
+    size_t n = 0;
+    run(&w, &c, NULL, &seen);
+    for (size_t i = 0; i < seen.n; i++) {
+        assert_true(!seen.on_front[i] || seen.answers[i] >= 2);
+        n += seen.on_front[i];
+    }
+    assert_true(n == seen.n_front && n >= 3);
+    forget(&seen);
+}
+
+/* Mean of reported less true objectives over the front, in standard deviations of an answer. */
+static double optimism(const Seen *s, double noise)
+{
+    double sum = 0.0, n = 0.0, f[OBJ];
+    for (size_t i = 0; i < s->n; i++) {
+        if (!s->on_front[i])
+            continue;
+        exact(s->X + i * VAR, f);
+        for (size_t k = 0; k < OBJ; k++) {
+            sum += (f[k] - s->F[i * OBJ + k]) / noise;
+            n += 1.0;
+        }
+    }
+    return sum / n;
+}
+
+static void test_repeats_take_most_of_the_optimism_out_of_the_front(void **state)
+{
+    (void)state;
+    double believed = 0.0, tried = 0.0;
+    for (uint32_t seed = 1; seed <= 4; seed++) {
+        World w = world(0.1, 1);
+        const SearchConfig once = config(seed, 0.0, 1), more = config(seed, 0.4, 2);
+        run(&w, &once, NULL, &seen);
+        believed += optimism(&seen, w.noise) / 4;
+        forget(&seen);
+        run(&w, &more, NULL, &seen);
+        tried += optimism(&seen, w.noise) / 4;
+        forget(&seen);
+    }
+    if (!(believed > 0.5 && fabs(tried) < 0.5 * believed))
+        print_error("optimism: %g standard deviations without repeats, %g with\n", believed, tried);
+    assert_true(believed > 0.5 && fabs(tried) < 0.5 * believed);
+}
+
+static void test_a_noisy_search_goes_on_from_any_generation_to_the_same_bytes(void **state)
+{
+    (void)state;
+    World w = world(0.05, 1);
+    SearchConfig c = config(3, 0.4, 1);
+    c.surrogate = SURROGATE_ON;
+    c.max_evals = 115;
+    run(&w, &c, NULL, &seen);
+    for (size_t k = 0; k + 1 < seen.n_moments; k += 2 + k / 2) {
+        const SearchStart start = {seen.rows[k], 0,         seen.X,          seen.Y,        NULL,
+                                   seen.ok,      seen.kind, seen.generation, seen.state[k], seen.n_state[k]};
+        run(&w, &c, &start, &again);
+        assert_int_equal(again.n, seen.n);
+        assert_memory_equal(again.X, seen.X, seen.n * VAR * sizeof *seen.X);
+        assert_memory_equal(again.F, seen.F, seen.n * OBJ * sizeof *seen.F);
+        assert_memory_equal(again.on_front, seen.on_front, seen.n);
+        assert_memory_equal(again.kind, seen.kind, seen.n);
+        forget(&again);
+    }
+    forget(&seen);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_without_errors_surely_is_plainly),
+        cmocka_unit_test(test_surely_is_a_strict_partial_order_whatever_the_errors),
+        cmocka_unit_test(test_a_constant_deviation_and_a_share_of_the_value_are_told_apart),
+        cmocka_unit_test(test_a_design_has_the_mean_and_the_deviation_of_its_answers),
+        cmocka_unit_test(test_the_front_is_what_nobody_dominates_surely_in_whatever_order_answers_come),
+        cmocka_unit_test(test_a_design_that_was_lucky_once_falls_out),
+        cmocka_unit_test(test_a_design_with_an_answer_that_failed_is_no_longer_used),
+        cmocka_unit_test(test_repeats_are_simulations_of_the_budget_and_no_more_than_their_share),
+        cmocka_unit_test(test_what_answers_the_same_each_time_is_soon_left_alone),
+        cmocka_unit_test(test_what_is_reported_has_answers_enough),
+        cmocka_unit_test(test_repeats_take_most_of_the_optimism_out_of_the_front),
+        cmocka_unit_test(test_a_noisy_search_goes_on_from_any_generation_to_the_same_bytes),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
