@@ -53,7 +53,7 @@ STABILITY.asan := --engine fast
 STABILITY_OBJ := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/stability/*.c))
 PROGRAM := $(if $(filter release,$(MODE)),imtet,$(BUILD)/imtet)
 
-.PHONY: tsan tsan-here asan asan-here valgrind torture coverage coverage-here faults fuzz fuzz-here all web report-bench setup setup-browser run test test-here compare stability stability-long laws bench chart format install clean .FORCE pictures
+.PHONY: tsan tsan-here asan asan-here valgrind torture coverage coverage-here faults fuzz fuzz-here all web report-bench setup setup-browser fresh-debian run test test-here compare stability stability-long laws bench chart format install clean .FORCE pictures
 .SECONDARY:
 all: $(PROGRAM)
 
@@ -67,6 +67,10 @@ setup-browser:
 run: setup
 	@$(MAKE) --no-print-directory -j2 all
 	./imtet optimize configs/quick.ini
+
+# The README's steps in a Debian that has nothing but make; wants root, debootstrap and a network.
+fresh-debian:
+	@scripts/fresh-debian build/fresh-debian
 
 test: setup
 	@$(MAKE) --no-print-directory -j2 MODE=release test-here

@@ -137,6 +137,25 @@ static Status take_run(RunStore *store, Err *err)
     return STATUS_OK;
 }
 
+/* The journal goes first: left alone it would be taken for that of the next database. */
+Status store_forget_empty(RunStore *store, Err *err)
+{
+    static const char *const NAMES[] = {"run.sqlite-wal", "run.sqlite-shm", "run.sqlite"};
+    char path[PATH_MAX];
+    if (!store->has_saved || store->saved.n > 0 || store->saved.n_generations > 0)
+        return STATUS_OK;
+    database_close(store->db);
+    saved_free(&store->saved);
+    store->db = NULL;
+    store->has_saved = 0;
+    for (size_t i = 0; i < sizeof NAMES / sizeof NAMES[0]; i++) {
+        path_in(store, NAMES[i], path);
+        if (unlink(path) != 0 && errno != ENOENT)
+            return fail(err, STATUS_IO, "%s: cannot be removed: %s", path, strerror(errno));
+    }
+    return STATUS_OK;
+}
+
 Status store_open(RunStore **out, const char *folder, int fresh, Err *err)
 {
     *out = NULL;

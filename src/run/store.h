@@ -42,6 +42,9 @@ const char *store_folder(const RunStore *store);
 /* The run that the folder held when it was opened; NULL: none. */
 const Saved *store_saved(const RunStore *store);
 
+/* A run in which nothing was simulated is no run yet: forgotten, so that it begins anew, with whatever settings. */
+Status store_forget_empty(RunStore *store, Err *err);
+
 /* A new run, or the one that is there with other limits or threads. Borrow the schema. */
 Status store_begin(RunStore *store, const Schema *schema, const Settings *used, const char *provenance, Err *err);
 Status store_go_on(RunStore *store, const Schema *schema, const Settings *used, Err *err);

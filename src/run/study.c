@@ -352,6 +352,7 @@ static Status prepare(Study *study, const Settings *s, Err *err)
 {
     TRY(subject_open(&study->subject, s, err));
     TRY(store_open(&study->store, s->run.out, study->options->fresh, err));
+    TRY(store_forget_empty(study->store, err));
     snprintf(study->summary->folder, sizeof study->summary->folder, "%s", store_folder(study->store));
     study->summary->max_evals = s->search.max_evals;
     study->used = settings_as_used(s, study->summary->folder);
