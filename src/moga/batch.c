@@ -1,6 +1,9 @@
 #include "moga/searching.h"
 
-enum { BATCH_SHARE = 8 }; /* a batch is this part of the population at least */
+enum {
+    BATCH_SHARE = 8, /* a batch is this part of the population at least */
+    LEAD_SHARE = 4   /* this part of a batch waits when the next one is chosen */
+};
 
 /* Simulations between two fits of the surface: more as they accumulate, so that fitting never takes over. */
 size_t batch_size(const Search *s)
@@ -55,7 +58,7 @@ static Status simulate_all(Search *s, size_t n_new, size_t n, EvaluationKind kin
 
 size_t batch_lead_max(const SearchConfig *c, size_t n_workers)
 {
-    return n_workers > 1 ? n_workers + c->population / 4 + 1 : 0;
+    return n_workers > 1 ? n_workers + c->population / 2 / LEAD_SHARE + 1 : 0;
 }
 
 /* Designs that may be pending when the next batch is chosen: so many that no worker waits meanwhile. */
@@ -64,7 +67,7 @@ static size_t lead(const Search *s)
     const size_t workers = s->problem->n_workers;
     const int is_last =
         s->archive.n + batch_pending(s) >= s->config->max_evals || s->generation >= s->config->generations;
-    return workers < 2 || is_last ? 0 : workers + batch_size(s) / 2;
+    return workers < 2 || is_last ? 0 : workers + batch_size(s) / LEAD_SHARE;
 }
 
 static Status ask(Search *s, size_t n_new, size_t n, EvaluationKind kind, Err *err)

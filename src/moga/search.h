@@ -22,7 +22,7 @@
  *               and the next batch is chosen while the last designs of this one wait or are simulated. Those count as
  *               what the surface predicts, so that no place is chosen twice. The first generation ends with the first
  *               results that arrive, all but `lead` of those asked for, and so does every other one; lead is 0 at one
- *               worker, the workers and half a batch more else. Rows of the archive are in the order of arrival, and a
+ *               worker, the workers and a quarter of a batch more else. Rows of the archive are in the order of arrival, and a
  *               run is a function of that order alone: the same order, the same bytes, at one worker those of a search
  *               in batches
  * Goes on       from the simulations and the state of any generation's end (SearchView.state): the rest is then the
