@@ -115,6 +115,9 @@ static Status report(const StudySummary *summary, Err *err)
     printf("front: %s/front.csv\n%zu nondominated of %zu simulated designs, %zu simulations failed, %.1f s (%s)\n\n",
            summary->folder, front.n, summary->n_simulated, summary->n_failed, summary->seconds,
            stop_reason_words(summary->stopped));
+    if (summary->n_repeats > 0)
+        printf("%zu of the simulations repeat a design, to tell luck from merit (search.repeats)\n\n",
+               summary->n_repeats);
     print_front(&front, summary);
     if (summary->n_tried_to_polish > 0)
         printf("polished: %zu of %zu designs became better by more than their spread (search.polish)\n",

@@ -52,8 +52,10 @@ static void print_head(const char *folder, const Saved *saved, const Standing *s
         printf(" (process %ld on %s)", s->holder.pid, s->holder.host);
     else if (last && last->stopped[0])
         printf(" (%s)", last->stopped);
-    printf("\n%zu of %ld simulated, %zu failed, %zu on the front", s->pace.simulated, saved->settings.search.max_evals,
-           s->n_failed, saved->n_front);
+    printf("\n%zu of %ld simulated, ", s->pace.simulated, saved->settings.search.max_evals);
+    if (saved->n_repeats > 0)
+        printf("%zu of them repeats, ", saved->n_repeats);
+    printf("%zu failed, %zu on the front", s->n_failed, saved->n_front);
     if (s->n_polished > 0)
         printf(", %zu polished designs", s->n_polished);
     printf("\n%zu generations in %s, %zu %s; %s simulations/s", saved->n_generations, worked, saved->n_sessions,
@@ -160,6 +162,7 @@ static json_t *describe(const char *folder, const Saved *saved, const Standing *
     if (s->state == RUN_RUNNING)
         json_object_set_new(o, "process",
                             json_pack("{s:I, s:s}", "pid", (json_int_t)s->holder.pid, "host", s->holder.host));
+    json_object_set_new(o, "repeats", json_integer((json_int_t)saved->n_repeats));
     json_object_set_new(o, "generations", json_generations(saved, igd));
     json_object_set_new(o, "failures", json_failures(f));
     json_object_set_new(o, "sessions", json_sessions(saved));

@@ -52,9 +52,11 @@ static void renew_population(Search *s, size_t first_new)
     group_copy(population, pool);
 }
 
+/* Nothing but repeats. No surface is fitted, and none of an earlier generation is told of. */
 static Status repeat_generation(Search *s, size_t n, Err *err)
 {
     const size_t first_new = s->archive.n;
+    surface_drop(s->surface);
     s->offspring.n = 0;
     TRY(batch_simulate(s, 0, n, KIND_REPEAT, err));
     renew_population(s, first_new);

@@ -28,8 +28,7 @@ static void take_design(Saved *h, size_t i, const Archive *a, size_t at)
     if (a->answers[at] == 0)
         return;
     r->members = (long)a->answers[at] * h->settings.sim.ensemble;
-    r->ok = a->usable[at];
-    for (size_t k = 0; k < m && r->ok; k++) {
+    for (size_t k = 0; k < m && a->usable[at]; k++) {
         h->F[i * m + k] = schema_objective(&h->schema, k)->sense * a->F[at * m + k];
         if (a->n_repeats > 0)
             h->spread[i * m + k] = a->deviation[at * m + k] * sqrt(members);

@@ -3,8 +3,8 @@
  *   F         of a design the mean of its answers
  *   spread    standard deviation of a single simulation, as far as all repeats of the run tell (moga/spread.h)
  *   members   simulations behind F: answers x sim.ensemble
- *   ok        0 where one of the answers failed
  *
+ * A design with an answer that failed keeps its first one; the search has taken it off the front.
  * Rows of repeats keep what they answered; unfinished and polished ones are left alone. Where answers are not noisy
  * nothing changes.
  *

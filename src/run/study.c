@@ -263,6 +263,7 @@ static int observe(const SearchView *view, void *user)
     }
     pthread_mutex_unlock(&study->lock);
     sum->n_front = view->n_front;
+    sum->n_repeats = view->n_repeats;
     sum->simulation_s = view->simulation_s;
     sum->own_s = view->own_s;
     sum->search_s = view->seconds;
@@ -339,6 +340,7 @@ static Status go_on(Study *study, Err *err)
         }
     sum->n_simulated = sum->n_before;
     sum->n_front = h->n_front;
+    sum->n_repeats = h->n_repeats;
     for (size_t i = 0; i < h->n_sessions; i++)
         study->seconds_before += isfinite(h->session[i].seconds) ? h->session[i].seconds : 0.0;
     study->generation = h->n_generations > 0 ? (size_t)h->generation[h->n_generations - 1].number + 1 : 0;

@@ -47,7 +47,7 @@ typedef struct {
 typedef struct {
     char folder[PATH_MAX];
     StopReason stopped;
-    size_t n_simulated, n_failed, n_front;
+    size_t n_simulated, n_failed, n_front, n_repeats;
     size_t n_tried_to_polish, n_polished; /* at the end; of these better by more than their spread */
     size_t n_before;                      /* simulations that the run had when this session began */
     long max_evals;

@@ -1,0 +1,136 @@
+/* Runs whose answers are noisy: what their tables say, and that stopping them changes nothing. */
+#include "runs.h"
+
+#include "run/study.h"
+
+/* 60 simulations, of which (60 - 18 * 2) / 2 are repeats. */
+static const char NOISY[] =
+    "[problem]\nkind = dtlz2\nvariables = 2\nobjectives = 2\nnoise = 0.05\n[search]\ninitial = 8\n"
+    "population = 8\nmax_evals = 60\nsurrogate_max = 20\nrepeats = 0.5\nmembers_max = 3\n";
+enum { SIMULATIONS = 60, REPEATS = 12 };
+
+/* Lets `left` questions pass, then stops. */
+static int stop_after(void *user)
+{
+    long *left = user;
+    return (*left)-- <= 0;
+}
+
+/* In pieces of so many questions; 0: in one. */
+static void study(const char *text, const char *out, long piece)
+{
+    const Settings s = settings_of(text, out);
+    Status status;
+    StudySummary summary;
+    Err err = {0};
+    do {
+        long left = piece;
+        const StudyOptions options = {.stop = piece > 0 ? stop_after : NULL, .user = &left};
+        status = study_run(&s, &options, &summary, NULL, &err);
+    } while (status == STATUS_STOPPED);
+    CHECK_OK(status, &err);
+}
+
+static Saved saved_of(const char *out)
+{
+    char path[PATH_MAX];
+    Saved h;
+    Err err = {0};
+    CHECK_OK(saved_read(&h, path_of(out, path), &err), &err);
+    return h;
+}
+
+static void test_a_noisy_run_stopped_after_every_kth_simulation_is_the_run_that_never_stopped(void **state)
+{
+    (void)state;
+    study(NOISY, "whole", 0);
+    study(NOISY, "pieces", 7);
+    assert_same_run("whole", "pieces");
+}
+
+static void test_the_front_has_means_spreads_and_members_of_what_was_simulated(void **state)
+{
+    (void)state;
+    Saved h = saved_of("whole");
+    size_t repeats = 0, confirmed = 0;
+    assert_true(h.schema.has_spread && h.n == SIMULATIONS);
+    for (size_t i = 0; i < h.n; i++) {
+        double n = 0.0, mean[2] = {0.0, 0.0};
+        repeats += h.row[i].kind == KIND_REPEAT;
+        for (size_t j = 0; j < h.n; j++)
+            if (memcmp(h.X + 2 * j, h.X + 2 * i, 2 * sizeof *h.X) == 0) {
+                n += 1.0;
+                mean[0] += h.answer[2 * j];
+                mean[1] += h.answer[2 * j + 1];
+            }
+        assert_true(h.row[i].kind == KIND_REPEAT ? h.row[i].members == 0 && !h.row[i].on_front
+                                                 : h.row[i].members == (long)n && n <= 3.0);
+        for (int k = 0; k < 2 && h.row[i].on_front; k++) {
+            assert_close(h.F[2 * i + k], mean[k] / n, 1e-12);
+            assert_true(h.spread[2 * i + k] > 0.0 && h.spread[2 * i + k] < 0.3 * h.F[2 * i + k]);
+        }
+        confirmed += h.row[i].on_front && n > 1.0;
+    }
+    assert_int_equal(repeats, REPEATS);
+    assert_int_equal(h.n_repeats, REPEATS);
+    assert_true(confirmed >= 2);
+    saved_free(&h);
+}
+
+static void test_the_exports_and_status_tell_of_repeats(void **state)
+{
+    (void)state;
+    free(output_of("export @/whole --csv @/exported.csv"));
+    char *front = read_in_place("whole/front.csv"), *exported = read_in_place("exported.csv");
+    assert_string_equal(front, exported);
+    assert_non_null(strstr(front, ",f1,f2,spread_f1,spread_f2,members\n"));
+    free(front);
+    free(exported);
+    char *all = read_in_place("whole/evaluations.csv"), *said = output_of("status @/whole");
+    size_t n = 0;
+    for (const char *at = all; (at = strstr(at, ",repeat,")); at++)
+        n++;
+    assert_int_equal(n, REPEATS);
+    assert_non_null(strstr(said, "60 of 60 simulated, 12 of them repeats"));
+    free(all);
+    free(said);
+}
+
+static void test_members_min_keeps_what_was_answered_once_out_of_the_front(void **state)
+{
+    (void)state;
+    char text[sizeof NOISY + 32];
+    snprintf(text, sizeof text, "%smembers_min = 2\n", NOISY);
+    study(text, "strict", 0);
+    Saved h = saved_of("strict");
+    for (size_t i = 0; i < h.n; i++)
+        assert_true(!h.row[i].on_front || h.row[i].members >= 2);
+    assert_true(h.n_front >= 2);
+    saved_free(&h);
+}
+
+static void test_without_noise_nothing_is_repeated_and_the_tables_are_as_ever(void **state)
+{
+    (void)state;
+    char text[sizeof NOISY + 32];
+    snprintf(text, sizeof text, "%s[problem]\nnoisy = no\n", NOISY);
+    study(text, "quiet", 0);
+    Saved h = saved_of("quiet");
+    char *front = read_in_place("quiet/front.csv");
+    assert_true(!h.schema.has_spread && h.n_repeats == 0);
+    assert_null(strstr(front, "members"));
+    free(front);
+    saved_free(&h);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_a_noisy_run_stopped_after_every_kth_simulation_is_the_run_that_never_stopped),
+        cmocka_unit_test(test_the_front_has_means_spreads_and_members_of_what_was_simulated),
+        cmocka_unit_test(test_the_exports_and_status_tell_of_repeats),
+        cmocka_unit_test(test_members_min_keeps_what_was_answered_once_out_of_the_front),
+        cmocka_unit_test(test_without_noise_nothing_is_repeated_and_the_tables_are_as_ever),
+    };
+    return cmocka_run_group_tests_name("repeats", tests, prepare, clear_place);
+}
