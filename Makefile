@@ -129,7 +129,7 @@ torture: $(PROGRAM) $(BUILD)/tests/test_torture
 
 # Threads: clang with LLVM's OpenMP, whose tool tells ThreadSanitizer what a parallel region promises; with gcc's it would
 # see races that are none. First a race that it must find.
-TSAN_TESTS := test_ensemble test_moga test_problem test_polish test_rbf
+TSAN_TESTS := test_async test_ensemble test_moga test_problem test_polish test_rbf
 tsan:
 	@$(MAKE) --no-print-directory MODE=tsan CC=clang WARNINGS=-w tsan-here
 

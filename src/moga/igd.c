@@ -46,7 +46,7 @@ void igd_add(Igd *q, const double f[])
 {
     for (size_t i = 0; i < q->n; i++) {
         double square = 0.0;
-        for (size_t k = 0; k < q->n_obj; k++) {
+        for (size_t k = 0; k < q->n_obj && square < q->square[i]; k++) {
             const double worse = fmax(f[k] - q->reference[i * q->n_obj + k], 0.0) / q->width[k];
             square += worse * worse;
         }

@@ -28,6 +28,8 @@ struct RunStore {
     double last_commit;          /* [s] */
     size_t n_exported;           /* designs in evaluations.csv */
     unsigned char *was_on_front; /* (n_flags) at the end of the last generation */
+    char **line;                 /* (n_lines) of front.csv, by design; NULL: not on the front */
+    size_t n_lines;
     size_t n_flags;
     Cover *cover; /* NULL: no design has succeeded yet */
     size_t n_covered;
@@ -455,21 +457,51 @@ static Status append_evaluations(RunStore *store, const SearchView *v, Err *err)
     return flush(store, store->evaluations, "evaluations.csv", err);
 }
 
-static void put_view_front(FILE *f, const void *user)
+static Status make_line(RunStore *store, const SearchView *v, size_t row, Err *err)
 {
-    const struct {
-        const Schema *schema;
-        const SearchView *view;
-    } *u = user;
     double natural[OBJECTIVES_MAX];
-    export_front_header(f, u->schema);
-    for (size_t i = 0; i < u->view->n; i++) {
-        if (!u->view->on_front[i])
+    size_t length;
+    FILE *f = open_memstream(&store->line[row], &length);
+    for (size_t k = 0; f && k < v->n_obj; k++)
+        natural[k] = schema_objective(store->schema, k)->sense * v->F[row * v->n_obj + k];
+    if (f)
+        export_front_row(f, store->schema, (long)row + 1, v->X + row * v->n_var, natural, NULL, 1);
+    return f && fclose(f) == 0 ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for the front");
+}
+
+/* Numbers cost more to print than to find: the line of a design is made once. */
+static Status make_lines(RunStore *store, const SearchView *v, Err *err)
+{
+    char **line = realloc(store->line, (v->n + 1) * sizeof *line);
+    if (!line)
+        return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", v->n);
+    memset(line + store->n_lines, 0, (v->n - store->n_lines) * sizeof *line);
+    store->line = line;
+    store->n_lines = v->n;
+    for (size_t i = 0; i < v->n; i++) {
+        if (v->on_front[i] && !line[i])
+            TRY(make_line(store, v, i, err));
+        if (v->on_front[i])
             continue;
-        for (size_t k = 0; k < u->schema->n_obj; k++)
-            natural[k] = schema_objective(u->schema, k)->sense * u->view->F[i * u->schema->n_obj + k];
-        export_front_row(f, u->schema, (long)i + 1, u->view->X + i * u->schema->n_var, natural, NULL, 1);
+        free(line[i]);
+        line[i] = NULL;
     }
+    return STATUS_OK;
+}
+
+static void put_lines(FILE *f, const void *user)
+{
+    const RunStore *store = user;
+    export_front_header(f, store->schema);
+    for (size_t i = 0; i < store->n_lines; i++)
+        if (store->line[i])
+            fputs(store->line[i], f);
+}
+
+static Status write_front(RunStore *store, const SearchView *v, Err *err)
+{
+    TRY(make_lines(store, v, err));
+    return write_file(store, "front.csv", put_lines, store, err);
 }
 
 /* The front with polished designs is worked out by Saved. Evaluations first: whoever finds a design in front.csv finds
@@ -507,16 +539,11 @@ static Status commit_generation(RunStore *store, const SearchView *v, double sec
 
 Status store_generation(RunStore *store, const SearchView *v, double seconds, double session, Err *err)
 {
-    const struct {
-        const Schema *schema;
-        const SearchView *view;
-    } front = {store->schema, v};
     TRY(measure_front(store, v, err));
     TRY(commit_generation(store, v, seconds, session, err));
     TRY(append_evaluations(store, v, err));
-    return store->has_polished || store->schema->has_spread
-               ? write_whole_tables(store, 0, err)
-               : write_file(store, "front.csv", put_view_front, &front, err);
+    return store->has_polished || store->schema->has_spread ? write_whole_tables(store, 0, err)
+                                                            : write_front(store, v, err);
 }
 
 /* -- logs and the end -----------------------------------------------------------------------------------------------
@@ -599,6 +626,9 @@ void store_free(RunStore *store)
     database_close(store->db);
     saved_free(&store->saved);
     free(store->was_on_front);
+    for (size_t i = 0; i < store->n_lines; i++)
+        free(store->line[i]);
+    free(store->line);
     cover_free(store->cover);
     lock_release(store->lock);
     free(store);
