@@ -256,7 +256,8 @@ static void test_a_database_runs_nothing_and_needs_no_more_memory_than_its_size(
     (void)state;
     static const char *const CHANGES[] = {
         "ALTER TABLE evaluation RENAME TO was; CREATE VIEW evaluation AS WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL "
-        "SELECT i + 1 FROM n) SELECT i AS id, 0 AS generation, 'sampled' AS kind, 'ok' AS outcome, '' AS reason, 0.1 AS "
+        "SELECT i + 1 FROM n) SELECT i AS id, 0 AS generation, 'sampled' AS kind, 'ok' AS outcome, '' AS reason, 0.1 "
+        "AS "
         "seconds, x, f, spread, violation, extra FROM n, was WHERE was.id = 1",
         "ALTER TABLE state RENAME TO was; CREATE VIEW state AS SELECT 1 AS id, 0 AS generation, zeroblob(900000000) AS "
         "bytes",

@@ -5,7 +5,7 @@
     "optimize configs/quick.ini --set motion.stretch=1 --set sim.duration_s=3 --set search.initial=24 "                \
     "--set search.population=8 --threads 1 --set search.polish=0 "
 #define FIRST "--set motion.record=@/one.csv"
-#define BOTH FIRST " --set motion.records=@/two.csv,builtin:sylmar-like"
+#define BOTH  FIRST " --set motion.records=@/two.csv,builtin:sylmar-like"
 
 /* A pulse of one period: 4 s in steps of 0.01 s. */
 static void write_record(const char *name, double period_s)
@@ -45,7 +45,8 @@ static int make_run(void **state)
 static void test_every_command_says_which_record_was_moved_and_what_to_do(void **state)
 {
     (void)state;
-    static const char *const COMMANDS[] = {"report @/run", "plot @/run", "polish @/run --design knee", "optimize @/run"};
+    static const char *const COMMANDS[] = {"report @/run", "plot @/run", "polish @/run --design knee",
+                                           "optimize @/run"};
     for (size_t i = 0; i < sizeof COMMANDS / sizeof COMMANDS[0]; i++) {
         char with_one[256];
         expect(66, "--set motion.record=PATH", COMMANDS[i]);

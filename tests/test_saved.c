@@ -103,9 +103,9 @@ static void test_polished_designs_compete_with_the_front_and_can_be_dropped(void
 #define ROW(id, outcome, f, violation)                                                                                 \
     "INSERT INTO evaluation(id, generation, kind, outcome, reason, seconds, x, f, violation) VALUES (" #id             \
     ", 1, 'polished', '" outcome "', '', 0.1, '[0,0,0,0,0,0]', '" f "', " #violation ");"
-    static const char POLISHED[] = ROW(1000001, "ok", "[0,0,0.9]", 0) ROW(1000002, "ok", "[0,0,1.5]", 0)
-        ROW(1000003, "error", "[0,0,0]", 0) ROW(1000004, "ok", "[0,0,0.1]", 0.5) ROW(1000005, "ok", "[9,9,9]", 0)
-            ROW(1000006, "ok", "[0,0,0.9]", 0);
+    static const char POLISHED[] =
+        ROW(1000001, "ok", "[0,0,0.9]", 0) ROW(1000002, "ok", "[0,0,1.5]", 0) ROW(1000003, "error", "[0,0,0]", 0)
+            ROW(1000004, "ok", "[0,0,0.1]", 0.5) ROW(1000005, "ok", "[9,9,9]", 0) ROW(1000006, "ok", "[0,0,0.9]", 0);
     Saved sound, h;
     Err err = {0};
     char folder[PATH_MAX];

@@ -1,6 +1,6 @@
-/* The k-th call of one kind to the database, the files or the allocator fails: the run ends with a reason, and then goes
- * on to the same result. Every k where the store is driven alone; in a whole study a few of each kind, or FAULTS=60 of
- * the environment. The linker puts the functions below in the place of the real ones (Makefile). */
+/* The k-th call of one kind to the database, the files or the allocator fails: the run ends with a reason, and then
+ * goes on to the same result. Every k where the store is driven alone; in a whole study a few of each kind, or
+ * FAULTS=60 of the environment. The linker puts the functions below in the place of the real ones (Makefile). */
 #include "runs.h"
 
 #include <signal.h>
@@ -328,11 +328,16 @@ static void test_every_fault_of_the_database_is_said_in_our_words(void **state)
         int code;
         Status status;
         const char *words;
-    } SAID[] = {{SQLITE_NOMEM, STATUS_NO_MEMORY, "out of memory"}, {SQLITE_FULL, STATUS_IO, "the disk is full"},
-                {SQLITE_PERM, STATUS_IO, "read-only"},             {SQLITE_BUSY, STATUS_IO, "is busy"},
-                {SQLITE_LOCKED, STATUS_IO, "is busy"},             {SQLITE_CORRUPT, STATUS_IO, "is damaged"},
-                {SQLITE_NOTADB, STATUS_IO, "is no database"},      {SQLITE_IOERR, STATUS_IO, "read or written"},
-                {SQLITE_READONLY, STATUS_OK, ""},                  {SQLITE_CANTOPEN, STATUS_OK, ""}};
+    } SAID[] = {{SQLITE_NOMEM, STATUS_NO_MEMORY, "out of memory"},
+                {SQLITE_FULL, STATUS_IO, "the disk is full"},
+                {SQLITE_PERM, STATUS_IO, "read-only"},
+                {SQLITE_BUSY, STATUS_IO, "is busy"},
+                {SQLITE_LOCKED, STATUS_IO, "is busy"},
+                {SQLITE_CORRUPT, STATUS_IO, "is damaged"},
+                {SQLITE_NOTADB, STATUS_IO, "is no database"},
+                {SQLITE_IOERR, STATUS_IO, "read or written"},
+                {SQLITE_READONLY, STATUS_OK, ""},
+                {SQLITE_CANTOPEN, STATUS_OK, ""}};
     char folder[PATH_MAX], inside[PATH_MAX];
     RunStore *store;
     Err err = {0};

@@ -250,7 +250,8 @@ static void test_an_external_simulator_is_searched_and_every_design_exported(voi
     expect(65, "another problem", "evaluate @/external --design knee --record builtin:kobe-like");
     expect(65, "no-such-program", "optimize @/external.ini --out @/none --set problem.command=no-such-program");
     expect(65, "problem.command", "optimize @/external.ini --out @/none --set problem.command=none");
-    free(output_of("optimize @/external.ini --out @/none")); /* nothing was simulated: no run yet, and no other settings */
+    free(output_of(
+        "optimize @/external.ini --out @/none")); /* nothing was simulated: no run yet, and no other settings */
 }
 
 /* The external run of the test before: f = (x1 min, x2 max). */

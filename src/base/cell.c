@@ -23,15 +23,15 @@ static size_t wide_blank(const char *text)
 /* Some read the full-width = + - @ like the narrow ones. */
 static int is_formula_sign(const char *text)
 {
-    static const char *const SIGNS[] = {"=",            "+",            "-",            "@",
-                                        "\xef\xbc\x9d", "\xef\xbc\x8b", "\xef\xbc\x8d", "\xef\xbc\xa0"};
+    static const char *const SIGNS[] = {"=",           "+", "-", "@", "\xef\xbc\x9d", "\xef\xbc\x8b", "\xef\xbc\x8d",
+                                        "\xef\xbc\xa0"};
     return begins_with(text, SIGNS, sizeof SIGNS / sizeof SIGNS[0]) > 0;
 }
 
 void cell_text(char cell[], size_t size, const char *text)
 {
     size_t n = 0;
-    int begins = 1; /* a spreadsheet may take what follows for a cell's beginning */
+    int begins = 1;   /* a spreadsheet may take what follows for a cell's beginning */
     size_t blank = 0; /* bytes of a wide one that are still to come */
     for (; *text && n + 1 < size; text++) {
         const char c = *text == ',' ? ';' : *text == '"' || (unsigned char)*text < ' ' ? ' ' : *text;

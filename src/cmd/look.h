@@ -8,7 +8,8 @@
 /* The run of the operand, ready to be shown; report_close releases it. */
 Status look_open(const Args *args, Report *r, Err *err);
 
-/* The front of the operand's run, and the row that --design names; front_free releases the front, also after a fault. */
+/* The front of the operand's run, and the row that --design names; front_free releases the front, also after a fault.
+ */
 Status look_design(const Args *args, Front *front, size_t *row, Err *err);
 
 /* --out, or RUN/name. */

@@ -221,7 +221,8 @@ static void bound_rows(Database *d)
     snprintf(journal, sizeof journal, "%s-wal", d->path);
     stat(d->path, &file);
     stat(journal, &beside);
-    sqlite3_limit(d->db, SQLITE_LIMIT_LENGTH, (int)fmin(2.0 * (double)(file.st_size + beside.st_size) + SLACK, INT_MAX));
+    sqlite3_limit(d->db, SQLITE_LIMIT_LENGTH,
+                  (int)fmin(2.0 * (double)(file.st_size + beside.st_size) + SLACK, INT_MAX));
 }
 
 void database_grow(Database *d)

@@ -19,7 +19,10 @@
 
 #include "base/status.h"
 
-enum { DATABASE_APPLICATION = 0x494d5445 /* "IMTE" */, DATABASE_FORMAT = 2 /* raised with every change of the tables */ };
+enum {
+    DATABASE_APPLICATION = 0x494d5445 /* "IMTE" */,
+    DATABASE_FORMAT = 2 /* raised with every change of the tables */
+};
 
 typedef struct Database Database;
 
@@ -28,7 +31,7 @@ typedef enum { DATABASE_WRITE, DATABASE_READ } DatabaseMode;
 /* A new file, or one that a fault left unfinished and is begun again. */
 Status database_create(Database **out, const char *path, Err *err);
 Status database_open(Database **out, const char *path, DatabaseMode mode, Err *err);
-void database_grow(Database *d); /* what was there is read: from here on rows may be longer than the file was */
+void database_grow(Database *d);  /* what was there is read: from here on rows may be longer than the file was */
 void database_close(Database *d); /* NULL is fine; what was committed is on the disk already */
 const char *database_path(const Database *d);
 
