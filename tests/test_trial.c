@@ -11,7 +11,7 @@ static Settings short_scene(const char *records, long members, const char *toler
     Err err = {0};
     char text[120];
     settings_defaults(&s);
-    s.sim.duration_s = 40.0;
+    s.sim.duration_s = 25.0; /* tiny changes have not grown yet, wide ones tell */
     s.sim.accuracy = ACCURACY_COARSE;
     s.sim.ensemble = members;
     snprintf(text, sizeof text, "motion.records=%s", records);
