@@ -1,0 +1,81 @@
+/* Where a search begins: with designs that somebody has, none of them twice; and the same answers in either mode. */
+#include "runs.h"
+
+static const char BEGIN[] =
+    "[problem]\nkind = dtlz2\nvariables = 4\nobjectives = 2\n"
+    "[search]\ninitial = 12\npopulation = 12\nmax_evals = 30\nsurrogate_max = 30\nthreads = 1\n";
+
+/* In another order of columns, one outside the box, one given twice. */
+static const char GIVEN[] = "x2,x1,comment,x4,x3\n0.2,0.1,7,0.4,0.3\n-3,0.5,7,0.5,9\n0.2,0.1,8,0.4,0.3\n1,1,7,1,1\n";
+static const double WANTED[3][4] = {{0.1, 0.2, 0.3, 0.4}, {0.5, 0, 1, 0.5}, {1, 1, 1, 1}};
+
+static void check_start(const char *asynchronous)
+{
+    Saved h;
+    Err err = {0};
+    char arguments[256], path[PATH_MAX];
+    snprintf(arguments, sizeof arguments, "optimize @/begin.ini --out @/%s --set search.start=%s/given.csv --set %s",
+             strrchr(asynchronous, '=') + 1, place.folder, asynchronous);
+    free(output_of(arguments));
+    CHECK_OK(saved_read(&h, path_of(strrchr(asynchronous, '=') + 1, path), &err), &err);
+    assert_int_equal(h.n, 30);
+    assert_memory_equal(h.X, WANTED, sizeof WANTED);
+    for (size_t i = 0; i < h.n; i++)
+        for (size_t j = 0; j < i; j++)
+            assert_memory_not_equal(h.X + i * 4, h.X + j * 4, 4 * sizeof *h.X);
+    saved_free(&h);
+}
+
+static void test_given_designs_come_first_inside_the_box_and_once(void **state)
+{
+    (void)state;
+    write_in_place("begin.ini", BEGIN);
+    write_in_place("given.csv", GIVEN);
+    check_start("search.asynchronous=off");
+    check_start("search.asynchronous=on");
+    write_in_place("short.csv", "x1,x2,x4\n0,0,0\n");
+    char arguments[256];
+    snprintf(arguments, sizeof arguments, "optimize @/begin.ini --out @/no --set search.start=%s/short.csv",
+             place.folder);
+    expect(65, "x3", arguments);
+}
+
+/* Only the first sample: the same designs in either mode, whatever their order. */
+static const char TOWER[] = "[motion]\nrecord = builtin:kobe-like\nrecords = builtin:sylmar-like\npga_g = 0.3\n"
+                            "[sim]\nensemble = 2\nduration_s = 3\n"
+                            "[search]\ninitial = 12\npopulation = 12\nmax_evals = 12\npolish = 0\n";
+
+static void test_a_design_of_the_tower_has_the_same_objectives_in_either_mode(void **state)
+{
+    (void)state;
+    Saved batches, turns;
+    Err err = {0};
+    char path[PATH_MAX];
+    write_in_place("tower.ini", TOWER);
+    free(output_of("optimize @/tower.ini --out @/batches --threads 1"));
+    free(output_of("optimize @/tower.ini --out @/turns --threads 3 --set search.asynchronous=on"));
+    CHECK_OK(saved_read(&batches, path_of("batches", path), &err), &err);
+    CHECK_OK(saved_read(&turns, path_of("turns", path), &err), &err);
+    const size_t n_var = batches.schema.n_var, m = batches.schema.n_obj;
+    assert_int_equal(batches.n, 12);
+    assert_int_equal(turns.n, 12);
+    for (size_t i = 0; i < 12; i++) {
+        size_t j = 0;
+        while (j < 12 && memcmp(batches.X + i * n_var, turns.X + j * n_var, n_var * sizeof(double)) != 0)
+            j++;
+        assert_true(j < 12);
+        assert_memory_equal(batches.F + i * m, turns.F + j * m, m * sizeof(double));
+        assert_memory_equal(batches.spread + i * m, turns.spread + j * m, m * sizeof(double));
+    }
+    saved_free(&batches);
+    saved_free(&turns);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_given_designs_come_first_inside_the_box_and_once),
+        cmocka_unit_test(test_a_design_of_the_tower_has_the_same_objectives_in_either_mode),
+    };
+    return cmocka_run_group_tests_name("start", tests, prepare, clear_place);
+}
