@@ -474,12 +474,13 @@ static void test_a_killed_run_goes_on_with_every_result_it_had(void **state)
     Err err = {0};
     write_in_place("uneven.ini", UNEVEN);
     for (int kill_at = 10; kill_at < 110; kill_at += 45) {
-        path_of("killed", path);
-        snprintf(path + strlen(path), 8, "%d", kill_at);
+        char name[24];
+        snprintf(name, sizeof name, "killed%d", kill_at);
+        path_of(name, path);
         char config_text[1024];
         snprintf(config_text, sizeof config_text, "%sasynchronous = on\n", UNEVEN);
         write_in_place("killed.ini", config_text);
-        const pid_t pid = start("killed.ini", strrchr(path, '/') + 1);
+        const pid_t pid = start("killed.ini", name);
         for (size_t n = 0; n < (size_t)kill_at; rest(0.01))
             if (saved_read(&before, path, &err) == STATUS_OK) {
                 n = before.n;

@@ -24,8 +24,8 @@
  * Threads       the problem's evaluate gets one call per generation with the whole batch; set BLAS to one thread
  * Asynchronous  no thread waits for the slowest of a batch: the problem's own threads take one design after the other,
  *               and the next batch is chosen while the last designs of this one wait or are simulated. Those count as
- *               what the surface predicts, so that no place is chosen twice. The first generation ends with the first
- *               results that arrive, all but `lead` of those asked for, and so does every other one; lead is 0 at one
+ *               what the surface predicts, so that no place is chosen twice. A generation ends with the first
+ *               results that arrive, all but `lead` of those that are asked for; lead is 0 at one
  *               worker, the workers and a quarter of a batch more else. Rows of the archive are in the order of arrival, and a
  *               run is a function of that order alone: the same order, the same bytes, at one worker those of a search
  *               in batches
