@@ -62,8 +62,8 @@ static size_t repeats_left(const Search *s, size_t n, double part)
     return (size_t)due - made;
 }
 
-/* What everybody looks at first, the best in one objective and the one nearest to the best of everything, counts as
- * much as all directions together. */
+/* What everybody looks at first, the best in one objective and the one nearest to the best of everything, counts more
+ * than all directions together. */
 static void add_landmarks(Search *s)
 {
     const Archive *a = &s->archive;
@@ -74,7 +74,7 @@ static void add_landmarks(Search *s)
         for (size_t i = 1; i < a->n_front; i++)
             if (a->F[a->front[i] * a->n_obj + k] < a->F[best * a->n_obj + k])
                 best = a->front[i];
-        s->wins[best] += 2 * s->wishes.n;
+        s->wins[best] += 2 * s->wishes.n + 1;
     }
     for (size_t i = 0; i < a->n_front; i++) {
         const double away = infill_length(s->infill[INFILL_PBI], a->F + a->front[i] * a->n_obj);
@@ -83,7 +83,7 @@ static void add_landmarks(Search *s)
             knee = a->front[i];
         }
     }
-    s->wins[knee] += 2 * s->wishes.n;
+    s->wins[knee] += 2 * s->wishes.n + 1;
 }
 
 /* Of every direction, the design that is best in it. */
@@ -96,32 +96,37 @@ static void count_wins(Search *s)
     add_landmarks(s);
 }
 
-/* The design on the front with the most wins to an answer; archive.n where none is left. */
+/* The design on the front with the fewest answers that something is built on, of these the one with the most wins;
+ * archive.n where none is left. */
 static size_t pick(const Search *s)
 {
     const Archive *a = &s->archive;
     size_t best = a->n;
-    double most = 0.0;
     for (size_t i = 0; i < a->n_front; i++) {
         const size_t row = a->front[i];
-        const double value = (double)s->wins[row] / (double)a->answers[row];
-        const int is_pending = s->feed && feed_has(s->feed, a->X + row * a->n_var);
-        if (a->answers[row] < s->config->answers_max && value > most && !is_pending) {
-            most = value;
+        const int comes_first = best == a->n || a->answers[row] < a->answers[best] ||
+                                (a->answers[row] == a->answers[best] && s->wins[row] > s->wins[best]);
+        if (s->wins[row] > 0 && a->answers[row] < s->config->answers_max && comes_first &&
+            !(s->feed && feed_has(s->feed, a->X + row * a->n_var)))
             best = row;
-        }
     }
     return best;
 }
 
-/* The front has been measured, as it is now. */
+/* The front has been measured, as it is now. Landmarks with a single answer go alone: where they prove lucky there are
+ * others next time, which are to be tried before anything else. */
 static size_t append(Search *s, size_t n, size_t limit)
 {
-    const size_t n_var = s->problem->n_var;
+    const size_t n_var = s->problem->n_var, landmark = 2 * s->wishes.n + 1;
+    int is_race = 0;
     if (s->archive.n_front == 0 || n >= limit)
         return n;
     count_wins(s);
     for (size_t row; n < limit && (row = pick(s)) < s->archive.n; n++) {
+        const int is_new = s->wins[row] >= landmark && s->archive.answers[row] == 1;
+        if (is_race && !is_new)
+            break;
+        is_race = is_new;
         memcpy(s->X + n * n_var, s->archive.X + row * n_var, n_var * sizeof *s->X);
         s->draws[n] = s->archive.answers[row];
         s->wins[row] = 0;
