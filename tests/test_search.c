@@ -8,7 +8,7 @@
 #include "check.h"
 #include "moga/dominance.h"
 #include "moga/hypervolume.h"
-#include "moga/search.h"
+#include "moga/searching.h"
 #include "moga/variation.h"
 
 enum { VAR_MAX = 22, OBJ_MAX = 7, ROWS_MAX = 600 };
@@ -187,11 +187,36 @@ static void test_seven_objectives_beat_a_latin_hypercube_of_the_same_size(void *
     const SearchConfig c = config(120, 240);
     assert_int_equal(run(&here, &c, &seen), STOP_EVALUATIONS);
     assert_true(volume(seen.n, 7, seen.F) > 3 * volume_of_hypercube(&here, 240));
+    size_t count[KIND_COUNT] = {0};
     for (size_t i = 0; i < seen.n; i++) {
-        assert_int_equal(seen.kind[i], i < 120 ? KIND_SAMPLED : KIND_INFILL);
+        count[seen.kind[i]]++;
         assert_true(i == 0 || seen.generation[i] >= seen.generation[i - 1]);
     }
+    assert_int_equal(count[KIND_SAMPLED], 120);
+    assert_int_equal(count[KIND_INFILL], 120);
     assert_true(seen.error > 0.0 && seen.error < 0.05);
+}
+
+static size_t plain_children_where(double plain_gain, double surface_gain, size_t n_simulated)
+{
+    const Problem problem = {.n_var = 10};
+    const SearchConfig c = {.population = 248}; /* batches of 32 */
+    Search s = {.problem = &problem, .config = &c, .archive = {.n = n_simulated}, .chance = {0.5, 0.5}};
+    s.credit[SOURCE_PLAIN] = plain_gain / (plain_gain + surface_gain);
+    s.credit[SOURCE_SURFACE] = surface_gain / (plain_gain + surface_gain);
+    return guide_plain(&s);
+}
+
+static void test_whoever_gains_more_has_the_greater_share_of_a_batch(void **state)
+{
+    (void)state;
+    assert_int_equal(plain_children_where(1.3, 1, 500), 16); /* doubt: as good as equal */
+    assert_int_equal(plain_children_where(0, 1, 500), 3);
+    assert_int_equal(plain_children_where(1, 1, 500), 3);
+    assert_int_equal(plain_children_where(2, 1, 500), 29);
+    assert_int_equal(plain_children_where(1, 0, 500), 29);
+    assert_true(plain_children_where(1.43, 1, 500) > 20 && plain_children_where(1.43, 1, 500) < 24); /* 1.1^8 to 1 */
+    assert_int_equal(plain_children_where(2, 1, 100), 0); /* the surface has the first simulations alone */
 }
 
 static void test_the_same_seed_gives_the_same_bytes_at_any_thread_count(void **state)
@@ -472,6 +497,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(test_three_objectives_beat_a_latin_hypercube_of_the_same_size, fresh),
         cmocka_unit_test_setup(test_seven_objectives_beat_a_latin_hypercube_of_the_same_size, fresh),
+        cmocka_unit_test(test_whoever_gains_more_has_the_greater_share_of_a_batch),
         cmocka_unit_test_setup(test_the_same_seed_gives_the_same_bytes_at_any_thread_count, fresh),
         cmocka_unit_test_setup(test_front_flags_equal_a_brute_force_filter, fresh),
         cmocka_unit_test_setup(test_failed_simulations_never_reach_the_front, fresh),

@@ -25,32 +25,40 @@ size_t batch_pending(const Search *s)
     return s->feed ? feed_pending(s->feed) : 0;
 }
 
-size_t batch_add(Search *s, size_t n, const double x[])
+size_t batch_add(Search *s, size_t n, const double x[], EvaluationKind kind)
 {
     if (n >= s->batch_max || s->archive.n + batch_pending(s) + n + s->reserved >= s->config->max_evals ||
         in_batch(s, n, x) || archive_find(&s->archive, x) < s->archive.n || (s->feed && feed_has(s->feed, x)))
         return n;
     memcpy(s->X + n * s->problem->n_var, x, s->problem->n_var * sizeof *x);
     s->draws[n] = 0;
+    s->kind[n] = (unsigned char)kind;
     return n + 1;
 }
 
 /* -- all at once ----------------------------------------------------------------------------------------------------
  */
 
-static Status simulate_all(Search *s, size_t n_new, size_t n, EvaluationKind kind, Err *err)
+/* Whether the order of design i was foretold: new ones but samples, where there is a surface. */
+static unsigned char is_foretold(const Search *s, size_t i)
+{
+    return s->kind[i] != KIND_SAMPLED && s->kind[i] != KIND_REPEAT && surface_stands(s->surface);
+}
+
+static Status simulate_all(Search *s, size_t n, Err *err)
 {
     const Problem *p = s->problem;
     Archive *a = &s->archive;
     s->n_came = n;
     if (n == 0)
         return STATUS_OK;
-    memset(s->foretold, kind != KIND_SAMPLED && surface_stands(s->surface), n_new);
-    memset(s->foretold + n_new, 0, n - n_new);
+    for (size_t i = 0; i < n; i++)
+        s->foretold[i] = is_foretold(s, i);
     TRY(p->evaluate(n, s->X, s->draws, s->F, s->G, s->ok, p->user, err));
-    TRY(archive_insert(a, n_new, s->X, s->F, s->G, s->ok, (unsigned char)kind, s->generation, err));
-    return archive_insert(a, n - n_new, s->X + n_new * p->n_var, s->F + n_new * p->n_obj, s->G + n_new * p->n_con,
-                          s->ok + n_new, KIND_REPEAT, s->generation, err);
+    for (size_t i = 0; i < n; i++)
+        TRY(archive_insert(a, 1, s->X + i * p->n_var, s->F + i * p->n_obj, s->G + i * p->n_con, s->ok + i, s->kind[i],
+                           s->generation, err));
+    return STATUS_OK;
 }
 
 /* -- one by one -----------------------------------------------------------------------------------------------------
@@ -70,14 +78,13 @@ static size_t lead(const Search *s)
     return workers < 2 || is_last ? 0 : workers + batch_size(s) / LEAD_SHARE;
 }
 
-static Status ask(Search *s, size_t n_new, size_t n, EvaluationKind kind, Err *err)
+static Status ask(Search *s, size_t n, Err *err)
 {
     const Problem *p = s->problem;
-    const int foretold = kind != KIND_SAMPLED && surface_stands(s->surface);
     for (size_t i = 0; i < n; i++) {
         const Asked asked = {.draws = s->draws[i],
-                             .kind = (unsigned char)(i < n_new ? kind : KIND_REPEAT),
-                             .foretold = foretold && i < n_new,
+                             .kind = s->kind[i],
+                             .foretold = is_foretold(s, i),
                              .foreseen = s->foreseen + i * p->n_obj};
         TRY(feed_ask(s->feed, s->X + i * p->n_var, &asked, err));
     }
@@ -91,6 +98,7 @@ static Status take_in(Search *s, size_t i, const Arrived *a, Err *err)
     memcpy(s->X + i * p->n_var, a->x, p->n_var * sizeof *a->x);
     memcpy(s->F + i * p->n_obj, a->f, p->n_obj * sizeof *a->f);
     s->ok[i] = a->ok;
+    s->kind[i] = a->asked.kind;
     s->foretold[i] = a->asked.foretold;
     if (a->asked.foretold)
         memcpy(s->foreseen + i * p->n_obj, a->asked.foreseen, p->n_obj * sizeof *a->f);
@@ -110,19 +118,20 @@ static Status take_results(Search *s, size_t pending, Err *err)
     return STATUS_OK;
 }
 
-static Status simulate_in_turn(Search *s, size_t n_new, size_t n, EvaluationKind kind, Err *err)
+static Status simulate_in_turn(Search *s, size_t n, Err *err)
 {
-    TRY(ask(s, n_new, n, kind, err));
+    TRY(ask(s, n, err));
     const size_t most = lead(s), pending = feed_pending(s->feed);
     const size_t least =
         n == 0 && pending > 0 ? pending - 1 : pending; /* a generation without a new design goes on too */
     return take_results(s, most < least ? most : least, err);
 }
 
-Status batch_simulate(Search *s, size_t n_new, size_t n, EvaluationKind kind, Err *err)
+Status batch_simulate(Search *s, size_t n_new, size_t n, Err *err)
 {
     const double before = search_seconds(s);
-    const Status status = s->feed ? simulate_in_turn(s, n_new, n, kind, err) : simulate_all(s, n_new, n, kind, err);
+    memset(s->kind + n_new, KIND_REPEAT, n - n_new);
+    const Status status = s->feed ? simulate_in_turn(s, n, err) : simulate_all(s, n, err);
     archive_settle(&s->archive);
     s->waited_s += search_seconds(s) - before;
     s->n_timed += s->n_came;

@@ -8,21 +8,21 @@ enum {
 };
 
 /* Offspring i into the batch, and what is foretold of it. */
-static size_t batch_take(Search *s, size_t n, size_t i)
+static size_t batch_take(Search *s, size_t n, size_t i, EvaluationKind kind)
 {
     const Group *g = &s->offspring;
     if (n < s->batch_max)
         memcpy(s->foreseen + n * g->n_obj, g->F + i * g->n_obj, g->n_obj * sizeof *g->F);
     s->picked[i] = 1;
-    return batch_add(s, n, g->X + i * g->n_var);
+    return batch_add(s, n, g->X + i * g->n_var, kind);
 }
 
-/* Plain children are simulated in their order. */
-static size_t choose_plain_batch(Search *s, size_t batch)
+/* Plain children are simulated in their order, up to `limit` designs in the batch. */
+static size_t choose_plain(Search *s, size_t n, size_t limit)
 {
-    size_t n = 0;
-    for (size_t i = 0; i < s->offspring.n - s->n_pending && n < batch; i++)
-        n = batch_take(s, n, i);
+    const size_t end = s->offspring.n - s->n_pending;
+    for (size_t i = end - s->n_plain; i < end && n < limit; i++)
+        n = batch_take(s, n, i, KIND_OFFSPRING);
     return n;
 }
 
@@ -36,7 +36,7 @@ static size_t choose_in_turn(Search *s, size_t n, size_t limit)
         if (i == SIZE_MAX)
             break;
         infill_take(s->infill[rays ? INFILL_PBI : INFILL_RAYS], i);
-        n = batch_take(s, n, i);
+        n = batch_take(s, n, i, KIND_INFILL);
     }
     return n;
 }
@@ -49,36 +49,38 @@ static void forget_picks(Search *s)
 }
 
 /* First predictions that do not stand or have stood for long, then a few of those that do. */
-static size_t choose_batch(Search *s)
+static size_t choose_predicted(Search *s, size_t batch)
 {
     const Group *g = &s->offspring;
-    const size_t batch = batch_size(s), check = batch / CHECK_SHARE + 1;
+    const size_t n_predicted = g->n - s->n_pending - s->n_plain, check = batch / CHECK_SHARE + 1;
     size_t n = 0;
-    forget_picks(s);
-    if (!guide_leads(s))
-        return choose_plain_batch(s, batch);
     for (int kind = 0; kind < INFILL_KINDS; kind++)
         infill_offer(s->infill[kind], g->n, g->F, g->violation, g->uncertainty);
     for (size_t i = g->n - s->n_pending; i < g->n; i++)
         for (int kind = 0; kind < INFILL_KINDS; kind++)
             infill_take(s->infill[kind], i);
     for (int round = 0; round < 2; round++) {
-        const size_t limit = round == 0 ? batch - check : n + check;
+        const size_t limit = round == 1 ? n + check : batch > check ? batch - check : 0;
         for (size_t i = 0; i < g->n; i++)
-            s->allowed[i] = !s->picked[i] && (round == 1 || !guide_trusts(s, g, i) || g->age[i] >= AGE_MAX);
-        n = choose_in_turn(s, n, limit);
+            s->allowed[i] =
+                i < n_predicted && !s->picked[i] && (round == 1 || !guide_trusts(s, g, i) || g->age[i] >= AGE_MAX);
+        n = choose_in_turn(s, n, limit < batch ? limit : batch);
     }
     return n;
 }
 
 /* Where the surface has nothing new to propose, plain children; where these are all known too, fresh samples. */
-size_t choice_make(Search *s, EvaluationKind *kind)
+size_t choice_make(Search *s)
 {
-    const size_t n = choose_batch(s);
-    *kind = n > 0 && guide_leads(s) ? KIND_INFILL : KIND_OFFSPRING;
+    const size_t batch = batch_size(s);
+    size_t n = 0;
+    forget_picks(s);
+    if (guide_leads(s))
+        n = choose_predicted(s, batch - s->n_plain);
+    n = choose_plain(s, n, batch);
     if (n > 0)
         return n;
     offspring_make(s, 1);
     forget_picks(s);
-    return choose_plain_batch(s, batch_size(s));
+    return choose_plain(s, n, batch);
 }

@@ -15,9 +15,9 @@ static Status sample_again(Search *s, Err *err)
     for (size_t i = 0; i < s->config->population; i++) {
         if (p->repair)
             p->repair(s->pool.X + i * p->n_var, p->user);
-        n = batch_add(s, n, s->pool.X + i * p->n_var);
+        n = batch_add(s, n, s->pool.X + i * p->n_var, KIND_SAMPLED);
     }
-    TRY(batch_simulate(s, n, n, KIND_SAMPLED, err));
+    TRY(batch_simulate(s, n, n, err));
     batch_join(s, &s->population, first);
     return STATUS_OK;
 }
@@ -58,7 +58,7 @@ static Status repeat_generation(Search *s, size_t n, Err *err)
     const size_t first_new = s->archive.n;
     surface_drop(s->surface);
     s->offspring.n = 0;
-    TRY(batch_simulate(s, 0, n, KIND_REPEAT, err));
+    TRY(batch_simulate(s, 0, n, err));
     renew_population(s, first_new);
     return STATUS_OK;
 }
@@ -81,11 +81,10 @@ Status generation_next(Search *s, Err *err)
         surface_drop(s->surface);
     guide_predict(s, &s->population, 0, 0);
     offspring_make(s, 0);
-    EvaluationKind kind;
-    const size_t n = choice_make(s, &kind);
+    const size_t n = choice_make(s);
     if (n == 0 && (!s->feed || feed_pending(s->feed) == 0))
         return sample_again(s, err);
-    TRY(batch_simulate(s, n, repeat_some(s, n), kind, err));
+    TRY(batch_simulate(s, n, repeat_some(s, n), err));
     guide_judge(s);
     renew_population(s, first_new);
     if (guide_may_lead(s)) {
@@ -136,14 +135,14 @@ Status generation_first(Search *s, Err *err)
     for (size_t i = 0; i < s->config->n_given; i++) {
         memcpy(s->child, s->config->given + i * p->n_var, p->n_var * sizeof *s->child);
         make_allowed(p, s->child);
-        n = batch_add(s, n, s->child);
+        n = batch_add(s, n, s->child, KIND_SAMPLED);
     }
     latin_hypercube(s->config->seed, 0, generation_samples(s), p->n_var, p->lower, p->upper, s->pool.X, s->chosen);
     for (size_t i = 0; i < generation_samples(s); i++) {
         make_allowed(p, s->pool.X + i * p->n_var);
-        n = batch_add(s, n, s->pool.X + i * p->n_var);
+        n = batch_add(s, n, s->pool.X + i * p->n_var, KIND_SAMPLED);
     }
-    TRY(batch_simulate(s, n, n, KIND_SAMPLED, err));
+    TRY(batch_simulate(s, n, n, err));
     batch_join(s, &s->pool, 0);
     offspring_survive(s, &s->pool, 0);
     group_copy(&s->population, &s->pool);

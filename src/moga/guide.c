@@ -12,6 +12,12 @@ static const double LEAST_AGREEMENT = 0.15, AGREEMENT_WEIGHT = 0.25;
  */
 static const double OFF_LEAST = 0.15, OFF_MOST = 0.35, RAYS_MOST = 0.85, OFF_WEIGHT = 0.2;
 
+/* Surface and plain children share a batch by this power of what each gained per simulation; whoever gained less gets
+ * the LEAST_SHARE-th part. So few plain children tell little about their gain: it has to be greater by DOUBT. One
+ * generation's weight in the mean. */
+static const double CREDIT_WEIGHT = 0.1, CREDIT_POWER = 8.0, DOUBT = 1.3;
+enum { LEAST_SHARE = 16, ALONE = 18 /* simulations for each variable that the surface has alone */ };
+
 /* A surface costs wall time; with it a search needs a fifth of the simulations of a plain one, mostly less
  * (docs/search.md). It therefore pays as long as its time for one simulation is below that of PAYS simulations. */
 static const double PAYS = 4.0;
@@ -64,12 +70,47 @@ int guide_trusts(const Search *s, const Group *g, size_t i)
     return guide_leads(s) && g->uncertainty[i] < s->config->trust_error;
 }
 
+/* Each source's share of what the results gained: the length of the rays that they dominate and the front that the
+ * generation began with does not. */
+static void judge_sources(Search *s)
+{
+    double gain[SOURCES] = {0}, number[SOURCES] = {0};
+    for (size_t i = 0; i < s->n_came; i++) {
+        if (s->kind[i] != KIND_INFILL && s->kind[i] != KIND_OFFSPRING)
+            continue;
+        const Source source = s->kind[i] == KIND_INFILL ? SOURCE_SURFACE : SOURCE_PLAIN;
+        gain[source] += s->ok[i] ? infill_gain(s->gained, s->F + i * s->problem->n_obj) : 0.0;
+        number[source] += 1.0;
+    }
+    const double all = gain[SOURCE_SURFACE] + gain[SOURCE_PLAIN];
+    if (!(all > 0.0) || number[SOURCE_SURFACE] == 0.0 || number[SOURCE_PLAIN] == 0.0)
+        return;
+    for (int k = 0; k < SOURCES; k++) {
+        s->credit[k] += CREDIT_WEIGHT * (gain[k] / all - s->credit[k]);
+        s->chance[k] += CREDIT_WEIGHT * (number[k] / (number[SOURCE_SURFACE] + number[SOURCE_PLAIN]) - s->chance[k]);
+    }
+}
+
+/* Whoever gained more per simulation has nearly all of the batch, the other one a design at least; none before a
+ * surface can have saturated. */
+size_t guide_plain(const Search *s)
+{
+    const size_t batch = batch_size(s), least = batch / LEAST_SHARE + 1;
+    if (s->archive.n < ALONE * s->problem->n_var)
+        return 0;
+    const double plain = pow(s->credit[SOURCE_PLAIN] / s->chance[SOURCE_PLAIN] / DOUBT, CREDIT_POWER);
+    const double surface = pow(s->credit[SOURCE_SURFACE] / s->chance[SOURCE_SURFACE], CREDIT_POWER);
+    const size_t wanted = (size_t)(plain / (plain + surface) * (double)batch + 0.5);
+    return wanted < least ? least : wanted < batch - least ? wanted : batch - least;
+}
+
 /* How far the surface foretold the order of the results that came, in the mean over the objectives. */
 void guide_judge(Search *s)
 {
     const size_t m = s->problem->n_obj;
     size_t n = 0;
     double mean = 0.0;
+    judge_sources(s);
     for (size_t i = 0; i < s->n_came; i++) {
         n += s->foretold[i];
         s->foretold[i] &= s->ok[i];
@@ -86,11 +127,12 @@ void guide_measure_front(Search *s)
 {
     for (size_t i = 0; i < s->population.n; i++)
         s->chosen[i] = i;
-    for (int kind = 0; kind < INFILL_KINDS; kind++)
+    Infill *const all[] = {s->infill[INFILL_PBI], s->infill[INFILL_RAYS], s->gained};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         if (s->archive.n_front > 0)
-            infill_measure(s->infill[kind], s->archive.n_front, s->archive.front, s->archive.F);
+            infill_measure(all[i], s->archive.n_front, s->archive.front, s->archive.F);
         else
-            infill_measure(s->infill[kind], s->population.n, s->chosen, s->population.F);
+            infill_measure(all[i], s->population.n, s->chosen, s->population.F);
 }
 
 /* -- the surface, timed ---------------------------------------------------------------------------------------------

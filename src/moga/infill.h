@@ -42,6 +42,9 @@ double infill_distance(Infill *q, const double f[]);
 size_t infill_best(const Infill *q, size_t direction);
 double infill_slope(const Infill *q, size_t direction, const double f[], double slope[]);
 
+/* By how much f lowers the values to beat, in the sum over the directions. */
+double infill_gain(Infill *q, const double f[]);
+
 /* n predicted designs: F (n, n_obj), violation (n), how uncertain each is (n); borrowed until the last pick. */
 void infill_offer(Infill *q, size_t n, const double F[], const double violation[], const double uncertainty[]);
 

@@ -80,30 +80,46 @@ static void add_pending(Search *s)
     guide_predict(s, &s->offspring, first, 1);
 }
 
-/* The offspring population: what survives some generations of variation and selection on the surface and has not been
- * simulated. Without a surface that can be relied on, plain children of the population. */
-void offspring_make(Search *s, int plainly)
+/* What survives some generations of variation and selection on the surface and has not been simulated. */
+static void add_evolved(Search *s)
 {
-    const int guided = guide_leads(s) && !plainly;
-    s->pool.n = s->offspring.n = s->n_followed = s->n_pending = 0;
-    for (size_t i = 0; i < s->population.n; i++)
-        group_copy_member(&s->pool, &s->population, i);
-    for (uint32_t step = 0; step < (guided ? INNER_GENERATIONS : 1); step++) {
+    group_copy(&s->pool, &s->population);
+    for (uint32_t step = 0; step < INNER_GENERATIONS; step++) {
         const size_t n_parents = s->pool.n;
         breed(s, &s->pool, s->config->population, step);
-        if (!guided)
-            break;
         guide_predict(s, &s->pool, n_parents, 0);
         offspring_survive(s, &s->pool, 1 + step);
     }
     for (size_t i = 0; i < s->pool.n; i++)
         if (s->pool.row[i] == PREDICTED)
             group_copy_member(&s->offspring, &s->pool, i);
-    if (guided && s->archive.n_front > 0)
-        add_descended(s);
-    guide_predict(s, &s->offspring, 0, 1);
-    if (s->n_followed > 0)
-        guide_judge_directions(s);
+}
+
+static void add_plain(Search *s, size_t n)
+{
+    const size_t n_parents = s->population.n, first = s->offspring.n;
+    group_copy(&s->pool, &s->population);
+    breed(s, &s->pool, n, 0);
+    for (size_t i = n_parents; i < s->pool.n; i++)
+        group_copy_member(&s->offspring, &s->pool, i);
+    s->n_plain = n;
+    guide_predict(s, &s->offspring, first, 1);
+}
+
+/* Where a surface can be relied on, what it proposes and a few plain children of the population, else those alone. */
+void offspring_make(Search *s, int plainly)
+{
+    const int guided = guide_leads(s) && !plainly;
+    s->offspring.n = s->n_followed = s->n_pending = 0;
+    if (guided) {
+        add_evolved(s);
+        if (s->archive.n_front > 0)
+            add_descended(s);
+        guide_predict(s, &s->offspring, 0, 1);
+        if (s->n_followed > 0)
+            guide_judge_directions(s);
+    }
+    add_plain(s, guided ? guide_plain(s) : s->config->population);
     if (s->feed)
         add_pending(s);
 }

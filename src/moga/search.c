@@ -6,7 +6,7 @@
 
 #include "base/carve.h"
 
-enum { WISHES_MAX = 400 };
+enum { WISHES_MAX = 400, WISHES_FEW = 200 };
 
 const char *stop_reason_words(StopReason reason)
 {
@@ -199,6 +199,7 @@ static void layout(Search *s, size_t n_pool, Carve *c)
     s->F = carve(c, s->came_max * p->n_obj, sizeof(double));
     s->G = carve(c, s->came_max * p->n_con, sizeof(double));
     s->ok = carve(c, s->came_max, 1);
+    s->kind = carve(c, s->came_max, 1);
     s->foretold = carve(c, s->came_max, 1);
     s->draws = carve(c, s->came_max, sizeof(size_t));
     s->apart = carve(c, s->wishes.n, sizeof(double));
@@ -206,10 +207,12 @@ static void layout(Search *s, size_t n_pool, Carve *c)
     s->picked = carve(c, n_pool, 1);
 }
 
-/* Directions of the choice of simulations: as many as the budget can serve, five simulations each. */
+/* Directions of the choice of simulations: one for five simulations of the budget; of small budgets one for two and a
+ * half, up to WISHES_FEW. */
 static size_t wishes_for(size_t n_obj, const SearchConfig *c)
 {
-    const size_t served = search_planned(c) / 5, least = n_obj > c->population ? n_obj : c->population;
+    const size_t fifth = search_planned(c) / 5, twice = 2 * fifth < WISHES_FEW ? 2 * fifth : WISHES_FEW;
+    const size_t served = fifth > twice ? fifth : twice, least = n_obj > c->population ? n_obj : c->population;
     return n_obj < 2 ? 1 : served < least ? least : served < WISHES_MAX ? served : WISHES_MAX;
 }
 
@@ -231,6 +234,7 @@ static Status create(Search *s, Err *err)
     TRY(survival_create(&s->survival, s->config->survival, n_pool, &s->directions, err));
     for (int kind = 0; kind < INFILL_KINDS; kind++)
         TRY(infill_create(&s->infill[kind], (InfillKind)kind, n_pool, &s->wishes, err));
+    TRY(infill_create(&s->gained, INFILL_RAYS, 1, &s->wishes, err));
     TRY(surface_create(&s->surface, p, centres, n_pool, err));
     TRY(group_create(&s->population, 2 * population + lead, p->n_var, p->n_obj, err));
     TRY(group_create(&s->offspring, n_pool, p->n_var, p->n_obj, err));
@@ -254,6 +258,7 @@ static void release(Search *s)
     survival_free(s->survival);
     for (int kind = 0; kind < INFILL_KINDS; kind++)
         infill_free(s->infill[kind]);
+    infill_free(s->gained);
     surface_free(s->surface);
     group_free(&s->population);
     group_free(&s->offspring);
@@ -274,7 +279,7 @@ Status search_run(const Problem *problem, const SearchConfig *config, ObserveFn 
 Status search_resume(const Problem *problem, const SearchConfig *config, const SearchStart *start, ObserveFn observe,
                      void *user, StopReason *reason, Err *err)
 {
-    Search s = {.problem = problem, .config = config, .agreement = 1.0};
+    Search s = {.problem = problem, .config = config, .agreement = 1.0, .credit = {0.97, 0.03}, .chance = {0.9, 0.1}};
     TRY(check(problem, config, err));
     clock_gettime(CLOCK_MONOTONIC, &s.start);
     Status status = create(&s, err);

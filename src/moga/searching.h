@@ -26,6 +26,9 @@
 #include "moga/search.h"
 #include "moga/surface.h"
 
+/* What proposes a design. */
+typedef enum { SOURCE_SURFACE, SOURCE_PLAIN, SOURCES } Source;
+
 typedef enum { ASIDE_OPEN, ASIDE_NO, ASIDE_YES } Aside;
 
 typedef struct {
@@ -34,7 +37,7 @@ typedef struct {
     Archive archive;
     Directions directions, wishes; /* of survival, of the choice of simulations */
     Survival *survival;
-    Infill *infill[INFILL_KINDS];
+    Infill *infill[INFILL_KINDS], *gained; /* by both ways of choosing; what a batch gains */
     Surface *surface;
     Group population, pool, offspring;
     size_t generation, n_predicted, batch_max;
@@ -47,6 +50,9 @@ typedef struct {
     size_t aside;                       /* Aside */
     double agreement;                   /* running mean of Kendall's tau between predicted and simulated batches */
     double off;                         /* running mean of how far from their directions descents by PBI end */
+    double credit[SOURCES];             /* running means of each source's share of what the batches gained ... */
+    double chance[SOURCES];             /* ... and of its share of their designs */
+    size_t n_plain;                     /* the last of the offspring but those pending: no surface has chosen them */
     size_t n_followed, n_followed_rays; /* descents of this generation, the last of the offspring; by rays come first */
     double *foreseen;                   /* (batch, n_obj) what was predicted of the batch under way */
     size_t *chosen;                     /* (pool) */
@@ -55,14 +61,14 @@ typedef struct {
     double *descended;                  /* (pool, n_var) */
     double *child;                      /* (2, n_var) */
     double *X, *F, *G;                  /* (batch) of one call of evaluate */
-    unsigned char *ok, *foretold;       /* (batch) */
-    size_t *draws;                      /* (batch) answers that there are already: 0 of new designs */
-    unsigned char *allowed, *picked;    /* (pool) offspring that may still be, that have been sent to simulation */
-    size_t reserved;                    /* simulations that are kept for the last repeats */
-    size_t n_rows;                      /* of the archive, that there is room for in the next two */
-    size_t *wins;                       /* (rows) how much is built on a design */
-    unsigned char *reported;            /* (rows) on the front, with answers enough */
-    Pack state;                         /* as of the last report */
+    unsigned char *ok, *foretold, *kind; /* (batch) */
+    size_t *draws;                       /* (batch) answers that there are already: 0 of new designs */
+    unsigned char *allowed, *picked;     /* (pool) offspring that may still be, that have been sent to simulation */
+    size_t reserved;                     /* simulations that are kept for the last repeats */
+    size_t n_rows;                       /* of the archive, that there is room for in the next two */
+    size_t *wins;                        /* (rows) how much is built on a design */
+    unsigned char *reported;             /* (rows) on the front, with answers enough */
+    Pack state;                          /* as of the last report */
     void *store;
     struct timespec start;
 } Search;
@@ -73,10 +79,10 @@ Status search_widen(Search *s, Err *err); /* room for the archive's rows, after 
 
 /* batch.c: x is appended to a batch of n unless it is known, the batch is full or the simulations are spent; returns
  * the new n. */
-size_t batch_add(Search *s, size_t n, const double x[]);
+size_t batch_add(Search *s, size_t n, const double x[], EvaluationKind kind);
 size_t batch_size(const Search *s);
 /* n designs, of which those from n_new on are repeats, are asked for; n_came results have come. */
-Status batch_simulate(Search *s, size_t n_new, size_t n, EvaluationKind kind, Err *err);
+Status batch_simulate(Search *s, size_t n_new, size_t n, Err *err);
 Status batch_finish(Search *s, Err *err); /* asynchronous: only what is under way */
 size_t batch_lead_max(const SearchConfig *c, size_t n_workers);
 size_t batch_pending(const Search *s);                  /* asynchronous: asked for, and not in the archive yet */
@@ -87,7 +93,8 @@ void guide_weigh_costs(Search *s);
 int guide_may_lead(const Search *s);                         /* the surface is wanted and worth its time */
 int guide_leads(const Search *s);                            /* ... and can be relied on */
 int guide_trusts(const Search *s, const Group *g, size_t i); /* the prediction of this member stands */
-double guide_rays(const Search *s); /* share of a batch that is chosen by rays, the rest by PBI */
+double guide_rays(const Search *s);  /* share of a batch that is chosen by rays, the rest by PBI */
+size_t guide_plain(const Search *s); /* plain children in a batch that the surface leads */
 void guide_judge_directions(Search *s);
 void guide_judge(Search *s); /* by the results that came */
 void guide_measure_front(Search *s);
@@ -105,7 +112,7 @@ void offspring_make(Search *s, int plainly);
 void offspring_survive(Search *s, Group *group, uint32_t step);
 
 /* choice.c: how many designs of the batch wait for simulation, and what they are. */
-size_t choice_make(Search *s, EvaluationKind *kind);
+size_t choice_make(Search *s);
 
 /* generation.c */
 Status generation_first(Search *s, Err *err);

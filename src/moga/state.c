@@ -1,6 +1,6 @@
 #include "moga/searching.h"
 
-enum { STATE_VERSION = 4 };
+enum { STATE_VERSION = 5 };
 
 /* All that the next generation takes from the earlier ones, beside the archive. */
 static void state_pack(Search *s, Pack *p)
@@ -15,6 +15,8 @@ static void state_pack(Search *s, Pack *p)
     pack_size(p, &s->generation, UINT32_MAX);
     pack(p, &s->agreement, sizeof s->agreement);
     pack(p, &s->off, sizeof s->off);
+    pack(p, s->credit, sizeof s->credit);
+    pack(p, s->chance, sizeof s->chance);
     pack_size(p, &s->aside, ASIDE_YES);
     group_pack(&s->population, p, s->archive.n);
     surface_pack(s->surface, p);
