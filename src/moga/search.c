@@ -21,19 +21,8 @@ const char *stop_reason_words(StopReason reason)
     return words[reason];
 }
 
-double search_seconds(const Search *s)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)(now.tv_sec - s->start.tv_sec) + 1e-9 * (double)(now.tv_nsec - s->start.tv_nsec);
-}
-
-size_t search_planned(const SearchConfig *c)
-{
-    return c->planned_evals > 0 ? c->planned_evals : c->max_evals;
-}
-
-Status search_widen(Search *s, Err *err)
+/* Room for the archive's rows, after every generation. */
+static Status widen(Search *s, Err *err)
 {
     if (s->archive.n <= s->n_rows)
         return STATUS_OK;
@@ -118,13 +107,13 @@ static Status run_loop(Search *s, const SearchStart *start, ObserveFn observe, v
     *reason = STOP_NONE;
     if (start) {
         TRY(state_restore(s, start, err));
-        TRY(search_widen(s, err));
+        TRY(widen(s, err));
         *reason = start->state ? reason_to_stop(s) : STOP_NONE;
         s->generation += start->state != NULL;
     }
     for (; *reason == STOP_NONE; s->generation += *reason == STOP_NONE) {
         TRY(s->generation == 0 ? generation_first(s, err) : generation_next(s, err));
-        TRY(search_widen(s, err));
+        TRY(widen(s, err));
         *reason = reason_to_stop(s);
         if (report(s, observe, user) && *reason == STOP_NONE)
             *reason = STOP_ASKED;
@@ -133,7 +122,7 @@ static Status run_loop(Search *s, const SearchStart *start, ObserveFn observe, v
         return STATUS_OK;
     s->generation++;
     TRY(generation_last(s, err));
-    TRY(search_widen(s, err));
+    TRY(widen(s, err));
     report(s, observe, user);
     return STATUS_OK;
 }

@@ -72,10 +72,19 @@ typedef struct {
     void *store;
     struct timespec start;
 } Search;
-/* search.c: wall time since its beginning; simulations it was planned for. */
-double search_seconds(const Search *s);
-size_t search_planned(const SearchConfig *c);
-Status search_widen(Search *s, Err *err); /* room for the archive's rows, after every generation */
+/* Wall time since the search began. */
+static inline double search_seconds(const Search *s)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)(now.tv_sec - s->start.tv_sec) + 1e-9 * (double)(now.tv_nsec - s->start.tv_nsec);
+}
+
+/* Simulations that it was planned for. */
+static inline size_t search_planned(const SearchConfig *c)
+{
+    return c->planned_evals > 0 ? c->planned_evals : c->max_evals;
+}
 
 /* batch.c: x is appended to a batch of n unless it is known, the batch is full or the simulations are spent; returns
  * the new n. */
