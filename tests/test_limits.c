@@ -86,12 +86,23 @@ static void test_the_nearest_are_in_the_order_of_what_they_miss_and_failed_ones_
     assert_int_equal(rows[2], 2);
 }
 
+static void test_limits_that_contradict_each_other_are_refused_before_anything_is_simulated(void **state)
+{
+    (void)state;
+    write_in_place("both.ini", UNMET);
+    expect(65, "search.limits: f1<=5 and >=7 contradict each other", "check @/both.ini --set 'search.limits=f1>=7,f1<=5'");
+    expect(65, "f1<=5 and >=7", "optimize @/both.ini --out @/both --set 'search.limits=f1<=5,f2<=1,f1>=7'");
+    free(output_of("check @/both.ini --set 'search.limits=f1<=5,f1>=5,f2>=7'"));
+    expect(65, "search.limits: j3_g<=5 and >=7", "check configs/quick.ini --set 'search.limits=j3_g<=5,j3_g>=7'");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_limits_that_nothing_keeps_end_with_the_nearest_designs),
         cmocka_unit_test(test_a_run_that_keeps_its_limits_has_no_nearest_designs),
         cmocka_unit_test(test_the_nearest_are_in_the_order_of_what_they_miss_and_failed_ones_are_not_among_them),
+        cmocka_unit_test(test_limits_that_contradict_each_other_are_refused_before_anything_is_simulated),
     };
     return cmocka_run_group_tests_name("limits", tests, prepare, clear_place);
 }

@@ -109,6 +109,37 @@ static void test_members_min_keeps_what_was_answered_once_out_of_the_front(void 
     saved_free(&h);
 }
 
+/* Answers without any scatter are asked for no more than about ten times, too few for every design of the front. */
+static void test_where_nothing_has_members_min_answers_the_front_is_of_those_with_the_most(void **state)
+{
+    (void)state;
+    write_in_place("noisy.ini", NOISY);
+    char *said = output_of("optimize @/noisy.ini --out @/scarce --threads 1 --set problem.noise=0 "
+                           "--set problem.noisy=yes --set search.members_min=3");
+    Saved h = saved_of("scarce");
+    long most = 0;
+    for (size_t i = 0; i < h.n; i++)
+        most = h.row[i].members > most ? h.row[i].members : most;
+    assert_true(most < 3 && h.n_front > 0);
+    for (size_t i = 0; i < h.n; i++)
+        assert_true(!h.row[i].on_front || h.row[i].members == most);
+    assert_non_null(strstr(said, "no design was simulated 3 times (search.members_min)"));
+    saved_free(&h);
+    free(said);
+}
+
+/* 2 variables: repeats begin behind the first 36 simulations, and half of what follows is for them. */
+static void test_a_budget_that_brings_no_repeats_is_refused_before_anything_is_simulated(void **state)
+{
+    (void)state;
+    static const char *const WANTED = "search.max_evals must be 38 at least";
+    write_in_place("noisy.ini", NOISY);
+    expect(65, WANTED, "check @/noisy.ini --set search.members_min=2 --set search.max_evals=37");
+    expect(65, WANTED, "optimize @/noisy.ini --set search.members_min=2 --max-evals 37 --out @/poor");
+    free(output_of("check @/noisy.ini --set search.members_min=2 --set search.max_evals=38"));
+    expect(65, "search.members_min: 4 is above search.members_max = 3", "check @/noisy.ini --set search.members_min=4");
+}
+
 static void test_without_noise_nothing_is_repeated_and_the_tables_are_as_ever(void **state)
 {
     (void)state;
@@ -130,6 +161,8 @@ int main(void)
         cmocka_unit_test(test_the_front_has_means_spreads_and_members_of_what_was_simulated),
         cmocka_unit_test(test_the_exports_and_status_tell_of_repeats),
         cmocka_unit_test(test_members_min_keeps_what_was_answered_once_out_of_the_front),
+        cmocka_unit_test(test_where_nothing_has_members_min_answers_the_front_is_of_those_with_the_most),
+        cmocka_unit_test(test_a_budget_that_brings_no_repeats_is_refused_before_anything_is_simulated),
         cmocka_unit_test(test_without_noise_nothing_is_repeated_and_the_tables_are_as_ever),
     };
     return cmocka_run_group_tests_name("repeats", tests, prepare, clear_place);

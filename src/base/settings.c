@@ -444,6 +444,16 @@ static void check_rules(const Settings *s, BrokenFn broken, void *user)
         fail(&e, STATUS_BAD_DATA, "problem.command: is none; problem.kind = external wants the worker's command");
         broken((size_t[]){AT(problem.command), AT(problem.kind), AT(problem.kind)}, e.text, user);
     }
+    if (s->search.members_min > s->search.members_max) {
+        fail(&e, STATUS_BAD_DATA, "search.members_min: %ld is above search.members_max = %ld", s->search.members_min,
+             s->search.members_max);
+        broken((size_t[]){AT(search.members_min), AT(search.members_max), AT(search.members_max)}, e.text, user);
+    }
+    if (s->search.members_min > 1 && !(s->search.repeats > 0.0)) {
+        fail(&e, STATUS_BAD_DATA, "search.members_min: %ld simulations of a design want search.repeats above 0",
+             s->search.members_min);
+        broken((size_t[]){AT(search.members_min), AT(search.repeats), AT(search.repeats)}, e.text, user);
+    }
     if (s->core.section == CORE_BOX && 2 * s->design.thickness_max_m > s->core.side_m) {
         fail(&e, STATUS_BAD_DATA, "design.thickness_max_m: two walls of %g m do not fit into core.side_m = %g",
              s->design.thickness_max_m, s->core.side_m);

@@ -54,9 +54,9 @@ static int check_motion(const Settings *s, Faults *faults)
 static void check_scene(const Settings *s, Faults *faults)
 {
     Err e = {0};
-    World w;
-    if (note(faults, world_open(&w, s, &e), "scene", &e))
-        world_close(&w);
+    Subject *subject;
+    if (note(faults, subject_open(&subject, s, &e), "scene", &e))
+        subject_close(subject);
 }
 
 static Status verdict(const Args *args, const Faults *faults, Err *err)

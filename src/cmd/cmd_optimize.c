@@ -90,7 +90,10 @@ static Status report_no_front(const StudySummary *summary, Err *err)
     TRY(saved_read(&saved, summary->folder, err));
     const size_t n = nearest_rows(&saved, rows);
     Status status = nearest_write(summary->folder, &saved, n, rows, err);
-    if (status == STATUS_OK && n > 0) {
+    if (status == STATUS_OK && n > 0 && strcmp(saved.settings.search.limits, "none") == 0) {
+        status = fail(err, STATUS_INTERNAL, "every design failed at least once; %s/evaluations.csv says why",
+                      summary->folder);
+    } else if (status == STATUS_OK && n > 0) {
         printf("nearest: %s/nearest.csv\n%zu simulated designs, %zu simulations failed, %.1f s (%s)\n\n",
                summary->folder, summary->n_simulated, summary->n_failed, summary->seconds,
                stop_reason_words(summary->stopped));
@@ -105,12 +108,30 @@ static Status report_no_front(const StudySummary *summary, Err *err)
     return status;
 }
 
+/* Where nothing was simulated as often as search.members_min asks for. */
+static Status tell_few_members(const StudySummary *summary, Err *err)
+{
+    Saved h;
+    TRY(saved_read(&h, summary->folder, err));
+    const long wanted = h.settings.search.members_min * h.settings.sim.ensemble;
+    long least = wanted;
+    for (size_t i = 0; i < h.n && schema_is_noisy(&h.settings); i++)
+        if (h.row[i].on_front && h.row[i].id < POLISHED_FIRST && h.row[i].members < least)
+            least = h.row[i].members;
+    if (least < wanted)
+        printf("no design was simulated %ld times (search.members_min); the front has those with the most, %ld\n\n",
+               wanted, least);
+    saved_free(&h);
+    return STATUS_OK;
+}
+
 static Status report(const StudySummary *summary, Err *err)
 {
     Front front;
     if (summary->n_front == 0)
         return report_no_front(summary, err);
     TRY(nearest_write(summary->folder, NULL, 0, NULL, err));
+    TRY(tell_few_members(summary, err));
     TRY(front_read(&front, summary->folder, err));
     printf("front: %s/front.csv\n%zu nondominated of %zu simulated designs, %zu simulations failed, %.1f s (%s)\n\n",
            summary->folder, front.n, summary->n_simulated, summary->n_failed, summary->seconds,

@@ -2,8 +2,6 @@
 
 #include <math.h>
 
-/* Where new designs are worth more than certainty about old ones: so many for each variable bring no repeats. */
-static const double UNTROUBLED = 18.0;
 /* Part of the repeats that are made while the search goes on; the rest confirms its result. */
 static const double EARLY = 0.25;
 /* A spread below this part of the front's range decides nothing, once so many repeats have been made. */
@@ -51,11 +49,15 @@ static size_t room_of(const Search *s)
     return s->config->max_evals > asked ? s->config->max_evals - asked : 0;
 }
 
+double search_repeats(size_t n, double share, size_t n_var)
+{
+    return share * fmax((double)n - (double)(SEARCH_UNTROUBLED * n_var), 0.0);
+}
+
 /* Repeats that may still be made, of those that `part` of n simulations bring with them. */
 static size_t repeats_left(const Search *s, size_t n, double part)
 {
-    const double first = UNTROUBLED * (double)s->problem->n_var;
-    const double due = floor(part * s->config->repeats * fmax((double)n - first, 0.0));
+    const double due = floor(part * search_repeats(n, s->config->repeats, s->problem->n_var));
     const size_t made = s->archive.n_repeats + n_pending_repeats(s);
     if (!s->problem->is_noisy || s->config->answers_max < 2 || due <= (double)made || !is_noticeable(&s->archive))
         return 0;

@@ -50,23 +50,34 @@ static StopReason reason_to_stop(const Search *s)
     return c->max_seconds > 0.0 && search_seconds(s) >= c->max_seconds ? STOP_TIME : STOP_NONE;
 }
 
-/* The front with answers enough; where answers are not noisy one is enough. */
-static size_t count_reported(Search *s)
+/* Answers that a design on the front wants: at the end no more than one of them has. */
+static size_t answers_wanted(const Search *s, int is_last)
 {
     const Archive *a = &s->archive;
+    size_t most = 0;
+    for (size_t i = 0; i < a->n_front; i++)
+        most = a->answers[a->front[i]] > most ? a->answers[a->front[i]] : most;
+    return is_last && most < s->config->answers_min ? most : s->config->answers_min;
+}
+
+/* The front with answers enough; where answers are not noisy one is enough. */
+static size_t count_reported(Search *s, int is_last)
+{
+    const Archive *a = &s->archive;
+    const size_t wanted = s->problem->is_noisy ? answers_wanted(s, is_last) : 0;
     size_t n = 0;
     memcpy(s->reported, a->on_front, a->n);
     for (size_t i = 0; i < a->n_front; i++) {
-        s->reported[a->front[i]] = !s->problem->is_noisy || a->answers[a->front[i]] >= s->config->answers_min;
+        s->reported[a->front[i]] = a->answers[a->front[i]] >= wanted;
         n += s->reported[a->front[i]];
     }
     return n;
 }
 
-static int report(Search *s, ObserveFn observe, void *user)
+static int report(Search *s, int is_last, ObserveFn observe, void *user)
 {
     const Archive *a = &s->archive;
-    const size_t n_reported = count_reported(s);
+    const size_t n_reported = count_reported(s, is_last);
     state_save(s);
     const SearchView view = {
         .n = a->n,
@@ -115,7 +126,7 @@ static Status run_loop(Search *s, const SearchStart *start, ObserveFn observe, v
         TRY(s->generation == 0 ? generation_first(s, err) : generation_next(s, err));
         TRY(widen(s, err));
         *reason = reason_to_stop(s);
-        if (report(s, observe, user) && *reason == STOP_NONE)
+        if (report(s, *reason != STOP_NONE, observe, user) && *reason == STOP_NONE)
             *reason = STOP_ASKED;
     }
     if (!s->feed || feed_pending(s->feed) == 0 || *reason == STOP_ASKED)
@@ -123,7 +134,7 @@ static Status run_loop(Search *s, const SearchStart *start, ObserveFn observe, v
     s->generation++;
     TRY(generation_last(s, err));
     TRY(widen(s, err));
-    report(s, observe, user);
+    report(s, 1, observe, user);
     return STATUS_OK;
 }
 

@@ -75,6 +75,11 @@ typedef struct {
     double crossover_probability, crossover_eta, mutation_eta, mutation_rate;
 } SearchConfig;
 
+/* Repeats that n simulations of a noisy problem bring at most. Where new designs are worth more than certainty about old
+ * ones there are none: of the first SEARCH_UNTROUBLED simulations for each variable. */
+enum { SEARCH_UNTROUBLED = 18 };
+double search_repeats(size_t n, double share, size_t n_var);
+
 typedef enum { STOP_NONE, STOP_GENERATIONS, STOP_EVALUATIONS, STOP_TIME, STOP_SHARE, STOP_ASKED } StopReason;
 const char *stop_reason_words(StopReason reason);
 
@@ -88,7 +93,8 @@ typedef struct {
     const unsigned char *ok;       /* (n) 0: the simulation failed */
     const unsigned char *kind;     /* (n) EvaluationKind */
     const size_t *generation;      /* (n) */
-    const unsigned char *on_front; /* (n) feasible, ok, nondominated and answered answers_min times at least */
+    const unsigned char *on_front; /* (n) feasible, ok, nondominated and answered answers_min times at least; at the
+                                      end, where none is: those with the most answers */
     size_t n_front, n_failed, n_repeats;
     size_t generation_now;
     size_t n_predicted;     /* offspring of this generation whose prediction stood */

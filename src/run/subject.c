@@ -9,6 +9,7 @@
 #include "base/carve.h"
 #include "base/random.h"
 #include "moga/dominance.h"
+#include "moga/search.h"
 #include "problem/external.h"
 #include "problem/textbook.h"
 #include "run/measures.h"
@@ -510,6 +511,34 @@ static Status take_limits(Subject *s, Err *err)
     return STATUS_OK;
 }
 
+/* Where a front asks for repeats, there must be simulations enough to bring them. */
+static Status check_repeats(const Subject *s, Err *err)
+{
+    const double share = s->settings.search.repeats, wanted = (double)(s->settings.search.members_min - 1);
+    if (!schema_is_noisy(&s->settings) ||
+        floor(search_repeats((size_t)s->settings.search.max_evals, share, s->schema.n_var)) >= wanted)
+        return STATUS_OK;
+    return fail(err, STATUS_BAD_DATA,
+                "search.members_min: %ld simulations of a design are not to be had, repeats begin behind the first %zu; "
+                "search.max_evals must be %.0f at least",
+                s->settings.search.members_min, SEARCH_UNTROUBLED * s->schema.n_var,
+                ceil(wanted / share) + (double)(SEARCH_UNTROUBLED * s->schema.n_var));
+}
+
+/* No number keeps both of two limits of one objective where the least wanted is above the most. */
+static Status check_limits(const Subject *s, Err *err)
+{
+    for (size_t a = 0; a < s->n_limits; a++)
+        for (size_t b = 0; b < s->n_limits; b++) {
+            const Limit *most = &s->limit[a], *least = &s->limit[b];
+            if (most->objective == least->objective && most->sign > 0.0 && least->sign < 0.0 &&
+                least->bound > most->bound)
+                return fail(err, STATUS_BAD_DATA, "search.limits: %s<=%g and >=%g contradict each other",
+                            schema_objective(&s->schema, most->objective)->name, most->bound, least->bound);
+        }
+    return STATUS_OK;
+}
+
 static Status open_kind(Subject *s, Err *err)
 {
     switch (s->settings.problem.kind) {
@@ -531,6 +560,8 @@ static Status open(Subject *s, Err *err)
     s->upper = s->lower + s->schema.n_var;
     TRY(set_bounds(s, err));
     TRY(take_limits(s, err));
+    TRY(check_limits(s, err));
+    TRY(check_repeats(s, err));
     s->problem = (Problem){
         .n_var = s->schema.n_var,
         .n_obj = s->schema.n_obj,
