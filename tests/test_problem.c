@@ -1,7 +1,10 @@
 #include <jansson.h>
+#include <poll.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -253,6 +256,36 @@ static void test_words_of_the_command_may_be_quoted_and_no_shell_reads_them(void
     assert_int_equal(external_open(&e, "   ", 1, 1, 3, 2, &err), STATUS_BAD_DATA);
 }
 
+/* Workers and a child of each hold an end of a pipe: it ends when the last of them does. */
+static void test_workers_end_with_a_program_that_is_killed(void **state)
+{
+    (void)state;
+    const double X[4] = {0};
+    double F[4];
+    Answer answers[2];
+    External *e;
+    Err err = {0};
+    int ends[2];
+    char words[8];
+    assert_int_equal(pipe(ends), 0);
+    const pid_t pid = fork();
+    if (pid == 0) {
+        dup2(ends[1], STDERR_FILENO);
+        close(ends[1]);
+        if (external_open(&e, "sh -c 'sleep 60 & printf ! >&2; wait'", 2, 60.0, 2, 2, &err) == STATUS_OK)
+            external_run(e, 2, X, NULL, F, answers, NULL, &err);
+        _exit(1);
+    }
+    close(ends[1]);
+    for (int n = 0; n < 2; n++)
+        assert_int_equal(read(ends[0], words, 1), 1);
+    kill(pid, SIGKILL);
+    assert_int_equal(waitpid(pid, NULL, 0), pid);
+    assert_int_equal(poll(&(struct pollfd){ends[0], POLLIN, 0}, 1, 20000), 1);
+    assert_int_equal(read(ends[0], words, sizeof words), 0);
+    close(ends[0]);
+}
+
 static void test_a_command_that_does_not_exist_ends_the_search_by_name(void **state)
 {
     (void)state;
@@ -408,6 +441,7 @@ int main(void)
         cmocka_unit_test(test_answers_that_are_no_objectives_fail_the_design_alone),
         cmocka_unit_test(test_a_worker_that_never_behaves_fails_every_design_and_nothing_hangs),
         cmocka_unit_test(test_words_of_the_command_may_be_quoted_and_no_shell_reads_them),
+        cmocka_unit_test(test_workers_end_with_a_program_that_is_killed),
         cmocka_unit_test(test_a_command_that_does_not_exist_ends_the_search_by_name),
         cmocka_unit_test(test_an_external_subject_has_the_bounds_senses_names_and_limits_of_its_settings),
         cmocka_unit_test(test_lists_that_do_not_fit_are_refused_by_name),

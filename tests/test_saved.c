@@ -192,6 +192,29 @@ static void test_a_lock_names_its_holder_and_who_cannot_have_one_is_told_why(voi
     assert_false(lock_is_held(path, &holder));
 }
 
+/* As a killed process that the system still tears down. */
+static void test_who_lets_go_of_a_lock_within_a_second_is_waited_for(void **state)
+{
+    (void)state;
+    char path[PATH_MAX], word;
+    int fd, ends[2];
+    Err err = {0};
+    path_of("passing", path);
+    assert_int_equal(pipe(ends), 0);
+    const pid_t pid = fork();
+    if (pid == 0) {
+        const int taken = lock_take(path, &fd, &err) == STATUS_OK && write(ends[1], "!", 1) == 1;
+        usleep(300000);
+        _exit(taken ? 0 : 1);
+    }
+    close(ends[1]);
+    assert_int_equal(read(ends[0], &word, 1), 1);
+    close(ends[0]);
+    CHECK_OK(lock_take(path, &fd, &err), &err);
+    lock_release(fd);
+    assert_int_equal(wait_end(pid), 0);
+}
+
 static int make_sound(void **state)
 {
     if (prepare(state) != 0)
@@ -210,6 +233,7 @@ int main(void)
         cmocka_unit_test(test_a_folder_without_a_run_or_with_too_long_a_name_is_told),
         cmocka_unit_test(test_the_view_has_a_column_for_every_name_or_there_is_none),
         cmocka_unit_test(test_a_lock_names_its_holder_and_who_cannot_have_one_is_told_why),
+        cmocka_unit_test(test_who_lets_go_of_a_lock_within_a_second_is_waited_for),
     };
     return cmocka_run_group_tests_name("saved", tests, make_sound, clear_place);
 }

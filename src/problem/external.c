@@ -15,6 +15,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "problem/guard.h"
+
 enum { LINE_MAX_BYTES = 1 << 20, READ_BYTES = 1 << 16, WORDS_MAX = 128, GRACE_MS = 1000, LOOK_MS = 200 };
 
 /* How long requests under way may still take when no more are wanted. */
@@ -22,6 +24,8 @@ static const double LAST_ANSWERS_S = 5.0;
 
 typedef struct {
     pid_t pid; /* 0: not running */
+    const Guard *guard;
+    size_t slot; /* the guard's for its process group */
     int in, out;
     char *line; /* (LINE_MAX_BYTES) what has come of an answer */
     size_t n_line;
@@ -38,6 +42,7 @@ struct External {
     double timeout_s;
     long next_id;
     Worker *worker;
+    Guard guard;
     struct pollfd *poll; /* (2 n_workers) */
 };
 
@@ -155,6 +160,7 @@ static Status worker_start(External *e, Worker *w, Err *err)
         close(w->out);
         return fail(err, STATUS_BAD_DATA, "problem.command: %s cannot be started: %s", e->words[0], strerror(failed));
     }
+    guard_tell(w->guard, w->slot, w->pid);
     fcntl(w->in, F_SETFL, O_NONBLOCK);
     fcntl(w->out, F_SETFL, O_NONBLOCK);
     return STATUS_OK;
@@ -162,6 +168,7 @@ static Status worker_start(External *e, Worker *w, Err *err)
 
 static void worker_forget(Worker *w)
 {
+    guard_tell(w->guard, w->slot, 0);
     close(w->in);
     close(w->out);
     w->pid = 0;
@@ -450,12 +457,13 @@ Status external_open(External **out, const char *command, size_t workers, double
     Status status = e->worker && e->poll ? split_command(e, command, err)
                                          : fail(err, STATUS_NO_MEMORY, "no memory for %zu workers", workers);
     for (size_t i = 0; status == STATUS_OK && i < workers; i++) {
-        e->worker[i].design = SIZE_MAX;
-        e->worker[i].line = malloc(LINE_MAX_BYTES);
+        e->worker[i] = (Worker){.guard = &e->guard, .slot = i, .design = SIZE_MAX, .line = malloc(LINE_MAX_BYTES)};
         e->n_workers = i + 1;
         if (!e->worker[i].line)
             status = fail(err, STATUS_NO_MEMORY, "no memory for %zu workers", workers);
     }
+    if (status == STATUS_OK)
+        status = guard_start(&e->guard, workers, err);
     if (status == STATUS_OK)
         *out = e;
     else
@@ -496,6 +504,7 @@ void external_close(External *e)
         free(e->worker[i].line);
         free(e->worker[i].request);
     }
+    guard_end(&e->guard);
     free(e->worker);
     free(e->poll);
     free(e->text);

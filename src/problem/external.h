@@ -9,7 +9,8 @@
  * finite, fails the design alone.
  *
  * Life cycle  external_open -> external_run ... -> external_close
- * Processes   started without a shell, each in its own process group; standard error is shared with ours
+ * Processes   started without a shell, each in its own process group; standard error is shared with ours; one more
+ * kills them when we are killed (problem/guard.h)
  * Threads     call it from one thread, but for external_ask; which worker gets which design is a matter of time,
  * answers are stored by index Errors      a command that cannot be started at all is STATUS_BAD_DATA; whatever a worker
  * does is not an error */

@@ -23,17 +23,18 @@ static int is_gone(const LockHolder *holder)
     return strcmp(host, holder->host) == 0 && kill((pid_t)holder->pid, 0) != 0 && errno == ESRCH;
 }
 
-/* A process that is killed while it starts a worker leaves the lock to it for some moments, until that one has begun
- * its own program: who is gone gets PATIENCE to let go. */
+/* The system takes moments to tear a killed process down, and one that is killed while it starts a worker leaves the
+ * lock to it until that one has begun its own program: every holder gets PATIENCE, 1.5 s, to let go. */
 static int try_lock(int fd, LockHolder *holder)
 {
-    enum { PATIENCE = 100, PAUSE_NS = 20000000 };
+    enum { PATIENCE = 75, PAUSE_NS = 20000000 };
     struct flock whole = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
     for (int i = 0; fcntl(fd, F_OFD_SETLK, &whole) != 0; i++) {
         const int cause = errno;
-        read_holder(fd, holder);
-        if ((cause != EAGAIN && cause != EACCES) || i == PATIENCE || !is_gone(holder))
+        if ((cause != EAGAIN && cause != EACCES) || i == PATIENCE) {
+            read_holder(fd, holder);
             return cause;
+        }
         nanosleep(&(struct timespec){.tv_nsec = PAUSE_NS}, NULL);
     }
     return 0;

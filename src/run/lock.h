@@ -14,7 +14,7 @@ typedef struct {
     char host[72];
 } LockHolder;
 
-/* fd for lock_release. Held by somebody else: STATUS_IO, who and where. */
+/* fd for lock_release. Held by somebody else, and still so 1.5 s later: STATUS_IO, who and where. */
 Status lock_take(const char *path, int *fd, Err *err);
 void lock_release(int fd); /* -1 is fine */
 
