@@ -2,6 +2,7 @@
 #include "runs.h"
 
 #include "run/nearest.h"
+#include "run/study.h"
 
 /* f1 + f2 + f3 of dtlz2 is 1 at least on and above its front, the unit sphere: these limits cannot be kept. */
 static const char UNMET[] = "[problem]\nkind = dtlz2\nvariables = 6\nobjectives = 3\n"
@@ -52,7 +53,11 @@ static void test_limits_that_nothing_keeps_end_with_the_nearest_designs(void **s
     char *front = read_in_place("unmet/front.csv");
     assert_string_equal(strchr(front, '\n'), "\n");
     free(front);
-    expect(65, "the front is empty", "choose @/unmet");
+    static const char *const USES[] = {"choose @/unmet", "report @/unmet", "plot @/unmet"};
+    for (size_t i = 0; i < sizeof USES / sizeof USES[0]; i++) {
+        expect(69, "none of 40 designs keeps f1<=0.2,f2<=0.2,f3<=0.2", USES[i]);
+        expect(69, "unmet/nearest.csv", USES[i]);
+    }
 }
 
 static void test_a_run_that_keeps_its_limits_has_no_nearest_designs(void **state)
@@ -96,6 +101,34 @@ static void test_limits_that_contradict_each_other_are_refused_before_anything_i
     expect(65, "search.limits: j3_g<=5 and >=7", "check configs/quick.ini --set 'search.limits=j3_g<=5,j3_g>=7'");
 }
 
+/* Lets `left` questions pass, then stops. */
+static int stop_after(void *user)
+{
+    long *left = user;
+    return (*left)-- <= 0;
+}
+
+static void test_a_run_without_a_front_says_why_there_is_none(void **state)
+{
+    (void)state;
+    const Settings s = settings_of(UNMET, "begun");
+    StudySummary summary;
+    Err err = {0};
+    long left = 5;
+    assert_int_equal(study_run(&s, &(StudyOptions){.stop = stop_after, .user = &left}, &summary, NULL, &err),
+                     STATUS_STOPPED);
+    assert_true(summary.n_simulated > 0 && summary.n_simulated < 12);
+    char wanted[96];
+    snprintf(wanted, sizeof wanted, "before the initial sample is complete; %zu designs", summary.n_simulated);
+    expect(65, wanted, "choose @/begun");
+    expect(65, wanted, "report @/begun");
+
+    write_in_place("deaf.ini", DEAF);
+    expect(70, "none of 8 simulations succeeded", "optimize @/deaf.ini --out @/failed --set problem.command=false");
+    expect(70, "failed: all 8 simulations failed; `imtet status` has the reasons", "choose @/failed");
+    expect(70, "failed: all 8 simulations failed", "report @/failed");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -103,6 +136,7 @@ int main(void)
         cmocka_unit_test(test_a_run_that_keeps_its_limits_has_no_nearest_designs),
         cmocka_unit_test(test_the_nearest_are_in_the_order_of_what_they_miss_and_failed_ones_are_not_among_them),
         cmocka_unit_test(test_limits_that_contradict_each_other_are_refused_before_anything_is_simulated),
+        cmocka_unit_test(test_a_run_without_a_front_says_why_there_is_none),
     };
     return cmocka_run_group_tests_name("limits", tests, prepare, clear_place);
 }

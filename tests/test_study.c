@@ -264,7 +264,7 @@ static void test_designs_are_chosen_by_limits_weights_and_wishes_and_polished(vo
     assert_non_null(strstr(said, "weighted"));
     assert_non_null(strstr(said, "nearest wish"));
     free(said);
-    expect(65, "no design of the front is within the limits", "choose @/kind --max f1=-5");
+    expect(69, "no design of the front is within the limits", "choose @/kind --max f1=-5");
     expect(2, "speed is no objective", "choose @/kind --max speed=5");
     expect(2, "is not NAME=NUMBER", "choose @/kind --weights f1");
     expect(2, "--weights: f2=-1 is negative", "choose @/kind --weights f1=1,f2=-1");

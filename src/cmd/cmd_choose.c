@@ -147,7 +147,7 @@ static Status choose(const Args *args, Choice *c, Err *err)
         TRY(take_list(c, "--wish", args_value(args, "--wish"), wishes, err));
     printf("%zu of %zu designs are within the limits\n", n_left, c->front.n);
     if (n_left == 0)
-        return fail(err, STATUS_BAD_DATA,
+        return fail(err, STATUS_UNMET,
                     "no design of the front is within the limits; `imtet optimize` with "
                     "search.limits looks for some");
     putchar('\n');
@@ -167,7 +167,7 @@ static Status run(const Args *args, Err *err)
     c.allowed = calloc(c.front.n + 1, 1);
     Status status = c.allowed ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for a choice");
     if (status == STATUS_OK && c.front.n == 0)
-        status = fail(err, STATUS_BAD_DATA, "%s: the front is empty", args->operand);
+        status = front_why_empty(args->operand, err);
     if (status == STATUS_OK) {
         front_box(&c.front, c.ideal, c.span);
         status = choose(args, &c, err);

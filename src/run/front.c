@@ -182,11 +182,45 @@ static size_t nearest_id(const Front *front, long id)
     return nearest;
 }
 
+static Status why_empty(const Saved *h, const char *folder, Err *err)
+{
+    char nearest[PATH_MAX + 16];
+    const size_t n_ok = h->n - h->n_failed;
+    snprintf(nearest, sizeof nearest, "%s/nearest.csv", folder);
+    if (h->n > 0 && n_ok == 0)
+        return fail(err, STATUS_INTERNAL, "%s: all %zu simulations failed; `imtet status` has the reasons", folder,
+                    h->n);
+    if (h->n_generations == 0)
+        return fail(err, STATUS_BAD_DATA,
+                    "%s: there is no front before the initial sample is complete; %zu designs are simulated", folder,
+                    h->n);
+    if (strcmp(h->settings.search.limits, "none") != 0)
+        return fail(err, STATUS_UNMET, "%s: search.limits: none of %zu designs keeps %.120s%s%s", folder, n_ok,
+                    h->settings.search.limits, access(nearest, F_OK) == 0 ? "; those that come nearest: " : "",
+                    access(nearest, F_OK) == 0 ? nearest : "");
+    if (schema_is_noisy(&h->settings) && h->settings.search.members_min > 1)
+        return fail(err, STATUS_BAD_DATA, "%s: no design was simulated %ld times yet (search.members_min)", folder,
+                    h->settings.search.members_min);
+    return fail(err, STATUS_BAD_DATA, "%s: the front is empty", folder);
+}
+
+Status front_why_empty(const char *folder, Err *err)
+{
+    char path[PATH_MAX];
+    Saved h;
+    if (!saved_path(folder, path, sizeof path))
+        return fail(err, STATUS_BAD_DATA, "%s/front.csv: the front is empty", folder);
+    TRY(saved_read(&h, folder, err));
+    const Status status = why_empty(&h, folder, err);
+    saved_free(&h);
+    return status;
+}
+
 Status front_pick(const Front *front, const char *folder, const char *word, size_t *row, Err *err)
 {
     char *end;
     if (front->n == 0)
-        return fail(err, STATUS_BAD_DATA, "%s/front.csv: the front is empty", folder);
+        return front_why_empty(folder, err);
     if (strcmp(word, "knee") == 0) {
         *row = front_knee(front);
         return STATUS_OK;

@@ -33,7 +33,10 @@ void front_box(const Front *front, double ideal[], double span[]);
 /* Row of that design, or n when it is not on the front. */
 size_t front_find(const Front *front, long id);
 
-/* `word`: an id of the front or "knee"; folder only names it in messages. An empty front has neither. */
+/* Why a front is empty, and what to do; never STATUS_OK. STATUS_UNMET: nothing keeps search.limits. */
+Status front_why_empty(const char *folder, Err *err);
+
+/* `word`: an id of the front of `folder` or "knee". An empty front has neither: front_why_empty. */
 Status front_pick(const Front *front, const char *folder, const char *word, size_t *row, Err *err);
 
 /* What a run was made with: of its database, or of settings.ini where there is none (run/saved.c). */
