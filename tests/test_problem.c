@@ -272,7 +272,7 @@ static void test_workers_end_with_a_program_that_is_killed(void **state)
     if (pid == 0) {
         dup2(ends[1], STDERR_FILENO);
         close(ends[1]);
-        if (external_open(&e, "sh -c 'sleep 60 & printf ! >&2; wait'", 2, 60.0, 2, 2, &err) == STATUS_OK)
+        if (external_open(&e, "sh -c 'read -r line; sleep 60 & printf ! >&2; wait'", 2, 60.0, 2, 2, &err) == STATUS_OK)
             external_run(e, 2, X, NULL, F, answers, NULL, &err);
         _exit(1);
     }
