@@ -131,6 +131,32 @@ static void test_at_every_accuracy_an_impact_rebounds_right_wherever_it_falls_in
         }
 }
 
+/* A heavy floor flies freely and holds a million times the energy of the blow. */
+static void test_a_blow_too_weak_for_the_books_still_has_its_largest_acceleration(void **state)
+{
+    (void)state;
+    Err err = {0};
+    const Contact contact = {.k = 4.865e10, .v0_floor = 1e-300};
+    for (int i = 0; i < 60; i++) {
+        SimModel model;
+        FastWork *work;
+        SimResult result;
+        const double m = 1000, v = 0.1 * pow(1.03, i), dt = 7.3 * contact_hertz_duration(contact.k, m, v);
+        double accel[12] = {0, -v / dt};
+        const Motion motion = {.accel = accel, .n = 12, .dt_s = dt};
+        const Bob floors[] = {{.mass = 1e6 * m, .gap = 1e9}, {.mass = m, .gap = v * (4 + 0.01 * i) * dt}};
+        const FastKnobs knobs = fast_knobs(ACCURACY_STANDARD);
+        bobs_model(&model, 2, floors, 0, &contact);
+        CHECK_OK(fast_create(&work, 2, &err), &err);
+        fast_run(work, &model, &motion, 8 * dt, &knobs, &result);
+        assert_int_equal(result.impacts, 1);
+        const double depth = contact_hertz_penetration(contact.k, m, v);
+        assert_close(result.peak_acceleration_g[1] * 9.81, contact.k * pow(depth, 1.5) / m, 3e-2);
+        fast_free(work);
+        model_free(&model);
+    }
+}
+
 static void test_one_step_per_contact_makes_no_energy_in_silence(void **state)
 {
     (void)state;
@@ -406,6 +432,7 @@ int main(void)
         cmocka_unit_test(test_damped_impact_has_its_known_penetration_force_and_duration),
         cmocka_unit_test(test_rebound_converges_with_at_least_third_order),
         cmocka_unit_test(test_at_every_accuracy_an_impact_rebounds_right_wherever_it_falls_in_a_step),
+        cmocka_unit_test(test_a_blow_too_weak_for_the_books_still_has_its_largest_acceleration),
         cmocka_unit_test(test_one_step_per_contact_makes_no_energy_in_silence),
         cmocka_unit_test(test_early_window_has_the_digits_that_independent_integrators_share),
         cmocka_unit_test(test_kobe_without_a_core_has_its_known_response),

@@ -107,18 +107,75 @@ static double contact_update(FastWork *k, const Level *l, const Active *active, 
 }
 
 /* How far the energy that the modes gave to the contacts, by their exact motion, is from what the force law took along
- * its cubic paths: zero but for the error of the step. */
-static double step_mismatch(const FastWork *k, const Active *active, double work)
+ * its cubic paths: zero but for the error of the step. handled: the energy that the contacts held or lost. */
+static double step_mismatch(const FastWork *k, const Active *active, double work, double *handled)
 {
     double taken = 0;
+    *handled = 0;
     for (int i = 0; i < active->n; i++) {
         const int j = active->floor[i];
-        const double gap = scalars_const(k->gap)[j];
-        taken += active->press[i].lost + active->press[i].clamped;
-        taken += contact_stored(&k->model->contact, fabs(scalars_const(k->w1)[j]) - gap) -
-                 contact_stored(&k->model->contact, fabs(scalars_const(k->w)[j]) - gap);
+        const double gap = scalars_const(k->gap)[j], lost = active->press[i].lost + active->press[i].clamped;
+        const double start = contact_stored(&k->model->contact, fabs(scalars_const(k->w)[j]) - gap);
+        const double end = contact_stored(&k->model->contact, fabs(scalars_const(k->w1)[j]) - gap);
+        taken += lost + end - start;
+        *handled += start + end + fabs(lost);
     }
     return fabs(work + taken);
+}
+
+/* Share x of a step: what the force that was solved for, a parabola, misses of the law along the path of floor j [N].
+ */
+static double force_missed(const FastWork *k, const Press *t, int j, double h, double x)
+{
+    const Path path = path_make(h, scalars_const(k->w)[j], scalars_const(k->wd)[j], scalars_const(k->w1)[j],
+                                scalars_const(k->wd1)[j]);
+    const double w = path_at(&path, x), side = w > 0 ? 1 : -1, p = side * w - scalars_const(k->gap)[j];
+    const double v0 = larger(t->closings ? t->closed_with : k->v0[j], k->model->contact.v0_floor);
+    const double solved =
+        (1 - x) * scalars_const(k->f0)[j] + x * scalars_const(k->f1)[j] + x * (1 - x) * scalars_const(k->fb)[j];
+    const double law =
+        p > 0 ? contact_force(&k->model->contact, k->model->mass_eff[j], p, side * path_slope(&path, x) / h, v0).force
+              : 0;
+    return fabs(solved + side * law);
+}
+
+/* Are the forces so well known that the largest acceleration is? */
+static int forces_are_followed(const FastWork *k, const Active *active, double h)
+{
+    for (int i = 0; i < active->n; i++) {
+        const int j = active->floor[i];
+        const double *row = k->RT + j * k->m_pad;
+        double missed = 0, per_force = 0; /* [N], [1/kg] of the floor without the core */
+        for (int mode = 0; mode < k->model->nb; mode++)
+            per_force += row[mode] * row[mode];
+        for (int quarter = 1; quarter < 4; quarter++)
+            missed = larger(force_missed(k, &active->press[i], j, h, 0.25 * quarter), missed);
+        const double peak = larger(fabs(scalars_const(k->seen[1][2])[j]), scalars_const(k->peak_a)[j]);
+        if (!(missed * per_force <= ACCELERATION_SLACK * k->knobs->peak_tolerance * peak))
+            return 0;
+    }
+    return 1;
+}
+
+/* Does an acceleration come near its peak, as far as a force that may be wrong tells? */
+static int blow_matters(const FastWork *k)
+{
+    mask near = {0};
+    for (int f = 0; f < k->nf; f++)
+        near |= 2 * parabola_reach(k->seen[0][2][f], k->seen[1][2][f], k->seen[2][2][f]) > k->peak_a[f];
+    return any(near);
+}
+
+/* A blow too weak for the books of the run may still be the largest acceleration. mismatch of the energy [J] that the
+ * contacts handled. */
+static int blow_is_known(const FastWork *k, const Active *active, double h, double mismatch, double handled)
+{
+    static const double GROSSLY = 0.03;
+    if (active->n == 0 || !blow_matters(k))
+        return 1;
+    if (!k->rises[2])
+        return mismatch <= GROSSLY * handled;
+    return mismatch <= ACCELERATION_SLACK * k->knobs->peak_tolerance * handled && forces_are_followed(k, active, h);
 }
 
 /* The control points enclose the path: only where they go deeper than before is its top looked for. */
@@ -167,14 +224,6 @@ static void accept_contacts(FastWork *k, const Active *active, double h)
     k->speed = largest(k->wd, k->nf);
 }
 
-static int closes(const Active *active)
-{
-    for (int i = 0; i < active->n; i++)
-        if (active->press[i].closings)
-            return 1;
-    return 0;
-}
-
 /* Steps whose books do not close are halved so often below the length that resolves the shortest contact. */
 enum { HALVED_FOR_BOOKS = 4 };
 
@@ -198,12 +247,19 @@ static int contact_step(FastWork *k, const Level *l, double a0, double a1, int b
         return 0;
     }
     const double work = contact_update(k, l, &active, a0, a1);
-    const double mismatch = step_mismatch(k, &active, work), allowed = k->knobs->energy_tolerance * k->energy_scale;
-    if (below < (k->knobs->energy_tolerance > 0 ? HALVED_FOR_BOOKS : 0) && !(mismatch <= allowed)) {
+    double handled;
+    const double mismatch = step_mismatch(k, &active, work, &handled);
+    const double allowed = k->knobs->energy_tolerance * k->energy_scale;
+    const int may_halve = below < (k->knobs->energy_tolerance > 0 ? HALVED_FOR_BOOKS : 0);
+    if (may_halve && !(mismatch <= allowed)) {
         forget_forces(k);
         return 0;
     }
     if (!see_step(k, fmax(fabs(a0), fabs(a1)))) {
+        forget_forces(k);
+        return 0;
+    }
+    if (may_halve && !blow_is_known(k, &active, l->h, mismatch, handled)) {
         forget_forces(k);
         return 0;
     }

@@ -106,7 +106,7 @@ FastKnobs fast_knobs(Accuracy accuracy)
 {
     static const FastKnobs KNOBS[] = {
         [ACCURACY_COARSE] = {0.5, 1e-2, 3e-5, 2e7, 3e-3, 0.1},
-        [ACCURACY_STANDARD] = {1, 2e-3, 3e-6, 2e7, 1e-3, 0.02},
+        [ACCURACY_STANDARD] = {1, 2e-3, 3e-6, 2e7, 1e-3, 0.005},
         [ACCURACY_FINE] = {80, 1e-12, 0, 2e8, 1e-6, 0},
     };
     return KNOBS[accuracy];

@@ -222,13 +222,27 @@ static double improve_forces(FastWork *k, double h, Active *a, int fresh)
     }
 }
 
-static void hand_out(FastWork *k, const Level *l, const Active *a)
+static int closes(const Active *active)
+{
+    for (int i = 0; i < active->n; i++)
+        if (active->press[i].closings)
+            return 1;
+    return 0;
+}
+
+/* The forces to the floors. Where the last change of w1 closed a contact its v0 is looked for again. */
+static void hand_out(FastWork *k, const Level *l, Active *a)
 {
     for (int i = 0; i < a->n; i++) {
         const int j = a->floor[i];
+        if (a->press[i].v0 == 0 && fabs(a->y[i][0]) > scalars(k->gap)[j])
+            press(k, l->h, j, a->y[i][0], a->y[i][1], &a->press[i]);
         apply_force(k, l, j, -a->x[i][0], -(6 * a->x[i][1] + 3 * scalars(k->f0)[j] - 3 * a->x[i][0]));
     }
 }
+
+/* Of a step in which a gap closes, so many times as much is left. */
+static const double CLOSING_TOLERANCE = 0.05;
 
 /* The forces of all floors at once by Newton's method; 0 when they cannot be had at this step length. */
 static int solve_contacts(FastWork *k, const Level *l, double tolerance, Active *active)
@@ -250,11 +264,12 @@ static int solve_contacts(FastWork *k, const Level *l, double tolerance, Active 
         const double change = improve_forces(k, l->h, active, fresh);
         if (!(change >= 0))
             return 0;
-        const double left =
-            change * (fresh ? change : change / last); /* of Newton's method, of one with an old matrix */
-        fresh = change > 0.1 * last;                   /* an old matrix serves while it gains a digit a step */
+        /* of Newton's method, of one with an old matrix; v0 does not follow the last change as force and loss do */
+        const double left = change * (fresh ? change : change / last);
+        const double allowed = closes(active) ? CLOSING_TOLERANCE * tolerance : tolerance;
+        fresh = change > 0.1 * last; /* an old matrix serves while it gains a digit a step */
         last = change;
-        if (left > tolerance)
+        if (left > allowed)
             continue;
         hand_out(k, l, active);
         if (!find_closings(k, l, active))

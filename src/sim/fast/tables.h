@@ -55,23 +55,41 @@ static double parabola_misses(double wh)
     return fmin(wh * wh * (0.00802 * wh + wh * wh / 384), 2.25 + 0.25 * wh);
 }
 
+/* From this damping ratio on a mode is bounded by its energy. */
+static const double STIFFLY_DAMPED = 0.99;
+
+/* A free vibration x of damping ratio zeta and a = sqrt(x^2 + ((x' + zeta w x) / w_d)^2) at its start: from then on
+ * |x| <= amplitude a, its fourth derivative <= fourth amplitude w^4 a; 2 zeta w x' + w^2 x, which vibrates alike, has
+ * acceleration w^2 times these bounds. Below critical damping a is the amplitude and the roots lie at distance w from
+ * 0. Else e^2 = x^2 + (x' / w)^2 never grows, e <= (2 + zeta) a with w in place of w_d, and each derivative costs 2
+ * zeta w of the last one and w^2 of the one before. */
+typedef struct {
+    double amplitude, acceleration, fourth;
+} Decay;
+
+static Decay decay_of(double zeta)
+{
+    if (zeta <= STIFFLY_DAMPED)
+        return (Decay){1, 1 + 2 * zeta, 1};
+    return (Decay){2 + zeta, 2 + 4 * zeta * (1 + zeta), 1 + 4 * zeta * (1 + zeta * (1 + 2 * zeta))};
+}
+
 static void level_flow(FastWork *k, Level *l)
 {
     const double *omega = scalars_const(k->omega), *zeta = scalars_const(k->zeta);
     flow_coefficients((size_t)k->m_pad, omega, zeta, l->h, scalars(l->coef), (size_t)k->m_pad);
     for (int i = 0; i < k->m_pad; i++) {
-        const double over = zeta[i] > 0.99 ? zeta[i] + sqrt(fmax(zeta[i] * zeta[i] - 1, 0)) : 1;
-        const double wh = omega[i] * over * l->h, error = wh * wh * wh * wh / 384;
-        const int slow = wh < FAST_MODE;
-        /* overdamped: |x| + |x' + zeta w x| t instead of the amplitude of a sine, at most sqrt(2) times its root */
-        const double bound = (slow ? error : 1) * (over > 1 ? sqrt(2.0) : 1);
+        const Decay d = decay_of(zeta[i]);
+        const double wh = omega[i] * l->h, error = d.fourth * wh * wh * wh * wh / 384;
+        const int slow = wh * (zeta[i] > STIFFLY_DAMPED ? 2 * zeta[i] : 1) < FAST_MODE;
+        const double bound = (slow ? error : 1) * d.amplitude;
         scalars(l->slow)[i] = slow;
         scalars(l->kappa)[i] = bound;
-        scalars(l->kappa_accel)[i] = bound * omega[i] * omega[i] * (1 + 2 * zeta[i]);
-        const double damped = omega[i] * (1 + 2 * zeta[i]);
-        scalars(l->cubic)[i] = cubic_misses(damped * l->h) * scalars(k->most)[i];
-        scalars(l->parabola)[i] = parabola_misses(damped * l->h);
-        scalars(l->parabola_accel)[i] = parabola_misses(damped * l->h) * omega[i] * damped;
+        scalars(l->kappa_accel)[i] = bound * omega[i] * omega[i] * d.acceleration;
+        const double damped = wh * (1 + 2 * zeta[i]);
+        scalars(l->cubic)[i] = d.amplitude * cubic_misses(damped) * scalars(k->most)[i];
+        scalars(l->parabola)[i] = d.amplitude * parabola_misses(damped);
+        scalars(l->parabola_accel)[i] = scalars(l->parabola)[i] * omega[i] * omega[i] * d.acceleration;
     }
     l->has_flow = 1;
 }
@@ -206,9 +224,11 @@ static void take_model(FastWork *k, const SimModel *model, double base)
     for (int i = 0; i < k->m_pad; i++) {
         const double omega = scalars(k->omega)[i], zeta = scalars(k->zeta)[i];
         scalars(k->decay)[i] = 2 * zeta * omega;
-        scalars(k->wd_inverse)[i] = zeta > 0.99 || omega == 0 ? base : 1 / (omega * sqrt(1 - zeta * zeta));
+        scalars(k->wd_inverse)[i] = omega == 0              ? base
+                                    : zeta > STIFFLY_DAMPED ? 1 / omega
+                                                            : 1 / (omega * sqrt(1 - zeta * zeta));
         scalars(k->flex)[i] = omega > 0 ? 1 / (omega * omega) : 0;
-        k->may_glide = k->may_glide && omega > 0 && zeta <= 0.99;
+        k->may_glide = k->may_glide && omega > 0 && zeta <= STIFFLY_DAMPED;
     }
     memcpy(k->gap, model->gap, sizeof(double) * (size_t)k->n_pad);
 }
