@@ -122,7 +122,7 @@ static Text changed(Text t, const char *from, const char *to, int all)
 static void test_line_ends_and_blanks_at_line_ends_do_not_matter(void **state)
 {
     (void)state;
-    static const char *const ends[] = {"\n", "\r\n", "   \r\n", "\t\n"};
+    static const char *const ends[] = {"\n", "\r\n", "   \r\n", "\t\n", "\r"};
     for (int i = 0; i < N_SPECIMENS; i++)
         for (size_t k = 0; k < sizeof ends / sizeof *ends; k++) {
             Text t = read_specimen(SPECIMENS[i].file);
@@ -148,6 +148,7 @@ static const struct {
     {"equals.at2", "43,", "42,", ":13: more samples than the 42"},
     {"columns.at2", "43 ", "4.5 ", ":4: no usable number of points"},
     {"columns.at2", "0.0100", "-.0100", ":4: no usable time step"},
+    {"equals.at2", "DT=", "  =", ":4: no usable time step"},
     {"columns.at2", "0.0100", "99999.", ":4: no usable time step"},
     {"columns.at2", " .3465851E-02", " 0x1p-3", ":5: '0x1p-3' is not a number"},
     {"decimal_comma.csv", "-123,4", "-0x7B", ":17: '-0x7B' is not a number"},

@@ -86,6 +86,14 @@ static int count_named(const Record *r, const char *wanted, int exactly, const C
     return n;
 }
 
+static int any_acceleration(const Record *r)
+{
+    size_t i = 0;
+    while (i < r->n_channels && !is_acceleration(&r->channel[i]))
+        i++;
+    return i < r->n_channels;
+}
+
 static const Channel *only_acceleration(const Record *r)
 {
     const Channel *only = NULL;
@@ -118,6 +126,8 @@ static Status choose_channel(const Record *r, const char *path, const char *want
     const int automatic = !wanted || strcmp(wanted, "auto") == 0;
     *out = automatic ? only_acceleration(r) : named_or_numbered(r, wanted);
     list_channels(r, list);
+    if (automatic && !any_acceleration(r))
+        return fail(err, STATUS_BAD_DATA, "%s: none of its channels is an acceleration: %s", path, list);
     if (!*out && automatic)
         return fail(err, STATUS_BAD_DATA, "%s: holds %zu channels: %s; choose one by motion.channel (--channel)", path,
                     r->n_channels, list);
@@ -349,7 +359,8 @@ Status motion_parse(Motion *m, const char *path, const char *text, size_t length
         return fail(err, STATUS_BAD_DATA, "%s:%d: holds bytes that no text has; a binary file is not read", path,
                     binary);
     const size_t mark = length >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0 ? 3 : 0; /* UTF-8 byte order mark */
-    Lines l = {.path = path, .next = text + mark, .end = text + length};
+    const char line_end = memchr(text, '\n', length) ? '\n' : '\r';
+    Lines l = {.path = path, .next = text + mark, .end = text + length, .mark = line_end};
     Record *r = calloc(1, sizeof *r);
     if (!r)
         return fail(err, STATUS_NO_MEMORY, "%s: no memory for its channels", path);

@@ -8,16 +8,25 @@
 
 #include "scene/formats/record.h"
 
-static int is_npts_line(const Lines *l)
+static int is_title(const Lines *l)
 {
-    return l->from < l->to && *l->from != '#' && line_has(l, "NPTS") && line_has(l, "DT");
+    return line_has(l, "TIME SERIES") || line_has(l, "TIME HISTORY");
+}
+
+/* Below a title the step may be missing: that is a fault of this format, not another format. */
+static int is_npts_line(const Lines *l, int has_title)
+{
+    return l->from < l->to && *l->from != '#' && line_has(l, "NPTS") && (has_title || line_has(l, "DT"));
 }
 
 static int recognise(Lines l)
 {
-    while (l.number < 8 && lines_next(&l))
-        if (is_npts_line(&l))
+    int has_title = 0;
+    while (l.number < 8 && lines_next(&l)) {
+        if (is_npts_line(&l, has_title))
             return 1;
+        has_title = has_title || is_title(&l);
+    }
     return 0;
 }
 
@@ -41,8 +50,10 @@ static Status read(Record *r, Lines *l, const ReadHints *hints, Err *err)
 {
     Channel *c;
     unsigned units = 0;
+    int has_title = 0;
     (void)hints;
-    while (lines_next(l) && !is_npts_line(l)) {
+    while (lines_next(l) && !is_npts_line(l, has_title)) {
+        has_title = has_title || is_title(l);
         if (line_has(l, "VELOCITY TIME") || line_has(l, "DISPLACEMENT TIME"))
             return fail(err, STATUS_BAD_DATA, "%s:%d: not an acceleration: '%.*s'", l->path, l->number, line_shown(l),
                         l->from);

@@ -12,7 +12,7 @@ int lines_next(Lines *l)
 {
     if (l->next >= l->end)
         return 0;
-    const char *stop = memchr(l->next, '\n', (size_t)(l->end - l->next));
+    const char *stop = memchr(l->next, l->mark, (size_t)(l->end - l->next));
     l->raw = l->from = l->next;
     l->to = stop ? stop : l->end;
     l->next = stop ? stop + 1 : l->end;

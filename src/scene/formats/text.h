@@ -14,6 +14,7 @@
 
 typedef struct {
     const char *path, *next, *end; /* of the text that is left */
+    char mark;                     /* that ends a line: LF, or CR in a text that has no LF */
     int number;                    /* of the line below, from 1 */
     const char *raw;               /* where the line begins */
     const char *from, *to;         /* the line without blanks at its ends */
