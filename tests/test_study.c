@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "program.h"
 
@@ -151,6 +152,14 @@ static void test_a_design_of_the_front_is_evaluated_on_other_motions(void **stat
     free(table);
 }
 
+static void test_list_tells_a_run_from_a_folder_of_runs(void **state)
+{
+    (void)state;
+    char *said = output_of("list @/threads-1");
+    assert_non_null(strstr(said, "threads-1: is a run itself"));
+    free(said);
+}
+
 static void test_a_design_is_evaluated_on_every_motion_of_a_folder(void **state)
 {
     (void)state;
@@ -170,7 +179,20 @@ static void test_a_design_is_evaluated_on_every_motion_of_a_folder(void **state)
     assert_non_null(strstr(table, "not read: tests/motion/irregular.csv:26"));
     free(table);
     expect(65, "holds no ground motion that can be read", "evaluate @/threads-1 --design knee --records configs/sac20");
-    expect(66, "nowhere", "evaluate @/threads-1 --design knee --records nowhere");
+    char *empty = in_place("empty");
+    assert_int_equal(mkdir(empty, 0777), 0);
+    free(empty);
+    Said s;
+    run(&s, "evaluate @/threads-1 --design knee --records @/empty");
+    assert_int_equal(s.code, 65);
+    assert_non_null(strstr(s.err, "empty: is empty"));
+    assert_string_equal(s.out, ""); /* no title above an error */
+    forget(&s);
+    run(&s, "evaluate @/threads-1 --design knee --records nowhere");
+    assert_int_equal(s.code, 66);
+    assert_non_null(strstr(s.err, "nowhere"));
+    assert_string_equal(s.out, "");
+    forget(&s);
 }
 
 /* Each design of the table `some` is a row of the table `all`. */
@@ -370,6 +392,7 @@ int main(void)
         cmocka_unit_test(test_a_run_that_is_finished_is_shown_again_and_a_new_one_gets_a_number),
         cmocka_unit_test(test_the_export_is_the_front),
         cmocka_unit_test(test_a_design_of_the_front_is_evaluated_on_other_motions),
+        cmocka_unit_test(test_list_tells_a_run_from_a_folder_of_runs),
         cmocka_unit_test(test_a_design_is_evaluated_on_every_motion_of_a_folder),
         cmocka_unit_test(test_an_external_simulator_is_searched_and_every_design_exported),
         cmocka_unit_test(test_designs_are_chosen_by_limits_weights_and_wishes_and_polished),

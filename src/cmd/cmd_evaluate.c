@@ -178,24 +178,40 @@ static int by_name(const struct dirent **a, const struct dirent **b)
     return strcmp((*a)->d_name, (*b)->d_name); /* the same order in every language */
 }
 
+static void names_free(struct dirent **names, int n)
+{
+    for (int i = 0; i < n; i++)
+        free(names[i]);
+    free(names);
+}
+
+/* What is in the folder; for names_free. */
+static Status scan_folder(const char *folder, struct dirent ***names, int *n, Err *err)
+{
+    *n = scandir(folder, names, is_visible, by_name);
+    if (*n < 0)
+        return fail(err, status_of_errno(errno, STATUS_MISSING), "--records %s: %s", folder, strerror(errno));
+    if (*n > 0)
+        return STATUS_OK;
+    names_free(*names, *n);
+    return fail(err, STATUS_BAD_DATA, "--records %s: is empty", folder);
+}
+
 static Status evaluate_folder(const Args *args, Settings *s, const Chosen *c, json_t *records, json_t *unreadable,
                               Err *err)
 {
     const char *folder = args_value(args, "--records");
     struct dirent **names = NULL;
     Folder f = {.records = records, .unreadable = unreadable};
-    const int n = scandir(folder, &names, is_visible, by_name);
-    if (n < 0)
-        return fail(err, status_of_errno(errno, STATUS_MISSING), "--records %s: %s", folder, strerror(errno));
+    int n;
+    TRY(scan_folder(folder, &names, &n, err));
     f.refusals = open_memstream(&f.refused, &f.refused_length);
     const Status status = f.refusals ? evaluate_files(s, c, folder, n, names, &f, err)
                                      : fail(err, STATUS_NO_MEMORY, "no memory for the files of %s", folder);
     if (f.refusals)
         fclose(f.refusals);
     free(f.refused);
-    for (int i = 0; i < n; i++)
-        free(names[i]);
-    free(names);
+    names_free(names, n);
     return status;
 }
 
@@ -208,6 +224,12 @@ static Status try_records(const Args *args, const Settings *s, Err *err)
     const char *path;
     for (int i = 0; (path = args_next(args, "--record", &i));)
         TRY(try_record(&each, path, err));
+    if (args_has(args, "--records")) {
+        struct dirent **names;
+        int n;
+        TRY(scan_folder(args_value(args, "--records"), &names, &n, err));
+        names_free(names, n);
+    }
     return STATUS_OK;
 }
 

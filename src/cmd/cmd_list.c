@@ -70,7 +70,10 @@ static Status run(const Args *args, Err *err)
     free(entries);
     if (list)
         return show_json(list, err);
-    if (found == 0)
+    char path[PATH_MAX];
+    if (found == 0 && saved_path(folder, path, sizeof path))
+        printf("%s: is a run itself; `imtet status` tells how far it is\n", folder);
+    else if (found == 0)
         printf("%s: no runs\n", folder);
     return STATUS_OK;
 }
