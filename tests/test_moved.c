@@ -46,7 +46,7 @@ static void test_every_command_says_which_record_was_moved_and_what_to_do(void *
 {
     (void)state;
     static const char *const COMMANDS[] = {"report @/run", "plot @/run", "polish @/run --design knee",
-                                           "optimize @/run"};
+                                           "optimize @/run --max-evals 32 --force-settings"};
     for (size_t i = 0; i < sizeof COMMANDS / sizeof COMMANDS[0]; i++) {
         char with_one[256];
         expect(66, "--set motion.record=PATH", COMMANDS[i]);
@@ -54,6 +54,19 @@ static void test_every_command_says_which_record_was_moved_and_what_to_do(void *
         expect(66, "second.csv: a record of the run is not there; where it was moved, say so: --set motion.records=",
                with_one);
     }
+}
+
+static void test_a_finished_run_is_shown_without_its_records(void **state)
+{
+    (void)state;
+    Said s;
+    run(&s, "optimize @/run");
+    assert_int_equal(s.code, 0);
+    assert_non_null(strstr(s.err, "first.csv: a record of the run is not there"));
+    assert_non_null(strstr(s.out, " of 24 simulated designs, 0 simulations failed, "));
+    assert_non_null(strstr(s.out, "(all simulations spent)"));
+    assert_non_null(strstr(s.out, "nothing new was simulated"));
+    forget(&s);
 }
 
 static void test_another_content_does_not_take_the_place_of_a_record(void **state)
@@ -84,6 +97,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_every_command_says_which_record_was_moved_and_what_to_do),
+        cmocka_unit_test(test_a_finished_run_is_shown_without_its_records),
         cmocka_unit_test(test_another_content_does_not_take_the_place_of_a_record),
         cmocka_unit_test(test_records_are_taken_from_where_they_are_now),
     };

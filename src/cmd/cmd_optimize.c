@@ -191,6 +191,19 @@ static Status take_settings(const Args *args, Settings *s, Err *err)
     return moved_find(s, NULL, &(Moved){NULL, NULL}, err);
 }
 
+/* Of a run whose records have gone: once it is finished they are not needed. */
+static Status show_finished(const Args *args, Err *err)
+{
+    StudySummary summary;
+    Err unread = {0};
+    int is_finished = 0;
+    if (args->n_given > 0 || study_finished(args->operand, &summary, &is_finished, &unread) != STATUS_OK ||
+        !is_finished)
+        return STATUS_MISSING;
+    fprintf(stderr, "%s\n", err->text);
+    return report(&summary, err);
+}
+
 static Status run(const Args *args, Err *err)
 {
     Settings s;
@@ -202,9 +215,12 @@ static Status run(const Args *args, Err *err)
                                   .started = tell_start,
                                   .progress = tell,
                                   .user = &telling};
-    TRY(take_settings(args, &s, err));
+    Status status = take_settings(args, &s, err);
+    if (status == STATUS_MISSING)
+        return show_finished(args, err);
+    TRY(status);
     signals_catch();
-    const Status status = study_run(&s, &options, &summary, stderr, err);
+    status = study_run(&s, &options, &summary, stderr, err);
     if (telling.has_told)
         fputc('\n', stderr);
     if (status == STATUS_STOPPED)

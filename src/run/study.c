@@ -328,11 +328,8 @@ static Status begin(Study *study, Err *err)
     return status;
 }
 
-static Status go_on(Study *study, Err *err)
+static void sum_up(StudySummary *sum, const Saved *h)
 {
-    const Saved *h = store_saved(study->store);
-    StudySummary *sum = study->summary;
-    TRY(settle_settings(study, err));
     for (size_t i = 0; i < h->n; i++)
         if (h->row[i].id < POLISHED_FIRST) {
             sum->n_before++;
@@ -342,7 +339,16 @@ static Status go_on(Study *study, Err *err)
     sum->n_front = h->n_front;
     sum->n_repeats = h->n_repeats;
     for (size_t i = 0; i < h->n_sessions; i++)
-        study->seconds_before += isfinite(h->session[i].seconds) ? h->session[i].seconds : 0.0;
+        sum->seconds += isfinite(h->session[i].seconds) ? h->session[i].seconds : 0.0;
+}
+
+static Status go_on(Study *study, Err *err)
+{
+    const Saved *h = store_saved(study->store);
+    StudySummary *sum = study->summary;
+    TRY(settle_settings(study, err));
+    sum_up(sum, h);
+    study->seconds_before = sum->seconds;
     study->generation = h->n_generations > 0 ? (size_t)h->generation[h->n_generations - 1].number + 1 : 0;
     study->first_generation = study->generation;
     TRY(check_limit(study, sum->n_before, err));
@@ -521,18 +527,34 @@ static Status finish(Study *study, Err *err)
 }
 
 /* A run that came to its end, with the limits that it had then: there is nothing to do. */
-static int is_over(const Study *study)
+static int came_to_its_end(const Saved *h, StopReason *stopped)
 {
-    const Saved *h = store_saved(study->store);
-    const SavedSession *last = h && h->n_sessions > 0 ? &h->session[h->n_sessions - 1] : NULL;
-    if (!last || !last->is_final || study->has_new_limits)
+    const SavedSession *last = h->n_sessions > 0 ? &h->session[h->n_sessions - 1] : NULL;
+    if (!last || !last->is_final)
         return 0;
-    StopReason *stopped = &study->summary->stopped;
     for (*stopped = STOP_GENERATIONS; *stopped < STOP_ASKED; ++*stopped)
         if (strcmp(stop_reason_words(*stopped), last->stopped) == 0)
             break;
-    study->summary->seconds = study->seconds_before;
     return 1;
+}
+
+static int is_over(const Study *study)
+{
+    const Saved *h = store_saved(study->store);
+    return h && !study->has_new_limits && came_to_its_end(h, &study->summary->stopped);
+}
+
+Status study_finished(const char *folder, StudySummary *summary, int *is_finished, Err *err)
+{
+    Saved h;
+    *summary = (StudySummary){0};
+    TRY(saved_read(&h, folder, err));
+    *is_finished = came_to_its_end(&h, &summary->stopped);
+    snprintf(summary->folder, sizeof summary->folder, "%s", folder);
+    summary->max_evals = h.settings.search.max_evals;
+    sum_up(summary, &h);
+    saved_free(&h);
+    return STATUS_OK;
 }
 
 /* -- polishing ------------------------------------------------------------------------------------------------------

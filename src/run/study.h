@@ -63,6 +63,9 @@ typedef struct {
  * with the differences in `err` as far as they fit, all of them in `differences` (NULL: not wanted), a line each. */
 Status study_run(const Settings *s, const StudyOptions *options, StudySummary *summary, FILE *differences, Err *err);
 
+/* What a run holds, without the building alone; is_finished: there is nothing more to do within its limits. */
+Status study_finished(const char *folder, StudySummary *summary, int *is_finished, Err *err);
+
 /* What the search reads from the settings. */
 SearchConfig study_search_config(const Settings *s);
 
