@@ -38,6 +38,10 @@ static void test_what_is_wrong_in_one_cell_is_named(void **state)
         {"UPDATE evaluation SET f = '[1,inf,2]' WHERE id = 3", "f of evaluation 3", STATUS_IO},
         {"UPDATE evaluation SET f = '[1,,2]' WHERE id = 3", "f of evaluation 3", STATUS_IO},
         {"UPDATE evaluation SET spread = '[1,2,3,4]' WHERE id = 4", "spread of evaluation 4", STATUS_IO},
+        {"UPDATE evaluation SET f = '[1,2,3]' WHERE id = 3", "evaluation 3 is not what was written", STATUS_IO},
+        {"UPDATE evaluation SET x = replace(x, '1', '3') WHERE id = 5", "evaluation 5 is not what was written",
+         STATUS_IO},
+        {"UPDATE evaluation SET outcome = 'error' WHERE id = 6", "evaluation 6 is not what was written", STATUS_IO},
         {"DELETE FROM run", "it has no settings", STATUS_IO},
         {"UPDATE run SET n_var = 5", "it tells of 5 variables", STATUS_IO},
         {"UPDATE run SET n_var = 0", "it tells of 0 variables", STATUS_IO},
@@ -64,7 +68,8 @@ static void test_values_that_are_not_known_are_nan_and_a_word_that_is_not_known_
     Err err = {0};
     char folder[PATH_MAX];
     CHECK_OK(saved_read(&h,
-                        changed("UPDATE evaluation SET f = '[1,null,3]', spread = NULL, seconds = NULL WHERE id = 1;"
+                        changed("UPDATE evaluation SET f = '[1,null,3]', spread = NULL, seconds = NULL, "
+                                "digest = NULL WHERE id = 1;"
                                 "UPDATE evaluation SET kind = 'guessed' WHERE id = 2;"
                                 "UPDATE state SET bytes = x'';"
                                 "UPDATE effort SET session = 99; UPDATE session SET ended = NULL",

@@ -8,6 +8,7 @@
 
 #include "run/front.h"
 #include "run/repeats.h"
+#include "run/tables.h"
 
 static const char *const KIND_WORDS[] = {
     [KIND_SAMPLED] = "sampled",   [KIND_INFILL] = "infill", [KIND_OFFSPRING] = "offspring",
@@ -97,8 +98,21 @@ static Status widen(Loading *l, Err *err)
 
 static const char EVALUATIONS[] =
     "SELECT e.id, e.generation, e.kind, e.outcome, e.reason, e.seconds, e.x, e.f, e.spread, e.violation, e.extra, "
-    "f.entered, f.left FROM evaluation e LEFT JOIN front f ON f.evaluation = e.id WHERE e.id BETWEEN %ld AND %ld "
-    "ORDER BY e.id";
+    "f.entered, f.left, e.digest FROM evaluation e LEFT JOIN front f ON f.evaluation = e.id "
+    "WHERE e.id BETWEEN %ld AND %ld ORDER BY e.id";
+
+/* What was read is what was written. A row without a digest was put there by somebody else. */
+static Status check_digest(const Loading *l, sqlite3_stmt *row, const SavedRow *r, Err *err)
+{
+    const RowContent content = {.id = r->id,
+                                .seconds = r->verdict.seconds,
+                                .violation = r->violation,
+                                .text = {text_at(row, 3), text_at(row, 4), text_at(row, 6), text_at(row, 7),
+                                         text_at(row, 8), text_at(row, 10)}};
+    if (sqlite3_column_type(row, 13) == SQLITE_NULL || sqlite3_column_int64(row, 13) == tables_digest(&content))
+        return STATUS_OK;
+    return fail(err, STATUS_IO, "%s: is damaged: evaluation %ld is not what was written", database_path(l->d), r->id);
+}
 
 static Status take_evaluation(sqlite3_stmt *row, void *user, Err *err)
 {
@@ -124,6 +138,7 @@ static Status take_evaluation(sqlite3_stmt *row, void *user, Err *err)
         return damaged(l, "spread", r->id, err);
     if (schema->n_extra > 0 && !parse_numbers(text_at(row, 10), schema->n_extra, r->verdict.extra))
         return damaged(l, "extra", r->id, err);
+    TRY(check_digest(l, row, r, err));
     memcpy(h->answer + h->n * schema->n_obj, f, schema->n_obj * sizeof *f);
     r->members = r->kind == KIND_REPEAT || r->kind == KIND_POLISHED ? 0 : h->settings.sim.ensemble;
     h->n_repeats += r->kind == KIND_REPEAT;

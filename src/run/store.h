@@ -14,8 +14,9 @@
  *
  *   run         settings (INI), provenance (JSON), planned_evals, n_var, created, tried_to_polish, polished_at
  *   evaluation  id, generation, kind (NULL: its generation is not finished), outcome, reason, seconds, x, f, spread
- * (JSON lists; NULL: none), violation, extra generation  number, simulated, failed, front, predicted, surrogate_error,
- * hypervolume, seconds, finished front       evaluation, entered, left: it was on the front of the generations entered
+ * (JSON lists; NULL: none), violation, extra, digest (run/tables.h) generation  number, simulated, failed, front,
+ * predicted, surrogate_error, hypervolume, seconds, finished front       evaluation, entered, left: it was on the front
+ * of the generations entered
  * <= g < left state       generation, bytes (moga/search.h) session     started, ended, host, pid, program, threads,
  * simulated_before, seconds, stopped, is_final designs     a view: the evaluations with their columns by name
  *

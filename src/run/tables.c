@@ -8,6 +8,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "base/hash.h"
 #include "run/output.h"
 
 void utc_now(char text[24])
@@ -26,7 +27,8 @@ static const char TABLES[] =
     " planned_evals INTEGER NOT NULL, n_var INTEGER NOT NULL, created TEXT NOT NULL,"
     " tried_to_polish INTEGER NOT NULL DEFAULT 0, polished_at INTEGER NOT NULL DEFAULT 0);"
     "CREATE TABLE evaluation(id INTEGER PRIMARY KEY, generation INTEGER NOT NULL, kind TEXT, outcome TEXT NOT NULL,"
-    " reason TEXT NOT NULL, seconds REAL, x TEXT NOT NULL, f TEXT, spread TEXT, violation REAL, extra TEXT);"
+    " reason TEXT NOT NULL, seconds REAL, x TEXT NOT NULL, f TEXT, spread TEXT, violation REAL, extra TEXT,"
+    " digest INTEGER);"
     "CREATE TABLE generation(number INTEGER PRIMARY KEY, simulated INTEGER NOT NULL, failed INTEGER NOT NULL,"
     " front INTEGER NOT NULL, predicted INTEGER NOT NULL, surrogate_error REAL, hypervolume REAL, seconds REAL NOT "
     "NULL,"
@@ -156,6 +158,21 @@ static Status numbers_text(size_t n, const double values[], char **text, Err *er
     return f && fclose(f) == 0 ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for %zu numbers", n);
 }
 
+long tables_digest(const RowContent *row)
+{
+    const double numbers[] = {row->seconds, row->violation};
+    uint64_t hash = hash_fnv1a(&row->id, sizeof row->id, HASH_SEED);
+    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
+        const double known = isfinite(numbers[i]) ? numbers[i] + 0.0 : -1e308; /* SQLite keeps no -0 */
+        hash = hash_fnv1a(&known, sizeof known, hash);
+    }
+    for (size_t i = 0; i < ROW_TEXTS; i++) {
+        const char *text = row->text[i] ? row->text[i] : "";
+        hash = hash_fnv1a(text, strlen(text) + 1, hash);
+    }
+    return (long)hash;
+}
+
 Status tables_insert(Database *db, const Schema *schema, long id, long generation, const char *kind,
                      const StoredDesign *d, Err *err)
 {
@@ -168,12 +185,14 @@ Status tables_insert(Database *db, const Schema *schema, long id, long generatio
         status = numbers_text(schema->n_obj, d->spread, &spread, err);
     if (status == STATUS_OK)
         status = numbers_text(schema->n_extra, d->verdict.extra, &extra, err);
+    const RowContent row = {
+        id, d->verdict.seconds, d->violation, {d->verdict.outcome, d->verdict.reason, x, f, spread, extra}};
     if (status == STATUS_OK)
         status = database_do(db, err,
                              "INSERT OR REPLACE INTO evaluation(id, generation, kind, outcome, reason, seconds, x, f, "
-                             "spread, violation, extra) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
-                             "iitttdtttdt", id, generation, kind, d->verdict.outcome, d->verdict.reason,
-                             d->verdict.seconds, x, f, spread, d->violation, extra);
+                             "spread, violation, extra, digest) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+                             "iitttdtttdti", id, generation, kind, d->verdict.outcome, d->verdict.reason,
+                             d->verdict.seconds, x, f, spread, d->violation, extra, tables_digest(&row));
     free(x);
     free(f);
     free(spread);

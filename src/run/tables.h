@@ -18,4 +18,15 @@ Status tables_set_settings(Database *db, const Settings *used, Err *err);
 /* 2026-01-31T23:59:59Z, now */
 void utc_now(char text[24]);
 
+/* What is known of an evaluation when it is stored; its generation and kind come later. */
+enum { ROW_TEXTS = 6 };
+typedef struct {
+    long id;
+    double seconds, violation;   /* NAN: not known */
+    const char *text[ROW_TEXTS]; /* outcome, reason, x, f, spread, extra as stored; NULL: none */
+} RowContent;
+
+/* FNV-1a of it: the column `digest`, by which a row is found that the disk has changed. */
+long tables_digest(const RowContent *row);
+
 #endif
