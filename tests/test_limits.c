@@ -95,7 +95,8 @@ static void test_limits_that_contradict_each_other_are_refused_before_anything_i
 {
     (void)state;
     write_in_place("both.ini", UNMET);
-    expect(65, "search.limits: f1<=5 and >=7 contradict each other", "check @/both.ini --set 'search.limits=f1>=7,f1<=5'");
+    expect(65, "search.limits: f1<=5 and >=7 contradict each other",
+           "check @/both.ini --set 'search.limits=f1>=7,f1<=5'");
     expect(65, "f1<=5 and >=7", "optimize @/both.ini --out @/both --set 'search.limits=f1<=5,f2<=1,f1>=7'");
     free(output_of("check @/both.ini --set 'search.limits=f1<=5,f1>=5,f2>=7'"));
     expect(65, "search.limits: j3_g<=5 and >=7", "check configs/quick.ini --set 'search.limits=j3_g<=5,j3_g>=7'");

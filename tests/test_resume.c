@@ -208,8 +208,8 @@ static void test_plain_children_and_a_world_where_everything_fails_go_on_the_sam
     check_every_moment(&c, 1);
 }
 
-/* Answers that cost nothing: the surface cannot pay. What was decided by the clock is kept by a search that goes on, even
- * where answers have become slow. */
+/* Answers that cost nothing: the surface cannot pay. What was decided by the clock is kept by a search that goes on,
+ * even where answers have become slow. */
 static void test_costs_are_weighed_once_and_the_decision_is_kept(void **state)
 {
     (void)state;

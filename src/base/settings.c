@@ -101,7 +101,8 @@ static const Option OPTIONS[] = {
     {"design.thickness_max_m", "m", REAL, AT(design.thickness_max_m), "0.04", 1e-6, 10, NULL,
      "search box: thickest core wall"},
 
-    {"problem.kind", "-", CHOICE, AT(problem.kind), "tower", 0, 0, "tower|external|dtlz2|wfg4|dtlz1_inverted|dtlz5|dtlz7|wfg5",
+    {"problem.kind", "-", CHOICE, AT(problem.kind), "tower", 0, 0,
+     "tower|external|dtlz2|wfg4|dtlz1_inverted|dtlz5|dtlz7|wfg5",
      "tower: gaps and walls of the scene; external: a simulator of your own; the others: problems from textbooks"},
     {"problem.command", "-", TEXT, AT(problem.command), "none", 0, 0, NULL,
      "external: the worker, started without a shell once per thread; docs/external.md has the protocol"},
@@ -145,7 +146,8 @@ static const Option OPTIONS[] = {
     {"search.surrogate_max", "-", WHOLE, AT(search.surrogate_max), "600", 10, 5000, NULL,
      "most designs that the response surface is built on"},
     {"search.surrogate", "-", CHOICE, AT(search.surrogate), "on", 0, 0, "on|off|auto",
-     "off: a plain evolutionary search; auto: off where it proves to cost more than four simulations for each, by the clock"},
+     "off: a plain evolutionary search; auto: off where it proves to cost more than four simulations for each, by the "
+     "clock"},
     {"search.asynchronous", "-", CHOICE, AT(search.asynchronous), "off", 0, 0, "off|on",
      "on: no thread waits for the slowest design of a batch; the run then depends on the order in which results come"},
     {"search.survival", "-", CHOICE, AT(search.survival), "nsga3", 0, 0, "nsga3|rvea|moead",

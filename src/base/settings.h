@@ -100,13 +100,13 @@ typedef struct {
         long seed, threads, population, initial, generations, max_evals;
         double max_hours, nondominated_share, trust_error;
         double crossover_probability, crossover_eta, mutation_eta, mutation_rate;
-        long surrogate_max; /* most designs that the response surface is built on */
-        long surrogate;     /* SurrogateUse */
-        long asynchronous;  /* 0 or 1 */
-        long survival;      /* SurvivalKind */
-        double repeats;     /* share of max_evals */
+        long surrogate_max;            /* most designs that the response surface is built on */
+        long surrogate;                /* SurrogateUse */
+        long asynchronous;             /* 0 or 1 */
+        long survival;                 /* SurvivalKind */
+        double repeats;                /* share of max_evals */
         long members_min, members_max; /* answers of a design */
-        long polish;        /* designs at the end */
+        long polish;                   /* designs at the end */
         char limits[SETTINGS_TEXT_MAX];
         char start[SETTINGS_TEXT_MAX]; /* a CSV of designs or a run's folder, or none */
     } search;

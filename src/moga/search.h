@@ -8,8 +8,8 @@
  *   4 every offspring predicted; where the leave-one-out based error estimate is small the prediction stands, of the
  *     others those that promise most are simulated and become new centres (moga/infill.h), the rest is forgotten.
  *     A few predictions that stand are checked by simulation, first those that have stood for long. Predicted and true
- *     order of every batch are compared (Kendall's tau); while they disagree, batches are plain children. Once there are
- *     many simulations a few of every batch are, and most of it while they gain more than what the surface chose
+ *     order of every batch are compared (Kendall's tau); while they disagree, batches are plain children. Once there
+ *     are many simulations a few of every batch are, and most of it while they gain more than what the surface chose
  *   5 environmental selection with reference directions (NSGA-III, moga/survival.h); back to 2
  *
  * Predicted designs may live in the population; only simulated ones enter the archive, and the front is made of the
@@ -18,22 +18,23 @@
  * Reproducible  random streams are keyed by (seed, generation, individual): the same bytes at any thread count;
  *               no clock is asked but for SURROGATE_AUTO and max_seconds
  * Never twice   a design that is in the archive, failed ones too, is not simulated again, but where answers are noisy
- * Noise         a share `repeats` of the simulations, beyond the first 18 for each variable, goes to the front: the best
- *               in each objective, the nearest to the ideal, then the best in most directions; a quarter of it while the
- *               search goes on, the rest at its end. A design has the mean of its answers, and dominance asks for more
- *               than the errors (moga/archive.h). A spread below a thousandth of the front's range ends the repeats
+ * Noise         a share `repeats` of the simulations, beyond the first 18 for each variable, goes to the front: the
+ *               best in each objective, the nearest to the ideal, then the best in most directions; a quarter of it
+ *               while the search goes on, the rest at its end. A design has the mean of its answers, and dominance
+ *               asks for more than the errors (moga/archive.h). A spread below a thousandth of the front's range
+ *               ends the repeats
  * Threads       the problem's evaluate gets one call per generation with the whole batch; set BLAS to one thread
  * Asynchronous  no thread waits for the slowest of a batch: the problem's own threads take one design after the other,
  *               and the next batch is chosen while the last designs of this one wait or are simulated. Those count as
  *               what the surface predicts, so that no place is chosen twice. A generation ends with the first
- *               results that arrive, all but `lead` of those that are asked for; lead is 0 at one
- *               worker, the workers and a quarter of a batch more else. Rows of the archive are in the order of arrival, and a
- *               run is a function of that order alone: the same order, the same bytes, at one worker those of a search
+ *               results that arrive, all but `lead` of those that are asked for; lead is 0 at one worker, else the
+ *               workers and a quarter of a batch more. Rows of the archive are in the order of arrival, and a run
+ *               is a function of that order alone: the same order, the same bytes, at one worker those of a search
  *               in batches
  * Goes on       from the simulations and the state of any generation's end (SearchView.state): the rest is then the
  *               same, bit by bit, as if it had never stopped. The state is what the simulations do not tell:
- * population, forms and scales of the surface, running means. A new variable that outlives a generation is one more
- *               line in state_pack (state.c), and STATE_VERSION one higher
+ *               population, forms and scales of the surface, running means. A new variable that outlives a
+ *               generation is one more line in state_pack (state.c), and STATE_VERSION one higher
  * Ownership     search_run owns all it allocates; a SearchView is valid inside the callback only
  * Sources       Deb and Jain, IEEE Trans. Evol. Comput. 18 (2014) 577-601 (NSGA-III); Deb and Agrawal, Complex
  *               Systems 9 (1995) 115-148 (SBX); Rippa, Adv. Comput. Math. 11 (1999) 193-210 (leave-one-out). */
@@ -75,8 +76,8 @@ typedef struct {
     double crossover_probability, crossover_eta, mutation_eta, mutation_rate;
 } SearchConfig;
 
-/* Repeats that n simulations of a noisy problem bring at most. Where new designs are worth more than certainty about old
- * ones there are none: of the first SEARCH_UNTROUBLED simulations for each variable. */
+/* Repeats that n simulations of a noisy problem bring at most. Where new designs are worth more than certainty about
+ * old ones there are none: of the first SEARCH_UNTROUBLED simulations for each variable. */
 enum { SEARCH_UNTROUBLED = 18 };
 double search_repeats(size_t n, double share, size_t n_var);
 

@@ -135,8 +135,8 @@ static void wfg5(size_t n_var, size_t n_obj, const double z[], double f[])
 }
 
 static const Textbook PROBLEMS[] = {
-    {"dtlz2", 0, textbook_dtlz2}, {"wfg4", 1, wfg4}, {"dtlz1_inverted", 0, dtlz1_inverted}, {"dtlz5", 0, dtlz5},
-    {"dtlz7", 0, dtlz7},          {"wfg5", 1, wfg5},
+    {"dtlz2", 0, textbook_dtlz2}, {"wfg4", 1, wfg4},   {"dtlz1_inverted", 0, dtlz1_inverted},
+    {"dtlz5", 0, dtlz5},          {"dtlz7", 0, dtlz7}, {"wfg5", 1, wfg5},
 };
 
 const Textbook *textbook(size_t i)

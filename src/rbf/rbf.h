@@ -5,9 +5,9 @@
  *                                                  millimetres differs more from the next than one of half a metre
  *
  * phi is positive definite (Gaussian or Matern 5/2), p a constant, linear or diagonal quadratic tail, and every output
- * has its own kernel, tail, length scales theta, warp a, b and nugget (a ridge on the kernel matrix: 1e-8 for smooth answers,
- * more where the answers are noisy or designs nearly equal). Scales, warp and nugget maximise the likelihood, kernel and
- * tail have the least leave-one-out error; both are looked for by rbf_tune and kept by rbf_fit.
+ * has its own kernel, tail, length scales theta, warp a, b and nugget (a ridge on the kernel matrix: 1e-8 for smooth
+ * answers, more where the answers are noisy or designs nearly equal). Scales, warp and nugget maximise the likelihood,
+ * kernel and tail have the least leave-one-out error; both are looked for by rbf_tune and kept by rbf_fit.
  *
  * Error of a prediction  root mean square of the centres' leave-one-out errors, weighted with 1/r^4: a local average
  * Life cycle  rbf_create -> (rbf_fit -> (rbf_tune) -> rbf_eval ...) ... -> rbf_free; call rbf_tune now and then
@@ -64,7 +64,8 @@ double rbf_explained(const Rbf *m, size_t output);            /* 1 - leave-one-o
 void rbf_set_form(Rbf *m, size_t output, RbfForm form);           /* used by the next rbf_fit */
 void rbf_set_scales(Rbf *m, size_t output, const double theta[]); /* used by the next rbf_fit */
 
-/* Forms, scales, warps and how often they were tuned: with the data of the next rbf_fit all that the model remembers. */
+/* Forms, scales, warps and how often they were tuned: with the data of the next rbf_fit all that the model remembers.
+ */
 void rbf_pack(Rbf *m, Pack *p);
 
 #endif

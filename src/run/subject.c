@@ -518,11 +518,12 @@ static Status check_repeats(const Subject *s, Err *err)
     if (!schema_is_noisy(&s->settings) ||
         floor(search_repeats((size_t)s->settings.search.max_evals, share, s->schema.n_var)) >= wanted)
         return STATUS_OK;
-    return fail(err, STATUS_BAD_DATA,
-                "search.members_min: %ld simulations of a design are not to be had, repeats begin behind the first %zu; "
-                "search.max_evals must be %.0f at least",
-                s->settings.search.members_min, SEARCH_UNTROUBLED * s->schema.n_var,
-                ceil(wanted / share) + (double)(SEARCH_UNTROUBLED * s->schema.n_var));
+    return fail(
+        err, STATUS_BAD_DATA,
+        "search.members_min: %ld simulations of a design are not to be had, repeats begin behind the first %zu; "
+        "search.max_evals must be %.0f at least",
+        s->settings.search.members_min, SEARCH_UNTROUBLED * s->schema.n_var,
+        ceil(wanted / share) + (double)(SEARCH_UNTROUBLED * s->schema.n_var));
 }
 
 /* No number keeps both of two limits of one objective where the least wanted is above the most. */
