@@ -3,8 +3,8 @@
 #include <math.h>
 #include <omp.h>
 #include <stdlib.h>
-#include <time.h>
 
+#include "base/clock.h"
 #include "run/ensemble.h"
 
 enum { DESIGNS = 24, DESIGNS_QUICK = 4, JUDGED = 6, ENSEMBLE_MEMBERS = 8 };
@@ -73,13 +73,6 @@ static Status run_fast(Throughput *t, Err *err)
     return STATUS_OK;
 }
 
-static double wall_seconds(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 /* Wall time [s] of all designs over a crew, and of an ensemble of design 0. */
 static Status time_crew(Throughput *t, const Scene *scene, int threads, double *all, double *ensemble, Err *err)
 {
@@ -100,14 +93,14 @@ static Status time_crew(Throughput *t, const Scene *scene, int threads, double *
         tasks[k] = (SimTask){SCENE_IMPACT, x};
     }
     Status status = crew_create(&crew, scene, threads, err);
-    const double start = wall_seconds();
+    const double start = clock_seconds();
     if (status == STATUS_OK)
         status = crew_run(crew, (size_t)t->n, tasks, results, err);
-    const double middle = wall_seconds();
+    const double middle = clock_seconds();
     if (status == STATUS_OK)
         status = ensemble_run(crew, n, X, ENSEMBLE_MEMBERS, ENSEMBLE_CHANGE, 1, &e, NULL, err);
     *all = middle - start;
-    *ensemble = wall_seconds() - middle;
+    *ensemble = clock_seconds() - middle;
     crew_free(crew);
     free(results);
     return status;

@@ -3,7 +3,8 @@
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
+
+#include "base/clock.h"
 
 typedef enum { WAITING, UNDER_WAY, ARRIVED, REPLAYED } Place; /* REPLAYED: its result is among those from before */
 
@@ -32,13 +33,6 @@ struct Feed {
     pthread_mutex_t lock;
     pthread_cond_t work, news;
 };
-
-static double now_s(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 static double *x_of(const Feed *q, size_t i)
 {
@@ -290,7 +284,7 @@ size_t feed_take(Feed *q, double x[], size_t *draws)
         }
         Slot *s = &q->slot[i];
         s->place = UNDER_WAY;
-        s->taken = now_s();
+        s->taken = clock_seconds();
         *draws = s->draws;
         memcpy(x, x_of(q, i), q->n_var * sizeof *x);
         name = s->name;
@@ -313,7 +307,7 @@ void feed_give(Feed *q, size_t name, const double f[], const double g[], int ok)
         s->ok = ok != 0;
         s->place = ARRIVED;
         s->order = q->n_arrived++;
-        q->busy += now_s() - s->taken;
+        q->busy += clock_seconds() - s->taken;
         q->n_done++;
         pthread_cond_signal(&q->news);
     }

@@ -281,7 +281,7 @@ Status search_resume(const Problem *problem, const SearchConfig *config, const S
 {
     Search s = {.problem = problem, .config = config, .agreement = 1.0, .credit = {0.97, 0.03}, .chance = {0.9, 0.1}};
     TRY(check(problem, config, err));
-    clock_gettime(CLOCK_MONOTONIC, &s.start);
+    s.start = clock_seconds();
     Status status = create(&s, err);
     if (status == STATUS_OK)
         status = s.feed ? run_beside(&s, start, observe, user, reason, err)

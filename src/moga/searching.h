@@ -15,8 +15,8 @@
 #define IMTET_MOGA_SEARCHING_H
 
 #include <string.h>
-#include <time.h>
 
+#include "base/clock.h"
 #include "base/pack.h"
 #include "moga/archive.h"
 #include "moga/directions.h"
@@ -70,14 +70,12 @@ typedef struct {
     unsigned char *reported;             /* (rows) on the front, with answers enough */
     Pack state;                          /* as of the last report */
     void *store;
-    struct timespec start;
+    double start; /* [s] of the clock */
 } Search;
 /* Wall time since the search began. */
 static inline double search_seconds(const Search *s)
 {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)(now.tv_sec - s->start.tv_sec) + 1e-9 * (double)(now.tv_nsec - s->start.tv_nsec);
+    return clock_seconds() - s->start;
 }
 
 /* Simulations that it was planned for. */

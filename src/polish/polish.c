@@ -4,7 +4,8 @@
 #include <nlopt.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
+
+#include "base/clock.h"
 
 typedef struct {
     const char *name;
@@ -27,7 +28,7 @@ typedef struct {
     const PolishConfig *config;
     PolishResult *result;
     nlopt_opt opt;
-    struct timespec start;
+    double start;      /* [s] of the clock */
     double *x, *f, *g; /* of the last evaluation; x (n_var) in its own units */
     double *scale;     /* (n_obj) */
     double *each;      /* (n_obj + n_con) scratch */
@@ -38,13 +39,6 @@ typedef struct {
     Status status;
     Err *err;
 } Polish;
-
-static double seconds_since(const struct timespec *start)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)(now.tv_sec - start->tv_sec) + 1e-9 * (double)(now.tv_nsec - start->tv_nsec);
-}
 
 /* Every constraint of the last evaluation, in units of its scale; returns how many. */
 static size_t excesses(const Polish *p, double excess[])
@@ -80,7 +74,7 @@ static void keep_if_best(Polish *p)
 static int spent(const Polish *p)
 {
     return p->status != STATUS_OK || p->result->n_evaluated >= p->config->max_evals ||
-           (p->config->max_seconds > 0.0 && seconds_since(&p->start) >= p->config->max_seconds);
+           (p->config->max_seconds > 0.0 && clock_seconds() - p->start >= p->config->max_seconds);
 }
 
 /* NLopt asks objective and constraint apart: the same point is evaluated once. */
@@ -234,7 +228,7 @@ Status polish_run(const Problem *problem, const PolishConfig *config, const doub
         p.scale = p.f + m;
         p.each = p.scale + m;
         p.g = p.each + m + problem->n_con;
-        clock_gettime(CLOCK_MONOTONIC, &p.start);
+        p.start = clock_seconds();
         status = evaluate_start(&p, start, u);
         if (status == STATUS_OK)
             status = evaluate_guess(&p, u);
@@ -242,7 +236,7 @@ Status polish_run(const Problem *problem, const PolishConfig *config, const doub
             run_method(&p, method, u);
             status = p.status;
         }
-        result->seconds = seconds_since(&p.start);
+        result->seconds = clock_seconds() - p.start;
     }
     nlopt_destroy(p.opt);
     free(store);

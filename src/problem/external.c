@@ -15,6 +15,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "base/clock.h"
 #include "problem/guard.h"
 
 enum { LINE_MAX_BYTES = 1 << 20, READ_BYTES = 1 << 16, WORDS_MAX = 128, GRACE_MS = 1000, LOOK_MS = 200 };
@@ -61,13 +62,6 @@ typedef struct {
     Status status; /* of the watch */
     Err *err;
 } Batch;
-
-static double now_s(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 const char *answer_word(AnswerOutcome outcome)
 {
@@ -215,7 +209,7 @@ __attribute__((format(printf, 5, 6))) static void settle(Batch *b, Worker *w, An
     vsnprintf(a->reason, sizeof a->reason, format, list);
     va_end(list);
     a->outcome = outcome;
-    a->seconds = now_s() - w->asked;
+    a->seconds = clock_seconds() - w->asked;
     b->done++;
     if (b->status == STATUS_OK)
         b->status = watch_done(b->watch, w->design, b->err);
@@ -252,7 +246,7 @@ static Status give_design(External *e, Worker *w, Batch *b, Err *err)
     w->id = b->ids ? b->ids[b->next] : e->next_id++;
     TRY(write_request(e, w, b->X + b->next * e->n_var, err));
     w->design = b->next++;
-    w->asked = now_s();
+    w->asked = clock_seconds();
     w->deadline = w->asked + e->timeout_s;
     return STATUS_OK;
 }
@@ -359,7 +353,7 @@ static void look_after(External *e, Worker *w, const struct pollfd *in, const st
         send_more(w);
     if (w->design != SIZE_MAX && out->revents)
         read_more(e, w, b);
-    if (w->design != SIZE_MAX && now_s() >= w->deadline)
+    if (w->design != SIZE_MAX && clock_seconds() >= w->deadline)
         settle(b, w, ANSWER_TIMEOUT, 1, "no answer within %g s", e->timeout_s);
 }
 
@@ -376,7 +370,7 @@ static void wait_for_workers(const Batch *b)
     }
     if (!(first < INFINITY))
         return;
-    const double left_ms = 1e3 * (first - now_s());
+    const double left_ms = 1e3 * (first - clock_seconds());
     if (poll(b->poll, 2 * b->n_workers, left_ms > 0.0 ? (int)fmin(ceil(left_ms), LOOK_MS) : 0) <= 0)
         for (size_t i = 0; i < 2 * b->n_workers; i++)
             b->poll[i].revents = 0;
@@ -386,7 +380,7 @@ static void wait_for_workers(const Batch *b)
 static Status hand_out(External *e, Batch *b, Err *err)
 {
     if (b->ending == 0.0 && b->done < b->n && !watch_go_on(b->watch))
-        b->ending = now_s();
+        b->ending = clock_seconds();
     for (size_t i = 0; i < b->n_workers && b->next < b->n && b->ending == 0.0; i++) {
         Worker *w = &b->worker[i];
         if (w->design != SIZE_MAX)
@@ -410,7 +404,7 @@ static void drop_all(const Batch *b)
 static int is_over(const Batch *b)
 {
     return b->done == b->n || b->status != STATUS_OK ||
-           (b->ending > 0.0 && (b->done == b->next || now_s() > b->ending + LAST_ANSWERS_S));
+           (b->ending > 0.0 && (b->done == b->next || clock_seconds() > b->ending + LAST_ANSWERS_S));
 }
 
 static Status run(External *e, Batch *b)

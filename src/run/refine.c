@@ -4,8 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
+#include "base/clock.h"
 #include "polish/polish.h"
 #include "rbf/rbf.h"
 #include "run/subject.h"
@@ -365,16 +365,14 @@ static Status refine(Refine *r, Refined *out, Err *err)
 
 Status refine_design(const Saved *h, size_t row, const RefineConfig *config, Refined *out, Err *err)
 {
-    struct timespec start, end;
     RefineConfig used = *config;
     if (h->settings.problem.kind != PROBLEM_TOWER)
         used.members = 1;
     *out = (Refined){0};
     Refine r = {.run = h, .row = row, .config = &used};
-    clock_gettime(CLOCK_MONOTONIC, &start);
+    const double start = clock_seconds();
     const Status status = refine(&r, out, err);
-    clock_gettime(CLOCK_MONOTONIC, &end);
-    out->seconds = (double)(end.tv_sec - start.tv_sec) + 1e-9 * (double)(end.tv_nsec - start.tv_nsec);
+    out->seconds = clock_seconds() - start;
     subject_close(r.subject);
     return status;
 }

@@ -10,6 +10,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "base/clock.h"
 #include "moga/cover.h"
 #include "run/export.h"
 #include "run/lock.h"
@@ -36,13 +37,6 @@ struct RunStore {
     long session;
     FILE *evaluations, *log, *events;
 };
-
-static double now_s(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 static void path_in(const RunStore *store, const char *name, char path[PATH_MAX])
 {
@@ -305,7 +299,7 @@ Status store_session(RunStore *store, const char *program, int threads, size_t n
                     "CREATE TABLE IF NOT EXISTS effort(session INTEGER PRIMARY KEY, seconds REAL, waited REAL, "
                     "surrogate REAL)",
                     ""));
-    store->last_commit = now_s();
+    store->last_commit = clock_seconds();
     return database_each(store->db, "SELECT last_insert_rowid()", take_long, &store->session, err);
 }
 
@@ -327,7 +321,7 @@ Status store_flush(RunStore *store, Err *err)
         return STATUS_OK;
     TRY(database_do(store->db, err, "COMMIT", ""));
     store->in_transaction = 0;
-    store->last_commit = now_s();
+    store->last_commit = clock_seconds();
     return STATUS_OK;
 }
 
@@ -337,7 +331,7 @@ Status store_simulation(RunStore *store, const Simulation *s, size_t generation,
         .x = s->x, .f = s->f, .spread = s->spread, .violation = s->violation, .verdict = *s->verdict};
     TRY(begin(store, err));
     TRY(tables_insert(store->db, store->schema, (long)s->number, (long)generation, NULL, &d, err));
-    if (d.verdict.seconds >= COMMIT_S || now_s() >= store->last_commit + COMMIT_S)
+    if (d.verdict.seconds >= COMMIT_S || clock_seconds() >= store->last_commit + COMMIT_S)
         TRY(store_flush(store, err));
     return STATUS_OK;
 }

@@ -6,10 +6,10 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <time.h>
 
 #include <omp.h>
 
+#include "base/clock.h"
 #include "moga/cover.h"
 #include "run/advance.h"
 #include "run/given.h"
@@ -25,7 +25,7 @@ typedef struct {
     RunStore *store;
     StudySummary *summary;
     FILE *differences;
-    struct timespec start;
+    double start;            /* [s] of the clock */
     double seconds_before;   /* of earlier sessions */
     size_t generation;       /* that is under way */
     size_t first_generation; /* of this session */
@@ -38,9 +38,7 @@ typedef struct {
 
 static double session_seconds(const Study *study)
 {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)(now.tv_sec - study->start.tv_sec) + 1e-9 * (double)(now.tv_nsec - study->start.tv_nsec);
+    return clock_seconds() - study->start;
 }
 
 /* -- settings -------------------------------------------------------------------------------------------------------
@@ -638,7 +636,7 @@ Status study_run(const Settings *s, const StudyOptions *options, StudySummary *s
     memset(summary, 0, sizeof *summary);
     Study study = {.options = options, .summary = summary, .differences = differences, .err = err};
     pthread_mutex_init(&study.lock, NULL);
-    clock_gettime(CLOCK_MONOTONIC, &study.start);
+    study.start = clock_seconds();
     Status status = prepare(&study, s, err);
     if (status == STATUS_OK && !is_over(&study))
         status = work(&study, err);

@@ -3,8 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
+#include "base/clock.h"
 #include "base/linalg.h"
 #include "scene/core_beam.h"
 #include "sim/engine.h"
@@ -180,18 +180,11 @@ static void run_fast(SimWorker *w, SimResult *result)
     }
 }
 
-static double seconds_now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 Status sim_run(SimWorker *w, SceneKind kind, const double x[], SimResult *result, Err *err)
 {
     const Scene *scene = w->scene;
     const int n = scene->building.n;
-    const double start = seconds_now();
+    const double start = clock_seconds();
     memset(result, 0, sizeof *result);
     if (kind != SCENE_NO_CORE)
         TRY(core_beam_make(&w->core, &scene->settings, n, x[n], x[n + 1], err));
@@ -211,6 +204,6 @@ Status sim_run(SimWorker *w, SceneKind kind, const double x[], SimResult *result
     result->mcore_kg = kind == SCENE_NO_CORE ? 0 : w->core.mass_kg;
     result->penetration_ratio = result->penetration_max_m / scene->settings.contact.radius_m;
     result->beyond_contact_law = result->penetration_ratio > PENETRATION_RATIO_MAX;
-    result->seconds = seconds_now() - start;
+    result->seconds = clock_seconds() - start;
     return STATUS_OK;
 }

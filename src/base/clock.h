@@ -1,0 +1,16 @@
+/* base/clock.h -- seconds of wall time from some moment on, never set back.
+ *
+ * Threads  no state */
+#ifndef IMTET_BASE_CLOCK_H
+#define IMTET_BASE_CLOCK_H
+
+#include <time.h>
+
+static inline double clock_seconds(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+#endif
