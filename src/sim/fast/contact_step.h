@@ -125,16 +125,15 @@ static double step_mismatch(const FastWork *k, const Active *active, double work
 
 /* Share x of a step: what the force that was solved for, a parabola, misses of the law along the path of floor j [N].
  */
-static double force_missed(const FastWork *k, const Press *t, int j, double h, double x)
+static double force_missed(const FastWork *k, const Press *t, int j, const Path *path, double x)
 {
-    const Path path = path_make(h, scalars_const(k->w)[j], scalars_const(k->wd)[j], scalars_const(k->w1)[j],
-                                scalars_const(k->wd1)[j]);
-    const double w = path_at(&path, x), side = w > 0 ? 1 : -1, p = side * w - scalars_const(k->gap)[j];
+    const double w = path_at(path, x), side = w > 0 ? 1 : -1, p = side * w - scalars_const(k->gap)[j];
     const double v0 = larger(t->closings ? t->closed_with : k->v0[j], k->model->contact.v0_floor);
     const double solved =
         (1 - x) * scalars_const(k->f0)[j] + x * scalars_const(k->f1)[j] + x * (1 - x) * scalars_const(k->fb)[j];
     const double law =
-        p > 0 ? contact_force(&k->model->contact, k->model->mass_eff[j], p, side * path_slope(&path, x) / h, v0).force
+        p > 0 ? contact_force(&k->model->contact, k->model->mass_eff[j], p, side * path_slope(path, x) / path->h, v0)
+                    .force
               : 0;
     return fabs(solved + side * law);
 }
@@ -145,11 +144,13 @@ static int forces_are_followed(const FastWork *k, const Active *active, double h
     for (int i = 0; i < active->n; i++) {
         const int j = active->floor[i];
         const double *row = k->RT + j * k->m_pad;
+        const Path path = path_make(h, scalars_const(k->w)[j], scalars_const(k->wd)[j], scalars_const(k->w1)[j],
+                                    scalars_const(k->wd1)[j]);
         double missed = 0, per_force = 0; /* [N], [1/kg] of the floor without the core */
         for (int mode = 0; mode < k->model->nb; mode++)
             per_force += row[mode] * row[mode];
         for (int quarter = 1; quarter < 4; quarter++)
-            missed = larger(force_missed(k, &active->press[i], j, h, 0.25 * quarter), missed);
+            missed = larger(force_missed(k, &active->press[i], j, &path, 0.25 * quarter), missed);
         const double peak = larger(fabs(scalars_const(k->seen[1][2])[j]), scalars_const(k->peak_a)[j]);
         if (!(missed * per_force <= ACCELERATION_SLACK * k->knobs->peak_tolerance * peak))
             return 0;
@@ -227,43 +228,39 @@ static void accept_contacts(FastWork *k, const Active *active, double h)
 /* Steps whose books do not close are halved so often below the length that resolves the shortest contact. */
 enum { HALVED_FOR_BOOKS = 4 };
 
-/* One step with whatever contacts it holds; 0 when it must be shorter and nothing has changed. below: levels below the
- * one whose step resolves the shortest contact, from which on gaps may close and others be reached. */
+/* Solves for the forces of a step with whatever contacts it holds, lets the modes take them, and looks at what comes of
+ * it; 0 when the step must be shorter. below: levels below the one whose step resolves the shortest contact, from which
+ * on gaps may close and others be reached. */
+static int try_contacts(FastWork *k, const Level *l, double a0, double a1, int below, Active *active)
+{
+    const int finest = below >= 0, may_halve = below < (k->knobs->energy_tolerance > 0 ? HALVED_FOR_BOOKS : 0);
+    const double allowed = k->knobs->energy_tolerance * k->energy_scale;
+    double handled;
+    contact_predict(k, l, a0, a1);
+    const double missed = contact_bounds(k, l, finest ? k->bf : k->mf, a0, a1);
+    if (!solve_contacts(k, l, k->knobs->solver_tolerance, active))
+        return 0;
+    if (!finest && (closes(active) || others_reach(k, active, l->h, missed)))
+        return 0;
+    const double work = contact_update(k, l, active, a0, a1);
+    const double mismatch = step_mismatch(k, active, work, &handled);
+    if (may_halve && !(mismatch <= allowed))
+        return 0;
+    k->may_grow = mismatch <= allowed / 32;
+    return see_step(k, fmax(fabs(a0), fabs(a1))) && (!may_halve || blow_is_known(k, active, l->h, mismatch, handled));
+}
+
+/* One contact step; 0 when it must be shorter and nothing has changed. */
 static int contact_step(FastWork *k, const Level *l, double a0, double a1, int below)
 {
     Active active;
-    const int finest = below >= 0;
     if (!k->landed)
         land(k);
     k->steps++;
-    contact_predict(k, l, a0, a1);
-    const double missed = contact_bounds(k, l, finest ? k->bf : k->mf, a0, a1);
-    if (!solve_contacts(k, l, k->knobs->solver_tolerance, &active)) {
+    if (!try_contacts(k, l, a0, a1, below, &active)) {
         forget_forces(k);
         return 0;
     }
-    if (!finest && (closes(&active) || others_reach(k, &active, l->h, missed))) {
-        forget_forces(k);
-        return 0;
-    }
-    const double work = contact_update(k, l, &active, a0, a1);
-    double handled;
-    const double mismatch = step_mismatch(k, &active, work, &handled);
-    const double allowed = k->knobs->energy_tolerance * k->energy_scale;
-    const int may_halve = below < (k->knobs->energy_tolerance > 0 ? HALVED_FOR_BOOKS : 0);
-    if (may_halve && !(mismatch <= allowed)) {
-        forget_forces(k);
-        return 0;
-    }
-    if (!see_step(k, fmax(fabs(a0), fabs(a1)))) {
-        forget_forces(k);
-        return 0;
-    }
-    if (may_halve && !blow_is_known(k, &active, l->h, mismatch, handled)) {
-        forget_forces(k);
-        return 0;
-    }
-    k->may_grow = mismatch <= allowed / 32;
     accept_contacts(k, &active, l->h);
     peaks_in_contact(k);
     return 1;
