@@ -326,12 +326,17 @@ static void report_fault(Reading *r, int line, const char *text)
         fprintf(r->faults, "%s:%d: %s\n", r->path, line, text);
 }
 
+int setting_is_path(const char *value)
+{
+    return strncmp(value, "builtin:", 8) != 0 && strcmp(value, "none") != 0;
+}
+
 /* A path that was written in a settings file is meant from that file's folder. */
 static void anchor_path(char path[SETTINGS_TEXT_MAX], void *user)
 {
     const Reading *r = user;
     const char *slash = strrchr(r->path, '/');
-    if (!slash || path[0] == '/' || strncmp(path, "builtin:", 8) == 0 || strcmp(path, "none") == 0)
+    if (!slash || path[0] == '/' || !setting_is_path(path))
         return;
     char anchored[2 * SETTINGS_TEXT_MAX];
     snprintf(anchored, sizeof anchored, "%.*s/%s", (int)(slash - r->path), r->path, path);

@@ -137,6 +137,9 @@ void settings_each(const Settings *s, SettingFn take, void *user);
 /* "section.key=value" as given to --set. */
 Status settings_set(Settings *s, const char *assignment, Err *err);
 
+/* Does the value of a path name a file? builtin:NAME and none do not. */
+int setting_is_path(const char *value);
+
 /* The rules that tie settings together. */
 Status settings_check(const Settings *s, Err *err);
 

@@ -1,9 +1,9 @@
 #include "moga/archive.h"
 
 #include <math.h>
-#include <stdint.h>
 
 #include "base/carve.h"
+#include "base/hash.h"
 #include "moga/dominance.h"
 
 static void layout(Archive *a, Carve *c)
@@ -28,13 +28,9 @@ static void layout(Archive *a, Carve *c)
     a->on_front = carve(c, a->n_max, 1);
 }
 
-/* FNV-1a of the design's bytes. */
 static uint64_t hash(size_t n_var, const double x[])
 {
-    const unsigned char *byte = (const unsigned char *)x;
-    uint64_t h = 0xcbf29ce484222325u;
-    for (size_t i = 0; i < n_var * sizeof *x; i++)
-        h = (h ^ byte[i]) * 0x100000001b3u;
+    const uint64_t h = hash_fnv1a(x, n_var * sizeof *x, HASH_SEED);
     return h ^ h >> 32;
 }
 

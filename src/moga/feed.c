@@ -136,12 +136,18 @@ size_t feed_pending(const Feed *q)
     return q->n;
 }
 
-int feed_has(Feed *q, const double x[])
+/* The design that is asked for and is x, or n. */
+static size_t find(const Feed *q, const double x[])
 {
     size_t i = 0;
     while (i < q->n && memcmp(x_of(q, i), x, q->n_var * sizeof *x) != 0)
         i++;
-    return i < q->n;
+    return i;
+}
+
+int feed_has(Feed *q, const double x[])
+{
+    return find(q, x) < q->n;
 }
 
 static Asked asked_of(const Slot *s, const double foreseen[])
@@ -169,9 +175,7 @@ static int take_before(Feed *q, Arrived *out)
 {
     const size_t b = q->before.at++;
     const double *x = q->before.X + b * q->n_var;
-    size_t i = 0;
-    while (i < q->n && memcmp(x_of(q, i), x, q->n_var * sizeof *x) != 0)
-        i++;
+    const size_t i = find(q, x);
     *out = (Arrived){.asked = {.kind = q->before.kind[b]}, .x = x, .ok = q->before.ok[b]};
     if (i < q->n) {
         memcpy(q->out, x_of(q, i), q->row * sizeof *q->out);

@@ -6,12 +6,13 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/hash.h"
 #include "base/list.h"
 #include "scene/motion.h"
 
 uint64_t moved_hash(uint64_t so_far, uint64_t file_hash)
 {
-    return (so_far ^ file_hash) * UINT64_C(0x100000001b3);
+    return (so_far ^ file_hash) * HASH_PRIME;
 }
 
 static Status take_place(char setting[SETTINGS_TEXT_MAX], const char *place, Err *err)

@@ -48,7 +48,7 @@ static double session_seconds(const Study *study)
 static void make_absolute(char path[SETTINGS_TEXT_MAX], void *user)
 {
     (void)user;
-    if (strncmp(path, "builtin:", 8) == 0 || strcmp(path, "none") == 0)
+    if (!setting_is_path(path))
         return;
     char *absolute = realpath(path, NULL);
     if (absolute && strlen(absolute) < SETTINGS_TEXT_MAX)

@@ -7,6 +7,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "base/hash.h"
 #include "base/table.h"
 #include "base/units.h"
 #include "scene/formats/record.h"
@@ -322,15 +323,6 @@ static const MotionFormat *recognise(Lines l)
     return FORMATS[i];
 }
 
-uint64_t motion_hash(const void *data, size_t n)
-{
-    const unsigned char *bytes = data;
-    uint64_t hash = 0xcbf29ce484222325u;
-    for (size_t i = 0; i < n; i++)
-        hash = (hash ^ bytes[i]) * 0x100000001b3u;
-    return hash;
-}
-
 static Status read_format(Motion *m, Record *r, Lines *l, const MotionHow *how, Err *err)
 {
     const MotionFormat *format = recognise(*l);
@@ -349,7 +341,7 @@ Status motion_parse(Motion *m, const char *path, const char *text, size_t length
 {
     static const char dos_end = 0x1a; /* Ctrl-Z, which old programs put at the end of a text */
     memset(m, 0, sizeof *m);
-    const uint64_t hash = motion_hash(text, length);
+    const uint64_t hash = hash_fnv1a(text, length, HASH_SEED);
     while (length && text[length - 1] == dos_end)
         length--;
     const int binary = binary_line(text, length);

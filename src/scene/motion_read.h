@@ -28,7 +28,4 @@ Status motion_read(Motion *m, const char *path, const MotionHow *how, Err *err);
 /* The same from text in memory; `path` only names it in messages. */
 Status motion_parse(Motion *m, const char *path, const char *text, size_t length, const MotionHow *how, Err *err);
 
-/* 64-bit FNV-1a of n bytes, http://www.isthe.com/chongo/tech/comp/fnv */
-uint64_t motion_hash(const void *data, size_t n);
-
 #endif
