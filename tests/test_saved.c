@@ -72,7 +72,7 @@ static void test_values_that_are_not_known_are_nan_and_a_word_that_is_not_known_
                                 "digest = NULL WHERE id = 1;"
                                 "UPDATE evaluation SET kind = 'guessed' WHERE id = 2;"
                                 "UPDATE state SET bytes = x'';"
-                                "UPDATE effort SET session = 99; UPDATE session SET ended = NULL",
+                                "UPDATE session SET search = NULL, ended = NULL",
                                 folder),
                         &err),
              &err);

@@ -255,39 +255,15 @@ static Status take_session(sqlite3_stmt *row, void *user, Err *err)
                         .threads = (long)sqlite3_column_int64(row, 4),
                         .simulated_before = (long)sqlite3_column_int64(row, 5),
                         .seconds = number_at(row, 6),
-                        .search_s = NAN,
-                        .waited_s = NAN,
-                        .surrogate_s = NAN,
-                        .is_final = sqlite3_column_int(row, 8)};
+                        .is_final = sqlite3_column_int(row, 8),
+                        .search_s = number_at(row, 9),
+                        .waited_s = number_at(row, 10),
+                        .surrogate_s = number_at(row, 11)};
     snprintf(s->started, sizeof s->started, "%s", text_at(row, 0));
     snprintf(s->ended, sizeof s->ended, "%s", text_at(row, 1));
     snprintf(s->host, sizeof s->host, "%s", text_at(row, 2));
     snprintf(s->stopped, sizeof s->stopped, "%s", text_at(row, 7));
     return STATUS_OK;
-}
-
-static Status take_effort(sqlite3_stmt *row, void *user, Err *err)
-{
-    Saved *h = ((Loading *)user)->h;
-    const long number = (long)sqlite3_column_int64(row, 0);
-    (void)err;
-    if (number < 1 || number > (long)h->n_sessions)
-        return STATUS_OK;
-    SavedSession *s = &h->session[number - 1];
-    s->search_s = number_at(row, 1);
-    s->waited_s = number_at(row, 2);
-    s->surrogate_s = number_at(row, 3);
-    return STATUS_OK;
-}
-
-/* Runs of the first versions have no such table. */
-static Status load_effort(Loading *l, Err *err)
-{
-    double has_table;
-    TRY(database_number(l->d, "SELECT count(*) FROM sqlite_master WHERE name = 'effort'", 0, &has_table, err));
-    return has_table > 0.0
-               ? database_each(l->d, "SELECT session, seconds, waited, surrogate FROM effort", take_effort, l, err)
-               : STATUS_OK;
 }
 
 static Status take_state(sqlite3_stmt *row, void *user, Err *err)
@@ -337,11 +313,11 @@ static Status load(Loading *l, Err *err)
                       "SELECT number, simulated, failed, front, predicted, surrogate_error, hypervolume, seconds, "
                       "finished FROM generation ORDER BY number",
                       take_generation, l, err));
-    TRY(database_each(d,
-                      "SELECT started, ended, host, pid, threads, simulated_before, seconds, stopped, is_final FROM "
-                      "session ORDER BY number",
-                      take_session, l, err));
-    TRY(load_effort(l, err));
+    TRY(database_each(
+        d,
+        "SELECT started, ended, host, pid, threads, simulated_before, seconds, stopped, is_final, search, "
+        "waited, surrogate FROM session ORDER BY number",
+        take_session, l, err));
     return database_each(d, "SELECT bytes FROM state LIMIT 1", take_state, l, err);
 }
 

@@ -295,10 +295,6 @@ Status store_session(RunStore *store, const char *program, int threads, size_t n
                     "INSERT INTO session(started, host, pid, program, threads, simulated_before, seconds, is_final) "
                     "VALUES (?, ?, ?, ?, ?, ?, 0, 0)",
                     "ttitii", started, host, (long)getpid(), program, (long)threads, (long)n_simulated));
-    TRY(database_do(store->db, err,
-                    "CREATE TABLE IF NOT EXISTS effort(session INTEGER PRIMARY KEY, seconds REAL, waited REAL, "
-                    "surrogate REAL)",
-                    ""));
     store->last_commit = clock_seconds();
     return database_each(store->db, "SELECT last_insert_rowid()", take_long, &store->session, err);
 }
@@ -426,10 +422,9 @@ static Status store_moment(RunStore *store, const SearchView *v, double seconds,
                     "seconds, finished) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)",
                     "iiiiidddt", (long)v->generation_now, (long)v->n, (long)v->n_failed, (long)v->n_front,
                     (long)v->n_predicted, v->surrogate_error, store_hypervolume(store), seconds, finished));
-    TRY(database_do(store->db, err, "UPDATE session SET seconds = ? WHERE number = ?", "di", session, store->session));
     TRY(database_do(store->db, err,
-                    "INSERT OR REPLACE INTO effort(session, seconds, waited, surrogate) VALUES (?, ?, ?, ?)", "iddd",
-                    store->session, v->seconds, v->waited_s, v->surrogate_s));
+                    "UPDATE session SET seconds = ?, search = ?, waited = ?, surrogate = ? WHERE number = ?", "ddddi",
+                    session, v->seconds, v->waited_s, v->surrogate_s, store->session));
     return database_do(store->db, err, "INSERT OR REPLACE INTO state(id, generation, bytes) VALUES (1, ?, ?)", "ib",
                        (long)v->generation_now, v->state, v->n_state);
 }

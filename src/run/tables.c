@@ -37,7 +37,8 @@ static const char TABLES[] =
     " left INTEGER);"
     "CREATE TABLE state(id INTEGER PRIMARY KEY CHECK (id = 1), generation INTEGER NOT NULL, bytes BLOB NOT NULL);"
     "CREATE TABLE session(number INTEGER PRIMARY KEY, started TEXT NOT NULL, ended TEXT, host TEXT, pid INTEGER,"
-    " program TEXT, threads INTEGER, simulated_before INTEGER, seconds REAL, stopped TEXT, is_final INTEGER);";
+    " program TEXT, threads INTEGER, simulated_before INTEGER, seconds REAL, stopped TEXT, is_final INTEGER,"
+    " search REAL, waited REAL, surrogate REAL);";
 
 /* Names become identifiers of SQL: in double quotes, which are doubled inside. */
 static void put_name(FILE *f, const char *name)
