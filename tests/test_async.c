@@ -3,13 +3,14 @@
 #include <pthread.h>
 
 #include "runs.h"
+#include "searches.h"
 
 #include "base/random.h"
 #include "moga/feed.h"
 #include "moga/hypervolume.h"
 #include "problem/textbook.h"
 
-enum { VAR_MAX = 22, OBJ_MAX = 7, ROWS_MAX = 400, MOMENTS_MAX = 120, WORKERS_MAX = 8 };
+enum { VAR_MAX = 22, OBJ_MAX = 7, ROWS_MAX = 400, GENERATIONS_MAX = 120, WORKERS_MAX = 8 };
 
 typedef struct {
     Problem problem;
@@ -21,11 +22,11 @@ typedef struct {
 } World;
 
 typedef struct {
-    size_t n, n_moments, last_generation;
+    size_t n, last_generation;
     double X[ROWS_MAX * VAR_MAX], F[ROWS_MAX * OBJ_MAX];
     unsigned char ok[ROWS_MAX], kind[ROWS_MAX];
-    size_t generation[ROWS_MAX], rows[MOMENTS_MAX], n_state[MOMENTS_MAX];
-    unsigned char *state[MOMENTS_MAX];
+    size_t generation[ROWS_MAX];
+    Moments moments;
     StopReason reason;
 } Seen;
 
@@ -124,25 +125,18 @@ static void world(size_t n_var, size_t n_obj, size_t workers)
 
 static SearchConfig config(size_t initial, size_t max_evals)
 {
-    return (SearchConfig){.seed = 5,
-                          .population = 24,
-                          .initial = initial,
-                          .generations = 100,
-                          .max_evals = max_evals,
-                          .surrogate_max = 60,
-                          .asynchronous = 1,
-                          .nondominated_share = 1,
-                          .trust_error = 0.05,
-                          .crossover_probability = 1,
-                          .crossover_eta = 20,
-                          .mutation_eta = 20,
-                          .mutation_rate = 1};
+    SearchConfig c = search_config(5, 24, 60, 0.05);
+    c.initial = initial;
+    c.generations = 100;
+    c.max_evals = max_evals;
+    c.asynchronous = 1;
+    return c;
 }
 
 static int observe(const SearchView *v, void *user)
 {
     Seen *s = user;
-    assert_true(v->n <= ROWS_MAX && s->n_moments < MOMENTS_MAX);
+    assert_true(v->n <= ROWS_MAX && s->moments.n < GENERATIONS_MAX);
     s->n = v->n;
     s->last_generation = v->generation_now;
     memcpy(s->X, v->X, v->n * v->n_var * sizeof *v->X);
@@ -150,19 +144,13 @@ static int observe(const SearchView *v, void *user)
     memcpy(s->ok, v->ok, v->n);
     memcpy(s->kind, v->kind, v->n);
     memcpy(s->generation, v->generation, v->n * sizeof *v->generation);
-    const size_t k = s->n_moments++;
-    s->rows[k] = v->n;
-    s->n_state[k] = v->n_state;
-    s->state[k] = malloc(v->n_state);
-    assert_non_null(s->state[k]);
-    memcpy(s->state[k], v->state, v->n_state);
+    moments_note(&s->moments, v);
     return 0;
 }
 
 static void forget_it(Seen *s)
 {
-    for (size_t k = 0; k < s->n_moments; k++)
-        free(s->state[k]);
+    moments_free(&s->moments);
     memset(s, 0, sizeof *s);
 }
 
@@ -253,11 +241,19 @@ static void test_results_after_the_last_state_are_taken_up_in_their_order(void *
     const SearchConfig c = config(20, 90);
     world(6, 3, 4);
     search(&c, NULL, &whole);
-    for (size_t k = 0; k + 1 < whole.n_moments; k += 2)
-        for (size_t later = 0; whole.rows[k] + later <= whole.n; later += 1 + whole.n / 6) {
-            const size_t n = whole.rows[k];
-            const SearchStart start = {n,        later,      whole.X,          whole.F,        NULL,
-                                       whole.ok, whole.kind, whole.generation, whole.state[k], whole.n_state[k]};
+    for (size_t k = 0; k + 1 < whole.moments.n; k += 2)
+        for (size_t later = 0; whole.moments.rows[k] + later <= whole.n; later += 1 + whole.n / 6) {
+            const size_t n = whole.moments.rows[k];
+            const SearchStart start = {n,
+                                       later,
+                                       whole.X,
+                                       whole.F,
+                                       NULL,
+                                       whole.ok,
+                                       whole.kind,
+                                       whole.generation,
+                                       whole.moments.state[k],
+                                       whole.moments.n_state[k]};
             search(&c, &start, &rest_of_it);
             assert_int_equal(rest_of_it.n, whole.n);
             assert_int_equal(here.n_taken, whole.n - n - later);

@@ -7,6 +7,7 @@
 #include "moga/archive.h"
 #include "moga/dominance.h"
 #include "moga/search.h"
+#include "searches.h"
 #include "moga/spread.h"
 #include "base/random.h"
 
@@ -214,7 +215,7 @@ static void test_a_design_with_an_answer_that_failed_is_no_longer_used(void **st
 /* -- search ----------------------------------------------------------------------------------------------------------
  */
 
-enum { VAR = 5, OBJ = 2, ROWS_MAX = 600, MOMENTS_MAX = 200 };
+enum { VAR = 5, OBJ = 2, ROWS_MAX = 600, GENERATIONS_MAX = 200 };
 
 /* Convex front f1 + root... of two distances: minima of (x - 0)^2 and (x - 1)^2 along the diagonal. Additive noise. */
 typedef struct {
@@ -265,35 +266,29 @@ static World world(double noise, int is_noisy)
 
 static SearchConfig config(uint32_t seed, double repeats, size_t answers_min)
 {
-    return (SearchConfig){.seed = seed,
-                          .population = 16,
-                          .initial = 20,
-                          .generations = 1000,
-                          .max_evals = 200,
-                          .surrogate_max = 24,
-                          .surrogate = SURROGATE_OFF,
-                          .nondominated_share = 1,
-                          .trust_error = 0.05,
-                          .repeats = repeats,
-                          .answers_min = answers_min,
-                          .answers_max = 4,
-                          .crossover_probability = 1,
-                          .crossover_eta = 20,
-                          .mutation_eta = 20,
-                          .mutation_rate = 1};
+    SearchConfig c = search_config(seed, 16, 24, 0.05);
+    c.initial = 20;
+    c.generations = 1000;
+    c.max_evals = 200;
+    c.surrogate = SURROGATE_OFF;
+    c.repeats = repeats;
+    c.answers_min = answers_min;
+    c.answers_max = 4;
+    return c;
 }
 
 typedef struct {
-    size_t n, n_front, n_repeats, n_moments, rows[MOMENTS_MAX], n_state[MOMENTS_MAX];
+    size_t n, n_front, n_repeats;
     double X[ROWS_MAX * VAR], Y[ROWS_MAX * OBJ], F[ROWS_MAX * OBJ];
-    unsigned char ok[ROWS_MAX], kind[ROWS_MAX], on_front[ROWS_MAX], *state[MOMENTS_MAX];
+    unsigned char ok[ROWS_MAX], kind[ROWS_MAX], on_front[ROWS_MAX];
     size_t answers[ROWS_MAX], generation[ROWS_MAX];
+    Moments moments;
 } Seen;
 
 static int observe(const SearchView *v, void *user)
 {
     Seen *s = user;
-    assert_true(v->n <= ROWS_MAX && s->n_moments < MOMENTS_MAX);
+    assert_true(v->n <= ROWS_MAX && s->moments.n < GENERATIONS_MAX);
     s->n = v->n;
     s->n_front = v->n_front;
     s->n_repeats = v->n_repeats;
@@ -305,19 +300,13 @@ static int observe(const SearchView *v, void *user)
     memcpy(s->on_front, v->on_front, v->n);
     memcpy(s->answers, v->answers, v->n * sizeof *v->answers);
     memcpy(s->generation, v->generation, v->n * sizeof *v->generation);
-    const size_t k = s->n_moments++;
-    s->rows[k] = v->n;
-    s->n_state[k] = v->n_state;
-    s->state[k] = malloc(v->n_state);
-    assert_non_null(s->state[k]);
-    memcpy(s->state[k], v->state, v->n_state);
+    moments_note(&s->moments, v);
     return 0;
 }
 
 static void forget(Seen *s)
 {
-    for (size_t k = 0; k < s->n_moments; k++)
-        free(s->state[k]);
+    moments_free(&s->moments);
     memset(s, 0, sizeof *s);
 }
 
@@ -428,9 +417,10 @@ static void test_a_noisy_search_goes_on_from_any_generation_to_the_same_bytes(vo
     c.surrogate = SURROGATE_ON;
     c.max_evals = 115;
     run(&w, &c, NULL, &seen);
-    for (size_t k = 0; k + 1 < seen.n_moments; k += 2 + k / 2) {
-        const SearchStart start = {seen.rows[k], 0,         seen.X,          seen.Y,        NULL,
-                                   seen.ok,      seen.kind, seen.generation, seen.state[k], seen.n_state[k]};
+    for (size_t k = 0; k + 1 < seen.moments.n; k += 2 + k / 2) {
+        const SearchStart start = {
+            seen.moments.rows[k],   0, seen.X, seen.Y, NULL, seen.ok, seen.kind, seen.generation, seen.moments.state[k],
+            seen.moments.n_state[k]};
         run(&w, &c, &start, &again);
         assert_int_equal(again.n, seen.n);
         assert_memory_equal(again.X, seen.X, seen.n * VAR * sizeof *seen.X);

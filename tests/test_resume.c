@@ -10,8 +10,9 @@
 #include "check.h"
 #include "moga/search.h"
 #include "problem/textbook.h"
+#include "searches.h"
 
-enum { VAR_MAX = 22, OBJ_MAX = 7, ROWS_MAX = 300, MOMENTS_MAX = 80 };
+enum { VAR_MAX = 22, OBJ_MAX = 7, ROWS_MAX = 300, GENERATIONS_MAX = 80 };
 
 typedef struct {
     Problem problem;
@@ -23,12 +24,11 @@ typedef struct {
 
 /* Everything simulated, and the state at the end of every generation. */
 typedef struct {
-    size_t n, n_moments, first_generation, last_generation;
+    size_t n, first_generation, last_generation;
     double X[ROWS_MAX * VAR_MAX], F[ROWS_MAX * OBJ_MAX], G[ROWS_MAX];
     unsigned char ok[ROWS_MAX], on_front[ROWS_MAX], kind[ROWS_MAX];
     size_t generation[ROWS_MAX];
-    size_t rows[MOMENTS_MAX], n_state[MOMENTS_MAX];
-    unsigned char *state[MOMENTS_MAX];
+    Moments moments;
     StopReason reason;
 } Seen;
 
@@ -69,26 +69,19 @@ static void world(World *w, size_t n_var, size_t n_obj, size_t n_con)
 
 static SearchConfig config(size_t initial, size_t max_evals)
 {
-    return (SearchConfig){.seed = 7,
-                          .population = 24,
-                          .initial = initial,
-                          .generations = 60,
-                          .max_evals = max_evals,
-                          .surrogate_max = 40,
-                          .nondominated_share = 1,
-                          .trust_error = 0.2,
-                          .crossover_probability = 1,
-                          .crossover_eta = 20,
-                          .mutation_eta = 20,
-                          .mutation_rate = 1};
+    SearchConfig c = search_config(7, 24, 40, 0.2);
+    c.initial = initial;
+    c.generations = 60;
+    c.max_evals = max_evals;
+    return c;
 }
 
 static int observe(const SearchView *v, void *user)
 {
     Seen *s = user;
-    if (s->n_moments == 0)
+    if (s->moments.n == 0)
         s->first_generation = v->generation_now;
-    assert_true(v->n <= ROWS_MAX && s->n_moments < MOMENTS_MAX);
+    assert_true(v->n <= ROWS_MAX && s->moments.n < GENERATIONS_MAX);
     s->n = v->n;
     s->last_generation = v->generation_now;
     memcpy(s->X, v->X, v->n * v->n_var * sizeof *v->X);
@@ -98,26 +91,20 @@ static int observe(const SearchView *v, void *user)
     memcpy(s->kind, v->kind, v->n);
     memcpy(s->on_front, v->on_front, v->n);
     memcpy(s->generation, v->generation, v->n * sizeof *v->generation);
-    const size_t k = s->n_moments++;
-    s->rows[k] = v->n;
-    s->n_state[k] = v->n_state;
-    s->state[k] = malloc(v->n_state);
-    assert_non_null(v->state);
-    assert_non_null(s->state[k]);
-    memcpy(s->state[k], v->state, v->n_state);
+    moments_note(&s->moments, v);
     return 0;
 }
 
 static void forget(Seen *s)
 {
-    for (size_t k = 0; k < s->n_moments; k++)
-        free(s->state[k]);
+    moments_free(&s->moments);
     memset(s, 0, sizeof *s);
 }
 
 static SearchStart moment(const Seen *s, size_t k)
 {
-    return (SearchStart){s->rows[k], 0, s->X, s->F, s->G, s->ok, s->kind, s->generation, s->state[k], s->n_state[k]};
+    return (SearchStart){s->moments.rows[k],   0, s->X, s->F, s->G, s->ok, s->kind, s->generation, s->moments.state[k],
+                         s->moments.n_state[k]};
 }
 
 static void run(World *w, const SearchConfig *c, const SearchStart *start, Seen *seen)
@@ -139,9 +126,9 @@ static void assert_same_search(const World *w, const Seen *a, const Seen *b)
     assert_memory_equal(a->kind, b->kind, a->n);
     assert_memory_equal(a->on_front, b->on_front, a->n);
     assert_memory_equal(a->generation, b->generation, a->n * sizeof *a->generation);
-    const size_t last_a = a->n_moments - 1, last_b = b->n_moments - 1;
-    assert_int_equal(a->n_state[last_a], b->n_state[last_b]);
-    assert_memory_equal(a->state[last_a], b->state[last_b], a->n_state[last_a]);
+    const size_t last_a = a->moments.n - 1, last_b = b->moments.n - 1;
+    assert_int_equal(a->moments.n_state[last_a], b->moments.n_state[last_b]);
+    assert_memory_equal(a->moments.state[last_a], b->moments.state[last_b], a->moments.n_state[last_a]);
 }
 
 static World here;
@@ -151,8 +138,8 @@ static Seen whole, rest;
 static void check_every_moment(const SearchConfig *c, size_t step)
 {
     run(&here, c, NULL, &whole);
-    assert_true(whole.n_moments > step + 1);
-    for (size_t k = 0; k + 1 < whole.n_moments; k += step) {
+    assert_true(whole.moments.n > step + 1);
+    for (size_t k = 0; k + 1 < whole.moments.n; k += step) {
         const SearchStart start = moment(&whole, k);
         run(&here, c, &start, &rest);
         assert_int_equal(rest.first_generation, k + 1);
@@ -217,10 +204,10 @@ static void test_costs_are_weighed_once_and_the_decision_is_kept(void **state)
     c.surrogate = SURROGATE_AUTO;
     world(&here, 6, 3, 0);
     run(&here, &c, NULL, &whole);
-    size_t plain = 0, k = whole.n_moments / 2 + 2;
-    for (size_t i = whole.rows[k]; i < whole.n; i++)
+    size_t plain = 0, k = whole.moments.n / 2 + 2;
+    for (size_t i = whole.moments.rows[k]; i < whole.n; i++)
         plain += whole.kind[i] == KIND_OFFSPRING;
-    assert_true(plain == whole.n - whole.rows[k] && plain > 50);
+    assert_true(plain == whole.n - whole.moments.rows[k] && plain > 50);
     const SearchStart start = moment(&whole, k);
     here.pause_s = 0.005;
     run(&here, &c, &start, &rest);
@@ -249,7 +236,7 @@ static void test_the_number_of_threads_may_change_in_between(void **state)
     omp_set_num_threads(1);
     run(&here, &c, NULL, &whole);
     omp_set_num_threads(3);
-    const SearchStart start = moment(&whole, whole.n_moments / 2);
+    const SearchStart start = moment(&whole, whole.moments.n / 2);
     run(&here, &c, &start, &rest);
     omp_set_num_threads(threads);
     assert_same_search(&here, &whole, &rest);
@@ -272,7 +259,7 @@ static void test_more_simulations_than_planned_go_on_where_the_plan_ended(void *
     assert_memory_equal(rest.X, whole.X, rest.n * here.problem.n_var * sizeof *rest.X);
 
     static Seen longer;
-    const SearchStart start = moment(&rest, rest.n_moments - 1);
+    const SearchStart start = moment(&rest, rest.moments.n - 1);
     run(&here, &c, &start, &longer);
     assert_int_equal(longer.n, 64);
     assert_memory_equal(rest.X, longer.X, rest.n * here.problem.n_var * sizeof *rest.X);
@@ -287,10 +274,10 @@ static void test_a_search_at_its_limit_simulates_nothing_more(void **state)
     world(&here, 6, 3, 0);
     const SearchConfig c = config(20, 32);
     run(&here, &c, NULL, &whole);
-    const SearchStart end = moment(&whole, whole.n_moments - 1);
+    const SearchStart end = moment(&whole, whole.moments.n - 1);
     run(&here, &c, &end, &rest);
     assert_int_equal(rest.reason, STOP_EVALUATIONS);
-    assert_int_equal(rest.n_moments, 0);
+    assert_int_equal(rest.moments.n, 0);
     forget(&whole);
 }
 
@@ -300,7 +287,7 @@ static void refuse(const SearchConfig *c, const SearchStart *start)
     StopReason reason;
     assert_int_equal(search_resume(&here.problem, c, start, observe, &rest, &reason, &err), STATUS_BAD_DATA);
     assert_non_null(strstr(err.text, "does not fit"));
-    assert_int_equal(rest.n_moments, 0);
+    assert_int_equal(rest.moments.n, 0);
 }
 
 static void test_a_state_that_is_cut_short_or_of_another_search_is_refused(void **state)

@@ -6,6 +6,7 @@
 
 #include "base/random.h"
 #include "check.h"
+#include "searches.h"
 #include "moga/dominance.h"
 #include "moga/hypervolume.h"
 #include "moga/searching.h"
@@ -90,18 +91,11 @@ static void world(World *w, size_t n_var, size_t n_obj)
 
 static SearchConfig config(size_t initial, size_t max_evals)
 {
-    return (SearchConfig){.seed = 1,
-                          .population = 48,
-                          .initial = initial,
-                          .generations = 200,
-                          .max_evals = max_evals,
-                          .surrogate_max = 200,
-                          .nondominated_share = 1,
-                          .trust_error = 0.05,
-                          .crossover_probability = 1,
-                          .crossover_eta = 20,
-                          .mutation_eta = 20,
-                          .mutation_rate = 1};
+    SearchConfig c = search_config(1, 48, 200, 0.05);
+    c.initial = initial;
+    c.generations = 200;
+    c.max_evals = max_evals;
+    return c;
 }
 
 static int observe(const SearchView *v, void *user)
