@@ -32,7 +32,7 @@ static Rbf *fitted(size_t n, const double X[], const double F[], int tune)
     Err err = {0};
     Rbf *m;
     CHECK_OK(rbf_create(&m, N, D, OUT, &err), &err);
-    CHECK_OK(rbf_fit(m, n, X, F, &err), &err);
+    CHECK_OK(rbf_fit(m, n, X, F, NULL, &err), &err);
     if (tune)
         CHECK_OK(rbf_tune(m, &err), &err);
     return m;
@@ -86,42 +86,129 @@ static void test_tuning_lowers_the_error_at_unseen_points(void **state)
     assert_true(sqrt(square[1]) < 5e-3);
 }
 
-/* Every kernel, tail and nugget, against surfaces that were each fitted without one centre. Standardisation scales data
- * and answer alike and the nugget is relative to the kernel, so leaving a centre out changes neither. */
+static void set_shape(Rbf *m, size_t output, RbfForm form)
+{
+    const double theta[D] = {2.0, 1.0, 0.5, 0.7};
+    rbf_set_form(m, output, form);
+    rbf_set_scales(m, output, theta);
+}
+
+/* Every kernel, tail and nugget, with answers of equal and of different variance, against surfaces that were each
+ * fitted without one centre. Standardisation scales data and answer alike and the nugget is relative to the kernel, so
+ * leaving a centre out changes neither. */
 static void test_closed_form_leave_one_out_errors_equal_refits(void **state)
 {
     (void)state;
     enum { FEW = 30 };
-    double X[FEW * D], F[FEW * OUT], X1[FEW * D], F1[FEW * OUT], f[OUT];
+    double X[FEW * D], F[FEW * OUT], V[FEW * OUT], X1[FEW * D], F1[FEW * OUT], V1[FEW * OUT], f[OUT];
     scatter(3, FEW, X, F);
+    for (size_t i = 0; i < FEW * OUT; i++)
+        V[i] = 1.0 / (double)(1 + i % 5);
     Err err = {0};
     Rbf *all, *without;
     CHECK_OK(rbf_create(&all, N, D, OUT, &err), &err);
     CHECK_OK(rbf_create(&without, N, D, OUT, &err), &err);
     for (int kernel = 0; kernel < RBF_N_KERNELS; kernel++)
         for (int tail = 0; tail < RBF_N_TAILS; tail++)
-            for (int noisy = 0; noisy < 2; noisy++) {
+            for (int noisy = 0; noisy < 3; noisy++) {
                 const RbfForm form = {(RbfKernel)kernel, (RbfTail)tail, noisy ? 1e-2 : 1e-7};
-                const double theta[D] = {2.0, 1.0, 0.5, 0.7};
-                rbf_set_form(all, 0, form);
-                rbf_set_form(without, 0, form);
-                rbf_set_scales(all, 0, theta);
-                rbf_set_scales(without, 0, theta);
-                CHECK_OK(rbf_fit(all, FEW, X, F, &err), &err);
+                set_shape(all, 0, form);
+                set_shape(without, 0, form);
+                CHECK_OK(rbf_fit(all, FEW, X, F, noisy == 2 ? V : NULL, &err), &err);
                 for (size_t out = 0; out < FEW; out += 7) {
                     for (size_t i = 0, j = 0; i < FEW; i++) {
                         if (i == out)
                             continue;
                         memcpy(X1 + j * D, X + i * D, D * sizeof *X);
+                        memcpy(V1 + j * OUT, V + i * OUT, OUT * sizeof *V);
                         memcpy(F1 + j++ * OUT, F + i * OUT, OUT * sizeof *F);
                     }
-                    CHECK_OK(rbf_fit(without, FEW - 1, X1, F1, &err), &err);
+                    CHECK_OK(rbf_fit(without, FEW - 1, X1, F1, noisy == 2 ? V1 : NULL, &err), &err);
                     rbf_eval(without, 1, X + out * D, f, NULL);
                     assert_true(fabs(rbf_leave_one_out(all, 0)[out] - (F[out * OUT] - f[0])) < 2e-6);
                 }
             }
     rbf_free(all);
     rbf_free(without);
+}
+
+/* Answers again of the same designs are centres that coincide, and the likelihood of a surface knows them by their mean
+ * alone: i answers are as good as one with the i-th part of the variance. */
+static void test_a_mean_of_answers_with_its_part_of_the_variance_is_worth_all_of_them(void **state)
+{
+    (void)state;
+    enum { FEW = 20 };
+    double X[FEW * D], F[FEW * OUT], V[FEW * OUT], every_X[N * D], every_F[N * OUT], Y[FEW * D], ignored[FEW * OUT];
+    double f[OUT], wanted[OUT];
+    size_t n = 0;
+    Random r = random_stream(5, RANDOM_TEST, 1, 0);
+    scatter(5, FEW, X, F);
+    scatter(6, FEW, Y, ignored);
+    for (size_t i = 0; i < FEW; i++) {
+        const size_t answers = 1 + i % 4;
+        double mean[OUT] = {0};
+        for (size_t j = 0; j < answers; j++, n++)
+            for (size_t k = 0; k < OUT; k++) {
+                every_F[n * OUT + k] = F[i * OUT + k] * (1.0 + 0.05 * random_normal(&r));
+                mean[k] += every_F[n * OUT + k] / (double)answers;
+                memcpy(every_X + n * D, X + i * D, D * sizeof *X);
+                V[i * OUT + k] = 1.0 / (double)answers;
+            }
+        memcpy(F + i * OUT, mean, sizeof mean);
+    }
+    assert_true(n == 50);
+    Err err = {0};
+    Rbf *means, *all;
+    CHECK_OK(rbf_create(&means, N, D, OUT, &err), &err);
+    CHECK_OK(rbf_create(&all, N, D, OUT, &err), &err);
+    for (size_t k = 0; k < OUT; k++) {
+        set_shape(means, k, (RbfForm){RBF_MATERN, RBF_LINEAR, 3e-2});
+        set_shape(all, k, (RbfForm){RBF_MATERN, RBF_LINEAR, 3e-2});
+    }
+    CHECK_OK(rbf_fit(means, FEW, X, F, V, &err), &err);
+    CHECK_OK(rbf_fit(all, n, every_X, every_F, NULL, &err), &err);
+    for (size_t i = 0; i < FEW; i++) {
+        rbf_eval(means, 1, Y + i * D, f, NULL);
+        rbf_eval(all, 1, Y + i * D, wanted, NULL);
+        for (size_t k = 0; k < OUT; k++)
+            assert_close(f[k], wanted[k], 1e-9);
+        rbf_eval(means, 1, X + i * D, f, NULL);
+        for (size_t k = 0; k < OUT; k++)
+            assert_close(rbf_smooth(means, k)[i], f[k], 1e-9);
+    }
+    rbf_free(means);
+    rbf_free(all);
+}
+
+/* Every other answer scatters ten times as much. The nugget is that of the rest. */
+static void test_tuning_finds_the_nugget_of_answers_of_different_variance(void **state)
+{
+    (void)state;
+    enum { MANY = 200 };
+    const double deviation = 0.02;
+    double X[MANY * D], F[MANY * OUT], V[MANY * OUT], Y[MANY * D], wanted[MANY * OUT], f[OUT], square[2] = {0};
+    Random r = random_stream(9, RANDOM_TEST, 1, 0);
+    scatter(9, MANY, X, F);
+    scatter(10, MANY, Y, wanted);
+    for (size_t i = 0; i < MANY; i++) {
+        V[i * OUT] = V[i * OUT + 1] = i % 2 ? 100.0 : 1.0;
+        F[i * OUT] += deviation * sqrt(V[i * OUT]) * random_normal(&r);
+    }
+    for (int told = 0; told < 2; told++) {
+        Err err = {0};
+        Rbf *m;
+        CHECK_OK(rbf_create(&m, MANY, D, OUT, &err), &err);
+        CHECK_OK(rbf_fit(m, MANY, X, F, told ? V : NULL, &err), &err);
+        CHECK_OK(rbf_tune(m, &err), &err);
+        for (size_t i = 0; i < MANY; i++) {
+            rbf_eval(m, 1, Y + i * D, f, NULL);
+            square[told] += (f[0] - wanted[i * OUT]) * (f[0] - wanted[i * OUT]) / MANY;
+        }
+        rbf_free(m);
+    }
+    if (!(square[1] < 0.25 * square[0] && square[1] < deviation * deviation))
+        fail_msg("root mean square error %g where the variances are told, %g where they are not", sqrt(square[1]),
+                 sqrt(square[0]));
 }
 
 static void test_equal_designs_with_different_answers_are_averaged(void **state)
@@ -179,7 +266,7 @@ static void test_a_value_that_is_not_finite_is_refused(void **state)
     Err err = {0};
     Rbf *m;
     CHECK_OK(rbf_create(&m, N, D, OUT, &err), &err);
-    assert_int_equal(rbf_fit(m, N, X, F, &err), STATUS_BAD_DATA);
+    assert_int_equal(rbf_fit(m, N, X, F, NULL, &err), STATUS_BAD_DATA);
     rbf_free(m);
 }
 
@@ -193,7 +280,7 @@ static void test_the_slope_of_the_surface_equals_differences_for_every_form(void
         Err err = {0};
         for (size_t k = 0; k < OUT; k++)
             rbf_set_form(m, k, (RbfForm){(RbfKernel)(form / RBF_N_TAILS), (RbfTail)(form % RBF_N_TAILS), 1e-6});
-        CHECK_OK(rbf_fit(m, N, X, F, &err), &err);
+        CHECK_OK(rbf_fit(m, N, X, F, NULL, &err), &err);
         double x[D] = {0.31, 0.62, 0.48, 0.77}, y[OUT];
         rbf_slope(m, 1, x, f, J);
         rbf_eval(m, 1, x, y, NULL);
@@ -220,6 +307,8 @@ int main(void)
         cmocka_unit_test(test_linear_functions_are_reproduced_everywhere),
         cmocka_unit_test(test_tuning_lowers_the_error_at_unseen_points),
         cmocka_unit_test(test_closed_form_leave_one_out_errors_equal_refits),
+        cmocka_unit_test(test_a_mean_of_answers_with_its_part_of_the_variance_is_worth_all_of_them),
+        cmocka_unit_test(test_tuning_finds_the_nugget_of_answers_of_different_variance),
         cmocka_unit_test(test_equal_designs_with_different_answers_are_averaged),
         cmocka_unit_test(test_the_error_estimate_is_of_the_size_of_the_true_error),
         cmocka_unit_test(test_a_constant_output_is_predicted_without_error),

@@ -18,6 +18,7 @@ struct Surface {
     size_t n, n_tuned; /* centres; archive's size at the last tuning */
     int fitted;
     double *U, *F;     /* (n_max, n_var) (n_max, n_out) centres */
+    double *noise;     /* (n_max, n_out) variances of the answers, of each output's nugget */
     double *range;     /* (n_out) of each output in the archive */
     double *errors;    /* (n_max) sorted for the median */
     size_t *member;    /* (predict_max) of a group, that want a prediction */
@@ -35,6 +36,7 @@ static void layout(Surface *s, Carve *c)
     const size_t n_var = s->problem->n_var;
     s->U = carve(c, s->n_max * n_var, sizeof(double));
     s->F = carve(c, s->n_max * s->n_out, sizeof(double));
+    s->noise = carve(c, s->n_max * s->n_out, sizeof(double));
     s->range = carve(c, s->n_out, sizeof(double));
     s->errors = carve(c, s->n_max, sizeof(double));
     s->u = carve(c, s->predict_max * n_var, sizeof(double));
@@ -170,9 +172,11 @@ Status surface_fit(Surface *s, const Archive *a, Infill *near, Err *err)
         to_unit_cube(s->problem, a->X + row * a->n_var, s->U + i * a->n_var);
         memcpy(s->F + i * s->n_out, a->F + row * a->n_obj, a->n_obj * sizeof *s->F);
         memcpy(s->F + i * s->n_out + a->n_obj, a->G + row * a->n_con, a->n_con * sizeof *s->F);
+        for (size_t k = 0; k < s->n_out; k++)
+            s->noise[i * s->n_out + k] = 1.0 / (double)a->answers[row];
     }
     measure_ranges(s, a);
-    TRY(rbf_fit(s->rbf, s->n, s->U, s->F, err));
+    TRY(rbf_fit(s->rbf, s->n, s->U, s->F, a->n_repeats > 0 ? s->noise : NULL, err));
     if (s->n_tuned == 0 || a->n >= s->n_tuned + (s->n_tuned + 9) / 10) {
         TRY(rbf_tune(s->rbf, err));
         s->n_tuned = a->n;

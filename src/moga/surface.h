@@ -2,7 +2,8 @@
  *
  * Objectives and constraints are the outputs of one Rbf on the unit cube. Beyond `surrogate_max` simulated designs,
  * three quarters of the centres are those nearest to the front and the rest is spread evenly over the order of
- * simulation, which begins with the Latin hypercube. Scales are tuned again when the archive has grown by a tenth.
+ * simulation, which begins with the Latin hypercube. A mean of n answers has the n-th part of the nugget. Scales are
+ * tuned again when the archive has grown by a tenth.
  *
  * Many variables  beyond RBF_DIM_MAX there never is a surface
  * Life cycle  surface_create -> (surface_fit -> surface_predict ...) ... -> surface_free

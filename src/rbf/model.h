@@ -23,6 +23,7 @@ typedef struct {
     double *tail;          /* (1 + 2 n_dim) coefficients b */
     double *weight;        /* (n_max) w */
     double *leave_one_out; /* (n_max) [unit of f] */
+    double *smooth;        /* (n_max) [unit of f] */
 } Output;
 
 /* What one thread needs to fit one output; matrices column-major as LAPACK likes them, lower triangles. */
@@ -34,6 +35,7 @@ typedef struct {
     double *M;                                                /* (n_tail, n_tail) normal matrix of the tail, factored */
     double *b;                                                /* (n_tail) */
     double *y, *w;                                            /* (n) data, weights */
+    double *noise;                                            /* (n) variance of each answer, in nuggets */
     double *q;                                                /* (n) diagonal of the projected inverse */
     double *log_p, *best_p, *gradient, *last_gradient, *step; /* (n_dim + 3) log of theta, warp, nugget */
     double *theta;                                            /* (n_dim) of the step under way */
@@ -48,6 +50,7 @@ struct Rbf {
     size_t n_tuned; /* calls of rbf_tune */
     double *C;      /* (3, n_dim, stride) centres u, log u, log (1 - u) */
     double *F;      /* (n_out, n_max) */
+    double *noise;  /* (n_out, n_max) variance of each answer, in nuggets */
     Output *output;
     Worker *worker;
     Status *status;
@@ -65,11 +68,11 @@ void model_copy_shape(const Rbf *m, Shape *to, const Shape *from);
 /* Points first..first+RBF_BLOCK-1, of n: x (n_dim, RBF_BLOCK); the last one again where there are fewer. */
 void model_gather(const Rbf *m, const double S[], size_t first, size_t n, double x[]);
 
-/* Lower triangle of the kernel matrix A (n, n) of scaled centres, nugget on the diagonal. */
-void model_matrix(const Rbf *m, size_t n, const double S[], RbfKernel kernel, double nugget, double A[]);
+/* Lower triangle of the kernel matrix A (n, n) of scaled centres, nugget times noise (n) on the diagonal. */
+void model_matrix(const Rbf *m, size_t n, const double S[], RbfForm form, const double noise[], double A[]);
 
-/* Factors the kernel matrix into k->A, raising the nugget by tens where centres are too near each other to tell apart;
- * 0 where that does not help. */
+/* Factors the kernel matrix, with k->noise, into k->A, raising the nugget by tens where centres are too near each other
+ * to tell apart; 0 where that does not help. */
 int model_factor(const Rbf *m, Worker *k, size_t n, const double S[], RbfForm *form);
 
 /* Twice as many centres as coefficients at least, else a simpler tail. */

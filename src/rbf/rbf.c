@@ -15,6 +15,7 @@ static void layout(Rbf *m, Carve *c)
     const size_t n = m->n_max, d = m->n_dim, t = m->n_tail_max, spread = d * m->stride + KERNEL_LANES;
     m->C = carve(c, 3 * spread, sizeof(double));
     m->F = carve(c, m->n_out * n, sizeof(double));
+    m->noise = carve(c, m->n_out * n, sizeof(double));
     m->status = carve(c, m->n_out, sizeof(Status));
     m->output = carve(c, m->n_out, sizeof(Output));
     m->worker = carve(c, m->n_workers, sizeof(Worker));
@@ -25,6 +26,7 @@ static void layout(Rbf *m, Carve *c)
         o->tail = carve(c, t, sizeof(double));
         o->weight = carve(c, n, sizeof(double));
         o->leave_one_out = carve(c, n, sizeof(double));
+        o->smooth = carve(c, n, sizeof(double));
     }
     for (size_t k = 0; k < m->n_workers; k++) {
         Worker counted, *w = c->base ? &m->worker[k] : &counted;
@@ -39,6 +41,7 @@ static void layout(Rbf *m, Carve *c)
         w->b = carve(c, t, sizeof(double));
         w->y = carve(c, n, sizeof(double));
         w->w = carve(c, n, sizeof(double));
+        w->noise = carve(c, n, sizeof(double));
         w->q = carve(c, n, sizeof(double));
         w->log_p = carve(c, d + 3, sizeof(double));
         w->best_p = carve(c, d + 3, sizeof(double));
@@ -113,7 +116,7 @@ void model_gather(const Rbf *m, const double S[], size_t first, size_t n, double
 }
 
 /* A block of columns at a time, from its first row on, chunk by chunk. */
-void model_matrix(const Rbf *m, size_t n, const double S[], RbfKernel kernel, double nugget, double A[])
+void model_matrix(const Rbf *m, size_t n, const double S[], RbfForm form, const double noise[], double A[])
 {
     double r2[RBF_BLOCK][KERNEL_CHUNK], x[RBF_BLOCK * RBF_DIM_MAX];
     for (size_t j = 0; j < n; j += RBF_BLOCK) {
@@ -122,10 +125,10 @@ void model_matrix(const Rbf *m, size_t n, const double S[], RbfKernel kernel, do
             const size_t count = n - i < KERNEL_CHUNK ? n - i : KERNEL_CHUNK;
             kernel_distances(m->n_dim, m->stride, S, x, i, count, r2);
             for (size_t p = 0; p < RBF_BLOCK && j + p < n; p++)
-                kernel_values(kernel, count, r2[p], A + (j + p) * n + i);
+                kernel_values(form.kernel, count, r2[p], A + (j + p) * n + i);
         }
         for (size_t p = 0; p < RBF_BLOCK && j + p < n; p++)
-            A[(j + p) * n + j + p] += nugget;
+            A[(j + p) * n + j + p] += form.nugget * noise[j + p];
     }
 }
 
@@ -150,7 +153,7 @@ size_t model_tail(RbfTail tail, size_t n, size_t n_dim)
 int model_factor(const Rbf *m, Worker *k, size_t n, const double S[], RbfForm *form)
 {
     for (;; form->nugget *= 10.0) {
-        model_matrix(m, n, S, form->kernel, form->nugget, k->A);
+        model_matrix(m, n, S, *form, k->noise, k->A);
         if (LAPACKE_dpotrf_work(LAPACK_COL_MAJOR, 'L', (int)n, k->A, (int)n) == 0)
             return 1;
         if (form->nugget >= NUGGET_MAX)
@@ -226,9 +229,11 @@ static void standardise(const Rbf *m, Output *o, const double f[])
     o->scale = square > 0.0 ? sqrt(square) : 1.0;
 }
 
-static int fit_output(const Rbf *m, Worker *k, Output *o, const double f[])
+/* The surface at its own centres: A w + P b = y, and the answers' variance is no part of it. */
+static int fit_output(const Rbf *m, Worker *k, Output *o, const double f[], const double noise[])
 {
     const size_t n = m->n;
+    memcpy(k->noise, noise, n * sizeof *noise);
     standardise(m, o, f);
     for (size_t i = 0; i < n; i++)
         k->y[i] = (f[i] - o->mean) / o->scale;
@@ -239,6 +244,8 @@ static int fit_output(const Rbf *m, Worker *k, Output *o, const double f[])
     o->n_tail = model_weights(m, k, n, m->C, model_tail(form.tail, n, m->n_dim));
     memcpy(o->tail, k->b, o->n_tail * sizeof *o->tail);
     memcpy(o->weight, k->w, n * sizeof *o->weight);
+    for (size_t i = 0; i < n; i++)
+        o->smooth[i] = f[i] - o->scale * form.nugget * noise[i] * k->w[i];
     model_leave_one_out(k, n, o->n_tail);
     double square = 0.0;
     for (size_t i = 0; i < n; i++) {
@@ -253,9 +260,10 @@ Status model_fit(Rbf *m, Err *err)
 {
 #pragma omp parallel for schedule(dynamic, 1) num_threads((int)m->n_workers)
     for (size_t k = 0; k < m->n_out; k++)
-        m->status[k] = fit_output(m, &m->worker[omp_get_thread_num()], &m->output[k], m->F + k * m->n_max)
-                           ? STATUS_OK
-                           : STATUS_BAD_DATA;
+        m->status[k] =
+            fit_output(m, &m->worker[omp_get_thread_num()], &m->output[k], m->F + k * m->n_max, m->noise + k * m->n_max)
+                ? STATUS_OK
+                : STATUS_BAD_DATA;
     for (size_t k = 0; k < m->n_out; k++)
         if (m->status[k] != STATUS_OK)
             return fail(err, STATUS_BAD_DATA,
@@ -277,7 +285,7 @@ static void place(Rbf *m, size_t i, size_t d, double u)
     c[2 * m->n_dim * m->stride] = log_away(1.0 - u);
 }
 
-Status rbf_fit(Rbf *m, size_t n, const double X[], const double F[], Err *err)
+Status rbf_fit(Rbf *m, size_t n, const double X[], const double F[], const double noise[], Err *err)
 {
     if (n < 2 || n > m->n_max)
         return fail(err, STATUS_INTERNAL, "response surface: %zu centres, wanted 2 to %zu", n, m->n_max);
@@ -285,8 +293,10 @@ Status rbf_fit(Rbf *m, size_t n, const double X[], const double F[], Err *err)
     for (size_t i = 0; i < n; i++) {
         for (size_t d = 0; d < m->n_dim; d++)
             place(m, i, d, X[i * m->n_dim + d]);
-        for (size_t k = 0; k < m->n_out; k++)
+        for (size_t k = 0; k < m->n_out; k++) {
             m->F[k * m->n_max + i] = F[i * m->n_out + k];
+            m->noise[k * m->n_max + i] = noise ? noise[i * m->n_out + k] : 1.0;
+        }
     }
     return model_fit(m, err);
 }
@@ -426,6 +436,11 @@ void rbf_slope(const Rbf *m, size_t n, const double X[], double F[], double J[])
 const double *rbf_leave_one_out(const Rbf *m, size_t output)
 {
     return m->output[output].leave_one_out;
+}
+
+const double *rbf_smooth(const Rbf *m, size_t output)
+{
+    return m->output[output].smooth;
 }
 
 double rbf_explained(const Rbf *m, size_t output)

@@ -6,7 +6,8 @@
  *
  * phi is positive definite (Gaussian or Matern 5/2), p a constant, linear or diagonal quadratic tail, and every output
  * has its own kernel, tail, length scales theta, warp a, b and nugget (a ridge on the kernel matrix: 1e-8 for smooth
- * answers, more where the answers are noisy or designs nearly equal). Scales, warp and nugget maximise the likelihood,
+ * answers, more where the answers are noisy or designs nearly equal; times noise_i where the answers of some centres
+ * are known better than those of others: 1/n for a mean of n). Scales, warp and nugget maximise the likelihood,
  * kernel and tail have the least leave-one-out error; both are looked for by rbf_tune and kept by rbf_fit.
  *
  * Error of a prediction  root mean square of the centres' leave-one-out errors, weighted with 1/r^4: a local average
@@ -43,9 +44,10 @@ typedef struct {
 Status rbf_create(Rbf **out, size_t n_max, size_t n_dim, size_t n_out, Err *err);
 void rbf_free(Rbf *m); /* NULL is fine */
 
-/* Interpolates F at X with the forms and scales that the model has; rbf_create starts with Matern, linear tail,
+/* Fits F at X, whose variances are nugget times noise (n, n_out) or, where that is NULL, the nugget, with the forms and
+ * scales that the model has; rbf_create starts with Matern, linear tail,
  * theta = 1 / n_dim, no warp. */
-Status rbf_fit(Rbf *m, size_t n, const double X[], const double F[], Err *err);
+Status rbf_fit(Rbf *m, size_t n, const double X[], const double F[], const double noise[], Err *err);
 
 /* Looks for better forms and scales, starting from the present ones, on the data of the last rbf_fit (an even choice
  * of at most 250 of them), and fits again. */
@@ -59,6 +61,7 @@ void rbf_eval(const Rbf *m, size_t n, const double X[], double F[], double E[]);
 void rbf_slope(const Rbf *m, size_t n, const double X[], double F[], double J[]);
 
 const double *rbf_leave_one_out(const Rbf *m, size_t output); /* (n) f_i minus the prediction made without i */
+const double *rbf_smooth(const Rbf *m, size_t output);        /* (n) the surface at its own centres */
 double rbf_explained(const Rbf *m, size_t output);            /* 1 - leave-one-out variance / variance; 1: perfect */
 
 void rbf_set_form(Rbf *m, size_t output, RbfForm form);           /* used by the next rbf_fit */

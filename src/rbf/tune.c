@@ -55,12 +55,12 @@ static double prior(const Rbf *m, size_t n, const double p[], double gradient[])
 }
 
 /* Turns the inverse in A into v_ij = (w_i w_j / s2 - inv(A)_ij) d phi_ij / d (r^2), i > j, with 0 on the diagonal, and
- * its row sums into q; returns sum_i (w_i^2 / s2 - inv(A)_ii). */
+ * its row sums into q; returns sum_i noise_i (w_i^2 / s2 - inv(A)_ii). */
 static double weigh_pairs(const Rbf *m, Worker *k, size_t n, RbfKernel kernel, double s2)
 {
     double trace = 0.0, r2[RBF_BLOCK][KERNEL_CHUNK], x[RBF_BLOCK * RBF_DIM_MAX];
     for (size_t j = 0; j < n; j++)
-        trace += k->w[j] * k->w[j] / s2 - k->A[j * n + j];
+        trace += k->noise[j] * (k->w[j] * k->w[j] / s2 - k->A[j * n + j]);
     for (size_t j = 0; j < n; j += RBF_BLOCK) {
         model_gather(m, k->S, j, n, x);
         for (size_t i = j; i < n; i += KERNEL_CHUNK) {
@@ -112,7 +112,7 @@ static double likelihood(const Rbf *m, Worker *k, size_t n, RbfForm form, const 
     Shape shape = {.theta = k->theta};
     read_parameters(m, p, &shape, &form.nugget);
     model_scale(m, n, k->C, &shape, k->S);
-    model_matrix(m, n, k->S, form.kernel, form.nugget, k->A);
+    model_matrix(m, n, k->S, form, k->noise, k->A);
     if (LAPACKE_dpotrf_work(LAPACK_COL_MAJOR, 'L', (int)n, k->A, (int)n) != 0)
         return INFINITY;
     model_weights(m, k, n, k->C, model_tail(form.tail, n, m->n_dim));
@@ -172,7 +172,7 @@ static double trial_error(const Rbf *m, Worker *k, size_t n, RbfForm *form, cons
 }
 
 /* At most TUNE_MAX centres, evenly spread over their order: a likelihood costs n^3. */
-static size_t choose_tuning_set(const Rbf *m, Worker *k, const Output *o, const double f[])
+static size_t choose_tuning_set(const Rbf *m, Worker *k, const Output *o, const double f[], const double noise[])
 {
     const size_t n = m->n < TUNE_MAX ? m->n : TUNE_MAX;
     for (size_t i = 0; i < n; i++) {
@@ -180,6 +180,7 @@ static size_t choose_tuning_set(const Rbf *m, Worker *k, const Output *o, const 
         for (size_t d = 0; d < 3 * m->n_dim; d++)
             k->C[d * m->stride + i] = m->C[d * m->stride + from];
         k->y[i] = (f[from] - o->mean) / o->scale;
+        k->noise[i] = noise[from];
     }
     return n;
 }
@@ -198,9 +199,9 @@ static void try_form(const Rbf *m, Worker *k, size_t n, const Output *o, RbfForm
 }
 
 /* The first time every form is tried; later the present one and, in turn, one challenger. */
-static void tune_output(const Rbf *m, Worker *k, Output *o, const double f[])
+static void tune_output(const Rbf *m, Worker *k, Output *o, const double f[], const double noise[])
 {
-    const size_t n = choose_tuning_set(m, k, o, f), n_forms = RBF_N_KERNELS * RBF_N_TAILS;
+    const size_t n = choose_tuning_set(m, k, o, f, noise), n_forms = RBF_N_KERNELS * RBF_N_TAILS;
     const size_t challenger = m->n_tuned % n_forms;
     k->least_error = INFINITY;
     for (size_t i = 0; i < n_forms; i++) {
@@ -223,7 +224,7 @@ Status rbf_tune(Rbf *m, Err *err)
         return fail(err, STATUS_INTERNAL, "response surface: tuned before it was fitted");
 #pragma omp parallel for schedule(dynamic, 1) num_threads((int)m->n_workers)
     for (size_t k = 0; k < m->n_out; k++)
-        tune_output(m, &m->worker[omp_get_thread_num()], &m->output[k], m->F + k * m->n_max);
+        tune_output(m, &m->worker[omp_get_thread_num()], &m->output[k], m->F + k * m->n_max, m->noise + k * m->n_max);
     m->n_tuned++;
     return model_fit(m, err);
 }

@@ -187,7 +187,7 @@ static Status try_surface(Refine *r, Surface *s, const double bound[], double x[
     const Problem *p = s->problem;
     double answer[OBJECTIVES_MAX], g[OBJECTIVES_MAX], foreseen[OBJECTIVES_MAX];
     unsigned char ok = 0;
-    TRY(rbf_fit(s->rbf, s->n, s->U, s->F, err));
+    TRY(rbf_fit(s->rbf, s->n, s->U, s->F, NULL, err));
     if (out->n_tried % 8 == 0)
         TRY(rbf_tune(s->rbf, err));
     TRY(descend_surface(r, s, x, f, bound, *trust, guess, err));
