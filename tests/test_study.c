@@ -294,7 +294,7 @@ static void test_designs_are_chosen_by_limits_weights_and_wishes_and_polished(vo
 
     /* With nothing kept x1 = 0 is the best there is; with all kept nothing may change on this front. */
     said = output_of("polish @/kind --design knee --improve f1 --keep f1 --evals 120 --csv @/polished.csv");
-    assert_non_null(strstr(said, "designs tried with 1 simulation each"));
+    assert_non_null(strstr(said, "designs tried in"));
     free(said);
     Table t;
     Err err = {0};

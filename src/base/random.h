@@ -25,7 +25,8 @@ typedef enum {
     RANDOM_ENSEMBLE,
     RANDOM_TEST,
     RANDOM_DIRECTIONS,
-    RANDOM_DESCENT
+    RANDOM_DESCENT,
+    RANDOM_POLISHING
 } RandomPurpose;
 
 typedef struct {

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "cmd/commands.h"
+#include "cmd/pairs.h"
 #include "cmd/show.h"
 #include "run/front.h"
 
@@ -23,25 +24,11 @@ static double scaled(const Choice *c, size_t i, size_t k)
     return (sense_of(c, k) * front_f(&c->front, i)[k] - c->ideal[k]) / c->span[k];
 }
 
-/* "NAME=NUMBER" */
-static Status take_pair(const Choice *c, const char *option, const char *text, size_t *k, double *value, Err *err)
-{
-    char name[TABLE_NAME_MAX], *end;
-    const char *equals = strchr(text, '=');
-    if (!equals || equals - text >= TABLE_NAME_MAX)
-        return fail(err, STATUS_USAGE, "%s: '%.60s' is not NAME=NUMBER", option, text);
-    snprintf(name, sizeof name, "%.*s", (int)(equals - text), text);
-    *value = strtod(equals + 1, &end);
-    if (end == equals + 1 || *end || !isfinite(*value))
-        return fail(err, STATUS_USAGE, "%s: '%.60s' has no number behind =", option, text);
-    return schema_pick_objective(&c->front.schema, option, name, STATUS_USAGE, k, err);
-}
-
 static Status apply_limit(Choice *c, const char *option, int is_max, const char *text, Err *err)
 {
     size_t k;
     double limit;
-    TRY(take_pair(c, option, text, &k, &limit, err));
+    TRY(pair_take(&c->front.schema, option, text, NAN, &k, &limit, err));
     for (size_t i = 0; i < c->front.n; i++)
         if (is_max ? front_f(&c->front, i)[k] > limit : front_f(&c->front, i)[k] < limit)
             c->allowed[i] = 0;
@@ -63,35 +50,19 @@ static Status apply_limits(const Args *args, Choice *c, size_t *n_left, Err *err
     return STATUS_OK;
 }
 
-/* Pairs of a comma list into values (n_obj), NAN where there is none. */
-static Status take_list(const Choice *c, const char *option, const char *list, double values[], Err *err)
-{
-    char item[TABLE_NAME_MAX + 40];
-    for (size_t k = 0; k < c->front.n_obj; k++)
-        values[k] = NAN;
-    for (size_t j = 0; j < list_count(list); j++) {
-        size_t k;
-        double value;
-        if (!list_item(list, j, item, sizeof item))
-            return fail(err, STATUS_USAGE, "%s: item %zu is empty or too long", option, j + 1);
-        TRY(take_pair(c, option, item, &k, &value, err));
-        values[k] = value;
-    }
-    return STATUS_OK;
-}
-
-/* A negative one would ask for the worst; nothing but zeros asks for nothing. */
 static Status take_weights(const Choice *c, const char *list, double weights[], Err *err)
 {
-    double sum = 0;
-    TRY(take_list(c, "--weights", list, weights, err));
-    for (size_t k = 0; k < c->front.n_obj; k++) {
-        if (weights[k] < 0)
-            return fail(err, STATUS_USAGE, "--weights: %s=%g is negative; every weight asks for more of what is good",
-                        schema_objective(&c->front.schema, k)->name, weights[k]);
-        sum += isnan(weights[k]) ? 0 : weights[k];
-    }
-    return sum > 0 ? STATUS_OK : fail(err, STATUS_USAGE, "--weights: all of them are 0");
+    memset(weights, 0, c->front.n_obj * sizeof *weights);
+    TRY(pairs_take(&c->front.schema, "--weights", list, NAN, weights, err));
+    return weights_check(&c->front.schema, "--weights", weights, err);
+}
+
+/* NAN where nothing is wished for. */
+static Status take_wishes(const Choice *c, const char *list, double wishes[], Err *err)
+{
+    for (size_t k = 0; k < c->front.n_obj; k++)
+        wishes[k] = NAN;
+    return pairs_take(&c->front.schema, "--wish", list, NAN, wishes, err);
 }
 
 typedef double (*CostFn)(const Choice *c, size_t i, const double values[]);
@@ -109,7 +80,7 @@ static double weighted_cost(const Choice *c, size_t i, const double weights[])
 {
     double sum = 0;
     for (size_t k = 0; k < c->front.n_obj; k++)
-        sum += isnan(weights[k]) ? 0 : weights[k] * scaled(c, i, k);
+        sum += weights[k] * scaled(c, i, k);
     return sum;
 }
 
@@ -144,7 +115,7 @@ static Status choose(const Args *args, Choice *c, Err *err)
     if (args_has(args, "--weights"))
         TRY(take_weights(c, args_value(args, "--weights"), weights, err));
     if (args_has(args, "--wish"))
-        TRY(take_list(c, "--wish", args_value(args, "--wish"), wishes, err));
+        TRY(take_wishes(c, args_value(args, "--wish"), wishes, err));
     printf("%zu of %zu designs are within the limits\n", n_left, c->front.n);
     if (n_left == 0)
         return fail(err, STATUS_UNMET,

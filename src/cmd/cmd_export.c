@@ -35,7 +35,7 @@ static Status write_selected(const Args *args, const Saved *h, FILE *f, Err *err
     size_t *rows = calloc((size_t)wanted, sizeof *rows);
     if (!rows)
         return fail(err, STATUS_NO_MEMORY, "no memory for %ld designs", wanted);
-    const size_t n = refine_choose(h, (size_t)wanted, rows, NULL);
+    const size_t n = refine_choose(h, (size_t)wanted, 1, rows);
     export_front_header(f, &h->schema);
     for (size_t i = 0; i < n; i++)
         export_front_row(f, &h->schema, h->row[rows[i]].id, h->X + rows[i] * h->schema.n_var,

@@ -4,6 +4,7 @@
 
 #include "cmd/commands.h"
 #include "cmd/look.h"
+#include "cmd/pairs.h"
 #include "cmd/show.h"
 #include "run/front.h"
 #include "run/output.h"
@@ -13,6 +14,7 @@ typedef struct {
     Front front;
     Saved run;
     size_t row; /* of the front */
+    double weight[OBJECTIVES_MAX];
     unsigned char keep[OBJECTIVES_MAX];
     RefineConfig config;
     Refined result;
@@ -34,20 +36,28 @@ static Status take_kept(const Args *args, Work *w, Err *err)
     return STATUS_OK;
 }
 
-static Status take_options(const Args *args, Work *w, Err *err)
+static Status take_improved(const Args *args, Work *w, Err *err)
 {
     const Schema *schema = &w->front.schema;
-    const char *improve = args_value(args, "--improve");
+    const char *list = args_value(args, "--improve");
+    for (size_t k = 0; k < schema->n_obj; k++)
+        w->weight[k] = list ? strcmp(list, "all") == 0 : k == 0;
+    if (list && strcmp(list, "all") != 0)
+        TRY(pairs_take(schema, "--improve", list, 1.0, w->weight, err));
+    return weights_check(schema, "--improve", w->weight, err);
+}
+
+static Status take_options(const Args *args, Work *w, Err *err)
+{
     long evals;
-    w->config.improve = 0;
-    if (improve)
-        TRY(schema_pick_objective(schema, "--improve", improve, STATUS_USAGE, &w->config.improve, err));
+    TRY(take_improved(args, w, err));
     TRY(take_kept(args, w, err));
-    TRY(args_whole(args, "--evals", 1, 1000000, 120, &evals, err));
+    TRY(args_whole(args, "--evals", 1, 1000000, 300, &evals, err));
     TRY(args_whole(args, "--members", 1, 1000, 4, &w->config.members, err));
     TRY(args_number(args, "--seconds", 0, 1e9, 0, &w->config.max_seconds, err));
     TRY(args_number(args, "--slack", 0, 1e6, -1, &w->config.slack, err));
-    w->config.algorithm = args_has(args, "--algorithm") ? args_value(args, "--algorithm") : "cobyla";
+    w->config.algorithm = args_value(args, "--algorithm");
+    w->config.weight = w->weight;
     w->config.keep = w->keep;
     w->config.max_evals = (size_t)evals;
     return STATUS_OK;
@@ -81,27 +91,42 @@ static Status write_csv(const Work *w, const char *path, Err *err)
     return output_close(&o, err);
 }
 
+static void show_gain(const Work *w, size_t k)
+{
+    const Column *c = schema_objective(&w->front.schema, k);
+    const Refined *r = &w->result;
+    const double gain = c->sense * (r->f_start[k] - r->f[k]);
+    const double error = hypot(r->spread_start[k], r->spread[k]) / sqrt((double)w->config.members);
+    printf("%s is %s by %.3g", c->name, gain < 0.0 ? "worse" : "better", fabs(gain));
+    if (isfinite(error))
+        printf(" with a standard error of %.2g", error);
+    putchar('\n');
+}
+
+static const char *verdict_of(const Refined *r)
+{
+    return !r->has_changed        ? "No improvement was found that keeps the others."
+           : !r->keeps            ? "Measured anew, what was to be kept is not."
+           : isnan(r->gain_error) ? "One simulation each: nothing is known of the spread."
+           : refined_counts(r)    ? "Measured anew on both designs this is more than the spread."
+                                  : "Measured anew on both designs this is not more than the spread.";
+}
+
 static void show(const Work *w, long id)
 {
     const Schema *schema = &w->front.schema;
     const Refined *r = &w->result;
-    const size_t k = w->config.improve;
-    const char *name = schema_objective(schema, k)->name;
     show_objective_names(schema);
     show_objectives("before", front_id(&w->front, w->row), schema->n_obj, r->f_start);
     show_objectives("polished", id, schema->n_obj, r->f);
-    if (isfinite(r->spread_start[k]))
+    if (isfinite(r->spread_start[0]))
         show_objectives("spread before", 0, schema->n_obj, r->spread_start);
-    const long each = w->run.settings.problem.kind == PROBLEM_TOWER ? w->config.members : 1;
-    printf("\n%s: %zu designs tried with %ld simulation%s each, %zu failed, %.1f s\n", w->config.algorithm,
-           r->n_evaluated, each, each == 1 ? "" : "s", r->n_failed, r->seconds);
-    if (!r->has_changed)
-        printf("no improvement of %s was found that keeps the others.\n", name);
-    else if (isfinite(r->gain_error))
-        printf("%s is better by %.3g with a standard error of %.2g, measured anew on both designs: %s.\n", name,
-               r->gain, r->gain_error, refined_counts(r) ? "more than the spread" : "not more than the spread");
-    else
-        printf("%s is better by %.3g; one simulation each: nothing is known of the spread.\n", name, r->gain);
+    printf("\n%zu designs tried in %zu simulations, %zu failed, %.1f s\n", r->n_evaluated, r->n_simulated, r->n_failed,
+           r->seconds);
+    for (size_t k = 0; r->has_changed && k < schema->n_obj; k++)
+        if (w->weight[k] > 0.0)
+            show_gain(w, k);
+    puts(verdict_of(r));
     if (id)
         printf("stored in the run as design %ld.\n", id);
 }
@@ -129,12 +154,13 @@ static Status run(const Args *args, Err *err)
 
 static const ArgOption OPTIONS[] = {
     {"--design", "ID", NULL, 0, "column id of RUN/front.csv, or knee"},
-    {"--improve", "NAME", NULL, 0, "the objective to improve; the first one if not given"},
+    {"--improve", "NAME[=W],...", NULL, 0,
+     "objectives to improve, with weights in ranges of the front, or all; the first"},
     {"--keep", "NAMES", NULL, 0, "all, or a comma list: these may not get worse"},
     {"--slack", "S", NULL, 0, "but by this share of their value; their spread if not given"},
-    {"--algorithm", "NAME", NULL, 0, "cobyla | bobyqa | sbplx | isres"},
-    {"--evals", "N", NULL, 0, "try at most so many designs; 120 if not given"},
-    {"--members", "N", NULL, 0, "simulations of each (the tower's), whose mean counts; 4 if not given"},
+    {"--algorithm", "NAME", NULL, 0, "cobyla | bobyqa | sbplx | isres: half of the simulations go to it"},
+    {"--evals", "N", NULL, 0, "simulate at most so often; 300 if not given"},
+    {"--members", "N", NULL, 0, "simulations of a design that scatters (the tower's), whose mean counts; 4"},
     {"--seconds", "T", NULL, 0, "stop after so long; 0: no limit"},
     {"--csv", "FILE", NULL, 0, "the polished design and its objectives into FILE; -: standard output"},
     OPTION_MOVED,
@@ -144,11 +170,12 @@ static const ArgOption OPTIONS[] = {
 const Command CMD_POLISH = {
     .name = "polish",
     .operand = "RUN",
-    .summary = "improve one objective of a design, the others kept",
+    .summary = "improve objectives of a design, the others kept",
     .example = "imtet polish results/quick --design knee --improve j2_m",
     .details =
-        "Improves one objective of a design of RUN with NLopt while the others get no worse than their spread: first\n"
-        "on a response surface of the run's simulations, then on the mean of several simulations. At the end both\n"
+        "Improves objectives of a design of RUN while the others get no worse than their spread: a response surface "
+        "of\n"
+        "the nearest simulations, on which NLopt looks for better designs, and the simulator in turn. At the end both\n"
         "designs are simulated anew; a gain beyond the spread goes into the run as a design of the kind polished.",
     .options = OPTIONS,
     .run = run,

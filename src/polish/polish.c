@@ -28,14 +28,15 @@ typedef struct {
     const PolishConfig *config;
     PolishResult *result;
     nlopt_opt opt;
-    double start;      /* [s] of the clock */
-    double *x, *f, *g; /* of the last evaluation; x (n_var) in its own units */
-    double *scale;     /* (n_obj) */
-    double *each;      /* (n_obj + n_con) scratch */
-    double *u;         /* (n_var) the last evaluated point in the unit cube */
-    double excess;     /* worst of the constraints there, in units of their scale */
-    double least;      /* best allowed value so far */
-    int known, ok;     /* u has been evaluated; it did not fail */
+    double start;       /* [s] of the clock */
+    double value, unit; /* goal at the start, and in what it is counted */
+    double *x, *f, *g;  /* of the last evaluation; x (n_var) in its own units */
+    double *scale;      /* (n_obj) */
+    double *each;       /* (n_obj + n_con) scratch */
+    double *u;          /* (n_var) the last evaluated point in the unit cube */
+    double excess;      /* worst of the constraints there, in units of their scale */
+    double least;       /* best allowed value so far */
+    int known, ok;      /* u has been evaluated; it did not fail */
     Status status;
     Err *err;
 } Polish;
@@ -45,8 +46,8 @@ static size_t excesses(const Polish *p, double excess[])
 {
     size_t n = 0;
     for (size_t k = 0; k < p->problem->n_obj; k++)
-        if (p->config->keep[k] && k != p->config->improve)
-            excess[n++] = (p->f[k] - p->result->f_start[k] - p->config->slack[k]) / p->scale[k];
+        if (isfinite(p->config->goal.bound[k]))
+            excess[n++] = (p->f[k] - p->config->goal.bound[k]) / p->scale[k];
     for (size_t c = 0; c < p->problem->n_con; c++)
         excess[n++] = p->g[c];
     return n;
@@ -63,7 +64,7 @@ static double excess_of(const Polish *p)
 
 static void keep_if_best(Polish *p)
 {
-    const double value = p->f[p->config->improve];
+    const double value = goal_value(&p->config->goal, p->problem->n_obj, p->f);
     if (!p->ok || p->excess > 0.0 || !(value < p->least))
         return;
     p->least = value;
@@ -89,10 +90,7 @@ static void evaluate(Polish *p, const double u[])
         return;
     }
     memcpy(p->u, u, q->n_var * sizeof *u);
-    for (size_t d = 0; d < q->n_var; d++)
-        p->x[d] = fmin(fmax(q->lower[d] + u[d] * (q->upper[d] - q->lower[d]), q->lower[d]), q->upper[d]);
-    if (q->repair)
-        q->repair(p->x, q->user);
+    cube_to(q, u, p->x);
     p->status = q->evaluate(1, p->x, NULL, p->f, p->g, &ok, q->user, p->err);
     p->known = 1;
     p->ok = p->status == STATUS_OK && ok;
@@ -106,8 +104,8 @@ static void evaluate(Polish *p, const double u[])
 
 static double value_at(Polish *p)
 {
-    const size_t k = p->config->improve;
-    return p->ok ? fmin((p->f[k] - p->result->f_start[k]) / p->scale[k], WALL) : WALL;
+    const double value = p->ok ? goal_value(&p->config->goal, p->problem->n_obj, p->f) : INFINITY;
+    return fmin((value - p->value) / p->unit, WALL);
 }
 
 static double objective(unsigned n, const double u[], double gradient[], void *user)
@@ -153,44 +151,31 @@ static Status find_method(const char *name, const Method **found, Err *err)
     return fail(err, STATUS_USAGE, "no algorithm is called '%.40s'; there are cobyla, bobyqa, sbplx, isres", name);
 }
 
+Status polish_knows(const char *algorithm, Err *err)
+{
+    const Method *unused;
+    return find_method(algorithm, &unused, err);
+}
+
 static Status evaluate_start(Polish *p, const double start[], double u[])
 {
     const Problem *q = p->problem;
-    for (size_t d = 0; d < q->n_var; d++)
-        u[d] = q->upper[d] > q->lower[d] ? (start[d] - q->lower[d]) / (q->upper[d] - q->lower[d]) : 0.0;
+    cube_from(q, start, u);
     evaluate(p, u);
     if (p->status != STATUS_OK)
         return p->status;
     if (!p->ok)
         return fail(p->err, STATUS_BAD_DATA, "the design to be polished cannot be evaluated");
-    memcpy(p->result->f_start, p->f, q->n_obj * sizeof *p->f);
     memcpy(p->result->f, p->f, q->n_obj * sizeof *p->f);
     memcpy(p->result->x, p->x, q->n_var * sizeof *p->x);
-    for (size_t k = 0; k < q->n_obj; k++)
+    for (size_t k = 0; k < q->n_obj; k++) {
         p->scale[k] = p->f[k] != 0.0 ? fabs(p->f[k]) : 1.0;
-    p->least = p->f[p->config->improve];
+        p->unit += fabs(p->config->goal.weight[k]) * p->scale[k];
+    }
+    p->unit = p->unit > 0.0 ? p->unit : 1.0;
+    p->least = p->value = goal_value(&p->config->goal, q->n_obj, p->f);
     p->excess = excess_of(p);
     return STATUS_OK;
-}
-
-/* The method begins at the guess where that is the best so far. */
-static Status evaluate_guess(Polish *p, double u[])
-{
-    const Problem *q = p->problem;
-    if (!p->config->guess)
-        return STATUS_OK;
-    double *start = malloc(q->n_var * sizeof *start);
-    if (!start)
-        return fail(p->err, STATUS_NO_MEMORY, "no memory for polishing");
-    memcpy(start, u, q->n_var * sizeof *start);
-    const double least = p->least;
-    for (size_t d = 0; d < q->n_var; d++)
-        u[d] = q->upper[d] > q->lower[d] ? (p->config->guess[d] - q->lower[d]) / (q->upper[d] - q->lower[d]) : 0.0;
-    evaluate(p, u);
-    if (!(p->least < least))
-        memcpy(u, start, q->n_var * sizeof *u);
-    free(start);
-    return p->status;
 }
 
 static void run_method(Polish *p, const Method *m, double u[])
@@ -215,7 +200,8 @@ Status polish_run(const Problem *problem, const PolishConfig *config, const doub
     const Method *method = NULL;
     const size_t n = problem->n_var, m = problem->n_obj;
     TRY(find_method(config->algorithm, &method, err));
-    Polish p = {.problem = problem, .config = config, .result = result, .status = STATUS_OK, .err = err};
+    Polish p = {
+        .problem = problem, .config = config, .result = result, .least = -INFINITY, .status = STATUS_OK, .err = err};
     result->n_evaluated = result->n_failed = 0;
     double *store = calloc(3 * n + 3 * m + 2 * problem->n_con + 1, sizeof *store);
     p.opt = nlopt_create(method->algorithm, (unsigned)n);
@@ -230,13 +216,10 @@ Status polish_run(const Problem *problem, const PolishConfig *config, const doub
         p.g = p.each + m + problem->n_con;
         p.start = clock_seconds();
         status = evaluate_start(&p, start, u);
-        if (status == STATUS_OK)
-            status = evaluate_guess(&p, u);
         if (status == STATUS_OK) {
             run_method(&p, method, u);
             status = p.status;
         }
-        result->seconds = clock_seconds() - p.start;
     }
     nlopt_destroy(p.opt);
     free(store);

@@ -1,8 +1,6 @@
-/* polish/polish.h -- one objective of one design lowered, the others kept, with NLopt on the true evaluation.
+/* polish/polish.h -- the goal of polish/goal.h pursued with NLopt on the true evaluation.
  *
- *   minimise f_improve(x)   while   f_k(x) <= kept_k for every kept k,   g(x) <= 0,   lower <= x <= upper
- *
- * Algorithms  cobyla (default), isres: constraints handed over; bobyqa, sbplx: constraints as a penalty
+ * Algorithms  cobyla, isres: bounds handed over; bobyqa, sbplx: bounds as a penalty
  * Guards      a failed evaluation is a finite wall, never NaN or Inf; the answer is the best allowed design that was
  *             seen, whatever NLopt returns; evaluations and seconds are counted here, not by NLopt
  * Start       its own evaluation counts as the first; it is always allowed, so the answer is never worse than it
@@ -12,14 +10,11 @@
 
 #include <stdint.h>
 
-#include "moga/problem.h"
+#include "polish/goal.h"
 
 typedef struct {
     const char *algorithm;
-    size_t improve;            /* objective */
-    const unsigned char *keep; /* (n_obj) */
-    const double *slack;       /* (n_obj) [unit of f] a kept objective may be worse by this */
-    const double *guess;       /* (n_var) where the method begins if it is allowed and better than the start; or NULL */
+    Goal goal;
     size_t max_evals;
     double max_seconds; /* 0: no limit */
     uint32_t seed;
@@ -27,9 +22,11 @@ typedef struct {
 
 typedef struct {
     size_t n_evaluated, n_failed;
-    double seconds;
-    double *x, *f, *f_start; /* (n_var) (n_obj) (n_obj): the caller's, filled */
+    double *x, *f; /* (n_var) (n_obj): the caller's, filled */
 } PolishResult;
+
+/* Whether there is an algorithm of that name. */
+Status polish_knows(const char *algorithm, Err *err);
 
 /* Fails where the start itself cannot be evaluated. */
 Status polish_run(const Problem *problem, const PolishConfig *config, const double start[], PolishResult *result,

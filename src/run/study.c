@@ -558,26 +558,30 @@ Status study_finished(const char *folder, StudySummary *summary, int *is_finishe
 /* -- polishing ------------------------------------------------------------------------------------------------------
  */
 
-enum { POLISH_MEMBERS = 2, POLISH_LEAST = 20, POLISH_SHARE = 10, POLISH_MOST = 32 };
+enum { POLISH_MEMBERS = 4, POLISH_LEAST = 40, POLISH_SHARE = 10, POLISH_MOST = 32 };
 
-/* Designs tried for each that is polished: together a tenth of the simulations; 0: not worth it. */
+/* Simulations for each design that is polished: together a tenth of all; 0: not worth it. */
 static size_t polish_evals(const Settings *s)
 {
     const long n = s->search.polish < POLISH_MOST ? s->search.polish : POLISH_MOST;
-    const long each = n > 0 ? s->search.max_evals / (POLISH_SHARE * POLISH_MEMBERS * n) : 0;
+    const long each = n > 0 ? s->search.max_evals * s->sim.ensemble / (POLISH_SHARE * n) : 0;
     return s->problem.kind == PROBLEM_TOWER && each >= POLISH_LEAST ? (size_t)each : 0;
 }
 
-/* The better design is stored with the note that this one has been tried: a run that is cut short goes on behind it. */
-static Status polish_one(Study *study, const Saved *h, size_t row, size_t improve, size_t n_tried, Err *err)
+/* In all objectives at once, none of which may get worse. The better design is stored with the note that this one has
+ * been tried: a run that is cut short goes on behind it. */
+static Status polish_one(Study *study, const Saved *h, size_t row, size_t n_tried, Err *err)
 {
     StudySummary *sum = study->summary;
     const Settings *s = &study->used;
     unsigned char keep[OBJECTIVES_MAX];
+    double weight[OBJECTIVES_MAX];
     Refined refined;
-    memset(keep, 1, sizeof keep);
-    const RefineConfig config = {.algorithm = "cobyla",
-                                 .improve = improve,
+    for (size_t k = 0; k < OBJECTIVES_MAX; k++) {
+        keep[k] = 1;
+        weight[k] = 1.0;
+    }
+    const RefineConfig config = {.weight = weight,
                                  .keep = keep,
                                  .slack = -1.0,
                                  .members = s->sim.ensemble > POLISH_MEMBERS ? s->sim.ensemble : POLISH_MEMBERS,
@@ -596,15 +600,15 @@ static Status polish_one(Study *study, const Saved *h, size_t row, size_t improv
     return status;
 }
 
-/* Some spread-out designs of the finished run, each in the objective in which it is best already. */
+/* Some spread-out designs of the finished run. */
 static Status polish_chosen(Study *study, const Saved *h, Err *err)
 {
-    size_t rows[POLISH_MOST], improve[POLISH_MOST];
+    size_t rows[POLISH_MOST];
     const long most = study->used.search.polish;
-    const size_t n = refine_choose(h, (size_t)(most < POLISH_MOST ? most : POLISH_MOST), rows, improve);
+    const size_t n = refine_choose(h, (size_t)(most < POLISH_MOST ? most : POLISH_MOST), 0, rows);
     const size_t tried = h->polished_at == (long)study->summary->n_simulated ? (size_t)h->tried_to_polish : 0;
     for (size_t i = tried; i < n; i++)
-        TRY(polish_one(study, h, rows[i], improve[i], i + 1, err));
+        TRY(polish_one(study, h, rows[i], i + 1, err));
     return STATUS_OK;
 }
 

@@ -1,0 +1,18 @@
+/* cmd/pairs.h -- lists of the command line that name objectives: NAME=NUMBER,... */
+#ifndef IMTET_CMD_PAIRS_H
+#define IMTET_CMD_PAIRS_H
+
+#include "run/schema.h"
+
+/* "NAME=NUMBER"; "NAME" alone is NAME=otherwise, and refused where that is NAN. */
+Status pair_take(const Schema *schema, const char *option, const char *text, double otherwise, size_t *k, double *value,
+                 Err *err);
+
+/* Into values (n_obj); those that are not named are left as they are. */
+Status pairs_take(const Schema *schema, const char *option, const char *list, double otherwise, double values[],
+                  Err *err);
+
+/* None negative, and not all of them 0. */
+Status weights_check(const Schema *schema, const char *option, const double weights[], Err *err);
+
+#endif

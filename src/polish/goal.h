@@ -1,0 +1,24 @@
+/* polish/goal.h -- what polishing wants, on the surface and on the true evaluation alike:
+ *
+ *   minimise   value(x) = sum_k weight_k f_k(x)      while  f_k(x) <= bound_k,  g(x) <= 0,  lower <= x <= upper
+ *
+ * Methods work in the unit cube u of the box. */
+#ifndef IMTET_POLISH_GOAL_H
+#define IMTET_POLISH_GOAL_H
+
+#include "moga/problem.h"
+
+typedef struct {
+    const double *weight; /* (n_obj) */
+    const double *bound;  /* (n_obj) INFINITY: free */
+} Goal;
+
+double goal_value(const Goal *goal, size_t n_obj, const double f[]);
+
+/* Every objective a number and every bound kept. */
+int goal_holds(const Goal *goal, const Problem *problem, const double f[], const double g[]);
+
+void cube_from(const Problem *problem, const double x[], double u[]);
+void cube_to(const Problem *problem, const double u[], double x[]); /* within the box, and repaired */
+
+#endif
