@@ -9,6 +9,7 @@
 #include "moga/search.h"
 #include "searches.h"
 #include "moga/spread.h"
+#include "moga/surface.h"
 #include "base/random.h"
 
 /* -- dominance --------------------------------------------------------------------------------------------------------
@@ -105,6 +106,47 @@ static void test_a_constant_deviation_and_a_share_of_the_value_are_told_apart(vo
     assert_true(spread_fit(0, NULL, NULL, 1, 0, NULL, NULL).deviation == 0.0);
     assert_close(spread_variance(&share, 2.0, 0.0, 1), pow(2.0 * share.deviation, 2), 1e-12);
     assert_close(spread_variance(&(Spread){0.2, 0}, 7.0, 0.06, 2), (0.04 + 0.06) / 2, 1e-12);
+}
+
+/* Truth 0, an answer with the error 1, a prediction that is off by tau: of both the mean weighted with 1/variance is
+ * off by tau^2 / (1 + tau^2) in the mean square, without the limit of one error. */
+static void test_estimates_are_as_near_as_answer_and_prediction_allow(void **state)
+{
+    (void)state;
+    enum { MANY = 4000 };
+    static double e[MANY], answer[MANY], error[MANY], estimate[MANY];
+    static size_t rows[MANY];
+    const double taus[] = {0.0, 0.5, 1.0, 3.0};
+    for (size_t j = 0; j < sizeof taus / sizeof *taus; j++) {
+        Random r = random_stream(7, RANDOM_TEST, 4, (uint32_t)j);
+        const double least = taus[j] * taus[j] / (1.0 + taus[j] * taus[j]);
+        double square = 0.0;
+        for (size_t i = 0; i < MANY; i++) {
+            rows[i] = MANY - 1 - i;
+            answer[i] = random_normal(&r);
+            error[i] = 1.0;
+            e[MANY - 1 - i] = answer[i] - taus[j] * random_normal(&r);
+        }
+        spread_estimate(MANY, rows, e, 1, 0, answer, error, estimate);
+        for (size_t i = 0; i < MANY; i++) {
+            square += estimate[i] * estimate[i] / MANY;
+            assert_true(fabs(estimate[i] - answer[i]) <= 1.0 + 1e-12);
+        }
+        if (!(square > least - 0.05 && square < least + 0.2 && square < 0.98))
+            fail_msg("mean square %g where %g can be had", square, least);
+    }
+}
+
+static void test_what_has_no_error_is_taken_as_it_is(void **state)
+{
+    (void)state;
+    const size_t rows[] = {0, 1};
+    const double mean[] = {1.0 / 3.0, 5.0}, e[] = {0.2, 0.0};
+    double estimate[2];
+    spread_estimate(2, rows, e, 1, 0, mean, (const double[]){0.0, 0.0}, estimate);
+    assert_memory_equal(estimate, mean, sizeof mean);
+    spread_estimate(2, rows, e, 1, 0, mean, (const double[]){0.0, 3.0}, estimate);
+    assert_memory_equal(estimate, mean, sizeof mean);
 }
 
 /* -- archive ---------------------------------------------------------------------------------------------------------
@@ -432,12 +474,69 @@ static void test_a_noisy_search_goes_on_from_any_generation_to_the_same_bytes(vo
     forget(&seen);
 }
 
+/* Designs at random, a third of them with a second answer; their estimates are nearer to the truth than their means. */
+static double square_off(const Archive *a, const double f[])
+{
+    double square = 0.0, wanted[OBJ];
+    for (size_t row = 0; row < a->n; row++) {
+        exact(a->X + row * VAR, wanted);
+        for (size_t k = 0; k < OBJ && a->answers[row] > 0; k++)
+            square += pow(f[row * OBJ + k] - wanted[k], 2.0);
+    }
+    return square;
+}
+
+static void test_estimates_of_a_surface_are_nearer_to_the_truth_than_means(void **state)
+{
+    (void)state;
+    enum { FIRST = 90, ALL = 120 };
+    World w = world(0.05, 1);
+    double X[ALL * VAR], F[ALL * OBJ];
+    size_t draws[ALL];
+    unsigned char ok[ALL];
+    Archive a;
+    Surface *surface;
+    Infill *near;
+    Directions directions;
+    Err err = {0};
+    Random r = random_stream(11, RANDOM_TEST, 5, 0);
+    w.problem.lower = w.lower;
+    w.problem.upper = w.upper;
+    for (size_t i = 0; i < ALL * VAR; i++)
+        X[i] = i < FIRST * VAR ? random_uniform(&r) : X[i - FIRST * VAR];
+    for (size_t i = 0; i < ALL; i++)
+        draws[i] = i >= FIRST;
+    CHECK_OK(evaluate(ALL, X, draws, F, NULL, ok, &w, &err), &err);
+    CHECK_OK(directions_spread(&directions, OBJ, 10, &err), &err);
+    CHECK_OK(infill_create(&near, INFILL_PBI, 1, &directions, &err), &err);
+    CHECK_OK(surface_create(&surface, &w.problem, ALL, 1, &err), &err);
+    CHECK_OK(archive_init(&a, ALL, VAR, OBJ, 0, &err), &err);
+    CHECK_OK(archive_insert(&a, FIRST, X, F, NULL, ok, 0, 0, &err), &err);
+    infill_measure(near, a.n_front, a.front, a.F);
+    CHECK_OK(surface_fit(surface, &a, near, &err), &err);
+    surface_estimate(surface, &a);
+    assert_memory_equal(a.estimate, a.F, a.n * OBJ * sizeof *a.F);
+    CHECK_OK(archive_insert(&a, ALL - FIRST, X + FIRST * VAR, F + FIRST * OBJ, NULL, ok, 0, 1, &err), &err);
+    archive_settle(&a);
+    CHECK_OK(surface_fit(surface, &a, near, &err), &err);
+    surface_estimate(surface, &a);
+    assert_true(square_off(&a, a.estimate) < 0.6 * square_off(&a, a.F));
+    archive_forget_estimates(&a);
+    assert_memory_equal(a.estimate, a.F, a.n * OBJ * sizeof *a.F);
+    archive_free(&a);
+    surface_free(surface);
+    infill_free(near);
+    directions_free(&directions);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_without_errors_surely_is_plainly),
         cmocka_unit_test(test_surely_is_a_strict_partial_order_whatever_the_errors),
         cmocka_unit_test(test_a_constant_deviation_and_a_share_of_the_value_are_told_apart),
+        cmocka_unit_test(test_estimates_are_as_near_as_answer_and_prediction_allow),
+        cmocka_unit_test(test_what_has_no_error_is_taken_as_it_is),
         cmocka_unit_test(test_a_design_has_the_mean_and_the_deviation_of_its_answers),
         cmocka_unit_test(test_the_front_is_what_nobody_dominates_surely_in_whatever_order_answers_come),
         cmocka_unit_test(test_a_design_that_was_lucky_once_falls_out),
@@ -446,6 +545,7 @@ int main(void)
         cmocka_unit_test(test_what_answers_the_same_each_time_is_soon_left_alone),
         cmocka_unit_test(test_what_is_reported_has_answers_enough),
         cmocka_unit_test(test_repeats_take_most_of_the_optimism_out_of_the_front),
+        cmocka_unit_test(test_estimates_of_a_surface_are_nearer_to_the_truth_than_means),
         cmocka_unit_test(test_a_noisy_search_goes_on_from_any_generation_to_the_same_bytes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -13,6 +13,7 @@ static void layout(Archive *a, Carve *c)
     a->H = carve(c, a->n_max * a->n_con, sizeof(double));
     a->F = carve(c, a->n_max * a->n_obj, sizeof(double));
     a->G = carve(c, a->n_max * a->n_con, sizeof(double));
+    a->estimate = carve(c, a->n_max * a->n_obj, sizeof(double));
     a->S = carve(c, a->n_max * a->n_obj, sizeof(double));
     a->deviation = carve(c, a->n_max * a->n_obj, sizeof(double));
     a->error = carve(c, a->n_max * a->n_obj, sizeof(double));
@@ -73,6 +74,7 @@ static Status resize(Archive *a, size_t n_max, Err *err)
         memcpy(a->H, old.H, old.n * a->n_con * sizeof *a->H);
         memcpy(a->F, old.F, old.n * a->n_obj * sizeof *a->F);
         memcpy(a->G, old.G, old.n * a->n_con * sizeof *a->G);
+        memcpy(a->estimate, old.estimate, old.n * a->n_obj * sizeof *a->estimate);
         memcpy(a->S, old.S, old.n * a->n_obj * sizeof *a->S);
         memcpy(a->deviation, old.deviation, old.n * a->n_obj * sizeof *a->deviation);
         memcpy(a->error, old.error, old.n * a->n_obj * sizeof *a->error);
@@ -146,6 +148,7 @@ static void set_errors(Archive *a, size_t row)
 static void add_design(Archive *a, size_t row)
 {
     memcpy(a->F + row * a->n_obj, a->Y + row * a->n_obj, a->n_obj * sizeof *a->F);
+    memcpy(a->estimate + row * a->n_obj, a->Y + row * a->n_obj, a->n_obj * sizeof *a->estimate);
     if (a->n_con > 0)
         memcpy(a->G + row * a->n_con, a->H + row * a->n_con, a->n_con * sizeof *a->G);
     memset(a->S + row * a->n_obj, 0, a->n_obj * sizeof *a->S);
@@ -174,6 +177,7 @@ static void add_repeat(Archive *a, size_t row, size_t design)
         const double y = a->Y[row * a->n_obj + k], off = y - a->F[i];
         a->F[i] += off / n;
         a->S[i] += off * (y - a->F[i]);
+        a->estimate[i] = a->F[i];
     }
     for (size_t k = 0; k < a->n_con; k++)
         a->G[design * a->n_con + k] += (a->H[row * a->n_con + k] - a->G[design * a->n_con + k]) / n;
@@ -234,6 +238,11 @@ void archive_settle(Archive *a)
             update_front(a, row);
     }
     a->is_stale = 0;
+}
+
+void archive_forget_estimates(Archive *a)
+{
+    memcpy(a->estimate, a->F, a->n * a->n_obj * sizeof *a->F);
 }
 
 size_t archive_find(const Archive *a, const double x[])

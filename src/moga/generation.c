@@ -30,7 +30,7 @@ static void copy_simulated(const Search *s, Group *to, const Group *from, size_t
     if (!a->usable[row])
         return;
     group_copy_member(to, from, i);
-    memcpy(to->F + (to->n - 1) * a->n_obj, a->F + row * a->n_obj, a->n_obj * sizeof *a->F);
+    memcpy(to->F + (to->n - 1) * a->n_obj, a->estimate + row * a->n_obj, a->n_obj * sizeof *a->estimate);
     to->violation[to->n - 1] = a->violation[row];
 }
 
@@ -63,6 +63,20 @@ static Status repeat_generation(Search *s, size_t n, Err *err)
     return STATUS_OK;
 }
 
+/* What the surface makes of answers that scatter: of the front to be improved and of those that breed. */
+static void take_estimates(Search *s)
+{
+    Archive *a = &s->archive;
+    Group *g = &s->population;
+    if (a->n_repeats == 0)
+        return;
+    surface_estimate(s->surface, a);
+    guide_measure_front(s);
+    for (size_t i = 0; i < g->n; i++)
+        if (g->row[i] != PREDICTED)
+            memcpy(g->F + i * g->n_obj, a->estimate + g->row[i] * a->n_obj, a->n_obj * sizeof *a->estimate);
+}
+
 Status generation_next(Search *s, Err *err)
 {
     const size_t first_new = s->archive.n;
@@ -70,6 +84,7 @@ Status generation_next(Search *s, Err *err)
     s->n_predicted = 0;
     if (s->population.n < 2)
         return sample_again(s, err);
+    archive_forget_estimates(&s->archive);
     guide_weigh_costs(s);
     guide_measure_front(s);
     const size_t n_last = repeat_last(s);
@@ -79,6 +94,7 @@ Status generation_next(Search *s, Err *err)
         TRY(guide_fit(s, err));
     else
         surface_drop(s->surface);
+    take_estimates(s);
     guide_predict(s, &s->population, 0, 0);
     offspring_make(s, 0);
     const size_t n = choice_make(s);
@@ -98,6 +114,7 @@ Status generation_last(Search *s, Err *err)
 {
     const size_t first_new = s->archive.n;
     s->n_predicted = s->offspring.n = 0;
+    archive_forget_estimates(&s->archive);
     TRY(batch_finish(s, err));
     renew_population(s, first_new);
     return STATUS_OK;

@@ -130,7 +130,7 @@ void guide_measure_front(Search *s)
     Infill *const all[] = {s->infill[INFILL_PBI], s->infill[INFILL_RAYS], s->gained};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         if (s->archive.n_front > 0)
-            infill_measure(all[i], s->archive.n_front, s->archive.front, s->archive.F);
+            infill_measure(all[i], s->archive.n_front, s->archive.front, s->archive.estimate);
         else
             infill_measure(all[i], s->population.n, s->chosen, s->population.F);
 }

@@ -185,6 +185,12 @@ Status surface_fit(Surface *s, const Archive *a, Infill *near, Err *err)
     return STATUS_OK;
 }
 
+void surface_estimate(const Surface *s, Archive *a)
+{
+    for (size_t k = 0; s->fitted && k < a->n_obj; k++)
+        spread_estimate(s->n, s->chosen, rbf_leave_one_out(s->rbf, k), a->n_obj, k, a->F, a->error, a->estimate);
+}
+
 void surface_drop(Surface *s)
 {
     s->fitted = 0;

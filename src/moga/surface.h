@@ -26,6 +26,9 @@ void surface_free(Surface *s); /* NULL is fine */
 /* Fits to the archive; `near` has measured its front. Too few designs for a surface: surface_stands is 0. */
 Status surface_fit(Surface *s, const Archive *archive, Infill *near, Err *err);
 
+/* Estimates of the centres among the archive's designs, from their leave-one-out errors (moga/spread.h). */
+void surface_estimate(const Surface *s, Archive *archive);
+
 void surface_drop(Surface *s); /* as if it had never been fitted */
 
 /* Whether there is a surface and it explains enough of the objectives to be better than guessing. */
