@@ -43,7 +43,7 @@ Status advance_lately(const SearchView *v, double *igd, Err *err)
 /* -- of a stored run ------------------------------------------------------------------------------------------------
  */
 
-static int is_of_search(const SavedRow *r)
+static int is_first_answer(const SavedRow *r)
 {
     return r->id < POLISHED_FIRST && r->kind != KIND_UNFINISHED && r->kind != KIND_REPEAT;
 }
@@ -57,7 +57,7 @@ static size_t minimise(const Saved *h, double F[], size_t front[])
         const SavedRow *r = &h->row[i];
         for (size_t k = 0; k < m; k++)
             F[i * m + k] = schema_objective(&h->schema, k)->sense * h->F[i * m + k];
-        if (is_of_search(r) && r->ok && r->entered != NEVER && r->left == NEVER)
+        if (is_first_answer(r) && r->ok && r->entered != NEVER && r->left == NEVER)
             front[n++] = i;
     }
     return n;
@@ -68,7 +68,7 @@ static void follow(const Saved *h, const double F[], Igd *q, double igd[])
     size_t row = 0;
     for (size_t g = 0; g < h->n_generations; g++) {
         for (; row < h->n && h->row[row].id <= h->generation[g].simulated; row++)
-            if (is_of_search(&h->row[row]) && h->row[row].ok && !(h->row[row].violation > 0.0))
+            if (is_first_answer(&h->row[row]) && h->row[row].ok && !(h->row[row].violation > 0.0))
                 igd_add(q, F + row * h->schema.n_obj);
         igd[g] = value_of(q);
     }

@@ -4,7 +4,7 @@
 
 #include "moga/archive.h"
 
-static int is_of_search(const SavedRow *r)
+static int is_known_to_search(const SavedRow *r)
 {
     return r->kind != KIND_UNFINISHED && r->kind != KIND_POLISHED;
 }
@@ -38,11 +38,11 @@ static void take_design(Saved *h, size_t i, const Archive *a, size_t at)
 static Status join(Saved *h, Archive *a, Err *err)
 {
     for (size_t i = 0; i < h->n; i++)
-        if (is_of_search(&h->row[i]))
+        if (is_known_to_search(&h->row[i]))
             TRY(insert_row(a, h, i, err));
     archive_settle(a);
     for (size_t i = 0, at = 0; i < h->n; i++)
-        if (is_of_search(&h->row[i]))
+        if (is_known_to_search(&h->row[i]))
             take_design(h, i, a, at++);
     return STATUS_OK;
 }

@@ -11,8 +11,9 @@
 #include <unistd.h>
 
 #include "base/clock.h"
-#include "moga/cover.h"
 #include "run/export.h"
+#include "run/front_lines.h"
+#include "run/front_share.h"
 #include "run/lock.h"
 #include "run/output.h"
 #include "run/tables.h"
@@ -29,11 +30,9 @@ struct RunStore {
     double last_commit;          /* [s] */
     size_t n_exported;           /* designs in evaluations.csv */
     unsigned char *was_on_front; /* (n_flags) at the end of the last generation */
-    char **line;                 /* (n_lines) of front.csv, by design; NULL: not on the front */
-    size_t n_lines;
     size_t n_flags;
-    Cover *cover; /* NULL: no design has succeeded yet */
-    size_t n_covered;
+    FrontLines lines;
+    FrontShare share;
     long session;
     FILE *evaluations, *log, *events;
 };
@@ -55,7 +54,7 @@ const Saved *store_saved(const RunStore *store)
 
 double store_hypervolume(const RunStore *store)
 {
-    return store->cover ? cover_share(store->cover) : NAN;
+    return front_share_value(&store->share);
 }
 
 /* -- the folder -----------------------------------------------------------------------------------------------------
@@ -335,49 +334,6 @@ Status store_simulation(RunStore *store, const Simulation *s, size_t generation,
 /* -- generations ----------------------------------------------------------------------------------------------------
  */
 
-/* A box about the first designs that succeeded: from a fifth of their range below the best to the worst. */
-static Status create_cover(RunStore *store, const SearchView *v, Err *err)
-{
-    double lower[OBJECTIVES_MAX], reference[OBJECTIVES_MAX];
-    size_t first = 0;
-    while (first < v->n && !v->ok[first])
-        first++;
-    if (first == v->n)
-        return STATUS_OK;
-    for (size_t k = 0; k < v->n_obj; k++) {
-        lower[k] = reference[k] = v->Y[first * v->n_obj + k];
-        for (size_t i = first; i < v->n && v->generation[i] == v->generation[first]; i++)
-            if (v->ok[i]) {
-                lower[k] = fmin(lower[k], v->Y[i * v->n_obj + k]);
-                reference[k] = fmax(reference[k], v->Y[i * v->n_obj + k]);
-            }
-        const double range = reference[k] > lower[k] ? reference[k] - lower[k] : 1.0;
-        lower[k] -= 0.2 * range;
-        reference[k] = fmax(reference[k], lower[k] + range);
-    }
-    return cover_create(&store->cover, v->n_obj, lower, reference, 1, err);
-}
-
-/* Only members of the front count: who was dominated by an earlier one has nothing to add. Where repeats move designs
- * and take them off the front, all of it is measured anew. */
-static Status measure_front(RunStore *store, const SearchView *v, Err *err)
-{
-    if (v->n_repeats > 0) {
-        cover_free(store->cover);
-        store->cover = NULL;
-        store->n_covered = 0;
-    }
-    if (!store->cover)
-        TRY(create_cover(store, v, err));
-    if (!store->cover)
-        return STATUS_OK;
-    for (size_t i = store->n_covered; i < v->n; i++)
-        if (v->on_front[i])
-            cover_add(store->cover, v->F + i * v->n_obj);
-    store->n_covered = v->n;
-    return STATUS_OK;
-}
-
 static Status store_kinds(RunStore *store, const SearchView *v, Err *err)
 {
     for (size_t i = store->n_exported; i < v->n; i++)
@@ -446,51 +402,10 @@ static Status append_evaluations(RunStore *store, const SearchView *v, Err *err)
     return flush(store, store->evaluations, "evaluations.csv", err);
 }
 
-static Status make_line(RunStore *store, const SearchView *v, size_t row, Err *err)
-{
-    double natural[OBJECTIVES_MAX];
-    size_t length;
-    FILE *f = open_memstream(&store->line[row], &length);
-    for (size_t k = 0; f && k < v->n_obj; k++)
-        natural[k] = schema_objective(store->schema, k)->sense * v->F[row * v->n_obj + k];
-    if (f)
-        export_front_row(f, store->schema, (long)row + 1, v->X + row * v->n_var, natural, NULL, 1);
-    return f && fclose(f) == 0 ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for the front");
-}
-
-/* Numbers cost more to print than to find: the line of a design is made once. */
-static Status make_lines(RunStore *store, const SearchView *v, Err *err)
-{
-    char **line = realloc(store->line, (v->n + 1) * sizeof *line);
-    if (!line)
-        return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", v->n);
-    memset(line + store->n_lines, 0, (v->n - store->n_lines) * sizeof *line);
-    store->line = line;
-    store->n_lines = v->n;
-    for (size_t i = 0; i < v->n; i++) {
-        if (v->on_front[i] && !line[i])
-            TRY(make_line(store, v, i, err));
-        if (v->on_front[i])
-            continue;
-        free(line[i]);
-        line[i] = NULL;
-    }
-    return STATUS_OK;
-}
-
-static void put_lines(FILE *f, const void *user)
-{
-    const RunStore *store = user;
-    export_front_header(f, store->schema);
-    for (size_t i = 0; i < store->n_lines; i++)
-        if (store->line[i])
-            fputs(store->line[i], f);
-}
-
 static Status write_front(RunStore *store, const SearchView *v, Err *err)
 {
-    TRY(make_lines(store, v, err));
-    return write_file(store, "front.csv", put_lines, store, err);
+    TRY(front_lines_follow(&store->lines, store->schema, v, err));
+    return write_file(store, "front.csv", front_lines_put, &store->lines, err);
 }
 
 /* The front with polished designs is worked out by Saved. Evaluations first: whoever finds a design in front.csv finds
@@ -528,7 +443,7 @@ static Status commit_generation(RunStore *store, const SearchView *v, double sec
 
 Status store_generation(RunStore *store, const SearchView *v, double seconds, double session, Err *err)
 {
-    TRY(measure_front(store, v, err));
+    TRY(front_share_follow(&store->share, v, err));
     TRY(commit_generation(store, v, seconds, session, err));
     TRY(append_evaluations(store, v, err));
     return store->has_polished || store->schema->has_spread ? write_whole_tables(store, 0, err)
@@ -615,10 +530,8 @@ void store_free(RunStore *store)
     database_close(store->db);
     saved_free(&store->saved);
     free(store->was_on_front);
-    for (size_t i = 0; i < store->n_lines; i++)
-        free(store->line[i]);
-    free(store->line);
-    cover_free(store->cover);
+    front_lines_free(&store->lines);
+    front_share_free(&store->share);
     lock_release(store->lock);
     free(store);
 }
