@@ -1,6 +1,6 @@
 /* Every engine of the setting sim.engine against the fast one at its finest, and against the rebound of an isolated
  * impact, each to the accuracy that its knob is known to give. */
-#include "check.h"
+#include "bob.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -96,23 +96,8 @@ static const double MASS = 1e5, CORE_MASS = 3e5, REDUCED = 0.75e5;
 static SimModel pair_of_masses(double a)
 {
     SimModel model;
-    Err err;
-    CHECK_OK(model_create(&model, 1, &err), &err);
-    model.nb = model.nc = 1;
-    model.m = 2;
-    model.m_pad = 8;
-    memset(model.R, 0, sizeof *model.R * 8 * (size_t)model.n_pad);
-    memset(model.RT, 0, sizeof *model.RT * 8 * (size_t)model.n_pad);
-    model.R[0] = model.RT[0] = 1 / sqrt(MASS);
-    model.R[model.n_pad] = model.RT[1] = -1 / sqrt(CORE_MASS);
-    for (int i = 0; i < 8; i++)
-        model.omega[i] = model.zeta[i] = model.gamma[i] = 0;
-    for (int j = 0; j < model.n_pad; j++) {
-        model.gap[j] = j ? 1e300 : 1.5;
-        model.mass_eff[j] = j ? 1e300 : REDUCED;
-    }
-    model.gamma[0] = sqrt(MASS);
-    model.contact = (Contact){.k = 4.8650e10, .a = a, .v0_floor = 1e-3};
+    bobs_model(&model, 1, &(Bob){.mass = MASS, .gap = 1.5}, CORE_MASS,
+               &(Contact){.k = 4.8650e10, .a = a, .v0_floor = 1e-3});
     return model;
 }
 

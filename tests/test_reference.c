@@ -1,5 +1,5 @@
 /* The engines that others are judged by: CVODE with events, and the exact propagator of the tied structure. */
-#include "check.h"
+#include "bob.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -189,19 +189,8 @@ static SimResult single_impact(double a, double duration)
     Err err;
     double pulse[] = {0, -1, 0};
     const Motion m = {.accel = pulse, .n = 3, .dt_s = 1};
-    CHECK_OK(model_create(&model, 1, &err), &err);
-    model.nb = model.nc = 1;
-    model.m = 2;
-    model.m_pad = 8;
-    memset(model.R, 0, sizeof *model.R * 8 * (size_t)model.n_pad);
-    memset(model.RT, 0, sizeof *model.RT * 8 * (size_t)model.n_pad);
-    model.R[0] = model.RT[0] = 1 / sqrt(MASS);
-    model.R[model.n_pad] = model.RT[1] = -1 / sqrt(CORE_MASS);
-    for (int i = 0; i < 8; i++)
-        model.omega[i] = model.zeta[i] = model.gamma[i] = 0;
-    model.gamma[0] = sqrt(MASS);
-    model.gap[0] = 1.5;
-    model.contact = (Contact){.k = 4.8650e10, .a = a, .v0_floor = 1e-3};
+    bobs_model(&model, 1, &(Bob){.mass = MASS, .gap = 1.5}, CORE_MASS,
+               &(Contact){.k = 4.8650e10, .a = a, .v0_floor = 1e-3});
     CHECK_OK(engine_cvode(&model, &m, &(EngineOptions){.duration = duration, .accuracy = ACCURACY_FINE}, &r, &err),
              &err);
     assert_ok(&r);
