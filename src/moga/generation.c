@@ -68,7 +68,7 @@ static void take_estimates(Search *s)
 {
     Archive *a = &s->archive;
     Group *g = &s->population;
-    if (a->n_repeats == 0)
+    if (!repeat_tells_of_luck(s))
         return;
     surface_estimate(s->surface, a);
     guide_measure_front(s);

@@ -7,6 +7,8 @@ static const double EARLY = 0.25;
 /* A spread below this part of the front's range decides nothing, once so many repeats have been made. */
 static const double NEGLIGIBLE = 1e-3;
 enum { TRIALS = 8 };
+/* Above this part of the front's range lucky answers lead the search astray. */
+static const double MISLEADING = 0.2;
 
 static void range_of_front(const Archive *a, size_t k, double *least, double *most)
 {
@@ -18,17 +20,27 @@ static void range_of_front(const Archive *a, size_t k, double *least, double *mo
     }
 }
 
-/* Whether the standard deviation of an answer can be seen on the front, in any objective. */
-static int is_noticeable(const Archive *a)
+/* Whether the standard deviation of an answer is more than a part of the front's range, in any objective. */
+static int scatters_by(const Archive *a, double part)
 {
     double least, most;
     for (size_t k = 0; k < a->n_obj; k++) {
         range_of_front(a, k, &least, &most);
         for (size_t i = 0; i < a->n_front; i++)
-            if (a->deviation[a->front[i] * a->n_obj + k] > NEGLIGIBLE * (most - least))
+            if (a->deviation[a->front[i] * a->n_obj + k] > part * (most - least))
                 return 1;
     }
-    return a->n_repeats < TRIALS;
+    return 0;
+}
+
+static int is_noticeable(const Archive *a)
+{
+    return a->n_repeats < TRIALS || scatters_by(a, NEGLIGIBLE);
+}
+
+int repeat_tells_of_luck(const Search *s)
+{
+    return s->archive.n_repeats > 0 && scatters_by(&s->archive, MISLEADING);
 }
 
 static size_t n_pending_repeats(const Search *s)

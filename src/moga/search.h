@@ -21,9 +21,10 @@
  * Noise         a share `repeats` of the simulations, beyond the first 18 for each variable, goes to the front: the
  *               best in each objective, the nearest to the ideal, then the best in most directions; a quarter of it
  *               while the search goes on, the rest at its end. A design has the mean of its answers, and dominance
- *               asks for more than the errors (moga/archive.h). Parents, survivors and what is to be beaten are
- *               compared by estimates, means that the surface has corrected within their errors (moga/spread.h). A
- *               spread below a thousandth of the front's range ends the repeats
+ *               asks for more than the errors (moga/archive.h). Where the spread is more than a fifth of the front's
+ *               range, parents, survivors and what is to be beaten are compared by estimates, means that the surface
+ *               has corrected within their errors (moga/spread.h). A spread below a thousandth of the range ends the
+ *               repeats
  * Threads       the problem's evaluate gets one call per generation with the whole batch; set BLAS to one thread
  * Asynchronous  no thread waits for the slowest of a batch: the problem's own threads take one design after the other,
  *               and the next batch is chosen while the last designs of this one wait or are simulated. Those count as

@@ -113,6 +113,7 @@ void guide_descend(Search *s, InfillKind kind, size_t n, const size_t directions
  * reports. Both return the new n, which is the old one where nothing is to be repeated. */
 size_t repeat_some(Search *s, size_t n);
 size_t repeat_last(Search *s);
+int repeat_tells_of_luck(const Search *s); /* answers scatter so much that means are not to be relied on */
 
 /* offspring.c: plainly: without the surface. step names the random stream. */
 void offspring_make(Search *s, int plainly);
