@@ -456,9 +456,9 @@ static void test_a_noisy_search_goes_on_from_any_generation_to_the_same_bytes(vo
 {
     (void)state;
     World w = world(0.3, 1);
-    SearchConfig c = config(3, 0.4, 1);
+    SearchConfig c = config(3, 0.6, 1);
     c.surrogate = SURROGATE_ON;
-    c.max_evals = 125;
+    c.max_evals = 120;
     run(&w, &c, NULL, &seen);
     for (size_t k = 0; k + 1 < seen.moments.n; k += 2 + k / 2) {
         const SearchStart start = {
