@@ -492,8 +492,6 @@ static void test_the_lengths_of_rays_measure_the_hypervolume(void **state)
         ratio += pow(one / half, 3.0) / (double)(d.n - 3);
     }
     assert_close(ratio, 8.0, 1e-6);
-    assert_close(infill_off(q, 0, (const double[]){0.7, 0, 0}), 0.0, 1e-9);
-    assert_close(infill_off(q, 0, (const double[]){0.7, 0, 0.7}), sqrt(0.5), 1e-9);
     infill_free(q);
     directions_free(&d);
 }

@@ -195,10 +195,27 @@ static size_t plain_children_where(double plain_gain, double surface_gain, size_
 {
     const Problem problem = {.n_var = 10};
     const SearchConfig c = {.population = 248}; /* batches of 32 */
-    Search s = {.problem = &problem, .config = &c, .archive = {.n = n_simulated}, .chance = {0.5, 0.5}};
-    s.credit[SOURCE_PLAIN] = plain_gain / (plain_gain + surface_gain);
-    s.credit[SOURCE_SURFACE] = surface_gain / (plain_gain + surface_gain);
+    Search s = {.problem = &problem, .config = &c, .archive = {.n = n_simulated}, .sources.chance = {0.5, 0.5}};
+    s.sources.credit[SOURCE_PLAIN] = plain_gain / (plain_gain + surface_gain);
+    s.sources.credit[SOURCE_SURFACE] = surface_gain / (plain_gain + surface_gain);
     return guide_plain(&s);
+}
+
+static double rays_where(double ray_gain, double pbi_gain)
+{
+    Search s = {.ways.chance = {0.5, 0.5}};
+    s.ways.credit[INFILL_RAYS] = ray_gain / (ray_gain + pbi_gain);
+    s.ways.credit[INFILL_PBI] = pbi_gain / (ray_gain + pbi_gain);
+    return guide_rays(&s);
+}
+
+static void test_the_way_of_choosing_that_gains_more_has_the_greater_share(void **state)
+{
+    (void)state;
+    assert_close(rays_where(1, 1), 0.5, 1e-12);
+    assert_close(rays_where(1.2, 1), 2.0736 / 3.0736, 1e-12); /* 1.2^4 to 1 */
+    assert_close(rays_where(0, 1), 0.15, 1e-12);
+    assert_close(rays_where(1, 0), 0.85, 1e-12);
 }
 
 static void test_whoever_gains_more_has_the_greater_share_of_a_batch(void **state)
@@ -492,6 +509,7 @@ int main(void)
         cmocka_unit_test_setup(test_three_objectives_beat_a_latin_hypercube_of_the_same_size, fresh),
         cmocka_unit_test_setup(test_seven_objectives_beat_a_latin_hypercube_of_the_same_size, fresh),
         cmocka_unit_test(test_whoever_gains_more_has_the_greater_share_of_a_batch),
+        cmocka_unit_test(test_the_way_of_choosing_that_gains_more_has_the_greater_share),
         cmocka_unit_test_setup(test_the_same_seed_gives_the_same_bytes_at_any_thread_count, fresh),
         cmocka_unit_test_setup(test_front_flags_equal_a_brute_force_filter, fresh),
         cmocka_unit_test_setup(test_failed_simulations_never_reach_the_front, fresh),

@@ -85,6 +85,7 @@ static Status ask(Search *s, size_t n, Err *err)
         const Asked asked = {.draws = s->draws[i],
                              .kind = s->kind[i],
                              .foretold = is_foretold(s, i),
+                             .way = s->way[i],
                              .foreseen = s->foreseen + i * p->n_obj};
         TRY(feed_ask(s->feed, s->X + i * p->n_var, &asked, err));
     }
@@ -99,6 +100,7 @@ static Status take_in(Search *s, size_t i, const Arrived *a, Err *err)
     memcpy(s->F + i * p->n_obj, a->f, p->n_obj * sizeof *a->f);
     s->ok[i] = a->ok;
     s->kind[i] = a->asked.kind;
+    s->way[i] = a->asked.way;
     s->foretold[i] = a->asked.foretold;
     if (a->asked.foretold)
         memcpy(s->foreseen + i * p->n_obj, a->asked.foreseen, p->n_obj * sizeof *a->f);

@@ -17,8 +17,8 @@ static size_t batch_take(Search *s, size_t n, size_t i, EvaluationKind kind)
     return batch_add(s, n, g->X + i * g->n_var, kind);
 }
 
-/* Plain children are simulated in their order, up to `limit` designs in the batch. */
-static size_t choose_plain(Search *s, size_t n, size_t limit)
+/* Plain children in their order, up to `limit` designs in the batch. */
+static size_t take_plain(Search *s, size_t n, size_t limit)
 {
     const size_t end = s->offspring.n - s->n_pending;
     for (size_t i = end - s->n_plain; i < end && n < limit; i++)
@@ -26,17 +26,17 @@ static size_t choose_plain(Search *s, size_t n, size_t limit)
     return n;
 }
 
-/* Up to `limit` designs among those allowed, by both ways of choosing in turn. */
-static size_t choose_in_turn(Search *s, size_t n, size_t limit)
+/* Up to `limit` designs among those allowed, by both ways of choosing in turn; rays choose their share. */
+static size_t choose_in_turn(Search *s, size_t n, size_t limit, double rays, EvaluationKind kind)
 {
-    const double share = guide_rays(s);
     while (n < limit) {
-        const int rays = floor(share * (double)(n + 1)) > floor(share * (double)n);
-        const size_t i = infill_pick(s->infill[rays ? INFILL_RAYS : INFILL_PBI], s->allowed);
+        const InfillKind way = floor(rays * (double)(n + 1)) > floor(rays * (double)n) ? INFILL_RAYS : INFILL_PBI;
+        const size_t i = infill_pick(s->infill[way], s->allowed);
         if (i == SIZE_MAX)
             break;
-        infill_take(s->infill[rays ? INFILL_PBI : INFILL_RAYS], i);
-        n = batch_take(s, n, i, KIND_INFILL);
+        infill_take(s->infill[way == INFILL_RAYS ? INFILL_PBI : INFILL_RAYS], i);
+        s->way[n] = (unsigned char)way;
+        n = batch_take(s, n, i, kind);
     }
     return n;
 }
@@ -64,9 +64,18 @@ static size_t choose_predicted(Search *s, size_t batch)
         for (size_t i = 0; i < g->n; i++)
             s->allowed[i] =
                 i < n_predicted && !s->picked[i] && (round == 1 || !guide_trusts(s, g, i) || g->age[i] >= AGE_MAX);
-        n = choose_in_turn(s, n, limit < batch ? limit : batch);
+        n = choose_in_turn(s, n, limit < batch ? limit : batch, guide_rays(s), KIND_INFILL);
     }
     return n;
+}
+
+/* Of a whole population of plain children those that promise most beside what is chosen already. */
+static size_t choose_plain(Search *s, size_t n, size_t batch)
+{
+    const size_t end = s->offspring.n - s->n_pending;
+    for (size_t i = 0; i < s->offspring.n; i++)
+        s->allowed[i] = i >= end - s->n_plain && i < end;
+    return choose_in_turn(s, n, batch, 0.5, KIND_OFFSPRING);
 }
 
 /* Where the surface has nothing new to propose, plain children; where these are all known too, fresh samples. */
@@ -76,11 +85,12 @@ size_t choice_make(Search *s)
     size_t n = 0;
     forget_picks(s);
     if (guide_leads(s))
-        n = choose_predicted(s, batch - s->n_plain);
-    n = choose_plain(s, n, batch);
+        n = choose_plain(s, choose_predicted(s, batch - guide_plain(s)), batch);
+    else
+        n = take_plain(s, n, batch);
     if (n > 0)
         return n;
     offspring_make(s, 1);
     forget_picks(s);
-    return choose_plain(s, n, batch);
+    return take_plain(s, n, batch);
 }

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/clock.h"
+#include "moga/infill.h"
 
 typedef enum { WAITING, UNDER_WAY, ARRIVED, REPLAYED } Place; /* REPLAYED: its result is among those from before */
 
@@ -12,7 +13,7 @@ typedef struct {
     Place place;
     size_t name, order; /* order of arrival */
     size_t draws;
-    unsigned char kind, foretold, ok;
+    unsigned char kind, foretold, way, ok;
     double taken; /* [s] */
 } Slot;
 
@@ -118,7 +119,8 @@ Status feed_ask(Feed *q, const double x[], const Asked *asked, Err *err)
                             .name = q->n_named++,
                             .draws = asked->draws,
                             .kind = asked->kind,
-                            .foretold = asked->foretold};
+                            .foretold = asked->foretold,
+                            .way = asked->way};
         memcpy(x_of(q, i), x, q->n_var * sizeof *x);
         if (asked->foretold)
             memcpy(foreseen_of(q, i), asked->foreseen, q->n_obj * sizeof *x);
@@ -152,7 +154,7 @@ int feed_has(Feed *q, const double x[])
 
 static Asked asked_of(const Slot *s, const double foreseen[])
 {
-    return (Asked){.draws = s->draws, .kind = s->kind, .foretold = s->foretold, .foreseen = foreseen};
+    return (Asked){.draws = s->draws, .kind = s->kind, .foretold = s->foretold, .way = s->way, .foreseen = foreseen};
 }
 
 const double *feed_design(Feed *q, size_t i, Asked *asked)
@@ -259,14 +261,16 @@ void feed_pack(Feed *q, Pack *p)
         double *x = q->out;
         if (!p->reading)
             memcpy(x, feed_design(q, i, &asked), (q->n_var + q->n_obj) * sizeof *x);
-        size_t flags[2] = {asked.kind, asked.foretold};
+        size_t flags[3] = {asked.kind, asked.foretold, asked.way};
         pack(p, x, (q->n_var + q->n_obj) * sizeof *x);
         pack_size(p, &asked.draws, SIZE_MAX / 2);
         pack_size(p, &flags[0], UINT8_MAX);
         pack_size(p, &flags[1], 1);
+        pack_size(p, &flags[2], INFILL_KINDS - 1);
         if (!p->reading || p->faulty)
             continue;
-        asked = (Asked){asked.draws, (unsigned char)flags[0], (unsigned char)flags[1], x + q->n_var};
+        asked = (Asked){asked.draws, (unsigned char)flags[0], (unsigned char)flags[1], (unsigned char)flags[2],
+                        x + q->n_var};
         p->faulty = feed_ask(q, x, &asked, NULL) != STATUS_OK;
     }
 }

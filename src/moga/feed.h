@@ -20,6 +20,7 @@
 typedef struct {
     size_t draws; /* answers that there were of it */
     unsigned char kind, foretold;
+    unsigned char way;      /* InfillKind by which the surface chose it */
     const double *foreseen; /* (n_obj) predicted objectives; read where foretold */
 } Asked;
 

@@ -7,16 +7,12 @@
 
 /* Kendall's tau below which the surface no longer leads, and how much one batch counts in its running mean. */
 static const double LEAST_AGREEMENT = 0.15, AGREEMENT_WEIGHT = 0.25;
-/* Where descents end so far off their directions (sine of the angle, median), the front has not the shape of a simplex:
- * from OFF_LEAST on simulations are chosen by rays too, from OFF_MOST on mostly. One generation's weight in the mean.
- */
-static const double OFF_LEAST = 0.15, OFF_MOST = 0.35, RAYS_MOST = 0.85, OFF_WEIGHT = 0.2;
-
-/* Surface and plain children share a batch by this power of what each gained per simulation; whoever gained less gets
- * the LEAST_SHARE-th part. So few plain children tell little about their gain: it has to be greater by DOUBT. One
- * generation's weight in the mean. */
-static const double CREDIT_WEIGHT = 0.1, CREDIT_POWER = 8.0, DOUBT = 1.3;
+/* Two rivals share a batch by this power of what each gained per simulation; who gained less gets the LEAST_SHARE-th
+ * part at least. So few plain children tell little about their gain: it has to be greater by DOUBT. One generation's
+ * weight in the means. */
+static const double CREDIT_WEIGHT = 0.1, SOURCE_POWER = 8.0, WAY_POWER = 4.0, LEAST_WAY = 0.15, DOUBT = 1.3;
 enum { LEAST_SHARE = 16, ALONE = 18 /* simulations for each variable that the surface has alone */ };
+const Rivals GUIDE_SOURCES = {{0.97, 0.03}, {0.9, 0.1}}, GUIDE_WAYS = {{0.5, 0.5}, {0.5, 0.5}};
 
 /* A surface costs wall time; with it a search needs a fifth of the simulations of a plain one, mostly less
  * (docs/search.md). It therefore pays as long as its time for one simulation is below that of PAYS simulations. */
@@ -44,25 +40,19 @@ int guide_leads(const Search *s)
     return guide_may_lead(s) && surface_stands(s->surface) && s->agreement > LEAST_AGREEMENT;
 }
 
-/* Part of a batch that is chosen by rays, the rest by PBI: PBI is the better guide where every direction meets the
- * front, but where most of them miss it, rays measure what a design adds to the hypervolume whatever the front's shape.
- */
-double guide_rays(const Search *s)
+/* Second one's part of what both share. */
+static double second_share(const Rivals *r, double power, double doubt)
 {
-    return RAYS_MOST * fmin(fmax((s->off - OFF_LEAST) / (OFF_MOST - OFF_LEAST), 0.0), 1.0);
+    const double first = pow(r->credit[0] / r->chance[0], power),
+                 second = pow(r->credit[1] / r->chance[1] / doubt, power);
+    return first + second > 0.0 ? second / (first + second) : 0.5;
 }
 
-/* How far off their directions this generation's descents by PBI end, as the surface sees them. */
-void guide_judge_directions(Search *s)
+/* PBI is the better guide where the surface foretells the front so well that directions can be kept to, rays where it
+ * is work to reach the front at all or where it has not the shape of a simplex. */
+double guide_rays(const Search *s)
 {
-    const size_t first = s->offspring.n - s->n_followed, n = s->n_followed - s->n_followed_rays;
-    for (size_t j = 0; j < n; j++) {
-        const size_t i = s->n_followed_rays + j;
-        s->apart[j] =
-            infill_off(s->infill[INFILL_PBI], s->followed[i], s->offspring.F + (first + i) * s->problem->n_obj);
-    }
-    sort_numbers(n, s->apart);
-    s->off += OFF_WEIGHT * (s->apart[n / 2] - s->off);
+    return fmin(fmax(second_share(&s->ways, WAY_POWER, 1.0), LEAST_WAY), 1.0 - LEAST_WAY);
 }
 
 int guide_trusts(const Search *s, const Group *g, size_t i)
@@ -70,25 +60,44 @@ int guide_trusts(const Search *s, const Group *g, size_t i)
     return guide_leads(s) && g->uncertainty[i] < s->config->trust_error;
 }
 
-/* Each source's share of what the results gained: the length of the rays that they dominate and the front that the
- * generation began with does not. */
-static void judge_sources(Search *s)
+/* gain[measure][rival] of number[rival] results: the shares of both, in the mean over the measures. Nothing is learnt
+ * where one had no result or nobody gained. */
+static void learn(Rivals *r, double gain[INFILL_KINDS][2], const double number[2])
 {
-    double gain[SOURCES] = {0}, number[SOURCES] = {0};
-    for (size_t i = 0; i < s->n_came; i++) {
-        if (s->kind[i] != KIND_INFILL && s->kind[i] != KIND_OFFSPRING)
-            continue;
-        const Source source = s->kind[i] == KIND_INFILL ? SOURCE_SURFACE : SOURCE_PLAIN;
-        gain[source] += s->ok[i] ? infill_gain(s->gained, s->F + i * s->problem->n_obj) : 0.0;
-        number[source] += 1.0;
+    double share[2] = {0}, measures = 0.0;
+    for (int k = 0; k < INFILL_KINDS; k++) {
+        const double all = gain[k][0] + gain[k][1];
+        for (int i = 0; all > 0.0 && i < 2; i++)
+            share[i] += gain[k][i] / all;
+        measures += all > 0.0;
     }
-    const double all = gain[SOURCE_SURFACE] + gain[SOURCE_PLAIN];
-    if (!(all > 0.0) || number[SOURCE_SURFACE] == 0.0 || number[SOURCE_PLAIN] == 0.0)
+    if (measures == 0.0 || number[0] == 0.0 || number[1] == 0.0)
         return;
-    for (int k = 0; k < SOURCES; k++) {
-        s->credit[k] += CREDIT_WEIGHT * (gain[k] / all - s->credit[k]);
-        s->chance[k] += CREDIT_WEIGHT * (number[k] / (number[SOURCE_SURFACE] + number[SOURCE_PLAIN]) - s->chance[k]);
+    for (int i = 0; i < 2; i++) {
+        r->credit[i] += CREDIT_WEIGHT * (share[i] / measures - r->credit[i]);
+        r->chance[i] += CREDIT_WEIGHT * (number[i] / (number[0] + number[1]) - r->chance[i]);
     }
+}
+
+/* By what the results gained over the front that the generation began with. */
+static void judge_rivals(Search *s)
+{
+    double by_source[INFILL_KINDS][2] = {{0}}, by_way[INFILL_KINDS][2] = {{0}}, of_source[2] = {0}, of_way[2] = {0};
+    for (size_t i = 0; i < s->n_came; i++) {
+        const int is_infill = s->kind[i] == KIND_INFILL;
+        if (!is_infill && s->kind[i] != KIND_OFFSPRING)
+            continue;
+        const Source source = is_infill ? SOURCE_SURFACE : SOURCE_PLAIN;
+        of_source[source] += 1.0;
+        of_way[s->way[i]] += is_infill;
+        for (int k = 0; k < INFILL_KINDS && s->ok[i]; k++) {
+            const double gain = infill_gain(s->gained[k], s->F + i * s->problem->n_obj);
+            by_source[k][source] += gain;
+            by_way[k][s->way[i]] += is_infill ? gain : 0.0;
+        }
+    }
+    learn(&s->sources, by_source, of_source);
+    learn(&s->ways, by_way, of_way);
 }
 
 /* Whoever gained more per simulation has nearly all of the batch, the other one a design at least; none before a
@@ -98,9 +107,7 @@ size_t guide_plain(const Search *s)
     const size_t batch = batch_size(s), least = batch / LEAST_SHARE + 1;
     if (s->archive.n < ALONE * s->problem->n_var)
         return 0;
-    const double plain = pow(s->credit[SOURCE_PLAIN] / s->chance[SOURCE_PLAIN] / DOUBT, CREDIT_POWER);
-    const double surface = pow(s->credit[SOURCE_SURFACE] / s->chance[SOURCE_SURFACE], CREDIT_POWER);
-    const size_t wanted = (size_t)(plain / (plain + surface) * (double)batch + 0.5);
+    const size_t wanted = (size_t)(second_share(&s->sources, SOURCE_POWER, DOUBT) * (double)batch + 0.5);
     return wanted < least ? least : wanted < batch - least ? wanted : batch - least;
 }
 
@@ -110,7 +117,7 @@ void guide_judge(Search *s)
     const size_t m = s->problem->n_obj;
     size_t n = 0;
     double mean = 0.0;
-    judge_sources(s);
+    judge_rivals(s);
     for (size_t i = 0; i < s->n_came; i++) {
         n += s->foretold[i];
         s->foretold[i] &= s->ok[i];
@@ -127,7 +134,8 @@ void guide_measure_front(Search *s)
 {
     for (size_t i = 0; i < s->population.n; i++)
         s->chosen[i] = i;
-    Infill *const all[] = {s->infill[INFILL_PBI], s->infill[INFILL_RAYS], s->gained};
+    Infill *const all[] = {s->infill[INFILL_PBI], s->infill[INFILL_RAYS], s->gained[INFILL_PBI],
+                           s->gained[INFILL_RAYS]};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         if (s->archive.n_front > 0)
             infill_measure(all[i], s->archive.n_front, s->archive.front, s->archive.estimate);

@@ -185,18 +185,6 @@ double infill_length(const Infill *q, const double f[])
     return sqrt(square);
 }
 
-double infill_off(const Infill *q, size_t direction, const double f[])
-{
-    const double *w = q->unit + direction * q->n_obj;
-    double along = 0.0, square = 0.0;
-    for (size_t k = 0; k < q->n_obj; k++) {
-        const double z = frame_scale(&q->frame, k, f[k]);
-        along += z * w[k];
-        square += z * z;
-    }
-    return square > 0.0 ? sqrt(fmax(1.0 - along * along / square, 0.0)) : 0.0;
-}
-
 double infill_slope(const Infill *q, size_t direction, const double f[], double slope[])
 {
     const double *w = q->unit + direction * q->n_obj;

@@ -32,9 +32,6 @@ void infill_measure(Infill *q, size_t n, const size_t front[], const double F[])
 /* Length of f, seen from the ideal, in widths of the front. */
 double infill_length(const Infill *q, const double f[]);
 
-/* Sine of the angle between f, seen from the ideal, and a direction. */
-double infill_off(const Infill *q, size_t direction, const double f[]);
-
 /* How far f is from being the best of any direction, 0 for those that are: small is near the front. */
 double infill_distance(Infill *q, const double f[]);
 

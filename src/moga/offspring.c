@@ -58,8 +58,6 @@ static void add_descended(Search *s)
         s->followed[r] = r;
     random_shuffle(&random, s->wishes.n, s->followed);
     const size_t rays = (size_t)(guide_rays(s) * (double)n);
-    s->n_followed = n;
-    s->n_followed_rays = rays;
     guide_descend(s, INFILL_RAYS, rays, s->followed, s->descended);
     guide_descend(s, INFILL_PBI, n - rays, s->followed + rays, s->descended + rays * p->n_var);
     for (size_t i = 0; i < n; i++) {
@@ -106,20 +104,20 @@ static void add_plain(Search *s, size_t n)
     guide_predict(s, &s->offspring, first, 1);
 }
 
-/* Where a surface can be relied on, what it proposes and a few plain children of the population, else those alone. */
+/* Where a surface can be relied on, what it proposes, and plain children if a batch has room for some; else those
+ * alone.
+ */
 void offspring_make(Search *s, int plainly)
 {
     const int guided = guide_leads(s) && !plainly;
-    s->offspring.n = s->n_followed = s->n_pending = 0;
+    s->offspring.n = s->n_pending = 0;
     if (guided) {
         add_evolved(s);
         if (s->archive.n_front > 0)
             add_descended(s);
         guide_predict(s, &s->offspring, 0, 1);
-        if (s->n_followed > 0)
-            guide_judge_directions(s);
     }
-    add_plain(s, guided ? guide_plain(s) : s->config->population);
+    add_plain(s, guided && guide_plain(s) == 0 ? 0 : s->config->population);
     if (s->feed)
         add_pending(s);
 }

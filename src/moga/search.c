@@ -200,9 +200,9 @@ static void layout(Search *s, size_t n_pool, Carve *c)
     s->G = carve(c, s->came_max * p->n_con, sizeof(double));
     s->ok = carve(c, s->came_max, 1);
     s->kind = carve(c, s->came_max, 1);
+    s->way = carve(c, s->came_max + 1, 1);
     s->foretold = carve(c, s->came_max, 1);
     s->draws = carve(c, s->came_max, sizeof(size_t));
-    s->apart = carve(c, s->wishes.n, sizeof(double));
     s->allowed = carve(c, n_pool, 1);
     s->picked = carve(c, n_pool, 1);
 }
@@ -221,7 +221,7 @@ static Status create(Search *s, Err *err)
     const Problem *p = s->problem;
     const size_t population = s->config->population, initial = s->config->n_given + generation_samples(s);
     const size_t lead = s->config->asynchronous && p->stream ? batch_lead_max(s->config, p->n_workers) : 0;
-    const size_t n_pool = (initial > 3 * population ? initial : 3 * population) + 2 * lead;
+    const size_t n_pool = (initial > 5 * population ? initial : 5 * population) + 2 * lead;
     const size_t most = s->config->max_evals > 4 ? s->config->max_evals : 4; /* centres there can ever be */
     const size_t centres = s->config->surrogate_max < most ? s->config->surrogate_max : most;
     size_t outer, inner;
@@ -234,7 +234,8 @@ static Status create(Search *s, Err *err)
     TRY(survival_create(&s->survival, s->config->survival, n_pool, &s->directions, err));
     for (int kind = 0; kind < INFILL_KINDS; kind++)
         TRY(infill_create(&s->infill[kind], (InfillKind)kind, n_pool, &s->wishes, err));
-    TRY(infill_create(&s->gained, INFILL_RAYS, 1, &s->wishes, err));
+    for (int kind = 0; kind < INFILL_KINDS; kind++)
+        TRY(infill_create(&s->gained[kind], (InfillKind)kind, 1, &s->wishes, err));
     TRY(surface_create(&s->surface, p, centres, n_pool, err));
     TRY(group_create(&s->population, 2 * population + lead, p->n_var, p->n_obj, err));
     TRY(group_create(&s->offspring, n_pool, p->n_var, p->n_obj, err));
@@ -258,7 +259,8 @@ static void release(Search *s)
     survival_free(s->survival);
     for (int kind = 0; kind < INFILL_KINDS; kind++)
         infill_free(s->infill[kind]);
-    infill_free(s->gained);
+    for (int kind = 0; kind < INFILL_KINDS; kind++)
+        infill_free(s->gained[kind]);
     surface_free(s->surface);
     group_free(&s->population);
     group_free(&s->offspring);
@@ -279,7 +281,7 @@ Status search_run(const Problem *problem, const SearchConfig *config, ObserveFn 
 Status search_resume(const Problem *problem, const SearchConfig *config, const SearchStart *start, ObserveFn observe,
                      void *user, StopReason *reason, Err *err)
 {
-    Search s = {.problem = problem, .config = config, .agreement = 1.0, .credit = {0.97, 0.03}, .chance = {0.9, 0.1}};
+    Search s = {.problem = problem, .config = config, .agreement = 1.0, .sources = GUIDE_SOURCES, .ways = GUIDE_WAYS};
     TRY(check(problem, config, err));
     s.start = clock_seconds();
     Status status = create(&s, err);

@@ -8,8 +8,9 @@
  *   4 every offspring predicted; where the leave-one-out based error estimate is small the prediction stands, of the
  *     others those that promise most are simulated and become new centres (moga/infill.h), the rest is forgotten.
  *     A few predictions that stand are checked by simulation, first those that have stood for long. Predicted and true
- *     order of every batch are compared (Kendall's tau); while they disagree, batches are plain children. Once there
- *     are many simulations a few of every batch are, and most of it while they gain more than what the surface chose
+ *     order of every batch are compared (Kendall's tau); while they disagree, batches are plain children. What promises
+ *     most is measured in two ways, which share a batch by what they gain; once there are many simulations a few of
+ *     every batch are plain children that promise most, and most of it while these gain more
  *   5 environmental selection with reference directions (NSGA-III, moga/survival.h); back to 2
  *
  * Predicted designs may live in the population; only simulated ones enter the archive, and the front is made of the

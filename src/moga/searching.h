@@ -29,6 +29,11 @@
 /* What proposes a design. */
 typedef enum { SOURCE_SURFACE, SOURCE_PLAIN, SOURCES } Source;
 
+/* Two that share batches: running means of each one's share of what the batches gained, and of their designs. */
+typedef struct {
+    double credit[2], chance[2];
+} Rivals;
+
 typedef enum { ASIDE_OPEN, ASIDE_NO, ASIDE_YES } Aside;
 
 typedef struct {
@@ -37,38 +42,34 @@ typedef struct {
     Archive archive;
     Directions directions, wishes; /* of survival, of the choice of simulations */
     Survival *survival;
-    Infill *infill[INFILL_KINDS], *gained; /* by both ways of choosing; what a batch gains */
+    Infill *infill[INFILL_KINDS], *gained[INFILL_KINDS]; /* by both ways: of choosing, of measuring what is gained */
     Surface *surface;
     Group population, pool, offspring;
     size_t generation, n_predicted, batch_max;
-    size_t n_came, came_max;            /* results that this generation took in, first in X, F, G, ok; most of them */
-    size_t n_pending;                   /* the last of the offspring: asked for already */
-    Feed *feed;                         /* NULL: in batches */
-    double simulating_s, guided_s;      /* wall time of this session: in the simulator, of our own while guided */
-    size_t n_timed, n_guided;           /* simulations in these times */
-    double waited_s, surrogate_s;       /* wall time of this session: for simulations, at the surface */
-    size_t aside;                       /* Aside */
-    double agreement;                   /* running mean of Kendall's tau between predicted and simulated batches */
-    double off;                         /* running mean of how far from their directions descents by PBI end */
-    double credit[SOURCES];             /* running means of each source's share of what the batches gained ... */
-    double chance[SOURCES];             /* ... and of its share of their designs */
-    size_t n_plain;                     /* the last of the offspring but those pending: no surface has chosen them */
-    size_t n_followed, n_followed_rays; /* descents of this generation, the last of the offspring; by rays come first */
-    double *foreseen;                   /* (batch, n_obj) what was predicted of the batch under way */
-    size_t *chosen;                     /* (pool) */
-    double *apart;                      /* (wishes) scratch */
-    size_t *followed;                   /* (wishes) in the order of this generation */
-    double *descended;                  /* (pool, n_var) */
-    double *child;                      /* (2, n_var) */
-    double *X, *F, *G;                  /* (batch) of one call of evaluate */
-    unsigned char *ok, *foretold, *kind; /* (batch) */
-    size_t *draws;                       /* (batch) answers that there are already: 0 of new designs */
-    unsigned char *allowed, *picked;     /* (pool) offspring that may still be, that have been sent to simulation */
-    size_t reserved;                     /* simulations that are kept for the last repeats */
-    size_t n_rows;                       /* of the archive, that there is room for in the next two */
-    size_t *wins;                        /* (rows) how much is built on a design */
-    unsigned char *reported;             /* (rows) on the front, with answers enough */
-    Pack state;                          /* as of the last report */
+    size_t n_came, came_max;       /* results that this generation took in, first in X, F, G, ok; most of them */
+    size_t n_pending;              /* the last of the offspring: asked for already */
+    Feed *feed;                    /* NULL: in batches */
+    double simulating_s, guided_s; /* wall time of this session: in the simulator, of our own while guided */
+    size_t n_timed, n_guided;      /* simulations in these times */
+    double waited_s, surrogate_s;  /* wall time of this session: for simulations, at the surface */
+    size_t aside;                  /* Aside */
+    double agreement;              /* running mean of Kendall's tau between predicted and simulated batches */
+    Rivals sources, ways;          /* surface and plain children; the two ways by which the surface chooses */
+    size_t n_plain;                /* the last of the offspring but those pending: no surface has chosen them */
+    double *foreseen;              /* (batch, n_obj) what was predicted of the batch under way */
+    size_t *chosen;                /* (pool) */
+    size_t *followed;              /* (wishes) in the order of this generation */
+    double *descended;             /* (pool, n_var) */
+    double *child;                 /* (2, n_var) */
+    double *X, *F, *G;             /* (batch) of one call of evaluate */
+    unsigned char *ok, *foretold, *kind, *way; /* (batch) way: InfillKind of what the surface chose */
+    size_t *draws;                             /* (batch) answers that there are already: 0 of new designs */
+    unsigned char *allowed, *picked; /* (pool) offspring that may still be, that have been sent to simulation */
+    size_t reserved;                 /* simulations that are kept for the last repeats */
+    size_t n_rows;                   /* of the archive, that there is room for in the next two */
+    size_t *wins;                    /* (rows) how much is built on a design */
+    unsigned char *reported;         /* (rows) on the front, with answers enough */
+    Pack state;                      /* as of the last report */
     void *store;
     double start; /* [s] of the clock */
 } Search;
@@ -100,10 +101,10 @@ void guide_weigh_costs(Search *s);
 int guide_may_lead(const Search *s);                         /* the surface is wanted and worth its time */
 int guide_leads(const Search *s);                            /* ... and can be relied on */
 int guide_trusts(const Search *s, const Group *g, size_t i); /* the prediction of this member stands */
+extern const Rivals GUIDE_SOURCES, GUIDE_WAYS;               /* before the first batch */
 double guide_rays(const Search *s);  /* share of a batch that is chosen by rays, the rest by PBI */
 size_t guide_plain(const Search *s); /* plain children in a batch that the surface leads */
-void guide_judge_directions(Search *s);
-void guide_judge(Search *s); /* by the results that came */
+void guide_judge(Search *s);         /* by the results that came */
 void guide_measure_front(Search *s);
 Status guide_fit(Search *s, Err *err);
 void guide_predict(Search *s, Group *group, size_t first, int with_uncertainty);

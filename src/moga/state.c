@@ -1,6 +1,6 @@
 #include "moga/searching.h"
 
-enum { STATE_VERSION = 5 };
+enum { STATE_VERSION = 6 };
 
 /* All that the next generation takes from the earlier ones, beside the archive. */
 static void state_pack(Search *s, Pack *p)
@@ -14,9 +14,8 @@ static void state_pack(Search *s, Pack *p)
     pack_expect(p, s->archive.n);
     pack_size(p, &s->generation, UINT32_MAX);
     pack(p, &s->agreement, sizeof s->agreement);
-    pack(p, &s->off, sizeof s->off);
-    pack(p, s->credit, sizeof s->credit);
-    pack(p, s->chance, sizeof s->chance);
+    pack(p, &s->sources, sizeof s->sources);
+    pack(p, &s->ways, sizeof s->ways);
     pack_size(p, &s->aside, ASIDE_YES);
     group_pack(&s->population, p, s->archive.n);
     surface_pack(s->surface, p);
