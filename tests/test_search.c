@@ -203,7 +203,8 @@ static size_t plain_children_where(double plain_gain, double surface_gain, size_
 
 static double rays_where(double ray_gain, double pbi_gain)
 {
-    Search s = {.ways.chance = {0.5, 0.5}};
+    const SearchConfig c = {.population = 248}; /* batches of 32 */
+    Search s = {.config = &c, .ways.chance = {0.5, 0.5}};
     s.ways.credit[INFILL_RAYS] = ray_gain / (ray_gain + pbi_gain);
     s.ways.credit[INFILL_PBI] = pbi_gain / (ray_gain + pbi_gain);
     return guide_rays(&s);
@@ -213,9 +214,9 @@ static void test_the_way_of_choosing_that_gains_more_has_the_greater_share(void 
 {
     (void)state;
     assert_close(rays_where(1, 1), 0.5, 1e-12);
-    assert_close(rays_where(1.2, 1), 2.0736 / 3.0736, 1e-12); /* 1.2^4 to 1 */
-    assert_close(rays_where(0, 1), 0.15, 1e-12);
-    assert_close(rays_where(1, 0), 0.85, 1e-12);
+    assert_close(rays_where(1.1, 1), 4.5949729863572 / 5.5949729863572, 1e-9); /* 1.1^16 to 1 */
+    assert_close(rays_where(0, 1), 1.0 / 32.0, 1e-12);
+    assert_close(rays_where(1, 0), 31.0 / 32.0, 1e-12);
 }
 
 static void test_whoever_gains_more_has_the_greater_share_of_a_batch(void **state)

@@ -30,7 +30,8 @@ static size_t take_plain(Search *s, size_t n, size_t limit)
 static size_t choose_in_turn(Search *s, size_t n, size_t limit, double rays, EvaluationKind kind)
 {
     while (n < limit) {
-        const InfillKind way = floor(rays * (double)(n + 1)) > floor(rays * (double)n) ? INFILL_RAYS : INFILL_PBI;
+        const InfillKind way =
+            floor(rays * (double)(n + 1) + 0.5) > floor(rays * (double)n + 0.5) ? INFILL_RAYS : INFILL_PBI;
         const size_t i = infill_pick(s->infill[way], s->allowed);
         if (i == SIZE_MAX)
             break;

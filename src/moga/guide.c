@@ -10,7 +10,7 @@ static const double LEAST_AGREEMENT = 0.15, AGREEMENT_WEIGHT = 0.25;
 /* Two rivals share a batch by this power of what each gained per simulation; who gained less gets the LEAST_SHARE-th
  * part at least. So few plain children tell little about their gain: it has to be greater by DOUBT. One generation's
  * weight in the means. */
-static const double CREDIT_WEIGHT = 0.1, SOURCE_POWER = 8.0, WAY_POWER = 4.0, LEAST_WAY = 0.15, DOUBT = 1.3;
+static const double CREDIT_WEIGHT = 0.1, SOURCE_POWER = 8.0, WAY_POWER = 16.0, DOUBT = 1.3;
 enum { LEAST_SHARE = 16, ALONE = 18 /* simulations for each variable that the surface has alone */ };
 const Rivals GUIDE_SOURCES = {{0.97, 0.03}, {0.9, 0.1}}, GUIDE_WAYS = {{0.5, 0.5}, {0.5, 0.5}};
 
@@ -52,7 +52,8 @@ static double second_share(const Rivals *r, double power, double doubt)
  * is work to reach the front at all or where it has not the shape of a simplex. */
 double guide_rays(const Search *s)
 {
-    return fmin(fmax(second_share(&s->ways, WAY_POWER, 1.0), LEAST_WAY), 1.0 - LEAST_WAY);
+    const double least = 1.0 / (double)batch_size(s); /* one design, so that more is learnt of both */
+    return fmin(fmax(second_share(&s->ways, WAY_POWER, 1.0), least), 1.0 - least);
 }
 
 int guide_trusts(const Search *s, const Group *g, size_t i)
