@@ -201,6 +201,18 @@ static size_t plain_children_where(double plain_gain, double surface_gain, size_
     return guide_plain(&s);
 }
 
+static void test_plain_children_replace_what_the_surface_loses_to_failures(void **state)
+{
+    (void)state;
+    const Problem problem = {.n_var = 10};
+    const SearchConfig c = {.population = 248}; /* batches of 32 */
+    Search s = {.problem = &problem, .config = &c, .archive = {.n = 100}, .sources.chance = {0.5, 0.5}, .lost = 0.25};
+    assert_int_equal(guide_plain(&s), 8);
+    s.archive.n = 500;
+    s.sources.credit[SOURCE_SURFACE] = 1.0;
+    assert_int_equal(guide_plain(&s), 8);
+}
+
 static double rays_where(double ray_gain, double pbi_gain)
 {
     const SearchConfig c = {.population = 248}; /* batches of 32 */
@@ -510,6 +522,7 @@ int main(void)
         cmocka_unit_test_setup(test_three_objectives_beat_a_latin_hypercube_of_the_same_size, fresh),
         cmocka_unit_test_setup(test_seven_objectives_beat_a_latin_hypercube_of_the_same_size, fresh),
         cmocka_unit_test(test_whoever_gains_more_has_the_greater_share_of_a_batch),
+        cmocka_unit_test(test_plain_children_replace_what_the_surface_loses_to_failures),
         cmocka_unit_test(test_the_way_of_choosing_that_gains_more_has_the_greater_share),
         cmocka_unit_test_setup(test_the_same_seed_gives_the_same_bytes_at_any_thread_count, fresh),
         cmocka_unit_test_setup(test_front_flags_equal_a_brute_force_filter, fresh),

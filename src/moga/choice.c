@@ -42,10 +42,11 @@ static size_t choose_in_turn(Search *s, size_t n, size_t limit, double rays, Eva
     return n;
 }
 
-/* All may be picked but those that are asked for already. */
-static void forget_picks(Search *s)
+/* All may be picked but those that are asked for already and, `wary`, those that are expected to fail. */
+static void forget_picks(Search *s, int wary)
 {
-    memset(s->picked, 0, s->offspring.n);
+    for (size_t i = 0; i < s->offspring.n; i++)
+        s->picked[i] = wary && guide_expects_failure(s, s->offspring.X + i * s->problem->n_var);
     memset(s->picked + s->offspring.n - s->n_pending, 1, s->n_pending);
 }
 
@@ -75,7 +76,7 @@ static size_t choose_plain(Search *s, size_t n, size_t batch)
 {
     const size_t end = s->offspring.n - s->n_pending;
     for (size_t i = 0; i < s->offspring.n; i++)
-        s->allowed[i] = i >= end - s->n_plain && i < end;
+        s->allowed[i] = i >= end - s->n_plain && i < end && !s->picked[i];
     return choose_in_turn(s, n, batch, 0.5, KIND_OFFSPRING);
 }
 
@@ -84,7 +85,7 @@ size_t choice_make(Search *s)
 {
     const size_t batch = batch_size(s);
     size_t n = 0;
-    forget_picks(s);
+    forget_picks(s, guide_leads(s));
     if (guide_leads(s))
         n = choose_plain(s, choose_predicted(s, batch - guide_plain(s)), batch);
     else
@@ -92,6 +93,6 @@ size_t choice_make(Search *s)
     if (n > 0)
         return n;
     offspring_make(s, 1);
-    forget_picks(s);
+    forget_picks(s, 0);
     return take_plain(s, n, batch);
 }

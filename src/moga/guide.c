@@ -17,6 +17,7 @@ const Rivals GUIDE_SOURCES = {{0.97, 0.03}, {0.9, 0.1}}, GUIDE_WAYS = {{0.5, 0.5
 /* A surface costs wall time; with it a search needs a fifth of the simulations of a plain one, mostly less
  * (docs/search.md). It therefore pays as long as its time for one simulation is below that of PAYS simulations. */
 static const double PAYS = 4.0;
+enum { NEIGHBOURS = 3 };   /* of a design, among those simulated: where one failed it is expected to fail */
 enum { COST_SAMPLE = 60 }; /* simulations chosen by the surface, before costs are weighed */
 
 /* Once, when enough has been timed: a surface that costs more wall time per simulation than PAYS simulations steps
@@ -84,6 +85,7 @@ static void learn(Rivals *r, double gain[INFILL_KINDS][2], const double number[2
 static void judge_rivals(Search *s)
 {
     double by_source[INFILL_KINDS][2] = {{0}}, by_way[INFILL_KINDS][2] = {{0}}, of_source[2] = {0}, of_way[2] = {0};
+    double failed = 0.0;
     for (size_t i = 0; i < s->n_came; i++) {
         const int is_infill = s->kind[i] == KIND_INFILL;
         if (!is_infill && s->kind[i] != KIND_OFFSPRING)
@@ -91,12 +93,15 @@ static void judge_rivals(Search *s)
         const Source source = is_infill ? SOURCE_SURFACE : SOURCE_PLAIN;
         of_source[source] += 1.0;
         of_way[s->way[i]] += is_infill;
+        failed += is_infill && !s->ok[i];
         for (int k = 0; k < INFILL_KINDS && s->ok[i]; k++) {
             const double gain = infill_gain(s->gained[k], s->F + i * s->problem->n_obj);
             by_source[k][source] += gain;
             by_way[k][s->way[i]] += is_infill ? gain : 0.0;
         }
     }
+    if (of_source[SOURCE_SURFACE] > 0.0)
+        s->lost += CREDIT_WEIGHT * (failed / of_source[SOURCE_SURFACE] - s->lost);
     learn(&s->sources, by_source, of_source);
     learn(&s->ways, by_way, of_way);
 }
@@ -106,9 +111,11 @@ static void judge_rivals(Search *s)
 size_t guide_plain(const Search *s)
 {
     const size_t batch = batch_size(s), least = batch / LEAST_SHARE + 1;
+    const size_t lost = (size_t)(s->lost * (double)batch + 0.5); /* as many as of the surface's own would fail */
     if (s->archive.n < ALONE * s->problem->n_var)
-        return 0;
-    const size_t wanted = (size_t)(second_share(&s->sources, SOURCE_POWER, DOUBT) * (double)batch + 0.5);
+        return lost;
+    const size_t credited = (size_t)(second_share(&s->sources, SOURCE_POWER, DOUBT) * (double)batch + 0.5);
+    const size_t wanted = credited > lost ? credited : lost;
     return wanted < least ? least : wanted < batch - least ? wanted : batch - least;
 }
 
@@ -155,10 +162,55 @@ Status guide_fit(Search *s, Err *err)
     return status;
 }
 
+int guide_expects_failure(const Search *s, const double x[])
+{
+    const Problem *p = s->problem;
+    const Archive *a = &s->archive;
+    double least[NEIGHBOURS];
+    int failed[NEIGHBOURS] = {0}, any = 0;
+    for (int k = 0; k < NEIGHBOURS; k++)
+        least[k] = INFINITY;
+    for (size_t row = 0; a->n_failed > 0 && row < a->n; row++) {
+        double square = 0.0;
+        if (a->answers[row] == 0)
+            continue;
+        for (size_t d = 0; d < p->n_var; d++) {
+            const double width = p->upper[d] - p->lower[d], off = x[d] - a->X[row * p->n_var + d];
+            square += width > 0.0 ? off * off / (width * width) : 0.0;
+        }
+        int k = NEIGHBOURS; /* into its place among the nearest */
+        for (; k > 0 && square < least[k - 1]; k--)
+            if (k < NEIGHBOURS) {
+                least[k] = least[k - 1];
+                failed[k] = failed[k - 1];
+            }
+        if (k < NEIGHBOURS) {
+            least[k] = square;
+            failed[k] = !a->usable[row];
+        }
+    }
+    for (int k = 0; k < NEIGHBOURS; k++)
+        any |= failed[k];
+    return any;
+}
+
+/* The surface knows nothing of failures: what is expected to fail counts as infeasible, the last to be chosen. */
+static void expect_failures(const Search *s, Group *g, size_t first)
+{
+    if (s->archive.n_failed == 0)
+        return;
+#pragma omp parallel for schedule(static)
+    for (size_t i = first; i < g->n; i++)
+        if (g->row[i] == PREDICTED)
+            g->violation[i] += guide_expects_failure(s, g->X + i * g->n_var);
+}
+
 void guide_predict(Search *s, Group *group, size_t first, int with_uncertainty)
 {
     const double before = search_seconds(s);
     surface_predict(s->surface, group, first, with_uncertainty);
+    if (surface_stands(s->surface))
+        expect_failures(s, group, first);
     s->surrogate_s += search_seconds(s) - before;
 }
 

@@ -10,7 +10,8 @@
  *     A few predictions that stand are checked by simulation, first those that have stood for long. Predicted and true
  *     order of every batch are compared (Kendall's tau); while they disagree, batches are plain children. What promises
  *     most is measured in two ways, which share a batch by what they gain; once there are many simulations a few of
- *     every batch are plain children that promise most, and most of it while these gain more
+ *     every batch are plain children that promise most, and most of it while these gain more. A design one of whose
+ *     three nearest simulated ones failed is not chosen, and plain children take the share of a batch that fails
  *   5 environmental selection with reference directions (NSGA-III, moga/survival.h); back to 2
  *
  * Predicted designs may live in the population; only simulated ones enter the archive, and the front is made of the

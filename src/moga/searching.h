@@ -54,6 +54,7 @@ typedef struct {
     double waited_s, surrogate_s;  /* wall time of this session: for simulations, at the surface */
     size_t aside;                  /* Aside */
     double agreement;              /* running mean of Kendall's tau between predicted and simulated batches */
+    double lost;                   /* running mean of the share of what the surface chose that failed */
     Rivals sources, ways;          /* surface and plain children; the two ways by which the surface chooses */
     size_t n_plain;                /* the last of the offspring but those pending: no surface has chosen them */
     double *foreseen;              /* (batch, n_obj) what was predicted of the batch under way */
@@ -64,12 +65,13 @@ typedef struct {
     double *X, *F, *G;             /* (batch) of one call of evaluate */
     unsigned char *ok, *foretold, *kind, *way; /* (batch) way: InfillKind of what the surface chose */
     size_t *draws;                             /* (batch) answers that there are already: 0 of new designs */
-    unsigned char *allowed, *picked; /* (pool) offspring that may still be, that have been sent to simulation */
-    size_t reserved;                 /* simulations that are kept for the last repeats */
-    size_t n_rows;                   /* of the archive, that there is room for in the next two */
-    size_t *wins;                    /* (rows) how much is built on a design */
-    unsigned char *reported;         /* (rows) on the front, with answers enough */
-    Pack state;                      /* as of the last report */
+    unsigned char *allowed,
+        *picked;             /* (pool) offspring that may still be, that are not to be sent to simulation any more */
+    size_t reserved;         /* simulations that are kept for the last repeats */
+    size_t n_rows;           /* of the archive, that there is room for in the next two */
+    size_t *wins;            /* (rows) how much is built on a design */
+    unsigned char *reported; /* (rows) on the front, with answers enough */
+    Pack state;              /* as of the last report */
     void *store;
     double start; /* [s] of the clock */
 } Search;
@@ -104,7 +106,8 @@ int guide_trusts(const Search *s, const Group *g, size_t i); /* the prediction o
 extern const Rivals GUIDE_SOURCES, GUIDE_WAYS;               /* before the first batch */
 double guide_rays(const Search *s);  /* share of a batch that is chosen by rays, the rest by PBI */
 size_t guide_plain(const Search *s); /* plain children in a batch that the surface leads */
-void guide_judge(Search *s);         /* by the results that came */
+int guide_expects_failure(const Search *s, const double x[]); /* one of the simulated designs nearest to x did */
+void guide_judge(Search *s);                                  /* by the results that came */
 void guide_measure_front(Search *s);
 Status guide_fit(Search *s, Err *err);
 void guide_predict(Search *s, Group *group, size_t first, int with_uncertainty);

@@ -14,6 +14,7 @@ static void state_pack(Search *s, Pack *p)
     pack_expect(p, s->archive.n);
     pack_size(p, &s->generation, UINT32_MAX);
     pack(p, &s->agreement, sizeof s->agreement);
+    pack(p, &s->lost, sizeof s->lost);
     pack(p, &s->sources, sizeof s->sources);
     pack(p, &s->ways, sizeof s->ways);
     pack_size(p, &s->aside, ASIDE_YES);

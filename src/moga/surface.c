@@ -10,6 +10,7 @@
 /* Below this mean leave-one-out R2 of the objectives the surface guides no better than chance: LEAST_EXPLAINED, and
  * what scales, warp and form find in n answers without any pattern, LUCK / root(n). */
 static const double LEAST_EXPLAINED = 0.2, LUCK = 2.0;
+static const double ANSWER_MAX = 1e60;
 
 struct Surface {
     const Problem *problem;
@@ -118,12 +119,23 @@ static void sort_by_distance(const double distance[], size_t n, size_t rows[], s
         rows[k] = j < n && distance[rows[j]] < distance[spare[i]] ? rows[j++] : spare[i++];
 }
 
+/* Answers beyond all reason, penalties say, would leave nothing of the others. */
+static int is_centre(const Archive *a, size_t i)
+{
+    int fits = a->usable[i];
+    for (size_t k = 0; fits && k < a->n_obj; k++)
+        fits = fabs(a->F[i * a->n_obj + k]) < ANSWER_MAX;
+    for (size_t k = 0; fits && k < a->n_con; k++)
+        fits = fabs(a->G[i * a->n_con + k]) < ANSWER_MAX;
+    return fits;
+}
+
 /* Rows of the centres, in chosen; returns how many. */
 static size_t choose_centres(Surface *s, const Archive *a, Infill *near)
 {
     size_t n = 0;
     for (size_t i = 0; i < a->n; i++)
-        if (a->usable[i])
+        if (is_centre(a, i))
             s->chosen[n++] = i;
     if (n <= s->n_max)
         return n;
@@ -150,7 +162,7 @@ static void measure_ranges(Surface *s, const Archive *a)
     for (size_t k = 0; k < s->n_out; k++) {
         double least = DBL_MAX, most = -DBL_MAX;
         for (size_t i = 0; i < a->n; i++) {
-            if (!a->usable[i])
+            if (!is_centre(a, i))
                 continue;
             const double v = k < a->n_obj ? a->F[i * a->n_obj + k] : a->G[i * a->n_con + k - a->n_obj];
             least = fmin(least, v);
@@ -167,6 +179,8 @@ Status surface_fit(Surface *s, const Archive *a, Infill *near, Err *err)
         return STATUS_OK;
     TRY(grow(s, a->n, err));
     s->n = choose_centres(s, a, near);
+    if (s->n < 4)
+        return STATUS_OK;
     for (size_t i = 0; i < s->n; i++) {
         const size_t row = s->chosen[i];
         to_unit_cube(s->problem, a->X + row * a->n_var, s->U + i * a->n_var);

@@ -72,8 +72,11 @@ static void keep_if_best(Polish *p)
     memcpy(p->result->f, p->f, p->problem->n_obj * sizeof *p->f);
 }
 
+/* The start is evaluated whatever the clock says. */
 static int spent(const Polish *p)
 {
+    if (p->result->n_evaluated == 0 && p->status == STATUS_OK)
+        return 0;
     return p->status != STATUS_OK || p->result->n_evaluated >= p->config->max_evals ||
            (p->config->max_seconds > 0.0 && clock_seconds() - p->start >= p->config->max_seconds);
 }

@@ -10,7 +10,7 @@
 #include "polish/polish.h"
 #include "run/subject.h"
 
-enum { CENTRES_MAX = 150 };
+enum { CENTRES_MAX = 150, LOCAL_MAX = 600 /* designs that the surface tries: a fit costs their cube */ };
 
 /* Where the standard deviation of every objective is below this share of its value one simulation tells all. */
 static const double PREDICTABLE = 1e-3;
@@ -190,10 +190,10 @@ static Status gather_known(const Refine *r, Known *known, Err *err)
 /* From out->x with the objectives f; the best is left there. */
 static Status follow_surface(Refine *r, double f[], Refined *out, Err *err)
 {
-    const size_t left = evals_left(r, out);
+    const size_t left = evals_left(r, out), wanted = r->config->algorithm ? left / 2 : left;
     LocalConfig config = {.goal = {r->weight, r->bound},
                           .noise = 1.0 / (double)r->members,
-                          .max_evals = r->config->algorithm ? left / 2 : left,
+                          .max_evals = wanted < LOCAL_MAX ? wanted : LOCAL_MAX,
                           .max_seconds = seconds_left(r),
                           .seed = (uint32_t)r->run->settings.search.seed};
     LocalResult result = {.x = out->x, .f = f};
@@ -293,6 +293,11 @@ static Status refine(Refine *r, Refined *out, Err *err)
 Status refine_design(const Saved *h, size_t row, const RefineConfig *config, Refined *out, Err *err)
 {
     RefineConfig used = *config;
+    if (schema_is_noisy(&h->settings) && h->settings.problem.kind != PROBLEM_TOWER)
+        return fail(
+            err, STATUS_BAD_DATA,
+            "the answers of this run are noisy, and polishing simulates a design once: nothing would tell a gain "
+            "from luck; let the search go on instead (search.max_evals, search.repeats)");
     if (h->settings.problem.kind != PROBLEM_TOWER)
         used.members = 1;
     *out = (Refined){0};
