@@ -2,7 +2,8 @@
  *
  *   each round  1 surface of the known designs, those tried before among them (rbf/rbf.h)
  *               2 in LOCAL_BATCH boxes about the best design, the first `trust` wide each way and every further one
- * half as wide, half of the variables free to move, NLopt (CCSA, with the surface's derivatives) looks for the most
+ *                 half as wide, half of the variables free to move, NLopt (CCSA, with the surface's derivatives)
+ *                 looks for the most
  *                     expected improvement of the value  x  probability that each bound is kept,
  *                 of normal errors with the deviation of the surface's own leave-one-out errors about the best
  *               3 these designs are evaluated together; the best that keeps everything is the new centre
@@ -14,8 +15,8 @@
  * Repeatable  same numbers for the same seed; max_seconds is looked at between rounds
  * Threads     call it from one thread; evaluate may share a batch out, the numbers do not depend on it
  * Sources     Schonlau, Welch and Jones, Global versus local search in constrained optimization of computer models,
- * 1998 (the product); Regis and Shoemaker, J. Global Optim. 37 (2007) 113-135 (boxes that grow and shrink); Regis and
- * Shoemaker, Eng. Optim. 45 (2013) 529-555 (some of the variables at a time). */
+ *             1998 (the product); Regis and Shoemaker, J. Global Optim. 37 (2007) 113-135 (boxes that grow and
+ *             shrink); Regis and Shoemaker, Eng. Optim. 45 (2013) 529-555 (some of the variables at a time). */
 #ifndef IMTET_POLISH_LOCAL_H
 #define IMTET_POLISH_LOCAL_H
 

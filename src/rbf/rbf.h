@@ -45,8 +45,7 @@ Status rbf_create(Rbf **out, size_t n_max, size_t n_dim, size_t n_out, Err *err)
 void rbf_free(Rbf *m); /* NULL is fine */
 
 /* Fits F at X, whose variances are nugget times noise (n, n_out) or, where that is NULL, the nugget, with the forms and
- * scales that the model has; rbf_create starts with Matern, linear tail,
- * theta = 1 / n_dim, no warp. */
+ * scales that the model has; rbf_create starts with Matern, linear tail, theta = 1 / n_dim, no warp. */
 Status rbf_fit(Rbf *m, size_t n, const double X[], const double F[], const double noise[], Err *err);
 
 /* Looks for better forms and scales, starting from the present ones, on the data of the last rbf_fit (an even choice

@@ -6,10 +6,13 @@
  *     `slack`), and whether its answers scatter at all; where they do every design tried is a mean of `members`
  *   2 response surface of the nearest simulations and simulator in turn (polish/local.h)
  *   3 NLopt's `algorithm` on the simulator from the best so far (polish/polish.h), with half of the simulations where
- * it was asked for by name, else with what step 2 leaves 4 design and result once more, with members that no step has
- * seen: error_k = root((spread_start_k^2 + spread_end_k^2) / members) A gain counts where it is more than twice sum_k
- * weight_k error_k / range_k (as if all errors went together) and no kept objective lost more than it may and twice its
- * error. With a single member nothing is known of the spread.
+ *     it was asked for by name, else COBYLA with what step 2 leaves
+ *   4 design and result once more, with members that no step has seen:
+ *         error_k = root((spread_start_k^2 + spread_end_k^2) / members)
+ *
+ * A gain counts where it is more than twice sum_k weight_k error_k / range_k (as if all errors went together) and no
+ * kept objective lost more than it may and twice its error. With a single member nothing is known of the spread, and
+ * runs whose answers are noisy are refused unless they are of the tower.
  *
  * Ownership  refine_design fills x, f, ... of the caller's Refined; refined_free releases what it allocated
  * Threads    call it from one thread; members and the designs of a round share the subject's threads, the numbers do
