@@ -319,7 +319,7 @@ static void test_readers_need_the_database_alone_and_the_files_come_back(void **
 {
     (void)state;
     char command[512];
-    free(output_of("optimize @/textbook.ini --max-evals 30 --out @/alone"));
+    free(output_of("optimize @/textbook.ini --max-evals 30 --set problem.noise=0 --out @/alone"));
     char *front = read_in_place("alone/front.csv"), *all = read_in_place("alone/evaluations.csv");
     char *settings = read_in_place("alone/settings.ini"), *provenance = read_in_place("alone/provenance.json");
     snprintf(command, sizeof command, "cd '%s/alone' && rm *.csv *.ini *.json", place.folder);
