@@ -293,6 +293,7 @@ static Status refine(Refine *r, Refined *out, Err *err)
 Status refine_design(const Saved *h, size_t row, const RefineConfig *config, Refined *out, Err *err)
 {
     RefineConfig used = *config;
+    *out = (Refined){0};
     if (schema_is_noisy(&h->settings) && h->settings.problem.kind != PROBLEM_TOWER)
         return fail(
             err, STATUS_BAD_DATA,
@@ -300,7 +301,6 @@ Status refine_design(const Saved *h, size_t row, const RefineConfig *config, Ref
             "from luck; let the search go on instead (search.max_evals, search.repeats)");
     if (h->settings.problem.kind != PROBLEM_TOWER)
         used.members = 1;
-    *out = (Refined){0};
     if (used.algorithm)
         TRY(polish_knows(used.algorithm, err));
     Refine r = {.run = h, .config = &used, .x = h->X + row * h->schema.n_var, .start = clock_seconds()};

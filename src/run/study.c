@@ -589,7 +589,12 @@ static Status polish_one(Study *study, const Saved *h, size_t row, size_t n_trie
                                  .go_on = may_go_on,
                                  .user = study};
     Status status = refine_design(h, row, &config, &refined, err);
-    if (status == STATUS_OK) {
+    if (status == STATUS_BAD_DATA) { /* with more members it fails, say: the others are polished all the same */
+        Err why = *err;
+        status = store_log(study->store, err, "design %zu is not polished: %s", row + 1, why.text);
+        if (status == STATUS_OK)
+            status = store_polished(study->store, NULL, n_tried, sum->n_simulated, err);
+    } else if (status == STATUS_OK) {
         const StoredDesign better = refined_design(&refined);
         const int counts = refined_counts(&refined);
         status = store_polished(study->store, counts ? &better : NULL, n_tried, sum->n_simulated, err);
