@@ -362,8 +362,7 @@ static void test_a_fault_of_the_simulations_ends_the_search(void **state)
     }
 }
 
-/* -- the feed -------------------------------------------------------------------------------------------------------
- */
+/* -- the feed ------------------------------------------------------------------------------------------------------ */
 
 static void *take_and_give(void *user)
 {
@@ -426,8 +425,7 @@ static void test_what_nobody_has_taken_can_be_withdrawn(void **state)
     feed_free(feed);
 }
 
-/* -- the program ----------------------------------------------------------------------------------------------------
- */
+/* -- the program --------------------------------------------------------------------------------------------------- */
 
 /* Every tenth request takes 100 ms, the others 5. */
 static const char UNEVEN[] = "[problem]\nkind = external\ncommand = sh tests/worker.sh uneven\nvariables = 2\n"

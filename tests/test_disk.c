@@ -8,8 +8,7 @@
 
 #include "run/lock.h"
 
-/* -- other processes, full disks, damage ----------------------------------------------------------------------------
- */
+/* -- other processes, full disks, damage --------------------------------------------------------------------------- */
 
 static void test_a_second_process_is_refused_with_the_first_ones_number(void **state)
 {

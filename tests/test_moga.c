@@ -19,8 +19,7 @@ static void coarse_points(uint32_t seed, size_t n, size_t m, double F[])
         F[i] = (double)random_below(&r, 6);
 }
 
-/* -- dominance --------------------------------------------------------------------------------------------------------
- */
+/* -- dominance ----------------------------------------------------------------------------------------------------- */
 
 /* Peeling by definition: rank r are those that only points of lower rank dominate. */
 static void test_nondominated_sort_equals_peeling_by_definition(void **state)
@@ -50,8 +49,7 @@ static void test_nondominated_sort_equals_peeling_by_definition(void **state)
     }
 }
 
-/* -- hypervolume ------------------------------------------------------------------------------------------------------
- */
+/* -- hypervolume --------------------------------------------------------------------------------------------------- */
 
 static double exact(size_t n, size_t m, const double F[], double reference)
 {
@@ -149,8 +147,7 @@ static void test_the_estimate_is_within_four_standard_errors_of_the_exact_hyperv
     }
 }
 
-/* -- directions -------------------------------------------------------------------------------------------------------
- */
+/* -- directions ---------------------------------------------------------------------------------------------------- */
 
 static void test_reference_directions_are_as_many_as_binomials_say_and_lie_on_the_simplex(void **state)
 {
@@ -192,8 +189,7 @@ static void test_directions_fill_the_population_asked_for(void **state)
         }
 }
 
-/* -- variation --------------------------------------------------------------------------------------------------------
- */
+/* -- variation ----------------------------------------------------------------------------------------------------- */
 
 /* A pair that is far from its bounds is spread evenly to both sides, so the mean of the children is that of the
  * parents; bounds one-sided would move it. */
@@ -256,8 +252,7 @@ static void test_a_latin_hypercube_has_one_sample_in_every_slice_of_every_variab
     }
 }
 
-/* -- survival ---------------------------------------------------------------------------------------------------------
- */
+/* -- survival ------------------------------------------------------------------------------------------------------ */
 
 /* The intercepts of points on the plane f1/2 + f2/4 + f3/10 = 1 are 2, 4 and 10, also after a shift. */
 static void test_normalisation_finds_the_intercepts_of_a_plane(void **state)
@@ -374,8 +369,7 @@ static void test_feasible_designs_survive_before_infeasible_ones(void **state)
         feasible_first(kind);
 }
 
-/* -- archive and infill -----------------------------------------------------------------------------------------------
- */
+/* -- archive and infill -------------------------------------------------------------------------------------------- */
 
 static void test_front_flags_equal_a_brute_force_filter_after_every_insertion(void **state)
 {

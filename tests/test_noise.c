@@ -12,8 +12,7 @@
 #include "moga/surface.h"
 #include "base/random.h"
 
-/* -- dominance --------------------------------------------------------------------------------------------------------
- */
+/* -- dominance ----------------------------------------------------------------------------------------------------- */
 
 enum { POINTS = 40, M = 3 };
 
@@ -71,8 +70,7 @@ static void test_surely_is_a_strict_partial_order_whatever_the_errors(void **sta
     assert_true(pairs > 100);
 }
 
-/* -- spread ----------------------------------------------------------------------------------------------------------
- */
+/* -- spread -------------------------------------------------------------------------------------------------------- */
 
 enum { DESIGNS = 400 };
 
@@ -149,8 +147,7 @@ static void test_what_has_no_error_is_taken_as_it_is(void **state)
     assert_memory_equal(estimate, mean, sizeof mean);
 }
 
-/* -- archive ---------------------------------------------------------------------------------------------------------
- */
+/* -- archive ------------------------------------------------------------------------------------------------------- */
 
 /* 60 designs on a line; every third is answered again, some several times. */
 static void insert_noisy(Archive *a, uint32_t seed, int settle_often)
@@ -254,8 +251,7 @@ static void test_a_design_with_an_answer_that_failed_is_no_longer_used(void **st
     archive_free(&a);
 }
 
-/* -- search ----------------------------------------------------------------------------------------------------------
- */
+/* -- search -------------------------------------------------------------------------------------------------------- */
 
 enum { VAR = 5, OBJ = 2, ROWS_MAX = 600, GENERATIONS_MAX = 200 };
 

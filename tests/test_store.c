@@ -21,8 +21,7 @@ static const char STEADY[] = "[problem]\nkind = external\ncommand = sh tests/wor
                              "objectives = 2\n[search]\ninitial = 36\npopulation = 12\nmax_evals = 40\n"
                              "surrogate_max = 20\nthreads = 2\n";
 
-/* -- interrupted and gone on with -----------------------------------------------------------------------------------
- */
+/* -- interrupted and gone on with ---------------------------------------------------------------------------------- */
 
 /* Lets `left` questions pass, then stops. */
 static int stop_after(void *user)
@@ -123,8 +122,7 @@ static void test_more_simulations_go_on_the_same_whenever_they_are_granted(void 
     free(b);
 }
 
-/* -- what is refused ------------------------------------------------------------------------------------------------
- */
+/* -- what is refused ----------------------------------------------------------------------------------------------- */
 
 static void refused_with(const Settings *s, int force, const char *said, const char *line)
 {
@@ -174,8 +172,7 @@ static void test_a_record_that_has_changed_is_another_setting(void **state)
     refused_with(&s, 1, "motion.record is content", "motion.record: content ");
 }
 
-/* -- signals and hours ----------------------------------------------------------------------------------------------
- */
+/* -- signals and hours --------------------------------------------------------------------------------------------- */
 
 /* Until the run has n evaluations on the disk. */
 static void wait_for(const char *out, size_t n)
@@ -333,8 +330,7 @@ static void test_hours_are_obeyed_within_a_batch(void **state)
     free(b);
 }
 
-/* -- readers, designs from outside, failures ------------------------------------------------------------------------
- */
+/* -- readers, designs from outside, failures ----------------------------------------------------------------------- */
 
 /* One that beats everything, one that is beaten, one that failed; then the run goes on as if they were not there. */
 static void test_polished_designs_join_the_front_but_not_the_search(void **state)

@@ -89,8 +89,7 @@ static void remove_in_place(const char *name)
     assert_int_equal(system(command), 0);
 }
 
-/* -- a study --------------------------------------------------------------------------------------------------------
- */
+/* -- a study ------------------------------------------------------------------------------------------------------- */
 
 static Status study(const Settings *s, Err *err)
 {
@@ -153,8 +152,7 @@ static void test_a_study_whose_kth_call_fails_goes_on_to_the_same_front(void **s
     free(front);
 }
 
-/* -- the store alone ------------------------------------------------------------------------------------------------
- */
+/* -- the store alone ----------------------------------------------------------------------------------------------- */
 
 static const char PLAIN[] = "[problem]\nkind = dtlz2\nvariables = 3\nobjectives = 2\n[search]\nmax_evals = 8\n";
 

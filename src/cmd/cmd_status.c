@@ -35,8 +35,7 @@ static Failures failures_of(const Saved *saved)
     return f;
 }
 
-/* -- for people -----------------------------------------------------------------------------------------------------
- */
+/* -- for people ---------------------------------------------------------------------------------------------------- */
 
 static void print_head(const char *folder, const Saved *saved, const Standing *s)
 {
@@ -104,8 +103,7 @@ static void print_failures(const Failures *f)
                f->count[k] > 1 ? ", for example" : "");
 }
 
-/* -- for programs ---------------------------------------------------------------------------------------------------
- */
+/* -- for programs -------------------------------------------------------------------------------------------------- */
 
 static json_t *json_generations(const Saved *saved, const double igd[])
 {

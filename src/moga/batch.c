@@ -36,8 +36,7 @@ size_t batch_add(Search *s, size_t n, const double x[], EvaluationKind kind)
     return n + 1;
 }
 
-/* -- all at once ----------------------------------------------------------------------------------------------------
- */
+/* -- all at once --------------------------------------------------------------------------------------------------- */
 
 /* Whether the order of design i was foretold: new ones but samples, where there is a surface. */
 static unsigned char is_foretold(const Search *s, size_t i)
@@ -61,8 +60,7 @@ static Status simulate_all(Search *s, size_t n, Err *err)
     return STATUS_OK;
 }
 
-/* -- one by one -----------------------------------------------------------------------------------------------------
- */
+/* -- one by one ---------------------------------------------------------------------------------------------------- */
 
 size_t batch_lead_max(const SearchConfig *c, size_t n_workers)
 {

@@ -151,8 +151,7 @@ void guide_measure_front(Search *s)
             infill_measure(all[i], s->population.n, s->chosen, s->population.F);
 }
 
-/* -- the surface, timed ---------------------------------------------------------------------------------------------
- */
+/* -- the surface, timed -------------------------------------------------------------------------------------------- */
 
 Status guide_fit(Search *s, Err *err)
 {

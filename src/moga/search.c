@@ -138,8 +138,7 @@ static Status run_loop(Search *s, const SearchStart *start, ObserveFn observe, v
     return STATUS_OK;
 }
 
-/* -- asynchronous: simulation has a thread of its own, which makes as many more as it wants --------------------------
- */
+/* -- asynchronous: simulation has a thread of its own, which makes as many more as it wants ------------------------ */
 
 typedef struct {
     const Problem *problem;

@@ -33,8 +33,7 @@ typedef struct {
     void *store;
 } Local;
 
-/* -- merit of a design on the surface --------------------------------------------------------------------------------
- */
+/* -- merit of a design on the surface ------------------------------------------------------------------------------ */
 
 /* log P(z' < z) of a standard normal z', and its derivative; its asymptote far below. */
 static double log_chance(double z, double *slope)
@@ -85,8 +84,7 @@ static double merit(unsigned n, const double u[], double gradient[], void *user)
     return isfinite(sum) ? sum : -1e30;
 }
 
-/* -- a round ---------------------------------------------------------------------------------------------------------
- */
+/* -- a round ------------------------------------------------------------------------------------------------------- */
 
 static void add(Local *l, const double x[], const double f[], double noise)
 {
@@ -203,8 +201,7 @@ static Status do_round(Local *l, Err *err)
     return STATUS_OK;
 }
 
-/* -- in and out ------------------------------------------------------------------------------------------------------
- */
+/* -- in and out ---------------------------------------------------------------------------------------------------- */
 
 static double *carve(double **at, size_t n)
 {

@@ -72,8 +72,7 @@ const char *answer_word(AnswerOutcome outcome)
     return words[outcome];
 }
 
-/* -- the command ----------------------------------------------------------------------------------------------------
- */
+/* -- the command --------------------------------------------------------------------------------------------------- */
 
 /* One word of *from, unquoted in place at `to`; *from moves behind it. 0: a quote is left open. */
 static int take_word(const char **from, char **to)
@@ -110,8 +109,7 @@ static Status split_command(External *e, const char *command, Err *err)
     }
 }
 
-/* -- one process ----------------------------------------------------------------------------------------------------
- */
+/* -- one process --------------------------------------------------------------------------------------------------- */
 
 static int spawn(External *e, Worker *w, const int to_child[2], const int from_child[2])
 {
@@ -197,8 +195,7 @@ static ssize_t write_quietly(int fd, const char *text, size_t n)
     return written;
 }
 
-/* -- one request ----------------------------------------------------------------------------------------------------
- */
+/* -- one request --------------------------------------------------------------------------------------------------- */
 
 __attribute__((format(printf, 5, 6))) static void settle(Batch *b, Worker *w, AnswerOutcome outcome, int kill_it,
                                                          const char *format, ...)
@@ -344,8 +341,7 @@ static void read_more(External *e, Worker *w, Batch *b)
     }
 }
 
-/* -- a batch --------------------------------------------------------------------------------------------------------
- */
+/* -- a batch ------------------------------------------------------------------------------------------------------- */
 
 static void look_after(External *e, Worker *w, const struct pollfd *in, const struct pollfd *out, Batch *b)
 {

@@ -301,8 +301,7 @@ Status rbf_fit(Rbf *m, size_t n, const double X[], const double F[], const doubl
     return model_fit(m, err);
 }
 
-/* -- prediction -----------------------------------------------------------------------------------------------------
- */
+/* -- prediction ---------------------------------------------------------------------------------------------------- */
 
 /* log u and log (1 - u) of n <= RBF_BLOCK points, the last one again where there are fewer: L (2, n_dim, RBF_BLOCK) */
 static void take_logs(const Rbf *m, size_t n, const double X[], double L[])

@@ -40,8 +40,7 @@ Status advance_lately(const SearchView *v, double *igd, Err *err)
     return STATUS_OK;
 }
 
-/* -- of a stored run ------------------------------------------------------------------------------------------------
- */
+/* -- of a stored run ----------------------------------------------------------------------------------------------- */
 
 static int is_first_answer(const SavedRow *r)
 {

@@ -23,8 +23,7 @@ const char *database_path(const Database *d)
     return d->path;
 }
 
-/* -- faults ---------------------------------------------------------------------------------------------------------
- */
+/* -- faults -------------------------------------------------------------------------------------------------------- */
 
 static Status explain(const char *path, int code, const char *said, Err *err)
 {
@@ -56,8 +55,7 @@ static Status complain(const Database *d, Err *err)
     return explain(d->path, sqlite3_extended_errcode(d->db), sqlite3_errmsg(d->db), err);
 }
 
-/* -- statements -----------------------------------------------------------------------------------------------------
- */
+/* -- statements ---------------------------------------------------------------------------------------------------- */
 
 static int bind_value(sqlite3_stmt *s, int i, char type, va_list *values)
 {
@@ -126,8 +124,7 @@ Status database_number(Database *d, const char *sql, double otherwise, double *v
     return database_each(d, sql, take_number, value, err);
 }
 
-/* -- opening --------------------------------------------------------------------------------------------------------
- */
+/* -- opening ------------------------------------------------------------------------------------------------------- */
 
 static Status open_file(Database **out, const char *path, const char *name, int flags, Err *err)
 {

@@ -42,8 +42,7 @@ static void measure_box(const Saved *h, double best[], double worst[])
     }
 }
 
-/* -- the simulator ---------------------------------------------------------------------------------------------------
- */
+/* -- the simulator ------------------------------------------------------------------------------------------------- */
 
 /* The first answer since the subject was opened and the last one are kept. */
 static Status hear(const Simulation *simulation, void *user, Err *err)
@@ -127,8 +126,7 @@ static double seconds_left(const Refine *r)
     return r->config->max_seconds > 0.0 ? fmax(r->config->max_seconds - spent, 1e-9) : 0.0;
 }
 
-/* -- surface and simulator in turn -----------------------------------------------------------------------------------
- */
+/* -- surface and simulator in turn --------------------------------------------------------------------------------- */
 
 typedef struct {
     double distance;
@@ -336,8 +334,7 @@ Status refined_store(const char *folder, const Refined *r, long *id, Err *err)
     return store_add_evaluations(folder, 1, &d, id, err);
 }
 
-/* -- which designs ----------------------------------------------------------------------------------------------------
- */
+/* -- which designs ------------------------------------------------------------------------------------------------- */
 
 /* Objective k of row i scaled to 0 (best of the front) .. 1 (worst). */
 static double scaled(const Saved *h, size_t i, size_t k, const double best[], const double worst[])

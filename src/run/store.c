@@ -57,8 +57,7 @@ double store_hypervolume(const RunStore *store)
     return front_share_value(&store->share);
 }
 
-/* -- the folder -----------------------------------------------------------------------------------------------------
- */
+/* -- the folder ---------------------------------------------------------------------------------------------------- */
 
 static Status make_folders(const char *folder, Err *err)
 {
@@ -170,8 +169,7 @@ Status store_open(RunStore **out, const char *folder, int fresh, Err *err)
     return status;
 }
 
-/* -- the files beside the database ----------------------------------------------------------------------------------
- */
+/* -- the files beside the database --------------------------------------------------------------------------------- */
 
 typedef void (*WriteFn)(FILE *f, const void *content);
 
@@ -229,8 +227,7 @@ static Status open_logs(RunStore *store, Err *err)
     return open_to_append(store, "log.jsonl", &store->events, err);
 }
 
-/* -- a new run, or one that goes on ----------------------------------------------------------------------------------
- */
+/* -- a new run, or one that goes on -------------------------------------------------------------------------------- */
 
 Status store_begin(RunStore *store, const Schema *schema, const Settings *used, const char *provenance, Err *err)
 {
@@ -298,8 +295,7 @@ Status store_session(RunStore *store, const char *program, int threads, size_t n
     return database_each(store->db, "SELECT last_insert_rowid()", take_long, &store->session, err);
 }
 
-/* -- simulations ----------------------------------------------------------------------------------------------------
- */
+/* -- simulations --------------------------------------------------------------------------------------------------- */
 
 static Status begin(RunStore *store, Err *err)
 {
@@ -331,8 +327,7 @@ Status store_simulation(RunStore *store, const Simulation *s, size_t generation,
     return STATUS_OK;
 }
 
-/* -- generations ----------------------------------------------------------------------------------------------------
- */
+/* -- generations --------------------------------------------------------------------------------------------------- */
 
 static Status store_kinds(RunStore *store, const SearchView *v, Err *err)
 {
@@ -450,8 +445,7 @@ Status store_generation(RunStore *store, const SearchView *v, double seconds, do
                                                             : write_front(store, v, err);
 }
 
-/* -- logs and the end -----------------------------------------------------------------------------------------------
- */
+/* -- logs and the end ---------------------------------------------------------------------------------------------- */
 
 Status store_log(RunStore *store, Err *err, const char *format, ...)
 {
@@ -536,8 +530,7 @@ void store_free(RunStore *store)
     free(store);
 }
 
-/* -- designs from outside -------------------------------------------------------------------------------------------
- */
+/* -- designs from outside ------------------------------------------------------------------------------------------ */
 
 /* Behind the polished ones that are there, as of the last generation. */
 static Status insert_polished(RunStore *store, const Schema *schema, const StoredDesign *design, long *id, Err *err)

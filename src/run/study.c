@@ -41,8 +41,7 @@ static double session_seconds(const Study *study)
     return clock_seconds() - study->start;
 }
 
-/* -- settings -------------------------------------------------------------------------------------------------------
- */
+/* -- settings ------------------------------------------------------------------------------------------------------ */
 
 /* A saved path is looked up from anywhere: absolute where it can be. */
 static void make_absolute(char path[SETTINGS_TEXT_MAX], void *user)
@@ -162,8 +161,7 @@ static Status settle_settings(Study *study, Err *err)
                 d.n_others == 0 ? "--force-settings changes limits" : "choose another --out, or --new");
 }
 
-/* -- what the search is told and tells ------------------------------------------------------------------------------
- */
+/* -- what the search is told and tells ----------------------------------------------------------------------------- */
 
 static int may_go_on(void *user)
 {
@@ -281,8 +279,7 @@ static int observe(const SearchView *view, void *user)
     return study->status != STATUS_OK || !may_go_on(study);
 }
 
-/* -- beginning ------------------------------------------------------------------------------------------------------
- */
+/* -- beginning ----------------------------------------------------------------------------------------------------- */
 
 static Status simulate_without_core(Study *study, Err *err)
 {
@@ -392,8 +389,7 @@ SearchConfig study_search_config(const Settings *s)
     };
 }
 
-/* -- the search, from where it stands -------------------------------------------------------------------------------
- */
+/* -- the search, from where it stands ------------------------------------------------------------------------------ */
 
 /* The archive of the finished generations, as the search wants it. */
 typedef struct {
@@ -555,8 +551,7 @@ Status study_finished(const char *folder, StudySummary *summary, int *is_finishe
     return STATUS_OK;
 }
 
-/* -- polishing ------------------------------------------------------------------------------------------------------
- */
+/* -- polishing ----------------------------------------------------------------------------------------------------- */
 
 enum { POLISH_MEMBERS = 4, POLISH_LEAST = 40, POLISH_SHARE = 10, POLISH_MOST = 32 };
 

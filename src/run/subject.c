@@ -156,8 +156,7 @@ static Status tell(const Work *w, size_t i, Err *err)
     return s->observer.done(&simulation, s->observer.user, err);
 }
 
-/* -- the three kinds of simulation: natural values into F -----------------------------------------------------------
- */
+/* -- the three kinds of simulation: natural values into F ---------------------------------------------------------- */
 
 static void judge_tower(const Trial *t, double f[], double spread[], Verdict *v)
 {
@@ -313,8 +312,7 @@ static Status evaluate(size_t n, const double X[], const size_t draws[], double 
     return STATUS_OK;
 }
 
-/* -- one by one, every thread for itself ----------------------------------------------------------------------------
- */
+/* -- one by one, every thread for itself --------------------------------------------------------------------------- */
 
 /* What ends a stream: the first fault, a stop only where there is none. */
 typedef struct {
@@ -409,8 +407,7 @@ static void swap_if_top_heavy(double x[], void *user)
     }
 }
 
-/* -- opening --------------------------------------------------------------------------------------------------------
- */
+/* -- opening ------------------------------------------------------------------------------------------------------- */
 
 static Status open_tower(Subject *s, Err *err)
 {

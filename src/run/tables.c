@@ -19,8 +19,7 @@ void utc_now(char text[24])
     strftime(text, 24, "%FT%TZ", &parts);
 }
 
-/* -- a new database -------------------------------------------------------------------------------------------------
- */
+/* -- a new database ------------------------------------------------------------------------------------------------ */
 
 static const char TABLES[] =
     "CREATE TABLE run(id INTEGER PRIMARY KEY CHECK (id = 1), settings TEXT NOT NULL, provenance TEXT NOT NULL,"
@@ -134,8 +133,7 @@ Status tables_set_settings(Database *db, const Settings *used, Err *err)
     return status;
 }
 
-/* -- rows -----------------------------------------------------------------------------------------------------------
- */
+/* -- rows ---------------------------------------------------------------------------------------------------------- */
 
 /* "[1,2.5,null]" into *text, which the caller frees; NULL where no number is finite. */
 static Status numbers_text(size_t n, const double values[], char **text, Err *err)
