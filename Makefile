@@ -212,14 +212,14 @@ $(BUILD)/web/page.o: build/web/page.html
 web: setup-browser
 	@cd web && npm ci --ignore-scripts --no-audit --no-fund --silent && node bundle.mjs
 
-$(BUILD)/src/run/provenance.o: CPPFLAGS += -DIMTET_VERSION='"$(VERSION)"' \
+$(BUILD)/src/store/provenance.o: CPPFLAGS += -DIMTET_VERSION='"$(VERSION)"' \
     -DIMTET_REVISION='"$(REVISION)"' -DIMTET_CFLAGS='"-std=c17 -fopenmp -ffp-contract=fast $(CFLAGS.$(MODE)), src/sim -O3"'
 
 # Compiled again when version or revision changed, so that a run's folder names the sources that it came from.
 $(BUILD)/revision: .FORCE
 	@mkdir -p $(@D)
 	@echo '$(VERSION) $(REVISION)' | cmp -s - $@ || echo '$(VERSION) $(REVISION)' > $@
-$(BUILD)/src/run/provenance.o: $(BUILD)/revision
+$(BUILD)/src/store/provenance.o: $(BUILD)/revision
 
 # Figures of speed; a record that is not there is replaced by the built-in motion. Both want a quiet machine.
 BENCH_RECORD ?= $(or $(wildcard ../shared/records/kobe_jma_ns.csv),builtin:kobe-like)

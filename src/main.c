@@ -13,7 +13,7 @@
 
 #include "cmd/manual.h"
 #include "cmd/show.h"
-#include "run/provenance.h"
+#include "store/provenance.h"
 
 static Status run_command(int argc, char *argv[], Err *err)
 {

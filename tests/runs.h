@@ -10,7 +10,7 @@
 #include <spawn.h>
 #include <time.h>
 
-#include "run/export.h"
+#include "store/export.h"
 
 static const char TEXTBOOK[] = "[problem]\nkind = dtlz2\nvariables = 6\nobjectives = 3\nnoise = 0.05\n"
                                "[search]\ninitial = 12\npopulation = 12\nmax_evals = 40\nsurrogate_max = 30\n"

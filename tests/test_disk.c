@@ -6,7 +6,7 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 
-#include "run/lock.h"
+#include "store/lock.h"
 
 /* -- other processes, full disks, damage --------------------------------------------------------------------------- */
 

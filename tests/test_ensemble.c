@@ -3,8 +3,8 @@
 
 #include <string.h>
 
-#include "run/ensemble.h"
-#include "run/horizon.h"
+#include "evaluate/ensemble.h"
+#include "evaluate/horizon.h"
 
 static void open_world(World *w, double x[22], double gap_m)
 {

@@ -3,7 +3,7 @@
 
 #include "base/random.h"
 #include "moga/cover.h"
-#include "run/advance.h"
+#include "study/advance.h"
 
 enum { M = 3, N = 300, REF = 150 };
 

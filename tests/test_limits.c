@@ -1,8 +1,8 @@
 /* search.limits that nothing keeps: an outcome with a name, not a failure of the program. */
 #include "runs.h"
 
-#include "run/nearest.h"
-#include "run/study.h"
+#include "store/nearest.h"
+#include "study/study.h"
 
 /* f1 + f2 + f3 of dtlz2 is 1 at least on and above its front, the unit sphere: these limits cannot be kept. */
 static const char UNMET[] = "[problem]\nkind = dtlz2\nvariables = 6\nobjectives = 3\n"

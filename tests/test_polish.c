@@ -5,7 +5,7 @@
 #include "base/random.h"
 #include "polish/local.h"
 #include "polish/polish.h"
-#include "run/refine.h"
+#include "polish/refine.h"
 
 enum { VAR = 3, OBJ = 2 };
 

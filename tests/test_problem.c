@@ -10,10 +10,10 @@
 
 #include "base/random.h"
 #include "check.h"
-#include "problem/external.h"
-#include "problem/textbook.h"
-#include "run/schema.h"
-#include "run/subject.h"
+#include "evaluate/external.h"
+#include "evaluate/textbook.h"
+#include "evaluate/schema.h"
+#include "evaluate/subject.h"
 
 enum { VAR = 22, OBJ = 7 };
 

@@ -1,7 +1,7 @@
 /* Runs whose answers are noisy: what their tables say, and that stopping them changes nothing. */
 #include "runs.h"
 
-#include "run/study.h"
+#include "study/study.h"
 
 /* 60 simulations, of which (60 - 18 * 2) / 2 are repeats. */
 static const char NOISY[] =

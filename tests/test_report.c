@@ -13,7 +13,7 @@
 #include <unistd.h>
 
 #include "base/random.h"
-#include "run/saved.h"
+#include "store/saved.h"
 #include "report/report.h"
 #include "report/wavelet.h"
 

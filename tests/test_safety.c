@@ -4,7 +4,7 @@
 #include <sys/stat.h>
 
 #include "base/cell.h"
-#include "run/place.h"
+#include "study/place.h"
 
 /* ---- places ---------------------------------------------------------------------------------------------------- */
 

@@ -4,8 +4,8 @@
 #include <sqlite3.h>
 #include <sys/stat.h>
 
-#include "run/front.h"
-#include "run/lock.h"
+#include "store/front.h"
+#include "store/lock.h"
 
 /* The sound run, copied, with that change. */
 static const char *changed(const char *sql, char folder[PATH_MAX])

@@ -5,7 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "base/settings.h"
+#include "settings/settings.h"
 
 enum { KEYS_MAX = 200 };
 

@@ -5,8 +5,8 @@
 
 #include "moga/cover.h"
 #include "moga/hypervolume.h"
-#include "run/store.h"
-#include "run/study.h"
+#include "store/store.h"
+#include "study/study.h"
 
 static const char TOWER[] = "[motion]\nrecord = builtin:kobe-like\nstretch = 1\n[sim]\nduration_s = 6\n"
                             "[search]\ninitial = 12\npopulation = 8\nmax_evals = 20\nsurrogate_max = 20\n";

@@ -8,8 +8,8 @@
 
 #include <sqlite3.h>
 
-#include "run/store.h"
-#include "run/study.h"
+#include "store/store.h"
+#include "study/study.h"
 
 enum { SOME = 3 };
 

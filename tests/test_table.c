@@ -6,7 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "base/design.h"
+#include "scene/design.h"
 #include "base/table.h"
 
 static Status parse(Table *t, const char *text, int has_header, Err *err)

@@ -7,7 +7,7 @@
 #include <spawn.h>
 #include <time.h>
 
-#include "run/saved.h"
+#include "store/saved.h"
 
 typedef struct {
     const char *name, *settings;

@@ -2,8 +2,8 @@
 #include <string.h>
 
 #include "bench/sweep.h"
-#include "run/measures.h"
-#include "run/output.h"
+#include "evaluate/measures.h"
+#include "store/output.h"
 
 /* Books open by more than this share of the input are a failure that the engine itself shows; an error larger than
  * WRONG with books better than that is a wrong answer in silence. */

@@ -7,9 +7,9 @@
 #ifndef IMTET_CMD_ARGS_H
 #define IMTET_CMD_ARGS_H
 
-#include "base/settings.h"
+#include "settings/settings.h"
 #include "base/status.h"
-#include "run/moved.h"
+#include "study/moved.h"
 
 typedef struct {
     const char *name;    /* "--record" */

@@ -3,7 +3,7 @@
 #include "bench/parted.h"
 #include "bench/throughput.h"
 #include "cmd/commands.h"
-#include "run/output.h"
+#include "store/output.h"
 
 typedef struct {
     Settings settings;

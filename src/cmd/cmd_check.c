@@ -2,7 +2,7 @@
 
 #include "base/units.h"
 #include "cmd/commands.h"
-#include "run/subject.h"
+#include "evaluate/subject.h"
 #include "scene/building.h"
 
 typedef struct {

@@ -5,7 +5,7 @@
 #include "cmd/commands.h"
 #include "cmd/pairs.h"
 #include "cmd/show.h"
-#include "run/front.h"
+#include "store/front.h"
 
 typedef struct {
     Front front;

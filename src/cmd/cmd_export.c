@@ -2,10 +2,10 @@
 #include <stdlib.h>
 
 #include "cmd/commands.h"
-#include "run/export.h"
-#include "run/front.h"
-#include "run/output.h"
-#include "run/refine.h"
+#include "store/export.h"
+#include "store/front.h"
+#include "store/output.h"
+#include "polish/refine.h"
 
 /* A run without a database has the tables as files. */
 static Status copy_file(const char *folder, const char *name, const char *path, Err *err)

@@ -1,12 +1,12 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "base/design.h"
+#include "scene/design.h"
 #include "cmd/commands.h"
 #include "cmd/show.h"
-#include "run/crew.h"
-#include "run/ensemble.h"
-#include "run/horizon.h"
+#include "evaluate/crew.h"
+#include "evaluate/ensemble.h"
+#include "evaluate/horizon.h"
 
 enum { MEMBERS = 16 };
 static const double CHANGE = 1e-12; /* of the gaps, between the two runs that are compared */

@@ -9,11 +9,11 @@
 #include "cmd/commands.h"
 #include "cmd/show.h"
 #include "cmd/signals.h"
-#include "run/front.h"
-#include "run/nearest.h"
-#include "run/saved.h"
-#include "run/place.h"
-#include "run/study.h"
+#include "store/front.h"
+#include "store/nearest.h"
+#include "store/saved.h"
+#include "study/place.h"
+#include "study/study.h"
 
 typedef struct {
     int terminal, has_told;

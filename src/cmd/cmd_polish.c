@@ -6,9 +6,9 @@
 #include "cmd/look.h"
 #include "cmd/pairs.h"
 #include "cmd/show.h"
-#include "run/front.h"
-#include "run/output.h"
-#include "run/refine.h"
+#include "store/front.h"
+#include "store/output.h"
+#include "polish/refine.h"
 
 typedef struct {
     Front front;

@@ -3,10 +3,10 @@
 #include <string.h>
 
 #include "cmd/commands.h"
-#include "problem/textbook.h"
-#include "run/output.h"
-#include "run/study.h"
-#include "run/subject.h"
+#include "evaluate/textbook.h"
+#include "store/output.h"
+#include "study/study.h"
+#include "evaluate/subject.h"
 
 /* The table under way. */
 typedef struct {

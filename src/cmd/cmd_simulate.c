@@ -1,13 +1,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/design.h"
+#include "scene/design.h"
 #include "cmd/commands.h"
 #include "cmd/show.h"
-#include "run/crew.h"
-#include "run/ensemble.h"
-#include "run/output.h"
-#include "run/world.h"
+#include "evaluate/crew.h"
+#include "evaluate/ensemble.h"
+#include "store/output.h"
+#include "evaluate/scenario.h"
 
 typedef struct {
     SceneKind kind;

@@ -5,8 +5,8 @@
 #include "base/units.h"
 #include "cmd/commands.h"
 #include "cmd/show.h"
-#include "run/gnuplot.h"
-#include "run/output.h"
+#include "report/gnuplot.h"
+#include "store/output.h"
 #include "scene/spectrum.h"
 
 enum { N_PERIODS = 121, PRINTED_EACH = 6 };

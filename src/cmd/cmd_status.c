@@ -5,8 +5,8 @@
 #include "cmd/commands.h"
 #include "cmd/show.h"
 #include "moga/cover.h"
-#include "run/advance.h"
-#include "run/pace.h"
+#include "study/advance.h"
+#include "study/pace.h"
 
 enum { ROWS_MAX = 12, OUTCOMES_MAX = 16 };
 

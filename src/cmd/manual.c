@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "cmd/commands.h"
-#include "run/provenance.h"
+#include "store/provenance.h"
 
 #define X(name) &CMD_##name,
 static const Command *const COMMANDS[] = {COMMAND_LIST(X)};

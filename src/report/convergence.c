@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "moga/cover.h"
-#include "run/saved.h"
+#include "store/saved.h"
 
 static Status take_generations(const Saved *h, Convergence *c, Err *err)
 {

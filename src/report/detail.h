@@ -6,7 +6,7 @@
 #define IMTET_REPORT_DETAIL_H
 
 #include "report/history.h"
-#include "run/moved.h"
+#include "study/moved.h"
 
 enum { N_SCENES = 3, SPECTRUM_FREQUENCIES = 72, SPECTRUM_TIMES = 320 };
 

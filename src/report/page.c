@@ -4,9 +4,9 @@
 #include <string.h>
 
 #include "report/report.h"
-#include "run/measures.h"
-#include "run/output.h"
-#include "run/provenance.h"
+#include "evaluate/measures.h"
+#include "store/output.h"
+#include "store/provenance.h"
 
 /* build/web/page.html: the page with a line MARK where the run goes. */
 extern const char _binary_build_web_page_html_start[], _binary_build_web_page_html_end[];

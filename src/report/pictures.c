@@ -6,8 +6,8 @@
 #include <sys/stat.h>
 
 #include "report/report.h"
-#include "run/gnuplot.h"
-#include "run/measures.h"
+#include "report/gnuplot.h"
+#include "evaluate/measures.h"
 
 enum { HISTORY_POINTS = 2000 };
 

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "run/saved.h"
+#include "store/saved.h"
 
 /* From the database, or the file beside it. */
 static Status take_provenance(Report *r, Err *err)

@@ -15,7 +15,7 @@
 
 #include "report/convergence.h"
 #include "report/detail.h"
-#include "run/front.h"
+#include "store/front.h"
 
 typedef struct {
     char folder[PATH_MAX];

@@ -12,7 +12,7 @@
 #ifndef IMTET_SCENE_CORE_BEAM_H
 #define IMTET_SCENE_CORE_BEAM_H
 
-#include "base/settings.h"
+#include "settings/settings.h"
 #include "scene/building.h"
 
 typedef struct {

@@ -13,7 +13,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "base/settings.h"
+#include "settings/settings.h"
 #include "base/status.h"
 
 typedef struct {

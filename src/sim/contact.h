@@ -20,7 +20,7 @@
 
 #include <math.h>
 
-#include "base/settings.h"
+#include "settings/settings.h"
 
 typedef struct {
     double k;        /* [N/m^1.5] */

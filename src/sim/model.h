@@ -14,7 +14,7 @@
 #ifndef IMTET_SIM_MODEL_H
 #define IMTET_SIM_MODEL_H
 
-#include "base/settings.h"
+#include "settings/settings.h"
 #include "scene/building.h"
 #include "scene/core_beam.h"
 #include "sim/contact.h"

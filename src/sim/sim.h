@@ -16,7 +16,7 @@
 
 #include <math.h>
 
-#include "base/settings.h"
+#include "settings/settings.h"
 #include "base/status.h"
 #include "scene/building.h"
 #include "scene/motion.h"

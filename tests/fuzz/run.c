@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "base/table.h"
-#include "run/saved.h"
+#include "store/saved.h"
 
 static void demand_run(Saved *h)
 {

@@ -7,8 +7,8 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include "base/design.h"
-#include "base/settings.h"
+#include "scene/design.h"
+#include "settings/settings.h"
 #include "base/table.h"
 #include "scene/motion_read.h"
 

@@ -9,7 +9,7 @@
 
 #include <stddef.h>
 
-#include "base/settings.h"
+#include "settings/settings.h"
 #include "base/status.h"
 
 typedef struct {

@@ -1,0 +1,30 @@
+/* evaluate/guard.h -- a process of our own that kills worker processes when we end without doing so: by a signal, out of
+ * memory, kill -9.
+ *
+ * It holds one end of a pair of sockets. Their other end closes when we end, however that is; then every process group
+ * that it knows of gets SIGKILL. It is in a session of its own, has no other file open, and uses no processor time.
+ *
+ * Life cycle  guard_start -> guard_tell ... -> guard_end
+ * Threads     guard_tell may be called from several, each for slots of its own
+ * Errors      where it cannot be started; one that is gone later is not missed */
+#ifndef IMTET_EVALUATE_GUARD_H
+#define IMTET_EVALUATE_GUARD_H
+
+#include <stddef.h>
+#include <sys/types.h>
+
+#include "base/status.h"
+
+typedef struct {
+    pid_t pid; /* 0: none */
+    int to;
+} Guard;
+
+Status guard_start(Guard *g, size_t n_slots, Err *err);
+
+/* The process group in that slot (0 .. n_slots-1) from now on; 0: none. */
+void guard_tell(const Guard *g, size_t slot, pid_t group);
+
+void guard_end(Guard *g); /* {0} is fine */
+
+#endif

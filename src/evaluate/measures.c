@@ -1,0 +1,56 @@
+#include "evaluate/measures.h"
+
+#include <math.h>
+
+static const Measure MEASURES[N_MEASURES] = {
+    {"j1_m", 1, "largest floor displacement"},
+    {"j2_m", 1, "largest interstorey drift"},
+    {"j3_g", 1, "largest floor acceleration"},
+    {"ed1_pct", 1, "share of the input dissipated by the first building mode"},
+    {"ed5_10_pct", -1, "share dissipated by building modes 5 to 10"},
+    {"edcs_pct", -1, "share dissipated by the core"},
+    {"mcore_kg", 1, "mass of the core"},
+    {"input_energy_j", 0, "energy that the ground put in"},
+    {"energy_residual", 0, "how far the energy books are open"},
+    {"impacts", 0, "closings of any gap"},
+};
+
+const Measure *measure(int k)
+{
+    return &MEASURES[k];
+}
+
+double measure_value(const SimResult *r, int k)
+{
+    const double values[N_MEASURES] = {
+        r->j1_m,     r->j2_m,     r->j3_g,           r->ed1_pct,         r->ed5_10_pct,
+        r->edcs_pct, r->mcore_kg, r->input_energy_j, r->energy_residual, (double)r->impacts};
+    return values[k];
+}
+
+int measure_objectives(const SimResult *r, double f[N_OBJECTIVES])
+{
+    int ok = r->outcome == RUN_OK;
+    for (int k = 0; k < N_OBJECTIVES; k++) {
+        f[k] = MEASURES[k].sense * measure_value(r, k);
+        ok = ok && isfinite(f[k]);
+    }
+    return ok;
+}
+
+const char *outcome_word(RunOutcome outcome)
+{
+    switch (outcome) {
+    case RUN_OK:
+        return "ok";
+    case RUN_NOT_FINITE:
+        return "not_finite";
+    case RUN_OUT_OF_STEPS:
+        return "out_of_steps";
+    case RUN_BOOKS_OPEN:
+        return "books_open";
+    case RUN_ENGINE_FAILED:
+        return "engine_failed";
+    }
+    return "unknown";
+}

@@ -1,0 +1,43 @@
+#include "evaluate/scenario.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static Status build(World *w, Err *err)
+{
+    const Status status = scene_create(&w->scene, &w->settings, &w->motion, err);
+    if (status != STATUS_OK)
+        world_close(w);
+    return status;
+}
+
+Status world_open(World *w, const Settings *s, Err *err)
+{
+    memset(w, 0, sizeof *w);
+    w->settings = *s;
+    TRY(motion_open(&w->motion, s, err));
+    const Status status = motion_prepare(&w->motion, s->motion.pga_g, s->motion.stretch, err);
+    if (status != STATUS_OK) {
+        world_close(w);
+        return status;
+    }
+    return build(w, err);
+}
+
+Status world_open_still(World *w, const Settings *s, Err *err)
+{
+    memset(w, 0, sizeof *w);
+    w->settings = *s;
+    w->motion = (Motion){.n = 2, .dt_s = 0.01, .name = "at rest", .format = "none"};
+    w->motion.accel = calloc(w->motion.n, sizeof *w->motion.accel);
+    if (!w->motion.accel)
+        return fail(err, STATUS_NO_MEMORY, "no memory for a motion of %zu samples", w->motion.n);
+    return build(w, err);
+}
+
+void world_close(World *w)
+{
+    scene_free(w->scene);
+    w->scene = NULL;
+    motion_free(&w->motion);
+}

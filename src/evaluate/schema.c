@@ -1,0 +1,149 @@
+#include "evaluate/schema.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/cell.h"
+#include "scene/design.h"
+#include "evaluate/measures.h"
+
+void verdict_set(Verdict *v, const char *outcome, const char *reason)
+{
+    snprintf(v->outcome, sizeof v->outcome, "%s", outcome);
+    cell_text(v->reason, sizeof v->reason, reason);
+}
+
+static Status allocate(Schema *schema, Err *err)
+{
+    schema->column = calloc(schema->n_var + schema->n_obj + schema->n_extra, sizeof *schema->column);
+    return schema->column ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for %zu columns", schema->n_var);
+}
+
+static Status schema_of_tower(Schema *schema, int n_floors, Err *err)
+{
+    *schema = (Schema){(size_t)n_floors + 2, N_OBJECTIVES, N_MEASURES - N_OBJECTIVES, NULL, 0};
+    TRY(allocate(schema, err));
+    for (int j = 0; j < n_floors + 2; j++)
+        design_variable_name(n_floors, j, schema->column[j].name);
+    for (int k = 0; k < N_MEASURES; k++) {
+        Column *c = &schema->column[n_floors + 2 + k];
+        snprintf(c->name, sizeof c->name, "%s", measure(k)->name);
+        c->sense = measure(k)->sense;
+    }
+    return STATUS_OK;
+}
+
+/* Names of n columns: those of the list, or "x1", "x2", ... where the list is "auto". */
+static Status take_names(const char *key, const char *list, const char *letter, size_t n, Column columns[], Err *err)
+{
+    const int given = strcmp(list, "auto") != 0;
+    if (given && list_count(list) != n)
+        return fail(err, STATUS_BAD_DATA, "%s: %zu names for %zu", key, list_count(list), n);
+    for (size_t i = 0; i < n; i++) {
+        char *name = columns[i].name, item[TABLE_NAME_MAX - 1];
+        if (!given)
+            snprintf(name, TABLE_NAME_MAX, "%s%zu", letter, i + 1);
+        else if (!list_item(list, i, item, sizeof item) || strpbrk(item, "\"\r\n"))
+            return fail(err, STATUS_BAD_DATA, "%s: name %zu is empty, too long or holds a quote", key, i + 1);
+        else
+            cell_text(name, TABLE_NAME_MAX, item);
+        for (size_t j = 0; given && j < i; j++)
+            if (strcmp(columns[j].name, name) == 0)
+                return fail(err, STATUS_BAD_DATA, "%s: %s stands there twice", key, name);
+    }
+    return STATUS_OK;
+}
+
+static Status take_senses(const char *list, size_t n, Column columns[], Err *err)
+{
+    const size_t count = list_count(list);
+    char word[16];
+    if (count != 1 && count != n)
+        return fail(err, STATUS_BAD_DATA, "problem.senses: %zu words for %zu objectives", count, n);
+    for (size_t k = 0; k < n; k++) {
+        const int fits = list_item(list, count == 1 ? 0 : k, word, sizeof word);
+        if (!fits || (strcmp(word, "min") != 0 && strcmp(word, "max") != 0))
+            return fail(err, STATUS_BAD_DATA, "problem.senses: item %zu is neither min nor max", k + 1);
+        columns[k].sense = word[1] == 'i' ? 1.0 : -1.0;
+    }
+    return STATUS_OK;
+}
+
+static Status fill_from_settings(Schema *schema, const Settings *s, Err *err)
+{
+    Column *objectives = schema->column + schema->n_var;
+    TRY(take_names("problem.variable_names", s->problem.variable_names, "x", schema->n_var, schema->column, err));
+    TRY(take_names("problem.objective_names", s->problem.objective_names, "f", schema->n_obj, objectives, err));
+    return take_senses(s->problem.kind == PROBLEM_EXTERNAL ? s->problem.senses : "min", schema->n_obj, objectives, err);
+}
+
+int schema_is_noisy(const Settings *s)
+{
+    const int has_noise = s->problem.kind >= PROBLEM_TEXTBOOK && s->problem.noise > 0.0;
+    const int is_noisy = s->problem.noisy == NOISY_AUTO ? has_noise : s->problem.noisy == NOISY_YES;
+    return is_noisy && s->search.members_max > 1 && s->search.repeats > 0.0;
+}
+
+Status schema_of(Schema *schema, const Settings *s, int n_floors, Err *err)
+{
+    if (s->problem.kind == PROBLEM_TOWER) {
+        TRY(schema_of_tower(schema, n_floors, err));
+        schema->has_spread = s->sim.ensemble > 1 || schema_is_noisy(s);
+        return STATUS_OK;
+    }
+    *schema = (Schema){.n_var = (size_t)s->problem.variables,
+                       .n_obj = (size_t)s->problem.objectives,
+                       .has_spread = schema_is_noisy(s)};
+    TRY(allocate(schema, err));
+    const Status status = fill_from_settings(schema, s, err);
+    if (status != STATUS_OK)
+        schema_free(schema);
+    return status;
+}
+
+const Column *schema_variable(const Schema *schema, size_t j)
+{
+    return &schema->column[j];
+}
+
+const Column *schema_objective(const Schema *schema, size_t k)
+{
+    return &schema->column[schema->n_var + k];
+}
+
+const Column *schema_extra(const Schema *schema, size_t k)
+{
+    return &schema->column[schema->n_var + schema->n_obj + k];
+}
+
+size_t schema_find_objective(const Schema *schema, const char *name)
+{
+    size_t k = 0;
+    while (k < schema->n_obj && strcmp(schema_objective(schema, k)->name, name) != 0)
+        k++;
+    return k;
+}
+
+Status schema_pick_objective(const Schema *schema, const char *where, const char *name, Status status, size_t *k,
+                             Err *err)
+{
+    const char *names[OBJECTIVES_MAX];
+    *k = schema_find_objective(schema, name);
+    if (*k < schema->n_obj)
+        return STATUS_OK;
+    for (size_t i = 0; i < schema->n_obj; i++)
+        names[i] = schema_objective(schema, i)->name;
+    const char *near = nearest_word(name, names, (int)schema->n_obj);
+    if (near)
+        return fail(err, status, "%s: %.60s is no objective; did you mean %s?", where, name, near);
+    char list[200] = "";
+    for (size_t i = 0, n = 0; i < schema->n_obj && n + TABLE_NAME_MAX + 2 < sizeof list; i++)
+        n += (size_t)snprintf(list + n, sizeof list - n, "%s%s", i ? ", " : "", names[i]);
+    return fail(err, status, "%s: %.60s is no objective; there are %s", where, name, list);
+}
+
+void schema_free(Schema *schema)
+{
+    free(schema->column);
+    memset(schema, 0, sizeof *schema);
+}

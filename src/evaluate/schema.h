@@ -1,0 +1,55 @@
+/* evaluate/schema.h -- the columns of a run: variables, objectives, and what else a simulation tells.
+ *
+ *   column 0..n_var-1, then n_obj objectives, then n_extra measures that are only written down
+ *
+ * Internally every objective is minimised, f = sense * value; every file shows the natural value.
+ * Ownership  schema_of allocates, schema_free releases (an empty Schema is fine) */
+#ifndef IMTET_EVALUATE_SCHEMA_H
+#define IMTET_EVALUATE_SCHEMA_H
+
+#include "base/list.h"
+#include "settings/settings.h"
+#include "base/table.h"
+
+enum { EXTRA_MAX = 3, OBJECTIVES_MAX = 100 };
+
+typedef struct {
+    char name[TABLE_NAME_MAX];
+    double sense; /* of an objective: +1 less is better, -1 more is better */
+} Column;
+
+typedef struct {
+    size_t n_var, n_obj, n_extra;
+    Column *column;
+    int has_spread; /* front.csv ends with spread_NAME of every objective and members: designs are several simulations
+                     */
+} Schema;
+
+/* Whether designs are simulated again because they answer differently each time. */
+int schema_is_noisy(const Settings *s);
+
+/* n_floors: of a tower, else not read. */
+Status schema_of(Schema *schema, const Settings *s, int n_floors, Err *err);
+const Column *schema_variable(const Schema *schema, size_t j);
+const Column *schema_objective(const Schema *schema, size_t k);
+const Column *schema_extra(const Schema *schema, size_t k);
+
+/* Objective of that name, or n_obj. */
+size_t schema_find_objective(const Schema *schema, const char *name);
+
+/* The same for a name that somebody typed: "WHERE: NAME is no objective; did you mean ...?" with that status. */
+Status schema_pick_objective(const Schema *schema, const char *where, const char *name, Status status, size_t *k,
+                             Err *err);
+void schema_free(Schema *schema);
+
+/* What a simulation left behind besides the objectives that the search keeps. */
+typedef struct {
+    char outcome[16], reason[160];
+    double extra[EXTRA_MAX];
+    double seconds; /* that it took */
+} Verdict;
+
+/* The reason becomes a cell of a CSV file (base/cell.h). */
+void verdict_set(Verdict *v, const char *outcome, const char *reason);
+
+#endif

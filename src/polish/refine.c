@@ -1,0 +1,377 @@
+#include "polish/refine.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "polish/local.h"
+#include "polish/polish.h"
+#include "evaluate/subject.h"
+
+enum { CENTRES_MAX = 150, LOCAL_MAX = 600 /* designs that the surface tries: a fit costs their cube */ };
+
+/* Where the standard deviation of every objective is below this share of its value one simulation tells all. */
+static const double PREDICTABLE = 1e-3;
+
+typedef struct {
+    const Saved *run;
+    const RefineConfig *config;
+    const double *x; /* (n_var) of the design */
+    Subject *subject;
+    double f[2 * OBJECTIVES_MAX], spread[2 * OBJECTIVES_MAX], violation[2]; /* of its first and last answer, natural */
+    double weight[OBJECTIVES_MAX], slack[OBJECTIVES_MAX], bound[OBJECTIVES_MAX]; /* of minimised objectives */
+    long members;                                                                /* of a design that is tried */
+    double start;                                                                /* [s] of the clock */
+} Refine;
+
+/* Best and worst of every objective on the front, natural. */
+static void measure_box(const Saved *h, double best[], double worst[])
+{
+    for (size_t k = 0; k < h->schema.n_obj; k++) {
+        const double sense = schema_objective(&h->schema, k)->sense;
+        double least = DBL_MAX, most = -DBL_MAX;
+        for (size_t i = 0; i < h->n; i++)
+            if (h->row[i].on_front) {
+                least = fmin(least, sense * h->F[i * h->schema.n_obj + k]);
+                most = fmax(most, sense * h->F[i * h->schema.n_obj + k]);
+            }
+        best[k] = sense * least;
+        worst[k] = sense * most;
+    }
+}
+
+/* -- the simulator ------------------------------------------------------------------------------------------------- */
+
+/* The first answer since the subject was opened and the last one are kept. */
+static Status hear(const Simulation *simulation, void *user, Err *err)
+{
+    Refine *r = user;
+    const size_t m = r->run->schema.n_obj, i = simulation->number > 1 ? 1 : 0;
+    (void)err;
+    memcpy(r->f + i * m, simulation->f, m * sizeof *r->f);
+    memcpy(r->spread + i * m, simulation->spread, m * sizeof *r->spread);
+    r->violation[i] = simulation->violation;
+    return STATUS_OK;
+}
+
+static int may_go_on(void *user)
+{
+    const RefineConfig *c = ((const Refine *)user)->config;
+    return !c->go_on || c->go_on(c->user);
+}
+
+static Status open_subject(Refine *r, long members, Err *err)
+{
+    Settings s = r->run->settings;
+    s.sim.ensemble = members;
+    subject_close(r->subject);
+    r->subject = NULL;
+    TRY(subject_open(&r->subject, &s, err));
+    subject_observe(r->subject, &(Observer){.go_on = may_go_on, .done = hear, .user = r}, 0);
+    return STATUS_OK;
+}
+
+static void count(size_t n_evaluated, size_t n_failed, long members, Refined *out)
+{
+    out->n_evaluated += n_evaluated;
+    out->n_failed += n_failed;
+    out->n_simulated += n_evaluated * (size_t)members;
+}
+
+/* Weights in ranges of the front, and from the design's own objectives f what the kept ones may come to. */
+static void set_goal(Refine *r, const double f[])
+{
+    const Schema *schema = &r->run->schema;
+    double best[OBJECTIVES_MAX], worst[OBJECTIVES_MAX];
+    measure_box(r->run, best, worst);
+    for (size_t k = 0; k < schema->n_obj; k++) {
+        const double range = fabs(worst[k] - best[k]), spread = isfinite(r->spread[k]) ? r->spread[k] : 0.0;
+        r->weight[k] = r->config->weight[k] / (range > 0.0 && isfinite(range) ? range : 1.0);
+        r->slack[k] = r->config->slack >= 0.0 ? r->config->slack * fabs(f[k]) : spread;
+        r->bound[k] = r->config->keep[k] ? f[k] + r->slack[k] : INFINITY;
+        if (spread > PREDICTABLE * fabs(f[k]))
+            r->members = r->config->members;
+    }
+}
+
+/* The design's own objectives f; what is wanted follows from them. */
+static Status begin(Refine *r, double f[], Refined *out, Err *err)
+{
+    double G[OBJECTIVES_MAX];
+    unsigned char ok = 0;
+    TRY(open_subject(r, r->config->members, err));
+    const Problem *p = subject_problem(r->subject);
+    TRY(p->evaluate(1, r->x, NULL, f, G, &ok, p->user, err));
+    count(1, 0, r->config->members, out);
+    if (!ok)
+        return fail(err, STATUS_BAD_DATA, "the design to be polished cannot be evaluated");
+    r->members = 1;
+    set_goal(r, f);
+    return r->members == r->config->members ? STATUS_OK : open_subject(r, r->members, err);
+}
+
+/* Designs that may still be tried, so that both can be compared at the end. */
+static size_t evals_left(const Refine *r, const Refined *out)
+{
+    const size_t spent = out->n_simulated + 2 * (size_t)r->config->members;
+    return r->config->max_evals > spent ? (r->config->max_evals - spent) / (size_t)r->members : 0;
+}
+
+/* 0: there is no limit; else what is left of it, a little at least. */
+static double seconds_left(const Refine *r)
+{
+    const double spent = clock_seconds() - r->start;
+    return r->config->max_seconds > 0.0 ? fmax(r->config->max_seconds - spent, 1e-9) : 0.0;
+}
+
+/* -- surface and simulator in turn --------------------------------------------------------------------------------- */
+
+typedef struct {
+    double distance;
+    size_t row;
+} Near;
+
+static int by_distance(const void *a, const void *b)
+{
+    const Near *x = a, *y = b;
+    return x->distance != y->distance ? (x->distance > y->distance) - (x->distance < y->distance)
+                                      : (x->row > y->row) - (x->row < y->row);
+}
+
+/* Rows that simulated well, nearest to the design in the unit cube; returns how many. */
+static size_t nearest_rows(const Refine *r, Near near[])
+{
+    const Saved *h = r->run;
+    const Problem *p = subject_problem(r->subject);
+    size_t n = 0;
+    for (size_t i = 0; i < h->n; i++) {
+        if (!h->row[i].ok || h->row[i].kind == KIND_REPEAT)
+            continue;
+        near[n] = (Near){0.0, i};
+        for (size_t d = 0; d < p->n_var; d++) {
+            const double range = p->upper[d] - p->lower[d];
+            const double step = range > 0.0 ? (h->X[i * p->n_var + d] - r->x[d]) / range : 0.0;
+            near[n].distance += step * step;
+        }
+        n++;
+    }
+    qsort(near, n, sizeof *near, by_distance);
+    return n < CENTRES_MAX ? n : CENTRES_MAX;
+}
+
+/* What the run knows near the design. */
+static Status gather_known(const Refine *r, Known *known, Err *err)
+{
+    const Saved *h = r->run;
+    const Problem *p = subject_problem(r->subject);
+    Near *near = calloc(h->n + 1, sizeof *near);
+    double unused[OBJECTIVES_MAX];
+    known->X = calloc(CENTRES_MAX * (p->n_var + p->n_obj + 1), sizeof *known->X);
+    if (near && known->X) {
+        known->F = known->X + CENTRES_MAX * p->n_var;
+        known->noise = known->F + CENTRES_MAX * p->n_obj;
+        known->n = nearest_rows(r, near);
+    }
+    for (size_t i = 0; i < known->n; i++) {
+        const size_t row = near[i].row;
+        memcpy(known->X + i * p->n_var, h->X + row * p->n_var, p->n_var * sizeof *known->X);
+        subject_judge(r->subject, 1, h->F + row * p->n_obj, known->F + i * p->n_obj, unused);
+        known->noise[i] = 1.0 / (double)(h->row[row].members > 0 ? h->row[row].members : 1);
+    }
+    const int is_there = near && known->X;
+    free(near);
+    return is_there ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", h->n);
+}
+
+/* From out->x with the objectives f; the best is left there. */
+static Status follow_surface(Refine *r, double f[], Refined *out, Err *err)
+{
+    const size_t left = evals_left(r, out), wanted = r->config->algorithm ? left / 2 : left;
+    LocalConfig config = {.goal = {r->weight, r->bound},
+                          .noise = 1.0 / (double)r->members,
+                          .max_evals = wanted < LOCAL_MAX ? wanted : LOCAL_MAX,
+                          .max_seconds = seconds_left(r),
+                          .seed = (uint32_t)r->run->settings.search.seed};
+    LocalResult result = {.x = out->x, .f = f};
+    Status status = gather_known(r, &config.known, err);
+    if (status == STATUS_OK)
+        status = local_run(subject_problem(r->subject), &config, &result, err);
+    free(config.known.X);
+    count(result.n_evaluated, result.n_failed, r->members, out);
+    return status;
+}
+
+/* From out->x; the best is left there. */
+static Status polish_simulator(Refine *r, Refined *out, Err *err)
+{
+    double f[OBJECTIVES_MAX];
+    const PolishConfig config = {.algorithm = r->config->algorithm ? r->config->algorithm : "cobyla",
+                                 .goal = {r->weight, r->bound},
+                                 .max_evals = evals_left(r, out),
+                                 .max_seconds = seconds_left(r),
+                                 .seed = (uint32_t)r->run->settings.search.seed};
+    PolishResult result = {.x = out->x, .f = f};
+    if (config.max_evals < 2)
+        return STATUS_OK;
+    double *start = malloc(r->run->schema.n_var * sizeof *start);
+    if (!start)
+        return fail(err, STATUS_NO_MEMORY, "no memory for a design");
+    memcpy(start, out->x, r->run->schema.n_var * sizeof *start);
+    const Status status = polish_run(subject_problem(r->subject), &config, start, &result, err);
+    free(start);
+    count(result.n_evaluated, result.n_failed, r->members, out);
+    return status;
+}
+
+/* Minimised objectives F (2, n_obj) of start and end, with their spreads in out. */
+static void judge_gain(const Refine *r, const double F[], Refined *out)
+{
+    const size_t m = r->run->schema.n_obj;
+    out->gain = out->gain_error = 0.0;
+    out->keeps = 1;
+    for (size_t k = 0; k < m; k++) {
+        const double error = hypot(out->spread_start[k], out->spread[k]) / sqrt((double)r->config->members);
+        const double loss = F[m + k] - F[k], doubt = isfinite(error) ? 2.0 * error : 0.0;
+        if (r->weight[k] > 0.0) {
+            out->gain -= r->weight[k] * loss;
+            out->gain_error += r->weight[k] * error;
+        }
+        if (r->config->keep[k] && loss > r->slack[k] + doubt)
+            out->keeps = 0;
+    }
+}
+
+/* Both designs with members that neither has seen, so that what was picked for its luck is not believed. */
+static Status compare(Refine *r, Refined *out, Err *err)
+{
+    TRY(open_subject(r, r->config->members, err));
+    const Problem *p = subject_problem(r->subject);
+    const size_t m = p->n_obj, draws[2] = {1, 1};
+    double *X = calloc(2 * p->n_var, sizeof *X), F[2 * OBJECTIVES_MAX], G[2 * OBJECTIVES_MAX];
+    unsigned char ok[2] = {0};
+    if (!X)
+        return fail(err, STATUS_NO_MEMORY, "no memory for two designs");
+    memcpy(X, r->x, p->n_var * sizeof *X);
+    memcpy(X + p->n_var, out->x, p->n_var * sizeof *X);
+    const Status status = p->evaluate(2, X, draws, F, G, ok, p->user, err);
+    free(X);
+    TRY(status);
+    count(2, 0, r->config->members, out);
+    memcpy(out->f_start, r->f, m * sizeof *r->f);
+    memcpy(out->f, r->f + m, m * sizeof *r->f);
+    memcpy(out->spread_start, r->spread, m * sizeof *r->spread);
+    memcpy(out->spread, r->spread + m, m * sizeof *r->spread);
+    out->violation = r->violation[1];
+    out->has_changed = ok[0] && ok[1] && memcmp(r->x, out->x, p->n_var * sizeof *r->x) != 0;
+    if (out->has_changed)
+        judge_gain(r, F, out);
+    return STATUS_OK;
+}
+
+static Status refine(Refine *r, Refined *out, Err *err)
+{
+    const size_t n_var = r->run->schema.n_var, m = r->run->schema.n_obj;
+    double f[OBJECTIVES_MAX];
+    out->x = calloc(n_var, sizeof *out->x);
+    out->f_start = calloc(4 * m, sizeof *out->f_start);
+    if (!out->x || !out->f_start)
+        return fail(err, STATUS_NO_MEMORY, "no memory for a design");
+    out->f = out->f_start + m;
+    out->spread_start = out->f_start + 2 * m;
+    out->spread = out->f_start + 3 * m;
+    memcpy(out->x, r->x, n_var * sizeof *out->x);
+    TRY(begin(r, f, out, err));
+    TRY(follow_surface(r, f, out, err));
+    TRY(polish_simulator(r, out, err));
+    return compare(r, out, err);
+}
+
+Status refine_design(const Saved *h, size_t row, const RefineConfig *config, Refined *out, Err *err)
+{
+    RefineConfig used = *config;
+    *out = (Refined){0};
+    if (schema_is_noisy(&h->settings) && h->settings.problem.kind != PROBLEM_TOWER)
+        return fail(
+            err, STATUS_BAD_DATA,
+            "the answers of this run are noisy, and polishing simulates a design once: nothing would tell a gain "
+            "from luck; let the search go on instead (search.max_evals, search.repeats)");
+    if (h->settings.problem.kind != PROBLEM_TOWER)
+        used.members = 1;
+    if (used.algorithm)
+        TRY(polish_knows(used.algorithm, err));
+    Refine r = {.run = h, .config = &used, .x = h->X + row * h->schema.n_var, .start = clock_seconds()};
+    const Status status = refine(&r, out, err);
+    out->seconds = clock_seconds() - r.start;
+    subject_close(r.subject);
+    return status;
+}
+
+void refined_free(Refined *r)
+{
+    free(r->x);
+    free(r->f_start);
+    *r = (Refined){0};
+}
+
+int refined_counts(const Refined *r)
+{
+    return r->has_changed && r->keeps && r->gain > (isfinite(r->gain_error) ? 2.0 * r->gain_error : 0.0);
+}
+
+StoredDesign refined_design(const Refined *r)
+{
+    StoredDesign d = {.x = r->x, .f = r->f, .spread = r->spread, .violation = r->violation};
+    verdict_set(&d.verdict, "ok", "");
+    d.verdict.seconds = r->seconds;
+    return d;
+}
+
+Status refined_store(const char *folder, const Refined *r, long *id, Err *err)
+{
+    const StoredDesign d = refined_design(r);
+    return store_add_evaluations(folder, 1, &d, id, err);
+}
+
+/* -- which designs ------------------------------------------------------------------------------------------------- */
+
+/* Objective k of row i scaled to 0 (best of the front) .. 1 (worst). */
+static double scaled(const Saved *h, size_t i, size_t k, const double best[], const double worst[])
+{
+    const double range = worst[k] - best[k];
+    return range != 0.0 ? (h->F[i * h->schema.n_obj + k] - best[k]) / range : 0.0;
+}
+
+size_t refine_choose(const Saved *h, size_t n, int with_polished, size_t rows[])
+{
+    const size_t m = h->schema.n_obj;
+    double best[OBJECTIVES_MAX], worst[OBJECTIVES_MAX];
+    size_t chosen = 0;
+    measure_box(h, best, worst);
+    for (; chosen < n; chosen++) {
+        size_t found = h->n;
+        double most = -DBL_MAX;
+        for (size_t i = 0; i < h->n; i++) {
+            double merit = chosen == 0 ? 0.0 : DBL_MAX;
+            if (!h->row[i].on_front || (!with_polished && h->row[i].id >= POLISHED_FIRST))
+                continue;
+            for (size_t k = 0; chosen == 0 && k < m; k++) /* the knee: nearest to the best of everything */
+                merit -= pow(scaled(h, i, k, best, worst), 2.0);
+            for (size_t c = 0; c < chosen; c++) { /* then the farthest from those chosen */
+                double apart = 0.0;
+                for (size_t k = 0; k < m; k++)
+                    apart += pow(scaled(h, i, k, best, worst) - scaled(h, rows[c], k, best, worst), 2.0);
+                merit = fmin(merit, apart);
+            }
+            if (merit > most && (chosen == 0 || merit > 0.0)) {
+                most = merit;
+                found = i;
+            }
+        }
+        if (found == h->n)
+            break;
+        rows[chosen] = found;
+    }
+    return chosen;
+}

@@ -1,0 +1,64 @@
+/* polish/refine.h -- a design of a run polished, honestly: is the gain more than the spread?
+ *
+ *   value = sum_k weight_k f_k / (range of f_k on the front)       of the objectives to be improved, minimised
+ *
+ *   1 the design is simulated `members` times: what the kept objectives may lose (one spread of a single simulation, or
+ *     `slack`), and whether its answers scatter at all; where they do every design tried is a mean of `members`
+ *   2 response surface of the nearest simulations and simulator in turn (polish/local.h)
+ *   3 NLopt's `algorithm` on the simulator from the best so far (polish/polish.h), with half of the simulations where
+ *     it was asked for by name, else COBYLA with what step 2 leaves
+ *   4 design and result once more, with members that no step has seen:
+ *         error_k = root((spread_start_k^2 + spread_end_k^2) / members)
+ *
+ * A gain counts where it is more than twice sum_k weight_k error_k / range_k (as if all errors went together) and no
+ * kept objective lost more than it may and twice its error. With a single member nothing is known of the spread, and
+ * runs whose answers are noisy are refused unless they are of the tower.
+ *
+ * Ownership  refine_design fills x, f, ... of the caller's Refined; refined_free releases what it allocated
+ * Threads    call it from one thread; members and the designs of a round share the subject's threads, the numbers do
+ *            not depend on how many */
+#ifndef IMTET_POLISH_REFINE_H
+#define IMTET_POLISH_REFINE_H
+
+#include "store/store.h"
+
+typedef struct {
+    const char *algorithm;     /* polish/polish.h; NULL: as the steps above say */
+    const double *weight;      /* (n_obj) >= 0; 0: not to be improved */
+    const unsigned char *keep; /* (n_obj) */
+    double slack;              /* share of the value; < 0: one spread */
+    long members;              /* of a tower; others are asked once */
+    size_t max_evals;          /* simulations, those of all steps together */
+    double max_seconds;        /* 0: no limit */
+    int (*go_on)(void *user);  /* asked before each simulation, NULL: yes; 0: STATUS_STOPPED and nothing is refined */
+    void *user;
+} RefineConfig;
+
+typedef struct {
+    double *x, *f_start, *f, *spread_start, *spread; /* (n_var), (n_obj) natural; of step 4 */
+    double gain, gain_error;                         /* of the value, > 0 is better; error NAN: not known */
+    double violation;                                /* of the user's limits */
+    size_t n_evaluated, n_failed, n_simulated;       /* designs, of them failed; simulations */
+    double seconds;
+    int has_changed; /* 0: nothing better was found, x is the design itself */
+    int keeps;       /* what was to be kept is */
+} Refined;
+
+/* The design in row `row` of the run, with the settings that it was made with. */
+Status refine_design(const Saved *h, size_t row, const RefineConfig *config, Refined *out, Err *err);
+void refined_free(Refined *r);
+
+/* Gain beyond doubt, or no spread known and any gain; and all else kept. */
+int refined_counts(const Refined *r);
+
+/* As a run stores it; borrows x, f and spread. */
+StoredDesign refined_design(const Refined *r);
+
+/* Stored beside the designs of the search, as `polished`; the id that it got. Nobody may be working on the run. */
+Status refined_store(const char *folder, const Refined *r, long *id, Err *err);
+
+/* Spread-out designs of the front, the knee first, then the farthest from those chosen, polished ones left out unless
+ * they are wanted: rows of h, at most n; returns how many. */
+size_t refine_choose(const Saved *h, size_t n, int with_polished, size_t rows[]);
+
+#endif

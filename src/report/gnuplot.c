@@ -1,0 +1,94 @@
+#include "report/gnuplot.h"
+
+#include <errno.h>
+#include <spawn.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "store/output.h"
+
+extern char **environ;
+
+void gnuplot_quote(FILE *script, const char *text)
+{
+    fputs(*text == '\'' ? "' " : "'", script); /* it takes three ' in a row for an empty text and another one */
+    for (; *text; text++) {
+        if (*text == '\'')
+            fputc('\'', script); /* '' stands for ' */
+        if ((unsigned char)*text >= ' ')
+            fputc(*text, script);
+    }
+    fputc('\'', script);
+}
+
+/* Its exit status, or -1 with errno where it could not be started. */
+static int run(FILE *script, FILE *picture, FILE *faults)
+{
+    char *const words[] = {"gnuplot", "--default-settings", "-", NULL};
+    posix_spawn_file_actions_t actions;
+    pid_t pid;
+    int status = 0;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_adddup2(&actions, fileno(script), STDIN_FILENO);
+    posix_spawn_file_actions_adddup2(&actions, fileno(picture), STDOUT_FILENO);
+    posix_spawn_file_actions_adddup2(&actions, fileno(faults), STDERR_FILENO);
+    errno = posix_spawnp(&pid, words[0], &actions, NULL, words, environ);
+    posix_spawn_file_actions_destroy(&actions);
+    if (errno)
+        return -1;
+    while (waitpid(pid, &status, 0) < 0 && errno == EINTR)
+        ;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128;
+}
+
+/* The sentence that says what is wrong: the last line that it wrote, behind the script's line and a mark under it. */
+static void last_line(FILE *faults, char text[200])
+{
+    char line[200];
+    text[0] = 0;
+    rewind(faults);
+    while (fgets(line, sizeof line, faults)) {
+        line[strcspn(line, "\r\n")] = 0;
+        const char *words = line + strspn(line, " \t^");
+        if (*words)
+            snprintf(text, 200, "%s", words);
+    }
+}
+
+static Status draw(Output *o, FILE *script, FILE *faults, GnuplotScript write, const void *user, Err *err)
+{
+    char fault[200];
+    write(script, user);
+    if (fflush(script) != 0 || fseek(script, 0, SEEK_SET) != 0)
+        return fail(err, STATUS_IO, "the script for gnuplot could not be written: %s", strerror(errno));
+    const int status = run(script, o->stream, faults);
+    if (status == -1 || status == 127)
+        return fail(err, STATUS_MISSING,
+                    "%s: gnuplot, which draws it, cannot be started; install it (Debian: apt install gnuplot-nox), or "
+                    "take the numbers by --csv and --history",
+                    o->path);
+    last_line(faults, fault);
+    if (status != 0)
+        return fail(err, STATUS_IO, "%s: gnuplot ended with status %d and drew no picture: %s", o->path, status,
+                    fault[0] ? fault : "it does not say why");
+    return STATUS_OK;
+}
+
+Status gnuplot_draw(const char *path, GnuplotScript write, const void *user, Err *err)
+{
+    Output o;
+    TRY(output_open(&o, path, err));
+    FILE *script = tmpfile(), *faults = tmpfile();
+    Status status = script && faults ? draw(&o, script, faults, write, user, err)
+                                     : fail(err, STATUS_IO, "no temporary file for gnuplot: %s", strerror(errno));
+    if (faults)
+        fclose(faults);
+    if (script)
+        fclose(script);
+    if (status != STATUS_OK) {
+        output_abandon(&o);
+        return status;
+    }
+    return output_close(&o, err);
+}

@@ -1,0 +1,31 @@
+/* scene/design.h -- designs read from a CSV file.
+ *
+ *   gap_01_m,...,gap_NN_m,t_base_m,t_top_m        one column per floor, bottom floor first, then the core's wall
+ *   0.05,...,0.05,0.012,0.0064                    any number of rows
+ *
+ * Every fault names file, line and column. A negative or non-finite gap and a wall that is not positive are refused;
+ * t_top_m > t_base_m is the reader's business to judge.
+ *
+ * Ownership  design_read allocates, design_free releases (an empty Designs is fine). */
+#ifndef IMTET_SCENE_DESIGN_H
+#define IMTET_SCENE_DESIGN_H
+
+#include <stddef.h>
+
+#include "base/status.h"
+#include "base/table.h"
+
+typedef struct {
+    size_t n;
+    int n_floors;
+    double *x;    /* [m] (n, n_floors + 2) */
+    size_t *line; /* (n) of the file */
+} Designs;
+
+/* Name of variable j = 0..n_floors+1. */
+void design_variable_name(int n_floors, int j, char name[TABLE_NAME_MAX]);
+
+Status design_read(Designs *d, const char *path, int n_floors, Err *err);
+void design_free(Designs *d);
+
+#endif

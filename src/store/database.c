@@ -1,0 +1,339 @@
+#include "store/database.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { BUSY_MS = 3000 };
+
+struct Database {
+    sqlite3 *db;
+    char path[PATH_MAX];
+};
+
+const char *database_path(const Database *d)
+{
+    return d->path;
+}
+
+/* -- faults -------------------------------------------------------------------------------------------------------- */
+
+static Status explain(const char *path, int code, const char *said, Err *err)
+{
+    switch (code & 0xff) {
+    case SQLITE_NOMEM:
+        return fail(err, STATUS_NO_MEMORY, "%s: out of memory", path);
+    case SQLITE_FULL:
+        return fail(err, STATUS_IO, "%s: cannot be written: the disk is full; what was stored before can be read",
+                    path);
+    case SQLITE_READONLY:
+    case SQLITE_PERM:
+        return fail(err, STATUS_IO, "%s: cannot be written: file or folder is read-only", path);
+    case SQLITE_BUSY:
+    case SQLITE_LOCKED:
+        return fail(err, STATUS_IO, "%s: is busy: another program has kept it locked for %d s", path, BUSY_MS / 1000);
+    case SQLITE_CORRUPT:
+        return fail(err, STATUS_IO, "%s: is damaged (%s); `sqlite3 FILE .recover` saves what can be read", path, said);
+    case SQLITE_NOTADB:
+        return fail(err, STATUS_IO, "%s: is no database of a run", path);
+    case SQLITE_CANTOPEN:
+        return fail(err, STATUS_IO, "%s: cannot be opened: %s", path, said);
+    default:
+        return fail(err, STATUS_IO, "%s: cannot be read or written: %s", path, said);
+    }
+}
+
+static Status complain(const Database *d, Err *err)
+{
+    return explain(d->path, sqlite3_extended_errcode(d->db), sqlite3_errmsg(d->db), err);
+}
+
+/* -- statements ---------------------------------------------------------------------------------------------------- */
+
+static int bind_value(sqlite3_stmt *s, int i, char type, va_list *values)
+{
+    const char *text;
+    const void *bytes;
+    double number;
+    switch (type) {
+    case 'i':
+        return sqlite3_bind_int64(s, i, va_arg(*values, long));
+    case 'd':
+        number = va_arg(*values, double);
+        return isfinite(number) ? sqlite3_bind_double(s, i, number) : sqlite3_bind_null(s, i);
+    case 't':
+        text = va_arg(*values, const char *);
+        return text ? sqlite3_bind_text(s, i, text, -1, SQLITE_TRANSIENT) : sqlite3_bind_null(s, i);
+    default:
+        bytes = va_arg(*values, const void *);
+        return sqlite3_bind_blob64(s, i, bytes, va_arg(*values, size_t), SQLITE_TRANSIENT);
+    }
+}
+
+Status database_do(Database *d, Err *err, const char *sql, const char *types, ...)
+{
+    sqlite3_stmt *s = NULL;
+    if (!types[0])
+        return sqlite3_exec(d->db, sql, NULL, NULL, NULL) == SQLITE_OK ? STATUS_OK : complain(d, err);
+    int code = sqlite3_prepare_v2(d->db, sql, -1, &s, NULL);
+    va_list values;
+    va_start(values, types);
+    for (int i = 0; code == SQLITE_OK && types[i]; i++)
+        code = bind_value(s, i + 1, types[i], &values);
+    va_end(values);
+    if (code == SQLITE_OK)
+        code = sqlite3_step(s);
+    const Status status = code == SQLITE_DONE || code == SQLITE_ROW ? STATUS_OK : complain(d, err);
+    sqlite3_finalize(s);
+    return status;
+}
+
+Status database_each(Database *d, const char *sql, DatabaseRowFn take, void *user, Err *err)
+{
+    sqlite3_stmt *s = NULL;
+    Status status = STATUS_OK;
+    int code = sqlite3_prepare_v2(d->db, sql, -1, &s, NULL);
+    while (code == SQLITE_OK && (code = sqlite3_step(s)) == SQLITE_ROW) {
+        status = take(s, user, err);
+        code = status == STATUS_OK ? SQLITE_OK : SQLITE_DONE;
+    }
+    if (code != SQLITE_DONE)
+        status = complain(d, err);
+    sqlite3_finalize(s);
+    return status;
+}
+
+static Status take_number(sqlite3_stmt *row, void *user, Err *err)
+{
+    (void)err;
+    if (sqlite3_column_type(row, 0) != SQLITE_NULL)
+        *(double *)user = sqlite3_column_double(row, 0);
+    return STATUS_OK;
+}
+
+Status database_number(Database *d, const char *sql, double otherwise, double *value, Err *err)
+{
+    *value = otherwise;
+    return database_each(d, sql, take_number, value, err);
+}
+
+/* -- opening ------------------------------------------------------------------------------------------------------- */
+
+static Status open_file(Database **out, const char *path, const char *name, int flags, Err *err)
+{
+    Database *d = calloc(1, sizeof *d);
+    *out = NULL;
+    if (!d || snprintf(d->path, sizeof d->path, "%s", path) >= (int)sizeof d->path) {
+        free(d);
+        return fail(err, d ? STATUS_IO : STATUS_NO_MEMORY, "%.200s: cannot be opened: path too long or no memory",
+                    path);
+    }
+    const int code = sqlite3_open_v2(name, &d->db, flags | SQLITE_OPEN_FULLMUTEX, NULL);
+    if (code != SQLITE_OK) {
+        const Status status = d->db ? complain(d, err) : explain(path, code, sqlite3_errstr(code), err);
+        sqlite3_close(d->db);
+        free(d);
+        return status;
+    }
+    sqlite3_extended_result_codes(d->db, 1);
+    sqlite3_busy_timeout(d->db, BUSY_MS);
+    sqlite3_db_config(d->db, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, NULL);
+    sqlite3_db_config(d->db, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, NULL);
+    *out = d;
+    return STATUS_OK;
+}
+
+/* SQLite does not follow a path that goes up beyond the root: it gets the folder's real one. Where there is none, path
+ * itself, for SQLite to say what is wrong. */
+static const char *real_path(const char *path, char real[PATH_MAX])
+{
+    char folder[PATH_MAX], found[PATH_MAX];
+    const char *slash = strrchr(path, '/');
+    if (!slash || slash == path || slash - path >= PATH_MAX)
+        return path;
+    snprintf(folder, sizeof folder, "%.*s", (int)(slash - path), path);
+    return realpath(folder, found) && snprintf(real, PATH_MAX, "%s%s", found, slash) < PATH_MAX ? real : path;
+}
+
+static Status take_word(sqlite3_stmt *row, void *user, Err *err)
+{
+    (void)err;
+    snprintf(user, 200, "%s", (const char *)sqlite3_column_text(row, 0));
+    return STATUS_OK;
+}
+
+static Status check_format(const Database *d, double format, Err *err)
+{
+    if (format > DATABASE_FORMAT)
+        return fail(err, STATUS_IO, "%s: has format %g, this program reads %d; a newer imtet wrote it", d->path, format,
+                    DATABASE_FORMAT);
+    if (format < DATABASE_FORMAT)
+        return fail(err, STATUS_IO,
+                    "%s: has format %g, this program reads %d; an older imtet wrote it: only that one can go on with "
+                    "it, its front.csv and settings.ini can be read by anyone",
+                    d->path, format, DATABASE_FORMAT);
+    return STATUS_OK;
+}
+
+/* A view or a virtual table in the place of a table could compute rows without end. */
+static Status check_tables(Database *d, Err *err)
+{
+    static const char FOREIGN[] = "SELECT count(*) FROM sqlite_schema WHERE name <> 'designs' AND (type NOT IN "
+                                  "('table', 'index') OR coalesce(rootpage, 0) < 2 OR sql LIKE '%virtual%')";
+    double n;
+    TRY(database_number(d, FOREIGN, 0, &n, err));
+    return n == 0 ? STATUS_OK
+                  : fail(err, STATUS_IO, "%s: is no database of a run: it holds views or triggers", d->path);
+}
+
+/* Ours, of a format that is known, and whole. */
+static Status check(Database *d, DatabaseMode mode, Err *err)
+{
+    double application, format;
+    char word[200] = "";
+    TRY(database_number(d, "PRAGMA application_id", 0, &application, err));
+    TRY(database_number(d, "PRAGMA user_version", 0, &format, err));
+    if (application != DATABASE_APPLICATION)
+        return fail(err, STATUS_IO, "%s: is no database of a run", d->path);
+    TRY(check_format(d, format, err));
+    TRY(check_tables(d, err));
+    TRY(database_each(d, mode == DATABASE_WRITE ? "PRAGMA integrity_check(1)" : "PRAGMA quick_check(1)", take_word,
+                      word, err));
+    return strcmp(word, "ok") == 0 ? STATUS_OK : explain(d->path, SQLITE_CORRUPT, word, err);
+}
+
+/* A damaged file may claim a row of a gigabyte: none is longer than the file and its journal. */
+static void bound_rows(Database *d)
+{
+    enum { SLACK = 1 << 20 };
+    char journal[PATH_MAX + 8];
+    struct stat file = {0}, beside = {0}; /* of one that is not there: 0 bytes */
+    snprintf(journal, sizeof journal, "%s-wal", d->path);
+    stat(d->path, &file);
+    stat(journal, &beside);
+    sqlite3_limit(d->db, SQLITE_LIMIT_LENGTH,
+                  (int)fmin(2.0 * (double)(file.st_size + beside.st_size) + SLACK, INT_MAX));
+}
+
+void database_grow(Database *d)
+{
+    sqlite3_limit(d->db, SQLITE_LIMIT_LENGTH, INT_MAX);
+}
+
+static Status prepare(Database *d, DatabaseMode mode, Err *err)
+{
+    if (mode == DATABASE_WRITE)
+        TRY(database_do(d, err, "PRAGMA journal_mode=WAL; PRAGMA synchronous=FULL; PRAGMA foreign_keys=ON", ""));
+    return check(d, mode, err);
+}
+
+static Status copy_file(const char *from, const char *to, Err *err)
+{
+    char bytes[1 << 16];
+    ssize_t n;
+    const int in = open(from, O_RDONLY | O_CLOEXEC), out = open(to, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+    while ((n = read(in, bytes, sizeof bytes)) > 0 && write(out, bytes, (size_t)n) == n)
+        ;
+    const int why = errno;
+    close(in); /* of one that is not open: nothing */
+    close(out);
+    return n == 0 ? STATUS_OK
+                  : fail(err, STATUS_IO, "%s: its folder is read-only, and it cannot be copied to %s: %s", from, to,
+                         strerror(why));
+}
+
+static void remove_copy(const char *folder)
+{
+    static const char *const NAMES[] = {"copy", "copy-wal", "copy-shm"};
+    char path[PATH_MAX + 16];
+    for (size_t i = 0; i < sizeof NAMES / sizeof NAMES[0]; i++) {
+        snprintf(path, sizeof path, "%s/%s", folder, NAMES[i]);
+        unlink(path);
+    }
+    rmdir(folder);
+}
+
+/* A folder that may not be written to has no place for the files that readers share: a copy is read, journal and all.
+ * The copy has no name any more when it is open and ends with the program, however that ends. */
+static Status open_copy(Database **out, const char *path, Err *err)
+{
+    char folder[PATH_MAX], to[PATH_MAX + 16], journal[PATH_MAX + 8];
+    const char *place = getenv("TMPDIR");
+    snprintf(folder, sizeof folder, "%s/imtet-XXXXXX", place && *place ? place : "/tmp");
+    snprintf(journal, sizeof journal, "%s-wal", path);
+    if (!mkdtemp(folder))
+        return fail(err, STATUS_IO, "%s: its folder is read-only, and a copy has no place: %s: %s", path, folder,
+                    strerror(errno));
+    snprintf(to, sizeof to, "%s/copy-wal", folder);
+    Status status = access(journal, F_OK) == 0 ? copy_file(journal, to, err) : STATUS_OK;
+    snprintf(to, sizeof to, "%s/copy", folder);
+    if (status == STATUS_OK)
+        status = copy_file(path, to, err);
+    if (status == STATUS_OK)
+        status = open_file(out, path, to, SQLITE_OPEN_READWRITE, err);
+    if (status == STATUS_OK) {
+        bound_rows(*out);
+        status = check(*out, DATABASE_READ, err);
+    }
+    remove_copy(folder);
+    return status;
+}
+
+Status database_open(Database **out, const char *path, DatabaseMode mode, Err *err)
+{
+    char real[PATH_MAX];
+    struct stat there;
+    *out = NULL;
+    if (stat(path, &there) != 0)
+        return fail(err, STATUS_MISSING, "%s: is not there", path);
+    if (!S_ISREG(there.st_mode))
+        return fail(err, STATUS_IO, "%s: is no file", path);
+    if (there.st_size == 0)
+        return fail(err, STATUS_IO, "%s: is empty, no database of a run; remove it, and the run begins anew", path);
+    TRY(open_file(out, path, real_path(path, real),
+                  mode == DATABASE_WRITE ? SQLITE_OPEN_READWRITE : SQLITE_OPEN_READONLY, err));
+    bound_rows(*out);
+    Status status = prepare(*out, mode, err);
+    if (status != STATUS_OK && mode == DATABASE_READ) {
+        const int code = sqlite3_errcode((*out)->db) & 0xff;
+        if (code == SQLITE_CANTOPEN || code == SQLITE_READONLY) {
+            database_close(*out);
+            *out = NULL;
+            status = open_copy(out, path, err);
+        }
+    }
+    if (status != STATUS_OK) {
+        database_close(*out);
+        *out = NULL;
+    }
+    return status;
+}
+
+Status database_create(Database **out, const char *path, Err *err)
+{
+    char sql[128], real[PATH_MAX];
+    TRY(open_file(out, path, real_path(path, real), SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, err));
+    snprintf(sql, sizeof sql, "PRAGMA synchronous=FULL; PRAGMA application_id=%d; PRAGMA user_version=%d",
+             DATABASE_APPLICATION, DATABASE_FORMAT);
+    const Status status = database_do(*out, err, sql, "");
+    if (status != STATUS_OK) {
+        database_close(*out);
+        *out = NULL;
+    }
+    return status;
+}
+
+void database_close(Database *d)
+{
+    if (!d)
+        return;
+    sqlite3_close(d->db);
+    free(d);
+}

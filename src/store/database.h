@@ -1,0 +1,49 @@
+/* store/database.h -- one SQLite file, opened so that what was committed is never lost, with our words for its faults.
+ *
+ *   journal WAL, synchronous FULL: a commit returns when it is on the disk; readers never wait for the writer
+ *   application_id tells that the file is ours, user_version its format; both, and the integrity, are checked on
+ *   opening. A file from somebody else runs nothing: what is read are tables, no views of its own and no triggers, and
+ *   no row is longer than the file
+ *
+ * Every write of a run's database goes through database_do.
+ *
+ * Life cycle  database_create or database_open -> database_do, database_each ... -> database_close
+ * Threads     one connection, one thread at a time (its mutex guards the rest)
+ * Errors      disk full, read-only, busy, damaged, of another program or a newer version: STATUS_IO with file and
+ * cause; no such file: STATUS_MISSING Source      https://sqlite.org/wal.html,
+ * https://sqlite.org/pragma.html#pragma_synchronous */
+#ifndef IMTET_STORE_DATABASE_H
+#define IMTET_STORE_DATABASE_H
+
+#include <sqlite3.h>
+
+#include "base/status.h"
+
+enum {
+    DATABASE_APPLICATION = 0x494d5445 /* "IMTE" */,
+    DATABASE_FORMAT = 2 /* raised with every change of the tables */
+};
+
+typedef struct Database Database;
+
+typedef enum { DATABASE_WRITE, DATABASE_READ } DatabaseMode;
+
+/* A new file, or one that a fault left unfinished and is begun again. */
+Status database_create(Database **out, const char *path, Err *err);
+Status database_open(Database **out, const char *path, DatabaseMode mode, Err *err);
+void database_grow(Database *d);  /* what was there is read: from here on rows may be longer than the file was */
+void database_close(Database *d); /* NULL is fine; what was committed is on the disk already */
+const char *database_path(const Database *d);
+
+/* One statement (or several without values) that returns no rows. types: a letter for each ? of it: i long, d double
+ * (not finite: NULL), t text (NULL: NULL), b bytes (const void *, size_t). */
+Status database_do(Database *d, Err *err, const char *sql, const char *types, ...);
+
+/* `take` gets every row; a status that is not ok ends it. */
+typedef Status (*DatabaseRowFn)(sqlite3_stmt *row, void *user, Err *err);
+Status database_each(Database *d, const char *sql, DatabaseRowFn take, void *user, Err *err);
+
+/* The first column of the first row, or `otherwise` where there is none. */
+Status database_number(Database *d, const char *sql, double otherwise, double *value, Err *err);
+
+#endif

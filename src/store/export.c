@@ -1,0 +1,173 @@
+#include "store/export.h"
+
+#include <jansson.h>
+#include <math.h>
+#include <string.h>
+
+#include "store/output.h"
+
+static void write_names(FILE *f, const char *before, const Schema *schema, size_t n_extra, int with_spread)
+{
+    fputs(before, f);
+    for (size_t j = 0; j < schema->n_var; j++)
+        fprintf(f, ",%s", schema_variable(schema, j)->name);
+    for (size_t k = 0; k < schema->n_obj; k++)
+        fprintf(f, ",%s", schema_objective(schema, k)->name);
+    for (size_t k = 0; k < n_extra; k++)
+        fprintf(f, ",%s", schema_extra(schema, k)->name);
+    for (size_t k = 0; with_spread && k < schema->n_obj; k++)
+        fprintf(f, ",spread_%s", schema_objective(schema, k)->name);
+    if (with_spread)
+        fputs(",members", f);
+    fputc('\n', f);
+}
+
+static void write_numbers(FILE *f, size_t n, const double values[])
+{
+    for (size_t j = 0; j < n; j++) {
+        fputc(',', f);
+        print_number(f, values[j]);
+    }
+}
+
+void export_front_header(FILE *f, const Schema *schema)
+{
+    write_names(f, "id", schema, 0, schema->has_spread);
+}
+
+void export_front_row(FILE *f, const Schema *schema, long id, const double x[], const double natural[],
+                      const double spread[], long members)
+{
+    fprintf(f, "%ld", id);
+    write_numbers(f, schema->n_var, x);
+    write_numbers(f, schema->n_obj, natural);
+    if (schema->has_spread) {
+        write_numbers(f, schema->n_obj, spread);
+        if (members > 0)
+            fprintf(f, ",%ld", members);
+        else
+            fputc(',', f);
+    }
+    fputc('\n', f);
+}
+
+void export_front(FILE *f, const Saved *h)
+{
+    const Schema *schema = &h->schema;
+    export_front_header(f, schema);
+    for (size_t i = 0; i < h->n; i++)
+        if (h->row[i].on_front)
+            export_front_row(f, schema, h->row[i].id, h->X + i * schema->n_var, h->F + i * schema->n_obj,
+                             h->spread + i * schema->n_obj, h->row[i].members);
+}
+
+void export_evaluations_header(FILE *f, const Schema *schema)
+{
+    write_names(f, "id,generation,kind,outcome,reason", schema, schema->n_extra, 0);
+}
+
+void export_evaluations(FILE *f, const Saved *h, int unfinished_too)
+{
+    const Schema *schema = &h->schema;
+    for (size_t i = 0; i < h->n; i++) {
+        const SavedRow *r = &h->row[i];
+        if (r->kind == KIND_UNFINISHED && !unfinished_too)
+            continue;
+        fprintf(f, "%ld,%ld,%s,%s,%s", r->id, r->generation, kind_word(r->kind), r->verdict.outcome, r->verdict.reason);
+        write_numbers(f, schema->n_var, h->X + i * schema->n_var);
+        write_numbers(f, schema->n_obj, h->answer + i * schema->n_obj);
+        write_numbers(f, schema->n_extra, r->verdict.extra);
+        fputc('\n', f);
+    }
+}
+
+/* -- JSON ---------------------------------------------------------------------------------------------------------- */
+
+static json_t *number(double value)
+{
+    return isfinite(value) ? json_real(value) : json_null();
+}
+
+static json_t *numbers(size_t n, const double values[])
+{
+    json_t *list = json_array();
+    for (size_t i = 0; i < n; i++)
+        json_array_append_new(list, number(values[i]));
+    return list;
+}
+
+static void put_setting(const char *key, const char *value, void *user)
+{
+    json_object_set_new(user, key, json_string(value));
+}
+
+static json_t *json_settings(const Settings *s)
+{
+    json_t *o = json_object();
+    settings_each(s, put_setting, o);
+    return o;
+}
+
+static json_t *json_columns(const Schema *schema)
+{
+    json_t *list = json_array();
+    for (size_t c = 0; c < schema->n_var + schema->n_obj + schema->n_extra; c++) {
+        const int is_objective = c >= schema->n_var && c < schema->n_var + schema->n_obj;
+        json_array_append_new(list, json_pack("{s:s, s:s, s:s*}", "name", schema->column[c].name, "role",
+                                              c < schema->n_var ? "variable"
+                                              : is_objective    ? "objective"
+                                                                : "measure",
+                                              "sense",
+                                              !is_objective                   ? NULL
+                                              : schema->column[c].sense > 0.0 ? "min"
+                                                                              : "max"));
+    }
+    return list;
+}
+
+static json_t *json_evaluation(const Saved *h, size_t i)
+{
+    const SavedRow *r = &h->row[i];
+    const Schema *schema = &h->schema;
+    const double *spread = h->spread + i * schema->n_obj, *f = h->answer + i * schema->n_obj;
+    json_t *o = json_pack("{s:I, s:I, s:s, s:s, s:s, s:o, s:o, s:b}", "id", (json_int_t)r->id, "generation",
+                          (json_int_t)r->generation, "kind", kind_word(r->kind), "outcome", r->verdict.outcome,
+                          "reason", r->verdict.reason, "x", numbers(schema->n_var, h->X + i * schema->n_var), "f",
+                          isfinite(f[0]) ? numbers(schema->n_obj, f) : json_null(), "on_front", r->on_front);
+    int known = 0;
+    for (size_t k = 0; k < schema->n_obj; k++)
+        known = known || isfinite(spread[k]);
+    json_object_set_new(o, "spread", known ? numbers(schema->n_obj, spread) : json_null());
+    if (r->members > h->settings.sim.ensemble)
+        json_object_set_new(o, "mean", numbers(schema->n_obj, h->F + i * schema->n_obj));
+    if (schema->has_spread)
+        json_object_set_new(o, "members", json_integer(r->members));
+    if (schema->n_extra > 0)
+        json_object_set_new(o, "measures", numbers(schema->n_extra, r->verdict.extra));
+    return o;
+}
+
+static json_t *json_generation(const SavedGeneration *g)
+{
+    return json_pack("{s:I, s:I, s:I, s:I, s:I, s:o, s:o}", "number", (json_int_t)g->number, "simulated",
+                     (json_int_t)g->simulated, "failed", (json_int_t)g->failed, "front", (json_int_t)g->front,
+                     "predicted", (json_int_t)g->predicted, "surrogate_error", number(g->surrogate_error),
+                     "hypervolume", number(g->hypervolume));
+}
+
+Status export_json(FILE *f, const Saved *h, Err *err)
+{
+    json_t *evaluations = json_array(), *generations = json_array();
+    for (size_t i = 0; i < h->n; i++)
+        json_array_append_new(evaluations, json_evaluation(h, i));
+    for (size_t g = 0; g < h->n_generations; g++)
+        json_array_append_new(generations, json_generation(&h->generation[g]));
+    json_t *all = json_pack("{s:o, s:o, s:o, s:o}", "settings", json_settings(&h->settings), "columns",
+                            json_columns(&h->schema), "evaluations", evaluations, "generations", generations);
+    if (!all)
+        return fail(err, STATUS_NO_MEMORY, "no memory for the run as JSON");
+    json_dumpf(all, f, JSON_INDENT(1) | JSON_REAL_PRECISION(17));
+    fputc('\n', f);
+    json_decref(all);
+    return STATUS_OK;
+}

@@ -1,0 +1,60 @@
+#include "store/nearest.h"
+
+#include <limits.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "store/output.h"
+
+size_t nearest_rows(const Saved *h, size_t rows[NEAREST_MAX])
+{
+    size_t n = 0;
+    for (size_t i = 0; i < h->n; i++) {
+        size_t at = n;
+        if (!h->row[i].ok)
+            continue;
+        while (at > 0 && h->row[i].violation < h->row[rows[at - 1]].violation)
+            at--;
+        if (at == NEAREST_MAX)
+            continue;
+        n += n < NEAREST_MAX;
+        memmove(rows + at + 1, rows + at, (n - 1 - at) * sizeof *rows);
+        rows[at] = i;
+    }
+    return n;
+}
+
+static void write_row(FILE *f, const Saved *h, size_t row)
+{
+    const Schema *s = &h->schema;
+    const double *part[] = {&h->row[row].violation, h->X + row * s->n_var, h->F + row * s->n_obj};
+    const size_t length[] = {1, s->n_var, s->n_obj};
+    fprintf(f, "%ld", h->row[row].id);
+    for (int p = 0; p < 3; p++)
+        for (size_t j = 0; j < length[p]; j++) {
+            fputc(',', f);
+            print_number(f, part[p][j]);
+        }
+    fputc('\n', f);
+}
+
+Status nearest_write(const char *folder, const Saved *h, size_t n, const size_t rows[], Err *err)
+{
+    char path[PATH_MAX];
+    Output o;
+    snprintf(path, sizeof path, "%s/nearest.csv", folder);
+    if (n == 0) {
+        unlink(path);
+        return STATUS_OK;
+    }
+    TRY(output_open(&o, path, err));
+    fputs("id,violation", o.stream);
+    for (size_t j = 0; j < h->schema.n_var; j++)
+        fprintf(o.stream, ",%s", schema_variable(&h->schema, j)->name);
+    for (size_t k = 0; k < h->schema.n_obj; k++)
+        fprintf(o.stream, ",%s", schema_objective(&h->schema, k)->name);
+    fputc('\n', o.stream);
+    for (size_t i = 0; i < n; i++)
+        write_row(o.stream, h, rows[i]);
+    return output_close(&o, err);
+}

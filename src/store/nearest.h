@@ -1,0 +1,19 @@
+/* store/nearest.h -- where no design meets search.limits: those that miss them least.
+ *
+ *   violation   sum over the limits of max(0, excess / |limit|), as the search ranks designs without a feasible one
+ *
+ * nearest.csv has them, best first: id, violation, variables, objectives. */
+#ifndef IMTET_STORE_NEAREST_H
+#define IMTET_STORE_NEAREST_H
+
+#include "store/saved.h"
+
+enum { NEAREST_MAX = 10 };
+
+/* Rows of the run with the least violation, the least first, ties by number; returns how many. 0: nothing succeeded. */
+size_t nearest_rows(const Saved *h, size_t rows[NEAREST_MAX]);
+
+/* folder/nearest.csv; with n = 0 it is removed: a run that has gone on may have a front now. */
+Status nearest_write(const char *folder, const Saved *h, size_t n, const size_t rows[], Err *err);
+
+#endif

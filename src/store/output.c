@@ -1,0 +1,93 @@
+#include "store/output.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+Status output_open(Output *o, const char *path, Err *err)
+{
+    struct stat there;
+    memset(o, 0, sizeof *o);
+    const int to_stdout = strcmp(path, "-") == 0;
+    const int in_place = to_stdout || (lstat(path, &there) == 0 && !S_ISREG(there.st_mode));
+    const int n = snprintf(o->path, sizeof o->path, "%s", path);
+    const int m = snprintf(o->temporary, sizeof o->temporary, "%s.%ld.tmp", path, (long)getpid());
+    if (n >= PATH_MAX || m >= PATH_MAX)
+        return fail(err, STATUS_IO, "%.200s...: the path is too long", path);
+    if (in_place)
+        o->temporary[0] = 0;
+    /* Not /dev/stdout: opening that anew would cut off what a file behind it holds already. */
+    o->stream = to_stdout ? fdopen(dup(STDOUT_FILENO), "w") : fopen(in_place ? o->path : o->temporary, "w");
+    if (!o->stream)
+        return fail(err, status_of_errno(errno, STATUS_IO), "%s: cannot be written: %s", path, strerror(errno));
+    return STATUS_OK;
+}
+
+Status output_sync(FILE *stream, const char *path, Err *err)
+{
+    errno = 0;
+    if (fflush(stream) != 0 || ferror(stream))
+        return fail(err, status_of_errno(errno, STATUS_IO), "%s: cannot be written: %s", path,
+                    errno ? strerror(errno) : "an earlier write failed, as on a full disk");
+    /* A pipe or a terminal has no disk to wait for. */
+    if (fsync(fileno(stream)) != 0 && errno != EINVAL && errno != EROFS && errno != ENOTSUP)
+        return fail(err, status_of_errno(errno, STATUS_IO), "%s: cannot be brought to the disk: %s", path,
+                    strerror(errno));
+    return STATUS_OK;
+}
+
+void output_sync_folder(const char *path)
+{
+    char folder[PATH_MAX];
+    const char *slash = strrchr(path, '/');
+    snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - path + 1) : 1, slash ? path : ".");
+    const int fd = open(folder, O_RDONLY | O_DIRECTORY);
+    if (fd >= 0) {
+        fsync(fd);
+        close(fd);
+    }
+}
+
+Status output_close(Output *o, Err *err)
+{
+    Status status = output_sync(o->stream, o->path, err);
+    if (fclose(o->stream) != 0 && status == STATUS_OK)
+        status = fail(err, status_of_errno(errno, STATUS_IO), "%s: cannot be written: %s", o->path, strerror(errno));
+    o->stream = NULL;
+    if (!o->temporary[0])
+        return status;
+    if (status == STATUS_OK && rename(o->temporary, o->path) != 0)
+        status =
+            fail(err, status_of_errno(errno, STATUS_IO), "%s: cannot be put in place: %s", o->path, strerror(errno));
+    if (status == STATUS_OK)
+        output_sync_folder(o->path);
+    else
+        unlink(o->temporary);
+    return status;
+}
+
+void output_abandon(Output *o)
+{
+    if (o->stream)
+        fclose(o->stream);
+    if (o->stream && o->temporary[0])
+        unlink(o->temporary);
+    o->stream = NULL;
+}
+
+void print_number(FILE *stream, double value)
+{
+    char text[40];
+    if (!isfinite(value))
+        return;
+    for (int digits = 15; digits <= 17; digits++) {
+        snprintf(text, sizeof text, "%.*g", digits, value);
+        if (strtod(text, NULL) == value)
+            break;
+    }
+    fputs(text, stream);
+}

@@ -1,0 +1,34 @@
+/* store/output.h -- writing files so that a reader, or a crash, finds either the old content or the new, never a half.
+ *
+ * Life cycle  output_open -> fprintf(o.stream, ...) -> output_close, or output_abandon to leave things as they were
+ * A regular file (or one that is not there yet) is written beside its place and renamed over it after fsync; a device
+ * or a pipe is written in place; the path "-" is standard output. Errors of every write are seen by output_close:
+ * STATUS_IO with file and cause. */
+#ifndef IMTET_STORE_OUTPUT_H
+#define IMTET_STORE_OUTPUT_H
+
+#include <limits.h>
+#include <stdio.h>
+
+#include "base/status.h"
+
+typedef struct {
+    FILE *stream;
+    char path[PATH_MAX], temporary[PATH_MAX]; /* temporary: empty when written in place */
+} Output;
+
+Status output_open(Output *o, const char *path, Err *err);
+Status output_close(Output *o, Err *err);
+void output_abandon(Output *o); /* a closed Output is fine */
+
+/* Flushed to the disk, or STATUS_IO. */
+Status output_sync(FILE *stream, const char *path, Err *err);
+
+/* A rename is on the disk when the folder of `path` is. Not every file system allows it: then the file is still whole.
+ */
+void output_sync_folder(const char *path);
+
+/* The fewest digits (15 to 17) that read back as the same number; nothing for one that is not finite. */
+void print_number(FILE *stream, double value);
+
+#endif

@@ -1,0 +1,136 @@
+#include "store/provenance.h"
+
+#include <cblas.h>
+#include <inttypes.h>
+#include <jansson.h>
+#include <limits.h>
+#include <nlopt.h>
+#include <sqlite3.h>
+#include <sundials/sundials_version.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "study/moved.h"
+#include "scene/building.h"
+#include "sim/fast/fast.h"
+
+#ifndef IMTET_VERSION
+#define IMTET_VERSION "unknown"
+#endif
+#ifndef IMTET_REVISION
+#define IMTET_REVISION "unknown"
+#endif
+#ifndef IMTET_CFLAGS
+#define IMTET_CFLAGS "unknown"
+#endif
+
+#ifdef __clang__
+#define COMPILER __VERSION__ /* says its name itself */
+#else
+#define COMPILER "gcc " __VERSION__
+#endif
+
+const char *program_version(void)
+{
+    return IMTET_VERSION;
+}
+
+const char *program_revision(void)
+{
+    return IMTET_REVISION;
+}
+
+/* inih and Random123 do not say their versions; the Debian release does. */
+static json_t *libraries(void)
+{
+    char sundials[32] = "unknown", nlopt[32];
+    int major, minor, fix;
+    SUNDIALSGetVersion(sundials, (int)sizeof sundials);
+    nlopt_version(&major, &minor, &fix);
+    snprintf(nlopt, sizeof nlopt, "%d.%d.%d", major, minor, fix);
+    return json_pack("{s:s, s:s, s:s, s:s, s:s, s:s, s:s}", "sqlite", sqlite3_libversion(), "sundials", sundials,
+                     "nlopt", nlopt, "openblas", openblas_get_config(), "jansson", jansson_version_str(), "inih",
+                     "as packaged by the system", "random123", "as packaged by the system");
+}
+
+json_t *program_description(void)
+{
+    return json_pack("{s:s, s:s, s:s, s:s, s:s, s:o*}", "program", "imtet", "version", IMTET_VERSION, "revision",
+                     IMTET_REVISION, "compiler", COMPILER, "flags", IMTET_CFLAGS, "libraries", libraries());
+}
+
+/* PRETTY_NAME of the operating system: with it the versions of all packages are known. */
+static void system_name(char name[128])
+{
+    char line[256];
+    snprintf(name, 128, "unknown");
+    FILE *f = fopen("/etc/os-release", "r");
+    while (f && fgets(line, sizeof line, f))
+        sscanf(line, "PRETTY_NAME=\"%127[^\"\n]", name);
+    if (f)
+        fclose(f);
+}
+
+static json_t *machine(int threads)
+{
+    char host[256] = "unknown", system[128], started[32];
+    struct tm parts;
+    const time_t now = time(NULL);
+    gethostname(host, sizeof host - 1);
+    system_name(system);
+    gmtime_r(&now, &parts);
+    strftime(started, sizeof started, "%FT%TZ", &parts);
+    return json_pack("{s:s, s:s, s:s, s:i, s:s}", "host", host, "system", system, "kernel", fast_kernel_name(),
+                     "threads", threads, "started", started);
+}
+
+Status provenance_inputs(Inputs *out, const Subject *subject, Err *err)
+{
+    Building b;
+    *out = (Inputs){0};
+    if (!subject_world(subject))
+        return STATUS_OK;
+    TRY(building_load(&b, subject_world(subject)->settings.building.model, err));
+    *out = (Inputs){.record = subject_world(subject)->motion.file_hash, .matrices = b.hash};
+    building_free(&b);
+    for (size_t i = 0; i < subject_n_records(subject); i++)
+        out->records = moved_hash(out->records, subject_record(subject, i)->motion.file_hash);
+    return STATUS_OK;
+}
+
+static char *hex(uint64_t hash, char text[24])
+{
+    snprintf(text, 24, "%016" PRIx64, hash);
+    return text;
+}
+
+static json_t *inputs_of_tower(const World *w, const Inputs *hashes)
+{
+    char record[24], records[24], matrices[24];
+    return json_pack("{s:s, s:s, s:s, s:s, s:s, s:s, s:I, s:f, s:s, s:i, s:s}", "record", w->settings.motion.record,
+                     "record_format", w->motion.format, "record_channel", w->motion.channel, "record_fnv1a",
+                     hex(hashes->record, record), "records", w->settings.motion.records, "records_fnv1a",
+                     hex(hashes->records, records), "samples", (json_int_t)w->motion.n, "step_s", w->motion.dt_s,
+                     "building", w->settings.building.model, "floors", scene_n_floors(w->scene), "matrices_fnv1a",
+                     hex(hashes->matrices, matrices));
+}
+
+static json_t *inputs(const Settings *s, const World *w, const Inputs *hashes)
+{
+    return w ? inputs_of_tower(w, hashes)
+             : json_pack("{s:s}", "command", s->problem.kind == PROBLEM_EXTERNAL ? s->problem.command : "built in");
+}
+
+Status provenance_text(char **out, const Settings *s, const Subject *subject, Err *err)
+{
+    Inputs hashes;
+    *out = NULL;
+    TRY(provenance_inputs(&hashes, subject, err));
+    json_t *all = program_description();
+    if (json_object_set_new(all, "seed", json_integer(s->search.seed)) == 0 &&
+        json_object_set_new(all, "machine", machine(subject_threads(subject))) == 0 &&
+        json_object_set_new(all, "inputs", inputs(s, subject_world(subject), &hashes)) == 0)
+        *out = json_dumps(all, JSON_INDENT(2) | JSON_REAL_PRECISION(17));
+    json_decref(all);
+    return *out ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for the provenance");
+}

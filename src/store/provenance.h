@@ -1,0 +1,26 @@
+/* store/provenance.h -- what a run was made of: program, compiler, libraries, machine, inputs.
+ * Threads  call it from one thread. */
+#ifndef IMTET_STORE_PROVENANCE_H
+#define IMTET_STORE_PROVENANCE_H
+
+#include <jansson.h>
+
+#include "evaluate/subject.h"
+
+const char *program_version(void);  /* 0.1.0 */
+const char *program_revision(void); /* as git describes it, or unknown */
+
+/* Version, revision, compiler and its flags, libraries. NULL: out of memory. */
+json_t *program_description(void);
+
+/* As JSON, to be freed by the caller. */
+Status provenance_text(char **out, const Settings *s, const Subject *subject, Err *err);
+
+/* What a run depends on beside its settings: hashes of the first record, of all records together, and of the matrices;
+ * 0 where there are none. */
+typedef struct {
+    uint64_t record, records, matrices;
+} Inputs;
+Status provenance_inputs(Inputs *out, const Subject *subject, Err *err);
+
+#endif

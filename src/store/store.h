@@ -1,0 +1,90 @@
+/* store/store.h -- the folder of one run, while it is worked on.
+ *
+ *   run.sqlite        everything (tables below); what is in it is on the disk and stays, however the program ends
+ *   settings.ini      the settings as used, defaults filled in, paths absolute       these four are made from the
+ *   provenance.json   program, libraries, machine, seed, hashes                      database: removed or out of step
+ *   evaluations.csv   every simulation of the generations that are finished          after a crash, they are written
+ *   front.csv         the designs that no other one beats                            anew when the run goes on
+ *   log.txt           what happened when; log.jsonl: the same for programs
+ *   lock              who works on it (store/lock.h)
+ *
+ * One simulation is one row, committed when it is done: at once where it took longer than COMMIT_S, else at the latest
+ * COMMIT_S after the one before, and at the end of its batch. What a kill can cost is what was under way and COMMIT_S
+ * of simulations. The end of a generation is one transaction: kinds, front, hypervolume, state of the search.
+ *
+ *   run         settings (INI), provenance (JSON), planned_evals, n_var, created, tried_to_polish, polished_at
+ *   evaluation  id, generation, kind (NULL: its generation is not finished), outcome, reason, seconds, x, f, spread
+ * (JSON lists; NULL: none), violation, extra, digest (store/tables.h) generation  number, simulated, failed, front,
+ * predicted, surrogate_error, hypervolume, seconds, finished front       evaluation, entered, left: it was on the front
+ * of the generations entered
+ * <= g < left state       generation, bytes (moga/search.h) session     started, ended, host, pid, program, threads,
+ * simulated_before, seconds, stopped, is_final designs     a view: the evaluations with their columns by name
+ *
+ * Life cycle  store_open -> store_begin or store_go_on -> ... -> store_close, or store_free after a fault
+ * Threads     one at a time
+ * Errors      STATUS_IO with file and cause */
+#ifndef IMTET_STORE_STORE_H
+#define IMTET_STORE_STORE_H
+
+#include <jansson.h>
+
+#include "store/saved.h"
+#include "evaluate/subject.h"
+
+typedef struct RunStore RunStore;
+
+static const double COMMIT_S = 0.2;
+
+/* Takes the folder, made where it is not there, and its lock. fresh: the first of folder, folder-2, folder-3, ... that
+ * holds no run. */
+Status store_open(RunStore **out, const char *folder, int fresh, Err *err);
+const char *store_folder(const RunStore *store);
+
+/* The run that the folder held when it was opened; NULL: none. */
+const Saved *store_saved(const RunStore *store);
+
+/* A run in which nothing was simulated is no run yet: forgotten, so that it begins anew, with whatever settings. */
+Status store_forget_empty(RunStore *store, Err *err);
+
+/* A new run, or the one that is there with other limits or threads. Borrow the schema. */
+Status store_begin(RunStore *store, const Schema *schema, const Settings *used, const char *provenance, Err *err);
+Status store_go_on(RunStore *store, const Schema *schema, const Settings *used, Err *err);
+
+/* A start of the program on this run; to be called after one of the two. */
+Status store_session(RunStore *store, const char *program, int threads, size_t n_simulated, Err *err);
+
+Status store_simulation(RunStore *store, const Simulation *simulation, size_t generation, Err *err);
+Status store_flush(RunStore *store, Err *err); /* commits what waits */
+
+/* The end of a generation. seconds: of work on the run, this session: of it alone. */
+Status store_generation(RunStore *store, const SearchView *view, double seconds, double session, Err *err);
+double store_hypervolume(const RunStore *store); /* of the last generation; NAN: none */
+
+/* One line, the time of day in front; the same for programs, an object that is taken over, "time" added. */
+__attribute__((format(printf, 3, 4))) Status store_log(RunStore *store, Err *err, const char *format, ...);
+Status store_event(RunStore *store, json_t *event, Err *err);
+
+/* The run as the database has it now. */
+Status store_read(RunStore *store, Saved *saved, Err *err);
+
+/* One more design of the finished search has been tried to polish; `better` (NULL: it did not become better) joins the
+ * run as in store_add_evaluations. */
+typedef struct StoredDesign StoredDesign;
+Status store_polished(RunStore *store, const StoredDesign *better, size_t n_tried, size_t n_simulated, Err *err);
+
+/* Why the session ends. is_final: there is nothing to go on with. */
+Status store_close(RunStore *store, const char *stopped, int is_final, double session, Err *err);
+void store_free(RunStore *store); /* NULL is fine */
+
+/* Designs from outside the search, polished ones say, into the archive of a run that nobody works on: they get ids from
+ * POLISHED_FIRST on and the kind `polished`, and front.csv and evaluations.csv are written anew. The search does not
+ * see them: a run that goes on later does what it would have done without them. first_id may be NULL. */
+struct StoredDesign {
+    const double *x, *f;  /* (n_var); (n_obj) natural signs, not read unless the outcome is ok */
+    const double *spread; /* (n_obj) standard deviations, NAN or NULL where not known */
+    double violation;     /* of the user's limits: 0 where they hold */
+    Verdict verdict;
+};
+Status store_add_evaluations(const char *folder, size_t n, const StoredDesign designs[], long *first_id, Err *err);
+
+#endif

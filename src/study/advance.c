@@ -1,0 +1,92 @@
+#include "study/advance.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static int keeps_limits(const SearchView *v, size_t row)
+{
+    for (size_t c = 0; c < v->n_con; c++)
+        if (v->H[row * v->n_con + c] > 0.0)
+            return 0;
+    return v->ok[row] && v->answers[row] > 0;
+}
+
+static double value_of(const Igd *q)
+{
+    const double value = igd_value(q);
+    return isfinite(value) ? value : NAN;
+}
+
+Status advance_lately(const SearchView *v, double *igd, Err *err)
+{
+    Igd *q;
+    size_t n = 0, *front = v->n_front > 0 ? calloc(v->n_front, sizeof *front) : NULL;
+    *igd = NAN;
+    if (v->n_front == 0)
+        return STATUS_OK;
+    if (!front)
+        return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", v->n_front);
+    for (size_t i = 0; i < v->n && n < v->n_front; i++)
+        if (v->on_front[i])
+            front[n++] = i;
+    const Status status = igd_create(&q, v->n_obj, n, front, v->F, err);
+    free(front);
+    TRY(status);
+    for (size_t i = 0; i < v->n - v->n / 10; i++)
+        if (keeps_limits(v, i))
+            igd_add(q, v->F + i * v->n_obj);
+    *igd = value_of(q);
+    igd_free(q);
+    return STATUS_OK;
+}
+
+/* -- of a stored run ----------------------------------------------------------------------------------------------- */
+
+static int is_first_answer(const SavedRow *r)
+{
+    return r->id < POLISHED_FIRST && r->kind != KIND_UNFINISHED && r->kind != KIND_REPEAT;
+}
+
+/* Every objective minimised; rows of the search's own front into front (n); returns how many. */
+static size_t minimise(const Saved *h, double F[], size_t front[])
+{
+    const size_t m = h->schema.n_obj;
+    size_t n = 0;
+    for (size_t i = 0; i < h->n; i++) {
+        const SavedRow *r = &h->row[i];
+        for (size_t k = 0; k < m; k++)
+            F[i * m + k] = schema_objective(&h->schema, k)->sense * h->F[i * m + k];
+        if (is_first_answer(r) && r->ok && r->entered != NEVER && r->left == NEVER)
+            front[n++] = i;
+    }
+    return n;
+}
+
+static void follow(const Saved *h, const double F[], Igd *q, double igd[])
+{
+    size_t row = 0;
+    for (size_t g = 0; g < h->n_generations; g++) {
+        for (; row < h->n && h->row[row].id <= h->generation[g].simulated; row++)
+            if (is_first_answer(&h->row[row]) && h->row[row].ok && !(h->row[row].violation > 0.0))
+                igd_add(q, F + row * h->schema.n_obj);
+        igd[g] = value_of(q);
+    }
+}
+
+Status advance_of_run(const Saved *h, double igd[], Err *err)
+{
+    double *F = calloc(h->n * h->schema.n_obj + 1, sizeof *F);
+    size_t *front = calloc(h->n + 1, sizeof *front), n = 0;
+    Igd *q = NULL;
+    Status status = F && front ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", h->n);
+    for (size_t g = 0; g < h->n_generations; g++)
+        igd[g] = NAN;
+    if (status == STATUS_OK && (n = minimise(h, F, front)) > 0)
+        status = igd_create(&q, h->schema.n_obj, n, front, F, err);
+    if (q)
+        follow(h, F, q, igd);
+    igd_free(q);
+    free(F);
+    free(front);
+    return status;
+}

@@ -1,0 +1,19 @@
+/* study/advance.h -- how far the front has come: IGD+ of what was known earlier from the front that is known now.
+ *
+ * In widths of the front that is known now (moga/igd.h), minimised; all designs that keep the limits count, which is
+ * the same as their front. 0: the front has not moved since. No true front is needed, and none is claimed: a search
+ * that stands still at the wrong place has 0 as well. */
+#ifndef IMTET_STUDY_ADVANCE_H
+#define IMTET_STUDY_ADVANCE_H
+
+#include "moga/igd.h"
+#include "store/saved.h"
+
+/* From nine tenths of the simulations to now; NAN: no front, or nobody was known then. */
+Status advance_lately(const SearchView *v, double *igd, Err *err);
+
+/* From the end of every generation to the search's last front: igd (h->n_generations), NAN where nobody was known or
+ * there is no front. */
+Status advance_of_run(const Saved *h, double igd[], Err *err);
+
+#endif

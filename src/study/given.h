@@ -1,0 +1,15 @@
+/* study/given.h -- designs that somebody has already, for a search to begin with.
+ *
+ *   search.start = RUN    the front of another run, its polished designs too
+ *                  FILE   a CSV with a column for every variable, in any order; further columns are not read
+ *
+ * Ownership  given_read allocates X (n, n_var), the caller frees it; none: NULL and 0
+ * Errors     a column that is missing, a file that is not there: named */
+#ifndef IMTET_STUDY_GIVEN_H
+#define IMTET_STUDY_GIVEN_H
+
+#include "evaluate/schema.h"
+
+Status given_read(const char *start, const Schema *schema, double **X, size_t *n, Err *err);
+
+#endif

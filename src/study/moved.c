@@ -1,0 +1,104 @@
+#include "study/moved.h"
+
+#include <inttypes.h>
+#include <jansson.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/hash.h"
+#include "base/list.h"
+#include "scene/motion.h"
+
+uint64_t moved_hash(uint64_t so_far, uint64_t file_hash)
+{
+    return (so_far ^ file_hash) * HASH_PRIME;
+}
+
+static Status take_place(char setting[SETTINGS_TEXT_MAX], const char *place, Err *err)
+{
+    if (place && strlen(place) >= SETTINGS_TEXT_MAX)
+        return fail(err, STATUS_MISSING, "%.60s...: the path is too long", place);
+    if (place)
+        snprintf(setting, SETTINGS_TEXT_MAX, "%s", place);
+    return STATUS_OK;
+}
+
+static Status check_is_there(const char *path, const char *key, Err *err)
+{
+    if (strncmp(path, "builtin:", 8) == 0 || access(path, R_OK) == 0)
+        return STATUS_OK;
+    return fail(err, STATUS_MISSING,
+                "%s: a record of the run is not there; where it was moved, say so: --set motion.%s", path, key);
+}
+
+static Status check_all_there(const Settings *s, Err *err)
+{
+    char item[SETTINGS_TEXT_MAX];
+    const char *list = s->motion.records;
+    TRY(check_is_there(s->motion.record, "record=PATH", err));
+    for (size_t i = 0; strcmp(list, "none") != 0 && i < list_count(list); i++)
+        if (list_item(list, i, item, sizeof item))
+            TRY(check_is_there(item, "records=PATH,... (all of them, in their order)", err));
+    return STATUS_OK;
+}
+
+static Status hash_record(const Settings *s, const char *path, uint64_t *hash, Err *err)
+{
+    Motion m = {0};
+    Settings one = *s;
+    snprintf(one.motion.record, sizeof one.motion.record, "%s", path);
+    const Status status = motion_open(&m, &one, err);
+    *hash = m.file_hash;
+    motion_free(&m);
+    return status;
+}
+
+static Status hash_all(const Settings *s, uint64_t *record, uint64_t *records, Err *err)
+{
+    char item[SETTINGS_TEXT_MAX];
+    const char *list = s->motion.records;
+    uint64_t hash;
+    TRY(hash_record(s, s->motion.record, record, err));
+    *records = moved_hash(0, *record);
+    for (size_t i = 0; strcmp(list, "none") != 0 && i < list_count(list); i++) {
+        if (!list_item(list, i, item, sizeof item))
+            return fail(err, STATUS_BAD_DATA, "motion.records: item %zu is empty or too long", i + 1);
+        TRY(hash_record(s, item, &hash, err));
+        *records = moved_hash(*records, hash);
+    }
+    return STATUS_OK;
+}
+
+/* Is this what the provenance says of the content? */
+static int is_known(const char *provenance, const char *key, uint64_t hash)
+{
+    char hex[24];
+    json_t *all = provenance ? json_loads(provenance, 0, NULL) : NULL;
+    const char *known = json_string_value(json_object_get(json_object_get(all, "inputs"), key));
+    snprintf(hex, sizeof hex, "%016" PRIx64, hash);
+    const int same = known && strcmp(known, hex) == 0;
+    json_decref(all);
+    return same;
+}
+
+Status moved_find(Settings *s, const char *provenance, const Moved *moved, Err *err)
+{
+    const Settings was = *s;
+    uint64_t record, records;
+    if (s->problem.kind != PROBLEM_TOWER)
+        return STATUS_OK;
+    TRY(take_place(s->motion.record, moved->record, err));
+    TRY(take_place(s->motion.records, moved->records, err));
+    TRY(check_all_there(s, err));
+    if (!moved->record && !moved->records)
+        return STATUS_OK;
+    TRY(hash_all(s, &record, &records, err));
+    if (moved->record && !is_known(provenance, "record_fnv1a", record))
+        return fail(err, STATUS_BAD_DATA, "%s: does not hold what the run's record %.200s held", moved->record,
+                    was.motion.record);
+    if (moved->records && !is_known(provenance, "records_fnv1a", records))
+        return fail(err, STATUS_BAD_DATA, "%.200s: do not hold what the run's records %.200s held", moved->records,
+                    was.motion.records);
+    return STATUS_OK;
+}

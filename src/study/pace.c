@@ -1,0 +1,140 @@
+#include "study/pace.h"
+
+#include <limits.h>
+#include <math.h>
+#include <string.h>
+#include <time.h>
+
+double pace_per_second(const Pace *p)
+{
+    if (p->session_simulated > 0 && p->session_s > 0.0)
+        return (double)p->session_simulated / p->session_s;
+    return p->simulated > 0 && p->all_s > 0.0 ? (double)p->simulated / p->all_s : NAN;
+}
+
+double pace_left(const Pace *p, const Settings *s)
+{
+    double left = ((double)s->search.max_evals - (double)p->simulated) / pace_per_second(p);
+    if (!isfinite(left))
+        return NAN;
+    if (p->session_generations > 0)
+        left = fmin(left, p->session_s / (double)p->session_generations *
+                              ((double)s->search.generations + 1.0 - (double)p->generations));
+    if (s->search.max_hours > 0.0)
+        left = fmin(left, 3600.0 * s->search.max_hours - p->session_s);
+    return fmax(left, 0.0);
+}
+
+void pace_words(double seconds, char text[32])
+{
+    const long s = (long)fmin(seconds, 1e8);
+    if (!isfinite(seconds))
+        snprintf(text, 32, "-");
+    else if (s < 3600)
+        snprintf(text, 32, "%ld:%02ld min", s / 60, s % 60);
+    else
+        snprintf(text, 32, "%ld:%02ld h", s / 3600, s / 60 % 60);
+}
+
+void number_words(double value, int decimals, char text[32])
+{
+    if (isfinite(value))
+        snprintf(text, 32, "%.*f", decimals, value);
+    else
+        snprintf(text, 32, "-");
+}
+
+const char *state_words(RunState state)
+{
+    static const char *const WORDS[] = {[RUN_RUNNING] = "running",
+                                        [RUN_FINISHED] = "finished",
+                                        [RUN_PAUSED] = "stopped",
+                                        [RUN_BROKEN_OFF] = "broken off"};
+    return WORDS[state];
+}
+
+/* Seconds since a time of the form 2026-01-31T23:59:59Z. */
+static double seconds_since(const char *utc)
+{
+    struct tm parts = {0};
+    return strptime(utc, "%Y-%m-%dT%H:%M:%SZ", &parts) ? difftime(time(NULL), timegm(&parts)) : NAN;
+}
+
+static void count(Standing *out, const Saved *saved)
+{
+    for (size_t i = 0; i < saved->n; i++) {
+        const int polished = saved->row[i].id >= POLISHED_FIRST;
+        out->n_polished += polished != 0;
+        out->pace.simulated += !polished;
+        out->n_failed += !polished && !saved->row[i].ok;
+    }
+}
+
+/* Thread-seconds of a session's simulations. */
+static double simulated_seconds(const Saved *saved, size_t number)
+{
+    const long first = saved->session[number].simulated_before + 1;
+    const long end = number + 1 < saved->n_sessions ? saved->session[number + 1].simulated_before + 1 : POLISHED_FIRST;
+    double seconds = 0.0;
+    for (size_t i = 0; i < saved->n; i++)
+        if (saved->row[i].id >= first && saved->row[i].id < end && isfinite(saved->row[i].verdict.seconds))
+            seconds += saved->row[i].verdict.seconds;
+    return seconds;
+}
+
+Effort effort_of(const Saved *saved, size_t session)
+{
+    const SavedSession *s = &saved->session[session];
+    Effort e = {.waiting = s->waited_s / s->search_s, .surrogate = s->surrogate_s / s->search_s};
+    e.search = 1.0 - e.waiting - e.surrogate;
+    const double simulated = simulated_seconds(saved, session);
+    e.busy = simulated > 0.0 ? simulated / (s->search_s * fmax((double)s->threads, 1.0)) : NAN;
+    return e;
+}
+
+void effort_words(const Effort *e, char text[160])
+{
+    const int n = snprintf(text, 160, "wall time: %.1f %% waiting for simulations, %.1f %% surrogate, %.1f %% search",
+                           100.0 * e->waiting, 100.0 * e->surrogate, 100.0 * e->search);
+    if (isfinite(e->busy))
+        snprintf(text + n, 160 - (size_t)n, "; threads %.1f %% busy", 100.0 * e->busy);
+}
+
+/* What a session told; one that was killed told its last generation at most, and its simulations since tell more. */
+static double session_seconds(const Saved *saved, size_t number)
+{
+    const SavedSession *s = &saved->session[number];
+    const double told = isfinite(s->seconds) ? s->seconds : 0.0;
+    if (s->ended[0])
+        return told;
+    return fmax(told, simulated_seconds(saved, number) / fmax((double)s->threads, 1.0));
+}
+
+void standing_of(Standing *out, const char *folder, const Saved *saved)
+{
+    char lock[PATH_MAX];
+    *out = (Standing){.hypervolume = NAN};
+    snprintf(lock, sizeof lock, "%s/lock", folder);
+    const int is_running = lock_is_held(lock, &out->holder);
+    const SavedSession *last = saved->n_sessions > 0 ? &saved->session[saved->n_sessions - 1] : NULL;
+    out->state = is_running               ? RUN_RUNNING
+                 : last && last->is_final ? RUN_FINISHED
+                 : last && last->ended[0] ? RUN_PAUSED
+                                          : RUN_BROKEN_OFF;
+    count(out, saved);
+    out->pace.generations = saved->n_generations;
+    if (saved->n_generations > 0)
+        out->hypervolume = saved->generation[saved->n_generations - 1].hypervolume;
+    for (size_t i = 0; i < saved->n_sessions; i++)
+        out->seconds += session_seconds(saved, i);
+    if (!last)
+        return;
+    const double told = session_seconds(saved, saved->n_sessions - 1);
+    out->pace.session_s = is_running ? seconds_since(last->started) : told;
+    out->seconds += is_running ? fmax(out->pace.session_s - told, 0.0) : 0.0;
+    out->pace.all_s = out->seconds;
+    out->pace.session_simulated =
+        out->pace.simulated > (size_t)last->simulated_before ? out->pace.simulated - (size_t)last->simulated_before : 0;
+    for (size_t g = 0; g < saved->n_generations; g++)
+        out->pace.session_generations += strcmp(saved->generation[g].finished, last->started) >= 0;
+}

@@ -1,0 +1,50 @@
+/* study/pace.h -- where a run stands: how fast it goes, how long it still takes, who works on it. */
+#ifndef IMTET_STUDY_PACE_H
+#define IMTET_STUDY_PACE_H
+
+#include "store/lock.h"
+#include "store/saved.h"
+
+/* Of the search and of this start of it. */
+typedef struct {
+    size_t simulated, generations;                 /* so far */
+    size_t session_simulated, session_generations; /* since this start */
+    double session_s, all_s;                       /* of this start; of all */
+} Pace;
+
+double pace_per_second(const Pace *p); /* simulations of this start, else of all; NAN: none yet */
+
+/* Seconds until simulations, generations or hours are spent, whichever is first; NAN: unknown. */
+double pace_left(const Pace *p, const Settings *s);
+
+/* "1:05 min", "3:20 h"; a number with so many decimals; "-" where it is not finite. */
+void pace_words(double seconds, char text[32]);
+void number_words(double value, int decimals, char text[32]);
+
+typedef enum { RUN_RUNNING, RUN_FINISHED, RUN_PAUSED, RUN_BROKEN_OFF } RunState;
+
+typedef struct {
+    RunState state; /* paused: stopped in good order; broken off: killed. Both can go on */
+    LockHolder holder;
+    Pace pace;
+    size_t n_failed, n_polished;
+    double seconds;     /* of work, all sessions together */
+    double hypervolume; /* of the last generation; NAN: none */
+} Standing;
+
+/* What a session's wall time went into, as shares of it: the search waited for simulations, was at its surrogate, did
+ * the rest of it (storing included); and how busy with simulations the threads were, at the same time. NAN: not known.
+ * In batches nobody simulates while the search works, and of the threads some wait for the slowest. */
+typedef struct {
+    double waiting, surrogate, search, busy;
+} Effort;
+
+Effort effort_of(const Saved *saved, size_t session);
+
+/* Of wall time, as a sentence. */
+void effort_words(const Effort *e, char text[160]);
+
+const char *state_words(RunState state);
+void standing_of(Standing *out, const char *folder, const Saved *saved);
+
+#endif

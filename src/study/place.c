@@ -1,0 +1,74 @@
+#include "study/place.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+static const char RESULTS[] = "results";
+
+static int has_step_up(const char *path)
+{
+    for (const char *part = path; *part; part += strspn(part, "/")) {
+        const size_t n = strcspn(part, "/");
+        if (n == 2 && strncmp(part, "..", 2) == 0)
+            return 1;
+        part += n;
+    }
+    return 0;
+}
+
+/* Where the part of the path that is there already leads, links followed. */
+static int find_existing(const char *path, char found[PATH_MAX])
+{
+    char part[PATH_MAX];
+    snprintf(part, sizeof part, "%s", path);
+    while (!realpath(part, found)) {
+        char *slash = strrchr(part, '/');
+        if (errno != ENOENT || !slash || slash == part)
+            return 0;
+        *slash = 0;
+    }
+    return 1;
+}
+
+static int is_below(const char *path, const char *folder)
+{
+    const size_t n = strlen(folder);
+    return strncmp(path, folder, n) == 0 && (path[n] == '/' || path[n] == 0);
+}
+
+static int is_own_folder(const char *out, const char *settings_file)
+{
+    char own[PATH_MAX], place[PATH_MAX];
+    const char *slash = strrchr(settings_file, '/');
+    snprintf(own, sizeof own, "%.*s", slash ? (int)(slash - settings_file + 1) : 1, slash ? settings_file : ".");
+    char *folder = realpath(own, NULL);
+    const int is_own = folder && realpath(out, place) && strcmp(folder, place) == 0;
+    free(folder);
+    return is_own;
+}
+
+Status place_check(const char *out, const char *settings_file, Err *err)
+{
+    char there[PATH_MAX], results[PATH_MAX];
+    struct stat about;
+    const char *path = out + (strncmp(out, "./", 2) == 0 ? 2 : 0);
+    if (is_own_folder(out, settings_file))
+        return STATUS_OK;
+    if (!is_below(path, RESULTS) || has_step_up(path))
+        return fail(
+            err, STATUS_BAD_DATA,
+            "%s: run.out: %.200s is not below %s/, the only place where a settings file may write; name another "
+            "one on the command line: --out %.100s",
+            settings_file, out, RESULTS, out);
+    if (realpath(RESULTS, results) && stat(results, &about) == 0 && S_ISDIR(about.st_mode) &&
+        (!find_existing(path, there) || !is_below(there, results)))
+        return fail(err, STATUS_BAD_DATA,
+                    "%s: run.out: %.200s is a link that leads out of %s/; where this is meant, say so on the command "
+                    "line: --out %.100s",
+                    settings_file, out, RESULTS, out);
+    return STATUS_OK;
+}

@@ -1,0 +1,72 @@
+/* study/study.h -- the whole study: settings -> subject -> search over simulated designs -> run folder.
+ *
+ *   of the tower, f = (j1, j2, j3, ed1, -ed5_10, -edcs, mcore), all minimised; other subjects: evaluate/subject.h
+ *
+ * A simulation that does not finish, or whose numbers are not finite, is a failed design: kept with its reason, never
+ * on the front.
+ *
+ * Goes on       a run that is there already goes on where it stopped, however it stopped: from the state at the end of
+ *               its last finished generation, simulations made after that taken from the database. front.csv,
+ *               evaluations.csv and the JSON export are then the same bytes as of a run that was never interrupted
+ * Settings      must be those of the run. Limits may be changed where that is asked for (`force`): search.max_evals,
+ *               generations, max_hours, nondominated_share, problem.timeout_s; the number of threads always. What the
+ *               first search.max_evals decides beside the end (size of the first sample, directions of infill) stays as
+ *               planned: with 1500 raised to 3000 the first 1500 designs are those of the shorter run
+ * Stops         when `stop` says so or after search.max_hours of this session, both asked between simulations: what is
+ *               under way is finished, or dropped where an external worker takes seconds, and everything is stored
+ * Polishes      search.polish spread-out designs of a finished run of the tower (polish/refine.h), with a tenth of its
+ *               simulations; not where that is too little to be of use
+ * Reproducible  front.csv and evaluations.csv are the same bytes at any thread count; times stand elsewhere. */
+#ifndef IMTET_STUDY_STUDY_H
+#define IMTET_STUDY_STUDY_H
+
+#include <limits.h>
+
+#include "settings/settings.h"
+#include "moga/search.h"
+#include "study/pace.h"
+#include "sim/sim.h"
+
+/* The search at the end of a generation, and what the study adds. */
+typedef struct {
+    const SearchView *view;
+    double hypervolume; /* share of a box about the first sample; NAN: no design has succeeded yet */
+    Pace pace;
+    const Settings *settings;
+} StudyProgress;
+
+typedef struct {
+    int fresh;               /* never go on with a run: a number is added to run.out where it holds one */
+    int force;               /* changed limits are taken over */
+    int (*stop)(void *user); /* asked from any thread, often; NULL: never */
+    void (*started)(const char *folder, size_t n_simulated, void *user);
+    void (*progress)(const StudyProgress *p, void *user);
+    void *user;
+} StudyOptions;
+
+typedef struct {
+    char folder[PATH_MAX];
+    StopReason stopped;
+    size_t n_simulated, n_failed, n_front, n_repeats;
+    size_t n_tried_to_polish, n_polished; /* at the end; of these better by more than their spread */
+    size_t n_before;                      /* simulations that the run had when this session began */
+    long max_evals;
+    double seconds;                                 /* of all sessions */
+    double simulation_s, own_s;                     /* as in SearchView */
+    double search_s, waited_s, surrogate_s, busy_s; /* of this session; busy_s: in simulations, all threads added */
+    int is_aside;
+    int has_no_core;   /* of a tower */
+    SimResult no_core; /* the building alone under the same motion */
+} StudySummary;
+
+/* STATUS_STOPPED: it can go on, and the summary is filled. Settings that differ: STATUS_BAD_DATA,
+ * with the differences in `err` as far as they fit, all of them in `differences` (NULL: not wanted), a line each. */
+Status study_run(const Settings *s, const StudyOptions *options, StudySummary *summary, FILE *differences, Err *err);
+
+/* What a run holds, without the building alone; is_finished: there is nothing more to do within its limits. */
+Status study_finished(const char *folder, StudySummary *summary, int *is_finished, Err *err);
+
+/* What the search reads from the settings. */
+SearchConfig study_search_config(const Settings *s);
+
+#endif
