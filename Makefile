@@ -53,7 +53,7 @@ STABILITY.asan := --engine fast
 STABILITY_OBJ := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/stability/*.c))
 PROGRAM := $(if $(filter release,$(MODE)),imtet,$(BUILD)/imtet)
 
-.PHONY: tsan tsan-here asan asan-here valgrind torture coverage coverage-here faults fuzz fuzz-here all web report-bench setup setup-browser fresh-debian run test test-here compare stability stability-long laws bench chart format install clean .FORCE pictures
+.PHONY: tests tsan tsan-here asan asan-here valgrind torture coverage coverage-here faults fuzz fuzz-here all web report-bench setup setup-browser fresh-debian run test test-here compare stability stability-long laws bench chart format install clean .FORCE pictures
 .SECONDARY:
 all: $(PROGRAM)
 
@@ -75,6 +75,9 @@ fresh-debian:
 test: setup
 	@$(MAKE) --no-print-directory -j2 MODE=release test-here
 	@$(MAKE) --no-print-directory -j2 MODE=asan test-here
+
+# Builds every test without running one.
+tests: $(PROGRAM) $(TESTS) $(STABILITY)
 
 # A test finds the program under test in $$IMTET and the repository in its working directory.
 test-here: $(PROGRAM) $(TESTS) $(STABILITY)

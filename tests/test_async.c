@@ -8,7 +8,7 @@
 #include "base/random.h"
 #include "moga/feed.h"
 #include "moga/hypervolume.h"
-#include "evaluate/textbook.h"
+#include "simulator/textbook.h"
 
 enum { VAR_MAX = 22, OBJ_MAX = 7, ROWS_MAX = 400, GENERATIONS_MAX = 120, WORKERS_MAX = 8 };
 

@@ -3,8 +3,8 @@
 
 #include <string.h>
 
-#include "evaluate/ensemble.h"
-#include "evaluate/horizon.h"
+#include "simulator/ensemble.h"
+#include "simulator/horizon.h"
 
 static void open_world(World *w, double x[22], double gap_m)
 {

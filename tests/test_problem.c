@@ -10,10 +10,10 @@
 
 #include "base/random.h"
 #include "check.h"
-#include "evaluate/external.h"
-#include "evaluate/textbook.h"
-#include "evaluate/schema.h"
-#include "evaluate/subject.h"
+#include "simulator/external.h"
+#include "simulator/textbook.h"
+#include "simulator/schema.h"
+#include "simulator/subject.h"
 
 enum { VAR = 22, OBJ = 7 };
 

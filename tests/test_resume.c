@@ -9,7 +9,7 @@
 #include "base/pack.h"
 #include "check.h"
 #include "moga/search.h"
-#include "evaluate/textbook.h"
+#include "simulator/textbook.h"
 #include "searches.h"
 
 enum { VAR_MAX = 22, OBJ_MAX = 7, ROWS_MAX = 300, GENERATIONS_MAX = 80 };

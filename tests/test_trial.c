@@ -1,7 +1,7 @@
 #include <string.h>
 
 #include "check.h"
-#include "evaluate/trial.h"
+#include "simulator/trial.h"
 
 enum { DESIGNS = 3, N_VAR = 22 };
 

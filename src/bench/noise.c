@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "bench/sweep.h"
-#include "evaluate/ensemble.h"
+#include "simulator/ensemble.h"
 
 enum { MEMBERS = 16, DESIGNS = 9 };
 

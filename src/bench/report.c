@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "bench/sweep.h"
-#include "evaluate/measures.h"
+#include "simulator/measures.h"
 #include "store/output.h"
 
 /* Books open by more than this share of the input are a failure that the engine itself shows; an error larger than

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 #include "base/clock.h"
-#include "evaluate/ensemble.h"
+#include "simulator/ensemble.h"
 
 enum { DESIGNS = 24, DESIGNS_QUICK = 4, JUDGED = 6, ENSEMBLE_MEMBERS = 8 };
 

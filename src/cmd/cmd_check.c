@@ -2,7 +2,7 @@
 
 #include "base/units.h"
 #include "cmd/commands.h"
-#include "evaluate/subject.h"
+#include "simulator/subject.h"
 #include "scene/building.h"
 
 typedef struct {

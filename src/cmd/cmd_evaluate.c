@@ -9,9 +9,9 @@
 #include "cmd/commands.h"
 #include "cmd/look.h"
 #include "cmd/show.h"
-#include "evaluate/crew.h"
+#include "simulator/crew.h"
 #include "store/front.h"
-#include "evaluate/scenario.h"
+#include "simulator/scenario.h"
 
 enum { WITH_CORE, WITHOUT_CORE, N_CASES };
 static const SceneKind SCENES[N_CASES] = {SCENE_IMPACT, SCENE_NO_CORE};

@@ -4,9 +4,9 @@
 #include "scene/design.h"
 #include "cmd/commands.h"
 #include "cmd/show.h"
-#include "evaluate/crew.h"
-#include "evaluate/ensemble.h"
-#include "evaluate/horizon.h"
+#include "simulator/crew.h"
+#include "simulator/ensemble.h"
+#include "simulator/horizon.h"
 
 enum { MEMBERS = 16 };
 static const double CHANGE = 1e-12; /* of the gaps, between the two runs that are compared */

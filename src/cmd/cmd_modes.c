@@ -1,7 +1,7 @@
 #include "scene/design.h"
 #include "cmd/commands.h"
 #include "cmd/show.h"
-#include "evaluate/scenario.h"
+#include "simulator/scenario.h"
 
 /* Where no design is given: the wall of the paper's Table 1, linear from 12 mm to 6.4 mm. */
 static const double T_BASE_M = 0.012, T_TOP_M = 0.0064;

@@ -3,10 +3,10 @@
 #include <string.h>
 
 #include "cmd/commands.h"
-#include "evaluate/textbook.h"
+#include "simulator/textbook.h"
 #include "store/output.h"
 #include "study/study.h"
-#include "evaluate/subject.h"
+#include "simulator/subject.h"
 
 /* The table under way. */
 typedef struct {

@@ -4,10 +4,10 @@
 #include "scene/design.h"
 #include "cmd/commands.h"
 #include "cmd/show.h"
-#include "evaluate/crew.h"
-#include "evaluate/ensemble.h"
+#include "simulator/crew.h"
+#include "simulator/ensemble.h"
 #include "store/output.h"
-#include "evaluate/scenario.h"
+#include "simulator/scenario.h"
 
 typedef struct {
     SceneKind kind;

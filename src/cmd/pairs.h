@@ -2,7 +2,7 @@
 #ifndef IMTET_CMD_PAIRS_H
 #define IMTET_CMD_PAIRS_H
 
-#include "evaluate/schema.h"
+#include "simulator/schema.h"
 
 /* "NAME=NUMBER"; "NAME" alone is NAME=otherwise, and refused where that is NAN. */
 Status pair_take(const Schema *schema, const char *option, const char *text, double otherwise, size_t *k, double *value,

@@ -4,9 +4,9 @@
 
 #include <jansson.h>
 
-#include "evaluate/ensemble.h"
-#include "evaluate/measures.h"
-#include "evaluate/schema.h"
+#include "simulator/ensemble.h"
+#include "simulator/measures.h"
+#include "simulator/schema.h"
 
 json_t *json_number(double value); /* null where it is not finite */
 json_t *json_numbers(size_t n, const double values[]);

@@ -8,7 +8,7 @@
 #include "base/clock.h"
 #include "polish/local.h"
 #include "polish/polish.h"
-#include "evaluate/subject.h"
+#include "simulator/subject.h"
 
 enum { CENTRES_MAX = 150, LOCAL_MAX = 600 /* designs that the surface tries: a fit costs their cube */ };
 

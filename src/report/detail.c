@@ -5,7 +5,7 @@
 
 #include "base/units.h"
 #include "report/wavelet.h"
-#include "evaluate/crew.h"
+#include "simulator/crew.h"
 
 static const double QUIET = 0.02; /* of the largest sway */
 

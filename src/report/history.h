@@ -9,7 +9,7 @@
 #ifndef IMTET_REPORT_HISTORY_H
 #define IMTET_REPORT_HISTORY_H
 
-#include "evaluate/scenario.h"
+#include "simulator/scenario.h"
 
 typedef enum {
     ENERGY_KINETIC,

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "report/report.h"
-#include "evaluate/measures.h"
+#include "simulator/measures.h"
 #include "store/output.h"
 #include "store/provenance.h"
 

@@ -7,7 +7,7 @@
 
 #include "report/report.h"
 #include "report/gnuplot.h"
-#include "evaluate/measures.h"
+#include "simulator/measures.h"
 
 enum { HISTORY_POINTS = 2000 };
 

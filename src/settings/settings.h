@@ -43,7 +43,7 @@ typedef enum {
 #undef X
         ENGINE_COUNT
 } Engine;
-/* PROBLEM_TEXTBOOK and what follows it: evaluate/textbook.h, in its order. */
+/* PROBLEM_TEXTBOOK and what follows it: simulator/textbook.h, in its order. */
 typedef enum { PROBLEM_TOWER, PROBLEM_EXTERNAL, PROBLEM_TEXTBOOK } ProblemKind;
 typedef enum { ROBUST_WORST, ROBUST_MEAN } Robust;
 typedef enum { UNIT_FROM_FILE, UNIT_M_S2, UNIT_CM_S2, UNIT_G } MotionUnit;

@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "store/saved.h"
-#include "evaluate/measures.h"
+#include "simulator/measures.h"
 
 /* Of id, variables and objectives; spreads may follow. */
 static size_t n_columns(const Table *t)

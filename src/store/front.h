@@ -9,7 +9,7 @@
 #define IMTET_STORE_FRONT_H
 
 #include "base/table.h"
-#include "evaluate/schema.h"
+#include "simulator/schema.h"
 
 typedef struct {
     Table table; /* id, variables, objectives */

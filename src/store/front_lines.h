@@ -9,7 +9,7 @@
 #include <stdio.h>
 
 #include "moga/search.h"
-#include "evaluate/schema.h"
+#include "simulator/schema.h"
 
 typedef struct {
     const Schema *schema; /* borrowed */

@@ -5,7 +5,7 @@
 
 #include <jansson.h>
 
-#include "evaluate/subject.h"
+#include "simulator/subject.h"
 
 const char *program_version(void);  /* 0.1.0 */
 const char *program_revision(void); /* as git describes it, or unknown */

@@ -15,7 +15,7 @@
 
 #include "moga/search.h"
 #include "store/database.h"
-#include "evaluate/schema.h"
+#include "simulator/schema.h"
 
 enum { KIND_UNFINISHED = KIND_COUNT, POLISHED_FIRST = 1000001, NEVER = -1 };
 

@@ -29,7 +29,7 @@
 #include <jansson.h>
 
 #include "store/saved.h"
-#include "evaluate/subject.h"
+#include "simulator/subject.h"
 
 typedef struct RunStore RunStore;
 

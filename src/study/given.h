@@ -8,7 +8,7 @@
 #ifndef IMTET_STUDY_GIVEN_H
 #define IMTET_STUDY_GIVEN_H
 
-#include "evaluate/schema.h"
+#include "simulator/schema.h"
 
 Status given_read(const char *start, const Schema *schema, double **X, size_t *n, Err *err);
 

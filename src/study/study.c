@@ -16,7 +16,7 @@
 #include "store/provenance.h"
 #include "polish/refine.h"
 #include "store/store.h"
-#include "evaluate/subject.h"
+#include "simulator/subject.h"
 
 typedef struct {
     Settings used;

@@ -1,4 +1,4 @@
-#include "evaluate/guard.h"
+#include "simulator/guard.h"
 
 #include <errno.h>
 #include <signal.h>

@@ -1,9 +1,9 @@
-/* evaluate/scenario.h -- settings made real: the ground motion read and scaled, the scene built on it.
+/* simulator/scenario.h -- settings made real: the ground motion read and scaled, the scene built on it.
  *
  * Life cycle  world_open -> ... -> world_close      (a zeroed World may be closed)
  * Ownership   the scene borrows the motion beside it: a World must stay where it was opened */
-#ifndef IMTET_EVALUATE_SCENARIO_H
-#define IMTET_EVALUATE_SCENARIO_H
+#ifndef IMTET_SIMULATOR_SCENARIO_H
+#define IMTET_SIMULATOR_SCENARIO_H
 
 #include "scene/motion.h"
 #include "sim/sim.h"

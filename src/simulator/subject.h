@@ -1,23 +1,23 @@
-/* evaluate/subject.h -- what is searched: the tower, a simulator of somebody else, or a textbook problem, behind one
+/* simulator/subject.h -- what is searched: the tower, a simulator of somebody else, or a textbook problem, behind one
  * Problem.
  *
  *   problem.kind = tower      gaps and walls; t_top > t_base is repaired by swapping the two; every design is as many
- *                             simulations as sim.ensemble and motion.records ask for (evaluate/trial.h)
- *                  external   workers that speak JSON lines (evaluate/external.h)
- *                  dtlz2 ...  evaluate/textbook.h, with problem.noise where that is set
+ *                             simulations as sim.ensemble and motion.records ask for (simulator/trial.h)
+ *                  external   workers that speak JSON lines (simulator/external.h)
+ *                  dtlz2 ...  simulator/textbook.h, with problem.noise where that is set
  *
  * Limits of the user (search.limits = j3_g<=5,edcs_pct>=3) become constraints: g = (value - limit) / |limit| for <=.
  *
  * Life cycle  subject_open -> search on subject_problem -> subject_close
  * Observer    hears of every simulation as soon as it is done, may stop a batch, and may know results from before
  * Threads     call it from one thread; `go_on` is asked from several, calls of `done` exclude each other */
-#ifndef IMTET_EVALUATE_SUBJECT_H
-#define IMTET_EVALUATE_SUBJECT_H
+#ifndef IMTET_SIMULATOR_SUBJECT_H
+#define IMTET_SIMULATOR_SUBJECT_H
 
 #include "moga/problem.h"
-#include "evaluate/crew.h"
-#include "evaluate/schema.h"
-#include "evaluate/trial.h"
+#include "simulator/crew.h"
+#include "simulator/schema.h"
+#include "simulator/trial.h"
 
 typedef struct Subject Subject;
 

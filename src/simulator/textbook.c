@@ -1,4 +1,4 @@
-#include "evaluate/textbook.h"
+#include "simulator/textbook.h"
 
 #include <math.h>
 

@@ -1,11 +1,11 @@
-/* evaluate/crew.h -- one simulator per thread, and the one parallel loop of the program.
+/* simulator/crew.h -- one simulator per thread, and the one parallel loop of the program.
  *
  * Life cycle  crew_create -> crew_run ... -> crew_free
  * Ownership   borrows the Scene, which must outlive it
  * Threads     call it from one thread; tasks are shared out one by one and stored by index, so the results do not
  *             depend on how many threads there are */
-#ifndef IMTET_EVALUATE_CREW_H
-#define IMTET_EVALUATE_CREW_H
+#ifndef IMTET_SIMULATOR_CREW_H
+#define IMTET_SIMULATOR_CREW_H
 
 #include "base/watch.h"
 #include "sim/sim.h"

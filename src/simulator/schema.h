@@ -1,11 +1,11 @@
-/* evaluate/schema.h -- the columns of a run: variables, objectives, and what else a simulation tells.
+/* simulator/schema.h -- the columns of a run: variables, objectives, and what else a simulation tells.
  *
  *   column 0..n_var-1, then n_obj objectives, then n_extra measures that are only written down
  *
  * Internally every objective is minimised, f = sense * value; every file shows the natural value.
  * Ownership  schema_of allocates, schema_free releases (an empty Schema is fine) */
-#ifndef IMTET_EVALUATE_SCHEMA_H
-#define IMTET_EVALUATE_SCHEMA_H
+#ifndef IMTET_SIMULATOR_SCHEMA_H
+#define IMTET_SIMULATOR_SCHEMA_H
 
 #include "base/list.h"
 #include "settings/settings.h"

@@ -1,4 +1,4 @@
-#include "evaluate/measures.h"
+#include "simulator/measures.h"
 
 #include <math.h>
 

@@ -1,4 +1,4 @@
-/* evaluate/external.h -- any simulator, as worker processes that speak JSON lines (docs/external.md).
+/* simulator/external.h -- any simulator, as worker processes that speak JSON lines (docs/external.md).
  *
  *   to its standard input      {"id":17,"x":[0.1,0.2]}
  *   from its standard output   {"id":17,"f":[1.5,2.5]}   or   {"id":17,"error":"why"}
@@ -10,12 +10,12 @@
  *
  * Life cycle  external_open -> external_run ... -> external_close
  * Processes   started without a shell, each in its own process group; standard error is shared with ours; one more
- * kills them when we are killed (evaluate/guard.h)
+ * kills them when we are killed (simulator/guard.h)
  * Threads     call it from one thread, but for external_ask; which worker gets which design is a matter of time,
  * answers are stored by index Errors      a command that cannot be started at all is STATUS_BAD_DATA; whatever a worker
  * does is not an error */
-#ifndef IMTET_EVALUATE_EXTERNAL_H
-#define IMTET_EVALUATE_EXTERNAL_H
+#ifndef IMTET_SIMULATOR_EXTERNAL_H
+#define IMTET_SIMULATOR_EXTERNAL_H
 
 #include <stddef.h>
 

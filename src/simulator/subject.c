@@ -1,4 +1,4 @@
-#include "evaluate/subject.h"
+#include "simulator/subject.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -10,9 +10,9 @@
 #include "base/random.h"
 #include "moga/dominance.h"
 #include "moga/search.h"
-#include "evaluate/external.h"
-#include "evaluate/textbook.h"
-#include "evaluate/measures.h"
+#include "simulator/external.h"
+#include "simulator/textbook.h"
+#include "simulator/measures.h"
 
 enum { LIMITS_MAX = 32 };
 

@@ -1,4 +1,4 @@
-#include "evaluate/horizon.h"
+#include "simulator/horizon.h"
 
 #include <math.h>
 #include <stdlib.h>

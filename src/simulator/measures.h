@@ -1,9 +1,9 @@
-/* evaluate/measures.h -- the numbers by which a design is judged: names, signs and places, in one table.
+/* simulator/measures.h -- the numbers by which a design is judged: names, signs and places, in one table.
  *
  * The first N_OBJECTIVES are searched for; internally all are minimised, f = sense * value, while every file and every
  * table shows the natural value. The rest describe the run itself. */
-#ifndef IMTET_EVALUATE_MEASURES_H
-#define IMTET_EVALUATE_MEASURES_H
+#ifndef IMTET_SIMULATOR_MEASURES_H
+#define IMTET_SIMULATOR_MEASURES_H
 
 #include "sim/sim.h"
 

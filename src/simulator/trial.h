@@ -1,4 +1,4 @@
-/* evaluate/trial.h -- a design is several simulations: members of an ensemble, each under every record.
+/* simulator/trial.h -- a design is several simulations: members of an ensemble, each under every record.
  *
  *   member 0 is the design, member k has every gap changed: gap (1 + ENSEMBLE_CHANGE z) + tolerance z', z and z'
  * standard normal from the streams (seed, k): the same errors for every design, so that differences between designs are
@@ -13,12 +13,12 @@
  * Life cycle  trials_open -> trials_run ... -> trials_close
  * Threads     call it from one thread; the simulations are shared out over the crews' threads, the numbers do not
  * depend on how many there are */
-#ifndef IMTET_EVALUATE_TRIAL_H
-#define IMTET_EVALUATE_TRIAL_H
+#ifndef IMTET_SIMULATOR_TRIAL_H
+#define IMTET_SIMULATOR_TRIAL_H
 
-#include "evaluate/crew.h"
-#include "evaluate/measures.h"
-#include "evaluate/scenario.h"
+#include "simulator/crew.h"
+#include "simulator/measures.h"
+#include "simulator/scenario.h"
 
 typedef struct Trials Trials;
 

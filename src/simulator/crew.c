@@ -1,4 +1,4 @@
-#include "evaluate/crew.h"
+#include "simulator/crew.h"
 
 #include <omp.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "evaluate/scenario.h"
+#include "simulator/scenario.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-#include "evaluate/external.h"
+#include "simulator/external.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -16,7 +16,7 @@
 #include <unistd.h>
 
 #include "base/clock.h"
-#include "evaluate/guard.h"
+#include "simulator/guard.h"
 
 enum { LINE_MAX_BYTES = 1 << 20, READ_BYTES = 1 << 16, WORDS_MAX = 128, GRACE_MS = 1000, LOOK_MS = 200 };
 

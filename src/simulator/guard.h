@@ -1,4 +1,4 @@
-/* evaluate/guard.h -- a process of our own that kills worker processes when we end without doing so: by a signal, out of
+/* simulator/guard.h -- a process of our own that kills worker processes when we end without doing so: by a signal, out of
  * memory, kill -9.
  *
  * It holds one end of a pair of sockets. Their other end closes when we end, however that is; then every process group
@@ -7,8 +7,8 @@
  * Life cycle  guard_start -> guard_tell ... -> guard_end
  * Threads     guard_tell may be called from several, each for slots of its own
  * Errors      where it cannot be started; one that is gone later is not missed */
-#ifndef IMTET_EVALUATE_GUARD_H
-#define IMTET_EVALUATE_GUARD_H
+#ifndef IMTET_SIMULATOR_GUARD_H
+#define IMTET_SIMULATOR_GUARD_H
 
 #include <stddef.h>
 #include <sys/types.h>

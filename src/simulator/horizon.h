@@ -1,13 +1,13 @@
-/* evaluate/horizon.h -- how far ahead one run says what a second, hardly different one does.
+/* simulator/horizon.h -- how far ahead one run says what a second, hardly different one does.
  *
  * Two runs of the engine fast, gaps changed relatively by `change` in the second. Their distance is measured in energy:
  *   d(t)^2 = sum_i (dq_i'^2 + w_i^2 dq_i^2) / max_{s <= t} sum_i (q_i'^2 + w_i^2 q_i^2)
  * over all modes of building and core, at every sample of the motion. The predictability horizon is the first time at
  * which d exceeds a level. */
-#ifndef IMTET_EVALUATE_HORIZON_H
-#define IMTET_EVALUATE_HORIZON_H
+#ifndef IMTET_SIMULATOR_HORIZON_H
+#define IMTET_SIMULATOR_HORIZON_H
 
-#include "evaluate/scenario.h"
+#include "simulator/scenario.h"
 
 enum { HORIZON_LEVELS = 4 };
 static const double HORIZON_LEVEL[HORIZON_LEVELS] = {1e-6, 1e-4, 1e-2, 1e-1};

@@ -1,12 +1,12 @@
-#include "evaluate/trial.h"
+#include "simulator/trial.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/random.h"
-#include "evaluate/ensemble.h"
-#include "evaluate/schema.h"
+#include "simulator/ensemble.h"
+#include "simulator/schema.h"
 
 enum { RECORDS_MAX = 16 };
 

@@ -1,4 +1,4 @@
-#include "evaluate/ensemble.h"
+#include "simulator/ensemble.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-/* evaluate/textbook.h -- test problems whose front is known, for trying the search without a simulator.
+/* simulator/textbook.h -- test problems whose front is known, for trying the search without a simulator.
  *
  *   DTLZ2  x in [0,1]^n; sum f^2 = (1 + g)^2 with g = sum over the last n - m + 1 variables of (x - 1/2)^2;
  *          the front is the positive part of the unit sphere
@@ -13,8 +13,8 @@
  * Sources  Deb, Thiele, Laumanns and Zitzler, CEC 2002, 825-830 (DTLZ2); Huband, Hingston, Barone and While, IEEE
  *          Trans. Evol. Comput. 10 (2006) 477-506 (WFG4, WFG5); Jain and Deb, IEEE Trans. Evol. Comput. 18 (2014)
  *          602-622 (the inversion). */
-#ifndef IMTET_EVALUATE_TEXTBOOK_H
-#define IMTET_EVALUATE_TEXTBOOK_H
+#ifndef IMTET_SIMULATOR_TEXTBOOK_H
+#define IMTET_SIMULATOR_TEXTBOOK_H
 
 #include <stddef.h>
 

@@ -1,11 +1,11 @@
-#include "evaluate/schema.h"
+#include "simulator/schema.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/cell.h"
 #include "scene/design.h"
-#include "evaluate/measures.h"
+#include "simulator/measures.h"
 
 void verdict_set(Verdict *v, const char *outcome, const char *reason)
 {

@@ -1,15 +1,15 @@
-/* evaluate/ensemble.h -- an objective is a number with a spread: the same design many times, its gaps changed a little.
+/* simulator/ensemble.h -- an objective is a number with a spread: the same design many times, its gaps changed a little.
  *
  *   x^(0) = x,   gap_j^(k) = gap_j (1 + change z_jk),  k = 1..n-1,  z standard normal from the stream (seed, k)
  *
  * After some hundreds of impacts the members have parted: what they share is the answer, what they do not share is its
  * spread. Mean and standard deviation (n - 1) over the members that finished.
  * Threads  the members are shared out over the crew; the numbers do not depend on how many threads it has */
-#ifndef IMTET_EVALUATE_ENSEMBLE_H
-#define IMTET_EVALUATE_ENSEMBLE_H
+#ifndef IMTET_SIMULATOR_ENSEMBLE_H
+#define IMTET_SIMULATOR_ENSEMBLE_H
 
-#include "evaluate/crew.h"
-#include "evaluate/measures.h"
+#include "simulator/crew.h"
+#include "simulator/measures.h"
 
 typedef struct {
     int members, finished;
