@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "bench/parted.h"
+#include "scene/motion_source.h"
 
 typedef struct {
     Settings s;

@@ -8,7 +8,7 @@
 #include <lapacke.h>
 
 #include "base/table.h"
-#include "scene/motion.h"
+#include "scene/motion_source.h"
 #include "scene/spectrum.h"
 
 static const double G = 9.81;

@@ -8,6 +8,7 @@
 #include "base/table.h"
 #include "sim/fast/fast.h"
 #include "sim/sim.h"
+#include "scene/motion_source.h"
 
 /* ---- one ball and a wall ------------------------------------------------------------------------------------ */
 

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "scene/motion.h"
+#include "scene/motion_source.h"
 #include "scene/motion_read.h"
 #include "scene/spectrum.h"
 

@@ -6,6 +6,7 @@
 
 #include "bench/observe.h"
 #include "scene/motion_read.h"
+#include "scene/motion_source.h"
 
 typedef struct {
     const char *record, *building;

@@ -8,7 +8,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-/* A pipe that somebody left in a folder would be waited for without end; /dev/stdin and the pipes of a shell's <(...)
+/* A named pipe in a folder may have no writer, and reading it would block for ever; /dev/stdin and the pipes of a shell's <(...)
  * have a writer. */
 static int is_left_pipe(const char *path)
 {

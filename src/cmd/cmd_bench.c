@@ -4,6 +4,7 @@
 #include "bench/throughput.h"
 #include "cmd/commands.h"
 #include "store/output.h"
+#include "scene/motion_source.h"
 
 typedef struct {
     Settings settings;

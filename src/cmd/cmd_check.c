@@ -1,9 +1,11 @@
+#include <math.h>
 #include <string.h>
 
 #include "base/units.h"
 #include "cmd/commands.h"
 #include "simulator/subject.h"
 #include "scene/building.h"
+#include "scene/motion_source.h"
 
 typedef struct {
     int n;
@@ -26,7 +28,7 @@ static int check_building(const Settings *s, Faults *faults)
     Building b;
     if (!note(faults, building_load(&b, s->building.model, &e), "building.model", &e))
         return 0;
-    printf("building  %s: %d floors, first mode %.4f Hz\n", s->building.model, b.n, b.omega[0] / 6.283185307179586);
+    printf("building  %s: %d floors, first mode %.4f Hz\n", s->building.model, b.n, b.omega[0] / (2 * M_PI));
     building_free(&b);
     return 1;
 }

@@ -12,6 +12,7 @@
 #include "simulator/crew.h"
 #include "store/front.h"
 #include "simulator/scenario.h"
+#include "scene/motion_source.h"
 
 enum { WITH_CORE, WITHOUT_CORE, N_CASES };
 static const SceneKind SCENES[N_CASES] = {SCENE_IMPACT, SCENE_NO_CORE};

@@ -3,7 +3,7 @@
 #include "cmd/show.h"
 #include "simulator/scenario.h"
 
-/* Where no design is given: the wall of the paper's Table 1, linear from 12 mm to 6.4 mm. */
+/* Where no design is given: the core of the paper's Table 1, linear from 12 mm to 6.4 mm. */
 static const double T_BASE_M = 0.012, T_TOP_M = 0.0064;
 
 typedef struct {
@@ -12,7 +12,7 @@ typedef struct {
     double core_mass_kg, t_base_m, t_top_m;
 } Modes;
 
-static Status choose_walls(const Args *args, Modes *m, Err *err)
+static Status choose_thickness(const Args *args, Modes *m, Err *err)
 {
     const char *path = args_value(args, "--design");
     Designs d;
@@ -31,7 +31,7 @@ static Status compute(const Args *args, const Scene *scene, Modes *m, Err *err)
 {
     double x[FLOORS_MAX + 2] = {0};
     m->n = scene_n_floors(scene);
-    TRY(choose_walls(args, m, err));
+    TRY(choose_thickness(args, m, err));
     x[m->n] = m->t_base_m;
     x[m->n + 1] = m->t_top_m;
     return scene_frequencies(scene, x, m->building, m->core, m->zero_gap, &m->core_mass_kg, err);
@@ -56,7 +56,7 @@ static void print_table(const Modes *m, const Settings *s)
     if (s->core.section == CORE_EFFECTIVE)
         printf(" (effective section)\n\n");
     else
-        printf(", wall %g to %g mm\n\n", 1e3 * m->t_base_m, 1e3 * m->t_top_m);
+        printf(", thickness %g to %g mm\n\n", 1e3 * m->t_base_m, 1e3 * m->t_top_m);
     printf("mode  building_hz      core_hz  zero_gap_hz\n");
     for (int i = 0; i < m->n; i++)
         printf("%4d %12.4f %12.4f %12.4f\n", i + 1, m->building[i], m->core[i], m->zero_gap[i]);
@@ -79,7 +79,7 @@ static Status run(const Args *args, Err *err)
 }
 
 static const ArgOption OPTIONS[] = {
-    {"--design", "FILE", NULL, 0, "take the core's wall from the first row of a design file"},
+    {"--design", "FILE", NULL, 0, "take the core's thickness from the first row of a design file"},
     OPTION_JSON,
     OPTION_SET,
     OPTION_END,
@@ -91,8 +91,9 @@ const Command CMD_MODES = {
     .summary = "natural frequencies of building, core and zero-gap assembly",
     .example = "imtet modes configs/quick.ini",
     .details =
-        "Natural frequencies [Hz] of the building, of the core and of the two tied together without gaps. Without\n"
-        "--design the core's wall runs from 12 mm in the first storey to 6.4 mm in the last; an effective section\n"
+        "Natural frequencies [Hz] of the building, of the core and of the two rigidly connected (zero gap). Without\n"
+        "--design the core's thickness runs from 12 mm in the first storey to 6.4 mm in the last; an effective "
+        "section\n"
         "(core.section) does not depend on it.",
     .options = OPTIONS,
     .run = run,

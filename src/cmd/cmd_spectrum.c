@@ -8,6 +8,7 @@
 #include "report/gnuplot.h"
 #include "store/output.h"
 #include "scene/spectrum.h"
+#include "scene/motion_source.h"
 
 enum { N_PERIODS = 121, PRINTED_EACH = 6 };
 static const double DAMPING = 0.05, SHORTEST_S = 0.02, LONGEST_S = 20, TWO_PI = 6.283185307179586;

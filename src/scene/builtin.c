@@ -33,7 +33,6 @@
 
 #include "scene/motion_read.h"
 
-static const double PI = 3.14159265358979323846;
 static const double DT_S = 0.02;
 
 typedef struct {
@@ -146,7 +145,7 @@ static const Model MODELS[] = {
 /* Adds the derivative of v at the n samples. */
 static void add_pulse(const Pulse *p, size_t n, double accel[])
 {
-    const double w = 2 * PI * p->frequency_hz, half = p->gamma / (2 * p->frequency_hz);
+    const double w = 2 * M_PI * p->frequency_hz, half = p->gamma / (2 * p->frequency_hz);
     for (size_t i = 0; i < n; i++) {
         const double t = (double)i * DT_S - p->centre_s;
         if (fabs(t) >= half)
@@ -162,7 +161,7 @@ static double white(uint32_t key, size_t i)
     const philox4x32_ctr_t at = {{(uint32_t)i, 0, 0, 0}};
     const philox4x32_key_t name = {{key, 0x67726f75}};
     const philox4x32_ctr_t bits = philox4x32(at, name);
-    return sqrt(-2 * log((bits.v[0] + 0.5) * 0x1p-32)) * cos(2 * PI * (bits.v[1] + 0.5) * 0x1p-32);
+    return sqrt(-2 * log((bits.v[0] + 0.5) * 0x1p-32)) * cos(2 * M_PI * (bits.v[1] + 0.5) * 0x1p-32);
 }
 
 /* Its end is tapered, so that the filters come to rest before the motion ends. */
@@ -171,7 +170,7 @@ static double envelope(const Noise *z, double t, double duration)
     const double into = t - z->begin_s, over = into - z->rise_s - z->plateau_s;
     if (into <= 0 || t >= duration - 2)
         return 0;
-    const double taper = t > duration - 6 ? 0.5 + 0.5 * cos(PI * (t - duration + 6) / 4) : 1;
+    const double taper = t > duration - 6 ? 0.5 + 0.5 * cos(M_PI * (t - duration + 6) / 4) : 1;
     const double rise = into < z->rise_s ? into * into / (z->rise_s * z->rise_s) : 1;
     return taper * rise * (over > 0 ? exp(-over / z->decay_s) : 1);
 }
@@ -193,8 +192,8 @@ static void filter_step(Filter *f, double a)
 static void add_noise(const Model *model, size_t n, double accel[])
 {
     const Noise *z = &model->noise;
-    Filter layer = {.w = 2 * PI * z->ground_hz, .zeta = z->ground_damping};
-    Filter high_pass = {.w = 2 * PI * z->high_pass_hz, .zeta = z->high_pass_damping};
+    Filter layer = {.w = 2 * M_PI * z->ground_hz, .zeta = z->ground_damping};
+    Filter high_pass = {.w = 2 * M_PI * z->high_pass_hz, .zeta = z->high_pass_damping};
     for (size_t i = 0; i < n; i++) {
         const double t = (double)i * DT_S;
         const double rock = z->level_m_s2 * envelope(z, t, model->duration_s) * white(model->key, i);

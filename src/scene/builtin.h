@@ -1,4 +1,4 @@
-/* scene/builtin.h -- ground motions that the program generates, so that a study can start without anybody's record.
+/* scene/builtin.h -- ground motions that the program generates, so that a study can start without a record.
  *
  * Ownership  m->accel is allocated; motion_free releases it (after a failure there is nothing to free)
  * Threads    no state; the same samples every time */

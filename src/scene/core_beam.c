@@ -110,9 +110,9 @@ Status core_beam_make(CoreBeam *c, const Settings *s, int n, double t_base_m, do
 {
     const size_t size = 2 * (size_t)n;
     if (s->core.section != CORE_EFFECTIVE && !(t_base_m > 0 && t_top_m > 0))
-        return fail(err, STATUS_BAD_DATA, "core: wall thickness %g -> %g m must be positive", t_base_m, t_top_m);
+        return fail(err, STATUS_BAD_DATA, "core: thickness %g -> %g m must be positive", t_base_m, t_top_m);
     if (s->core.section == CORE_BOX && !(2 * fmax(t_base_m, t_top_m) <= s->core.side_m))
-        return fail(err, STATUS_BAD_DATA, "core: two walls of %g m do not fit into core.side_m = %g m",
+        return fail(err, STATUS_BAD_DATA, "core: twice a thickness of %g m does not fit into core.side_m = %g m",
                     fmax(t_base_m, t_top_m), s->core.side_m);
     double *K = calloc(2 * size * size + 4 * size * size, sizeof *K);
     if (!K)

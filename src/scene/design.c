@@ -62,7 +62,7 @@ static Status check_values(const Designs *d, const char *path, Err *err)
                 return fail(err, STATUS_BAD_DATA, "%s:%zu: %s is %g; a gap is not negative", path, d->line[i], name,
                             value);
             if (j >= d->n_floors && value <= 0)
-                return fail(err, STATUS_BAD_DATA, "%s:%zu: %s is %g; a wall is thicker than that", path, d->line[i],
+                return fail(err, STATUS_BAD_DATA, "%s:%zu: %s is %g; a thickness must be above 0", path, d->line[i],
                             name, value);
         }
     return STATUS_OK;

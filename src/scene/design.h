@@ -1,10 +1,10 @@
 /* scene/design.h -- designs read from a CSV file.
  *
- *   gap_01_m,...,gap_NN_m,t_base_m,t_top_m        one column per floor, bottom floor first, then the core's wall
+ *   gap_01_m,...,gap_NN_m,t_base_m,t_top_m        one column per floor, bottom floor first, then the core's thickness
  *   0.05,...,0.05,0.012,0.0064                    any number of rows
  *
- * Every fault names file, line and column. A negative or non-finite gap and a wall that is not positive are refused;
- * t_top_m > t_base_m is the reader's business to judge.
+ * Every fault names file, line and column. A negative or non-finite gap and a thickness that is not positive are refused;
+ * t_top_m > t_base_m is let pass; the caller judges.
  *
  * Ownership  design_read allocates, design_free releases (an empty Designs is fine). */
 #ifndef IMTET_SCENE_DESIGN_H

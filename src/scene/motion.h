@@ -2,18 +2,16 @@
  *
  *   a(t) = accel[k] + (accel[k+1] - accel[k]) (t - t_k) / dt,   t_k = k dt,   k = 0..n-1,   duration (n-1) dt
  *
- * Life cycle  motion_load -> motion_prepare -> ... -> motion_free      (an empty Motion may be freed)
+ * Life cycle  motion_load or motion_open (scene/motion_source.h) -> motion_prepare -> ... -> motion_free      (an empty Motion may be freed)
  * Ownership   accel belongs to the Motion
  * Units       SI; the unit of a file is converted once, here
- * Threads     read-only after motion_prepare
- * Errors      every fault of a file names file, line and what was found */
+ * Threads     read-only after motion_prepare */
 #ifndef IMTET_SCENE_MOTION_H
 #define IMTET_SCENE_MOTION_H
 
 #include <stddef.h>
 #include <stdint.h>
 
-#include "settings/settings.h"
 #include "base/status.h"
 
 typedef struct {
@@ -25,14 +23,6 @@ typedef struct {
     char channel[32];   /* its name in the file; empty where it has none */
     uint64_t file_hash; /* FNV-1a of the file's bytes, or of the generated samples */
 } Motion;
-
-/* source: a path (scene/motion_read.h has the kinds of file) or builtin:kobe-like | builtin:elcentro-like |
- * builtin:sylmar-like. unit: UNIT_FROM_FILE demands that the file says it; otherwise it must not contradict the file;
- * it does not matter to a built-in motion. */
-Status motion_load(Motion *m, const char *source, MotionUnit unit, Err *err);
-
-/* motion.record as the further settings of the section want it read; still as recorded. */
-Status motion_open(Motion *m, const Settings *s, Err *err);
 
 /* t -> stretch t; then scaled so that max |accel| = pga_g * 9.81 m/s2 (pga_g = 0: as recorded). */
 Status motion_prepare(Motion *m, double pga_g, double stretch, Err *err);

@@ -4,8 +4,6 @@
 
 #include "base/units.h"
 
-static const double PI = 3.14159265358979323846;
-
 /* ---- oscillator ----------------------------------------------------------------------------------------------- */
 
 typedef struct {
@@ -110,17 +108,17 @@ static double largest_inside(const Interval *in, double dt, double v_end)
     const double r = -in->a - 2 * o->zeta * o->w * in->y.v - o->w * o->w * in->y.u; /* u''(0)  */
     const double j = -in->slope - 2 * o->zeta * o->w * r - o->w * o->w * in->y.v;   /* u'''(0) */
     double phase = atan2(-r * o->wd, r * o->zeta * o->w + j);                       /* wd tau of a zero, modulo pi */
-    phase -= PI * floor(phase / PI);
-    const double half_cycles = ceil(fmax(o->wd * dt - phase, 0) / PI);
+    phase -= M_PI * floor(phase / M_PI);
+    const double half_cycles = ceil(fmax(o->wd * dt - phase, 0) / M_PI);
     double lo = 0, v_lo = in->y.v, largest = 0;
     for (double k = 0; k <= half_cycles; k++) {
         if (k == 4 && half_cycles > 9) {
             k = half_cycles - 4;
-            lo = (phase + (k - 1) * PI) / o->wd;
+            lo = (phase + (k - 1) * M_PI) / o->wd;
             v_lo = state_at(in, lo).v;
         }
         const int last = k == half_cycles;
-        const double hi = last ? dt : (phase + k * PI) / o->wd;
+        const double hi = last ? dt : (phase + k * M_PI) / o->wd;
         const double v_hi = last ? v_end : state_at(in, hi).v;
         if (v_lo * v_hi < 0)
             largest = fmax(largest, extremum(in, lo, hi, v_lo));
@@ -160,7 +158,7 @@ static double largest_displacement(const Motion *m, const Oscillator *o)
         const double slope = (m->accel[i + 1] - m->accel[i]) / m->dt_s;
         largest = cross(o, &f, &y, m->accel[i], slope, m->dt_s, largest);
     }
-    const double half_period = PI / o->wd;
+    const double half_period = M_PI / o->wd;
     const Flow rest = flow(o, half_period);
     return cross(o, &rest, &y, 0, 0, half_period, largest);
 }
@@ -173,7 +171,7 @@ void spectrum_psa(const Motion *m, double zeta, size_t n, const double T[], doub
             psa[i] = motion_peak(m);
             continue;
         }
-        const double w = 2 * PI / T[i];
+        const double w = 2 * M_PI / T[i];
         const Oscillator o = {.w = w, .zeta = zeta, .wd = w * sqrt(1 - zeta * zeta), .per_ww = 1 / (w * w)};
         psa[i] = w * w * largest_displacement(m, &o);
     }
@@ -275,7 +273,7 @@ void motion_figures(const Motion *m, MotionFigures *out)
         v = velocity(&g, g.dt);
         d = displacement(&g, g.dt);
     }
-    out->arias_m_s = PI / (2 * GRAVITY) * squares;
+    out->arias_m_s = M_PI / (2 * GRAVITY) * squares;
     out->d5_95_s = squares > 0 ? time_of_level(m, 0.95 * squares) - time_of_level(m, 0.05 * squares) : 0;
 }
 

@@ -1,4 +1,5 @@
 #include "simulator/scenario.h"
+#include "scene/motion_source.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -8,7 +8,7 @@
 
 #include "base/hash.h"
 #include "base/list.h"
-#include "scene/motion.h"
+#include "scene/motion_source.h"
 
 uint64_t moved_hash(uint64_t so_far, uint64_t file_hash)
 {

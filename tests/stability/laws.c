@@ -6,6 +6,7 @@
 #include "oracle.h"
 #include "sim/engine.h"
 #include "tower.h"
+#include "scene/motion_source.h"
 
 enum { LAWS = LAW_JANKOWSKI + 1, N_R = 20 };
 static const char *const NAMES[LAWS] = {"paper", "exact", "lankarani-nikravesh", "flores", "jankowski"};

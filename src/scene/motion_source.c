@@ -1,0 +1,31 @@
+#include "scene/motion_source.h"
+
+#include <string.h>
+
+#include "scene/builtin.h"
+#include "scene/motion_read.h"
+
+static Status load(Motion *m, const char *source, const MotionHow *how, Err *err)
+{
+    static const char prefix[] = "builtin:";
+    static const char *const MOTIONS[] = {"builtin:kobe-like", "builtin:elcentro-like", "builtin:sylmar-like"};
+    if (strncmp(source, prefix, sizeof prefix - 1) == 0)
+        return builtin_motion(m, source + sizeof prefix - 1, err); /* in m/s2, one channel, whatever is said of files */
+    const Status status = motion_read(m, source, how, err);
+    const char *near = status == STATUS_MISSING ? nearest_word(source, MOTIONS, 3) : NULL;
+    return near ? fail(err, status, "%s: there is no such file; did you mean %s?", source, near) : status;
+}
+
+Status motion_load(Motion *m, const char *source, MotionUnit unit, Err *err)
+{
+    return load(m, source, &(MotionHow){.unit = unit}, err);
+}
+
+Status motion_open(Motion *m, const Settings *s, Err *err)
+{
+    const MotionHow how = {.unit = (MotionUnit)s->motion.unit,
+                           .channel = s->motion.channel,
+                           .dt_s = s->motion.dt_s,
+                           .resample_dt_s = s->motion.resample_dt_s};
+    return load(m, s->motion.record, &how, err);
+}

@@ -1,0 +1,22 @@
+/* scene/motion_source.h -- a ground motion by the name that a user gives: a file or a built-in motion.
+ *
+ *   builtin:kobe-like | builtin:elcentro-like | builtin:sylmar-like     scene/builtin.h
+ *   any other                                                           a path; scene/motion_read.h has the kinds of file
+ *
+ * Ownership  m->accel is allocated; motion_free releases it (after a failure there is nothing to free)
+ * Threads    no state
+ * Errors     every fault of a file names file, line and what was found */
+#ifndef IMTET_SCENE_MOTION_SOURCE_H
+#define IMTET_SCENE_MOTION_SOURCE_H
+
+#include "scene/motion.h"
+#include "settings/settings.h"
+
+/* unit: UNIT_FROM_FILE demands that the file says it; otherwise it must not contradict the file; it does not matter to a
+ * built-in motion. */
+Status motion_load(Motion *m, const char *source, MotionUnit unit, Err *err);
+
+/* motion.record as the further settings of the section want it read; not scaled yet (motion_prepare). */
+Status motion_open(Motion *m, const Settings *s, Err *err);
+
+#endif
