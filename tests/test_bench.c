@@ -66,7 +66,7 @@ static void test_an_error_is_zero_against_itself_and_first_order_in_a_change(voi
     CHECK_OK(observe(&stage, ENGINE_ETDRK4, ACCURACY_STANDARD, 1e-3, &o, &err), &err);
     changed = o;
     changed.result.j3_g *= 1.001;
-    changed.closings[0].t += 1e-3;
+    changed.onsets[0].t += 1e-3;
     for (int i = 0; i < 2 * stage.model.m; i++)
         changed.state[i] *= 1.01;
     const Errors none = errors_between(&stage, &o, &o), some = errors_between(&stage, &changed, &o);

@@ -29,7 +29,7 @@ static SimResult run(const Promise *p, const SimModel *model, const Motion *m, d
 {
     SimResult r;
     Err err;
-    const EngineOptions options = {.duration = duration, .accuracy = ACCURACY_FINE, .knob = p->knob};
+    const EngineOptions options = {.duration = duration, .accuracy = ACCURACY_FINE, .tolerance = p->knob};
     CHECK_OK(engine_entry(p->engine)->run(model, m, &options, &r, &err), &err);
     if (r.outcome != RUN_OK)
         print_error("%s: %s\n", engine_entry(p->engine)->name, r.reason);

@@ -295,7 +295,7 @@ static void test_a_gap_that_never_closes_is_the_building_alone(void **state)
     tower_close(&t);
 }
 
-static void test_energy_books_close_and_damping_never_gives(void **state)
+static void test_energy_energy_balance_close_and_damping_never_gives(void **state)
 {
     (void)state;
     Tower t;
@@ -438,7 +438,7 @@ int main(void)
         cmocka_unit_test(test_early_window_has_the_digits_that_independent_integrators_share),
         cmocka_unit_test(test_kobe_without_a_core_has_its_known_response),
         cmocka_unit_test(test_a_gap_that_never_closes_is_the_building_alone),
-        cmocka_unit_test(test_energy_books_close_and_damping_never_gives),
+        cmocka_unit_test(test_energy_energy_balance_close_and_damping_never_gives),
         cmocka_unit_test(test_a_mirrored_motion_mirrors_the_response_to_the_last_bit),
         cmocka_unit_test(test_a_worker_gives_the_same_bytes_whatever_it_did_before),
         cmocka_unit_test(test_response_is_linear_until_the_first_contact),

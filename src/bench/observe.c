@@ -21,12 +21,12 @@ double processor_seconds(void)
 static Status run_once(const Stage *stage, Engine engine, Accuracy accuracy, double knob, Observed *o, double *seconds,
                        Err *err)
 {
-    ClosingLog log = {.n_max = BENCH_CLOSINGS, .at = o->closings};
+    OnsetLog log = {.n_max = BENCH_ONSETS, .at = o->onsets};
     const EngineOptions options = {stage->duration, accuracy, knob, o->state, &log};
     const double start = processor_seconds();
     TRY(engine_entry(engine)->run(&stage->model, &stage->motion, &options, &o->result, err));
     *seconds = processor_seconds() - start;
-    o->n_closings = log.n;
+    o->n_onsets = log.n;
     return STATUS_OK;
 }
 
@@ -60,23 +60,23 @@ static double energy_of(const SimModel *model, const double state[], const doubl
 }
 
 /* The first closing of floor j, NULL where it is not among those kept. */
-static const Closing *first_closing(const Observed *o, int j)
+static const ContactOnset *first_onset(const Observed *o, int j)
 {
-    for (int k = 0; k < o->n_closings; k++)
-        if (o->closings[k].floor == j)
-            return &o->closings[k];
+    for (int k = 0; k < o->n_onsets; k++)
+        if (o->onsets[k].floor == j)
+            return &o->onsets[k];
     return NULL;
 }
 
-/* The first closings of the floors that the reference closes first; speeds below the contact law's floor are alike. */
-static void compare_closings(const Stage *stage, const Observed *o, const Observed *reference, Errors *e)
+/* The first onsets of the floors that the reference closes first; speeds below the contact law's floor are alike. */
+static void compare_onsets(const Stage *stage, const Observed *o, const Observed *reference, Errors *e)
 {
     const double slow = stage->model.contact.v0_floor;
     int compared = 0;
     e->first_s = e->first_speed = NAN;
-    for (int i = 0; i < reference->n_closings && compared < BENCH_FIRST; i++) {
-        const Closing *b = &reference->closings[i], *a = first_closing(o, b->floor);
-        if (!a || b != first_closing(reference, b->floor))
+    for (int i = 0; i < reference->n_onsets && compared < BENCH_FIRST; i++) {
+        const ContactOnset *b = &reference->onsets[i], *a = first_onset(o, b->floor);
+        if (!a || b != first_onset(reference, b->floor))
             continue;
         e->first_s = fmax(e->first_s, fabs(a->t - b->t)); /* fmax passes over NaN */
         e->first_speed = fmax(e->first_speed, fabs(fmax(a->speed, slow) / fmax(b->speed, slow) - 1));
@@ -97,6 +97,6 @@ Errors errors_between(const Stage *stage, const Observed *o, const Observed *ref
     }
     const SimModel *model = &stage->model;
     e.state = sqrt(energy_of(model, o->state, reference->state) / energy_of(model, reference->state, NULL));
-    compare_closings(stage, o, reference, &e);
+    compare_onsets(stage, o, reference, &e);
     return e;
 }

@@ -4,22 +4,22 @@
 
 #include "bench/stage.h"
 
-enum { BENCH_OBJECTIVES = 6, BENCH_CLOSINGS = 24, BENCH_FIRST = 3 };
+enum { BENCH_OBJECTIVES = 6, BENCH_ONSETS = 24, BENCH_FIRST = 3 };
 
 typedef struct {
     SimResult result;
-    double seconds;                   /* of processor time: the median of three where they are short */
-    double state[4 * FLOORS_MAX];     /* q and q' at the end */
-    double energy;                    /* [J] of that state, without the contacts */
-    Closing closings[BENCH_CLOSINGS]; /* the first */
-    int n_closings;
+    double seconds;                    /* of processor time: the median of three where they are short */
+    double state[4 * FLOORS_MAX];      /* q and q' at the end */
+    double energy;                     /* [J] of that state, without the contacts */
+    ContactOnset onsets[BENCH_ONSETS]; /* the first */
+    int n_onsets;
 } Observed;
 
 typedef struct {
     double each[BENCH_OBJECTIVES]; /* relative: J1, J2, J3, shares of mode 1, modes 5-10, core */
     double objectives;             /* the largest of them */
     double state; /* at the end: root of the energy of the difference over that of the whole; NaN: unknown */
-    double first_s, first_speed; /* first three closings: largest error in time, relative in speed; NaN: unknown */
+    double first_s, first_speed; /* first three onsets: largest error in time, relative in speed; NaN: unknown */
 } Errors;
 
 extern const char *const BENCH_OBJECTIVE_NAMES[BENCH_OBJECTIVES];

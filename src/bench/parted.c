@@ -59,7 +59,7 @@ static void change_gaps(const double gaps[], int n, uint32_t series, int k, doub
 static Status run_all(Stage *stage, const Settings *s, Engine engine, Accuracy accuracy, double knob, uint32_t series,
                       Answers *answers, PartedEngine *out, Err *err)
 {
-    const EngineOptions options = {.duration = stage->duration, .accuracy = accuracy, .knob = knob};
+    const EngineOptions options = {.duration = stage->duration, .accuracy = accuracy, .tolerance = knob};
     double changed[FLOORS_MAX];
     SimResult r;
     const double start = processor_seconds();
@@ -169,7 +169,8 @@ void parted_write_markdown(const Parted *p, FILE *out)
         "distance of the distributions (Kolmogorov and Smirnov) from those of `fast` at %g steps per contact. Two\n"
         "samples of one distribution are further apart than %.2f in one of twenty comparisons; the first row is the\n"
         "reference once more. Each engine at its fastest setting with an error of %g before the horizon; those that\n"
-        "are too slow for so many runs are left out. Peaks that fall before the horizon have hardly any spread: there\n"
+        "are too slow for so many runs are left out. PeakMonitor that fall before the horizon have hardly any spread: "
+        "there\n"
         "a distance near 1 is the error before the horizon seen through a magnifying glass.\n\n"
         "| engine | knob | ms per run | finished |",
         PARTED_RUNS, p->duration, 1e3 * GAP_M, CHANGE, REFERENCE_STEPS, parted_by_chance(PARTED_RUNS), ENOUGH);

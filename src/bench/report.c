@@ -156,7 +156,7 @@ void sweep_write_markdown(const Sweep *s, const Motion *motion, FILE *out)
     static const char *const KNOBS[] = {"step [s]", "relative tolerance", "steps per contact"};
     for (int k = 0; k < ENGINE_COUNT; k++)
         fprintf(out, "| %s | %s | %s |\n", engine_entry((Engine)k)->name, engine_entry((Engine)k)->words,
-                KNOBS[engine_entry((Engine)k)->knob]);
+                KNOBS[engine_entry((Engine)k)->tolerance]);
     for (int k = 0; k < N_BENCH_SCENES; k++)
         if (s->agreement[k] > 0)
             write_scene(s, k, out);

@@ -22,10 +22,10 @@ static const Setting STEPS[] = {{0, 1e-2}, {0, 5e-3}, {0, 2e-3}, {0, 1e-3}, {0, 
 
 static const Setting *settings_of(Engine engine)
 {
-    switch (engine_entry(engine)->knob) {
-    case KNOB_STEP:
+    switch (engine_entry(engine)->tolerance) {
+    case TOLERANCE_STEP:
         return STEPS;
-    case KNOB_TOLERANCE:
+    case TOLERANCE_RELATIVE:
         return TOLERANCES;
     default:
         return STEPS_PER_CONTACT;

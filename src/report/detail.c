@@ -1,5 +1,6 @@
 #include "report/detail.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -3,48 +3,49 @@
  *   run(model, motion, options, result)    from rest at t = 0 to options.duration
  *
  * An engine fills all of SimResult but mcore_kg, penetration_ratio, beyond_contact_law and seconds (the caller's).
- * Energies as in sim/sim.h; maxima are over continuous time. After the last sample the ground stands still (a = 0 from
- * there on, also where the last sample is not zero). An engine never answers wrongly in silence: what it cannot do is
- * an outcome with a reason.
+ * Energies as in sim/energy_balance.h; maxima are over continuous time. After the last sample the ground stands still
+ * (a = 0 from there on, also where the last sample is not zero). What an engine cannot do is an outcome with a reason.
  *
  * Threads  an engine may allocate in its own run; it shares nothing. */
 #ifndef IMTET_SIM_ENGINE_H
 #define IMTET_SIM_ENGINE_H
 
+#include "scene/motion.h"
 #include "sim/model.h"
-#include "sim/sim.h"
+#include "sim/result.h"
 
 typedef struct {
     int floor;       /* from 0 */
     double t, speed; /* when its gap closed [s], how fast [m/s] */
-} Closing;
+} ContactOnset;
 
-/* The first closings of any gap, in the order in which the engine found them. */
+/* The first contact onsets of any floor, in the order in which the engine found them. */
 typedef struct {
     int n, n_max;
-    Closing *at; /* (n_max) */
-} ClosingLog;
+    ContactOnset *at; /* (n_max) */
+} OnsetLog;
 
 typedef struct {
     double duration; /* [s] > 0 */
     Accuracy accuracy;
-    double knob;          /* what the engine's own accuracy is set by, EngineEntry.knob; 0: as `accuracy` says */
-    double *end_state;    /* (2 m) q and q' where the run ended; NULL: not wanted */
-    ClosingLog *closings; /* filled from closings->n on; NULL: not wanted */
+    double tolerance;  /* of the kind EngineEntry.tolerance; 0: as `accuracy` says */
+    double *end_state; /* (2 m) q and q' where the run ended; NULL: not wanted */
+    OnsetLog *onsets;  /* filled from onsets->n on; NULL: not wanted */
 } EngineOptions;
 
 typedef Status (*EngineFn)(const SimModel *model, const Motion *motion, const EngineOptions *options, SimResult *result,
                            Err *err);
 
+/* What an engine controls its error by. */
 typedef enum {
-    KNOB_STEP,             /* [s] fixed step */
-    KNOB_TOLERANCE,        /* [-] relative tolerance */
-    KNOB_STEPS_PER_CONTACT /* [-] */
-} EngineKnob;
+    TOLERANCE_STEP,             /* [s] fixed step */
+    TOLERANCE_RELATIVE,         /* [-] relative local error */
+    TOLERANCE_STEPS_PER_CONTACT /* [-] */
+} ToleranceKind;
 
 typedef struct {
     const char *name, *words;
-    EngineKnob knob;
+    ToleranceKind tolerance;
     EngineFn run;
 } EngineEntry;
 
@@ -57,7 +58,7 @@ const EngineEntry *engine_entry(Engine engine);
 ENGINE_LIST(X)
 #undef X
 
-/* The linear zero-gap building: floors and core move together, M + Mc, K + Kc, C + Cc. */
+/* Floors and core rigidly connected (zero gap), linear: M + Mc, K + Kc, C + Cc. */
 Status engine_tied(const Settings *s, const Building *b, const CoreBeam *core, const Motion *motion,
                    const EngineOptions *options, SimResult *result, Err *err);
 

@@ -18,7 +18,8 @@
 #include "base/carve.h"
 #include "base/linalg.h"
 #include "sim/engine.h"
-#include "sim/reference/tally.h"
+#include "sim/energy_balance.h"
+#include "sim/peak_monitor.h"
 
 typedef struct {
     int n, size; /* floors; size = 2 n + 2, the state and its load */
@@ -39,7 +40,7 @@ typedef struct {
     double *damped;     /* (2n) [J] */
     double input;       /* [J] */
     double *work;       /* (3 size size) */
-    Peaks peaks;
+    PeakMonitor peaks;
     long steps;
     void *store;
 } Tied;
@@ -195,7 +196,7 @@ static void find_rates(Tied *d)
 static void look(Tied *d, double t)
 {
     const int n = d->n;
-    PeakPoint *point = peaks_next(&d->peaks);
+    PeakPoint *point = peak_monitor_next(&d->peaks);
     for (int i = 0; i < n; i++)
         d->y[i] = d->z[i] / d->omega[i];
     point->t = t;
@@ -203,7 +204,7 @@ static void look(Tied *d, double t)
     multiply(n, n, d->psi, d->y_ddot, point->of[PEAK_ACCELERATION]);
     for (int j = 0; j < n; j++)
         point->of[PEAK_ACCELERATION][j] += d->z[2 * n];
-    peaks_note(&d->peaks);
+    peak_monitor_add(&d->peaks);
 }
 
 static double dot(int n, const double a[], const double b[])
@@ -283,8 +284,8 @@ static void report(const Tied *d, SimResult *result)
     result->steps = d->steps;
     result->input_energy_j = d->input;
     result->kinetic_strain_j = 0.5 * dot(2 * d->n, d->z, d->z);
-    peaks_report(&d->peaks, result);
-    books_close(result, d->n, d->n, d->damped);
+    peak_monitor_report(&d->peaks, result);
+    energy_balance_close(result, d->n, d->n, d->damped);
 }
 
 Status engine_tied(const Settings *s, const Building *b, const CoreBeam *core, const Motion *motion,

@@ -85,14 +85,14 @@ static double rebound_error(Trial *t, double knob_factor)
         Throw x = throw_of(1000, STEEL, 0.3 * (1 + 0.037 * i), 0.7);
         Thrown out;
         const double duration = contact_hertz_duration(x.k, x.mass, x.v);
-        switch (trial_engine(t)->knob) {
-        case KNOB_STEP:
+        switch (trial_engine(t)->tolerance) {
+        case TOLERANCE_STEP:
             x.knob = duration * knob_factor / 15;
             break;
-        case KNOB_STEPS_PER_CONTACT:
+        case TOLERANCE_STEPS_PER_CONTACT:
             x.knob = 8 / knob_factor;
             break;
-        case KNOB_TOLERANCE:
+        case TOLERANCE_RELATIVE:
             x.knob = 1e-4 * knob_factor * knob_factor * knob_factor;
             break;
         }
@@ -107,7 +107,7 @@ static void convergence(Trial *t)
 {
     t->accuracy = ACCURACY_FINE;
     const double coarse = rebound_error(t, 1), middle = rebound_error(t, 0.25), fine = rebound_error(t, 0.0625);
-    const int by_tolerance = trial_engine(t)->knob == KNOB_TOLERANCE;
+    const int by_tolerance = trial_engine(t)->tolerance == TOLERANCE_RELATIVE;
     const double order = log(coarse / fine) / log(16) / (by_tolerance ? 3 : 1);
     trial_remark(t, "Errors %.2g, %.2g, %.2g at %s 1 : 1/%d : 1/%d: order %.2f", coarse, middle, fine,
                  by_tolerance ? "tolerances" : "steps", by_tolerance ? 64 : 4, by_tolerance ? 4096 : 16, order);
@@ -150,14 +150,14 @@ static void long_steps(Trial *t)
             Throw x = throw_of(1000, STEEL, 0.1 * (1 + 0.13 * i), 1 - 0.5 * (i % 3));
             Thrown out;
             const double duration = contact_hertz_duration(x.k, x.mass, x.v);
-            switch (trial_engine(t)->knob) {
-            case KNOB_STEP:
+            switch (trial_engine(t)->tolerance) {
+            case TOLERANCE_STEP:
                 x.knob = duration * LENGTH[l];
                 break;
-            case KNOB_STEPS_PER_CONTACT:
+            case TOLERANCE_STEPS_PER_CONTACT:
                 x.knob = 1 / LENGTH[l];
                 break;
-            case KNOB_TOLERANCE:
+            case TOLERANCE_RELATIVE:
                 x.knob = 1e-3 * LENGTH[l];
                 break;
             }
@@ -381,7 +381,7 @@ static void half_periods(Trial *t)
                      .free_step = 2e-4};
             against_oracle(t, &x,
                            what); /* even intervals almost cancel: measured by the energy of the largest sample */
-            if (trial_engine(t)->knob != KNOB_STEP)
+            if (trial_engine(t)->tolerance != TOLERANCE_STEP)
                 continue;
             /* a step as long as that cannot be accurate, but free vibration must neither grow nor die in silence */
             x.knob = h;
@@ -484,7 +484,7 @@ static void many_steps(Trial *t)
              .contact = paper_law(STEEL, 0.7, 1e-3),
              .motion = {.accel = accel, .n = 3, .dt_s = dt},
              .duration = 2.37 * dt,
-             .knob = trial_engine(t)->knob == KNOB_STEP ? dt : 0};
+             .knob = trial_engine(t)->tolerance == TOLERANCE_STEP ? dt : 0};
     const SimResult early = run_engine(t, &x);
     x.duration = n * dt;
     const SimResult late = run_engine(t, &x);

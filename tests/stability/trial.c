@@ -29,14 +29,14 @@ double trial_allowed(const Trial *t, double fine, double standard)
 
 double trial_knob(const Trial *t, double contact_duration, double steps)
 {
-    return trial_engine(t)->knob == KNOB_STEP ? contact_duration / steps : 0;
+    return trial_engine(t)->tolerance == TOLERANCE_STEP ? contact_duration / steps : 0;
 }
 
 static SimResult run_once(Trial *t, const SimModel *model, const Motion *motion, double duration, double knob)
 {
     SimResult r = {0};
     Err err = {0};
-    const EngineOptions options = {.duration = duration, .accuracy = t->accuracy, .knob = knob};
+    const EngineOptions options = {.duration = duration, .accuracy = t->accuracy, .tolerance = knob};
     if (trial_engine(t)->run(model, motion, &options, &r, &err) != STATUS_OK) {
         r.outcome = RUN_ENGINE_FAILED;
         snprintf(r.reason, sizeof r.reason, "%.*s", (int)sizeof r.reason - 1, err.text);

@@ -189,9 +189,9 @@ static void go_deeper(FastWork *k, double h, double gap, double w0, double wd0, 
 
 static void log_closing(FastWork *k, double h, int floor, const Press *t)
 {
-    ClosingLog *log = k->closings;
+    OnsetLog *log = k->onsets;
     if (log && t->closings && log->n < log->n_max)
-        log->at[log->n++] = (Closing){.floor = floor, .t = k->now + h * t->closed_at, .speed = t->closed_with};
+        log->at[log->n++] = (ContactOnset){.floor = floor, .t = k->now + h * t->closed_at, .speed = t->closed_with};
 }
 
 static void accept_contacts(FastWork *k, const Active *active, double h)

@@ -97,9 +97,9 @@ void fast_sample(FastWork *work, SimSampleFn sample, void *user)
     work->sample_user = user;
 }
 
-void fast_log_closings(FastWork *work, ClosingLog *log)
+void fast_log_onsets(FastWork *work, OnsetLog *log)
 {
-    work->closings = log;
+    work->onsets = log;
 }
 
 FastKnobs fast_knobs(Accuracy accuracy)
@@ -148,12 +148,12 @@ Status engine_fast(const SimModel *model, const Motion *motion, const EngineOpti
 {
     FastWork *work;
     FastKnobs knobs = fast_knobs(options->accuracy);
-    if (options->knob > 0 && options->accuracy != ACCURACY_FINE)
-        knobs = fast_knobs_finer(options->accuracy, options->knob / knobs.steps_per_contact);
-    else if (options->knob > 0)
-        knobs.steps_per_contact = options->knob;
+    if (options->tolerance > 0 && options->accuracy != ACCURACY_FINE)
+        knobs = fast_knobs_finer(options->accuracy, options->tolerance / knobs.steps_per_contact);
+    else if (options->tolerance > 0)
+        knobs.steps_per_contact = options->tolerance;
     TRY(fast_create(&work, model->n, err));
-    fast_log_closings(work, options->closings);
+    fast_log_onsets(work, options->onsets);
     fast_run(work, model, motion, options->duration, &knobs, result);
     if (options->end_state)
         end_state(work, options->end_state);

@@ -37,8 +37,8 @@ const char *fast_kernel_name(void);
 /* Every run from now on shows its state at every sample of the motion; NULL: none does. */
 void fast_sample(FastWork *work, SimSampleFn sample, void *user);
 
-/* Every run from now on appends its first closings; NULL: none does. */
-void fast_log_closings(FastWork *work, ClosingLog *log);
+/* Every run from now on appends its first contact onsets; NULL: none does. */
+void fast_log_onsets(FastWork *work, OnsetLog *log);
 
 /* What accuracy costs. */
 typedef struct {

@@ -8,6 +8,7 @@
 #include "base/units.h"
 #include "sim/fast/contact_step.h"
 #include "sim/fast/glide.h"
+#include "sim/energy_balance.h"
 
 /* The level whose step is the wanted share of the shortest Hertz contact at the present speed (or the finest). */
 static int contact_level(const FastWork *k, double gain)
@@ -223,7 +224,7 @@ static void sum_energies(const FastWork *k, SimResult *r)
     r->clamp_j = k->contact_clamped;
     r->contact_stored_j = still_stored(k);
     const double books = -contact_work - r->contact_loss_j - r->clamp_j - r->contact_stored_j;
-    const double scale = energy_books_scale(r->input_energy_j, r->input_energy_j - books);
+    const double scale = energy_balance_scale(r->input_energy_j, r->input_energy_j - books);
     r->energy_residual = fabs(books) / scale + sqrt(missed / (2 * scale));
     for (int i = 0; i < k->model->nb; i++)
         r->mode_share_pct[i] = share(damped[i], r->input_energy_j);

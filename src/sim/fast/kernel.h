@@ -75,8 +75,8 @@ typedef struct FastWork {
     SimSampleFn sample; /* may be NULL */
     void *sample_user;
 
-    double now;           /* [s] start of the step under way */
-    ClosingLog *closings; /* may be NULL */
+    double now;       /* [s] start of the step under way */
+    OnsetLog *onsets; /* may be NULL */
 
     /* books */
     double contact_lost, contact_clamped, deepest;

@@ -115,7 +115,7 @@ static void close_gap(Contacts *c, int j, int side, double t, double speed)
     c->impacts++;
     c->floored += speed < c->model->contact.v0_floor;
     if (c->log && c->log->n < c->log->n_max)
-        c->log->at[c->log->n++] = (Closing){.floor = j, .t = t, .speed = speed};
+        c->log->at[c->log->n++] = (ContactOnset){.floor = j, .t = t, .speed = speed};
 }
 
 int contacts_switch(Contacts *c, double t, const double q[], const double v[], const int found[])

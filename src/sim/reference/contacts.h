@@ -22,7 +22,7 @@ typedef struct {
     double t_before;       /* [s] by sight only: the start of the step */
     double q_before[MODES_MAX], v_before[MODES_MAX], a_before[MODES_MAX]; /* modal motion there */
     long impacts, floored; /* closings, those slower than the floor under v0 */
-    ClosingLog *log;       /* NULL: none */
+    OnsetLog *log;         /* NULL: none */
 } Contacts;
 
 /* Where the contacts' power goes [W]: F p' = k p^1.5 p' (stored) + (F_raw - k p^1.5) p' (lost)

@@ -14,7 +14,7 @@ void ledger_start(Ledger *l, const SimModel *model)
 void ledger_look(Ledger *l, double t, const double q[], const double v[], const double contact[])
 {
     const SimModel *model = l->model;
-    PeakPoint *point = peaks_next(&l->peaks);
+    PeakPoint *point = peak_monitor_next(&l->peaks);
     double pull[MODES_MAX], core[FLOORS_MAX];
     for (int i = 0; i < model->nb; i++)
         pull[i] = contact[i] - model->omega[i] * (2 * model->zeta[i] * v[i] + model->omega[i] * q[i]);
@@ -24,7 +24,7 @@ void ledger_look(Ledger *l, double t, const double q[], const double v[], const 
     floors_from_modes(model, model->nb, model->m, q, core);
     for (int j = 0; j < model->n; j++)
         point->of[PEAK_RELATIVE][j] = point->of[PEAK_DISPLACEMENT][j] + core[j];
-    peaks_note(&l->peaks);
+    peak_monitor_add(&l->peaks);
 }
 
 /* Returns sum gamma q'. */
@@ -58,8 +58,8 @@ void ledger_report(const Ledger *l, const Contacts *c, const EngineOptions *opti
     result->contact_stored_j = contacts_stored(c, q);
     for (int j = 0; j < model->n && model->nc > 0; j++)
         result->penetration_max_m = fmax(result->penetration_max_m, l->peaks.peak[PEAK_RELATIVE][j] - model->gap[j]);
-    peaks_report(&l->peaks, result);
-    books_close(result, model->nb, model->nc, l->damped);
+    peak_monitor_report(&l->peaks, result);
+    energy_balance_close(result, model->nb, model->nc, l->damped);
     if (options->end_state) {
         memcpy(options->end_state, q, sizeof *q * (size_t)model->m);
         memcpy(options->end_state + model->m, v, sizeof *v * (size_t)model->m);

@@ -5,11 +5,12 @@
 #define IMTET_SIM_REFERENCE_LEDGER_H
 
 #include "sim/reference/contacts.h"
-#include "sim/reference/tally.h"
+#include "sim/energy_balance.h"
+#include "sim/peak_monitor.h"
 
 typedef struct {
     const SimModel *model;
-    Peaks peaks;
+    PeakMonitor peaks;
     double damped[MODES_MAX], input, lost, clamp; /* [J] */
     long steps, evaluations;
 } Ledger;

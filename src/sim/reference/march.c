@@ -4,7 +4,7 @@
 
 #include "base/denormal.h"
 
-/* Peaks are looked for no more often than this [s]. */
+/* PeakMonitor are looked for no more often than this [s]. */
 static const double LOOK_EVERY = 1e-3, LOOK_IN_CONTACT = 1e-4;
 
 static const double STEPS_MAX = 1e9;
@@ -113,12 +113,12 @@ static void explain(const March *m, SimResult *result)
 Status march(const MarchMethod *method, void *work, const SimModel *model, const Motion *motion,
              const EngineOptions *options, SimResult *result)
 {
-    March m = {.model = model, .contacts = {.model = model, .by_sight = 1, .log = options->closings}};
+    March m = {.model = model, .contacts = {.model = model, .by_sight = 1, .log = options->onsets}};
     ledger_start(&m.ledger, model);
     memset(result, 0, sizeof *result);
     result->n_floors = model->n;
     result->n_modes = model->nb;
-    const double step_max = options->knob > 0 ? options->knob : method->step[options->accuracy];
+    const double step_max = options->tolerance > 0 ? options->tolerance : method->step[options->accuracy];
     const unsigned mode = denormal_off();
     result->outcome = walk(&m, method, work, motion, options->duration, step_max);
     denormal_restore(mode);

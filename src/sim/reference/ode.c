@@ -180,7 +180,7 @@ int ode_prepare(Ode *o, const double rtol[3])
     for (int i = 0; i < model->m; i++)
         fastest = fmax(fastest, model->omega[i] * (1 + 2 * model->zeta[i]));
     o->steps_max = (long)fmin(1e6 + 4 * fastest * o->options->duration, 1e12); /* explicit steps are near 1/fastest */
-    o->contacts = (Contacts){.model = model, .by_sight = !o->locate, .log = o->options->closings};
+    o->contacts = (Contacts){.model = model, .by_sight = !o->locate, .log = o->options->onsets};
     ledger_start(&o->ledger, model);
     if (SUNContext_Create(NULL, &o->context))
         return -1;
@@ -193,7 +193,7 @@ int ode_prepare(Ode *o, const double rtol[3])
     if (!o->between)
         return -1;
     N_VConst(0, o->y);
-    o->rtol = o->options->knob > 0 ? o->options->knob : rtol[o->options->accuracy];
+    o->rtol = o->options->tolerance > 0 ? o->options->tolerance : rtol[o->options->accuracy];
     set_tolerances(o, 0.1 * o->rtol);
     return 0;
 }

@@ -1,0 +1,48 @@
+/* sim/energy_balance.h -- the energy balance of a run, and the shares of the input that are read from it.
+ *
+ *   input = kinetic + strain + damped + contacts (stored + lost + removed by the no-tension condition)
+ *
+ * Threads  no state */
+#ifndef IMTET_SIM_ENERGY_BALANCE_H
+#define IMTET_SIM_ENERGY_BALANCE_H
+
+#include <math.h>
+#include <stdio.h>
+
+#include "sim/result.h"
+
+/* [J] The error's denominator: the input, or what came out where the ground has taken back all that it gave. */
+static inline double energy_balance_scale(double input, double out)
+{
+    const double scale = input > 0 ? input : fmax(-input, out);
+    return scale > 0 ? scale : 1;
+}
+
+/* From the joules already in result (input, kinetic_strain, contacts) and damped[nb + nc], building modes first. With
+ * no energy put in every share is zero. */
+static inline void energy_balance_close(SimResult *result, int nb, int nc, const double damped[])
+{
+    double building = 0, core = 0;
+    const double input = result->input_energy_j, percent = input > 0 ? 100 / input : 0;
+    for (int i = 0; i < nb; i++) {
+        building += damped[i];
+        result->mode_share_pct[i] = percent * damped[i];
+        if (i >= 4 && i < 10)
+            result->ed5_10_pct += percent * damped[i];
+    }
+    for (int i = nb; i < nb + nc; i++)
+        core += damped[i];
+    result->damped_building_j = building;
+    result->damped_core_j = core;
+    result->ed1_pct = result->mode_share_pct[0];
+    result->edcs_pct = percent * core;
+    const double out = result->kinetic_strain_j + building + core + result->contact_stored_j + result->contact_loss_j +
+                       result->clamp_j;
+    result->energy_residual = fabs(input - out) / energy_balance_scale(input, out);
+    if (!isfinite(input - out)) {
+        result->outcome = RUN_NOT_FINITE;
+        snprintf(result->reason, sizeof result->reason, "the energies are not finite at the end of the run");
+    }
+}
+
+#endif
