@@ -54,8 +54,8 @@ void sweep_write_csv(const Sweep *s, FILE *out)
         put(out, failed ? NAN : r->energy_residual);
         put(out, sweep_floor(s, scene_index(row->scene)));
         put(out, s->noise > 0 ? s->noise : NAN);
-        fprintf(out, ",%ld,%ld,%ld,%s,\"%s\"\n", r->impacts, r->steps, r->force_evaluations, outcome_word(r->outcome),
-                r->reason);
+        fprintf(out, ",%ld,%ld,%ld,%s,\"%s\"\n", r->impacts, r->steps, r->force_evaluations,
+                outcome_word(measure_outcome(r->outcome)), r->reason);
     }
 }
 
@@ -127,7 +127,7 @@ static void write_failures(const Sweep *s, FILE *out)
             continue;
         fprintf(out, "| %s | %s | %s | ", row->scene->name, engine_entry(row->engine)->name, row->knob);
         if (sweep_row_failed(row))
-            fprintf(out, "%s: %s |\n", outcome_word(r->outcome), r->reason);
+            fprintf(out, "%s: %s |\n", outcome_word(measure_outcome(r->outcome)), r->reason);
         else if (open)
             fprintf(out, "books open by %.2g, error %.2g |\n", r->energy_residual, row->error.objectives);
         else

@@ -136,7 +136,7 @@ static Status write_csv(const Job *job, const char *path, Err *err)
             fputc(',', o.stream);
             print_number(o.stream, job->ensembles[i].spread[k]);
         }
-        fprintf(o.stream, ",%s\n", outcome_word(job->results[i].outcome));
+        fprintf(o.stream, ",%s\n", outcome_word(measure_outcome(job->results[i].outcome)));
     }
     return output_close(&o, err);
 }

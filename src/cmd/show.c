@@ -35,7 +35,7 @@ json_t *json_result(SceneKind kind, const SimResult *r)
 {
     json_t *o = json_object();
     json_object_set_new(o, "scene", json_string(scene_word(kind)));
-    json_object_set_new(o, "outcome", json_string(outcome_word(r->outcome)));
+    json_object_set_new(o, "outcome", json_string(outcome_word(measure_outcome(r->outcome))));
     json_object_set_new(o, "reason", json_string(r->reason));
     for (int k = 0; k < N_MEASURES - 1; k++)
         json_object_set_new(o, measure(k)->name, json_number(measure_value(r, k)));
@@ -109,7 +109,7 @@ void show_result(const char *label, const SimResult *r)
         printf(" %10.4g", measure_value(r, k));
     printf(" %8ld %9.1e %11.3g", r->impacts, r->energy_residual, r->penetration_ratio);
     if (r->outcome != RUN_OK)
-        printf("  %s", outcome_word(r->outcome));
+        printf("  %s", outcome_word(measure_outcome(r->outcome)));
     if (r->beyond_contact_law)
         printf("  deeper than %g of the contact's radius: beyond the contact law", PENETRATION_RATIO_MAX);
     putchar('\n');

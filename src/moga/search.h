@@ -47,12 +47,9 @@
 
 #include <stdint.h>
 
+#include "evaluate/evaluation.h"
 #include "moga/problem.h"
 #include "moga/survival.h"
-
-/* Latin hypercube; chosen on the surface; plain children, where no surface leads; from outside the search; a further
- * answer of a design that is there. */
-typedef enum { KIND_SAMPLED, KIND_INFILL, KIND_OFFSPRING, KIND_POLISHED, KIND_REPEAT, KIND_COUNT } EvaluationKind;
 
 /* On; plain children only; or on until its wall time per simulation proves greater than that of four simulations. Auto
  * is decided once, by the clock, and the decision is kept in the state: a search that goes on repeats it, another one

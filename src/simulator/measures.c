@@ -38,19 +38,14 @@ int measure_objectives(const SimResult *r, double f[N_OBJECTIVES])
     return ok;
 }
 
-const char *outcome_word(RunOutcome outcome)
+Outcome measure_outcome(RunOutcome outcome)
 {
-    switch (outcome) {
-    case RUN_OK:
-        return "ok";
-    case RUN_NOT_FINITE:
-        return "not_finite";
-    case RUN_OUT_OF_STEPS:
-        return "out_of_steps";
-    case RUN_BOOKS_OPEN:
-        return "books_open";
-    case RUN_ENGINE_FAILED:
-        return "engine_failed";
-    }
-    return "unknown";
+    static const Outcome OUTCOMES[] = {
+        [RUN_OK] = OUTCOME_OK,
+        [RUN_NOT_FINITE] = OUTCOME_NOT_FINITE,
+        [RUN_OUT_OF_STEPS] = OUTCOME_OUT_OF_STEPS,
+        [RUN_BOOKS_OPEN] = OUTCOME_ENERGY_BALANCE,
+        [RUN_ENGINE_FAILED] = OUTCOME_ENGINE_FAILED,
+    };
+    return OUTCOMES[outcome];
 }

@@ -5,6 +5,7 @@
 #ifndef IMTET_SIMULATOR_MEASURES_H
 #define IMTET_SIMULATOR_MEASURES_H
 
+#include "evaluate/evaluation.h"
 #include "sim/sim.h"
 
 enum { N_OBJECTIVES = 7, N_MEASURES = 10 };
@@ -21,7 +22,7 @@ double measure_value(const SimResult *r, int k); /* natural sign and unit */
 /* 1 and f (N_OBJECTIVES, minimised) filled where the run finished with finite numbers, else 0. */
 int measure_objectives(const SimResult *r, double f[N_OBJECTIVES]);
 
-/* One word per outcome for files: ok, not_finite, ... */
-const char *outcome_word(RunOutcome outcome);
+/* What a run comes to as an evaluation. */
+Outcome measure_outcome(RunOutcome outcome);
 
 #endif

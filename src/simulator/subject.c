@@ -163,7 +163,8 @@ static void judge_tower(const Trial *t, double f[], double spread[], Verdict *v)
     const SimResult *r = &t->result;
     double unused[N_OBJECTIVES];
     const int lost = !measure_objectives(r, unused) && r->outcome == RUN_OK;
-    verdict_set(v, outcome_word(lost ? RUN_NOT_FINITE : r->outcome), lost ? "an objective is not finite" : r->reason);
+    verdict_set(v, outcome_word(lost ? OUTCOME_NOT_FINITE : measure_outcome(r->outcome)),
+                lost ? "an objective is not finite" : r->reason);
     memcpy(f, t->value, N_OBJECTIVES * sizeof *f);
     memcpy(spread, t->spread, N_OBJECTIVES * sizeof *spread);
     memcpy(v->extra, t->value + N_OBJECTIVES, (N_MEASURES - N_OBJECTIVES) * sizeof *v->extra);

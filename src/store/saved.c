@@ -10,23 +10,6 @@
 #include "store/repeats.h"
 #include "store/tables.h"
 
-static const char *const KIND_WORDS[] = {
-    [KIND_SAMPLED] = "sampled",   [KIND_INFILL] = "infill", [KIND_OFFSPRING] = "offspring",
-    [KIND_POLISHED] = "polished", [KIND_REPEAT] = "repeat", [KIND_UNFINISHED] = "unfinished"};
-
-const char *kind_word(int kind)
-{
-    return KIND_WORDS[kind];
-}
-
-static int kind_of(const char *word)
-{
-    int kind = 0;
-    while (kind < KIND_UNFINISHED && strcmp(word, KIND_WORDS[kind]) != 0)
-        kind++;
-    return kind;
-}
-
 /* -- rows ---------------------------------------------------------------------------------------------------------- */
 
 typedef struct {
@@ -122,7 +105,7 @@ static Status take_evaluation(sqlite3_stmt *row, void *user, Err *err)
     const Schema *schema = &h->schema;
     *r = (SavedRow){.id = (long)sqlite3_column_int64(row, 0),
                     .generation = (long)sqlite3_column_int64(row, 1),
-                    .kind = kind_of(text_at(row, 2)),
+                    .kind = kind_of_word(text_at(row, 2)),
                     .violation = number_at(row, 9),
                     .entered = sqlite3_column_type(row, 11) == SQLITE_NULL ? NEVER : sqlite3_column_int(row, 11),
                     .left = sqlite3_column_type(row, 12) == SQLITE_NULL ? NEVER : sqlite3_column_int(row, 12)};

@@ -17,14 +17,11 @@
 #include "store/database.h"
 #include "simulator/schema.h"
 
-enum { KIND_UNFINISHED = KIND_COUNT, POLISHED_FIRST = 1000001, NEVER = -1 };
-
-/* "sampled", ... */
-const char *kind_word(int kind);
+enum { POLISHED_FIRST = 1000001, NEVER = -1 };
 
 typedef struct {
     long id, generation, entered, left; /* NEVER */
-    int kind;                           /* EvaluationKind or KIND_UNFINISHED */
+    EvaluationKind kind;
     int ok, on_front;
     long members;     /* simulations behind F; 0: a repeat, or not known */
     double violation; /* of the user's limits */

@@ -1,0 +1,143 @@
+#include "evaluate/evaluation.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/carve.h"
+#include "base/cell.h"
+
+static const char *const OUTCOME_WORDS[] = {
+#define X(name, word) word,
+    OUTCOME_LIST(X)
+#undef X
+};
+
+static const char *const KIND_WORDS[] = {
+#define X(name, word) word,
+    KIND_LIST(X)
+#undef X
+};
+
+static size_t index_of(const char *word, size_t n, const char *const words[])
+{
+    size_t i = 0;
+    while (i < n && strcmp(words[i], word) != 0)
+        i++;
+    return i;
+}
+
+const char *outcome_word(Outcome outcome)
+{
+    return OUTCOME_WORDS[outcome];
+}
+
+Outcome outcome_of_word(const char *word)
+{
+    return (Outcome)index_of(word, OUTCOME_COUNT, OUTCOME_WORDS);
+}
+
+const char *kind_word(EvaluationKind kind)
+{
+    return KIND_WORDS[kind];
+}
+
+EvaluationKind kind_of_word(const char *word)
+{
+    return (EvaluationKind)index_of(word, KIND_UNFINISHED, KIND_WORDS);
+}
+
+void evaluation_set_outcome(Evaluation *e, Outcome outcome, const char *reason)
+{
+    e->outcome = outcome;
+    cell_text(e->reason, sizeof e->reason, reason);
+}
+
+EvaluationTable evaluation_table(size_t n_var, size_t n_obj, size_t n_extra)
+{
+    return (EvaluationTable){.n_var = n_var, .n_obj = n_obj, .n_extra = n_extra};
+}
+
+static void layout(EvaluationTable *t, Carve *c)
+{
+    t->row = carve(c, t->n_max, sizeof *t->row);
+    t->x = carve(c, t->n_max * t->n_var, sizeof *t->x);
+    t->f = carve(c, t->n_max * t->n_obj, sizeof *t->f);
+    t->sd = carve(c, t->n_max * t->n_obj, sizeof *t->sd);
+    t->extra = carve(c, t->n_max * t->n_extra, sizeof *t->extra);
+}
+
+static void copy_numbers(double to[], const double from[], size_t n)
+{
+    if (n > 0)
+        memcpy(to, from, n * sizeof *to);
+}
+
+static Status grow(EvaluationTable *t, Err *err)
+{
+    EvaluationTable wider = *t;
+    Carve c = {0};
+    wider.n_max = t->n_max > 0 ? 2 * t->n_max : 32;
+    layout(&wider, &c);
+    wider.store = carve_store(&c);
+    if (!wider.store)
+        return fail(err, STATUS_NO_MEMORY, "no memory for %zu evaluations", wider.n_max);
+    layout(&wider, &(Carve){.base = wider.store});
+    copy_numbers(wider.x, t->x, t->n * t->n_var);
+    copy_numbers(wider.f, t->f, t->n * t->n_obj);
+    copy_numbers(wider.sd, t->sd, t->n * t->n_obj);
+    copy_numbers(wider.extra, t->extra, t->n * t->n_extra);
+    for (size_t i = 0; i < wider.n_max; i++) {
+        wider.row[i] = i < t->n ? t->row[i] : (Evaluation){0};
+        wider.row[i].x = wider.x + i * t->n_var;
+        wider.row[i].f = wider.f + i * t->n_obj;
+        wider.row[i].sd = wider.sd + i * t->n_obj;
+        wider.row[i].extra = wider.extra + i * t->n_extra;
+    }
+    free(t->store);
+    *t = wider;
+    return STATUS_OK;
+}
+
+static void set_unknown(double v[], size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        v[i] = NAN;
+}
+
+Status evaluation_table_add(EvaluationTable *t, Evaluation **row, Err *err)
+{
+    if (t->n == t->n_max)
+        TRY(grow(t, err));
+    Evaluation *e = &t->row[t->n++];
+    e->kind = KIND_UNFINISHED;
+    e->seconds = e->violation = NAN;
+    set_unknown(e->f, t->n_obj);
+    set_unknown(e->sd, t->n_obj);
+    set_unknown(e->extra, t->n_extra);
+    *row = e;
+    return STATUS_OK;
+}
+
+Status evaluation_table_append(EvaluationTable *t, const Evaluation *from, Err *err)
+{
+    Evaluation *e;
+    TRY(evaluation_table_add(t, &e, err));
+    const Evaluation own = *e;
+    *e = *from;
+    e->x = own.x;
+    e->f = own.f;
+    e->sd = own.sd;
+    e->extra = own.extra;
+    copy_numbers(e->x, from->x, from->x ? t->n_var : 0);
+    copy_numbers(e->f, from->f, from->f ? t->n_obj : 0);
+    copy_numbers(e->sd, from->sd, from->sd ? t->n_obj : 0);
+    copy_numbers(e->extra, from->extra, from->extra ? t->n_extra : 0);
+    return STATUS_OK;
+}
+
+void evaluation_table_free(EvaluationTable *t)
+{
+    free(t->store);
+    *t = evaluation_table(t->n_var, t->n_obj, t->n_extra);
+}

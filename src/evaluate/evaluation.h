@@ -1,0 +1,96 @@
+/* evaluate/evaluation.h -- one evaluated design: the record that a simulator fills, the search ranks, a run stores and
+ * every file is written from.
+ *
+ *   x      (n_var)    design variables
+ *   f      (n_obj)    objectives in natural signs and units, means over the replicates; NAN where the design failed
+ *   sd     (n_obj)    standard deviation of a single simulation; NAN: not known (one replicate)
+ *   extra  (n_extra)  what else is written down; NAN: not known
+ *
+ * Shapes     of one table, all rows have the same; in its memory rows follow each other: table.x is X (n, n_var)
+ *            row-major, likewise f, sd, extra, and row[i].x = table.x + i n_var
+ * Ownership  the table owns rows and numbers; pointers into it hold until the next evaluation_table_add. A row outside a
+ *            table borrows its arrays
+ * Memory     one allocation, doubled when it is full
+ * Threads    no state
+ * Errors     STATUS_NO_MEMORY; a design that failed is a row with another outcome than OUTCOME_OK, not an error */
+#ifndef IMTET_EVALUATE_EVALUATION_H
+#define IMTET_EVALUATE_EVALUATION_H
+
+#include <stddef.h>
+
+#include "base/status.h"
+
+/*    name            word in files */
+#define OUTCOME_LIST(X)                                                                                                \
+    X(OK, "ok")                                                                                                        \
+    X(NOT_FINITE, "not_finite")                                                                                        \
+    X(OUT_OF_STEPS, "out_of_steps")                                                                                    \
+    X(ENERGY_BALANCE, "books_open")                                                                                    \
+    X(ENGINE_FAILED, "engine_failed")                                                                                  \
+    X(ERROR, "error")     /* reported by an external simulator */                                                      \
+    X(DEAD, "dead")       /* it ended without an answer */                                                             \
+    X(TIMEOUT, "timeout") /* it gave none in time */                                                                   \
+    X(GARBLED, "garbled") /* what it wrote is none */
+
+typedef enum {
+#define X(name, word) OUTCOME_##name,
+    OUTCOME_LIST(X)
+#undef X
+        OUTCOME_COUNT
+} Outcome;
+
+const char *outcome_word(Outcome outcome);
+Outcome outcome_of_word(const char *word); /* OUTCOME_COUNT: no outcome has that word */
+
+/* Why a design was evaluated. */
+#define KIND_LIST(X)                                                                                                   \
+    X(SAMPLED, "sampled")       /* first sample, or given */                                                           \
+    X(INFILL, "infill")         /* chosen on the surrogate */                                                          \
+    X(OFFSPRING, "offspring")   /* of variation, without the surrogate */                                              \
+    X(POLISHED, "polished")     /* from outside the search */                                                          \
+    X(REPEAT, "repeat")         /* further replicates of a design that is there */                                     \
+    X(UNFINISHED, "unfinished") /* its generation is not finished: not known yet */
+
+typedef enum {
+#define X(name, word) KIND_##name,
+    KIND_LIST(X)
+#undef X
+        KIND_COUNT
+} EvaluationKind;
+
+const char *kind_word(EvaluationKind kind);
+EvaluationKind kind_of_word(const char *word); /* KIND_UNFINISHED: no other kind has that word */
+
+typedef struct {
+    long id, generation;
+    EvaluationKind kind;
+    Outcome outcome;
+    char reason[160]; /* why it failed, fit for a cell of a CSV file; else empty */
+    int replicates;   /* simulations of each record behind f; 0: not known */
+    double seconds;   /* of all its simulations; NAN: not known */
+    double violation; /* of the limits, sum of max(0, g): 0 where they hold; INFINITY: failed; NAN: not known */
+    double *x, *f, *sd, *extra;
+} Evaluation;
+
+/* Outcome and reason; the text becomes a cell of a CSV file (base/cell.h). */
+void evaluation_set_outcome(Evaluation *e, Outcome outcome, const char *reason);
+
+typedef struct {
+    size_t n, n_max, n_var, n_obj, n_extra;
+    Evaluation *row;            /* (n) */
+    double *x, *f, *sd, *extra; /* (n, n_var) (n, n_obj) (n, n_obj) (n, n_extra) */
+    void *store;
+} EvaluationTable;
+
+/* Empty; needs no memory. */
+EvaluationTable evaluation_table(size_t n_var, size_t n_obj, size_t n_extra);
+
+/* One more row behind the last: x of zeros, every other number not known, OUTCOME_OK, KIND_UNFINISHED. */
+Status evaluation_table_add(EvaluationTable *t, Evaluation **row, Err *err);
+
+/* The same filled with a copy of `from`, whose shapes are those of the table; NULL arrays are not known. */
+Status evaluation_table_append(EvaluationTable *t, const Evaluation *from, Err *err);
+
+void evaluation_table_free(EvaluationTable *t); /* its shapes stay; {0} is fine */
+
+#endif
