@@ -1,0 +1,76 @@
+# Checks beyond the tests.
+
+.PHONY: fuzz fuzz-here coverage coverage-here torture faults tsan tsan-here asan asan-here valgrind stability \
+        stability-long laws fresh-debian
+
+# Every reader of foreign bytes under libFuzzer; what it finds goes to build/fuzz.
+FUZZ_S       ?= 600
+FUZZ_OBJ     := $(patsubst %,$(BUILD)/tests/fuzz/%.o,targets worker run)
+FUZZ_TARGETS := settings motion table worker database cells
+fuzz: ## the readers under libFuzzer (clang), FUZZ_S=600 seconds in all
+	@$(MAKE) --no-print-directory MODE=fuzz CC=clang WARNINGS=-w fuzz-here
+	@scripts/fuzz build/fuzz $(FUZZ_S) $(FUZZ_TARGETS)
+
+fuzz-here: $(FUZZ_TARGETS:%=$(BUILD)/tests/fuzz/fuzz_%)
+
+$(BUILD)/tests/fuzz/target_%.o: tests/fuzz/libfuzzer.c
+	@mkdir -p $(@D)
+	$(Q)$(CC) $(CPPFLAGS) -DFUZZ_TARGET=fuzz_$* $(CFLAGS) -c $< -o $@
+
+$(BUILD)/tests/fuzz/fuzz_%: $(BUILD)/tests/fuzz/target_%.o $(FUZZ_OBJ) $(LIB)
+	@echo '  LD  $@'
+	$(Q)$(CC) $(LDFLAGS) -fsanitize=fuzzer -o $@ $^ $(LDLIBS)
+
+COVER ?= $(NAMES:%=test_%)
+coverage: ## branches that the tests take, by folder; COVER="test_moga" chooses tests (gcovr)
+	@$(MAKE) --no-print-directory MODE=coverage WARNINGS=-w coverage-here
+
+coverage-here: $(PROGRAM) $(TESTS)
+	@find $(BUILD) -name '*.gcda' -delete
+	@printf '%s\n' $(call jobs,coverage,$(filter-out stability,$(COVER:test_%=%))) | scripts/run-tests $(JOBS)
+	@scripts/coverage $(BUILD)
+
+KILLS ?= 300
+torture: $(PROGRAM) $(BUILD)/tests/test_torture ## kill -9 at random moments, every run resumed to its end; KILLS=300
+	@IMTET=$(abspath $(PROGRAM)) TORTURE_KILLS=$(KILLS) $(BUILD)/tests/test_torture
+
+FAULTS ?= 800
+faults: $(PROGRAM) $(BUILD)/tests/test_faults ## memory and writes refused one after the other; FAULTS=800 of each kind
+	@IMTET=$(abspath $(PROGRAM)) FAULTS=$(FAULTS) $(BUILD)/tests/test_faults
+
+# LLVM's OpenMP: its tool reports to ThreadSanitizer what a parallel region orders; with gcc's, ThreadSanitizer reports
+# races that are none. First a race that it must find.
+TSAN_TESTS := test_async test_ensemble test_moga test_problem test_polish test_rbf
+tsan: ## threads under ThreadSanitizer (clang, libomp)
+	@$(MAKE) --no-print-directory MODE=tsan CC=clang WARNINGS=-w tsan-here
+
+tsan-here: export TSAN_OPTIONS := ignore_noninstrumented_modules=1 exitcode=99
+tsan-here: export OMP_NUM_THREADS := 3
+tsan-here: $(PROGRAM) $(TSAN_TESTS:%=$(BUILD)/tests/%)
+	@$(CC) -fopenmp -O1 -g -fsanitize=thread tests/fault/race.c -o $(BUILD)/race
+	@if $(BUILD)/race >$(BUILD)/race.log 2>&1; then echo "a race was not found: ThreadSanitizer does not work here"; exit 1; fi
+	@scripts/short-run $(PROGRAM)
+	@set -e; for t in $(TSAN_TESTS); do echo "== $$t"; IMTET=$(abspath $(PROGRAM)) $(BUILD)/tests/$$t; done
+
+asan: ## a short round of the commands under AddressSanitizer and UBSan
+	@$(MAKE) --no-print-directory MODE=asan asan-here
+
+asan-here: $(PROGRAM)
+	@scripts/short-run $(PROGRAM)
+
+VALGRIND := valgrind -q --error-exitcode=99 --leak-check=full --errors-for-leak-kinds=definite --show-leak-kinds=definite
+valgrind: $(PROGRAM) ## the same under valgrind
+	@scripts/short-run ./$(PROGRAM) $(VALGRIND)
+
+stability: $(STABILITY) ## docs/stability.md: every engine through every case
+	@$(STABILITY) --out docs/stability.md
+
+stability-long: $(STABILITY) ## the same with cases of 1e6 and 1e7 steps
+	@$(STABILITY) --long --seconds 600 --out docs/stability.md
+
+laws: $(STABILITY) ## docs/contact-laws.md: rebound of the contact laws
+	@$(STABILITY) --laws --out docs/contact-laws.md --csv $(BUILD)/contact-laws.csv
+	@scripts/plot-laws $(BUILD)/contact-laws.csv docs/contact-laws
+
+fresh-debian: ## the steps of the README in a Debian that has nothing but make (root, debootstrap, network)
+	@scripts/fresh-debian build/fresh-debian

@@ -1,0 +1,33 @@
+# Figures and pictures of README and docs. Those of time want a quiet machine.
+
+.PHONY: bench chart compare pictures web setup-browser report-bench
+
+# A record that is not there is replaced by the built-in motion.
+BENCH_RECORD ?= $(or $(wildcard ../shared/records/kobe_jma_ns.csv),builtin:kobe-like)
+bench: $(PROGRAM) ## simulations per second, and whether they became more work
+	@bench/guard $(abspath $(PROGRAM))
+	@$(abspath $(PROGRAM)) bench --throughput --record $(BENCH_RECORD)
+
+chart: $(PROGRAM) ## docs/chart: speed against accuracy of every engine
+	@$(abspath $(PROGRAM)) bench --record $(BENCH_RECORD) --csv docs/chart.csv --markdown docs/chart.md
+	@scripts/plot-chart docs/chart.csv docs/chart
+
+# CELLS and SEEDS choose a part, KEEP names a folder in which runs stay and are not repeated.
+compare: $(PROGRAM) ## docs/search.md: the search on textbook problems and the tower, with and without surrogate
+	@scripts/compare --program ./$(PROGRAM) --out docs/search.md $(if $(CELLS),--cells $(CELLS)) $(if $(SEEDS),--seeds $(SEEDS)) $(if $(KEEP),--keep $(KEEP))
+
+pictures: $(PROGRAM) ## docs/pictures, those of a study: RUN=results/kobe RECORDS="elcentro.csv sylmar.csv"
+	@./$(PROGRAM) plot $(RUN) $(RECORDS:%=--record %) --out $(BUILD)/pictures
+	@./$(PROGRAM) report $(RUN) $(RECORDS:%=--record %) --out $(BUILD)/pictures/report.html
+	@cp $(foreach p,front peaks modes energies sway elsewhere,$(BUILD)/pictures/$p.png) docs/pictures
+	@node tests/report/picture.mjs $(BUILD)/pictures/report.html docs/pictures/report-front.jpg '#front' 1180 'J3 acceleration [g] to=6' 'J1 sway [m] to=0.8'
+	@node tests/report/picture.mjs $(BUILD)/pictures/report.html docs/pictures/report-design.jpg '#design' 2250
+
+web: setup-browser ## web/charts.js bundled anew from npm
+	@cd web && npm ci --ignore-scripts --no-audit --no-fund --silent && node bundle.mjs
+
+setup-browser: ## packages for the report's tests in a browser, its bundle of charts and its times
+	@scripts/setup packages-browser.txt
+
+report-bench: setup-browser $(PROGRAM) ## how long a report of 10,000 designs takes to be painted and brushed
+	@tests/report/bench $(abspath $(PROGRAM)) build/report-bench
