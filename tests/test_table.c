@@ -111,6 +111,89 @@ static void test_a_missing_file_is_told_from_a_bad_one(void **state)
     assert_int_equal(table_read(&t, "tests", 0, &err), STATUS_MISSING);
 }
 
+/* The same 2 x 3 numbers as a spreadsheet of several countries writes them. */
+static void test_the_forms_of_spreadsheets_hold_the_same_numbers(void **state)
+{
+    (void)state;
+    static const char *const FORMS[] = {
+        "1.5,-2.25,3e-7\n0.1,4,5\n",
+        "\xef\xbb\xbf"
+        "1.5,-2.25,3e-7\r\n0.1,4,5\r\n",
+        "1.5;-2.25;3e-7\n0.1;4;5\n",
+        "1,5;-2,25;3e-7\n0,1;4;5\n",
+        "1.5\t-2.25\t3e-7\n0.1\t4\t5\n",
+        "1,5\t-2,25\t3e-7\r\n0,1\t4\t5\r\n",
+        "\"1,5\",\"-2,25\",\"3e-7\"\n\"0,1\",4,5\n",
+        "\"1.5\";\"-2.25\";\"3e-7\"\n0.1;4;5\n;;\n;;\n",
+        "# made by hand\r1.5 , -2.25 , 3e-7\r0.1 , 4 , 5\r",
+    };
+    const double want[] = {1.5, -2.25, 3e-7, 0.1, 4, 5};
+    for (size_t i = 0; i < sizeof FORMS / sizeof FORMS[0]; i++) {
+        Err err = {0};
+        Table t;
+        CHECK_OK(parse(&t, FORMS[i], 0, &err), &err);
+        assert_int_equal(t.n_rows, 2);
+        assert_int_equal(t.n_cols, 3);
+        assert_memory_equal(t.values, want, sizeof want);
+        table_free(&t);
+    }
+}
+
+static void test_a_header_of_a_spreadsheet_loses_its_mark_and_its_quotes(void **state)
+{
+    (void)state;
+    static const char *const FORMS[] = {
+        "\xef\xbb\xbfgap_01_m,t_base_m\n0.05,0.012\n",
+        "\xef\xbb\xbfgap_01_m;t_base_m\r\n0,05;0,012\r\n",
+        "\"gap_01_m\"\t\"t_base_m\"\n0,05\t0,012\n",
+        "\"gap_01_m\",\"t_base_m\"\n\"0,05\",\"0,012\"\n",
+    };
+    for (size_t i = 0; i < sizeof FORMS / sizeof FORMS[0]; i++) {
+        Err err = {0};
+        Table t;
+        CHECK_OK(parse(&t, FORMS[i], 1, &err), &err);
+        assert_int_equal(table_column(&t, "gap_01_m"), 0);
+        assert_int_equal(table_column(&t, "t_base_m"), 1);
+        assert_true(t.n_rows == 1 && t.values[0] == 0.05 && t.values[1] == 0.012);
+        assert_int_equal(t.line[0], 2);
+        table_free(&t);
+    }
+}
+
+static void test_decimal_points_beside_decimal_commas_are_refused(void **state)
+{
+    (void)state;
+    expect_refusal("1,5;2\n3;4\n5;6.5\n", 0, "there.csv:3: decimal points and decimal commas are mixed; line 1");
+    expect_refusal("1.234,5;2\n", 0, "there.csv:1: column 1 is not a number");
+    expect_refusal("1;2\n3;;\n", 0, "there.csv:2: column 2 of 2 is missing");
+    expect_refusal("1\t2\n3\n", 0, "there.csv:2: column 2 of 2 is missing");
+    expect_refusal("1\t2\n\t3\n", 0, "there.csv:2: column 1 of 2 is missing");
+    expect_refusal("\xff\xfe"
+                   "1;2\n",
+                   0, "UTF-16");
+}
+
+static void test_an_invisible_character_is_named_in_a_message(void **state)
+{
+    (void)state;
+    expect_refusal("1,2\xc2\xa0"
+                   "000\n",
+                   0, "column 2 is not a number: '2<U+00A0>000'");
+    expect_refusal("1,\xe2\x80\x8b"
+                   "2\n",
+                   0, "'<U+200B>2'");
+    expect_refusal("1,2\x1b[2J\n", 0, "'2\\x1B[2J'");
+    expect_refusal("1,\xe4 \n", 0, "'\\xE4'");
+    expect_refusal("1,Stra\xc3\x9f"
+                   "e\n",
+                   0,
+                   "'Stra\xc3\x9f"
+                   "e'");
+    Err err = {0};
+    (fail)(&err, STATUS_BAD_DATA, "'%s'", "\xef\xbb\xbf\t\r\n\x7f\xf0\x9f\x99\x82\xc0\x80\xed\x9f\xbf");
+    assert_string_equal(err.text, "'<U+FEFF>\\t\\r\\n\\x7F\xf0\x9f\x99\x82\\xC0\\x80\xed\x9f\xbf'");
+}
+
 static const char DESIGNS[] = "# two designs for two floors\n"
                               "gap_01_m,gap_02_m,t_base_m,t_top_m\n"
                               "\n"
@@ -195,6 +278,10 @@ int main(void)
         cmocka_unit_test(test_a_last_line_without_an_end_counts),
         cmocka_unit_test(test_each_fault_names_file_line_and_column),
         cmocka_unit_test(test_a_missing_last_number_is_not_taken_from_the_next_line),
+        cmocka_unit_test(test_the_forms_of_spreadsheets_hold_the_same_numbers),
+        cmocka_unit_test(test_a_header_of_a_spreadsheet_loses_its_mark_and_its_quotes),
+        cmocka_unit_test(test_decimal_points_beside_decimal_commas_are_refused),
+        cmocka_unit_test(test_an_invisible_character_is_named_in_a_message),
         cmocka_unit_test(test_a_missing_file_is_told_from_a_bad_one),
         cmocka_unit_test(test_a_design_file_gives_its_rows_and_their_lines),
         cmocka_unit_test(test_variables_are_named_by_floor_from_the_bottom),

@@ -6,14 +6,18 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/visible.h"
+
 Status fail(Err *err, Status code, const char *format, ...)
 {
     if (err) {
         va_list args;
+        char raw[sizeof err->text]; /* may quote any bytes of a file */
         va_start(args, format);
-        err->code = code;
-        vsnprintf(err->text, sizeof err->text, format, args);
+        vsnprintf(raw, sizeof raw, format, args);
         va_end(args);
+        err->code = code;
+        visible_text(err->text, sizeof err->text, raw);
     }
     return code;
 }

@@ -31,7 +31,8 @@ typedef struct {
     char text[480];
 } Err;
 
-/* Writes the sentence and returns code, so that `return fail(err, STATUS_IO, "...")` reads as one thought. */
+/* Writes the sentence, without invisible characters (base/visible.h), and returns code, so that
+ * `return fail(err, STATUS_IO, "...")` reads as one thought. */
 __attribute__((format(printf, 3, 4))) Status fail(Err *err, Status code, const char *format, ...);
 
 /* What a system call's errno amounts to: STATUS_NO_MEMORY, or else `otherwise`. */

@@ -2,9 +2,14 @@
  *
  *   # comment and blank lines are skipped; every other line holds the same number of finite numbers
  *
+ * The forms that spreadsheets write are read: a UTF-8 byte order mark, cells separated by commas, semicolons or tabs (the
+ * first line that is no comment decides), cells in double quotes, decimal commas where the comma separates no cells
+ * (decimal points and commas in one file are refused), lines that end in LF, CRLF or CR, lines of empty cells.
+ *
  * Below a header there may be no line at all; without one that is refused.
  *
- * Ownership  table_read allocates names and values; table_free releases them (an empty table is fine). */
+ * Ownership  table_read allocates names, values and lines; table_free releases them (an empty table is fine).
+ * Threads    no state */
 #ifndef IMTET_BASE_TABLE_H
 #define IMTET_BASE_TABLE_H
 
@@ -18,6 +23,7 @@ typedef struct {
     size_t n_rows, n_cols;
     char (*names)[TABLE_NAME_MAX]; /* (n_cols), NULL without a header */
     double *values;                /* (n_rows, n_cols) row-major */
+    int *line;                     /* (n_rows) of the file, from 1 */
 } Table;
 
 Status table_read(Table *t, const char *path, int has_header, Err *err);

@@ -50,7 +50,7 @@ static void warn_top_heavy(const Designs *d, const char *path)
     for (size_t i = 0; i < d->n; i++) {
         const double *wall = &d->x[i * n_var + n_var - 2];
         if (wall[1] > wall[0])
-            fprintf(stderr, "%s:%zu: t_top_m %g is thicker than t_base_m %g; the search would not propose this\n", path,
+            fprintf(stderr, "%s:%d: t_top_m %g is thicker than t_base_m %g; the search would not propose this\n", path,
                     d->line[i], wall[1], wall[0]);
     }
 }

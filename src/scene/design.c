@@ -1,6 +1,5 @@
 #include "scene/design.h"
 
-#include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -32,24 +31,6 @@ static Status check_names(const Table *t, const char *path, int n_floors, Err *e
     return STATUS_OK;
 }
 
-/* The lines that hold the rows: the table skips blank lines and comments, a message should not. */
-static void find_lines(const char *text, size_t n, size_t line[])
-{
-    size_t found = 0, number = 0;
-    int header_seen = 0;
-    while (*text && found < n) {
-        number++;
-        const char *first = text + strspn(text, " \t\r");
-        if (*first && *first != '\n' && *first != '#') {
-            if (header_seen)
-                line[found++] = number;
-            header_seen = 1;
-        }
-        const char *end = strchr(text, '\n');
-        text = end ? end + 1 : text + strlen(text);
-    }
-}
-
 static Status check_values(const Designs *d, const char *path, Err *err)
 {
     char name[TABLE_NAME_MAX];
@@ -59,10 +40,10 @@ static Status check_values(const Designs *d, const char *path, Err *err)
             const double value = d->x[i * (size_t)n_var + (size_t)j];
             design_variable_name(d->n_floors, j, name);
             if (j < d->n_floors && value < 0)
-                return fail(err, STATUS_BAD_DATA, "%s:%zu: %s is %g; a gap is not negative", path, d->line[i], name,
+                return fail(err, STATUS_BAD_DATA, "%s:%d: %s is %g; a gap is not negative", path, d->line[i], name,
                             value);
             if (j >= d->n_floors && value <= 0)
-                return fail(err, STATUS_BAD_DATA, "%s:%zu: %s is %g; a thickness must be above 0", path, d->line[i],
+                return fail(err, STATUS_BAD_DATA, "%s:%d: %s is %g; a thickness must be above 0", path, d->line[i],
                             name, value);
         }
     return STATUS_OK;
@@ -70,29 +51,21 @@ static Status check_values(const Designs *d, const char *path, Err *err)
 
 Status design_read(Designs *d, const char *path, int n_floors, Err *err)
 {
-    char *text;
-    size_t length;
     Table t;
     memset(d, 0, sizeof *d);
-    TRY(file_read(path, &text, &length, err));
-    Status status = table_parse(&t, path, text, length, 1, err);
-    if (status == STATUS_OK)
-        status = check_names(&t, path, n_floors, err);
+    TRY(table_read(&t, path, 1, err));
+    Status status = check_names(&t, path, n_floors, err);
     if (status == STATUS_OK && t.n_rows == 0)
         status = fail(err, STATUS_BAD_DATA, "%s: holds no designs", path);
     if (status == STATUS_OK) {
-        *d = (Designs){.n = t.n_rows, .n_floors = n_floors, .x = t.values, .line = calloc(t.n_rows, sizeof *d->line)};
+        *d = (Designs){.n = t.n_rows, .n_floors = n_floors, .x = t.values, .line = t.line};
         t.values = NULL;
-        status = d->line ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "%s: no memory for %zu designs", path, d->n);
-    }
-    if (status == STATUS_OK) {
-        find_lines(text, d->n, d->line);
+        t.line = NULL;
         status = check_values(d, path, err);
     }
     if (status != STATUS_OK)
         design_free(d);
     table_free(&t);
-    free(text);
     return status;
 }
 

@@ -18,8 +18,8 @@
 typedef struct {
     size_t n;
     int n_floors;
-    double *x;    /* [m] (n, n_floors + 2) */
-    size_t *line; /* (n) of the file */
+    double *x; /* [m] (n, n_floors + 2) */
+    int *line; /* (n) of the file */
 } Designs;
 
 /* Name of variable j = 0..n_floors+1. */

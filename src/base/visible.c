@@ -1,0 +1,78 @@
+#include "base/visible.h"
+
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Code points that show nothing, by first and last: Unicode 15, categories Cc, Cf, Zs, Zl, Zp and the fillers. */
+static const struct {
+    uint32_t first, last;
+} INVISIBLE[] = {
+    {0x80, 0xa0},     {0xad, 0xad},     {0x34f, 0x34f},   {0x61c, 0x61c},      {0x115f, 0x1160},
+    {0x1680, 0x1680}, {0x17b4, 0x17b5}, {0x180b, 0x180f}, {0x2000, 0x200f},    {0x2028, 0x202f},
+    {0x205f, 0x206f}, {0x3000, 0x3000}, {0x3164, 0x3164}, {0xfe00, 0xfe0f},    {0xfeff, 0xfeff},
+    {0xffa0, 0xffa0}, {0xfff0, 0xfffb}, {0xe000, 0xf8ff}, {0xe0000, 0x10ffff},
+};
+
+static int is_invisible(uint32_t code)
+{
+    for (size_t i = 0; i < sizeof INVISIBLE / sizeof INVISIBLE[0]; i++)
+        if (code >= INVISIBLE[i].first && code <= INVISIBLE[i].last)
+            return 1;
+    return 0;
+}
+
+/* Bytes of the UTF-8 character that begins here, and its code point; 0: this is none. */
+static size_t decode(const char *text, uint32_t *code)
+{
+    static const struct {
+        unsigned char mask, lead;
+        uint32_t least;
+    } FORM[] = {{0x80, 0x00, 0}, {0xe0, 0xc0, 0x80}, {0xf0, 0xe0, 0x800}, {0xf8, 0xf0, 0x10000}};
+    const unsigned char first = (unsigned char)text[0];
+    for (size_t n = 1; n <= 4; n++) {
+        if ((first & FORM[n - 1].mask) != FORM[n - 1].lead)
+            continue;
+        *code = first & (unsigned char)~FORM[n - 1].mask;
+        for (size_t i = 1; i < n; i++) {
+            if (((unsigned char)text[i] & 0xc0) != 0x80)
+                return 0;
+            *code = *code << 6 | ((unsigned char)text[i] & 0x3f);
+        }
+        return *code >= FORM[n - 1].least && *code <= 0x10ffff ? n : 0;
+    }
+    return 0;
+}
+
+/* One character of the text as it may be shown; returns how many bytes it had. */
+static size_t show_one(const char *text, char shown[16])
+{
+    static const char ESCAPES[] = "\a\b\t\n\v\f\r", LETTERS[] = "abtnvfr";
+    uint32_t code = 0;
+    const size_t n = decode(text, &code);
+    const char *escape = code < 0x80 && n ? strchr(ESCAPES, (int)code) : NULL;
+    if (escape)
+        snprintf(shown, 16, "\\%c", LETTERS[escape - ESCAPES]);
+    else if (n == 0 || code < ' ' || code == 0x7f)
+        snprintf(shown, 16, "\\x%02X", (unsigned)(unsigned char)text[0]);
+    else if (is_invisible(code))
+        snprintf(shown, 16, "<U+%04X>", (unsigned)code);
+    else
+        snprintf(shown, 16, "%.*s", (int)n, text);
+    return n ? n : 1;
+}
+
+void visible_text(char out[], size_t size, const char *text)
+{
+    char shown[16];
+    size_t n = 0;
+    while (*text) {
+        text += show_one(text, shown);
+        const size_t length = strlen(shown);
+        if (n + length >= size)
+            break;
+        memcpy(out + n, shown, length);
+        n += length;
+    }
+    out[n] = 0;
+}

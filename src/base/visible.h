@@ -1,0 +1,16 @@
+/* base/visible.h -- text of files and users as it may stand in a message: nothing in it is invisible or moves a cursor.
+ *
+ *   control characters   \n \t ... or \x1B
+ *   invisible ones       <U+FEFF>: blanks other than the space, marks without width, direction marks (UTF-8)
+ *   no UTF-8             \xE4
+ *
+ * What is visible stays as it is. Threads  no state */
+#ifndef IMTET_BASE_VISIBLE_H
+#define IMTET_BASE_VISIBLE_H
+
+#include <stddef.h>
+
+/* At most size - 1 characters and a NUL, no escape cut in two; text and out do not overlap. */
+void visible_text(char out[], size_t size, const char *text);
+
+#endif
