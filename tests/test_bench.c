@@ -7,18 +7,21 @@
 
 #include "bench/parted.h"
 #include "scene/motion_source.h"
+#include "settings/settings.h"
 
 typedef struct {
-    Settings s;
+    SceneOptions s;
     Motion m;
 } Ground;
 
 static void ground_open(Ground *g)
 {
     Err err;
-    settings_defaults(&g->s);
+    Settings s;
+    settings_defaults(&s);
+    g->s = settings_scene(&s);
     CHECK_OK(motion_load(&g->m, "builtin:kobe-like", UNIT_FROM_FILE, &err), &err);
-    CHECK_OK(motion_prepare(&g->m, g->s.motion.pga_g, g->s.motion.stretch, &err), &err);
+    CHECK_OK(motion_prepare(&g->m, s.motion.pga_g, s.motion.stretch, &err), &err);
 }
 
 static void test_irregular_gaps_are_the_same_every_time_and_within_their_bounds(void **state)

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "sim/engine.h"
+#include "scene_options.h"
 
 /* What an engine owes at a knob: relative error of the objectives in a window with impacts, open books, and the
  * relative error of the loss in an isolated impact. */
@@ -56,18 +57,17 @@ static void test_every_engine_agrees_with_the_fast_one_where_there_are_impacts(v
 {
     (void)state;
     static CoreBeam core;
-    Settings s;
+    SceneOptions s = scene_defaults();
     Building b;
     SimModel model;
     Err err;
     double gaps[FLOORS_MAX], accel[21];
     const Motion m = {.accel = accel, .n = 21, .dt_s = 0.05};
-    settings_defaults(&s);
     s.core.section = CORE_EFFECTIVE;
     for (int k = 0; k < 21; k++)
         accel[k] = 3 * sin(2.5 * 0.05 * k) + 2 * sin(8.2 * 0.05 * k);
     CHECK_OK(building_load(&b, "guyan", &err), &err);
-    CHECK_OK(core_beam_make(&core, &s, b.n, 1, 1, &err), &err);
+    CHECK_OK(core_beam_make(&core, &s.core, &s.building, b.n, 1, 1, &err), &err);
     for (int j = 0; j < b.n; j++)
         gaps[j] = 0.002 * (j + 1);
     CHECK_OK(model_create(&model, b.n, &err), &err);

@@ -1,17 +1,19 @@
 /* Ensembles and the predictability horizon. */
 #include "check.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #include "simulator/ensemble.h"
 #include "simulator/horizon.h"
+#include "settings/settings.h"
 
 static void open_world(World *w, double x[22], double gap_m)
 {
     Settings s;
     Err err = {0};
     settings_defaults(&s);
-    snprintf(s.motion.record, SETTINGS_TEXT_MAX, "builtin:sylmar-like");
+    snprintf(s.motion.record, OPTION_TEXT_MAX, "builtin:sylmar-like");
     s.sim.duration_s = 16;
     CHECK_OK(world_open(w, &s, &err), &err);
     for (int j = 0; j < 20; j++)

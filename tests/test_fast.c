@@ -9,6 +9,7 @@
 #include "sim/fast/fast.h"
 #include "sim/sim.h"
 #include "scene/motion_source.h"
+#include "settings/settings.h"
 
 /* ---- one ball and a wall ------------------------------------------------------------------------------------ */
 
@@ -185,9 +186,10 @@ typedef struct {
 static void tower_open(Tower *t)
 {
     Err err = {0};
+    const SceneOptions options = settings_scene(&t->settings);
     CHECK_OK(motion_load(&t->motion, t->settings.motion.record, UNIT_FROM_FILE, &err), &err);
     CHECK_OK(motion_prepare(&t->motion, t->settings.motion.pga_g, t->settings.motion.stretch, &err), &err);
-    CHECK_OK(scene_create(&t->scene, &t->settings, &t->motion, &err), &err);
+    CHECK_OK(scene_create(&t->scene, &options, &t->motion, &err), &err);
     CHECK_OK(sim_worker_create(&t->worker, t->scene, &err), &err);
     for (int j = 0; j < 20; j++)
         t->x[j] = 0.008 * (j + 1);
@@ -223,7 +225,7 @@ static void test_early_window_has_the_digits_that_independent_integrators_share(
     (void)state;
     Tower t = {0};
     settings_defaults(&t.settings);
-    snprintf(t.settings.motion.record, SETTINGS_TEXT_MAX, "../shared/records/northridge_sylmar_ns.csv");
+    snprintf(t.settings.motion.record, OPTION_TEXT_MAX, "../shared/records/northridge_sylmar_ns.csv");
     if (!record_is_there(t.settings.motion.record))
         skip();
     t.settings.core.section = CORE_EFFECTIVE;
@@ -258,7 +260,7 @@ static void test_kobe_without_a_core_has_its_known_response(void **state)
     (void)state;
     Tower t = {0};
     settings_defaults(&t.settings);
-    snprintf(t.settings.motion.record, SETTINGS_TEXT_MAX, "../shared/records/kobe_jma_ns.csv");
+    snprintf(t.settings.motion.record, OPTION_TEXT_MAX, "../shared/records/kobe_jma_ns.csv");
     if (!record_is_there(t.settings.motion.record))
         skip();
     tower_open(&t);
@@ -275,7 +277,7 @@ static void builtin_tower(Tower *t)
     *t = (Tower){0};
     settings_defaults(&t->settings);
     t->settings.sim.duration_s = 14;
-    snprintf(t->settings.motion.record, SETTINGS_TEXT_MAX, "builtin:sylmar-like");
+    snprintf(t->settings.motion.record, OPTION_TEXT_MAX, "builtin:sylmar-like");
     tower_open(t);
 }
 
@@ -401,8 +403,8 @@ static void test_standard_accuracy_agrees_with_cvode_on_another_building_core_an
     (void)state;
     Tower t = {0};
     settings_defaults(&t.settings);
-    snprintf(t.settings.building.model, SETTINGS_TEXT_MAX, "appendix");
-    snprintf(t.settings.motion.record, SETTINGS_TEXT_MAX, "builtin:elcentro-like");
+    snprintf(t.settings.building.model, OPTION_TEXT_MAX, "appendix");
+    snprintf(t.settings.motion.record, OPTION_TEXT_MAX, "builtin:elcentro-like");
     t.settings.motion.stretch = 3;
     t.settings.sim.duration_s = 8;
     tower_open(&t);

@@ -14,6 +14,7 @@
 #include "simulator/textbook.h"
 #include "simulator/schema.h"
 #include "simulator/subject.h"
+#include "settings/settings.h"
 
 enum { VAR = 22, OBJ = 7 };
 

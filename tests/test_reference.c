@@ -8,11 +8,12 @@
 #include "base/linalg.h"
 #include "base/table.h"
 #include "sim/engine.h"
+#include "scene_options.h"
 
 static const char RECORDS[] = "../shared/records/", EARLY_WINDOW[] = "../shared/reference/early_window.csv";
 
 typedef struct {
-    Settings s;
+    SceneOptions s;
     Building b;
     CoreBeam core;
     SimModel model;
@@ -24,10 +25,10 @@ static void stage_set(Stage *stage, double gap)
 {
     Err err;
     memset(stage, 0, sizeof *stage);
-    settings_defaults(&stage->s);
+    stage->s = scene_defaults();
     stage->s.core.section = CORE_EFFECTIVE;
     CHECK_OK(building_load(&stage->b, "guyan", &err), &err);
-    CHECK_OK(core_beam_make(&stage->core, &stage->s, stage->b.n, 1, 1, &err), &err);
+    CHECK_OK(core_beam_make(&stage->core, &stage->s.core, &stage->s.building, stage->b.n, 1, 1, &err), &err);
     for (int j = 0; j < stage->b.n; j++)
         stage->gaps[j] = gap * (j + 1);
     CHECK_OK(model_create(&stage->model, stage->b.n, &err), &err);
@@ -440,7 +441,7 @@ static void test_tied_to_next_to_nothing_the_building_is_the_bare_one(void **sta
     stage_without_core(&stage);
     stage.s.core.area_base_m2 = stage.s.core.area_top_m2 = 1e-9;
     stage.s.core.inertia_base_m4 = stage.s.core.inertia_top_m4 = 1e-9;
-    CHECK_OK(core_beam_make(&stage.core, &stage.s, stage.b.n, 1, 1, &err), &err);
+    CHECK_OK(core_beam_make(&stage.core, &stage.s.core, &stage.s.building, stage.b.n, 1, 1, &err), &err);
     for (size_t i = 0; i < sizeof DURATION / sizeof DURATION[0]; i++) {
         const SimResult t = run_tied(&stage, &m, DURATION[i], ACCURACY_FINE);
         const SimResult r = run_cvode(&stage, &m, DURATION[i], ACCURACY_FINE);

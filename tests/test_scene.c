@@ -11,14 +11,14 @@
 #include "sim/contact.h"
 #include "sim/flow.h"
 #include "sim/sim.h"
+#include "scene_options.h"
 
 static void make_core(CoreBeam *core, CoreSection section, double t_base, double t_top)
 {
-    Settings s;
+    SceneOptions s = scene_defaults();
     Err err = {0};
-    settings_defaults(&s);
     s.core.section = section;
-    CHECK_OK(core_beam_make(core, &s, 20, t_base, t_top, &err), &err);
+    CHECK_OK(core_beam_make(core, &s.core, &s.building, 20, t_base, t_top, &err), &err);
 }
 
 static void assert_hz(const double hz[], const double wanted[], int n, double tolerance_hz)
@@ -33,11 +33,10 @@ static void assert_hz(const double hz[], const double wanted[], int n, double to
 static void scene_hz(const char *model, CoreSection section, double building[], double core[], double zero_gap[],
                      double *mass)
 {
-    Settings s;
+    SceneOptions s = scene_defaults();
     Scene *scene;
     Err err = {0};
     double x[22] = {[20] = 0.012, [21] = 0.0064};
-    settings_defaults(&s);
     snprintf(s.building.model, sizeof s.building.model, "%s", model);
     s.core.section = section;
     CHECK_OK(scene_create(&scene, &s, NULL, &err), &err);
@@ -86,12 +85,11 @@ static void test_a_uniform_core_is_a_textbook_cantilever(void **state)
 {
     (void)state;
     CoreBeam core;
-    Settings s;
+    SceneOptions s = scene_defaults();
     Err err = {0};
-    settings_defaults(&s);
     s.core.section = CORE_PLATE;
     s.building.first_storey_m = s.building.storey_m = 4;
-    CHECK_OK(core_beam_make(&core, &s, 20, 0.5, 0.5, &err), &err);
+    CHECK_OK(core_beam_make(&core, &s.core, &s.building, 20, 0.5, 0.5, &err), &err);
     const double L = 80, EI = s.core.youngs_modulus_pa * s.core.width_m * pow(0.5, 3) / 12;
     const double m = s.core.density_kg_m3 * s.core.width_m * 0.5;
     const double beta_l[] = {1.875104069, 4.694091133, 7.854757438}; /* cos x cosh x = -1 */
@@ -176,29 +174,27 @@ static void test_walls_that_do_not_fit_are_refused(void **state)
 {
     (void)state;
     CoreBeam core;
-    Settings s;
+    SceneOptions s = scene_defaults();
     Err err = {0};
-    settings_defaults(&s);
     s.core.side_m = 0.05;
-    assert_int_equal(core_beam_make(&core, &s, 20, 0.03, 0.02, &err), STATUS_BAD_DATA);
-    assert_int_equal(core_beam_make(&core, &s, 20, -0.01, 0.02, &err), STATUS_BAD_DATA);
+    assert_int_equal(core_beam_make(&core, &s.core, &s.building, 20, 0.03, 0.02, &err), STATUS_BAD_DATA);
+    assert_int_equal(core_beam_make(&core, &s.core, &s.building, 20, -0.01, 0.02, &err), STATUS_BAD_DATA);
 }
 
 static void test_contact_stiffness_and_damping_are_those_of_the_paper(void **state)
 {
     (void)state;
-    Settings s;
+    SceneOptions s = scene_defaults();
     Contact c;
     Err err = {0};
-    settings_defaults(&s);
-    CHECK_OK(contact_make(&c, &s, &err), &err);
+    CHECK_OK(contact_make(&c, &s.contact, &err), &err);
     assert_close(c.k, 4.8650e10, 2e-5);
     assert_close(c.a, 0.45, 1e-12);
     s.contact.law = LAW_EXACT;
-    CHECK_OK(contact_make(&c, &s, &err), &err);
+    CHECK_OK(contact_make(&c, &s.contact, &err), &err);
     assert_close(c.a, 0.63482828, 1e-7);
     s.contact.restitution = 0;
-    assert_int_equal(contact_make(&c, &s, &err), STATUS_BAD_DATA);
+    assert_int_equal(contact_make(&c, &s.contact, &err), STATUS_BAD_DATA);
 }
 
 static void test_rebound_formula_matches_its_table_and_its_inverse(void **state)

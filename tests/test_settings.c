@@ -11,7 +11,7 @@ enum { KEYS_MAX = 200 };
 
 typedef struct {
     int n;
-    char key[KEYS_MAX][64], value[KEYS_MAX][SETTINGS_TEXT_MAX];
+    char key[KEYS_MAX][64], value[KEYS_MAX][OPTION_TEXT_MAX];
 } Pairs;
 
 /* What settings_write says, line by line. The caller frees the text. */
@@ -65,7 +65,7 @@ static Status read_text(Settings *s, const char *text, Err *err)
 static void set(Settings *s, const char *key, const char *value)
 {
     Err err = {0};
-    char assignment[SETTINGS_TEXT_MAX + 80];
+    char assignment[OPTION_TEXT_MAX + 80];
     snprintf(assignment, sizeof assignment, "%s=%s", key, value);
     CHECK_OK(settings_set(s, assignment, &err), &err);
 }
@@ -144,7 +144,7 @@ static void test_a_long_path_survives_saving(void **state)
     (void)state;
     Err err = {0};
     Settings s, back;
-    char path[SETTINGS_TEXT_MAX];
+    char path[OPTION_TEXT_MAX];
     memset(path, 'x', sizeof path);
     path[0] = '/';
     path[sizeof path - 1] = 0;

@@ -1,7 +1,9 @@
+#include <stdio.h>
 #include <string.h>
 
 #include "check.h"
 #include "simulator/trial.h"
+#include "settings/settings.h"
 
 enum { DESIGNS = 3, N_VAR = 22 };
 

@@ -7,6 +7,7 @@
 #include "bench/observe.h"
 #include "scene/motion_read.h"
 #include "scene/motion_source.h"
+#include "scene_options.h"
 
 typedef struct {
     const char *record, *building;
@@ -27,10 +28,10 @@ enum { WINDOWS_N = sizeof WINDOWS / sizeof WINDOWS[0] };
 /* J1, J2, J3, shares of mode 1, modes 5 to 10, the core */
 static const double FINE = 1e-4, STANDARD[BENCH_OBJECTIVES] = {1e-3, 3e-3, 2e-2, 1e-2, 1e-2, 1e-2};
 
-static void open_window(const Window *w, Settings *s, Motion *m, Stage *stage)
+static void open_window(const Window *w, SceneOptions *s, Motion *m, Stage *stage)
 {
     Err err;
-    settings_defaults(s);
+    *s = scene_defaults();
     snprintf(s->building.model, sizeof s->building.model, "%s", w->building);
     s->core.section = w->section;
     CHECK_OK(motion_load(m, w->record, UNIT_FROM_FILE, &err), &err);
@@ -48,7 +49,7 @@ static void test_fine_and_standard_accuracy_are_what_they_promise(void **state)
     (void)state;
     static Observed reference, fine, standard;
     for (int i = 0; i < WINDOWS_N; i++) {
-        Settings s;
+        SceneOptions s;
         Motion m;
         Stage stage;
         Err err;
@@ -74,7 +75,7 @@ static void test_peaks_of_a_stiff_building_beside_a_core_are_those_of_fine_accur
     (void)state;
     static Observed fine, standard;
     for (int stiffer = 5; stiffer <= 80; stiffer *= 4) {
-        Settings s;
+        SceneOptions s;
         Motion m;
         Stage stage;
         Err err;

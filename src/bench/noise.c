@@ -28,7 +28,7 @@ static Status spread_of(Crew *crew, int n, uint32_t design, double *spread, Err 
     return STATUS_OK;
 }
 
-Status sweep_find_noise(Sweep *s, const Settings *settings, const Motion *motion, Err *err)
+Status sweep_find_noise(Sweep *s, const SceneOptions *settings, const Motion *motion, Err *err)
 {
     double spread = 0;
     Scene *scene;

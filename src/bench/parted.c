@@ -56,8 +56,8 @@ static void change_gaps(const double gaps[], int n, uint32_t series, int k, doub
         changed[j] = gaps[j] * (1 + CHANGE * random_normal(&r));
 }
 
-static Status run_all(Stage *stage, const Settings *s, Engine engine, Accuracy accuracy, double knob, uint32_t series,
-                      Answers *answers, PartedEngine *out, Err *err)
+static Status run_all(Stage *stage, const SceneOptions *s, Engine engine, Accuracy accuracy, double knob,
+                      uint32_t series, Answers *answers, PartedEngine *out, Err *err)
 {
     const EngineOptions options = {.duration = stage->duration, .accuracy = accuracy, .tolerance = knob};
     double changed[FLOORS_MAX];
@@ -110,7 +110,7 @@ static const SweepRow *setting_of(const Sweep *sweep, const Stage *stage, Engine
     return best && best->seen.seconds * WINDOW_S / stage->scene->window_s <= limit_s ? best : NULL;
 }
 
-static Status parted_series(Parted *p, const Sweep *sweep, Stage *stage, const Settings *s, double limit_s,
+static Status parted_series(Parted *p, const Sweep *sweep, Stage *stage, const SceneOptions *s, double limit_s,
                             Answers answers[2], FILE *progress, Err *err)
 {
     Answers *reference = &answers[0], *other = &answers[1];
@@ -133,7 +133,7 @@ static Status parted_series(Parted *p, const Sweep *sweep, Stage *stage, const S
     return STATUS_OK;
 }
 
-Status parted_run(Parted *parted, const Sweep *sweep, const Stage *stage, const Settings *s, double limit_s,
+Status parted_run(Parted *parted, const Sweep *sweep, const Stage *stage, const SceneOptions *s, double limit_s,
                   FILE *progress, Err *err)
 {
     Stage longer = *stage; /* borrows all of it; the model is set anew for every run */

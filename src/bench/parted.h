@@ -28,7 +28,7 @@ typedef struct {
 
 /* Engines at the fastest setting of the sweep on this stage's scene with an error of 5e-3 at most; those whose runs
  * would take longer than limit_s are left out. */
-Status parted_run(Parted *parted, const Sweep *sweep, const Stage *stage, const Settings *s, double limit_s,
+Status parted_run(Parted *parted, const Sweep *sweep, const Stage *stage, const SceneOptions *s, double limit_s,
                   FILE *progress, Err *err);
 
 double parted_by_chance(int n);

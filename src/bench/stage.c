@@ -41,13 +41,13 @@ Motion bench_window(const Motion *whole, double *start_s)
     return window;
 }
 
-static Status set_model(Stage *stage, const Settings *s, Err *err)
+static Status set_model(Stage *stage, const SceneOptions *s, Err *err)
 {
     return model_set(&stage->model, s, &stage->building, stage->core, stage->gaps, err);
 }
 
 /* Impacts when only the middle floor can touch, at this gap. */
-static Status count_impacts(Stage *stage, const Settings *s, double gap, long *impacts, Err *err)
+static Status count_impacts(Stage *stage, const SceneOptions *s, double gap, long *impacts, Err *err)
 {
     const EngineOptions options = {.duration = stage->duration, .accuracy = ACCURACY_FINE};
     SimResult r;
@@ -59,7 +59,7 @@ static Status count_impacts(Stage *stage, const Settings *s, double gap, long *i
 }
 
 /* The middle floor's gap a little short of the largest that closes, so that it closes once. */
-static Status find_one_impact(Stage *stage, const Settings *s, Err *err)
+static Status find_one_impact(Stage *stage, const SceneOptions *s, Err *err)
 {
     double closes = 0, open = OPEN_GAP;
     long impacts;
@@ -88,7 +88,8 @@ static void set_gaps(Stage *stage)
         bench_irregular_gaps(0, n, stage->gaps);
 }
 
-Status stage_open(Stage *stage, const BenchScene *scene, const Settings *s, const Motion *motion, int quick, Err *err)
+Status stage_open(Stage *stage, const BenchScene *scene, const SceneOptions *s, const Motion *motion, int quick,
+                  Err *err)
 {
     memset(stage, 0, sizeof *stage);
     stage->scene = scene;
@@ -99,7 +100,7 @@ Status stage_open(Stage *stage, const BenchScene *scene, const Settings *s, cons
     if (!stage->core)
         return fail(err, STATUS_NO_MEMORY, "bench: out of memory");
     TRY(building_load(&stage->building, s->building.model, err));
-    TRY(core_beam_make(stage->core, s, stage->building.n, BENCH_WALL_BASE, BENCH_WALL_TOP, err));
+    TRY(core_beam_make(stage->core, &s->core, &s->building, stage->building.n, BENCH_WALL_BASE, BENCH_WALL_TOP, err));
     TRY(model_create(&stage->model, stage->building.n, err));
     set_gaps(stage);
     return strcmp(scene->name, "one-impact") == 0 ? find_one_impact(stage, s, err) : set_model(stage, s, err);

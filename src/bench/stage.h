@@ -37,7 +37,8 @@ typedef struct {
 } Stage;
 
 /* motion: prepared. quick: half the window. */
-Status stage_open(Stage *stage, const BenchScene *scene, const Settings *s, const Motion *motion, int quick, Err *err);
+Status stage_open(Stage *stage, const BenchScene *scene, const SceneOptions *s, const Motion *motion, int quick,
+                  Err *err);
 void stage_close(Stage *stage); /* a zeroed Stage may be closed */
 
 /* Gaps of design k (n): 10 to 200 mm, uniform, from a stream of its own. */

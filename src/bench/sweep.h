@@ -41,7 +41,7 @@ Status sweep_scene(Sweep *s, int scene, const Stage *stage, const SweepPlan *pla
 void sweep_free(Sweep *s);
 
 /* Sets noise. settings, motion: as prepared for the stages. */
-Status sweep_find_noise(Sweep *s, const Settings *settings, const Motion *motion, Err *err);
+Status sweep_find_noise(Sweep *s, const SceneOptions *settings, const Motion *motion, Err *err);
 
 double sweep_floor(const Sweep *s, int scene);
 

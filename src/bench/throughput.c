@@ -17,7 +17,7 @@ static const double STEPS[] = {4e-3, 2e-3, 1.5e-3, 1e-3, 5e-4, 2e-4},
 enum { LADDER = 6 };
 
 typedef struct {
-    const Settings *settings;
+    const SceneOptions *settings;
     const Motion *whole;
     Motion window;
     Stage stage; /* one design at a time, on the window or the whole */
@@ -253,7 +253,7 @@ static Status compare_all(Throughput *t, int quick, Err *err)
     return compare(t, "CVODE BDF, strong window only", ENGINE_CVODE_BDF, BDF_RTOL, quick ? 1 : 2, 0, err);
 }
 
-Status throughput_print(const Settings *s, const Motion *motion, int quick, int count, FILE *out, Err *err)
+Status throughput_print(const SceneOptions *s, const Motion *motion, int quick, int count, FILE *out, Err *err)
 {
     Throughput t = {.settings = s,
                     .whole = motion,

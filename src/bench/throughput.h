@@ -4,9 +4,11 @@
 #ifndef IMTET_BENCH_THROUGHPUT_H
 #define IMTET_BENCH_THROUGHPUT_H
 
+#include <stdio.h>
+
 #include "bench/observe.h"
 
 /* quick: four designs, shorter comparisons. count: the fast engine on four designs, nothing to compare with. */
-Status throughput_print(const Settings *s, const Motion *motion, int quick, int count, FILE *out, Err *err);
+Status throughput_print(const SceneOptions *s, const Motion *motion, int quick, int count, FILE *out, Err *err);
 
 #endif

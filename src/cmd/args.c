@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+#include "settings/settings.h"
 
 enum { OPTIONS_MAX = 32 };
 

@@ -7,9 +7,12 @@
 #ifndef IMTET_CMD_ARGS_H
 #define IMTET_CMD_ARGS_H
 
-#include "settings/settings.h"
+#include <stdio.h>
+
 #include "base/status.h"
 #include "study/moved.h"
+
+typedef struct Settings Settings;
 
 typedef struct {
     const char *name;    /* "--record" */

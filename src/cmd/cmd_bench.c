@@ -5,9 +5,10 @@
 #include "cmd/commands.h"
 #include "store/output.h"
 #include "scene/motion_source.h"
+#include "settings/settings.h"
 
 typedef struct {
-    Settings settings;
+    SceneOptions options;
     Motion motion;
     Sweep sweep;
     Parted parted;
@@ -48,21 +49,23 @@ static Status prepare(const Args *args, Bench *b, Err *err)
     TRY(choose(args_value(args, "--engine"), "engine", engines, ENGINE_COUNT, &b->plan.engines, err));
     b->quick = args_has(args, "--quick");
     b->plan.limit_s = b->quick ? 0.3 : 2;
-    settings_defaults(&b->settings);
-    TRY(args_apply(args, &b->settings, NULL, NULL, err));
-    TRY(settings_check(&b->settings, err));
-    TRY(motion_load(&b->motion, b->settings.motion.record, (MotionUnit)b->settings.motion.unit, err));
-    return motion_prepare(&b->motion, b->settings.motion.pga_g, b->settings.motion.stretch, err);
+    Settings s;
+    settings_defaults(&s);
+    TRY(args_apply(args, &s, NULL, NULL, err));
+    TRY(settings_check(&s, err));
+    b->options = settings_scene(&s);
+    TRY(motion_load(&b->motion, s.motion.record, s.motion.unit, err));
+    return motion_prepare(&b->motion, s.motion.pga_g, s.motion.stretch, err);
 }
 
 static Status run_scene(Bench *b, int k, Err *err)
 {
     Stage stage = {0};
-    Status status = stage_open(&stage, bench_scene(k), &b->settings, &b->motion, b->quick, err);
+    Status status = stage_open(&stage, bench_scene(k), &b->options, &b->motion, b->quick, err);
     if (status == STATUS_OK)
         status = sweep_scene(&b->sweep, k, &stage, &b->plan, stderr, err);
     if (status == STATUS_OK && !b->quick && strcmp(stage.scene->name, "irregular") == 0)
-        status = parted_run(&b->parted, &b->sweep, &stage, &b->settings, PARTED_LIMIT_S, stderr, err);
+        status = parted_run(&b->parted, &b->sweep, &stage, &b->options, PARTED_LIMIT_S, stderr, err);
     stage_close(&stage);
     return status;
 }
@@ -88,7 +91,7 @@ static Status run_sweep(const Args *args, Bench *b, Err *err)
             status = run_scene(b, k, err);
     TRY(status);
     if (!b->quick)
-        TRY(sweep_find_noise(&b->sweep, &b->settings, &b->motion, err));
+        TRY(sweep_find_noise(&b->sweep, &b->options, &b->motion, err));
     if (args_has(args, "--markdown"))
         TRY(write_to(args_value(args, "--markdown"), b, 1, err));
     if (args_has(args, "--csv"))
@@ -104,7 +107,7 @@ static Status run(const Args *args, Err *err)
     Status status = prepare(args, &b, err);
     if (status == STATUS_OK)
         status = args_has(args, "--throughput")
-                     ? throughput_print(&b.settings, &b.motion, b.quick, args_has(args, "--count"), stdout, err)
+                     ? throughput_print(&b.options, &b.motion, b.quick, args_has(args, "--count"), stdout, err)
                      : run_sweep(args, &b, err);
     sweep_free(&b.sweep);
     motion_free(&b.motion);

@@ -6,6 +6,7 @@
 #include "simulator/subject.h"
 #include "scene/building.h"
 #include "scene/motion_source.h"
+#include "settings/settings.h"
 
 typedef struct {
     int n;
@@ -37,7 +38,7 @@ static int check_motion(const Settings *s, Faults *faults)
 {
     Err e = {0};
     Motion m = {0};
-    Status status = motion_open(&m, s, &e);
+    Status status = motion_open(&m, &s->motion, &e);
     if (status == STATUS_OK)
         status = motion_prepare(&m, s->motion.pga_g, s->motion.stretch, &e);
     if (!note(faults, status, "motion.record", &e)) {

@@ -13,6 +13,7 @@
 #include "store/front.h"
 #include "simulator/scenario.h"
 #include "scene/motion_source.h"
+#include "settings/settings.h"
 
 enum { WITH_CORE, WITHOUT_CORE, N_CASES };
 static const SceneKind SCENES[N_CASES] = {SCENE_IMPACT, SCENE_NO_CORE};
@@ -25,6 +26,8 @@ typedef struct {
 static Status read_run(const Args *args, Settings *s, Err *err)
 {
     TRY(run_settings(s, args->operand, err));
+    if (s->problem.kind != PROBLEM_TOWER)
+        return fail(err, STATUS_BAD_DATA, "this run searched another problem than the tower: no ground motion applies");
     TRY(args_apply(args, s, NULL, NULL, err));
     return settings_check(s, err);
 }
@@ -33,8 +36,6 @@ static Status simulate(const World *w, const Chosen *c, SimResult results[N_CASE
 {
     Crew *crew;
     SimTask tasks[N_CASES];
-    if (w->settings.problem.kind != PROBLEM_TOWER)
-        return fail(err, STATUS_BAD_DATA, "this run searched another problem than the tower: no ground motion applies");
     if (scene_n_floors(w->scene) + 2 != c->front.n_var)
         return fail(err, STATUS_BAD_DATA, "the front has designs of %d floors, the building has %d", c->front.n_var - 2,
                     scene_n_floors(w->scene));
@@ -51,7 +52,7 @@ static json_t *describe(const World *w, const SimResult results[N_CASES])
     json_t *o = json_object();
     json_object_set_new(o, "record", json_string(w->motion.name));
     json_object_set_new(o, "pga_g", json_number(motion_peak(&w->motion) / GRAVITY));
-    json_object_set_new(o, "stretch", json_number(w->settings.motion.stretch));
+    json_object_set_new(o, "stretch", json_number(w->record.stretch));
     for (int i = 0; i < N_CASES; i++)
         json_object_set_new(o, i == WITH_CORE ? "with_core" : "no_core", json_result(SCENES[i], &results[i]));
     return o;
@@ -59,7 +60,7 @@ static json_t *describe(const World *w, const SimResult results[N_CASES])
 
 static void print_pair(const World *w, const SimResult results[N_CASES])
 {
-    show_motion(&w->motion, w->settings.sim.duration_s);
+    show_motion(&w->motion, w->options.sim.duration_s);
     show_result_names("");
     for (int i = 0; i < N_CASES; i++)
         show_result(i == WITH_CORE ? "with core" : "no core", &results[i]);
@@ -93,7 +94,7 @@ typedef struct {
 
 static Status pick_record(Settings *s, const char *path, Err *err)
 {
-    char assignment[SETTINGS_TEXT_MAX + 32];
+    char assignment[OPTION_TEXT_MAX + 32];
     const int n = snprintf(assignment, sizeof assignment, "motion.record=%s", path);
     if (n < 0 || (size_t)n >= sizeof assignment)
         return fail(err, STATUS_BAD_DATA, "%.60s...: the path is too long", path);
@@ -105,7 +106,7 @@ static Status try_record(Settings *s, const char *path, Err *err)
 {
     Motion m = {0};
     TRY(pick_record(s, path, err));
-    Status status = motion_open(&m, s, err);
+    Status status = motion_open(&m, &s->motion, err);
     if (status == STATUS_OK)
         status = motion_prepare(&m, s->motion.pga_g, s->motion.stretch, err);
     motion_free(&m);

@@ -7,17 +7,18 @@
 #include "simulator/crew.h"
 #include "simulator/ensemble.h"
 #include "simulator/horizon.h"
+#include "settings/settings.h"
 
 enum { MEMBERS = 16 };
 static const double CHANGE = 1e-12; /* of the gaps, between the two runs that are compared */
 
-static Status find(const World *w, const double x[], Horizon *h, Ensemble *e, Err *err)
+static Status find(const Settings *s, const World *w, const double x[], Horizon *h, Ensemble *e, Err *err)
 {
     Crew *crew;
     TRY(horizon_find(w, x, CHANGE, h, err));
-    TRY(crew_create(&crew, w->scene, w->settings.search.threads, err));
+    TRY(crew_create(&crew, w->scene, s->search.threads, err));
     const Status status = ensemble_run(crew, scene_n_floors(w->scene), x, MEMBERS, ENSEMBLE_CHANGE,
-                                       (uint32_t)w->settings.search.seed, e, NULL, err);
+                                       (uint32_t)s->search.seed, e, NULL, err);
     crew_free(crew);
     return status;
 }
@@ -35,7 +36,7 @@ static Status print_json(const Horizon *h, const Ensemble *e, Err *err)
 
 static void print_table(const World *w, const Horizon *h, const Ensemble *e)
 {
-    show_motion(&w->motion, w->settings.sim.duration_s);
+    show_motion(&w->motion, w->options.sim.duration_s);
     printf("\ntwo runs whose gaps differ by %g of themselves are apart by\n", CHANGE);
     for (int i = 0; i < HORIZON_LEVELS; i++)
         if (isnan(h->reached_s[i]))
@@ -48,11 +49,11 @@ static void print_table(const World *w, const Horizon *h, const Ensemble *e)
     show_ensemble(e);
 }
 
-static Status answer(const Args *args, const World *w, const double x[], Err *err)
+static Status answer(const Args *args, const Settings *s, const World *w, const double x[], Err *err)
 {
     Horizon h;
     Ensemble e;
-    TRY(find(w, x, &h, &e, err));
+    TRY(find(s, w, x, &h, &e, err));
     if (args_has(args, "--json"))
         return print_json(&h, &e, err);
     print_table(w, &h, &e);
@@ -73,7 +74,7 @@ static Status run(const Args *args, Err *err)
     TRY(world_open(&w, &s, err));
     Status status = design_read(&d, path, scene_n_floors(w.scene), err);
     if (status == STATUS_OK) {
-        status = answer(args, &w, d.x, err);
+        status = answer(args, &s, &w, d.x, err);
         design_free(&d);
     }
     world_close(&w);

@@ -8,6 +8,7 @@
 #include "cmd/commands.h"
 #include "cmd/show.h"
 #include "study/pace.h"
+#include "settings/settings.h"
 
 /* One line or one object; a run that cannot be read says why and the others follow. */
 static void list_run(const char *name, const char *folder, json_t *list)

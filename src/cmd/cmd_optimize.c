@@ -14,6 +14,7 @@
 #include "store/saved.h"
 #include "study/place.h"
 #include "study/study.h"
+#include "settings/settings.h"
 
 typedef struct {
     int terminal, has_told;

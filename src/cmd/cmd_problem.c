@@ -7,6 +7,7 @@
 #include "store/output.h"
 #include "study/study.h"
 #include "simulator/subject.h"
+#include "settings/settings.h"
 
 /* The table under way. */
 typedef struct {

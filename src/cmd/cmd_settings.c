@@ -1,4 +1,5 @@
 #include "cmd/commands.h"
+#include "settings/settings.h"
 
 static Status run(const Args *args, Err *err)
 {

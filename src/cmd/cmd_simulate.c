@@ -8,6 +8,7 @@
 #include "simulator/ensemble.h"
 #include "store/output.h"
 #include "simulator/scenario.h"
+#include "settings/settings.h"
 
 typedef struct {
     SceneKind kind;
@@ -75,17 +76,17 @@ static Status lay_out_job(const Args *args, Job *job, int n_floors, Err *err)
     return STATUS_OK;
 }
 
-static Status simulate(const World *w, Job *job, Err *err)
+static Status simulate(const Settings *s, const World *w, Job *job, Err *err)
 {
     Crew *crew;
-    const long wanted = w->settings.search.threads;
+    const long wanted = s->search.threads;
     TRY(crew_create(&crew, w->scene, job->n == 1 && !job->members ? 1 : wanted, err));
     Status status = STATUS_OK;
     if (!job->members)
         status = crew_run(crew, job->n, job->tasks, job->results, err);
     for (size_t i = 0; job->members && status == STATUS_OK && i < job->n; i++)
         status = ensemble_run(crew, scene_n_floors(w->scene), job->tasks[i].x, job->members, ENSEMBLE_CHANGE,
-                              (uint32_t)w->settings.search.seed, &job->ensembles[i], &job->results[i], err);
+                              (uint32_t)s->search.seed, &job->ensembles[i], &job->results[i], err);
     crew_free(crew);
     for (size_t i = 0; status == STATUS_OK && i < job->n; i++)
         if (job->results[i].outcome != RUN_OK)
@@ -144,7 +145,7 @@ static Status write_csv(const Job *job, const char *path, Err *err)
 static void print_table(const Job *job, const World *w)
 {
     char label[32];
-    show_motion(&w->motion, w->settings.sim.duration_s);
+    show_motion(&w->motion, w->options.sim.duration_s);
     putchar('\n');
     show_result_names(job->kind == SCENE_TIED ? "tied, no gaps" : "");
     for (size_t i = 0; i < job->n; i++) {
@@ -182,7 +183,7 @@ static Status run(const Args *args, Err *err)
     TRY(world_open(&w, &s, err));
     Status status = lay_out_job(args, &job, scene_n_floors(w.scene), err);
     if (status == STATUS_OK)
-        status = simulate(&w, &job, err);
+        status = simulate(&s, &w, &job, err);
     if (status == STATUS_OK)
         status = print(args, &job, &w, err);
     free(job.tasks);

@@ -9,6 +9,7 @@
 #include "store/output.h"
 #include "scene/spectrum.h"
 #include "scene/motion_source.h"
+#include "settings/settings.h"
 
 enum { N_PERIODS = 121, PRINTED_EACH = 6 };
 static const double DAMPING = 0.05, SHORTEST_S = 0.02, LONGEST_S = 20, TWO_PI = 6.283185307179586;
@@ -180,7 +181,7 @@ static Status run(const Args *args, Err *err)
     if (strlen(args->operand) >= sizeof s.motion.record)
         return fail(err, STATUS_MISSING, "%.60s...: the path is too long", args->operand);
     snprintf(s.motion.record, sizeof s.motion.record, "%s", args->operand);
-    TRY(motion_open(&m, &s, err));
+    TRY(motion_open(&m, &s.motion, err));
     Status status = motion_prepare(&m, s.motion.pga_g, s.motion.stretch, err);
     if (status == STATUS_OK)
         status = compute(&m, &spectrum, err);

@@ -7,6 +7,7 @@
 #include "moga/cover.h"
 #include "study/advance.h"
 #include "study/pace.h"
+#include "settings/settings.h"
 
 enum { ROWS_MAX = 12, OUTCOMES_MAX = 16 };
 

@@ -2,13 +2,14 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include "settings/settings.h"
 
 enum { RECORDS_MAX = 32 };
 
 typedef struct {
     size_t n;
     const char *path[RECORDS_MAX];
-    char own[RECORDS_MAX][SETTINGS_TEXT_MAX]; /* those that the run names */
+    char own[RECORDS_MAX][OPTION_TEXT_MAX]; /* those that the run names */
 } Records;
 
 /* Those of the command line, else the further ones of the run, else the built-in motions that it did not use. */

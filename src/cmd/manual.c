@@ -5,6 +5,7 @@
 
 #include "cmd/commands.h"
 #include "store/provenance.h"
+#include "settings/settings.h"
 
 #define X(name) &CMD_##name,
 static const Command *const COMMANDS[] = {COMMAND_LIST(X)};

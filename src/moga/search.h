@@ -48,13 +48,9 @@
 #include <stdint.h>
 
 #include "evaluate/evaluation.h"
+#include "moga/options.h"
 #include "moga/problem.h"
-#include "moga/survival.h"
 
-/* On; plain children only; or on until its wall time per simulation proves greater than that of four simulations. Auto
- * is decided once, by the clock, and the decision is kept in the state: a search that goes on repeats it, another one
- * from the beginning may decide otherwise where the costs are near the limit. */
-typedef enum { SURROGATE_ON, SURROGATE_OFF, SURROGATE_AUTO } SurrogateUse;
 
 typedef struct {
     uint32_t seed;

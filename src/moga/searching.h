@@ -24,6 +24,7 @@
 #include "moga/group.h"
 #include "moga/infill.h"
 #include "moga/search.h"
+#include "moga/survival.h"
 #include "moga/surface.h"
 
 /* What proposes a design. */

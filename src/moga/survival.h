@@ -24,10 +24,9 @@
 
 #include "base/random.h"
 #include "moga/directions.h"
+#include "moga/options.h"
 
 typedef struct Survival Survival;
-
-typedef enum { SURVIVAL_NSGA3, SURVIVAL_RVEA, SURVIVAL_MOEAD } SurvivalKind;
 
 /* Borrows the directions. */
 Status survival_create(Survival **out, SurvivalKind kind, size_t n_max, const Directions *directions, Err *err);

@@ -9,6 +9,7 @@
 #include "polish/local.h"
 #include "polish/polish.h"
 #include "simulator/subject.h"
+#include "settings/settings.h"
 
 enum { CENTRES_MAX = 150, LOCAL_MAX = 600 /* designs that the surface tries: a fit costs their cube */ };
 

@@ -7,6 +7,7 @@
 #include "base/units.h"
 #include "report/wavelet.h"
 #include "simulator/crew.h"
+#include "settings/settings.h"
 
 static const double QUIET = 0.02; /* of the largest sway */
 
@@ -26,14 +27,14 @@ static Status simulate(const World *w, int n_scenes, const double x[], SimResult
 static void describe(const World *w, const double x[], Detail *d)
 {
     const int n = d->n_floors;
-    const double t_base = x[n], t_top = x[n + 1], given = w->settings.sim.duration_s;
+    const double t_base = x[n], t_top = x[n + 1], given = w->options.sim.duration_s;
     for (int j = 0; j < n; j++) {
         d->gap_m[j] = x[j];
         d->wall_m[j] = n > 1 ? t_base + (t_top - t_base) * j / (n - 1) : t_base;
     }
     snprintf(d->record, sizeof d->record, "%s", w->motion.name);
     d->pga_g = motion_peak(&w->motion) / GRAVITY;
-    d->stretch = w->settings.motion.stretch;
+    d->stretch = w->record.stretch;
     d->duration_s = given > 0 ? given : (double)(w->motion.n - 1) * w->motion.dt_s;
 }
 

@@ -8,6 +8,8 @@
 #include "report/history.h"
 #include "study/moved.h"
 
+typedef struct Settings Settings;
+
 enum { N_SCENES = 3, SPECTRUM_FREQUENCIES = 72, SPECTRUM_TIMES = 320 };
 
 /* Amplitude of the floor's sway by frequency and time (report/wavelet.h). */

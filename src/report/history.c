@@ -2,6 +2,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include "settings/settings.h"
 
 typedef struct {
     History *h;
@@ -58,7 +59,7 @@ static Status follow(const World *world, const Scene *scene, SceneKind kind, con
 {
     SimWorker *worker;
     SimResult result;
-    const double wanted = world->settings.sim.duration_s, dt = world->motion.dt_s;
+    const double wanted = world->options.sim.duration_s, dt = world->motion.dt_s;
     const size_t samples = wanted > 0 ? (size_t)(wanted / dt) + 2 : world->motion.n;
     TRY(make_room(out, samples, err));
     TRY(sim_worker_create(&worker, scene, err));
@@ -74,7 +75,7 @@ static Status follow(const World *world, const Scene *scene, SceneKind kind, con
 Status history_run(const World *world, SceneKind kind, const double x[], int floor, History *out, Err *err)
 {
     Scene *scene;
-    Settings s = world->settings;
+    SceneOptions s = world->options;
     s.sim.engine = ENGINE_FAST; /* the others have no samples */
     *out = (History){.dt_s = world->motion.dt_s};
     TRY(scene_create(&scene, &s, &world->motion, err));

@@ -7,6 +7,7 @@
 #include "simulator/measures.h"
 #include "store/output.h"
 #include "store/provenance.h"
+#include "settings/settings.h"
 
 /* build/web/page.html: the page with a line MARK where the run goes. */
 extern const char _binary_build_web_page_html_start[], _binary_build_web_page_html_end[];

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "store/saved.h"
+#include "settings/settings.h"
 
 /* From the database, or the file beside it. */
 static Status take_provenance(Report *r, Err *err)

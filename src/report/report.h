@@ -16,6 +16,7 @@
 #include "report/convergence.h"
 #include "report/detail.h"
 #include "store/front.h"
+#include "settings/settings.h"
 
 typedef struct {
     char folder[PATH_MAX];

@@ -10,20 +10,20 @@ typedef struct {
     double area, inertia; /* [m2], [m4] */
 } Section;
 
-static Section section_at(const Settings *s, double share, double t)
+static Section section_at(const CoreOptions *o, double share, double t)
 {
-    switch ((CoreSection)s->core.section) {
+    switch (o->section) {
     case CORE_BOX: {
-        const double outer = s->core.side_m, inner = outer - 2 * t;
+        const double outer = o->side_m, inner = outer - 2 * t;
         return (Section){outer * outer - inner * inner, (pow(outer, 4) - pow(inner, 4)) / 12};
     }
     case CORE_PLATE:
-        return (Section){s->core.width_m * t, s->core.width_m * t * t * t / 12};
+        return (Section){o->width_m * t, o->width_m * t * t * t / 12};
     case CORE_EFFECTIVE:
         break;
     }
-    return (Section){s->core.area_base_m2 + (s->core.area_top_m2 - s->core.area_base_m2) * share,
-                     s->core.inertia_base_m4 + (s->core.inertia_top_m4 - s->core.inertia_base_m4) * share};
+    return (Section){o->area_base_m2 + (o->area_top_m2 - o->area_base_m2) * share,
+                     o->inertia_base_m4 + (o->inertia_top_m4 - o->inertia_base_m4) * share};
 }
 
 /* Stiffness and consistent mass of a beam element of length l; unknowns: deflection, rotation at each end. */
@@ -45,17 +45,18 @@ static void hermite_element(double EI, double mass_per_m, double l, double k[4][
 }
 
 /* Unknowns: deflections 0..n-1, then rotations n..2n-1; node 0 of the beam is clamped. Returns the total mass. */
-static double assemble(const Settings *s, int n, double t_base, double t_top, double K[], double M[])
+static double assemble(const CoreOptions *o, const BuildingOptions *b, int n, double t_base, double t_top, double K[],
+                       double M[])
 {
     const int size = 2 * n;
     double mass = 0;
     for (int e = 0; e < n; e++) {
         const double share = n > 1 ? (double)e / (n - 1) : 0;
-        const double l = e == 0 ? s->building.first_storey_m : s->building.storey_m;
-        const Section a = section_at(s, share, t_base + (t_top - t_base) * share);
-        const double mass_per_m = s->core.density_kg_m3 * a.area;
+        const double l = e == 0 ? b->first_storey_m : b->storey_m;
+        const Section a = section_at(o, share, t_base + (t_top - t_base) * share);
+        const double mass_per_m = o->density_kg_m3 * a.area;
         double k[4][4], m[4][4];
-        hermite_element(s->core.youngs_modulus_pa * a.inertia, mass_per_m, l, k, m);
+        hermite_element(o->youngs_modulus_pa * a.inertia, mass_per_m, l, k, m);
         const int at[4] = {e - 1, e == 0 ? -1 : n + e - 1, e, n + e};
         for (int i = 0; i < 4; i++)
             for (int j = 0; j < 4; j++)
@@ -106,21 +107,22 @@ static Status remove_rotations(CoreBeam *c, const double K[], const double M[], 
     return STATUS_OK;
 }
 
-Status core_beam_make(CoreBeam *c, const Settings *s, int n, double t_base_m, double t_top_m, Err *err)
+Status core_beam_make(CoreBeam *c, const CoreOptions *o, const BuildingOptions *b, int n, double t_base_m,
+                      double t_top_m, Err *err)
 {
     const size_t size = 2 * (size_t)n;
-    if (s->core.section != CORE_EFFECTIVE && !(t_base_m > 0 && t_top_m > 0))
+    if (o->section != CORE_EFFECTIVE && !(t_base_m > 0 && t_top_m > 0))
         return fail(err, STATUS_BAD_DATA, "core: thickness %g -> %g m must be positive", t_base_m, t_top_m);
-    if (s->core.section == CORE_BOX && !(2 * fmax(t_base_m, t_top_m) <= s->core.side_m))
+    if (o->section == CORE_BOX && !(2 * fmax(t_base_m, t_top_m) <= o->side_m))
         return fail(err, STATUS_BAD_DATA, "core: twice a thickness of %g m does not fit into core.side_m = %g m",
-                    fmax(t_base_m, t_top_m), s->core.side_m);
+                    fmax(t_base_m, t_top_m), o->side_m);
     double *K = calloc(2 * size * size + 4 * size * size, sizeof *K);
     if (!K)
         return fail(err, STATUS_NO_MEMORY, "core: no memory for %d storeys", n);
     double *M = K + size * size;
     memset(c, 0, sizeof *c);
     c->n = n;
-    c->mass_kg = assemble(s, n, t_base_m, t_top_m, K, M);
+    c->mass_kg = assemble(o, b, n, t_base_m, t_top_m, K, M);
     Status status = remove_rotations(c, K, M, M + size * size, err);
     if (status == STATUS_OK)
         status = linalg_modes(n, c->K, c->M, c->omega, c->phi, err);

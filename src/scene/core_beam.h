@@ -12,8 +12,8 @@
 #ifndef IMTET_SCENE_CORE_BEAM_H
 #define IMTET_SCENE_CORE_BEAM_H
 
-#include "settings/settings.h"
 #include "scene/building.h"
+#include "scene/options.h"
 
 typedef struct {
     int n;
@@ -23,6 +23,8 @@ typedef struct {
     double omega[FLOORS_MAX], gamma[FLOORS_MAX];
 } CoreBeam;
 
-Status core_beam_make(CoreBeam *c, const Settings *s, int n, double t_base_m, double t_top_m, Err *err);
+/* n storeys of the building's heights. */
+Status core_beam_make(CoreBeam *c, const CoreOptions *o, const BuildingOptions *b, int n, double t_base_m,
+                      double t_top_m, Err *err);
 
 #endif

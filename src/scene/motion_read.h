@@ -15,7 +15,7 @@
 #define IMTET_SCENE_MOTION_READ_H
 
 #include "scene/motion.h"
-#include "settings/settings.h"
+#include "scene/options.h"
 
 typedef struct {
     MotionUnit unit;     /* of the acceleration; must not contradict the file */

@@ -21,11 +21,8 @@ Status motion_load(Motion *m, const char *source, MotionUnit unit, Err *err)
     return load(m, source, &(MotionHow){.unit = unit}, err);
 }
 
-Status motion_open(Motion *m, const Settings *s, Err *err)
+Status motion_open(Motion *m, const MotionOptions *o, Err *err)
 {
-    const MotionHow how = {.unit = (MotionUnit)s->motion.unit,
-                           .channel = s->motion.channel,
-                           .dt_s = s->motion.dt_s,
-                           .resample_dt_s = s->motion.resample_dt_s};
-    return load(m, s->motion.record, &how, err);
+    const MotionHow how = {.unit = o->unit, .channel = o->channel, .dt_s = o->dt_s, .resample_dt_s = o->resample_dt_s};
+    return load(m, o->record, &how, err);
 }

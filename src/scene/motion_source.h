@@ -10,13 +10,13 @@
 #define IMTET_SCENE_MOTION_SOURCE_H
 
 #include "scene/motion.h"
-#include "settings/settings.h"
+#include "scene/options.h"
 
 /* unit: UNIT_FROM_FILE demands that the file says it; otherwise it must not contradict the file; it does not matter to a
  * built-in motion. */
 Status motion_load(Motion *m, const char *source, MotionUnit unit, Err *err);
 
-/* motion.record as the further settings of the section want it read; not scaled yet (motion_prepare). */
-Status motion_open(Motion *m, const Settings *s, Err *err);
+/* The record of the options, read as they say; not scaled yet (motion_prepare). */
+Status motion_open(Motion *m, const MotionOptions *o, Err *err);
 
 #endif

@@ -12,19 +12,50 @@
 
 #include "base/list.h"
 
-typedef enum { REAL, WHOLE, CHOICE, TEXT } Kind;
+typedef enum { KIND_REAL, KIND_WHOLE, KIND_CHOICE, KIND_TEXT, KIND_PATH, KIND_PATH_LIST } Kind;
 
 typedef struct {
-    const char *key, *unit;
+    const char *key;
     Kind kind;
     size_t offset;
     const char *standard; /* default, as one would type it */
-    double min, max;      /* REAL and WHOLE */
-    const char *words;    /* CHOICE: "a|b|c", in the order of its enum */
+    const char *unit;     /* REAL and WHOLE */
+    double min, max;
+    const char *words; /* CHOICE: "a|b|c", in the order of its enum; PATH: names that are no path, or NULL */
     const char *help;
+    unsigned flags; /* SettingFlags */
 } Option;
 
-#define AT(field) offsetof(Settings, field)
+/* The place of a field; compiles only where the field is of that type. */
+#define AT(field)             offsetof(Settings, field)
+#define AT_TYPED(field, type) (AT(field) + 0 * sizeof(&((Settings *)0)->field == (type *)0))
+typedef char OptionText[OPTION_TEXT_MAX];
+
+/* A line of the table by its kind. The key is the path of the field; what follows the named columns is the help, and
+ * .flags = ... where there are some. */
+#define REAL(field, unit_, standard_, min_, max_, ...)                                                                 \
+    {                                                                                                                  \
+        .key = #field, .kind = KIND_REAL, .offset = AT_TYPED(field, double), .unit = unit_, .standard = standard_,     \
+        .min = min_, .max = max_, .help = __VA_ARGS__                                                                  \
+    }
+#define WHOLE(field, standard_, min_, max_, ...)                                                                       \
+    {                                                                                                                  \
+        .key = #field, .kind = KIND_WHOLE, .offset = AT_TYPED(field, long), .unit = "-", .standard = standard_,        \
+        .min = min_, .max = max_, .help = __VA_ARGS__                                                                  \
+    }
+#define CHOICE(field, type, words_, standard_, ...)                                                                    \
+    {                                                                                                                  \
+        .key = #field, .kind = KIND_CHOICE, .offset = AT_TYPED(field, type), .words = words_, .standard = standard_,   \
+        .help = __VA_ARGS__                                                                                            \
+    }
+#define STRING(field, kind_, words_, standard_, ...)                                                                   \
+    {                                                                                                                  \
+        .key = #field, .kind = kind_, .offset = AT_TYPED(field, OptionText), .words = words_, .standard = standard_,   \
+        .help = __VA_ARGS__                                                                                            \
+    }
+#define TEXT(field, standard_, ...)        STRING(field, KIND_TEXT, NULL, standard_, __VA_ARGS__)
+#define PATH(field, standard_, names, ...) STRING(field, KIND_PATH, names, standard_, __VA_ARGS__)
+#define PATH_LIST(field, standard_, ...)   STRING(field, KIND_PATH_LIST, NULL, standard_, __VA_ARGS__)
 
 /* "fast|cvode|...": the first name brings no bar with it. */
 #define X(upper, lower) "|" #lower
@@ -33,140 +64,134 @@ static const char ENGINE_BARS[] = ENGINE_LIST(X);
 #define ENGINE_WORDS (ENGINE_BARS + 1)
 
 static const Option OPTIONS[] = {
-    /* key, unit, kind, field, default, min, max, words, help */
-    {"building.model", "-", TEXT, AT(building.model), "guyan", 0, 0, NULL,
-     "guyan | appendix | a folder with K.csv [N/m] and M.csv [kg]"},
-    {"building.damping", "-", REAL, AT(building.damping), "0.03", 0, 10, NULL, "damping ratio of every building mode"},
-    {"building.first_storey_m", "m", REAL, AT(building.first_storey_m), "5.4864", 0.1, 100, NULL,
-     "height of the first storey: where the core's first node is"},
-    {"building.storey_m", "m", REAL, AT(building.storey_m), "3.9624", 0.1, 100, NULL, "height of every further storey"},
+    PATH(building.model, "guyan", "guyan|appendix", "guyan | appendix | a folder with K.csv [N/m] and M.csv [kg]",
+         .flags = SETTING_FREE),
+    REAL(building.damping, "-", "0.03", 0, 10, "damping ratio of every building mode"),
+    REAL(building.first_storey_m, "m", "5.4864", 0.1, 100,
+         "height of the first storey: where the core's first node is"),
+    REAL(building.storey_m, "m", "3.9624", 0.1, 100, "height of every further storey"),
 
-    {"core.section", "-", CHOICE, AT(core.section), "box", 0, 0, "box|plate|effective",
-     "box: square tube of side side_m; plate: solid, width_m wide, thickness deep; effective: area and inertia given"},
-    {"core.side_m", "m", REAL, AT(core.side_m), "11.3", 0.1, 200, NULL, "outer side of the box"},
-    {"core.width_m", "m", REAL, AT(core.width_m), "11.3", 0.1, 200, NULL, "width of the plate"},
-    {"core.damping", "-", REAL, AT(core.damping), "0.03", 0, 10, NULL, "damping ratio of every core mode"},
-    {"core.youngs_modulus_pa", "Pa", REAL, AT(core.youngs_modulus_pa), "2.1e11", 1, 1e14, NULL, "of the core's steel"},
-    {"core.density_kg_m3", "kg/m3", REAL, AT(core.density_kg_m3), "7850", 1, 1e5, NULL, "of the core's steel"},
-    {"core.area_base_m2", "m2", REAL, AT(core.area_base_m2), "1.567", 1e-9, 1e4, NULL, "effective: first storey"},
-    {"core.area_top_m2", "m2", REAL, AT(core.area_top_m2), "0.811", 1e-9, 1e4, NULL, "effective: last storey"},
-    {"core.inertia_base_m4", "m4", REAL, AT(core.inertia_base_m4), "25.6201", 1e-9, 1e6, NULL,
-     "effective: first storey"},
-    {"core.inertia_top_m4", "m4", REAL, AT(core.inertia_top_m4), "24.0503", 1e-9, 1e6, NULL, "effective: last storey"},
+    CHOICE(core.section, CoreSection, CHOICE_WORDS(CORE_SECTION_LIST), "box",
+           "box: square tube of side side_m; plate: solid, width_m wide, thickness deep; effective: area and inertia "
+           "given"),
+    REAL(core.side_m, "m", "11.3", 0.1, 200, "outer side of the box"),
+    REAL(core.width_m, "m", "11.3", 0.1, 200, "width of the plate"),
+    REAL(core.damping, "-", "0.03", 0, 10, "damping ratio of every core mode"),
+    REAL(core.youngs_modulus_pa, "Pa", "2.1e11", 1, 1e14, "of the core's steel"),
+    REAL(core.density_kg_m3, "kg/m3", "7850", 1, 1e5, "of the core's steel"),
+    REAL(core.area_base_m2, "m2", "1.567", 1e-9, 1e4, "effective: first storey"),
+    REAL(core.area_top_m2, "m2", "0.811", 1e-9, 1e4, "effective: last storey"),
+    REAL(core.inertia_base_m4, "m4", "25.6201", 1e-9, 1e6, "effective: first storey"),
+    REAL(core.inertia_top_m4, "m4", "24.0503", 1e-9, 1e6, "effective: last storey"),
 
-    {"contact.law", "-", CHOICE, AT(contact.law), "paper", 0, 0, "paper|exact|lankarani-nikravesh|flores|jankowski",
-     "paper: a = 1.5 (1 - r); exact: a chosen so that an isolated impact rebounds with r; the others by their authors"},
-    {"contact.restitution", "-", REAL, AT(contact.restitution), "0.7", 0, 1, NULL, "r of the contact law"},
-    {"contact.v0_floor_m_s", "m/s", REAL, AT(contact.v0_floor_m_s), "1e-3", 1e-12, 10, NULL,
-     "least approach speed that the contact law is given"},
-    {"contact.radius_m", "m", REAL, AT(contact.radius_m), "0.1", 1e-6, 1e3, NULL, "radius of the contacting body"},
-    {"contact.youngs_modulus_pa", "Pa", REAL, AT(contact.youngs_modulus_pa), "2.1e11", 1, 1e14, NULL, "of both bodies"},
-    {"contact.poisson", "-", REAL, AT(contact.poisson), "0.3", 0, 0.5, NULL, "Poisson's ratio of both bodies"},
+    CHOICE(contact.law, ContactLaw, CHOICE_WORDS(CONTACT_LAW_LIST), "paper",
+           "paper: a = 1.5 (1 - r); exact: a chosen so that an isolated impact rebounds with r; the others by their "
+           "authors"),
+    REAL(contact.restitution, "-", "0.7", 0, 1, "r of the contact law"),
+    REAL(contact.v0_floor_m_s, "m/s", "1e-3", 1e-12, 10, "least approach speed that the contact law is given"),
+    REAL(contact.radius_m, "m", "0.1", 1e-6, 1e3, "radius of the contacting body"),
+    REAL(contact.youngs_modulus_pa, "Pa", "2.1e11", 1, 1e14, "of both bodies"),
+    REAL(contact.poisson, "-", "0.3", 0, 0.5, "Poisson's ratio of both bodies"),
 
-    {"motion.record", "-", TEXT, AT(motion.record), "builtin:kobe-like", 0, 0, NULL,
-     "a ground motion file, or builtin:kobe-like | builtin:elcentro-like | builtin:sylmar-like"},
-    {"motion.records", "-", TEXT, AT(motion.records), "none", 0, 0, NULL,
-     "more records for the same study, a comma list: a design then answers to all of them (sim.robust)"},
-    {"motion.pga_g", "g", REAL, AT(motion.pga_g), "0.3", 0, 1e6, NULL, "scaled to this peak; 0: as recorded"},
-    {"motion.stretch", "-", REAL, AT(motion.stretch), "3.1", 1e-3, 1e3, NULL, "time is multiplied by this"},
-    {"motion.unit", "-", CHOICE, AT(motion.unit), "from_file", 0, 0, "from_file|m_s2|cm_s2|g",
-     "of the acceleration, where the file does not say"},
-    {"motion.channel", "-", TEXT, AT(motion.channel), "auto", 0, 0, NULL,
-     "name or number (from 1) of the component, where the file has several; auto: there is only one"},
-    {"motion.dt_s", "s", REAL, AT(motion.dt_s), "0", 0, 100, NULL,
-     "step of a file that has neither step nor times; 0: the file says it"},
-    {"motion.resample_dt_s", "s", REAL, AT(motion.resample_dt_s), "0", 0, 100, NULL,
-     "unequal times are resampled to this step by straight lines; 0: they are refused"},
+    PATH(motion.record, "builtin:kobe-like", NULL,
+         "a ground motion file, or builtin:kobe-like | builtin:elcentro-like | builtin:sylmar-like",
+         .flags = SETTING_FREE),
+    PATH_LIST(motion.records, "none",
+              "more records for the same study, a comma list: a design then answers to all of them (sim.robust)",
+              .flags = SETTING_FREE),
+    REAL(motion.pga_g, "g", "0.3", 0, 1e6, "scaled to this peak; 0: as recorded"),
+    REAL(motion.stretch, "-", "3.1", 1e-3, 1e3, "time is multiplied by this"),
+    CHOICE(motion.unit, MotionUnit, CHOICE_WORDS(MOTION_UNIT_LIST), "from_file",
+           "of the acceleration, where the file does not say"),
+    TEXT(motion.channel, "auto",
+         "name or number (from 1) of the component, where the file has several; auto: there is only one"),
+    REAL(motion.dt_s, "s", "0", 0, 100, "step of a file that has neither step nor times; 0: the file says it"),
+    REAL(motion.resample_dt_s, "s", "0", 0, 100,
+         "unequal times are resampled to this step by straight lines; 0: they are refused"),
 
-    {"sim.engine", "-", CHOICE, AT(sim.engine), "fast", 0, 0, ENGINE_WORDS,
-     "fast: the one to use; the others are slower and exist to be compared with"},
-    {"sim.accuracy", "-", CHOICE, AT(sim.accuracy), "standard", 0, 0, "coarse|standard|fine",
-     "what a run costs and how far it can be trusted (docs/chart.md)"},
-    {"sim.steps_per_contact", "-", REAL, AT(sim.steps_per_contact), "0", 0, 1000, NULL,
-     "engine fast: finer than sim.accuracy, with tolerances to match; 0: as sim.accuracy says"},
-    {"sim.duration_s", "s", REAL, AT(sim.duration_s), "0", 0, 1e6, NULL, "stop here; 0: at the end of the motion"},
-    {"sim.residual_max", "-", REAL, AT(sim.residual_max), "0.001", 1e-12, 1, NULL,
-     "a run whose energy books are open by more than this share of the input is refined, then failed"},
-    {"sim.ensemble", "-", WHOLE, AT(sim.ensemble), "1", 1, 1000, NULL,
-     "simulations of each design in a study, gaps changed a little: the objectives are their means"},
-    {"sim.gap_tolerance_m", "m", REAL, AT(sim.gap_tolerance_m), "0", 0, 1, NULL,
-     "standard deviation of a gap as built; wants sim.ensemble of 2 at least"},
-    {"sim.robust", "-", CHOICE, AT(sim.robust), "worst", 0, 0, "worst|mean",
-     "of several records: the worst of each objective, or the mean"},
+    CHOICE(sim.engine, Engine, ENGINE_WORDS, "fast",
+           "fast: the one to use; the others are slower and exist to be compared with"),
+    CHOICE(sim.accuracy, Accuracy, CHOICE_WORDS(ACCURACY_LIST), "standard",
+           "what a run costs and how far it can be trusted (docs/chart.md)"),
+    REAL(sim.steps_per_contact, "-", "0", 0, 1000,
+         "engine fast: finer than sim.accuracy, with tolerances to match; 0: as sim.accuracy says"),
+    REAL(sim.duration_s, "s", "0", 0, 1e6, "stop here; 0: at the end of the motion"),
+    REAL(sim.residual_max, "-", "0.001", 1e-12, 1,
+         "a run whose energy books are open by more than this share of the input is refined, then failed"),
+    WHOLE(sim.ensemble, "1", 1, 1000,
+          "simulations of each design in a study, gaps changed a little: the objectives are their means"),
+    REAL(sim.gap_tolerance_m, "m", "0", 0, 1, "standard deviation of a gap as built; wants sim.ensemble of 2 at least"),
+    CHOICE(sim.robust, Robust, CHOICE_WORDS(ROBUST_LIST), "worst",
+           "of several records: the worst of each objective, or the mean"),
 
-    {"design.gap_min_m", "m", REAL, AT(design.gap_min_m), "0.001", 0, 10, NULL, "search box: least gap"},
-    {"design.gap_max_m", "m", REAL, AT(design.gap_max_m), "0.5", 1e-6, 10, NULL, "search box: widest gap"},
-    {"design.thickness_min_m", "m", REAL, AT(design.thickness_min_m), "0.004", 1e-6, 10, NULL,
-     "search box: thinnest core wall"},
-    {"design.thickness_max_m", "m", REAL, AT(design.thickness_max_m), "0.04", 1e-6, 10, NULL,
-     "search box: thickest core wall"},
+    REAL(design.gap_min_m, "m", "0.001", 0, 10, "search box: least gap"),
+    REAL(design.gap_max_m, "m", "0.5", 1e-6, 10, "search box: widest gap"),
+    REAL(design.thickness_min_m, "m", "0.004", 1e-6, 10, "search box: thinnest core wall"),
+    REAL(design.thickness_max_m, "m", "0.04", 1e-6, 10, "search box: thickest core wall"),
 
-    {"problem.kind", "-", CHOICE, AT(problem.kind), "tower", 0, 0,
-     "tower|external|dtlz2|wfg4|dtlz1_inverted|dtlz5|dtlz7|wfg5",
-     "tower: gaps and walls of the scene; external: a simulator of your own; the others: problems from textbooks"},
-    {"problem.command", "-", TEXT, AT(problem.command), "none", 0, 0, NULL,
-     "external: the worker, started without a shell once per thread; docs/external.md has the protocol"},
-    {"problem.timeout_s", "s", REAL, AT(problem.timeout_s), "600", 1e-3, 1e7, NULL,
-     "external: a worker that is silent for so long has failed and is replaced"},
-    {"problem.variables", "-", WHOLE, AT(problem.variables), "22", 1, 10000, NULL, "their number; not of a tower"},
-    {"problem.objectives", "-", WHOLE, AT(problem.objectives), "7", 1, 100, NULL, "their number; not of a tower"},
-    {"problem.lower", "-", TEXT, AT(problem.lower), "0", 0, 0, NULL, "external: one number for all, or a comma list"},
-    {"problem.upper", "-", TEXT, AT(problem.upper), "1", 0, 0, NULL, "external: one number for all, or a comma list"},
-    {"problem.senses", "-", TEXT, AT(problem.senses), "min", 0, 0, NULL,
-     "external: min or max, one for all objectives, or a comma list"},
-    {"problem.variable_names", "-", TEXT, AT(problem.variable_names), "auto", 0, 0, NULL,
-     "comma list; auto: x1, x2, ..."},
-    {"problem.objective_names", "-", TEXT, AT(problem.objective_names), "auto", 0, 0, NULL,
-     "comma list; auto: f1, f2, ..."},
-    {"problem.noisy", "-", CHOICE, AT(problem.noisy), "auto", 0, 0, "auto|no|yes",
-     "whether the same design answers differently each time; auto: only with problem.noise"},
-    {"problem.noise", "-", REAL, AT(problem.noise), "0", 0, 1, NULL,
-     "problems from textbooks: standard deviation of the answers, share of their value"},
+    CHOICE(
+        problem.kind, ProblemKind, CHOICE_WORDS(PROBLEM_KIND_LIST), "tower",
+        "tower: gaps and walls of the scene; external: a simulator of your own; the others: problems from textbooks"),
+    TEXT(problem.command, "none",
+         "external: the worker, started without a shell once per thread; docs/external.md has the protocol"),
+    REAL(problem.timeout_s, "s", "600", 1e-3, 1e7,
+         "external: a worker that is silent for so long has failed and is replaced", .flags = SETTING_LIMIT),
+    WHOLE(problem.variables, "22", 1, 10000, "their number; not of a tower"),
+    WHOLE(problem.objectives, "7", 1, 100, "their number; not of a tower"),
+    TEXT(problem.lower, "0", "external: one number for all, or a comma list"),
+    TEXT(problem.upper, "1", "external: one number for all, or a comma list"),
+    TEXT(problem.senses, "min", "external: min or max, one for all objectives, or a comma list"),
+    TEXT(problem.variable_names, "auto", "comma list; auto: x1, x2, ..."),
+    TEXT(problem.objective_names, "auto", "comma list; auto: f1, f2, ..."),
+    CHOICE(problem.noisy, Noisy, CHOICE_WORDS(NOISY_LIST), "auto",
+           "whether the same design answers differently each time; auto: only with problem.noise"),
+    REAL(problem.noise, "-", "0", 0, 1,
+         "problems from textbooks: standard deviation of the answers, share of their value"),
 
-    {"search.seed", "-", WHOLE, AT(search.seed), "1", 0, 4294967295.0, NULL, "same seed and settings: same bytes"},
-    {"search.threads", "-", WHOLE, AT(search.threads), "0", 0, 1024, NULL, "0: one per processor"},
-    {"search.population", "-", WHOLE, AT(search.population), "92", 4, 100000, NULL, "designs per generation"},
-    {"search.initial", "-", WHOLE, AT(search.initial), "0", 0, 1000000, NULL,
-     "designs of the Latin hypercube start, no more than max_evals; 0: by the number of variables"},
-    {"search.start", "-", TEXT, AT(search.start), "none", 0, 0, NULL,
-     "designs to begin with: a CSV with a column per variable, or the folder of a run, whose front is taken"},
-    {"search.generations", "-", WHOLE, AT(search.generations), "1000", 1, 1e9, NULL, "stop after so many"},
-    {"search.max_evals", "-", WHOLE, AT(search.max_evals), "2000", 4, 1e6, NULL, "stop after so many simulations"},
-    {"search.max_hours", "h", REAL, AT(search.max_hours), "0", 0, 1e4, NULL, "stop after so long; 0: no limit"},
-    {"search.nondominated_share", "-", REAL, AT(search.nondominated_share), "1", 0, 1, NULL,
-     "stop when this share of all simulated designs is nondominated; 1: never"},
-    {"search.trust_error", "-", REAL, AT(search.trust_error), "0.05", 0, 10, NULL,
-     "a prediction stands where its leave-one-out based error is below this share of every objective's range"},
-    {"search.crossover_probability", "-", REAL, AT(search.crossover_probability), "1", 0, 1, NULL, "of a pair (SBX)"},
-    {"search.crossover_eta", "-", REAL, AT(search.crossover_eta), "20", 0, 1000, NULL, "distribution index of SBX"},
-    {"search.mutation_eta", "-", REAL, AT(search.mutation_eta), "20", 0, 1000, NULL,
-     "distribution index of polynomial mutation"},
-    {"search.mutation_rate", "-", REAL, AT(search.mutation_rate), "1", 0, 100, NULL,
-     "variables mutated per design, on average"},
-    {"search.surrogate_max", "-", WHOLE, AT(search.surrogate_max), "600", 10, 5000, NULL,
-     "most designs that the response surface is built on"},
-    {"search.surrogate", "-", CHOICE, AT(search.surrogate), "on", 0, 0, "on|off|auto",
-     "off: a plain evolutionary search; auto: off where it proves to cost more than four simulations for each, by the "
-     "clock"},
-    {"search.asynchronous", "-", CHOICE, AT(search.asynchronous), "off", 0, 0, "off|on",
-     "on: no thread waits for the slowest design of a batch; the run then depends on the order in which results come"},
-    {"search.survival", "-", CHOICE, AT(search.survival), "nsga3", 0, 0, "nsga3|rvea|moead",
-     "who lives on from one generation to the next: NSGA-III, RVEA or MOEA/D with PBI"},
-    {"search.repeats", "-", REAL, AT(search.repeats), "0.1", 0, 0.9, NULL,
-     "noisy answers: share of the simulations that try designs of the front again (docs/search.md)"},
-    {"search.members_min", "-", WHOLE, AT(search.members_min), "1", 1, 1000, NULL,
-     "noisy answers: simulations that a design in front.csv has at least"},
-    {"search.members_max", "-", WHOLE, AT(search.members_max), "4", 1, 1000, NULL,
-     "noisy answers: simulations of one design at most; 1: none is repeated"},
-    {"search.polish", "-", WHOLE, AT(search.polish), "3", 0, 32, NULL,
-     "tower: designs that are polished at the end, with a tenth more simulations; none where that is too few"},
-    {"search.limits", "-", TEXT, AT(search.limits), "none", 0, 0, NULL,
-     "what objectives must keep, as j3_g<=5,edcs_pct>=3; none"},
+    WHOLE(search.seed, "1", 0, 4294967295.0, "same seed and settings: same bytes"),
+    WHOLE(search.threads, "0", 0, 1024, "0: one per processor", .flags = SETTING_FREE),
+    WHOLE(search.population, "92", 4, 100000, "designs per generation"),
+    WHOLE(search.initial, "0", 0, 1000000,
+          "designs of the Latin hypercube start, no more than max_evals; 0: by the number of variables"),
+    PATH(search.start, "none", NULL,
+         "designs to begin with: a CSV with a column per variable, or the folder of a run, whose front is taken",
+         .flags = SETTING_FREE),
+    WHOLE(search.generations, "1000", 1, 1e9, "stop after so many", .flags = SETTING_LIMIT),
+    WHOLE(search.max_evals, "2000", 4, 1e6, "stop after so many simulations", .flags = SETTING_LIMIT),
+    REAL(search.max_hours, "h", "0", 0, 1e4, "stop after so long; 0: no limit", .flags = SETTING_LIMIT),
+    REAL(search.nondominated_share, "-", "1", 0, 1,
+         "stop when this share of all simulated designs is nondominated; 1: never", .flags = SETTING_LIMIT),
+    REAL(search.trust_error, "-", "0.05", 0, 10,
+         "a prediction stands where its leave-one-out based error is below this share of every objective's range"),
+    REAL(search.crossover_probability, "-", "1", 0, 1, "of a pair (SBX)"),
+    REAL(search.crossover_eta, "-", "20", 0, 1000, "distribution index of SBX"),
+    REAL(search.mutation_eta, "-", "20", 0, 1000, "distribution index of polynomial mutation"),
+    REAL(search.mutation_rate, "-", "1", 0, 100, "variables mutated per design, on average"),
+    WHOLE(search.surrogate_max, "600", 10, 5000, "most designs that the response surface is built on"),
+    CHOICE(search.surrogate, SurrogateUse, CHOICE_WORDS(SURROGATE_USE_LIST), "on",
+           "off: a plain evolutionary search; auto: off where it proves to cost more than four simulations for each, "
+           "by the "
+           "clock"),
+    CHOICE(search.asynchronous, Switch, CHOICE_WORDS(SWITCH_LIST), "off",
+           "on: no thread waits for the slowest design of a batch; the run then depends on the order in which results "
+           "come"),
+    CHOICE(search.survival, SurvivalKind, CHOICE_WORDS(SURVIVAL_KIND_LIST), "nsga3",
+           "who lives on from one generation to the next: NSGA-III, RVEA or MOEA/D with PBI"),
+    REAL(search.repeats, "-", "0.1", 0, 0.9,
+         "noisy answers: share of the simulations that try designs of the front again (docs/search.md)"),
+    WHOLE(search.members_min, "1", 1, 1000, "noisy answers: simulations that a design in front.csv has at least"),
+    WHOLE(search.members_max, "4", 1, 1000, "noisy answers: simulations of one design at most; 1: none is repeated"),
+    WHOLE(search.polish, "3", 0, 32,
+          "tower: designs that are polished at the end, with a tenth more simulations; none where that is too few"),
+    TEXT(search.limits, "none", "what objectives must keep, as j3_g<=5,edcs_pct>=3; none"),
 
-    {"run.out", "-", TEXT, AT(run.out), "results/study", 0, 0, NULL, "the run's folder"},
+    TEXT(run.out, "results/study", "the run's folder", .flags = SETTING_FREE),
 };
 
 enum { N_OPTIONS = sizeof OPTIONS / sizeof OPTIONS[0] };
+
+_Static_assert(sizeof(CoreSection) == sizeof(int), "a choice is stored as an int");
+_Static_assert((int)OPTION_TEXT_MAX == (int)LIST_MAX, "a list of the settings can be changed");
 
 const char *settings_key(int i)
 {
@@ -175,7 +200,12 @@ const char *settings_key(int i)
 
 const char *settings_words(int i)
 {
-    return OPTIONS[i].words;
+    return OPTIONS[i].kind == KIND_CHOICE ? OPTIONS[i].words : NULL;
+}
+
+unsigned settings_flags(int i)
+{
+    return OPTIONS[i].flags;
 }
 
 static void *field_of(Settings *s, const Option *o)
@@ -202,11 +232,11 @@ static int word_index(const char *words, const char *value)
     return -1;
 }
 
-static void format_word(char text[SETTINGS_TEXT_MAX], const char *words, long index)
+static void format_word(char text[OPTION_TEXT_MAX], const char *words, int index)
 {
     while (index-- > 0)
         words = strchr(words, '|') + 1;
-    snprintf(text, SETTINGS_TEXT_MAX, "%.*s", (int)strcspn(words, "|"), words);
+    snprintf(text, OPTION_TEXT_MAX, "%.*s", (int)strcspn(words, "|"), words);
 }
 
 static Status unknown_word(const Option *o, const char *value, Err *err)
@@ -236,7 +266,7 @@ static Status parse_number(const Option *o, const char *value, double *number, E
     if (!(*number >= o->min && *number <= o->max)) /* also rejects NaN */
         return fail(err, STATUS_BAD_DATA, "%s: %s is outside %.10g..%.10g%s%s", o->key, value, o->min, o->max,
                     *unit ? " " : "", unit);
-    if (o->kind == WHOLE && *number != (double)(long)*number)
+    if (o->kind == KIND_WHOLE && *number != (double)(long)*number)
         return fail(err, STATUS_BAD_DATA, "%s: %s is not a whole number", o->key, value);
     return STATUS_OK;
 }
@@ -245,32 +275,34 @@ static Status assign(Settings *s, const Option *o, const char *value, Err *err)
 {
     double number;
     switch (o->kind) {
-    case REAL:
+    case KIND_REAL:
         TRY(parse_number(o, value, &number, err));
         *(double *)field_of(s, o) = number;
         return STATUS_OK;
-    case WHOLE:
+    case KIND_WHOLE:
         TRY(parse_number(o, value, &number, err));
         *(long *)field_of(s, o) = (long)number;
         return STATUS_OK;
-    case CHOICE: {
+    case KIND_CHOICE: {
         const int i = word_index(o->words, value);
         if (i < 0)
             return unknown_word(o, value, err);
-        *(long *)field_of(s, o) = i;
+        memcpy(field_of(s, o), &i, sizeof i); /* an enumeration */
         return STATUS_OK;
     }
-    case TEXT:
+    case KIND_TEXT:
+    case KIND_PATH:
+    case KIND_PATH_LIST:
         if (!value[0])
             return fail(err, STATUS_BAD_DATA, "%s: is empty", o->key);
-        if (strlen(value) >= SETTINGS_TEXT_MAX)
-            return fail(err, STATUS_BAD_DATA, "%s: is longer than %d characters", o->key, SETTINGS_TEXT_MAX - 1);
+        if (strlen(value) >= OPTION_TEXT_MAX)
+            return fail(err, STATUS_BAD_DATA, "%s: is longer than %d characters", o->key, OPTION_TEXT_MAX - 1);
         if (strpbrk(value, "\r\n") || strstr(value, " ;") || isspace((unsigned char)value[0]) ||
             isspace((unsigned char)value[strlen(value) - 1]))
             return fail(err, STATUS_BAD_DATA,
                         "%s: '%.60s' cannot be kept in a settings file (line ends, ' ;', blanks around it)", o->key,
                         value);
-        snprintf(field_of(s, o), SETTINGS_TEXT_MAX, "%s", value);
+        snprintf(field_of(s, o), OPTION_TEXT_MAX, "%s", value);
         return STATUS_OK;
     }
     return STATUS_INTERNAL;
@@ -331,16 +363,43 @@ int setting_is_path(const char *value)
     return strncmp(value, "builtin:", 8) != 0 && strcmp(value, "none") != 0;
 }
 
+/* The paths of one option, handed to `change`; a list's one by one. */
+static void change_paths(Settings *s, const Option *o, ListItemFn change, void *user)
+{
+    char *value = field_of(s, o);
+    if (o->kind == KIND_PATH_LIST)
+        list_change(value, change, user);
+    else if (o->kind == KIND_PATH && !(o->words && word_index(o->words, value) >= 0))
+        change(value, user);
+}
+
+static void make_absolute(char path[OPTION_TEXT_MAX], void *user)
+{
+    (void)user;
+    if (!setting_is_path(path))
+        return;
+    char *absolute = realpath(path, NULL);
+    if (absolute && strlen(absolute) < OPTION_TEXT_MAX)
+        snprintf(path, OPTION_TEXT_MAX, "%s", absolute);
+    free(absolute);
+}
+
+void settings_make_absolute(Settings *s)
+{
+    for (int i = 0; i < N_OPTIONS; i++)
+        change_paths(s, &OPTIONS[i], make_absolute, NULL);
+}
+
 /* A path that was written in a settings file is meant from that file's folder. */
-static void anchor_path(char path[SETTINGS_TEXT_MAX], void *user)
+static void anchor_path(char path[OPTION_TEXT_MAX], void *user)
 {
     const Reading *r = user;
     const char *slash = strrchr(r->path, '/');
     if (!slash || path[0] == '/' || !setting_is_path(path))
         return;
-    char anchored[2 * SETTINGS_TEXT_MAX];
+    char anchored[2 * OPTION_TEXT_MAX];
     snprintf(anchored, sizeof anchored, "%.*s/%s", (int)(slash - r->path), r->path, path);
-    if (strlen(anchored) < SETTINGS_TEXT_MAX && access(anchored, F_OK) == 0)
+    if (strlen(anchored) < OPTION_TEXT_MAX && access(anchored, F_OK) == 0)
         memcpy(path, anchored, strlen(anchored) + 1);
 }
 
@@ -415,14 +474,7 @@ static int take_pair(void *user, const char *section, const char *name, const ch
         report_fault(r, r->line, err.text);
     }
     *seen = r->line;
-    const int is_model_name =
-        o->offset == AT(building.model) && (!strcmp(value, "guyan") || !strcmp(value, "appendix"));
-    const int is_path = o->offset == AT(motion.record) || o->offset == AT(search.start) ||
-                        (o->offset == AT(building.model) && !is_model_name);
-    if (is_path)
-        anchor_path(field_of(r->s, o), r);
-    if (o->offset == AT(motion.records))
-        list_change(field_of(r->s, o), anchor_path, r);
+    change_paths(r->s, o, anchor_path, r);
     return 1;
 }
 
@@ -541,37 +593,41 @@ Status settings_check(const Settings *s, Err *err)
 }
 
 /* The fewest digits that read back as the same number. */
-static void format_real(double value, char text[SETTINGS_TEXT_MAX])
+static void format_real(double value, char text[OPTION_TEXT_MAX])
 {
     for (int digits = 6; digits <= 17; digits++) {
-        snprintf(text, SETTINGS_TEXT_MAX, "%.*g", digits, value);
+        snprintf(text, OPTION_TEXT_MAX, "%.*g", digits, value);
         if (strtod(text, NULL) == value)
             break;
     }
 }
 
-static void format_value(const Settings *s, const Option *o, char text[SETTINGS_TEXT_MAX])
+static void format_value(const Settings *s, const Option *o, char text[OPTION_TEXT_MAX])
 {
     const void *field = field_of_const(s, o);
+    int word;
     switch (o->kind) {
-    case REAL:
+    case KIND_REAL:
         format_real(*(const double *)field, text);
         break;
-    case WHOLE:
-        snprintf(text, SETTINGS_TEXT_MAX, "%ld", *(const long *)field);
+    case KIND_WHOLE:
+        snprintf(text, OPTION_TEXT_MAX, "%ld", *(const long *)field);
         break;
-    case CHOICE:
-        format_word(text, o->words, *(const long *)field);
+    case KIND_CHOICE:
+        memcpy(&word, field, sizeof word);
+        format_word(text, o->words, word);
         break;
-    case TEXT:
-        snprintf(text, SETTINGS_TEXT_MAX, "%s", (const char *)field);
+    case KIND_TEXT:
+    case KIND_PATH:
+    case KIND_PATH_LIST:
+        snprintf(text, OPTION_TEXT_MAX, "%s", (const char *)field);
         break;
     }
 }
 
 void settings_each(const Settings *s, SettingFn take, void *user)
 {
-    char value[SETTINGS_TEXT_MAX];
+    char value[OPTION_TEXT_MAX];
     for (int i = 0; i < N_OPTIONS; i++) {
         format_value(s, &OPTIONS[i], value);
         take(OPTIONS[i].key, value, user);
@@ -580,21 +636,21 @@ void settings_each(const Settings *s, SettingFn take, void *user)
 
 void settings_compare(const Settings *was, const Settings *is, SettingsDiffFn differs, void *user)
 {
-    char before[SETTINGS_TEXT_MAX], after[SETTINGS_TEXT_MAX];
+    char before[OPTION_TEXT_MAX], after[OPTION_TEXT_MAX];
     for (int i = 0; i < N_OPTIONS; i++) {
         format_value(was, &OPTIONS[i], before);
         format_value(is, &OPTIONS[i], after);
         if (strcmp(before, after) != 0)
-            differs(OPTIONS[i].key, before, after, user);
+            differs(OPTIONS[i].key, OPTIONS[i].flags, before, after, user);
     }
 }
 
 static void describe(const Option *o, FILE *out)
 {
     fprintf(out, "; %s", o->help);
-    if (o->kind == REAL || o->kind == WHOLE)
+    if (o->kind == KIND_REAL || o->kind == KIND_WHOLE)
         fprintf(out, " [%s, %.10g..%.10g]", o->unit, o->min, o->max);
-    if (o->kind == CHOICE)
+    if (o->kind == KIND_CHOICE)
         fprintf(out, " (%s)", o->words);
     fputc('\n', out);
 }
@@ -602,7 +658,7 @@ static void describe(const Option *o, FILE *out)
 void settings_write(const Settings *s, FILE *out, int described)
 {
     const char *section = "";
-    char value[SETTINGS_TEXT_MAX];
+    char value[OPTION_TEXT_MAX];
     for (int i = 0; i < N_OPTIONS; i++) {
         const Option *o = &OPTIONS[i];
         const int n = (int)strcspn(o->key, ".");

@@ -1,11 +1,13 @@
-/* settings/settings.h -- every setting of a study in one struct, described by one table (settings.c).
+/* settings/settings.h -- every setting of a study: the option structs of the modules, described by one table
+ * (settings.c).
  *
  *   [section]            an INI file; a key is "section.key"
  *   key = value          a setting that is not written keeps its default
  *
  * The reader, the range check, `--set section.key=value`, `imtet settings` and the copy saved with a run are loops
- * over the table: a new setting is one line there and one field here. Rules that tie settings together stand below
- * the table (settings_check).
+ * over the table: a new setting is one line there and one field in the options of its module. Rules that tie settings
+ * together stand below the table (settings_check). A module takes its own options; only what needs all includes this
+ * header, others declare `typedef struct Settings Settings;`.
  *
  * Ownership  Settings is a plain value: copy it freely.   Threads  no state. */
 #ifndef IMTET_SETTINGS_SETTINGS_H
@@ -15,105 +17,28 @@
 #include <stdio.h>
 
 #include "base/status.h"
+#include "scene/options.h"
+#include "sim/options.h"
+#include "simulator/options.h"
+#include "study/options.h"
 
-enum { SETTINGS_TEXT_MAX = 512 };
-
-typedef enum { CORE_BOX, CORE_PLATE, CORE_EFFECTIVE } CoreSection;
-typedef enum { LAW_PAPER, LAW_EXACT, LAW_LANKARANI_NIKRAVESH, LAW_FLORES, LAW_JANKOWSKI } ContactLaw;
-typedef enum { ACCURACY_COARSE, ACCURACY_STANDARD, ACCURACY_FINE } Accuracy;
-/* Every integrator of the model, by the name of the setting; sim/engine.c has a line for each. */
-#define ENGINE_LIST(X)                                                                                                 \
-    X(FAST, fast)                                                                                                      \
-    X(CVODE, cvode)                                                                                                    \
-    X(CVODE_BDF, cvode_bdf)                                                                                            \
-    X(CVODE_BDF_TUNED, cvode_bdf_tuned)                                                                                \
-    X(ARKODE_ERK, arkode_erk)                                                                                          \
-    X(ARKODE_ERK_NOEVENTS, arkode_erk_noevents)                                                                        \
-    X(ARKODE_DIRK, arkode_dirk)                                                                                        \
-    X(ARKODE_IMEX, arkode_imex)                                                                                        \
-    X(ETDRK4, etdrk4)                                                                                                  \
-    X(LAGGED, lagged)                                                                                                  \
-    X(NEWMARK, newmark)                                                                                                \
-    X(HHT, hht)                                                                                                        \
-    X(CENTRAL, central)                                                                                                \
-    X(RADAU, radau)
-typedef enum {
-#define X(upper, lower) ENGINE_##upper,
-    ENGINE_LIST(X)
-#undef X
-        ENGINE_COUNT
-} Engine;
-/* PROBLEM_TEXTBOOK and what follows it: simulator/textbook.h, in its order. */
-typedef enum { PROBLEM_TOWER, PROBLEM_EXTERNAL, PROBLEM_TEXTBOOK } ProblemKind;
-typedef enum { ROBUST_WORST, ROBUST_MEAN } Robust;
-typedef enum { UNIT_FROM_FILE, UNIT_M_S2, UNIT_CM_S2, UNIT_G } MotionUnit;
-
-typedef enum { NOISY_AUTO, NOISY_NO, NOISY_YES } Noisy;
-
-typedef struct {
-    struct {
-        char model[SETTINGS_TEXT_MAX]; /* guyan | appendix | a folder with K.csv and M.csv */
-        double damping;                /* [-] of every mode */
-        double first_storey_m, storey_m;
-    } building;
-    struct {
-        long section; /* CoreSection */
-        double side_m, width_m, damping, youngs_modulus_pa, density_kg_m3;
-        double area_base_m2, area_top_m2, inertia_base_m4, inertia_top_m4;
-    } core;
-    struct {
-        long law; /* ContactLaw */
-        double restitution, v0_floor_m_s, radius_m, youngs_modulus_pa, poisson;
-    } contact;
-    struct {
-        char record[SETTINGS_TEXT_MAX];  /* a file or builtin:NAME */
-        char records[SETTINGS_TEXT_MAX]; /* more of them, a comma list, or none */
-        double pga_g;                    /* 0: as recorded */
-        double stretch;                  /* t -> stretch t */
-        long unit;                       /* MotionUnit */
-        char channel[SETTINGS_TEXT_MAX]; /* name, number or auto */
-        double dt_s, resample_dt_s;      /* 0: from the file; 0: never */
-    } motion;
-    struct {
-        long engine, accuracy;
-        double steps_per_contact;
-        double duration_s; /* 0: the whole motion */
-        double residual_max;
-        long ensemble, robust;  /* members of a design; Robust */
-        double gap_tolerance_m; /* standard deviation of a gap as built */
-    } sim;
-    struct { /* the search box */
-        double gap_min_m, gap_max_m, thickness_min_m, thickness_max_m;
-    } design;
-    struct {       /* what is searched; all but kind only where it is not the tower */
-        long kind; /* ProblemKind */
-        char command[SETTINGS_TEXT_MAX];
-        double timeout_s;
-        long variables, objectives;
-        char lower[SETTINGS_TEXT_MAX], upper[SETTINGS_TEXT_MAX]; /* one number or a comma list */
-        char senses[SETTINGS_TEXT_MAX];                          /* min or max, one word or a list */
-        char variable_names[SETTINGS_TEXT_MAX], objective_names[SETTINGS_TEXT_MAX];
-        long noisy;   /* Noisy */
-        double noise; /* [-] of a textbook problem's answers */
-    } problem;
-    struct {
-        long seed, threads, population, initial, generations, max_evals;
-        double max_hours, nondominated_share, trust_error;
-        double crossover_probability, crossover_eta, mutation_eta, mutation_rate;
-        long surrogate_max;            /* most designs that the response surface is built on */
-        long surrogate;                /* SurrogateUse */
-        long asynchronous;             /* 0 or 1 */
-        long survival;                 /* SurvivalKind */
-        double repeats;                /* share of max_evals */
-        long members_min, members_max; /* answers of a design */
-        long polish;                   /* designs at the end */
-        char limits[SETTINGS_TEXT_MAX];
-        char start[SETTINGS_TEXT_MAX]; /* a CSV of designs or a run's folder, or none */
-    } search;
-    struct {
-        char out[SETTINGS_TEXT_MAX]; /* the run's folder */
-    } run;
+typedef struct Settings {
+    BuildingOptions building;
+    CoreOptions core;
+    ContactOptions contact;
+    MotionOptions motion;
+    SimOptions sim;
+    DesignOptions design;
+    ProblemOptions problem;
+    SearchOptions search;
+    RunOptions run;
 } Settings;
+
+/* What a scene needs of them. */
+static inline SceneOptions settings_scene(const Settings *s)
+{
+    return (SceneOptions){s->building, s->core, s->contact, s->sim};
+}
 
 void settings_defaults(Settings *s);
 
@@ -126,8 +51,12 @@ Status settings_read(Settings *s, const char *path, FILE *faults, int *n_faults,
 /* The same from text in memory; `path` names it in messages and is where relative paths begin. */
 Status settings_parse(Settings *s, const char *path, const char *text, Err *err);
 
+/* Of a run that is resumed: a limit may be changed on request, a free one changes no result (the files that paths name
+ * are told apart by their content). */
+typedef enum { SETTING_LIMIT = 1, SETTING_FREE = 2 } SettingFlags;
+
 /* Calls `differs` for every setting that is not the same in both, in the order of the table, values as text. */
-typedef void (*SettingsDiffFn)(const char *key, const char *was, const char *is, void *user);
+typedef void (*SettingsDiffFn)(const char *key, unsigned flags, const char *was, const char *is, void *user);
 void settings_compare(const Settings *was, const Settings *is, SettingsDiffFn differs, void *user);
 
 /* Calls `take` for every setting, in the order of the table. */
@@ -140,6 +69,9 @@ Status settings_set(Settings *s, const char *assignment, Err *err);
 /* Does the value of a path name a file? builtin:NAME and none do not. */
 int setting_is_path(const char *value);
 
+/* Every setting that names a file that is there: as its absolute path, so that it can be looked up from anywhere. */
+void settings_make_absolute(Settings *s);
+
 /* The rules that tie settings together. */
 Status settings_check(const Settings *s, Err *err);
 
@@ -147,6 +79,7 @@ Status settings_check(const Settings *s, Err *err);
  */
 const char *settings_key(int i);
 const char *settings_words(int i);
+unsigned settings_flags(int i);
 
 /* A valid INI file: with `described`, preceded key by key by its meaning, unit and range. */
 void settings_write(const Settings *s, FILE *out, int described);

@@ -45,17 +45,17 @@ double contact_hertz_duration(double k, double m, double v)
     return 2.943275184 * contact_hertz_penetration(k, m, v) / v; /* 2 int_0^1 dx / sqrt(1 - x^2.5) */
 }
 
-Status contact_make(Contact *c, const Settings *s, Err *err)
+Status contact_make(Contact *c, const ContactOptions *o, Err *err)
 {
-    const double r = s->contact.restitution, nu = s->contact.poisson;
-    const ContactLaw law = (ContactLaw)s->contact.law;
+    const double r = o->restitution, nu = o->poisson;
+    const ContactLaw law = o->law;
     if (r < 0.01 && (law == LAW_EXACT || law == LAW_FLORES || law == LAW_JANKOWSKI))
         return fail(
             err, STATUS_BAD_DATA,
             "contact.restitution: %g cannot be had with this contact.law (its damping grows without bound); use "
             "0.01 or more, or contact.law = paper",
             r);
-    c->k = 2 * s->contact.youngs_modulus_pa * sqrt(s->contact.radius_m) / (3 * (1 - nu * nu));
+    c->k = 2 * o->youngs_modulus_pa * sqrt(o->radius_m) / (3 * (1 - nu * nu));
     c->a = c->xi = 0;
     switch (law) {
     case LAW_PAPER:
@@ -74,6 +74,6 @@ Status contact_make(Contact *c, const Settings *s, Err *err)
         c->xi = 4.5 * sqrt(5.0) * (1 - r * r) / (r * (r * (9 * M_PI - 16) + 16));
         break;
     }
-    c->v0_floor = s->contact.v0_floor_m_s;
+    c->v0_floor = o->v0_floor_m_s;
     return STATUS_OK;
 }

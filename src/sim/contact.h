@@ -20,7 +20,8 @@
 
 #include <math.h>
 
-#include "settings/settings.h"
+#include "base/status.h"
+#include "sim/options.h"
 
 typedef struct {
     double k;        /* [N/m^1.5] */
@@ -29,7 +30,7 @@ typedef struct {
     double v0_floor; /* [m/s] */
 } Contact;
 
-Status contact_make(Contact *c, const Settings *s, Err *err);
+Status contact_make(Contact *c, const ContactOptions *o, Err *err);
 
 /* Rebound over approach speed of an isolated impact, e(a): 1 at a = 0, falling to 0. */
 double contact_rebound(double a);

@@ -59,7 +59,7 @@ ENGINE_LIST(X)
 #undef X
 
 /* Floors and core rigidly connected (zero gap), linear: M + Mc, K + Kc, C + Cc. */
-Status engine_tied(const Settings *s, const Building *b, const CoreBeam *core, const Motion *motion,
+Status engine_tied(const SceneOptions *o, const Building *b, const CoreBeam *core, const Motion *motion,
                    const EngineOptions *options, SimResult *result, Err *err);
 
 #endif

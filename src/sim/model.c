@@ -52,7 +52,7 @@ static Status set_gaps(SimModel *model, const double gaps[], Err *err)
     return STATUS_OK;
 }
 
-Status model_set(SimModel *model, const Settings *s, const Building *b, const CoreBeam *core, const double gaps[],
+Status model_set(SimModel *model, const SceneOptions *o, const Building *b, const CoreBeam *core, const double gaps[],
                  Err *err)
 {
     const int n = b->n;
@@ -68,9 +68,9 @@ Status model_set(SimModel *model, const Settings *s, const Building *b, const Co
         model->gamma[i] = 0;
     }
     for (int i = 0; i < n; i++)
-        set_mode(model, i, b->omega[i], s->building.damping, b->gamma[i], b->phi + i, 1);
+        set_mode(model, i, b->omega[i], o->building.damping, b->gamma[i], b->phi + i, 1);
     for (int i = 0; i < model->nc; i++)
-        set_mode(model, n + i, core->omega[i], s->core.damping, core->gamma[i], core->phi + i, -1);
+        set_mode(model, n + i, core->omega[i], o->core.damping, core->gamma[i], core->phi + i, -1);
     for (int j = 0; j < model->n_pad; j++) {
         double sum = 0;
         for (int i = 0; i < model->m; i++)
@@ -78,7 +78,7 @@ Status model_set(SimModel *model, const Settings *s, const Building *b, const Co
         model->mass_eff[j] = sum > 0 ? 1 / sum : 1e300;
     }
     model->core_mass_kg = core ? core->mass_kg : 0;
-    TRY(contact_make(&model->contact, s, err));
+    TRY(contact_make(&model->contact, &o->contact, err));
     return set_gaps(model, core ? gaps : NULL, err);
 }
 

@@ -14,7 +14,6 @@
 #ifndef IMTET_SIM_MODEL_H
 #define IMTET_SIM_MODEL_H
 
-#include "settings/settings.h"
 #include "scene/building.h"
 #include "scene/core_beam.h"
 #include "sim/contact.h"
@@ -38,7 +37,7 @@ typedef struct {
 Status model_create(SimModel *model, int n, Err *err);
 
 /* gaps (n) [m]; core NULL: the building alone (nc = 0, no gap can close). A negative or non-finite gap is refused. */
-Status model_set(SimModel *model, const Settings *s, const Building *b, const CoreBeam *core, const double gaps[],
+Status model_set(SimModel *model, const SceneOptions *o, const Building *b, const CoreBeam *core, const double gaps[],
                  Err *err);
 void model_free(SimModel *model);
 

@@ -1,6 +1,7 @@
 #include "sim/sim.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -12,10 +13,10 @@
 #include "sim/model.h"
 
 struct Scene {
-    Settings settings;
+    SceneOptions options;
     const Motion *motion; /* borrowed */
     Building building;
-    EngineOptions options;
+    EngineOptions engine;
 };
 
 struct SimWorker {
@@ -38,7 +39,7 @@ const char *run_outcome_words(RunOutcome outcome)
     return WORDS[outcome];
 }
 
-Status scene_create(Scene **out, const Settings *s, const Motion *motion, Err *err)
+Status scene_create(Scene **out, const SceneOptions *o, const Motion *motion, Err *err)
 {
     *out = NULL;
     if (motion && (motion->n < 2 || !(motion->dt_s > 0 && isfinite(motion->dt_s))))
@@ -47,13 +48,13 @@ Status scene_create(Scene **out, const Settings *s, const Motion *motion, Err *e
     Scene *scene = calloc(1, sizeof *scene);
     if (!scene)
         return fail(err, STATUS_NO_MEMORY, "scene: out of memory");
-    scene->settings = *s;
+    scene->options = *o;
     scene->motion = motion;
-    scene->options.accuracy = (Accuracy)s->sim.accuracy;
-    scene->options.duration = s->sim.duration_s;
-    if (scene->options.duration == 0 && motion)
-        scene->options.duration = (double)(motion->n - 1) * motion->dt_s;
-    const Status status = building_load(&scene->building, s->building.model, err);
+    scene->engine.accuracy = o->sim.accuracy;
+    scene->engine.duration = o->sim.duration_s;
+    if (scene->engine.duration == 0 && motion)
+        scene->engine.duration = (double)(motion->n - 1) * motion->dt_s;
+    const Status status = building_load(&scene->building, o->building.model, err);
     if (status == STATUS_OK)
         *out = scene;
     else
@@ -98,7 +99,7 @@ Status scene_frequencies(const Scene *scene, const double x[], double building_h
     CoreBeam *core = malloc(sizeof *core);
     if (!core)
         return fail(err, STATUS_NO_MEMORY, "modes: out of memory");
-    Status status = core_beam_make(core, &scene->settings, n, x[n], x[n + 1], err);
+    Status status = core_beam_make(core, &scene->options.core, &scene->options.building, n, x[n], x[n + 1], err);
     if (status == STATUS_OK)
         status = zero_gap_modes(&scene->building, core, zero_gap_hz, err);
     for (int i = 0; i < n && status == STATUS_OK; i++) {
@@ -169,12 +170,12 @@ static void judge(SimResult *r, double residual_max)
 static void run_fast(SimWorker *w, SimResult *result)
 {
     const Scene *scene = w->scene;
-    const double wanted = scene->settings.sim.steps_per_contact;
-    const double times = wanted > 0 ? wanted / fast_knobs(scene->options.accuracy).steps_per_contact : 1;
+    const double wanted = scene->options.sim.steps_per_contact;
+    const double times = wanted > 0 ? wanted / fast_knobs(scene->engine.accuracy).steps_per_contact : 1;
     for (size_t i = 0; i < sizeof REFINEMENTS / sizeof REFINEMENTS[0]; i++) {
-        const FastKnobs knobs = fast_knobs_finer(scene->options.accuracy, times * REFINEMENTS[i]);
-        fast_run(w->fast, &w->model, scene->motion, scene->options.duration, &knobs, result);
-        judge(result, scene->settings.sim.residual_max);
+        const FastKnobs knobs = fast_knobs_finer(scene->engine.accuracy, times * REFINEMENTS[i]);
+        fast_run(w->fast, &w->model, scene->motion, scene->engine.duration, &knobs, result);
+        judge(result, scene->options.sim.residual_max);
         if (result->outcome != RUN_BOOKS_OPEN)
             return;
     }
@@ -187,22 +188,22 @@ Status sim_run(SimWorker *w, SceneKind kind, const double x[], SimResult *result
     const double start = clock_seconds();
     memset(result, 0, sizeof *result);
     if (kind != SCENE_NO_CORE)
-        TRY(core_beam_make(&w->core, &scene->settings, n, x[n], x[n + 1], err));
+        TRY(core_beam_make(&w->core, &scene->options.core, &scene->options.building, n, x[n], x[n + 1], err));
     if (kind == SCENE_TIED) {
-        TRY(engine_tied(&scene->settings, &scene->building, &w->core, scene->motion, &scene->options, result, err));
-        judge(result, scene->settings.sim.residual_max);
+        TRY(engine_tied(&scene->options, &scene->building, &w->core, scene->motion, &scene->engine, result, err));
+        judge(result, scene->options.sim.residual_max);
     } else {
-        TRY(model_set(&w->model, &scene->settings, &scene->building, kind == SCENE_IMPACT ? &w->core : NULL, x, err));
-        const Engine engine = (Engine)scene->settings.sim.engine;
+        TRY(model_set(&w->model, &scene->options, &scene->building, kind == SCENE_IMPACT ? &w->core : NULL, x, err));
+        const Engine engine = scene->options.sim.engine;
         if (engine != ENGINE_FAST) {
-            TRY(engine_entry(engine)->run(&w->model, scene->motion, &scene->options, result, err));
-            judge(result, scene->settings.sim.residual_max);
+            TRY(engine_entry(engine)->run(&w->model, scene->motion, &scene->engine, result, err));
+            judge(result, scene->options.sim.residual_max);
         } else {
             run_fast(w, result);
         }
     }
     result->mcore_kg = kind == SCENE_NO_CORE ? 0 : w->core.mass_kg;
-    result->penetration_ratio = result->penetration_max_m / scene->settings.contact.radius_m;
+    result->penetration_ratio = result->penetration_max_m / scene->options.contact.radius_m;
     result->beyond_contact_law = result->penetration_ratio > PENETRATION_RATIO_MAX;
     result->seconds = clock_seconds() - start;
     return STATUS_OK;

@@ -7,7 +7,7 @@
  * Both sides in mass-normalised modal coordinates, so that every modal energy is in joules.
  *
  * Life cycle  scene_create -> (sim_worker_create -> sim_run ... -> sim_worker_free) per thread -> scene_free
- * Ownership   the Scene copies what it needs of the Settings and borrows the Motion, which must outlive it
+ * Ownership   the Scene copies its options and borrows the Motion, which must outlive it
  * Threads     a Scene is read-only after scene_create and shared; a SimWorker belongs to one thread
  * Errors      a simulation that does not finish is information about a design, not an error: sim_run returns
  *             STATUS_OK with outcome != RUN_OK and a reason. Status is for designs that are no designs, no memory */
@@ -15,7 +15,7 @@
 #define IMTET_SIM_SIM_H
 
 #include "scene/motion.h"
-#include "settings/settings.h"
+#include "sim/options.h"
 #include "sim/result.h"
 
 typedef enum {
@@ -27,7 +27,7 @@ typedef enum {
 typedef struct Scene Scene;
 typedef struct SimWorker SimWorker;
 
-Status scene_create(Scene **out, const Settings *s, const Motion *motion, Err *err);
+Status scene_create(Scene **out, const SceneOptions *o, const Motion *motion, Err *err);
 void scene_free(Scene *scene); /* NULL is fine */
 
 int scene_n_floors(const Scene *scene);

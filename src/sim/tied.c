@@ -159,7 +159,7 @@ static Status find_pair_modes(Tied *d, const Building *b, const CoreBeam *core, 
     return STATUS_OK;
 }
 
-static Status prepare(Tied *d, const Settings *s, const Building *b, const CoreBeam *core, Err *err)
+static Status prepare(Tied *d, const SceneOptions *o, const Building *b, const CoreBeam *core, Err *err)
 {
     const int n = d->n;
     Carve count = {0};
@@ -172,8 +172,8 @@ static Status prepare(Tied *d, const Settings *s, const Building *b, const CoreB
     project(d, 0, b->phi, b->M);
     project(d, n, core->phi, core->M);
     for (int i = 0; i < n; i++) {
-        d->loss[i] = 2 * s->building.damping * b->omega[i];
-        d->loss[n + i] = 2 * s->core.damping * core->omega[i];
+        d->loss[i] = 2 * o->building.damping * b->omega[i];
+        d->loss[n + i] = 2 * o->core.damping * core->omega[i];
     }
     for (int j = 0; j < n; j++)
         for (int i = 0; i < n; i++)
@@ -288,14 +288,14 @@ static void report(const Tied *d, SimResult *result)
     energy_balance_close(result, d->n, d->n, d->damped);
 }
 
-Status engine_tied(const Settings *s, const Building *b, const CoreBeam *core, const Motion *motion,
+Status engine_tied(const SceneOptions *o, const Building *b, const CoreBeam *core, const Motion *motion,
                    const EngineOptions *options, SimResult *result, Err *err)
 {
     static const double STEP[] = {[ACCURACY_COARSE] = 2e-3, [ACCURACY_STANDARD] = 1e-3, [ACCURACY_FINE] = 5e-4};
     Tied d = {.n = b->n, .size = 2 * b->n + 2, .step = STEP[options->accuracy], .peaks.n = b->n};
     memset(result, 0, sizeof *result);
     result->n_floors = result->n_modes = b->n;
-    const Status status = prepare(&d, s, b, core, err);
+    const Status status = prepare(&d, o, b, core, err);
     if (status == STATUS_OK) {
         const double reached = walk(&d, motion, options->duration);
         if (reached < options->duration) {

@@ -3,10 +3,11 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include "settings/settings.h"
 
 static Status build(World *w, Err *err)
 {
-    const Status status = scene_create(&w->scene, &w->settings, &w->motion, err);
+    const Status status = scene_create(&w->scene, &w->options, &w->motion, err);
     if (status != STATUS_OK)
         world_close(w);
     return status;
@@ -15,8 +16,9 @@ static Status build(World *w, Err *err)
 Status world_open(World *w, const Settings *s, Err *err)
 {
     memset(w, 0, sizeof *w);
-    w->settings = *s;
-    TRY(motion_open(&w->motion, s, err));
+    w->options = settings_scene(s);
+    w->record = s->motion;
+    TRY(motion_open(&w->motion, &s->motion, err));
     const Status status = motion_prepare(&w->motion, s->motion.pga_g, s->motion.stretch, err);
     if (status != STATUS_OK) {
         world_close(w);
@@ -28,7 +30,8 @@ Status world_open(World *w, const Settings *s, Err *err)
 Status world_open_still(World *w, const Settings *s, Err *err)
 {
     memset(w, 0, sizeof *w);
-    w->settings = *s;
+    w->options = settings_scene(s);
+    w->record = s->motion;
     w->motion = (Motion){.n = 2, .dt_s = 0.01, .name = "at rest", .format = "none"};
     w->motion.accel = calloc(w->motion.n, sizeof *w->motion.accel);
     if (!w->motion.accel)

@@ -8,8 +8,11 @@
 #include "scene/motion.h"
 #include "sim/sim.h"
 
+typedef struct Settings Settings;
+
 typedef struct {
-    Settings settings;
+    SceneOptions options;
+    MotionOptions record; /* of the motion: as it was asked for */
     Motion motion;
     Scene *scene;
 } World;

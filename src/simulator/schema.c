@@ -6,6 +6,7 @@
 #include "base/cell.h"
 #include "scene/design.h"
 #include "simulator/measures.h"
+#include "settings/settings.h"
 
 void verdict_set(Verdict *v, const char *outcome, const char *reason)
 {

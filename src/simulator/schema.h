@@ -8,8 +8,9 @@
 #define IMTET_SIMULATOR_SCHEMA_H
 
 #include "base/list.h"
-#include "settings/settings.h"
 #include "base/table.h"
+
+typedef struct Settings Settings;
 
 enum { EXTRA_MAX = 3, OBJECTIVES_MAX = 100 };
 

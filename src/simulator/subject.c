@@ -13,6 +13,7 @@
 #include "simulator/external.h"
 #include "simulator/textbook.h"
 #include "simulator/measures.h"
+#include "settings/settings.h"
 
 enum { LIMITS_MAX = 32 };
 

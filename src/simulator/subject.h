@@ -19,6 +19,8 @@
 #include "simulator/schema.h"
 #include "simulator/trial.h"
 
+typedef struct Settings Settings;
+
 typedef struct Subject Subject;
 
 Status subject_open(Subject **out, const Settings *s, Err *err);

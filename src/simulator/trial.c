@@ -7,6 +7,7 @@
 #include "base/random.h"
 #include "simulator/ensemble.h"
 #include "simulator/schema.h"
+#include "settings/settings.h"
 
 enum { RECORDS_MAX = 16 };
 
@@ -56,7 +57,7 @@ static Status open_record(Trials *t, const char *name, int threads, Err *err)
 static Status open_records(Trials *t, int threads, Err *err)
 {
     const char *list = t->settings.motion.records;
-    char name[SETTINGS_TEXT_MAX];
+    char name[OPTION_TEXT_MAX];
     TRY(open_record(t, t->settings.motion.record, threads, err));
     for (size_t i = 0; strcmp(list, "none") != 0 && i < list_count(list); i++) {
         if (!list_item(list, i, name, sizeof name))

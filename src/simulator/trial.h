@@ -20,6 +20,8 @@
 #include "simulator/measures.h"
 #include "simulator/scenario.h"
 
+typedef struct Settings Settings;
+
 typedef struct Trials Trials;
 
 /* motion.record and motion.records, sim.ensemble, sim.gap_tolerance_m, sim.robust of the settings. */

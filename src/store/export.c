@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "store/output.h"
+#include "settings/settings.h"
 
 static void write_names(FILE *f, const char *before, const Schema *schema, size_t n_extra, int with_spread)
 {

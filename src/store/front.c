@@ -9,6 +9,7 @@
 
 #include "store/saved.h"
 #include "simulator/measures.h"
+#include "settings/settings.h"
 
 /* Of id, variables and objectives; spreads may follow. */
 static size_t n_columns(const Table *t)

@@ -11,6 +11,8 @@
 #include "base/table.h"
 #include "simulator/schema.h"
 
+typedef struct Settings Settings;
+
 typedef struct {
     Table table; /* id, variables, objectives */
     Schema schema;

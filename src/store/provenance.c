@@ -13,6 +13,7 @@
 #include "study/moved.h"
 #include "scene/building.h"
 #include "sim/fast/fast.h"
+#include "settings/settings.h"
 
 #ifndef IMTET_VERSION
 #define IMTET_VERSION "unknown"
@@ -90,7 +91,7 @@ Status provenance_inputs(Inputs *out, const Subject *subject, Err *err)
     *out = (Inputs){0};
     if (!subject_world(subject))
         return STATUS_OK;
-    TRY(building_load(&b, subject_world(subject)->settings.building.model, err));
+    TRY(building_load(&b, subject_world(subject)->options.building.model, err));
     *out = (Inputs){.record = subject_world(subject)->motion.file_hash, .matrices = b.hash};
     building_free(&b);
     for (size_t i = 0; i < subject_n_records(subject); i++)
@@ -107,11 +108,11 @@ static char *hex(uint64_t hash, char text[24])
 static json_t *inputs_of_tower(const World *w, const Inputs *hashes)
 {
     char record[24], records[24], matrices[24];
-    return json_pack("{s:s, s:s, s:s, s:s, s:s, s:s, s:I, s:f, s:s, s:i, s:s}", "record", w->settings.motion.record,
+    return json_pack("{s:s, s:s, s:s, s:s, s:s, s:s, s:I, s:f, s:s, s:i, s:s}", "record", w->record.record,
                      "record_format", w->motion.format, "record_channel", w->motion.channel, "record_fnv1a",
-                     hex(hashes->record, record), "records", w->settings.motion.records, "records_fnv1a",
+                     hex(hashes->record, record), "records", w->record.records, "records_fnv1a",
                      hex(hashes->records, records), "samples", (json_int_t)w->motion.n, "step_s", w->motion.dt_s,
-                     "building", w->settings.building.model, "floors", scene_n_floors(w->scene), "matrices_fnv1a",
+                     "building", w->options.building.model, "floors", scene_n_floors(w->scene), "matrices_fnv1a",
                      hex(hashes->matrices, matrices));
 }
 

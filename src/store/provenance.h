@@ -7,6 +7,8 @@
 
 #include "simulator/subject.h"
 
+typedef struct Settings Settings;
+
 const char *program_version(void);  /* 0.1.0 */
 const char *program_revision(void); /* as git describes it, or unknown */
 

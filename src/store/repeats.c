@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "moga/archive.h"
+#include "settings/settings.h"
 
 static int is_known_to_search(const SavedRow *r)
 {

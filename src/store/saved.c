@@ -9,6 +9,7 @@
 #include "store/front.h"
 #include "store/repeats.h"
 #include "store/tables.h"
+#include "settings/settings.h"
 
 /* -- rows ---------------------------------------------------------------------------------------------------------- */
 

@@ -16,6 +16,7 @@
 #include "moga/search.h"
 #include "store/database.h"
 #include "simulator/schema.h"
+#include "settings/settings.h"
 
 enum { POLISHED_FIRST = 1000001, NEVER = -1 };
 

@@ -17,6 +17,7 @@
 #include "store/lock.h"
 #include "store/output.h"
 #include "store/tables.h"
+#include "settings/settings.h"
 
 struct RunStore {
     char folder[PATH_MAX - 64];

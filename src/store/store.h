@@ -31,6 +31,8 @@
 #include "store/saved.h"
 #include "simulator/subject.h"
 
+typedef struct Settings Settings;
+
 typedef struct RunStore RunStore;
 
 static const double COMMIT_S = 0.2;

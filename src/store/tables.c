@@ -10,6 +10,7 @@
 
 #include "base/hash.h"
 #include "store/output.h"
+#include "settings/settings.h"
 
 void utc_now(char text[24])
 {

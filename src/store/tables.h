@@ -7,6 +7,8 @@
 #include "store/database.h"
 #include "store/store.h"
 
+typedef struct Settings Settings;
+
 /* The database of a new run at `path`. Made beside its place and renamed: it is there whole or not at all. */
 Status tables_create(const char *path, const Schema *schema, const Settings *used, const char *provenance, Err *err);
 

@@ -9,18 +9,19 @@
 #include "base/hash.h"
 #include "base/list.h"
 #include "scene/motion_source.h"
+#include "settings/settings.h"
 
 uint64_t moved_hash(uint64_t so_far, uint64_t file_hash)
 {
     return (so_far ^ file_hash) * HASH_PRIME;
 }
 
-static Status take_place(char setting[SETTINGS_TEXT_MAX], const char *place, Err *err)
+static Status take_place(char setting[OPTION_TEXT_MAX], const char *place, Err *err)
 {
-    if (place && strlen(place) >= SETTINGS_TEXT_MAX)
+    if (place && strlen(place) >= OPTION_TEXT_MAX)
         return fail(err, STATUS_MISSING, "%.60s...: the path is too long", place);
     if (place)
-        snprintf(setting, SETTINGS_TEXT_MAX, "%s", place);
+        snprintf(setting, OPTION_TEXT_MAX, "%s", place);
     return STATUS_OK;
 }
 
@@ -34,7 +35,7 @@ static Status check_is_there(const char *path, const char *key, Err *err)
 
 static Status check_all_there(const Settings *s, Err *err)
 {
-    char item[SETTINGS_TEXT_MAX];
+    char item[OPTION_TEXT_MAX];
     const char *list = s->motion.records;
     TRY(check_is_there(s->motion.record, "record=PATH", err));
     for (size_t i = 0; strcmp(list, "none") != 0 && i < list_count(list); i++)
@@ -43,11 +44,11 @@ static Status check_all_there(const Settings *s, Err *err)
     return STATUS_OK;
 }
 
-static Status hash_record(const Settings *s, const char *path, uint64_t *hash, Err *err)
+static Status hash_record(const MotionOptions *s, const char *path, uint64_t *hash, Err *err)
 {
     Motion m = {0};
-    Settings one = *s;
-    snprintf(one.motion.record, sizeof one.motion.record, "%s", path);
+    MotionOptions one = *s;
+    snprintf(one.record, sizeof one.record, "%s", path);
     const Status status = motion_open(&m, &one, err);
     *hash = m.file_hash;
     motion_free(&m);
@@ -56,15 +57,15 @@ static Status hash_record(const Settings *s, const char *path, uint64_t *hash, E
 
 static Status hash_all(const Settings *s, uint64_t *record, uint64_t *records, Err *err)
 {
-    char item[SETTINGS_TEXT_MAX];
+    char item[OPTION_TEXT_MAX];
     const char *list = s->motion.records;
     uint64_t hash;
-    TRY(hash_record(s, s->motion.record, record, err));
+    TRY(hash_record(&s->motion, s->motion.record, record, err));
     *records = moved_hash(0, *record);
     for (size_t i = 0; strcmp(list, "none") != 0 && i < list_count(list); i++) {
         if (!list_item(list, i, item, sizeof item))
             return fail(err, STATUS_BAD_DATA, "motion.records: item %zu is empty or too long", i + 1);
-        TRY(hash_record(s, item, &hash, err));
+        TRY(hash_record(&s->motion, item, &hash, err));
         *records = moved_hash(*records, hash);
     }
     return STATUS_OK;

@@ -9,8 +9,9 @@
 #define IMTET_STUDY_MOVED_H
 
 #include <stdint.h>
+#include "base/status.h"
 
-#include "settings/settings.h"
+typedef struct Settings Settings;
 
 typedef struct {
     const char *record;  /* where motion.record is now; NULL: where it was */

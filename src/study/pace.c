@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 #include <time.h>
+#include "settings/settings.h"
 
 double pace_per_second(const Pace *p)
 {

@@ -5,6 +5,8 @@
 #include "store/lock.h"
 #include "store/saved.h"
 
+typedef struct Settings Settings;
+
 /* Of the search and of this start of it. */
 typedef struct {
     size_t simulated, generations;                 /* so far */

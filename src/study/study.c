@@ -5,7 +5,6 @@
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include <omp.h>
 
@@ -17,6 +16,7 @@
 #include "polish/refine.h"
 #include "store/store.h"
 #include "simulator/subject.h"
+#include "settings/settings.h"
 
 typedef struct {
     Settings used;
@@ -43,46 +43,13 @@ static double session_seconds(const Study *study)
 
 /* -- settings ------------------------------------------------------------------------------------------------------ */
 
-/* A saved path is looked up from anywhere: absolute where it can be. */
-static void make_absolute(char path[SETTINGS_TEXT_MAX], void *user)
-{
-    (void)user;
-    if (!setting_is_path(path))
-        return;
-    char *absolute = realpath(path, NULL);
-    if (absolute && strlen(absolute) < SETTINGS_TEXT_MAX)
-        snprintf(path, SETTINGS_TEXT_MAX, "%s", absolute);
-    free(absolute);
-}
-
 static Settings settings_as_used(const Settings *s, const char *folder)
 {
     Settings used = *s;
-    struct stat there;
-    make_absolute(used.motion.record, NULL);
-    list_change(used.motion.records, make_absolute, NULL);
-    make_absolute(used.search.start, NULL);
-    const int is_name = !strcmp(used.building.model, "guyan") || !strcmp(used.building.model, "appendix");
-    if (!is_name && stat(used.building.model, &there) == 0 && S_ISDIR(there.st_mode))
-        make_absolute(used.building.model, NULL);
-    snprintf(used.run.out, sizeof used.run.out, "%.*s", SETTINGS_TEXT_MAX - 1, folder);
+    settings_make_absolute(&used);
+    snprintf(used.run.out, sizeof used.run.out, "%.*s", OPTION_TEXT_MAX - 1, folder);
     return used;
 }
-
-static int is_one_of(const char *key, const char *const list[], size_t n)
-{
-    size_t i = 0;
-    while (i < n && strcmp(key, list[i]) != 0)
-        i++;
-    return i < n;
-}
-
-static const char *const LIMITS[] = {"search.max_evals", "search.generations", "search.max_hours",
-                                     "search.nondominated_share", "problem.timeout_s"};
-
-/* These change no result; files are told apart by what is in them. */
-static const char *const FREE[] = {"search.threads", "run.out",        "search.start",
-                                   "motion.record",  "motion.records", "building.model"};
 
 typedef struct {
     FILE *lines;
@@ -90,21 +57,20 @@ typedef struct {
     char first[200]; /* of the others, else of the limits */
 } Differences;
 
-static void add_difference(Differences *d, const char *key, const char *was, const char *is)
+static void add_difference(Differences *d, const char *key, int is_limit, const char *was, const char *is)
 {
-    const int is_limit = is_one_of(key, LIMITS, sizeof LIMITS / sizeof LIMITS[0]);
     if (d->n_others == 0 && (!is_limit || d->n_limits == 0))
         snprintf(d->first, sizeof d->first, "%s is %.60s there, now %.60s", key, was, is);
-    d->n_limits += is_limit != 0;
-    d->n_others += is_limit == 0;
+    d->n_limits += is_limit;
+    d->n_others += !is_limit;
     if (d->lines)
         fprintf(d->lines, "%s: %s in the run, now %s%s\n", key, was, is, is_limit ? " (a limit)" : "");
 }
 
-static void compare_one(const char *key, const char *was, const char *is, void *user)
+static void compare_one(const char *key, unsigned flags, const char *was, const char *is, void *user)
 {
-    if (!is_one_of(key, FREE, sizeof FREE / sizeof FREE[0]))
-        add_difference(user, key, was, is);
+    if (!(flags & SETTING_FREE))
+        add_difference(user, key, (flags & SETTING_LIMIT) != 0, was, is);
 }
 
 static uint64_t stored_hash(const json_t *provenance, const char *key)
@@ -119,7 +85,7 @@ static void compare_hash(Differences *d, const char *key, uint64_t was, uint64_t
     snprintf(before, sizeof before, "content %016" PRIx64, was);
     snprintf(after, sizeof after, "content %016" PRIx64, is);
     if (was != is)
-        add_difference(d, key, before, after);
+        add_difference(d, key, 0, before, after);
 }
 
 static Status compare_inputs(Study *study, Differences *d, Err *err)
@@ -347,7 +313,7 @@ static Status go_on(Study *study, Err *err)
     study->generation = h->n_generations > 0 ? (size_t)h->generation[h->n_generations - 1].number + 1 : 0;
     study->first_generation = study->generation;
     TRY(check_limit(study, sum->n_before, err));
-    snprintf(study->used.run.out, SETTINGS_TEXT_MAX, "%s", h->settings.run.out);
+    snprintf(study->used.run.out, OPTION_TEXT_MAX, "%s", h->settings.run.out);
     return store_go_on(study->store, subject_schema(study->subject), &study->used, err);
 }
 
@@ -373,9 +339,9 @@ SearchConfig study_search_config(const Settings *s)
         .generations = (size_t)s->search.generations,
         .max_evals = (size_t)s->search.max_evals,
         .surrogate_max = (size_t)s->search.surrogate_max,
-        .surrogate = (SurrogateUse)s->search.surrogate,
-        .survival = (SurvivalKind)s->search.survival,
-        .asynchronous = s->search.asynchronous != 0,
+        .surrogate = s->search.surrogate,
+        .survival = s->search.survival,
+        .asynchronous = s->search.asynchronous == SWITCH_ON,
         .max_seconds = 3600 * s->search.max_hours,
         .nondominated_share = s->search.nondominated_share,
         .trust_error = s->search.trust_error,

@@ -22,10 +22,11 @@
 
 #include <limits.h>
 
-#include "settings/settings.h"
 #include "moga/search.h"
 #include "study/pace.h"
 #include "sim/sim.h"
+
+typedef struct Settings Settings;
 
 /* The search at the end of a generation, and what the study adds. */
 typedef struct {

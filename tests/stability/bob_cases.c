@@ -1,6 +1,7 @@
 /* Properties that a mass in front of a wall shows, against closed forms and the oracle. */
 #include "trial.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
 

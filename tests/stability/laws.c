@@ -7,6 +7,7 @@
 #include "sim/engine.h"
 #include "tower.h"
 #include "scene/motion_source.h"
+#include "../scene_options.h"
 
 enum { LAWS = LAW_JANKOWSKI + 1, N_R = 20 };
 static const char *const NAMES[LAWS] = {"paper", "exact", "lankarani-nikravesh", "flores", "jankowski"};
@@ -24,13 +25,12 @@ static double r_of(int i)
 
 static Contact contact_of(ContactLaw law, double r)
 {
-    Settings s;
+    ContactOptions o = scene_defaults().contact;
     Contact c;
     Err err = {0};
-    settings_defaults(&s);
-    s.contact.law = law;
-    s.contact.restitution = r;
-    CHECK_OK(contact_make(&c, &s, &err), &err);
+    o.law = law;
+    o.restitution = r;
+    CHECK_OK(contact_make(&c, &o, &err), &err);
     return c;
 }
 

@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include "settings/settings.h"
 
 void tower_open(Tower *t, double seconds)
 {
@@ -36,10 +37,11 @@ void tower_set_gaps(Tower *t, double gap)
 SimResult tower_run(const Tower *t, SceneKind kind)
 {
     SimResult r = {0};
+    const SceneOptions options = settings_scene(&t->settings);
     Scene *scene = NULL;
     SimWorker *worker = NULL;
     Err err = {0};
-    Status status = scene_create(&scene, &t->settings, &t->motion, &err);
+    Status status = scene_create(&scene, &options, &t->motion, &err);
     if (status == STATUS_OK)
         status = sim_worker_create(&worker, scene, &err);
     if (status == STATUS_OK)

@@ -6,6 +6,7 @@
 
 #include "scene/motion.h"
 #include "sim/sim.h"
+#include "settings/settings.h"
 
 typedef struct {
     Settings settings;

@@ -179,10 +179,13 @@ static SimResult run_truncated(Trial *t, const Tower *tower, int nc)
     CoreBeam core;
     SimModel model;
     Err err = {0};
+    const SceneOptions options = settings_scene(&tower->settings);
     CHECK_OK(building_load(&b, tower->settings.building.model, &err), &err);
-    CHECK_OK(core_beam_make(&core, &tower->settings, b.n, tower->x[20], tower->x[21], &err), &err);
+    CHECK_OK(
+        core_beam_make(&core, &tower->settings.core, &tower->settings.building, b.n, tower->x[20], tower->x[21], &err),
+        &err);
     CHECK_OK(model_create(&model, b.n, &err), &err);
-    CHECK_OK(model_set(&model, &tower->settings, &b, &core, tower->x, &err), &err);
+    CHECK_OK(model_set(&model, &options, &b, &core, tower->x, &err), &err);
     truncate_core(&model, nc);
     const double duration = (double)(tower->motion.n - 1) * tower->motion.dt_s;
     const SimResult r = trial_run(t, &model, &tower->motion, duration, 0);
@@ -367,10 +370,13 @@ static void vector_width(Trial *t)
         SimResult first = {0};
         Err err = {0};
         open_tower(t, &tower, seconds_for(t, 3));
+        const SceneOptions options = settings_scene(&tower.settings);
         CHECK_OK(building_load(&b, tower.settings.building.model, &err), &err);
-        CHECK_OK(core_beam_make(&core, &tower.settings, b.n, tower.x[20], tower.x[21], &err), &err);
+        CHECK_OK(
+            core_beam_make(&core, &tower.settings.core, &tower.settings.building, b.n, tower.x[20], tower.x[21], &err),
+            &err);
         CHECK_OK(model_create(&model, b.n, &err), &err);
-        CHECK_OK(model_set(&model, &tower.settings, &b, &core, tower.x, &err), &err);
+        CHECK_OK(model_set(&model, &options, &b, &core, tower.x, &err), &err);
         CHECK_OK(fast_create(&work, b.n, &err), &err);
         const FastKnobs knobs = fast_knobs(t->accuracy);
         for (size_t i = 0; i < sizeof KERNELS / sizeof KERNELS[0]; i++) {

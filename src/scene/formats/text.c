@@ -218,8 +218,7 @@ static const struct {
     {"gal", UNIT_CM_S2},          {"cm s-2", UNIT_CM_S2},    {"g", UNIT_G},
 };
 
-const char *const UNIT_NAMES[] = {
-    [UNIT_FROM_FILE] = "from_file", [UNIT_M_S2] = "m_s2", [UNIT_CM_S2] = "cm_s2", [UNIT_G] = "g"};
+const char *const UNIT_NAMES[] = {MOTION_UNIT_LIST(CHOICE_WORD)};
 
 /* Does the word at `at` of the line from..to stand for a unit? Not inside a longer word, not the g of "e.g." or
  * "g = 9.81", and not behind a number: "peak 0.3 g" is a quantity that someone mentions. */

@@ -9,8 +9,8 @@
 
 #include <stddef.h>
 
-#include "settings/settings.h"
 #include "base/status.h"
+#include "scene/options.h"
 
 typedef struct {
     const char *path, *next, *end; /* of the text that is left */
@@ -55,6 +55,6 @@ unsigned units_named(const char *from, const char *to);
 /* A unit of acceleration that the text names and nothing here converts; NULL: none. */
 const char *unit_unknown(const char *from, const char *to);
 
-extern const char *const UNIT_NAMES[];
+extern const char *const UNIT_NAMES[]; /* by MotionUnit */
 
 #endif

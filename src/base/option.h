@@ -1,0 +1,21 @@
+/* base/option.h -- what the option structs of the modules share: the room of a text, and types of a few words.
+ *
+ *   #define SHAPE_LIST(X) X(SHAPE_BOX, "box") X(SHAPE_PLATE, "plate")
+ *   typedef enum { SHAPE_LIST(CHOICE_NAME) } Shape;
+ *   CHOICE_WORDS(SHAPE_LIST)        "box|plate"
+ *
+ * so that the constants and the words of a settings file come from one list. */
+#ifndef IMTET_BASE_OPTION_H
+#define IMTET_BASE_OPTION_H
+
+enum { OPTION_TEXT_MAX = 512 }; /* bytes, the final zero included */
+
+#define CHOICE_NAME(name, word) name,
+#define CHOICE_WORD(name, word) word,
+#define CHOICE_BAR(name, word)  "|" word
+#define CHOICE_WORDS(LIST)      (&(LIST(CHOICE_BAR))[1])
+
+#define SWITCH_LIST(X) X(SWITCH_OFF, "off") X(SWITCH_ON, "on")
+typedef enum { SWITCH_LIST(CHOICE_NAME) } Switch;
+
+#endif

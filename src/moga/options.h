@@ -1,0 +1,16 @@
+/* moga/options.h -- choices of the search (moga/search.h, moga/survival.h). */
+#ifndef IMTET_MOGA_OPTIONS_H
+#define IMTET_MOGA_OPTIONS_H
+
+#include "base/option.h"
+
+/* On; plain children only; or on until its wall time per simulation proves greater than that of four simulations. Auto
+ * is decided once, by the clock, and the decision is kept in the state: a search that goes on repeats it, another one
+ * from the beginning may decide otherwise where the costs are near the limit. */
+#define SURROGATE_USE_LIST(X) X(SURROGATE_ON, "on") X(SURROGATE_OFF, "off") X(SURROGATE_AUTO, "auto")
+typedef enum { SURROGATE_USE_LIST(CHOICE_NAME) } SurrogateUse;
+
+#define SURVIVAL_KIND_LIST(X) X(SURVIVAL_NSGA3, "nsga3") X(SURVIVAL_RVEA, "rvea") X(SURVIVAL_MOEAD, "moead")
+typedef enum { SURVIVAL_KIND_LIST(CHOICE_NAME) } SurvivalKind;
+
+#endif

@@ -1,0 +1,45 @@
+/* scene/options.h -- what is built and how the ground moves: sections [building], [core], [motion], [design].
+ *
+ * Plain values, SI units. */
+#ifndef IMTET_SCENE_OPTIONS_H
+#define IMTET_SCENE_OPTIONS_H
+
+#include "base/option.h"
+
+typedef struct {
+    char model[OPTION_TEXT_MAX]; /* guyan | appendix | a folder with K.csv and M.csv */
+    double damping;              /* [-] of every mode */
+    double first_storey_m, storey_m;
+} BuildingOptions;
+
+#define CORE_SECTION_LIST(X) X(CORE_BOX, "box") X(CORE_PLATE, "plate") X(CORE_EFFECTIVE, "effective")
+typedef enum { CORE_SECTION_LIST(CHOICE_NAME) } CoreSection;
+
+typedef struct {
+    CoreSection section;
+    double side_m, width_m, damping, youngs_modulus_pa, density_kg_m3;
+    double area_base_m2, area_top_m2, inertia_base_m4, inertia_top_m4;
+} CoreOptions;
+
+#define MOTION_UNIT_LIST(X)                                                                                            \
+    X(UNIT_FROM_FILE, "from_file")                                                                                     \
+    X(UNIT_M_S2, "m_s2")                                                                                               \
+    X(UNIT_CM_S2, "cm_s2")                                                                                             \
+    X(UNIT_G, "g")
+typedef enum { MOTION_UNIT_LIST(CHOICE_NAME) } MotionUnit;
+
+typedef struct {
+    char record[OPTION_TEXT_MAX];  /* a file or builtin:NAME */
+    char records[OPTION_TEXT_MAX]; /* further ones, a comma list, or none */
+    double pga_g;                  /* 0: as recorded */
+    double stretch;                /* t -> stretch t */
+    MotionUnit unit;
+    char channel[OPTION_TEXT_MAX]; /* name, number or auto */
+    double dt_s, resample_dt_s;    /* 0: from the file; 0: never */
+} MotionOptions;
+
+typedef struct {
+    double gap_min_m, gap_max_m, thickness_min_m, thickness_max_m;
+} DesignOptions; /* bounds of the design variables */
+
+#endif

@@ -1,0 +1,70 @@
+/* sim/options.h -- how a design is simulated: sections [contact] and [sim], and all that a scene is made of.
+ *
+ * Plain values, SI units. */
+#ifndef IMTET_SIM_OPTIONS_H
+#define IMTET_SIM_OPTIONS_H
+
+#include "scene/options.h"
+
+#define CONTACT_LAW_LIST(X)                                                                                            \
+    X(LAW_PAPER, "paper")                                                                                              \
+    X(LAW_EXACT, "exact")                                                                                              \
+    X(LAW_LANKARANI_NIKRAVESH, "lankarani-nikravesh")                                                                  \
+    X(LAW_FLORES, "flores")                                                                                            \
+    X(LAW_JANKOWSKI, "jankowski")
+typedef enum { CONTACT_LAW_LIST(CHOICE_NAME) } ContactLaw;
+
+typedef struct {
+    ContactLaw law;
+    double restitution, v0_floor_m_s, radius_m, youngs_modulus_pa, poisson;
+} ContactOptions;
+
+/* Every integrator of the model, by the name of the setting; sim/engine.c has a line for each. */
+#define ENGINE_LIST(X)                                                                                                 \
+    X(FAST, fast)                                                                                                      \
+    X(CVODE, cvode)                                                                                                    \
+    X(CVODE_BDF, cvode_bdf)                                                                                            \
+    X(CVODE_BDF_TUNED, cvode_bdf_tuned)                                                                                \
+    X(ARKODE_ERK, arkode_erk)                                                                                          \
+    X(ARKODE_ERK_NOEVENTS, arkode_erk_noevents)                                                                        \
+    X(ARKODE_DIRK, arkode_dirk)                                                                                        \
+    X(ARKODE_IMEX, arkode_imex)                                                                                        \
+    X(ETDRK4, etdrk4)                                                                                                  \
+    X(LAGGED, lagged)                                                                                                  \
+    X(NEWMARK, newmark)                                                                                                \
+    X(HHT, hht)                                                                                                        \
+    X(CENTRAL, central)                                                                                                \
+    X(RADAU, radau)
+typedef enum {
+#define X(upper, lower) ENGINE_##upper,
+    ENGINE_LIST(X)
+#undef X
+        ENGINE_COUNT
+} Engine;
+
+#define ACCURACY_LIST(X) X(ACCURACY_COARSE, "coarse") X(ACCURACY_STANDARD, "standard") X(ACCURACY_FINE, "fine")
+typedef enum { ACCURACY_LIST(CHOICE_NAME) } Accuracy;
+
+#define ROBUST_LIST(X) X(ROBUST_WORST, "worst") X(ROBUST_MEAN, "mean")
+typedef enum { ROBUST_LIST(CHOICE_NAME) } Robust;
+
+typedef struct {
+    Engine engine;
+    Accuracy accuracy;
+    double steps_per_contact;
+    double duration_s; /* 0: the whole motion */
+    double residual_max;
+    long ensemble;          /* simulations of a design under each record */
+    Robust robust;          /* how a design's results under several records become one */
+    double gap_tolerance_m; /* standard deviation of a gap as built */
+} SimOptions;
+
+/* What a scene is made of; without the ground motion. */
+typedef struct {
+    BuildingOptions building;
+    CoreOptions core;
+    ContactOptions contact;
+    SimOptions sim;
+} SceneOptions;
+
+#endif

@@ -1,0 +1,26 @@
+/* study/options.h -- how long and by what means a study searches, and where it is stored: sections [search], [run]. */
+#ifndef IMTET_STUDY_OPTIONS_H
+#define IMTET_STUDY_OPTIONS_H
+
+#include "moga/options.h"
+
+typedef struct {
+    long seed, threads, population, initial, generations, max_evals;
+    double max_hours, nondominated_share, trust_error;
+    double crossover_probability, crossover_eta, mutation_eta, mutation_rate;
+    long surrogate_max; /* most designs that the response surface is built on */
+    SurrogateUse surrogate;
+    Switch asynchronous;
+    SurvivalKind survival;
+    double repeats;                /* share of max_evals */
+    long members_min, members_max; /* answers of a design */
+    long polish;                   /* designs at the end */
+    char limits[OPTION_TEXT_MAX];
+    char start[OPTION_TEXT_MAX]; /* a CSV of designs or a run's folder, or none */
+} SearchOptions;
+
+typedef struct {
+    char out[OPTION_TEXT_MAX]; /* the run's folder */
+} RunOptions;
+
+#endif
