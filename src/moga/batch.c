@@ -1,14 +1,10 @@
 #include "moga/searching.h"
 
-enum {
-    BATCH_SHARE = 8, /* a batch is this part of the population at least */
-    LEAD_SHARE = 4   /* this part of a batch waits when the next one is chosen */
-};
-
 /* Simulations between two fits of the surface: more as they accumulate, so that fitting never takes over. */
 size_t batch_size(const Search *s)
 {
-    const size_t population = s->config->population, least = population / BATCH_SHARE + 1, grown = s->archive.n / 40;
+    const size_t population = s->config->population, least = population / BATCH_POPULATION_SHARE + 1,
+                 grown = s->archive.n / BATCH_ARCHIVE_SHARE;
     return grown < least ? least : grown < population / 2 ? grown : population / 2;
 }
 
@@ -64,7 +60,7 @@ static Status simulate_all(Search *s, size_t n, Err *err)
 
 size_t batch_lead_max(const SearchConfig *c, size_t n_workers)
 {
-    return n_workers > 1 ? n_workers + c->population / 2 / LEAD_SHARE + 1 : 0;
+    return n_workers > 1 ? n_workers + c->population / 2 / LOOK_AHEAD_SHARE + 1 : 0;
 }
 
 /* Designs that may be pending when the next batch is chosen: so many that no worker waits meanwhile. */
@@ -73,7 +69,7 @@ static size_t lead(const Search *s)
     const size_t workers = s->problem->n_workers;
     const int is_last =
         s->archive.n + batch_pending(s) >= s->config->max_evals || s->generation >= s->config->generations;
-    return workers < 2 || is_last ? 0 : workers + batch_size(s) / LEAD_SHARE;
+    return workers < 2 || is_last ? 0 : workers + batch_size(s) / LOOK_AHEAD_SHARE;
 }
 
 static Status ask(Search *s, size_t n, Err *err)

@@ -2,11 +2,6 @@
 
 #include <math.h>
 
-enum {
-    CHECK_SHARE = 4, /* this part of a batch checks predictions that stand */
-    AGE_MAX = 3      /* a prediction that stood so often is checked first */
-};
-
 /* Offspring i into the batch, and what is foretold of it. */
 static size_t batch_take(Search *s, size_t n, size_t i, EvaluationKind kind)
 {
@@ -54,7 +49,7 @@ static void forget_picks(Search *s, int wary)
 static size_t choose_predicted(Search *s, size_t batch)
 {
     const Group *g = &s->offspring;
-    const size_t n_predicted = g->n - s->n_pending - s->n_plain, check = batch / CHECK_SHARE + 1;
+    const size_t n_predicted = g->n - s->n_pending - s->n_plain, check = batch / VALIDATION_SHARE + 1;
     size_t n = 0;
     for (int kind = 0; kind < INFILL_KINDS; kind++)
         infill_offer(s->infill[kind], g->n, g->F, g->violation, g->uncertainty);
@@ -64,8 +59,8 @@ static size_t choose_predicted(Search *s, size_t batch)
     for (int round = 0; round < 2; round++) {
         const size_t limit = round == 1 ? n + check : batch > check ? batch - check : 0;
         for (size_t i = 0; i < g->n; i++)
-            s->allowed[i] =
-                i < n_predicted && !s->picked[i] && (round == 1 || !guide_trusts(s, g, i) || g->age[i] >= AGE_MAX);
+            s->allowed[i] = i < n_predicted && !s->picked[i] &&
+                            (round == 1 || !guide_trusts(s, g, i) || g->age[i] >= PREDICTION_AGE_MAX);
         n = choose_in_turn(s, n, limit < batch ? limit : batch, guide_rays(s), KIND_INFILL);
     }
     return n;

@@ -123,7 +123,8 @@ Status generation_last(Search *s, Err *err)
 /* Enough for a first surface of this many variables, and no more than half of the budget. */
 static size_t initial_size(const Search *s)
 {
-    const size_t wanted = 4 * s->problem->n_var + 12, half = (search_planned(s->config) + 1) / 2;
+    const size_t wanted = INITIAL_PER_VARIABLE * s->problem->n_var + INITIAL_OFFSET,
+                 half = (search_planned(s->config) + 1) / 2;
     if (s->config->initial > 0)
         return s->config->initial;
     return wanted < half ? wanted : half > 4 ? half : 4;

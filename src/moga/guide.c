@@ -5,29 +5,22 @@
 #include "moga/dominance.h"
 #include "moga/order.h"
 
-/* Kendall's tau below which the surface no longer leads, and how much one batch counts in its running mean. */
-static const double LEAST_AGREEMENT = 0.15, AGREEMENT_WEIGHT = 0.25;
-/* Two rivals share a batch by this power of what each gained per simulation; who gained less gets the LEAST_SHARE-th
- * part at least. So few plain children tell little about their gain: it has to be greater by DOUBT. One generation's
- * weight in the means. */
-static const double CREDIT_WEIGHT = 0.1, SOURCE_POWER = 8.0, WAY_POWER = 16.0, DOUBT = 1.3;
-enum { LEAST_SHARE = 16, ALONE = 18 /* simulations for each variable that the surface has alone */ };
-const Rivals GUIDE_SOURCES = {{0.97, 0.03}, {0.9, 0.1}}, GUIDE_WAYS = {{0.5, 0.5}, {0.5, 0.5}};
+void guide_begin(Search *s)
+{
+    s->agreement = 1.0;
+    s->sources = (Rivals){{1.0 - VARIATION_CREDIT_FIRST, VARIATION_CREDIT_FIRST},
+                          {1.0 - VARIATION_CHANCE_FIRST, VARIATION_CHANCE_FIRST}};
+    s->ways = (Rivals){{0.5, 0.5}, {0.5, 0.5}};
+}
 
-/* A surface costs wall time; with it a search needs a fifth of the simulations of a plain one, mostly less
- * (docs/search.md). It therefore pays as long as its time for one simulation is below that of PAYS simulations. */
-static const double PAYS = 4.0;
-enum { NEIGHBOURS = 3 };   /* of a design, among those simulated: where one failed it is expected to fail */
-enum { COST_SAMPLE = 60 }; /* simulations chosen by the surface, before costs are weighed */
-
-/* Once, when enough has been timed: a surface that costs more wall time per simulation than PAYS simulations steps
+/* Once, when enough has been timed: a surface that costs more wall time per simulation than COST_MAX simulations steps
  * aside. The decision is part of the state, so that a search that goes on keeps it. */
 void guide_weigh_costs(Search *s)
 {
     if (s->config->surrogate != SURROGATE_AUTO || s->aside != ASIDE_OPEN || s->n_guided < COST_SAMPLE)
         return;
     const double simulation = s->simulating_s / (double)s->n_timed, own = s->guided_s / (double)s->n_guided;
-    s->aside = own > PAYS * simulation ? ASIDE_YES : ASIDE_NO;
+    s->aside = own > COST_MAX * simulation ? ASIDE_YES : ASIDE_NO;
 }
 
 int guide_may_lead(const Search *s)
@@ -38,7 +31,7 @@ int guide_may_lead(const Search *s)
 /* Whether the surface leads: it explains its own data, and what it foretold of late batches came in that order. */
 int guide_leads(const Search *s)
 {
-    return guide_may_lead(s) && surface_stands(s->surface) && s->agreement > LEAST_AGREEMENT;
+    return guide_may_lead(s) && surface_stands(s->surface) && s->agreement > AGREEMENT_MIN;
 }
 
 /* Second one's part of what both share. */
@@ -54,7 +47,7 @@ static double second_share(const Rivals *r, double power, double doubt)
 double guide_rays(const Search *s)
 {
     const double least = 1.0 / (double)batch_size(s); /* one design, so that more is learnt of both */
-    return fmin(fmax(second_share(&s->ways, WAY_POWER, 1.0), least), 1.0 - least);
+    return fmin(fmax(second_share(&s->ways, CRITERION_POWER, 1.0), least), 1.0 - least);
 }
 
 int guide_trusts(const Search *s, const Group *g, size_t i)
@@ -110,11 +103,12 @@ static void judge_rivals(Search *s)
  * surface can have saturated. */
 size_t guide_plain(const Search *s)
 {
-    const size_t batch = batch_size(s), least = batch / LEAST_SHARE + 1;
+    const size_t batch = batch_size(s), least = batch / VARIATION_SHARE_MIN + 1;
     const size_t lost = (size_t)(s->lost * (double)batch + 0.5); /* as many as of the surface's own would fail */
-    if (s->archive.n < ALONE * s->problem->n_var)
+    if (s->archive.n < INFILL_ALONE * s->problem->n_var)
         return lost;
-    const size_t credited = (size_t)(second_share(&s->sources, SOURCE_POWER, DOUBT) * (double)batch + 0.5);
+    const size_t credited =
+        (size_t)(second_share(&s->sources, GENERATOR_POWER, VARIATION_MARGIN) * (double)batch + 0.5);
     const size_t wanted = credited > lost ? credited : lost;
     return wanted < least ? least : wanted < batch - least ? wanted : batch - least;
 }
@@ -165,9 +159,9 @@ int guide_expects_failure(const Search *s, const double x[])
 {
     const Problem *p = s->problem;
     const Archive *a = &s->archive;
-    double least[NEIGHBOURS];
-    int failed[NEIGHBOURS] = {0}, any = 0;
-    for (int k = 0; k < NEIGHBOURS; k++)
+    double least[FAILURE_NEIGHBOURS];
+    int failed[FAILURE_NEIGHBOURS] = {0}, any = 0;
+    for (int k = 0; k < FAILURE_NEIGHBOURS; k++)
         least[k] = INFINITY;
     for (size_t row = 0; a->n_failed > 0 && row < a->n; row++) {
         double square = 0.0;
@@ -177,18 +171,18 @@ int guide_expects_failure(const Search *s, const double x[])
             const double width = p->upper[d] - p->lower[d], off = x[d] - a->X[row * p->n_var + d];
             square += width > 0.0 ? off * off / (width * width) : 0.0;
         }
-        int k = NEIGHBOURS; /* into its place among the nearest */
+        int k = FAILURE_NEIGHBOURS; /* into its place among the nearest */
         for (; k > 0 && square < least[k - 1]; k--)
-            if (k < NEIGHBOURS) {
+            if (k < FAILURE_NEIGHBOURS) {
                 least[k] = least[k - 1];
                 failed[k] = failed[k - 1];
             }
-        if (k < NEIGHBOURS) {
+        if (k < FAILURE_NEIGHBOURS) {
             least[k] = square;
             failed[k] = !a->usable[row];
         }
     }
-    for (int k = 0; k < NEIGHBOURS; k++)
+    for (int k = 0; k < FAILURE_NEIGHBOURS; k++)
         any |= failed[k];
     return any;
 }

@@ -5,15 +5,8 @@
 #include <stdint.h>
 
 #include "base/carve.h"
+#include "moga/constants.h"
 #include "moga/frame.h"
-
-static const double PBI_THETA = 5.0;
-/* Where rays start, in widths of the front: a little behind its worst, so that extreme designs count. */
-static const double RAY_START = 1.1;
-/* A weight is never less: a ray along an axis does not care about the other objectives inside the box. */
-static const double WEIGHT_MIN = 1e-3;
-/* How softly the slope of a ray changes from one objective that holds it back to the next, in widths of the front. */
-static const double RAY_SOFTNESS = 0.05;
 
 struct Infill {
     InfillKind kind;

@@ -5,8 +5,6 @@
 #include "moga/dominance.h"
 #include "moga/variation.h"
 
-enum { INNER_GENERATIONS = 10 }; /* on the surface, between two batches */
-
 void offspring_survive(Search *s, Group *group, uint32_t step)
 {
     Random random = random_stream(s->config->seed, RANDOM_NICHING, (uint32_t)s->generation, step);
@@ -51,7 +49,7 @@ static void breed(Search *s, Group *group, size_t n, uint32_t step)
 static void add_descended(Search *s)
 {
     const Problem *p = s->problem;
-    size_t n = 2 * batch_size(s);
+    size_t n = DESCENTS_PER_DESIGN * batch_size(s);
     Random random = random_stream(s->config->seed, RANDOM_DESCENT, (uint32_t)s->generation, 0);
     n = n < s->wishes.n ? n : s->wishes.n;
     for (size_t r = 0; r < s->wishes.n; r++)

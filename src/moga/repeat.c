@@ -2,14 +2,6 @@
 
 #include <math.h>
 
-/* Part of the repeats that are made while the search goes on; the rest confirms its result. */
-static const double EARLY = 0.25;
-/* A spread below this part of the front's range decides nothing, once so many repeats have been made. */
-static const double NEGLIGIBLE = 1e-3;
-enum { TRIALS = 8 };
-/* Above this part of the front's range lucky answers lead the search astray. */
-static const double MISLEADING = 0.2;
-
 static void range_of_front(const Archive *a, size_t k, double *least, double *most)
 {
     *least = INFINITY;
@@ -35,12 +27,12 @@ static int scatters_by(const Archive *a, double part)
 
 static int is_noticeable(const Archive *a)
 {
-    return a->n_repeats < TRIALS || scatters_by(a, NEGLIGIBLE);
+    return a->n_repeats < NOISE_SAMPLE || scatters_by(a, NOISE_NEGLIGIBLE);
 }
 
 int repeat_tells_of_luck(const Search *s)
 {
-    return s->archive.n_repeats > 0 && scatters_by(&s->archive, MISLEADING);
+    return s->archive.n_repeats > 0 && scatters_by(&s->archive, NOISE_SIGNIFICANT);
 }
 
 static size_t n_pending_repeats(const Search *s)
@@ -63,7 +55,7 @@ static size_t room_of(const Search *s)
 
 double search_repeats(size_t n, double share, size_t n_var)
 {
-    return share * fmax((double)n - (double)(SEARCH_UNTROUBLED * n_var), 0.0);
+    return share * fmax((double)n - (double)(REPLICATE_AFTER * n_var), 0.0);
 }
 
 /* Repeats that may still be made, of those that `part` of n simulations bring with them. */
@@ -156,7 +148,7 @@ static size_t lesser(size_t a, size_t b)
 size_t repeat_some(Search *s, size_t n)
 {
     const size_t room = lesser(s->batch_max, room_of(s)), so_far = s->archive.n + batch_pending(s) + n;
-    return append(s, n, lesser(room, n + repeats_left(s, so_far, EARLY)));
+    return append(s, n, lesser(room, n + repeats_left(s, so_far, REPLICATE_EARLY)));
 }
 
 size_t repeat_last(Search *s)

@@ -6,8 +6,6 @@
 
 #include "base/carve.h"
 
-enum { WISHES_MAX = 400, WISHES_FEW = 200 };
-
 const char *stop_reason_words(StopReason reason)
 {
     static const char *const words[] = {
@@ -207,12 +205,12 @@ static void layout(Search *s, size_t n_pool, Carve *c)
 }
 
 /* Directions of the choice of simulations: one for five simulations of the budget; of small budgets one for two and a
- * half, up to WISHES_FEW. */
+ * half, up to VECTORS_FEW. */
 static size_t wishes_for(size_t n_obj, const SearchConfig *c)
 {
-    const size_t fifth = search_planned(c) / 5, twice = 2 * fifth < WISHES_FEW ? 2 * fifth : WISHES_FEW;
+    const size_t fifth = search_planned(c) / VECTOR_EVALS, twice = 2 * fifth < VECTORS_FEW ? 2 * fifth : VECTORS_FEW;
     const size_t served = fifth > twice ? fifth : twice, least = n_obj > c->population ? n_obj : c->population;
-    return n_obj < 2 ? 1 : served < least ? least : served < WISHES_MAX ? served : WISHES_MAX;
+    return n_obj < 2 ? 1 : served < least ? least : served < VECTORS_MAX ? served : VECTORS_MAX;
 }
 
 static Status create(Search *s, Err *err)
@@ -280,8 +278,9 @@ Status search_run(const Problem *problem, const SearchConfig *config, ObserveFn 
 Status search_resume(const Problem *problem, const SearchConfig *config, const SearchStart *start, ObserveFn observe,
                      void *user, StopReason *reason, Err *err)
 {
-    Search s = {.problem = problem, .config = config, .agreement = 1.0, .sources = GUIDE_SOURCES, .ways = GUIDE_WAYS};
+    Search s = {.problem = problem, .config = config};
     TRY(check(problem, config, err));
+    guide_begin(&s);
     s.start = clock_seconds();
     Status status = create(&s, err);
     if (status == STATUS_OK)

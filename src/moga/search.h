@@ -74,8 +74,7 @@ typedef struct {
 } SearchConfig;
 
 /* Repeats that n simulations of a noisy problem bring at most. Where new designs are worth more than certainty about
- * old ones there are none: of the first SEARCH_UNTROUBLED simulations for each variable. */
-enum { SEARCH_UNTROUBLED = 18 };
+ * old ones there are none: of the first REPLICATE_AFTER simulations for each variable. */
 double search_repeats(size_t n, double share, size_t n_var);
 
 typedef enum { STOP_NONE, STOP_GENERATIONS, STOP_EVALUATIONS, STOP_TIME, STOP_SHARE, STOP_ASKED } StopReason;

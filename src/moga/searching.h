@@ -19,6 +19,7 @@
 #include "base/clock.h"
 #include "base/pack.h"
 #include "moga/archive.h"
+#include "moga/constants.h"
 #include "moga/directions.h"
 #include "moga/feed.h"
 #include "moga/group.h"
@@ -104,7 +105,7 @@ void guide_weigh_costs(Search *s);
 int guide_may_lead(const Search *s);                         /* the surface is wanted and worth its time */
 int guide_leads(const Search *s);                            /* ... and can be relied on */
 int guide_trusts(const Search *s, const Group *g, size_t i); /* the prediction of this member stands */
-extern const Rivals GUIDE_SOURCES, GUIDE_WAYS;               /* before the first batch */
+void guide_begin(Search *s);                                 /* before the first batch */
 double guide_rays(const Search *s);  /* share of a batch that is chosen by rays, the rest by PBI */
 size_t guide_plain(const Search *s); /* plain children in a batch that the surface leads */
 int guide_expects_failure(const Search *s, const double x[]); /* one of the simulated designs nearest to x did */

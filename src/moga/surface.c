@@ -4,12 +4,10 @@
 #include <math.h>
 
 #include "base/carve.h"
+#include "moga/constants.h"
 #include "moga/dominance.h"
 #include "moga/order.h"
 
-/* Below this mean leave-one-out R2 of the objectives the surface guides no better than chance: LEAST_EXPLAINED, and
- * what scales, warp and form find in n answers without any pattern, LUCK / root(n). */
-static const double LEAST_EXPLAINED = 0.2, LUCK = 2.0;
 static const double ANSWER_MAX = 1e60;
 
 struct Surface {
@@ -142,7 +140,7 @@ static size_t choose_centres(Surface *s, const Archive *a, Infill *near)
     for (size_t i = 0; i < n; i++)
         s->distance[s->chosen[i]] = infill_distance(near, a->F + s->chosen[i] * a->n_obj);
     sort_by_distance(s->distance, n, s->chosen, s->spare);
-    const size_t n_near = s->n_max - s->n_max / 4, n_rest = n - n_near, n_spread = s->n_max - n_near;
+    const size_t n_near = s->n_max - s->n_max / SPREAD_CENTRES_SHARE, n_rest = n - n_near, n_spread = s->n_max - n_near;
     for (size_t i = 0; i < a->n; i++) /* the rest in the order of simulation again: as distance of itself */
         s->distance[i] = (double)i;
     sort_by_distance(s->distance, n_rest, s->chosen + n_near, s->spare);
@@ -191,7 +189,7 @@ Status surface_fit(Surface *s, const Archive *a, Infill *near, Err *err)
     }
     measure_ranges(s, a);
     TRY(rbf_fit(s->rbf, s->n, s->U, s->F, a->n_repeats > 0 ? s->noise : NULL, err));
-    if (s->n_tuned == 0 || a->n >= s->n_tuned + (s->n_tuned + 9) / 10) {
+    if (s->n_tuned == 0 || a->n >= s->n_tuned + (s->n_tuned + RETUNE_SHARE - 1) / RETUNE_SHARE) {
         TRY(rbf_tune(s->rbf, err));
         s->n_tuned = a->n;
     }
@@ -215,7 +213,7 @@ int surface_stands(const Surface *s)
     double explained = 0.0;
     for (size_t k = 0; s->fitted && k < s->problem->n_obj; k++)
         explained += fmax(rbf_explained(s->rbf, k), 0.0) / (double)s->problem->n_obj;
-    return s->fitted && explained > LEAST_EXPLAINED + LUCK / sqrt((double)s->n);
+    return s->fitted && explained > R2_MIN + R2_CHANCE / sqrt((double)s->n);
 }
 
 double surface_error(const Surface *s)
@@ -265,8 +263,6 @@ void surface_predict(Surface *s, Group *group, size_t first, int with_uncertaint
         fill_member(s, group, s->member[i], s->f + i * s->n_out, with_uncertainty ? s->e + i * s->n_out : NULL);
 }
 
-enum { DESCENT_STEPS = 30 };
-
 /* One descent's own numbers; u, f and J of a block lie together, as the surface takes them. */
 typedef struct {
     double *best, *g, *last, *step, *slope;
@@ -300,10 +296,10 @@ static void descent_step(const Surface *s, const Infill *near, size_t direction,
         for (size_t k = 0; k < s->problem->n_obj; k++)
             w->g[d] += w->slope[k] * J[k * n_var + d];
         const double agreed = w->g[d] * w->last[d];
-        w->step[d] *= agreed > 0.0 ? 1.2 : agreed < 0.0 ? 0.5 : 1.0;
+        w->step[d] *= agreed > 0.0 ? DESCENT_GROW : agreed < 0.0 ? DESCENT_SHRINK : 1.0;
         w->last[d] = agreed < 0.0 ? 0.0 : w->g[d];
         if (w->last[d] != 0.0)
-            u[d] = fmin(fmax(u[d] - copysign(fmin(w->step[d], 0.2), w->g[d]), 0.0), 1.0);
+            u[d] = fmin(fmax(u[d] - copysign(fmin(w->step[d], DESCENT_STEP_MAX), w->g[d]), 0.0), 1.0);
     }
 }
 
@@ -317,7 +313,7 @@ static void descend(const Surface *s, const Infill *near, size_t n, const size_t
     for (size_t p = 0; p < n; p++) {
         w[p] = descent_on(s, rest + p * own);
         for (size_t d = 0; d < n_var; d++) {
-            w[p].step[d] = 0.05;
+            w[p].step[d] = DESCENT_STEP_FIRST;
             w[p].last[d] = 0.0;
         }
     }

@@ -4,10 +4,9 @@
 #include <stdint.h>
 
 #include "base/carve.h"
+#include "moga/constants.h"
 #include "moga/dominance.h"
 #include "moga/frame.h"
-
-static const double PBI_THETA = 5.0;
 
 struct Survival {
     SurvivalKind kind;

@@ -4,8 +4,6 @@
 
 #include "rbf/rbf.h"
 
-static const double NUGGET_MIN = 1e-8, NUGGET_MAX = 1.0;
-
 /* How one output sees the variables. */
 typedef struct {
     double *theta;  /* (n_dim) */
@@ -56,9 +54,6 @@ struct Rbf {
     Status *status;
     void *store;
 };
-
-/* A variable nearer to its bounds than this is warped as if it were so far away. */
-static const double NEAREST = 1e-4;
 
 /* S: n centres C (3, n_dim, stride) warped and scaled. */
 void model_scale(const Rbf *m, size_t n, const double C[], const Shape *shape, double S[]);

@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include "base/carve.h"
+#include "rbf/constants.h"
 #include "rbf/kernel.h"
 #include "rbf/model.h"
 
@@ -145,7 +146,7 @@ static double tail_value(size_t n_dim, size_t column, const double x[], size_t x
 
 size_t model_tail(RbfTail tail, size_t n, size_t n_dim)
 {
-    if (tail == RBF_QUADRATIC && n >= 2 * (1 + 2 * n_dim))
+    if (tail == RBF_QUADRATIC && n >= CENTRES_PER_COEFFICIENT * (1 + 2 * n_dim))
         return 1 + 2 * n_dim;
     return tail != RBF_CONSTANT && n > 1 + n_dim ? 1 + n_dim : 1;
 }

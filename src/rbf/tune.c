@@ -4,16 +4,13 @@
 #include <omp.h>
 #include <string.h>
 
+#include "rbf/constants.h"
 #include "rbf/kernel.h"
 #include "rbf/model.h"
-
-enum { TUNE_MAX = 250, TUNE_STEPS_FIRST = 16, TUNE_STEPS = 8 };
 
 /* What is looked for is the logarithm of each: theta of every variable, then a, b of the warp and the nugget. Weak
  * priors keep what the data say nothing about: log theta near the mean over the variables, log a and log b near 0, the
  * latter the less the more data there are: few can always be explained by a warp. */
-static const double THETA_MIN = 1e-4, THETA_MAX = 50.0, THETA_SPREAD = 1.4;
-static const double WARP_MIN = 0.1, WARP_MAX = 8.0, WARP_SPREAD = 0.0015 /* per centre */;
 
 static size_t n_parameters(const Rbf *m)
 {
@@ -46,7 +43,7 @@ static double prior(const Rbf *m, size_t n, const double p[], double gradient[])
     for (size_t d = 0; d < m->n_dim; d++)
         mean += p[d] / (double)m->n_dim;
     for (size_t i = 0; i < n_parameters(m); i++) {
-        const double spread = i < m->n_dim ? THETA_SPREAD : i < m->n_dim + 2 ? WARP_SPREAD * (double)n : INFINITY;
+        const double spread = i < m->n_dim ? THETA_PRIOR_SD : i < m->n_dim + 2 ? WARP_PRIOR_SD * (double)n : INFINITY;
         const double off = (p[i] - (i < m->n_dim ? mean : 0.0)) / spread;
         l += 0.5 * off * off;
         gradient[i] = off / spread;
@@ -136,7 +133,7 @@ static void climb(const Rbf *m, Worker *k, size_t n, RbfForm *form, Shape *shape
     for (size_t i = 0; i < n_p; i++) {
         p[i] = log(i < m->n_dim ? shape->theta[i] : i < i_nugget ? shape->warp[i - m->n_dim] : form->nugget);
         k->best_p[i] = p[i];
-        k->step[i] = i < m->n_dim || i == i_nugget ? 0.5 : 0.2;
+        k->step[i] = i < m->n_dim || i == i_nugget ? TUNE_STEP_THETA : TUNE_STEP_WARP;
         last[i] = 0.0;
     }
     for (int step = 0; step < steps; step++) {
@@ -150,8 +147,8 @@ static void climb(const Rbf *m, Worker *k, size_t n, RbfForm *form, Shape *shape
         }
         for (size_t i = 0; i < n_p; i++) {
             const double agreed = g[i] * last[i];
-            k->step[i] = agreed > 0.0   ? fmin(1.2 * k->step[i], 2.0)
-                         : agreed < 0.0 ? fmax(0.5 * k->step[i], 1e-3)
+            k->step[i] = agreed > 0.0   ? fmin(TUNE_GROW * k->step[i], TUNE_STEP_MAX)
+                         : agreed < 0.0 ? fmax(TUNE_SHRINK * k->step[i], TUNE_STEP_MIN)
                                         : k->step[i];
             last[i] = agreed < 0.0 ? 0.0 : g[i];
             if (last[i] != 0.0)
@@ -171,10 +168,10 @@ static double trial_error(const Rbf *m, Worker *k, size_t n, RbfForm *form, cons
     return cblas_ddot((int)n, k->q, 1, k->q, 1) / (double)n;
 }
 
-/* At most TUNE_MAX centres, evenly spread over their order: a likelihood costs n^3. */
+/* At most TUNE_CENTRES_MAX centres, evenly spread over their order: a likelihood costs n^3. */
 static size_t choose_tuning_set(const Rbf *m, Worker *k, const Output *o, const double f[], const double noise[])
 {
-    const size_t n = m->n < TUNE_MAX ? m->n : TUNE_MAX;
+    const size_t n = m->n < TUNE_CENTRES_MAX ? m->n : TUNE_CENTRES_MAX;
     for (size_t i = 0; i < n; i++) {
         const size_t from = i * m->n / n;
         for (size_t d = 0; d < 3 * m->n_dim; d++)
@@ -205,7 +202,8 @@ static void tune_output(const Rbf *m, Worker *k, Output *o, const double f[], co
     const size_t challenger = m->n_tuned % n_forms;
     k->least_error = INFINITY;
     for (size_t i = 0; i < n_forms; i++) {
-        const RbfForm form = {(RbfKernel)(i / RBF_N_TAILS), (RbfTail)(i % RBF_N_TAILS), fmax(o->form.nugget, 1e-4)};
+        const RbfForm form = {(RbfKernel)(i / RBF_N_TAILS), (RbfTail)(i % RBF_N_TAILS),
+                              fmax(o->form.nugget, NUGGET_START)};
         const int present = form.kernel == o->form.kernel && form.tail == o->form.tail;
         if (m->n_tuned == 0)
             try_form(m, k, n, o, form, TUNE_STEPS_FIRST);

@@ -8,6 +8,7 @@
 
 #include "base/carve.h"
 #include "base/random.h"
+#include "moga/constants.h"
 #include "moga/dominance.h"
 #include "moga/search.h"
 #include "simulator/external.h"
@@ -521,8 +522,8 @@ static Status check_repeats(const Subject *s, Err *err)
         err, STATUS_BAD_DATA,
         "search.members_min: %ld simulations of a design are not to be had, repeats begin behind the first %zu; "
         "search.max_evals must be %.0f at least",
-        s->settings.search.members_min, SEARCH_UNTROUBLED * s->schema.n_var,
-        ceil(wanted / share) + (double)(SEARCH_UNTROUBLED * s->schema.n_var));
+        s->settings.search.members_min, REPLICATE_AFTER * s->schema.n_var,
+        ceil(wanted / share) + (double)(REPLICATE_AFTER * s->schema.n_var));
 }
 
 /* No number keeps both of two limits of one objective where the least wanted is above the most. */

@@ -1,0 +1,82 @@
+/* moga/constants.h -- every tuned constant of the search, one a line.
+ *
+ * docs/search.md lists them with their sources and with what turning each off costs. scripts/ablation measures that: it
+ * builds a copy of the sources in which these are variables. What follows from a definition or guards against overflow
+ * stands where it is used. */
+#ifndef IMTET_MOGA_CONSTANTS_H
+#define IMTET_MOGA_CONSTANTS_H
+
+/* -- generation.c: initial sample ---------------------------------------------------------------------------------- */
+
+enum { INITIAL_PER_VARIABLE = 4 }; /* size of the initial sample: this n_var + offset, half of the budget at most */
+enum { INITIAL_OFFSET = 12 };      /* ... */
+
+/* -- batch.c: size of a batch -------------------------------------------------------------------------------------- */
+
+enum { BATCH_POPULATION_SHARE = 8 }; /* population / this + 1 at least */
+enum { BATCH_ARCHIVE_SHARE = 40 };   /* evaluations / this, where that is more */
+enum { LOOK_AHEAD_SHARE = 4 };       /* asynchronous: batch / this designs wait while the next batch is selected */
+
+/* -- search.c: reference vectors of infill ------------------------------------------------------------------------- */
+
+enum { VECTOR_EVALS = 5 };  /* evaluations of the budget for each vector */
+enum { VECTORS_FEW = 200 }; /* small budgets: twice as many vectors, up to this number */
+enum { VECTORS_MAX = 400 }; /* most vectors */
+
+/* -- offspring.c --------------------------------------------------------------------------------------------------- */
+
+enum { INNER_GENERATIONS = 10 };  /* of variation and selection on the surrogate between two batches */
+enum { DESCENTS_PER_DESIGN = 2 }; /* descents on the surrogate for each design of a batch */
+
+/* -- surface.c: descents, Rprop in the unit cube ------------------------------------------------------------------- */
+
+enum { DESCENT_STEPS = 30 };                   /* steps of a descent */
+static const double DESCENT_STEP_FIRST = 0.05; /* first step in each variable */
+static const double DESCENT_STEP_MAX = 0.2;    /* longest step */
+static const double DESCENT_GROW = 1.2;        /* factor of the step where the derivative keeps its sign */
+static const double DESCENT_SHRINK = 0.5;      /* ... where it changes */
+
+/* -- surface.c: fit ------------------------------------------------------------------------------------------------ */
+
+static const double R2_MIN = 0.2;    /* mean leave-one-out R2 of the objectives below which no surrogate is used */
+static const double R2_CHANCE = 2.0; /* this / root(n) more: what tuning explains in n values without any pattern */
+enum { RETUNE_SHARE = 10 };          /* tuned again when n has grown by n / this */
+enum { SPREAD_CENTRES_SHARE = 4 };   /* beyond surrogate_max: centres / this are spread over all evaluations */
+
+/* -- infill.c: criteria -------------------------------------------------------------------------------------------- */
+
+static const double PBI_THETA = 5.0;     /* weight of the distance from the vector */
+static const double RAY_START = 1.1;     /* reference point of the hypervolume scalarisation, in widths of the front */
+static const double WEIGHT_MIN = 1e-3;   /* smallest component of a ray's direction */
+static const double RAY_SOFTNESS = 0.05; /* of the soft maximum in a ray's derivative, in widths of the front */
+
+/* -- choice.c: infill selection ------------------------------------------------------------------------------------ */
+
+enum { VALIDATION_SHARE = 4 };   /* batch / this + 1 designs of a batch validate trusted predictions */
+enum { PREDICTION_AGE_MAX = 3 }; /* generations for which a prediction is trusted before it is validated first */
+
+/* -- guide.c: control of the surrogate ----------------------------------------------------------------------------- */
+
+static const double AGREEMENT_MIN = 0.15;          /* running mean of Kendall's tau below which no infill is selected */
+static const double AGREEMENT_WEIGHT = 0.25;       /* of one batch in that mean */
+static const double CREDIT_WEIGHT = 0.1;           /* of one batch in the running means of credits and failure rate */
+static const double GENERATOR_POWER = 8.0;         /* infill and variation share a batch by (gain per design)^power */
+static const double CRITERION_POWER = 16.0;        /* PBI and rays share the infill by (gain per design)^power */
+static const double VARIATION_MARGIN = 1.3;        /* factor by which variation must gain more than infill */
+enum { VARIATION_SHARE_MIN = 16 };                 /* batch / this + 1 designs for each of infill and variation */
+enum { INFILL_ALONE = 18 };                        /* evaluations per variable before variation shares a batch */
+static const double VARIATION_CREDIT_FIRST = 0.03; /* share of the gain credited to variation before the first batch */
+static const double VARIATION_CHANCE_FIRST = 0.1;  /* share of the designs attributed to it before the first batch */
+enum { FAILURE_NEIGHBOURS = 3 };                   /* one of so many nearest designs failed: failure is predicted */
+static const double COST_MAX = 4.0; /* surrogate = auto: largest cost of a surrogate per design, in simulations */
+enum { COST_SAMPLE = 60 };          /* surrogate = auto: infill designs before costs are compared */
+
+/* -- repeat.c: replication of noisy designs ------------------------------------------------------------------------ */
+
+enum { REPLICATE_AFTER = 18 };               /* evaluations per variable before the first replicate */
+static const double REPLICATE_EARLY = 0.25;  /* share of the replicates drawn before the end of the search */
+static const double NOISE_NEGLIGIBLE = 1e-3; /* standard deviation, in ranges of the front, that ends replication */
+enum { NOISE_SAMPLE = 8 };                   /* replicates before it may end */
+static const double NOISE_SIGNIFICANT = 0.2; /* standard deviation, in ranges, above which estimates replace means */
+
+#endif
