@@ -1,0 +1,97 @@
+/* evaluate/problem.h -- what a search knows of the thing it improves, and what is behind it.
+ *
+ *   minimise f(x),  g(x) <= 0,  lower <= x <= upper
+ *
+ * One design is n_parts simulations (replicates under every record, say), each a task that any worker can do:
+ *
+ *   task -> Simulator.simulate -> part (part_size bytes)      all parts of a design -> Simulator.combine -> Evaluation
+ *
+ * A part is a plain record of fixed size, without pointers: it could come from another machine. What the simulator
+ * answers is natural (units and signs of the files); `judge` makes the minimised f and the g of it.
+ *
+ * Threads  simulate is called by several threads at once, each with its own `worker` (0 .. n_workers-1); combine by any
+ *          thread, for one design at a time. judge and repair: pure
+ * Errors   a simulation that fails is information about a design, told by its part; Status is for what ends everything.
+ *          Of several faults the one of the task asked for first is reported */
+#ifndef IMTET_EVALUATE_PROBLEM_H
+#define IMTET_EVALUATE_PROBLEM_H
+
+#include <math.h>
+
+#include "evaluate/evaluation.h"
+
+typedef struct Queue Queue;
+
+typedef struct {
+    long id;         /* of the request, counted in the order of asking: keys random streams */
+    size_t part;     /* 0 .. n_parts-1 */
+    size_t repeat;   /* evaluations of the same design that there are already: its replicates go on behind theirs */
+    int variant;     /* what is simulated instead of the design (a baseline); 0: the design */
+    const double *x; /* (n_var) */
+    void *result;    /* where the part goes */
+    int (*may_go_on)(void *user); /* asked by simulations that take seconds; 0: end soon, with STATUS_STOPPED */
+    void *user;                   /* of may_go_on */
+    size_t slot;                  /* the queue's, as are those below */
+    double taken;                 /* [s] */
+} Task;
+
+typedef struct {
+    Status (*simulate)(void *self, size_t worker, const Task *task, Err *err);
+    /* From the parts in the order of their numbers: outcome, f, sd, extra, seconds, replicates of e; x is there. */
+    void (*combine)(const void *self, const void *parts, Evaluation *e);
+    void (*close)(void *self); /* NULL is fine */
+} Simulator;
+
+/* Who does the tasks: evaluate/threads.h. */
+typedef struct {
+    Status (*start)(void **self, Queue *queue, Err *err);
+    void (*help)(void *self); /* called while the asker waits: does something; NULL: needs no help */
+    void (*stop)(void *self); /* the queue gives no more tasks: returns when none is under way */
+} Executor;
+
+typedef struct {
+    int (*go_on)(void *user); /* asked from any thread before each task; 0: nothing more is begun. NULL: 1 */
+    /* A design is finished; calls exclude each other, e holds during the call. A fault ends everything. NULL: nothing */
+    Status (*done)(const Evaluation *e, void *user, Err *err);
+    void *user;
+} Observer;
+
+/* Minimised f (n_obj) and g (n_con) of an evaluation. */
+typedef void (*JudgeFn)(const Evaluation *e, double f[], double g[], const void *user);
+
+/* Moves x into the set of designs that can be built at all (t_top <= t_base, say). */
+typedef void (*RepairFn)(double x[], void *user);
+
+typedef struct {
+    size_t n_var, n_obj, n_con, n_extra;
+    const double *lower, *upper; /* (n_var) */
+    RepairFn repair;             /* NULL: the box is all */
+    JudgeFn judge;               /* NULL: f as it is, and no g */
+    void *user;                  /* of repair and judge */
+    int is_noisy;                /* the same design evaluated again gives another answer */
+    const Simulator *simulator;
+    void *self; /* of the simulator */
+    size_t n_parts, part_size, n_workers;
+    const Executor *executor; /* NULL: threads, one for each worker; a single worker is the asker itself */
+    Observer observer;
+} Problem;
+
+/* Sum of max(0, g). */
+static inline double violation_of(size_t n_con, const double g[])
+{
+    double sum = 0.0;
+    for (size_t c = 0; c < n_con; c++)
+        sum += g[c] > 0.0 ? g[c] : 0.0;
+    return sum;
+}
+
+static inline void problem_judge(const Problem *p, const Evaluation *e, double f[], double g[])
+{
+    if (p->judge)
+        p->judge(e, f, g, p->user);
+    else
+        for (size_t k = 0; k < p->n_obj; k++)
+            f[k] = e->f[k];
+}
+
+#endif

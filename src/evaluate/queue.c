@@ -1,0 +1,555 @@
+#include "evaluate/queue.h"
+
+#include <pthread.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/carve.h"
+#include "base/clock.h"
+#include "evaluate/threads.h"
+
+typedef enum { PENDING, FINISHED, KNOWN } Place; /* KNOWN: as arrived, its evaluation is among those from before */
+
+typedef struct {
+    Evaluation e;
+    Place place;
+    size_t index; /* of Queue.pool */
+    size_t repeat, sequence, arrival;
+    size_t n_taken, n_given; /* parts */
+    long request;
+    int variant;
+    double *f, *g; /* (n_obj) (n_con) minimised */
+    double *note;
+    char *parts;
+} Slot;
+
+struct Queue {
+    const Problem *problem;
+    QueueOrder order;
+    size_t n_note;
+    Slot **pool; /* (n_pool) every slot that was ever needed, and room for n_max */
+    Slot **idle; /* (n_idle) */
+    Slot **line; /* (head..head+n) pending designs in the order of asking, room for n_max */
+    Slot *given; /* by the last queue_next */
+    size_t n_pool, n_idle, n_max, head, n;
+    size_t next;    /* before it, counted from head, every design has all its parts taken */
+    size_t n_asked; /* ever */
+    size_t n_arrived, n_under_way;
+    long last_request, last_id;
+    struct {
+        size_t n, at;
+        const Evaluation *rows;
+    } known;
+    int closed;
+    Status status;
+    size_t rank; /* of the task that ended it */
+    Err why;
+    double busy;
+    size_t n_done;
+    const Executor *executor;
+    void *executing;
+    pthread_mutex_t lock, finishing;
+    pthread_cond_t work, news;
+};
+
+const Problem *queue_problem(const Queue *q)
+{
+    return q->problem;
+}
+
+/* The one place that asks whether simulations may go on. */
+static int may_go_on(void *user)
+{
+    const Observer *o = &((const Queue *)user)->problem->observer;
+    return !o->go_on || o->go_on(o->user);
+}
+
+/* -- slots --------------------------------------------------------------------------------------------------------- */
+
+static void layout(Slot *s, const Queue *q, Carve *c)
+{
+    const Problem *p = q->problem;
+    carve(c, 1, sizeof *s);
+    s->e.x = carve(c, p->n_var, sizeof *s->e.x);
+    s->e.f = carve(c, p->n_obj, sizeof *s->e.f);
+    s->e.sd = carve(c, p->n_obj, sizeof *s->e.sd);
+    s->e.extra = carve(c, p->n_extra, sizeof *s->e.extra);
+    s->f = carve(c, p->n_obj, sizeof *s->f);
+    s->g = carve(c, p->n_con, sizeof *s->g);
+    s->note = carve(c, q->n_note, sizeof *s->note);
+    s->parts = carve(c, p->n_parts, p->part_size);
+}
+
+static Status slot_create(Slot **out, const Queue *q, Err *err)
+{
+    Slot counted;
+    Carve c = {0};
+    layout(&counted, q, &c);
+    Slot *s = carve_store(&c);
+    *out = s;
+    if (!s)
+        return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs under way", q->n_pool + 1);
+    layout(s, q, &(Carve){.base = (char *)s});
+    return STATUS_OK;
+}
+
+static Status widen(Queue *q, Err *err)
+{
+    const size_t n = q->n_max > 0 ? 2 * q->n_max : 32;
+    Slot ***const lists[] = {&q->pool, &q->idle, &q->line};
+    for (size_t i = 0; i < sizeof lists / sizeof *lists; i++) {
+        Slot **wider = realloc(*lists[i], n * sizeof *wider);
+        if (!wider)
+            return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs under way", n);
+        *lists[i] = wider;
+    }
+    q->n_max = n;
+    return STATUS_OK;
+}
+
+static void set_unknown(double v[], size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        v[i] = NAN;
+}
+
+/* An idle slot, nothing known in it. */
+static Status slot_get(Queue *q, Slot **out, Err *err)
+{
+    const Problem *p = q->problem;
+    if (q->n_idle == 0) {
+        if (q->n_pool == q->n_max)
+            TRY(widen(q, err));
+        Slot *fresh;
+        TRY(slot_create(&fresh, q, err));
+        fresh->index = q->n_pool;
+        q->pool[q->n_pool++] = fresh;
+        q->idle[q->n_idle++] = fresh;
+    }
+    Slot *s = q->idle[--q->n_idle];
+    const Slot was = *s;
+    *s = (Slot){.index = was.index, .f = was.f, .g = was.g, .note = was.note, .parts = was.parts};
+    s->e = (Evaluation){
+        .x = was.e.x, .f = was.e.f, .sd = was.e.sd, .extra = was.e.extra, .seconds = NAN, .violation = NAN};
+    set_unknown(s->e.f, p->n_obj);
+    set_unknown(s->e.sd, p->n_obj);
+    set_unknown(s->e.extra, p->n_extra);
+    *out = s;
+    return STATUS_OK;
+}
+
+static void copy(double to[], const double from[], size_t n)
+{
+    if (n > 0 && from)
+        memcpy(to, from, n * sizeof *to);
+}
+
+/* Evaluation of before, with the kind that it was asked for. */
+static void take_known(const Queue *q, Slot *s, const Evaluation *row, EvaluationKind kind)
+{
+    const Evaluation own = s->e;
+    s->e = *row;
+    s->e.x = own.x;
+    s->e.f = own.f;
+    s->e.sd = own.sd;
+    s->e.extra = own.extra;
+    s->e.kind = kind;
+    copy(s->e.x, row->x, q->problem->n_var);
+    copy(s->e.f, row->f, q->problem->n_obj);
+    copy(s->e.sd, row->sd, q->problem->n_obj);
+    copy(s->e.extra, row->extra, q->problem->n_extra);
+    problem_judge(q->problem, &s->e, s->f, s->g);
+}
+
+/* -- the line ------------------------------------------------------------------------------------------------------ */
+
+static Slot *in_line(const Queue *q, size_t i)
+{
+    return q->line[q->head + i];
+}
+
+static void append(Queue *q, Slot *s)
+{
+    if (q->head + q->n == q->n_max) {
+        memmove(q->line, q->line + q->head, q->n * sizeof *q->line);
+        q->head = 0;
+    }
+    q->line[q->head + q->n++] = s;
+}
+
+static Slot *remove_at(Queue *q, size_t i)
+{
+    Slot *s = in_line(q, i);
+    q->n--;
+    if (i == 0)
+        q->head++;
+    else
+        memmove(q->line + q->head + i, q->line + q->head + i + 1, (q->n - i) * sizeof *q->line);
+    q->next -= i < q->next;
+    return s;
+}
+
+/* The pending design that is x, or n. */
+static size_t find(const Queue *q, const double x[])
+{
+    size_t i = 0;
+    while (i < q->n && memcmp(in_line(q, i)->e.x, x, q->problem->n_var * sizeof *x) != 0)
+        i++;
+    return i;
+}
+
+/* -- the asker ----------------------------------------------------------------------------------------------------- */
+
+static int is_same_design(const Queue *q, const Evaluation *row, const double x[])
+{
+    return memcmp(row->x, x, q->problem->n_var * sizeof *x) == 0;
+}
+
+/* Row of before that is this design, to come yet; known.n: none. As asked, its number must be `id`. */
+static size_t find_known(Queue *q, long id, const double x[])
+{
+    size_t i = q->known.at;
+    if (q->order == QUEUE_AS_ARRIVED) {
+        while (i < q->known.n && !is_same_design(q, &q->known.rows[i], x))
+            i++;
+        return i;
+    }
+    while (i < q->known.n && q->known.rows[i].id < id)
+        i++;
+    q->known.at = i;
+    return i < q->known.n && q->known.rows[i].id == id && is_same_design(q, &q->known.rows[i], x) ? i : q->known.n;
+}
+
+static void fill(Queue *q, Slot *s, const Asked *asked)
+{
+    const size_t row = find_known(q, q->last_request + 1, asked->x);
+    const int is_known = row < q->known.n;
+    copy(s->e.x, asked->x, q->problem->n_var);
+    copy(s->note, asked->note, q->n_note);
+    s->e.kind = asked->kind;
+    s->repeat = asked->repeat;
+    s->variant = asked->variant;
+    s->sequence = q->n_asked++;
+    s->place = PENDING;
+    if (!is_known || q->order == QUEUE_AS_ASKED)
+        s->request = s->e.id = ++q->last_request;
+    if (!is_known)
+        return;
+    s->n_taken = s->n_given = q->problem->n_parts;
+    s->place = KNOWN;
+    if (q->order == QUEUE_AS_ASKED) {
+        take_known(q, s, &q->known.rows[row], asked->kind);
+        s->place = FINISHED;
+    }
+}
+
+static void release_given(Queue *q)
+{
+    if (q->given)
+        q->idle[q->n_idle++] = q->given;
+    q->given = NULL;
+}
+
+Status queue_ask(Queue *q, const Asked *asked, Err *err)
+{
+    Slot *s;
+    pthread_mutex_lock(&q->lock);
+    release_given(q);
+    const Status status = slot_get(q, &s, err);
+    if (status == STATUS_OK) {
+        fill(q, s, asked);
+        append(q, s);
+        if (q->problem->n_parts > 1)
+            pthread_cond_broadcast(&q->work);
+        else
+            pthread_cond_signal(&q->work);
+    }
+    pthread_mutex_unlock(&q->lock);
+    return status;
+}
+
+/* The asker alone adds and removes designs, so that it may count and read them without the lock. */
+size_t queue_pending(const Queue *q)
+{
+    return q->n;
+}
+
+int queue_has(const Queue *q, const double x[])
+{
+    return find(q, x) < q->n;
+}
+
+Asked queue_design(const Queue *q, size_t i)
+{
+    const Slot *s = in_line(q, i);
+    return (Asked){s->e.x, s->repeat, s->e.kind, s->variant, s->note};
+}
+
+static void give_out(Queue *q, Slot *s, Finished *out)
+{
+    q->given = s;
+    *out = (Finished){&s->e, s->f, s->g, s->note, s->parts};
+}
+
+/* The next of before, whether asked for or not. */
+static Status next_known(Queue *q, Finished *out, Err *err)
+{
+    const Evaluation *row = &q->known.rows[q->known.at++];
+    const size_t i = find(q, row->x);
+    const int was_asked = i < q->n;
+    Slot *s;
+    if (was_asked)
+        s = remove_at(q, i);
+    else
+        TRY(slot_get(q, &s, err));
+    take_known(q, s, row, was_asked ? s->e.kind : row->kind == KIND_UNFINISHED ? KIND_INFILL : row->kind);
+    give_out(q, s, out);
+    out->note = was_asked ? s->note : NULL;
+    return STATUS_OK;
+}
+
+/* The design that is next in this queue's order, or n: it is not finished yet. */
+static size_t find_next(const Queue *q)
+{
+    size_t first = q->n;
+    if (q->order == QUEUE_AS_ASKED)
+        return q->n > 0 && in_line(q, 0)->place == FINISHED ? 0 : q->n;
+    for (size_t i = 0; i < q->n; i++)
+        if (in_line(q, i)->place == FINISHED && (first == q->n || in_line(q, i)->arrival < in_line(q, first)->arrival))
+            first = i;
+    return first;
+}
+
+static void wait_for_news(Queue *q)
+{
+    if (!q->executor->help) {
+        pthread_cond_wait(&q->news, &q->lock);
+        return;
+    }
+    pthread_mutex_unlock(&q->lock);
+    q->executor->help(q->executing);
+    pthread_mutex_lock(&q->lock);
+}
+
+static Status next_finished(Queue *q, Finished *out, Err *err)
+{
+    if (q->order == QUEUE_AS_ARRIVED && q->known.at < q->known.n)
+        return next_known(q, out, err);
+    if (q->n == 0)
+        return fail(err, STATUS_INTERNAL, "a result is waited for, but no design was asked for");
+    while (q->status != STATUS_OK ? q->n_under_way > 0 : find_next(q) == q->n)
+        wait_for_news(q);
+    if (q->status != STATUS_OK)
+        return fail(err, q->status, "%s", q->why.text);
+    give_out(q, remove_at(q, find_next(q)), out);
+    return STATUS_OK;
+}
+
+Status queue_next(Queue *q, Finished *out, Err *err)
+{
+    pthread_mutex_lock(&q->lock);
+    release_given(q);
+    const Status status = next_finished(q, out, err);
+    pthread_mutex_unlock(&q->lock);
+    return status;
+}
+
+void queue_withdraw(Queue *q)
+{
+    pthread_mutex_lock(&q->lock);
+    for (size_t i = q->n; i-- > 0;)
+        if (in_line(q, i)->place == PENDING && in_line(q, i)->n_taken == 0)
+            q->idle[q->n_idle++] = remove_at(q, i);
+    pthread_mutex_unlock(&q->lock);
+}
+
+void queue_know(Queue *q, size_t n, const Evaluation rows[])
+{
+    pthread_mutex_lock(&q->lock);
+    q->known.n = n;
+    q->known.at = 0;
+    q->known.rows = rows;
+    pthread_mutex_unlock(&q->lock);
+}
+
+double queue_busy(Queue *q, size_t *n_designs)
+{
+    pthread_mutex_lock(&q->lock);
+    const double busy = q->busy;
+    *n_designs = q->n_done;
+    pthread_mutex_unlock(&q->lock);
+    return busy;
+}
+
+Status queue_evaluate(Queue *q, size_t n, const double X[], const size_t repeat[], double F[], double G[],
+                      unsigned char ok[], Err *err)
+{
+    const Problem *p = q->problem;
+    Finished done;
+    for (size_t i = 0; i < n; i++) {
+        const Asked asked = {.x = X + i * p->n_var, .repeat = repeat ? repeat[i] : 0};
+        TRY(queue_ask(q, &asked, err));
+    }
+    for (size_t i = 0; i < n; i++) {
+        TRY(queue_next(q, &done, err));
+        ok[i] = done.evaluation->outcome == OUTCOME_OK;
+        copy(F + i * p->n_obj, done.f, p->n_obj);
+        copy(p->n_con > 0 ? G + i * p->n_con : NULL, done.g, p->n_con);
+    }
+    return STATUS_OK;
+}
+
+/* -- executors ----------------------------------------------------------------------------------------------------- */
+
+/* What ends it: of faults the one of the first task; a stop, or a fault of the observer, only where there is none. */
+static void end(Queue *q, size_t rank, Status status, const char *why)
+{
+    if (q->status == STATUS_OK || rank < q->rank) {
+        q->rank = rank;
+        q->status = fail(&q->why, status, "%s", why);
+    }
+    pthread_cond_broadcast(&q->work);
+    pthread_cond_broadcast(&q->news);
+}
+
+/* The first design that has parts to be taken, or NULL. */
+static Slot *find_work(Queue *q)
+{
+    while (q->next < q->n && in_line(q, q->next)->n_taken == q->problem->n_parts)
+        q->next++;
+    return q->next < q->n ? in_line(q, q->next) : NULL;
+}
+
+static void hand_out(Queue *q, Slot *s, Task *task)
+{
+    const size_t part = s->n_taken++;
+    *task = (Task){.id = s->request,
+                   .part = part,
+                   .repeat = s->repeat,
+                   .variant = s->variant,
+                   .x = s->e.x,
+                   .result = s->parts + part * q->problem->part_size,
+                   .may_go_on = may_go_on,
+                   .user = q,
+                   .slot = s->index,
+                   .taken = clock_seconds()};
+    q->n_under_way++;
+}
+
+int queue_take(Queue *q, int wait, Task *task)
+{
+    Slot *s = NULL;
+    pthread_mutex_lock(&q->lock);
+    while (!q->closed && q->status == STATUS_OK && !(s = find_work(q)) && wait)
+        pthread_cond_wait(&q->work, &q->lock);
+    if (q->closed || q->status != STATUS_OK) {
+        s = NULL;
+    } else if (s && !may_go_on(q)) {
+        end(q, SIZE_MAX, STATUS_STOPPED, "stopped");
+        s = NULL;
+    }
+    if (s)
+        hand_out(q, s, task);
+    pthread_mutex_unlock(&q->lock);
+    return s != NULL;
+}
+
+static void complete(const Queue *q, Slot *s)
+{
+    const Problem *p = q->problem;
+    Evaluation *e = &s->e;
+    p->simulator->combine(p->self, s->parts, e);
+    if (e->outcome != OUTCOME_OK)
+        set_unknown(e->f, p->n_obj);
+    problem_judge(p, e, s->f, s->g);
+    e->violation = e->outcome == OUTCOME_OK ? violation_of(p->n_con, s->g) : INFINITY;
+}
+
+/* All parts of the design are in. */
+static void finish(Queue *q, Slot *s)
+{
+    const Observer *o = &q->problem->observer;
+    Err why = {0};
+    complete(q, s);
+    pthread_mutex_lock(&q->finishing);
+    if (q->order == QUEUE_AS_ARRIVED)
+        s->e.id = ++q->last_id;
+    const Status status = o->done ? o->done(&s->e, o->user, &why) : STATUS_OK;
+    pthread_mutex_lock(&q->lock);
+    s->place = FINISHED;
+    s->arrival = q->n_arrived++;
+    q->n_done++;
+    if (status != STATUS_OK)
+        end(q, SIZE_MAX, status, why.text);
+    pthread_cond_signal(&q->news);
+    pthread_mutex_unlock(&q->lock);
+    pthread_mutex_unlock(&q->finishing);
+}
+
+void queue_give(Queue *q, const Task *task, Status status, const Err *why)
+{
+    pthread_mutex_lock(&q->lock);
+    Slot *s = q->pool[task->slot];
+    q->busy += clock_seconds() - task->taken;
+    if (status != STATUS_OK)
+        end(q, status == STATUS_STOPPED ? SIZE_MAX : s->sequence * q->problem->n_parts + task->part, status, why->text);
+    else
+        s->n_given++;
+    const int is_whole = status == STATUS_OK && s->n_given == q->problem->n_parts;
+    pthread_mutex_unlock(&q->lock);
+    if (is_whole)
+        finish(q, s);
+    pthread_mutex_lock(&q->lock);
+    q->n_under_way--;
+    if (q->status != STATUS_OK)
+        pthread_cond_broadcast(&q->news);
+    pthread_mutex_unlock(&q->lock);
+}
+
+/* -- life ---------------------------------------------------------------------------------------------------------- */
+
+Status queue_open(Queue **out, const Problem *problem, QueueOrder order, size_t n_note, long n_before, Err *err)
+{
+    Queue *q = calloc(1, sizeof *q);
+    *out = NULL;
+    if (!q)
+        return fail(err, STATUS_NO_MEMORY, "no memory for designs under way");
+    q->problem = problem;
+    q->order = order;
+    q->n_note = n_note;
+    q->last_request = q->last_id = n_before;
+    pthread_mutex_init(&q->lock, NULL);
+    pthread_mutex_init(&q->finishing, NULL);
+    pthread_cond_init(&q->work, NULL);
+    pthread_cond_init(&q->news, NULL);
+    q->executor = problem->executor ? problem->executor : problem->n_workers > 1 ? &EXECUTOR_THREADS : &EXECUTOR_ASKER;
+    const Status status = q->executor->start(&q->executing, q, err);
+    if (status == STATUS_OK)
+        *out = q;
+    else
+        queue_close(q);
+    return status;
+}
+
+void queue_close(Queue *q)
+{
+    if (!q)
+        return;
+    pthread_mutex_lock(&q->lock);
+    q->closed = 1;
+    pthread_cond_broadcast(&q->work);
+    pthread_mutex_unlock(&q->lock);
+    if (q->executing)
+        q->executor->stop(q->executing);
+    pthread_mutex_destroy(&q->lock);
+    pthread_mutex_destroy(&q->finishing);
+    pthread_cond_destroy(&q->work);
+    pthread_cond_destroy(&q->news);
+    for (size_t i = 0; i < q->n_pool; i++)
+        free(q->pool[i]);
+    free(q->pool);
+    free(q->idle);
+    free(q->line);
+    free(q);
+}

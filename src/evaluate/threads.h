@@ -1,0 +1,14 @@
+/* evaluate/threads.h -- executors of this process.
+ *
+ * An executor takes tasks of the queue, has the simulator do them and gives their parts; it knows nothing of designs.
+ * Processes on other machines fit here as well: `start` greets them, `help` sends tasks and receives parts, `stop` says
+ * goodbye. */
+#ifndef IMTET_EVALUATE_THREADS_H
+#define IMTET_EVALUATE_THREADS_H
+
+#include "evaluate/queue.h"
+
+extern const Executor EXECUTOR_THREADS; /* a thread for each worker of the problem */
+extern const Executor EXECUTOR_ASKER;   /* the asker itself is worker 0, while it waits: no thread at all */
+
+#endif

@@ -1,0 +1,401 @@
+/* The evaluation queue: every part is simulated once, and neither order of arrival nor number of workers changes a
+ * number. */
+#include "check.h"
+
+#include <stdatomic.h>
+#include <string.h>
+#include <time.h>
+
+#include "base/random.h"
+#include "evaluate/queue.h"
+#include "evaluate/threads.h"
+
+enum { VAR = 2, OBJ = 2, PARTS = 3, DESIGNS = 60, WORKERS = 4 };
+
+typedef struct {
+    double value, repeat, variant;
+} Part;
+
+typedef struct {
+    Problem problem;
+    atomic_int n_tasks, n_under_way, most_under_way, tasks_left; /* tasks_left: then a stop is asked for */
+    int rests;
+    double fault_at[2]; /* x[0] of designs whose second part ends everything */
+    size_t n_heard;
+    long heard[DESIGNS];
+} Bench;
+
+static void rest(double seconds)
+{
+    nanosleep(&(struct timespec){0, (long)(1e9 * seconds)}, NULL);
+}
+
+static Status simulate(void *self, size_t worker, const Task *t, Err *err)
+{
+    Bench *b = self;
+    Part *part = t->result;
+    Random r = random_stream((uint32_t)t->id, RANDOM_TEST, 0, (uint32_t)t->part);
+    const int n = ++b->n_under_way;
+    if (n > b->most_under_way)
+        b->most_under_way = n;
+    if (b->rests)
+        rest(2e-3 * random_uniform(&r));
+    *part = (Part){t->x[0] + (double)t->part, (double)t->repeat, t->variant};
+    b->n_tasks++;
+    b->n_under_way--;
+    if (worker >= b->problem.n_workers)
+        return (fail)(err, STATUS_INTERNAL, "worker %zu", worker);
+    for (int i = 0; i < 2; i++)
+        if (t->part == 1 && t->x[0] == b->fault_at[i])
+            return (fail)(err, STATUS_BAD_DATA, "design %g", t->x[0]);
+    return STATUS_OK;
+}
+
+/* Failed where x[1] is negative. */
+static void combine(const void *self, const void *parts, Evaluation *e)
+{
+    (void)self;
+    const Part *part = parts;
+    e->f[0] = e->seconds = 0.0;
+    for (int k = 0; k < PARTS; k++)
+        e->f[0] = 2.0 * e->f[0] + part[k].value;
+    e->f[1] = part[0].repeat + 100.0 * part[2].variant;
+    e->replicates = PARTS;
+    if (e->x[1] < 0.0)
+        evaluation_set_outcome(e, OUTCOME_ERROR, "negative");
+}
+
+static const Simulator SIMULATOR = {simulate, combine, NULL};
+
+static void judge(const Evaluation *e, double f[], double g[], const void *user)
+{
+    (void)user;
+    f[0] = -e->f[0];
+    f[1] = e->f[1];
+    g[0] = e->f[0] - 10.0;
+}
+
+static double f_of(double x)
+{
+    return 4.0 * x + 2.0 * (x + 1.0) + x + 2.0;
+}
+
+static Bench bench;
+
+static Queue *open_queue(size_t workers, QueueOrder order)
+{
+    Queue *q;
+    Err err = {0};
+    bench.problem.n_var = VAR;
+    bench.problem.n_obj = OBJ;
+    bench.problem.n_con = 1;
+    bench.problem.judge = judge;
+    bench.problem.simulator = &SIMULATOR;
+    bench.problem.self = &bench;
+    bench.problem.n_parts = PARTS;
+    bench.problem.part_size = sizeof(Part);
+    bench.problem.n_workers = workers;
+    CHECK_OK(queue_open(&q, &bench.problem, order, 1, 100, &err), &err);
+    return q;
+}
+
+static void forget(void)
+{
+    memset(&bench, 0, sizeof bench);
+    bench.fault_at[0] = bench.fault_at[1] = -1.0;
+}
+
+static void ask(Queue *q, int n)
+{
+    Err err = {0};
+    for (int i = 0; i < n; i++)
+        CHECK_OK(queue_ask(q,
+                           &(Asked){.x = (double[]){i, i % 7 == 6 ? -1.0 : 1.0},
+                                    .repeat = (size_t)i % 3,
+                                    .kind = KIND_INFILL,
+                                    .note = &(double){0.5 * i}},
+                           &err),
+                 &err);
+}
+
+static Status note_done(const Evaluation *e, void *user, Err *err)
+{
+    Bench *b = user;
+    (void)err;
+    b->heard[b->n_heard++] = e->id;
+    return STATUS_OK;
+}
+
+static void test_a_batch_has_the_same_numbers_at_any_number_of_workers(void **state)
+{
+    (void)state;
+    for (size_t workers = 1; workers <= WORKERS; workers++) {
+        Finished done;
+        Err err = {0};
+        forget();
+        bench.rests = 1;
+        bench.problem.observer = (Observer){.done = note_done, .user = &bench};
+        Queue *q = open_queue(workers, QUEUE_AS_ASKED);
+        ask(q, DESIGNS);
+        assert_int_equal(queue_pending(q), DESIGNS);
+        for (int i = 0; i < DESIGNS; i++) {
+            CHECK_OK(queue_next(q, &done, &err), &err);
+            const Evaluation *e = done.evaluation;
+            assert_true(e->id == 101 + i && e->x[0] == i && done.note[0] == 0.5 * i && e->kind == KIND_INFILL);
+            assert_true(e->replicates == PARTS && ((const Part *)done.parts)[1].value == i + 1.0);
+            if (i % 7 == 6) {
+                assert_true(e->outcome == OUTCOME_ERROR && isnan(e->f[0]) && isinf(e->violation));
+                continue;
+            }
+            assert_true(e->f[0] == f_of(i) && done.f[0] == -f_of(i) && e->f[1] == i % 3);
+            assert_true(done.g[0] == f_of(i) - 10.0 && e->violation == fmax(f_of(i) - 10.0, 0.0));
+        }
+        queue_close(q);
+        assert_int_equal(bench.n_tasks, DESIGNS * PARTS);
+        assert_int_equal(bench.n_heard, DESIGNS);
+        assert_in_range(bench.most_under_way, 1, workers);
+    }
+}
+
+static void test_a_single_design_keeps_as_many_workers_busy_as_it_has_parts(void **state)
+{
+    (void)state;
+    Finished done;
+    Err err = {0};
+    forget();
+    bench.rests = 1;
+    Queue *q = open_queue(PARTS, QUEUE_AS_ASKED);
+    for (int tries = 0; tries < 200 && bench.most_under_way < PARTS; tries++) {
+        ask(q, 1);
+        CHECK_OK(queue_next(q, &done, &err), &err);
+    }
+    queue_close(q);
+    assert_int_equal(bench.most_under_way, PARTS);
+}
+
+static void test_as_arrived_every_design_comes_once_and_is_numbered_in_that_order(void **state)
+{
+    (void)state;
+    for (size_t workers = 1; workers <= WORKERS; workers += WORKERS - 1) {
+        Finished done;
+        Err err = {0};
+        int came[DESIGNS] = {0}, in_order = 1;
+        forget();
+        bench.rests = 1;
+        bench.problem.observer = (Observer){.done = note_done, .user = &bench};
+        Queue *q = open_queue(workers, QUEUE_AS_ARRIVED);
+        ask(q, DESIGNS);
+        for (int i = 0; i < DESIGNS; i++) {
+            CHECK_OK(queue_next(q, &done, &err), &err);
+            const int design = (int)done.evaluation->x[0];
+            assert_int_equal(done.evaluation->id, 101 + i);
+            assert_int_equal(bench.heard[i], 101 + i);
+            in_order &= design == i;
+            came[design]++;
+        }
+        queue_close(q);
+        for (int i = 0; i < DESIGNS; i++)
+            assert_int_equal(came[i], 1);
+        if (workers == 1)
+            assert_true(in_order);
+    }
+}
+
+/* Whichever worker is first, the fault of the design asked for first is the one that is told. */
+static void test_of_several_faults_the_first_design_is_named(void **state)
+{
+    (void)state;
+    for (size_t workers = 1; workers <= WORKERS; workers++)
+        for (int turn = 0; turn < 10; turn++) {
+            Finished done;
+            Err err = {0};
+            Status status = STATUS_OK;
+            forget();
+            bench.rests = turn % 2;
+            bench.fault_at[0] = 20;
+            bench.fault_at[1] = 21;
+            Queue *q = open_queue(workers, QUEUE_AS_ASKED);
+            ask(q, DESIGNS);
+            while (status == STATUS_OK)
+                status = queue_next(q, &done, &err);
+            queue_close(q);
+            assert_int_equal(status, STATUS_BAD_DATA);
+            assert_string_equal(err.text, "design 20");
+            assert_in_range(bench.n_tasks, 20 * PARTS, DESIGNS * PARTS - 1);
+        }
+}
+
+static int some_more(void *user)
+{
+    Bench *b = user;
+    return b->tasks_left-- > 0;
+}
+
+static void test_a_stop_finishes_what_is_under_way_and_the_observer_hears_of_it(void **state)
+{
+    (void)state;
+    for (size_t workers = 1; workers <= WORKERS; workers += WORKERS - 1) {
+        Finished done;
+        Err err = {0};
+        Status status = STATUS_OK;
+        forget();
+        bench.rests = 1;
+        bench.tasks_left = 10 * PARTS;
+        bench.problem.observer = (Observer){some_more, note_done, &bench};
+        Queue *q = open_queue(workers, QUEUE_AS_ASKED);
+        ask(q, DESIGNS);
+        while (status == STATUS_OK)
+            status = queue_next(q, &done, &err);
+        assert_int_equal(status, STATUS_STOPPED);
+        assert_int_equal(bench.n_tasks, 10 * PARTS);
+        assert_int_equal(bench.n_heard, 10);
+        queue_close(q);
+    }
+}
+
+static Status refuse_third(const Evaluation *e, void *user, Err *err)
+{
+    Bench *b = user;
+    (void)e;
+    return ++b->n_heard < 3 ? STATUS_OK : (fail)(err, STATUS_IO, "the disk is full");
+}
+
+static void test_a_fault_of_the_observer_ends_everything(void **state)
+{
+    (void)state;
+    Finished done;
+    Err err = {0};
+    Status status = STATUS_OK;
+    forget();
+    bench.problem.observer = (Observer){.done = refuse_third, .user = &bench};
+    Queue *q = open_queue(2, QUEUE_AS_ARRIVED);
+    ask(q, DESIGNS);
+    while (status == STATUS_OK)
+        status = queue_next(q, &done, &err);
+    assert_int_equal(status, STATUS_IO);
+    assert_string_equal(err.text, "the disk is full");
+    queue_close(q);
+}
+
+static void test_known_evaluations_are_not_simulated_again(void **state)
+{
+    (void)state;
+    EvaluationTable known = evaluation_table(VAR, OBJ, 0);
+    Finished done;
+    Err err = {0};
+    for (int i = 0; i < 9;
+         i += 2) { /* of the designs 0, 2, ..., as an interrupted batch leaves them; 4 is another one */
+        Evaluation e = {
+            .id = 101 + i, .kind = KIND_UNFINISHED, .x = (double[]){i == 4 ? 77 : i, 1}, .f = (double[]){-i, 5}};
+        CHECK_OK(evaluation_table_append(&known, &e, &err), &err);
+    }
+    forget();
+    bench.problem.observer = (Observer){.done = note_done, .user = &bench};
+    Queue *q = open_queue(2, QUEUE_AS_ASKED);
+    queue_know(q, known.n, known.row);
+    ask(q, 10);
+    for (int i = 0; i < 10; i++) {
+        CHECK_OK(queue_next(q, &done, &err), &err);
+        const int is_known = i % 2 == 0 && i != 4;
+        assert_int_equal(done.evaluation->id, 101 + i);
+        assert_int_equal(done.evaluation->kind, KIND_INFILL);
+        if (i != 6)
+            assert_true(done.evaluation->f[0] == (is_known ? -i : f_of(i)));
+    }
+    queue_close(q);
+    assert_int_equal(bench.n_tasks, 7 * PARTS);
+    assert_int_equal(bench.n_heard, 7);
+
+    forget(); /* as arrived: all of them first, the one that nobody asked for too */
+    q = open_queue(2, QUEUE_AS_ARRIVED);
+    queue_know(q, known.n, known.row);
+    ask(q, 6);
+    for (size_t i = 0; i < known.n; i++) {
+        CHECK_OK(queue_next(q, &done, &err), &err);
+        assert_true(done.evaluation->x[0] == known.row[i].x[0] && done.evaluation->f[0] == -2.0 * (double)i);
+        assert_int_equal(done.note != NULL, i < 2);
+    }
+    assert_int_equal(queue_pending(q), 4);
+    for (int i = 0; i < 4; i++)
+        CHECK_OK(queue_next(q, &done, &err), &err);
+    queue_close(q);
+    assert_int_equal(bench.n_tasks, 4 * PARTS);
+    evaluation_table_free(&known);
+}
+
+/* Without a worker of its own: tasks are taken and given here. */
+static Status start_none(void **self, Queue *queue, Err *err)
+{
+    (void)err;
+    *self = queue;
+    return STATUS_OK;
+}
+
+static void stop_none(void *self)
+{
+    (void)self;
+}
+
+static const Executor NONE = {start_none, NULL, stop_none};
+
+static void test_what_nobody_has_taken_can_be_withdrawn(void **state)
+{
+    (void)state;
+    Finished done;
+    Task task[PARTS];
+    Err err = {0};
+    forget();
+    bench.problem.executor = &NONE;
+    Queue *q = open_queue(1, QUEUE_AS_ARRIVED);
+    ask(q, 3);
+    for (int k = 0; k < PARTS; k++) {
+        assert_int_equal(queue_take(q, 0, &task[k]), 1);
+        assert_true(task[k].x[0] == 0.0 && task[k].part == (size_t)k);
+    }
+    queue_withdraw(q);
+    assert_int_equal(queue_pending(q), 1);
+    assert_true(queue_has(q, (double[]){0, 1}) && !queue_has(q, (double[]){1, 1}));
+    assert_true(queue_design(q, 0).x[0] == 0.0);
+    for (int k = PARTS; k-- > 0;) { /* the last part first */
+        CHECK_OK(simulate(&bench, 0, &task[k], &err), &err);
+        queue_give(q, &task[k], STATUS_OK, &err);
+    }
+    CHECK_OK(queue_next(q, &done, &err), &err);
+    assert_true(done.evaluation->f[0] == f_of(0));
+    assert_int_equal(queue_take(q, 0, &task[0]), 0);
+    assert_int_not_equal(queue_next(q, &done, &err), STATUS_OK);
+    queue_close(q);
+}
+
+static void test_designs_without_end_need_no_more_memory_than_those_pending(void **state)
+{
+    (void)state;
+    Finished done;
+    Err err = {0};
+    forget();
+    Queue *q = open_queue(3, QUEUE_AS_ARRIVED);
+    ask(q, 20);
+    for (int i = 0; i < 3000; i++) {
+        CHECK_OK(queue_next(q, &done, &err), &err);
+        const double x[2] = {done.evaluation->x[0] + 1, 1};
+        CHECK_OK(queue_ask(q, &(Asked){.x = x, .note = &(double){0}}, &err), &err);
+        assert_int_equal(queue_pending(q), 20);
+    }
+    queue_close(q);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_a_batch_has_the_same_numbers_at_any_number_of_workers),
+        cmocka_unit_test(test_a_single_design_keeps_as_many_workers_busy_as_it_has_parts),
+        cmocka_unit_test(test_as_arrived_every_design_comes_once_and_is_numbered_in_that_order),
+        cmocka_unit_test(test_of_several_faults_the_first_design_is_named),
+        cmocka_unit_test(test_a_stop_finishes_what_is_under_way_and_the_observer_hears_of_it),
+        cmocka_unit_test(test_a_fault_of_the_observer_ends_everything),
+        cmocka_unit_test(test_known_evaluations_are_not_simulated_again),
+        cmocka_unit_test(test_what_nobody_has_taken_can_be_withdrawn),
+        cmocka_unit_test(test_designs_without_end_need_no_more_memory_than_those_pending),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
