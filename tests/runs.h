@@ -10,7 +10,9 @@
 #include <spawn.h>
 #include <time.h>
 
+#include "settings/settings.h"
 #include "store/export.h"
+#include "store/run_read.h"
 
 static const char TEXTBOOK[] = "[problem]\nkind = dtlz2\nvariables = 6\nobjectives = 3\nnoise = 0.05\n"
                                "[search]\ninitial = 12\npopulation = 12\nmax_evals = 40\nsurrogate_max = 30\n"
@@ -41,14 +43,14 @@ static inline char *json_export(const char *folder)
 {
     char *text = NULL;
     size_t length;
-    Saved saved;
+    Run saved;
     Err err = {0};
-    CHECK_OK(saved_read(&saved, folder, &err), &err);
-    snprintf(saved.settings.run.out, sizeof saved.settings.run.out, "here");
+    CHECK_OK(run_read(&saved, folder, &err), &err);
+    snprintf(saved.settings->run.out, sizeof saved.settings->run.out, "here");
     FILE *f = open_memstream(&text, &length);
     CHECK_OK(export_json(f, &saved, &err), &err);
     fclose(f);
-    saved_free(&saved);
+    run_free(&saved);
     return text;
 }
 

@@ -464,7 +464,7 @@ static void test_a_killed_run_goes_on_with_every_result_it_had(void **state)
 {
     (void)state;
     char path[PATH_MAX];
-    Saved before, after;
+    Run before, after;
     Err err = {0};
     write_in_place("uneven.ini", UNEVEN);
     for (int kill_at = 10; kill_at < 110; kill_at += 45) {
@@ -476,18 +476,18 @@ static void test_a_killed_run_goes_on_with_every_result_it_had(void **state)
         write_in_place("killed.ini", config_text);
         const pid_t pid = start("killed.ini", name);
         for (size_t n = 0; n < (size_t)kill_at; rest(0.01))
-            if (saved_read(&before, path, &err) == STATUS_OK) {
+            if (run_read(&before, path, &err) == STATUS_OK) {
                 n = before.n;
-                saved_free(&before);
+                run_free(&before);
             }
         kill(pid, SIGKILL);
         wait_end(pid);
-        CHECK_OK(saved_read(&before, path, &err), &err);
+        CHECK_OK(run_read(&before, path, &err), &err);
         assert_in_range(before.n, kill_at, 119);
         char again[PATH_MAX + 16];
         snprintf(again, sizeof again, "optimize %s", path);
         free(output_of(again));
-        CHECK_OK(saved_read(&after, path, &err), &err);
+        CHECK_OK(run_read(&after, path, &err), &err);
         assert_int_equal(after.n, 120);
         assert_memory_equal(before.X, after.X, before.n * 2 * sizeof *before.X);
         assert_memory_equal(before.F, after.F, before.n * 2 * sizeof *before.F);
@@ -495,8 +495,8 @@ static void test_a_killed_run_goes_on_with_every_result_it_had(void **state)
             assert_int_equal(after.row[i].id, i + 1);
             assert_int_not_equal(after.row[i].kind, KIND_UNFINISHED);
         }
-        saved_free(&before);
-        saved_free(&after);
+        run_free(&before);
+        run_free(&after);
     }
 }
 

@@ -36,19 +36,19 @@ static void test_a_second_process_is_refused_with_the_first_ones_number(void **s
 }
 
 /* All of `before` is in the run as it is now. */
-static void assert_nothing_lost(const char *folder, const Saved *before)
+static void assert_nothing_lost(const char *folder, const Run *before)
 {
-    Saved after;
+    Run after;
     Err err = {0};
     char path[PATH_MAX];
-    CHECK_OK(saved_read(&after, path_of(folder, path), &err), &err);
+    CHECK_OK(run_read(&after, path_of(folder, path), &err), &err);
     assert_true(after.n >= before->n);
     for (size_t i = 0; i < before->n; i++) {
-        const size_t j = saved_find(&after, before->row[i].id), n = before->schema.n_var;
+        const size_t j = run_find(&after, before->row[i].id), n = before->schema.n_var;
         assert_true(j < after.n);
         assert_memory_equal(before->X + i * n, after.X + j * n, n * sizeof(double));
     }
-    saved_free(&after);
+    run_free(&after);
 }
 
 /* No file may grow beyond some blocks: as a full disk, but without one. */
@@ -56,7 +56,7 @@ static void test_a_run_that_can_write_no_more_says_so_and_goes_on_later(void **s
 {
     (void)state;
     Said s;
-    Saved before;
+    Run before;
     Err err = {0};
     char command[512], path[PATH_MAX];
     write_in_place("textbook.ini", TEXTBOOK);
@@ -78,10 +78,10 @@ static void test_a_run_that_can_write_no_more_says_so_and_goes_on_later(void **s
         forget(&s);
         memset(&before, 0, sizeof before);
         if (access(path_of("small/run.sqlite", path), F_OK) == 0)
-            CHECK_OK(saved_read(&before, path_of("small", path), &err), &err);
+            CHECK_OK(run_read(&before, path_of("small", path), &err), &err);
         free(output_of("optimize @/textbook.ini --out @/small"));
         assert_nothing_lost("small", &before);
-        saved_free(&before);
+        run_free(&before);
         assert_same_run("unlimited", "small");
     }
     assert_true(refused >= 2);
@@ -93,7 +93,7 @@ static void test_a_full_disk_is_named_and_what_was_stored_stays_readable(void **
     (void)state;
     char disk[PATH_MAX], run_of_disk[PATH_MAX];
     Said s;
-    Saved saved;
+    Run saved;
     Err err = {0};
     assert_int_equal(mkdir(path_of("disk", disk), 0777), 0);
     if (mount("none", disk, "tmpfs", 0, "size=300k") != 0)
@@ -101,9 +101,9 @@ static void test_a_full_disk_is_named_and_what_was_stored_stays_readable(void **
     run(&s, "optimize @/textbook.ini --max-evals 400 --out @/disk/run");
     const int right = s.code == 74 && strstr(s.err, "/disk/run/") &&
                       (strstr(s.err, "the disk is full") || strstr(s.err, "No space left"));
-    const Status readable = saved_read(&saved, path_of("disk/run", run_of_disk), &err);
+    const Status readable = run_read(&saved, path_of("disk/run", run_of_disk), &err);
     const size_t n = saved.n;
-    saved_free(&saved);
+    run_free(&saved);
     umount2(disk, MNT_DETACH);
     if (!right)
         print_error("exit %d: %s", s.code, s.err);
@@ -116,7 +116,7 @@ static void test_a_folder_that_is_read_only_is_named(void **state)
 {
     (void)state;
     char folder[PATH_MAX], run_there[PATH_MAX];
-    Saved saved;
+    Run saved;
     Err err = {0};
     assert_int_equal(mkdir(path_of("fixed", folder), 0777), 0);
     if (mount(folder, folder, NULL, MS_BIND, NULL) != 0)
@@ -126,9 +126,9 @@ static void test_a_folder_that_is_read_only_is_named(void **state)
     Said new_run, old_run;
     run(&new_run, "optimize @/textbook.ini --out @/fixed/other");
     run(&old_run, "optimize @/fixed/run --max-evals 30 --force-settings");
-    const Status readable = saved_read(&saved, path_of("fixed/run", run_there), &err);
+    const Status readable = run_read(&saved, path_of("fixed/run", run_there), &err);
     const size_t n = saved.n;
-    saved_free(&saved);
+    run_free(&saved);
     umount2(folder, MNT_DETACH);
     CHECK_OK(readable, &err);
     assert_int_equal(n, 20);
@@ -141,11 +141,11 @@ static void test_a_folder_that_is_read_only_is_named(void **state)
 static size_t simulated_in(const char *name)
 {
     char path[PATH_MAX];
-    Saved saved;
+    Run saved;
     Err err = {0};
-    const Status status = saved_read(&saved, path_of(name, path), &err);
+    const Status status = run_read(&saved, path_of(name, path), &err);
     const size_t n = saved.n;
-    saved_free(&saved);
+    run_free(&saved);
     if (status != STATUS_OK)
         print_error("%s\n", err.text);
     return n;

@@ -103,11 +103,11 @@ static void test_the_advance_of_a_run_is_that_of_its_designs(void **state)
 {
     (void)state;
     char path[PATH_MAX];
-    Saved h;
+    Run h;
     Err err = {0};
     write_in_place("run.ini", TEXTBOOK);
     free(output_of("optimize @/run.ini --out @/run --threads 1"));
-    CHECK_OK(saved_read(&h, path_of("run", path), &err), &err);
+    CHECK_OK(run_read(&h, path_of("run", path), &err), &err);
     double *igd = calloc(h.n_generations, sizeof *igd);
     size_t *front = calloc(h.n, sizeof *front), n_front = 0;
     unsigned char *counts = calloc(h.n, 1);
@@ -136,7 +136,7 @@ static void test_the_advance_of_a_run_is_that_of_its_designs(void **state)
     free(igd);
     free(front);
     free(counts);
-    saved_free(&h);
+    run_free(&h);
 }
 
 static void test_the_late_advance_leaves_out_the_last_tenth(void **state)

@@ -22,7 +22,7 @@ static void test_limits_that_nothing_keeps_end_with_the_nearest_designs(void **s
     (void)state;
     Said s;
     Table nearest;
-    Saved all;
+    Run all;
     Err err = {0};
     char path[PATH_MAX];
     write_in_place("unmet.ini", UNMET);
@@ -33,7 +33,7 @@ static void test_limits_that_nothing_keeps_end_with_the_nearest_designs(void **s
     forget(&s);
 
     CHECK_OK(table_read(&nearest, path_of("unmet/nearest.csv", path), 1, &err), &err);
-    CHECK_OK(saved_read(&all, path_of("unmet", path), &err), &err);
+    CHECK_OK(run_read(&all, path_of("unmet", path), &err), &err);
     assert_int_equal(nearest.n_rows, NEAREST_MAX);
     assert_int_equal(all.n, 40);
     double last = 0.0;
@@ -48,7 +48,7 @@ static void test_limits_that_nothing_keeps_end_with_the_nearest_designs(void **s
         assert_true(nearer <= i);
     }
     table_free(&nearest);
-    saved_free(&all);
+    run_free(&all);
 
     char *front = read_in_place("unmet/front.csv");
     assert_string_equal(strchr(front, '\n'), "\n");
@@ -78,14 +78,14 @@ static void test_the_nearest_are_in_the_order_of_what_they_miss_and_failed_ones_
     static const double VIOLATION[] = {5, 3, 9, 3, 1, 8, 2, 7, 6, 4, 0.5, 11, 10, 2.5};
     static const size_t WANTED[] = {10, 4, 13, 1, 3, 9, 0, 8, 7, 5};
     enum { N = sizeof VIOLATION / sizeof VIOLATION[0] };
-    SavedRow row[N];
+    RunRow row[N];
     size_t rows[NEAREST_MAX];
     for (size_t i = 0; i < N; i++)
-        row[i] = (SavedRow){.id = (long)i + 1, .ok = i != 6, .violation = VIOLATION[i]};
-    const Saved h = {.n = N, .row = row};
+        row[i] = (RunRow){.id = (long)i + 1, .ok = i != 6, .violation = VIOLATION[i]};
+    const Run h = {.n = N, .row = row};
     assert_int_equal(nearest_rows(&h, rows), NEAREST_MAX);
     assert_memory_equal(rows, WANTED, sizeof WANTED);
-    const Saved few = {.n = 3, .row = row};
+    const Run few = {.n = 3, .row = row};
     assert_int_equal(nearest_rows(&few, rows), 3);
     assert_int_equal(rows[0], 1);
     assert_int_equal(rows[2], 2);

@@ -31,12 +31,12 @@ static void study(const char *text, const char *out, long piece)
     CHECK_OK(status, &err);
 }
 
-static Saved saved_of(const char *out)
+static Run saved_of(const char *out)
 {
     char path[PATH_MAX];
-    Saved h;
+    Run h;
     Err err = {0};
-    CHECK_OK(saved_read(&h, path_of(out, path), &err), &err);
+    CHECK_OK(run_read(&h, path_of(out, path), &err), &err);
     return h;
 }
 
@@ -51,7 +51,7 @@ static void test_a_noisy_run_stopped_after_every_kth_simulation_is_the_run_that_
 static void test_the_front_has_means_spreads_and_members_of_what_was_simulated(void **state)
 {
     (void)state;
-    Saved h = saved_of("whole");
+    Run h = saved_of("whole");
     size_t repeats = 0, confirmed = 0;
     assert_true(h.schema.has_spread && h.n == SIMULATIONS);
     for (size_t i = 0; i < h.n; i++) {
@@ -75,7 +75,7 @@ static void test_the_front_has_means_spreads_and_members_of_what_was_simulated(v
     assert_int_equal(repeats, REPEATS);
     assert_int_equal(h.n_repeats, REPEATS);
     assert_true(confirmed >= 2);
-    saved_free(&h);
+    run_free(&h);
 }
 
 static void test_the_exports_and_status_tell_of_repeats(void **state)
@@ -103,11 +103,11 @@ static void test_members_min_keeps_what_was_answered_once_out_of_the_front(void 
     char text[sizeof NOISY + 32];
     snprintf(text, sizeof text, "%smembers_min = 2\n", NOISY);
     study(text, "strict", 0);
-    Saved h = saved_of("strict");
+    Run h = saved_of("strict");
     for (size_t i = 0; i < h.n; i++)
         assert_true(!h.row[i].on_front || h.row[i].members >= 2);
     assert_true(h.n_front >= 2);
-    saved_free(&h);
+    run_free(&h);
 }
 
 /* Answers without any scatter are asked for no more than about ten times, too few for every design of the front. */
@@ -117,7 +117,7 @@ static void test_where_nothing_has_members_min_answers_the_front_is_of_those_wit
     write_in_place("noisy.ini", NOISY);
     char *said = output_of("optimize @/noisy.ini --out @/scarce --threads 1 --set problem.noise=0 "
                            "--set problem.noisy=yes --set search.members_min=3");
-    Saved h = saved_of("scarce");
+    Run h = saved_of("scarce");
     long most = 0;
     for (size_t i = 0; i < h.n; i++)
         most = h.row[i].members > most ? h.row[i].members : most;
@@ -125,7 +125,7 @@ static void test_where_nothing_has_members_min_answers_the_front_is_of_those_wit
     for (size_t i = 0; i < h.n; i++)
         assert_true(!h.row[i].on_front || h.row[i].members == most);
     assert_non_null(strstr(said, "no design was simulated 3 times (search.members_min)"));
-    saved_free(&h);
+    run_free(&h);
     free(said);
 }
 
@@ -147,12 +147,12 @@ static void test_without_noise_nothing_is_repeated_and_the_tables_are_as_ever(vo
     char text[sizeof NOISY + 32];
     snprintf(text, sizeof text, "%s[problem]\nnoisy = no\n", NOISY);
     study(text, "quiet", 0);
-    Saved h = saved_of("quiet");
+    Run h = saved_of("quiet");
     char *front = read_in_place("quiet/front.csv");
     assert_true(!h.schema.has_spread && h.n_repeats == 0);
     assert_null(strstr(front, "members"));
     free(front);
-    saved_free(&h);
+    run_free(&h);
 }
 
 int main(void)

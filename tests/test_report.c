@@ -13,7 +13,7 @@
 #include <unistd.h>
 
 #include "base/random.h"
-#include "store/saved.h"
+#include "store/run_read.h"
 #include "report/report.h"
 #include "report/wavelet.h"
 
@@ -118,29 +118,29 @@ static void test_the_wavelet_of_a_burst_is_largest_at_its_instant_as_a_product_o
     assert_close(amplitude[2], peak * shape, 1e-3);
 }
 
-static void open_tower(Report *r)
+static void open_tower(Run *run, Report *r)
 {
     Err err = {0};
-    Settings other;
     const char *records[] = {"builtin:sylmar-like"};
-    CHECK_OK(run_settings(&other, in_folder("tower"), &err), &err);
-    const DetailWish wish = {.floor = -1, .other = &other, .n_records = 1, .records = records};
-    CHECK_OK(report_open(r, in_folder("tower"), "knee", &wish, &err), &err);
+    CHECK_OK(run_read(run, in_folder("tower"), &err), &err);
+    const DetailWish wish = {.floor = -1, .other = run->settings, .n_records = 1, .records = records};
+    CHECK_OK(report_open(r, run, "knee", &wish, &err), &err);
 }
 
 static void test_energies_add_up_to_the_input_at_every_instant_and_end_as_the_result_says(void **state)
 {
     (void)state;
+    Run run;
     Report r;
     World w;
     Err err = {0};
     History h;
-    open_tower(&r);
-    CHECK_OK(world_open(&w, &r.settings, &err), &err);
+    open_tower(&run, &r);
+    CHECK_OK(world_open(&w, run.settings, &err), &err);
     for (int s = 0; s < 2; s++) {
         const SceneKind kind = s ? SCENE_NO_CORE : SCENE_IMPACT;
         const SimResult *result = &r.detail.result[kind];
-        CHECK_OK(history_run(&w, kind, front_x(&r.front, r.chosen), 19, &h, &err), &err);
+        CHECK_OK(history_run(&w, kind, run_x(&run, r.chosen), 19, &h, &err), &err);
         assert_true(h.n > 200);
         double most = 0;
         for (size_t i = 0; i < h.n; i++) {
@@ -163,44 +163,26 @@ static void test_energies_add_up_to_the_input_at_every_instant_and_end_as_the_re
     }
     world_close(&w);
     report_close(&r);
+    run_free(&run);
 }
 
 static void test_the_chosen_design_is_simulated_as_the_search_did(void **state)
 {
     (void)state;
+    Run run;
     Report r;
-    open_tower(&r);
-    const double *f = front_f(&r.front, r.chosen);
+    open_tower(&run, &r);
+    const double *f = run_f(&run, r.chosen);
     const SimResult *with_core = &r.detail.result[SCENE_IMPACT], *tied = &r.detail.result[SCENE_TIED];
     assert_true(with_core->j1_m == f[0] && with_core->j3_g == f[2] && with_core->mcore_kg == f[6]);
-    assert_true(r.detail.gap_m[3] == front_x(&r.front, r.chosen)[3]);
-    assert_true(r.detail.wall_m[0] == front_x(&r.front, r.chosen)[20]);
-    assert_close(r.detail.wall_m[19], front_x(&r.front, r.chosen)[21], 1e-12);
+    assert_true(r.detail.gap_m[3] == run_x(&run, r.chosen)[3]);
+    assert_true(r.detail.wall_m[0] == run_x(&run, r.chosen)[20]);
+    assert_close(r.detail.wall_m[19], run_x(&run, r.chosen)[21], 1e-12);
     assert_true(tied->impacts == 0 && tied->j1_m > 0);
     assert_int_equal(r.detail.n_elsewhere, 1);
     assert_true(r.detail.elsewhere[0].with_core.j1_m != with_core->j1_m);
     report_close(&r);
-}
-
-static void test_growth_is_the_hypervolume_that_status_tells(void **state)
-{
-    (void)state;
-    char path[PATH_MAX];
-    Convergence c;
-    Saved h;
-    Err err = {0};
-    snprintf(path, sizeof path, "%s/dtlz", folder);
-    CHECK_OK(convergence_read(path, &c, &err), &err);
-    CHECK_OK(saved_read(&h, path, &err), &err);
-    assert_true(c.n > 1 && c.n == h.n_generations && c.n_evaluated == h.n);
-    for (size_t i = 0; i < c.n; i++) {
-        assert_true(c.volume[i] == h.generation[i].hypervolume && c.volume[i] > 0 && c.volume[i] < 1);
-        assert_true(c.simulated[i] == (double)h.generation[i].simulated);
-        assert_close(c.standard_error[i], sqrt(c.volume[i] * (1 - c.volume[i]) / 20000), 1e-12);
-        assert_true(i == 0 || c.volume[i] >= c.volume[i - 1]);
-    }
-    saved_free(&h);
-    convergence_free(&c);
+    run_free(&run);
 }
 
 /* ---- what is written ------------------------------------------------------------------------------------------- */
@@ -244,6 +226,68 @@ static json_t *run_of(const char *run)
     free(text);
     free(page);
     return all;
+}
+
+/* 20000 samples of a box: the standard error of a share. */
+static void test_growth_is_the_hypervolume_that_status_tells(void **state)
+{
+    (void)state;
+    Run run;
+    Err err = {0};
+    json_t *page = run_of("dtlz"), *growth = json_object_get(page, "convergence");
+    json_t *simulated = json_object_get(growth, "simulated"), *volume = json_object_get(growth, "volume");
+    json_t *error = json_object_get(growth, "error");
+    CHECK_OK(run_read(&run, in_folder("dtlz"), &err), &err);
+    assert_true(run.n_generations > 1 && json_array_size(volume) == run.n_generations);
+    assert_int_equal(json_integer_value(json_object_get(page, "evaluated")), run.n);
+    for (size_t i = 0; i < run.n_generations; i++) {
+        const double v = run.generation[i].hypervolume;
+        assert_true(v > 0 && v < 1 && (i == 0 || v >= run.generation[i - 1].hypervolume));
+        assert_close(json_number_value(json_array_get(volume, i)), v, 1e-5);
+        assert_close(json_number_value(json_array_get(error, i)), sqrt(v * (1 - v) / 20000), 1e-5);
+        assert_true(json_number_value(json_array_get(simulated, i)) == (double)run.generation[i].simulated);
+    }
+    run_free(&run);
+    json_decref(page);
+}
+
+/* How often the command opens the run's database. */
+static void expect_one_opening(const char *arguments)
+{
+    char command[1200], *trace;
+    size_t n = 0;
+    snprintf(command, sizeof command, "strace -f -e trace=open,openat -o '%s/trace' '%s' %s >/dev/null 2>&1", folder,
+             getenv("IMTET"), arguments);
+    if (shell(command) != 0)
+        fail_msg("%s: fails", command);
+    trace = text_of(in_folder("trace"));
+    for (const char *at = trace; (at = strstr(at, "run.sqlite\"")); at++)
+        n++;
+    free(trace);
+    if (n != 1)
+        fail_msg("%s: opens run.sqlite %zu times", arguments, n);
+}
+
+static void test_a_command_opens_the_database_of_a_run_once(void **state)
+{
+    (void)state;
+    static const char *const COMMANDS[] = {"report %s --design knee",
+                                           "plot %s",
+                                           "choose %s --weights j1_m=1",
+                                           "evaluate %s --design knee --record builtin:elcentro-like",
+                                           "export %s --csv /dev/null",
+                                           "status %s",
+                                           "polish %s --design knee --evals 10",
+                                           "optimize %s"};
+    char arguments[400];
+    if (shell("strace -o /dev/null true >/dev/null 2>&1") != 0) {
+        print_message("strace is missing or may not trace\n");
+        skip();
+    }
+    for (size_t i = 0; i < sizeof COMMANDS / sizeof COMMANDS[0]; i++) {
+        snprintf(arguments, sizeof arguments, COMMANDS[i], in_folder("tower"));
+        expect_one_opening(arguments);
+    }
 }
 
 static void test_the_policy_allows_nothing_but_hashes(void **state)
@@ -432,6 +476,7 @@ int main(void)
         cmocka_unit_test(test_names_cannot_break_out_of_the_page),
         cmocka_unit_test(test_designs_records_and_floors_that_are_not_there_are_refused),
         cmocka_unit_test(test_a_report_needs_the_database_alone),
+        cmocka_unit_test(test_a_command_opens_the_database_of_a_run_once),
         cmocka_unit_test(test_pictures_are_drawn_as_svg_and_png_each),
         cmocka_unit_test(test_names_that_begin_like_a_formula_are_labels_of_pictures),
         cmocka_unit_test(test_a_browser_shows_the_tower_brushes_it_and_downloads_the_selection),

@@ -4,7 +4,7 @@
 #include <sqlite3.h>
 #include <sys/stat.h>
 
-#include "store/front.h"
+#include "store/run.h"
 #include "store/lock.h"
 
 /* The sound run, copied, with that change. */
@@ -52,9 +52,9 @@ static void test_what_is_wrong_in_one_cell_is_named(void **state)
     };
     char folder[PATH_MAX];
     for (size_t i = 0; i < sizeof CASES / sizeof CASES[0]; i++) {
-        Saved h;
+        Run h;
         Err err = {0};
-        const Status status = saved_read(&h, changed(CASES[i].sql, folder), &err);
+        const Status status = run_read(&h, changed(CASES[i].sql, folder), &err);
         if (status != CASES[i].status || !strstr(err.text, CASES[i].words))
             fail_msg("%s: %d, %s", CASES[i].sql, status, err.text);
         assert_true(h.n == 0 && !h.row && !h.state);
@@ -64,28 +64,28 @@ static void test_what_is_wrong_in_one_cell_is_named(void **state)
 static void test_values_that_are_not_known_are_nan_and_a_word_that_is_not_known_is_unfinished(void **state)
 {
     (void)state;
-    Saved h;
+    Run h;
     Err err = {0};
     char folder[PATH_MAX];
-    CHECK_OK(saved_read(&h,
-                        changed("UPDATE evaluation SET f = '[1,null,3]', spread = NULL, seconds = NULL, "
-                                "digest = NULL WHERE id = 1;"
-                                "UPDATE evaluation SET kind = 'guessed' WHERE id = 2;"
-                                "UPDATE state SET bytes = x'';"
-                                "UPDATE session SET search = NULL, ended = NULL",
-                                folder),
-                        &err),
+    CHECK_OK(run_read(&h,
+                      changed("UPDATE evaluation SET f = '[1,null,3]', spread = NULL, seconds = NULL, "
+                              "digest = NULL WHERE id = 1;"
+                              "UPDATE evaluation SET kind = 'guessed' WHERE id = 2;"
+                              "UPDATE state SET bytes = x'';"
+                              "UPDATE session SET search = NULL, ended = NULL",
+                              folder),
+                      &err),
              &err);
     assert_true(h.row[0].id == 1 && !h.row[0].ok && !h.row[0].on_front && h.F[0] == 1 && isnan(h.F[1]));
     assert_true(isnan(h.row[0].verdict.seconds) && isnan(h.spread[0]));
     assert_int_equal(h.row[1].kind, KIND_UNFINISHED);
     assert_true(h.state && h.n_state == 0);
     assert_true(h.n_sessions > 0 && isnan(h.session[0].search_s) && h.session[0].ended[0] == 0);
-    saved_free(&h);
+    run_free(&h);
 }
 
 /* Feasible, whole, and nobody better: by comparing everybody with everybody. */
-static int belongs_on_front(const Saved *h, size_t i)
+static int belongs_on_front(const Run *h, size_t i)
 {
     const size_t m = h->schema.n_obj;
     for (size_t j = 0; j < h->n; j++) {
@@ -111,11 +111,11 @@ static void test_polished_designs_compete_with_the_front_and_can_be_dropped(void
     static const char POLISHED[] =
         ROW(1000001, "ok", "[0,0,0.9]", 0) ROW(1000002, "ok", "[0,0,1.5]", 0) ROW(1000003, "error", "[0,0,0]", 0)
             ROW(1000004, "ok", "[0,0,0.1]", 0.5) ROW(1000005, "ok", "[9,9,9]", 0) ROW(1000006, "ok", "[0,0,0.9]", 0);
-    Saved sound, h;
+    Run sound, h;
     Err err = {0};
     char folder[PATH_MAX];
-    CHECK_OK(saved_read(&sound, path_of("sound", folder), &err), &err);
-    CHECK_OK(saved_read(&h, changed(POLISHED, folder), &err), &err);
+    CHECK_OK(run_read(&sound, path_of("sound", folder), &err), &err);
+    CHECK_OK(run_read(&h, changed(POLISHED, folder), &err), &err);
     assert_int_equal(h.n, sound.n + 6);
     size_t n_front = 0;
     for (size_t i = 0; i < h.n; i++) {
@@ -127,27 +127,27 @@ static void test_polished_designs_compete_with_the_front_and_can_be_dropped(void
     assert_true(h.row[sound.n].on_front && !h.row[sound.n + 1].on_front && h.row[sound.n + 5].on_front);
     assert_int_equal(h.n_failed, sound.n_failed + 1);
 
-    saved_drop_polished(&h);
+    run_drop_polished(&h);
     assert_true(h.n == sound.n && h.n_front == sound.n_front && h.n_failed == sound.n_failed);
     for (size_t i = 0; i < h.n; i++)
         assert_int_equal(h.row[i].on_front, sound.row[i].on_front);
-    saved_free(&h);
-    saved_free(&sound);
+    run_free(&h);
+    run_free(&sound);
 }
 
 static void test_a_folder_without_a_run_or_with_too_long_a_name_is_told(void **state)
 {
     (void)state;
     char path[PATH_MAX], name[PATH_MAX + 64];
-    Settings s;
+    Run run;
     Err err = {0};
-    assert_int_equal(run_settings(&s, path_of("nothing", path), &err), STATUS_MISSING);
-    assert_non_null(strstr(err.text, "holds no run: neither run.sqlite nor settings.ini is there"));
+    assert_int_equal(run_read(&run, path_of("nothing", path), &err), STATUS_MISSING);
+    assert_non_null(strstr(err.text, "nothing: holds no run: run.sqlite is not there"));
     memset(name, 'a', sizeof name);
     name[sizeof name - 1] = 0;
-    assert_int_equal(run_settings(&s, name, &err), STATUS_MISSING);
-    assert_non_null(strstr(err.text, "the path is too long"));
-    assert_false(saved_path(name, path, sizeof path));
+    assert_int_equal(run_read(&run, name, &err), STATUS_MISSING);
+    assert_non_null(strstr(err.text, "holds no run"));
+    assert_false(run_path(name, path, sizeof path));
 }
 
 /* Names with quotes are columns of the view `designs`; more than a view can hold are not. */

@@ -11,19 +11,19 @@ static const double WANTED[3][4] = {{0.1, 0.2, 0.3, 0.4}, {0.5, 0, 1, 0.5}, {1, 
 
 static void check_start(const char *asynchronous)
 {
-    Saved h;
+    Run h;
     Err err = {0};
     char arguments[256], path[PATH_MAX];
     snprintf(arguments, sizeof arguments, "optimize @/begin.ini --out @/%s --set search.start=%s/given.csv --set %s",
              strrchr(asynchronous, '=') + 1, place.folder, asynchronous);
     free(output_of(arguments));
-    CHECK_OK(saved_read(&h, path_of(strrchr(asynchronous, '=') + 1, path), &err), &err);
+    CHECK_OK(run_read(&h, path_of(strrchr(asynchronous, '=') + 1, path), &err), &err);
     assert_int_equal(h.n, 30);
     assert_memory_equal(h.X, WANTED, sizeof WANTED);
     for (size_t i = 0; i < h.n; i++)
         for (size_t j = 0; j < i; j++)
             assert_memory_not_equal(h.X + i * 4, h.X + j * 4, 4 * sizeof *h.X);
-    saved_free(&h);
+    run_free(&h);
 }
 
 static void test_given_designs_come_first_inside_the_box_and_once(void **state)
@@ -48,14 +48,14 @@ static const char TOWER[] = "[motion]\nrecord = builtin:kobe-like\nrecords = bui
 static void test_a_design_of_the_tower_has_the_same_objectives_in_either_mode(void **state)
 {
     (void)state;
-    Saved batches, turns;
+    Run batches, turns;
     Err err = {0};
     char path[PATH_MAX];
     write_in_place("tower.ini", TOWER);
     free(output_of("optimize @/tower.ini --out @/batches --threads 1"));
     free(output_of("optimize @/tower.ini --out @/turns --threads 3 --set search.asynchronous=on"));
-    CHECK_OK(saved_read(&batches, path_of("batches", path), &err), &err);
-    CHECK_OK(saved_read(&turns, path_of("turns", path), &err), &err);
+    CHECK_OK(run_read(&batches, path_of("batches", path), &err), &err);
+    CHECK_OK(run_read(&turns, path_of("turns", path), &err), &err);
     const size_t n_var = batches.schema.n_var, m = batches.schema.n_obj;
     assert_int_equal(batches.n, 12);
     assert_int_equal(turns.n, 12);
@@ -67,8 +67,8 @@ static void test_a_design_of_the_tower_has_the_same_objectives_in_either_mode(vo
         assert_memory_equal(batches.F + i * m, turns.F + j * m, m * sizeof(double));
         assert_memory_equal(batches.spread + i * m, turns.spread + j * m, m * sizeof(double));
     }
-    saved_free(&batches);
-    saved_free(&turns);
+    run_free(&batches);
+    run_free(&turns);
 }
 
 int main(void)

@@ -180,14 +180,14 @@ static void wait_for(const char *out, size_t n)
     char folder[PATH_MAX], path[PATH_MAX + 16];
     const double begun = now_s();
     for (size_t found = 0; found < n; rest(0.02)) {
-        Saved saved = {0};
+        Run saved = {0};
         Err err = {0};
         if (now_s() > begun + 60)
             fail_msg("%s: %zu evaluations after a minute, wanted %zu", out, found, n);
-        if (saved_path(path_of(out, folder), path, sizeof path)) {
-            CHECK_OK(saved_read(&saved, folder, &err), &err);
+        if (run_path(path_of(out, folder), path, sizeof path)) {
+            CHECK_OK(run_read(&saved, folder, &err), &err);
             found = saved.n;
-            saved_free(&saved);
+            run_free(&saved);
         }
     }
 }
@@ -338,7 +338,7 @@ static void test_polished_designs_join_the_front_but_not_the_search(void **state
     (void)state;
     char path[PATH_MAX], id[16];
     long first;
-    Saved saved;
+    Run saved;
     Err err = {0};
     StudySummary summary;
     int left = 20;
@@ -358,12 +358,12 @@ static void test_polished_designs_join_the_front_but_not_the_search(void **state
     snprintf(id, sizeof id, "\n%ld,", first);
     assert_non_null(strstr(front, id));
     assert_ptr_equal(strchr(strstr(front, id) + 1, '\n')[1], 0); /* it is the only one left */
-    CHECK_OK(saved_read(&saved, path, &err), &err);
-    const SavedRow *row = &saved.row[saved.n - 3];
+    CHECK_OK(run_read(&saved, path, &err), &err);
+    const RunRow *row = &saved.row[saved.n - 3];
     assert_true(row->kind == KIND_POLISHED && row->on_front && !row[1].on_front && !row[2].on_front && !row[2].ok);
     assert_true(saved.spread[(saved.n - 3) * 3] == 0.001 && isnan(saved.spread[(saved.n - 3) * 3 + 1]));
     assert_true(isnan(saved.spread[0]));
-    saved_free(&saved);
+    run_free(&saved);
 
     CHECK_OK(study_run(&s, &(StudyOptions){0}, &summary, NULL, &err), &err);
     char *all = read_in_place("polished/evaluations.csv"), *without = read_in_place("textbook-whole/evaluations.csv");
@@ -388,10 +388,10 @@ static void test_one_failure_in_ten_is_survived_and_never_on_the_front(void **st
                                 "objectives = 2\n[search]\ninitial = 40\npopulation = 12\nmax_evals = 100\n"
                                 "surrogate_max = 40\nthreads = 2\n");
     free(output_of("optimize @/tenth.ini --out @/tenth"));
-    Saved saved;
+    Run saved;
     Err err = {0};
     char path[PATH_MAX];
-    CHECK_OK(saved_read(&saved, path_of("tenth", path), &err), &err);
+    CHECK_OK(run_read(&saved, path_of("tenth", path), &err), &err);
     assert_int_equal(saved.n, 100);
     assert_int_equal(saved.n_failed, 10);
     assert_true(saved.n_front > 0);
@@ -399,7 +399,7 @@ static void test_one_failure_in_ten_is_survived_and_never_on_the_front(void **st
         assert_int_equal(saved.row[i].ok, saved.row[i].id % 10 != 0);
         assert_true(saved.row[i].ok || (!saved.row[i].on_front && saved.row[i].entered == NEVER));
     }
-    saved_free(&saved);
+    run_free(&saved);
     json_t *o = json_of("status @/tenth --json");
     assert_int_equal(number(json_object_get(json_object_get(o, "failures"), "error"), "count"), 10);
     assert_string_equal(json_string_value(json_object_get(o, "state")), "finished");
@@ -425,15 +425,15 @@ static void test_one_failure_in_ten_is_survived_and_never_on_the_front(void **st
 static void test_the_front_of_every_generation_can_be_told(void **state)
 {
     (void)state;
-    Saved s;
+    Run s;
     Err err = {0};
     char path[PATH_MAX];
-    CHECK_OK(saved_read(&s, path_of("tower-whole", path), &err), &err);
+    CHECK_OK(run_read(&s, path_of("tower-whole", path), &err), &err);
     const size_t m = s.schema.n_obj;
     for (size_t g = 0; g < s.n_generations; g++) {
         long on_front = 0;
         for (size_t i = 0; i < s.n; i++) {
-            const SavedRow *r = &s.row[i];
+            const RunRow *r = &s.row[i];
             int beaten = !r->ok || r->generation > (long)g;
             for (size_t j = 0; j < s.n && !beaten; j++) {
                 int worse = 0, better = 0;
@@ -451,7 +451,7 @@ static void test_the_front_of_every_generation_can_be_told(void **state)
         }
         assert_int_equal(on_front, s.generation[g].front);
     }
-    saved_free(&s);
+    run_free(&s);
 }
 
 /* Against the exact volume of some boxes. */

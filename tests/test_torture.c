@@ -7,7 +7,7 @@
 #include <spawn.h>
 #include <time.h>
 
-#include "store/saved.h"
+#include "store/run_read.h"
 
 typedef struct {
     const char *name, *settings;
@@ -71,26 +71,26 @@ static pid_t start(const Prey *prey, const char *folder, int by_folder)
 }
 
 /* What the database tells: 0 where there is none yet, -1 where it cannot be read. */
-static int look(const char *folder, Saved *h)
+static int look(const char *folder, Run *h)
 {
     char path[256];
     Err err = {0};
     memset(h, 0, sizeof *h);
-    if (!saved_path(folder, path, sizeof path))
+    if (!run_path(folder, path, sizeof path))
         return 0;
-    if (saved_read(h, folder, &err) == STATUS_OK)
+    if (run_read(h, folder, &err) == STATUS_OK)
         return 1;
     print_error("%s\n", err.text);
     return -1;
 }
 
 /* Evaluations of `before` that are not the same in `after`. */
-static long count_lost(const Saved *before, const Saved *after)
+static long count_lost(const Run *before, const Run *after)
 {
     long lost = 0;
     const size_t n_var = before->schema.n_var, m = before->schema.n_obj;
     for (size_t i = 0; i < before->n; i++) {
-        const size_t j = saved_find(after, before->row[i].id);
+        const size_t j = run_find(after, before->row[i].id);
         lost += j == after->n || memcmp(before->X + i * n_var, after->X + j * n_var, n_var * sizeof(double)) != 0 ||
                 (before->row[i].ok && memcmp(before->F + i * m, after->F + j * m, m * sizeof(double)) != 0);
     }
@@ -126,11 +126,11 @@ static void judge_end(const char *reference, const char *folder, Figures *f)
 /* One start, killed after `delay` unless it is finished before; 1: it was killed. */
 static int start_and_kill(const Prey *prey, const char *folder, double delay, Figures *f)
 {
-    Saved before, after;
+    Run before, after;
     int status;
     const int has_run = look(folder, &before) == 1;
     const pid_t pid = start(prey, folder, has_run && f->kills % 2 == 1);
-    saved_free(&before);
+    run_free(&before);
     rest(delay);
     const int seen = look(folder, &before); /* all of this has been acknowledged */
     kill(pid, SIGKILL);
@@ -145,8 +145,8 @@ static int start_and_kill(const Prey *prey, const char *folder, double delay, Fi
         f->lost += found == 1 ? count_lost(&before, &after) : (long)before.n;
         f->in_batch += killed && found == 1 && after.n > 0 && after.row[after.n - 1].kind == KIND_UNFINISHED;
     }
-    saved_free(&before);
-    saved_free(&after);
+    run_free(&before);
+    run_free(&after);
     return killed;
 }
 

@@ -5,33 +5,24 @@
 #include "cmd/commands.h"
 #include "cmd/pairs.h"
 #include "cmd/show.h"
-#include "store/front.h"
+#include "store/run_read.h"
 
 typedef struct {
-    Front front;
-    double ideal[OBJECTIVES_MAX], span[OBJECTIVES_MAX];
-    unsigned char *allowed; /* (front.n) */
+    const Run *run;
+    FrontBox box;
+    unsigned char *allowed; /* (run->n) */
 } Choice;
-
-static double sense_of(const Choice *c, size_t k)
-{
-    return schema_objective(&c->front.schema, k)->sense;
-}
-
-/* 0: the best on the front, 1: the worst */
-static double scaled(const Choice *c, size_t i, size_t k)
-{
-    return (sense_of(c, k) * front_f(&c->front, i)[k] - c->ideal[k]) / c->span[k];
-}
 
 static Status apply_limit(Choice *c, const char *option, int is_max, const char *text, Err *err)
 {
     size_t k;
     double limit;
-    TRY(pair_take(&c->front.schema, option, text, NAN, &k, &limit, err));
-    for (size_t i = 0; i < c->front.n; i++)
-        if (is_max ? front_f(&c->front, i)[k] > limit : front_f(&c->front, i)[k] < limit)
-            c->allowed[i] = 0;
+    TRY(pair_take(&c->run->schema, option, text, NAN, &k, &limit, err));
+    for (size_t i = 0; i < c->run->n_front; i++) {
+        const double f = run_f(c->run, c->run->front[i])[k];
+        if (is_max ? f > limit : f < limit)
+            c->allowed[c->run->front[i]] = 0;
+    }
     return STATUS_OK;
 }
 
@@ -39,56 +30,55 @@ static Status apply_limit(Choice *c, const char *option, int is_max, const char 
 static Status apply_limits(const Args *args, Choice *c, size_t *n_left, Err *err)
 {
     static const char *const LIMITS[] = {"--min", "--max"};
+    const Run *run = c->run;
     const char *text;
-    memset(c->allowed, 1, c->front.n);
+    for (size_t i = 0; i < run->n_front; i++)
+        c->allowed[run->front[i]] = 1;
     for (int is_max = 0; is_max < 2; is_max++)
         for (int i = 0; (text = args_next(args, LIMITS[is_max], &i));)
             TRY(apply_limit(c, LIMITS[is_max], is_max, text, err));
     *n_left = 0;
-    for (size_t i = 0; i < c->front.n; i++)
-        *n_left += c->allowed[i];
+    for (size_t i = 0; i < run->n_front; i++)
+        *n_left += c->allowed[run->front[i]];
     return STATUS_OK;
 }
 
 static Status take_weights(const Choice *c, const char *list, double weights[], Err *err)
 {
-    memset(weights, 0, c->front.n_obj * sizeof *weights);
-    TRY(pairs_take(&c->front.schema, "--weights", list, NAN, weights, err));
-    return weights_check(&c->front.schema, "--weights", weights, err);
+    memset(weights, 0, c->run->schema.n_obj * sizeof *weights);
+    TRY(pairs_take(&c->run->schema, "--weights", list, NAN, weights, err));
+    return weights_check(&c->run->schema, "--weights", weights, err);
 }
 
 /* NAN where nothing is wished for. */
 static Status take_wishes(const Choice *c, const char *list, double wishes[], Err *err)
 {
-    for (size_t k = 0; k < c->front.n_obj; k++)
+    for (size_t k = 0; k < c->run->schema.n_obj; k++)
         wishes[k] = NAN;
-    return pairs_take(&c->front.schema, "--wish", list, NAN, wishes, err);
+    return pairs_take(&c->run->schema, "--wish", list, NAN, wishes, err);
 }
 
-typedef double (*CostFn)(const Choice *c, size_t i, const double values[]);
+typedef double (*CostFn)(const Choice *c, size_t row, const double values[]);
 
-static double knee_cost(const Choice *c, size_t i, const double values[])
+static double knee_cost(const Choice *c, size_t row, const double values[])
 {
-    double sum = 0;
     (void)values;
-    for (size_t k = 0; k < c->front.n_obj; k++)
-        sum += scaled(c, i, k) * scaled(c, i, k);
+    return run_distance2(c->run, &c->box, row);
+}
+
+static double weighted_cost(const Choice *c, size_t row, const double weights[])
+{
+    double sum = 0;
+    for (size_t k = 0; k < c->run->schema.n_obj; k++)
+        sum += weights[k] * run_scaled(c->run, &c->box, row, k);
     return sum;
 }
 
-static double weighted_cost(const Choice *c, size_t i, const double weights[])
+static double wish_cost(const Choice *c, size_t row, const double wishes[])
 {
     double sum = 0;
-    for (size_t k = 0; k < c->front.n_obj; k++)
-        sum += weights[k] * scaled(c, i, k);
-    return sum;
-}
-
-static double wish_cost(const Choice *c, size_t i, const double wishes[])
-{
-    double sum = 0;
-    for (size_t k = 0; k < c->front.n_obj; k++) {
-        const double off = (front_f(&c->front, i)[k] - wishes[k]) / c->span[k];
+    for (size_t k = 0; k < c->run->schema.n_obj; k++) {
+        const double off = (run_f(c->run, row)[k] - wishes[k]) / c->box.span[k];
         sum += isnan(wishes[k]) ? 0 : off * off;
     }
     return sum;
@@ -96,14 +86,17 @@ static double wish_cost(const Choice *c, size_t i, const double wishes[])
 
 static void show_best(const Choice *c, const char *label, CostFn cost, const double values[])
 {
-    size_t best = c->front.n;
-    for (size_t i = 0; i < c->front.n; i++)
-        if (c->allowed[i] && (best == c->front.n || cost(c, i, values) < cost(c, best, values)))
-            best = i;
-    show_objectives(label, front_id(&c->front, best), c->front.n_obj, front_f(&c->front, best));
+    const Run *run = c->run;
+    size_t best = run->n;
+    for (size_t i = 0; i < run->n_front; i++) {
+        const size_t row = run->front[i];
+        if (c->allowed[row] && (best == run->n || cost(c, row, values) < cost(c, best, values)))
+            best = row;
+    }
+    show_objectives(label, run->row[best].id, run->schema.n_obj, run_f(run, best));
     printf("    ");
-    for (int j = 0; j < c->front.n_var; j++)
-        printf(" %s=%.6g", schema_variable(&c->front.schema, (size_t)j)->name, front_x(&c->front, best)[j]);
+    for (size_t j = 0; j < run->schema.n_var; j++)
+        printf(" %s=%.6g", schema_variable(&run->schema, j)->name, run_x(run, best)[j]);
     putchar('\n');
 }
 
@@ -116,13 +109,13 @@ static Status choose(const Args *args, Choice *c, Err *err)
         TRY(take_weights(c, args_value(args, "--weights"), weights, err));
     if (args_has(args, "--wish"))
         TRY(take_wishes(c, args_value(args, "--wish"), wishes, err));
-    printf("%zu of %zu designs are within the limits\n", n_left, c->front.n);
+    printf("%zu of %zu designs are within the limits\n", n_left, c->run->n_front);
     if (n_left == 0)
         return fail(err, STATUS_UNMET,
                     "no design of the front is within the limits; `imtet optimize` with "
                     "search.limits looks for some");
     putchar('\n');
-    show_objective_names(&c->front.schema);
+    show_objective_names(&c->run->schema);
     show_best(c, "knee", knee_cost, NULL);
     if (args_has(args, "--weights"))
         show_best(c, "weighted", weighted_cost, weights);
@@ -131,20 +124,22 @@ static Status choose(const Args *args, Choice *c, Err *err)
     return STATUS_OK;
 }
 
+static Status choose_of(const Args *args, const Run *run, Err *err)
+{
+    if (run->n_front == 0)
+        return run_why_empty(run, err);
+    Choice c = {.run = run, .box = run_box(run), .allowed = calloc(run->n, 1)};
+    const Status status = c.allowed ? choose(args, &c, err) : fail(err, STATUS_NO_MEMORY, "no memory for a choice");
+    free(c.allowed);
+    return status;
+}
+
 static Status run(const Args *args, Err *err)
 {
-    Choice c = {0};
-    TRY(front_read(&c.front, args->operand, err));
-    c.allowed = calloc(c.front.n + 1, 1);
-    Status status = c.allowed ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for a choice");
-    if (status == STATUS_OK && c.front.n == 0)
-        status = front_why_empty(args->operand, err);
-    if (status == STATUS_OK) {
-        front_box(&c.front, c.ideal, c.span);
-        status = choose(args, &c, err);
-    }
-    free(c.allowed);
-    front_free(&c.front);
+    Run r;
+    TRY(run_read(&r, args->operand, err));
+    const Status status = choose_of(args, &r, err);
+    run_free(&r);
     return status;
 }
 

@@ -10,7 +10,7 @@
 #include "cmd/look.h"
 #include "cmd/show.h"
 #include "simulator/crew.h"
-#include "store/front.h"
+#include "store/run_read.h"
 #include "simulator/scenario.h"
 #include "scene/motion_source.h"
 #include "settings/settings.h"
@@ -18,29 +18,21 @@
 enum { WITH_CORE, WITHOUT_CORE, N_CASES };
 static const SceneKind SCENES[N_CASES] = {SCENE_IMPACT, SCENE_NO_CORE};
 
+/* A design of a run. */
 typedef struct {
-    Front front;
+    const Run *run;
     size_t row;
 } Chosen;
-
-static Status read_run(const Args *args, Settings *s, Err *err)
-{
-    TRY(run_settings(s, args->operand, err));
-    if (s->problem.kind != PROBLEM_TOWER)
-        return fail(err, STATUS_BAD_DATA, "this run searched another problem than the tower: no ground motion applies");
-    TRY(args_apply(args, s, NULL, NULL, err));
-    return settings_check(s, err);
-}
 
 static Status simulate(const World *w, const Chosen *c, SimResult results[N_CASES], Err *err)
 {
     Crew *crew;
     SimTask tasks[N_CASES];
-    if (scene_n_floors(w->scene) + 2 != c->front.n_var)
-        return fail(err, STATUS_BAD_DATA, "the front has designs of %d floors, the building has %d", c->front.n_var - 2,
-                    scene_n_floors(w->scene));
+    if (scene_n_floors(w->scene) + 2 != (int)c->run->schema.n_var)
+        return fail(err, STATUS_BAD_DATA, "the front has designs of %d floors, the building has %d",
+                    (int)c->run->schema.n_var - 2, scene_n_floors(w->scene));
     for (int i = 0; i < N_CASES; i++)
-        tasks[i] = (SimTask){SCENES[i], front_x(&c->front, c->row)};
+        tasks[i] = (SimTask){SCENES[i], run_x(c->run, c->row)};
     TRY(crew_create(&crew, w->scene, N_CASES, err));
     const Status status = crew_run(crew, N_CASES, tasks, results, err);
     crew_free(crew);
@@ -247,7 +239,7 @@ static Status evaluate_all(const Args *args, Settings *s, const Chosen *c, json_
 
 static Status show_all(const Args *args, Settings *s, const Chosen *c, Err *err)
 {
-    const long id = front_id(&c->front, c->row);
+    const long id = c->run->row[c->row].id;
     TRY(try_records(args, s, err));
     if (!args_has(args, "--json")) {
         printf("design %ld of %s\n\n", id, args->operand);
@@ -263,23 +255,32 @@ static Status show_all(const Args *args, Settings *s, const Chosen *c, Err *err)
     json_t *all = json_object();
     json_object_set_new(all, "run", json_string(args->operand));
     json_object_set_new(all, "design", json_integer(id));
-    json_object_set_new(all, "variables_m", json_numbers((size_t)c->front.n_var, front_x(&c->front, c->row)));
+    json_object_set_new(all, "variables_m", json_numbers(c->run->schema.n_var, run_x(c->run, c->row)));
     json_object_set_new(all, "records", list);
     json_object_set_new(all, "unreadable", unreadable);
     return show_json(all, err);
 }
 
+static Status evaluate_design(const Args *args, const Run *run, Err *err)
+{
+    Settings s = *run->settings;
+    Chosen c = {.run = run};
+    if (s.problem.kind != PROBLEM_TOWER)
+        return fail(err, STATUS_BAD_DATA, "this run searched another problem than the tower: no ground motion applies");
+    TRY(args_apply(args, &s, NULL, NULL, err));
+    TRY(settings_check(&s, err));
+    TRY(look_design(args, run, &c.row, err));
+    return show_all(args, &s, &c, err);
+}
+
 static Status run(const Args *args, Err *err)
 {
-    Settings s;
-    Chosen c = {0};
+    Run r;
     if (!args_has(args, "--record") && !args_has(args, "--records"))
         return fail(err, STATUS_USAGE, "--record FILE is missing; it may be repeated, or --records FOLDER given");
-    TRY(read_run(args, &s, err));
-    Status status = look_design(args, &c.front, &c.row, err);
-    if (status == STATUS_OK)
-        status = show_all(args, &s, &c, err);
-    front_free(&c.front);
+    TRY(run_read(&r, args->operand, err));
+    const Status status = evaluate_design(args, &r, err);
+    run_free(&r);
     return status;
 }
 

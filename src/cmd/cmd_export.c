@@ -1,41 +1,19 @@
-#include <limits.h>
 #include <stdlib.h>
 
 #include "cmd/commands.h"
 #include "store/export.h"
-#include "store/front.h"
 #include "store/output.h"
-#include "polish/refine.h"
-
-/* A run without a database has the tables as files. */
-static Status copy_file(const char *folder, const char *name, const char *path, Err *err)
-{
-    char from[PATH_MAX], *text;
-    size_t length;
-    Front front;
-    Output o;
-    TRY(front_read(&front, folder, err)); /* a damaged front is not handed on */
-    front_free(&front);
-    snprintf(from, sizeof from, "%s/%s", folder, name);
-    TRY(file_read(from, &text, &length, err));
-    Status status = output_open(&o, path, err);
-    if (status == STATUS_OK) {
-        fwrite(text, 1, length, o.stream); /* a failed write is seen on closing */
-        status = output_close(&o, err);
-    }
-    free(text);
-    return status;
-}
+#include "store/run_read.h"
 
 /* A well-spread choice of the front: the knee first, then again and again the design farthest from those chosen. */
-static Status write_selected(const Args *args, const Saved *h, FILE *f, Err *err)
+static Status write_selected(const Args *args, const Run *h, FILE *f, Err *err)
 {
     long wanted;
     TRY(args_whole(args, "--select", 1, 1000000, 0, &wanted, err));
     size_t *rows = calloc((size_t)wanted, sizeof *rows);
     if (!rows)
         return fail(err, STATUS_NO_MEMORY, "no memory for %ld designs", wanted);
-    const size_t n = refine_choose(h, (size_t)wanted, 1, rows);
+    const size_t n = run_spread_out(h, (size_t)wanted, 1, rows);
     export_front_header(f, &h->schema);
     for (size_t i = 0; i < n; i++)
         export_front_row(f, &h->schema, h->row[rows[i]].id, h->X + rows[i] * h->schema.n_var,
@@ -45,7 +23,7 @@ static Status write_selected(const Args *args, const Saved *h, FILE *f, Err *err
     return STATUS_OK;
 }
 
-static Status write_tables(const Args *args, const Saved *h, Err *err)
+static Status write_tables(const Args *args, const Run *h, Err *err)
 {
     Output o;
     if (args_has(args, "--json")) {
@@ -71,17 +49,12 @@ static Status write_tables(const Args *args, const Saved *h, Err *err)
 
 static Status run(const Args *args, Err *err)
 {
-    char path[PATH_MAX];
-    const int json = args_has(args, "--json"), all = args_has(args, "--all");
-    if (!args_has(args, "--csv") && !json)
+    if (!args_has(args, "--csv") && !args_has(args, "--json"))
         return fail(err, STATUS_USAGE, "--csv FILE is missing: where the table goes (or --json)");
-    if (!saved_path(args->operand, path, sizeof path))
-        return json ? fail(err, STATUS_MISSING, "%s: is not there; a run without a database has no JSON export", path)
-                    : copy_file(args->operand, all ? "evaluations.csv" : "front.csv", args_value(args, "--csv"), err);
-    Saved h;
-    TRY(saved_read(&h, args->operand, err));
+    Run h;
+    TRY(run_read(&h, args->operand, err));
     const Status status = write_tables(args, &h, err);
-    saved_free(&h);
+    run_free(&h);
     return status;
 }
 

@@ -7,16 +7,17 @@
 
 #include "cmd/commands.h"
 #include "cmd/show.h"
+#include "store/run_read.h"
 #include "study/pace.h"
 #include "settings/settings.h"
 
 /* One line or one object; a run that cannot be read says why and the others follow. */
 static void list_run(const char *name, const char *folder, json_t *list)
 {
-    Saved saved;
+    Run saved;
     Standing s;
     Err err = {0};
-    if (saved_read(&saved, folder, &err) != STATUS_OK) {
+    if (run_read(&saved, folder, &err) != STATUS_OK) {
         if (list)
             json_array_append_new(
                 list, json_pack("{s:s, s:s, s:s}", "run", folder, "state", "unreadable", "reason", err.text));
@@ -25,20 +26,20 @@ static void list_run(const char *name, const char *folder, json_t *list)
         return;
     }
     standing_of(&s, folder, &saved);
-    const SavedSession *last = saved.n_sessions > 0 ? &saved.session[saved.n_sessions - 1] : NULL;
+    const RunSession *last = saved.n_sessions > 0 ? &saved.session[saved.n_sessions - 1] : NULL;
     const char *started = last ? last->started : "-";
     char hypervolume[32];
     number_words(s.hypervolume, 4, hypervolume);
     if (list)
         json_array_append_new(list, json_pack("{s:s, s:s, s:I, s:I, s:I, s:I, s:o, s:s}", "run", folder, "state",
                                               state_words(s.state), "simulated", (json_int_t)s.pace.simulated,
-                                              "max_evals", (json_int_t)saved.settings.search.max_evals, "failed",
+                                              "max_evals", (json_int_t)saved.settings->search.max_evals, "failed",
                                               (json_int_t)s.n_failed, "front", (json_int_t)saved.n_front, "hypervolume",
                                               json_number(s.hypervolume), "started", started));
     else
         printf("%-24s %-10s %8zu of %-8ld %7zu %7zu %12s  %s\n", name, state_words(s.state), s.pace.simulated,
-               saved.settings.search.max_evals, s.n_failed, saved.n_front, hypervolume, started);
-    saved_free(&saved);
+               saved.settings->search.max_evals, s.n_failed, saved.n_front, hypervolume, started);
+    run_free(&saved);
 }
 
 static size_t list_folder(const char *folder, int n, struct dirent *const entries[], json_t *list)
@@ -47,7 +48,7 @@ static size_t list_folder(const char *folder, int n, struct dirent *const entrie
     size_t found = 0;
     for (int i = 0; i < n; i++) {
         snprintf(path, sizeof path, "%s/%s", folder, entries[i]->d_name);
-        if (entries[i]->d_name[0] == '.' || !saved_path(path, database, sizeof database))
+        if (entries[i]->d_name[0] == '.' || !run_path(path, database, sizeof database))
             continue;
         if (found++ == 0 && !list)
             printf("%-24s %-10s %20s %7s %7s %12s  %s\n", "run", "state", "simulated", "failed", "front", "hypervolume",
@@ -72,7 +73,7 @@ static Status run(const Args *args, Err *err)
     if (list)
         return show_json(list, err);
     char path[PATH_MAX];
-    if (found == 0 && saved_path(folder, path, sizeof path))
+    if (found == 0 && run_path(folder, path, sizeof path))
         printf("%s: is a run itself; `imtet status` tells how far it is\n", folder);
     else if (found == 0)
         printf("%s: no runs\n", folder);

@@ -9,9 +9,8 @@
 #include "cmd/commands.h"
 #include "cmd/show.h"
 #include "cmd/signals.h"
-#include "store/front.h"
 #include "store/nearest.h"
-#include "store/saved.h"
+#include "store/run_read.h"
 #include "study/place.h"
 #include "study/study.h"
 #include "settings/settings.h"
@@ -50,17 +49,18 @@ static void tell_start(const char *folder, size_t n_simulated, void *user)
         fprintf(stderr, "%s: goes on after %zu simulations\n", folder, n_simulated);
 }
 
-static void print_front(const Front *front, const StudySummary *summary)
+static void print_front(const StudySummary *summary)
 {
+    const Run *run = &summary->run;
+    const size_t n_obj = run->schema.n_obj, knee = run_knee(run);
     char label[TABLE_NAME_MAX + 8];
-    show_objective_names(&front->schema);
-    for (size_t k = 0; k < front->n_obj; k++) {
-        const size_t i = front_best(front, k);
-        snprintf(label, sizeof label, "best %s", schema_objective(&front->schema, k)->name);
-        show_objectives(label, front_id(front, i), front->n_obj, front_f(front, i));
+    show_objective_names(&run->schema);
+    for (size_t k = 0; k < n_obj; k++) {
+        const size_t best = run_best(run, k);
+        snprintf(label, sizeof label, "best %s", schema_objective(&run->schema, k)->name);
+        show_objectives(label, run->row[best].id, n_obj, run_f(run, best));
     }
-    const size_t knee = front_knee(front);
-    show_objectives("knee", front_id(front, knee), front->n_obj, front_f(front, knee));
+    show_objectives("knee", run->row[knee].id, n_obj, run_f(run, knee));
     if (summary->has_no_core) {
         double alone[N_OBJECTIVES];
         for (int k = 0; k < N_OBJECTIVES; k++)
@@ -72,81 +72,70 @@ static void print_front(const Front *front, const StudySummary *summary)
     printf("\nknee: nearest to the ideal point when every objective is scaled to 0..1 over the front.\n");
 }
 
-static void print_nearest(const Saved *saved, size_t n, const size_t rows[])
+static void print_nearest(const Run *run, size_t n, const size_t rows[])
 {
     char label[48];
-    show_objective_names(&saved->schema);
+    show_objective_names(&run->schema);
     for (size_t i = 0; i < n; i++) {
-        snprintf(label, sizeof label, "misses by %.3g", saved->row[rows[i]].violation);
-        show_objectives(label, saved->row[rows[i]].id, saved->schema.n_obj, saved->F + rows[i] * saved->schema.n_obj);
+        snprintf(label, sizeof label, "misses by %.3g", run->row[rows[i]].violation);
+        show_objectives(label, run->row[rows[i]].id, run->schema.n_obj, run_f(run, rows[i]));
     }
     printf("\nmisses by: sum over search.limits of what exceeds them, as a share of the limit.\n");
 }
 
-/* Nothing succeeded, or nothing keeps to search.limits: then who comes nearest. */
+/* Nothing succeeded, or nothing keeps search.limits: then the designs that come nearest. */
 static Status report_no_front(const StudySummary *summary, Err *err)
 {
-    Saved saved;
+    const Run *run = &summary->run;
     size_t rows[NEAREST_MAX];
-    TRY(saved_read(&saved, summary->folder, err));
-    const size_t n = nearest_rows(&saved, rows);
-    Status status = nearest_write(summary->folder, &saved, n, rows, err);
-    if (status == STATUS_OK && n > 0 && strcmp(saved.settings.search.limits, "none") == 0) {
-        status = fail(err, STATUS_INTERNAL, "every design failed at least once; %s/evaluations.csv says why",
-                      summary->folder);
-    } else if (status == STATUS_OK && n > 0) {
-        printf("nearest: %s/nearest.csv\n%zu simulated designs, %zu simulations failed, %.1f s (%s)\n\n",
-               summary->folder, summary->n_simulated, summary->n_failed, summary->seconds,
-               stop_reason_words(summary->stopped));
-        print_nearest(&saved, n, rows);
-        status = fail(err, STATUS_UNMET, "search.limits: none of %zu designs keeps %.120s; the front is empty",
-                      summary->n_simulated - summary->n_failed, saved.settings.search.limits);
-    } else if (status == STATUS_OK) {
-        status = fail(err, STATUS_INTERNAL, "none of %zu simulations succeeded; %s/evaluations.csv says why",
-                      summary->n_simulated, summary->folder);
-    }
-    saved_free(&saved);
-    return status;
+    const size_t n = nearest_rows(run, rows);
+    TRY(nearest_write(summary->folder, run, n, rows, err));
+    if (n == 0)
+        return fail(err, STATUS_INTERNAL, "none of %zu simulations succeeded; %s/evaluations.csv says why",
+                    summary->n_simulated, summary->folder);
+    if (strcmp(run->settings->search.limits, "none") == 0)
+        return fail(err, STATUS_INTERNAL, "every design failed at least once; %s/evaluations.csv says why",
+                    summary->folder);
+    printf("nearest: %s/nearest.csv\n%zu simulated designs, %zu simulations failed, %.1f s (%s)\n\n", summary->folder,
+           summary->n_simulated, summary->n_failed, summary->seconds, stop_reason_words(summary->stopped));
+    print_nearest(run, n, rows);
+    return fail(err, STATUS_UNMET, "search.limits: none of %zu designs keeps %.120s; the front is empty",
+                summary->n_simulated - summary->n_failed, run->settings->search.limits);
 }
 
 /* Where nothing was simulated as often as search.members_min asks for. */
-static Status tell_few_members(const StudySummary *summary, Err *err)
+static void tell_few_members(const Run *run)
 {
-    Saved h;
-    TRY(saved_read(&h, summary->folder, err));
-    const long wanted = h.settings.search.members_min * h.settings.sim.ensemble;
+    const long wanted = run->settings->search.members_min * run->settings->sim.ensemble;
     long least = wanted;
-    for (size_t i = 0; i < h.n && schema_is_noisy(&h.settings); i++)
-        if (h.row[i].on_front && h.row[i].id < POLISHED_FIRST && h.row[i].members < least)
-            least = h.row[i].members;
+    for (size_t i = 0; i < run->n_front && schema_is_noisy(run->settings); i++) {
+        const RunRow *row = &run->row[run->front[i]];
+        if (row->id < POLISHED_FIRST && row->members < least)
+            least = row->members;
+    }
     if (least < wanted)
         printf("no design was simulated %ld times (search.members_min); the front has those with the most, %ld\n\n",
                wanted, least);
-    saved_free(&h);
-    return STATUS_OK;
 }
 
 static Status report(const StudySummary *summary, Err *err)
 {
-    Front front;
     if (summary->n_front == 0)
         return report_no_front(summary, err);
     TRY(nearest_write(summary->folder, NULL, 0, NULL, err));
-    TRY(tell_few_members(summary, err));
-    TRY(front_read(&front, summary->folder, err));
+    tell_few_members(&summary->run);
     printf("front: %s/front.csv\n%zu nondominated of %zu simulated designs, %zu simulations failed, %.1f s (%s)\n\n",
-           summary->folder, front.n, summary->n_simulated, summary->n_failed, summary->seconds,
+           summary->folder, summary->run.n_front, summary->n_simulated, summary->n_failed, summary->seconds,
            stop_reason_words(summary->stopped));
     if (summary->n_repeats > 0)
         printf("%zu of the simulations repeat a design, to tell luck from merit (search.repeats)\n\n",
                summary->n_repeats);
-    print_front(&front, summary);
+    print_front(summary);
     if (summary->n_tried_to_polish > 0)
         printf("polished: %zu of %zu designs became better by more than their spread (search.polish)\n",
                summary->n_polished, summary->n_tried_to_polish);
     if (summary->n_simulated == summary->n_before)
         printf("This run was finished before; nothing new was simulated. --new starts another one.\n");
-    front_free(&front);
     return STATUS_OK;
 }
 
@@ -172,19 +161,22 @@ static void tell_how_to_go_on(const StudySummary *summary)
     fputc('\n', stderr);
 }
 
-/* The operand is a settings file, or the folder of a run that is to go on with its own settings. */
-static Status take_settings(const Args *args, Settings *s, Err *err)
+/* A run is resumed with its own settings, in its folder or, with --new and --out, in another one. */
+static Status take_run(const Args *args, Settings *s, RunStore **store, Err *err)
 {
-    struct stat there;
-    if (stat(args->operand, &there) != 0 || !S_ISDIR(there.st_mode)) {
-        TRY(args_settings(args, s, NULL, NULL, err));
-        return args_gives(args, "run.out") ? STATUS_OK : place_check(s->run.out, args->operand, err);
-    }
+    Run run;
     char path[PATH_MAX];
-    if (!saved_path(args->operand, path, sizeof path))
+    if (!run_path(args->operand, path, sizeof path))
         return fail(err, STATUS_MISSING, "%s: is a folder without a run.sqlite: no run that could go on",
                     args->operand);
-    TRY(run_settings(s, args->operand, err));
+    if (args_has(args, "--new") || args_gives(args, "run.out")) {
+        TRY(run_read(&run, args->operand, err));
+        *s = *run.settings;
+        run_free(&run);
+    } else {
+        TRY(store_open(store, args->operand, 0, err));
+        *s = *store_run(*store)->settings;
+    }
     if (snprintf(s->run.out, sizeof s->run.out, "%s", args->operand) >= (int)sizeof s->run.out)
         return fail(err, STATUS_USAGE, "%.200s...: the path is too long", args->operand);
     TRY(args_apply(args, s, NULL, NULL, err));
@@ -192,42 +184,58 @@ static Status take_settings(const Args *args, Settings *s, Err *err)
     return moved_find(s, NULL, &(Moved){NULL, NULL}, err);
 }
 
-/* Of a run whose records have gone: once it is finished they are not needed. */
-static Status show_finished(const Args *args, Err *err)
+/* The operand is a settings file, or the folder of a run. */
+static Status take_settings(const Args *args, Settings *s, RunStore **store, Err *err)
 {
-    StudySummary summary;
-    Err unread = {0};
-    int is_finished = 0;
-    if (args->n_given > 0 || study_finished(args->operand, &summary, &is_finished, &unread) != STATUS_OK ||
-        !is_finished)
+    struct stat there;
+    if (stat(args->operand, &there) == 0 && S_ISDIR(there.st_mode))
+        return take_run(args, s, store, err);
+    TRY(args_settings(args, s, NULL, NULL, err));
+    return args_gives(args, "run.out") ? STATUS_OK : place_check(s->run.out, args->operand, err);
+}
+
+/* Of a run whose records have gone: once it is finished they are not needed. */
+static Status show_finished(const Args *args, RunStore *store, StudySummary *summary, Err *err)
+{
+    if (!store || args->n_given > 0 || !study_finished(store, summary))
         return STATUS_MISSING;
     fprintf(stderr, "%s\n", err->text);
-    return report(&summary, err);
+    return report(summary, err);
+}
+
+static Status optimize(const Args *args, Telling *telling, StudySummary *summary, Err *err)
+{
+    Settings s;
+    StudyOptions options = {.fresh = args_has(args, "--new"),
+                            .force = args_has(args, "--force-settings"),
+                            .stop = signals_asked,
+                            .started = tell_start,
+                            .progress = tell,
+                            .user = telling};
+    Status status = take_settings(args, &s, &options.store, err);
+    if (status != STATUS_OK) {
+        if (status == STATUS_MISSING)
+            status = show_finished(args, options.store, summary, err);
+        store_free(options.store);
+        return status;
+    }
+    signals_catch();
+    status = study_run(&s, &options, summary, stderr, err);
+    if (telling->has_told)
+        fputc('\n', stderr);
+    if (status == STATUS_STOPPED)
+        tell_how_to_go_on(summary);
+    TRY(status);
+    return report(summary, err);
 }
 
 static Status run(const Args *args, Err *err)
 {
-    Settings s;
-    StudySummary summary;
     Telling telling = {isatty(STDERR_FILENO), 0};
-    const StudyOptions options = {.fresh = args_has(args, "--new"),
-                                  .force = args_has(args, "--force-settings"),
-                                  .stop = signals_asked,
-                                  .started = tell_start,
-                                  .progress = tell,
-                                  .user = &telling};
-    Status status = take_settings(args, &s, err);
-    if (status == STATUS_MISSING)
-        return show_finished(args, err);
-    TRY(status);
-    signals_catch();
-    status = study_run(&s, &options, &summary, stderr, err);
-    if (telling.has_told)
-        fputc('\n', stderr);
-    if (status == STATUS_STOPPED)
-        tell_how_to_go_on(&summary);
-    TRY(status);
-    return report(&summary, err);
+    StudySummary summary = {0};
+    const Status status = optimize(args, &telling, &summary, err);
+    run_free(&summary.run);
+    return status;
 }
 
 static const ArgOption OPTIONS[] = {

@@ -3,15 +3,7 @@
 
 static Status run(const Args *args, Err *err)
 {
-    char path[PATH_MAX];
-    Report r;
-    TRY(look_target(args, "pictures", path, err));
-    TRY(look_open(args, &r, err));
-    const Status status = report_pictures(&r, path, err);
-    report_close(&r);
-    if (status == STATUS_OK)
-        printf("%s\n", path);
-    return status;
+    return look_at_run(args, "pictures", report_pictures, err);
 }
 
 static const ArgOption OPTIONS[] = {

@@ -6,14 +6,13 @@
 #include "cmd/look.h"
 #include "cmd/pairs.h"
 #include "cmd/show.h"
-#include "store/front.h"
 #include "store/output.h"
+#include "store/run_read.h"
 #include "polish/refine.h"
 
 typedef struct {
-    Front front;
-    Saved run;
-    size_t row; /* of the front */
+    Run run;
+    size_t row; /* of the design */
     double weight[OBJECTIVES_MAX];
     unsigned char keep[OBJECTIVES_MAX];
     RefineConfig config;
@@ -22,7 +21,7 @@ typedef struct {
 
 static Status take_kept(const Args *args, Work *w, Err *err)
 {
-    const Schema *schema = &w->front.schema;
+    const Schema *schema = &w->run.schema;
     const char *list = args_value(args, "--keep");
     char name[TABLE_NAME_MAX];
     size_t k;
@@ -38,7 +37,7 @@ static Status take_kept(const Args *args, Work *w, Err *err)
 
 static Status take_improved(const Args *args, Work *w, Err *err)
 {
-    const Schema *schema = &w->front.schema;
+    const Schema *schema = &w->run.schema;
     const char *list = args_value(args, "--improve");
     for (size_t k = 0; k < schema->n_obj; k++)
         w->weight[k] = list ? strcmp(list, "all") == 0 : k == 0;
@@ -66,23 +65,23 @@ static Status take_options(const Args *args, Work *w, Err *err)
 static Status open_run(const Args *args, Work *w, Err *err)
 {
     Moved moved;
-    TRY(look_design(args, &w->front, &w->row, err));
+    TRY(run_read(&w->run, args->operand, err));
+    TRY(look_design(args, &w->run, &w->row, err));
     TRY(take_options(args, w, err));
     TRY(args_moved(args, &moved, err));
-    TRY(saved_read(&w->run, args->operand, err));
-    return moved_find(&w->run.settings, w->run.provenance, &moved, err);
+    return moved_find(w->run.settings, w->run.provenance, &moved, err);
 }
 
 /* One row in natural signs, as in front.csv but for the id of the design that it came from. */
 static Status write_csv(const Work *w, const char *path, Err *err)
 {
-    const Schema *schema = &w->front.schema;
+    const Schema *schema = &w->run.schema;
     Output o;
     TRY(output_open(&o, path, err));
     fputs("polished_from", o.stream);
     for (size_t j = 0; j < schema->n_var + schema->n_obj; j++)
         fprintf(o.stream, ",%s", schema->column[j].name);
-    fprintf(o.stream, "\n%ld", front_id(&w->front, w->row));
+    fprintf(o.stream, "\n%ld", w->run.row[w->row].id);
     for (size_t j = 0; j < schema->n_var + schema->n_obj; j++) {
         fputc(',', o.stream);
         print_number(o.stream, j < schema->n_var ? w->result.x[j] : w->result.f[j - schema->n_var]);
@@ -93,7 +92,7 @@ static Status write_csv(const Work *w, const char *path, Err *err)
 
 static void show_gain(const Work *w, size_t k)
 {
-    const Column *c = schema_objective(&w->front.schema, k);
+    const Column *c = schema_objective(&w->run.schema, k);
     const Refined *r = &w->result;
     const double gain = c->sense * (r->f_start[k] - r->f[k]);
     const double error = hypot(r->spread_start[k], r->spread[k]) / sqrt((double)w->config.members);
@@ -114,10 +113,10 @@ static const char *verdict_of(const Refined *r)
 
 static void show(const Work *w, long id)
 {
-    const Schema *schema = &w->front.schema;
+    const Schema *schema = &w->run.schema;
     const Refined *r = &w->result;
     show_objective_names(schema);
-    show_objectives("before", front_id(&w->front, w->row), schema->n_obj, r->f_start);
+    show_objectives("before", w->run.row[w->row].id, schema->n_obj, r->f_start);
     show_objectives("polished", id, schema->n_obj, r->f);
     if (isfinite(r->spread_start[0]))
         show_objectives("spread before", 0, schema->n_obj, r->spread_start);
@@ -135,7 +134,7 @@ static Status polish(const Args *args, Work *w, Err *err)
 {
     long id = 0;
     TRY(open_run(args, w, err));
-    TRY(refine_design(&w->run, saved_find(&w->run, front_id(&w->front, w->row)), &w->config, &w->result, err));
+    TRY(refine_design(&w->run, w->row, &w->config, &w->result, err));
     if (refined_counts(&w->result))
         TRY(refined_store(args->operand, &w->result, &id, err));
     show(w, id);
@@ -147,8 +146,7 @@ static Status run(const Args *args, Err *err)
     Work w = {0};
     const Status status = polish(args, &w, err);
     refined_free(&w.result);
-    saved_free(&w.run);
-    front_free(&w.front);
+    run_free(&w.run);
     return status;
 }
 

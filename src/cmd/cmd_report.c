@@ -1,19 +1,9 @@
-#include <string.h>
-
 #include "cmd/commands.h"
 #include "cmd/look.h"
 
 static Status run(const Args *args, Err *err)
 {
-    char path[PATH_MAX];
-    Report r;
-    TRY(look_target(args, "report.html", path, err));
-    TRY(look_open(args, &r, err));
-    const Status status = report_page(&r, path, err);
-    report_close(&r);
-    if (status == STATUS_OK && strcmp(path, "-") != 0)
-        printf("%s\n", path);
-    return status;
+    return look_at_run(args, "report.html", report_page, err);
 }
 
 static const ArgOption OPTIONS[] = {

@@ -5,6 +5,7 @@
 #include "cmd/commands.h"
 #include "cmd/show.h"
 #include "moga/cover.h"
+#include "store/run_read.h"
 #include "study/advance.h"
 #include "study/pace.h"
 #include "settings/settings.h"
@@ -17,7 +18,7 @@ typedef struct {
     const Verdict *first[OUTCOMES_MAX];
 } Failures;
 
-static Failures failures_of(const Saved *saved)
+static Failures failures_of(const Run *saved)
 {
     Failures f = {0};
     for (size_t i = 0; i < saved->n; i++) {
@@ -38,13 +39,13 @@ static Failures failures_of(const Saved *saved)
 
 /* -- for people ---------------------------------------------------------------------------------------------------- */
 
-static void print_head(const char *folder, const Saved *saved, const Standing *s)
+static void print_head(const char *folder, const Run *saved, const Standing *s)
 {
     char worked[32], left[32], pace[32] = "-";
     const double per_second = pace_per_second(&s->pace);
-    const SavedSession *last = saved->n_sessions > 0 ? &saved->session[saved->n_sessions - 1] : NULL;
+    const RunSession *last = saved->n_sessions > 0 ? &saved->session[saved->n_sessions - 1] : NULL;
     pace_words(s->seconds, worked);
-    pace_words(pace_left(&s->pace, &saved->settings), left);
+    pace_words(pace_left(&s->pace, saved->settings), left);
     if (isfinite(per_second))
         snprintf(pace, sizeof pace, "%.3g", per_second);
     printf("%s: %s", folder, state_words(s->state));
@@ -52,7 +53,7 @@ static void print_head(const char *folder, const Saved *saved, const Standing *s
         printf(" (process %ld on %s)", s->holder.pid, s->holder.host);
     else if (last && last->stopped[0])
         printf(" (%s)", last->stopped);
-    printf("\n%zu of %ld simulated, ", s->pace.simulated, saved->settings.search.max_evals);
+    printf("\n%zu of %ld simulated, ", s->pace.simulated, saved->settings->search.max_evals);
     if (saved->n_repeats > 0)
         printf("%zu of them repeats, ", saved->n_repeats);
     printf("%zu failed, %zu on the front", s->n_failed, saved->n_front);
@@ -76,7 +77,7 @@ static void print_head(const char *folder, const Saved *saved, const Standing *s
 }
 
 /* The first, the last, and some evenly between. */
-static void print_generations(const Saved *saved, const double igd[])
+static void print_generations(const Run *saved, const double igd[])
 {
     const size_t n = saved->n_generations, rows = n < ROWS_MAX ? n : ROWS_MAX;
     char worked[32], hypervolume[32], advance[32];
@@ -86,7 +87,7 @@ static void print_generations(const Saved *saved, const double igd[])
            "IGD+ to last", "after");
     for (size_t r = 0; r < rows; r++) {
         const size_t i = rows > 1 ? r * (n - 1) / (rows - 1) : 0;
-        const SavedGeneration *g = &saved->generation[i];
+        const RunGeneration *g = &saved->generation[i];
         number_words(igd[i], 4, advance);
         pace_words(g->seconds, worked);
         number_words(g->hypervolume, 4, hypervolume);
@@ -106,11 +107,11 @@ static void print_failures(const Failures *f)
 
 /* -- for programs -------------------------------------------------------------------------------------------------- */
 
-static json_t *json_generations(const Saved *saved, const double igd[])
+static json_t *json_generations(const Run *saved, const double igd[])
 {
     json_t *list = json_array();
     for (size_t i = 0; i < saved->n_generations; i++) {
-        const SavedGeneration *g = &saved->generation[i];
+        const RunGeneration *g = &saved->generation[i];
         json_array_append_new(list, json_pack("{s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:s}", "number",
                                               (json_int_t)g->number, "simulated", (json_int_t)g->simulated, "failed",
                                               (json_int_t)g->failed, "front", (json_int_t)g->front, "hypervolume",
@@ -122,11 +123,11 @@ static json_t *json_generations(const Saved *saved, const double igd[])
     return list;
 }
 
-static json_t *json_sessions(const Saved *saved)
+static json_t *json_sessions(const Run *saved)
 {
     json_t *list = json_array();
     for (size_t i = 0; i < saved->n_sessions; i++) {
-        const SavedSession *s = &saved->session[i];
+        const RunSession *s = &saved->session[i];
         const Effort e = effort_of(saved, i);
         json_array_append_new(
             list, json_pack("{s:s, s:s*, s:s*, s:s, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:o}", "started", s->started,
@@ -148,16 +149,15 @@ static json_t *json_failures(const Failures *f)
     return o;
 }
 
-static json_t *describe(const char *folder, const Saved *saved, const Standing *s, const Failures *f,
-                        const double igd[])
+static json_t *describe(const char *folder, const Run *saved, const Standing *s, const Failures *f, const double igd[])
 {
     json_t *o = json_pack("{s:s, s:s, s:I, s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:o}", "run", folder, "state",
                           state_words(s->state), "simulated", (json_int_t)s->pace.simulated, "max_evals",
-                          (json_int_t)saved->settings.search.max_evals, "failed", (json_int_t)s->n_failed, "front",
+                          (json_int_t)saved->settings->search.max_evals, "failed", (json_int_t)s->n_failed, "front",
                           (json_int_t)saved->n_front, "polished", (json_int_t)s->n_polished, "hypervolume",
                           json_number(s->hypervolume), "simulations_per_second", json_number(pace_per_second(&s->pace)),
                           "seconds", json_number(s->seconds), "seconds_left",
-                          json_number(s->state == RUN_FINISHED ? 0.0 : pace_left(&s->pace, &saved->settings)));
+                          json_number(s->state == RUN_FINISHED ? 0.0 : pace_left(&s->pace, saved->settings)));
     if (s->state == RUN_RUNNING)
         json_object_set_new(o, "process",
                             json_pack("{s:I, s:s}", "pid", (json_int_t)s->holder.pid, "host", s->holder.host));
@@ -170,9 +170,9 @@ static json_t *describe(const char *folder, const Saved *saved, const Standing *
 
 static Status run(const Args *args, Err *err)
 {
-    Saved saved;
+    Run saved;
     Standing standing;
-    TRY(saved_read(&saved, args->operand, err));
+    TRY(run_read(&saved, args->operand, err));
     standing_of(&standing, args->operand, &saved);
     const Failures failures = failures_of(&saved);
     double *igd = calloc(saved.n_generations + 1, sizeof *igd);
@@ -185,7 +185,7 @@ static Status run(const Args *args, Err *err)
         print_failures(&failures);
     }
     free(igd);
-    saved_free(&saved);
+    run_free(&saved);
     return status;
 }
 

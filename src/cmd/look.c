@@ -1,8 +1,11 @@
 #include "cmd/look.h"
 
-#include <stdlib.h>
+#include <limits.h>
+#include <stdio.h>
 #include <string.h>
 #include "settings/settings.h"
+
+#include "store/run_read.h"
 
 enum { RECORDS_MAX = 32 };
 
@@ -37,37 +40,52 @@ static Status take_records(const Args *args, const Settings *run, Records *r, Er
     return STATUS_OK;
 }
 
-Status look_open(const Args *args, Report *r, Err *err)
+static Status open_report(const Args *args, const Run *run, Report *r, Err *err)
 {
     const char *design = args_value(args, "--design");
-    Settings other;
+    Settings other = *run->settings;
     Records records;
     long floor;
     DetailWish wish = {.other = &other, .records = records.path};
     TRY(args_moved(args, &wish.moved, err));
-    TRY(run_settings(&other, args->operand, err));
     TRY(args_apply(args, &other, NULL, NULL, err));
     TRY(take_records(args, &other, &records, err));
     wish.n_records = records.n;
     TRY(args_whole(args, "--floor", 1, FLOORS_MAX, 0, &floor, err));
     wish.floor = (int)floor - 1;
-    return report_open(r, args->operand, design ? design : "knee", &wish, err);
+    return report_open(r, run, design ? design : "knee", &wish, err);
 }
 
-Status look_design(const Args *args, Front *front, size_t *row, Err *err)
-{
-    const char *word = args_value(args, "--design");
-    if (!word)
-        return fail(err, STATUS_USAGE, "--design ID is missing; %s/front.csv lists them, knee is one too",
-                    args->operand);
-    TRY(front_read(front, args->operand, err));
-    return front_pick(front, args->operand, word, row, err);
-}
-
-Status look_target(const Args *args, const char *name, char path[PATH_MAX], Err *err)
+static Status take_target(const Args *args, const char *name, char path[PATH_MAX], Err *err)
 {
     const char *given = args_value(args, "--out");
     const int n =
         given ? snprintf(path, PATH_MAX, "%s", given) : snprintf(path, PATH_MAX, "%s/%s", args->operand, name);
     return n < PATH_MAX ? STATUS_OK : fail(err, STATUS_IO, "%.200s...: the path is too long", given ? given : name);
+}
+
+Status look_at_run(const Args *args, const char *name, LookFn show, Err *err)
+{
+    char path[PATH_MAX];
+    Run run;
+    Report r = {0};
+    TRY(take_target(args, name, path, err));
+    TRY(run_read(&run, args->operand, err));
+    Status status = open_report(args, &run, &r, err);
+    if (status == STATUS_OK)
+        status = show(&r, path, err);
+    report_close(&r);
+    run_free(&run);
+    if (status == STATUS_OK && strcmp(path, "-") != 0)
+        printf("%s\n", path);
+    return status;
+}
+
+Status look_design(const Args *args, const Run *run, size_t *row, Err *err)
+{
+    const char *word = args_value(args, "--design");
+    if (!word)
+        return fail(err, STATUS_USAGE, "--design ID is missing; %s/front.csv lists them, knee is one too",
+                    args->operand);
+    return run_pick(run, word, row, err);
 }

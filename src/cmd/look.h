@@ -5,15 +5,12 @@
 #include "cmd/args.h"
 #include "report/report.h"
 
-/* The run of the operand, ready to be shown; report_close releases it. */
-Status look_open(const Args *args, Report *r, Err *err);
+/* The run of the operand, ready to be shown: `show` gets the report and where --out, else RUN/name, puts it. */
+typedef Status (*LookFn)(const Report *r, const char *path, Err *err);
+Status look_at_run(const Args *args, const char *name, LookFn show, Err *err);
 
-/* The front of the operand's run, and the row that --design names; front_free releases the front, also after a fault.
- */
-Status look_design(const Args *args, Front *front, size_t *row, Err *err);
-
-/* --out, or RUN/name. */
-Status look_target(const Args *args, const char *name, char path[PATH_MAX], Err *err);
+/* The row of the run that --design names. */
+Status look_design(const Args *args, const Run *run, size_t *row, Err *err);
 
 #define OPTIONS_LOOK                                                                                                   \
     {"--design", "ID", NULL, 0, "the design shown in detail: column id of RUN/front.csv, or knee (default)"},          \

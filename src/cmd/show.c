@@ -1,22 +1,8 @@
 #include "cmd/show.h"
 
-#include <math.h>
 #include <stdio.h>
 
 #include "base/units.h"
-
-json_t *json_number(double value)
-{
-    return isfinite(value) ? json_real(value) : json_null();
-}
-
-json_t *json_numbers(size_t n, const double values[])
-{
-    json_t *list = json_array();
-    for (size_t i = 0; i < n; i++)
-        json_array_append_new(list, json_number(values[i]));
-    return list;
-}
 
 static const char *scene_word(SceneKind kind)
 {

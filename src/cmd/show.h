@@ -2,14 +2,11 @@
 #ifndef IMTET_CMD_SHOW_H
 #define IMTET_CMD_SHOW_H
 
-#include <jansson.h>
-
+#include "base/json.h"
 #include "simulator/ensemble.h"
 #include "simulator/measures.h"
 #include "simulator/schema.h"
 
-json_t *json_number(double value); /* null where it is not finite */
-json_t *json_numbers(size_t n, const double values[]);
 json_t *json_result(SceneKind kind, const SimResult *r);
 
 /* members, finished, mean {}, spread {} */

@@ -51,7 +51,6 @@
 #include "moga/options.h"
 #include "moga/problem.h"
 
-
 typedef struct {
     uint32_t seed;
     size_t population, generations, max_evals, surrogate_max;

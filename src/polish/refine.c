@@ -1,6 +1,5 @@
 #include "polish/refine.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,7 +16,7 @@ enum { CENTRES_MAX = 150, LOCAL_MAX = 600 /* designs that the surface tries: a f
 static const double PREDICTABLE = 1e-3;
 
 typedef struct {
-    const Saved *run;
+    const Run *run;
     const RefineConfig *config;
     const double *x; /* (n_var) of the design */
     Subject *subject;
@@ -26,22 +25,6 @@ typedef struct {
     long members;                                                                /* of a design that is tried */
     double start;                                                                /* [s] of the clock */
 } Refine;
-
-/* Best and worst of every objective on the front, natural. */
-static void measure_box(const Saved *h, double best[], double worst[])
-{
-    for (size_t k = 0; k < h->schema.n_obj; k++) {
-        const double sense = schema_objective(&h->schema, k)->sense;
-        double least = DBL_MAX, most = -DBL_MAX;
-        for (size_t i = 0; i < h->n; i++)
-            if (h->row[i].on_front) {
-                least = fmin(least, sense * h->F[i * h->schema.n_obj + k]);
-                most = fmax(most, sense * h->F[i * h->schema.n_obj + k]);
-            }
-        best[k] = sense * least;
-        worst[k] = sense * most;
-    }
-}
 
 /* -- the simulator ------------------------------------------------------------------------------------------------- */
 
@@ -65,7 +48,7 @@ static int may_go_on(void *user)
 
 static Status open_subject(Refine *r, long members, Err *err)
 {
-    Settings s = r->run->settings;
+    Settings s = *r->run->settings;
     s.sim.ensemble = members;
     subject_close(r->subject);
     r->subject = NULL;
@@ -85,11 +68,10 @@ static void count(size_t n_evaluated, size_t n_failed, long members, Refined *ou
 static void set_goal(Refine *r, const double f[])
 {
     const Schema *schema = &r->run->schema;
-    double best[OBJECTIVES_MAX], worst[OBJECTIVES_MAX];
-    measure_box(r->run, best, worst);
+    const FrontBox box = run_box(r->run);
     for (size_t k = 0; k < schema->n_obj; k++) {
-        const double range = fabs(worst[k] - best[k]), spread = isfinite(r->spread[k]) ? r->spread[k] : 0.0;
-        r->weight[k] = r->config->weight[k] / (range > 0.0 && isfinite(range) ? range : 1.0);
+        const double spread = isfinite(r->spread[k]) ? r->spread[k] : 0.0;
+        r->weight[k] = r->config->weight[k] / box.span[k];
         r->slack[k] = r->config->slack >= 0.0 ? r->config->slack * fabs(f[k]) : spread;
         r->bound[k] = r->config->keep[k] ? f[k] + r->slack[k] : INFINITY;
         if (spread > PREDICTABLE * fabs(f[k]))
@@ -144,7 +126,7 @@ static int by_distance(const void *a, const void *b)
 /* Rows that simulated well, nearest to the design in the unit cube; returns how many. */
 static size_t nearest_rows(const Refine *r, Near near[])
 {
-    const Saved *h = r->run;
+    const Run *h = r->run;
     const Problem *p = subject_problem(r->subject);
     size_t n = 0;
     for (size_t i = 0; i < h->n; i++) {
@@ -165,7 +147,7 @@ static size_t nearest_rows(const Refine *r, Near near[])
 /* What the run knows near the design. */
 static Status gather_known(const Refine *r, Known *known, Err *err)
 {
-    const Saved *h = r->run;
+    const Run *h = r->run;
     const Problem *p = subject_problem(r->subject);
     Near *near = calloc(h->n + 1, sizeof *near);
     double unused[OBJECTIVES_MAX];
@@ -194,7 +176,7 @@ static Status follow_surface(Refine *r, double f[], Refined *out, Err *err)
                           .noise = 1.0 / (double)r->members,
                           .max_evals = wanted < LOCAL_MAX ? wanted : LOCAL_MAX,
                           .max_seconds = seconds_left(r),
-                          .seed = (uint32_t)r->run->settings.search.seed};
+                          .seed = (uint32_t)r->run->settings->search.seed};
     LocalResult result = {.x = out->x, .f = f};
     Status status = gather_known(r, &config.known, err);
     if (status == STATUS_OK)
@@ -212,7 +194,7 @@ static Status polish_simulator(Refine *r, Refined *out, Err *err)
                                  .goal = {r->weight, r->bound},
                                  .max_evals = evals_left(r, out),
                                  .max_seconds = seconds_left(r),
-                                 .seed = (uint32_t)r->run->settings.search.seed};
+                                 .seed = (uint32_t)r->run->settings->search.seed};
     PolishResult result = {.x = out->x, .f = f};
     if (config.max_evals < 2)
         return STATUS_OK;
@@ -289,16 +271,16 @@ static Status refine(Refine *r, Refined *out, Err *err)
     return compare(r, out, err);
 }
 
-Status refine_design(const Saved *h, size_t row, const RefineConfig *config, Refined *out, Err *err)
+Status refine_design(const Run *h, size_t row, const RefineConfig *config, Refined *out, Err *err)
 {
     RefineConfig used = *config;
     *out = (Refined){0};
-    if (schema_is_noisy(&h->settings) && h->settings.problem.kind != PROBLEM_TOWER)
+    if (schema_is_noisy(h->settings) && h->settings->problem.kind != PROBLEM_TOWER)
         return fail(
             err, STATUS_BAD_DATA,
             "the answers of this run are noisy, and polishing simulates a design once: nothing would tell a gain "
             "from luck; let the search go on instead (search.max_evals, search.repeats)");
-    if (h->settings.problem.kind != PROBLEM_TOWER)
+    if (h->settings->problem.kind != PROBLEM_TOWER)
         used.members = 1;
     if (used.algorithm)
         TRY(polish_knows(used.algorithm, err));
@@ -333,46 +315,4 @@ Status refined_store(const char *folder, const Refined *r, long *id, Err *err)
 {
     const StoredDesign d = refined_design(r);
     return store_add_evaluations(folder, 1, &d, id, err);
-}
-
-/* -- which designs ------------------------------------------------------------------------------------------------- */
-
-/* Objective k of row i scaled to 0 (best of the front) .. 1 (worst). */
-static double scaled(const Saved *h, size_t i, size_t k, const double best[], const double worst[])
-{
-    const double range = worst[k] - best[k];
-    return range != 0.0 ? (h->F[i * h->schema.n_obj + k] - best[k]) / range : 0.0;
-}
-
-size_t refine_choose(const Saved *h, size_t n, int with_polished, size_t rows[])
-{
-    const size_t m = h->schema.n_obj;
-    double best[OBJECTIVES_MAX], worst[OBJECTIVES_MAX];
-    size_t chosen = 0;
-    measure_box(h, best, worst);
-    for (; chosen < n; chosen++) {
-        size_t found = h->n;
-        double most = -DBL_MAX;
-        for (size_t i = 0; i < h->n; i++) {
-            double merit = chosen == 0 ? 0.0 : DBL_MAX;
-            if (!h->row[i].on_front || (!with_polished && h->row[i].id >= POLISHED_FIRST))
-                continue;
-            for (size_t k = 0; chosen == 0 && k < m; k++) /* the knee: nearest to the best of everything */
-                merit -= pow(scaled(h, i, k, best, worst), 2.0);
-            for (size_t c = 0; c < chosen; c++) { /* then the farthest from those chosen */
-                double apart = 0.0;
-                for (size_t k = 0; k < m; k++)
-                    apart += pow(scaled(h, i, k, best, worst) - scaled(h, rows[c], k, best, worst), 2.0);
-                merit = fmin(merit, apart);
-            }
-            if (merit > most && (chosen == 0 || merit > 0.0)) {
-                most = merit;
-                found = i;
-            }
-        }
-        if (found == h->n)
-            break;
-        rows[chosen] = found;
-    }
-    return chosen;
 }

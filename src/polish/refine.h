@@ -45,7 +45,7 @@ typedef struct {
 } Refined;
 
 /* The design in row `row` of the run, with the settings that it was made with. */
-Status refine_design(const Saved *h, size_t row, const RefineConfig *config, Refined *out, Err *err);
+Status refine_design(const Run *h, size_t row, const RefineConfig *config, Refined *out, Err *err);
 void refined_free(Refined *r);
 
 /* Gain beyond doubt, or no spread known and any gain; and all else kept. */
@@ -56,9 +56,5 @@ StoredDesign refined_design(const Refined *r);
 
 /* Stored beside the designs of the search, as `polished`; the id that it got. Nobody may be working on the run. */
 Status refined_store(const char *folder, const Refined *r, long *id, Err *err);
-
-/* Spread-out designs of the front, the knee first, then the farthest from those chosen, polished ones left out unless
- * they are wanted: rows of h, at most n; returns how many. */
-size_t refine_choose(const Saved *h, size_t n, int with_polished, size_t rows[]);
 
 #endif

@@ -5,8 +5,9 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "report/report.h"
+#include "moga/cover.h"
 #include "report/gnuplot.h"
+#include "report/report.h"
 #include "simulator/measures.h"
 
 enum { HISTORY_POINTS = 2000 };
@@ -58,16 +59,16 @@ static const char *file_name(const char *path)
 
 static double scaled(const Report *r, size_t row, size_t k)
 {
-    const double value = front_f(&r->front, row)[k];
+    const double value = run_f(r->run, row)[k];
     return r->has_detail && k == 6 ? value / 1000 : value; /* the core's mass in tonnes */
 }
 
-static void write_rows(FILE *script, const char *block, const Report *r, size_t first, size_t n)
+static void write_rows(FILE *script, const char *block, const Report *r, size_t n, const size_t rows[])
 {
     fprintf(script, "$%s << EOD\n", block);
-    for (size_t i = first; i < first + n; i++) {
-        for (size_t k = 0; k < r->front.n_obj; k++)
-            fprintf(script, "%.8g ", scaled(r, i, k));
+    for (size_t i = 0; i < n; i++) {
+        for (size_t k = 0; k < r->run->schema.n_obj; k++)
+            fprintf(script, "%.8g ", scaled(r, rows[i], k));
         fputc('\n', script);
     }
     fputs("EOD\n", script);
@@ -91,7 +92,7 @@ static void write_panel(FILE *script, const Report *r, const Panel *p)
             "plot $FRONT using %zu:%zu:%zu with points pt 7 ps DOT lc palette, "
             "$KNEE using %zu:%zu with points pt 13 ps 2.6 lc rgb 'white', "
             "'' using %zu:%zu with points pt 13 ps 1.8 lc rgb WITHOUT",
-            x, y, r->front.n_obj, x, y, x, y);
+            x, y, r->run->schema.n_obj, x, y, x, y);
     if (r->has_detail && !r->is_robust)
         fprintf(script,
                 ", $ALONE using %zu:%zu with points pt 2 ps 1.7 lw 7 lc rgb 'white', "
@@ -103,7 +104,7 @@ static void write_panel(FILE *script, const Report *r, const Panel *p)
 /* A name without the apostrophe that keeps it from being a formula in a spreadsheet (base/cell.h). */
 static const char *label(const Report *r, size_t k)
 {
-    const char *name = schema_objective(&r->front.schema, k)->name;
+    const char *name = schema_objective(&r->run->schema, k)->name;
     return name + (name[0] == '\'' && name[1] && strchr("=+-@", name[1]));
 }
 
@@ -116,7 +117,7 @@ static size_t choose_panels(const Report *r, Panel panels[3])
         {0, 1, "largest displacement J1 [m]", "largest interstorey drift J2 [m]"},
         {3, 4, "energy share of the first mode [%]", "energy share of modes 5 to 10 [%]"},
     };
-    const size_t n = r->front.n_obj > 2 ? 3 : 1;
+    const size_t n = r->run->schema.n_obj > 2 ? 3 : 1;
     for (size_t i = 0; i < n; i++) {
         const size_t x = PAIRS[i][0], y = PAIRS[i][1];
         panels[i] = r->has_detail ? TOWER[i] : (Panel){x, y, label(r, x), label(r, y)};
@@ -129,7 +130,7 @@ static void write_legend(FILE *script, const Report *r)
     fprintf(script,
             "set label 1 '%zu designs of the front' at screen 0.06,0.95 point pt 7 ps 1 lc rgb '#21918c' offset 0.8\n"
             "set label 2 'the knee' at screen 0.28,0.95 point pt 13 ps 1.8 lc rgb WITHOUT offset 1\n",
-            r->front.n);
+            r->run->n_front);
     if (r->has_detail)
         fputs("set xrange [0:*]\nset yrange [0:*]\n", script);
     if (r->has_detail && !r->is_robust)
@@ -137,7 +138,7 @@ static void write_legend(FILE *script, const Report *r)
               "offset 1\n",
               script);
     fputs("set cblabel ", script);
-    gnuplot_quote(script, r->has_detail ? "core mass [t]" : label(r, r->front.n_obj - 1));
+    gnuplot_quote(script, r->has_detail ? "core mass [t]" : label(r, r->run->schema.n_obj - 1));
     fputs(" noenhanced\n", script);
 }
 
@@ -145,8 +146,8 @@ static void write_front(FILE *script, const Report *r)
 {
     Panel panels[3];
     const size_t n = choose_panels(r, panels);
-    write_rows(script, "FRONT", r, 0, r->front.n);
-    write_rows(script, "KNEE", r, r->knee, 1);
+    write_rows(script, "FRONT", r, r->run->n_front, r->run->front);
+    write_rows(script, "KNEE", r, 1, &r->knee);
     fputs("$ALONE << EOD\n", script);
     for (int k = 0; r->has_detail && k < N_OBJECTIVES; k++)
         fprintf(script, "%.8g ", measure_value(&r->detail.result[SCENE_NO_CORE], k) / (k == 6 ? 1000 : 1));
@@ -164,10 +165,13 @@ static void write_front(FILE *script, const Report *r)
 
 static void write_growth(FILE *script, const Report *r)
 {
-    const Convergence *c = &r->convergence;
+    const Run *run = r->run;
     fputs("$G << EOD\n", script);
-    for (size_t i = 0; i < c->n; i++)
-        numbers(script, 3, c->simulated[i], 100 * c->volume[i], 200 * c->standard_error[i]);
+    for (size_t i = 0; i < run->n_generations; i++) {
+        const double v = run->generation[i].hypervolume;
+        if (isfinite(v))
+            numbers(script, 3, (double)run->generation[i].simulated, 100 * v, 200 * cover_error(v));
+    }
     fputs("EOD\nset xlabel 'designs simulated'\nset ylabel 'hypervolume [%]'\nset yrange [0:*]\nunset key\n"
           "plot $G using 1:($2-$3):($2+$3) with filledcurves lc rgb '#b3d4e8', "
           "'' using 1:2 with lines lw 2.5 lc rgb WITH\n",
@@ -415,13 +419,22 @@ static void write_script(FILE *script, const void *user)
     p->write(script, d->report);
 }
 
+/* Generations with a hypervolume. */
+static size_t n_measured(const Run *run)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < run->n_generations; i++)
+        n += isfinite(run->generation[i].hypervolume) != 0;
+    return n;
+}
+
 static int is_wanted(const Report *r, const Picture *p)
 {
     const Detail *d = &r->detail;
     if (p->write == write_front)
-        return r->front.n_obj > 1;
+        return r->run->schema.n_obj > 1;
     if (p->write == write_growth)
-        return r->convergence.n > 1;
+        return n_measured(r->run) > 1;
     if (p->write == write_elsewhere)
         return d->n_elsewhere > 0;
     if (p->write == write_energies || p->write == write_sway)

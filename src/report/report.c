@@ -1,51 +1,26 @@
 #include "report/report.h"
 
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "store/saved.h"
 #include "settings/settings.h"
 
-/* From the database, or the file beside it. */
-static Status take_provenance(Report *r, Err *err)
+/* The chosen design simulated with the run's own settings, its records where they are now. */
+static Status take_detail(Report *r, const DetailWish *wish, Err *err)
 {
-    char path[PATH_MAX];
-    Err none;
-    Saved h;
-    size_t length;
-    if (!saved_path(r->folder, path, sizeof path)) {
-        if (snprintf(path, sizeof path, "%s/provenance.json", r->folder) < (int)sizeof path &&
-            file_read(path, &r->provenance, &length, &none) != STATUS_OK)
-            r->provenance = NULL;
-        return STATUS_OK;
-    }
-    TRY(saved_read(&h, r->folder, err));
-    r->provenance = h.provenance;
-    h.provenance = NULL;
-    saved_free(&h);
-    return STATUS_OK;
+    Settings s = *r->run->settings;
+    TRY(moved_find(&s, r->run->provenance, &wish->moved, err));
+    return r->has_detail ? detail_make(&s, (int)r->run->schema.n_var, run_x(r->run, r->chosen), wish, &r->detail, err)
+                         : STATUS_OK;
 }
 
-Status report_open(Report *r, const char *folder, const char *design, const DetailWish *wish, Err *err)
+Status report_open(Report *r, const Run *run, const char *design, const DetailWish *wish, Err *err)
 {
-    memset(r, 0, sizeof *r);
-    TRY(run_settings(&r->settings, folder, err));
-    TRY(front_read(&r->front, folder, err));
-    snprintf(r->folder, sizeof r->folder, "%s", folder);
-    Status status = front_pick(&r->front, folder, design, &r->chosen, err);
-    if (status == STATUS_OK) {
-        r->knee = front_knee(&r->front);
-        status = convergence_read(folder, &r->convergence, err);
-    }
-    if (status == STATUS_OK)
-        status = take_provenance(r, err);
-    if (status == STATUS_OK)
-        status = moved_find(&r->settings, r->provenance, &wish->moved, err);
-    r->has_detail = r->settings.problem.kind == PROBLEM_TOWER;
-    r->is_robust = r->has_detail && (r->settings.sim.ensemble > 1 || strcmp(r->settings.motion.records, "none") != 0);
-    if (status == STATUS_OK && r->has_detail)
-        status = detail_make(&r->settings, r->front.n_var, front_x(&r->front, r->chosen), wish, &r->detail, err);
+    const Settings *s = run->settings;
+    *r = (Report){.run = run, .has_detail = s->problem.kind == PROBLEM_TOWER};
+    r->is_robust = r->has_detail && (s->sim.ensemble > 1 || strcmp(s->motion.records, "none") != 0);
+    TRY(run_pick(run, design, &r->chosen, err));
+    r->knee = run_knee(run);
+    const Status status = take_detail(r, wish, err);
     if (status != STATUS_OK)
         report_close(r);
     return status;
@@ -53,9 +28,6 @@ Status report_open(Report *r, const char *folder, const char *design, const Deta
 
 void report_close(Report *r)
 {
-    free(r->provenance);
     detail_free(&r->detail);
-    convergence_free(&r->convergence);
-    front_free(&r->front);
     memset(r, 0, sizeof *r);
 }

@@ -7,31 +7,23 @@
  * A run of another problem than the tower has no Detail, and its page and pictures no part on a chosen design.
  *
  * Life cycle  report_open -> report_page, report_pictures -> report_close      (a zeroed Report may be closed)
- * Source of all  the run's folder, read only; the chosen design is simulated again */
+ * Ownership   the run is borrowed and only read; its chosen design is simulated again */
 #ifndef IMTET_REPORT_REPORT_H
 #define IMTET_REPORT_REPORT_H
 
-#include <limits.h>
-
-#include "report/convergence.h"
 #include "report/detail.h"
-#include "store/front.h"
-#include "settings/settings.h"
+#include "store/run.h"
 
 typedef struct {
-    char folder[PATH_MAX];
-    Settings settings; /* of the run */
-    Front front;
-    size_t knee, chosen; /* rows of the front */
-    char *provenance;    /* JSON; NULL: the run has none */
-    Convergence convergence;
-    int is_robust; /* objectives are those of several simulations, not of the one in detail */
+    const Run *run;
+    size_t knee, chosen; /* rows of the run */
+    int is_robust;       /* objectives are those of several simulations, not of the one in detail */
     int has_detail;
     Detail detail;
 } Report;
 
 /* design: an id of the front, or "knee". */
-Status report_open(Report *r, const char *folder, const char *design, const DetailWish *wish, Err *err);
+Status report_open(Report *r, const Run *run, const char *design, const DetailWish *wish, Err *err);
 Status report_page(const Report *r, const char *path, Err *err);
 
 /* Pictures FOLDER/NAME.svg and .png, the folder made where it is not there. */

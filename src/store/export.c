@@ -1,9 +1,8 @@
 #include "store/export.h"
 
-#include <jansson.h>
 #include <math.h>
-#include <string.h>
 
+#include "base/json.h"
 #include "store/output.h"
 #include "settings/settings.h"
 
@@ -23,14 +22,6 @@ static void write_names(FILE *f, const char *before, const Schema *schema, size_
     fputc('\n', f);
 }
 
-static void write_numbers(FILE *f, size_t n, const double values[])
-{
-    for (size_t j = 0; j < n; j++) {
-        fputc(',', f);
-        print_number(f, values[j]);
-    }
-}
-
 void export_front_header(FILE *f, const Schema *schema)
 {
     write_names(f, "id", schema, 0, schema->has_spread);
@@ -40,10 +31,10 @@ void export_front_row(FILE *f, const Schema *schema, long id, const double x[], 
                       const double spread[], long members)
 {
     fprintf(f, "%ld", id);
-    write_numbers(f, schema->n_var, x);
-    write_numbers(f, schema->n_obj, natural);
+    print_cells(f, schema->n_var, x);
+    print_cells(f, schema->n_obj, natural);
     if (schema->has_spread) {
-        write_numbers(f, schema->n_obj, spread);
+        print_cells(f, schema->n_obj, spread);
         if (members > 0)
             fprintf(f, ",%ld", members);
         else
@@ -52,7 +43,7 @@ void export_front_row(FILE *f, const Schema *schema, long id, const double x[], 
     fputc('\n', f);
 }
 
-void export_front(FILE *f, const Saved *h)
+void export_front(FILE *f, const Run *h)
 {
     const Schema *schema = &h->schema;
     export_front_header(f, schema);
@@ -67,35 +58,22 @@ void export_evaluations_header(FILE *f, const Schema *schema)
     write_names(f, "id,generation,kind,outcome,reason", schema, schema->n_extra, 0);
 }
 
-void export_evaluations(FILE *f, const Saved *h, int unfinished_too)
+void export_evaluations(FILE *f, const Run *h, int unfinished_too)
 {
     const Schema *schema = &h->schema;
     for (size_t i = 0; i < h->n; i++) {
-        const SavedRow *r = &h->row[i];
+        const RunRow *r = &h->row[i];
         if (r->kind == KIND_UNFINISHED && !unfinished_too)
             continue;
         fprintf(f, "%ld,%ld,%s,%s,%s", r->id, r->generation, kind_word(r->kind), r->verdict.outcome, r->verdict.reason);
-        write_numbers(f, schema->n_var, h->X + i * schema->n_var);
-        write_numbers(f, schema->n_obj, h->answer + i * schema->n_obj);
-        write_numbers(f, schema->n_extra, r->verdict.extra);
+        print_cells(f, schema->n_var, h->X + i * schema->n_var);
+        print_cells(f, schema->n_obj, h->answer + i * schema->n_obj);
+        print_cells(f, schema->n_extra, r->verdict.extra);
         fputc('\n', f);
     }
 }
 
 /* -- JSON ---------------------------------------------------------------------------------------------------------- */
-
-static json_t *number(double value)
-{
-    return isfinite(value) ? json_real(value) : json_null();
-}
-
-static json_t *numbers(size_t n, const double values[])
-{
-    json_t *list = json_array();
-    for (size_t i = 0; i < n; i++)
-        json_array_append_new(list, number(values[i]));
-    return list;
-}
 
 static void put_setting(const char *key, const char *value, void *user)
 {
@@ -126,44 +104,44 @@ static json_t *json_columns(const Schema *schema)
     return list;
 }
 
-static json_t *json_evaluation(const Saved *h, size_t i)
+static json_t *json_evaluation(const Run *h, size_t i)
 {
-    const SavedRow *r = &h->row[i];
+    const RunRow *r = &h->row[i];
     const Schema *schema = &h->schema;
     const double *spread = h->spread + i * schema->n_obj, *f = h->answer + i * schema->n_obj;
     json_t *o = json_pack("{s:I, s:I, s:s, s:s, s:s, s:o, s:o, s:b}", "id", (json_int_t)r->id, "generation",
                           (json_int_t)r->generation, "kind", kind_word(r->kind), "outcome", r->verdict.outcome,
-                          "reason", r->verdict.reason, "x", numbers(schema->n_var, h->X + i * schema->n_var), "f",
-                          isfinite(f[0]) ? numbers(schema->n_obj, f) : json_null(), "on_front", r->on_front);
+                          "reason", r->verdict.reason, "x", json_numbers(schema->n_var, h->X + i * schema->n_var), "f",
+                          isfinite(f[0]) ? json_numbers(schema->n_obj, f) : json_null(), "on_front", r->on_front);
     int known = 0;
     for (size_t k = 0; k < schema->n_obj; k++)
         known = known || isfinite(spread[k]);
-    json_object_set_new(o, "spread", known ? numbers(schema->n_obj, spread) : json_null());
-    if (r->members > h->settings.sim.ensemble)
-        json_object_set_new(o, "mean", numbers(schema->n_obj, h->F + i * schema->n_obj));
+    json_object_set_new(o, "spread", known ? json_numbers(schema->n_obj, spread) : json_null());
+    if (r->members > h->settings->sim.ensemble)
+        json_object_set_new(o, "mean", json_numbers(schema->n_obj, h->F + i * schema->n_obj));
     if (schema->has_spread)
         json_object_set_new(o, "members", json_integer(r->members));
     if (schema->n_extra > 0)
-        json_object_set_new(o, "measures", numbers(schema->n_extra, r->verdict.extra));
+        json_object_set_new(o, "measures", json_numbers(schema->n_extra, r->verdict.extra));
     return o;
 }
 
-static json_t *json_generation(const SavedGeneration *g)
+static json_t *json_generation(const RunGeneration *g)
 {
     return json_pack("{s:I, s:I, s:I, s:I, s:I, s:o, s:o}", "number", (json_int_t)g->number, "simulated",
                      (json_int_t)g->simulated, "failed", (json_int_t)g->failed, "front", (json_int_t)g->front,
-                     "predicted", (json_int_t)g->predicted, "surrogate_error", number(g->surrogate_error),
-                     "hypervolume", number(g->hypervolume));
+                     "predicted", (json_int_t)g->predicted, "surrogate_error", json_number(g->surrogate_error),
+                     "hypervolume", json_number(g->hypervolume));
 }
 
-Status export_json(FILE *f, const Saved *h, Err *err)
+Status export_json(FILE *f, const Run *h, Err *err)
 {
     json_t *evaluations = json_array(), *generations = json_array();
     for (size_t i = 0; i < h->n; i++)
         json_array_append_new(evaluations, json_evaluation(h, i));
     for (size_t g = 0; g < h->n_generations; g++)
         json_array_append_new(generations, json_generation(&h->generation[g]));
-    json_t *all = json_pack("{s:o, s:o, s:o, s:o}", "settings", json_settings(&h->settings), "columns",
+    json_t *all = json_pack("{s:o, s:o, s:o, s:o}", "settings", json_settings(h->settings), "columns",
                             json_columns(&h->schema), "evaluations", evaluations, "generations", generations);
     if (!all)
         return fail(err, STATUS_NO_MEMORY, "no memory for the run as JSON");

@@ -7,21 +7,21 @@
 
 #include <stdio.h>
 
-#include "store/saved.h"
+#include "store/run.h"
 
 /* One design of a front: id, x (n_var), f (n_obj, natural); spread (n_obj) is read where the schema has it. */
 void export_front_header(FILE *f, const Schema *schema);
 void export_front_row(FILE *f, const Schema *schema, long id, const double x[], const double natural[],
                       const double spread[], long members);
 
-void export_front(FILE *f, const Saved *h); /* front.csv */
+void export_front(FILE *f, const Run *h); /* front.csv */
 
 /* Every finished generation and polished designs: evaluations.csv. With unfinished_too also what is stored of the
  * generation that is under way or was cut short, kind `unfinished`. Rows come without the header. */
 void export_evaluations_header(FILE *f, const Schema *schema);
-void export_evaluations(FILE *f, const Saved *h, int unfinished_too);
+void export_evaluations(FILE *f, const Run *h, int unfinished_too);
 
 /* Settings, columns, evaluations (unfinished ones too), front and generations as one object. */
-Status export_json(FILE *f, const Saved *h, Err *err);
+Status export_json(FILE *f, const Run *h, Err *err);
 
 #endif

@@ -6,7 +6,7 @@
 
 #include "store/output.h"
 
-size_t nearest_rows(const Saved *h, size_t rows[NEAREST_MAX])
+size_t nearest_rows(const Run *h, size_t rows[NEAREST_MAX])
 {
     size_t n = 0;
     for (size_t i = 0; i < h->n; i++) {
@@ -24,21 +24,16 @@ size_t nearest_rows(const Saved *h, size_t rows[NEAREST_MAX])
     return n;
 }
 
-static void write_row(FILE *f, const Saved *h, size_t row)
+static void write_row(FILE *f, const Run *h, size_t row)
 {
-    const Schema *s = &h->schema;
-    const double *part[] = {&h->row[row].violation, h->X + row * s->n_var, h->F + row * s->n_obj};
-    const size_t length[] = {1, s->n_var, s->n_obj};
     fprintf(f, "%ld", h->row[row].id);
-    for (int p = 0; p < 3; p++)
-        for (size_t j = 0; j < length[p]; j++) {
-            fputc(',', f);
-            print_number(f, part[p][j]);
-        }
+    print_cells(f, 1, &h->row[row].violation);
+    print_cells(f, h->schema.n_var, run_x(h, row));
+    print_cells(f, h->schema.n_obj, run_f(h, row));
     fputc('\n', f);
 }
 
-Status nearest_write(const char *folder, const Saved *h, size_t n, const size_t rows[], Err *err)
+Status nearest_write(const char *folder, const Run *h, size_t n, const size_t rows[], Err *err)
 {
     char path[PATH_MAX];
     Output o;

@@ -6,14 +6,14 @@
 #ifndef IMTET_STORE_NEAREST_H
 #define IMTET_STORE_NEAREST_H
 
-#include "store/saved.h"
+#include "store/run.h"
 
 enum { NEAREST_MAX = 10 };
 
 /* Rows of the run with the least violation, the least first, ties by number; returns how many. 0: nothing succeeded. */
-size_t nearest_rows(const Saved *h, size_t rows[NEAREST_MAX]);
+size_t nearest_rows(const Run *h, size_t rows[NEAREST_MAX]);
 
 /* folder/nearest.csv; with n = 0 it is removed: a run that has gone on may have a front now. */
-Status nearest_write(const char *folder, const Saved *h, size_t n, const size_t rows[], Err *err);
+Status nearest_write(const char *folder, const Run *h, size_t n, const size_t rows[], Err *err);
 
 #endif

@@ -91,3 +91,11 @@ void print_number(FILE *stream, double value)
     }
     fputs(text, stream);
 }
+
+void print_cells(FILE *stream, size_t n, const double values[])
+{
+    for (size_t j = 0; j < n; j++) {
+        fputc(',', stream);
+        print_number(stream, values[j]);
+    }
+}

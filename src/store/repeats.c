@@ -5,12 +5,12 @@
 #include "moga/archive.h"
 #include "settings/settings.h"
 
-static int is_known_to_search(const SavedRow *r)
+static int is_known_to_search(const RunRow *r)
 {
     return r->kind != KIND_UNFINISHED && r->kind != KIND_POLISHED;
 }
 
-static Status insert_row(Archive *a, const Saved *h, size_t i, Err *err)
+static Status insert_row(Archive *a, const Run *h, size_t i, Err *err)
 {
     double f[OBJECTIVES_MAX];
     const size_t m = h->schema.n_obj;
@@ -21,14 +21,14 @@ static Status insert_row(Archive *a, const Saved *h, size_t i, Err *err)
 }
 
 /* Row i of the run is row `at` of the archive. */
-static void take_design(Saved *h, size_t i, const Archive *a, size_t at)
+static void take_design(Run *h, size_t i, const Archive *a, size_t at)
 {
     const size_t m = h->schema.n_obj;
-    const double members = (double)h->settings.sim.ensemble;
-    SavedRow *r = &h->row[i];
+    const double members = (double)h->settings->sim.ensemble;
+    RunRow *r = &h->row[i];
     if (a->answers[at] == 0)
         return;
-    r->members = (long)a->answers[at] * h->settings.sim.ensemble;
+    r->members = (long)a->answers[at] * h->settings->sim.ensemble;
     for (size_t k = 0; k < m && a->usable[at]; k++) {
         h->F[i * m + k] = schema_objective(&h->schema, k)->sense * a->F[at * m + k];
         if (a->n_repeats > 0)
@@ -36,7 +36,7 @@ static void take_design(Saved *h, size_t i, const Archive *a, size_t at)
     }
 }
 
-static Status join(Saved *h, Archive *a, Err *err)
+static Status join(Run *h, Archive *a, Err *err)
 {
     for (size_t i = 0; i < h->n; i++)
         if (is_known_to_search(&h->row[i]))
@@ -48,10 +48,10 @@ static Status join(Saved *h, Archive *a, Err *err)
     return STATUS_OK;
 }
 
-Status repeats_join(Saved *h, Err *err)
+Status repeats_join(Run *h, Err *err)
 {
     Archive a;
-    if (!schema_is_noisy(&h->settings) || h->n == 0)
+    if (!schema_is_noisy(h->settings) || h->n == 0)
         return STATUS_OK;
     TRY(archive_init(&a, h->n, h->schema.n_var, h->schema.n_obj, 0, err));
     const Status status = join(h, &a, err);

@@ -12,8 +12,8 @@
 #ifndef IMTET_STORE_REPEATS_H
 #define IMTET_STORE_REPEATS_H
 
-#include "store/saved.h"
+#include "store/run.h"
 
-Status repeats_join(Saved *h, Err *err);
+Status repeats_join(Run *h, Err *err);
 
 #endif

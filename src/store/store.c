@@ -16,6 +16,7 @@
 #include "store/front_share.h"
 #include "store/lock.h"
 #include "store/output.h"
+#include "store/run_read.h"
 #include "store/tables.h"
 #include "settings/settings.h"
 
@@ -24,7 +25,7 @@ struct RunStore {
     const Schema *schema;
     int lock;
     Database *db;
-    Saved saved; /* of a run that goes on */
+    Run saved; /* of a run that goes on */
     int has_saved, has_polished;
 
     int in_transaction;
@@ -48,9 +49,17 @@ const char *store_folder(const RunStore *store)
     return store->folder;
 }
 
-const Saved *store_saved(const RunStore *store)
+const Run *store_run(const RunStore *store)
 {
     return store->has_saved ? &store->saved : NULL;
+}
+
+Run store_give_run(RunStore *store)
+{
+    const Run run = store->saved;
+    store->saved = (Run){0};
+    store->has_saved = 0;
+    return run;
 }
 
 double store_hypervolume(const RunStore *store)
@@ -81,12 +90,6 @@ static int has_file(const RunStore *store, const char *name)
     return access(path, F_OK) == 0;
 }
 
-/* Of a version without a database: nothing to go on from. */
-static int holds_old_run(const RunStore *store)
-{
-    return !has_file(store, "run.sqlite") && (has_file(store, "front.csv") || has_file(store, "evaluations.csv"));
-}
-
 static Status take_lock(RunStore *store, Err *err)
 {
     char path[PATH_MAX];
@@ -101,7 +104,7 @@ static Status take_free_folder(RunStore *store, const char *folder, Err *err)
     LockHolder holder;
     for (int i = 2;; i++) {
         path_in(store, "lock", lock);
-        if (!has_file(store, "run.sqlite") && !holds_old_run(store) && !lock_is_held(lock, &holder))
+        if (!has_file(store, "run.sqlite") && !lock_is_held(lock, &holder))
             return take_lock(store, err);
         if (snprintf(store->folder, sizeof store->folder, "%s-%d", folder, i) >= (int)sizeof store->folder)
             return fail(err, STATUS_IO, "%.200s...: the path is too long", folder);
@@ -117,15 +120,11 @@ static Status open_database(RunStore *store, Err *err)
 
 static Status take_run(RunStore *store, Err *err)
 {
-    if (holds_old_run(store))
-        return fail(err, STATUS_IO,
-                    "%s: holds a run without a database, which cannot go on; choose another --out, or --new",
-                    store->folder);
     TRY(take_lock(store, err));
     if (!has_file(store, "run.sqlite"))
         return STATUS_OK;
     TRY(open_database(store, err));
-    TRY(saved_load(&store->saved, store->db, err));
+    TRY(run_load(&store->saved, store->db, store->folder, err));
     database_grow(store->db);
     store->has_saved = 1;
     store->has_polished = store->saved.n > 0 && store->saved.row[store->saved.n - 1].id >= POLISHED_FIRST;
@@ -140,7 +139,7 @@ Status store_forget_empty(RunStore *store, Err *err)
     if (!store->has_saved || store->saved.n > 0 || store->saved.n_generations > 0)
         return STATUS_OK;
     database_close(store->db);
-    saved_free(&store->saved);
+    run_free(&store->saved);
     store->db = NULL;
     store->has_saved = 0;
     for (size_t i = 0; i < sizeof NAMES / sizeof NAMES[0]; i++) {
@@ -201,7 +200,7 @@ static void put_front(FILE *f, const void *saved)
 
 static void put_evaluations(FILE *f, const void *saved)
 {
-    export_evaluations_header(f, &((const Saved *)saved)->schema);
+    export_evaluations_header(f, &((const Run *)saved)->schema);
     export_evaluations(f, saved, 0);
 }
 
@@ -238,7 +237,7 @@ Status store_begin(RunStore *store, const Schema *schema, const Settings *used, 
     TRY(tables_create(path, schema, used, provenance, err));
     TRY(open_database(store, err));
     database_grow(store->db);
-    const Saved empty = {.schema = *schema};
+    const Run empty = {.schema = *schema};
     TRY(write_file(store, "settings.ini", put_settings, used, err));
     TRY(write_file(store, "provenance.json", put_line, provenance, err));
     TRY(write_file(store, "evaluations.csv", put_evaluations, &empty, err));
@@ -249,7 +248,7 @@ Status store_begin(RunStore *store, const Schema *schema, const Settings *used, 
 /* Where the search stands: what was on its front, and how many designs its finished generations have. */
 static Status take_up(RunStore *store, Err *err)
 {
-    const Saved *h = &store->saved;
+    const Run *h = &store->saved;
     size_t n = 0;
     while (n < h->n && h->row[n].kind != KIND_UNFINISHED && h->row[n].id < POLISHED_FIRST)
         n++;
@@ -384,15 +383,15 @@ static Status store_moment(RunStore *store, const SearchView *v, double seconds,
 /* What the database now has of this generation, at the end of evaluations.csv. */
 static Status append_evaluations(RunStore *store, const SearchView *v, Err *err)
 {
-    Saved h = {.schema = *store->schema};
-    Status status = saved_load_rows(&h, store->db, (long)store->n_exported + 1, (long)v->n, err);
+    Run h = {.schema = *store->schema};
+    Status status = run_load_rows(&h, store->db, (long)store->n_exported + 1, (long)v->n, err);
     if (status == STATUS_OK && h.n != v->n - store->n_exported)
         status = fail(err, STATUS_INTERNAL, "%s: the search knows of %zu simulations, %zu are stored",
                       database_path(store->db), v->n, store->n_exported + h.n);
     if (status == STATUS_OK)
         export_evaluations(store->evaluations, &h, 0);
     h.schema = (Schema){0}; /* borrowed */
-    saved_free(&h);
+    run_free(&h);
     TRY(status);
     store->n_exported = v->n;
     return flush(store, store->evaluations, "evaluations.csv", err);
@@ -404,16 +403,21 @@ static Status write_front(RunStore *store, const SearchView *v, Err *err)
     return write_file(store, "front.csv", front_lines_put, &store->lines, err);
 }
 
-/* The front with polished designs is worked out by Saved. Evaluations first: whoever finds a design in front.csv finds
- * it in evaluations.csv too. */
-static Status write_whole_tables(RunStore *store, int evaluations_too, Err *err)
+/* Evaluations first: a design that is in front.csv is in evaluations.csv too. */
+static Status write_whole_tables(const RunStore *store, const Run *run, int evaluations_too, Err *err)
 {
-    Saved h;
-    TRY(saved_load(&h, store->db, err));
-    Status status = evaluations_too ? write_file(store, "evaluations.csv", put_evaluations, &h, err) : STATUS_OK;
-    if (status == STATUS_OK)
-        status = write_file(store, "front.csv", put_front, &h, err);
-    saved_free(&h);
+    if (evaluations_too)
+        TRY(write_file(store, "evaluations.csv", put_evaluations, run, err));
+    return write_file(store, "front.csv", put_front, run, err);
+}
+
+/* The same of what the database has now. */
+static Status renew_tables(RunStore *store, int evaluations_too, Err *err)
+{
+    Run run;
+    TRY(run_load(&run, store->db, store->folder, err));
+    const Status status = write_whole_tables(store, &run, evaluations_too, err);
+    run_free(&run);
     return status;
 }
 
@@ -442,8 +446,7 @@ Status store_generation(RunStore *store, const SearchView *v, double seconds, do
     TRY(front_share_follow(&store->share, v, err));
     TRY(commit_generation(store, v, seconds, session, err));
     TRY(append_evaluations(store, v, err));
-    return store->has_polished || store->schema->has_spread ? write_whole_tables(store, 0, err)
-                                                            : write_front(store, v, err);
+    return store->has_polished || store->schema->has_spread ? renew_tables(store, 0, err) : write_front(store, v, err);
 }
 
 /* -- logs and the end ---------------------------------------------------------------------------------------------- */
@@ -497,20 +500,31 @@ static Status end_session(RunStore *store, const char *stopped, int is_final, do
                        ended, stopped, (long)is_final, session, store->session);
 }
 
-static Status close_all(RunStore *store, const char *stopped, int is_final, double session, Err *err)
+static Status close_files(RunStore *store, Err *err)
 {
-    TRY(end_session(store, stopped, is_final, session, err));
-    if (store->has_polished)
-        TRY(write_whole_tables(store, 1, err));
     TRY(close_file(&store->evaluations, store, "evaluations.csv", err));
     TRY(close_file(&store->events, store, "log.jsonl", err));
     return close_file(&store->log, store, "log.txt", err);
 }
 
-Status store_close(RunStore *store, const char *stopped, int is_final, double session, Err *err)
+static Status read_at_the_end(RunStore *store, Run *run, Err *err)
 {
-    const Status status = close_all(store, stopped, is_final, session, err);
+    TRY(run_load(run, store->db, store->folder, err));
+    return store->has_polished ? write_whole_tables(store, run, 1, err) : STATUS_OK;
+}
+
+Status store_close(RunStore *store, const char *stopped, int is_final, double session, Run *run, Err *err)
+{
+    Run unwanted = {0}, *last = run ? run : &unwanted;
+    Status status = end_session(store, stopped, is_final, session, err);
+    if (status == STATUS_OK && (run || store->has_polished))
+        status = read_at_the_end(store, last, err);
+    if (status == STATUS_OK)
+        status = close_files(store, err);
     store_free(store);
+    run_free(&unwanted);
+    if (status != STATUS_OK && run)
+        run_free(run);
     return status;
 }
 
@@ -523,7 +537,7 @@ void store_free(RunStore *store)
         if (files[i])
             fclose(files[i]);
     database_close(store->db);
-    saved_free(&store->saved);
+    run_free(&store->saved);
     free(store->was_on_front);
     front_lines_free(&store->lines);
     front_share_free(&store->share);
@@ -543,10 +557,10 @@ static Status insert_polished(RunStore *store, const Schema *schema, const Store
     return tables_insert(store->db, schema, *id, (long)generation, kind_word(KIND_POLISHED), design, err);
 }
 
-Status store_read(RunStore *store, Saved *saved, Err *err)
+Status store_read(RunStore *store, Run *run, Err *err)
 {
     TRY(store_flush(store, err));
-    return saved_load(saved, store->db, err);
+    return run_load(run, store->db, store->folder, err);
 }
 
 Status store_polished(RunStore *store, const StoredDesign *better, size_t n_tried, size_t n_simulated, Err *err)
@@ -572,16 +586,15 @@ static Status add_all(RunStore *store, size_t n, const StoredDesign designs[], l
             *first_id = id;
     }
     TRY(store_flush(store, err));
-    return write_whole_tables(store, 1, err);
+    return renew_tables(store, 1, err);
 }
 
 Status store_add_evaluations(const char *folder, size_t n, const StoredDesign designs[], long *first_id, Err *err)
 {
     RunStore *store;
     char path[PATH_MAX];
-    if (!saved_path(folder, path, sizeof path))
-        return fail(err, STATUS_MISSING, "%s/run.sqlite: is not there; the run has no database to add designs to",
-                    folder);
+    if (!run_path(folder, path, sizeof path))
+        return fail(err, STATUS_MISSING, "%s: holds no run: run.sqlite is not there", folder);
     TRY(store_open(&store, folder, 0, err));
     const Status status = add_all(store, n, designs, first_id, err);
     store_free(store);

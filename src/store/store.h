@@ -28,7 +28,8 @@
 
 #include <jansson.h>
 
-#include "store/saved.h"
+#include "store/run.h"
+#include "store/tables.h"
 #include "simulator/subject.h"
 
 typedef struct Settings Settings;
@@ -43,7 +44,8 @@ Status store_open(RunStore **out, const char *folder, int fresh, Err *err);
 const char *store_folder(const RunStore *store);
 
 /* The run that the folder held when it was opened; NULL: none. */
-const Saved *store_saved(const RunStore *store);
+const Run *store_run(const RunStore *store);
+Run store_give_run(RunStore *store); /* it passes to the caller, for run_free */
 
 /* A run in which nothing was simulated is no run yet: forgotten, so that it begins anew, with whatever settings. */
 Status store_forget_empty(RunStore *store, Err *err);
@@ -67,26 +69,20 @@ __attribute__((format(printf, 3, 4))) Status store_log(RunStore *store, Err *err
 Status store_event(RunStore *store, json_t *event, Err *err);
 
 /* The run as the database has it now. */
-Status store_read(RunStore *store, Saved *saved, Err *err);
+Status store_read(RunStore *store, Run *run, Err *err);
 
 /* One more design of the finished search has been tried to polish; `better` (NULL: it did not become better) joins the
  * run as in store_add_evaluations. */
-typedef struct StoredDesign StoredDesign;
 Status store_polished(RunStore *store, const StoredDesign *better, size_t n_tried, size_t n_simulated, Err *err);
 
-/* Why the session ends. is_final: there is nothing to go on with. */
-Status store_close(RunStore *store, const char *stopped, int is_final, double session, Err *err);
+/* Why the session ends. is_final: there is nothing to be resumed. run (NULL: not wanted) becomes the run as it is then,
+ * for run_free. The store is released in any case. */
+Status store_close(RunStore *store, const char *stopped, int is_final, double session, Run *run, Err *err);
 void store_free(RunStore *store); /* NULL is fine */
 
 /* Designs from outside the search, polished ones say, into the archive of a run that nobody works on: they get ids from
- * POLISHED_FIRST on and the kind `polished`, and front.csv and evaluations.csv are written anew. The search does not
- * see them: a run that goes on later does what it would have done without them. first_id may be NULL. */
-struct StoredDesign {
-    const double *x, *f;  /* (n_var); (n_obj) natural signs, not read unless the outcome is ok */
-    const double *spread; /* (n_obj) standard deviations, NAN or NULL where not known */
-    double violation;     /* of the user's limits: 0 where they hold */
-    Verdict verdict;
-};
+ * POLISHED_FIRST on and the kind `polished`, and front.csv and evaluations.csv are written again. The search does not
+ * see them: a run that is resumed later does what it would have done without them. first_id may be NULL. */
 Status store_add_evaluations(const char *folder, size_t n, const StoredDesign designs[], long *first_id, Err *err);
 
 #endif

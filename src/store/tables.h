@@ -5,12 +5,20 @@
 #define IMTET_STORE_TABLES_H
 
 #include "store/database.h"
-#include "store/store.h"
+#include "simulator/schema.h"
 
 typedef struct Settings Settings;
 
 /* The database of a new run at `path`. Made beside its place and renamed: it is there whole or not at all. */
 Status tables_create(const char *path, const Schema *schema, const Settings *used, const char *provenance, Err *err);
+
+/* What is stored of a design. */
+typedef struct {
+    const double *x, *f;  /* (n_var); (n_obj) natural signs, not read unless the outcome is ok */
+    const double *spread; /* (n_obj) standard deviations, NAN or NULL where not known */
+    double violation;     /* of the user's limits: 0 where they hold */
+    Verdict verdict;
+} StoredDesign;
 
 /* One evaluation; kind NULL: its generation is not finished. A row with that id is replaced. */
 Status tables_insert(Database *db, const Schema *schema, long id, long generation, const char *kind,

@@ -42,18 +42,18 @@ Status advance_lately(const SearchView *v, double *igd, Err *err)
 
 /* -- of a stored run ----------------------------------------------------------------------------------------------- */
 
-static int is_first_answer(const SavedRow *r)
+static int is_first_answer(const RunRow *r)
 {
     return r->id < POLISHED_FIRST && r->kind != KIND_UNFINISHED && r->kind != KIND_REPEAT;
 }
 
 /* Every objective minimised; rows of the search's own front into front (n); returns how many. */
-static size_t minimise(const Saved *h, double F[], size_t front[])
+static size_t minimise(const Run *h, double F[], size_t front[])
 {
     const size_t m = h->schema.n_obj;
     size_t n = 0;
     for (size_t i = 0; i < h->n; i++) {
-        const SavedRow *r = &h->row[i];
+        const RunRow *r = &h->row[i];
         for (size_t k = 0; k < m; k++)
             F[i * m + k] = schema_objective(&h->schema, k)->sense * h->F[i * m + k];
         if (is_first_answer(r) && r->ok && r->entered != NEVER && r->left == NEVER)
@@ -62,7 +62,7 @@ static size_t minimise(const Saved *h, double F[], size_t front[])
     return n;
 }
 
-static void follow(const Saved *h, const double F[], Igd *q, double igd[])
+static void follow(const Run *h, const double F[], Igd *q, double igd[])
 {
     size_t row = 0;
     for (size_t g = 0; g < h->n_generations; g++) {
@@ -73,7 +73,7 @@ static void follow(const Saved *h, const double F[], Igd *q, double igd[])
     }
 }
 
-Status advance_of_run(const Saved *h, double igd[], Err *err)
+Status advance_of_run(const Run *h, double igd[], Err *err)
 {
     double *F = calloc(h->n * h->schema.n_obj + 1, sizeof *F);
     size_t *front = calloc(h->n + 1, sizeof *front), n = 0;

@@ -7,13 +7,13 @@
 #define IMTET_STUDY_ADVANCE_H
 
 #include "moga/igd.h"
-#include "store/saved.h"
+#include "store/run.h"
 
 /* From nine tenths of the simulations to now; NAN: no front, or nobody was known then. */
 Status advance_lately(const SearchView *v, double *igd, Err *err);
 
 /* From the end of every generation to the search's last front: igd (h->n_generations), NAN where nobody was known or
  * there is no front. */
-Status advance_of_run(const Saved *h, double igd[], Err *err);
+Status advance_of_run(const Run *h, double igd[], Err *err);
 
 #endif

@@ -4,7 +4,8 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "store/front.h"
+#include "base/table.h"
+#include "store/run_read.h"
 
 static Status copy_columns(const Table *t, const char *path, const Schema *schema, double *X, Err *err)
 {
@@ -31,20 +32,27 @@ static Status read_table(const char *path, const Schema *schema, double **X, siz
     return status;
 }
 
-static Status read_run(const char *folder, const Schema *schema, double **X, size_t *n, Err *err)
+static Status copy_front(const Run *run, const Schema *schema, double **X, size_t *n, Err *err)
 {
-    Front front;
-    TRY(front_read(&front, folder, err));
-    Status status = STATUS_OK;
-    if (front.schema.n_var != schema->n_var)
-        status = fail(err, STATUS_BAD_DATA, "search.start: %s: its designs have %zu variables, this search has %zu",
-                      folder, front.schema.n_var, schema->n_var);
-    else if (!(*X = calloc(front.n * schema->n_var + 1, sizeof **X)))
-        status = fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", front.n);
-    for (size_t i = 0; status == STATUS_OK && i < front.n; i++)
-        memcpy(*X + i * schema->n_var, front_x(&front, i), schema->n_var * sizeof **X);
-    *n = front.n;
-    front_free(&front);
+    const size_t n_var = run->schema.n_var;
+    if (n_var != schema->n_var)
+        return fail(err, STATUS_BAD_DATA, "search.start: %s: its designs have %zu variables, this search has %zu",
+                    run->folder, n_var, schema->n_var);
+    *X = calloc(run->n_front * n_var + 1, sizeof **X);
+    if (!*X)
+        return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", run->n_front);
+    for (size_t i = 0; i < run->n_front; i++)
+        memcpy(*X + i * n_var, run_x(run, run->front[i]), n_var * sizeof **X);
+    *n = run->n_front;
+    return STATUS_OK;
+}
+
+static Status read_front(const char *folder, const Schema *schema, double **X, size_t *n, Err *err)
+{
+    Run run;
+    TRY(run_read(&run, folder, err));
+    const Status status = copy_front(&run, schema, X, n, err);
+    run_free(&run);
     return status;
 }
 
@@ -58,7 +66,7 @@ Status given_read(const char *start, const Schema *schema, double **X, size_t *n
     if (stat(start, &there) != 0)
         return fail(err, STATUS_MISSING, "search.start: %s: is not there", start);
     const Status status =
-        S_ISDIR(there.st_mode) ? read_run(start, schema, X, n, err) : read_table(start, schema, X, n, err);
+        S_ISDIR(there.st_mode) ? read_front(start, schema, X, n, err) : read_table(start, schema, X, n, err);
     if (status != STATUS_OK) {
         free(*X);
         *X = NULL;

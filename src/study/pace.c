@@ -61,7 +61,7 @@ static double seconds_since(const char *utc)
     return strptime(utc, "%Y-%m-%dT%H:%M:%SZ", &parts) ? difftime(time(NULL), timegm(&parts)) : NAN;
 }
 
-static void count(Standing *out, const Saved *saved)
+static void count(Standing *out, const Run *saved)
 {
     for (size_t i = 0; i < saved->n; i++) {
         const int polished = saved->row[i].id >= POLISHED_FIRST;
@@ -72,7 +72,7 @@ static void count(Standing *out, const Saved *saved)
 }
 
 /* Thread-seconds of a session's simulations. */
-static double simulated_seconds(const Saved *saved, size_t number)
+static double simulated_seconds(const Run *saved, size_t number)
 {
     const long first = saved->session[number].simulated_before + 1;
     const long end = number + 1 < saved->n_sessions ? saved->session[number + 1].simulated_before + 1 : POLISHED_FIRST;
@@ -83,9 +83,9 @@ static double simulated_seconds(const Saved *saved, size_t number)
     return seconds;
 }
 
-Effort effort_of(const Saved *saved, size_t session)
+Effort effort_of(const Run *saved, size_t session)
 {
-    const SavedSession *s = &saved->session[session];
+    const RunSession *s = &saved->session[session];
     Effort e = {.waiting = s->waited_s / s->search_s, .surrogate = s->surrogate_s / s->search_s};
     e.search = 1.0 - e.waiting - e.surrogate;
     const double simulated = simulated_seconds(saved, session);
@@ -102,22 +102,22 @@ void effort_words(const Effort *e, char text[160])
 }
 
 /* What a session told; one that was killed told its last generation at most, and its simulations since tell more. */
-static double session_seconds(const Saved *saved, size_t number)
+static double session_seconds(const Run *saved, size_t number)
 {
-    const SavedSession *s = &saved->session[number];
+    const RunSession *s = &saved->session[number];
     const double told = isfinite(s->seconds) ? s->seconds : 0.0;
     if (s->ended[0])
         return told;
     return fmax(told, simulated_seconds(saved, number) / fmax((double)s->threads, 1.0));
 }
 
-void standing_of(Standing *out, const char *folder, const Saved *saved)
+void standing_of(Standing *out, const char *folder, const Run *saved)
 {
     char lock[PATH_MAX];
     *out = (Standing){.hypervolume = NAN};
     snprintf(lock, sizeof lock, "%s/lock", folder);
     const int is_running = lock_is_held(lock, &out->holder);
-    const SavedSession *last = saved->n_sessions > 0 ? &saved->session[saved->n_sessions - 1] : NULL;
+    const RunSession *last = saved->n_sessions > 0 ? &saved->session[saved->n_sessions - 1] : NULL;
     out->state = is_running               ? RUN_RUNNING
                  : last && last->is_final ? RUN_FINISHED
                  : last && last->ended[0] ? RUN_PAUSED

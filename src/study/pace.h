@@ -3,7 +3,7 @@
 #define IMTET_STUDY_PACE_H
 
 #include "store/lock.h"
-#include "store/saved.h"
+#include "store/run.h"
 
 typedef struct Settings Settings;
 
@@ -41,12 +41,12 @@ typedef struct {
     double waiting, surrogate, search, busy;
 } Effort;
 
-Effort effort_of(const Saved *saved, size_t session);
+Effort effort_of(const Run *saved, size_t session);
 
 /* Of wall time, as a sentence. */
 void effort_words(const Effort *e, char text[160]);
 
 const char *state_words(RunState state);
-void standing_of(Standing *out, const char *folder, const Saved *saved);
+void standing_of(Standing *out, const char *folder, const Run *saved);
 
 #endif

@@ -9,6 +9,7 @@
 #include <omp.h>
 
 #include "base/clock.h"
+#include "base/json.h"
 #include "moga/cover.h"
 #include "study/advance.h"
 #include "study/given.h"
@@ -92,7 +93,7 @@ static Status compare_inputs(Study *study, Differences *d, Err *err)
 {
     Inputs now;
     TRY(provenance_inputs(&now, study->subject, err));
-    json_t *provenance = json_loads(store_saved(study->store)->provenance, 0, NULL);
+    json_t *provenance = json_loads(store_run(study->store)->provenance, 0, NULL);
     compare_hash(d, "motion.record", stored_hash(provenance, "record_fnv1a"), now.record);
     if (now.record == stored_hash(provenance, "record_fnv1a"))
         compare_hash(d, "motion.records", stored_hash(provenance, "records_fnv1a"), now.records);
@@ -104,7 +105,7 @@ static Status compare_inputs(Study *study, Differences *d, Err *err)
 /* A limit below what is there already would leave a run that is neither finished nor can go on. */
 static Status check_limit(const Study *study, size_t n_there, Err *err)
 {
-    const long was = store_saved(study->store)->settings.search.max_evals, now = study->used.search.max_evals;
+    const long was = store_run(study->store)->settings->search.max_evals, now = study->used.search.max_evals;
     return now == was || now >= (long)n_there
                ? STATUS_OK
                : fail(err, STATUS_BAD_DATA, "%s: search.max_evals = %ld is less than the %zu simulations that it holds",
@@ -116,7 +117,7 @@ static Status settle_settings(Study *study, Err *err)
 {
     const char *folder = study->summary->folder;
     Differences d = {.lines = study->differences};
-    settings_compare(&store_saved(study->store)->settings, &study->used, compare_one, &d);
+    settings_compare(store_run(study->store)->settings, &study->used, compare_one, &d);
     TRY(compare_inputs(study, &d, err));
     const size_t n = d.n_limits + d.n_others;
     study->has_new_limits = d.n_limits > 0;
@@ -164,8 +165,8 @@ static Status simulation_done(const Simulation *simulation, void *user, Err *err
 static int recall(size_t number, const double x[], double f[], Verdict *verdict, void *user)
 {
     const Study *study = user;
-    const Saved *h = store_saved(study->store);
-    const size_t i = h ? saved_find(h, (long)number) : 0;
+    const Run *h = store_run(study->store);
+    const size_t i = h ? run_find(h, (long)number) : 0;
     if (!h || i == h->n || memcmp(h->X + i * h->schema.n_var, x, h->schema.n_var * sizeof *x) != 0)
         return 0;
     memcpy(f, h->answer + i * h->schema.n_obj, h->schema.n_obj * sizeof *f);
@@ -173,18 +174,13 @@ static int recall(size_t number, const double x[], double f[], Verdict *verdict,
     return 1;
 }
 
-static json_t *number_or_null(double value)
-{
-    return isfinite(value) ? json_real(value) : json_null();
-}
-
 static json_t *generation_event(const SearchView *v, double hypervolume, double igd, double seconds)
 {
     return json_pack("{s:s, s:I, s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:f, s:f, s:f, s:f}", "event", "generation",
                      "number", (json_int_t)v->generation_now, "simulated", (json_int_t)v->n, "repeats",
                      (json_int_t)v->n_repeats, "failed", (json_int_t)v->n_failed, "front", (json_int_t)v->n_front,
-                     "surrogate_error", number_or_null(v->surrogate_error), "hypervolume", number_or_null(hypervolume),
-                     "hypervolume_error", number_or_null(cover_error(hypervolume)), "igd_plus", number_or_null(igd),
+                     "surrogate_error", json_number(v->surrogate_error), "hypervolume", json_number(hypervolume),
+                     "hypervolume_error", json_number(cover_error(hypervolume)), "igd_plus", json_number(igd),
                      "seconds", seconds, "search_s", v->seconds, "waited_s", v->waited_s, "surrogate_s",
                      v->surrogate_s);
 }
@@ -289,7 +285,7 @@ static Status begin(Study *study, Err *err)
     return status;
 }
 
-static void sum_up(StudySummary *sum, const Saved *h)
+static void sum_up(StudySummary *sum, const Run *h)
 {
     for (size_t i = 0; i < h->n; i++)
         if (h->row[i].id < POLISHED_FIRST) {
@@ -305,7 +301,7 @@ static void sum_up(StudySummary *sum, const Saved *h)
 
 static Status go_on(Study *study, Err *err)
 {
-    const Saved *h = store_saved(study->store);
+    const Run *h = store_run(study->store);
     StudySummary *sum = study->summary;
     TRY(settle_settings(study, err));
     sum_up(sum, h);
@@ -313,19 +309,20 @@ static Status go_on(Study *study, Err *err)
     study->generation = h->n_generations > 0 ? (size_t)h->generation[h->n_generations - 1].number + 1 : 0;
     study->first_generation = study->generation;
     TRY(check_limit(study, sum->n_before, err));
-    snprintf(study->used.run.out, OPTION_TEXT_MAX, "%s", h->settings.run.out);
+    snprintf(study->used.run.out, OPTION_TEXT_MAX, "%s", h->settings->run.out);
     return store_go_on(study->store, subject_schema(study->subject), &study->used, err);
 }
 
 static Status prepare(Study *study, const Settings *s, Err *err)
 {
     TRY(subject_open(&study->subject, s, err));
-    TRY(store_open(&study->store, s->run.out, study->options->fresh, err));
+    if (!study->store)
+        TRY(store_open(&study->store, s->run.out, study->options->fresh, err));
     TRY(store_forget_empty(study->store, err));
     snprintf(study->summary->folder, sizeof study->summary->folder, "%s", store_folder(study->store));
     study->summary->max_evals = s->search.max_evals;
     study->used = settings_as_used(s, study->summary->folder);
-    TRY(store_saved(study->store) ? go_on(study, err) : begin(study, err));
+    TRY(store_run(study->store) ? go_on(study, err) : begin(study, err));
     return simulate_without_core(study, err);
 }
 
@@ -376,7 +373,7 @@ static void moment_free(Moment *m)
 
 static Status moment_of(Moment *m, const Study *study, Err *err)
 {
-    const Saved *h = store_saved(study->store);
+    const Run *h = store_run(study->store);
     const Problem *p = subject_problem(study->subject);
     size_t n_finished = 0, n;
     while (n_finished < h->n && h->row[n_finished].kind != KIND_UNFINISHED && h->row[n_finished].id < POLISHED_FIRST)
@@ -414,7 +411,7 @@ static int search_threads(const Study *study)
 
 static Status run_search(Study *study, Err *err)
 {
-    const Saved *h = store_saved(study->store);
+    const Run *h = store_run(study->store);
     SearchConfig config = study_search_config(&study->used);
     Moment moment = {0};
     double *given = NULL;
@@ -480,16 +477,16 @@ static Status finish(Study *study, Err *err)
                     err));
     RunStore *store = study->store;
     study->store = NULL;
-    TRY(store_close(store, why, is_final, session, err));
+    TRY(store_close(store, why, is_final, session, is_final ? &sum->run : NULL, err));
     return is_final ? STATUS_OK
                     : fail(err, STATUS_STOPPED, "%.200s: %s after %zu of %ld simulations", sum->folder, why,
                            sum->n_simulated, sum->max_evals);
 }
 
 /* A run that came to its end, with the limits that it had then: there is nothing to do. */
-static int came_to_its_end(const Saved *h, StopReason *stopped)
+static int came_to_its_end(const Run *h, StopReason *stopped)
 {
-    const SavedSession *last = h->n_sessions > 0 ? &h->session[h->n_sessions - 1] : NULL;
+    const RunSession *last = h->n_sessions > 0 ? &h->session[h->n_sessions - 1] : NULL;
     if (!last || !last->is_final)
         return 0;
     for (*stopped = STOP_GENERATIONS; *stopped < STOP_ASKED; ++*stopped)
@@ -500,21 +497,21 @@ static int came_to_its_end(const Saved *h, StopReason *stopped)
 
 static int is_over(const Study *study)
 {
-    const Saved *h = store_saved(study->store);
+    const Run *h = store_run(study->store);
     return h && !study->has_new_limits && came_to_its_end(h, &study->summary->stopped);
 }
 
-Status study_finished(const char *folder, StudySummary *summary, int *is_finished, Err *err)
+int study_finished(RunStore *store, StudySummary *summary)
 {
-    Saved h;
+    const Run *h = store_run(store);
     *summary = (StudySummary){0};
-    TRY(saved_read(&h, folder, err));
-    *is_finished = came_to_its_end(&h, &summary->stopped);
-    snprintf(summary->folder, sizeof summary->folder, "%s", folder);
-    summary->max_evals = h.settings.search.max_evals;
-    sum_up(summary, &h);
-    saved_free(&h);
-    return STATUS_OK;
+    if (!h || !came_to_its_end(h, &summary->stopped))
+        return 0;
+    snprintf(summary->folder, sizeof summary->folder, "%s", store_folder(store));
+    summary->max_evals = h->settings->search.max_evals;
+    sum_up(summary, h);
+    summary->run = store_give_run(store);
+    return 1;
 }
 
 /* -- polishing ----------------------------------------------------------------------------------------------------- */
@@ -531,7 +528,7 @@ static size_t polish_evals(const Settings *s)
 
 /* In all objectives at once, none of which may get worse. The better design is stored with the note that this one has
  * been tried: a run that is cut short goes on behind it. */
-static Status polish_one(Study *study, const Saved *h, size_t row, size_t n_tried, Err *err)
+static Status polish_one(Study *study, const Run *h, size_t row, size_t n_tried, Err *err)
 {
     StudySummary *sum = study->summary;
     const Settings *s = &study->used;
@@ -567,11 +564,11 @@ static Status polish_one(Study *study, const Saved *h, size_t row, size_t n_trie
 }
 
 /* Some spread-out designs of the finished run. */
-static Status polish_chosen(Study *study, const Saved *h, Err *err)
+static Status polish_chosen(Study *study, const Run *h, Err *err)
 {
     size_t rows[POLISH_MOST];
     const long most = study->used.search.polish;
-    const size_t n = refine_choose(h, (size_t)(most < POLISH_MOST ? most : POLISH_MOST), 0, rows);
+    const size_t n = run_spread_out(h, (size_t)(most < POLISH_MOST ? most : POLISH_MOST), 0, rows);
     const size_t tried = h->polished_at == (long)study->summary->n_simulated ? (size_t)h->tried_to_polish : 0;
     for (size_t i = tried; i < n; i++)
         TRY(polish_one(study, h, rows[i], i + 1, err));
@@ -580,13 +577,13 @@ static Status polish_chosen(Study *study, const Saved *h, Err *err)
 
 static Status polish_some(Study *study, Err *err)
 {
-    Saved h;
+    Run h;
     if (study->summary->stopped == STOP_ASKED || polish_evals(&study->used) == 0)
         return STATUS_OK;
     TRY(store_read(study->store, &h, err));
-    saved_drop_polished(&h);
+    run_drop_polished(&h);
     const Status status = polish_chosen(study, &h, err);
-    saved_free(&h);
+    run_free(&h);
     if (status == STATUS_STOPPED)
         study->summary->stopped = STOP_ASKED;
     return status == STATUS_STOPPED ? STATUS_OK : status;
@@ -604,12 +601,15 @@ static Status work(Study *study, Err *err)
 Status study_run(const Settings *s, const StudyOptions *options, StudySummary *summary, FILE *differences, Err *err)
 {
     memset(summary, 0, sizeof *summary);
-    Study study = {.options = options, .summary = summary, .differences = differences, .err = err};
+    Study study = {
+        .options = options, .store = options->store, .summary = summary, .differences = differences, .err = err};
     pthread_mutex_init(&study.lock, NULL);
     study.start = clock_seconds();
     Status status = prepare(&study, s, err);
     if (status == STATUS_OK && !is_over(&study))
         status = work(&study, err);
+    else if (status == STATUS_OK)
+        summary->run = store_give_run(study.store);
     if (status != STATUS_OK && study.store) {
         Err ignored; /* the fault itself is what the caller must hear of */
         store_flush(study.store, &ignored);

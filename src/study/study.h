@@ -23,8 +23,9 @@
 #include <limits.h>
 
 #include "moga/search.h"
-#include "study/pace.h"
 #include "sim/sim.h"
+#include "store/store.h"
+#include "study/pace.h"
 
 typedef struct Settings Settings;
 
@@ -37,6 +38,7 @@ typedef struct {
 } StudyProgress;
 
 typedef struct {
+    RunStore *store;         /* the run to be resumed, passes over to the study; NULL: run.out is opened */
     int fresh;               /* never go on with a run: a number is added to run.out where it holds one */
     int force;               /* changed limits are taken over */
     int (*stop)(void *user); /* asked from any thread, often; NULL: never */
@@ -58,14 +60,16 @@ typedef struct {
     int is_aside;
     int has_no_core;   /* of a tower */
     SimResult no_core; /* the building alone under the same motion */
+    Run run;           /* as it is at the end, for run_free; empty where the study can be resumed or has failed */
 } StudySummary;
 
 /* STATUS_STOPPED: it can go on, and the summary is filled. Settings that differ: STATUS_BAD_DATA,
  * with the differences in `err` as far as they fit, all of them in `differences` (NULL: not wanted), a line each. */
 Status study_run(const Settings *s, const StudyOptions *options, StudySummary *summary, FILE *differences, Err *err);
 
-/* What a run holds, without the building alone; is_finished: there is nothing more to do within its limits. */
-Status study_finished(const char *folder, StudySummary *summary, int *is_finished, Err *err);
+/* Whether there is nothing more to do within the limits of the run; then the summary is filled, without the building
+ * alone. */
+int study_finished(RunStore *store, StudySummary *summary);
 
 /* What the search reads from the settings. */
 SearchConfig study_search_config(const Settings *s);

@@ -8,27 +8,27 @@
 #include <unistd.h>
 
 #include "base/table.h"
-#include "store/saved.h"
+#include "store/run_read.h"
 
-static void demand_run(Saved *h)
+static void demand_run(Run *h)
 {
     for (size_t i = 0; i < h->n; i++)
         if (h->row[i].on_front && !h->row[i].ok)
             abort();
-    saved_free(h);
+    run_free(h);
 }
 
 static void load(const char *path)
 {
     Err err = {0};
     Database *d;
-    Saved h;
+    Run h;
     if (database_open(&d, path, DATABASE_READ, &err) != STATUS_OK) {
         if (!err.text[0])
             abort();
         return;
     }
-    const Status status = saved_load(&h, d, &err);
+    const Status status = run_load(&h, d, "", &err);
     if (status == STATUS_OK)
         demand_run(&h);
     else if (!err.text[0])

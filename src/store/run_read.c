@@ -1,4 +1,4 @@
-#include "store/saved.h"
+#include "store/run_read.h"
 
 #include <limits.h>
 #include <math.h>
@@ -6,15 +6,14 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "store/front.h"
+#include "settings/settings.h"
 #include "store/repeats.h"
 #include "store/tables.h"
-#include "settings/settings.h"
 
 /* -- rows ---------------------------------------------------------------------------------------------------------- */
 
 typedef struct {
-    Saved *h;
+    Run *h;
     Database *d;
     size_t n_max;
 } Loading;
@@ -59,7 +58,7 @@ static int parse_numbers(const char *text, size_t n, double values[])
 
 static Status widen(Loading *l, Err *err)
 {
-    Saved *h = l->h;
+    Run *h = l->h;
     if (h->n < l->n_max)
         return STATUS_OK;
     const size_t n = l->n_max > 0 ? 2 * l->n_max : 16;
@@ -85,7 +84,7 @@ static const char EVALUATIONS[] =
     "WHERE e.id BETWEEN %ld AND %ld ORDER BY e.id";
 
 /* What was read is what was written. A row without a digest was put there by somebody else. */
-static Status check_digest(const Loading *l, sqlite3_stmt *row, const SavedRow *r, Err *err)
+static Status check_digest(const Loading *l, sqlite3_stmt *row, const RunRow *r, Err *err)
 {
     const RowContent content = {.id = r->id,
                                 .seconds = r->verdict.seconds,
@@ -100,16 +99,16 @@ static Status check_digest(const Loading *l, sqlite3_stmt *row, const SavedRow *
 static Status take_evaluation(sqlite3_stmt *row, void *user, Err *err)
 {
     Loading *l = user;
-    Saved *h = l->h;
+    Run *h = l->h;
     TRY(widen(l, err));
-    SavedRow *r = &h->row[h->n];
+    RunRow *r = &h->row[h->n];
     const Schema *schema = &h->schema;
-    *r = (SavedRow){.id = (long)sqlite3_column_int64(row, 0),
-                    .generation = (long)sqlite3_column_int64(row, 1),
-                    .kind = kind_of_word(text_at(row, 2)),
-                    .violation = number_at(row, 9),
-                    .entered = sqlite3_column_type(row, 11) == SQLITE_NULL ? NEVER : sqlite3_column_int(row, 11),
-                    .left = sqlite3_column_type(row, 12) == SQLITE_NULL ? NEVER : sqlite3_column_int(row, 12)};
+    *r = (RunRow){.id = (long)sqlite3_column_int64(row, 0),
+                  .generation = (long)sqlite3_column_int64(row, 1),
+                  .kind = kind_of_word(text_at(row, 2)),
+                  .violation = number_at(row, 9),
+                  .entered = sqlite3_column_type(row, 11) == SQLITE_NULL ? NEVER : sqlite3_column_int(row, 11),
+                  .left = sqlite3_column_type(row, 12) == SQLITE_NULL ? NEVER : sqlite3_column_int(row, 12)};
     verdict_set(&r->verdict, text_at(row, 3), text_at(row, 4));
     r->verdict.seconds = number_at(row, 5);
     if (!text_at(row, 6)[0] || !parse_numbers(text_at(row, 6), schema->n_var, h->X + h->n * schema->n_var))
@@ -123,7 +122,6 @@ static Status take_evaluation(sqlite3_stmt *row, void *user, Err *err)
         return damaged(l, "extra", r->id, err);
     TRY(check_digest(l, row, r, err));
     memcpy(h->answer + h->n * schema->n_obj, f, schema->n_obj * sizeof *f);
-    r->members = r->kind == KIND_REPEAT || r->kind == KIND_POLISHED ? 0 : h->settings.sim.ensemble;
     h->n_repeats += r->kind == KIND_REPEAT;
     r->ok = strcmp(r->verdict.outcome, "ok") == 0;
     for (size_t k = 0; k < schema->n_obj; k++)
@@ -134,68 +132,12 @@ static Status take_evaluation(sqlite3_stmt *row, void *user, Err *err)
     return STATUS_OK;
 }
 
-Status saved_load_rows(Saved *h, Database *d, long first, long last, Err *err)
+Status run_load_rows(Run *h, Database *d, long first, long last, Err *err)
 {
     char sql[sizeof EVALUATIONS + 48];
     Loading l = {h, d, 0};
     snprintf(sql, sizeof sql, EVALUATIONS, first, last);
     return database_each(d, sql, take_evaluation, &l, err);
-}
-
-static int dominates_row(const Saved *h, size_t i, size_t j)
-{
-    const size_t m = h->schema.n_obj;
-    int better = 0;
-    for (size_t k = 0; k < m; k++) {
-        const double sense = schema_objective(&h->schema, k)->sense;
-        const double a = sense * h->F[i * m + k], b = sense * h->F[j * m + k];
-        if (a > b)
-            return 0;
-        better = better || a < b;
-    }
-    return better;
-}
-
-/* Polished designs compete with the front of the search, which was found without them. */
-static void settle_front(Saved *h)
-{
-    const size_t first = saved_find(h, POLISHED_FIRST);
-    h->n_front = 0;
-    for (size_t i = first; i < h->n; i++)
-        h->row[i].on_front = h->row[i].kind == KIND_POLISHED && h->row[i].ok && !(h->row[i].violation > 0.0);
-    for (size_t i = first; i < h->n; i++)
-        for (size_t j = 0; j < h->n && h->row[i].on_front; j++) {
-            if (j == i || !h->row[j].on_front)
-                continue;
-            if (dominates_row(h, i, j))
-                h->row[j].on_front = 0;
-            else if (dominates_row(h, j, i))
-                h->row[i].on_front = 0;
-        }
-    for (size_t i = 0; i < h->n; i++)
-        h->n_front += h->row[i].on_front != 0;
-}
-
-void saved_drop_polished(Saved *h)
-{
-    while (h->n > 0 && h->row[h->n - 1].id >= POLISHED_FIRST)
-        h->n_failed -= !h->row[--h->n].ok;
-    for (size_t i = 0; i < h->n; i++)
-        h->row[i].on_front = h->row[i].ok && h->row[i].entered != NEVER && h->row[i].left == NEVER;
-    settle_front(h);
-}
-
-size_t saved_find(const Saved *h, long id)
-{
-    size_t low = 0, high = h->n;
-    while (low < high) {
-        const size_t middle = low + (high - low) / 2;
-        if (h->row[middle].id < id)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low < h->n && h->row[low].id == id ? low : h->n;
 }
 
 /* -- the rest ------------------------------------------------------------------------------------------------------ */
@@ -207,40 +149,40 @@ static void *one_more(void *list, size_t n, size_t size)
 
 static Status take_generation(sqlite3_stmt *row, void *user, Err *err)
 {
-    Saved *h = ((Loading *)user)->h;
-    SavedGeneration *wider = one_more(h->generation, h->n_generations, sizeof *wider);
+    Run *h = ((Loading *)user)->h;
+    RunGeneration *wider = one_more(h->generation, h->n_generations, sizeof *wider);
     if (!wider)
         return fail(err, STATUS_NO_MEMORY, "no memory for %zu generations", h->n_generations);
     h->generation = wider;
-    SavedGeneration *g = &wider[h->n_generations++];
-    *g = (SavedGeneration){.number = (long)sqlite3_column_int64(row, 0),
-                           .simulated = (long)sqlite3_column_int64(row, 1),
-                           .failed = (long)sqlite3_column_int64(row, 2),
-                           .front = (long)sqlite3_column_int64(row, 3),
-                           .predicted = (long)sqlite3_column_int64(row, 4),
-                           .surrogate_error = number_at(row, 5),
-                           .hypervolume = number_at(row, 6),
-                           .seconds = number_at(row, 7)};
+    RunGeneration *g = &wider[h->n_generations++];
+    *g = (RunGeneration){.number = (long)sqlite3_column_int64(row, 0),
+                         .simulated = (long)sqlite3_column_int64(row, 1),
+                         .failed = (long)sqlite3_column_int64(row, 2),
+                         .front = (long)sqlite3_column_int64(row, 3),
+                         .predicted = (long)sqlite3_column_int64(row, 4),
+                         .surrogate_error = number_at(row, 5),
+                         .hypervolume = number_at(row, 6),
+                         .seconds = number_at(row, 7)};
     snprintf(g->finished, sizeof g->finished, "%s", text_at(row, 8));
     return STATUS_OK;
 }
 
 static Status take_session(sqlite3_stmt *row, void *user, Err *err)
 {
-    Saved *h = ((Loading *)user)->h;
-    SavedSession *wider = one_more(h->session, h->n_sessions, sizeof *wider);
+    Run *h = ((Loading *)user)->h;
+    RunSession *wider = one_more(h->session, h->n_sessions, sizeof *wider);
     if (!wider)
         return fail(err, STATUS_NO_MEMORY, "no memory for %zu sessions", h->n_sessions);
     h->session = wider;
-    SavedSession *s = &wider[h->n_sessions++];
-    *s = (SavedSession){.pid = (long)sqlite3_column_int64(row, 3),
-                        .threads = (long)sqlite3_column_int64(row, 4),
-                        .simulated_before = (long)sqlite3_column_int64(row, 5),
-                        .seconds = number_at(row, 6),
-                        .is_final = sqlite3_column_int(row, 8),
-                        .search_s = number_at(row, 9),
-                        .waited_s = number_at(row, 10),
-                        .surrogate_s = number_at(row, 11)};
+    RunSession *s = &wider[h->n_sessions++];
+    *s = (RunSession){.pid = (long)sqlite3_column_int64(row, 3),
+                      .threads = (long)sqlite3_column_int64(row, 4),
+                      .simulated_before = (long)sqlite3_column_int64(row, 5),
+                      .seconds = number_at(row, 6),
+                      .is_final = sqlite3_column_int(row, 8),
+                      .search_s = number_at(row, 9),
+                      .waited_s = number_at(row, 10),
+                      .surrogate_s = number_at(row, 11)};
     snprintf(s->started, sizeof s->started, "%s", text_at(row, 0));
     snprintf(s->ended, sizeof s->ended, "%s", text_at(row, 1));
     snprintf(s->host, sizeof s->host, "%s", text_at(row, 2));
@@ -250,7 +192,7 @@ static Status take_session(sqlite3_stmt *row, void *user, Err *err)
 
 static Status take_state(sqlite3_stmt *row, void *user, Err *err)
 {
-    Saved *h = ((Loading *)user)->h;
+    Run *h = ((Loading *)user)->h;
     h->n_state = (size_t)sqlite3_column_bytes(row, 0);
     h->state = malloc(h->n_state + 1);
     if (!h->state)
@@ -263,9 +205,12 @@ static Status take_state(sqlite3_stmt *row, void *user, Err *err)
 static Status take_head(sqlite3_stmt *row, void *user, Err *err)
 {
     const Loading *l = user;
-    Saved *h = l->h;
-    settings_defaults(&h->settings);
-    TRY(settings_parse(&h->settings, database_path(l->d), text_at(row, 0), err));
+    Run *h = l->h;
+    h->settings = calloc(1, sizeof *h->settings);
+    if (!h->settings)
+        return fail(err, STATUS_NO_MEMORY, "%s: no memory for its settings", database_path(l->d));
+    settings_defaults(h->settings);
+    TRY(settings_parse(h->settings, database_path(l->d), text_at(row, 0), err));
     h->provenance = strdup(text_at(row, 1));
     if (!h->provenance)
         return fail(err, STATUS_NO_MEMORY, "%s: no memory for its provenance", database_path(l->d));
@@ -273,24 +218,32 @@ static Status take_head(sqlite3_stmt *row, void *user, Err *err)
     const long n_var = (long)sqlite3_column_int64(row, 3);
     h->tried_to_polish = (long)sqlite3_column_int64(row, 4);
     h->polished_at = (long)sqlite3_column_int64(row, 5);
-    const int is_tower = h->settings.problem.kind == PROBLEM_TOWER;
-    if (n_var < (is_tower ? 3 : 1) || n_var > 10000 || (!is_tower && n_var != h->settings.problem.variables))
+    const int is_tower = h->settings->problem.kind == PROBLEM_TOWER;
+    if (n_var < (is_tower ? 3 : 1) || n_var > 10000 || (!is_tower && n_var != h->settings->problem.variables))
         return fail(err, STATUS_IO, "%s: is damaged: it tells of %ld variables", database_path(l->d), n_var);
-    return schema_of(&h->schema, &h->settings, (int)n_var - 2, err);
+    return schema_of(&h->schema, h->settings, (int)n_var - 2, err);
+}
+
+static void count_members(Run *h)
+{
+    for (size_t i = 0; i < h->n; i++)
+        if (h->row[i].kind != KIND_REPEAT && h->row[i].kind != KIND_POLISHED)
+            h->row[i].members = h->settings->sim.ensemble;
 }
 
 static Status load(Loading *l, Err *err)
 {
-    Saved *h = l->h;
+    Run *h = l->h;
     Database *d = l->d;
     TRY(database_each(
         d, "SELECT settings, provenance, planned_evals, n_var, tried_to_polish, polished_at FROM run LIMIT 1",
         take_head, l, err));
     if (!h->schema.column)
         return fail(err, STATUS_IO, "%s: is damaged: it has no settings", database_path(d));
-    TRY(saved_load_rows(h, d, 0, LONG_MAX, err));
+    TRY(run_load_rows(h, d, 0, LONG_MAX, err));
+    count_members(h);
     TRY(repeats_join(h, err));
-    settle_front(h);
+    TRY(run_settle_front(h, err));
     TRY(database_each(d,
                       "SELECT number, simulated, failed, front, predicted, surrogate_error, hypervolume, seconds, "
                       "finished FROM generation ORDER BY number",
@@ -303,74 +256,34 @@ static Status load(Loading *l, Err *err)
     return database_each(d, "SELECT bytes FROM state LIMIT 1", take_state, l, err);
 }
 
-Status saved_load(Saved *h, Database *d, Err *err)
+Status run_load(Run *h, Database *d, const char *folder, Err *err)
 {
     Loading l = {h, d, 0};
     memset(h, 0, sizeof *h);
+    snprintf(h->folder, sizeof h->folder, "%s", folder);
     TRY(database_do(d, err, "BEGIN", "")); /* one moment of a run that goes on */
     Status status = load(&l, err);
     const Status end = database_do(d, status == STATUS_OK ? err : NULL, "COMMIT", "");
     status = status == STATUS_OK ? end : status;
     if (status != STATUS_OK)
-        saved_free(h);
+        run_free(h);
     return status;
 }
 
-int saved_path(const char *folder, char path[], size_t size)
+int run_path(const char *folder, char path[], size_t size)
 {
     return snprintf(path, size, "%s/run.sqlite", folder) < (int)size && access(path, F_OK) == 0;
 }
 
-Status saved_read(Saved *h, const char *folder, Err *err)
+Status run_read(Run *h, const char *folder, Err *err)
 {
     char path[PATH_MAX];
     Database *d;
     memset(h, 0, sizeof *h);
-    saved_path(folder, path, sizeof path);
+    if (!run_path(folder, path, sizeof path))
+        return fail(err, STATUS_MISSING, "%.200s: holds no run: run.sqlite is not there", folder);
     TRY(database_open(&d, path, DATABASE_READ, err));
-    const Status status = saved_load(h, d, err);
+    const Status status = run_load(h, d, folder, err);
     database_close(d);
     return status;
-}
-
-static Status take_settings(sqlite3_stmt *row, void *user, Err *err)
-{
-    const Loading *l = user;
-    return settings_parse(&l->h->settings, database_path(l->d), text_at(row, 0), err);
-}
-
-Status run_settings(Settings *s, const char *folder, Err *err)
-{
-    char path[PATH_MAX];
-    Saved h = {0};
-    Loading l = {&h, NULL, 0};
-    settings_defaults(s);
-    if (saved_path(folder, path, sizeof path)) {
-        TRY(database_open(&l.d, path, DATABASE_READ, err));
-        settings_defaults(&h.settings);
-        const Status status = database_each(l.d, "SELECT settings FROM run", take_settings, &l, err);
-        database_close(l.d);
-        *s = h.settings;
-        return status;
-    }
-    if (snprintf(path, sizeof path, "%s/settings.ini", folder) >= (int)sizeof path)
-        return fail(err, STATUS_MISSING, "%.200s...: the path is too long", folder);
-    if (access(path, F_OK) != 0)
-        return fail(err, STATUS_MISSING, "%s: holds no run: neither run.sqlite nor settings.ini is there", folder);
-    return settings_read(s, path, NULL, NULL, err);
-}
-
-void saved_free(Saved *h)
-{
-    schema_free(&h->schema);
-    free(h->provenance);
-    free(h->row);
-    free(h->X);
-    free(h->F);
-    free(h->spread);
-    free(h->answer);
-    free(h->generation);
-    free(h->session);
-    free(h->state);
-    memset(h, 0, sizeof *h);
 }

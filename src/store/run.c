@@ -1,0 +1,259 @@
+#include "store/run.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "moga/dominance.h"
+#include "settings/settings.h"
+
+void run_free(Run *run)
+{
+    schema_free(&run->schema);
+    free(run->provenance);
+    free(run->settings);
+    free(run->row);
+    free(run->X);
+    free(run->F);
+    free(run->spread);
+    free(run->answer);
+    free(run->front);
+    free(run->generation);
+    free(run->session);
+    free(run->state);
+    memset(run, 0, sizeof *run);
+}
+
+/* -- rows ---------------------------------------------------------------------------------------------------------- */
+
+const double *run_x(const Run *run, size_t row)
+{
+    return run->X + row * run->schema.n_var;
+}
+
+const double *run_f(const Run *run, size_t row)
+{
+    return run->F + row * run->schema.n_obj;
+}
+
+size_t run_find(const Run *run, long id)
+{
+    size_t low = 0, high = run->n;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        if (run->row[middle].id < id)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < run->n && run->row[low].id == id ? low : run->n;
+}
+
+static double minimised(const Run *run, size_t row, size_t k)
+{
+    return schema_objective(&run->schema, k)->sense * run_f(run, row)[k];
+}
+
+/* -- which designs are on the front -------------------------------------------------------------------------------- */
+
+static int dominates_row(const Run *run, size_t i, size_t j)
+{
+    double a[OBJECTIVES_MAX], b[OBJECTIVES_MAX];
+    for (size_t k = 0; k < run->schema.n_obj; k++) {
+        a[k] = minimised(run, i, k);
+        b[k] = minimised(run, j, k);
+    }
+    return dominates(run->schema.n_obj, a, b);
+}
+
+/* Polished designs compete with the front of the search, which was found without them. */
+static void admit_polished(Run *run)
+{
+    const size_t first = run_find(run, POLISHED_FIRST);
+    RunRow *row = run->row;
+    for (size_t i = first; i < run->n; i++)
+        row[i].on_front = row[i].kind == KIND_POLISHED && row[i].ok && !(row[i].violation > 0.0);
+    for (size_t i = first; i < run->n; i++)
+        for (size_t j = 0; j < run->n && row[i].on_front; j++) {
+            if (j == i || !row[j].on_front)
+                continue;
+            if (dominates_row(run, i, j))
+                row[j].on_front = 0;
+            else if (dominates_row(run, j, i))
+                row[i].on_front = 0;
+        }
+}
+
+static void list_front(Run *run)
+{
+    run->n_front = 0;
+    for (size_t i = 0; i < run->n; i++)
+        if (run->row[i].on_front)
+            run->front[run->n_front++] = i;
+}
+
+Status run_settle_front(Run *run, Err *err)
+{
+    run->front = calloc(run->n + 1, sizeof *run->front);
+    if (!run->front)
+        return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", run->n);
+    admit_polished(run);
+    list_front(run);
+    return STATUS_OK;
+}
+
+void run_drop_polished(Run *run)
+{
+    while (run->n > 0 && run->row[run->n - 1].id >= POLISHED_FIRST)
+        run->n_failed -= !run->row[--run->n].ok;
+    for (size_t i = 0; i < run->n; i++)
+        run->row[i].on_front = run->row[i].ok && run->row[i].entered != NEVER && run->row[i].left == NEVER;
+    list_front(run);
+}
+
+/* -- designs that stand out ---------------------------------------------------------------------------------------- */
+
+size_t run_best(const Run *run, size_t objective)
+{
+    size_t best = run->front[0];
+    for (size_t i = 1; i < run->n_front; i++)
+        if (minimised(run, run->front[i], objective) < minimised(run, best, objective))
+            best = run->front[i];
+    return best;
+}
+
+FrontBox run_box(const Run *run)
+{
+    FrontBox box;
+    for (size_t k = 0; k < run->schema.n_obj; k++) {
+        double worst = -INFINITY;
+        box.ideal[k] = minimised(run, run_best(run, k), k);
+        for (size_t i = 0; i < run->n_front; i++)
+            worst = fmax(worst, minimised(run, run->front[i], k));
+        box.span[k] = worst > box.ideal[k] ? worst - box.ideal[k] : 1.0;
+    }
+    return box;
+}
+
+double run_scaled(const Run *run, const FrontBox *box, size_t row, size_t objective)
+{
+    return (minimised(run, row, objective) - box->ideal[objective]) / box->span[objective];
+}
+
+double run_distance2(const Run *run, const FrontBox *box, size_t row)
+{
+    double sum = 0.0;
+    for (size_t k = 0; k < run->schema.n_obj; k++) {
+        const double d = run_scaled(run, box, row, k);
+        sum += d * d;
+    }
+    return sum;
+}
+
+size_t run_knee(const Run *run)
+{
+    const FrontBox box = run_box(run);
+    size_t knee = run->front[0];
+    for (size_t i = 1; i < run->n_front; i++)
+        if (run_distance2(run, &box, run->front[i]) < run_distance2(run, &box, knee))
+            knee = run->front[i];
+    return knee;
+}
+
+/* Square of the scaled distance to the nearest of the rows. */
+static double apart2(const Run *run, const FrontBox *box, size_t row, size_t n, const size_t rows[])
+{
+    double least = DBL_MAX;
+    for (size_t c = 0; c < n; c++) {
+        double sum = 0.0;
+        for (size_t k = 0; k < run->schema.n_obj; k++) {
+            const double d = run_scaled(run, box, row, k) - run_scaled(run, box, rows[c], k);
+            sum += d * d;
+        }
+        least = fmin(least, sum);
+    }
+    return least;
+}
+
+size_t run_spread_out(const Run *run, size_t n, int with_polished, size_t rows[])
+{
+    size_t chosen = 0;
+    if (run->n_front == 0)
+        return 0;
+    const FrontBox box = run_box(run);
+    for (; chosen < n; chosen++) {
+        size_t found = run->n;
+        double most = chosen == 0 ? -INFINITY : 0.0;
+        for (size_t i = 0; i < run->n_front; i++) {
+            const size_t row = run->front[i];
+            if (!with_polished && run->row[row].id >= POLISHED_FIRST)
+                continue;
+            const double merit = chosen == 0 ? -run_distance2(run, &box, row) : apart2(run, &box, row, chosen, rows);
+            if (merit > most) {
+                most = merit;
+                found = row;
+            }
+        }
+        if (found == run->n)
+            break;
+        rows[chosen] = found;
+    }
+    return chosen;
+}
+
+/* -- a design by its name ------------------------------------------------------------------------------------------ */
+
+Status run_why_empty(const Run *run, Err *err)
+{
+    char nearest[PATH_MAX + 16];
+    const size_t n_ok = run->n - run->n_failed;
+    const Settings *s = run->settings;
+    snprintf(nearest, sizeof nearest, "%s/nearest.csv", run->folder);
+    if (run->n > 0 && n_ok == 0)
+        return fail(err, STATUS_INTERNAL, "%s: all %zu simulations failed; `imtet status` has the reasons", run->folder,
+                    run->n);
+    if (run->n_generations == 0)
+        return fail(err, STATUS_BAD_DATA,
+                    "%s: there is no front before the initial sample is complete; %zu designs are simulated",
+                    run->folder, run->n);
+    if (strcmp(s->search.limits, "none") != 0)
+        return fail(err, STATUS_UNMET, "%s: search.limits: none of %zu designs keeps %.120s%s%s", run->folder, n_ok,
+                    s->search.limits, access(nearest, F_OK) == 0 ? "; those that come nearest: " : "",
+                    access(nearest, F_OK) == 0 ? nearest : "");
+    if (schema_is_noisy(s) && s->search.members_min > 1)
+        return fail(err, STATUS_BAD_DATA, "%s: no design was simulated %ld times yet (search.members_min)", run->folder,
+                    s->search.members_min);
+    return fail(err, STATUS_BAD_DATA, "%s: the front is empty", run->folder);
+}
+
+static long nearest_id(const Run *run, long id)
+{
+    long nearest = run->row[run->front[0]].id;
+    for (size_t i = 1; i < run->n_front; i++)
+        if (labs(run->row[run->front[i]].id - id) < labs(nearest - id))
+            nearest = run->row[run->front[i]].id;
+    return nearest;
+}
+
+Status run_pick(const Run *run, const char *word, size_t *row, Err *err)
+{
+    char *end;
+    if (run->n_front == 0)
+        return run_why_empty(run, err);
+    if (strcmp(word, "knee") == 0) {
+        *row = run_knee(run);
+        return STATUS_OK;
+    }
+    const long id = strtol(word, &end, 10);
+    if (end == word || *end)
+        return fail(err, STATUS_BAD_DATA,
+                    "--design %.40s: neither an id of %s/front.csv nor a word; did you mean knee?", word, run->folder);
+    *row = run_find(run, id);
+    if (*row == run->n || !run->row[*row].on_front)
+        return fail(err, STATUS_BAD_DATA, "--design %ld: no such id on the front of %s; the nearest is %ld", id,
+                    run->folder, nearest_id(run, id));
+    return STATUS_OK;
+}

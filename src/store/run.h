@@ -1,0 +1,111 @@
+/* store/run.h -- a run as its database has it: settings, every evaluation, the front, how it came about.
+ *
+ * Read once by a command (store/run_read.h) and handed on as const Run *. Rows are in the order of their ids: designs
+ * of the search are numbered 1, 2, ... as they were asked for, polished ones from POLISHED_FIRST on. A simulation of a
+ * generation that is under way, or was cut short, has kind KIND_UNFINISHED; it is on no front yet.
+ *
+ * Replicates  a design that was simulated again has the mean of its simulations in F (store/repeats.h)
+ * Values      natural signs and units, as in front.csv; NAN where there is none (failed, or deviation not known)
+ * Front       feasible, ok and nondominated, polished designs included; entered <= g < left are the generations of the
+ *             search in which a design was on the search's own front
+ * Scaled      an objective between its best (0) and its worst value (1) on the front, minimised
+ * Knee        the design of the front nearest to the ideal point, all objectives scaled (Euclid)
+ * Ownership   run_free releases all of it (an empty Run is fine)
+ * Threads     no state: any number may read one Run */
+#ifndef IMTET_STORE_RUN_H
+#define IMTET_STORE_RUN_H
+
+#include <limits.h>
+
+#include "moga/search.h"
+#include "simulator/schema.h"
+
+typedef struct Settings Settings;
+
+enum { POLISHED_FIRST = 1000001, NEVER = -1 };
+
+typedef struct {
+    long id, generation, entered, left; /* NEVER */
+    EvaluationKind kind;
+    int ok, on_front;
+    long members;     /* simulations behind F; 0: a repeat, or not known */
+    double violation; /* of the user's limits */
+    Verdict verdict;
+} RunRow;
+
+typedef struct {
+    long number, simulated, failed, front, predicted;
+    double surrogate_error; /* NAN: no surrogate */
+    double hypervolume;     /* share of a box about the first sample that the front dominates; results/README.md */
+    double seconds;         /* of work on the run until then, all sessions together */
+    char finished[24];      /* UTC */
+} RunGeneration;
+
+/* One start of `imtet optimize`. */
+typedef struct {
+    char started[24], ended[24], host[72], stopped[128]; /* ended, stopped: empty while it runs or when it was killed */
+    long pid, threads, simulated_before;
+    double seconds;                         /* that it lasted, as far as is stored */
+    double search_s, waited_s, surrogate_s; /* of the search; of it waiting for simulations, at the surrogate; NAN */
+    int is_final;                           /* there was nothing more to do */
+} RunSession;
+
+typedef struct {
+    char folder[PATH_MAX];
+    char *provenance; /* JSON */
+    Settings *settings;
+    Schema schema;
+    size_t n, n_front, n_failed, n_repeats, n_generations, n_sessions;
+    RunRow *row;               /* (n) */
+    double *X, *F, *spread;    /* (n, n_var) (n, n_obj) (n, n_obj) */
+    double *answer;            /* (n, n_obj) of this very simulation */
+    size_t *front;             /* (n_front) rows, ascending */
+    RunGeneration *generation; /* (n_generations) */
+    RunSession *session;       /* (n_sessions) */
+    long planned_evals;
+    long tried_to_polish; /* spread-out designs, at the end of a search of polished_at simulations */
+    long polished_at;
+    void *state; /* (n_state bytes) of the search at the end of the last generation; NULL: none is finished yet */
+    size_t n_state;
+} Run;
+
+void run_free(Run *run);
+
+const double *run_x(const Run *run, size_t row); /* (n_var) */
+const double *run_f(const Run *run, size_t row); /* (n_obj) */
+
+/* Row of that design, or run->n. */
+size_t run_find(const Run *run, long id);
+
+/* The front of the search joined by the polished designs, and `front`; run->row and F are all that has to be there. */
+Status run_settle_front(Run *run, Err *err);
+
+/* As if nothing had been polished: the front is that of the search. */
+void run_drop_polished(Run *run);
+
+/* -- the front: each wants n_front > 0; ties go to the first; results are rows of the run --------------------------- */
+
+size_t run_best(const Run *run, size_t objective);
+
+/* Best value and width of every objective (n_obj), minimised; a width of 0 counts as 1. */
+typedef struct {
+    double ideal[OBJECTIVES_MAX], span[OBJECTIVES_MAX];
+} FrontBox;
+FrontBox run_box(const Run *run);
+double run_scaled(const Run *run, const FrontBox *box, size_t row, size_t objective);
+
+/* Square of the scaled distance to the ideal point. */
+double run_distance2(const Run *run, const FrontBox *box, size_t row);
+size_t run_knee(const Run *run);
+
+/* At most n designs that are spread over the front, the knee first, then again and again the one farthest from those
+ * chosen; polished ones are left out unless they are wanted. Returns how many. */
+size_t run_spread_out(const Run *run, size_t n, int with_polished, size_t rows[]);
+
+/* `word`: an id of the front or "knee". An empty front has neither: run_why_empty. */
+Status run_pick(const Run *run, const char *word, size_t *row, Err *err);
+
+/* Why a front is empty, and what to do; never STATUS_OK. STATUS_UNMET: nothing keeps search.limits. */
+Status run_why_empty(const Run *run, Err *err);
+
+#endif

@@ -1,0 +1,20 @@
+/* store/run_read.h -- a run read from its database, also while it is worked on.
+ *
+ * Ownership  run_read and run_load allocate, run_free releases
+ * Errors     no database there: STATUS_MISSING; damaged: STATUS_IO; the Run is empty then */
+#ifndef IMTET_STORE_RUN_READ_H
+#define IMTET_STORE_RUN_READ_H
+
+#include "store/database.h"
+#include "store/run.h"
+
+/* The database of a run's folder; 1 where there is one. */
+int run_path(const char *folder, char path[], size_t size);
+
+Status run_read(Run *run, const char *folder, Err *err);
+Status run_load(Run *run, Database *d, const char *folder, Err *err);
+
+/* The evaluations first..last into a Run that has a schema and no rows yet. */
+Status run_load_rows(Run *run, Database *d, long first, long last, Err *err);
+
+#endif
