@@ -80,9 +80,9 @@ static void test_every_engine_agrees_with_the_fast_one_where_there_are_impacts(v
         const SimResult r = run(p, &model, &m, 0.8);
         const double worst = worst_of(&r, &wanted);
         print_message("%-20s %-8g objectives %.1e (%.0e)  books %.1e (%.0e)  impacts %ld\n",
-                      engine_entry(p->engine)->name, p->knob, worst, p->objectives, r.energy_residual, p->books,
+                      engine_entry(p->engine)->name, p->knob, worst, p->objectives, r.energy_balance_error, p->books,
                       r.impacts);
-        broken += !(worst <= p->objectives && r.energy_residual <= p->books);
+        broken += !(worst <= p->objectives && r.energy_balance_error <= p->books);
     }
     assert_int_equal(broken, 0);
     model_free(&model);

@@ -173,7 +173,7 @@ static void test_the_chosen_design_is_simulated_as_the_search_did(void **state)
     Report r;
     open_tower(&run, &r);
     const double *f = run_f(&run, r.chosen);
-    const SimResult *with_core = &r.detail.result[SCENE_IMPACT], *tied = &r.detail.result[SCENE_TIED];
+    const SimResult *with_core = &r.detail.result[SCENE_IMPACT], *tied = &r.detail.result[SCENE_RIGID];
     assert_true(with_core->j1_m == f[0] && with_core->j3_g == f[2] && with_core->mcore_kg == f[6]);
     assert_true(r.detail.gap_m[3] == run_x(&run, r.chosen)[3]);
     assert_true(r.detail.wall_m[0] == run_x(&run, r.chosen)[20]);

@@ -22,7 +22,11 @@ static Status run_once(const Stage *stage, Engine engine, Accuracy accuracy, dou
                        Err *err)
 {
     OnsetLog log = {.n_max = BENCH_ONSETS, .at = o->onsets};
-    const EngineOptions options = {stage->duration, accuracy, knob, o->state, &log};
+    const EngineOptions options = {.duration = stage->duration,
+                                   .accuracy = accuracy,
+                                   .tolerance = knob,
+                                   .end_state = o->state,
+                                   .onsets = &log};
     const double start = processor_seconds();
     TRY(engine_entry(engine)->run(&stage->model, &stage->motion, &options, &o->result, err));
     *seconds = processor_seconds() - start;

@@ -16,7 +16,7 @@ int sweep_row_failed(const SweepRow *row)
 
 int sweep_silently_wrong(const SweepRow *row)
 {
-    return !sweep_row_failed(row) && row->error.objectives > WRONG && row->seen.result.energy_residual < BOOKS_OPEN;
+    return !sweep_row_failed(row) && row->error.objectives > WRONG && row->seen.result.energy_balance_error < BOOKS_OPEN;
 }
 
 static int scene_index(const BenchScene *scene)
@@ -51,7 +51,7 @@ void sweep_write_csv(const Sweep *s, FILE *out)
         put(out, failed ? NAN : row->error.state);
         put(out, failed ? NAN : row->error.first_s);
         put(out, failed ? NAN : row->error.first_speed);
-        put(out, failed ? NAN : r->energy_residual);
+        put(out, failed ? NAN : r->energy_balance_error);
         put(out, sweep_floor(s, scene_index(row->scene)));
         put(out, s->noise > 0 ? s->noise : NAN);
         fprintf(out, ",%ld,%ld,%ld,%s,\"%s\"\n", r->impacts, r->steps, r->force_evaluations,
@@ -122,16 +122,16 @@ static void write_failures(const Sweep *s, FILE *out)
     for (size_t i = 0; i < s->n; i++) {
         const SweepRow *row = &s->rows[i];
         const SimResult *r = &row->seen.result;
-        const int open = !sweep_row_failed(row) && r->energy_residual >= BOOKS_OPEN;
+        const int open = !sweep_row_failed(row) && r->energy_balance_error >= BOOKS_OPEN;
         if (!sweep_row_failed(row) && !sweep_silently_wrong(row) && !open)
             continue;
         fprintf(out, "| %s | %s | %s | ", row->scene->name, engine_entry(row->engine)->name, row->knob);
         if (sweep_row_failed(row))
             fprintf(out, "%s: %s |\n", outcome_word(measure_outcome(r->outcome)), r->reason);
         else if (open)
-            fprintf(out, "books open by %.2g, error %.2g |\n", r->energy_residual, row->error.objectives);
+            fprintf(out, "books open by %.2g, error %.2g |\n", r->energy_balance_error, row->error.objectives);
         else
-            fprintf(out, "silently wrong: error %.2g, books %.1e |\n", row->error.objectives, r->energy_residual);
+            fprintf(out, "silently wrong: error %.2g, books %.1e |\n", row->error.objectives, r->energy_balance_error);
         n++;
     }
     if (n == 0)

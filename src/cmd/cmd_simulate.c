@@ -41,7 +41,7 @@ static Status choose_kind(const Args *args, Job *job, Err *err)
     const int none = strcmp(path, "none") == 0, tied = args_has(args, "--tied");
     if (none && tied)
         return fail(err, STATUS_USAGE, "--tied needs a core: give --design FILE instead of none");
-    job->kind = none ? SCENE_NO_CORE : tied ? SCENE_TIED : SCENE_IMPACT;
+    job->kind = none ? SCENE_NO_CORE : tied ? SCENE_RIGID : SCENE_IMPACT;
     return choose_members(args, job, err);
 }
 
@@ -147,7 +147,7 @@ static void print_table(const Job *job, const World *w)
     char label[32];
     show_motion(&w->motion, w->options.sim.duration_s);
     putchar('\n');
-    show_result_names(job->kind == SCENE_TIED ? "tied, no gaps" : "");
+    show_result_names(job->kind == SCENE_RIGID ? "tied, no gaps" : "");
     for (size_t i = 0; i < job->n; i++) {
         snprintf(label, sizeof label, "design %zu", i + 1);
         show_result(job->kind == SCENE_NO_CORE ? "no core" : label, &job->results[i]);
@@ -176,7 +176,7 @@ static Status run(const Args *args, Err *err)
     Job job = {0};
     TRY(choose_kind(args, &job, err));
     TRY(args_settings(args, &s, NULL, NULL, err));
-    if (job.kind == SCENE_TIED && s.sim.engine != ENGINE_FAST)
+    if (job.kind == SCENE_RIGID && s.sim.engine != ENGINE_FAST)
         return fail(err, STATUS_USAGE,
                     "--tied: a linear building is solved in closed form, no other engine does it; leave sim.engine at "
                     "fast");

@@ -11,7 +11,7 @@ static const char *scene_word(SceneKind kind)
         return "impact";
     case SCENE_NO_CORE:
         return "no_core";
-    case SCENE_TIED:
+    case SCENE_RIGID:
         return "tied";
     }
     return "unknown";
@@ -26,7 +26,7 @@ json_t *json_result(SceneKind kind, const SimResult *r)
     for (int k = 0; k < N_MEASURES - 1; k++)
         json_object_set_new(o, measure(k)->name, json_number(measure_value(r, k)));
     json_object_set_new(o, "impacts", json_integer(r->impacts));
-    json_object_set_new(o, "floored", json_integer(r->floored));
+    json_object_set_new(o, "floored", json_integer(r->v0_limited));
 
     const size_t n_floors = (size_t)r->n_floors, n_modes = (size_t)r->n_modes;
     json_object_set_new(o, "peak_displacement_m", json_numbers(n_floors, r->peak_displacement_m));
@@ -40,9 +40,9 @@ json_t *json_result(SceneKind kind, const SimResult *r)
     json_object_set_new(o, "contact_loss_j", json_number(r->contact_loss_j));
     json_object_set_new(o, "contact_stored_j", json_number(r->contact_stored_j));
     json_object_set_new(o, "clamp_j", json_number(r->clamp_j));
-    json_object_set_new(o, "penetration_max_m", json_number(r->penetration_max_m));
-    json_object_set_new(o, "penetration_ratio", json_number(r->penetration_ratio));
-    json_object_set_new(o, "beyond_contact_law", json_boolean(r->beyond_contact_law));
+    json_object_set_new(o, "penetration_max_m", json_number(r->indentation_max_m));
+    json_object_set_new(o, "penetration_ratio", json_number(r->indentation_ratio));
+    json_object_set_new(o, "beyond_contact_law", json_boolean(beyond_contact_law(r)));
     json_object_set_new(o, "steps", json_integer(r->steps));
     json_object_set_new(o, "force_evaluations", json_integer(r->force_evaluations));
     json_object_set_new(o, "seconds", json_number(r->seconds));
@@ -93,11 +93,11 @@ void show_result(const char *label, const SimResult *r)
     printf("%-28.28s", label);
     for (int k = 0; k < N_OBJECTIVES; k++)
         printf(" %10.4g", measure_value(r, k));
-    printf(" %8ld %9.1e %11.3g", r->impacts, r->energy_residual, r->penetration_ratio);
+    printf(" %8ld %9.1e %11.3g", r->impacts, r->energy_balance_error, r->indentation_ratio);
     if (r->outcome != RUN_OK)
         printf("  %s", outcome_word(measure_outcome(r->outcome)));
-    if (r->beyond_contact_law)
-        printf("  deeper than %g of the contact's radius: beyond the contact law", PENETRATION_RATIO_MAX);
+    if (beyond_contact_law(r))
+        printf("  deeper than %g of the contact's radius: beyond the contact law", INDENTATION_RATIO_MAX);
     putchar('\n');
 }
 

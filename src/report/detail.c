@@ -13,7 +13,7 @@ static const double QUIET = 0.02; /* of the largest sway */
 
 static Status simulate(const World *w, int n_scenes, const double x[], SimResult results[], Err *err)
 {
-    static const SceneKind SCENES[N_SCENES] = {SCENE_IMPACT, SCENE_NO_CORE, SCENE_TIED};
+    static const SceneKind SCENES[N_SCENES] = {SCENE_IMPACT, SCENE_NO_CORE, SCENE_RIGID};
     SimTask tasks[N_SCENES];
     Crew *crew;
     for (int i = 0; i < n_scenes; i++)

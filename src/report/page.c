@@ -44,7 +44,7 @@ static json_t *json_of_result(const SimResult *r)
     return json_pack("{s:o, s:I, s:f, s:f, s:b, s:o, s:o, s:o, s:o}", "objectives", objectives, "impacts",
                      (json_int_t)r->impacts, "input_j", r->input_energy_j, "contact_pct",
                      r->input_energy_j > 0 ? 100 * r->contact_loss_j / r->input_energy_j : 0.0, "beyond_law",
-                     r->beyond_contact_law, "displacement_m", json_numbers(n, r->peak_displacement_m), "drift_m",
+                     beyond_contact_law(r), "displacement_m", json_numbers(n, r->peak_displacement_m), "drift_m",
                      json_numbers(n, r->peak_drift_m), "acceleration_g", json_numbers(n, r->peak_acceleration_g),
                      "modes", json_numbers(n_modes, r->mode_share_pct));
 }
@@ -87,7 +87,7 @@ static json_t *json_of_detail(const Detail *d)
                      "building_hz", json_numbers(n, d->building_hz), "core_hz", json_numbers(n, d->core_hz), "record",
                      d->record, "pga_g", d->pga_g, "stretch", d->stretch, "duration_s", d->duration_s, "with_core",
                      json_of_result(&d->result[SCENE_IMPACT]), "no_core", json_of_result(&d->result[SCENE_NO_CORE]),
-                     "tied", json_of_result(&d->result[SCENE_TIED]), "history_with_core",
+                     "tied", json_of_result(&d->result[SCENE_RIGID]), "history_with_core",
                      json_of_history(&d->history[0], &d->spectrum[0]), "history_no_core",
                      json_of_history(&d->history[1], &d->spectrum[1]), "elsewhere", others);
 }

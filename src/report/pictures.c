@@ -237,7 +237,7 @@ static void write_modes_of(FILE *script, const char *block, size_t n, const SimR
 static void write_modes(FILE *script, const Report *r)
 {
     const SimResult *const all[N_SCENES] = {&r->detail.result[SCENE_IMPACT], &r->detail.result[SCENE_NO_CORE],
-                                            &r->detail.result[SCENE_TIED]};
+                                            &r->detail.result[SCENE_RIGID]};
     write_modes_of(script, "M", N_SCENES, all);
     fputs(
         "set xlabel 'mode of the building'\nset ylabel 'share of the input energy [%]'\nset yrange [0:*]\n"

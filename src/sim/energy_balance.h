@@ -38,7 +38,7 @@ static inline void energy_balance_close(SimResult *result, int nb, int nc, const
     result->edcs_pct = percent * core;
     const double out = result->kinetic_strain_j + building + core + result->contact_stored_j + result->contact_loss_j +
                        result->clamp_j;
-    result->energy_residual = fabs(input - out) / energy_balance_scale(input, out);
+    result->energy_balance_error = fabs(input - out) / energy_balance_scale(input, out);
     if (!isfinite(input - out)) {
         result->outcome = RUN_NOT_FINITE;
         snprintf(result->reason, sizeof result->reason, "the energies are not finite at the end of the run");

@@ -2,7 +2,7 @@
  *
  *   run(model, motion, options, result)    from rest at t = 0 to options.duration
  *
- * An engine fills all of SimResult but mcore_kg, penetration_ratio, beyond_contact_law and seconds (the caller's).
+ * An engine fills all of SimResult but mcore_kg, indentation_ratio and seconds (the caller's).
  * Energies as in sim/energy_balance.h; maxima are over continuous time. After the last sample the ground stands still
  * (a = 0 from there on, also where the last sample is not zero). What an engine cannot do is an outcome with a reason.
  *
@@ -28,9 +28,14 @@ typedef struct {
 typedef struct {
     double duration; /* [s] > 0 */
     Accuracy accuracy;
-    double tolerance;  /* of the kind EngineEntry.tolerance; 0: as `accuracy` says */
-    double *end_state; /* (2 m) q and q' where the run ended; NULL: not wanted */
-    OnsetLog *onsets;  /* filled from onsets->n on; NULL: not wanted */
+    double tolerance;         /* of the kind EngineEntry.tolerance; 0: as `accuracy` says */
+    double *end_state;        /* (2 m) q and q' where the run ended; NULL: not wanted */
+    OnsetLog *onsets;         /* filled from onsets->n on; NULL: not wanted */
+    double steps_per_contact; /* `fast`: all that `accuracy` says follows so many steps; 0: as it is */
+    double refinement;        /* `fast`: all that `accuracy` says is refined by this factor; 0: by none */
+    SimSampleFn sample;       /* `fast`: called at every sample of the motion; NULL: not wanted */
+    void *sample_user;
+    void *work; /* from EngineEntry.work_create; NULL: the run allocates its own */
 } EngineOptions;
 
 typedef Status (*EngineFn)(const SimModel *model, const Motion *motion, const EngineOptions *options, SimResult *result,
@@ -47,6 +52,10 @@ typedef struct {
     const char *name, *words;
     ToleranceKind tolerance;
     EngineFn run;
+    int refines; /* follows EngineOptions.refinement: a run whose energy balance does not close may be repeated */
+    /* Work space for any number of runs of up to n_floors, one at a time; both NULL: the engine keeps none. */
+    Status (*work_create)(void **work, int n_floors, Err *err);
+    void (*work_free)(void *work); /* NULL is fine */
 } EngineEntry;
 
 /* By Engine, the setting sim.engine. */
@@ -58,8 +67,12 @@ const EngineEntry *engine_entry(Engine engine);
 ENGINE_LIST(X)
 #undef X
 
+/* The work space of engine_fast. */
+Status engine_fast_create(void **work, int n_floors, Err *err);
+void engine_fast_free(void *work);
+
 /* Floors and core rigidly connected (zero gap), linear: M + Mc, K + Kc, C + Cc. */
-Status engine_tied(const SceneOptions *o, const Building *b, const CoreBeam *core, const Motion *motion,
-                   const EngineOptions *options, SimResult *result, Err *err);
+Status engine_rigid(const SceneOptions *o, const Building *b, const CoreBeam *core, const Motion *motion,
+                    const EngineOptions *options, SimResult *result, Err *err);
 
 #endif

@@ -9,25 +9,26 @@
 #include "base/linalg.h"
 #include "scene/core_beam.h"
 #include "sim/engine.h"
-#include "sim/fast/fast.h"
 #include "sim/model.h"
 
 struct Scene {
     SceneOptions options;
     const Motion *motion; /* borrowed */
     Building building;
-    EngineOptions engine;
+    const EngineEntry *engine;
+    EngineOptions run; /* of every run; each worker adds its own work space and sample function */
 };
 
 struct SimWorker {
     const Scene *scene;
     SimModel model;
     CoreBeam core;
-    FastWork *fast;
+    EngineOptions run;
 };
 
-/* A run whose books stay open is repeated with so many times the steps before it is given up. */
+/* A run whose energy balance does not close is repeated with so many times the steps before it counts as failed. */
 static const double REFINEMENTS[] = {1, 4, 16};
+enum { N_REFINEMENTS = sizeof REFINEMENTS / sizeof REFINEMENTS[0] };
 
 const char *run_outcome_words(RunOutcome outcome)
 {
@@ -50,10 +51,12 @@ Status scene_create(Scene **out, const SceneOptions *o, const Motion *motion, Er
         return fail(err, STATUS_NO_MEMORY, "scene: out of memory");
     scene->options = *o;
     scene->motion = motion;
-    scene->engine.accuracy = o->sim.accuracy;
-    scene->engine.duration = o->sim.duration_s;
-    if (scene->engine.duration == 0 && motion)
-        scene->engine.duration = (double)(motion->n - 1) * motion->dt_s;
+    scene->engine = engine_entry(o->sim.engine);
+    scene->run.accuracy = o->sim.accuracy;
+    scene->run.steps_per_contact = o->sim.steps_per_contact;
+    scene->run.duration = o->sim.duration_s;
+    if (scene->run.duration == 0 && motion)
+        scene->run.duration = (double)(motion->n - 1) * motion->dt_s;
     const Status status = building_load(&scene->building, o->building.model, err);
     if (status == STATUS_OK)
         *out = scene;
@@ -118,9 +121,10 @@ Status sim_worker_create(SimWorker **out, const Scene *scene, Err *err)
     if (!w)
         return fail(err, STATUS_NO_MEMORY, "simulator: out of memory");
     w->scene = scene;
+    w->run = scene->run;
     Status status = model_create(&w->model, scene->building.n, err);
-    if (status == STATUS_OK)
-        status = fast_create(&w->fast, scene->building.n, err);
+    if (status == STATUS_OK && scene->engine->work_create)
+        status = scene->engine->work_create(&w->run.work, scene->building.n, err);
     if (status == STATUS_OK)
         *out = w;
     else
@@ -133,13 +137,15 @@ void sim_worker_free(SimWorker *worker)
     if (!worker)
         return;
     model_free(&worker->model);
-    fast_free(worker->fast);
+    if (worker->scene->engine->work_free)
+        worker->scene->engine->work_free(worker->run.work);
     free(worker);
 }
 
 void sim_worker_sample(SimWorker *worker, SimSampleFn sample, void *user)
 {
-    fast_sample(worker->fast, sample, user);
+    worker->run.sample = sample;
+    worker->run.sample_user = user;
 }
 
 void sim_worker_floors(const SimWorker *worker, const SimSample *sample, double u[])
@@ -152,33 +158,40 @@ void sim_worker_floors(const SimWorker *worker, const SimSample *sample, double 
     }
 }
 
-static void judge(SimResult *r, double residual_max)
+static void check_result(SimResult *r, double energy_balance_max)
 {
-    const double all[] = {r->j1_m, r->j2_m, r->j3_g, r->ed1_pct, r->ed5_10_pct, r->edcs_pct, r->energy_residual};
+    const double all[] = {r->j1_m, r->j2_m, r->j3_g, r->ed1_pct, r->ed5_10_pct, r->edcs_pct, r->energy_balance_error};
     for (size_t i = 0; i < sizeof all / sizeof all[0] && r->outcome == RUN_OK; i++)
         if (!isfinite(all[i]))
             r->outcome = RUN_NOT_FINITE;
-    if (r->outcome == RUN_OK && r->energy_residual > residual_max) {
-        r->outcome = RUN_BOOKS_OPEN;
-        snprintf(r->reason, sizeof r->reason, "energy books open by %.3g of the input, allowed %.3g",
-                 r->energy_residual, residual_max);
+    if (r->outcome == RUN_OK && r->energy_balance_error > energy_balance_max) {
+        r->outcome = RUN_ENERGY_BALANCE;
+        snprintf(r->reason, sizeof r->reason, "energy-balance error %.3g of the input, allowed %.3g",
+                 r->energy_balance_error, energy_balance_max);
     }
     if (r->outcome != RUN_OK && !r->reason[0])
         snprintf(r->reason, sizeof r->reason, "%s", run_outcome_words(r->outcome));
 }
 
-static void run_fast(SimWorker *w, SimResult *result)
+static Status run_rigid(SimWorker *w, SimResult *result, Err *err)
 {
     const Scene *scene = w->scene;
-    const double wanted = scene->options.sim.steps_per_contact;
-    const double times = wanted > 0 ? wanted / fast_knobs(scene->engine.accuracy).steps_per_contact : 1;
-    for (size_t i = 0; i < sizeof REFINEMENTS / sizeof REFINEMENTS[0]; i++) {
-        const FastKnobs knobs = fast_knobs_finer(scene->engine.accuracy, times * REFINEMENTS[i]);
-        fast_run(w->fast, &w->model, scene->motion, scene->engine.duration, &knobs, result);
-        judge(result, scene->options.sim.residual_max);
-        if (result->outcome != RUN_BOOKS_OPEN)
-            return;
+    TRY(engine_rigid(&scene->options, &scene->building, &w->core, scene->motion, &w->run, result, err));
+    check_result(result, scene->options.sim.residual_max);
+    return STATUS_OK;
+}
+
+static Status run_engine(SimWorker *w, SimResult *result, Err *err)
+{
+    const Scene *scene = w->scene;
+    for (int i = 0; i < (scene->engine->refines ? N_REFINEMENTS : 1); i++) {
+        w->run.refinement = REFINEMENTS[i];
+        TRY(scene->engine->run(&w->model, scene->motion, &w->run, result, err));
+        check_result(result, scene->options.sim.residual_max);
+        if (result->outcome != RUN_ENERGY_BALANCE)
+            break;
     }
+    return STATUS_OK;
 }
 
 Status sim_run(SimWorker *w, SceneKind kind, const double x[], SimResult *result, Err *err)
@@ -189,22 +202,14 @@ Status sim_run(SimWorker *w, SceneKind kind, const double x[], SimResult *result
     memset(result, 0, sizeof *result);
     if (kind != SCENE_NO_CORE)
         TRY(core_beam_make(&w->core, &scene->options.core, &scene->options.building, n, x[n], x[n + 1], err));
-    if (kind == SCENE_TIED) {
-        TRY(engine_tied(&scene->options, &scene->building, &w->core, scene->motion, &scene->engine, result, err));
-        judge(result, scene->options.sim.residual_max);
+    if (kind == SCENE_RIGID) {
+        TRY(run_rigid(w, result, err));
     } else {
         TRY(model_set(&w->model, &scene->options, &scene->building, kind == SCENE_IMPACT ? &w->core : NULL, x, err));
-        const Engine engine = scene->options.sim.engine;
-        if (engine != ENGINE_FAST) {
-            TRY(engine_entry(engine)->run(&w->model, scene->motion, &scene->engine, result, err));
-            judge(result, scene->options.sim.residual_max);
-        } else {
-            run_fast(w, result);
-        }
+        TRY(run_engine(w, result, err));
     }
     result->mcore_kg = kind == SCENE_NO_CORE ? 0 : w->core.mass_kg;
-    result->penetration_ratio = result->penetration_max_m / scene->options.contact.radius_m;
-    result->beyond_contact_law = result->penetration_ratio > PENETRATION_RATIO_MAX;
+    result->indentation_ratio = result->indentation_max_m / scene->options.contact.radius_m;
     result->seconds = clock_seconds() - start;
     return STATUS_OK;
 }

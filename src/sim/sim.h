@@ -21,7 +21,7 @@
 typedef enum {
     SCENE_IMPACT,  /* building and core with gaps */
     SCENE_NO_CORE, /* the building alone */
-    SCENE_TIED     /* floors and core move together: the linear zero-gap building */
+    SCENE_RIGID    /* floors and core rigidly connected: linear */
 } SceneKind;
 
 typedef struct Scene Scene;
@@ -40,7 +40,7 @@ Status scene_frequencies(const Scene *scene, const double x[], double building_h
 Status sim_worker_create(SimWorker **out, const Scene *scene, Err *err);
 void sim_worker_free(SimWorker *worker); /* NULL is fine */
 
-/* Shows every state to sample, NULL: none; by the engine fast alone. */
+/* Every run from now on shows its states to sample, NULL: none does. The engine `fast` alone has them. */
 void sim_worker_sample(SimWorker *worker, SimSampleFn sample, void *user);
 
 /* Displacements u (n_floors) [m] of the floors at a sample. */

@@ -24,7 +24,7 @@ double measure_value(const SimResult *r, int k)
 {
     const double values[N_MEASURES] = {
         r->j1_m,     r->j2_m,     r->j3_g,           r->ed1_pct,         r->ed5_10_pct,
-        r->edcs_pct, r->mcore_kg, r->input_energy_j, r->energy_residual, (double)r->impacts};
+        r->edcs_pct, r->mcore_kg, r->input_energy_j, r->energy_balance_error, (double)r->impacts};
     return values[k];
 }
 
@@ -44,7 +44,7 @@ Outcome measure_outcome(RunOutcome outcome)
         [RUN_OK] = OUTCOME_OK,
         [RUN_NOT_FINITE] = OUTCOME_NOT_FINITE,
         [RUN_OUT_OF_STEPS] = OUTCOME_OUT_OF_STEPS,
-        [RUN_BOOKS_OPEN] = OUTCOME_ENERGY_BALANCE,
+        [RUN_ENERGY_BALANCE] = OUTCOME_ENERGY_BALANCE,
         [RUN_ENGINE_FAILED] = OUTCOME_ENGINE_FAILED,
     };
     return OUTCOMES[outcome];

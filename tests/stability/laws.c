@@ -166,7 +166,7 @@ static void write_scene_row(FILE *f, const char *label, const SimResult *r, cons
 {
     fprintf(f, "| %s | %.6f | %+.1e | %.6f | %+.1e | %.4f | %+.1e | %ld | %ld | %.2g %% | %.2g %% |\n", label, r->j1_m,
             r->j1_m / base->j1_m - 1, r->j2_m, r->j2_m / base->j2_m - 1, r->j3_g, r->j3_g / base->j3_g - 1, r->impacts,
-            r->floored, 100 * r->contact_loss_j / r->input_energy_j, 100 * r->clamp_j / r->input_energy_j);
+            r->v0_limited, 100 * r->contact_loss_j / r->input_energy_j, 100 * r->clamp_j / r->input_energy_j);
 }
 
 static void write_scene_head(FILE *f, const char *what)

@@ -48,7 +48,7 @@ SimResult trial_run(Trial *t, const SimModel *model, const Motion *motion, doubl
 {
     SimResult r = run_once(t, model, motion, duration, knob);
     /* what sim_run does for the engine `fast` when its books stay open */
-    for (double finer = 4; t->engine == ENGINE_FAST && knob == 0 && finer < 17 && r.energy_residual > RESIDUAL_MAX;
+    for (double finer = 4; t->engine == ENGINE_FAST && knob == 0 && finer < 17 && r.energy_balance_error > RESIDUAL_MAX;
          finer *= 4)
         r = run_once(t, model, motion, duration, finer * fast_knobs(t->accuracy).steps_per_contact);
     return r;
@@ -78,12 +78,12 @@ static void note(Trial *t, const SimResult *r, double error, double allowed, con
         error = NAN;
     } else {
         if (!(error <= allowed))
-            verdict = r && (r->energy_residual > RESIDUAL_MAX || r->beyond_contact_law) ? FLAGGED : FAILED;
+            verdict = r && (r->energy_balance_error > RESIDUAL_MAX || beyond_contact_law(r)) ? FLAGGED : FAILED;
         if (verdict == HOLDS)
             snprintf(how, sizeof how, "%s, %s; allowed %.2g", what, ACCURACIES[t->accuracy], allowed);
         else
             snprintf(how, sizeof how, "%s, %s; allowed %.2g; energy residual %.2g", what, ACCURACIES[t->accuracy],
-                     allowed, r ? r->energy_residual : 0);
+                     allowed, r ? r->energy_balance_error : 0);
     }
     settle(t, verdict, error, allowed > 0 ? error / allowed : error, how);
 }

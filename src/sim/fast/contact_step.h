@@ -189,7 +189,7 @@ static void go_deeper(FastWork *k, double h, double gap, double w0, double wd0, 
 
 static void log_closing(FastWork *k, double h, int floor, const Press *t)
 {
-    OnsetLog *log = k->onsets;
+    OnsetLog *log = k->options->onsets;
     if (log && t->closings && log->n < log->n_max)
         log->at[log->n++] = (ContactOnset){.floor = floor, .t = k->now + h * t->closed_at, .speed = t->closed_with};
 }

@@ -91,17 +91,6 @@ const char *fast_kernel_name(void)
     return best_kernel().name;
 }
 
-void fast_sample(FastWork *work, SimSampleFn sample, void *user)
-{
-    work->sample = sample;
-    work->sample_user = user;
-}
-
-void fast_log_onsets(FastWork *work, OnsetLog *log)
-{
-    work->onsets = log;
-}
-
 FastKnobs fast_knobs(Accuracy accuracy)
 {
     static const FastKnobs KNOBS[] = {
@@ -123,11 +112,11 @@ FastKnobs fast_knobs_finer(Accuracy accuracy, double times)
     return knobs;
 }
 
-void fast_run(FastWork *work, const SimModel *model, const Motion *motion, double duration, const FastKnobs *knobs,
-              SimResult *result)
+void fast_run(FastWork *work, const SimModel *model, const Motion *motion, const EngineOptions *options,
+              const FastKnobs *knobs, SimResult *result)
 {
     const unsigned mode = denormal_off();
-    best_kernel().run(work, model, motion, duration, knobs, result);
+    best_kernel().run(work, model, motion, options, knobs, result);
     denormal_restore(mode);
 }
 
@@ -143,20 +132,46 @@ static void end_state(const FastWork *work, double state[])
     }
 }
 
+/* At ACCURACY_FINE the other tolerances are at rounding: EngineOptions.tolerance sets the steps alone. */
+static FastKnobs tolerances_of(const EngineOptions *options)
+{
+    FastKnobs knobs = fast_knobs(options->accuracy);
+    double times = options->refinement > 0 ? options->refinement : 1;
+    if (options->steps_per_contact > 0)
+        times *= options->steps_per_contact / knobs.steps_per_contact;
+    if (options->tolerance > 0 && options->accuracy != ACCURACY_FINE)
+        times *= options->tolerance / knobs.steps_per_contact;
+    knobs = fast_knobs_finer(options->accuracy, times);
+    if (options->tolerance > 0 && options->accuracy == ACCURACY_FINE)
+        knobs.steps_per_contact = options->tolerance;
+    return knobs;
+}
+
 Status engine_fast(const SimModel *model, const Motion *motion, const EngineOptions *options, SimResult *result,
                    Err *err)
 {
-    FastWork *work;
-    FastKnobs knobs = fast_knobs(options->accuracy);
-    if (options->tolerance > 0 && options->accuracy != ACCURACY_FINE)
-        knobs = fast_knobs_finer(options->accuracy, options->tolerance / knobs.steps_per_contact);
-    else if (options->tolerance > 0)
-        knobs.steps_per_contact = options->tolerance;
-    TRY(fast_create(&work, model->n, err));
-    fast_log_onsets(work, options->onsets);
-    fast_run(work, model, motion, options->duration, &knobs, result);
+    FastWork *own = NULL, *work = options->work;
+    if (!work)
+        TRY(fast_create(&own, model->n, err));
+    if (!work)
+        work = own;
+    const FastKnobs knobs = tolerances_of(options);
+    fast_run(work, model, motion, options, &knobs, result);
     if (options->end_state)
         end_state(work, options->end_state);
-    fast_free(work);
+    fast_free(own);
     return STATUS_OK;
+}
+
+Status engine_fast_create(void **work, int n_floors, Err *err)
+{
+    FastWork *fast;
+    TRY(fast_create(&fast, n_floors, err));
+    *work = fast;
+    return STATUS_OK;
+}
+
+void engine_fast_free(void *work)
+{
+    fast_free(work);
 }

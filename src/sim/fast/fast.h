@@ -34,12 +34,6 @@ void fast_free(FastWork *work); /* NULL is fine */
 /* "avx512", "avx2" or "base": the kernel that this processor gets. */
 const char *fast_kernel_name(void);
 
-/* Every run from now on shows its state at every sample of the motion; NULL: none does. */
-void fast_sample(FastWork *work, SimSampleFn sample, void *user);
-
-/* Every run from now on appends its first contact onsets; NULL: none does. */
-void fast_log_onsets(FastWork *work, OnsetLog *log);
-
 /* What accuracy costs. */
 typedef struct {
     double steps_per_contact;    /* of an undisturbed Hertz contact at the largest speed between floor and core */
@@ -55,7 +49,8 @@ FastKnobs fast_knobs(Accuracy accuracy);
 /* The same with so many times the steps per contact, and tolerances to match. */
 FastKnobs fast_knobs_finer(Accuracy accuracy, double times);
 
-void fast_run(FastWork *work, const SimModel *model, const Motion *motion, double duration, const FastKnobs *knobs,
-              SimResult *result);
+/* Of the options: duration, onsets and sample. */
+void fast_run(FastWork *work, const SimModel *model, const Motion *motion, const EngineOptions *options,
+              const FastKnobs *knobs, SimResult *result);
 
 #endif

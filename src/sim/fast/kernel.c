@@ -119,8 +119,8 @@ static void show(const FastWork *k, double t)
         .contact_loss_j = k->contact_lost,
         .contact_clamp_j = k->contact_clamped,
     };
-    if (k->sample)
-        k->sample(&sample, k->sample_user);
+    if (k->options->sample)
+        k->options->sample(&sample, k->options->sample_user);
 }
 
 typedef struct {
@@ -225,7 +225,7 @@ static void sum_energies(const FastWork *k, SimResult *r)
     r->contact_stored_j = still_stored(k);
     const double books = -contact_work - r->contact_loss_j - r->clamp_j - r->contact_stored_j;
     const double scale = energy_balance_scale(r->input_energy_j, r->input_energy_j - books);
-    r->energy_residual = fabs(books) / scale + sqrt(missed / (2 * scale));
+    r->energy_balance_error = fabs(books) / scale + sqrt(missed / (2 * scale));
     for (int i = 0; i < k->model->nb; i++)
         r->mode_share_pct[i] = share(damped[i], r->input_energy_j);
     r->ed1_pct = r->mode_share_pct[0];
@@ -248,14 +248,15 @@ static void take_peaks(const FastWork *k, SimResult *r)
 
 FastKernel FAST_KERNEL;
 
-void FAST_KERNEL(FastWork *k, const SimModel *model, const Motion *motion, double duration, const FastKnobs *knobs,
-                 SimResult *result)
+void FAST_KERNEL(FastWork *k, const SimModel *model, const Motion *motion, const EngineOptions *options,
+                 const FastKnobs *knobs, SimResult *result)
 {
+    k->options = options;
     k->knobs = knobs;
     memset(result, 0, sizeof *result);
     take_model(k, model, motion->dt_s);
     start_at_rest(k);
-    const int arrived = fly(k, motion, duration);
+    const int arrived = fly(k, motion, options->duration);
     result->n_floors = model->n;
     result->n_modes = model->nb;
     if (!arrived)
@@ -263,8 +264,8 @@ void FAST_KERNEL(FastWork *k, const SimModel *model, const Motion *motion, doubl
     take_peaks(k, result);
     sum_energies(k, result);
     result->impacts = k->impacts;
-    result->floored = k->floored;
-    result->penetration_max_m = k->deepest;
+    result->v0_limited = k->floored;
+    result->indentation_max_m = k->deepest;
     result->steps = k->steps + k->flights;
     result->force_evaluations = k->forces;
 }

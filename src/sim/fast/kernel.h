@@ -72,18 +72,16 @@ typedef struct FastWork {
     double shortest_at_1;      /* [s] shortest Hertz contact of any floor at 1 m/s */
     const FastKnobs *knobs;
 
-    SimSampleFn sample; /* may be NULL */
-    void *sample_user;
+    const EngineOptions *options;
 
-    double now;       /* [s] start of the step under way */
-    OnsetLog *onsets; /* may be NULL */
+    double now; /* [s] start of the step under way */
 
     /* books */
     double contact_lost, contact_clamped, deepest;
     long impacts, floored, steps, flights, forces;
 } FastWork;
 
-typedef void FastKernel(FastWork *k, const SimModel *model, const Motion *motion, double duration,
+typedef void FastKernel(FastWork *k, const SimModel *model, const Motion *motion, const EngineOptions *options,
                         const FastKnobs *knobs, SimResult *result);
 
 FastKernel fast_kernel_base, fast_kernel_avx2, fast_kernel_avx512;

@@ -49,7 +49,7 @@ void ledger_report(const Ledger *l, const Contacts *c, const EngineOptions *opti
     result->steps = l->steps;
     result->force_evaluations = l->evaluations;
     result->impacts = c->impacts;
-    result->floored = c->floored;
+    result->v0_limited = c->floored;
     result->input_energy_j = l->input;
     result->contact_loss_j = l->lost;
     result->clamp_j = l->clamp;
@@ -57,7 +57,7 @@ void ledger_report(const Ledger *l, const Contacts *c, const EngineOptions *opti
         result->kinetic_strain_j += 0.5 * (v[i] * v[i] + pow(model->omega[i] * q[i], 2));
     result->contact_stored_j = contacts_stored(c, q);
     for (int j = 0; j < model->n && model->nc > 0; j++)
-        result->penetration_max_m = fmax(result->penetration_max_m, l->peaks.peak[PEAK_RELATIVE][j] - model->gap[j]);
+        result->indentation_max_m = fmax(result->indentation_max_m, l->peaks.peak[PEAK_RELATIVE][j] - model->gap[j]);
     peak_monitor_report(&l->peaks, result);
     energy_balance_close(result, model->nb, model->nc, l->damped);
     if (options->end_state) {

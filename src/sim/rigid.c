@@ -288,8 +288,8 @@ static void report(const Tied *d, SimResult *result)
     energy_balance_close(result, d->n, d->n, d->damped);
 }
 
-Status engine_tied(const SceneOptions *o, const Building *b, const CoreBeam *core, const Motion *motion,
-                   const EngineOptions *options, SimResult *result, Err *err)
+Status engine_rigid(const SceneOptions *o, const Building *b, const CoreBeam *core, const Motion *motion,
+                    const EngineOptions *options, SimResult *result, Err *err)
 {
     static const double STEP[] = {[ACCURACY_COARSE] = 2e-3, [ACCURACY_STANDARD] = 1e-3, [ACCURACY_FINE] = 5e-4};
     Tied d = {.n = b->n, .size = 2 * b->n + 2, .step = STEP[options->accuracy], .peaks.n = b->n};
