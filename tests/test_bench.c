@@ -7,7 +7,7 @@
 
 #include "bench/parted.h"
 #include "scene/motion_source.h"
-#include "settings/settings.h"
+#include "scene_options.h"
 
 typedef struct {
     SceneOptions s;
@@ -18,7 +18,7 @@ static void ground_open(Ground *g)
 {
     Err err;
     Settings s;
-    settings_defaults(&s);
+    paper_defaults(&s);
     g->s = settings_scene(&s);
     CHECK_OK(motion_load(&g->m, "builtin:kobe-like", UNIT_FROM_FILE, &err), &err);
     CHECK_OK(motion_prepare(&g->m, s.motion.pga_g, s.motion.stretch, &err), &err);

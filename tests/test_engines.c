@@ -57,7 +57,7 @@ static void test_every_engine_agrees_with_the_fast_one_where_there_are_impacts(v
 {
     (void)state;
     static CoreBeam core;
-    SceneOptions s = scene_defaults();
+    SceneOptions s = paper_scene();
     Building b;
     SimModel model;
     Err err;

@@ -6,13 +6,13 @@
 
 #include "simulator/ensemble.h"
 #include "simulator/horizon.h"
-#include "settings/settings.h"
+#include "scene_options.h"
 
 static void open_world(World *w, double x[22], double gap_m)
 {
     Settings s;
     Err err = {0};
-    settings_defaults(&s);
+    paper_defaults(&s);
     snprintf(s.motion.record, OPTION_TEXT_MAX, "builtin:sylmar-like");
     s.sim.duration_s = 16;
     CHECK_OK(world_open(w, &s, &err), &err);

@@ -9,7 +9,7 @@
 #include "sim/fast/fast.h"
 #include "sim/sim.h"
 #include "scene/motion_source.h"
-#include "settings/settings.h"
+#include "scene_options.h"
 
 /* ---- one ball and a wall ------------------------------------------------------------------------------------ */
 
@@ -224,7 +224,7 @@ static void test_early_window_has_the_digits_that_independent_integrators_share(
 {
     (void)state;
     Tower t = {0};
-    settings_defaults(&t.settings);
+    paper_defaults(&t.settings);
     snprintf(t.settings.motion.record, OPTION_TEXT_MAX, "../shared/records/northridge_sylmar_ns.csv");
     if (!record_is_there(t.settings.motion.record))
         skip();
@@ -259,7 +259,7 @@ static void test_kobe_without_a_core_has_its_known_response(void **state)
 {
     (void)state;
     Tower t = {0};
-    settings_defaults(&t.settings);
+    paper_defaults(&t.settings);
     snprintf(t.settings.motion.record, OPTION_TEXT_MAX, "../shared/records/kobe_jma_ns.csv");
     if (!record_is_there(t.settings.motion.record))
         skip();
@@ -275,7 +275,7 @@ static void test_kobe_without_a_core_has_its_known_response(void **state)
 static void builtin_tower(Tower *t)
 {
     *t = (Tower){0};
-    settings_defaults(&t->settings);
+    paper_defaults(&t->settings);
     t->settings.sim.duration_s = 14;
     snprintf(t->settings.motion.record, OPTION_TEXT_MAX, "builtin:sylmar-like");
     tower_open(t);
@@ -402,7 +402,7 @@ static void test_standard_accuracy_agrees_with_cvode_on_another_building_core_an
 {
     (void)state;
     Tower t = {0};
-    settings_defaults(&t.settings);
+    paper_defaults(&t.settings);
     snprintf(t.settings.building.model, OPTION_TEXT_MAX, "appendix");
     snprintf(t.settings.motion.record, OPTION_TEXT_MAX, "builtin:elcentro-like");
     t.settings.motion.stretch = 3;

@@ -25,7 +25,7 @@ static void stage_set(Stage *stage, double gap)
 {
     Err err;
     memset(stage, 0, sizeof *stage);
-    stage->s = scene_defaults();
+    stage->s = paper_scene();
     stage->s.core.section = CORE_EFFECTIVE;
     CHECK_OK(building_load(&stage->b, "guyan", &err), &err);
     CHECK_OK(core_beam_make(&stage->core, &stage->s.core, &stage->s.building, stage->b.n, 1, 1, &err), &err);

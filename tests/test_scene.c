@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/linalg.h"
+#include "scene/beam.h"
 #include "scene/building.h"
 #include "scene/core_beam.h"
 #include "sim/contact.h"
@@ -15,7 +16,7 @@
 
 static void make_core(CoreBeam *core, CoreSection section, double t_base, double t_top)
 {
-    SceneOptions s = scene_defaults();
+    SceneOptions s = paper_scene();
     Err err = {0};
     s.core.section = section;
     CHECK_OK(core_beam_make(core, &s.core, &s.building, 20, t_base, t_top, &err), &err);
@@ -33,7 +34,7 @@ static void assert_hz(const double hz[], const double wanted[], int n, double to
 static void scene_hz(const char *model, CoreSection section, double building[], double core[], double zero_gap[],
                      double *mass)
 {
-    SceneOptions s = scene_defaults();
+    SceneOptions s = paper_scene();
     Scene *scene;
     Err err = {0};
     double x[22] = {[20] = 0.012, [21] = 0.0064};
@@ -85,7 +86,7 @@ static void test_a_uniform_core_is_a_textbook_cantilever(void **state)
 {
     (void)state;
     CoreBeam core;
-    SceneOptions s = scene_defaults();
+    SceneOptions s = paper_scene();
     Err err = {0};
     s.core.section = CORE_PLATE;
     s.building.first_storey_m = s.building.storey_m = 4;
@@ -107,6 +108,206 @@ static void test_stiffness_of_the_plate_goes_with_thickness_cubed(void **state)
     for (int i = 0; i < 400; i++)
         assert_close(thick.K[i], 8 * thin.K[i], 1e-6);
     assert_close(thick.mass_kg, 2 * thin.mass_kg, 1e-12);
+}
+
+/* ---- the core's shear deformation ------------------------------------------------------------------------------ */
+
+/* n storeys of 4 m, the same tube throughout. */
+static SceneOptions uniform_storeys(double side, CoreTheory theory)
+{
+    SceneOptions s = scene_defaults();
+    s.core.theory = theory;
+    s.core.side_m = side;
+    s.building.first_storey_m = s.building.storey_m = 4;
+    return s;
+}
+
+typedef struct {
+    double EI, kGA, mass_per_m, A, I; /* of a tube, shear area by Cowper */
+} Tube;
+
+static Tube tube(const CoreOptions *o, double t)
+{
+    const double B = o->side_m, A = B * B - (B - 2 * t) * (B - 2 * t), I = (pow(B, 4) - pow(B - 2 * t, 4)) / 12;
+    const double k = 20 * (1 + o->poisson) / (48 + 39 * o->poisson), E = o->youngs_modulus_pa;
+    return (Tube){E * I, k * E / (2 * (1 + o->poisson)) * A, o->density_kg_m3 * A, A, I};
+}
+
+static void test_a_force_at_any_node_bends_and_shears_the_cantilever_as_the_closed_form(void **state)
+{
+    (void)state;
+    enum { N = 7 };
+    SceneOptions s = uniform_storeys(6, CORE_TIMOSHENKO);
+    CoreBeam core;
+    Err err = {0};
+    CHECK_OK(core_beam_make(&core, &s.core, &s.building, N, 0.02, 0.02, &err), &err);
+    const Tube a = tube(&s.core, 0.02);
+    for (int node = 0; node < N; node++) {
+        double K[N * N], u[N] = {0};
+        u[node] = 1e6;
+        memcpy(K, core.K, sizeof K);
+        CHECK_OK(linalg_solve_spd(N, 1, K, u, &err), &err);
+        const double at = 4.0 * (node + 1), L = 4.0 * N;
+        assert_close(u[node], 1e6 * (at * at * at / (3 * a.EI) + at / a.kGA), 1e-9);
+        assert_close(u[N - 1], 1e6 * (at * at / (6 * a.EI) * (3 * L - at) + at / a.kGA), 1e-9);
+    }
+}
+
+static void test_a_slender_core_vibrates_alike_by_both_theories(void **state)
+{
+    (void)state;
+    CoreBeam with, without;
+    Err err = {0};
+    const double sides[] = {1.6, 0.4};
+    double before = 1;
+    for (int i = 0; i < 2; i++) {
+        SceneOptions s = uniform_storeys(sides[i], CORE_TIMOSHENKO);
+        CHECK_OK(core_beam_make(&with, &s.core, &s.building, 20, 0.002, 0.002, &err), &err);
+        s.core.theory = CORE_EULER_BERNOULLI;
+        CHECK_OK(core_beam_make(&without, &s.core, &s.building, 20, 0.002, 0.002, &err), &err);
+        const double softer = 1 - with.omega[0] / without.omega[0];
+        assert_true(softer > 0 && softer < before / 15.9); /* goes with the square of the side */
+        before = softer;
+    }
+    assert_true(before < 1e-4);
+}
+
+/* Frequency equation of the clamped-free Timoshenko beam: Huang, J. Appl. Mech. 28 (1961) 579-584, b2 below the shear
+ * cut-off. r, s: radius of gyration and its like for shear, over the length. */
+static double clamped_free(double b, double r, double s)
+{
+    const double r2 = r * r, s2 = s * s, b2 = b * b;
+    const double root = sqrt((r2 - s2) * (r2 - s2) + 4 / b2);
+    const double alpha = sqrt((root - r2 - s2) / 2), beta = sqrt((root + r2 + s2) / 2);
+    return 2 + (b2 * (r2 - s2) * (r2 - s2) + 2) * cosh(b * alpha) * cos(b * beta) -
+           b * (r2 + s2) / sqrt(1 - b2 * r2 * s2) * sinh(b * alpha) * sin(b * beta);
+}
+
+/* Its first n roots, by steps and bisection. */
+static void clamped_free_roots(double r, double s, int n, double roots[])
+{
+    const double step = 0.01;
+    for (double b = step; n > 0; b += step) {
+        double lo = b, hi = b + step;
+        if (clamped_free(lo, r, s) * clamped_free(hi, r, s) > 0)
+            continue;
+        for (int k = 0; k < 60; k++) {
+            const double middle = 0.5 * (lo + hi);
+            *(clamped_free(lo, r, s) * clamped_free(middle, r, s) > 0 ? &lo : &hi) = middle;
+        }
+        *roots++ = lo;
+        n--;
+    }
+}
+
+enum { BEAM_MODES = 4, ELEMENTS_MAX = 32 };
+
+static double relative_error(double omega, double b, const Tube *a, double L)
+{
+    return omega / (b / (L * L) * sqrt(a->EI / a->mass_per_m)) - 1;
+}
+
+/* Frequencies of a clamped chain of elements with all its rotations. */
+static void chain_frequencies(const Beam *beam, int n, double omega[])
+{
+    enum { SIZE = 2 * ELEMENTS_MAX };
+    static double K[SIZE * SIZE], M[SIZE * SIZE], phi[SIZE * SIZE];
+    Err err = {0};
+    double k[4][4], m[4][4];
+    const int size = 2 * n;
+    memset(K, 0, sizeof K);
+    memset(M, 0, sizeof M);
+    beam_element(beam, k, m);
+    for (int e = 0; e < n; e++)
+        for (int i = e == 0 ? 2 : 0; i < 4; i++)
+            for (int j = e == 0 ? 2 : 0; j < 4; j++) {
+                K[(2 * e - 2 + i) * size + 2 * e - 2 + j] += k[i][j];
+                M[(2 * e - 2 + i) * size + 2 * e - 2 + j] += m[i][j];
+            }
+    CHECK_OK(linalg_modes(size, K, M, omega, phi, &err), &err);
+}
+
+static void test_frequencies_converge_to_those_of_timoshenkos_beam(void **state)
+{
+    (void)state;
+    const double L = 80;
+    const SceneOptions s = uniform_storeys(11.3, CORE_TIMOSHENKO);
+    const Tube a = tube(&s.core, 0.01);
+    double b[BEAM_MODES], omega[2 * ELEMENTS_MAX], before[BEAM_MODES] = {1, 1, 1, 1};
+    clamped_free_roots(sqrt(a.I / a.A) / L, sqrt(a.EI / a.kGA) / L, BEAM_MODES, b);
+    for (int n = 4; n <= ELEMENTS_MAX; n *= 2) {
+        const Beam beam = {a.EI, a.kGA, a.mass_per_m, s.core.density_kg_m3 * a.I, L / n};
+        chain_frequencies(&beam, n, omega);
+        for (int i = 0; i < BEAM_MODES; i++) {
+            const double error = relative_error(omega[i], b[i], &a, L);
+            assert_true(error > 0 && error < before[i] / (n > 8 ? 3.5 : 1.5)); /* order 2, from above */
+            before[i] = error;
+        }
+    }
+    assert_true(before[0] < 1e-5 && before[BEAM_MODES - 1] < 3e-3);
+}
+
+/* Rotations that follow the deflections statically leave out what rotary inertia does to the shape. */
+static void test_condensed_rotations_raise_the_first_frequencies_by_less_than_a_percent(void **state)
+{
+    (void)state;
+    const double L = 80, allowed[BEAM_MODES] = {1e-5, 6e-4, 3e-3, 7e-3};
+    SceneOptions s = uniform_storeys(11.3, CORE_TIMOSHENKO);
+    const Tube a = tube(&s.core, 0.01);
+    CoreBeam core;
+    Err err = {0};
+    double b[BEAM_MODES];
+    s.building.first_storey_m = s.building.storey_m = L / 64;
+    clamped_free_roots(sqrt(a.I / a.A) / L, sqrt(a.EI / a.kGA) / L, BEAM_MODES, b);
+    CHECK_OK(core_beam_make(&core, &s.core, &s.building, 64, 0.01, 0.01, &err), &err);
+    for (int i = 0; i < BEAM_MODES; i++) {
+        const double error = relative_error(core.omega[i], b[i], &a, L);
+        assert_true(error > 0 && error < allowed[i]);
+    }
+}
+
+static double shear_effect_on_first_mode(CoreSection section, int n)
+{
+    CoreBeam with, without;
+    Err err = {0};
+    SceneOptions s = scene_defaults();
+    s.core.section = section;
+    CHECK_OK(core_beam_make(&with, &s.core, &s.building, n, 0.012, 0.0064, &err), &err);
+    s.core.theory = CORE_EULER_BERNOULLI;
+    CHECK_OK(core_beam_make(&without, &s.core, &s.building, n, 0.012, 0.0064, &err), &err);
+    assert_true(with.mass_kg == without.mass_kg);
+    return 1 - with.omega[0] / without.omega[0];
+}
+
+static void test_shear_softens_a_squat_core_much_more_than_a_tall_one(void **state)
+{
+    (void)state;
+    const double tall = shear_effect_on_first_mode(CORE_BOX, 20), squat = shear_effect_on_first_mode(CORE_BOX, 6);
+    print_message("first mode of the 11.3 m tube by shear and rotary inertia: -%.1f %% (20 storeys), -%.1f %% (6)\n",
+                  100 * tall, 100 * squat);
+    assert_true(tall > 0.03 && tall < 0.07);
+    assert_true(squat > 0.25 && squat < 0.40);
+    assert_true(shear_effect_on_first_mode(CORE_PLATE, 20) < 1e-6);
+}
+
+static void test_an_effective_section_shears_by_the_area_that_is_given(void **state)
+{
+    (void)state;
+    SceneOptions s = uniform_storeys(6, CORE_TIMOSHENKO);
+    CoreBeam box, effective;
+    Err err = {0};
+    const Tube a = tube(&s.core, 0.02);
+    CHECK_OK(core_beam_make(&box, &s.core, &s.building, 8, 0.02, 0.02, &err), &err);
+    s.core.section = CORE_EFFECTIVE;
+    s.core.area_base_m2 = s.core.area_top_m2 = a.A;
+    s.core.inertia_base_m4 = s.core.inertia_top_m4 = a.I;
+    s.core.shear_area_base_m2 = s.core.shear_area_top_m2 = a.kGA * 2 * (1 + s.core.poisson) / s.core.youngs_modulus_pa;
+    CHECK_OK(core_beam_make(&effective, &s.core, &s.building, 8, 1, 1, &err), &err);
+    for (int i = 0; i < 8; i++)
+        assert_close(effective.omega[i], box.omega[i], 1e-10);
+    s.core.shear_area_top_m2 = 0;
+    assert_int_equal(core_beam_make(&effective, &s.core, &s.building, 8, 1, 1, &err), STATUS_BAD_DATA);
+    assert_non_null(strstr(err.text, "core.shear_area"));
 }
 
 static void test_mode_shapes_are_mass_normalised_and_diagonalise_the_stiffness(void **state)
@@ -174,7 +375,7 @@ static void test_walls_that_do_not_fit_are_refused(void **state)
 {
     (void)state;
     CoreBeam core;
-    SceneOptions s = scene_defaults();
+    SceneOptions s = paper_scene();
     Err err = {0};
     s.core.side_m = 0.05;
     assert_int_equal(core_beam_make(&core, &s.core, &s.building, 20, 0.03, 0.02, &err), STATUS_BAD_DATA);
@@ -184,7 +385,7 @@ static void test_walls_that_do_not_fit_are_refused(void **state)
 static void test_contact_stiffness_and_damping_are_those_of_the_paper(void **state)
 {
     (void)state;
-    SceneOptions s = scene_defaults();
+    SceneOptions s = paper_scene();
     Contact c;
     Err err = {0};
     CHECK_OK(contact_make(&c, &s.contact, &err), &err);
@@ -292,6 +493,12 @@ int main(void)
         cmocka_unit_test(test_the_box_core_has_its_known_mass_and_frequencies),
         cmocka_unit_test(test_a_uniform_core_is_a_textbook_cantilever),
         cmocka_unit_test(test_stiffness_of_the_plate_goes_with_thickness_cubed),
+        cmocka_unit_test(test_a_force_at_any_node_bends_and_shears_the_cantilever_as_the_closed_form),
+        cmocka_unit_test(test_a_slender_core_vibrates_alike_by_both_theories),
+        cmocka_unit_test(test_frequencies_converge_to_those_of_timoshenkos_beam),
+        cmocka_unit_test(test_condensed_rotations_raise_the_first_frequencies_by_less_than_a_percent),
+        cmocka_unit_test(test_shear_softens_a_squat_core_much_more_than_a_tall_one),
+        cmocka_unit_test(test_an_effective_section_shears_by_the_area_that_is_given),
         cmocka_unit_test(test_mode_shapes_are_mass_normalised_and_diagonalise_the_stiffness),
         cmocka_unit_test(test_participation_factors_add_up_to_the_whole_mass),
         cmocka_unit_test(test_bad_buildings_are_refused_with_file_and_fault),

@@ -3,7 +3,7 @@
 
 #include "check.h"
 #include "simulator/trial.h"
-#include "settings/settings.h"
+#include "scene_options.h"
 
 enum { DESIGNS = 3, N_VAR = 22 };
 
@@ -12,7 +12,7 @@ static Settings short_scene(const char *records, long members, const char *toler
     Settings s;
     Err err = {0};
     char text[120];
-    settings_defaults(&s);
+    paper_defaults(&s);
     s.sim.duration_s = 25.0; /* tiny changes have not grown yet, wide ones tell */
     s.sim.accuracy = ACCURACY_COARSE;
     s.sim.ensemble = members;

@@ -31,7 +31,7 @@ static const double FINE = 1e-4, STANDARD[BENCH_OBJECTIVES] = {1e-3, 3e-3, 2e-2,
 static void open_window(const Window *w, SceneOptions *s, Motion *m, Stage *stage)
 {
     Err err;
-    *s = scene_defaults();
+    *s = paper_scene();
     snprintf(s->building.model, sizeof s->building.model, "%s", w->building);
     s->core.section = w->section;
     CHECK_OK(motion_load(m, w->record, UNIT_FROM_FILE, &err), &err);

@@ -51,6 +51,7 @@ static Status prepare(const Args *args, Bench *b, Err *err)
     b->plan.limit_s = b->quick ? 0.3 : 2;
     Settings s;
     settings_defaults(&s);
+    s.core.theory = CORE_EULER_BERNOULLI; /* the core of the paper, as in configs/kobe.ini */
     TRY(args_apply(args, &s, NULL, NULL, err));
     TRY(settings_check(&s, err));
     b->options = settings_scene(&s);

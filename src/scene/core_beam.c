@@ -5,43 +5,47 @@
 #include <string.h>
 
 #include "base/linalg.h"
+#include "scene/beam.h"
 
 typedef struct {
-    double area, inertia; /* [m2], [m4] */
+    double area, inertia, shear_area; /* [m2], [m4], [m2] 0: no shear deformation */
 } Section;
+
+/* Shear area over area of a thin-walled square tube: Cowper, J. Appl. Mech. 33 (1966) 335-340. */
+static double tube_shear_factor(double poisson)
+{
+    return 20 * (1 + poisson) / (48 + 39 * poisson);
+}
+
+static const double PLATE_SHEAR_FACTOR = 5.0 / 6; /* solid rectangle, parabola of shear stress */
 
 static Section section_at(const CoreOptions *o, double share, double t)
 {
     switch (o->section) {
     case CORE_BOX: {
         const double outer = o->side_m, inner = outer - 2 * t;
-        return (Section){outer * outer - inner * inner, (pow(outer, 4) - pow(inner, 4)) / 12};
+        const double area = outer * outer - inner * inner;
+        return (Section){area, (pow(outer, 4) - pow(inner, 4)) / 12, tube_shear_factor(o->poisson) * area};
     }
     case CORE_PLATE:
-        return (Section){o->width_m * t, o->width_m * t * t * t / 12};
+        return (Section){o->width_m * t, o->width_m * t * t * t / 12, PLATE_SHEAR_FACTOR * o->width_m * t};
     case CORE_EFFECTIVE:
         break;
     }
     return (Section){o->area_base_m2 + (o->area_top_m2 - o->area_base_m2) * share,
-                     o->inertia_base_m4 + (o->inertia_top_m4 - o->inertia_base_m4) * share};
+                     o->inertia_base_m4 + (o->inertia_top_m4 - o->inertia_base_m4) * share,
+                     o->shear_area_base_m2 + (o->shear_area_top_m2 - o->shear_area_base_m2) * share};
 }
 
-/* Stiffness and consistent mass of a beam element of length l; unknowns: deflection, rotation at each end. */
-static void hermite_element(double EI, double mass_per_m, double l, double k[4][4], double m[4][4])
+static Beam storey_beam(const CoreOptions *o, const Section *a, double length)
 {
-    const double k_shape[4][4] = {{12, 6 * l, -12, 6 * l},
-                                  {6 * l, 4 * l * l, -6 * l, 2 * l * l},
-                                  {-12, -6 * l, 12, -6 * l},
-                                  {6 * l, 2 * l * l, -6 * l, 4 * l * l}};
-    const double m_shape[4][4] = {{156, 22 * l, 54, -13 * l},
-                                  {22 * l, 4 * l * l, 13 * l, -3 * l * l},
-                                  {54, 13 * l, 156, -22 * l},
-                                  {-13 * l, -3 * l * l, -22 * l, 4 * l * l}};
-    for (int i = 0; i < 4; i++)
-        for (int j = 0; j < 4; j++) {
-            k[i][j] = EI / (l * l * l) * k_shape[i][j];
-            m[i][j] = mass_per_m * l / 420 * m_shape[i][j];
-        }
+    const double E = o->youngs_modulus_pa, G = E / (2 * (1 + o->poisson));
+    const int shears = o->theory == CORE_TIMOSHENKO;
+    return (Beam){.EI = E * a->inertia,
+                  .kGA = shears ? G * a->shear_area : 0,
+                  .mass_per_m = o->density_kg_m3 * a->area,
+                  .rotary_kg_m = shears ? o->density_kg_m3 * a->inertia : 0,
+                  .length = length};
 }
 
 /* Unknowns: deflections 0..n-1, then rotations n..2n-1; node 0 of the beam is clamped. Returns the total mass. */
@@ -54,9 +58,9 @@ static double assemble(const CoreOptions *o, const BuildingOptions *b, int n, do
         const double share = n > 1 ? (double)e / (n - 1) : 0;
         const double l = e == 0 ? b->first_storey_m : b->storey_m;
         const Section a = section_at(o, share, t_base + (t_top - t_base) * share);
-        const double mass_per_m = o->density_kg_m3 * a.area;
+        const Beam beam = storey_beam(o, &a, l);
         double k[4][4], m[4][4];
-        hermite_element(o->youngs_modulus_pa * a.inertia, mass_per_m, l, k, m);
+        beam_element(&beam, k, m);
         const int at[4] = {e - 1, e == 0 ? -1 : n + e - 1, e, n + e};
         for (int i = 0; i < 4; i++)
             for (int j = 0; j < 4; j++)
@@ -64,7 +68,7 @@ static double assemble(const CoreOptions *o, const BuildingOptions *b, int n, do
                     K[at[i] * size + at[j]] += k[i][j];
                     M[at[i] * size + at[j]] += m[i][j];
                 }
-        mass += mass_per_m * l;
+        mass += beam.mass_per_m * l;
     }
     return mass;
 }
@@ -116,6 +120,9 @@ Status core_beam_make(CoreBeam *c, const CoreOptions *o, const BuildingOptions *
     if (o->section == CORE_BOX && !(2 * fmax(t_base_m, t_top_m) <= o->side_m))
         return fail(err, STATUS_BAD_DATA, "core: twice a thickness of %g m does not fit into core.side_m = %g m",
                     fmax(t_base_m, t_top_m), o->side_m);
+    if (o->section == CORE_EFFECTIVE && (o->shear_area_base_m2 > 0) != (o->shear_area_top_m2 > 0))
+        return fail(err, STATUS_BAD_DATA, "core.shear_area_base_m2 is %g, core.shear_area_top_m2 %g: give both or none",
+                    o->shear_area_base_m2, o->shear_area_top_m2);
     double *K = calloc(2 * size * size + 4 * size * size, sizeof *K);
     if (!K)
         return fail(err, STATUS_NO_MEMORY, "core: no memory for %d storeys", n);

@@ -15,10 +15,15 @@ typedef struct {
 #define CORE_SECTION_LIST(X) X(CORE_BOX, "box") X(CORE_PLATE, "plate") X(CORE_EFFECTIVE, "effective")
 typedef enum { CORE_SECTION_LIST(CHOICE_NAME) } CoreSection;
 
+#define CORE_THEORY_LIST(X) X(CORE_TIMOSHENKO, "timoshenko") X(CORE_EULER_BERNOULLI, "euler_bernoulli")
+typedef enum { CORE_THEORY_LIST(CHOICE_NAME) } CoreTheory;
+
 typedef struct {
     CoreSection section;
-    double side_m, width_m, damping, youngs_modulus_pa, density_kg_m3;
+    CoreTheory theory;
+    double side_m, width_m, damping, youngs_modulus_pa, poisson, density_kg_m3;
     double area_base_m2, area_top_m2, inertia_base_m4, inertia_top_m4;
+    double shear_area_base_m2, shear_area_top_m2; /* 0: no shear deformation */
 } CoreOptions;
 
 #define MOTION_UNIT_LIST(X)                                                                                            \

@@ -74,15 +74,20 @@ static const Option OPTIONS[] = {
     CHOICE(core.section, CoreSection, CHOICE_WORDS(CORE_SECTION_LIST), "box",
            "box: square tube of side side_m; plate: solid, width_m wide, thickness deep; effective: area and inertia "
            "given"),
+    CHOICE(core.theory, CoreTheory, CHOICE_WORDS(CORE_THEORY_LIST), "timoshenko",
+           "timoshenko: with shear deformation and rotary inertia; euler_bernoulli: bending alone, as in the paper"),
     REAL(core.side_m, "m", "11.3", 0.1, 200, "outer side of the box"),
     REAL(core.width_m, "m", "11.3", 0.1, 200, "width of the plate"),
     REAL(core.damping, "-", "0.03", 0, 10, "damping ratio of every core mode"),
     REAL(core.youngs_modulus_pa, "Pa", "2.1e11", 1, 1e14, "of the core's steel"),
+    REAL(core.poisson, "-", "0.3", 0, 0.5, "Poisson's ratio of the core's steel: its shear stiffness"),
     REAL(core.density_kg_m3, "kg/m3", "7850", 1, 1e5, "of the core's steel"),
     REAL(core.area_base_m2, "m2", "1.567", 1e-9, 1e4, "effective: first storey"),
     REAL(core.area_top_m2, "m2", "0.811", 1e-9, 1e4, "effective: last storey"),
     REAL(core.inertia_base_m4, "m4", "25.6201", 1e-9, 1e6, "effective: first storey"),
     REAL(core.inertia_top_m4, "m4", "24.0503", 1e-9, 1e6, "effective: last storey"),
+    REAL(core.shear_area_base_m2, "m2", "0", 0, 1e4, "effective: first storey; 0: no shear deformation"),
+    REAL(core.shear_area_top_m2, "m2", "0", 0, 1e4, "effective: last storey"),
 
     CHOICE(contact.law, ContactLaw, CHOICE_WORDS(CONTACT_LAW_LIST), "paper",
            "paper: a = 1.5 (1 - r); exact: a chosen so that an isolated impact rebounds with r; the others by their "

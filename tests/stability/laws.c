@@ -25,7 +25,7 @@ static double r_of(int i)
 
 static Contact contact_of(ContactLaw law, double r)
 {
-    ContactOptions o = scene_defaults().contact;
+    ContactOptions o = paper_scene().contact;
     Contact c;
     Err err = {0};
     o.law = law;
@@ -145,7 +145,7 @@ static SimResult early_window(ContactLaw law, double floor)
 {
     Tower t = {0};
     Err err = {0};
-    settings_defaults(&t.settings);
+    paper_defaults(&t.settings);
     t.settings.core.section = CORE_EFFECTIVE;
     t.settings.contact.law = law;
     t.settings.contact.v0_floor_m_s = floor;

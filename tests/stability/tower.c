@@ -3,12 +3,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "settings/settings.h"
+#include "../scene_options.h"
 
 void tower_open(Tower *t, double seconds)
 {
     memset(t, 0, sizeof *t);
-    settings_defaults(&t->settings);
+    paper_defaults(&t->settings);
     t->motion.dt_s = 0.05;
     t->motion.n = (size_t)(seconds / t->motion.dt_s) + 1;
     t->motion.accel = malloc(t->motion.n * sizeof *t->motion.accel);
