@@ -477,23 +477,23 @@ static void test_a_killed_run_goes_on_with_every_result_it_had(void **state)
         const pid_t pid = start("killed.ini", name);
         for (size_t n = 0; n < (size_t)kill_at; rest(0.01))
             if (run_read(&before, path, &err) == STATUS_OK) {
-                n = before.n;
+                n = before.table.n;
                 run_free(&before);
             }
         kill(pid, SIGKILL);
         wait_end(pid);
         CHECK_OK(run_read(&before, path, &err), &err);
-        assert_in_range(before.n, kill_at, 119);
+        assert_in_range(before.table.n, kill_at, 119);
         char again[PATH_MAX + 16];
         snprintf(again, sizeof again, "optimize %s", path);
         free(output_of(again));
         CHECK_OK(run_read(&after, path, &err), &err);
-        assert_int_equal(after.n, 120);
-        assert_memory_equal(before.X, after.X, before.n * 2 * sizeof *before.X);
-        assert_memory_equal(before.F, after.F, before.n * 2 * sizeof *before.F);
-        for (size_t i = 0; i < after.n; i++) {
-            assert_int_equal(after.row[i].id, i + 1);
-            assert_int_not_equal(after.row[i].kind, KIND_UNFINISHED);
+        assert_int_equal(after.table.n, 120);
+        assert_memory_equal(before.table.x, after.table.x, before.table.n * 2 * sizeof *before.table.x);
+        assert_memory_equal(before.F, after.F, before.table.n * 2 * sizeof *before.F);
+        for (size_t i = 0; i < after.table.n; i++) {
+            assert_int_equal(after.table.row[i].id, i + 1);
+            assert_int_not_equal(after.table.row[i].kind, KIND_UNFINISHED);
         }
         run_free(&before);
         run_free(&after);

@@ -42,11 +42,11 @@ static void assert_nothing_lost(const char *folder, const Run *before)
     Err err = {0};
     char path[PATH_MAX];
     CHECK_OK(run_read(&after, path_of(folder, path), &err), &err);
-    assert_true(after.n >= before->n);
-    for (size_t i = 0; i < before->n; i++) {
-        const size_t j = run_find(&after, before->row[i].id), n = before->schema.n_var;
-        assert_true(j < after.n);
-        assert_memory_equal(before->X + i * n, after.X + j * n, n * sizeof(double));
+    assert_true(after.table.n >= before->table.n);
+    for (size_t i = 0; i < before->table.n; i++) {
+        const size_t j = run_find(&after, before->table.row[i].id), n = before->schema.n_var;
+        assert_true(j < after.table.n);
+        assert_memory_equal(before->table.x + i * n, after.table.x + j * n, n * sizeof(double));
     }
     run_free(&after);
 }
@@ -102,7 +102,7 @@ static void test_a_full_disk_is_named_and_what_was_stored_stays_readable(void **
     const int right = s.code == 74 && strstr(s.err, "/disk/run/") &&
                       (strstr(s.err, "the disk is full") || strstr(s.err, "No space left"));
     const Status readable = run_read(&saved, path_of("disk/run", run_of_disk), &err);
-    const size_t n = saved.n;
+    const size_t n = saved.table.n;
     run_free(&saved);
     umount2(disk, MNT_DETACH);
     if (!right)
@@ -127,7 +127,7 @@ static void test_a_folder_that_is_read_only_is_named(void **state)
     run(&new_run, "optimize @/textbook.ini --out @/fixed/other");
     run(&old_run, "optimize @/fixed/run --max-evals 30 --force-settings");
     const Status readable = run_read(&saved, path_of("fixed/run", run_there), &err);
-    const size_t n = saved.n;
+    const size_t n = saved.table.n;
     run_free(&saved);
     umount2(folder, MNT_DETACH);
     CHECK_OK(readable, &err);
@@ -144,7 +144,7 @@ static size_t simulated_in(const char *name)
     Run saved;
     Err err = {0};
     const Status status = run_read(&saved, path_of(name, path), &err);
-    const size_t n = saved.n;
+    const size_t n = saved.table.n;
     run_free(&saved);
     if (status != STATUS_OK)
         print_error("%s\n", err.text);

@@ -109,12 +109,12 @@ static void test_the_advance_of_a_run_is_that_of_its_designs(void **state)
     free(output_of("optimize @/run.ini --out @/run --threads 1"));
     CHECK_OK(run_read(&h, path_of("run", path), &err), &err);
     double *igd = calloc(h.n_generations, sizeof *igd);
-    size_t *front = calloc(h.n, sizeof *front), n_front = 0;
-    unsigned char *counts = calloc(h.n, 1);
-    for (size_t i = 0; i < h.n; i++) {
-        if (h.row[i].on_front)
+    size_t *front = calloc(h.table.n, sizeof *front), n_front = 0;
+    unsigned char *counts = calloc(h.table.n, 1);
+    for (size_t i = 0; i < h.table.n; i++) {
+        if (h.place[i].on_front)
             front[n_front++] = i;
-        counts[i] = h.row[i].ok && !(h.row[i].violation > 0.0) && h.row[i].kind != KIND_REPEAT;
+        counts[i] = h.place[i].ok && !(h.table.row[i].violation > 0.0) && h.table.row[i].kind != KIND_REPEAT;
     }
     assert_true(n_front > 1 && n_front <= IGD_REFERENCE_MAX);
     CHECK_OK(advance_of_run(&h, igd, &err), &err);

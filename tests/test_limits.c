@@ -35,7 +35,7 @@ static void test_limits_that_nothing_keeps_end_with_the_nearest_designs(void **s
     CHECK_OK(table_read(&nearest, path_of("unmet/nearest.csv", path), 1, &err), &err);
     CHECK_OK(run_read(&all, path_of("unmet", path), &err), &err);
     assert_int_equal(nearest.n_rows, NEAREST_MAX);
-    assert_int_equal(all.n, 40);
+    assert_int_equal(all.table.n, 40);
     double last = 0.0;
     for (size_t i = 0; i < nearest.n_rows; i++) {
         const double *row = nearest.values + i * nearest.n_cols;
@@ -43,7 +43,7 @@ static void test_limits_that_nothing_keeps_end_with_the_nearest_designs(void **s
         assert_close(row[1], missed(row + 8), 1e-9);
         assert_true(row[1] >= last);
         last = row[1];
-        for (size_t j = 0; j < all.n; j++)
+        for (size_t j = 0; j < all.table.n; j++)
             nearer += missed(all.F + j * 3) < row[1] - 1e-9;
         assert_true(nearer <= i);
     }
@@ -78,14 +78,17 @@ static void test_the_nearest_are_in_the_order_of_what_they_miss_and_failed_ones_
     static const double VIOLATION[] = {5, 3, 9, 3, 1, 8, 2, 7, 6, 4, 0.5, 11, 10, 2.5};
     static const size_t WANTED[] = {10, 4, 13, 1, 3, 9, 0, 8, 7, 5};
     enum { N = sizeof VIOLATION / sizeof VIOLATION[0] };
-    RunRow row[N];
+    Evaluation row[N];
+    RunPlace at[N];
     size_t rows[NEAREST_MAX];
-    for (size_t i = 0; i < N; i++)
-        row[i] = (RunRow){.id = (long)i + 1, .ok = i != 6, .violation = VIOLATION[i]};
-    const Run h = {.n = N, .row = row};
+    for (size_t i = 0; i < N; i++) {
+        row[i] = (Evaluation){.id = (long)i + 1, .violation = VIOLATION[i]};
+        at[i] = (RunPlace){.ok = i != 6};
+    }
+    const Run h = {.table = {.n = N, .row = row}, .place = at};
     assert_int_equal(nearest_rows(&h, rows), NEAREST_MAX);
     assert_memory_equal(rows, WANTED, sizeof WANTED);
-    const Run few = {.n = 3, .row = row};
+    const Run few = {.table = {.n = 3, .row = row}, .place = at};
     assert_int_equal(nearest_rows(&few, rows), 3);
     assert_int_equal(rows[0], 1);
     assert_int_equal(rows[2], 2);

@@ -53,24 +53,24 @@ static void test_the_front_has_means_spreads_and_members_of_what_was_simulated(v
     (void)state;
     Run h = saved_of("whole");
     size_t repeats = 0, confirmed = 0;
-    assert_true(h.schema.has_spread && h.n == SIMULATIONS);
-    for (size_t i = 0; i < h.n; i++) {
+    assert_true(h.schema.has_spread && h.table.n == SIMULATIONS);
+    for (size_t i = 0; i < h.table.n; i++) {
         double n = 0.0, mean[2] = {0.0, 0.0};
-        repeats += h.row[i].kind == KIND_REPEAT;
-        for (size_t j = 0; j < h.n; j++)
-            if (memcmp(h.X + 2 * j, h.X + 2 * i, 2 * sizeof *h.X) == 0) {
+        repeats += h.table.row[i].kind == KIND_REPEAT;
+        for (size_t j = 0; j < h.table.n; j++)
+            if (memcmp(h.table.x + 2 * j, h.table.x + 2 * i, 2 * sizeof *h.table.x) == 0) {
                 n += 1.0;
-                mean[0] += h.answer[2 * j];
-                mean[1] += h.answer[2 * j + 1];
+                mean[0] += h.table.f[2 * j];
+                mean[1] += h.table.f[2 * j + 1];
             }
-        assert_true(h.row[i].kind == KIND_REPEAT ? h.row[i].members == 0 && !h.row[i].on_front
-                                                 : h.row[i].members == (long)n && n <= 3.0);
-        for (int k = 0; k < 2 && h.row[i].on_front; k++) {
+        assert_true(h.table.row[i].kind == KIND_REPEAT ? h.table.row[i].replicates == 0 && !h.place[i].on_front
+                                                       : h.table.row[i].replicates == (long)n && n <= 3.0);
+        for (int k = 0; k < 2 && h.place[i].on_front; k++) {
             assert_close(h.F[2 * i + k], mean[k] / n, 1e-12);
-            const double f = h.F[2 * i + k], spread = h.spread[2 * i + k]; /* the noise is a share of the value */
+            const double f = h.F[2 * i + k], spread = h.table.sd[2 * i + k]; /* the noise is a share of the value */
             assert_true(f > 0.0 ? spread > 0.0 && spread < 0.3 * f : spread == 0.0);
         }
-        confirmed += h.row[i].on_front && n > 1.0;
+        confirmed += h.place[i].on_front && n > 1.0;
     }
     assert_int_equal(repeats, REPEATS);
     assert_int_equal(h.n_repeats, REPEATS);
@@ -104,8 +104,8 @@ static void test_members_min_keeps_what_was_answered_once_out_of_the_front(void 
     snprintf(text, sizeof text, "%smembers_min = 2\n", NOISY);
     study(text, "strict", 0);
     Run h = saved_of("strict");
-    for (size_t i = 0; i < h.n; i++)
-        assert_true(!h.row[i].on_front || h.row[i].members >= 2);
+    for (size_t i = 0; i < h.table.n; i++)
+        assert_true(!h.place[i].on_front || h.table.row[i].replicates >= 2);
     assert_true(h.n_front >= 2);
     run_free(&h);
 }
@@ -119,11 +119,11 @@ static void test_where_nothing_has_members_min_answers_the_front_is_of_those_wit
                            "--set problem.noisy=yes --set search.members_min=3");
     Run h = saved_of("scarce");
     long most = 0;
-    for (size_t i = 0; i < h.n; i++)
-        most = h.row[i].members > most ? h.row[i].members : most;
+    for (size_t i = 0; i < h.table.n; i++)
+        most = h.table.row[i].replicates > most ? h.table.row[i].replicates : most;
     assert_true(most < 3 && h.n_front > 0);
-    for (size_t i = 0; i < h.n; i++)
-        assert_true(!h.row[i].on_front || h.row[i].members == most);
+    for (size_t i = 0; i < h.table.n; i++)
+        assert_true(!h.place[i].on_front || h.table.row[i].replicates == most);
     assert_non_null(strstr(said, "no design was simulated 3 times (search.members_min)"));
     run_free(&h);
     free(said);

@@ -239,7 +239,7 @@ static void test_growth_is_the_hypervolume_that_status_tells(void **state)
     json_t *error = json_object_get(growth, "error");
     CHECK_OK(run_read(&run, in_folder("dtlz"), &err), &err);
     assert_true(run.n_generations > 1 && json_array_size(volume) == run.n_generations);
-    assert_int_equal(json_integer_value(json_object_get(page, "evaluated")), run.n);
+    assert_int_equal(json_integer_value(json_object_get(page, "evaluated")), run.table.n);
     for (size_t i = 0; i < run.n_generations; i++) {
         const double v = run.generation[i].hypervolume;
         assert_true(v > 0 && v < 1 && (i == 0 || v >= run.generation[i - 1].hypervolume));

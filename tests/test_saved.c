@@ -57,7 +57,7 @@ static void test_what_is_wrong_in_one_cell_is_named(void **state)
         const Status status = run_read(&h, changed(CASES[i].sql, folder), &err);
         if (status != CASES[i].status || !strstr(err.text, CASES[i].words))
             fail_msg("%s: %d, %s", CASES[i].sql, status, err.text);
-        assert_true(h.n == 0 && !h.row && !h.state);
+        assert_true(h.table.n == 0 && !h.table.row && !h.state);
     }
 }
 
@@ -76,9 +76,9 @@ static void test_values_that_are_not_known_are_nan_and_a_word_that_is_not_known_
                               folder),
                       &err),
              &err);
-    assert_true(h.row[0].id == 1 && !h.row[0].ok && !h.row[0].on_front && h.F[0] == 1 && isnan(h.F[1]));
-    assert_true(isnan(h.row[0].verdict.seconds) && isnan(h.spread[0]));
-    assert_int_equal(h.row[1].kind, KIND_UNFINISHED);
+    assert_true(h.table.row[0].id == 1 && !h.place[0].ok && !h.place[0].on_front && h.F[0] == 1 && isnan(h.F[1]));
+    assert_true(isnan(h.table.row[0].seconds) && isnan(h.table.sd[0]));
+    assert_int_equal(h.table.row[1].kind, KIND_UNFINISHED);
     assert_true(h.state && h.n_state == 0);
     assert_true(h.n_sessions > 0 && isnan(h.session[0].search_s) && h.session[0].ended[0] == 0);
     run_free(&h);
@@ -88,9 +88,9 @@ static void test_values_that_are_not_known_are_nan_and_a_word_that_is_not_known_
 static int belongs_on_front(const Run *h, size_t i)
 {
     const size_t m = h->schema.n_obj;
-    for (size_t j = 0; j < h->n; j++) {
+    for (size_t j = 0; j < h->table.n; j++) {
         size_t no_worse = 0, better = 0;
-        if (!h->row[j].ok || h->row[j].violation > 0 || h->row[j].kind == KIND_UNFINISHED)
+        if (!h->place[j].ok || h->table.row[j].violation > 0 || h->table.row[j].kind == KIND_UNFINISHED)
             continue;
         for (size_t k = 0; k < m; k++) {
             no_worse += h->F[j * m + k] <= h->F[i * m + k];
@@ -99,7 +99,7 @@ static int belongs_on_front(const Run *h, size_t i)
         if (no_worse == m && better > 0)
             return 0;
     }
-    return h->row[i].ok && !(h->row[i].violation > 0);
+    return h->place[i].ok && !(h->table.row[i].violation > 0);
 }
 
 static void test_polished_designs_compete_with_the_front_and_can_be_dropped(void **state)
@@ -116,21 +116,22 @@ static void test_polished_designs_compete_with_the_front_and_can_be_dropped(void
     char folder[PATH_MAX];
     CHECK_OK(run_read(&sound, path_of("sound", folder), &err), &err);
     CHECK_OK(run_read(&h, changed(POLISHED, folder), &err), &err);
-    assert_int_equal(h.n, sound.n + 6);
+    assert_int_equal(h.table.n, sound.table.n + 6);
     size_t n_front = 0;
-    for (size_t i = 0; i < h.n; i++) {
-        if (h.row[i].on_front != belongs_on_front(&h, i))
-            fail_msg("design %ld", h.row[i].id);
-        n_front += h.row[i].on_front != 0;
+    for (size_t i = 0; i < h.table.n; i++) {
+        if (h.place[i].on_front != belongs_on_front(&h, i))
+            fail_msg("design %ld", h.table.row[i].id);
+        n_front += h.place[i].on_front != 0;
     }
     assert_int_equal(h.n_front, n_front);
-    assert_true(h.row[sound.n].on_front && !h.row[sound.n + 1].on_front && h.row[sound.n + 5].on_front);
+    assert_true(h.place[sound.table.n].on_front && !h.place[sound.table.n + 1].on_front &&
+                h.place[sound.table.n + 5].on_front);
     assert_int_equal(h.n_failed, sound.n_failed + 1);
 
     run_drop_polished(&h);
-    assert_true(h.n == sound.n && h.n_front == sound.n_front && h.n_failed == sound.n_failed);
-    for (size_t i = 0; i < h.n; i++)
-        assert_int_equal(h.row[i].on_front, sound.row[i].on_front);
+    assert_true(h.table.n == sound.table.n && h.n_front == sound.n_front && h.n_failed == sound.n_failed);
+    for (size_t i = 0; i < h.table.n; i++)
+        assert_int_equal(h.place[i].on_front, sound.place[i].on_front);
     run_free(&h);
     run_free(&sound);
 }

@@ -18,11 +18,11 @@ static void check_start(const char *asynchronous)
              strrchr(asynchronous, '=') + 1, place.folder, asynchronous);
     free(output_of(arguments));
     CHECK_OK(run_read(&h, path_of(strrchr(asynchronous, '=') + 1, path), &err), &err);
-    assert_int_equal(h.n, 30);
-    assert_memory_equal(h.X, WANTED, sizeof WANTED);
-    for (size_t i = 0; i < h.n; i++)
+    assert_int_equal(h.table.n, 30);
+    assert_memory_equal(h.table.x, WANTED, sizeof WANTED);
+    for (size_t i = 0; i < h.table.n; i++)
         for (size_t j = 0; j < i; j++)
-            assert_memory_not_equal(h.X + i * 4, h.X + j * 4, 4 * sizeof *h.X);
+            assert_memory_not_equal(h.table.x + i * 4, h.table.x + j * 4, 4 * sizeof *h.table.x);
     run_free(&h);
 }
 
@@ -57,15 +57,15 @@ static void test_a_design_of_the_tower_has_the_same_objectives_in_either_mode(vo
     CHECK_OK(run_read(&batches, path_of("batches", path), &err), &err);
     CHECK_OK(run_read(&turns, path_of("turns", path), &err), &err);
     const size_t n_var = batches.schema.n_var, m = batches.schema.n_obj;
-    assert_int_equal(batches.n, 12);
-    assert_int_equal(turns.n, 12);
+    assert_int_equal(batches.table.n, 12);
+    assert_int_equal(turns.table.n, 12);
     for (size_t i = 0; i < 12; i++) {
         size_t j = 0;
-        while (j < 12 && memcmp(batches.X + i * n_var, turns.X + j * n_var, n_var * sizeof(double)) != 0)
+        while (j < 12 && memcmp(batches.table.x + i * n_var, turns.table.x + j * n_var, n_var * sizeof(double)) != 0)
             j++;
         assert_true(j < 12);
         assert_memory_equal(batches.F + i * m, turns.F + j * m, m * sizeof(double));
-        assert_memory_equal(batches.spread + i * m, turns.spread + j * m, m * sizeof(double));
+        assert_memory_equal(batches.table.sd + i * m, turns.table.sd + j * m, m * sizeof(double));
     }
     run_free(&batches);
     run_free(&turns);

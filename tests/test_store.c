@@ -186,7 +186,7 @@ static void wait_for(const char *out, size_t n)
             fail_msg("%s: %zu evaluations after a minute, wanted %zu", out, found, n);
         if (run_path(path_of(out, folder), path, sizeof path)) {
             CHECK_OK(run_read(&saved, folder, &err), &err);
-            found = saved.n;
+            found = saved.table.n;
             run_free(&saved);
         }
     }
@@ -345,12 +345,12 @@ static void test_polished_designs_join_the_front_but_not_the_search(void **state
     Settings s = settings_of(TEXTBOOK, "polished");
     assert_int_equal(study_run(&s, &(StudyOptions){.stop = stop_after, .user = &left}, &summary, NULL, &err),
                      STATUS_STOPPED);
-    const double x[6] = {0.5, 0.5, 0.5, 0.5, 0.5, 0.5}, best[3] = {-9, -9, -9}, worse[3] = {5, 5, 5};
-    const double spread[3] = {0.001, NAN, 0.002};
-    const StoredDesign designs[] = {
-        {.x = x, .f = best, .spread = spread, .verdict = {.outcome = "ok", .seconds = 0.5}},
-        {.x = x, .f = worse, .verdict = {.outcome = "ok"}},
-        {.x = x, .verdict = {.outcome = "dead", .reason = "it died"}},
+    double x[6] = {0.5, 0.5, 0.5, 0.5, 0.5, 0.5}, best[3] = {-9, -9, -9}, worse[3] = {5, 5, 5};
+    double spread[3] = {0.001, NAN, 0.002};
+    const Evaluation designs[] = {
+        {.x = x, .f = best, .sd = spread, .outcome = OUTCOME_OK, .seconds = 0.5},
+        {.x = x, .f = worse, .outcome = OUTCOME_OK},
+        {.x = x, .outcome = OUTCOME_DEAD, .reason = "it died"},
     };
     CHECK_OK(store_add_evaluations(path_of("polished", path), 3, designs, &first, &err), &err);
     assert_int_equal(first, POLISHED_FIRST);
@@ -359,10 +359,11 @@ static void test_polished_designs_join_the_front_but_not_the_search(void **state
     assert_non_null(strstr(front, id));
     assert_ptr_equal(strchr(strstr(front, id) + 1, '\n')[1], 0); /* it is the only one left */
     CHECK_OK(run_read(&saved, path, &err), &err);
-    const RunRow *row = &saved.row[saved.n - 3];
-    assert_true(row->kind == KIND_POLISHED && row->on_front && !row[1].on_front && !row[2].on_front && !row[2].ok);
-    assert_true(saved.spread[(saved.n - 3) * 3] == 0.001 && isnan(saved.spread[(saved.n - 3) * 3 + 1]));
-    assert_true(isnan(saved.spread[0]));
+    const RunPlace *at = &saved.place[saved.table.n - 3];
+    assert_int_equal(saved.table.row[saved.table.n - 3].kind, KIND_POLISHED);
+    assert_true(at->on_front && !at[1].on_front && !at[2].on_front && !at[2].ok);
+    assert_true(saved.table.sd[(saved.table.n - 3) * 3] == 0.001 && isnan(saved.table.sd[(saved.table.n - 3) * 3 + 1]));
+    assert_true(isnan(saved.table.sd[0]));
     run_free(&saved);
 
     CHECK_OK(study_run(&s, &(StudyOptions){0}, &summary, NULL, &err), &err);
@@ -392,12 +393,12 @@ static void test_one_failure_in_ten_is_survived_and_never_on_the_front(void **st
     Err err = {0};
     char path[PATH_MAX];
     CHECK_OK(run_read(&saved, path_of("tenth", path), &err), &err);
-    assert_int_equal(saved.n, 100);
+    assert_int_equal(saved.table.n, 100);
     assert_int_equal(saved.n_failed, 10);
     assert_true(saved.n_front > 0);
-    for (size_t i = 0; i < saved.n; i++) {
-        assert_int_equal(saved.row[i].ok, saved.row[i].id % 10 != 0);
-        assert_true(saved.row[i].ok || (!saved.row[i].on_front && saved.row[i].entered == NEVER));
+    for (size_t i = 0; i < saved.table.n; i++) {
+        assert_int_equal(saved.place[i].ok, saved.table.row[i].id % 10 != 0);
+        assert_true(saved.place[i].ok || (!saved.place[i].on_front && saved.place[i].entered == NEVER));
     }
     run_free(&saved);
     json_t *o = json_of("status @/tenth --json");
@@ -432,18 +433,18 @@ static void test_the_front_of_every_generation_can_be_told(void **state)
     const size_t m = s.schema.n_obj;
     for (size_t g = 0; g < s.n_generations; g++) {
         long on_front = 0;
-        for (size_t i = 0; i < s.n; i++) {
-            const RunRow *r = &s.row[i];
-            int beaten = !r->ok || r->generation > (long)g;
-            for (size_t j = 0; j < s.n && !beaten; j++) {
+        for (size_t i = 0; i < s.table.n; i++) {
+            const RunPlace *r = &s.place[i];
+            int beaten = !r->ok || s.table.row[i].generation > (long)g;
+            for (size_t j = 0; j < s.table.n && !beaten; j++) {
                 int worse = 0, better = 0;
-                for (size_t k = 0; k < m && s.row[j].ok; k++) {
+                for (size_t k = 0; k < m && s.place[j].ok; k++) {
                     const double sense = schema_objective(&s.schema, k)->sense;
                     const double d = sense * (s.F[j * m + k] - s.F[i * m + k]);
                     worse = worse || d > 0;
                     better = better || d < 0;
                 }
-                beaten = s.row[j].generation <= (long)g && better && !worse;
+                beaten = s.table.row[j].generation <= (long)g && better && !worse;
             }
             const int told = r->entered != NEVER && r->entered <= (long)g && (r->left == NEVER || r->left > (long)g);
             assert_int_equal(told, !beaten);

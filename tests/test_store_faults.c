@@ -187,10 +187,14 @@ static SearchView view_of(size_t g)
 /* The fourth takes long enough to be committed at once. */
 static Status simulate(RunStore *store, size_t i, Err *err)
 {
-    Verdict v = {.seconds = i == 3 ? 1.0 : 0.001};
-    verdict_set(&v, OK[i] ? "ok" : "dead", OK[i] ? "" : "it died");
-    const Simulation s = {.number = i + 1, .x = X[i], .f = F[i], .ok = OK[i], .verdict = &v};
-    return store_simulation(store, &s, GENERATION[i], err);
+    Evaluation e = {.id = (long)i + 1,
+                    .generation = (long)GENERATION[i],
+                    .kind = KIND_UNFINISHED,
+                    .seconds = i == 3 ? 1.0 : 0.001,
+                    .x = (double *)X[i],
+                    .f = (double *)F[i]};
+    evaluation_set_outcome(&e, OK[i] ? OUTCOME_OK : OUTCOME_DEAD, OK[i] ? "" : "it died");
+    return store_evaluation(store, &e, err);
 }
 
 static Status generation(RunStore *store, size_t g, Err *err)
@@ -203,9 +207,9 @@ static Status generation(RunStore *store, size_t g, Err *err)
     return store_log(store, err, "generation %zu", g);
 }
 
-static const StoredDesign POLISHED[N_POLISHED] = {{.x = X[0], .f = F[5], .verdict = {.outcome = "ok"}},
-                                                  {.x = X[1], .f = F[3], .verdict = {.outcome = "ok"}},
-                                                  {.x = X[2], .verdict = {.outcome = "dead"}}};
+static const Evaluation POLISHED[N_POLISHED] = {{.x = (double *)X[0], .f = (double *)F[5], .outcome = OUTCOME_OK},
+                                                {.x = (double *)X[1], .f = (double *)F[3], .outcome = OUTCOME_OK},
+                                                {.x = (double *)X[2], .outcome = OUTCOME_DEAD}};
 
 static Status work(RunStore *store, const Settings *s, const Schema *schema, size_t n_generations, Err *err)
 {
@@ -242,7 +246,7 @@ static Status life(const char *folder, const Schema *schema, Err *err)
     TRY(session(folder, schema, N_GENERATIONS - 1, err));
     TRY(session(folder, schema, N_GENERATIONS, err));
     TRY(run_read(&h, folder, err));
-    const size_t n = h.n;
+    const size_t n = h.table.n;
     run_free(&h);
     if (n < N_DESIGNS + N_POLISHED)
         TRY(store_add_evaluations(folder, 2, POLISHED + 1, NULL, err));
@@ -351,7 +355,7 @@ static void test_every_fault_of_the_database_is_said_in_our_words(void **state)
         if (status != SAID[i].status || (status != STATUS_OK && !strstr(err.text, SAID[i].words)))
             fail_msg("%d: %d, %s", SAID[i].code, status, err.text);
         if (status == STATUS_OK)
-            assert_int_equal(h.n, UNTIL[0]);
+            assert_int_equal(h.table.n, UNTIL[0]);
         run_free(&h);
     }
     CHECK_OK(store_open(&store, folder, 0, &err), &err);
@@ -360,7 +364,7 @@ static void test_every_fault_of_the_database_is_said_in_our_words(void **state)
     Run h;
     CHECK_OK(run_read(&h, folder, &err), &err);
     fault.armed = 0;
-    assert_int_equal(h.n, UNTIL[1]);
+    assert_int_equal(h.table.n, UNTIL[1]);
     run_free(&h);
     refused_copy(folder, "/nowhere", RLIM_INFINITY, "a copy has no place: /nowhere/imtet-");
     refused_copy(folder, place.folder, 0, "it cannot be copied to");

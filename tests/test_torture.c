@@ -89,10 +89,11 @@ static long count_lost(const Run *before, const Run *after)
 {
     long lost = 0;
     const size_t n_var = before->schema.n_var, m = before->schema.n_obj;
-    for (size_t i = 0; i < before->n; i++) {
-        const size_t j = run_find(after, before->row[i].id);
-        lost += j == after->n || memcmp(before->X + i * n_var, after->X + j * n_var, n_var * sizeof(double)) != 0 ||
-                (before->row[i].ok && memcmp(before->F + i * m, after->F + j * m, m * sizeof(double)) != 0);
+    for (size_t i = 0; i < before->table.n; i++) {
+        const size_t j = run_find(after, before->table.row[i].id);
+        lost += j == after->table.n ||
+                memcmp(before->table.x + i * n_var, after->table.x + j * n_var, n_var * sizeof(double)) != 0 ||
+                (before->place[i].ok && memcmp(before->F + i * m, after->F + j * m, m * sizeof(double)) != 0);
     }
     return lost;
 }
@@ -141,9 +142,10 @@ static int start_and_kill(const Prey *prey, const char *folder, double delay, Fi
     const int found = look(folder, &after);
     f->unreadable += found < 0 || seen < 0;
     if (seen == 1) {
-        f->acknowledged += (long)before.n;
-        f->lost += found == 1 ? count_lost(&before, &after) : (long)before.n;
-        f->in_batch += killed && found == 1 && after.n > 0 && after.row[after.n - 1].kind == KIND_UNFINISHED;
+        f->acknowledged += (long)before.table.n;
+        f->lost += found == 1 ? count_lost(&before, &after) : (long)before.table.n;
+        f->in_batch +=
+            killed && found == 1 && after.table.n > 0 && after.table.row[after.table.n - 1].kind == KIND_UNFINISHED;
     }
     run_free(&before);
     run_free(&after);

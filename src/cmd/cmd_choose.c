@@ -10,7 +10,7 @@
 typedef struct {
     const Run *run;
     FrontBox box;
-    unsigned char *allowed; /* (run->n) */
+    unsigned char *allowed; /* (run->table.n) */
 } Choice;
 
 static Status apply_limit(Choice *c, const char *option, int is_max, const char *text, Err *err)
@@ -87,13 +87,13 @@ static double wish_cost(const Choice *c, size_t row, const double wishes[])
 static void show_best(const Choice *c, const char *label, CostFn cost, const double values[])
 {
     const Run *run = c->run;
-    size_t best = run->n;
+    size_t best = run->table.n;
     for (size_t i = 0; i < run->n_front; i++) {
         const size_t row = run->front[i];
-        if (c->allowed[row] && (best == run->n || cost(c, row, values) < cost(c, best, values)))
+        if (c->allowed[row] && (best == run->table.n || cost(c, row, values) < cost(c, best, values)))
             best = row;
     }
-    show_objectives(label, run->row[best].id, run->schema.n_obj, run_f(run, best));
+    show_objectives(label, run->table.row[best].id, run->schema.n_obj, run_f(run, best));
     printf("    ");
     for (size_t j = 0; j < run->schema.n_var; j++)
         printf(" %s=%.6g", schema_variable(&run->schema, j)->name, run_x(run, best)[j]);
@@ -128,7 +128,7 @@ static Status choose_of(const Args *args, const Run *run, Err *err)
 {
     if (run->n_front == 0)
         return run_why_empty(run, err);
-    Choice c = {.run = run, .box = run_box(run), .allowed = calloc(run->n, 1)};
+    Choice c = {.run = run, .box = run_box(run), .allowed = calloc(run->table.n, 1)};
     const Status status = c.allowed ? choose(args, &c, err) : fail(err, STATUS_NO_MEMORY, "no memory for a choice");
     free(c.allowed);
     return status;

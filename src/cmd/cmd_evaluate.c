@@ -239,7 +239,7 @@ static Status evaluate_all(const Args *args, Settings *s, const Chosen *c, json_
 
 static Status show_all(const Args *args, Settings *s, const Chosen *c, Err *err)
 {
-    const long id = c->run->row[c->row].id;
+    const long id = c->run->table.row[c->row].id;
     TRY(try_records(args, s, err));
     if (!args_has(args, "--json")) {
         printf("design %ld of %s\n\n", id, args->operand);

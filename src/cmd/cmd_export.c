@@ -16,9 +16,7 @@ static Status write_selected(const Args *args, const Run *h, FILE *f, Err *err)
     const size_t n = run_spread_out(h, (size_t)wanted, 1, rows);
     export_front_header(f, &h->schema);
     for (size_t i = 0; i < n; i++)
-        export_front_row(f, &h->schema, h->row[rows[i]].id, h->X + rows[i] * h->schema.n_var,
-                         h->F + rows[i] * h->schema.n_obj, h->spread + rows[i] * h->schema.n_obj,
-                         h->row[rows[i]].members);
+        export_design(f, h, rows[i]);
     free(rows);
     return STATUS_OK;
 }
@@ -40,7 +38,7 @@ static Status write_tables(const Args *args, const Run *h, Err *err)
         }
     } else if (args_has(args, "--all")) {
         export_evaluations_header(o.stream, &h->schema);
-        export_evaluations(o.stream, h, 1);
+        export_evaluations(o.stream, &h->table, 1);
     } else {
         export_front(o.stream, h);
     }

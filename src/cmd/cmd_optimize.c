@@ -49,18 +49,17 @@ static void tell_start(const char *folder, size_t n_simulated, void *user)
         fprintf(stderr, "%s: goes on after %zu simulations\n", folder, n_simulated);
 }
 
-static void print_front(const StudySummary *summary)
+static void print_front(const Run *run, const StudySummary *summary)
 {
-    const Run *run = &summary->run;
     const size_t n_obj = run->schema.n_obj, knee = run_knee(run);
     char label[TABLE_NAME_MAX + 8];
     show_objective_names(&run->schema);
     for (size_t k = 0; k < n_obj; k++) {
         const size_t best = run_best(run, k);
         snprintf(label, sizeof label, "best %s", schema_objective(&run->schema, k)->name);
-        show_objectives(label, run->row[best].id, n_obj, run_f(run, best));
+        show_objectives(label, run->table.row[best].id, n_obj, run_f(run, best));
     }
-    show_objectives("knee", run->row[knee].id, n_obj, run_f(run, knee));
+    show_objectives("knee", run->table.row[knee].id, n_obj, run_f(run, knee));
     if (summary->has_no_core) {
         double alone[N_OBJECTIVES];
         for (int k = 0; k < N_OBJECTIVES; k++)
@@ -77,16 +76,15 @@ static void print_nearest(const Run *run, size_t n, const size_t rows[])
     char label[48];
     show_objective_names(&run->schema);
     for (size_t i = 0; i < n; i++) {
-        snprintf(label, sizeof label, "misses by %.3g", run->row[rows[i]].violation);
-        show_objectives(label, run->row[rows[i]].id, run->schema.n_obj, run_f(run, rows[i]));
+        snprintf(label, sizeof label, "misses by %.3g", run->table.row[rows[i]].violation);
+        show_objectives(label, run->table.row[rows[i]].id, run->schema.n_obj, run_f(run, rows[i]));
     }
     printf("\nmisses by: sum over search.limits of what exceeds them, as a share of the limit.\n");
 }
 
 /* Nothing succeeded, or nothing keeps search.limits: then the designs that come nearest. */
-static Status report_no_front(const StudySummary *summary, Err *err)
+static Status report_no_front(const Run *run, const StudySummary *summary, Err *err)
 {
-    const Run *run = &summary->run;
     size_t rows[NEAREST_MAX];
     const size_t n = nearest_rows(run, rows);
     TRY(nearest_write(summary->folder, run, n, rows, err));
@@ -109,28 +107,28 @@ static void tell_few_members(const Run *run)
     const long wanted = run->settings->search.members_min * run->settings->sim.ensemble;
     long least = wanted;
     for (size_t i = 0; i < run->n_front && schema_is_noisy(run->settings); i++) {
-        const RunRow *row = &run->row[run->front[i]];
-        if (row->id < POLISHED_FIRST && row->members < least)
-            least = row->members;
+        const Evaluation *e = &run->table.row[run->front[i]];
+        if (e->id < POLISHED_FIRST && e->replicates < least)
+            least = e->replicates;
     }
     if (least < wanted)
         printf("no design was simulated %ld times (search.members_min); the front has those with the most, %ld\n\n",
                wanted, least);
 }
 
-static Status report(const StudySummary *summary, Err *err)
+static Status report(const Run *run, const StudySummary *summary, Err *err)
 {
     if (summary->n_front == 0)
-        return report_no_front(summary, err);
+        return report_no_front(run, summary, err);
     TRY(nearest_write(summary->folder, NULL, 0, NULL, err));
-    tell_few_members(&summary->run);
+    tell_few_members(run);
     printf("front: %s/front.csv\n%zu nondominated of %zu simulated designs, %zu simulations failed, %.1f s (%s)\n\n",
-           summary->folder, summary->run.n_front, summary->n_simulated, summary->n_failed, summary->seconds,
+           summary->folder, run->n_front, summary->n_simulated, summary->n_failed, summary->seconds,
            stop_reason_words(summary->stopped));
     if (summary->n_repeats > 0)
         printf("%zu of the simulations repeat a design, to tell luck from merit (search.repeats)\n\n",
                summary->n_repeats);
-    print_front(summary);
+    print_front(run, summary);
     if (summary->n_tried_to_polish > 0)
         printf("polished: %zu of %zu designs became better by more than their spread (search.polish)\n",
                summary->n_polished, summary->n_tried_to_polish);
@@ -195,46 +193,49 @@ static Status take_settings(const Args *args, Settings *s, RunStore **store, Err
 }
 
 /* Of a run whose records have gone: once it is finished they are not needed. */
-static Status show_finished(const Args *args, RunStore *store, StudySummary *summary, Err *err)
+static Status show_finished(const Args *args, RunStore *store, Run *finished, Err *err)
 {
-    if (!store || args->n_given > 0 || !study_finished(store, summary))
+    StudySummary summary;
+    if (!store || args->n_given > 0 || !study_finished(store, &summary, finished))
         return STATUS_MISSING;
     fprintf(stderr, "%s\n", err->text);
-    return report(summary, err);
+    return report(finished, &summary, err);
 }
 
-static Status optimize(const Args *args, Telling *telling, StudySummary *summary, Err *err)
+static Status optimize(const Args *args, Run *finished, Err *err)
 {
     Settings s;
+    StudySummary summary;
+    Telling telling = {isatty(STDERR_FILENO), 0};
     StudyOptions options = {.fresh = args_has(args, "--new"),
                             .force = args_has(args, "--force-settings"),
                             .stop = signals_asked,
                             .started = tell_start,
                             .progress = tell,
-                            .user = telling};
+                            .user = &telling,
+                            .run = finished};
     Status status = take_settings(args, &s, &options.store, err);
     if (status != STATUS_OK) {
         if (status == STATUS_MISSING)
-            status = show_finished(args, options.store, summary, err);
+            status = show_finished(args, options.store, finished, err);
         store_free(options.store);
         return status;
     }
     signals_catch();
-    status = study_run(&s, &options, summary, stderr, err);
-    if (telling->has_told)
+    status = study_run(&s, &options, &summary, stderr, err);
+    if (telling.has_told)
         fputc('\n', stderr);
     if (status == STATUS_STOPPED)
-        tell_how_to_go_on(summary);
+        tell_how_to_go_on(&summary);
     TRY(status);
-    return report(summary, err);
+    return report(finished, &summary, err);
 }
 
 static Status run(const Args *args, Err *err)
 {
-    Telling telling = {isatty(STDERR_FILENO), 0};
-    StudySummary summary = {0};
-    const Status status = optimize(args, &telling, &summary, err);
-    run_free(&summary.run);
+    Run finished = {0};
+    const Status status = optimize(args, &finished, err);
+    run_free(&finished);
     return status;
 }
 

@@ -81,7 +81,7 @@ static Status write_csv(const Work *w, const char *path, Err *err)
     fputs("polished_from", o.stream);
     for (size_t j = 0; j < schema->n_var + schema->n_obj; j++)
         fprintf(o.stream, ",%s", schema->column[j].name);
-    fprintf(o.stream, "\n%ld", w->run.row[w->row].id);
+    fprintf(o.stream, "\n%ld", w->run.table.row[w->row].id);
     for (size_t j = 0; j < schema->n_var + schema->n_obj; j++) {
         fputc(',', o.stream);
         print_number(o.stream, j < schema->n_var ? w->result.x[j] : w->result.f[j - schema->n_var]);
@@ -116,7 +116,7 @@ static void show(const Work *w, long id)
     const Schema *schema = &w->run.schema;
     const Refined *r = &w->result;
     show_objective_names(schema);
-    show_objectives("before", w->run.row[w->row].id, schema->n_obj, r->f_start);
+    show_objectives("before", w->run.table.row[w->row].id, schema->n_obj, r->f_start);
     show_objectives("polished", id, schema->n_obj, r->f);
     if (isfinite(r->spread_start[0]))
         show_objectives("spread before", 0, schema->n_obj, r->spread_start);

@@ -10,28 +10,28 @@
 #include "study/pace.h"
 #include "settings/settings.h"
 
-enum { ROWS_MAX = 12, OUTCOMES_MAX = 16 };
+enum { ROWS_MAX = 12 };
 
 /* Failed simulations by outcome, with the words of the first of each. */
 typedef struct {
-    size_t n_outcomes, count[OUTCOMES_MAX];
-    const Verdict *first[OUTCOMES_MAX];
+    size_t n_outcomes, count[OUTCOME_COUNT];
+    const Evaluation *first[OUTCOME_COUNT];
 } Failures;
 
 static Failures failures_of(const Run *saved)
 {
     Failures f = {0};
-    for (size_t i = 0; i < saved->n; i++) {
-        const Verdict *v = &saved->row[i].verdict;
+    for (size_t i = 0; i < saved->table.n; i++) {
+        const Evaluation *e = &saved->table.row[i];
         size_t k = 0;
-        if (saved->row[i].ok)
+        if (saved->place[i].ok)
             continue;
-        while (k < f.n_outcomes && strcmp(f.first[k]->outcome, v->outcome) != 0)
+        while (k < f.n_outcomes && f.first[k]->outcome != e->outcome)
             k++;
-        if (k == OUTCOMES_MAX)
+        if (k == OUTCOME_COUNT)
             continue;
         if (k == f.n_outcomes)
-            f.first[f.n_outcomes++] = v;
+            f.first[f.n_outcomes++] = e;
         f.count[k]++;
     }
     return f;
@@ -101,8 +101,8 @@ static void print_generations(const Run *saved, const double igd[])
 static void print_failures(const Failures *f)
 {
     for (size_t k = 0; k < f->n_outcomes; k++)
-        printf("%s%12zu %s (%s%s)\n", k ? "" : "\nfailed:\n", f->count[k], f->first[k]->outcome, f->first[k]->reason,
-               f->count[k] > 1 ? ", for example" : "");
+        printf("%s%12zu %s (%s%s)\n", k ? "" : "\nfailed:\n", f->count[k], outcome_word(f->first[k]->outcome),
+               f->first[k]->reason, f->count[k] > 1 ? ", for example" : "");
 }
 
 /* -- for programs -------------------------------------------------------------------------------------------------- */
@@ -144,7 +144,7 @@ static json_t *json_failures(const Failures *f)
 {
     json_t *o = json_object();
     for (size_t k = 0; k < f->n_outcomes; k++)
-        json_object_set_new(o, f->first[k]->outcome,
+        json_object_set_new(o, outcome_word(f->first[k]->outcome),
                             json_pack("{s:I, s:s}", "count", (json_int_t)f->count[k], "first", f->first[k]->reason));
     return o;
 }

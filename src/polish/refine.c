@@ -129,13 +129,13 @@ static size_t nearest_rows(const Refine *r, Near near[])
     const Run *h = r->run;
     const Problem *p = subject_problem(r->subject);
     size_t n = 0;
-    for (size_t i = 0; i < h->n; i++) {
-        if (!h->row[i].ok || h->row[i].kind == KIND_REPEAT)
+    for (size_t i = 0; i < h->table.n; i++) {
+        if (!h->place[i].ok || h->table.row[i].kind == KIND_REPEAT)
             continue;
         near[n] = (Near){0.0, i};
         for (size_t d = 0; d < p->n_var; d++) {
             const double range = p->upper[d] - p->lower[d];
-            const double step = range > 0.0 ? (h->X[i * p->n_var + d] - r->x[d]) / range : 0.0;
+            const double step = range > 0.0 ? (h->table.x[i * p->n_var + d] - r->x[d]) / range : 0.0;
             near[n].distance += step * step;
         }
         n++;
@@ -149,7 +149,7 @@ static Status gather_known(const Refine *r, Known *known, Err *err)
 {
     const Run *h = r->run;
     const Problem *p = subject_problem(r->subject);
-    Near *near = calloc(h->n + 1, sizeof *near);
+    Near *near = calloc(h->table.n + 1, sizeof *near);
     double unused[OBJECTIVES_MAX];
     known->X = calloc(CENTRES_MAX * (p->n_var + p->n_obj + 1), sizeof *known->X);
     if (near && known->X) {
@@ -159,13 +159,13 @@ static Status gather_known(const Refine *r, Known *known, Err *err)
     }
     for (size_t i = 0; i < known->n; i++) {
         const size_t row = near[i].row;
-        memcpy(known->X + i * p->n_var, h->X + row * p->n_var, p->n_var * sizeof *known->X);
+        memcpy(known->X + i * p->n_var, h->table.x + row * p->n_var, p->n_var * sizeof *known->X);
         subject_judge(r->subject, 1, h->F + row * p->n_obj, known->F + i * p->n_obj, unused);
-        known->noise[i] = 1.0 / (double)(h->row[row].members > 0 ? h->row[row].members : 1);
+        known->noise[i] = 1.0 / (double)(h->table.row[row].replicates > 0 ? h->table.row[row].replicates : 1);
     }
     const int is_there = near && known->X;
     free(near);
-    return is_there ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", h->n);
+    return is_there ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", h->table.n);
 }
 
 /* From out->x with the objectives f; the best is left there. */
@@ -284,7 +284,7 @@ Status refine_design(const Run *h, size_t row, const RefineConfig *config, Refin
         used.members = 1;
     if (used.algorithm)
         TRY(polish_knows(used.algorithm, err));
-    Refine r = {.run = h, .config = &used, .x = h->X + row * h->schema.n_var, .start = clock_seconds()};
+    Refine r = {.run = h, .config = &used, .x = h->table.x + row * h->schema.n_var, .start = clock_seconds()};
     const Status status = refine(&r, out, err);
     out->seconds = clock_seconds() - r.start;
     subject_close(r.subject);
@@ -303,16 +303,14 @@ int refined_counts(const Refined *r)
     return r->has_changed && r->keeps && r->gain > (isfinite(r->gain_error) ? 2.0 * r->gain_error : 0.0);
 }
 
-StoredDesign refined_design(const Refined *r)
+Evaluation refined_evaluation(const Refined *r)
 {
-    StoredDesign d = {.x = r->x, .f = r->f, .spread = r->spread, .violation = r->violation};
-    verdict_set(&d.verdict, "ok", "");
-    d.verdict.seconds = r->seconds;
-    return d;
+    return (Evaluation){
+        .x = r->x, .f = r->f, .sd = r->spread, .violation = r->violation, .seconds = r->seconds, .outcome = OUTCOME_OK};
 }
 
 Status refined_store(const char *folder, const Refined *r, long *id, Err *err)
 {
-    const StoredDesign d = refined_design(r);
-    return store_add_evaluations(folder, 1, &d, id, err);
+    const Evaluation e = refined_evaluation(r);
+    return store_add_evaluations(folder, 1, &e, id, err);
 }

@@ -52,7 +52,7 @@ void refined_free(Refined *r);
 int refined_counts(const Refined *r);
 
 /* As a run stores it; borrows x, f and spread. */
-StoredDesign refined_design(const Refined *r);
+Evaluation refined_evaluation(const Refined *r);
 
 /* Stored beside the designs of the search, as `polished`; the id that it got. Nobody may be working on the run. */
 Status refined_store(const char *folder, const Refined *r, long *id, Err *err);

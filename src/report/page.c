@@ -124,8 +124,8 @@ static json_t *json_of_growth(const Run *run)
 static size_t n_evaluated(const Run *run)
 {
     size_t n = 0;
-    for (size_t i = 0; i < run->n; i++)
-        n += run->row[i].kind != KIND_UNFINISHED;
+    for (size_t i = 0; i < run->table.n; i++)
+        n += run->table.row[i].kind != KIND_UNFINISHED;
     return n;
 }
 
@@ -140,8 +140,8 @@ static json_t *json_of_run(const Report *r)
     return json_pack("{s:s, s:s, s:s, s:s, s:b, s:b, s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:s}", "version",
                      program_version(), "revision", program_revision(), "name", slash && slash[1] ? slash + 1 : name,
                      "folder", name, "tower", r->has_detail, "robust", r->is_robust, "knee",
-                     (json_int_t)run->row[r->knee].id, "chosen", (json_int_t)run->row[r->chosen].id, "evaluated",
-                     (json_int_t)n_evaluated(run), "failed", (json_int_t)run->n_failed, "schema",
+                     (json_int_t)run->table.row[r->knee].id, "chosen", (json_int_t)run->table.row[r->chosen].id,
+                     "evaluated", (json_int_t)n_evaluated(run), "failed", (json_int_t)run->n_failed, "schema",
                      json_of_names(&run->schema), "convergence", json_of_growth(run), "detail",
                      r->has_detail ? json_of_detail(&r->detail) : json_null(), "settings",
                      json_of_settings(run->settings), "provenance", run->provenance);
@@ -168,7 +168,7 @@ static void write_rows(const Run *run, FILE *out)
 {
     for (size_t i = 0; i < run->n_front; i++) {
         const size_t row = run->front[i];
-        fprintf(out, "%ld", run->row[row].id);
+        fprintf(out, "%ld", run->table.row[row].id);
         print_cells(out, run->schema.n_var, run_x(run, row));
         print_cells(out, run->schema.n_obj, run_f(run, row));
         fputc('\n', out);

@@ -27,30 +27,31 @@ void export_front_header(FILE *f, const Schema *schema)
     write_names(f, "id", schema, 0, schema->has_spread);
 }
 
-void export_front_row(FILE *f, const Schema *schema, long id, const double x[], const double natural[],
-                      const double spread[], long members)
+void export_front_row(FILE *f, const Schema *schema, const FrontRow *row)
 {
-    fprintf(f, "%ld", id);
-    print_cells(f, schema->n_var, x);
-    print_cells(f, schema->n_obj, natural);
+    fprintf(f, "%ld", row->id);
+    print_cells(f, schema->n_var, row->x);
+    print_cells(f, schema->n_obj, row->f);
     if (schema->has_spread) {
-        print_cells(f, schema->n_obj, spread);
-        if (members > 0)
-            fprintf(f, ",%ld", members);
-        else
-            fputc(',', f);
+        print_cells(f, schema->n_obj, row->sd);
+        fputc(',', f);
+        if (row->replicates > 0)
+            fprintf(f, "%d", row->replicates);
     }
     fputc('\n', f);
 }
 
+void export_design(FILE *f, const Run *h, size_t row)
+{
+    const Evaluation *e = &h->table.row[row];
+    export_front_row(f, &h->schema, &(FrontRow){e->id, e->x, run_f(h, row), e->sd, e->replicates});
+}
+
 void export_front(FILE *f, const Run *h)
 {
-    const Schema *schema = &h->schema;
-    export_front_header(f, schema);
-    for (size_t i = 0; i < h->n; i++)
-        if (h->row[i].on_front)
-            export_front_row(f, schema, h->row[i].id, h->X + i * schema->n_var, h->F + i * schema->n_obj,
-                             h->spread + i * schema->n_obj, h->row[i].members);
+    export_front_header(f, &h->schema);
+    for (size_t i = 0; i < h->n_front; i++)
+        export_design(f, h, h->front[i]);
 }
 
 void export_evaluations_header(FILE *f, const Schema *schema)
@@ -58,17 +59,16 @@ void export_evaluations_header(FILE *f, const Schema *schema)
     write_names(f, "id,generation,kind,outcome,reason", schema, schema->n_extra, 0);
 }
 
-void export_evaluations(FILE *f, const Run *h, int unfinished_too)
+void export_evaluations(FILE *f, const EvaluationTable *t, int unfinished_too)
 {
-    const Schema *schema = &h->schema;
-    for (size_t i = 0; i < h->n; i++) {
-        const RunRow *r = &h->row[i];
-        if (r->kind == KIND_UNFINISHED && !unfinished_too)
+    for (size_t i = 0; i < t->n; i++) {
+        const Evaluation *e = &t->row[i];
+        if (e->kind == KIND_UNFINISHED && !unfinished_too)
             continue;
-        fprintf(f, "%ld,%ld,%s,%s,%s", r->id, r->generation, kind_word(r->kind), r->verdict.outcome, r->verdict.reason);
-        print_cells(f, schema->n_var, h->X + i * schema->n_var);
-        print_cells(f, schema->n_obj, h->answer + i * schema->n_obj);
-        print_cells(f, schema->n_extra, r->verdict.extra);
+        fprintf(f, "%ld,%ld,%s,%s,%s", e->id, e->generation, kind_word(e->kind), outcome_word(e->outcome), e->reason);
+        print_cells(f, t->n_var, e->x);
+        print_cells(f, t->n_obj, e->f);
+        print_cells(f, t->n_extra, e->extra);
         fputc('\n', f);
     }
 }
@@ -106,23 +106,23 @@ static json_t *json_columns(const Schema *schema)
 
 static json_t *json_evaluation(const Run *h, size_t i)
 {
-    const RunRow *r = &h->row[i];
+    const Evaluation *e = &h->table.row[i];
     const Schema *schema = &h->schema;
-    const double *spread = h->spread + i * schema->n_obj, *f = h->answer + i * schema->n_obj;
-    json_t *o = json_pack("{s:I, s:I, s:s, s:s, s:s, s:o, s:o, s:b}", "id", (json_int_t)r->id, "generation",
-                          (json_int_t)r->generation, "kind", kind_word(r->kind), "outcome", r->verdict.outcome,
-                          "reason", r->verdict.reason, "x", json_numbers(schema->n_var, h->X + i * schema->n_var), "f",
-                          isfinite(f[0]) ? json_numbers(schema->n_obj, f) : json_null(), "on_front", r->on_front);
+    json_t *o = json_pack("{s:I, s:I, s:s, s:s, s:s, s:o, s:o, s:b}", "id", (json_int_t)e->id, "generation",
+                          (json_int_t)e->generation, "kind", kind_word(e->kind), "outcome", outcome_word(e->outcome),
+                          "reason", e->reason, "x", json_numbers(schema->n_var, e->x), "f",
+                          isfinite(e->f[0]) ? json_numbers(schema->n_obj, e->f) : json_null(), "on_front",
+                          h->place[i].on_front);
     int known = 0;
     for (size_t k = 0; k < schema->n_obj; k++)
-        known = known || isfinite(spread[k]);
-    json_object_set_new(o, "spread", known ? json_numbers(schema->n_obj, spread) : json_null());
-    if (r->members > h->settings->sim.ensemble)
-        json_object_set_new(o, "mean", json_numbers(schema->n_obj, h->F + i * schema->n_obj));
+        known = known || isfinite(e->sd[k]);
+    json_object_set_new(o, "spread", known ? json_numbers(schema->n_obj, e->sd) : json_null());
+    if (e->replicates > h->settings->sim.ensemble)
+        json_object_set_new(o, "mean", json_numbers(schema->n_obj, run_f(h, i)));
     if (schema->has_spread)
-        json_object_set_new(o, "members", json_integer(r->members));
+        json_object_set_new(o, "members", json_integer(e->replicates));
     if (schema->n_extra > 0)
-        json_object_set_new(o, "measures", json_numbers(schema->n_extra, r->verdict.extra));
+        json_object_set_new(o, "measures", json_numbers(schema->n_extra, e->extra));
     return o;
 }
 
@@ -137,7 +137,7 @@ static json_t *json_generation(const RunGeneration *g)
 Status export_json(FILE *f, const Run *h, Err *err)
 {
     json_t *evaluations = json_array(), *generations = json_array();
-    for (size_t i = 0; i < h->n; i++)
+    for (size_t i = 0; i < h->table.n; i++)
         json_array_append_new(evaluations, json_evaluation(h, i));
     for (size_t g = 0; g < h->n_generations; g++)
         json_array_append_new(generations, json_generation(&h->generation[g]));

@@ -9,17 +9,22 @@
 
 #include "store/run.h"
 
-/* One design of a front: id, x (n_var), f (n_obj, natural); spread (n_obj) is read where the schema has it. */
+/* front.csv. One row: id, x (n_var), f (n_obj, natural); sd (n_obj) and replicates are read where the schema has them;
+ * replicates 0: not known. */
+typedef struct {
+    long id;
+    const double *x, *f, *sd;
+    int replicates;
+} FrontRow;
 void export_front_header(FILE *f, const Schema *schema);
-void export_front_row(FILE *f, const Schema *schema, long id, const double x[], const double natural[],
-                      const double spread[], long members);
-
-void export_front(FILE *f, const Run *h); /* front.csv */
+void export_front_row(FILE *f, const Schema *schema, const FrontRow *row);
+void export_design(FILE *f, const Run *h, size_t row); /* the same of a row of the run */
+void export_front(FILE *f, const Run *h);
 
 /* Every finished generation and polished designs: evaluations.csv. With unfinished_too also what is stored of the
  * generation that is under way or was cut short, kind `unfinished`. Rows come without the header. */
 void export_evaluations_header(FILE *f, const Schema *schema);
-void export_evaluations(FILE *f, const Run *h, int unfinished_too);
+void export_evaluations(FILE *f, const EvaluationTable *table, int unfinished_too);
 
 /* Settings, columns, evaluations (unfinished ones too), front and generations as one object. */
 Status export_json(FILE *f, const Run *h, Err *err);

@@ -13,7 +13,7 @@ static Status make_line(FrontLines *lines, const SearchView *v, size_t row, Err 
     for (size_t k = 0; f && k < v->n_obj; k++)
         natural[k] = schema_objective(lines->schema, k)->sense * v->F[row * v->n_obj + k];
     if (f)
-        export_front_row(f, lines->schema, (long)row + 1, v->X + row * v->n_var, natural, NULL, 1);
+        export_front_row(f, lines->schema, &(FrontRow){.id = (long)row + 1, .x = v->X + row * v->n_var, .f = natural});
     return f && fclose(f) == 0 ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for the front");
 }
 

@@ -9,11 +9,11 @@
 size_t nearest_rows(const Run *h, size_t rows[NEAREST_MAX])
 {
     size_t n = 0;
-    for (size_t i = 0; i < h->n; i++) {
+    for (size_t i = 0; i < h->table.n; i++) {
         size_t at = n;
-        if (!h->row[i].ok)
+        if (!h->place[i].ok)
             continue;
-        while (at > 0 && h->row[i].violation < h->row[rows[at - 1]].violation)
+        while (at > 0 && h->table.row[i].violation < h->table.row[rows[at - 1]].violation)
             at--;
         if (at == NEAREST_MAX)
             continue;
@@ -26,8 +26,8 @@ size_t nearest_rows(const Run *h, size_t rows[NEAREST_MAX])
 
 static void write_row(FILE *f, const Run *h, size_t row)
 {
-    fprintf(f, "%ld", h->row[row].id);
-    print_cells(f, 1, &h->row[row].violation);
+    fprintf(f, "%ld", h->table.row[row].id);
+    print_cells(f, 1, &h->table.row[row].violation);
     print_cells(f, h->schema.n_var, run_x(h, row));
     print_cells(f, h->schema.n_obj, run_f(h, row));
     fputc('\n', f);

@@ -5,7 +5,7 @@
 #include "moga/archive.h"
 #include "settings/settings.h"
 
-static int is_known_to_search(const RunRow *r)
+static int is_known_to_search(const Evaluation *r)
 {
     return r->kind != KIND_UNFINISHED && r->kind != KIND_POLISHED;
 }
@@ -15,9 +15,9 @@ static Status insert_row(Archive *a, const Run *h, size_t i, Err *err)
     double f[OBJECTIVES_MAX];
     const size_t m = h->schema.n_obj;
     for (size_t k = 0; k < m; k++)
-        f[k] = schema_objective(&h->schema, k)->sense * h->answer[i * m + k];
-    return archive_insert(a, 1, h->X + i * h->schema.n_var, f, NULL, &(unsigned char){h->row[i].ok != 0},
-                          (unsigned char)h->row[i].kind, (size_t)h->row[i].generation, err);
+        f[k] = schema_objective(&h->schema, k)->sense * h->table.f[i * m + k];
+    return archive_insert(a, 1, run_x(h, i), f, NULL, &(unsigned char){h->place[i].ok != 0},
+                          (unsigned char)h->table.row[i].kind, (size_t)h->table.row[i].generation, err);
 }
 
 /* Row i of the run is row `at` of the archive. */
@@ -25,25 +25,25 @@ static void take_design(Run *h, size_t i, const Archive *a, size_t at)
 {
     const size_t m = h->schema.n_obj;
     const double members = (double)h->settings->sim.ensemble;
-    RunRow *r = &h->row[i];
+    Evaluation *r = &h->table.row[i];
     if (a->answers[at] == 0)
         return;
-    r->members = (long)a->answers[at] * h->settings->sim.ensemble;
+    r->replicates = (int)((long)a->answers[at] * h->settings->sim.ensemble);
     for (size_t k = 0; k < m && a->usable[at]; k++) {
         h->F[i * m + k] = schema_objective(&h->schema, k)->sense * a->F[at * m + k];
         if (a->n_repeats > 0)
-            h->spread[i * m + k] = a->deviation[at * m + k] * sqrt(members);
+            r->sd[k] = a->deviation[at * m + k] * sqrt(members);
     }
 }
 
 static Status join(Run *h, Archive *a, Err *err)
 {
-    for (size_t i = 0; i < h->n; i++)
-        if (is_known_to_search(&h->row[i]))
+    for (size_t i = 0; i < h->table.n; i++)
+        if (is_known_to_search(&h->table.row[i]))
             TRY(insert_row(a, h, i, err));
     archive_settle(a);
-    for (size_t i = 0, at = 0; i < h->n; i++)
-        if (is_known_to_search(&h->row[i]))
+    for (size_t i = 0, at = 0; i < h->table.n; i++)
+        if (is_known_to_search(&h->table.row[i]))
             take_design(h, i, a, at++);
     return STATUS_OK;
 }
@@ -51,9 +51,9 @@ static Status join(Run *h, Archive *a, Err *err)
 Status repeats_join(Run *h, Err *err)
 {
     Archive a;
-    if (!schema_is_noisy(h->settings) || h->n == 0)
+    if (!schema_is_noisy(h->settings) || h->table.n == 0)
         return STATUS_OK;
-    TRY(archive_init(&a, h->n, h->schema.n_var, h->schema.n_obj, 0, err));
+    TRY(archive_init(&a, h->table.n, h->schema.n_var, h->schema.n_obj, 0, err));
     const Status status = join(h, &a, err);
     archive_free(&a);
     return status;

@@ -15,11 +15,9 @@ void run_free(Run *run)
     schema_free(&run->schema);
     free(run->provenance);
     free(run->settings);
-    free(run->row);
-    free(run->X);
+    evaluation_table_free(&run->table);
     free(run->F);
-    free(run->spread);
-    free(run->answer);
+    free(run->place);
     free(run->front);
     free(run->generation);
     free(run->session);
@@ -31,7 +29,7 @@ void run_free(Run *run)
 
 const double *run_x(const Run *run, size_t row)
 {
-    return run->X + row * run->schema.n_var;
+    return run->table.x + row * run->schema.n_var;
 }
 
 const double *run_f(const Run *run, size_t row)
@@ -41,15 +39,15 @@ const double *run_f(const Run *run, size_t row)
 
 size_t run_find(const Run *run, long id)
 {
-    size_t low = 0, high = run->n;
+    size_t low = 0, high = run->table.n;
     while (low < high) {
         const size_t middle = low + (high - low) / 2;
-        if (run->row[middle].id < id)
+        if (run->table.row[middle].id < id)
             low = middle + 1;
         else
             high = middle;
     }
-    return low < run->n && run->row[low].id == id ? low : run->n;
+    return low < run->table.n && run->table.row[low].id == id ? low : run->table.n;
 }
 
 static double minimised(const Run *run, size_t row, size_t k)
@@ -73,44 +71,50 @@ static int dominates_row(const Run *run, size_t i, size_t j)
 static void admit_polished(Run *run)
 {
     const size_t first = run_find(run, POLISHED_FIRST);
-    RunRow *row = run->row;
-    for (size_t i = first; i < run->n; i++)
-        row[i].on_front = row[i].kind == KIND_POLISHED && row[i].ok && !(row[i].violation > 0.0);
-    for (size_t i = first; i < run->n; i++)
-        for (size_t j = 0; j < run->n && row[i].on_front; j++) {
-            if (j == i || !row[j].on_front)
+    const Evaluation *row = run->table.row;
+    RunPlace *place = run->place;
+    for (size_t i = first; i < run->table.n; i++)
+        place[i].on_front = row[i].kind == KIND_POLISHED && place[i].ok && !(row[i].violation > 0.0);
+    for (size_t i = first; i < run->table.n; i++)
+        for (size_t j = 0; j < run->table.n && place[i].on_front; j++) {
+            if (j == i || !place[j].on_front)
                 continue;
             if (dominates_row(run, i, j))
-                row[j].on_front = 0;
+                place[j].on_front = 0;
             else if (dominates_row(run, j, i))
-                row[i].on_front = 0;
+                place[i].on_front = 0;
         }
 }
 
 static void list_front(Run *run)
 {
     run->n_front = 0;
-    for (size_t i = 0; i < run->n; i++)
-        if (run->row[i].on_front)
+    for (size_t i = 0; i < run->table.n; i++)
+        if (run->place[i].on_front)
             run->front[run->n_front++] = i;
 }
 
 Status run_settle_front(Run *run, Err *err)
 {
-    run->front = calloc(run->n + 1, sizeof *run->front);
+    run->front = calloc(run->table.n + 1, sizeof *run->front);
     if (!run->front)
-        return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", run->n);
+        return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", run->table.n);
     admit_polished(run);
     list_front(run);
     return STATUS_OK;
 }
 
+int run_has_polished(const Run *run)
+{
+    return run->table.n > 0 && run->table.row[run->table.n - 1].id >= POLISHED_FIRST;
+}
+
 void run_drop_polished(Run *run)
 {
-    while (run->n > 0 && run->row[run->n - 1].id >= POLISHED_FIRST)
-        run->n_failed -= !run->row[--run->n].ok;
-    for (size_t i = 0; i < run->n; i++)
-        run->row[i].on_front = run->row[i].ok && run->row[i].entered != NEVER && run->row[i].left == NEVER;
+    while (run_has_polished(run))
+        run->n_failed -= !run->place[--run->table.n].ok;
+    for (size_t i = 0; i < run->table.n; i++)
+        run->place[i].on_front = run->place[i].ok && run->place[i].entered != NEVER && run->place[i].left == NEVER;
     list_front(run);
 }
 
@@ -185,11 +189,11 @@ size_t run_spread_out(const Run *run, size_t n, int with_polished, size_t rows[]
         return 0;
     const FrontBox box = run_box(run);
     for (; chosen < n; chosen++) {
-        size_t found = run->n;
+        size_t found = run->table.n;
         double most = chosen == 0 ? -INFINITY : 0.0;
         for (size_t i = 0; i < run->n_front; i++) {
             const size_t row = run->front[i];
-            if (!with_polished && run->row[row].id >= POLISHED_FIRST)
+            if (!with_polished && run->table.row[row].id >= POLISHED_FIRST)
                 continue;
             const double merit = chosen == 0 ? -run_distance2(run, &box, row) : apart2(run, &box, row, chosen, rows);
             if (merit > most) {
@@ -197,7 +201,7 @@ size_t run_spread_out(const Run *run, size_t n, int with_polished, size_t rows[]
                 found = row;
             }
         }
-        if (found == run->n)
+        if (found == run->table.n)
             break;
         rows[chosen] = found;
     }
@@ -209,16 +213,16 @@ size_t run_spread_out(const Run *run, size_t n, int with_polished, size_t rows[]
 Status run_why_empty(const Run *run, Err *err)
 {
     char nearest[PATH_MAX + 16];
-    const size_t n_ok = run->n - run->n_failed;
+    const size_t n_ok = run->table.n - run->n_failed;
     const Settings *s = run->settings;
     snprintf(nearest, sizeof nearest, "%s/nearest.csv", run->folder);
-    if (run->n > 0 && n_ok == 0)
+    if (run->table.n > 0 && n_ok == 0)
         return fail(err, STATUS_INTERNAL, "%s: all %zu simulations failed; `imtet status` has the reasons", run->folder,
-                    run->n);
+                    run->table.n);
     if (run->n_generations == 0)
         return fail(err, STATUS_BAD_DATA,
                     "%s: there is no front before the initial sample is complete; %zu designs are simulated",
-                    run->folder, run->n);
+                    run->folder, run->table.n);
     if (strcmp(s->search.limits, "none") != 0)
         return fail(err, STATUS_UNMET, "%s: search.limits: none of %zu designs keeps %.120s%s%s", run->folder, n_ok,
                     s->search.limits, access(nearest, F_OK) == 0 ? "; those that come nearest: " : "",
@@ -231,10 +235,10 @@ Status run_why_empty(const Run *run, Err *err)
 
 static long nearest_id(const Run *run, long id)
 {
-    long nearest = run->row[run->front[0]].id;
+    long nearest = run->table.row[run->front[0]].id;
     for (size_t i = 1; i < run->n_front; i++)
-        if (labs(run->row[run->front[i]].id - id) < labs(nearest - id))
-            nearest = run->row[run->front[i]].id;
+        if (labs(run->table.row[run->front[i]].id - id) < labs(nearest - id))
+            nearest = run->table.row[run->front[i]].id;
     return nearest;
 }
 
@@ -252,7 +256,7 @@ Status run_pick(const Run *run, const char *word, size_t *row, Err *err)
         return fail(err, STATUS_BAD_DATA,
                     "--design %.40s: neither an id of %s/front.csv nor a word; did you mean knee?", word, run->folder);
     *row = run_find(run, id);
-    if (*row == run->n || !run->row[*row].on_front)
+    if (*row == run->table.n || !run->place[*row].on_front)
         return fail(err, STATUS_BAD_DATA, "--design %ld: no such id on the front of %s; the nearest is %ld", id,
                     run->folder, nearest_id(run, id));
     return STATUS_OK;

@@ -17,21 +17,18 @@
 
 #include <limits.h>
 
-#include "moga/search.h"
+#include "evaluate/evaluation.h"
 #include "simulator/schema.h"
 
 typedef struct Settings Settings;
 
 enum { POLISHED_FIRST = 1000001, NEVER = -1 };
 
+/* Of an evaluation. */
 typedef struct {
-    long id, generation, entered, left; /* NEVER */
-    EvaluationKind kind;
+    long entered, left; /* NEVER */
     int ok, on_front;
-    long members;     /* simulations behind F; 0: a repeat, or not known */
-    double violation; /* of the user's limits */
-    Verdict verdict;
-} RunRow;
+} RunPlace;
 
 typedef struct {
     long number, simulated, failed, front, predicted;
@@ -55,10 +52,10 @@ typedef struct {
     char *provenance; /* JSON */
     Settings *settings;
     Schema schema;
-    size_t n, n_front, n_failed, n_repeats, n_generations, n_sessions;
-    RunRow *row;               /* (n) */
-    double *X, *F, *spread;    /* (n, n_var) (n, n_obj) (n, n_obj) */
-    double *answer;            /* (n, n_obj) of this very simulation */
+    size_t n_front, n_failed, n_repeats, n_generations, n_sessions;
+    EvaluationTable table;     /* f: of this very evaluation; sd, replicates: joined (store/repeats.h) */
+    double *F;                 /* (table.n, n_obj) joined */
+    RunPlace *place;           /* (table.n) */
     size_t *front;             /* (n_front) rows, ascending */
     RunGeneration *generation; /* (n_generations) */
     RunSession *session;       /* (n_sessions) */
@@ -74,11 +71,13 @@ void run_free(Run *run);
 const double *run_x(const Run *run, size_t row); /* (n_var) */
 const double *run_f(const Run *run, size_t row); /* (n_obj) */
 
-/* Row of that design, or run->n. */
+/* Row of that design, or run->table.n. */
 size_t run_find(const Run *run, long id);
 
-/* The front of the search joined by the polished designs, and `front`; run->row and F are all that has to be there. */
+/* The front of the search joined by the polished designs, and `front`; the table, F and place are all that has to be there. */
 Status run_settle_front(Run *run, Err *err);
+
+int run_has_polished(const Run *run);
 
 /* As if nothing had been polished: the front is that of the search. */
 void run_drop_polished(Run *run);

@@ -1,6 +1,5 @@
 #include "store/run_read.h"
 
-#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,136 +7,67 @@
 
 #include "settings/settings.h"
 #include "store/repeats.h"
-#include "store/tables.h"
-
-/* -- rows ---------------------------------------------------------------------------------------------------------- */
+#include "store/rows.h"
 
 typedef struct {
     Run *h;
     Database *d;
-    size_t n_max;
 } Loading;
 
-static const char *text_at(sqlite3_stmt *row, int column)
-{
-    const char *text = (const char *)sqlite3_column_text(row, column);
-    return text ? text : "";
-}
+/* -- evaluations --------------------------------------------------------------------------------------------------- */
 
-static double number_at(sqlite3_stmt *row, int column)
+static Status take_front(sqlite3_stmt *row, void *user, Err *err)
 {
-    return sqlite3_column_type(row, column) == SQLITE_NULL ? NAN : sqlite3_column_double(row, column);
-}
-
-static Status damaged(const Loading *l, const char *what, long id, Err *err)
-{
-    return fail(err, STATUS_IO, "%s: is damaged: %s of evaluation %ld cannot be read", database_path(l->d), what, id);
-}
-
-/* "[1,2.5,null]"; no text at all: n times NAN. */
-static int parse_numbers(const char *text, size_t n, double values[])
-{
-    const int known = text[0] != 0;
-    for (size_t i = 0; i < n; i++)
-        values[i] = NAN;
-    for (size_t i = 0; i < n && known; i++) {
-        char *end;
-        if (*text++ != (i == 0 ? '[' : ','))
-            return 0;
-        if (strncmp(text, "null", 4) == 0) {
-            text += 4;
-            continue;
-        }
-        values[i] = strtod(text, &end);
-        if (end == text || !isfinite(values[i]))
-            return 0;
-        text = end;
+    Run *h = ((Loading *)user)->h;
+    const size_t i = run_find(h, (long)sqlite3_column_int64(row, 0));
+    (void)err;
+    if (i < h->table.n) {
+        h->place[i].entered = column_whole(row, 1, NEVER);
+        h->place[i].left = column_whole(row, 2, NEVER);
     }
-    return !known || strcmp(text, "]") == 0;
-}
-
-static Status widen(Loading *l, Err *err)
-{
-    Run *h = l->h;
-    if (h->n < l->n_max)
-        return STATUS_OK;
-    const size_t n = l->n_max > 0 ? 2 * l->n_max : 16;
-    void *row = realloc(h->row, n * sizeof *h->row);
-    h->row = row ? row : h->row;
-    void *X = realloc(h->X, n * h->schema.n_var * sizeof *h->X);
-    h->X = X ? X : h->X;
-    void *F = realloc(h->F, n * h->schema.n_obj * sizeof *h->F);
-    h->F = F ? F : h->F;
-    void *spread = realloc(h->spread, n * h->schema.n_obj * sizeof *h->spread);
-    h->spread = spread ? spread : h->spread;
-    void *answer = realloc(h->answer, n * h->schema.n_obj * sizeof *h->answer);
-    h->answer = answer ? answer : h->answer;
-    if (!row || !X || !F || !spread || !answer)
-        return fail(err, STATUS_NO_MEMORY, "%s: no memory for %zu evaluations", database_path(l->d), n);
-    l->n_max = n;
     return STATUS_OK;
 }
 
-static const char EVALUATIONS[] =
-    "SELECT e.id, e.generation, e.kind, e.outcome, e.reason, e.seconds, e.x, e.f, e.spread, e.violation, e.extra, "
-    "f.entered, f.left, e.digest FROM evaluation e LEFT JOIN front f ON f.evaluation = e.id "
-    "WHERE e.id BETWEEN %ld AND %ld ORDER BY e.id";
-
-/* What was read is what was written. A row without a digest was put there by somebody else. */
-static Status check_digest(const Loading *l, sqlite3_stmt *row, const RunRow *r, Err *err)
+static int is_ok(const Run *h, const Evaluation *e)
 {
-    const RowContent content = {.id = r->id,
-                                .seconds = r->verdict.seconds,
-                                .violation = r->violation,
-                                .text = {text_at(row, 3), text_at(row, 4), text_at(row, 6), text_at(row, 7),
-                                         text_at(row, 8), text_at(row, 10)}};
-    if (sqlite3_column_type(row, 13) == SQLITE_NULL || sqlite3_column_int64(row, 13) == tables_digest(&content))
-        return STATUS_OK;
-    return fail(err, STATUS_IO, "%s: is damaged: evaluation %ld is not what was written", database_path(l->d), r->id);
+    int ok = e->outcome == OUTCOME_OK;
+    for (size_t k = 0; k < h->schema.n_obj; k++)
+        ok = ok && isfinite(e->f[k]);
+    return ok;
 }
 
-static Status take_evaluation(sqlite3_stmt *row, void *user, Err *err)
+static void place_all(Run *h)
 {
-    Loading *l = user;
+    for (size_t i = 0; i < h->table.n; i++) {
+        Evaluation *e = &h->table.row[i];
+        RunPlace *place = &h->place[i];
+        place->ok = is_ok(h, e);
+        place->on_front = place->ok && place->entered != NEVER && place->left == NEVER;
+        h->n_failed += !place->ok;
+        h->n_repeats += e->kind == KIND_REPEAT;
+        if (e->kind != KIND_REPEAT && e->kind != KIND_POLISHED)
+            e->replicates = (int)h->settings->sim.ensemble;
+    }
+}
+
+static Status load_evaluations(Loading *l, Err *err)
+{
     Run *h = l->h;
-    TRY(widen(l, err));
-    RunRow *r = &h->row[h->n];
-    const Schema *schema = &h->schema;
-    *r = (RunRow){.id = (long)sqlite3_column_int64(row, 0),
-                  .generation = (long)sqlite3_column_int64(row, 1),
-                  .kind = kind_of_word(text_at(row, 2)),
-                  .violation = number_at(row, 9),
-                  .entered = sqlite3_column_type(row, 11) == SQLITE_NULL ? NEVER : sqlite3_column_int(row, 11),
-                  .left = sqlite3_column_type(row, 12) == SQLITE_NULL ? NEVER : sqlite3_column_int(row, 12)};
-    verdict_set(&r->verdict, text_at(row, 3), text_at(row, 4));
-    r->verdict.seconds = number_at(row, 5);
-    if (!text_at(row, 6)[0] || !parse_numbers(text_at(row, 6), schema->n_var, h->X + h->n * schema->n_var))
-        return damaged(l, "x", r->id, err);
-    double *f = h->F + h->n * schema->n_obj;
-    if (!parse_numbers(text_at(row, 7), schema->n_obj, f))
-        return damaged(l, "f", r->id, err);
-    if (!parse_numbers(text_at(row, 8), schema->n_obj, h->spread + h->n * schema->n_obj))
-        return damaged(l, "spread", r->id, err);
-    if (schema->n_extra > 0 && !parse_numbers(text_at(row, 10), schema->n_extra, r->verdict.extra))
-        return damaged(l, "extra", r->id, err);
-    TRY(check_digest(l, row, r, err));
-    memcpy(h->answer + h->n * schema->n_obj, f, schema->n_obj * sizeof *f);
-    h->n_repeats += r->kind == KIND_REPEAT;
-    r->ok = strcmp(r->verdict.outcome, "ok") == 0;
-    for (size_t k = 0; k < schema->n_obj; k++)
-        r->ok = r->ok && isfinite(f[k]);
-    r->on_front = r->ok && r->entered != NEVER && r->left == NEVER;
-    h->n_failed += !r->ok;
-    h->n++;
-    return STATUS_OK;
-}
-
-Status run_load_rows(Run *h, Database *d, long first, long last, Err *err)
-{
-    char sql[sizeof EVALUATIONS + 48];
-    Loading l = {h, d, 0};
-    snprintf(sql, sizeof sql, EVALUATIONS, first, last);
-    return database_each(d, sql, take_evaluation, &l, err);
+    const Schema *s = &h->schema;
+    h->table = evaluation_table(s->n_var, s->n_obj, s->n_extra);
+    TRY(rows_read(l->d, &h->table, 0, LONG_MAX, err));
+    h->place = calloc(h->table.n + 1, sizeof *h->place);
+    h->F = calloc(h->table.n * s->n_obj + 1, sizeof *h->F);
+    if (!h->place || !h->F)
+        return fail(err, STATUS_NO_MEMORY, "%s: no memory for %zu evaluations", database_path(l->d), h->table.n);
+    if (h->table.n > 0)
+        memcpy(h->F, h->table.f, h->table.n * s->n_obj * sizeof *h->F);
+    for (size_t i = 0; i < h->table.n; i++)
+        h->place[i] = (RunPlace){.entered = NEVER, .left = NEVER};
+    TRY(database_each(l->d, "SELECT evaluation, entered, left FROM front", take_front, l, err));
+    place_all(h);
+    TRY(repeats_join(h, err));
+    return run_settle_front(h, err);
 }
 
 /* -- the rest ------------------------------------------------------------------------------------------------------ */
@@ -160,10 +90,10 @@ static Status take_generation(sqlite3_stmt *row, void *user, Err *err)
                          .failed = (long)sqlite3_column_int64(row, 2),
                          .front = (long)sqlite3_column_int64(row, 3),
                          .predicted = (long)sqlite3_column_int64(row, 4),
-                         .surrogate_error = number_at(row, 5),
-                         .hypervolume = number_at(row, 6),
-                         .seconds = number_at(row, 7)};
-    snprintf(g->finished, sizeof g->finished, "%s", text_at(row, 8));
+                         .surrogate_error = column_number(row, 5),
+                         .hypervolume = column_number(row, 6),
+                         .seconds = column_number(row, 7)};
+    snprintf(g->finished, sizeof g->finished, "%s", column_text(row, 8));
     return STATUS_OK;
 }
 
@@ -178,15 +108,15 @@ static Status take_session(sqlite3_stmt *row, void *user, Err *err)
     *s = (RunSession){.pid = (long)sqlite3_column_int64(row, 3),
                       .threads = (long)sqlite3_column_int64(row, 4),
                       .simulated_before = (long)sqlite3_column_int64(row, 5),
-                      .seconds = number_at(row, 6),
+                      .seconds = column_number(row, 6),
                       .is_final = sqlite3_column_int(row, 8),
-                      .search_s = number_at(row, 9),
-                      .waited_s = number_at(row, 10),
-                      .surrogate_s = number_at(row, 11)};
-    snprintf(s->started, sizeof s->started, "%s", text_at(row, 0));
-    snprintf(s->ended, sizeof s->ended, "%s", text_at(row, 1));
-    snprintf(s->host, sizeof s->host, "%s", text_at(row, 2));
-    snprintf(s->stopped, sizeof s->stopped, "%s", text_at(row, 7));
+                      .search_s = column_number(row, 9),
+                      .waited_s = column_number(row, 10),
+                      .surrogate_s = column_number(row, 11)};
+    snprintf(s->started, sizeof s->started, "%s", column_text(row, 0));
+    snprintf(s->ended, sizeof s->ended, "%s", column_text(row, 1));
+    snprintf(s->host, sizeof s->host, "%s", column_text(row, 2));
+    snprintf(s->stopped, sizeof s->stopped, "%s", column_text(row, 7));
     return STATUS_OK;
 }
 
@@ -210,8 +140,8 @@ static Status take_head(sqlite3_stmt *row, void *user, Err *err)
     if (!h->settings)
         return fail(err, STATUS_NO_MEMORY, "%s: no memory for its settings", database_path(l->d));
     settings_defaults(h->settings);
-    TRY(settings_parse(h->settings, database_path(l->d), text_at(row, 0), err));
-    h->provenance = strdup(text_at(row, 1));
+    TRY(settings_parse(h->settings, database_path(l->d), column_text(row, 0), err));
+    h->provenance = strdup(column_text(row, 1));
     if (!h->provenance)
         return fail(err, STATUS_NO_MEMORY, "%s: no memory for its provenance", database_path(l->d));
     h->planned_evals = (long)sqlite3_column_int64(row, 2);
@@ -224,13 +154,6 @@ static Status take_head(sqlite3_stmt *row, void *user, Err *err)
     return schema_of(&h->schema, h->settings, (int)n_var - 2, err);
 }
 
-static void count_members(Run *h)
-{
-    for (size_t i = 0; i < h->n; i++)
-        if (h->row[i].kind != KIND_REPEAT && h->row[i].kind != KIND_POLISHED)
-            h->row[i].members = h->settings->sim.ensemble;
-}
-
 static Status load(Loading *l, Err *err)
 {
     Run *h = l->h;
@@ -240,10 +163,7 @@ static Status load(Loading *l, Err *err)
         take_head, l, err));
     if (!h->schema.column)
         return fail(err, STATUS_IO, "%s: is damaged: it has no settings", database_path(d));
-    TRY(run_load_rows(h, d, 0, LONG_MAX, err));
-    count_members(h);
-    TRY(repeats_join(h, err));
-    TRY(run_settle_front(h, err));
+    TRY(load_evaluations(l, err));
     TRY(database_each(d,
                       "SELECT number, simulated, failed, front, predicted, surrogate_error, hypervolume, seconds, "
                       "finished FROM generation ORDER BY number",
@@ -258,7 +178,7 @@ static Status load(Loading *l, Err *err)
 
 Status run_load(Run *h, Database *d, const char *folder, Err *err)
 {
-    Loading l = {h, d, 0};
+    Loading l = {h, d};
     memset(h, 0, sizeof *h);
     snprintf(h->folder, sizeof h->folder, "%s", folder);
     TRY(database_do(d, err, "BEGIN", "")); /* one moment of a run that goes on */

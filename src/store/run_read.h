@@ -14,7 +14,4 @@ int run_path(const char *folder, char path[], size_t size);
 Status run_read(Run *run, const char *folder, Err *err);
 Status run_load(Run *run, Database *d, const char *folder, Err *err);
 
-/* The evaluations first..last into a Run that has a schema and no rows yet. */
-Status run_load_rows(Run *run, Database *d, long first, long last, Err *err);
-
 #endif

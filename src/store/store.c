@@ -16,6 +16,7 @@
 #include "store/front_share.h"
 #include "store/lock.h"
 #include "store/output.h"
+#include "store/rows.h"
 #include "store/run_read.h"
 #include "store/tables.h"
 #include "settings/settings.h"
@@ -127,7 +128,7 @@ static Status take_run(RunStore *store, Err *err)
     TRY(run_load(&store->saved, store->db, store->folder, err));
     database_grow(store->db);
     store->has_saved = 1;
-    store->has_polished = store->saved.n > 0 && store->saved.row[store->saved.n - 1].id >= POLISHED_FIRST;
+    store->has_polished = run_has_polished(&store->saved);
     return STATUS_OK;
 }
 
@@ -136,7 +137,7 @@ Status store_forget_empty(RunStore *store, Err *err)
 {
     static const char *const NAMES[] = {"run.sqlite-wal", "run.sqlite-shm", "run.sqlite"};
     char path[PATH_MAX];
-    if (!store->has_saved || store->saved.n > 0 || store->saved.n_generations > 0)
+    if (!store->has_saved || store->saved.table.n > 0 || store->saved.n_generations > 0)
         return STATUS_OK;
     database_close(store->db);
     run_free(&store->saved);
@@ -201,7 +202,7 @@ static void put_front(FILE *f, const void *saved)
 static void put_evaluations(FILE *f, const void *saved)
 {
     export_evaluations_header(f, &((const Run *)saved)->schema);
-    export_evaluations(f, saved, 0);
+    export_evaluations(f, &((const Run *)saved)->table, 0);
 }
 
 /* An earlier write that failed is told too, when its cause is gone. */
@@ -250,13 +251,13 @@ static Status take_up(RunStore *store, Err *err)
 {
     const Run *h = &store->saved;
     size_t n = 0;
-    while (n < h->n && h->row[n].kind != KIND_UNFINISHED && h->row[n].id < POLISHED_FIRST)
+    while (n < h->table.n && h->table.row[n].kind != KIND_UNFINISHED && h->table.row[n].id < POLISHED_FIRST)
         n++;
     store->was_on_front = calloc(n + 1, 1);
     if (!store->was_on_front)
         return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", n);
     for (size_t i = 0; i < n; i++)
-        store->was_on_front[i] = h->row[i].entered != NEVER && h->row[i].left == NEVER;
+        store->was_on_front[i] = h->place[i].entered != NEVER && h->place[i].left == NEVER;
     store->n_exported = store->n_flags = n;
     return STATUS_OK;
 }
@@ -316,13 +317,17 @@ Status store_flush(RunStore *store, Err *err)
     return STATUS_OK;
 }
 
-Status store_simulation(RunStore *store, const Simulation *s, size_t generation, Err *err)
+static Status insert(RunStore *store, const Evaluation *e, Err *err)
 {
-    const StoredDesign d = {
-        .x = s->x, .f = s->f, .spread = s->spread, .violation = s->violation, .verdict = *s->verdict};
+    const Schema *s = store->schema;
+    return rows_insert(store->db, (RowShape){s->n_var, s->n_obj, s->n_extra}, e, err);
+}
+
+Status store_evaluation(RunStore *store, const Evaluation *e, Err *err)
+{
     TRY(begin(store, err));
-    TRY(tables_insert(store->db, store->schema, (long)s->number, (long)generation, NULL, &d, err));
-    if (d.verdict.seconds >= COMMIT_S || clock_seconds() >= store->last_commit + COMMIT_S)
+    TRY(insert(store, e, err));
+    if (e->seconds >= COMMIT_S || clock_seconds() >= store->last_commit + COMMIT_S)
         TRY(store_flush(store, err));
     return STATUS_OK;
 }
@@ -383,15 +388,14 @@ static Status store_moment(RunStore *store, const SearchView *v, double seconds,
 /* What the database now has of this generation, at the end of evaluations.csv. */
 static Status append_evaluations(RunStore *store, const SearchView *v, Err *err)
 {
-    Run h = {.schema = *store->schema};
-    Status status = run_load_rows(&h, store->db, (long)store->n_exported + 1, (long)v->n, err);
-    if (status == STATUS_OK && h.n != v->n - store->n_exported)
+    EvaluationTable t = evaluation_table(store->schema->n_var, store->schema->n_obj, store->schema->n_extra);
+    Status status = rows_read(store->db, &t, (long)store->n_exported + 1, (long)v->n, err);
+    if (status == STATUS_OK && t.n != v->n - store->n_exported)
         status = fail(err, STATUS_INTERNAL, "%s: the search knows of %zu simulations, %zu are stored",
-                      database_path(store->db), v->n, store->n_exported + h.n);
+                      database_path(store->db), v->n, store->n_exported + t.n);
     if (status == STATUS_OK)
-        export_evaluations(store->evaluations, &h, 0);
-    h.schema = (Schema){0}; /* borrowed */
-    run_free(&h);
+        export_evaluations(store->evaluations, &t, 0);
+    evaluation_table_free(&t);
     TRY(status);
     store->n_exported = v->n;
     return flush(store, store->evaluations, "evaluations.csv", err);
@@ -548,13 +552,16 @@ void store_free(RunStore *store)
 /* -- designs from outside ------------------------------------------------------------------------------------------ */
 
 /* Behind the polished ones that are there, as of the last generation. */
-static Status insert_polished(RunStore *store, const Schema *schema, const StoredDesign *design, long *id, Err *err)
+static Status insert_polished(RunStore *store, const Evaluation *design, long *id, Err *err)
 {
     double last, generation;
+    Evaluation e = *design;
     TRY(database_number(store->db, "SELECT max(id) FROM evaluation", 0, &last, err));
     TRY(database_number(store->db, "SELECT max(number) FROM generation", 0, &generation, err));
-    *id = last >= POLISHED_FIRST ? (long)last + 1 : POLISHED_FIRST;
-    return tables_insert(store->db, schema, *id, (long)generation, kind_word(KIND_POLISHED), design, err);
+    *id = e.id = last >= POLISHED_FIRST ? (long)last + 1 : POLISHED_FIRST;
+    e.generation = (long)generation;
+    e.kind = KIND_POLISHED;
+    return insert(store, &e, err);
 }
 
 Status store_read(RunStore *store, Run *run, Err *err)
@@ -563,12 +570,12 @@ Status store_read(RunStore *store, Run *run, Err *err)
     return run_load(run, store->db, store->folder, err);
 }
 
-Status store_polished(RunStore *store, const StoredDesign *better, size_t n_tried, size_t n_simulated, Err *err)
+Status store_polished(RunStore *store, const Evaluation *better, size_t n_tried, size_t n_simulated, Err *err)
 {
     long id;
     TRY(begin(store, err));
     if (better) {
-        TRY(insert_polished(store, store->schema, better, &id, err));
+        TRY(insert_polished(store, better, &id, err));
         store->has_polished = 1;
     }
     TRY(database_do(store->db, err, "UPDATE run SET tried_to_polish = ?, polished_at = ?", "ii", (long)n_tried,
@@ -576,12 +583,13 @@ Status store_polished(RunStore *store, const StoredDesign *better, size_t n_trie
     return store_flush(store, err);
 }
 
-static Status add_all(RunStore *store, size_t n, const StoredDesign designs[], long *first_id, Err *err)
+static Status add_all(RunStore *store, size_t n, const Evaluation designs[], long *first_id, Err *err)
 {
     long id = 0;
+    store->schema = &store->saved.schema;
     TRY(begin(store, err));
     for (size_t i = 0; i < n; i++) {
-        TRY(insert_polished(store, &store->saved.schema, &designs[i], &id, err));
+        TRY(insert_polished(store, &designs[i], &id, err));
         if (first_id && i == 0)
             *first_id = id;
     }
@@ -589,7 +597,7 @@ static Status add_all(RunStore *store, size_t n, const StoredDesign designs[], l
     return renew_tables(store, 1, err);
 }
 
-Status store_add_evaluations(const char *folder, size_t n, const StoredDesign designs[], long *first_id, Err *err)
+Status store_add_evaluations(const char *folder, size_t n, const Evaluation designs[], long *first_id, Err *err)
 {
     RunStore *store;
     char path[PATH_MAX];

@@ -28,6 +28,7 @@
 
 #include <jansson.h>
 
+#include "moga/search.h"
 #include "store/run.h"
 #include "store/tables.h"
 #include "simulator/subject.h"
@@ -57,7 +58,8 @@ Status store_go_on(RunStore *store, const Schema *schema, const Settings *used, 
 /* A start of the program on this run; to be called after one of the two. */
 Status store_session(RunStore *store, const char *program, int threads, size_t n_simulated, Err *err);
 
-Status store_simulation(RunStore *store, const Simulation *simulation, size_t generation, Err *err);
+/* With id and generation; its kind comes with the end of the generation (KIND_UNFINISHED). */
+Status store_evaluation(RunStore *store, const Evaluation *e, Err *err);
 Status store_flush(RunStore *store, Err *err); /* commits what waits */
 
 /* The end of a generation. seconds: of work on the run, this session: of it alone. */
@@ -73,7 +75,7 @@ Status store_read(RunStore *store, Run *run, Err *err);
 
 /* One more design of the finished search has been tried to polish; `better` (NULL: it did not become better) joins the
  * run as in store_add_evaluations. */
-Status store_polished(RunStore *store, const StoredDesign *better, size_t n_tried, size_t n_simulated, Err *err);
+Status store_polished(RunStore *store, const Evaluation *better, size_t n_tried, size_t n_simulated, Err *err);
 
 /* Why the session ends. is_final: there is nothing to be resumed. run (NULL: not wanted) becomes the run as it is then,
  * for run_free. The store is released in any case. */
@@ -83,6 +85,6 @@ void store_free(RunStore *store); /* NULL is fine */
 /* Designs from outside the search, polished ones say, into the archive of a run that nobody works on: they get ids from
  * POLISHED_FIRST on and the kind `polished`, and front.csv and evaluations.csv are written again. The search does not
  * see them: a run that is resumed later does what it would have done without them. first_id may be NULL. */
-Status store_add_evaluations(const char *folder, size_t n, const StoredDesign designs[], long *first_id, Err *err);
+Status store_add_evaluations(const char *folder, size_t n, const Evaluation designs[], long *first_id, Err *err);
 
 #endif

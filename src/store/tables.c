@@ -2,13 +2,11 @@
 
 #include <errno.h>
 #include <limits.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 #include <unistd.h>
 
-#include "base/hash.h"
 #include "store/output.h"
 #include "settings/settings.h"
 
@@ -131,71 +129,5 @@ Status tables_set_settings(Database *db, const Settings *used, Err *err)
     TRY(settings_text(used, &text, err));
     const Status status = database_do(db, err, "UPDATE run SET settings = ?", "t", text);
     free(text);
-    return status;
-}
-
-/* -- rows ---------------------------------------------------------------------------------------------------------- */
-
-/* "[1,2.5,null]" into *text, which the caller frees; NULL where no number is finite. */
-static Status numbers_text(size_t n, const double values[], char **text, Err *err)
-{
-    size_t length, known = 0;
-    *text = NULL;
-    for (size_t i = 0; values && i < n; i++)
-        known += isfinite(values[i]) != 0;
-    if (known == 0)
-        return STATUS_OK;
-    FILE *f = open_memstream(text, &length);
-    for (size_t i = 0; f && i < n; i++) {
-        fputc(i == 0 ? '[' : ',', f);
-        if (isfinite(values[i]))
-            print_number(f, values[i]);
-        else
-            fputs("null", f);
-    }
-    if (f)
-        fputc(']', f);
-    return f && fclose(f) == 0 ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for %zu numbers", n);
-}
-
-long tables_digest(const RowContent *row)
-{
-    const double numbers[] = {row->seconds, row->violation};
-    uint64_t hash = hash_fnv1a(&row->id, sizeof row->id, HASH_SEED);
-    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
-        const double known = isfinite(numbers[i]) ? numbers[i] + 0.0 : -1e308; /* SQLite keeps no -0 */
-        hash = hash_fnv1a(&known, sizeof known, hash);
-    }
-    for (size_t i = 0; i < ROW_TEXTS; i++) {
-        const char *text = row->text[i] ? row->text[i] : "";
-        hash = hash_fnv1a(text, strlen(text) + 1, hash);
-    }
-    return (long)hash;
-}
-
-Status tables_insert(Database *db, const Schema *schema, long id, long generation, const char *kind,
-                     const StoredDesign *d, Err *err)
-{
-    const int ok = strcmp(d->verdict.outcome, "ok") == 0;
-    char *x = NULL, *f = NULL, *spread = NULL, *extra = NULL;
-    Status status = numbers_text(schema->n_var, d->x, &x, err);
-    if (status == STATUS_OK && ok)
-        status = numbers_text(schema->n_obj, d->f, &f, err);
-    if (status == STATUS_OK)
-        status = numbers_text(schema->n_obj, d->spread, &spread, err);
-    if (status == STATUS_OK)
-        status = numbers_text(schema->n_extra, d->verdict.extra, &extra, err);
-    const RowContent row = {
-        id, d->verdict.seconds, d->violation, {d->verdict.outcome, d->verdict.reason, x, f, spread, extra}};
-    if (status == STATUS_OK)
-        status = database_do(db, err,
-                             "INSERT OR REPLACE INTO evaluation(id, generation, kind, outcome, reason, seconds, x, f, "
-                             "spread, violation, extra, digest) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
-                             "iitttdtttdti", id, generation, kind, d->verdict.outcome, d->verdict.reason,
-                             d->verdict.seconds, x, f, spread, d->violation, extra, tables_digest(&row));
-    free(x);
-    free(f);
-    free(spread);
-    free(extra);
     return status;
 }

@@ -42,7 +42,7 @@ Status advance_lately(const SearchView *v, double *igd, Err *err)
 
 /* -- of a stored run ----------------------------------------------------------------------------------------------- */
 
-static int is_first_answer(const RunRow *r)
+static int is_first_answer(const Evaluation *r)
 {
     return r->id < POLISHED_FIRST && r->kind != KIND_UNFINISHED && r->kind != KIND_REPEAT;
 }
@@ -52,11 +52,11 @@ static size_t minimise(const Run *h, double F[], size_t front[])
 {
     const size_t m = h->schema.n_obj;
     size_t n = 0;
-    for (size_t i = 0; i < h->n; i++) {
-        const RunRow *r = &h->row[i];
+    for (size_t i = 0; i < h->table.n; i++) {
+        const Evaluation *r = &h->table.row[i];
         for (size_t k = 0; k < m; k++)
             F[i * m + k] = schema_objective(&h->schema, k)->sense * h->F[i * m + k];
-        if (is_first_answer(r) && r->ok && r->entered != NEVER && r->left == NEVER)
+        if (is_first_answer(r) && h->place[i].ok && h->place[i].entered != NEVER && h->place[i].left == NEVER)
             front[n++] = i;
     }
     return n;
@@ -66,8 +66,8 @@ static void follow(const Run *h, const double F[], Igd *q, double igd[])
 {
     size_t row = 0;
     for (size_t g = 0; g < h->n_generations; g++) {
-        for (; row < h->n && h->row[row].id <= h->generation[g].simulated; row++)
-            if (is_first_answer(&h->row[row]) && h->row[row].ok && !(h->row[row].violation > 0.0))
+        for (; row < h->table.n && h->table.row[row].id <= h->generation[g].simulated; row++)
+            if (is_first_answer(&h->table.row[row]) && h->place[row].ok && !(h->table.row[row].violation > 0.0))
                 igd_add(q, F + row * h->schema.n_obj);
         igd[g] = value_of(q);
     }
@@ -75,10 +75,10 @@ static void follow(const Run *h, const double F[], Igd *q, double igd[])
 
 Status advance_of_run(const Run *h, double igd[], Err *err)
 {
-    double *F = calloc(h->n * h->schema.n_obj + 1, sizeof *F);
-    size_t *front = calloc(h->n + 1, sizeof *front), n = 0;
+    double *F = calloc(h->table.n * h->schema.n_obj + 1, sizeof *F);
+    size_t *front = calloc(h->table.n + 1, sizeof *front), n = 0;
     Igd *q = NULL;
-    Status status = F && front ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", h->n);
+    Status status = F && front ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", h->table.n);
     for (size_t g = 0; g < h->n_generations; g++)
         igd[g] = NAN;
     if (status == STATUS_OK && (n = minimise(h, F, front)) > 0)

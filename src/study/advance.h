@@ -7,6 +7,7 @@
 #define IMTET_STUDY_ADVANCE_H
 
 #include "moga/igd.h"
+#include "moga/search.h"
 #include "store/run.h"
 
 /* From nine tenths of the simulations to now; NAN: no front, or nobody was known then. */

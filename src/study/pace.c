@@ -63,11 +63,11 @@ static double seconds_since(const char *utc)
 
 static void count(Standing *out, const Run *saved)
 {
-    for (size_t i = 0; i < saved->n; i++) {
-        const int polished = saved->row[i].id >= POLISHED_FIRST;
+    for (size_t i = 0; i < saved->table.n; i++) {
+        const int polished = saved->table.row[i].id >= POLISHED_FIRST;
         out->n_polished += polished != 0;
         out->pace.simulated += !polished;
-        out->n_failed += !polished && !saved->row[i].ok;
+        out->n_failed += !polished && !saved->place[i].ok;
     }
 }
 
@@ -77,9 +77,9 @@ static double simulated_seconds(const Run *saved, size_t number)
     const long first = saved->session[number].simulated_before + 1;
     const long end = number + 1 < saved->n_sessions ? saved->session[number + 1].simulated_before + 1 : POLISHED_FIRST;
     double seconds = 0.0;
-    for (size_t i = 0; i < saved->n; i++)
-        if (saved->row[i].id >= first && saved->row[i].id < end && isfinite(saved->row[i].verdict.seconds))
-            seconds += saved->row[i].verdict.seconds;
+    for (size_t i = 0; i < saved->table.n; i++)
+        if (saved->table.row[i].id >= first && saved->table.row[i].id < end && isfinite(saved->table.row[i].seconds))
+            seconds += saved->table.row[i].seconds;
     return seconds;
 }
 

@@ -148,15 +148,25 @@ static int may_go_on(void *user)
     return 1;
 }
 
-static Status simulation_done(const Simulation *simulation, void *user, Err *err)
+static Status simulation_done(const Simulation *s, void *user, Err *err)
 {
     Study *study = user;
+    Evaluation e = {.id = (long)s->number,
+                    .kind = KIND_UNFINISHED,
+                    .seconds = s->verdict->seconds,
+                    .violation = s->violation,
+                    .x = (double *)s->x,
+                    .f = (double *)s->f,
+                    .sd = (double *)s->spread,
+                    .extra = (double *)s->verdict->extra};
+    evaluation_set_outcome(&e, outcome_of_word(s->verdict->outcome), s->verdict->reason);
     pthread_mutex_lock(&study->lock);
     study->summary->n_simulated++;
-    study->summary->n_failed += !simulation->ok;
-    if (isfinite(simulation->verdict->seconds))
-        study->summary->busy_s += simulation->verdict->seconds;
-    const Status status = store_simulation(study->store, simulation, study->generation, err);
+    e.generation = (long)study->generation;
+    study->summary->n_failed += !s->ok;
+    if (isfinite(e.seconds))
+        study->summary->busy_s += e.seconds;
+    const Status status = store_evaluation(study->store, &e, err);
     pthread_mutex_unlock(&study->lock);
     return status;
 }
@@ -167,10 +177,13 @@ static int recall(size_t number, const double x[], double f[], Verdict *verdict,
     const Study *study = user;
     const Run *h = store_run(study->store);
     const size_t i = h ? run_find(h, (long)number) : 0;
-    if (!h || i == h->n || memcmp(h->X + i * h->schema.n_var, x, h->schema.n_var * sizeof *x) != 0)
+    if (!h || i == h->table.n || memcmp(h->table.x + i * h->schema.n_var, x, h->schema.n_var * sizeof *x) != 0)
         return 0;
-    memcpy(f, h->answer + i * h->schema.n_obj, h->schema.n_obj * sizeof *f);
-    *verdict = h->row[i].verdict;
+    const Evaluation *e = &h->table.row[i];
+    memcpy(f, e->f, h->schema.n_obj * sizeof *f);
+    memcpy(verdict->extra, e->extra, h->schema.n_extra * sizeof *e->extra);
+    verdict_set(verdict, outcome_word(e->outcome), e->reason);
+    verdict->seconds = e->seconds;
     return 1;
 }
 
@@ -287,10 +300,10 @@ static Status begin(Study *study, Err *err)
 
 static void sum_up(StudySummary *sum, const Run *h)
 {
-    for (size_t i = 0; i < h->n; i++)
-        if (h->row[i].id < POLISHED_FIRST) {
+    for (size_t i = 0; i < h->table.n; i++)
+        if (h->table.row[i].id < POLISHED_FIRST) {
             sum->n_before++;
-            sum->n_failed += !h->row[i].ok;
+            sum->n_failed += !h->place[i].ok;
         }
     sum->n_simulated = sum->n_before;
     sum->n_front = h->n_front;
@@ -376,10 +389,11 @@ static Status moment_of(Moment *m, const Study *study, Err *err)
     const Run *h = store_run(study->store);
     const Problem *p = subject_problem(study->subject);
     size_t n_finished = 0, n;
-    while (n_finished < h->n && h->row[n_finished].kind != KIND_UNFINISHED && h->row[n_finished].id < POLISHED_FIRST)
+    while (n_finished < h->table.n && h->table.row[n_finished].kind != KIND_UNFINISHED &&
+           h->table.row[n_finished].id < POLISHED_FIRST)
         n_finished++;
     n = n_finished;
-    while (study->used.search.asynchronous && n < h->n && h->row[n].id < POLISHED_FIRST)
+    while (study->used.search.asynchronous && n < h->table.n && h->table.row[n].id < POLISHED_FIRST)
         n++;
     *m = (Moment){.F = calloc(n * p->n_obj + 1, sizeof *m->F),
                   .G = calloc(n * p->n_con + 1, sizeof *m->G),
@@ -388,16 +402,16 @@ static Status moment_of(Moment *m, const Study *study, Err *err)
                   .generation = calloc(n + 1, sizeof *m->generation)};
     if (!m->F || !m->G || !m->ok || !m->kind || !m->generation)
         return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", n);
-    subject_judge(study->subject, n, h->answer, m->F, m->G);
+    subject_judge(study->subject, n, h->table.f, m->F, m->G);
     for (size_t i = 0; i < n; i++) {
-        if (h->row[i].id != (long)i + 1)
+        if (h->table.row[i].id != (long)i + 1)
             return fail(err, STATUS_IO, "%s/run.sqlite: is damaged: evaluation %zu is missing", study->summary->folder,
                         i + 1);
-        m->ok[i] = strcmp(h->row[i].verdict.outcome, "ok") == 0;
-        m->kind[i] = (unsigned char)(i < n_finished ? h->row[i].kind : KIND_INFILL);
-        m->generation[i] = (size_t)h->row[i].generation;
+        m->ok[i] = h->table.row[i].outcome == OUTCOME_OK;
+        m->kind[i] = (unsigned char)(i < n_finished ? h->table.row[i].kind : KIND_INFILL);
+        m->generation[i] = (size_t)h->table.row[i].generation;
     }
-    m->start = (SearchStart){n_finished, n - n_finished, h->X,          m->F,     m->G,
+    m->start = (SearchStart){n_finished, n - n_finished, h->table.x,    m->F,     m->G,
                              m->ok,      m->kind,        m->generation, h->state, h->n_state};
     return STATUS_OK;
 }
@@ -415,7 +429,7 @@ static Status run_search(Study *study, Err *err)
     SearchConfig config = study_search_config(&study->used);
     Moment moment = {0};
     double *given = NULL;
-    const int is_under_way = h && (h->state || (study->used.search.asynchronous && h->n > 0));
+    const int is_under_way = h && (h->state || (study->used.search.asynchronous && h->table.n > 0));
     config.max_seconds = 0.0; /* the study has a clock of its own, which it looks at more often */
     if (h) {
         const long initial = study->used.search.initial;
@@ -477,7 +491,7 @@ static Status finish(Study *study, Err *err)
                     err));
     RunStore *store = study->store;
     study->store = NULL;
-    TRY(store_close(store, why, is_final, session, is_final ? &sum->run : NULL, err));
+    TRY(store_close(store, why, is_final, session, is_final ? study->options->run : NULL, err));
     return is_final ? STATUS_OK
                     : fail(err, STATUS_STOPPED, "%.200s: %s after %zu of %ld simulations", sum->folder, why,
                            sum->n_simulated, sum->max_evals);
@@ -501,7 +515,7 @@ static int is_over(const Study *study)
     return h && !study->has_new_limits && came_to_its_end(h, &study->summary->stopped);
 }
 
-int study_finished(RunStore *store, StudySummary *summary)
+int study_finished(RunStore *store, StudySummary *summary, Run *run)
 {
     const Run *h = store_run(store);
     *summary = (StudySummary){0};
@@ -510,7 +524,7 @@ int study_finished(RunStore *store, StudySummary *summary)
     snprintf(summary->folder, sizeof summary->folder, "%s", store_folder(store));
     summary->max_evals = h->settings->search.max_evals;
     sum_up(summary, h);
-    summary->run = store_give_run(store);
+    *run = store_give_run(store);
     return 1;
 }
 
@@ -553,7 +567,7 @@ static Status polish_one(Study *study, const Run *h, size_t row, size_t n_tried,
         if (status == STATUS_OK)
             status = store_polished(study->store, NULL, n_tried, sum->n_simulated, err);
     } else if (status == STATUS_OK) {
-        const StoredDesign better = refined_design(&refined);
+        const Evaluation better = refined_evaluation(&refined);
         const int counts = refined_counts(&refined);
         status = store_polished(study->store, counts ? &better : NULL, n_tried, sum->n_simulated, err);
         sum->n_polished += counts != 0;
@@ -608,8 +622,8 @@ Status study_run(const Settings *s, const StudyOptions *options, StudySummary *s
     Status status = prepare(&study, s, err);
     if (status == STATUS_OK && !is_over(&study))
         status = work(&study, err);
-    else if (status == STATUS_OK)
-        summary->run = store_give_run(study.store);
+    else if (status == STATUS_OK && options->run)
+        *options->run = store_give_run(study.store);
     if (status != STATUS_OK && study.store) {
         Err ignored; /* the fault itself is what the caller must hear of */
         store_flush(study.store, &ignored);

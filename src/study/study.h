@@ -45,6 +45,7 @@ typedef struct {
     void (*started)(const char *folder, size_t n_simulated, void *user);
     void (*progress)(const StudyProgress *p, void *user);
     void *user;
+    Run *run; /* becomes the finished run, for run_free, where the study returns STATUS_OK; NULL: not wanted */
 } StudyOptions;
 
 typedef struct {
@@ -60,16 +61,15 @@ typedef struct {
     int is_aside;
     int has_no_core;   /* of a tower */
     SimResult no_core; /* the building alone under the same motion */
-    Run run;           /* as it is at the end, for run_free; empty where the study can be resumed or has failed */
 } StudySummary;
 
 /* STATUS_STOPPED: it can go on, and the summary is filled. Settings that differ: STATUS_BAD_DATA,
  * with the differences in `err` as far as they fit, all of them in `differences` (NULL: not wanted), a line each. */
 Status study_run(const Settings *s, const StudyOptions *options, StudySummary *summary, FILE *differences, Err *err);
 
-/* Whether there is nothing more to do within the limits of the run; then the summary is filled, without the building
- * alone. */
-int study_finished(RunStore *store, StudySummary *summary);
+/* Whether there is nothing more to do within the limits of the run; then it passes over to `run`, and the summary is
+ * filled, without the building alone. */
+int study_finished(RunStore *store, StudySummary *summary, Run *run);
 
 /* What the search reads from the settings. */
 SearchConfig study_search_config(const Settings *s);

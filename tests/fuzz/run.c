@@ -12,8 +12,8 @@
 
 static void demand_run(Run *h)
 {
-    for (size_t i = 0; i < h->n; i++)
-        if (h->row[i].on_front && !h->row[i].ok)
+    for (size_t i = 0; i < h->table.n; i++)
+        if (h->place[i].on_front && !h->place[i].ok)
             abort();
     run_free(h);
 }

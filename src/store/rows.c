@@ -1,0 +1,187 @@
+#include "store/rows.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/hash.h"
+#include "store/output.h"
+
+const char *column_text(sqlite3_stmt *row, int column)
+{
+    const char *text = (const char *)sqlite3_column_text(row, column);
+    return text ? text : "";
+}
+
+double column_number(sqlite3_stmt *row, int column)
+{
+    return sqlite3_column_type(row, column) == SQLITE_NULL ? NAN : sqlite3_column_double(row, column);
+}
+
+long column_whole(sqlite3_stmt *row, int column, long otherwise)
+{
+    return sqlite3_column_type(row, column) == SQLITE_NULL ? otherwise : (long)sqlite3_column_int64(row, column);
+}
+
+/* -- the digest ---------------------------------------------------------------------------------------------------- */
+
+/* As stored; NULL: none. */
+typedef struct {
+    const char *outcome, *reason, *x, *f, *sd, *extra;
+} RowText;
+
+static long digest_of(long id, double seconds, double violation, const RowText *t)
+{
+    const double numbers[] = {seconds, violation};
+    const char *const texts[] = {t->outcome, t->reason, t->x, t->f, t->sd, t->extra};
+    uint64_t hash = hash_fnv1a(&id, sizeof id, HASH_SEED);
+    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
+        const double known = isfinite(numbers[i]) ? numbers[i] + 0.0 : -1e308; /* SQLite keeps no -0 */
+        hash = hash_fnv1a(&known, sizeof known, hash);
+    }
+    for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
+        const char *text = texts[i] ? texts[i] : "";
+        hash = hash_fnv1a(text, strlen(text) + 1, hash);
+    }
+    return (long)hash;
+}
+
+/* -- writing ------------------------------------------------------------------------------------------------------- */
+
+/* "[1,2.5,null]" into *text, which the caller frees; NULL where no number is finite. */
+static Status numbers_text(size_t n, const double values[], char **text, Err *err)
+{
+    size_t length, known = 0;
+    *text = NULL;
+    for (size_t i = 0; values && i < n; i++)
+        known += isfinite(values[i]) != 0;
+    if (known == 0)
+        return STATUS_OK;
+    FILE *f = open_memstream(text, &length);
+    for (size_t i = 0; f && i < n; i++) {
+        fputc(i == 0 ? '[' : ',', f);
+        if (isfinite(values[i]))
+            print_number(f, values[i]);
+        else
+            fputs("null", f);
+    }
+    if (f)
+        fputc(']', f);
+    return f && fclose(f) == 0 ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for %zu numbers", n);
+}
+
+static Status insert_text(Database *db, const Evaluation *e, const RowText *t, Err *err)
+{
+    const char *kind = e->kind == KIND_UNFINISHED ? NULL : kind_word(e->kind);
+    return database_do(db, err,
+                       "INSERT OR REPLACE INTO evaluation(id, generation, kind, outcome, reason, seconds, x, f, "
+                       "spread, violation, extra, digest) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+                       "iitttdtttdti", e->id, e->generation, kind, t->outcome, t->reason, e->seconds, t->x, t->f, t->sd,
+                       e->violation, t->extra, digest_of(e->id, e->seconds, e->violation, t));
+}
+
+Status rows_insert(Database *db, RowShape shape, const Evaluation *e, Err *err)
+{
+    char *x = NULL, *f = NULL, *sd = NULL, *extra = NULL;
+    Status status = numbers_text(shape.n_var, e->x, &x, err);
+    if (status == STATUS_OK && e->outcome == OUTCOME_OK)
+        status = numbers_text(shape.n_obj, e->f, &f, err);
+    if (status == STATUS_OK)
+        status = numbers_text(shape.n_obj, e->sd, &sd, err);
+    if (status == STATUS_OK)
+        status = numbers_text(shape.n_extra, e->extra, &extra, err);
+    if (status == STATUS_OK)
+        status = insert_text(db, e, &(RowText){outcome_word(e->outcome), e->reason, x, f, sd, extra}, err);
+    free(x);
+    free(f);
+    free(sd);
+    free(extra);
+    return status;
+}
+
+/* -- reading ------------------------------------------------------------------------------------------------------- */
+
+typedef struct {
+    EvaluationTable *table;
+    Database *db;
+} Reading;
+
+static Status damaged(const Reading *r, const char *what, long id, Err *err)
+{
+    return fail(err, STATUS_IO, "%s: is damaged: %s of evaluation %ld cannot be read", database_path(r->db), what, id);
+}
+
+/* "[1,2.5,null]"; no text at all: n times NAN. */
+static int parse_numbers(const char *text, size_t n, double values[])
+{
+    const int known = text[0] != 0;
+    for (size_t i = 0; i < n; i++)
+        values[i] = NAN;
+    for (size_t i = 0; i < n && known; i++) {
+        char *end;
+        if (*text++ != (i == 0 ? '[' : ','))
+            return 0;
+        if (strncmp(text, "null", 4) == 0) {
+            text += 4;
+            continue;
+        }
+        values[i] = strtod(text, &end);
+        if (end == text || !isfinite(values[i]))
+            return 0;
+        text = end;
+    }
+    return !known || strcmp(text, "]") == 0;
+}
+
+static const char EVALUATIONS[] = "SELECT id, generation, kind, outcome, reason, seconds, x, f, spread, violation, "
+                                  "extra, digest FROM evaluation WHERE id BETWEEN %ld AND %ld ORDER BY id";
+
+static Status parse_row(const Reading *r, const RowText *t, Evaluation *e, Err *err)
+{
+    const EvaluationTable *table = r->table;
+    e->outcome = outcome_of_word(t->outcome);
+    if (e->outcome == OUTCOME_COUNT)
+        return damaged(r, "outcome", e->id, err);
+    evaluation_set_outcome(e, e->outcome, t->reason);
+    if (!t->x[0] || !parse_numbers(t->x, table->n_var, e->x))
+        return damaged(r, "x", e->id, err);
+    if (!parse_numbers(t->f, table->n_obj, e->f))
+        return damaged(r, "f", e->id, err);
+    if (!parse_numbers(t->sd, table->n_obj, e->sd))
+        return damaged(r, "spread", e->id, err);
+    return table->n_extra == 0 || parse_numbers(t->extra, table->n_extra, e->extra) ? STATUS_OK
+                                                                                    : damaged(r, "extra", e->id, err);
+}
+
+static Status take_row(sqlite3_stmt *row, void *user, Err *err)
+{
+    const Reading *r = user;
+    const RowText text = {.outcome = column_text(row, 3),
+                          .reason = column_text(row, 4),
+                          .x = column_text(row, 6),
+                          .f = column_text(row, 7),
+                          .sd = column_text(row, 8),
+                          .extra = column_text(row, 10)};
+    Evaluation *e;
+    TRY(evaluation_table_add(r->table, &e, err));
+    e->id = (long)sqlite3_column_int64(row, 0);
+    e->generation = (long)sqlite3_column_int64(row, 1);
+    e->kind = kind_of_word(column_text(row, 2));
+    e->seconds = column_number(row, 5);
+    e->violation = column_number(row, 9);
+    TRY(parse_row(r, &text, e, err));
+    /* a row without a digest was put there by another program */
+    if (sqlite3_column_type(row, 11) == SQLITE_NULL ||
+        sqlite3_column_int64(row, 11) == digest_of(e->id, e->seconds, e->violation, &text))
+        return STATUS_OK;
+    return fail(err, STATUS_IO, "%s: is damaged: evaluation %ld is not what was written", database_path(r->db), e->id);
+}
+
+Status rows_read(Database *db, EvaluationTable *table, long first, long last, Err *err)
+{
+    char sql[sizeof EVALUATIONS + 48];
+    Reading r = {table, db};
+    snprintf(sql, sizeof sql, EVALUATIONS, first, last);
+    return database_each(db, sql, take_row, &r, err);
+}

@@ -1,0 +1,29 @@
+/* store/rows.h -- evaluations as rows of the table `evaluation` (store/store.h has its columns), written and read back.
+ *
+ *   x, f, sd, extra   JSON lists [1,2.5,null]; NULL where no number is known, f also where the design failed
+ *   kind              NULL: KIND_UNFINISHED
+ *   digest            FNV-1a of id, seconds, violation and all texts, by which a row is found that the disk has changed
+ *
+ * Threads  as Database
+ * Errors   a row that cannot be read, or is not what was written: STATUS_IO with its id */
+#ifndef IMTET_STORE_ROWS_H
+#define IMTET_STORE_ROWS_H
+
+#include "evaluate/evaluation.h"
+#include "store/database.h"
+
+/* Shapes are those of the evaluation's table. A row with that id is replaced. */
+typedef struct {
+    size_t n_var, n_obj, n_extra;
+} RowShape;
+Status rows_insert(Database *db, RowShape shape, const Evaluation *e, Err *err);
+
+/* The evaluations first..last, in the order of their ids, behind those of the table. */
+Status rows_read(Database *db, EvaluationTable *table, long first, long last, Err *err);
+
+/* Columns of any query. */
+const char *column_text(sqlite3_stmt *row, int column);           /* NULL: "" */
+double column_number(sqlite3_stmt *row, int column);              /* NULL: NAN */
+long column_whole(sqlite3_stmt *row, int column, long otherwise); /* NULL: otherwise */
+
+#endif
