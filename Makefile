@@ -29,9 +29,7 @@ CPPFLAGS += -Isrc -MMD -MP -D_GNU_SOURCE
 # Contraction to fused multiply-add rounds once instead of twice; NaN and Inf stay what they are.
 CFLAGS   += -std=c17 -fopenmp -ffp-contract=fast $(CFLAGS.$(MODE))
 LDFLAGS  += -fopenmp $(CFLAGS.$(MODE))
-LDLIBS   += -lsundials_cvode -lsundials_arkode -lsundials_nvecserial -lsundials_sunmatrixdense -lsundials_sunlinsoldense \
-            -lsundials_sunnonlinsolnewton -lsundials_sunnonlinsolfixedpoint \
-            -lnlopt -llapacke -lopenblas -linih -ljansson -lsqlite3 -lm
+LDLIBS   += -lsundials_cvode -lsundials_nvecserial -lsundials_sunnonlinsolfixedpoint -lnlopt -llapacke -lopenblas -linih -ljansson -lsqlite3 -lm
 
 # Loops over floors, modes and centres are written for the vectorizer; the rest does not gain from -O3. These flags come
 # last; provenance.json quotes them by the same variables.
@@ -58,8 +56,6 @@ LIB      := $(BUILD)/libimtet.a
 PROGRAM  := $(if $(filter release,$(MODE)),imtet,$(BUILD)/imtet)
 TEST_SRC := $(wildcard tests/test_*.c)
 TESTS    := $(TEST_SRC:%.c=$(BUILD)/%)
-STABILITY      := $(BUILD)/tests/stability/stability
-STABILITY_OBJ  := $(patsubst %.c,$(BUILD)/%.o,$(wildcard tests/stability/*.c))
 STABILITY.asan := --engine fast
 
 .PHONY: all help setup run test tests check format install clean .FORCE
@@ -122,15 +118,13 @@ $(BUILD)/src/store/provenance.o: $(BUILD)/revision
 $(BUILD)/src/store/provenance.o: CPPFLAGS += -DIMTET_VERSION='"$(VERSION)"' -DIMTET_REVISION='"$(REVISION)"' \
                                              -DIMTET_CFLAGS='"$(FLAGS_TEXT)"'
 
+include bench/bench.mk
+
 # ---- tests -----------------------------------------------------------------------------------------------------------
 
-$(BUILD)/tests/%: $(BUILD)/tests/%.o $(LIB)
+$(BUILD)/tests/%: $(BUILD)/tests/%.o $(BENCH_LIB) $(LIB)
 	@echo '  LD  $@'
-	$(Q)$(CC) $(LDFLAGS) -o $@ $(filter %.o,$^) $(LIB) -lcmocka $(LDLIBS)
-
-$(STABILITY): $(STABILITY_OBJ) $(LIB)
-	@echo '  LD  $@'
-	$(Q)$(CC) $(LDFLAGS) -o $@ $^ -lcmocka $(LDLIBS)
+	$(Q)$(CC) $(LDFLAGS) -o $@ $(filter %.o,$^) $(BENCH_LIB) $(LIB) -lcmocka $(BENCH_LDLIBS) $(LDLIBS)
 
 $(BUILD)/tests/test_faults: $(BUILD)/tests/fault/nomem.so
 
@@ -149,11 +143,11 @@ LONG := search faults torture store store_faults report stability study disk noi
 NAMES := $(filter $(TEST_SRC:tests/test_%.c=%) stability,$(LONG)) $(filter-out $(LONG),$(TEST_SRC:tests/test_%.c=%))
 
 # One line per job: mode, name, command.
-job = $(if $(filter stability,$(2)),$(foreach part,--quick --laws,'$(1) stability$(part) build/$(1)/tests/stability/stability \
-      $(part) $(if $(filter --quick,$(part)),--seconds 3 $(STABILITY.$(1)))'),'$(1) test_$(2) build/$(1)/tests/test_$(2)')
+job = $(if $(filter stability,$(2)),'$(1) stability build/$(1)/imtet-bench stability --quick --seconds 3 $(STABILITY.$(1))' \
+      '$(1) laws build/$(1)/imtet-bench laws','$(1) test_$(2) build/$(1)/tests/test_$(2)')
 jobs = $(foreach name,$(2),$(foreach mode,$(1),$(call job,$(mode),$(name))))
 
-tests: $(PROGRAM) $(TESTS) $(STABILITY) ## builds every test without running one
+tests: $(PROGRAM) $(TESTS) $(BENCH) ## builds every test without running one
 
 tests-release tests-asan: build/web/page.html
 	@+$(MAKE) --no-print-directory MODE=$(@:tests-%=%) tests
@@ -176,7 +170,7 @@ include mk/checks.mk mk/figures.mk
 # ---- install ---------------------------------------------------------------------------------------------------------
 
 format: ## clang-format over the sources
-	clang-format -i $(wildcard src/*.[ch] src/*/*.[ch] src/*/*/*.[ch] src/*/*/*.inc bench/*.[ch] tests/*.[ch] tests/*/*.[ch])
+	clang-format -i $(wildcard src/*.[ch] src/*/*.[ch] src/*/*/*.[ch] src/*/*/*.inc bench/*.[ch] bench/*/*.[ch] tests/*.[ch] tests/*/*.[ch])
 
 # Manual pages and completion are written by the program itself.
 SHARE := $(DESTDIR)$(PREFIX)/share

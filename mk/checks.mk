@@ -62,14 +62,14 @@ VALGRIND := valgrind -q --error-exitcode=99 --leak-check=full --errors-for-leak-
 valgrind: $(PROGRAM) ## the same under valgrind
 	@scripts/short-run ./$(PROGRAM) $(VALGRIND)
 
-stability: $(STABILITY) ## docs/stability.md: every engine through every case
-	@$(STABILITY) --out docs/stability.md
+stability: $(BENCH) ## docs/stability.md: every engine through every case
+	@$(BENCH) stability --out docs/stability.md
 
-stability-long: $(STABILITY) ## the same with cases of 1e6 and 1e7 steps
-	@$(STABILITY) --long --seconds 600 --out docs/stability.md
+stability-long: $(BENCH) ## the same with cases of 1e6 and 1e7 steps
+	@$(BENCH) stability --long --seconds 600 --out docs/stability.md
 
-laws: $(STABILITY) ## docs/contact-laws.md: rebound of the contact laws
-	@$(STABILITY) --laws --out docs/contact-laws.md --csv $(BUILD)/contact-laws.csv
+laws: $(BENCH) ## docs/contact-laws.md: rebound of the contact laws
+	@$(BENCH) laws --out docs/contact-laws.md --csv $(BUILD)/contact-laws.csv
 	@scripts/plot-laws $(BUILD)/contact-laws.csv docs/contact-laws
 
 fresh-debian: ## the steps of the README in a Debian that has nothing but make (root, debootstrap, network)

@@ -4,12 +4,12 @@
 
 # A record that is not there is replaced by the built-in motion.
 BENCH_RECORD ?= $(or $(wildcard ../shared/records/kobe_jma_ns.csv),builtin:kobe-like)
-bench: $(PROGRAM) ## simulations per second, and whether they became more work
-	@bench/guard $(abspath $(PROGRAM))
-	@$(abspath $(PROGRAM)) bench --throughput --record $(BENCH_RECORD)
+bench: $(BENCH) ## simulations per second, and whether they became more work
+	@bench/guard $(BENCH)
+	@$(BENCH) throughput --record $(BENCH_RECORD)
 
-chart: $(PROGRAM) ## docs/chart: speed against accuracy of every engine
-	@$(abspath $(PROGRAM)) bench --record $(BENCH_RECORD) --csv docs/chart.csv --markdown docs/chart.md
+chart: $(BENCH) ## docs/chart: speed against accuracy of every engine
+	@$(BENCH) sweep --record $(BENCH_RECORD) --csv docs/chart.csv --markdown docs/chart.md
 	@scripts/plot-chart docs/chart.csv docs/chart
 
 # CELLS and SEEDS choose a part, KEEP names a folder in which runs stay and are not repeated.

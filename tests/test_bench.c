@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bench/parted.h"
+#include "bench/distribution.h"
 #include "scene/motion_source.h"
 #include "scene_options.h"
 
@@ -43,16 +43,16 @@ static void test_scenes_have_as_many_impacts_as_their_names_say(void **state)
     static const long LEAST[] = {0, 1, 20, 10, 20}, MOST[] = {0, 1, 100000, 100000, 100000};
     Ground g;
     ground_open(&g);
-    for (int k = 0; k < N_BENCH_SCENES; k++) {
-        Stage stage = {0};
+    for (int k = 0; k < N_BENCH_KINDS; k++) {
+        BenchCase bench_case = {0};
         Err err;
-        static Observed o;
-        CHECK_OK(stage_open(&stage, bench_scene(k), &g.s, &g.m, 1, &err), &err);
-        CHECK_OK(observe(&stage, ENGINE_FAST, ACCURACY_STANDARD, 0, &o, &err), &err);
-        print_message("%s: %ld impacts\n", stage.scene->name, o.result.impacts);
+        static TimedRun o;
+        CHECK_OK(bench_case_open(&bench_case, bench_kind(k), &g.s, &g.m, 1, &err), &err);
+        CHECK_OK(timed_run(&bench_case, ENGINE_FAST, ACCURACY_STANDARD, 0, &o, &err), &err);
+        print_message("%s: %ld impacts\n", bench_case.kind->name, o.result.impacts);
         assert_int_equal(o.result.outcome, RUN_OK);
         assert_true(o.result.impacts >= LEAST[k] && o.result.impacts <= MOST[k]);
-        stage_close(&stage);
+        bench_case_close(&bench_case);
     }
     motion_free(&g.m);
 }
@@ -60,24 +60,24 @@ static void test_scenes_have_as_many_impacts_as_their_names_say(void **state)
 static void test_an_error_is_zero_against_itself_and_first_order_in_a_change(void **state)
 {
     (void)state;
-    static Observed o, changed;
-    Stage stage = {0};
+    static TimedRun o, changed;
+    BenchCase bench_case = {0};
     Ground g;
     Err err;
     ground_open(&g);
-    CHECK_OK(stage_open(&stage, bench_scene(2), &g.s, &g.m, 1, &err), &err);
-    CHECK_OK(observe(&stage, ENGINE_ETDRK4, ACCURACY_STANDARD, 1e-3, &o, &err), &err);
+    CHECK_OK(bench_case_open(&bench_case, bench_kind(2), &g.s, &g.m, 1, &err), &err);
+    CHECK_OK(timed_run(&bench_case, ENGINE_ETDRK4, ACCURACY_STANDARD, 1e-3, &o, &err), &err);
     changed = o;
     changed.result.j3_g *= 1.001;
     changed.onsets[0].t += 1e-3;
-    for (int i = 0; i < 2 * stage.model.m; i++)
+    for (int i = 0; i < 2 * bench_case.model.m; i++)
         changed.state[i] *= 1.01;
-    const Errors none = errors_between(&stage, &o, &o), some = errors_between(&stage, &changed, &o);
+    const RunErrors none = run_errors(&bench_case, &o, &o), some = run_errors(&bench_case, &changed, &o);
     assert_true(none.objectives == 0 && none.state == 0 && none.first_s == 0 && none.first_speed == 0);
     assert_close(some.objectives, 1e-3, 1e-9);
     assert_close(some.state, 1e-2, 1e-9);
     assert_close(some.first_s, 1e-3, 1e-9);
-    stage_close(&stage);
+    bench_case_close(&bench_case);
     motion_free(&g.m);
 }
 
@@ -85,11 +85,11 @@ static void test_the_distance_of_two_samples_is_that_of_their_steps(void **state
 {
     (void)state;
     double a[] = {4, 1, 3, 2}, b[] = {8, 5, 7, 6}, c[] = {2.5, 3.5, 4.5, 5.5}, d[] = {3, 2, 1, 4};
-    assert_close(parted_distance(4, a, 4, b), 1, 1e-15);
-    assert_close(parted_distance(4, a, 4, c), 0.5, 1e-15);
-    assert_close(parted_distance(4, a, 4, d), 0, 1e-15);
-    assert_close(parted_distance(4, a, 2, c), 0.5, 1e-15);
-    assert_close(parted_by_chance(64), 0.24, 1e-2);
+    assert_close(ks_distance(4, a, 4, b), 1, 1e-15);
+    assert_close(ks_distance(4, a, 4, c), 0.5, 1e-15);
+    assert_close(ks_distance(4, a, 4, d), 0, 1e-15);
+    assert_close(ks_distance(4, a, 2, c), 0.5, 1e-15);
+    assert_close(ks_critical(64), 0.24, 1e-2);
 }
 
 static void test_a_sweep_has_a_row_for_every_setting_and_a_known_floor(void **state)
@@ -97,17 +97,17 @@ static void test_a_sweep_has_a_row_for_every_setting_and_a_known_floor(void **st
     (void)state;
     const SweepPlan plan = {1u << ENGINE_FAST | 1u << ENGINE_NEWMARK, 0.2};
     Sweep sweep = {0};
-    Stage stage = {0};
+    BenchCase bench_case = {0};
     Ground g;
     Err err;
     char *csv = NULL;
     size_t size;
     ground_open(&g);
-    CHECK_OK(stage_open(&stage, bench_scene(0), &g.s, &g.m, 1, &err), &err);
-    stage.duration = 2;
+    CHECK_OK(bench_case_open(&bench_case, bench_kind(0), &g.s, &g.m, 1, &err), &err);
+    bench_case.duration = 2;
     FILE *quiet = fopen("/dev/null", "w");
     assert_non_null(quiet);
-    CHECK_OK(sweep_scene(&sweep, 0, &stage, &plan, quiet, &err), &err);
+    CHECK_OK(sweep_run(&sweep, 0, &bench_case, &plan, quiet, &err), &err);
     fclose(quiet);
     assert_true(sweep.n >= 6);
     assert_true(sweep_floor(&sweep, 0) < 1e-5);
@@ -119,10 +119,10 @@ static void test_a_sweep_has_a_row_for_every_setting_and_a_known_floor(void **st
     for (const char *c = csv; *c; c++)
         lines += *c == '\n';
     assert_int_equal(lines, sweep.n + 1);
-    assert_true(strncmp(csv, "scene,engine,knob,seconds,error_objectives", 42) == 0);
+    assert_true(strncmp(csv, "case,engine,tolerance,seconds,error_objectives", 45) == 0);
     free(csv);
     sweep_free(&sweep);
-    stage_close(&stage);
+    bench_case_close(&bench_case);
     motion_free(&g.m);
 }
 

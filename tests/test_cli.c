@@ -57,6 +57,7 @@ static void test_a_misunderstood_command_line_ends_with_2_and_a_suggestion(void 
     (void)state;
     expect(2, "no command", "");
     expect(2, "did you mean optimize?", "optimise configs/quick.ini");
+    expect(2, "imtet-bench", "bench");
     expect(2, "did you mean --design?", "simulate configs/quick.ini --desing none");
     expect(2, "did you mean --json?", "modes configs/quick.ini --jsno");
     expect(2, "--help", "modes configs/quick.ini --qqqqqqqqqqqqqqqqqqqqqqqq");
@@ -79,7 +80,7 @@ static void test_bad_settings_and_data_end_with_65(void **state)
     (void)state;
     expect(65, "did you mean motion.stretch?", "modes configs/quick.ini --set motion.strech=2");
     expect(65, "--pga: motion.pga_g: -1 is outside", "simulate configs/quick.ini --design none --pga -1");
-    expect(65, "not one of fast|cvode|", "simulate configs/quick.ini --design none --engine magic");
+    expect(65, "not one of fast|cvode", "simulate configs/quick.ini --design none --engine magic");
     expect(65, "tests/bad/config/nan.ini:3: building.damping", "modes tests/bad/config/nan.ini");
     expect(65, "tests/bad/motion/nan.csv",
            "simulate configs/quick.ini --design none --record tests/bad/motion/nan.csv");

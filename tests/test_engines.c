@@ -1,18 +1,20 @@
-/* Every engine of the setting sim.engine against the fast one at its finest, and against the rebound of an isolated
- * impact, each to the accuracy that its knob is known to give. */
-#include "bob.h"
+/* Every engine against the fast one at its finest, and against the rebound of an isolated
+ * impact, each to the accuracy that its tolerance is known to give. */
+#include "check.h"
+
+#include "bench/stability/bob.h"
 
 #include <stdio.h>
 #include <string.h>
 
-#include "sim/engine.h"
+#include "bench/engines/engines.h"
 #include "scene_options.h"
 
-/* What an engine owes at a knob: relative error of the objectives in a window with impacts, open books, and the
+/* What an engine owes at a tolerance: relative error of the objectives in a window with impacts, open books, and the
  * relative error of the loss in an isolated impact. */
 typedef struct {
-    Engine engine;
-    double knob, objectives, books, loss;
+    int engine;
+    double tolerance, objectives, books, loss;
 } Promise;
 
 static const Promise PROMISES[] = {
@@ -30,10 +32,10 @@ static SimResult run(const Promise *p, const SimModel *model, const Motion *m, d
 {
     SimResult r;
     Err err;
-    const EngineOptions options = {.duration = duration, .accuracy = ACCURACY_FINE, .tolerance = p->knob};
-    CHECK_OK(engine_entry(p->engine)->run(model, m, &options, &r, &err), &err);
+    const EngineOptions options = {.duration = duration, .accuracy = ACCURACY_FINE, .tolerance = p->tolerance};
+    CHECK_OK(bench_engine(p->engine)->run(model, m, &options, &r, &err), &err);
     if (r.outcome != RUN_OK)
-        print_error("%s: %s\n", engine_entry(p->engine)->name, r.reason);
+        print_error("%s: %s\n", bench_engine(p->engine)->name, r.reason);
     assert_int_equal(r.outcome, RUN_OK);
     return r;
 }
@@ -72,7 +74,7 @@ static void test_every_engine_agrees_with_the_fast_one_where_there_are_impacts(v
         gaps[j] = 0.002 * (j + 1);
     CHECK_OK(model_create(&model, b.n, &err), &err);
     CHECK_OK(model_set(&model, &s, &b, &core, gaps, &err), &err);
-    const SimResult wanted = run(&(Promise){.engine = ENGINE_FAST, .knob = 200}, &model, &m, 0.8);
+    const SimResult wanted = run(&(Promise){.engine = ENGINE_FAST, .tolerance = 200}, &model, &m, 0.8);
     assert_true(wanted.impacts > 5);
     int broken = 0;
     for (int i = 0; i < N_PROMISES; i++) {
@@ -80,8 +82,8 @@ static void test_every_engine_agrees_with_the_fast_one_where_there_are_impacts(v
         const SimResult r = run(p, &model, &m, 0.8);
         const double worst = worst_of(&r, &wanted);
         print_message("%-20s %-8g objectives %.1e (%.0e)  books %.1e (%.0e)  impacts %ld\n",
-                      engine_entry(p->engine)->name, p->knob, worst, p->objectives, r.energy_balance_error, p->books,
-                      r.impacts);
+                      bench_engine(p->engine)->name, p->tolerance, worst, p->objectives, r.energy_balance_error,
+                      p->books, r.impacts);
         broken += !(worst <= p->objectives && r.energy_balance_error <= p->books);
     }
     assert_int_equal(broken, 0);
@@ -114,7 +116,7 @@ static void test_every_engine_loses_in_an_isolated_impact_what_the_law_says(void
         const Promise *p = &PROMISES[i];
         const SimResult r = run(p, &model, &m, 2.6);
         const double error = fabs(r.contact_loss_j / lost - 1);
-        print_message("%-20s %-8g loss %.1e (%.0e)  impacts %ld\n", engine_entry(p->engine)->name, p->knob, error,
+        print_message("%-20s %-8g loss %.1e (%.0e)  impacts %ld\n", bench_engine(p->engine)->name, p->tolerance, error,
                       p->loss, r.impacts);
         broken += !(error <= p->loss && r.impacts == 1);
     }
@@ -122,18 +124,18 @@ static void test_every_engine_loses_in_an_isolated_impact_what_the_law_says(void
     model_free(&model);
 }
 
-static void test_every_engine_is_listed_under_the_name_of_its_setting(void **state)
+static void test_every_engine_is_listed_under_its_name(void **state)
 {
     (void)state;
     static const char *const NAMES[] = {
 #define X(upper, lower) #lower,
-        ENGINE_LIST(X)
+        ENGINE_LIST(X) REFERENCE_ENGINES(X)
 #undef X
     };
-    assert_int_equal(N_PROMISES, ENGINE_COUNT);
-    for (int k = 0; k < ENGINE_COUNT; k++) {
-        assert_string_equal(engine_entry((Engine)k)->name, NAMES[k]);
-        assert_true(engine_entry((Engine)k)->run != NULL);
+    assert_int_equal(N_PROMISES, BENCH_ENGINES);
+    for (int k = 0; k < BENCH_ENGINES; k++) {
+        assert_string_equal(bench_engine(k)->name, NAMES[k]);
+        assert_true(bench_engine(k)->run != NULL);
     }
 }
 
@@ -142,7 +144,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_every_engine_agrees_with_the_fast_one_where_there_are_impacts),
         cmocka_unit_test(test_every_engine_loses_in_an_isolated_impact_what_the_law_says),
-        cmocka_unit_test(test_every_engine_is_listed_under_the_name_of_its_setting),
+        cmocka_unit_test(test_every_engine_is_listed_under_its_name),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

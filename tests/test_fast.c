@@ -1,5 +1,7 @@
 /* The engine `fast` against closed forms, symmetry, conservation and printed numbers. */
-#include "bob.h"
+#include "check.h"
+
+#include "bench/stability/bob.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -128,7 +128,7 @@ static void test_bash_offers_commands_options_keys_and_words(void **state)
     expect_offer("opti", "optimize\n");
     expect_offer("help spec", "spectrum\n");
     expect_offer("simulate --des", "--design\n");
-    expect_offer("simulate x.ini --engine cvode_bdf_", "cvode_bdf_tuned\n");
+    expect_offer("simulate x.ini --engine cv", "cvode\n");
     expect_offer("simulate x.ini --set motion.pg", "motion.pga_g=\n");
     expect_offer("simulate x.ini --set sim.accuracy = f", "fine\n");
     expect_offer("simulate x.ini --engine = rad", "radau\n");

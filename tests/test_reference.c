@@ -1,5 +1,7 @@
 /* The engines that others are judged by: CVODE with events, and the exact propagator of the tied structure. */
-#include "bob.h"
+#include "check.h"
+
+#include "bench/stability/bob.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bench/observe.h"
+#include "bench/timed_run.h"
 #include "scene/motion_read.h"
 #include "scene/motion_source.h"
 #include "scene_options.h"
@@ -28,7 +28,7 @@ enum { WINDOWS_N = sizeof WINDOWS / sizeof WINDOWS[0] };
 /* J1, J2, J3, shares of mode 1, modes 5 to 10, the core */
 static const double FINE = 1e-4, STANDARD[BENCH_OBJECTIVES] = {1e-3, 3e-3, 2e-2, 1e-2, 1e-2, 1e-2};
 
-static void open_window(const Window *w, SceneOptions *s, Motion *m, Stage *stage)
+static void open_window(const Window *w, SceneOptions *s, Motion *m, BenchCase *bench_case)
 {
     Err err;
     *s = paper_scene();
@@ -36,28 +36,29 @@ static void open_window(const Window *w, SceneOptions *s, Motion *m, Stage *stag
     s->core.section = w->section;
     CHECK_OK(motion_load(m, w->record, UNIT_FROM_FILE, &err), &err);
     CHECK_OK(motion_prepare(m, 0.3, w->stretch, &err), &err);
-    CHECK_OK(stage_open(stage, bench_scene(2), s, m, 0, &err), &err);
-    bench_irregular_gaps(w->gaps, stage->building.n, stage->gaps);
-    for (int j = 0; j < stage->building.n; j++)
-        stage->gaps[j] *= w->smaller;
-    CHECK_OK(model_set(&stage->model, s, &stage->building, stage->core, stage->gaps, &err), &err);
-    stage->duration = w->seconds;
+    CHECK_OK(bench_case_open(bench_case, bench_kind(2), s, m, 0, &err), &err);
+    bench_irregular_gaps(w->gaps, bench_case->building.n, bench_case->gaps);
+    for (int j = 0; j < bench_case->building.n; j++)
+        bench_case->gaps[j] *= w->smaller;
+    CHECK_OK(model_set(&bench_case->model, s, &bench_case->building, bench_case->core, bench_case->gaps, &err), &err);
+    bench_case->duration = w->seconds;
 }
 
 static void test_fine_and_standard_accuracy_are_what_they_promise(void **state)
 {
     (void)state;
-    static Observed reference, fine, standard;
+    static TimedRun reference, fine, standard;
     for (int i = 0; i < WINDOWS_N; i++) {
         SceneOptions s;
         Motion m;
-        Stage stage;
+        BenchCase bench_case;
         Err err;
-        open_window(&WINDOWS[i], &s, &m, &stage);
-        CHECK_OK(observe(&stage, ENGINE_CVODE, ACCURACY_FINE, 0, &reference, &err), &err);
-        CHECK_OK(observe(&stage, ENGINE_FAST, ACCURACY_FINE, 0, &fine, &err), &err);
-        CHECK_OK(observe(&stage, ENGINE_FAST, ACCURACY_STANDARD, 0, &standard, &err), &err);
-        const Errors f = errors_between(&stage, &fine, &reference), e = errors_between(&stage, &standard, &reference);
+        open_window(&WINDOWS[i], &s, &m, &bench_case);
+        CHECK_OK(timed_run(&bench_case, ENGINE_CVODE, ACCURACY_FINE, 0, &reference, &err), &err);
+        CHECK_OK(timed_run(&bench_case, ENGINE_FAST, ACCURACY_FINE, 0, &fine, &err), &err);
+        CHECK_OK(timed_run(&bench_case, ENGINE_FAST, ACCURACY_STANDARD, 0, &standard, &err), &err);
+        const RunErrors f = run_errors(&bench_case, &fine, &reference),
+                        e = run_errors(&bench_case, &standard, &reference);
         print_message("%s, %s: %ld impacts; fine %.1e; standard J1 %.1e J2 %.1e J3 %.1e shares %.1e %.1e %.1e\n",
                       WINDOWS[i].record, WINDOWS[i].building, reference.result.impacts, f.objectives, e.each[0],
                       e.each[1], e.each[2], e.each[3], e.each[4], e.each[5]);
@@ -65,7 +66,7 @@ static void test_fine_and_standard_accuracy_are_what_they_promise(void **state)
         assert_true(f.objectives <= FINE);
         for (int k = 0; k < BENCH_OBJECTIVES; k++)
             assert_true(e.each[k] <= STANDARD[k]);
-        stage_close(&stage);
+        bench_case_close(&bench_case);
         motion_free(&m);
     }
 }
@@ -73,25 +74,25 @@ static void test_fine_and_standard_accuracy_are_what_they_promise(void **state)
 static void test_peaks_of_a_stiff_building_beside_a_core_are_those_of_fine_accuracy(void **state)
 {
     (void)state;
-    static Observed fine, standard;
+    static TimedRun fine, standard;
     for (int stiffer = 5; stiffer <= 80; stiffer *= 4) {
         SceneOptions s;
         Motion m;
-        Stage stage;
+        BenchCase bench_case;
         Err err;
-        open_window(&(Window){"builtin:elcentro-like", "guyan", CORE_BOX, 1, 1, 1.0, 6}, &s, &m, &stage);
-        for (int i = 0; i < stage.model.m; i++) {
-            stage.model.omega[i] *= stiffer;
-            stage.model.zeta[i] = 0.005;
+        open_window(&(Window){"builtin:elcentro-like", "guyan", CORE_BOX, 1, 1, 1.0, 6}, &s, &m, &bench_case);
+        for (int i = 0; i < bench_case.model.m; i++) {
+            bench_case.model.omega[i] *= stiffer;
+            bench_case.model.zeta[i] = 0.005;
         }
-        CHECK_OK(observe(&stage, ENGINE_FAST, ACCURACY_FINE, 0, &fine, &err), &err);
-        CHECK_OK(observe(&stage, ENGINE_FAST, ACCURACY_STANDARD, 0, &standard, &err), &err);
-        const Errors e = errors_between(&stage, &standard, &fine);
+        CHECK_OK(timed_run(&bench_case, ENGINE_FAST, ACCURACY_FINE, 0, &fine, &err), &err);
+        CHECK_OK(timed_run(&bench_case, ENGINE_FAST, ACCURACY_STANDARD, 0, &standard, &err), &err);
+        const RunErrors e = run_errors(&bench_case, &standard, &fine);
         print_message("%d times as stiff: %ld impacts, J1 %.1e J2 %.1e J3 %.1e\n", stiffer * stiffer,
                       fine.result.impacts, e.each[0], e.each[1], e.each[2]);
         for (int k = 0; k < 3; k++)
             assert_true(e.each[k] <= STANDARD[k]);
-        stage_close(&stage);
+        bench_case_close(&bench_case);
         motion_free(&m);
     }
 }

@@ -15,6 +15,24 @@ Status args_unknown(const char *what, const char *word, const char *const known[
                 : fail(err, STATUS_USAGE, "unknown %s '%.60s'; %s lists them", what, word, where);
 }
 
+static const char *program_of(const Command *c)
+{
+    return c->program ? c->program : "imtet";
+}
+
+void command_help(const Command *c, FILE *out)
+{
+    fprintf(out, "example: %s\n\n%s\n\n", c->example, c->details);
+    fprintf(out, "usage: %s %s%s%s%s\n\n", program_of(c), c->name, c->operand ? " " : "", c->operand ? c->operand : "",
+            c->options->name ? " [options]" : "");
+    for (const ArgOption *o = c->options; o->name; o++) {
+        char left[48];
+        snprintf(left, sizeof left, "%s%s%s", o->name, o->value ? " " : "", o->value ? o->value : "");
+        fprintf(out, "  %-25s %s%s%s\n", left, o->help, o->setting ? "  = --set " : "", o->setting ? o->setting : "");
+    }
+    fprintf(out, "  %-25s this text\n", "--help");
+}
+
 /* What stands behind KEY= of an assignment; NULL: it is another one, or nothing does. */
 static const char *value_of(const char *assignment, const char *key)
 {
@@ -72,7 +90,7 @@ void args_suggest(const Args *args, Err *err)
 static Status find_option(const Command *c, const char *word, size_t length, const ArgOption **found, Err *err)
 {
     const char *names[OPTIONS_MAX];
-    char name[64], where[64];
+    char name[64], where[80];
     int n = 0;
     snprintf(name, sizeof name, "%.*s", (int)length, word);
     for (const ArgOption *o = c->options; o->name && n < OPTIONS_MAX - 1; o++) {
@@ -82,7 +100,7 @@ static Status find_option(const Command *c, const char *word, size_t length, con
             return STATUS_OK;
     }
     names[n++] = "--help";
-    snprintf(where, sizeof where, "`imtet %s --help`", c->name);
+    snprintf(where, sizeof where, "`%s %s --help`", program_of(c), c->name);
     return args_unknown("option", name, names, n, where, err);
 }
 
@@ -128,12 +146,12 @@ static Status take_operand(Args *args, const char *word, Err *err)
 {
     const Command *c = args->command;
     if (!c->operand)
-        return fail(err, STATUS_USAGE, "imtet %s takes no operand, found '%.60s'", c->name, word);
+        return fail(err, STATUS_USAGE, "%s %s takes no operand, found '%.60s'", program_of(c), c->name, word);
     if (args->operand)
-        return fail(err, STATUS_USAGE, "imtet %s takes one %s, found '%.60s' after '%.60s'", c->name, c->operand, word,
-                    args->operand);
+        return fail(err, STATUS_USAGE, "%s %s takes one %s, found '%.60s' after '%.60s'", program_of(c), c->name,
+                    c->operand, word, args->operand);
     if (!word[0])
-        return fail(err, STATUS_USAGE, "imtet %s: the %s is an empty word", c->name, c->operand);
+        return fail(err, STATUS_USAGE, "%s %s: the %s is an empty word", program_of(c), c->name, c->operand);
     args->operand = word;
     return strstr(c->operand, "RUN") ? take_run_folder(args, err) : STATUS_OK;
 }
@@ -158,8 +176,8 @@ Status args_parse(Args *args, const Command *command, int argc, char *const argv
         TRY(argv[i][0] == '-' && argv[i][1] ? take_option(args, argc, argv, &i, err)
                                             : take_operand(args, argv[i], err));
     if (command->operand && command->operand[0] != '[' && !args->operand)
-        return fail(err, STATUS_USAGE, "imtet %s needs a %s; for example: %s", command->name, command->operand,
-                    command->example);
+        return fail(err, STATUS_USAGE, "%s %s needs a %s; for example: %s", program_of(command), command->name,
+                    command->operand, command->example);
     return STATUS_OK;
 }
 

@@ -29,6 +29,7 @@ typedef struct {
     const char *summary, *example, *details;
     const ArgOption *options; /* up to the first without a name */
     Status (*run)(const Args *args, Err *err);
+    const char *program; /* of which it is a command; NULL: imtet */
 } Command;
 
 typedef struct {
@@ -44,6 +45,9 @@ struct Args {
     int n_given;
     Given *given; /* (n_given) in the order of the command line */
 };
+
+/* An example, the details and every option. */
+void command_help(const Command *command, FILE *out);
 
 /* argv: what follows the command's name. */
 Status args_parse(Args *args, const Command *command, int argc, char *const argv[], Err *err);

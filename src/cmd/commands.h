@@ -18,7 +18,6 @@
     X(HORIZON)                                                                                                         \
     X(MODES)                                                                                                           \
     X(SPECTRUM)                                                                                                        \
-    X(BENCH)                                                                                                           \
     X(PROBLEM)                                                                                                         \
     X(CHECK)                                                                                                           \
     X(SETTINGS)

@@ -26,6 +26,8 @@ Status command_find(const char *word, const Command **found, Err *err)
         if (strcmp(word, names[i]) == 0)
             return STATUS_OK;
     }
+    if (strcmp(word, "bench") == 0)
+        return fail(err, STATUS_USAGE, "unknown command 'bench'; engines are compared by the program imtet-bench");
     static const char *const OPTIONS[] = {"--help", "--version"};
     return word[0] == '-' ? args_unknown("option", word, OPTIONS, 2, "`imtet --help`", err)
                           : args_unknown("command", word, names, N_COMMANDS, "`imtet --help`", err);
@@ -37,19 +39,6 @@ static const char *operand_of(const Command *c)
 }
 
 /* ---- on the terminal ------------------------------------------------------------------------------------------- */
-
-void command_help(const Command *c, FILE *out)
-{
-    fprintf(out, "example: %s\n\n%s\n\n", c->example, c->details);
-    fprintf(out, "usage: imtet %s%s%s%s\n\n", c->name, c->operand ? " " : "", operand_of(c),
-            c->options->name ? " [options]" : "");
-    for (const ArgOption *o = c->options; o->name; o++) {
-        char left[48];
-        snprintf(left, sizeof left, "%s%s%s", o->name, o->value ? " " : "", o->value ? o->value : "");
-        fprintf(out, "  %-25s %s%s%s\n", left, o->help, o->setting ? "  = --set " : "", o->setting ? o->setting : "");
-    }
-    fprintf(out, "  %-25s this text\n", "--help");
-}
 
 void usage_write(FILE *out)
 {

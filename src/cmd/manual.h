@@ -11,7 +11,6 @@
 
 const Command *command_at(int i);                                       /* NULL behind the last */
 Status command_find(const char *word, const Command **found, Err *err); /* of that name, or the nearest suggested */
-void command_help(const Command *command, FILE *out);                   /* `imtet COMMAND --help` */
 void usage_write(FILE *out);                                            /* `imtet --help` */
 void manual_write(const Command *command, FILE *out);                   /* a page for man; NULL: imtet(1) */
 void completion_write(FILE *out);                                       /* for bash */

@@ -4,11 +4,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#if defined __x86_64__ && !defined __clang__ && !defined __SANITIZE_THREAD__
-#define WIDE __attribute__((target_clones("arch=x86-64-v3", "default")))
-#else
-#define WIDE
-#endif
+#include "base/clones.h"
 
 /* Four numbers, wherever they lie. */
 typedef double Four __attribute__((vector_size(32), aligned(8), may_alias));
@@ -43,8 +39,8 @@ static inline double exp_down(double x)
     return sum * power;
 }
 
-WIDE void kernel_warp(size_t n, const double log_u[], const double log_v[], double theta, const double warp[2],
-                      double s[])
+CLONED_V3 void kernel_warp(size_t n, const double log_u[], const double log_v[], double theta, const double warp[2],
+                           double s[])
 {
     const double half = 0.5 * sqrt(theta), a = warp[0], b = warp[1];
 #pragma omp simd
@@ -52,8 +48,8 @@ WIDE void kernel_warp(size_t n, const double log_u[], const double log_v[], doub
         s[i] = half * (exp_down(a * log_u[i]) + 1.0 - exp_down(b * log_v[i]));
 }
 
-WIDE void kernel_warp_slopes(size_t n, const double log_u[], const double log_v[], double theta, const double warp[2],
-                             double by_a[], double by_b[])
+CLONED_V3 void kernel_warp_slopes(size_t n, const double log_u[], const double log_v[], double theta,
+                                  const double warp[2], double by_a[], double by_b[])
 {
     const double half = 0.5 * sqrt(theta), a = warp[0], b = warp[1];
 #pragma omp simd
@@ -64,8 +60,8 @@ WIDE void kernel_warp_slopes(size_t n, const double log_u[], const double log_v[
 }
 
 /* Eight centres and all points of a block at a time: every number that is loaded is used four times at least. */
-WIDE void kernel_distances(size_t n_dim, size_t stride, const double S[], const double x[], size_t first, size_t count,
-                           double r2[RBF_BLOCK][KERNEL_CHUNK])
+CLONED_V3 void kernel_distances(size_t n_dim, size_t stride, const double S[], const double x[], size_t first,
+                                size_t count, double r2[RBF_BLOCK][KERNEL_CHUNK])
 {
     for (size_t i = 0; i < count; i += KERNEL_LANES) {
         Four low[RBF_BLOCK] = {0}, high[RBF_BLOCK] = {0};
@@ -86,7 +82,7 @@ WIDE void kernel_distances(size_t n_dim, size_t stride, const double S[], const 
     }
 }
 
-WIDE void kernel_values(RbfKernel kernel, size_t n, const double r2[], double phi[])
+CLONED_V3 void kernel_values(RbfKernel kernel, size_t n, const double r2[], double phi[])
 {
     if (kernel == RBF_GAUSS) {
 #pragma omp simd
@@ -101,7 +97,7 @@ WIDE void kernel_values(RbfKernel kernel, size_t n, const double r2[], double ph
     }
 }
 
-WIDE double kernel_slopes(RbfKernel kernel, size_t n, const double r2[], const double w[], double q[])
+CLONED_V3 double kernel_slopes(RbfKernel kernel, size_t n, const double r2[], const double w[], double q[])
 {
     double value = 0.0;
     if (kernel == RBF_GAUSS) {
@@ -128,8 +124,8 @@ static inline double sum_of(Four v)
 }
 
 /* Two variables at a time. */
-WIDE void kernel_project(size_t n_dim, size_t stride, const double S[], size_t first, size_t count,
-                         double q[RBF_BLOCK][KERNEL_CHUNK], double *G)
+CLONED_V3 void kernel_project(size_t n_dim, size_t stride, const double S[], size_t first, size_t count,
+                              double q[RBF_BLOCK][KERNEL_CHUNK], double *G)
 {
     for (size_t d = 0; d < n_dim; d += 2) {
         const size_t next = d + 1 < n_dim ? d + 1 : d;
@@ -151,8 +147,8 @@ WIDE void kernel_project(size_t n_dim, size_t stride, const double S[], size_t f
     }
 }
 
-WIDE void kernel_weigh(RbfKernel kernel, size_t n, const double r2[], const double w[], double w_j, double s2,
-                       double v[])
+CLONED_V3 void kernel_weigh(RbfKernel kernel, size_t n, const double r2[], const double w[], double w_j, double s2,
+                            double v[])
 {
 #pragma omp simd
     for (size_t i = 0; i < n; i++) {

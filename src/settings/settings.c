@@ -115,7 +115,7 @@ static const Option OPTIONS[] = {
          "unequal times are resampled to this step by straight lines; 0: they are refused"),
 
     CHOICE(sim.engine, Engine, ENGINE_WORDS, "fast",
-           "fast: the one to use; the others are slower and exist to be compared with"),
+           "fast, or cvode (SUNDIALS, another method, slower) for a cross-check"),
     CHOICE(sim.accuracy, Accuracy, CHOICE_WORDS(ACCURACY_LIST), "standard",
            "what a run costs and how far it can be trusted (docs/chart.md)"),
     REAL(sim.steps_per_contact, "-", "0", 0, 1000,

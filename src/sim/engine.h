@@ -48,7 +48,7 @@ typedef enum {
     TOLERANCE_STEPS_PER_CONTACT /* [-] */
 } ToleranceKind;
 
-typedef struct {
+typedef struct EngineEntry {
     const char *name, *words;
     ToleranceKind tolerance;
     EngineFn run;

@@ -19,22 +19,10 @@ typedef struct {
     double restitution, v0_floor_m_s, radius_m, youngs_modulus_pa, poisson;
 } ContactOptions;
 
-/* Every integrator of the model, by the name of the setting; sim/engine.c has a line for each. */
+/* The integrators of the model, by the name of the setting; sim/engine.c has a line for each. */
 #define ENGINE_LIST(X)                                                                                                 \
     X(FAST, fast)                                                                                                      \
-    X(CVODE, cvode)                                                                                                    \
-    X(CVODE_BDF, cvode_bdf)                                                                                            \
-    X(CVODE_BDF_TUNED, cvode_bdf_tuned)                                                                                \
-    X(ARKODE_ERK, arkode_erk)                                                                                          \
-    X(ARKODE_ERK_NOEVENTS, arkode_erk_noevents)                                                                        \
-    X(ARKODE_DIRK, arkode_dirk)                                                                                        \
-    X(ARKODE_IMEX, arkode_imex)                                                                                        \
-    X(ETDRK4, etdrk4)                                                                                                  \
-    X(LAGGED, lagged)                                                                                                  \
-    X(NEWMARK, newmark)                                                                                                \
-    X(HHT, hht)                                                                                                        \
-    X(CENTRAL, central)                                                                                                \
-    X(RADAU, radau)
+    X(CVODE, cvode)
 typedef enum {
 #define X(upper, lower) ENGINE_##upper,
     ENGINE_LIST(X)

@@ -72,6 +72,11 @@ void scene_free(Scene *scene)
     free(scene);
 }
 
+void scene_set_engine(Scene *scene, const EngineEntry *engine)
+{
+    scene->engine = engine;
+}
+
 int scene_n_floors(const Scene *scene)
 {
     return scene->building.n;

@@ -30,6 +30,11 @@ typedef struct SimWorker SimWorker;
 Status scene_create(Scene **out, const SceneOptions *o, const Motion *motion, Err *err);
 void scene_free(Scene *scene); /* NULL is fine */
 
+/* The engine of every run, in the place of the options'; before a worker is created. An engine that the setting
+ * sim.engine does not have may be given too (sim/engine.h). */
+struct EngineEntry;
+void scene_set_engine(Scene *scene, const struct EngineEntry *engine);
+
 int scene_n_floors(const Scene *scene);
 
 /* Undamped natural frequencies [Hz], ascending; each array has room for FLOORS_MAX. x: the design variables, gap_1..n

@@ -1,0 +1,17 @@
+# imtet-bench: engines compared by speed, accuracy and reliability. What only its engines need is linked here alone.
+
+BENCH_SRC    := $(filter-out bench/main.c,$(wildcard bench/*.c bench/*/*.c))
+BENCH_LIB    := $(BUILD)/libimtetbench.a
+BENCH        := $(BUILD)/imtet-bench
+BENCH_LDLIBS := -lsundials_arkode -lsundials_sunmatrixdense -lsundials_sunlinsoldense -lsundials_sunnonlinsolnewton
+
+$(BENCH_LIB): $(BENCH_SRC:%.c=$(BUILD)/%.o)
+	@rm -f $@
+	$(Q)$(AR) rcs $@ $^
+
+$(BENCH): $(BUILD)/bench/main.o $(BENCH_LIB) $(LIB)
+	@echo '  LD  $@'
+	$(Q)$(CC) $(LDFLAGS) -o $@ $^ $(BENCH_LDLIBS) $(LDLIBS)
+
+$(BUILD)/bench/%.o $(BUILD)/tests/%.o: CPPFLAGS += -I.
+$(BUILD)/bench/engines/%.o: FLAGS = $(FLAGS.sim)

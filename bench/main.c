@@ -1,0 +1,289 @@
+/* bench/main.c -- the program imtet-bench: engines compared by speed, accuracy and reliability.
+ *
+ *   imtet-bench sweep | throughput | stability | laws [--option [VALUE]] ... */
+#include <cblas.h>
+#include <string.h>
+
+#include "bench/distribution.h"
+#include "bench/stability/laws.h"
+#include "bench/stability/stability.h"
+#include "bench/throughput.h"
+#include "bench/paper.h"
+#include "cmd/args.h"
+#include "scene/motion_source.h"
+#include "store/output.h"
+
+static const double DISTRIBUTION_LIMIT_S = 0.4; /* for one run; there are 64 */
+
+typedef struct {
+    SceneOptions options;
+    Motion motion;
+    int quick;
+} Bench;
+
+static Status prepare(const Args *args, Bench *b, Err *err)
+{
+    b->quick = args_has(args, "--quick");
+    Settings s;
+    paper_defaults(&s);
+    TRY(args_apply(args, &s, NULL, NULL, err));
+    TRY(settings_check(&s, err));
+    b->options = settings_scene(&s);
+    TRY(motion_load(&b->motion, s.motion.record, s.motion.unit, err));
+    return motion_prepare(&b->motion, s.motion.pga_g, s.motion.stretch, err);
+}
+
+/* ---- speed against accuracy -------------------------------------------------------------------------------------- */
+
+typedef struct {
+    Bench bench;
+    Sweep sweep;
+    DistributionTest distribution;
+    SweepPlan plan;
+    unsigned kinds; /* bit by benchmark case */
+} Chart;
+
+/* The words of a comma-separated list as bits; NULL: all. */
+static Status choose(const char *list, const char *what, const char *const known[], int n, unsigned *bits, Err *err)
+{
+    *bits = list ? 0 : (1u << n) - 1;
+    while (list && *list) {
+        const size_t length = strcspn(list, ",");
+        char word[64];
+        snprintf(word, sizeof word, "%.*s", (int)length, list);
+        int k = 0;
+        while (k < n && strcmp(word, known[k]) != 0)
+            k++;
+        if (k == n)
+            return args_unknown(what, word, known, n, "`imtet-bench sweep --help`", err);
+        *bits |= 1u << k;
+        list += length + (list[length] == ',');
+    }
+    return STATUS_OK;
+}
+
+static Status choose_all(const Args *args, Chart *c, Err *err)
+{
+    const char *kinds[N_BENCH_KINDS], *engines[BENCH_ENGINES];
+    for (int k = 0; k < N_BENCH_KINDS; k++)
+        kinds[k] = bench_kind(k)->name;
+    for (int k = 0; k < BENCH_ENGINES; k++)
+        engines[k] = bench_engine(k)->name;
+    TRY(choose(args_value(args, "--case"), "case", kinds, N_BENCH_KINDS, &c->kinds, err));
+    return choose(args_value(args, "--engine"), "engine", engines, BENCH_ENGINES, &c->plan.engines, err);
+}
+
+static Status run_case(Chart *c, int k, Err *err)
+{
+    const Bench *b = &c->bench;
+    BenchCase bench_case = {0};
+    Status status = bench_case_open(&bench_case, bench_kind(k), &b->options, &b->motion, b->quick, err);
+    if (status == STATUS_OK)
+        status = sweep_run(&c->sweep, k, &bench_case, &c->plan, stderr, err);
+    if (status == STATUS_OK && !b->quick && strcmp(bench_case.kind->name, "irregular") == 0)
+        status = distribution_test_run(&c->distribution, &c->sweep, &bench_case, &b->options, DISTRIBUTION_LIMIT_S,
+                                       stderr, err);
+    bench_case_close(&bench_case);
+    return status;
+}
+
+static Status write_to(const char *path, const Chart *c, int markdown, Err *err)
+{
+    Output o;
+    TRY(output_open(&o, path, err));
+    if (markdown) {
+        sweep_write_markdown(&c->sweep, &c->bench.motion, o.stream);
+        distribution_test_write(&c->distribution, o.stream);
+    } else {
+        sweep_write_csv(&c->sweep, o.stream);
+    }
+    return output_close(&o, err);
+}
+
+static Status make_chart(const Args *args, Chart *c, Err *err)
+{
+    TRY(choose_all(args, c, err));
+    TRY(prepare(args, &c->bench, err));
+    c->plan.limit_s = c->bench.quick ? 0.3 : 2;
+    for (int k = 0; k < N_BENCH_KINDS; k++)
+        if (c->kinds >> k & 1)
+            TRY(run_case(c, k, err));
+    if (!c->bench.quick)
+        TRY(sweep_find_noise(&c->sweep, &c->bench.options, &c->bench.motion, err));
+    if (args_has(args, "--markdown"))
+        TRY(write_to(args_value(args, "--markdown"), c, 1, err));
+    if (args_has(args, "--csv"))
+        return write_to(args_value(args, "--csv"), c, 0, err);
+    if (!args_has(args, "--markdown"))
+        sweep_write_csv(&c->sweep, stdout);
+    return STATUS_OK;
+}
+
+static Status run_sweep(const Args *args, Err *err)
+{
+    Chart c = {0};
+    const Status status = make_chart(args, &c, err);
+    sweep_free(&c.sweep);
+    motion_free(&c.bench.motion);
+    return status;
+}
+
+#define OPTIONS_MOTION OPTION_RECORD, OPTION_PGA, OPTION_STRETCH, OPTION_UNIT, OPTION_SET, OPTION_END
+
+static const ArgOption SWEEP_OPTIONS[] = {
+    {"--case", "NAME,...", NULL, 0, "linear, one-impact, irregular, tiny, zero; all unless given"},
+    {"--engine", "NAME,...", NULL, 0, "all unless given"},
+    {"--quick", NULL, NULL, 0, "half the time, no distribution test"},
+    {"--markdown", "FILE", NULL, 0, "tables of what each engine needs for a given error, and of what failed"},
+    OPTION_CSV,
+    OPTIONS_MOTION,
+};
+
+/* ---- designs per second ------------------------------------------------------------------------------------------ */
+
+static Status run_throughput(const Args *args, Err *err)
+{
+    Bench b = {0};
+    Status status = prepare(args, &b, err);
+    if (status == STATUS_OK)
+        status = throughput_print(&b.options, &b.motion, b.quick, args_has(args, "--count"), stdout, err);
+    motion_free(&b.motion);
+    return status;
+}
+
+static const ArgOption THROUGHPUT_OPTIONS[] = {
+    {"--count", NULL, NULL, 0, "four designs by the fast engine, and nothing else: counts of its work"},
+    {"--quick", NULL, NULL, 0, "fewer designs, shorter comparisons"},
+    OPTIONS_MOTION,
+};
+
+/* ---- where methods fail ------------------------------------------------------------------------------------------ */
+
+static Status run_stability(const Args *args, Err *err)
+{
+    StabilityPlan plan = {.size = args_has(args, "--quick")  ? SIZE_QUICK
+                                  : args_has(args, "--long") ? SIZE_LONG
+                                                             : SIZE_FULL,
+                          .engine = args_value(args, "--engine"),
+                          .one_case = args_value(args, "--case"),
+                          .out = args_value(args, "--out")};
+    TRY(args_whole(args, "--seconds", 1, 1000000, 20, &plan.seconds, err));
+    return stability(&plan, err);
+}
+
+static const ArgOption STABILITY_OPTIONS[] = {
+    {"--quick", NULL, NULL, 0, "smaller cases, for tests"},
+    {"--long", NULL, NULL, 0, "also cases of 1e6 and 1e7 steps"},
+    {"--engine", "NAME", NULL, 0, "one engine; all unless given"},
+    {"--case", "NAME", NULL, 0, "one case; all unless given"},
+    {"--seconds", "N", NULL, 0, "processor time of one cell [s]; 20 unless given"},
+    {"--out", "FILE", NULL, 0, "the page, in Markdown"},
+    OPTION_END,
+};
+
+static Status run_laws(const Args *args, Err *err)
+{
+    return laws(args_value(args, "--out"), args_value(args, "--csv")) == 0
+               ? STATUS_OK
+               : fail(err, STATUS_INTERNAL, "a contact law is not what it should be");
+}
+
+static const ArgOption LAWS_OPTIONS[] = {
+    {"--out", "FILE", NULL, 0, "the page, in Markdown"},
+    {"--csv", "FILE", NULL, 0, "the rebound curves"},
+    OPTION_END,
+};
+
+/* ---- the command line -------------------------------------------------------------------------------------------- */
+
+static const Command COMMANDS[] = {
+    {.name = "sweep",
+     .summary = "speed against accuracy of every engine",
+     .example = "imtet-bench sweep --quick --case irregular --engine fast,etdrk4",
+     .details =
+         "Runs every engine at many tolerances on short windows of one ground motion and compares each run with\n"
+         "a reference that two unrelated methods agree on. Progress goes to standard error, the table to\n"
+         "standard output. Timings want the machine to themselves.",
+     .options = SWEEP_OPTIONS,
+     .run = run_sweep,
+     .program = "imtet-bench"},
+    {.name = "throughput",
+     .summary = "designs per second over the whole motion, and ratios of engines",
+     .example = "imtet-bench throughput --quick",
+     .details =
+         "Runs 24 designs with irregular gaps by the engine fast, on one thread and on all, and compares its time\n"
+         "with that of other engines at equal error. Timings want the machine to themselves.",
+     .options = THROUGHPUT_OPTIONS,
+     .run = run_throughput,
+     .program = "imtet-bench"},
+    {.name = "stability",
+     .summary = "where methods fail: every engine through every case",
+     .example = "imtet-bench stability --quick --engine fast",
+     .details =
+         "Fails where an engine answers wrongly in silence, or where the engine fast does anything but hold. Each\n"
+         "cell runs in a process of its own: a crash is a failure of that cell, no answer in time a refusal.",
+     .options = STABILITY_OPTIONS,
+     .run = run_stability,
+     .program = "imtet-bench"},
+    {.name = "laws",
+     .summary = "rebound of the contact laws, measured",
+     .example = "imtet-bench laws --out laws.md",
+     .details =
+         "Rebound against restitution by the engine fast and by an independent integrator, and what the limit of\n"
+         "v0 changes. Fails where a law does not return what it is known to.",
+     .options = LAWS_OPTIONS,
+     .run = run_laws,
+     .program = "imtet-bench"},
+};
+enum { N_COMMANDS = sizeof COMMANDS / sizeof COMMANDS[0] };
+
+static void print_usage(FILE *out)
+{
+    fprintf(out, "usage: imtet-bench COMMAND [options]\n\n");
+    for (int k = 0; k < N_COMMANDS; k++)
+        fprintf(out, "  %-11s %s\n", COMMANDS[k].name, COMMANDS[k].summary);
+    fprintf(out, "\n`imtet-bench COMMAND --help` shows an example and every option.\n");
+}
+
+static Status find_command(const char *word, const Command **command, Err *err)
+{
+    const char *names[N_COMMANDS];
+    for (int k = 0; k < N_COMMANDS; k++) {
+        names[k] = COMMANDS[k].name;
+        *command = &COMMANDS[k];
+        if (strcmp(names[k], word) == 0)
+            return STATUS_OK;
+    }
+    return args_unknown("command", word, names, N_COMMANDS, "`imtet-bench --help`", err);
+}
+
+static Status run(int argc, char *argv[], Err *err)
+{
+    const Command *command;
+    Args args;
+    if (argc < 2 || strcmp(argv[1], "--help") == 0) {
+        print_usage(argc < 2 ? stderr : stdout);
+        return argc < 2 ? fail(err, STATUS_USAGE, "no command was given") : STATUS_OK;
+    }
+    TRY(find_command(argv[1], &command, err));
+    Status status = args_parse(&args, command, argc - 2, argv + 2, err);
+    if (status == STATUS_OK && args.help)
+        command_help(command, stdout);
+    else if (status == STATUS_OK)
+        status = command->run(&args, err);
+    args_free(&args);
+    return status;
+}
+
+int main(int argc, char *argv[])
+{
+    Err err = {0};
+    setvbuf(stdout, NULL, _IOLBF, 0);
+    openblas_set_num_threads(1); /* designs run side by side */
+    Status status = run(argc, argv, &err);
+    if ((fflush(stdout) != 0 || ferror(stdout)) && status == STATUS_OK)
+        status = fail(&err, STATUS_IO, "standard output: cannot be written");
+    if (status != STATUS_OK)
+        fprintf(stderr, "imtet-bench: %s\n", err.text[0] ? err.text : status_words(status));
+    return status_exit_code(status);
+}

@@ -1,0 +1,19 @@
+/* bench/stability/need.h -- set-up that must succeed: a case that cannot begin ends its process, which counts as a
+ * failure of the case. */
+#ifndef IMTET_BENCH_NEED_H
+#define IMTET_BENCH_NEED_H
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "base/status.h"
+
+static inline void need(Status status, const Err *err)
+{
+    if (status == STATUS_OK)
+        return;
+    fprintf(stderr, "imtet-bench: %s: %s\n", status_words(status), err->text);
+    abort();
+}
+
+#endif

@@ -1,0 +1,26 @@
+/* bench/stability/tower.h -- the 20-storey tower under a short record that shakes it at once. */
+#ifndef IMTET_BENCH_TOWER_H
+#define IMTET_BENCH_TOWER_H
+
+#include "bench/engines/engines.h"
+#include "bench/stability/need.h"
+#include "scene/motion.h"
+#include "sim/sim.h"
+#include "settings/settings.h"
+
+typedef struct {
+    Settings settings;
+    int engine;    /* in the place of settings.sim.engine */
+    Motion motion; /* owned */
+    double x[FLOORS_MAX + 2];
+} Tower;
+
+/* Defaults, gaps of 4 mm j + 2 mm (j mod 3), core 12 -> 6.4 mm; two sines, `seconds` long. */
+void tower_open(Tower *t, double seconds);
+void tower_close(Tower *t);
+void tower_set_gaps(Tower *t, double gap);
+
+/* One run: scene, worker, sim_run. A Status that is not OK becomes an outcome with a reason. */
+SimResult tower_run(const Tower *t, SceneKind kind);
+
+#endif

@@ -1,0 +1,416 @@
+/* Properties of the tower and its core, through the door that a user takes. */
+#include "bench/stability/tower.h"
+#include "bench/stability/trial.h"
+
+#include <complex.h>
+#include <stdlib.h>
+
+#include "scene/core_beam.h"
+#include "sim/fast/kernel.h"
+
+static void open_tower(const Trial *t, Tower *tower, double seconds)
+{
+    tower_open(tower, seconds);
+    tower->engine = t->engine;
+    tower->settings.sim.accuracy = t->accuracy;
+}
+
+static double seconds_for(const Trial *t, double full)
+{
+    return t->size != SIZE_QUICK ? full : t->engine == ENGINE_FAST ? full / 3 : full / 6;
+}
+
+/* The errors that accuracy `standard` promises, times `factor`. */
+static void compare_objectives(Trial *t, const SimResult *r, const SimResult *wanted, double factor, const char *what)
+{
+    factor *= trial_slack(t);
+    trial_compare(t, r, r->j1_m, wanted->j1_m, wanted->j1_m, 1e-3 * factor, "%s: J1", what);
+    trial_compare(t, r, r->j2_m, wanted->j2_m, wanted->j2_m, 3e-3 * factor, "%s: J2", what);
+    trial_compare(t, r, r->j3_g, wanted->j3_g, wanted->j3_g, 2e-2 * factor, "%s: J3", what);
+    trial_compare(t, r, r->damped_building_j, wanted->damped_building_j, wanted->damped_building_j, 1e-2 * factor,
+                  "%s: energy damped in the building", what);
+    if (wanted->damped_core_j > 0)
+        trial_compare(t, r, r->damped_core_j, wanted->damped_core_j, wanted->damped_core_j, 1e-2 * factor,
+                      "%s: energy damped in the core", what);
+}
+
+static SimResult finest(const Tower *tower)
+{
+    Tower fine = *tower;
+    fine.engine = ENGINE_FAST;
+    fine.settings.sim.accuracy = ACCURACY_FINE;
+    return tower_run(&fine, SCENE_IMPACT);
+}
+
+/* ---- gaps ------------------------------------------------------------------------------------------------------ */
+
+static void zero_gap(Trial *t)
+{
+    Tower tower;
+    t->accuracy = ACCURACY_STANDARD;
+    open_tower(t, &tower, seconds_for(t, 6));
+    tower_set_gaps(&tower, 0);
+    const SimResult touching = tower_run(&tower, SCENE_IMPACT), tied = tower_run(&tower, SCENE_RIGID);
+    trial_compare(t, &touching, touching.j1_m, tied.j1_m, tied.j1_m, 0.03, "J1 against the tied building");
+    trial_compare(t, &touching, touching.input_energy_j, tied.input_energy_j, tied.input_energy_j, 0.05,
+                  "input energy against the tied building");
+    /* A storm of events would be one for every oscillation of every mode: kHz times floors. */
+    trial_note(t, &touching, (double)touching.impacts / (20 * (double)(tower.motion.n - 1) * tower.motion.dt_s), 200,
+               "closings per floor and second");
+    trial_remark(t, "J2 %.2g %% off, J3 %.3g g (tied %.3g g), %ld closings, %ld steps, %.2g s",
+                 100 * (touching.j2_m / tied.j2_m - 1), touching.j3_g, tied.j3_g, touching.impacts, touching.steps,
+                 touching.seconds);
+    tower_close(&tower);
+}
+
+/* Largest displacement of the building alone: every mode in closed form on every straight stretch of the record, looked
+ * at 200 times per stretch. */
+static double largest_displacement(const Tower *tower)
+{
+    enum { LOOKS = 200 };
+    Building b;
+    Err err = {0};
+    need(building_load(&b, tower->settings.building.model, &err), &err);
+    const double zeta = tower->settings.building.damping, dt = tower->motion.dt_s;
+    double q[FLOORS_MAX] = {0}, v[FLOORS_MAX] = {0}, most = 0;
+    for (size_t k = 0; k + 1 < tower->motion.n; k++) {
+        double u[LOOKS + 1][FLOORS_MAX] = {{0}};
+        for (int i = 0; i < b.n; i++) {
+            const double w = b.omega[i], a0 = tower->motion.accel[k], rate = (tower->motion.accel[k + 1] - a0) / dt;
+            /* q = s0 + s1 t + Re(c exp(lambda t)) */
+            const double s1 = -b.gamma[i] * rate / (w * w), s0 = (-b.gamma[i] * a0 - 2 * zeta * w * s1) / (w * w);
+            const double complex lambda = w * (-zeta + I * sqrt(1 - zeta * zeta));
+            const double x = q[i] - s0, xd = v[i] - s1;
+            const double complex c = x - I * (xd + zeta * w * x) / cimag(lambda);
+            for (int l = 0; l <= LOOKS; l++) {
+                const double at = dt * l / LOOKS;
+                const double complex z = c * cexp(lambda * at);
+                q[i] = s0 + s1 * at + creal(z);
+                v[i] = s1 + creal(lambda * z);
+                for (int j = 0; j < b.n; j++)
+                    u[l][j] += b.phi[j * b.n + i] * q[i];
+            }
+        }
+        for (int l = 0; l <= LOOKS; l++)
+            for (int j = 0; j < b.n; j++)
+                most = fmax(most, fabs(u[l][j]));
+    }
+    building_free(&b);
+    return most;
+}
+
+static void huge_gap(Trial *t)
+{
+    TRIAL_EACH_ACCURACY(t)
+    {
+        Tower tower;
+        open_tower(t, &tower, seconds_for(t, 6));
+        tower_set_gaps(&tower, 50);
+        const SimResult r = tower_run(&tower, SCENE_IMPACT);
+        const double wanted = largest_displacement(&tower);
+        trial_compare(t, &r, r.j1_m, wanted, wanted, trial_allowed(t, 1e-5, 1e-3), "J1 against the closed form");
+        trial_note(t, &r, (double)r.impacts, 0, "closings");
+        tower_close(&tower);
+    }
+}
+
+static void negative_gap(Trial *t)
+{
+    static const double BAD[] = {-1e-3, -1e-300, NAN, INFINITY, -INFINITY};
+    t->accuracy = ACCURACY_STANDARD;
+    for (int i = 0; i < 5; i++) {
+        Tower tower;
+        open_tower(t, &tower, 1);
+        tower.x[4] = BAD[i];
+        const SimResult r = tower_run(&tower, SCENE_IMPACT);
+        trial_refusal_is_right(t, r.outcome != RUN_OK && strstr(r.reason, "gap_05_m"), "a status that names the gap");
+        tower_close(&tower);
+    }
+}
+
+/* ---- the core --------------------------------------------------------------------------------------------------- */
+
+static void stiff_and_soft_core(Trial *t)
+{
+    static const double FACTOR[] = {1e-6, 1e-3, 1e3, 1e6};
+    t->accuracy = ACCURACY_STANDARD;
+    for (int i = 0; i < 4; i += t->size == SIZE_QUICK ? 3 : 1) {
+        Tower tower;
+        char what[40];
+        open_tower(t, &tower, seconds_for(t, 3));
+        tower.settings.core.youngs_modulus_pa *= FACTOR[i];
+        const SimResult r = tower_run(&tower, SCENE_IMPACT), wanted = finest(&tower);
+        snprintf(what, sizeof what, "core stiffness x %g", FACTOR[i]);
+        trial_remark(t, "x %g: %ld closings, residual %.1e; ", FACTOR[i], r.impacts, r.energy_balance_error);
+        trial_compare(t, &r, r.j1_m, wanted.j1_m, wanted.j1_m, 3e-3 * trial_slack(t), "%s: J1", what);
+        trial_compare(t, &r, r.j2_m, wanted.j2_m, wanted.j2_m, 1e-2 * trial_slack(t), "%s: J2", what);
+        trial_compare(t, &r, r.input_energy_j, wanted.input_energy_j, wanted.input_energy_j, 1e-2, "%s: input energy",
+                      what);
+        tower_close(&tower);
+    }
+}
+
+/* The model with its first core modes only. */
+static void truncate_core(SimModel *model, int nc)
+{
+    const int before = model->m;
+    model->nc = nc;
+    model->m = model->nb + nc;
+    model->m_pad = (model->m + 7) & ~7;
+    for (int i = model->m; i < before; i++) {
+        memset(model->R + i * model->n_pad, 0, sizeof(double) * (size_t)model->n_pad);
+        model->omega[i] = 1;
+        model->zeta[i] = 0.5;
+        model->gamma[i] = 0;
+    }
+    for (int j = 0; j < model->n_pad; j++) {
+        double sum = 0;
+        for (int i = 0; i < model->m_pad; i++) {
+            model->RT[j * model->m_pad + i] = model->R[i * model->n_pad + j];
+            sum += model->R[i * model->n_pad + j] * model->R[i * model->n_pad + j];
+        }
+        model->mass_eff[j] = sum > 0 ? 1 / sum : 1e300;
+    }
+}
+
+static SimResult run_truncated(Trial *t, const Tower *tower, int nc)
+{
+    Building b;
+    CoreBeam core;
+    SimModel model;
+    Err err = {0};
+    const SceneOptions options = settings_scene(&tower->settings);
+    need(building_load(&b, tower->settings.building.model, &err), &err);
+    need(core_beam_make(&core, &tower->settings.core, &tower->settings.building, b.n, tower->x[20], tower->x[21], &err),
+         &err);
+    need(model_create(&model, b.n, &err), &err);
+    need(model_set(&model, &options, &b, &core, tower->x, &err), &err);
+    truncate_core(&model, nc);
+    const double duration = (double)(tower->motion.n - 1) * tower->motion.dt_s;
+    const SimResult r = trial_run(t, &model, &tower->motion, duration, 0);
+    model_free(&model);
+    building_free(&b);
+    return r;
+}
+
+static void core_modes(Trial *t)
+{
+    t->accuracy = t->engine == ENGINE_FAST ? ACCURACY_FINE : ACCURACY_STANDARD;
+    Tower tower;
+    open_tower(t, &tower, seconds_for(t, 6));
+    const SimResult all = run_truncated(t, &tower, 20);
+    for (int nc = 10; nc >= 5; nc -= 5) {
+        const SimResult r = run_truncated(t, &tower, nc);
+        const double factor = (nc == 10 ? 1 : 10) * trial_slack(t);
+        trial_remark(t, "%d modes: J1 %.1e, J2 %.1e, J3 %.1e, core's energy %.1e; ", nc, fabs(r.j1_m / all.j1_m - 1),
+                     fabs(r.j2_m / all.j2_m - 1), fabs(r.j3_g / all.j3_g - 1),
+                     fabs(r.damped_core_j / all.damped_core_j - 1));
+        trial_compare(t, &r, r.j1_m, all.j1_m, all.j1_m, 1e-3 * factor, "%d core modes: J1", nc);
+        trial_compare(t, &r, r.j2_m, all.j2_m, all.j2_m, 3e-3 * factor, "%d core modes: J2", nc);
+        trial_compare(t, &r, r.j3_g, all.j3_g, all.j3_g, 2e-2 * factor, "%d core modes: J3", nc);
+    }
+    tower_close(&tower);
+}
+
+/* ---- the record -------------------------------------------------------------------------------------------------- */
+
+static void mirrored(Trial *t)
+{
+    Tower tower;
+    t->accuracy = ACCURACY_STANDARD;
+    open_tower(t, &tower, seconds_for(t, 6));
+    const SimResult there = tower_run(&tower, SCENE_IMPACT);
+    for (size_t i = 0; i < tower.motion.n; i++)
+        tower.motion.accel[i] *= -1;
+    const SimResult back = tower_run(&tower, SCENE_IMPACT);
+    /* difference quotients of a Jacobian know left from right: such an engine agrees as far as it promises anything */
+    const int exact = trial_slack(t) == 1;
+    compare_objectives(t, &back, &there, exact ? 1e-4 : 1, "mirrored");
+    trial_note(t, &back, fabs((double)(back.impacts - there.impacts)), exact ? 0 : 0.02 * (double)there.impacts,
+               "closings");
+    tower_close(&tower);
+}
+
+static void resize_motion(Motion *m, size_t front, size_t back)
+{
+    double *longer = calloc(m->n + front + back, sizeof *longer);
+    memcpy(longer + front, m->accel, m->n * sizeof *longer);
+    free(m->accel);
+    m->accel = longer;
+    m->n += front + back;
+}
+
+static void padded(Trial *t)
+{
+    Tower tower;
+    t->accuracy = ACCURACY_STANDARD;
+    open_tower(t, &tower, seconds_for(t, 6));
+    const double duration = (double)(tower.motion.n - 1) * tower.motion.dt_s;
+    tower.motion.accel[tower.motion.n - 1] = 0; /* else a ramp to zero would be put in */
+    const SimResult bare = tower_run(&tower, SCENE_IMPACT);
+    resize_motion(&tower.motion, 0, 37);
+    tower.settings.sim.duration_s = duration;
+    const SimResult behind = tower_run(&tower, SCENE_IMPACT);
+    compare_objectives(t, &behind, &bare, 1e-4, "zeros behind");
+    resize_motion(&tower.motion, 37, 0);
+    tower.settings.sim.duration_s = duration + 37 * tower.motion.dt_s;
+    const SimResult before = tower_run(&tower, SCENE_IMPACT);
+    compare_objectives(t, &before, &bare, 1, "zeros before");
+    tower_close(&tower);
+}
+
+static void not_a_record(Trial *t)
+{
+    static const double BAD[] = {NAN, INFINITY, -INFINITY, 1e308};
+    t->accuracy = ACCURACY_STANDARD;
+    for (int i = 0; i < 4; i++) {
+        Tower tower;
+        char what[60];
+        open_tower(t, &tower, t->size == SIZE_QUICK ? 1 : 2);
+        tower.motion.accel[15] = BAD[i];
+        const SimResult r = tower_run(&tower, SCENE_IMPACT);
+        snprintf(what, sizeof what, "a sample of %g is refused", BAD[i]);
+        trial_refusal_is_right(t, r.outcome != RUN_OK && r.reason[0], what);
+        tower_close(&tower);
+    }
+    for (size_t n = 0; n < 2; n++) {
+        Tower tower;
+        open_tower(t, &tower, 2);
+        tower.motion.n = n;
+        const SimResult r = tower_run(&tower, SCENE_IMPACT);
+        trial_refusal_is_right(t, r.outcome != RUN_OK && r.reason[0], "an empty record is refused");
+        tower_close(&tower);
+    }
+}
+
+static void strength(Trial *t)
+{
+    static const double SCALE[] = {1e-12, 1e-6, 1e-3, 10, 100, 1000};
+    t->accuracy = ACCURACY_STANDARD;
+    SimResult first = {0};
+    for (int i = 0; i < 6; i += t->size == SIZE_QUICK && i % 3 == 0 ? 2 : 1) {
+        Tower tower;
+        open_tower(t, &tower, seconds_for(t, 3));
+        for (size_t k = 0; k < tower.motion.n; k++)
+            tower.motion.accel[k] *= SCALE[i];
+        const SimResult r = tower_run(&tower, SCENE_IMPACT);
+        if (i == 0)
+            first = r;
+        const double f = SCALE[i] / SCALE[0];
+        if (SCALE[i] < 1) {
+            trial_compare(t, &r, r.j1_m / f, first.j1_m, first.j1_m, 1e-3, "strength x %g: J1 over strength", SCALE[i]);
+            trial_compare(t, &r, r.input_energy_j / (f * f), first.input_energy_j, first.input_energy_j, 1e-4,
+                          "strength x %g: input energy over its square", SCALE[i]);
+            trial_note(t, &r, (double)r.impacts, 0, "strength x %g: closings", SCALE[i]);
+            trial_note(t, &r, r.j1_m > 0 ? 0 : 1, 0.5, "strength x %g: moves", SCALE[i]);
+        } else {
+            trial_remark(t, "x %g: penetration %.3g of the radius%s; ", SCALE[i], r.indentation_ratio,
+                         r.outcome != RUN_OK      ? " (refused)"
+                         : beyond_contact_law(&r) ? " (flagged)"
+                                                  : "");
+            trial_note(t, &r, r.energy_balance_error, 1e-3, "strength x %g: energy residual", SCALE[i]);
+            if (SCALE[i] >= 100)
+                trial_note(t, &r, beyond_contact_law(&r) ? 0 : 1, 0.5, "strength x %g: flagged as too deep", SCALE[i]);
+        }
+        tower_close(&tower);
+    }
+}
+
+/* ---- machines ---------------------------------------------------------------------------------------------------- */
+
+static void threads(Trial *t)
+{
+    enum { RUNS = 4 };
+    Tower tower;
+    t->accuracy = ACCURACY_STANDARD;
+    open_tower(t, &tower, seconds_for(t, 3));
+    const int n = t->size == SIZE_QUICK ? 2 : RUNS;
+    SimResult alone = tower_run(&tower, SCENE_IMPACT), together[RUNS];
+    alone.seconds = 0;
+#pragma omp parallel for num_threads(n)
+    for (int i = 0; i < n; i++) {
+        together[i] = tower_run(&tower, SCENE_IMPACT);
+        together[i].seconds = 0;
+    }
+    for (int i = 0; i < n; i++)
+        trial_note(t, &alone, memcmp(&alone, &together[i], sizeof alone) != 0, 0.5, "bytes that differ among threads");
+    tower_close(&tower);
+}
+
+static int processor_has(FastKernel *kernel)
+{
+#ifdef __x86_64__
+    if (kernel == fast_kernel_avx512)
+        return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+               __builtin_cpu_supports("avx512dq");
+    if (kernel == fast_kernel_avx2)
+        return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+#endif
+    return kernel == fast_kernel_base;
+}
+
+static void vector_width(Trial *t)
+{
+    static FastKernel *const KERNELS[] = {fast_kernel_base,
+#ifdef __x86_64__
+                                          fast_kernel_avx2, fast_kernel_avx512
+#endif
+    };
+    static const char *const NAMES[] = {"base", "avx2", "avx512"};
+    if (t->engine != ENGINE_FAST) /* one kernel: nothing to compare */
+        return;
+    TRIAL_EACH_ACCURACY(t)
+    {
+        Tower tower;
+        Building b;
+        CoreBeam core;
+        SimModel model;
+        FastWork *work;
+        SimResult first = {0};
+        Err err = {0};
+        open_tower(t, &tower, seconds_for(t, 3));
+        const SceneOptions options = settings_scene(&tower.settings);
+        need(building_load(&b, tower.settings.building.model, &err), &err);
+        need(core_beam_make(&core, &tower.settings.core, &tower.settings.building, b.n, tower.x[20], tower.x[21], &err),
+             &err);
+        need(model_create(&model, b.n, &err), &err);
+        need(model_set(&model, &options, &b, &core, tower.x, &err), &err);
+        need(fast_create(&work, b.n, &err), &err);
+        const EngineOptions run = {.duration = (double)(tower.motion.n - 1) * tower.motion.dt_s};
+        const FastKnobs knobs = fast_knobs(t->accuracy);
+        for (size_t i = 0; i < sizeof KERNELS / sizeof KERNELS[0]; i++) {
+            SimResult r;
+            if (!processor_has(KERNELS[i]))
+                continue;
+            KERNELS[i](work, &model, &tower.motion, &run, &knobs, &r);
+            if (i == 0)
+                first = r;
+            trial_compare(t, &r, r.j1_m, first.j1_m, first.j1_m, 1e-8, "%s against base: J1", NAMES[i]);
+            trial_compare(t, &r, r.j3_g, first.j3_g, first.j3_g, trial_allowed(t, 1e-6, 1e-4), "%s against base: J3",
+                          NAMES[i]);
+            trial_compare(t, &r, r.input_energy_j, first.input_energy_j, first.input_energy_j, 1e-8,
+                          "%s against base: input energy", NAMES[i]);
+        }
+        fast_free(work);
+        model_free(&model);
+        building_free(&b);
+        tower_close(&tower);
+    }
+}
+
+static const Case CASES[] = {
+    {"zero-gap", "no gap on any floor tends to the tied building, without a storm of events", zero_gap},
+    {"huge-gap", "a gap that never closes gives the closed form of the building alone", huge_gap},
+    {"negative-gap", "a gap that is negative or no number is refused by name", negative_gap},
+    {"core-stiffness", "a core 1e-6 to 1e6 times as stiff, against `fast` at fine", stiff_and_soft_core},
+    {"core-modes", "10 and 5 core modes instead of 20, without residual flexibility: what truncation costs",
+     core_modes},
+    {"mirrored-record", "a mirrored record gives the mirrored response", mirrored},
+    {"zero-padded-record", "zeros before or behind the record change no objective", padded},
+    {"not-a-record", "NaN, Inf, 1e308 or no samples are refused", not_a_record},
+    {"strength", "strength x 1e-12 to 1e3: linear until the first contact, flagged when too deep", strength},
+    {"threads", "several runs at once give the bytes of one alone", threads},
+    {"vector-width", "the kernels for SSE2, AVX2 and AVX-512 agree", vector_width},
+};
+
+const CaseGroup TOWER_CASES = {"The tower and its core", CASES, sizeof CASES / sizeof CASES[0]};

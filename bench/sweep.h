@@ -1,0 +1,56 @@
+/* bench/sweep.h -- every engine at many tolerances on one benchmark case: speed against accuracy.
+ *
+ * The reference is CVODE at 1e-12; a second method that shares nothing with it must agree: fast at 320 steps per contact
+ * or etdrk4 at 10 microseconds, whichever is nearer. An error below ten times their difference is not known and is drawn
+ * as that (floor).
+ *
+ * Ownership  sweep_free releases the rows
+ * Threads    none: timings want the machine to themselves */
+#ifndef IMTET_BENCH_SWEEP_H
+#define IMTET_BENCH_SWEEP_H
+
+#include <stdio.h>
+
+#include "bench/timed_run.h"
+
+typedef struct {
+    const BenchKind *kind;
+    int engine;
+    char tolerance[16];
+    Accuracy accuracy;
+    double tolerance_value; /* 0: as accuracy says */
+    TimedRun seen;
+    RunErrors error;
+} SweepRow;
+
+typedef struct {
+    size_t n, n_max;
+    SweepRow *rows;
+    double agreement[N_BENCH_KINDS]; /* of the two references; 0: the case was not run */
+    long impacts[N_BENCH_KINDS];
+    double duration[N_BENCH_KINDS];
+    double noise; /* largest _sd over mean of an objective, replicates, whole motion, irregular gaps; 0: unknown */
+} Sweep;
+
+typedef struct {
+    unsigned engines; /* bit by Engine */
+    double limit_s; /* an engine's sweep ends with the first run that takes longer, or the second that does and fails */
+} SweepPlan;
+
+/* Appends the rows of one case; progress: one line per engine. */
+Status sweep_run(Sweep *s, int kind, const BenchCase *bench_case, const SweepPlan *plan, FILE *progress, Err *err);
+void sweep_free(Sweep *s);
+
+/* Sets noise. settings, motion: as prepared for the cases. */
+Status sweep_find_noise(Sweep *s, const SceneOptions *settings, const Motion *motion, Err *err);
+
+double sweep_floor(const Sweep *s, int kind);
+
+/* A run that ends, its energy balance closed, far from the reference. */
+int sweep_silently_wrong(const SweepRow *row);
+int sweep_row_failed(const SweepRow *row);
+
+void sweep_write_csv(const Sweep *s, FILE *out);
+void sweep_write_markdown(const Sweep *s, const Motion *motion, FILE *out);
+
+#endif

@@ -1,0 +1,281 @@
+#include "bench/throughput.h"
+
+#include <math.h>
+#include <omp.h>
+#include <stdlib.h>
+
+#include "base/clock.h"
+#include "simulator/ensemble.h"
+
+enum { DESIGNS = 24, DESIGNS_QUICK = 4, JUDGED = 6, ENSEMBLE_MEMBERS = 8 };
+
+static const double WINDOW_S = 8, PLAIN_STEP = 2e-4, BDF_RTOL = 1e-6, REFERENCE_STEPS = 320;
+
+/* From coarse to fine. */
+static const double STEPS[] = {4e-3, 2e-3, 1.5e-3, 1e-3, 5e-4, 2e-4},
+                    TOLERANCES[] = {3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5};
+enum { LADDER = 6 };
+
+typedef struct {
+    const SceneOptions *settings;
+    const Motion *whole;
+    Motion window;
+    BenchCase bench_case; /* one design at a time, on the window or the whole */
+    int n, n_judged;
+    FILE *out;
+    TimedRun *seen, *reference;
+} Throughput;
+
+static Status take(Throughput *t, int design, int whole, Err *err)
+{
+    BenchCase *bench_case = &t->bench_case;
+    bench_case->motion = whole ? *t->whole : t->window;
+    const double length = (double)(bench_case->motion.n - 1) * bench_case->motion.dt_s;
+    bench_case->duration = whole ? length : fmin(WINDOW_S, length);
+    bench_irregular_gaps((uint32_t)design, bench_case->building.n, bench_case->gaps);
+    return model_set(&bench_case->model, t->settings, &bench_case->building, bench_case->core, bench_case->gaps, err);
+}
+
+static int ascending(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static double median(int n, double x[])
+{
+    qsort(x, (size_t)n, sizeof *x, ascending);
+    return n % 2 ? x[n / 2] : 0.5 * (x[n / 2 - 1] + x[n / 2]);
+}
+
+static Status run_fast(Throughput *t, Err *err)
+{
+    double ms[DESIGNS], all = 0;
+    long steps = 0, forces = 0, impacts = 0, failed = 0;
+    for (int k = 0; k < t->n; k++) {
+        TRY(take(t, k, 1, err));
+        TRY(timed_run(&t->bench_case, ENGINE_FAST, ACCURACY_STANDARD, 0, t->seen, err));
+        const SimResult *r = &t->seen->result;
+        ms[k] = 1e3 * t->seen->seconds;
+        all += t->seen->seconds;
+        steps += r->steps;
+        forces += r->force_evaluations;
+        impacts += r->impacts;
+        failed += r->outcome != RUN_OK || !(r->energy_balance_error <= t->settings->sim.residual_max);
+    }
+    const double middle = median(t->n, ms);
+    fprintf(t->out, "fast, standard: %d designs, %.5g s each, one thread\n", t->n, t->bench_case.duration);
+    fprintf(t->out, "  per design      %.3g ms median, %.3g least, %.3g most; %.4g designs a second\n", middle, ms[0],
+            ms[t->n - 1], (double)t->n / all);
+    fprintf(t->out, "  counted         %.0f steps, %.0f force evaluations, %.0f impacts per design; %ld failed\n",
+            (double)steps / t->n, (double)forces / t->n, (double)impacts / t->n, failed);
+    fprintf(t->out, "  work            steps %ld force_evaluations %ld\n", steps, forces);
+    return STATUS_OK;
+}
+
+/* Wall time [s] of all designs over a crew, and of an ensemble of design 0. */
+static Status time_crew(Throughput *t, const Scene *scene, int threads, double *all, double *ensemble, Err *err)
+{
+    enum { STRIDE = FLOORS_MAX + 2 };
+    const int n = t->bench_case.building.n;
+    double X[DESIGNS * STRIDE];
+    SimTask tasks[DESIGNS];
+    Crew *crew;
+    Ensemble e;
+    SimResult *results = calloc(DESIGNS, sizeof *results);
+    if (!results)
+        return fail(err, STATUS_NO_MEMORY, "bench: out of memory");
+    for (int k = 0; k < t->n; k++) {
+        double *x = X + k * STRIDE;
+        bench_irregular_gaps((uint32_t)k, n, x);
+        x[n] = BENCH_WALL_BASE;
+        x[n + 1] = BENCH_WALL_TOP;
+        tasks[k] = (SimTask){SCENE_IMPACT, x};
+    }
+    Status status = crew_create(&crew, scene, threads, err);
+    const double start = clock_seconds();
+    if (status == STATUS_OK)
+        status = crew_run(crew, (size_t)t->n, tasks, results, err);
+    const double middle = clock_seconds();
+    if (status == STATUS_OK)
+        status = ensemble_run(crew, n, X, ENSEMBLE_MEMBERS, ENSEMBLE_CHANGE, 1, &e, NULL, err);
+    *all = middle - start;
+    *ensemble = clock_seconds() - middle;
+    crew_free(crew);
+    free(results);
+    return status;
+}
+
+/* What threads gain, and what the spread of one design costs. */
+static Status run_crews(Throughput *t, Err *err)
+{
+    const int threads = omp_get_num_procs();
+    double one, many, ensemble_one, ensemble_many;
+    Scene *scene;
+    TRY(scene_create(&scene, t->settings, t->whole, err));
+    Status status = time_crew(t, scene, 1, &one, &ensemble_one, err);
+    if (status == STATUS_OK)
+        status = time_crew(t, scene, threads, &many, &ensemble_many, err);
+    scene_free(scene);
+    TRY(status);
+    fprintf(t->out, "  threads         %.4g designs a second on 1, %.4g on %d: %.2f times\n", t->n / one, t->n / many,
+            threads, one / many);
+    fprintf(t->out, "  ensemble of %d   %.3g ms on 1 thread, %.3g ms on %d: %.2f and %.2f times one design\n",
+            ENSEMBLE_MEMBERS, 1e3 * ensemble_one, 1e3 * ensemble_many, threads, ensemble_one * t->n / one,
+            ensemble_many * t->n / one);
+    return STATUS_OK;
+}
+
+enum { J_COUNT = 3, JUDGED_ERRORS = J_COUNT + 1 }; /* J1, J2, J3 and the worst share */
+
+/* What one accuracy of fast misses in the window, design by design. */
+typedef struct {
+    double error[JUDGED_ERRORS][DESIGNS], seconds;
+    int beyond; /* designs with an error above what standard promises */
+} Missed;
+
+static void note_errors(Missed *m, int design, const RunErrors *e, double seconds)
+{
+    static const double PROMISED[JUDGED_ERRORS] = {1e-3, 3e-3, 2e-2, 1e-2};
+    int kept = 1;
+    for (int i = 0; i < JUDGED_ERRORS; i++) {
+        double worst = e->each[i];
+        for (int share = J_COUNT + 1; i == J_COUNT && share < BENCH_OBJECTIVES; share++)
+            worst = fmax(worst, e->each[share]);
+        m->error[i][design] = worst;
+        kept = kept && worst <= PROMISED[i];
+    }
+    m->beyond += !kept;
+    m->seconds += seconds;
+}
+
+static void print_missed(Throughput *t, const char *name, Missed *m)
+{
+    fprintf(t->out, "  %-10s %8.3g ms", name, 1e3 * m->seconds / t->n);
+    for (int i = 0; i < JUDGED_ERRORS; i++) {
+        const double middle = median(t->n, m->error[i]);
+        fprintf(t->out, "   %.0e %.0e %.0e", middle, m->error[i][t->n * 9 / 10], m->error[i][t->n - 1]);
+    }
+    fprintf(t->out, "   %d of %d\n", m->beyond, t->n);
+}
+
+/* How far coarse and standard are from fine in the window, over all designs. */
+static Status print_accuracies(Throughput *t, Err *err)
+{
+    static const Accuracy ACCURACY[] = {ACCURACY_COARSE, ACCURACY_STANDARD};
+    static const char *const NAME[] = {"coarse", "standard"};
+    Missed missed[2] = {0};
+    for (int k = 0; k < t->n; k++) {
+        TRY(take(t, k, 0, err));
+        TRY(timed_run(&t->bench_case, ENGINE_FAST, ACCURACY_FINE, 0, t->reference, err));
+        for (int a = 0; a < 2; a++) {
+            TRY(timed_run(&t->bench_case, ENGINE_FAST, ACCURACY[a], 0, t->seen, err));
+            const RunErrors e = run_errors(&t->bench_case, t->seen, t->reference);
+            note_errors(&missed[a], k, &e, t->seen->seconds);
+        }
+    }
+    fprintf(t->out, "\nerror of fast in the strong window, %d designs: median, 90 %%, most\n", t->n);
+    fprintf(t->out, "  %-10s %11s   %-17s   %-17s   %-17s   %-17s   %s\n", "accuracy", "per design", "J1", "J2", "J3",
+            "worst share", "beyond what standard promises");
+    for (int a = 0; a < 2; a++)
+        print_missed(t, NAME[a], &missed[a]);
+    return STATUS_OK;
+}
+
+/* Median over the judged designs of the error in the window. */
+static Status judge(Throughput *t, int engine, double tolerance, double *error, Err *err)
+{
+    double errors[JUDGED];
+    for (int k = 0; k < t->n_judged; k++) {
+        TRY(take(t, k, 0, err));
+        TRY(timed_run(&t->bench_case, ENGINE_FAST, ACCURACY_FINE, REFERENCE_STEPS, t->reference, err));
+        TRY(timed_run(&t->bench_case, engine, ACCURACY_STANDARD, tolerance, t->seen, err));
+        const RunErrors e = run_errors(&t->bench_case, t->seen, t->reference);
+        errors[k] = t->seen->result.outcome == RUN_OK && isfinite(e.objectives) ? e.objectives : HUGE_VAL;
+    }
+    *error = median(t->n_judged, errors);
+    return STATUS_OK;
+}
+
+/* The coarsest of a ladder of tolerances whose error is at most `allowed` (else the finest). */
+static Status equal_error(Throughput *t, int engine, const double ladder[LADDER], double allowed, double *tolerance,
+                          double *error, Err *err)
+{
+    for (int i = 0; i < LADDER; i++) {
+        *tolerance = ladder[i];
+        TRY(judge(t, engine, ladder[i], error, err));
+        if (*error <= allowed)
+            break;
+    }
+    return STATUS_OK;
+}
+
+/* Time of an engine over that of fast at standard accuracy, on the same designs, one after the other; designs on which
+ * it fails are left out and counted. */
+static Status compare(Throughput *t, const char *label, int engine, double tolerance, int designs, int whole, Err *err)
+{
+    double other = 0, fast = 0;
+    int finished = 0;
+    for (int k = 0; k < designs; k++) {
+        TRY(take(t, k, whole, err));
+        TRY(timed_run(&t->bench_case, ENGINE_FAST, ACCURACY_STANDARD, 0, t->reference, err));
+        TRY(timed_run(&t->bench_case, engine, ACCURACY_STANDARD, tolerance, t->seen, err));
+        if (t->seen->result.outcome != RUN_OK) {
+            fprintf(t->out, "  %s fails on design %d: %s\n", label, k, t->seen->result.reason);
+            continue;
+        }
+        fast += t->reference->seconds;
+        other += t->seen->seconds;
+        finished++;
+    }
+    if (finished > 0)
+        fprintf(t->out, "  %-34s %9.4g %10.4g ms %8.3g ms %8.4g x   %d designs, %.4g s\n", label, tolerance,
+                1e3 * other / finished, 1e3 * fast / finished, other / fast, finished, t->bench_case.duration);
+    return STATUS_OK;
+}
+
+static Status compare_all(Throughput *t, int quick, Err *err)
+{
+    double allowed, step, step_error, rtol, rtol_error, plain;
+    TRY(judge(t, ENGINE_FAST, 0, &allowed, err));
+    TRY(equal_error(t, ENGINE_ETDRK4, STEPS, allowed, &step, &step_error, err));
+    TRY(equal_error(t, ENGINE_ARKODE_IMEX, TOLERANCES, allowed, &rtol, &rtol_error, err));
+    TRY(judge(t, ENGINE_ETDRK4, PLAIN_STEP, &plain, err));
+    fprintf(t->out,
+            "\nerror in the strong window (%.3g s, median of %d designs; largest of J1..J3 and shares):\n"
+            "  fast standard %.1e, etdrk4 at %g %.1e, at %g %.1e, arkode_imex at %g %.1e\n\n",
+            fmin(WINDOW_S, (double)(t->window.n - 1) * t->window.dt_s), t->n_judged, allowed, PLAIN_STEP, plain, step,
+            step_error, rtol, rtol_error);
+    fprintf(t->out, "  %-34s %9s %13s %11s %10s\n", "against", "tolerance", "per design", "fast", "ratio");
+    TRY(compare(t, "plain ETDRK4", ENGINE_ETDRK4, PLAIN_STEP, quick ? 1 : 4, 1, err));
+    TRY(compare(t, "ETDRK4 at equal error", ENGINE_ETDRK4, step, quick ? 2 : 8, 1, err));
+    TRY(compare(t, "ARKODE IMEX at equal error", ENGINE_ARKODE_IMEX, rtol, quick ? 2 : 8, 1, err));
+    return compare(t, "CVODE BDF, strong window only", ENGINE_CVODE_BDF, BDF_RTOL, quick ? 1 : 2, 0, err);
+}
+
+Status throughput_print(const SceneOptions *s, const Motion *motion, int quick, int count, FILE *out, Err *err)
+{
+    Throughput t = {.settings = s,
+                    .whole = motion,
+                    .n = quick || count ? DESIGNS_QUICK : DESIGNS,
+                    .n_judged = quick ? 2 : JUDGED,
+                    .out = out};
+    double start;
+    t.window = bench_window(motion, &start);
+    t.seen = malloc(2 * sizeof *t.seen);
+    if (!t.seen)
+        return fail(err, STATUS_NO_MEMORY, "bench: out of memory");
+    t.reference = t.seen + 1;
+    Status status = bench_case_open(&t.bench_case, bench_kind(2), s, motion, quick, err);
+    if (status == STATUS_OK)
+        status = run_fast(&t, err);
+    if (status == STATUS_OK && !count)
+        status = run_crews(&t, err);
+    if (status == STATUS_OK && !count)
+        status = print_accuracies(&t, err);
+    if (status == STATUS_OK && !count)
+        status = compare_all(&t, quick, err);
+    bench_case_close(&t.bench_case);
+    free(t.seen);
+    return status;
+}

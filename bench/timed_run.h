@@ -1,0 +1,37 @@
+/* bench/timed_run.h -- one timed run of an engine on a benchmark case, and its errors against another.
+ *
+ * Threads  none: timings want the machine to themselves */
+#ifndef IMTET_BENCH_TIMED_RUN_H
+#define IMTET_BENCH_TIMED_RUN_H
+
+#include "bench/case.h"
+
+enum { BENCH_OBJECTIVES = 6, BENCH_ONSETS = 24, BENCH_FIRST = 3 };
+
+typedef struct {
+    SimResult result;
+    double seconds;                    /* of processor time: the median of three where they are short */
+    double state[4 * FLOORS_MAX];      /* q and q' at the end */
+    double energy;                     /* [J] of that state, without the contacts */
+    ContactOnset onsets[BENCH_ONSETS]; /* the first */
+    int n_onsets;
+} TimedRun;
+
+typedef struct {
+    double each[BENCH_OBJECTIVES]; /* relative: J1, J2, J3, shares of mode 1, modes 5-10, core */
+    double objectives;             /* the largest of them */
+    double state; /* at the end: root of the energy of the difference over that of the whole; NaN: unknown */
+    double first_s, first_speed; /* first three onsets: largest error in time, relative in speed; NaN: unknown */
+} RunErrors;
+
+extern const char *const BENCH_OBJECTIVE_NAMES[BENCH_OBJECTIVES];
+
+Status timed_run(const BenchCase *bench_case, int engine, Accuracy accuracy, double tolerance, TimedRun *out, Err *err);
+
+/* A share below 0.1 % of the input energy is compared as if it were 0.1 %. */
+RunErrors run_errors(const BenchCase *bench_case, const TimedRun *o, const TimedRun *reference);
+
+/* [s] of this thread: less disturbed by other work on the machine than wall time. */
+double processor_seconds(void);
+
+#endif

@@ -1,0 +1,172 @@
+#include "sim/cvode/contacts.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/clones.h"
+
+CLONED double dot_product(int n, const double a[], const double b[])
+{
+    double sum[8] = {0};
+    int i = 0;
+    for (; i + 8 <= n; i += 8)
+        for (int k = 0; k < 8; k++)
+            sum[k] += a[i + k] * b[i + k];
+    for (; i < n; i++)
+        sum[0] += a[i] * b[i];
+    return ((sum[0] + sum[4]) + (sum[1] + sum[5])) + ((sum[2] + sum[6]) + (sum[3] + sum[7]));
+}
+
+typedef double v8 __attribute__((vector_size(64)));
+
+/* Three vectors of floors from a pair of sums each: six chains of multiply-adds hide their latency. */
+CLONED void floors_from_modes(const SimModel *model, int first, int end, const double x[], double out[])
+{
+    const size_t stride = (size_t)model->n_pad / 8;
+    for (size_t block = 0; block < stride; block += 3) {
+        const size_t b = block + 1 < stride ? 1 : 0, c = block + 2 < stride ? 2 : 0; /* 0: once more the first */
+        const v8 *row = (const v8 *)model->R + (size_t)first * stride + block;
+        v8 a0 = {0}, b0 = {0}, c0 = {0}, a1 = {0}, b1 = {0}, c1 = {0};
+        int i = first;
+        for (; i + 2 <= end; i += 2, row += 2 * stride) {
+            a0 += row[0] * x[i];
+            b0 += row[b] * x[i];
+            c0 += row[c] * x[i];
+            a1 += row[stride] * x[i + 1];
+            b1 += row[stride + b] * x[i + 1];
+            c1 += row[stride + c] * x[i + 1];
+        }
+        if (i < end) {
+            a0 += row[0] * x[i];
+            b0 += row[b] * x[i];
+            c0 += row[c] * x[i];
+        }
+        const v8 sum[3] = {a0 + a1, b0 + b1, c0 + c1};
+        const size_t rest = stride - block < 3 ? stride - block : 3;
+        memcpy(out + 8 * block, sum, rest * sizeof sum[0]);
+    }
+}
+
+double relative_displacement(const SimModel *model, int j, const double q[])
+{
+    return dot_product(model->m, model->RT + (size_t)j * (size_t)model->m_pad, q);
+}
+
+CLONED static void push_modes(int m, const double row[], double f, double g[])
+{
+    for (int i = 0; i < m; i++)
+        g[i] += f * row[i];
+}
+
+/* Of floor j towards side s when it gets there, by constant acceleration from the start of the step; *wait [s] until.
+ */
+static double approach(const Contacts *c, int j, int s, double *wait)
+{
+    const double way = fmax(c->model->gap[j] - s * relative_displacement(c->model, j, c->q_before), 0);
+    const double v = s * relative_displacement(c->model, j, c->v_before);
+    const double square = v * v + 2 * way * s * relative_displacement(c->model, j, c->a_before);
+    const double speed = square > 0 ? sqrt(square) : 0;
+    *wait = v + speed > 0 ? 2 * way / (v + speed) : 0;
+    return v < 0 && way == 0 ? 0 : speed;
+}
+
+double contacts_speed(const Contacts *c, int j, int s)
+{
+    double wait;
+    return c->side[j] == s ? c->v0[j] : fmax(approach(c, j, s, &wait), c->model->contact.v0_floor);
+}
+
+/* The force of a floor that touches on side s with penetration p > 0, added to g. */
+static void add_contact(const Contacts *c, int j, int s, double p, const double v[], double g[], ContactPower *power)
+{
+    const SimModel *model = c->model;
+    const double p_dot = s * relative_displacement(model, j, v);
+    const ContactForce f = contact_force(&model->contact, model->mass_eff[j], p, p_dot, contacts_speed(c, j, s));
+    push_modes(model->m, model->RT + (size_t)j * (size_t)model->m_pad, -s * f.force, g);
+    power->lost += (f.raw - f.hertz) * p_dot;
+    power->clamp += (f.force - f.raw) * p_dot;
+}
+
+ContactPower contacts_add(const Contacts *c, const double q[], const double v[], double g[])
+{
+    const SimModel *model = c->model;
+    ContactPower power = {0};
+    if (model->nc == 0)
+        return power;
+    double w[FLOORS_MAX];
+    if (c->by_overlap)
+        floors_from_modes(model, 0, model->m, q, w);
+    for (int j = 0; j < model->n; j++) {
+        if (!c->by_overlap && c->side[j]) {
+            const double p = c->side[j] * relative_displacement(model, j, q) - model->gap[j];
+            if (p > 0) /* past the root: the law's continuation, continuous with its first derivative */
+                add_contact(c, j, c->side[j], p, v, g, &power);
+        } else if (c->by_overlap && fabs(w[j]) > model->gap[j]) {
+            add_contact(c, j, w[j] > 0 ? 1 : -1, fabs(w[j]) - model->gap[j], v, g, &power);
+        }
+    }
+    return power;
+}
+
+static void close_gap(Contacts *c, int j, int side, double t, double speed)
+{
+    c->side[j] = side;
+    c->v0[j] = fmax(speed, c->model->contact.v0_floor);
+    c->impacts++;
+    c->floored += speed < c->model->contact.v0_floor;
+    if (c->log && c->log->n < c->log->n_max)
+        c->log->at[c->log->n++] = (ContactOnset){.floor = j, .t = t, .speed = speed};
+}
+
+int contacts_switch(Contacts *c, double t, const double q[], const double v[], const int found[])
+{
+    const SimModel *model = c->model;
+    int flipped = 0;
+    for (int j = 0; j < model->n; j++) {
+        const double w = relative_displacement(model, j, q), w_dot = relative_displacement(model, j, v);
+        const int side = c->side[j] ? c->side[j] : w > 0 ? 1 : -1;
+        const double p = side * w - model->gap[j], p_dot = side * w_dot;
+        if (!c->side[j] && (found[j] || (p > 0 && p_dot > 0))) {
+            close_gap(c, j, side, t, p_dot);
+            flipped = 1;
+        } else if (c->side[j] && (found[j] || (p < 0 && p_dot <= 0))) {
+            c->side[j] = 0;
+            if (!(model->gap[j] > 0)) /* leaves one side onto the other */
+                close_gap(c, j, -side, t, -p_dot);
+            flipped = 1;
+        }
+    }
+    return flipped;
+}
+
+void contacts_settle(Contacts *c, const double w[])
+{
+    double wait;
+    for (int j = 0; j < c->model->n && c->model->nc > 0; j++) {
+        const int s = w[j] > 0 ? 1 : -1;
+        if (!(fabs(w[j]) > c->model->gap[j])) {
+            c->side[j] = 0;
+        } else if (c->side[j] != s) {
+            const double speed = approach(c, j, s, &wait);
+            close_gap(c, j, s, c->t_before + wait, speed);
+        }
+    }
+}
+
+int contacts_any(const Contacts *c)
+{
+    int any = 0;
+    for (int j = 0; j < c->model->n; j++)
+        any |= c->side[j];
+    return any != 0;
+}
+
+double contacts_stored(const Contacts *c, const double q[])
+{
+    double stored = 0;
+    for (int j = 0; j < c->model->n && c->model->nc > 0; j++)
+        if (c->side[j])
+            stored += contact_stored(&c->model->contact,
+                                     c->side[j] * relative_displacement(c->model, j, q) - c->model->gap[j]);
+    return stored;
+}

@@ -1,0 +1,60 @@
+/* sim/cvode/contacts.h -- which floors touch the core, and the contacts' forces and powers, for step-by-step engines.
+ *
+ * Two ways to detect contact:
+ *   by event     contacts_switch after every step; in between only floors whose contact is closed count, with the law's
+ *                smooth continuation past the root
+ *   by overlap   (by_overlap = 1) any floor that overlaps the core counts at once, its approach speed extrapolated from
+ *                the start of the step to the gap, v0^2 = w'^2 + 2 w'' (gap - |w|); contacts_settle after every step
+ *                keeps it
+ *
+ * f_j = -s F, as in sim/model.h. Threads  no state but the struct */
+#ifndef IMTET_SIM_CVODE_CONTACTS_H
+#define IMTET_SIM_CVODE_CONTACTS_H
+
+#include "sim/engine.h"
+
+enum { MODES_MAX = 2 * FLOORS_MAX };
+
+typedef struct {
+    const SimModel *model;
+    int by_overlap;
+    int side[FLOORS_MAX];  /* 0 open, else the sign of w while closed */
+    double v0[FLOORS_MAX]; /* approach speed when it closed, at least v0_floor [m/s] */
+    double t_before;       /* [s] by overlap only: the start of the step */
+    double q_before[MODES_MAX], v_before[MODES_MAX], a_before[MODES_MAX]; /* modal motion there */
+    long impacts, floored;                                                /* contact onsets, those with v0 limited */
+    OnsetLog *log;                                                        /* NULL: none */
+} Contacts;
+
+/* Where the contacts' power goes [W]: F p' = k p^1.5 p' (stored) + (F_raw - k p^1.5) p' (lost)
+ *                                           + (F - F_raw) p' (clamp, never positive) */
+typedef struct {
+    double lost, clamp;
+} ContactPower;
+
+/* Eight partial sums, then their sum: vectorized, and in the same order on every processor. */
+double dot_product(int n, const double a[], const double b[]);
+
+/* out_j = sum_{first <= i < end} R_ij x_i for every floor; out (n_pad). */
+void floors_from_modes(const SimModel *model, int first, int end, const double x[], double out[]);
+
+double relative_displacement(const SimModel *model, int j, const double q[]);
+
+/* Adds the modal forces R_ij f_j at the state q, q' to g. */
+ContactPower contacts_add(const Contacts *c, const double q[], const double v[], double g[]);
+
+/* By overlap: the approach speed that a force on floor j, touching on side s, is to be computed with. */
+double contacts_speed(const Contacts *c, int j, int s);
+
+/* By event: flips the floors whose root was found. A floor whose root was not seen, because it was zero when the
+ * integrator started or because two roots lay in one step (a graze), is flipped too, at the end of that step. Returns
+ * whether any flipped. */
+int contacts_switch(Contacts *c, double t, const double q[], const double v[], const int found[]);
+
+/* By overlap, at the end of a step where w (n_pad): what overlaps is closed, what does not is open. */
+void contacts_settle(Contacts *c, const double w[]);
+
+int contacts_any(const Contacts *c);
+double contacts_stored(const Contacts *c, const double q[]);
+
+#endif

@@ -1,0 +1,67 @@
+#include "sim/cvode/energy_account.h"
+
+#include <string.h>
+
+#include "base/clones.h"
+
+void energy_account_start(EnergyAccount *l, const SimModel *model)
+{
+    memset(l, 0, sizeof *l);
+    l->model = model;
+    l->peaks.n = model->n;
+}
+
+void energy_account_peaks(EnergyAccount *l, double t, const double q[], const double v[], const double contact[])
+{
+    const SimModel *model = l->model;
+    PeakPoint *point = peak_monitor_next(&l->peaks);
+    double pull[MODES_MAX], core[FLOORS_MAX];
+    for (int i = 0; i < model->nb; i++)
+        pull[i] = contact[i] - model->omega[i] * (2 * model->zeta[i] * v[i] + model->omega[i] * q[i]);
+    point->t = t;
+    floors_from_modes(model, 0, model->nb, q, point->of[PEAK_DISPLACEMENT]);
+    floors_from_modes(model, 0, model->nb, pull, point->of[PEAK_ACCELERATION]);
+    floors_from_modes(model, model->nb, model->m, q, core);
+    for (int j = 0; j < model->n; j++)
+        point->of[PEAK_RELATIVE][j] = point->of[PEAK_DISPLACEMENT][j] + core[j];
+    peak_monitor_add(&l->peaks);
+}
+
+/* Returns sum gamma q'. */
+CLONED static double add_damping(const SimModel *model, double seconds, const double v[], double damped[])
+{
+    for (int i = 0; i < model->m; i++)
+        damped[i] += seconds * (2 * model->zeta[i] * model->omega[i] * v[i] * v[i]);
+    return dot_product(model->m, model->gamma, v);
+}
+
+void energy_account_add(EnergyAccount *l, double seconds, const double v[], double a, const ContactPower *power)
+{
+    l->input -= seconds * a * add_damping(l->model, seconds, v, l->damped);
+    l->lost += seconds * power->lost;
+    l->clamp += seconds * power->clamp;
+}
+
+void energy_account_report(const EnergyAccount *l, const Contacts *c, const EngineOptions *options, const double q[],
+                           const double v[], SimResult *result)
+{
+    const SimModel *model = l->model;
+    result->steps = l->steps;
+    result->force_evaluations = l->evaluations;
+    result->impacts = c->impacts;
+    result->v0_limited = c->floored;
+    result->input_energy_j = l->input;
+    result->contact_loss_j = l->lost;
+    result->clamp_j = l->clamp;
+    for (int i = 0; i < model->m; i++)
+        result->kinetic_strain_j += 0.5 * (v[i] * v[i] + pow(model->omega[i] * q[i], 2));
+    result->contact_stored_j = contacts_stored(c, q);
+    for (int j = 0; j < model->n && model->nc > 0; j++)
+        result->indentation_max_m = fmax(result->indentation_max_m, l->peaks.peak[PEAK_RELATIVE][j] - model->gap[j]);
+    peak_monitor_report(&l->peaks, result);
+    energy_balance_close(result, model->nb, model->nc, l->damped);
+    if (options->end_state) {
+        memcpy(options->end_state, q, sizeof *q * (size_t)model->m);
+        memcpy(options->end_state + model->m, v, sizeof *v * (size_t)model->m);
+    }
+}

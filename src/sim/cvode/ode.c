@@ -1,0 +1,414 @@
+#include "sim/cvode/ode.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/denormal.h"
+#include "base/clones.h"
+#include "sim/cvode/vectors.h"
+
+/* So many steps in a row, each shorter than this share of the time, get nowhere: events that breed events. */
+enum { STUCK_MAX = 2000 };
+static const double NOWHERE = 1e-9;
+
+double *ode_values(N_Vector v)
+{
+    return NV_DATA_S(v);
+}
+
+int ode_size(const Ode *o)
+{
+    return o->with_energies ? 3 * o->model->m + 3 : 2 * o->model->m;
+}
+
+int ode_n_roots(const Ode *o)
+{
+    return o->locate && o->model->nc > 0 ? o->model->n : 0;
+}
+
+/* Ground acceleration; where the integrator stops at samples, the present interval's straight line to both sides. */
+static double ground(const Ode *o, double t)
+{
+    const Motion *motion = o->motion;
+    const long last = (long)motion->n - 2;
+    const long k = o->stop_at_samples ? o->interval : (long)floor(t / motion->dt_s);
+    if (k > last || k < 0)
+        return 0;
+    const double slope = (motion->accel[k + 1] - motion->accel[k]) / motion->dt_s;
+    return motion->accel[k] + slope * (t - (double)k * motion->dt_s);
+}
+
+CLONED void ode_structure(const SimModel *model, const double q[], const double v[], double dv[])
+{
+#pragma GCC ivdep
+    for (int i = 0; i < model->m; i++)
+        dv[i] = -model->omega[i] * (2 * model->zeta[i] * v[i] + model->omega[i] * q[i]);
+}
+
+CLONED static double energy_rates(const SimModel *model, const double v[], double damped[])
+{
+#pragma GCC ivdep
+    for (int i = 0; i < model->m; i++)
+        damped[i] = 2 * model->zeta[i] * model->omega[i] * v[i] * v[i];
+    return dot_product(model->m, model->gamma, v);
+}
+
+CLONED int ode_add_loads(Ode *o, double t, const double y[], double dv[], double *a, ContactPower *power)
+{
+    const SimModel *model = o->model;
+    double check = 0;
+    *a = ground(o, t);
+    *power = contacts_add(&o->contacts, y, y + model->m, dv);
+    for (int i = 0; i < model->m; i++) {
+        dv[i] -= model->gamma[i] * *a;
+        check += dv[i];
+    }
+    o->account.evaluations++;
+    o->finite = isfinite(check) != 0;
+    return o->finite ? 0 : -1;
+}
+
+int ode_right_hand_side(sunrealtype t, N_Vector y_vector, N_Vector y_dot_vector, void *user)
+{
+    Ode *o = user;
+    const SimModel *model = o->model;
+    const int m = model->m;
+    const double *y = ode_values(y_vector), *v = y + m;
+    double *dq = ode_values(y_dot_vector), *dv = dq + m, a;
+    ContactPower power;
+    memcpy(dq, v, sizeof *v * (size_t)m);
+    ode_structure(model, y, v, dv);
+    const int failed = ode_add_loads(o, t, y, dv, &a, &power);
+    if (o->with_energies) {
+        double *rest = dv + 2 * m;
+        rest[0] = -a * energy_rates(model, v, dv + m);
+        rest[1] = power.lost;
+        rest[2] = power.clamp;
+    }
+    return failed;
+}
+
+/* One root per floor, its penetration: rising through zero when open, falling when closed. */
+int ode_penetrations(sunrealtype t, N_Vector y, sunrealtype *p, void *user)
+{
+    (void)t;
+    Ode *o = user;
+    const SimModel *model = o->model;
+    double check = 0, w[FLOORS_MAX];
+    floors_from_modes(model, 0, model->m, ode_values(y), w);
+    for (int j = 0; j < model->n; j++) {
+        const int side = o->contacts.side[j];
+        p[j] = (side ? side * w[j] : fabs(w[j])) - model->gap[j];
+        check += p[j];
+    }
+    o->finite = isfinite(check) != 0; /* SUNDIALS takes NaN for "no root" */
+    return o->finite ? 0 : -1;
+}
+
+void ode_keep_message(int code, const char *module, const char *function, char *text, void *user)
+{
+    (void)module;
+    (void)function;
+    Ode *o = user;
+    if (code < 0)
+        snprintf(o->message, sizeof o->message, "%s", text);
+}
+
+/* weight_i = 1 / (rtol |y_i| + tolerance_i) */
+CLONED static void set_weights(long n, double rtol, const double y[], const double tolerance[], double weight[])
+{
+    for (long i = 0; i < n; i++)
+        weight[i] = 1 / (rtol * fabs(y[i]) + tolerance[i]);
+}
+
+int ode_error_weights(N_Vector y, N_Vector weight, void *user)
+{
+    const Ode *o = user;
+    set_weights(NV_LENGTH_S(y), o->rtol, ode_values(y), ode_values(o->tolerance), ode_values(weight));
+    return 0;
+}
+
+/* Error allowed in every component, as a share `level` of the scale that the motion sets: speed v = PGA/w_1, so that
+ *     q_i' : sqrt(M) v      q_i : sqrt(M) v / w_i      energies : M v^2,        M = sum gamma_i^2  [kg] */
+static void set_tolerances(const Ode *o, double level)
+{
+    const SimModel *model = o->model;
+    const int m = model->m;
+    double mass = 0, pga = 0, slowest = HUGE_VAL, *tolerance = ode_values(o->tolerance);
+    for (int i = 0; i < m; i++) {
+        mass += model->gamma[i] * model->gamma[i];
+        slowest = fmin(slowest, fmax(model->omega[i], 1));
+    }
+    for (size_t k = 0; k < o->motion->n; k++)
+        pga = fmax(pga, fabs(o->motion->accel[k]));
+    const double speed = (pga > 0 ? pga : 1) / slowest, momentum = sqrt(fmax(mass, 1e-6)) * speed;
+    for (int i = 0; i < m; i++) {
+        tolerance[i] = level * momentum / fmax(model->omega[i], 1);
+        tolerance[m + i] = level * momentum;
+    }
+    for (int i = 2 * m; i < ode_size(o); i++)
+        tolerance[i] = level * momentum * momentum;
+}
+
+int ode_prepare(Ode *o, const double rtol[3])
+{
+    const SimModel *model = o->model;
+    double fastest = 1;
+    for (int i = 0; i < model->m; i++)
+        fastest = fmax(fastest, model->omega[i] * (1 + 2 * model->zeta[i]));
+    o->steps_max = (long)fmin(1e6 + 4 * fastest * o->options->duration, 1e12); /* explicit steps are near 1/fastest */
+    o->contacts = (Contacts){.model = model, .by_overlap = !o->locate, .log = o->options->onsets};
+    energy_account_start(&o->account, model);
+    if (SUNContext_Create(NULL, &o->context))
+        return -1;
+    o->y = N_VNew_Serial(ode_size(o), o->context);
+    o->tolerance = N_VNew_Serial(ode_size(o), o->context);
+    if (!o->y || !o->tolerance)
+        return -1;
+    vectors_use_own_loops(o->y);
+    o->between = N_VClone(o->y);
+    if (!o->between)
+        return -1;
+    N_VConst(0, o->y);
+    o->rtol = o->options->tolerance > 0 ? o->options->tolerance : rtol[o->options->accuracy];
+    set_tolerances(o, 0.1 * o->rtol);
+    return 0;
+}
+
+void ode_release(Ode *o)
+{
+    N_VDestroy(o->y);
+    N_VDestroy(o->tolerance);
+    N_VDestroy(o->between);
+    SUNContext_Free(&o->context);
+}
+
+/* Notes the peaks at a state, and its powers for so many seconds. */
+static void sample(Ode *o, double t, const double y[], double seconds)
+{
+    const SimModel *model = o->model;
+    double contact[MODES_MAX] = {0};
+    o->a_sampled = ground(o, t);
+    o->power_sampled = contacts_add(&o->contacts, y, y + model->m, contact);
+    memcpy(o->v_sampled, y + model->m, sizeof *y * (size_t)model->m);
+    energy_account_peaks(&o->account, t, y, y + model->m, contact);
+    if (!o->with_energies)
+        energy_account_add(&o->account, seconds, o->v_sampled, o->a_sampled, &o->power_sampled);
+}
+
+/* The step just made from t_before to t, by the integrator's own interpolant: Gauss-Lobatto, four points a panel. */
+static int sample_step(Ode *o, double t_before, double t)
+{
+    static const double X[] = {0.27639320225002103, 0.72360679774997897, 1}, WEIGHT[] = {5 / 12.0, 5 / 12.0, 1 / 12.0};
+    const double panels = ceil((t - t_before) / o->panel), h = (t - t_before) / panels;
+    for (double k = 0; k < panels; k++) {
+        if (!o->with_energies)
+            energy_account_add(&o->account, h / 12, o->v_sampled, o->a_sampled, &o->power_sampled);
+        for (int i = 0; i < 3; i++) {
+            const int at_end = i == 2 && k == panels - 1;
+            const double at = at_end ? t : t_before + h * (k + X[i]);
+            if (!at_end && o->solver->interpolate(o, at, o->between))
+                return -1;
+            sample(o, at, ode_values(at_end ? o->y : o->between), h * WEIGHT[i]);
+        }
+    }
+    return 0;
+}
+
+static int start_anew(Ode *o, double t, double t_stop)
+{
+    int directions[FLOORS_MAX];
+    for (int j = 0; j < o->model->n; j++)
+        directions[j] = o->contacts.side[j] ? -1 : 1;
+    if (o->solver->restart(o, t) || (ode_n_roots(o) > 0 && o->solver->look_for(o, directions)))
+        return -1;
+    return o->solver->stop_at(o, t_stop);
+}
+
+/* For the approach speeds of gaps that close unseen in the next step. */
+static void remember_start(Ode *o, double t)
+{
+    const SimModel *model = o->model;
+    Contacts *c = &o->contacts;
+    const double *y = ode_values(o->y);
+    c->t_before = t;
+    memcpy(c->q_before, y, sizeof *y * (size_t)model->m);
+    memcpy(c->v_before, y + model->m, sizeof *y * (size_t)model->m);
+    ode_structure(model, y, y + model->m, c->a_before);
+    contacts_add(c, y, y + model->m, c->a_before);
+    for (int i = 0; i < model->m; i++)
+        c->a_before[i] -= model->gamma[i] * ground(o, t);
+}
+
+/* Contacts at the end of a step, `found` those whose root was: 1 where the integrator has to start anew. */
+static int switch_contacts(Ode *o, double t, const int found[])
+{
+    double w[FLOORS_MAX];
+    const double *y = ode_values(o->y);
+    if (o->model->nc == 0)
+        return 0;
+    if (o->locate)
+        return contacts_switch(&o->contacts, t, y, y + o->model->m, found);
+    floors_from_modes(o->model, 0, o->model->m, y, w);
+    contacts_settle(&o->contacts, w);
+    return 0;
+}
+
+typedef struct {
+    double w[FLOORS_MAX], w_dot[FLOORS_MAX];
+} Floors;
+
+static void floors_now(const Ode *o, Floors *f)
+{
+    const SimModel *model = o->model;
+    if (!o->locate || model->nc == 0)
+        return;
+    floors_from_modes(model, 0, model->m, ode_values(o->y), f->w);
+    floors_from_modes(model, 0, model->m, ode_values(o->y) + model->m, f->w_dot);
+}
+
+/* The time in (low, high) where side w - level, or side w' with `speed`, of floor j changes sign, by dense output; the
+ * end where it is positive. */
+static double change_of_sign(Ode *o, int j, int side, int speed, double level, double low, double high)
+{
+    const SimModel *model = o->model;
+    for (int i = 0; i < 60 && high - low > 1e-15 * high; i++) {
+        const double mid = 0.5 * (low + high);
+        if (o->solver->interpolate(o, mid, o->between))
+            return high;
+        const double *y = ode_values(o->between) + (speed ? model->m : 0);
+        const int past =
+            speed ? side * relative_displacement(model, j, y) < 0 : side * relative_displacement(model, j, y) > level;
+        *(past ? &high : &low) = mid;
+    }
+    return high;
+}
+
+/* A top that passes the gap by less than this share of it is rounding, which would open the contact again at once. */
+static const double GRAZE = 1e-11;
+
+/* When the gap of an open floor closed, where its path has turned back within the step; else infinity. */
+static double unseen_closing(Ode *o, int j, double t_before, double t, const Floors *from, const Floors *to)
+{
+    const double gap = o->model->gap[j], third = (t - t_before) / 3;
+    const int side = to->w[j] > 0 ? 1 : -1;
+    if (o->contacts.side[j] || !(side * from->w_dot[j] > 0 && side * to->w_dot[j] < 0) || side * from->w[j] > gap ||
+        side * to->w[j] > gap || /* the cubic's control points enclose it */
+        fmax(side * (from->w[j] + third * from->w_dot[j]), side * (to->w[j] - third * to->w_dot[j])) <= gap)
+        return HUGE_VAL;
+    const double top = change_of_sign(o, j, side, 1, 0, t_before, t);
+    if (o->solver->interpolate(o, top, o->between) ||
+        !(side * relative_displacement(o->model, j, ode_values(o->between)) > gap * (1 + GRAZE)))
+        return HUGE_VAL;
+    return change_of_sign(o, j, side, 0, gap, t_before, top);
+}
+
+/* A gap that closes and opens again inside one step changes no sign that a root is found by. Goes back to the first
+ * such closing, if any: 1, and found[] says which floor. */
+static int go_back(Ode *o, double t_before, double *t, const Floors *from, const Floors *to, int found[])
+{
+    double first = HUGE_VAL;
+    int floor = -1;
+    for (int j = 0; j < ode_n_roots(o); j++) {
+        const double closing = unseen_closing(o, j, t_before, *t, from, to);
+        if (closing < first) {
+            first = closing;
+            floor = j;
+        }
+    }
+    if (floor < 0 || o->solver->interpolate(o, first, o->y))
+        return 0;
+    found[floor] = 1;
+    *t = first;
+    return 1;
+}
+
+/* From *t to t_stop. */
+static RunOutcome cross(Ode *o, double *t, double t_stop)
+{
+    if (o->solver->stop_at(o, t_stop))
+        return RUN_ENGINE_FAILED;
+    Floors from, to;
+    floors_now(o, &from);
+    while (t_stop - *t > 1e-12 * (1 + t_stop)) {
+        if (o->account.steps++ >= o->steps_max)
+            return RUN_OUT_OF_STEPS;
+        const double t_before = *t;
+        if (o->stuck >= STUCK_MAX)
+            return RUN_ENGINE_FAILED;
+        if (!o->locate)
+            remember_start(o, t_before);
+        const int flag = o->solver->step(o, t_stop, t);
+        if (flag < 0) /* it has tried again with shorter steps before it says so */
+            return o->finite ? RUN_ENGINE_FAILED : RUN_NOT_FINITE;
+        int found[FLOORS_MAX] = {0};
+        floors_now(o, &to);
+        if (go_back(o, t_before, t, &from, &to, found))
+            floors_now(o, &to);
+        else if (flag == ODE_ROOT)
+            o->solver->found(o, found);
+        from = to;
+        if (sample_step(o, t_before, *t))
+            return RUN_ENGINE_FAILED;
+        o->stuck = *t - t_before < NOWHERE * (1 + *t) ? o->stuck + 1 : 0;
+        if (switch_contacts(o, *t, found) && start_anew(o, *t, t_stop))
+            return RUN_ENGINE_FAILED;
+    }
+    return RUN_OK;
+}
+
+/* Every straight stretch of the motion in turn, or the motion as a whole; then the ground at rest. */
+static RunOutcome walk(Ode *o)
+{
+    const double duration = o->options->duration, dt = o->motion->dt_s;
+    const long samples = (long)o->motion->n;
+    double t = 0;
+    sample(o, 0, ode_values(o->y), 0);
+    if (start_anew(o, 0, duration))
+        return RUN_ENGINE_FAILED;
+    for (long k = o->stop_at_samples ? 0 : samples - 2; k + 1 < samples && t < duration; k++) {
+        o->interval = k;
+        const RunOutcome outcome = cross(o, &t, fmin((double)(k + 1) * dt, duration));
+        if (outcome != RUN_OK)
+            return outcome;
+    }
+    o->interval = samples;
+    if (t < duration && start_anew(o, t, duration)) /* the acceleration may jump */
+        return RUN_ENGINE_FAILED;
+    return cross(o, &t, duration);
+}
+
+static void explain(const Ode *o, double t, SimResult *result)
+{
+    if (result->outcome == RUN_OUT_OF_STEPS)
+        snprintf(result->reason, sizeof result->reason, "t = %.6g s: %ld steps did not reach %g s", t, o->account.steps,
+                 o->options->duration);
+    else if (result->outcome == RUN_NOT_FINITE)
+        snprintf(result->reason, sizeof result->reason, "t = %.6g s: motion or response is not a finite number", t);
+    else if (o->stuck >= STUCK_MAX)
+        snprintf(result->reason, sizeof result->reason, "t = %.6g s: %d steps in a row got nowhere", t, STUCK_MAX);
+    else
+        snprintf(result->reason, sizeof result->reason, "t = %.6g s: %s: %s", t, o->solver->package, o->message);
+}
+
+Status ode_run(Ode *o, SimResult *result)
+{
+    const int m = o->model->m;
+    const double *y = ode_values(o->y);
+    const unsigned mode = denormal_off();
+    result->outcome = walk(o);
+    denormal_restore(mode);
+    if (result->outcome != RUN_OK) {
+        explain(o, o->account.peaks.count ? o->account.peaks.ring[(o->account.peaks.count + 2) % 3].t : 0, result);
+        return STATUS_OK;
+    }
+    if (o->with_energies) {
+        memcpy(o->account.damped, y + 2 * m, sizeof *y * (size_t)m);
+        o->account.input = y[3 * m];
+        o->account.lost = y[3 * m + 1];
+        o->account.clamp = y[3 * m + 2];
+    }
+    energy_account_report(&o->account, &o->contacts, o->options, y, y + m, result);
+    return STATUS_OK;
+}
