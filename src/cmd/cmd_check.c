@@ -1,115 +1,361 @@
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
+#include "base/list.h"
 #include "base/units.h"
 #include "cmd/commands.h"
-#include "simulator/subject.h"
-#include "scene/building.h"
+#include "cmd/show.h"
+#include "scene/design.h"
 #include "scene/motion_source.h"
+#include "scene/summary.h"
 #include "settings/settings.h"
+#include "sim/sim.h"
+#include "simulator/subject.h"
 
 typedef struct {
-    int n;
+    int as_json;
+    json_t *out, *faults, *warnings;
     Status fatal; /* no fault of the configuration: nothing more can be said about it */
-} Faults;
+} Check;
 
-static int note(Faults *faults, Status status, const char *key, const Err *e)
+/* The scene that a tower's configuration makes. */
+typedef struct {
+    const Settings *s;
+    Building building;
+    Motion motion;
+    double recorded_g;        /* its peak before scaling */
+    double x[FLOORS_MAX + 2]; /* a design to try */
+    SceneSummary summary;
+} CheckedScene;
+
+static const double GOLDEN_RATIO = 0.6180339887498949; /* its multiples modulo 1 are evenly spread */
+
+/* ---- findings ------------------------------------------------------------------------------------------------- */
+
+static void fault(Check *c, const char *text)
 {
-    if (status != STATUS_OK) {
-        fprintf(stderr, "%s: %s\n", key, e->text);
-        faults->n++;
-        faults->fatal = status == STATUS_NO_MEMORY ? status : faults->fatal;
-    }
-    return status == STATUS_OK;
+    json_array_append_new(c->faults, json_string(text));
+    if (!c->as_json)
+        fprintf(stderr, "%s\n", text);
 }
 
-static int check_building(const Settings *s, Faults *faults)
+static int note(Check *c, Status status, const char *key, const Err *e)
 {
-    Err e = {0};
-    Building b;
-    if (!note(faults, building_load(&b, s->building.model, &e), "building.model", &e))
-        return 0;
-    printf("building  %s: %d floors, first mode %.4f Hz\n", s->building.model, b.n, b.omega[0] / (2 * M_PI));
-    building_free(&b);
-    return 1;
-}
-
-static int check_motion(const Settings *s, Faults *faults)
-{
-    Err e = {0};
-    Motion m = {0};
-    Status status = motion_open(&m, &s->motion, &e);
+    char text[sizeof e->text + 64];
     if (status == STATUS_OK)
-        status = motion_prepare(&m, s->motion.pga_g, s->motion.stretch, &e);
-    if (!note(faults, status, "motion.record", &e)) {
-        motion_free(&m);
-        return 0;
+        return 1;
+    snprintf(text, sizeof text, "%s: %s", key, e->text);
+    fault(c, text);
+    c->fatal = status == STATUS_NO_MEMORY ? status : c->fatal;
+    return 0;
+}
+
+static void warn(const char *key, const char *text, void *user)
+{
+    Check *c = user;
+    json_array_append_new(c->warnings, json_pack("{s:s, s:s}", "key", key, "text", text));
+    if (!c->as_json)
+        fprintf(stderr, "warning: %s: %s\n", key, text);
+}
+
+/* The faults of a settings file, one per line. */
+static void take_lines(Check *c, char *lines)
+{
+    for (char *line; (line = strsep(&lines, "\n"));)
+        if (*line)
+            fault(c, line);
+}
+
+static Status read_settings(const Args *args, Check *c, Settings *s, Err *err)
+{
+    char *lines = NULL;
+    size_t length = 0;
+    int n = 0;
+    FILE *f = open_memstream(&lines, &length);
+    if (!f)
+        return fail(err, STATUS_NO_MEMORY, "check: out of memory");
+    const Status status = args_settings(args, s, f, &n, err);
+    fclose(f);
+    if (status == STATUS_MISSING || status == STATUS_USAGE || status == STATUS_NO_MEMORY) {
+        free(lines);
+        return status;
     }
-    printf("motion    %s: %zu samples, %.4g s, peak %.4g g\n", s->motion.record, m.n, (double)(m.n - 1) * m.dt_s,
-           motion_peak(&m) / GRAVITY);
-    if (s->sim.duration_s > (double)(m.n - 1) * m.dt_s)
-        fprintf(stderr, "sim.duration_s: %g s is longer than the motion; the run ends with the motion\n",
-                s->sim.duration_s);
-    motion_free(&m);
-    return 1;
-}
-
-static void check_scene(const Settings *s, Faults *faults)
-{
-    Err e = {0};
-    Subject *subject;
-    if (note(faults, subject_open(&subject, s, &e), "scene", &e))
-        subject_close(subject);
-}
-
-static Status verdict(const Args *args, const Faults *faults, Err *err)
-{
-    if (faults->fatal != STATUS_OK)
-        return fail(err, faults->fatal, "%s: could not be checked", args->operand);
-    if (faults->n)
-        return fail(err, STATUS_BAD_DATA, "%s: %d fault%s", args->operand, faults->n, faults->n == 1 ? "" : "s");
-    printf("%s: everything is in order\n", args->operand);
+    take_lines(c, lines);
+    free(lines);
     return STATUS_OK;
 }
 
-/* A problem that is no tower: opened as a search would; workers are not started yet. */
-static Status check_other(const Args *args, const Settings *s, Faults *faults, Err *err)
+/* ---- building, core, motion ----------------------------------------------------------------------------------- */
+
+static int open_building(Check *c, CheckedScene *p)
+{
+    Err e = {0};
+    return note(c, building_load(&p->building, p->s->building.model, &e), "building.model", &e);
+}
+
+static int open_motion(Check *c, CheckedScene *p)
+{
+    Err e = {0};
+    Status status = motion_open(&p->motion, &p->s->motion, &e);
+    if (status == STATUS_OK) {
+        p->recorded_g = motion_peak(&p->motion) / GRAVITY;
+        status = motion_prepare(&p->motion, p->s->motion.pga_g, p->s->motion.stretch, &e);
+    }
+    return note(c, status, "motion.record", &e);
+}
+
+static double duration(const Motion *m)
+{
+    return (double)(m->n - 1) * m->dt_s;
+}
+
+/* A design inside the search box, its gaps spread over it, or the first of --design. */
+static int choose_design(Check *c, CheckedScene *p, const char *path)
+{
+    const DesignOptions *box = &p->s->design;
+    const int n = p->building.n;
+    for (int j = 0; j < n; j++)
+        p->x[j] = box->gap_min_m + (box->gap_max_m - box->gap_min_m) * fmod(GOLDEN_RATIO * (j + 1), 1);
+    p->x[n] = p->x[n + 1] = 0.5 * (box->thickness_min_m + box->thickness_max_m);
+    if (!path)
+        return 1;
+    Err e = {0};
+    Designs d;
+    if (!note(c, design_read(&d, path, n, &e), "--design", &e))
+        return 0;
+    memcpy(p->x, d.x, (size_t)(n + 2) * sizeof *p->x);
+    for (size_t i = 0; i < d.n; i++)
+        for (int j = 0; j < n; j++)
+            if (d.x[i * (size_t)(n + 2) + (size_t)j] > GAP_MAX_M) {
+                char text[100];
+                snprintf(text, sizeof text, "line %d: the gap of floor %d is %g m and does not close", d.line[i], j + 1,
+                         d.x[i * (size_t)(n + 2) + (size_t)j]);
+                warn("--design", text, c);
+                j = n;
+            }
+    design_free(&d);
+    return 1;
+}
+
+static int summarise(Check *c, CheckedScene *p)
+{
+    Err e = {0};
+    const int n = p->building.n;
+    const Status status =
+        scene_summarise(&p->summary, &p->building, &p->s->building, &p->s->core, &p->motion, p->x[n], p->x[n + 1], &e);
+    if (!note(c, status, "core", &e))
+        return 0;
+    scene_warnings(&p->summary, &p->s->building, &p->s->core, &p->s->design, &p->motion, warn, c);
+    if (p->s->sim.duration_s > duration(&p->motion)) {
+        char text[100];
+        snprintf(text, sizeof text, "%g s is longer than the motion; the run ends with the motion",
+                 p->s->sim.duration_s);
+        warn("sim.duration_s", text, c);
+    }
+    return 1;
+}
+
+static void print_scene(const CheckedScene *p)
+{
+    const SceneSummary *f = &p->summary;
+    const Settings *s = p->s;
+    const double *t = p->x + f->n_floors;
+    printf("building  %s: %d floors, %.4g m, %.4g kg (floors of %.4g to %.4g kg), damping %g %%\n", s->building.model,
+           f->n_floors, f->height_m, f->mass_kg, f->floor_mass_min_kg, f->floor_mass_max_kg, 100 * s->building.damping);
+    printf("          periods");
+    for (int i = 0; i < 3 && f->period_s[i] > 0; i++)
+        printf("%s %.4g", i ? "," : "", f->period_s[i]);
+    printf(" s (%.3g s per storey); the first mode moves %.3g %% of the mass\n", f->period_s[0] / f->n_floors,
+           100 * f->first_mode_mass);
+    printf("core      %.4g kg at %g to %g mm, damping %g %%, %s\n", f->core_mass_kg, 1e3 * t[0], 1e3 * t[1],
+           100 * s->core.damping, core_theory_word(s->core.theory));
+    printf("          first mode %.4g Hz bending alone, %.4g Hz (%+.2g %%) with shear and rotary inertia\n",
+           f->euler_bernoulli_hz, f->timoshenko_hz, 100 * (f->timoshenko_hz / f->euler_bernoulli_hz - 1));
+    printf("motion    %s: %zu samples, %.4g s, peak %.4g g (recorded %.4g g x %.4g, time x %g)\n", s->motion.record,
+           p->motion.n, duration(&p->motion), motion_peak(&p->motion) / GRAVITY, p->recorded_g, p->motion.scale,
+           s->motion.stretch);
+    printf("          holds frequencies up to %.4g Hz: %d of %d modes of the core\n", f->content_hz,
+           f->core_modes_within, f->n_floors);
+    printf("forces    weight %.4g MN; base shear without a core about %.3g of it (response spectrum, SRSS)\n",
+           1e-6 * f->mass_kg * GRAVITY, f->base_shear);
+}
+
+static void scene_json(Check *c, const CheckedScene *p)
+{
+    const SceneSummary *f = &p->summary;
+    const Settings *s = p->s;
+    size_t n_periods = 0;
+    while (n_periods < 3 && f->period_s[n_periods] > 0)
+        n_periods++;
+    json_object_set_new(c->out, "building",
+                        json_pack("{s:s, s:i, s:f, s:f, s:f, s:f, s:f, s:f, s:o, s:f, s:f}", "model", s->building.model,
+                                  "floors", f->n_floors, "height_m", f->height_m, "mass_kg", f->mass_kg, "weight_n",
+                                  f->mass_kg * GRAVITY, "floor_mass_min_kg", f->floor_mass_min_kg, "floor_mass_max_kg",
+                                  f->floor_mass_max_kg, "damping", s->building.damping, "period_s",
+                                  json_numbers(n_periods, f->period_s), "first_mode_mass_share", f->first_mode_mass,
+                                  "base_shear_share", f->base_shear));
+    json_object_set_new(c->out, "core",
+                        json_pack("{s:s, s:f, s:f, s:f, s:f, s:f, s:f, s:i}", "theory",
+                                  core_theory_word(s->core.theory), "mass_kg", f->core_mass_kg, "t_base_m",
+                                  p->x[f->n_floors], "t_top_m", p->x[f->n_floors + 1], "first_mode_hz", f->core_hz,
+                                  "timoshenko_hz", f->timoshenko_hz, "euler_bernoulli_hz", f->euler_bernoulli_hz,
+                                  "modes_within_motion", f->core_modes_within));
+    json_object_set_new(c->out, "motion",
+                        json_pack("{s:s, s:I, s:f, s:f, s:f, s:f, s:f, s:f}", "record", s->motion.record, "samples",
+                                  (json_int_t)p->motion.n, "duration_s", duration(&p->motion), "recorded_peak_g",
+                                  p->recorded_g, "peak_g", motion_peak(&p->motion) / GRAVITY, "scale", p->motion.scale,
+                                  "stretch", s->motion.stretch, "content_hz", f->content_hz));
+}
+
+/* ---- the study ------------------------------------------------------------------------------------------------ */
+
+/* Wall time of one simulation of the design to try. */
+static Status time_simulation(const CheckedScene *p, SimResult *result, Err *err)
+{
+    const SceneOptions options = settings_scene(p->s);
+    Scene *scene = NULL;
+    SimWorker *worker = NULL;
+    Status status = scene_create(&scene, &options, &p->motion, err);
+    if (status == STATUS_OK)
+        status = sim_worker_create(&worker, scene, err);
+    if (status == STATUS_OK)
+        status = sim_run(worker, SCENE_IMPACT, p->x, result, err);
+    sim_worker_free(worker);
+    scene_free(scene);
+    return status;
+}
+
+static long processors(void)
+{
+    const long n = sysconf(_SC_NPROCESSORS_ONLN);
+    return n > 0 ? n : 1;
+}
+
+static void describe_study(Check *c, const CheckedScene *p)
+{
+    Err e = {0};
+    SimResult r;
+    if (!note(c, time_simulation(p, &r, &e), "simulation", &e))
+        return;
+    const Settings *s = p->s;
+    const long records = 1 + (long)(strcmp(s->motion.records, "none") == 0 ? 0 : list_count(s->motion.records));
+    const long simulations = s->search.max_evals * s->sim.ensemble * records;
+    const long threads = s->search.threads > 0 ? s->search.threads : processors();
+    const double seconds = (double)simulations * r.seconds / (double)threads;
+    json_object_set_new(c->out, "study",
+                        json_pack("{s:i, s:[f,f], s:[f,f], s:I, s:I, s:f, s:I, s:f}", "variables", p->building.n + 2,
+                                  "gap_m", s->design.gap_min_m, s->design.gap_max_m, "thickness_m",
+                                  s->design.thickness_min_m, s->design.thickness_max_m, "simulations",
+                                  (json_int_t)simulations, "threads", (json_int_t)threads, "simulation_s", r.seconds,
+                                  "impacts", (json_int_t)r.impacts, "seconds", seconds));
+    if (c->as_json)
+        return;
+    printf("search    %d variables: %d gaps of %g to %g mm, core thickness %g to %g mm at base and top\n",
+           p->building.n + 2, p->building.n, 1e3 * s->design.gap_min_m, 1e3 * s->design.gap_max_m,
+           1e3 * s->design.thickness_min_m, 1e3 * s->design.thickness_max_m);
+    printf("time      %ld simulations, %.2g s each (measured, %ld impacts), on %ld thread%s: about %.2g %s\n",
+           simulations, r.seconds, r.impacts, threads, threads == 1 ? "" : "s", seconds < 120 ? seconds : seconds / 60,
+           seconds < 120 ? "s" : "min");
+}
+
+/* Limits, further records and whatever else a search opens before it starts. */
+static void open_study(Check *c, const Settings *s)
 {
     Err e = {0};
     Subject *subject;
-    if (faults->n == 0 && note(faults, subject_open(&subject, s, &e), "problem", &e)) {
+    if (!note(c, subject_open(&subject, s, &e), s->problem.kind == PROBLEM_TOWER ? "scene" : "problem", &e))
+        return;
+    if (s->problem.kind != PROBLEM_TOWER) {
         const Schema *schema = subject_schema(subject);
-        printf("problem   %zu variables, %zu objectives\n", schema->n_var, schema->n_obj);
-        subject_close(subject);
+        json_object_set_new(
+            c->out, "problem",
+            json_pack("{s:I, s:I}", "variables", (json_int_t)schema->n_var, "objectives", (json_int_t)schema->n_obj));
+        if (!c->as_json)
+            printf("problem   %zu variables, %zu objectives\n", schema->n_var, schema->n_obj);
     }
-    return verdict(args, faults, err);
+    subject_close(subject);
+}
+
+static void check_tower(const Args *args, Check *c, const Settings *s)
+{
+    CheckedScene p = {.s = s};
+    const int building = open_building(c, &p), motion = open_motion(c, &p);
+    if (building && motion && choose_design(c, &p, args_value(args, "--design")) && summarise(c, &p)) {
+        scene_json(c, &p);
+        if (!c->as_json)
+            print_scene(&p);
+        if (json_array_size(c->faults) == 0)
+            open_study(c, s);
+        if (json_array_size(c->faults) == 0)
+            describe_study(c, &p);
+    }
+    building_free(&p.building);
+    motion_free(&p.motion);
+}
+
+/* ---- the command ---------------------------------------------------------------------------------------------- */
+
+static Status verdict(const Args *args, const Check *c, Err *err)
+{
+    const int faults = (int)json_array_size(c->faults), warnings = (int)json_array_size(c->warnings);
+    if (c->fatal != STATUS_OK)
+        return fail(err, c->fatal, "%s: could not be checked", args->operand);
+    if (c->as_json)
+        TRY(show_json(json_incref(c->out), err));
+    if (faults)
+        return fail(err, STATUS_BAD_DATA, "%s: %d fault%s", args->operand, faults, faults == 1 ? "" : "s");
+    if (!c->as_json && warnings)
+        printf("%s: no fault, %d warning%s\n", args->operand, warnings, warnings == 1 ? "" : "s");
+    else if (!c->as_json)
+        printf("%s: everything is in order\n", args->operand);
+    return STATUS_OK;
 }
 
 static Status run(const Args *args, Err *err)
 {
+    Check c = {.as_json = args_has(args, "--json"), .out = json_object()};
     Settings s;
-    Faults faults = {0};
-    const Status status = args_settings(args, &s, stderr, &faults.n, err);
-    if (status == STATUS_MISSING || status == STATUS_USAGE || status == STATUS_NO_MEMORY)
-        return status;
-    if (s.problem.kind != PROBLEM_TOWER)
-        return check_other(args, &s, &faults, err);
-    const int building = check_building(&s, &faults);
-    const int motion = check_motion(&s, &faults);
-    if (building && motion && faults.n == 0)
-        check_scene(&s, &faults);
-    return verdict(args, &faults, err);
+    c.faults = json_array();
+    c.warnings = json_array();
+    json_object_set_new(c.out, "faults", c.faults);
+    json_object_set_new(c.out, "warnings", c.warnings);
+    Status status = read_settings(args, &c, &s, err);
+    if (status == STATUS_OK) {
+        if (s.problem.kind == PROBLEM_TOWER)
+            check_tower(args, &c, &s);
+        else if (json_array_size(c.faults) == 0)
+            open_study(&c, &s);
+        status = verdict(args, &c, err);
+    }
+    json_decref(c.out);
+    return status;
 }
 
-static const ArgOption OPTIONS[] = {OPTION_RECORD, OPTION_PGA, OPTION_STRETCH, OPTION_UNIT, OPTION_SET, OPTION_END};
+static const ArgOption OPTIONS[] = {
+    OPTION_RECORD,
+    OPTION_PGA,
+    OPTION_STRETCH,
+    OPTION_UNIT,
+    {"--design", "FILE", NULL, 0, "check these designs too, and time the first one"},
+    OPTION_JSON,
+    OPTION_SET,
+    OPTION_END,
+};
 
 const Command CMD_CHECK = {
     .name = "check",
     .operand = "CONFIG",
-    .summary = "everything that is wrong with a configuration",
+    .summary = "what a configuration describes, what is wrong with it and what is implausible",
     .example = "imtet check configs/quick.ini",
-    .details = "Reads CONFIG, the building's matrices and the ground motion and names every fault on standard error,\n"
-               "not only the first. Exit status 65 if there is any.",
+    .details =
+        "Reads CONFIG, the building and the ground motion and prints mass, height, periods, core, scaled motion, base\n"
+        "shear, search box and expected time of the study (one simulation is run). Every fault is named on standard\n"
+        "error, not only the first (exit status 65), and so is what is implausible (a warning; exit status 0): a\n"
+        "first period outside 0.03 to 0.3 s per storey, floors outside 1e3 to 1e7 kg, floors from the top down,\n"
+        "damping above 20 %, a peak above 3 g, gaps above a metre, a core whose first mode is beyond the motion's\n"
+        "samples. --json: the same as an object, faults and warnings as arrays.",
     .options = OPTIONS,
     .run = run,
 };

@@ -1,3 +1,4 @@
+#include "scene/core_beam.h"
 #include "scene/design.h"
 #include "cmd/commands.h"
 #include "cmd/show.h"
@@ -11,6 +12,7 @@ typedef struct {
     int n;
     double building[FLOORS_MAX], core[FLOORS_MAX], zero_gap[FLOORS_MAX];
     double core_mass_kg, t_base_m, t_top_m;
+    double by_theory[2]; /* [Hz] first mode of the core, by CoreTheory */
 } Modes;
 
 static Status choose_thickness(const Args *args, Modes *m, Err *err)
@@ -28,14 +30,17 @@ static Status choose_thickness(const Args *args, Modes *m, Err *err)
     return STATUS_OK;
 }
 
-static Status compute(const Args *args, const Scene *scene, Modes *m, Err *err)
+static Status compute(const Args *args, const World *w, Modes *m, Err *err)
 {
     double x[FLOORS_MAX + 2] = {0};
-    m->n = scene_n_floors(scene);
+    m->n = scene_n_floors(w->scene);
     TRY(choose_thickness(args, m, err));
     x[m->n] = m->t_base_m;
     x[m->n + 1] = m->t_top_m;
-    return scene_frequencies(scene, x, m->building, m->core, m->zero_gap, &m->core_mass_kg, err);
+    for (CoreTheory k = CORE_TIMOSHENKO; k <= CORE_EULER_BERNOULLI; k++)
+        TRY(core_beam_first_hz(&w->options.core, &w->options.building, k, m->n, m->t_base_m, m->t_top_m,
+                               &m->by_theory[k], err));
+    return scene_frequencies(w->scene, x, m->building, m->core, m->zero_gap, &m->core_mass_kg, err);
 }
 
 static Status print_json(const Modes *m, const Settings *s, Err *err)
@@ -45,6 +50,9 @@ static Status print_json(const Modes *m, const Settings *s, Err *err)
     json_object_set_new(o, "t_base_m", json_number(m->t_base_m));
     json_object_set_new(o, "t_top_m", json_number(m->t_top_m));
     json_object_set_new(o, "core_mass_kg", json_number(m->core_mass_kg));
+    json_object_set_new(o, "core_theory", json_string(core_theory_word(s->core.theory)));
+    json_object_set_new(o, "core_timoshenko_hz", json_number(m->by_theory[CORE_TIMOSHENKO]));
+    json_object_set_new(o, "core_euler_bernoulli_hz", json_number(m->by_theory[CORE_EULER_BERNOULLI]));
     json_object_set_new(o, "building_hz", json_numbers((size_t)m->n, m->building));
     json_object_set_new(o, "core_hz", json_numbers((size_t)m->n, m->core));
     json_object_set_new(o, "zero_gap_hz", json_numbers((size_t)m->n, m->zero_gap));
@@ -55,9 +63,12 @@ static void print_table(const Modes *m, const Settings *s)
 {
     printf("building %s, %d floors; core of %.4g kg", s->building.model, m->n, m->core_mass_kg);
     if (s->core.section == CORE_EFFECTIVE)
-        printf(" (effective section)\n\n");
+        printf(" (effective section), %s\n", core_theory_word(s->core.theory));
     else
-        printf(", thickness %g to %g mm\n\n", 1e3 * m->t_base_m, 1e3 * m->t_top_m);
+        printf(", thickness %g to %g mm, %s\n", 1e3 * m->t_base_m, 1e3 * m->t_top_m, core_theory_word(s->core.theory));
+    const double bending = m->by_theory[CORE_EULER_BERNOULLI], shearing = m->by_theory[CORE_TIMOSHENKO];
+    printf("first mode of the core: %.4g Hz bending alone, %.4g Hz (%+.2g %%) with shear and rotary inertia\n\n",
+           bending, shearing, 100 * (shearing / bending - 1));
     printf("mode  building_hz      core_hz  zero_gap_hz\n");
     for (int i = 0; i < m->n; i++)
         printf("%4d %12.4f %12.4f %12.4f\n", i + 1, m->building[i], m->core[i], m->zero_gap[i]);
@@ -70,7 +81,7 @@ static Status run(const Args *args, Err *err)
     Modes m = {0};
     TRY(args_settings(args, &s, NULL, NULL, err));
     TRY(world_open_still(&w, &s, err));
-    Status status = compute(args, w.scene, &m, err);
+    Status status = compute(args, &w, &m, err);
     world_close(&w);
     if (status == STATUS_OK && args_has(args, "--json"))
         status = print_json(&m, &s, err);

@@ -15,7 +15,7 @@ json_t *json_ensemble(const Ensemble *e);
 /* On standard output, 17 digits; takes the reference. */
 Status show_json(json_t *all, Err *err);
 
-/* What shakes: name, length (and how much of it was simulated; duration_s 0: all), peak. */
+/* The ground motion: name, length (and how much of it was simulated; duration_s 0: all), peak, scaling. */
 void show_motion(const Motion *m, double duration_s);
 
 /* One line per simulation: label, objectives, impacts, outcome where it is not ok. */

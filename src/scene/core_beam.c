@@ -138,3 +138,23 @@ Status core_beam_make(CoreBeam *c, const CoreOptions *o, const BuildingOptions *
         linalg_participation(n, c->M, c->phi, c->gamma);
     return status;
 }
+
+Status core_beam_first_hz(const CoreOptions *o, const BuildingOptions *b, CoreTheory theory, int n, double t_base_m,
+                          double t_top_m, double *hz, Err *err)
+{
+    CoreOptions by_theory = *o;
+    by_theory.theory = theory;
+    CoreBeam *core = malloc(sizeof *core);
+    if (!core)
+        return fail(err, STATUS_NO_MEMORY, "core: no memory for %d storeys", n);
+    const Status status = core_beam_make(core, &by_theory, b, n, t_base_m, t_top_m, err);
+    *hz = status == STATUS_OK ? core->omega[0] / (2 * M_PI) : 0;
+    free(core);
+    return status;
+}
+
+const char *core_theory_word(CoreTheory theory)
+{
+    static const char *const WORDS[] = {CORE_THEORY_LIST(CHOICE_WORD)};
+    return WORDS[theory];
+}

@@ -32,4 +32,9 @@ typedef struct {
 Status core_beam_make(CoreBeam *c, const CoreOptions *o, const BuildingOptions *b, int n, double t_base_m,
                       double t_top_m, Err *err);
 
+/* Frequency of the first mode [Hz] by a theory that may be another than the options'. */
+Status core_beam_first_hz(const CoreOptions *o, const BuildingOptions *b, CoreTheory theory, int n, double t_base_m,
+                          double t_top_m, double *hz, Err *err);
+const char *core_theory_word(CoreTheory theory);
+
 #endif

@@ -19,6 +19,8 @@ Status motion_prepare(Motion *m, double pga_g, double stretch, Err *err)
     for (size_t i = 0; i < m->n; i++)
         m->accel[i] *= scale;
     m->dt_s *= stretch;
+    m->scale = scale;
+    m->stretch = stretch;
     return STATUS_OK;
 }
 

@@ -1,0 +1,166 @@
+#include "scene/summary.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "base/units.h"
+#include "scene/spectrum.h"
+
+/* ---- figures -------------------------------------------------------------------------------------------------- */
+
+static void summarise_mass(SceneSummary *s, const Building *b)
+{
+    s->floor_mass_min_kg = HUGE_VAL;
+    s->floor_mass_max_kg = -HUGE_VAL;
+    for (int j = 0; j < b->n; j++) {
+        double row = 0;
+        for (int k = 0; k < b->n; k++)
+            row += b->M[j * b->n + k];
+        s->mass_kg += row;
+        if (row < s->floor_mass_min_kg) {
+            s->floor_mass_min_kg = row;
+            s->lightest = j + 1;
+        }
+        if (row > s->floor_mass_max_kg) {
+            s->floor_mass_max_kg = row;
+            s->heaviest = j + 1;
+        }
+    }
+}
+
+static int falls_from_row_to_row(const Building *b)
+{
+    int falls = b->n > 1;
+    for (int j = 1; j < b->n && falls; j++)
+        falls = fabs(b->phi[j * b->n]) < fabs(b->phi[(j - 1) * b->n]);
+    return falls;
+}
+
+static double base_shear(const Building *b, double damping, const Motion *motion, double mass)
+{
+    double period[FLOORS_MAX], psa[FLOORS_MAX], squares = 0;
+    for (int i = 0; i < b->n; i++)
+        period[i] = b->omega[i] > 0 ? 2 * M_PI / b->omega[i] : 0;
+    spectrum_psa(motion, fmin(damping, 0.99), (size_t)b->n, period, psa);
+    for (int i = 0; i < b->n; i++)
+        squares += pow(b->gamma[i] * b->gamma[i] * psa[i], 2);
+    return sqrt(squares) / (mass * GRAVITY);
+}
+
+static Status summarise_core(SceneSummary *s, const CoreOptions *core, const BuildingOptions *building, double t_base,
+                             double t_top, Err *err)
+{
+    const int n = s->n_floors;
+    TRY(core_beam_first_hz(core, building, CORE_TIMOSHENKO, n, t_base, t_top, &s->timoshenko_hz, err));
+    TRY(core_beam_first_hz(core, building, CORE_EULER_BERNOULLI, n, t_base, t_top, &s->euler_bernoulli_hz, err));
+    CoreBeam *beam = malloc(sizeof *beam);
+    if (!beam)
+        return fail(err, STATUS_NO_MEMORY, "core: no memory for %d storeys", n);
+    const Status status = core_beam_make(beam, core, building, n, t_base, t_top, err);
+    if (status == STATUS_OK) {
+        s->core_mass_kg = beam->mass_kg;
+        s->core_hz = beam->omega[0] / (2 * M_PI);
+        while (s->core_modes_within < n && beam->omega[s->core_modes_within] <= 2 * M_PI * s->content_hz)
+            s->core_modes_within++;
+    }
+    free(beam);
+    return status;
+}
+
+Status scene_summarise(SceneSummary *s, const Building *b, const BuildingOptions *building, const CoreOptions *core,
+                       const Motion *motion, double t_base_m, double t_top_m, Err *err)
+{
+    *s = (SceneSummary){.n_floors = b->n,
+                        .height_m = building->first_storey_m + (b->n - 1) * building->storey_m,
+                        .content_hz = 0.5 / motion->dt_s,
+                        .top_first = falls_from_row_to_row(b)};
+    summarise_mass(s, b);
+    for (int i = 0; i < 3 && i < b->n; i++)
+        s->period_s[i] = 2 * M_PI / b->omega[i];
+    s->first_mode_mass = b->gamma[0] * b->gamma[0] / s->mass_kg;
+    s->base_shear = base_shear(b, building->damping, motion, s->mass_kg);
+    return summarise_core(s, core, building, t_base_m, t_top_m, err);
+}
+
+/* ---- warnings ------------------------------------------------------------------------------------------------- */
+
+typedef struct {
+    WarnFn warn;
+    void *user;
+} Warner;
+
+__attribute__((format(printf, 3, 4))) static void say(const Warner *w, const char *key, const char *format, ...)
+{
+    char text[300];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(text, sizeof text, format, args);
+    va_end(args);
+    w->warn(key, text, w->user);
+}
+
+static int is_period(double per_storey)
+{
+    return per_storey >= PERIOD_PER_STOREY_MIN_S && per_storey <= PERIOD_PER_STOREY_MAX_S;
+}
+
+/* Which unit would explain it? A period goes with the root of mass over stiffness. */
+static const char *unit_guess(double per_storey, int light)
+{
+    if (is_period(per_storey))
+        return light ? "; are stiffness and mass in kN/m and t? They are read as N/m and kg" : "";
+    if (is_period(per_storey / sqrt(1000)))
+        return "; is the stiffness in kN/m? It is read as N/m";
+    if (is_period(per_storey * sqrt(1000)))
+        return "; is the mass in t? It is read as kg";
+    return "";
+}
+
+static void warn_of_building(const SceneSummary *s, const BuildingOptions *o, const Warner *w)
+{
+    const double per_storey = s->period_s[0] / s->n_floors;
+    const int light = s->floor_mass_min_kg < FLOOR_MASS_MIN_KG;
+    const char *guess = unit_guess(per_storey, light);
+    if (!is_period(per_storey))
+        say(w, "building.model", "the first period of %.4g s is %.3g s per storey; buildings have %g to %g%s",
+            s->period_s[0], per_storey, PERIOD_PER_STOREY_MIN_S, PERIOD_PER_STOREY_MAX_S, guess);
+    if (light)
+        say(w, "building.model", "floor %d has a mass of %.4g kg; floors have %g to %g%s", s->lightest,
+            s->floor_mass_min_kg, FLOOR_MASS_MIN_KG, FLOOR_MASS_MAX_KG, guess);
+    if (s->floor_mass_max_kg > FLOOR_MASS_MAX_KG)
+        say(w, "building.model", "floor %d has a mass of %.4g kg; floors have %g to %g", s->heaviest,
+            s->floor_mass_max_kg, FLOOR_MASS_MIN_KG, FLOOR_MASS_MAX_KG);
+    if (s->top_first)
+        say(w, "building.model", "the first mode is largest at the first row; floors are wanted bottom floor first");
+    if (o->damping > DAMPING_MAX)
+        say(w, "building.damping", "%g is %g %% of critical; steel frames have 1 to 5 %%", o->damping,
+            100 * o->damping);
+}
+
+static void warn_of_core(const SceneSummary *s, const CoreOptions *o, const Warner *w)
+{
+    if (o->damping > DAMPING_MAX)
+        say(w, "core.damping", "%g is %g %% of critical; steel has 1 to 5 %%", o->damping, 100 * o->damping);
+    if (s->core_modes_within == 0)
+        say(w, "motion.record", "holds nothing above %.4g Hz; the core's first mode is at %.4g Hz", s->content_hz,
+            s->core_hz);
+    if (o->theory == CORE_EULER_BERNOULLI && s->euler_bernoulli_hz > 1.1 * s->timoshenko_hz)
+        say(w, "core.theory", "shear lowers the core's first mode from %.4g to %.4g Hz; take timoshenko",
+            s->euler_bernoulli_hz, s->timoshenko_hz);
+}
+
+void scene_warnings(const SceneSummary *s, const BuildingOptions *building, const CoreOptions *core,
+                    const DesignOptions *design, const Motion *motion, WarnFn warn, void *user)
+{
+    const Warner w = {warn, user};
+    const double peak_g = motion_peak(motion) / GRAVITY;
+    warn_of_building(s, building, &w);
+    warn_of_core(s, core, &w);
+    if (peak_g > PEAK_MAX_G)
+        say(&w, "motion.pga_g", "a peak of %.4g g; hardly a record exceeds %g g", peak_g, PEAK_MAX_G);
+    if (design->gap_max_m > GAP_MAX_M)
+        say(&w, "design.gap_max_m", "gaps up to %g m; floors move less than %g m, such a gap does not close",
+            design->gap_max_m, GAP_MAX_M);
+}

@@ -1,0 +1,42 @@
+/* scene/summary.h -- the scene in a few figures that an engineer can judge, and what is implausible about them.
+ *
+ *   base shear   V_i = gamma_i^2 PSa(T_i, zeta) of each mode of the building alone, V = root(sum V_i^2) over its weight
+ *   floor mass   row sum of M: what a floor's inertia force is under a uniform acceleration
+ *   content      half the sampling rate of the motion: above it the samples hold nothing
+ *
+ * Threads  no state */
+#ifndef IMTET_SCENE_SUMMARY_H
+#define IMTET_SCENE_SUMMARY_H
+
+#include "scene/core_beam.h"
+#include "scene/motion.h"
+
+typedef struct {
+    int n_floors;
+    double mass_kg, height_m;
+    double floor_mass_min_kg, floor_mass_max_kg;
+    int lightest, heaviest; /* floors, from 1 */
+    double period_s[3];     /* the first; 0 where there are fewer */
+    double first_mode_mass; /* [-] share of the mass */
+    int top_first;          /* the first mode is largest at the first row and falls from row to row */
+    double base_shear;      /* [-] share of the weight */
+    double core_mass_kg;
+    double core_hz, timoshenko_hz, euler_bernoulli_hz; /* the core's first mode by core.theory and by either */
+    int core_modes_within;                             /* whose frequency is within the motion's content */
+    double content_hz;
+} SceneSummary;
+
+/* motion: prepared. The core with these thicknesses. */
+Status scene_summarise(SceneSummary *out, const Building *b, const BuildingOptions *building, const CoreOptions *core,
+                       const Motion *motion, double t_base_m, double t_top_m, Err *err);
+
+/* Ranges outside which a warning is given. */
+static const double PERIOD_PER_STOREY_MIN_S = 0.03, PERIOD_PER_STOREY_MAX_S = 0.3;
+static const double FLOOR_MASS_MIN_KG = 1e3, FLOOR_MASS_MAX_KG = 1e7;
+static const double DAMPING_MAX = 0.2, PEAK_MAX_G = 3, GAP_MAX_M = 1;
+
+typedef void (*WarnFn)(const char *key, const char *text, void *user);
+void scene_warnings(const SceneSummary *s, const BuildingOptions *building, const CoreOptions *core,
+                    const DesignOptions *design, const Motion *motion, WarnFn warn, void *user);
+
+#endif

@@ -1,0 +1,197 @@
+/* `imtet check`: what it says of a sound building, and which warning each implausible one gets. */
+#include "program.h"
+
+#include <sys/stat.h>
+
+#include "scene/motion_source.h"
+#include "scene/spectrum.h"
+#include "scene/summary.h"
+#include "scene_options.h"
+
+enum { N = 6 };
+
+/* A shear building of six storeys of 3.5 m: k [N/m] and m [kg] of every one, times the factors; rows top first if asked
+ * for. */
+static void write_building(double k_factor, double m_factor, int top_first)
+{
+    const double k = 4.5e8 * k_factor, m = 3e5 * m_factor;
+    char stiffness[2048] = "", mass[2048] = "";
+    size_t nk = 0, nm = 0;
+    for (int r = 0; r < N; r++)
+        for (int c = 0; c < N; c++) {
+            const int i = top_first ? N - 1 - r : r, j = top_first ? N - 1 - c : c;
+            const double v = i == j ? (i < N - 1 ? 2 * k : k) : abs(i - j) == 1 ? -k : 0;
+            nk += (size_t)snprintf(stiffness + nk, sizeof stiffness - nk, "%g%s", v, c < N - 1 ? "," : "\n");
+            nm += (size_t)snprintf(mass + nm, sizeof mass - nm, "%g%s", i == j ? m : 0, c < N - 1 ? "," : "\n");
+        }
+    char *folder = in_place("six");
+    mkdir(folder, 0777);
+    free(folder);
+    write_in_place("six/K.csv", stiffness);
+    write_in_place("six/M.csv", mass);
+    write_in_place("six.ini", "[building]\nmodel = six\nfirst_storey_m = 3.5\nstorey_m = 3.5\n[core]\nside_m = 3\n"
+                              "[motion]\npga_g = 0.3\nstretch = 1\n[sim]\nduration_s = 1\n");
+}
+
+/* The keys of the warnings, "a b c". */
+static void warnings_of(const char *arguments, char keys[512])
+{
+    size_t used = 0, i;
+    json_t *o = json_of(arguments), *w;
+    assert_int_equal(json_array_size(json_object_get(o, "faults")), 0);
+    keys[0] = 0;
+    json_array_foreach(json_object_get(o, "warnings"), i, w)
+    {
+        assert_true(strlen(json_string_value(json_object_get(w, "text"))) > 20);
+        used += (size_t)snprintf(keys + used, 512 - used, "%s%s", i ? " " : "",
+                                 json_string_value(json_object_get(w, "key")));
+    }
+    json_decref(o);
+}
+
+static void expect_warnings(const char *wanted, const char *arguments)
+{
+    char keys[512], command[1024];
+    snprintf(command, sizeof command, "check @/six.ini --json %s", arguments);
+    warnings_of(command, keys);
+    if (strcmp(keys, wanted) != 0)
+        fail_msg("imtet %s\n  warned of '%s', wanted '%s'", command, keys, wanted);
+}
+
+static void expect_text(const char *wanted)
+{
+    Said s;
+    run(&s, "check @/six.ini");
+    assert_int_equal(s.code, 0);
+    if (!strstr(s.err, wanted))
+        fail_msg("said: %s  wanted: %s", s.err, wanted);
+    assert_non_null(strstr(s.out, "no fault, "));
+    forget(&s);
+}
+
+static void test_a_sound_building_is_in_order_with_its_figures(void **state)
+{
+    (void)state;
+    write_building(1, 1, 0);
+    expect_warnings("", "");
+    char *text = output_of("check @/six.ini");
+    assert_non_null(strstr(text, "everything is in order"));
+    free(text);
+    json_t *o = json_of("check @/six.ini --json"), *b = json_object_get(o, "building");
+    assert_close(number(b, "mass_kg"), 6 * 3e5, 1e-12);
+    assert_close(number(b, "weight_n"), 6 * 3e5 * 9.81, 1e-12);
+    assert_close(number(b, "height_m"), 21, 1e-12);
+    assert_close(json_real_value(json_array_get(json_object_get(b, "period_s"), 0)),
+                 M_PI / (sqrt(4.5e8 / 3e5) * sin(M_PI / 26)), 1e-9);
+    assert_close(number(json_object_get(o, "motion"), "scale") *
+                     number(json_object_get(o, "motion"), "recorded_peak_g"),
+                 0.3, 1e-12);
+    assert_int_equal((int)number(json_object_get(o, "study"), "variables"), 8);
+    assert_true(number(json_object_get(o, "study"), "simulation_s") > 0);
+    json_decref(o);
+}
+
+static void test_units_that_are_wrong_are_guessed(void **state)
+{
+    (void)state;
+    write_building(1e-3, 1, 0);
+    expect_warnings("building.model", "");
+    expect_text("is the stiffness in kN/m?");
+    write_building(1, 1e-3, 0);
+    expect_warnings("building.model building.model", "");
+    expect_text("is the mass in t?");
+    write_building(1e-3, 1e-3, 0);
+    expect_warnings("building.model", "");
+    expect_text("are stiffness and mass in kN/m and t?");
+    write_building(1e3, 1e3, 0);
+    expect_warnings("building.model", "");
+    expect_text("floors have 1000 to 1e+07");
+}
+
+static void test_floors_from_the_top_down_are_noticed(void **state)
+{
+    (void)state;
+    write_building(1, 1, 1);
+    expect_warnings("building.model", "");
+    expect_text("bottom floor first");
+}
+
+static void test_damping_peak_and_gaps_beyond_reason_are_noticed(void **state)
+{
+    (void)state;
+    write_building(1, 1, 0);
+    expect_warnings("building.damping", "--set building.damping=3");
+    expect_warnings("core.damping", "--set core.damping=0.25");
+    expect_warnings("motion.pga_g", "--pga 3.1");
+    expect_warnings("design.gap_max_m", "--set design.gap_max_m=9");
+    expect_warnings("sim.duration_s", "--set sim.duration_s=1e5");
+    write_in_place("wide.csv", "gap_01_m,gap_02_m,gap_03_m,gap_04_m,gap_05_m,gap_06_m,t_base_m,t_top_m\n"
+                               "0.1,0.1,20,0.1,0.1,0.1,0.012,0.01\n");
+    expect_warnings("--design", "--design @/wide.csv");
+}
+
+static void test_a_core_beyond_the_motions_samples_is_noticed(void **state)
+{
+    (void)state;
+    write_building(1, 1, 0);
+    expect_warnings("motion.record", "--stretch 50 --set sim.duration_s=0.5"); /* a sample each second: 0.5 Hz */
+}
+
+static void test_a_squat_core_without_shear_is_noticed(void **state)
+{
+    (void)state;
+    write_building(1, 1, 0);
+    expect_warnings("core.theory", "--set core.theory=euler_bernoulli --set core.side_m=7");
+    expect_warnings("", "--set core.side_m=7");
+}
+
+static void test_faults_come_as_json_too(void **state)
+{
+    (void)state;
+    Said s;
+    write_building(1, 1, 0);
+    run(&s, "check @/six.ini --json --set search.sead=3 --record nowhere.csv");
+    assert_int_equal(s.code, 65);
+    json_t *o = json_loads(s.out, 0, NULL);
+    assert_int_equal(json_array_size(json_object_get(o, "faults")), 2);
+    json_decref(o);
+    forget(&s);
+}
+
+/* One mass: the base shear is the spectral acceleration, as a share of g. */
+static void test_the_base_shear_of_one_mass_is_its_spectral_acceleration(void **state)
+{
+    (void)state;
+    double one = 1, omega = 9, gamma = 1, M = 1e5, K = 81e5, psa;
+    const double period = 2 * M_PI / omega;
+    const SceneOptions s = scene_defaults();
+    Building b = {.n = 1, .K = &K, .M = &M, .phi = &one, .omega = &omega, .gamma = &gamma};
+    Motion m;
+    SceneSummary f;
+    Err err = {0};
+    double phi = 1 / sqrt(M), part = sqrt(M);
+    b.phi = &phi;
+    b.gamma = &part;
+    CHECK_OK(motion_load(&m, "builtin:sylmar-like", UNIT_FROM_FILE, &err), &err);
+    CHECK_OK(motion_prepare(&m, 0.3, 1, &err), &err);
+    CHECK_OK(scene_summarise(&f, &b, &s.building, &s.core, &m, 0.01, 0.01, &err), &err);
+    spectrum_psa(&m, s.building.damping, 1, &period, &psa);
+    assert_close(f.base_shear, psa / 9.81, 1e-12);
+    assert_close(f.first_mode_mass, 1, 1e-12);
+    motion_free(&m);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_a_sound_building_is_in_order_with_its_figures),
+        cmocka_unit_test(test_units_that_are_wrong_are_guessed),
+        cmocka_unit_test(test_floors_from_the_top_down_are_noticed),
+        cmocka_unit_test(test_damping_peak_and_gaps_beyond_reason_are_noticed),
+        cmocka_unit_test(test_a_core_beyond_the_motions_samples_is_noticed),
+        cmocka_unit_test(test_a_squat_core_without_shear_is_noticed),
+        cmocka_unit_test(test_faults_come_as_json_too),
+        cmocka_unit_test(test_the_base_shear_of_one_mass_is_its_spectral_acceleration),
+    };
+    return cmocka_run_group_tests(tests, make_place, clear_place);
+}
