@@ -38,7 +38,7 @@ static void test_every_command_explains_itself_with_an_example_first(void **stat
 {
     (void)state;
     static const char *const COMMANDS[] = {"",      "optimize", "simulate", "evaluate", "export",
-                                           "modes", "spectrum", "check",    "settings"};
+                                           "modes", "spectrum", "selftest", "check",    "settings"};
     for (size_t i = 0; i < sizeof COMMANDS / sizeof COMMANDS[0]; i++) {
         char arguments[64];
         snprintf(arguments, sizeof arguments, "%s --help", COMMANDS[i]);
@@ -50,6 +50,29 @@ static void test_every_command_explains_itself_with_an_example_first(void **stat
     char *version = output_of("--version");
     assert_int_equal(strncmp(version, "imtet ", 6), 0);
     free(version);
+}
+
+/* Also a test of selftest itself: every check has something to compare, and says by how much it may differ. */
+static void test_this_build_gives_the_stored_answers(void **state)
+{
+    (void)state;
+    json_t *all = json_of("selftest --json"), *check;
+    size_t i, n_zero = 0;
+    assert_true(json_is_true(json_object_get(all, "trusted")));
+    assert_true(json_array_size(json_object_get(all, "checks")) > 30);
+    json_array_foreach(json_object_get(all, "checks"), i, check)
+    {
+        const double stored = number(check, "stored"), tolerance = number(check, "tolerance");
+        assert_true(tolerance > 0 && tolerance < 1);
+        assert_true(fabs(number(check, "value") - stored) <= tolerance * fabs(stored));
+        n_zero += stored == 0;
+    }
+    assert_int_equal(n_zero, 2); /* the core of a building without one */
+    json_decref(all);
+    char *line = output_of("selftest");
+    assert_int_equal(strncmp(line, "this build can be trusted: ", 27), 0);
+    assert_ptr_equal(strchr(line, '\n'), line + strlen(line) - 1);
+    free(line);
 }
 
 static void test_a_misunderstood_command_line_ends_with_2_and_a_suggestion(void **state)
@@ -376,6 +399,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_every_command_explains_itself_with_an_example_first),
+        cmocka_unit_test(test_this_build_gives_the_stored_answers),
         cmocka_unit_test(test_a_misunderstood_command_line_ends_with_2_and_a_suggestion),
         cmocka_unit_test(test_bad_settings_and_data_end_with_65),
         cmocka_unit_test(test_missing_inputs_end_with_66),

@@ -19,6 +19,7 @@
     X(MODES)                                                                                                           \
     X(SPECTRUM)                                                                                                        \
     X(PROBLEM)                                                                                                         \
+    X(SELFTEST)                                                                                                        \
     X(CHECK)                                                                                                           \
     X(SETTINGS)
 
