@@ -64,7 +64,7 @@ static void hertz_impact(Trial *t)
         const SimResult *r = &out.result;
         trial_compare(t, r, rebound(&out), 1, 1, trial_allowed(t, 1e-4, 2e-2), "rebound ratio of r = 1");
         trial_compare(t, r, r->indentation_max_m, out.penetration, out.penetration, trial_allowed(t, 1e-3, 3e-2),
-                      "largest penetration");
+                      "maximum indentation");
         trial_compare(t, r, r->j3_g * 9.81 * x.mass, x.k * pow(out.penetration, 1.5), x.k * pow(out.penetration, 1.5),
                       trial_allowed(t, 1e-3, 5e-2), "largest force");
         for (int late = 0; late < 2; late++) {
@@ -173,7 +173,7 @@ static void long_steps(Trial *t)
                            1e-3 * LENGTH[l], x.r);
         }
     trial_note(t, NULL, 0, 1, "energy made without a flag");
-    trial_remark(t, "%d of %d runs flagged by their energy residual, %d refused", flagged, runs, refused);
+    trial_remark(t, "%d of %d runs flagged by their energy-balance error, %d refused", flagged, runs, refused);
 }
 
 /* ---- any record, against the oracle --------------------------------------------------------------------------- */
@@ -212,7 +212,8 @@ static SimResult against_oracle(Trial *t, const Run *x, const char *what)
         trial_compare(t, &r, r.kinetic_strain_j, o.kinetic_strain, energy, allowed, "%s: energy at the end", what);
         trial_compare(t, &r, r.j1_m, o.peak_u, o.peak_u, allowed, "%s: largest displacement", what);
         trial_compare(t, &r, r.input_energy_j, o.input, energy, allowed, "%s: input energy", what);
-        trial_compare(t, &r, r.clamp_j, o.clamp, energy, allowed, "%s: energy of the clamp", what);
+        trial_compare(t, &r, r.clamp_j, o.clamp, energy, allowed, "%s: energy removed by the no-tension condition",
+                      what);
         trial_compare(t, &r, r.contact_loss_j, o.lost, energy, allowed, "%s: energy lost in contact", what);
         trial_compare(t, &r, r.damped_building_j, o.damped, energy, allowed, "%s: energy damped", what);
     }
@@ -415,10 +416,10 @@ static void static_rest(Trial *t)
         const SimResult r = run_engine(t, &x);
         const double energy = m * load * p;
         trial_compare(t, &r, pow(r.contact_stored_j / (0.4 * STEEL), 0.4), p, p, trial_allowed(t, 1e-6, 1e-4),
-                      "static penetration after %ld intervals", n);
+                      "static indentation after %ld intervals", n);
         trial_compare(t, &r, r.kinetic_strain_j, 0, energy, trial_allowed(t, 1e-6, 1e-4), "energy of motion at rest");
-        trial_note(t, &r, r.energy_balance_error, trial_allowed(t, 1e-4, 1e-3), "energy residual at rest");
-        trial_note(t, &r, (double)r.impacts, 3, "closings while resting");
+        trial_note(t, &r, r.energy_balance_error, trial_allowed(t, 1e-4, 1e-3), "energy-balance error at rest");
+        trial_note(t, &r, (double)r.impacts, 3, "contact onsets while resting");
     }
     free(accel);
 }
@@ -450,8 +451,8 @@ static void endless_bounces(Trial *t)
                       "energy of motion at the end");
         trial_compare(t, &r, r.input_energy_j, m * g * (h + p), energy, trial_allowed(t, 1e-4, 1e-2),
                       "work of gravity");
-        trial_note(t, &r, (double)r.impacts, 200, "closings");
-        trial_remark(t, "%ld closings, %ld steps; ", r.impacts, r.steps);
+        trial_note(t, &r, (double)r.impacts, 200, "contact onsets");
+        trial_remark(t, "%ld contact onsets, %ld steps; ", r.impacts, r.steps);
     }
 }
 
@@ -596,7 +597,7 @@ static void simultaneous(Trial *t)
 }
 
 static const Case CASES[] = {
-    {"hertz-impact", "one impact with r = 1 returns its speed; penetration, force and duration are Hertz's",
+    {"hertz-impact", "one impact with r = 1 returns its speed; indentation, force and duration are Hertz's",
      hertz_impact},
     {"order-of-convergence", "the rebound at r = 0.7 converges, and its order is measured", convergence},
     {"twelve-decades",
@@ -604,12 +605,14 @@ static const Case CASES[] = {
      twelve_decades},
     {"grazing", "a gap of peak (1 +- 1e-3 .. 1e-15) is touched or not, and nothing jumps", grazing},
     {"start-at-the-wall", "a contact that closes at speed 0, without a gap", start_at_the_wall},
-    {"slow-touch-fast-pull-off", "the clamp throws away what the law would pull, and it is booked",
+    {"slow-touch-fast-pull-off",
+     "the no-tension condition removes what the law would pull, and the energy account has it",
      slow_touch_fast_pull_off},
     {"static-rest", "a mass pressed against the wall comes to rest and stays (5e3, 1e5, 1e6 intervals)", static_rest},
     {"endless-bounces", "infinitely many bounces end in finite time", endless_bounces},
     {"half-periods", "an undamped mode with steps of k pi / w neither resonates nor hides its peaks", half_periods},
-    {"long-steps", "steps of up to ten contact durations make no energy, or the books say so", long_steps},
+    {"long-steps", "steps of up to ten contact durations create no energy, or the energy-balance error shows it",
+     long_steps},
     {"simultaneous-impacts", "floors that close together: their order does not matter, momentum is kept", simultaneous},
     {"within-one-step", "a contact shorter than the interval, and than the engine's own step", within_one_step},
     {"step-does-not-divide", "intervals, steps and durations that do not divide each other", step_does_not_divide},

@@ -129,10 +129,9 @@ static void write_curves(FILE *f, Measured m[LAWS][N_R])
     fprintf(f,
             "\nLargest difference between the independent integration and the engine `fast` (accuracy `fine`): %.1e.\n",
             apart);
-    fprintf(
-        f,
-        "\n| law at r = 0.7 | rebound | duration / Hertz's | penetration / Hertz's | lost in contact | thrown away by "
-        "the clamp |\n|---|---|---|---|---|---|\n");
+    fprintf(f,
+            "\n| law at r = 0.7 | rebound | duration / Hertz's | indentation / Hertz's | lost in contact | removed by "
+            "the no-tension condition |\n|---|---|---|---|---|---|\n");
     for (int l = 0; l < LAWS; l++) {
         const Measured *x = &m[l][13];
         fprintf(f, "| %s | %.5f | %.5f | %.5f | %.2f %% | %.2g %% |\n", NAMES[l], x->oracle, x->duration,
@@ -173,8 +172,8 @@ static void write_scene_row(FILE *f, const char *label, const SimResult *r, cons
 static void write_scene_head(FILE *f, const char *what)
 {
     fprintf(f,
-            "\n| %s | J1 [m] | change | J2 [m] | change | J3 [g] | change | closings | slower than the floor | lost in "
-            "contact / input | clamp / input |\n|---|---|---|---|---|---|---|---|---|---|---|\n",
+            "\n| %s | J1 [m] | change | J2 [m] | change | J3 [g] | change | contact onsets | with v0 limited | lost in "
+            "contact / input | no-tension / input |\n|---|---|---|---|---|---|---|---|---|---|---|\n",
             what);
 }
 
@@ -212,10 +211,11 @@ static void write_page(const char *path, Measured m[LAWS][N_R])
             "![rebound over r](contact-laws.svg)\n\n");
     write_curves(f, m);
     fprintf(f,
-            "\n## What the floor under v0 and the law change in the tower\n\n"
+            "\n## What the limit of v0 and the law change in the tower\n\n"
             "`builtin:sylmar-like` at 0.3 g, stretched by 3, the first 11 s; core section `effective`, gaps of 8 mm "
             "times the storey's number; accuracy `fine`. Changes are against the paper's law with the default floor. "
-            "The clamp's energy is negative: what the law would have taken by pulling, and counted as lost, is given "
+            "The energy removed by the no-tension condition is negative: what the law would have taken by pulling, and "
+            "counted as lost, is given "
             "back.\n");
     write_scene(f);
     fclose(f);

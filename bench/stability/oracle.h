@@ -3,7 +3,7 @@
  *   q'' + 2 zeta w q' + w^2 q = -a(t) - s F/m
  *
  * Runge-Kutta of order 4 on short fixed steps, events by bisection of the step, the first step of a contact in
- * t = tc + s^2. Slow and plain: it is believed because there is little in it.
+ * t = tc + s^2. Slow, and simple enough to be verified by reading.
  * Threads  no state */
 #ifndef IMTET_BENCH_ORACLE_H
 #define IMTET_BENCH_ORACLE_H

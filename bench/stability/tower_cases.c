@@ -51,13 +51,13 @@ static void zero_gap(Trial *t)
     open_tower(t, &tower, seconds_for(t, 6));
     tower_set_gaps(&tower, 0);
     const SimResult touching = tower_run(&tower, SCENE_IMPACT), tied = tower_run(&tower, SCENE_RIGID);
-    trial_compare(t, &touching, touching.j1_m, tied.j1_m, tied.j1_m, 0.03, "J1 against the tied building");
+    trial_compare(t, &touching, touching.j1_m, tied.j1_m, tied.j1_m, 0.03, "J1 against the rigidly connected building");
     trial_compare(t, &touching, touching.input_energy_j, tied.input_energy_j, tied.input_energy_j, 0.05,
-                  "input energy against the tied building");
+                  "input energy against the rigidly connected building");
     /* A storm of events would be one for every oscillation of every mode: kHz times floors. */
     trial_note(t, &touching, (double)touching.impacts / (20 * (double)(tower.motion.n - 1) * tower.motion.dt_s), 200,
-               "closings per floor and second");
-    trial_remark(t, "J2 %.2g %% off, J3 %.3g g (tied %.3g g), %ld closings, %ld steps, %.2g s",
+               "contact onsets per floor and second");
+    trial_remark(t, "J2 %.2g %% off, J3 %.3g g (rigidly connected %.3g g), %ld contact onsets, %ld steps, %.2g s",
                  100 * (touching.j2_m / tied.j2_m - 1), touching.j3_g, tied.j3_g, touching.impacts, touching.steps,
                  touching.seconds);
     tower_close(&tower);
@@ -109,7 +109,7 @@ static void huge_gap(Trial *t)
         const SimResult r = tower_run(&tower, SCENE_IMPACT);
         const double wanted = largest_displacement(&tower);
         trial_compare(t, &r, r.j1_m, wanted, wanted, trial_allowed(t, 1e-5, 1e-3), "J1 against the closed form");
-        trial_note(t, &r, (double)r.impacts, 0, "closings");
+        trial_note(t, &r, (double)r.impacts, 0, "contact onsets");
         tower_close(&tower);
     }
 }
@@ -141,7 +141,8 @@ static void stiff_and_soft_core(Trial *t)
         tower.settings.core.youngs_modulus_pa *= FACTOR[i];
         const SimResult r = tower_run(&tower, SCENE_IMPACT), wanted = finest(&tower);
         snprintf(what, sizeof what, "core stiffness x %g", FACTOR[i]);
-        trial_remark(t, "x %g: %ld closings, residual %.1e; ", FACTOR[i], r.impacts, r.energy_balance_error);
+        trial_remark(t, "x %g: %ld contact onsets, energy-balance error %.1e; ", FACTOR[i], r.impacts,
+                     r.energy_balance_error);
         trial_compare(t, &r, r.j1_m, wanted.j1_m, wanted.j1_m, 3e-3 * trial_slack(t), "%s: J1", what);
         trial_compare(t, &r, r.j2_m, wanted.j2_m, wanted.j2_m, 1e-2 * trial_slack(t), "%s: J2", what);
         trial_compare(t, &r, r.input_energy_j, wanted.input_energy_j, wanted.input_energy_j, 1e-2, "%s: input energy",
@@ -227,7 +228,7 @@ static void mirrored(Trial *t)
     const int exact = trial_slack(t) == 1;
     compare_objectives(t, &back, &there, exact ? 1e-4 : 1, "mirrored");
     trial_note(t, &back, fabs((double)(back.impacts - there.impacts)), exact ? 0 : 0.02 * (double)there.impacts,
-               "closings");
+               "contact onsets");
     tower_close(&tower);
 }
 
@@ -301,14 +302,14 @@ static void strength(Trial *t)
             trial_compare(t, &r, r.j1_m / f, first.j1_m, first.j1_m, 1e-3, "strength x %g: J1 over strength", SCALE[i]);
             trial_compare(t, &r, r.input_energy_j / (f * f), first.input_energy_j, first.input_energy_j, 1e-4,
                           "strength x %g: input energy over its square", SCALE[i]);
-            trial_note(t, &r, (double)r.impacts, 0, "strength x %g: closings", SCALE[i]);
+            trial_note(t, &r, (double)r.impacts, 0, "strength x %g: contact onsets", SCALE[i]);
             trial_note(t, &r, r.j1_m > 0 ? 0 : 1, 0.5, "strength x %g: moves", SCALE[i]);
         } else {
-            trial_remark(t, "x %g: penetration %.3g of the radius%s; ", SCALE[i], r.indentation_ratio,
+            trial_remark(t, "x %g: indentation %.3g of the radius%s; ", SCALE[i], r.indentation_ratio,
                          r.outcome != RUN_OK      ? " (refused)"
                          : beyond_contact_law(&r) ? " (flagged)"
                                                   : "");
-            trial_note(t, &r, r.energy_balance_error, 1e-3, "strength x %g: energy residual", SCALE[i]);
+            trial_note(t, &r, r.energy_balance_error, 1e-3, "strength x %g: energy-balance error", SCALE[i]);
             if (SCALE[i] >= 100)
                 trial_note(t, &r, beyond_contact_law(&r) ? 0 : 1, 0.5, "strength x %g: flagged as too deep", SCALE[i]);
         }
@@ -399,7 +400,7 @@ static void vector_width(Trial *t)
 }
 
 static const Case CASES[] = {
-    {"zero-gap", "no gap on any floor tends to the tied building, without a storm of events", zero_gap},
+    {"zero-gap", "no gap on any floor tends to the rigidly connected building, without a storm of events", zero_gap},
     {"huge-gap", "a gap that never closes gives the closed form of the building alone", huge_gap},
     {"negative-gap", "a gap that is negative or no number is refused by name", negative_gap},
     {"core-stiffness", "a core 1e-6 to 1e6 times as stiff, against `fast` at fine", stiff_and_soft_core},

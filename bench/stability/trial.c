@@ -82,7 +82,7 @@ static void note(Trial *t, const SimResult *r, double error, double allowed, con
         if (verdict == HOLDS)
             snprintf(how, sizeof how, "%s, %s; allowed %.2g", what, ACCURACIES[t->accuracy], allowed);
         else
-            snprintf(how, sizeof how, "%s, %s; allowed %.2g; energy residual %.2g", what, ACCURACIES[t->accuracy],
+            snprintf(how, sizeof how, "%s, %s; allowed %.2g; energy-balance error %.2g", what, ACCURACIES[t->accuracy],
                      allowed, r ? r->energy_balance_error : 0);
     }
     settle(t, verdict, error, allowed > 0 ? error / allowed : error, how);
