@@ -1,17 +1,17 @@
-/* store/database.h -- one SQLite file, opened so that what was committed is never lost, with our words for its faults.
+/* store/database.h -- one SQLite file, opened so that what was committed is never lost; its faults in our words.
  *
- *   journal WAL, synchronous FULL: a commit returns when it is on the disk; readers never wait for the writer
- *   application_id tells that the file is ours, user_version its format; both, and the integrity, are checked on
- *   opening. A file from somebody else runs nothing: what is read are tables, no views of its own and no triggers, and
- *   no row is longer than the file
+ *   journal WAL, synchronous FULL   a commit returns when it is on the disk; readers never wait for the writer
+ *   application_id, user_version    the file is ours, and the version of its tables; checked on opening, like its
+ *                                   integrity
  *
- * Every write of a run's database goes through database_do.
+ * A file from another program runs nothing: only tables are read, no views of its own and no triggers, and no row is
+ * longer than the file. Every write of a run's database goes through database_do.
  *
  * Life cycle  database_create or database_open -> database_do, database_each ... -> database_close
  * Threads     one connection, one thread at a time (its mutex guards the rest)
- * Errors      disk full, read-only, busy, damaged, of another program or a newer version: STATUS_IO with file and
- * cause; no such file: STATUS_MISSING Source      https://sqlite.org/wal.html,
- * https://sqlite.org/pragma.html#pragma_synchronous */
+ * Errors      disk full, read-only, busy, damaged, of another program or a newer version: STATUS_IO with file and cause;
+ *             no such file: STATUS_MISSING
+ * Source      https://sqlite.org/wal.html, https://sqlite.org/pragma.html#pragma_synchronous */
 #ifndef IMTET_STORE_DATABASE_H
 #define IMTET_STORE_DATABASE_H
 

@@ -1,14 +1,13 @@
-/* store/repeats.h -- a design that was simulated several times, as the search sees it: one design with a mean.
+/* store/repeats.h -- a design that was evaluated several times, as the search sees it: one design with a mean.
  *
- *   F         of a design the mean of its answers
- *   spread    standard deviation of a single simulation, as far as all repeats of the run tell (moga/spread.h)
- *   members   simulations behind F: answers x sim.ensemble
+ *   F            of a design the mean of its evaluations
+ *   sd           standard deviation of a single simulation, estimated from all repeats of the run (moga/spread.h)
+ *   replicates   simulations behind F: evaluations x sim.ensemble
  *
- * A design with an answer that failed keeps its first one; the search has taken it off the front.
- * Rows of repeats keep what they answered; unfinished and polished ones are left alone. Where answers are not noisy
- * nothing changes.
+ * A design with an evaluation that failed keeps its first one; the search has taken it off the front. f of the table
+ * stays what each evaluation found; unfinished and polished ones are left alone. Without noise nothing changes.
  *
- * Threads  one; h is written */
+ * Threads  one; the run is written */
 #ifndef IMTET_STORE_REPEATS_H
 #define IMTET_STORE_REPEATS_H
 

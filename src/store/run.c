@@ -50,6 +50,14 @@ size_t run_find(const Run *run, long id)
     return low < run->table.n && run->table.row[low].id == id ? low : run->table.n;
 }
 
+size_t run_n_finished(const Run *run)
+{
+    size_t n = 0;
+    while (n < run->table.n && run->table.row[n].kind != KIND_UNFINISHED && run->table.row[n].id < POLISHED_FIRST)
+        n++;
+    return n;
+}
+
 static double minimised(const Run *run, size_t row, size_t k)
 {
     return schema_objective(&run->schema, k)->sense * run_f(run, row)[k];

@@ -74,6 +74,9 @@ const double *run_f(const Run *run, size_t row); /* (n_obj) */
 /* Row of that design, or run->table.n. */
 size_t run_find(const Run *run, long id);
 
+/* Evaluations of the search whose generation is finished: the first rows. */
+size_t run_n_finished(const Run *run);
+
 /* The front of the search joined by the polished designs, and `front`; the table, F and place are all that has to be there. */
 Status run_settle_front(Run *run, Err *err);
 

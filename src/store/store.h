@@ -1,26 +1,28 @@
 /* store/store.h -- the folder of one run, while it is worked on.
  *
  *   run.sqlite        everything (tables below); what is in it is on the disk and stays, however the program ends
- *   settings.ini      the settings as used, defaults filled in, paths absolute       these four are made from the
- *   provenance.json   program, libraries, machine, seed, hashes                      database: removed or out of step
- *   evaluations.csv   every simulation of the generations that are finished          after a crash, they are written
- *   front.csv         the designs that no other one beats                            anew when the run goes on
- *   log.txt           what happened when; log.jsonl: the same for programs
- *   lock              who works on it (store/lock.h)
+ *   settings.ini      the settings as used, defaults filled in, paths absolute     these four are made from the
+ *   provenance.json   program, libraries, machine, seed, hashes                    database: removed, or out of step
+ *   evaluations.csv   every evaluation of the finished generations                 after a crash, they are regenerated
+ *   front.csv         the nondominated designs                                     when the run is resumed
+ *   log.txt           what happened when; log.jsonl: the same for programs         (store/logs.h)
+ *   lock              which process works on it                                    (store/lock.h)
  *
- * One simulation is one row, committed when it is done: at once where it took longer than COMMIT_S, else at the latest
+ * One evaluation is one row, committed when it is done: at once where it took longer than COMMIT_S, else at the latest
  * COMMIT_S after the one before, and at the end of its batch. What a kill can cost is what was under way and COMMIT_S
- * of simulations. The end of a generation is one transaction: kinds, front, hypervolume, state of the search.
+ * of evaluations. The end of a generation is one transaction: kinds, front, hypervolume, state of the search.
  *
- *   run         settings (INI), provenance (JSON), planned_evals, n_var, created, tried_to_polish, polished_at
- *   evaluation  id, generation, kind (NULL: its generation is not finished), outcome, reason, seconds, x, f, spread
- * (JSON lists; NULL: none), violation, extra, digest (store/tables.h) generation  number, simulated, failed, front,
- * predicted, surrogate_error, hypervolume, seconds, finished front       evaluation, entered, left: it was on the front
- * of the generations entered
- * <= g < left state       generation, bytes (moga/search.h) session     started, ended, host, pid, program, threads,
- * simulated_before, seconds, stopped, is_final designs     a view: the evaluations with their columns by name
+ *   run          settings (INI), provenance (JSON), planned_evals, n_var, created, tried_to_polish, polished_at
+ *   evaluation   id, generation, kind (NULL: its generation is not finished), outcome, reason, seconds,
+ *                x, f, spread (JSON lists; NULL: none), violation, extra, digest (store/rows.h)
+ *   generation   number, simulated, failed, front, predicted, surrogate_error, hypervolume, seconds, finished
+ *   front        evaluation, entered, left: it was on the front of the generations entered <= g < left
+ *   state        generation, bytes (moga/search.h)
+ *   session      started, ended, host, pid, program, threads, simulated_before, seconds, stopped, is_final,
+ *                search, waited, surrogate
+ *   designs      a view: the evaluations with their columns by name
  *
- * Life cycle  store_open -> store_begin or store_go_on -> ... -> store_close, or store_free after a fault
+ * Life cycle  store_open -> store_begin or store_resume -> ... -> store_close, or store_free after a fault
  * Threads     one at a time
  * Errors      STATUS_IO with file and cause */
 #ifndef IMTET_STORE_STORE_H
@@ -48,12 +50,12 @@ const char *store_folder(const RunStore *store);
 const Run *store_run(const RunStore *store);
 Run store_give_run(RunStore *store); /* it passes to the caller, for run_free */
 
-/* A run in which nothing was simulated is no run yet: forgotten, so that it begins anew, with whatever settings. */
+/* A run in which nothing was simulated is removed: the next one begins with whatever settings. */
 Status store_forget_empty(RunStore *store, Err *err);
 
-/* A new run, or the one that is there with other limits or threads. Borrow the schema. */
+/* A new run, or the one that is there, with other limits or threads. Borrow the schema. */
 Status store_begin(RunStore *store, const Schema *schema, const Settings *used, const char *provenance, Err *err);
-Status store_go_on(RunStore *store, const Schema *schema, const Settings *used, Err *err);
+Status store_resume(RunStore *store, const Schema *schema, const Settings *used, Err *err);
 
 /* A start of the program on this run; to be called after one of the two. */
 Status store_session(RunStore *store, const char *program, int threads, size_t n_simulated, Err *err);
@@ -66,7 +68,7 @@ Status store_flush(RunStore *store, Err *err); /* commits what waits */
 Status store_generation(RunStore *store, const SearchView *view, double seconds, double session, Err *err);
 double store_hypervolume(const RunStore *store); /* of the last generation; NAN: none */
 
-/* One line, the time of day in front; the same for programs, an object that is taken over, "time" added. */
+/* As store/logs.h says. */
 __attribute__((format(printf, 3, 4))) Status store_log(RunStore *store, Err *err, const char *format, ...);
 Status store_event(RunStore *store, json_t *event, Err *err);
 

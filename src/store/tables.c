@@ -7,16 +7,9 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "store/logs.h"
 #include "store/output.h"
 #include "settings/settings.h"
-
-void utc_now(char text[24])
-{
-    struct tm parts;
-    const time_t now = time(NULL);
-    gmtime_r(&now, &parts);
-    strftime(text, 24, "%FT%TZ", &parts);
-}
 
 /* -- a new database ------------------------------------------------------------------------------------------------ */
 

@@ -14,7 +14,4 @@ Status tables_create(const char *path, const Schema *schema, const Settings *use
 
 Status tables_set_settings(Database *db, const Settings *used, Err *err);
 
-/* 2026-01-31T23:59:59Z, now */
-void utc_now(char text[24]);
-
 #endif

@@ -323,7 +323,7 @@ static Status go_on(Study *study, Err *err)
     study->first_generation = study->generation;
     TRY(check_limit(study, sum->n_before, err));
     snprintf(study->used.run.out, OPTION_TEXT_MAX, "%s", h->settings->run.out);
-    return store_go_on(study->store, subject_schema(study->subject), &study->used, err);
+    return store_resume(study->store, subject_schema(study->subject), &study->used, err);
 }
 
 static Status prepare(Study *study, const Settings *s, Err *err)

@@ -1,0 +1,111 @@
+#include "store/folder.h"
+
+#include <errno.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "store/lock.h"
+#include "store/output.h"
+
+void folder_path(const Folder *folder, const char *name, char path[PATH_MAX])
+{
+    snprintf(path, PATH_MAX, "%s/%s", folder->path, name);
+}
+
+int folder_has(const Folder *folder, const char *name)
+{
+    char path[PATH_MAX];
+    folder_path(folder, name, path);
+    return access(path, F_OK) == 0;
+}
+
+static Status make_folders(const char *folder, Err *err)
+{
+    char part[PATH_MAX];
+    for (const char *end = folder + 1;; end++) {
+        if (*end && *end != '/')
+            continue;
+        snprintf(part, sizeof part, "%.*s", (int)(end - folder), folder);
+        if (mkdir(part, 0777) != 0 && errno != EEXIST)
+            return fail(err, STATUS_IO, "%s: cannot be made a folder: %s", part, strerror(errno));
+        if (!*end)
+            return STATUS_OK;
+    }
+}
+
+static Status take_lock(Folder *folder, Err *err)
+{
+    char path[PATH_MAX];
+    TRY(make_folders(folder->path, err));
+    folder_path(folder, "lock", path);
+    return lock_take(path, &folder->lock, err);
+}
+
+static Status take_free_folder(Folder *folder, const char *path, Err *err)
+{
+    char lock[PATH_MAX];
+    LockHolder holder;
+    for (int i = 2;; i++) {
+        folder_path(folder, "lock", lock);
+        if (!folder_has(folder, "run.sqlite") && !lock_is_held(lock, &holder))
+            return take_lock(folder, err);
+        if (snprintf(folder->path, sizeof folder->path, "%s-%d", path, i) >= (int)sizeof folder->path)
+            return fail(err, STATUS_IO, "%.200s...: the path is too long", path);
+    }
+}
+
+Status folder_take(Folder *folder, const char *path, int fresh, Err *err)
+{
+    folder->lock = -1;
+    if (snprintf(folder->path, sizeof folder->path, "%s", path) >= (int)sizeof folder->path)
+        return fail(err, STATUS_IO, "%.200s...: the path is too long", path);
+    return fresh ? take_free_folder(folder, path, err) : take_lock(folder, err);
+}
+
+void folder_release(Folder *folder)
+{
+    lock_release(folder->lock);
+    folder->lock = -1;
+}
+
+/* -- files --------------------------------------------------------------------------------------------------------- */
+
+Status folder_write(const Folder *folder, const char *name, WriteFn write, const void *content, Err *err)
+{
+    char path[PATH_MAX];
+    Output o;
+    folder_path(folder, name, path);
+    TRY(output_open(&o, path, err));
+    write(o.stream, content);
+    return output_close(&o, err);
+}
+
+Status append_open(Append *a, const Folder *folder, const char *name, Err *err)
+{
+    folder_path(folder, name, a->path);
+    a->stream = fopen(a->path, "ae");
+    return a->stream ? STATUS_OK : fail(err, STATUS_IO, "%s: cannot be written: %s", a->path, strerror(errno));
+}
+
+Status append_flush(const Append *a, Err *err)
+{
+    errno = EIO; /* of an earlier write whose cause is gone */
+    if (fflush(a->stream) != 0 || ferror(a->stream))
+        return fail(err, STATUS_IO, "%s: cannot be written: %s", a->path, strerror(errno));
+    return STATUS_OK;
+}
+
+Status append_close(Append *a, Err *err)
+{
+    TRY(output_sync(a->stream, a->path, err));
+    append_free(a); /* all of it is on the disk */
+    return STATUS_OK;
+}
+
+void append_free(Append *a)
+{
+    if (a->stream)
+        fclose(a->stream);
+    a->stream = NULL;
+}

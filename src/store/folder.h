@@ -1,0 +1,40 @@
+/* store/folder.h -- the folder of a run, its lock, and files in it that are replaced whole or appended to.
+ *
+ * Life cycle  folder_take -> folder_write, append_open ... -> folder_release ({.lock = -1} is fine)
+ * Errors      STATUS_IO with path and cause */
+#ifndef IMTET_STORE_FOLDER_H
+#define IMTET_STORE_FOLDER_H
+
+#include <limits.h>
+#include <stdio.h>
+
+#include "base/status.h"
+
+typedef struct {
+    char path[PATH_MAX - 64];
+    int lock; /* -1: not taken */
+} Folder;
+
+/* Made where it is not there, and locked (store/lock.h). fresh: the first of path, path-2, path-3, ... that holds no run
+ * and that no process works on. */
+Status folder_take(Folder *folder, const char *path, int fresh, Err *err);
+void folder_release(Folder *folder);
+
+void folder_path(const Folder *folder, const char *name, char path[PATH_MAX]);
+int folder_has(const Folder *folder, const char *name);
+
+/* The file replaced as a whole (store/output.h). */
+typedef void (*WriteFn)(FILE *f, const void *content);
+Status folder_write(const Folder *folder, const char *name, WriteFn write, const void *content, Err *err);
+
+/* A file that only grows. {0} may be freed. */
+typedef struct {
+    FILE *stream; /* NULL: not open */
+    char path[PATH_MAX];
+} Append;
+Status append_open(Append *a, const Folder *folder, const char *name, Err *err);
+Status append_flush(const Append *a, Err *err); /* an earlier write that failed is an error too */
+Status append_close(Append *a, Err *err);       /* on the disk */
+void append_free(Append *a);
+
+#endif
