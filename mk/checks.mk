@@ -1,7 +1,11 @@
 # Checks beyond the tests.
 
-.PHONY: fuzz fuzz-here coverage coverage-here torture faults tsan tsan-here asan asan-here valgrind stability \
+.PHONY: lint deb fuzz fuzz-here coverage coverage-here torture faults tsan tsan-here asan asan-here valgrind stability \
         stability-long laws fresh-debian
+
+lint: ## format, versions, structure, headers, static analysis; LINT_BASE=all: clang-tidy on all files, not the changed ones
+	@scripts/setup packages-lint.txt
+	@scripts/lint
 
 # Every reader of foreign bytes under libFuzzer; what it finds goes to build/fuzz.
 FUZZ_S       ?= 600
@@ -74,3 +78,7 @@ laws: $(BENCH) ## docs/contact-laws.md: rebound of the contact laws
 
 fresh-debian: ## the steps of the README in a Debian that has nothing but make (root, debootstrap, network)
 	@scripts/fresh-debian build/fresh-debian
+
+deb: ## build/deb/imtet_VERSION_ARCH.deb, by debhelper
+	@scripts/setup packages-deb.txt
+	@REVISION=$(REVISION) scripts/deb build/deb $(VERSION)
