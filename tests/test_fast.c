@@ -18,7 +18,7 @@
 /* A free mass behind a gap, set in motion by a short push of the ground, and a core too heavy to move. */
 typedef struct {
     double m, k, v, r; /* [kg], [N/m^1.5], [m/s], [-] */
-    FastKnobs knobs;
+    FastTolerances tolerances;
 } Ball;
 
 typedef struct {
@@ -34,7 +34,7 @@ static void bounce(const Ball *ball, double until, Bounce *b)
     Err err = {0};
     SimModel model;
     FastWork *work;
-    b->penetration = contact_hertz_penetration(ball->k, ball->m, ball->v);
+    b->penetration = contact_hertz_indentation(ball->k, ball->m, ball->v);
     b->duration = contact_hertz_duration(ball->k, ball->m, ball->v);
     b->speed = ball->v;
     b->dt = 7.3 * b->duration;
@@ -46,7 +46,7 @@ static void bounce(const Ball *ball, double until, Bounce *b)
                &(Contact){.k = ball->k, .a = 1.5 * (1 - ball->r), .v0_floor = 1e-300});
     CHECK_OK(fast_create(&work, 1, &err), &err);
     const double end = until >= 0 ? b->closing + until * b->duration : 8 * b->dt;
-    fast_run(work, &model, &motion, &(EngineOptions){.duration = end}, &ball->knobs, &b->result);
+    fast_run(work, &model, &motion, &(EngineOptions){.duration = end}, &ball->tolerances, &b->result);
     fast_free(work);
     model_free(&model);
 }
@@ -61,7 +61,7 @@ static void test_rebound_has_its_closed_form_over_twelve_decades_of_mass_stiffne
             for (int which = 0; which < 3; which++) {
                 const double d = decades[i];
                 Ball ball = {1000 * (which == 0 ? d : 1), 4.865e10 * (which == 1 ? d : 1), 0.3 * (which == 2 ? d : 1),
-                             table[r][0], fast_knobs(ACCURACY_FINE)};
+                             table[r][0], fast_tolerances(ACCURACY_FINE)};
                 Bounce b;
                 bounce(&ball, -1, &b);
                 assert_int_equal(b.result.outcome, RUN_OK);
@@ -75,7 +75,7 @@ static void test_rebound_has_its_closed_form_over_twelve_decades_of_mass_stiffne
 static void test_hertz_impact_has_its_penetration_force_and_duration(void **state)
 {
     (void)state;
-    Ball ball = {280000, 4.865e10, 0.4, 1, fast_knobs(ACCURACY_FINE)};
+    Ball ball = {280000, 4.865e10, 0.4, 1, fast_tolerances(ACCURACY_FINE)};
     Bounce b;
     bounce(&ball, -1, &b);
     assert_close(b.result.kinetic_strain_j, b.result.input_energy_j, 1e-8);
@@ -90,7 +90,7 @@ static void test_hertz_impact_has_its_penetration_force_and_duration(void **stat
 static void test_damped_impact_has_its_known_penetration_force_and_duration(void **state)
 {
     (void)state;
-    Ball ball = {280000, 4.865e10, 0.4, 0.7, fast_knobs(ACCURACY_FINE)};
+    Ball ball = {280000, 4.865e10, 0.4, 0.7, fast_tolerances(ACCURACY_FINE)};
     Bounce b;
     bounce(&ball, -1, &b);
     assert_close(b.result.indentation_max_m, 0.902920 * b.penetration, 1e-4);
@@ -127,7 +127,7 @@ static void test_at_every_accuracy_an_impact_rebounds_right_wherever_it_falls_in
     for (int accuracy = ACCURACY_COARSE; accuracy <= ACCURACY_FINE; accuracy++)
         for (int i = 0; i < 200; i++) {
             const double r = 0.3 + 0.23 * (i % 4), speed = 0.3 * pow(1.02, i);
-            Ball ball = {1000, 4.865e10, speed, r, fast_knobs((Accuracy)accuracy)};
+            Ball ball = {1000, 4.865e10, speed, r, fast_tolerances((Accuracy)accuracy)};
             Bounce b;
             bounce(&ball, -1, &b);
             const double rebound = sqrt(b.result.kinetic_strain_j / b.result.input_energy_j);
@@ -149,12 +149,12 @@ static void test_a_blow_too_weak_for_the_books_still_has_its_largest_acceleratio
         double accel[12] = {0, -v / dt};
         const Motion motion = {.accel = accel, .n = 12, .dt_s = dt};
         const Bob floors[] = {{.mass = 1e6 * m, .gap = 1e9}, {.mass = m, .gap = v * (4 + 0.01 * i) * dt}};
-        const FastKnobs knobs = fast_knobs(ACCURACY_STANDARD);
+        const FastTolerances tolerances = fast_tolerances(ACCURACY_STANDARD);
         bobs_model(&model, 2, floors, 0, &contact);
         CHECK_OK(fast_create(&work, 2, &err), &err);
-        fast_run(work, &model, &motion, &(EngineOptions){.duration = 8 * dt}, &knobs, &result);
+        fast_run(work, &model, &motion, &(EngineOptions){.duration = 8 * dt}, &tolerances, &result);
         assert_int_equal(result.impacts, 1);
-        const double depth = contact_hertz_penetration(contact.k, m, v);
+        const double depth = contact_hertz_indentation(contact.k, m, v);
         assert_close(result.peak_acceleration_g[1] * 9.81, contact.k * pow(depth, 1.5) / m, 3e-2);
         fast_free(work);
         model_free(&model);

@@ -103,7 +103,7 @@ static SimResult run_tied(const Stage *stage, const Motion *m, double duration, 
     SimResult r;
     Err err;
     CHECK_OK(engine_rigid(&stage->s, &stage->b, &stage->core, m,
-                         &(EngineOptions){.duration = duration, .accuracy = accuracy}, &r, &err),
+                          &(EngineOptions){.duration = duration, .accuracy = accuracy}, &r, &err),
              &err);
     return r;
 }

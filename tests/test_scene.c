@@ -416,7 +416,7 @@ static void test_hertz_impact_of_two_steel_balls(void **state)
     const double E = 2.1e11, nu = 0.3, R = 0.01; /* two balls: E' = E/(2 (1-nu^2)), R' = R/2, m' = m/2 */
     const double k = 4.0 / 3 * E / (2 * (1 - nu * nu)) * sqrt(R / 2);
     const double m = 7850 * 4.0 / 3 * M_PI * R * R * R / 2, v = 1;
-    const double p = contact_hertz_penetration(k, m, v);
+    const double p = contact_hertz_indentation(k, m, v);
     assert_close(p, 2.04412126e-5, 1e-8);
     assert_close(contact_hertz_duration(k, m, v), 6.016411378e-5, 1e-9);
     assert_close(k * pow(p, 1.5), 1005.383, 1e-6);

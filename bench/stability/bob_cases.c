@@ -38,7 +38,7 @@ static void throw_mass(Trial *t, const Throw *x, Thrown *out)
     const Motion motion = {.accel = accel, .n = 3, .dt_s = x->dt};
     const Bob bob = {.mass = x->mass, .gap = x->v * 4 * x->dt};
     const Contact contact = paper_law(x->k, x->r, 1e-300);
-    out->penetration = contact_hertz_penetration(x->k, x->mass, x->v);
+    out->penetration = contact_hertz_indentation(x->k, x->mass, x->v);
     out->duration = contact_hertz_duration(x->k, x->mass, x->v);
     out->closing = 5 * x->dt;
     out->energy = 0.5 * x->mass * x->v * x->v;

@@ -59,7 +59,7 @@ static Measured measure_impact(ContactLaw law, double r)
                       .clamp = o.clamp / energy,
                       .lost = o.lost / energy,
                       .duration = (o.opened - closing) / duration,
-                      .penetration = o.penetration / contact_hertz_penetration(c.k, mass, v)};
+                      .penetration = o.penetration / contact_hertz_indentation(c.k, mass, v)};
 }
 
 /* What the law is known to return; NAN where only its own curve is known. A closed form of every law with damping in

@@ -378,12 +378,12 @@ static void vector_width(Trial *t)
         need(model_set(&model, &options, &b, &core, tower.x, &err), &err);
         need(fast_create(&work, b.n, &err), &err);
         const EngineOptions run = {.duration = (double)(tower.motion.n - 1) * tower.motion.dt_s};
-        const FastKnobs knobs = fast_knobs(t->accuracy);
+        const FastTolerances tolerances = fast_tolerances(t->accuracy);
         for (size_t i = 0; i < sizeof KERNELS / sizeof KERNELS[0]; i++) {
             SimResult r;
             if (!processor_has(KERNELS[i]))
                 continue;
-            KERNELS[i](work, &model, &tower.motion, &run, &knobs, &r);
+            KERNELS[i](work, &model, &tower.motion, &run, &tolerances, &r);
             if (i == 0)
                 first = r;
             trial_compare(t, &r, r.j1_m, first.j1_m, first.j1_m, 1e-8, "%s against base: J1", NAMES[i]);

@@ -47,10 +47,10 @@ static SimResult run_once(Trial *t, const SimModel *model, const Motion *motion,
 SimResult trial_run(Trial *t, const SimModel *model, const Motion *motion, double duration, double tolerance)
 {
     SimResult r = run_once(t, model, motion, duration, tolerance);
-    /* what sim_run does for the engine `fast` when its books stay open */
+    /* what sim_run does for the engine `fast` when its energy balance does not close */
     for (double finer = 4;
          t->engine == ENGINE_FAST && tolerance == 0 && finer < 17 && r.energy_balance_error > RESIDUAL_MAX; finer *= 4)
-        r = run_once(t, model, motion, duration, finer * fast_knobs(t->accuracy).steps_per_contact);
+        r = run_once(t, model, motion, duration, finer * fast_tolerances(t->accuracy).steps_per_contact);
     return r;
 }
 

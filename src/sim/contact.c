@@ -35,14 +35,14 @@ double contact_damping(double e)
     return 0.5 * (low + high);
 }
 
-double contact_hertz_penetration(double k, double m, double v)
+double contact_hertz_indentation(double k, double m, double v)
 {
     return pow(1.25 * m * v * v / k, 0.4);
 }
 
 double contact_hertz_duration(double k, double m, double v)
 {
-    return 2.943275184 * contact_hertz_penetration(k, m, v) / v; /* 2 int_0^1 dx / sqrt(1 - x^2.5) */
+    return 2.943275184 * contact_hertz_indentation(k, m, v) / v; /* 2 int_0^1 dx / sqrt(1 - x^2.5) */
 }
 
 Status contact_make(Contact *c, const ContactOptions *o, Err *err)

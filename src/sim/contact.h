@@ -1,7 +1,7 @@
-/* sim/contact.h -- the force between a floor and the core while they touch.
+/* sim/contact.h -- the force between a floor and the core while they are in contact.
  *
- *   F = k p^1.5 (1 + a p'/v0) + c p',  p > 0 penetration [m],  v0 approach speed when this contact closed [m/s],  F >=
- * 0 k = 2 E sqrt(R) / (3 (1 - nu^2))                                            [N/m^1.5]
+ *   F = k p^1.5 (1 + a p'/v0) + c p',  F >= 0,  p > 0 indentation [m],  v0 approach speed at the onset of contact [m/s]
+ *   k = 2 E sqrt(R) / (3 (1 - nu^2))                                                                      [N/m^1.5]
  *
  *   paper                a = 1.5 (1 - r). An isolated impact then rebounds not with r but with e from
  *                        a (1+e) = ln((1+a)/(1-a e)).
@@ -12,9 +12,11 @@
  *                        xi = 9 sqrt(5)/2 (1 - r^2) / (r (r (9 pi - 16) + 16))
  *                        Earthquake Eng. Struct. Dyn. 34 (2005) 595-611; 35 (2006) 517-524
  *
- * The law would pull when separation is faster than v0/a: such tension is clamped at zero and what the clamp removes is
- * booked. v0 is never taken smaller than v0_floor. Source: Hunt and Crossley, J. Appl. Mech. 42 (1975) 440-445;
- * Marhefka and Orin, IEEE Trans. SMC-A 29 (1999) 566-572 (rebound equation). Threads  no state */
+ * The law would be tensile when separation is faster than v0/a: tension is clamped at zero, and the energy that the
+ * clamp removes is reported. v0 is never taken smaller than v0_floor.
+ * Source   Hunt and Crossley, J. Appl. Mech. 42 (1975) 440-445; Marhefka and Orin, IEEE Trans. SMC-A 29 (1999) 566-572
+ *          (rebound equation)
+ * Threads  no state */
 #ifndef IMTET_SIM_CONTACT_H
 #define IMTET_SIM_CONTACT_H
 
@@ -38,8 +40,8 @@ double contact_rebound(double a);
 /* Its inverse: a(e) for 0 < e <= 1. */
 double contact_damping(double e);
 
-/* Hertz, no damping: largest penetration [m] and duration [s] of an impact of mass m [kg] at speed v [m/s]. */
-double contact_hertz_penetration(double k, double m, double v);
+/* Hertz, no damping: largest indentation [m] and duration [s] of an impact of mass m [kg] at speed v [m/s]. */
+double contact_hertz_indentation(double k, double m, double v);
 double contact_hertz_duration(double k, double m, double v);
 
 typedef struct {
@@ -47,7 +49,7 @@ typedef struct {
     double dp, dv;            /* d force/d p [N/m], d force/d p' [N s/m] */
 } ContactForce;
 
-/* p > 0; v0 already floored; mass [kg] of the contact: what it has to turn round. */
+/* p > 0; v0 not below v0_floor; mass [kg]: the effective mass of the contact. */
 static inline ContactForce contact_force(const Contact *c, double mass, double p, double p_dot, double v0)
 {
     const double root = sqrt(p), hertz = c->k * p * root, damping = c->a / v0, loss = 1.0 + damping * p_dot;

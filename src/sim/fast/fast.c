@@ -6,40 +6,67 @@
 #include "base/denormal.h"
 #include "sim/fast/kernel.h"
 
+/* Room for vectors of `length` numbers each. */
+#define CARVE(c, length, ...)                                                                                          \
+    do {                                                                                                               \
+        vec **const of[] = {__VA_ARGS__};                                                                              \
+        for (size_t i_ = 0; i_ < sizeof of / sizeof of[0]; i_++)                                                       \
+            *of[i_] = carve(c, length, sizeof(double));                                                                \
+    } while (0)
+
+static void layout_state(State *s, Carve *c, size_t modes, size_t floors)
+{
+    CARVE(c, modes, &s->q, &s->v, &s->load, &s->contact_work, &s->ground_work, &s->defect);
+    CARVE(c, floors, &s->w, &s->w_dot, &s->force);
+}
+
+static void layout_flight(FlightScratch *f, Carve *c, size_t modes, size_t floors)
+{
+    CARVE(c, modes, &f->amplitude, &f->start_q, &f->start_v, &f->start_a, &f->start_j, &f->end_q, &f->end_v, &f->end_a,
+          &f->end_j, &f->bound_q, &f->bound_a);
+    CARVE(c, floors, &f->u0, &f->u0_dot, &f->u1, &f->u1_dot, &f->core0, &f->core0_dot, &f->core1, &f->core1_dot, &f->a0,
+          &f->a0_dot, &f->a1, &f->a1_dot, &f->error_u, &f->error_core, &f->error_a, &f->reach_a);
+}
+
+static void layout_contact(ContactScratch *s, Carve *c, size_t modes, size_t floors)
+{
+    CARVE(c, modes, &s->bubble, &s->middle_q, &s->middle_a, &s->end_a, &s->bound_q, &s->bound_a);
+    CARVE(c, floors, &s->missed);
+    for (int i = 0; i < 9; i++)
+        CARVE(c, floors, &s->sample[i / 3][i % 3]);
+}
+
+static void layout_reach(ReachScratch *r, Carve *c, size_t modes, size_t floors)
+{
+    CARVE(c, modes, &r->bound_q, &r->bound_a);
+    CARVE(c, floors, &r->u, &r->drift, &r->a, &r->core);
+}
+
+static void layout_level(Level *l, Carve *c, size_t n, size_t modes, size_t floors)
+{
+    CARVE(c, FLOW_ROWS * modes, &l->coef);
+    CARVE(c, modes, &l->slow, &l->kappa, &l->kappa_accel, &l->cubic, &l->parabola, &l->parabola_accel);
+    l->compliance = carve(c, COMPLIANCES * n * floors, sizeof(double));
+    l->compliance_pair = carve(c, n * n, sizeof(v4));
+}
+
 static void layout(FastWork *k, Carve *c)
 {
-    const size_t n = (size_t)k->n, n_pad = (size_t)k->n_pad, m_max = 2 * n_pad;
-    vec **const modes[] = {&k->omega, &k->zeta,      &k->gamma, &k->wd_inverse, &k->decay,  &k->flex,
-                           &k->q,     &k->v,         &k->load,  &k->work,       &k->ground, &k->q1,
-                           &k->v1,    &k->amplitude, &k->qa,    &k->va,         &k->qb,     &k->vb,
-                           &k->za,    &k->ja,        &k->zb,    &k->jb,         &k->bound,  &k->bound_a,
-                           &k->work1, &k->ground1,   &k->drift, &k->drift1,     &k->most,   &k->most_drift};
-    vec **const floors[] = {&k->w,      &k->wd,     &k->w1,  &k->wd1, &k->f0,  &k->f1,      &k->fb,
-                            &k->gap,    &k->u0,     &k->u0d, &k->u1,  &k->u1d, &k->a0,      &k->a0d,
-                            &k->a1,     &k->a1d,    &k->e_u, &k->e_w, &k->e_a, &k->reach_a, &k->peak_u,
-                            &k->peak_d, &k->peak_a, &k->c0,  &k->c0d, &k->c1,  &k->c1d};
-    for (size_t i = 0; i < sizeof modes / sizeof modes[0]; i++)
-        *modes[i] = carve(c, m_max, sizeof(double));
-    for (size_t i = 0; i < sizeof floors / sizeof floors[0]; i++)
-        *floors[i] = carve(c, n_pad, sizeof(double));
-    for (int i = 0; i < 9; i++)
-        k->seen[i / 3][i % 3] = carve(c, n_pad, sizeof(double));
-    k->R = carve(c, m_max * n_pad, sizeof(double));
-    k->R_abs = carve(c, m_max * n_pad, sizeof(double));
-    k->D_abs = carve(c, m_max * n_pad, sizeof(double));
-    k->RT = carve(c, m_max * n_pad, sizeof(double));
-    for (int i = 0; i <= LEVEL_MAX; i++) {
-        Level *l = &k->level[i];
-        l->coef = carve(c, FLOW_ROWS * m_max, sizeof(double));
-        l->slow = carve(c, m_max, sizeof(double));
-        l->kappa = carve(c, m_max, sizeof(double));
-        l->kappa_accel = carve(c, m_max, sizeof(double));
-        l->cubic = carve(c, m_max, sizeof(double));
-        l->parabola = carve(c, m_max, sizeof(double));
-        l->parabola_accel = carve(c, m_max, sizeof(double));
-        l->response = carve(c, RESPONSES * n * n_pad, sizeof(double));
-        l->reply = carve(c, n * n, sizeof(v4));
-    }
+    const size_t n = (size_t)k->n, floors = (size_t)k->n_pad, modes = 2 * floors;
+    CARVE(c, modes, &k->omega, &k->zeta, &k->gamma, &k->wd_inverse, &k->decay, &k->flexibility, &k->max_shape,
+          &k->max_shape_drift);
+    CARVE(c, floors, &k->gap, &k->bubble, &k->peak_u, &k->peak_d, &k->peak_a);
+    layout_state(&k->now, c, modes, floors);
+    layout_state(&k->next, c, modes, floors);
+    layout_flight(&k->flight, c, modes, floors);
+    layout_contact(&k->contact, c, modes, floors);
+    layout_reach(&k->reach, c, modes, floors);
+    k->R = carve(c, modes * floors, sizeof(double));
+    k->R_abs = carve(c, modes * floors, sizeof(double));
+    k->D_abs = carve(c, modes * floors, sizeof(double));
+    k->RT = carve(c, modes * floors, sizeof(double));
+    for (int i = 0; i <= LEVEL_MAX; i++)
+        layout_level(&k->level[i], c, n, modes, floors);
 }
 
 Status fast_create(FastWork **out, int n_floors, Err *err)
@@ -91,32 +118,47 @@ const char *fast_kernel_name(void)
     return best_kernel().name;
 }
 
-FastKnobs fast_knobs(Accuracy accuracy)
+FastTolerances fast_tolerances(Accuracy accuracy)
 {
-    static const FastKnobs KNOBS[] = {
-        [ACCURACY_COARSE] = {0.5, 1e-2, 3e-5, 2e7, 3e-3, 0.1},
-        [ACCURACY_STANDARD] = {1, 2e-3, 3e-6, 2e7, 1e-3, 0.005},
-        [ACCURACY_FINE] = {80, 1e-12, 0, 2e8, 1e-6, 0},
+    static const FastTolerances TOLERANCES[] = {
+        [ACCURACY_COARSE] = {.steps_per_contact = 0.5,
+                             .solver_tolerance = 1e-2,
+                             .energy_tolerance = 3e-5,
+                             .steps_max = 2e7,
+                             .peak_tolerance = 3e-3,
+                             .flexibility_left_out = 0.1},
+        [ACCURACY_STANDARD] = {.steps_per_contact = 1,
+                               .solver_tolerance = 2e-3,
+                               .energy_tolerance = 3e-6,
+                               .steps_max = 2e7,
+                               .peak_tolerance = 1e-3,
+                               .flexibility_left_out = 0.005},
+        [ACCURACY_FINE] = {.steps_per_contact = 80,
+                           .solver_tolerance = 1e-12,
+                           .energy_tolerance = 0,
+                           .steps_max = 2e8,
+                           .peak_tolerance = 1e-6,
+                           .flexibility_left_out = 0},
     };
-    return KNOBS[accuracy];
+    return TOLERANCES[accuracy];
 }
 
-FastKnobs fast_knobs_finer(Accuracy accuracy, double times)
+FastTolerances fast_tolerances_finer(Accuracy accuracy, double times)
 {
-    FastKnobs knobs = fast_knobs(accuracy);
-    knobs.steps_per_contact *= times;
-    knobs.solver_tolerance /= times * times;
-    knobs.energy_tolerance /= times * times * times;
-    knobs.peak_tolerance /= times;
-    knobs.flexibility_left_out /= times * times;
-    return knobs;
+    FastTolerances tolerances = fast_tolerances(accuracy);
+    tolerances.steps_per_contact *= times;
+    tolerances.solver_tolerance /= times * times;
+    tolerances.energy_tolerance /= times * times * times;
+    tolerances.peak_tolerance /= times;
+    tolerances.flexibility_left_out /= times * times;
+    return tolerances;
 }
 
 void fast_run(FastWork *work, const SimModel *model, const Motion *motion, const EngineOptions *options,
-              const FastKnobs *knobs, SimResult *result)
+              const FastTolerances *tolerances, SimResult *result)
 {
     const unsigned mode = denormal_off();
-    best_kernel().run(work, model, motion, options, knobs, result);
+    best_kernel().run(work, model, motion, options, tolerances, result);
     denormal_restore(mode);
 }
 
@@ -124,7 +166,7 @@ void fast_run(FastWork *work, const SimModel *model, const Motion *motion, const
 static void end_state(const FastWork *work, double state[])
 {
     const int nb = work->model->nb, kept = nb + work->nc, m = work->model->m;
-    const double *q = (const double *)work->q, *v = (const double *)work->v;
+    const double *q = (const double *)work->now.q, *v = (const double *)work->now.v;
     for (int i = 0; i < m; i++) {
         const int at = i < nb ? i : work->nb_pad + i - nb;
         state[i] = i < kept ? q[at] : 0;
@@ -133,18 +175,18 @@ static void end_state(const FastWork *work, double state[])
 }
 
 /* At ACCURACY_FINE the other tolerances are at rounding: EngineOptions.tolerance sets the steps alone. */
-static FastKnobs tolerances_of(const EngineOptions *options)
+static FastTolerances tolerances_of(const EngineOptions *options)
 {
-    FastKnobs knobs = fast_knobs(options->accuracy);
+    FastTolerances tolerances = fast_tolerances(options->accuracy);
     double times = options->refinement > 0 ? options->refinement : 1;
     if (options->steps_per_contact > 0)
-        times *= options->steps_per_contact / knobs.steps_per_contact;
+        times *= options->steps_per_contact / tolerances.steps_per_contact;
     if (options->tolerance > 0 && options->accuracy != ACCURACY_FINE)
-        times *= options->tolerance / knobs.steps_per_contact;
-    knobs = fast_knobs_finer(options->accuracy, times);
+        times *= options->tolerance / tolerances.steps_per_contact;
+    tolerances = fast_tolerances_finer(options->accuracy, times);
     if (options->tolerance > 0 && options->accuracy == ACCURACY_FINE)
-        knobs.steps_per_contact = options->tolerance;
-    return knobs;
+        tolerances.steps_per_contact = options->tolerance;
+    return tolerances;
 }
 
 Status engine_fast(const SimModel *model, const Motion *motion, const EngineOptions *options, SimResult *result,
@@ -155,8 +197,8 @@ Status engine_fast(const SimModel *model, const Motion *motion, const EngineOpti
         TRY(fast_create(&own, model->n, err));
     if (!work)
         work = own;
-    const FastKnobs knobs = tolerances_of(options);
-    fast_run(work, model, motion, options, &knobs, result);
+    const FastTolerances tolerances = tolerances_of(options);
+    fast_run(work, model, motion, options, &tolerances, result);
     if (options->end_state)
         end_state(work, options->end_state);
     fast_free(own);

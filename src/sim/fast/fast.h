@@ -1,26 +1,29 @@
-/* sim/fast/fast.h -- the engine `fast`: exact modal flow, resolved contacts, certified flights.
+/* sim/fast/fast.h -- the engine `fast`: exact modal flow, resolved contacts, certified free flights.
  *
  * Time      every sampling interval of the motion is halved as often as needed: steps of 2^-L intervals, aligned, so
  *           that no step straddles a kink of the ground motion and all propagators are tabled per level L.
- * Flight    without contact the modes flow exactly. A step is accepted when no gap can close inside it and no peak can
- *           hide in it: slow modes (w h below FAST_MODE) by the Bezier hull of the Hermite cubic plus its error bound
- *           (w h)^4/384 A, fast ones by their amplitude A around the quasi-static answer.
- * Contact   steps whose energy books close: of a fixed share of a Hertz contact's duration or shorter where a gap
- *           closes or another wall may be reached, else longer. Over a step the force of floor j is
- *           f(x) = F0 (1-x) + F1 x + 6 (mean - (F0+F1)/2) x (1-x), which the modes answer exactly; F1 and the mean come
- *           from the force law along the Hermite cubic of the penetration (touch.h), implicitly: Newton over
- *           all touching floors, on the n x n responses of w to those forces. Closings and openings inside a step
- *           are located on the cubic. Order 4 between events, 3.5 across them.
+ * Flight    without contact the modes flow exactly. A step is accepted where it is certain that no gap closes in it and
+ *           that every peak is known: slow modes (w h below FAST_MODE) by the Bezier hull of the Hermite cubic plus its
+ *           error bound (w h)^4/384 A, fast ones by their amplitude A around the quasi-static answer.
+ * Free      several intervals at once where bounds of the modes reach no gap and no peak.
+ * Contact   steps whose energy balances: of a fixed share of a Hertz contact's duration or shorter where a gap closes or
+ *           the other side of the core may be reached, else longer. Over a step the force of floor j is
+ *               f(x) = F0 (1-x) + F1 x + 6 (mean - (F0+F1)/2) x (1-x),
+ *           which the modes answer exactly; F1 and the mean come from the force law along the Hermite cubic of the
+ *           indentation, implicitly: Newton's method over all floors in contact, on the n x n compliances of w to those
+ *           forces. Onsets and ends of contact inside a step are located on the cubic. Order 4 between events, 3.5
+ *           across them.
  * Energy    the work of every load on every mode is integrated exactly; what a mode damps is work minus energy. The
- *           residual adds two errors: the work that the modes took from contacts against the books that the force law
- *           kept, over the input; and what the equations of motion, integrated over the run, are missed by,
- *           sqrt(sum d_i^2 / 2 E_in), which would show an error in the linear flow.
+ *           energy-balance error adds two: the work that the modes took from contacts against the energies that the
+ *           force law stored and lost, over the input; and what the equations of motion, integrated over the run, are
+ *           missed by, sqrt(sum d_i^2 / 2 E_in), which would show an error in the linear flow.
  * Maxima    flights: extremum of the Hermite cubic; contacts: parabola through start, middle and end of each step,
- *           refused where more may hide beside it.
- * Glide     several intervals at once where bounds of the modes reach no gap and no peak (glide.h).
+ *           refused where the peak is uncertain.
  * Core      modes whose static flexibility would hardly soften a contact are left out.
  *
- * Life cycle  fast_create -> fast_run ... -> fast_free. Threads  one FastWork per thread. No allocation in fast_run. */
+ * Files     kernel.c: step control, results, and the *.inc files in order: design, step_tables, contact_quadrature,
+ *           peaks, free_flight, free_interval, contact_forces, contact_step.
+ * Life      fast_create -> fast_run ... -> fast_free. Threads  one FastWork per thread. No allocation in fast_run. */
 #ifndef IMTET_SIM_FAST_FAST_H
 #define IMTET_SIM_FAST_FAST_H
 
@@ -40,17 +43,17 @@ typedef struct {
     double solver_tolerance;     /* of the contact forces of one step, relative to what the step moves */
     double energy_tolerance;     /* of one step, share of the input energy so far; 0: all steps are as above */
     double steps_max;            /* steps after which a run is given up */
-    double peak_tolerance;       /* share of a peak that may hide inside a flight step */
+    double peak_tolerance;       /* share of a peak that may be uncertain inside a step */
     double flexibility_left_out; /* of the highest core modes, share of a contact's; 0: all modes are kept */
-} FastKnobs;
+} FastTolerances;
 
-FastKnobs fast_knobs(Accuracy accuracy);
+FastTolerances fast_tolerances(Accuracy accuracy);
 
 /* The same with so many times the steps per contact, and tolerances to match. */
-FastKnobs fast_knobs_finer(Accuracy accuracy, double times);
+FastTolerances fast_tolerances_finer(Accuracy accuracy, double times);
 
 /* Of the options: duration, onsets and sample. */
 void fast_run(FastWork *work, const SimModel *model, const Motion *motion, const EngineOptions *options,
-              const FastKnobs *knobs, SimResult *result);
+              const FastTolerances *tolerances, SimResult *result);
 
 #endif

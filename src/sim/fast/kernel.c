@@ -1,17 +1,26 @@
-/* sim/fast/kernel.c -- time and results of the engine `fast`. Compiled once per instruction set with FAST_KERNEL naming
- * the entry and FAST_LANES the width of a vector; see fast.h for the method. */
+/* sim/fast/kernel.c -- step control and results of the engine `fast`; see fast.h for the method. Compiled once per
+ * instruction set with FAST_KERNEL naming the entry and FAST_LANES the width of a vector. */
 #include "sim/fast/kernel.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "base/units.h"
-#include "sim/fast/contact_step.h"
-#include "sim/fast/glide.h"
+#include "sim/contact.h"
 #include "sim/energy_balance.h"
 
+/* One unit, in the order of use: static functions alone. */
+#include "sim/fast/design.inc"
+#include "sim/fast/step_tables.inc"
+#include "sim/fast/contact_quadrature.inc"
+#include "sim/fast/peaks.inc"
+#include "sim/fast/free_flight.inc"
+#include "sim/fast/free_interval.inc"
+#include "sim/fast/contact_forces.inc"
+#include "sim/fast/contact_step.inc"
+
 /* The level whose step is the wanted share of the shortest Hertz contact at the present speed (or the finest). */
-static int contact_level(const FastWork *k, double gain)
+static int resolving_level(const FastWork *k, double gain)
 {
     const double speed = k->speed + gain;
     int level = 0;
@@ -20,75 +29,105 @@ static int contact_level(const FastWork *k, double gain)
     return level;
 }
 
-/* Duration of the shortest contact at 1 m/s; it goes with speed^-0.2. */
-static double shortest_contact(const SimModel *model)
-{
-    double least = 1e300;
-    for (int j = 0; j < model->n; j++)
-        least = fmin(least, contact_hertz_duration(model->contact.k, model->mass_eff[j], 1.0));
-    return least;
-}
-
 /* What the energy of one step's error is measured by: the input so far. */
 static double energy_scale(const FastWork *k)
 {
     vec sum = {0};
     for (int i = 0; i < k->mf; i++)
-        sum += k->ground[i];
+        sum += k->now.ground_work[i];
     return fabs(lanes_sum(sum));
 }
 
 /* Will an open gap have closed after h at the present speed? */
-static int closing_ahead(const FastWork *k, double h)
+static int onset_ahead(const FastWork *k, double h)
 {
     mask ahead = {0};
     for (int f = 0; f < k->nf; f++)
-        ahead |= (vec_abs(k->w[f] + h * k->wd[f]) > k->gap[f]) & (vec_abs(k->w[f]) <= k->gap[f]);
+        ahead |= (vec_abs(k->now.w[f] + h * k->now.w_dot[f]) > k->gap[f]) & (vec_abs(k->now.w[f]) <= k->gap[f]);
     return any(ahead);
 }
+
+/* A sampling interval under way. Time passes in ticks, of which the interval has TICKS: a step of level L takes
+ * TICKS >> L of them and begins at a multiple of that, so that every step length is one of LEVEL_MAX + 1. */
+static const uint32_t TICKS = UINT32_C(1) << LEVEL_MAX;
+typedef struct {
+    double start;      /* [s] */
+    double a0, a1;     /* [m/s2] of the ground at both ends, linear between them */
+    uint32_t at;       /* ticks that have passed */
+    double speed_gain; /* [m/s] that the ground may add to the speed of the gaps */
+} Interval;
+
+static double ground_at(const Interval *in, uint32_t tick)
+{
+    return in->a0 + (in->a1 - in->a0) * tick / TICKS;
+}
+
+/* The longest step that may begin here. */
+static int aligned_level(const Interval *in)
+{
+    return in->at ? LEVEL_MAX - __builtin_ctz(in->at) : 0;
+}
+
+static int later(int level, int than)
+{
+    return level > than ? level : than;
+}
+
+/* The longest free flight that can be certified, of levels above `resolving`, where contacts are resolved; 0: none. */
+static int fly_on(FastWork *k, Interval *in, int resolving)
+{
+    for (int level = later(k->flight_level, aligned_level(in)); level < resolving; level++) {
+        const uint32_t end = in->at + (TICKS >> level);
+        if (!free_flight(k, level_ready(k, level, 0), ground_at(in, in->at), ground_at(in, end)))
+            continue;
+        in->at = end;
+        k->flight_level = level > 0 ? level - 1 : 0;
+        k->contact_level = LEVEL_MAX;
+        return 1;
+    }
+    return 0;
+}
+
+/* Where the next contact step is tried: as long as the last one, where no gap is about to close in it. */
+static void set_contact_level(FastWork *k, int resolving)
+{
+    if (k->contact_level > resolving || k->tolerances->energy_tolerance == 0)
+        k->contact_level = resolving;
+    while (k->contact_level < resolving && k->state_valid && onset_ahead(k, ldexp(k->base, -k->contact_level)))
+        k->contact_level++;
+}
+
+/* The longest contact step that is accurate; 0: none is. */
+static int step_on(FastWork *k, Interval *in, int resolving)
+{
+    k->step_start = in->start + k->base * in->at / TICKS;
+    k->flight_level = resolving > 0 ? resolving - 1 : 0;
+    set_contact_level(k, resolving);
+    for (int level = later(k->contact_level, aligned_level(in)); level <= LEVEL_MAX; level++) {
+        const uint32_t end = in->at + (TICKS >> level);
+        if (!contact_step(k, level_ready(k, level, 1), ground_at(in, in->at), ground_at(in, end), level - resolving))
+            continue;
+        in->at = end;
+        k->contact_level = k->may_grow && level > 0 ? level - 1 : level;
+        return 1;
+    }
+    return 0;
+}
+
+/* Of the speed that the ground can add in an interval: a gap at rest for a moment is no reason for a long step. */
+static const double SPEED_GAIN = 0.1;
 
 /* One sampling interval from `start` [s] on, ground acceleration from a0 to a1; 0 when no step is short enough. */
 static int interval(FastWork *k, double start, double a0, double a1)
 {
-    const uint32_t whole = UINT32_C(1) << LEVEL_MAX;
-    uint32_t at = 0;
+    Interval in = {.start = start, .a0 = a0, .a1 = a1, .speed_gain = SPEED_GAIN * k->base * fmax(fabs(a0), fabs(a1))};
+    const int has_core = k->m_pad > k->nb_pad;
     k->energy_scale = energy_scale(k);
-    /* at rest for a moment is no reason for a step in which the ground makes speed again */
-    const double gain = 0.1 * k->base * fmax(fabs(a0), fabs(a1));
-    while (at < whole) {
-        if ((double)(k->steps + k->flights) > k->knobs->steps_max)
+    while (in.at < TICKS) {
+        if ((double)(k->steps + k->flights) > k->tolerances->steps_max)
             return 0;
-        const int aligned = at ? LEVEL_MAX - __builtin_ctz(at) : 0;
-        const int finest = k->m_pad > k->nb_pad ? contact_level(k, gain) : LEVEL_MAX;
-        int level = k->flight_level > aligned ? k->flight_level : aligned, done = 0;
-        for (; !done && !k->touching && level < finest; level++) {
-            const uint32_t step = whole >> level;
-            done =
-                flight(k, level_ready(k, level, 0), a0 + (a1 - a0) * at / whole, a0 + (a1 - a0) * (at + step) / whole);
-            if (done) {
-                at += step;
-                k->flight_level = level > 0 ? level - 1 : 0;
-                k->touch_level = LEVEL_MAX;
-            }
-        }
-        if (done)
-            continue;
-        k->now = start + k->base * at / whole;
-        k->flight_level = finest > 0 ? finest - 1 : 0;
-        if (k->touch_level > finest || k->knobs->energy_tolerance == 0)
-            k->touch_level = finest;
-        while (k->touch_level < finest && k->landed && closing_ahead(k, ldexp(k->base, -k->touch_level)))
-            k->touch_level++;
-        for (level = k->touch_level > aligned ? k->touch_level : aligned; !done && level <= LEVEL_MAX; level++) {
-            const uint32_t step = whole >> level;
-            done = contact_step(k, level_ready(k, level, 1), a0 + (a1 - a0) * at / whole,
-                                a0 + (a1 - a0) * (at + step) / whole, level - finest);
-            if (done) {
-                at += step;
-                k->touch_level = k->may_grow && level > 0 ? level - 1 : level;
-            }
-        }
-        if (!done)
+        const int resolving = has_core ? resolving_level(k, in.speed_gain) : LEVEL_MAX;
+        if (!(!k->in_contact && fly_on(k, &in, resolving)) && !step_on(k, &in, resolving))
             return 0;
     }
     return 1;
@@ -98,24 +137,24 @@ static int state_is_finite(const FastWork *k)
 {
     vec sum = {0};
     for (int i = 0; i < k->mf; i++)
-        sum += k->q[i] * 0.0 + k->v[i] * 0.0;
+        sum += k->now.q[i] * 0.0 + k->now.v[i] * 0.0;
     double all = 0;
     for (int lane = 0; lane < LANES; lane++)
         all += sum[lane];
     return all == 0;
 }
 
-static void show(const FastWork *k, double t)
+static void send_sample(const FastWork *k, double t)
 {
     const SimSample sample = {
         .t = t,
         .n_modes = k->m_pad,
         .n_building = k->nb_pad,
         .omega = scalars_const(k->omega),
-        .q = scalars_const(k->q),
-        .v = scalars_const(k->v),
-        .ground_j = scalars_const(k->ground),
-        .contact_j = scalars_const(k->work),
+        .q = scalars_const(k->now.q),
+        .v = scalars_const(k->now.v),
+        .ground_j = scalars_const(k->now.ground_work),
+        .contact_j = scalars_const(k->now.contact_work),
         .contact_loss_j = k->contact_lost,
         .contact_clamp_j = k->contact_clamped,
     };
@@ -134,52 +173,51 @@ static Ramp ground(const Motion *motion, long i)
 }
 
 /* Glides over intervals first.. while it can; returns how many, 0 where the next one must be looked at. */
-static long glide(FastWork *k, const Motion *motion, long first, long end)
+static long free_intervals(FastWork *k, const Motion *motion, long first, long end)
 {
     double impulse = 0;
-    if (!k->may_glide || k->touching || first < k->glide_from || end - first < GLIDE_LEAST)
+    if (!k->oscillatory || k->in_contact || first < k->free_from || end - first < FREE_INTERVALS_MIN)
         return 0;
-    const long n = k->glide_wish < end - first ? k->glide_wish : end - first;
+    const long n = k->free_count < end - first ? k->free_count : end - first;
     for (long i = first; i < first + n; i++) {
         const Ramp a = ground(motion, i);
         impulse += 0.5 * motion->dt_s * (fabs(a.start) + fabs(a.end));
     }
-    if (!glides(k, impulse)) {
-        k->glide_from = n > GLIDE_LEAST ? first : first + GLIDE_LEAST;
-        k->glide_wish = GLIDE_LEAST;
+    if (!interval_is_free(k, impulse)) {
+        k->free_from = n > FREE_INTERVALS_MIN ? first : first + FREE_INTERVALS_MIN;
+        k->free_count = FREE_INTERVALS_MIN;
         return 0;
     }
-    k->glide_wish = n < GLIDE_MOST ? 2 * n : n;
+    k->free_count = n < FREE_INTERVALS_MAX ? 2 * n : n;
     const Level *l = level_ready(k, 0, 0);
     for (long i = first; i < first + n; i++) {
         if (i > first)
-            show(k, (double)i * motion->dt_s);
+            send_sample(k, (double)i * motion->dt_s);
         const Ramp a = ground(motion, i);
-        glide_interval(k, l, a.start, a.end);
+        flow_interval(k, l, a.start, a.end);
     }
     k->flights += n;
-    glide_end(k);
+    leave_free_intervals(k);
     return n;
 }
 
-static int fly(FastWork *k, const Motion *motion, double duration)
+static int integrate(FastWork *k, const Motion *motion, double duration)
 {
-    k->shortest_at_1 = shortest_contact(k->model);
     const long full = (long)floor(duration / motion->dt_s * (1 + 1e-14));
     k->flight_level = 0;
-    k->glide_from = 0;
-    k->glide_wish = GLIDE_LEAST;
-    k->touch_level = LEVEL_MAX;
+    k->free_from = 0;
+    k->free_count = FREE_INTERVALS_MIN;
+    k->contact_level = LEVEL_MAX;
     set_base(k, 0);
     set_base(k, motion->dt_s);
-    show(k, 0);
+    send_sample(k, 0);
     for (long i = 0; i < full;) {
-        const long glided = glide(k, motion, i, full);
+        const long passed = free_intervals(k, motion, i, full);
         const Ramp a = ground(motion, i);
-        if ((!glided && !interval(k, (double)i * motion->dt_s, a.start, a.end)) || !state_is_finite(k))
+        if ((!passed && !interval(k, (double)i * motion->dt_s, a.start, a.end)) || !state_is_finite(k))
             return 0;
-        i += glided ? glided : 1;
-        show(k, (double)i * motion->dt_s);
+        i += passed ? passed : 1;
+        send_sample(k, (double)i * motion->dt_s);
     }
     const double rest = duration - (double)full * motion->dt_s;
     if (rest > 1e-9 * motion->dt_s) {
@@ -196,7 +234,7 @@ static double still_stored(const FastWork *k)
     double stored = 0;
     for (int j = 0; j < k->n; j++)
         if (k->side[j])
-            stored += contact_stored(&k->model->contact, fabs(scalars_const(k->w)[j]) - scalars_const(k->gap)[j]);
+            stored += contact_stored(&k->model->contact, fabs(scalars_const(k->now.w)[j]) - scalars_const(k->gap)[j]);
     return stored;
 }
 
@@ -205,27 +243,27 @@ static double share(double part, double whole)
     return whole > 0 ? 100 * part / whole : 0;
 }
 
-static void sum_energies(const FastWork *k, SimResult *r)
+static void report_energies(const FastWork *k, SimResult *r)
 {
     double contact_work = 0, missed = 0;
     double damped[MODES_PAD_MAX + 2 * LANES];
     for (int i = 0; i < k->m_pad; i++) {
-        const double q = scalars_const(k->q)[i], v = scalars_const(k->v)[i], w = scalars_const(k->omega)[i];
+        const double q = scalars_const(k->now.q)[i], v = scalars_const(k->now.v)[i], w = scalars_const(k->omega)[i];
         const double energy = 0.5 * (v * v + w * w * q * q);
-        const double ground = scalars_const(k->ground)[i], contact = scalars_const(k->work)[i];
+        const double ground = scalars_const(k->now.ground_work)[i], contact = scalars_const(k->now.contact_work)[i];
         damped[i] = ground + contact - energy;
         r->input_energy_j += ground;
         contact_work += contact;
-        missed += scalars_const(k->drift)[i] * scalars_const(k->drift)[i];
+        missed += scalars_const(k->now.defect)[i] * scalars_const(k->now.defect)[i];
         r->kinetic_strain_j += energy;
         *(i < k->nb_pad ? &r->damped_building_j : &r->damped_core_j) += damped[i];
     }
     r->contact_loss_j = k->contact_lost;
     r->clamp_j = k->contact_clamped;
     r->contact_stored_j = still_stored(k);
-    const double books = -contact_work - r->contact_loss_j - r->clamp_j - r->contact_stored_j;
-    const double scale = energy_balance_scale(r->input_energy_j, r->input_energy_j - books);
-    r->energy_balance_error = fabs(books) / scale + sqrt(missed / (2 * scale));
+    const double energy_error = -contact_work - r->contact_loss_j - r->clamp_j - r->contact_stored_j;
+    const double scale = energy_balance_scale(r->input_energy_j, r->input_energy_j - energy_error);
+    r->energy_balance_error = fabs(energy_error) / scale + sqrt(missed / (2 * scale));
     for (int i = 0; i < k->model->nb; i++)
         r->mode_share_pct[i] = share(damped[i], r->input_energy_j);
     r->ed1_pct = r->mode_share_pct[0];
@@ -234,7 +272,7 @@ static void sum_energies(const FastWork *k, SimResult *r)
     r->edcs_pct = share(r->damped_core_j, r->input_energy_j);
 }
 
-static void take_peaks(const FastWork *k, SimResult *r)
+static void report_peaks(const FastWork *k, SimResult *r)
 {
     for (int j = 0; j < k->n; j++) {
         r->peak_displacement_m[j] = scalars_const(k->peak_u)[j];
@@ -249,23 +287,23 @@ static void take_peaks(const FastWork *k, SimResult *r)
 FastKernel FAST_KERNEL;
 
 void FAST_KERNEL(FastWork *k, const SimModel *model, const Motion *motion, const EngineOptions *options,
-                 const FastKnobs *knobs, SimResult *result)
+                 const FastTolerances *tolerances, SimResult *result)
 {
     k->options = options;
-    k->knobs = knobs;
+    k->tolerances = tolerances;
     memset(result, 0, sizeof *result);
-    take_model(k, model, motion->dt_s);
+    set_design(k, model, motion->dt_s);
     start_at_rest(k);
-    const int arrived = fly(k, motion, options->duration);
+    const int arrived = integrate(k, motion, options->duration);
     result->n_floors = model->n;
     result->n_modes = model->nb;
     if (!arrived)
         result->outcome = state_is_finite(k) ? RUN_OUT_OF_STEPS : RUN_NOT_FINITE;
-    take_peaks(k, result);
-    sum_energies(k, result);
+    report_peaks(k, result);
+    report_energies(k, result);
     result->impacts = k->impacts;
-    result->v0_limited = k->floored;
-    result->indentation_max_m = k->deepest;
+    result->v0_limited = k->v0_limited;
+    result->indentation_max_m = k->indentation_max;
     result->steps = k->steps + k->flights;
     result->force_evaluations = k->forces;
 }

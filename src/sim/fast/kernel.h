@@ -1,4 +1,8 @@
-/* sim/fast/kernel.h -- the work space of the fast engine, and its kernel compiled once per instruction set. */
+/* sim/fast/kernel.h -- the work space of the fast engine, and its kernel compiled once per instruction set.
+ *
+ * Shapes   (m_pad) modes: the building's from 0, the kept ones of the core from nb_pad; (n_pad) floors
+ * Padding  a padded mode has omega = 1 and no coupling; a padded floor has an unreachable gap and unreachable peaks
+ * Threads  one FastWork per thread */
 #ifndef IMTET_SIM_FAST_KERNEL_H
 #define IMTET_SIM_FAST_KERNEL_H
 
@@ -15,74 +19,114 @@ enum {
     MODES_PAD_MAX = 2 * FLOORS_MAX
 };
 
-/* Responses of w (and w') at the end of a step to unit forces: (n, n_pad) each. */
-enum { RAMP_W, BUBBLE_W, RAMP_V, BUBBLE_V, RESPONSES };
+/* Compliances of w (and w') at the end of a step to a unit ramp x and a unit bubble x (1 - x) of force. */
+enum { RAMP_W, BUBBLE_W, RAMP_V, BUBBLE_V, COMPLIANCES };
 
+/* The tables of one step length. */
 typedef struct {
     double h;         /* [s] */
     double speed_max; /* [m/s] fine enough for contacts up to here */
-    int has_flow, has_response;
+    int has_flow, has_compliance;
     vec *coef;        /* (FLOW_ROWS, m_pad) */
     vec *slow;        /* (m_pad) 1: the Hermite cubic follows this mode, 0: it does not */
     vec *kappa;       /* (m_pad) error of the cubic, or 1, per unit of amplitude */
     vec *kappa_accel; /* (m_pad) the same for -2 zeta w q' - w^2 q */
     vec *cubic;       /* (m_pad) what the cubic misses of w on any floor, per unit of a mode's amplitude */
     vec *parabola, *parabola_accel; /* (m_pad) what the parabola misses of the mode, of its acceleration */
-    double *response;               /* (RESPONSES, n, n_pad) */
-    v4 *reply; /* (n, n) of floor i to floor j: d (w1_i, w1_i') / d (F, M) of j, its force at the end and mean force */
+    double *compliance;             /* (COMPLIANCES, n, n_pad) of all floors, a row per loaded floor */
+    v4 *compliance_pair; /* (n, n) of floor i to floor j: d (w1_i, w1_i') / d (F, M) of j, its force at the end of
+                            the step and its mean force */
 } Level;
+
+/* The state at one end of a step. */
+typedef struct {
+    vec *q, *v;                      /* (m_pad) modal coordinates and velocities */
+    vec *load;                       /* (m_pad) modal load of the contacts */
+    vec *contact_work, *ground_work; /* (m_pad) [J] done on each mode since the start */
+    vec *defect;                     /* (m_pad) by how much the equation of motion was missed, summed over the steps */
+    vec *w, *w_dot;                  /* (n_pad) [m], [m/s] floor minus core; current where state_valid */
+    vec *force;                      /* (n_pad) [N] of the contact on the floor */
+} State;
+
+/* A free flight step: modes (m_pad), floors (n_pad). _q and _a are of displacement and of acceleration. */
+typedef struct {
+    vec *amplitude;                             /* of the free vibration around the quasi-static answer */
+    vec *start_q, *start_v, *start_a, *start_j; /* what the Hermite cubic follows: fast modes are quasi-static */
+    vec *end_q, *end_v, *end_a, *end_j;
+    vec *bound_q, *bound_a;                     /* error of the cubics; largest acceleration, or its cubic's error */
+    vec *u0, *u0_dot, *u1, *u1_dot;             /* floors */
+    vec *core0, *core0_dot, *core1, *core1_dot; /* the core's part of w */
+    vec *a0, *a0_dot, *a1, *a1_dot;             /* accelerations of the floors */
+    vec *error_u, *error_core, *error_a;        /* bounds of what the cubics miss */
+    vec *reach_a;                               /* largest acceleration by the bounds of the modes */
+} FlightScratch;
+
+/* A contact step: modes (m_pad), floors (n_pad). */
+typedef struct {
+    vec *bubble;                      /* modal load of the forces' bubbles */
+    vec *middle_q, *middle_a, *end_a; /* building modes: displacement and acceleration there */
+    vec *bound_q, *bound_a;           /* what the parabola misses of each mode */
+    vec *missed;                      /* what it misses of the floors */
+    vec *sample[3][3];                /* [start, middle, end][u, drift, acceleration] of the floors */
+    int may_rise[3];                  /* [u, drift, acceleration] may this step raise a peak? */
+} ContactScratch;
+
+/* Certified free intervals: the largest that modes (m_pad) and floors (n_pad) can reach. */
+typedef struct {
+    vec *bound_q, *bound_a;
+    vec *u, *drift, *a, *core;
+} ReachScratch;
 
 typedef struct FastWork {
     void *store;
     const SimModel *model;
-    int n, n_pad, nb_pad, m_pad; /* building modes first, padded apart: core modes start at nb_pad */
-    int nc;                      /* core modes that are kept */
-    int nf, mf, bf;              /* n_pad, m_pad, nb_pad in vectors of LANES */
-    double base;                 /* [s] the interval that the levels divide */
+    const EngineOptions *options;
+    const FastTolerances *tolerances;
+
+    /* the design */
+    int n, n_pad, nb_pad, m_pad;           /* building modes first, padded apart: core modes start at nb_pad */
+    int nc;                                /* core modes that are kept */
+    int nf, mf, bf;                        /* n_pad, m_pad, nb_pad in vectors of LANES */
+    vec *omega, *zeta, *gamma;             /* (m_pad) */
+    vec *wd_inverse, *decay, *flexibility; /* (m_pad) 1/w_d, 2 zeta w, 1/w^2 */
+    vec *max_shape, *max_shape_drift;      /* (m_pad) largest |R| of a mode over the floors, over the storeys */
+    double *R, *R_abs, *D_abs;             /* (m_pad, n_pad) of the floors, of their distances from the floor below */
+    double *RT;                            /* (n_pad, m_pad) */
+    vec *gap;                              /* (n_pad) */
+    uint64_t floors;                       /* bit j: floor j is one */
+    double shortest_at_1;                  /* [s] shortest Hertz contact of any floor at 1 m/s */
+    int oscillatory;                       /* every mode is below critical damping and has a frequency */
+    double base;                           /* [s] the interval that the levels divide */
     Level level[LEVEL_MAX + 1];
 
-    /* modes */
-    vec *omega, *zeta, *gamma, *wd_inverse, *decay, *flex, *q, *v, *load, *work, *ground; /* (m_pad) */
-    vec *drift; /* (m_pad) how far the equation of motion was missed, summed over the steps */
-    vec *work1, *ground1, *drift1;
-    vec *most, *most_drift; /* (m_pad) largest |R| of a mode over the floors, over the storeys */
-    vec *q1, *v1, *amplitude, *qa, *va, *qb, *vb, *za, *ja, *zb, *jb, *bound, *bound_a; /* (m_pad) */
-    double *R, *R_abs, *D_abs; /* (m_pad, n_pad) of the floors, of their distances from the floor below */
-    double *RT;                /* (n_pad, m_pad) */
+    /* the motion so far */
+    State now, next;
+    vec *bubble;                   /* (n_pad) [N] of the contact forces over the step under way */
+    vec *peak_u, *peak_d, *peak_a; /* (n_pad) */
+    double v0[FLOORS_PAD_MAX];     /* [m/s] of the open contact */
+    int side[FLOORS_PAD_MAX];      /* 0 no contact, +1 or -1 */
+    uint64_t in_contact;           /* bit j: floor j is */
+    int state_valid;               /* 0: after free flight w, w' and sample[0] are not current */
+    double speed;                  /* [m/s] largest |w'| */
+    double step_start;             /* [s] of the step under way */
 
-    /* floors */
-    vec *w, *wd, *w1, *wd1, *f0, *f1, *fb, *gap; /* (n_pad) */
-    vec *c0, *c0d, *c1, *c1d;                    /* (n_pad) the core's part of w in flight */
-    vec *u0, *u0d, *u1, *u1d, *a0, *a0d, *a1, *a1d, *e_u, *e_w, *e_a, *reach_a; /* (n_pad) */
-    vec *peak_u, *peak_d, *peak_a;                                              /* (n_pad); padding is out of reach */
-    vec *seen[3][3]; /* [start, middle, end of a contact step][u, drift, accel] (n_pad) */
-    int rises[3];    /* [u, drift, accel] may this contact step raise a peak? */
-    int landed;      /* 0: in flight, w, w' and what is seen are not current */
-    double v0[FLOORS_PAD_MAX];
-    int side[FLOORS_PAD_MAX];  /* 0 open, +1 or -1 touching */
-    uint64_t floors, touching; /* bit j: floor j is one, touches */
-    int flight_level;          /* where the next flight is tried */
-    int may_glide;             /* all modes swing: below critical damping, with a frequency */
-    long glide_from;           /* the interval from which a glide is tried ... */
-    long glide_wish;           /* ... and over how many */
-    int touch_level;           /* where the next contact step is tried */
-    int may_grow;              /* the last contact step could have been twice as long */
-    double energy_scale;       /* [J] */
-    double speed;              /* [m/s] largest |w'| */
-    double shortest_at_1;      /* [s] shortest Hertz contact of any floor at 1 m/s */
-    const FastKnobs *knobs;
+    /* step control */
+    int flight_level, contact_level; /* where the next free flight, the next contact step is tried */
+    int may_grow;                    /* the last contact step could have been twice as long */
+    double energy_scale;             /* [J] */
+    long free_from, free_count;      /* the interval from which free intervals are tried, and over how many */
 
-    const EngineOptions *options;
+    FlightScratch flight;
+    ContactScratch contact;
+    ReachScratch reach;
 
-    double now; /* [s] start of the step under way */
-
-    /* books */
-    double contact_lost, contact_clamped, deepest;
-    long impacts, floored, steps, flights, forces;
+    /* energy account and counts */
+    double contact_lost, contact_clamped, indentation_max;
+    long impacts, v0_limited, steps, flights, forces;
 } FastWork;
 
 typedef void FastKernel(FastWork *k, const SimModel *model, const Motion *motion, const EngineOptions *options,
-                        const FastKnobs *knobs, SimResult *result);
+                        const FastTolerances *tolerances, SimResult *result);
 
 FastKernel fast_kernel_base, fast_kernel_avx2, fast_kernel_avx512;
 

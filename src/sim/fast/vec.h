@@ -16,6 +16,12 @@
 #endif
 enum { LANES = FAST_LANES };
 
+/* The greater; b where a is not a number. Faster than fmax, which must look at both. */
+static inline double larger(double a, double b)
+{
+    return a > b ? a : b;
+}
+
 /* For functions whose constant arguments the compiler is to unroll over. */
 #define INLINE static inline __attribute__((always_inline))
 
@@ -169,6 +175,26 @@ static inline double p2_dot(p2 a, p2 b)
 static inline p2 p2_make(double x0, double x1)
 {
     return (p2){x0, x1, x0, x1};
+}
+
+/* The numbers of an array of vectors. */
+static inline double *scalars(vec *p)
+{
+    return (double *)p;
+}
+
+static inline const double *scalars_const(const vec *p)
+{
+    return (const double *)p;
+}
+
+/* Largest magnitude of nf vectors; of no use where one is not a number. */
+static inline double largest(const vec *a, int nf)
+{
+    vec most = vec_abs(a[0]);
+    for (int f = 1; f < nf; f++)
+        most = vec_max(most, vec_abs(a[f]));
+    return lanes_max(most);
 }
 
 /* Blocks first, first + 1 .. (n_blocks of them) of Y_r = sum_i X_r[i] A[i], of `count` rows i of A, each of `blocks`
