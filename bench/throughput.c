@@ -61,7 +61,7 @@ static Status run_fast(Throughput *t, Err *err)
         steps += r->steps;
         forces += r->force_evaluations;
         impacts += r->impacts;
-        failed += r->outcome != RUN_OK || !(r->energy_balance_error <= t->settings->sim.residual_max);
+        failed += r->outcome != RUN_OK || !(r->energy_balance_error <= t->settings->sim.energy_balance_max);
     }
     const double middle = median(t->n, ms);
     fprintf(t->out, "fast, standard: %d designs, %.5g s each, one thread\n", t->n, t->bench_case.duration);

@@ -32,7 +32,7 @@ __attribute__((noinline)) static char *text_of(const char *path)
     Err err = {0};
     char *text;
     size_t length;
-    CHECK_OK(file_read(path, &text, &length, &err), &err);
+    CHECK_OK(file_read(path, FILE_LARGEST, &text, &length, &err), &err);
     return text;
 }
 

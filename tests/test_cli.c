@@ -92,7 +92,7 @@ static void test_a_misunderstood_command_line_ends_with_2_and_a_suggestion(void 
     expect(2, "--json takes no value", "modes configs/quick.ini --json=yes");
     expect(2, "given twice", "simulate configs/quick.ini --pga 1 --pga 2");
     expect(2, "--design FILE is missing", "simulate configs/quick.ini");
-    expect(2, "--tied needs a core", "simulate configs/quick.ini --design none --tied");
+    expect(2, "--rigid needs a core", "simulate configs/quick.ini --design none --rigid");
     expect(2, "--set nonsense: write --set section.key=value", "modes configs/quick.ini --set nonsense");
     expect(2, "--csv FILE is missing", "export results");
     expect(2, "--record FILE is missing", "evaluate results --design 1");
@@ -104,12 +104,36 @@ static void test_bad_settings_and_data_end_with_65(void **state)
     expect(65, "did you mean motion.stretch?", "modes configs/quick.ini --set motion.strech=2");
     expect(65, "--pga: motion.pga_g: -1 is outside", "simulate configs/quick.ini --design none --pga -1");
     expect(65, "not one of fast|cvode", "simulate configs/quick.ini --design none --engine magic");
-    expect(65, "tests/bad/config/nan.ini:3: building.damping", "modes tests/bad/config/nan.ini");
+    expect(65, "tests/bad/config/nan.ini:3:11: building.damping", "modes tests/bad/config/nan.ini");
     expect(65, "tests/bad/motion/nan.csv",
            "simulate configs/quick.ini --design none --record tests/bad/motion/nan.csv");
     expect(65, "tests/bad/motion/nan.csv", "spectrum tests/bad/motion/nan.csv");
     expect(65, "a design of 20 floors has gap_03_m there",
            "simulate configs/quick.ini --design tests/bad/design/negative_gap.csv");
+}
+
+/* Said once for each, on standard error; the answer is that of the present name. */
+static void test_old_names_are_understood_and_the_new_ones_told(void **state)
+{
+    (void)state;
+    static const char SHORT_RUN[] = "simulate configs/quick.ini --design none --json --set sim.duration_s=1";
+    Said old, now;
+    write_in_place("old.ini", "[sim]\nensemble = 3\n");
+    run(&old, "check @/old.ini --set sim.ensemble=2 --set search.repeats=0.2");
+    assert_int_equal(old.code, 0);
+    const char *first = strstr(old.err, "sim.ensemble is now sim.replicates\n");
+    assert_non_null(first);
+    assert_null(strstr(first + 1, "sim.ensemble"));
+    assert_non_null(strstr(old.err, "search.repeats is now search.replicate_share\n"));
+    forget(&old);
+    run(&old, "%s --set sim.residual_max=1e-9", SHORT_RUN);
+    run(&now, "%s --set sim.energy_balance_max=1e-9", SHORT_RUN);
+    assert_int_equal(old.code, now.code);
+    assert_string_equal(now.err + strlen(now.err) - strlen(strstr(old.err, "\n") + 1), strstr(old.err, "\n") + 1);
+    forget(&old);
+    forget(&now);
+    expect(2, "--tied is now --rigid", "simulate configs/quick.ini --design none --tied");
+    expect(2, "unknown option '--tied'", "modes configs/quick.ini --tied");
 }
 
 static void test_missing_inputs_end_with_66(void **state)
@@ -157,9 +181,9 @@ static void test_check_names_every_fault_at_once(void **state)
     Said s;
     run(&s, "check @/many.ini --set search.sead=3");
     assert_int_equal(s.code, 65);
-    static const char *const WANTED[] = {"many.ini:3: motion.pga_g",
-                                         "many.ini:4: motion.stretc",
-                                         "many.ini:6: core.section",
+    static const char *const WANTED[] = {"many.ini:3:9: motion.pga_g",
+                                         "many.ini:4:1: motion.stretc",
+                                         "many.ini:6:11: core.section",
                                          "did you mean search.seed?",
                                          "not-there.csv",
                                          "/not/there",
@@ -323,7 +347,7 @@ static void test_the_building_alone_and_the_tied_one_have_no_impacts(void **stat
     (void)state;
     write_designs("one.csv", 1, (double[]){0.002}, (double[]){0.012}, (double[]){0.0064});
     json_t *alone = json_of("simulate configs/quick.ini" SHORT "--design none --json");
-    json_t *tied = json_of("simulate configs/quick.ini" SHORT "--design @/one.csv --tied --json");
+    json_t *tied = json_of("simulate configs/quick.ini" SHORT "--design @/one.csv --rigid --json");
     assert_true(number(alone, "impacts") == 0 && number(tied, "impacts") == 0);
     assert_true(number(alone, "mcore_kg") == 0);
     assert_close(number(tied, "mcore_kg"), 2.650e5, 1e-3);
@@ -402,6 +426,7 @@ int main(void)
         cmocka_unit_test(test_this_build_gives_the_stored_answers),
         cmocka_unit_test(test_a_misunderstood_command_line_ends_with_2_and_a_suggestion),
         cmocka_unit_test(test_bad_settings_and_data_end_with_65),
+        cmocka_unit_test(test_old_names_are_understood_and_the_new_ones_told),
         cmocka_unit_test(test_missing_inputs_end_with_66),
         cmocka_unit_test(test_output_that_cannot_be_written_ends_with_74),
         cmocka_unit_test(test_the_printed_settings_are_the_default_file_and_in_order),

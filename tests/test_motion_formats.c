@@ -92,7 +92,7 @@ static Text read_specimen(const char *file)
     Text t;
     Err err;
     specimen_path(file, path);
-    CHECK_OK(file_read(path, &t.text, &t.length, &err), &err);
+    CHECK_OK(file_read(path, FILE_LARGEST, &t.text, &t.length, &err), &err);
     return t;
 }
 

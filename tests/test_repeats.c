@@ -6,7 +6,7 @@
 /* 60 simulations, of which (60 - 18 * 2) / 2 are repeats. */
 static const char NOISY[] =
     "[problem]\nkind = dtlz2\nvariables = 2\nobjectives = 2\nnoise = 0.05\n[search]\ninitial = 8\n"
-    "population = 8\nmax_evals = 60\nsurrogate_max = 20\nrepeats = 0.5\nmembers_max = 3\n";
+    "population = 8\nmax_evals = 60\nsurrogate_max = 20\nreplicate_share = 0.5\nreplicates_max = 3\n";
 enum { SIMULATIONS = 60, REPEATS = 12 };
 
 /* Lets `left` questions pass, then stops. */
@@ -97,11 +97,11 @@ static void test_the_exports_and_status_tell_of_repeats(void **state)
     free(said);
 }
 
-static void test_members_min_keeps_what_was_answered_once_out_of_the_front(void **state)
+static void test_replicates_min_keeps_what_was_answered_once_out_of_the_front(void **state)
 {
     (void)state;
     char text[sizeof NOISY + 32];
-    snprintf(text, sizeof text, "%smembers_min = 2\n", NOISY);
+    snprintf(text, sizeof text, "%sreplicates_min = 2\n", NOISY);
     study(text, "strict", 0);
     Run h = saved_of("strict");
     for (size_t i = 0; i < h.table.n; i++)
@@ -111,12 +111,12 @@ static void test_members_min_keeps_what_was_answered_once_out_of_the_front(void 
 }
 
 /* Answers without any scatter are asked for no more than about ten times, too few for every design of the front. */
-static void test_where_nothing_has_members_min_answers_the_front_is_of_those_with_the_most(void **state)
+static void test_where_nothing_has_replicates_min_answers_the_front_is_of_those_with_the_most(void **state)
 {
     (void)state;
     write_in_place("noisy.ini", NOISY);
     char *said = output_of("optimize @/noisy.ini --out @/scarce --threads 1 --set problem.noise=0 "
-                           "--set problem.noisy=yes --set search.members_min=3");
+                           "--set problem.noisy=yes --set search.replicates_min=3");
     Run h = saved_of("scarce");
     long most = 0;
     for (size_t i = 0; i < h.table.n; i++)
@@ -124,7 +124,7 @@ static void test_where_nothing_has_members_min_answers_the_front_is_of_those_wit
     assert_true(most < 3 && h.n_front > 0);
     for (size_t i = 0; i < h.table.n; i++)
         assert_true(!h.place[i].on_front || h.table.row[i].replicates == most);
-    assert_non_null(strstr(said, "no design was simulated 3 times (search.members_min)"));
+    assert_non_null(strstr(said, "no design was simulated 3 times (search.replicates_min)"));
     run_free(&h);
     free(said);
 }
@@ -135,10 +135,10 @@ static void test_a_budget_that_brings_no_repeats_is_refused_before_anything_is_s
     (void)state;
     static const char *const WANTED = "search.max_evals must be 38 at least";
     write_in_place("noisy.ini", NOISY);
-    expect(65, WANTED, "check @/noisy.ini --set search.members_min=2 --set search.max_evals=37");
-    expect(65, WANTED, "optimize @/noisy.ini --set search.members_min=2 --max-evals 37 --out @/poor");
-    free(output_of("check @/noisy.ini --set search.members_min=2 --set search.max_evals=38"));
-    expect(65, "search.members_min: 4 is above search.members_max = 3", "check @/noisy.ini --set search.members_min=4");
+    expect(65, WANTED, "check @/noisy.ini --set search.replicates_min=2 --set search.max_evals=37");
+    expect(65, WANTED, "optimize @/noisy.ini --set search.replicates_min=2 --max-evals 37 --out @/poor");
+    free(output_of("check @/noisy.ini --set search.replicates_min=2 --set search.max_evals=38"));
+    expect(65, "search.replicates_min: 4 is above search.replicates_max = 3", "check @/noisy.ini --set search.replicates_min=4");
 }
 
 static void test_without_noise_nothing_is_repeated_and_the_tables_are_as_ever(void **state)
@@ -161,8 +161,8 @@ int main(void)
         cmocka_unit_test(test_a_noisy_run_stopped_after_every_kth_simulation_is_the_run_that_never_stopped),
         cmocka_unit_test(test_the_front_has_means_spreads_and_members_of_what_was_simulated),
         cmocka_unit_test(test_the_exports_and_status_tell_of_repeats),
-        cmocka_unit_test(test_members_min_keeps_what_was_answered_once_out_of_the_front),
-        cmocka_unit_test(test_where_nothing_has_members_min_answers_the_front_is_of_those_with_the_most),
+        cmocka_unit_test(test_replicates_min_keeps_what_was_answered_once_out_of_the_front),
+        cmocka_unit_test(test_where_nothing_has_replicates_min_answers_the_front_is_of_those_with_the_most),
         cmocka_unit_test(test_a_budget_that_brings_no_repeats_is_refused_before_anything_is_simulated),
         cmocka_unit_test(test_without_noise_nothing_is_repeated_and_the_tables_are_as_ever),
     };

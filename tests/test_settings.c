@@ -1,11 +1,14 @@
 /* The settings table: defaults, ranges, files, messages. */
 #include "bad_inputs.h"
 
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "settings/settings.h"
+#include "simulator/textbook.h"
 
 enum { KEYS_MAX = 200 };
 
@@ -98,6 +101,129 @@ static void test_keys_are_unique(void **state)
             assert_string_not_equal(p.key[i], p.key[j]);
 }
 
+/* The words of a choice and the enumeration come from one list; those of problem.kind are the textbook's names too. */
+static void test_the_words_of_problem_kind_are_the_names_of_the_textbook_problems(void **state)
+{
+    (void)state;
+    int kind = 0;
+    while (strcmp(settings_key(kind), "problem.kind") != 0)
+        kind++;
+    char words[200] = "tower|external";
+    size_t n = 0;
+    for (; textbook(n); n++) {
+        Settings s;
+        settings_defaults(&s);
+        set(&s, "problem.kind", textbook(n)->name);
+        assert_int_equal(s.problem.kind, PROBLEM_TEXTBOOK + n);
+        strcat(strcat(words, "|"), textbook(n)->name);
+    }
+    assert_int_equal(PROBLEM_TEXTBOOK + n, PROBLEM_KIND_COUNT);
+    assert_string_equal(settings_words(kind), words);
+}
+
+static void test_old_keys_are_no_keys_and_lead_to_keys(void **state)
+{
+    (void)state;
+    const char *old, *now;
+    for (int i = 0; (old = settings_renamed(i, &now)); i++) {
+        int n_now = 0;
+        for (int k = 0; settings_key(k); k++) {
+            assert_string_not_equal(settings_key(k), old);
+            n_now += strcmp(settings_key(k), now) == 0;
+        }
+        assert_int_equal(n_now, 1);
+        const char *other, *unused;
+        for (int j = 0; j < i && (other = settings_renamed(j, &unused)); j++)
+            assert_string_not_equal(old, other);
+    }
+}
+
+static void test_old_keys_are_read_and_noted(void **state)
+{
+    (void)state;
+    Err err = {0};
+    Settings s, now;
+    CHECK_OK(read_text(&s,
+                       "[sim]\nensemble = 5\nresidual_max = 0.01\n[search]\nmembers_min = 2\nmembers_max = 3\n"
+                       "repeats = 0.2\n[contact]\nv0_floor_m_s = 0.01\n",
+                       &err),
+             &err);
+    assert_int_equal(s.old_keys, 63);
+    CHECK_OK(read_text(&now,
+                       "[sim]\nreplicates = 5\nenergy_balance_max = 0.01\n[search]\nreplicates_min = 2\n"
+                       "replicates_max = 3\nreplicate_share = 0.2\n[contact]\nv0_min_m_s = 0.01\n",
+                       &err),
+             &err);
+    assert_int_equal(now.old_keys, 0);
+    s.old_keys = 0;
+    assert_memory_equal(&s, &now, sizeof s);
+    CHECK_OK(settings_parse(&s, "run.sqlite", "[sim]\nensemble = 7\n", &err), &err); /* a saved run: no note */
+    assert_int_equal(s.sim.replicates, 7);
+    assert_int_equal(s.old_keys, 0);
+    CHECK_OK(settings_set(&s, "sim.ensemble=8", &err), &err);
+    assert_int_equal(s.sim.replicates, 8);
+    assert_int_equal(s.old_keys, 2);
+}
+
+typedef struct {
+    const char *key; /* that was changed */
+    int n_found;
+} Changed;
+
+static void is_the_changed_one(const char *key, unsigned flags, const char *was, const char *is, void *user)
+{
+    Changed *c = user;
+    static const char *const LIMITS[] = {"search.max_evals", "search.generations", "search.max_hours",
+                                         "search.nondominated_share", "problem.timeout_s"};
+    static const char *const FREE[] = {"search.threads", "run.out",        "search.start",
+                                       "motion.record",  "motion.records", "building.model"};
+    unsigned wanted = 0;
+    for (size_t i = 0; i < sizeof LIMITS / sizeof *LIMITS; i++)
+        wanted |= strcmp(key, LIMITS[i]) == 0 ? SETTING_LIMIT : 0u;
+    for (size_t i = 0; i < sizeof FREE / sizeof *FREE; i++)
+        wanted |= strcmp(key, FREE[i]) == 0 ? SETTING_FREE : 0u;
+    assert_string_equal(key, c->key);
+    assert_int_equal(flags, wanted);
+    assert_string_not_equal(was, is);
+    c->n_found++;
+}
+
+/* Another value: the next word, a text or a number in range. */
+static void change_one(Settings *s, int i, const char *was)
+{
+    static const char *const VALUES[] = {"0.0123", "0.31", "2", "7", "90", "1000"};
+    const char *words = settings_words(i), *bar = words ? strchr(words, '|') : NULL;
+    char assignment[2 * OPTION_TEXT_MAX];
+    Err err = {0};
+    if (bar)
+        snprintf(assignment, sizeof assignment, "%s=%.*s", settings_key(i),
+                 strncmp(was, words, strlen(was)) == 0 ? (int)strcspn(bar + 1, "|") : (int)(bar - words),
+                 strncmp(was, words, strlen(was)) == 0 ? bar + 1 : words);
+    for (size_t k = 0; k < sizeof VALUES / sizeof *VALUES; k++) {
+        if (!bar)
+            snprintf(assignment, sizeof assignment, "%s=%s", settings_key(i), VALUES[k]);
+        if (settings_set(s, assignment, &err) == STATUS_OK)
+            return;
+    }
+    fail_msg("%s: %s", settings_key(i), err.text);
+}
+
+static void test_a_change_is_reported_for_its_key_with_the_flags_of_the_table(void **state)
+{
+    (void)state;
+    static Pairs p;
+    Settings s;
+    settings_defaults(&s);
+    pairs_of(&s, &p);
+    for (int i = 0; settings_key(i); i++) {
+        Settings changed = s;
+        Changed c = {settings_key(i), 0};
+        change_one(&changed, i, p.value[i]);
+        settings_compare(&s, &changed, is_the_changed_one, &c);
+        assert_int_equal(c.n_found, 1);
+    }
+}
+
 static void change_everything(Settings *s)
 {
     static const char *const VALUES[][2] = {
@@ -106,7 +232,7 @@ static void change_everything(Settings *s)
         {"core.section", "effective"},
         {"core.inertia_top_m4", "3.3333333333333335"},
         {"contact.law", "exact"},
-        {"contact.v0_floor_m_s", "1.0000000000000002e-12"},
+        {"contact.v0_min_m_s", "1.0000000000000002e-12"},
         {"motion.record", "/a/path/with = and # in it.csv"},
         {"motion.unit", "cm_s2"},
         {"sim.engine", "cvode"},
@@ -131,6 +257,7 @@ static void test_saved_settings_load_to_the_same_values(void **state)
         CHECK_OK(read_text(&back, text, &err), &err);
         char *plain = written(&s, 0), *returned = written(&back, 0);
         assert_string_equal(plain, returned);
+        assert_memory_equal(&s, &back, sizeof s);
         assert_true(back.building.damping == s.building.damping && back.search.seed == 4294967295);
         free(text);
         free(plain);
@@ -269,11 +396,11 @@ static void test_a_line_too_long_for_a_key_is_refused(void **state)
     memset(text + 7, 'k', 900);
     strcpy(text + 907, " = 1\n");
     assert_int_equal(read_text(&s, text, &err), STATUS_BAD_DATA);
-    assert_non_null(strstr(err.text, ":2: the line is too long"));
+    assert_non_null(strstr(err.text, ":2:1: the line is too long"));
     memset(text + 7, 'k', 900);
     text[907] = 0;
     assert_int_equal(read_text(&s, text, &err), STATUS_BAD_DATA);
-    assert_non_null(strstr(err.text, ":2: neither [section] nor key = value"));
+    assert_non_null(strstr(err.text, ":2:1: neither [section] nor key = value"));
 }
 
 static void test_a_path_that_becomes_too_long_beside_its_file_stays_what_it_is(void **state)
@@ -319,11 +446,11 @@ static void test_all_faults_of_a_file_are_listed_with_their_lines(void **state)
     assert_int_equal(settings_read(&s, path, faults, &n, &err), STATUS_BAD_DATA);
     fclose(faults);
     assert_int_equal(n, 6);
-    static const char *const WANTED[] = {":2: motion.pga_g",     ":3: motion.stretc",          ":4: neither",
-                                         ":6: design.gap_min_m", ":7: design.thickness_min_m", ":9: core.section"};
+    static const char *const WANTED[] = {":2:9: motion.pga_g",      ":3:1: motion.stretc",     ":4:1: neither",
+                                         ":6:13: design.gap_min_m", ":7:19: design.thickness", ":9:11: core.section"};
     for (size_t i = 0; i < sizeof WANTED / sizeof WANTED[0]; i++)
         assert_non_null(strstr(text, WANTED[i]));
-    assert_non_null(strstr(err.text, ":2: motion.pga_g"));
+    assert_non_null(strstr(err.text, ":2:9: motion.pga_g"));
     free(text);
     remove(path);
 }
@@ -354,6 +481,45 @@ static void test_a_path_in_a_file_is_meant_from_its_folder(void **state)
     rmdir(folder);
 }
 
+static void test_paths_become_absolute_where_they_lead_somewhere(void **state)
+{
+    (void)state;
+    Settings s;
+    char wanted[PATH_MAX], list[2 * PATH_MAX];
+    settings_defaults(&s);
+    set(&s, "building.model", "tests");
+    set(&s, "motion.records", "configs/quick.ini,builtin:sylmar-like,not-there.csv");
+    set(&s, "search.start", "none");
+    settings_make_absolute(&s);
+    assert_string_equal(s.building.model, realpath("tests", wanted));
+    assert_non_null(realpath("configs/quick.ini", wanted));
+    snprintf(list, sizeof list, "%s,builtin:sylmar-like,not-there.csv", wanted);
+    assert_string_equal(s.motion.records, list);
+    assert_string_equal(s.motion.record, "builtin:kobe-like");
+    assert_string_equal(s.search.start, "none");
+    set(&s, "building.model", "guyan");
+    settings_make_absolute(&s);
+    assert_string_equal(s.building.model, "guyan");
+}
+
+/* As in an editor. */
+static void test_columns_count_characters_and_not_the_mark_of_utf_8(void **state)
+{
+    (void)state;
+    Settings s;
+    Err err = {0};
+    assert_int_equal(read_text(&s, "\xEF\xBB\xBF[\n[core]\n  side_m =\twide\n", &err), STATUS_BAD_DATA);
+    assert_non_null(strstr(err.text, ":1:1: neither"));
+    assert_int_equal(read_text(&s, "[core]\n  side_m =\twide\n", &err), STATUS_BAD_DATA);
+    assert_non_null(strstr(err.text, ":2:12: core.side_m"));
+    assert_int_equal(read_text(&s,
+                               "[core]\ns\xC3\xAF"
+                               "de_m = 3\n",
+                               &err),
+                     STATUS_BAD_DATA);
+    assert_non_null(strstr(err.text, ":2:1: core."));
+}
+
 static Status read_file(const char *path, Err *err)
 {
     Settings s;
@@ -376,11 +542,41 @@ static void test_a_missing_file_is_told_from_a_bad_one(void **state)
     assert_int_equal(read_file("tests", &err), STATUS_MISSING);
 }
 
+/* Whatever has no end is given up after 1 MiB. */
+static void test_what_is_too_large_or_a_device_or_a_left_pipe_is_no_settings_file(void **state)
+{
+    (void)state;
+    Err err = {0};
+    assert_int_equal(read_file("/dev/zero", &err), STATUS_BAD_DATA);
+    assert_non_null(strstr(err.text, "/dev/zero: larger than 1 MiB"));
+    char path[] = "/tmp/imtet-settings-XXXXXX";
+    const int fd = mkstemp(path);
+    assert_true(fd >= 0);
+    FILE *f = fdopen(fd, "w");
+    for (int i = 0; i < 1 << 17; i++)
+        fputs("; filler\n", f);
+    fclose(f);
+    assert_int_equal(read_file(path, &err), STATUS_BAD_DATA);
+    assert_non_null(strstr(err.text, "larger than 1 MiB"));
+    remove(path);
+    assert_int_equal(mkfifo(path, 0600), 0);
+    assert_int_equal(read_file(path, &err), STATUS_MISSING);
+    assert_non_null(strstr(err.text, "named pipe"));
+    remove(path);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_every_default_is_in_its_range_and_the_rules_hold),
         cmocka_unit_test(test_keys_are_unique),
+        cmocka_unit_test(test_the_words_of_problem_kind_are_the_names_of_the_textbook_problems),
+        cmocka_unit_test(test_old_keys_are_no_keys_and_lead_to_keys),
+        cmocka_unit_test(test_old_keys_are_read_and_noted),
+        cmocka_unit_test(test_a_change_is_reported_for_its_key_with_the_flags_of_the_table),
+        cmocka_unit_test(test_paths_become_absolute_where_they_lead_somewhere),
+        cmocka_unit_test(test_columns_count_characters_and_not_the_mark_of_utf_8),
+        cmocka_unit_test(test_what_is_too_large_or_a_device_or_a_left_pipe_is_no_settings_file),
         cmocka_unit_test(test_saved_settings_load_to_the_same_values),
         cmocka_unit_test(test_a_long_path_survives_saving),
         cmocka_unit_test(test_what_is_not_written_keeps_its_default),

@@ -328,7 +328,7 @@ static void test_a_search_begins_with_given_designs_and_a_front_is_thinned(void 
     Err err = {0};
     CHECK_OK(table_read(&front, front_path, 1, &err), &err);
     CHECK_OK(table_read(&three, three_path, 1, &err), &err);
-    CHECK_OK(file_read(all_path, &all, &length, &err), &err);
+    CHECK_OK(file_read(all_path, FILE_LARGEST, &all, &length, &err), &err);
     line = strchr(all, '\n') + 1;
     for (size_t i = 0; i < front.n_rows; i++, line = strchr(line, '\n') + 1) {
         double x = 0.0;

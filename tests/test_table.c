@@ -262,7 +262,7 @@ static void test_a_named_pipe_is_refused_before_it_is_waited_for(void **state)
     assert_non_null(mkdtemp(folder));
     snprintf(path, sizeof path, "%s/pipe", folder);
     assert_int_equal(mkfifo(path, 0600), 0);
-    assert_int_equal(file_read(path, &text, &length, &err), STATUS_MISSING);
+    assert_int_equal(file_read(path, FILE_LARGEST, &text, &length, &err), STATUS_MISSING);
     assert_non_null(strstr(err.text, "is a named pipe"));
     unlink(path);
     rmdir(folder);

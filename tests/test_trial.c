@@ -15,7 +15,7 @@ static Settings short_scene(const char *records, long members, const char *toler
     paper_defaults(&s);
     s.sim.duration_s = 25.0; /* tiny changes have not grown yet, wide ones tell */
     s.sim.accuracy = ACCURACY_COARSE;
-    s.sim.ensemble = members;
+    s.sim.replicates = members;
     snprintf(text, sizeof text, "motion.records=%s", records);
     CHECK_OK(settings_set(&s, text, &err), &err);
     snprintf(text, sizeof text, "sim.gap_tolerance_m=%s", tolerance);

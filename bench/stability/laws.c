@@ -148,7 +148,7 @@ static SimResult early_window(ContactLaw law, double floor)
     paper_defaults(&t.settings);
     t.settings.core.section = CORE_EFFECTIVE;
     t.settings.contact.law = law;
-    t.settings.contact.v0_floor_m_s = floor;
+    t.settings.contact.v0_min_m_s = floor;
     t.settings.sim.duration_s = 11;
     t.settings.sim.accuracy = ACCURACY_FINE;
     need(motion_load(&t.motion, "builtin:sylmar-like", UNIT_FROM_FILE, &err), &err);

@@ -1,7 +1,7 @@
 /* bench/stability/trial.h -- one property put to one engine, and what came of it.
  *
  *   holds    every figure within what is allowed
- *   flagged  a figure is off, and the result says so: energy_balance_error above the default of sim.residual_max, or
+ *   flagged  a figure is off, and the result says so: energy_balance_error above the default of sim.energy_balance_max, or
  *            penetration beyond the contact law
  *   refused  the engine said that it cannot (outcome or status), or did not answer within the time given
  *   FAILED   a wrong answer in silence, or a crash

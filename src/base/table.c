@@ -16,7 +16,7 @@ static int is_left_pipe(const char *path)
     return strncmp(path, "/dev/", 5) != 0 && stat(path, &about) == 0 && S_ISFIFO(about.st_mode);
 }
 
-Status file_read(const char *path, char **text, size_t *length, Err *err)
+Status file_read(const char *path, size_t largest, char **text, size_t *length, Err *err)
 {
     *text = NULL;
     *length = 0;
@@ -25,12 +25,11 @@ Status file_read(const char *path, char **text, size_t *length, Err *err)
     FILE *f = fopen(path, "rb");
     if (!f)
         return fail(err, status_of_errno(errno, STATUS_MISSING), "%s: %s", path, strerror(errno));
-    enum { LARGEST = 1 << 28 }; /* [bytes] far above any record; a device or a wrong file ends here */
     size_t capacity = 1 << 16, n = 0;
     char *buffer = malloc(capacity + 1);
     while (buffer) {
         n += fread(buffer + n, 1, capacity - n, f);
-        if (n < capacity || capacity > LARGEST)
+        if (n < capacity || capacity > largest)
             break;
         char *wider = realloc(buffer, 2 * capacity + 1);
         if (!wider) {
@@ -50,10 +49,9 @@ Status file_read(const char *path, char **text, size_t *length, Err *err)
         free(buffer);
         return fail(err, STATUS_MISSING, "%s: cannot be read: %s", path, strerror(why));
     }
-    if (n > LARGEST) {
+    if (n > largest) {
         free(buffer);
-        return fail(err, STATUS_BAD_DATA, "%s: larger than %d MiB; this is no text file of numbers", path,
-                    LARGEST >> 20);
+        return fail(err, STATUS_BAD_DATA, "%s: larger than %zu MiB; is it the right file?", path, largest >> 20);
     }
     buffer[n] = 0;
     *text = buffer;
@@ -290,7 +288,7 @@ Status table_read(Table *t, const char *path, int has_header, Err *err)
     char *text;
     size_t length;
     memset(t, 0, sizeof *t);
-    TRY(file_read(path, &text, &length, err));
+    TRY(file_read(path, FILE_LARGEST, &text, &length, err));
     const Status s = table_parse(t, path, text, length, has_header, err);
     free(text);
     return s;

@@ -35,7 +35,9 @@ Status table_parse(Table *t, const char *path, const char *text, size_t length, 
 int table_column(const Table *t, const char *name);
 void table_free(Table *t);
 
-/* A whole file as a NUL-terminated string, to be freed by the caller. */
-Status file_read(const char *path, char **text, size_t *length, Err *err);
+/* A whole file as a NUL-terminated string, to be freed by the caller. `largest` [bytes]: where a device or a wrong file
+ * is given up. */
+enum { FILE_LARGEST = 1 << 28 }; /* far above any record */
+Status file_read(const char *path, size_t largest, char **text, size_t *length, Err *err);
 
 #endif

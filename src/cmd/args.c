@@ -87,12 +87,29 @@ void args_suggest(const Args *args, Err *err)
         free(entries);
 }
 
+/* Names of the version before this one. */
+static const struct {
+    const char *old, *now;
+} RENAMED[] = {{"--tied", "--rigid"}};
+
+static void replace_old_name(const Command *c, char name[64])
+{
+    for (size_t i = 0; i < sizeof RENAMED / sizeof RENAMED[0]; i++)
+        for (const ArgOption *o = c->options; o->name; o++)
+            if (strcmp(name, RENAMED[i].old) == 0 && strcmp(o->name, RENAMED[i].now) == 0) {
+                fprintf(stderr, "%s is now %s\n", name, o->name);
+                snprintf(name, 64, "%s", o->name);
+                return;
+            }
+}
+
 static Status find_option(const Command *c, const char *word, size_t length, const ArgOption **found, Err *err)
 {
     const char *names[OPTIONS_MAX];
     char name[64], where[80];
     int n = 0;
     snprintf(name, sizeof name, "%.*s", (int)length, word);
+    replace_old_name(c, name);
     for (const ArgOption *o = c->options; o->name && n < OPTIONS_MAX - 1; o++) {
         names[n++] = o->name;
         *found = o;
@@ -271,6 +288,16 @@ static void count_fault(FILE *faults, int *n_faults, const char *text)
         ++*n_faults;
 }
 
+/* Once for each key. */
+static void tell_old_keys(Settings *s)
+{
+    const char *old, *now;
+    for (int i = 0; (old = settings_renamed(i, &now)); i++)
+        if (s->old_keys >> i & 1u)
+            fprintf(stderr, "%s is now %s\n", old, now);
+    s->old_keys = 0;
+}
+
 Status args_apply(const Args *args, Settings *s, FILE *faults, int *n_faults, Err *err)
 {
     Status first = STATUS_OK;
@@ -285,6 +312,7 @@ Status args_apply(const Args *args, Settings *s, FILE *faults, int *n_faults, Er
         if (!faults)
             break;
     }
+    tell_old_keys(s);
     return first;
 }
 

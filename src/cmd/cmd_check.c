@@ -241,7 +241,7 @@ static void describe_study(Check *c, const CheckedScene *p)
         return;
     const Settings *s = p->s;
     const long records = 1 + (long)(strcmp(s->motion.records, "none") == 0 ? 0 : list_count(s->motion.records));
-    const long simulations = s->search.max_evals * s->sim.ensemble * records;
+    const long simulations = s->search.max_evals * s->sim.replicates * records;
     const long threads = s->search.threads > 0 ? s->search.threads : processors();
     const double seconds = (double)simulations * r.seconds / (double)threads;
     json_object_set_new(c->out, "study",

@@ -265,11 +265,11 @@ static Status evaluate_design(const Args *args, const Run *run, Err *err)
 {
     Settings s = *run->settings;
     Chosen c = {.run = run};
-    if (s.problem.kind != PROBLEM_TOWER)
-        return fail(err, STATUS_BAD_DATA, "this run searched another problem than the tower: no ground motion applies");
     TRY(args_apply(args, &s, NULL, NULL, err));
     TRY(settings_check(&s, err));
     TRY(look_design(args, run, &c.row, err));
+    if (s.problem.kind != PROBLEM_TOWER)
+        return fail(err, STATUS_BAD_DATA, "this run searched another problem than the tower: no ground motion applies");
     return show_all(args, &s, &c, err);
 }
 

@@ -101,10 +101,10 @@ static Status report_no_front(const Run *run, const StudySummary *summary, Err *
                 summary->n_simulated - summary->n_failed, run->settings->search.limits);
 }
 
-/* Where nothing was simulated as often as search.members_min asks for. */
+/* Where nothing was simulated as often as search.replicates_min asks for. */
 static void tell_few_members(const Run *run)
 {
-    const long wanted = run->settings->search.members_min * run->settings->sim.ensemble;
+    const long wanted = run->settings->search.replicates_min * run->settings->sim.replicates;
     long least = wanted;
     for (size_t i = 0; i < run->n_front && schema_is_noisy(run->settings); i++) {
         const Evaluation *e = &run->table.row[run->front[i]];
@@ -112,7 +112,7 @@ static void tell_few_members(const Run *run)
             least = e->replicates;
     }
     if (least < wanted)
-        printf("no design was simulated %ld times (search.members_min); the front has those with the most, %ld\n\n",
+        printf("no design was simulated %ld times (search.replicates_min); the front has those with the most, %ld\n\n",
                wanted, least);
 }
 
@@ -126,7 +126,7 @@ static Status report(const Run *run, const StudySummary *summary, Err *err)
            summary->folder, run->n_front, summary->n_simulated, summary->n_failed, summary->seconds,
            stop_reason_words(summary->stopped));
     if (summary->n_repeats > 0)
-        printf("%zu of the simulations repeat a design, to tell luck from merit (search.repeats)\n\n",
+        printf("%zu of the simulations repeat a design, to tell luck from merit (search.replicate_share)\n\n",
                summary->n_repeats);
     print_front(run, summary);
     if (summary->n_tried_to_polish > 0)

@@ -57,7 +57,7 @@ static const char *const COMMON[] = {
     "core.density_kg_m3=7850",
     "contact.law=paper",
     "contact.restitution=0.7",
-    "contact.v0_floor_m_s=0.001",
+    "contact.v0_min_m_s=0.001",
     "contact.radius_m=0.1",
     "contact.youngs_modulus_pa=2.1e11",
     "contact.poisson=0.3",
@@ -185,7 +185,7 @@ static Status print_answers(Err *err)
  * (5 m v^2 / 4 k)^(2/5). */
 static const double MASS_KG = 1000, GAP_M = 0.1, PULSE_M_S2 = 25, PULSE_DT_S = 0.02;
 static const ContactOptions STEEL = {
-    .law = LAW_EXACT, .v0_floor_m_s = 1e-3, .radius_m = 0.1, .youngs_modulus_pa = 210e9, .poisson = 0.3};
+    .law = LAW_EXACT, .v0_min_m_s = 1e-3, .radius_m = 0.1, .youngs_modulus_pa = 210e9, .poisson = 0.3};
 
 static Status free_mass(SimModel *model, double restitution, Err *err)
 {

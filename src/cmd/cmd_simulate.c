@@ -28,7 +28,7 @@ static Status choose_members(const Args *args, Job *job, Err *err)
     TRY(args_whole(args, "--ensemble", 2, 100000, 0, &members, err));
     if (job->kind != SCENE_IMPACT)
         return fail(err, STATUS_USAGE,
-                    "--ensemble changes gaps a little: it needs a design with gaps, not none or --tied");
+                    "--ensemble perturbs gaps: it needs a design with gaps, neither none nor --rigid");
     job->members = (int)members;
     return STATUS_OK;
 }
@@ -38,9 +38,9 @@ static Status choose_kind(const Args *args, Job *job, Err *err)
     const char *path = args_value(args, "--design");
     if (!path)
         return fail(err, STATUS_USAGE, "--design FILE is missing (--design none: the building alone)");
-    const int none = strcmp(path, "none") == 0, tied = args_has(args, "--tied");
+    const int none = strcmp(path, "none") == 0, tied = args_has(args, "--rigid");
     if (none && tied)
-        return fail(err, STATUS_USAGE, "--tied needs a core: give --design FILE instead of none");
+        return fail(err, STATUS_USAGE, "--rigid needs a core: give --design FILE instead of none");
     job->kind = none ? SCENE_NO_CORE : tied ? SCENE_RIGID : SCENE_IMPACT;
     return choose_members(args, job, err);
 }
@@ -147,7 +147,7 @@ static void print_table(const Job *job, const World *w)
     char label[32];
     show_motion(&w->motion, w->options.sim.duration_s);
     putchar('\n');
-    show_result_names(job->kind == SCENE_RIGID ? "tied, no gaps" : "");
+    show_result_names(job->kind == SCENE_RIGID ? "rigidly connected" : "");
     for (size_t i = 0; i < job->n; i++) {
         snprintf(label, sizeof label, "design %zu", i + 1);
         show_result(job->kind == SCENE_NO_CORE ? "no core" : label, &job->results[i]);
@@ -178,7 +178,7 @@ static Status run(const Args *args, Err *err)
     TRY(args_settings(args, &s, NULL, NULL, err));
     if (job.kind == SCENE_RIGID && s.sim.engine != ENGINE_FAST)
         return fail(err, STATUS_USAGE,
-                    "--tied: a linear building is solved in closed form, no other engine does it; leave sim.engine at "
+                    "--rigid: a linear building is solved in closed form, no other engine does it; leave sim.engine at "
                     "fast");
     TRY(world_open(&w, &s, err));
     Status status = lay_out_job(args, &job, scene_n_floors(w.scene), err);
@@ -196,7 +196,7 @@ static Status run(const Args *args, Err *err)
 
 static const ArgOption OPTIONS[] = {
     {"--design", "FILE", NULL, 0, "designs to simulate, one per row; none: the building alone"},
-    {"--tied", NULL, NULL, 0, "floors and core move together: the linear building without gaps"},
+    {"--rigid", NULL, NULL, 0, "floors and core rigidly connected (zero gap): a linear building"},
     {"--ensemble", "N", NULL, 0, "N runs with gaps changed by 1e-8 of themselves: mean and spread of every result"},
     OPTION_RECORD,
     OPTION_PGA,

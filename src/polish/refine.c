@@ -49,7 +49,7 @@ static int may_go_on(void *user)
 static Status open_subject(Refine *r, long members, Err *err)
 {
     Settings s = *r->run->settings;
-    s.sim.ensemble = members;
+    s.sim.replicates = members;
     subject_close(r->subject);
     r->subject = NULL;
     TRY(subject_open(&r->subject, &s, err));
@@ -279,7 +279,7 @@ Status refine_design(const Run *h, size_t row, const RefineConfig *config, Refin
         return fail(
             err, STATUS_BAD_DATA,
             "the answers of this run are noisy, and polishing simulates a design once: nothing would tell a gain "
-            "from luck; let the search go on instead (search.max_evals, search.repeats)");
+            "from luck; let the search go on instead (search.max_evals, search.replicate_share)");
     if (h->settings->problem.kind != PROBLEM_TOWER)
         used.members = 1;
     if (used.algorithm)

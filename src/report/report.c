@@ -17,7 +17,7 @@ Status report_open(Report *r, const Run *run, const char *design, const DetailWi
 {
     const Settings *s = run->settings;
     *r = (Report){.run = run, .has_detail = s->problem.kind == PROBLEM_TOWER};
-    r->is_robust = r->has_detail && (s->sim.ensemble > 1 || strcmp(s->motion.records, "none") != 0);
+    r->is_robust = r->has_detail && (s->sim.replicates > 1 || strcmp(s->motion.records, "none") != 0);
     TRY(run_pick(run, design, &r->chosen, err));
     r->knee = run_knee(run);
     const Status status = take_detail(r, wish, err);

@@ -368,7 +368,7 @@ Status motion_read(Motion *m, const char *path, const MotionHow *how, Err *err)
     char *text;
     size_t length;
     memset(m, 0, sizeof *m);
-    TRY(file_read(path, &text, &length, err));
+    TRY(file_read(path, FILE_LARGEST, &text, &length, err));
     const Status s = motion_parse(m, path, text, length, how, err);
     free(text);
     return s;

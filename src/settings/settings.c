@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "base/list.h"
+#include "base/table.h"
 
 typedef enum { KIND_REAL, KIND_WHOLE, KIND_CHOICE, KIND_TEXT, KIND_PATH, KIND_PATH_LIST } Kind;
 
@@ -66,137 +67,154 @@ static const char ENGINE_BARS[] = ENGINE_LIST(X);
 static const Option OPTIONS[] = {
     PATH(building.model, "guyan", "guyan|appendix", "guyan | appendix | a folder with K.csv [N/m] and M.csv [kg]",
          .flags = SETTING_FREE),
-    REAL(building.damping, "-", "0.03", 0, 10, "damping ratio of every building mode"),
+    REAL(building.damping, "-", "0.03", 0, 10, "damping ratio of every mode of the building"),
     REAL(building.first_storey_m, "m", "5.4864", 0.1, 100,
-         "height of the first storey: where the core's first node is"),
+         "height of the first storey, where the first node of the core is"),
     REAL(building.storey_m, "m", "3.9624", 0.1, 100, "height of every further storey"),
 
     CHOICE(core.section, CoreSection, CHOICE_WORDS(CORE_SECTION_LIST), "box",
-           "box: square tube of side side_m; plate: solid, width_m wide, thickness deep; effective: area and inertia "
-           "given"),
+           "box: square tube of outer side side_m; plate: solid, width_m wide; effective: area and second moment of "
+           "area given"),
     CHOICE(core.theory, CoreTheory, CHOICE_WORDS(CORE_THEORY_LIST), "timoshenko",
            "timoshenko: with shear deformation and rotary inertia; euler_bernoulli: bending alone, as in the paper"),
     REAL(core.side_m, "m", "11.3", 0.1, 200, "outer side of the box"),
     REAL(core.width_m, "m", "11.3", 0.1, 200, "width of the plate"),
-    REAL(core.damping, "-", "0.03", 0, 10, "damping ratio of every core mode"),
-    REAL(core.youngs_modulus_pa, "Pa", "2.1e11", 1, 1e14, "of the core's steel"),
-    REAL(core.poisson, "-", "0.3", 0, 0.5, "Poisson's ratio of the core's steel: its shear stiffness"),
-    REAL(core.density_kg_m3, "kg/m3", "7850", 1, 1e5, "of the core's steel"),
-    REAL(core.area_base_m2, "m2", "1.567", 1e-9, 1e4, "effective: first storey"),
-    REAL(core.area_top_m2, "m2", "0.811", 1e-9, 1e4, "effective: last storey"),
-    REAL(core.inertia_base_m4, "m4", "25.6201", 1e-9, 1e6, "effective: first storey"),
-    REAL(core.inertia_top_m4, "m4", "24.0503", 1e-9, 1e6, "effective: last storey"),
+    REAL(core.damping, "-", "0.03", 0, 10, "damping ratio of every mode of the core"),
+    REAL(core.youngs_modulus_pa, "Pa", "2.1e11", 1, 1e14, "Young's modulus of the core"),
+    REAL(core.poisson, "-", "0.3", 0, 0.5, "Poisson's ratio of the core, for its shear modulus"),
+    REAL(core.density_kg_m3, "kg/m3", "7850", 1, 1e5, "density of the core"),
+    REAL(core.area_base_m2, "m2", "1.567", 1e-9, 1e4, "effective: area in the first storey"),
+    REAL(core.area_top_m2, "m2", "0.811", 1e-9, 1e4, "effective: area in the last storey"),
+    REAL(core.inertia_base_m4, "m4", "25.6201", 1e-9, 1e6, "effective: second moment of area in the first storey"),
+    REAL(core.inertia_top_m4, "m4", "24.0503", 1e-9, 1e6, "effective: second moment of area in the last storey"),
     REAL(core.shear_area_base_m2, "m2", "0", 0, 1e4, "effective: first storey; 0: no shear deformation"),
     REAL(core.shear_area_top_m2, "m2", "0", 0, 1e4, "effective: last storey"),
 
     CHOICE(contact.law, ContactLaw, CHOICE_WORDS(CONTACT_LAW_LIST), "paper",
-           "paper: a = 1.5 (1 - r); exact: a chosen so that an isolated impact rebounds with r; the others by their "
-           "authors"),
-    REAL(contact.restitution, "-", "0.7", 0, 1, "r of the contact law"),
-    REAL(contact.v0_floor_m_s, "m/s", "1e-3", 1e-12, 10, "least approach speed that the contact law is given"),
+           "paper: a = 1.5 (1 - r); exact: a such that an isolated impact rebounds with r; the others by their authors "
+           "(docs/theory.md)"),
+    REAL(contact.restitution, "-", "0.7", 0, 1, "coefficient of restitution r of the contact law"),
+    REAL(contact.v0_min_m_s, "m/s", "1e-3", 1e-12, 10,
+         "smallest approach speed that the contact law is evaluated with"),
     REAL(contact.radius_m, "m", "0.1", 1e-6, 1e3, "radius of the contacting body"),
-    REAL(contact.youngs_modulus_pa, "Pa", "2.1e11", 1, 1e14, "of both bodies"),
+    REAL(contact.youngs_modulus_pa, "Pa", "2.1e11", 1, 1e14, "Young's modulus of both bodies"),
     REAL(contact.poisson, "-", "0.3", 0, 0.5, "Poisson's ratio of both bodies"),
 
     PATH(motion.record, "builtin:kobe-like", NULL,
          "a ground motion file, or builtin:kobe-like | builtin:elcentro-like | builtin:sylmar-like",
          .flags = SETTING_FREE),
     PATH_LIST(motion.records, "none",
-              "more records for the same study, a comma list: a design then answers to all of them (sim.robust)",
+              "further records of the same study, a comma list: every design is simulated under each (sim.robust)",
               .flags = SETTING_FREE),
-    REAL(motion.pga_g, "g", "0.3", 0, 1e6, "scaled to this peak; 0: as recorded"),
+    REAL(motion.pga_g, "g", "0.3", 0, 1e6, "scaled to this peak ground acceleration; 0: as recorded"),
     REAL(motion.stretch, "-", "3.1", 1e-3, 1e3, "time is multiplied by this"),
     CHOICE(motion.unit, MotionUnit, CHOICE_WORDS(MOTION_UNIT_LIST), "from_file",
-           "of the acceleration, where the file does not say"),
-    TEXT(motion.channel, "auto",
-         "name or number (from 1) of the component, where the file has several; auto: there is only one"),
-    REAL(motion.dt_s, "s", "0", 0, 100, "step of a file that has neither step nor times; 0: the file says it"),
+           "unit of the acceleration where the file has none"),
+    TEXT(motion.channel, "auto", "component by name or number (from 1) where the file has several; auto: the only one"),
+    REAL(motion.dt_s, "s", "0", 0, 100, "time step of a file that has neither step nor times; 0: as in the file"),
     REAL(motion.resample_dt_s, "s", "0", 0, 100,
-         "unequal times are resampled to this step by straight lines; 0: they are refused"),
+         "times that are not equidistant are resampled to this step by linear interpolation; 0: refused"),
 
     CHOICE(sim.engine, Engine, ENGINE_WORDS, "fast",
-           "fast, or cvode (SUNDIALS, another method, slower) for a cross-check"),
+           "integrator: fast, or cvode (SUNDIALS, another method, slower) for a cross-check"),
     CHOICE(sim.accuracy, Accuracy, CHOICE_WORDS(ACCURACY_LIST), "standard",
-           "what a run costs and how far it can be trusted (docs/chart.md)"),
+           "preset of step and tolerances: time of a simulation against its error (docs/chart.md)"),
     REAL(sim.steps_per_contact, "-", "0", 0, 1000,
-         "engine fast: finer than sim.accuracy, with tolerances to match; 0: as sim.accuracy says"),
-    REAL(sim.duration_s, "s", "0", 0, 1e6, "stop here; 0: at the end of the motion"),
-    REAL(sim.residual_max, "-", "0.001", 1e-12, 1,
-         "a run whose energy books are open by more than this share of the input is refined, then failed"),
-    WHOLE(sim.ensemble, "1", 1, 1000,
-          "simulations of each design in a study, gaps changed a little: the objectives are their means"),
-    REAL(sim.gap_tolerance_m, "m", "0", 0, 1, "standard deviation of a gap as built; wants sim.ensemble of 2 at least"),
+         "engine fast: steps per contact, finer than sim.accuracy, with tolerances to match; 0: by sim.accuracy"),
+    REAL(sim.duration_s, "s", "0", 0, 1e6, "end of the simulation; 0: end of the motion"),
+    REAL(sim.energy_balance_max, "-", "0.001", 1e-12, 1,
+         "a simulation whose energy-balance error exceeds this share of the input energy is repeated with smaller "
+         "steps, then rejected"),
+    WHOLE(sim.replicates, "1", 1, 1000,
+          "simulations of a design under each record, with perturbed gaps: the objectives are their means"),
+    REAL(sim.gap_tolerance_m, "m", "0", 0, 1, "standard deviation of a gap as built; needs sim.replicates >= 2"),
     CHOICE(sim.robust, Robust, CHOICE_WORDS(ROBUST_LIST), "worst",
-           "of several records: the worst of each objective, or the mean"),
+           "under several records: the worst of each objective, or the mean"),
 
-    REAL(design.gap_min_m, "m", "0.001", 0, 10, "search box: least gap"),
-    REAL(design.gap_max_m, "m", "0.5", 1e-6, 10, "search box: widest gap"),
-    REAL(design.thickness_min_m, "m", "0.004", 1e-6, 10, "search box: thinnest core wall"),
-    REAL(design.thickness_max_m, "m", "0.04", 1e-6, 10, "search box: thickest core wall"),
+    REAL(design.gap_min_m, "m", "0.001", 0, 10, "bound of the search: smallest gap"),
+    REAL(design.gap_max_m, "m", "0.5", 1e-6, 10, "bound of the search: largest gap"),
+    REAL(design.thickness_min_m, "m", "0.004", 1e-6, 10, "bound of the search: smallest core thickness"),
+    REAL(design.thickness_max_m, "m", "0.04", 1e-6, 10, "bound of the search: largest core thickness"),
 
-    CHOICE(
-        problem.kind, ProblemKind, CHOICE_WORDS(PROBLEM_KIND_LIST), "tower",
-        "tower: gaps and walls of the scene; external: a simulator of your own; the others: problems from textbooks"),
+    CHOICE(problem.kind, ProblemKind, CHOICE_WORDS(PROBLEM_KIND_LIST), "tower",
+           "tower: gaps and core thickness of the scene; external: your own simulator; the others: test problems of "
+           "the literature"),
     TEXT(problem.command, "none",
-         "external: the worker, started without a shell once per thread; docs/external.md has the protocol"),
+         "external: command of the simulator, started without a shell once per thread (docs/external.md)"),
     REAL(problem.timeout_s, "s", "600", 1e-3, 1e7,
-         "external: a worker that is silent for so long has failed and is replaced", .flags = SETTING_LIMIT),
-    WHOLE(problem.variables, "22", 1, 10000, "their number; not of a tower"),
-    WHOLE(problem.objectives, "7", 1, 100, "their number; not of a tower"),
-    TEXT(problem.lower, "0", "external: one number for all, or a comma list"),
-    TEXT(problem.upper, "1", "external: one number for all, or a comma list"),
-    TEXT(problem.senses, "min", "external: min or max, one for all objectives, or a comma list"),
+         "external: a simulator without an answer for so long has failed and is restarted", .flags = SETTING_LIMIT),
+    WHOLE(problem.variables, "22", 1, 10000, "number of design variables; not of a tower"),
+    WHOLE(problem.objectives, "7", 1, 100, "number of objectives; not of a tower"),
+    TEXT(problem.lower, "0", "external: lower bounds, one number for all or a comma list"),
+    TEXT(problem.upper, "1", "external: upper bounds, one number for all or a comma list"),
+    TEXT(problem.senses, "min", "external: min or max, one for all objectives or a comma list"),
     TEXT(problem.variable_names, "auto", "comma list; auto: x1, x2, ..."),
     TEXT(problem.objective_names, "auto", "comma list; auto: f1, f2, ..."),
     CHOICE(problem.noisy, Noisy, CHOICE_WORDS(NOISY_LIST), "auto",
-           "whether the same design answers differently each time; auto: only with problem.noise"),
-    REAL(problem.noise, "-", "0", 0, 1,
-         "problems from textbooks: standard deviation of the answers, share of their value"),
+           "whether evaluations of one design differ; auto: only with problem.noise"),
+    REAL(problem.noise, "-", "0", 0, 1, "test problems: standard deviation of an objective, as a share of its value"),
 
-    WHOLE(search.seed, "1", 0, 4294967295.0, "same seed and settings: same bytes"),
+    WHOLE(search.seed, "1", 0, 4294967295.0, "seed of the random streams: same seed and settings, same bytes"),
     WHOLE(search.threads, "0", 0, 1024, "0: one per processor", .flags = SETTING_FREE),
     WHOLE(search.population, "92", 4, 100000, "designs per generation"),
     WHOLE(search.initial, "0", 0, 1000000,
-          "designs of the Latin hypercube start, no more than max_evals; 0: by the number of variables"),
+          "designs of the initial Latin hypercube, at most max_evals; 0: by the number of variables"),
     PATH(search.start, "none", NULL,
-         "designs to begin with: a CSV with a column per variable, or the folder of a run, whose front is taken",
+         "initial designs: a CSV with a column per variable, or the folder of a run, whose front is taken",
          .flags = SETTING_FREE),
-    WHOLE(search.generations, "1000", 1, 1e9, "stop after so many", .flags = SETTING_LIMIT),
+    WHOLE(search.generations, "1000", 1, 1e9, "stop after so many generations", .flags = SETTING_LIMIT),
     WHOLE(search.max_evals, "2000", 4, 1e6, "stop after so many simulations", .flags = SETTING_LIMIT),
-    REAL(search.max_hours, "h", "0", 0, 1e4, "stop after so long; 0: no limit", .flags = SETTING_LIMIT),
+    REAL(search.max_hours, "h", "0", 0, 1e4, "stop after so many hours; 0: no limit", .flags = SETTING_LIMIT),
     REAL(search.nondominated_share, "-", "1", 0, 1,
          "stop when this share of all simulated designs is nondominated; 1: never", .flags = SETTING_LIMIT),
     REAL(search.trust_error, "-", "0.05", 0, 10,
-         "a prediction stands where its leave-one-out based error is below this share of every objective's range"),
+         "a prediction is accepted where its leave-one-out error is below this share of the range of every objective"),
     REAL(search.crossover_probability, "-", "1", 0, 1, "of a pair (SBX)"),
     REAL(search.crossover_eta, "-", "20", 0, 1000, "distribution index of SBX"),
     REAL(search.mutation_eta, "-", "20", 0, 1000, "distribution index of polynomial mutation"),
     REAL(search.mutation_rate, "-", "1", 0, 100, "variables mutated per design, on average"),
-    WHOLE(search.surrogate_max, "600", 10, 5000, "most designs that the response surface is built on"),
+    WHOLE(search.surrogate_max, "600", 10, 5000, "largest number of designs that the surrogate is fitted to"),
     CHOICE(search.surrogate, SurrogateUse, CHOICE_WORDS(SURROGATE_USE_LIST), "on",
-           "off: a plain evolutionary search; auto: off where it proves to cost more than four simulations for each, "
-           "by the "
-           "clock"),
+           "off: evolutionary search without a surrogate; auto: off as soon as it costs more wall time per simulation "
+           "than four simulations"),
     CHOICE(search.asynchronous, Switch, CHOICE_WORDS(SWITCH_LIST), "off",
-           "on: no thread waits for the slowest design of a batch; the run then depends on the order in which results "
-           "come"),
+           "on: no thread waits for the slowest design of a batch; the run then depends on the order of the results"),
     CHOICE(search.survival, SurvivalKind, CHOICE_WORDS(SURVIVAL_KIND_LIST), "nsga3",
-           "who lives on from one generation to the next: NSGA-III, RVEA or MOEA/D with PBI"),
-    REAL(search.repeats, "-", "0.1", 0, 0.9,
-         "noisy answers: share of the simulations that try designs of the front again (docs/search.md)"),
-    WHOLE(search.members_min, "1", 1, 1000, "noisy answers: simulations that a design in front.csv has at least"),
-    WHOLE(search.members_max, "4", 1, 1000, "noisy answers: simulations of one design at most; 1: none is repeated"),
+           "environmental selection: NSGA-III, RVEA, or MOEA/D with PBI"),
+    REAL(search.replicate_share, "-", "0.1", 0, 0.9,
+         "noisy evaluations: share of the simulations that replicate designs of the front (docs/noise.md)"),
+    WHOLE(search.replicates_min, "1", 1, 1000,
+          "noisy evaluations: smallest number of simulations of a design in front.csv"),
+    WHOLE(search.replicates_max, "4", 1, 1000,
+          "noisy evaluations: largest number of simulations of a design; 1: no replicates"),
     WHOLE(search.polish, "3", 0, 32,
-          "tower: designs that are polished at the end, with a tenth more simulations; none where that is too few"),
-    TEXT(search.limits, "none", "what objectives must keep, as j3_g<=5,edcs_pct>=3; none"),
+          "tower: designs polished at the end, with a tenth more simulations; none where these are too few"),
+    TEXT(search.limits, "none", "constraints on objectives, as j3_g<=5,edcs_pct>=3; none"),
 
-    TEXT(run.out, "results/study", "the run's folder", .flags = SETTING_FREE),
+    TEXT(run.out, "results/study", "folder of the run", .flags = SETTING_FREE),
 };
 
 enum { N_OPTIONS = sizeof OPTIONS / sizeof OPTIONS[0] };
 
 _Static_assert(sizeof(CoreSection) == sizeof(int), "a choice is stored as an int");
 _Static_assert((int)OPTION_TEXT_MAX == (int)LIST_MAX, "a list of the settings can be changed");
+
+/* Keys of the version before this one. */
+static const struct {
+    const char *old, *now;
+} RENAMED[] = {
+    {"contact.v0_floor_m_s", "contact.v0_min_m_s"},  {"sim.ensemble", "sim.replicates"},
+    {"sim.residual_max", "sim.energy_balance_max"},  {"search.repeats", "search.replicate_share"},
+    {"search.members_min", "search.replicates_min"}, {"search.members_max", "search.replicates_max"},
+};
+
+enum { N_RENAMED = sizeof RENAMED / sizeof RENAMED[0] };
+
+const char *settings_renamed(int i, const char **now)
+{
+    *now = i < N_RENAMED ? RENAMED[i].now : NULL;
+    return i < N_RENAMED ? RENAMED[i].old : NULL;
+}
 
 const char *settings_key(int i)
 {
@@ -320,9 +338,21 @@ void settings_defaults(Settings *s)
         assign(s, &OPTIONS[i], OPTIONS[i].standard, NULL);
 }
 
-static Status find_option(const char *key, const Option **found, Err *err)
+/* The key that an old one has now, which is noted in s; any other key as it is. */
+static const char *key_now(Settings *s, const char *key)
+{
+    for (int i = 0; i < N_RENAMED; i++)
+        if (strcmp(key, RENAMED[i].old) == 0) {
+            s->old_keys |= 1u << i;
+            return RENAMED[i].now;
+        }
+    return key;
+}
+
+static Status find_option(Settings *s, const char *key, const Option **found, Err *err)
 {
     const char *keys[N_OPTIONS];
+    key = key_now(s, key);
     for (int i = 0; i < N_OPTIONS; i++) {
         keys[i] = OPTIONS[i].key;
         if (strcmp(key, keys[i]) == 0) {
@@ -332,15 +362,19 @@ static Status find_option(const char *key, const Option **found, Err *err)
     }
     const char *near = nearest_word(key, keys, N_OPTIONS);
     return near ? fail(err, STATUS_BAD_DATA, "%s: no such setting; did you mean %s?", key, near)
-                : fail(err, STATUS_BAD_DATA, "%s: no such setting; `imtet settings` lists them all", key);
+                : fail(err, STATUS_BAD_DATA, "%s: no such setting; `imtet settings` lists all", key);
 }
 
 static Status set_key(Settings *s, const char *key, const char *value, Err *err)
 {
     const Option *o = NULL;
-    TRY(find_option(key, &o, err));
+    TRY(find_option(s, key, &o, err));
     return assign(s, o, value, err);
 }
+
+typedef struct {
+    int line, column; /* from 1 */
+} Place;
 
 typedef struct {
     Settings *s;
@@ -351,16 +385,39 @@ typedef struct {
     size_t capacity;
     const char *long_value; /* in text: what did not fit into the library's line */
     int n_faults, line;
-    int seen[N_OPTIONS]; /* the line that set it, 0: none */
+    Place seen[N_OPTIONS]; /* where it was set; line 0: nowhere */
     Err *first;
 } Reading;
 
-static void report_fault(Reading *r, int line, const char *text)
+static void report_fault(Reading *r, Place at, const char *text)
 {
+    char where[32] = "";
+    if (at.line > 0)
+        snprintf(where, sizeof where, ":%d:%d", at.line, at.column);
     if (r->n_faults++ == 0)
-        fail(r->first, STATUS_BAD_DATA, "%s:%d: %s", r->path, line, text);
+        fail(r->first, STATUS_BAD_DATA, "%s%s: %s", r->path, where, text);
     if (r->faults)
-        fprintf(r->faults, "%s:%d: %s\n", r->path, line, text);
+        fprintf(r->faults, "%s%s: %s\n", r->path, where, text);
+}
+
+/* The line at hand without what marks a file as UTF-8. */
+static const char *line_text(const Reading *r)
+{
+    return r->text + (r->line == 1 && strncmp(r->text, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0);
+}
+
+/* The place of a character of the line at hand: characters count, not bytes. */
+static Place place_of(const Reading *r, const char *at)
+{
+    Place place = {r->line, 1};
+    for (const char *c = line_text(r); c < at; c++)
+        place.column += (*c & 0xC0) != 0x80;
+    return place;
+}
+
+static const char *skip_blanks(const char *text)
+{
+    return text + strspn(text, " \t");
 }
 
 int setting_is_path(const char *value)
@@ -424,7 +481,7 @@ static void hand_over(Reading *r, char *text, char *line, int size)
     if (text[0] == ';' || text[0] == '#') {
         line[0] = 0;
     } else if (!equals || equals - text + 4 > size) {
-        report_fault(r, r->line, "the line is too long");
+        report_fault(r, place_of(r, text), "the line is too long");
         line[0] = 0;
     } else {
         if (note)
@@ -446,17 +503,15 @@ static char *next_line(char *line, int size, void *user)
     line[0] = 0;
     char *text = r->text;
     const int has_nul = strlen(text) != (size_t)n;
-    if (r->line == 1 && strncmp(text, "\xEF\xBB\xBF", 3) == 0)
-        text += 3;
-    text += strspn(text, " \t");
+    text += skip_blanks(line_text(r)) - text;
     for (char *end = text + strlen(text); end > text && isspace((unsigned char)end[-1]);)
         *--end = 0;
     if (has_nul)
-        report_fault(r, r->line, "holds a NUL byte; this is not a settings file");
+        report_fault(r, place_of(r, text), "holds a NUL byte; this is not a settings file");
     else if (strchr(";#", text[0]) || (text[0] == '[' && strchr(text, ']')) || strchr(text, '='))
         hand_over(r, text, line, size);
     else
-        report_fault(r, r->line, "neither [section] nor key = value");
+        report_fault(r, place_of(r, text), "neither [section] nor key = value");
     return line;
 }
 
@@ -469,16 +524,22 @@ static int take_pair(void *user, const char *section, const char *name, const ch
     if (strcmp(value, ELSEWHERE) == 0 && r->long_value)
         value = r->long_value;
     snprintf(key, sizeof key, "%s%s%s", section, section[0] ? "." : "", name);
-    if (find_option(key, &o, &err) != STATUS_OK || assign(r->s, o, value, &err) != STATUS_OK) {
-        report_fault(r, r->line, err.text);
+    const char *begin = skip_blanks(line_text(r));
+    if (find_option(r->s, key, &o, &err) != STATUS_OK) {
+        report_fault(r, place_of(r, begin), err.text);
         return 1;
     }
-    int *seen = &r->seen[o - OPTIONS];
-    if (*seen) {
-        fail(&err, STATUS_BAD_DATA, "%s: was set in line %d already; remove one of the two", key, *seen);
-        report_fault(r, r->line, err.text);
+    const Place at = place_of(r, skip_blanks(begin + strcspn(begin, "=:") + 1));
+    if (assign(r->s, o, value, &err) != STATUS_OK) {
+        report_fault(r, at, err.text);
+        return 1;
     }
-    *seen = r->line;
+    Place *seen = &r->seen[o - OPTIONS];
+    if (seen->line) {
+        fail(&err, STATUS_BAD_DATA, "%s: was set in line %d already; remove one of the two", o->key, seen->line);
+        report_fault(r, place_of(r, begin), err.text);
+    }
+    *seen = at;
     change_paths(r->s, o, anchor_path, r);
     return 1;
 }
@@ -500,26 +561,30 @@ static void check_rules(const Settings *s, BrokenFn broken, void *user)
         broken((size_t[]){AT(design.thickness_min_m), AT(design.thickness_max_m), AT(design.thickness_max_m)}, e.text,
                user);
     }
-    if (s->sim.gap_tolerance_m > 0.0 && s->sim.ensemble < 2) {
-        fail(&e, STATUS_BAD_DATA, "sim.gap_tolerance_m: wants members to try it on: set sim.ensemble to 2 at least");
-        broken((size_t[]){AT(sim.gap_tolerance_m), AT(sim.ensemble), AT(sim.ensemble)}, e.text, user);
+    if (s->sim.gap_tolerance_m > 0.0 && s->sim.replicates < 2) {
+        fail(&e, STATUS_BAD_DATA, "sim.gap_tolerance_m: needs replicates that differ: set sim.replicates to 2 or more");
+        broken((size_t[]){AT(sim.gap_tolerance_m), AT(sim.replicates), AT(sim.replicates)}, e.text, user);
     }
     if (s->problem.kind == PROBLEM_EXTERNAL && strcmp(s->problem.command, "none") == 0) {
-        fail(&e, STATUS_BAD_DATA, "problem.command: is none; problem.kind = external wants the worker's command");
+        fail(&e, STATUS_BAD_DATA,
+             "problem.command: is none; problem.kind = external needs the command of the simulator");
         broken((size_t[]){AT(problem.command), AT(problem.kind), AT(problem.kind)}, e.text, user);
     }
-    if (s->search.members_min > s->search.members_max) {
-        fail(&e, STATUS_BAD_DATA, "search.members_min: %ld is above search.members_max = %ld", s->search.members_min,
-             s->search.members_max);
-        broken((size_t[]){AT(search.members_min), AT(search.members_max), AT(search.members_max)}, e.text, user);
+    if (s->search.replicates_min > s->search.replicates_max) {
+        fail(&e, STATUS_BAD_DATA, "search.replicates_min: %ld is above search.replicates_max = %ld",
+             s->search.replicates_min, s->search.replicates_max);
+        broken((size_t[]){AT(search.replicates_min), AT(search.replicates_max), AT(search.replicates_max)}, e.text,
+               user);
     }
-    if (s->search.members_min > 1 && !(s->search.repeats > 0.0)) {
-        fail(&e, STATUS_BAD_DATA, "search.members_min: %ld simulations of a design want search.repeats above 0",
-             s->search.members_min);
-        broken((size_t[]){AT(search.members_min), AT(search.repeats), AT(search.repeats)}, e.text, user);
+    if (s->search.replicates_min > 1 && !(s->search.replicate_share > 0.0)) {
+        fail(&e, STATUS_BAD_DATA,
+             "search.replicates_min: %ld simulations of a design need search.replicate_share above 0",
+             s->search.replicates_min);
+        broken((size_t[]){AT(search.replicates_min), AT(search.replicate_share), AT(search.replicate_share)}, e.text,
+               user);
     }
     if (s->core.section == CORE_BOX && 2 * s->design.thickness_max_m > s->core.side_m) {
-        fail(&e, STATUS_BAD_DATA, "design.thickness_max_m: two walls of %g m do not fit into core.side_m = %g",
+        fail(&e, STATUS_BAD_DATA, "design.thickness_max_m: twice %g m does not fit into core.side_m = %g",
              s->design.thickness_max_m, s->core.side_m);
         broken((size_t[]){AT(design.thickness_max_m), AT(core.side_m), AT(core.section)}, e.text, user);
     }
@@ -528,48 +593,59 @@ static void check_rules(const Settings *s, BrokenFn broken, void *user)
 static void report_broken(const size_t fields[3], const char *text, void *user)
 {
     Reading *r = user;
-    int line = 0;
-    for (int k = 0; k < 3 && !line; k++)
-        for (int i = 0; i < N_OPTIONS && !line; i++)
-            line = OPTIONS[i].offset == fields[k] ? r->seen[i] : 0;
-    report_fault(r, line, text);
+    Place at = {0, 0};
+    for (int k = 0; k < 3 && !at.line; k++)
+        for (int i = 0; i < N_OPTIONS && !at.line; i++)
+            if (OPTIONS[i].offset == fields[k])
+                at = r->seen[i];
+    report_fault(r, at, text);
 }
 
-/* Closes the file. */
 static Status read_stream(Reading *r, int *n_faults, Err *err)
 {
     const int bad_line = ini_parse_stream(next_line, r, take_pair, r);
-    const int read_error = ferror(r->file), whole = feof(r->file);
-    fclose(r->file);
+    const int whole = feof(r->file);
     free(r->text);
-    if (read_error)
-        return fail(err, STATUS_MISSING, "%s: cannot be read (is it a folder?)", r->path);
     if (!whole)
         return fail(err, STATUS_NO_MEMORY, "%s: no memory to read it", r->path);
     if (bad_line > 0 && r->n_faults == 0)
-        report_fault(r, bad_line, "neither [section] nor key = value");
+        report_fault(r, (Place){bad_line, 1}, "neither [section] nor key = value");
     check_rules(r->s, report_broken, r);
     if (n_faults)
         *n_faults = r->n_faults;
     return r->n_faults ? STATUS_BAD_DATA : STATUS_OK;
 }
 
+static Status read_text(Reading *r, const char *text, size_t length, int *n_faults, Err *err)
+{
+    r->first = err;
+    r->file = length > 0 ? fmemopen((void *)(uintptr_t)text, length, "rb") : fopen("/dev/null", "rb");
+    if (!r->file)
+        return fail(err, STATUS_NO_MEMORY, "%s: no memory for its settings", r->path);
+    const Status status = read_stream(r, n_faults, err);
+    fclose(r->file);
+    return status;
+}
+
 Status settings_read(Settings *s, const char *path, FILE *faults, int *n_faults, Err *err)
 {
-    Reading r = {.s = s, .path = path, .faults = faults, .first = err};
-    r.file = fopen(path, "rb");
-    if (!r.file)
-        return fail(err, status_of_errno(errno, STATUS_MISSING), "%s: %s", path, strerror(errno));
-    return read_stream(&r, n_faults, err);
+    enum { LARGEST = 1 << 20 }; /* [bytes] a hundred times the file with every setting and its description */
+    char *text;
+    size_t length;
+    TRY(file_read(path, LARGEST, &text, &length, err));
+    Reading r = {.s = s, .path = path, .faults = faults};
+    const Status status = read_text(&r, text, length, n_faults, err);
+    free(text);
+    return status;
 }
 
 Status settings_parse(Settings *s, const char *path, const char *text, Err *err)
 {
-    Reading r = {.s = s, .path = path, .first = err};
-    r.file = text[0] ? fmemopen((void *)(uintptr_t)text, strlen(text), "rb") : fopen("/dev/null", "rb");
-    if (!r.file)
-        return fail(err, STATUS_NO_MEMORY, "%s: no memory for its settings", path);
-    return read_stream(&r, NULL, err);
+    const unsigned old_keys = s->old_keys;
+    Reading r = {.s = s, .path = path};
+    const Status status = read_text(&r, text, strlen(text), NULL, err);
+    s->old_keys = old_keys;
+    return status;
 }
 
 Status settings_set(Settings *s, const char *assignment, Err *err)

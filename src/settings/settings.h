@@ -32,6 +32,7 @@ typedef struct Settings {
     ProblemOptions problem;
     SearchOptions search;
     RunOptions run;
+    unsigned old_keys; /* bit i: the old key i of settings_renamed was read */
 } Settings;
 
 /* What a scene needs of them. */
@@ -43,12 +44,13 @@ static inline SceneOptions settings_scene(const Settings *s)
 void settings_defaults(Settings *s);
 
 /* Reads an INI file over what s holds. All faults are reported, not only the first: one line each into `faults`
- * ("FILE:LINE: key: what is wrong and what to do"), whose number is returned through n_faults; err has the first.
- * Relative paths of building.model and motion.record are taken from the folder of the INI file if such a file is
- * there, else from the working directory. faults may be NULL. */
+ * ("FILE:LINE:COLUMN: key: what is wrong and what to do"), whose number is returned through n_faults; err has the first.
+ * Relative paths are taken from the folder of the INI file if such a file is there, else from the working directory.
+ * A file has 1 MiB at most. faults may be NULL. */
 Status settings_read(Settings *s, const char *path, FILE *faults, int *n_faults, Err *err);
 
-/* The same from text in memory; `path` names it in messages and is where relative paths begin. */
+/* The same from text in memory, of a run that was saved: old keys are not noted. `path` names it in messages and is
+ * where relative paths begin. */
 Status settings_parse(Settings *s, const char *path, const char *text, Err *err);
 
 /* Of a run that is resumed: a limit may be changed on request, a free one changes no result (the files that paths name
@@ -80,6 +82,9 @@ Status settings_check(const Settings *s, Err *err);
 const char *settings_key(int i);
 const char *settings_words(int i);
 unsigned settings_flags(int i);
+
+/* Old key i and what it is called now; both NULL behind the last. Old keys are read for one release. */
+const char *settings_renamed(int i, const char **now);
 
 /* A valid INI file: with `described`, preceded key by key by its meaning, unit and range. */
 void settings_write(const Settings *s, FILE *out, int described);

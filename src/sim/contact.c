@@ -74,6 +74,6 @@ Status contact_make(Contact *c, const ContactOptions *o, Err *err)
         c->xi = 4.5 * sqrt(5.0) * (1 - r * r) / (r * (r * (9 * M_PI - 16) + 16));
         break;
     }
-    c->v0_floor = o->v0_floor_m_s;
+    c->v0_floor = o->v0_min_m_s;
     return STATUS_OK;
 }

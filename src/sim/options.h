@@ -16,7 +16,7 @@ typedef enum { CONTACT_LAW_LIST(CHOICE_NAME) } ContactLaw;
 
 typedef struct {
     ContactLaw law;
-    double restitution, v0_floor_m_s, radius_m, youngs_modulus_pa, poisson;
+    double restitution, v0_min_m_s, radius_m, youngs_modulus_pa, poisson;
 } ContactOptions;
 
 /* The integrators of the model, by the name of the setting; sim/engine.c has a line for each. */
@@ -41,8 +41,8 @@ typedef struct {
     Accuracy accuracy;
     double steps_per_contact;
     double duration_s; /* 0: the whole motion */
-    double residual_max;
-    long ensemble;          /* simulations of a design under each record */
+    double energy_balance_max;
+    long replicates;        /* simulations of a design under each record */
     Robust robust;          /* how a design's results under several records become one */
     double gap_tolerance_m; /* standard deviation of a gap as built */
 } SimOptions;

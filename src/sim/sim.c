@@ -182,7 +182,7 @@ static Status run_rigid(SimWorker *w, SimResult *result, Err *err)
 {
     const Scene *scene = w->scene;
     TRY(engine_rigid(&scene->options, &scene->building, &w->core, scene->motion, &w->run, result, err));
-    check_result(result, scene->options.sim.residual_max);
+    check_result(result, scene->options.sim.energy_balance_max);
     return STATUS_OK;
 }
 
@@ -192,7 +192,7 @@ static Status run_engine(SimWorker *w, SimResult *result, Err *err)
     for (int i = 0; i < (scene->engine->refines ? N_REFINEMENTS : 1); i++) {
         w->run.refinement = REFINEMENTS[i];
         TRY(scene->engine->run(&w->model, scene->motion, &w->run, result, err));
-        check_result(result, scene->options.sim.residual_max);
+        check_result(result, scene->options.sim.energy_balance_max);
         if (result->outcome != RUN_ENERGY_BALANCE)
             break;
     }

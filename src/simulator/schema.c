@@ -82,14 +82,14 @@ int schema_is_noisy(const Settings *s)
 {
     const int has_noise = s->problem.kind >= PROBLEM_TEXTBOOK && s->problem.noise > 0.0;
     const int is_noisy = s->problem.noisy == NOISY_AUTO ? has_noise : s->problem.noisy == NOISY_YES;
-    return is_noisy && s->search.members_max > 1 && s->search.repeats > 0.0;
+    return is_noisy && s->search.replicates_max > 1 && s->search.replicate_share > 0.0;
 }
 
 Status schema_of(Schema *schema, const Settings *s, int n_floors, Err *err)
 {
     if (s->problem.kind == PROBLEM_TOWER) {
         TRY(schema_of_tower(schema, n_floors, err));
-        schema->has_spread = s->sim.ensemble > 1 || schema_is_noisy(s);
+        schema->has_spread = s->sim.replicates > 1 || schema_is_noisy(s);
         return STATUS_OK;
     }
     *schema = (Schema){.n_var = (size_t)s->problem.variables,

@@ -514,15 +514,15 @@ static Status take_limits(Subject *s, Err *err)
 /* Where a front asks for repeats, there must be simulations enough to bring them. */
 static Status check_repeats(const Subject *s, Err *err)
 {
-    const double share = s->settings.search.repeats, wanted = (double)(s->settings.search.members_min - 1);
+    const double share = s->settings.search.replicate_share, wanted = (double)(s->settings.search.replicates_min - 1);
     if (!schema_is_noisy(&s->settings) ||
         floor(search_repeats((size_t)s->settings.search.max_evals, share, s->schema.n_var)) >= wanted)
         return STATUS_OK;
     return fail(
         err, STATUS_BAD_DATA,
-        "search.members_min: %ld simulations of a design are not to be had, repeats begin behind the first %zu; "
+        "search.replicates_min: %ld simulations of a design are not to be had, repeats begin behind the first %zu; "
         "search.max_evals must be %.0f at least",
-        s->settings.search.members_min, REPLICATE_AFTER * s->schema.n_var,
+        s->settings.search.replicates_min, REPLICATE_AFTER * s->schema.n_var,
         ceil(wanted / share) + (double)(REPLICATE_AFTER * s->schema.n_var));
 }
 

@@ -2,7 +2,7 @@
  * Problem.
  *
  *   problem.kind = tower      gaps and walls; t_top > t_base is repaired by swapping the two; every design is as many
- *                             simulations as sim.ensemble and motion.records ask for (simulator/trial.h)
+ *                             simulations as sim.replicates and motion.records ask for (simulator/trial.h)
  *                  external   workers that speak JSON lines (simulator/external.h)
  *                  dtlz2 ...  simulator/textbook.h, with problem.noise where that is set
  *

@@ -74,7 +74,7 @@ Status trials_open(Trials **out, const Settings *s, int threads, Err *err)
     if (!t)
         return fail(err, STATUS_NO_MEMORY, "no memory for a scene");
     t->settings = *s;
-    t->members = (size_t)s->sim.ensemble;
+    t->members = (size_t)s->sim.replicates;
     const Status status = open_records(t, threads, err);
     if (status != STATUS_OK)
         trials_close(t);

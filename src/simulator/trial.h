@@ -24,7 +24,7 @@ typedef struct Settings Settings;
 
 typedef struct Trials Trials;
 
-/* motion.record and motion.records, sim.ensemble, sim.gap_tolerance_m, sim.robust of the settings. */
+/* motion.record and motion.records, sim.replicates, sim.gap_tolerance_m, sim.robust of the settings. */
 Status trials_open(Trials **out, const Settings *s, int threads, Err *err);
 void trials_close(Trials *t); /* NULL is fine */
 

@@ -117,7 +117,7 @@ static json_t *json_evaluation(const Run *h, size_t i)
     for (size_t k = 0; k < schema->n_obj; k++)
         known = known || isfinite(e->sd[k]);
     json_object_set_new(o, "spread", known ? json_numbers(schema->n_obj, e->sd) : json_null());
-    if (e->replicates > h->settings->sim.ensemble)
+    if (e->replicates > h->settings->sim.replicates)
         json_object_set_new(o, "mean", json_numbers(schema->n_obj, run_f(h, i)));
     if (schema->has_spread)
         json_object_set_new(o, "members", json_integer(e->replicates));

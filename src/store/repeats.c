@@ -24,11 +24,11 @@ static Status insert_row(Archive *a, const Run *h, size_t i, Err *err)
 static void take_design(Run *h, size_t i, const Archive *a, size_t at)
 {
     const size_t m = h->schema.n_obj;
-    const double members = (double)h->settings->sim.ensemble;
+    const double members = (double)h->settings->sim.replicates;
     Evaluation *r = &h->table.row[i];
     if (a->answers[at] == 0)
         return;
-    r->replicates = (int)((long)a->answers[at] * h->settings->sim.ensemble);
+    r->replicates = (int)((long)a->answers[at] * h->settings->sim.replicates);
     for (size_t k = 0; k < m && a->usable[at]; k++) {
         h->F[i * m + k] = schema_objective(&h->schema, k)->sense * a->F[at * m + k];
         if (a->n_repeats > 0)

@@ -2,7 +2,7 @@
  *
  *   F            of a design the mean of its evaluations
  *   sd           standard deviation of a single simulation, estimated from all repeats of the run (moga/spread.h)
- *   replicates   simulations behind F: evaluations x sim.ensemble
+ *   replicates   simulations behind F: evaluations x sim.replicates
  *
  * A design with an evaluation that failed keeps its first one; the search has taken it off the front. f of the table
  * stays what each evaluation found; unfinished and polished ones are left alone. Without noise nothing changes.

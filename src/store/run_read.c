@@ -46,7 +46,7 @@ static void place_all(Run *h)
         h->n_failed += !place->ok;
         h->n_repeats += e->kind == KIND_REPEAT;
         if (e->kind != KIND_REPEAT && e->kind != KIND_POLISHED)
-            e->replicates = (int)h->settings->sim.ensemble;
+            e->replicates = (int)h->settings->sim.replicates;
     }
 }
 

@@ -12,8 +12,8 @@ typedef struct {
     SurrogateUse surrogate;
     Switch asynchronous;
     SurvivalKind survival;
-    double repeats;                /* share of max_evals */
-    long members_min, members_max; /* answers of a design */
+    double replicate_share;               /* share of max_evals */
+    long replicates_min, replicates_max; /* of a design */
     long polish;                   /* designs at the end */
     char limits[OPTION_TEXT_MAX];
     char start[OPTION_TEXT_MAX]; /* a CSV of designs or a run's folder, or none */

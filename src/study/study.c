@@ -355,9 +355,9 @@ SearchConfig study_search_config(const Settings *s)
         .max_seconds = 3600 * s->search.max_hours,
         .nondominated_share = s->search.nondominated_share,
         .trust_error = s->search.trust_error,
-        .repeats = s->search.repeats,
-        .answers_min = (size_t)s->search.members_min,
-        .answers_max = (size_t)s->search.members_max,
+        .repeats = s->search.replicate_share,
+        .answers_min = (size_t)s->search.replicates_min,
+        .answers_max = (size_t)s->search.replicates_max,
         .crossover_probability = s->search.crossover_probability,
         .crossover_eta = s->search.crossover_eta,
         .mutation_eta = s->search.mutation_eta,
@@ -536,7 +536,7 @@ enum { POLISH_MEMBERS = 4, POLISH_LEAST = 40, POLISH_SHARE = 10, POLISH_MOST = 3
 static size_t polish_evals(const Settings *s)
 {
     const long n = s->search.polish < POLISH_MOST ? s->search.polish : POLISH_MOST;
-    const long each = n > 0 ? s->search.max_evals * s->sim.ensemble / (POLISH_SHARE * n) : 0;
+    const long each = n > 0 ? s->search.max_evals * s->sim.replicates / (POLISH_SHARE * n) : 0;
     return s->problem.kind == PROBLEM_TOWER && each >= POLISH_LEAST ? (size_t)each : 0;
 }
 
@@ -556,7 +556,7 @@ static Status polish_one(Study *study, const Run *h, size_t row, size_t n_tried,
     const RefineConfig config = {.weight = weight,
                                  .keep = keep,
                                  .slack = -1.0,
-                                 .members = s->sim.ensemble > POLISH_MEMBERS ? s->sim.ensemble : POLISH_MEMBERS,
+                                 .members = s->sim.replicates > POLISH_MEMBERS ? s->sim.replicates : POLISH_MEMBERS,
                                  .max_evals = polish_evals(s),
                                  .go_on = may_go_on,
                                  .user = study};

@@ -112,7 +112,7 @@ void fuzz_cells(const uint8_t *data, size_t size)
     size_t length;
     sqlite3 *db;
     Err err = {0};
-    if (file_read("tests/fuzz/run.sqlite", &template, &length, &err) != STATUS_OK)
+    if (file_read("tests/fuzz/run.sqlite", FILE_LARGEST, &template, &length, &err) != STATUS_OK)
         abort();
     write_run(template, length, path);
     free(template);

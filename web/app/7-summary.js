@@ -43,7 +43,7 @@ function summaryPart() {
     (d ? `. Ground motion ${d.record.replace(/.*\//, "")}, peak ${show(d.pga_g)} g, time \u00d7 ${show(d.stretch)}, ${show(d.duration_s)} s` : "");
   document.getElementById("summary").append(
     element("p", {}, element("strong", {}, `Design ${run.knee}, the knee`), ": nearest to the best of everything, with every objective scaled over the front."),
-    run.robust ? element("p", { class: "note" }, "Objectives are those of several simulations of every design (motion.records, sim.ensemble, sim.robust " +
+    run.robust ? element("p", { class: "note" }, "Objectives are those of several simulations of every design (motion.records, sim.replicates, sim.robust " +
       `among the settings); the chosen design is shown as one simulation under ${shortName(d.record)}.`) : "",
     cards(rowOf.get(run.knee), before), standoutTable(before));
 }
