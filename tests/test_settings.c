@@ -182,6 +182,7 @@ static void is_the_changed_one(const char *key, unsigned flags, const char *was,
         wanted |= strcmp(key, LIMITS[i]) == 0 ? SETTING_LIMIT : 0u;
     for (size_t i = 0; i < sizeof FREE / sizeof *FREE; i++)
         wanted |= strcmp(key, FREE[i]) == 0 ? SETTING_FREE : 0u;
+    wanted |= strcmp(key, "run.out") == 0 ? SETTING_OUTPUT : 0u;
     assert_string_equal(key, c->key);
     assert_int_equal(flags, wanted);
     assert_string_not_equal(was, is);

@@ -3,6 +3,7 @@
 #include <limits.h>
 #include <stdio.h>
 #include <string.h>
+#include "scene/builtin.h"
 #include "settings/settings.h"
 
 #include "store/run_read.h"
@@ -18,7 +19,7 @@ typedef struct {
 /* Those of the command line, else the further ones of the run, else the built-in motions that it did not use. */
 static Status take_records(const Args *args, const Settings *run, Records *r, Err *err)
 {
-    static const char *const BUILT_IN[] = {"builtin:kobe-like", "builtin:elcentro-like", "builtin:sylmar-like"};
+    static const char *const BUILT_IN[] = {BUILTIN_MOTION_LIST(CHOICE_WORD)};
     const char *path;
     r->n = 0;
     for (int i = 0; (path = args_next(args, "--record", &i));) {

@@ -206,13 +206,11 @@ static int is_path(const char *value)
     return strcmp(value, "FILE") == 0 || strcmp(value, "DIR") == 0 || strcmp(value, "FOLDER") == 0;
 }
 
-static const char MOTIONS[] = "builtin:kobe-like|builtin:elcentro-like|builtin:sylmar-like";
-
 /* Words beside those of a setting and besides files. */
 static const char *special_words(const ArgOption *o)
 {
     if (strcmp(o->name, "--record") == 0)
-        return MOTIONS;
+        return words_of("motion.record");
     if (strcmp(o->name, "--design") == 0)
         return is_path(o->value) ? "none" : "knee";
     return words_of(o->setting);
@@ -228,13 +226,9 @@ static void complete_case(FILE *out, const char *command, const char *word, cons
 
 static void complete_settings(FILE *out)
 {
-    static const char *const PATHS[] = {"motion.records", "building.model", "search.start", "run.out"};
     for (int i = 0; settings_key(i); i++)
-        if (settings_words(i))
-            complete_case(out, "*", settings_key(i), settings_words(i), 0);
-    complete_case(out, "*", "motion.record", MOTIONS, 1);
-    for (size_t i = 0; i < sizeof PATHS / sizeof PATHS[0]; i++)
-        complete_case(out, "*", PATHS[i], NULL, 1);
+        if (settings_words(i) || settings_names_file(i))
+            complete_case(out, "*", settings_key(i), settings_words(i), settings_names_file(i));
     fputs("    *\" --set\") keys=1 words=\"", out);
     for (int i = 0; settings_key(i); i++)
         fprintf(out, "%s%s=", i ? " " : "", settings_key(i));

@@ -5,9 +5,13 @@
 #ifndef IMTET_SCENE_BUILTIN_H
 #define IMTET_SCENE_BUILTIN_H
 
+#include "base/option.h"
 #include "scene/motion.h"
 
-/* name: kobe-like, elcentro-like or sylmar-like */
+#define BUILTIN_MOTION_LIST(X)                                                                                         \
+    X(KOBE, "builtin:kobe-like") X(ELCENTRO, "builtin:elcentro-like") X(SYLMAR, "builtin:sylmar-like")
+
+/* name: what follows "builtin:" in the list */
 Status builtin_motion(Motion *m, const char *name, Err *err);
 
 #endif

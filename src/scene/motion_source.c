@@ -8,11 +8,12 @@
 static Status load(Motion *m, const char *source, const MotionHow *how, Err *err)
 {
     static const char prefix[] = "builtin:";
-    static const char *const MOTIONS[] = {"builtin:kobe-like", "builtin:elcentro-like", "builtin:sylmar-like"};
+    static const char *const MOTIONS[] = {BUILTIN_MOTION_LIST(CHOICE_WORD)};
     if (strncmp(source, prefix, sizeof prefix - 1) == 0)
         return builtin_motion(m, source + sizeof prefix - 1, err); /* in m/s2, one channel, whatever is said of files */
     const Status status = motion_read(m, source, how, err);
-    const char *near = status == STATUS_MISSING ? nearest_word(source, MOTIONS, 3) : NULL;
+    const char *near =
+        status == STATUS_MISSING ? nearest_word(source, MOTIONS, sizeof MOTIONS / sizeof MOTIONS[0]) : NULL;
     return near ? fail(err, status, "%s: there is no such file; did you mean %s?", source, near) : status;
 }
 

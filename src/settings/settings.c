@@ -12,6 +12,7 @@
 
 #include "base/list.h"
 #include "base/table.h"
+#include "scene/builtin.h"
 
 typedef enum { KIND_REAL, KIND_WHOLE, KIND_CHOICE, KIND_TEXT, KIND_PATH, KIND_PATH_LIST } Kind;
 
@@ -100,7 +101,7 @@ static const Option OPTIONS[] = {
     REAL(contact.youngs_modulus_pa, "Pa", "2.1e11", 1, 1e14, "Young's modulus of both bodies"),
     REAL(contact.poisson, "-", "0.3", 0, 0.5, "Poisson's ratio of both bodies"),
 
-    PATH(motion.record, "builtin:kobe-like", NULL,
+    PATH(motion.record, "builtin:kobe-like", CHOICE_WORDS(BUILTIN_MOTION_LIST),
          "a ground motion file, or builtin:kobe-like | builtin:elcentro-like | builtin:sylmar-like",
          .flags = SETTING_FREE),
     PATH_LIST(motion.records, "none",
@@ -191,7 +192,7 @@ static const Option OPTIONS[] = {
           "tower: designs polished at the end, with a tenth more simulations; none where these are too few"),
     TEXT(search.limits, "none", "constraints on objectives, as j3_g<=5,edcs_pct>=3; none"),
 
-    TEXT(run.out, "results/study", "folder of the run", .flags = SETTING_FREE),
+    PATH(run.out, "results/study", NULL, "folder of the run", .flags = SETTING_FREE | SETTING_OUTPUT),
 };
 
 enum { N_OPTIONS = sizeof OPTIONS / sizeof OPTIONS[0] };
@@ -223,7 +224,12 @@ const char *settings_key(int i)
 
 const char *settings_words(int i)
 {
-    return OPTIONS[i].kind == KIND_CHOICE ? OPTIONS[i].words : NULL;
+    return OPTIONS[i].words;
+}
+
+int settings_names_file(int i)
+{
+    return OPTIONS[i].kind == KIND_PATH || OPTIONS[i].kind == KIND_PATH_LIST;
 }
 
 unsigned settings_flags(int i)
@@ -429,6 +435,8 @@ int setting_is_path(const char *value)
 static void change_paths(Settings *s, const Option *o, ListItemFn change, void *user)
 {
     char *value = field_of(s, o);
+    if (o->flags & SETTING_OUTPUT)
+        return;
     if (o->kind == KIND_PATH_LIST)
         list_change(value, change, user);
     else if (o->kind == KIND_PATH && !(o->words && word_index(o->words, value) >= 0))

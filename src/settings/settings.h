@@ -54,8 +54,8 @@ Status settings_read(Settings *s, const char *path, FILE *faults, int *n_faults,
 Status settings_parse(Settings *s, const char *path, const char *text, Err *err);
 
 /* Of a run that is resumed: a limit may be changed on request, a free one changes no result (the files that paths name
- * are told apart by their content). */
-typedef enum { SETTING_LIMIT = 1, SETTING_FREE = 2 } SettingFlags;
+ * are told apart by their content). An output is a path that is written: it stays as it is. */
+typedef enum { SETTING_LIMIT = 1, SETTING_FREE = 2, SETTING_OUTPUT = 4 } SettingFlags;
 
 /* Calls `differs` for every setting that is not the same in both, in the order of the table, values as text. */
 typedef void (*SettingsDiffFn)(const char *key, unsigned flags, const char *was, const char *is, void *user);
@@ -77,11 +77,12 @@ void settings_make_absolute(Settings *s);
 /* The rules that tie settings together. */
 Status settings_check(const Settings *s, Err *err);
 
-/* The table itself: key i ("section.key", NULL behind the last), and its words as "a|b|c", NULL where it is no choice.
- */
-const char *settings_key(int i);
-const char *settings_words(int i);
-unsigned settings_flags(int i);
+/* The table itself, line by line. */
+const char *settings_key(int i); /* "section.key"; NULL behind the last */
+const char *
+settings_words(int i);          /* "a|b|c": of a choice all it may be, of a path the names that are no file; or NULL */
+int settings_names_file(int i); /* a path or a list of them */
+unsigned settings_flags(int i); /* SettingFlags */
 
 /* Old key i and what it is called now; both NULL behind the last. Old keys are read for one release. */
 const char *settings_renamed(int i, const char **now);
