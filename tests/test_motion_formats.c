@@ -36,7 +36,7 @@ static const struct {
     {"film.csmip.v1", "csmip", "auto", 0, "360 Deg", 1e-3},
     {"one.smc", "smc", "auto", 0, "360", 1e-9},
     {"one.knet", "knet", "ns", 0, "N-S", 1e-5},
-    {"one.kiknet", "knet", "1", 1, "4", 1e-5},
+    {"one.kiknet", "knet", "1", 1, "EW2", 1e-5},
     {"one.esm", "esm", "HNE", 0, "HNE", 1e-9},
     {"three.v1a", "geonet", "N28W", 0, "N28W", 1e-9},
     {"three.v1a", "geonet", "3", 2, "Up", 1e-9},
@@ -438,9 +438,122 @@ static void test_five_thousand_mutants_are_read_or_refused(void **state)
     }
 }
 
+static void test_the_offset_of_a_recorder_is_subtracted_and_said(void **state)
+{
+    (void)state;
+    Motion m;
+    Err err;
+    CHECK_OK(motion_read(&m, "tests/motion/one.knet", &(MotionHow){0}, &err), &err);
+    double sum = 0;
+    for (size_t i = 0; i < m.n; i++)
+        sum += m.accel[i];
+    assert_true(fabs(sum) <= 1e-12 * (double)m.n);
+    assert_string_equal(m.processed, "mean of 3.248 cm_s2 subtracted"); /* 5123 counts of 3920/6182761 gal */
+    assert_string_equal(m.warning, "");
+    motion_free(&m);
+}
+
+/* The header's 123.4 gal written as another. */
+static Status read_with_peak(const char *stated, double error_max, Motion *m, Err *err)
+{
+    Text t = changed(read_specimen("one.knet"), "123.400", stated, 0);
+    const Status status = motion_parse(m, "one.knet", t.text, t.length, &(MotionHow){.peak_error_max = error_max}, err);
+    free(t.text);
+    return status;
+}
+
+static void test_a_peak_that_misses_the_header_is_warned_about_above_1_percent_and_refused_above_5(void **state)
+{
+    (void)state;
+    Motion m;
+    Err err;
+    CHECK_OK(read_with_peak("124.400", 0, &m, &err), &err); /* 0.8 % */
+    assert_string_equal(m.warning, "");
+    motion_free(&m);
+    CHECK_OK(read_with_peak("126.000", 0, &m, &err), &err); /* 2 % */
+    assert_string_equal(m.warning, "its samples peak at 123.4 cm_s2, its header says 126");
+    motion_free(&m);
+    assert_int_equal(read_with_peak("132.000", 0, &m, &err), STATUS_BAD_DATA); /* 6.5 % */
+    assert_non_null(strstr(err.text, "peak at 123.4 cm_s2, its header says 132; motion.peak_error_max"));
+    CHECK_OK(read_with_peak("132.000", 0.07, &m, &err), &err);
+    assert_string_equal(m.warning, "its samples peak at 123.4 cm_s2, its header says 132");
+    motion_free(&m);
+}
+
 static Status parse_text(Motion *m, const char *text, Err *err)
 {
     return motion_parse(m, "there", text, strlen(text), &(MotionHow){0}, err);
+}
+
+/* Rows of `width` values a_k = sin k [m/s2] below a first line. */
+static Text rows_of(const char *first, int rows, int width)
+{
+    Text t = {NULL, 0};
+    FILE *f = open_memstream(&t.text, &t.length);
+    assert_non_null(f);
+    fputs(first, f);
+    for (int k = 0; k < rows * width; k++)
+        fprintf(f, "%.12f%c", sin(k), (k + 1) % width ? ' ' : '\n');
+    fclose(f);
+    return t;
+}
+
+static void test_columns_without_names_are_asked_about_and_joined_only_where_a_count_fits(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *first, *channel, *says; /* says: of the refusal */
+        size_t n;
+        double second; /* sample 1 */
+    } CASES[] = {
+        {"# m/s2, dt=0.01\n", NULL, ":2: has 20 rows of 4 columns without names: choose one", 0, 0},
+        {"# m/s2, dt=0.01\n", "3", NULL, 20, 6},
+        {"# m/s2, dt=0.01, npts=80\n", NULL, NULL, 80, 1},
+        {"# m/s2, dt=0.01, npts=79\n", NULL, "columns without names", 0, 0},
+        {"# m/s2\n", NULL, ":2: has 4 columns without names, and the first holds no times; set motion.dt_s", 0, 0},
+        {"! m/s2\n80 0.01\n", NULL, NULL, 80, 1},
+    };
+    for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
+        Motion m;
+        Err err = {0};
+        Text t = rows_of(CASES[i].first, 20, 4);
+        const Status s = motion_parse(&m, "rows", t.text, t.length, &(MotionHow){.channel = CASES[i].channel}, &err);
+        if (CASES[i].says) {
+            assert_int_equal(s, STATUS_BAD_DATA);
+            if (!strstr(err.text, CASES[i].says))
+                fail_msg("'%s' should be in '%s'", CASES[i].says, err.text);
+        } else {
+            CHECK_OK(s, &err);
+            assert_int_equal(m.n, CASES[i].n);
+            assert_close(m.dt_s, 0.01, 1e-15);
+            assert_close(m.accel[1], sin(CASES[i].second), 1e-10);
+        }
+        motion_free(&m);
+        free(t.text);
+    }
+}
+
+static void test_a_first_row_of_number_and_step_is_no_sample(void **state)
+{
+    (void)state;
+    for (int width = 1; width <= 2; width++) {
+        Motion m;
+        Err err;
+        Text t = {NULL, 0};
+        FILE *f = open_memstream(&t.text, &t.length);
+        assert_non_null(f);
+        fputs("A record of somewhere\n30 0.02\n", f);
+        for (int k = 0; k < 30; k++)
+            width == 1 ? fprintf(f, "%.12f\n", sin(k)) : fprintf(f, "%.2f %.12f\n", 0.02 * k, sin(k));
+        fclose(f);
+        CHECK_OK(motion_parse(&m, "there", t.text, t.length, &(MotionHow){.unit = UNIT_M_S2}, &err), &err);
+        assert_int_equal(m.n, 30);
+        assert_close(m.dt_s, 0.02, 1e-12);
+        assert_close(m.accel[29], sin(29), 1e-10);
+        assert_true(motion_peak(&m) <= 1);
+        motion_free(&m);
+        free(t.text);
+    }
 }
 
 static void test_quoted_cells_are_read(void **state)
@@ -476,6 +589,10 @@ static void test_units_in_other_words_are_taken_or_named(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_the_offset_of_a_recorder_is_subtracted_and_said),
+        cmocka_unit_test(test_a_peak_that_misses_the_header_is_warned_about_above_1_percent_and_refused_above_5),
+        cmocka_unit_test(test_columns_without_names_are_asked_about_and_joined_only_where_a_count_fits),
+        cmocka_unit_test(test_a_first_row_of_number_and_step_is_no_sample),
         cmocka_unit_test(test_quoted_cells_are_read),
         cmocka_unit_test(test_units_in_other_words_are_taken_or_named),
         cmocka_unit_test(test_a_specimen_of_every_format_is_read_to_its_step_length_and_peak),

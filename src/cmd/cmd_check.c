@@ -148,6 +148,8 @@ static int summarise(Check *c, CheckedScene *p)
     if (!note(c, status, "core", &e))
         return 0;
     scene_warnings(&p->summary, &p->s->building, &p->s->core, &p->s->design, &p->motion, warn, c);
+    if (p->motion.warning[0])
+        warn("motion.record", p->motion.warning, c);
     if (p->s->sim.duration_s > duration(&p->motion)) {
         char text[100];
         snprintf(text, sizeof text, "%g s is longer than the motion; the run ends with the motion",

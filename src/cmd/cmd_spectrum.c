@@ -49,6 +49,8 @@ static Status print_json(const Spectrum *s, const Motion *m, Err *err)
     json_object_set_new(o, "motion", json_string(m->name));
     json_object_set_new(o, "format", json_string(m->format));
     json_object_set_new(o, "channel", json_string(m->channel));
+    json_object_set_new(o, "processed", json_string(m->processed));
+    json_object_set_new(o, "warning", json_string(m->warning));
     json_object_set_new(o, "samples", json_integer((json_int_t)m->n));
     json_object_set_new(o, "step_s", json_number(m->dt_s));
     json_object_set_new(o, "duration_s", json_number(f->duration_s));
@@ -143,7 +145,13 @@ static void write_script(FILE *script, const void *user)
 static void print_table(const Spectrum *s, const Motion *m)
 {
     const MotionFigures *f = &s->figures;
-    printf("%s: %zu samples every %g s\n\n", m->name, m->n, m->dt_s);
+    printf("%s: %zu samples every %g s, format %s%s%s\n", m->name, m->n, m->dt_s, m->format,
+           m->channel[0] ? ", channel " : "", m->channel);
+    if (m->processed[0])
+        printf("processed %s\n", m->processed);
+    if (m->warning[0])
+        printf("warning   %s\n", m->warning);
+    putchar('\n');
     printf("pga       %8.4f g   (%.4f m/s2)\npgv       %8.4f m/s\npgd       %8.4f m\n", f->pga_m_s2 / GRAVITY,
            f->pga_m_s2, f->pgv_m_s, f->pgd_m);
     printf("duration  %8.2f s   (5 to 95 %% of Arias: %.2f s)\narias     %8.4f m/s\ncav       %8.4f m/s\n\n",

@@ -21,7 +21,9 @@ typedef struct {
     double scale, stretch; /* what motion_prepare multiplied the record and its time by; 0: as recorded */
     char name[128];        /* as given by the user: a path or builtin:NAME */
     char format[32];       /* what the reader took it for: "csv", "at2", ..., "builtin" */
-    char channel[32];      /* its name in the file; empty where it has none */
+    char channel[64];      /* its name in the file; empty where it has none */
+    char processed[80];    /* what was done to the samples of the file; empty: nothing */
+    char warning[160];     /* what does not fit in the file; empty: nothing */
     uint64_t file_hash;    /* FNV-1a of the file's bytes, or of the generated samples */
 } Motion;
 

@@ -52,13 +52,21 @@ static int is_acceleration(const Channel *c)
     return strncasecmp(c->name, "vel", 3) != 0 && strncasecmp(c->name, "dis", 3) != 0;
 }
 
-/* "1 'NS', 2 'EW'" */
-static void list_channels(const Record *r, char list[240])
+enum { LIST_MAX = 360 }; /* of the 480 bytes of Err */
+
+/* "1 'NS', 2 'EW'"; names are shortened where there are too many for a message. */
+static void list_channels(const Record *r, char list[LIST_MAX])
 {
+    const size_t n = r->n_channels, each = n ? (LIST_MAX - 16) / n : 0;
+    const int shown = each > 8 + CHANNEL_NAME_MAX ? CHANNEL_NAME_MAX : each > 14 ? (int)each - 8 : 6;
     size_t used = 0;
     list[0] = 0;
-    for (size_t i = 0; i < r->n_channels && used + CHANNEL_NAME_MAX + 16 < 240; i++)
-        used += (size_t)snprintf(list + used, 240 - used, "%s%zu '%s'", i ? ", " : "", i + 1, r->channel[i].name);
+    for (size_t i = 0; i < n && used + (size_t)shown + 24 < LIST_MAX; i++) {
+        used += (size_t)snprintf(list + used, LIST_MAX - used, "%s%zu '%.*s'", i ? ", " : "", i + 1, shown,
+                                 r->channel[i].name);
+        if (i + 1 < n && used + (size_t)shown + 24 >= LIST_MAX)
+            snprintf(list + used, LIST_MAX - used, ", ... %zu", n);
+    }
 }
 
 /* Letters and digits only, in small letters, so that N-S is NS and "360 Deg" is 360deg. */
@@ -123,7 +131,7 @@ static const Channel *named_or_numbered(const Record *r, const char *wanted)
 
 static Status choose_channel(const Record *r, const char *path, const char *wanted, const Channel **out, Err *err)
 {
-    char list[240];
+    char list[LIST_MAX];
     const int automatic = !wanted || strcmp(wanted, "auto") == 0;
     *out = automatic ? only_acceleration(r) : named_or_numbered(r, wanted);
     list_channels(r, list);
@@ -236,6 +244,37 @@ static Status check_peak(const Series *s, double to_m_s2, MotionUnit unit, doubl
     return STATUS_OK;
 }
 
+/* The mean of the samples [unit of the file]; 0 where the channel keeps its own. */
+static double offset_of(const Channel *c, const Series *s)
+{
+    double sum = 0;
+    for (size_t i = 0; c->subtract_mean && i < s->n; i++)
+        sum += row_at(s, i)->a;
+    return sum / (double)s->n;
+}
+
+/* The peak of the samples against the one that the header states. */
+static Status check_stated_peak(Motion *m, const Channel *c, const Series *s, double offset, MotionUnit unit,
+                                const MotionHow *how, Err *err)
+{
+    const double allowed = how->peak_error_max > 0 ? how->peak_error_max : PEAK_ERROR_MAX;
+    double peak = 0;
+    if (!(c->peak > 0))
+        return STATUS_OK;
+    for (size_t i = 0; i < s->n; i++)
+        peak = fmax(peak, c->scale * fabs(row_at(s, i)->a - offset));
+    const double error = fabs(peak - c->peak) / c->peak;
+    if (error > allowed)
+        return fail(err, STATUS_BAD_DATA,
+                    "%s: its samples peak at %.5g %s, its header says %.5g; motion.peak_error_max = %.2g would accept "
+                    "it (now %g)",
+                    s->path, peak, UNIT_NAMES[unit], c->peak, 1.1 * error, allowed);
+    if (error > 0.2 * PEAK_ERROR_MAX)
+        snprintf(m->warning, sizeof m->warning, "its samples peak at %.5g %s, its header says %.5g", peak,
+                 UNIT_NAMES[unit], c->peak);
+    return STATUS_OK;
+}
+
 static Status allocate(Motion *m, const char *path, size_t n, double dt, Err *err)
 {
     m->accel = malloc(n * sizeof *m->accel);
@@ -248,7 +287,7 @@ static Status allocate(Motion *m, const char *path, size_t n, double dt, Err *er
 
 /* Straight lines between the samples, at begin + k dt up to the end. A step so short that it would multiply the file
  * many times is a mistake. */
-static Status resample(Motion *m, const Series *s, double dt, double to_m_s2, Err *err)
+static Status resample(Motion *m, const Series *s, double dt, double to_m_s2, double offset, Err *err)
 {
     const double begin = row_at(s, 0)->t, span = row_at(s, s->n - 1)->t - begin, most = 1e6 + 16 * (double)s->n;
     const double n = floor(span / dt * (1 + 1e-12)) + 1;
@@ -261,7 +300,7 @@ static Status resample(Motion *m, const Series *s, double dt, double to_m_s2, Er
         while (i + 2 < s->n && row_at(s, i + 1)->t <= t)
             i++;
         const Row *a = row_at(s, i), *b = row_at(s, i + 1);
-        m->accel[k] = to_m_s2 * (a->a + (b->a - a->a) * fmin((t - a->t) / (b->t - a->t), 1));
+        m->accel[k] = to_m_s2 * (a->a - offset + (b->a - a->a) * fmin((t - a->t) / (b->t - a->t), 1));
     }
     return STATUS_OK;
 }
@@ -292,11 +331,15 @@ static Status take_samples(Motion *m, const char *path, const Record *r, const C
     TRY(settle_unit(path, c->units, &unit, err));
     const double to_m_s2 = c->scale * (unit == UNIT_M_S2 ? 1.0 : unit == UNIT_CM_S2 ? 0.01 : GRAVITY);
     TRY(check_peak(&s, to_m_s2, unit, c->scale, err));
+    const double offset = offset_of(c, &s);
+    TRY(check_stated_peak(m, c, &s, offset, unit, how, err));
+    if (c->subtract_mean)
+        snprintf(m->processed, sizeof m->processed, "mean of %.4g %s subtracted", c->scale * offset, UNIT_NAMES[unit]);
     if (status != STATUS_OK)
-        return resample(m, &s, how->resample_dt_s, to_m_s2, err);
+        return resample(m, &s, how->resample_dt_s, to_m_s2, offset, err);
     TRY(allocate(m, path, c->n, dt, err));
     for (size_t i = 0; i < m->n; i++)
-        m->accel[i] = to_m_s2 * row_at(&s, i)->a;
+        m->accel[i] = to_m_s2 * (row_at(&s, i)->a - offset);
     return STATUS_OK;
 }
 
@@ -326,7 +369,8 @@ static const MotionFormat *recognise(Lines l)
 static Status read_format(Motion *m, Record *r, Lines *l, const MotionHow *how, Err *err)
 {
     const MotionFormat *format = recognise(*l);
-    const ReadHints hints = {.dt_s = how->dt_s};
+    const int chosen = how->channel && strcmp(how->channel, "auto") != 0;
+    const ReadHints hints = {.dt_s = how->dt_s, .channel = chosen ? how->channel : NULL};
     const Channel *c = NULL;
     TRY(format->read(r, l, &hints, err));
     TRY(choose_channel(r, l->path, how->channel, &c, err));

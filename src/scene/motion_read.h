@@ -21,8 +21,11 @@ typedef struct {
     MotionUnit unit;     /* of the acceleration; must not contradict the file */
     const char *channel; /* name or number (from 1) of the one that is wanted; NULL or "auto": there must be only one */
     double dt_s;         /* step of a file that has neither step nor times; 0: such a file is refused */
-    double resample_dt_s; /* unequal times are resampled to this step by straight lines; 0: they are refused */
+    double resample_dt_s;  /* unequal times are resampled to this step by straight lines; 0: they are refused */
+    double peak_error_max; /* share by which the samples' peak may miss the header's; 0: PEAK_ERROR_MAX */
 } MotionHow;
+
+#define PEAK_ERROR_MAX 0.05 /* above: the file is refused; above a fifth of it: Motion.warning */
 
 Status motion_read(Motion *m, const char *path, const MotionHow *how, Err *err);
 

@@ -24,6 +24,10 @@ Status motion_load(Motion *m, const char *source, MotionUnit unit, Err *err)
 
 Status motion_open(Motion *m, const MotionOptions *o, Err *err)
 {
-    const MotionHow how = {.unit = o->unit, .channel = o->channel, .dt_s = o->dt_s, .resample_dt_s = o->resample_dt_s};
+    const MotionHow how = {.unit = o->unit,
+                           .channel = o->channel,
+                           .dt_s = o->dt_s,
+                           .resample_dt_s = o->resample_dt_s,
+                           .peak_error_max = o->peak_error_max};
     return load(m, o->record, &how, err);
 }

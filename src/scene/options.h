@@ -41,6 +41,7 @@ typedef struct {
     MotionUnit unit;
     char channel[OPTION_TEXT_MAX]; /* name, number or auto */
     double dt_s, resample_dt_s;    /* 0: from the file; 0: never */
+    double peak_error_max;         /* [-] by which the samples may miss the peak that their header states */
 } MotionOptions;
 
 typedef struct {

@@ -115,6 +115,8 @@ static const Option OPTIONS[] = {
     REAL(motion.dt_s, "s", "0", 0, 100, "time step of a file that has neither step nor times; 0: as in the file"),
     REAL(motion.resample_dt_s, "s", "0", 0, 100,
          "times that are not equidistant are resampled to this step by linear interpolation; 0: refused"),
+    REAL(motion.peak_error_max, "-", "0.05", 1e-6, 1e6,
+         "a record whose samples miss the peak of their header by a larger share is refused"),
 
     CHOICE(sim.engine, Engine, ENGINE_WORDS, "fast",
            "integrator: fast, or cvode (SUNDIALS, another method, slower) for a cross-check"),

@@ -108,12 +108,12 @@ static char *hex(uint64_t hash, char text[24])
 static json_t *inputs_of_tower(const World *w, const Inputs *hashes)
 {
     char record[24], records[24], matrices[24];
-    return json_pack("{s:s, s:s, s:s, s:s, s:s, s:s, s:I, s:f, s:s, s:i, s:s}", "record", w->record.record,
-                     "record_format", w->motion.format, "record_channel", w->motion.channel, "record_fnv1a",
-                     hex(hashes->record, record), "records", w->record.records, "records_fnv1a",
-                     hex(hashes->records, records), "samples", (json_int_t)w->motion.n, "step_s", w->motion.dt_s,
-                     "building", w->options.building.model, "floors", scene_n_floors(w->scene), "matrices_fnv1a",
-                     hex(hashes->matrices, matrices));
+    return json_pack("{s:s, s:s, s:s, s:s, s:s, s:s, s:s, s:I, s:f, s:s, s:i, s:s}", "record", w->record.record,
+                     "record_format", w->motion.format, "record_channel", w->motion.channel, "record_processed",
+                     w->motion.processed, "record_fnv1a", hex(hashes->record, record), "records", w->record.records,
+                     "records_fnv1a", hex(hashes->records, records), "samples", (json_int_t)w->motion.n, "step_s",
+                     w->motion.dt_s, "building", w->options.building.model, "floors", scene_n_floors(w->scene),
+                     "matrices_fnv1a", hex(hashes->matrices, matrices));
 }
 
 static json_t *inputs(const Settings *s, const World *w, const Inputs *hashes)

@@ -16,7 +16,7 @@ static int is_title(const Lines *l)
 /* Below a title the step may be missing: that is a fault of this format, not another format. */
 static int is_npts_line(const Lines *l, int has_title)
 {
-    return l->from < l->to && *l->from != '#' && line_has(l, "NPTS") && (has_title || line_has(l, "DT"));
+    return l->from < l->to && !strchr("#%!/", *l->from) && line_has(l, "NPTS") && (has_title || line_has(l, "DT"));
 }
 
 static int recognise(Lines l)

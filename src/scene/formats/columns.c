@@ -1,12 +1,13 @@
 /* Plain text: one, two or many columns of numbers, parted by blanks, tabs, commas or semicolons.
  *
- *   comments  begin with # % ! or //; they may tell the unit (m/s2, cm/s2, gal, g in the usual spellings) and the step
- *             ("dt = 0.01", "sampling rate: 100")
+ *   comments  begin with # % ! or //; they may tell the unit (m/s2, cm/s2, gal, g in the usual spellings), the step
+ *             ("dt = 0.01", "sampling rate: 100") and the number of samples ("npts = 4000")
  *   names     lines of words above the numbers; the last of them names the columns, a unit there wins
- *   times     the first column, unless there is only one, or the names or the numbers say that it is none; then the
- * step must be known, and numbers without names are read line by line as one long column 1,5;2,5   with semicolons and
- * no points the comma is a decimal one
- */
+ *   npts dt   two numbers alone in the first row, where the first is the number of samples or rows that follow
+ *   times     the first column, unless there is only one, or the names or the numbers say that it is none; then the step
+ *             must be known
+ *   rows      numbers without names are read row by row as one long column where their number is the one that is stated
+ *   1,5;2,5   with semicolons and no points the comma is a decimal one */
 #include "scene/formats/columns.h"
 
 #include <ctype.h>
@@ -69,6 +70,22 @@ Status columns_check(const Columns *columns, const Lines *l, Err *err)
     return STATUS_OK;
 }
 
+/* Width, rows and odd line of the rows that r holds. */
+static void recount(Columns *columns, const Record *r)
+{
+    *columns = (Columns){0};
+    for (size_t i = 0, n; i < r->n; i += n, columns->n_rows++) {
+        for (n = 1; i + n < r->n && r->row[i + n].line == r->row[i].line; n++)
+            ;
+        if (columns->n_rows == 0)
+            columns->width = n;
+        if (n != columns->width && !columns->odd_line) {
+            columns->odd_line = r->row[i].line;
+            columns->odd_width = n;
+        }
+    }
+}
+
 int column_name(const Lines *l, const char **p, const char **from, const char **to)
 {
     int marked = 0;
@@ -90,7 +107,8 @@ int column_name(const Lines *l, const char **p, const char **from, const char **
 
 typedef struct {
     unsigned in_comments; /* units */
-    double dt;            /* [s] 0: not told */
+    double dt;            /* [s] 0: not stated */
+    double count;         /* of samples; 0: not stated */
     Lines names;          /* from == NULL: no such line */
 } Preface;
 
@@ -111,7 +129,7 @@ static int is_words(const Lines *l)
 }
 
 /* x of "word ... = x" or "word ... : x" */
-static int told(const Lines *l, const char *word, double *x)
+static int stated(const Lines *l, const char *word, double *x)
 {
     for (const char *at = l->from; (at = find_word(at, l->to, word)); at++) {
         if (at > l->from && isalnum((unsigned char)at[-1]))
@@ -125,18 +143,28 @@ static int told(const Lines *l, const char *word, double *x)
     return 0;
 }
 
-static void take_comment(const Lines *l, Preface *preface)
+/* Step and number of samples. */
+static void take_numbers(const Lines *l, Preface *preface)
 {
     static const char *const steps[] = {"dt", "time step", "step"};
     static const char *const rates[] = {"sampling rate", "sampling frequency", "samples per second"};
+    static const char *const counts[] = {"npts", "number of points", "number of samples", "number of data"};
     double x;
-    preface->in_comments |= units_named(l->from, l->to);
     for (size_t i = 0; i < sizeof steps / sizeof *steps; i++)
-        if (preface->dt == 0 && told(l, steps[i], &x))
+        if (preface->dt == 0 && stated(l, steps[i], &x))
             preface->dt = x;
     for (size_t i = 0; i < sizeof rates / sizeof *rates; i++)
-        if (preface->dt == 0 && told(l, rates[i], &x))
+        if (preface->dt == 0 && stated(l, rates[i], &x))
             preface->dt = 1 / x;
+    for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
+        if (preface->count == 0 && stated(l, counts[i], &x))
+            preface->count = x;
+}
+
+static void take_comment(const Lines *l, Preface *preface)
+{
+    preface->in_comments |= units_named(l->from, l->to);
+    take_numbers(l, preface);
 }
 
 static Status read_rows(Record *r, Lines *l, Preface *preface, Columns *columns, Err *err)
@@ -206,6 +234,32 @@ static int times_increase(const Record *r, const Columns *columns)
     return !columns->odd_line;
 }
 
+/* Rising at three steps of four at least: times, perhaps with a mistake, and no acceleration. */
+static int looks_like_times(const Record *r, const Columns *columns)
+{
+    size_t steps = 0, rises = 0;
+    for (size_t i = columns->width; i < r->n; i += columns->width, steps++)
+        rises += r->row[i].a > r->row[i - columns->width].a;
+    return 4 * rises >= 3 * steps;
+}
+
+/* The first row is "npts dt" where two numbers stand alone in it and the first counts the samples, or the rows, that
+ * follow; its rows are then the others. */
+static void take_counted_pair(Record *r, Columns *columns, Preface *preface)
+{
+    if (columns->width != 2 || r->n < 4)
+        return;
+    const double count = r->row[0].a, dt = r->row[1].a;
+    const size_t n = r->n - 2, rows = columns->n_rows - 1;
+    if (!(dt > 0 && dt <= MOTION_STEP_MAX_S) || (count != (double)n && count != (double)rows))
+        return;
+    memmove(r->row, r->row + 2, n * sizeof *r->row);
+    r->n = n;
+    recount(columns, r);
+    preface->dt = dt;
+    preface->count = count;
+}
+
 static void set_times(Record *r, size_t width)
 {
     for (size_t i = 0; i < r->n; i++) {
@@ -255,25 +309,49 @@ static int recognise(Lines l)
     return 1;
 }
 
+/* What numbers without names are, when their first column holds no times. */
+static Status fail_unnamed(const Record *r, const Lines *l, const Columns *columns, const Preface *preface, Err *err)
+{
+    if (columns->odd_line)
+        return columns_check(columns, l, err);
+    if (!(preface->dt > 0))
+        return fail(err, STATUS_BAD_DATA,
+                    "%s:%d: has %zu columns without names, and the first holds no times; set motion.dt_s (--set "
+                    "motion.dt_s=0.01)",
+                    l->path, r->row[0].line, columns->width);
+    return fail(err, STATUS_BAD_DATA,
+                "%s:%d: has %zu rows of %zu columns without names: choose one by motion.channel (--channel 1 to %zu); "
+                "if they are one motion written row by row, put '# npts = %zu' above them",
+                l->path, r->row[0].line, columns->n_rows, columns->width, columns->width, r->n);
+}
+
 static Status read(Record *r, Lines *l, const ReadHints *hints, Err *err)
 {
     Preface preface = {0};
     Columns columns = {0};
     TRY(read_rows(r, l, &preface, &columns, err));
+    take_counted_pair(r, &columns, &preface);
+    if (preface.names.from && count_names(&preface.names) != columns.width)
+        take_numbers(&preface.names, &preface);
     if (columns.n_rows < 2 && columns.width < 3)
         return fail(err, STATUS_BAD_DATA, "%s: holds %zu sample%s; at least two are needed", l->path, columns.n_rows,
                     columns.n_rows == 1 ? "" : "s");
     preface.dt = preface.dt > 0 ? preface.dt : hints->dt_s;
     const int named = count_names(&preface.names) == columns.width;
     const unsigned units = preface.names.from ? units_named(preface.names.from, preface.names.to) : 0;
-    int timeless = columns.width == 1 || (named && preface.dt > 0 && !names_times(&preface.names));
-    const int wrapped = columns.width > 1 && !named && preface.dt > 0 && !times_increase(r, &columns);
+    const int known = named && names_times(&preface.names);
+    int timeless = columns.width == 1 || (named && preface.dt > 0 && !known);
     if (columns.width == 1 && !(preface.dt > 0))
         return fail(err, STATUS_BAD_DATA,
                     "%s:%d: has one column and does not say its step; set motion.dt_s, or give times beside it",
                     l->path, r->row[0].line);
-    if (wrapped)
+    if (columns.width > 1 && !named && preface.dt > 0 && preface.count == (double)r->n)
         return one_long_column(r, l, &preface, units ? units : preface.in_comments, err);
+    if (columns.width > 1 && !named && !times_increase(r, &columns)) {
+        timeless = preface.dt > 0 || !looks_like_times(r, &columns);
+        if (columns.odd_line || (timeless && (!(preface.dt > 0) || !hints->channel)))
+            return fail_unnamed(r, l, &columns, &preface, err);
+    }
     TRY(columns_check(&columns, l, err));
     if (!timeless) {
         if (named)

@@ -1,16 +1,18 @@
 /* K-NET and KiK-net, one component per file (NIED, https://www.kyoshin.bosai.go.jp): 17 lines "key  value", of which
  *
  *   Sampling Freq(Hz) 100Hz      Duration Time(s) 300      Dir. N-S      Scale Factor 3920(gal)/6182761
+ *   Max. Acc. (gal)   123.4
  *
  * and the last is "Memo.", then counts, eight to a line. A count times the scale factor is in gal; its zero is the
- * recorder's, not the ground's. */
+ * recorder's, so the mean is subtracted, as NIED does for its Max. Acc. KiK-net numbers its directions: 1 to 3 are NS,
+ * EW, UD in the borehole, 4 to 6 the same at the surface. */
 #include <math.h>
 #include <string.h>
 
 #include "scene/formats/record.h"
 
 typedef struct {
-    Lines frequency, duration, direction, factor;
+    Lines frequency, duration, direction, factor, peak;
 } Header;
 
 static int recognise(Lines l)
@@ -29,6 +31,8 @@ static Status read_header(Lines *l, Header *h, Err *err)
             h->direction = *l;
         else if (line_begins(l, "Scale Factor"))
             h->factor = *l;
+        else if (line_begins(l, "Max. Acc"))
+            h->peak = *l;
         else if (line_begins(l, "Memo"))
             return STATUS_OK;
     }
@@ -42,6 +46,14 @@ static double scale_factor(const Lines *l)
     const char *slash = memchr(l->from, '/', (size_t)(l->to - l->from));
     const int ok = slash && number_behind(l->from, slash, "Factor", &gal) && number_behind(slash, l->to, "/", &counts);
     return ok && find_word(l->from, slash, "gal") ? gal / counts : NAN;
+}
+
+static void name_direction(Channel *c, const Lines *l)
+{
+    static const char *const KIKNET[] = {"NS1", "EW1", "UD1", "NS2", "EW2", "UD2"};
+    channel_name(c, l->from + strlen("Dir."), l->to);
+    if (c->name[0] >= '1' && c->name[0] <= '6' && !c->name[1])
+        channel_name(c, KIKNET[c->name[0] - '1'], KIKNET[c->name[0] - '1'] + 3);
 }
 
 static Status read(Record *r, Lines *l, const ReadHints *hints, Err *err)
@@ -60,7 +72,10 @@ static Status read(Record *r, Lines *l, const ReadHints *hints, Err *err)
     number_behind(h.frequency.from, h.frequency.to, "(Hz)", &hertz);
     number_behind(h.duration.from, h.duration.to, "(s)", &seconds);
     TRY(record_channel(r, l, &c, err));
-    channel_name(c, h.direction.from + strlen("Dir."), h.direction.to);
+    name_direction(c, &h.direction);
+    c->subtract_mean = 1;
+    if (h.peak.from)
+        number_behind(h.peak.from, h.peak.to, "(gal)", &c->peak);
     c->units = 1u << UNIT_CM_S2;
     c->scale = scale_factor(&h.factor);
     if (!(c->scale > 0 && isfinite(c->scale)))

@@ -10,7 +10,7 @@
 
 #define MOTION_STEP_MAX_S 1.0 /* accelerographs take 50 samples a second or more: a longer step is a mistake */
 
-enum { CHANNELS_MAX = 128, CHANNEL_NAME_MAX = 32 };
+enum { CHANNELS_MAX = 128, CHANNEL_NAME_MAX = 64 };
 
 typedef struct {
     double t, a;  /* [s] where the file has times, [unit of the file] */
@@ -22,7 +22,9 @@ typedef struct {
     char name[CHANNEL_NAME_MAX]; /* as in the file; may be empty */
     unsigned units;              /* that the file names, one bit (1 << MotionUnit) each */
     double scale;
-    double dt; /* [s] 0: the rows have times */
+    double dt;         /* [s] 0: the rows have times */
+    double peak;       /* [unit] largest |acceleration| that the header states; 0: it states none */
+    int subtract_mean; /* the agency's own peak is that of the record without its mean */
     size_t first, stride, n;
 } Channel;
 
@@ -34,7 +36,8 @@ typedef struct {
 } Record;
 
 typedef struct {
-    double dt_s; /* of a file that has neither times nor a step; 0: none was given */
+    double dt_s;         /* of a file that has neither times nor a step; 0: none was given */
+    const char *channel; /* the one that is wanted; NULL: none was named */
 } ReadHints;
 
 /* One way in which people have ground motions. */
