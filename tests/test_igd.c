@@ -2,7 +2,7 @@
 #include "runs.h"
 
 #include "base/random.h"
-#include "moga/cover.h"
+#include "moga/hypervolume.h"
 #include "study/advance.h"
 
 enum { M = 3, N = 300, REF = 150 };
@@ -126,7 +126,7 @@ static void test_the_advance_of_a_run_is_that_of_its_designs(void **state)
     const json_t *first = json_array_get(json_object_get(o, "generations"), 0);
     assert_close(number(first, "igd_plus"), igd[0], 1e-12);
     const double share = number(first, "hypervolume");
-    assert_close(number(first, "hypervolume_error"), sqrt(share * (1.0 - share) / COVER_SAMPLES), 1e-12);
+    assert_close(number(first, "hypervolume_error"), sqrt(share * (1.0 - share) / HYPERVOLUME_SAMPLES), 1e-12);
     json_decref(o);
 
     char *log = read_in_place("run/log.jsonl");
@@ -165,7 +165,7 @@ static void test_the_late_advance_leaves_out_the_last_tenth(void **state)
                           .F = F,
                           .H = H,
                           .ok = ok,
-                          .answers = answers,
+                          .replicates = answers,
                           .on_front = on_front,
                           .n_front = 4};
     CHECK_OK(advance_lately(&v, &igd, &err), &err);

@@ -8,8 +8,8 @@
 #include "moga/dominance.h"
 #include "moga/search.h"
 #include "searches.h"
-#include "moga/spread.h"
-#include "moga/surface.h"
+#include "moga/noise.h"
+#include "moga/surrogate.h"
 #include "base/random.h"
 
 /* -- dominance ----------------------------------------------------------------------------------------------------- */
@@ -74,8 +74,8 @@ static void test_surely_is_a_strict_partial_order_whatever_the_errors(void **sta
 
 enum { DESIGNS = 400 };
 
-/* Two answers each about means from 1 to 5; what spread_fit makes of them. */
-static Spread fit_of(double deviation, double share)
+/* Two answers each about means from 1 to 5; what noise_fit makes of them. */
+static NoiseModel fit_of(double deviation, double share)
 {
     double mean[DESIGNS], S[DESIGNS];
     size_t rows[DESIGNS], answers[DESIGNS];
@@ -88,22 +88,22 @@ static Spread fit_of(double deviation, double share)
         mean[i] = 0.5 * (a + b);
         S[i] = 0.5 * (a - b) * (a - b);
     }
-    return spread_fit(DESIGNS, rows, answers, 1, 0, mean, S);
+    return noise_fit(DESIGNS, rows, answers, 1, 0, mean, S);
 }
 
 /* The estimate of a deviation from 400 repeats has a standard error of 1 / root(800) of it. */
 static void test_a_constant_deviation_and_a_share_of_the_value_are_told_apart(void **state)
 {
     (void)state;
-    const Spread constant = fit_of(0.1, 0.0), share = fit_of(0.0, 0.03), none = fit_of(0.0, 0.0);
-    assert_false(constant.is_share);
-    assert_close(constant.deviation, 0.1, 0.12);
-    assert_true(share.is_share);
-    assert_close(share.deviation, 0.03, 0.12);
-    assert_true(none.deviation == 0.0);
-    assert_true(spread_fit(0, NULL, NULL, 1, 0, NULL, NULL).deviation == 0.0);
-    assert_close(spread_variance(&share, 2.0, 0.0, 1), pow(2.0 * share.deviation, 2), 1e-12);
-    assert_close(spread_variance(&(Spread){0.2, 0}, 7.0, 0.06, 2), (0.04 + 0.06) / 2, 1e-12);
+    const NoiseModel constant = fit_of(0.1, 0.0), share = fit_of(0.0, 0.03), none = fit_of(0.0, 0.0);
+    assert_false(constant.is_relative);
+    assert_close(constant.sd, 0.1, 0.12);
+    assert_true(share.is_relative);
+    assert_close(share.sd, 0.03, 0.12);
+    assert_true(none.sd == 0.0);
+    assert_true(noise_fit(0, NULL, NULL, 1, 0, NULL, NULL).sd == 0.0);
+    assert_close(noise_variance(&share, 2.0, 0.0, 1), pow(2.0 * share.sd, 2), 1e-12);
+    assert_close(noise_variance(&(NoiseModel){0.2, 0}, 7.0, 0.06, 2), (0.04 + 0.06) / 2, 1e-12);
 }
 
 /* Truth 0, an answer with the error 1, a prediction that is off by tau: of both the mean weighted with 1/variance is
@@ -125,7 +125,7 @@ static void test_estimates_are_as_near_as_answer_and_prediction_allow(void **sta
             error[i] = 1.0;
             e[MANY - 1 - i] = answer[i] - taus[j] * random_normal(&r);
         }
-        spread_estimate(MANY, rows, e, 1, 0, answer, error, estimate);
+        noise_estimate(MANY, rows, e, 1, 0, answer, error, estimate);
         for (size_t i = 0; i < MANY; i++) {
             square += estimate[i] * estimate[i] / MANY;
             assert_true(fabs(estimate[i] - answer[i]) <= 1.0 + 1e-12);
@@ -141,9 +141,9 @@ static void test_what_has_no_error_is_taken_as_it_is(void **state)
     const size_t rows[] = {0, 1};
     const double mean[] = {1.0 / 3.0, 5.0}, e[] = {0.2, 0.0};
     double estimate[2];
-    spread_estimate(2, rows, e, 1, 0, mean, (const double[]){0.0, 0.0}, estimate);
+    noise_estimate(2, rows, e, 1, 0, mean, (const double[]){0.0, 0.0}, estimate);
     assert_memory_equal(estimate, mean, sizeof mean);
-    spread_estimate(2, rows, e, 1, 0, mean, (const double[]){0.0, 3.0}, estimate);
+    noise_estimate(2, rows, e, 1, 0, mean, (const double[]){0.0, 3.0}, estimate);
     assert_memory_equal(estimate, mean, sizeof mean);
 }
 
@@ -162,9 +162,9 @@ static void insert_noisy(Archive *a, uint32_t seed, int settle_often)
             f[k] = fmod(x * (double)(7 + 4 * k), 10.0) + 1.0 + 0.5 * random_normal(&r);
         CHECK_OK(archive_insert(a, 1, &x, f, &g, &(unsigned char){1}, 0, i, &err), &err);
         if (settle_often)
-            archive_settle(a);
+            archive_update_noise(a);
     }
-    archive_settle(a);
+    archive_update_noise(a);
 }
 
 static void test_a_design_has_the_mean_and_the_deviation_of_its_answers(void **state)
@@ -172,7 +172,7 @@ static void test_a_design_has_the_mean_and_the_deviation_of_its_answers(void **s
     (void)state;
     Archive a;
     insert_noisy(&a, 5, 0);
-    assert_int_equal(a.n_repeats, 60);
+    assert_int_equal(a.n_replicates, 60);
     assert_int_equal(a.n_usable, 60);
     for (size_t row = 0; row < 60; row++)
         for (size_t k = 0; k < M; k++) {
@@ -186,13 +186,13 @@ static void test_a_design_has_the_mean_and_the_deviation_of_its_answers(void **s
             for (size_t i = 0; i < a.n; i++)
                 if (a.X[i] == a.X[row])
                     S += pow(a.Y[i * M + k] - mean, 2.0);
-            assert_int_equal(a.answers[row], (size_t)n);
+            assert_int_equal(a.replicates[row], (size_t)n);
             assert_close(a.F[row * M + k], mean, 1e-12);
             assert_true(fabs(a.S[row * M + k] - S) < 1e-10);
-            const double variance = spread_variance(&a.spread[k], a.F[row * M + k], a.S[row * M + k], a.answers[row]);
+            const double variance = noise_variance(&a.noise[k], a.F[row * M + k], a.S[row * M + k], a.replicates[row]);
             assert_close(a.error[row * M + k], sqrt(variance / n), 1e-12);
         }
-    assert_close(a.spread[0].is_share ? 5.5 * a.spread[0].deviation : a.spread[0].deviation, 0.5, 0.5);
+    assert_close(a.noise[0].is_relative ? 5.5 * a.noise[0].sd : a.noise[0].sd, 0.5, 0.5);
     archive_free(&a);
 }
 
@@ -231,7 +231,7 @@ static void test_a_design_that_was_lucky_once_falls_out(void **state)
     CHECK_OK(archive_insert(&a, 2, X, F, NULL, (const unsigned char[]){1, 1}, 0, 0, &err), &err);
     assert_int_equal(a.n_front, 2);
     CHECK_OK(archive_insert(&a, 3, X + 2, F + 4, NULL, (const unsigned char[]){1, 1, 1}, 0, 1, &err), &err);
-    archive_settle(&a);
+    archive_update_noise(&a);
     assert_true(a.n_front == 1 && a.front[0] == 1 && !a.on_front[0]);
     archive_free(&a);
 }
@@ -245,7 +245,7 @@ static void test_a_design_with_an_answer_that_failed_is_no_longer_used(void **st
     CHECK_OK(archive_init(&a, 2, 1, 2, 0, &err), &err);
     CHECK_OK(archive_insert(&a, 2, X, F, NULL, (const unsigned char[]){1, 1}, 0, 0, &err), &err);
     CHECK_OK(archive_insert(&a, 1, X, F, NULL, (const unsigned char[]){0}, 0, 1, &err), &err);
-    archive_settle(&a);
+    archive_update_noise(&a);
     assert_true(!a.usable[0] && a.n_usable == 1 && a.n_failed == 1);
     assert_true(a.n_front == 1 && a.front[0] == 1);
     archive_free(&a);
@@ -302,7 +302,7 @@ static World world(double noise, int is_noisy)
     return w;
 }
 
-static SearchConfig config(uint32_t seed, double repeats, size_t answers_min)
+static SearchConfig config(uint32_t seed, double repeats, size_t replicates_min)
 {
     SearchConfig c = search_config(seed, 16, 24, 0.05);
     c.initial = 20;
@@ -310,8 +310,8 @@ static SearchConfig config(uint32_t seed, double repeats, size_t answers_min)
     c.max_evals = 200;
     c.surrogate = SURROGATE_OFF;
     c.repeats = repeats;
-    c.answers_min = answers_min;
-    c.answers_max = 4;
+    c.replicates_min = replicates_min;
+    c.replicates_max = 4;
     return c;
 }
 
@@ -319,7 +319,7 @@ typedef struct {
     size_t n, n_front, n_repeats;
     double X[ROWS_MAX * VAR], Y[ROWS_MAX * OBJ], F[ROWS_MAX * OBJ];
     unsigned char ok[ROWS_MAX], kind[ROWS_MAX], on_front[ROWS_MAX];
-    size_t answers[ROWS_MAX], generation[ROWS_MAX];
+    size_t replicates[ROWS_MAX], generation[ROWS_MAX];
     Moments moments;
 } Seen;
 
@@ -329,14 +329,14 @@ static int observe(const SearchView *v, void *user)
     assert_true(v->n <= ROWS_MAX && s->moments.n < GENERATIONS_MAX);
     s->n = v->n;
     s->n_front = v->n_front;
-    s->n_repeats = v->n_repeats;
+    s->n_repeats = v->n_replicates;
     memcpy(s->X, v->X, v->n * VAR * sizeof *v->X);
     memcpy(s->Y, v->Y, v->n * OBJ * sizeof *v->Y);
     memcpy(s->F, v->F, v->n * OBJ * sizeof *v->F);
     memcpy(s->ok, v->ok, v->n);
     memcpy(s->kind, v->kind, v->n);
     memcpy(s->on_front, v->on_front, v->n);
-    memcpy(s->answers, v->answers, v->n * sizeof *v->answers);
+    memcpy(s->replicates, v->replicates, v->n * sizeof *v->replicates);
     memcpy(s->generation, v->generation, v->n * sizeof *v->generation);
     moments_note(&s->moments, v);
     return 0;
@@ -373,8 +373,8 @@ static void test_repeats_are_simulations_of_the_budget_and_no_more_than_their_sh
     assert_int_equal(w.n_asked, 200);
     for (size_t i = 0; i < seen.n; i++) {
         repeats += seen.kind[i] == KIND_REPEAT;
-        most = seen.answers[i] > most ? seen.answers[i] : most;
-        assert_int_equal(seen.answers[i] == 0, seen.kind[i] == KIND_REPEAT);
+        most = seen.replicates[i] > most ? seen.replicates[i] : most;
+        assert_int_equal(seen.replicates[i] == 0, seen.kind[i] == KIND_REPEAT);
     }
     assert_true(repeats == seen.n_repeats && repeats == w.n_repeated);
     assert_int_equal(repeats, (size_t)(0.4 * (200 - 18 * VAR)));
@@ -405,7 +405,7 @@ static void test_what_is_reported_has_answers_enough(void **state)
     size_t n = 0;
     run(&w, &c, NULL, &seen);
     for (size_t i = 0; i < seen.n; i++) {
-        assert_true(!seen.on_front[i] || seen.answers[i] >= 2);
+        assert_true(!seen.on_front[i] || seen.replicates[i] >= 2);
         n += seen.on_front[i];
     }
     assert_true(n == seen.n_front && n >= 3);
@@ -477,7 +477,7 @@ static double square_off(const Archive *a, const double f[])
     double square = 0.0, wanted[OBJ];
     for (size_t row = 0; row < a->n; row++) {
         exact(a->X + row * VAR, wanted);
-        for (size_t k = 0; k < OBJ && a->answers[row] > 0; k++)
+        for (size_t k = 0; k < OBJ && a->replicates[row] > 0; k++)
             square += pow(f[row * OBJ + k] - wanted[k], 2.0);
     }
     return square;
@@ -492,7 +492,7 @@ static void test_estimates_of_a_surface_are_nearer_to_the_truth_than_means(void 
     size_t draws[ALL];
     unsigned char ok[ALL];
     Archive a;
-    Surface *surface;
+    Surrogate *surrogate;
     Infill *near;
     Directions directions;
     Err err = {0};
@@ -506,22 +506,22 @@ static void test_estimates_of_a_surface_are_nearer_to_the_truth_than_means(void 
     CHECK_OK(evaluate(ALL, X, draws, F, NULL, ok, &w, &err), &err);
     CHECK_OK(directions_spread(&directions, OBJ, 10, &err), &err);
     CHECK_OK(infill_create(&near, INFILL_PBI, 1, &directions, &err), &err);
-    CHECK_OK(surface_create(&surface, &w.problem, ALL, 1, &err), &err);
+    CHECK_OK(surrogate_create(&surrogate, &w.problem, ALL, 1, &err), &err);
     CHECK_OK(archive_init(&a, ALL, VAR, OBJ, 0, &err), &err);
     CHECK_OK(archive_insert(&a, FIRST, X, F, NULL, ok, 0, 0, &err), &err);
     infill_measure(near, a.n_front, a.front, a.F);
-    CHECK_OK(surface_fit(surface, &a, near, &err), &err);
-    surface_estimate(surface, &a);
+    CHECK_OK(surrogate_fit(surrogate, &a, near, &err), &err);
+    surrogate_estimate(surrogate, &a);
     assert_memory_equal(a.estimate, a.F, a.n * OBJ * sizeof *a.F);
     CHECK_OK(archive_insert(&a, ALL - FIRST, X + FIRST * VAR, F + FIRST * OBJ, NULL, ok, 0, 1, &err), &err);
-    archive_settle(&a);
-    CHECK_OK(surface_fit(surface, &a, near, &err), &err);
-    surface_estimate(surface, &a);
+    archive_update_noise(&a);
+    CHECK_OK(surrogate_fit(surrogate, &a, near, &err), &err);
+    surrogate_estimate(surrogate, &a);
     assert_true(square_off(&a, a.estimate) < 0.6 * square_off(&a, a.F));
-    archive_forget_estimates(&a);
+    archive_reset_estimates(&a);
     assert_memory_equal(a.estimate, a.F, a.n * OBJ * sizeof *a.F);
     archive_free(&a);
-    surface_free(surface);
+    surrogate_free(surrogate);
     infill_free(near);
     directions_free(&directions);
 }

@@ -133,10 +133,14 @@ static double volume(size_t n, size_t m, const double F[])
     double lower[OBJ_MAX] = {0}, reference[OBJ_MAX];
     for (size_t k = 0; k < m; k++)
         reference[k] = 1.5;
-    Hypervolume hv;
+    Hypervolume *h;
     Err err = {0};
-    CHECK_OK(hypervolume(n, m, F, lower, reference, 1, &hv, &err), &err);
-    return hv.volume;
+    CHECK_OK(hypervolume_create(&h, m, lower, reference, 1, &err), &err);
+    for (size_t i = 0; i < n; i++)
+        hypervolume_add(h, F + i * m);
+    const double share = hypervolume_share(h);
+    hypervolume_free(h);
+    return share * pow(1.5, (double)m);
 }
 
 static double volume_of_hypercube(const World *w, size_t n)
@@ -217,7 +221,7 @@ static double rays_where(double ray_gain, double pbi_gain)
 {
     const SearchConfig c = {.population = 248}; /* batches of 32 */
     Search s = {.config = &c, .ways.chance = {0.5, 0.5}};
-    s.ways.credit[INFILL_RAYS] = ray_gain / (ray_gain + pbi_gain);
+    s.ways.credit[INFILL_HYPERVOLUME] = ray_gain / (ray_gain + pbi_gain);
     s.ways.credit[INFILL_PBI] = pbi_gain / (ray_gain + pbi_gain);
     return guide_rays(&s);
 }

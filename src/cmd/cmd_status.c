@@ -4,7 +4,7 @@
 
 #include "cmd/commands.h"
 #include "cmd/show.h"
-#include "moga/cover.h"
+#include "moga/hypervolume.h"
 #include "store/run_read.h"
 #include "study/advance.h"
 #include "study/pace.h"
@@ -95,7 +95,7 @@ static void print_generations(const Run *saved, const double igd[])
                advance, worked);
     }
     printf("hypervolume: standard error %.4f at most; IGD+: how far from the last front, in its widths\n",
-           cover_error(0.5));
+           hypervolume_error(0.5));
 }
 
 static void print_failures(const Failures *f)
@@ -116,7 +116,7 @@ static json_t *json_generations(const Run *saved, const double igd[])
                                               (json_int_t)g->number, "simulated", (json_int_t)g->simulated, "failed",
                                               (json_int_t)g->failed, "front", (json_int_t)g->front, "hypervolume",
                                               json_number(g->hypervolume), "hypervolume_error",
-                                              json_number(cover_error(g->hypervolume)), "igd_plus", json_number(igd[i]),
+                                              json_number(hypervolume_error(g->hypervolume)), "igd_plus", json_number(igd[i]),
                                               "surrogate_error", json_number(g->surrogate_error), "seconds",
                                               json_number(g->seconds), "finished", g->finished));
     }

@@ -15,14 +15,14 @@ static void layout(Archive *a, Carve *c)
     a->G = carve(c, a->n_max * a->n_con, sizeof(double));
     a->estimate = carve(c, a->n_max * a->n_obj, sizeof(double));
     a->S = carve(c, a->n_max * a->n_obj, sizeof(double));
-    a->deviation = carve(c, a->n_max * a->n_obj, sizeof(double));
+    a->sd = carve(c, a->n_max * a->n_obj, sizeof(double));
     a->error = carve(c, a->n_max * a->n_obj, sizeof(double));
     a->violation = carve(c, a->n_max, sizeof(double));
     a->generation = carve(c, a->n_max, sizeof(size_t));
     a->front = carve(c, a->n_max, sizeof(size_t));
-    a->answers = carve(c, a->n_max, sizeof(size_t));
+    a->replicates = carve(c, a->n_max, sizeof(size_t));
     a->slot = carve(c, a->n_slots, sizeof(size_t));
-    a->spread = carve(c, a->n_obj, sizeof(Spread));
+    a->noise = carve(c, a->n_obj, sizeof(NoiseModel));
     a->ok = carve(c, a->n_max, 1);
     a->usable = carve(c, a->n_max, 1);
     a->kind = carve(c, a->n_max, 1);
@@ -45,7 +45,7 @@ static size_t slot_of(const Archive *a, const double x[])
 }
 
 /* Row of the first simulation of the row's design: its own, where it is the first. */
-static size_t remember(Archive *a, size_t row)
+static size_t design_of(Archive *a, size_t row)
 {
     size_t *slot = &a->slot[slot_of(a, a->X + row * a->n_var)];
     if (!*slot)
@@ -76,10 +76,10 @@ static Status resize(Archive *a, size_t n_max, Err *err)
         memcpy(a->G, old.G, old.n * a->n_con * sizeof *a->G);
         memcpy(a->estimate, old.estimate, old.n * a->n_obj * sizeof *a->estimate);
         memcpy(a->S, old.S, old.n * a->n_obj * sizeof *a->S);
-        memcpy(a->deviation, old.deviation, old.n * a->n_obj * sizeof *a->deviation);
+        memcpy(a->sd, old.sd, old.n * a->n_obj * sizeof *a->sd);
         memcpy(a->error, old.error, old.n * a->n_obj * sizeof *a->error);
-        memcpy(a->answers, old.answers, old.n * sizeof *a->answers);
-        memcpy(a->spread, old.spread, a->n_obj * sizeof *a->spread);
+        memcpy(a->replicates, old.replicates, old.n * sizeof *a->replicates);
+        memcpy(a->noise, old.noise, a->n_obj * sizeof *a->noise);
         memcpy(a->usable, old.usable, old.n);
         memcpy(a->violation, old.violation, old.n * sizeof *a->violation);
         memcpy(a->generation, old.generation, old.n * sizeof *a->generation);
@@ -88,7 +88,7 @@ static Status resize(Archive *a, size_t n_max, Err *err)
         memcpy(a->kind, old.kind, old.n);
         memcpy(a->on_front, old.on_front, old.n);
         for (size_t row = 0; row < old.n; row++)
-            remember(a, row);
+            design_of(a, row);
     }
     free(old.store);
     return STATUS_OK;
@@ -114,8 +114,8 @@ static int all_finite(size_t n, const double v[])
     return 1;
 }
 
-/* The front is compared with the newcomer alone: dominated by a member it stays outside, else it replaces those that it
- * dominates. */
+/* The front is compared with the new design alone, which stays outside where a member dominates it, and otherwise
+ * replaces those that it dominates. */
 static void update_front(Archive *a, size_t row)
 {
     const size_t m = a->n_obj;
@@ -140,8 +140,8 @@ static void set_errors(Archive *a, size_t row)
 {
     for (size_t k = 0; k < a->n_obj; k++) {
         const size_t i = row * a->n_obj + k;
-        a->deviation[i] = sqrt(spread_variance(&a->spread[k], a->F[i], a->S[i], a->answers[row]));
-        a->error[i] = a->deviation[i] / sqrt((double)a->answers[row]);
+        a->sd[i] = sqrt(noise_variance(&a->noise[k], a->F[i], a->S[i], a->replicates[row]));
+        a->error[i] = a->sd[i] / sqrt((double)a->replicates[row]);
     }
 }
 
@@ -152,7 +152,7 @@ static void add_design(Archive *a, size_t row)
     if (a->n_con > 0)
         memcpy(a->G + row * a->n_con, a->H + row * a->n_con, a->n_con * sizeof *a->G);
     memset(a->S + row * a->n_obj, 0, a->n_obj * sizeof *a->S);
-    a->answers[row] = 1;
+    a->replicates[row] = 1;
     a->usable[row] = a->ok[row];
     a->violation[row] = a->ok[row] ? violation_of(a->n_con, a->G + row * a->n_con) : INFINITY;
     set_errors(a, row);
@@ -160,12 +160,12 @@ static void add_design(Archive *a, size_t row)
         update_front(a, row);
 }
 
-/* Welford's running mean and sum of squares. A design with an answer that failed is no longer usable. */
-static void add_repeat(Archive *a, size_t row, size_t design)
+/* Welford's running mean and sum of squares. A design with a replicate that failed is no longer usable. */
+static void add_replicate(Archive *a, size_t row, size_t design)
 {
-    const double n = (double)++a->answers[design];
-    a->n_repeats++;
-    a->answers[row] = 0;
+    const double n = (double)++a->replicates[design];
+    a->n_replicates++;
+    a->replicates[row] = 0;
     a->usable[row] = 0;
     a->violation[row] = INFINITY;
     a->is_stale = 1;
@@ -186,13 +186,13 @@ static void add_repeat(Archive *a, size_t row, size_t design)
 
 static void add_row(Archive *a, size_t row)
 {
-    const size_t design = remember(a, row), was_usable = a->usable[design];
+    const size_t design = design_of(a, row), was_usable = a->usable[design];
     a->on_front[row] = 0;
     a->n_failed += !a->ok[row];
     if (design == row)
         add_design(a, row);
     else
-        add_repeat(a, row, design);
+        add_replicate(a, row, design);
     a->n_usable += a->usable[design];
     a->n_usable -= design == row ? 0 : was_usable;
 }
@@ -217,17 +217,17 @@ Status archive_insert(Archive *a, size_t n, const double X[], const double F[], 
     return STATUS_OK;
 }
 
-/* The list of the front serves for the repeated designs before it is made anew. */
-void archive_settle(Archive *a)
+/* The list of the front holds the designs with several replicates before it is made again. */
+void archive_update_noise(Archive *a)
 {
     size_t n = 0;
     if (!a->is_stale)
         return;
     for (size_t row = 0; row < a->n; row++)
-        if (a->usable[row] && a->answers[row] > 1)
+        if (a->usable[row] && a->replicates[row] > 1)
             a->front[n++] = row;
     for (size_t k = 0; k < a->n_obj; k++)
-        a->spread[k] = spread_fit(n, a->front, a->answers, a->n_obj, k, a->F, a->S);
+        a->noise[k] = noise_fit(n, a->front, a->replicates, a->n_obj, k, a->F, a->S);
     a->n_front = 0;
     memset(a->on_front, 0, a->n);
     for (size_t row = 0; row < a->n; row++) {
@@ -240,7 +240,7 @@ void archive_settle(Archive *a)
     a->is_stale = 0;
 }
 
-void archive_forget_estimates(Archive *a)
+void archive_reset_estimates(Archive *a)
 {
     memcpy(a->estimate, a->F, a->n * a->n_obj * sizeof *a->F);
 }

@@ -37,7 +37,7 @@ size_t batch_add(Search *s, size_t n, const double x[], EvaluationKind kind)
 /* Whether the order of design i was foretold: new ones but samples, where there is a surface. */
 static unsigned char is_foretold(const Search *s, size_t i)
 {
-    return s->kind[i] != KIND_SAMPLED && s->kind[i] != KIND_REPEAT && surface_stands(s->surface);
+    return s->kind[i] != KIND_SAMPLED && s->kind[i] != KIND_REPEAT && surrogate_is_usable(s->surrogate);
 }
 
 static Status simulate_all(Search *s, size_t n, Err *err)
@@ -128,7 +128,7 @@ Status batch_simulate(Search *s, size_t n_new, size_t n, Err *err)
     const double before = search_seconds(s);
     memset(s->kind + n_new, KIND_REPEAT, n - n_new);
     const Status status = s->feed ? simulate_in_turn(s, n, err) : simulate_all(s, n, err);
-    archive_settle(&s->archive);
+    archive_update_noise(&s->archive);
     s->waited_s += search_seconds(s) - before;
     s->n_timed += s->n_came;
     s->simulating_s = s->waited_s;
@@ -141,18 +141,18 @@ Status batch_finish(Search *s, Err *err)
 {
     feed_withdraw(s->feed);
     TRY(take_results(s, 0, err));
-    archive_settle(&s->archive);
+    archive_update_noise(&s->archive);
     return STATUS_OK;
 }
 
 /* Failed ones and repeats do not join. */
-void batch_join(Search *s, Group *group, size_t first)
+void batch_join(Search *s, Population *group, size_t first)
 {
     const Archive *a = &s->archive;
     for (size_t row = first; row < a->n; row++) {
         if (!a->usable[row])
             continue;
-        const size_t i = group_add(group, a->X + row * a->n_var);
+        const size_t i = population_add(group, a->X + row * a->n_var);
         memcpy(group->F + i * a->n_obj, a->F + row * a->n_obj, a->n_obj * sizeof *a->F);
         group->violation[i] = a->violation[row];
         group->row[i] = row;

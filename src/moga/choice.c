@@ -5,7 +5,7 @@
 /* Offspring i into the batch, and what is foretold of it. */
 static size_t batch_take(Search *s, size_t n, size_t i, EvaluationKind kind)
 {
-    const Group *g = &s->offspring;
+    const Population *g = &s->offspring;
     if (n < s->batch_max)
         memcpy(s->foreseen + n * g->n_obj, g->F + i * g->n_obj, g->n_obj * sizeof *g->F);
     s->picked[i] = 1;
@@ -26,11 +26,11 @@ static size_t choose_in_turn(Search *s, size_t n, size_t limit, double rays, Eva
 {
     while (n < limit) {
         const InfillKind way =
-            floor(rays * (double)(n + 1) + 0.5) > floor(rays * (double)n + 0.5) ? INFILL_RAYS : INFILL_PBI;
+            floor(rays * (double)(n + 1) + 0.5) > floor(rays * (double)n + 0.5) ? INFILL_HYPERVOLUME : INFILL_PBI;
         const size_t i = infill_pick(s->infill[way], s->allowed);
         if (i == SIZE_MAX)
             break;
-        infill_take(s->infill[way == INFILL_RAYS ? INFILL_PBI : INFILL_RAYS], i);
+        infill_take(s->infill[way == INFILL_HYPERVOLUME ? INFILL_PBI : INFILL_HYPERVOLUME], i);
         s->way[n] = (unsigned char)way;
         n = batch_take(s, n, i, kind);
     }
@@ -48,7 +48,7 @@ static void forget_picks(Search *s, int wary)
 /* First predictions that do not stand or have stood for long, then a few of those that do. */
 static size_t choose_predicted(Search *s, size_t batch)
 {
-    const Group *g = &s->offspring;
+    const Population *g = &s->offspring;
     const size_t n_predicted = g->n - s->n_pending - s->n_plain, check = batch / VALIDATION_SHARE + 1;
     size_t n = 0;
     for (int kind = 0; kind < INFILL_KINDS; kind++)

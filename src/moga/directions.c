@@ -21,7 +21,7 @@ static size_t layer_count(size_t n_obj, size_t p)
     return n;
 }
 
-size_t directions_count(size_t n_obj, size_t outer, size_t inner)
+static size_t directions_count(size_t n_obj, size_t outer, size_t inner)
 {
     const size_t a = layer_count(n_obj, outer), b = layer_count(n_obj, inner);
     return a > SIZE_MAX - b ? SIZE_MAX : a + b;

@@ -21,7 +21,6 @@ typedef struct {
 
 /* Divisions for a population: the most directions that it can fill, but at least one per objective. */
 void directions_choose(size_t n_obj, size_t population, size_t *outer, size_t *inner);
-size_t directions_count(size_t n_obj, size_t outer, size_t inner);
 
 Status directions_create(Directions *d, size_t n_obj, size_t outer, size_t inner, Err *err);
 /* n >= n_obj directions as far from each other as can be on the sphere, the axes among them: as dense in the middle as

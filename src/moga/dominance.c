@@ -1,6 +1,7 @@
 #include "moga/dominance.h"
 
 #include <stdint.h>
+#include <stdlib.h>
 
 int dominates(size_t n_obj, const double a[], const double b[])
 {
@@ -50,42 +51,30 @@ static double violation_at(const Points *p, size_t i)
     return p->violation ? p->violation[i] : 0.0;
 }
 
-/* An order in which nobody is dominated by a later one: violation, then objectives one after the other, then place. */
-static int comes_first(const Points *p, size_t a, size_t b)
+/* An order in which no point is dominated by a later one: violation, then objectives one after the other, then row. */
+static int compare_points(const void *first, const void *second, void *points)
 {
+    const Points *p = points;
+    const size_t a = *(const size_t *)first, b = *(const size_t *)second;
     if (violation_at(p, a) != violation_at(p, b))
-        return violation_at(p, a) < violation_at(p, b);
+        return violation_at(p, a) < violation_at(p, b) ? -1 : 1;
     for (size_t k = 0; k < p->n_obj; k++) {
         const double fa = p->F[a * p->n_obj + k], fb = p->F[b * p->n_obj + k];
         if (fa != fb)
-            return fa < fb;
+            return fa < fb ? -1 : 1;
     }
-    return a < b;
-}
-
-/* Merge sort: qsort has no room for what the order depends on. */
-static void sort_points(const Points *p, size_t n, size_t order[], size_t spare[])
-{
-    if (n < 2)
-        return;
-    const size_t half = n / 2;
-    sort_points(p, half, order, spare);
-    sort_points(p, n - half, order + half, spare);
-    for (size_t i = 0; i < half; i++)
-        spare[i] = order[i];
-    for (size_t i = 0, j = half, k = 0; i < half; k++)
-        order[k] = j < n && comes_first(p, order[j], spare[i]) ? order[j++] : spare[i++];
+    return (a > b) - (a < b);
 }
 
 /* Each point in turn goes into the first layer none of whose members dominates it; layers are linked lists. */
 size_t nondominated_sort(size_t n, size_t n_obj, const double F[], const double violation[], size_t rank[],
                          size_t scratch[])
 {
-    const Points points = {n_obj, F, violation};
+    Points points = {n_obj, F, violation};
     size_t *order = scratch, *head = scratch + n, *next = scratch + 2 * n, n_layers = 0;
     for (size_t i = 0; i < n; i++)
         order[i] = i;
-    sort_points(&points, n, order, head);
+    qsort_r(order, n, sizeof *order, compare_points, &points);
     for (size_t i = 0; i < n; i++) {
         const size_t a = order[i];
         size_t layer = 0;

@@ -1,4 +1,4 @@
-/* moga/dominance.h -- who is better than whom.
+/* moga/dominance.h -- which design is better.
  *
  *   a dominates b   no worse in every objective and better in one
  *   ... surely      the same of a + its error and b - its error, one standard error of the means each: better by more
@@ -6,14 +6,14 @@
  *                   the difference, 92 % in each objective; intervals that overlap decide nothing.
  *   constrained     a feasible design beats an infeasible one, of two infeasible ones the less violating wins
  *
- * All are strict partial orders (surely: a product of interval orders): of a > b > c follows a > c whatever the errors,
- * and who is dominated is dominated by somebody who is not. With errors of 0 surely is the same as plainly.
+ * All are strict partial orders (surely: a product of interval orders): transitive whatever the errors, and a dominated
+ * design is dominated by a nondominated one. With errors of 0 surely is the same as plainly.
  *
  * Threads  pure functions
- * Sources  Deb, Pratap, Agarwal and Meyarivan, IEEE Trans. Evol. Comput. 6 (2002) 182-197 (constrained domination);
- *          Zhang, Tian, Cheng and Jin, IEEE Trans. Evol. Comput. 19 (2015) 201-213 (efficient nondominated sort);
- *          Fishburn, J. Math. Psychol. 7 (1970) 144-149 (interval orders); Teich, EMO 2001, LNCS 1993, 314-328 (Pareto
- *          fronts of objectives known as intervals). */
+ * Sources  Deb, Pratap, Agarwal and Meyarivan, IEEE Trans. Evol. Comput. 6 (2002) 182-197 (constrained domination)
+ *          Zhang, Tian, Cheng and Jin, IEEE Trans. Evol. Comput. 19 (2015) 201-213 (efficient nondominated sort)
+ *          Fishburn, J. Math. Psychol. 7 (1970) 144-149 (interval orders)
+ *          Teich, EMO 2001, LNCS 1993, 314-328 (Pareto fronts of objectives known as intervals). */
 #ifndef IMTET_MOGA_DOMINANCE_H
 #define IMTET_MOGA_DOMINANCE_H
 
@@ -27,7 +27,7 @@ int dominates_constrained(size_t n_obj, const double a[], double violation_a, co
 
 double violation_of(size_t n_con, const double g[]);
 
-/* Layers of F (n, n_obj), row-major: rank[i] = 0 for the nondominated, 1 for those that only they dominate, ...
+/* Layers of F (n, n_obj), row-major: rank[i] = 0 of the nondominated, 1 of those that only rank 0 dominates, ...
  * Returns the number of layers. violation (n) may be NULL. scratch holds 3 n numbers. */
 size_t nondominated_sort(size_t n, size_t n_obj, const double F[], const double violation[], size_t rank[],
                          size_t scratch[]);

@@ -23,13 +23,13 @@ static Status sample_again(Search *s, Err *err)
 }
 
 /* As the archive knows the member now: a repeat may have changed it, or have failed. */
-static void copy_simulated(const Search *s, Group *to, const Group *from, size_t i)
+static void copy_simulated(const Search *s, Population *to, const Population *from, size_t i)
 {
     const Archive *a = &s->archive;
     const size_t row = from->row[i];
     if (!a->usable[row])
         return;
-    group_copy_member(to, from, i);
+    population_append(to, from, i);
     memcpy(to->F + (to->n - 1) * a->n_obj, a->estimate + row * a->n_obj, a->n_obj * sizeof *a->estimate);
     to->violation[to->n - 1] = a->violation[row];
 }
@@ -37,7 +37,7 @@ static void copy_simulated(const Search *s, Group *to, const Group *from, size_t
 /* Next population: from the simulated members of the present one, the batch, and the predictions that stand. */
 static void renew_population(Search *s, size_t first_new)
 {
-    Group *population = &s->population, *pool = &s->pool, *offspring = &s->offspring;
+    Population *population = &s->population, *pool = &s->pool, *offspring = &s->offspring;
     pool->n = 0;
     for (size_t i = 0; i < population->n; i++)
         if (population->row[i] != PREDICTED)
@@ -45,18 +45,18 @@ static void renew_population(Search *s, size_t first_new)
     for (size_t i = 0; i < offspring->n; i++)
         if (!s->picked[i] && guide_trusts(s, offspring, i)) {
             s->n_predicted += offspring->age[i]++ == 0;
-            group_copy_member(pool, offspring, i);
+            population_append(pool, offspring, i);
         }
     batch_join(s, pool, first_new);
     offspring_survive(s, pool, 0);
-    group_copy(population, pool);
+    population_copy(population, pool);
 }
 
 /* Nothing but repeats. No surface is fitted, and none of an earlier generation is told of. */
 static Status repeat_generation(Search *s, size_t n, Err *err)
 {
     const size_t first_new = s->archive.n;
-    surface_drop(s->surface);
+    surrogate_drop(s->surrogate);
     s->offspring.n = 0;
     TRY(batch_simulate(s, 0, n, err));
     renew_population(s, first_new);
@@ -67,10 +67,10 @@ static Status repeat_generation(Search *s, size_t n, Err *err)
 static void take_estimates(Search *s)
 {
     Archive *a = &s->archive;
-    Group *g = &s->population;
+    Population *g = &s->population;
     if (!repeat_tells_of_luck(s))
         return;
-    surface_estimate(s->surface, a);
+    surrogate_estimate(s->surrogate, a);
     guide_measure_front(s);
     for (size_t i = 0; i < g->n; i++)
         if (g->row[i] != PREDICTED)
@@ -84,7 +84,7 @@ Status generation_next(Search *s, Err *err)
     s->n_predicted = 0;
     if (s->population.n < 2)
         return sample_again(s, err);
-    archive_forget_estimates(&s->archive);
+    archive_reset_estimates(&s->archive);
     guide_weigh_costs(s);
     guide_measure_front(s);
     const size_t n_last = repeat_last(s);
@@ -93,7 +93,7 @@ Status generation_next(Search *s, Err *err)
     if (guide_may_lead(s))
         TRY(guide_fit(s, err));
     else
-        surface_drop(s->surface);
+        surrogate_drop(s->surrogate);
     take_estimates(s);
     guide_predict(s, &s->population, 0, 0);
     offspring_make(s, 0);
@@ -114,7 +114,7 @@ Status generation_last(Search *s, Err *err)
 {
     const size_t first_new = s->archive.n;
     s->n_predicted = s->offspring.n = 0;
-    archive_forget_estimates(&s->archive);
+    archive_reset_estimates(&s->archive);
     TRY(batch_finish(s, err));
     renew_population(s, first_new);
     return STATUS_OK;
@@ -163,6 +163,6 @@ Status generation_first(Search *s, Err *err)
     TRY(batch_simulate(s, n, n, err));
     batch_join(s, &s->pool, 0);
     offspring_survive(s, &s->pool, 0);
-    group_copy(&s->population, &s->pool);
+    population_copy(&s->population, &s->pool);
     return STATUS_OK;
 }

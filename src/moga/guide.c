@@ -3,7 +3,6 @@
 #include <math.h>
 
 #include "moga/dominance.h"
-#include "moga/order.h"
 
 void guide_begin(Search *s)
 {
@@ -31,7 +30,7 @@ int guide_may_lead(const Search *s)
 /* Whether the surface leads: it explains its own data, and what it foretold of late batches came in that order. */
 int guide_leads(const Search *s)
 {
-    return guide_may_lead(s) && surface_stands(s->surface) && s->agreement > AGREEMENT_MIN;
+    return guide_may_lead(s) && surrogate_is_usable(s->surrogate) && s->agreement > AGREEMENT_MIN;
 }
 
 /* Second one's part of what both share. */
@@ -50,7 +49,7 @@ double guide_rays(const Search *s)
     return fmin(fmax(second_share(&s->ways, CRITERION_POWER, 1.0), least), 1.0 - least);
 }
 
-int guide_trusts(const Search *s, const Group *g, size_t i)
+int guide_trusts(const Search *s, const Population *g, size_t i)
 {
     return guide_leads(s) && g->uncertainty[i] < s->config->trust_error;
 }
@@ -113,6 +112,22 @@ size_t guide_plain(const Search *s)
     return wanted < least ? least : wanted < batch - least ? wanted : batch - least;
 }
 
+/* Kendall's tau of the columns a[i stride], b[i stride]: pairs in the same order minus pairs in the opposite one, as a
+ * share of the pairs whose rows are both ok; 0 where there is none. */
+static double kendall_tau(size_t n, size_t stride, const double a[], const double b[], const unsigned char ok[])
+{
+    long same = 0, pairs = 0;
+    for (size_t i = 0; i < n; i++)
+        for (size_t j = 0; j < i; j++) {
+            const double product = (a[i * stride] - a[j * stride]) * (b[i * stride] - b[j * stride]);
+            if (!ok[i] || !ok[j])
+                continue;
+            same += (product > 0.0) - (product < 0.0);
+            pairs++;
+        }
+    return pairs > 0 ? (double)same / (double)pairs : 0.0;
+}
+
 /* How far the surface foretold the order of the results that came, in the mean over the objectives. */
 void guide_judge(Search *s)
 {
@@ -136,8 +151,8 @@ void guide_measure_front(Search *s)
 {
     for (size_t i = 0; i < s->population.n; i++)
         s->chosen[i] = i;
-    Infill *const all[] = {s->infill[INFILL_PBI], s->infill[INFILL_RAYS], s->gained[INFILL_PBI],
-                           s->gained[INFILL_RAYS]};
+    Infill *const all[] = {s->infill[INFILL_PBI], s->infill[INFILL_HYPERVOLUME], s->gained[INFILL_PBI],
+                           s->gained[INFILL_HYPERVOLUME]};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         if (s->archive.n_front > 0)
             infill_measure(all[i], s->archive.n_front, s->archive.front, s->archive.estimate);
@@ -150,7 +165,7 @@ void guide_measure_front(Search *s)
 Status guide_fit(Search *s, Err *err)
 {
     const double before = search_seconds(s);
-    const Status status = surface_fit(s->surface, &s->archive, s->infill[INFILL_PBI], err);
+    const Status status = surrogate_fit(s->surrogate, &s->archive, s->infill[INFILL_PBI], err);
     s->surrogate_s += search_seconds(s) - before;
     return status;
 }
@@ -165,7 +180,7 @@ int guide_expects_failure(const Search *s, const double x[])
         least[k] = INFINITY;
     for (size_t row = 0; a->n_failed > 0 && row < a->n; row++) {
         double square = 0.0;
-        if (a->answers[row] == 0)
+        if (a->replicates[row] == 0)
             continue;
         for (size_t d = 0; d < p->n_var; d++) {
             const double width = p->upper[d] - p->lower[d], off = x[d] - a->X[row * p->n_var + d];
@@ -188,7 +203,7 @@ int guide_expects_failure(const Search *s, const double x[])
 }
 
 /* The surface knows nothing of failures: what is expected to fail counts as infeasible, the last to be chosen. */
-static void expect_failures(const Search *s, Group *g, size_t first)
+static void expect_failures(const Search *s, Population *g, size_t first)
 {
     if (s->archive.n_failed == 0)
         return;
@@ -198,11 +213,11 @@ static void expect_failures(const Search *s, Group *g, size_t first)
             g->violation[i] += guide_expects_failure(s, g->X + i * g->n_var);
 }
 
-void guide_predict(Search *s, Group *group, size_t first, int with_uncertainty)
+void guide_predict(Search *s, Population *group, size_t first, int with_uncertainty)
 {
     const double before = search_seconds(s);
-    surface_predict(s->surface, group, first, with_uncertainty);
-    if (surface_stands(s->surface))
+    surrogate_predict(s->surrogate, group, first, with_uncertainty);
+    if (surrogate_is_usable(s->surrogate))
         expect_failures(s, group, first);
     s->surrogate_s += search_seconds(s) - before;
 }
@@ -210,6 +225,6 @@ void guide_predict(Search *s, Group *group, size_t first, int with_uncertainty)
 void guide_descend(Search *s, InfillKind kind, size_t n, const size_t directions[], double X[])
 {
     const double before = search_seconds(s);
-    surface_descend(s->surface, &s->archive, s->infill[kind], n, directions, X);
+    surrogate_descend(s->surrogate, &s->archive, s->infill[kind], n, directions, X);
     s->surrogate_s += search_seconds(s) - before;
 }

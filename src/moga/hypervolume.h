@@ -1,13 +1,12 @@
-/* moga/hypervolume.h -- volume of what a set dominates, up to a reference point.
+/* moga/hypervolume.h -- Monte Carlo hypervolume of a growing set, kept up to date.
  *
- *   exact     WFG: the sum over points of what each adds to those after it; exponential in the objectives
- *   estimate  share of uniform samples of the box lower..reference that is dominated, with its standard error
+ *   share = samples of the box lower..reference that some member dominates / all samples
  *
- * Points that do not dominate the reference point add nothing; order does not matter.
+ * The samples are drawn once, so that the share never falls while members are added, and a sample that is dominated is
+ * dropped: adding costs (samples left) x (new members). Standard error sqrt(share (1 - share) / samples).
  *
- * Memory   a workspace is allocated and released inside
- * Threads  the estimate shares its samples out over OpenMP threads; the answer does not depend on how many
- * Source   While, Bradstreet and Barone, IEEE Trans. Evol. Comput. 16 (2012) 86-95 (WFG). */
+ * Life cycle  hypervolume_create -> hypervolume_add ... -> hypervolume_free
+ * Threads     one Hypervolume per thread */
 #ifndef IMTET_MOGA_HYPERVOLUME_H
 #define IMTET_MOGA_HYPERVOLUME_H
 
@@ -16,18 +15,15 @@
 
 #include "base/status.h"
 
-typedef struct {
-    double volume, standard_error; /* the latter 0 when exact */
-} Hypervolume;
+enum { HYPERVOLUME_SAMPLES = 20000 };
 
-/* F (n, n_obj) row-major, minimised. */
-Status hypervolume_exact(size_t n, size_t n_obj, const double F[], const double reference[], Hypervolume *out,
-                         Err *err);
-Status hypervolume_estimate(size_t n, size_t n_obj, const double F[], const double lower[], const double reference[],
-                            size_t samples, uint32_t seed, Hypervolume *out, Err *err);
+typedef struct Hypervolume Hypervolume;
 
-/* Exact for up to 3 objectives or 40 points, else an estimate with 100,000 samples. */
-Status hypervolume(size_t n, size_t n_obj, const double F[], const double lower[], const double reference[],
-                   uint32_t seed, Hypervolume *out, Err *err);
+Status hypervolume_create(Hypervolume **out, size_t n_obj, const double lower[], const double reference[],
+                          uint32_t seed, Err *err);
+void hypervolume_add(Hypervolume *h, const double f[]); /* (n_obj) minimised */
+double hypervolume_share(const Hypervolume *h);         /* of the box */
+double hypervolume_error(double share);                 /* standard error of a share */
+void hypervolume_free(Hypervolume *h);                  /* NULL is fine */
 
 #endif

@@ -6,16 +6,16 @@
 
 #include "base/carve.h"
 #include "moga/constants.h"
-#include "moga/frame.h"
+#include "moga/normalisation.h"
 
 struct Infill {
     InfillKind kind;
     size_t n_obj, n_dir, n_max, n;
-    Frame frame;
-    double *unit, *across;                 /* (n_dir, n_obj) directions of length 1; the same, (n_obj, n_dir) */
+    Normalisation normalisation;
+    double *unit, *across;                 /* (n_dir, n_obj) vectors of length 1; (n_obj, n_dir) */
     double *row;                           /* (n_dir) */
-    double *least;                         /* (n_dir) to beat */
-    size_t *best;                          /* (n_dir) row that has it */
+    double *best_value;                    /* (n_dir) of the front, lowered by what is picked */
+    size_t *best;                          /* (n_dir) row of the front that has it */
     double *value;                         /* (n, n_dir) of the candidates */
     const double *violation, *uncertainty; /* (n) */
     void *store;
@@ -24,24 +24,24 @@ struct Infill {
 static void layout(Infill *q, Carve *c)
 {
     const size_t m = q->n_obj;
-    q->frame.ideal = carve(c, m, sizeof(double));
-    q->frame.width = carve(c, m, sizeof(double));
+    q->normalisation.ideal = carve(c, m, sizeof(double));
+    q->normalisation.width = carve(c, m, sizeof(double));
     q->unit = carve(c, q->n_dir * m, sizeof(double));
     q->across = carve(c, q->n_dir * m, sizeof(double));
     q->row = carve(c, q->n_dir, sizeof(double));
-    q->least = carve(c, q->n_dir, sizeof(double));
+    q->best_value = carve(c, q->n_dir, sizeof(double));
     q->best = carve(c, q->n_dir, sizeof(size_t));
     q->value = carve(c, q->n_max * q->n_dir, sizeof(double));
 }
 
-Status infill_create(Infill **out, InfillKind kind, size_t candidates_max, const Directions *directions, Err *err)
+Status infill_create(Infill **out, InfillKind kind, size_t candidates_max, const Directions *vectors, Err *err)
 {
     Infill *q = calloc(1, sizeof *q);
     *out = q;
     if (!q)
-        return fail(err, STATUS_NO_MEMORY, "no memory for the choice of designs to simulate");
-    q->n_obj = q->frame.n_obj = directions->n_obj;
-    q->n_dir = directions->n;
+        return fail(err, STATUS_NO_MEMORY, "no memory for the infill criterion");
+    q->n_obj = q->normalisation.n_obj = vectors->n_obj;
+    q->n_dir = vectors->n;
     q->kind = kind;
     q->n_max = candidates_max;
     Carve c = {0};
@@ -50,11 +50,11 @@ Status infill_create(Infill **out, InfillKind kind, size_t candidates_max, const
     if (!q->store) {
         infill_free(q);
         *out = NULL;
-        return fail(err, STATUS_NO_MEMORY, "no memory for the choice among %zu designs", candidates_max);
+        return fail(err, STATUS_NO_MEMORY, "no memory for infill among %zu designs", candidates_max);
     }
     layout(q, &(Carve){.base = q->store});
     for (size_t r = 0; r < q->n_dir; r++) {
-        const double *w = directions->W + r * q->n_obj;
+        const double *w = vectors->W + r * q->n_obj;
         double square = 0.0;
         for (size_t k = 0; k < q->n_obj; k++)
             square += w[k] * w[k];
@@ -77,7 +77,7 @@ static void ray_values(const Infill *q, const double f[], double value[])
     for (size_t r = 0; r < q->n_dir; r++)
         value[r] = -DBL_MAX;
     for (size_t k = 0; k < q->n_obj; k++) {
-        const double over = frame_scale(&q->frame, k, f[k]) - RAY_START, *w = q->across + k * q->n_dir;
+        const double over = normalised(&q->normalisation, k, f[k]) - RAY_START, *w = q->across + k * q->n_dir;
 #pragma omp simd
         for (size_t r = 0; r < q->n_dir; r++) {
             const double end = over / (w[r] > WEIGHT_MIN ? w[r] : WEIGHT_MIN);
@@ -95,7 +95,7 @@ static void pbi_values(const Infill *q, const double f[], double pbi[])
     for (size_t r = 0; r < q->n_dir; r++)
         pbi[r] = 0.0;
     for (size_t k = 0; k < q->n_obj; k++) {
-        const double z = frame_scale(&q->frame, k, f[k]), *w = q->across + k * q->n_dir;
+        const double z = normalised(&q->normalisation, k, f[k]), *w = q->across + k * q->n_dir;
         square += z * z;
 #pragma omp simd
         for (size_t r = 0; r < q->n_dir; r++)
@@ -110,7 +110,7 @@ static void pbi_values(const Infill *q, const double f[], double pbi[])
 
 static void values_of(const Infill *q, const double f[], double value[])
 {
-    if (q->kind == INFILL_RAYS)
+    if (q->kind == INFILL_HYPERVOLUME)
         ray_values(q, f, value);
     else
         pbi_values(q, f, value);
@@ -118,30 +118,30 @@ static void values_of(const Infill *q, const double f[], double value[])
 
 void infill_measure(Infill *q, size_t n, const size_t front[], const double F[])
 {
-    frame_fit_box(&q->frame, n, front, F);
+    normalisation_fit_range(&q->normalisation, n, front, F);
     for (size_t r = 0; r < q->n_dir; r++)
-        q->least[r] = DBL_MAX;
+        q->best_value[r] = DBL_MAX;
     for (size_t i = 0; i < n; i++) {
         values_of(q, F + front[i] * q->n_obj, q->row);
         for (size_t r = 0; r < q->n_dir; r++)
-            if (q->row[r] < q->least[r]) {
-                q->least[r] = q->row[r];
+            if (q->row[r] < q->best_value[r]) {
+                q->best_value[r] = q->row[r];
                 q->best[r] = front[i];
             }
     }
 }
 
-size_t infill_best(const Infill *q, size_t direction)
+size_t infill_best(const Infill *q, size_t vector)
 {
-    return q->best[direction];
+    return q->best[vector];
 }
 
-/* Softly: every objective that nearly holds the ray back has a part in the slope. */
+/* Derivative of the maximum as a softmax: every objective near the maximum has a part in it. */
 static double ray_slope(const Infill *q, const double w[], const double f[], double slope[])
 {
     double length = -DBL_MAX, sum = 0.0;
     for (size_t k = 0; k < q->n_obj; k++) {
-        slope[k] = (frame_scale(&q->frame, k, f[k]) - RAY_START) / fmax(w[k], WEIGHT_MIN);
+        slope[k] = (normalised(&q->normalisation, k, f[k]) - RAY_START) / fmax(w[k], WEIGHT_MIN);
         length = fmax(length, slope[k]);
     }
     for (size_t k = 0; k < q->n_obj; k++) {
@@ -149,7 +149,7 @@ static double ray_slope(const Infill *q, const double w[], const double f[], dou
         sum += slope[k];
     }
     for (size_t k = 0; k < q->n_obj; k++)
-        slope[k] /= sum * fmax(w[k], WEIGHT_MIN) * q->frame.width[k];
+        slope[k] /= sum * fmax(w[k], WEIGHT_MIN) * q->normalisation.width[k];
     return length;
 }
 
@@ -157,15 +157,15 @@ static double pbi_slope(const Infill *q, const double w[], const double f[], dou
 {
     double along = 0.0, off = 0.0;
     for (size_t k = 0; k < q->n_obj; k++)
-        along += frame_scale(&q->frame, k, f[k]) * w[k];
+        along += normalised(&q->normalisation, k, f[k]) * w[k];
     for (size_t k = 0; k < q->n_obj; k++) {
-        const double side = frame_scale(&q->frame, k, f[k]) - along * w[k];
+        const double side = normalised(&q->normalisation, k, f[k]) - along * w[k];
         off += side * side;
     }
     off = sqrt(off);
     for (size_t k = 0; k < q->n_obj; k++) { /* the side is at right angles to w, so d off / d z_k = side_k / off */
-        const double side = frame_scale(&q->frame, k, f[k]) - along * w[k];
-        slope[k] = (w[k] + (off > 0.0 ? PBI_THETA * side / off : 0.0)) / q->frame.width[k];
+        const double side = normalised(&q->normalisation, k, f[k]) - along * w[k];
+        slope[k] = (w[k] + (off > 0.0 ? PBI_THETA * side / off : 0.0)) / q->normalisation.width[k];
     }
     return along + PBI_THETA * off;
 }
@@ -174,14 +174,14 @@ double infill_length(const Infill *q, const double f[])
 {
     double square = 0.0;
     for (size_t k = 0; k < q->n_obj; k++)
-        square += frame_scale(&q->frame, k, f[k]) * frame_scale(&q->frame, k, f[k]);
+        square += normalised(&q->normalisation, k, f[k]) * normalised(&q->normalisation, k, f[k]);
     return sqrt(square);
 }
 
-double infill_slope(const Infill *q, size_t direction, const double f[], double slope[])
+double infill_slope(const Infill *q, size_t vector, const double f[], double slope[])
 {
-    const double *w = q->unit + direction * q->n_obj;
-    return q->kind == INFILL_RAYS ? ray_slope(q, w, f, slope) : pbi_slope(q, w, f, slope);
+    const double *w = q->unit + vector * q->n_obj;
+    return q->kind == INFILL_HYPERVOLUME ? ray_slope(q, w, f, slope) : pbi_slope(q, w, f, slope);
 }
 
 double infill_distance(Infill *q, const double f[])
@@ -189,7 +189,7 @@ double infill_distance(Infill *q, const double f[])
     double nearest = DBL_MAX;
     values_of(q, f, q->row);
     for (size_t r = 0; r < q->n_dir; r++)
-        nearest = fmin(nearest, q->row[r] - q->least[r]);
+        nearest = fmin(nearest, q->row[r] - q->best_value[r]);
     return nearest;
 }
 
@@ -198,7 +198,7 @@ double infill_gain(Infill *q, const double f[])
     double gain = 0.0;
     values_of(q, f, q->row);
     for (size_t r = 0; r < q->n_dir; r++)
-        gain += fmax(q->least[r] - q->row[r], 0.0);
+        gain += fmax(q->best_value[r] - q->row[r], 0.0);
     return gain;
 }
 
@@ -215,7 +215,7 @@ static double gain_left(const Infill *q, size_t i)
 {
     double gain = 0.0;
     for (size_t r = 0; r < q->n_dir; r++)
-        gain += fmax(q->least[r] - q->value[i * q->n_dir + r], 0.0);
+        gain += fmax(q->best_value[r] - q->value[i * q->n_dir + r], 0.0);
     return gain;
 }
 
@@ -252,5 +252,5 @@ size_t infill_pick(Infill *q, unsigned char allowed[])
 void infill_take(Infill *q, size_t candidate)
 {
     for (size_t r = 0; r < q->n_dir; r++)
-        q->least[r] = fmin(q->least[r], q->value[candidate * q->n_dir + r]);
+        q->best_value[r] = fmin(q->best_value[r], q->value[candidate * q->n_dir + r]);
 }

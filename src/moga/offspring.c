@@ -5,16 +5,16 @@
 #include "moga/dominance.h"
 #include "moga/variation.h"
 
-void offspring_survive(Search *s, Group *group, uint32_t step)
+void offspring_survive(Search *s, Population *group, uint32_t step)
 {
     Random random = random_stream(s->config->seed, RANDOM_NICHING, (uint32_t)s->generation, step);
     const double progress = fmin((double)s->archive.n / (double)search_planned(s->config), 1.0);
-    const size_t n = survival_select(s->survival, group->n, group->F, group->violation, s->config->population, progress,
-                                     &random, s->chosen);
-    group_keep(group, n, s->chosen);
+    const size_t n = selection_select(s->selection, group->n, group->F, group->violation, s->config->population,
+                                      progress, &random, s->chosen);
+    population_keep(group, n, s->chosen);
 }
 
-static const double *tournament(const Group *g, Random *random)
+static const double *tournament(const Population *g, Random *random)
 {
     const size_t a = random_below(random, g->n), b = random_below(random, g->n), m = g->n_obj;
     const int b_wins = dominates_constrained(m, g->F + b * m, g->violation[b], g->F + a * m, g->violation[a]);
@@ -22,11 +22,11 @@ static const double *tournament(const Group *g, Random *random)
 }
 
 /* Appends n children of the group's first n_parents members to it. Child pair j of step has its own streams. */
-static void breed(Search *s, Group *group, size_t n, uint32_t step)
+static void breed(Search *s, Population *group, size_t n, uint32_t step)
 {
     const Problem *p = s->problem;
     const SearchConfig *c = s->config;
-    Group parents = *group;
+    Population parents = *group;
     for (size_t j = 0; 2 * j < n; j++) {
         const uint32_t name = step * (uint32_t)c->population + (uint32_t)j;
         Random choice = random_stream(c->seed, RANDOM_PARENTS, (uint32_t)s->generation, name);
@@ -40,7 +40,7 @@ static void breed(Search *s, Group *group, size_t n, uint32_t step)
                               c->mutation_eta, x);
             if (p->repair)
                 p->repair(x, p->user);
-            group_add(group, x);
+            population_add(group, x);
         }
     }
 }
@@ -56,12 +56,12 @@ static void add_descended(Search *s)
         s->followed[r] = r;
     random_shuffle(&random, s->wishes.n, s->followed);
     const size_t rays = (size_t)(guide_rays(s) * (double)n);
-    guide_descend(s, INFILL_RAYS, rays, s->followed, s->descended);
+    guide_descend(s, INFILL_HYPERVOLUME, rays, s->followed, s->descended);
     guide_descend(s, INFILL_PBI, n - rays, s->followed + rays, s->descended + rays * p->n_var);
     for (size_t i = 0; i < n; i++) {
         if (p->repair)
             p->repair(s->descended + i * p->n_var, p->user);
-        group_add(&s->offspring, s->descended + i * p->n_var);
+        population_add(&s->offspring, s->descended + i * p->n_var);
     }
 }
 
@@ -72,14 +72,14 @@ static void add_pending(Search *s)
     const size_t first = s->offspring.n, most = s->came_max, n = feed_pending(s->feed);
     s->n_pending = n < most ? n : most;
     for (size_t i = 0; i < s->n_pending; i++)
-        group_add(&s->offspring, feed_design(s->feed, i, &asked));
+        population_add(&s->offspring, feed_design(s->feed, i, &asked));
     guide_predict(s, &s->offspring, first, 1);
 }
 
 /* What survives some generations of variation and selection on the surface and has not been simulated. */
 static void add_evolved(Search *s)
 {
-    group_copy(&s->pool, &s->population);
+    population_copy(&s->pool, &s->population);
     for (uint32_t step = 0; step < INNER_GENERATIONS; step++) {
         const size_t n_parents = s->pool.n;
         breed(s, &s->pool, s->config->population, step);
@@ -88,16 +88,16 @@ static void add_evolved(Search *s)
     }
     for (size_t i = 0; i < s->pool.n; i++)
         if (s->pool.row[i] == PREDICTED)
-            group_copy_member(&s->offspring, &s->pool, i);
+            population_append(&s->offspring, &s->pool, i);
 }
 
 static void add_plain(Search *s, size_t n)
 {
     const size_t n_parents = s->population.n, first = s->offspring.n;
-    group_copy(&s->pool, &s->population);
+    population_copy(&s->pool, &s->population);
     breed(s, &s->pool, n, 0);
     for (size_t i = n_parents; i < s->pool.n; i++)
-        group_copy_member(&s->offspring, &s->pool, i);
+        population_append(&s->offspring, &s->pool, i);
     s->n_plain = n;
     guide_predict(s, &s->offspring, first, 1);
 }

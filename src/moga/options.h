@@ -1,4 +1,4 @@
-/* moga/options.h -- choices of the search (moga/search.h, moga/survival.h). */
+/* moga/options.h -- choices of the search (moga/search.h, moga/selection.h). */
 #ifndef IMTET_MOGA_OPTIONS_H
 #define IMTET_MOGA_OPTIONS_H
 
@@ -10,7 +10,7 @@
 #define SURROGATE_USE_LIST(X) X(SURROGATE_ON, "on") X(SURROGATE_OFF, "off") X(SURROGATE_AUTO, "auto")
 typedef enum { SURROGATE_USE_LIST(CHOICE_NAME) } SurrogateUse;
 
-#define SURVIVAL_KIND_LIST(X) X(SURVIVAL_NSGA3, "nsga3") X(SURVIVAL_RVEA, "rvea") X(SURVIVAL_MOEAD, "moead")
-typedef enum { SURVIVAL_KIND_LIST(CHOICE_NAME) } SurvivalKind;
+#define SELECTION_KIND_LIST(X) X(SELECTION_NSGA3, "nsga3") X(SELECTION_RVEA, "rvea")
+typedef enum { SELECTION_KIND_LIST(CHOICE_NAME) } SelectionKind;
 
 #endif

@@ -19,7 +19,7 @@ static int scatters_by(const Archive *a, double part)
     for (size_t k = 0; k < a->n_obj; k++) {
         range_of_front(a, k, &least, &most);
         for (size_t i = 0; i < a->n_front; i++)
-            if (a->deviation[a->front[i] * a->n_obj + k] > part * (most - least))
+            if (a->sd[a->front[i] * a->n_obj + k] > part * (most - least))
                 return 1;
     }
     return 0;
@@ -27,12 +27,12 @@ static int scatters_by(const Archive *a, double part)
 
 static int is_noticeable(const Archive *a)
 {
-    return a->n_repeats < NOISE_SAMPLE || scatters_by(a, NOISE_NEGLIGIBLE);
+    return a->n_replicates < NOISE_SAMPLE || scatters_by(a, NOISE_NEGLIGIBLE);
 }
 
 int repeat_tells_of_luck(const Search *s)
 {
-    return s->archive.n_repeats > 0 && scatters_by(&s->archive, NOISE_SIGNIFICANT);
+    return s->archive.n_replicates > 0 && scatters_by(&s->archive, NOISE_SIGNIFICANT);
 }
 
 static size_t n_pending_repeats(const Search *s)
@@ -53,7 +53,7 @@ static size_t room_of(const Search *s)
     return s->config->max_evals > asked ? s->config->max_evals - asked : 0;
 }
 
-double search_repeats(size_t n, double share, size_t n_var)
+double search_replicates(size_t n, double share, size_t n_var)
 {
     return share * fmax((double)n - (double)(REPLICATE_AFTER * n_var), 0.0);
 }
@@ -61,9 +61,9 @@ double search_repeats(size_t n, double share, size_t n_var)
 /* Repeats that may still be made, of those that `part` of n simulations bring with them. */
 static size_t repeats_left(const Search *s, size_t n, double part)
 {
-    const double due = floor(part * search_repeats(n, s->config->repeats, s->problem->n_var));
-    const size_t made = s->archive.n_repeats + n_pending_repeats(s);
-    if (!s->problem->is_noisy || s->config->answers_max < 2 || due <= (double)made || !is_noticeable(&s->archive))
+    const double due = floor(part * search_replicates(n, s->config->repeats, s->problem->n_var));
+    const size_t made = s->archive.n_replicates + n_pending_repeats(s);
+    if (!s->problem->is_noisy || s->config->replicates_max < 2 || due <= (double)made || !is_noticeable(&s->archive))
         return 0;
     return (size_t)due - made;
 }
@@ -110,9 +110,9 @@ static size_t pick(const Search *s)
     size_t best = a->n;
     for (size_t i = 0; i < a->n_front; i++) {
         const size_t row = a->front[i];
-        const int comes_first = best == a->n || a->answers[row] < a->answers[best] ||
-                                (a->answers[row] == a->answers[best] && s->wins[row] > s->wins[best]);
-        if (s->wins[row] > 0 && a->answers[row] < s->config->answers_max && comes_first &&
+        const int comes_first = best == a->n || a->replicates[row] < a->replicates[best] ||
+                                (a->replicates[row] == a->replicates[best] && s->wins[row] > s->wins[best]);
+        if (s->wins[row] > 0 && a->replicates[row] < s->config->replicates_max && comes_first &&
             !(s->feed && feed_has(s->feed, a->X + row * a->n_var)))
             best = row;
     }
@@ -129,12 +129,12 @@ static size_t append(Search *s, size_t n, size_t limit)
         return n;
     count_wins(s);
     for (size_t row; n < limit && (row = pick(s)) < s->archive.n; n++) {
-        const int is_new = s->wins[row] >= landmark && s->archive.answers[row] == 1;
+        const int is_new = s->wins[row] >= landmark && s->archive.replicates[row] == 1;
         if (is_race && !is_new)
             break;
         is_race = is_new;
         memcpy(s->X + n * n_var, s->archive.X + row * n_var, n_var * sizeof *s->X);
-        s->draws[n] = s->archive.answers[row];
+        s->draws[n] = s->archive.replicates[row];
         s->wins[row] = 0;
     }
     return n;

@@ -54,8 +54,8 @@ static size_t answers_wanted(const Search *s, int is_last)
     const Archive *a = &s->archive;
     size_t most = 0;
     for (size_t i = 0; i < a->n_front; i++)
-        most = a->answers[a->front[i]] > most ? a->answers[a->front[i]] : most;
-    return is_last && most < s->config->answers_min ? most : s->config->answers_min;
+        most = a->replicates[a->front[i]] > most ? a->replicates[a->front[i]] : most;
+    return is_last && most < s->config->replicates_min ? most : s->config->replicates_min;
 }
 
 /* The front with answers enough; where answers are not noisy one is enough. */
@@ -66,7 +66,7 @@ static size_t count_reported(Search *s, int is_last)
     size_t n = 0;
     memcpy(s->reported, a->on_front, a->n);
     for (size_t i = 0; i < a->n_front; i++) {
-        s->reported[a->front[i]] = a->answers[a->front[i]] >= wanted;
+        s->reported[a->front[i]] = a->replicates[a->front[i]] >= wanted;
         n += s->reported[a->front[i]];
     }
     return n;
@@ -84,8 +84,8 @@ static int report(Search *s, int is_last, ObserveFn observe, void *user)
         .n_con = a->n_con,
         .X = a->X,
         .F = a->F,
-        .deviation = a->deviation,
-        .answers = a->answers,
+        .sd = a->sd,
+        .replicates = a->replicates,
         .Y = a->Y,
         .H = a->H,
         .ok = a->ok,
@@ -94,10 +94,10 @@ static int report(Search *s, int is_last, ObserveFn observe, void *user)
         .on_front = s->reported,
         .n_front = n_reported,
         .n_failed = a->n_failed,
-        .n_repeats = a->n_repeats,
+        .n_replicates = a->n_replicates,
         .generation_now = s->generation,
         .n_predicted = s->n_predicted,
-        .surrogate_error = surface_error(s->surface),
+        .surrogate_error = surrogate_error(s->surrogate),
         .seconds = search_seconds(s),
         .simulation_s = s->n_timed > 0 ? s->simulating_s / (double)s->n_timed : NAN,
         .own_s = s->n_guided > 0 ? s->guided_s / (double)s->n_guided : NAN,
@@ -228,15 +228,15 @@ static Status create(Search *s, Err *err)
     TRY(directions_create(&s->directions, p->n_obj, outer, inner, err));
     TRY(directions_spread(&s->wishes, p->n_obj, wishes_for(p->n_obj, s->config), err));
     TRY(archive_init(&s->archive, 2 * initial, p->n_var, p->n_obj, p->n_con, err));
-    TRY(survival_create(&s->survival, s->config->survival, n_pool, &s->directions, err));
+    TRY(selection_create(&s->selection, s->config->selection, n_pool, &s->directions, err));
     for (int kind = 0; kind < INFILL_KINDS; kind++)
         TRY(infill_create(&s->infill[kind], (InfillKind)kind, n_pool, &s->wishes, err));
     for (int kind = 0; kind < INFILL_KINDS; kind++)
         TRY(infill_create(&s->gained[kind], (InfillKind)kind, 1, &s->wishes, err));
-    TRY(surface_create(&s->surface, p, centres, n_pool, err));
-    TRY(group_create(&s->population, 2 * population + lead, p->n_var, p->n_obj, err));
-    TRY(group_create(&s->offspring, n_pool, p->n_var, p->n_obj, err));
-    TRY(group_create(&s->pool, n_pool, p->n_var, p->n_obj, err));
+    TRY(surrogate_create(&s->surrogate, p, centres, n_pool, err));
+    TRY(population_create(&s->population, 2 * population + lead, p->n_var, p->n_obj, err));
+    TRY(population_create(&s->offspring, n_pool, p->n_var, p->n_obj, err));
+    TRY(population_create(&s->pool, n_pool, p->n_var, p->n_obj, err));
     if (s->config->asynchronous && p->stream)
         TRY(feed_create(&s->feed, p->n_var, p->n_obj, p->n_con, err));
     Carve c = {0};
@@ -253,15 +253,15 @@ static void release(Search *s)
     directions_free(&s->directions);
     directions_free(&s->wishes);
     archive_free(&s->archive);
-    survival_free(s->survival);
+    selection_free(s->selection);
     for (int kind = 0; kind < INFILL_KINDS; kind++)
         infill_free(s->infill[kind]);
     for (int kind = 0; kind < INFILL_KINDS; kind++)
         infill_free(s->gained[kind]);
-    surface_free(s->surface);
-    group_free(&s->population);
-    group_free(&s->offspring);
-    group_free(&s->pool);
+    surrogate_free(s->surrogate);
+    population_free(&s->population);
+    population_free(&s->offspring);
+    population_free(&s->pool);
     feed_free(s->feed);
     free(s->state.bytes);
     free(s->wins);

@@ -1,7 +1,7 @@
 /* moga/search.h -- the surrogate-assisted search for the Pareto front.
  *
  *   1 Latin hypercube start, simulated
- *   2 a radial basis response surface on what has been simulated (moga/surface.h)
+ *   2 a radial basis response surface on what has been simulated (moga/surrogate.h)
  *   3 tournament selection, SBX, polynomial mutation: one offspring population, bred over a few generations on the
  *     surface, and designs that descend the surface along reference directions; where the surface explains too little,
  *     plain children
@@ -12,7 +12,7 @@
  *     most is measured in two ways, which share a batch by what they gain; once there are many simulations a few of
  *     every batch are plain children that promise most, and most of it while these gain more. A design one of whose
  *     three nearest simulated ones failed is not chosen, and plain children take the share of a batch that fails
- *   5 environmental selection with reference directions (NSGA-III, moga/survival.h); back to 2
+ *   5 environmental selection with reference directions (NSGA-III, moga/selection.h); back to 2
  *
  * Predicted designs may live in the population; only simulated ones enter the archive, and the front is made of the
  * archive alone.
@@ -25,7 +25,7 @@
  *               while the search goes on, the rest at its end. A design has the mean of its answers, and dominance
  *               asks for more than the errors (moga/archive.h). Where the spread is more than a fifth of the front's
  *               range, parents, survivors and what is to be beaten are compared by estimates, means that the surface
- *               has corrected within their errors (moga/spread.h). A spread below a thousandth of the range ends the
+ *               has corrected within their errors (moga/noise.h). A spread below a thousandth of the range ends the
  *               repeats
  * Threads       the problem's evaluate gets one call per generation with the whole batch; set BLAS to one thread
  * Asynchronous  no thread waits for the slowest of a batch: the problem's own threads take one design after the other,
@@ -61,11 +61,11 @@ typedef struct {
                              then smaller, by a half at most */
     size_t n_given;
     SurrogateUse surrogate;
-    SurvivalKind survival;
+    SelectionKind selection;
     int asynchronous;          /* where the problem can; see above */
     double repeats;            /* of a noisy problem: share of max_evals that is spent on designs simulated again */
-    size_t answers_min;        /* ... of each design that is reported to be on the front */
-    size_t answers_max;        /* ... of each design, the first included */
+    size_t replicates_min;     /* ... of each design that is reported to be on the front */
+    size_t replicates_max;     /* ... of each design, the first included */
     double max_seconds;        /* 0: no limit */
     double nondominated_share; /* stop when this share of the archive is nondominated; 1: never */
     double trust_error;        /* share of an objective's range in the archive */
@@ -74,7 +74,7 @@ typedef struct {
 
 /* Repeats that n simulations of a noisy problem bring at most. Where new designs are worth more than certainty about
  * old ones there are none: of the first REPLICATE_AFTER simulations for each variable. */
-double search_repeats(size_t n, double share, size_t n_var);
+double search_replicates(size_t n, double share, size_t n_var);
 
 typedef enum { STOP_NONE, STOP_GENERATIONS, STOP_EVALUATIONS, STOP_TIME, STOP_SHARE, STOP_ASKED } StopReason;
 const char *stop_reason_words(StopReason reason);
@@ -84,14 +84,14 @@ typedef struct {
     size_t n, n_var, n_obj, n_con;
     const double *X, *Y, *H;       /* (n, n_var) (n, n_obj) (n, n_con) designs, and what each simulation answered */
     const double *F;               /* (n, n_obj) of a design's first row: mean of its answers */
-    const double *deviation;       /* (n, n_obj) ... and standard deviation of one of them */
-    const size_t *answers;         /* (n) of a design's first row, else 0 */
+    const double *sd;              /* (n, n_obj) ... and standard deviation of one of them */
+    const size_t *replicates;      /* (n) of a design's first row, else 0 */
     const unsigned char *ok;       /* (n) 0: the simulation failed */
     const unsigned char *kind;     /* (n) EvaluationKind */
     const size_t *generation;      /* (n) */
-    const unsigned char *on_front; /* (n) feasible, ok, nondominated and answered answers_min times at least; at the
+    const unsigned char *on_front; /* (n) feasible, ok, nondominated and answered replicates_min times at least; at the
                                       end, where none is: those with the most answers */
-    size_t n_front, n_failed, n_repeats;
+    size_t n_front, n_failed, n_replicates;
     size_t generation_now;
     size_t n_predicted;     /* offspring of this generation whose prediction stood */
     double surrogate_error; /* median leave-one-out error, share of range, worst objective; NaN: no surface yet */

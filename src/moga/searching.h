@@ -22,11 +22,11 @@
 #include "moga/constants.h"
 #include "moga/directions.h"
 #include "moga/feed.h"
-#include "moga/group.h"
+#include "moga/population.h"
 #include "moga/infill.h"
 #include "moga/search.h"
-#include "moga/survival.h"
-#include "moga/surface.h"
+#include "moga/selection.h"
+#include "moga/surrogate.h"
 
 /* What proposes a design. */
 typedef enum { SOURCE_SURFACE, SOURCE_PLAIN, SOURCES } Source;
@@ -43,10 +43,10 @@ typedef struct {
     const SearchConfig *config;
     Archive archive;
     Directions directions, wishes; /* of survival, of the choice of simulations */
-    Survival *survival;
+    Selection *selection;
     Infill *infill[INFILL_KINDS], *gained[INFILL_KINDS]; /* by both ways: of choosing, of measuring what is gained */
-    Surface *surface;
-    Group population, pool, offspring;
+    Surrogate *surrogate;
+    Population population, pool, offspring;
     size_t generation, n_predicted, batch_max;
     size_t n_came, came_max;       /* results that this generation took in, first in X, F, G, ok; most of them */
     size_t n_pending;              /* the last of the offspring: asked for already */
@@ -97,22 +97,22 @@ size_t batch_size(const Search *s);
 Status batch_simulate(Search *s, size_t n_new, size_t n, Err *err);
 Status batch_finish(Search *s, Err *err); /* asynchronous: only what is under way */
 size_t batch_lead_max(const SearchConfig *c, size_t n_workers);
-size_t batch_pending(const Search *s);                  /* asynchronous: asked for, and not in the archive yet */
-void batch_join(Search *s, Group *group, size_t first); /* simulated designs of the rows first.. join the group */
+size_t batch_pending(const Search *s);                       /* asynchronous: asked for, and not in the archive yet */
+void batch_join(Search *s, Population *group, size_t first); /* simulated designs of the rows first.. join the group */
 
 /* guide.c */
 void guide_weigh_costs(Search *s);
-int guide_may_lead(const Search *s);                         /* the surface is wanted and worth its time */
-int guide_leads(const Search *s);                            /* ... and can be relied on */
-int guide_trusts(const Search *s, const Group *g, size_t i); /* the prediction of this member stands */
-void guide_begin(Search *s);                                 /* before the first batch */
+int guide_may_lead(const Search *s);                              /* the surface is wanted and worth its time */
+int guide_leads(const Search *s);                                 /* ... and can be relied on */
+int guide_trusts(const Search *s, const Population *g, size_t i); /* the prediction of this member stands */
+void guide_begin(Search *s);                                      /* before the first batch */
 double guide_rays(const Search *s);  /* share of a batch that is chosen by rays, the rest by PBI */
 size_t guide_plain(const Search *s); /* plain children in a batch that the surface leads */
 int guide_expects_failure(const Search *s, const double x[]); /* one of the simulated designs nearest to x did */
 void guide_judge(Search *s);                                  /* by the results that came */
 void guide_measure_front(Search *s);
 Status guide_fit(Search *s, Err *err);
-void guide_predict(Search *s, Group *group, size_t first, int with_uncertainty);
+void guide_predict(Search *s, Population *group, size_t first, int with_uncertainty);
 void guide_descend(Search *s, InfillKind kind, size_t n, const size_t directions[], double X[]);
 
 /* repeat.c: after the n designs of a batch some that the search builds on; at the end, a batch of those that it
@@ -123,7 +123,7 @@ int repeat_tells_of_luck(const Search *s); /* answers scatter so much that means
 
 /* offspring.c: plainly: without the surface. step names the random stream. */
 void offspring_make(Search *s, int plainly);
-void offspring_survive(Search *s, Group *group, uint32_t step);
+void offspring_survive(Search *s, Population *group, uint32_t step);
 
 /* choice.c: how many designs of the batch wait for simulation, and what they are. */
 size_t choice_make(Search *s);

@@ -18,8 +18,8 @@ static void state_pack(Search *s, Pack *p)
     pack(p, &s->sources, sizeof s->sources);
     pack(p, &s->ways, sizeof s->ways);
     pack_size(p, &s->aside, ASIDE_YES);
-    group_pack(&s->population, p, s->archive.n);
-    surface_pack(s->surface, p);
+    population_pack(&s->population, p, s->archive.n);
+    surrogate_pack(s->surrogate, p);
     if (s->feed)
         feed_pack(s->feed, p);
 }
@@ -38,7 +38,7 @@ Status state_restore(Search *s, const SearchStart *start, Err *err)
         TRY(archive_insert(&s->archive, 1, start->X + i * p->n_var, start->F + i * p->n_obj,
                            p->n_con > 0 ? start->G + i * p->n_con : NULL, start->ok + i, start->kind[i],
                            start->generation[i], err));
-    archive_settle(&s->archive);
+    archive_update_noise(&s->archive);
     if (s->feed)
         feed_replay(s->feed, start->n_later, start->X + start->n * p->n_var, start->F + start->n * p->n_obj,
                     start->G ? start->G + start->n * p->n_con : NULL, start->ok + start->n, start->kind + start->n);

@@ -1,4 +1,4 @@
-/* rbf/kernel.h -- the inner loops of the response surface: distances, kernel values, their derivatives and sums.
+/* rbf/kernel.h -- the inner loops of the interpolant: distances, kernel values, their derivatives and sums.
  *
  * Compiled once for any machine and once for wide vectors, chosen when the program starts; on one machine the same
  * numbers always give the same bits. Centres lie variable by variable, S (n_dim, stride), warped and scaled;

@@ -1,4 +1,4 @@
-/* rbf/model.h -- what the response surface is made of; shared by rbf.c (fit, prediction) and tune.c, by nobody else. */
+/* rbf/model.h -- what the interpolant is made of; for rbf.c (fit, prediction), tune.c and their test. */
 #ifndef IMTET_RBF_MODEL_H
 #define IMTET_RBF_MODEL_H
 
@@ -14,32 +14,31 @@ typedef struct {
 typedef struct {
     RbfForm form;
     size_t n_tail;      /* columns of the tail really used: fewer when there are too few centres */
-    double mean, scale; /* of F: the surface is built on (f - mean) / scale */
+    double mean, scale; /* of F: the interpolant is built on (f - mean) / scale */
     double explained;
     Shape shape;
     double *S;             /* (n_dim, stride) centres, warped and scaled */
     double *tail;          /* (1 + 2 n_dim) coefficients b */
     double *weight;        /* (n_max) w */
     double *leave_one_out; /* (n_max) [unit of f] */
-    double *smooth;        /* (n_max) [unit of f] */
 } Output;
 
 /* What one thread needs to fit one output; matrices column-major as LAPACK likes them, lower triangles. */
 typedef struct {
-    double *C, *S, *Z;                                        /* centres of the tuning choice; scaled; for gradients */
+    double *C, *S, *Z;                                        /* centres of the tuning set; scaled; for gradients */
     double *by_a, *by_b;                                      /* (n) derivatives by the warp */
     double *A;                                                /* (n, n) kernel matrix, its factor, its inverse */
     double *P;                                                /* (n, n_tail + 1) tail basis and data */
     double *M;                                                /* (n_tail, n_tail) normal matrix of the tail, factored */
     double *b;                                                /* (n_tail) */
     double *y, *w;                                            /* (n) data, weights */
-    double *noise;                                            /* (n) variance of each answer, in nuggets */
+    double *noise;                                            /* (n) variance of each value, in nuggets */
     double *q;                                                /* (n) diagonal of the projected inverse */
     double *log_p, *best_p, *gradient, *last_gradient, *step; /* (n_dim + 3) log of theta, warp, nugget */
     double *theta;                                            /* (n_dim) of the step under way */
     Shape shape, best_shape;
     RbfForm best_form;
-    double least_error;
+    double min_error;
 } Worker;
 
 struct Rbf {
@@ -48,7 +47,7 @@ struct Rbf {
     size_t n_tuned; /* calls of rbf_tune */
     double *C;      /* (3, n_dim, stride) centres u, log u, log (1 - u) */
     double *F;      /* (n_out, n_max) */
-    double *noise;  /* (n_out, n_max) variance of each answer, in nuggets */
+    double *noise;  /* (n_out, n_max) variance of each value, in nuggets */
     Output *output;
     Worker *worker;
     Status *status;

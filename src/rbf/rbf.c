@@ -27,7 +27,6 @@ static void layout(Rbf *m, Carve *c)
         o->tail = carve(c, t, sizeof(double));
         o->weight = carve(c, n, sizeof(double));
         o->leave_one_out = carve(c, n, sizeof(double));
-        o->smooth = carve(c, n, sizeof(double));
     }
     for (size_t k = 0; k < m->n_workers; k++) {
         Worker counted, *w = c->base ? &m->worker[k] : &counted;
@@ -61,7 +60,7 @@ Status rbf_create(Rbf **out, size_t n_max, size_t n_dim, size_t n_out, Err *err)
     Rbf *m = calloc(1, sizeof *m);
     *out = m;
     if (!m)
-        return fail(err, STATUS_NO_MEMORY, "no memory for a response surface");
+        return fail(err, STATUS_NO_MEMORY, "no memory for an interpolant");
     m->n_max = n_max;
     m->n_dim = n_dim;
     m->n_out = n_out;
@@ -74,7 +73,7 @@ Status rbf_create(Rbf **out, size_t n_max, size_t n_dim, size_t n_out, Err *err)
     if (!m->store) {
         rbf_free(m);
         *out = NULL;
-        return fail(err, STATUS_NO_MEMORY, "no memory for a response surface on %zu designs (%.1f GB)", n_max,
+        return fail(err, STATUS_NO_MEMORY, "no memory for an interpolant on %zu designs (%.1f GB)", n_max,
                     (double)c.used / 1e9);
     }
     layout(m, &(Carve){.base = m->store});
@@ -201,7 +200,7 @@ void model_invert(int n, double L[], int ld)
     model_invert(c, C, ld);
 }
 
-/* Leave-one-out error of the whole surface, tail refitted, without n refits:
+/* Leave-one-out error of the whole interpolant, tail refitted, without n refits:
  *     e_i = w_i / Q_ii,     Q = A^-1 - A^-1 P (P'A^-1 P)^-1 P'A^-1
  * Q y = w, so this is Rippa's formula with the inverse of the bordered matrix. */
 void model_leave_one_out(Worker *k, size_t n, size_t n_tail)
@@ -230,7 +229,7 @@ static void standardise(const Rbf *m, Output *o, const double f[])
     o->scale = square > 0.0 ? sqrt(square) : 1.0;
 }
 
-/* The surface at its own centres: A w + P b = y, and the answers' variance is no part of it. */
+/* A w + P b = y, standardised, and the leave-one-out errors. */
 static int fit_output(const Rbf *m, Worker *k, Output *o, const double f[], const double noise[])
 {
     const size_t n = m->n;
@@ -245,8 +244,6 @@ static int fit_output(const Rbf *m, Worker *k, Output *o, const double f[], cons
     o->n_tail = model_weights(m, k, n, m->C, model_tail(form.tail, n, m->n_dim));
     memcpy(o->tail, k->b, o->n_tail * sizeof *o->tail);
     memcpy(o->weight, k->w, n * sizeof *o->weight);
-    for (size_t i = 0; i < n; i++)
-        o->smooth[i] = f[i] - o->scale * form.nugget * noise[i] * k->w[i];
     model_leave_one_out(k, n, o->n_tail);
     double square = 0.0;
     for (size_t i = 0; i < n; i++) {
@@ -268,8 +265,8 @@ Status model_fit(Rbf *m, Err *err)
     for (size_t k = 0; k < m->n_out; k++)
         if (m->status[k] != STATUS_OK)
             return fail(err, STATUS_BAD_DATA,
-                        "response surface: output %zu of %zu designs cannot be fitted (a value that is not finite?)",
-                        k + 1, m->n);
+                        "interpolant: output %zu of %zu designs cannot be fitted (a value that is not finite?)", k + 1,
+                        m->n);
     return STATUS_OK;
 }
 
@@ -289,7 +286,7 @@ static void place(Rbf *m, size_t i, size_t d, double u)
 Status rbf_fit(Rbf *m, size_t n, const double X[], const double F[], const double noise[], Err *err)
 {
     if (n < 2 || n > m->n_max)
-        return fail(err, STATUS_INTERNAL, "response surface: %zu centres, wanted 2 to %zu", n, m->n_max);
+        return fail(err, STATUS_INTERNAL, "interpolant: %zu centres, wanted 2 to %zu", n, m->n_max);
     m->n = n;
     for (size_t i = 0; i < n; i++) {
         for (size_t d = 0; d < m->n_dim; d++)
@@ -438,24 +435,9 @@ const double *rbf_leave_one_out(const Rbf *m, size_t output)
     return m->output[output].leave_one_out;
 }
 
-const double *rbf_smooth(const Rbf *m, size_t output)
-{
-    return m->output[output].smooth;
-}
-
 double rbf_explained(const Rbf *m, size_t output)
 {
     return m->output[output].explained;
-}
-
-void rbf_set_form(Rbf *m, size_t output, RbfForm form)
-{
-    m->output[output].form = form;
-}
-
-void rbf_set_scales(Rbf *m, size_t output, const double theta[])
-{
-    memcpy(m->output[output].shape.theta, theta, m->n_dim * sizeof *theta);
 }
 
 static int form_is_known(RbfForm f)

@@ -1,24 +1,28 @@
-/* rbf/rbf.h -- radial basis response surface of several outputs, with its own leave-one-out errors.
+/* rbf/rbf.h -- radial basis interpolant of several outputs, with its own leave-one-out errors.
  *
  *   s(x) = b . p(x) + sum_j w_j phi(r(x, c_j)),    r^2 = sum_d theta_d (v(x_d) - v(c_jd))^2     for each output
- *   v(u) = (u^a + 1 - (1 - u)^b) / 2               stretches what lies near a bound where a, b < 1: a gap of some
+ *   v(u) = (u^a + 1 - (1 - u)^b) / 2               stretches the neighbourhood of a bound where a, b < 1: a gap of some
  *                                                  millimetres differs more from the next than one of half a metre
  *
- * phi is positive definite (Gaussian or Matern 5/2), p a constant, linear or diagonal quadratic tail, and every output
- * has its own kernel, tail, length scales theta, warp a, b and nugget (a ridge on the kernel matrix: 1e-8 for smooth
- * answers, more where the answers are noisy or designs nearly equal; times noise_i where the answers of some centres
- * are known better than those of others: 1/n for a mean of n). Scales, warp and nugget maximise the likelihood,
- * kernel and tail have the least leave-one-out error; both are looked for by rbf_tune and kept by rbf_fit.
+ *   phi     Gaussian or Matern 5/2, positive definite
+ *   p       constant, linear or diagonal quadratic tail
+ *   nugget  on the diagonal of the kernel matrix: 1e-8 for smooth data, more where data are noisy or centres nearly
+ *           equal; times noise_i where some centres are known better than others: 1/n for a mean of n replicates
  *
- * Error of a prediction  root mean square of the centres' leave-one-out errors, weighted with 1/r^4: a local average
+ * Every output has its own kernel, tail, length scales theta, warp a, b and nugget. rbf_tune maximises the likelihood
+ * over scales, warp and nugget and takes the kernel and tail with the smallest leave-one-out error; rbf_fit keeps them.
+ *
+ * Error       of a prediction: root mean square of the leave-one-out errors weighted with 1/r^4, a local average
  * Life cycle  rbf_create -> (rbf_fit -> (rbf_tune) -> rbf_eval ...) ... -> rbf_free; call rbf_tune now and then
  * Memory      all of it in rbf_create, for at most n_max centres
  * Threads     rbf_fit and rbf_tune share the outputs out over OpenMP threads (set BLAS to one); rbf_eval only reads
  * Shapes      row-major X (n, n_dim), F (n, n_out); x scaled to the unit cube; n_dim <= RBF_DIM_MAX
  * Errors      near-equal centres raise the nugget until the matrix factors; BAD_DATA if that does not help (NaN)
- * Sources     Rippa, Adv. Comput. Math. 11 (1999) 193-210 (leave-one-out); Rasmussen and Williams, Gaussian Processes
- *             for Machine Learning (2006) ch. 2 and 5 (kernels, tail, likelihood); Snoek, Swersky, Zemel and Adams,
- *             Input warping for Bayesian optimization of non-stationary functions, ICML 2014 (the idea of v). */
+ * Sources     Rippa, Adv. Comput. Math. 11 (1999) 193-210 (leave-one-out)
+ *             Rasmussen and Williams, Gaussian Processes for Machine Learning (2006) ch. 2 and 5 (kernels, tail,
+ *             likelihood)
+ *             Snoek, Swersky, Zemel and Adams, Input warping for Bayesian optimization of non-stationary functions,
+ *             ICML 2014 (the idea of v) */
 #ifndef IMTET_RBF_RBF_H
 #define IMTET_RBF_RBF_H
 
@@ -44,12 +48,11 @@ typedef struct {
 Status rbf_create(Rbf **out, size_t n_max, size_t n_dim, size_t n_out, Err *err);
 void rbf_free(Rbf *m); /* NULL is fine */
 
-/* Fits F at X, whose variances are nugget times noise (n, n_out) or, where that is NULL, the nugget, with the forms and
- * scales that the model has; rbf_create starts with Matern, linear tail, theta = 1 / n_dim, no warp. */
+/* Fits F at X with the present forms and scales; variances are nugget times noise (n, n_out), NULL: 1; rbf_create starts with Matern, linear tail, theta = 1 / n_dim, no warp. */
 Status rbf_fit(Rbf *m, size_t n, const double X[], const double F[], const double noise[], Err *err);
 
-/* Looks for better forms and scales, starting from the present ones, on the data of the last rbf_fit (an even choice
- * of at most 250 of them), and fits again. */
+/* Tunes forms and scales, starting from the present ones, on the data of the last rbf_fit (at most 250 of them, evenly
+ * spread), and fits again. */
 Status rbf_tune(Rbf *m, Err *err);
 
 /* F (n, n_out) at X (n, n_dim), and the errors E (n, n_out), which may be NULL. RBF_BLOCK points cost little more than
@@ -60,14 +63,9 @@ void rbf_eval(const Rbf *m, size_t n, const double X[], double F[], double E[]);
 void rbf_slope(const Rbf *m, size_t n, const double X[], double F[], double J[]);
 
 const double *rbf_leave_one_out(const Rbf *m, size_t output); /* (n) f_i minus the prediction made without i */
-const double *rbf_smooth(const Rbf *m, size_t output);        /* (n) the surface at its own centres */
 double rbf_explained(const Rbf *m, size_t output);            /* 1 - leave-one-out variance / variance; 1: perfect */
 
-void rbf_set_form(Rbf *m, size_t output, RbfForm form);           /* used by the next rbf_fit */
-void rbf_set_scales(Rbf *m, size_t output, const double theta[]); /* used by the next rbf_fit */
-
-/* Forms, scales, warps and how often they were tuned: with the data of the next rbf_fit all that the model remembers.
- */
+/* Forms, scales, warps and how often they were tuned: with the data of the next rbf_fit all of the model's state. */
 void rbf_pack(Rbf *m, Pack *p);
 
 #endif

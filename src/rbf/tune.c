@@ -8,9 +8,9 @@
 #include "rbf/kernel.h"
 #include "rbf/model.h"
 
-/* What is looked for is the logarithm of each: theta of every variable, then a, b of the warp and the nugget. Weak
- * priors keep what the data say nothing about: log theta near the mean over the variables, log a and log b near 0, the
- * latter the less the more data there are: few can always be explained by a warp. */
+/* Parameters p: logarithms of theta of every variable, of a, b of the warp and of the nugget. Weak normal priors hold
+ * what the data do not determine: log theta about its mean over the variables, log a and log b about 0. The standard
+ * deviation of the latter grows with the number of data: a warp can always explain a few. */
 
 static size_t n_parameters(const Rbf *m)
 {
@@ -26,12 +26,12 @@ static void read_parameters(const Rbf *m, const double p[], Shape *shape, double
     *nugget = exp(p[m->n_dim + 2]);
 }
 
-static double least_parameter(const Rbf *m, size_t i)
+static double min_parameter(const Rbf *m, size_t i)
 {
     return log(i < m->n_dim ? THETA_MIN : i < m->n_dim + 2 ? WARP_MIN : NUGGET_MIN);
 }
 
-static double most_parameter(const Rbf *m, size_t i)
+static double max_parameter(const Rbf *m, size_t i)
 {
     return log(i < m->n_dim ? THETA_MAX : i < m->n_dim + 2 ? WARP_MAX : NUGGET_MAX);
 }
@@ -146,19 +146,19 @@ static void climb(const Rbf *m, Worker *k, size_t n, RbfForm *form, Shape *shape
             continue;
         }
         for (size_t i = 0; i < n_p; i++) {
-            const double agreed = g[i] * last[i];
-            k->step[i] = agreed > 0.0   ? fmin(TUNE_GROW * k->step[i], TUNE_STEP_MAX)
-                         : agreed < 0.0 ? fmax(TUNE_SHRINK * k->step[i], TUNE_STEP_MIN)
-                                        : k->step[i];
-            last[i] = agreed < 0.0 ? 0.0 : g[i];
+            const double same_sign = g[i] * last[i];
+            k->step[i] = same_sign > 0.0   ? fmin(TUNE_GROW * k->step[i], TUNE_STEP_MAX)
+                         : same_sign < 0.0 ? fmax(TUNE_SHRINK * k->step[i], TUNE_STEP_MIN)
+                                           : k->step[i];
+            last[i] = same_sign < 0.0 ? 0.0 : g[i];
             if (last[i] != 0.0)
-                p[i] = fmin(fmax(p[i] - copysign(k->step[i], g[i]), least_parameter(m, i)), most_parameter(m, i));
+                p[i] = fmin(fmax(p[i] - copysign(k->step[i], g[i]), min_parameter(m, i)), max_parameter(m, i));
         }
     }
     read_parameters(m, k->best_p, shape, &form->nugget);
 }
 
-/* Mean square leave-one-out error of a form and scales on the tuning choice. */
+/* Mean square leave-one-out error of a form and scales on the tuning set. */
 static double trial_error(const Rbf *m, Worker *k, size_t n, RbfForm *form, const Shape *shape)
 {
     model_scale(m, n, k->C, shape, k->S);
@@ -188,8 +188,8 @@ static void try_form(const Rbf *m, Worker *k, size_t n, const Output *o, RbfForm
     model_copy_shape(m, &k->shape, &o->shape);
     climb(m, k, n, &form, &k->shape, steps);
     const double e = trial_error(m, k, n, &form, &k->shape);
-    if (e < k->least_error) {
-        k->least_error = e;
+    if (e < k->min_error) {
+        k->min_error = e;
         k->best_form = form;
         model_copy_shape(m, &k->best_shape, &k->shape);
     }
@@ -200,7 +200,7 @@ static void tune_output(const Rbf *m, Worker *k, Output *o, const double f[], co
 {
     const size_t n = choose_tuning_set(m, k, o, f, noise), n_forms = RBF_N_KERNELS * RBF_N_TAILS;
     const size_t challenger = m->n_tuned % n_forms;
-    k->least_error = INFINITY;
+    k->min_error = INFINITY;
     for (size_t i = 0; i < n_forms; i++) {
         const RbfForm form = {(RbfKernel)(i / RBF_N_TAILS), (RbfTail)(i % RBF_N_TAILS),
                               fmax(o->form.nugget, NUGGET_START)};
@@ -210,7 +210,7 @@ static void tune_output(const Rbf *m, Worker *k, Output *o, const double f[], co
         else if (present || i == challenger)
             try_form(m, k, n, o, form, TUNE_STEPS);
     }
-    if (k->least_error < INFINITY) {
+    if (k->min_error < INFINITY) {
         o->form = k->best_form;
         model_copy_shape(m, &o->shape, &k->best_shape);
     }
@@ -219,7 +219,7 @@ static void tune_output(const Rbf *m, Worker *k, Output *o, const double f[], co
 Status rbf_tune(Rbf *m, Err *err)
 {
     if (m->n < 2)
-        return fail(err, STATUS_INTERNAL, "response surface: tuned before it was fitted");
+        return fail(err, STATUS_INTERNAL, "interpolant: tuned before it was fitted");
 #pragma omp parallel for schedule(dynamic, 1) num_threads((int)m->n_workers)
     for (size_t k = 0; k < m->n_out; k++)
         tune_output(m, &m->worker[omp_get_thread_num()], &m->output[k], m->F + k * m->n_max, m->noise + k * m->n_max);

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "base/json.h"
-#include "moga/cover.h"
+#include "moga/hypervolume.h"
 #include "report/report.h"
 #include "simulator/measures.h"
 #include "store/output.h"
@@ -116,7 +116,7 @@ static json_t *json_of_growth(const Run *run)
             continue;
         simulated = json_append(simulated, json_number((double)run->generation[i].simulated));
         volume = json_append(volume, json_number(v));
-        error = json_append(error, json_number(cover_error(v)));
+        error = json_append(error, json_number(hypervolume_error(v)));
     }
     return json_pack("{s:o, s:o, s:o}", "simulated", simulated, "volume", volume, "error", error);
 }

@@ -5,7 +5,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "moga/cover.h"
+#include "moga/hypervolume.h"
 #include "report/gnuplot.h"
 #include "report/report.h"
 #include "simulator/measures.h"
@@ -170,7 +170,7 @@ static void write_growth(FILE *script, const Report *r)
     for (size_t i = 0; i < run->n_generations; i++) {
         const double v = run->generation[i].hypervolume;
         if (isfinite(v))
-            numbers(script, 3, (double)run->generation[i].simulated, 100 * v, 200 * cover_error(v));
+            numbers(script, 3, (double)run->generation[i].simulated, 100 * v, 200 * hypervolume_error(v));
     }
     fputs("EOD\nset xlabel 'designs simulated'\nset ylabel 'hypervolume [%]'\nset yrange [0:*]\nunset key\n"
           "plot $G using 1:($2-$3):($2+$3) with filledcurves lc rgb '#b3d4e8', "

@@ -516,7 +516,7 @@ static Status check_repeats(const Subject *s, Err *err)
 {
     const double share = s->settings.search.replicate_share, wanted = (double)(s->settings.search.replicates_min - 1);
     if (!schema_is_noisy(&s->settings) ||
-        floor(search_repeats((size_t)s->settings.search.max_evals, share, s->schema.n_var)) >= wanted)
+        floor(search_replicates((size_t)s->settings.search.max_evals, share, s->schema.n_var)) >= wanted)
         return STATUS_OK;
     return fail(
         err, STATUS_BAD_DATA,

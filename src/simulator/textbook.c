@@ -89,7 +89,8 @@ static double mean_of(size_t first, size_t end, const double t[])
     return sum;
 }
 
-size_t textbook_wfg4_position(size_t n_var, size_t n_obj)
+/* 2 (n_obj - 1) position variables, or as much of that as leaves a variable for the distance. */
+static size_t n_position_of(size_t n_var, size_t n_obj)
 {
     const size_t once = n_obj - 1;
     return 2 * once < n_var ? 2 * once : once;
@@ -123,7 +124,7 @@ void textbook_wfg4(size_t n_var, size_t n_obj, size_t n_position, const double z
 
 static void wfg4(size_t n_var, size_t n_obj, const double z[], double f[])
 {
-    textbook_wfg4(n_var, n_obj, textbook_wfg4_position(n_var, n_obj), z, f);
+    textbook_wfg4(n_var, n_obj, n_position_of(n_var, n_obj), z, f);
 }
 
 static void wfg5(size_t n_var, size_t n_obj, const double z[], double f[])
@@ -131,7 +132,7 @@ static void wfg5(size_t n_var, size_t n_obj, const double z[], double f[])
     double t[TEXTBOOK_VAR_MAX];
     for (size_t i = 0; i < n_var; i++)
         t[i] = s_decept(z[i] / (2.0 * (double)(i + 1)));
-    concave(n_var, n_obj, textbook_wfg4_position(n_var, n_obj), t, f);
+    concave(n_var, n_obj, n_position_of(n_var, n_obj), t, f);
 }
 
 static const Textbook PROBLEMS[] = {

@@ -36,7 +36,4 @@ void textbook_dtlz2(size_t n_var, size_t n_obj, const double x[], double f[]);
 /* n_position: a multiple of n_obj - 1 below n_var; n_var <= TEXTBOOK_VAR_MAX, n_obj <= TEXTBOOK_OBJ_MAX */
 void textbook_wfg4(size_t n_var, size_t n_obj, size_t n_position, const double z[], double f[]);
 
-/* 2 (n_obj - 1), or as much of that as leaves a variable for the distance. */
-size_t textbook_wfg4_position(size_t n_var, size_t n_obj);
-
 #endif

@@ -24,33 +24,33 @@ static Status create_cover(FrontShare *share, const SearchView *v, Err *err)
         lower[k] -= 0.2 * range;
         reference[k] = fmax(reference[k], lower[k] + range);
     }
-    return cover_create(&share->cover, v->n_obj, lower, reference, 1, err);
+    return hypervolume_create(&share->hypervolume, v->n_obj, lower, reference, 1, err);
 }
 
 /* Only members of the front count: who was dominated by an earlier one has nothing to add. Where repeats move designs
  * and take them off the front, all of it is measured anew. */
 Status front_share_follow(FrontShare *share, const SearchView *v, Err *err)
 {
-    if (v->n_repeats > 0)
+    if (v->n_replicates > 0)
         front_share_free(share);
-    if (!share->cover)
+    if (!share->hypervolume)
         TRY(create_cover(share, v, err));
-    if (!share->cover)
+    if (!share->hypervolume)
         return STATUS_OK;
     for (size_t i = share->n; i < v->n; i++)
         if (v->on_front[i])
-            cover_add(share->cover, v->F + i * v->n_obj);
+            hypervolume_add(share->hypervolume, v->F + i * v->n_obj);
     share->n = v->n;
     return STATUS_OK;
 }
 
 double front_share_value(const FrontShare *share)
 {
-    return share->cover ? cover_share(share->cover) : NAN;
+    return share->hypervolume ? hypervolume_share(share->hypervolume) : NAN;
 }
 
 void front_share_free(FrontShare *share)
 {
-    cover_free(share->cover);
+    hypervolume_free(share->hypervolume);
     *share = (FrontShare){0};
 }

@@ -26,13 +26,13 @@ static void take_design(Run *h, size_t i, const Archive *a, size_t at)
     const size_t m = h->schema.n_obj;
     const double members = (double)h->settings->sim.replicates;
     Evaluation *r = &h->table.row[i];
-    if (a->answers[at] == 0)
+    if (a->replicates[at] == 0)
         return;
-    r->replicates = (int)((long)a->answers[at] * h->settings->sim.replicates);
+    r->replicates = (int)((long)a->replicates[at] * h->settings->sim.replicates);
     for (size_t k = 0; k < m && a->usable[at]; k++) {
         h->F[i * m + k] = schema_objective(&h->schema, k)->sense * a->F[at * m + k];
-        if (a->n_repeats > 0)
-            r->sd[k] = a->deviation[at * m + k] * sqrt(members);
+        if (a->n_replicates > 0)
+            r->sd[k] = a->sd[at * m + k] * sqrt(members);
     }
 }
 
@@ -41,7 +41,7 @@ static Status join(Run *h, Archive *a, Err *err)
     for (size_t i = 0; i < h->table.n; i++)
         if (is_known_to_search(&h->table.row[i]))
             TRY(insert_row(a, h, i, err));
-    archive_settle(a);
+    archive_update_noise(a);
     for (size_t i = 0, at = 0; i < h->table.n; i++)
         if (is_known_to_search(&h->table.row[i]))
             take_design(h, i, a, at++);

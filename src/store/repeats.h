@@ -1,7 +1,7 @@
 /* store/repeats.h -- a design that was evaluated several times, as the search sees it: one design with a mean.
  *
  *   F            of a design the mean of its evaluations
- *   sd           standard deviation of a single simulation, estimated from all repeats of the run (moga/spread.h)
+ *   sd           standard deviation of a single simulation, estimated from all repeats of the run (moga/noise.h)
  *   replicates   simulations behind F: evaluations x sim.replicates
  *
  * A design with an evaluation that failed keeps its first one; the search has taken it off the front. f of the table

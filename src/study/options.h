@@ -11,7 +11,7 @@ typedef struct {
     long surrogate_max; /* most designs that the response surface is built on */
     SurrogateUse surrogate;
     Switch asynchronous;
-    SurvivalKind survival;
+    SelectionKind survival;
     double replicate_share;               /* share of max_evals */
     long replicates_min, replicates_max; /* of a design */
     long polish;                   /* designs at the end */

@@ -10,7 +10,7 @@
 
 #include "base/clock.h"
 #include "base/json.h"
-#include "moga/cover.h"
+#include "moga/hypervolume.h"
 #include "study/advance.h"
 #include "study/given.h"
 #include "store/provenance.h"
@@ -191,9 +191,9 @@ static json_t *generation_event(const SearchView *v, double hypervolume, double 
 {
     return json_pack("{s:s, s:I, s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:f, s:f, s:f, s:f}", "event", "generation",
                      "number", (json_int_t)v->generation_now, "simulated", (json_int_t)v->n, "repeats",
-                     (json_int_t)v->n_repeats, "failed", (json_int_t)v->n_failed, "front", (json_int_t)v->n_front,
+                     (json_int_t)v->n_replicates, "failed", (json_int_t)v->n_failed, "front", (json_int_t)v->n_front,
                      "surrogate_error", json_number(v->surrogate_error), "hypervolume", json_number(hypervolume),
-                     "hypervolume_error", json_number(cover_error(hypervolume)), "igd_plus", json_number(igd),
+                     "hypervolume_error", json_number(hypervolume_error(hypervolume)), "igd_plus", json_number(igd),
                      "seconds", seconds, "search_s", v->seconds, "waited_s", v->waited_s, "surrogate_s",
                      v->surrogate_s);
 }
@@ -209,15 +209,15 @@ static Status write_generation(Study *study, const SearchView *view, Err *err)
     char advance[32];
     number_words(igd, 4, advance);
     char surface[24] = "-", repeats[40] = "";
-    if (view->n_repeats > 0)
-        snprintf(repeats, sizeof repeats, " (%zu repeats)", view->n_repeats);
+    if (view->n_replicates > 0)
+        snprintf(repeats, sizeof repeats, " (%zu repeats)", view->n_replicates);
     if (isfinite(view->surrogate_error))
         snprintf(surface, sizeof surface, "%.3g", view->surrogate_error);
     return store_log(
         study->store, err,
         "generation %zu: %zu simulated%s, %zu failed, front %zu, hypervolume %.4f (standard error %.4f), IGD+ since "
         "nine tenths %s, predictions kept %zu, surrogate error %s, %.1f s",
-        view->generation_now, view->n, repeats, view->n_failed, view->n_front, hypervolume, cover_error(hypervolume),
+        view->generation_now, view->n, repeats, view->n_failed, view->n_front, hypervolume, hypervolume_error(hypervolume),
         advance, view->n_predicted, surface, seconds);
 }
 
@@ -234,7 +234,7 @@ static int observe(const SearchView *view, void *user)
     }
     pthread_mutex_unlock(&study->lock);
     sum->n_front = view->n_front;
-    sum->n_repeats = view->n_repeats;
+    sum->n_repeats = view->n_replicates;
     sum->simulation_s = view->simulation_s;
     sum->own_s = view->own_s;
     sum->search_s = view->seconds;
@@ -350,14 +350,14 @@ SearchConfig study_search_config(const Settings *s)
         .max_evals = (size_t)s->search.max_evals,
         .surrogate_max = (size_t)s->search.surrogate_max,
         .surrogate = s->search.surrogate,
-        .survival = s->search.survival,
+        .selection = s->search.survival,
         .asynchronous = s->search.asynchronous == SWITCH_ON,
         .max_seconds = 3600 * s->search.max_hours,
         .nondominated_share = s->search.nondominated_share,
         .trust_error = s->search.trust_error,
         .repeats = s->search.replicate_share,
-        .answers_min = (size_t)s->search.replicates_min,
-        .answers_max = (size_t)s->search.replicates_max,
+        .replicates_min = (size_t)s->search.replicates_min,
+        .replicates_max = (size_t)s->search.replicates_max,
         .crossover_probability = s->search.crossover_probability,
         .crossover_eta = s->search.crossover_eta,
         .mutation_eta = s->search.mutation_eta,

@@ -1,36 +1,36 @@
-#include "moga/frame.h"
+#include "moga/normalisation.h"
 
 #include <float.h>
 #include <math.h>
 
 /* Best and worst of each objective; width = worst - best, 1 where all are equal. */
-void frame_fit_box(Frame *frame, size_t n, const size_t list[], const double F[])
+void normalisation_fit_range(Normalisation *q, size_t n, const size_t list[], const double F[])
 {
-    const size_t m = frame->n_obj;
+    const size_t m = q->n_obj;
     for (size_t k = 0; k < m; k++) {
-        double least = DBL_MAX, most = -DBL_MAX;
+        double min = DBL_MAX, max = -DBL_MAX;
         for (size_t i = 0; i < n; i++) {
-            least = fmin(least, F[list[i] * m + k]);
-            most = fmax(most, F[list[i] * m + k]);
+            min = fmin(min, F[list[i] * m + k]);
+            max = fmax(max, F[list[i] * m + k]);
         }
-        frame->ideal[k] = least;
-        frame->width[k] = most > least ? most - least : 1.0;
+        q->ideal[k] = min;
+        q->width[k] = max > min ? max - min : 1.0;
     }
 }
 
-/* The point that is least far off axis k: it minimises the achievement function max_j z_j / w_j with w = 1 on the axis
+/* Extreme point of axis k: it minimises the achievement function max_j z_j / w_j with w = 1 on the axis
  * and 1e-6 off it; the sum breaks ties between points that are all on the axis. */
-static size_t extreme_point(const Frame *frame, size_t k, size_t n, const size_t list[], const double F[])
+static size_t extreme_point(const Normalisation *q, size_t k, size_t n, const size_t list[], const double F[])
 {
-    const size_t m = frame->n_obj;
-    double least = INFINITY;
+    const size_t m = q->n_obj;
+    double min = INFINITY;
     size_t found = list[0];
     for (size_t i = 0; i < n; i++) {
         double worst = 0.0;
         for (size_t j = 0; j < m; j++)
-            worst = fmax(worst, frame_scale(frame, j, F[list[i] * m + j]) * (j == k ? 1.0 : 1e6));
-        if (worst < least) {
-            least = worst;
+            worst = fmax(worst, normalised(q, j, F[list[i] * m + j]) * (j == k ? 1.0 : 1e6));
+        if (worst < min) {
+            min = worst;
             found = list[i];
         }
     }
@@ -64,21 +64,21 @@ static int solve(size_t m, double A[])
     return 1;
 }
 
-void frame_fit(Frame *frame, size_t n, const size_t list[], const double F[])
+void normalisation_fit(Normalisation *q, size_t n, const size_t list[], const double F[])
 {
-    const size_t m = frame->n_obj, w = m + 1;
-    frame_fit_box(frame, n, list, F);
+    const size_t m = q->n_obj, w = m + 1;
+    normalisation_fit_range(q, n, list, F);
     for (size_t k = 0; k < m; k++) {
-        const size_t i = extreme_point(frame, k, n, list, F);
+        const size_t i = extreme_point(q, k, n, list, F);
         for (size_t j = 0; j < m; j++)
-            frame->plane[k * w + j] = frame_scale(frame, j, F[i * m + j]);
-        frame->plane[k * w + m] = 1.0;
+            q->plane[k * w + j] = normalised(q, j, F[i * m + j]);
+        q->plane[k * w + m] = 1.0;
     }
-    if (!solve(m, frame->plane))
+    if (!solve(m, q->plane))
         return;
     for (size_t k = 0; k < m; k++) /* the plane sum_k z_k b_k = 1 cuts axis k at 1 / b_k, in units of the box */
-        if (!(frame->plane[k * w + m] < 1e6 && frame->plane[k * w + m] > 0.0))
+        if (!(q->plane[k * w + m] < 1e6 && q->plane[k * w + m] > 0.0))
             return;
     for (size_t k = 0; k < m; k++)
-        frame->width[k] *= fmin(1.0 / frame->plane[k * w + m], 1.0);
+        q->width[k] *= fmin(1.0 / q->plane[k * w + m], 1.0);
 }

@@ -1,36 +1,37 @@
-#include "moga/surface.h"
+#include "moga/surrogate.h"
 
 #include <float.h>
 #include <math.h>
+#include <stdlib.h>
 
 #include "base/carve.h"
 #include "moga/constants.h"
 #include "moga/dominance.h"
-#include "moga/order.h"
 
-static const double ANSWER_MAX = 1e60;
+/* Larger values, penalties say, would leave nothing of the others after standardisation. */
+static const double VALUE_MAX = 1e60;
 
-struct Surface {
+struct Surrogate {
     const Problem *problem;
     Rbf *rbf;
     size_t n_out, n_max, n_archive_max, predict_max;
-    size_t n, n_tuned; /* centres; archive's size at the last tuning */
+    size_t n, n_tuned; /* centres; size of the archive at the last tuning */
     int fitted;
     double *U, *F;     /* (n_max, n_var) (n_max, n_out) centres */
-    double *noise;     /* (n_max, n_out) variances of the answers, of each output's nugget */
+    double *noise;     /* (n_max, n_out) variances of the values, in nuggets of each output */
     double *range;     /* (n_out) of each output in the archive */
     double *errors;    /* (n_max) sorted for the median */
-    size_t *member;    /* (predict_max) of a group, that want a prediction */
+    size_t *member;    /* (predict_max) members that are predicted */
     double *descent;   /* (predict_max + RBF_BLOCK, descent_length) */
     double *u, *f, *e; /* (predict_max, n_var) (predict_max, n_out) twice */
     void *store;
-    size_t *chosen, *spare; /* (n_archive_max) rows in use; they grow with the archive */
-    double *distance;       /* (n_archive_max) */
+    size_t *centre;   /* (n_archive_max) rows of the centres; grows with the archive */
+    double *distance; /* (n_archive_max) of rows from the front */
 };
 
-static size_t descent_length(const Surface *s);
+static size_t descent_length(const Surrogate *s);
 
-static void layout(Surface *s, Carve *c)
+static void layout(Surrogate *s, Carve *c)
 {
     const size_t n_var = s->problem->n_var;
     s->U = carve(c, s->n_max * n_var, sizeof(double));
@@ -45,12 +46,12 @@ static void layout(Surface *s, Carve *c)
     s->descent = carve(c, (s->predict_max + RBF_BLOCK) * descent_length(s), sizeof(double));
 }
 
-Status surface_create(Surface **out, const Problem *problem, size_t surrogate_max, size_t predict_max, Err *err)
+Status surrogate_create(Surrogate **out, const Problem *problem, size_t surrogate_max, size_t predict_max, Err *err)
 {
-    Surface *s = calloc(1, sizeof *s);
+    Surrogate *s = calloc(1, sizeof *s);
     *out = s;
     if (!s)
-        return fail(err, STATUS_NO_MEMORY, "no memory for the response surface");
+        return fail(err, STATUS_NO_MEMORY, "no memory for the surrogate");
     s->problem = problem;
     s->n_out = problem->n_obj + problem->n_con;
     s->n_max = surrogate_max;
@@ -66,7 +67,7 @@ Status surface_create(Surface **out, const Problem *problem, size_t surrogate_ma
             status = fail(err, STATUS_NO_MEMORY, "no memory for %zu predictions", predict_max);
     }
     if (status != STATUS_OK) {
-        surface_free(s);
+        surrogate_free(s);
         *out = NULL;
         return status;
     }
@@ -74,78 +75,79 @@ Status surface_create(Surface **out, const Problem *problem, size_t surrogate_ma
     return STATUS_OK;
 }
 
-void surface_free(Surface *s)
+void surrogate_free(Surrogate *s)
 {
     if (s) {
         rbf_free(s->rbf);
         free(s->store);
-        free(s->chosen);
-        free(s->spare);
+        free(s->centre);
         free(s->distance);
     }
     free(s);
 }
 
-static Status grow(Surface *s, size_t n, Err *err)
+static Status grow(Surrogate *s, size_t n, Err *err)
 {
     if (n <= s->n_archive_max)
         return STATUS_OK;
-    free(s->chosen);
-    free(s->spare);
+    free(s->centre);
     free(s->distance);
     s->n_archive_max = 2 * n;
-    s->chosen = calloc(2 * n, sizeof *s->chosen);
-    s->spare = calloc(2 * n, sizeof *s->spare);
+    s->centre = calloc(2 * n, sizeof *s->centre);
     s->distance = calloc(2 * n, sizeof *s->distance);
-    if (!s->chosen || !s->spare || !s->distance) {
+    if (!s->centre || !s->distance) {
         s->n_archive_max = 0;
-        return fail(err, STATUS_NO_MEMORY, "no memory for the choice among %zu designs", n);
+        return fail(err, STATUS_NO_MEMORY, "no memory for the centres among %zu designs", n);
     }
     return STATUS_OK;
 }
 
-/* Merge sort of rows by distance, equal ones by row. */
-static void sort_by_distance(const double distance[], size_t n, size_t rows[], size_t spare[])
+/* Rows by distance, equal ones by row. */
+static int compare_rows(const void *first, const void *second, void *distance)
 {
-    if (n < 2)
-        return;
-    const size_t half = n / 2;
-    sort_by_distance(distance, half, rows, spare);
-    sort_by_distance(distance, n - half, rows + half, spare);
-    memcpy(spare, rows, half * sizeof *rows);
-    for (size_t i = 0, j = half, k = 0; i < half; k++)
-        rows[k] = j < n && distance[rows[j]] < distance[spare[i]] ? rows[j++] : spare[i++];
+    const size_t a = *(const size_t *)first, b = *(const size_t *)second;
+    const double *d = distance;
+    return d[a] != d[b] ? (d[a] > d[b] ? 1 : -1) : (a > b) - (a < b);
 }
 
-/* Answers beyond all reason, penalties say, would leave nothing of the others. */
+static int compare_sizes(const void *first, const void *second)
+{
+    const size_t a = *(const size_t *)first, b = *(const size_t *)second;
+    return (a > b) - (a < b);
+}
+
+static int compare_doubles(const void *first, const void *second)
+{
+    const double a = *(const double *)first, b = *(const double *)second;
+    return (a > b) - (a < b);
+}
+
 static int is_centre(const Archive *a, size_t i)
 {
     int fits = a->usable[i];
     for (size_t k = 0; fits && k < a->n_obj; k++)
-        fits = fabs(a->F[i * a->n_obj + k]) < ANSWER_MAX;
+        fits = fabs(a->F[i * a->n_obj + k]) < VALUE_MAX;
     for (size_t k = 0; fits && k < a->n_con; k++)
-        fits = fabs(a->G[i * a->n_con + k]) < ANSWER_MAX;
+        fits = fabs(a->G[i * a->n_con + k]) < VALUE_MAX;
     return fits;
 }
 
-/* Rows of the centres, in chosen; returns how many. */
-static size_t choose_centres(Surface *s, const Archive *a, Infill *near)
+/* Rows of the centres; returns how many. */
+static size_t select_centres(Surrogate *s, const Archive *a, Infill *near)
 {
     size_t n = 0;
     for (size_t i = 0; i < a->n; i++)
         if (is_centre(a, i))
-            s->chosen[n++] = i;
+            s->centre[n++] = i;
     if (n <= s->n_max)
         return n;
     for (size_t i = 0; i < n; i++)
-        s->distance[s->chosen[i]] = infill_distance(near, a->F + s->chosen[i] * a->n_obj);
-    sort_by_distance(s->distance, n, s->chosen, s->spare);
+        s->distance[s->centre[i]] = infill_distance(near, a->F + s->centre[i] * a->n_obj);
+    qsort_r(s->centre, n, sizeof *s->centre, compare_rows, s->distance);
     const size_t n_near = s->n_max - s->n_max / SPREAD_CENTRES_SHARE, n_rest = n - n_near, n_spread = s->n_max - n_near;
-    for (size_t i = 0; i < a->n; i++) /* the rest in the order of simulation again: as distance of itself */
-        s->distance[i] = (double)i;
-    sort_by_distance(s->distance, n_rest, s->chosen + n_near, s->spare);
+    qsort(s->centre + n_near, n_rest, sizeof *s->centre, compare_sizes); /* the rest in the order of evaluation */
     for (size_t i = 0; i < n_spread; i++)
-        s->chosen[n_near + i] = s->chosen[n_near + i * n_rest / n_spread];
+        s->centre[n_near + i] = s->centre[n_near + i * n_rest / n_spread];
     return s->n_max;
 }
 
@@ -155,40 +157,40 @@ static void to_unit_cube(const Problem *p, const double x[], double u[])
         u[d] = p->upper[d] > p->lower[d] ? (x[d] - p->lower[d]) / (p->upper[d] - p->lower[d]) : 0.0;
 }
 
-static void measure_ranges(Surface *s, const Archive *a)
+static void measure_ranges(Surrogate *s, const Archive *a)
 {
     for (size_t k = 0; k < s->n_out; k++) {
-        double least = DBL_MAX, most = -DBL_MAX;
+        double min = DBL_MAX, max = -DBL_MAX;
         for (size_t i = 0; i < a->n; i++) {
             if (!is_centre(a, i))
                 continue;
             const double v = k < a->n_obj ? a->F[i * a->n_obj + k] : a->G[i * a->n_con + k - a->n_obj];
-            least = fmin(least, v);
-            most = fmax(most, v);
+            min = fmin(min, v);
+            max = fmax(max, v);
         }
-        s->range[k] = most > least ? most - least : 1.0;
+        s->range[k] = max > min ? max - min : 1.0;
     }
 }
 
-Status surface_fit(Surface *s, const Archive *a, Infill *near, Err *err)
+Status surrogate_fit(Surrogate *s, const Archive *a, Infill *near, Err *err)
 {
     s->fitted = 0;
     if (!s->rbf || a->n_usable < 4 || a->n_usable < s->problem->n_var / 2)
         return STATUS_OK;
     TRY(grow(s, a->n, err));
-    s->n = choose_centres(s, a, near);
+    s->n = select_centres(s, a, near);
     if (s->n < 4)
         return STATUS_OK;
     for (size_t i = 0; i < s->n; i++) {
-        const size_t row = s->chosen[i];
+        const size_t row = s->centre[i];
         to_unit_cube(s->problem, a->X + row * a->n_var, s->U + i * a->n_var);
         memcpy(s->F + i * s->n_out, a->F + row * a->n_obj, a->n_obj * sizeof *s->F);
         memcpy(s->F + i * s->n_out + a->n_obj, a->G + row * a->n_con, a->n_con * sizeof *s->F);
         for (size_t k = 0; k < s->n_out; k++)
-            s->noise[i * s->n_out + k] = 1.0 / (double)a->answers[row];
+            s->noise[i * s->n_out + k] = 1.0 / (double)a->replicates[row];
     }
     measure_ranges(s, a);
-    TRY(rbf_fit(s->rbf, s->n, s->U, s->F, a->n_repeats > 0 ? s->noise : NULL, err));
+    TRY(rbf_fit(s->rbf, s->n, s->U, s->F, a->n_replicates > 0 ? s->noise : NULL, err));
     if (s->n_tuned == 0 || a->n >= s->n_tuned + (s->n_tuned + RETUNE_SHARE - 1) / RETUNE_SHARE) {
         TRY(rbf_tune(s->rbf, err));
         s->n_tuned = a->n;
@@ -197,18 +199,18 @@ Status surface_fit(Surface *s, const Archive *a, Infill *near, Err *err)
     return STATUS_OK;
 }
 
-void surface_estimate(const Surface *s, Archive *a)
+void surrogate_estimate(const Surrogate *s, Archive *a)
 {
     for (size_t k = 0; s->fitted && k < a->n_obj; k++)
-        spread_estimate(s->n, s->chosen, rbf_leave_one_out(s->rbf, k), a->n_obj, k, a->F, a->error, a->estimate);
+        noise_estimate(s->n, s->centre, rbf_leave_one_out(s->rbf, k), a->n_obj, k, a->F, a->error, a->estimate);
 }
 
-void surface_drop(Surface *s)
+void surrogate_drop(Surrogate *s)
 {
     s->fitted = 0;
 }
 
-int surface_stands(const Surface *s)
+int surrogate_is_usable(const Surrogate *s)
 {
     double explained = 0.0;
     for (size_t k = 0; s->fitted && k < s->problem->n_obj; k++)
@@ -216,95 +218,96 @@ int surface_stands(const Surface *s)
     return s->fitted && explained > R2_MIN + R2_CHANCE / sqrt((double)s->n);
 }
 
-double surface_error(const Surface *s)
+double surrogate_error(const Surrogate *s)
 {
     double worst = s->fitted ? 0.0 : NAN;
     for (size_t k = 0; s->fitted && k < s->problem->n_obj; k++) {
         const double *e = rbf_leave_one_out(s->rbf, k);
         for (size_t i = 0; i < s->n; i++)
             s->errors[i] = fabs(e[i]) / s->range[k];
-        sort_numbers(s->n, s->errors);
+        qsort(s->errors, s->n, sizeof *s->errors, compare_doubles);
         worst = fmax(worst, 0.5 * (s->errors[(s->n - 1) / 2] + s->errors[s->n / 2]));
     }
     return worst;
 }
 
-/* Rows of the group that want a prediction, and their designs in the unit cube; returns how many. */
-static size_t gather(Surface *s, const Group *group, size_t first)
+/* Members to be predicted, and their designs in the unit cube; returns how many. */
+static size_t gather(Surrogate *s, const Population *population, size_t first)
 {
     size_t n = 0;
-    for (size_t i = first; i < group->n; i++)
-        if (group->row[i] == PREDICTED) {
-            to_unit_cube(s->problem, group->X + i * group->n_var, s->u + n * group->n_var);
+    for (size_t i = first; i < population->n; i++)
+        if (population->row[i] == PREDICTED) {
+            to_unit_cube(s->problem, population->X + i * population->n_var, s->u + n * population->n_var);
             s->member[n++] = i;
         }
     return n;
 }
 
-static void fill_member(const Surface *s, Group *group, size_t i, const double f[], const double e[])
+static void fill_member(const Surrogate *s, Population *population, size_t i, const double f[], const double e[])
 {
     const Problem *p = s->problem;
     double worst = 0.0;
     for (size_t k = 0; e && k < s->n_out; k++)
         worst = fmax(worst, e[k] / s->range[k]);
-    memcpy(group->F + i * p->n_obj, f, p->n_obj * sizeof *f);
-    group->violation[i] = violation_of(p->n_con, f + p->n_obj);
-    group->uncertainty[i] = worst;
+    memcpy(population->F + i * p->n_obj, f, p->n_obj * sizeof *f);
+    population->violation[i] = violation_of(p->n_con, f + p->n_obj);
+    population->uncertainty[i] = worst;
 }
 
-void surface_predict(Surface *s, Group *group, size_t first, int with_uncertainty)
+void surrogate_predict(Surrogate *s, Population *population, size_t first, int with_uncertainty)
 {
-    const size_t n_var = s->problem->n_var, n = s->fitted ? gather(s, group, first) : 0;
+    const size_t n_var = s->problem->n_var, n = s->fitted ? gather(s, population, first) : 0;
 #pragma omp parallel for schedule(dynamic, 1)
     for (size_t i = 0; i < n; i += RBF_BLOCK)
         rbf_eval(s->rbf, n - i < RBF_BLOCK ? n - i : RBF_BLOCK, s->u + i * n_var, s->f + i * s->n_out,
                  with_uncertainty ? s->e + i * s->n_out : NULL);
     for (size_t i = 0; i < n; i++)
-        fill_member(s, group, s->member[i], s->f + i * s->n_out, with_uncertainty ? s->e + i * s->n_out : NULL);
+        fill_member(s, population, s->member[i], s->f + i * s->n_out, with_uncertainty ? s->e + i * s->n_out : NULL);
 }
 
-/* One descent's own numbers; u, f and J of a block lie together, as the surface takes them. */
+/* State of one descent; u, f and J of a block lie together, as rbf_slope takes them. */
 typedef struct {
-    double *best, *g, *last, *step, *slope;
-    double least;
+    double *best, *g, *g_last, *step; /* (n_var) */
+    double *slope;                    /* (n_obj) */
+    double min;
 } Descent;
 
-static size_t descent_length(const Surface *s)
+static size_t descent_length(const Surrogate *s)
 {
     const size_t d = s->problem->n_var;
     return d + s->n_out + s->n_out * d + 4 * d + s->problem->n_obj;
 }
 
-static Descent descent_on(const Surface *s, double *store)
+static Descent descent_on(const Surrogate *s, double *store)
 {
     const size_t d = s->problem->n_var;
     return (Descent){store, store + d, store + 2 * d, store + 3 * d, store + 4 * d, INFINITY};
 }
 
-/* One step of resilient back-propagation at u, where the surface is f with the derivatives J. */
-static void descent_step(const Surface *s, const Infill *near, size_t direction, Descent *w, double u[],
+/* One step of resilient back-propagation at u, where the surrogate is f with the derivatives J. */
+static void descent_step(const Surrogate *s, const Infill *near, size_t vector, Descent *w, double u[],
                          const double f[], const double J[])
 {
     const size_t n_var = s->problem->n_var;
-    const double value = infill_slope(near, direction, f, w->slope);
-    if (value < w->least) {
-        w->least = value;
+    const double value = infill_slope(near, vector, f, w->slope);
+    if (value < w->min) {
+        w->min = value;
         memcpy(w->best, u, n_var * sizeof *u);
     }
     for (size_t d = 0; d < n_var; d++) {
         w->g[d] = 0.0;
         for (size_t k = 0; k < s->problem->n_obj; k++)
             w->g[d] += w->slope[k] * J[k * n_var + d];
-        const double agreed = w->g[d] * w->last[d];
-        w->step[d] *= agreed > 0.0 ? DESCENT_GROW : agreed < 0.0 ? DESCENT_SHRINK : 1.0;
-        w->last[d] = agreed < 0.0 ? 0.0 : w->g[d];
-        if (w->last[d] != 0.0)
+        const double same_sign = w->g[d] * w->g_last[d];
+        w->step[d] *= same_sign > 0.0 ? DESCENT_GROW : same_sign < 0.0 ? DESCENT_SHRINK : 1.0;
+        w->g_last[d] = same_sign < 0.0 ? 0.0 : w->g[d];
+        if (w->g_last[d] != 0.0)
             u[d] = fmin(fmax(u[d] - copysign(fmin(w->step[d], DESCENT_STEP_MAX), w->g[d]), 0.0), 1.0);
     }
 }
 
-/* n <= RBF_BLOCK descents in step with each other, starting at U; the best of each goes there. */
-static void descend(const Surface *s, const Infill *near, size_t n, const size_t directions[], double *store)
+/* n <= RBF_BLOCK descents side by side, starting at U; the best point of each goes there. */
+static void descend(const Surrogate *s, const Infill *near, size_t n, const size_t vectors[], double *store)
 {
     const size_t n_var = s->problem->n_var, own = 4 * n_var + s->problem->n_obj;
     double *U = store, *F = U + RBF_BLOCK * n_var, *J = F + RBF_BLOCK * s->n_out,
@@ -314,13 +317,13 @@ static void descend(const Surface *s, const Infill *near, size_t n, const size_t
         w[p] = descent_on(s, rest + p * own);
         for (size_t d = 0; d < n_var; d++) {
             w[p].step[d] = DESCENT_STEP_FIRST;
-            w[p].last[d] = 0.0;
+            w[p].g_last[d] = 0.0;
         }
     }
     for (int step = 0; step < DESCENT_STEPS; step++) {
         rbf_slope(s->rbf, n, U, F, J);
         for (size_t p = 0; p < n; p++)
-            descent_step(s, near, directions[p], &w[p], U + p * n_var, F + p * s->n_out, J + p * s->n_out * n_var);
+            descent_step(s, near, vectors[p], &w[p], U + p * n_var, F + p * s->n_out, J + p * s->n_out * n_var);
     }
     for (size_t p = 0; p < n; p++)
         memcpy(U + p * n_var, w[p].best, n_var * sizeof *U);
@@ -332,7 +335,7 @@ static void from_unit_cube(const Problem *p, const double u[], double x[])
         x[d] = fmin(fmax(p->lower[d] + u[d] * (p->upper[d] - p->lower[d]), p->lower[d]), p->upper[d]);
 }
 
-void surface_descend(Surface *s, const Archive *a, const Infill *near, size_t n, const size_t directions[], double X[])
+void surrogate_descend(Surrogate *s, const Archive *a, const Infill *near, size_t n, const size_t vectors[], double X[])
 {
     const Problem *p = s->problem;
     const size_t length = descent_length(s);
@@ -341,14 +344,14 @@ void surface_descend(Surface *s, const Archive *a, const Infill *near, size_t n,
         const size_t count = n - i < RBF_BLOCK ? n - i : RBF_BLOCK;
         double *U = s->descent + i * length;
         for (size_t j = 0; j < count; j++)
-            to_unit_cube(p, a->X + infill_best(near, directions[i + j]) * p->n_var, U + j * p->n_var);
-        descend(s, near, count, directions + i, U);
+            to_unit_cube(p, a->X + infill_best(near, vectors[i + j]) * p->n_var, U + j * p->n_var);
+        descend(s, near, count, vectors + i, U);
         for (size_t j = 0; j < count; j++)
             from_unit_cube(p, U + j * p->n_var, X + (i + j) * p->n_var);
     }
 }
 
-void surface_pack(Surface *s, Pack *p)
+void surrogate_pack(Surrogate *s, Pack *p)
 {
     pack_size(p, &s->n_tuned, SIZE_MAX);
     if (s->rbf)

@@ -1,51 +1,50 @@
-#include "moga/survival.h"
+#include "moga/selection.h"
 
 #include <math.h>
 #include <stdint.h>
 
 #include "base/carve.h"
-#include "moga/constants.h"
 #include "moga/dominance.h"
-#include "moga/frame.h"
+#include "moga/normalisation.h"
 
-struct Survival {
-    SurvivalKind kind;
+struct Selection {
+    SelectionKind kind;
     size_t n_max, n_obj, n_dir;
     double *unit; /* (n_dir, n_obj) directions of length 1 */
     double *gap;  /* (n_dir) angle to the next direction [rad] */
-    Frame frame;
-    size_t *rank;     /* (n_max) */
-    size_t *scratch;  /* (3 n_max) */
-    size_t *list;     /* (n_max) rows of one layer */
-    size_t *niche;    /* (n_max) direction of each row */
-    double *distance; /* (n_max) from it */
-    double *value;    /* (n_max) of a design in its direction or in the one at hand */
-    size_t *members;  /* (n_dir) chosen so far */
-    size_t *ties;     /* (n_dir or n_max) */
+    Normalisation normalisation;
+    size_t *rank;      /* (n_max) */
+    size_t *scratch;   /* (3 n_max) */
+    size_t *list;      /* (n_max) rows of one layer */
+    size_t *niche;     /* (n_max) direction of each row */
+    double *distance;  /* (n_max) from it */
+    double *penalised; /* (n_max) distance of RVEA */
+    size_t *members;   /* (n_dir) taken so far */
+    size_t *ties;      /* (n_dir or n_max) */
     unsigned char *taken;
     void *store;
 };
 
-static void layout(Survival *s, Carve *c)
+static void layout(Selection *s, Carve *c)
 {
     const size_t n = s->n_max, m = s->n_obj, r = s->n_dir;
     s->unit = carve(c, r * m, sizeof(double));
-    s->frame.ideal = carve(c, m, sizeof(double));
-    s->frame.width = carve(c, m, sizeof(double));
-    s->frame.plane = carve(c, m * (m + 1), sizeof(double));
+    s->normalisation.ideal = carve(c, m, sizeof(double));
+    s->normalisation.width = carve(c, m, sizeof(double));
+    s->normalisation.plane = carve(c, m * (m + 1), sizeof(double));
     s->rank = carve(c, n, sizeof(size_t));
     s->scratch = carve(c, 3 * n, sizeof(size_t));
     s->list = carve(c, n, sizeof(size_t));
     s->niche = carve(c, n, sizeof(size_t));
     s->distance = carve(c, n, sizeof(double));
-    s->value = carve(c, n, sizeof(double));
+    s->penalised = carve(c, n, sizeof(double));
     s->gap = carve(c, r, sizeof(double));
     s->members = carve(c, r, sizeof(size_t));
     s->ties = carve(c, n > r ? n : r, sizeof(size_t));
     s->taken = carve(c, n, 1);
 }
 
-static void measure_gaps(Survival *s)
+static void measure_gaps(Selection *s)
 {
     for (size_t r = 0; r < s->n_dir; r++) {
         double nearest = 0.0;
@@ -59,21 +58,21 @@ static void measure_gaps(Survival *s)
     }
 }
 
-Status survival_create(Survival **out, SurvivalKind kind, size_t n_max, const Directions *directions, Err *err)
+Status selection_create(Selection **out, SelectionKind kind, size_t n_max, const Directions *directions, Err *err)
 {
-    Survival *s = calloc(1, sizeof *s);
+    Selection *s = calloc(1, sizeof *s);
     *out = s;
     if (!s)
         return fail(err, STATUS_NO_MEMORY, "no memory for the environmental selection");
     s->kind = kind;
     s->n_max = n_max;
-    s->n_obj = s->frame.n_obj = directions->n_obj;
+    s->n_obj = s->normalisation.n_obj = directions->n_obj;
     s->n_dir = directions->n;
     Carve c = {0};
     layout(s, &c);
     s->store = carve_store(&c);
     if (!s->store) {
-        survival_free(s);
+        selection_free(s);
         *out = NULL;
         return fail(err, STATUS_NO_MEMORY, "no memory for the environmental selection of %zu designs", n_max);
     }
@@ -90,7 +89,7 @@ Status survival_create(Survival **out, SurvivalKind kind, size_t n_max, const Di
     return STATUS_OK;
 }
 
-void survival_free(Survival *s)
+void selection_free(Selection *s)
 {
     if (s)
         free(s->store);
@@ -98,18 +97,18 @@ void survival_free(Survival *s)
 }
 
 /* Nearest direction and the distance of the normalised objectives from its line. */
-static void associate(Survival *s, size_t i, const double f[])
+static void associate(Selection *s, size_t i, const double f[])
 {
     const size_t m = s->n_obj;
     double square = 0.0, longest = -INFINITY;
     for (size_t k = 0; k < m; k++) {
-        const double z = frame_scale(&s->frame, k, f[k]);
+        const double z = normalised(&s->normalisation, k, f[k]);
         square += z * z;
     }
     for (size_t r = 0; r < s->n_dir; r++) {
         double along = 0.0;
         for (size_t k = 0; k < m; k++)
-            along += frame_scale(&s->frame, k, f[k]) * s->unit[r * m + k];
+            along += normalised(&s->normalisation, k, f[k]) * s->unit[r * m + k];
         if (along > longest) {
             longest = along;
             s->niche[i] = r;
@@ -118,7 +117,7 @@ static void associate(Survival *s, size_t i, const double f[])
     s->distance[i] = sqrt(fmax(square - longest * longest, 0.0));
 }
 
-static size_t rows_of_layer(Survival *s, size_t n, size_t layer)
+static size_t rows_of_layer(Selection *s, size_t n, size_t layer)
 {
     size_t count = 0;
     for (size_t i = 0; i < n; i++)
@@ -128,7 +127,7 @@ static size_t rows_of_layer(Survival *s, size_t n, size_t layer)
 }
 
 /* One of the directions that still have candidates and, among those, the fewest members. */
-static size_t emptiest_direction(Survival *s, size_t n_list, Random *random)
+static size_t emptiest_direction(Selection *s, size_t n_list, Random *random)
 {
     size_t fewest = SIZE_MAX, n_ties = 0;
     for (size_t j = 0; j < n_list; j++) {
@@ -147,7 +146,7 @@ static size_t emptiest_direction(Survival *s, size_t n_list, Random *random)
 }
 
 /* For a direction without members the nearest candidate, else any of them. */
-static size_t candidate_of(Survival *s, size_t r, size_t n_list, Random *random)
+static size_t candidate_of(Selection *s, size_t r, size_t n_list, Random *random)
 {
     size_t n_ties = 0, nearest = SIZE_MAX;
     for (size_t j = 0; j < n_list; j++) {
@@ -161,7 +160,7 @@ static size_t candidate_of(Survival *s, size_t r, size_t n_list, Random *random)
     return s->members[r] == 0 ? nearest : s->ties[random_below(random, n_ties)];
 }
 
-static void fill_niches(Survival *s, size_t n_list, size_t wanted, Random *random)
+static void fill_niches(Selection *s, size_t n_list, size_t wanted, Random *random)
 {
     while (wanted-- > 0) {
         const size_t r = emptiest_direction(s, n_list, random), i = candidate_of(s, r, n_list, random);
@@ -171,74 +170,56 @@ static void fill_niches(Survival *s, size_t n_list, size_t wanted, Random *rando
 }
 
 /* NSGA-III: takes whole layers, then fills the niches from the one that does not fit. */
-static void take_layers(Survival *s, size_t n, const double F[], const double violation[], size_t keep, Random *random)
+static void take_layers(Selection *s, size_t n, const double F[], const double violation[], size_t keep, Random *random)
 {
     const size_t n_layers = nondominated_sort(n, s->n_obj, F, violation, s->rank, s->scratch);
-    size_t n_chosen = 0, layer = 0, n_list = 0;
+    size_t n_taken = 0, layer = 0, n_list = 0;
     memset(s->members, 0, s->n_dir * sizeof *s->members);
     if (n > 0)
-        frame_fit(&s->frame, rows_of_layer(s, n, 0), s->list, F);
+        normalisation_fit(&s->normalisation, rows_of_layer(s, n, 0), s->list, F);
     for (size_t i = 0; i < n; i++)
         associate(s, i, F + i * s->n_obj);
     for (; layer < n_layers; layer++) {
         n_list = rows_of_layer(s, n, layer);
-        if (n_chosen + n_list > keep)
+        if (n_taken + n_list > keep)
             break;
         for (size_t j = 0; j < n_list; j++) {
             s->taken[s->list[j]] = 1;
             s->members[s->niche[s->list[j]]]++;
         }
-        n_chosen += n_list;
+        n_taken += n_list;
     }
     if (layer < n_layers)
-        fill_niches(s, n_list, keep - n_chosen, random);
-}
-
-/* Length along direction r of the normalised f and distance off it. */
-static void project(const Survival *s, size_t r, const double f[], double *along, double *off)
-{
-    double square = 0.0;
-    *along = 0.0;
-    for (size_t k = 0; k < s->n_obj; k++) {
-        const double z = frame_scale(&s->frame, k, f[k]);
-        *along += z * s->unit[r * s->n_obj + k];
-        square += z * z;
-    }
-    *off = sqrt(fmax(square - *along * *along, 0.0));
+        fill_niches(s, n_list, keep - n_taken, random);
 }
 
 /* RVEA's angle-penalised distance in the design's own direction: |z| (1 + m progress^2 angle / gap). */
-static double penalised_distance(const Survival *s, size_t i, const double f[], double progress)
+static double penalised_distance(const Selection *s, size_t i, const double f[], double progress)
 {
-    double along, off;
-    project(s, s->niche[i], f, &along, &off);
-    const double angle = atan2(off, along);
-    return hypot(along, off) * (1.0 + (double)s->n_obj * progress * progress * angle / s->gap[s->niche[i]]);
+    const size_t r = s->niche[i];
+    double square = 0.0, along = 0.0;
+    for (size_t k = 0; k < s->n_obj; k++) {
+        const double z = normalised(&s->normalisation, k, f[k]);
+        along += z * s->unit[r * s->n_obj + k];
+        square += z * z;
+    }
+    const double off = sqrt(fmax(square - along * along, 0.0)), angle = atan2(off, along);
+    return hypot(along, off) * (1.0 + (double)s->n_obj * progress * progress * angle / s->gap[r]);
 }
 
-/* The design, not yet taken, that is best for direction r: RVEA among those associated with it, MOEA/D among all. */
-static size_t best_for(const Survival *s, size_t r, size_t n_list, const double F[])
+/* Of the designs associated with direction r and not yet taken, the one with the smallest penalised distance. */
+static size_t best_of_niche(const Selection *s, size_t r, size_t n_list)
 {
     size_t best = SIZE_MAX;
-    double least = INFINITY;
     for (size_t j = 0; j < n_list; j++) {
         const size_t i = s->list[j];
-        double value = s->value[i], along, off;
-        if (s->taken[i] || (s->kind == SURVIVAL_RVEA && s->niche[i] != r))
-            continue;
-        if (s->kind == SURVIVAL_MOEAD) {
-            project(s, r, F + i * s->n_obj, &along, &off);
-            value = along + PBI_THETA * off;
-        }
-        if (value < least) {
-            least = value;
+        if (!s->taken[i] && s->niche[i] == r && s->penalised[i] < (best == SIZE_MAX ? INFINITY : s->penalised[best]))
             best = i;
-        }
     }
     return best;
 }
 
-static size_t least_violating(const Survival *s, size_t n, const double violation[])
+static size_t min_violating(const Selection *s, size_t n, const double violation[])
 {
     size_t best = SIZE_MAX;
     for (size_t i = 0; i < n; i++)
@@ -247,9 +228,8 @@ static size_t least_violating(const Survival *s, size_t n, const double violatio
     return best;
 }
 
-/* RVEA and MOEA/D: round after round every direction takes its best feasible design; the rest are the least violating.
- */
-static void take_in_rounds(Survival *s, size_t n, const double F[], const double violation[], size_t keep,
+/* RVEA: round after round every direction takes its best feasible design; then the least violating fill up. */
+static void take_in_rounds(Selection *s, size_t n, const double F[], const double violation[], size_t keep,
                            double progress)
 {
     size_t n_list = 0, n_taken = 0, before;
@@ -257,16 +237,16 @@ static void take_in_rounds(Survival *s, size_t n, const double F[], const double
         if (!violation || !(violation[i] > 0.0))
             s->list[n_list++] = i;
     if (n_list > 0)
-        frame_fit_box(&s->frame, n_list, s->list, F);
+        normalisation_fit_range(&s->normalisation, n_list, s->list, F);
     for (size_t j = 0; j < n_list; j++) {
         const size_t i = s->list[j];
         associate(s, i, F + i * s->n_obj);
-        s->value[i] = penalised_distance(s, i, F + i * s->n_obj, progress);
+        s->penalised[i] = penalised_distance(s, i, F + i * s->n_obj, progress);
     }
     do {
         before = n_taken;
         for (size_t r = 0; r < s->n_dir && n_taken < keep; r++) {
-            const size_t i = best_for(s, r, n_list, F);
+            const size_t i = best_of_niche(s, r, n_list);
             if (i != SIZE_MAX) {
                 s->taken[i] = 1;
                 n_taken++;
@@ -274,20 +254,20 @@ static void take_in_rounds(Survival *s, size_t n, const double F[], const double
         }
     } while (n_taken < keep && n_taken > before);
     for (; n_taken < keep && n_taken < n; n_taken++)
-        s->taken[least_violating(s, n, violation)] = 1;
+        s->taken[min_violating(s, n, violation)] = 1;
 }
 
-size_t survival_select(Survival *s, size_t n, const double F[], const double violation[], size_t keep, double progress,
-                       Random *random, size_t chosen[])
+size_t selection_select(Selection *s, size_t n, const double F[], const double violation[], size_t keep,
+                        double progress, Random *random, size_t selected[])
 {
-    size_t n_chosen = 0;
+    size_t n_selected = 0;
     memset(s->taken, 0, n);
-    if (s->kind == SURVIVAL_NSGA3)
+    if (s->kind == SELECTION_NSGA3)
         take_layers(s, n, F, violation, keep, random);
     else
         take_in_rounds(s, n, F, violation, keep, progress);
     for (size_t i = 0; i < n; i++)
         if (s->taken[i])
-            chosen[n_chosen++] = i;
-    return n_chosen;
+            selected[n_selected++] = i;
+    return n_selected;
 }

@@ -1,0 +1,31 @@
+/* moga/normalisation.h -- objectives of any unit brought to one scale: z = (f - ideal) / width.
+ *
+ *   ideal  minimum of each objective
+ *   width  intercepts of the plane through the extreme points, each the best along one axis; maximum minus minimum where
+ *          that plane does not exist or cuts an axis behind the maximum; never 0
+ *
+ * Threads  pure functions on the caller's memory
+ * Source   Deb and Jain (see moga/search.h), section IV.C. */
+#ifndef IMTET_MOGA_NORMALISATION_H
+#define IMTET_MOGA_NORMALISATION_H
+
+#include <stddef.h>
+
+typedef struct {
+    size_t n_obj;
+    double *ideal, *width; /* (n_obj), the caller's */
+    double *plane;         /* (n_obj, n_obj + 1) scratch of normalisation_fit */
+} Normalisation;
+
+/* From the rows list[0..n) of F (., n_obj), n >= 1. */
+void normalisation_fit(Normalisation *q, size_t n, const size_t list[], const double F[]);
+
+/* The same with width = maximum minus minimum, for a front that is still growing sideways. */
+void normalisation_fit_range(Normalisation *q, size_t n, const size_t list[], const double F[]);
+
+static inline double normalised(const Normalisation *q, size_t k, double f)
+{
+    return (f - q->ideal[k]) / q->width[k];
+}
+
+#endif

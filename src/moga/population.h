@@ -1,0 +1,39 @@
+/* moga/population.h -- a set of designs: population, offspring, the pool of both.
+ *
+ * A member is either evaluated (row: its row of the archive) or predicted (row PREDICTED).
+ *
+ * Life cycle  population_create -> population_add ... population_keep ... -> population_free; n_max is fixed
+ * Threads     one writer. */
+#ifndef IMTET_MOGA_POPULATION_H
+#define IMTET_MOGA_POPULATION_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/pack.h"
+#include "base/status.h"
+
+static const size_t PREDICTED = SIZE_MAX;
+
+typedef struct {
+    size_t n, n_max, n_var, n_obj;
+    double *X, *F;       /* (n, n_var) (n, n_obj) */
+    double *violation;   /* (n) */
+    double *uncertainty; /* (n) predicted error, share of the range, of the worst objective; 0: evaluated */
+    size_t *row, *age;   /* (n); age: generations for which a prediction has been trusted */
+    void *store;
+} Population;
+
+Status population_create(Population *p, size_t n_max, size_t n_var, size_t n_obj, Err *err);
+void population_free(Population *p);
+
+/* Appends a member with this design and returns its index; its row is PREDICTED, the rest 0. */
+size_t population_add(Population *p, const double x[]);
+void population_append(Population *to, const Population *from, size_t i); /* member i of another one */
+void population_copy(Population *to, const Population *from);             /* replaces all members */
+void population_keep(Population *p, size_t n, const size_t kept[]);       /* ascending; drops the rest */
+
+/* All members; rows are below n_rows or PREDICTED. */
+void population_pack(Population *population, Pack *p, size_t n_rows);
+
+#endif

@@ -1,0 +1,52 @@
+/* moga/surrogate.h -- the surrogate of the search: an RBF interpolant of the archive (rbf/rbf.h).
+ *
+ * Objectives and constraints are the outputs of one Rbf on the unit cube. Beyond `surrogate_max` designs three quarters
+ * of the centres are those nearest to the front, the rest is spread evenly over the order of evaluation, which begins
+ * with the Latin hypercube. A mean of n replicates has the n-th part of the nugget. Hyperparameters are tuned again when
+ * the archive has grown by a tenth.
+ *
+ * Dimension   more than RBF_DIM_MAX variables: there is no surrogate
+ * Life cycle  surrogate_create -> (surrogate_fit -> surrogate_predict ...) ... -> surrogate_free
+ * Memory      all in surrogate_create but the selection of centres, which grows with the archive
+ * Threads     predictions and descents are shared out over OpenMP threads and stored by index */
+#ifndef IMTET_MOGA_SURROGATE_H
+#define IMTET_MOGA_SURROGATE_H
+
+#include "moga/archive.h"
+#include "moga/infill.h"
+#include "moga/population.h"
+#include "moga/problem.h"
+#include "rbf/rbf.h"
+
+typedef struct Surrogate Surrogate;
+
+/* Borrows the problem. predict_max: most designs of one surrogate_predict. */
+Status surrogate_create(Surrogate **out, const Problem *problem, size_t surrogate_max, size_t predict_max, Err *err);
+void surrogate_free(Surrogate *s); /* NULL is fine */
+
+/* Fits to the archive, whose front `near` has measured. Too few designs: surrogate_is_usable is 0. */
+Status surrogate_fit(Surrogate *s, const Archive *archive, Infill *near, Err *err);
+void surrogate_drop(Surrogate *s); /* as if it had never been fitted */
+
+/* It is fitted, and its mean leave-one-out R2 over the objectives exceeds R2_MIN + R2_CHANCE / root(n). */
+int surrogate_is_usable(const Surrogate *s);
+
+/* Median leave-one-out error as a share of the objective's range, of the worst objective; NAN: not fitted. */
+double surrogate_error(const Surrogate *s);
+
+/* Estimates of the centres among the archive's designs, from their leave-one-out errors (moga/noise.h). */
+void surrogate_estimate(const Surrogate *s, Archive *archive);
+
+/* F and violation of the predicted members first..n-1, and where wanted their uncertainty, which costs a third more. */
+void surrogate_predict(Surrogate *s, Population *population, size_t first, int with_uncertainty);
+
+/* Designs X (n, n_var) that lower the criterion of `near` along its reference vectors by descents on the surrogate, each
+ * from the design of the archive that is best for its vector. Resilient back-propagation: Riedmiller and Braun, ICNN
+ * 1993, 586-591. */
+void surrogate_descend(Surrogate *s, const Archive *a, const Infill *near, size_t n, const size_t vectors[],
+                       double X[]);
+
+/* State that outlives a generation; surrogate_fit makes the rest. */
+void surrogate_pack(Surrogate *s, Pack *p);
+
+#endif
