@@ -1,12 +1,12 @@
 #include "base/table.h"
 
-#include <ctype.h>
 #include <errno.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+
+#include "base/csv.h"
 
 /* A named pipe in a folder may have no writer, and reading it would block for ever; /dev/stdin and the pipes of a shell's <(...)
  * have a writer. */
@@ -59,95 +59,14 @@ Status file_read(const char *path, size_t largest, char **text, size_t *length, 
     return STATUS_OK;
 }
 
-/* ---- how the file is written ---------------------------------------------------------------------------------- */
-
-typedef struct {
-    const char *path;
-    int line;
-    char separator;             /* of the cells; 0: not yet known */
-    int point_line, comma_line; /* the first number with a decimal point, with a decimal comma; 0: none */
-    size_t capacity;
-} Reader;
-
-/* Does every comma stand between digits? Beside tabs these are decimal commas. */
-static int all_commas_are_decimal(const char *line, const char *end)
+static Status read_names(Table *t, CsvReader *r, Err *err)
 {
-    for (const char *p = line; p < end; p++)
-        if (*p == ',' && (p == line || p + 1 == end || !isdigit((unsigned char)p[-1]) || !isdigit((unsigned char)p[1])))
-            return 0;
-    return 1;
-}
-
-/* By the first line that is no comment. */
-static char find_separator(const char *line, const char *end)
-{
-    const size_t n = (size_t)(end - line);
-    if (memchr(line, ';', n))
-        return ';';
-    return memchr(line, '\t', n) && all_commas_are_decimal(line, end) ? '\t' : ',';
-}
-
-/* ---- cells ---------------------------------------------------------------------------------------------------- */
-
-typedef struct {
-    const char *from, *to; /* without the blanks and the quotes around it */
-} Cell;
-
-static void strip_blanks(Cell *c)
-{
-    while (c->from < c->to && isspace((unsigned char)*c->from))
-        c->from++;
-    while (c->to > c->from && isspace((unsigned char)c->to[-1]))
-        c->to--;
-}
-
-/* The cell that begins at *p; *p moves behind its separator, or one behind the end of the line. */
-static Cell next_cell(const Reader *r, const char **p, const char *end)
-{
-    Cell c = {*p, *p};
-    for (int quoted = 0; c.to < end && (quoted || *c.to != r->separator); c.to++)
-        quoted ^= *c.to == '"';
-    *p = c.to + 1;
-    strip_blanks(&c);
-    if (c.to - c.from >= 2 && *c.from == '"' && c.to[-1] == '"') {
-        c.from++;
-        c.to--;
-        strip_blanks(&c);
-    }
-    return c;
-}
-
-static size_t count_cells(const Reader *r, const char *line, const char *end)
-{
-    size_t n = 0;
-    while (line <= end) {
-        next_cell(r, &line, end);
-        n++;
-    }
-    return n;
-}
-
-/* Spreadsheets write such lines where rows were emptied. */
-static int is_blank(const Reader *r, const char *line, const char *end)
-{
-    while (line <= end) {
-        const Cell c = next_cell(r, &line, end);
-        if (c.from < c.to)
-            return 0;
-    }
-    return 1;
-}
-
-/* ---- names ---------------------------------------------------------------------------------------------------- */
-
-static Status read_names(Table *t, const Reader *r, const char *line, const char *end, Err *err)
-{
-    t->n_cols = count_cells(r, line, end);
+    t->n_cols = csv_count(r);
     t->names = calloc(t->n_cols, sizeof *t->names);
     if (!t->names)
         return fail(err, STATUS_NO_MEMORY, "%s: no memory for %zu column names", r->path, t->n_cols);
     for (size_t j = 0; j < t->n_cols; j++) {
-        const Cell c = next_cell(r, &line, end);
+        const CsvCell c = csv_cell(r);
         const size_t length = (size_t)(c.to - c.from);
         if (length == 0 || length >= TABLE_NAME_MAX)
             return fail(err, STATUS_BAD_DATA, "%s:%d: column %zu has no usable name", r->path, r->line, j + 1);
@@ -156,131 +75,50 @@ static Status read_names(Table *t, const Reader *r, const char *line, const char
     return STATUS_OK;
 }
 
-/* ---- numbers -------------------------------------------------------------------------------------------------- */
-
-static Status room_for_row(Table *t, Reader *r, Err *err)
+static Status room_for_row(Table *t, size_t *capacity, const CsvReader *r, Err *err)
 {
-    if (t->n_rows < r->capacity)
+    if (t->n_rows < *capacity)
         return STATUS_OK;
-    const size_t capacity = 2 * (t->n_rows + 1);
-    double *values = realloc(t->values, capacity * t->n_cols * sizeof *values);
+    const size_t wider = 2 * (t->n_rows + 1);
+    double *values = realloc(t->values, wider * t->n_cols * sizeof *values);
     if (values)
         t->values = values;
-    int *line = values ? realloc(t->line, capacity * sizeof *line) : NULL;
+    int *line = values ? realloc(t->line, wider * sizeof *line) : NULL;
     if (!line)
-        return fail(err, STATUS_NO_MEMORY, "%s: no memory for %zu numbers", r->path, capacity * t->n_cols);
+        return fail(err, STATUS_NO_MEMORY, "%s: no memory for %zu numbers", r->path, wider * t->n_cols);
     t->line = line;
-    r->capacity = capacity;
+    *capacity = wider;
     return STATUS_OK;
 }
 
-/* Length of a cell in a message. */
-static int shown(Cell c)
-{
-    return c.to - c.from < 20 ? (int)(c.to - c.from) : 20;
-}
-
-/* A comma in a cell is a decimal one: it separates nothing there. */
-static void note_decimal_mark(Reader *r, char *number)
-{
-    char *comma = strchr(number, ',');
-    if (strchr(number, '.') && !r->point_line)
-        r->point_line = r->line;
-    if (comma && !r->comma_line)
-        r->comma_line = r->line;
-    if (comma)
-        *comma = '.';
-}
-
-static Status read_number(Reader *r, Cell c, size_t column, size_t n_cols, double *value, Err *err)
-{
-    enum { LONGEST = 400 }; /* characters of a number; printf's longest double has some 325 */
-    char number[LONGEST + 1], *stop;
-    const size_t length = (size_t)(c.to - c.from) < LONGEST ? (size_t)(c.to - c.from) : LONGEST;
-    memcpy(number, c.from, length);
-    number[length] = 0;
-    note_decimal_mark(r, number);
-    *value = strtod(number, &stop);
-    if (stop == number)
-        return fail(err, STATUS_BAD_DATA, "%s:%d: column %zu of %zu is missing or not a number: '%.*s'", r->path,
-                    r->line, column, n_cols, shown(c), c.from);
-    if (*stop || length < (size_t)(c.to - c.from))
-        return fail(err, STATUS_BAD_DATA, "%s:%d: column %zu is not a number: '%.*s'", r->path, r->line, column,
-                    shown(c), c.from);
-    if (!isfinite(*value))
-        return fail(err, STATUS_BAD_DATA, "%s:%d: column %zu is %g; only finite numbers are accepted", r->path, r->line,
-                    column, *value);
-    return STATUS_OK;
-}
-
-static Status read_row(Table *t, Reader *r, const char *line, const char *end, Err *err)
+static Status read_row(Table *t, size_t *capacity, CsvReader *r, Err *err)
 {
     if (t->n_cols == 0)
-        t->n_cols = count_cells(r, line, end);
-    TRY(room_for_row(t, r, err));
+        t->n_cols = csv_count(r);
+    TRY(room_for_row(t, capacity, r, err));
     double *row = t->values + t->n_rows * t->n_cols;
-    for (size_t j = 0; j < t->n_cols; j++) {
-        const Cell c = line <= end ? next_cell(r, &line, end) : (Cell){end, end};
-        TRY(read_number(r, c, j + 1, t->n_cols, &row[j], err));
-    }
-    if (line <= end)
+    for (size_t j = 0; j < t->n_cols; j++)
+        TRY(csv_number(r, csv_cell(r), j + 1, t->n_cols, &row[j], err));
+    if (csv_count(r) > 0)
         return fail(err, STATUS_BAD_DATA, "%s:%d: more than %zu columns", r->path, r->line, t->n_cols);
-    if (r->point_line && r->comma_line)
-        return fail(err, STATUS_BAD_DATA, "%s:%d: decimal points and decimal commas are mixed; line %d has the other",
-                    r->path, r->line, r->point_line < r->comma_line ? r->point_line : r->comma_line);
     t->line[t->n_rows++] = r->line;
-    return STATUS_OK;
-}
-
-/* ---- the file ------------------------------------------------------------------------------------------------- */
-
-static Status read_line(Table *t, Reader *r, const char *line, const char *end, int has_header, Err *err)
-{
-    Cell body = {line, end};
-    strip_blanks(&body);
-    if (body.from == body.to || *body.from == '#')
-        return STATUS_OK;
-    if (!r->separator)
-        r->separator = find_separator(body.from, body.to);
-    const Cell all = r->separator == '\t' ? (Cell){line, end} : body; /* a blank that separates counts */
-    if (is_blank(r, all.from, all.to))
-        return STATUS_OK;
-    return has_header && !t->names ? read_names(t, r, all.from, all.to, err) : read_row(t, r, all.from, all.to, err);
-}
-
-static Status check_text(const char *path, const char *text, size_t length, Err *err)
-{
-    if (length >= 2 && (memcmp(text, "\xff\xfe", 2) == 0 || memcmp(text, "\xfe\xff", 2) == 0))
-        return fail(err, STATUS_BAD_DATA, "%s: is written in UTF-16; save it as CSV UTF-8", path);
-    if (memchr(text, 0, length))
-        return fail(err, STATUS_BAD_DATA, "%s: holds a NUL byte; this is not a text file", path);
     return STATUS_OK;
 }
 
 Status table_parse(Table *t, const char *path, const char *text, size_t length, int has_header, Err *err)
 {
-    Reader r = {.path = path};
-    const char *end = text + length;
+    CsvReader r;
+    size_t capacity = 0;
     memset(t, 0, sizeof *t);
-    TRY(check_text(path, text, length, err));
-    if (length >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0) /* UTF-8 byte order mark */
-        text += 3;
-    const char line_end = memchr(text, '\n', (size_t)(end - text)) ? '\n' : '\r';
-    while (text < end) {
-        const char *stop = memchr(text, line_end, (size_t)(end - text));
-        r.line++;
-        const Status s = read_line(t, &r, text, stop ? stop : end, has_header, err);
-        if (s != STATUS_OK) {
-            table_free(t);
-            return s;
-        }
-        text = stop ? stop + 1 : end;
-    }
-    if (t->n_rows == 0 && !t->names) {
+    TRY(csv_open(&r, path, text, length, err));
+    Status s = STATUS_OK;
+    while (s == STATUS_OK && csv_line(&r))
+        s = has_header && !t->names ? read_names(t, &r, err) : read_row(t, &capacity, &r, err);
+    if (s == STATUS_OK && t->n_rows == 0 && !t->names)
+        s = fail(err, STATUS_BAD_DATA, "%s: holds no numbers", path);
+    if (s != STATUS_OK)
         table_free(t);
-        return fail(err, STATUS_BAD_DATA, "%s: holds no numbers", path);
-    }
-    return STATUS_OK;
+    return s;
 }
 
 Status table_read(Table *t, const char *path, int has_header, Err *err)

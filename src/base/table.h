@@ -1,11 +1,6 @@
 /* base/table.h -- a rectangle of numbers read from a CSV file, with or without one header line.
  *
- *   # comment and blank lines are skipped; every other line holds the same number of finite numbers
- *
- * The forms that spreadsheets write are read: a UTF-8 byte order mark, cells separated by commas, semicolons or tabs (the
- * first line that is no comment decides), cells in double quotes, decimal commas where the comma separates no cells
- * (decimal points and commas in one file are refused), lines that end in LF, CRLF or CR, lines of empty cells.
- *
+ * Every line (base/csv.h has their forms) holds the same number of finite numbers.
  * Below a header there may be no line at all; without one that is refused.
  *
  * Ownership  table_read allocates names, values and lines; table_free releases them (an empty table is fine).
