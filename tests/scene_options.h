@@ -2,6 +2,9 @@
 #ifndef IMTET_TESTS_SCENE_OPTIONS_H
 #define IMTET_TESTS_SCENE_OPTIONS_H
 
+#include <stdio.h>
+
+#include "scene/core_beam.h"
 #include "bench/paper.h"
 
 static inline SceneOptions scene_defaults(void)
@@ -16,6 +19,22 @@ static inline SceneOptions paper_scene(void)
     Settings s;
     paper_defaults(&s);
     return settings_scene(&s);
+}
+
+static inline Status load_model(Building *b, const char *model, Err *err)
+{
+    SceneOptions s = scene_defaults();
+    snprintf(s.building.model, sizeof s.building.model, "%s", model);
+    return building_load(b, &s.building, err);
+}
+
+/* The core of n storeys of the options' heights. */
+static inline Status make_core_of(CoreBeam *core, const SceneOptions *s, int n, double t_base, double t_top, Err *err)
+{
+    double storey_m[FLOORS_MAX];
+    for (int j = 0; j < n; j++)
+        storey_m[j] = j == 0 ? s->building.first_storey_m : s->building.storey_m;
+    return core_beam_make(core, &s->core, n, storey_m, t_base, t_top, err);
 }
 
 #endif

@@ -58,10 +58,10 @@ static void expect_warnings(const char *wanted, const char *arguments)
         fail_msg("imtet %s\n  warned of '%s', wanted '%s'", command, keys, wanted);
 }
 
-static void expect_text(const char *wanted)
+static void expect_text(const char *wanted, const char *arguments)
 {
     Said s;
-    run(&s, "check @/six.ini");
+    run(&s, "check @/six.ini %s", arguments);
     assert_int_equal(s.code, 0);
     if (!strstr(s.err, wanted))
         fail_msg("said: %s  wanted: %s", s.err, wanted);
@@ -91,21 +91,35 @@ static void test_a_sound_building_is_in_order_with_its_figures(void **state)
     json_decref(o);
 }
 
-static void test_units_that_are_wrong_are_guessed(void **state)
+static void expect_fault(const char *wanted, const char *arguments)
+{
+    char command[512];
+    snprintf(command, sizeof command, "check %s/six.ini %s", place.folder, arguments);
+    expect(65, wanted, command);
+}
+
+static void test_units_that_are_wrong_are_refused_or_guessed(void **state)
 {
     (void)state;
     write_building(1e-3, 1, 0);
-    expect_warnings("building.model", "");
-    expect_text("is the stiffness in kN/m?");
+    expect_fault("set building.units, kN_m_kg fits", "");
+    expect_warnings("", "--set building.units=kN_m_kg");
+    expect_warnings("building.model", "--set building.units=N_m_kg");
+    expect_text("is the stiffness in kN/m?", "--set building.units=N_m_kg");
     write_building(1, 1e-3, 0);
-    expect_warnings("building.model building.model", "");
-    expect_text("is the mass in t?");
+    expect_fault("set building.units, N_m_t fits", "");
+    expect_warnings("", "--set building.units=N_m_t");
+    expect_warnings("building.model building.model", "--set building.units=N_m_kg");
+    expect_text("is the mass in t?", "--set building.units=N_m_kg");
     write_building(1e-3, 1e-3, 0);
     expect_warnings("building.model", "");
-    expect_text("are stiffness and mass in kN/m and t?");
+    expect_text("are stiffness and mass in kN/m and t?", "");
+    expect_warnings("", "--set building.units=kN_m_t");
+    write_building(1 / 175126.8352464764, 1 / 175126.8352464764, 0);
+    expect_warnings("", "--set building.units=kip_in");
     write_building(1e3, 1e3, 0);
     expect_warnings("building.model", "");
-    expect_text("floors have 1000 to 1e+07");
+    expect_text("floors have 1000 to 1e+07", "");
 }
 
 static void test_floors_from_the_top_down_are_noticed(void **state)
@@ -113,7 +127,7 @@ static void test_floors_from_the_top_down_are_noticed(void **state)
     (void)state;
     write_building(1, 1, 1);
     expect_warnings("building.model", "");
-    expect_text("bottom floor first");
+    expect_text("bottom floor first", "");
 }
 
 static void test_damping_peak_and_gaps_beyond_reason_are_noticed(void **state)
@@ -162,20 +176,18 @@ static void test_faults_come_as_json_too(void **state)
 static void test_the_base_shear_of_one_mass_is_its_spectral_acceleration(void **state)
 {
     (void)state;
-    double one = 1, omega = 9, gamma = 1, M = 1e5, K = 81e5, psa;
+    double omega = 9, M = 1e5, K = 81e5, zeta = 0.03, storey = 4, psa;
     const double period = 2 * M_PI / omega;
     const SceneOptions s = scene_defaults();
-    Building b = {.n = 1, .K = &K, .M = &M, .phi = &one, .omega = &omega, .gamma = &gamma};
+    double phi = 1 / sqrt(M), gamma = sqrt(M);
+    const Building b = {1, &K, &M, &phi, &omega, &gamma, &zeta, &storey, 0};
     Motion m;
     SceneSummary f;
     Err err = {0};
-    double phi = 1 / sqrt(M), part = sqrt(M);
-    b.phi = &phi;
-    b.gamma = &part;
     CHECK_OK(motion_load(&m, "builtin:sylmar-like", UNIT_FROM_FILE, &err), &err);
     CHECK_OK(motion_prepare(&m, 0.3, 1, &err), &err);
-    CHECK_OK(scene_summarise(&f, &b, &s.building, &s.core, &m, 0.01, 0.01, &err), &err);
-    spectrum_psa(&m, s.building.damping, 1, &period, &psa);
+    CHECK_OK(scene_summarise(&f, &b, &s.core, &m, 0.01, 0.01, &err), &err);
+    spectrum_psa(&m, zeta, 1, &period, &psa);
     assert_close(f.base_shear, psa / 9.81, 1e-12);
     assert_close(f.first_mode_mass, 1, 1e-12);
     motion_free(&m);
@@ -185,7 +197,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_a_sound_building_is_in_order_with_its_figures),
-        cmocka_unit_test(test_units_that_are_wrong_are_guessed),
+        cmocka_unit_test(test_units_that_are_wrong_are_refused_or_guessed),
         cmocka_unit_test(test_floors_from_the_top_down_are_noticed),
         cmocka_unit_test(test_damping_peak_and_gaps_beyond_reason_are_noticed),
         cmocka_unit_test(test_a_core_beyond_the_motions_samples_is_noticed),

@@ -68,8 +68,8 @@ static void test_every_engine_agrees_with_the_fast_one_where_there_are_impacts(v
     s.core.section = CORE_EFFECTIVE;
     for (int k = 0; k < 21; k++)
         accel[k] = 3 * sin(2.5 * 0.05 * k) + 2 * sin(8.2 * 0.05 * k);
-    CHECK_OK(building_load(&b, "guyan", &err), &err);
-    CHECK_OK(core_beam_make(&core, &s.core, &s.building, b.n, 1, 1, &err), &err);
+    CHECK_OK(load_model(&b, "guyan", &err), &err);
+    CHECK_OK(make_core_of(&core, &s, b.n, 1, 1, &err), &err);
     for (int j = 0; j < b.n; j++)
         gaps[j] = 0.002 * (j + 1);
     CHECK_OK(model_create(&model, b.n, &err), &err);

@@ -29,8 +29,8 @@ static void stage_set(Stage *stage, double gap)
     memset(stage, 0, sizeof *stage);
     stage->s = paper_scene();
     stage->s.core.section = CORE_EFFECTIVE;
-    CHECK_OK(building_load(&stage->b, "guyan", &err), &err);
-    CHECK_OK(core_beam_make(&stage->core, &stage->s.core, &stage->s.building, stage->b.n, 1, 1, &err), &err);
+    CHECK_OK(load_model(&stage->b, "guyan", &err), &err);
+    CHECK_OK(make_core_of(&stage->core, &stage->s, stage->b.n, 1, 1, &err), &err);
     for (int j = 0; j < stage->b.n; j++)
         stage->gaps[j] = gap * (j + 1);
     CHECK_OK(model_create(&stage->model, stage->b.n, &err), &err);
@@ -398,6 +398,7 @@ static void test_without_damping_the_tied_pair_is_a_sum_of_closed_forms(void **s
     const Motion m = sines(accel, 1);
     stage_set(&stage, 0);
     stage.s.building.damping = stage.s.core.damping = 0;
+    CHECK_OK(building_damp(&stage.b, &stage.s.building, &(Err){0}), &(Err){0});
     pair_set(&pair, &stage);
     pair_shake(&pair, &m);
     for (int i = 0; i < N; i++)
@@ -443,7 +444,7 @@ static void test_tied_to_next_to_nothing_the_building_is_the_bare_one(void **sta
     stage_without_core(&stage);
     stage.s.core.area_base_m2 = stage.s.core.area_top_m2 = 1e-9;
     stage.s.core.inertia_base_m4 = stage.s.core.inertia_top_m4 = 1e-9;
-    CHECK_OK(core_beam_make(&stage.core, &stage.s.core, &stage.s.building, stage.b.n, 1, 1, &err), &err);
+    CHECK_OK(make_core_of(&stage.core, &stage.s, stage.b.n, 1, 1, &err), &err);
     for (size_t i = 0; i < sizeof DURATION / sizeof DURATION[0]; i++) {
         const SimResult t = run_tied(&stage, &m, DURATION[i], ACCURACY_FINE);
         const SimResult r = run_cvode(&stage, &m, DURATION[i], ACCURACY_FINE);

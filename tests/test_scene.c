@@ -19,7 +19,7 @@ static void make_core(CoreBeam *core, CoreSection section, double t_base, double
     SceneOptions s = paper_scene();
     Err err = {0};
     s.core.section = section;
-    CHECK_OK(core_beam_make(core, &s.core, &s.building, 20, t_base, t_top, &err), &err);
+    CHECK_OK(make_core_of(core, &s, 20, t_base, t_top, &err), &err);
 }
 
 static void assert_hz(const double hz[], const double wanted[], int n, double tolerance_hz)
@@ -90,7 +90,7 @@ static void test_a_uniform_core_is_a_textbook_cantilever(void **state)
     Err err = {0};
     s.core.section = CORE_PLATE;
     s.building.first_storey_m = s.building.storey_m = 4;
-    CHECK_OK(core_beam_make(&core, &s.core, &s.building, 20, 0.5, 0.5, &err), &err);
+    CHECK_OK(make_core_of(&core, &s, 20, 0.5, 0.5, &err), &err);
     const double L = 80, EI = s.core.youngs_modulus_pa * s.core.width_m * pow(0.5, 3) / 12;
     const double m = s.core.density_kg_m3 * s.core.width_m * 0.5;
     const double beta_l[] = {1.875104069, 4.694091133, 7.854757438}; /* cos x cosh x = -1 */
@@ -140,7 +140,7 @@ static void test_a_force_at_any_node_bends_and_shears_the_cantilever_as_the_clos
     SceneOptions s = uniform_storeys(6, CORE_TIMOSHENKO);
     CoreBeam core;
     Err err = {0};
-    CHECK_OK(core_beam_make(&core, &s.core, &s.building, N, 0.02, 0.02, &err), &err);
+    CHECK_OK(make_core_of(&core, &s, N, 0.02, 0.02, &err), &err);
     const Tube a = tube(&s.core, 0.02);
     for (int node = 0; node < N; node++) {
         double K[N * N], u[N] = {0};
@@ -162,9 +162,9 @@ static void test_a_slender_core_vibrates_alike_by_both_theories(void **state)
     double before = 1;
     for (int i = 0; i < 2; i++) {
         SceneOptions s = uniform_storeys(sides[i], CORE_TIMOSHENKO);
-        CHECK_OK(core_beam_make(&with, &s.core, &s.building, 20, 0.002, 0.002, &err), &err);
+        CHECK_OK(make_core_of(&with, &s, 20, 0.002, 0.002, &err), &err);
         s.core.theory = CORE_EULER_BERNOULLI;
-        CHECK_OK(core_beam_make(&without, &s.core, &s.building, 20, 0.002, 0.002, &err), &err);
+        CHECK_OK(make_core_of(&without, &s, 20, 0.002, 0.002, &err), &err);
         const double softer = 1 - with.omega[0] / without.omega[0];
         assert_true(softer > 0 && softer < before / 15.9); /* goes with the square of the side */
         before = softer;
@@ -259,7 +259,7 @@ static void test_condensed_rotations_raise_the_first_frequencies_by_less_than_a_
     double b[BEAM_MODES];
     s.building.first_storey_m = s.building.storey_m = L / 64;
     clamped_free_roots(sqrt(a.I / a.A) / L, sqrt(a.EI / a.kGA) / L, BEAM_MODES, b);
-    CHECK_OK(core_beam_make(&core, &s.core, &s.building, 64, 0.01, 0.01, &err), &err);
+    CHECK_OK(make_core_of(&core, &s, 64, 0.01, 0.01, &err), &err);
     for (int i = 0; i < BEAM_MODES; i++) {
         const double error = relative_error(core.omega[i], b[i], &a, L);
         assert_true(error > 0 && error < allowed[i]);
@@ -272,9 +272,9 @@ static double shear_effect_on_first_mode(CoreSection section, int n)
     Err err = {0};
     SceneOptions s = scene_defaults();
     s.core.section = section;
-    CHECK_OK(core_beam_make(&with, &s.core, &s.building, n, 0.012, 0.0064, &err), &err);
+    CHECK_OK(make_core_of(&with, &s, n, 0.012, 0.0064, &err), &err);
     s.core.theory = CORE_EULER_BERNOULLI;
-    CHECK_OK(core_beam_make(&without, &s.core, &s.building, n, 0.012, 0.0064, &err), &err);
+    CHECK_OK(make_core_of(&without, &s, n, 0.012, 0.0064, &err), &err);
     assert_true(with.mass_kg == without.mass_kg);
     return 1 - with.omega[0] / without.omega[0];
 }
@@ -297,16 +297,16 @@ static void test_an_effective_section_shears_by_the_area_that_is_given(void **st
     CoreBeam box, effective;
     Err err = {0};
     const Tube a = tube(&s.core, 0.02);
-    CHECK_OK(core_beam_make(&box, &s.core, &s.building, 8, 0.02, 0.02, &err), &err);
+    CHECK_OK(make_core_of(&box, &s, 8, 0.02, 0.02, &err), &err);
     s.core.section = CORE_EFFECTIVE;
     s.core.area_base_m2 = s.core.area_top_m2 = a.A;
     s.core.inertia_base_m4 = s.core.inertia_top_m4 = a.I;
     s.core.shear_area_base_m2 = s.core.shear_area_top_m2 = a.kGA * 2 * (1 + s.core.poisson) / s.core.youngs_modulus_pa;
-    CHECK_OK(core_beam_make(&effective, &s.core, &s.building, 8, 1, 1, &err), &err);
+    CHECK_OK(make_core_of(&effective, &s, 8, 1, 1, &err), &err);
     for (int i = 0; i < 8; i++)
         assert_close(effective.omega[i], box.omega[i], 1e-10);
     s.core.shear_area_top_m2 = 0;
-    assert_int_equal(core_beam_make(&effective, &s.core, &s.building, 8, 1, 1, &err), STATUS_BAD_DATA);
+    assert_int_equal(make_core_of(&effective, &s, 8, 1, 1, &err), STATUS_BAD_DATA);
     assert_non_null(strstr(err.text, "core.shear_area"));
 }
 
@@ -315,7 +315,7 @@ static void test_mode_shapes_are_mass_normalised_and_diagonalise_the_stiffness(v
     (void)state;
     Building b;
     Err err = {0};
-    CHECK_OK(building_load(&b, "guyan", &err), &err);
+    CHECK_OK(load_model(&b, "guyan", &err), &err);
     for (int i = 0; i < b.n; i++)
         for (int j = 0; j < b.n; j++) {
             double m = 0, k = 0;
@@ -335,7 +335,7 @@ static void test_participation_factors_add_up_to_the_whole_mass(void **state)
     (void)state;
     Building b;
     Err err = {0};
-    CHECK_OK(building_load(&b, "appendix", &err), &err);
+    CHECK_OK(load_model(&b, "appendix", &err), &err);
     double from_modes = 0, from_matrix = 0;
     for (int i = 0; i < b.n; i++)
         from_modes += b.gamma[i] * b.gamma[i];
@@ -363,7 +363,7 @@ static void test_bad_buildings_are_refused_with_file_and_fault(void **state)
         Building b;
         Err err = {0};
         snprintf(path, sizeof path, "tests/bad/building/%s", BAD[i][0]);
-        assert_int_not_equal(building_load(&b, path, &err), STATUS_OK);
+        assert_int_not_equal(load_model(&b, path, &err), STATUS_OK);
         if (!strstr(err.text, BAD[i][1]) || !strstr(err.text, path)) {
             print_error("%s: message '%s' does not hold '%s'\n", path, err.text, BAD[i][1]);
             fail();
@@ -378,8 +378,8 @@ static void test_walls_that_do_not_fit_are_refused(void **state)
     SceneOptions s = paper_scene();
     Err err = {0};
     s.core.side_m = 0.05;
-    assert_int_equal(core_beam_make(&core, &s.core, &s.building, 20, 0.03, 0.02, &err), STATUS_BAD_DATA);
-    assert_int_equal(core_beam_make(&core, &s.core, &s.building, 20, -0.01, 0.02, &err), STATUS_BAD_DATA);
+    assert_int_equal(make_core_of(&core, &s, 20, 0.03, 0.02, &err), STATUS_BAD_DATA);
+    assert_int_equal(make_core_of(&core, &s, 20, -0.01, 0.02, &err), STATUS_BAD_DATA);
 }
 
 static void test_contact_stiffness_and_damping_are_those_of_the_paper(void **state)

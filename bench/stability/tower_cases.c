@@ -70,7 +70,7 @@ static double largest_displacement(const Tower *tower)
     enum { LOOKS = 200 };
     Building b;
     Err err = {0};
-    need(building_load(&b, tower->settings.building.model, &err), &err);
+    need(building_load(&b, &tower->settings.building, &err), &err);
     const double zeta = tower->settings.building.damping, dt = tower->motion.dt_s;
     double q[FLOORS_MAX] = {0}, v[FLOORS_MAX] = {0}, most = 0;
     for (size_t k = 0; k + 1 < tower->motion.n; k++) {
@@ -181,9 +181,8 @@ static SimResult run_truncated(Trial *t, const Tower *tower, int nc)
     SimModel model;
     Err err = {0};
     const SceneOptions options = settings_scene(&tower->settings);
-    need(building_load(&b, tower->settings.building.model, &err), &err);
-    need(core_beam_make(&core, &tower->settings.core, &tower->settings.building, b.n, tower->x[20], tower->x[21], &err),
-         &err);
+    need(building_load(&b, &tower->settings.building, &err), &err);
+    need(core_beam_make(&core, &tower->settings.core, b.n, b.storey_m, tower->x[20], tower->x[21], &err), &err);
     need(model_create(&model, b.n, &err), &err);
     need(model_set(&model, &options, &b, &core, tower->x, &err), &err);
     truncate_core(&model, nc);
@@ -371,9 +370,8 @@ static void vector_width(Trial *t)
         Err err = {0};
         open_tower(t, &tower, seconds_for(t, 3));
         const SceneOptions options = settings_scene(&tower.settings);
-        need(building_load(&b, tower.settings.building.model, &err), &err);
-        need(core_beam_make(&core, &tower.settings.core, &tower.settings.building, b.n, tower.x[20], tower.x[21], &err),
-             &err);
+        need(building_load(&b, &tower.settings.building, &err), &err);
+        need(core_beam_make(&core, &tower.settings.core, b.n, b.storey_m, tower.x[20], tower.x[21], &err), &err);
         need(model_create(&model, b.n, &err), &err);
         need(model_set(&model, &options, &b, &core, tower.x, &err), &err);
         need(fast_create(&work, b.n, &err), &err);

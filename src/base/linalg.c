@@ -88,3 +88,14 @@ int linalg_indefinite_at(int n, const double A[])
     free(copy);
     return info;
 }
+
+int linalg_factor_band(int n, int band, double A[])
+{
+    const int info = LAPACKE_dpbtrf(LAPACK_COL_MAJOR, 'L', n, band, A, band + 1);
+    return info < 0 ? -1 : info;
+}
+
+void linalg_solve_band(int n, int band, const double A[], int m, double B[])
+{
+    LAPACKE_dpbtrs(LAPACK_COL_MAJOR, 'L', n, band, m, A, band + 1, B, n);
+}

@@ -22,4 +22,12 @@ Status linalg_solve_spd(int n, int m, double A[], double B[], Err *err);
  * -1: no memory. */
 int linalg_indefinite_at(int n, const double A[]);
 
+/* Symmetric band matrix A (n), its lower band column by column: A_ij at A[j (band+1) + i-j], j <= i <= j+band. Cholesky
+ * in place; the diagonal of the factor stands at A[j (band+1)]. Row of the first pivot that is not positive, counted
+ * from 1; 0: factored; -1: no memory. */
+int linalg_factor_band(int n, int band, double A[]);
+
+/* A X = B with that factor; B (m, n): a right-hand side per row, overwritten. */
+void linalg_solve_band(int n, int band, const double A[], int m, double B[]);
+
 #endif

@@ -83,7 +83,7 @@ Status sheet_read(Sheet *s, const char *path, Err *err)
     size_t length;
     memset(s, 0, sizeof *s);
     snprintf(s->path, sizeof s->path, "%s", path);
-    TRY(file_read(path, &text, &length, err));
+    TRY(file_read(path, FILE_LARGEST, &text, &length, err));
     const Status status = read_lines(s, text, length, err);
     free(text);
     if (status != STATUS_OK)

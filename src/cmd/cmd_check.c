@@ -92,7 +92,7 @@ static Status read_settings(const Args *args, Check *c, Settings *s, Err *err)
 static int open_building(Check *c, CheckedScene *p)
 {
     Err e = {0};
-    return note(c, building_load(&p->building, p->s->building.model, &e), "building.model", &e);
+    return note(c, building_load(&p->building, &p->s->building, &e), "building.model", &e);
 }
 
 static int open_motion(Check *c, CheckedScene *p)
@@ -143,8 +143,7 @@ static int summarise(Check *c, CheckedScene *p)
 {
     Err e = {0};
     const int n = p->building.n;
-    const Status status =
-        scene_summarise(&p->summary, &p->building, &p->s->building, &p->s->core, &p->motion, p->x[n], p->x[n + 1], &e);
+    const Status status = scene_summarise(&p->summary, &p->building, &p->s->core, &p->motion, p->x[n], p->x[n + 1], &e);
     if (!note(c, status, "core", &e))
         return 0;
     scene_warnings(&p->summary, &p->s->building, &p->s->core, &p->s->design, &p->motion, warn, c);

@@ -38,7 +38,7 @@ static Status compute(const Args *args, const World *w, Modes *m, Err *err)
     x[m->n] = m->t_base_m;
     x[m->n + 1] = m->t_top_m;
     for (CoreTheory k = CORE_TIMOSHENKO; k <= CORE_EULER_BERNOULLI; k++)
-        TRY(core_beam_first_hz(&w->options.core, &w->options.building, k, m->n, m->t_base_m, m->t_top_m,
+        TRY(core_beam_first_hz(&w->options.core, k, m->n, scene_building(w->scene)->storey_m, m->t_base_m, m->t_top_m,
                                &m->by_theory[k], err));
     return scene_frequencies(w->scene, x, m->building, m->core, m->zero_gap, &m->core_mass_kg, err);
 }

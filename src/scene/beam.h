@@ -9,6 +9,8 @@
 #ifndef IMTET_SCENE_BEAM_H
 #define IMTET_SCENE_BEAM_H
 
+#include "base/status.h"
+
 typedef struct {
     double EI;          /* [N m2] */
     double kGA;         /* [N] of the shear area; 0: shear does not deform it */
@@ -18,5 +20,9 @@ typedef struct {
 } Beam;
 
 void beam_element(const Beam *b, double k[4][4], double m[4][4]);
+
+/* A cantilever of n beams, clamped where the first begins, condensed to the deflections of their ends by Guyan reduction:
+ * T = [1; -Krr^-1 Kru],  K = T' K T,  M = T' M T   (n, n). */
+Status beam_cantilever(int n, const Beam beam[], double K[], double M[], Err *err);
 
 #endif

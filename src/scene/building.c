@@ -7,108 +7,192 @@
 
 #include "base/hash.h"
 #include "base/linalg.h"
-#include "base/table.h"
+#include "base/list.h"
+#include "base/units.h"
+#include "scene/building_read.h"
 
-/* The matrices of configs/sac20, linked in as they are (Makefile, rule for *.csv.o). */
-extern const char _binary_configs_sac20_guyan_K_csv_start[], _binary_configs_sac20_guyan_K_csv_end[];
-extern const char _binary_configs_sac20_guyan_M_csv_start[], _binary_configs_sac20_guyan_M_csv_end[];
-extern const char _binary_configs_sac20_appendix_K_csv_start[], _binary_configs_sac20_appendix_K_csv_end[];
-extern const char _binary_configs_sac20_appendix_M_csv_start[], _binary_configs_sac20_appendix_M_csv_end[];
+/* ---- heights -------------------------------------------------------------------------------------------------- */
 
-static const struct {
-    const char *model, *matrix, *start, *end;
-} COMPILED_IN[] = {
-    {"guyan", "K", _binary_configs_sac20_guyan_K_csv_start, _binary_configs_sac20_guyan_K_csv_end},
-    {"guyan", "M", _binary_configs_sac20_guyan_M_csv_start, _binary_configs_sac20_guyan_M_csv_end},
-    {"appendix", "K", _binary_configs_sac20_appendix_K_csv_start, _binary_configs_sac20_appendix_K_csv_end},
-    {"appendix", "M", _binary_configs_sac20_appendix_M_csv_start, _binary_configs_sac20_appendix_M_csv_end},
-};
-
-static Status read_matrix(Table *t, const char *model, const char *matrix, char path[], size_t size, Err *err)
+static Status list_number(const char *list, size_t i, const char *key, double *value, Err *err)
 {
-    snprintf(path, size, "%s/%s.csv", model, matrix);
-    for (size_t i = 0; i < sizeof COMPILED_IN / sizeof COMPILED_IN[0]; i++)
-        if (!strcmp(model, COMPILED_IN[i].model) && !strcmp(matrix, COMPILED_IN[i].matrix))
-            return table_parse(t, path, COMPILED_IN[i].start, (size_t)(COMPILED_IN[i].end - COMPILED_IN[i].start), 0,
-                               err);
-    return table_read(t, path, 0, err);
-}
-
-static Status check_symmetric(int n, double A[], const char *path, Err *err)
-{
-    double largest = 0;
-    for (int i = 0; i < n * n; i++)
-        largest = fmax(largest, fabs(A[i]));
-    for (int i = 0; i < n; i++)
-        for (int j = 0; j < i; j++) {
-            double *lower = &A[i * n + j], *upper = &A[j * n + i];
-            if (!(fabs(*lower - *upper) <= 1e-6 * largest))
-                return fail(err, STATUS_BAD_DATA,
-                            "%s: not symmetric: row %d column %d is %.9g but row %d column %d is %.9g", path, i + 1,
-                            j + 1, *lower, j + 1, i + 1, *upper);
-            *lower = *upper = 0.5 * (*lower + *upper);
-        }
-    const int pivot = linalg_indefinite_at(n, A);
-    if (pivot < 0)
-        return fail(err, STATUS_NO_MEMORY, "%s: no memory to factor %d x %d", path, n, n);
-    if (pivot > 0)
-        return fail(err, STATUS_BAD_DATA,
-                    "%s: not positive definite: the leading block of %d rows is singular or worse", path, pivot);
+    char item[64], *end;
+    if (!list_item(list, i, item, sizeof item))
+        return fail(err, STATUS_BAD_DATA, "%s: '%.60s' has no number %zu", key, list, i + 1);
+    *value = strtod(item, &end);
+    if (end == item || *end || !(*value > 0) || !isfinite(*value))
+        return fail(err, STATUS_BAD_DATA, "%s: '%s' is no number above 0", key, item);
     return STATUS_OK;
 }
 
-static Status load_matrix(const char *model, const char *matrix, double **A, int *n, Err *err)
+static int is_given(const char *list)
 {
-    Table t;
-    char path[600];
-    TRY(read_matrix(&t, model, matrix, path, sizeof path, err));
-    Status s = STATUS_OK;
-    if (t.n_rows != t.n_cols)
-        s = fail(err, STATUS_BAD_DATA, "%s: %zu rows of %zu columns; a square matrix is needed", path, t.n_rows,
-                 t.n_cols);
-    else if (t.n_rows > FLOORS_MAX)
-        s = fail(err, STATUS_BAD_DATA, "%s: %zu floors; at most %d are supported", path, t.n_rows, FLOORS_MAX);
-    else
-        s = check_symmetric((int)t.n_rows, t.values, path, err);
-    if (s == STATUS_OK) {
-        *A = t.values;
-        *n = (int)t.n_rows;
-        t.values = NULL;
-    }
-    table_free(&t);
-    return s;
+    return strcmp(list, "none") != 0;
 }
+
+static Status find_heights(Building *b, const BuildingFiles *files, const BuildingOptions *o, Err *err)
+{
+    const int listed = is_given(o->heights_m);
+    if (listed && list_count(o->heights_m) != (size_t)b->n)
+        return fail(err, STATUS_BAD_DATA, "building.heights_m: has %zu heights; the building has %d storeys",
+                    list_count(o->heights_m), b->n);
+    if (listed && files->storey_m)
+        return fail(err, STATUS_BAD_DATA, "building.heights_m: %s has heights of its own; leave it at none", o->model);
+    for (int j = 0; j < b->n; j++) {
+        b->storey_m[j] = j == 0 ? o->first_storey_m : o->storey_m;
+        if (files->storey_m)
+            b->storey_m[j] = files->storey_m[j];
+        if (listed)
+            TRY(list_number(o->heights_m, (size_t)j, "building.heights_m", &b->storey_m[j], err));
+    }
+    return STATUS_OK;
+}
+
+/* ---- P-delta -------------------------------------------------------------------------------------------------- */
+
+static Status add_p_delta(Building *b, const BuildingOptions *o, Err *err)
+{
+    const int n = b->n;
+    double weight = 0;
+    for (int j = n - 1; j >= 0; j--) {
+        for (int k = 0; k < n; k++)
+            weight += GRAVITY * b->M[j * n + k];
+        const double k = weight / b->storey_m[j];
+        b->K[j * n + j] -= k;
+        if (j > 0) {
+            b->K[(j - 1) * n + j - 1] -= k;
+            b->K[j * n + j - 1] += k;
+            b->K[(j - 1) * n + j] += k;
+        }
+    }
+    const int pivot = linalg_indefinite_at(n, b->K);
+    if (pivot < 0)
+        return fail(err, STATUS_NO_MEMORY, "building: no memory to factor %d x %d", n, n);
+    return pivot == 0 ? STATUS_OK
+                      : fail(err, STATUS_BAD_DATA, "%s: buckles under its own weight (building.p_delta)", o->model);
+}
+
+/* ---- modes ---------------------------------------------------------------------------------------------------- */
 
 static Status find_modes(Building *b, Err *err)
 {
+    TRY(linalg_modes(b->n, b->K, b->M, b->omega, b->phi, err));
+    linalg_participation(b->n, b->M, b->phi, b->gamma);
+    return STATUS_OK;
+}
+
+static int is_period(double per_storey)
+{
+    return per_storey >= 0.01 && per_storey <= 1;
+}
+
+/* Units that are wrong by a factor of a thousand move the period by 32. */
+static Status check_period(const Building *b, const BuildingOptions *o, Err *err)
+{
+    static const char *const WORDS[] = {BUILDING_UNITS_LIST(CHOICE_WORD)};
+    const double per_storey = 2 * M_PI / b->omega[0] / b->n;
+    if (o->units != BUILDING_AUTO || is_period(per_storey))
+        return STATUS_OK;
+    for (BuildingUnits u = BUILDING_N_M_KG; u <= BUILDING_KIP_IN; u++) {
+        const BuildingUnit unit = building_unit(u);
+        if (is_period(per_storey * sqrt(unit.mass / unit.stiffness)))
+            return fail(err, STATUS_BAD_DATA,
+                        "%s: the first period is %.3g s per storey if stiffness is in N/m and mass in kg; set "
+                        "building.units, %s fits",
+                        o->model, per_storey, WORDS[u]);
+    }
+    return fail(err, STATUS_BAD_DATA, "%s: the first period is %.3g s per storey; if that is meant set building.units",
+                o->model, per_storey);
+}
+
+/* ---- damping -------------------------------------------------------------------------------------------------- */
+
+/* a / w + b w = 2 zeta at two frequencies. */
+static Status rayleigh(Building *b, const BuildingOptions *o, Err *err)
+{
+    double mode[2];
+    for (size_t i = 0; i < 2; i++) {
+        TRY(list_number(o->rayleigh_modes, i, "building.rayleigh_modes", &mode[i], err));
+        if (mode[i] != floor(mode[i]) || mode[i] > b->n)
+            return fail(err, STATUS_BAD_DATA, "building.rayleigh_modes: %g is none of the %d modes", mode[i], b->n);
+    }
+    const double w1 = b->omega[(int)mode[0] - 1], w2 = b->omega[(int)mode[1] - 1];
+    if (!(w1 != w2))
+        return fail(err, STATUS_BAD_DATA, "building.rayleigh_modes: '%s' are not two modes", o->rayleigh_modes);
+    const double mass = 2 * o->damping * w1 * w2 / (w1 + w2), stiffness = 2 * o->damping / (w1 + w2);
+    for (int i = 0; i < b->n; i++)
+        b->zeta[i] = 0.5 * (mass / b->omega[i] + stiffness * b->omega[i]);
+    return STATUS_OK;
+}
+
+static Status damping_table(Building *b, const BuildingOptions *o, Err *err)
+{
+    const size_t n = is_given(o->damping_table) ? list_count(o->damping_table) : 0;
+    if (n == 0)
+        return fail(err, STATUS_BAD_DATA,
+                    "building.damping_table: is none; building.damping_model = table wants a list");
+    for (int i = 0; i < b->n; i++)
+        TRY(list_number(o->damping_table, (size_t)i < n ? (size_t)i : n - 1, "building.damping_table", &b->zeta[i],
+                        err));
+    return STATUS_OK;
+}
+
+Status building_damp(Building *b, const BuildingOptions *o, Err *err)
+{
+    for (int i = 0; i < b->n; i++)
+        b->zeta[i] = o->damping;
+    if (o->damping_model == DAMPING_RAYLEIGH)
+        return rayleigh(b, o, err);
+    return o->damping_model == DAMPING_TABLE ? damping_table(b, o, err) : STATUS_OK;
+}
+
+/* ---- all of it ------------------------------------------------------------------------------------------------ */
+
+static Status allocate(Building *b, Err *err)
+{
     const int n = b->n;
-    b->phi = calloc((size_t)(n * n + 2 * n), sizeof *b->phi);
+    b->phi = calloc((size_t)(n * n + 4 * n), sizeof *b->phi);
     if (!b->phi)
         return fail(err, STATUS_NO_MEMORY, "building: no memory for %d modes", n);
     b->omega = b->phi + n * n;
     b->gamma = b->omega + n;
-    TRY(linalg_modes(n, b->K, b->M, b->omega, b->phi, err));
-    linalg_participation(n, b->M, b->phi, b->gamma);
+    b->zeta = b->gamma + n;
+    b->storey_m = b->zeta + n;
     return STATUS_OK;
 }
 
-Status building_load(Building *b, const char *model, Err *err)
+/* K and M become the building's. */
+static Status take(Building *b, BuildingFiles *files, const BuildingOptions *o, Err *err)
 {
+    b->n = files->n;
+    b->K = files->K;
+    b->M = files->M;
+    files->K = files->M = NULL;
+    const size_t bytes = (size_t)(b->n * b->n) * sizeof *b->K;
+    b->hash = hash_fnv1a(b->M, bytes, hash_fnv1a(b->K, bytes, HASH_SEED));
+    if (files->storey_m)
+        b->hash = hash_fnv1a(files->storey_m, (size_t)b->n * sizeof *files->storey_m, b->hash);
+    TRY(allocate(b, err));
+    TRY(find_heights(b, files, o, err));
+    if (o->p_delta)
+        TRY(add_p_delta(b, o, err));
+    TRY(find_modes(b, err));
+    if (!files->storey_m) /* matrices: their headers say no unit */
+        TRY(check_period(b, o, err));
+    return building_damp(b, o, err);
+}
+
+Status building_load(Building *b, const BuildingOptions *o, Err *err)
+{
+    BuildingFiles files;
     memset(b, 0, sizeof *b);
-    int n_mass = 0;
-    Status s = load_matrix(model, "K", &b->K, &b->n, err);
+    Status s = building_read(&files, o, err);
     if (s == STATUS_OK)
-        s = load_matrix(model, "M", &b->M, &n_mass, err);
-    if (s == STATUS_OK && n_mass != b->n)
-        s = fail(err, STATUS_BAD_DATA, "%s/M.csv: %d floors, but K.csv has %d", model, n_mass, b->n);
-    if (s == STATUS_OK)
-        s = find_modes(b, err);
-    if (s == STATUS_OK) {
-        const size_t bytes = (size_t)(b->n * b->n) * sizeof *b->K;
-        b->hash = hash_fnv1a(b->M, bytes, hash_fnv1a(b->K, bytes, HASH_SEED));
-    } else {
+        s = take(b, &files, o, err);
+    free(files.K);
+    free(files.M);
+    free(files.storey_m);
+    if (s != STATUS_OK)
         building_free(b);
-    }
     return s;
 }
 

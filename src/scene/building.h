@@ -1,12 +1,28 @@
-/* scene/building.h -- the steel tower: stiffness and mass of its floors, and its modes.
+/* scene/building.h -- the steel tower: stiffness and mass of its floors, its modes and their damping.
  *
  *   K phi_i = w_i^2 M phi_i,   phi_i' M phi_i = 1,   gamma_i = phi_i' M 1      (participation [sqrt(kg)])
  *
  * model "guyan"     the 106-DOF frame condensed by Guyan reduction to its 20 floors (0.264 Hz; nearest to the responses
  *                   printed in the paper), "appendix" the paper's Appendix A (0.273 Hz); both are compiled in
- * model FOLDER      K.csv [N/m] and M.csv [kg], square, any number of floors up to FLOORS_MAX, bottom floor first
+ * model FOLDER      one of three, told apart by its files; any number of floors up to FLOORS_MAX, bottom floor first
+ *   K.csv, M.csv    square matrices in building.units
+ *   storeys.csv     a row per storey from the bottom:  height_m, mass_kg (or mass_t) of the floor above it, and
+ *                     stiffness_n_m (or _kn_m)   shear stiffness: the force that displaces the floor by 1 m
+ *                     bending_n_m2 (or _kn_m2)   EI of the storey in the bending of the whole building
+ *                   stiffness alone: a shear building; bending alone: a bending cantilever; both: a Timoshenko one,
+ *                   rotations condensed
+ *   nodes.csv ...   a plane frame, condensed to its floors (scene/frame.h)
  *
- * Checked: square, finite, symmetric to rounding (1e-6 of the largest entry), positive definite.
+ * Storey heights: of the folder where it has them; else building.heights_m, or first_storey_m and storey_m.
+ *
+ * P-delta  with building.p_delta = on K loses the geometric stiffness of the weights above: storey j of height h_j
+ *          carries W_j = g sum_{k >= j} m_k (m row sums of M), K_j,j-1 block -= W_j / h_j [1 -1; -1 1].
+ * Damping  modal: building.damping in every mode; rayleigh: zeta_i = (a / w_i + b w_i) / 2 through building.damping at
+ *          the two modes of building.rayleigh_modes; table: building.damping_table, mode by mode, the last one for the rest
+ *
+ * Checked: square, finite, symmetric to rounding (1e-6 of the largest entry), positive definite. K.csv and M.csv with
+ * building.units = auto are read as N/m and kg; a first period beyond 0.01 to 1 s per storey is then refused.
+ *
  * Ownership  building_load allocates, building_free releases (an empty Building is fine). Threads  read-only after. */
 #ifndef IMTET_SCENE_BUILDING_H
 #define IMTET_SCENE_BUILDING_H
@@ -14,19 +30,25 @@
 #include <stdint.h>
 
 #include "base/status.h"
+#include "scene/options.h"
 
 enum { FLOORS_MAX = 64 };
 
 typedef struct {
-    int n;         /* floors */
-    double *K, *M; /* (n, n) [N/m], [kg] */
-    double *phi;   /* (n, n) column i is mode i [1/sqrt(kg)] */
-    double *omega; /* (n) [rad/s] ascending */
-    double *gamma; /* (n) [sqrt(kg)] */
-    uint64_t hash; /* FNV-1a of the numbers */
+    int n;            /* floors */
+    double *K, *M;    /* (n, n) [N/m], [kg] */
+    double *phi;      /* (n, n) column i is mode i [1/sqrt(kg)] */
+    double *omega;    /* (n) [rad/s] ascending */
+    double *gamma;    /* (n) [sqrt(kg)] */
+    double *zeta;     /* (n) [-] damping ratios of the modes */
+    double *storey_m; /* (n) heights */
+    uint64_t hash;    /* FNV-1a of the numbers in the files */
 } Building;
 
-Status building_load(Building *b, const char *model, Err *err);
+Status building_load(Building *b, const BuildingOptions *o, Err *err);
+
+/* The damping ratios once more, by these options. */
+Status building_damp(Building *b, const BuildingOptions *o, Err *err);
 void building_free(Building *b);
 
 #endif

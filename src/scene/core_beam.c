@@ -48,73 +48,8 @@ static Beam storey_beam(const CoreOptions *o, const Section *a, double length)
                   .length = length};
 }
 
-/* Unknowns: deflections 0..n-1, then rotations n..2n-1; node 0 of the beam is clamped. Returns the total mass. */
-static double assemble(const CoreOptions *o, const BuildingOptions *b, int n, double t_base, double t_top, double K[],
-                       double M[])
+static Status check(const CoreOptions *o, double t_base_m, double t_top_m, Err *err)
 {
-    const int size = 2 * n;
-    double mass = 0;
-    for (int e = 0; e < n; e++) {
-        const double share = n > 1 ? (double)e / (n - 1) : 0;
-        const double l = e == 0 ? b->first_storey_m : b->storey_m;
-        const Section a = section_at(o, share, t_base + (t_top - t_base) * share);
-        const Beam beam = storey_beam(o, &a, l);
-        double k[4][4], m[4][4];
-        beam_element(&beam, k, m);
-        const int at[4] = {e - 1, e == 0 ? -1 : n + e - 1, e, n + e};
-        for (int i = 0; i < 4; i++)
-            for (int j = 0; j < 4; j++)
-                if (at[i] >= 0 && at[j] >= 0) {
-                    K[at[i] * size + at[j]] += k[i][j];
-                    M[at[i] * size + at[j]] += m[i][j];
-                }
-        mass += beam.mass_per_m * l;
-    }
-    return mass;
-}
-
-/* out (n, n) = T' A T with T = [1; R], A (2n, 2n), R (n, n). */
-static void condense(int n, const double A[], const double R[], double work[], double out[])
-{
-    const int size = 2 * n;
-    for (int i = 0; i < size; i++) /* work (2n, n) = A T */
-        for (int j = 0; j < n; j++) {
-            double sum = A[i * size + j];
-            for (int k = 0; k < n; k++)
-                sum += A[i * size + n + k] * R[k * n + j];
-            work[i * n + j] = sum;
-        }
-    for (int i = 0; i < n; i++)
-        for (int j = 0; j < n; j++) {
-            double sum = work[i * n + j];
-            for (int k = 0; k < n; k++)
-                sum += R[k * n + i] * work[(n + k) * n + j];
-            out[i * n + j] = sum;
-        }
-    for (int i = 0; i < n; i++) /* symmetric but for rounding */
-        for (int j = 0; j < i; j++)
-            out[i * n + j] = out[j * n + i] = 0.5 * (out[i * n + j] + out[j * n + i]);
-}
-
-static Status remove_rotations(CoreBeam *c, const double K[], const double M[], double store[], Err *err)
-{
-    const int n = c->n, size = 2 * n;
-    double *Krr = store, *R = Krr + n * n, *work = R + n * n;
-    for (int i = 0; i < n; i++)
-        for (int j = 0; j < n; j++) {
-            Krr[i * n + j] = K[(n + i) * size + n + j];
-            R[i * n + j] = -K[(n + i) * size + j];
-        }
-    TRY(linalg_solve_spd(n, n, Krr, R, err));
-    condense(n, K, R, work, c->K);
-    condense(n, M, R, work, c->M);
-    return STATUS_OK;
-}
-
-Status core_beam_make(CoreBeam *c, const CoreOptions *o, const BuildingOptions *b, int n, double t_base_m,
-                      double t_top_m, Err *err)
-{
-    const size_t size = 2 * (size_t)n;
     if (o->section != CORE_EFFECTIVE && !(t_base_m > 0 && t_top_m > 0))
         return fail(err, STATUS_BAD_DATA, "core: thickness %g -> %g m must be positive", t_base_m, t_top_m);
     if (o->section == CORE_BOX && !(2 * fmax(t_base_m, t_top_m) <= o->side_m))
@@ -123,23 +58,29 @@ Status core_beam_make(CoreBeam *c, const CoreOptions *o, const BuildingOptions *
     if (o->section == CORE_EFFECTIVE && (o->shear_area_base_m2 > 0) != (o->shear_area_top_m2 > 0))
         return fail(err, STATUS_BAD_DATA, "core.shear_area_base_m2 is %g, core.shear_area_top_m2 %g: give both or none",
                     o->shear_area_base_m2, o->shear_area_top_m2);
-    double *K = calloc(2 * size * size + 4 * size * size, sizeof *K);
-    if (!K)
-        return fail(err, STATUS_NO_MEMORY, "core: no memory for %d storeys", n);
-    double *M = K + size * size;
-    memset(c, 0, sizeof *c);
-    c->n = n;
-    c->mass_kg = assemble(o, b, n, t_base_m, t_top_m, K, M);
-    Status status = remove_rotations(c, K, M, M + size * size, err);
-    if (status == STATUS_OK)
-        status = linalg_modes(n, c->K, c->M, c->omega, c->phi, err);
-    free(K);
-    if (status == STATUS_OK)
-        linalg_participation(n, c->M, c->phi, c->gamma);
-    return status;
+    return STATUS_OK;
 }
 
-Status core_beam_first_hz(const CoreOptions *o, const BuildingOptions *b, CoreTheory theory, int n, double t_base_m,
+Status core_beam_make(CoreBeam *c, const CoreOptions *o, int n, const double storey_m[], double t_base_m,
+                      double t_top_m, Err *err)
+{
+    Beam beam[FLOORS_MAX];
+    TRY(check(o, t_base_m, t_top_m, err));
+    memset(c, 0, sizeof *c);
+    c->n = n;
+    for (int e = 0; e < n; e++) {
+        const double share = n > 1 ? (double)e / (n - 1) : 0;
+        const Section section = section_at(o, share, t_base_m + (t_top_m - t_base_m) * share);
+        beam[e] = storey_beam(o, &section, storey_m[e]);
+        c->mass_kg += beam[e].mass_per_m * beam[e].length;
+    }
+    TRY(beam_cantilever(n, beam, c->K, c->M, err));
+    TRY(linalg_modes(n, c->K, c->M, c->omega, c->phi, err));
+    linalg_participation(n, c->M, c->phi, c->gamma);
+    return STATUS_OK;
+}
+
+Status core_beam_first_hz(const CoreOptions *o, CoreTheory theory, int n, const double storey_m[], double t_base_m,
                           double t_top_m, double *hz, Err *err)
 {
     CoreOptions by_theory = *o;
@@ -147,7 +88,7 @@ Status core_beam_first_hz(const CoreOptions *o, const BuildingOptions *b, CoreTh
     CoreBeam *core = malloc(sizeof *core);
     if (!core)
         return fail(err, STATUS_NO_MEMORY, "core: no memory for %d storeys", n);
-    const Status status = core_beam_make(core, &by_theory, b, n, t_base_m, t_top_m, err);
+    const Status status = core_beam_make(core, &by_theory, n, storey_m, t_base_m, t_top_m, err);
     *hz = status == STATUS_OK ? core->omega[0] / (2 * M_PI) : 0;
     free(core);
     return status;

@@ -1,8 +1,7 @@
 /* scene/core_beam.h -- the light, stiff core as a cantilever with one node per floor.
  *
- * One beam element per storey (scene/beam.h), constant section inside it, consistent mass; the rotations are removed by
- * Guyan reduction:  T = [1; -Krr^-1 Kru],  Kc = T' K T,  Mc = T' M T. Clamped at the ground. Thickness, and with
- * `effective` areas and inertia, vary linearly with the storey number j = 1..n: t_j = t_base + (t_top - t_base) (j-1)/(n-1).
+ * One beam element per storey (scene/beam.h), constant section inside it, consistent mass, clamped at the ground, the
+ * rotations condensed. Thickness, and with `effective` areas and inertia, vary linearly with the storey number j = 1..n: t_j = t_base + (t_top - t_base) (j-1)/(n-1).
  *
  *   box        A = B^2 - (B-2t)^2,  I = (B^4 - (B-2t)^4)/12,  shear area 20 (1+nu) / (48 + 39 nu) A   (Cowper 1966)
  *   plate      A = b t,             I = b t^3/12,             shear area 5/6 A
@@ -28,12 +27,12 @@ typedef struct {
     double omega[FLOORS_MAX], gamma[FLOORS_MAX];
 } CoreBeam;
 
-/* n storeys of the building's heights. */
-Status core_beam_make(CoreBeam *c, const CoreOptions *o, const BuildingOptions *b, int n, double t_base_m,
+/* storey_m (n): heights. */
+Status core_beam_make(CoreBeam *c, const CoreOptions *o, int n, const double storey_m[], double t_base_m,
                       double t_top_m, Err *err);
 
 /* Frequency of the first mode [Hz] by a theory that may be another than the options'. */
-Status core_beam_first_hz(const CoreOptions *o, const BuildingOptions *b, CoreTheory theory, int n, double t_base_m,
+Status core_beam_first_hz(const CoreOptions *o, CoreTheory theory, int n, const double storey_m[], double t_base_m,
                           double t_top_m, double *hz, Err *err);
 const char *core_theory_word(CoreTheory theory);
 

@@ -6,10 +6,31 @@
 
 #include "base/option.h"
 
+/* What the entries of K.csv and M.csv are in; kip_in: kip/in and kip s2/in. */
+#define BUILDING_UNITS_LIST(X)                                                                                         \
+    X(BUILDING_AUTO, "auto")                                                                                           \
+    X(BUILDING_N_M_KG, "N_m_kg")                                                                                       \
+    X(BUILDING_KN_M_T, "kN_m_t")                                                                                       \
+    X(BUILDING_KN_M_KG, "kN_m_kg")                                                                                     \
+    X(BUILDING_N_M_T, "N_m_t")                                                                                         \
+    X(BUILDING_MN_M_T, "MN_m_t")                                                                                       \
+    X(BUILDING_KIP_IN, "kip_in")
+typedef enum { BUILDING_UNITS_LIST(CHOICE_NAME) } BuildingUnits;
+
+#define DAMPING_MODEL_LIST(X) X(DAMPING_MODAL, "modal") X(DAMPING_RAYLEIGH, "rayleigh") X(DAMPING_TABLE, "table")
+typedef enum { DAMPING_MODEL_LIST(CHOICE_NAME) } DampingModel;
+
 typedef struct {
-    char model[OPTION_TEXT_MAX]; /* guyan | appendix | a folder with K.csv and M.csv */
-    double damping;              /* [-] of every mode */
+    char model[OPTION_TEXT_MAX]; /* guyan | appendix | a folder (scene/building.h has its forms) */
+    BuildingUnits units;
+    DampingModel damping_model;
+    double damping;                       /* [-] of every mode, or of two (rayleigh) */
+    char rayleigh_modes[OPTION_TEXT_MAX]; /* two of them, from 1 */
+    char damping_table[OPTION_TEXT_MAX];  /* [-] mode by mode, or none */
     double first_storey_m, storey_m;
+    char heights_m[OPTION_TEXT_MAX]; /* storey by storey, or none */
+    Switch rigid_floors;             /* of a frame */
+    Switch p_delta;
 } BuildingOptions;
 
 #define CORE_SECTION_LIST(X) X(CORE_BOX, "box") X(CORE_PLATE, "plate") X(CORE_EFFECTIVE, "effective")

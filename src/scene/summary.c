@@ -38,27 +38,28 @@ static int falls_from_row_to_row(const Building *b)
     return falls;
 }
 
-static double base_shear(const Building *b, double damping, const Motion *motion, double mass)
+static double base_shear(const Building *b, const Motion *motion, double mass)
 {
     double period[FLOORS_MAX], psa[FLOORS_MAX], squares = 0;
     for (int i = 0; i < b->n; i++)
         period[i] = b->omega[i] > 0 ? 2 * M_PI / b->omega[i] : 0;
-    spectrum_psa(motion, fmin(damping, 0.99), (size_t)b->n, period, psa);
-    for (int i = 0; i < b->n; i++)
+    for (int i = 0; i < b->n; i++) {
+        spectrum_psa(motion, fmin(b->zeta[i], 0.99), 1, &period[i], &psa[i]);
         squares += pow(b->gamma[i] * b->gamma[i] * psa[i], 2);
+    }
     return sqrt(squares) / (mass * GRAVITY);
 }
 
-static Status summarise_core(SceneSummary *s, const CoreOptions *core, const BuildingOptions *building, double t_base,
+static Status summarise_core(SceneSummary *s, const CoreOptions *core, const double storey_m[], double t_base,
                              double t_top, Err *err)
 {
     const int n = s->n_floors;
-    TRY(core_beam_first_hz(core, building, CORE_TIMOSHENKO, n, t_base, t_top, &s->timoshenko_hz, err));
-    TRY(core_beam_first_hz(core, building, CORE_EULER_BERNOULLI, n, t_base, t_top, &s->euler_bernoulli_hz, err));
+    TRY(core_beam_first_hz(core, CORE_TIMOSHENKO, n, storey_m, t_base, t_top, &s->timoshenko_hz, err));
+    TRY(core_beam_first_hz(core, CORE_EULER_BERNOULLI, n, storey_m, t_base, t_top, &s->euler_bernoulli_hz, err));
     CoreBeam *beam = malloc(sizeof *beam);
     if (!beam)
         return fail(err, STATUS_NO_MEMORY, "core: no memory for %d storeys", n);
-    const Status status = core_beam_make(beam, core, building, n, t_base, t_top, err);
+    const Status status = core_beam_make(beam, core, n, storey_m, t_base, t_top, err);
     if (status == STATUS_OK) {
         s->core_mass_kg = beam->mass_kg;
         s->core_hz = beam->omega[0] / (2 * M_PI);
@@ -69,19 +70,18 @@ static Status summarise_core(SceneSummary *s, const CoreOptions *core, const Bui
     return status;
 }
 
-Status scene_summarise(SceneSummary *s, const Building *b, const BuildingOptions *building, const CoreOptions *core,
-                       const Motion *motion, double t_base_m, double t_top_m, Err *err)
+Status scene_summarise(SceneSummary *s, const Building *b, const CoreOptions *core, const Motion *motion,
+                       double t_base_m, double t_top_m, Err *err)
 {
-    *s = (SceneSummary){.n_floors = b->n,
-                        .height_m = building->first_storey_m + (b->n - 1) * building->storey_m,
-                        .content_hz = 0.5 / motion->dt_s,
-                        .top_first = falls_from_row_to_row(b)};
+    *s = (SceneSummary){.n_floors = b->n, .content_hz = 0.5 / motion->dt_s, .top_first = falls_from_row_to_row(b)};
     summarise_mass(s, b);
+    for (int j = 0; j < b->n; j++)
+        s->height_m += b->storey_m[j];
     for (int i = 0; i < 3 && i < b->n; i++)
         s->period_s[i] = 2 * M_PI / b->omega[i];
     s->first_mode_mass = b->gamma[0] * b->gamma[0] / s->mass_kg;
-    s->base_shear = base_shear(b, building->damping, motion, s->mass_kg);
-    return summarise_core(s, core, building, t_base_m, t_top_m, err);
+    s->base_shear = base_shear(b, motion, s->mass_kg);
+    return summarise_core(s, core, b->storey_m, t_base_m, t_top_m, err);
 }
 
 /* ---- warnings ------------------------------------------------------------------------------------------------- */

@@ -66,12 +66,24 @@ static const char ENGINE_BARS[] = ENGINE_LIST(X);
 #define ENGINE_WORDS (ENGINE_BARS + 1)
 
 static const Option OPTIONS[] = {
-    PATH(building.model, "guyan", "guyan|appendix", "guyan | appendix | a folder with K.csv [N/m] and M.csv [kg]",
+    PATH(building.model, "guyan", "guyan|appendix",
+         "guyan | appendix | a folder with K.csv and M.csv, storeys.csv or a frame (docs/building.md)",
          .flags = SETTING_FREE),
+    CHOICE(building.units, BuildingUnits, CHOICE_WORDS(BUILDING_UNITS_LIST), "auto",
+           "of K.csv and M.csv; auto: N/m and kg, refused where no building has such a period"),
+    CHOICE(building.damping_model, DampingModel, CHOICE_WORDS(DAMPING_MODEL_LIST), "modal",
+           "modal: building.damping in every mode; rayleigh: in two of them; table: building.damping_table"),
     REAL(building.damping, "-", "0.03", 0, 10, "damping ratio of every mode of the building"),
+    TEXT(building.rayleigh_modes, "1, 3", "rayleigh: the two modes that have building.damping"),
+    TEXT(building.damping_table, "none", "table: damping ratios mode by mode, a comma list; the last for the rest"),
     REAL(building.first_storey_m, "m", "5.4864", 0.1, 100,
          "height of the first storey, where the first node of the core is"),
     REAL(building.storey_m, "m", "3.9624", 0.1, 100, "height of every further storey"),
+    TEXT(building.heights_m, "none", "heights of all storeys from the bottom, a comma list; none: the two above"),
+    CHOICE(building.rigid_floors, Switch, CHOICE_WORDS(SWITCH_LIST), "on",
+           "of a frame: on: the nodes of a floor move sideways together; off: beams stretch"),
+    CHOICE(building.p_delta, Switch, CHOICE_WORDS(SWITCH_LIST), "off",
+           "on: the weights of the storeys soften the building (P-delta)"),
 
     CHOICE(core.section, CoreSection, CHOICE_WORDS(CORE_SECTION_LIST), "box",
            "box: square tube of outer side side_m; plate: solid, width_m wide; effective: area and second moment of "

@@ -68,7 +68,7 @@ Status model_set(SimModel *model, const SceneOptions *o, const Building *b, cons
         model->gamma[i] = 0;
     }
     for (int i = 0; i < n; i++)
-        set_mode(model, i, b->omega[i], o->building.damping, b->gamma[i], b->phi + i, 1);
+        set_mode(model, i, b->omega[i], b->zeta[i], b->gamma[i], b->phi + i, 1);
     for (int i = 0; i < model->nc; i++)
         set_mode(model, n + i, core->omega[i], o->core.damping, core->gamma[i], core->phi + i, -1);
     for (int j = 0; j < model->n_pad; j++) {

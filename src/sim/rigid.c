@@ -172,7 +172,7 @@ static Status prepare(Tied *d, const SceneOptions *o, const Building *b, const C
     project(d, 0, b->phi, b->M);
     project(d, n, core->phi, core->M);
     for (int i = 0; i < n; i++) {
-        d->loss[i] = 2 * o->building.damping * b->omega[i];
+        d->loss[i] = 2 * b->zeta[i] * b->omega[i];
         d->loss[n + i] = 2 * o->core.damping * core->omega[i];
     }
     for (int j = 0; j < n; j++)

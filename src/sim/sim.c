@@ -57,7 +57,7 @@ Status scene_create(Scene **out, const SceneOptions *o, const Motion *motion, Er
     scene->run.duration = o->sim.duration_s;
     if (scene->run.duration == 0 && motion)
         scene->run.duration = (double)(motion->n - 1) * motion->dt_s;
-    const Status status = building_load(&scene->building, o->building.model, err);
+    const Status status = building_load(&scene->building, &o->building, err);
     if (status == STATUS_OK)
         *out = scene;
     else
@@ -80,6 +80,11 @@ void scene_set_engine(Scene *scene, const EngineEntry *engine)
 int scene_n_floors(const Scene *scene)
 {
     return scene->building.n;
+}
+
+const Building *scene_building(const Scene *scene)
+{
+    return &scene->building;
 }
 
 static Status zero_gap_modes(const Building *b, const CoreBeam *c, double hz[], Err *err)
@@ -107,7 +112,7 @@ Status scene_frequencies(const Scene *scene, const double x[], double building_h
     CoreBeam *core = malloc(sizeof *core);
     if (!core)
         return fail(err, STATUS_NO_MEMORY, "modes: out of memory");
-    Status status = core_beam_make(core, &scene->options.core, &scene->options.building, n, x[n], x[n + 1], err);
+    Status status = core_beam_make(core, &scene->options.core, n, scene->building.storey_m, x[n], x[n + 1], err);
     if (status == STATUS_OK)
         status = zero_gap_modes(&scene->building, core, zero_gap_hz, err);
     for (int i = 0; i < n && status == STATUS_OK; i++) {
@@ -206,7 +211,7 @@ Status sim_run(SimWorker *w, SceneKind kind, const double x[], SimResult *result
     const double start = clock_seconds();
     memset(result, 0, sizeof *result);
     if (kind != SCENE_NO_CORE)
-        TRY(core_beam_make(&w->core, &scene->options.core, &scene->options.building, n, x[n], x[n + 1], err));
+        TRY(core_beam_make(&w->core, &scene->options.core, n, scene->building.storey_m, x[n], x[n + 1], err));
     if (kind == SCENE_RIGID) {
         TRY(run_rigid(w, result, err));
     } else {

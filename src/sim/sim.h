@@ -36,6 +36,7 @@ struct EngineEntry;
 void scene_set_engine(Scene *scene, const struct EngineEntry *engine);
 
 int scene_n_floors(const Scene *scene);
+const Building *scene_building(const Scene *scene);
 
 /* Undamped natural frequencies [Hz], ascending; each array has room for FLOORS_MAX. x: the design variables, gap_1..n
  * [m], t_base, t_top [m] (n_floors + 2). */

@@ -91,7 +91,7 @@ Status provenance_inputs(Inputs *out, const Subject *subject, Err *err)
     *out = (Inputs){0};
     if (!subject_world(subject))
         return STATUS_OK;
-    TRY(building_load(&b, subject_world(subject)->options.building.model, err));
+    TRY(building_load(&b, &subject_world(subject)->options.building, err));
     *out = (Inputs){.record = subject_world(subject)->motion.file_hash, .matrices = b.hash};
     building_free(&b);
     for (size_t i = 0; i < subject_n_records(subject); i++)

@@ -1,0 +1,259 @@
+#include "scene/building_read.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/linalg.h"
+#include "base/sheet.h"
+#include "base/table.h"
+#include "scene/beam.h"
+#include "scene/frame.h"
+
+/* ---- matrices ------------------------------------------------------------------------------------------------- */
+
+/* The matrices of configs/sac20, linked in as they are (Makefile, rule for *.csv.o). */
+extern const char _binary_configs_sac20_guyan_K_csv_start[], _binary_configs_sac20_guyan_K_csv_end[];
+extern const char _binary_configs_sac20_guyan_M_csv_start[], _binary_configs_sac20_guyan_M_csv_end[];
+extern const char _binary_configs_sac20_appendix_K_csv_start[], _binary_configs_sac20_appendix_K_csv_end[];
+extern const char _binary_configs_sac20_appendix_M_csv_start[], _binary_configs_sac20_appendix_M_csv_end[];
+
+static const struct {
+    const char *model, *matrix, *start, *end;
+} COMPILED_IN[] = {
+    {"guyan", "K", _binary_configs_sac20_guyan_K_csv_start, _binary_configs_sac20_guyan_K_csv_end},
+    {"guyan", "M", _binary_configs_sac20_guyan_M_csv_start, _binary_configs_sac20_guyan_M_csv_end},
+    {"appendix", "K", _binary_configs_sac20_appendix_K_csv_start, _binary_configs_sac20_appendix_K_csv_end},
+    {"appendix", "M", _binary_configs_sac20_appendix_M_csv_start, _binary_configs_sac20_appendix_M_csv_end},
+};
+
+static Status read_matrix(Table *t, const char *model, const char *matrix, char path[], size_t size, Err *err)
+{
+    snprintf(path, size, "%s/%s.csv", model, matrix);
+    for (size_t i = 0; i < sizeof COMPILED_IN / sizeof COMPILED_IN[0]; i++)
+        if (!strcmp(model, COMPILED_IN[i].model) && !strcmp(matrix, COMPILED_IN[i].matrix))
+            return table_parse(t, path, COMPILED_IN[i].start, (size_t)(COMPILED_IN[i].end - COMPILED_IN[i].start), 0,
+                               err);
+    return table_read(t, path, 0, err);
+}
+
+static Status check_symmetric(int n, double A[], const char *path, Err *err)
+{
+    double largest = 0;
+    for (int i = 0; i < n * n; i++)
+        largest = fmax(largest, fabs(A[i]));
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < i; j++) {
+            double *lower = &A[i * n + j], *upper = &A[j * n + i];
+            if (!(fabs(*lower - *upper) <= 1e-6 * largest))
+                return fail(err, STATUS_BAD_DATA,
+                            "%s: not symmetric: row %d column %d is %.9g but row %d column %d is %.9g", path, i + 1,
+                            j + 1, *lower, j + 1, i + 1, *upper);
+            *lower = *upper = 0.5 * (*lower + *upper);
+        }
+    const int pivot = linalg_indefinite_at(n, A);
+    if (pivot < 0)
+        return fail(err, STATUS_NO_MEMORY, "%s: no memory to factor %d x %d", path, n, n);
+    if (pivot > 0)
+        return fail(err, STATUS_BAD_DATA,
+                    "%s: not positive definite: the leading block of %d rows is singular or worse", path, pivot);
+    return STATUS_OK;
+}
+
+static Status load_matrix(const char *model, const char *matrix, double **A, int *n, Err *err)
+{
+    Table t;
+    char path[600];
+    TRY(read_matrix(&t, model, matrix, path, sizeof path, err));
+    Status s = STATUS_OK;
+    if (t.n_rows != t.n_cols)
+        s = fail(err, STATUS_BAD_DATA, "%s: %zu rows of %zu columns; a square matrix is needed", path, t.n_rows,
+                 t.n_cols);
+    else if (t.n_rows > FLOORS_MAX)
+        s = fail(err, STATUS_BAD_DATA, "%s: %zu floors; at most %d are supported", path, t.n_rows, FLOORS_MAX);
+    else
+        s = check_symmetric((int)t.n_rows, t.values, path, err);
+    if (s == STATUS_OK) {
+        *A = t.values;
+        *n = (int)t.n_rows;
+        t.values = NULL;
+    }
+    table_free(&t);
+    return s;
+}
+
+/* 1 kip/in and 1 kip s2/in in N/m and kg: 4448.2216 N and 0.0254 m. */
+static const double KIP_PER_IN = 4448.2216152605 / 0.0254;
+
+BuildingUnit building_unit(BuildingUnits units)
+{
+    const BuildingUnit list[] = {
+        [BUILDING_AUTO] = {1, 1},
+        [BUILDING_N_M_KG] = {1, 1},
+        [BUILDING_KN_M_T] = {1e3, 1e3},
+        [BUILDING_KN_M_KG] = {1e3, 1},
+        [BUILDING_N_M_T] = {1, 1e3},
+        [BUILDING_MN_M_T] = {1e6, 1e3},
+        [BUILDING_KIP_IN] = {KIP_PER_IN, KIP_PER_IN},
+    };
+    return list[units];
+}
+
+static int is_compiled_in(const char *model)
+{
+    return !strcmp(model, "guyan") || !strcmp(model, "appendix");
+}
+
+static void multiply(int n, double A[], double factor)
+{
+    for (int i = 0; i < n * n && factor != 1; i++)
+        A[i] *= factor;
+}
+
+static Status read_matrices(BuildingFiles *b, const BuildingOptions *o, Err *err)
+{
+    int n_mass = 0;
+    TRY(load_matrix(o->model, "K", &b->K, &b->n, err));
+    TRY(load_matrix(o->model, "M", &b->M, &n_mass, err));
+    if (n_mass != b->n)
+        return fail(err, STATUS_BAD_DATA, "%s/M.csv: %d floors, but K.csv has %d", o->model, n_mass, b->n);
+    if (!is_compiled_in(o->model)) {
+        multiply(b->n, b->K, building_unit(o->units).stiffness);
+        multiply(b->n, b->M, building_unit(o->units).mass);
+    }
+    return STATUS_OK;
+}
+
+static Status allocate(BuildingFiles *b, int n, Err *err)
+{
+    const size_t nn = (size_t)n * (size_t)n;
+    b->n = n;
+    b->K = calloc(nn, sizeof *b->K);
+    b->M = calloc(nn, sizeof *b->M);
+    b->storey_m = calloc((size_t)n, sizeof *b->storey_m);
+    return b->K && b->M && b->storey_m ? STATUS_OK
+                                       : fail(err, STATUS_NO_MEMORY, "building: no memory for %d floors", n);
+}
+
+/* ---- storeys -------------------------------------------------------------------------------------------------- */
+
+typedef struct {
+    double height, mass, shear, bending; /* [m], [kg], [N/m], [N m2]; 0: not given */
+} Storey;
+
+/* The column that is there, of two that differ by a factor of a thousand; 0: none is. */
+static Status read_quantity(const Sheet *s, size_t row, const char *plain, const char *thousands, double *value,
+                            Err *err)
+{
+    const int in_thousands = sheet_column(s, plain) < 0;
+    const char *column = in_thousands ? thousands : plain;
+    *value = 0;
+    if (sheet_column(s, column) < 0)
+        return STATUS_OK;
+    TRY(sheet_number(s, row, column, NAN, value, err));
+    if (!(*value > 0))
+        return fail(err, STATUS_BAD_DATA, "%s:%d: %s is %g; it must be above 0", s->path, s->line[row], column, *value);
+    *value *= in_thousands ? 1e3 : 1;
+    return STATUS_OK;
+}
+
+static Status read_storey(Storey *storey, const Sheet *s, size_t row, Err *err)
+{
+    TRY(read_quantity(s, row, "height_m", "height_m", &storey->height, err));
+    TRY(read_quantity(s, row, "mass_kg", "mass_t", &storey->mass, err));
+    TRY(read_quantity(s, row, "stiffness_n_m", "stiffness_kn_m", &storey->shear, err));
+    TRY(read_quantity(s, row, "bending_n_m2", "bending_kn_m2", &storey->bending, err));
+    if (!(storey->mass > 0))
+        return fail(err, STATUS_BAD_DATA, "%s: has no column mass_kg or mass_t", s->path);
+    if (!(storey->shear > 0 || storey->bending > 0))
+        return fail(err, STATUS_BAD_DATA,
+                    "%s: has no column stiffness_n_m, stiffness_kn_m, bending_n_m2 or bending_kn_m2", s->path);
+    return STATUS_OK;
+}
+
+static void shear_building(int n, const Storey storey[], double K[])
+{
+    for (int j = 0; j < n; j++) {
+        K[j * n + j] += storey[j].shear;
+        if (j > 0) {
+            K[(j - 1) * n + j - 1] += storey[j].shear;
+            K[j * n + j - 1] = K[(j - 1) * n + j] = -storey[j].shear;
+        }
+    }
+}
+
+static Status bending_building(int n, const Storey storey[], double K[], double M[], Err *err)
+{
+    Beam beam[FLOORS_MAX];
+    for (int j = 0; j < n; j++)
+        beam[j] =
+            (Beam){.EI = storey[j].bending, .kGA = storey[j].shear * storey[j].height, .length = storey[j].height};
+    return beam_cantilever(n, beam, K, M, err);
+}
+
+static Status take_storeys(BuildingFiles *b, const Sheet *s, Err *err)
+{
+    Storey storey[FLOORS_MAX];
+    TRY(sheet_expect(s, "height_m", "mass_kg mass_t stiffness_n_m stiffness_kn_m bending_n_m2 bending_kn_m2", err));
+    if (s->n_rows > FLOORS_MAX)
+        return fail(err, STATUS_BAD_DATA, "%s: %zu storeys; at most %d are supported", s->path, s->n_rows, FLOORS_MAX);
+    TRY(allocate(b, (int)s->n_rows, err));
+    for (int j = 0; j < b->n; j++)
+        TRY(read_storey(&storey[j], s, (size_t)j, err));
+    if (storey[0].bending > 0)
+        TRY(bending_building(b->n, storey, b->K, b->M, err));
+    else
+        shear_building(b->n, storey, b->K);
+    memset(b->M, 0, (size_t)(b->n * b->n) * sizeof *b->M);
+    for (int j = 0; j < b->n; j++) {
+        b->M[j * b->n + j] = storey[j].mass;
+        b->storey_m[j] = storey[j].height;
+    }
+    return STATUS_OK;
+}
+
+static Status read_storeys(BuildingFiles *b, const char *path, Err *err)
+{
+    Sheet s;
+    TRY(sheet_read(&s, path, err));
+    const Status status = take_storeys(b, &s, err);
+    sheet_free(&s);
+    return status;
+}
+
+/* ---- frame ---------------------------------------------------------------------------------------------------- */
+
+static Status read_frame(BuildingFiles *b, const BuildingOptions *o, Err *err)
+{
+    Frame f;
+    TRY(frame_read(&f, o->model, FLOORS_MAX, err));
+    Status status = allocate(b, f.n_floors, err);
+    if (status == STATUS_OK) {
+        memcpy(b->storey_m, f.storey_m, (size_t)b->n * sizeof *b->storey_m);
+        status = frame_condense(&f, o->rigid_floors, b->K, b->M, err);
+    }
+    frame_free(&f);
+    if (status == STATUS_OK)
+        status = check_symmetric(b->n, b->K, o->model, err);
+    if (status == STATUS_OK)
+        status = check_symmetric(b->n, b->M, o->model, err);
+    return status;
+}
+
+/* ---- the folder ----------------------------------------------------------------------------------------------- */
+
+Status building_read(BuildingFiles *b, const BuildingOptions *o, Err *err)
+{
+    char storeys[600];
+    memset(b, 0, sizeof *b);
+    if (is_compiled_in(o->model))
+        return read_matrices(b, o, err);
+    if (frame_is(o->model))
+        return read_frame(b, o, err);
+    snprintf(storeys, sizeof storeys, "%s/storeys.csv", o->model);
+    if (access(storeys, F_OK) == 0)
+        return read_storeys(b, storeys, err);
+    return read_matrices(b, o, err);
+}

@@ -1,0 +1,24 @@
+/* scene/building_read.h -- stiffness, mass and storey heights of a building from its files (scene/building.h has their
+ * forms).
+ *
+ * Ownership  K, M and storey_m are allocated; the caller frees them, after a failure too. Threads  no state */
+#ifndef IMTET_SCENE_BUILDING_READ_H
+#define IMTET_SCENE_BUILDING_READ_H
+
+#include "scene/building.h"
+
+typedef struct {
+    int n;
+    double *K, *M;    /* (n, n) [N/m], [kg], symmetric and positive definite */
+    double *storey_m; /* (n); NULL: the files have no heights */
+} BuildingFiles;
+
+typedef struct {
+    double stiffness, mass; /* what a unit of K.csv is in N/m, and one of M.csv in kg */
+} BuildingUnit;
+
+BuildingUnit building_unit(BuildingUnits units);
+
+Status building_read(BuildingFiles *b, const BuildingOptions *o, Err *err);
+
+#endif

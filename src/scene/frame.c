@@ -1,0 +1,386 @@
+#include "scene/frame.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/linalg.h"
+#include "scene/beam.h"
+
+/* ---- assembly: unknowns --------------------------------------------------------------------------------------- */
+
+enum { HELD = -1, ENDS = 2, LOCAL = ENDS * FRAME_DOFS };
+
+/* Unknowns 0..n_slaves-1 are removed, n_slaves.. are the floors'. */
+typedef struct {
+    const Frame *frame;
+    int n_slaves, band; /* band: largest distance of two coupled slaves */
+    int *root;          /* (n_nodes * FRAME_DOFS) the displacement that this one equals */
+    int *unknown;       /* (n_nodes * FRAME_DOFS) its number, or HELD */
+} Numbering;
+
+static int find_root(const Numbering *u, int i)
+{
+    while (u->root[i] != i)
+        i = u->root[i];
+    return i;
+}
+
+static void unite(Numbering *u, int a, int b)
+{
+    u->root[find_root(u, b)] = find_root(u, a);
+}
+
+/* The node that stands for a floor: the nearest to the middle of its nodes. */
+static int floor_node(const Frame *f, int floor)
+{
+    double lo = HUGE_VAL, hi = -HUGE_VAL;
+    int best = -1;
+    for (int i = 0; i < f->n_nodes; i++)
+        if (f->node[i].floor == floor) {
+            lo = fmin(lo, f->node[i].x);
+            hi = fmax(hi, f->node[i].x);
+        }
+    for (int i = 0; i < f->n_nodes; i++)
+        if (f->node[i].floor == floor &&
+            (best < 0 || fabs(f->node[i].x - 0.5 * (lo + hi)) < fabs(f->node[best].x - 0.5 * (lo + hi))))
+            best = i;
+    return best;
+}
+
+static void unite_displacements(Numbering *u, int rigid_floors)
+{
+    const Frame *f = u->frame;
+    for (int i = 0; i < f->n_nodes * FRAME_DOFS; i++)
+        u->root[i] = i;
+    for (int t = 0; t < f->n_ties; t++)
+        for (int d = 0; d < FRAME_DOFS; d++)
+            if (f->tie[t].dof[d])
+                unite(u, f->tie[t].same_as * FRAME_DOFS + d, f->tie[t].node * FRAME_DOFS + d);
+    for (int floor = 1; floor <= f->n_floors && rigid_floors; floor++) {
+        const int first = floor_node(f, floor);
+        for (int i = 0; i < f->n_nodes; i++)
+            if (f->node[i].floor == floor)
+                unite(u, first * FRAME_DOFS + FRAME_X, i * FRAME_DOFS + FRAME_X);
+    }
+}
+
+typedef struct {
+    double z, x;
+    int node;
+} Place;
+
+static int by_height(const void *a, const void *b)
+{
+    const Place *p = a, *q = b;
+    if (p->z != q->z)
+        return p->z < q->z ? -1 : 1;
+    if (p->x != q->x)
+        return p->x < q->x ? -1 : 1;
+    return p->node - q->node;
+}
+
+/* From the bottom up, which keeps the band narrow. */
+static Status number_slaves(Numbering *u, Err *err)
+{
+    const Frame *f = u->frame;
+    Place *place = malloc((size_t)f->n_nodes * sizeof *place);
+    if (!place)
+        return fail(err, STATUS_NO_MEMORY, "frame: no memory for %d nodes", f->n_nodes);
+    for (int i = 0; i < f->n_nodes; i++)
+        place[i] = (Place){f->node[i].z, f->node[i].x, i};
+    qsort(place, (size_t)f->n_nodes, sizeof *place, by_height);
+    for (int k = 0; k < f->n_nodes; k++)
+        for (int d = 0; d < FRAME_DOFS; d++) {
+            const int root = find_root(u, place[k].node * FRAME_DOFS + d);
+            if (u->unknown[root] == INT32_MAX)
+                u->unknown[root] = u->n_slaves++;
+        }
+    free(place);
+    return STATUS_OK;
+}
+
+/* Held, floors, slaves, in this order; an unknown that equals a held one is held. */
+static Status number_unknowns(Numbering *u, Err *err)
+{
+    const Frame *f = u->frame;
+    const int n = f->n_nodes * FRAME_DOFS;
+    for (int i = 0; i < n; i++)
+        u->unknown[i] = INT32_MAX;
+    for (int i = 0; i < n; i++)
+        if (f->node[i / FRAME_DOFS].fixed[i % FRAME_DOFS])
+            u->unknown[find_root(u, i)] = HELD;
+    for (int floor = 1; floor <= f->n_floors; floor++) {
+        int *unknown = &u->unknown[find_root(u, floor_node(f, floor) * FRAME_DOFS + FRAME_X)];
+        if (*unknown != INT32_MAX)
+            return fail(err, STATUS_BAD_DATA, "frame: floor %d cannot move by itself: it is held or tied", floor);
+        *unknown = -1 - floor; /* for the time being */
+    }
+    TRY(number_slaves(u, err));
+    for (int i = 0; i < n; i++) {
+        int *unknown = &u->unknown[find_root(u, i)];
+        if (*unknown < HELD)
+            *unknown = u->n_slaves - *unknown - 2;
+    }
+    for (int i = 0; i < n; i++)
+        u->unknown[i] = u->unknown[find_root(u, i)];
+    return STATUS_OK;
+}
+
+static void element_unknowns(const Numbering *u, const FrameElement *e, int at[LOCAL])
+{
+    for (int k = 0; k < LOCAL; k++)
+        at[k] = u->unknown[e->node[k / FRAME_DOFS] * FRAME_DOFS + k % FRAME_DOFS];
+}
+
+static void find_band(Numbering *u)
+{
+    for (int e = 0; e < u->frame->n_elements; e++) {
+        int at[LOCAL], lo = INT32_MAX, hi = -1;
+        element_unknowns(u, &u->frame->element[e], at);
+        for (int k = 0; k < LOCAL; k++)
+            if (at[k] >= 0 && at[k] < u->n_slaves) {
+                lo = at[k] < lo ? at[k] : lo;
+                hi = at[k] > hi ? at[k] : hi;
+            }
+        u->band = hi - lo > u->band ? hi - lo : u->band;
+    }
+}
+
+static Status numbering_make(Numbering *u, const Frame *f, int rigid_floors, Err *err)
+{
+    const size_t n = (size_t)f->n_nodes * FRAME_DOFS;
+    *u = (Numbering){.frame = f, .root = malloc(2 * n * sizeof *u->root)};
+    if (!u->root)
+        return fail(err, STATUS_NO_MEMORY, "frame: no memory for %zu unknowns", n);
+    u->unknown = u->root + n;
+    unite_displacements(u, rigid_floors);
+    TRY(number_unknowns(u, err));
+    find_band(u);
+    return STATUS_OK;
+}
+
+/* ---- assembly: elements --------------------------------------------------------------------------------------- */
+
+/* The moment at end r of the bending part vanishes: the rotation there follows the other three unknowns statically. */
+static void release(double k[4][4], double m[4][4], int r)
+{
+    double follow[4], column[4];
+    const double pivot = k[r][r], inertia = m[r][r];
+    for (int i = 0; i < 4; i++) {
+        follow[i] = pivot > 0 && i != r ? -k[r][i] / pivot : 0;
+        column[i] = i != r ? m[i][r] : 0;
+    }
+    for (int i = 0; i < 4; i++)
+        for (int j = 0; j < 4; j++) {
+            k[i][j] = i == r || j == r ? 0 : k[i][j] - pivot * follow[i] * follow[j];
+            m[i][j] = i == r || j == r
+                          ? 0
+                          : m[i][j] + follow[i] * column[j] + column[i] * follow[j] + inertia * follow[i] * follow[j];
+        }
+}
+
+static double element_length(const Frame *f, const FrameElement *e)
+{
+    const FrameNode *a = &f->node[e->node[0]], *b = &f->node[e->node[1]];
+    return hypot(b->x - a->x, b->z - a->z);
+}
+
+/* Bending and stretching in one matrix of x, z, rotation along the element. */
+static void join(const double bend[4][4], double along_same, double along_other, double joined[LOCAL][LOCAL])
+{
+    static const int BENDING[4] = {1, 2, 4, 5}; /* deflection and rotation at each end */
+    memset(joined, 0, LOCAL * sizeof joined[0]);
+    for (int i = 0; i < 4; i++)
+        for (int j = 0; j < 4; j++)
+            joined[BENDING[i]][BENDING[j]] = bend[i][j];
+    joined[0][0] = joined[3][3] = along_same;
+    joined[0][3] = joined[3][0] = along_other;
+}
+
+/* a = turn' a turn, from the element's direction (c, s) to x and z. */
+static void turn(double a[LOCAL][LOCAL], double c, double s)
+{
+    double t[LOCAL][LOCAL] = {{0}}, half[LOCAL][LOCAL] = {{0}};
+    for (int end = 0; end < LOCAL; end += FRAME_DOFS) {
+        t[end][end] = t[end + 1][end + 1] = c;
+        t[end][end + 1] = s;
+        t[end + 1][end] = -s;
+        t[end + 2][end + 2] = 1;
+    }
+    for (int i = 0; i < LOCAL; i++)
+        for (int j = 0; j < LOCAL; j++)
+            for (int m = 0; m < LOCAL; m++)
+                half[i][j] += a[i][m] * t[m][j];
+    memset(a, 0, LOCAL * sizeof a[0]);
+    for (int i = 0; i < LOCAL; i++)
+        for (int j = 0; j < LOCAL; j++)
+            for (int m = 0; m < LOCAL; m++)
+                a[i][j] += t[m][i] * half[m][j];
+}
+
+/* Stiffness and mass of x, z, rotation at both ends; a rotation is positive from x to z. */
+static void element_matrices(const Frame *f, const FrameElement *e, double k[LOCAL][LOCAL], double m[LOCAL][LOCAL])
+{
+    const FrameSection *s = &f->section[e->section];
+    const FrameNode *a = &f->node[e->node[0]], *b = &f->node[e->node[1]];
+    const double l = element_length(f, e), axial = s->E * s->area / l, mass = s->mass_per_m * l + e->added_mass;
+    double bend[4][4], sway[4][4];
+    beam_element(&(Beam){.EI = s->E * s->inertia, .kGA = s->kGA, .mass_per_m = mass / l, .length = l}, bend, sway);
+    for (int end = 0; end < ENDS; end++)
+        if (e->pinned[end])
+            release(bend, sway, 2 * end + 1);
+    join(bend, axial, -axial, k);
+    join(sway, mass / 3, mass / 6, m);
+    turn(k, (b->x - a->x) / l, (b->z - a->z) / l);
+    turn(m, (b->x - a->x) / l, (b->z - a->z) / l);
+}
+
+/* ---- condensation --------------------------------------------------------------------------------------------- */
+
+/* The node and the direction of a slave, "node 12 cannot be held from turning". */
+static Status fail_mechanism(const Numbering *u, int slave, Err *err)
+{
+    static const char *const WORDS[] = {"move along x", "move along z", "turn"};
+    const Frame *f = u->frame;
+    int i = 0;
+    while (u->unknown[i] != slave)
+        i++;
+    const FrameNode *node = &f->node[i / FRAME_DOFS];
+    return fail(err, STATUS_BAD_DATA,
+                "frame: a mechanism: nothing resists when node %s (x %g m, z %g m) %ss; fix it, or connect it",
+                node->name, node->x, node->z, WORDS[i % FRAME_DOFS]);
+}
+
+typedef struct {
+    double *Kss;  /* (n_slaves, band + 1) lower band, column by column */
+    double *T;    /* (n_floors, n_slaves) displacements of the slaves per unit of a floor, row by row */
+    double *diag; /* (n_slaves) of Kss before it is factored */
+} Slaves;
+
+static void assemble_slaves(const Numbering *u, const Slaves *s)
+{
+    const int n = u->n_slaves, height = u->band + 1;
+    for (int e = 0; e < u->frame->n_elements; e++) {
+        int at[LOCAL];
+        double k[LOCAL][LOCAL], m[LOCAL][LOCAL];
+        element_unknowns(u, &u->frame->element[e], at);
+        element_matrices(u->frame, &u->frame->element[e], k, m);
+        for (int i = 0; i < LOCAL; i++)
+            for (int j = 0; j < LOCAL; j++) {
+                if (at[i] < 0 || at[i] >= n || at[j] < 0)
+                    continue;
+                if (at[j] >= n)
+                    s->T[(size_t)(at[j] - n) * (size_t)n + (size_t)at[i]] -= k[i][j];
+                else if (at[i] >= at[j])
+                    s->Kss[(size_t)at[j] * (size_t)height + (size_t)(at[i] - at[j])] += k[i][j];
+            }
+    }
+    for (int i = 0; i < n; i++)
+        s->diag[i] = s->Kss[(size_t)i * (size_t)height];
+}
+
+/* A pivot that has lost so many digits is zero but for rounding. */
+static const double PIVOT_LOST = 1e-11;
+
+static Status solve_slaves(const Numbering *u, Slaves *s, Err *err)
+{
+    const int n = u->n_slaves, height = u->band + 1;
+    if (n == 0)
+        return STATUS_OK;
+    const int info = linalg_factor_band(n, u->band, s->Kss);
+    if (info < 0)
+        return fail(err, STATUS_NO_MEMORY, "frame: no memory to factor %d unknowns", n);
+    if (info > 0)
+        return fail_mechanism(u, info - 1, err);
+    for (int i = 0; i < n; i++)
+        if (pow(s->Kss[(size_t)i * (size_t)height], 2) < PIVOT_LOST * s->diag[i])
+            return fail_mechanism(u, i, err);
+    linalg_solve_band(n, u->band, s->Kss, u->frame->n_floors, s->T);
+    return STATUS_OK;
+}
+
+/* Displacement of an unknown when floor m alone moves by one. */
+static double displacement(const Numbering *u, const Slaves *s, int unknown, int m)
+{
+    if (unknown < 0)
+        return 0;
+    if (unknown >= u->n_slaves)
+        return unknown - u->n_slaves == m;
+    return s->T[(size_t)m * (size_t)u->n_slaves + (size_t)unknown];
+}
+
+/* A += T' a T of one element. */
+static void add_element(const Numbering *u, const Slaves *s, const int at[LOCAL], const double a[LOCAL][LOCAL],
+                        double A[])
+{
+    const int n = u->frame->n_floors;
+    for (int p = 0; p < n; p++) {
+        double force[LOCAL] = {0};
+        for (int i = 0; i < LOCAL; i++)
+            for (int j = 0; j < LOCAL; j++)
+                force[i] += a[i][j] * displacement(u, s, at[j], p);
+        for (int q = 0; q < n; q++)
+            for (int i = 0; i < LOCAL; i++)
+                A[p * n + q] += force[i] * displacement(u, s, at[i], q);
+    }
+}
+
+static void add_node(const Numbering *u, const Slaves *s, int i, double M[])
+{
+    const FrameNode *node = &u->frame->node[i];
+    const int n = u->frame->n_floors;
+    const double mass[FRAME_DOFS] = {node->mass, node->mass, node->rotary};
+    for (int d = 0; d < FRAME_DOFS; d++)
+        for (int p = 0; p < n && mass[d] > 0; p++) {
+            const int unknown = u->unknown[i * FRAME_DOFS + d];
+            for (int q = 0; q < n; q++)
+                M[p * n + q] += mass[d] * displacement(u, s, unknown, p) * displacement(u, s, unknown, q);
+        }
+}
+
+static void sum_up(const Numbering *u, const Slaves *s, double K[], double M[])
+{
+    const Frame *f = u->frame;
+    for (int e = 0; e < f->n_elements; e++) {
+        int at[LOCAL];
+        double k[LOCAL][LOCAL], m[LOCAL][LOCAL];
+        element_unknowns(u, &f->element[e], at);
+        element_matrices(f, &f->element[e], k, m);
+        add_element(u, s, at, k, K);
+        add_element(u, s, at, m, M);
+    }
+    for (int i = 0; i < f->n_nodes; i++)
+        add_node(u, s, i, M);
+}
+
+static Status condense(const Numbering *u, double K[], double M[], Err *err)
+{
+    const Frame *f = u->frame;
+    const size_t n = (size_t)u->n_slaves, floors = (size_t)f->n_floors, band = (size_t)u->band + 1;
+    Slaves s = {.Kss = calloc(n * band + floors * n + n + 1, sizeof *s.Kss)};
+    if (!s.Kss)
+        return fail(err, STATUS_NO_MEMORY, "frame: no memory for %zu unknowns, band %zu", n, band);
+    s.T = s.Kss + n * band;
+    s.diag = s.T + floors * n;
+    assemble_slaves(u, &s);
+    const Status status = solve_slaves(u, &s, err);
+    memset(K, 0, floors * floors * sizeof *K);
+    memset(M, 0, floors * floors * sizeof *M);
+    if (status == STATUS_OK)
+        sum_up(u, &s, K, M);
+    free(s.Kss);
+    return status;
+}
+
+Status frame_condense(const Frame *f, int rigid_floors, double K[], double M[], Err *err)
+{
+    Numbering u;
+    Status status = numbering_make(&u, f, rigid_floors, err);
+    if (status == STATUS_OK)
+        status = condense(&u, K, M, err);
+    free(u.root);
+    return status;
+}

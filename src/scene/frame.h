@@ -1,0 +1,74 @@
+/* scene/frame.h -- a plane frame as engineers write it down, and its stiffness and mass condensed to the floors.
+ *
+ *   nodes.csv     node, x_m, z_m [, fix_x, fix_z, fix_rot (0 or 1)] [, floor (from 1 at the bottom; 0: none)]
+ *   sections.csv  section, A_m2, I_m4, E_pa [, shear_area_m2, poisson, mass_kg_per_m]
+ *   elements.csv  element, node_i, node_j, section [, pin_i, pin_j (0 or 1)] [, added_mass_kg]
+ *   masses.csv    node, mass_kg [, rotary_kg_m2]                                  (may be missing)
+ *   ties.csv      node, same_as [, x, z, rot (0 or 1)]: equal displacements       (may be missing)
+ *
+ * Elements are beam-columns: axial stiffness EA/l, bending by scene/beam.h (shear where shear_area_m2 is given), pinned
+ * ends without moment. Their own mass and the added one lie evenly along them (consistent mass, no rotary inertia of
+ * sections); masses.csv adds masses in x and z and rotary inertia at nodes.
+ *
+ * Floors are the heights given in column floor; without it the heights at which a level element ends in nodes that may
+ * move sideways. With rigid floors all nodes of a floor have one displacement x; else the floor is represented by its
+ * node nearest the middle. Everything else is removed by Guyan reduction:
+ *
+ *   T = [1; -Kss^-1 Ksm],  K = T' K T,  M = T' M T         s the removed unknowns, m the floors
+ *
+ * summed element by element, Kss factored as a band. A mechanism is refused with the node that moves.
+ *
+ * Ownership  frame_read allocates, frame_free releases (an empty Frame is fine). Threads  no state */
+#ifndef IMTET_SCENE_FRAME_H
+#define IMTET_SCENE_FRAME_H
+
+#include "base/sheet.h"
+#include "base/status.h"
+
+enum { FRAME_X, FRAME_Z, FRAME_ROT, FRAME_DOFS };
+
+typedef struct {
+    char name[SHEET_NAME_MAX];
+    double x, z;           /* [m] */
+    int fixed[FRAME_DOFS]; /* held by the ground */
+    double mass, rotary;   /* [kg] in x and z, [kg m2] */
+    int floor;             /* from 1; 0: none */
+} FrameNode;
+
+typedef struct {
+    char name[SHEET_NAME_MAX];
+    double area, inertia, E; /* [m2], [m4], [Pa] */
+    double kGA;              /* [N] 0: no shear deformation */
+    double mass_per_m;       /* [kg/m] */
+} FrameSection;
+
+typedef struct {
+    char name[SHEET_NAME_MAX];
+    int node[2], section;
+    int pinned[2];
+    double added_mass; /* [kg] */
+} FrameElement;
+
+typedef struct {
+    int node, same_as;
+    int dof[FRAME_DOFS]; /* which displacements are equal */
+} FrameTie;
+
+typedef struct {
+    int n_nodes, n_sections, n_elements, n_ties, n_floors;
+    FrameNode *node;
+    FrameSection *section;
+    FrameElement *element;
+    FrameTie *tie;
+    double *storey_m; /* (n_floors) heights; the first above the highest node that is held sideways below floor 1 */
+} Frame;
+
+/* Is the folder a frame: does it hold nodes.csv? */
+int frame_is(const char *folder);
+Status frame_read(Frame *f, const char *folder, int floors_max, Err *err);
+
+/* K [N/m] and M [kg] (n_floors, n_floors) row-major. */
+Status frame_condense(const Frame *f, int rigid_floors, double K[], double M[], Err *err);
+void frame_free(Frame *f);
+
+#endif

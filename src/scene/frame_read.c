@@ -1,0 +1,407 @@
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "scene/frame.h"
+
+/* ---- sheets --------------------------------------------------------------------------------------------------- */
+
+static void path_of(char path[600], const char *folder, const char *name)
+{
+    snprintf(path, 600, "%s/%s", folder, name);
+}
+
+static int is_there(const char *folder, const char *name)
+{
+    char path[600];
+    path_of(path, folder, name);
+    return access(path, F_OK) == 0;
+}
+
+int frame_is(const char *folder)
+{
+    return is_there(folder, "nodes.csv");
+}
+
+static Status open_sheet(Sheet *s, const char *folder, const char *name, const char *required, const char *optional,
+                         Err *err)
+{
+    char path[600];
+    path_of(path, folder, name);
+    TRY(sheet_read(s, path, err));
+    const Status status = sheet_expect(s, required, optional, err);
+    if (status != STATUS_OK)
+        sheet_free(s);
+    return status;
+}
+
+static Status read_switch(const Sheet *s, size_t row, const char *column, int *on, Err *err)
+{
+    double value;
+    TRY(sheet_number(s, row, column, 0, &value, err));
+    if (value != 0 && value != 1)
+        return fail(err, STATUS_BAD_DATA, "%s:%d: %s is %g; it is 0 or 1", s->path, s->line[row], column, value);
+    *on = (int)value;
+    return STATUS_OK;
+}
+
+static Status read_positive(const Sheet *s, size_t row, const char *column, double *value, Err *err)
+{
+    TRY(sheet_number(s, row, column, NAN, value, err));
+    return *value > 0 ? STATUS_OK
+                      : fail(err, STATUS_BAD_DATA, "%s:%d: %s is %g; it must be above 0", s->path, s->line[row], column,
+                             *value);
+}
+
+/* 0 where the column is missing. */
+static Status read_share(const Sheet *s, size_t row, const char *column, double *value, Err *err)
+{
+    TRY(sheet_number(s, row, column, 0, value, err));
+    return *value >= 0 ? STATUS_OK
+                       : fail(err, STATUS_BAD_DATA, "%s:%d: %s is %g; it must not be negative", s->path, s->line[row],
+                              column, *value);
+}
+
+static Status read_name(const Sheet *s, size_t row, const char *column, char name[SHEET_NAME_MAX], Err *err)
+{
+    const char *text = sheet_text(s, row, column);
+    if (!*text || strlen(text) >= SHEET_NAME_MAX)
+        return fail(err, STATUS_BAD_DATA, "%s:%d: %s '%.60s' is no name of 1 to %d characters", s->path, s->line[row],
+                    column, text, SHEET_NAME_MAX - 1);
+    snprintf(name, SHEET_NAME_MAX, "%s", text);
+    return STATUS_OK;
+}
+
+/* ---- names of nodes and sections ------------------------------------------------------------------------------ */
+
+typedef struct {
+    const char *name;
+    int index;
+} Entry;
+
+static int by_name(const void *a, const void *b)
+{
+    return strcmp(((const Entry *)a)->name, ((const Entry *)b)->name);
+}
+
+/* Nodes by name, for the sheets that refer to them. */
+typedef struct {
+    int n;
+    Entry *entry; /* (n) sorted */
+} Index;
+
+static Status index_nodes(Index *x, const Frame *f, const Sheet *s, Err *err)
+{
+    x->n = f->n_nodes;
+    x->entry = malloc((size_t)x->n * sizeof *x->entry);
+    if (!x->entry)
+        return fail(err, STATUS_NO_MEMORY, "frame: no memory for %d nodes", x->n);
+    for (int i = 0; i < x->n; i++)
+        x->entry[i] = (Entry){f->node[i].name, i};
+    qsort(x->entry, (size_t)x->n, sizeof *x->entry, by_name);
+    for (int i = 1; i < x->n; i++)
+        if (strcmp(x->entry[i].name, x->entry[i - 1].name) == 0)
+            return fail(err, STATUS_BAD_DATA, "%s:%d: node %s is there twice", s->path, s->line[x->entry[i].index],
+                        x->entry[i].name);
+    return STATUS_OK;
+}
+
+static Status look_up(const Index *x, const Sheet *s, size_t row, const char *column, int *node, Err *err)
+{
+    const Entry wanted = {sheet_text(s, row, column), 0};
+    const Entry *found = bsearch(&wanted, x->entry, (size_t)x->n, sizeof *x->entry, by_name);
+    if (!found)
+        return fail(err, STATUS_BAD_DATA, "%s:%d: %s '%.40s' is not in nodes.csv", s->path, s->line[row], column,
+                    wanted.name);
+    *node = found->index;
+    return STATUS_OK;
+}
+
+/* ---- the parts ------------------------------------------------------------------------------------------------ */
+
+static Status take_node(FrameNode *node, const Sheet *s, size_t row, Err *err)
+{
+    static const char *const FIX[] = {"fix_x", "fix_z", "fix_rot"};
+    double floor;
+    TRY(read_name(s, row, "node", node->name, err));
+    TRY(sheet_number(s, row, "x_m", NAN, &node->x, err));
+    TRY(sheet_number(s, row, "z_m", NAN, &node->z, err));
+    for (int d = 0; d < FRAME_DOFS; d++)
+        TRY(read_switch(s, row, FIX[d], &node->fixed[d], err));
+    TRY(read_share(s, row, "floor", &floor, err));
+    node->floor = (int)fmin(floor, 1e6);
+    return node->floor == floor
+               ? STATUS_OK
+               : fail(err, STATUS_BAD_DATA, "%s:%d: floor %g is no number of a floor", s->path, s->line[row], floor);
+}
+
+static Status take_section(FrameSection *section, const Sheet *s, size_t row, Err *err)
+{
+    double area, poisson;
+    TRY(read_name(s, row, "section", section->name, err));
+    TRY(read_positive(s, row, "A_m2", &section->area, err));
+    TRY(read_positive(s, row, "I_m4", &section->inertia, err));
+    TRY(read_positive(s, row, "E_pa", &section->E, err));
+    TRY(read_share(s, row, "shear_area_m2", &area, err));
+    TRY(sheet_number(s, row, "poisson", 0.3, &poisson, err));
+    TRY(read_share(s, row, "mass_kg_per_m", &section->mass_per_m, err));
+    section->kGA = section->E / (2 * (1 + poisson)) * area;
+    return STATUS_OK;
+}
+
+static Status find_section(const Frame *f, const Sheet *s, size_t row, int *section, Err *err)
+{
+    const char *name = sheet_text(s, row, "section");
+    for (*section = 0; *section < f->n_sections; ++*section)
+        if (strcmp(f->section[*section].name, name) == 0)
+            return STATUS_OK;
+    return fail(err, STATUS_BAD_DATA, "%s:%d: section '%.40s' is not in sections.csv", s->path, s->line[row], name);
+}
+
+static Status take_element(const Frame *f, FrameElement *e, const Index *x, const Sheet *s, size_t row, Err *err)
+{
+    TRY(read_name(s, row, "element", e->name, err));
+    TRY(look_up(x, s, row, "node_i", &e->node[0], err));
+    TRY(look_up(x, s, row, "node_j", &e->node[1], err));
+    TRY(find_section(f, s, row, &e->section, err));
+    TRY(read_switch(s, row, "pin_i", &e->pinned[0], err));
+    TRY(read_switch(s, row, "pin_j", &e->pinned[1], err));
+    TRY(read_share(s, row, "added_mass_kg", &e->added_mass, err));
+    const FrameNode *a = &f->node[e->node[0]], *b = &f->node[e->node[1]];
+    if (!(hypot(b->x - a->x, b->z - a->z) > 0))
+        return fail(err, STATUS_BAD_DATA, "%s:%d: element %s has no length: nodes %s and %s are at one place", s->path,
+                    s->line[row], e->name, a->name, b->name);
+    return STATUS_OK;
+}
+
+static Status read_nodes(Frame *f, Index *x, const char *folder, Err *err)
+{
+    Sheet s;
+    TRY(open_sheet(&s, folder, "nodes.csv", "node x_m z_m", "fix_x fix_z fix_rot floor", err));
+    f->n_nodes = (int)s.n_rows;
+    f->node = calloc(s.n_rows, sizeof *f->node);
+    Status status = f->node ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "frame: no memory for %zu nodes", s.n_rows);
+    for (size_t i = 0; i < s.n_rows && status == STATUS_OK; i++)
+        status = take_node(&f->node[i], &s, i, err);
+    if (status == STATUS_OK)
+        status = index_nodes(x, f, &s, err);
+    sheet_free(&s);
+    return status;
+}
+
+static Status read_sections(Frame *f, const char *folder, Err *err)
+{
+    Sheet s;
+    TRY(open_sheet(&s, folder, "sections.csv", "section A_m2 I_m4 E_pa", "shear_area_m2 poisson mass_kg_per_m", err));
+    f->n_sections = (int)s.n_rows;
+    f->section = calloc(s.n_rows, sizeof *f->section);
+    Status status = f->section ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "frame: no memory for %zu rows", s.n_rows);
+    for (size_t i = 0; i < s.n_rows && status == STATUS_OK; i++)
+        status = take_section(&f->section[i], &s, i, err);
+    sheet_free(&s);
+    return status;
+}
+
+static Status read_elements(Frame *f, const Index *x, const char *folder, Err *err)
+{
+    Sheet s;
+    TRY(open_sheet(&s, folder, "elements.csv", "element node_i node_j section", "pin_i pin_j added_mass_kg", err));
+    f->n_elements = (int)s.n_rows;
+    f->element = calloc(s.n_rows, sizeof *f->element);
+    Status status = f->element ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "frame: no memory for %zu rows", s.n_rows);
+    for (size_t i = 0; i < s.n_rows && status == STATUS_OK; i++)
+        status = take_element(f, &f->element[i], x, &s, i, err);
+    sheet_free(&s);
+    return status;
+}
+
+static Status read_masses(Frame *f, const Index *x, const char *folder, Err *err)
+{
+    Sheet s;
+    TRY(open_sheet(&s, folder, "masses.csv", "node mass_kg", "rotary_kg_m2", err));
+    Status status = STATUS_OK;
+    for (size_t i = 0; i < s.n_rows && status == STATUS_OK; i++) {
+        int node = 0;
+        double mass = 0, rotary = 0;
+        status = look_up(x, &s, i, "node", &node, err);
+        if (status == STATUS_OK)
+            status = read_share(&s, i, "mass_kg", &mass, err);
+        if (status == STATUS_OK)
+            status = read_share(&s, i, "rotary_kg_m2", &rotary, err);
+        f->node[node].mass += mass;
+        f->node[node].rotary += rotary;
+    }
+    sheet_free(&s);
+    return status;
+}
+
+static Status take_tie(FrameTie *tie, const Index *x, const Sheet *s, size_t row, Err *err)
+{
+    static const char *const DOF[] = {"x", "z", "rot"};
+    TRY(look_up(x, s, row, "node", &tie->node, err));
+    TRY(look_up(x, s, row, "same_as", &tie->same_as, err));
+    for (int d = 0; d < FRAME_DOFS; d++)
+        TRY(read_switch(s, row, DOF[d], &tie->dof[d], err));
+    return STATUS_OK;
+}
+
+static Status read_ties(Frame *f, const Index *x, const char *folder, Err *err)
+{
+    Sheet s;
+    TRY(open_sheet(&s, folder, "ties.csv", "node same_as", "x z rot", err));
+    f->n_ties = (int)s.n_rows;
+    f->tie = calloc(s.n_rows, sizeof *f->tie);
+    Status status = f->tie ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "frame: no memory for %zu rows", s.n_rows);
+    for (size_t i = 0; i < s.n_rows && status == STATUS_OK; i++)
+        status = take_tie(&f->tie[i], x, &s, i, err);
+    sheet_free(&s);
+    return status;
+}
+
+/* ---- floors --------------------------------------------------------------------------------------------------- */
+
+static double frame_extent(const Frame *f)
+{
+    double lo = f->node[0].z, hi = lo;
+    for (int i = 1; i < f->n_nodes; i++) {
+        lo = fmin(lo, f->node[i].z);
+        hi = fmax(hi, f->node[i].z);
+    }
+    return hi - lo;
+}
+
+static int by_value(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* Heights of the level elements whose ends may move sideways, each once: *n of z, ascending. */
+static void find_levels(const Frame *f, double tolerance, double z[], int *n)
+{
+    int found = 0;
+    *n = 0;
+    for (int e = 0; e < f->n_elements; e++) {
+        const FrameNode *a = &f->node[f->element[e].node[0]], *b = &f->node[f->element[e].node[1]];
+        if (fabs(a->z - b->z) <= tolerance && !a->fixed[FRAME_X] && !b->fixed[FRAME_X])
+            z[found++] = a->z;
+    }
+    qsort(z, (size_t)found, sizeof *z, by_value);
+    for (int i = 0; i < found; i++)
+        if (*n == 0 || z[i] - z[*n - 1] > tolerance)
+            z[(*n)++] = z[i];
+}
+
+static Status number_floors(Frame *f, Err *err)
+{
+    double *z = malloc((size_t)f->n_elements * sizeof *z);
+    if (!z)
+        return fail(err, STATUS_NO_MEMORY, "frame: no memory for %d elements", f->n_elements);
+    const double tolerance = 1e-6 * frame_extent(f);
+    int n;
+    find_levels(f, tolerance, z, &n);
+    for (int i = 0; i < f->n_nodes; i++)
+        for (int k = 0; k < n; k++)
+            if (fabs(f->node[i].z - z[k]) <= tolerance && !f->node[i].fixed[FRAME_X])
+                f->node[i].floor = k + 1;
+    free(z);
+    return STATUS_OK;
+}
+
+/* Mean height of the nodes of a floor; 0: the ground under the first one. *count: its nodes. */
+static double floor_height(const Frame *f, int floor, int *count)
+{
+    double sum = 0;
+    *count = 0;
+    for (int i = 0; i < f->n_nodes; i++)
+        if (f->node[i].floor == floor) {
+            sum += f->node[i].z;
+            ++*count;
+        }
+    return sum / (*count > 0 ? *count : 1);
+}
+
+/* The highest node that is held sideways below a height. */
+static int ground_below(const Frame *f, double height, double *z)
+{
+    *z = -HUGE_VAL;
+    for (int i = 0; i < f->n_nodes; i++)
+        if (f->node[i].fixed[FRAME_X] && f->node[i].z < height)
+            *z = fmax(*z, f->node[i].z);
+    return isfinite(*z);
+}
+
+static Status measure_storeys(Frame *f, const char *folder, Err *err)
+{
+    double below = 0;
+    for (int k = 1; k <= f->n_floors; k++) {
+        int count;
+        const double z = floor_height(f, k, &count);
+        if (count == 0)
+            return fail(err, STATUS_BAD_DATA, "%s/nodes.csv: there is no floor %d, but a floor %d", folder, k,
+                        f->n_floors);
+        if (k == 1 && !ground_below(f, z, &below))
+            return fail(err, STATUS_BAD_DATA, "%s/nodes.csv: no node below the first floor (z %g m) has fix_x 1",
+                        folder, z);
+        if (!(z > below))
+            return fail(err, STATUS_BAD_DATA, "%s/nodes.csv: floor %d at %g m is not above %g m; bottom floor first",
+                        folder, k, z, below);
+        f->storey_m[k - 1] = z - below;
+        below = z;
+    }
+    return STATUS_OK;
+}
+
+static Status find_floors(Frame *f, const char *folder, int floors_max, Err *err)
+{
+    int named = 0;
+    for (int i = 0; i < f->n_nodes; i++)
+        named |= f->node[i].floor;
+    if (!named)
+        TRY(number_floors(f, err));
+    for (int i = 0; i < f->n_nodes; i++)
+        f->n_floors = f->node[i].floor > f->n_floors ? f->node[i].floor : f->n_floors;
+    if (f->n_floors == 0)
+        return fail(err, STATUS_BAD_DATA, "%s: no floors: no level element has ends that may move sideways", folder);
+    if (f->n_floors > floors_max)
+        return fail(err, STATUS_BAD_DATA, "%s: %d floors; at most %d are supported", folder, f->n_floors, floors_max);
+    f->storey_m = calloc((size_t)f->n_floors, sizeof *f->storey_m);
+    if (!f->storey_m)
+        return fail(err, STATUS_NO_MEMORY, "frame: no memory for %d floors", f->n_floors);
+    return measure_storeys(f, folder, err);
+}
+
+/* ---- the folder ----------------------------------------------------------------------------------------------- */
+
+Status frame_read(Frame *f, const char *folder, int floors_max, Err *err)
+{
+    Index x = {0};
+    memset(f, 0, sizeof *f);
+    Status status = read_nodes(f, &x, folder, err);
+    if (status == STATUS_OK)
+        status = read_sections(f, folder, err);
+    if (status == STATUS_OK)
+        status = read_elements(f, &x, folder, err);
+    if (status == STATUS_OK && is_there(folder, "masses.csv"))
+        status = read_masses(f, &x, folder, err);
+    if (status == STATUS_OK && is_there(folder, "ties.csv"))
+        status = read_ties(f, &x, folder, err);
+    free(x.entry);
+    if (status == STATUS_OK)
+        status = find_floors(f, folder, floors_max, err);
+    if (status != STATUS_OK)
+        frame_free(f);
+    return status;
+}
+
+void frame_free(Frame *f)
+{
+    free(f->node);
+    free(f->section);
+    free(f->element);
+    free(f->tie);
+    free(f->storey_m);
+    memset(f, 0, sizeof *f);
+}

@@ -1,0 +1,467 @@
+/* Buildings from files against closed forms: frames, storeys, units, P-delta, damping. */
+#include "program.h"
+
+#include <sys/stat.h>
+
+#include "base/linalg.h"
+#include "scene/building.h"
+#include "scene/frame.h"
+#include "scene_options.h"
+
+/* ---- folders -------------------------------------------------------------------------------------------------- */
+
+/* An empty folder in the place of this test program; options that name it. */
+static BuildingOptions folder_of(const char *name)
+{
+    BuildingOptions o = scene_defaults().building;
+    char *path = in_place(name);
+    mkdir(path, 0777);
+    snprintf(o.model, sizeof o.model, "%s", path);
+    free(path);
+    return o;
+}
+
+__attribute__((format(printf, 3, 4))) static void write_file(const BuildingOptions *o, const char *name,
+                                                             const char *format, ...)
+{
+    char path[OPTION_TEXT_MAX + 64];
+    va_list args;
+    snprintf(path, sizeof path, "%s/%s", o->model, name);
+    FILE *f = fopen(path, "w");
+    assert_non_null(f);
+    va_start(args, format);
+    vfprintf(f, format, args);
+    va_end(args);
+    assert_int_equal(fclose(f), 0);
+}
+
+static Building load(const BuildingOptions *o)
+{
+    Building b;
+    Err err = {0};
+    CHECK_OK(building_load(&b, o, &err), &err);
+    return b;
+}
+
+static void expect_refusal_of(const BuildingOptions *o, const char *wanted)
+{
+    Building b;
+    Err err = {0};
+    const Status status = building_load(&b, o, &err);
+    if (status == STATUS_OK || !strstr(err.text, wanted))
+        fail_msg("status %d, said '%s', wanted '%s'", (int)status, err.text, wanted);
+}
+
+/* Displacements under a force at one floor. */
+static void deflect(const Building *b, int floor, double force, double u[])
+{
+    double K[FLOORS_MAX * FLOORS_MAX];
+    Err err = {0};
+    memcpy(K, b->K, (size_t)(b->n * b->n) * sizeof *K);
+    memset(u, 0, (size_t)b->n * sizeof *u);
+    u[floor] = force;
+    CHECK_OK(linalg_solve_spd(b->n, 1, K, u, &err), &err);
+}
+
+/* ---- the frame of the benchmark ------------------------------------------------------------------------------- */
+
+static double largest_difference(int n, const double A[], const double B[])
+{
+    double difference = 0, largest = 0;
+    for (int i = 0; i < n * n; i++) {
+        difference = fmax(difference, fabs(A[i] - B[i]));
+        largest = fmax(largest, fabs(B[i]));
+    }
+    return difference / largest;
+}
+
+static void test_the_20_storey_frame_condenses_to_the_built_in_matrices(void **state)
+{
+    (void)state;
+    BuildingOptions o = scene_defaults().building;
+    Building built_in = load(&o);
+    snprintf(o.model, sizeof o.model, "configs/sac20/frame");
+    Building frame = load(&o);
+    assert_int_equal(frame.n, 20);
+    assert_true(largest_difference(20, frame.K, built_in.K) < 1e-9);
+    assert_true(largest_difference(20, frame.M, built_in.M) < 1e-9);
+    for (int j = 0; j < 20; j++)
+        assert_close(frame.storey_m[j], j == 0 ? 5.4864 : 3.9624, 1e-9);
+    building_free(&frame);
+    building_free(&built_in);
+}
+
+/* ---- frames --------------------------------------------------------------------------------------------------- */
+
+enum { N = 8 };
+static const double STOREY = 3.5, EI = 2.1e11 * 4e-4, PER_M = 900;
+
+/* A column of N storeys that are floors, clamped or not, of `parts` elements per storey. */
+static BuildingOptions write_column(const char *name, int parts, const char *shear_area)
+{
+    const BuildingOptions o = folder_of(name);
+    char nodes[4096] = "node,x_m,z_m,fix_x,fix_z,fix_rot,floor\nbase,0,0,1,1,1,0\n", elements[4096] = "";
+    size_t used = strlen(nodes), written = 0;
+    for (int k = 1; k <= N * parts; k++) {
+        used += (size_t)snprintf(nodes + used, sizeof nodes - used, "%d,0,%.17g,0,0,0,%d\n", k, STOREY * k / parts,
+                                 k % parts == 0 ? k / parts : 0);
+        if (k == 1)
+            written += (size_t)snprintf(elements, sizeof elements, "element,node_i,node_j,section\n1,base,1,c\n");
+        else
+            written += (size_t)snprintf(elements + written, sizeof elements - written, "%d,%d,%d,c\n", k, k - 1, k);
+    }
+    write_file(&o, "nodes.csv", "%s", nodes);
+    write_file(&o, "elements.csv", "%s", elements);
+    write_file(&o, "sections.csv",
+               "section,A_m2,I_m4,E_pa,mass_kg_per_m,shear_area_m2,poisson\nc,0.02,4e-4,2.1e11,%g,%s,0.25\n", PER_M,
+               shear_area);
+    return o;
+}
+
+static void test_a_column_deflects_as_a_cantilever(void **state)
+{
+    (void)state;
+    const double kGA = 2.1e11 / 2.5 * 5e-4;
+    for (int shears = 0; shears < 2; shears++) {
+        const BuildingOptions o = write_column("column", 2, shears ? "5e-4" : "0");
+        Building b = load(&o);
+        double u[N];
+        assert_int_equal(b.n, N);
+        for (int at = 0; at < N; at++) {
+            const double a = STOREY * (at + 1), L = STOREY * N, shear = shears ? 1e4 * a / kGA : 0;
+            deflect(&b, at, 1e4, u);
+            assert_close(u[at], 1e4 * a * a * a / (3 * EI) + shear, 1e-8);
+            assert_close(u[N - 1], 1e4 * a * a / (6 * EI) * (3 * L - a) + shear, 1e-8);
+        }
+        building_free(&b);
+    }
+}
+
+static void test_a_column_of_consistent_mass_vibrates_as_a_cantilever(void **state)
+{
+    (void)state;
+    const BuildingOptions o = write_column("column", 1, "0");
+    Building b = load(&o);
+    const double L = STOREY * N, beta_l[] = {1.875104069, 4.694091133, 7.854757438}; /* cos x cosh x = -1 */
+    for (int i = 0; i < 3; i++)
+        assert_close(b.omega[i], pow(beta_l[i] / L, 2) * sqrt(EI / PER_M), 3e-3);
+    assert_close(b.omega[0], pow(beta_l[0] / L, 2) * sqrt(EI / PER_M), 1e-5);
+    building_free(&b);
+}
+
+/* A portal 4 m high and 6 m wide; ends of the columns, of the beam, as given. */
+static BuildingOptions write_portal(const char *name, double beam_I, const char *base, const char *pins)
+{
+    const BuildingOptions o = folder_of(name);
+    write_file(&o, "nodes.csv",
+               "node,x_m,z_m,fix_x,fix_z,fix_rot\nA,0,0,1,1,%s\nB,6,0,1,1,%s\nC,0,4,0,0,0\nD,6,4,0,0,0\n", base, base);
+    write_file(&o, "sections.csv", "section,A_m2,I_m4,E_pa\ncolumn,50,1e-4,2e11\nbeam,50,%.17g,2e11\n", beam_I);
+    write_file(&o, "elements.csv",
+               "element,node_i,node_j,section,pin_i,pin_j\n1,A,C,column,%s\n2,B,D,column,%s\n"
+               "3,C,D,beam,0,0\n",
+               pins, pins);
+    write_file(&o, "masses.csv", "node,mass_kg\nC,20000\nD,30000\n");
+    return o;
+}
+
+/* Clamped columns: Chopra, Dynamics of Structures, section 1.3, rho = (EI_b / L) / (2 EI_c / h). */
+static double portal_stiffness(double beam_I)
+{
+    const double h = 4, EIc = 2e11 * 1e-4, rho = (beam_I / 6) / (2 * 1e-4 / h);
+    return 24 * EIc / (h * h * h) * (12 * rho + 1) / (12 * rho + 4);
+}
+
+static void test_a_portal_frame_has_its_textbook_stiffness(void **state)
+{
+    (void)state;
+    const double beams[] = {1e-5, 1e-4, 3e-3};
+    for (int i = 0; i < 3; i++) {
+        BuildingOptions o = write_portal("portal", beams[i], "1", "0,0");
+        Building b = load(&o);
+        assert_int_equal(b.n, 1);
+        assert_close(b.K[0], portal_stiffness(beams[i]), 1e-5);
+        assert_close(b.M[0], 50000, 1e-12);
+        assert_close(b.storey_m[0], 4, 1e-12);
+        building_free(&b);
+        o.rigid_floors = SWITCH_OFF; /* a beam of 50 m2 does not stretch either */
+        b = load(&o);
+        assert_close(b.K[0], portal_stiffness(beams[i]), 1e-4);
+        building_free(&b);
+    }
+}
+
+/* Hinged columns: 3EI_c/h^3 each under a rigid beam, by the base's fixity or by the element's pin. */
+static void test_a_hinge_at_the_base_and_a_pin_in_the_column_are_the_same(void **state)
+{
+    (void)state;
+    BuildingOptions by_base = write_portal("by_base", 10, "0", "0,0"), by_pin = write_portal("by_pin", 10, "1", "1,0");
+    Building a = load(&by_base), b = load(&by_pin);
+    assert_close(a.K[0], 2 * 3 * 2e11 * 1e-4 / 64, 1e-4);
+    assert_close(b.K[0], a.K[0], 1e-9);
+    building_free(&a);
+    building_free(&b);
+}
+
+static void test_a_mechanism_is_refused_with_its_node(void **state)
+{
+    (void)state;
+    BuildingOptions o = write_portal("swings", 1e-4, "0", "1,1");
+    expect_refusal_of(&o, "mechanism");
+    o = write_portal("loose", 1e-4, "1", "0,0");
+    write_file(&o, "nodes.csv",
+               "node,x_m,z_m,fix_x,fix_z,fix_rot\nA,0,0,1,1,1\nB,6,0,1,1,1\nC,0,4,0,0,0\nD,6,4,0,0,0\n"
+               "forgotten,3,2,0,0,0\n");
+    expect_refusal_of(&o, "node forgotten (x 3 m, z 2 m)");
+    write_file(&o, "nodes.csv",
+               "node,x_m,z_m,fix_x,fix_z,fix_rot\nA,0,0,1,1,1\nB,6,0,1,1,1\nC,0,4,0,0,0\nD,6,4,0,0,0\n"
+               "E,9,4,0,0,0\n");
+    write_file(&o, "elements.csv",
+               "element,node_i,node_j,section,pin_i,pin_j\n1,A,C,column,0,0\n2,B,D,column,0,0\n"
+               "3,C,D,beam,0,0\n4,D,E,beam,1,1\n");
+    expect_refusal_of(&o, "node E (x 9 m, z 4 m)");
+}
+
+static void test_tied_nodes_move_together(void **state)
+{
+    (void)state;
+    BuildingOptions o = write_portal("tied", 1e-4, "1", "0,0");
+    write_file(&o, "sections.csv", "section,A_m2,I_m4,E_pa\ncolumn,50,1e-4,2e11\nbeam,1e-9,1e-4,2e11\n");
+    Building rigid = load(&o);
+    o.rigid_floors = SWITCH_OFF;
+    write_file(&o, "ties.csv", "node,same_as,x\nC,D,1\n");
+    Building tied = load(&o);
+    assert_close(tied.K[0], rigid.K[0], 1e-12);
+    assert_close(tied.M[0], rigid.M[0], 1e-12);
+    building_free(&tied);
+    building_free(&rigid);
+}
+
+static void test_faults_of_a_frame_name_file_line_and_what_to_do(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *file, *text, *wanted;
+    } BAD[] = {
+        {"nodes.csv", "node,x_m\nA,0\n", "nodes.csv: has no column z_m"},
+        {"nodes.csv", "node,x_m,z_m,fixx\nA,0,0,1\n", "column 'fixx' is not known"},
+        {"nodes.csv", "node,x_m,z_m\nA,0,0\nA,1,0\n", "nodes.csv:3: node A is there twice"},
+        {"nodes.csv", "node,x_m,z_m,fix_x\nA,0,0,2\n", "nodes.csv:2: fix_x is 2; it is 0 or 1"},
+        {"nodes.csv", "node,x_m,z_m\nA,0,high\n", "nodes.csv:2: column 3"},
+        {"sections.csv", "section,A_m2,I_m4,E_pa\ncolumn,0,1,1\n", "sections.csv:2: A_m2 is 0"},
+        {"elements.csv", "element,node_i,node_j,section\n1,A,Z,column\n", "elements.csv:2: node_j 'Z' is not in"},
+        {"elements.csv", "element,node_i,node_j,section\n1,A,C,beem\n", "elements.csv:2: section 'beem' is not in"},
+        {"elements.csv", "element,node_i,node_j,section\n1,A,A,beam\n", "element 1 has no length"},
+        {"elements.csv", "element,node_i,node_j,section\n1,A,C,column\n", "no floors"},
+        {"masses.csv", "node,mass_kg\nC,-1\n", "masses.csv:2: mass_kg is -1"},
+        {"ties.csv", "node,same_as,x\nC,Q,1\n", "ties.csv:2: same_as 'Q'"},
+        {"ties.csv", "node,same_as,x\nC,A,1\n", "floor 1 cannot move by itself"},
+    };
+    for (size_t i = 0; i < sizeof BAD / sizeof BAD[0]; i++) {
+        char name[32];
+        snprintf(name, sizeof name, "bad%zu", i);
+        const BuildingOptions o = write_portal(name, 1e-4, "1", "0,0");
+        write_file(&o, BAD[i].file, "%s", BAD[i].text);
+        expect_refusal_of(&o, BAD[i].wanted);
+    }
+}
+
+/* ---- storeys -------------------------------------------------------------------------------------------------- */
+
+static void test_storeys_that_shear_have_the_frequencies_of_a_chain(void **state)
+{
+    (void)state;
+    static const char *const HEADS[] = {"height_m,mass_kg,stiffness_n_m", "height_m;mass_t;stiffness_kn_m"};
+    const double k = 3e8, m = 2.5e5;
+    for (int form = 0; form < 2; form++) {
+        BuildingOptions o = folder_of(form ? "storeys_kn" : "storeys");
+        char rows[1024] = "";
+        for (int j = 0; j < N; j++)
+            snprintf(rows + strlen(rows), sizeof rows - strlen(rows), form ? "%g;%g;%g\n" : "%g,%g,%g\n", 3.0 + 0.5 * j,
+                     form ? m / 1e3 : m, form ? k / 1e3 : k);
+        write_file(&o, "storeys.csv", "%s\n%s", HEADS[form], rows);
+        Building b = load(&o);
+        assert_int_equal(b.n, N);
+        for (int i = 0; i < N; i++) {
+            assert_close(b.omega[i], 2 * sqrt(k / m) * sin((2 * i + 1) * M_PI / (2 * (2 * N + 1))), 1e-10);
+            assert_close(b.storey_m[i], 3 + 0.5 * i, 1e-12);
+        }
+        building_free(&b);
+    }
+}
+
+static void test_storeys_that_bend_and_shear_deflect_as_timoshenkos_cantilever(void **state)
+{
+    (void)state;
+    const double EI_building = 4e12, k = 5e8, h = 3, L = N * h;
+    for (int shears = 0; shears < 2; shears++) {
+        BuildingOptions o = folder_of(shears ? "both" : "bending");
+        char rows[1024] = "";
+        for (int j = 0; j < N; j++)
+            if (shears)
+                snprintf(rows + strlen(rows), sizeof rows - strlen(rows), "%g,2e5,%g,%g\n", h, k, EI_building);
+            else
+                snprintf(rows + strlen(rows), sizeof rows - strlen(rows), "%g,2e5,%g\n", h, EI_building);
+        write_file(&o, "storeys.csv", "height_m,mass_kg,%sbending_n_m2\n%s", shears ? "stiffness_n_m," : "", rows);
+        Building b = load(&o);
+        double u[N];
+        deflect(&b, N - 1, 1e6, u);
+        assert_close(u[N - 1], 1e6 * (L * L * L / (3 * EI_building) + (shears ? N / k : 0)), 1e-9);
+        building_free(&b);
+    }
+}
+
+static void test_faults_of_storeys_are_named(void **state)
+{
+    (void)state;
+    BuildingOptions o = folder_of("bad_storeys");
+    write_file(&o, "storeys.csv", "height_m,mass_kg\n3,1e5\n");
+    expect_refusal_of(&o, "has no column stiffness_n_m");
+    write_file(&o, "storeys.csv", "height_m,stiffness_n_m\n3,1e8\n");
+    expect_refusal_of(&o, "has no column mass_kg or mass_t");
+    write_file(&o, "storeys.csv", "height_m,mass_kg,stiffness_n_m\n3,1e5,1e8\n3,1e5,-1\n");
+    expect_refusal_of(&o, "storeys.csv:3: stiffness_n_m is -1");
+    write_file(&o, "storeys.csv", "height_m,mass_kg,stiffness_n_m\n3,1e5,1e8\n");
+    snprintf(o.heights_m, sizeof o.heights_m, "3");
+    expect_refusal_of(&o, "has heights of its own");
+}
+
+static void test_heights_may_be_listed_storey_by_storey(void **state)
+{
+    (void)state;
+    BuildingOptions o = folder_of("matrices");
+    write_file(&o, "K.csv", "2e8,-1e8\n-1e8,1e8\n");
+    write_file(&o, "M.csv", "2e5,0\n0,2e5\n");
+    snprintf(o.heights_m, sizeof o.heights_m, "4.5, 3.25");
+    Building b = load(&o);
+    assert_close(b.storey_m[0], 4.5, 1e-15);
+    assert_close(b.storey_m[1], 3.25, 1e-15);
+    building_free(&b);
+    snprintf(o.heights_m, sizeof o.heights_m, "4.5");
+    expect_refusal_of(&o, "has 1 heights; the building has 2 storeys");
+    snprintf(o.heights_m, sizeof o.heights_m, "4.5, low");
+    expect_refusal_of(&o, "'low' is no number above 0");
+}
+
+/* ---- P-delta -------------------------------------------------------------------------------------------------- */
+
+static void test_p_delta_softens_the_tower_to_its_known_frequency(void **state)
+{
+    (void)state;
+    BuildingOptions o = scene_defaults().building;
+    Building b = load(&o);
+    assert_close(b.omega[0] / (2 * M_PI), 0.2643, 2e-4);
+    building_free(&b);
+    o.p_delta = SWITCH_ON;
+    b = load(&o);
+    assert_close(b.omega[0] / (2 * M_PI), 0.2553, 2e-4);
+    building_free(&b);
+}
+
+static void test_p_delta_of_one_storey_is_the_inverted_pendulum(void **state)
+{
+    (void)state;
+    BuildingOptions o = folder_of("pendulum");
+    const double k = 2e6, m = 1e5, h = 4;
+    write_file(&o, "storeys.csv", "height_m,mass_kg,stiffness_n_m\n%g,%g,%g\n", h, m, k);
+    o.p_delta = SWITCH_ON;
+    Building b = load(&o);
+    assert_close(b.omega[0] * b.omega[0], k / m - 9.81 / h, 1e-12);
+    building_free(&b);
+    write_file(&o, "storeys.csv", "height_m,mass_kg,stiffness_n_m\n%g,%g,%g\n", h, m, 0.999 * m * 9.81 / h);
+    expect_refusal_of(&o, "buckles under its own weight");
+}
+
+/* Does a cantilever of n storeys, 24 m high, stand under a weight at its top? */
+static int stands(int n, double weight, double bending)
+{
+    BuildingOptions o = folder_of("euler");
+    char rows[4096] = "";
+    for (int j = 0; j < n; j++)
+        snprintf(rows + strlen(rows), sizeof rows - strlen(rows), "%.17g,%.17g,%g\n", 24.0 / n,
+                 j < n - 1 ? 1e-6 : weight / 9.81, bending);
+    write_file(&o, "storeys.csv", "height_m,mass_kg,bending_n_m2\n%s", rows);
+    o.p_delta = SWITCH_ON;
+    Building b;
+    Err err = {0};
+    const int standing = building_load(&b, &o, &err) == STATUS_OK;
+    if (!standing)
+        assert_non_null(strstr(err.text, "buckles"));
+    building_free(&b);
+    return standing;
+}
+
+static void test_a_column_buckles_at_eulers_load(void **state)
+{
+    (void)state;
+    const double bending = 8e9, euler = M_PI * M_PI * bending / (4 * 24 * 24);
+    double before = 1;
+    for (int n = 4; n <= 32; n *= 2) {
+        double lo = 0.5 * euler, hi = 2 * euler;
+        for (int k = 0; k < 30; k++) {
+            const double middle = 0.5 * (lo + hi);
+            *(stands(n, middle, bending) ? &lo : &hi) = middle;
+        }
+        const double error = fabs(lo / euler - 1);
+        assert_true(error < before / 3.5); /* straight storeys: order 2 */
+        before = error;
+    }
+    assert_true(before < 1e-3);
+}
+
+/* ---- damping -------------------------------------------------------------------------------------------------- */
+
+static void test_rayleigh_damping_goes_through_its_two_modes(void **state)
+{
+    (void)state;
+    BuildingOptions o = scene_defaults().building;
+    o.damping_model = DAMPING_RAYLEIGH;
+    o.damping = 0.02;
+    snprintf(o.rayleigh_modes, sizeof o.rayleigh_modes, "1, 4");
+    Building b = load(&o);
+    assert_close(b.zeta[0], 0.02, 1e-12);
+    assert_close(b.zeta[3], 0.02, 1e-12);
+    const double w1 = b.omega[0], w4 = b.omega[3];
+    for (int i = 0; i < 20; i++)
+        assert_close(b.zeta[i], 0.02 * (w1 * w4 / b.omega[i] + b.omega[i]) / (w1 + w4), 1e-12);
+    building_free(&b);
+    snprintf(o.rayleigh_modes, sizeof o.rayleigh_modes, "2, 2");
+    expect_refusal_of(&o, "are not two modes");
+    snprintf(o.rayleigh_modes, sizeof o.rayleigh_modes, "1, 21");
+    expect_refusal_of(&o, "21 is none of the 20 modes");
+}
+
+static void test_a_damping_table_gives_each_mode_its_ratio(void **state)
+{
+    (void)state;
+    BuildingOptions o = scene_defaults().building;
+    o.damping_model = DAMPING_TABLE;
+    expect_refusal_of(&o, "building.damping_table: is none");
+    snprintf(o.damping_table, sizeof o.damping_table, "0.01, 0.02, 0.05");
+    Building b = load(&o);
+    assert_true(b.zeta[0] == 0.01 && b.zeta[1] == 0.02 && b.zeta[2] == 0.05 && b.zeta[19] == 0.05);
+    building_free(&b);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_the_20_storey_frame_condenses_to_the_built_in_matrices),
+        cmocka_unit_test(test_a_column_deflects_as_a_cantilever),
+        cmocka_unit_test(test_a_column_of_consistent_mass_vibrates_as_a_cantilever),
+        cmocka_unit_test(test_a_portal_frame_has_its_textbook_stiffness),
+        cmocka_unit_test(test_a_hinge_at_the_base_and_a_pin_in_the_column_are_the_same),
+        cmocka_unit_test(test_a_mechanism_is_refused_with_its_node),
+        cmocka_unit_test(test_tied_nodes_move_together),
+        cmocka_unit_test(test_faults_of_a_frame_name_file_line_and_what_to_do),
+        cmocka_unit_test(test_storeys_that_shear_have_the_frequencies_of_a_chain),
+        cmocka_unit_test(test_storeys_that_bend_and_shear_deflect_as_timoshenkos_cantilever),
+        cmocka_unit_test(test_faults_of_storeys_are_named),
+        cmocka_unit_test(test_heights_may_be_listed_storey_by_storey),
+        cmocka_unit_test(test_p_delta_softens_the_tower_to_its_known_frequency),
+        cmocka_unit_test(test_p_delta_of_one_storey_is_the_inverted_pendulum),
+        cmocka_unit_test(test_a_column_buckles_at_eulers_load),
+        cmocka_unit_test(test_rayleigh_damping_goes_through_its_two_modes),
+        cmocka_unit_test(test_a_damping_table_gives_each_mode_its_ratio),
+    };
+    return cmocka_run_group_tests(tests, make_place, clear_place);
+}
