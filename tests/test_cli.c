@@ -313,8 +313,10 @@ static void test_the_picture_of_a_motion_is_whole_or_not_there(void **state)
 static void test_simulate_gives_the_same_numbers_as_json_and_as_csv(void **state)
 {
     (void)state;
-    static const char *const KEYS[] = {"j1_m",     "j2_m",     "j3_g",           "ed1_pct",         "ed5_10_pct",
-                                       "edcs_pct", "mcore_kg", "input_energy_j", "energy_residual", "impacts"};
+    static const char *const KEYS[] = {"j1_m",     "j2_m",           "j3_g",
+                                       "ed1_pct",  "ed5_10_pct",     "edcs_pct",
+                                       "mcore_kg", "input_energy_j", "energy_balance_error",
+                                       "impacts"};
     write_designs("two.csv", 2, (double[]){0.001, 0.004}, (double[]){0.012, 0.03}, (double[]){0.0064, 0.01});
     json_t *list = json_of("simulate configs/quick.ini" SHORT "--design @/two.csv --json");
     free(output_of("simulate configs/quick.ini" SHORT "--design @/two.csv --csv @/results.csv"));
@@ -324,9 +326,9 @@ static void test_simulate_gives_the_same_numbers_as_json_and_as_csv(void **state
     free(streamed);
     assert_int_equal(json_array_size(list), 2);
     line = strsep(&rest, "\n");
-    assert_string_equal(line,
-                        "design,j1_m,j2_m,j3_g,ed1_pct,ed5_10_pct,edcs_pct,mcore_kg,input_energy_j,energy_residual,"
-                        "impacts,outcome");
+    assert_string_equal(
+        line, "design,j1_m,j2_m,j3_g,ed1_pct,ed5_10_pct,edcs_pct,mcore_kg,input_energy_j,energy_balance_error,"
+              "impacts,outcome");
     for (size_t i = 0; i < 2; i++) {
         const json_t *o = json_array_get(list, i);
         assert_string_equal(json_string_value(json_object_get(o, "outcome")), "ok");

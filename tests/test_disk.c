@@ -31,7 +31,7 @@ static void test_a_second_process_is_refused_with_the_first_ones_number(void **s
     wait_end(pid);
     assert_false(lock_is_held(path_of("locked/lock", path), &holder));
     said = output_of("status @/locked");
-    assert_non_null(strstr(said, "broken off"));
+    assert_non_null(strstr(said, "interrupted"));
     free(said);
 }
 
@@ -236,7 +236,7 @@ static void test_damage_is_found_on_opening_whatever_was_hit(void **state)
     expect(74, "has format 99, this program reads 2; a newer imtet wrote it", "status @/sound");
     overwrite("sound/run.sqlite", 60, "\0\0\0\1", 4);
     expect(74, "has format 1, this program reads 2; an older imtet wrote it", "status @/sound");
-    expect(74, "an older imtet wrote it: only that one can go on", "optimize @/sound");
+    expect(74, "an older imtet wrote it: only that one can resume it", "optimize @/sound");
     char *list = output_of("list @");
     assert_non_null(strstr(list, "unreadable"));
     free(list);

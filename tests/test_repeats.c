@@ -84,7 +84,7 @@ static void test_the_exports_and_status_tell_of_repeats(void **state)
     free(output_of("export @/whole --csv @/exported.csv"));
     char *front = read_in_place("whole/front.csv"), *exported = read_in_place("exported.csv");
     assert_string_equal(front, exported);
-    assert_non_null(strstr(front, ",f1,f2,spread_f1,spread_f2,members\n"));
+    assert_non_null(strstr(front, ",f1,f2,f1_sd,f2_sd,replicates\n"));
     free(front);
     free(exported);
     char *all = read_in_place("whole/evaluations.csv"), *said = output_of("status @/whole");
@@ -150,7 +150,7 @@ static void test_without_noise_nothing_is_repeated_and_the_tables_are_as_ever(vo
     Run h = saved_of("quiet");
     char *front = read_in_place("quiet/front.csv");
     assert_true(!h.schema.has_spread && h.n_repeats == 0);
-    assert_null(strstr(front, "members"));
+    assert_null(strstr(front, "replicates"));
     free(front);
     run_free(&h);
 }

@@ -176,8 +176,8 @@ static void test_the_chosen_design_is_simulated_as_the_search_did(void **state)
     const SimResult *with_core = &r.detail.result[SCENE_IMPACT], *tied = &r.detail.result[SCENE_RIGID];
     assert_true(with_core->j1_m == f[0] && with_core->j3_g == f[2] && with_core->mcore_kg == f[6]);
     assert_true(r.detail.gap_m[3] == run_x(&run, r.chosen)[3]);
-    assert_true(r.detail.wall_m[0] == run_x(&run, r.chosen)[20]);
-    assert_close(r.detail.wall_m[19], run_x(&run, r.chosen)[21], 1e-12);
+    assert_true(r.detail.thickness_m[0] == run_x(&run, r.chosen)[20]);
+    assert_close(r.detail.thickness_m[19], run_x(&run, r.chosen)[21], 1e-12);
     assert_true(tied->impacts == 0 && tied->j1_m > 0);
     assert_int_equal(r.detail.n_elsewhere, 1);
     assert_true(r.detail.elsewhere[0].with_core.j1_m != with_core->j1_m);
@@ -380,7 +380,8 @@ static long size_of(const char *run, const char *name)
 static void test_pictures_are_drawn_as_svg_and_png_each(void **state)
 {
     (void)state;
-    static const char *const NAMES[] = {"front", "growth", "gaps", "peaks", "modes", "energies", "sway", "elsewhere"};
+    static const char *const NAMES[] = {"front", "growth",   "gaps",         "peaks",
+                                        "modes", "energies", "displacement", "elsewhere"};
     if (shell("command -v gnuplot >/dev/null") != 0) {
         print_message("gnuplot is not installed: no pictures to look at\n");
         skip();

@@ -43,11 +43,11 @@ static void test_what_is_wrong_in_one_cell_is_named(void **state)
          STATUS_IO},
         {"UPDATE evaluation SET outcome = 'error' WHERE id = 6", "evaluation 6 is not what was written", STATUS_IO},
         {"DELETE FROM run", "it has no settings", STATUS_IO},
-        {"UPDATE run SET n_var = 5", "it tells of 5 variables", STATUS_IO},
-        {"UPDATE run SET n_var = 0", "it tells of 0 variables", STATUS_IO},
-        {"UPDATE run SET n_var = 20000", "it tells of 20000 variables", STATUS_IO},
+        {"UPDATE run SET n_var = 5", "it has 5 variables", STATUS_IO},
+        {"UPDATE run SET n_var = 0", "it has 0 variables", STATUS_IO},
+        {"UPDATE run SET n_var = 20000", "it has 20000 variables", STATUS_IO},
         {"UPDATE run SET settings = '[problem]' || char(10) || 'kind = nonsense'", "problem.kind", STATUS_BAD_DATA},
-        {"UPDATE run SET settings = '', n_var = 2", "it tells of 2 variables", STATUS_IO}, /* of a tower */
+        {"UPDATE run SET settings = '', n_var = 2", "it has 2 variables", STATUS_IO}, /* of a tower */
         {"ALTER TABLE session DROP COLUMN stopped", "no such column: stopped", STATUS_IO},
     };
     char folder[PATH_MAX];

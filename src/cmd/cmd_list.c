@@ -74,7 +74,7 @@ static Status run(const Args *args, Err *err)
         return show_json(list, err);
     char path[PATH_MAX];
     if (found == 0 && run_path(folder, path, sizeof path))
-        printf("%s: is a run itself; `imtet status` tells how far it is\n", folder);
+        printf("%s: is a run itself; `imtet status` shows its progress\n", folder);
     else if (found == 0)
         printf("%s: no runs\n", folder);
     return STATUS_OK;
@@ -87,9 +87,9 @@ const Command CMD_LIST = {
     .operand = "[FOLDER]",
     .summary = "the runs of a folder and how far each is",
     .example = "imtet list results",
-    .details =
-        "One line for every run in FOLDER, `results` if none is given: running, finished, stopped (it can go on) or\n"
-        "broken off (it was killed, and can go on too).",
+    .details = "One line for every run in FOLDER, `results` if none is given: running, finished, stopped (it can be "
+               "resumed) or\n"
+               "interrupted (it was killed, and can be resumed too).",
     .options = OPTIONS,
     .run = run,
 };

@@ -16,7 +16,7 @@
 #include "settings/settings.h"
 
 typedef struct {
-    int terminal, has_told;
+    int terminal, has_line;
 } Telling;
 
 /* Of standard error's terminal, less one: a line that fills the last column would wrap. */
@@ -39,14 +39,14 @@ static void tell(const StudyProgress *p, void *user)
     snprintf(line, sizeof line, "generation %zu: %zu of %ld simulated, %zu failed, front %zu, hypervolume %s, %s left",
              v->generation_now, v->n, p->settings->search.max_evals, v->n_failed, v->n_front, hypervolume, left);
     fprintf(stderr, "\r%.*s\033[K", line_width(), line); /* the rest of the line before is erased */
-    t->has_told = 1;
+    t->has_line = 1;
 }
 
 static void tell_start(const char *folder, size_t n_simulated, void *user)
 {
     (void)user;
     if (n_simulated > 0)
-        fprintf(stderr, "%s: goes on after %zu simulations\n", folder, n_simulated);
+        fprintf(stderr, "%s: resumed after %zu simulations\n", folder, n_simulated);
 }
 
 static void print_front(const Run *run, const StudySummary *summary)
@@ -65,8 +65,8 @@ static void print_front(const Run *run, const StudySummary *summary)
         for (int k = 0; k < N_OBJECTIVES; k++)
             alone[k] = measure_value(&summary->no_core, k);
         show_objectives("no core", 0, N_OBJECTIVES, alone);
-        printf("\nj1 displacement, j2 interstorey drift, j3 acceleration, ed1 share of mode 1, mcore: less is better;\n"
-               "ed5_10 share of modes 5 to 10, edcs share of the core: more is better.");
+        printf("\nj1 displacement, j2 interstorey drift, j3 acceleration, ed1 share of mode 1, mcore: minimised;\n"
+               "ed5_10 share of modes 5 to 10, edcs share of the core: maximised.");
     }
     printf("\nknee: nearest to the ideal point when every objective is scaled to 0..1 over the front.\n");
 }
@@ -126,8 +126,7 @@ static Status report(const Run *run, const StudySummary *summary, Err *err)
            summary->folder, run->n_front, summary->n_simulated, summary->n_failed, summary->seconds,
            stop_reason_words(summary->stopped));
     if (summary->n_repeats > 0)
-        printf("%zu of the simulations repeat a design, to tell luck from merit (search.replicate_share)\n\n",
-               summary->n_repeats);
+        printf("%zu of the simulations repeat a design, to average the noise (search.replicate_share)\n\n", summary->n_repeats);
     print_front(run, summary);
     if (summary->n_tried_to_polish > 0)
         printf("polished: %zu of %zu designs became better by more than their spread (search.polish)\n",
@@ -150,9 +149,9 @@ static void print_quoted(FILE *out, const char *word)
     fputc('\'', out);
 }
 
-static void tell_how_to_go_on(const StudySummary *summary)
+static void tell_how_to_resume(const StudySummary *summary)
 {
-    fputs("It goes on with:  ", stderr);
+    fputs("Resume it with:  ", stderr);
     print_quoted(stderr, program_invocation_name);
     fputs(" optimize ", stderr);
     print_quoted(stderr, summary->folder);
@@ -165,7 +164,7 @@ static Status take_run(const Args *args, Settings *s, RunStore **store, Err *err
     Run run;
     char path[PATH_MAX];
     if (!run_path(args->operand, path, sizeof path))
-        return fail(err, STATUS_MISSING, "%s: is a folder without a run.sqlite: no run that could go on",
+        return fail(err, STATUS_MISSING, "%s: is a folder without a run.sqlite: no run that could be resumed",
                     args->operand);
     if (args_has(args, "--new") || args_gives(args, "run.out")) {
         TRY(run_read(&run, args->operand, err));
@@ -223,10 +222,10 @@ static Status optimize(const Args *args, Run *finished, Err *err)
     }
     signals_catch();
     status = study_run(&s, &options, &summary, stderr, err);
-    if (telling.has_told)
+    if (telling.has_line)
         fputc('\n', stderr);
     if (status == STATUS_STOPPED)
-        tell_how_to_go_on(&summary);
+        tell_how_to_resume(&summary);
     TRY(status);
     return report(finished, &summary, err);
 }
@@ -244,13 +243,13 @@ static const ArgOption OPTIONS[] = {
     OPTION_PGA,
     OPTION_STRETCH,
     OPTION_UNIT,
-    {"--out", "DIR", "run.out", 0, "the run's folder; a run that it holds goes on"},
+    {"--out", "DIR", "run.out", 0, "the run's folder; a run that it holds is resumed"},
     {"--new", NULL, NULL, 0, "a new run in any case: a number is added to a folder that holds one"},
-    {"--force-settings", NULL, NULL, 0, "go on with other limits (simulations, generations, hours)"},
+    {"--force-settings", NULL, NULL, 0, "resume with other limits (simulations, generations, hours)"},
     {"--seed", "N", "search.seed", 0, "same seed, same settings: same front"},
     {"--threads", "N", "search.threads", 0, "0: one per processor"},
     {"--max-evals", "N", "search.max_evals", 0, "stop after so many simulations"},
-    {"--max-hours", "H", "search.max_hours", 0, "stop after so long; it can go on later"},
+    {"--max-hours", "H", "search.max_hours", 0, "stop after so long; it can be resumed later"},
     OPTION_SET,
     OPTION_END,
 };
@@ -261,10 +260,10 @@ const Command CMD_OPTIMIZE = {
     .summary = "search for the Pareto front of designs",
     .example = "imtet optimize configs/quick.ini",
     .details =
-        "Searches gaps and wall thicknesses for the designs that no other one beats in all seven objectives, and\n"
+        "Searches gaps and core thicknesses for the nondominated designs in seven objectives, and\n"
         "writes them to DIR/front.csv generation by generation (results/README.md explains every file and\n"
-        "column). A run that is there already goes on where it stopped, with the same result as if it never had; its\n"
-        "settings must be the same. `imtet optimize RUN` goes on with a run's own settings. Ctrl-C, SIGTERM and\n"
+        "column). A run that is there already is resumed, with the same result as if it had never stopped; its\n"
+        "settings must be the same. `imtet optimize RUN` resumes a run with its own settings. Ctrl-C, SIGTERM and\n"
         "--max-hours store everything and end with status 75; a second signal, 0.2 s later or more, ends at\n"
         "once and costs the simulations under way and at most 0.2 s of finished ones.\n"
         "With problem.kind = external the simulator is a program of your own (docs/external.md).",

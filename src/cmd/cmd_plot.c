@@ -17,9 +17,10 @@ const Command CMD_PLOT = {
     .operand = "RUN",
     .summary = "pictures of a run for a paper, SVG and PNG, by gnuplot",
     .example = "imtet plot results/quick --design knee --out pictures",
-    .details = "Draws what `imtet report` shows: the front, the growth of the hypervolume; of one design, simulated "
-               "again, its\n"
-               "gaps, peaks, modal energies, energies and sway over time, and other earthquakes. Wants gnuplot.",
+    .details =
+        "Draws what `imtet report` shows: the front, the growth of the hypervolume; of one design, simulated "
+        "again, its\n"
+        "gaps, peaks, modal energies, energies and displacement over time, and other earthquakes. Wants gnuplot.",
     .options = OPTIONS,
     .run = run,
 };

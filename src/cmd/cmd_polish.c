@@ -105,10 +105,10 @@ static void show_gain(const Work *w, size_t k)
 static const char *verdict_of(const Refined *r)
 {
     return !r->has_changed        ? "No improvement was found that keeps the others."
-           : !r->keeps            ? "Measured anew, what was to be kept is not."
+           : !r->keeps            ? "Simulated again, what was to be kept is not."
            : isnan(r->gain_error) ? "One simulation each: nothing is known of the spread."
-           : refined_counts(r)    ? "Measured anew on both designs this is more than the spread."
-                                  : "Measured anew on both designs this is not more than the spread.";
+           : refined_counts(r)    ? "Simulated again on both designs this is more than the standard deviation."
+                                  : "Simulated again on both designs this is not more than the standard deviation.";
 }
 
 static void show(const Work *w, long id)
@@ -171,10 +171,11 @@ const Command CMD_POLISH = {
     .summary = "improve objectives of a design, the others kept",
     .example = "imtet polish results/quick --design knee --improve j2_m",
     .details =
-        "Improves objectives of a design of RUN while the others get no worse than their spread: a response surface "
+        "Improves objectives of a design of RUN while the others get no worse than their spread: a surrogate "
         "of\n"
         "the nearest simulations, on which NLopt looks for better designs, and the simulator in turn. At the end both\n"
-        "designs are simulated anew; a gain beyond the spread goes into the run as a design of the kind polished.",
+        "designs are simulated again; a gain beyond the standard deviation goes into the run as a design of the kind "
+        "polished.",
     .options = OPTIONS,
     .run = run,
 };

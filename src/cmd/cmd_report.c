@@ -21,7 +21,8 @@ const Command CMD_REPORT = {
         "Writes one file that needs no network: the front in parallel coordinates and a scatter matrix, designs "
         "chosen\n"
         "by ranges as a table and as CSV, the growth of the hypervolume; of one design, simulated again, its gaps,\n"
-        "peaks, energies and the sway of a floor, with other earthquakes. --pga, --stretch, --unit and --channel are\n"
+        "peaks, energies and the displacement of a floor, with other earthquakes. --pga, --stretch, --unit and "
+        "--channel are\n"
         "for those; else they are scaled as the run's own.",
     .options = OPTIONS,
     .run = run,

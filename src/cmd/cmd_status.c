@@ -72,8 +72,8 @@ static void print_head(const char *folder, const Run *saved, const Standing *s)
         effort_words(&e, effort);
         puts(effort);
     }
-    if (s->state == RUN_PAUSED || s->state == RUN_BROKEN_OFF)
-        printf("it goes on with: imtet optimize %s\n", folder);
+    if (s->state == RUN_PAUSED || s->state == RUN_INTERRUPTED)
+        printf("resume it with: imtet optimize %s\n", folder);
 }
 
 /* The first, the last, and some evenly between. */
@@ -94,7 +94,7 @@ static void print_generations(const Run *saved, const double igd[])
         printf("%12ld %10ld %8ld %8ld %12s %12s %12s\n", g->number, g->simulated, g->failed, g->front, hypervolume,
                advance, worked);
     }
-    printf("hypervolume: standard error %.4f at most; IGD+: how far from the last front, in its widths\n",
+    printf("hypervolume: standard error %.4f at most; IGD+: against the last front, normalised by its ranges\n",
            hypervolume_error(0.5));
 }
 
@@ -194,7 +194,7 @@ static const ArgOption OPTIONS[] = {OPTION_JSON, OPTION_END};
 const Command CMD_STATUS = {
     .name = "status",
     .operand = "RUN",
-    .summary = "how far a run is, also while it goes on",
+    .summary = "progress of a run, also while it is worked on",
     .example = "imtet status results/quick",
     .details =
         "Progress, pace and time left, the hypervolume generation by generation, failed simulations by reason. The\n"

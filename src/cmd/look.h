@@ -16,7 +16,7 @@ Status look_design(const Args *args, const Run *run, size_t *row, Err *err);
     {"--design", "ID", NULL, 0, "the design shown in detail: column id of RUN/front.csv, or knee (default)"},          \
         {"--record", "FILE", NULL, 1,                                                                                  \
          "another earthquake for it; may be repeated (default: motion.records, else the built-in ones)"},              \
-        {"--floor", "N", NULL, 0, "whose sway is shown over time (default: the middle one)"}, OPTION_MOVED,            \
+        {"--floor", "N", NULL, 0, "whose displacement is shown over time (default: the middle one)"}, OPTION_MOVED,    \
         OPTION_CHANNEL, OPTION_PGA, OPTION_STRETCH, OPTION_UNIT
 
 #endif

@@ -12,7 +12,7 @@ static const char *scene_word(SceneKind kind)
     case SCENE_NO_CORE:
         return "no_core";
     case SCENE_RIGID:
-        return "tied";
+        return "rigid";
     }
     return "unknown";
 }
@@ -26,7 +26,7 @@ json_t *json_result(SceneKind kind, const SimResult *r)
     for (int k = 0; k < N_MEASURES - 1; k++)
         json_object_set_new(o, measure(k)->name, json_number(measure_value(r, k)));
     json_object_set_new(o, "impacts", json_integer(r->impacts));
-    json_object_set_new(o, "floored", json_integer(r->v0_limited));
+    json_object_set_new(o, "v0_limited", json_integer(r->v0_limited));
 
     const size_t n_floors = (size_t)r->n_floors, n_modes = (size_t)r->n_modes;
     json_object_set_new(o, "peak_displacement_m", json_numbers(n_floors, r->peak_displacement_m));
@@ -40,8 +40,8 @@ json_t *json_result(SceneKind kind, const SimResult *r)
     json_object_set_new(o, "contact_loss_j", json_number(r->contact_loss_j));
     json_object_set_new(o, "contact_stored_j", json_number(r->contact_stored_j));
     json_object_set_new(o, "clamp_j", json_number(r->clamp_j));
-    json_object_set_new(o, "penetration_max_m", json_number(r->indentation_max_m));
-    json_object_set_new(o, "penetration_ratio", json_number(r->indentation_ratio));
+    json_object_set_new(o, "indentation_max_m", json_number(r->indentation_max_m));
+    json_object_set_new(o, "indentation_ratio", json_number(r->indentation_ratio));
     json_object_set_new(o, "beyond_contact_law", json_boolean(beyond_contact_law(r)));
     json_object_set_new(o, "steps", json_integer(r->steps));
     json_object_set_new(o, "force_evaluations", json_integer(r->force_evaluations));
@@ -56,10 +56,10 @@ json_t *json_ensemble(const Ensemble *e)
         json_object_set_new(mean, measure(k)->name, json_number(e->mean[k]));
         json_object_set_new(spread, measure(k)->name, json_number(e->spread[k]));
     }
-    json_object_set_new(o, "members", json_integer(e->members));
+    json_object_set_new(o, "replicates", json_integer(e->members));
     json_object_set_new(o, "finished", json_integer(e->finished));
     json_object_set_new(o, "mean", mean);
-    json_object_set_new(o, "spread", spread);
+    json_object_set_new(o, "sd", spread);
     return o;
 }
 
@@ -88,7 +88,7 @@ void show_result_names(const char *label)
     printf("%-28s", label);
     for (int k = 0; k < N_OBJECTIVES; k++)
         printf(" %10s", measure(k)->name);
-    printf(" %8s %9s %11s\n", "impacts", "residual", "penetration");
+    printf(" %8s %9s %11s\n", "impacts", "balance", "indentation");
 }
 
 void show_result(const char *label, const SimResult *r)

@@ -25,7 +25,7 @@
     X(OK, "ok")                                                                                                        \
     X(NOT_FINITE, "not_finite")                                                                                        \
     X(OUT_OF_STEPS, "out_of_steps")                                                                                    \
-    X(ENERGY_BALANCE, "books_open")                                                                                    \
+    X(ENERGY_BALANCE, "energy_balance")                                                                                \
     X(ENGINE_FAILED, "engine_failed")                                                                                  \
     X(ERROR, "error")     /* reported by an external simulator */                                                      \
     X(DEAD, "dead")       /* it ended without an answer */                                                             \

@@ -9,7 +9,7 @@
 #include "simulator/crew.h"
 #include "settings/settings.h"
 
-static const double QUIET = 0.02; /* of the largest sway */
+static const double QUIET = 0.02; /* of the peak displacement */
 
 static Status simulate(const World *w, int n_scenes, const double x[], SimResult results[], Err *err)
 {
@@ -30,7 +30,7 @@ static void describe(const World *w, const double x[], Detail *d)
     const double t_base = x[n], t_top = x[n + 1], given = w->options.sim.duration_s;
     for (int j = 0; j < n; j++) {
         d->gap_m[j] = x[j];
-        d->wall_m[j] = n > 1 ? t_base + (t_top - t_base) * j / (n - 1) : t_base;
+        d->thickness_m[j] = n > 1 ? t_base + (t_top - t_base) * j / (n - 1) : t_base;
     }
     snprintf(d->record, sizeof d->record, "%s", w->motion.name);
     d->pga_g = motion_peak(&w->motion) / GRAVITY;
@@ -53,7 +53,7 @@ static void take_spectrum(const Detail *d, const History *h, Spectrogram *s)
     wavelet(h->n, h->dt_s, h->u, SPECTRUM_FREQUENCIES, s->f, SPECTRUM_TIMES, s->t, s->amplitude);
 }
 
-static double largest_sway(const Detail *d)
+static double peak_displacement(const Detail *d)
 {
     double most = 0;
     for (int i = 0; i < 2; i++)
@@ -65,7 +65,7 @@ static double largest_sway(const Detail *d)
 /* Records end long after the building has come to rest: both histories are cut where nothing is to be seen any more. */
 static void cut_quiet_end(Detail *d)
 {
-    const double seen = QUIET * largest_sway(d);
+    const double seen = QUIET * peak_displacement(d);
     size_t n = 2;
     for (int i = 0; i < 2; i++)
         for (size_t k = 0; k < d->history[i].n; k++)
@@ -93,7 +93,7 @@ static Status take_histories(const World *w, const double x[], Detail *d, Err *e
 
 static Status take_here(const World *w, int n_var, const double x[], const DetailWish *wish, Detail *d, Err *err)
 {
-    double tied_hz[FLOORS_MAX], mass;
+    double rigid_hz[FLOORS_MAX], mass;
     d->n_floors = scene_n_floors(w->scene);
     d->floor = wish->floor < 0 ? (d->n_floors - 1) / 2 : wish->floor;
     if (d->n_floors + 2 != n_var)
@@ -102,7 +102,7 @@ static Status take_here(const World *w, int n_var, const double x[], const Detai
     if (d->floor >= d->n_floors)
         return fail(err, STATUS_BAD_DATA, "--floor %d: the building has %d", d->floor + 1, d->n_floors);
     describe(w, x, d);
-    TRY(scene_frequencies(w->scene, x, d->building_hz, d->core_hz, tied_hz, &mass, err));
+    TRY(scene_frequencies(w->scene, x, d->building_hz, d->core_hz, rigid_hz, &mass, err));
     TRY(simulate(w, N_SCENES, x, d->result, err));
     return take_histories(w, x, d, err);
 }

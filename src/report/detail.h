@@ -1,5 +1,5 @@
 /* report/detail.h -- one design of the tower looked at closely: simulated again as the run did it, beside the building
- * alone and the tied building, then on other earthquakes.
+ * alone and the building rigidly connected to its core, then on other earthquakes.
  *
  * Ownership  detail_make allocates, detail_free releases (a zeroed Detail is fine) */
 #ifndef IMTET_REPORT_DETAIL_H
@@ -12,7 +12,7 @@ typedef struct Settings Settings;
 
 enum { N_SCENES = 3, SPECTRUM_FREQUENCIES = 72, SPECTRUM_TIMES = 320 };
 
-/* Amplitude of the floor's sway by frequency and time (report/wavelet.h). */
+/* Amplitude of the floor's displacement by frequency and time (report/wavelet.h). */
 typedef struct {
     double f[SPECTRUM_FREQUENCIES], t[SPECTRUM_TIMES];       /* [Hz] equidistant in their logarithm, [s] */
     double amplitude[SPECTRUM_FREQUENCIES * SPECTRUM_TIMES]; /* (f, t) [m] */
@@ -25,13 +25,13 @@ typedef struct {
 } Elsewhere;
 
 typedef struct {
-    int n_floors, floor; /* floor from 0: whose sway is followed */
-    double gap_m[FLOORS_MAX], wall_m[FLOORS_MAX];
+    int n_floors, floor; /* floor from 0: whose displacement is followed */
+    double gap_m[FLOORS_MAX], thickness_m[FLOORS_MAX];
     double building_hz[FLOORS_MAX], core_hz[FLOORS_MAX];
     char record[128];
     double pga_g, stretch, duration_s;
     SimResult result[N_SCENES]; /* by SceneKind */
-    /* until the floor's sway stays below 2 % of its largest */
+    /* until the floor's displacement stays below 2 % of its peak */
     History history[2];    /* SCENE_IMPACT, SCENE_NO_CORE */
     Spectrogram *spectrum; /* (2) the same */
     size_t n_elsewhere;

@@ -1,4 +1,4 @@
-/* report/history.h -- one response over time, as the engine fast goes through it: a floor's sway and where the input
+/* report/history.h -- one response over time, as the engine fast goes through it: a floor's displacement and where the input
  * energy has gone so far.
  *
  *   input = kinetic + strain (building) + core (kinetic and strain) + damped_building + damped_core + contacts

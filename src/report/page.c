@@ -83,11 +83,11 @@ static json_t *json_of_detail(const Detail *d)
                                                "no_core", json_of_result(&e->no_core)));
     }
     return json_pack("{s:i, s:o, s:o, s:o, s:o, s:s, s:f, s:f, s:f, s:o, s:o, s:o, s:o, s:o, s:o}", "floor",
-                     d->floor + 1, "gap_m", json_numbers(n, d->gap_m), "wall_m", json_numbers(n, d->wall_m),
+                     d->floor + 1, "gap_m", json_numbers(n, d->gap_m), "thickness_m", json_numbers(n, d->thickness_m),
                      "building_hz", json_numbers(n, d->building_hz), "core_hz", json_numbers(n, d->core_hz), "record",
                      d->record, "pga_g", d->pga_g, "stretch", d->stretch, "duration_s", d->duration_s, "with_core",
                      json_of_result(&d->result[SCENE_IMPACT]), "no_core", json_of_result(&d->result[SCENE_NO_CORE]),
-                     "tied", json_of_result(&d->result[SCENE_RIGID]), "history_with_core",
+                     "rigid", json_of_result(&d->result[SCENE_RIGID]), "history_with_core",
                      json_of_history(&d->history[0], &d->spectrum[0]), "history_no_core",
                      json_of_history(&d->history[1], &d->spectrum[1]), "elsewhere", others);
 }

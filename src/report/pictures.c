@@ -28,7 +28,7 @@ typedef struct {
 /* Okabe and Ito's colours and viridis, readable without colour vision. */
 static const char STYLE[] =
     "set encoding utf8\n"
-    "WITH = '#0072b2'; WITHOUT = '#d55e00'; TIED = '#8a6d00'; GREEN = '#009e73'\n"
+    "WITH = '#0072b2'; WITHOUT = '#d55e00'; RIGID = '#8a6d00'; GREEN = '#009e73'\n"
     "ORANGE = '#e69f00'; SKY = '#56b4e9'; PURPLE = '#cc79a7'; GREY = '#9aa4af'\n"
     "set palette defined (0 '#440154', 0.25 '#3b528b', 0.5 '#21918c', 0.75 '#5ec962', 1 '#dde318')\n"
     "set grid lc '#d8d8d8' lt 1 lw 1\nset tics nomirror out\nset border 3\nset key noenhanced\n"
@@ -113,8 +113,8 @@ static size_t choose_panels(const Report *r, Panel panels[3])
 {
     static const size_t PAIRS[3][2] = {{0, 1}, {0, 2}, {1, 2}};
     static const Panel TOWER[3] = {
-        {0, 2, "largest displacement J1 [m]", "largest acceleration J3 [g]"},
-        {0, 1, "largest displacement J1 [m]", "largest interstorey drift J2 [m]"},
+        {0, 2, "peak displacement J1 [m]", "peak acceleration J3 [g]"},
+        {0, 1, "peak displacement J1 [m]", "peak interstorey drift J2 [m]"},
         {3, 4, "energy share of the first mode [%]", "energy share of modes 5 to 10 [%]"},
     };
     const size_t n = r->run->schema.n_obj > 2 ? 3 : 1;
@@ -185,12 +185,12 @@ static void write_gaps(FILE *script, const Report *r)
     const Detail *d = &r->detail;
     fputs("$D << EOD\n", script);
     for (int j = 0; j < d->n_floors; j++)
-        numbers(script, 3, (double)j + 1, 1e3 * d->gap_m[j], 1e3 * d->wall_m[j]);
+        numbers(script, 3, (double)j + 1, 1e3 * d->gap_m[j], 1e3 * d->thickness_m[j]);
     fprintf(script,
             "EOD\nset multiplot layout 1,2 margins 0.09,0.97,0.13,0.95 spacing 0.12,0\nunset key\n"
             "set yrange [0.3:%d.7]\nset ylabel 'floor'\nset xrange [0:*]\nset xlabel 'gap [mm]'\n"
             "plot $D using (0):1:(0):2:($1-0.38):($1+0.38) with boxxyerror lc rgb WITH\n"
-            "set xlabel 'wall of the core [mm]'\n"
+            "set xlabel 'thickness of the core [mm]'\n"
             "plot $D using 3:1 with linespoints lw 2.5 pt 7 ps 0.7 lc rgb WITH\nunset multiplot\n",
             d->n_floors);
 }
@@ -198,7 +198,7 @@ static void write_gaps(FILE *script, const Report *r)
 static const char SCENE_LINES[] =
     "plot $P using (column(1+K)):1 with linespoints lw 2.2 pt 7 ps 0.7 lc rgb WITH title 'with core', "
     "'' using (column(4+K)):1 with linespoints lw 2.2 dt (8,4) pt 13 ps 0.8 lc rgb WITHOUT title 'without core', "
-    "'' using (column(7+K)):1 with linespoints lw 2.2 dt (3,3) pt 9 ps 0.8 lc rgb TIED title 'zero gap'\n";
+    "'' using (column(7+K)):1 with linespoints lw 2.2 dt (3,3) pt 9 ps 0.8 lc rgb RIGID title 'rigidly connected'\n";
 
 static void write_peaks(FILE *script, const Report *r)
 {
@@ -214,9 +214,9 @@ static void write_peaks(FILE *script, const Report *r)
     fprintf(script,
             "EOD\nset multiplot layout 1,3 margins 0.055,0.985,0.14,0.88 spacing 0.055,0\nset xrange [0:*]\n"
             "set yrange [0.5:%d.5]\nset ylabel 'floor'\nset key at screen 0.5,0.95 center vertical maxrows 1\n"
-            "set xlabel 'largest displacement [m]'\nK = 1\n%sunset key\nunset ylabel\n"
-            "set xlabel 'largest drift between floors [m]'\nK = 2\n%s"
-            "set xlabel 'largest absolute acceleration [g]'\nK = 3\n%sunset multiplot\n",
+            "set xlabel 'peak displacement [m]'\nK = 1\n%sunset key\nunset ylabel\n"
+            "set xlabel 'peak interstorey drift [m]'\nK = 2\n%s"
+            "set xlabel 'peak absolute acceleration [g]'\nK = 3\n%sunset multiplot\n",
             d->n_floors, SCENE_LINES, SCENE_LINES, SCENE_LINES);
 }
 
@@ -243,7 +243,7 @@ static void write_modes(FILE *script, const Report *r)
         "set xlabel 'mode of the building'\nset ylabel 'share of the input energy [%]'\nset yrange [0:*]\n"
         "set style data histograms\nset style histogram clustered gap 1\nset boxwidth 0.9 relative\nset grid noxtics\n"
         "plot $M using 2:xtic(1) lc rgb WITH title 'with core', '' using 3 lc rgb WITHOUT title 'without core', "
-        "'' using 4 lc rgb TIED title 'zero gap'\n",
+        "'' using 4 lc rgb RIGID title 'rigidly connected'\n",
         script);
 }
 
@@ -317,7 +317,7 @@ static void write_amplitude_tics(FILE *script, double top)
     fputs(")\n", script);
 }
 
-static void write_sway(FILE *script, const Report *r)
+static void write_displacement(FILE *script, const Report *r)
 {
     static const char *const WORDS[] = {"with core", "without core"};
     const Detail *d = &r->detail;
@@ -380,7 +380,8 @@ static void write_elsewhere(FILE *script, const Report *r)
         gnuplot_quote(script, file_name(at->record));
         fprintf(
             script,
-            " noenhanced\nset xrange [0:*]\nset yrange [0.5:%d.5]\nset xtics auto\nset xlabel 'largest drift [m]'\n"
+            " noenhanced\nset xrange [0:*]\nset yrange [0.5:%d.5]\nset xtics auto\nset xlabel 'peak interstorey drift "
+            "[m]'\n"
             "set ylabel 'floor'\nset style data lines\n"
             "plot $P using 2:1 with linespoints lw 2.2 pt 7 ps 0.7 lc rgb WITH title 'with core', "
             "'' using 3:1 with linespoints lw 2.2 dt (8,4) pt 13 ps 0.8 lc rgb WITHOUT title 'without core'\n"
@@ -397,10 +398,14 @@ static void write_elsewhere(FILE *script, const Report *r)
 /* ---- all of them ----------------------------------------------------------------------------------------------- */
 
 static const Picture PICTURES[] = {
-    {"front", 1200, 420, 0, write_front}, {"growth", 700, 400, 0, write_growth},
-    {"gaps", 900, 460, 1, write_gaps},    {"peaks", 1200, 480, 1, write_peaks},
-    {"modes", 800, 420, 1, write_modes},  {"energies", 1200, 460, 1, write_energies},
-    {"sway", 1200, 600, 1, write_sway},   {"elsewhere", 1000, 400, 1, write_elsewhere},
+    {"front", 1200, 420, 0, write_front},
+    {"growth", 700, 400, 0, write_growth},
+    {"gaps", 900, 460, 1, write_gaps},
+    {"peaks", 1200, 480, 1, write_peaks},
+    {"modes", 800, 420, 1, write_modes},
+    {"energies", 1200, 460, 1, write_energies},
+    {"displacement", 1200, 600, 1, write_displacement},
+    {"elsewhere", 1000, 400, 1, write_elsewhere},
 };
 
 static void write_script(FILE *script, const void *user)
@@ -437,7 +442,7 @@ static int is_wanted(const Report *r, const Picture *p)
         return n_measured(r->run) > 1;
     if (p->write == write_elsewhere)
         return d->n_elsewhere > 0;
-    if (p->write == write_energies || p->write == write_sway)
+    if (p->write == write_energies || p->write == write_displacement)
         return r->has_detail && d->history[0].n > 1 && d->history[1].n > 1;
     return r->has_detail || !p->wants_detail;
 }

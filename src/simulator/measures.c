@@ -11,7 +11,7 @@ static const Measure MEASURES[N_MEASURES] = {
     {"edcs_pct", -1, "share dissipated by the core"},
     {"mcore_kg", 1, "mass of the core"},
     {"input_energy_j", 0, "energy that the ground put in"},
-    {"energy_residual", 0, "how far the energy books are open"},
+    {"energy_balance_error", 0, "of the energy balance, as a share of the input"},
     {"impacts", 0, "closings of any gap"},
 };
 
@@ -22,9 +22,10 @@ const Measure *measure(int k)
 
 double measure_value(const SimResult *r, int k)
 {
-    const double values[N_MEASURES] = {
-        r->j1_m,     r->j2_m,     r->j3_g,           r->ed1_pct,         r->ed5_10_pct,
-        r->edcs_pct, r->mcore_kg, r->input_energy_j, r->energy_balance_error, (double)r->impacts};
+    const double values[N_MEASURES] = {r->j1_m,           r->j2_m,           r->j3_g,
+                                       r->ed1_pct,        r->ed5_10_pct,     r->edcs_pct,
+                                       r->mcore_kg,       r->input_energy_j, r->energy_balance_error,
+                                       (double)r->impacts};
     return values[k];
 }
 

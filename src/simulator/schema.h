@@ -22,7 +22,7 @@ typedef struct {
 typedef struct {
     size_t n_var, n_obj, n_extra;
     Column *column;
-    int has_spread; /* front.csv ends with spread_NAME of every objective and members: designs are several simulations
+    int has_spread; /* front.csv ends with NAME_sd of every objective and replicates: designs are several simulations
                      */
 } Schema;
 

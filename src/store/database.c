@@ -176,7 +176,7 @@ static Status check_format(const Database *d, double format, Err *err)
                     DATABASE_FORMAT);
     if (format < DATABASE_FORMAT)
         return fail(err, STATUS_IO,
-                    "%s: has format %g, this program reads %d; an older imtet wrote it: only that one can go on with "
+                    "%s: has format %g, this program reads %d; an older imtet wrote it: only that one can resume "
                     "it, its front.csv and settings.ini can be read by anyone",
                     d->path, format, DATABASE_FORMAT);
     return STATUS_OK;
@@ -296,7 +296,7 @@ Status database_open(Database **out, const char *path, DatabaseMode mode, Err *e
     if (!S_ISREG(there.st_mode))
         return fail(err, STATUS_IO, "%s: is no file", path);
     if (there.st_size == 0)
-        return fail(err, STATUS_IO, "%s: is empty, no database of a run; remove it, and the run begins anew", path);
+        return fail(err, STATUS_IO, "%s: is empty, no database of a run; remove it, and the run begins again", path);
     TRY(open_file(out, path, real_path(path, real),
                   mode == DATABASE_WRITE ? SQLITE_OPEN_READWRITE : SQLITE_OPEN_READONLY, err));
     bound_rows(*out);

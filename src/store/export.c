@@ -6,7 +6,7 @@
 #include "store/output.h"
 #include "settings/settings.h"
 
-static void write_names(FILE *f, const char *before, const Schema *schema, size_t n_extra, int with_spread)
+static void write_names(FILE *f, const char *before, const Schema *schema, size_t n_extra, int with_sd)
 {
     fputs(before, f);
     for (size_t j = 0; j < schema->n_var; j++)
@@ -15,10 +15,10 @@ static void write_names(FILE *f, const char *before, const Schema *schema, size_
         fprintf(f, ",%s", schema_objective(schema, k)->name);
     for (size_t k = 0; k < n_extra; k++)
         fprintf(f, ",%s", schema_extra(schema, k)->name);
-    for (size_t k = 0; with_spread && k < schema->n_obj; k++)
-        fprintf(f, ",spread_%s", schema_objective(schema, k)->name);
-    if (with_spread)
-        fputs(",members", f);
+    for (size_t k = 0; with_sd && k < schema->n_obj; k++)
+        fprintf(f, ",%s_sd", schema_objective(schema, k)->name);
+    if (with_sd)
+        fputs(",replicates", f);
     fputc('\n', f);
 }
 
@@ -116,11 +116,11 @@ static json_t *json_evaluation(const Run *h, size_t i)
     int known = 0;
     for (size_t k = 0; k < schema->n_obj; k++)
         known = known || isfinite(e->sd[k]);
-    json_object_set_new(o, "spread", known ? json_numbers(schema->n_obj, e->sd) : json_null());
+    json_object_set_new(o, "sd", known ? json_numbers(schema->n_obj, e->sd) : json_null());
     if (e->replicates > h->settings->sim.replicates)
         json_object_set_new(o, "mean", json_numbers(schema->n_obj, run_f(h, i)));
     if (schema->has_spread)
-        json_object_set_new(o, "members", json_integer(e->replicates));
+        json_object_set_new(o, "replicates", json_integer(e->replicates));
     if (schema->n_extra > 0)
         json_object_set_new(o, "measures", json_numbers(schema->n_extra, e->extra));
     return o;

@@ -27,8 +27,8 @@ static Status create_cover(FrontShare *share, const SearchView *v, Err *err)
     return hypervolume_create(&share->hypervolume, v->n_obj, lower, reference, 1, err);
 }
 
-/* Only members of the front count: who was dominated by an earlier one has nothing to add. Where repeats move designs
- * and take them off the front, all of it is measured anew. */
+/* Only designs on the front count: one that an earlier one dominates adds nothing. Where repeats move designs and take
+ * them off the front, all of it is measured again. */
 Status front_share_follow(FrontShare *share, const SearchView *v, Err *err)
 {
     if (v->n_replicates > 0)

@@ -20,7 +20,7 @@ Status output_open(Output *o, const char *path, Err *err)
         return fail(err, STATUS_IO, "%.200s...: the path is too long", path);
     if (in_place)
         o->temporary[0] = 0;
-    /* Not /dev/stdout: opening that anew would cut off what a file behind it holds already. */
+    /* Not /dev/stdout: opening that again would cut off what a file behind it holds already. */
     o->stream = to_stdout ? fdopen(dup(STDOUT_FILENO), "w") : fopen(in_place ? o->path : o->temporary, "w");
     if (!o->stream)
         return fail(err, status_of_errno(errno, STATUS_IO), "%s: cannot be written: %s", path, strerror(errno));

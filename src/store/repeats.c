@@ -24,7 +24,7 @@ static Status insert_row(Archive *a, const Run *h, size_t i, Err *err)
 static void take_design(Run *h, size_t i, const Archive *a, size_t at)
 {
     const size_t m = h->schema.n_obj;
-    const double members = (double)h->settings->sim.replicates;
+    const double replicates = (double)h->settings->sim.replicates;
     Evaluation *r = &h->table.row[i];
     if (a->replicates[at] == 0)
         return;
@@ -32,7 +32,7 @@ static void take_design(Run *h, size_t i, const Archive *a, size_t at)
     for (size_t k = 0; k < m && a->usable[at]; k++) {
         h->F[i * m + k] = schema_objective(&h->schema, k)->sense * a->F[at * m + k];
         if (a->n_replicates > 0)
-            r->sd[k] = a->sd[at * m + k] * sqrt(members);
+            r->sd[k] = a->sd[at * m + k] * sqrt(replicates);
     }
 }
 

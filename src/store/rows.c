@@ -140,7 +140,8 @@ static const char EVALUATIONS[] = "SELECT id, generation, kind, outcome, reason,
 static Status parse_row(const Reading *r, const RowText *t, Evaluation *e, Err *err)
 {
     const EvaluationTable *table = r->table;
-    e->outcome = outcome_of_word(t->outcome);
+    /* books_open: the word for it before 0.1.0 */
+    e->outcome = strcmp(t->outcome, "books_open") == 0 ? OUTCOME_ENERGY_BALANCE : outcome_of_word(t->outcome);
     if (e->outcome == OUTCOME_COUNT)
         return damaged(r, "outcome", e->id, err);
     evaluation_set_outcome(e, e->outcome, t->reason);

@@ -150,7 +150,7 @@ static Status take_head(sqlite3_stmt *row, void *user, Err *err)
     h->polished_at = (long)sqlite3_column_int64(row, 5);
     const int is_tower = h->settings->problem.kind == PROBLEM_TOWER;
     if (n_var < (is_tower ? 3 : 1) || n_var > 10000 || (!is_tower && n_var != h->settings->problem.variables))
-        return fail(err, STATUS_IO, "%s: is damaged: it tells of %ld variables", database_path(l->d), n_var);
+        return fail(err, STATUS_IO, "%s: is damaged: it has %ld variables", database_path(l->d), n_var);
     return schema_of(&h->schema, h->settings, (int)n_var - 2, err);
 }
 
@@ -181,7 +181,7 @@ Status run_load(Run *h, Database *d, const char *folder, Err *err)
     Loading l = {h, d};
     memset(h, 0, sizeof *h);
     snprintf(h->folder, sizeof h->folder, "%s", folder);
-    TRY(database_do(d, err, "BEGIN", "")); /* one moment of a run that goes on */
+    TRY(database_do(d, err, "BEGIN", "")); /* one state of a run that is worked on */
     Status status = load(&l, err);
     const Status end = database_do(d, status == STATUS_OK ? err : NULL, "COMMIT", "");
     status = status == STATUS_OK ? end : status;

@@ -295,7 +295,7 @@ static Status put_generation(RunStore *store, const SearchView *v, double second
     return store_flush(store, err);
 }
 
-/* All of it or nothing: half a generation beside the state of the one before would be no run that can go on. */
+/* All of it or nothing: half a generation beside the state of the one before could not be resumed. */
 static Status commit_generation(RunStore *store, const SearchView *v, double seconds, double session, Err *err)
 {
     TRY(store_flush(store, err)); /* simulations that wait are not lost with it */

@@ -84,7 +84,7 @@ Status store_polished(RunStore *store, const Evaluation *better, size_t n_tried,
 Status store_close(RunStore *store, const char *stopped, int is_final, double session, Run *run, Err *err);
 void store_free(RunStore *store); /* NULL is fine */
 
-/* Designs from outside the search, polished ones say, into the archive of a run that nobody works on: they get ids from
+/* Designs from outside the search, polished ones say, into the archive of a run that no process works on: they get ids from
  * POLISHED_FIRST on and the kind `polished`, and front.csv and evaluations.csv are written again. The search does not
  * see them: a run that is resumed later does what it would have done without them. first_id may be NULL. */
 Status store_add_evaluations(const char *folder, size_t n, const Evaluation designs[], long *first_id, Err *err);

@@ -1,6 +1,6 @@
 /* study/advance.h -- how far the front has come: IGD+ of what was known earlier from the front that is known now.
  *
- * In widths of the front that is known now (moga/igd.h), minimised; all designs that keep the limits count, which is
+ * Normalised by the ranges of the front that is known now (moga/igd.h), minimised; all designs that keep the limits count, which is
  * the same as their front. 0: the front has not moved since. No true front is needed, and none is claimed: a search
  * that stands still at the wrong place has 0 as well. */
 #ifndef IMTET_STUDY_ADVANCE_H
@@ -10,10 +10,10 @@
 #include "moga/search.h"
 #include "store/run.h"
 
-/* From nine tenths of the simulations to now; NAN: no front, or nobody was known then. */
+/* Of the designs at 90 % of the evaluations against the front now; NAN: no front, or no design was known then. */
 Status advance_lately(const SearchView *v, double *igd, Err *err);
 
-/* From the end of every generation to the search's last front: igd (h->n_generations), NAN where nobody was known or
+/* From the end of every generation to the search's last front: igd (h->n_generations), NAN where none was known or
  * there is no front. */
 Status advance_of_run(const Run *h, double igd[], Err *err);
 

@@ -1,4 +1,4 @@
-/* study/given.h -- designs that somebody has already, for a search to begin with.
+/* study/given.h -- initial designs: known ones that a search begins with.
  *
  *   search.start = RUN    the front of another run, its polished designs too
  *                  FILE   a CSV with a column for every variable, in any order; further columns are not read

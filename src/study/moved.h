@@ -1,6 +1,6 @@
 /* study/moved.h -- the ground motions of a run, also where they lie elsewhere by now.
  *
- * A run knows its records by path and by content (FNV-1a, in its provenance): a file that was moved may be named anew,
+ * A run knows its records by path and by content (FNV-1a, in its provenance): a file that was moved may be named by its new path,
  * another one may not take its place.
  *
  * Threads  no state

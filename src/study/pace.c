@@ -50,7 +50,7 @@ const char *state_words(RunState state)
     static const char *const WORDS[] = {[RUN_RUNNING] = "running",
                                         [RUN_FINISHED] = "finished",
                                         [RUN_PAUSED] = "stopped",
-                                        [RUN_BROKEN_OFF] = "broken off"};
+                                        [RUN_INTERRUPTED] = "interrupted"};
     return WORDS[state];
 }
 
@@ -101,14 +101,14 @@ void effort_words(const Effort *e, char text[160])
         snprintf(text + n, 160 - (size_t)n, "; threads %.1f %% busy", 100.0 * e->busy);
 }
 
-/* What a session told; one that was killed told its last generation at most, and its simulations since tell more. */
+/* As stored; of a session that was killed until its last generation at most, and at least what its simulations took. */
 static double session_seconds(const Run *saved, size_t number)
 {
     const RunSession *s = &saved->session[number];
-    const double told = isfinite(s->seconds) ? s->seconds : 0.0;
+    const double stored = isfinite(s->seconds) ? s->seconds : 0.0;
     if (s->ended[0])
-        return told;
-    return fmax(told, simulated_seconds(saved, number) / fmax((double)s->threads, 1.0));
+        return stored;
+    return fmax(stored, simulated_seconds(saved, number) / fmax((double)s->threads, 1.0));
 }
 
 void standing_of(Standing *out, const char *folder, const Run *saved)
@@ -121,7 +121,7 @@ void standing_of(Standing *out, const char *folder, const Run *saved)
     out->state = is_running               ? RUN_RUNNING
                  : last && last->is_final ? RUN_FINISHED
                  : last && last->ended[0] ? RUN_PAUSED
-                                          : RUN_BROKEN_OFF;
+                                          : RUN_INTERRUPTED;
     count(out, saved);
     out->pace.generations = saved->n_generations;
     if (saved->n_generations > 0)
@@ -130,9 +130,9 @@ void standing_of(Standing *out, const char *folder, const Run *saved)
         out->seconds += session_seconds(saved, i);
     if (!last)
         return;
-    const double told = session_seconds(saved, saved->n_sessions - 1);
-    out->pace.session_s = is_running ? seconds_since(last->started) : told;
-    out->seconds += is_running ? fmax(out->pace.session_s - told, 0.0) : 0.0;
+    const double stored = session_seconds(saved, saved->n_sessions - 1);
+    out->pace.session_s = is_running ? seconds_since(last->started) : stored;
+    out->seconds += is_running ? fmax(out->pace.session_s - stored, 0.0) : 0.0;
     out->pace.all_s = out->seconds;
     out->pace.session_simulated =
         out->pace.simulated > (size_t)last->simulated_before ? out->pace.simulated - (size_t)last->simulated_before : 0;

@@ -23,10 +23,10 @@ double pace_left(const Pace *p, const Settings *s);
 void pace_words(double seconds, char text[32]);
 void number_words(double value, int decimals, char text[32]);
 
-typedef enum { RUN_RUNNING, RUN_FINISHED, RUN_PAUSED, RUN_BROKEN_OFF } RunState;
+typedef enum { RUN_RUNNING, RUN_FINISHED, RUN_PAUSED, RUN_INTERRUPTED } RunState;
 
 typedef struct {
-    RunState state; /* paused: stopped in good order; broken off: killed. Both can go on */
+    RunState state; /* paused: stopped in good order; interrupted: killed. Both can be resumed */
     LockHolder holder;
     Pace pace;
     size_t n_failed, n_polished;
@@ -36,7 +36,7 @@ typedef struct {
 
 /* What a session's wall time went into, as shares of it: the search waited for simulations, was at its surrogate, did
  * the rest of it (storing included); and how busy with simulations the threads were, at the same time. NAN: not known.
- * In batches nobody simulates while the search works, and of the threads some wait for the slowest. */
+ * In batches no thread simulates while the search works, and some wait for the slowest. */
 typedef struct {
     double waiting, surrogate, search, busy;
 } Effort;

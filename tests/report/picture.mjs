@@ -1,6 +1,6 @@
 // A picture of a report, JPEG or PNG by its name:
 //   picture.mjs REPORT.html OUT [SELECTOR [HEIGHT [LABEL=VALUE ...]]]
-// What the selector finds, at most HEIGHT high; first the fields of these labels are filled in (J1 sway [m] to=0.7).
+// What the selector finds, at most HEIGHT high; first the fields of these labels are filled in (J1 displacement [m] to=0.7).
 import { writeFileSync } from "node:fs";
 import { resolve } from "node:path";
 import { pathToFileURL } from "node:url";

@@ -7,15 +7,15 @@ const n = lines.length;
 
 // Names of the tower's columns: title, unit, and by what a number is multiplied for the eye. Files keep their own units.
 const WORDS = {
-  j1_m: ["J1 sway", "m", 1, "largest displacement of a floor"],
-  j2_m: ["J2 drift", "m", 1, "largest drift between floors"],
-  j3_g: ["J3 acceleration", "g", 1, "largest acceleration of a floor"],
+  j1_m: ["J1 displacement", "m", 1, "peak floor displacement"],
+  j2_m: ["J2 interstorey drift", "m", 1, "peak interstorey drift"],
+  j3_g: ["J3 acceleration", "g", 1, "peak absolute floor acceleration"],
   ed1_pct: ["mode 1", "%", 1, "input energy damped by mode 1"],
   ed5_10_pct: ["modes 5\u201310", "%", 1, "input energy damped by modes 5 to 10"],
   edcs_pct: ["core share", "%", 1, "input energy damped by the core"],
   mcore_kg: ["core mass", "t", 1e-3, "mass of the core"],
-  t_base_m: ["wall, base", "mm", 1e3, "thickness of the wall, first storey"],
-  t_top_m: ["wall, top", "mm", 1e3, "thickness of the wall, last storey"],
+  t_base_m: ["thickness, base", "mm", 1e3, "thickness of the core, first storey"],
+  t_top_m: ["thickness, top", "mm", 1e3, "thickness of the core, last storey"],
 };
 
 function words(name) {

@@ -1,4 +1,4 @@
-// The chosen design: gaps, peaks, modes, energies, the sway of a floor, other earthquakes.
+// The chosen design: gaps, peaks, modes, energies, the displacement of a floor, other earthquakes.
 
 // Charts that fit their place: drawn now, and again when the window has another width.
 const drawings = [];
@@ -23,10 +23,10 @@ function legend(entries) {
   }));
 }
 
-const WITH = "with core", WITHOUT = "without core", TIED = "zero gap";
-const SCENE_COLOUR = new Map([[WITH, BLUE], [WITHOUT, VERMILLION], [TIED, OLIVE]]);
-const SCENE_SYMBOL = new Map([[WITH, "circle"], [WITHOUT, "diamond2"], [TIED, "triangle"]]);
-const SCENE_MARK = new Map([[WITH, "\u25cf"], [WITHOUT, "\u25c6"], [TIED, "\u25b2"]]);
+const WITH = "with core", WITHOUT = "without core", RIGID = "rigidly connected";
+const SCENE_COLOUR = new Map([[WITH, BLUE], [WITHOUT, VERMILLION], [RIGID, OLIVE]]);
+const SCENE_SYMBOL = new Map([[WITH, "circle"], [WITHOUT, "diamond2"], [RIGID, "triangle"]]);
+const SCENE_MARK = new Map([[WITH, "\u25cf"], [WITHOUT, "\u25c6"], [RIGID, "\u25b2"]]);
 const sceneLegend = (scenes, marks) => legend(scenes.map((s) => [s, SCENE_COLOUR.get(s), marks ? SCENE_MARK.get(s) : null]));
 
 // ---- heights
@@ -43,10 +43,10 @@ function gapFigure(host, d) {
   }));
 }
 
-function wallFigure(host, d) {
-  const rows = d.wall_m.map((t, j) => ({ floor: j + 1, t: 1e3 * t }));
-  figure(host, "Wall of the core", `From ${show(rows[0].t)} mm in the first storey to ${show(rows[rows.length - 1].t)} mm in the last.`, (width) => charts.plot({
-    width, height: 380, marginLeft: 45, ariaLabel: "Thickness of the wall", x: { label: "thickness [mm]", grid: true, zero: true, nice: true }, y: floorAxis(rows.length),
+function thicknessFigure(host, d) {
+  const rows = d.thickness_m.map((t, j) => ({ floor: j + 1, t: 1e3 * t }));
+  figure(host, "Thickness of the core", `From ${show(rows[0].t)} mm in the first storey to ${show(rows[rows.length - 1].t)} mm in the last.`, (width) => charts.plot({
+    width, height: 380, marginLeft: 45, ariaLabel: "Thickness of the core", x: { label: "thickness [mm]", grid: true, zero: true, nice: true }, y: floorAxis(rows.length),
     marks: [charts.line(rows, { x: "t", y: "floor", stroke: BLUE, strokeWidth: 2.5 }), charts.dot(rows, { x: "t", y: "floor", fill: BLUE, r: 3 }), charts.ruleX([0])],
   }));
 }
@@ -116,7 +116,7 @@ function energyPair(host, d) {
   for (const [title, h] of all) energyFigure(host, title, h, top);
 }
 
-function swayPlot(h, limit, width) {
+function displacementPlot(h, limit, width) {
   const rows = h.t.map((t, i) => ({ t, u: h.u[i] }));
   return charts.plot({
     width, height: 130, marginBottom: 8, marginLeft: 50, marginRight: 20, ariaLabel: "Displacement over time", x: { axis: null, domain: [h.t[0], h.t[h.t.length - 1]] },
@@ -148,7 +148,7 @@ function spectrumPair(host, d) {
   const largest = (list) => list.reduce((a, b) => Math.max(a, Math.abs(b)), 0);
   const limit = Math.max(...all.map(([, h]) => largest(h.u))), top = Math.max(...all.map(([, h]) => largest(h.spectrum)));
   for (const [scene, h] of all) {
-    const f = figure(host, `Sway of floor ${d.floor}, ${scene}`, null, (width) => swayPlot(h, limit, width));
+    const f = figure(host, `Displacement of floor ${d.floor}, ${scene}`, null, (width) => displacementPlot(h, limit, width));
     drawn(f, (width) => spectrumPlot(h, top, d.building_hz.slice(0, 10), width));
   }
   return top;
@@ -167,16 +167,16 @@ function otherTable(d) {
     element("tbody", {}, ...all.flatMap((e) => [line(`${shortName(e.record)}, ${show(e.pga_g)} g`, WITH, e.with_core), line("", WITHOUT, e.no_core)]))));
 }
 
-const shortName = (record) => record.replace(/^builtin:(.*)/, "$1 (made up)").replace(/.*\//, "");
+const shortName = (record) => record.replace(/^builtin:(.*)/, "$1 (synthetic)").replace(/.*\//, "");
 
 function otherPart(host, d) {
   host.append(element("h3", { class: "part" }, "Other earthquakes"), element("p", { class: "note" },
-    "The same design where the search never looked. Motions marked as made up imitate the record of that name; give real ones with --record."), otherTable(d));
+    "The same design under motions that the search did not use. Synthetic motions imitate the record of that name; give recorded ones with --record."), otherTable(d));
   const grid = host.appendChild(element("div", { class: "grid2" }));
   for (const e of d.elsewhere) {
     const scenes = [[WITH, e.with_core], [WITHOUT, e.no_core]].filter(([, r]) => r.objectives);
     if (!scenes.length) continue;
-    peakFigure(grid, scenes, "drift_m", `Largest drift under ${shortName(e.record)}`, "drift between floors [m]");
+    peakFigure(grid, scenes, "drift_m", `Interstorey drift under ${shortName(e.record)}`, "peak interstorey drift [m]");
     modeFigure(grid, scenes, `Modes under ${shortName(e.record)}`, null);
   }
 }
@@ -193,27 +193,27 @@ function designPart() {
   if (!d) return host.remove();
   const row = rowOf.get(run.chosen), r = d.with_core;
   host.querySelector("h2").textContent = `Design ${run.chosen}${run.chosen === run.knee ? ", the knee" : ""}`;
-  const scenes = [[WITH, r], [WITHOUT, d.no_core], [TIED, d.tied]].filter(([, s]) => s.objectives);
+  const scenes = [[WITH, r], [WITHOUT, d.no_core], [RIGID, d.rigid]].filter(([, s]) => s.objectives);
   if (run.chosen !== run.knee) host.append(cards(row, run.robust ? null : d.no_core.objectives));
   host.append(element("p", { class: "note" }, `Simulated again with the run\u2019s settings. For another design: imtet report ${run.folder} --design ID`));
   if (!r.objectives) host.append(element("p", { class: "warn" }, `This design could not be simulated: ${r.reason}`));
   else host.append(element("p", {}, `${count(r.impacts)} impacts took ${show(r.contact_pct)} % of the ${show(r.input_j / 1e6)} MJ that the ground put in.` ));
-  if (r.beyond_law) host.append(element("p", { class: "warn" }, "The deepest dent is more than a tenth of the contact\u2019s radius: beyond what the contact law is meant for."));
+  if (r.beyond_law) host.append(element("p", { class: "warn" }, "The maximum indentation is more than a tenth of the contact\u2019s radius: beyond what the contact law is meant for."));
   const shape = part(host, "Shape", null, "grid21");
   gapFigure(shape, d);
-  wallFigure(shape, d);
+  thicknessFigure(shape, d);
   if (scenes.length) {
-    const peaks = part(host, "Peaks of every floor", "Zero gap: floors and core tied together, which makes a linear building.", "grid3");
-    peakFigure(peaks, scenes, "displacement_m", "Displacement", "largest displacement [m]");
-    peakFigure(peaks, scenes, "drift_m", "Drift", "largest drift between floors [m]");
-    peakFigure(peaks, scenes, "acceleration_g", "Acceleration", "largest absolute acceleration [g]");
+    const peaks = part(host, "Peaks of every floor", "Rigidly connected: floors and core move together without a gap, a linear building.", "grid3");
+    peakFigure(peaks, scenes, "displacement_m", "Displacement", "peak displacement [m]");
+    peakFigure(peaks, scenes, "drift_m", "Interstorey drift", "peak interstorey drift [m]");
+    peakFigure(peaks, scenes, "acceleration_g", "Acceleration", "peak absolute acceleration [g]");
     modeFigure(part(host, "Where the energy goes", "Impacts hand energy from slow modes to fast ones, which damp it sooner. What is missing to 100 % was damped by the core, by modes above the tenth, or lost in impacts.", "grid1"), scenes, "Energy damped by each mode", null);
   }
   if (d.history_with_core || d.history_no_core) {
-    energyPair(part(host, "Energies over time", "Stacked: at every instant the parts add up to what the ground has put in so far. Shown until the sway stays below 2 % of its largest.", "grid2"), d);
-    const sways = part(host, "Sway over time", null, "grid2");
-    const top = spectrumPair(sways, d);
-    sways.before(element("p", { class: "note" }, `Below each history its Morlet wavelet amplitude by frequency; colour from 0 to ${show(top)} m by its square root, the same on both sides; dashed: natural frequencies of the building.`));
+    energyPair(part(host, "Energies over time", "Stacked: at every instant the parts add up to what the ground has put in so far. Shown until the displacement stays below 2 % of its peak.", "grid2"), d);
+    const histories = part(host, "Displacement over time", null, "grid2");
+    const top = spectrumPair(histories, d);
+    histories.before(element("p", { class: "note" }, `Below each history its Morlet wavelet amplitude by frequency; colour from 0 to ${show(top)} m by its square root, the same on both sides; dashed: natural frequencies of the building.`));
   }
   if (d.elsewhere.length) otherPart(host, d);
 }
