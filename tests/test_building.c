@@ -442,6 +442,61 @@ static void test_a_damping_table_gives_each_mode_its_ratio(void **state)
     building_free(&b);
 }
 
+/* ---- imtet building ------------------------------------------------------------------------------------------- */
+
+static int count(const char *text, const char *word)
+{
+    int n = 0;
+    for (; (text = strstr(text, word)); text += strlen(word))
+        n++;
+    return n;
+}
+
+static void test_a_building_is_summed_up_and_drawn(void **state)
+{
+    (void)state;
+    json_t *o = json_of("building configs/sac20/frame --svg @/frame.svg --json");
+    const BuildingOptions options = scene_defaults().building;
+    Building b = load(&options);
+    assert_int_equal((int)number(o, "nodes"), 180);
+    assert_int_equal((int)number(o, "elements"), 284);
+    const json_t *top = json_array_get(json_object_get(o, "floors"), 19);
+    assert_close(number(top, "z_m"), 80.772, 1e-9);
+    const json_t *first = json_array_get(json_object_get(o, "modes"), 0);
+    assert_close(number(first, "hz"), b.omega[0] / (2 * M_PI), 1e-7);
+    assert_close(number(first, "damping"), 0.03, 1e-12);
+    double shares = 0;
+    for (size_t i = 0; i < 20; i++)
+        shares += number(json_array_get(json_object_get(o, "modes"), i), "mass_share");
+    assert_close(shares, 1, 1e-9);
+    char *svg = read_in_place("frame.svg");
+    assert_int_equal(count(svg, "<line class=\"e\""), 284);
+    assert_int_equal(count(svg, "<circle class=\"n\""), 20 * 6);
+    assert_int_equal(count(svg, "<circle class=\"p\""), 2 * 5);
+    assert_int_equal(count(svg, "<polyline"), 3);
+    free(svg);
+    json_decref(o);
+    building_free(&b);
+}
+
+static void test_a_drawing_shows_names_as_text_and_storeys_as_a_stick(void **state)
+{
+    (void)state;
+    const BuildingOptions o = write_portal("named", 1e-4, "1", "0,0");
+    write_file(&o, "elements.csv", "element,node_i,node_j,section\n<b>,A,C,column\n2,B,D,column\n3,C,D,beam\n");
+    free(output_of("building @/named --svg @/named.svg"));
+    char *svg = read_in_place("named.svg");
+    assert_non_null(strstr(svg, "<title>&#60;b&#62;: column</title>"));
+    free(svg);
+    char *text = output_of("building appendix --svg @/stick.svg --set building.p_delta=on");
+    assert_non_null(strstr(text, "20 floors"));
+    free(text);
+    svg = read_in_place("stick.svg");
+    assert_int_equal(count(svg, "<circle class=\"n\""), 20);
+    free(svg);
+    expect(66, "nowhere/K.csv", "building nowhere");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -462,6 +517,8 @@ int main(void)
         cmocka_unit_test(test_a_column_buckles_at_eulers_load),
         cmocka_unit_test(test_rayleigh_damping_goes_through_its_two_modes),
         cmocka_unit_test(test_a_damping_table_gives_each_mode_its_ratio),
+        cmocka_unit_test(test_a_building_is_summed_up_and_drawn),
+        cmocka_unit_test(test_a_drawing_shows_names_as_text_and_storeys_as_a_stick),
     };
     return cmocka_run_group_tests(tests, make_place, clear_place);
 }

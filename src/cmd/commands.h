@@ -16,6 +16,8 @@
     X(REPORT)                                                                                                          \
     X(PLOT)                                                                                                            \
     X(HORIZON)                                                                                                         \
+    X(BUILDING)                                                                                                        \
+    X(IMPORT)                                                                                                          \
     X(MODES)                                                                                                           \
     X(SPECTRUM)                                                                                                        \
     X(PROBLEM)                                                                                                         \

@@ -330,9 +330,8 @@ static void add_element(const Numbering *u, const Slaves *s, const int at[LOCAL]
 
 static void add_node(const Numbering *u, const Slaves *s, int i, double M[])
 {
-    const FrameNode *node = &u->frame->node[i];
+    const double *mass = u->frame->node[i].mass;
     const int n = u->frame->n_floors;
-    const double mass[FRAME_DOFS] = {node->mass, node->mass, node->rotary};
     for (int d = 0; d < FRAME_DOFS; d++)
         for (int p = 0; p < n && mass[d] > 0; p++) {
             const int unknown = u->unknown[i * FRAME_DOFS + d];

@@ -3,12 +3,12 @@
  *   nodes.csv     node, x_m, z_m [, fix_x, fix_z, fix_rot (0 or 1)] [, floor (from 1 at the bottom; 0: none)]
  *   sections.csv  section, A_m2, I_m4, E_pa [, shear_area_m2, poisson, mass_kg_per_m]
  *   elements.csv  element, node_i, node_j, section [, pin_i, pin_j (0 or 1)] [, added_mass_kg]
- *   masses.csv    node, mass_kg [, rotary_kg_m2]                                  (may be missing)
+ *   masses.csv    node, mass_kg [, mass_z_kg, rotary_kg_m2]                       (may be missing)
  *   ties.csv      node, same_as [, x, z, rot (0 or 1)]: equal displacements       (may be missing)
  *
  * Elements are beam-columns: axial stiffness EA/l, bending by scene/beam.h (shear where shear_area_m2 is given), pinned
  * ends without moment. Their own mass and the added one lie evenly along them (consistent mass, no rotary inertia of
- * sections); masses.csv adds masses in x and z and rotary inertia at nodes.
+ * sections); masses.csv adds masses (along z the same as along x unless mass_z_kg says otherwise) and rotary inertia at nodes.
  *
  * Floors are the heights given in column floor; without it the heights at which a level element ends in nodes that may
  * move sideways. With rigid floors all nodes of a floor have one displacement x; else the floor is represented by its
@@ -29,10 +29,10 @@ enum { FRAME_X, FRAME_Z, FRAME_ROT, FRAME_DOFS };
 
 typedef struct {
     char name[SHEET_NAME_MAX];
-    double x, z;           /* [m] */
-    int fixed[FRAME_DOFS]; /* held by the ground */
-    double mass, rotary;   /* [kg] in x and z, [kg m2] */
-    int floor;             /* from 1; 0: none */
+    double x, z;             /* [m] */
+    int fixed[FRAME_DOFS];   /* held by the ground */
+    double mass[FRAME_DOFS]; /* [kg] along x, along z, [kg m2] */
+    int floor;               /* from 1; 0: none */
 } FrameNode;
 
 typedef struct {
@@ -66,6 +66,9 @@ typedef struct {
 /* Is the folder a frame: does it hold nodes.csv? */
 int frame_is(const char *folder);
 Status frame_read(Frame *f, const char *folder, int floors_max, Err *err);
+
+/* nodes.csv, sections.csv, elements.csv and, where there are any, masses.csv and ties.csv; floors are not written. */
+Status frame_write(const Frame *f, const char *folder, Err *err);
 
 /* K [N/m] and M [kg] (n_floors, n_floors) row-major. */
 Status frame_condense(const Frame *f, int rigid_floors, double K[], double M[], Err *err);

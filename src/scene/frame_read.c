@@ -217,22 +217,30 @@ static Status read_elements(Frame *f, const Index *x, const char *folder, Err *e
     return status;
 }
 
+static Status take_mass(Frame *f, const Index *x, const Sheet *s, size_t row, Err *err)
+{
+    double along_x, along_z, rotary;
+    int node;
+    TRY(look_up(x, s, row, "node", &node, err));
+    TRY(read_share(s, row, "mass_kg", &along_x, err));
+    TRY(sheet_number(s, row, "mass_z_kg", along_x, &along_z, err));
+    TRY(read_share(s, row, "rotary_kg_m2", &rotary, err));
+    if (along_z < 0)
+        return fail(err, STATUS_BAD_DATA, "%s:%d: mass_z_kg is %g; it must not be negative", s->path, s->line[row],
+                    along_z);
+    f->node[node].mass[FRAME_X] += along_x;
+    f->node[node].mass[FRAME_Z] += along_z;
+    f->node[node].mass[FRAME_ROT] += rotary;
+    return STATUS_OK;
+}
+
 static Status read_masses(Frame *f, const Index *x, const char *folder, Err *err)
 {
     Sheet s;
-    TRY(open_sheet(&s, folder, "masses.csv", "node mass_kg", "rotary_kg_m2", err));
+    TRY(open_sheet(&s, folder, "masses.csv", "node mass_kg", "mass_z_kg rotary_kg_m2", err));
     Status status = STATUS_OK;
-    for (size_t i = 0; i < s.n_rows && status == STATUS_OK; i++) {
-        int node = 0;
-        double mass = 0, rotary = 0;
-        status = look_up(x, &s, i, "node", &node, err);
-        if (status == STATUS_OK)
-            status = read_share(&s, i, "mass_kg", &mass, err);
-        if (status == STATUS_OK)
-            status = read_share(&s, i, "rotary_kg_m2", &rotary, err);
-        f->node[node].mass += mass;
-        f->node[node].rotary += rotary;
-    }
+    for (size_t i = 0; i < s.n_rows && status == STATUS_OK; i++)
+        status = take_mass(f, x, &s, i, err);
     sheet_free(&s);
     return status;
 }

@@ -1,0 +1,70 @@
+#include <errno.h>
+#include <math.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "cmd/commands.h"
+#include "scene/building.h"
+#include "scene/opensees.h"
+#include "settings/settings.h"
+
+/* What was written, read back as a study reads it. */
+static Status sum_up(const char *folder, Err *err)
+{
+    Settings s;
+    Building b;
+    settings_defaults(&s);
+    snprintf(s.building.model, sizeof s.building.model, "%s", folder);
+    TRY(building_load(&b, &s.building, err));
+    printf("%d floors, first period %.4g s; `imtet building %s` has more\n", b.n, 2 * M_PI / b.omega[0], folder);
+    building_free(&b);
+    return STATUS_OK;
+}
+
+static Status write_folder(const Frame *f, const char *folder, Err *err)
+{
+    if (strlen(folder) >= OPTION_TEXT_MAX)
+        return fail(err, STATUS_USAGE, "%.60s...: the path is too long", folder);
+    if (mkdir(folder, 0777) != 0 && errno != EEXIST)
+        return fail(err, STATUS_IO, "%s: %s", folder, strerror(errno));
+    TRY(frame_write(f, folder, err));
+    printf("%s: %d nodes, %d elements, %d sections, %d ties\n", folder, f->n_nodes, f->n_elements, f->n_sections,
+           f->n_ties);
+    return sum_up(folder, err);
+}
+
+static Status run(const Args *args, Err *err)
+{
+    const char *out = args_value(args, "--out"), *word = args_value(args, "--units");
+    const ModelUnits *units = word ? model_units(word) : NULL;
+    Frame f;
+    if (!out)
+        return fail(err, STATUS_USAGE, "--out FOLDER is missing");
+    if (!units)
+        return fail(err, STATUS_USAGE, "--units %s: an OpenSees model says none; give %s", word ? word : "is missing",
+                    MODEL_UNITS_WORDS);
+    TRY(opensees_read(&f, args->operand, units, stderr, err));
+    const Status status = write_folder(&f, out, err);
+    frame_free(&f);
+    return status;
+}
+
+static const ArgOption OPTIONS[] = {
+    {"--out", "FOLDER", NULL, 0, "where nodes.csv, sections.csv, elements.csv ... are written; none may be there"},
+    {"--units", "WORD", NULL, 0, "of the model: N_m, kN_m, N_mm, kip_in or kip_ft"},
+    OPTION_END,
+};
+
+const Command CMD_IMPORT = {
+    .name = "import",
+    .operand = "MODEL",
+    .summary = "an OpenSees model as a plane frame",
+    .example = "imtet import model.tcl --units kip_in --out my-tower",
+    .details =
+        "Reads the elastic part of an OpenSees model in Tcl (2 dimensions, 3 unknowns per node): model, node, fix,\n"
+        "mass, equalDOF, geomTransf Linear, element elasticBeamColumn (-mass, -cMass, -release), set, [expr ...] with\n"
+        "+ - * / and parentheses. Every other command is refused with its line: remove loads, recorders and\n"
+        "analysis first. The folder is what building.model takes (docs/building.md).",
+    .options = OPTIONS,
+    .run = run,
+};

@@ -1,0 +1,15 @@
+/* scene/building_svg.h -- a building as a drawing: its frame or its storeys, true to scale, and its first mode shapes.
+ *
+ * Threads  no state */
+#ifndef IMTET_SCENE_BUILDING_SVG_H
+#define IMTET_SCENE_BUILDING_SVG_H
+
+#include <stdio.h>
+
+#include "scene/building.h"
+#include "scene/frame.h"
+
+/* frame NULL: storeys as a stick with a mass at each floor. */
+void building_svg(FILE *out, const Building *b, const Frame *frame);
+
+#endif
