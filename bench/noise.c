@@ -2,28 +2,29 @@
 #include <string.h>
 
 #include "bench/sweep.h"
-#include "simulator/ensemble.h"
+#include "simulator/tower.h"
 
-enum { MEMBERS = 16, DESIGNS = 9 };
+enum { REPLICATES = 16, DESIGNS = 9 };
 
 /* Of the six objectives that the errors are of; the mass has no spread. */
-static double largest_spread(const Ensemble *e)
+static double largest_spread(const ReplicateSummary *e)
 {
     double largest = 0;
     for (int k = 0; k < N_OBJECTIVES; k++)
         if (strcmp(measure(k)->name, "mcore_kg") != 0)
-            largest = fmax(largest, e->spread[k] / fabs(e->mean[k]));
+            largest = fmax(largest, e->sd[k] / fabs(e->mean[k]));
     return largest;
 }
 
-static Status spread_of(Crew *crew, int n, uint32_t design, double *spread, Err *err)
+static Status spread_of(const Problem *p, int n, uint32_t design, double *spread, Err *err)
 {
     double x[FLOORS_MAX + 2];
-    Ensemble e;
+    ReplicateSummary e;
+    SimResult shown;
     bench_irregular_gaps(design, n, x);
     x[n] = BENCH_WALL_BASE;
     x[n + 1] = BENCH_WALL_TOP;
-    TRY(ensemble_run(crew, n, x, MEMBERS, ENSEMBLE_CHANGE, 1, &e, NULL, err));
+    TRY(tower_replicate(p, 1, x, &shown, &e, err));
     *spread = largest_spread(&e);
     return STATUS_OK;
 }
@@ -32,14 +33,14 @@ Status sweep_find_noise(Sweep *s, const SceneOptions *settings, const Motion *mo
 {
     double spread = 0;
     Scene *scene;
-    Crew *crew = NULL;
+    Problem p = {0};
     TRY(scene_create(&scene, settings, motion, err));
-    Status status = crew_create(&crew, scene, 1, err);
+    Status status = tower_open_scene(&p, scene, REPLICATES, 1, 1, err);
     for (int k = 0; k < DESIGNS && status == STATUS_OK; k++) {
-        status = spread_of(crew, scene_n_floors(scene), (uint32_t)k, &spread, err);
+        status = spread_of(&p, scene_n_floors(scene), (uint32_t)k, &spread, err);
         s->noise = fmax(s->noise, spread);
     }
-    crew_free(crew);
+    problem_close(&p);
     scene_free(scene);
     return status;
 }

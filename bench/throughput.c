@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 #include "base/clock.h"
-#include "simulator/ensemble.h"
+#include "simulator/tower.h"
 
 enum { DESIGNS = 24, DESIGNS_QUICK = 4, JUDGED = 6, ENSEMBLE_MEMBERS = 8 };
 
@@ -73,15 +73,15 @@ static Status run_fast(Throughput *t, Err *err)
     return STATUS_OK;
 }
 
-/* Wall time [s] of all designs over a crew, and of an ensemble of design 0. */
+/* Wall time [s] of all designs over the workers, and of an ensemble of design 0. */
 static Status time_crew(Throughput *t, const Scene *scene, int threads, double *all, double *ensemble, Err *err)
 {
     enum { STRIDE = FLOORS_MAX + 2 };
     const int n = t->bench_case.building.n;
     double X[DESIGNS * STRIDE];
     SimTask tasks[DESIGNS];
-    Crew *crew;
-    Ensemble e;
+    Problem p = {0};
+    ReplicateSummary e;
     SimResult *results = calloc(DESIGNS, sizeof *results);
     if (!results)
         return fail(err, STATUS_NO_MEMORY, "bench: out of memory");
@@ -92,16 +92,16 @@ static Status time_crew(Throughput *t, const Scene *scene, int threads, double *
         x[n + 1] = BENCH_WALL_TOP;
         tasks[k] = (SimTask){SCENE_IMPACT, x};
     }
-    Status status = crew_create(&crew, scene, threads, err);
+    Status status = tower_open_scene(&p, scene, ENSEMBLE_MEMBERS, 1, (size_t)threads, err);
     const double start = clock_seconds();
     if (status == STATUS_OK)
-        status = crew_run(crew, (size_t)t->n, tasks, results, err);
+        status = tower_simulate(&p, (size_t)t->n, tasks, results, err);
     const double middle = clock_seconds();
     if (status == STATUS_OK)
-        status = ensemble_run(crew, n, X, ENSEMBLE_MEMBERS, ENSEMBLE_CHANGE, 1, &e, NULL, err);
+        status = tower_replicate(&p, 1, X, results, &e, err);
     *all = middle - start;
     *ensemble = clock_seconds() - middle;
-    crew_free(crew);
+    problem_close(&p);
     free(results);
     return status;
 }

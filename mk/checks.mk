@@ -44,7 +44,7 @@ faults: $(PROGRAM) $(BUILD)/tests/test_faults ## memory and writes refused one a
 
 # LLVM's OpenMP: its tool reports to ThreadSanitizer what a parallel region orders; with gcc's, ThreadSanitizer reports
 # races that are none. First a race that it must find.
-TSAN_TESTS := test_async test_ensemble test_moga test_problem test_polish test_rbf
+TSAN_TESTS := test_async test_queue test_replicates test_moga test_problem test_polish test_rbf
 tsan: ## threads under ThreadSanitizer (clang, libomp)
 	@$(MAKE) --no-print-directory MODE=tsan CC=clang WARNINGS=-w tsan-here
 

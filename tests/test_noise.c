@@ -7,6 +7,7 @@
 #include "moga/archive.h"
 #include "moga/dominance.h"
 #include "moga/search.h"
+#include "functions.h"
 #include "searches.h"
 #include "moga/noise.h"
 #include "moga/surrogate.h"
@@ -258,6 +259,7 @@ enum { VAR = 5, OBJ = 2, ROWS_MAX = 600, GENERATIONS_MAX = 200 };
 /* Convex front f1 + root... of two distances: minima of (x - 0)^2 and (x - 1)^2 along the diagonal. Additive noise. */
 typedef struct {
     Problem problem;
+    Function function;
     double lower[VAR], upper[VAR], noise;
     size_t n_asked, n_repeated;
 } World;
@@ -298,8 +300,16 @@ static World world(double noise, int is_noisy)
     World w = {.noise = noise};
     for (size_t d = 0; d < VAR; d++)
         w.upper[d] = 1.0;
-    w.problem = (Problem){.n_var = VAR, .n_obj = OBJ, .evaluate = evaluate, .is_noisy = is_noisy};
+    w.problem.is_noisy = is_noisy;
     return w;
+}
+
+/* Once it is where it stays. */
+static void settle(World *w)
+{
+    const int is_noisy = w->problem.is_noisy;
+    w->problem = function_problem(&w->function, VAR, OBJ, 0, w->lower, w->upper, evaluate, w);
+    w->problem.is_noisy = is_noisy;
 }
 
 static SearchConfig config(uint32_t seed, double repeats, size_t replicates_min)
@@ -353,9 +363,7 @@ static void run(World *w, const SearchConfig *c, const SearchStart *start, Seen 
     Err err = {0};
     StopReason reason;
     memset(seen, 0, sizeof *seen);
-    w->problem.lower = w->lower;
-    w->problem.upper = w->upper;
-    w->problem.user = w;
+    settle(w);
     CHECK_OK(search_resume(&w->problem, c, start, observe, seen, &reason, &err), &err);
     assert_int_equal(reason, STOP_EVALUATIONS);
 }
@@ -457,9 +465,9 @@ static void test_a_noisy_search_goes_on_from_any_generation_to_the_same_bytes(vo
     c.max_evals = 120;
     run(&w, &c, NULL, &seen);
     for (size_t k = 0; k + 1 < seen.moments.n; k += 2 + k / 2) {
-        const SearchStart start = {
-            seen.moments.rows[k],   0, seen.X, seen.Y, NULL, seen.ok, seen.kind, seen.generation, seen.moments.state[k],
-            seen.moments.n_state[k]};
+        EvaluationTable before = evaluations_of(&w.problem, 1, seen.moments.rows[k], seen.X, seen.Y, NULL, seen.ok,
+                                                seen.kind, seen.generation);
+        const SearchStart start = {before.n, 0, before.row, seen.moments.state[k], seen.moments.n_state[k]};
         run(&w, &c, &start, &again);
         assert_int_equal(again.n, seen.n);
         assert_memory_equal(again.X, seen.X, seen.n * VAR * sizeof *seen.X);
@@ -467,6 +475,7 @@ static void test_a_noisy_search_goes_on_from_any_generation_to_the_same_bytes(vo
         assert_memory_equal(again.on_front, seen.on_front, seen.n);
         assert_memory_equal(again.kind, seen.kind, seen.n);
         forget(&again);
+        evaluation_table_free(&before);
     }
     forget(&seen);
 }
@@ -497,8 +506,7 @@ static void test_estimates_of_a_surface_are_nearer_to_the_truth_than_means(void 
     Directions directions;
     Err err = {0};
     Random r = random_stream(11, RANDOM_TEST, 5, 0);
-    w.problem.lower = w.lower;
-    w.problem.upper = w.upper;
+    settle(&w);
     for (size_t i = 0; i < ALL * VAR; i++)
         X[i] = i < FIRST * VAR ? random_uniform(&r) : X[i - FIRST * VAR];
     for (size_t i = 0; i < ALL; i++)

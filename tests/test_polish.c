@@ -1,7 +1,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "check.h"
+#include "functions.h"
 #include "base/random.h"
 #include "polish/local.h"
 #include "polish/polish.h"
@@ -47,20 +47,20 @@ static Status evaluate(size_t n, const double X[], const size_t draws[], double 
     return w->breaks && w->n > 5 ? (fail)(err, STATUS_IO, "the disk is full") : STATUS_OK;
 }
 
-static Problem problem_of(Toy *w)
-{
-    return (Problem){VAR, OBJ, 0, LOWER, UPPER, evaluate, NULL, w, 0, NULL, 0};
-}
-
 /* f2 kept at its start value, or free. */
 static Status polish(Toy *w, const char *algorithm, int keep_second, size_t evals, PolishResult *r, Err *err)
 {
     static double x[VAR], f[OBJ];
     const double weight[OBJ] = {1, 0}, bound[OBJ] = {INFINITY, keep_second ? 1.0 : INFINITY};
-    const Problem problem = problem_of(w);
+    Function place;
+    Queue *q;
+    const Problem problem = function_problem(&place, VAR, OBJ, 0, LOWER, UPPER, evaluate, w);
     const PolishConfig c = {.algorithm = algorithm, .goal = {weight, bound}, .max_evals = evals, .seed = 1};
     *r = (PolishResult){.x = x, .f = f};
-    return polish_run(&problem, &c, START, r, err);
+    CHECK_OK(queue_open(&q, &problem, QUEUE_AS_ASKED, 0, 0, err), err);
+    const Status status = polish_run(q, &c, START, r, err);
+    queue_close(q);
+    return status;
 }
 
 enum { KNOWN = 20 };
@@ -72,7 +72,9 @@ static Status follow(Toy *w, const double weight[], const double bound[], size_t
     static double x[VAR], f[OBJ], X[KNOWN * VAR], F[KNOWN * OBJ], noise[KNOWN];
     Toy exact = {.jag = w->jag};
     unsigned char ok[KNOWN];
-    const Problem problem = problem_of(w);
+    Function place;
+    Queue *q;
+    const Problem problem = function_problem(&place, VAR, OBJ, 0, LOWER, UPPER, evaluate, w);
     Random random = random_stream(1, RANDOM_TEST, 0, 0);
     for (size_t i = 0; i < KNOWN * VAR; i++)
         X[i] = -1 + 3 * random_uniform(&random);
@@ -84,7 +86,10 @@ static Status follow(Toy *w, const double weight[], const double bound[], size_t
     const LocalConfig c = {
         .goal = {weight, bound}, .known = {n_known, X, F, noise}, .noise = 1.0, .max_evals = evals, .seed = 1};
     *r = (LocalResult){.x = x, .f = f};
-    return local_run(&problem, &c, r, err);
+    CHECK_OK(queue_open(&q, &problem, QUEUE_AS_ASKED, 0, 0, err), err);
+    const Status status = local_run(q, &c, r, err);
+    queue_close(q);
+    return status;
 }
 
 static const double FIRST[OBJ] = {1, 0}, KEPT[OBJ] = {INFINITY, 1};

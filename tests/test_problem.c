@@ -13,7 +13,7 @@
 #include "simulator/external.h"
 #include "simulator/textbook.h"
 #include "simulator/schema.h"
-#include "simulator/subject.h"
+#include "simulator/adapter.h"
 #include "settings/settings.h"
 
 enum { VAR = 22, OBJ = 7 };
@@ -134,42 +134,67 @@ enum { N = 12 };
 
 typedef struct {
     double X[N * 3], F[N * 2];
-    Answer answers[N];
+    struct {
+        Outcome outcome;
+        char reason[160];
+    } answers[N];
     double seconds;
-} Asked;
+} Batch;
 
-static void ask(Asked *a, const char *command, size_t workers, double timeout_s)
+static ProblemOptions command_of(const char *command, double timeout_s, long n_var)
 {
-    Err err = {0};
-    External *e;
-    struct timespec start, end;
-    Random r = random_stream(1, RANDOM_TEST, 0, 0);
-    for (size_t i = 0; i < N * 3; i++)
-        a->X[i] = random_uniform(&r) - 0.5;
-    CHECK_OK(external_open(&e, command, workers, timeout_s, 3, 2, &err), &err);
-    clock_gettime(CLOCK_MONOTONIC, &start);
-    for (size_t half = 0; half < 2; half++) /* two batches: workers live on between them */
-        CHECK_OK(external_run(e, N / 2, a->X + half * 3 * N / 2, NULL, a->F + half * N, a->answers + half * N / 2, NULL,
-                              &err),
-                 &err);
-    clock_gettime(CLOCK_MONOTONIC, &end);
-    a->seconds = (double)(end.tv_sec - start.tv_sec) + 1e-9 * (double)(end.tv_nsec - start.tv_nsec);
-    external_close(e);
+    ProblemOptions o = {.kind = PROBLEM_EXTERNAL,
+                        .timeout_s = timeout_s,
+                        .variables = n_var,
+                        .objectives = 2,
+                        .lower = "-1",
+                        .upper = "1"};
+    snprintf(o.command, sizeof o.command, "%s", command);
+    return o;
 }
 
-static void expect_every_third(const char *mode, AnswerOutcome third, const char *reason, double timeout_s)
+/* Two batches: workers live on between them. */
+static void ask(Batch *a, const char *command, size_t workers, double timeout_s)
+{
+    Err err = {0};
+    Problem p;
+    Queue *q;
+    Finished done;
+    struct timespec start, end;
+    Random r = random_stream(1, RANDOM_TEST, 0, 0);
+    const ProblemOptions options = command_of(command, timeout_s, 3);
+    for (size_t i = 0; i < N * 3; i++)
+        a->X[i] = random_uniform(&r) - 0.5;
+    CHECK_OK(external_open(&p, &options, workers, &err), &err);
+    clock_gettime(CLOCK_MONOTONIC, &start);
+    CHECK_OK(queue_open(&q, &p, QUEUE_AS_ASKED, 0, 0, &err), &err);
+    for (size_t i = 0, came = 0; came < N; came++) {
+        for (; i < N && i < came / (N / 2) * (N / 2) + N / 2; i++)
+            CHECK_OK(queue_ask(q, &(Asked){.x = a->X + 3 * i}, &err), &err);
+        CHECK_OK(queue_next(q, &done, &err), &err);
+        memcpy(a->F + 2 * came, done.evaluation->f, 2 * sizeof *a->F);
+        a->answers[came].outcome = done.evaluation->outcome;
+        memcpy(a->answers[came].reason, ((const ExternalAnswer *)done.parts)->reason, 160);
+    }
+    queue_close(q);
+    clock_gettime(CLOCK_MONOTONIC, &end);
+    a->seconds = (double)(end.tv_sec - start.tv_sec) + 1e-9 * (double)(end.tv_nsec - start.tv_nsec);
+    problem_close(&p);
+}
+
+static void expect_every_third(const char *mode, Outcome third, const char *reason, double timeout_s)
 {
     char command[64];
     snprintf(command, sizeof command, "sh tests/worker.sh %s", mode);
     for (size_t workers = 1; workers <= 3; workers += 2) {
-        Asked a;
+        Batch a;
         ask(&a, command, workers, timeout_s);
         for (size_t i = 0; i < N; i++) {
-            const AnswerOutcome want = (i + 1) % 3 == 0 ? third : ANSWER_OK;
+            const Outcome want = (i + 1) % 3 == 0 ? third : OUTCOME_OK;
             if (a.answers[i].outcome != want)
-                fail_msg("%s, design %zu: %s (%s)", mode, i + 1, answer_word(a.answers[i].outcome),
+                fail_msg("%s, design %zu: %s (%s)", mode, i + 1, outcome_word(a.answers[i].outcome),
                          a.answers[i].reason);
-            if (want == ANSWER_OK) {
+            if (want == OUTCOME_OK) {
                 assert_true(a.F[2 * i] == a.X[3 * i]); /* 17 digits there and back */
                 assert_true(a.F[2 * i + 1] == a.X[3 * i + 1]);
             } else if (!strstr(a.answers[i].reason, reason)) {
@@ -183,76 +208,78 @@ static void expect_every_third(const char *mode, AnswerOutcome third, const char
 static void test_a_good_worker_answers_every_design(void **state)
 {
     (void)state;
-    expect_every_third("good", ANSWER_OK, "", 20);
-    expect_every_third("spaced", ANSWER_OK, "", 20);
-    expect_every_third("slowly", ANSWER_OK, "", 20);
+    expect_every_third("good", OUTCOME_OK, "", 20);
+    expect_every_third("spaced", OUTCOME_OK, "", 20);
+    expect_every_third("slowly", OUTCOME_OK, "", 20);
 }
 
 static void test_a_reported_error_fails_that_design_with_its_reason(void **state)
 {
     (void)state;
-    expect_every_third("error", ANSWER_ERROR, "no, \"never\" this one", 20);
+    expect_every_third("error", OUTCOME_ERROR, "no, \"never\" this one", 20);
 }
 
 static void test_a_worker_that_dies_fails_one_design_and_is_replaced(void **state)
 {
     (void)state;
-    expect_every_third("dies", ANSWER_DEAD, "ended", 20);
-    expect_every_third("killed", ANSWER_DEAD, "ended", 20);
+    expect_every_third("dies", OUTCOME_DEAD, "ended", 20);
+    expect_every_third("killed", OUTCOME_DEAD, "ended", 20);
 }
 
 static void test_a_silent_worker_fails_one_design_and_is_replaced(void **state)
 {
     (void)state;
-    expect_every_third("silent", ANSWER_TIMEOUT, "0.4 s", 0.4);
+    expect_every_third("silent", OUTCOME_TIMEOUT, "0.4 s", 0.4);
 }
 
 static void test_a_talkative_worker_fails_one_design_and_is_replaced(void **state)
 {
     (void)state;
-    expect_every_third("garbled", ANSWER_GARBLED, "convergence reached", 20);
-    expect_every_third("huge", ANSWER_GARBLED, "more than", 20);
-    expect_every_third("flood", ANSWER_GARBLED, "iteration", 20);
-    expect_every_third("nothing", ANSWER_GARBLED, "neither", 20);
-    expect_every_third("stranger", ANSWER_GARBLED, "123456", 20);
+    expect_every_third("garbled", OUTCOME_GARBLED, "convergence reached", 20);
+    expect_every_third("huge", OUTCOME_GARBLED, "more than", 20);
+    expect_every_third("flood", OUTCOME_GARBLED, "iteration", 20);
+    expect_every_third("nothing", OUTCOME_GARBLED, "neither", 20);
+    expect_every_third("stranger", OUTCOME_GARBLED, "123456", 20);
 }
 
 static void test_answers_that_are_no_objectives_fail_the_design_alone(void **state)
 {
     (void)state;
-    expect_every_third("null", ANSWER_NOT_FINITE, "2 finite numbers", 20);
-    expect_every_third("short", ANSWER_NOT_FINITE, "2 finite numbers", 20);
-    expect_every_third("nan", ANSWER_NOT_FINITE, "2 finite numbers", 20);
-    expect_every_third("infinity", ANSWER_NOT_FINITE, "2 finite numbers", 20);
+    expect_every_third("null", OUTCOME_NOT_FINITE, "2 finite numbers", 20);
+    expect_every_third("short", OUTCOME_NOT_FINITE, "2 finite numbers", 20);
+    expect_every_third("nan", OUTCOME_NOT_FINITE, "2 finite numbers", 20);
+    expect_every_third("infinity", OUTCOME_NOT_FINITE, "2 finite numbers", 20);
 }
 
 static void test_a_worker_that_never_behaves_fails_every_design_and_nothing_hangs(void **state)
 {
     (void)state;
-    Asked a;
+    Batch a;
     ask(&a, "sh tests/worker.sh unasked", 2, 5);
     for (size_t i = 0; i < N; i++)
-        assert_int_equal(a.answers[i].outcome, ANSWER_GARBLED);
+        assert_int_equal(a.answers[i].outcome, OUTCOME_GARBLED);
     ask(&a, "sh tests/worker.sh deaf", 3, 0.1);
     for (size_t i = 0; i < N; i++)
-        assert_int_equal(a.answers[i].outcome, ANSWER_TIMEOUT);
+        assert_int_equal(a.answers[i].outcome, OUTCOME_TIMEOUT);
     ask(&a, "true", 2, 5);
     for (size_t i = 0; i < N; i++)
-        assert_int_equal(a.answers[i].outcome, ANSWER_DEAD);
+        assert_int_equal(a.answers[i].outcome, OUTCOME_DEAD);
 }
 
 static void test_words_of_the_command_may_be_quoted_and_no_shell_reads_them(void **state)
 {
     (void)state;
-    Asked a;
+    Batch a;
     ask(&a, "  sh  'tests/worker.sh' \"go\\\"od\" '$(exit)' a\\ b  ", 1, 20);
     for (size_t i = 0; i < N; i++)
-        assert_int_equal(a.answers[i].outcome, ANSWER_OK);
+        assert_int_equal(a.answers[i].outcome, OUTCOME_OK);
     Err err = {0};
-    External *e;
-    assert_int_equal(external_open(&e, "sh 'tests", 1, 1, 3, 2, &err), STATUS_BAD_DATA);
+    Problem p;
+    ProblemOptions options = command_of("sh 'tests", 1, 3);
+    assert_int_equal(external_open(&p, &options, 1, &err), STATUS_BAD_DATA);
     assert_non_null(strstr(err.text, "quote"));
-    assert_int_equal(external_open(&e, "   ", 1, 1, 3, 2, &err), STATUS_BAD_DATA);
+    options = command_of("   ", 1, 3);
+    assert_int_equal(external_open(&p, &options, 1, &err), STATUS_BAD_DATA);
 }
 
 /* Workers and a child of each hold an end of a pipe: it ends when the last of them does. */
@@ -261,8 +288,10 @@ static void test_workers_end_with_a_program_that_is_killed(void **state)
     (void)state;
     const double X[4] = {0};
     double F[4];
-    Answer answers[2];
-    External *e;
+    unsigned char ok[2];
+    Problem p;
+    Queue *q;
+    const ProblemOptions options = command_of("sh -c 'read -r line; sleep 60 & printf ! >&2; wait'", 60, 2);
     Err err = {0};
     int ends[2];
     char words[8];
@@ -271,8 +300,9 @@ static void test_workers_end_with_a_program_that_is_killed(void **state)
     if (pid == 0) {
         dup2(ends[1], STDERR_FILENO);
         close(ends[1]);
-        if (external_open(&e, "sh -c 'read -r line; sleep 60 & printf ! >&2; wait'", 2, 60.0, 2, 2, &err) == STATUS_OK)
-            external_run(e, 2, X, NULL, F, answers, NULL, &err);
+        if (external_open(&p, &options, 2, &err) == STATUS_OK &&
+            queue_open(&q, &p, QUEUE_AS_ASKED, 0, 0, &err) == STATUS_OK)
+            queue_evaluate(q, 2, X, NULL, F, NULL, ok, &err);
         _exit(1);
     }
     close(ends[1]);
@@ -289,16 +319,20 @@ static void test_a_command_that_does_not_exist_ends_the_search_by_name(void **st
 {
     (void)state;
     Err err = {0};
-    External *e;
+    Problem p;
+    Queue *q;
     double x[3] = {0}, f[2];
-    Answer answer;
-    CHECK_OK(external_open(&e, "no-such-simulator --fast", 1, 1, 3, 2, &err), &err);
-    assert_int_equal(external_run(e, 1, x, NULL, f, &answer, NULL, &err), STATUS_BAD_DATA);
+    unsigned char ok;
+    const ProblemOptions options = command_of("no-such-simulator --fast", 1, 3);
+    CHECK_OK(external_open(&p, &options, 1, &err), &err);
+    CHECK_OK(queue_open(&q, &p, QUEUE_AS_ASKED, 0, 0, &err), &err);
+    assert_int_equal(queue_evaluate(q, 1, x, NULL, f, NULL, &ok, &err), STATUS_BAD_DATA);
     assert_non_null(strstr(err.text, "no-such-simulator"));
-    external_close(e);
+    queue_close(q);
+    problem_close(&p);
 }
 
-/* -- subjects ------------------------------------------------------------------------------------------------------ */
+/* -- adapters ------------------------------------------------------------------------------------------------------ */
 
 static Settings external_settings(void)
 {
@@ -320,31 +354,32 @@ static Settings external_settings(void)
 }
 
 typedef struct {
-    size_t n, numbers;
+    size_t n;
+    long numbers;
     double violations;
     int last_ok;
 } Heard;
 
-static Status hear(const Simulation *s, void *user, Err *err)
+static Status hear(const Evaluation *e, void *user, Err *err)
 {
     (void)err;
     Heard *h = user;
     h->n++;
-    h->numbers += s->number;
-    h->violations += s->violation;
-    h->last_ok = strcmp(s->verdict->outcome, "ok") == 0 && s->ok;
+    h->numbers += e->id;
+    h->violations += e->violation;
+    h->last_ok = e->outcome == OUTCOME_OK;
     return STATUS_OK;
 }
 
-static void test_an_external_subject_has_the_bounds_senses_names_and_limits_of_its_settings(void **state)
+static void test_an_external_problem_has_the_bounds_senses_names_and_limits_of_its_settings(void **state)
 {
     (void)state;
     const Settings s = external_settings();
     Err err = {0};
-    Subject *subject;
-    CHECK_OK(subject_open(&subject, &s, &err), &err);
-    const Problem *p = subject_problem(subject);
-    const Schema *schema = subject_schema(subject);
+    Adapter *adapter;
+    CHECK_OK(adapter_open(&adapter, &s, &err), &err);
+    const Problem *p = adapter_problem(adapter);
+    const Schema *schema = adapter_schema(adapter);
     assert_true(p->n_var == 3 && p->n_obj == 2 && p->n_con == 2);
     assert_true(p->lower[0] == -1 && p->lower[1] == 0 && p->lower[2] == 2 && p->upper[0] == 3 && p->upper[2] == 3);
     assert_string_equal(schema_objective(schema, 1)->name, "cost");
@@ -354,23 +389,26 @@ static void test_an_external_subject_has_the_bounds_senses_names_and_limits_of_i
     double F[4], G[4];
     unsigned char ok[2];
     Heard heard = {0};
-    subject_observe(subject, &(Observer){.done = hear, .user = &heard}, 12);
-    CHECK_OK(p->evaluate(2, X, NULL, F, G, ok, p->user, &err), &err);
+    adapter_observe(adapter, &(Observer){.done = hear, .user = &heard});
+    Queue *q;
+    CHECK_OK(queue_open(&q, p, QUEUE_AS_ASKED, 0, 12, &err), &err);
+    CHECK_OK(queue_evaluate(q, 2, X, NULL, F, G, ok, &err), &err);
+    queue_close(q);
     assert_true(ok[0] && ok[1] && F[0] == 0.75 && F[1] == 1 && F[2] == -0.25 && F[3] == 3);
     assert_close(G[0], 0.5, 1e-15); /* -0.5 - -0.75 of 0.5 */
     assert_true(G[1] == -0.5 && G[2] < 0);
     assert_close(G[3], 0.5, 1e-15);
     assert_true(heard.n == 2 && heard.last_ok && heard.numbers == 13 + 14 && heard.violations > 0.0);
-    subject_close(subject);
+    adapter_close(adapter);
 }
 
 static void refused(const char *assignment, const char *said)
 {
     Settings s = external_settings();
     Err err = {0};
-    Subject *subject;
+    Adapter *adapter;
     CHECK_OK(settings_set(&s, assignment, &err), &err);
-    const Status status = subject_open(&subject, &s, &err);
+    const Status status = adapter_open(&adapter, &s, &err);
     if (status != STATUS_BAD_DATA || !strstr(err.text, said))
         fail_msg("%s: status %d, said '%s', wanted '%s'", assignment, (int)status, err.text, said);
 }
@@ -404,22 +442,25 @@ static void test_noise_has_the_spread_asked_for_and_the_same_seed_the_same_noise
     for (size_t d = 0; d < VAR; d++)
         x[d] = 0.4;
     for (int again = 0; again < 2; again++) {
-        Subject *subject;
-        CHECK_OK(subject_open(&subject, &s, &err), &err);
-        const Problem *p = subject_problem(subject);
+        Adapter *adapter;
+        CHECK_OK(adapter_open(&adapter, &s, &err), &err);
+        const Problem *p = adapter_problem(adapter);
+        Queue *q;
+        CHECK_OK(queue_open(&q, p, QUEUE_AS_ASKED, 0, 0, &err), &err);
         for (int i = 0; i < DRAWS; i++) {
             double f[OBJ];
             unsigned char ok;
-            CHECK_OK(p->evaluate(1, x, NULL, f, NULL, &ok, p->user, &err), &err);
+            CHECK_OK(queue_evaluate(q, 1, x, NULL, f, NULL, &ok, &err), &err);
             if (again == 0 && i == 0)
                 memcpy(first, f, sizeof f);
             else if (i == 0)
                 assert_memory_equal(first, f, sizeof f);
-            subject_exact(subject, x, exact);
+            textbook_exact(p, x, exact);
             sum += (f[0] / exact[0] - 1) / (2 * DRAWS);
             square += (f[0] / exact[0] - 1) * (f[0] / exact[0] - 1) / (2 * DRAWS);
         }
-        subject_close(subject);
+        queue_close(q);
+        adapter_close(adapter);
     }
     assert_true(fabs(sum) < 0.003);
     assert_close(sqrt(square), 0.03, 0.06);
@@ -441,7 +482,7 @@ int main(void)
         cmocka_unit_test(test_words_of_the_command_may_be_quoted_and_no_shell_reads_them),
         cmocka_unit_test(test_workers_end_with_a_program_that_is_killed),
         cmocka_unit_test(test_a_command_that_does_not_exist_ends_the_search_by_name),
-        cmocka_unit_test(test_an_external_subject_has_the_bounds_senses_names_and_limits_of_its_settings),
+        cmocka_unit_test(test_an_external_problem_has_the_bounds_senses_names_and_limits_of_its_settings),
         cmocka_unit_test(test_lists_that_do_not_fit_are_refused_by_name),
         cmocka_unit_test(test_noise_has_the_spread_asked_for_and_the_same_seed_the_same_noise),
     };

@@ -132,11 +132,11 @@ static void test_energies_add_up_to_the_input_at_every_instant_and_end_as_the_re
     (void)state;
     Run run;
     Report r;
-    World w;
+    Scenario w;
     Err err = {0};
     History h;
     open_tower(&run, &r);
-    CHECK_OK(world_open(&w, run.settings, &err), &err);
+    CHECK_OK(scenario_open(&w, run.settings, &err), &err);
     for (int s = 0; s < 2; s++) {
         const SceneKind kind = s ? SCENE_NO_CORE : SCENE_IMPACT;
         const SimResult *result = &r.detail.result[kind];
@@ -161,7 +161,7 @@ static void test_energies_add_up_to_the_input_at_every_instant_and_end_as_the_re
         assert_close(most, result->peak_displacement_m[19], 0.02);
         history_free(&h);
     }
-    world_close(&w);
+    scenario_close(&w);
     report_close(&r);
     run_free(&run);
 }

@@ -10,12 +10,14 @@
 #include "check.h"
 #include "moga/search.h"
 #include "simulator/textbook.h"
+#include "functions.h"
 #include "searches.h"
 
 enum { VAR_MAX = 22, OBJ_MAX = 7, ROWS_MAX = 300, GENERATIONS_MAX = 80 };
 
 typedef struct {
     Problem problem;
+    Function function;
     double lower[VAR_MAX], upper[VAR_MAX];
     size_t fail_every; /* every so many-th design fails, told by its bytes; 0: none, 1: all */
     double noise;      /* [-] of the answers, told by the design's bytes too */
@@ -64,7 +66,7 @@ static void world(World *w, size_t n_var, size_t n_obj, size_t n_con)
     memset(w, 0, sizeof *w);
     for (size_t d = 0; d < n_var; d++)
         w->upper[d] = 1.0;
-    w->problem = (Problem){n_var, n_obj, n_con, w->lower, w->upper, evaluate, NULL, w, 0, NULL, 0};
+    w->problem = function_problem(&w->function, n_var, n_obj, n_con, w->lower, w->upper, evaluate, w);
 }
 
 static SearchConfig config(size_t initial, size_t max_evals)
@@ -101,12 +103,6 @@ static void forget(Seen *s)
     memset(s, 0, sizeof *s);
 }
 
-static SearchStart moment(const Seen *s, size_t k)
-{
-    return (SearchStart){s->moments.rows[k],   0, s->X, s->F, s->G, s->ok, s->kind, s->generation, s->moments.state[k],
-                         s->moments.n_state[k]};
-}
-
 static void run(World *w, const SearchConfig *c, const SearchStart *start, Seen *seen)
 {
     Err err = {0};
@@ -133,6 +129,15 @@ static void assert_same_search(const World *w, const Seen *a, const Seen *b)
 
 static World here;
 static Seen whole, rest;
+static EvaluationTable before; /* of the moment that was asked for last */
+
+static SearchStart moment(const Seen *s, size_t k)
+{
+    const size_t n = s->moments.rows[k];
+    evaluation_table_free(&before);
+    before = evaluations_of(&here.problem, 1, n, s->X, s->F, s->G, s->ok, s->kind, s->generation);
+    return (SearchStart){n, 0, before.row, s->moments.state[k], s->moments.n_state[k]};
+}
 
 /* From every `step`-th moment but the last. */
 static void check_every_moment(const SearchConfig *c, size_t step)

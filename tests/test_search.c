@@ -6,6 +6,7 @@
 
 #include "base/random.h"
 #include "check.h"
+#include "functions.h"
 #include "searches.h"
 #include "moga/dominance.h"
 #include "moga/hypervolume.h"
@@ -17,9 +18,10 @@ enum { VAR_MAX = 22, OBJ_MAX = 7, ROWS_MAX = 600 };
 /* A textbook problem with everything that a test wants to see or to break. */
 typedef struct {
     Problem problem;
+    Function function;
     double lower[VAR_MAX], upper[VAR_MAX];
     int fail_share_percent, all_alike_noise;
-    size_t n_calls, n_rows, n_repeated;
+    size_t n_rows, n_repeated;
     double seen[ROWS_MAX][VAR_MAX];
 } World;
 
@@ -61,7 +63,6 @@ static Status evaluate(size_t n, const double X[], const size_t draws[], double 
     (void)err;
     World *w = user;
     const size_t n_var = w->problem.n_var, m = w->problem.n_obj;
-    w->n_calls++;
     for (size_t i = 0; i < n; i++) {
         const double *x = X + i * n_var;
         Random chance = random_stream(bits_of(x), RANDOM_TEST, 0, 0);
@@ -81,12 +82,17 @@ static Status evaluate(size_t n, const double X[], const size_t draws[], double 
     return STATUS_OK;
 }
 
-static void world(World *w, size_t n_var, size_t n_obj)
+static void world_with_limits(World *w, size_t n_var, size_t n_obj, size_t n_con)
 {
     memset(w, 0, sizeof *w);
     for (size_t d = 0; d < n_var; d++)
         w->upper[d] = 1.0;
-    w->problem = (Problem){n_var, n_obj, 0, w->lower, w->upper, evaluate, NULL, w, 0, NULL, 0};
+    w->problem = function_problem(&w->function, n_var, n_obj, n_con, w->lower, w->upper, evaluate, w);
+}
+
+static void world(World *w, size_t n_var, size_t n_obj)
+{
+    world_with_limits(w, n_var, n_obj, 0);
 }
 
 static SearchConfig config(size_t initial, size_t max_evals)
@@ -314,8 +320,7 @@ static void test_a_world_where_everything_fails_ends_with_an_empty_front(void **
 static void test_constraints_hold_on_the_front(void **state)
 {
     (void)state;
-    world(&here, 8, 3);
-    here.problem.n_con = 1;
+    world_with_limits(&here, 8, 3, 1);
     const SearchConfig c = config(40, 120);
     run(&here, &c, &seen);
     size_t feasible = 0;
@@ -330,17 +335,16 @@ static void test_constraints_hold_on_the_front(void **state)
 static void test_a_start_without_a_feasible_design_finds_the_feasible_region(void **state)
 {
     (void)state;
-    world(&here, 8, 3);
-    here.problem.n_con = 1;
+    world_with_limits(&here, 8, 3, 1);
     here.upper[0] = 0.31; /* feasible: x0 >= 0.3, one thirtieth of the box */
     const SearchConfig c = config(10, 60);
     run(&here, &c, &seen);
     assert_true(seen.n_front > 5);
 }
 
-static void first_not_below_second(double x[], void *user)
+static void first_not_below_second(double x[], const void *self)
 {
-    (void)user;
+    (void)self;
     if (x[0] < x[1])
         x[0] = x[1];
 }
@@ -379,7 +383,7 @@ static void test_every_way_to_stop_is_named(void **state)
     world(&here, 6, 2);
     assert_int_equal(run(&here, &c, &seen), STOP_GENERATIONS);
     assert_int_equal(seen.last_generation, 3);
-    assert_int_equal(here.n_calls, 4); /* one call for each batch */
+    assert_int_equal(seen.views, 4); /* the first sample and three generations */
 
     c.nondominated_share = 0.01;
     world(&here, 6, 2);
@@ -485,7 +489,7 @@ static void test_a_front_of_a_single_design_still_spends_the_budget(void **state
 {
     (void)state;
     world(&here, 3, 2);
-    here.problem.evaluate = evaluate_agreeing;
+    here.function.evaluate = evaluate_agreeing;
     const SearchConfig c = config(20, 200);
     assert_int_equal(run(&here, &c, &seen), STOP_EVALUATIONS);
     assert_int_equal(seen.n_front, 1);

@@ -157,8 +157,8 @@ static SimResult early_window(ContactLaw law, double floor)
         t.x[j] = 0.008 * (j + 1);
     t.x[20] = 0.012;
     t.x[21] = 0.0064;
-    const SimResult r = tower_run(&t, SCENE_IMPACT);
-    tower_close(&t);
+    const SimResult r = bench_tower_run(&t, SCENE_IMPACT);
+    bench_tower_close(&t);
     return r;
 }
 

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-void tower_open(Tower *t, double seconds)
+void bench_tower_open(Tower *t, double seconds)
 {
     memset(t, 0, sizeof *t);
     paper_defaults(&t->settings);
@@ -27,18 +27,18 @@ void tower_open(Tower *t, double seconds)
     t->x[21] = 0.0064;
 }
 
-void tower_close(Tower *t)
+void bench_tower_close(Tower *t)
 {
     motion_free(&t->motion);
 }
 
-void tower_set_gaps(Tower *t, double gap)
+void bench_tower_set_gaps(Tower *t, double gap)
 {
     for (int j = 0; j < 20; j++)
         t->x[j] = gap;
 }
 
-SimResult tower_run(const Tower *t, SceneKind kind)
+SimResult bench_tower_run(const Tower *t, SceneKind kind)
 {
     SimResult r = {0};
     const SceneOptions options = settings_scene(&t->settings);

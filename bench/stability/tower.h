@@ -16,11 +16,11 @@ typedef struct {
 } Tower;
 
 /* Defaults, gaps of 4 mm j + 2 mm (j mod 3), core 12 -> 6.4 mm; two sines, `seconds` long. */
-void tower_open(Tower *t, double seconds);
-void tower_close(Tower *t);
-void tower_set_gaps(Tower *t, double gap);
+void bench_tower_open(Tower *t, double seconds);
+void bench_tower_close(Tower *t);
+void bench_tower_set_gaps(Tower *t, double gap);
 
 /* One run: scene, worker, sim_run. A Status that is not OK becomes an outcome with a reason. */
-SimResult tower_run(const Tower *t, SceneKind kind);
+SimResult bench_tower_run(const Tower *t, SceneKind kind);
 
 #endif

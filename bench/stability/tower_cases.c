@@ -10,7 +10,7 @@
 
 static void open_tower(const Trial *t, Tower *tower, double seconds)
 {
-    tower_open(tower, seconds);
+    bench_tower_open(tower, seconds);
     tower->engine = t->engine;
     tower->settings.sim.accuracy = t->accuracy;
 }
@@ -39,7 +39,7 @@ static SimResult finest(const Tower *tower)
     Tower fine = *tower;
     fine.engine = ENGINE_FAST;
     fine.settings.sim.accuracy = ACCURACY_FINE;
-    return tower_run(&fine, SCENE_IMPACT);
+    return bench_tower_run(&fine, SCENE_IMPACT);
 }
 
 /* ---- gaps ------------------------------------------------------------------------------------------------------ */
@@ -49,8 +49,8 @@ static void zero_gap(Trial *t)
     Tower tower;
     t->accuracy = ACCURACY_STANDARD;
     open_tower(t, &tower, seconds_for(t, 6));
-    tower_set_gaps(&tower, 0);
-    const SimResult touching = tower_run(&tower, SCENE_IMPACT), tied = tower_run(&tower, SCENE_RIGID);
+    bench_tower_set_gaps(&tower, 0);
+    const SimResult touching = bench_tower_run(&tower, SCENE_IMPACT), tied = bench_tower_run(&tower, SCENE_RIGID);
     trial_compare(t, &touching, touching.j1_m, tied.j1_m, tied.j1_m, 0.03, "J1 against the rigidly connected building");
     trial_compare(t, &touching, touching.input_energy_j, tied.input_energy_j, tied.input_energy_j, 0.05,
                   "input energy against the rigidly connected building");
@@ -60,7 +60,7 @@ static void zero_gap(Trial *t)
     trial_remark(t, "J2 %.2g %% off, J3 %.3g g (rigidly connected %.3g g), %ld contact onsets, %ld steps, %.2g s",
                  100 * (touching.j2_m / tied.j2_m - 1), touching.j3_g, tied.j3_g, touching.impacts, touching.steps,
                  touching.seconds);
-    tower_close(&tower);
+    bench_tower_close(&tower);
 }
 
 /* Largest displacement of the building alone: every mode in closed form on every straight stretch of the record, looked
@@ -105,12 +105,12 @@ static void huge_gap(Trial *t)
     {
         Tower tower;
         open_tower(t, &tower, seconds_for(t, 6));
-        tower_set_gaps(&tower, 50);
-        const SimResult r = tower_run(&tower, SCENE_IMPACT);
+        bench_tower_set_gaps(&tower, 50);
+        const SimResult r = bench_tower_run(&tower, SCENE_IMPACT);
         const double wanted = largest_displacement(&tower);
         trial_compare(t, &r, r.j1_m, wanted, wanted, trial_allowed(t, 1e-5, 1e-3), "J1 against the closed form");
         trial_note(t, &r, (double)r.impacts, 0, "contact onsets");
-        tower_close(&tower);
+        bench_tower_close(&tower);
     }
 }
 
@@ -122,9 +122,9 @@ static void negative_gap(Trial *t)
         Tower tower;
         open_tower(t, &tower, 1);
         tower.x[4] = BAD[i];
-        const SimResult r = tower_run(&tower, SCENE_IMPACT);
+        const SimResult r = bench_tower_run(&tower, SCENE_IMPACT);
         trial_refusal_is_right(t, r.outcome != RUN_OK && strstr(r.reason, "gap_05_m"), "a status that names the gap");
-        tower_close(&tower);
+        bench_tower_close(&tower);
     }
 }
 
@@ -139,7 +139,7 @@ static void stiff_and_soft_core(Trial *t)
         char what[40];
         open_tower(t, &tower, seconds_for(t, 3));
         tower.settings.core.youngs_modulus_pa *= FACTOR[i];
-        const SimResult r = tower_run(&tower, SCENE_IMPACT), wanted = finest(&tower);
+        const SimResult r = bench_tower_run(&tower, SCENE_IMPACT), wanted = finest(&tower);
         snprintf(what, sizeof what, "core stiffness x %g", FACTOR[i]);
         trial_remark(t, "x %g: %ld contact onsets, energy-balance error %.1e; ", FACTOR[i], r.impacts,
                      r.energy_balance_error);
@@ -147,7 +147,7 @@ static void stiff_and_soft_core(Trial *t)
         trial_compare(t, &r, r.j2_m, wanted.j2_m, wanted.j2_m, 1e-2 * trial_slack(t), "%s: J2", what);
         trial_compare(t, &r, r.input_energy_j, wanted.input_energy_j, wanted.input_energy_j, 1e-2, "%s: input energy",
                       what);
-        tower_close(&tower);
+        bench_tower_close(&tower);
     }
 }
 
@@ -209,7 +209,7 @@ static void core_modes(Trial *t)
         trial_compare(t, &r, r.j2_m, all.j2_m, all.j2_m, 3e-3 * factor, "%d core modes: J2", nc);
         trial_compare(t, &r, r.j3_g, all.j3_g, all.j3_g, 2e-2 * factor, "%d core modes: J3", nc);
     }
-    tower_close(&tower);
+    bench_tower_close(&tower);
 }
 
 /* ---- the record -------------------------------------------------------------------------------------------------- */
@@ -219,16 +219,16 @@ static void mirrored(Trial *t)
     Tower tower;
     t->accuracy = ACCURACY_STANDARD;
     open_tower(t, &tower, seconds_for(t, 6));
-    const SimResult there = tower_run(&tower, SCENE_IMPACT);
+    const SimResult there = bench_tower_run(&tower, SCENE_IMPACT);
     for (size_t i = 0; i < tower.motion.n; i++)
         tower.motion.accel[i] *= -1;
-    const SimResult back = tower_run(&tower, SCENE_IMPACT);
+    const SimResult back = bench_tower_run(&tower, SCENE_IMPACT);
     /* difference quotients of a Jacobian know left from right: such an engine agrees as far as it promises anything */
     const int exact = trial_slack(t) == 1;
     compare_objectives(t, &back, &there, exact ? 1e-4 : 1, "mirrored");
     trial_note(t, &back, fabs((double)(back.impacts - there.impacts)), exact ? 0 : 0.02 * (double)there.impacts,
                "contact onsets");
-    tower_close(&tower);
+    bench_tower_close(&tower);
 }
 
 static void resize_motion(Motion *m, size_t front, size_t back)
@@ -247,16 +247,16 @@ static void padded(Trial *t)
     open_tower(t, &tower, seconds_for(t, 6));
     const double duration = (double)(tower.motion.n - 1) * tower.motion.dt_s;
     tower.motion.accel[tower.motion.n - 1] = 0; /* else a ramp to zero would be put in */
-    const SimResult bare = tower_run(&tower, SCENE_IMPACT);
+    const SimResult bare = bench_tower_run(&tower, SCENE_IMPACT);
     resize_motion(&tower.motion, 0, 37);
     tower.settings.sim.duration_s = duration;
-    const SimResult behind = tower_run(&tower, SCENE_IMPACT);
+    const SimResult behind = bench_tower_run(&tower, SCENE_IMPACT);
     compare_objectives(t, &behind, &bare, 1e-4, "zeros behind");
     resize_motion(&tower.motion, 37, 0);
     tower.settings.sim.duration_s = duration + 37 * tower.motion.dt_s;
-    const SimResult before = tower_run(&tower, SCENE_IMPACT);
+    const SimResult before = bench_tower_run(&tower, SCENE_IMPACT);
     compare_objectives(t, &before, &bare, 1, "zeros before");
-    tower_close(&tower);
+    bench_tower_close(&tower);
 }
 
 static void not_a_record(Trial *t)
@@ -268,18 +268,18 @@ static void not_a_record(Trial *t)
         char what[60];
         open_tower(t, &tower, t->size == SIZE_QUICK ? 1 : 2);
         tower.motion.accel[15] = BAD[i];
-        const SimResult r = tower_run(&tower, SCENE_IMPACT);
+        const SimResult r = bench_tower_run(&tower, SCENE_IMPACT);
         snprintf(what, sizeof what, "a sample of %g is refused", BAD[i]);
         trial_refusal_is_right(t, r.outcome != RUN_OK && r.reason[0], what);
-        tower_close(&tower);
+        bench_tower_close(&tower);
     }
     for (size_t n = 0; n < 2; n++) {
         Tower tower;
         open_tower(t, &tower, 2);
         tower.motion.n = n;
-        const SimResult r = tower_run(&tower, SCENE_IMPACT);
+        const SimResult r = bench_tower_run(&tower, SCENE_IMPACT);
         trial_refusal_is_right(t, r.outcome != RUN_OK && r.reason[0], "an empty record is refused");
-        tower_close(&tower);
+        bench_tower_close(&tower);
     }
 }
 
@@ -293,7 +293,7 @@ static void strength(Trial *t)
         open_tower(t, &tower, seconds_for(t, 3));
         for (size_t k = 0; k < tower.motion.n; k++)
             tower.motion.accel[k] *= SCALE[i];
-        const SimResult r = tower_run(&tower, SCENE_IMPACT);
+        const SimResult r = bench_tower_run(&tower, SCENE_IMPACT);
         if (i == 0)
             first = r;
         const double f = SCALE[i] / SCALE[0];
@@ -312,7 +312,7 @@ static void strength(Trial *t)
             if (SCALE[i] >= 100)
                 trial_note(t, &r, beyond_contact_law(&r) ? 0 : 1, 0.5, "strength x %g: flagged as too deep", SCALE[i]);
         }
-        tower_close(&tower);
+        bench_tower_close(&tower);
     }
 }
 
@@ -325,16 +325,16 @@ static void threads(Trial *t)
     t->accuracy = ACCURACY_STANDARD;
     open_tower(t, &tower, seconds_for(t, 3));
     const int n = t->size == SIZE_QUICK ? 2 : RUNS;
-    SimResult alone = tower_run(&tower, SCENE_IMPACT), together[RUNS];
+    SimResult alone = bench_tower_run(&tower, SCENE_IMPACT), together[RUNS];
     alone.seconds = 0;
 #pragma omp parallel for num_threads(n)
     for (int i = 0; i < n; i++) {
-        together[i] = tower_run(&tower, SCENE_IMPACT);
+        together[i] = bench_tower_run(&tower, SCENE_IMPACT);
         together[i].seconds = 0;
     }
     for (int i = 0; i < n; i++)
         trial_note(t, &alone, memcmp(&alone, &together[i], sizeof alone) != 0, 0.5, "bytes that differ among threads");
-    tower_close(&tower);
+    bench_tower_close(&tower);
 }
 
 static int processor_has(FastKernel *kernel)
@@ -393,7 +393,7 @@ static void vector_width(Trial *t)
         fast_free(work);
         model_free(&model);
         building_free(&b);
-        tower_close(&tower);
+        bench_tower_close(&tower);
     }
 }
 

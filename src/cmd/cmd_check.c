@@ -12,7 +12,7 @@
 #include "scene/summary.h"
 #include "settings/settings.h"
 #include "sim/sim.h"
-#include "simulator/subject.h"
+#include "simulator/adapter.h"
 
 typedef struct {
     int as_json;
@@ -265,18 +265,18 @@ static void describe_study(Check *c, const CheckedScene *p)
 static void open_study(Check *c, const Settings *s)
 {
     Err e = {0};
-    Subject *subject;
-    if (!note(c, subject_open(&subject, s, &e), s->problem.kind == PROBLEM_TOWER ? "scene" : "problem", &e))
+    Adapter *adapter;
+    if (!note(c, adapter_open(&adapter, s, &e), s->problem.kind == PROBLEM_TOWER ? "scene" : "problem", &e))
         return;
     if (s->problem.kind != PROBLEM_TOWER) {
-        const Schema *schema = subject_schema(subject);
+        const Schema *schema = adapter_schema(adapter);
         json_object_set_new(
             c->out, "problem",
             json_pack("{s:I, s:I}", "variables", (json_int_t)schema->n_var, "objectives", (json_int_t)schema->n_obj));
         if (!c->as_json)
             printf("problem   %zu variables, %zu objectives\n", schema->n_var, schema->n_obj);
     }
-    subject_close(subject);
+    adapter_close(adapter);
 }
 
 static void check_tower(const Args *args, Check *c, const Settings *s)

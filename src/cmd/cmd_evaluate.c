@@ -9,9 +9,8 @@
 #include "cmd/commands.h"
 #include "cmd/look.h"
 #include "cmd/show.h"
-#include "simulator/crew.h"
+#include "simulator/tower.h"
 #include "store/run_read.h"
-#include "simulator/scenario.h"
 #include "scene/motion_source.h"
 #include "settings/settings.h"
 
@@ -24,22 +23,19 @@ typedef struct {
     size_t row;
 } Chosen;
 
-static Status simulate(const World *w, const Chosen *c, SimResult results[N_CASES], Err *err)
+static Status simulate(const Problem *p, const Chosen *c, SimResult results[N_CASES], Err *err)
 {
-    Crew *crew;
     SimTask tasks[N_CASES];
-    if (scene_n_floors(w->scene) + 2 != (int)c->run->schema.n_var)
+    const int n_floors = tower_n_floors(tower_of(p));
+    if (n_floors + 2 != (int)c->run->schema.n_var)
         return fail(err, STATUS_BAD_DATA, "the front has designs of %d floors, the building has %d",
-                    (int)c->run->schema.n_var - 2, scene_n_floors(w->scene));
+                    (int)c->run->schema.n_var - 2, n_floors);
     for (int i = 0; i < N_CASES; i++)
         tasks[i] = (SimTask){SCENES[i], run_x(c->run, c->row)};
-    TRY(crew_create(&crew, w->scene, N_CASES, err));
-    const Status status = crew_run(crew, N_CASES, tasks, results, err);
-    crew_free(crew);
-    return status;
+    return tower_simulate(p, N_CASES, tasks, results, err);
 }
 
-static json_t *describe(const World *w, const SimResult results[N_CASES])
+static json_t *describe(const Scenario *w, const SimResult results[N_CASES])
 {
     json_t *o = json_object();
     json_object_set_new(o, "record", json_string(w->motion.name));
@@ -50,7 +46,7 @@ static json_t *describe(const World *w, const SimResult results[N_CASES])
     return o;
 }
 
-static void print_pair(const World *w, const SimResult results[N_CASES])
+static void print_pair(const Scenario *w, const SimResult results[N_CASES])
 {
     show_motion(&w->motion, w->options.sim.duration_s);
     show_result_names("");
@@ -62,15 +58,16 @@ static void print_pair(const World *w, const SimResult results[N_CASES])
 /* One record: simulated, then appended to `list` or printed. */
 static Status evaluate_on(const Settings *s, const Chosen *c, json_t *list, Err *err)
 {
-    World w;
+    Problem p;
     SimResult results[N_CASES];
-    TRY(world_open(&w, s, err));
-    const Status status = simulate(&w, c, results, err);
+    TRY(tower_open(&p, s, TOWER_SINGLE, N_CASES, err));
+    const Scenario *w = tower_record(tower_of(&p), 0);
+    const Status status = simulate(&p, c, results, err);
     if (status == STATUS_OK && list)
-        json_array_append_new(list, describe(&w, results));
+        json_array_append_new(list, describe(w, results));
     else if (status == STATUS_OK)
-        print_pair(&w, results);
-    world_close(&w);
+        print_pair(w, results);
+    problem_close(&p);
     return status;
 }
 
@@ -119,7 +116,7 @@ static void print_rows(const char *path, const SimResult results[N_CASES])
 static Status evaluate_file(Settings *s, const Chosen *c, const char *path, Folder *f, Err *err)
 {
     Err why = {0};
-    World w;
+    Problem p;
     SimResult results[N_CASES];
     const Status readable = try_record(s, path, &why);
     if (readable == STATUS_NO_MEMORY)
@@ -131,13 +128,14 @@ static Status evaluate_file(Settings *s, const Chosen *c, const char *path, Fold
         return STATUS_OK;
     }
     f->n_read++;
-    TRY(world_open(&w, s, err));
-    const Status status = simulate(&w, c, results, err);
+    TRY(tower_open(&p, s, TOWER_SINGLE, N_CASES, err));
+    const Scenario *w = tower_record(tower_of(&p), 0);
+    const Status status = simulate(&p, c, results, err);
     if (status == STATUS_OK && f->records)
-        json_array_append_new(f->records, describe(&w, results));
+        json_array_append_new(f->records, describe(w, results));
     else if (status == STATUS_OK)
         print_rows(path, results);
-    world_close(&w);
+    problem_close(&p);
     return status;
 }
 

@@ -1,40 +1,35 @@
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 
 #include "scene/design.h"
 #include "cmd/commands.h"
 #include "cmd/show.h"
-#include "simulator/crew.h"
-#include "simulator/ensemble.h"
 #include "simulator/horizon.h"
+#include "simulator/tower.h"
 #include "settings/settings.h"
 
-enum { MEMBERS = 16 };
+enum { REPLICATES = 16 };
 static const double CHANGE = 1e-12; /* of the gaps, between the two runs that are compared */
 
-static Status find(const Settings *s, const World *w, const double x[], Horizon *h, Ensemble *e, Err *err)
+static Status find(const Problem *p, const double x[], Horizon *h, ReplicateSummary *r, SimResult *shown, Err *err)
 {
-    Crew *crew;
-    TRY(horizon_find(w, x, CHANGE, h, err));
-    TRY(crew_create(&crew, w->scene, s->search.threads, err));
-    const Status status = ensemble_run(crew, scene_n_floors(w->scene), x, MEMBERS, ENSEMBLE_CHANGE,
-                                       (uint32_t)s->search.seed, e, NULL, err);
-    crew_free(crew);
-    return status;
+    TRY(horizon_find(tower_record(tower_of(p), 0), x, CHANGE, h, err));
+    return tower_replicate(p, 1, x, shown, r, err);
 }
 
-static Status print_json(const Horizon *h, const Ensemble *e, Err *err)
+static Status print_json(const Horizon *h, const ReplicateSummary *r, Err *err)
 {
     json_t *o = json_object();
     json_object_set_new(o, "end_s", json_number(h->end_s));
     json_object_set_new(o, "distance", json_numbers(HORIZON_LEVELS, HORIZON_LEVEL));
     json_object_set_new(o, "reached_s", json_numbers(HORIZON_LEVELS, h->reached_s));
     json_object_set_new(o, "distance_at_end", json_number(h->distance_at_end));
-    json_object_set_new(o, "ensemble", json_ensemble(e));
+    json_object_set_new(o, "ensemble", json_replicates(r));
     return show_json(o, err);
 }
 
-static void print_table(const World *w, const Horizon *h, const Ensemble *e)
+static void print_table(const Scenario *w, const Horizon *h, const ReplicateSummary *r)
 {
     show_motion(&w->motion, w->options.sim.duration_s);
     printf("\ntwo runs whose gaps differ by %g of themselves are apart by\n", CHANGE);
@@ -46,24 +41,25 @@ static void print_table(const World *w, const Horizon *h, const Ensemble *e)
     printf("distance: root of energy of the difference over largest energy so far; at the end %.2g\n\n",
            h->distance_at_end);
     show_result_names("");
-    show_ensemble(e);
+    show_replicates(r);
 }
 
-static Status answer(const Args *args, const Settings *s, const World *w, const double x[], Err *err)
+static Status answer(const Args *args, const Problem *p, const double x[], Err *err)
 {
     Horizon h;
-    Ensemble e;
-    TRY(find(s, w, x, &h, &e, err));
+    ReplicateSummary r;
+    SimResult shown;
+    TRY(find(p, x, &h, &r, &shown, err));
     if (args_has(args, "--json"))
-        return print_json(&h, &e, err);
-    print_table(w, &h, &e);
+        return print_json(&h, &r, err);
+    print_table(tower_record(tower_of(p), 0), &h, &r);
     return STATUS_OK;
 }
 
 static Status run(const Args *args, Err *err)
 {
     Settings s;
-    World w;
+    Problem p;
     Designs d;
     const char *path = args_value(args, "--design");
     if (!path)
@@ -71,13 +67,14 @@ static Status run(const Args *args, Err *err)
     TRY(args_settings(args, &s, NULL, NULL, err));
     if (s.sim.engine != ENGINE_FAST)
         return fail(err, STATUS_USAGE, "horizon: only the engine fast shows its states; leave sim.engine as it is");
-    TRY(world_open(&w, &s, err));
-    Status status = design_read(&d, path, scene_n_floors(w.scene), err);
+    s.sim.replicates = REPLICATES;
+    TRY(tower_open(&p, &s, TOWER_AS_SET, SIZE_MAX, err));
+    Status status = design_read(&d, path, tower_n_floors(tower_of(&p)), err);
     if (status == STATUS_OK) {
-        status = answer(args, &s, &w, d.x, err);
+        status = answer(args, &p, d.x, err);
         design_free(&d);
     }
-    world_close(&w);
+    problem_close(&p);
     return status;
 }
 

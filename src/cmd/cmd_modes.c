@@ -30,7 +30,7 @@ static Status choose_thickness(const Args *args, Modes *m, Err *err)
     return STATUS_OK;
 }
 
-static Status compute(const Args *args, const World *w, Modes *m, Err *err)
+static Status compute(const Args *args, const Scenario *w, Modes *m, Err *err)
 {
     double x[FLOORS_MAX + 2] = {0};
     m->n = scene_n_floors(w->scene);
@@ -77,12 +77,12 @@ static void print_table(const Modes *m, const Settings *s)
 static Status run(const Args *args, Err *err)
 {
     Settings s;
-    World w;
+    Scenario w;
     Modes m = {0};
     TRY(args_settings(args, &s, NULL, NULL, err));
-    TRY(world_open_still(&w, &s, err));
+    TRY(scenario_open_still(&w, &s, err));
     Status status = compute(args, &w, &m, err);
-    world_close(&w);
+    scenario_close(&w);
     if (status == STATUS_OK && args_has(args, "--json"))
         status = print_json(&m, &s, err);
     else if (status == STATUS_OK)

@@ -6,12 +6,12 @@
 #include "simulator/textbook.h"
 #include "store/output.h"
 #include "study/study.h"
-#include "simulator/subject.h"
+#include "simulator/adapter.h"
 #include "settings/settings.h"
 
 /* The table under way. */
 typedef struct {
-    const Subject *subject;
+    const Adapter *adapter;
     FILE *f;
     int noisy;
     size_t n_front, n;
@@ -20,13 +20,13 @@ typedef struct {
 
 static void write_row(const Writing *w, const double x[], const double f[])
 {
-    const Schema *schema = subject_schema(w->subject);
+    const Schema *schema = adapter_schema(w->adapter);
     double exact[OBJECTIVES_MAX];
     for (size_t j = 0; j < schema->n_var; j++) {
         fputs(j ? "," : "", w->f);
         print_number(w->f, x[j]);
     }
-    subject_exact(w->subject, x, exact);
+    textbook_exact(adapter_problem(w->adapter), x, exact);
     for (int pass = !w->noisy; pass < 2; pass++)
         for (size_t k = 0; k < schema->n_obj; k++) {
             fputc(',', w->f);
@@ -37,7 +37,7 @@ static void write_row(const Writing *w, const double x[], const double f[])
 
 static void write_header(const Writing *w)
 {
-    const Schema *schema = subject_schema(w->subject);
+    const Schema *schema = adapter_schema(w->adapter);
     for (size_t j = 0; j < schema->n_var; j++)
         fprintf(w->f, "%s%s", j ? "," : "", schema_variable(schema, j)->name);
     for (size_t k = 0; w->noisy && k < schema->n_obj; k++)
@@ -58,16 +58,16 @@ static int write_new(const SearchView *view, void *user)
     return 0;
 }
 
-static Status search(const Args *args, const Settings *s, const Subject *subject, Err *err)
+static Status search(const Args *args, const Settings *s, const Adapter *adapter, Err *err)
 {
     Output o;
     StopReason reason;
     const SearchConfig config = study_search_config(s);
     TRY(output_open(&o, args_value(args, "--csv"), err));
-    Writing w = {.subject = subject, .f = o.stream, .noisy = s->problem.noise > 0.0};
+    Writing w = {.adapter = adapter, .f = o.stream, .noisy = s->problem.noise > 0.0};
     write_header(&w);
-    omp_set_num_threads(subject_threads(subject));
-    const Status status = search_run(subject_problem(subject), &config, write_new, &w, &reason, err);
+    omp_set_num_threads(adapter_threads(adapter));
+    const Status status = search_run(adapter_problem(adapter), &config, write_new, &w, &reason, err);
     if (status != STATUS_OK) {
         output_abandon(&o);
         return status;
@@ -82,7 +82,7 @@ static Status run(const Args *args, Err *err)
     const char *names[16];
     int n_names = 0, known = 0;
     Settings s;
-    Subject *subject;
+    Adapter *adapter;
     char kind[64];
     for (; textbook((size_t)n_names); n_names++) {
         names[n_names] = textbook((size_t)n_names)->name;
@@ -97,9 +97,9 @@ static Status run(const Args *args, Err *err)
     TRY(settings_set(&s, kind, err));
     TRY(args_apply(args, &s, NULL, NULL, err));
     TRY(settings_check(&s, err));
-    TRY(subject_open(&subject, &s, err));
-    const Status status = search(args, &s, subject, err);
-    subject_close(subject);
+    TRY(adapter_open(&adapter, &s, err));
+    const Status status = search(args, &s, adapter, err);
+    adapter_close(adapter);
     return status;
 }
 

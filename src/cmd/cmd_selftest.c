@@ -13,7 +13,7 @@
 #include "sim/engine.h"
 #include "sim/fast/fast.h"
 #include "simulator/measures.h"
-#include "simulator/subject.h"
+#include "simulator/adapter.h"
 #include "study/study.h"
 
 enum { N_CHECKS_MAX = 96 };
@@ -124,7 +124,7 @@ static Status set_all(Settings *s, const char *const assignments[], size_t n_max
     return STATUS_OK;
 }
 
-static Status simulate(const World *w, const TowerCase *c, SimResult *r, Err *err)
+static Status simulate(const Scenario *w, const TowerCase *c, SimResult *r, Err *err)
 {
     double x[FLOORS_MAX + 2];
     SimWorker *worker;
@@ -140,14 +140,14 @@ static Status simulate(const World *w, const TowerCase *c, SimResult *r, Err *er
 static Status answer_of(const TowerCase *c, double answer[N_OBJECTIVES], Err *err)
 {
     Settings s;
-    World w;
+    Scenario w;
     SimResult r;
     settings_defaults(&s);
     TRY(set_all(&s, COMMON, sizeof COMMON / sizeof COMMON[0], err));
     TRY(set_all(&s, c->settings, sizeof c->settings / sizeof c->settings[0], err));
-    TRY(world_open(&w, &s, err));
+    TRY(scenario_open(&w, &s, err));
     const Status status = simulate(&w, c, &r, err);
-    world_close(&w);
+    scenario_close(&w);
     for (int k = 0; status == STATUS_OK && k < N_OBJECTIVES; k++)
         answer[k] = r.outcome == RUN_OK ? measure_value(&r, k) : NAN;
     return status;
@@ -277,13 +277,13 @@ static int measure_front(const SearchView *view, void *user)
 
 static Status search(const Settings *s, Distance *d, Err *err)
 {
-    Subject *subject;
+    Adapter *adapter;
     StopReason reason;
     const SearchConfig config = study_search_config(s);
-    TRY(subject_open(&subject, s, err));
-    omp_set_num_threads(subject_threads(subject));
-    const Status status = search_run(subject_problem(subject), &config, measure_front, d, &reason, err);
-    subject_close(subject);
+    TRY(adapter_open(&adapter, s, err));
+    omp_set_num_threads(adapter_threads(adapter));
+    const Status status = search_run(adapter_problem(adapter), &config, measure_front, d, &reason, err);
+    adapter_close(adapter);
     return status;
 }
 

@@ -1,36 +1,34 @@
+#include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "scene/design.h"
 #include "cmd/commands.h"
 #include "cmd/show.h"
-#include "simulator/crew.h"
-#include "simulator/ensemble.h"
+#include "simulator/tower.h"
 #include "store/output.h"
-#include "simulator/scenario.h"
 #include "settings/settings.h"
 
 typedef struct {
     SceneKind kind;
     Designs designs;
     size_t n;
-    SimTask *tasks;      /* (n) */
-    SimResult *results;  /* (n) */
-    int members;         /* of an ensemble per design; 0: none */
-    Ensemble *ensembles; /* (n) or NULL */
+    SimTask *tasks;            /* (n) */
+    SimResult *results;        /* (n) */
+    long replicates;           /* of a design; 0: it alone */
+    ReplicateSummary *summary; /* (n) where there are replicates */
 } Job;
 
-static Status choose_members(const Args *args, Job *job, Err *err)
+static Status choose_replicates(const Args *args, Job *job, Err *err)
 {
-    long members;
     if (!args_has(args, "--ensemble"))
         return STATUS_OK;
-    TRY(args_whole(args, "--ensemble", 2, 100000, 0, &members, err));
-    if (job->kind != SCENE_IMPACT)
-        return fail(err, STATUS_USAGE,
-                    "--ensemble perturbs gaps: it needs a design with gaps, neither none nor --rigid");
-    job->members = (int)members;
-    return STATUS_OK;
+    TRY(args_whole(args, "--ensemble", 2, 1000, 0, &job->replicates, err));
+    return job->kind == SCENE_IMPACT
+               ? STATUS_OK
+               : fail(err, STATUS_USAGE,
+                      "--ensemble perturbs gaps: it needs a design with gaps, neither none nor --rigid");
 }
 
 static Status choose_kind(const Args *args, Job *job, Err *err)
@@ -42,7 +40,7 @@ static Status choose_kind(const Args *args, Job *job, Err *err)
     if (none && tied)
         return fail(err, STATUS_USAGE, "--rigid needs a core: give --design FILE instead of none");
     job->kind = none ? SCENE_NO_CORE : tied ? SCENE_RIGID : SCENE_IMPACT;
-    return choose_members(args, job, err);
+    return choose_replicates(args, job, err);
 }
 
 static void warn_top_heavy(const Designs *d, const char *path)
@@ -67,31 +65,22 @@ static Status lay_out_job(const Args *args, Job *job, int n_floors, Err *err)
     }
     job->tasks = calloc(job->n, sizeof *job->tasks);
     job->results = calloc(job->n, sizeof *job->results);
-    if (job->members)
-        job->ensembles = calloc(job->n, sizeof *job->ensembles);
-    if (!job->tasks || !job->results || (job->members && !job->ensembles))
+    job->summary = calloc(job->n, sizeof *job->summary);
+    if (!job->tasks || !job->results || !job->summary)
         return fail(err, STATUS_NO_MEMORY, "no memory for %zu simulations", job->n);
     for (size_t i = 0; i < job->n; i++)
         job->tasks[i] = (SimTask){job->kind, job->designs.x ? &job->designs.x[i * (size_t)(n_floors + 2)] : NULL};
     return STATUS_OK;
 }
 
-static Status simulate(const Settings *s, const World *w, Job *job, Err *err)
+static Status simulate(const Problem *p, Job *job, Err *err)
 {
-    Crew *crew;
-    const long wanted = s->search.threads;
-    TRY(crew_create(&crew, w->scene, job->n == 1 && !job->members ? 1 : wanted, err));
-    Status status = STATUS_OK;
-    if (!job->members)
-        status = crew_run(crew, job->n, job->tasks, job->results, err);
-    for (size_t i = 0; job->members && status == STATUS_OK && i < job->n; i++)
-        status = ensemble_run(crew, scene_n_floors(w->scene), job->tasks[i].x, job->members, ENSEMBLE_CHANGE,
-                              (uint32_t)s->search.seed, &job->ensembles[i], &job->results[i], err);
-    crew_free(crew);
-    for (size_t i = 0; status == STATUS_OK && i < job->n; i++)
+    TRY(job->replicates ? tower_replicate(p, job->n, job->designs.x, job->results, job->summary, err)
+                        : tower_simulate(p, job->n, job->tasks, job->results, err));
+    for (size_t i = 0; i < job->n; i++)
         if (job->results[i].outcome != RUN_OK)
             fprintf(stderr, "design %zu failed: %s\n", i + 1, job->results[i].reason);
-    return status;
+    return STATUS_OK;
 }
 
 static json_t *describe(const Job *job, size_t i, const Motion *m)
@@ -100,8 +89,8 @@ static json_t *describe(const Job *job, size_t i, const Motion *m)
     json_object_set_new(o, "design", json_integer((json_int_t)i + 1));
     json_object_set_new(o, "record", json_string(m->name));
     json_object_update_new(o, json_result(job->kind, &job->results[i]));
-    if (job->ensembles)
-        json_object_set_new(o, "ensemble", json_ensemble(&job->ensembles[i]));
+    if (job->replicates)
+        json_object_set_new(o, "ensemble", json_replicates(&job->summary[i]));
     return o;
 }
 
@@ -122,7 +111,7 @@ static Status write_csv(const Job *job, const char *path, Err *err)
     fprintf(o.stream, "design");
     for (int k = 0; k < N_MEASURES; k++)
         fprintf(o.stream, ",%s", measure(k)->name);
-    for (int k = 0; job->ensembles && k < N_MEASURES; k++)
+    for (int k = 0; job->replicates && k < N_MEASURES; k++)
         fprintf(o.stream, ",%s_mean,%s_sd", measure(k)->name, measure(k)->name);
     fprintf(o.stream, ",outcome\n");
     for (size_t i = 0; i < job->n; i++) {
@@ -131,18 +120,18 @@ static Status write_csv(const Job *job, const char *path, Err *err)
             fputc(',', o.stream);
             print_number(o.stream, measure_value(&job->results[i], k));
         }
-        for (int k = 0; job->ensembles && k < N_MEASURES; k++) {
+        for (int k = 0; job->replicates && k < N_MEASURES; k++) {
             fputc(',', o.stream);
-            print_number(o.stream, job->ensembles[i].mean[k]);
+            print_number(o.stream, job->summary[i].n_failed ? NAN : job->summary[i].mean[k]);
             fputc(',', o.stream);
-            print_number(o.stream, job->ensembles[i].spread[k]);
+            print_number(o.stream, job->summary[i].n_failed ? NAN : job->summary[i].sd[k]);
         }
         fprintf(o.stream, ",%s\n", outcome_word(measure_outcome(job->results[i].outcome)));
     }
     return output_close(&o, err);
 }
 
-static void print_table(const Job *job, const World *w)
+static void print_table(const Job *job, const Scenario *w)
 {
     char label[32];
     show_motion(&w->motion, w->options.sim.duration_s);
@@ -151,12 +140,12 @@ static void print_table(const Job *job, const World *w)
     for (size_t i = 0; i < job->n; i++) {
         snprintf(label, sizeof label, "design %zu", i + 1);
         show_result(job->kind == SCENE_NO_CORE ? "no core" : label, &job->results[i]);
-        if (job->ensembles)
-            show_ensemble(&job->ensembles[i]);
+        if (job->replicates)
+            show_replicates(&job->summary[i]);
     }
 }
 
-static Status print(const Args *args, const Job *job, const World *w, Err *err)
+static Status print(const Args *args, const Job *job, const Scenario *w, Err *err)
 {
     if (args_has(args, "--json") && args_has(args, "--csv") && strcmp(args_value(args, "--csv"), "-") == 0)
         return fail(err, STATUS_USAGE, "--json and --csv - both want standard output; give --csv a file");
@@ -172,7 +161,7 @@ static Status print(const Args *args, const Job *job, const World *w, Err *err)
 static Status run(const Args *args, Err *err)
 {
     Settings s;
-    World w;
+    Problem p;
     Job job = {0};
     TRY(choose_kind(args, &job, err));
     TRY(args_settings(args, &s, NULL, NULL, err));
@@ -180,24 +169,27 @@ static Status run(const Args *args, Err *err)
         return fail(err, STATUS_USAGE,
                     "--rigid: a linear building is solved in closed form, no other engine does it; leave sim.engine at "
                     "fast");
-    TRY(world_open(&w, &s, err));
-    Status status = lay_out_job(args, &job, scene_n_floors(w.scene), err);
+    TRY(tower_open(&p, &s, job.replicates ? TOWER_AS_SET : TOWER_SINGLE, job.kind == SCENE_NO_CORE ? 1 : SIZE_MAX,
+                   err));
+    const Scenario *w = tower_record(tower_of(&p), 0);
+    Status status = lay_out_job(args, &job, scene_n_floors(w->scene), err);
     if (status == STATUS_OK)
-        status = simulate(&s, &w, &job, err);
+        status = simulate(&p, &job, err);
     if (status == STATUS_OK)
-        status = print(args, &job, &w, err);
+        status = print(args, &job, w, err);
     free(job.tasks);
     free(job.results);
-    free(job.ensembles);
+    free(job.summary);
     design_free(&job.designs);
-    world_close(&w);
+    problem_close(&p);
     return status;
 }
 
 static const ArgOption OPTIONS[] = {
     {"--design", "FILE", NULL, 0, "designs to simulate, one per row; none: the building alone"},
     {"--rigid", NULL, NULL, 0, "floors and core rigidly connected (zero gap): a linear building"},
-    {"--ensemble", "N", NULL, 0, "N runs with gaps changed by 1e-8 of themselves: mean and spread of every result"},
+    {"--ensemble", "N", "sim.replicates", 0,
+     "N replicates as a study simulates them: mean and standard deviation of every result"},
     OPTION_RECORD,
     OPTION_PGA,
     OPTION_STRETCH,

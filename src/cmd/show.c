@@ -1,5 +1,7 @@
 #include "cmd/show.h"
 
+#include <math.h>
+
 #include <stdio.h>
 
 #include "base/units.h"
@@ -49,17 +51,17 @@ json_t *json_result(SceneKind kind, const SimResult *r)
     return o;
 }
 
-json_t *json_ensemble(const Ensemble *e)
+json_t *json_replicates(const ReplicateSummary *r)
 {
-    json_t *o = json_object(), *mean = json_object(), *spread = json_object();
+    json_t *o = json_object(), *mean = json_object(), *sd = json_object();
     for (int k = 0; k < N_MEASURES; k++) {
-        json_object_set_new(mean, measure(k)->name, json_number(e->mean[k]));
-        json_object_set_new(spread, measure(k)->name, json_number(e->spread[k]));
+        json_object_set_new(mean, measure(k)->name, json_number(r->n_failed ? NAN : r->mean[k]));
+        json_object_set_new(sd, measure(k)->name, json_number(r->n_failed ? NAN : r->sd[k]));
     }
-    json_object_set_new(o, "replicates", json_integer(e->members));
-    json_object_set_new(o, "finished", json_integer(e->finished));
+    json_object_set_new(o, "replicates", json_integer((json_int_t)r->n_replicates));
+    json_object_set_new(o, "failed", json_integer((json_int_t)r->n_failed));
     json_object_set_new(o, "mean", mean);
-    json_object_set_new(o, "sd", spread);
+    json_object_set_new(o, "sd", sd);
     return o;
 }
 
@@ -124,20 +126,22 @@ void show_objectives(const char *label, long id, size_t n_obj, const double natu
     putchar('\n');
 }
 
-static void show_moments(const char *word, int count, int of, const double values[])
+static void show_moments(const char *word, size_t of, const double values[])
 {
     char label[64];
-    snprintf(label, sizeof label, "  %s of %d", word, count);
-    if (count < of)
-        snprintf(label, sizeof label, "  %s of %d (%d failed)", word, count, of - count);
+    snprintf(label, sizeof label, "  %s of %zu", word, of);
     printf("%-28s", label);
     for (int k = 0; k < N_OBJECTIVES; k++)
         printf(" %10.4g", values[k]);
     printf(" %8.3g %9.1e\n", values[N_MEASURES - 1], values[N_MEASURES - 2]);
 }
 
-void show_ensemble(const Ensemble *e)
+void show_replicates(const ReplicateSummary *r)
 {
-    show_moments("mean", e->finished, e->members, e->mean);
-    show_moments("standard deviation", e->finished, e->members, e->spread);
+    if (r->n_failed) {
+        printf("  %zu of the simulations of this design failed: no mean\n", r->n_failed);
+        return;
+    }
+    show_moments("mean", r->n_replicates, r->mean);
+    show_moments("standard deviation", r->n_replicates, r->sd);
 }

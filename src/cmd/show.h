@@ -3,14 +3,13 @@
 #define IMTET_CMD_SHOW_H
 
 #include "base/json.h"
-#include "simulator/ensemble.h"
-#include "simulator/measures.h"
+#include "simulator/replicates.h"
 #include "simulator/schema.h"
 
 json_t *json_result(SceneKind kind, const SimResult *r);
 
-/* members, finished, mean {}, spread {} */
-json_t *json_ensemble(const Ensemble *e);
+/* replicates, failed, mean {}, sd {} */
+json_t *json_replicates(const ReplicateSummary *r);
 
 /* On standard output, 17 digits; takes the reference. */
 Status show_json(json_t *all, Err *err);
@@ -22,8 +21,8 @@ void show_motion(const Motion *m, double duration_s);
 void show_result_names(const char *label);
 void show_result(const char *label, const SimResult *r);
 
-/* Two lines: mean and standard deviation of every measure. */
-void show_ensemble(const Ensemble *e);
+/* Two lines: mean and standard deviation of every measure; one where a replicate failed. */
+void show_replicates(const ReplicateSummary *r);
 
 /* One line of objectives: label, a design's number (0: none). */
 void show_objective_names(const Schema *schema);

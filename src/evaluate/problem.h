@@ -60,17 +60,17 @@ typedef struct {
 typedef void (*JudgeFn)(const Evaluation *e, double f[], double g[], const void *user);
 
 /* Moves x into the set of designs that can be built at all (t_top <= t_base, say). */
-typedef void (*RepairFn)(double x[], void *user);
+typedef void (*RepairFn)(double x[], const void *self);
 
 typedef struct {
     size_t n_var, n_obj, n_con, n_extra;
     const double *lower, *upper; /* (n_var) */
     RepairFn repair;             /* NULL: the box is all */
     JudgeFn judge;               /* NULL: f as it is, and no g */
-    void *user;                  /* of repair and judge */
+    const void *user;            /* of judge */
     int is_noisy;                /* the same design evaluated again gives another answer */
     const Simulator *simulator;
-    void *self; /* of the simulator */
+    void *self; /* of simulator and repair */
     size_t n_parts, part_size, n_workers;
     const Executor *executor; /* NULL: threads, one for each worker; a single worker is the asker itself */
     Observer observer;
@@ -83,6 +83,19 @@ static inline double violation_of(size_t n_con, const double g[])
     for (size_t c = 0; c < n_con; c++)
         sum += g[c] > 0.0 ? g[c] : 0.0;
     return sum;
+}
+
+static inline void problem_repair(const Problem *p, double x[])
+{
+    if (p->repair)
+        p->repair(x, p->self);
+}
+
+static inline void problem_close(Problem *p)
+{
+    if (p->simulator && p->simulator->close)
+        p->simulator->close(p->self);
+    *p = (Problem){0};
 }
 
 static inline void problem_judge(const Problem *p, const Evaluation *e, double f[], double g[])

@@ -16,7 +16,8 @@ typedef struct {
     Place place;
     size_t index; /* of Queue.pool */
     size_t repeat, sequence, arrival;
-    size_t n_taken, n_given; /* parts */
+    size_t n_parts, n_taken, n_given;
+    int only_first;
     long request;
     int variant;
     double *f, *g; /* (n_obj) (n_con) minimised */
@@ -230,13 +231,15 @@ static void fill(Queue *q, Slot *s, const Asked *asked)
     s->e.kind = asked->kind;
     s->repeat = asked->repeat;
     s->variant = asked->variant;
+    s->only_first = asked->only_first;
+    s->n_parts = asked->only_first ? 1 : q->problem->n_parts;
     s->sequence = q->n_asked++;
     s->place = PENDING;
     if (!is_known || q->order == QUEUE_AS_ASKED)
         s->request = s->e.id = ++q->last_request;
     if (!is_known)
         return;
-    s->n_taken = s->n_given = q->problem->n_parts;
+    s->n_taken = s->n_given = s->n_parts;
     s->place = KNOWN;
     if (q->order == QUEUE_AS_ASKED) {
         take_known(q, s, &q->known.rows[row], asked->kind);
@@ -260,7 +263,7 @@ Status queue_ask(Queue *q, const Asked *asked, Err *err)
     if (status == STATUS_OK) {
         fill(q, s, asked);
         append(q, s);
-        if (q->problem->n_parts > 1)
+        if (s->n_parts > 1)
             pthread_cond_broadcast(&q->work);
         else
             pthread_cond_signal(&q->work);
@@ -283,7 +286,7 @@ int queue_has(const Queue *q, const double x[])
 Asked queue_design(const Queue *q, size_t i)
 {
     const Slot *s = in_line(q, i);
-    return (Asked){s->e.x, s->repeat, s->e.kind, s->variant, s->note};
+    return (Asked){s->e.x, s->repeat, s->e.kind, s->variant, s->only_first, s->note};
 }
 
 static void give_out(Queue *q, Slot *s, Finished *out)
@@ -416,7 +419,7 @@ static void end(Queue *q, size_t rank, Status status, const char *why)
 /* The first design that has parts to be taken, or NULL. */
 static Slot *find_work(Queue *q)
 {
-    while (q->next < q->n && in_line(q, q->next)->n_taken == q->problem->n_parts)
+    while (q->next < q->n && in_line(q, q->next)->n_taken == in_line(q, q->next)->n_parts)
         q->next++;
     return q->next < q->n ? in_line(q, q->next) : NULL;
 }
@@ -471,11 +474,12 @@ static void finish(Queue *q, Slot *s)
 {
     const Observer *o = &q->problem->observer;
     Err why = {0};
-    complete(q, s);
+    if (!s->only_first)
+        complete(q, s);
     pthread_mutex_lock(&q->finishing);
     if (q->order == QUEUE_AS_ARRIVED)
         s->e.id = ++q->last_id;
-    const Status status = o->done ? o->done(&s->e, o->user, &why) : STATUS_OK;
+    const Status status = o->done && !s->only_first ? o->done(&s->e, o->user, &why) : STATUS_OK;
     pthread_mutex_lock(&q->lock);
     s->place = FINISHED;
     s->arrival = q->n_arrived++;
@@ -496,7 +500,7 @@ void queue_give(Queue *q, const Task *task, Status status, const Err *why)
         end(q, status == STATUS_STOPPED ? SIZE_MAX : s->sequence * q->problem->n_parts + task->part, status, why->text);
     else
         s->n_given++;
-    const int is_whole = status == STATUS_OK && s->n_given == q->problem->n_parts;
+    const int is_whole = status == STATUS_OK && s->n_given == s->n_parts;
     pthread_mutex_unlock(&q->lock);
     if (is_whole)
         finish(q, s);

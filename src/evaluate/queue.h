@@ -39,6 +39,7 @@ typedef struct {
     size_t repeat;   /* evaluations of this design that there are already */
     EvaluationKind kind;
     int variant;        /* as in Task */
+    int only_first;     /* 1: part 0 alone, for its own sake: no evaluation is made, and the observer does not hear */
     const double *note; /* (n_note), copied */
 } Asked;
 

@@ -1,7 +1,13 @@
 #include "evaluate/threads.h"
 
+#include <omp.h>
 #include <pthread.h>
 #include <stdlib.h>
+
+size_t threads_wanted(long setting)
+{
+    return setting > 0 ? (size_t)setting : (size_t)omp_get_num_procs();
+}
 
 static void do_task(Queue *q, size_t worker, const Task *task)
 {

@@ -4,6 +4,7 @@
 
 #include "base/carve.h"
 #include "base/hash.h"
+#include "evaluate/problem.h"
 #include "moga/dominance.h"
 
 static void layout(Archive *a, Carve *c)

@@ -16,15 +16,10 @@ static int in_batch(const Search *s, size_t n, const double x[])
     return 0;
 }
 
-size_t batch_pending(const Search *s)
-{
-    return s->feed ? feed_pending(s->feed) : 0;
-}
-
 size_t batch_add(Search *s, size_t n, const double x[], EvaluationKind kind)
 {
-    if (n >= s->batch_max || s->archive.n + batch_pending(s) + n + s->reserved >= s->config->max_evals ||
-        in_batch(s, n, x) || archive_find(&s->archive, x) < s->archive.n || (s->feed && feed_has(s->feed, x)))
+    if (n >= s->batch_max || s->archive.n + queue_pending(s->queue) + n + s->reserved >= s->config->max_evals ||
+        in_batch(s, n, x) || archive_find(&s->archive, x) < s->archive.n || queue_has(s->queue, x))
         return n;
     memcpy(s->X + n * s->problem->n_var, x, s->problem->n_var * sizeof *x);
     s->draws[n] = 0;
@@ -32,114 +27,90 @@ size_t batch_add(Search *s, size_t n, const double x[], EvaluationKind kind)
     return n + 1;
 }
 
-/* -- all at once --------------------------------------------------------------------------------------------------- */
+/* -- simulation ---------------------------------------------------------------------------------------------------- */
 
-/* Whether the order of design i was foretold: new ones but samples, where there is a surface. */
+/* Whether the order of design i was predicted: new ones but samples, where there is a surface. */
 static unsigned char is_foretold(const Search *s, size_t i)
 {
     return s->kind[i] != KIND_SAMPLED && s->kind[i] != KIND_REPEAT && surrogate_is_usable(s->surrogate);
-}
-
-static Status simulate_all(Search *s, size_t n, Err *err)
-{
-    const Problem *p = s->problem;
-    Archive *a = &s->archive;
-    s->n_came = n;
-    if (n == 0)
-        return STATUS_OK;
-    for (size_t i = 0; i < n; i++)
-        s->foretold[i] = is_foretold(s, i);
-    TRY(p->evaluate(n, s->X, s->draws, s->F, s->G, s->ok, p->user, err));
-    for (size_t i = 0; i < n; i++)
-        TRY(archive_insert(a, 1, s->X + i * p->n_var, s->F + i * p->n_obj, s->G + i * p->n_con, s->ok + i, s->kind[i],
-                           s->generation, err));
-    return STATUS_OK;
-}
-
-/* -- one by one ---------------------------------------------------------------------------------------------------- */
-
-size_t batch_lead_max(const SearchConfig *c, size_t n_workers)
-{
-    return n_workers > 1 ? n_workers + c->population / 2 / LOOK_AHEAD_SHARE + 1 : 0;
-}
-
-/* Designs that may be pending when the next batch is chosen: so many that no worker waits meanwhile. */
-static size_t lead(const Search *s)
-{
-    const size_t workers = s->problem->n_workers;
-    const int is_last =
-        s->archive.n + batch_pending(s) >= s->config->max_evals || s->generation >= s->config->generations;
-    return workers < 2 || is_last ? 0 : workers + batch_size(s) / LOOK_AHEAD_SHARE;
 }
 
 static Status ask(Search *s, size_t n, Err *err)
 {
     const Problem *p = s->problem;
     for (size_t i = 0; i < n; i++) {
-        const Asked asked = {.draws = s->draws[i],
-                             .kind = s->kind[i],
-                             .foretold = is_foretold(s, i),
-                             .way = s->way[i],
-                             .foreseen = s->foreseen + i * p->n_obj};
-        TRY(feed_ask(s->feed, s->X + i * p->n_var, &asked, err));
+        const Asked asked = {
+            .x = s->X + i * p->n_var, .repeat = s->draws[i], .kind = (EvaluationKind)s->kind[i], .note = s->note};
+        s->note[NOTE_FORETOLD] = is_foretold(s, i);
+        s->note[NOTE_WAY] = s->way[i];
+        memcpy(s->note + NOTE_FORESEEN, s->foreseen + i * p->n_obj, p->n_obj * sizeof *s->note);
+        TRY(queue_ask(s->queue, &asked, err));
     }
     return STATUS_OK;
 }
 
 /* Result number i of this generation. */
-static Status take_in(Search *s, size_t i, const Arrived *a, Err *err)
+static Status take_in(Search *s, size_t i, const Finished *done, Err *err)
 {
     const Problem *p = s->problem;
-    memcpy(s->X + i * p->n_var, a->x, p->n_var * sizeof *a->x);
-    memcpy(s->F + i * p->n_obj, a->f, p->n_obj * sizeof *a->f);
-    s->ok[i] = a->ok;
-    s->kind[i] = a->asked.kind;
-    s->way[i] = a->asked.way;
-    s->foretold[i] = a->asked.foretold;
-    if (a->asked.foretold)
-        memcpy(s->foreseen + i * p->n_obj, a->asked.foreseen, p->n_obj * sizeof *a->f);
-    return archive_insert(&s->archive, 1, a->x, a->f, p->n_con > 0 ? a->g : NULL, &a->ok, a->asked.kind, s->generation,
-                          err);
+    const Evaluation *e = done->evaluation;
+    memcpy(s->X + i * p->n_var, e->x, p->n_var * sizeof *e->x);
+    memcpy(s->F + i * p->n_obj, done->f, p->n_obj * sizeof *done->f);
+    s->ok[i] = e->outcome == OUTCOME_OK;
+    s->kind[i] = (unsigned char)e->kind;
+    s->foretold[i] = done->note && done->note[NOTE_FORETOLD] != 0.0;
+    s->way[i] = done->note ? (unsigned char)done->note[NOTE_WAY] : 0;
+    if (s->foretold[i])
+        memcpy(s->foreseen + i * p->n_obj, done->note + NOTE_FORESEEN, p->n_obj * sizeof *s->foreseen);
+    return archive_insert(&s->archive, 1, e->x, done->f, p->n_con > 0 ? done->g : NULL, &s->ok[i], s->kind[i],
+                          s->generation, err);
 }
 
-/* All but the youngest `pending` of what is asked for. */
+/* All but the last `pending` of what is asked for. */
 static Status take_results(Search *s, size_t pending, Err *err)
 {
-    Arrived a;
-    for (s->n_came = 0; feed_pending(s->feed) > pending && s->n_came < s->came_max; s->n_came++) {
-        if (!feed_next(s->feed, &a))
-            return STATUS_STOPPED;
-        TRY(take_in(s, s->n_came, &a, err));
+    Finished done;
+    for (s->n_came = 0; queue_pending(s->queue) > pending && s->n_came < s->came_max; s->n_came++) {
+        TRY(queue_next(s->queue, &done, err));
+        TRY(take_in(s, s->n_came, &done, err));
     }
     return STATUS_OK;
 }
 
-static Status simulate_in_turn(Search *s, size_t n, Err *err)
+size_t batch_lead_max(const SearchConfig *c, size_t n_workers)
 {
-    TRY(ask(s, n, err));
-    const size_t most = lead(s), pending = feed_pending(s->feed);
-    const size_t least =
-        n == 0 && pending > 0 ? pending - 1 : pending; /* a generation without a new design goes on too */
-    return take_results(s, most < least ? most : least, err);
+    return c->asynchronous && n_workers > 1 ? n_workers + c->population / 2 / LOOK_AHEAD_SHARE + 1 : 0;
+}
+
+/* Designs that may be pending when the next batch is chosen. In batches, none; asynchronous, so many that no worker
+ * waits meanwhile, but a generation without a new design (n = 0) goes on too. */
+static size_t lead(const Search *s, size_t n)
+{
+    const size_t workers = s->problem->n_workers, pending = queue_pending(s->queue);
+    const int is_last = s->archive.n + pending >= s->config->max_evals || s->generation >= s->config->generations;
+    const size_t max = n == 0 && pending > 0 ? pending - 1 : pending;
+    const size_t wanted = workers < 2 || is_last ? 0 : workers + batch_size(s) / LOOK_AHEAD_SHARE;
+    return !s->config->asynchronous ? 0 : wanted < max ? wanted : max;
 }
 
 Status batch_simulate(Search *s, size_t n_new, size_t n, Err *err)
 {
     const double before = search_seconds(s);
     memset(s->kind + n_new, KIND_REPEAT, n - n_new);
-    const Status status = s->feed ? simulate_in_turn(s, n, err) : simulate_all(s, n, err);
+    TRY(ask(s, n, err));
+    const Status status = take_results(s, lead(s, n), err);
     archive_update_noise(&s->archive);
     s->waited_s += search_seconds(s) - before;
     s->n_timed += s->n_came;
     s->simulating_s = s->waited_s;
-    if (s->feed)
-        s->simulating_s = feed_busy(s->feed, &s->n_timed) / (double)s->problem->n_workers;
+    if (s->config->asynchronous)
+        s->simulating_s = queue_busy(s->queue, &s->n_timed) / (double)s->problem->n_workers;
     return status;
 }
 
 Status batch_finish(Search *s, Err *err)
 {
-    feed_withdraw(s->feed);
+    queue_withdraw(s->queue);
     TRY(take_results(s, 0, err));
     archive_update_noise(&s->archive);
     return STATUS_OK;

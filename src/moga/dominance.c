@@ -33,14 +33,6 @@ int dominates_constrained(size_t n_obj, const double a[], double violation_a, co
     return dominates(n_obj, a, b);
 }
 
-double violation_of(size_t n_con, const double g[])
-{
-    double sum = 0.0;
-    for (size_t k = 0; k < n_con; k++)
-        sum += g[k] > 0.0 ? g[k] : 0.0;
-    return sum;
-}
-
 typedef struct {
     size_t n_obj;
     const double *F, *violation;

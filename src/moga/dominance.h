@@ -25,8 +25,6 @@ int dominates_surely(size_t n_obj, const double a[], const double error_a[], con
 /* violation: sum of max(0, g); 0 is feasible. */
 int dominates_constrained(size_t n_obj, const double a[], double violation_a, const double b[], double violation_b);
 
-double violation_of(size_t n_con, const double g[]);
-
 /* Layers of F (n, n_obj), row-major: rank[i] = 0 of the nondominated, 1 of those that only rank 0 dominates, ...
  * Returns the number of layers. violation (n) may be NULL. scratch holds 3 n numbers. */
 size_t nondominated_sort(size_t n, size_t n_obj, const double F[], const double violation[], size_t rank[],

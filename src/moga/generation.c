@@ -13,8 +13,7 @@ static Status sample_again(Search *s, Err *err)
     latin_hypercube(s->config->seed, (uint32_t)s->generation, s->config->population, p->n_var, p->lower, p->upper,
                     s->pool.X, s->chosen);
     for (size_t i = 0; i < s->config->population; i++) {
-        if (p->repair)
-            p->repair(s->pool.X + i * p->n_var, p->user);
+        problem_repair(p, s->pool.X + i * p->n_var);
         n = batch_add(s, n, s->pool.X + i * p->n_var, KIND_SAMPLED);
     }
     TRY(batch_simulate(s, n, n, err));
@@ -98,7 +97,7 @@ Status generation_next(Search *s, Err *err)
     guide_predict(s, &s->population, 0, 0);
     offspring_make(s, 0);
     const size_t n = choice_make(s);
-    if (n == 0 && (!s->feed || feed_pending(s->feed) == 0))
+    if (n == 0 && queue_pending(s->queue) == 0)
         return sample_again(s, err);
     TRY(batch_simulate(s, n, repeat_some(s, n), err));
     guide_judge(s);
@@ -142,8 +141,7 @@ static void make_allowed(const Problem *p, double x[])
 {
     for (size_t d = 0; d < p->n_var; d++)
         x[d] = fmin(fmax(x[d], p->lower[d]), p->upper[d]);
-    if (p->repair)
-        p->repair(x, p->user);
+    problem_repair(p, x);
 }
 
 Status generation_first(Search *s, Err *err)

@@ -38,8 +38,7 @@ static void breed(Search *s, Population *group, size_t n, uint32_t step)
             double *x = s->child + i * p->n_var;
             mutate_polynomial(&change, p->n_var, p->lower, p->upper, c->mutation_rate / (double)p->n_var,
                               c->mutation_eta, x);
-            if (p->repair)
-                p->repair(x, p->user);
+            problem_repair(p, x);
             population_add(group, x);
         }
     }
@@ -59,8 +58,7 @@ static void add_descended(Search *s)
     guide_descend(s, INFILL_HYPERVOLUME, rays, s->followed, s->descended);
     guide_descend(s, INFILL_PBI, n - rays, s->followed + rays, s->descended + rays * p->n_var);
     for (size_t i = 0; i < n; i++) {
-        if (p->repair)
-            p->repair(s->descended + i * p->n_var, p->user);
+        problem_repair(p, s->descended + i * p->n_var);
         population_add(&s->offspring, s->descended + i * p->n_var);
     }
 }
@@ -68,11 +66,10 @@ static void add_descended(Search *s)
 /* What is asked for already stands behind the offspring, as the surface sees it now. */
 static void add_pending(Search *s)
 {
-    Asked asked;
-    const size_t first = s->offspring.n, most = s->came_max, n = feed_pending(s->feed);
+    const size_t first = s->offspring.n, most = s->came_max, n = queue_pending(s->queue);
     s->n_pending = n < most ? n : most;
     for (size_t i = 0; i < s->n_pending; i++)
-        population_add(&s->offspring, feed_design(s->feed, i, &asked));
+        population_add(&s->offspring, queue_design(s->queue, i).x);
     guide_predict(s, &s->offspring, first, 1);
 }
 
@@ -116,6 +113,5 @@ void offspring_make(Search *s, int plainly)
         guide_predict(s, &s->offspring, 0, 1);
     }
     add_plain(s, guided && guide_plain(s) == 0 ? 0 : s->config->population);
-    if (s->feed)
-        add_pending(s);
+    add_pending(s);
 }

@@ -38,18 +38,15 @@ int repeat_tells_of_luck(const Search *s)
 static size_t n_pending_repeats(const Search *s)
 {
     size_t n = 0;
-    Asked asked;
-    for (size_t i = 0; i < batch_pending(s); i++) {
-        feed_design(s->feed, i, &asked);
-        n += asked.kind == KIND_REPEAT;
-    }
+    for (size_t i = 0; i < queue_pending(s->queue); i++)
+        n += queue_design(s->queue, i).kind == KIND_REPEAT;
     return n;
 }
 
 /* Simulations that are left to be asked for. */
 static size_t room_of(const Search *s)
 {
-    const size_t asked = s->archive.n + batch_pending(s);
+    const size_t asked = s->archive.n + queue_pending(s->queue);
     return s->config->max_evals > asked ? s->config->max_evals - asked : 0;
 }
 
@@ -113,7 +110,7 @@ static size_t pick(const Search *s)
         const int comes_first = best == a->n || a->replicates[row] < a->replicates[best] ||
                                 (a->replicates[row] == a->replicates[best] && s->wins[row] > s->wins[best]);
         if (s->wins[row] > 0 && a->replicates[row] < s->config->replicates_max && comes_first &&
-            !(s->feed && feed_has(s->feed, a->X + row * a->n_var)))
+            !queue_has(s->queue, a->X + row * a->n_var))
             best = row;
     }
     return best;
@@ -147,7 +144,7 @@ static size_t lesser(size_t a, size_t b)
 
 size_t repeat_some(Search *s, size_t n)
 {
-    const size_t room = lesser(s->batch_max, room_of(s)), so_far = s->archive.n + batch_pending(s) + n;
+    const size_t room = lesser(s->batch_max, room_of(s)), so_far = s->archive.n + queue_pending(s->queue) + n;
     return append(s, n, lesser(room, n + repeats_left(s, so_far, REPLICATE_EARLY)));
 }
 

@@ -1,7 +1,6 @@
 #include "moga/searching.h"
 
 #include <math.h>
-#include <pthread.h>
 #include <stdlib.h>
 
 #include "base/carve.h"
@@ -104,7 +103,7 @@ static int report(Search *s, int is_last, ObserveFn observe, void *user)
         .is_aside = s->aside == ASIDE_YES,
         .waited_s = s->waited_s,
         .surrogate_s = s->surrogate_s,
-        .is_asynchronous = s->feed != NULL,
+        .is_asynchronous = s->config->asynchronous != 0,
         .state = pack_finished(&s->state) ? s->state.bytes : NULL,
         .n_state = s->state.n,
     };
@@ -127,45 +126,13 @@ static Status run_loop(Search *s, const SearchStart *start, ObserveFn observe, v
         if (report(s, *reason != STOP_NONE, observe, user) && *reason == STOP_NONE)
             *reason = STOP_ASKED;
     }
-    if (!s->feed || feed_pending(s->feed) == 0 || *reason == STOP_ASKED)
+    if (queue_pending(s->queue) == 0 || *reason == STOP_ASKED)
         return STATUS_OK;
     s->generation++;
     TRY(generation_last(s, err));
     TRY(widen(s, err));
     report(s, 1, observe, user);
     return STATUS_OK;
-}
-
-/* -- asynchronous: simulation has a thread of its own, which makes as many more as it wants ------------------------ */
-
-typedef struct {
-    const Problem *problem;
-    Feed *feed;
-    Status status;
-    Err err;
-} Stream;
-
-static void *simulate(void *user)
-{
-    Stream *t = user;
-    t->status = t->problem->stream(t->feed, t->problem->user, &t->err);
-    feed_close(t->feed);
-    return NULL;
-}
-
-static Status run_beside(Search *s, const SearchStart *start, ObserveFn observe, void *user, StopReason *reason,
-                         Err *err)
-{
-    Stream stream = {.problem = s->problem, .feed = s->feed};
-    pthread_t thread;
-    if (pthread_create(&thread, NULL, simulate, &stream) != 0)
-        return fail(err, STATUS_NO_MEMORY, "no thread for the simulations");
-    const Status status = run_loop(s, start, observe, user, reason, err);
-    feed_close(s->feed);
-    pthread_join(thread, NULL);
-    if (stream.status != STATUS_OK && (status == STATUS_OK || status == STATUS_STOPPED))
-        return fail(err, stream.status, "%s", stream.err.text);
-    return status;
 }
 
 static Status check(const Problem *p, const SearchConfig *c, Err *err)
@@ -192,9 +159,9 @@ static void layout(Search *s, size_t n_pool, Carve *c)
     s->descended = carve(c, n_pool * p->n_var, sizeof(double));
     s->foreseen = carve(c, s->came_max * p->n_obj, sizeof(double));
     s->child = carve(c, 2 * p->n_var, sizeof(double));
+    s->note = carve(c, NOTE_FORESEEN + p->n_obj + p->n_con, sizeof(double));
     s->X = carve(c, s->came_max * p->n_var, sizeof(double));
     s->F = carve(c, s->came_max * p->n_obj, sizeof(double));
-    s->G = carve(c, s->came_max * p->n_con, sizeof(double));
     s->ok = carve(c, s->came_max, 1);
     s->kind = carve(c, s->came_max, 1);
     s->way = carve(c, s->came_max + 1, 1);
@@ -217,7 +184,7 @@ static Status create(Search *s, Err *err)
 {
     const Problem *p = s->problem;
     const size_t population = s->config->population, initial = s->config->n_given + generation_samples(s);
-    const size_t lead = s->config->asynchronous && p->stream ? batch_lead_max(s->config, p->n_workers) : 0;
+    const size_t lead = batch_lead_max(s->config, p->n_workers);
     const size_t n_pool = (initial > 5 * population ? initial : 5 * population) + 2 * lead;
     const size_t most = s->config->max_evals > 4 ? s->config->max_evals : 4; /* centres there can ever be */
     const size_t centres = s->config->surrogate_max < most ? s->config->surrogate_max : most;
@@ -237,8 +204,6 @@ static Status create(Search *s, Err *err)
     TRY(population_create(&s->population, 2 * population + lead, p->n_var, p->n_obj, err));
     TRY(population_create(&s->offspring, n_pool, p->n_var, p->n_obj, err));
     TRY(population_create(&s->pool, n_pool, p->n_var, p->n_obj, err));
-    if (s->config->asynchronous && p->stream)
-        TRY(feed_create(&s->feed, p->n_var, p->n_obj, p->n_con, err));
     Carve c = {0};
     layout(s, n_pool, &c);
     s->store = carve_store(&c);
@@ -262,11 +227,21 @@ static void release(Search *s)
     population_free(&s->population);
     population_free(&s->offspring);
     population_free(&s->pool);
-    feed_free(s->feed);
     free(s->state.bytes);
     free(s->wins);
     free(s->reported);
     free(s->store);
+}
+
+static Status open_queue(Search *s, const SearchStart *start, Err *err)
+{
+    const int asynchronous = s->config->asynchronous;
+    const size_t n_before = start ? start->n + (asynchronous ? start->n_later : 0) : 0;
+    TRY(queue_open(&s->queue, s->problem, asynchronous ? QUEUE_AS_ARRIVED : QUEUE_AS_ASKED,
+                   NOTE_FORESEEN + s->problem->n_obj, (long)n_before, err));
+    if (start)
+        queue_know(s->queue, start->n_later, start->row + start->n);
+    return STATUS_OK;
 }
 
 Status search_run(const Problem *problem, const SearchConfig *config, ObserveFn observe, void *user, StopReason *reason,
@@ -284,8 +259,10 @@ Status search_resume(const Problem *problem, const SearchConfig *config, const S
     s.start = clock_seconds();
     Status status = create(&s, err);
     if (status == STATUS_OK)
-        status = s.feed ? run_beside(&s, start, observe, user, reason, err)
-                        : run_loop(&s, start, observe, user, reason, err);
+        status = open_queue(&s, start, err);
+    if (status == STATUS_OK)
+        status = run_loop(&s, start, observe, user, reason, err);
+    queue_close(s.queue);
     release(&s);
     return status;
 }

@@ -27,9 +27,10 @@
  *               range, parents, survivors and what is to be beaten are compared by estimates, means that the surface
  *               has corrected within their errors (moga/noise.h). A spread below a thousandth of the range ends the
  *               repeats
- * Threads       the problem's evaluate gets one call per generation with the whole batch; set BLAS to one thread
- * Asynchronous  no thread waits for the slowest of a batch: the problem's own threads take one design after the other,
- *               and the next batch is chosen while the last designs of this one wait or are simulated. Those count as
+ * Threads       simulations go through a queue (evaluate/queue.h) to as many workers as the problem has; a batch is
+ *               asked for, then taken in that order. Set BLAS to one thread
+ * Asynchronous  the same queue in the order of arrival: no worker waits for the slowest of a batch, and the next one is
+ *               chosen while the last designs of this one wait or are simulated. Those count as
  *               what the surface predicts, so that no place is chosen twice. A generation ends with the first
  *               results that arrive, all but `lead` of those that are asked for; lead is 0 at one worker, else the
  *               workers and a quarter of a batch more. Rows of the archive are in the order of arrival, and a run
@@ -47,9 +48,8 @@
 
 #include <stdint.h>
 
-#include "evaluate/evaluation.h"
+#include "evaluate/problem.h"
 #include "moga/options.h"
-#include "moga/problem.h"
 
 typedef struct {
     uint32_t seed;
@@ -62,7 +62,7 @@ typedef struct {
     size_t n_given;
     SurrogateUse surrogate;
     SelectionKind selection;
-    int asynchronous;          /* where the problem can; see above */
+    int asynchronous;
     double repeats;            /* of a noisy problem: share of max_evals that is spent on designs simulated again */
     size_t replicates_min;     /* ... of each design that is reported to be on the front */
     size_t replicates_max;     /* ... of each design, the first included */
@@ -105,14 +105,12 @@ typedef struct {
     size_t n_state;
 } SearchView;
 
-/* A moment to go on from: what the view had at the end of a generation, F and G being its Y and H. All of it is only
- * read. */
+/* A moment to go on from: the evaluations at the end of a generation, in the order of the view, and the state that it
+ * had. All of it is only read. */
 typedef struct {
-    size_t n, n_later; /* n_later: rows behind the n, whose results came after the state was saved; asynchronous only */
-    const double *X, *F, *G;
-    const unsigned char *ok, *kind;
-    const size_t *generation; /* (n) */
-    const void *state;        /* NULL: n is 0, none was saved */
+    size_t n, n_later; /* n_later: rows behind the n that came after the state was saved (evaluate/queue.h: known) */
+    const Evaluation *row; /* (n + n_later) */
+    const void *state;     /* NULL: n is 0, none was saved */
     size_t n_state;
 } SearchStart;
 

@@ -21,7 +21,7 @@
 #include "moga/archive.h"
 #include "moga/constants.h"
 #include "moga/directions.h"
-#include "moga/feed.h"
+#include "evaluate/queue.h"
 #include "moga/population.h"
 #include "moga/infill.h"
 #include "moga/search.h"
@@ -36,6 +36,10 @@ typedef struct {
     double credit[2], chance[2];
 } Rivals;
 
+/* What a design carries through the queue: whether its objectives were predicted when it was asked for, the InfillKind
+ * that chose it, then the prediction (n_obj). */
+enum { NOTE_FORETOLD, NOTE_WAY, NOTE_FORESEEN };
+
 typedef enum { ASIDE_OPEN, ASIDE_NO, ASIDE_YES } Aside;
 
 typedef struct {
@@ -48,9 +52,9 @@ typedef struct {
     Surrogate *surrogate;
     Population population, pool, offspring;
     size_t generation, n_predicted, batch_max;
-    size_t n_came, came_max;       /* results that this generation took in, first in X, F, G, ok; most of them */
-    size_t n_pending;              /* the last of the offspring: asked for already */
-    Feed *feed;                    /* NULL: in batches */
+    size_t n_came, came_max; /* results that this generation took in, first in X, F, ok; most of them */
+    size_t n_pending;        /* the last of the offspring: asked for already */
+    Queue *queue;
     double simulating_s, guided_s; /* wall time of this session: in the simulator, of our own while guided */
     size_t n_timed, n_guided;      /* simulations in these times */
     double waited_s, surrogate_s;  /* wall time of this session: for simulations, at the surface */
@@ -64,7 +68,8 @@ typedef struct {
     size_t *followed;              /* (wishes) in the order of this generation */
     double *descended;             /* (pool, n_var) */
     double *child;                 /* (2, n_var) */
-    double *X, *F, *G;             /* (batch) of one call of evaluate */
+    double *note;                  /* (NOTE_FORESEEN + n_obj), n_con more for scratch */
+    double *X, *F;                 /* (came) of one batch, as it comes back */
     unsigned char *ok, *foretold, *kind, *way; /* (batch) way: InfillKind of what the surface chose */
     size_t *draws;                             /* (batch) answers that there are already: 0 of new designs */
     unsigned char *allowed,
@@ -97,7 +102,6 @@ size_t batch_size(const Search *s);
 Status batch_simulate(Search *s, size_t n_new, size_t n, Err *err);
 Status batch_finish(Search *s, Err *err); /* asynchronous: only what is under way */
 size_t batch_lead_max(const SearchConfig *c, size_t n_workers);
-size_t batch_pending(const Search *s);                       /* asynchronous: asked for, and not in the archive yet */
 void batch_join(Search *s, Population *group, size_t first); /* simulated designs of the rows first.. join the group */
 
 /* guide.c */

@@ -1,6 +1,32 @@
 #include "moga/searching.h"
 
-enum { STATE_VERSION = 6 };
+enum { STATE_VERSION = 7 };
+
+/* Designs that are asked for and not simulated yet. */
+static void pack_pending(Search *s, Pack *p)
+{
+    const size_t n_var = s->problem->n_var, n_note = NOTE_FORESEEN + s->problem->n_obj;
+    size_t n = queue_pending(s->queue);
+    pack_size(p, &n, SIZE_MAX / 2);
+    for (size_t i = 0; i < n && !p->faulty; i++) {
+        Asked asked = {.x = s->child, .note = s->note};
+        size_t kind;
+        if (!p->reading) {
+            asked = queue_design(s->queue, i);
+            memcpy(s->child, asked.x, n_var * sizeof *s->child);
+            memcpy(s->note, asked.note, n_note * sizeof *s->note);
+        }
+        kind = asked.kind;
+        pack(p, s->child, n_var * sizeof *s->child);
+        pack(p, s->note, n_note * sizeof *s->note);
+        pack_size(p, &asked.repeat, SIZE_MAX / 2);
+        pack_size(p, &kind, KIND_COUNT - 1);
+        asked.kind = (EvaluationKind)kind;
+        p->faulty = p->faulty || !(s->note[NOTE_WAY] >= 0.0 && s->note[NOTE_WAY] < INFILL_KINDS);
+        if (p->reading && !p->faulty)
+            p->faulty = queue_ask(s->queue, &asked, &(Err){0}) != STATUS_OK;
+    }
+}
 
 /* All that the next generation takes from the earlier ones, beside the archive. */
 static void state_pack(Search *s, Pack *p)
@@ -20,8 +46,7 @@ static void state_pack(Search *s, Pack *p)
     pack_size(p, &s->aside, ASIDE_YES);
     population_pack(&s->population, p, s->archive.n);
     surrogate_pack(s->surrogate, p);
-    if (s->feed)
-        feed_pack(s->feed, p);
+    pack_pending(s, p);
 }
 
 void state_save(Search *s)
@@ -34,14 +59,15 @@ void state_save(Search *s)
 Status state_restore(Search *s, const SearchStart *start, Err *err)
 {
     const Problem *p = s->problem;
-    for (size_t i = 0; i < start->n; i++)
-        TRY(archive_insert(&s->archive, 1, start->X + i * p->n_var, start->F + i * p->n_obj,
-                           p->n_con > 0 ? start->G + i * p->n_con : NULL, start->ok + i, start->kind[i],
-                           start->generation[i], err));
+    double *f = s->note + NOTE_FORESEEN, *g = f + p->n_obj;
+    for (size_t i = 0; i < start->n; i++) {
+        const Evaluation *e = &start->row[i];
+        const unsigned char ok = e->outcome == OUTCOME_OK;
+        problem_judge(p, e, f, g);
+        TRY(archive_insert(&s->archive, 1, e->x, f, p->n_con > 0 ? g : NULL, &ok, (unsigned char)e->kind,
+                           (size_t)e->generation, err));
+    }
     archive_update_noise(&s->archive);
-    if (s->feed)
-        feed_replay(s->feed, start->n_later, start->X + start->n * p->n_var, start->F + start->n * p->n_obj,
-                    start->G ? start->G + start->n * p->n_con : NULL, start->ok + start->n, start->kind + start->n);
     if (!start->state)
         return STATUS_OK;
     Pack state = {.bytes = (unsigned char *)(uintptr_t)start->state, .n = start->n_state, .reading = 1};

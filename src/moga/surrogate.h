@@ -15,7 +15,7 @@
 #include "moga/archive.h"
 #include "moga/infill.h"
 #include "moga/population.h"
-#include "moga/problem.h"
+#include "evaluate/problem.h"
 #include "rbf/rbf.h"
 
 typedef struct Surrogate Surrogate;

@@ -31,6 +31,5 @@ void cube_to(const Problem *p, const double u[], double x[])
 {
     for (size_t d = 0; d < p->n_var; d++)
         x[d] = fmin(fmax(p->lower[d] + u[d] * (p->upper[d] - p->lower[d]), p->lower[d]), p->upper[d]);
-    if (p->repair)
-        p->repair(x, p->user);
+    problem_repair(p, x);
 }

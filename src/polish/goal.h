@@ -6,7 +6,7 @@
 #ifndef IMTET_POLISH_GOAL_H
 #define IMTET_POLISH_GOAL_H
 
-#include "moga/problem.h"
+#include "evaluate/queue.h"
 
 typedef struct {
     const double *weight; /* (n_obj) */

@@ -18,6 +18,7 @@ static const double MOVED = 0.5;        /* share of the variables that a proposa
 static const double LEAST_ERROR = 1e-5; /* of a prediction, by the objective's value at the start */
 
 typedef struct {
+    Queue *queue;
     const Problem *problem;
     const LocalConfig *config;
     LocalResult *result;
@@ -195,7 +196,7 @@ static Status do_round(Local *l, Err *err)
     TRY(fit(l, err));
     for (size_t i = 0; i < n; i++)
         TRY(propose(l, ldexp(l->trust, -(int)i), l->X + i * p->n_var, err));
-    TRY(p->evaluate(n, l->X, NULL, l->F_new, l->G_new, ok, p->user, err));
+    TRY(queue_evaluate(l->queue, n, l->X, NULL, l->F_new, l->G_new, ok, err));
     const size_t found = take(l, n, ok);
     l->trust = found < LOCAL_BATCH ? fmin(ldexp(l->trust, 1 - (int)found), TRUST_MOST) : SHRINK * l->trust;
     return STATUS_OK;
@@ -246,10 +247,12 @@ static void take_known(Local *l)
     l->value = goal_value(&l->config->goal, m, l->result->f);
 }
 
-Status local_run(const Problem *problem, const LocalConfig *config, LocalResult *result, Err *err)
+Status local_run(Queue *queue, const LocalConfig *config, LocalResult *result, Err *err)
 {
     const double start = clock_seconds();
-    Local l = {.problem = problem,
+    const Problem *problem = queue_problem(queue);
+    Local l = {.queue = queue,
+               .problem = problem,
                .config = config,
                .result = result,
                .n_max = config->known.n + config->max_evals,

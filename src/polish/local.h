@@ -13,7 +13,7 @@
  *
  * Guards      a failed evaluation is never believed; the answer is never worse than the start
  * Repeatable  same numbers for the same seed; max_seconds is looked at between rounds
- * Threads     call it from one thread; evaluate may share a batch out, the numbers do not depend on it
+ * Threads     call it from one thread; the queue shares a batch out, the numbers do not depend on how many work
  * Sources     Schonlau, Welch and Jones, Global versus local search in constrained optimization of computer models,
  *             1998 (the product); Regis and Shoemaker, J. Global Optim. 37 (2007) 113-135 (boxes that grow and
  *             shrink); Regis and Shoemaker, Eng. Optim. 45 (2013) 529-555 (some of the variables at a time). */
@@ -48,6 +48,6 @@ typedef struct {
 } LocalResult;
 
 /* With fewer known designs than variables there is no surface, and nothing is tried. */
-Status local_run(const Problem *problem, const LocalConfig *config, LocalResult *result, Err *err);
+Status local_run(Queue *queue, const LocalConfig *config, LocalResult *result, Err *err);
 
 #endif

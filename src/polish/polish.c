@@ -24,6 +24,7 @@ enum { N_METHODS = sizeof METHODS / sizeof METHODS[0] };
 static const double WALL = 1e3, PENALTY = 1e2, MARGIN = 5e-3, FIRST_STEP = 0.02;
 
 typedef struct {
+    Queue *queue;
     const Problem *problem;
     const PolishConfig *config;
     PolishResult *result;
@@ -94,7 +95,7 @@ static void evaluate(Polish *p, const double u[])
     }
     memcpy(p->u, u, q->n_var * sizeof *u);
     cube_to(q, u, p->x);
-    p->status = q->evaluate(1, p->x, NULL, p->f, p->g, &ok, q->user, p->err);
+    p->status = queue_evaluate(p->queue, 1, p->x, NULL, p->f, p->g, &ok, p->err);
     p->known = 1;
     p->ok = p->status == STATUS_OK && ok;
     for (size_t k = 0; k < q->n_obj; k++)
@@ -197,14 +198,19 @@ static void run_method(Polish *p, const Method *m, double u[])
     nlopt_optimize(p->opt, u, &unused); /* whatever it says: the best was kept on the way */
 }
 
-Status polish_run(const Problem *problem, const PolishConfig *config, const double start[], PolishResult *result,
-                  Err *err)
+Status polish_run(Queue *queue, const PolishConfig *config, const double start[], PolishResult *result, Err *err)
 {
     const Method *method = NULL;
+    const Problem *problem = queue_problem(queue);
     const size_t n = problem->n_var, m = problem->n_obj;
     TRY(find_method(config->algorithm, &method, err));
-    Polish p = {
-        .problem = problem, .config = config, .result = result, .least = -INFINITY, .status = STATUS_OK, .err = err};
+    Polish p = {.queue = queue,
+                .problem = problem,
+                .config = config,
+                .result = result,
+                .least = -INFINITY,
+                .status = STATUS_OK,
+                .err = err};
     result->n_evaluated = result->n_failed = 0;
     double *store = calloc(3 * n + 3 * m + 2 * problem->n_con + 1, sizeof *store);
     p.opt = nlopt_create(method->algorithm, (unsigned)n);

@@ -4,7 +4,7 @@
  * Guards      a failed evaluation is a finite wall, never NaN or Inf; the answer is the best allowed design that was
  *             seen, whatever NLopt returns; evaluations and seconds are counted here, not by NLopt
  * Start       its own evaluation counts as the first; it is always allowed, so the answer is never worse than it
- * Threads     evaluates one design at a time from the calling thread */
+ * Threads     asks the queue for one design at a time */
 #ifndef IMTET_POLISH_POLISH_H
 #define IMTET_POLISH_POLISH_H
 
@@ -29,7 +29,6 @@ typedef struct {
 Status polish_knows(const char *algorithm, Err *err);
 
 /* Fails where the start itself cannot be evaluated. */
-Status polish_run(const Problem *problem, const PolishConfig *config, const double start[], PolishResult *result,
-                  Err *err);
+Status polish_run(Queue *queue, const PolishConfig *config, const double start[], PolishResult *result, Err *err);
 
 #endif

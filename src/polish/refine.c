@@ -7,7 +7,7 @@
 #include "base/clock.h"
 #include "polish/local.h"
 #include "polish/polish.h"
-#include "simulator/subject.h"
+#include "simulator/adapter.h"
 #include "settings/settings.h"
 
 enum { CENTRES_MAX = 150, LOCAL_MAX = 600 /* designs that the surface tries: a fit costs their cube */ };
@@ -19,7 +19,8 @@ typedef struct {
     const Run *run;
     const RefineConfig *config;
     const double *x; /* (n_var) of the design */
-    Subject *subject;
+    Adapter *adapter;
+    Queue *queue;                                                           /* to its simulator */
     double f[2 * OBJECTIVES_MAX], spread[2 * OBJECTIVES_MAX], violation[2]; /* of its first and last answer, natural */
     double weight[OBJECTIVES_MAX], slack[OBJECTIVES_MAX], bound[OBJECTIVES_MAX]; /* of minimised objectives */
     long members;                                                                /* of a design that is tried */
@@ -28,32 +29,40 @@ typedef struct {
 
 /* -- the simulator ------------------------------------------------------------------------------------------------- */
 
-/* The first answer since the subject was opened and the last one are kept. */
-static Status hear(const Simulation *simulation, void *user, Err *err)
+static void close_simulator(Refine *r)
 {
-    Refine *r = user;
-    const size_t m = r->run->schema.n_obj, i = simulation->number > 1 ? 1 : 0;
-    (void)err;
-    memcpy(r->f + i * m, simulation->f, m * sizeof *r->f);
-    memcpy(r->spread + i * m, simulation->spread, m * sizeof *r->spread);
-    r->violation[i] = simulation->violation;
-    return STATUS_OK;
+    queue_close(r->queue);
+    adapter_close(r->adapter);
+    r->queue = NULL;
+    r->adapter = NULL;
 }
 
-static int may_go_on(void *user)
-{
-    const RefineConfig *c = ((const Refine *)user)->config;
-    return !c->go_on || c->go_on(c->user);
-}
-
-static Status open_subject(Refine *r, long members, Err *err)
+static Status open_simulator(Refine *r, long members, Err *err)
 {
     Settings s = *r->run->settings;
     s.sim.replicates = members;
-    subject_close(r->subject);
-    r->subject = NULL;
-    TRY(subject_open(&r->subject, &s, err));
-    subject_observe(r->subject, &(Observer){.go_on = may_go_on, .done = hear, .user = r}, 0);
+    close_simulator(r);
+    TRY(adapter_open(&r->adapter, &s, err));
+    adapter_observe(r->adapter, &(Observer){.go_on = r->config->go_on, .user = r->config->user});
+    return queue_open(&r->queue, adapter_problem(r->adapter), QUEUE_AS_ASKED, 0, 0, err);
+}
+
+/* Both designs, or the first alone: natural results into r, minimised objectives into F (n, n_obj). */
+static Status evaluate(Refine *r, size_t n, const double *const designs[], size_t repeat, double F[],
+                       unsigned char ok[], Err *err)
+{
+    const size_t m = r->run->schema.n_obj;
+    Finished done;
+    for (size_t i = 0; i < n; i++)
+        TRY(queue_ask(r->queue, &(Asked){.x = designs[i], .repeat = repeat}, err));
+    for (size_t i = 0; i < n; i++) {
+        TRY(queue_next(r->queue, &done, err));
+        ok[i] = done.evaluation->outcome == OUTCOME_OK;
+        r->violation[i] = done.evaluation->violation;
+        memcpy(r->f + i * m, done.evaluation->f, m * sizeof *r->f);
+        memcpy(r->spread + i * m, done.evaluation->sd, m * sizeof *r->spread);
+        memcpy(F + i * m, done.f, m * sizeof *F);
+    }
     return STATUS_OK;
 }
 
@@ -82,17 +91,15 @@ static void set_goal(Refine *r, const double f[])
 /* The design's own objectives f; what is wanted follows from them. */
 static Status begin(Refine *r, double f[], Refined *out, Err *err)
 {
-    double G[OBJECTIVES_MAX];
     unsigned char ok = 0;
-    TRY(open_subject(r, r->config->members, err));
-    const Problem *p = subject_problem(r->subject);
-    TRY(p->evaluate(1, r->x, NULL, f, G, &ok, p->user, err));
+    TRY(open_simulator(r, r->config->members, err));
+    TRY(evaluate(r, 1, &r->x, 0, f, &ok, err));
     count(1, 0, r->config->members, out);
     if (!ok)
         return fail(err, STATUS_BAD_DATA, "the design to be polished cannot be evaluated");
     r->members = 1;
     set_goal(r, f);
-    return r->members == r->config->members ? STATUS_OK : open_subject(r, r->members, err);
+    return r->members == r->config->members ? STATUS_OK : open_simulator(r, r->members, err);
 }
 
 /* Designs that may still be tried, so that both can be compared at the end. */
@@ -127,7 +134,7 @@ static int by_distance(const void *a, const void *b)
 static size_t nearest_rows(const Refine *r, Near near[])
 {
     const Run *h = r->run;
-    const Problem *p = subject_problem(r->subject);
+    const Problem *p = adapter_problem(r->adapter);
     size_t n = 0;
     for (size_t i = 0; i < h->table.n; i++) {
         if (!h->place[i].ok || h->table.row[i].kind == KIND_REPEAT)
@@ -148,7 +155,7 @@ static size_t nearest_rows(const Refine *r, Near near[])
 static Status gather_known(const Refine *r, Known *known, Err *err)
 {
     const Run *h = r->run;
-    const Problem *p = subject_problem(r->subject);
+    const Problem *p = adapter_problem(r->adapter);
     Near *near = calloc(h->table.n + 1, sizeof *near);
     double unused[OBJECTIVES_MAX];
     known->X = calloc(CENTRES_MAX * (p->n_var + p->n_obj + 1), sizeof *known->X);
@@ -160,7 +167,7 @@ static Status gather_known(const Refine *r, Known *known, Err *err)
     for (size_t i = 0; i < known->n; i++) {
         const size_t row = near[i].row;
         memcpy(known->X + i * p->n_var, h->table.x + row * p->n_var, p->n_var * sizeof *known->X);
-        subject_judge(r->subject, 1, h->F + row * p->n_obj, known->F + i * p->n_obj, unused);
+        problem_judge(p, &(Evaluation){.f = h->F + row * p->n_obj}, known->F + i * p->n_obj, unused);
         known->noise[i] = 1.0 / (double)(h->table.row[row].replicates > 0 ? h->table.row[row].replicates : 1);
     }
     const int is_there = near && known->X;
@@ -180,7 +187,7 @@ static Status follow_surface(Refine *r, double f[], Refined *out, Err *err)
     LocalResult result = {.x = out->x, .f = f};
     Status status = gather_known(r, &config.known, err);
     if (status == STATUS_OK)
-        status = local_run(subject_problem(r->subject), &config, &result, err);
+        status = local_run(r->queue, &config, &result, err);
     free(config.known.X);
     count(result.n_evaluated, result.n_failed, r->members, out);
     return status;
@@ -202,7 +209,7 @@ static Status polish_simulator(Refine *r, Refined *out, Err *err)
     if (!start)
         return fail(err, STATUS_NO_MEMORY, "no memory for a design");
     memcpy(start, out->x, r->run->schema.n_var * sizeof *start);
-    const Status status = polish_run(subject_problem(r->subject), &config, start, &result, err);
+    const Status status = polish_run(r->queue, &config, start, &result, err);
     free(start);
     count(result.n_evaluated, result.n_failed, r->members, out);
     return status;
@@ -229,25 +236,18 @@ static void judge_gain(const Refine *r, const double F[], Refined *out)
 /* Both designs with members that neither has seen, so that what was picked for its luck is not believed. */
 static Status compare(Refine *r, Refined *out, Err *err)
 {
-    TRY(open_subject(r, r->config->members, err));
-    const Problem *p = subject_problem(r->subject);
-    const size_t m = p->n_obj, draws[2] = {1, 1};
-    double *X = calloc(2 * p->n_var, sizeof *X), F[2 * OBJECTIVES_MAX], G[2 * OBJECTIVES_MAX];
+    const size_t n_var = r->run->schema.n_var, m = r->run->schema.n_obj;
+    double F[2 * OBJECTIVES_MAX];
     unsigned char ok[2] = {0};
-    if (!X)
-        return fail(err, STATUS_NO_MEMORY, "no memory for two designs");
-    memcpy(X, r->x, p->n_var * sizeof *X);
-    memcpy(X + p->n_var, out->x, p->n_var * sizeof *X);
-    const Status status = p->evaluate(2, X, draws, F, G, ok, p->user, err);
-    free(X);
-    TRY(status);
+    TRY(open_simulator(r, r->config->members, err));
+    TRY(evaluate(r, 2, (const double *const[]){r->x, out->x}, 1, F, ok, err));
     count(2, 0, r->config->members, out);
     memcpy(out->f_start, r->f, m * sizeof *r->f);
     memcpy(out->f, r->f + m, m * sizeof *r->f);
     memcpy(out->spread_start, r->spread, m * sizeof *r->spread);
     memcpy(out->spread, r->spread + m, m * sizeof *r->spread);
     out->violation = r->violation[1];
-    out->has_changed = ok[0] && ok[1] && memcmp(r->x, out->x, p->n_var * sizeof *r->x) != 0;
+    out->has_changed = ok[0] && ok[1] && memcmp(r->x, out->x, n_var * sizeof *r->x) != 0;
     if (out->has_changed)
         judge_gain(r, F, out);
     return STATUS_OK;
@@ -287,7 +287,7 @@ Status refine_design(const Run *h, size_t row, const RefineConfig *config, Refin
     Refine r = {.run = h, .config = &used, .x = h->table.x + row * h->schema.n_var, .start = clock_seconds()};
     const Status status = refine(&r, out, err);
     out->seconds = clock_seconds() - r.start;
-    subject_close(r.subject);
+    close_simulator(&r);
     return status;
 }
 

@@ -15,8 +15,8 @@
  * runs whose answers are noisy are refused unless they are of the tower.
  *
  * Ownership  refine_design fills x, f, ... of the caller's Refined; refined_free releases what it allocated
- * Threads    call it from one thread; members and the designs of a round share the subject's threads, the numbers do
- *            not depend on how many */
+ * Threads    call it from one thread; replicates and the designs of a round share the simulator's workers, the
+ *            numbers do not depend on how many */
 #ifndef IMTET_POLISH_REFINE_H
 #define IMTET_POLISH_REFINE_H
 

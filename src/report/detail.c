@@ -6,25 +6,21 @@
 
 #include "base/units.h"
 #include "report/wavelet.h"
-#include "simulator/crew.h"
+#include "simulator/tower.h"
 #include "settings/settings.h"
 
 static const double QUIET = 0.02; /* of the peak displacement */
 
-static Status simulate(const World *w, int n_scenes, const double x[], SimResult results[], Err *err)
+static Status simulate(const Problem *p, size_t n_scenes, const double x[], SimResult results[], Err *err)
 {
     static const SceneKind SCENES[N_SCENES] = {SCENE_IMPACT, SCENE_NO_CORE, SCENE_RIGID};
     SimTask tasks[N_SCENES];
-    Crew *crew;
-    for (int i = 0; i < n_scenes; i++)
+    for (size_t i = 0; i < n_scenes; i++)
         tasks[i] = (SimTask){SCENES[i], x};
-    TRY(crew_create(&crew, w->scene, n_scenes, err));
-    const Status status = crew_run(crew, (size_t)n_scenes, tasks, results, err);
-    crew_free(crew);
-    return status;
+    return tower_simulate(p, n_scenes, tasks, results, err);
 }
 
-static void describe(const World *w, const double x[], Detail *d)
+static void describe(const Scenario *w, const double x[], Detail *d)
 {
     const int n = d->n_floors;
     const double t_base = x[n], t_top = x[n + 1], given = w->options.sim.duration_s;
@@ -76,7 +72,7 @@ static void cut_quiet_end(Detail *d)
             d->history[i].n = n;
 }
 
-static Status take_histories(const World *w, const double x[], Detail *d, Err *err)
+static Status take_histories(const Scenario *w, const double x[], Detail *d, Err *err)
 {
     static const SceneKind SCENES[2] = {SCENE_IMPACT, SCENE_NO_CORE};
     d->spectrum = calloc(2, sizeof *d->spectrum);
@@ -91,8 +87,9 @@ static Status take_histories(const World *w, const double x[], Detail *d, Err *e
     return STATUS_OK;
 }
 
-static Status take_here(const World *w, int n_var, const double x[], const DetailWish *wish, Detail *d, Err *err)
+static Status take_here(const Problem *p, int n_var, const double x[], const DetailWish *wish, Detail *d, Err *err)
 {
+    const Scenario *w = tower_record(tower_of(p), 0);
     double rigid_hz[FLOORS_MAX], mass;
     d->n_floors = scene_n_floors(w->scene);
     d->floor = wish->floor < 0 ? (d->n_floors - 1) / 2 : wish->floor;
@@ -103,36 +100,37 @@ static Status take_here(const World *w, int n_var, const double x[], const Detai
         return fail(err, STATUS_BAD_DATA, "--floor %d: the building has %d", d->floor + 1, d->n_floors);
     describe(w, x, d);
     TRY(scene_frequencies(w->scene, x, d->building_hz, d->core_hz, rigid_hz, &mass, err));
-    TRY(simulate(w, N_SCENES, x, d->result, err));
+    TRY(simulate(p, N_SCENES, x, d->result, err));
     return take_histories(w, x, d, err);
 }
 
 static Status take_elsewhere(const Settings *other, const char *record, const double x[], Elsewhere *e, Err *err)
 {
     Settings s = *other;
-    World w;
+    Problem p;
     SimResult results[2];
     if (strlen(record) >= sizeof s.motion.record)
         return fail(err, STATUS_MISSING, "%.60s...: the path is too long", record);
     snprintf(s.motion.record, sizeof s.motion.record, "%s", record);
-    TRY(world_open(&w, &s, err));
-    const Status status = simulate(&w, 2, x, results, err);
-    snprintf(e->record, sizeof e->record, "%s", w.motion.name);
-    e->pga_g = motion_peak(&w.motion) / GRAVITY;
+    TRY(tower_open(&p, &s, TOWER_SINGLE, 2, err));
+    const Motion *m = &tower_record(tower_of(&p), 0)->motion;
+    const Status status = simulate(&p, 2, x, results, err);
+    snprintf(e->record, sizeof e->record, "%s", m->name);
+    e->pga_g = motion_peak(m) / GRAVITY;
     e->stretch = s.motion.stretch;
     e->with_core = results[0];
     e->no_core = results[1];
-    world_close(&w);
+    problem_close(&p);
     return status;
 }
 
 Status detail_make(const Settings *s, int n_var, const double x[], const DetailWish *wish, Detail *out, Err *err)
 {
-    World w;
+    Problem p;
     memset(out, 0, sizeof *out);
-    TRY(world_open(&w, s, err));
-    Status status = take_here(&w, n_var, x, wish, out, err);
-    world_close(&w);
+    TRY(tower_open(&p, s, TOWER_SINGLE, N_SCENES, err));
+    Status status = take_here(&p, n_var, x, wish, out, err);
+    problem_close(&p);
     if (status == STATUS_OK && wish->n_records > 0) {
         out->elsewhere = calloc(wish->n_records, sizeof *out->elsewhere);
         if (!out->elsewhere)

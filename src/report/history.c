@@ -54,7 +54,7 @@ static void note(const SimSample *sample, void *user)
     h->n++;
 }
 
-static Status follow(const World *world, const Scene *scene, SceneKind kind, const double x[], int floor, History *out,
+static Status follow(const Scenario *world, const Scene *scene, SceneKind kind, const double x[], int floor, History *out,
                      Err *err)
 {
     SimWorker *worker;
@@ -72,7 +72,7 @@ static Status follow(const World *world, const Scene *scene, SceneKind kind, con
     return status;
 }
 
-Status history_run(const World *world, SceneKind kind, const double x[], int floor, History *out, Err *err)
+Status history_run(const Scenario *world, SceneKind kind, const double x[], int floor, History *out, Err *err)
 {
     Scene *scene;
     SceneOptions s = world->options;

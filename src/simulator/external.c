@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 #include "base/clock.h"
+#include "base/list.h"
 #include "simulator/guard.h"
 
 enum { LINE_MAX_BYTES = 1 << 20, READ_BYTES = 1 << 16, WORDS_MAX = 128, GRACE_MS = 1000, LOOK_MS = 200 };
@@ -32,45 +33,19 @@ typedef struct {
     size_t n_line;
     char *request;
     size_t n_request, n_sent;
-    size_t design; /* SIZE_MAX: idle */
+    ExternalAnswer *answer; /* to be filled; NULL: idle */
     long id;
     double asked, deadline;
 } Worker;
 
-struct External {
+typedef struct {
     char *words[WORDS_MAX + 1], *text; /* the command, NULL at its end */
     size_t n_var, n_obj, n_workers;
     double timeout_s;
-    long next_id;
-    Worker *worker;
+    double *lower, *upper; /* (n_var) */
+    Worker *worker;        /* (n_workers) */
     Guard guard;
-    struct pollfd *poll; /* (2 n_workers) */
-};
-
-/* One batch under way, and who works on it. */
-typedef struct {
-    Worker *worker; /* (n_workers) of the External's */
-    struct pollfd *poll;
-    size_t n_workers;
-    size_t n, next, done;
-    const double *X;
-    const long *ids; /* (n) or NULL */
-    double *F;
-    Answer *answers;
-    const Watch *watch;
-    double ending; /* when it was told to stop; 0: it goes on */
-    Status status; /* of the watch */
-    Err *err;
-} Batch;
-
-const char *answer_word(AnswerOutcome outcome)
-{
-    static const char *const words[] = {
-        [ANSWER_OK] = "ok",     [ANSWER_ERROR] = "error",     [ANSWER_NOT_FINITE] = "not_finite",
-        [ANSWER_DEAD] = "dead", [ANSWER_TIMEOUT] = "timeout", [ANSWER_GARBLED] = "garbled",
-    };
-    return words[outcome];
-}
+} External;
 
 /* -- the command --------------------------------------------------------------------------------------------------- */
 
@@ -197,20 +172,17 @@ static ssize_t write_quietly(int fd, const char *text, size_t n)
 
 /* -- one request --------------------------------------------------------------------------------------------------- */
 
-__attribute__((format(printf, 5, 6))) static void settle(Batch *b, Worker *w, AnswerOutcome outcome, int kill_it,
-                                                         const char *format, ...)
+__attribute__((format(printf, 4, 5))) static void settle(Worker *w, Outcome outcome, int kill_it, const char *format,
+                                                         ...)
 {
-    Answer *a = &b->answers[w->design];
+    ExternalAnswer *a = w->answer;
     va_list list;
     va_start(list, format);
     vsnprintf(a->reason, sizeof a->reason, format, list);
     va_end(list);
     a->outcome = outcome;
     a->seconds = clock_seconds() - w->asked;
-    b->done++;
-    if (b->status == STATUS_OK)
-        b->status = watch_done(b->watch, w->design, b->err);
-    w->design = SIZE_MAX;
+    w->answer = NULL;
     if (kill_it)
         worker_kill(w);
 }
@@ -234,15 +206,15 @@ static Status write_request(External *e, Worker *w, const double x[], Err *err)
     return STATUS_OK;
 }
 
-static Status give_design(External *e, Worker *w, Batch *b, Err *err)
+static Status send_request(External *e, Worker *w, const Task *task, Err *err)
 {
     if (w->pid && waitpid(w->pid, NULL, WNOHANG) == w->pid)
-        worker_forget(w); /* it ended after its last answer: nobody's fault */
+        worker_forget(w); /* it ended after its last answer: no fault of any design */
     if (w->pid == 0)
         TRY(worker_start(e, w, err));
-    w->id = b->ids ? b->ids[b->next] : e->next_id++;
-    TRY(write_request(e, w, b->X + b->next * e->n_var, err));
-    w->design = b->next++;
+    w->id = task->id;
+    TRY(write_request(e, w, task->x, err));
+    w->answer = task->result;
     w->asked = clock_seconds();
     w->deadline = w->asked + e->timeout_s;
     return STATUS_OK;
@@ -293,172 +265,97 @@ static void blank_non_numbers(char *line)
     }
 }
 
-static void take_answer(External *e, Worker *w, Batch *b, char *line, size_t length)
+static void take_answer(const External *e, Worker *w, char *line, size_t length)
 {
     json_error_t error;
     blank_non_numbers(line);
     json_t *o = json_loadb(line, length, 0, &error);
     const json_t *f = json_object_get(o, "f"), *why = json_object_get(o, "error"), *id = json_object_get(o, "id");
     if (!json_is_object(o) || !json_is_integer(id))
-        settle(b, w, ANSWER_GARBLED, 1, "wrote what is no answer: %.60s", line);
+        settle(w, OUTCOME_GARBLED, 1, "wrote what is no answer: %.60s", line);
     else if (json_integer_value(id) != w->id)
-        settle(b, w, ANSWER_GARBLED, 1, "answered id %lld instead of %ld", (long long)json_integer_value(id), w->id);
+        settle(w, OUTCOME_GARBLED, 1, "answered id %lld instead of %ld", (long long)json_integer_value(id), w->id);
     else if (why)
-        settle(b, w, ANSWER_ERROR, 0, "%.120s", json_is_string(why) ? json_string_value(why) : "error");
+        settle(w, OUTCOME_ERROR, 0, "%.120s", json_is_string(why) ? json_string_value(why) : "error");
     else if (!json_is_array(f))
-        settle(b, w, ANSWER_GARBLED, 1, "neither f nor error in the answer: %.60s", line);
-    else if (!take_objectives(e, f, b->F + w->design * e->n_obj))
-        settle(b, w, ANSWER_NOT_FINITE, 0, "f is not %zu finite numbers", e->n_obj);
+        settle(w, OUTCOME_GARBLED, 1, "neither f nor error in the answer: %.60s", line);
+    else if (!take_objectives(e, f, w->answer->f))
+        settle(w, OUTCOME_NOT_FINITE, 0, "f is not %zu finite numbers", e->n_obj);
     else
-        settle(b, w, ANSWER_OK, 0, "%s", "");
+        settle(w, OUTCOME_OK, 0, "%s", "");
     json_decref(o);
 }
 
 /* The first whole line in the buffer is the answer; what follows it waits for the next request, which it spoils. */
-static void look_for_answer(External *e, Worker *w, Batch *b)
+static void look_for_answer(const External *e, Worker *w)
 {
-    for (char *end; w->design != SIZE_MAX && (end = memchr(w->line, '\n', w->n_line)) != NULL;) {
+    for (char *end; w->answer && (end = memchr(w->line, '\n', w->n_line)) != NULL;) {
         const size_t length = (size_t)(end - w->line), used = length + 1;
         *end = 0;
         if (strspn(w->line, " \t\r") < length)
-            take_answer(e, w, b, w->line, length);
+            take_answer(e, w, w->line, length);
         memmove(w->line, w->line + used, w->n_line - used);
         w->n_line -= used;
     }
-    if (w->design != SIZE_MAX && w->n_line == LINE_MAX_BYTES)
-        settle(b, w, ANSWER_GARBLED, 1, "wrote a line of more than %d bytes", LINE_MAX_BYTES);
+    if (w->answer && w->n_line == LINE_MAX_BYTES)
+        settle(w, OUTCOME_GARBLED, 1, "wrote a line of more than %d bytes", LINE_MAX_BYTES);
 }
 
-static void read_more(External *e, Worker *w, Batch *b)
+static void read_more(const External *e, Worker *w)
 {
     const size_t room = LINE_MAX_BYTES - w->n_line;
     const ssize_t n = read(w->out, w->line + w->n_line, room < READ_BYTES ? room : READ_BYTES);
     if (n > 0) {
         w->n_line += (size_t)n;
-        look_for_answer(e, w, b);
+        look_for_answer(e, w);
     } else if (n == 0 || (errno != EAGAIN && errno != EINTR)) {
-        settle(b, w, ANSWER_DEAD, 1, "the worker ended without an answer");
+        settle(w, OUTCOME_DEAD, 1, "the worker ended without an answer");
     }
 }
 
-/* -- a batch ------------------------------------------------------------------------------------------------------- */
+/* -- as a simulator ------------------------------------------------------------------------------------------------ */
 
-static void look_after(External *e, Worker *w, const struct pollfd *in, const struct pollfd *out, Batch *b)
+static void wait_for(const External *e, Worker *w)
 {
-    if (w->design != SIZE_MAX && in->revents)
+    struct pollfd ends[2] = {{w->n_sent < w->n_request ? w->in : -1, POLLOUT, 0}, {w->out, POLLIN, 0}};
+    const double left_ms = 1e3 * (w->deadline - clock_seconds());
+    const int came = poll(ends, 2, left_ms > 0.0 ? (int)fmin(ceil(left_ms), LOOK_MS) : 0) > 0;
+    if (came && ends[0].revents)
         send_more(w);
-    if (w->design != SIZE_MAX && out->revents)
-        read_more(e, w, b);
-    if (w->design != SIZE_MAX && clock_seconds() >= w->deadline)
-        settle(b, w, ANSWER_TIMEOUT, 1, "no answer within %g s", e->timeout_s);
+    if (came && ends[1].revents)
+        read_more(e, w);
+    if (w->answer && clock_seconds() >= w->deadline)
+        settle(w, OUTCOME_TIMEOUT, 1, "no answer within %g s", e->timeout_s);
 }
 
-static void wait_for_workers(const Batch *b)
+static Status simulate(void *self, size_t worker, const Task *task, Err *err)
 {
-    double first = INFINITY;
-    for (size_t i = 0; i < b->n_workers; i++) {
-        const Worker *w = &b->worker[i];
-        const int busy = w->design != SIZE_MAX;
-        b->poll[2 * i] = (struct pollfd){busy && w->n_sent < w->n_request ? w->in : -1, POLLOUT, 0};
-        b->poll[2 * i + 1] = (struct pollfd){busy ? w->out : -1, POLLIN, 0};
-        if (busy)
-            first = fmin(first, w->deadline);
-    }
-    if (!(first < INFINITY))
-        return;
-    const double left_ms = 1e3 * (first - clock_seconds());
-    if (poll(b->poll, 2 * b->n_workers, left_ms > 0.0 ? (int)fmin(ceil(left_ms), LOOK_MS) : 0) <= 0)
-        for (size_t i = 0; i < 2 * b->n_workers; i++)
-            b->poll[i].revents = 0;
-}
-
-/* Idle workers get the next designs, unless it is to end. */
-static Status hand_out(External *e, Batch *b, Err *err)
-{
-    if (b->ending == 0.0 && b->done < b->n && !watch_go_on(b->watch))
-        b->ending = clock_seconds();
-    for (size_t i = 0; i < b->n_workers && b->next < b->n && b->ending == 0.0; i++) {
-        Worker *w = &b->worker[i];
-        if (w->design != SIZE_MAX)
-            continue;
-        TRY(give_design(e, w, b, err));
-        look_for_answer(e, w, b); /* a worker that wrote without being asked */
+    External *e = self;
+    Worker *w = &e->worker[worker];
+    double ending = 0.0; /* since when no more is wanted */
+    TRY(send_request(e, w, task, err));
+    look_for_answer(e, w); /* a worker that wrote without being asked */
+    while (w->answer) {
+        if (ending == 0.0 && !task->may_go_on(task->user))
+            ending = clock_seconds();
+        if (ending > 0.0 && clock_seconds() > ending + LAST_ANSWERS_S) {
+            w->answer = NULL;
+            worker_kill(w);
+            return fail(err, STATUS_STOPPED, "stopped");
+        }
+        wait_for(e, w);
     }
     return STATUS_OK;
 }
 
-/* Whoever still works is killed: its design counts as never asked for. */
-static void drop_all(const Batch *b)
+static void combine(const void *self, const void *parts, Evaluation *evaluation)
 {
-    for (size_t i = 0; i < b->n_workers; i++)
-        if (b->worker[i].design != SIZE_MAX) {
-            b->worker[i].design = SIZE_MAX;
-            worker_kill(&b->worker[i]);
-        }
-}
-
-static int is_over(const Batch *b)
-{
-    return b->done == b->n || b->status != STATUS_OK ||
-           (b->ending > 0.0 && (b->done == b->next || clock_seconds() > b->ending + LAST_ANSWERS_S));
-}
-
-static Status run(External *e, Batch *b)
-{
-    while (!is_over(b)) {
-        TRY(hand_out(e, b, b->err));
-        wait_for_workers(b);
-        for (size_t i = 0; i < b->n_workers; i++)
-            look_after(e, &b->worker[i], &b->poll[2 * i], &b->poll[2 * i + 1], b);
-    }
-    drop_all(b);
-    if (b->status == STATUS_OK && b->done < b->n)
-        return fail(b->err, STATUS_STOPPED, "stopped");
-    return b->status;
-}
-
-Status external_run(External *e, size_t n, const double X[], const long ids[], double F[], Answer answers[],
-                    const Watch *watch, Err *err)
-{
-    return run(e, &(Batch){e->worker, e->poll, e->n_workers, .n = n, .X = X, .ids = ids, .F = F, .answers = answers,
-                           .watch = watch, .err = err});
-}
-
-Status external_ask(External *e, size_t worker, const double x[], long id, double f[], Answer *answer,
-                    const Watch *watch, Err *err)
-{
-    return run(e, &(Batch){e->worker + worker, e->poll + 2 * worker, 1, .n = 1, .X = x, .ids = &id, .F = f,
-                           .answers = answer, .watch = watch, .err = err});
-}
-
-Status external_open(External **out, const char *command, size_t workers, double timeout_s, size_t n_var, size_t n_obj,
-                     Err *err)
-{
-    External *e = calloc(1, sizeof *e);
-    *out = NULL;
-    if (!e)
-        return fail(err, STATUS_NO_MEMORY, "no memory for workers");
-    e->n_var = n_var;
-    e->n_obj = n_obj;
-    e->timeout_s = timeout_s;
-    e->next_id = 1;
-    e->worker = calloc(workers, sizeof *e->worker);
-    e->poll = calloc(2 * workers, sizeof *e->poll);
-    Status status = e->worker && e->poll ? split_command(e, command, err)
-                                         : fail(err, STATUS_NO_MEMORY, "no memory for %zu workers", workers);
-    for (size_t i = 0; status == STATUS_OK && i < workers; i++) {
-        e->worker[i] = (Worker){.guard = &e->guard, .slot = i, .design = SIZE_MAX, .line = malloc(LINE_MAX_BYTES)};
-        e->n_workers = i + 1;
-        if (!e->worker[i].line)
-            status = fail(err, STATUS_NO_MEMORY, "no memory for %zu workers", workers);
-    }
-    if (status == STATUS_OK)
-        status = guard_start(&e->guard, workers, err);
-    if (status == STATUS_OK)
-        *out = e;
-    else
-        external_close(e);
-    return status;
+    const External *e = self;
+    const ExternalAnswer *a = parts;
+    evaluation_set_outcome(evaluation, a->outcome, a->reason);
+    memcpy(evaluation->f, a->f, e->n_obj * sizeof *a->f);
+    evaluation->seconds = a->seconds;
+    evaluation->replicates = 1;
 }
 
 /* Input closed, a moment to end by itself. */
@@ -484,10 +381,9 @@ static void farewell(External *e)
     }
 }
 
-void external_close(External *e)
+static void external_close(void *self)
 {
-    if (!e)
-        return;
+    External *e = self;
     farewell(e);
     for (size_t i = 0; i < e->n_workers; i++) {
         worker_kill(&e->worker[i]);
@@ -496,7 +392,88 @@ void external_close(External *e)
     }
     guard_end(&e->guard);
     free(e->worker);
-    free(e->poll);
+    free(e->lower);
     free(e->text);
     free(e);
+}
+
+static const Simulator EXTERNAL = {simulate, combine, external_close};
+
+/* -- opening ------------------------------------------------------------------------------------------------------- */
+
+/* Number of each of n variables: one for all, or a list. */
+static Status read_bounds(const char *key, const char *list, size_t n, double bounds[], Err *err)
+{
+    const size_t count = list_count(list);
+    char word[64], *end;
+    if (count != 1 && count != n)
+        return fail(err, STATUS_BAD_DATA, "%s: %zu numbers for %zu variables", key, count, n);
+    for (size_t j = 0; j < n; j++) {
+        if (!list_item(list, count == 1 ? 0 : j, word, sizeof word))
+            return fail(err, STATUS_BAD_DATA, "%s: number %zu is missing", key, j + 1);
+        bounds[j] = strtod(word, &end);
+        if (end == word || *end || !isfinite(bounds[j]))
+            return fail(err, STATUS_BAD_DATA, "%s: '%s' is not a number", key, word);
+    }
+    return STATUS_OK;
+}
+
+static Status set_bounds(External *e, const ProblemOptions *o, Err *err)
+{
+    e->lower = calloc(2 * e->n_var, sizeof *e->lower);
+    if (!e->lower)
+        return fail(err, STATUS_NO_MEMORY, "no memory for %zu variables", e->n_var);
+    e->upper = e->lower + e->n_var;
+    TRY(read_bounds("problem.lower", o->lower, e->n_var, e->lower, err));
+    TRY(read_bounds("problem.upper", o->upper, e->n_var, e->upper, err));
+    for (size_t j = 0; j < e->n_var; j++)
+        if (e->lower[j] > e->upper[j])
+            return fail(err, STATUS_BAD_DATA, "problem.lower: %g is above problem.upper = %g (variable %zu)",
+                        e->lower[j], e->upper[j], j + 1);
+    return STATUS_OK;
+}
+
+static Status create_workers(External *e, size_t n, Err *err)
+{
+    e->worker = calloc(n, sizeof *e->worker);
+    for (; e->worker && e->n_workers < n; e->n_workers++) {
+        Worker *w = &e->worker[e->n_workers];
+        *w = (Worker){.guard = &e->guard, .slot = e->n_workers, .line = malloc(LINE_MAX_BYTES)};
+        if (!w->line)
+            break;
+    }
+    return e->n_workers == n ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for %zu workers", n);
+}
+
+static Status create(External *e, const ProblemOptions *o, size_t n_workers, Err *err)
+{
+    TRY(split_command(e, o->command, err));
+    TRY(set_bounds(e, o, err));
+    TRY(create_workers(e, n_workers, err));
+    return guard_start(&e->guard, n_workers, err);
+}
+
+Status external_open(Problem *p, const ProblemOptions *o, size_t n_workers, Err *err)
+{
+    External *e = calloc(1, sizeof *e);
+    if (!e)
+        return fail(err, STATUS_NO_MEMORY, "no memory for workers");
+    e->n_var = (size_t)o->variables;
+    e->n_obj = (size_t)o->objectives;
+    e->timeout_s = o->timeout_s;
+    const Status status = create(e, o, n_workers, err);
+    if (status != STATUS_OK) {
+        external_close(e);
+        return status;
+    }
+    *p = (Problem){.n_var = e->n_var,
+                   .n_obj = e->n_obj,
+                   .lower = e->lower,
+                   .upper = e->upper,
+                   .simulator = &EXTERNAL,
+                   .self = e,
+                   .n_parts = 1,
+                   .part_size = sizeof(ExternalAnswer) + e->n_obj * sizeof(double),
+                   .n_workers = e->n_workers};
+    return STATUS_OK;
 }

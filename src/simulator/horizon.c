@@ -38,7 +38,7 @@ static void note(const SimSample *sample, void *user)
     track->t[track->n++] = sample->t;
 }
 
-static Status follow(const World *world, const double x[], Track *track, Err *err)
+static Status follow(const Scenario *world, const double x[], Track *track, Err *err)
 {
     SimWorker *worker;
     SimResult result;
@@ -73,7 +73,7 @@ static void compare(const Track *a, const Track *b, Horizon *out)
     }
 }
 
-Status horizon_find(const World *world, const double x[], double change, Horizon *out, Err *err)
+Status horizon_find(const Scenario *world, const double x[], double change, Horizon *out, Err *err)
 {
     const size_t n = (size_t)scene_n_floors(world->scene);
     double changed[FLOORS_MAX + 2];

@@ -5,15 +5,15 @@
 #include <string.h>
 #include "settings/settings.h"
 
-static Status build(World *w, Err *err)
+static Status build(Scenario *w, Err *err)
 {
     const Status status = scene_create(&w->scene, &w->options, &w->motion, err);
     if (status != STATUS_OK)
-        world_close(w);
+        scenario_close(w);
     return status;
 }
 
-Status world_open(World *w, const Settings *s, Err *err)
+Status scenario_open(Scenario *w, const Settings *s, Err *err)
 {
     memset(w, 0, sizeof *w);
     w->options = settings_scene(s);
@@ -21,13 +21,13 @@ Status world_open(World *w, const Settings *s, Err *err)
     TRY(motion_open(&w->motion, &s->motion, err));
     const Status status = motion_prepare(&w->motion, s->motion.pga_g, s->motion.stretch, err);
     if (status != STATUS_OK) {
-        world_close(w);
+        scenario_close(w);
         return status;
     }
     return build(w, err);
 }
 
-Status world_open_still(World *w, const Settings *s, Err *err)
+Status scenario_open_still(Scenario *w, const Settings *s, Err *err)
 {
     memset(w, 0, sizeof *w);
     w->options = settings_scene(s);
@@ -39,7 +39,7 @@ Status world_open_still(World *w, const Settings *s, Err *err)
     return build(w, err);
 }
 
-void world_close(World *w)
+void scenario_close(Scenario *w)
 {
     scene_free(w->scene);
     w->scene = NULL;

@@ -1,7 +1,7 @@
 /* simulator/scenario.h -- settings made real: the ground motion read and scaled, the scene built on it.
  *
- * Life cycle  world_open -> ... -> world_close      (a zeroed World may be closed)
- * Ownership   the scene borrows the motion beside it: a World must stay where it was opened */
+ * Life cycle  scenario_open -> ... -> scenario_close      (a zeroed Scenario may be closed)
+ * Ownership   the scene borrows the motion beside it: a Scenario must stay where it was opened */
 #ifndef IMTET_SIMULATOR_SCENARIO_H
 #define IMTET_SIMULATOR_SCENARIO_H
 
@@ -15,12 +15,12 @@ typedef struct {
     MotionOptions record; /* of the motion: as it was asked for */
     Motion motion;
     Scene *scene;
-} World;
+} Scenario;
 
-Status world_open(World *w, const Settings *s, Err *err);
+Status scenario_open(Scenario *w, const Settings *s, Err *err);
 
 /* The same at rest, for questions that no ground motion answers (frequencies). */
-Status world_open_still(World *w, const Settings *s, Err *err);
-void world_close(World *w);
+Status scenario_open_still(Scenario *w, const Settings *s, Err *err);
+void scenario_close(Scenario *w);
 
 #endif

@@ -8,12 +8,6 @@
 #include "simulator/measures.h"
 #include "settings/settings.h"
 
-void verdict_set(Verdict *v, const char *outcome, const char *reason)
-{
-    snprintf(v->outcome, sizeof v->outcome, "%s", outcome);
-    cell_text(v->reason, sizeof v->reason, reason);
-}
-
 static Status allocate(Schema *schema, Err *err)
 {
     schema->column = calloc(schema->n_var + schema->n_obj + schema->n_extra, sizeof *schema->column);

@@ -43,14 +43,4 @@ Status schema_pick_objective(const Schema *schema, const char *where, const char
                              Err *err);
 void schema_free(Schema *schema);
 
-/* What a simulation left behind besides the objectives that the search keeps. */
-typedef struct {
-    char outcome[16], reason[160];
-    double extra[EXTRA_MAX];
-    double seconds; /* that it took */
-} Verdict;
-
-/* The reason becomes a cell of a CSV file (base/cell.h). */
-void verdict_set(Verdict *v, const char *outcome, const char *reason);
-
 #endif

@@ -1,6 +1,10 @@
 #include "simulator/textbook.h"
 
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/random.h"
 
 static double square_off_middle(size_t n_var, size_t n_obj, const double x[])
 {
@@ -148,4 +152,74 @@ const Textbook *textbook(size_t i)
 double textbook_upper(const Textbook *t, size_t j)
 {
     return t->widening ? 2.0 * (double)(j + 1) : 1.0;
+}
+
+/* -- as a simulator ------------------------------------------------------------------------------------------------ */
+
+typedef struct {
+    const Textbook *function;
+    size_t n_var, n_obj;
+    double noise;
+    uint32_t seed;
+    double lower[TEXTBOOK_VAR_MAX], upper[TEXTBOOK_VAR_MAX];
+} Exercise;
+
+static Status simulate(void *self, size_t worker, const Task *task, Err *err)
+{
+    const Exercise *e = self;
+    double *f = task->result;
+    (void)worker;
+    (void)err;
+    Random noise = random_stream(e->seed, RANDOM_NOISE, 0, (uint32_t)(task->id - 1));
+    e->function->evaluate(e->n_var, e->n_obj, task->x, f);
+    for (size_t k = 0; e->noise > 0.0 && k < e->n_obj; k++)
+        f[k] *= 1.0 + e->noise * random_normal(&noise);
+    return STATUS_OK;
+}
+
+static void combine(const void *self, const void *parts, Evaluation *e)
+{
+    const Exercise *exercise = self;
+    memcpy(e->f, parts, exercise->n_obj * sizeof *e->f);
+    e->seconds = 0.0;
+    e->replicates = 1;
+}
+
+static const Simulator TEXTBOOK = {simulate, combine, free};
+
+Status textbook_open(Problem *p, const ProblemOptions *o, uint32_t seed, Err *err)
+{
+    const long n_var = o->variables, m = o->objectives;
+    if (n_var > TEXTBOOK_VAR_MAX || m > TEXTBOOK_OBJ_MAX)
+        return fail(err, STATUS_BAD_DATA, "problem.variables: a textbook problem has at most %d, and %d objectives",
+                    TEXTBOOK_VAR_MAX, TEXTBOOK_OBJ_MAX);
+    if (m < 2 || n_var < m)
+        return fail(err, STATUS_BAD_DATA,
+                    "problem.objectives: a textbook problem wants 2 at least and no more than %ld", n_var);
+    Exercise *e = calloc(1, sizeof *e);
+    if (!e)
+        return fail(err, STATUS_NO_MEMORY, "no memory for a problem");
+    e->function = textbook((size_t)(o->kind - PROBLEM_TEXTBOOK));
+    e->n_var = (size_t)n_var;
+    e->n_obj = (size_t)m;
+    e->noise = o->noise;
+    e->seed = seed;
+    for (size_t j = 0; j < e->n_var; j++)
+        e->upper[j] = textbook_upper(e->function, j);
+    *p = (Problem){.n_var = e->n_var,
+                   .n_obj = e->n_obj,
+                   .lower = e->lower,
+                   .upper = e->upper,
+                   .simulator = &TEXTBOOK,
+                   .self = e,
+                   .n_parts = 1,
+                   .part_size = e->n_obj * sizeof(double),
+                   .n_workers = 1};
+    return STATUS_OK;
+}
+
+void textbook_exact(const Problem *p, const double x[], double f[])
+{
+    const Exercise *e = p->self;
+    e->function->evaluate(e->n_var, e->n_obj, x, f);
 }

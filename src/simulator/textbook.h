@@ -9,6 +9,8 @@
  *   and without a form as simple:  dtlz1_inverted (front upside down, 11^16 local ones), dtlz5 (a curve, below it
  *          degenerate pieces), dtlz7 (2^(m-1) pieces), wfg5 (deceptive: the wide basins lead away from the optimum)
  *
+ * As a simulator  one part, the objectives f (n_obj), each times 1 + problem.noise z, z standard normal from the stream
+ *                 (search.seed, id of the request); one worker, since it takes no time
  * Threads  pure functions
  * Sources  Deb, Thiele, Laumanns and Zitzler, CEC 2002, 825-830 (DTLZ2); Huband, Hingston, Barone and While, IEEE
  *          Trans. Evol. Comput. 10 (2006) 477-506 (WFG4, WFG5); Jain and Deb, IEEE Trans. Evol. Comput. 18 (2014)
@@ -16,7 +18,10 @@
 #ifndef IMTET_SIMULATOR_TEXTBOOK_H
 #define IMTET_SIMULATOR_TEXTBOOK_H
 
-#include <stddef.h>
+#include <stdint.h>
+
+#include "evaluate/problem.h"
+#include "simulator/options.h"
 
 enum { TEXTBOOK_VAR_MAX = 256, TEXTBOOK_OBJ_MAX = 32 };
 
@@ -29,6 +34,12 @@ typedef struct {
 /* Problem i = 0, 1, ... in the order of the setting problem.kind; NULL behind the last. */
 const Textbook *textbook(size_t i);
 double textbook_upper(const Textbook *t, size_t j);
+
+/* Released by problem_close. */
+Status textbook_open(Problem *p, const ProblemOptions *options, uint32_t seed, Err *err);
+
+/* Of such a problem: the objectives without noise. */
+void textbook_exact(const Problem *p, const double x[], double f[]);
 
 /* n_obj <= n_var */
 void textbook_dtlz2(size_t n_var, size_t n_obj, const double x[], double f[]);

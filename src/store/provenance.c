@@ -85,17 +85,18 @@ static json_t *machine(int threads)
                      "threads", threads, "started", started);
 }
 
-Status provenance_inputs(Inputs *out, const Subject *subject, Err *err)
+Status provenance_inputs(Inputs *out, const Adapter *adapter, Err *err)
 {
     Building b;
     *out = (Inputs){0};
-    if (!subject_world(subject))
+    const Tower *t = adapter_tower(adapter);
+    if (!t)
         return STATUS_OK;
-    TRY(building_load(&b, &subject_world(subject)->options.building, err));
-    *out = (Inputs){.record = subject_world(subject)->motion.file_hash, .matrices = b.hash};
+    TRY(building_load(&b, &tower_record(t, 0)->options.building, err));
+    *out = (Inputs){.record = tower_record(t, 0)->motion.file_hash, .matrices = b.hash};
     building_free(&b);
-    for (size_t i = 0; i < subject_n_records(subject); i++)
-        out->records = moved_hash(out->records, subject_record(subject, i)->motion.file_hash);
+    for (size_t i = 0; i < tower_n_records(t); i++)
+        out->records = moved_hash(out->records, tower_record(t, i)->motion.file_hash);
     return STATUS_OK;
 }
 
@@ -105,7 +106,7 @@ static char *hex(uint64_t hash, char text[24])
     return text;
 }
 
-static json_t *inputs_of_tower(const World *w, const Inputs *hashes)
+static json_t *inputs_of_tower(const Scenario *w, const Inputs *hashes)
 {
     char record[24], records[24], matrices[24];
     return json_pack("{s:s, s:s, s:s, s:s, s:s, s:s, s:s, s:I, s:f, s:s, s:i, s:s}", "record", w->record.record,
@@ -116,21 +117,21 @@ static json_t *inputs_of_tower(const World *w, const Inputs *hashes)
                      "matrices_fnv1a", hex(hashes->matrices, matrices));
 }
 
-static json_t *inputs(const Settings *s, const World *w, const Inputs *hashes)
+static json_t *inputs(const Settings *s, const Tower *t, const Inputs *hashes)
 {
-    return w ? inputs_of_tower(w, hashes)
+    return t ? inputs_of_tower(tower_record(t, 0), hashes)
              : json_pack("{s:s}", "command", s->problem.kind == PROBLEM_EXTERNAL ? s->problem.command : "built in");
 }
 
-Status provenance_text(char **out, const Settings *s, const Subject *subject, Err *err)
+Status provenance_text(char **out, const Settings *s, const Adapter *adapter, Err *err)
 {
     Inputs hashes;
     *out = NULL;
-    TRY(provenance_inputs(&hashes, subject, err));
+    TRY(provenance_inputs(&hashes, adapter, err));
     json_t *all = program_description();
     if (json_object_set_new(all, "seed", json_integer(s->search.seed)) == 0 &&
-        json_object_set_new(all, "machine", machine(subject_threads(subject))) == 0 &&
-        json_object_set_new(all, "inputs", inputs(s, subject_world(subject), &hashes)) == 0)
+        json_object_set_new(all, "machine", machine(adapter_threads(adapter))) == 0 &&
+        json_object_set_new(all, "inputs", inputs(s, adapter_tower(adapter), &hashes)) == 0)
         *out = json_dumps(all, JSON_INDENT(2) | JSON_REAL_PRECISION(17));
     json_decref(all);
     return *out ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for the provenance");

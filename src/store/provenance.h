@@ -5,7 +5,7 @@
 
 #include <jansson.h>
 
-#include "simulator/subject.h"
+#include "simulator/adapter.h"
 
 typedef struct Settings Settings;
 
@@ -16,13 +16,13 @@ const char *program_revision(void); /* as git describes it, or unknown */
 json_t *program_description(void);
 
 /* As JSON, to be freed by the caller. */
-Status provenance_text(char **out, const Settings *s, const Subject *subject, Err *err);
+Status provenance_text(char **out, const Settings *s, const Adapter *adapter, Err *err);
 
 /* What a run depends on beside its settings: hashes of the first record, of all records together, and of the matrices;
  * 0 where there are none. */
 typedef struct {
     uint64_t record, records, matrices;
 } Inputs;
-Status provenance_inputs(Inputs *out, const Subject *subject, Err *err);
+Status provenance_inputs(Inputs *out, const Adapter *adapter, Err *err);
 
 #endif

@@ -33,7 +33,7 @@
 #include "moga/search.h"
 #include "store/run.h"
 #include "store/tables.h"
-#include "simulator/subject.h"
+#include "simulator/adapter.h"
 
 typedef struct Settings Settings;
 

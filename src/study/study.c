@@ -16,13 +16,13 @@
 #include "store/provenance.h"
 #include "polish/refine.h"
 #include "store/store.h"
-#include "simulator/subject.h"
+#include "simulator/adapter.h"
 #include "settings/settings.h"
 
 typedef struct {
     Settings used;
     const StudyOptions *options;
-    Subject *subject;
+    Adapter *adapter;
     RunStore *store;
     StudySummary *summary;
     FILE *differences;
@@ -92,7 +92,7 @@ static void compare_hash(Differences *d, const char *key, uint64_t was, uint64_t
 static Status compare_inputs(Study *study, Differences *d, Err *err)
 {
     Inputs now;
-    TRY(provenance_inputs(&now, study->subject, err));
+    TRY(provenance_inputs(&now, study->adapter, err));
     json_t *provenance = json_loads(store_run(study->store)->provenance, 0, NULL);
     compare_hash(d, "motion.record", stored_hash(provenance, "record_fnv1a"), now.record);
     if (now.record == stored_hash(provenance, "record_fnv1a"))
@@ -148,43 +148,20 @@ static int may_go_on(void *user)
     return 1;
 }
 
-static Status simulation_done(const Simulation *s, void *user, Err *err)
+static Status evaluation_done(const Evaluation *e, void *user, Err *err)
 {
     Study *study = user;
-    Evaluation e = {.id = (long)s->number,
-                    .kind = KIND_UNFINISHED,
-                    .seconds = s->verdict->seconds,
-                    .violation = s->violation,
-                    .x = (double *)s->x,
-                    .f = (double *)s->f,
-                    .sd = (double *)s->spread,
-                    .extra = (double *)s->verdict->extra};
-    evaluation_set_outcome(&e, outcome_of_word(s->verdict->outcome), s->verdict->reason);
     pthread_mutex_lock(&study->lock);
     study->summary->n_simulated++;
-    e.generation = (long)study->generation;
-    study->summary->n_failed += !s->ok;
-    if (isfinite(e.seconds))
-        study->summary->busy_s += e.seconds;
-    const Status status = store_evaluation(study->store, &e, err);
+    study->summary->n_failed += e->outcome != OUTCOME_OK;
+    if (isfinite(e->seconds))
+        study->summary->busy_s += e->seconds;
+    Evaluation row = *e; /* of a generation that is not finished */
+    row.generation = (long)study->generation;
+    row.kind = KIND_UNFINISHED;
+    const Status status = store_evaluation(study->store, &row, err);
     pthread_mutex_unlock(&study->lock);
     return status;
-}
-
-/* A design of the generation that was cut short: by its number, if the search asks for the same again. */
-static int recall(size_t number, const double x[], double f[], Verdict *verdict, void *user)
-{
-    const Study *study = user;
-    const Run *h = store_run(study->store);
-    const size_t i = h ? run_find(h, (long)number) : 0;
-    if (!h || i == h->table.n || memcmp(h->table.x + i * h->schema.n_var, x, h->schema.n_var * sizeof *x) != 0)
-        return 0;
-    const Evaluation *e = &h->table.row[i];
-    memcpy(f, e->f, h->schema.n_obj * sizeof *f);
-    memcpy(verdict->extra, e->extra, h->schema.n_extra * sizeof *e->extra);
-    verdict_set(verdict, outcome_word(e->outcome), e->reason);
-    verdict->seconds = e->seconds;
-    return 1;
 }
 
 static json_t *generation_event(const SearchView *v, double hypervolume, double igd, double seconds)
@@ -258,16 +235,18 @@ static int observe(const SearchView *view, void *user)
 
 static Status simulate_without_core(Study *study, Err *err)
 {
-    Crew *crew = subject_crew(study->subject);
-    study->summary->has_no_core = crew != NULL;
-    return crew ? crew_run(crew, 1, &(SimTask){SCENE_NO_CORE, NULL}, &study->summary->no_core, err) : STATUS_OK;
+    const SimTask task = {SCENE_NO_CORE, NULL};
+    study->summary->has_no_core = adapter_tower(study->adapter) != NULL;
+    return study->summary->has_no_core
+               ? tower_simulate(adapter_problem(study->adapter), 1, &task, &study->summary->no_core, err)
+               : STATUS_OK;
 }
 
 static Status log_start(Study *study, Err *err)
 {
-    const Schema *schema = subject_schema(study->subject);
+    const Schema *schema = adapter_schema(study->adapter);
     const Settings *used = &study->used;
-    const int threads = subject_threads(study->subject);
+    const int threads = adapter_threads(study->adapter);
     const size_t n = study->summary->n_before;
     char program[96];
     if (study->options->started)
@@ -281,7 +260,7 @@ static Status log_start(Study *study, Err *err)
                     err));
     if (n > 0)
         TRY(store_log(study->store, err, "goes on after %zu simulations", n));
-    if (subject_world(study->subject))
+    if (adapter_tower(study->adapter))
         return store_log(study->store, err, "%s: %zu floors, %s, pga %g g, stretch %g, %d threads, seed %ld", program,
                          schema->n_var - 2, used->motion.record, used->motion.pga_g, used->motion.stretch, threads,
                          used->search.seed);
@@ -292,8 +271,8 @@ static Status log_start(Study *study, Err *err)
 static Status begin(Study *study, Err *err)
 {
     char *provenance;
-    TRY(provenance_text(&provenance, &study->used, study->subject, err));
-    const Status status = store_begin(study->store, subject_schema(study->subject), &study->used, provenance, err);
+    TRY(provenance_text(&provenance, &study->used, study->adapter, err));
+    const Status status = store_begin(study->store, adapter_schema(study->adapter), &study->used, provenance, err);
     free(provenance);
     return status;
 }
@@ -323,12 +302,12 @@ static Status go_on(Study *study, Err *err)
     study->first_generation = study->generation;
     TRY(check_limit(study, sum->n_before, err));
     snprintf(study->used.run.out, OPTION_TEXT_MAX, "%s", h->settings->run.out);
-    return store_resume(study->store, subject_schema(study->subject), &study->used, err);
+    return store_resume(study->store, adapter_schema(study->adapter), &study->used, err);
 }
 
 static Status prepare(Study *study, const Settings *s, Err *err)
 {
-    TRY(subject_open(&study->subject, s, err));
+    TRY(adapter_open(&study->adapter, s, err));
     if (!study->store)
         TRY(store_open(&study->store, s->run.out, study->options->fresh, err));
     TRY(store_forget_empty(study->store, err));
@@ -367,59 +346,29 @@ SearchConfig study_search_config(const Settings *s)
 
 /* -- the search, from where it stands ------------------------------------------------------------------------------ */
 
-/* The archive of the finished generations, as the search wants it. */
-typedef struct {
-    SearchStart start;
-    double *F, *G;
-    unsigned char *ok, *kind;
-    size_t *generation;
-} Moment;
-
-static void moment_free(Moment *m)
-{
-    free(m->F);
-    free(m->G);
-    free(m->ok);
-    free(m->kind);
-    free(m->generation);
-}
-
-static Status moment_of(Moment *m, const Study *study, Err *err)
+/* What the run has of the search, as the search takes it up: the finished generations, then the evaluations of the one
+ * that was cut short. */
+static Status find_start(const Study *study, SearchStart *start, Err *err)
 {
     const Run *h = store_run(study->store);
-    const Problem *p = subject_problem(study->subject);
-    size_t n_finished = 0, n;
-    while (n_finished < h->table.n && h->table.row[n_finished].kind != KIND_UNFINISHED &&
-           h->table.row[n_finished].id < POLISHED_FIRST)
-        n_finished++;
-    n = n_finished;
-    while (study->used.search.asynchronous && n < h->table.n && h->table.row[n].id < POLISHED_FIRST)
-        n++;
-    *m = (Moment){.F = calloc(n * p->n_obj + 1, sizeof *m->F),
-                  .G = calloc(n * p->n_con + 1, sizeof *m->G),
-                  .ok = calloc(n + 1, 1),
-                  .kind = calloc(n + 1, 1),
-                  .generation = calloc(n + 1, sizeof *m->generation)};
-    if (!m->F || !m->G || !m->ok || !m->kind || !m->generation)
-        return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", n);
-    subject_judge(study->subject, n, h->table.f, m->F, m->G);
-    for (size_t i = 0; i < n; i++) {
-        if (h->table.row[i].id != (long)i + 1)
+    size_t n = 0;
+    for (; n < h->table.n && h->table.row[n].id < POLISHED_FIRST; n++) {
+        start->n += h->state && start->n == n && h->table.row[n].kind != KIND_UNFINISHED;
+        if ((start->n > n || study->used.search.asynchronous) && h->table.row[n].id != (long)n + 1)
             return fail(err, STATUS_IO, "%s/run.sqlite: is damaged: evaluation %zu is missing", study->summary->folder,
-                        i + 1);
-        m->ok[i] = h->table.row[i].outcome == OUTCOME_OK;
-        m->kind[i] = (unsigned char)(i < n_finished ? h->table.row[i].kind : KIND_INFILL);
-        m->generation[i] = (size_t)h->table.row[i].generation;
+                        n + 1);
     }
-    m->start = (SearchStart){n_finished, n - n_finished, h->table.x,    m->F,     m->G,
-                             m->ok,      m->kind,        m->generation, h->state, h->n_state};
+    start->n_later = n - start->n;
+    start->row = h->table.row;
+    start->state = h->state;
+    start->n_state = h->n_state;
     return STATUS_OK;
 }
 
 /* Of surrogate and search: beside simulations that go on, a quarter. */
 static int search_threads(const Study *study)
 {
-    const int threads = subject_threads(study->subject);
+    const int threads = adapter_threads(study->adapter);
     return study->used.search.asynchronous ? (threads + 3) / 4 : threads;
 }
 
@@ -427,9 +376,8 @@ static Status run_search(Study *study, Err *err)
 {
     const Run *h = store_run(study->store);
     SearchConfig config = study_search_config(&study->used);
-    Moment moment = {0};
+    SearchStart start = {0};
     double *given = NULL;
-    const int is_under_way = h && (h->state || (study->used.search.asynchronous && h->table.n > 0));
     config.max_seconds = 0.0; /* the study has a clock of its own, which it looks at more often */
     if (h) {
         const long initial = study->used.search.initial;
@@ -437,15 +385,14 @@ static Status run_search(Study *study, Err *err)
         config.initial = (size_t)(initial < h->planned_evals ? initial : h->planned_evals);
     }
     omp_set_num_threads(search_threads(study));
-    TRY(given_read(study->used.search.start, subject_schema(study->subject), &given, &config.n_given, err));
+    TRY(given_read(study->used.search.start, adapter_schema(study->adapter), &given, &config.n_given, err));
     config.given = given;
-    Status status = is_under_way ? moment_of(&moment, study, err) : STATUS_OK;
-    const Observer observer = {may_go_on, simulation_done, recall, study};
-    subject_observe(study->subject, &observer, moment.start.n + moment.start.n_later);
+    Status status = h ? find_start(study, &start, err) : STATUS_OK;
+    adapter_observe(study->adapter, &(Observer){may_go_on, evaluation_done, study});
     if (status == STATUS_OK)
-        status = search_resume(subject_problem(study->subject), &config, is_under_way ? &moment.start : NULL, observe,
-                               study, &study->summary->stopped, err);
-    moment_free(&moment);
+        status = search_resume(adapter_problem(study->adapter), &config,
+                               start.row && start.n + start.n_later > 0 ? &start : NULL, observe, study,
+                               &study->summary->stopped, err);
     free(given);
     if (status == STATUS_STOPPED)
         study->summary->stopped = STOP_ASKED;
@@ -460,7 +407,7 @@ static Status log_costs(const Study *study, Err *err)
     if (sum->search_s > 0.0) {
         const double waiting = sum->waited_s / sum->search_s, surrogate = sum->surrogate_s / sum->search_s;
         const Effort e = {waiting, surrogate, 1.0 - waiting - surrogate,
-                          sum->busy_s > 0.0 ? sum->busy_s / sum->search_s / subject_threads(study->subject) : NAN};
+                          sum->busy_s > 0.0 ? sum->busy_s / sum->search_s / adapter_threads(study->adapter) : NAN};
         effort_words(&e, text);
         TRY(store_log(study->store, err, "%s", text));
     }
@@ -630,7 +577,7 @@ Status study_run(const Settings *s, const StudyOptions *options, StudySummary *s
         store_log(study.store, &ignored, "failed: %s", err->text);
     }
     store_free(study.store);
-    subject_close(study.subject);
+    adapter_close(study.adapter);
     pthread_mutex_destroy(&study.lock);
     return status;
 }

@@ -5,25 +5,21 @@
 
 enum { N_VAR = 2, N_OBJ = 2, N_DESIGNS = 4 };
 
-static void demand_answers(const Batch *b)
+static void demand_numbers(const ExternalAnswer *a)
 {
-    for (size_t i = 0; i < b->done && i < N_DESIGNS; i++)
-        if (b->answers[i].outcome == ANSWER_OK)
-            for (size_t k = 0; k < N_OBJ; k++)
-                if (!isfinite(b->F[i * N_OBJ + k]))
-                    abort();
+    for (size_t k = 0; a->outcome == OUTCOME_OK && k < N_OBJ; k++)
+        if (!isfinite(a->f[k]))
+            abort();
 }
 
-static void hear(External *e, const uint8_t *data, size_t size)
+static void hear(const External *e, const uint8_t *data, size_t size)
 {
-    double F[N_DESIGNS * N_OBJ] = {0};
-    Answer answers[N_DESIGNS] = {{0}};
-    Batch b = {.n = N_DESIGNS, .F = F, .answers = answers};
-    Worker w = {.line = malloc(LINE_MAX_BYTES), .design = SIZE_MAX};
-    while (w.line && b.next < N_DESIGNS && size > 0) {
-        if (w.design == SIZE_MAX) {
-            w.design = b.next++;
-            w.id = (long)b.next;
+    ExternalAnswer *answer = calloc(1, sizeof *answer + N_OBJ * sizeof *answer->f);
+    Worker w = {.line = malloc(LINE_MAX_BYTES)};
+    while (answer && w.line && w.id < N_DESIGNS && size > 0) {
+        if (!w.answer) {
+            w.answer = answer;
+            w.id++;
         }
         const size_t piece = size < 7 + w.n_line ? size : 7 + w.n_line, room = LINE_MAX_BYTES - w.n_line;
         const size_t n = piece < room ? piece : room;
@@ -31,10 +27,12 @@ static void hear(External *e, const uint8_t *data, size_t size)
         w.n_line += n;
         data += n;
         size -= n;
-        look_for_answer(e, &w, &b);
+        look_for_answer(e, &w);
+        if (!w.answer)
+            demand_numbers(answer);
     }
-    demand_answers(&b);
     free(w.line);
+    free(answer);
 }
 
 void fuzz_worker(const uint8_t *data, size_t size)

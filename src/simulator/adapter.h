@@ -1,0 +1,28 @@
+/* simulator/adapter.h -- the problem that the settings pose: which simulator, which columns, which limits.
+ *
+ *   problem.kind = tower      gaps and thicknesses (simulator/tower.h)
+ *                  external   processes that speak JSON lines (simulator/external.h)
+ *                  dtlz2 ...  simulator/textbook.h, with problem.noise where that is set
+ *
+ * Life cycle  adapter_open -> search on adapter_problem -> adapter_close
+ * Threads     as evaluate/problem.h */
+#ifndef IMTET_SIMULATOR_ADAPTER_H
+#define IMTET_SIMULATOR_ADAPTER_H
+
+#include "simulator/limits.h"
+#include "simulator/tower.h"
+
+typedef struct Adapter Adapter;
+
+Status adapter_open(Adapter **out, const Settings *s, Err *err);
+void adapter_close(Adapter *a); /* NULL is fine */
+
+const Problem *adapter_problem(const Adapter *a);
+const Schema *adapter_schema(const Adapter *a);
+const Tower *adapter_tower(const Adapter *a); /* NULL: it is another problem */
+int adapter_threads(const Adapter *a);
+
+/* Copied; at first there is none. */
+void adapter_observe(Adapter *a, const Observer *observer);
+
+#endif

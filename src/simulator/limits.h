@@ -1,0 +1,30 @@
+/* simulator/limits.h -- the user's limits (search.limits = j3_g<=5,edcs_pct>=3) as constraints.
+ *
+ *   g = (value - limit) / |limit| for <=, the negative of it for >=; limit 0 counts as 1
+ *
+ * Threads  limits_apply reads only
+ * Errors   STATUS_BAD_DATA with the words that are wrong, or with two limits of which no number keeps both */
+#ifndef IMTET_SIMULATOR_LIMITS_H
+#define IMTET_SIMULATOR_LIMITS_H
+
+#include "simulator/schema.h"
+
+enum { LIMITS_MAX = 32 };
+
+typedef struct {
+    size_t objective;
+    double sign, bound; /* sign (value - bound) <= 0 */
+} Limit;
+
+typedef struct {
+    size_t n;
+    Limit limit[LIMITS_MAX];
+} Limits;
+
+/* list: as in the settings, "none" for none. */
+Status limits_read(Limits *l, const Schema *schema, const char *list, Err *err);
+
+/* g (n) of the natural objectives f. */
+void limits_apply(const Limits *l, const double f[], double g[]);
+
+#endif

@@ -1,0 +1,247 @@
+#include "simulator/tower.h"
+
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/list.h"
+#include "evaluate/threads.h"
+#include "settings/settings.h"
+
+enum { RECORDS_MAX = 16 };
+
+typedef struct {
+    Scenario scenario;  /* zeroed where the scene is borrowed */
+    const Scene *scene; /* its own, or borrowed */
+    SimWorker **worker; /* (n_workers) */
+} Record;
+
+struct Tower {
+    uint32_t seed;
+    double tolerance_m; /* standard deviation of a gap as built */
+    size_t n_workers, n_floors;
+    ReplicatePlan plan; /* n_records of which are open */
+    Record record[RECORDS_MAX];
+    double lower[FLOORS_MAX + 2], upper[FLOORS_MAX + 2];
+};
+
+static Status simulate(void *self, size_t worker, const Task *task, Err *err)
+{
+    const Tower *t = self;
+    const size_t n = t->plan.n_replicates, k = task->repeat * n + task->part % n;
+    const SceneKind kind = (SceneKind)task->variant;
+    double x[FLOORS_MAX + 2];
+    memcpy(x, task->x, (t->n_floors + 2) * sizeof *x);
+    if (kind == SCENE_IMPACT)
+        replicate_design(t->seed, k, t->tolerance_m, t->n_floors, x);
+    return sim_run(t->record[task->part / n].worker[worker], kind, x, task->result, err);
+}
+
+static void combine(const void *self, const void *parts, Evaluation *e)
+{
+    const Tower *t = self;
+    ReplicateSummary sum;
+    replicates_summarise(&t->plan, parts, &sum);
+    evaluation_set_outcome(e, sum.outcome, sum.reason);
+    memcpy(e->f, sum.mean, N_OBJECTIVES * sizeof *e->f);
+    memcpy(e->sd, sum.sd, N_OBJECTIVES * sizeof *e->sd);
+    memcpy(e->extra, sum.mean + N_OBJECTIVES, (N_MEASURES - N_OBJECTIVES) * sizeof *e->extra);
+    e->seconds = sum.seconds;
+    e->replicates = (int)sum.n_replicates;
+}
+
+static void tower_close(void *self)
+{
+    Tower *t = self;
+    for (size_t r = 0; t && r < t->plan.n_records; r++) {
+        for (size_t i = 0; t->record[r].worker && i < t->n_workers; i++)
+            sim_worker_free(t->record[r].worker[i]);
+        free(t->record[r].worker);
+        scenario_close(&t->record[r].scenario);
+    }
+    free(t);
+}
+
+static const Simulator TOWER = {simulate, combine, tower_close};
+
+/* -- opening ------------------------------------------------------------------------------------------------------- */
+
+static Status open_workers(Tower *t, Record *r, Err *err)
+{
+    r->worker = calloc(t->n_workers, sizeof *r->worker);
+    if (!r->worker)
+        return fail(err, STATUS_NO_MEMORY, "no memory for %zu workers", t->n_workers);
+    for (size_t i = 0; i < t->n_workers; i++)
+        TRY(sim_worker_create(&r->worker[i], r->scene, err));
+    return STATUS_OK;
+}
+
+static Status open_record(Tower *t, const Settings *settings, const char *name, Err *err)
+{
+    Settings s = *settings;
+    Record *r = &t->record[t->plan.n_records];
+    if (t->plan.n_records == RECORDS_MAX)
+        return fail(err, STATUS_BAD_DATA, "motion.records: more than %d records", RECORDS_MAX);
+    snprintf(s.motion.record, sizeof s.motion.record, "%s", name);
+    TRY(scenario_open(&r->scenario, &s, err));
+    r->scene = r->scenario.scene;
+    t->plan.n_records++;
+    return open_workers(t, r, err);
+}
+
+static Status open_records(Tower *t, const Settings *s, TowerUse use, Err *err)
+{
+    const char *list = use == TOWER_SINGLE ? "none" : s->motion.records;
+    char name[OPTION_TEXT_MAX];
+    TRY(open_record(t, s, s->motion.record, err));
+    for (size_t i = 0; strcmp(list, "none") != 0 && i < list_count(list); i++) {
+        if (!list_item(list, i, name, sizeof name))
+            return fail(err, STATUS_BAD_DATA, "motion.records: item %zu is empty or too long", i + 1);
+        TRY(open_record(t, s, name, err));
+    }
+    return STATUS_OK;
+}
+
+static void set_bounds(Tower *t, const DesignOptions *o)
+{
+    for (size_t j = 0; j < t->n_floors + 2; j++) {
+        t->lower[j] = j < t->n_floors ? o->gap_min_m : o->thickness_min_m;
+        t->upper[j] = j < t->n_floors ? o->gap_max_m : o->thickness_max_m;
+    }
+}
+
+/* Swapping keeps both thicknesses in the box and the sample spread out; clipping would pile designs up on
+ * t_top = t_base. */
+static void swap_if_top_heavy(double x[], const void *self)
+{
+    const Tower *t = self;
+    double *t_base = &x[t->n_floors], *t_top = t_base + 1;
+    if (*t_top > *t_base) {
+        const double thicker = *t_top;
+        *t_top = *t_base;
+        *t_base = thicker;
+    }
+}
+
+static Problem problem_on(Tower *t)
+{
+    return (Problem){.n_var = t->n_floors + 2,
+                     .n_obj = N_OBJECTIVES,
+                     .n_extra = N_MEASURES - N_OBJECTIVES,
+                     .lower = t->lower,
+                     .upper = t->upper,
+                     .repair = swap_if_top_heavy,
+                     .simulator = &TOWER,
+                     .self = t,
+                     .n_parts = t->plan.n_records * t->plan.n_replicates,
+                     .part_size = sizeof(SimResult),
+                     .n_workers = t->n_workers};
+}
+
+/* The problem, or what is there of the tower released. */
+static Status finish_opening(Problem *p, Tower *t, Status status)
+{
+    if (status != STATUS_OK) {
+        tower_close(t);
+        return status;
+    }
+    t->n_floors = (size_t)scene_n_floors(t->record[0].scene);
+    *p = problem_on(t);
+    return STATUS_OK;
+}
+
+Status tower_open(Problem *p, const Settings *s, TowerUse use, size_t n_tasks, Err *err)
+{
+    const size_t workers = threads_wanted(s->search.threads);
+    Tower *t = calloc(1, sizeof *t);
+    if (!t)
+        return fail(err, STATUS_NO_MEMORY, "no memory for a scene");
+    t->seed = (uint32_t)s->search.seed;
+    t->tolerance_m = s->sim.gap_tolerance_m;
+    t->n_workers = workers < n_tasks ? workers : n_tasks;
+    t->plan = (ReplicatePlan){0, use == TOWER_SINGLE ? 1 : (size_t)s->sim.replicates, s->sim.robust == ROBUST_MEAN};
+    TRY(finish_opening(p, t, open_records(t, s, use, err)));
+    set_bounds(t, &s->design);
+    return STATUS_OK;
+}
+
+Status tower_open_scene(Problem *p, const Scene *scene, size_t n_replicates, uint32_t seed, size_t n_workers, Err *err)
+{
+    Tower *t = calloc(1, sizeof *t);
+    if (!t)
+        return fail(err, STATUS_NO_MEMORY, "no memory for a scene");
+    *t = (Tower){.seed = seed, .n_workers = n_workers, .plan = {1, n_replicates, 0}, .record[0].scene = scene};
+    return finish_opening(p, t, open_workers(t, &t->record[0], err));
+}
+
+const Tower *tower_of(const Problem *p)
+{
+    return p->simulator == &TOWER ? p->self : NULL;
+}
+
+int tower_n_floors(const Tower *t)
+{
+    return (int)t->n_floors;
+}
+
+size_t tower_n_records(const Tower *t)
+{
+    return t->plan.n_records;
+}
+
+const Scenario *tower_record(const Tower *t, size_t i)
+{
+    return &t->record[i].scenario;
+}
+
+/* -- simulations outside a search ---------------------------------------------------------------------------------- */
+
+static Status run_all(Queue *q, size_t n, const SimTask tasks[], SimResult results[], Err *err)
+{
+    Finished done;
+    for (size_t i = 0; i < n; i++) {
+        const Asked asked = {.x = tasks[i].x, .variant = (int)tasks[i].kind, .only_first = 1};
+        TRY(queue_ask(q, &asked, err));
+    }
+    for (size_t i = 0; i < n; i++) {
+        TRY(queue_next(q, &done, err));
+        memcpy(&results[i], done.parts, sizeof results[i]);
+    }
+    return STATUS_OK;
+}
+
+Status tower_simulate(const Problem *p, size_t n, const SimTask tasks[], SimResult results[], Err *err)
+{
+    Queue *q;
+    Problem few = *p;
+    few.n_workers = n < few.n_workers ? n : few.n_workers;
+    TRY(queue_open(&q, &few, QUEUE_AS_ASKED, 0, 0, err));
+    const Status status = run_all(q, n, tasks, results, err);
+    queue_close(q);
+    return status;
+}
+
+static Status replicate_all(Queue *q, size_t n, const double X[], SimResult shown[], ReplicateSummary out[], Err *err)
+{
+    const Problem *p = queue_problem(q);
+    Finished done;
+    for (size_t i = 0; i < n; i++)
+        TRY(queue_ask(q, &(Asked){.x = X + i * p->n_var}, err));
+    for (size_t i = 0; i < n; i++) {
+        TRY(queue_next(q, &done, err));
+        replicates_summarise(&tower_of(p)->plan, done.parts, &out[i]);
+        shown[i] = *out[i].shown;
+        out[i].shown = &shown[i];
+    }
+    return STATUS_OK;
+}
+
+Status tower_replicate(const Problem *p, size_t n, const double X[], SimResult shown[], ReplicateSummary out[],
+                       Err *err)
+{
+    Queue *q;
+    TRY(queue_open(&q, p, QUEUE_AS_ASKED, 0, 0, err));
+    const Status status = replicate_all(q, n, X, shown, out, err);
+    queue_close(q);
+    return status;
+}

@@ -1,0 +1,94 @@
+/* tests/functions.h -- a problem whose objectives and limits are a function of the test's own. */
+#ifndef IMTET_TESTS_FUNCTIONS_H
+#define IMTET_TESTS_FUNCTIONS_H
+
+#include "check.h"
+
+#include <string.h>
+
+#include "evaluate/queue.h"
+
+/* n designs X (n, n_var), of which draws[i] evaluations were made before; minimised F (n, n_obj), G (n, n_con), ok (n). */
+typedef Status (*FunctionFn)(size_t n, const double X[], const size_t draws[], double F[], double G[],
+                             unsigned char ok[], void *user, Err *err);
+
+typedef struct {
+    FunctionFn evaluate;
+    void *user;
+    size_t n_obj, n_con;
+} Function;
+
+/* A part is f, g and whether it is ok. */
+static inline Status function_simulate(void *self, size_t worker, const Task *task, Err *err)
+{
+    const Function *function = self;
+    double *f = task->result, *g = f + function->n_obj;
+    unsigned char ok = 0;
+    (void)worker;
+    const Status status = function->evaluate(1, task->x, &task->repeat, f, g, &ok, function->user, err);
+    g[function->n_con] = ok;
+    return status;
+}
+
+static inline void function_combine(const void *self, const void *parts, Evaluation *e)
+{
+    const Function *function = self;
+    const double *f = parts, *g = f + function->n_obj;
+    memcpy(e->f, f, function->n_obj * sizeof *f);
+    if (function->n_con > 0)
+        memcpy(e->extra, g, function->n_con * sizeof *g);
+    if (g[function->n_con] == 0.0)
+        evaluation_set_outcome(e, OUTCOME_ERROR, "fails");
+}
+
+static inline void function_judge(const Evaluation *e, double f[], double g[], const void *user)
+{
+    const Function *function = user;
+    memcpy(f, e->f, function->n_obj * sizeof *f);
+    if (function->n_con > 0)
+        memcpy(g, e->extra, function->n_con * sizeof *g);
+}
+
+static const Simulator FUNCTION = {function_simulate, function_combine, NULL};
+
+/* One worker, the asker itself. `function` must stay where it is. */
+static inline Problem function_problem(Function *function, size_t n_var, size_t n_obj, size_t n_con,
+                                       const double *lower, const double *upper, FunctionFn evaluate, void *user)
+{
+    *function = (Function){evaluate, user, n_obj, n_con};
+    return (Problem){.n_var = n_var,
+                     .n_obj = n_obj,
+                     .n_con = n_con,
+                     .n_extra = n_con,
+                     .lower = lower,
+                     .upper = upper,
+                     .judge = function_judge,
+                     .user = function,
+                     .simulator = &FUNCTION,
+                     .self = function,
+                     .n_parts = 1,
+                     .part_size = (n_obj + n_con + 1) * sizeof(double),
+                     .n_workers = 1};
+}
+
+/* n evaluations of before, whose numbers begin with first_id; G and generation may be NULL. */
+static inline EvaluationTable evaluations_of(const Problem *p, long first_id, size_t n, const double X[],
+                                             const double F[], const double G[], const unsigned char ok[],
+                                             const unsigned char kind[], const size_t generation[])
+{
+    EvaluationTable t = evaluation_table(p->n_var, p->n_obj, p->n_con);
+    Err err = {0};
+    for (size_t i = 0; i < n; i++) {
+        const Evaluation e = {.id = first_id + (long)i,
+                              .generation = generation ? (long)generation[i] : 0,
+                              .kind = (EvaluationKind)kind[i],
+                              .outcome = ok[i] ? OUTCOME_OK : OUTCOME_ERROR,
+                              .x = (double *)X + i * p->n_var,
+                              .f = (double *)F + i * p->n_obj,
+                              .extra = G ? (double *)G + i * p->n_con : NULL};
+        CHECK_OK(evaluation_table_append(&t, &e, &err), &err);
+    }
+    return t;
+}
+
+#endif

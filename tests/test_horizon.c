@@ -1,0 +1,65 @@
+/* The predictability horizon. */
+#include "check.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "simulator/horizon.h"
+#include "scene_options.h"
+
+static void open_scenario(Scenario *w, double x[22], double gap_m)
+{
+    Settings s;
+    Err err = {0};
+    paper_defaults(&s);
+    snprintf(s.motion.record, OPTION_TEXT_MAX, "builtin:sylmar-like");
+    s.sim.duration_s = 16;
+    CHECK_OK(scenario_open(w, &s, &err), &err);
+    for (int j = 0; j < 20; j++)
+        x[j] = gap_m * (j + 1);
+    x[20] = 0.012;
+    x[21] = 0.0064;
+}
+
+static void test_the_horizon_is_never_reached_without_contact(void **state)
+{
+    (void)state;
+    Scenario w;
+    Horizon h;
+    Err err = {0};
+    double x[22];
+    open_scenario(&w, x, 5);
+    CHECK_OK(horizon_find(&w, x, 1e-3, &h, &err), &err);
+    for (int i = 0; i < HORIZON_LEVELS; i++)
+        assert_true(isnan(h.reached_s[i]));
+    assert_true(h.distance_at_end == 0);
+    assert_true(h.end_s > 15.9);
+    scenario_close(&w);
+}
+
+static void test_larger_changes_part_sooner_and_levels_are_reached_in_order(void **state)
+{
+    (void)state;
+    Scenario w;
+    Horizon early, late;
+    Err err = {0};
+    double x[22];
+    open_scenario(&w, x, 0.008);
+    CHECK_OK(horizon_find(&w, x, 1e-3, &early, &err), &err);
+    CHECK_OK(horizon_find(&w, x, 1e-9, &late, &err), &err);
+    assert_true(early.reached_s[0] > 0);
+    for (int i = 0; i < HORIZON_LEVELS; i++) {
+        assert_true(!(late.reached_s[i] < early.reached_s[i]));
+        assert_true(i == 0 || !(early.reached_s[i] < early.reached_s[i - 1]));
+    }
+    scenario_close(&w);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_the_horizon_is_never_reached_without_contact),
+        cmocka_unit_test(test_larger_changes_part_sooner_and_levels_are_reached_in_order),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

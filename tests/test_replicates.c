@@ -1,0 +1,230 @@
+#include <stdio.h>
+/* One rule for replicates: a study, `imtet simulate --ensemble` and the summary of a tower agree to the last digit. */
+#include <string.h>
+
+#include "runs.h"
+#include "scene_options.h"
+#include "simulator/adapter.h"
+#include "settings/settings.h"
+
+enum { DESIGNS = 3, N_VAR = 22 };
+
+static Settings short_scene(const char *records, long replicates, const char *tolerance)
+{
+    Settings s;
+    Err err = {0};
+    char text[120];
+    paper_defaults(&s);
+    s.sim.duration_s = 25.0; /* tiny changes have not grown yet, wide ones tell */
+    s.sim.accuracy = ACCURACY_COARSE;
+    s.sim.replicates = replicates;
+    snprintf(text, sizeof text, "motion.records=%s", records);
+    CHECK_OK(settings_set(&s, text, &err), &err);
+    snprintf(text, sizeof text, "sim.gap_tolerance_m=%s", tolerance);
+    CHECK_OK(settings_set(&s, text, &err), &err);
+    return s;
+}
+
+static void designs(double X[DESIGNS * N_VAR])
+{
+    for (int i = 0; i < DESIGNS; i++)
+        for (int j = 0; j < N_VAR; j++)
+            X[i * N_VAR + j] = j < 20 ? 0.02 + 0.03 * i + 0.002 * j : j == 20 ? 0.03 : 0.01;
+}
+
+typedef struct {
+    SimResult shown[DESIGNS];
+    ReplicateSummary sum[DESIGNS];
+} Replicated;
+
+static void run_designs(const Settings *settings, long threads, Replicated *out)
+{
+    double X[DESIGNS * N_VAR];
+    Settings s = *settings;
+    Problem p;
+    Err err = {0};
+    designs(X);
+    s.search.threads = threads;
+    memset(out, 0, sizeof *out);
+    CHECK_OK(tower_open(&p, &s, TOWER_AS_SET, SIZE_MAX, &err), &err);
+    CHECK_OK(tower_replicate(&p, DESIGNS, X, out->shown, out->sum, &err), &err);
+    problem_close(&p);
+}
+
+static void test_one_replicate_under_one_record_is_the_simulation_itself(void **state)
+{
+    (void)state;
+    const Settings s = short_scene("none", 1, "0");
+    Replicated out;
+    run_designs(&s, 1, &out);
+    for (int i = 0; i < DESIGNS; i++)
+        for (int k = 0; k < N_MEASURES; k++) {
+            assert_true(out.sum[i].mean[k] == measure_value(&out.shown[i], k));
+            assert_true(isnan(out.sum[i].sd[k]));
+        }
+}
+
+static void test_of_several_records_the_worst_or_the_mean_counts(void **state)
+{
+    (void)state;
+    Settings one = short_scene("none", 1, "0"), other = one, both = short_scene("builtin:sylmar-like", 1, "0");
+    Replicated a, b, worst, mean;
+    snprintf(other.motion.record, sizeof other.motion.record, "builtin:sylmar-like");
+    run_designs(&one, 1, &a);
+    run_designs(&other, 1, &b);
+    run_designs(&both, 2, &worst);
+    both.sim.robust = ROBUST_MEAN;
+    run_designs(&both, 1, &mean);
+    for (int i = 0; i < DESIGNS; i++)
+        for (int k = 0; k < N_OBJECTIVES; k++) {
+            const double x = a.sum[i].mean[k], y = b.sum[i].mean[k];
+            assert_true(worst.sum[i].mean[k] == (measure(k)->sense > 0.0 ? fmax(x, y) : fmin(x, y)));
+            assert_close(mean.sum[i].mean[k], 0.5 * (x + y), 1e-12);
+        }
+}
+
+/* Wide gap errors spread the answers; tiny changes hardly do within a short time where gaps are wide, as in the last
+ * design; the core's mass never. */
+static void test_replicates_with_gap_errors_have_mean_and_deviation(void **state)
+{
+    (void)state;
+    const Settings tiny = short_scene("none", 4, "0"), wide = short_scene("none", 4, "0.01");
+    Replicated a, b, again;
+    run_designs(&tiny, 1, &a);
+    run_designs(&wide, 1, &b);
+    run_designs(&wide, 3, &again);
+    for (int i = 0; i < DESIGNS; i++) {
+        assert_true(a.sum[i].sd[0] >= 0.0 && b.sum[i].sd[0] > 0.0);
+        assert_true(i < DESIGNS - 1 || b.sum[i].sd[0] > 100.0 * a.sum[i].sd[0]);
+        assert_true(fabs(b.sum[i].mean[0] - a.sum[i].mean[0]) < 4.0 * b.sum[i].sd[0]);
+        assert_true(b.sum[i].sd[6] <= 1e-9 * b.sum[i].mean[6]);
+        assert_true(memcmp(b.sum[i].mean, again.sum[i].mean, sizeof b.sum[i].mean) == 0);
+        assert_true(memcmp(b.sum[i].sd, again.sum[i].sd, sizeof b.sum[i].sd) == 0);
+    }
+}
+
+static void test_without_contact_there_is_no_spread(void **state)
+{
+    (void)state;
+    double x[N_VAR];
+    Settings s = short_scene("none", 4, "0");
+    Problem p;
+    SimResult shown;
+    ReplicateSummary sum;
+    Err err = {0};
+    for (int j = 0; j < N_VAR; j++)
+        x[j] = j < 20 ? 5.0 * (j + 1) : 0.01;
+    CHECK_OK(tower_open(&p, &s, TOWER_AS_SET, SIZE_MAX, &err), &err);
+    CHECK_OK(tower_replicate(&p, 1, x, &shown, &sum, &err), &err);
+    problem_close(&p);
+    assert_int_equal(sum.n_failed, 0);
+    for (int k = 0; k < N_MEASURES; k++)
+        assert_true(sum.sd[k] <= 1e-12 * fabs(sum.mean[k]));
+}
+
+/* Replicates 0..3 and, asked for again, 4..7 are other ones; the rule of each is a function of seed and number alone. */
+static void test_a_design_asked_for_again_gets_further_replicates(void **state)
+{
+    (void)state;
+    double X[DESIGNS * N_VAR], first[N_VAR], fifth[N_VAR];
+    const Settings s = short_scene("none", 4, "0.01");
+    Problem p;
+    Queue *q;
+    Finished done;
+    SimResult alone;
+    Err err = {0};
+    designs(X);
+    CHECK_OK(tower_open(&p, &s, TOWER_AS_SET, SIZE_MAX, &err), &err);
+    CHECK_OK(queue_open(&q, &p, QUEUE_AS_ASKED, 0, 0, &err), &err);
+    CHECK_OK(queue_ask(q, &(Asked){.x = X, .repeat = 1}, &err), &err);
+    CHECK_OK(queue_next(q, &done, &err), &err);
+    memcpy(first, X, sizeof first);
+    memcpy(fifth, X, sizeof fifth);
+    replicate_design((uint32_t)s.search.seed, 0, 0.01, 20, first);
+    replicate_design((uint32_t)s.search.seed, 4, 0.01, 20, fifth);
+    assert_memory_equal(first, X, sizeof first);
+    assert_memory_not_equal(fifth, X, sizeof fifth);
+    CHECK_OK(tower_simulate(&p, 1, &(SimTask){SCENE_RIGID, fifth}, &alone, &err), &err);
+    assert_int_equal(alone.impacts, 0);
+    Settings single = s;
+    single.sim.gap_tolerance_m = 0.0;
+    Problem other;
+    CHECK_OK(tower_open(&other, &single, TOWER_SINGLE, 1, &err), &err);
+    CHECK_OK(tower_simulate(&other, 1, &(SimTask){SCENE_IMPACT, fifth}, &alone, &err), &err);
+    assert_true(alone.j1_m == ((const SimResult *)done.parts)[0].j1_m);
+    problem_close(&other);
+    queue_close(q);
+    problem_close(&p);
+}
+
+#define SHORT "--set sim.duration_s=25 --set sim.accuracy=coarse --set motion.record=builtin:sylmar-like "
+
+static void write_design(void)
+{
+    char text[1200];
+    double X[DESIGNS * N_VAR];
+    int n = 0;
+    designs(X);
+    for (int j = 0; j < 20; j++)
+        n += sprintf(text + n, "gap_%02d_m,", j + 1);
+    n += sprintf(text + n, "t_base_m,t_top_m\n");
+    for (int j = 0; j < N_VAR; j++)
+        n += sprintf(text + n, "%.17g%c", X[j], j + 1 < N_VAR ? ',' : '\n');
+    write_in_place("design.csv", text);
+}
+
+/* Mean and deviation of every objective as `imtet simulate --ensemble 6` has them. */
+static void simulated(const char *set, double mean[N_OBJECTIVES], double sd[N_OBJECTIVES])
+{
+    char words[500];
+    snprintf(words, sizeof words, "simulate configs/quick.ini --design @/design.csv --ensemble 6 --json " SHORT "%s",
+             set);
+    char *text = output_of(words);
+    json_t *o = json_loads(text, 0, NULL), *e = json_object_get(o, "ensemble");
+    assert_non_null(e);
+    for (int k = 0; k < N_OBJECTIVES; k++) {
+        mean[k] = json_real_value(json_object_get(json_object_get(e, "mean"), measure(k)->name));
+        sd[k] = json_real_value(json_object_get(json_object_get(e, "sd"), measure(k)->name));
+    }
+    json_decref(o);
+    free(text);
+}
+
+static void test_simulate_draws_the_replicates_of_a_study_and_knows_the_tolerance(void **state)
+{
+    (void)state;
+    static const char TOLERANCE[] = "--set sim.gap_tolerance_m=0.02 --set motion.records=builtin:elcentro-like";
+    double mean[3][N_OBJECTIVES], sd[3][N_OBJECTIVES];
+    char words[800], path[PATH_MAX];
+    Run h;
+    Err err = {0};
+    write_design();
+    simulated("--set sim.gap_tolerance_m=0", mean[0], sd[0]);
+    simulated("--set sim.gap_tolerance_m=0.02", mean[1], sd[1]);
+    simulated(TOLERANCE, mean[2], sd[2]);
+    for (int k = 0; k < 6; k++)
+        assert_true(sd[0][k] != sd[1][k] && mean[0][k] != mean[1][k]);
+    assert_true(sd[1][0] > 2.0 * sd[0][0]);
+    snprintf(words, sizeof words,
+             "optimize configs/quick.ini --out @/study --threads 2 --set search.start=%s/design.csv --max-evals 4 "
+             "--set search.initial=4 --set search.population=4 --set sim.replicates=6 " SHORT "%s",
+             place.folder, TOLERANCE);
+    free(output_of(words));
+    CHECK_OK(run_read(&h, path_of("study", path), &err), &err);
+    assert_memory_equal(h.F, mean[2], sizeof mean[2]);
+    assert_memory_equal(h.table.sd, sd[2], sizeof sd[2]);
+    run_free(&h);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_one_replicate_under_one_record_is_the_simulation_itself),
+        cmocka_unit_test(test_of_several_records_the_worst_or_the_mean_counts),
+        cmocka_unit_test(test_replicates_with_gap_errors_have_mean_and_deviation),
+        cmocka_unit_test(test_without_contact_there_is_no_spread),
+        cmocka_unit_test(test_a_design_asked_for_again_gets_further_replicates),
+        cmocka_unit_test(test_simulate_draws_the_replicates_of_a_study_and_knows_the_tolerance),
+    };
+    return cmocka_run_group_tests_name("replicates", tests, prepare, clear_place);
+}
