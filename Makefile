@@ -42,10 +42,12 @@ FLAGS.avx2   := -DFAST_LANES=4 -march=x86-64-v3 -mtune=haswell
 FLAGS.avx512 := -DFAST_LANES=8 -march=x86-64-v4 -mtune=skylake-avx512 -mprefer-vector-width=512
 KERNELS      := base $(if $(filter x86_64,$(shell uname -m)),avx2 avx512)
 
-flags_of = $(if $(2),; $(1): $(filter-out -W% -ffile-prefix-map=%,$(2)))
-FLAGS_TEXT := $(strip $(filter-out -W% -ffile-prefix-map=%,$(CFLAGS)) $(call flags_of,src/sim,$(FLAGS.sim)) \
+flags_of   = $(if $(2),; $(1): $(filter-out -W% -ffile-prefix-map=%,$(2)))
+FLAGS_LIST := $(filter-out -W% -ffile-prefix-map=%,$(CFLAGS)) $(call flags_of,src/sim,$(FLAGS.sim)) \
               $(call flags_of,src/rbf src/moga/infill.c,$(FLAGS.rbf)) \
-              $(foreach kernel,$(KERNELS),$(call flags_of,kernel_$(kernel),$(FLAGS.kernel) $(FLAGS.$(kernel)))))
+              $(foreach kernel,$(KERNELS),$(call flags_of,kernel_$(kernel),$(FLAGS.kernel) $(FLAGS.$(kernel))))
+SPACE      := $() $()
+FLAGS_TEXT := $(subst $(SPACE);,;,$(FLAGS_LIST))
 
 # ---- what is built ---------------------------------------------------------------------------------------------------
 
@@ -69,8 +71,9 @@ help: ## this list
 setup: ## installs the Debian packages of scripts/packages.txt that are missing
 	@scripts/setup
 
-run: setup ## the README's first command: packages, build, quick study
+run: setup ## the README's first command: packages, build, self-test, quick study
 	@$(MAKE) --no-print-directory -j$(JOBS) all
+	./imtet selftest
 	./imtet optimize configs/quick.ini
 
 $(PROGRAM): $(BUILD)/src/main.o $(LIB)
