@@ -44,6 +44,25 @@ static const struct {
     {"jma.csv", "jma", "NS", 0, "NS", 1e-9},
     {"jma.csv", "jma", "EW", 1, "EW", 1e-9},
     {"jma.csv", "jma", "3", 2, "UD", 1e-9},
+    {"end_mark.at2", "at2", "auto", 0, "", 1e-6},
+    {"no_format.csmip.v2", "csmip", "2", 1, "90 Deg", 1e-9},
+    {"wide.smc", "smc", "auto", 0, "360", 1e-9},
+    {"film.smc", "smc", "auto", 0, "360", 1e-9},
+    {"old.v1a", "geonet", "2", 1, "", 1e-9},
+    {"afad.txt", "afad", "E-W", 1, "E-W", 1e-9},
+    {"afad.txt", "afad", "ud", 2, "U-D", 1e-9},
+    {"asa.unam", "unam", "N00E", 0, "N00E", 1e-9},
+    {"asa.unam", "unam", "3", 2, "V", 1e-9},
+    {"cwb.dat", "cwb", "N", 0, "N", 1e-9},
+    {"cwb.dat", "cwb", "E", 1, "E", 1e-9},
+    {"cwb.dat", "cwb", "1", 2, "U", 1e-9},
+    {"three.bhrc", "bhrc", "L", 0, "L", 1e-6},
+    {"three.bhrc", "bhrc", "V", 2, "V", 1e-6},
+    {"two.usc", "usc", "N05W", 0, "N05W", 1e-3},
+    {"two.usc", "usc", "S85E", 1, "S85E", 1e-3},
+    {"isesd.cor", "isesd", "auto", 0, "NS", 1e-6},
+    {"three.slist", "slist", "2", 1, "XX_SYN_00_HNE_D", 1e-6},
+    {"one.tspair", "tspair", "auto", 0, "XX_SYN_00_HNN_D", 1e-6},
     {"one_column.txt", "csv", "auto", 0, "", 1e-9},
     {"two_columns.txt", "csv", "auto", 0, NULL, 1e-9},
     {"many_columns.csv", "csv", "NS", 0, "NS", 1e-9},
@@ -173,7 +192,7 @@ static const struct {
     {"three.csmip.v2", "of accel data", "of veloc data", ":46: not an acceleration"},
     {"film.csmip.v1", "=     43 ", "=     44 ", ": ends after 43 samples, but its header announces 44"},
     {"film.csmip.v1", "  0.150 -1", "  0.950 -1", "does not come after 0.95 s"},
-    {"film.csmip.v1", "  0.150 -1", "  0.158 -1", "breaks the uniform step of"},
+    {"film.csmip.v1", "  0.150 -1", "  0.158 -1", "digitized from film in steps of 0.002 to 0.018 s"},
     {"film.csmip.v1", "SEC AND G/10", "SEC AND INCHES", "set motion.unit"},
     {"film.csmip.v1", "=     43 ", "=      1 ", "no usable number of points"},
     {"film.csmip.v1", "=     43 ", "=    9e9 ", "no usable number of points"},
@@ -209,6 +228,30 @@ static const struct {
     {"jma.csv", "NS,EW,UD", "NS,EW", ":7: names 2 columns, but 3 follow"},
     {"jma.csv", "  -123.400,", "", ":23: has 2 columns where the lines above have 3"},
     {"jma.csv", "-123.400", "-123.4.0", ":23: '-123.4.0' is not a number"},
+    {"afad.txt", ": 43", ": 44", ": 43 rows, but its header announces 44"},
+    {"afad.txt", "(sec) : 0.01", "(sec) : none", "no usable SAMPLING INTERVAL"},
+    {"afad.txt", "(N-S) 123.4", "(N-S) 12.34", "its samples peak at 123.4 cm_s2, its header says 12.34"},
+    {"asa.unam", "/43/43/43", "/44/43/43", ": 43 rows, but its header announces 44 for channel 1"},
+    {"asa.unam", "/0.01/0.01/0.01", "/x/0.01/0.01", ": no usable step of channel 1"},
+    {"asa.unam", "/-123.40", "/-223.40", "its samples peak at 123.4 cm_s2, its header says 223.4"},
+    {"asa.unam", "DATOS DE ACELERACION:", "DATOS:", "ends before its line 'DATOS DE ACELERACION:'"},
+    {"cwb.dat", "Time U(+)", "Time", ":12: names 2 columns beside the time, but 3 follow"},
+    {"cwb.dat", "(Hz): 100", "(Hz): ", "no usable #SampleRate(Hz)"},
+    {"cwb.dat", "85.600~", "185.60~", "its samples peak at 85.6 cm_s2, its header says 185.6"},
+    {"three.bhrc", "=     43 ", "=     44 ", ": ends after 43 samples, but its header announces 44"},
+    {"three.bhrc", "=     43 ", "=     42 ", ": more samples than the 42"},
+    {"two.usc", "=     43 ", "=     49 ", ": ends after 43 samples, but its header announces 49"},
+    {"isesd.cor", "samples:             43", "samples:             44", ": ends after 43 samples"},
+    {"isesd.cor", "sampling period", "sampling", "an ISESD record without equal steps"},
+    {"isesd.cor", "-> corrected acceleration", "-> corrected velocity", ": not an acceleration"},
+    {"three.slist", "43 samples", "44 samples", ": ends after 43 samples"},
+    {"three.slist", "FLOAT, cm/s**2", "INTEGER, Counts", ":1: holds counts, no acceleration"},
+    {"one.tspair", "43 samples", "44 samples", ": ends after 43 samples"},
+    {"one.tspair", "100 sps", "0 sps", ":1: no usable number of samples or rate"},
+    {"film.smc", "        86", "        96", ": ends after 43 samples, but its header announces 48"},
+    {"three.csmip.v2", "=   -123.400", "=   -223.400", "its samples peak at 123.4 cm_s2, its header says 223.4"},
+    {"one.esm", "PGA_CM/S^2: -123.4", "PGA_CM/S^2: -223.4", "its header says 223.4"},
+    {"three.v1a", "Peak  -1234.0", "Peak  -2234.0", "its header says 223.4"},
     {"one_column.txt", "dt = 0.01 s", "", ":2: has one column and does not say its step; set motion.dt_s"},
     {"many_columns.csv", "0.15,-123.4", "0.15", ":18: has 4 columns where the lines above have 5"},
     {"many_columns.csv", "0.15,", "0.14,", ":18: time 0.14 s does not come after 0.14 s"},
@@ -359,7 +402,8 @@ static void test_a_setting_may_not_contradict_the_unit_of_any_format(void **stat
 {
     (void)state;
     for (int i = 0; i < N_SPECIMENS; i++) {
-        const int in_g = strstr(SPECIMENS[i].file, ".at2") || strstr(SPECIMENS[i].file, "csmip.v1");
+        const int in_g = strstr(SPECIMENS[i].file, ".at2") || strstr(SPECIMENS[i].file, "csmip.v1") ||
+                         strstr(SPECIMENS[i].file, "bhrc") || strstr(SPECIMENS[i].file, "usc");
         refused(SPECIMENS[i].file, &(MotionHow){.channel = SPECIMENS[i].channel, .unit = in_g ? UNIT_CM_S2 : UNIT_G},
                 "motion.unit is");
     }
@@ -556,6 +600,58 @@ static void test_a_first_row_of_number_and_step_is_no_sample(void **state)
     }
 }
 
+static void expect_refusal(const char *text, const char *says)
+{
+    Motion m;
+    Err err = {0};
+    assert_int_equal(parse_text(&m, text, &err), STATUS_BAD_DATA);
+    if (!strstr(err.text, says))
+        fail_msg("'%s' should be in '%s'", says, err.text);
+}
+
+static void test_an_unknown_format_is_said_to_be_unknown_and_its_first_line_is_quoted(void **state)
+{
+    (void)state;
+    expect_refusal("A title of some agency\n16628 W. LOST CANYON RD.\n1 2 3\n",
+                   "in no format that is known here (docs/motions.md lists them), and no plain columns: 'W.' is not a "
+                   "number; the first line is 'A title of some agency'");
+    expect_refusal("Response and Fourier amplitude spectra (86 periods)\n1 2\n",
+                   "is not read: response and Fourier spectra of CSMIP (V3); take its V2 or V1");
+    expect_refusal("<!DOCTYPE html>\n<p>Log in</p>\n", "a web page, perhaps of a log-in");
+    expect_refusal("WID2 2001/01/01\nSTA2\n", "GSE2");
+}
+
+/* Twelve channels of one building, as CSMIP writes them. */
+static void test_the_location_tells_the_channels_of_a_building_apart(void **state)
+{
+    (void)state;
+    Text t = {NULL, 0};
+    Motion m;
+    Err err = {0};
+    FILE *f = open_memstream(&t.text, &t.length);
+    assert_non_null(f);
+    for (int k = 1; k <= 12; k++) {
+        Text one = changed(read_specimen("three.csmip.v2"), "Chan  1: 360 Deg", "Chan  1: 360 Deg", 0);
+        char name[80];
+        snprintf(name, sizeof name, "\nChan %2d: %3d Deg   (Sta Chn: %2d)   Location: %s\n", k, k % 2 ? 360 : 90, k,
+                 k < 3    ? "Ground floor"
+                 : k < 11 ? "Fifth floor"
+                          : "Roof");
+        one = changed(one, "\nChan  1: 360 Deg", name, 0);
+        one.length = (size_t)(strstr(one.text + 100, "Corrected accelerogram") - one.text);
+        fwrite(one.text, 1, one.length, f);
+        free(one.text);
+    }
+    fclose(f);
+    assert_int_equal(motion_parse(&m, "building", t.text, t.length, &(MotionHow){0}, &err), STATUS_BAD_DATA);
+    if (!strstr(err.text, "2 '90 Deg, Ground floor'") || !strstr(err.text, "12 '90 Deg, Roof'"))
+        fail_msg("%s", err.text);
+    CHECK_OK(motion_parse(&m, "building", t.text, t.length, &(MotionHow){.channel = "90 Deg, Roof"}, &err), &err);
+    assert_string_equal(m.channel, "90 Deg, Roof");
+    motion_free(&m);
+    free(t.text);
+}
+
 static void test_quoted_cells_are_read(void **state)
 {
     (void)state;
@@ -589,6 +685,8 @@ static void test_units_in_other_words_are_taken_or_named(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_an_unknown_format_is_said_to_be_unknown_and_its_first_line_is_quoted),
+        cmocka_unit_test(test_the_location_tells_the_channels_of_a_building_apart),
         cmocka_unit_test(test_the_offset_of_a_recorder_is_subtracted_and_said),
         cmocka_unit_test(test_a_peak_that_misses_the_header_is_warned_about_above_1_percent_and_refused_above_5),
         cmocka_unit_test(test_columns_without_names_are_asked_about_and_joined_only_where_a_count_fits),

@@ -218,7 +218,7 @@ const Command CMD_SPECTRUM = {
     .operand = "MOTION",
     .summary = "response spectrum, peak, duration and Arias intensity of a ground motion",
     .example = "imtet spectrum builtin:kobe-like --pga 0.3 --stretch 3.1",
-    .details = "MOTION is a file (PEER AT2, COSMOS, CSMIP, SMC, K-NET, ESM, GeoNet, JMA, text in columns) or\n"
+    .details = "MOTION is a file (the formats of docs/motions.md) or\n"
                "builtin:kobe-like | builtin:elcentro-like | builtin:sylmar-like. It is taken as recorded unless --pga "
                "or --stretch say otherwise.",
     .options = OPTIONS,

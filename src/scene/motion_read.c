@@ -17,8 +17,10 @@
 static const double LARGEST_PEAK_G = 20.0;
 
 /* Asked in this order; the last one takes what no other did. */
-static const MotionFormat *const FORMATS[] = {&FORMAT_KNET,   &FORMAT_ESM,   &FORMAT_JMA, &FORMAT_GEONET, &FORMAT_SMC,
-                                              &FORMAT_COSMOS, &FORMAT_CSMIP, &FORMAT_AT2, &FORMAT_COLUMNS};
+static const MotionFormat *const FORMATS[] = {
+    &FORMAT_KNET,  &FORMAT_ESM,    &FORMAT_JMA,    &FORMAT_CWB,     &FORMAT_AFAD,  &FORMAT_UNAM,
+    &FORMAT_ISESD, &FORMAT_GEONET, &FORMAT_SMC,    &FORMAT_COSMOS,  &FORMAT_CSMIP, &FORMAT_BHRC,
+    &FORMAT_USC,   &FORMAT_SLIST,  &FORMAT_TSPAIR, &FORMAT_REFUSED, &FORMAT_AT2,   &FORMAT_COLUMNS};
 
 /* ---- which unit ----------------------------------------------------------------------------------------------- */
 
@@ -200,10 +202,25 @@ static Status fail_at_oddest_step(const Series *s, double dt, double digit, Err 
         s->path, row_at(s, odd)->line, row_at(s, odd)->t, shortest_near((span - step) / others, digit / others), step);
 }
 
-static Status times_increase(const Series *s, Err *err)
+/* Film is digitized where its trace bends. */
+static Status fail_digitized(const Series *s, Err *err)
+{
+    double shortest = HUGE_VAL, longest = 0;
+    for (size_t i = 1; i < s->n; i++) {
+        shortest = fmin(shortest, step_before(s, i));
+        longest = fmax(longest, step_before(s, i));
+    }
+    return fail(err, STATUS_BAD_DATA,
+                "%s:%d: digitized from film in steps of %.3g to %.3g s; have it resampled by straight lines: --set "
+                "motion.resample_dt_s=0.005",
+                s->path, row_at(s, 0)->line, shortest, longest);
+}
+
+/* Times on film may coincide in the digits that are printed. */
+static Status times_increase(const Series *s, int digitized, Err *err)
 {
     for (size_t i = 1; i < s->n; i++)
-        if (!(step_before(s, i) > 0))
+        if (!(step_before(s, i) > 0) && !(digitized && step_before(s, i) == 0))
             return fail(err, STATUS_BAD_DATA, "%s:%d: time %.10g s does not come after %.10g s", s->path,
                         row_at(s, i)->line, row_at(s, i)->t, row_at(s, i - 1)->t);
     return STATUS_OK;
@@ -253,25 +270,25 @@ static double offset_of(const Channel *c, const Series *s)
     return sum / (double)s->n;
 }
 
-/* The peak of the samples against the one that the header states. */
-static Status check_stated_peak(Motion *m, const Channel *c, const Series *s, double offset, MotionUnit unit,
-                                const MotionHow *how, Err *err)
+/* The peak of the samples against the one that the header states, both in the unit of the file. */
+static Status check_stated_peak(Motion *m, const Channel *c, const Series *s, double offset, double to_m_s2,
+                                MotionUnit unit, const MotionHow *how, Err *err)
 {
     const double allowed = how->peak_error_max > 0 ? how->peak_error_max : PEAK_ERROR_MAX;
     double peak = 0;
     if (!(c->peak > 0))
         return STATUS_OK;
     for (size_t i = 0; i < s->n; i++)
-        peak = fmax(peak, c->scale * fabs(row_at(s, i)->a - offset));
-    const double error = fabs(peak - c->peak) / c->peak;
+        peak = fmax(peak, to_m_s2 * fabs(row_at(s, i)->a - offset));
+    const double error = fmax(fabs(peak - c->peak) - c->peak_slack, 0) / c->peak, to_file = c->scale / to_m_s2;
     if (error > allowed)
         return fail(err, STATUS_BAD_DATA,
                     "%s: its samples peak at %.5g %s, its header says %.5g; motion.peak_error_max = %.2g would accept "
                     "it (now %g)",
-                    s->path, peak, UNIT_NAMES[unit], c->peak, 1.1 * error, allowed);
+                    s->path, peak * to_file, UNIT_NAMES[unit], c->peak * to_file, 1.1 * error, allowed);
     if (error > 0.2 * PEAK_ERROR_MAX)
-        snprintf(m->warning, sizeof m->warning, "its samples peak at %.5g %s, its header says %.5g", peak,
-                 UNIT_NAMES[unit], c->peak);
+        snprintf(m->warning, sizeof m->warning, "its samples peak at %.5g %s, its header says %.5g", peak * to_file,
+                 UNIT_NAMES[unit], c->peak * to_file);
     return STATUS_OK;
 }
 
@@ -315,14 +332,14 @@ static Status take_samples(Motion *m, const char *path, const Record *r, const C
     Err uneven = {0};
     Status status = STATUS_OK;
     if (dt == 0) {
-        TRY(times_increase(&s, err));
+        TRY(times_increase(&s, c->digitized, err));
         status = uniform_step(&s, &dt, &uneven);
     }
     if (dt > MOTION_STEP_MAX_S)
         return fail(err, STATUS_BAD_DATA, "%s:%d: a step of %g s; more than %g s is no record of an earthquake", path,
                     row_at(&s, 0)->line, dt, MOTION_STEP_MAX_S);
     if (status != STATUS_OK && how->resample_dt_s == 0)
-        return fail(err, status, "%s", uneven.text);
+        return c->digitized ? fail_digitized(&s, err) : fail(err, status, "%s", uneven.text);
     const char *unknown = unit_unknown(c->name, c->name + strlen(c->name));
     if (unit == UNIT_FROM_FILE && unknown)
         return fail(err, STATUS_BAD_DATA,
@@ -332,7 +349,9 @@ static Status take_samples(Motion *m, const char *path, const Record *r, const C
     const double to_m_s2 = c->scale * (unit == UNIT_M_S2 ? 1.0 : unit == UNIT_CM_S2 ? 0.01 : GRAVITY);
     TRY(check_peak(&s, to_m_s2, unit, c->scale, err));
     const double offset = offset_of(c, &s);
-    TRY(check_stated_peak(m, c, &s, offset, unit, how, err));
+    if (c->warning)
+        snprintf(m->warning, sizeof m->warning, "%s", c->warning);
+    TRY(check_stated_peak(m, c, &s, offset, to_m_s2, unit, how, err));
     if (c->subtract_mean)
         snprintf(m->processed, sizeof m->processed, "mean of %.4g %s subtracted", c->scale * offset, UNIT_NAMES[unit]);
     if (status != STATUS_OK)
@@ -383,10 +402,9 @@ static Status read_format(Motion *m, Record *r, Lines *l, const MotionHow *how, 
 
 Status motion_parse(Motion *m, const char *path, const char *text, size_t length, const MotionHow *how, Err *err)
 {
-    static const char dos_end = 0x1a; /* Ctrl-Z, which old programs put at the end of a text */
     memset(m, 0, sizeof *m);
     const uint64_t hash = hash_fnv1a(text, length, HASH_SEED);
-    while (length && text[length - 1] == dos_end)
+    while (length && strchr("\x1a\t\r\n ", text[length - 1])) /* Ctrl-Z and NUL end the texts of old programs */
         length--;
     const int binary = binary_line(text, length);
     if (length == 0)

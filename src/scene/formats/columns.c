@@ -12,6 +12,7 @@
 
 #include <ctype.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -167,24 +168,6 @@ static void take_comment(const Lines *l, Preface *preface)
     take_numbers(l, preface);
 }
 
-static Status read_rows(Record *r, Lines *l, Preface *preface, Columns *columns, Err *err)
-{
-    while (lines_next_filled(l)) {
-        if (is_comment(l)) {
-            take_comment(l, preface);
-        } else if (r->n == 0 && is_words(l)) {
-            if (preface->names.from)
-                take_comment(&preface->names, preface);
-            preface->names = *l;
-        } else {
-            TRY(columns_add(columns, r, l, err));
-        }
-    }
-    return STATUS_OK;
-}
-
-/* ---- which column is what ------------------------------------------------------------------------------------- */
-
 static size_t count_names(const Lines *names)
 {
     size_t n = 0;
@@ -193,6 +176,48 @@ static size_t count_names(const Lines *names)
         n++;
     return n;
 }
+
+/* Do the rows so far make a table: below comments, below names that fit them, or three of one width? */
+static int is_table(const Columns *columns, const Preface *preface, Lines start)
+{
+    if (!lines_next_filled(&start) || columns->odd_line)
+        return 0;
+    return is_comment(&start) || columns->n_rows >= 3 ||
+           (preface->names.from && columns->n_rows > 0 && count_names(&preface->names) == columns->width);
+}
+
+static Status fail_unknown(const Lines *l, Lines start, Err *err)
+{
+    const char *why = strchr(err->text, '\'');
+    char found[120];
+    snprintf(found, sizeof found, "%.119s", why ? why : err->text);
+    lines_next_filled(&start);
+    return fail(err, STATUS_BAD_DATA,
+                "%s:%d: in no format that is known here (docs/motions.md lists them), and no plain columns: %s; the "
+                "first line is '%.*s'",
+                l->path, l->number, found, line_shown(&start), start.from);
+}
+
+static Status read_rows(Record *r, Lines *l, Preface *preface, Columns *columns, Err *err)
+{
+    const Lines start = *l;
+    while (lines_next_filled(l)) {
+        if (is_comment(l)) {
+            take_comment(l, preface);
+        } else if (r->n == 0 && is_words(l)) {
+            if (preface->names.from)
+                take_comment(&preface->names, preface);
+            preface->names = *l;
+        } else {
+            const Status s = columns_add(columns, r, l, err);
+            if (s != STATUS_OK)
+                return is_table(columns, preface, start) ? s : fail_unknown(l, start, err);
+        }
+    }
+    return STATUS_OK;
+}
+
+/* ---- which column is what ------------------------------------------------------------------------------------- */
 
 static int names_times(const Lines *names)
 {

@@ -38,6 +38,9 @@ static Status read_text(Lines *l, Channel *c, Err *err)
         if (!lines_next(l))
             return fail_too_short(l, "header", err);
         const char *colon = memchr(l->from, ':', (size_t)(l->to - l->from));
+        const char *max = line_begins(l, "Processed") ? find_word(l->from, l->to, "Max =") : NULL;
+        if (max && find_word(max, l->to, "cm/sec2"))
+            channel_peak(c, max, l->to, "Max", 0.01);
         if (!line_begins(l, "Sta Cha") || !colon)
             continue;
         const char *name = find_word(colon, l->to, "deg") ? memchr(colon + 1, ':', (size_t)(l->to - colon - 1)) : NULL;

@@ -4,12 +4,16 @@
  *   13200 Accelerogram points at 200 pts/sec in units of g .      Format: (8f9.6)               V1, digital
  *   12000 points of accel data equally spaced at  .005 sec, in cm/sec2. (8f10.6)                V2
  *
- * and the samples; V2 goes on with velocities and displacements. V1 of a film recorder has no such line: pairs of time
- * and acceleration, 10F7.3, whose number and unit (as a rule g/10) stand in the text. */
+ * and the samples (8F10 where the line has no format); V2 goes on with velocities and displacements. V1 of a film
+ * recorder has no such line: pairs of time and acceleration, 10F7.3, whose number and unit (as a rule g/10) stand in
+ * the text. Peaks: "Max = .079 g" beside the units (V1), "Peak acceleration = 77.280 cm/sec/sec" (V2). A channel's name
+ * is what stands behind "Chan  1:", with the location where the text has one ("Location: Roof"). */
 #include <ctype.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
+#include "base/units.h"
 #include "scene/formats/record.h"
 
 enum { TEXT_LINES_MAX = 60, INTEGER_LINES = 7, REAL_LINES_V1 = 7, REAL_LINES_MAX = 20 };
@@ -50,16 +54,37 @@ static int is_integers(const Lines *l)
     return digits >= 16;
 }
 
+/* "360 Deg   (Sta Chn: 1)  Location: Roof" is named "360 Deg, Roof": what tells channels apart comes first. */
+static void name_channel(const char *from, const char *to, Channel *c)
+{
+    char text[2 * CHANNEL_NAME_MAX];
+    const char *bracket = memchr(from, '(', (size_t)(to - from)), *location = find_word(from, to, "Location");
+    const char *stop = bracket && (!location || bracket < location) ? bracket : location ? location : to;
+    channel_name(c, from, stop);
+    if (!location)
+        return;
+    location += strlen("Location");
+    while (location < to && strchr(" :=", *location))
+        location++;
+    const int n = snprintf(text, sizeof text, "%s, %.*s", c->name, (int)(to - location), location);
+    channel_name(c, text, text + (n < (int)sizeof text ? n : (int)sizeof text - 1));
+}
+
 static void take_text(const Lines *l, Text *t, Channel *c)
 {
     const char *colon = memchr(l->from, ':', (size_t)(l->to - l->from));
     if (line_begins(l, "Chan") && colon)
-        channel_name(c, colon + 1, l->to);
+        name_channel(colon + 1, l->to, c);
     if (number_behind(l->from, l->to, "of points", &t->count))
         t->at_count = *l;
     number_behind(l->from, l->to, "spaced intervals of", &t->dt);
+    if (line_begins(l, "Peak acceleration") && (line_has(l, "cm/sec") || line_has(l, "cms/sec")))
+        channel_peak(c, l->from, l->to, "acceleration", 0.01);
     if (!line_begins(l, "Units of"))
         return;
+    const char *max = find_word(l->from, l->to, "Max");
+    if (max && find_word(max, l->to, " g"))
+        channel_peak(c, max, l->to, "Max", GRAVITY);
     const int tenths = line_has(l, "g/10");
     c->units = tenths ? 1u << UNIT_G : units_named(l->from, l->to);
     c->scale = tenths ? 0.1 : 1;
@@ -110,37 +135,19 @@ static double announced_step(const Lines *l, double from_text)
     return line_has(l, "pts/s") || line_has(l, "points/s") || line_has(l, "samples/s") ? 1 / x : x;
 }
 
-static Status read_pairs(Record *r, Lines *l, const Text *t, Channel *c, Err *err)
+static Status read_pairs(Record *r, Lines *l, const Text *t, Err *err)
 {
-    enum { WIDTH = 7, PER_LINE_MAX = 64 };
-    double x[PER_LINE_MAX];
     const Lines *at = &t->at_count;
     if (!(t->count >= 2 && t->count <= 1e8))
         return fail(err, STATUS_BAD_DATA, "%s:%d: no usable number of points (2 or more) in '%.*s'", l->path,
                     at->number, line_shown(at), at->from);
-    while ((double)c->n < t->count) {
-        size_t n;
-        const Lines ahead = lines_ahead(l);
-        if (!ahead.from || line_is_marker(&ahead))
-            return fail(err, STATUS_BAD_DATA, "%s:%d: ends after %zu samples, but its header announces %.0f", l->path,
-                        l->number, c->n, t->count);
-        *l = ahead;
-        TRY(line_numbers(l, WIDTH, PER_LINE_MAX, x, &n, err));
-        if (n % 2 || (double)(c->n + n / 2) > t->count)
-            return fail(err, STATUS_BAD_DATA,
-                        "%s:%d: %zu numbers are not pairs of time and acceleration up to the %.0f "
-                        "that its header announces",
-                        l->path, l->number, n, t->count);
-        for (size_t i = 0; i < n; i += 2)
-            TRY(record_add(r, l, (Row){.t = x[i], .a = x[i + 1], .line = l->number, .decimals = 3}, err));
-        c->n += n / 2;
-    }
-    return STATUS_OK;
+    return record_pairs(r, l, t->count, 7, err);
 }
 
 static Status read_block(Record *r, Lines *l, const Text *t, Channel *c, Err *err)
 {
     BlockForm form = {.count = NAN, .dt = announced_step(l, t->dt), .width = format_width(l)};
+    form.width = form.width ? form.width : 10; /* 8F10.x where the line does not say it */
     number_behind(l->from, l->to, "", &form.count);
     const unsigned units = units_named(l->from, l->to);
     if (line_has(l, "veloc") || line_has(l, "displ"))
@@ -166,7 +173,7 @@ static Status read_channel(Record *r, Lines *l, Err *err)
     TRY(record_channel(r, l, &c, err));
     TRY(read_text(l, &text, c, err));
     TRY(find_samples(l, &text, &pairs, err));
-    return pairs ? read_pairs(r, l, &text, c, err) : read_block(r, l, &text, c, err);
+    return pairs ? read_pairs(r, l, &text, err) : read_block(r, l, &text, c, err);
 }
 
 /* Velocities, displacements and end marks lie between the channels. */

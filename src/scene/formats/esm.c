@@ -13,7 +13,7 @@ typedef struct {
 } Value;
 
 typedef struct {
-    Value count, step, units, type, stream;
+    Value count, step, units, type, stream, peak;
 } Header;
 
 static int recognise(Lines l)
@@ -41,6 +41,7 @@ static Header read_header(Lines *l)
         take(l, "UNITS", &h.units);
         take(l, "DATA_TYPE", &h.type);
         take(l, "STREAM", &h.stream);
+        take(l, "PGA_CM/S^2", &h.peak);
     }
     return h;
 }
@@ -60,6 +61,8 @@ static Status read(Record *r, Lines *l, const ReadHints *hints, Err *err)
     TRY(record_channel(r, l, &c, err));
     if (h.stream.from)
         channel_name(c, h.stream.from, h.stream.to);
+    if (h.peak.from)
+        channel_peak(c, h.peak.from, h.peak.to, "", 0.01);
     c->units = h.units.from ? units_named(h.units.from, h.units.to) : 0;
     Lines at = *l;
     at.number = h.count.line;

@@ -1,5 +1,6 @@
-/* GeoNet (GNS Science) V1A and V2A, as a rule three components one after the other. Each has 16 lines of text, of which
- * line 13 is "Component N28W", then 10 lines of 10 numbers, then samples 10F8.1 in mm/s2. Numbers of that header, line
+/* GeoNet (GNS Science, earlier the Institute of Geological & Nuclear Sciences) V1A and V2A, as a rule three components one
+ * after the other. Each has 16 lines of text, of which line 13 is "Component N28W" (blank in older files) and line 14
+ * "Acceleration:  Peak  -2080.5 mm/s/s ...", then 10 lines of 10 numbers, then samples 10F8.1 in mm/s2. Numbers of that header, line
  * and place counted from 0:
  *
  *   [3][0] samples of V1      [3][3] [3][4] [3][5] accelerations, velocities, displacements of V2      [6][5] step [s]
@@ -18,7 +19,7 @@ static int begins_component(const Lines *l)
 
 static int recognise(Lines l)
 {
-    return lines_next(&l) && begins_component(&l) && line_has(&l, "GNS");
+    return lines_next(&l) && begins_component(&l) && (line_has(&l, "GNS") || line_has(&l, "Nuclear Sci"));
 }
 
 /* "Component S16W  Longitudinal Accelerometer Axis" */
@@ -44,7 +45,9 @@ static Status read_text(Record *r, Lines *l, Channel **c, Err *err)
             in_mm = line_has(l, "mm/s/s");
             told = 1;
         }
-        if (i != COMPONENT_LINE)
+        if (line_begins(l, "Acceleration") && line_has(l, "mm/s/s"))
+            channel_peak(*c, l->from, l->to, "Peak", 0.001);
+        if (i != COMPONENT_LINE || l->from == l->to) /* blank in older files: the component has no name */
             continue;
         if (!line_begins(l, "Component"))
             return fail(err, STATUS_BAD_DATA, "%s:%d: '%.*s' does not name a component", l->path, l->number,

@@ -75,7 +75,7 @@ static Status read(Record *r, Lines *l, const ReadHints *hints, Err *err)
     name_direction(c, &h.direction);
     c->subtract_mean = 1;
     if (h.peak.from)
-        number_behind(h.peak.from, h.peak.to, "(gal)", &c->peak);
+        channel_peak(c, h.peak.from, h.peak.to, "(gal)", 0.01);
     c->units = 1u << UNIT_CM_S2;
     c->scale = scale_factor(&h.factor);
     if (!(c->scale > 0 && isfinite(c->scale)))

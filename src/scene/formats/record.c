@@ -35,7 +35,8 @@ void channel_name(Channel *c, const char *from, const char *to)
     while (to > from && (isspace((unsigned char)to[-1]) || strchr("\"'", to[-1])))
         to--;
     for (; from < to && n + 1 < sizeof c->name; from++)
-        c->name[n++] = isprint((unsigned char)*from) ? *from : '?';
+        if (!isspace((unsigned char)*from) || !isspace((unsigned char)from[1])) /* one blank for several */
+            c->name[n++] = isspace((unsigned char)*from) ? ' ' : isprint((unsigned char)*from) ? *from : '?';
     c->name[n] = 0;
 }
 
@@ -48,11 +49,39 @@ Status record_channel(Record *r, const Lines *l, Channel **out, Err *err)
     return STATUS_OK;
 }
 
+void channel_peak(Channel *c, const char *from, const char *to, const char *word, double m_s2)
+{
+    double x;
+    const char *p = find_word(from, to, word);
+    if (!p || !number_behind(p, to, word, &x) || x == 0)
+        return;
+    p += strlen(word);
+    while (p < to && strchr(" \t=:(", *p))
+        p++;
+    double digit = 1;
+    int behind_point = 0;
+    for (; p < to && strchr("+-.0123456789", *p) && *p; p++) {
+        digit /= behind_point ? 10 : 1;
+        behind_point |= *p == '.';
+    }
+    c->peak = fabs(x) * m_s2;
+    c->peak_slack = 0.5 * digit * m_s2;
+}
+
 int line_is_marker(const Lines *l)
 {
+    if (line_begins(l, "*"))
+        return line_has(l, "end");
     if (line_begins(l, "nan") || line_begins(l, "inf"))
         return 0;
-    return isalpha((unsigned char)*l->from) || strchr("/|#&", *l->from);
+    return isalpha((unsigned char)*l->from) || strchr("/|#&", *l->from) || line_begins(l, "->");
+}
+
+int value_behind_colon(const Lines *l, const char **from)
+{
+    const char *colon = memchr(l->from, ':', (size_t)(l->to - l->from));
+    *from = colon ? colon + 1 : NULL;
+    return colon != NULL;
 }
 
 static Status check_form(const Lines *l, const BlockForm *form, Err *err)
@@ -97,6 +126,43 @@ Status record_block_ends(const Lines *l, double count, Err *err)
     if (ahead.from && !line_is_marker(&ahead))
         return fail(err, STATUS_BAD_DATA, "%s:%d: more samples than the %.0f that its header announces", ahead.path,
                     ahead.number, count);
+    return STATUS_OK;
+}
+
+/* n numbers of a line. */
+static Status add_pairs(Record *r, const Lines *l, size_t n, const double x[], Err *err)
+{
+    Channel *c = &r->channel[r->n_channels - 1];
+    if (n % 2)
+        return fail(err, STATUS_BAD_DATA, "%s:%d: %zu numbers are not pairs of time and acceleration", l->path,
+                    l->number, n);
+    for (size_t i = 0; i < n; i += 2)
+        TRY(record_add(r, l, (Row){.t = x[i], .a = x[i + 1], .line = l->number, .decimals = 3}, err));
+    c->n += n / 2;
+    c->digitized = 1;
+    return STATUS_OK;
+}
+
+Status record_pairs(Record *r, Lines *l, double count, int width, Err *err)
+{
+    enum { PER_LINE_MAX = 64 };
+    double x[PER_LINE_MAX];
+    Channel *c = &r->channel[r->n_channels - 1];
+    while ((double)c->n < count) {
+        size_t n;
+        const Lines ahead = lines_ahead(l);
+        if (!ahead.from || line_is_marker(&ahead))
+            return fail(err, STATUS_BAD_DATA, "%s:%d: ends after %zu samples, but its header announces %.0f", l->path,
+                        l->number, c->n, count);
+        *l = ahead;
+        TRY(line_numbers(l, width, PER_LINE_MAX, x, &n, err));
+        if ((double)(c->n + n / 2) > count)
+            return fail(err, STATUS_BAD_DATA,
+                        "%s:%d: %zu numbers are not pairs of time and acceleration up to the %.0f that its header "
+                        "announces",
+                        l->path, l->number, n, count);
+        TRY(add_pairs(r, l, n, x, err));
+    }
     return STATUS_OK;
 }
 

@@ -22,9 +22,12 @@ typedef struct {
     char name[CHANNEL_NAME_MAX]; /* as in the file; may be empty */
     unsigned units;              /* that the file names, one bit (1 << MotionUnit) each */
     double scale;
-    double dt;         /* [s] 0: the rows have times */
-    double peak;       /* [unit] largest |acceleration| that the header states; 0: it states none */
-    int subtract_mean; /* the agency's own peak is that of the record without its mean */
+    double dt;           /* [s] 0: the rows have times */
+    double peak;         /* [m/s2] largest |acceleration| that the header states; 0: it states none */
+    double peak_slack;   /* [m/s2] half a unit of its last digit */
+    int subtract_mean;   /* the agency's own peak is that of the record without its mean */
+    int digitized;       /* from film, its steps are not equal */
+    const char *warning; /* static; NULL: none */
     size_t first, stride, n;
 } Channel;
 
@@ -47,8 +50,12 @@ typedef struct {
     Status (*read)(Record *r, Lines *l, const ReadHints *hints, Err *err);
 } MotionFormat;
 
+/* Pairs of time and acceleration in columns of `width`, `count` of them, into the last channel. */
+Status record_pairs(Record *r, Lines *l, double count, int width, Err *err);
+
 extern const MotionFormat FORMAT_AT2, FORMAT_COSMOS, FORMAT_CSMIP, FORMAT_SMC, FORMAT_KNET, FORMAT_ESM, FORMAT_GEONET,
-    FORMAT_JMA, FORMAT_COLUMNS;
+    FORMAT_JMA, FORMAT_CWB, FORMAT_AFAD, FORMAT_UNAM, FORMAT_ISESD, FORMAT_BHRC, FORMAT_USC, FORMAT_SLIST,
+    FORMAT_TSPAIR, FORMAT_REFUSED, FORMAT_COLUMNS;
 
 Status record_add(Record *r, const Lines *l, Row row, Err *err);
 void record_free(Record *r);
@@ -57,15 +64,21 @@ void record_free(Record *r);
 Status record_channel(Record *r, const Lines *l, Channel **out, Err *err);
 void channel_name(Channel *c, const char *from, const char *to); /* blanks and quotes around it dropped, ASCII only */
 
+/* The value behind the first colon of a line "key : value"; 0: no colon. */
+int value_behind_colon(const Lines *l, const char **from);
+
 typedef struct {
     double count, dt; /* as read: whole and positive ones are accepted */
     int width;        /* columns of numbers that run together; 0: none */
 } BlockForm;
 
+/* Takes the number behind `word` in from..to, if it is there, as the peak that the header states. */
+void channel_peak(Channel *c, const char *from, const char *to, const char *word, double m_s2);
+
 /* Exactly `count` samples into the last channel, from the line after l's; a line of words ends them early. */
 Status record_block(Record *r, Lines *l, const BlockForm *form, Err *err);
 
-/* Begins like a word, a comment or an end marker, and not like nan, inf or Fortran's stars. */
+/* Begins like a word, a comment or an end marker ("*** End Data ***"), and not like nan, inf or Fortran's stars. */
 int line_is_marker(const Lines *l);
 
 /* No further number may stand behind a block. */

@@ -1,0 +1,113 @@
+/* The ASCII time series of IRIS (ascii2mseed, ObsPy): per segment a line
+ *
+ *   TIMESERIES NET_STA_LOC_CHA_Q, 6001 samples, 200 sps, 2009-08-24T00:20:03.000000, SLIST, INTEGER, Counts
+ *
+ * then samples row by row (SLIST), or "time  sample" (TSPAIR). Counts are no acceleration: they need a gain, asked for by
+ * motion.unit once the file was converted. A segment is a channel; a gap makes two. */
+#include <ctype.h>
+#include <math.h>
+#include <string.h>
+
+#include "scene/formats/record.h"
+
+static int begins_series(const Lines *l)
+{
+    return line_begins(l, "TIMESERIES ");
+}
+
+static int recognise_slist(Lines l)
+{
+    return lines_next(&l) && begins_series(&l) && line_has(&l, "SLIST");
+}
+
+static int recognise_tspair(Lines l)
+{
+    return lines_next(&l) && begins_series(&l) && line_has(&l, "TSPAIR");
+}
+
+/* The k-th field between commas, from 0. */
+static int field(const Lines *l, int k, const char **from, const char **to)
+{
+    *from = l->from;
+    for (int i = 0; i <= k; i++) {
+        const char *comma = memchr(*from, ',', (size_t)(l->to - *from));
+        *to = comma ? comma : l->to;
+        if (i == k)
+            return 1;
+        if (!comma)
+            return 0;
+        *from = comma + 1;
+    }
+    return 0;
+}
+
+static Status read_header(Record *r, Lines *l, Channel **c, BlockForm *form, Err *err)
+{
+    const char *from, *to;
+    double rate = NAN;
+    *form = (BlockForm){.count = NAN, .dt = NAN};
+    TRY(record_channel(r, l, c, err));
+    if (field(l, 0, &from, &to))
+        channel_name(*c, from + strlen("TIMESERIES "), to);
+    if (field(l, 1, &from, &to))
+        number_behind(from, to, "", &form->count);
+    if (field(l, 2, &from, &to))
+        number_behind(from, to, "", &rate);
+    form->dt = 1 / rate;
+    if (!field(l, 6, &from, &to))
+        return STATUS_OK;
+    if (find_word(from, to, "count"))
+        return fail(err, STATUS_BAD_DATA,
+                    "%s:%d: holds counts, no acceleration; divide them by the gain of the instrument [counts per m/s2] "
+                    "and write the unit in the place of '%.*s'",
+                    l->path, l->number, (int)(to - from), from);
+    (*c)->units = units_named(from, to);
+    return STATUS_OK;
+}
+
+static Status read_slist(Record *r, Lines *l, const ReadHints *hints, Err *err)
+{
+    (void)hints;
+    while (lines_next_filled(l)) {
+        Channel *c;
+        BlockForm form;
+        if (!begins_series(l))
+            return fail(err, STATUS_BAD_DATA, "%s:%d: '%.*s' does not begin a segment", l->path, l->number,
+                        line_shown(l), l->from);
+        TRY(read_header(r, l, &c, &form, err));
+        TRY(record_block(r, l, &form, err));
+        TRY(record_block_ends(l, form.count, err));
+    }
+    return STATUS_OK;
+}
+
+static Status read_tspair(Record *r, Lines *l, const ReadHints *hints, Err *err)
+{
+    (void)hints;
+    while (lines_next_filled(l)) {
+        Channel *c;
+        BlockForm form;
+        if (!begins_series(l))
+            return fail(err, STATUS_BAD_DATA, "%s:%d: '%.*s' does not begin a segment", l->path, l->number,
+                        line_shown(l), l->from);
+        TRY(read_header(r, l, &c, &form, err));
+        if (!(form.count >= 2 && form.dt > 0 && form.dt <= MOTION_STEP_MAX_S))
+            return fail(err, STATUS_BAD_DATA, "%s:%d: no usable number of samples or rate in '%.*s'", l->path,
+                        l->number, line_shown(l), l->from);
+        for (c->dt = form.dt; (double)c->n < form.count; c->n++) {
+            Row row = {0};
+            if (!lines_next_filled(l) || begins_series(l))
+                return fail(err, STATUS_BAD_DATA, "%s:%d: ends after %zu samples, but its header announces %.0f",
+                            l->path, l->number, c->n, form.count);
+            const char *p = l->from;
+            field_next(l, &p, 0); /* the time */
+            row.line = l->number;
+            TRY(field_number(l, p, l->to, 0, &row.a, err));
+            TRY(record_add(r, l, row, err));
+        }
+    }
+    return STATUS_OK;
+}
+
+const MotionFormat FORMAT_SLIST = {"slist", recognise_slist, read_slist};
+const MotionFormat FORMAT_TSPAIR = {"tspair", recognise_tspair, read_tspair};
