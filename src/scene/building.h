@@ -32,8 +32,6 @@
 #include "base/status.h"
 #include "scene/options.h"
 
-enum { FLOORS_MAX = 64 };
-
 typedef struct {
     int n;            /* floors */
     double *K, *M;    /* (n, n) [N/m], [kg] */

@@ -5,7 +5,8 @@
 #ifndef IMTET_SCENE_BUILDING_READ_H
 #define IMTET_SCENE_BUILDING_READ_H
 
-#include "scene/building.h"
+#include "base/status.h"
+#include "scene/options.h"
 
 typedef struct {
     int n;

@@ -6,6 +6,8 @@
 
 #include "base/option.h"
 
+enum { FLOORS_MAX = 64 }; /* of a building */
+
 /* What the entries of K.csv and M.csv are in; kip_in: kip/in and kip s2/in. */
 #define BUILDING_UNITS_LIST(X)                                                                                         \
     X(BUILDING_AUTO, "auto")                                                                                           \
