@@ -13,6 +13,9 @@
 
 #include "program.h"
 
+#include "scene/motion_source.h"
+#include "scene/spectrum.h"
+
 /* A design file of 20 floors: gap_j = gap * j. */
 static void write_designs(const char *name, int n, const double gap[], const double t_base[], const double t_top[])
 {
@@ -213,6 +216,29 @@ static void test_modes_of_tower_and_box_core_are_known(void **state)
     check_hz(o, "building_hz", 5, (const double[]){0.2643, 0.7599, 1.3113, 1.8448, 2.4209}, 1e-3);
     check_hz(o, "core_hz", 5, (const double[]){2.492, 13.64, 36.69, 71.11, 117.0}, 1e-3);
     assert_close(number(o, "core_mass_kg"), 2.650e5, 1e-3);
+    double building = 0, core = 0;
+    for (size_t i = 0; i < 20; i++) {
+        building += json_real_value(json_array_get(json_object_get(o, "building_mass_share"), i));
+        core += json_real_value(json_array_get(json_object_get(o, "core_mass_share"), i));
+    }
+    assert_close(building, 1, 1e-9);
+    assert_close(core, 1, 1e-9);
+    json_decref(o);
+}
+
+static void test_modes_read_the_spectrum_at_their_periods(void **state)
+{
+    (void)state;
+    Motion m;
+    Err err = {0};
+    double psa;
+    json_t *o = json_of("modes configs/quick.ini --spectrum --json");
+    const double period = 1 / json_real_value(json_array_get(json_object_get(o, "zero_gap_hz"), 1));
+    CHECK_OK(motion_load(&m, "builtin:kobe-like", UNIT_FROM_FILE, &err), &err);
+    CHECK_OK(motion_prepare(&m, 0.3, 3.1, &err), &err);
+    spectrum_psa(&m, 0.03, 1, &period, &psa);
+    assert_close(json_real_value(json_array_get(json_object_get(o, "zero_gap_psa_g"), 1)), psa / 9.81, 1e-9);
+    motion_free(&m);
     json_decref(o);
 }
 
@@ -434,6 +460,7 @@ int main(void)
         cmocka_unit_test(test_the_printed_settings_are_the_default_file_and_in_order),
         cmocka_unit_test(test_check_names_every_fault_at_once),
         cmocka_unit_test(test_modes_of_tower_and_box_core_are_known),
+        cmocka_unit_test(test_modes_read_the_spectrum_at_their_periods),
         cmocka_unit_test(test_modes_of_the_effective_core_are_those_of_the_paper),
         cmocka_unit_test(test_modes_take_the_wall_from_a_design),
         cmocka_unit_test(test_the_spectrum_is_the_same_as_json_and_as_csv),

@@ -1,5 +1,11 @@
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/units.h"
 #include "scene/core_beam.h"
 #include "scene/design.h"
+#include "scene/spectrum.h"
 #include "cmd/commands.h"
 #include "cmd/show.h"
 #include "simulator/scenario.h"
@@ -13,6 +19,9 @@ typedef struct {
     double building[FLOORS_MAX], core[FLOORS_MAX], zero_gap[FLOORS_MAX];
     double core_mass_kg, t_base_m, t_top_m;
     double by_theory[2]; /* [Hz] first mode of the core, by CoreTheory */
+    double damping[FLOORS_MAX], building_share[FLOORS_MAX], core_share[FLOORS_MAX]; /* [-] participating masses */
+    double psa_building[FLOORS_MAX], psa_zero_gap[FLOORS_MAX]; /* [g] with --spectrum, at their periods */
+    int has_spectrum;
 } Modes;
 
 static Status choose_thickness(const Args *args, Modes *m, Err *err)
@@ -30,6 +39,44 @@ static Status choose_thickness(const Args *args, Modes *m, Err *err)
     return STATUS_OK;
 }
 
+/* gamma_i^2 over the whole mass of M (n, n). */
+static void mass_shares(int n, const double M[], const double gamma[], double share[])
+{
+    double mass = 0;
+    for (int i = 0; i < n * n; i++)
+        mass += M[i];
+    for (int i = 0; i < n; i++)
+        share[i] = gamma[i] * gamma[i] / mass;
+}
+
+static Status participate(const Scenario *w, Modes *m, Err *err)
+{
+    const Building *b = scene_building(w->scene);
+    CoreBeam *core = malloc(sizeof *core);
+    if (!core)
+        return fail(err, STATUS_NO_MEMORY, "modes: no memory for %d storeys", m->n);
+    const Status status = core_beam_make(core, &w->options.core, m->n, b->storey_m, m->t_base_m, m->t_top_m, err);
+    if (status == STATUS_OK)
+        mass_shares(m->n, core->M, core->gamma, m->core_share);
+    free(core);
+    mass_shares(m->n, b->M, b->gamma, m->building_share);
+    memcpy(m->damping, b->zeta, (size_t)m->n * sizeof *b->zeta);
+    return status;
+}
+
+/* Pseudo-acceleration at the periods, by the building's damping. */
+static void find_spectrum(const Scenario *w, Modes *m)
+{
+    for (int i = 0; i < m->n; i++) {
+        const double period[2] = {1 / m->building[i], 1 / m->zero_gap[i]}, zeta = fmin(m->damping[i], 0.99);
+        spectrum_psa(&w->motion, zeta, 1, &period[0], &m->psa_building[i]);
+        spectrum_psa(&w->motion, zeta, 1, &period[1], &m->psa_zero_gap[i]);
+        m->psa_building[i] /= GRAVITY;
+        m->psa_zero_gap[i] /= GRAVITY;
+    }
+    m->has_spectrum = 1;
+}
+
 static Status compute(const Args *args, const Scenario *w, Modes *m, Err *err)
 {
     double x[FLOORS_MAX + 2] = {0};
@@ -40,7 +87,11 @@ static Status compute(const Args *args, const Scenario *w, Modes *m, Err *err)
     for (CoreTheory k = CORE_TIMOSHENKO; k <= CORE_EULER_BERNOULLI; k++)
         TRY(core_beam_first_hz(&w->options.core, k, m->n, scene_building(w->scene)->storey_m, m->t_base_m, m->t_top_m,
                                &m->by_theory[k], err));
-    return scene_frequencies(w->scene, x, m->building, m->core, m->zero_gap, &m->core_mass_kg, err);
+    TRY(participate(w, m, err));
+    TRY(scene_frequencies(w->scene, x, m->building, m->core, m->zero_gap, &m->core_mass_kg, err));
+    if (args_has(args, "--spectrum"))
+        find_spectrum(w, m);
+    return STATUS_OK;
 }
 
 static Status print_json(const Modes *m, const Settings *s, Err *err)
@@ -56,6 +107,13 @@ static Status print_json(const Modes *m, const Settings *s, Err *err)
     json_object_set_new(o, "building_hz", json_numbers((size_t)m->n, m->building));
     json_object_set_new(o, "core_hz", json_numbers((size_t)m->n, m->core));
     json_object_set_new(o, "zero_gap_hz", json_numbers((size_t)m->n, m->zero_gap));
+    json_object_set_new(o, "building_mass_share", json_numbers((size_t)m->n, m->building_share));
+    json_object_set_new(o, "core_mass_share", json_numbers((size_t)m->n, m->core_share));
+    json_object_set_new(o, "building_damping", json_numbers((size_t)m->n, m->damping));
+    if (m->has_spectrum) {
+        json_object_set_new(o, "building_psa_g", json_numbers((size_t)m->n, m->psa_building));
+        json_object_set_new(o, "zero_gap_psa_g", json_numbers((size_t)m->n, m->psa_zero_gap));
+    }
     return show_json(o, err);
 }
 
@@ -69,9 +127,15 @@ static void print_table(const Modes *m, const Settings *s)
     const double bending = m->by_theory[CORE_EULER_BERNOULLI], shearing = m->by_theory[CORE_TIMOSHENKO];
     printf("first mode of the core: %.4g Hz bending alone, %.4g Hz (%+.2g %%) with shear and rotary inertia\n\n",
            bending, shearing, 100 * (shearing / bending - 1));
-    printf("mode  building_hz      core_hz  zero_gap_hz\n");
-    for (int i = 0; i < m->n; i++)
-        printf("%4d %12.4f %12.4f %12.4f\n", i + 1, m->building[i], m->core[i], m->zero_gap[i]);
+    printf("mode  building_hz  mass_pct  damping_pct      core_hz  mass_pct  zero_gap_hz%s\n",
+           m->has_spectrum ? "  building_psa_g  zero_gap_psa_g" : "");
+    for (int i = 0; i < m->n; i++) {
+        printf("%4d %12.4f %9.3g %12.3g %12.4f %9.3g %12.4f", i + 1, m->building[i], 100 * m->building_share[i],
+               100 * m->damping[i], m->core[i], 100 * m->core_share[i], m->zero_gap[i]);
+        if (m->has_spectrum)
+            printf(" %15.4g %15.4g", m->psa_building[i], m->psa_zero_gap[i]);
+        putchar('\n');
+    }
 }
 
 static Status run(const Args *args, Err *err)
@@ -80,7 +144,7 @@ static Status run(const Args *args, Err *err)
     Scenario w;
     Modes m = {0};
     TRY(args_settings(args, &s, NULL, NULL, err));
-    TRY(scenario_open_still(&w, &s, err));
+    TRY(args_has(args, "--spectrum") ? scenario_open(&w, &s, err) : scenario_open_still(&w, &s, err));
     Status status = compute(args, &w, &m, err);
     scenario_close(&w);
     if (status == STATUS_OK && args_has(args, "--json"))
@@ -92,6 +156,8 @@ static Status run(const Args *args, Err *err)
 
 static const ArgOption OPTIONS[] = {
     {"--design", "FILE", NULL, 0, "take the core's thickness from the first row of a design file"},
+    {"--spectrum", NULL, NULL, 0,
+     "pseudo-acceleration of the configured motion at the periods [g], with the building's damping"},
     OPTION_JSON,
     OPTION_SET,
     OPTION_END,
@@ -100,13 +166,13 @@ static const ArgOption OPTIONS[] = {
 const Command CMD_MODES = {
     .name = "modes",
     .operand = "CONFIG",
-    .summary = "natural frequencies of building, core and zero-gap assembly",
+    .summary = "natural frequencies and participating masses of building, core and zero-gap assembly",
     .example = "imtet modes configs/quick.ini",
     .details =
-        "Natural frequencies [Hz] of the building, of the core and of the two rigidly connected (zero gap). Without\n"
-        "--design the core's thickness runs from 12 mm in the first storey to 6.4 mm in the last; an effective "
-        "section\n"
-        "(core.section) does not depend on it.",
+        "Natural frequencies [Hz] of the building, of the core and of the two rigidly connected (zero gap), with the\n"
+        "share of the mass that takes part in each mode and the building's damping. Without --design the core's\n"
+        "thickness runs from 12 mm in the first storey to 6.4 mm in the last; an effective section (core.section)\n"
+        "does not depend on it. `imtet building` draws mode shapes.",
     .options = OPTIONS,
     .run = run,
 };
