@@ -442,6 +442,35 @@ static void test_a_damping_table_gives_each_mode_its_ratio(void **state)
     building_free(&b);
 }
 
+/* As many floors as there may be, with impacts: sets of floors, pads and designs have room for all of them. */
+static void test_a_building_of_the_most_floors_is_simulated_alike_by_two_engines(void **state)
+{
+    (void)state;
+    const BuildingOptions o = folder_of("tall");
+    char rows[8192] = "height_m,mass_kg,stiffness_n_m\n", head[2048] = "", gaps[2048] = "", command[512];
+    for (int j = 0; j < FLOORS_MAX; j++) {
+        snprintf(rows + strlen(rows), sizeof rows - strlen(rows), "3.8,4e5,%g\n", 6e9 * (1 - 0.8 * j / FLOORS_MAX));
+        snprintf(head + strlen(head), sizeof head - strlen(head), "gap_%02d_m,", j + 1);
+        snprintf(gaps + strlen(gaps), sizeof gaps - strlen(gaps), "%g,", 0.002 + 0.0004 * ((j * 37) % FLOORS_MAX));
+    }
+    write_file(&o, "storeys.csv", "%s", rows);
+    write_file(&o, "design.csv", "%st_base_m,t_top_m\n%s0.02,0.01\n", head, gaps);
+    json_t *r[2];
+    for (int i = 0; i < 2; i++) {
+        snprintf(command, sizeof command,
+                 "simulate configs/quick.ini --set building.model=@/tall --design @/tall/design.csv --record "
+                 "builtin:sylmar-like --stretch 1 --duration 5 --set sim.accuracy=fine --engine %s --json",
+                 i ? "cvode" : "fast");
+        r[i] = json_of(command);
+    }
+    assert_true(number(r[0], "impacts") >= 10);
+    assert_int_equal((int)number(r[0], "impacts"), (int)number(r[1], "impacts"));
+    assert_close(number(r[0], "j1_m"), number(r[1], "j1_m"), 1e-4);
+    assert_close(number(r[0], "j3_g"), number(r[1], "j3_g"), 1e-3);
+    json_decref(r[0]);
+    json_decref(r[1]);
+}
+
 /* ---- imtet building ------------------------------------------------------------------------------------------- */
 
 static int count(const char *text, const char *word)
@@ -517,6 +546,7 @@ int main(void)
         cmocka_unit_test(test_a_column_buckles_at_eulers_load),
         cmocka_unit_test(test_rayleigh_damping_goes_through_its_two_modes),
         cmocka_unit_test(test_a_damping_table_gives_each_mode_its_ratio),
+        cmocka_unit_test(test_a_building_of_the_most_floors_is_simulated_alike_by_two_engines),
         cmocka_unit_test(test_a_building_is_summed_up_and_drawn),
         cmocka_unit_test(test_a_drawing_shows_names_as_text_and_storeys_as_a_stick),
     };

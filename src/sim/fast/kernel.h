@@ -18,6 +18,7 @@ enum {
     FLOORS_PAD_MAX = FLOORS_MAX,
     MODES_PAD_MAX = 2 * FLOORS_MAX
 };
+_Static_assert(FLOORS_PAD_MAX <= 64, "sets of floors are bits of a uint64_t");
 
 /* Compliances of w (and w') at the end of a step to a unit ramp x and a unit bubble x (1 - x) of force. */
 enum { RAMP_W, BUBBLE_W, RAMP_V, BUBBLE_V, COMPLIANCES };
