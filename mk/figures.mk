@@ -1,6 +1,6 @@
 # Figures and pictures of README and docs. Those of time want a quiet machine.
 
-.PHONY: bench chart compare pictures web setup-browser report-bench
+.PHONY: bench chart compare ablation pictures web setup-browser report-bench
 
 # A record that is not there is replaced by the built-in motion.
 BENCH_RECORD ?= $(or $(wildcard ../shared/records/kobe_jma_ns.csv),builtin:kobe-like)
@@ -15,6 +15,9 @@ chart: $(BENCH) ## docs/chart: speed against accuracy of every engine
 # CELLS and SEEDS choose a part, KEEP names a folder in which runs stay and are not repeated.
 compare: $(PROGRAM) ## docs/search.md: the search on textbook problems and the tower, with and without surrogate
 	@scripts/compare --program ./$(PROGRAM) --out docs/search.md $(if $(CELLS),--cells $(CELLS)) $(if $(SEEDS),--seeds $(SEEDS)) $(if $(KEEP),--keep $(KEEP))
+
+ablation: ## what each tuned constant of the search earns: every one turned off; ARGS="--only NAME,..."
+	@scripts/ablation $(ARGS)
 
 pictures: $(PROGRAM) ## docs/pictures, those of a study: RUN=results/kobe RECORDS="elcentro.csv sylmar.csv"
 	@./$(PROGRAM) plot $(RUN) $(RECORDS:%=--record %) --out $(BUILD)/pictures
