@@ -146,7 +146,7 @@ static int summarise(Check *c, CheckedScene *p)
     const Status status = scene_summarise(&p->summary, &p->building, &p->s->core, &p->motion, p->x[n], p->x[n + 1], &e);
     if (!note(c, status, "core", &e))
         return 0;
-    scene_warnings(&p->summary, &p->s->building, &p->s->core, &p->s->design, &p->motion, warn, c);
+    scene_warnings(&p->summary, &p->s->core, &p->s->design, &p->motion, warn, c);
     if (p->motion.warning[0])
         warn("motion.record", p->motion.warning, c);
     if (p->s->sim.duration_s > duration(&p->motion)) {
@@ -163,12 +163,12 @@ static void print_scene(const CheckedScene *p)
     const SceneSummary *f = &p->summary;
     const Settings *s = p->s;
     const double *t = p->x + f->n_floors;
-    printf("building  %s: %d floors, %.4g m, %.4g kg (floors of %.4g to %.4g kg), damping %g %%\n", s->building.model,
-           f->n_floors, f->height_m, f->mass_kg, f->floor_mass_min_kg, f->floor_mass_max_kg, 100 * s->building.damping);
+    printf("building  %s: %d floors, %.4g m, %.4g kg (floors of %.4g to %.4g kg)\n", s->building.model, f->n_floors,
+           f->height_m, f->mass_kg, f->floor_mass_min_kg, f->floor_mass_max_kg);
     printf("          periods");
     for (int i = 0; i < 3 && f->period_s[i] > 0; i++)
-        printf("%s %.4g", i ? "," : "", f->period_s[i]);
-    printf(" s (%.3g s per storey); the first mode moves %.3g %% of the mass\n", f->period_s[0] / f->n_floors,
+        printf("%s %.4g s (damping %.3g %%)", i ? "," : "", f->period_s[i], 100 * f->damping[i]);
+    printf("\n          %.3g s per storey; the first mode moves %.3g %% of the mass\n", f->period_s[0] / f->n_floors,
            100 * f->first_mode_mass);
     printf("core      %.4g kg at %g to %g mm, damping %g %%, %s\n", f->core_mass_kg, 1e3 * t[0], 1e3 * t[1],
            100 * s->core.damping, core_theory_word(s->core.theory));
@@ -194,7 +194,7 @@ static void scene_json(Check *c, const CheckedScene *p)
                         json_pack("{s:s, s:i, s:f, s:f, s:f, s:f, s:f, s:f, s:o, s:f, s:f}", "model", s->building.model,
                                   "floors", f->n_floors, "height_m", f->height_m, "mass_kg", f->mass_kg, "weight_n",
                                   f->mass_kg * GRAVITY, "floor_mass_min_kg", f->floor_mass_min_kg, "floor_mass_max_kg",
-                                  f->floor_mass_max_kg, "damping", s->building.damping, "period_s",
+                                  f->floor_mass_max_kg, "damping", f->damping[0], "period_s",
                                   json_numbers(n_periods, f->period_s), "first_mode_mass_share", f->first_mode_mass,
                                   "base_shear_share", f->base_shear));
     json_object_set_new(c->out, "core",

@@ -77,8 +77,10 @@ Status scene_summarise(SceneSummary *s, const Building *b, const CoreOptions *co
     summarise_mass(s, b);
     for (int j = 0; j < b->n; j++)
         s->height_m += b->storey_m[j];
-    for (int i = 0; i < 3 && i < b->n; i++)
+    for (int i = 0; i < 3 && i < b->n; i++) {
         s->period_s[i] = 2 * M_PI / b->omega[i];
+        s->damping[i] = b->zeta[i];
+    }
     s->first_mode_mass = b->gamma[0] * b->gamma[0] / s->mass_kg;
     s->base_shear = base_shear(b, motion, s->mass_kg);
     return summarise_core(s, core, b->storey_m, t_base_m, t_top_m, err);
@@ -118,7 +120,7 @@ static const char *unit_guess(double per_storey, int light)
     return "";
 }
 
-static void warn_of_building(const SceneSummary *s, const BuildingOptions *o, const Warner *w)
+static void warn_of_building(const SceneSummary *s, const Warner *w)
 {
     const double per_storey = s->period_s[0] / s->n_floors;
     const int light = s->floor_mass_min_kg < FLOOR_MASS_MIN_KG;
@@ -134,9 +136,12 @@ static void warn_of_building(const SceneSummary *s, const BuildingOptions *o, co
             s->floor_mass_max_kg, FLOOR_MASS_MIN_KG, FLOOR_MASS_MAX_KG);
     if (s->top_first)
         say(w, "building.model", "the first mode is largest at the first row; floors are wanted bottom floor first");
-    if (o->damping > DAMPING_MAX)
-        say(w, "building.damping", "%g is %g %% of critical; steel frames have 1 to 5 %%", o->damping,
-            100 * o->damping);
+    for (int i = 0; i < 3; i++)
+        if (s->damping[i] > DAMPING_MAX) {
+            say(w, "building.damping", "mode %d has %g %% of critical; steel frames have 1 to 5 %%", i + 1,
+                100 * s->damping[i]);
+            break;
+        }
 }
 
 static void warn_of_core(const SceneSummary *s, const CoreOptions *o, const Warner *w)
@@ -151,12 +156,12 @@ static void warn_of_core(const SceneSummary *s, const CoreOptions *o, const Warn
             s->euler_bernoulli_hz, s->timoshenko_hz);
 }
 
-void scene_warnings(const SceneSummary *s, const BuildingOptions *building, const CoreOptions *core,
-                    const DesignOptions *design, const Motion *motion, WarnFn warn, void *user)
+void scene_warnings(const SceneSummary *s, const CoreOptions *core, const DesignOptions *design, const Motion *motion,
+                    WarnFn warn, void *user)
 {
     const Warner w = {warn, user};
     const double peak_g = motion_peak(motion) / GRAVITY;
-    warn_of_building(s, building, &w);
+    warn_of_building(s, &w);
     warn_of_core(s, core, &w);
     if (peak_g > PEAK_MAX_G)
         say(&w, "motion.pga_g", "a peak of %.4g g; hardly a record exceeds %g g", peak_g, PEAK_MAX_G);

@@ -17,6 +17,7 @@ typedef struct {
     double floor_mass_min_kg, floor_mass_max_kg;
     int lightest, heaviest; /* floors, from 1 */
     double period_s[3];     /* the first; 0 where there are fewer */
+    double damping[3];      /* [-] of these modes */
     double first_mode_mass; /* [-] share of the mass */
     int top_first;          /* the first mode is largest at the first row and falls from row to row */
     double base_shear;      /* [-] share of the weight */
@@ -36,7 +37,7 @@ static const double FLOOR_MASS_MIN_KG = 1e3, FLOOR_MASS_MAX_KG = 1e7;
 static const double DAMPING_MAX = 0.2, PEAK_MAX_G = 3, GAP_MAX_M = 1;
 
 typedef void (*WarnFn)(const char *key, const char *text, void *user);
-void scene_warnings(const SceneSummary *s, const BuildingOptions *building, const CoreOptions *core,
-                    const DesignOptions *design, const Motion *motion, WarnFn warn, void *user);
+void scene_warnings(const SceneSummary *s, const CoreOptions *core, const DesignOptions *design, const Motion *motion,
+                    WarnFn warn, void *user);
 
 #endif
