@@ -29,7 +29,7 @@ CPPFLAGS += -Isrc -MMD -MP -D_GNU_SOURCE
 # Contraction to fused multiply-add rounds once instead of twice; NaN and Inf stay what they are.
 CFLAGS   += -std=c17 -fopenmp -ffp-contract=fast $(CFLAGS.$(MODE))
 LDFLAGS  += -fopenmp $(CFLAGS.$(MODE))
-LDLIBS   += -lsundials_cvode -lsundials_nvecserial -lsundials_sunnonlinsolfixedpoint -lnlopt -llapacke -lopenblas -linih -ljansson -lsqlite3 -lm
+LDLIBS   += -lsundials_cvode -lsundials_nvecserial -lsundials_sunnonlinsolfixedpoint -lnlopt -llapacke -lopenblas -linih -ljansson -lsqlite3 -larchive -lmseed -lm
 
 # Loops over floors, modes and centres are written for the vectorizer; the rest does not gain from -O3. These flags come
 # last; provenance.json quotes them by the same variables.

@@ -98,6 +98,47 @@ static void test_a_specimen_of_every_format_is_read_to_its_step_length_and_peak(
     }
 }
 
+/* What is no text, or text whose unit is asked for. */
+static const struct {
+    const char *file, *format;
+    MotionHow how;
+    int component;
+    const char *name;
+    double tolerance;
+} BINARY[] = {
+    {"three.mseed", "mseed", {.channel = "1", .counts_per_m_s2 = 1e5}, 0, "XX.SYN.00.HNN", 1e-6},
+    {"three.mseed", "mseed", {.channel = "XX.SYN.00.HNZ", .counts_per_m_s2 = 1e5}, 2, "XX.SYN.00.HNZ", 1e-6},
+    {"little.sac", "sac", {.unit = UNIT_CM_S2}, 0, "HNN", 1e-6},
+    {"little.sac", "sac", {.counts_per_m_s2 = 100}, 0, "HNN", 1e-6},
+    {"big.sac", "sac", {.unit = UNIT_G}, 1, "HNE", 1e-6},
+    {"text.sac", "sac", {.unit = UNIT_M_S2}, 0, "HNN", 1e-6},
+    {"simcenter.json", "simcenter", {.channel = "1"}, 0, "SYN-1 x", 1e-9},
+    {"simcenter.json", "simcenter", {.channel = "SYN-1 y"}, 1, "SYN-1 y", 1e-9},
+    {"knet.tar.gz", "knet", {.channel = "EW"}, 1, "E-W, SYN0010101010000.EW", 1e-5},
+    {"knet.tar.gz", "knet", {.channel = "3"}, 2, "U-D, SYN0010101010000.UD", 1e-5},
+    {"cesmd.zip", "csmip", {.channel = "90 deg"}, 1, "90 Deg, SYN01.V2, syn_event.zip", 1e-9},
+};
+enum { N_BINARY = sizeof BINARY / sizeof *BINARY };
+
+static void test_binary_files_and_archives_are_read_to_their_samples(void **state)
+{
+    (void)state;
+    for (int i = 0; i < N_BINARY; i++) {
+        char path[128];
+        Motion m;
+        Err err;
+        specimen_path(BINARY[i].file, path);
+        CHECK_OK(motion_read(&m, path, &BINARY[i].how, &err), &err);
+        const double want = 0.01 * PEAK_GAL[BINARY[i].component];
+        if (strcmp(m.format, BINARY[i].format) != 0 || m.n != N_SAMPLES || fabs(m.dt_s - DT) > 1e-12 ||
+            !(fabs(m.accel[PEAK_AT] - want) <= BINARY[i].tolerance * fabs(want)))
+            fail_msg("%s: %s, %zu samples every %.9g s, %.9g at the peak of %.9g", path, m.format, m.n, m.dt_s,
+                     m.accel[PEAK_AT], want);
+        assert_string_equal(m.channel, BINARY[i].name);
+        motion_free(&m);
+    }
+}
+
 /* ---- changed specimens ---------------------------------------------------------------------------------------- */
 
 typedef struct {
@@ -335,6 +376,24 @@ static void refused(const char *file, const MotionHow *how, const char *says)
         fail_msg("%s: the message should contain '%s' and is '%s'", path, says, err.text);
 }
 
+static void test_counts_are_refused_without_a_gain_and_what_is_no_record_by_its_name(void **state)
+{
+    (void)state;
+    static const char EVT[] = "K\1\1\11 the tags of a recorder";
+    Motion m;
+    Err err = {0};
+    refused("three.mseed", &(MotionHow){.channel = "1"}, "set motion.counts_per_m_s2 to the gain of the instrument");
+    refused("little.sac", &(MotionHow){0}, "set motion.counts_per_m_s2 to the gain of the instrument");
+    refused("three.mseed", &(MotionHow){0}, "holds 3 channels: 1 'XX.SYN.00.HNN', 2 'XX.SYN.00.HNE'");
+    refused("knet.tar.gz", &(MotionHow){0}, "holds 3 channels: 1 'N-S, SYN0010101010000.NS'");
+    assert_int_equal(motion_parse(&m, "a.evt", EVT, sizeof EVT, &(MotionHow){0}, &err), STATUS_BAD_DATA);
+    assert_non_null(strstr(err.text, "a.evt: is not read: Kinemetrics EVT"));
+    Text t = read_specimen("knet.tar.gz");
+    assert_int_equal(motion_parse(&m, "cut.tar.gz", t.text, t.length / 2, &(MotionHow){0}, &err), STATUS_BAD_DATA);
+    assert_non_null(strstr(err.text, "cut.tar.gz: a damaged archive"));
+    free(t.text);
+}
+
 static void test_a_channel_must_be_chosen_where_there_are_several(void **state)
 {
     (void)state;
@@ -476,6 +535,21 @@ static void test_five_thousand_mutants_are_read_or_refused(void **state)
                 one = next;
             }
             check_mutant(SPECIMENS[i].file, &one, &how);
+            free(one.text);
+        }
+        free(t.text);
+    }
+}
+
+static void test_a_mutated_binary_file_or_archive_is_read_or_refused(void **state)
+{
+    (void)state;
+    uint64_t random = 2;
+    for (int i = 0; i < N_BINARY; i++) {
+        const Text t = read_specimen(BINARY[i].file);
+        for (int k = 0; k < 100; k++) {
+            Text one = mutated(&t, &random);
+            check_mutant(BINARY[i].file, &one, &BINARY[i].how);
             free(one.text);
         }
         free(t.text);
@@ -685,6 +759,9 @@ static void test_units_in_other_words_are_taken_or_named(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_binary_files_and_archives_are_read_to_their_samples),
+        cmocka_unit_test(test_counts_are_refused_without_a_gain_and_what_is_no_record_by_its_name),
+        cmocka_unit_test(test_a_mutated_binary_file_or_archive_is_read_or_refused),
         cmocka_unit_test(test_an_unknown_format_is_said_to_be_unknown_and_its_first_line_is_quoted),
         cmocka_unit_test(test_the_location_tells_the_channels_of_a_building_apart),
         cmocka_unit_test(test_the_offset_of_a_recorder_is_subtracted_and_said),

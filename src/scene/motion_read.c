@@ -10,6 +10,7 @@
 #include "base/hash.h"
 #include "base/table.h"
 #include "base/units.h"
+#include "scene/formats/archive.h"
 #include "scene/formats/record.h"
 
 /* The strongest ground acceleration ever recorded is near 4 g; far beyond that a unit is wrong (El Centro in cm/s2
@@ -18,9 +19,12 @@ static const double LARGEST_PEAK_G = 20.0;
 
 /* Asked in this order; the last one takes what no other did. */
 static const MotionFormat *const FORMATS[] = {
-    &FORMAT_KNET,  &FORMAT_ESM,    &FORMAT_JMA,    &FORMAT_CWB,     &FORMAT_AFAD,  &FORMAT_UNAM,
-    &FORMAT_ISESD, &FORMAT_GEONET, &FORMAT_SMC,    &FORMAT_COSMOS,  &FORMAT_CSMIP, &FORMAT_BHRC,
-    &FORMAT_USC,   &FORMAT_SLIST,  &FORMAT_TSPAIR, &FORMAT_REFUSED, &FORMAT_AT2,   &FORMAT_COLUMNS};
+    &FORMAT_KNET,      &FORMAT_ESM,   &FORMAT_JMA,    &FORMAT_CWB,     &FORMAT_AFAD, &FORMAT_UNAM,   &FORMAT_ISESD,
+    &FORMAT_GEONET,    &FORMAT_SMC,   &FORMAT_COSMOS, &FORMAT_CSMIP,   &FORMAT_BHRC, &FORMAT_USC,    &FORMAT_SAC_TEXT,
+    &FORMAT_SIMCENTER, &FORMAT_SLIST, &FORMAT_TSPAIR, &FORMAT_REFUSED, &FORMAT_AT2,  &FORMAT_COLUMNS};
+
+static const BinaryFormat *const BINARY_FORMATS[] = {&FORMAT_MSEED, &FORMAT_SAC, &FORMAT_EVT};
+enum { N_BINARY_FORMATS = sizeof BINARY_FORMATS / sizeof BINARY_FORMATS[0], ARCHIVES_DEEP = 2 };
 
 /* ---- which unit ----------------------------------------------------------------------------------------------- */
 
@@ -345,8 +349,17 @@ static Status take_samples(Motion *m, const char *path, const Record *r, const C
         return fail(err, STATUS_BAD_DATA,
                     "%s: its channel '%s': unit '%s' is not known; convert it to m/s2, cm/s2 or g", path, c->name,
                     unknown);
-    TRY(settle_unit(path, c->units, &unit, err));
-    const double to_m_s2 = c->scale * (unit == UNIT_M_S2 ? 1.0 : unit == UNIT_CM_S2 ? 0.01 : GRAVITY);
+    if (c->counts && unit == UNIT_FROM_FILE && how->counts_per_m_s2 == 0)
+        return fail(err, STATUS_BAD_DATA,
+                    "%s: holds numbers without a unit, as a rule counts: set motion.counts_per_m_s2 to the gain of the "
+                    "instrument, or motion.unit to m_s2, cm_s2 or g",
+                    path);
+    if (c->counts && how->counts_per_m_s2 > 0)
+        unit = UNIT_M_S2;
+    else
+        TRY(settle_unit(path, c->units, &unit, err));
+    const double gain = c->counts && how->counts_per_m_s2 > 0 ? how->counts_per_m_s2 : 1;
+    const double to_m_s2 = c->scale / gain * (unit == UNIT_M_S2 ? 1.0 : unit == UNIT_CM_S2 ? 0.01 : GRAVITY);
     TRY(check_peak(&s, to_m_s2, unit, c->scale, err));
     const double offset = offset_of(c, &s);
     if (c->warning)
@@ -385,43 +398,114 @@ static const MotionFormat *recognise(Lines l)
     return FORMATS[i];
 }
 
-static Status read_format(Motion *m, Record *r, Lines *l, const MotionHow *how, Err *err)
+/* Text: without its byte order mark and what old programs put behind it. */
+static Status read_text(Record *r, const char *path, const char *text, size_t length, const ReadHints *hints, Err *err)
 {
-    const MotionFormat *format = recognise(*l);
-    const int chosen = how->channel && strcmp(how->channel, "auto") != 0;
-    const ReadHints hints = {.dt_s = how->dt_s, .channel = chosen ? how->channel : NULL};
-    const Channel *c = NULL;
-    TRY(format->read(r, l, &hints, err));
-    TRY(choose_channel(r, l->path, how->channel, &c, err));
-    TRY(take_samples(m, l->path, r, c, how, err));
-    snprintf(m->name, sizeof m->name, "%s", l->path);
-    snprintf(m->format, sizeof m->format, "%s", format->name);
-    snprintf(m->channel, sizeof m->channel, "%s", c->name);
-    return STATUS_OK;
-}
-
-Status motion_parse(Motion *m, const char *path, const char *text, size_t length, const MotionHow *how, Err *err)
-{
-    memset(m, 0, sizeof *m);
-    const uint64_t hash = hash_fnv1a(text, length, HASH_SEED);
     while (length && strchr("\x1a\t\r\n ", text[length - 1])) /* Ctrl-Z and NUL end the texts of old programs */
         length--;
     const int binary = binary_line(text, length);
     if (length == 0)
         return fail(err, STATUS_BAD_DATA, "%s: is empty", path);
     if (binary)
-        return fail(err, STATUS_BAD_DATA, "%s:%d: holds bytes that no text has; a binary file is not read", path,
-                    binary);
+        return fail(err, STATUS_BAD_DATA, "%s:%d: holds bytes that no text has; a binary file of this kind is not read",
+                    path, binary);
     const size_t mark = length >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0 ? 3 : 0; /* UTF-8 byte order mark */
     const char line_end = memchr(text, '\n', length) ? '\n' : '\r';
     Lines l = {.path = path, .next = text + mark, .end = text + length, .mark = line_end};
+    const MotionFormat *format = recognise(l);
+    TRY(format->read(r, &l, hints, err));
+    for (size_t k = 0; k < r->n_channels; k++)
+        r->channel[k].format = format->name;
+    return STATUS_OK;
+}
+
+typedef struct {
+    Record *r;
+    const char *path;
+    const ReadHints *hints;
+    int deep;
+    Err first; /* why the first member could not be read */
+} Members;
+
+static Status read_content(Record *r, const char *path, const char *bytes, size_t n, const ReadHints *hints, int deep,
+                           Err *err);
+
+/* A member that is no record (a picture, a readme) is passed over. */
+static Status take_member(const char *name, const char *bytes, size_t n, void *user, Err *err)
+{
+    Members *members = user;
+    Err why = {0};
+    Record *one = calloc(1, sizeof *one);
+    if (!one)
+        return fail(err, STATUS_NO_MEMORY, "%s: no memory for its channels", members->path);
+    Status status = read_content(one, name, bytes, n, members->hints, members->deep + 1, &why);
+    if (status == STATUS_OK)
+        status = record_append(members->r, one, members->path, name, err);
+    else if (status == STATUS_NO_MEMORY)
+        status = fail(err, status, "%s", why.text);
+    else {
+        if (!members->first.text[0])
+            members->first = why;
+        status = STATUS_OK;
+    }
+    record_free(one);
+    free(one);
+    return status;
+}
+
+static Status read_archive(Record *r, const char *path, const char *bytes, size_t n, const ReadHints *hints, int deep,
+                           Err *err)
+{
+    Members members = {.r = r, .path = path, .hints = hints, .deep = deep};
+    if (deep == ARCHIVES_DEEP)
+        return fail(err, STATUS_BAD_DATA, "%s: an archive in an archive in an archive", path);
+    TRY(archive_each(path, bytes, n, take_member, &members, err));
+    return r->n_channels > 0 ? STATUS_OK
+                             : fail(err, STATUS_BAD_DATA, "%s: no member of this archive is a record: %.300s", path,
+                                    members.first.text[0] ? members.first.text : "it is empty");
+}
+
+static Status read_content(Record *r, const char *path, const char *bytes, size_t n, const ReadHints *hints, int deep,
+                           Err *err)
+{
+    const unsigned char *raw = (const unsigned char *)bytes;
+    if (archive_is(raw, n))
+        return read_archive(r, path, bytes, n, hints, deep, err);
+    for (int i = 0; i < N_BINARY_FORMATS; i++)
+        if (BINARY_FORMATS[i]->recognise(raw, n)) {
+            TRY(BINARY_FORMATS[i]->read(r, path, bytes, n, err));
+            for (size_t k = 0; k < r->n_channels; k++)
+                r->channel[k].format = BINARY_FORMATS[i]->name;
+            return STATUS_OK;
+        }
+    return read_text(r, path, bytes, n, hints, err);
+}
+
+static Status read_motion(Motion *m, Record *r, const char *path, const char *bytes, size_t n, const MotionHow *how,
+                          Err *err)
+{
+    const int chosen = how->channel && strcmp(how->channel, "auto") != 0;
+    const ReadHints hints = {.dt_s = how->dt_s, .channel = chosen ? how->channel : NULL};
+    const Channel *c = NULL;
+    TRY(read_content(r, path, bytes, n, &hints, 0, err));
+    TRY(choose_channel(r, path, how->channel, &c, err));
+    TRY(take_samples(m, path, r, c, how, err));
+    snprintf(m->name, sizeof m->name, "%s", path);
+    snprintf(m->format, sizeof m->format, "%s", c->format);
+    snprintf(m->channel, sizeof m->channel, "%s", c->name);
+    m->file_hash = hash_fnv1a(bytes, n, HASH_SEED);
+    return STATUS_OK;
+}
+
+Status motion_parse(Motion *m, const char *path, const char *text, size_t length, const MotionHow *how, Err *err)
+{
+    memset(m, 0, sizeof *m);
     Record *r = calloc(1, sizeof *r);
     if (!r)
         return fail(err, STATUS_NO_MEMORY, "%s: no memory for its channels", path);
-    const Status s = read_format(m, r, &l, how, err);
+    const Status s = read_motion(m, r, path, text, length, how, err);
     record_free(r);
     free(r);
-    m->file_hash = s == STATUS_OK ? hash : 0;
     return s;
 }
 

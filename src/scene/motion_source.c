@@ -28,6 +28,7 @@ Status motion_open(Motion *m, const MotionOptions *o, Err *err)
                            .channel = o->channel,
                            .dt_s = o->dt_s,
                            .resample_dt_s = o->resample_dt_s,
+                           .counts_per_m_s2 = o->counts_per_m_s2,
                            .peak_error_max = o->peak_error_max};
     return load(m, o->record, &how, err);
 }

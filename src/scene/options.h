@@ -64,6 +64,7 @@ typedef struct {
     MotionUnit unit;
     char channel[OPTION_TEXT_MAX]; /* name, number or auto */
     double dt_s, resample_dt_s;    /* 0: from the file; 0: never */
+    double counts_per_m_s2;        /* gain of a record in counts; 0: not known */
     double peak_error_max;         /* [-] by which the samples may miss the peak that their header states */
 } MotionOptions;
 

@@ -127,6 +127,8 @@ static const Option OPTIONS[] = {
     REAL(motion.dt_s, "s", "0", 0, 100, "time step of a file that has neither step nor times; 0: as in the file"),
     REAL(motion.resample_dt_s, "s", "0", 0, 100,
          "times that are not equidistant are resampled to this step by linear interpolation; 0: refused"),
+    REAL(motion.counts_per_m_s2, "counts/(m/s2)", "0", 0, 1e15,
+         "gain of the instrument of a record in counts (miniSEED, SAC); 0: a record in counts is refused"),
     REAL(motion.peak_error_max, "-", "0.05", 1e-6, 1e6,
          "a record whose samples miss the peak of their header by a larger share is refused"),
 

@@ -27,6 +27,24 @@ void record_free(Record *r)
     r->n = r->capacity = r->n_channels = 0;
 }
 
+Status record_append(Record *r, const Record *from, const char *path, const char *member, Err *err)
+{
+    const Lines l = {.path = path};
+    const size_t offset = r->n;
+    for (size_t i = 0; i < from->n; i++)
+        TRY(record_add(r, &l, from->row[i], err));
+    for (size_t k = 0; k < from->n_channels; k++) {
+        Channel *c;
+        char name[2 * CHANNEL_NAME_MAX];
+        TRY(record_channel(r, &l, &c, err));
+        *c = from->channel[k];
+        c->first += offset;
+        const int n = snprintf(name, sizeof name, "%s%s%s", c->name, c->name[0] ? ", " : "", member);
+        channel_name(c, name, name + (n < (int)sizeof name ? n : (int)sizeof name - 1));
+    }
+    return STATUS_OK;
+}
+
 void channel_name(Channel *c, const char *from, const char *to)
 {
     size_t n = 0;

@@ -26,6 +26,8 @@ typedef struct {
     double peak;         /* [m/s2] largest |acceleration| that the header states; 0: it states none */
     double peak_slack;   /* [m/s2] half a unit of its last digit */
     int subtract_mean;   /* the agency's own peak is that of the record without its mean */
+    int counts;          /* numbers without a unit: motion.counts_per_m_s2 or motion.unit must say what they are */
+    const char *format;  /* static; of the file, or of the member of an archive, that holds it */
     int digitized;       /* from film, its steps are not equal */
     const char *warning; /* static; NULL: none */
     size_t first, stride, n;
@@ -56,6 +58,19 @@ Status record_pairs(Record *r, Lines *l, double count, int width, Err *err);
 extern const MotionFormat FORMAT_AT2, FORMAT_COSMOS, FORMAT_CSMIP, FORMAT_SMC, FORMAT_KNET, FORMAT_ESM, FORMAT_GEONET,
     FORMAT_JMA, FORMAT_CWB, FORMAT_AFAD, FORMAT_UNAM, FORMAT_ISESD, FORMAT_BHRC, FORMAT_USC, FORMAT_SLIST,
     FORMAT_TSPAIR, FORMAT_REFUSED, FORMAT_COLUMNS;
+
+/* Files that are no text. */
+typedef struct {
+    const char *name;
+    int (*recognise)(const unsigned char bytes[], size_t n);
+    Status (*read)(Record *r, const char *path, const char *bytes, size_t n, Err *err);
+} BinaryFormat;
+
+extern const BinaryFormat FORMAT_MSEED, FORMAT_SAC, FORMAT_EVT;
+extern const MotionFormat FORMAT_SAC_TEXT, FORMAT_SIMCENTER;
+
+/* Channels and rows of `from` behind those of r; ", MEMBER" is added to their names. */
+Status record_append(Record *r, const Record *from, const char *path, const char *member, Err *err);
 
 Status record_add(Record *r, const Lines *l, Row row, Err *err);
 void record_free(Record *r);
