@@ -6,41 +6,41 @@
 #include "store/run_read.h"
 
 /* A well-spread choice of the front: the knee first, then again and again the design farthest from those chosen. */
-static Status write_selected(const Args *args, const Run *h, FILE *f, Err *err)
+static Status write_selected(const Args *args, const Run *run, FILE *f, Err *err)
 {
     long wanted;
     TRY(args_whole(args, "--select", 1, 1000000, 0, &wanted, err));
     size_t *rows = calloc((size_t)wanted, sizeof *rows);
     if (!rows)
         return fail(err, STATUS_NO_MEMORY, "no memory for %ld designs", wanted);
-    const size_t n = run_spread_out(h, (size_t)wanted, 1, rows);
-    export_front_header(f, &h->schema);
+    const size_t n = run_spread_out(run, (size_t)wanted, 1, rows);
+    export_front_header(f, &run->schema);
     for (size_t i = 0; i < n; i++)
-        export_design(f, h, rows[i]);
+        export_design(f, run, rows[i]);
     free(rows);
     return STATUS_OK;
 }
 
-static Status write_tables(const Args *args, const Run *h, Err *err)
+static Status write_tables(const Args *args, const Run *run, Err *err)
 {
     Output o;
     if (args_has(args, "--json")) {
-        TRY(export_json(stdout, h, err));
+        TRY(export_json(stdout, run, err));
         if (!args_has(args, "--csv"))
             return STATUS_OK;
     }
     TRY(output_open(&o, args_value(args, "--csv"), err));
     if (args_has(args, "--select")) {
-        Status status = write_selected(args, h, o.stream, err);
+        Status status = write_selected(args, run, o.stream, err);
         if (status != STATUS_OK) {
             output_abandon(&o);
             return status;
         }
     } else if (args_has(args, "--all")) {
-        export_evaluations_header(o.stream, &h->schema);
-        export_evaluations(o.stream, &h->table, 1);
+        export_evaluations_header(o.stream, &run->schema);
+        export_evaluations(o.stream, &run->table, 1);
     } else {
-        export_front(o.stream, h);
+        export_front(o.stream, run);
     }
     return output_close(&o, err);
 }
@@ -49,10 +49,10 @@ static Status run(const Args *args, Err *err)
 {
     if (!args_has(args, "--csv") && !args_has(args, "--json"))
         return fail(err, STATUS_USAGE, "--csv FILE is missing: where the table goes (or --json)");
-    Run h;
-    TRY(run_read(&h, args->operand, err));
-    const Status status = write_tables(args, &h, err);
-    run_free(&h);
+    Run run;
+    TRY(run_read(&run, args->operand, err));
+    const Status status = write_tables(args, &run, err);
+    run_free(&run);
     return status;
 }
 

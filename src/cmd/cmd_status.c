@@ -18,13 +18,13 @@ typedef struct {
     const Evaluation *first[OUTCOME_COUNT];
 } Failures;
 
-static Failures failures_of(const Run *saved)
+static Failures failures_of(const Run *run)
 {
     Failures f = {0};
-    for (size_t i = 0; i < saved->table.n; i++) {
-        const Evaluation *e = &saved->table.row[i];
+    for (size_t i = 0; i < run->table.n; i++) {
+        const Evaluation *e = &run->table.row[i];
         size_t k = 0;
-        if (saved->place[i].ok)
+        if (run->place[i].ok)
             continue;
         while (k < f.n_outcomes && f.first[k]->outcome != e->outcome)
             k++;
@@ -39,13 +39,13 @@ static Failures failures_of(const Run *saved)
 
 /* -- for people ---------------------------------------------------------------------------------------------------- */
 
-static void print_head(const char *folder, const Run *saved, const Standing *s)
+static void print_head(const char *folder, const Run *run, const Standing *s)
 {
     char worked[32], left[32], pace[32] = "-";
     const double per_second = pace_per_second(&s->pace);
-    const RunSession *last = saved->n_sessions > 0 ? &saved->session[saved->n_sessions - 1] : NULL;
+    const RunSession *last = run->n_sessions > 0 ? &run->session[run->n_sessions - 1] : NULL;
     pace_words(s->seconds, worked);
-    pace_words(pace_left(&s->pace, saved->settings), left);
+    pace_words(pace_left(&s->pace, run->settings), left);
     if (isfinite(per_second))
         snprintf(pace, sizeof pace, "%.3g", per_second);
     printf("%s: %s", folder, state_words(s->state));
@@ -53,20 +53,20 @@ static void print_head(const char *folder, const Run *saved, const Standing *s)
         printf(" (process %ld on %s)", s->holder.pid, s->holder.host);
     else if (last && last->stopped[0])
         printf(" (%s)", last->stopped);
-    printf("\n%zu of %ld simulated, ", s->pace.simulated, saved->settings->search.max_evals);
-    if (saved->n_repeats > 0)
-        printf("%zu of them repeats, ", saved->n_repeats);
-    printf("%zu failed, %zu on the front", s->n_failed, saved->n_front);
+    printf("\n%zu of %ld simulated, ", s->pace.simulated, run->settings->search.max_evals);
+    if (run->n_repeats > 0)
+        printf("%zu of them repeats, ", run->n_repeats);
+    printf("%zu failed, %zu on the front", s->n_failed, run->n_front);
     if (s->n_polished > 0)
         printf(", %zu polished designs", s->n_polished);
-    printf("\n%zu generations in %s, %zu %s; %s simulations/s", saved->n_generations, worked, saved->n_sessions,
-           saved->n_sessions == 1 ? "session" : "sessions", pace);
+    printf("\n%zu generations in %s, %zu %s; %s simulations/s", run->n_generations, worked, run->n_sessions,
+           run->n_sessions == 1 ? "session" : "sessions", pace);
     if (s->state != RUN_FINISHED)
         printf(", %s left", left);
     if (last)
         printf("\nstarted %s%s%s", last->started, last->ended[0] ? ", ended " : "", last->ended);
     puts("");
-    const Effort e = last ? effort_of(saved, saved->n_sessions - 1) : (Effort){.waiting = NAN};
+    const Effort e = last ? effort_of(run, run->n_sessions - 1) : (Effort){.waiting = NAN};
     if (isfinite(e.waiting)) {
         char effort[160];
         effort_words(&e, effort);
@@ -77,9 +77,9 @@ static void print_head(const char *folder, const Run *saved, const Standing *s)
 }
 
 /* The first, the last, and some evenly between. */
-static void print_generations(const Run *saved, const double igd[])
+static void print_generations(const Run *run, const double igd[])
 {
-    const size_t n = saved->n_generations, rows = n < ROWS_MAX ? n : ROWS_MAX;
+    const size_t n = run->n_generations, rows = n < ROWS_MAX ? n : ROWS_MAX;
     char worked[32], hypervolume[32], advance[32];
     if (n == 0)
         return;
@@ -87,7 +87,7 @@ static void print_generations(const Run *saved, const double igd[])
            "IGD+ to last", "after");
     for (size_t r = 0; r < rows; r++) {
         const size_t i = rows > 1 ? r * (n - 1) / (rows - 1) : 0;
-        const RunGeneration *g = &saved->generation[i];
+        const RunGeneration *g = &run->generation[i];
         number_words(igd[i], 4, advance);
         pace_words(g->seconds, worked);
         number_words(g->hypervolume, 4, hypervolume);
@@ -107,28 +107,28 @@ static void print_failures(const Failures *f)
 
 /* -- for programs -------------------------------------------------------------------------------------------------- */
 
-static json_t *json_generations(const Run *saved, const double igd[])
+static json_t *json_generations(const Run *run, const double igd[])
 {
     json_t *list = json_array();
-    for (size_t i = 0; i < saved->n_generations; i++) {
-        const RunGeneration *g = &saved->generation[i];
+    for (size_t i = 0; i < run->n_generations; i++) {
+        const RunGeneration *g = &run->generation[i];
         json_array_append_new(list, json_pack("{s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:s}", "number",
                                               (json_int_t)g->number, "simulated", (json_int_t)g->simulated, "failed",
                                               (json_int_t)g->failed, "front", (json_int_t)g->front, "hypervolume",
                                               json_number(g->hypervolume), "hypervolume_error",
-                                              json_number(hypervolume_error(g->hypervolume)), "igd_plus", json_number(igd[i]),
-                                              "surrogate_error", json_number(g->surrogate_error), "seconds",
-                                              json_number(g->seconds), "finished", g->finished));
+                                              json_number(hypervolume_error(g->hypervolume)), "igd_plus",
+                                              json_number(igd[i]), "surrogate_error", json_number(g->surrogate_error),
+                                              "seconds", json_number(g->seconds), "finished", g->finished));
     }
     return list;
 }
 
-static json_t *json_sessions(const Run *saved)
+static json_t *json_sessions(const Run *run)
 {
     json_t *list = json_array();
-    for (size_t i = 0; i < saved->n_sessions; i++) {
-        const RunSession *s = &saved->session[i];
-        const Effort e = effort_of(saved, i);
+    for (size_t i = 0; i < run->n_sessions; i++) {
+        const RunSession *s = &run->session[i];
+        const Effort e = effort_of(run, i);
         json_array_append_new(
             list, json_pack("{s:s, s:s*, s:s*, s:s, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:o}", "started", s->started,
                             "ended", s->ended[0] ? s->ended : NULL, "stopped", s->stopped[0] ? s->stopped : NULL,
@@ -149,43 +149,43 @@ static json_t *json_failures(const Failures *f)
     return o;
 }
 
-static json_t *describe(const char *folder, const Run *saved, const Standing *s, const Failures *f, const double igd[])
+static json_t *describe(const char *folder, const Run *run, const Standing *s, const Failures *f, const double igd[])
 {
     json_t *o = json_pack("{s:s, s:s, s:I, s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:o}", "run", folder, "state",
                           state_words(s->state), "simulated", (json_int_t)s->pace.simulated, "max_evals",
-                          (json_int_t)saved->settings->search.max_evals, "failed", (json_int_t)s->n_failed, "front",
-                          (json_int_t)saved->n_front, "polished", (json_int_t)s->n_polished, "hypervolume",
+                          (json_int_t)run->settings->search.max_evals, "failed", (json_int_t)s->n_failed, "front",
+                          (json_int_t)run->n_front, "polished", (json_int_t)s->n_polished, "hypervolume",
                           json_number(s->hypervolume), "simulations_per_second", json_number(pace_per_second(&s->pace)),
                           "seconds", json_number(s->seconds), "seconds_left",
-                          json_number(s->state == RUN_FINISHED ? 0.0 : pace_left(&s->pace, saved->settings)));
+                          json_number(s->state == RUN_FINISHED ? 0.0 : pace_left(&s->pace, run->settings)));
     if (s->state == RUN_RUNNING)
         json_object_set_new(o, "process",
                             json_pack("{s:I, s:s}", "pid", (json_int_t)s->holder.pid, "host", s->holder.host));
-    json_object_set_new(o, "repeats", json_integer((json_int_t)saved->n_repeats));
-    json_object_set_new(o, "generations", json_generations(saved, igd));
+    json_object_set_new(o, "repeats", json_integer((json_int_t)run->n_repeats));
+    json_object_set_new(o, "generations", json_generations(run, igd));
     json_object_set_new(o, "failures", json_failures(f));
-    json_object_set_new(o, "sessions", json_sessions(saved));
+    json_object_set_new(o, "sessions", json_sessions(run));
     return o;
 }
 
 static Status run(const Args *args, Err *err)
 {
-    Run saved;
+    Run run;
     Standing standing;
-    TRY(run_read(&saved, args->operand, err));
-    standing_of(&standing, args->operand, &saved);
-    const Failures failures = failures_of(&saved);
-    double *igd = calloc(saved.n_generations + 1, sizeof *igd);
-    Status status = igd ? advance_of_run(&saved, igd, err) : fail(err, STATUS_NO_MEMORY, "no memory for generations");
+    TRY(run_read(&run, args->operand, err));
+    standing_of(&standing, args->operand, &run);
+    const Failures failures = failures_of(&run);
+    double *igd = calloc(run.n_generations + 1, sizeof *igd);
+    Status status = igd ? advance_of_run(&run, igd, err) : fail(err, STATUS_NO_MEMORY, "no memory for generations");
     if (status == STATUS_OK && args_has(args, "--json")) {
-        status = show_json(describe(args->operand, &saved, &standing, &failures, igd), err);
+        status = show_json(describe(args->operand, &run, &standing, &failures, igd), err);
     } else if (status == STATUS_OK) {
-        print_head(args->operand, &saved, &standing);
-        print_generations(&saved, igd);
+        print_head(args->operand, &run, &standing);
+        print_generations(&run, igd);
         print_failures(&failures);
     }
     free(igd);
-    run_free(&saved);
+    run_free(&run);
     return status;
 }
 

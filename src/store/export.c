@@ -41,17 +41,17 @@ void export_front_row(FILE *f, const Schema *schema, const FrontRow *row)
     fputc('\n', f);
 }
 
-void export_design(FILE *f, const Run *h, size_t row)
+void export_design(FILE *f, const Run *run, size_t row)
 {
-    const Evaluation *e = &h->table.row[row];
-    export_front_row(f, &h->schema, &(FrontRow){e->id, e->x, run_f(h, row), e->sd, e->replicates});
+    const Evaluation *e = &run->table.row[row];
+    export_front_row(f, &run->schema, &(FrontRow){e->id, e->x, run_f(run, row), e->sd, e->replicates});
 }
 
-void export_front(FILE *f, const Run *h)
+void export_front(FILE *f, const Run *run)
 {
-    export_front_header(f, &h->schema);
-    for (size_t i = 0; i < h->n_front; i++)
-        export_design(f, h, h->front[i]);
+    export_front_header(f, &run->schema);
+    for (size_t i = 0; i < run->n_front; i++)
+        export_design(f, run, run->front[i]);
 }
 
 void export_evaluations_header(FILE *f, const Schema *schema)
@@ -104,21 +104,21 @@ static json_t *json_columns(const Schema *schema)
     return list;
 }
 
-static json_t *json_evaluation(const Run *h, size_t i)
+static json_t *json_evaluation(const Run *run, size_t i)
 {
-    const Evaluation *e = &h->table.row[i];
-    const Schema *schema = &h->schema;
+    const Evaluation *e = &run->table.row[i];
+    const Schema *schema = &run->schema;
     json_t *o = json_pack("{s:I, s:I, s:s, s:s, s:s, s:o, s:o, s:b}", "id", (json_int_t)e->id, "generation",
                           (json_int_t)e->generation, "kind", kind_word(e->kind), "outcome", outcome_word(e->outcome),
                           "reason", e->reason, "x", json_numbers(schema->n_var, e->x), "f",
                           isfinite(e->f[0]) ? json_numbers(schema->n_obj, e->f) : json_null(), "on_front",
-                          h->place[i].on_front);
+                          run->place[i].on_front);
     int known = 0;
     for (size_t k = 0; k < schema->n_obj; k++)
         known = known || isfinite(e->sd[k]);
     json_object_set_new(o, "sd", known ? json_numbers(schema->n_obj, e->sd) : json_null());
-    if (e->replicates > h->settings->sim.replicates)
-        json_object_set_new(o, "mean", json_numbers(schema->n_obj, run_f(h, i)));
+    if (e->replicates > run->settings->sim.replicates)
+        json_object_set_new(o, "mean", json_numbers(schema->n_obj, run_f(run, i)));
     if (schema->has_spread)
         json_object_set_new(o, "replicates", json_integer(e->replicates));
     if (schema->n_extra > 0)
@@ -134,15 +134,15 @@ static json_t *json_generation(const RunGeneration *g)
                      "hypervolume", json_number(g->hypervolume));
 }
 
-Status export_json(FILE *f, const Run *h, Err *err)
+Status export_json(FILE *f, const Run *run, Err *err)
 {
     json_t *evaluations = json_array(), *generations = json_array();
-    for (size_t i = 0; i < h->table.n; i++)
-        json_array_append_new(evaluations, json_evaluation(h, i));
-    for (size_t g = 0; g < h->n_generations; g++)
-        json_array_append_new(generations, json_generation(&h->generation[g]));
-    json_t *all = json_pack("{s:o, s:o, s:o, s:o}", "settings", json_settings(h->settings), "columns",
-                            json_columns(&h->schema), "evaluations", evaluations, "generations", generations);
+    for (size_t i = 0; i < run->table.n; i++)
+        json_array_append_new(evaluations, json_evaluation(run, i));
+    for (size_t g = 0; g < run->n_generations; g++)
+        json_array_append_new(generations, json_generation(&run->generation[g]));
+    json_t *all = json_pack("{s:o, s:o, s:o, s:o}", "settings", json_settings(run->settings), "columns",
+                            json_columns(&run->schema), "evaluations", evaluations, "generations", generations);
     if (!all)
         return fail(err, STATUS_NO_MEMORY, "no memory for the run as JSON");
     json_dumpf(all, f, JSON_INDENT(1) | JSON_REAL_PRECISION(17));

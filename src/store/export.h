@@ -18,8 +18,8 @@ typedef struct {
 } FrontRow;
 void export_front_header(FILE *f, const Schema *schema);
 void export_front_row(FILE *f, const Schema *schema, const FrontRow *row);
-void export_design(FILE *f, const Run *h, size_t row); /* the same of a row of the run */
-void export_front(FILE *f, const Run *h);
+void export_design(FILE *f, const Run *run, size_t row); /* the same of a row of the run */
+void export_front(FILE *f, const Run *run);
 
 /* Every finished generation and polished designs: evaluations.csv. With unfinished_too also what is stored of the
  * generation that is under way or was cut short, kind `unfinished`. Rows come without the header. */
@@ -27,6 +27,6 @@ void export_evaluations_header(FILE *f, const Schema *schema);
 void export_evaluations(FILE *f, const EvaluationTable *table, int unfinished_too);
 
 /* Settings, columns, evaluations (unfinished ones too), front and generations as one object. */
-Status export_json(FILE *f, const Run *h, Err *err);
+Status export_json(FILE *f, const Run *run, Err *err);
 
 #endif

@@ -13,7 +13,7 @@
 
 typedef struct {
     Hypervolume *hypervolume; /* NULL: no design has succeeded yet */
-    size_t n;     /* designs that were looked at */
+    size_t n;                 /* designs that were looked at */
 } FrontShare;
 
 /* The front as the search has it now. */

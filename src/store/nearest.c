@@ -6,14 +6,14 @@
 
 #include "store/output.h"
 
-size_t nearest_rows(const Run *h, size_t rows[NEAREST_MAX])
+size_t nearest_rows(const Run *run, size_t rows[NEAREST_MAX])
 {
     size_t n = 0;
-    for (size_t i = 0; i < h->table.n; i++) {
+    for (size_t i = 0; i < run->table.n; i++) {
         size_t at = n;
-        if (!h->place[i].ok)
+        if (!run->place[i].ok)
             continue;
-        while (at > 0 && h->table.row[i].violation < h->table.row[rows[at - 1]].violation)
+        while (at > 0 && run->table.row[i].violation < run->table.row[rows[at - 1]].violation)
             at--;
         if (at == NEAREST_MAX)
             continue;
@@ -24,16 +24,16 @@ size_t nearest_rows(const Run *h, size_t rows[NEAREST_MAX])
     return n;
 }
 
-static void write_row(FILE *f, const Run *h, size_t row)
+static void write_row(FILE *f, const Run *run, size_t row)
 {
-    fprintf(f, "%ld", h->table.row[row].id);
-    print_cells(f, 1, &h->table.row[row].violation);
-    print_cells(f, h->schema.n_var, run_x(h, row));
-    print_cells(f, h->schema.n_obj, run_f(h, row));
+    fprintf(f, "%ld", run->table.row[row].id);
+    print_cells(f, 1, &run->table.row[row].violation);
+    print_cells(f, run->schema.n_var, run_x(run, row));
+    print_cells(f, run->schema.n_obj, run_f(run, row));
     fputc('\n', f);
 }
 
-Status nearest_write(const char *folder, const Run *h, size_t n, const size_t rows[], Err *err)
+Status nearest_write(const char *folder, const Run *run, size_t n, const size_t rows[], Err *err)
 {
     char path[PATH_MAX];
     Output o;
@@ -44,12 +44,12 @@ Status nearest_write(const char *folder, const Run *h, size_t n, const size_t ro
     }
     TRY(output_open(&o, path, err));
     fputs("id,violation", o.stream);
-    for (size_t j = 0; j < h->schema.n_var; j++)
-        fprintf(o.stream, ",%s", schema_variable(&h->schema, j)->name);
-    for (size_t k = 0; k < h->schema.n_obj; k++)
-        fprintf(o.stream, ",%s", schema_objective(&h->schema, k)->name);
+    for (size_t j = 0; j < run->schema.n_var; j++)
+        fprintf(o.stream, ",%s", schema_variable(&run->schema, j)->name);
+    for (size_t k = 0; k < run->schema.n_obj; k++)
+        fprintf(o.stream, ",%s", schema_objective(&run->schema, k)->name);
     fputc('\n', o.stream);
     for (size_t i = 0; i < n; i++)
-        write_row(o.stream, h, rows[i]);
+        write_row(o.stream, run, rows[i]);
     return output_close(&o, err);
 }

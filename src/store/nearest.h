@@ -11,9 +11,9 @@
 enum { NEAREST_MAX = 10 };
 
 /* Rows of the run with the least violation, the least first, ties by number; returns how many. 0: all failed. */
-size_t nearest_rows(const Run *h, size_t rows[NEAREST_MAX]);
+size_t nearest_rows(const Run *run, size_t rows[NEAREST_MAX]);
 
 /* folder/nearest.csv; with n = 0 it is removed: a run that was resumed may have a front now. */
-Status nearest_write(const char *folder, const Run *h, size_t n, const size_t rows[], Err *err);
+Status nearest_write(const char *folder, const Run *run, size_t n, const size_t rows[], Err *err);
 
 #endif

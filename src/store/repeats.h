@@ -13,6 +13,6 @@
 
 #include "store/run.h"
 
-Status repeats_join(Run *h, Err *err);
+Status repeats_join(Run *run, Err *err);
 
 #endif

@@ -10,7 +10,7 @@
 #include "store/rows.h"
 
 typedef struct {
-    Run *h;
+    Run *run;
     Database *d;
 } Loading;
 
@@ -18,56 +18,56 @@ typedef struct {
 
 static Status take_front(sqlite3_stmt *row, void *user, Err *err)
 {
-    Run *h = ((Loading *)user)->h;
-    const size_t i = run_find(h, (long)sqlite3_column_int64(row, 0));
+    Run *run = ((Loading *)user)->run;
+    const size_t i = run_find(run, (long)sqlite3_column_int64(row, 0));
     (void)err;
-    if (i < h->table.n) {
-        h->place[i].entered = column_whole(row, 1, NEVER);
-        h->place[i].left = column_whole(row, 2, NEVER);
+    if (i < run->table.n) {
+        run->place[i].entered = column_whole(row, 1, NEVER);
+        run->place[i].left = column_whole(row, 2, NEVER);
     }
     return STATUS_OK;
 }
 
-static int is_ok(const Run *h, const Evaluation *e)
+static int is_ok(const Run *run, const Evaluation *e)
 {
     int ok = e->outcome == OUTCOME_OK;
-    for (size_t k = 0; k < h->schema.n_obj; k++)
+    for (size_t k = 0; k < run->schema.n_obj; k++)
         ok = ok && isfinite(e->f[k]);
     return ok;
 }
 
-static void place_all(Run *h)
+static void place_all(Run *run)
 {
-    for (size_t i = 0; i < h->table.n; i++) {
-        Evaluation *e = &h->table.row[i];
-        RunPlace *place = &h->place[i];
-        place->ok = is_ok(h, e);
+    for (size_t i = 0; i < run->table.n; i++) {
+        Evaluation *e = &run->table.row[i];
+        RunPlace *place = &run->place[i];
+        place->ok = is_ok(run, e);
         place->on_front = place->ok && place->entered != NEVER && place->left == NEVER;
-        h->n_failed += !place->ok;
-        h->n_repeats += e->kind == KIND_REPEAT;
+        run->n_failed += !place->ok;
+        run->n_repeats += e->kind == KIND_REPEAT;
         if (e->kind != KIND_REPEAT && e->kind != KIND_POLISHED)
-            e->replicates = (int)h->settings->sim.replicates;
+            e->replicates = (int)run->settings->sim.replicates;
     }
 }
 
 static Status load_evaluations(Loading *l, Err *err)
 {
-    Run *h = l->h;
-    const Schema *s = &h->schema;
-    h->table = evaluation_table(s->n_var, s->n_obj, s->n_extra);
-    TRY(rows_read(l->d, &h->table, 0, LONG_MAX, err));
-    h->place = calloc(h->table.n + 1, sizeof *h->place);
-    h->F = calloc(h->table.n * s->n_obj + 1, sizeof *h->F);
-    if (!h->place || !h->F)
-        return fail(err, STATUS_NO_MEMORY, "%s: no memory for %zu evaluations", database_path(l->d), h->table.n);
-    if (h->table.n > 0)
-        memcpy(h->F, h->table.f, h->table.n * s->n_obj * sizeof *h->F);
-    for (size_t i = 0; i < h->table.n; i++)
-        h->place[i] = (RunPlace){.entered = NEVER, .left = NEVER};
+    Run *run = l->run;
+    const Schema *s = &run->schema;
+    run->table = evaluation_table(s->n_var, s->n_obj, s->n_extra);
+    TRY(rows_read(l->d, &run->table, 0, LONG_MAX, err));
+    run->place = calloc(run->table.n + 1, sizeof *run->place);
+    run->F = calloc(run->table.n * s->n_obj + 1, sizeof *run->F);
+    if (!run->place || !run->F)
+        return fail(err, STATUS_NO_MEMORY, "%s: no memory for %zu evaluations", database_path(l->d), run->table.n);
+    if (run->table.n > 0)
+        memcpy(run->F, run->table.f, run->table.n * s->n_obj * sizeof *run->F);
+    for (size_t i = 0; i < run->table.n; i++)
+        run->place[i] = (RunPlace){.entered = NEVER, .left = NEVER};
     TRY(database_each(l->d, "SELECT evaluation, entered, left FROM front", take_front, l, err));
-    place_all(h);
-    TRY(repeats_join(h, err));
-    return run_settle_front(h, err);
+    place_all(run);
+    TRY(repeats_join(run, err));
+    return run_settle_front(run, err);
 }
 
 /* -- the rest ------------------------------------------------------------------------------------------------------ */
@@ -79,12 +79,12 @@ static void *one_more(void *list, size_t n, size_t size)
 
 static Status take_generation(sqlite3_stmt *row, void *user, Err *err)
 {
-    Run *h = ((Loading *)user)->h;
-    RunGeneration *wider = one_more(h->generation, h->n_generations, sizeof *wider);
+    Run *run = ((Loading *)user)->run;
+    RunGeneration *wider = one_more(run->generation, run->n_generations, sizeof *wider);
     if (!wider)
-        return fail(err, STATUS_NO_MEMORY, "no memory for %zu generations", h->n_generations);
-    h->generation = wider;
-    RunGeneration *g = &wider[h->n_generations++];
+        return fail(err, STATUS_NO_MEMORY, "no memory for %zu generations", run->n_generations);
+    run->generation = wider;
+    RunGeneration *g = &wider[run->n_generations++];
     *g = (RunGeneration){.number = (long)sqlite3_column_int64(row, 0),
                          .simulated = (long)sqlite3_column_int64(row, 1),
                          .failed = (long)sqlite3_column_int64(row, 2),
@@ -99,12 +99,12 @@ static Status take_generation(sqlite3_stmt *row, void *user, Err *err)
 
 static Status take_session(sqlite3_stmt *row, void *user, Err *err)
 {
-    Run *h = ((Loading *)user)->h;
-    RunSession *wider = one_more(h->session, h->n_sessions, sizeof *wider);
+    Run *run = ((Loading *)user)->run;
+    RunSession *wider = one_more(run->session, run->n_sessions, sizeof *wider);
     if (!wider)
-        return fail(err, STATUS_NO_MEMORY, "no memory for %zu sessions", h->n_sessions);
-    h->session = wider;
-    RunSession *s = &wider[h->n_sessions++];
+        return fail(err, STATUS_NO_MEMORY, "no memory for %zu sessions", run->n_sessions);
+    run->session = wider;
+    RunSession *s = &wider[run->n_sessions++];
     *s = (RunSession){.pid = (long)sqlite3_column_int64(row, 3),
                       .threads = (long)sqlite3_column_int64(row, 4),
                       .simulated_before = (long)sqlite3_column_int64(row, 5),
@@ -122,46 +122,46 @@ static Status take_session(sqlite3_stmt *row, void *user, Err *err)
 
 static Status take_state(sqlite3_stmt *row, void *user, Err *err)
 {
-    Run *h = ((Loading *)user)->h;
-    h->n_state = (size_t)sqlite3_column_bytes(row, 0);
-    h->state = malloc(h->n_state + 1);
-    if (!h->state)
-        return fail(err, STATUS_NO_MEMORY, "no memory for a state of %zu bytes", h->n_state);
-    if (h->n_state > 0)
-        memcpy(h->state, sqlite3_column_blob(row, 0), h->n_state);
+    Run *run = ((Loading *)user)->run;
+    run->n_state = (size_t)sqlite3_column_bytes(row, 0);
+    run->state = malloc(run->n_state + 1);
+    if (!run->state)
+        return fail(err, STATUS_NO_MEMORY, "no memory for a state of %zu bytes", run->n_state);
+    if (run->n_state > 0)
+        memcpy(run->state, sqlite3_column_blob(row, 0), run->n_state);
     return STATUS_OK;
 }
 
 static Status take_head(sqlite3_stmt *row, void *user, Err *err)
 {
     const Loading *l = user;
-    Run *h = l->h;
-    h->settings = calloc(1, sizeof *h->settings);
-    if (!h->settings)
+    Run *run = l->run;
+    run->settings = calloc(1, sizeof *run->settings);
+    if (!run->settings)
         return fail(err, STATUS_NO_MEMORY, "%s: no memory for its settings", database_path(l->d));
-    settings_defaults(h->settings);
-    TRY(settings_parse(h->settings, database_path(l->d), column_text(row, 0), err));
-    h->provenance = strdup(column_text(row, 1));
-    if (!h->provenance)
+    settings_defaults(run->settings);
+    TRY(settings_parse(run->settings, database_path(l->d), column_text(row, 0), err));
+    run->provenance = strdup(column_text(row, 1));
+    if (!run->provenance)
         return fail(err, STATUS_NO_MEMORY, "%s: no memory for its provenance", database_path(l->d));
-    h->planned_evals = (long)sqlite3_column_int64(row, 2);
+    run->planned_evals = (long)sqlite3_column_int64(row, 2);
     const long n_var = (long)sqlite3_column_int64(row, 3);
-    h->tried_to_polish = (long)sqlite3_column_int64(row, 4);
-    h->polished_at = (long)sqlite3_column_int64(row, 5);
-    const int is_tower = h->settings->problem.kind == PROBLEM_TOWER;
-    if (n_var < (is_tower ? 3 : 1) || n_var > 10000 || (!is_tower && n_var != h->settings->problem.variables))
+    run->tried_to_polish = (long)sqlite3_column_int64(row, 4);
+    run->polished_at = (long)sqlite3_column_int64(row, 5);
+    const int is_tower = run->settings->problem.kind == PROBLEM_TOWER;
+    if (n_var < (is_tower ? 3 : 1) || n_var > 10000 || (!is_tower && n_var != run->settings->problem.variables))
         return fail(err, STATUS_IO, "%s: is damaged: it has %ld variables", database_path(l->d), n_var);
-    return schema_of(&h->schema, h->settings, (int)n_var - 2, err);
+    return schema_of(&run->schema, run->settings, (int)n_var - 2, err);
 }
 
 static Status load(Loading *l, Err *err)
 {
-    Run *h = l->h;
+    Run *run = l->run;
     Database *d = l->d;
     TRY(database_each(
         d, "SELECT settings, provenance, planned_evals, n_var, tried_to_polish, polished_at FROM run LIMIT 1",
         take_head, l, err));
-    if (!h->schema.column)
+    if (!run->schema.column)
         return fail(err, STATUS_IO, "%s: is damaged: it has no settings", database_path(d));
     TRY(load_evaluations(l, err));
     TRY(database_each(d,
@@ -176,17 +176,17 @@ static Status load(Loading *l, Err *err)
     return database_each(d, "SELECT bytes FROM state LIMIT 1", take_state, l, err);
 }
 
-Status run_load(Run *h, Database *d, const char *folder, Err *err)
+Status run_load(Run *run, Database *d, const char *folder, Err *err)
 {
-    Loading l = {h, d};
-    memset(h, 0, sizeof *h);
-    snprintf(h->folder, sizeof h->folder, "%s", folder);
+    Loading l = {run, d};
+    memset(run, 0, sizeof *run);
+    snprintf(run->folder, sizeof run->folder, "%s", folder);
     TRY(database_do(d, err, "BEGIN", "")); /* one state of a run that is worked on */
     Status status = load(&l, err);
     const Status end = database_do(d, status == STATUS_OK ? err : NULL, "COMMIT", "");
     status = status == STATUS_OK ? end : status;
     if (status != STATUS_OK)
-        run_free(h);
+        run_free(run);
     return status;
 }
 
@@ -195,15 +195,15 @@ int run_path(const char *folder, char path[], size_t size)
     return snprintf(path, size, "%s/run.sqlite", folder) < (int)size && access(path, F_OK) == 0;
 }
 
-Status run_read(Run *h, const char *folder, Err *err)
+Status run_read(Run *run, const char *folder, Err *err)
 {
     char path[PATH_MAX];
     Database *d;
-    memset(h, 0, sizeof *h);
+    memset(run, 0, sizeof *run);
     if (!run_path(folder, path, sizeof path))
         return fail(err, STATUS_MISSING, "%.200s: holds no run: run.sqlite is not there", folder);
     TRY(database_open(&d, path, DATABASE_READ, err));
-    const Status status = run_load(h, d, folder, err);
+    const Status status = run_load(run, d, folder, err);
     database_close(d);
     return status;
 }

@@ -48,43 +48,43 @@ static int is_first_answer(const Evaluation *r)
 }
 
 /* Every objective minimised; rows of the search's own front into front (n); returns how many. */
-static size_t minimise(const Run *h, double F[], size_t front[])
+static size_t minimise(const Run *run, double F[], size_t front[])
 {
-    const size_t m = h->schema.n_obj;
+    const size_t m = run->schema.n_obj;
     size_t n = 0;
-    for (size_t i = 0; i < h->table.n; i++) {
-        const Evaluation *r = &h->table.row[i];
+    for (size_t i = 0; i < run->table.n; i++) {
+        const Evaluation *r = &run->table.row[i];
         for (size_t k = 0; k < m; k++)
-            F[i * m + k] = schema_objective(&h->schema, k)->sense * h->F[i * m + k];
-        if (is_first_answer(r) && h->place[i].ok && h->place[i].entered != NEVER && h->place[i].left == NEVER)
+            F[i * m + k] = schema_objective(&run->schema, k)->sense * run->F[i * m + k];
+        if (is_first_answer(r) && run->place[i].ok && run->place[i].entered != NEVER && run->place[i].left == NEVER)
             front[n++] = i;
     }
     return n;
 }
 
-static void follow(const Run *h, const double F[], Igd *q, double igd[])
+static void follow(const Run *run, const double F[], Igd *q, double igd[])
 {
     size_t row = 0;
-    for (size_t g = 0; g < h->n_generations; g++) {
-        for (; row < h->table.n && h->table.row[row].id <= h->generation[g].simulated; row++)
-            if (is_first_answer(&h->table.row[row]) && h->place[row].ok && !(h->table.row[row].violation > 0.0))
-                igd_add(q, F + row * h->schema.n_obj);
+    for (size_t g = 0; g < run->n_generations; g++) {
+        for (; row < run->table.n && run->table.row[row].id <= run->generation[g].simulated; row++)
+            if (is_first_answer(&run->table.row[row]) && run->place[row].ok && !(run->table.row[row].violation > 0.0))
+                igd_add(q, F + row * run->schema.n_obj);
         igd[g] = value_of(q);
     }
 }
 
-Status advance_of_run(const Run *h, double igd[], Err *err)
+Status advance_of_run(const Run *run, double igd[], Err *err)
 {
-    double *F = calloc(h->table.n * h->schema.n_obj + 1, sizeof *F);
-    size_t *front = calloc(h->table.n + 1, sizeof *front), n = 0;
+    double *F = calloc(run->table.n * run->schema.n_obj + 1, sizeof *F);
+    size_t *front = calloc(run->table.n + 1, sizeof *front), n = 0;
     Igd *q = NULL;
-    Status status = F && front ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", h->table.n);
-    for (size_t g = 0; g < h->n_generations; g++)
+    Status status = F && front ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", run->table.n);
+    for (size_t g = 0; g < run->n_generations; g++)
         igd[g] = NAN;
-    if (status == STATUS_OK && (n = minimise(h, F, front)) > 0)
-        status = igd_create(&q, h->schema.n_obj, n, front, F, err);
+    if (status == STATUS_OK && (n = minimise(run, F, front)) > 0)
+        status = igd_create(&q, run->schema.n_obj, n, front, F, err);
     if (q)
-        follow(h, F, q, igd);
+        follow(run, F, q, igd);
     igd_free(q);
     free(F);
     free(front);

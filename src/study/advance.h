@@ -13,8 +13,8 @@
 /* Of the designs at 90 % of the evaluations against the front now; NAN: no front, or no design was known then. */
 Status advance_lately(const SearchView *v, double *igd, Err *err);
 
-/* From the end of every generation to the search's last front: igd (h->n_generations), NAN where none was known or
+/* From the end of every generation to the search's last front: igd (run->n_generations), NAN where none was known or
  * there is no front. */
-Status advance_of_run(const Run *h, double igd[], Err *err);
+Status advance_of_run(const Run *run, double igd[], Err *err);
 
 #endif

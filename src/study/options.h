@@ -12,9 +12,9 @@ typedef struct {
     SurrogateUse surrogate;
     Switch asynchronous;
     SelectionKind survival;
-    double replicate_share;               /* share of max_evals */
+    double replicate_share;              /* share of max_evals */
     long replicates_min, replicates_max; /* of a design */
-    long polish;                   /* designs at the end */
+    long polish;                         /* designs at the end */
     char limits[OPTION_TEXT_MAX];
     char start[OPTION_TEXT_MAX]; /* a CSV of designs or a run's folder, or none */
 } SearchOptions;

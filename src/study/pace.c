@@ -61,34 +61,34 @@ static double seconds_since(const char *utc)
     return strptime(utc, "%Y-%m-%dT%H:%M:%SZ", &parts) ? difftime(time(NULL), timegm(&parts)) : NAN;
 }
 
-static void count(Standing *out, const Run *saved)
+static void count(Standing *out, const Run *run)
 {
-    for (size_t i = 0; i < saved->table.n; i++) {
-        const int polished = saved->table.row[i].id >= POLISHED_FIRST;
+    for (size_t i = 0; i < run->table.n; i++) {
+        const int polished = run->table.row[i].id >= POLISHED_FIRST;
         out->n_polished += polished != 0;
         out->pace.simulated += !polished;
-        out->n_failed += !polished && !saved->place[i].ok;
+        out->n_failed += !polished && !run->place[i].ok;
     }
 }
 
 /* Thread-seconds of a session's simulations. */
-static double simulated_seconds(const Run *saved, size_t number)
+static double simulated_seconds(const Run *run, size_t number)
 {
-    const long first = saved->session[number].simulated_before + 1;
-    const long end = number + 1 < saved->n_sessions ? saved->session[number + 1].simulated_before + 1 : POLISHED_FIRST;
+    const long first = run->session[number].simulated_before + 1;
+    const long end = number + 1 < run->n_sessions ? run->session[number + 1].simulated_before + 1 : POLISHED_FIRST;
     double seconds = 0.0;
-    for (size_t i = 0; i < saved->table.n; i++)
-        if (saved->table.row[i].id >= first && saved->table.row[i].id < end && isfinite(saved->table.row[i].seconds))
-            seconds += saved->table.row[i].seconds;
+    for (size_t i = 0; i < run->table.n; i++)
+        if (run->table.row[i].id >= first && run->table.row[i].id < end && isfinite(run->table.row[i].seconds))
+            seconds += run->table.row[i].seconds;
     return seconds;
 }
 
-Effort effort_of(const Run *saved, size_t session)
+Effort effort_of(const Run *run, size_t session)
 {
-    const RunSession *s = &saved->session[session];
+    const RunSession *s = &run->session[session];
     Effort e = {.waiting = s->waited_s / s->search_s, .surrogate = s->surrogate_s / s->search_s};
     e.search = 1.0 - e.waiting - e.surrogate;
-    const double simulated = simulated_seconds(saved, session);
+    const double simulated = simulated_seconds(run, session);
     e.busy = simulated > 0.0 ? simulated / (s->search_s * fmax((double)s->threads, 1.0)) : NAN;
     return e;
 }
@@ -102,40 +102,40 @@ void effort_words(const Effort *e, char text[160])
 }
 
 /* As stored; of a session that was killed until its last generation at most, and at least what its simulations took. */
-static double session_seconds(const Run *saved, size_t number)
+static double session_seconds(const Run *run, size_t number)
 {
-    const RunSession *s = &saved->session[number];
+    const RunSession *s = &run->session[number];
     const double stored = isfinite(s->seconds) ? s->seconds : 0.0;
     if (s->ended[0])
         return stored;
-    return fmax(stored, simulated_seconds(saved, number) / fmax((double)s->threads, 1.0));
+    return fmax(stored, simulated_seconds(run, number) / fmax((double)s->threads, 1.0));
 }
 
-void standing_of(Standing *out, const char *folder, const Run *saved)
+void standing_of(Standing *out, const char *folder, const Run *run)
 {
     char lock[PATH_MAX];
     *out = (Standing){.hypervolume = NAN};
     snprintf(lock, sizeof lock, "%s/lock", folder);
     const int is_running = lock_is_held(lock, &out->holder);
-    const RunSession *last = saved->n_sessions > 0 ? &saved->session[saved->n_sessions - 1] : NULL;
+    const RunSession *last = run->n_sessions > 0 ? &run->session[run->n_sessions - 1] : NULL;
     out->state = is_running               ? RUN_RUNNING
                  : last && last->is_final ? RUN_FINISHED
                  : last && last->ended[0] ? RUN_PAUSED
                                           : RUN_INTERRUPTED;
-    count(out, saved);
-    out->pace.generations = saved->n_generations;
-    if (saved->n_generations > 0)
-        out->hypervolume = saved->generation[saved->n_generations - 1].hypervolume;
-    for (size_t i = 0; i < saved->n_sessions; i++)
-        out->seconds += session_seconds(saved, i);
+    count(out, run);
+    out->pace.generations = run->n_generations;
+    if (run->n_generations > 0)
+        out->hypervolume = run->generation[run->n_generations - 1].hypervolume;
+    for (size_t i = 0; i < run->n_sessions; i++)
+        out->seconds += session_seconds(run, i);
     if (!last)
         return;
-    const double stored = session_seconds(saved, saved->n_sessions - 1);
+    const double stored = session_seconds(run, run->n_sessions - 1);
     out->pace.session_s = is_running ? seconds_since(last->started) : stored;
     out->seconds += is_running ? fmax(out->pace.session_s - stored, 0.0) : 0.0;
     out->pace.all_s = out->seconds;
     out->pace.session_simulated =
         out->pace.simulated > (size_t)last->simulated_before ? out->pace.simulated - (size_t)last->simulated_before : 0;
-    for (size_t g = 0; g < saved->n_generations; g++)
-        out->pace.session_generations += strcmp(saved->generation[g].finished, last->started) >= 0;
+    for (size_t g = 0; g < run->n_generations; g++)
+        out->pace.session_generations += strcmp(run->generation[g].finished, last->started) >= 0;
 }

@@ -41,12 +41,12 @@ typedef struct {
     double waiting, surrogate, search, busy;
 } Effort;
 
-Effort effort_of(const Run *saved, size_t session);
+Effort effort_of(const Run *run, size_t session);
 
 /* Of wall time, as a sentence. */
 void effort_words(const Effort *e, char text[160]);
 
 const char *state_words(RunState state);
-void standing_of(Standing *out, const char *folder, const Run *saved);
+void standing_of(Standing *out, const char *folder, const Run *run);
 
 #endif

@@ -194,8 +194,8 @@ static Status write_generation(Study *study, const SearchView *view, Err *err)
         study->store, err,
         "generation %zu: %zu simulated%s, %zu failed, front %zu, hypervolume %.4f (standard error %.4f), IGD+ since "
         "nine tenths %s, predictions kept %zu, surrogate error %s, %.1f s",
-        view->generation_now, view->n, repeats, view->n_failed, view->n_front, hypervolume, hypervolume_error(hypervolume),
-        advance, view->n_predicted, surface, seconds);
+        view->generation_now, view->n, repeats, view->n_failed, view->n_front, hypervolume,
+        hypervolume_error(hypervolume), advance, view->n_predicted, surface, seconds);
 }
 
 static int observe(const SearchView *view, void *user)
