@@ -1,0 +1,82 @@
+#include "study/differences.h"
+
+#include <inttypes.h>
+#include <jansson.h>
+#include <stdlib.h>
+
+#include "settings/settings.h"
+#include "store/provenance.h"
+
+typedef struct {
+    FILE *lines;
+    size_t n_limits, n_others;
+    char first[200]; /* of the others, else of the limits */
+} Differences;
+
+static void add_difference(Differences *d, const char *key, int is_limit, const char *was, const char *is)
+{
+    if (d->n_others == 0 && (!is_limit || d->n_limits == 0))
+        snprintf(d->first, sizeof d->first, "%s is %.60s there, now %.60s", key, was, is);
+    d->n_limits += is_limit;
+    d->n_others += !is_limit;
+    if (d->lines)
+        fprintf(d->lines, "%s: %s in the run, now %s%s\n", key, was, is, is_limit ? " (a limit)" : "");
+}
+
+static void compare_one(const char *key, unsigned flags, const char *was, const char *is, void *user)
+{
+    if (!(flags & SETTING_FREE))
+        add_difference(user, key, (flags & SETTING_LIMIT) != 0, was, is);
+}
+
+static uint64_t stored_hash(const json_t *provenance, const char *key)
+{
+    const char *text = json_string_value(json_object_get(json_object_get(provenance, "inputs"), key));
+    return text ? strtoull(text, NULL, 16) : 0;
+}
+
+static void compare_hash(Differences *d, const char *key, uint64_t was, uint64_t is)
+{
+    char before[40], after[40];
+    snprintf(before, sizeof before, "content %016" PRIx64, was);
+    snprintf(after, sizeof after, "content %016" PRIx64, is);
+    if (was != is)
+        add_difference(d, key, 0, before, after);
+}
+
+static Status compare_inputs(const Comparison *c, Differences *d, Err *err)
+{
+    Inputs now;
+    TRY(provenance_inputs(&now, c->adapter, err));
+    json_t *provenance = json_loads(c->run->provenance, 0, NULL);
+    compare_hash(d, "motion.record", stored_hash(provenance, "record_fnv1a"), now.record);
+    if (now.record == stored_hash(provenance, "record_fnv1a"))
+        compare_hash(d, "motion.records", stored_hash(provenance, "records_fnv1a"), now.records);
+    compare_hash(d, "building.model", stored_hash(provenance, "matrices_fnv1a"), now.matrices);
+    json_decref(provenance);
+    return STATUS_OK;
+}
+
+/* A limit below what is there already would leave a run that is neither finished nor can be resumed. */
+static Status check_limit(const Comparison *c, size_t n_there, Err *err)
+{
+    const long was = c->run->settings->search.max_evals, now = c->used->search.max_evals;
+    return now == was || now >= (long)n_there
+               ? STATUS_OK
+               : fail(err, STATUS_BAD_DATA, "%s: search.max_evals = %ld is less than the %zu simulations that it holds",
+                      c->run->folder, now, n_there);
+}
+
+Status differences_check(const Comparison *c, size_t n_there, int *has_new_limits, Err *err)
+{
+    Differences d = {.lines = c->lines};
+    settings_compare(c->run->settings, c->used, compare_one, &d);
+    TRY(compare_inputs(c, &d, err));
+    const size_t n = d.n_limits + d.n_others;
+    *has_new_limits = d.n_limits > 0;
+    if (n == 0 || (d.n_others == 0 && c->force))
+        return check_limit(c, n_there, err);
+    return fail(err, STATUS_BAD_DATA, "%s: holds a run with other settings: %s%s; %s", c->run->folder, d.first,
+                n > 1 ? ", and more" : "",
+                d.n_others == 0 ? "--force-settings changes limits" : "choose another --out, or --new");
+}

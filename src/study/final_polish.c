@@ -1,0 +1,92 @@
+#include "study/final_polish.h"
+
+#include "polish/refine.h"
+#include "settings/settings.h"
+
+/* Replicates that a standard deviation is estimated from; simulations below which polishing a design finds nothing; the
+ * share of the search, 1 / SHARE, that all of them take; designs. Chosen by scripts/polish (docs/polish.md). */
+enum { REPLICATES_MIN = 4, EVALS_MIN = 40, SHARE = 10, DESIGNS_MAX = 32 };
+
+static size_t n_designs(const Settings *s)
+{
+    return (size_t)(s->search.polish < DESIGNS_MAX ? s->search.polish : DESIGNS_MAX);
+}
+
+/* Simulations for each design; 0: not worth it. */
+static size_t evals_each(const Settings *s)
+{
+    const long n = (long)n_designs(s);
+    const long each = n > 0 ? s->search.max_evals * s->sim.replicates / (SHARE * n) : 0;
+    return s->problem.kind == PROBLEM_TOWER && each >= EVALS_MIN ? (size_t)each : 0;
+}
+
+static Status refine(const FinalPolish *p, const Run *run, size_t row, Refined *refined, Err *err)
+{
+    const Settings *s = p->used;
+    unsigned char keep[OBJECTIVES_MAX];
+    double weight[OBJECTIVES_MAX];
+    for (size_t k = 0; k < OBJECTIVES_MAX; k++) {
+        keep[k] = 1;
+        weight[k] = 1.0;
+    }
+    return refine_design(
+        run, row,
+        &(RefineConfig){.weight = weight,
+                        .keep = keep,
+                        .slack = -1.0,
+                        .members = s->sim.replicates > REPLICATES_MIN ? s->sim.replicates : REPLICATES_MIN,
+                        .max_evals = evals_each(s),
+                        .go_on = p->go_on,
+                        .user = p->user},
+        refined, err);
+}
+
+/* n_tried: designs tried so far, this one included. */
+static Status store_refined(RunStore *store, const FinalPolish *p, const Refined *refined, size_t n_tried, Err *err)
+{
+    const Evaluation better = refined_evaluation(refined);
+    return store_polished(store, refined_counts(refined) ? &better : NULL, n_tried, p->n_simulated, err);
+}
+
+/* A design that cannot be polished, one that fails with more replicates say, is logged and left out. */
+static Status leave_out(RunStore *store, const FinalPolish *p, size_t row, size_t n_tried, const Err *why, Err *err)
+{
+    TRY(store_log(store, err, "design %zu is not polished: %s", row + 1, why->text));
+    return store_polished(store, NULL, n_tried, p->n_simulated, err);
+}
+
+static Status polish_chosen(RunStore *store, const FinalPolish *p, const Run *run, size_t *n_tried, size_t *n_better,
+                            Err *err)
+{
+    size_t rows[DESIGNS_MAX];
+    const size_t n = run_spread_out(run, n_designs(p->used), 0, rows);
+    for (size_t i = run->polished_at == (long)p->n_simulated ? (size_t)run->tried_to_polish : 0; i < n; i++) {
+        Refined refined;
+        Err why = {0};
+        Status status = refine(p, run, rows[i], &refined, &why);
+        if (status == STATUS_BAD_DATA) {
+            status = leave_out(store, p, rows[i], i + 1, &why, err);
+        } else if (status == STATUS_OK) {
+            status = store_refined(store, p, &refined, i + 1, err);
+            *n_better += refined_counts(&refined) != 0;
+            ++*n_tried;
+        } else {
+            *err = why;
+        }
+        refined_free(&refined);
+        TRY(status);
+    }
+    return STATUS_OK;
+}
+
+Status final_polish(RunStore *store, const FinalPolish *p, size_t *n_tried, size_t *n_better, Err *err)
+{
+    Run run;
+    if (evals_each(p->used) == 0)
+        return STATUS_OK;
+    TRY(store_read(store, &run, err));
+    run_drop_polished(&run);
+    const Status status = polish_chosen(store, p, &run, n_tried, n_better, err);
+    run_free(&run);
+    return status;
+}

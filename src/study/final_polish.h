@@ -1,0 +1,24 @@
+/* study/final_polish.h -- some designs of a finished run of the tower polished at its end (search.polish).
+ *
+ * Designs that are spread over the front, the knee first (run_spread_out), each in all objectives at once, none of which
+ * may get worse (polish/refine.h). Together they take a tenth of the simulations of the search; where that leaves too
+ * few for each there is no polishing. The better design is stored together with the note that this one was tried: a run
+ * that is interrupted is resumed behind it.
+ *
+ * Threads  one */
+#ifndef IMTET_STUDY_FINAL_POLISH_H
+#define IMTET_STUDY_FINAL_POLISH_H
+
+#include "store/store.h"
+
+typedef struct {
+    const Settings *used;
+    size_t n_simulated;       /* evaluations of the finished search */
+    int (*go_on)(void *user); /* as in RefineConfig */
+    void *user;
+} FinalPolish;
+
+/* Adds to n_tried and n_better. STATUS_STOPPED: go_on said so, it can be resumed. */
+Status final_polish(RunStore *store, const FinalPolish *p, size_t *n_tried, size_t *n_better, Err *err);
+
+#endif

@@ -1,0 +1,102 @@
+#include "study/study_log.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include "base/json.h"
+#include "moga/hypervolume.h"
+#include "settings/settings.h"
+#include "store/provenance.h"
+#include "study/advance.h"
+
+static Status log_problem(RunStore *store, const Adapter *adapter, const Settings *used, const char *program, Err *err)
+{
+    const Schema *schema = adapter_schema(adapter);
+    const int threads = adapter_threads(adapter);
+    if (adapter_tower(adapter))
+        return store_log(store, err, "%s: %zu floors, %s, pga %g g, stretch %g, %d threads, seed %ld", program,
+                         schema->n_var - 2, used->motion.record, used->motion.pga_g, used->motion.stretch, threads,
+                         used->search.seed);
+    return store_log(store, err, "%s: %zu variables, %zu objectives, %d threads, seed %ld", program, schema->n_var,
+                     schema->n_obj, threads, used->search.seed);
+}
+
+Status study_log_start(RunStore *store, const Adapter *adapter, const Settings *used, size_t n, Err *err)
+{
+    const int threads = adapter_threads(adapter);
+    char program[96];
+    snprintf(program, sizeof program, "imtet %s (%s)", program_version(), program_revision());
+    TRY(store_session(store, program, threads, n, err));
+    TRY(store_event(store,
+                    json_pack("{s:s, s:s, s:i, s:I, s:I}", "event", n ? "resumes" : "starts", "program", program,
+                              "threads", threads, "simulated", (json_int_t)n, "max_evals",
+                              (json_int_t)used->search.max_evals),
+                    err));
+    if (n > 0)
+        TRY(store_log(store, err, "resumed after %zu simulations", n));
+    return log_problem(store, adapter, used, program, err);
+}
+
+static json_t *generation_event(const SearchView *v, double hypervolume, double igd, double seconds)
+{
+    return json_pack("{s:s, s:I, s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:f, s:f, s:f, s:f}", "event", "generation",
+                     "number", (json_int_t)v->generation_now, "simulated", (json_int_t)v->n, "repeats",
+                     (json_int_t)v->n_replicates, "failed", (json_int_t)v->n_failed, "front", (json_int_t)v->n_front,
+                     "surrogate_error", json_number(v->surrogate_error), "hypervolume", json_number(hypervolume),
+                     "hypervolume_error", json_number(hypervolume_error(hypervolume)), "igd_plus", json_number(igd),
+                     "seconds", seconds, "search_s", v->seconds, "waited_s", v->waited_s, "surrogate_s",
+                     v->surrogate_s);
+}
+
+Status study_log_generation(RunStore *store, const SearchView *view, double seconds, Err *err)
+{
+    const double hypervolume = store_hypervolume(store);
+    char improvement[32], surrogate[24] = "-", repeats[40] = "";
+    double igd;
+    TRY(advance_lately(view, &igd, err));
+    TRY(store_event(store, generation_event(view, hypervolume, igd, seconds), err));
+    number_words(igd, 4, improvement);
+    if (view->n_replicates > 0)
+        snprintf(repeats, sizeof repeats, " (%zu repeats)", view->n_replicates);
+    if (isfinite(view->surrogate_error))
+        snprintf(surrogate, sizeof surrogate, "%.3g", view->surrogate_error);
+    return store_log(store, err,
+                     "generation %zu: %zu simulated%s, %zu failed, front %zu, hypervolume %.4f (standard error %.4f), "
+                     "IGD+ against the front at 90 %% of the evaluations %s, predictions kept %zu, surrogate error %s, "
+                     "%.1f s",
+                     view->generation_now, view->n, repeats, view->n_failed, view->n_front, hypervolume,
+                     hypervolume_error(hypervolume), improvement, view->n_predicted, surrogate, seconds);
+}
+
+/* What surrogate and search cost beside the simulations. */
+static Status log_costs(RunStore *store, const StudySummary *sum, int threads, Err *err)
+{
+    char text[160];
+    if (sum->search_s > 0.0) {
+        const double waiting = sum->waited_s / sum->search_s, surrogate = sum->surrogate_s / sum->search_s;
+        const Effort e = {.waiting = waiting,
+                          .surrogate = surrogate,
+                          .search = 1.0 - waiting - surrogate,
+                          .busy = sum->busy_s > 0.0 ? sum->busy_s / sum->search_s / threads : NAN};
+        effort_words(&e, text);
+        TRY(store_log(store, err, "%s", text));
+    }
+    if (!isfinite(sum->own_s) || !isfinite(sum->simulation_s))
+        return STATUS_OK;
+    return store_log(
+        store, err, "wall time per simulation: %.3g ms in the simulator, %.3g ms of surrogate and search (%.0f %%); %s",
+        1e3 * sum->simulation_s, 1e3 * sum->own_s, 100.0 * sum->own_s / (sum->own_s + sum->simulation_s),
+        sum->is_aside ? "the surrogate cost more than it saved and was no longer used" : "the surrogate was used");
+}
+
+Status study_log_end(RunStore *store, const StudySummary *sum, int threads, int is_final, Err *err)
+{
+    const char *why = stop_reason_words(sum->stopped);
+    TRY(store_log(store, err, "stopped: %s; %zu simulated, %zu failed, %zu on the front, %.1f s", why, sum->n_simulated,
+                  sum->n_failed, sum->n_front, sum->seconds));
+    TRY(log_costs(store, sum, threads, err));
+    return store_event(store,
+                       json_pack("{s:s, s:s, s:b, s:I, s:f}", "event", "stops", "why", why, "final", is_final,
+                                 "simulated", (json_int_t)sum->n_simulated, "seconds", sum->seconds),
+                       err);
+}
