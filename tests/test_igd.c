@@ -3,7 +3,7 @@
 
 #include "base/random.h"
 #include "moga/hypervolume.h"
-#include "study/advance.h"
+#include "study/improvement.h"
 
 enum { M = 3, N = 300, REF = 150 };
 
@@ -117,7 +117,7 @@ static void test_the_advance_of_a_run_is_that_of_its_designs(void **state)
         counts[i] = h.place[i].ok && !(h.table.row[i].violation > 0.0) && h.table.row[i].kind != KIND_REPEAT;
     }
     assert_true(n_front > 1 && n_front <= IGD_REFERENCE_MAX);
-    CHECK_OK(advance_of_run(&h, igd, &err), &err);
+    CHECK_OK(improvement_of_run(&h, igd, &err), &err);
     for (size_t g = 0; g < h.n_generations; g++)
         assert_close(igd[g], brute_force(n_front, front, (size_t)h.generation[g].simulated, h.F, counts), 1e-12);
     assert_true(igd[0] > 0.0 && igd[h.n_generations - 1] == 0.0);
@@ -168,10 +168,10 @@ static void test_the_late_advance_leaves_out_the_last_tenth(void **state)
                           .replicates = answers,
                           .on_front = on_front,
                           .n_front = 4};
-    CHECK_OK(advance_lately(&v, &igd, &err), &err);
+    CHECK_OK(improvement_lately(&v, &igd, &err), &err);
     assert_close(igd, brute_force(4, front, 18, F, counts), 1e-12);
     const SearchView nobody = {.n = ROWS, .n_obj = M};
-    CHECK_OK(advance_lately(&nobody, &igd, &err), &err);
+    CHECK_OK(improvement_lately(&nobody, &igd, &err), &err);
     assert_true(isnan(igd));
 }
 

@@ -4,7 +4,7 @@
 #include <sys/stat.h>
 
 #include "base/cell.h"
-#include "study/place.h"
+#include "study/output_place.h"
 
 /* ---- places ---------------------------------------------------------------------------------------------------- */
 
@@ -31,9 +31,9 @@ static void test_a_settings_file_writes_below_results_only(void **state)
     Err err = {0};
     go_to_a_place_of_its_own(before, sizeof before);
     for (size_t i = 0; i < sizeof GOOD / sizeof GOOD[0]; i++)
-        CHECK_OK(place_check(GOOD[i], "some/where/my.ini", &err), &err);
+        CHECK_OK(output_place_check(GOOD[i], "some/where/my.ini", &err), &err);
     for (size_t i = 0; i < sizeof BAD / sizeof BAD[0]; i++) {
-        if (place_check(BAD[i], "some/where/my.ini", &err) != STATUS_BAD_DATA || !strstr(err.text, BAD[i]))
+        if (output_place_check(BAD[i], "some/where/my.ini", &err) != STATUS_BAD_DATA || !strstr(err.text, BAD[i]))
             fail_msg("%s is accepted, or not named: %s", BAD[i], err.text);
         assert_non_null(strstr(err.text, "--out"));
     }
@@ -48,8 +48,8 @@ static void test_a_run_may_go_on_where_its_own_settings_lie(void **state)
     snprintf(own, sizeof own, "%s/kept", place.folder);
     snprintf(file, sizeof file, "%s/settings.ini", own);
     assert_int_equal(mkdir(own, 0777), 0);
-    CHECK_OK(place_check(own, file, &err), &err);
-    assert_int_equal(place_check(place.folder, file, &err), STATUS_BAD_DATA);
+    CHECK_OK(output_place_check(own, file, &err), &err);
+    assert_int_equal(output_place_check(place.folder, file, &err), STATUS_BAD_DATA);
 }
 
 static void test_a_study_is_not_sent_out_of_results_by_its_file_but_by_the_user(void **state)

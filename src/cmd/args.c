@@ -40,10 +40,10 @@ static const char *value_of(const char *assignment, const char *key)
     return strncmp(assignment, key, n) == 0 && assignment[n] == '=' && assignment[n + 1] ? assignment + n + 1 : NULL;
 }
 
-Status args_moved(const Args *args, Moved *moved, Err *err)
+Status args_moved(const Args *args, RecordPaths *moved, Err *err)
 {
     const char *text;
-    *moved = (Moved){NULL, NULL};
+    *moved = (RecordPaths){NULL, NULL};
     for (int i = 0; (text = args_next(args, "--set", &i));) {
         const char *record = value_of(text, "motion.record"), *records = value_of(text, "motion.records");
         if (!record && !records)

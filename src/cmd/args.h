@@ -10,7 +10,7 @@
 #include <stdio.h>
 
 #include "base/status.h"
-#include "study/moved.h"
+#include "study/record_paths.h"
 
 typedef struct Settings Settings;
 
@@ -65,7 +65,7 @@ int args_gives(const Args *args, const char *key); /* a setting, by an option of
 void args_free(Args *args);
 
 /* Of --set motion.record=PATH and motion.records=PATHS; nothing else may be set. */
-Status args_moved(const Args *args, Moved *moved, Err *err);
+Status args_moved(const Args *args, RecordPaths *moved, Err *err);
 
 /* Behind a message about an operand that is not there: the nearest name in its folder, if there is one. */
 void args_suggest(const Args *args, Err *err);

@@ -8,7 +8,7 @@
 #include "cmd/commands.h"
 #include "cmd/show.h"
 #include "store/run_read.h"
-#include "study/pace.h"
+#include "study/progress.h"
 #include "settings/settings.h"
 
 /* One line or one object; a run that cannot be read says why and the others follow. */
@@ -32,12 +32,12 @@ static void list_run(const char *name, const char *folder, json_t *list)
     number_words(s.hypervolume, 4, hypervolume);
     if (list)
         json_array_append_new(list, json_pack("{s:s, s:s, s:I, s:I, s:I, s:I, s:o, s:s}", "run", folder, "state",
-                                              state_words(s.state), "simulated", (json_int_t)s.pace.simulated,
+                                              state_words(s.state), "simulated", (json_int_t)s.progress.simulated,
                                               "max_evals", (json_int_t)saved.settings->search.max_evals, "failed",
                                               (json_int_t)s.n_failed, "front", (json_int_t)saved.n_front, "hypervolume",
                                               json_number(s.hypervolume), "started", started));
     else
-        printf("%-24s %-10s %8zu of %-8ld %7zu %7zu %12s  %s\n", name, state_words(s.state), s.pace.simulated,
+        printf("%-24s %-10s %8zu of %-8ld %7zu %7zu %12s  %s\n", name, state_words(s.state), s.progress.simulated,
                saved.settings->search.max_evals, s.n_failed, saved.n_front, hypervolume, started);
     run_free(&saved);
 }

@@ -11,7 +11,7 @@
 #include "cmd/signals.h"
 #include "store/nearest.h"
 #include "store/run_read.h"
-#include "study/place.h"
+#include "study/output_place.h"
 #include "study/study.h"
 #include "settings/settings.h"
 
@@ -34,7 +34,7 @@ static void tell(const StudyProgress *p, void *user)
     char left[32], hypervolume[32], line[256];
     if (!t->terminal)
         return;
-    pace_words(pace_left(&p->pace, p->settings), left);
+    duration_words(progress_left(&p->progress, p->settings), left);
     number_words(p->hypervolume, 4, hypervolume);
     snprintf(line, sizeof line, "generation %zu: %zu of %ld simulated, %zu failed, front %zu, hypervolume %s, %s left",
              v->generation_now, v->n, p->settings->search.max_evals, v->n_failed, v->n_front, hypervolume, left);
@@ -178,7 +178,7 @@ static Status take_run(const Args *args, Settings *s, RunStore **store, Err *err
         return fail(err, STATUS_USAGE, "%.200s...: the path is too long", args->operand);
     TRY(args_apply(args, s, NULL, NULL, err));
     TRY(settings_check(s, err));
-    return moved_find(s, NULL, &(Moved){NULL, NULL}, err);
+    return record_paths_find(s, NULL, &(RecordPaths){NULL, NULL}, err);
 }
 
 /* The operand is a settings file, or the folder of a run. */
@@ -188,7 +188,7 @@ static Status take_settings(const Args *args, Settings *s, RunStore **store, Err
     if (stat(args->operand, &there) == 0 && S_ISDIR(there.st_mode))
         return take_run(args, s, store, err);
     TRY(args_settings(args, s, NULL, NULL, err));
-    return args_gives(args, "run.out") ? STATUS_OK : place_check(s->run.out, args->operand, err);
+    return args_gives(args, "run.out") ? STATUS_OK : output_place_check(s->run.out, args->operand, err);
 }
 
 /* Of a run whose records have gone: once it is finished they are not needed. */

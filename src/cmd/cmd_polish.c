@@ -64,12 +64,12 @@ static Status take_options(const Args *args, Work *w, Err *err)
 
 static Status open_run(const Args *args, Work *w, Err *err)
 {
-    Moved moved;
+    RecordPaths moved;
     TRY(run_read(&w->run, args->operand, err));
     TRY(look_design(args, &w->run, &w->row, err));
     TRY(take_options(args, w, err));
     TRY(args_moved(args, &moved, err));
-    return moved_find(w->run.settings, w->run.provenance, &moved, err);
+    return record_paths_find(w->run.settings, w->run.provenance, &moved, err);
 }
 
 /* One row in natural signs, as in front.csv but for the id of the design that it came from. */

@@ -6,8 +6,8 @@
 #include "cmd/show.h"
 #include "moga/hypervolume.h"
 #include "store/run_read.h"
-#include "study/advance.h"
-#include "study/pace.h"
+#include "study/improvement.h"
+#include "study/progress.h"
 #include "settings/settings.h"
 
 enum { ROWS_MAX = 12 };
@@ -42,10 +42,10 @@ static Failures failures_of(const Run *run)
 static void print_head(const char *folder, const Run *run, const Standing *s)
 {
     char worked[32], left[32], pace[32] = "-";
-    const double per_second = pace_per_second(&s->pace);
+    const double per_second = progress_rate(&s->progress);
     const RunSession *last = run->n_sessions > 0 ? &run->session[run->n_sessions - 1] : NULL;
-    pace_words(s->seconds, worked);
-    pace_words(pace_left(&s->pace, run->settings), left);
+    duration_words(s->seconds, worked);
+    duration_words(progress_left(&s->progress, run->settings), left);
     if (isfinite(per_second))
         snprintf(pace, sizeof pace, "%.3g", per_second);
     printf("%s: %s", folder, state_words(s->state));
@@ -53,7 +53,7 @@ static void print_head(const char *folder, const Run *run, const Standing *s)
         printf(" (process %ld on %s)", s->holder.pid, s->holder.host);
     else if (last && last->stopped[0])
         printf(" (%s)", last->stopped);
-    printf("\n%zu of %ld simulated, ", s->pace.simulated, run->settings->search.max_evals);
+    printf("\n%zu of %ld simulated, ", s->progress.simulated, run->settings->search.max_evals);
     if (run->n_repeats > 0)
         printf("%zu of them repeats, ", run->n_repeats);
     printf("%zu failed, %zu on the front", s->n_failed, run->n_front);
@@ -89,7 +89,7 @@ static void print_generations(const Run *run, const double igd[])
         const size_t i = rows > 1 ? r * (n - 1) / (rows - 1) : 0;
         const RunGeneration *g = &run->generation[i];
         number_words(igd[i], 4, advance);
-        pace_words(g->seconds, worked);
+        duration_words(g->seconds, worked);
         number_words(g->hypervolume, 4, hypervolume);
         printf("%12ld %10ld %8ld %8ld %12s %12s %12s\n", g->number, g->simulated, g->failed, g->front, hypervolume,
                advance, worked);
@@ -152,12 +152,12 @@ static json_t *json_failures(const Failures *f)
 static json_t *describe(const char *folder, const Run *run, const Standing *s, const Failures *f, const double igd[])
 {
     json_t *o = json_pack("{s:s, s:s, s:I, s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:o}", "run", folder, "state",
-                          state_words(s->state), "simulated", (json_int_t)s->pace.simulated, "max_evals",
+                          state_words(s->state), "simulated", (json_int_t)s->progress.simulated, "max_evals",
                           (json_int_t)run->settings->search.max_evals, "failed", (json_int_t)s->n_failed, "front",
                           (json_int_t)run->n_front, "polished", (json_int_t)s->n_polished, "hypervolume",
-                          json_number(s->hypervolume), "simulations_per_second", json_number(pace_per_second(&s->pace)),
+                          json_number(s->hypervolume), "simulations_per_second", json_number(progress_rate(&s->progress)),
                           "seconds", json_number(s->seconds), "seconds_left",
-                          json_number(s->state == RUN_FINISHED ? 0.0 : pace_left(&s->pace, run->settings)));
+                          json_number(s->state == RUN_FINISHED ? 0.0 : progress_left(&s->progress, run->settings)));
     if (s->state == RUN_RUNNING)
         json_object_set_new(o, "process",
                             json_pack("{s:I, s:s}", "pid", (json_int_t)s->holder.pid, "host", s->holder.host));
@@ -176,7 +176,7 @@ static Status run(const Args *args, Err *err)
     standing_of(&standing, args->operand, &run);
     const Failures failures = failures_of(&run);
     double *igd = calloc(run.n_generations + 1, sizeof *igd);
-    Status status = igd ? advance_of_run(&run, igd, err) : fail(err, STATUS_NO_MEMORY, "no memory for generations");
+    Status status = igd ? improvement_of_run(&run, igd, err) : fail(err, STATUS_NO_MEMORY, "no memory for generations");
     if (status == STATUS_OK && args_has(args, "--json")) {
         status = show_json(describe(args->operand, &run, &standing, &failures, igd), err);
     } else if (status == STATUS_OK) {

@@ -6,7 +6,7 @@
 #define IMTET_REPORT_DETAIL_H
 
 #include "report/history.h"
-#include "study/moved.h"
+#include "study/record_paths.h"
 
 typedef struct Settings Settings;
 
@@ -41,7 +41,7 @@ typedef struct {
 /* Other earthquakes: `other` is how they are read, scaled and simulated, its motion.record replaced by each name. */
 typedef struct {
     int floor;   /* from 0; -1: in the middle */
-    Moved moved; /* where the run's own records are now */
+    RecordPaths moved; /* where the run's own records are now */
     const Settings *other;
     size_t n_records;
     const char *const *records;

@@ -8,7 +8,7 @@
 static Status take_detail(Report *r, const DetailWish *wish, Err *err)
 {
     Settings s = *r->run->settings;
-    TRY(moved_find(&s, r->run->provenance, &wish->moved, err));
+    TRY(record_paths_find(&s, r->run->provenance, &wish->moved, err));
     return r->has_detail ? detail_make(&s, (int)r->run->schema.n_var, run_x(r->run, r->chosen), wish, &r->detail, err)
                          : STATUS_OK;
 }

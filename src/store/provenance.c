@@ -10,7 +10,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "study/moved.h"
+#include "base/hash.h"
 #include "scene/building.h"
 #include "sim/fast/fast.h"
 #include "settings/settings.h"
@@ -85,6 +85,11 @@ static json_t *machine(int threads)
                      "threads", threads, "started", started);
 }
 
+uint64_t provenance_add_hash(uint64_t so_far, uint64_t file_hash)
+{
+    return (so_far ^ file_hash) * HASH_PRIME;
+}
+
 Status provenance_inputs(Inputs *out, const Adapter *adapter, Err *err)
 {
     Building b;
@@ -96,7 +101,7 @@ Status provenance_inputs(Inputs *out, const Adapter *adapter, Err *err)
     *out = (Inputs){.record = tower_record(t, 0)->motion.file_hash, .matrices = b.hash};
     building_free(&b);
     for (size_t i = 0; i < tower_n_records(t); i++)
-        out->records = moved_hash(out->records, tower_record(t, i)->motion.file_hash);
+        out->records = provenance_add_hash(out->records, tower_record(t, i)->motion.file_hash);
     return STATUS_OK;
 }
 

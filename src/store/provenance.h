@@ -23,6 +23,9 @@ Status provenance_text(char **out, const Settings *s, const Adapter *adapter, Er
 typedef struct {
     uint64_t record, records, matrices;
 } Inputs;
+
+/* The hash of several files in their order, from the hash of each: FNV-1a, a word at a time; begins with 0. */
+uint64_t provenance_add_hash(uint64_t so_far, uint64_t file_hash);
 Status provenance_inputs(Inputs *out, const Adapter *adapter, Err *err);
 
 #endif

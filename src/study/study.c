@@ -13,7 +13,7 @@
 #include "store/provenance.h"
 #include "study/differences.h"
 #include "study/final_polish.h"
-#include "study/given.h"
+#include "study/initial_designs.h"
 #include "study/study_log.h"
 
 typedef struct {
@@ -109,12 +109,12 @@ static void show_progress(const Study *study, const SearchView *view)
     const size_t n_before = study->summary->n_before;
     const StudyProgress p = {.view = view,
                              .hypervolume = store_hypervolume(study->store),
-                             .pace = {.simulated = view->n,
-                                      .generations = study->generation,
-                                      .session_simulated = view->n > n_before ? view->n - n_before : 0,
-                                      .session_generations = study->generation - study->first_generation,
-                                      .session_s = session_seconds(study),
-                                      .all_s = study->seconds_before + session_seconds(study)},
+                             .progress = {.simulated = view->n,
+                                          .generations = study->generation,
+                                          .session_simulated = view->n > n_before ? view->n - n_before : 0,
+                                          .session_generations = study->generation - study->first_generation,
+                                          .session_s = session_seconds(study),
+                                          .all_s = study->seconds_before + session_seconds(study)},
                              .settings = &study->used};
     if (study->options->progress)
         study->options->progress(&p, study->options->user);
@@ -269,7 +269,7 @@ static Status run_search(Study *study, Err *err)
         config.initial = (size_t)(initial < run->planned_evals ? initial : run->planned_evals);
     }
     omp_set_num_threads(search_threads(study));
-    TRY(given_read(study->used.search.start, adapter_schema(study->adapter), &given, &config.n_given, err));
+    TRY(initial_designs_read(study->used.search.start, adapter_schema(study->adapter), &given, &config.n_given, err));
     config.given = given;
     Status status = run ? find_start(study, &start, err) : STATUS_OK;
     adapter_observe(study->adapter, &(Observer){may_go_on, evaluation_done, study});

@@ -25,7 +25,8 @@
 #include "moga/search.h"
 #include "sim/sim.h"
 #include "store/store.h"
-#include "study/pace.h"
+#include "study/progress.h"
+#include "study/summary.h"
 
 typedef struct Settings Settings;
 
@@ -33,7 +34,7 @@ typedef struct Settings Settings;
 typedef struct {
     const SearchView *view;
     double hypervolume; /* share of a box about the first sample; NAN: no design has succeeded yet */
-    Pace pace;
+    Progress progress;
     const Settings *settings;
 } StudyProgress;
 
@@ -47,21 +48,6 @@ typedef struct {
     void *user;
     Run *run; /* becomes the finished run, for run_free, where the study returns STATUS_OK; NULL: not wanted */
 } StudyOptions;
-
-typedef struct {
-    char folder[PATH_MAX];
-    StopReason stopped;
-    size_t n_simulated, n_failed, n_front, n_repeats;
-    size_t n_tried_to_polish, n_polished; /* at the end; of these better by more than their spread */
-    size_t n_before;                      /* simulations that the run had when this session began */
-    long max_evals;
-    double seconds;                                 /* of all sessions */
-    double simulation_s, own_s;                     /* as in SearchView */
-    double search_s, waited_s, surrogate_s, busy_s; /* of this session; busy_s: in simulations, all threads added */
-    int is_aside;
-    int has_no_core;   /* of a tower */
-    SimResult no_core; /* the building alone under the same motion */
-} StudySummary;
 
 /* STATUS_STOPPED: it can go on, and the summary is filled. Settings that differ: STATUS_BAD_DATA,
  * with the differences in `err` as far as they fit, all of them in `differences` (NULL: not wanted), a line each. */

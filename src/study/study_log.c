@@ -7,7 +7,8 @@
 #include "moga/hypervolume.h"
 #include "settings/settings.h"
 #include "store/provenance.h"
-#include "study/advance.h"
+#include "study/improvement.h"
+#include "study/progress.h"
 
 static Status log_problem(RunStore *store, const Adapter *adapter, const Settings *used, const char *program, Err *err)
 {
@@ -53,7 +54,7 @@ Status study_log_generation(RunStore *store, const SearchView *view, double seco
     const double hypervolume = store_hypervolume(store);
     char improvement[32], surrogate[24] = "-", repeats[40] = "";
     double igd;
-    TRY(advance_lately(view, &igd, err));
+    TRY(improvement_lately(view, &igd, err));
     TRY(store_event(store, generation_event(view, hypervolume, igd, seconds), err));
     number_words(igd, 4, improvement);
     if (view->n_replicates > 0)

@@ -6,7 +6,8 @@
 #define IMTET_STUDY_STUDY_LOG_H
 
 #include "simulator/adapter.h"
-#include "study/study.h"
+#include "store/store.h"
+#include "study/summary.h"
 
 /* n: evaluations that the run holds already. */
 Status study_log_start(RunStore *store, const Adapter *adapter, const Settings *used, size_t n, Err *err);

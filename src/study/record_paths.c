@@ -1,4 +1,4 @@
-#include "study/moved.h"
+#include "study/record_paths.h"
 
 #include <inttypes.h>
 #include <jansson.h>
@@ -6,15 +6,10 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "base/hash.h"
 #include "base/list.h"
 #include "scene/motion_source.h"
 #include "settings/settings.h"
-
-uint64_t moved_hash(uint64_t so_far, uint64_t file_hash)
-{
-    return (so_far ^ file_hash) * HASH_PRIME;
-}
+#include "store/provenance.h"
 
 static Status take_place(char setting[OPTION_TEXT_MAX], const char *place, Err *err)
 {
@@ -61,12 +56,12 @@ static Status hash_all(const Settings *s, uint64_t *record, uint64_t *records, E
     const char *list = s->motion.records;
     uint64_t hash;
     TRY(hash_record(&s->motion, s->motion.record, record, err));
-    *records = moved_hash(0, *record);
+    *records = provenance_add_hash(0, *record);
     for (size_t i = 0; strcmp(list, "none") != 0 && i < list_count(list); i++) {
         if (!list_item(list, i, item, sizeof item))
             return fail(err, STATUS_BAD_DATA, "motion.records: item %zu is empty or too long", i + 1);
         TRY(hash_record(&s->motion, item, &hash, err));
-        *records = moved_hash(*records, hash);
+        *records = provenance_add_hash(*records, hash);
     }
     return STATUS_OK;
 }
@@ -83,7 +78,7 @@ static int is_known(const char *provenance, const char *key, uint64_t hash)
     return same;
 }
 
-Status moved_find(Settings *s, const char *provenance, const Moved *moved, Err *err)
+Status record_paths_find(Settings *s, const char *provenance, const RecordPaths *moved, Err *err)
 {
     const Settings was = *s;
     uint64_t record, records;

@@ -1,4 +1,4 @@
-#include "study/given.h"
+#include "study/initial_designs.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -56,7 +56,7 @@ static Status read_front(const char *folder, const Schema *schema, double **X, s
     return status;
 }
 
-Status given_read(const char *start, const Schema *schema, double **X, size_t *n, Err *err)
+Status initial_designs_read(const char *start, const Schema *schema, double **X, size_t *n, Err *err)
 {
     struct stat there;
     *X = NULL;

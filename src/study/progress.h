@@ -1,6 +1,6 @@
-/* study/pace.h -- where a run stands: how fast it goes, how long it still takes, who works on it. */
-#ifndef IMTET_STUDY_PACE_H
-#define IMTET_STUDY_PACE_H
+/* study/progress.h -- progress of a run: its rate, the time left, and which process works on it. */
+#ifndef IMTET_STUDY_PROGRESS_H
+#define IMTET_STUDY_PROGRESS_H
 
 #include "store/lock.h"
 #include "store/run.h"
@@ -12,15 +12,15 @@ typedef struct {
     size_t simulated, generations;                 /* so far */
     size_t session_simulated, session_generations; /* since this start */
     double session_s, all_s;                       /* of this start; of all */
-} Pace;
+} Progress;
 
-double pace_per_second(const Pace *p); /* simulations of this start, else of all; NAN: none yet */
+double progress_rate(const Progress *p); /* simulations of this start, else of all; NAN: none yet */
 
 /* Seconds until simulations, generations or hours are spent, whichever is first; NAN: unknown. */
-double pace_left(const Pace *p, const Settings *s);
+double progress_left(const Progress *p, const Settings *s);
 
 /* "1:05 min", "3:20 h"; a number with so many decimals; "-" where it is not finite. */
-void pace_words(double seconds, char text[32]);
+void duration_words(double seconds, char text[32]);
 void number_words(double value, int decimals, char text[32]);
 
 typedef enum { RUN_RUNNING, RUN_FINISHED, RUN_PAUSED, RUN_INTERRUPTED } RunState;
@@ -28,7 +28,7 @@ typedef enum { RUN_RUNNING, RUN_FINISHED, RUN_PAUSED, RUN_INTERRUPTED } RunState
 typedef struct {
     RunState state; /* paused: stopped in good order; interrupted: killed. Both can be resumed */
     LockHolder holder;
-    Pace pace;
+    Progress progress;
     size_t n_failed, n_polished;
     double seconds;     /* of work, all sessions together */
     double hypervolume; /* of the last generation; NAN: none */

@@ -1,4 +1,4 @@
-#include "study/place.h"
+#include "study/output_place.h"
 
 #include <errno.h>
 #include <limits.h>
@@ -51,7 +51,7 @@ static int is_own_folder(const char *out, const char *settings_file)
     return is_own;
 }
 
-Status place_check(const char *out, const char *settings_file, Err *err)
+Status output_place_check(const char *out, const char *settings_file, Err *err)
 {
     char there[PATH_MAX], results[PATH_MAX];
     struct stat about;

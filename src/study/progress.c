@@ -1,4 +1,4 @@
-#include "study/pace.h"
+#include "study/progress.h"
 
 #include <limits.h>
 #include <math.h>
@@ -6,16 +6,16 @@
 #include <time.h>
 #include "settings/settings.h"
 
-double pace_per_second(const Pace *p)
+double progress_rate(const Progress *p)
 {
     if (p->session_simulated > 0 && p->session_s > 0.0)
         return (double)p->session_simulated / p->session_s;
     return p->simulated > 0 && p->all_s > 0.0 ? (double)p->simulated / p->all_s : NAN;
 }
 
-double pace_left(const Pace *p, const Settings *s)
+double progress_left(const Progress *p, const Settings *s)
 {
-    double left = ((double)s->search.max_evals - (double)p->simulated) / pace_per_second(p);
+    double left = ((double)s->search.max_evals - (double)p->simulated) / progress_rate(p);
     if (!isfinite(left))
         return NAN;
     if (p->session_generations > 0)
@@ -26,7 +26,7 @@ double pace_left(const Pace *p, const Settings *s)
     return fmax(left, 0.0);
 }
 
-void pace_words(double seconds, char text[32])
+void duration_words(double seconds, char text[32])
 {
     const long s = (long)fmin(seconds, 1e8);
     if (!isfinite(seconds))
@@ -66,7 +66,7 @@ static void count(Standing *out, const Run *run)
     for (size_t i = 0; i < run->table.n; i++) {
         const int polished = run->table.row[i].id >= POLISHED_FIRST;
         out->n_polished += polished != 0;
-        out->pace.simulated += !polished;
+        out->progress.simulated += !polished;
         out->n_failed += !polished && !run->place[i].ok;
     }
 }
@@ -123,7 +123,7 @@ void standing_of(Standing *out, const char *folder, const Run *run)
                  : last && last->ended[0] ? RUN_PAUSED
                                           : RUN_INTERRUPTED;
     count(out, run);
-    out->pace.generations = run->n_generations;
+    out->progress.generations = run->n_generations;
     if (run->n_generations > 0)
         out->hypervolume = run->generation[run->n_generations - 1].hypervolume;
     for (size_t i = 0; i < run->n_sessions; i++)
@@ -131,11 +131,12 @@ void standing_of(Standing *out, const char *folder, const Run *run)
     if (!last)
         return;
     const double stored = session_seconds(run, run->n_sessions - 1);
-    out->pace.session_s = is_running ? seconds_since(last->started) : stored;
-    out->seconds += is_running ? fmax(out->pace.session_s - stored, 0.0) : 0.0;
-    out->pace.all_s = out->seconds;
-    out->pace.session_simulated =
-        out->pace.simulated > (size_t)last->simulated_before ? out->pace.simulated - (size_t)last->simulated_before : 0;
+    out->progress.session_s = is_running ? seconds_since(last->started) : stored;
+    out->seconds += is_running ? fmax(out->progress.session_s - stored, 0.0) : 0.0;
+    out->progress.all_s = out->seconds;
+    out->progress.session_simulated = out->progress.simulated > (size_t)last->simulated_before
+                                          ? out->progress.simulated - (size_t)last->simulated_before
+                                          : 0;
     for (size_t g = 0; g < run->n_generations; g++)
-        out->pace.session_generations += strcmp(run->generation[g].finished, last->started) >= 0;
+        out->progress.session_generations += strcmp(run->generation[g].finished, last->started) >= 0;
 }

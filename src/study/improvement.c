@@ -1,4 +1,4 @@
-#include "study/advance.h"
+#include "study/improvement.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -17,7 +17,7 @@ static double value_of(const Igd *q)
     return isfinite(value) ? value : NAN;
 }
 
-Status advance_lately(const SearchView *v, double *igd, Err *err)
+Status improvement_lately(const SearchView *v, double *igd, Err *err)
 {
     Igd *q;
     size_t n = 0, *front = v->n_front > 0 ? calloc(v->n_front, sizeof *front) : NULL;
@@ -73,7 +73,7 @@ static void follow(const Run *run, const double F[], Igd *q, double igd[])
     }
 }
 
-Status advance_of_run(const Run *run, double igd[], Err *err)
+Status improvement_of_run(const Run *run, double igd[], Err *err)
 {
     double *F = calloc(run->table.n * run->schema.n_obj + 1, sizeof *F);
     size_t *front = calloc(run->table.n + 1, sizeof *front), n = 0;

@@ -1,0 +1,15 @@
+/* study/initial_designs.h -- initial designs: known ones that a search begins with.
+ *
+ *   search.start = RUN    the front of another run, its polished designs too
+ *                  FILE   a CSV with a column for every variable, in any order; further columns are not read
+ *
+ * Ownership  initial_designs_read allocates X (n, n_var), the caller frees it; none: NULL and 0
+ * Errors     a column that is missing, a file that is not there: named */
+#ifndef IMTET_STUDY_INITIAL_DESIGNS_H
+#define IMTET_STUDY_INITIAL_DESIGNS_H
+
+#include "simulator/schema.h"
+
+Status initial_designs_read(const char *start, const Schema *schema, double **X, size_t *n, Err *err);
+
+#endif

@@ -1,0 +1,25 @@
+/* study/summary.h -- what a session of a study comes to. */
+#ifndef IMTET_STUDY_SUMMARY_H
+#define IMTET_STUDY_SUMMARY_H
+
+#include <limits.h>
+
+#include "moga/search.h"
+#include "sim/result.h"
+
+typedef struct {
+    char folder[PATH_MAX];
+    StopReason stopped;
+    size_t n_simulated, n_failed, n_front, n_repeats;
+    size_t n_tried_to_polish, n_polished; /* at the end; of these better by more than their spread */
+    size_t n_before;                      /* simulations that the run had when this session began */
+    long max_evals;
+    double seconds;                                 /* of all sessions */
+    double simulation_s, own_s;                     /* as in SearchView */
+    double search_s, waited_s, surrogate_s, busy_s; /* of this session; busy_s: in simulations, all threads added */
+    int is_aside;
+    int has_no_core;   /* of a tower */
+    SimResult no_core; /* the building alone under the same motion */
+} StudySummary;
+
+#endif
