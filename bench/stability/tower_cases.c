@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include "scene/core_beam.h"
+#include "sim/fast/fast.h"
 #include "sim/fast/kernel.h"
 
 static void open_tower(const Trial *t, Tower *tower, double seconds)

@@ -1,7 +1,7 @@
 /* evaluate/queue.h -- the one queue between those who want designs evaluated and those who simulate.
  *
  *   asker      queue_ask(x) ...      queue_next(): the next finished design
- *   executor   queue_take(task) -> Simulator.simulate -> queue_give(task)          (evaluate/threads.h)
+ *   executor   queue_take(task) -> Simulator.simulate -> queue_give(task)          (evaluate/tasks.h)
  *
  * A design is as many tasks as the problem has parts, and any worker takes any of them, in the order of asking: a few
  * designs with many replicates keep every worker busy. The last part given makes the Evaluation, whichever it is, so
@@ -24,7 +24,7 @@
 #ifndef IMTET_EVALUATE_QUEUE_H
 #define IMTET_EVALUATE_QUEUE_H
 
-#include "evaluate/problem.h"
+#include "evaluate/tasks.h"
 
 typedef enum { QUEUE_AS_ASKED, QUEUE_AS_ARRIVED } QueueOrder;
 
@@ -32,7 +32,6 @@ typedef enum { QUEUE_AS_ASKED, QUEUE_AS_ARRIVED } QueueOrder;
  * were evaluated before this session. */
 Status queue_open(Queue **out, const Problem *problem, QueueOrder order, size_t n_note, long n_before, Err *err);
 void queue_close(Queue *q); /* NULL is fine */
-const Problem *queue_problem(const Queue *q);
 
 typedef struct {
     const double *x; /* (n_var), copied */
@@ -74,13 +73,5 @@ double queue_busy(Queue *q, size_t *n_designs);
  * pending. repeat (n): as in Asked, NULL: 0. */
 Status queue_evaluate(Queue *q, size_t n, const double X[], const size_t repeat[], double F[], double G[],
                       unsigned char ok[], Err *err);
-
-/* -- for executors ------------------------------------------------------------------------------------------------- */
-
-/* 1 and a task; 0: there is none, now (wait 0) or ever more (wait 1). */
-int queue_take(Queue *q, int wait, Task *task);
-
-/* The task is done, its part lies at task->result; a status ends everything, `why` says why. */
-void queue_give(Queue *q, const Task *task, Status status, const Err *why);
 
 #endif

@@ -4,6 +4,8 @@
 #include <pthread.h>
 #include <stdlib.h>
 
+#include "evaluate/tasks.h"
+
 size_t threads_wanted(long setting)
 {
     return setting > 0 ? (size_t)setting : (size_t)omp_get_num_procs();

@@ -6,7 +6,7 @@
 #ifndef IMTET_EVALUATE_THREADS_H
 #define IMTET_EVALUATE_THREADS_H
 
-#include "evaluate/queue.h"
+#include "evaluate/problem.h"
 
 extern const Executor EXECUTOR_THREADS; /* a thread for each worker of the problem */
 extern const Executor EXECUTOR_ASKER;   /* the asker itself is worker 0, while it waits: no thread at all */

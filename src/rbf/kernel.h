@@ -8,9 +8,12 @@
 #ifndef IMTET_RBF_KERNEL_H
 #define IMTET_RBF_KERNEL_H
 
-#include "rbf/rbf.h"
+#include <stddef.h>
 
-enum { KERNEL_LANES = 8, KERNEL_CHUNK = 64 };
+typedef enum { RBF_GAUSS, RBF_MATERN, RBF_N_KERNELS } RbfKernel;
+
+/* RBF_BLOCK: points that are evaluated together. */
+enum { KERNEL_LANES = 8, KERNEL_CHUNK = 64, RBF_BLOCK = 4 };
 
 /* s = root(theta) (u^a + 1 - v^b) / 2 with v = 1 - u, from log u and log v; warp = a, b. */
 void kernel_warp(size_t n, const double log_u[], const double log_v[], double theta, const double warp[2], double s[]);

@@ -30,12 +30,12 @@
 
 #include "base/pack.h"
 #include "base/status.h"
+#include "rbf/kernel.h"
 
 typedef struct Rbf Rbf;
 
-enum { RBF_BLOCK = 4, RBF_DIM_MAX = 512 };
+enum { RBF_DIM_MAX = 512 };
 
-typedef enum { RBF_GAUSS, RBF_MATERN, RBF_N_KERNELS } RbfKernel;
 typedef enum { RBF_CONSTANT, RBF_LINEAR, RBF_QUADRATIC, RBF_N_TAILS } RbfTail;
 
 /* How one output is modelled. */

@@ -6,7 +6,8 @@
 #ifndef IMTET_SIM_FAST_KERNEL_H
 #define IMTET_SIM_FAST_KERNEL_H
 
-#include "sim/fast/fast.h"
+#include "sim/engine.h"
+#include "sim/fast/tolerances.h"
 #include "sim/fast/vec.h"
 #include "sim/flow.h"
 
