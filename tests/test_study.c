@@ -165,7 +165,7 @@ static void test_a_design_is_evaluated_on_every_motion_of_a_folder(void **state)
     (void)state;
     json_t *o = json_of("evaluate @/threads-1 --design knee --records tests/motion --channel 1 --pga 0.3 --json");
     const json_t *records = json_object_get(o, "records"), *unreadable = json_object_get(o, "unreadable");
-    assert_int_equal(json_array_size(records), 20);
+    assert_int_equal(json_array_size(records), 33);
     assert_int_equal(json_array_size(unreadable), 1);
     for (size_t i = 0; i + 1 < json_array_size(records); i++)
         assert_true(strcmp(json_string_value(json_object_get(json_array_get(records, i), "record")),
