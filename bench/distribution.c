@@ -4,14 +4,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double WINDOW_S = 60, CHANGE = 1e-12, ENOUGH = 5e-3, REFERENCE_STEPS = 10;
+#include "base/stat.h"
+#include "simulator/replicates.h"
+
+static const double WINDOW_S = 60, ENOUGH = 5e-3, REFERENCE_STEPS = 10;
 
 static const double GAP_M = 0.008; /* of the first floor; floor j has j times as much */
 
 typedef struct {
     int n;
     double value[BENCH_OBJECTIVES][DISTRIBUTION_RUNS];
-} Answers;
+} Samples;
 
 static int ascending(const void *a, const void *b)
 {
@@ -21,7 +24,7 @@ static int ascending(const void *a, const void *b)
 
 double ks_distance(int n_a, double a[], int n_b, double b[])
 {
-    double most = 0;
+    double largest = 0;
     qsort(a, (size_t)n_a, sizeof *a, ascending);
     qsort(b, (size_t)n_b, sizeof *b, ascending);
     for (int i = 0, j = 0; i < n_a && j < n_b;) {
@@ -30,9 +33,9 @@ double ks_distance(int n_a, double a[], int n_b, double b[])
             i++;
         while (j < n_b && b[j] <= x)
             j++;
-        most = fmax(most, fabs((double)i / n_a - (double)j / n_b));
+        largest = fmax(largest, fabs((double)i / n_a - (double)j / n_b));
     }
-    return most;
+    return largest;
 }
 
 double ks_critical(int n)
@@ -40,61 +43,51 @@ double ks_critical(int n)
     return 1.358 * sqrt(2.0 / n);
 }
 
-static void take_answers(const SimResult *r, Answers *answers)
+static void take_sample(const SimResult *r, Samples *samples)
 {
     const double all[BENCH_OBJECTIVES] = {r->j1_m, r->j2_m, r->j3_g, r->ed1_pct, r->ed5_10_pct, r->edcs_pct};
     for (int k = 0; k < BENCH_OBJECTIVES; k++)
-        answers->value[k][answers->n] = all[k];
-    answers->n++;
-}
-
-/* The gaps of run k, changed by the stream of this series. */
-static void change_gaps(const double gaps[], int n, uint32_t series, int k, double changed[])
-{
-    Random r = random_stream(1, RANDOM_ENSEMBLE, series, (uint32_t)k);
-    for (int j = 0; j < n; j++)
-        changed[j] = gaps[j] * (1 + CHANGE * random_normal(&r));
+        samples->value[k][samples->n] = all[k];
+    samples->n++;
 }
 
 static Status run_all(BenchCase *bench_case, const SceneOptions *s, int engine, Accuracy accuracy, double tolerance,
-                      uint32_t series, Answers *answers, EngineDistribution *out, Err *err)
+                      uint32_t series, Samples *samples, EngineDistribution *out, Err *err)
 {
     const EngineOptions options = {.duration = bench_case->duration, .accuracy = accuracy, .tolerance = tolerance};
     double changed[FLOORS_MAX];
     SimResult r;
     const double start = processor_seconds();
-    answers->n = 0;
-    for (int k = 0; k < DISTRIBUTION_RUNS; k++) {
-        change_gaps(bench_case->gaps, bench_case->building.n, series, k, changed);
+    samples->n = 0;
+    for (size_t k = 1; k <= DISTRIBUTION_RUNS; k++) { /* replicate 0 is the design itself, in every series */
+        memcpy(changed, bench_case->gaps, sizeof changed);
+        replicate_design(series, k, 0, (size_t)bench_case->building.n, changed);
         TRY(model_set(&bench_case->model, s, &bench_case->building, bench_case->core, changed, err));
         memset(&r, 0, sizeof r);
         TRY(bench_engine(engine)->run(&bench_case->model, &bench_case->motion, &options, &r, err));
         if (r.outcome == RUN_OK && isfinite(r.j3_g))
-            take_answers(&r, answers);
+            take_sample(&r, samples);
     }
     out->known = 1;
     out->seconds = (processor_seconds() - start) / DISTRIBUTION_RUNS;
-    out->finished = answers->n;
+    out->finished = samples->n;
     return STATUS_OK;
 }
 
-static void compare(const Answers *reference, Answers *answers, EngineDistribution *out)
+static void compare(const Samples *reference, Samples *samples, EngineDistribution *out)
 {
     for (int k = 0; k < BENCH_OBJECTIVES; k++) {
         double sorted[DISTRIBUTION_RUNS];
         memcpy(sorted, reference->value[k], sizeof sorted);
-        out->distance[k] = answers->n > 0 ? ks_distance(reference->n, sorted, answers->n, answers->value[k]) : NAN;
+        out->distance[k] = samples->n > 0 ? ks_distance(reference->n, sorted, samples->n, samples->value[k]) : NAN;
     }
 }
 
-static double relative_spread(int n, const double x[])
+static double relative_sd(int n, const double x[])
 {
-    double mean = 0, squares = 0;
-    for (int i = 0; i < n; i++)
-        mean += x[i] / n;
-    for (int i = 0; i < n; i++)
-        squares += (x[i] - mean) * (x[i] - mean) / (n - 1);
-    return sqrt(squares) / fabs(mean);
+    double mean, sd;
+    mean_and_sd_of((size_t)n, x, &mean, &sd);
+    return sd / fabs(mean);
 }
 
 /* The fastest setting of the sweep that is accurate and quick enough; NULL: there is none. */
@@ -111,15 +104,15 @@ static const SweepRow *setting_of(const Sweep *sweep, const BenchCase *bench_cas
 }
 
 static Status test_engines(DistributionTest *p, const Sweep *sweep, BenchCase *bench_case, const SceneOptions *s,
-                           double limit_s, Answers answers[2], FILE *progress, Err *err)
+                           double limit_s, Samples samples[2], FILE *progress, Err *err)
 {
-    Answers *reference = &answers[0], *other = &answers[1];
+    Samples *reference = &samples[0], *other = &samples[1];
     EngineDistribution ignored;
-    TRY(run_all(bench_case, s, ENGINE_FAST, ACCURACY_FINE, REFERENCE_STEPS, 0, reference, &ignored, err));
+    TRY(run_all(bench_case, s, ENGINE_FAST, ACCURACY_FINE, REFERENCE_STEPS, 1, reference, &ignored, err));
     for (int k = 0; k < BENCH_OBJECTIVES; k++)
-        p->spread[k] = relative_spread(reference->n, reference->value[k]);
+        p->spread[k] = relative_sd(reference->n, reference->value[k]);
     snprintf(p->again.tolerance, sizeof p->again.tolerance, "%g", REFERENCE_STEPS);
-    TRY(run_all(bench_case, s, ENGINE_FAST, ACCURACY_FINE, REFERENCE_STEPS, 1, other, &p->again, err));
+    TRY(run_all(bench_case, s, ENGINE_FAST, ACCURACY_FINE, REFERENCE_STEPS, 2, other, &p->again, err));
     compare(reference, other, &p->again);
     for (int e = 0; e < BENCH_ENGINES; e++) {
         const SweepRow *row = setting_of(sweep, bench_case, e, limit_s);
@@ -127,7 +120,7 @@ static Status test_engines(DistributionTest *p, const Sweep *sweep, BenchCase *b
             continue;
         fprintf(progress, "  after the horizon: %s\n", bench_engine(e)->name);
         snprintf(p->engine[e].tolerance, sizeof p->engine[e].tolerance, "%s", row->tolerance);
-        TRY(run_all(bench_case, s, e, row->accuracy, row->tolerance_value, 2, other, &p->engine[e], err));
+        TRY(run_all(bench_case, s, e, row->accuracy, row->tolerance_value, 3, other, &p->engine[e], err));
         compare(reference, other, &p->engine[e]);
     }
     return STATUS_OK;
@@ -137,15 +130,15 @@ Status distribution_test_run(DistributionTest *test, const Sweep *sweep, const B
                              const SceneOptions *s, double limit_s, FILE *progress, Err *err)
 {
     BenchCase longer = *bench_case; /* borrows all of it; the model is set anew for every run */
-    Answers *answers = calloc(2, sizeof *answers);
-    if (!answers)
+    Samples *samples = calloc(2, sizeof *samples);
+    if (!samples)
         return fail(err, STATUS_NO_MEMORY, "bench: out of memory");
     for (int j = 0; j < longer.building.n; j++)
         longer.gaps[j] = GAP_M * (j + 1);
     longer.duration = fmin(WINDOW_S, (double)(bench_case->motion.n - 1) * bench_case->motion.dt_s);
-    const Status status = test_engines(test, sweep, &longer, s, limit_s, answers, progress, err);
+    const Status status = test_engines(test, sweep, &longer, s, limit_s, samples, progress, err);
     test->duration = longer.duration;
-    free(answers);
+    free(samples);
     return status;
 }
 
@@ -168,12 +161,13 @@ void distribution_test_write(const DistributionTest *p, FILE *out)
         "themselves:\n"
         "distance of the distributions (Kolmogorov and Smirnov) from those of `fast` at %g steps per contact. Two\n"
         "samples of one distribution are further apart than %.2f in one of twenty comparisons; the first row is the\n"
-        "reference once more. Each engine at its fastest setting with an error of %g before the horizon; those that\n"
-        "are too slow for so many runs are left out. PeakMonitor that fall before the horizon have hardly any spread: "
+        "reference once more. Each engine at its fastest tolerance with an error of %g before the horizon; those that\n"
+        "are too slow for so many runs are left out. Peaks that fall before the horizon have hardly any spread: "
         "there\n"
-        "a distance near 1 is the error before the horizon seen through a magnifying glass.\n\n"
+        "a distance near 1 shows the error before the horizon.\n\n"
         "| engine | tolerance | ms per run | finished |",
-        DISTRIBUTION_RUNS, p->duration, 1e3 * GAP_M, CHANGE, REFERENCE_STEPS, ks_critical(DISTRIBUTION_RUNS), ENOUGH);
+        DISTRIBUTION_RUNS, p->duration, 1e3 * GAP_M, REPLICATE_CHANGE, REFERENCE_STEPS, ks_critical(DISTRIBUTION_RUNS),
+        ENOUGH);
     for (int k = 0; k < BENCH_OBJECTIVES; k++)
         fprintf(out, " %s |", BENCH_OBJECTIVE_NAMES[k]);
     fprintf(out, "\n|---|---|---|---|---|---|---|---|---|---|\n");

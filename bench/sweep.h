@@ -1,8 +1,8 @@
 /* bench/sweep.h -- every engine at many tolerances on one benchmark case: speed against accuracy.
  *
- * The reference is CVODE at 1e-12; a second method that shares nothing with it must agree: fast at 320 steps per contact
- * or etdrk4 at 10 microseconds, whichever is nearer. An error below ten times their difference is not known and is drawn
- * as that (floor).
+ * The reference is CVODE at 1e-12; a second method that shares nothing with it must agree: fast at 320 steps per
+ * contact or etdrk4 at 10 microseconds, whichever is nearer. An error below ten times their difference is not known and
+ * is drawn as that (floor).
  *
  * Ownership  sweep_free releases the rows
  * Threads    none: timings want the machine to themselves */

@@ -5,8 +5,8 @@
 #include "simulator/measures.h"
 #include "store/output.h"
 
-/* An energy-balance error above BALANCE_OPEN is a failure that the engine itself shows; an error above WRONG with a better
- * balance is a wrong answer in silence. */
+/* An energy-balance error above BALANCE_OPEN is a failure that the engine itself shows; an error above WRONG with a
+ * better balance is a wrong answer in silence. */
 static const double BALANCE_OPEN = 1e-3, WRONG = 0.1;
 
 int sweep_row_failed(const SweepRow *row)

@@ -7,7 +7,7 @@
 #include "base/clock.h"
 #include "simulator/tower.h"
 
-enum { DESIGNS = 24, DESIGNS_QUICK = 4, JUDGED = 6, ENSEMBLE_MEMBERS = 8 };
+enum { DESIGNS = 24, DESIGNS_QUICK = 4, JUDGED = 6, REPLICATES = 8 };
 
 static const double WINDOW_S = 8, PLAIN_STEP = 2e-4, BDF_RTOL = 1e-6, REFERENCE_STEPS = 320;
 
@@ -65,7 +65,7 @@ static Status run_fast(Throughput *t, Err *err)
     }
     const double middle = median(t->n, ms);
     fprintf(t->out, "fast, standard: %d designs, %.5g s each, one thread\n", t->n, t->bench_case.duration);
-    fprintf(t->out, "  per design      %.3g ms median, %.3g least, %.3g most; %.4g designs a second\n", middle, ms[0],
+    fprintf(t->out, "  per design      %.3g ms median, %.3g min, %.3g max; %.4g designs a second\n", middle, ms[0],
             ms[t->n - 1], (double)t->n / all);
     fprintf(t->out, "  counted         %.0f steps, %.0f force evaluations, %.0f impacts per design; %ld failed\n",
             (double)steps / t->n, (double)forces / t->n, (double)impacts / t->n, failed);
@@ -73,8 +73,8 @@ static Status run_fast(Throughput *t, Err *err)
     return STATUS_OK;
 }
 
-/* Wall time [s] of all designs over the workers, and of an ensemble of design 0. */
-static Status time_crew(Throughput *t, const Scene *scene, int threads, double *all, double *ensemble, Err *err)
+/* Wall time [s] of all designs over the workers, and of the replicates of design 0. */
+static Status time_workers(Throughput *t, const Scene *scene, int threads, double *all, double *replicated, Err *err)
 {
     enum { STRIDE = FLOORS_MAX + 2 };
     const int n = t->bench_case.building.n;
@@ -92,7 +92,7 @@ static Status time_crew(Throughput *t, const Scene *scene, int threads, double *
         x[n + 1] = BENCH_WALL_TOP;
         tasks[k] = (SimTask){SCENE_IMPACT, x};
     }
-    Status status = tower_open_scene(&p, scene, ENSEMBLE_MEMBERS, 1, (size_t)threads, err);
+    Status status = tower_open_scene(&p, scene, REPLICATES, 1, (size_t)threads, err);
     const double start = clock_seconds();
     if (status == STATUS_OK)
         status = tower_simulate(&p, (size_t)t->n, tasks, results, err);
@@ -100,29 +100,29 @@ static Status time_crew(Throughput *t, const Scene *scene, int threads, double *
     if (status == STATUS_OK)
         status = tower_replicate(&p, 1, X, results, &e, err);
     *all = middle - start;
-    *ensemble = clock_seconds() - middle;
+    *replicated = clock_seconds() - middle;
     problem_close(&p);
     free(results);
     return status;
 }
 
-/* What threads gain, and what the spread of one design costs. */
-static Status run_crews(Throughput *t, Err *err)
+/* What threads gain, and what the replicates of one design cost. */
+static Status run_workers(Throughput *t, Err *err)
 {
     const int threads = omp_get_num_procs();
-    double one, many, ensemble_one, ensemble_many;
+    double one, many, replicated_one, replicated_many;
     Scene *scene;
     TRY(scene_create(&scene, t->settings, t->whole, err));
-    Status status = time_crew(t, scene, 1, &one, &ensemble_one, err);
+    Status status = time_workers(t, scene, 1, &one, &replicated_one, err);
     if (status == STATUS_OK)
-        status = time_crew(t, scene, threads, &many, &ensemble_many, err);
+        status = time_workers(t, scene, threads, &many, &replicated_many, err);
     scene_free(scene);
     TRY(status);
     fprintf(t->out, "  threads         %.4g designs a second on 1, %.4g on %d: %.2f times\n", t->n / one, t->n / many,
             threads, one / many);
-    fprintf(t->out, "  ensemble of %d   %.3g ms on 1 thread, %.3g ms on %d: %.2f and %.2f times one design\n",
-            ENSEMBLE_MEMBERS, 1e3 * ensemble_one, 1e3 * ensemble_many, threads, ensemble_one * t->n / one,
-            ensemble_many * t->n / one);
+    fprintf(t->out, "  replicates, %d   %.3g ms on 1 thread, %.3g ms on %d: %.2f and %.2f times one design\n",
+            REPLICATES, 1e3 * replicated_one, 1e3 * replicated_many, threads, replicated_one * t->n / one,
+            replicated_many * t->n / one);
     return STATUS_OK;
 }
 
@@ -174,7 +174,7 @@ static Status print_accuracies(Throughput *t, Err *err)
             note_errors(&missed[a], k, &e, t->seen->seconds);
         }
     }
-    fprintf(t->out, "\nerror of fast in the strong window, %d designs: median, 90 %%, most\n", t->n);
+    fprintf(t->out, "\nerror of fast in the strong window, %d designs: median, 90 %%, max\n", t->n);
     fprintf(t->out, "  %-10s %11s   %-17s   %-17s   %-17s   %-17s   %s\n", "accuracy", "per design", "J1", "J2", "J3",
             "worst share", "beyond what standard promises");
     for (int a = 0; a < 2; a++)
@@ -270,7 +270,7 @@ Status throughput_print(const SceneOptions *s, const Motion *motion, int quick, 
     if (status == STATUS_OK)
         status = run_fast(&t, err);
     if (status == STATUS_OK && !count)
-        status = run_crews(&t, err);
+        status = run_workers(&t, err);
     if (status == STATUS_OK && !count)
         status = print_accuracies(&t, err);
     if (status == STATUS_OK && !count)

@@ -1,5 +1,5 @@
-/* bench/throughput.h -- designs per second, and ratios to other engines: 24 designs with irregular gaps of 10 to 200 mm,
- * the whole motion, one thread, all in one process. Engines too slow for that run fewer designs or only the strong
+/* bench/throughput.h -- designs per second, and ratios to other engines: 24 designs with irregular gaps of 10 to 200
+ * mm, the whole motion, one thread, all in one process. Engines too slow for that run fewer designs or only the strong
  * window, and `fast` is timed on the same.
  *
  * Threads  none but those of the worker pool that it times */

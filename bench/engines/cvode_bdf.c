@@ -1,7 +1,8 @@
 /* CVODE by backward differentiation, Newton, contacts located by roots.
  *
  *   cvode_bdf        dense Jacobian by difference quotients, stability limit detection: as a careful user writes it
- *   cvode_bdf_tuned  order 2 at most, which damps nothing, and the modal linear solver (bench/engines/modal_solver.h) */
+ *   cvode_bdf_tuned  order 2 at most, which damps nothing, and the modal linear solver
+ *                    (bench/engines/modal_solver.h) */
 #include <cvode/cvode.h>
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>

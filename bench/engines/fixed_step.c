@@ -4,7 +4,7 @@
 
 #include "base/denormal.h"
 
-/* PeakMonitor are looked for no more often than this [s]. */
+/* [s] Shortest interval between samples of the peaks. */
 static const double PEAKS_EVERY = 1e-3, PEAKS_IN_CONTACT = 1e-4;
 
 static const double STEPS_MAX = 1e9;

@@ -1,4 +1,5 @@
-/* bench/stability/bob.h -- models built by hand: independent masses, each on its own spring (or none) in front of a wall.
+/* bench/stability/bob.h -- models built by hand: independent masses, each on its own spring (or none) in front of a
+ * wall.
  *
  * Floor j is one building mode; the core is one mode that cannot be moved, or one free mass that all floors hit. */
 #ifndef IMTET_BENCH_BOB_H

@@ -1,4 +1,5 @@
-/* bench/stability/stability.h -- where methods fail: every engine is put through every case, and the outcome is a table.
+/* bench/stability/stability.h -- where methods fail: every engine is put through every case, and the outcome is a
+ * table.
  *
  * Each cell runs in a process of its own, as many at a time as there are processors: a crash is a failure of that cell,
  * no answer in time a refusal. A line per cell goes to standard output.

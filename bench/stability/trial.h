@@ -1,8 +1,8 @@
 /* bench/stability/trial.h -- one property put to one engine, and what came of it.
  *
  *   holds    every figure within what is allowed
- *   flagged  a figure is off, and the result says so: energy_balance_error above the default of sim.energy_balance_max, or
- *            penetration beyond the contact law
+ *   flagged  a figure is off, and the result says so: energy_balance_error above the default of sim.energy_balance_max,
+ *            or penetration beyond the contact law
  *   refused  the engine said that it cannot (outcome or status), or did not answer within the time given
  *   FAILED   a wrong answer in silence, or a crash
  *
@@ -44,8 +44,8 @@ extern const CaseGroup BOB_CASES, TOWER_CASES;
 
 const EngineEntry *trial_engine(const Trial *t);
 
-/* The engine's own tolerance for a contact of this duration: fixed-step engines take so many steps per contact, the others
- * follow their accuracy. */
+/* The engine's own tolerance for a contact of this duration: fixed-step engines take so many steps per contact, the
+ * others follow their accuracy. */
 double trial_tolerance(const Trial *t, double contact_duration, double steps);
 
 /* Fine: what closed forms are compared at; standard: what a user gets. The engines that are there to be compared with

@@ -1,5 +1,5 @@
-/* AFAD (Turkey), the text files of the National Strong-Motion Network: line 1 "STRONG GROUND MOTION RECORDS OF TURKIYE",
- * lines "key : value", of which
+/* AFAD (Turkey), the text files of the National Strong-Motion Network: line 1 "STRONG GROUND MOTION RECORDS OF
+ * TURKIYE", lines "key : value", of which
  *
  *   NUMBER OF DATA          : 28683
  *   SAMPLING INTERVAL (sec) : 0.01

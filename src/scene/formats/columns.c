@@ -4,8 +4,8 @@
  *             ("dt = 0.01", "sampling rate: 100") and the number of samples ("npts = 4000")
  *   names     lines of words above the numbers; the last of them names the columns, a unit there wins
  *   npts dt   two numbers alone in the first row, where the first is the number of samples or rows that follow
- *   times     the first column, unless there is only one, or the names or the numbers say that it is none; then the step
- *             must be known
+ *   times     the first column, unless there is only one, or the names or the numbers say that it is none; then the
+ *             step must be known
  *   rows      numbers without names are read row by row as one long column where their number is the one that is stated
  *   1,5;2,5   with semicolons and no points the comma is a decimal one */
 #include "scene/formats/columns.h"

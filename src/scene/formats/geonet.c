@@ -1,7 +1,7 @@
-/* GeoNet (GNS Science, earlier the Institute of Geological & Nuclear Sciences) V1A and V2A, as a rule three components one
- * after the other. Each has 16 lines of text, of which line 13 is "Component N28W" (blank in older files) and line 14
- * "Acceleration:  Peak  -2080.5 mm/s/s ...", then 10 lines of 10 numbers, then samples 10F8.1 in mm/s2. Numbers of that header, line
- * and place counted from 0:
+/* GeoNet (GNS Science, earlier the Institute of Geological & Nuclear Sciences) V1A and V2A, as a rule three components
+ * one after the other. Each has 16 lines of text, of which line 13 is "Component N28W" (blank in older files) and line
+ * 14 "Acceleration:  Peak  -2080.5 mm/s/s ...", then 10 lines of 10 numbers, then samples 10F8.1 in mm/s2. Numbers of
+ * that header, line and place counted from 0:
  *
  *   [3][0] samples of V1      [3][3] [3][4] [3][5] accelerations, velocities, displacements of V2      [6][5] step [s]
  */

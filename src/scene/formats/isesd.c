@@ -1,5 +1,5 @@
-/* Internet Site for European Strong-Motion Data and its CD-ROM (N. Ambraseys, P. Smit et al., 2000; "Datafile Format" at
- * http://isesd.hi.is): lines "key: value", of which the first is "file:",
+/* Internet Site for European Strong-Motion Data and its CD-ROM (N. Ambraseys, P. Smit et al., 2000; "Datafile Format"
+ * at http://isesd.hi.is): lines "key: value", of which the first is "file:",
  *
  *   orientation of transducer: NS     sampling period: 0.010000s     number of samples: 3043     units: m/s*s, m/s & s
  *

@@ -1,5 +1,5 @@
-/* miniSEED 2 by libmseed (FDSN, SEED Reference Manual 2.4): every continuous trace is a channel NET.STA.LOC.CHA; a gap makes
- * two. Samples are counts, or numbers whose unit the file does not say. */
+/* miniSEED 2 by libmseed (FDSN, SEED Reference Manual 2.4): every continuous trace is a channel NET.STA.LOC.CHA; a
+ * gap makes two. Samples are counts, or numbers whose unit the file does not say. */
 #include <libmseed.h>
 #include <stdio.h>
 #include <string.h>

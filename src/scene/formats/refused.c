@@ -37,7 +37,7 @@ static Status read(Record *r, Lines *l, const ReadHints *hints, Err *err)
 
 const MotionFormat FORMAT_REFUSED = {"refused", recognise, read};
 
-/* ---- no texts ------------------------------------------------------------------------------------------------------ */
+/* ---- no texts ---------------------------------------------------------------------------------------------------- */
 
 /* Kinemetrics K2 and its kin: tags "K", byte order, version, instrument. */
 static int recognise_evt(const unsigned char bytes[], size_t n)

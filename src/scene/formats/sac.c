@@ -1,8 +1,8 @@
-/* SAC, binary of both byte orders and alphanumeric (SAC User's Manual, "SAC Data File Format"): 70 reals, 40 integers, 24
- * words of 8 characters (the second and third are one), then NPTS samples. Places from 0:
+/* SAC, binary of both byte orders and alphanumeric (SAC User's Manual, "SAC Data File Format"): 70 reals, 40 integers,
+ * 24 words of 8 characters (the second and third are one), then NPTS samples. Places from 0:
  *
- *   real 0 DELTA [s]   real 1, 2 DEPMIN, DEPMAX   integer 6 NVHDR (6 or 7)   integer 9 NPTS   integer 15 IFTYPE (1: time
- *   series)   integer 35 LEVEN (1: equal steps)   word 20 KCMPNM   word 21 KNETWK
+ *   real 0 DELTA [s]       real 1, 2 DEPMIN, DEPMAX                 integer 6 NVHDR (6 or 7)   integer 9 NPTS
+ *   integer 15 IFTYPE (1: time series)   integer 35 LEVEN (1: equal steps)   word 20 KCMPNM   word 21 KNETWK
  *
  * IDEP (integer 16) should say nm/s2, and hardly any file keeps to it: the unit is asked for. */
 #include <math.h>
@@ -110,7 +110,7 @@ static Status read_binary(Record *r, const char *path, const char *bytes, size_t
     return STATUS_OK;
 }
 
-/* ---- alphanumeric: 14 lines 5G15.7, 8 lines 5I10, 8 lines of words, 5G15.7 ----------------------------------------- */
+/* ---- alphanumeric: 14 lines 5G15.7, 8 lines 5I10, 8 lines of words, 5G15.7 --------------------------------------- */
 
 enum { REAL_LINES = N_REALS / 5, WORD_LINES = 8 };
 

@@ -1,6 +1,6 @@
-/* SimCenter events and ground-motion records (NHERI, EE-UQ, s3hark), JSON: wherever an object has a step "dT" and samples
- * "data", or "data_x", "data_y", "data_z", each list is a channel, named by "name". The unit is that of "unit" or "units"
- * beside them or above, else it is asked for. */
+/* SimCenter events and ground-motion records (NHERI, EE-UQ, s3hark), JSON: wherever an object has a step "dT" and
+ * samples "data", or "data_x", "data_y", "data_z", each list is a channel, named by "name". The unit is that of
+ * "unit" or "units" beside them or above, else it is asked for. */
 #include <jansson.h>
 #include <math.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 /* USGS SMC format (Open-File Report 2005-1438, appendix): 11 lines of text, of which the first says what is held and
- * the sixth names the component; 6 lines 8I10, 10 lines 5E15.7; comments that begin with '|'; numbers in cm/s2, which run
- * together where they are negative, 8E10.4 or wider columns (5E14.7).
+ * the sixth names the component; 6 lines 8I10, 10 lines 5E15.7; comments that begin with '|'; numbers in cm/s2, which
+ * run together where they are negative, 8E10.4 or wider columns (5E14.7).
  *
  *   integer 16   comment lines                 real 1         stands for "undefined" (1.7E38)
  *   integer 17   numbers that follow           real 2         samples per second; undefined: pairs of time and

@@ -2,9 +2,8 @@
  *
  *   TIMESERIES NET_STA_LOC_CHA_Q, 6001 samples, 200 sps, 2009-08-24T00:20:03.000000, SLIST, INTEGER, Counts
  *
- * then samples row by row (SLIST), or "time  sample" (TSPAIR). Counts are no acceleration: they need a gain, asked for by
- * motion.unit once the file was converted. A segment is a channel; a gap makes two. */
-#include <ctype.h>
+ * then samples row by row (SLIST), or "time  sample" (TSPAIR). Counts are refused: the header line must name the unit of
+ * an acceleration, or none, and then it is asked for. A segment is a channel; a gap makes two. */
 #include <math.h>
 #include <string.h>
 

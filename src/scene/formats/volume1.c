@@ -3,9 +3,9 @@
  *
  *   bhrc   BHRC (Iran): line 1 "* VOL1DS FILE: ...", line 5 L, T or V, equal steps, 10E13.6, "/&" behind each component
  *          NO. OF POINTS =  15616      DURATION =  78.080           UNITS ARE SECONDS AND G/10
- *   usc    USC (Los Angeles): line 1 "FILE 0 OF UNCORRECTED ACCELEROGRAM DATA OF VOLUME I", line 6 "COMP N08W", pairs of
- *          time and acceleration F8.3, 9F7.3, digitized from film
- *          NO. OF POINTS =   8820      DURATION =  37.714 SEC       UNITS ARE SEC AND G/10 */
+ *   usc    USC (Los Angeles): line 1 "FILE 0 OF UNCORRECTED ACCELEROGRAM DATA OF VOLUME I", line 6 "COMP N08W",
+ *          pairs of time and acceleration F8.3, 9F7.3, digitized from film NO. OF POINTS =   8820      DURATION =
+ *          37.714 SEC       UNITS ARE SEC AND G/10 */
 #include <math.h>
 #include <string.h>
 

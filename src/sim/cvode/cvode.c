@@ -1,5 +1,5 @@
-/* The engine `cvode`: Adams, fixed-point iteration, contacts located by roots, a stop at every sample of the motion. It is
- * trusted because it shares no method with the engine `fast`. */
+/* The engine `cvode`: Adams, fixed-point iteration, contacts located by roots, a stop at every sample of the motion.
+ * It is trusted because it shares no method with the engine `fast`. */
 #include "sim/cvode/cvode.h"
 
 #include <cvode/cvode.h>
