@@ -319,7 +319,7 @@ static SearchConfig config(uint32_t seed, double repeats, size_t replicates_min)
     c.generations = 1000;
     c.max_evals = 200;
     c.surrogate = SURROGATE_OFF;
-    c.repeats = repeats;
+    c.replicate_share = repeats;
     c.replicates_min = replicates_min;
     c.replicates_max = 4;
     return c;

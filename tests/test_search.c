@@ -10,7 +10,8 @@
 #include "searches.h"
 #include "moga/dominance.h"
 #include "moga/hypervolume.h"
-#include "moga/searching.h"
+#include "moga/control.h"
+#include "moga/search.h"
 #include "moga/variation.h"
 
 enum { VAR_MAX = 22, OBJ_MAX = 7, ROWS_MAX = 600 };
@@ -201,56 +202,54 @@ static void test_seven_objectives_beat_a_latin_hypercube_of_the_same_size(void *
     assert_true(seen.error > 0.0 && seen.error < 0.05);
 }
 
-static size_t plain_children_where(double plain_gain, double surface_gain, size_t n_simulated)
+enum { BATCH = 32, CONTROL_VAR = 10 };
+
+static size_t variation_where(double variation_gain, double infill_gain, size_t n)
 {
-    const Problem problem = {.n_var = 10};
-    const SearchConfig c = {.population = 248}; /* batches of 32 */
-    Search s = {.problem = &problem, .config = &c, .archive = {.n = n_simulated}, .sources.chance = {0.5, 0.5}};
-    s.sources.credit[SOURCE_PLAIN] = plain_gain / (plain_gain + surface_gain);
-    s.sources.credit[SOURCE_SURFACE] = surface_gain / (plain_gain + surface_gain);
-    return guide_plain(&s);
+    const double all = variation_gain + infill_gain;
+    SurrogateControl c = {.generators.designs = {0.5, 0.5}, .criteria = {{0.5, 0.5}, {0.5, 0.5}}};
+    c.generators.gain[GENERATOR_VARIATION] = variation_gain / all;
+    c.generators.gain[GENERATOR_INFILL] = infill_gain / all;
+    return control_batch_shares(&c, BATCH, n, CONTROL_VAR).n_variation;
 }
 
-static void test_plain_children_replace_what_the_surface_loses_to_failures(void **state)
+static void test_variation_gets_the_share_of_a_batch_that_infill_loses_to_failures(void **state)
 {
     (void)state;
-    const Problem problem = {.n_var = 10};
-    const SearchConfig c = {.population = 248}; /* batches of 32 */
-    Search s = {.problem = &problem, .config = &c, .archive = {.n = 100}, .sources.chance = {0.5, 0.5}, .lost = 0.25};
-    assert_int_equal(guide_plain(&s), 8);
-    s.archive.n = 500;
-    s.sources.credit[SOURCE_SURFACE] = 1.0;
-    assert_int_equal(guide_plain(&s), 8);
+    SurrogateControl c = {
+        .generators = {{1.0, 0.0}, {0.5, 0.5}}, .criteria = {{0.5, 0.5}, {0.5, 0.5}}, .failure_rate = 0.25};
+    assert_int_equal(control_batch_shares(&c, BATCH, 100, CONTROL_VAR).n_variation, 8);
+    assert_int_equal(control_batch_shares(&c, BATCH, 500, CONTROL_VAR).n_variation, 8);
 }
 
-static double rays_where(double ray_gain, double pbi_gain)
+static double hypervolume_share_where(double hypervolume_gain, double pbi_gain)
 {
-    const SearchConfig c = {.population = 248}; /* batches of 32 */
-    Search s = {.config = &c, .ways.chance = {0.5, 0.5}};
-    s.ways.credit[INFILL_HYPERVOLUME] = ray_gain / (ray_gain + pbi_gain);
-    s.ways.credit[INFILL_PBI] = pbi_gain / (ray_gain + pbi_gain);
-    return guide_rays(&s);
+    const double all = hypervolume_gain + pbi_gain;
+    SurrogateControl c = {.generators = {{0.5, 0.5}, {0.5, 0.5}}, .criteria.designs = {0.5, 0.5}};
+    c.criteria.gain[INFILL_HYPERVOLUME] = hypervolume_gain / all;
+    c.criteria.gain[INFILL_PBI] = pbi_gain / all;
+    return control_batch_shares(&c, BATCH, 100, CONTROL_VAR).hypervolume;
 }
 
-static void test_the_way_of_choosing_that_gains_more_has_the_greater_share(void **state)
+static void test_the_criterion_that_gains_more_has_the_greater_share(void **state)
 {
     (void)state;
-    assert_close(rays_where(1, 1), 0.5, 1e-12);
-    assert_close(rays_where(1.1, 1), 4.5949729863572 / 5.5949729863572, 1e-9); /* 1.1^16 to 1 */
-    assert_close(rays_where(0, 1), 1.0 / 32.0, 1e-12);
-    assert_close(rays_where(1, 0), 31.0 / 32.0, 1e-12);
+    assert_close(hypervolume_share_where(1, 1), 0.5, 1e-12);
+    assert_close(hypervolume_share_where(1.1, 1), 4.5949729863572 / 5.5949729863572, 1e-9); /* 1.1^16 to 1 */
+    assert_close(hypervolume_share_where(0, 1), 1.0 / 32.0, 1e-12);
+    assert_close(hypervolume_share_where(1, 0), 31.0 / 32.0, 1e-12);
 }
 
 static void test_whoever_gains_more_has_the_greater_share_of_a_batch(void **state)
 {
     (void)state;
-    assert_int_equal(plain_children_where(1.3, 1, 500), 16); /* doubt: as good as equal */
-    assert_int_equal(plain_children_where(0, 1, 500), 3);
-    assert_int_equal(plain_children_where(1, 1, 500), 3);
-    assert_int_equal(plain_children_where(2, 1, 500), 29);
-    assert_int_equal(plain_children_where(1, 0, 500), 29);
-    assert_true(plain_children_where(1.43, 1, 500) > 20 && plain_children_where(1.43, 1, 500) < 24); /* 1.1^8 to 1 */
-    assert_int_equal(plain_children_where(2, 1, 100), 0); /* the surface has the first simulations alone */
+    assert_int_equal(variation_where(1.3, 1, 500), 16); /* doubt: as good as equal */
+    assert_int_equal(variation_where(0, 1, 500), 3);
+    assert_int_equal(variation_where(1, 1, 500), 3);
+    assert_int_equal(variation_where(2, 1, 500), 29);
+    assert_int_equal(variation_where(1, 0, 500), 29);
+    assert_true(variation_where(1.43, 1, 500) > 20 && variation_where(1.43, 1, 500) < 24); /* 1.1^8 to 1 */
+    assert_int_equal(variation_where(2, 1, 100), 0); /* the surface has the first simulations alone */
 }
 
 static void test_the_same_seed_gives_the_same_bytes_at_any_thread_count(void **state)
@@ -530,8 +529,8 @@ int main(void)
         cmocka_unit_test_setup(test_three_objectives_beat_a_latin_hypercube_of_the_same_size, fresh),
         cmocka_unit_test_setup(test_seven_objectives_beat_a_latin_hypercube_of_the_same_size, fresh),
         cmocka_unit_test(test_whoever_gains_more_has_the_greater_share_of_a_batch),
-        cmocka_unit_test(test_plain_children_replace_what_the_surface_loses_to_failures),
-        cmocka_unit_test(test_the_way_of_choosing_that_gains_more_has_the_greater_share),
+        cmocka_unit_test(test_variation_gets_the_share_of_a_batch_that_infill_loses_to_failures),
+        cmocka_unit_test(test_the_criterion_that_gains_more_has_the_greater_share),
         cmocka_unit_test_setup(test_the_same_seed_gives_the_same_bytes_at_any_thread_count, fresh),
         cmocka_unit_test_setup(test_front_flags_equal_a_brute_force_filter, fresh),
         cmocka_unit_test_setup(test_failed_simulations_never_reach_the_front, fresh),

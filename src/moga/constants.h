@@ -17,7 +17,7 @@ enum { BATCH_POPULATION_SHARE = 8 }; /* population / this + 1 at least */
 enum { BATCH_ARCHIVE_SHARE = 40 };   /* evaluations / this, where that is more */
 enum { LOOK_AHEAD_SHARE = 4 };       /* asynchronous: batch / this designs wait while the next batch is selected */
 
-/* -- search.c: reference vectors of infill ------------------------------------------------------------------------- */
+/* -- state.c: reference vectors of infill -------------------------------------------------------------------------- */
 
 enum { VECTOR_EVALS = 5 };  /* evaluations of the budget for each vector */
 enum { VECTORS_FEW = 200 }; /* small budgets: twice as many vectors, up to this number */
@@ -28,7 +28,7 @@ enum { VECTORS_MAX = 400 }; /* most vectors */
 enum { INNER_GENERATIONS = 10 };  /* of variation and selection on the surrogate between two batches */
 enum { DESCENTS_PER_DESIGN = 2 }; /* descents on the surrogate for each design of a batch */
 
-/* -- surface.c: descents, Rprop in the unit cube ------------------------------------------------------------------- */
+/* -- surrogate.c: descents, Rprop in the unit cube ----------------------------------------------------------------- */
 
 enum { DESCENT_STEPS = 30 };                   /* steps of a descent */
 static const double DESCENT_STEP_FIRST = 0.05; /* first step in each variable */
@@ -36,7 +36,7 @@ static const double DESCENT_STEP_MAX = 0.2;    /* longest step */
 static const double DESCENT_GROW = 1.2;        /* factor of the step where the derivative keeps its sign */
 static const double DESCENT_SHRINK = 0.5;      /* ... where it changes */
 
-/* -- surface.c: fit ------------------------------------------------------------------------------------------------ */
+/* -- surrogate.c: fit ---------------------------------------------------------------------------------------------- */
 
 static const double R2_MIN = 0.2;    /* mean leave-one-out R2 of the objectives below which no surrogate is used */
 static const double R2_CHANCE = 2.0; /* this / root(n) more: what tuning explains in n values without any pattern */
@@ -50,12 +50,12 @@ static const double RAY_START = 1.1;     /* reference point of the hypervolume s
 static const double WEIGHT_MIN = 1e-3;   /* smallest component of a ray's direction */
 static const double RAY_SOFTNESS = 0.05; /* of the soft maximum in a ray's derivative, in widths of the front */
 
-/* -- choice.c: infill selection ------------------------------------------------------------------------------------ */
+/* -- infill_select.c: infill selection ----------------------------------------------------------------------------- */
 
 enum { VALIDATION_SHARE = 4 };   /* batch / this + 1 designs of a batch validate trusted predictions */
 enum { PREDICTION_AGE_MAX = 3 }; /* generations for which a prediction is trusted before it is validated first */
 
-/* -- guide.c: control of the surrogate ----------------------------------------------------------------------------- */
+/* -- control.c, surrogate_use.c ------------------------------------------------------------------------------------ */
 
 static const double AGREEMENT_MIN = 0.15;          /* running mean of Kendall's tau below which no infill is selected */
 static const double AGREEMENT_WEIGHT = 0.25;       /* of one batch in that mean */
@@ -71,7 +71,7 @@ enum { FAILURE_NEIGHBOURS = 3 };                   /* one of so many nearest des
 static const double COST_MAX = 4.0; /* surrogate = auto: largest cost of a surrogate per design, in simulations */
 enum { COST_SAMPLE = 60 };          /* surrogate = auto: infill designs before costs are compared */
 
-/* -- repeat.c: replication of noisy designs ------------------------------------------------------------------------ */
+/* -- replication.c: replication of noisy designs ------------------------------------------------------------------- */
 
 enum { REPLICATE_AFTER = 18 };               /* evaluations per variable before the first replicate */
 static const double REPLICATE_EARLY = 0.25;  /* share of the replicates drawn before the end of the search */

@@ -6,9 +6,9 @@
  *                                 -w: the lengths of many rays add up to the hypervolume, whatever the front's shape
  *   best_w    smallest value of the front
  *
- * Designs are picked one after the other, the greatest gain first; what is picked lowers best_w, so that a batch spreads
- * over the vectors. Where no candidate has a gain the least certain one is picked, where none is feasible the least
- * violating.
+ * Designs are picked one after the other, the greatest gain first; what is picked lowers best_w, so that a batch
+ * spreads over the vectors. Where no candidate has a gain the least certain one is picked, where none is feasible the
+ * least violating.
  *
  * Life cycle  infill_create -> (infill_measure -> infill_offer -> infill_pick ...) ... -> infill_free
  * Memory      all of it in infill_create

@@ -10,9 +10,9 @@
  * Without replicates, or where all agree, every standard deviation is 0.
  *
  *   estimate  f - t,  t = e error^2 / (error^2 + tau^2),  |t| <= error
- *             e: leave-one-out error of the surrogate at the design; tau^2: mean over the designs of e^2 - error^2, 0 at
- *             least, the surrogate's own error. Moves a mean towards what its neighbours make likely, by one standard
- *             error at most, so that a wrong surrogate does little harm
+ *             e: leave-one-out error of the surrogate at the design; tau^2: mean over the designs of e^2 - error^2, 0
+ *             at least, the surrogate's own error. Moves a mean towards what its neighbours make likely, by one
+ *             standard error at most, so that a wrong surrogate does little harm
  *
  * Threads  pure functions on the caller's memory
  * Sources  Smyth, Stat. Appl. Genet. Mol. Biol. 3 (2004) 3 (variances moderated by a common one)

@@ -1,8 +1,8 @@
 /* moga/normalisation.h -- objectives of any unit brought to one scale: z = (f - ideal) / width.
  *
  *   ideal  minimum of each objective
- *   width  intercepts of the plane through the extreme points, each the best along one axis; maximum minus minimum where
- *          that plane does not exist or cuts an axis behind the maximum; never 0
+ *   width  intercepts of the plane through the extreme points, each the best along one axis; maximum minus minimum
+ *          where that plane does not exist or cuts an axis behind the maximum; never 0
  *
  * Threads  pure functions on the caller's memory
  * Source   Deb and Jain (see moga/search.h), section IV.C. */

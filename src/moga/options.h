@@ -4,9 +4,9 @@
 
 #include "base/option.h"
 
-/* On; plain children only; or on until its wall time per simulation proves greater than that of four simulations. Auto
- * is decided once, by the clock, and the decision is kept in the state: a search that goes on repeats it, another one
- * from the beginning may decide otherwise where the costs are near the limit. */
+/* On; off: variation alone; auto: on until its wall time per design exceeds that of COST_MAX simulations. Auto is
+ * decided once, by the clock, and is part of the state: a resumed search keeps it, another one from the beginning may
+ * decide otherwise where the costs are near the limit. */
 #define SURROGATE_USE_LIST(X) X(SURROGATE_ON, "on") X(SURROGATE_OFF, "off") X(SURROGATE_AUTO, "auto")
 typedef enum { SURROGATE_USE_LIST(CHOICE_NAME) } SurrogateUse;
 

@@ -1,9 +1,6 @@
-#include "moga/searching.h"
+#include "moga/state.h"
 
 #include <math.h>
-#include <stdlib.h>
-
-#include "base/carve.h"
 
 const char *stop_reason_words(StopReason reason)
 {
@@ -16,22 +13,6 @@ const char *stop_reason_words(StopReason reason)
         [STOP_ASKED] = "stopped on request",
     };
     return words[reason];
-}
-
-/* Room for the archive's rows, after every generation. */
-static Status widen(Search *s, Err *err)
-{
-    if (s->archive.n <= s->n_rows)
-        return STATUS_OK;
-    free(s->wins);
-    free(s->reported);
-    s->n_rows = 2 * s->archive.n;
-    s->wins = calloc(s->n_rows, sizeof *s->wins);
-    s->reported = calloc(s->n_rows, 1);
-    if (s->wins && s->reported)
-        return STATUS_OK;
-    s->n_rows = 0;
-    return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", s->archive.n);
 }
 
 static StopReason reason_to_stop(const Search *s)
@@ -47,26 +28,30 @@ static StopReason reason_to_stop(const Search *s)
     return c->max_seconds > 0.0 && search_seconds(s) >= c->max_seconds ? STOP_TIME : STOP_NONE;
 }
 
-/* Answers that a design on the front wants: at the end no more than one of them has. */
-static size_t answers_wanted(const Search *s, int is_last)
+/* -- the view of the observer -------------------------------------------------------------------------------------- */
+
+/* Replicates of a design that is reported to be on the front; at the end no more than one of them has. */
+static size_t replicates_wanted(const Search *s, int is_last)
 {
     const Archive *a = &s->archive;
-    size_t most = 0;
+    size_t max = 0;
+    if (!s->problem->is_noisy)
+        return 0;
     for (size_t i = 0; i < a->n_front; i++)
-        most = a->replicates[a->front[i]] > most ? a->replicates[a->front[i]] : most;
-    return is_last && most < s->config->replicates_min ? most : s->config->replicates_min;
+        max = a->replicates[a->front[i]] > max ? a->replicates[a->front[i]] : max;
+    return is_last && max < s->config->replicates_min ? max : s->config->replicates_min;
 }
 
-/* The front with answers enough; where answers are not noisy one is enough. */
-static size_t count_reported(Search *s, int is_last)
+static size_t mark_reported(Search *s, int is_last)
 {
     const Archive *a = &s->archive;
-    const size_t wanted = s->problem->is_noisy ? answers_wanted(s, is_last) : 0;
+    const size_t wanted = replicates_wanted(s, is_last);
+    unsigned char *reported = s->rows.reported;
     size_t n = 0;
-    memcpy(s->reported, a->on_front, a->n);
+    memcpy(reported, a->on_front, a->n);
     for (size_t i = 0; i < a->n_front; i++) {
-        s->reported[a->front[i]] = a->replicates[a->front[i]] >= wanted;
-        n += s->reported[a->front[i]];
+        reported[a->front[i]] = a->replicates[a->front[i]] >= wanted;
+        n += reported[a->front[i]];
     }
     return n;
 }
@@ -74,7 +59,8 @@ static size_t count_reported(Search *s, int is_last)
 static int report(Search *s, int is_last, ObserveFn observe, void *user)
 {
     const Archive *a = &s->archive;
-    const size_t n_reported = count_reported(s, is_last);
+    const SearchTimes *t = &s->control.times;
+    const size_t n_reported = mark_reported(s, is_last);
     state_save(s);
     const SearchView view = {
         .n = a->n,
@@ -90,7 +76,7 @@ static int report(Search *s, int is_last, ObserveFn observe, void *user)
         .ok = a->ok,
         .kind = a->kind,
         .generation = a->generation,
-        .on_front = s->reported,
+        .on_front = s->rows.reported,
         .n_front = n_reported,
         .n_failed = a->n_failed,
         .n_replicates = a->n_replicates,
@@ -98,11 +84,11 @@ static int report(Search *s, int is_last, ObserveFn observe, void *user)
         .n_predicted = s->n_predicted,
         .surrogate_error = surrogate_error(s->surrogate),
         .seconds = search_seconds(s),
-        .simulation_s = s->n_timed > 0 ? s->simulating_s / (double)s->n_timed : NAN,
-        .own_s = s->n_guided > 0 ? s->guided_s / (double)s->n_guided : NAN,
-        .is_aside = s->aside == ASIDE_YES,
-        .waited_s = s->waited_s,
-        .surrogate_s = s->surrogate_s,
+        .simulation_s = t->n_simulated > 0 ? t->simulating / (double)t->n_simulated : NAN,
+        .own_s = t->n_assisted > 0 ? t->assisted / (double)t->n_assisted : NAN,
+        .is_disabled = s->control.cost == COST_TOO_HIGH,
+        .waited_s = t->waiting,
+        .surrogate_s = t->surrogate,
         .is_asynchronous = s->config->asynchronous != 0,
         .state = pack_finished(&s->state) ? s->state.bytes : NULL,
         .n_state = s->state.n,
@@ -110,18 +96,26 @@ static int report(Search *s, int is_last, ObserveFn observe, void *user)
     return observe && observe(&view, user) ? 1 : 0;
 }
 
-static Status run_loop(Search *s, const SearchStart *start, ObserveFn observe, void *user, StopReason *reason, Err *err)
+/* -- the loop over generations ------------------------------------------------------------------------------------- */
+
+static Status begin(Search *s, const SearchStart *start, StopReason *reason, Err *err)
 {
     *reason = STOP_NONE;
-    if (start) {
-        TRY(state_restore(s, start, err));
-        TRY(widen(s, err));
-        *reason = start->state ? reason_to_stop(s) : STOP_NONE;
-        s->generation += start->state != NULL;
-    }
+    if (!start)
+        return STATUS_OK;
+    TRY(state_restore(s, start, err));
+    TRY(state_grow_rows(s, err));
+    *reason = start->state ? reason_to_stop(s) : STOP_NONE;
+    s->generation += start->state != NULL;
+    return STATUS_OK;
+}
+
+static Status run_loop(Search *s, const SearchStart *start, ObserveFn observe, void *user, StopReason *reason, Err *err)
+{
+    TRY(begin(s, start, reason, err));
     for (; *reason == STOP_NONE; s->generation += *reason == STOP_NONE) {
         TRY(s->generation == 0 ? generation_first(s, err) : generation_next(s, err));
-        TRY(widen(s, err));
+        TRY(state_grow_rows(s, err));
         *reason = reason_to_stop(s);
         if (report(s, *reason != STOP_NONE, observe, user) && *reason == STOP_NONE)
             *reason = STOP_ASKED;
@@ -130,7 +124,7 @@ static Status run_loop(Search *s, const SearchStart *start, ObserveFn observe, v
         return STATUS_OK;
     s->generation++;
     TRY(generation_last(s, err));
-    TRY(widen(s, err));
+    TRY(state_grow_rows(s, err));
     report(s, 1, observe, user);
     return STATUS_OK;
 }
@@ -151,94 +145,12 @@ static Status check(const Problem *p, const SearchConfig *c, Err *err)
     return STATUS_OK;
 }
 
-static void layout(Search *s, size_t n_pool, Carve *c)
-{
-    const Problem *p = s->problem;
-    s->chosen = carve(c, n_pool, sizeof(size_t));
-    s->followed = carve(c, s->wishes.n, sizeof(size_t));
-    s->descended = carve(c, n_pool * p->n_var, sizeof(double));
-    s->foreseen = carve(c, s->came_max * p->n_obj, sizeof(double));
-    s->child = carve(c, 2 * p->n_var, sizeof(double));
-    s->note = carve(c, NOTE_FORESEEN + p->n_obj + p->n_con, sizeof(double));
-    s->X = carve(c, s->came_max * p->n_var, sizeof(double));
-    s->F = carve(c, s->came_max * p->n_obj, sizeof(double));
-    s->ok = carve(c, s->came_max, 1);
-    s->kind = carve(c, s->came_max, 1);
-    s->way = carve(c, s->came_max + 1, 1);
-    s->foretold = carve(c, s->came_max, 1);
-    s->draws = carve(c, s->came_max, sizeof(size_t));
-    s->allowed = carve(c, n_pool, 1);
-    s->picked = carve(c, n_pool, 1);
-}
-
-/* Directions of the choice of simulations: one for five simulations of the budget; of small budgets one for two and a
- * half, up to VECTORS_FEW. */
-static size_t wishes_for(size_t n_obj, const SearchConfig *c)
-{
-    const size_t fifth = search_planned(c) / VECTOR_EVALS, twice = 2 * fifth < VECTORS_FEW ? 2 * fifth : VECTORS_FEW;
-    const size_t served = fifth > twice ? fifth : twice, least = n_obj > c->population ? n_obj : c->population;
-    return n_obj < 2 ? 1 : served < least ? least : served < VECTORS_MAX ? served : VECTORS_MAX;
-}
-
-static Status create(Search *s, Err *err)
-{
-    const Problem *p = s->problem;
-    const size_t population = s->config->population, initial = s->config->n_given + generation_samples(s);
-    const size_t lead = batch_lead_max(s->config, p->n_workers);
-    const size_t n_pool = (initial > 5 * population ? initial : 5 * population) + 2 * lead;
-    const size_t most = s->config->max_evals > 4 ? s->config->max_evals : 4; /* centres there can ever be */
-    const size_t centres = s->config->surrogate_max < most ? s->config->surrogate_max : most;
-    size_t outer, inner;
-    s->batch_max = initial > population ? initial : population;
-    s->came_max = s->batch_max + lead;
-    directions_choose(p->n_obj, population, &outer, &inner);
-    TRY(directions_create(&s->directions, p->n_obj, outer, inner, err));
-    TRY(directions_spread(&s->wishes, p->n_obj, wishes_for(p->n_obj, s->config), err));
-    TRY(archive_init(&s->archive, 2 * initial, p->n_var, p->n_obj, p->n_con, err));
-    TRY(selection_create(&s->selection, s->config->selection, n_pool, &s->directions, err));
-    for (int kind = 0; kind < INFILL_KINDS; kind++)
-        TRY(infill_create(&s->infill[kind], (InfillKind)kind, n_pool, &s->wishes, err));
-    for (int kind = 0; kind < INFILL_KINDS; kind++)
-        TRY(infill_create(&s->gained[kind], (InfillKind)kind, 1, &s->wishes, err));
-    TRY(surrogate_create(&s->surrogate, p, centres, n_pool, err));
-    TRY(population_create(&s->population, 2 * population + lead, p->n_var, p->n_obj, err));
-    TRY(population_create(&s->offspring, n_pool, p->n_var, p->n_obj, err));
-    TRY(population_create(&s->pool, n_pool, p->n_var, p->n_obj, err));
-    Carve c = {0};
-    layout(s, n_pool, &c);
-    s->store = carve_store(&c);
-    if (!s->store)
-        return fail(err, STATUS_NO_MEMORY, "no memory for a search with population %zu", population);
-    layout(s, n_pool, &(Carve){.base = s->store});
-    return STATUS_OK;
-}
-
-static void release(Search *s)
-{
-    directions_free(&s->directions);
-    directions_free(&s->wishes);
-    archive_free(&s->archive);
-    selection_free(s->selection);
-    for (int kind = 0; kind < INFILL_KINDS; kind++)
-        infill_free(s->infill[kind]);
-    for (int kind = 0; kind < INFILL_KINDS; kind++)
-        infill_free(s->gained[kind]);
-    surrogate_free(s->surrogate);
-    population_free(&s->population);
-    population_free(&s->offspring);
-    population_free(&s->pool);
-    free(s->state.bytes);
-    free(s->wins);
-    free(s->reported);
-    free(s->store);
-}
-
 static Status open_queue(Search *s, const SearchStart *start, Err *err)
 {
     const int asynchronous = s->config->asynchronous;
     const size_t n_before = start ? start->n + (asynchronous ? start->n_later : 0) : 0;
     TRY(queue_open(&s->queue, s->problem, asynchronous ? QUEUE_AS_ARRIVED : QUEUE_AS_ASKED,
-                   NOTE_FORESEEN + s->problem->n_obj, (long)n_before, err));
+                   NOTE_PREDICTED + s->problem->n_obj, (long)n_before, err));
     if (start)
         queue_know(s->queue, start->n_later, start->row + start->n);
     return STATUS_OK;
@@ -253,16 +165,15 @@ Status search_run(const Problem *problem, const SearchConfig *config, ObserveFn 
 Status search_resume(const Problem *problem, const SearchConfig *config, const SearchStart *start, ObserveFn observe,
                      void *user, StopReason *reason, Err *err)
 {
-    Search s = {.problem = problem, .config = config};
+    Search s = {.problem = problem, .config = config, .start = clock_seconds()};
     TRY(check(problem, config, err));
-    guide_begin(&s);
-    s.start = clock_seconds();
-    Status status = create(&s, err);
+    control_begin(&s.control);
+    Status status = state_create(&s, err);
     if (status == STATUS_OK)
         status = open_queue(&s, start, err);
     if (status == STATUS_OK)
         status = run_loop(&s, start, observe, user, reason, err);
     queue_close(s.queue);
-    release(&s);
+    state_free(&s);
     return status;
 }

@@ -1,35 +1,166 @@
-#include "moga/searching.h"
+#include "moga/state.h"
+
+#include <stdlib.h>
+
+#include "base/carve.h"
+
+/* -- memory -------------------------------------------------------------------------------------------------------- */
+
+/* Reference vectors of infill: one for VECTOR_EVALS evaluations of the budget; of small budgets twice as many, up to
+ * VECTORS_FEW. */
+static size_t n_vectors(size_t n_obj, const SearchConfig *c)
+{
+    const size_t one_each = search_planned(c) / VECTOR_EVALS,
+                 few = 2 * one_each < VECTORS_FEW ? 2 * one_each : VECTORS_FEW,
+                 wanted = one_each > few ? one_each : few, min = n_obj > c->population ? n_obj : c->population;
+    if (n_obj < 2)
+        return 1;
+    return wanted < min ? min : wanted < VECTORS_MAX ? wanted : VECTORS_MAX;
+}
+
+static void layout(Search *s, size_t n_pool, Carve *c)
+{
+    const size_t n_var = s->problem->n_var, n_obj = s->problem->n_obj;
+    Batch *b = &s->batch;
+    Scratch *w = &s->scratch;
+    b->X = carve(c, b->n_max * n_var, sizeof(double));
+    b->F = carve(c, b->n_max * n_obj, sizeof(double));
+    b->predicted = carve(c, b->n_max * n_obj, sizeof(double));
+    b->ok = carve(c, b->n_max, 1);
+    b->kind = carve(c, b->n_max, 1);
+    b->criterion = carve(c, b->n_max + 1, 1);
+    b->was_predicted = carve(c, b->n_max, 1);
+    b->repeat = carve(c, b->n_max, sizeof(size_t));
+    s->offspring.allowed = carve(c, n_pool, 1);
+    s->offspring.excluded = carve(c, n_pool, 1);
+    w->survivors = carve(c, n_pool, sizeof(size_t));
+    w->members = carve(c, n_pool, sizeof(size_t));
+    w->slices = carve(c, b->size_max, sizeof(size_t));
+    w->samples = carve(c, b->size_max * n_var, sizeof(double));
+    w->given = carve(c, n_var, sizeof(double));
+    w->children = carve(c, 2 * n_var, sizeof(double));
+    w->descent_vector = carve(c, s->criteria.vectors.n, sizeof(size_t));
+    w->descent_X = carve(c, n_pool * n_var, sizeof(double));
+    w->note = carve(c, NOTE_PREDICTED + n_obj, sizeof(double));
+    w->f = carve(c, n_obj, sizeof(double));
+    w->g = carve(c, s->problem->n_con, sizeof(double));
+    w->x = carve(c, n_var, sizeof(double));
+}
+
+static Status create_criteria(Criteria *q, const Problem *p, const SearchConfig *c, size_t n_pool, Err *err)
+{
+    TRY(directions_spread(&q->vectors, p->n_obj, n_vectors(p->n_obj, c), err));
+    for (int kind = 0; kind < INFILL_KINDS; kind++) {
+        TRY(infill_create(&q->select[kind], (InfillKind)kind, n_pool, &q->vectors, err));
+        TRY(infill_create(&q->gain[kind], (InfillKind)kind, 1, &q->vectors, err));
+    }
+    return STATUS_OK;
+}
+
+static Status create_selection(Search *s, size_t n_pool, Err *err)
+{
+    const size_t n_obj = s->problem->n_obj;
+    size_t outer, inner;
+    directions_choose(n_obj, s->config->population, &outer, &inner);
+    TRY(directions_create(&s->directions, n_obj, outer, inner, err));
+    return selection_create(&s->selection, s->config->selection, n_pool, &s->directions, err);
+}
+
+Status state_create(Search *s, Err *err)
+{
+    const Problem *p = s->problem;
+    const size_t population = s->config->population, initial = s->config->n_given + generation_samples(s);
+    const size_t pending = batch_pending_max(s->config, p->n_workers);
+    const size_t n_pool = (initial > 5 * population ? initial : 5 * population) + 2 * pending;
+    const size_t evals = s->config->max_evals > 4 ? s->config->max_evals : 4;
+    const size_t centres = s->config->surrogate_max < evals ? s->config->surrogate_max : evals;
+    s->batch.size_max = initial > population ? initial : population;
+    s->batch.n_max = s->batch.size_max + pending;
+    TRY(create_selection(s, n_pool, err));
+    TRY(create_criteria(&s->criteria, p, s->config, n_pool, err));
+    TRY(archive_init(&s->archive, 2 * initial, p->n_var, p->n_obj, p->n_con, err));
+    TRY(surrogate_create(&s->surrogate, p, centres, n_pool, err));
+    TRY(population_create(&s->population, 2 * population + pending, p->n_var, p->n_obj, err));
+    TRY(population_create(&s->offspring.members, n_pool, p->n_var, p->n_obj, err));
+    TRY(population_create(&s->pool, n_pool, p->n_var, p->n_obj, err));
+    Carve c = {0};
+    layout(s, n_pool, &c);
+    s->store = carve_store(&c);
+    if (!s->store)
+        return fail(err, STATUS_NO_MEMORY, "no memory for a search with population %zu", population);
+    layout(s, n_pool, &(Carve){.base = s->store});
+    return STATUS_OK;
+}
+
+void state_free(Search *s)
+{
+    directions_free(&s->directions);
+    directions_free(&s->criteria.vectors);
+    archive_free(&s->archive);
+    selection_free(s->selection);
+    for (int kind = 0; kind < INFILL_KINDS; kind++) {
+        infill_free(s->criteria.select[kind]);
+        infill_free(s->criteria.gain[kind]);
+    }
+    surrogate_free(s->surrogate);
+    population_free(&s->population);
+    population_free(&s->offspring.members);
+    population_free(&s->pool);
+    free(s->state.bytes);
+    free(s->rows.importance);
+    free(s->rows.reported);
+    free(s->store);
+}
+
+Status state_grow_rows(Search *s, Err *err)
+{
+    PerRow *rows = &s->rows;
+    if (s->archive.n <= rows->n_max)
+        return STATUS_OK;
+    free(rows->importance);
+    free(rows->reported);
+    rows->n_max = 2 * s->archive.n;
+    rows->importance = calloc(rows->n_max, sizeof *rows->importance);
+    rows->reported = calloc(rows->n_max, 1);
+    if (rows->importance && rows->reported)
+        return STATUS_OK;
+    rows->n_max = 0;
+    return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", s->archive.n);
+}
+
+/* -- as bytes ------------------------------------------------------------------------------------------------------ */
 
 enum { STATE_VERSION = 7 };
 
-/* Designs that are asked for and not simulated yet. */
+/* Designs that are asked for and not evaluated yet. */
 static void pack_pending(Search *s, Pack *p)
 {
-    const size_t n_var = s->problem->n_var, n_note = NOTE_FORESEEN + s->problem->n_obj;
+    const size_t n_var = s->problem->n_var, n_note = NOTE_PREDICTED + s->problem->n_obj;
+    double *x = s->scratch.x, *note = s->scratch.note;
     size_t n = queue_pending(s->queue);
     pack_size(p, &n, SIZE_MAX / 2);
     for (size_t i = 0; i < n && !p->faulty; i++) {
-        Asked asked = {.x = s->child, .note = s->note};
+        Asked asked = {.x = x, .note = note};
         size_t kind;
         if (!p->reading) {
             asked = queue_design(s->queue, i);
-            memcpy(s->child, asked.x, n_var * sizeof *s->child);
-            memcpy(s->note, asked.note, n_note * sizeof *s->note);
+            memcpy(x, asked.x, n_var * sizeof *x);
+            memcpy(note, asked.note, n_note * sizeof *note);
         }
         kind = asked.kind;
-        pack(p, s->child, n_var * sizeof *s->child);
-        pack(p, s->note, n_note * sizeof *s->note);
+        pack(p, x, n_var * sizeof *x);
+        pack(p, note, n_note * sizeof *note);
         pack_size(p, &asked.repeat, SIZE_MAX / 2);
         pack_size(p, &kind, KIND_COUNT - 1);
         asked.kind = (EvaluationKind)kind;
-        p->faulty = p->faulty || !(s->note[NOTE_WAY] >= 0.0 && s->note[NOTE_WAY] < INFILL_KINDS);
+        p->faulty = p->faulty || !(note[NOTE_CRITERION] >= 0.0 && note[NOTE_CRITERION] < INFILL_KINDS);
         if (p->reading && !p->faulty)
             p->faulty = queue_ask(s->queue, &asked, &(Err){0}) != STATUS_OK;
     }
 }
 
 /* All that the next generation takes from the earlier ones, beside the archive. */
-static void state_pack(Search *s, Pack *p)
+static void pack_search(Search *s, Pack *p)
 {
     const Problem *problem = s->problem;
     pack_expect(p, STATE_VERSION);
@@ -39,11 +170,7 @@ static void state_pack(Search *s, Pack *p)
     pack_expect(p, s->config->population);
     pack_expect(p, s->archive.n);
     pack_size(p, &s->generation, UINT32_MAX);
-    pack(p, &s->agreement, sizeof s->agreement);
-    pack(p, &s->lost, sizeof s->lost);
-    pack(p, &s->sources, sizeof s->sources);
-    pack(p, &s->ways, sizeof s->ways);
-    pack_size(p, &s->aside, ASIDE_YES);
+    control_pack(&s->control, p);
     population_pack(&s->population, p, s->archive.n);
     surrogate_pack(s->surrogate, p);
     pack_pending(s, p);
@@ -53,13 +180,13 @@ void state_save(Search *s)
 {
     s->state.n = 0;
     s->state.faulty = 0;
-    state_pack(s, &s->state);
+    pack_search(s, &s->state);
 }
 
 Status state_restore(Search *s, const SearchStart *start, Err *err)
 {
     const Problem *p = s->problem;
-    double *f = s->note + NOTE_FORESEEN, *g = f + p->n_obj;
+    double *f = s->scratch.f, *g = s->scratch.g;
     for (size_t i = 0; i < start->n; i++) {
         const Evaluation *e = &start->row[i];
         const unsigned char ok = e->outcome == OUTCOME_OK;
@@ -71,7 +198,7 @@ Status state_restore(Search *s, const SearchStart *start, Err *err)
     if (!start->state)
         return STATUS_OK;
     Pack state = {.bytes = (unsigned char *)(uintptr_t)start->state, .n = start->n_state, .reading = 1};
-    state_pack(s, &state);
+    pack_search(s, &state);
     if (!pack_finished(&state))
         return fail(err, STATUS_BAD_DATA,
                     "the state of the search (%zu bytes after %zu simulations) does not fit this search: written by "

@@ -2,8 +2,8 @@
  *
  * Objectives and constraints are the outputs of one Rbf on the unit cube. Beyond `surrogate_max` designs three quarters
  * of the centres are those nearest to the front, the rest is spread evenly over the order of evaluation, which begins
- * with the Latin hypercube. A mean of n replicates has the n-th part of the nugget. Hyperparameters are tuned again when
- * the archive has grown by a tenth.
+ * with the Latin hypercube. A mean of n replicates has the n-th part of the nugget. Hyperparameters are tuned again
+ * when the archive has grown by a tenth.
  *
  * Dimension   more than RBF_DIM_MAX variables: there is no surrogate
  * Life cycle  surrogate_create -> (surrogate_fit -> surrogate_predict ...) ... -> surrogate_free
@@ -40,9 +40,9 @@ void surrogate_estimate(const Surrogate *s, Archive *archive);
 /* F and violation of the predicted members first..n-1, and where wanted their uncertainty, which costs a third more. */
 void surrogate_predict(Surrogate *s, Population *population, size_t first, int with_uncertainty);
 
-/* Designs X (n, n_var) that lower the criterion of `near` along its reference vectors by descents on the surrogate, each
- * from the design of the archive that is best for its vector. Resilient back-propagation: Riedmiller and Braun, ICNN
- * 1993, 586-591. */
+/* Designs X (n, n_var) that lower the criterion of `near` along its reference vectors by descents on the surrogate,
+ * each from the design of the archive that is best for its vector. Resilient back-propagation: Riedmiller and Braun,
+ * ICNN 1993, 586-591. */
 void surrogate_descend(Surrogate *s, const Archive *a, const Infill *near, size_t n, const size_t vectors[],
                        double X[]);
 

@@ -101,7 +101,7 @@ static void take_view(StudySummary *sum, const SearchView *view)
     sum->search_s = view->seconds;
     sum->waited_s = view->waited_s;
     sum->surrogate_s = view->surrogate_s;
-    sum->is_aside = view->is_aside;
+    sum->surrogate_disabled = view->is_disabled;
 }
 
 static void show_progress(const Study *study, const SearchView *view)
@@ -218,7 +218,7 @@ SearchConfig study_search_config(const Settings *s)
         .max_seconds = 3600 * s->search.max_hours,
         .nondominated_share = s->search.nondominated_share,
         .trust_error = s->search.trust_error,
-        .repeats = s->search.replicate_share,
+        .replicate_share = s->search.replicate_share,
         .replicates_min = (size_t)s->search.replicates_min,
         .replicates_max = (size_t)s->search.replicates_max,
         .crossover_probability = s->search.crossover_probability,

@@ -17,7 +17,7 @@ typedef struct {
     double seconds;                                 /* of all sessions */
     double simulation_s, own_s;                     /* as in SearchView */
     double search_s, waited_s, surrogate_s, busy_s; /* of this session; busy_s: in simulations, all threads added */
-    int is_aside;
+    int surrogate_disabled;
     int has_no_core;   /* of a tower */
     SimResult no_core; /* the building alone under the same motion */
 } StudySummary;

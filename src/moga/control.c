@@ -1,0 +1,150 @@
+#include "moga/control.h"
+
+#include <math.h>
+
+#include "moga/constants.h"
+
+enum { AGREEMENT_RESULTS_MIN = 4 }; /* Kendall's tau of fewer says nothing */
+
+void control_begin(SurrogateControl *c)
+{
+    *c = (SurrogateControl){.agreement = 1.0,
+                            .generators = {{1.0 - VARIATION_CREDIT_FIRST, VARIATION_CREDIT_FIRST},
+                                           {1.0 - VARIATION_CHANCE_FIRST, VARIATION_CHANCE_FIRST}},
+                            .criteria = {{0.5, 0.5}, {0.5, 0.5}}};
+}
+
+void control_pack(SurrogateControl *c, Pack *p)
+{
+    pack(p, &c->agreement, sizeof c->agreement);
+    pack(p, &c->failure_rate, sizeof c->failure_rate);
+    pack(p, &c->generators, sizeof c->generators);
+    pack(p, &c->criteria, sizeof c->criteria);
+    pack_size(p, &c->cost, COST_TOO_HIGH);
+}
+
+/* -- whether the surrogate is used --------------------------------------------------------------------------------- */
+
+void control_weigh_costs(SurrogateControl *c, SurrogateUse use)
+{
+    const SearchTimes *t = &c->times;
+    if (use != SURROGATE_AUTO || c->cost != COST_NOT_KNOWN || t->n_assisted < COST_SAMPLE)
+        return;
+    const double simulation = t->simulating / (double)t->n_simulated, own = t->assisted / (double)t->n_assisted;
+    c->cost = own > COST_MAX * simulation ? COST_TOO_HIGH : COST_ACCEPTED;
+}
+
+int control_allows(const SurrogateControl *c, SurrogateUse use)
+{
+    return use != SURROGATE_OFF && c->cost != COST_TOO_HIGH;
+}
+
+int control_agrees(const SurrogateControl *c)
+{
+    return c->agreement > AGREEMENT_MIN;
+}
+
+/* -- shares of a batch --------------------------------------------------------------------------------------------- */
+
+/* Part of the second alternative, whose gain counts only by what it exceeds `margin` times the first one's. */
+static double second_share(const Credit *r, double power, double margin)
+{
+    const double first = pow(r->gain[0] / r->designs[0], power),
+                 second = pow(r->gain[1] / r->designs[1] / margin, power);
+    return first + second > 0.0 ? second / (first + second) : 0.5;
+}
+
+/* Either generator gets batch / VARIATION_SHARE_MIN + 1 designs at least, so that its credit is known. */
+static size_t variation_designs(const SurrogateControl *c, size_t size, size_t n, size_t n_var)
+{
+    const size_t min = size / VARIATION_SHARE_MIN + 1, failing = (size_t)(c->failure_rate * (double)size + 0.5);
+    if (n < INFILL_ALONE * n_var)
+        return failing;
+    const double share = second_share(&c->generators, GENERATOR_POWER, VARIATION_MARGIN);
+    const size_t credited = (size_t)(share * (double)size + 0.5), wanted = credited > failing ? credited : failing;
+    return wanted < min ? min : wanted < size - min ? wanted : size - min;
+}
+
+BatchShares control_batch_shares(const SurrogateControl *c, size_t size, size_t n, size_t n_var)
+{
+    const double one = 1.0 / (double)size; /* either criterion gets a design at least */
+    return (BatchShares){variation_designs(c, size, n, n_var),
+                         fmin(fmax(second_share(&c->criteria, CRITERION_POWER, 1.0), one), 1.0 - one)};
+}
+
+/* -- results of a batch -------------------------------------------------------------------------------------------- */
+
+/* gain[measure][alternative] of number[alternative] results: shares, in the mean over the measures. Nothing is learnt
+ * where one alternative had no result or there was no gain. */
+static void learn(Credit *r, double gain[INFILL_KINDS][2], const double number[2])
+{
+    double share[2] = {0}, measures = 0.0;
+    for (int k = 0; k < INFILL_KINDS; k++) {
+        const double all = gain[k][0] + gain[k][1];
+        for (int i = 0; all > 0.0 && i < 2; i++)
+            share[i] += gain[k][i] / all;
+        measures += all > 0.0;
+    }
+    if (measures == 0.0 || number[0] == 0.0 || number[1] == 0.0)
+        return;
+    for (int i = 0; i < 2; i++) {
+        r->gain[i] += CREDIT_WEIGHT * (share[i] / measures - r->gain[i]);
+        r->designs[i] += CREDIT_WEIGHT * (number[i] / (number[0] + number[1]) - r->designs[i]);
+    }
+}
+
+static void learn_credits(SurrogateControl *c, const BatchResults *r, Infill *const measure[INFILL_KINDS])
+{
+    double generator_gain[INFILL_KINDS][2] = {{0}}, criterion_gain[INFILL_KINDS][2] = {{0}};
+    double by_generator[2] = {0}, by_criterion[2] = {0}, failed = 0.0;
+    for (size_t i = 0; i < r->n; i++) {
+        const int is_infill = r->kind[i] == KIND_INFILL;
+        if (!is_infill && r->kind[i] != KIND_OFFSPRING)
+            continue;
+        const Generator generator = is_infill ? GENERATOR_INFILL : GENERATOR_VARIATION;
+        by_generator[generator] += 1.0;
+        by_criterion[r->criterion[i]] += is_infill;
+        failed += is_infill && !r->ok[i];
+        for (int k = 0; k < INFILL_KINDS && r->ok[i]; k++) {
+            const double gain = infill_gain(measure[k], r->F + i * r->n_obj);
+            generator_gain[k][generator] += gain;
+            criterion_gain[k][r->criterion[i]] += is_infill ? gain : 0.0;
+        }
+    }
+    if (by_generator[GENERATOR_INFILL] > 0.0)
+        c->failure_rate += CREDIT_WEIGHT * (failed / by_generator[GENERATOR_INFILL] - c->failure_rate);
+    learn(&c->generators, generator_gain, by_generator);
+    learn(&c->criteria, criterion_gain, by_criterion);
+}
+
+/* Objective k of the predicted results that succeeded: pairs in the same order minus pairs in the opposite one, as a
+ * share of all pairs; 0 where there is none. Kendall, Biometrika 30 (1938) 81-93. */
+static double kendall_tau(const BatchResults *r, size_t k)
+{
+    const size_t m = r->n_obj;
+    long same = 0, pairs = 0;
+    for (size_t i = 0; i < r->n; i++)
+        for (size_t j = 0; j < i; j++) {
+            if (!r->was_predicted[i] || !r->ok[i] || !r->was_predicted[j] || !r->ok[j])
+                continue;
+            const double product =
+                (r->predicted[i * m + k] - r->predicted[j * m + k]) * (r->F[i * m + k] - r->F[j * m + k]);
+            same += (product > 0.0) - (product < 0.0);
+            pairs++;
+        }
+    return pairs > 0 ? (double)same / (double)pairs : 0.0;
+}
+
+void control_judge(SurrogateControl *c, const BatchResults *r, Infill *const gain[INFILL_KINDS])
+{
+    size_t n = 0;
+    double tau = 0.0;
+    learn_credits(c, r, gain);
+    for (size_t i = 0; i < r->n; i++)
+        n += r->was_predicted[i];
+    if (n < AGREEMENT_RESULTS_MIN)
+        return;
+    for (size_t k = 0; k < r->n_obj; k++)
+        tau += kendall_tau(r, k) / (double)r->n_obj;
+    c->agreement += AGREEMENT_WEIGHT * (tau - c->agreement);
+}

@@ -1,0 +1,75 @@
+/* moga/control.h -- surrogate management: whether the surrogate is used, and who gets which part of a batch.
+ *
+ *   agreement     running mean of Kendall's tau between predicted and evaluated objectives of the batches. The
+ *                 surrogate is used while it is above AGREEMENT_MIN
+ *   credit        two alternatives share a batch: infill and variation, or the criteria PBI and hypervolume. Running
+ *                 means of each one's share of the gain, c_i, and of the designs, n_i, give its part of the next batch:
+ *                   (c_i / n_i)^p / sum_j (c_j / n_j)^p         p = GENERATOR_POWER, CRITERION_POWER
+ *                 The gain of a result is what it adds to the front that the generation began with, by both criteria
+ *                 (infill_gain). Probability matching with a power: Thierens, GECCO 2005, 1539-1546
+ *   failure rate  running mean of the share of infill designs that failed; variation gets that part at least
+ *   cost          SURROGATE_AUTO: the surrogate is disabled when its wall time per design exceeds that of COST_MAX
+ *                 simulations. Decided once, after COST_SAMPLE infill designs; part of the state, so that a resumed
+ *                 search does not decide again
+ *
+ * Threads  pure functions of their arguments */
+#ifndef IMTET_MOGA_CONTROL_H
+#define IMTET_MOGA_CONTROL_H
+
+#include "base/pack.h"
+#include "evaluate/evaluation.h"
+#include "moga/infill.h"
+#include "moga/options.h"
+
+typedef enum { GENERATOR_INFILL, GENERATOR_VARIATION, GENERATORS } Generator;
+
+/* Two alternatives: running means of their shares. */
+typedef struct {
+    double gain[2], designs[2];
+} Credit;
+
+typedef enum { COST_NOT_KNOWN, COST_ACCEPTED, COST_TOO_HIGH } CostState;
+
+/* Wall time of this session [s]. */
+typedef struct {
+    double waiting;                 /* for simulations */
+    double surrogate;               /* fits, predictions, descents */
+    double simulating;              /* in the simulator, all workers together */
+    double assisted;                /* all of our own while the surrogate was in use */
+    size_t n_simulated, n_assisted; /* designs in the last two */
+} SearchTimes;
+
+typedef struct {
+    double agreement, failure_rate;
+    Credit generators, criteria; /* by Generator, by InfillKind */
+    size_t cost;                 /* CostState */
+    SearchTimes times;           /* not part of the state */
+} SurrogateControl;
+
+/* Results of a batch, and what was known of them when they were asked for. */
+typedef struct {
+    size_t n, n_obj;
+    const double *F, *predicted;                                /* (n, n_obj) */
+    const unsigned char *ok, *kind, *criterion, *was_predicted; /* (n) EvaluationKind; InfillKind of infill designs */
+} BatchResults;
+
+/* What the next batch of `size` designs is made of. */
+typedef struct {
+    size_t n_variation; /* the rest is infill */
+    double hypervolume; /* share of the infill that is selected by INFILL_HYPERVOLUME, the rest by INFILL_PBI */
+} BatchShares;
+
+void control_begin(SurrogateControl *c);
+void control_pack(SurrogateControl *c, Pack *p);
+
+void control_weigh_costs(SurrogateControl *c, SurrogateUse use);
+int control_allows(const SurrogateControl *c, SurrogateUse use); /* a surrogate is wanted and worth its time */
+int control_agrees(const SurrogateControl *c);                   /* predictions have come true in their order */
+
+/* n evaluations so far of n_var variables: before INFILL_ALONE n_var of them variation gets the failure rate alone. */
+BatchShares control_batch_shares(const SurrogateControl *c, size_t size, size_t n, size_t n_var);
+
+/* gain[] has measured the front that the generation began with. Fewer than 4 predicted results leave the agreement. */
+void control_judge(SurrogateControl *c, const BatchResults *r, Infill *const gain[INFILL_KINDS]);
+
+#endif

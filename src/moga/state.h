@@ -1,0 +1,161 @@
+/* moga/state.h -- a search under way: what the files below share. Everybody else reads search.h.
+ *
+ *   search.c         limits, the loop over generations, the view of the observer
+ *   state.c          memory; what outlives a generation, as bytes
+ *   generation.c     one generation: the steps of the method in their order
+ *   surrogate_use.c  criteria, fit, prediction, descents, predicted failures
+ *   offspring.c      candidates: variation, inner generations and descents on the surrogate
+ *   infill_select.c  which candidates are evaluated
+ *   replication.c    which noisy designs are evaluated again
+ *   batch.c          evaluation, the only way into the archive
+ *
+ * Threads  one; the simulator and predictions of the surrogate use several */
+#ifndef IMTET_MOGA_STATE_H
+#define IMTET_MOGA_STATE_H
+
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/pack.h"
+#include "evaluate/queue.h"
+#include "moga/archive.h"
+#include "moga/constants.h"
+#include "moga/control.h"
+#include "moga/directions.h"
+#include "moga/infill.h"
+#include "moga/population.h"
+#include "moga/search.h"
+#include "moga/selection.h"
+#include "moga/surrogate.h"
+
+/* Infill criteria that share a batch, all measured on the same front. */
+typedef struct {
+    Directions vectors;           /* reference vectors */
+    Infill *select[INFILL_KINDS]; /* offered the offspring: what is picked lowers the values to beat */
+    Infill *gain[INFILL_KINDS];   /* gain of the results */
+} Criteria;
+
+/* Members in this order: proposed by the surrogate, by variation, pending. */
+typedef struct {
+    Population members;
+    size_t n_variation, n_pending;
+    unsigned char *allowed;  /* (pool) may be picked now */
+    unsigned char *excluded; /* (pool) is not picked in this generation any more */
+} Offspring;
+
+/* Designs that are asked for, then, in the same arrays, the results that came. */
+typedef struct {
+    size_t size_max;              /* designs asked for at once */
+    size_t n, n_max;              /* results of this generation, room for them */
+    double *X, *F, *predicted;    /* (n_max, n_var) (n_max, n_obj) (n_max, n_obj) */
+    unsigned char *ok, *kind;     /* (n_max) EvaluationKind */
+    unsigned char *criterion;     /* (n_max + 1) InfillKind that selected it */
+    unsigned char *was_predicted; /* (n_max) */
+    size_t *repeat;               /* (n_max) replicates that the design has already */
+} Batch;
+
+/* What a design carries through the queue: was_predicted, criterion, predicted (n_obj). */
+enum { NOTE_WAS_PREDICTED, NOTE_CRITERION, NOTE_PREDICTED };
+
+/* Grows with the archive. */
+typedef struct {
+    size_t n_max;
+    size_t *importance;      /* (n_max) of designs, for replication */
+    unsigned char *reported; /* (n_max) on the front, with replicates enough */
+} PerRow;
+
+/* Each array has one use. */
+typedef struct {
+    size_t *survivors;      /* (pool) of the environmental selection */
+    size_t *members;        /* (pool) 0, 1, ... */
+    size_t *slices;         /* (batch.size_max) of the Latin hypercube */
+    double *samples;        /* (batch.size_max, n_var) of it */
+    double *given;          /* (n_var) */
+    double *children;       /* (2, n_var) */
+    size_t *descent_vector; /* (vectors) in the order of this generation */
+    double *descent_X;      /* (pool, n_var) */
+    double *note;           /* (NOTE_PREDICTED + n_obj) */
+    double *f, *g, *x;      /* (n_obj) (n_con) (n_var) of a design restored */
+} Scratch;
+
+typedef struct {
+    const Problem *problem;
+    const SearchConfig *config;
+    Queue *queue;
+    Archive archive;
+    Surrogate *surrogate;
+    SurrogateControl control;
+    Criteria criteria;
+    Directions directions; /* of the environmental selection */
+    Selection *selection;
+    Population population, pool;
+    Offspring offspring;
+    Batch batch;
+    PerRow rows;
+    Scratch scratch;
+    size_t generation;
+    size_t n_predicted; /* predictions trusted for the first time in this generation */
+    size_t reserved;    /* evaluations kept for the last replicates */
+    Pack state;         /* as of the last report */
+    double start;       /* [s] of the clock */
+    void *store;
+} Search;
+
+/* [s] wall time since the search began. */
+static inline double search_seconds(const Search *s)
+{
+    return clock_seconds() - s->start;
+}
+
+/* Evaluations that the search was planned for. */
+static inline size_t search_planned(const SearchConfig *c)
+{
+    return c->planned_evals > 0 ? c->planned_evals : c->max_evals;
+}
+
+/* state.c */
+Status state_create(Search *s, Err *err); /* for its problem and config */
+void state_free(Search *s);
+Status state_grow_rows(Search *s, Err *err); /* after every generation */
+void state_save(Search *s);
+Status state_restore(Search *s, const SearchStart *start, Err *err);
+
+/* generation.c */
+size_t generation_samples(const Search *s); /* size of the initial sample without the given designs */
+Status generation_first(Search *s, Err *err);
+Status generation_next(Search *s, Err *err);
+Status generation_last(Search *s, Err *err); /* asynchronous: what is under way when the search ends */
+
+/* surrogate_use.c */
+void search_measure_front(Search *s);
+int search_uses_surrogate(const Search *s); /* usable, and control agrees */
+int search_trusts(const Search *s, const Population *p, size_t i);
+int search_predicts_failure(const Search *s, const double x[]);
+Status search_fit_surrogate(Search *s, Err *err);
+void search_predict(Search *s, Population *p, size_t first, int with_uncertainty);
+void search_descend(Search *s, InfillKind kind, size_t n, const size_t vectors[], double X[]);
+
+/* offspring.c: with the surrogate where it is in use, or by variation alone. step: of the random stream. */
+void offspring_make(Search *s, int variation_alone);
+void offspring_survive(Search *s, Population *p, uint32_t step);
+
+/* infill_select.c: returns how many designs of the batch are to be evaluated. */
+size_t infill_select_batch(Search *s);
+
+/* replication.c: replicates of designs that the search builds on, after n designs of a batch; at its end, a batch of
+ * designs that it reports. Both return the new n. */
+size_t replication_add(Search *s, size_t n);
+size_t replication_last(Search *s);
+int replication_noise_is_significant(const Search *s); /* estimates are to be compared instead of means */
+
+/* batch.c */
+size_t batch_size(const Search *s);
+/* Appends x to a batch of n unless it is known, the batch is full or all evaluations are spent; returns the new n. */
+size_t batch_add(Search *s, size_t n, const double x[], EvaluationKind kind);
+/* Asks for n designs, those from n_new on replicates, and takes the results that come. */
+Status batch_evaluate(Search *s, size_t n_new, size_t n, Err *err);
+Status batch_finish(Search *s, Err *err); /* asynchronous: takes what is under way */
+size_t batch_pending_max(const SearchConfig *c, size_t n_workers);
+void batch_join(Search *s, Population *p, size_t first); /* evaluated designs of the rows first.. */
+
+#endif
