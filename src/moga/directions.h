@@ -5,7 +5,8 @@
  *               either has only border points or far too many
  *
  * Life cycle  directions_create -> read W -> directions_free
- * Sources     Das and Dennis, SIAM J. Optim. 8 (1998) 631-657; Deb and Jain (see moga/search.h) for the layers. */
+ * Sources     Das and Dennis, SIAM J. Optim. 8 (1998) 631-657
+ *             Deb and Jain (see moga/search.h), the two layers */
 #ifndef IMTET_MOGA_DIRECTIONS_H
 #define IMTET_MOGA_DIRECTIONS_H
 
@@ -19,7 +20,7 @@ typedef struct {
     double *W;           /* (n, n_obj) */
 } Directions;
 
-/* Divisions for a population: the most directions that it can fill, but at least one per objective. */
+/* Divisions for a population: the largest number of directions that it can fill, but at least one per objective. */
 void directions_choose(size_t n_obj, size_t population, size_t *outer, size_t *inner);
 
 Status directions_create(Directions *d, size_t n_obj, size_t outer, size_t inner, Err *err);

@@ -6,19 +6,19 @@
 
 struct Igd {
     size_t n_obj, n;
-    double *width, *reference, *square; /* (n_obj) (n, n_obj) (n) least squared distance so far */
+    double *width, *reference, *square; /* (n_obj) (n, n_obj) (n) smallest squared distance so far */
     double store[];
 };
 
 static void measure_widths(Igd *q)
 {
     for (size_t k = 0; k < q->n_obj; k++) {
-        double least = INFINITY, most = -INFINITY;
+        double min = INFINITY, max = -INFINITY;
         for (size_t i = 0; i < q->n; i++) {
-            least = fmin(least, q->reference[i * q->n_obj + k]);
-            most = fmax(most, q->reference[i * q->n_obj + k]);
+            min = fmin(min, q->reference[i * q->n_obj + k]);
+            max = fmax(max, q->reference[i * q->n_obj + k]);
         }
-        q->width[k] = most > least ? most - least : 1.0;
+        q->width[k] = max > min ? max - min : 1.0;
     }
 }
 

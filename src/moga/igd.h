@@ -2,14 +2,14 @@
  *
  *   igd+ = mean over r in the reference of  min over a in the set of  |max(a - r, 0)|      normalised, minimised
  *
- * Every objective is divided by its range in the reference. Where a is better than r it is not held against it, so that
- * a set which dominates the reference has 0, and a dominated member of the set changes nothing. Of a reference with
- * more than IGD_REFERENCE_MAX members, so many are taken, evenly by their order.
+ * Every objective is divided by its range in the reference. Only what is worse than r counts: a set that dominates the
+ * reference has 0, and a dominated member of the set changes nothing. Of a reference with more than IGD_REFERENCE_MAX
+ * members so many are taken, evenly by their order.
  *
  * Life cycle  igd_create -> igd_add ... igd_value ... -> igd_free
  * Threads     one Igd per thread
  * Source      Ishibuchi, Masuda, Tanigaki and Nojima, Modified distance calculation in generational distance and
- * inverted generational distance, EMO 2015. */
+ *             inverted generational distance, EMO 2015 */
 #ifndef IMTET_MOGA_IGD_H
 #define IMTET_MOGA_IGD_H
 

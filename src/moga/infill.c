@@ -232,13 +232,13 @@ static int is_better(const Infill *q, size_t a, double gain_a, size_t b, double 
 size_t infill_pick(Infill *q, unsigned char allowed[])
 {
     size_t best = SIZE_MAX;
-    double most = 0.0;
+    double max = 0.0;
     for (size_t i = 0; i < q->n; i++) {
         if (!allowed[i])
             continue;
         const double gain = gain_left(q, i);
-        if (best == SIZE_MAX || is_better(q, i, gain, best, most)) {
-            most = gain;
+        if (best == SIZE_MAX || is_better(q, i, gain, best, max)) {
+            max = gain;
             best = i;
         }
     }
