@@ -284,6 +284,7 @@ static void test_results_that_nobody_asked_for_join_the_archive(void **state)
     forget_it(&whole);
 }
 
+/* Of all that was tried, failures too. */
 static double volume(const Seen *s)
 {
     double lower[OBJ_MAX] = {0}, reference[OBJ_MAX];
@@ -292,8 +293,11 @@ static double volume(const Seen *s)
     for (size_t k = 0; k < OBJ_MAX; k++)
         reference[k] = 1.5;
     CHECK_OK(hypervolume_create(&h, here.problem.n_obj, lower, reference, 1, &err), &err);
-    for (size_t i = 0; i < s->n; i++)
-        hypervolume_add(h, s->F + i * here.problem.n_obj);
+    for (size_t i = 0; i < s->n; i++) {
+        double f[OBJ_MAX];
+        answer(&here, s->X + i * here.problem.n_var, f);
+        hypervolume_add(h, f);
+    }
     const double share = hypervolume_share(h);
     hypervolume_free(h);
     return share * pow(1.5, (double)here.problem.n_obj);
@@ -326,7 +330,7 @@ static void test_every_limit_ends_with_all_that_was_simulated(void **state)
 {
     (void)state;
     world(6, 3, 4);
-    here.problem.executor = NULL; /* threads */
+    here.problem.executor = &EXECUTOR_THREADS;
     SearchConfig c = config(20, 200);
     c.generations = 5;
     search(&c, NULL, &whole);

@@ -95,6 +95,8 @@ static Queue *open_queue(size_t workers, QueueOrder order)
     bench.problem.n_parts = PARTS;
     bench.problem.part_size = sizeof(Part);
     bench.problem.n_workers = workers;
+    if (!bench.problem.executor)
+        bench.problem.executor = executor_for(workers);
     CHECK_OK(queue_open(&q, &bench.problem, order, 1, 100, &err), &err);
     return q;
 }

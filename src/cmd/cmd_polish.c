@@ -52,7 +52,7 @@ static Status take_options(const Args *args, Work *w, Err *err)
     TRY(take_improved(args, w, err));
     TRY(take_kept(args, w, err));
     TRY(args_whole(args, "--evals", 1, 1000000, 300, &evals, err));
-    TRY(args_whole(args, "--members", 1, 1000, 4, &w->config.members, err));
+    TRY(args_whole(args, "--members", 1, 1000, 4, &w->config.replicates, err));
     TRY(args_number(args, "--seconds", 0, 1e9, 0, &w->config.max_seconds, err));
     TRY(args_number(args, "--slack", 0, 1e6, -1, &w->config.slack, err));
     w->config.algorithm = args_value(args, "--algorithm");
@@ -95,7 +95,7 @@ static void show_gain(const Work *w, size_t k)
     const Column *c = schema_objective(&w->run.schema, k);
     const Refined *r = &w->result;
     const double gain = c->sense * (r->f_start[k] - r->f[k]);
-    const double error = hypot(r->spread_start[k], r->spread[k]) / sqrt((double)w->config.members);
+    const double error = hypot(r->spread_start[k], r->spread[k]) / sqrt((double)w->config.replicates);
     printf("%s is %s by %.3g", c->name, gain < 0.0 ? "worse" : "better", fabs(gain));
     if (isfinite(error))
         printf(" with a standard error of %.2g", error);

@@ -72,7 +72,7 @@ typedef struct {
     const Simulator *simulator;
     void *self; /* of simulator and repair */
     size_t n_parts, part_size, n_workers;
-    const Executor *executor; /* NULL: threads, one for each worker; a single worker is the asker itself */
+    const Executor *executor; /* evaluate/threads.h */
     Observer observer;
 } Problem;
 

@@ -7,7 +7,6 @@
 
 #include "base/carve.h"
 #include "base/clock.h"
-#include "evaluate/threads.h"
 
 typedef enum { PENDING, FINISHED, KNOWN } Place; /* KNOWN: as arrived, its evaluation is among those from before */
 
@@ -527,7 +526,7 @@ Status queue_open(Queue **out, const Problem *problem, QueueOrder order, size_t 
     pthread_mutex_init(&q->finishing, NULL);
     pthread_cond_init(&q->work, NULL);
     pthread_cond_init(&q->news, NULL);
-    q->executor = problem->executor ? problem->executor : problem->n_workers > 1 ? &EXECUTOR_THREADS : &EXECUTOR_ASKER;
+    q->executor = problem->executor;
     const Status status = q->executor->start(&q->executing, q, err);
     if (status == STATUS_OK)
         *out = q;

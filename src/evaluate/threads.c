@@ -89,3 +89,8 @@ static void asker_stop(void *self)
 }
 
 const Executor EXECUTOR_ASKER = {asker_start, asker_help, asker_stop};
+
+const Executor *executor_for(size_t n_workers)
+{
+    return n_workers > 1 ? &EXECUTOR_THREADS : &EXECUTOR_ASKER;
+}

@@ -11,6 +11,9 @@
 extern const Executor EXECUTOR_THREADS; /* a thread for each worker of the problem */
 extern const Executor EXECUTOR_ASKER;   /* the asker itself is worker 0, while it waits: no thread at all */
 
+/* Threads where there are several workers, else the asker. */
+const Executor *executor_for(size_t n_workers);
+
 /* Workers for a setting of so many threads; 0: one for each processor. */
 size_t threads_wanted(long setting);
 

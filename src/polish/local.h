@@ -30,7 +30,7 @@ enum { LOCAL_BATCH = 4 };
 typedef struct {
     size_t n;
     double *X, *F; /* (n, n_var) (n, n_obj) */
-    double *noise; /* (n) variance of their answers by that of one answer: 1/members */
+    double *noise; /* (n) variance of their answers by that of one answer: 1/replicates */
 } Known;
 
 typedef struct {

@@ -23,7 +23,7 @@ typedef struct {
     Queue *queue;                                                           /* to its simulator */
     double f[2 * OBJECTIVES_MAX], spread[2 * OBJECTIVES_MAX], violation[2]; /* of its first and last answer, natural */
     double weight[OBJECTIVES_MAX], slack[OBJECTIVES_MAX], bound[OBJECTIVES_MAX]; /* of minimised objectives */
-    long members;                                                                /* of a design that is tried */
+    long replicates;                                                             /* of a design that is tried */
     double start;                                                                /* [s] of the clock */
 } Refine;
 
@@ -37,10 +37,10 @@ static void close_simulator(Refine *r)
     r->adapter = NULL;
 }
 
-static Status open_simulator(Refine *r, long members, Err *err)
+static Status open_simulator(Refine *r, long replicates, Err *err)
 {
     Settings s = *r->run->settings;
-    s.sim.replicates = members;
+    s.sim.replicates = replicates;
     close_simulator(r);
     TRY(adapter_open(&r->adapter, &s, err));
     adapter_observe(r->adapter, &(Observer){.go_on = r->config->go_on, .user = r->config->user});
@@ -66,11 +66,11 @@ static Status evaluate(Refine *r, size_t n, const double *const designs[], size_
     return STATUS_OK;
 }
 
-static void count(size_t n_evaluated, size_t n_failed, long members, Refined *out)
+static void count(size_t n_evaluated, size_t n_failed, long replicates, Refined *out)
 {
     out->n_evaluated += n_evaluated;
     out->n_failed += n_failed;
-    out->n_simulated += n_evaluated * (size_t)members;
+    out->n_simulated += n_evaluated * (size_t)replicates;
 }
 
 /* Weights in ranges of the front, and from the design's own objectives f what the kept ones may come to. */
@@ -84,7 +84,7 @@ static void set_goal(Refine *r, const double f[])
         r->slack[k] = r->config->slack >= 0.0 ? r->config->slack * fabs(f[k]) : spread;
         r->bound[k] = r->config->keep[k] ? f[k] + r->slack[k] : INFINITY;
         if (spread > PREDICTABLE * fabs(f[k]))
-            r->members = r->config->members;
+            r->replicates = r->config->replicates;
     }
 }
 
@@ -92,21 +92,21 @@ static void set_goal(Refine *r, const double f[])
 static Status begin(Refine *r, double f[], Refined *out, Err *err)
 {
     unsigned char ok = 0;
-    TRY(open_simulator(r, r->config->members, err));
+    TRY(open_simulator(r, r->config->replicates, err));
     TRY(evaluate(r, 1, &r->x, 0, f, &ok, err));
-    count(1, 0, r->config->members, out);
+    count(1, 0, r->config->replicates, out);
     if (!ok)
         return fail(err, STATUS_BAD_DATA, "the design to be polished cannot be evaluated");
-    r->members = 1;
+    r->replicates = 1;
     set_goal(r, f);
-    return r->members == r->config->members ? STATUS_OK : open_simulator(r, r->members, err);
+    return r->replicates == r->config->replicates ? STATUS_OK : open_simulator(r, r->replicates, err);
 }
 
 /* Designs that may still be tried, so that both can be compared at the end. */
 static size_t evals_left(const Refine *r, const Refined *out)
 {
-    const size_t spent = out->n_simulated + 2 * (size_t)r->config->members;
-    return r->config->max_evals > spent ? (r->config->max_evals - spent) / (size_t)r->members : 0;
+    const size_t spent = out->n_simulated + 2 * (size_t)r->config->replicates;
+    return r->config->max_evals > spent ? (r->config->max_evals - spent) / (size_t)r->replicates : 0;
 }
 
 /* 0: there is no limit; else what is left of it, a little at least. */
@@ -180,7 +180,7 @@ static Status follow_surface(Refine *r, double f[], Refined *out, Err *err)
 {
     const size_t left = evals_left(r, out), wanted = r->config->algorithm ? left / 2 : left;
     LocalConfig config = {.goal = {r->weight, r->bound},
-                          .noise = 1.0 / (double)r->members,
+                          .noise = 1.0 / (double)r->replicates,
                           .max_evals = wanted < LOCAL_MAX ? wanted : LOCAL_MAX,
                           .max_seconds = seconds_left(r),
                           .seed = (uint32_t)r->run->settings->search.seed};
@@ -189,7 +189,7 @@ static Status follow_surface(Refine *r, double f[], Refined *out, Err *err)
     if (status == STATUS_OK)
         status = local_run(r->queue, &config, &result, err);
     free(config.known.X);
-    count(result.n_evaluated, result.n_failed, r->members, out);
+    count(result.n_evaluated, result.n_failed, r->replicates, out);
     return status;
 }
 
@@ -211,7 +211,7 @@ static Status polish_simulator(Refine *r, Refined *out, Err *err)
     memcpy(start, out->x, r->run->schema.n_var * sizeof *start);
     const Status status = polish_run(r->queue, &config, start, &result, err);
     free(start);
-    count(result.n_evaluated, result.n_failed, r->members, out);
+    count(result.n_evaluated, result.n_failed, r->replicates, out);
     return status;
 }
 
@@ -222,7 +222,7 @@ static void judge_gain(const Refine *r, const double F[], Refined *out)
     out->gain = out->gain_error = 0.0;
     out->keeps = 1;
     for (size_t k = 0; k < m; k++) {
-        const double error = hypot(out->spread_start[k], out->spread[k]) / sqrt((double)r->config->members);
+        const double error = hypot(out->spread_start[k], out->spread[k]) / sqrt((double)r->config->replicates);
         const double loss = F[m + k] - F[k], doubt = isfinite(error) ? 2.0 * error : 0.0;
         if (r->weight[k] > 0.0) {
             out->gain -= r->weight[k] * loss;
@@ -233,15 +233,15 @@ static void judge_gain(const Refine *r, const double F[], Refined *out)
     }
 }
 
-/* Both designs with members that neither has seen, so that what was picked for its luck is not believed. */
+/* Both designs with replicates that neither has had, so that luck is not taken for a gain. */
 static Status compare(Refine *r, Refined *out, Err *err)
 {
     const size_t n_var = r->run->schema.n_var, m = r->run->schema.n_obj;
     double F[2 * OBJECTIVES_MAX];
     unsigned char ok[2] = {0};
-    TRY(open_simulator(r, r->config->members, err));
+    TRY(open_simulator(r, r->config->replicates, err));
     TRY(evaluate(r, 2, (const double *const[]){r->x, out->x}, 1, F, ok, err));
-    count(2, 0, r->config->members, out);
+    count(2, 0, r->config->replicates, out);
     memcpy(out->f_start, r->f, m * sizeof *r->f);
     memcpy(out->f, r->f + m, m * sizeof *r->f);
     memcpy(out->spread_start, r->spread, m * sizeof *r->spread);
@@ -281,7 +281,7 @@ Status refine_design(const Run *h, size_t row, const RefineConfig *config, Refin
             "the answers of this run are noisy, and polishing simulates a design once: nothing would tell a gain "
             "from luck; let the search go on instead (search.max_evals, search.replicate_share)");
     if (h->settings->problem.kind != PROBLEM_TOWER)
-        used.members = 1;
+        used.replicates = 1;
     if (used.algorithm)
         TRY(polish_knows(used.algorithm, err));
     Refine r = {.run = h, .config = &used, .x = h->table.x + row * h->schema.n_var, .start = clock_seconds()};

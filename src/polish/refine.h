@@ -2,13 +2,13 @@
  *
  *   value = sum_k weight_k f_k / (range of f_k on the front)       of the objectives to be improved, minimised
  *
- *   1 the design is simulated `members` times: what the kept objectives may lose (one spread of a single simulation, or
- *     `slack`), and whether its answers scatter at all; where they do every design tried is a mean of `members`
+ *   1 the design is simulated `replicates` times: what the kept objectives may lose (one spread of a single simulation, or
+ *     `slack`), and whether its answers scatter at all; where they do every design tried is a mean of `replicates`
  *   2 response surface of the nearest simulations and simulator in turn (polish/local.h)
  *   3 NLopt's `algorithm` on the simulator from the best so far (polish/polish.h), with half of the simulations where
  *     it was asked for by name, else COBYLA with what step 2 leaves
- *   4 design and result once more, with members that no step has seen:
- *         error_k = root((spread_start_k^2 + spread_end_k^2) / members)
+ *   4 design and result once more, with replicates that no step has used:
+ *         error_k = root((spread_start_k^2 + spread_end_k^2) / replicates)
  *
  * A gain counts where it is more than twice sum_k weight_k error_k / range_k (as if all errors went together) and no
  * kept objective lost more than it may and twice its error. With a single member nothing is known of the spread, and
@@ -27,7 +27,7 @@ typedef struct {
     const double *weight;      /* (n_obj) >= 0; 0: not to be improved */
     const unsigned char *keep; /* (n_obj) */
     double slack;              /* share of the value; < 0: one spread */
-    long members;              /* of a tower; others are asked once */
+    long replicates;           /* of a tower; others are asked once */
     size_t max_evals;          /* simulations, those of all steps together */
     double max_seconds;        /* 0: no limit */
     int (*go_on)(void *user);  /* asked before each simulation, NULL: yes; 0: STATUS_STOPPED and nothing is refined */

@@ -54,13 +54,13 @@ static void note(const SimSample *sample, void *user)
     h->n++;
 }
 
-static Status follow(const Scenario *world, const Scene *scene, SceneKind kind, const double x[], int floor, History *out,
-                     Err *err)
+static Status follow(const Scenario *scenario, const Scene *scene, SceneKind kind, const double x[], int floor,
+                     History *out, Err *err)
 {
     SimWorker *worker;
     SimResult result;
-    const double wanted = world->options.sim.duration_s, dt = world->motion.dt_s;
-    const size_t samples = wanted > 0 ? (size_t)(wanted / dt) + 2 : world->motion.n;
+    const double wanted = scenario->options.sim.duration_s, dt = scenario->motion.dt_s;
+    const size_t samples = wanted > 0 ? (size_t)(wanted / dt) + 2 : scenario->motion.n;
     TRY(make_room(out, samples, err));
     TRY(sim_worker_create(&worker, scene, err));
     Track track = {.h = out, .room = samples, .floor = floor, .worker = worker};
@@ -72,14 +72,14 @@ static Status follow(const Scenario *world, const Scene *scene, SceneKind kind, 
     return status;
 }
 
-Status history_run(const Scenario *world, SceneKind kind, const double x[], int floor, History *out, Err *err)
+Status history_run(const Scenario *scenario, SceneKind kind, const double x[], int floor, History *out, Err *err)
 {
     Scene *scene;
-    SceneOptions s = world->options;
+    SceneOptions s = scenario->options;
     s.sim.engine = ENGINE_FAST; /* the others have no samples */
-    *out = (History){.dt_s = world->motion.dt_s};
-    TRY(scene_create(&scene, &s, &world->motion, err));
-    const Status status = follow(world, scene, kind, x, floor, out, err);
+    *out = (History){.dt_s = scenario->motion.dt_s};
+    TRY(scene_create(&scene, &s, &scenario->motion, err));
+    const Status status = follow(scenario, scene, kind, x, floor, out, err);
     scene_free(scene);
     if (status != STATUS_OK)
         history_free(out);

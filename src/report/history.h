@@ -30,7 +30,7 @@ typedef struct {
 } History;
 
 /* floor: from 0. x as for sim_run. A run that does not finish gives an empty History. */
-Status history_run(const Scenario *world, SceneKind kind, const double x[], int floor, History *out, Err *err);
+Status history_run(const Scenario *scenario, SceneKind kind, const double x[], int floor, History *out, Err *err);
 void history_free(History *h);
 
 #endif

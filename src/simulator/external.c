@@ -17,6 +17,7 @@
 
 #include "base/clock.h"
 #include "base/list.h"
+#include "evaluate/threads.h"
 #include "simulator/guard.h"
 
 enum { LINE_MAX_BYTES = 1 << 20, READ_BYTES = 1 << 16, WORDS_MAX = 128, GRACE_MS = 1000, LOOK_MS = 200 };
@@ -474,6 +475,7 @@ Status external_open(Problem *p, const ProblemOptions *o, size_t n_workers, Err 
                    .self = e,
                    .n_parts = 1,
                    .part_size = sizeof(ExternalAnswer) + e->n_obj * sizeof(double),
-                   .n_workers = e->n_workers};
+                   .n_workers = e->n_workers,
+                   .executor = executor_for(e->n_workers)};
     return STATUS_OK;
 }

@@ -38,11 +38,11 @@ static void note(const SimSample *sample, void *user)
     track->t[track->n++] = sample->t;
 }
 
-static Status follow(const Scenario *world, const double x[], Track *track, Err *err)
+static Status follow(const Scenario *scenario, const double x[], Track *track, Err *err)
 {
     SimWorker *worker;
     SimResult result;
-    TRY(sim_worker_create(&worker, world->scene, err));
+    TRY(sim_worker_create(&worker, scenario->scene, err));
     sim_worker_sample(worker, note, track);
     Status status = sim_run(worker, SCENE_IMPACT, x, &result, err);
     sim_worker_free(worker);
@@ -73,16 +73,16 @@ static void compare(const Track *a, const Track *b, Horizon *out)
     }
 }
 
-Status horizon_find(const Scenario *world, const double x[], double change, Horizon *out, Err *err)
+Status horizon_find(const Scenario *scenario, const double x[], double change, Horizon *out, Err *err)
 {
-    const size_t n = (size_t)scene_n_floors(world->scene);
+    const size_t n = (size_t)scene_n_floors(scenario->scene);
     double changed[FLOORS_MAX + 2];
     Track one = {0}, other = {0};
     for (size_t j = 0; j < n + 2; j++)
         changed[j] = x[j] * (j < n ? 1 + change : 1);
-    Status status = follow(world, x, &one, err);
+    Status status = follow(scenario, x, &one, err);
     if (status == STATUS_OK)
-        status = follow(world, changed, &other, err);
+        status = follow(scenario, changed, &other, err);
     if (status == STATUS_OK)
         compare(&one, &other, out);
     free(one.t);

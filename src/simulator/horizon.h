@@ -18,6 +18,6 @@ typedef struct {
     double distance_at_end;
 } Horizon;
 
-Status horizon_find(const Scenario *world, const double x[], double change, Horizon *out, Err *err);
+Status horizon_find(const Scenario *scenario, const double x[], double change, Horizon *out, Err *err);
 
 #endif

@@ -135,7 +135,8 @@ static Problem problem_on(Tower *t)
                      .self = t,
                      .n_parts = t->plan.n_records * t->plan.n_replicates,
                      .part_size = sizeof(SimResult),
-                     .n_workers = t->n_workers};
+                     .n_workers = t->n_workers,
+                     .executor = executor_for(t->n_workers)};
 }
 
 /* The problem, or what is there of the tower released. */
@@ -215,6 +216,7 @@ Status tower_simulate(const Problem *p, size_t n, const SimTask tasks[], SimResu
     Queue *q;
     Problem few = *p;
     few.n_workers = n < few.n_workers ? n : few.n_workers;
+    few.executor = executor_for(few.n_workers);
     TRY(queue_open(&q, &few, QUEUE_AS_ASKED, 0, 0, err));
     const Status status = run_all(q, n, tasks, results, err);
     queue_close(q);
