@@ -169,6 +169,7 @@ static Status run(const Args *args, Err *err)
         return fail(err, STATUS_USAGE,
                     "--rigid: a linear building is solved in closed form, no other engine does it; leave sim.engine at "
                     "fast");
+    s.sim.forces = args_has(args, "--json");
     TRY(tower_open(&p, &s, job.replicates ? TOWER_AS_SET : TOWER_SINGLE, job.kind == SCENE_NO_CORE ? 1 : SIZE_MAX,
                    err));
     const Scenario *w = tower_record(tower_of(&p), 0);

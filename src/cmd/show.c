@@ -19,6 +19,65 @@ static const char *scene_word(SceneKind kind)
     return "unknown";
 }
 
+/* [u > v, u < v][floor] */
+static json_t *json_sides(int n, const double of[SIDES][FLOORS_MAX])
+{
+    return json_pack("[o, o]", json_numbers((size_t)n, of[0]), json_numbers((size_t)n, of[1]));
+}
+
+static void add_contact_forces(json_t *o, int n, const SimForces *f)
+{
+    double count[SIDES][FLOORS_MAX] = {{0}};
+    for (int side = 0; side < SIDES; side++)
+        for (int j = 0; j < n; j++)
+            count[side][j] = (double)f->contacts[side][j];
+    json_object_set_new(o, "contact_force_max_n", json_number(f->contact_force_max_n));
+    json_object_set_new(o, "contact_force_n", json_sides(n, f->contact_force_n));
+    json_object_set_new(o, "contact_impulse_ns", json_sides(n, f->contact_impulse_ns));
+    json_object_set_new(o, "contacts", json_sides(n, count));
+    json_object_set_new(o, "indentation_m", json_sides(n, f->indentation_m));
+}
+
+static void add_core_forces(json_t *o, size_t n, const SimForces *f)
+{
+    json_object_set_new(o, "core_base_shear_n", json_number(f->core_base_shear_n));
+    json_object_set_new(o, "core_overturning_nm", json_number(f->core_overturning_nm));
+    json_object_set_new(o, "core_top_m", json_number(f->core_top_m));
+    json_object_set_new(o, "core_shear_n", json_numbers(n, f->core_shear_n));
+    json_object_set_new(o, "core_moment_nm", json_numbers(n, f->core_moment_nm));
+    if (f->stress_known) {
+        json_object_set_new(o, "core_stress_pa", json_number(f->core_stress_pa));
+        json_object_set_new(o, "core_stress_storey", json_integer(f->core_stress_storey + 1));
+        json_object_set_new(o, "core_storey_stress_pa", json_numbers(n, f->core_storey_stress_pa));
+        json_object_set_new(o, "core_shear_stress_pa", json_number(f->core_shear_stress_pa));
+    }
+    if (f->buckling_known) {
+        json_object_set_new(o, "core_buckling_ratio", json_number(f->core_buckling_ratio));
+        json_object_set_new(o, "core_slenderness", json_numbers(n, f->core_slenderness));
+        json_object_set_new(o, "core_buckling_pa", json_numbers(n, f->core_buckling_pa));
+    }
+}
+
+static void add_building_forces(json_t *o, size_t n, const SimForces *f)
+{
+    json_object_set_new(o, "building_base_shear_n", json_number(f->building_base_shear_n));
+    json_object_set_new(o, "building_overturning_nm", json_number(f->building_overturning_nm));
+    json_object_set_new(o, "building_shear_n", json_numbers(n, f->building_shear_n));
+    json_object_set_new(o, "base_shear_n", json_number(f->base_shear_n));
+    json_object_set_new(o, "base_shear_ratio", json_number(f->base_shear_ratio));
+    json_object_set_new(o, "overturning_nm", json_number(f->overturning_nm));
+    json_object_set_new(o, "peak_velocity_m_s", json_numbers(n, f->peak_velocity_m_s));
+}
+
+static void add_forces(json_t *o, SceneKind kind, int n, const SimForces *f)
+{
+    add_building_forces(o, (size_t)n, f);
+    if (kind != SCENE_NO_CORE)
+        add_core_forces(o, (size_t)n, f);
+    if (kind == SCENE_IMPACT)
+        add_contact_forces(o, n, f);
+}
+
 json_t *json_result(SceneKind kind, const SimResult *r)
 {
     json_t *o = json_object();
@@ -34,7 +93,12 @@ json_t *json_result(SceneKind kind, const SimResult *r)
     json_object_set_new(o, "peak_displacement_m", json_numbers(n_floors, r->peak_displacement_m));
     json_object_set_new(o, "peak_drift_m", json_numbers(n_floors, r->peak_drift_m));
     json_object_set_new(o, "peak_acceleration_g", json_numbers(n_floors, r->peak_acceleration_g));
+    json_object_set_new(o, "drift_ratio", json_number(r->drift_ratio_max));
+    json_object_set_new(o, "drift_ratio_storey", json_integer(r->drift_ratio_storey + 1));
+    json_object_set_new(o, "peak_drift_ratio", json_numbers(n_floors, r->drift_ratio));
     json_object_set_new(o, "mode_share_pct", json_numbers(n_modes, r->mode_share_pct));
+    if (r->forces_known)
+        add_forces(o, kind, r->n_floors, &r->forces);
 
     json_object_set_new(o, "damped_building_j", json_number(r->damped_building_j));
     json_object_set_new(o, "damped_core_j", json_number(r->damped_core_j));

@@ -80,6 +80,22 @@ Status core_beam_make(CoreBeam *c, const CoreOptions *o, int n, const double sto
     return STATUS_OK;
 }
 
+CoreStorey core_beam_storey(const CoreOptions *o, int n, int storey, double t_base_m, double t_top_m)
+{
+    const double share = n > 1 ? (double)storey / (n - 1) : 0, t = t_base_m + (t_top_m - t_base_m) * share;
+    const double side = o->side_m, inner = side - 2 * t;
+    const Section a = section_at(o, share, t);
+    CoreStorey c = {.thickness = t, .area = a.area, .inertia = a.inertia};
+    if (o->section == CORE_BOX) {
+        c.depth = side;
+        c.shear_stress_per_n = (side * side * side - inner * inner * inner) / 8 / (a.inertia * 2 * t); /* Q / (I 2t) */
+    } else if (o->section == CORE_PLATE) {
+        c.depth = t;
+        c.shear_stress_per_n = 1.5 / a.area;
+    }
+    return c;
+}
+
 Status core_beam_first_hz(const CoreOptions *o, CoreTheory theory, int n, const double storey_m[], double t_base_m,
                           double t_top_m, double *hz, Err *err)
 {

@@ -31,6 +31,14 @@ typedef struct {
 Status core_beam_make(CoreBeam *c, const CoreOptions *o, int n, const double storey_m[], double t_base_m,
                       double t_top_m, Err *err);
 
+/* The section in storey 0..n-1. */
+typedef struct {
+    double thickness, depth;   /* [m] of the wall; outer, in the direction of bending */
+    double area, inertia;      /* [m2], [m4] */
+    double shear_stress_per_n; /* [1/m2] largest shear stress per unit of shear force */
+} CoreStorey;
+CoreStorey core_beam_storey(const CoreOptions *o, int n, int storey, double t_base_m, double t_top_m);
+
 /* Frequency of the first mode [Hz] by a theory that may be another than the options'. */
 Status core_beam_first_hz(const CoreOptions *o, CoreTheory theory, int n, const double storey_m[], double t_base_m,
                           double t_top_m, double *hz, Err *err);

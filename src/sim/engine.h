@@ -11,6 +11,7 @@
 #define IMTET_SIM_ENGINE_H
 
 #include "scene/motion.h"
+#include "sim/force_monitor.h"
 #include "sim/model.h"
 #include "sim/result.h"
 
@@ -35,7 +36,8 @@ typedef struct {
     double refinement;        /* `fast`: all that `accuracy` says is refined by this factor; 0: by none */
     SimSampleFn sample;       /* `fast`: called at every sample of the motion; NULL: not wanted */
     void *sample_user;
-    void *work; /* from EngineEntry.work_create; NULL: the run allocates its own */
+    ForceMonitor *forces; /* set for this design; NULL: not wanted */
+    void *work;           /* from EngineEntry.work_create; NULL: the run allocates its own */
 } EngineOptions;
 
 typedef Status (*EngineFn)(const SimModel *model, const Motion *motion, const EngineOptions *options, SimResult *result,

@@ -45,6 +45,7 @@ typedef struct {
     long replicates;        /* simulations of a design under each record */
     Robust robust;          /* how a design's results under several records become one */
     double gap_tolerance_m; /* standard deviation of a gap as built */
+    int forces;             /* no setting: who wants SimResult.forces says so */
 } SimOptions;
 
 /* What a scene is made of; without the ground motion. */

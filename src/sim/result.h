@@ -19,6 +19,41 @@ typedef enum {
 } RunOutcome;
 const char *run_outcome_words(RunOutcome outcome);
 
+/* One contact of a floor with one side of the core. */
+typedef struct {
+    int floor, side;           /* from 0; sign(u - v) */
+    int open;                  /* still open where the run ended: no rebound */
+    double t, duration;        /* [s] */
+    double approach, rebound;  /* [m/s] relative speeds at onset and end */
+    double force, indentation; /* [N], [m] largest */
+    double impulse, lost;      /* [N s], [J] energy that the law dissipated */
+} SimContact;
+typedef void (*SimContactFn)(const SimContact *contact, void *user);
+
+enum { SIDES = 2 }; /* of the core: [0] u > v, [1] u < v */
+
+/* Forces, where they are asked for (sim/force_monitor.h has the formulas); peaks are magnitudes. Storeys and floors from
+ * 0. */
+typedef struct {
+    double contact_force_n[SIDES][FLOORS_MAX], contact_impulse_ns[SIDES][FLOORS_MAX];
+    double indentation_m[SIDES][FLOORS_MAX];
+    long contacts[SIDES][FLOORS_MAX];
+    double contact_force_max_n;
+
+    double core_shear_n[FLOORS_MAX], core_moment_nm[FLOORS_MAX]; /* per storey; the moment at its foot */
+    double core_base_shear_n, core_overturning_nm, core_top_m;
+    int stress_known; /* the section has a shape: box or plate */
+    double core_storey_stress_pa[FLOORS_MAX], core_stress_pa, core_shear_stress_pa;
+    int core_stress_storey;
+    int buckling_known;                                                /* the section has walls: box */
+    double core_buckling_pa[FLOORS_MAX], core_slenderness[FLOORS_MAX]; /* critical stress; clear width / thickness */
+    double core_buckling_ratio; /* largest stress / critical stress of a storey */
+
+    double building_shear_n[FLOORS_MAX], building_base_shear_n, building_overturning_nm;
+    double base_shear_n, base_shear_ratio, overturning_nm; /* of building and core; over the weight of the floors */
+    double peak_velocity_m_s[FLOORS_MAX];                  /* of the floors relative to the ground */
+} SimForces;
+
 typedef struct {
     RunOutcome outcome;
     char reason[160]; /* empty when outcome is RUN_OK */
@@ -32,6 +67,8 @@ typedef struct {
 
     int n_floors, n_modes;
     double peak_displacement_m[FLOORS_MAX], peak_drift_m[FLOORS_MAX], peak_acceleration_g[FLOORS_MAX];
+    double drift_ratio[FLOORS_MAX], drift_ratio_max;  /* [-] peak interstorey drift over the storey's height */
+    int drift_ratio_storey;                           /* of the largest, from 0 */
     double mode_share_pct[FLOORS_MAX];                /* of input_energy_j, dissipated by each building mode */
     double contact_loss_j, contact_stored_j, clamp_j; /* lost in contacts, still stored, removed by the no-tension
                                                          condition */
@@ -39,6 +76,9 @@ typedef struct {
     double indentation_max_m, indentation_ratio;               /* [-] over the contact's radius */
     long steps, force_evaluations;                             /* what the run cost */
     double seconds;                                            /* wall time */
+
+    int forces_known; /* they were asked for: SimOptions.forces */
+    SimForces forces;
 } SimResult;
 
 /* Hertz's theory requires an indentation that is small against the radius. Beyond it the figures are those of the

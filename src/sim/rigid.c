@@ -41,6 +41,7 @@ typedef struct {
     double input;       /* [J] */
     double *work;       /* (3 size size) */
     PeakMonitor peaks;
+    ForceMonitor *forces; /* may be NULL */
     long steps;
     void *store;
 } Tied;
@@ -193,6 +194,17 @@ static void find_rates(Tied *d)
     multiply(2 * n, n, d->P, y_dot, d->rate);
 }
 
+/* q and q' of building and core by their own modes. */
+static void record_forces(Tied *d, double t)
+{
+    const int n = d->n;
+    double q[2 * FLOORS_MAX];
+    multiply(2 * n, n, d->P, d->y, q);
+    force_monitor_point(
+        d->forces,
+        &(ForcePoint){.t = t, .ground = d->z[2 * n], .building_q = q, .building_v = d->rate, .core_q = q + n});
+}
+
 static void look(Tied *d, double t)
 {
     const int n = d->n;
@@ -205,6 +217,8 @@ static void look(Tied *d, double t)
     for (int j = 0; j < n; j++)
         point->of[PEAK_ACCELERATION][j] += d->z[2 * n];
     peak_monitor_add(&d->peaks);
+    if (d->forces)
+        record_forces(d, t);
 }
 
 static double dot(int n, const double a[], const double b[])
@@ -292,9 +306,12 @@ Status engine_rigid(const SceneOptions *o, const Building *b, const CoreBeam *co
                     const EngineOptions *options, SimResult *result, Err *err)
 {
     static const double STEP[] = {[ACCURACY_COARSE] = 2e-3, [ACCURACY_STANDARD] = 1e-3, [ACCURACY_FINE] = 5e-4};
-    Tied d = {.n = b->n, .size = 2 * b->n + 2, .step = STEP[options->accuracy], .peaks.n = b->n};
+    Tied d = {
+        .n = b->n, .size = 2 * b->n + 2, .step = STEP[options->accuracy], .peaks.n = b->n, .forces = options->forces};
     memset(result, 0, sizeof *result);
     result->n_floors = result->n_modes = b->n;
+    if (d.forces)
+        force_monitor_start(d.forces, b->n);
     const Status status = prepare(&d, o, b, core, err);
     if (status == STATUS_OK) {
         const double reached = walk(&d, motion, options->duration);

@@ -133,6 +133,8 @@ Status sim_worker_create(SimWorker **out, const Scene *scene, Err *err)
     w->scene = scene;
     w->run = scene->run;
     Status status = model_create(&w->model, scene->building.n, err);
+    if (status == STATUS_OK && scene->options.sim.forces)
+        status = force_monitor_create(&w->run.forces, scene->building.n, err);
     if (status == STATUS_OK && scene->engine->work_create)
         status = scene->engine->work_create(&w->run.work, scene->building.n, err);
     if (status == STATUS_OK)
@@ -147,6 +149,7 @@ void sim_worker_free(SimWorker *worker)
     if (!worker)
         return;
     model_free(&worker->model);
+    force_monitor_free(worker->run.forces);
     if (worker->scene->engine->work_free)
         worker->scene->engine->work_free(worker->run.work);
     free(worker);
@@ -156,6 +159,12 @@ void sim_worker_sample(SimWorker *worker, SimSampleFn sample, void *user)
 {
     worker->run.sample = sample;
     worker->run.sample_user = user;
+}
+
+void sim_worker_contacts(SimWorker *worker, SimContactFn contact, void *user)
+{
+    if (worker->run.forces)
+        force_monitor_on_contact(worker->run.forces, contact, user);
 }
 
 void sim_worker_floors(const SimWorker *worker, const SimSample *sample, double u[])
@@ -204,6 +213,17 @@ static Status run_engine(SimWorker *w, SimResult *result, Err *err)
     return STATUS_OK;
 }
 
+static void set_drift_ratios(const double storey_m[], SimResult *r)
+{
+    for (int s = 0; s < r->n_floors; s++) {
+        r->drift_ratio[s] = r->peak_drift_m[s] / storey_m[s];
+        if (r->drift_ratio[s] > r->drift_ratio_max) {
+            r->drift_ratio_max = r->drift_ratio[s];
+            r->drift_ratio_storey = s;
+        }
+    }
+}
+
 Status sim_run(SimWorker *w, SceneKind kind, const double x[], SimResult *result, Err *err)
 {
     const Scene *scene = w->scene;
@@ -212,12 +232,19 @@ Status sim_run(SimWorker *w, SceneKind kind, const double x[], SimResult *result
     memset(result, 0, sizeof *result);
     if (kind != SCENE_NO_CORE)
         TRY(core_beam_make(&w->core, &scene->options.core, n, scene->building.storey_m, x[n], x[n + 1], err));
+    if (w->run.forces)
+        force_monitor_set(w->run.forces, &scene->options, &scene->building, kind == SCENE_NO_CORE ? NULL : &w->core, x);
     if (kind == SCENE_RIGID) {
         TRY(run_rigid(w, result, err));
     } else {
         TRY(model_set(&w->model, &scene->options, &scene->building, kind == SCENE_IMPACT ? &w->core : NULL, x, err));
         TRY(run_engine(w, result, err));
     }
+    if (w->run.forces) {
+        force_monitor_report(w->run.forces, w->run.duration, &result->forces);
+        result->forces_known = 1;
+    }
+    set_drift_ratios(scene->building.storey_m, result);
     result->mcore_kg = kind == SCENE_NO_CORE ? 0 : w->core.mass_kg;
     result->indentation_ratio = result->indentation_max_m / scene->options.contact.radius_m;
     result->seconds = clock_seconds() - start;

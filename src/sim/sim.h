@@ -52,6 +52,10 @@ void sim_worker_sample(SimWorker *worker, SimSampleFn sample, void *user);
 /* Displacements u (n_floors) [m] of the floors at a sample. */
 void sim_worker_floors(const SimWorker *worker, const SimSample *sample, double u[]);
 
+/* Every run from now on calls contact for every contact that ends or is open at the end, and with NULL where the run
+ * begins; contact NULL: none does. Only with SimOptions.forces. */
+void sim_worker_contacts(SimWorker *worker, SimContactFn contact, void *user);
+
 /* x (n_floors + 2) as above; ignored for SCENE_NO_CORE. */
 Status sim_run(SimWorker *worker, SceneKind kind, const double x[], SimResult *result, Err *err);
 

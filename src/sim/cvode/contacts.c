@@ -114,6 +114,9 @@ static void close_gap(Contacts *c, int j, int side, double t, double speed)
     c->v0[j] = fmax(speed, c->model->contact.v0_floor);
     c->impacts++;
     c->floored += speed < c->model->contact.v0_floor;
+    c->recorded[j] = c->recorded_loss[j] = 0;
+    if (c->forces)
+        force_monitor_onset(c->forces, j, side, t, speed);
     if (c->log && c->log->n < c->log->n_max)
         c->log->at[c->log->n++] = (ContactOnset){.floor = j, .t = t, .speed = speed};
 }
@@ -131,6 +134,8 @@ int contacts_switch(Contacts *c, double t, const double q[], const double v[], c
             flipped = 1;
         } else if (c->side[j] && (found[j] || (p < 0 && p_dot <= 0))) {
             c->side[j] = 0;
+            if (c->forces)
+                force_monitor_end(c->forces, j, t, -p_dot);
             if (!(model->gap[j] > 0)) /* leaves one side onto the other */
                 close_gap(c, j, -side, t, -p_dot);
             flipped = 1;
@@ -151,6 +156,31 @@ void contacts_settle(Contacts *c, const double w[])
             close_gap(c, j, s, c->t_before + wait, speed);
         }
     }
+}
+
+uint64_t contacts_record(Contacts *c, double t, const double q[], const double v[], double force[])
+{
+    const SimModel *model = c->model;
+    const double half = 0.5 * (t - c->t_recorded);
+    uint64_t in_contact = 0;
+    for (int j = 0; j < model->n; j++) {
+        const int s = c->side[j];
+        const double p = s * relative_displacement(model, j, q) - model->gap[j];
+        const double p_dot = s * relative_displacement(model, j, v);
+        ContactForce f = {0};
+        if (s && p > 0)
+            f = contact_force(&model->contact, model->mass_eff[j], p, p_dot, c->v0[j]);
+        const double loss = (f.raw - f.hertz) * p_dot;
+        if (s)
+            force_monitor_contact(c->forces, j, half * (c->recorded[j] + f.force), half * (c->recorded_loss[j] + loss),
+                                  f.force, p);
+        c->recorded[j] = f.force;
+        c->recorded_loss[j] = loss;
+        force[j] = -s * f.force;
+        in_contact |= (uint64_t)(f.force > 0) << j;
+    }
+    c->t_recorded = t;
+    return in_contact;
 }
 
 int contacts_any(const Contacts *c)

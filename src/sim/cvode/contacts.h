@@ -24,6 +24,8 @@ typedef struct {
     double q_before[MODES_MAX], v_before[MODES_MAX], a_before[MODES_MAX]; /* modal motion there */
     long impacts, floored;                                                /* contact onsets, those with v0 limited */
     OnsetLog *log;                                                        /* NULL: none */
+    ForceMonitor *forces;                                                 /* NULL: none */
+    double t_recorded, recorded[FLOORS_MAX], recorded_loss[FLOORS_MAX];   /* [s], [N], [W] at the last record */
 } Contacts;
 
 /* Where the contacts' power goes [W]: F p' = k p^1.5 p' (stored) + (F_raw - k p^1.5) p' (lost)
@@ -53,6 +55,10 @@ int contacts_switch(Contacts *c, double t, const double q[], const double v[], c
 
 /* By overlap, at the end of a step where w (n_pad): what overlaps is closed, what does not is open. */
 void contacts_settle(Contacts *c, const double w[]);
+
+/* Gives the monitor what the contacts did since the last call, by the trapezoidal rule, and the forces f_j (n) now.
+ * Returns bit by bit which floors are in contact. By event only. */
+uint64_t contacts_record(Contacts *c, double t, const double q[], const double v[], double force[]);
 
 int contacts_any(const Contacts *c);
 double contacts_stored(const Contacts *c, const double q[]);

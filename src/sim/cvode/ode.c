@@ -158,7 +158,10 @@ int ode_prepare(Ode *o, const double rtol[3])
     for (int i = 0; i < model->m; i++)
         fastest = fmax(fastest, model->omega[i] * (1 + 2 * model->zeta[i]));
     o->steps_max = (long)fmin(1e6 + 4 * fastest * o->options->duration, 1e12); /* explicit steps are near 1/fastest */
-    o->contacts = (Contacts){.model = model, .by_overlap = !o->locate, .log = o->options->onsets};
+    o->contacts =
+        (Contacts){.model = model, .by_overlap = !o->locate, .log = o->options->onsets, .forces = o->options->forces};
+    if (o->contacts.forces)
+        force_monitor_start(o->contacts.forces, model->nc);
     energy_account_start(&o->account, model);
     if (SUNContext_Create(NULL, &o->context))
         return -1;
@@ -184,6 +187,20 @@ void ode_release(Ode *o)
     SUNContext_Free(&o->context);
 }
 
+static void record_forces(Ode *o, double t, const double y[])
+{
+    const SimModel *model = o->model;
+    double force[FLOORS_MAX] = {0};
+    const uint64_t in_contact = model->nc ? contacts_record(&o->contacts, t, y, y + model->m, force) : 0;
+    force_monitor_point(o->contacts.forces, &(ForcePoint){.t = t,
+                                                          .ground = o->a_sampled,
+                                                          .building_q = y,
+                                                          .building_v = y + model->m,
+                                                          .core_q = y + model->nb,
+                                                          .force = force,
+                                                          .in_contact = in_contact});
+}
+
 /* Notes the peaks at a state, and its powers for so many seconds. */
 static void sample(Ode *o, double t, const double y[], double seconds)
 {
@@ -193,6 +210,8 @@ static void sample(Ode *o, double t, const double y[], double seconds)
     o->power_sampled = contacts_add(&o->contacts, y, y + model->m, contact);
     memcpy(o->v_sampled, y + model->m, sizeof *y * (size_t)model->m);
     energy_account_peaks(&o->account, t, y, y + model->m, contact);
+    if (o->contacts.forces)
+        record_forces(o, t, y);
     if (!o->with_energies)
         energy_account_add(&o->account, seconds, o->v_sampled, o->a_sampled, &o->power_sampled);
 }

@@ -61,6 +61,8 @@ static void layout(FastWork *k, Carve *c)
     layout_flight(&k->flight, c, modes, floors);
     layout_contact(&k->contact, c, modes, floors);
     layout_reach(&k->reach, c, modes, floors);
+    CARVE(c, modes, &k->record.q, &k->record.v);
+    CARVE(c, floors, &k->record.force);
     k->R = carve(c, modes * floors, sizeof(double));
     k->R_abs = carve(c, modes * floors, sizeof(double));
     k->D_abs = carve(c, modes * floors, sizeof(double));

@@ -8,12 +8,14 @@
 #include "base/units.h"
 #include "sim/contact.h"
 #include "sim/energy_balance.h"
+#include "sim/force_monitor.h"
 
 /* One unit, in the order of use: static functions alone. */
 #include "sim/fast/design.inc"
 #include "sim/fast/step_tables.inc"
 #include "sim/fast/contact_quadrature.inc"
 #include "sim/fast/peaks.inc"
+#include "sim/fast/record.inc"
 #include "sim/fast/free_flight.inc"
 #include "sim/fast/free_interval.inc"
 #include "sim/fast/contact_forces.inc"
@@ -76,6 +78,7 @@ static int later(int level, int than)
 /* The longest free flight that can be certified, of levels above `resolving`, where contacts are resolved; 0: none. */
 static int fly_on(FastWork *k, Interval *in, int resolving)
 {
+    k->step_start = in->start + k->base * in->at / TICKS;
     for (int level = later(k->flight_level, aligned_level(in)); level < resolving; level++) {
         const uint32_t end = in->at + (TICKS >> level);
         if (!free_flight(k, level_ready(k, level, 0), ground_at(in, in->at), ground_at(in, end)))
@@ -194,6 +197,7 @@ static long free_intervals(FastWork *k, const Motion *motion, long first, long e
         if (i > first)
             send_sample(k, (double)i * motion->dt_s);
         const Ramp a = ground(motion, i);
+        k->step_start = (double)i * motion->dt_s;
         flow_interval(k, l, a.start, a.end);
     }
     k->flights += n;
@@ -294,6 +298,7 @@ void FAST_KERNEL(FastWork *k, const SimModel *model, const Motion *motion, const
     memset(result, 0, sizeof *result);
     set_design(k, model, motion->dt_s);
     start_at_rest(k);
+    record_start(k);
     const int arrived = integrate(k, motion, options->duration);
     result->n_floors = model->n;
     result->n_modes = model->nb;

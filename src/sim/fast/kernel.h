@@ -79,6 +79,12 @@ typedef struct {
     vec *u, *drift, *a, *core;
 } ReachScratch;
 
+/* A point inside a step, for a force monitor: modes (m_pad), floors (n_pad). */
+typedef struct {
+    vec *q, *v, *force;
+    double energy[2]; /* [2 J] kinetic and strain of building and core at the start of the step */
+} RecordScratch;
+
 typedef struct FastWork {
     void *store;
     const SimModel *model;
@@ -121,6 +127,7 @@ typedef struct FastWork {
     FlightScratch flight;
     ContactScratch contact;
     ReachScratch reach;
+    RecordScratch record;
 
     /* energy account and counts */
     double contact_lost, contact_clamped, indentation_max;

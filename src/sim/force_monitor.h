@@ -1,0 +1,76 @@
+/* sim/force_monitor.h -- forces of one response, beyond SimResult: contacts, storey shears and moments, stresses.
+ *
+ * Elastic forces of the nodes are K u and Kc v; storey s = 1..n ends at floor s at height z_s, z_0 = 0:
+ *
+ *   V_s = sum_{j >= s} (K u)_j,   M_s = sum_{j >= s} (K u)_j (z_j - z_{s-1})       shear, bending moment at its foot
+ *
+ * and likewise of the core; overturning is M_1. Both are linear in the modal coordinates: row i of a table of outputs
+ * belongs to mode i. Core modes that an engine left out follow quasi-statically, w_i^2 q_i = -gamma_i a + sum_j R_ij f_j
+ * (mode acceleration method). Peaks are taken from points that the engine gives in the order of time, with a parabola
+ * through three of them wherever the middle one is the largest: spaced by h they miss (w h)^4 / 400 of a component of
+ * frequency w.
+ *
+ *   stress of storey s      max(|M_s|, |M_s+1|) c / I_s [Pa], c the distance of the extreme fibre
+ *   shear stress            largest in the section: box V Q / (2 t I), plate 1.5 V / A
+ *   plate buckling          k pi^2 E / (12 (1 - nu^2)) (t/b)^2, k = 4: a long wall of clear width b = B - 2t between its
+ *                           neighbours, simply supported, without stiffeners, in uniform compression; elastic
+ *
+ * Contacts: the engine says when one begins, what it did in a step, and when it ends.
+ *
+ * Life cycle  force_monitor_create -> (force_monitor_set -> force_monitor_start -> points, contacts -> force_monitor_report)
+ * Threads     one monitor per simulation under way
+ * Source      R. W. Clough, J. Penzien, Dynamics of Structures (1993), ch. 12; S. Timoshenko, J. Gere, Theory of Elastic
+ *             Stability (1961), section 9.2 */
+#ifndef IMTET_SIM_FORCE_MONITOR_H
+#define IMTET_SIM_FORCE_MONITOR_H
+
+#include "scene/core_beam.h"
+#include "sim/options.h"
+#include "sim/result.h"
+
+typedef struct ForceMonitor ForceMonitor;
+
+Status force_monitor_create(ForceMonitor **out, int n_floors, Err *err);
+void force_monitor_free(ForceMonitor *m); /* NULL is fine */
+
+/* Another scene or design. core NULL: the building alone, else it must outlive the runs. x: gaps and thicknesses as for
+ * sim_run. */
+void force_monitor_set(ForceMonitor *m, const SceneOptions *o, const Building *b, const CoreBeam *core,
+                       const double x[]);
+/* contact is called for every contact that ends or is open where the run ends, and with NULL where a run begins. */
+void force_monitor_on_contact(ForceMonitor *m, SimContactFn contact, void *user);
+
+/* --- for engines ---------------------------------------------------------------------------------------------- */
+
+/* A run from rest. core_modes: those that points have, from the lowest; the others are quasi-static. */
+void force_monitor_start(ForceMonitor *m, int core_modes);
+
+/* Modal coordinates and velocities of the building, coordinates of the core; force (n) [N] on the floors by their
+ * contacts, in_contact bit by bit where it is not zero; ground acceleration [m/s2]. */
+typedef struct {
+    double t, ground;
+    const double *building_q, *building_v, *core_q, *force;
+    uint64_t in_contact;
+} ForcePoint;
+void force_monitor_point(ForceMonitor *m, const ForcePoint *p);
+
+/* May the peaks rise while sum q_i'^2 + w_i^2 q_i^2 of the building and of the core are no more than this [2 J]? If not,
+ * points may be left out. */
+int force_monitor_may_rise(ForceMonitor *m, double building, double core);
+
+/* Contacts of a floor with one side of the core: side = sign(u - v). While one is open: impulse [N s], energy lost [J],
+ * largest force [N] and indentation [m] of a part of it. */
+void force_monitor_onset(ForceMonitor *m, int floor, int side, double t, double speed);
+void force_monitor_contact(ForceMonitor *m, int floor, double impulse, double lost, double force, double indentation);
+
+/* Whether contacts are not wanted one by one and the largest force and indentation of this floor and side are not below
+ * these: then force_monitor_contact needs the impulse alone, and no loss. */
+int force_monitor_is_below(const ForceMonitor *m, int floor, int side, double force, double indentation);
+void force_monitor_end(ForceMonitor *m, int floor, double t, double speed);
+
+/* --- for who asks --------------------------------------------------------------------------------------------- */
+
+/* After a run that ended at time t. */
+void force_monitor_report(ForceMonitor *m, double t, SimForces *out);
+
+#endif
