@@ -286,7 +286,7 @@ static const struct {
     {"isesd.cor", "sampling period", "sampling", "an ISESD record without equal steps"},
     {"isesd.cor", "-> corrected acceleration", "-> corrected velocity", ": not an acceleration"},
     {"three.slist", "43 samples", "44 samples", ": ends after 43 samples"},
-    {"three.slist", "FLOAT, cm/s**2", "INTEGER, Counts", ":1: holds counts, no acceleration"},
+    {"three.slist", "FLOAT, cm/s**2", "INTEGER, Counts", "set motion.counts_per_m_s2 to the gain"},
     {"one.tspair", "43 samples", "44 samples", ": ends after 43 samples"},
     {"one.tspair", "100 sps", "0 sps", ":1: no usable number of samples or rate"},
     {"film.smc", "        86", "        96", ": ends after 43 samples, but its header announces 48"},

@@ -2,8 +2,8 @@
  *
  *   TIMESERIES NET_STA_LOC_CHA_Q, 6001 samples, 200 sps, 2009-08-24T00:20:03.000000, SLIST, INTEGER, Counts
  *
- * then samples row by row (SLIST), or "time  sample" (TSPAIR). Counts are refused: the header line must name the unit of
- * an acceleration, or none, and then it is asked for. A segment is a channel; a gap makes two. */
+ * then samples row by row (SLIST), or "time  sample" (TSPAIR). Counts need the gain of the instrument. A segment is a
+ * channel; a gap makes two. */
 #include <math.h>
 #include <string.h>
 
@@ -55,11 +55,7 @@ static Status read_header(Record *r, Lines *l, Channel **c, BlockForm *form, Err
     form->dt = 1 / rate;
     if (!field(l, 6, &from, &to))
         return STATUS_OK;
-    if (find_word(from, to, "count"))
-        return fail(err, STATUS_BAD_DATA,
-                    "%s:%d: holds counts, no acceleration; divide them by the gain of the instrument [counts per m/s2] "
-                    "and write the unit in the place of '%.*s'",
-                    l->path, l->number, (int)(to - from), from);
+    (*c)->counts = find_word(from, to, "count") != NULL;
     (*c)->units = units_named(from, to);
     return STATUS_OK;
 }
