@@ -52,7 +52,7 @@ static inline void function_judge(const Evaluation *e, double f[], double g[], c
 
 static const Simulator FUNCTION = {function_simulate, function_combine, NULL};
 
-/* One worker, the asker itself. `function` must stay where it is. */
+/* One worker, the client itself. `function` must stay where it is. */
 static inline Problem function_problem(Function *function, size_t n_var, size_t n_obj, size_t n_con,
                                        const double *lower, const double *upper, FunctionFn evaluate, void *user)
 {
@@ -70,7 +70,7 @@ static inline Problem function_problem(Function *function, size_t n_var, size_t 
                      .n_parts = 1,
                      .part_size = (n_obj + n_con + 1) * sizeof(double),
                      .n_workers = 1,
-                     .executor = &EXECUTOR_ASKER};
+                     .executor = &EXECUTOR_CLIENT};
 }
 
 /* n evaluations of before, whose numbers begin with first_id; G and generation may be NULL. */

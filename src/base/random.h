@@ -1,4 +1,4 @@
-/* base/random.h -- random streams that are named, not shared.
+/* base/random.h -- random streams keyed by purpose: none is shared.
  *
  *   stream = (seed, purpose, generation, individual)      draw k of a stream = Philox4x32-10(counter k, key)
  *

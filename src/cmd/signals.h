@@ -1,4 +1,4 @@
-/* cmd/signals.h -- SIGINT, SIGTERM and SIGHUP (the terminal is gone) as a wish to end.
+/* cmd/signals.h -- SIGINT, SIGTERM and SIGHUP (the terminal is gone) as a request to end.
  *
  * The first one is only noted, for signals_asked to tell; a second one of any kind ends the program at once, unless
  * it comes within 0.2 s of the first (`timeout` signals the process and then its group). Also SIGXFSZ, a file beyond

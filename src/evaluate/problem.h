@@ -1,4 +1,4 @@
-/* evaluate/problem.h -- what a search knows of the thing it improves, and what is behind it.
+/* evaluate/problem.h -- the optimization problem, its simulator and its executor.
  *
  *   minimise f(x),  g(x) <= 0,  lower <= x <= upper
  *
@@ -45,7 +45,7 @@ typedef struct {
 /* Who does the tasks: evaluate/threads.h. */
 typedef struct {
     Status (*start)(void **self, Queue *queue, Err *err);
-    void (*help)(void *self); /* called while the asker waits: does something; NULL: needs no help */
+    void (*help)(void *self); /* called while the client waits: does something; NULL: needs no help */
     void (*stop)(void *self); /* the queue gives no more tasks: returns when none is under way */
 } Executor;
 

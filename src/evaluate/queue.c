@@ -199,7 +199,7 @@ static size_t find(const Queue *q, const double x[])
     return i;
 }
 
-/* -- the asker ----------------------------------------------------------------------------------------------------- */
+/* -- the client ----------------------------------------------------------------------------------------------------- */
 
 static int is_same_design(const Queue *q, const Evaluation *row, const double x[])
 {
@@ -271,7 +271,7 @@ Status queue_ask(Queue *q, const Asked *asked, Err *err)
     return status;
 }
 
-/* The asker alone adds and removes designs, so that it may count and read them without the lock. */
+/* The client alone adds and removes designs, so that it may count and read them without the lock. */
 size_t queue_pending(const Queue *q)
 {
     return q->n;

@@ -1,6 +1,6 @@
-/* evaluate/queue.h -- the one queue between those who want designs evaluated and those who simulate.
+/* evaluate/queue.h -- the one queue of evaluations, between its client (a search) and the executor.
  *
- *   asker      queue_ask(x) ...      queue_next(): the next finished design
+ *   client     queue_ask(x) ...      queue_next(): the next finished design
  *   executor   queue_take(task) -> Simulator.simulate -> queue_give(task)          (evaluate/tasks.h)
  *
  * A design is as many tasks as the problem has parts, and any worker takes any of them, in the order of asking: a few
@@ -19,7 +19,7 @@
  *            STATUS_STOPPED. On a fault likewise; of several the one of the task asked for first is reported, so that
  *            the message does not depend on the number of workers
  * Life cycle queue_open (starts the executor) -> queue_ask, queue_next ... -> queue_close (waits for what is under way)
- * Threads    take and give from any thread, the rest from the asker's own
+ * Threads    take and give from any thread, the rest from the client's own
  * Memory     of a pending design all at once, used again for later ones */
 #ifndef IMTET_EVALUATE_QUEUE_H
 #define IMTET_EVALUATE_QUEUE_H
@@ -28,7 +28,7 @@
 
 typedef enum { QUEUE_AS_ASKED, QUEUE_AS_ARRIVED } QueueOrder;
 
-/* Borrows the problem. n_note: numbers that a design carries through the queue for the asker. n_before: designs that
+/* Borrows the problem. n_note: numbers that a design carries through the queue for the client. n_before: designs that
  * were evaluated before this session. */
 Status queue_open(Queue **out, const Problem *problem, QueueOrder order, size_t n_note, long n_before, Err *err);
 void queue_close(Queue *q); /* NULL is fine */

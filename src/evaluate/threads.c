@@ -67,30 +67,30 @@ static Status threads_start(void **self, Queue *q, Err *err)
 
 const Executor EXECUTOR_THREADS = {threads_start, NULL, threads_join};
 
-/* -- the asker itself ---------------------------------------------------------------------------------------------- */
+/* -- the client itself ---------------------------------------------------------------------------------------------- */
 
-static Status asker_start(void **self, Queue *q, Err *err)
+static Status client_start(void **self, Queue *q, Err *err)
 {
     (void)err;
     *self = q;
     return STATUS_OK;
 }
 
-static void asker_help(void *self)
+static void client_help(void *self)
 {
     Task task;
     if (queue_take(self, 0, &task))
         do_task(self, 0, &task);
 }
 
-static void asker_stop(void *self)
+static void client_stop(void *self)
 {
     (void)self;
 }
 
-const Executor EXECUTOR_ASKER = {asker_start, asker_help, asker_stop};
+const Executor EXECUTOR_CLIENT = {client_start, client_help, client_stop};
 
 const Executor *executor_for(size_t n_workers)
 {
-    return n_workers > 1 ? &EXECUTOR_THREADS : &EXECUTOR_ASKER;
+    return n_workers > 1 ? &EXECUTOR_THREADS : &EXECUTOR_CLIENT;
 }

@@ -1,17 +1,17 @@
 /* evaluate/threads.h -- executors of this process.
  *
  * An executor takes tasks of the queue, has the simulator do them and gives their parts; it knows nothing of designs.
- * Processes on other machines fit here as well: `start` greets them, `help` sends tasks and receives parts, `stop` says
- * goodbye. */
+ * Processes on other machines fit here as well: `start` sends them the problem, `help` exchanges tasks and parts, `stop`
+ * ends them. */
 #ifndef IMTET_EVALUATE_THREADS_H
 #define IMTET_EVALUATE_THREADS_H
 
 #include "evaluate/problem.h"
 
 extern const Executor EXECUTOR_THREADS; /* a thread for each worker of the problem */
-extern const Executor EXECUTOR_ASKER;   /* the asker itself is worker 0, while it waits: no thread at all */
+extern const Executor EXECUTOR_CLIENT;  /* the client itself is worker 0, while it waits: no thread at all */
 
-/* Threads where there are several workers, else the asker. */
+/* Threads where there are several workers, else the client. */
 const Executor *executor_for(size_t n_workers);
 
 /* Workers for a setting of so many threads; 0: one for each processor. */

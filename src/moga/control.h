@@ -1,4 +1,4 @@
-/* moga/control.h -- surrogate management: whether the surrogate is used, and who gets which part of a batch.
+/* moga/control.h -- surrogate management: whether the surrogate is used, and how a batch is shared among criteria.
  *
  *   agreement     running mean of Kendall's tau between predicted and evaluated objectives of the batches. The
  *                 surrogate is used while it is above AGREEMENT_MIN

@@ -262,10 +262,14 @@ size_t selection_select(Selection *s, size_t n, const double F[], const double v
 {
     size_t n_selected = 0;
     memset(s->taken, 0, n);
-    if (s->kind == SELECTION_NSGA3)
+    switch (s->kind) {
+    case SELECTION_NSGA3:
         take_layers(s, n, F, violation, keep, random);
-    else
+        break;
+    case SELECTION_RVEA:
         take_in_rounds(s, n, F, violation, keep, progress);
+        break;
+    }
     for (size_t i = 0; i < n; i++)
         if (s->taken[i])
             selected[n_selected++] = i;

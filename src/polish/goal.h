@@ -1,4 +1,4 @@
-/* polish/goal.h -- what polishing wants, on the surface and on the true evaluation alike:
+/* polish/goal.h -- the scalar problem of polishing, the same on the surrogate and the true evaluation:
  *
  *   minimise   value(x) = sum_k weight_k f_k(x)      while  f_k(x) <= bound_k,  g(x) <= 0,  lower <= x <= upper
  *

@@ -1,4 +1,4 @@
-/* polish/local.h -- the goal of polish/goal.h pursued on a response surface and the true evaluation in turn.
+/* polish/local.h -- the goal of polish/goal.h solved on a surrogate and the true evaluation in turn.
  *
  *   each round  1 surface of the known designs, those tried before among them (rbf/rbf.h)
  *               2 in LOCAL_BATCH boxes about the best design, the first `trust` wide each way and every further one

@@ -1,4 +1,4 @@
-/* polish/refine.h -- a design of a run polished, honestly: is the gain more than the spread?
+/* polish/refine.h -- a design of a run polished; a gain counts where it exceeds the standard deviation.
  *
  *   value = sum_k weight_k f_k / (range of f_k on the front)       of the objectives to be improved, minimised
  *

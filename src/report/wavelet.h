@@ -1,4 +1,4 @@
-/* report/wavelet.h -- how strongly a signal swings at each frequency, instant by instant.
+/* report/wavelet.h -- Morlet amplitude spectrum of a signal over time.
  *
  *   A(f, t) = |2 sum_k g_k u_k exp(-2 pi i f (t_k - t))| / sum_k g_k,   g_k = exp(-(t_k - t)^2 / (2 s^2)),
  *   s = WAVELET_CYCLES / (2 pi f),   |t_k - t| <= 4 s

@@ -1,4 +1,4 @@
-/* scene/building.h -- the steel tower: stiffness and mass of its floors, its modes and their damping.
+/* scene/building.h -- the building: stiffness and mass of its floors, its modes and their damping.
  *
  *   K phi_i = w_i^2 M phi_i,   phi_i' M phi_i = 1,   gamma_i = phi_i' M 1      (participation [sqrt(kg)])
  *

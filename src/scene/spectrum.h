@@ -1,4 +1,4 @@
-/* scene/spectrum.h -- what engineers ask of a ground motion.
+/* scene/spectrum.h -- response spectrum and intensity measures of a ground motion.
  *
  *   u'' + 2 zeta w u' + w^2 u = -a(t):   Sd = max |u|,  PSv = w Sd,  PSa = w^2 Sd     w = 2 pi / T
  *

@@ -1,4 +1,4 @@
-/* sim/result.h -- what a simulation answers: the response to one ground motion, and the state sample by sample.
+/* sim/result.h -- result of a simulation: the response to one ground motion, and the state sample by sample.
  *
  * Energies in joules. Threads  no state */
 #ifndef IMTET_SIM_RESULT_H

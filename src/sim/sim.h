@@ -1,4 +1,4 @@
-/* sim/sim.h -- from a design and a ground motion to a response: the one door to every engine.
+/* sim/sim.h -- from a design and a ground motion to a response: the one interface to every engine.
  *
  *     M  u'' + C  u' + K  u - f = -M  1 a(t)        u (n_floors)  floors relative to the ground [m]
  *     Mc v'' + Cc v' + Kc v + f = -Mc 1 a(t)        v (n_floors)  core nodes

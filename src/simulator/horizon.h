@@ -1,4 +1,4 @@
-/* simulator/horizon.h -- how far ahead one run says what a second, hardly different one does.
+/* simulator/horizon.h -- predictability horizon: the time until two perturbed runs diverge.
  *
  * Two runs of the engine fast, gaps changed relatively by `change` in the second. Their distance is measured in energy:
  *   d(t)^2 = sum_i (dq_i'^2 + w_i^2 dq_i^2) / max_{s <= t} sum_i (q_i'^2 + w_i^2 q_i^2)

@@ -1,4 +1,4 @@
-/* simulator/scenario.h -- settings made real: the ground motion read and scaled, the scene built on it.
+/* simulator/scenario.h -- a scenario from settings: the ground motion read and scaled, the scene built on it.
  *
  * Life cycle  scenario_open -> ... -> scenario_close      (a zeroed Scenario may be closed)
  * Ownership   the scene borrows the motion beside it: a Scenario must stay where it was opened */

@@ -1,4 +1,4 @@
-/* simulator/schema.h -- the columns of a run: variables, objectives, and what else a simulation tells.
+/* simulator/schema.h -- the columns of a run: variables, objectives, and further results.
  *
  *   column 0..n_var-1, then n_obj objectives, then n_extra measures that are only written down
  *

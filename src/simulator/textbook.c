@@ -216,7 +216,7 @@ Status textbook_open(Problem *p, const ProblemOptions *o, uint32_t seed, Err *er
                    .n_parts = 1,
                    .part_size = e->n_obj * sizeof(double),
                    .n_workers = 1,
-                   .executor = &EXECUTOR_ASKER};
+                   .executor = &EXECUTOR_CLIENT};
     return STATUS_OK;
 }
 
