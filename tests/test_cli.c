@@ -139,6 +139,26 @@ static void test_old_names_are_understood_and_the_new_ones_told(void **state)
     expect(2, "unknown option '--tied'", "modes configs/quick.ini --tied");
 }
 
+static void shows(const char *arguments)
+{
+    static const char WANTED[] = "peak 0.3 g (0.8338 g x 0.3598, time x 2)";
+    Said s;
+    run(&s, "%s --pga 0.3 --stretch 2", arguments);
+    if (s.code != 0 || (!strstr(s.out, WANTED) && !strstr(s.err, WANTED)))
+        fail_msg("imtet %s: exit %d, wanted %s\n%s%s", arguments, s.code, WANTED, s.out, s.err);
+    forget(&s);
+}
+
+static void test_whatever_takes_a_motion_shows_how_it_is_scaled(void **state)
+{
+    (void)state;
+    shows("spectrum builtin:kobe-like");
+    shows("simulate configs/quick.ini --design none --set sim.duration_s=1");
+    shows("optimize configs/quick.ini --out @/scaled --set sim.duration_s=1 --set search.initial=4 --max-evals 4 "
+          "--set search.polish=0");
+    shows("evaluate @/scaled --design knee --record builtin:kobe-like");
+}
+
 static void test_missing_inputs_end_with_66(void **state)
 {
     (void)state;
@@ -413,7 +433,7 @@ static void write_five_floors(double k, double m)
     write_in_place("five/K.csv", stiffness);
     write_in_place("five/M.csv", mass);
     write_in_place("five.ini", "[building]\nmodel = five\nfirst_storey_m = 4\nstorey_m = 3\n[core]\nside_m = 5\n"
-                               "[motion]\nstretch = 1\n[sim]\nduration_s = 15\n"
+                               "[motion]\npga_g = 0.3\n[sim]\nduration_s = 15\n"
                                "[search]\ninitial = 20\npopulation = 12\nmax_evals = 30\n");
     write_in_place("five.csv", "gap_01_m,gap_02_m,gap_03_m,gap_04_m,gap_05_m,t_base_m,t_top_m\n"
                                "0.01,0.02,0.03,0.04,0.05,0.012,0.0064\n");
@@ -455,6 +475,7 @@ int main(void)
         cmocka_unit_test(test_a_misunderstood_command_line_ends_with_2_and_a_suggestion),
         cmocka_unit_test(test_bad_settings_and_data_end_with_65),
         cmocka_unit_test(test_old_names_are_understood_and_the_new_ones_told),
+        cmocka_unit_test(test_whatever_takes_a_motion_shows_how_it_is_scaled),
         cmocka_unit_test(test_missing_inputs_end_with_66),
         cmocka_unit_test(test_output_that_cannot_be_written_ends_with_74),
         cmocka_unit_test(test_the_printed_settings_are_the_default_file_and_in_order),

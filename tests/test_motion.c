@@ -217,6 +217,27 @@ static void test_the_benchmark_records_are_read(void **state)
 
 /* ---- scaling -------------------------------------------------------------------------------------------------- */
 
+static void says(double pga_g, double stretch, const char *wanted)
+{
+    Motion m;
+    Err err = {0};
+    char text[MOTION_PEAK_TEXT_MAX];
+    CHECK_OK(parse(&m, "t,a_m_s2\n0,1\n0.5,-4.905\n1,2\n", UNIT_FROM_FILE, &err), &err);
+    CHECK_OK(motion_prepare(&m, pga_g, stretch, &err), &err);
+    motion_peak_text(&m, text);
+    assert_string_equal(text, wanted);
+    motion_free(&m);
+}
+
+static void test_the_peak_of_a_motion_is_shown_with_its_scaling(void **state)
+{
+    (void)state;
+    says(0, 1, "peak 0.5 g");
+    says(0.3, 1, "peak 0.3 g (0.5 g x 0.6, time x 1)");
+    says(0, 3.1, "peak 0.5 g (0.5 g x 1, time x 3.1)");
+    says(0.43, 3.1, "peak 0.43 g (0.5 g x 0.86, time x 3.1)");
+}
+
 static void test_prepare_scales_the_peak_and_stretches_time(void **state)
 {
     (void)state;
@@ -454,6 +475,7 @@ int main(void)
         cmocka_unit_test(test_every_bad_file_is_refused_with_its_reason),
         cmocka_unit_test(test_a_file_that_is_not_there_is_missing),
         cmocka_unit_test(test_the_benchmark_records_are_read),
+        cmocka_unit_test(test_the_peak_of_a_motion_is_shown_with_its_scaling),
         cmocka_unit_test(test_prepare_scales_the_peak_and_stretches_time),
         cmocka_unit_test(test_a_motion_of_zeros_is_none),
         cmocka_unit_test(test_a_constant_acceleration_overshoots_as_the_closed_form_says),

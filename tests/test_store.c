@@ -8,11 +8,11 @@
 #include "store/store.h"
 #include "study/study.h"
 
-static const char TOWER[] = "[motion]\nrecord = builtin:kobe-like\nstretch = 1\n[sim]\nduration_s = 6\n"
+static const char TOWER[] = "[motion]\nrecord = builtin:kobe-like\npga_g = 0.3\n[sim]\nduration_s = 6\n"
                             "[search]\ninitial = 12\npopulation = 8\nmax_evals = 20\nsurrogate_max = 20\n";
 
 /* Cheap: as many simulations as polishing wants, half a second of each. */
-static const char POLISHED[] = "[motion]\nrecord = builtin:kobe-like\nstretch = 1\n[sim]\nduration_s = 6\n"
+static const char POLISHED[] = "[motion]\nrecord = builtin:kobe-like\npga_g = 0.3\n[sim]\nduration_s = 6\n"
                                "accuracy = coarse\n[search]\ninitial = 100\npopulation = 100\nmax_evals = 400\n"
                                "surrogate = off\npolish = 1\n";
 

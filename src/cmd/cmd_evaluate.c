@@ -40,7 +40,8 @@ static json_t *describe(const Scenario *w, const SimResult results[N_CASES])
     json_t *o = json_object();
     json_object_set_new(o, "record", json_string(w->motion.name));
     json_object_set_new(o, "pga_g", json_number(motion_peak(&w->motion) / GRAVITY));
-    json_object_set_new(o, "stretch", json_number(w->record.stretch));
+    json_object_set_new(o, "scale", json_number(w->motion.scale));
+    json_object_set_new(o, "stretch", json_number(w->motion.stretch));
     for (int i = 0; i < N_CASES; i++)
         json_object_set_new(o, i == WITH_CORE ? "with_core" : "no_core", json_result(SCENES[i], &results[i]));
     return o;
@@ -48,7 +49,7 @@ static json_t *describe(const Scenario *w, const SimResult results[N_CASES])
 
 static void print_pair(const Scenario *w, const SimResult results[N_CASES])
 {
-    show_motion(&w->motion, w->options.sim.duration_s);
+    show_motion(stdout, &w->motion, w->options.sim.duration_s);
     show_result_names("");
     for (int i = 0; i < N_CASES; i++)
         show_result(i == WITH_CORE ? "with core" : "no core", &results[i]);

@@ -31,7 +31,7 @@ static Status print_json(const Horizon *h, const ReplicateSummary *r, Err *err)
 
 static void print_table(const Scenario *w, const Horizon *h, const ReplicateSummary *r)
 {
-    show_motion(&w->motion, w->options.sim.duration_s);
+    show_motion(stdout, &w->motion, w->options.sim.duration_s);
     printf("\ntwo runs whose gaps differ by %g of themselves are apart by\n", CHANGE);
     for (int i = 0; i < HORIZON_LEVELS; i++)
         if (isnan(h->reached_s[i]))

@@ -49,6 +49,12 @@ static void tell_start(const char *folder, size_t n_simulated, void *user)
         fprintf(stderr, "%s: resumed after %zu simulations\n", folder, n_simulated);
 }
 
+static void tell_motion(const Motion *motion, double duration_s, void *user)
+{
+    (void)user;
+    show_motion(stderr, motion, duration_s);
+}
+
 static void print_front(const Run *run, const StudySummary *summary)
 {
     const size_t n_obj = run->schema.n_obj, knee = run_knee(run);
@@ -210,6 +216,7 @@ static Status optimize(const Args *args, Run *finished, Err *err)
                             .force = args_has(args, "--force-settings"),
                             .stop = signals_asked,
                             .started = tell_start,
+                            .motion = tell_motion,
                             .progress = tell,
                             .user = &telling,
                             .run = finished};

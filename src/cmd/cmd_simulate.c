@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "scene/design.h"
+#include "base/units.h"
 #include "cmd/commands.h"
 #include "cmd/show.h"
 #include "simulator/tower.h"
@@ -88,6 +89,9 @@ static json_t *describe(const Job *job, size_t i, const Motion *m)
     json_t *o = json_object();
     json_object_set_new(o, "design", json_integer((json_int_t)i + 1));
     json_object_set_new(o, "record", json_string(m->name));
+    json_object_set_new(o, "pga_g", json_number(motion_peak(m) / GRAVITY));
+    json_object_set_new(o, "scale", json_number(m->scale));
+    json_object_set_new(o, "stretch", json_number(m->stretch));
     json_object_update_new(o, json_result(job->kind, &job->results[i]));
     if (job->replicates)
         json_object_set_new(o, "ensemble", json_replicates(&job->summary[i]));
@@ -134,7 +138,7 @@ static Status write_csv(const Job *job, const char *path, Err *err)
 static void print_table(const Job *job, const Scenario *w)
 {
     char label[32];
-    show_motion(&w->motion, w->options.sim.duration_s);
+    show_motion(stdout, &w->motion, w->options.sim.duration_s);
     putchar('\n');
     show_result_names(job->kind == SCENE_RIGID ? "rigidly connected" : "");
     for (size_t i = 0; i < job->n; i++) {

@@ -145,7 +145,9 @@ static void write_script(FILE *script, const void *user)
 static void print_table(const Spectrum *s, const Motion *m)
 {
     const MotionFigures *f = &s->figures;
-    printf("%s: %zu samples every %g s, format %s%s%s\n", m->name, m->n, m->dt_s, m->format,
+    char peak[MOTION_PEAK_TEXT_MAX];
+    motion_peak_text(m, peak);
+    printf("%s: %zu samples every %g s, %s, format %s%s%s\n", m->name, m->n, m->dt_s, peak, m->format,
            m->channel[0] ? ", channel " : "", m->channel);
     if (m->processed[0])
         printf("processed %s\n", m->processed);
@@ -183,8 +185,6 @@ static Status run(const Args *args, Err *err)
     Motion m = {0};
     Spectrum spectrum = {0};
     settings_defaults(&s);
-    s.motion.pga_g = 0;
-    s.motion.stretch = 1;
     TRY(args_apply(args, &s, NULL, NULL, err));
     if (strlen(args->operand) >= sizeof s.motion.record)
         return fail(err, STATUS_MISSING, "%.60s...: the path is too long", args->operand);

@@ -137,16 +137,15 @@ Status show_json(json_t *all, Err *err)
     return failed ? fail(err, STATUS_IO, "standard output: cannot be written") : STATUS_OK;
 }
 
-void show_motion(const Motion *m, double duration_s)
+void show_motion(FILE *out, const Motion *m, double duration_s)
 {
-    const double length = (double)(m->n - 1) * m->dt_s, peak_g = motion_peak(m) / GRAVITY;
-    printf("%s: ", m->name);
+    const double length = (double)(m->n - 1) * m->dt_s;
+    char peak[MOTION_PEAK_TEXT_MAX];
+    motion_peak_text(m, peak);
+    fprintf(out, "%s: ", m->name);
     if (duration_s > 0 && duration_s < length)
-        printf("the first %.4g of ", duration_s);
-    printf("%.4g s, peak %.4g g", length, peak_g);
-    if (m->scale > 0 && (m->scale != 1 || m->stretch != 1))
-        printf(" (%.4g g x %.4g, time x %.4g)", peak_g / m->scale, m->scale, m->stretch);
-    putchar('\n');
+        fprintf(out, "the first %.4g of ", duration_s);
+    fprintf(out, "%.4g s, %s\n", length, peak);
 }
 
 void show_result_names(const char *label)

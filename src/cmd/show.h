@@ -15,7 +15,7 @@ json_t *json_replicates(const ReplicateSummary *r);
 Status show_json(json_t *all, Err *err);
 
 /* The ground motion: name, length (and how much of it was simulated; duration_s 0: all), peak, scaling. */
-void show_motion(const Motion *m, double duration_s);
+void show_motion(FILE *out, const Motion *m, double duration_s);
 
 /* One line per simulation: label, objectives, impacts, outcome where it is not ok. */
 void show_result_names(const char *label);

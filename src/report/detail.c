@@ -30,7 +30,8 @@ static void describe(const Scenario *w, const double x[], Detail *d)
     }
     snprintf(d->record, sizeof d->record, "%s", w->motion.name);
     d->pga_g = motion_peak(&w->motion) / GRAVITY;
-    d->stretch = w->record.stretch;
+    d->scale = w->motion.scale;
+    d->stretch = w->motion.stretch;
     d->duration_s = given > 0 ? given : (double)(w->motion.n - 1) * w->motion.dt_s;
 }
 
@@ -117,7 +118,8 @@ static Status take_elsewhere(const Settings *other, const char *record, const do
     const Status status = simulate(&p, 2, x, results, err);
     snprintf(e->record, sizeof e->record, "%s", m->name);
     e->pga_g = motion_peak(m) / GRAVITY;
-    e->stretch = s.motion.stretch;
+    e->scale = m->scale;
+    e->stretch = m->stretch;
     e->with_core = results[0];
     e->no_core = results[1];
     problem_close(&p);

@@ -20,7 +20,7 @@ typedef struct {
 
 typedef struct {
     char record[128];
-    double pga_g, stretch;
+    double pga_g, scale, stretch;
     SimResult with_core, no_core;
 } Elsewhere;
 
@@ -29,7 +29,7 @@ typedef struct {
     double gap_m[FLOORS_MAX], thickness_m[FLOORS_MAX];
     double building_hz[FLOORS_MAX], core_hz[FLOORS_MAX];
     char record[128];
-    double pga_g, stretch, duration_s;
+    double pga_g, scale, stretch, duration_s;
     SimResult result[N_SCENES]; /* by SceneKind */
     /* until the floor's displacement stays below 2 % of its peak */
     History history[2];    /* SCENE_IMPACT, SCENE_NO_CORE */

@@ -78,17 +78,17 @@ static json_t *json_of_detail(const Detail *d)
     json_t *others = json_array();
     for (size_t i = 0; i < d->n_elsewhere; i++) {
         const Elsewhere *e = &d->elsewhere[i];
-        others = json_append(others, json_pack("{s:s, s:f, s:f, s:o, s:o}", "record", e->record, "pga_g", e->pga_g,
-                                               "stretch", e->stretch, "with_core", json_of_result(&e->with_core),
-                                               "no_core", json_of_result(&e->no_core)));
+        others = json_append(others, json_pack("{s:s, s:f, s:f, s:f, s:o, s:o}", "record", e->record, "pga_g", e->pga_g,
+                                               "scale", e->scale, "stretch", e->stretch, "with_core",
+                                               json_of_result(&e->with_core), "no_core", json_of_result(&e->no_core)));
     }
-    return json_pack("{s:i, s:o, s:o, s:o, s:o, s:s, s:f, s:f, s:f, s:o, s:o, s:o, s:o, s:o, s:o}", "floor",
+    return json_pack("{s:i, s:o, s:o, s:o, s:o, s:s, s:f, s:f, s:f, s:f, s:o, s:o, s:o, s:o, s:o, s:o}", "floor",
                      d->floor + 1, "gap_m", json_numbers(n, d->gap_m), "thickness_m", json_numbers(n, d->thickness_m),
                      "building_hz", json_numbers(n, d->building_hz), "core_hz", json_numbers(n, d->core_hz), "record",
-                     d->record, "pga_g", d->pga_g, "stretch", d->stretch, "duration_s", d->duration_s, "with_core",
-                     json_of_result(&d->result[SCENE_IMPACT]), "no_core", json_of_result(&d->result[SCENE_NO_CORE]),
-                     "rigid", json_of_result(&d->result[SCENE_RIGID]), "history_with_core",
-                     json_of_history(&d->history[0], &d->spectrum[0]), "history_no_core",
+                     d->record, "pga_g", d->pga_g, "scale", d->scale, "stretch", d->stretch, "duration_s",
+                     d->duration_s, "with_core", json_of_result(&d->result[SCENE_IMPACT]), "no_core",
+                     json_of_result(&d->result[SCENE_NO_CORE]), "rigid", json_of_result(&d->result[SCENE_RIGID]),
+                     "history_with_core", json_of_history(&d->history[0], &d->spectrum[0]), "history_no_core",
                      json_of_history(&d->history[1], &d->spectrum[1]), "elsewhere", others);
 }
 

@@ -1,6 +1,7 @@
 #include "scene/motion.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -30,6 +31,17 @@ double motion_peak(const Motion *m)
     for (size_t i = 0; i < m->n; i++)
         peak = fmax(peak, fabs(m->accel[i]));
     return peak;
+}
+
+void motion_peak_text(const Motion *m, char text[MOTION_PEAK_TEXT_MAX])
+{
+    const double peak_g = motion_peak(m) / GRAVITY;
+    const int is_as_recorded = !(m->scale > 0) || (m->scale == 1 && m->stretch == 1);
+    if (is_as_recorded)
+        snprintf(text, MOTION_PEAK_TEXT_MAX, "peak %.4g g", peak_g);
+    else
+        snprintf(text, MOTION_PEAK_TEXT_MAX, "peak %.4g g (%.4g g x %.4g, time x %.4g)", peak_g, peak_g / m->scale,
+                 m->scale, m->stretch);
 }
 
 void motion_free(Motion *m)

@@ -31,6 +31,10 @@ typedef struct {
 Status motion_prepare(Motion *m, double pga_g, double stretch, Err *err);
 
 double motion_peak(const Motion *m); /* [m/s2] */
+
+/* "peak 0.348 g", of a motion that was scaled or stretched "peak 0.3 g (0.348 g x 0.862, time x 3.1)". */
+enum { MOTION_PEAK_TEXT_MAX = 96 };
+void motion_peak_text(const Motion *m, char text[MOTION_PEAK_TEXT_MAX]);
 void motion_free(Motion *m);
 
 #endif

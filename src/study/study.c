@@ -345,10 +345,19 @@ static Status polish(Study *study, Err *err)
     return status == STATUS_STOPPED ? STATUS_OK : status;
 }
 
+static void tell_motions(const Study *study)
+{
+    const StudyOptions *o = study->options;
+    const Tower *t = adapter_tower(study->adapter);
+    for (size_t i = 0; o->motion && t && i < tower_n_records(t); i++)
+        o->motion(&tower_record(t, i)->motion, study->used.sim.duration_s, o->user);
+}
+
 static Status work(Study *study, Err *err)
 {
     if (study->options->started)
         study->options->started(study->summary->folder, study->summary->n_before, study->options->user);
+    tell_motions(study);
     TRY(study_log_start(study->store, study->adapter, &study->used, study->summary->n_before, err));
     TRY(run_search(study, err));
     TRY(study->status);

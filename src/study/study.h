@@ -44,6 +44,7 @@ typedef struct {
     int force;               /* changed limits are taken over */
     int (*stop)(void *user); /* asked from any thread, often; NULL: never */
     void (*started)(const char *folder, size_t n_simulated, void *user);
+    void (*motion)(const Motion *motion, double duration_s, void *user); /* for every record, then */
     void (*progress)(const StudyProgress *p, void *user);
     void *user;
     Run *run; /* becomes the finished run, for run_free, where the study returns STATUS_OK; NULL: not wanted */

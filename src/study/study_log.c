@@ -10,14 +10,26 @@
 #include "study/improvement.h"
 #include "study/progress.h"
 
+static Status log_motions(RunStore *store, const Tower *t, Err *err)
+{
+    for (size_t i = 0; i < tower_n_records(t); i++) {
+        const Motion *m = &tower_record(t, i)->motion;
+        char peak[MOTION_PEAK_TEXT_MAX];
+        motion_peak_text(m, peak);
+        TRY(store_log(store, err, "%s: %.4g s, %s", m->name, (double)(m->n - 1) * m->dt_s, peak));
+    }
+    return STATUS_OK;
+}
+
 static Status log_problem(RunStore *store, const Adapter *adapter, const Settings *used, const char *program, Err *err)
 {
     const Schema *schema = adapter_schema(adapter);
     const int threads = adapter_threads(adapter);
-    if (adapter_tower(adapter))
-        return store_log(store, err, "%s: %zu floors, %s, pga %g g, stretch %g, %d threads, seed %ld", program,
-                         schema->n_var - 2, used->motion.record, used->motion.pga_g, used->motion.stretch, threads,
+    if (adapter_tower(adapter)) {
+        TRY(log_motions(store, adapter_tower(adapter), err));
+        return store_log(store, err, "%s: %zu floors, %d threads, seed %ld", program, schema->n_var - 2, threads,
                          used->search.seed);
+    }
     return store_log(store, err, "%s: %zu variables, %zu objectives, %d threads, seed %ld", program, schema->n_var,
                      schema->n_obj, threads, used->search.seed);
 }

@@ -34,13 +34,17 @@ function standoutTable(before) {
       before ? line("building without core", "", objectives.map((c, k) => before[k] * c.factor), null, "") : null)));
 }
 
+// As in the program's own output: the peak, and what the record was multiplied by.
+const peakText = (d) => `peak ${show(d.pga_g)} g` +
+  (d.scale === 1 && d.stretch === 1 ? ", as recorded" : ` (${show(d.pga_g / d.scale)} g \u00d7 ${show(d.scale)}, time \u00d7 ${show(d.stretch)})`);
+
 function summaryPart() {
   const d = run.detail, before = d && !run.robust && d.no_core.objectives;
   document.title = `${run.name} \u2013 imtet report`;
   document.getElementById("title").textContent = `Study ${run.name}`;
   const simulated = run.evaluated ? `${count(run.evaluated)} designs ${d ? "simulated" : "evaluated"}, ${count(run.failed)} failed, ` : "";
   document.getElementById("subtitle").textContent = `${simulated}${count(n)} on the front` +
-    (d ? `. Ground motion ${d.record.replace(/.*\//, "")}, peak ${show(d.pga_g)} g, time \u00d7 ${show(d.stretch)}, ${show(d.duration_s)} s` : "");
+    (d ? `. Ground motion ${d.record.replace(/.*\//, "")}, ${peakText(d)}, ${show(d.duration_s)} s` : "");
   document.getElementById("summary").append(
     element("p", {}, element("strong", {}, `Design ${run.knee}, the knee`), ": nearest to the best of everything, with every objective scaled over the front."),
     run.robust ? element("p", { class: "note" }, "Objectives are those of several simulations of every design (motion.records, sim.replicates, sim.robust " +
