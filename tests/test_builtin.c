@@ -230,7 +230,7 @@ static void test_the_building_alone_answers_as_it_does_to_the_records(void **sta
             print_message("%-21s %-22s J1 %.4f m (%.4f)  J2 %.5f m (%.4f)  J3 %.4f g (%.3f)\n", MOTIONS[k].source,
                           BUILDINGS[b], J[0], MOTIONS[k].J[b][0], J[1], MOTIONS[k].J[b][1], J[2], MOTIONS[k].J[b][2]);
             for (int i = 0; i < 3; i++)
-                assert_close(J[i], MOTIONS[k].J[b][i], 0.05);
+                assert_close(J[i], MOTIONS[k].J[b][i], 0.005);
         }
         motion_free(&m);
     }
@@ -282,7 +282,7 @@ static void test_spectra_are_near_those_of_the_records(void **state)
         }
         print_message("%-21s spectrum off by %.2f %% on average, %.1f %% at most\n", MOTIONS[k].source, 100 * mean,
                       100 * worst);
-        assert_true(mean < 0.15);
+        assert_true(mean < 0.03);
         motion_free(&m);
         motion_free(&record);
     }
