@@ -138,7 +138,8 @@ static void test_a_budget_that_brings_no_repeats_is_refused_before_anything_is_s
     expect(65, WANTED, "check @/noisy.ini --set search.replicates_min=2 --set search.max_evals=37");
     expect(65, WANTED, "optimize @/noisy.ini --set search.replicates_min=2 --max-evals 37 --out @/poor");
     free(output_of("check @/noisy.ini --set search.replicates_min=2 --set search.max_evals=38"));
-    expect(65, "search.replicates_min: 4 is above search.replicates_max = 3", "check @/noisy.ini --set search.replicates_min=4");
+    expect(65, "search.replicates_min: 4 is above search.replicates_max = 3",
+           "check @/noisy.ini --set search.replicates_min=4");
 }
 
 static void test_without_noise_nothing_is_repeated_and_the_tables_are_as_ever(void **state)

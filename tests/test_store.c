@@ -469,7 +469,8 @@ static void test_the_share_that_is_covered_is_the_hypervolume_of_the_box(void **
         hypervolume_add(h, F + 3 * i);
         assert_true(hypervolume_share(h) >= before);
         before = hypervolume_share(h);
-        const double share = wfg_hypervolume(i + 1, 3, F, reference) / 8, error = sqrt(share * (1 - share) / HYPERVOLUME_SAMPLES);
+        const double share = wfg_hypervolume(i + 1, 3, F, reference) / 8,
+                     error = sqrt(share * (1 - share) / HYPERVOLUME_SAMPLES);
         assert_true(fabs(hypervolume_share(h) - share) < 4 * error);
     }
     hypervolume_free(h);

@@ -8,7 +8,7 @@
 #define IMTET_BASE_CLONES_H
 
 #if defined(__x86_64__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define CLONED __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
+#define CLONED    __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
 #define CLONED_V3 __attribute__((target_clones("arch=x86-64-v3", "default")))
 #else
 #define CLONED

@@ -132,7 +132,8 @@ static Status report(const Run *run, const StudySummary *summary, Err *err)
            summary->folder, run->n_front, summary->n_simulated, summary->n_failed, summary->seconds,
            stop_reason_words(summary->stopped));
     if (summary->n_repeats > 0)
-        printf("%zu of the simulations repeat a design, to average the noise (search.replicate_share)\n\n", summary->n_repeats);
+        printf("%zu of the simulations repeat a design, to average the noise (search.replicate_share)\n\n",
+               summary->n_repeats);
     print_front(run, summary);
     if (summary->n_tried_to_polish > 0)
         printf("polished: %zu of %zu designs became better by more than their spread (search.polish)\n",

@@ -155,8 +155,8 @@ static json_t *describe(const char *folder, const Run *run, const Standing *s, c
                           state_words(s->state), "simulated", (json_int_t)s->progress.simulated, "max_evals",
                           (json_int_t)run->settings->search.max_evals, "failed", (json_int_t)s->n_failed, "front",
                           (json_int_t)run->n_front, "polished", (json_int_t)s->n_polished, "hypervolume",
-                          json_number(s->hypervolume), "simulations_per_second", json_number(progress_rate(&s->progress)),
-                          "seconds", json_number(s->seconds), "seconds_left",
+                          json_number(s->hypervolume), "simulations_per_second",
+                          json_number(progress_rate(&s->progress)), "seconds", json_number(s->seconds), "seconds_left",
                           json_number(s->state == RUN_FINISHED ? 0.0 : progress_left(&s->progress, run->settings)));
     if (s->state == RUN_RUNNING)
         json_object_set_new(o, "process",

@@ -40,7 +40,7 @@ typedef struct {
 
 /* Other earthquakes: `other` is how they are read, scaled and simulated, its motion.record replaced by each name. */
 typedef struct {
-    int floor;   /* from 0; -1: in the middle */
+    int floor;         /* from 0; -1: in the middle */
     RecordPaths moved; /* where the run's own records are now */
     const Settings *other;
     size_t n_records;
