@@ -306,6 +306,27 @@ static void test_the_spectrum_is_the_same_as_json_and_as_csv(void **state)
     json_decref(o);
 }
 
+static void test_every_contact_has_a_row(void **state)
+{
+    (void)state;
+    Err err = {0};
+    Table t;
+    write_designs("contacts.csv", 1, (double[]){0.01}, (double[]){0.012}, (double[]){0.0064});
+    json_t *o = json_of("simulate configs/quick.ini --set sim.duration_s=40 --design @/contacts.csv --json --contacts "
+                        "@/rows.csv");
+    char *path = in_place("rows.csv");
+    CHECK_OK(table_read(&t, path, 1, &err), &err);
+    assert_true(number(o, "impacts") > 0);
+    assert_int_equal(t.n_rows, (size_t)number(o, "impacts"));
+    double force = 0;
+    for (size_t i = 0; i < t.n_rows; i++)
+        force = fmax(force, t.values[i * t.n_cols + 8]);
+    assert_close(force, number(o, "contact_force_max_n"), 1e-12);
+    table_free(&t);
+    free(path);
+    json_decref(o);
+}
+
 /* Husid's curve ends at 1, velocity and displacement reach the peaks of the table. */
 static void test_the_histories_reach_the_figures_of_the_motion(void **state)
 {
@@ -484,6 +505,7 @@ int main(void)
         cmocka_unit_test(test_modes_read_the_spectrum_at_their_periods),
         cmocka_unit_test(test_modes_of_the_effective_core_are_those_of_the_paper),
         cmocka_unit_test(test_modes_take_the_wall_from_a_design),
+        cmocka_unit_test(test_every_contact_has_a_row),
         cmocka_unit_test(test_the_spectrum_is_the_same_as_json_and_as_csv),
         cmocka_unit_test(test_the_histories_reach_the_figures_of_the_motion),
         cmocka_unit_test(test_the_picture_of_a_motion_is_whole_or_not_there),

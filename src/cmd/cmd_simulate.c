@@ -162,6 +162,85 @@ static Status print(const Args *args, const Job *job, const Scenario *w, Err *er
     return STATUS_OK;
 }
 
+/* -- contacts one by one ------------------------------------------------------------------------------------------- */
+
+typedef struct {
+    size_t n, room; /* of the run under way */
+    SimContact *at;
+    int out_of_memory;
+} ContactList;
+
+static void add_contact(const SimContact *contact, void *user)
+{
+    ContactList *list = user;
+    if (!contact) { /* a run begins */
+        list->n = 0;
+        return;
+    }
+    if (list->n == list->room) {
+        const size_t room = list->room ? 2 * list->room : 256;
+        SimContact *at = realloc(list->at, room * sizeof *at);
+        list->out_of_memory |= !at;
+        if (!at)
+            return;
+        list->at = at;
+        list->room = room;
+    }
+    list->at[list->n++] = *contact;
+}
+
+static void print_contacts(FILE *out, size_t design, const ContactList *list)
+{
+    for (size_t i = 0; i < list->n; i++) {
+        const SimContact *c = &list->at[i];
+        const double of[] = {c->t, c->duration, c->approach, c->rebound, c->force, c->indentation, c->impulse, c->lost};
+        fprintf(out, "%zu,%d,%d,%d", design, c->floor + 1, c->side, c->open);
+        for (size_t k = 0; k < sizeof of / sizeof of[0]; k++) {
+            fputc(',', out);
+            print_number(out, of[k]);
+        }
+        fputc('\n', out);
+    }
+}
+
+static Status write_designs_contacts(const Job *job, SimWorker *worker, FILE *out, Err *err)
+{
+    ContactList list = {0};
+    SimResult result;
+    Status status = STATUS_OK;
+    sim_worker_contacts(worker, add_contact, &list);
+    fprintf(out,
+            "design,floor,side,open,t_s,duration_s,approach_m_s,rebound_m_s,force_n,indentation_m,impulse_ns,lost_j\n");
+    for (size_t i = 0; i < job->n && status == STATUS_OK; i++) {
+        status = sim_run(worker, job->kind, job->tasks[i].x, &result, err);
+        if (status == STATUS_OK && list.out_of_memory)
+            status = fail(err, STATUS_NO_MEMORY, "--contacts: no memory for %zu contacts", list.n);
+        if (status == STATUS_OK)
+            print_contacts(out, i + 1, &list);
+    }
+    free(list.at);
+    return status;
+}
+
+/* Every design once more, on its own: the same simulation, to the last bit. */
+static Status write_contacts(const Job *job, const Scenario *w, const char *path, Err *err)
+{
+    Output o;
+    SimWorker *worker;
+    if (job->kind != SCENE_IMPACT)
+        return fail(err, STATUS_USAGE, "--contacts needs a design with gaps, not none or --rigid");
+    TRY(output_open(&o, path, err));
+    Status status = sim_worker_create(&worker, w->scene, err);
+    if (status == STATUS_OK) {
+        status = write_designs_contacts(job, worker, o.stream, err);
+        sim_worker_free(worker);
+    }
+    if (status == STATUS_OK)
+        return output_close(&o, err);
+    output_abandon(&o);
+    return status;
+}
+
 static Status run(const Args *args, Err *err)
 {
     Settings s;
@@ -173,7 +252,7 @@ static Status run(const Args *args, Err *err)
         return fail(err, STATUS_USAGE,
                     "--rigid: a linear building is solved in closed form, no other engine does it; leave sim.engine at "
                     "fast");
-    s.sim.forces = args_has(args, "--json");
+    s.sim.forces = args_has(args, "--json") || args_has(args, "--contacts");
     TRY(tower_open(&p, &s, job.replicates ? TOWER_AS_SET : TOWER_SINGLE, job.kind == SCENE_NO_CORE ? 1 : SIZE_MAX,
                    err));
     const Scenario *w = tower_record(tower_of(&p), 0);
@@ -182,6 +261,8 @@ static Status run(const Args *args, Err *err)
         status = simulate(&p, &job, err);
     if (status == STATUS_OK)
         status = print(args, &job, w, err);
+    if (status == STATUS_OK && args_has(args, "--contacts"))
+        status = write_contacts(&job, w, args_value(args, "--contacts"), err);
     free(job.tasks);
     free(job.results);
     free(job.summary);
@@ -203,6 +284,7 @@ static const ArgOption OPTIONS[] = {
     OPTION_ENGINE,
     OPTION_JSON,
     OPTION_CSV,
+    {"--contacts", "FILE", NULL, 0, "one row per contact: time, floor, side, speeds, force, duration, energy lost"},
     OPTION_SET,
     OPTION_END,
 };
