@@ -60,7 +60,7 @@ static Status take_wishes(const Choice *c, const char *list, double wishes[], Er
 
 typedef double (*CostFn)(const Choice *c, size_t row, const double values[]);
 
-static double knee_cost(const Choice *c, size_t row, const double values[])
+static double distance_cost(const Choice *c, size_t row, const double values[])
 {
     (void)values;
     return run_distance2(c->run, &c->box, row);
@@ -116,7 +116,7 @@ static Status choose(const Args *args, Choice *c, Err *err)
                     "search.limits looks for some");
     putchar('\n');
     show_objective_names(&c->run->schema);
-    show_best(c, "knee", knee_cost, NULL);
+    show_best(c, "knee", distance_cost, NULL);
     if (args_has(args, "--weights"))
         show_best(c, "weighted", weighted_cost, weights);
     if (args_has(args, "--wish"))

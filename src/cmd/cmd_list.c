@@ -9,15 +9,14 @@
 #include "cmd/show.h"
 #include "store/run_read.h"
 #include "study/progress.h"
-#include "settings/settings.h"
 
 /* One line or one object; a run that cannot be read says why and the others follow. */
 static void list_run(const char *name, const char *folder, json_t *list)
 {
-    Run saved;
+    Run run;
     Standing s;
     Err err = {0};
-    if (run_read(&saved, folder, &err) != STATUS_OK) {
+    if (run_read(&run, folder, &err) != STATUS_OK) {
         if (list)
             json_array_append_new(
                 list, json_pack("{s:s, s:s, s:s}", "run", folder, "state", "unreadable", "reason", err.text));
@@ -25,21 +24,21 @@ static void list_run(const char *name, const char *folder, json_t *list)
             printf("%-24s unreadable: %s\n", name, err.text);
         return;
     }
-    standing_of(&s, folder, &saved);
-    const RunSession *last = saved.n_sessions > 0 ? &saved.session[saved.n_sessions - 1] : NULL;
+    standing_of(&s, folder, &run);
+    const RunSession *last = run.n_sessions > 0 ? &run.session[run.n_sessions - 1] : NULL;
     const char *started = last ? last->started : "-";
     char hypervolume[32];
     number_words(s.hypervolume, 4, hypervolume);
     if (list)
         json_array_append_new(list, json_pack("{s:s, s:s, s:I, s:I, s:I, s:I, s:o, s:s}", "run", folder, "state",
                                               state_words(s.state), "simulated", (json_int_t)s.progress.simulated,
-                                              "max_evals", (json_int_t)saved.settings->search.max_evals, "failed",
-                                              (json_int_t)s.n_failed, "front", (json_int_t)saved.n_front, "hypervolume",
+                                              "max_evals", (json_int_t)s.max_evals, "failed", (json_int_t)s.n_failed,
+                                              "front", (json_int_t)run.n_front, "hypervolume",
                                               json_number(s.hypervolume), "started", started));
     else
         printf("%-24s %-10s %8zu of %-8ld %7zu %7zu %12s  %s\n", name, state_words(s.state), s.progress.simulated,
-               saved.settings->search.max_evals, s.n_failed, saved.n_front, hypervolume, started);
-    run_free(&saved);
+               s.max_evals, s.n_failed, run.n_front, hypervolume, started);
+    run_free(&run);
 }
 
 static size_t list_folder(const char *folder, int n, struct dirent *const entries[], json_t *list)

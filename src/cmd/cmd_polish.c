@@ -52,7 +52,7 @@ static Status take_options(const Args *args, Work *w, Err *err)
     TRY(take_improved(args, w, err));
     TRY(take_kept(args, w, err));
     TRY(args_whole(args, "--evals", 1, 1000000, 300, &evals, err));
-    TRY(args_whole(args, "--members", 1, 1000, 4, &w->config.replicates, err));
+    TRY(args_whole(args, "--replicates", 1, 1000, 4, &w->config.replicates, err));
     TRY(args_number(args, "--seconds", 0, 1e9, 0, &w->config.max_seconds, err));
     TRY(args_number(args, "--slack", 0, 1e6, -1, &w->config.slack, err));
     w->config.algorithm = args_value(args, "--algorithm");
@@ -158,7 +158,7 @@ static const ArgOption OPTIONS[] = {
     {"--slack", "S", NULL, 0, "but by this share of their value; their spread if not given"},
     {"--algorithm", "NAME", NULL, 0, "cobyla | bobyqa | sbplx | isres: half of the simulations go to it"},
     {"--evals", "N", NULL, 0, "simulate at most so often; 300 if not given"},
-    {"--members", "N", NULL, 0, "simulations of a design that scatters (the tower's), whose mean counts; 4"},
+    {"--replicates", "N", NULL, 0, "simulations of a noisy design (the tower's), whose mean counts; 4"},
     {"--seconds", "T", NULL, 0, "stop after so long; 0: no limit"},
     {"--csv", "FILE", NULL, 0, "the polished design and its objectives into FILE; -: standard output"},
     OPTION_MOVED,

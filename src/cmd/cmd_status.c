@@ -8,7 +8,6 @@
 #include "store/run_read.h"
 #include "study/improvement.h"
 #include "study/progress.h"
-#include "settings/settings.h"
 
 enum { ROWS_MAX = 12 };
 
@@ -45,7 +44,7 @@ static void print_head(const char *folder, const Run *run, const Standing *s)
     const double per_second = progress_rate(&s->progress);
     const RunSession *last = run->n_sessions > 0 ? &run->session[run->n_sessions - 1] : NULL;
     duration_words(s->seconds, worked);
-    duration_words(progress_left(&s->progress, run->settings), left);
+    duration_words(s->left_s, left);
     if (isfinite(per_second))
         snprintf(pace, sizeof pace, "%.3g", per_second);
     printf("%s: %s", folder, state_words(s->state));
@@ -53,7 +52,7 @@ static void print_head(const char *folder, const Run *run, const Standing *s)
         printf(" (process %ld on %s)", s->holder.pid, s->holder.host);
     else if (last && last->stopped[0])
         printf(" (%s)", last->stopped);
-    printf("\n%zu of %ld simulated, ", s->progress.simulated, run->settings->search.max_evals);
+    printf("\n%zu of %ld simulated, ", s->progress.simulated, s->max_evals);
     if (run->n_repeats > 0)
         printf("%zu of them repeats, ", run->n_repeats);
     printf("%zu failed, %zu on the front", s->n_failed, run->n_front);
@@ -151,13 +150,12 @@ static json_t *json_failures(const Failures *f)
 
 static json_t *describe(const char *folder, const Run *run, const Standing *s, const Failures *f, const double igd[])
 {
-    json_t *o = json_pack("{s:s, s:s, s:I, s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:o}", "run", folder, "state",
-                          state_words(s->state), "simulated", (json_int_t)s->progress.simulated, "max_evals",
-                          (json_int_t)run->settings->search.max_evals, "failed", (json_int_t)s->n_failed, "front",
-                          (json_int_t)run->n_front, "polished", (json_int_t)s->n_polished, "hypervolume",
-                          json_number(s->hypervolume), "simulations_per_second",
-                          json_number(progress_rate(&s->progress)), "seconds", json_number(s->seconds), "seconds_left",
-                          json_number(s->state == RUN_FINISHED ? 0.0 : progress_left(&s->progress, run->settings)));
+    json_t *o = json_pack(
+        "{s:s, s:s, s:I, s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:o}", "run", folder, "state", state_words(s->state),
+        "simulated", (json_int_t)s->progress.simulated, "max_evals", (json_int_t)s->max_evals, "failed",
+        (json_int_t)s->n_failed, "front", (json_int_t)run->n_front, "polished", (json_int_t)s->n_polished,
+        "hypervolume", json_number(s->hypervolume), "simulations_per_second", json_number(progress_rate(&s->progress)),
+        "seconds", json_number(s->seconds), "seconds_left", json_number(s->left_s));
     if (s->state == RUN_RUNNING)
         json_object_set_new(o, "process",
                             json_pack("{s:I, s:s}", "pid", (json_int_t)s->holder.pid, "host", s->holder.host));

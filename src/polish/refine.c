@@ -233,7 +233,7 @@ static void judge_gain(const Refine *r, const double F[], Refined *out)
     }
 }
 
-/* Both designs with replicates that neither has had, so that luck is not taken for a gain. */
+/* Both designs with replicates that no step has used: the selection of the best of noisy values would bias them. */
 static Status compare(Refine *r, Refined *out, Err *err)
 {
     const size_t n_var = r->run->schema.n_var, m = r->run->schema.n_obj;
@@ -278,8 +278,8 @@ Status refine_design(const Run *h, size_t row, const RefineConfig *config, Refin
     if (schema_is_noisy(h->settings) && h->settings->problem.kind != PROBLEM_TOWER)
         return fail(
             err, STATUS_BAD_DATA,
-            "the answers of this run are noisy, and polishing simulates a design once: nothing would tell a gain "
-            "from luck; let the search go on instead (search.max_evals, search.replicate_share)");
+            "the answers of this run are noisy, and polishing simulates a design once: a gain could not be told "
+            "from noise; continue the search instead (search.max_evals, search.replicate_share)");
     if (h->settings->problem.kind != PROBLEM_TOWER)
         used.replicates = 1;
     if (used.algorithm)

@@ -1,18 +1,18 @@
-/* polish/refine.h -- a design of a run polished; a gain counts where it exceeds the standard deviation.
+/* polish/refine.h -- a design of a run polished, and whether the gain is more than the noise.
  *
  *   value = sum_k weight_k f_k / (range of f_k on the front)       of the objectives to be improved, minimised
  *
- *   1 the design is simulated `replicates` times: what the kept objectives may lose (one spread of a single simulation, or
- *     `slack`), and whether its answers scatter at all; where they do every design tried is a mean of `replicates`
- *   2 response surface of the nearest simulations and simulator in turn (polish/local.h)
+ *   1 the design is simulated `replicates` times: what the kept objectives may lose (one standard deviation of a single
+ *     simulation, or `slack`), and whether it is noisy at all; then every design tried is a mean of `replicates`
+ *   2 a surrogate of the nearest evaluations and the simulator in turn (polish/local.h)
  *   3 NLopt's `algorithm` on the simulator from the best so far (polish/polish.h), with half of the simulations where
  *     it was asked for by name, else COBYLA with what step 2 leaves
  *   4 design and result once more, with replicates that no step has used:
- *         error_k = root((spread_start_k^2 + spread_end_k^2) / replicates)
+ *         error_k = root((sd_start_k^2 + sd_end_k^2) / replicates)
  *
  * A gain counts where it is more than twice sum_k weight_k error_k / range_k (as if all errors went together) and no
- * kept objective lost more than it may and twice its error. With a single member nothing is known of the spread, and
- * runs whose answers are noisy are refused unless they are of the tower.
+ * kept objective lost more than it may and twice its error. With a single replicate the standard deviation is not known,
+ * and runs with noise are refused unless they are of the tower.
  *
  * Ownership  refine_design fills x, f, ... of the caller's Refined; refined_free releases what it allocated
  * Threads    call it from one thread; replicates and the designs of a round share the simulator's workers, the
@@ -27,7 +27,7 @@ typedef struct {
     const double *weight;      /* (n_obj) >= 0; 0: not to be improved */
     const unsigned char *keep; /* (n_obj) */
     double slack;              /* share of the value; < 0: one spread */
-    long replicates;           /* of a tower; others are asked once */
+    long replicates;           /* of a tower; other problems: 1 */
     size_t max_evals;          /* simulations, those of all steps together */
     double max_seconds;        /* 0: no limit */
     int (*go_on)(void *user);  /* asked before each simulation, NULL: yes; 0: STATUS_STOPPED and nothing is refined */
@@ -48,13 +48,13 @@ typedef struct {
 Status refine_design(const Run *h, size_t row, const RefineConfig *config, Refined *out, Err *err);
 void refined_free(Refined *r);
 
-/* Gain beyond doubt, or no spread known and any gain; and all else kept. */
+/* A significant gain, or any where the standard deviation is not known; and all else kept. */
 int refined_counts(const Refined *r);
 
 /* As a run stores it; borrows x, f and spread. */
 Evaluation refined_evaluation(const Refined *r);
 
-/* Stored beside the designs of the search, as `polished`; the id that it got. Nobody may be working on the run. */
+/* Stored beside the designs of the search, as `polished`; the id that it got. No process may be working on the run. */
 Status refined_store(const char *folder, const Refined *r, long *id, Err *err);
 
 #endif

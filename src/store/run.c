@@ -65,14 +65,10 @@ static double minimised(const Run *run, size_t row, size_t k)
 
 /* -- which designs are on the front -------------------------------------------------------------------------------- */
 
-static int dominates_row(const Run *run, size_t i, size_t j)
+static void minimise(const Run *run, size_t row, double f[])
 {
-    double a[OBJECTIVES_MAX], b[OBJECTIVES_MAX];
-    for (size_t k = 0; k < run->schema.n_obj; k++) {
-        a[k] = minimised(run, i, k);
-        b[k] = minimised(run, j, k);
-    }
-    return dominates(run->schema.n_obj, a, b);
+    for (size_t k = 0; k < run->schema.n_obj; k++)
+        f[k] = minimised(run, row, k);
 }
 
 /* Polished designs compete with the front of the search, which was found without them. */
@@ -81,15 +77,19 @@ static void admit_polished(Run *run)
     const size_t first = run_find(run, POLISHED_FIRST);
     const Evaluation *row = run->table.row;
     RunPlace *place = run->place;
+    const size_t m = run->schema.n_obj;
+    double a[OBJECTIVES_MAX], b[OBJECTIVES_MAX];
     for (size_t i = first; i < run->table.n; i++)
         place[i].on_front = row[i].kind == KIND_POLISHED && place[i].ok && !(row[i].violation > 0.0);
     for (size_t i = first; i < run->table.n; i++)
         for (size_t j = 0; j < run->table.n && place[i].on_front; j++) {
             if (j == i || !place[j].on_front)
                 continue;
-            if (dominates_row(run, i, j))
+            minimise(run, i, a);
+            minimise(run, j, b);
+            if (dominates(m, a, b))
                 place[j].on_front = 0;
-            else if (dominates_row(run, j, i))
+            else if (dominates(m, b, a))
                 place[i].on_front = 0;
         }
 }

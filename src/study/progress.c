@@ -111,32 +111,38 @@ static double session_seconds(const Run *run, size_t number)
     return fmax(stored, simulated_seconds(run, number) / fmax((double)s->threads, 1.0));
 }
 
+/* Of the session `last`, the run's newest one. */
+static void take_session(Standing *out, const Run *run, const RunSession *last)
+{
+    const double stored = session_seconds(run, run->n_sessions - 1);
+    const int is_running = out->state == RUN_RUNNING;
+    Progress *p = &out->progress;
+    p->session_s = is_running ? seconds_since(last->started) : stored;
+    out->seconds += is_running ? fmax(p->session_s - stored, 0.0) : 0.0;
+    p->all_s = out->seconds;
+    if (p->simulated > (size_t)last->simulated_before)
+        p->session_simulated = p->simulated - (size_t)last->simulated_before;
+    for (size_t g = 0; g < run->n_generations; g++)
+        p->session_generations += strcmp(run->generation[g].finished, last->started) >= 0;
+}
+
 void standing_of(Standing *out, const char *folder, const Run *run)
 {
     char lock[PATH_MAX];
-    *out = (Standing){.hypervolume = NAN};
+    *out = (Standing){.hypervolume = NAN, .max_evals = run->settings->search.max_evals};
     snprintf(lock, sizeof lock, "%s/lock", folder);
-    const int is_running = lock_is_held(lock, &out->holder);
     const RunSession *last = run->n_sessions > 0 ? &run->session[run->n_sessions - 1] : NULL;
-    out->state = is_running               ? RUN_RUNNING
-                 : last && last->is_final ? RUN_FINISHED
-                 : last && last->ended[0] ? RUN_PAUSED
-                                          : RUN_INTERRUPTED;
+    out->state = lock_is_held(lock, &out->holder) ? RUN_RUNNING
+                 : last && last->is_final         ? RUN_FINISHED
+                 : last && last->ended[0]         ? RUN_PAUSED
+                                                  : RUN_INTERRUPTED;
     count(out, run);
     out->progress.generations = run->n_generations;
     if (run->n_generations > 0)
         out->hypervolume = run->generation[run->n_generations - 1].hypervolume;
     for (size_t i = 0; i < run->n_sessions; i++)
         out->seconds += session_seconds(run, i);
-    if (!last)
-        return;
-    const double stored = session_seconds(run, run->n_sessions - 1);
-    out->progress.session_s = is_running ? seconds_since(last->started) : stored;
-    out->seconds += is_running ? fmax(out->progress.session_s - stored, 0.0) : 0.0;
-    out->progress.all_s = out->seconds;
-    out->progress.session_simulated = out->progress.simulated > (size_t)last->simulated_before
-                                          ? out->progress.simulated - (size_t)last->simulated_before
-                                          : 0;
-    for (size_t g = 0; g < run->n_generations; g++)
-        out->progress.session_generations += strcmp(run->generation[g].finished, last->started) >= 0;
+    if (last)
+        take_session(out, run, last);
+    out->left_s = out->state == RUN_FINISHED ? 0.0 : progress_left(&out->progress, run->settings);
 }

@@ -32,6 +32,8 @@ typedef struct {
     size_t n_failed, n_polished;
     double seconds;     /* of work, all sessions together */
     double hypervolume; /* of the last generation; NAN: none */
+    long max_evals;
+    double left_s; /* progress_left; 0: it is finished */
 } Standing;
 
 /* What a session's wall time went into, as shares of it: the search waited for simulations, was at its surrogate, did

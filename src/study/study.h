@@ -5,13 +5,12 @@
  * A simulation that does not finish, or whose numbers are not finite, is a failed design: kept with its reason, never
  * on the front.
  *
- * Goes on       a run that is there already goes on where it stopped, however it stopped: from the state at the end of
- *               its last finished generation, simulations made after that taken from the database. front.csv,
- *               evaluations.csv and the JSON export are then the same bytes as of a run that was never interrupted
- * Settings      must be those of the run. Limits may be changed where that is asked for (`force`): search.max_evals,
- *               generations, max_hours, nondominated_share, problem.timeout_s; the number of threads always. What the
- *               first search.max_evals decides beside the end (size of the first sample, directions of infill) stays as
- *               planned: with 1500 raised to 3000 the first 1500 designs are those of the shorter run
+ * Resumes       a run that is there already is resumed, however it stopped: from the state at the end of its last finished
+ *               generation, evaluations made after that taken from the database. front.csv, evaluations.csv and the JSON
+ *               export are then the same bytes as of a run that was never interrupted
+ * Settings      must be those of the run (study/differences.h). What the first search.max_evals decides beside the end
+ *               (size of the first sample, directions of infill) stays as planned: with 1500 raised to 3000 the first
+ *               1500 designs are those of the shorter run
  * Stops         when `stop` says so or after search.max_hours of this session, both asked between simulations: what is
  *               under way is finished, or dropped where an external worker takes seconds, and everything is stored
  * Polishes      search.polish spread-out designs of a finished run of the tower (polish/refine.h), with a tenth of its
@@ -40,7 +39,7 @@ typedef struct {
 
 typedef struct {
     RunStore *store;         /* the run to be resumed, passes over to the study; NULL: run.out is opened */
-    int fresh;               /* never go on with a run: a number is added to run.out where it holds one */
+    int fresh;               /* never resume a run: a number is added to run.out where it holds one */
     int force;               /* changed limits are taken over */
     int (*stop)(void *user); /* asked from any thread, often; NULL: never */
     void (*started)(const char *folder, size_t n_simulated, void *user);
@@ -50,7 +49,7 @@ typedef struct {
     Run *run; /* becomes the finished run, for run_free, where the study returns STATUS_OK; NULL: not wanted */
 } StudyOptions;
 
-/* STATUS_STOPPED: it can go on, and the summary is filled. Settings that differ: STATUS_BAD_DATA,
+/* STATUS_STOPPED: it can be resumed, and the summary is filled. Settings that differ: STATUS_BAD_DATA,
  * with the differences in `err` as far as they fit, all of them in `differences` (NULL: not wanted), a line each. */
 Status study_run(const Settings *s, const StudyOptions *options, StudySummary *summary, FILE *differences, Err *err);
 
