@@ -1,6 +1,6 @@
 # Figures and pictures of README and docs. Those of time want a quiet machine.
 
-.PHONY: bench chart compare ablation pictures web setup-browser report-bench
+.PHONY: setup-figures bench chart compare ablation pictures web setup-browser report-bench
 
 # A record that is not there is replaced by the built-in motion.
 BENCH_RECORD ?= $(or $(wildcard ../shared/records/kobe_jma_ns.csv),builtin:kobe-like)
@@ -13,10 +13,10 @@ chart: $(BENCH) ## docs/chart: speed against accuracy of every engine
 	@scripts/plot-chart docs/chart.csv docs/chart
 
 # CELLS and SEEDS choose a part, KEEP names a folder in which runs stay and are not repeated.
-compare: $(PROGRAM) ## docs/search.md: the search on textbook problems and the tower, with and without surrogate
+compare: $(PROGRAM) setup-figures ## docs/search.md: the search on textbook problems and the tower, with and without surrogate
 	@scripts/compare --program ./$(PROGRAM) --out docs/search.md $(if $(CELLS),--cells $(CELLS)) $(if $(SEEDS),--seeds $(SEEDS)) $(if $(KEEP),--keep $(KEEP))
 
-ablation: ## what each tuned constant of the search earns: every one turned off; ARGS="--only NAME,..."
+ablation: setup-figures ## what each tuned constant of the search earns: every one turned off; ARGS="--only NAME,..."
 	@scripts/ablation $(ARGS)
 
 pictures: $(PROGRAM) ## docs/pictures, those of a study: RUN=results/kobe RECORDS="elcentro.csv sylmar.csv"
@@ -28,6 +28,9 @@ pictures: $(PROGRAM) ## docs/pictures, those of a study: RUN=results/kobe RECORD
 
 web: setup-browser ## web/charts.js bundled anew from npm
 	@cd web && npm ci --ignore-scripts --no-audit --no-fund --silent && node bundle.mjs
+
+setup-figures: ## packages for the tables of the search
+	@scripts/setup packages-figures.txt
 
 setup-browser: ## packages for the report's tests in a browser, its bundle of charts and its times
 	@scripts/setup packages-browser.txt
