@@ -108,6 +108,8 @@ static void test_bad_settings_and_data_end_with_65(void **state)
     expect(65, "--pga: motion.pga_g: -1 is outside", "simulate configs/quick.ini --design none --pga -1");
     expect(65, "not one of fast|cvode", "simulate configs/quick.ini --design none --engine magic");
     expect(65, "tests/bad/config/nan.ini:3:11: building.damping", "modes tests/bad/config/nan.ini");
+    expect(65, "/dev/zero: larger than 1 MiB", "check /dev/zero");
+    expect(65, "/dev/zero: larger than 1 MiB", "optimize /dev/zero");
     expect(65, "tests/bad/motion/nan.csv",
            "simulate configs/quick.ini --design none --record tests/bad/motion/nan.csv");
     expect(65, "tests/bad/motion/nan.csv", "spectrum tests/bad/motion/nan.csv");

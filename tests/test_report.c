@@ -16,6 +16,7 @@
 #include "store/run_read.h"
 #include "report/report.h"
 #include "report/wavelet.h"
+#include "settings/settings.h"
 
 static char folder[64]; /* of this test program's files */
 
@@ -136,7 +137,8 @@ static void test_energies_add_up_to_the_input_at_every_instant_and_end_as_the_re
     Err err = {0};
     History h;
     open_tower(&run, &r);
-    CHECK_OK(scenario_open(&w, run.settings, &err), &err);
+    const SceneOptions options = settings_scene(run.settings);
+    CHECK_OK(scenario_open(&w, &options, &run.settings->motion, &err), &err);
     for (int s = 0; s < 2; s++) {
         const SceneKind kind = s ? SCENE_NO_CORE : SCENE_IMPACT;
         const SimResult *result = &r.detail.result[kind];

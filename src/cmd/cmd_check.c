@@ -78,7 +78,7 @@ static Status read_settings(const Args *args, Check *c, Settings *s, Err *err)
         return fail(err, STATUS_NO_MEMORY, "check: out of memory");
     const Status status = args_settings(args, s, f, &n, err);
     fclose(f);
-    if (status == STATUS_MISSING || status == STATUS_USAGE || status == STATUS_NO_MEMORY) {
+    if (status != STATUS_OK && n == 0) { /* no faults of settings: they could not be read */
         free(lines);
         return status;
     }

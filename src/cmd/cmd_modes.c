@@ -144,7 +144,9 @@ static Status run(const Args *args, Err *err)
     Scenario w;
     Modes m = {0};
     TRY(args_settings(args, &s, NULL, NULL, err));
-    TRY(args_has(args, "--spectrum") ? scenario_open(&w, &s, err) : scenario_open_still(&w, &s, err));
+    const SceneOptions options = settings_scene(&s);
+    TRY(args_has(args, "--spectrum") ? scenario_open(&w, &options, &s.motion, err)
+                                     : scenario_open_still(&w, &options, err));
     Status status = compute(args, &w, &m, err);
     scenario_close(&w);
     if (status == STATUS_OK && args_has(args, "--json"))

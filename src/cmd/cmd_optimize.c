@@ -34,7 +34,7 @@ static void tell(const StudyProgress *p, void *user)
     char left[32], hypervolume[32], line[256];
     if (!t->terminal)
         return;
-    duration_words(progress_left(&p->progress, p->settings), left);
+    duration_words(progress_left(&p->progress, &p->settings->search), left);
     number_words(p->hypervolume, 4, hypervolume);
     snprintf(line, sizeof line, "generation %zu: %zu of %ld simulated, %zu failed, front %zu, hypervolume %s, %s left",
              v->generation_now, v->n, p->settings->search.max_evals, v->n_failed, v->n_front, hypervolume, left);

@@ -145,7 +145,8 @@ static Status answer_of(const TowerCase *c, double answer[N_OBJECTIVES], Err *er
     settings_defaults(&s);
     TRY(set_all(&s, COMMON, sizeof COMMON / sizeof COMMON[0], err));
     TRY(set_all(&s, c->settings, sizeof c->settings / sizeof c->settings[0], err));
-    TRY(scenario_open(&w, &s, err));
+    const SceneOptions options = settings_scene(&s);
+    TRY(scenario_open(&w, &options, &s.motion, err));
     const Status status = simulate(&w, c, &r, err);
     scenario_close(&w);
     for (int k = 0; status == STATUS_OK && k < N_OBJECTIVES; k++)

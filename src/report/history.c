@@ -2,7 +2,6 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include "settings/settings.h"
 
 typedef struct {
     History *h;

@@ -3,7 +3,6 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include "settings/settings.h"
 
 static Status build(Scenario *w, Err *err)
 {
@@ -13,13 +12,13 @@ static Status build(Scenario *w, Err *err)
     return status;
 }
 
-Status scenario_open(Scenario *w, const Settings *s, Err *err)
+Status scenario_open(Scenario *w, const SceneOptions *o, const MotionOptions *record, Err *err)
 {
     memset(w, 0, sizeof *w);
-    w->options = settings_scene(s);
-    w->record = s->motion;
-    TRY(motion_open(&w->motion, &s->motion, err));
-    const Status status = motion_prepare(&w->motion, s->motion.pga_g, s->motion.stretch, err);
+    w->options = *o;
+    w->record = *record;
+    TRY(motion_open(&w->motion, record, err));
+    const Status status = motion_prepare(&w->motion, record->pga_g, record->stretch, err);
     if (status != STATUS_OK) {
         scenario_close(w);
         return status;
@@ -27,11 +26,10 @@ Status scenario_open(Scenario *w, const Settings *s, Err *err)
     return build(w, err);
 }
 
-Status scenario_open_still(Scenario *w, const Settings *s, Err *err)
+Status scenario_open_still(Scenario *w, const SceneOptions *o, Err *err)
 {
     memset(w, 0, sizeof *w);
-    w->options = settings_scene(s);
-    w->record = s->motion;
+    w->options = *o;
     w->motion = (Motion){.n = 2, .dt_s = 0.01, .name = "at rest", .format = "none"};
     w->motion.accel = calloc(w->motion.n, sizeof *w->motion.accel);
     if (!w->motion.accel)

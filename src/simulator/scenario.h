@@ -8,8 +8,6 @@
 #include "scene/motion.h"
 #include "sim/sim.h"
 
-typedef struct Settings Settings;
-
 typedef struct {
     SceneOptions options;
     MotionOptions record; /* of the motion: as it was asked for */
@@ -17,10 +15,10 @@ typedef struct {
     Scene *scene;
 } Scenario;
 
-Status scenario_open(Scenario *w, const Settings *s, Err *err);
+Status scenario_open(Scenario *w, const SceneOptions *o, const MotionOptions *record, Err *err);
 
 /* The same at rest, for questions that no ground motion answers (frequencies). */
-Status scenario_open_still(Scenario *w, const Settings *s, Err *err);
+Status scenario_open_still(Scenario *w, const SceneOptions *o, Err *err);
 void scenario_close(Scenario *w);
 
 #endif

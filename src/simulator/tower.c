@@ -78,12 +78,13 @@ static Status open_workers(Tower *t, Record *r, Err *err)
 
 static Status open_record(Tower *t, const Settings *settings, const char *name, Err *err)
 {
-    Settings s = *settings;
+    const SceneOptions options = settings_scene(settings);
+    MotionOptions motion = settings->motion;
     Record *r = &t->record[t->plan.n_records];
     if (t->plan.n_records == RECORDS_MAX)
         return fail(err, STATUS_BAD_DATA, "motion.records: more than %d records", RECORDS_MAX);
-    snprintf(s.motion.record, sizeof s.motion.record, "%s", name);
-    TRY(scenario_open(&r->scenario, &s, err));
+    snprintf(motion.record, sizeof motion.record, "%s", name);
+    TRY(scenario_open(&r->scenario, &options, &motion, err));
     r->scene = r->scenario.scene;
     t->plan.n_records++;
     return open_workers(t, r, err);

@@ -2,8 +2,10 @@
 
 #include <limits.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 #include <time.h>
+
 #include "settings/settings.h"
 
 double progress_rate(const Progress *p)
@@ -13,16 +15,16 @@ double progress_rate(const Progress *p)
     return p->simulated > 0 && p->all_s > 0.0 ? (double)p->simulated / p->all_s : NAN;
 }
 
-double progress_left(const Progress *p, const Settings *s)
+double progress_left(const Progress *p, const SearchOptions *o)
 {
-    double left = ((double)s->search.max_evals - (double)p->simulated) / progress_rate(p);
+    double left = ((double)o->max_evals - (double)p->simulated) / progress_rate(p);
     if (!isfinite(left))
         return NAN;
     if (p->session_generations > 0)
         left = fmin(left, p->session_s / (double)p->session_generations *
-                              ((double)s->search.generations + 1.0 - (double)p->generations));
-    if (s->search.max_hours > 0.0)
-        left = fmin(left, 3600.0 * s->search.max_hours - p->session_s);
+                              ((double)o->generations + 1.0 - (double)p->generations));
+    if (o->max_hours > 0.0)
+        left = fmin(left, 3600.0 * o->max_hours - p->session_s);
     return fmax(left, 0.0);
 }
 
@@ -144,5 +146,5 @@ void standing_of(Standing *out, const char *folder, const Run *run)
         out->seconds += session_seconds(run, i);
     if (last)
         take_session(out, run, last);
-    out->left_s = out->state == RUN_FINISHED ? 0.0 : progress_left(&out->progress, run->settings);
+    out->left_s = out->state == RUN_FINISHED ? 0.0 : progress_left(&out->progress, &run->settings->search);
 }

@@ -4,8 +4,7 @@
 
 #include "store/lock.h"
 #include "store/run.h"
-
-typedef struct Settings Settings;
+#include "study/options.h"
 
 /* Of the search and of this start of it. */
 typedef struct {
@@ -17,7 +16,7 @@ typedef struct {
 double progress_rate(const Progress *p); /* simulations of this start, else of all; NAN: none yet */
 
 /* Seconds until simulations, generations or hours are spent, whichever is first; NAN: unknown. */
-double progress_left(const Progress *p, const Settings *s);
+double progress_left(const Progress *p, const SearchOptions *o);
 
 /* "1:05 min", "3:20 h"; a number with so many decimals; "-" where it is not finite. */
 void duration_words(double seconds, char text[32]);
