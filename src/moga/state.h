@@ -1,7 +1,7 @@
 /* moga/state.h -- a search under way: what the files below share. Everybody else reads search.h.
  *
  *   search.c         limits, the loop over generations, the view of the observer
- *   search_state.c          memory; what outlives a generation, as bytes
+ *   search_state.c   memory; what outlives a generation, as bytes
  *   generation.c     one generation: the steps of the method in their order
  *   surrogate_use.c  criteria, fit, prediction, descents, predicted failures
  *   offspring.c      candidates: variation, inner generations and descents on the surrogate
