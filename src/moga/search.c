@@ -1,3 +1,4 @@
+#include "moga/search.h"
 #include "moga/state.h"
 
 #include <math.h>

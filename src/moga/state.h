@@ -20,11 +20,11 @@
 #include "evaluate/queue.h"
 #include "moga/archive.h"
 #include "moga/constants.h"
+#include "moga/config.h"
 #include "moga/control.h"
 #include "moga/directions.h"
 #include "moga/infill.h"
 #include "moga/population.h"
-#include "moga/search.h"
 #include "moga/selection.h"
 #include "moga/surrogate.h"
 

@@ -1,0 +1,47 @@
+/* moga/config.h -- what a search is given: its configuration and, where it is resumed, the evaluations so far.
+ *
+ * Ownership  borrows every array
+ * Threads    no state */
+#ifndef IMTET_MOGA_CONFIG_H
+#define IMTET_MOGA_CONFIG_H
+
+#include <stdint.h>
+
+#include "evaluate/evaluation.h"
+#include "moga/options.h"
+
+typedef struct {
+    uint32_t seed;
+    size_t population, generations, max_evals, surrogate_max;
+    size_t planned_evals; /* 0: max_evals. Initial sample and reference vectors of infill are those of so many
+                                  evaluations: of two searches that differ in max_evals only, one begins the other */
+    size_t initial;       /* size of the initial sample; 0: by the number of variables */
+    const double *given;  /* (n_given, n_var) first designs, moved into the box; the sample is then smaller, by
+                                  half at most */
+    size_t n_given;
+    SurrogateUse surrogate;
+    SelectionKind selection;
+    int asynchronous;
+    double replicate_share;    /* noisy: share of max_evals for further replicates */
+    size_t replicates_min;     /* ... of each design that is reported to be on the front */
+    size_t replicates_max;     /* ... of each design */
+    double max_seconds;        /* 0: no limit */
+    double nondominated_share; /* stop when this share of the archive is nondominated; 1: never */
+    double trust_error;        /* share of an objective's range in the archive */
+    double crossover_probability, crossover_eta, mutation_eta, mutation_rate;
+} SearchConfig;
+
+/* Further replicates among n evaluations of a noisy problem at most: share * max(0, n - REPLICATE_AFTER n_var). Before
+ * that, new designs are worth more. */
+double search_replicates(size_t n, double share, size_t n_var);
+
+/* Where a search is resumed: the evaluations at the end of a generation, in the order of the view, and its state. Only
+ * read. */
+typedef struct {
+    size_t n, n_later; /* n_later: rows behind the n that came after the state was saved (evaluate/queue.h: known) */
+    const Evaluation *row; /* (n + n_later) */
+    const void *state;     /* NULL: n is 0, none was saved */
+    size_t n_state;
+} SearchStart;
+
+#endif
