@@ -30,7 +30,7 @@ static const Deed DEEDS[] = {
     {"simulate configs/quick.ini --design none --duration 20 --engine cvode --csv -", NULL},
     {"spectrum tests/motion/three.cosmos.v2 --channel 1 --json", NULL},
     {"evaluate @/done --design knee --record tests/motion/many_columns.csv --channel NS", NULL},
-    {"choose @/done --wish j1_m=0.3", NULL},
+    {"choose @/done --reference j1_m=0.3", NULL},
     {"export @/done --csv @/run", "run"},
     {"export @/done --json", NULL},
     {"report @/done --out @/run --record builtin:sylmar-like", "run"},

@@ -434,7 +434,7 @@ static void test_unequal_steps_are_resampled_by_straight_lines_only_when_asked(v
     motion_free(&m);
 }
 
-static void test_an_equal_step_is_left_alone_by_the_wish_to_resample(void **state)
+static void test_an_equal_step_is_left_alone_by_a_request_to_resample(void **state)
 {
     (void)state;
     Motion m;
@@ -778,7 +778,7 @@ int main(void)
         cmocka_unit_test(test_a_channel_must_be_chosen_where_there_are_several),
         cmocka_unit_test(test_a_column_of_velocities_is_not_taken_for_an_acceleration),
         cmocka_unit_test(test_unequal_steps_are_resampled_by_straight_lines_only_when_asked),
-        cmocka_unit_test(test_an_equal_step_is_left_alone_by_the_wish_to_resample),
+        cmocka_unit_test(test_an_equal_step_is_left_alone_by_a_request_to_resample),
         cmocka_unit_test(test_the_step_of_a_bare_column_can_be_given),
         cmocka_unit_test(test_a_setting_may_not_contradict_the_unit_of_any_format),
         cmocka_unit_test(test_five_thousand_mutants_are_read_or_refused),

@@ -124,8 +124,8 @@ static void open_tower(Run *run, Report *r)
     Err err = {0};
     const char *records[] = {"builtin:sylmar-like"};
     CHECK_OK(run_read(run, in_folder("tower"), &err), &err);
-    const DetailWish wish = {.floor = -1, .other = run->settings, .n_records = 1, .records = records};
-    CHECK_OK(report_open(r, run, "knee", &wish, &err), &err);
+    const DetailOptions options = {.floor = -1, .other = run->settings, .n_records = 1, .records = records};
+    CHECK_OK(report_open(r, run, "knee", &options, &err), &err);
 }
 
 static void test_energies_add_up_to_the_input_at_every_instant_and_end_as_the_result_says(void **state)

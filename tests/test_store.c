@@ -235,7 +235,7 @@ static void check_signal(int number, const char *out)
     const pid_t pid = start("steady.ini", out);
     wait_for(out, 4);
     kill(pid, number);
-    kill(pid, number == SIGTERM ? SIGINT : SIGTERM); /* within microseconds, as of `timeout`: the same wish */
+    kill(pid, number == SIGTERM ? SIGINT : SIGTERM); /* within microseconds, as of `timeout`: the same request */
     const int status = wait_end(pid);
     assert_true(WIFEXITED(status));
     assert_int_equal(WEXITSTATUS(status), 75);
@@ -301,7 +301,7 @@ static void test_a_second_signal_ends_at_once(void **state)
         rest(0.02);
     rest(0.2);
     kill(pid, SIGTERM);
-    kill(pid, SIGINT); /* within microseconds: one wish, as of `timeout` */
+    kill(pid, SIGINT); /* within microseconds: one request, as of `timeout` */
     rest(0.4);
     assert_int_equal(waitpid(pid, NULL, WNOHANG), 0); /* it still waits for the answer that is under way */
     kill(pid, SIGTERM);

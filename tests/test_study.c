@@ -296,14 +296,14 @@ static void test_an_external_simulator_is_searched_and_every_design_exported(voi
 }
 
 /* The external run of the test before: f = (x1 min, x2 max). */
-static void test_designs_are_chosen_by_limits_weights_and_wishes_and_polished(void **state)
+static void test_designs_are_chosen_by_limits_weights_and_a_reference_point_and_polished(void **state)
 {
     (void)state;
     free(output_of("optimize @/external.ini --out @/kind --set 'problem.command=sh tests/worker.sh good'"));
-    char *said = output_of("choose @/kind --max f1=0.9 --min f2=0.1 --weights f1=1 --wish f1=0,f2=1");
+    char *said = output_of("choose @/kind --max f1=0.9 --min f2=0.1 --weights f1=1 --reference f1=0,f2=1");
     assert_non_null(strstr(said, "knee"));
     assert_non_null(strstr(said, "weighted"));
-    assert_non_null(strstr(said, "nearest wish"));
+    assert_non_null(strstr(said, "nearest to reference"));
     free(said);
     expect(69, "no design of the front is within the limits", "choose @/kind --max f1=-5");
     expect(2, "speed is no objective", "choose @/kind --max speed=5");
@@ -414,7 +414,7 @@ int main(void)
         cmocka_unit_test(test_list_tells_a_run_from_a_folder_of_runs),
         cmocka_unit_test(test_a_design_is_evaluated_on_every_motion_of_a_folder),
         cmocka_unit_test(test_an_external_simulator_is_searched_and_every_design_exported),
-        cmocka_unit_test(test_designs_are_chosen_by_limits_weights_and_wishes_and_polished),
+        cmocka_unit_test(test_designs_are_chosen_by_limits_weights_and_a_reference_point_and_polished),
         cmocka_unit_test(test_a_search_begins_with_given_designs_and_a_front_is_thinned),
         cmocka_unit_test(test_a_textbook_problem_is_written_design_by_design),
         cmocka_unit_test(test_a_run_that_is_killed_leaves_its_last_finished_generation),

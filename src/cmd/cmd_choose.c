@@ -51,11 +51,11 @@ static Status take_weights(const Choice *c, const char *list, double weights[], 
 }
 
 /* NAN where nothing is wished for. */
-static Status take_wishes(const Choice *c, const char *list, double wishes[], Err *err)
+static Status take_reference(const Choice *c, const char *list, double reference[], Err *err)
 {
     for (size_t k = 0; k < c->run->schema.n_obj; k++)
-        wishes[k] = NAN;
-    return pairs_take(&c->run->schema, "--wish", list, NAN, wishes, err);
+        reference[k] = NAN;
+    return pairs_take(&c->run->schema, "--reference", list, NAN, reference, err);
 }
 
 typedef double (*CostFn)(const Choice *c, size_t row, const double values[]);
@@ -74,12 +74,12 @@ static double weighted_cost(const Choice *c, size_t row, const double weights[])
     return sum;
 }
 
-static double wish_cost(const Choice *c, size_t row, const double wishes[])
+static double reference_cost(const Choice *c, size_t row, const double reference[])
 {
     double sum = 0;
     for (size_t k = 0; k < c->run->schema.n_obj; k++) {
-        const double off = (run_f(c->run, row)[k] - wishes[k]) / c->box.span[k];
-        sum += isnan(wishes[k]) ? 0 : off * off;
+        const double off = (run_f(c->run, row)[k] - reference[k]) / c->box.span[k];
+        sum += isnan(reference[k]) ? 0 : off * off;
     }
     return sum;
 }
@@ -103,12 +103,12 @@ static void show_best(const Choice *c, const char *label, CostFn cost, const dou
 static Status choose(const Args *args, Choice *c, Err *err)
 {
     size_t n_left;
-    double weights[OBJECTIVES_MAX], wishes[OBJECTIVES_MAX];
+    double weights[OBJECTIVES_MAX], reference[OBJECTIVES_MAX];
     TRY(apply_limits(args, c, &n_left, err));
     if (args_has(args, "--weights"))
         TRY(take_weights(c, args_value(args, "--weights"), weights, err));
-    if (args_has(args, "--wish"))
-        TRY(take_wishes(c, args_value(args, "--wish"), wishes, err));
+    if (args_has(args, "--reference"))
+        TRY(take_reference(c, args_value(args, "--reference"), reference, err));
     printf("%zu of %zu designs are within the limits\n", n_left, c->run->n_front);
     if (n_left == 0)
         return fail(err, STATUS_UNMET,
@@ -119,8 +119,8 @@ static Status choose(const Args *args, Choice *c, Err *err)
     show_best(c, "knee", distance_cost, NULL);
     if (args_has(args, "--weights"))
         show_best(c, "weighted", weighted_cost, weights);
-    if (args_has(args, "--wish"))
-        show_best(c, "nearest wish", wish_cost, wishes);
+    if (args_has(args, "--reference"))
+        show_best(c, "nearest to reference", reference_cost, reference);
     return STATUS_OK;
 }
 
@@ -147,19 +147,19 @@ static const ArgOption OPTIONS[] = {
     {"--max", "NAME=VALUE", NULL, 1, "only designs whose objective is no larger; may be repeated"},
     {"--min", "NAME=VALUE", NULL, 1, "only designs whose objective is no smaller; may be repeated"},
     {"--weights", "NAME=W,...", NULL, 0, "the least weighted sum of objectives scaled to 0 (best) .. 1 (worst)"},
-    {"--wish", "NAME=VALUE,...", NULL, 0, "the design nearest to these values"},
+    {"--reference", "NAME=VALUE,...", NULL, 0, "reference point: the design nearest to these values"},
     OPTION_END,
 };
 
 const Command CMD_CHOOSE = {
     .name = "choose",
     .operand = "RUN",
-    .summary = "designs of a front by limits, weights or wishes",
+    .summary = "designs of a front by limits, weights or a reference point",
     .example = "imtet choose results/quick --max j3_g=5 --weights j1_m=2,mcore_kg=1",
     .details =
         "Of the front of the folder RUN, among the designs within the limits: the knee (nearest to the ideal point\n"
-        "when every objective is scaled to 0..1 over the front), the best weighted one, the one nearest to a list\n"
-        "of wishes; each with its objectives and variables.",
+        "when every objective is scaled to 0..1 over the front), the best weighted one, the one nearest to\n"
+        "a reference point; each with its objectives and variables.",
     .options = OPTIONS,
     .run = run,
 };

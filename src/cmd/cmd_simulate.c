@@ -37,10 +37,10 @@ static Status choose_kind(const Args *args, Job *job, Err *err)
     const char *path = args_value(args, "--design");
     if (!path)
         return fail(err, STATUS_USAGE, "--design FILE is missing (--design none: the building alone)");
-    const int none = strcmp(path, "none") == 0, tied = args_has(args, "--rigid");
-    if (none && tied)
+    const int none = strcmp(path, "none") == 0, rigid = args_has(args, "--rigid");
+    if (none && rigid)
         return fail(err, STATUS_USAGE, "--rigid needs a core: give --design FILE instead of none");
-    job->kind = none ? SCENE_NO_CORE : tied ? SCENE_RIGID : SCENE_IMPACT;
+    job->kind = none ? SCENE_NO_CORE : rigid ? SCENE_RIGID : SCENE_IMPACT;
     return choose_replicates(args, job, err);
 }
 

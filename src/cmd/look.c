@@ -47,14 +47,14 @@ static Status open_report(const Args *args, const Run *run, Report *r, Err *err)
     Settings other = *run->settings;
     Records records;
     long floor;
-    DetailWish wish = {.other = &other, .records = records.path};
-    TRY(args_moved(args, &wish.moved, err));
+    DetailOptions options = {.other = &other, .records = records.path};
+    TRY(args_moved(args, &options.moved, err));
     TRY(args_apply(args, &other, NULL, NULL, err));
     TRY(take_records(args, &other, &records, err));
-    wish.n_records = records.n;
+    options.n_records = records.n;
     TRY(args_whole(args, "--floor", 1, FLOORS_MAX, 0, &floor, err));
-    wish.floor = (int)floor - 1;
-    return report_open(r, run, design ? design : "knee", &wish, err);
+    options.floor = (int)floor - 1;
+    return report_open(r, run, design ? design : "knee", &options, err);
 }
 
 static Status take_target(const Args *args, const char *name, char path[PATH_MAX], Err *err)

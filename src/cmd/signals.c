@@ -9,11 +9,11 @@
 static volatile sig_atomic_t asked;
 static atomic_llong first_ns; /* when the first one came, 0: none did */
 
-/* `timeout` and others signal the process and then its group: that is one wish. */
+/* `timeout` and others signal the process and then its group: that is one request. */
 static const long long ONE_WISH_NS = 200000000;
 
-static const int WISHES[] = {SIGINT, SIGTERM, SIGHUP};
-enum { N_WISHES = sizeof WISHES / sizeof WISHES[0] };
+static const int STOP_SIGNALS[] = {SIGINT, SIGTERM, SIGHUP};
+enum { N_STOP_SIGNALS = sizeof STOP_SIGNALS / sizeof STOP_SIGNALS[0] };
 
 static long long now_ns(void)
 {
@@ -40,9 +40,10 @@ void signals_catch(void)
     struct sigaction before;
     asked = 0;
     atomic_store(&first_ns, 0);
-    for (int i = 0; i < N_WISHES; i++)
-        if (sigaction(WISHES[i], NULL, &before) == 0 && (WISHES[i] != SIGHUP || before.sa_handler != SIG_IGN))
-            sigaction(WISHES[i], &wanted, NULL); /* under nohup the end of the terminal stays without meaning */
+    for (int i = 0; i < N_STOP_SIGNALS; i++)
+        if (sigaction(STOP_SIGNALS[i], NULL, &before) == 0 &&
+            (STOP_SIGNALS[i] != SIGHUP || before.sa_handler != SIG_IGN))
+            sigaction(STOP_SIGNALS[i], &wanted, NULL); /* under nohup the end of the terminal stays without meaning */
     signal(SIGXFSZ, SIG_IGN);
 }
 

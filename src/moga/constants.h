@@ -17,7 +17,7 @@ enum { BATCH_POPULATION_SHARE = 8 }; /* population / this + 1 at least */
 enum { BATCH_ARCHIVE_SHARE = 40 };   /* evaluations / this, where that is more */
 enum { LOOK_AHEAD_SHARE = 4 };       /* asynchronous: batch / this designs wait while the next batch is selected */
 
-/* -- search_state.c: reference vectors of infill ------------------------------------------------------------------- */
+/* -- state.c: reference vectors of infill ------------------------------------------------------------------------- */
 
 enum { VECTOR_EVALS = 5 };  /* evaluations of the budget for each vector */
 enum { VECTORS_FEW = 200 }; /* small budgets: twice as many vectors, up to this number */

@@ -48,7 +48,7 @@
  *               order, the same bytes, at one worker those of a search in batches
  * Resumed       from the evaluations and the state of any generation's end (SearchView.state), to the same bytes as if
  *               it had not stopped. The state is what the evaluations do not tell: population, hyperparameters, running
- *               means. A new variable that outlives a generation is one more line in pack_search (search_state.c), and
+ *               means. A new variable that outlives a generation is one more line in pack_search (state.c), and
  *               STATE_VERSION one higher
  * Ownership     search_run owns all it allocates; a SearchView is valid inside the callback only
  * Sources       Deb and Jain, IEEE Trans. Evol. Comput. 18 (2014) 577-601 (NSGA-III)

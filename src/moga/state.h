@@ -1,7 +1,7 @@
 /* moga/state.h -- a search under way: what the files below share. Everybody else reads search.h.
  *
  *   search.c         limits, the loop over generations, the view of the observer
- *   search_state.c   memory; what outlives a generation, as bytes
+ *   state.c   memory; what outlives a generation, as bytes
  *   generation.c     one generation: the steps of the method in their order
  *   surrogate_use.c  criteria, fit, prediction, descents, predicted failures
  *   offspring.c      candidates: variation, inner generations and descents on the surrogate
@@ -113,7 +113,7 @@ static inline size_t search_planned(const SearchConfig *c)
     return c->planned_evals > 0 ? c->planned_evals : c->max_evals;
 }
 
-/* search_state.c */
+/* state.c */
 Status state_create(Search *s, Err *err); /* for its problem and config */
 void state_free(Search *s);
 Status state_grow_rows(Search *s, Err *err); /* after every generation */

@@ -2,7 +2,21 @@
 #ifndef IMTET_RBF_MODEL_H
 #define IMTET_RBF_MODEL_H
 
-#include "rbf/rbf.h"
+#include <stddef.h>
+
+#include "base/status.h"
+#include "rbf/kernel.h"
+
+typedef struct Rbf Rbf; /* as in rbf/rbf.h */
+
+typedef enum { RBF_CONSTANT, RBF_LINEAR, RBF_QUADRATIC, RBF_N_TAILS } RbfTail;
+
+/* How one output is modelled. */
+typedef struct {
+    RbfKernel kernel;
+    RbfTail tail;
+    double nugget; /* [-] share of the output's variance */
+} RbfForm;
 
 /* How one output sees the variables. */
 typedef struct {

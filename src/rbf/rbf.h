@@ -36,15 +36,6 @@ typedef struct Rbf Rbf;
 
 enum { RBF_DIM_MAX = 512 };
 
-typedef enum { RBF_CONSTANT, RBF_LINEAR, RBF_QUADRATIC, RBF_N_TAILS } RbfTail;
-
-/* How one output is modelled. */
-typedef struct {
-    RbfKernel kernel;
-    RbfTail tail;
-    double nugget; /* [-] share of the output's variance */
-} RbfForm;
-
 Status rbf_create(Rbf **out, size_t n_max, size_t n_dim, size_t n_out, Err *err);
 void rbf_free(Rbf *m); /* NULL is fine */
 

@@ -7,6 +7,7 @@
 #include "rbf/constants.h"
 #include "rbf/kernel.h"
 #include "rbf/model.h"
+#include "rbf/rbf.h"
 
 /* Parameters p: logarithms of theta of every variable, of a, b of the warp and of the nugget. Weak normal priors hold
  * what the data do not determine: log theta about its mean over the variables, log a and log b about 0. The standard

@@ -88,12 +88,13 @@ static Status take_histories(const Scenario *w, const double x[], Detail *d, Err
     return STATUS_OK;
 }
 
-static Status take_here(const Problem *p, int n_var, const double x[], const DetailWish *wish, Detail *d, Err *err)
+static Status take_here(const Problem *p, int n_var, const double x[], const DetailOptions *options, Detail *d,
+                        Err *err)
 {
     const Scenario *w = tower_record(tower_of(p), 0);
     double rigid_hz[FLOORS_MAX], mass;
     d->n_floors = scene_n_floors(w->scene);
-    d->floor = wish->floor < 0 ? (d->n_floors - 1) / 2 : wish->floor;
+    d->floor = options->floor < 0 ? (d->n_floors - 1) / 2 : options->floor;
     if (d->n_floors + 2 != n_var)
         return fail(err, STATUS_BAD_DATA, "the front has designs of %d floors, the building has %d", n_var - 2,
                     d->n_floors);
@@ -126,21 +127,21 @@ static Status take_elsewhere(const Settings *other, const char *record, const do
     return status;
 }
 
-Status detail_make(const Settings *s, int n_var, const double x[], const DetailWish *wish, Detail *out, Err *err)
+Status detail_make(const Settings *s, int n_var, const double x[], const DetailOptions *options, Detail *out, Err *err)
 {
     Problem p;
     memset(out, 0, sizeof *out);
     TRY(tower_open(&p, s, TOWER_SINGLE, N_SCENES, err));
-    Status status = take_here(&p, n_var, x, wish, out, err);
+    Status status = take_here(&p, n_var, x, options, out, err);
     problem_close(&p);
-    if (status == STATUS_OK && wish->n_records > 0) {
-        out->elsewhere = calloc(wish->n_records, sizeof *out->elsewhere);
+    if (status == STATUS_OK && options->n_records > 0) {
+        out->elsewhere = calloc(options->n_records, sizeof *out->elsewhere);
         if (!out->elsewhere)
-            status = fail(err, STATUS_NO_MEMORY, "no memory for %zu earthquakes", wish->n_records);
+            status = fail(err, STATUS_NO_MEMORY, "no memory for %zu earthquakes", options->n_records);
     }
-    for (; status == STATUS_OK && out->n_elsewhere < wish->n_records; out->n_elsewhere++)
-        status =
-            take_elsewhere(wish->other, wish->records[out->n_elsewhere], x, &out->elsewhere[out->n_elsewhere], err);
+    for (; status == STATUS_OK && out->n_elsewhere < options->n_records; out->n_elsewhere++)
+        status = take_elsewhere(options->other, options->records[out->n_elsewhere], x,
+                                &out->elsewhere[out->n_elsewhere], err);
     if (status != STATUS_OK)
         detail_free(out);
     return status;

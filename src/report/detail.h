@@ -45,10 +45,10 @@ typedef struct {
     const Settings *other;
     size_t n_records;
     const char *const *records;
-} DetailWish;
+} DetailOptions;
 
 /* s: settings of the run; x (n_var) the design. */
-Status detail_make(const Settings *s, int n_var, const double x[], const DetailWish *wish, Detail *out, Err *err);
+Status detail_make(const Settings *s, int n_var, const double x[], const DetailOptions *options, Detail *out, Err *err);
 void detail_free(Detail *d);
 
 #endif

@@ -5,22 +5,23 @@
 #include "settings/settings.h"
 
 /* The chosen design simulated with the run's own settings, its records where they are now. */
-static Status take_detail(Report *r, const DetailWish *wish, Err *err)
+static Status take_detail(Report *r, const DetailOptions *options, Err *err)
 {
     Settings s = *r->run->settings;
-    TRY(record_paths_find(&s, r->run->provenance, &wish->moved, err));
-    return r->has_detail ? detail_make(&s, (int)r->run->schema.n_var, run_x(r->run, r->chosen), wish, &r->detail, err)
-                         : STATUS_OK;
+    TRY(record_paths_find(&s, r->run->provenance, &options->moved, err));
+    return r->has_detail
+               ? detail_make(&s, (int)r->run->schema.n_var, run_x(r->run, r->chosen), options, &r->detail, err)
+               : STATUS_OK;
 }
 
-Status report_open(Report *r, const Run *run, const char *design, const DetailWish *wish, Err *err)
+Status report_open(Report *r, const Run *run, const char *design, const DetailOptions *options, Err *err)
 {
     const Settings *s = run->settings;
     *r = (Report){.run = run, .has_detail = s->problem.kind == PROBLEM_TOWER};
     r->is_robust = r->has_detail && (s->sim.replicates > 1 || strcmp(s->motion.records, "none") != 0);
     TRY(run_pick(run, design, &r->chosen, err));
     r->knee = run_knee(run);
-    const Status status = take_detail(r, wish, err);
+    const Status status = take_detail(r, options, err);
     if (status != STATUS_OK)
         report_close(r);
     return status;

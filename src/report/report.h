@@ -23,7 +23,7 @@ typedef struct {
 } Report;
 
 /* design: an id of the front, or "knee". */
-Status report_open(Report *r, const Run *run, const char *design, const DetailWish *wish, Err *err);
+Status report_open(Report *r, const Run *run, const char *design, const DetailOptions *options, Err *err);
 Status report_page(const Report *r, const char *path, Err *err);
 
 /* Pictures FOLDER/NAME.svg and .png, the folder made where it is not there. */

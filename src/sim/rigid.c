@@ -44,9 +44,9 @@ typedef struct {
     ForceMonitor *forces; /* may be NULL */
     long steps;
     void *store;
-} Tied;
+} Rigid;
 
-static void layout(Tied *d, Carve *c)
+static void layout(Rigid *d, Carve *c)
 {
     const size_t n = (size_t)d->n, size = (size_t)d->size, real = sizeof(double);
     d->omega = carve(c, n, real);
@@ -113,7 +113,7 @@ static void exponentiate(int n, double A[], double out[], double work[])
 }
 
 /* (z, a, a') after h = exponential (z, a, a'). */
-static void set_step(Tied *d, double h)
+static void set_step(Rigid *d, double h)
 {
     const int n = d->n, size = d->size;
     double *A = d->work;
@@ -131,7 +131,7 @@ static void set_step(Tied *d, double h)
 }
 
 /* Rows first .. first+n-1 of P: phi' M Psi, from row-major phi and M (n, n). */
-static void project(Tied *d, int first, const double phi[], const double M[])
+static void project(Rigid *d, int first, const double phi[], const double M[])
 {
     const int n = d->n;
     for (int k = 0; k < n; k++)
@@ -144,7 +144,7 @@ static void project(Tied *d, int first, const double phi[], const double M[])
         }
 }
 
-static Status find_pair_modes(Tied *d, const Building *b, const CoreBeam *core, Err *err)
+static Status find_pair_modes(Rigid *d, const Building *b, const CoreBeam *core, Err *err)
 {
     const int n = d->n, nn = n * n;
     double *K = d->work, *M = K + nn, *psi = M + nn;
@@ -160,14 +160,14 @@ static Status find_pair_modes(Tied *d, const Building *b, const CoreBeam *core, 
     return STATUS_OK;
 }
 
-static Status prepare(Tied *d, const SceneOptions *o, const Building *b, const CoreBeam *core, Err *err)
+static Status prepare(Rigid *d, const SceneOptions *o, const Building *b, const CoreBeam *core, Err *err)
 {
     const int n = d->n;
     Carve count = {0};
     layout(d, &count);
     d->store = carve_store(&count);
     if (!d->store)
-        return fail(err, STATUS_NO_MEMORY, "tied: no memory for %d floors", n);
+        return fail(err, STATUS_NO_MEMORY, "rigid: no memory for %d floors", n);
     layout(d, &(Carve){.base = d->store});
     TRY(find_pair_modes(d, b, core, err));
     project(d, 0, b->phi, b->M);
@@ -184,7 +184,7 @@ static Status prepare(Tied *d, const SceneOptions *o, const Building *b, const C
 }
 
 /* y'' and q' of the present state. */
-static void find_rates(Tied *d)
+static void find_rates(Rigid *d)
 {
     const int n = d->n;
     const double *z = d->z, *y_dot = d->z + n, a = d->z[2 * n];
@@ -195,7 +195,7 @@ static void find_rates(Tied *d)
 }
 
 /* q and q' of building and core by their own modes. */
-static void record_forces(Tied *d, double t)
+static void record_forces(Rigid *d, double t)
 {
     const int n = d->n;
     double q[2 * FLOORS_MAX];
@@ -205,7 +205,7 @@ static void record_forces(Tied *d, double t)
         &(ForcePoint){.t = t, .ground = d->z[2 * n], .building_q = q, .building_v = d->rate, .core_q = q + n});
 }
 
-static void look(Tied *d, double t)
+static void look(Rigid *d, double t)
 {
     const int n = d->n;
     PeakPoint *point = peak_monitor_next(&d->peaks);
@@ -230,7 +230,7 @@ static double dot(int n, const double a[], const double b[])
 }
 
 /* Adds weight f to every energy: f = 2 zeta w q'^2 and -a Gamma' y'. */
-static void add_power(Tied *d, double weight)
+static void add_power(Rigid *d, double weight)
 {
     const int n = d->n;
     for (int i = 0; i < 2 * n; i++)
@@ -239,7 +239,7 @@ static void add_power(Tied *d, double weight)
 }
 
 /* Adds weight f'. */
-static void add_power_slope(Tied *d, double weight)
+static void add_power_slope(Rigid *d, double weight)
 {
     const int n = d->n;
     const double a = d->z[2 * n], slope = d->z[2 * n + 1];
@@ -251,7 +251,7 @@ static void add_power_slope(Tied *d, double weight)
 }
 
 /* From t on for `length`, while the ground acceleration is a + slope (time since t). */
-static void cross_stretch(Tied *d, double t, double length, double a, double slope)
+static void cross_stretch(Rigid *d, double t, double length, double a, double slope)
 {
     const int n = d->n;
     const long parts = (long)ceil(length / d->step);
@@ -276,7 +276,7 @@ static void cross_stretch(Tied *d, double t, double length, double a, double slo
 }
 
 /* Sample by sample to the end; after the last sample the ground is at rest. Returns how far the response was finite. */
-static double walk(Tied *d, const Motion *motion, double duration)
+static double walk(Rigid *d, const Motion *motion, double duration)
 {
     double t = 0;
     for (size_t k = 0; t < duration; k++) {
@@ -293,7 +293,7 @@ static double walk(Tied *d, const Motion *motion, double duration)
     return duration;
 }
 
-static void report(const Tied *d, SimResult *result)
+static void report(const Rigid *d, SimResult *result)
 {
     result->steps = d->steps;
     result->input_energy_j = d->input;
@@ -306,7 +306,7 @@ Status engine_rigid(const SceneOptions *o, const Building *b, const CoreBeam *co
                     const EngineOptions *options, SimResult *result, Err *err)
 {
     static const double STEP[] = {[ACCURACY_COARSE] = 2e-3, [ACCURACY_STANDARD] = 1e-3, [ACCURACY_FINE] = 5e-4};
-    Tied d = {
+    Rigid d = {
         .n = b->n, .size = 2 * b->n + 2, .step = STEP[options->accuracy], .peaks.n = b->n, .forces = options->forces};
     memset(result, 0, sizeof *result);
     result->n_floors = result->n_modes = b->n;

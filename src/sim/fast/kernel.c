@@ -175,7 +175,7 @@ static Ramp ground(const Motion *motion, long i)
     return i + 1 < (long)motion->n ? (Ramp){motion->accel[i], motion->accel[i + 1]} : (Ramp){0, 0};
 }
 
-/* Glides over intervals first.. while it can; returns how many, 0 where the next one must be looked at. */
+/* Certified free intervals first.. are passed at once; returns how many, 0 where the next one must be integrated. */
 static long free_intervals(FastWork *k, const Motion *motion, long first, long end)
 {
     double impulse = 0;
