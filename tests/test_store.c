@@ -311,15 +311,18 @@ static void test_a_second_signal_ends_at_once(void **state)
 }
 
 /* 0.2 s of a batch that takes 0.7 s. */
+/* On a busy machine the first session may end before its worker has answered: then one of half as long again. */
 static void test_hours_are_obeyed_within_a_batch(void **state)
 {
     (void)state;
-    StudySummary summary;
+    StudySummary summary = {0};
     Err err = {0};
     Settings s = settings_of(STEADY, "hours");
     s.search.max_hours = 0.2 / 3600;
-    assert_int_equal(study_run(&s, &(StudyOptions){0}, &summary, NULL, &err), STATUS_STOPPED);
-    assert_int_equal(summary.stopped, STOP_TIME);
+    for (int session = 0; session < 5 && summary.n_simulated == 0; session++, s.search.max_hours *= 1.5) {
+        assert_int_equal(study_run(&s, &(StudyOptions){.force = 1}, &summary, NULL, &err), STATUS_STOPPED);
+        assert_int_equal(summary.stopped, STOP_TIME);
+    }
     assert_true(summary.n_simulated > 0 && summary.n_simulated < 30);
     s.search.max_hours = 0;
     CHECK_OK(study_run(&s, &(StudyOptions){.force = 1}, &summary, NULL, &err), &err);
