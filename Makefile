@@ -27,7 +27,8 @@ CC       ?= cc
 WARNINGS := -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion -Wstrict-prototypes -Wmissing-prototypes -Wvla -Werror
 CPPFLAGS += -Isrc -MMD -MP -D_GNU_SOURCE
 # Contraction to fused multiply-add rounds once instead of twice; NaN and Inf stay what they are.
-CFLAGS   += -std=c17 -fopenmp -ffp-contract=fast $(CFLAGS.$(MODE))
+# Hidden: a function of ours never takes the place of one of the same name inside a shared library.
+CFLAGS   += -std=c17 -fopenmp -ffp-contract=fast -fvisibility=hidden $(CFLAGS.$(MODE))
 LDFLAGS  += -fopenmp $(CFLAGS.$(MODE))
 LDLIBS   += -lsundials_cvode -lsundials_nvecserial -lsundials_sunnonlinsolfixedpoint -lnlopt -llapacke -lopenblas -linih -ljansson -lsqlite3 -larchive -lmseed -lm
 

@@ -389,7 +389,7 @@ static void test_front_flags_equal_a_brute_force_filter_after_every_insertion(vo
     Err err = {0};
     for (uint32_t seed = 0; seed < 20; seed++) {
         Archive a;
-        CHECK_OK(archive_init(&a, 3, 1, M, 1, &err), &err);
+        CHECK_OK(pareto_archive_init(&a, 3, 1, M, 1, &err), &err);
         coarse_points(seed, N, M, F);
         for (size_t i = 0; i < N; i++) {
             X[i] = (double)i;
@@ -398,7 +398,7 @@ static void test_front_flags_equal_a_brute_force_filter_after_every_insertion(vo
         }
         F[20 * M] = NAN; /* counts as failed */
         for (size_t i = 0; i < N; i++) {
-            CHECK_OK(archive_insert(&a, 1, X + i, F + i * M, G + i, ok + i, 0, i, &err), &err);
+            CHECK_OK(pareto_archive_insert(&a, 1, X + i, F + i * M, G + i, ok + i, 0, i, &err), &err);
             size_t n_front = 0;
             for (size_t j = 0; j <= i; j++) {
                 int wanted = ok[j] && G[j] <= 0.0 && j != 20;
@@ -410,9 +410,9 @@ static void test_front_flags_equal_a_brute_force_filter_after_every_insertion(vo
             assert_int_equal(a.n_front, n_front);
         }
         assert_int_equal(a.n_failed, 8 + 1);
-        assert_int_equal(archive_find(&a, X + 33), 33);
-        assert_int_equal(archive_find(&a, (const double[]){0.5}), N);
-        archive_free(&a);
+        assert_int_equal(pareto_archive_find(&a, X + 33), 33);
+        assert_int_equal(pareto_archive_find(&a, (const double[]){0.5}), N);
+        pareto_archive_free(&a);
     }
 }
 

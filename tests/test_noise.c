@@ -155,17 +155,17 @@ static void insert_noisy(Archive *a, uint32_t seed, int settle_often)
 {
     Random r = random_stream(seed, RANDOM_TEST, 2, 0);
     Err err = {0};
-    CHECK_OK(archive_init(a, 4, 1, M, 1, &err), &err);
+    CHECK_OK(pareto_archive_init(a, 4, 1, M, 1, &err), &err);
     for (size_t i = 0; i < 120; i++) {
         const double x = i < 60 ? (double)i : (double)(3 * random_below(&r, 20)), g = x < 50.0 ? -1.0 : 1.0;
         double f[M];
         for (size_t k = 0; k < M; k++)
             f[k] = fmod(x * (double)(7 + 4 * k), 10.0) + 1.0 + 0.5 * random_normal(&r);
-        CHECK_OK(archive_insert(a, 1, &x, f, &g, &(unsigned char){1}, 0, i, &err), &err);
+        CHECK_OK(pareto_archive_insert(a, 1, &x, f, &g, &(unsigned char){1}, 0, i, &err), &err);
         if (settle_often)
-            archive_update_noise(a);
+            pareto_archive_update_noise(a);
     }
-    archive_update_noise(a);
+    pareto_archive_update_noise(a);
 }
 
 static void test_a_design_has_the_mean_and_the_deviation_of_its_answers(void **state)
@@ -194,7 +194,7 @@ static void test_a_design_has_the_mean_and_the_deviation_of_its_answers(void **s
             assert_close(a.error[row * M + k], sqrt(variance / n), 1e-12);
         }
     assert_close(a.noise[0].is_relative ? 5.5 * a.noise[0].sd : a.noise[0].sd, 0.5, 0.5);
-    archive_free(&a);
+    pareto_archive_free(&a);
 }
 
 static void test_the_front_is_what_nobody_dominates_surely_in_whatever_order_answers_come(void **state)
@@ -217,8 +217,8 @@ static void test_the_front_is_what_nobody_dominates_surely_in_whatever_order_ans
         assert_int_equal(b.n_front, n_front);
         assert_memory_equal(a.front, b.front, n_front * sizeof *a.front);
         assert_memory_equal(a.error, b.error, 60 * M * sizeof *a.error);
-        archive_free(&a);
-        archive_free(&b);
+        pareto_archive_free(&a);
+        pareto_archive_free(&b);
     }
 }
 
@@ -228,13 +228,13 @@ static void test_a_design_that_was_lucky_once_falls_out(void **state)
     Archive a;
     Err err = {0};
     const double X[] = {0, 1, 0, 1, 0}, F[] = {1.0, 2.0, 1.05, 0.5, 5.0, 6.0, 1.0, 0.52, 5.1, 6.0};
-    CHECK_OK(archive_init(&a, 2, 1, 2, 0, &err), &err);
-    CHECK_OK(archive_insert(&a, 2, X, F, NULL, (const unsigned char[]){1, 1}, 0, 0, &err), &err);
+    CHECK_OK(pareto_archive_init(&a, 2, 1, 2, 0, &err), &err);
+    CHECK_OK(pareto_archive_insert(&a, 2, X, F, NULL, (const unsigned char[]){1, 1}, 0, 0, &err), &err);
     assert_int_equal(a.n_front, 2);
-    CHECK_OK(archive_insert(&a, 3, X + 2, F + 4, NULL, (const unsigned char[]){1, 1, 1}, 0, 1, &err), &err);
-    archive_update_noise(&a);
+    CHECK_OK(pareto_archive_insert(&a, 3, X + 2, F + 4, NULL, (const unsigned char[]){1, 1, 1}, 0, 1, &err), &err);
+    pareto_archive_update_noise(&a);
     assert_true(a.n_front == 1 && a.front[0] == 1 && !a.on_front[0]);
-    archive_free(&a);
+    pareto_archive_free(&a);
 }
 
 static void test_a_design_with_an_answer_that_failed_is_no_longer_used(void **state)
@@ -243,13 +243,13 @@ static void test_a_design_with_an_answer_that_failed_is_no_longer_used(void **st
     Archive a;
     Err err = {0};
     const double X[] = {0, 1}, F[] = {1, 1, 2, 2};
-    CHECK_OK(archive_init(&a, 2, 1, 2, 0, &err), &err);
-    CHECK_OK(archive_insert(&a, 2, X, F, NULL, (const unsigned char[]){1, 1}, 0, 0, &err), &err);
-    CHECK_OK(archive_insert(&a, 1, X, F, NULL, (const unsigned char[]){0}, 0, 1, &err), &err);
-    archive_update_noise(&a);
+    CHECK_OK(pareto_archive_init(&a, 2, 1, 2, 0, &err), &err);
+    CHECK_OK(pareto_archive_insert(&a, 2, X, F, NULL, (const unsigned char[]){1, 1}, 0, 0, &err), &err);
+    CHECK_OK(pareto_archive_insert(&a, 1, X, F, NULL, (const unsigned char[]){0}, 0, 1, &err), &err);
+    pareto_archive_update_noise(&a);
     assert_true(!a.usable[0] && a.n_usable == 1 && a.n_failed == 1);
     assert_true(a.n_front == 1 && a.front[0] == 1);
-    archive_free(&a);
+    pareto_archive_free(&a);
 }
 
 /* -- search -------------------------------------------------------------------------------------------------------- */
@@ -515,20 +515,20 @@ static void test_estimates_of_a_surface_are_nearer_to_the_truth_than_means(void 
     CHECK_OK(directions_spread(&directions, OBJ, 10, &err), &err);
     CHECK_OK(infill_create(&near, INFILL_PBI, 1, &directions, &err), &err);
     CHECK_OK(surrogate_create(&surrogate, &w.problem, ALL, 1, &err), &err);
-    CHECK_OK(archive_init(&a, ALL, VAR, OBJ, 0, &err), &err);
-    CHECK_OK(archive_insert(&a, FIRST, X, F, NULL, ok, 0, 0, &err), &err);
+    CHECK_OK(pareto_archive_init(&a, ALL, VAR, OBJ, 0, &err), &err);
+    CHECK_OK(pareto_archive_insert(&a, FIRST, X, F, NULL, ok, 0, 0, &err), &err);
     infill_measure(near, a.n_front, a.front, a.F);
     CHECK_OK(surrogate_fit(surrogate, &a, near, &err), &err);
     surrogate_estimate(surrogate, &a);
     assert_memory_equal(a.estimate, a.F, a.n * OBJ * sizeof *a.F);
-    CHECK_OK(archive_insert(&a, ALL - FIRST, X + FIRST * VAR, F + FIRST * OBJ, NULL, ok, 0, 1, &err), &err);
-    archive_update_noise(&a);
+    CHECK_OK(pareto_archive_insert(&a, ALL - FIRST, X + FIRST * VAR, F + FIRST * OBJ, NULL, ok, 0, 1, &err), &err);
+    pareto_archive_update_noise(&a);
     CHECK_OK(surrogate_fit(surrogate, &a, near, &err), &err);
     surrogate_estimate(surrogate, &a);
     assert_true(square_off(&a, a.estimate) < 0.6 * square_off(&a, a.F));
-    archive_reset_estimates(&a);
+    pareto_archive_reset_estimates(&a);
     assert_memory_equal(a.estimate, a.F, a.n * OBJ * sizeof *a.F);
-    archive_free(&a);
+    pareto_archive_free(&a);
     surrogate_free(surrogate);
     infill_free(near);
     directions_free(&directions);

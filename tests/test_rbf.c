@@ -3,6 +3,7 @@
 #include "base/random.h"
 #include "check.h"
 #include "rbf/model.h"
+#include "rbf/rbf.h"
 
 enum { N = 60, D = 4, OUT = 2 };
 

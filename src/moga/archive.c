@@ -95,13 +95,13 @@ static Status resize(Archive *a, size_t n_max, Err *err)
     return STATUS_OK;
 }
 
-Status archive_init(Archive *a, size_t n_max, size_t n_var, size_t n_obj, size_t n_con, Err *err)
+Status pareto_archive_init(Archive *a, size_t n_max, size_t n_var, size_t n_obj, size_t n_con, Err *err)
 {
     *a = (Archive){.n_var = n_var, .n_obj = n_obj, .n_con = n_con};
     return resize(a, n_max > 0 ? n_max : 1, err);
 }
 
-void archive_free(Archive *a)
+void pareto_archive_free(Archive *a)
 {
     free(a->store);
     *a = (Archive){0};
@@ -198,8 +198,8 @@ static void add_row(Archive *a, size_t row)
     a->n_usable -= design == row ? 0 : was_usable;
 }
 
-Status archive_insert(Archive *a, size_t n, const double X[], const double F[], const double G[],
-                      const unsigned char ok[], unsigned char kind, size_t generation, Err *err)
+Status pareto_archive_insert(Archive *a, size_t n, const double X[], const double F[], const double G[],
+                             const unsigned char ok[], unsigned char kind, size_t generation, Err *err)
 {
     if (a->n + n > a->n_max)
         TRY(resize(a, a->n + n > 2 * a->n_max ? a->n + n : 2 * a->n_max, err));
@@ -219,7 +219,7 @@ Status archive_insert(Archive *a, size_t n, const double X[], const double F[], 
 }
 
 /* The list of the front holds the designs with several replicates before it is made again. */
-void archive_update_noise(Archive *a)
+void pareto_archive_update_noise(Archive *a)
 {
     size_t n = 0;
     if (!a->is_stale)
@@ -241,12 +241,12 @@ void archive_update_noise(Archive *a)
     a->is_stale = 0;
 }
 
-void archive_reset_estimates(Archive *a)
+void pareto_archive_reset_estimates(Archive *a)
 {
     memcpy(a->estimate, a->F, a->n * a->n_obj * sizeof *a->F);
 }
 
-size_t archive_find(const Archive *a, const double x[])
+size_t pareto_archive_find(const Archive *a, const double x[])
 {
     const size_t row = a->slot[slot_of(a, x)];
     return row ? row - 1 : a->n;

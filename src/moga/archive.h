@@ -7,9 +7,9 @@
  *   usable    a design all of whose evaluations succeeded with finite numbers
  *   on_front  usable, every constraint holds, no design of the archive dominates it surely (moga/dominance.h)
  *
- * Up to date after each insertion without replicates; after one with replicates archive_update_noise is due.
+ * Up to date after each insertion without replicates; after one with replicates pareto_archive_update_noise is due.
  *
- * Life cycle  archive_init -> archive_insert (archive_update_noise) ... -> archive_free
+ * Life cycle  pareto_archive_init -> pareto_archive_insert (pareto_archive_update_noise) ... -> pareto_archive_free
  * Memory      grows by doubling: pointers move
  * Threads     one writer */
 #ifndef IMTET_MOGA_ARCHIVE_H
@@ -41,23 +41,23 @@ typedef struct {
     size_t *front;         /* (n_front) rows of the front, ascending */
     size_t n_slots, *slot; /* hash table of the designs */
     NoiseModel *noise;     /* (n_obj) */
-    int is_stale;          /* archive_update_noise is due */
+    int is_stale;          /* pareto_archive_update_noise is due */
     void *store;
 } Archive;
 
-Status archive_init(Archive *a, size_t n_max, size_t n_var, size_t n_obj, size_t n_con, Err *err);
-void archive_free(Archive *a);
+Status pareto_archive_init(Archive *a, size_t n_max, size_t n_var, size_t n_obj, size_t n_con, Err *err);
+void pareto_archive_free(Archive *a);
 
 /* Adds n rows; G may be NULL when n_con is 0. */
-Status archive_insert(Archive *a, size_t n, const double X[], const double F[], const double G[],
-                      const unsigned char ok[], unsigned char kind, size_t generation, Err *err);
+Status pareto_archive_insert(Archive *a, size_t n, const double X[], const double F[], const double G[],
+                             const unsigned char ok[], unsigned char kind, size_t generation, Err *err);
 
 /* After replicates: noise models, standard errors and the front. */
-void archive_update_noise(Archive *a);
+void pareto_archive_update_noise(Archive *a);
 
-void archive_reset_estimates(Archive *a); /* to the means */
+void pareto_archive_reset_estimates(Archive *a); /* to the means */
 
 /* Row of exactly this design, or n where it has not been evaluated. */
-size_t archive_find(const Archive *a, const double x[]);
+size_t pareto_archive_find(const Archive *a, const double x[]);
 
 #endif

@@ -20,7 +20,7 @@ size_t batch_add(Search *s, size_t n, const double x[], EvaluationKind kind)
 {
     Batch *b = &s->batch;
     if (n >= b->size_max || s->archive.n + queue_pending(s->queue) + n + s->reserved >= s->config->max_evals ||
-        in_batch(s, n, x) || archive_find(&s->archive, x) < s->archive.n || queue_has(s->queue, x))
+        in_batch(s, n, x) || pareto_archive_find(&s->archive, x) < s->archive.n || queue_has(s->queue, x))
         return n;
     memcpy(b->X + n * s->problem->n_var, x, s->problem->n_var * sizeof *x);
     b->repeat[n] = 0;
@@ -69,8 +69,8 @@ static Status take_result(Search *s, size_t i, const Finished *done, Err *err)
     b->criterion[i] = done->note ? (unsigned char)done->note[NOTE_CRITERION] : 0;
     if (b->was_predicted[i])
         memcpy(b->predicted + i * p->n_obj, done->note + NOTE_PREDICTED, p->n_obj * sizeof *b->predicted);
-    return archive_insert(&s->archive, 1, e->x, done->f, p->n_con > 0 ? done->g : NULL, &b->ok[i], b->kind[i],
-                          s->generation, err);
+    return pareto_archive_insert(&s->archive, 1, e->x, done->f, p->n_con > 0 ? done->g : NULL, &b->ok[i], b->kind[i],
+                                 s->generation, err);
 }
 
 /* All but the last `pending` of what is asked for. */
@@ -82,7 +82,7 @@ static Status take_results(Search *s, size_t pending, Err *err)
         TRY(queue_next(s->queue, &done, err));
         TRY(take_result(s, b->n, &done, err));
     }
-    archive_update_noise(&s->archive);
+    pareto_archive_update_noise(&s->archive);
     return STATUS_OK;
 }
 

@@ -173,7 +173,7 @@ Status generation_next(Search *s, Err *err)
     s->n_predicted = 0;
     if (s->population.n < 2)
         return sample_again(s, err);
-    archive_reset_estimates(&s->archive);
+    pareto_archive_reset_estimates(&s->archive);
     control_weigh_costs(&s->control, s->config->surrogate);
     search_measure_front(s);
     const size_t n_last = replication_last(s);
@@ -195,7 +195,7 @@ Status generation_last(Search *s, Err *err)
 {
     const size_t first_new = s->archive.n;
     s->n_predicted = s->offspring.members.n = 0;
-    archive_reset_estimates(&s->archive);
+    pareto_archive_reset_estimates(&s->archive);
     TRY(batch_finish(s, err));
     renew_population(s, first_new);
     return STATUS_OK;

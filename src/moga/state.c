@@ -78,7 +78,7 @@ Status state_create(Search *s, Err *err)
     s->batch.n_max = s->batch.size_max + pending;
     TRY(create_selection(s, n_pool, err));
     TRY(create_criteria(&s->criteria, p, s->config, n_pool, err));
-    TRY(archive_init(&s->archive, 2 * initial, p->n_var, p->n_obj, p->n_con, err));
+    TRY(pareto_archive_init(&s->archive, 2 * initial, p->n_var, p->n_obj, p->n_con, err));
     TRY(surrogate_create(&s->surrogate, p, centres, n_pool, err));
     TRY(population_create(&s->population, 2 * population + pending, p->n_var, p->n_obj, err));
     TRY(population_create(&s->offspring.members, n_pool, p->n_var, p->n_obj, err));
@@ -96,7 +96,7 @@ void state_free(Search *s)
 {
     directions_free(&s->directions);
     directions_free(&s->criteria.vectors);
-    archive_free(&s->archive);
+    pareto_archive_free(&s->archive);
     selection_free(s->selection);
     for (int kind = 0; kind < INFILL_KINDS; kind++) {
         infill_free(s->criteria.select[kind]);
@@ -191,10 +191,10 @@ Status state_restore(Search *s, const SearchStart *start, Err *err)
         const Evaluation *e = &start->row[i];
         const unsigned char ok = e->outcome == OUTCOME_OK;
         problem_judge(p, e, f, g);
-        TRY(archive_insert(&s->archive, 1, e->x, f, p->n_con > 0 ? g : NULL, &ok, (unsigned char)e->kind,
-                           (size_t)e->generation, err));
+        TRY(pareto_archive_insert(&s->archive, 1, e->x, f, p->n_con > 0 ? g : NULL, &ok, (unsigned char)e->kind,
+                                  (size_t)e->generation, err));
     }
-    archive_update_noise(&s->archive);
+    pareto_archive_update_noise(&s->archive);
     if (!start->state)
         return STATUS_OK;
     Pack state = {.bytes = (unsigned char *)(uintptr_t)start->state, .n = start->n_state, .reading = 1};

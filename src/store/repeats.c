@@ -16,7 +16,7 @@ static Status insert_row(Archive *a, const Run *run, size_t i, Err *err)
     const size_t m = run->schema.n_obj;
     for (size_t k = 0; k < m; k++)
         f[k] = schema_objective(&run->schema, k)->sense * run->table.f[i * m + k];
-    return archive_insert(a, 1, run_x(run, i), f, NULL, &(unsigned char){run->place[i].ok != 0},
+    return pareto_archive_insert(a, 1, run_x(run, i), f, NULL, &(unsigned char){run->place[i].ok != 0},
                           (unsigned char)run->table.row[i].kind, (size_t)run->table.row[i].generation, err);
 }
 
@@ -41,7 +41,7 @@ static Status join(Run *run, Archive *a, Err *err)
     for (size_t i = 0; i < run->table.n; i++)
         if (is_known_to_search(&run->table.row[i]))
             TRY(insert_row(a, run, i, err));
-    archive_update_noise(a);
+    pareto_archive_update_noise(a);
     for (size_t i = 0, at = 0; i < run->table.n; i++)
         if (is_known_to_search(&run->table.row[i]))
             take_design(run, i, a, at++);
@@ -53,8 +53,8 @@ Status repeats_join(Run *run, Err *err)
     Archive a;
     if (!schema_is_noisy(run->settings) || run->table.n == 0)
         return STATUS_OK;
-    TRY(archive_init(&a, run->table.n, run->schema.n_var, run->schema.n_obj, 0, err));
+    TRY(pareto_archive_init(&a, run->table.n, run->schema.n_var, run->schema.n_obj, 0, err));
     const Status status = join(run, &a, err);
-    archive_free(&a);
+    pareto_archive_free(&a);
     return status;
 }
