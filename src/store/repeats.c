@@ -17,7 +17,7 @@ static Status insert_row(Archive *a, const Run *run, size_t i, Err *err)
     for (size_t k = 0; k < m; k++)
         f[k] = schema_objective(&run->schema, k)->sense * run->table.f[i * m + k];
     return pareto_archive_insert(a, 1, run_x(run, i), f, NULL, &(unsigned char){run->place[i].ok != 0},
-                          (unsigned char)run->table.row[i].kind, (size_t)run->table.row[i].generation, err);
+                                 (unsigned char)run->table.row[i].kind, (size_t)run->table.row[i].generation, err);
 }
 
 /* Row i of the run is row `at` of the archive. */
