@@ -93,7 +93,7 @@ static const ArgOption OPTIONS[] = {
 const Command CMD_HORIZON = {
     .name = "horizon",
     .operand = "CONFIG",
-    .summary = "how long one run foretells another, and the spread of every result",
+    .summary = "predictability horizon: the time until perturbed runs diverge; standard deviation of every result",
     .example = "imtet horizon configs/quick.ini --design my-design.csv",
     .details =
         "Impacts magnify differences: two runs that differ in the last digit part ways after some hundreds of them.\n"

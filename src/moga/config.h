@@ -44,4 +44,7 @@ typedef struct {
     size_t n_state;
 } SearchStart;
 
+/* Whether this version of the search wrote the state: another one cannot be resumed. */
+int search_state_is_current(const void *state, size_t n_state);
+
 #endif

@@ -160,6 +160,15 @@ static void pack_pending(Search *s, Pack *p)
 }
 
 /* All that the next generation takes from the earlier ones, beside the archive. */
+int search_state_is_current(const void *state, size_t n_state)
+{
+    uint64_t version = 0;
+    if (n_state < sizeof version)
+        return 0;
+    memcpy(&version, state, sizeof version);
+    return version == STATE_VERSION;
+}
+
 static void pack_search(Search *s, Pack *p)
 {
     const Problem *problem = s->problem;

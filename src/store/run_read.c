@@ -140,6 +140,7 @@ static Status take_head(sqlite3_stmt *row, void *user, Err *err)
     if (!run->settings)
         return fail(err, STATUS_NO_MEMORY, "%s: no memory for its settings", database_path(l->d));
     settings_defaults(run->settings);
+    run->settings->core.theory = CORE_EULER_BERNOULLI; /* of runs from before the setting: their only theory */
     TRY(settings_parse(run->settings, database_path(l->d), column_text(row, 0), err));
     run->provenance = strdup(column_text(row, 1));
     if (!run->provenance)

@@ -171,6 +171,31 @@ static void sum_up(StudySummary *sum, const Run *run)
         sum->seconds += isfinite(run->session[i].seconds) ? run->session[i].seconds : 0.0;
 }
 
+static int came_to_its_end(const Run *run, StopReason *stopped)
+{
+    const RunSession *last = run->n_sessions > 0 ? &run->session[run->n_sessions - 1] : NULL;
+    if (!last || !last->is_final)
+        return 0;
+    for (*stopped = STOP_GENERATIONS; *stopped < STOP_ASKED; ++*stopped)
+        if (strcmp(stop_reason_words(*stopped), last->stopped) == 0)
+            break;
+    return 1;
+}
+
+/* Before anything is written: a search of another version stays as it is. */
+static Status check_state(const Study *study, const Run *run, Err *err)
+{
+    StopReason unused;
+    const int goes_on = study->has_new_limits || !came_to_its_end(run, &unused);
+    return !goes_on || !run->state || search_state_is_current(run->state, run->n_state)
+               ? STATUS_OK
+               : fail(err, STATUS_BAD_DATA,
+                      "%s: another version of the program interrupted this search, and this one cannot resume it; "
+                      "nothing was changed. Resume it with that version, or begin anew from its front: "
+                      "--new --set search.start=%s",
+                      study->summary->folder, study->summary->folder);
+}
+
 static Status resume(Study *study, Err *err)
 {
     const Run *run = store_run(study->store);
@@ -182,6 +207,7 @@ static Status resume(Study *study, Err *err)
                                         .force = study->options->force,
                                         .lines = study->differences},
                           sum->n_before, &study->has_new_limits, err));
+    TRY(check_state(study, run, err));
     study->seconds_before = sum->seconds;
     study->generation = run->n_generations > 0 ? (size_t)run->generation[run->n_generations - 1].number + 1 : 0;
     study->first_generation = study->generation;
@@ -302,17 +328,6 @@ static Status finish(Study *study, Err *err)
 }
 
 /* A run that reached one of its limits: there is nothing to do. */
-static int came_to_its_end(const Run *run, StopReason *stopped)
-{
-    const RunSession *last = run->n_sessions > 0 ? &run->session[run->n_sessions - 1] : NULL;
-    if (!last || !last->is_final)
-        return 0;
-    for (*stopped = STOP_GENERATIONS; *stopped < STOP_ASKED; ++*stopped)
-        if (strcmp(stop_reason_words(*stopped), last->stopped) == 0)
-            break;
-    return 1;
-}
-
 static int is_over(const Study *study)
 {
     const Run *run = store_run(study->store);
