@@ -259,8 +259,9 @@ static void expect_one_opening(const char *arguments)
     char command[1200], *trace;
     size_t n = 0;
     snprintf(command, sizeof command,
-             "ASAN_OPTIONS=detect_leaks=0 strace -f -e trace=open,openat -o '%s/trace' '%s' %s >/dev/null 2>&1", folder,
-             getenv("IMTET"), arguments); /* the leak sanitizer does not work under strace */
+             "ASAN_OPTIONS=detect_leaks=0 strace -f --seccomp-bpf -e trace=open,openat -o '%s/trace' '%s' %s "
+             ">/dev/null 2>&1",
+             folder, getenv("IMTET"), arguments); /* the leak sanitizer does not work under strace */
     if (shell(command) != 0)
         fail_msg("%s: fails", command);
     trace = text_of(in_folder("trace"));
