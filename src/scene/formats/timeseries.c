@@ -45,6 +45,9 @@ static Status read_header(Record *r, Lines *l, Channel **c, BlockForm *form, Err
     const char *from, *to;
     double rate = NAN;
     *form = (BlockForm){.count = NAN, .dt = NAN};
+    if (!begins_series(l))
+        return fail(err, STATUS_BAD_DATA, "%s:%d: '%.*s' does not begin a segment", l->path, l->number, line_shown(l),
+                    l->from);
     TRY(record_channel(r, l, c, err));
     if (field(l, 0, &from, &to))
         channel_name(*c, from + strlen("TIMESERIES "), to);
@@ -66,9 +69,6 @@ static Status read_slist(Record *r, Lines *l, const ReadHints *hints, Err *err)
     while (lines_next_filled(l)) {
         Channel *c;
         BlockForm form;
-        if (!begins_series(l))
-            return fail(err, STATUS_BAD_DATA, "%s:%d: '%.*s' does not begin a segment", l->path, l->number,
-                        line_shown(l), l->from);
         TRY(read_header(r, l, &c, &form, err));
         TRY(record_block(r, l, &form, err));
         TRY(record_block_ends(l, form.count, err));
@@ -82,9 +82,6 @@ static Status read_tspair(Record *r, Lines *l, const ReadHints *hints, Err *err)
     while (lines_next_filled(l)) {
         Channel *c;
         BlockForm form;
-        if (!begins_series(l))
-            return fail(err, STATUS_BAD_DATA, "%s:%d: '%.*s' does not begin a segment", l->path, l->number,
-                        line_shown(l), l->from);
         TRY(read_header(r, l, &c, &form, err));
         if (!(form.count >= 2 && form.dt > 0 && form.dt <= MOTION_STEP_MAX_S))
             return fail(err, STATUS_BAD_DATA, "%s:%d: no usable number of samples or rate in '%.*s'", l->path,
