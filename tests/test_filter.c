@@ -1,0 +1,148 @@
+/* Gain and phase of the Butterworth filter against their closed forms. */
+#include "check.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/filter.h"
+
+static double warped(double hz, double dt)
+{
+    return tan(M_PI * hz * dt);
+}
+
+static double gain(FilterKind kind, double hz, double cutoff, double dt)
+{
+    const double r = pow(warped(hz, dt) / warped(cutoff, dt), 8);
+    return kind == FILTER_LOW_PASS ? 1 / (1 + r) : r / (1 + r);
+}
+
+/* cos(2 pi f t) under a Gaussian window of many periods, filtered: its middle is the gain, and it stays even. */
+static void check_harmonic(FilterKind kind, double hz, double cutoff, double dt)
+{
+    Filter f;
+    Err err = {0};
+    CHECK_OK(filter_butterworth(&f, kind, cutoff, dt, &err), &err);
+    const size_t half = (size_t)(200 / fmin(hz, cutoff) / dt), n = 2 * half + 1, all = n + filter_padding(&f);
+    double *x = calloc(all, sizeof *x), odd = 0;
+    for (size_t i = 0; i < n; i++) {
+        const double t = ((double)i - (double)half) * dt, s = (double)i / (double)(n - 1) - 0.5;
+        x[i] = cos(2 * M_PI * hz * t) * exp(-100 * s * s);
+    }
+    filter_zero_phase(&f, all, 1, x);
+    const double wanted = gain(kind, hz, cutoff, dt);
+    for (size_t i = 1; i < half; i++) /* none without a phase shift */
+        odd = fmax(odd, fabs(x[half + i] - x[half - i]));
+    assert_true(fabs(x[half] - wanted) < 5e-4);
+    assert_true(odd < 1e-6);
+    free(x);
+}
+
+static void test_gain_is_that_of_two_passes_of_fourth_order_and_the_phase_is_zero(void **state)
+{
+    static const double RATIOS[] = {0.25, 0.5, 0.8, 1, 1.25, 2, 4};
+    (void)state;
+    for (int kind = FILTER_LOW_PASS; kind <= FILTER_HIGH_PASS; kind++)
+        for (size_t i = 0; i < sizeof RATIOS / sizeof RATIOS[0]; i++) {
+            check_harmonic(kind, 10 * RATIOS[i], 10, 0.002);
+            check_harmonic(kind, 0.1 * RATIOS[i], 0.1, 0.01);
+        }
+}
+
+static void test_the_gain_at_the_cutoff_is_one_half(void **state)
+{
+    (void)state;
+    assert_close(gain(FILTER_LOW_PASS, 25, 25, 0.005), 0.5, 1e-15);
+    check_harmonic(FILTER_LOW_PASS, 25, 25, 0.005);
+    check_harmonic(FILTER_HIGH_PASS, 0.05, 0.05, 0.005);
+}
+
+static void test_low_and_high_pass_of_an_impulse_add_up_in_area(void **state)
+{
+    enum { N = 20001 };
+    (void)state;
+    for (int kind = FILTER_LOW_PASS; kind <= FILTER_HIGH_PASS; kind++) {
+        Filter f;
+        Err err = {0};
+        double *x = calloc(N, sizeof *x), area = 0;
+        CHECK_OK(filter_butterworth(&f, kind, 1.0, 0.005, &err), &err);
+        x[N / 2] = 1;
+        filter_zero_phase(&f, N, 1, x);
+        for (int i = 0; i < N; i++)
+            area += x[i];
+        assert_true(fabs(area - (kind == FILTER_LOW_PASS)) < 1e-9); /* gain at zero frequency */
+        for (int i = 1; i < N / 2; i++)
+            assert_true(fabs(x[N / 2 + i] - x[N / 2 - i]) < 1e-9);
+        free(x);
+    }
+}
+
+static void test_the_padding_takes_up_what_rings_on(void **state)
+{
+    enum { N = 400 };
+    (void)state;
+    for (int kind = FILTER_LOW_PASS; kind <= FILTER_HIGH_PASS; kind++) {
+        Filter f;
+        Err err = {0};
+        CHECK_OK(filter_butterworth(&f, kind, 2.0, 0.01, &err), &err);
+        const size_t pad = filter_padding(&f), all = N + 20 * pad;
+        double *x = calloc(all, sizeof *x), *y = calloc(all, sizeof *y);
+        for (size_t i = 0; i < N; i++)
+            x[i] = y[i] = sin(0.3 * (double)i) + 0.5;
+        filter_zero_phase(&f, N + pad, 1, x);
+        filter_zero_phase(&f, all, 1, y);
+        for (size_t i = 0; i < N; i++)
+            assert_true(fabs(x[i] - y[i]) < 1e-5);
+        free(x);
+        free(y);
+    }
+}
+
+static void test_signals_side_by_side_are_filtered_as_each_alone(void **state)
+{
+    enum { N = 300, WIDTH = 21 };
+    Filter f;
+    Err err = {0};
+    double *all = malloc(N * WIDTH * sizeof *all), one[N];
+    (void)state;
+    CHECK_OK(filter_butterworth(&f, FILTER_LOW_PASS, 3, 0.01, &err), &err);
+    for (int i = 0; i < N * WIDTH; i++)
+        all[i] = sin(0.37 * i * i);
+    for (int j = 0; j < WIDTH; j += 5) {
+        double *copy = malloc(N * WIDTH * sizeof *copy);
+        memcpy(copy, all, N * WIDTH * sizeof *copy);
+        for (int i = 0; i < N; i++)
+            one[i] = all[i * WIDTH + j];
+        filter_zero_phase(&f, N, WIDTH, copy);
+        filter_zero_phase(&f, N, 1, one);
+        for (int i = 0; i < N; i++)
+            assert_true(one[i] == copy[i * WIDTH + j]);
+        free(copy);
+    }
+    free(all);
+}
+
+static void test_a_cutoff_beyond_half_the_sampling_rate_is_refused(void **state)
+{
+    static const double BAD[] = {0, -1, 50, 80, NAN, INFINITY};
+    Filter f;
+    Err err = {0};
+    (void)state;
+    for (size_t i = 0; i < sizeof BAD / sizeof BAD[0]; i++) {
+        assert_int_equal(filter_butterworth(&f, FILTER_LOW_PASS, BAD[i], 0.01, &err), STATUS_BAD_DATA);
+        assert_non_null(strstr(err.text, "50 Hz"));
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_gain_is_that_of_two_passes_of_fourth_order_and_the_phase_is_zero),
+        cmocka_unit_test(test_the_gain_at_the_cutoff_is_one_half),
+        cmocka_unit_test(test_low_and_high_pass_of_an_impulse_add_up_in_area),
+        cmocka_unit_test(test_the_padding_takes_up_what_rings_on),
+        cmocka_unit_test(test_signals_side_by_side_are_filtered_as_each_alone),
+        cmocka_unit_test(test_a_cutoff_beyond_half_the_sampling_rate_is_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
