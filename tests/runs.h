@@ -13,6 +13,7 @@
 #include "settings/settings.h"
 #include "store/export.h"
 #include "store/run_read.h"
+#include "store/store.h"
 
 static const char TEXTBOOK[] = "[problem]\nkind = dtlz2\nvariables = 6\nobjectives = 3\nnoise = 0.05\n"
                                "[search]\ninitial = 12\npopulation = 12\nmax_evals = 40\nsurrogate_max = 30\n"
@@ -98,6 +99,16 @@ static inline pid_t start(const char *config, const char *out)
     assert_int_equal(posix_spawn(&pid, words[0], &quiet, NULL, words, environ), 0);
     posix_spawn_file_actions_destroy(&quiet);
     return pid;
+}
+
+/* Designs from outside into the run of a folder. */
+static inline Status add_to_run(const char *folder, size_t n, const Evaluation designs[], long *first_id, Err *err)
+{
+    RunStore *store;
+    TRY(store_open_run(&store, folder, err));
+    const Status status = store_add_evaluations(store, n, designs, first_id, err);
+    store_free(store);
+    return status;
 }
 
 static inline int wait_end(pid_t pid)

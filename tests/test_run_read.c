@@ -84,6 +84,24 @@ static void test_values_that_are_not_known_are_nan_and_a_word_that_is_not_known_
     run_free(&h);
 }
 
+static void test_a_run_from_before_the_choice_of_core_theory_keeps_the_only_one_there_was(void **state)
+{
+    (void)state;
+    Run h;
+    Err err = {0};
+    char folder[PATH_MAX];
+    CHECK_OK(run_read(&h, path_of("sound", folder), &err), &err);
+    assert_int_equal(h.settings->core.theory, CORE_TIMOSHENKO);
+    run_free(&h);
+    CHECK_OK(run_read(&h,
+                      changed("UPDATE run SET settings = replace(settings, 'theory = timoshenko' || char(10), '')",
+                              folder),
+                      &err),
+             &err);
+    assert_int_equal(h.settings->core.theory, CORE_EULER_BERNOULLI);
+    run_free(&h);
+}
+
 /* Feasible, whole, and nobody better: by comparing everybody with everybody. */
 static int belongs_on_front(const Run *h, size_t i)
 {
@@ -235,6 +253,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_what_is_wrong_in_one_cell_is_named),
         cmocka_unit_test(test_values_that_are_not_known_are_nan_and_a_word_that_is_not_known_is_unfinished),
+        cmocka_unit_test(test_a_run_from_before_the_choice_of_core_theory_keeps_the_only_one_there_was),
         cmocka_unit_test(test_polished_designs_compete_with_the_front_and_can_be_dropped),
         cmocka_unit_test(test_a_folder_without_a_run_or_with_too_long_a_name_is_told),
         cmocka_unit_test(test_the_view_has_a_column_for_every_name_or_there_is_none),

@@ -2,10 +2,10 @@
 #include "runs.h"
 
 #include <signal.h>
+#include <sqlite3.h>
 
 #include "moga/hypervolume.h"
 #include "wfg.h"
-#include "store/store.h"
 #include "study/study.h"
 
 static const char TOWER[] = "[motion]\nrecord = builtin:kobe-like\npga_g = 0.3\n[sim]\nduration_s = 6\n"
@@ -137,6 +137,28 @@ static void refused_with(const Settings *s, int force, const char *said, const c
     if (!strstr(err.text, said) || !strstr(lines, line))
         fail_msg("said: %s\nlines: %swanted: %s\n%s", err.text, lines, said, line);
     free(lines);
+}
+
+static void test_a_search_that_another_version_interrupted_is_refused_before_anything_is_changed(void **state)
+{
+    (void)state;
+    char path[PATH_MAX], command[3 * PATH_MAX];
+    sqlite3 *db;
+    StudySummary summary;
+    Err err = {0};
+    int left = 20;
+    const Settings s = settings_of(TEXTBOOK, "version");
+    assert_int_equal(study_run(&s, &(StudyOptions){.stop = stop_after, .user = &left}, &summary, NULL, &err),
+                     STATUS_STOPPED);
+    assert_int_equal(sqlite3_open(path_of("version/run.sqlite", path), &db), SQLITE_OK);
+    assert_int_equal(sqlite3_exec(db, "UPDATE state SET bytes = x'0100000000000000'", NULL, NULL, NULL), SQLITE_OK);
+    assert_int_equal(sqlite3_close(db), SQLITE_OK);
+    snprintf(command, sizeof command, "cp -r %s/version %s/as-it-was", place.folder, place.folder);
+    assert_int_equal(system(command), 0);
+    refused_with(&s, 0, "another version of the program interrupted this search", "");
+    refused_with(&s, 1, "nothing was changed", "");
+    snprintf(command, sizeof command, "diff -r -x lock %s/version %s/as-it-was", place.folder, place.folder);
+    assert_int_equal(system(command), 0);
 }
 
 static void test_other_settings_are_refused_key_by_key_and_limits_can_be_forced(void **state)
@@ -355,7 +377,7 @@ static void test_polished_designs_join_the_front_but_not_the_search(void **state
         {.x = x, .f = worse, .outcome = OUTCOME_OK},
         {.x = x, .outcome = OUTCOME_DEAD, .reason = "it died"},
     };
-    CHECK_OK(store_add_evaluations(path_of("polished", path), 3, designs, &first, &err), &err);
+    CHECK_OK(add_to_run(path_of("polished", path), 3, designs, &first, &err), &err);
     assert_int_equal(first, POLISHED_FIRST);
     char *front = output_of("export @/polished --csv -");
     snprintf(id, sizeof id, "\n%ld,", first);
@@ -488,6 +510,7 @@ int main(void)
         cmocka_unit_test(test_more_simulations_go_on_the_same_whenever_they_are_granted),
         cmocka_unit_test(test_the_front_of_every_generation_can_be_told),
         cmocka_unit_test(test_polished_designs_join_the_front_but_not_the_search),
+        cmocka_unit_test(test_a_search_that_another_version_interrupted_is_refused_before_anything_is_changed),
         cmocka_unit_test(test_other_settings_are_refused_key_by_key_and_limits_can_be_forced),
         cmocka_unit_test(test_a_record_that_has_changed_is_another_setting),
         cmocka_unit_test(test_a_signal_stops_within_a_batch_and_the_command_that_is_printed_goes_on),

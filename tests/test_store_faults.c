@@ -8,7 +8,6 @@
 
 #include <sqlite3.h>
 
-#include "store/store.h"
 #include "study/study.h"
 
 enum { SOME = 3 };
@@ -162,6 +161,7 @@ static const size_t UNTIL[N_GENERATIONS] = {2, 5, 6}, GENERATION[N_DESIGNS] = {0
 static const double X[N_DESIGNS][3] = {{0.1}, {0.2}, {0.3}, {0.4}, {0.5}, {0.6}};
 static const double F[N_DESIGNS][2] = {{NAN, NAN}, {NAN, NAN}, {1, 2}, {1, 1}, {NAN, NAN}, {0.5, 0.5}};
 static const unsigned char OK[N_DESIGNS] = {0, 0, 1, 1, 0, 1}, KIND[N_DESIGNS] = {0, 0, 1, 1, 2, 2};
+static const size_t REPLICATES[N_DESIGNS] = {1, 1, 1, 1, 1, 1};
 static const unsigned char FRONT[N_GENERATIONS][N_DESIGNS] = {{0}, {0, 0, 0, 1}, {0, 0, 0, 0, 0, 1}};
 
 static SearchView view_of(size_t g)
@@ -175,6 +175,7 @@ static SearchView view_of(size_t g)
                         .ok = OK,
                         .kind = KIND,
                         .generation = GENERATION,
+                        .replicates = REPLICATES,
                         .on_front = FRONT[g],
                         .n_front = g > 0,
                         .n_failed = g > 0 ? 3 : 2,
@@ -249,7 +250,7 @@ static Status life(const char *folder, const Schema *schema, Err *err)
     const size_t n = h.table.n;
     run_free(&h);
     if (n < N_DESIGNS + N_POLISHED)
-        TRY(store_add_evaluations(folder, 2, POLISHED + 1, NULL, err));
+        TRY(add_to_run(folder, 2, POLISHED + 1, NULL, err));
     return session(folder, schema, N_GENERATIONS, err);
 }
 
@@ -405,7 +406,7 @@ static void test_a_folder_that_cannot_hold_the_run_is_named_and_a_fresh_run_take
     Err err = {0};
     CHECK_OK(store_open(&first, path_of("old", old), 0, &err), &err);
     store_free(first);
-    assert_int_equal(store_add_evaluations(old, 1, POLISHED, NULL, &err), STATUS_MISSING);
+    assert_int_equal(add_to_run(old, 1, POLISHED, NULL, &err), STATUS_MISSING);
     write_in_place("old/front.csv", "id\n");
     write_in_place("old/run.sqlite", "a run");
     refused_by_store(path_of("old/front.csv/run", other), 0, "cannot be made a folder");
@@ -434,7 +435,7 @@ static void test_a_generation_that_was_not_simulated_is_refused(void **state)
     const Settings s = settings_of(PLAIN, "early");
     CHECK_OK(schema_of(&schema, &s, 0, &err), &err);
     CHECK_OK(session(path_of("early", folder), &schema, 0, &err), &err);
-    CHECK_OK(store_add_evaluations(folder, 1, POLISHED, &first, &err), &err);
+    CHECK_OK(add_to_run(folder, 1, POLISHED, &first, &err), &err);
     assert_int_equal(first, POLISHED_FIRST);
     remove_in_place("early");
     CHECK_OK(session(folder, &schema, 0, &err), &err);

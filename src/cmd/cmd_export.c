@@ -38,7 +38,7 @@ static Status write_tables(const Args *args, const Run *run, Err *err)
         }
     } else if (args_has(args, "--all")) {
         export_evaluations_header(o.stream, &run->schema);
-        export_evaluations(o.stream, &run->table, 1);
+        export_evaluations(o.stream, &run->table, 0, 1);
     } else {
         export_front(o.stream, run);
     }

@@ -7,11 +7,12 @@
 #include "cmd/pairs.h"
 #include "cmd/show.h"
 #include "store/output.h"
-#include "store/run_read.h"
+#include "store/store.h"
 #include "polish/refine.h"
 
 typedef struct {
-    Run run;
+    RunStore *store; /* open from the first look at the design until the better one is in */
+    const Run *run;
     size_t row; /* of the design */
     double weight[OBJECTIVES_MAX];
     unsigned char keep[OBJECTIVES_MAX];
@@ -21,7 +22,7 @@ typedef struct {
 
 static Status take_kept(const Args *args, Work *w, Err *err)
 {
-    const Schema *schema = &w->run.schema;
+    const Schema *schema = &w->run->schema;
     const char *list = args_value(args, "--keep");
     char name[TABLE_NAME_MAX];
     size_t k;
@@ -37,7 +38,7 @@ static Status take_kept(const Args *args, Work *w, Err *err)
 
 static Status take_improved(const Args *args, Work *w, Err *err)
 {
-    const Schema *schema = &w->run.schema;
+    const Schema *schema = &w->run->schema;
     const char *list = args_value(args, "--improve");
     for (size_t k = 0; k < schema->n_obj; k++)
         w->weight[k] = list ? strcmp(list, "all") == 0 : k == 0;
@@ -65,23 +66,24 @@ static Status take_options(const Args *args, Work *w, Err *err)
 static Status open_run(const Args *args, Work *w, Err *err)
 {
     RecordPaths moved;
-    TRY(run_read(&w->run, args->operand, err));
-    TRY(look_design(args, &w->run, &w->row, err));
+    TRY(store_open_run(&w->store, args->operand, err));
+    w->run = store_run(w->store);
+    TRY(look_design(args, w->run, &w->row, err));
     TRY(take_options(args, w, err));
     TRY(args_moved(args, &moved, err));
-    return record_paths_find(w->run.settings, w->run.provenance, &moved, err);
+    return record_paths_find(w->run->settings, w->run->provenance, &moved, err);
 }
 
 /* One row in natural signs, as in front.csv but for the id of the design that it came from. */
 static Status write_csv(const Work *w, const char *path, Err *err)
 {
-    const Schema *schema = &w->run.schema;
+    const Schema *schema = &w->run->schema;
     Output o;
     TRY(output_open(&o, path, err));
     fputs("polished_from", o.stream);
     for (size_t j = 0; j < schema->n_var + schema->n_obj; j++)
         fprintf(o.stream, ",%s", schema->column[j].name);
-    fprintf(o.stream, "\n%ld", w->run.table.row[w->row].id);
+    fprintf(o.stream, "\n%ld", w->run->table.row[w->row].id);
     for (size_t j = 0; j < schema->n_var + schema->n_obj; j++) {
         fputc(',', o.stream);
         print_number(o.stream, j < schema->n_var ? w->result.x[j] : w->result.f[j - schema->n_var]);
@@ -92,7 +94,7 @@ static Status write_csv(const Work *w, const char *path, Err *err)
 
 static void show_gain(const Work *w, size_t k)
 {
-    const Column *c = schema_objective(&w->run.schema, k);
+    const Column *c = schema_objective(&w->run->schema, k);
     const Refined *r = &w->result;
     const double gain = c->sense * (r->f_start[k] - r->f[k]);
     const double error = hypot(r->spread_start[k], r->spread[k]) / sqrt((double)w->config.replicates);
@@ -113,10 +115,10 @@ static const char *verdict_of(const Refined *r)
 
 static void show(const Work *w, long id)
 {
-    const Schema *schema = &w->run.schema;
+    const Schema *schema = &w->run->schema;
     const Refined *r = &w->result;
     show_objective_names(schema);
-    show_objectives("before", w->run.table.row[w->row].id, schema->n_obj, r->f_start);
+    show_objectives("before", w->run->table.row[w->row].id, schema->n_obj, r->f_start);
     show_objectives("polished", id, schema->n_obj, r->f);
     if (isfinite(r->spread_start[0]))
         show_objectives("spread before", 0, schema->n_obj, r->spread_start);
@@ -134,9 +136,10 @@ static Status polish(const Args *args, Work *w, Err *err)
 {
     long id = 0;
     TRY(open_run(args, w, err));
-    TRY(refine_design(&w->run, w->row, &w->config, &w->result, err));
+    TRY(refine_design(w->run, w->row, &w->config, &w->result, err));
+    const Evaluation better = refined_evaluation(&w->result);
     if (refined_counts(&w->result))
-        TRY(refined_store(args->operand, &w->result, &id, err));
+        TRY(store_add_evaluations(w->store, 1, &better, &id, err));
     show(w, id);
     return args_has(args, "--csv") ? write_csv(w, args_value(args, "--csv"), err) : STATUS_OK;
 }
@@ -146,7 +149,7 @@ static Status run(const Args *args, Err *err)
     Work w = {0};
     const Status status = polish(args, &w, err);
     refined_free(&w.result);
-    run_free(&w.run);
+    store_free(w.store);
     return status;
 }
 

@@ -308,9 +308,3 @@ Evaluation refined_evaluation(const Refined *r)
     return (Evaluation){
         .x = r->x, .f = r->f, .sd = r->spread, .violation = r->violation, .seconds = r->seconds, .outcome = OUTCOME_OK};
 }
-
-Status refined_store(const char *folder, const Refined *r, long *id, Err *err)
-{
-    const Evaluation e = refined_evaluation(r);
-    return store_add_evaluations(folder, 1, &e, id, err);
-}

@@ -20,7 +20,7 @@
 #ifndef IMTET_POLISH_REFINE_H
 #define IMTET_POLISH_REFINE_H
 
-#include "store/store.h"
+#include "store/run.h"
 
 typedef struct {
     const char *algorithm;     /* polish/polish.h; NULL: as the steps above say */
@@ -53,8 +53,5 @@ int refined_counts(const Refined *r);
 
 /* As a run stores it; borrows x, f and spread. */
 Evaluation refined_evaluation(const Refined *r);
-
-/* Stored beside the designs of the search, as `polished`; the id that it got. No process may be working on the run. */
-Status refined_store(const char *folder, const Refined *r, long *id, Err *err);
 
 #endif

@@ -1,7 +1,8 @@
 /* store/csv_files.h -- evaluations.csv and front.csv beside the database, in step with its finished generations.
  *
- * evaluations.csv grows by the rows of each generation. front.csv is replaced as a whole; numbers cost more to print
- * than to find, so that the line of a design is printed once, when it comes onto the front, and kept until it leaves.
+ * evaluations.csv grows by the rows of each generation. front.csv, the front of the search joined by the polished designs
+ * of earlier sessions, is replaced as a whole; numbers cost more to print than to find, so that the line of a design is
+ * printed once, when it comes onto the front, and kept until it leaves; anew where replicates change means and deviations.
  *
  * Life cycle  {0} -> csv_files_begin or csv_files_resume -> csv_files_append, ... -> csv_files_close, or csv_files_free
  * Threads     one at a time */
@@ -14,25 +15,27 @@
 #include "store/run.h"
 
 typedef struct {
-    const Folder *folder; /* borrowed, like the schema */
+    const Folder *folder; /* borrowed, like schema and run */
     const Schema *schema;
+    const Run *run;  /* as it was when the session began; NULL: a new one */
+    long replicates; /* sim.replicates */
     Append evaluations;
-    size_t n_appended; /* evaluations of the search in evaluations.csv */
-    char **line;       /* (n_lines) of front.csv, by design; NULL: not on the front */
+    EvaluationTable search; /* what evaluations.csv has of the search */
+    char **line;            /* (n_lines) of front.csv, by design; NULL: not on the front */
     size_t n_lines;
 } CsvFiles;
 
-Status csv_files_begin(CsvFiles *c, const Folder *folder, const Schema *schema, Err *err);
+Status csv_files_begin(CsvFiles *c, const Folder *folder, const Schema *schema, const Settings *used, Err *err);
 Status csv_files_resume(CsvFiles *c, const Folder *folder, const Schema *schema, const Run *run, Err *err);
 
 /* Up to evaluation n, as the database has them now. */
 Status csv_files_append(CsvFiles *c, Database *db, size_t n, Err *err);
 
-/* front.csv as the search has it now: without replicates and polished designs. */
+/* front.csv as of this generation, whose evaluations are appended. */
 Status csv_files_front(CsvFiles *c, const SearchView *view, Err *err);
 
-/* Both files, or front.csv alone, of the run. */
-Status csv_files_replace(const Folder *folder, const Run *run, int evaluations_too, Err *err);
+/* Both files, of the run. */
+Status csv_files_replace(const Folder *folder, const Run *run, Err *err);
 
 Status csv_files_close(CsvFiles *c, Err *err);
 void csv_files_free(CsvFiles *c);

@@ -59,9 +59,9 @@ void export_evaluations_header(FILE *f, const Schema *schema)
     write_names(f, "id,generation,kind,outcome,reason", schema, schema->n_extra, 0);
 }
 
-void export_evaluations(FILE *f, const EvaluationTable *t, int unfinished_too)
+void export_evaluations(FILE *f, const EvaluationTable *t, size_t first, int unfinished_too)
 {
-    for (size_t i = 0; i < t->n; i++) {
+    for (size_t i = first; i < t->n; i++) {
         const Evaluation *e = &t->row[i];
         if (e->kind == KIND_UNFINISHED && !unfinished_too)
             continue;

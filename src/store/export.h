@@ -21,10 +21,10 @@ void export_front_row(FILE *f, const Schema *schema, const FrontRow *row);
 void export_design(FILE *f, const Run *run, size_t row); /* the same of a row of the run */
 void export_front(FILE *f, const Run *run);
 
-/* Every finished generation and polished designs: evaluations.csv. With unfinished_too also what is stored of the
- * generation that is under way or was cut short, kind `unfinished`. Rows come without the header. */
+/* Rows from `first` on, of finished generations and polished designs: evaluations.csv. With unfinished_too also what is
+ * stored of the generation that is under way or was cut short, kind `unfinished`. Rows come without the header. */
 void export_evaluations_header(FILE *f, const Schema *schema);
-void export_evaluations(FILE *f, const EvaluationTable *table, int unfinished_too);
+void export_evaluations(FILE *f, const EvaluationTable *table, size_t first, int unfinished_too);
 
 /* Settings, columns, evaluations (unfinished ones too), front and generations as one object. */
 Status export_json(FILE *f, const Run *run, Err *err);

@@ -96,6 +96,15 @@ Status store_open(RunStore **out, const char *folder, int fresh, Err *err)
     return status;
 }
 
+Status store_open_run(RunStore **out, const char *folder, Err *err)
+{
+    char path[PATH_MAX];
+    *out = NULL;
+    if (!run_path(folder, path, sizeof path))
+        return fail(err, STATUS_MISSING, "%.200s: holds no run: run.sqlite is not there", folder);
+    return store_open(out, folder, 0, err);
+}
+
 /* The journal goes first: left alone it would be taken for that of the next database. */
 Status store_forget_empty(RunStore *store, Err *err)
 {
@@ -140,7 +149,7 @@ Status store_begin(RunStore *store, const Schema *schema, const Settings *used, 
     TRY(open_database(store, err));
     database_grow(store->db);
     TRY(write_origin(store, used, provenance, err));
-    TRY(csv_files_begin(&store->files, &store->folder, schema, err));
+    TRY(csv_files_begin(&store->files, &store->folder, schema, used, err));
     return logs_open(&store->logs, &store->folder, err);
 }
 
@@ -276,16 +285,6 @@ static Status store_moment(RunStore *store, const SearchView *v, double seconds,
                        (long)v->generation_now, v->state, v->n_state);
 }
 
-/* Both files, or front.csv alone, of what the database has now. */
-static Status renew_tables(RunStore *store, int evaluations_too, Err *err)
-{
-    Run run;
-    TRY(run_load(&run, store->db, store_folder(store), err));
-    const Status status = csv_files_replace(&store->folder, &run, evaluations_too, err);
-    run_free(&run);
-    return status;
-}
-
 static Status put_generation(RunStore *store, const SearchView *v, double seconds, double session, Err *err)
 {
     TRY(begin(store, err));
@@ -311,8 +310,7 @@ Status store_generation(RunStore *store, const SearchView *v, double seconds, do
     TRY(front_share_follow(&store->share, v, err));
     TRY(commit_generation(store, v, seconds, session, err));
     TRY(csv_files_append(&store->files, store->db, v->n, err));
-    return store->has_polished || store->schema->has_spread ? renew_tables(store, 0, err)
-                                                            : csv_files_front(&store->files, v, err);
+    return csv_files_front(&store->files, v, err);
 }
 
 /* -- logs and the end ---------------------------------------------------------------------------------------------- */
@@ -344,7 +342,7 @@ static Status end_session(RunStore *store, const char *stopped, int is_final, do
 static Status read_at_the_end(RunStore *store, Run *run, Err *err)
 {
     TRY(run_load(run, store->db, store_folder(store), err));
-    return store->has_polished ? csv_files_replace(&store->folder, run, 1, err) : STATUS_OK;
+    return store->has_polished ? csv_files_replace(&store->folder, run, err) : STATUS_OK;
 }
 
 Status store_close(RunStore *store, const char *stopped, int is_final, double session, Run *run, Err *err)
@@ -412,8 +410,9 @@ Status store_polished(RunStore *store, const Evaluation *better, size_t n_tried,
     return store_flush(store, err);
 }
 
-static Status add_all(RunStore *store, size_t n, const Evaluation designs[], long *first_id, Err *err)
+Status store_add_evaluations(RunStore *store, size_t n, const Evaluation designs[], long *first_id, Err *err)
 {
+    Run now;
     long id = 0;
     store->schema = &store->run.schema;
     TRY(begin(store, err));
@@ -422,18 +421,8 @@ static Status add_all(RunStore *store, size_t n, const Evaluation designs[], lon
         if (first_id && i == 0)
             *first_id = id;
     }
-    TRY(store_flush(store, err));
-    return renew_tables(store, 1, err);
-}
-
-Status store_add_evaluations(const char *folder, size_t n, const Evaluation designs[], long *first_id, Err *err)
-{
-    RunStore *store;
-    char path[PATH_MAX];
-    if (!run_path(folder, path, sizeof path))
-        return fail(err, STATUS_MISSING, "%s: holds no run: run.sqlite is not there", folder);
-    TRY(store_open(&store, folder, 0, err));
-    const Status status = add_all(store, n, designs, first_id, err);
-    store_free(store);
+    TRY(store_read(store, &now, err));
+    const Status status = csv_files_replace(&store->folder, &now, err);
+    run_free(&now);
     return status;
 }

@@ -23,6 +23,7 @@
  *   designs      a view: the evaluations with their columns by name
  *
  * Life cycle  store_open -> store_begin or store_resume -> ... -> store_close, or store_free after a fault
+ *             store_open_run -> store_add_evaluations -> store_free
  * Threads     one at a time
  * Errors      STATUS_IO with file and cause */
 #ifndef IMTET_STORE_STORE_H
@@ -44,6 +45,7 @@ static const double COMMIT_S = 0.2;
 /* Takes the folder, made where it is not there, and its lock. fresh: the first of folder, folder-2, folder-3, ... that
  * holds no run. */
 Status store_open(RunStore **out, const char *folder, int fresh, Err *err);
+Status store_open_run(RunStore **out, const char *folder, Err *err); /* one that is there */
 const char *store_folder(const RunStore *store);
 
 /* The run that the folder held when it was opened; NULL: none. */
@@ -84,9 +86,9 @@ Status store_polished(RunStore *store, const Evaluation *better, size_t n_tried,
 Status store_close(RunStore *store, const char *stopped, int is_final, double session, Run *run, Err *err);
 void store_free(RunStore *store); /* NULL is fine */
 
-/* Designs from outside the search, polished ones say, into the archive of a run that no process works on: they get ids from
- * POLISHED_FIRST on and the kind `polished`, and front.csv and evaluations.csv are written again. The search does not
- * see them: a run that is resumed later does what it would have done without them. first_id may be NULL. */
-Status store_add_evaluations(const char *folder, size_t n, const Evaluation designs[], long *first_id, Err *err);
+/* Designs from outside the search, polished ones say, into a run that was opened and neither begun nor resumed: they get
+ * ids from POLISHED_FIRST on and the kind `polished`, and front.csv and evaluations.csv are written again. The search does
+ * not see them: a run that is resumed later does what it would have done without them. first_id may be NULL. */
+Status store_add_evaluations(RunStore *store, size_t n, const Evaluation designs[], long *first_id, Err *err);
 
 #endif
