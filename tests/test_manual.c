@@ -77,8 +77,8 @@ static void test_the_nearest_is_suggested_everywhere(void **state)
     expect(65, "there are f1, f2", "optimize @/two.ini --out @/no --set 'search.limits=displacement<=3'");
     free(output_of("optimize @/two.ini --out @/two"));
     expect(2, "did you mean f2?", "choose @/two --max f22=3");
-    expect(65, "did you mean knee?", "evaluate @/two --design kneee --record builtin:kobe-like");
-    expect(65, "no such id on the front of", "polish @/two --design 999 --improve f2");
+    expect(65, "did you mean knee, or best_f1?", "evaluate @/two --design kneee --record builtin:kobe-like");
+    expect(65, "has no design 999; the nearest id is", "polish @/two --design 999 --improve f2");
     expect(2, "--rigid: a linear building is solved in closed form",
            "simulate configs/quick.ini --design no.csv --rigid "
            "--engine cvode");

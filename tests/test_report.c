@@ -125,7 +125,7 @@ static void open_tower(Run *run, Report *r)
     const char *records[] = {"builtin:sylmar-like"};
     CHECK_OK(run_read(run, in_folder("tower"), &err), &err);
     const DetailOptions options = {.floor = -1, .other = run->settings, .n_records = 1, .records = records};
-    CHECK_OK(report_open(r, run, "knee", &options, &err), &err);
+    CHECK_OK(report_open(r, run, run->n_front > 0 ? run_knee(run) : 0, &options, &err), &err);
 }
 
 static void test_energies_add_up_to_the_input_at_every_instant_and_end_as_the_result_says(void **state)

@@ -147,7 +147,7 @@ static void test_a_design_of_the_front_is_evaluated_on_other_motions(void **stat
     assert_true(number(json_object_get(own, "no_core"), "impacts") == 0);
     json_decref(o);
     free(front);
-    expect(65, "no such id on the front", "evaluate @/threads-1 --design 123456 --record builtin:kobe-like");
+    expect(65, "has no design 123456", "evaluate @/threads-1 --design 123456 --record builtin:kobe-like");
     char *table = output_of("evaluate @/threads-1 --design knee --record builtin:sylmar-like");
     assert_non_null(strstr(table, "no core"));
     free(table);
@@ -322,7 +322,7 @@ static void test_designs_are_chosen_by_limits_weights_and_a_reference_point_and_
     assert_true(t.values[4] < 0.01 && t.values[4] == t.values[1]);
     table_free(&t);
     free(path);
-    expect(65, "no such id", "polish @/kind --design 999999");
+    expect(65, "has no design 999999", "polish @/kind --design 999999");
     expect(2, "--evals: '0' is no whole number from 1", "polish @/kind --design knee --evals 0");
     expect(2, "--replicates: '2.5' is no whole number", "polish @/kind --design knee --replicates 2.5");
     expect(2, "--slack: '-1' is no number from 0", "polish @/kind --design knee --slack -1");

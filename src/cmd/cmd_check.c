@@ -6,8 +6,8 @@
 #include "base/list.h"
 #include "base/units.h"
 #include "cmd/commands.h"
+#include "cmd/designs.h"
 #include "cmd/show.h"
-#include "scene/design.h"
 #include "scene/motion_source.h"
 #include "scene/summary.h"
 #include "settings/settings.h"
@@ -123,7 +123,7 @@ static int choose_design(Check *c, CheckedScene *p, const char *path)
         return 1;
     Err e = {0};
     Designs d;
-    if (!note(c, design_read(&d, path, n, &e), "--design", &e))
+    if (!note(c, designs_take(&d, path, n, &e), "--design", &e))
         return 0;
     memcpy(p->x, d.x, (size_t)(n + 2) * sizeof *p->x);
     for (size_t i = 0; i < d.n; i++)

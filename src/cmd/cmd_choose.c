@@ -5,6 +5,8 @@
 #include "cmd/commands.h"
 #include "cmd/pairs.h"
 #include "cmd/show.h"
+#include "store/export.h"
+#include "store/output.h"
 #include "store/run_read.h"
 
 typedef struct {
@@ -84,7 +86,20 @@ static double reference_cost(const Choice *c, size_t row, const double reference
     return sum;
 }
 
-static void show_best(const Choice *c, const char *label, CostFn cost, const double values[])
+/* -- what is chosen ------------------------------------------------------------------------------------------------ */
+
+enum { PICKS_MAX = OBJECTIVES_MAX + 3 };
+
+typedef struct {
+    size_t n_left, n; /* designs within the limits; picks */
+    struct {
+        char name[TABLE_NAME_MAX + 8];
+        size_t row;
+    } pick[PICKS_MAX];
+} Picks;
+
+/* The cheapest design within the limits; values[0] of best_cost is the objective's number. */
+static void add_pick(const Choice *c, const char *name, CostFn cost, const double values[], Picks *p)
 {
     const Run *run = c->run;
     size_t best = run->table.n;
@@ -93,35 +108,124 @@ static void show_best(const Choice *c, const char *label, CostFn cost, const dou
         if (c->allowed[row] && (best == run->table.n || cost(c, row, values) < cost(c, best, values)))
             best = row;
     }
-    show_objectives(label, run->table.row[best].id, run->schema.n_obj, run_f(run, best));
-    printf("    ");
-    for (size_t j = 0; j < run->schema.n_var; j++)
-        printf(" %s=%.6g", schema_variable(&run->schema, j)->name, run_x(run, best)[j]);
-    putchar('\n');
+    snprintf(p->pick[p->n].name, sizeof p->pick[0].name, "%s", name);
+    p->pick[p->n++].row = best;
 }
 
-static Status choose(const Args *args, Choice *c, Err *err)
+static double best_cost(const Choice *c, size_t row, const double values[])
 {
-    size_t n_left;
+    return run_scaled(c->run, &c->box, row, (size_t)values[0]);
+}
+
+static Status find_picks(const Args *args, Choice *c, Picks *p, Err *err)
+{
     double weights[OBJECTIVES_MAX], reference[OBJECTIVES_MAX];
-    TRY(apply_limits(args, c, &n_left, err));
+    p->n = 0;
+    TRY(apply_limits(args, c, &p->n_left, err));
     if (args_has(args, "--weights"))
         TRY(take_weights(c, args_value(args, "--weights"), weights, err));
     if (args_has(args, "--reference"))
         TRY(take_reference(c, args_value(args, "--reference"), reference, err));
-    printf("%zu of %zu designs are within the limits\n", n_left, c->run->n_front);
-    if (n_left == 0)
+    if (p->n_left == 0)
+        return STATUS_OK;
+    add_pick(c, "knee", distance_cost, NULL, p);
+    for (size_t k = 0; k < c->run->schema.n_obj; k++) {
+        char name[TABLE_NAME_MAX + 8];
+        snprintf(name, sizeof name, "best_%s", schema_objective(&c->run->schema, k)->name);
+        add_pick(c, name, best_cost, (const double[]){(double)k}, p);
+    }
+    if (args_has(args, "--weights"))
+        add_pick(c, "weighted", weighted_cost, weights, p);
+    if (args_has(args, "--reference"))
+        add_pick(c, "nearest to reference", reference_cost, reference, p);
+    return STATUS_OK;
+}
+
+static void show_table(const Run *run, const Picks *p)
+{
+    printf("%zu of %zu designs are within the limits\n\n", p->n_left, run->n_front);
+    show_objective_names(&run->schema);
+    for (size_t i = 0; i < p->n; i++)
+        show_objectives(p->pick[i].name, run->table.row[p->pick[i].row].id, run->schema.n_obj,
+                        run_f(run, p->pick[i].row));
+}
+
+static void show_variables(const Run *run, const Picks *p)
+{
+    for (size_t i = 0; i < p->n; i++) {
+        if (strncmp(p->pick[i].name, "best_", 5) == 0)
+            continue;
+        printf("\n%s:", p->pick[i].name);
+        for (size_t j = 0; j < run->schema.n_var; j++)
+            printf(" %s=%.6g", schema_variable(&run->schema, j)->name, run_x(run, p->pick[i].row)[j]);
+    }
+    putchar('\n');
+}
+
+/* As front.csv; a design that was picked twice stands there once. */
+static Status write_csv(const Run *run, const Picks *p, const char *path, Err *err)
+{
+    Output o;
+    TRY(output_open(&o, path, err));
+    export_front_header(o.stream, &run->schema);
+    for (size_t i = 0; i < p->n; i++) {
+        size_t before = 0;
+        while (before < i && p->pick[before].row != p->pick[i].row)
+            before++;
+        if (before == i)
+            export_design(o.stream, run, p->pick[i].row);
+    }
+    return output_close(&o, err);
+}
+
+static json_t *json_values(size_t n, const Column columns[], const double values[])
+{
+    json_t *o = json_object();
+    for (size_t k = 0; k < n; k++)
+        json_object_set_new(o, columns[k].name, json_number(values[k]));
+    return o;
+}
+
+static json_t *describe(const Run *run, const Picks *p)
+{
+    const Schema *schema = &run->schema;
+    json_t *picks = json_array();
+    for (size_t i = 0; i < p->n; i++) {
+        const size_t row = p->pick[i].row;
+        json_array_append_new(
+            picks, json_pack("{s:s, s:I, s:o, s:o}", "name", p->pick[i].name, "id", (json_int_t)run->table.row[row].id,
+                             "objectives", json_values(schema->n_obj, schema->column + schema->n_var, run_f(run, row)),
+                             "variables", json_values(schema->n_var, schema->column, run_x(run, row))));
+    }
+    return json_pack("{s:s, s:I, s:I, s:o}", "run", run->folder, "front", (json_int_t)run->n_front, "within_limits",
+                     (json_int_t)p->n_left, "designs", picks);
+}
+
+static Status show(const Args *args, const Run *run, const Picks *p, Err *err)
+{
+    const char *csv = args_value(args, "--csv");
+    if (args_has(args, "--json") && csv && strcmp(csv, "-") == 0)
+        return fail(err, STATUS_USAGE, "--json and --csv - both want standard output; give --csv a file");
+    if (csv)
+        TRY(write_csv(run, p, csv, err));
+    if (args_has(args, "--json"))
+        TRY(show_json(describe(run, p), err));
+    else if (!csv)
+        show_table(run, p);
+    if (p->n_left == 0)
         return fail(err, STATUS_UNMET,
                     "no design of the front is within the limits; `imtet optimize` with "
                     "search.limits looks for some");
-    putchar('\n');
-    show_objective_names(&c->run->schema);
-    show_best(c, "knee", distance_cost, NULL);
-    if (args_has(args, "--weights"))
-        show_best(c, "weighted", weighted_cost, weights);
-    if (args_has(args, "--reference"))
-        show_best(c, "nearest to reference", reference_cost, reference);
+    if (!csv && !args_has(args, "--json"))
+        show_variables(run, p);
     return STATUS_OK;
+}
+
+static Status choose(const Args *args, Choice *c, Err *err)
+{
+    Picks picks;
+    TRY(find_picks(args, c, &picks, err));
+    return show(args, c->run, &picks, err);
 }
 
 static Status choose_of(const Args *args, const Run *run, Err *err)
@@ -148,6 +252,8 @@ static const ArgOption OPTIONS[] = {
     {"--min", "NAME=VALUE", NULL, 1, "only designs whose objective is no smaller; may be repeated"},
     {"--weights", "NAME=W,...", NULL, 0, "the least weighted sum of objectives scaled to 0 (best) .. 1 (worst)"},
     {"--reference", "NAME=VALUE,...", NULL, 0, "reference point: the design nearest to these values"},
+    {"--csv", "FILE", NULL, 0, "the designs chosen, as rows of front.csv, into FILE; -: standard output"},
+    {"--json", NULL, NULL, 0, "the designs chosen with their names, objectives and variables, on standard output"},
     OPTION_END,
 };
 
@@ -158,8 +264,9 @@ const Command CMD_CHOOSE = {
     .example = "imtet choose results/quick --max j3_g=5 --weights j1_m=2,mcore_kg=1",
     .details =
         "Of the front of the folder RUN, among the designs within the limits: the knee (nearest to the ideal point\n"
-        "when every objective is scaled to 0..1 over the front), the best weighted one, the one nearest to\n"
-        "a reference point; each with its objectives and variables.",
+        "when every objective is scaled to 0..1 over the front), the best of every objective, the best weighted one,\n"
+        "the one nearest to a reference point. Other commands take a design by its id, RUN:417, and those of the\n"
+        "whole front by name: RUN:knee, RUN:best_j1_m.",
     .options = OPTIONS,
     .run = run,
 };

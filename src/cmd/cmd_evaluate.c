@@ -7,7 +7,7 @@
 
 #include "base/units.h"
 #include "cmd/commands.h"
-#include "cmd/look.h"
+#include "cmd/designs.h"
 #include "cmd/show.h"
 #include "simulator/tower.h"
 #include "store/run_read.h"
@@ -17,10 +17,12 @@
 enum { WITH_CORE, WITHOUT_CORE, N_CASES };
 static const SceneKind SCENES[N_CASES] = {SCENE_IMPACT, SCENE_NO_CORE};
 
-/* A design of a run. */
+/* A design of the run, or one from elsewhere under the run's settings. */
 typedef struct {
     const Run *run;
-    size_t row;
+    long id; /* in the run; 0: none */
+    const double *x;
+    const char *word; /* as it was asked for */
 } Chosen;
 
 static Status simulate(const Problem *p, const Chosen *c, SimResult results[N_CASES], Err *err)
@@ -31,7 +33,7 @@ static Status simulate(const Problem *p, const Chosen *c, SimResult results[N_CA
         return fail(err, STATUS_BAD_DATA, "the front has designs of %d floors, the building has %d",
                     (int)c->run->schema.n_var - 2, n_floors);
     for (int i = 0; i < N_CASES; i++)
-        tasks[i] = (SimTask){SCENES[i], run_x(c->run, c->row)};
+        tasks[i] = (SimTask){SCENES[i], c->x};
     return tower_simulate(p, N_CASES, tasks, results, err);
 }
 
@@ -226,9 +228,26 @@ static Status try_records(const Args *args, const Settings *s, Err *err)
     return STATUS_OK;
 }
 
+/* The run's own, where they are now. */
+static Status evaluate_own(Settings *s, const Chosen *c, json_t *list, Err *err)
+{
+    char records[OPTION_TEXT_MAX], path[OPTION_TEXT_MAX];
+    snprintf(records, sizeof records, "%s", strcmp(s->motion.records, "none") == 0 ? "" : s->motion.records);
+    TRY(evaluate_on(s, c, list, err));
+    for (size_t i = 0; records[0] && i < list_count(records); i++) {
+        if (!list_item(records, i, path, sizeof path))
+            return fail(err, STATUS_BAD_DATA, "motion.records: item %zu is empty or too long", i + 1);
+        TRY(pick_record(s, path, err));
+        TRY(evaluate_on(s, c, list, err));
+    }
+    return STATUS_OK;
+}
+
 static Status evaluate_all(const Args *args, Settings *s, const Chosen *c, json_t *list, json_t *unreadable, Err *err)
 {
     const char *path;
+    if (!args_has(args, "--record") && !args_has(args, "--records"))
+        return evaluate_own(s, c, list, err);
     for (int i = 0; (path = args_next(args, "--record", &i));) {
         TRY(pick_record(s, path, err));
         TRY(evaluate_on(s, c, list, err));
@@ -238,10 +257,12 @@ static Status evaluate_all(const Args *args, Settings *s, const Chosen *c, json_
 
 static Status show_all(const Args *args, Settings *s, const Chosen *c, Err *err)
 {
-    const long id = c->run->table.row[c->row].id;
     TRY(try_records(args, s, err));
     if (!args_has(args, "--json")) {
-        printf("design %ld of %s\n\n", id, args->operand);
+        if (c->id > 0)
+            printf("design %ld of %s\n\n", c->id, args->operand);
+        else
+            printf("design %s by the settings of %s\n\n", c->word, args->operand);
         return evaluate_all(args, s, c, NULL, NULL, err);
     }
     json_t *list = json_array(), *unreadable = json_array();
@@ -253,38 +274,51 @@ static Status show_all(const Args *args, Settings *s, const Chosen *c, Err *err)
     }
     json_t *all = json_object();
     json_object_set_new(all, "run", json_string(args->operand));
-    json_object_set_new(all, "design", json_integer(id));
-    json_object_set_new(all, "variables_m", json_numbers(c->run->schema.n_var, run_x(c->run, c->row)));
+    json_object_set_new(all, "design", c->id > 0 ? json_integer(c->id) : json_string(c->word));
+    json_object_set_new(all, "variables_m", json_numbers(c->run->schema.n_var, c->x));
     json_object_set_new(all, "records", list);
     json_object_set_new(all, "unreadable", unreadable);
     return show_json(all, err);
 }
 
-static Status evaluate_design(const Args *args, const Run *run, Err *err)
+static Status evaluate_design(const Args *args, const Run *run, const Chosen *c, Err *err)
 {
     Settings s = *run->settings;
-    Chosen c = {.run = run};
     TRY(args_apply(args, &s, NULL, NULL, err));
     TRY(settings_check(&s, err));
-    TRY(look_design(args, run, &c.row, err));
     if (s.problem.kind != PROBLEM_TOWER)
         return fail(err, STATUS_BAD_DATA, "this run searched another problem than the tower: no ground motion applies");
-    return show_all(args, &s, &c, err);
+    if (!args_has(args, "--record") && !args_has(args, "--records"))
+        TRY(record_paths_find(&s, NULL, &(RecordPaths){NULL, NULL}, err));
+    return show_all(args, &s, c, err);
+}
+
+static Status evaluate(const Args *args, const Run *run, Err *err)
+{
+    const char *word = args_value(args, "--design");
+    size_t row;
+    Designs other;
+    if (!word)
+        return fail(err, STATUS_USAGE, "--design ID is missing: an id of %s, knee or best_NAME", args->operand);
+    TRY(design_of_run(run, word, &row, &other, err));
+    const int is_own = row < run->table.n;
+    const Chosen c = {run, is_own ? run->table.row[row].id : 0, is_own ? run_x(run, row) : other.x, word};
+    const Status status = evaluate_design(args, run, &c, err);
+    design_free(&other);
+    return status;
 }
 
 static Status run(const Args *args, Err *err)
 {
     Run r;
-    if (!args_has(args, "--record") && !args_has(args, "--records"))
-        return fail(err, STATUS_USAGE, "--record FILE is missing; it may be repeated, or --records FOLDER given");
     TRY(run_read(&r, args->operand, err));
-    const Status status = evaluate_design(args, &r, err);
+    const Status status = evaluate(args, &r, err);
     run_free(&r);
     return status;
 }
 
 static const ArgOption OPTIONS[] = {
-    {"--design", "ID", NULL, 0, "column id of RUN/front.csv, or knee"},
+    {"--design", "ID", NULL, 0, DESIGN_OF_RUN},
     {"--record", "FILE", NULL, 1, "ground motion; may be repeated"},
     {"--records", "FOLDER", NULL, 0, "every ground motion in it, sorted, in one table"},
     OPTION_CHANNEL,
@@ -304,7 +338,7 @@ const Command CMD_EVALUATE = {
     .summary = "one design of a front on other earthquakes",
     .example = "imtet evaluate results/quick --design knee --record builtin:elcentro-like",
     .details =
-        "Simulates one design of the front of the folder RUN under each record, with the building without a core\n"
+        "Simulates one design under each record, by default the run's own, with the building without a core\n"
         "beside it. Files of a folder that cannot be read are listed with the reason. Peak, stretch and all else are "
         "the\n"
         "run's unless an option says otherwise.",

@@ -2,8 +2,8 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-#include "scene/design.h"
 #include "cmd/commands.h"
+#include "cmd/designs.h"
 #include "cmd/show.h"
 #include "simulator/horizon.h"
 #include "simulator/tower.h"
@@ -69,7 +69,7 @@ static Status run(const Args *args, Err *err)
         return fail(err, STATUS_USAGE, "horizon: only the engine fast shows its states; leave sim.engine as it is");
     s.sim.replicates = REPLICATES;
     TRY(tower_open(&p, &s, TOWER_AS_SET, SIZE_MAX, err));
-    Status status = design_read(&d, path, tower_n_floors(tower_of(&p)), err);
+    Status status = designs_take(&d, path, tower_n_floors(tower_of(&p)), err);
     if (status == STATUS_OK) {
         status = answer(args, &p, d.x, err);
         design_free(&d);
@@ -79,7 +79,7 @@ static Status run(const Args *args, Err *err)
 }
 
 static const ArgOption OPTIONS[] = {
-    {"--design", "FILE", NULL, 0, "the design in the first row of this file"},
+    {"--design", "FILE", NULL, 0, DESIGN_WORDS},
     OPTION_RECORD,
     OPTION_PGA,
     OPTION_STRETCH,

@@ -4,9 +4,9 @@
 
 #include "base/units.h"
 #include "scene/core_beam.h"
-#include "scene/design.h"
 #include "scene/spectrum.h"
 #include "cmd/commands.h"
+#include "cmd/designs.h"
 #include "cmd/show.h"
 #include "simulator/scenario.h"
 #include "settings/settings.h"
@@ -32,7 +32,7 @@ static Status choose_thickness(const Args *args, Modes *m, Err *err)
     m->t_top_m = T_TOP_M;
     if (!path)
         return STATUS_OK;
-    TRY(design_read(&d, path, m->n, err));
+    TRY(designs_take(&d, path, m->n, err));
     m->t_base_m = d.x[m->n];
     m->t_top_m = d.x[m->n + 1];
     design_free(&d);
@@ -157,7 +157,7 @@ static Status run(const Args *args, Err *err)
 }
 
 static const ArgOption OPTIONS[] = {
-    {"--design", "FILE", NULL, 0, "take the core's thickness from the first row of a design file"},
+    {"--design", "FILE", NULL, 0, "take the core's thickness from it: " DESIGN_WORDS},
     {"--spectrum", NULL, NULL, 0,
      "pseudo-acceleration of the configured motion at the periods [g], with the building's damping"},
     OPTION_JSON,

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "cmd/commands.h"
-#include "cmd/look.h"
+#include "cmd/designs.h"
 #include "cmd/pairs.h"
 #include "cmd/show.h"
 #include "store/output.h"
@@ -63,12 +63,19 @@ static Status take_options(const Args *args, Work *w, Err *err)
     return STATUS_OK;
 }
 
+static Status take_design(const Args *args, Work *w, Err *err)
+{
+    const char *word = args_value(args, "--design");
+    return word ? design_of_run(w->run, word, &w->row, NULL, err)
+                : fail(err, STATUS_USAGE, "--design ID is missing: an id of %s, knee or best_NAME", args->operand);
+}
+
 static Status open_run(const Args *args, Work *w, Err *err)
 {
     RecordPaths moved;
     TRY(store_open_run(&w->store, args->operand, err));
     w->run = store_run(w->store);
-    TRY(look_design(args, w->run, &w->row, err));
+    TRY(take_design(args, w, err));
     TRY(take_options(args, w, err));
     TRY(args_moved(args, &moved, err));
     return record_paths_find(w->run->settings, w->run->provenance, &moved, err);
@@ -154,7 +161,7 @@ static Status run(const Args *args, Err *err)
 }
 
 static const ArgOption OPTIONS[] = {
-    {"--design", "ID", NULL, 0, "column id of RUN/front.csv, or knee"},
+    {"--design", "ID", NULL, 0, DESIGN_OF_RUN},
     {"--improve", "NAME[=W],...", NULL, 0,
      "objectives to improve, with weights in ranges of the front, or all; the first"},
     {"--keep", "NAMES", NULL, 0, "all, or a comma list: these may not get worse"},

@@ -3,9 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "scene/design.h"
 #include "base/units.h"
 #include "cmd/commands.h"
+#include "cmd/designs.h"
 #include "cmd/show.h"
 #include "simulator/tower.h"
 #include "store/output.h"
@@ -60,7 +60,7 @@ static Status lay_out_job(const Args *args, Job *job, int n_floors, Err *err)
     const char *path = args_value(args, "--design");
     job->n = 1;
     if (job->kind != SCENE_NO_CORE) {
-        TRY(design_read(&job->designs, path, n_floors, err));
+        TRY(designs_take(&job->designs, path, n_floors, err));
         warn_top_heavy(&job->designs, path);
         job->n = job->designs.n;
     }
@@ -74,20 +74,26 @@ static Status lay_out_job(const Args *args, Job *job, int n_floors, Err *err)
     return STATUS_OK;
 }
 
+/* As the run numbers it, else by its row. */
+static long number_of(const Job *job, size_t i)
+{
+    return job->designs.id ? job->designs.id[i] : (long)i + 1;
+}
+
 static Status simulate(const Problem *p, Job *job, Err *err)
 {
     TRY(job->replicates ? tower_replicate(p, job->n, job->designs.x, job->results, job->summary, err)
                         : tower_simulate(p, job->n, job->tasks, job->results, err));
     for (size_t i = 0; i < job->n; i++)
         if (job->results[i].outcome != RUN_OK)
-            fprintf(stderr, "design %zu failed: %s\n", i + 1, job->results[i].reason);
+            fprintf(stderr, "design %ld failed: %s\n", number_of(job, i), job->results[i].reason);
     return STATUS_OK;
 }
 
 static json_t *describe(const Job *job, size_t i, const Motion *m)
 {
     json_t *o = json_object();
-    json_object_set_new(o, "design", json_integer((json_int_t)i + 1));
+    json_object_set_new(o, "design", json_integer(number_of(job, i)));
     json_object_set_new(o, "record", json_string(m->name));
     json_object_set_new(o, "pga_g", json_number(motion_peak(m) / GRAVITY));
     json_object_set_new(o, "scale", json_number(m->scale));
@@ -119,7 +125,7 @@ static Status write_csv(const Job *job, const char *path, Err *err)
         fprintf(o.stream, ",%s_mean,%s_sd", measure(k)->name, measure(k)->name);
     fprintf(o.stream, ",outcome\n");
     for (size_t i = 0; i < job->n; i++) {
-        fprintf(o.stream, "%zu", i + 1);
+        fprintf(o.stream, "%ld", number_of(job, i));
         for (int k = 0; k < N_MEASURES; k++) {
             fputc(',', o.stream);
             print_number(o.stream, measure_value(&job->results[i], k));
@@ -142,7 +148,7 @@ static void print_table(const Job *job, const Scenario *w)
     putchar('\n');
     show_result_names(job->kind == SCENE_RIGID ? "rigidly connected" : "");
     for (size_t i = 0; i < job->n; i++) {
-        snprintf(label, sizeof label, "design %zu", i + 1);
+        snprintf(label, sizeof label, "design %ld", number_of(job, i));
         show_result(job->kind == SCENE_NO_CORE ? "no core" : label, &job->results[i]);
         if (job->replicates)
             show_replicates(&job->summary[i]);
@@ -189,12 +195,12 @@ static void add_contact(const SimContact *contact, void *user)
     list->at[list->n++] = *contact;
 }
 
-static void print_contacts(FILE *out, size_t design, const ContactList *list)
+static void print_contacts(FILE *out, long design, const ContactList *list)
 {
     for (size_t i = 0; i < list->n; i++) {
         const SimContact *c = &list->at[i];
         const double of[] = {c->t, c->duration, c->approach, c->rebound, c->force, c->indentation, c->impulse, c->lost};
-        fprintf(out, "%zu,%d,%d,%d", design, c->floor + 1, c->side, c->open);
+        fprintf(out, "%ld,%d,%d,%d", design, c->floor + 1, c->side, c->open);
         for (size_t k = 0; k < sizeof of / sizeof of[0]; k++) {
             fputc(',', out);
             print_number(out, of[k]);
@@ -216,7 +222,7 @@ static Status write_designs_contacts(const Job *job, SimWorker *worker, FILE *ou
         if (status == STATUS_OK && list.out_of_memory)
             status = fail(err, STATUS_NO_MEMORY, "--contacts: no memory for %zu contacts", list.n);
         if (status == STATUS_OK)
-            print_contacts(out, i + 1, &list);
+            print_contacts(out, number_of(job, i), &list);
     }
     free(list.at);
     return status;
@@ -272,7 +278,7 @@ static Status run(const Args *args, Err *err)
 }
 
 static const ArgOption OPTIONS[] = {
-    {"--design", "FILE", NULL, 0, "designs to simulate, one per row; none: the building alone"},
+    {"--design", "FILE", NULL, 0, DESIGN_WORDS "; none: the building alone"},
     {"--rigid", NULL, NULL, 0, "floors and core rigidly connected (zero gap): a linear building"},
     {"--ensemble", "N", "sim.replicates", 0,
      "N replicates as a study simulates them: mean and standard deviation of every result"},
@@ -296,7 +302,9 @@ const Command CMD_SIMULATE = {
     .example = "imtet simulate configs/quick.ini --design none",
     .details =
         "Simulates every row of a design file: CSV with the header gap_01_m..gap_NN_m,t_base_m,t_top_m, one gap\n"
-        "per floor from the bottom, then the core's wall in the first and in the last storey [m].\n"
+        "per floor from the bottom, then the core's wall in the first and in the last storey [m]. A front.csv will "
+        "do,\n"
+        "and so will a design of a run: --design results/quick:knee, results/quick:417, results/quick:best_j1_m.\n"
         "--json gives one object for one design and a list of them for several.",
     .options = OPTIONS,
     .run = run,

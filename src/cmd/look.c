@@ -3,6 +3,7 @@
 #include <limits.h>
 #include <stdio.h>
 #include <string.h>
+#include "cmd/designs.h"
 #include "scene/builtin.h"
 #include "settings/settings.h"
 
@@ -46,6 +47,7 @@ static Status open_report(const Args *args, const Run *run, Report *r, Err *err)
     const char *design = args_value(args, "--design");
     Settings other = *run->settings;
     Records records;
+    size_t row;
     long floor;
     DetailOptions options = {.other = &other, .records = records.path};
     TRY(args_moved(args, &options.moved, err));
@@ -54,7 +56,8 @@ static Status open_report(const Args *args, const Run *run, Report *r, Err *err)
     options.n_records = records.n;
     TRY(args_whole(args, "--floor", 1, FLOORS_MAX, 0, &floor, err));
     options.floor = (int)floor - 1;
-    return report_open(r, run, design ? design : "knee", &options, err);
+    TRY(design_of_run(run, design ? design : "knee", &row, NULL, err));
+    return report_open(r, run, row, &options, err);
 }
 
 static Status take_target(const Args *args, const char *name, char path[PATH_MAX], Err *err)
@@ -80,13 +83,4 @@ Status look_at_run(const Args *args, const char *name, LookFn show, Err *err)
     if (status == STATUS_OK && strcmp(path, "-") != 0)
         printf("%s\n", path);
     return status;
-}
-
-Status look_design(const Args *args, const Run *run, size_t *row, Err *err)
-{
-    const char *word = args_value(args, "--design");
-    if (!word)
-        return fail(err, STATUS_USAGE, "--design ID is missing; %s/front.csv lists them, knee is one too",
-                    args->operand);
-    return run_pick(run, word, row, err);
 }

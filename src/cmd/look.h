@@ -9,11 +9,8 @@
 typedef Status (*LookFn)(const Report *r, const char *path, Err *err);
 Status look_at_run(const Args *args, const char *name, LookFn show, Err *err);
 
-/* The row of the run that --design names. */
-Status look_design(const Args *args, const Run *run, size_t *row, Err *err);
-
 #define OPTIONS_LOOK                                                                                                   \
-    {"--design", "ID", NULL, 0, "the design shown in detail: column id of RUN/front.csv, or knee (default)"},          \
+    {"--design", "ID", NULL, 0, "the design shown in detail: an id of the run, knee (default) or best_NAME"},          \
         {"--record", "FILE", NULL, 1,                                                                                  \
          "another earthquake for it; may be repeated (default: motion.records, else the built-in ones)"},              \
         {"--floor", "N", NULL, 0, "whose displacement is shown over time (default: the middle one)"}, OPTION_MOVED,    \

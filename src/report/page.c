@@ -137,11 +137,12 @@ static json_t *json_of_run(const Report *r)
     for (size_t n = strlen(name); n > 1 && name[n - 1] == '/'; n--)
         name[n - 1] = 0;
     const char *slash = strrchr(name, '/');
-    return json_pack("{s:s, s:s, s:s, s:s, s:b, s:b, s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:s}", "version",
+    return json_pack("{s:s, s:s, s:s, s:s, s:b, s:b, s:I, s:I, s:o, s:I, s:I, s:o, s:o, s:o, s:o, s:s}", "version",
                      program_version(), "revision", program_revision(), "name", slash && slash[1] ? slash + 1 : name,
                      "folder", name, "tower", r->has_detail, "robust", r->is_robust, "knee",
                      (json_int_t)run->table.row[r->knee].id, "chosen", (json_int_t)run->table.row[r->chosen].id,
-                     "evaluated", (json_int_t)n_evaluated(run), "failed", (json_int_t)run->n_failed, "schema",
+                     "chosen_f", json_numbers(run->schema.n_obj, run_f(run, r->chosen)), "evaluated",
+                     (json_int_t)n_evaluated(run), "failed", (json_int_t)run->n_failed, "schema",
                      json_of_names(&run->schema), "convergence", json_of_growth(run), "detail",
                      r->has_detail ? json_of_detail(&r->detail) : json_null(), "settings",
                      json_of_settings(run->settings), "provenance", run->provenance);

@@ -14,12 +14,13 @@ static Status take_detail(Report *r, const DetailOptions *options, Err *err)
                : STATUS_OK;
 }
 
-Status report_open(Report *r, const Run *run, const char *design, const DetailOptions *options, Err *err)
+Status report_open(Report *r, const Run *run, size_t chosen, const DetailOptions *options, Err *err)
 {
     const Settings *s = run->settings;
-    *r = (Report){.run = run, .has_detail = s->problem.kind == PROBLEM_TOWER};
+    *r = (Report){.run = run, .chosen = chosen, .has_detail = s->problem.kind == PROBLEM_TOWER};
     r->is_robust = r->has_detail && (s->sim.replicates > 1 || strcmp(s->motion.records, "none") != 0);
-    TRY(run_pick(run, design, &r->chosen, err));
+    if (run->n_front == 0)
+        return run_why_empty(run, err);
     r->knee = run_knee(run);
     const Status status = take_detail(r, options, err);
     if (status != STATUS_OK)

@@ -22,8 +22,8 @@ typedef struct {
     Detail detail;
 } Report;
 
-/* design: an id of the front, or "knee". */
-Status report_open(Report *r, const Run *run, const char *design, const DetailOptions *options, Err *err);
+/* chosen: row of the run, on its front or not; the front may not be empty (run_why_empty). */
+Status report_open(Report *r, const Run *run, size_t chosen, const DetailOptions *options, Err *err);
 Status report_page(const Report *r, const char *path, Err *err);
 
 /* Pictures FOLDER/NAME.svg and .png, the folder made where it is not there. */

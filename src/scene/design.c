@@ -49,22 +49,27 @@ static Status check_values(const Designs *d, const char *path, Err *err)
     return STATUS_OK;
 }
 
+Status design_of_table(Designs *d, Table *t, const char *path, int n_floors, Err *err)
+{
+    memset(d, 0, sizeof *d);
+    TRY(check_names(t, path, n_floors, err));
+    if (t->n_rows == 0)
+        return fail(err, STATUS_BAD_DATA, "%s: holds no designs", path);
+    *d = (Designs){.n = t->n_rows, .n_floors = n_floors, .x = t->values, .line = t->line};
+    t->values = NULL;
+    t->line = NULL;
+    const Status status = check_values(d, path, err);
+    if (status != STATUS_OK)
+        design_free(d);
+    return status;
+}
+
 Status design_read(Designs *d, const char *path, int n_floors, Err *err)
 {
     Table t;
     memset(d, 0, sizeof *d);
     TRY(table_read(&t, path, 1, err));
-    Status status = check_names(&t, path, n_floors, err);
-    if (status == STATUS_OK && t.n_rows == 0)
-        status = fail(err, STATUS_BAD_DATA, "%s: holds no designs", path);
-    if (status == STATUS_OK) {
-        *d = (Designs){.n = t.n_rows, .n_floors = n_floors, .x = t.values, .line = t.line};
-        t.values = NULL;
-        t.line = NULL;
-        status = check_values(d, path, err);
-    }
-    if (status != STATUS_OK)
-        design_free(d);
+    const Status status = design_of_table(d, &t, path, n_floors, err);
     table_free(&t);
     return status;
 }
@@ -73,5 +78,6 @@ void design_free(Designs *d)
 {
     free(d->x);
     free(d->line);
+    free(d->id);
     memset(d, 0, sizeof *d);
 }

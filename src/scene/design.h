@@ -20,12 +20,16 @@ typedef struct {
     int n_floors;
     double *x; /* [m] (n, n_floors + 2) */
     int *line; /* (n) of the file */
+    long *id;  /* (n) as the run that they are of numbers them; NULL: designs of a file */
 } Designs;
 
 /* Name of variable j = 0..n_floors+1. */
 void design_variable_name(int n_floors, int j, char name[TABLE_NAME_MAX]);
 
 Status design_read(Designs *d, const char *path, int n_floors, Err *err);
+
+/* The same of a table that is read already; its numbers pass over to the designs. */
+Status design_of_table(Designs *d, Table *t, const char *path, int n_floors, Err *err);
 void design_free(Designs *d);
 
 #endif

@@ -241,31 +241,43 @@ Status run_why_empty(const Run *run, Err *err)
     return fail(err, STATUS_BAD_DATA, "%s: the front is empty", run->folder);
 }
 
+/* Of the ids of the run; it has some. */
 static long nearest_id(const Run *run, long id)
 {
-    long nearest = run->table.row[run->front[0]].id;
-    for (size_t i = 1; i < run->n_front; i++)
-        if (labs(run->table.row[run->front[i]].id - id) < labs(nearest - id))
-            nearest = run->table.row[run->front[i]].id;
+    long nearest = run->table.row[0].id;
+    for (size_t i = 1; i < run->table.n; i++)
+        if (labs(run->table.row[i].id - id) < labs(nearest - id))
+            nearest = run->table.row[i].id;
     return nearest;
+}
+
+static Status pick_id(const Run *run, long id, size_t *row, Err *err)
+{
+    *row = run_find(run, id);
+    if (*row < run->table.n)
+        return STATUS_OK;
+    return run->table.n == 0 ? run_why_empty(run, err)
+                             : fail(err, STATUS_BAD_DATA, "%s: has no design %ld; the nearest id is %ld", run->folder,
+                                    id, nearest_id(run, id));
 }
 
 Status run_pick(const Run *run, const char *word, size_t *row, Err *err)
 {
+    static const char BEST[] = "best_";
+    const int is_best = strncmp(word, BEST, sizeof BEST - 1) == 0;
     char *end;
+    size_t k = 0;
+    const long id = strtol(word, &end, 10);
+    if (end != word && !*end)
+        return pick_id(run, id, row, err);
+    if (!is_best && strcmp(word, "knee") != 0)
+        return fail(err, STATUS_BAD_DATA,
+                    "%.40s: neither an id of a design of %s nor a word for one; did you mean knee, or best_%s?", word,
+                    run->folder, schema_objective(&run->schema, 0)->name);
+    if (is_best)
+        TRY(schema_pick_objective(&run->schema, "best_NAME", word + sizeof BEST - 1, STATUS_BAD_DATA, &k, err));
     if (run->n_front == 0)
         return run_why_empty(run, err);
-    if (strcmp(word, "knee") == 0) {
-        *row = run_knee(run);
-        return STATUS_OK;
-    }
-    const long id = strtol(word, &end, 10);
-    if (end == word || *end)
-        return fail(err, STATUS_BAD_DATA,
-                    "--design %.40s: neither an id of %s/front.csv nor a word; did you mean knee?", word, run->folder);
-    *row = run_find(run, id);
-    if (*row == run->table.n || !run->place[*row].on_front)
-        return fail(err, STATUS_BAD_DATA, "--design %ld: no such id on the front of %s; the nearest is %ld", id,
-                    run->folder, nearest_id(run, id));
+    *row = is_best ? run_best(run, k) : run_knee(run);
     return STATUS_OK;
 }

@@ -104,7 +104,8 @@ size_t run_knee(const Run *run);
  * chosen; polished ones are left out unless they are wanted. Returns how many. */
 size_t run_spread_out(const Run *run, size_t n, int with_polished, size_t rows[]);
 
-/* `word`: an id of the front or "knee". An empty front has neither: run_why_empty. */
+/* `word`: the id of any design that the run has, on its front or not, failed or not; "knee"; "best_NAME" of an objective.
+ * An empty front has neither of the last two: run_why_empty. */
 Status run_pick(const Run *run, const char *word, size_t *row, Err *err);
 
 /* Why a front is empty, and what to do; never STATUS_OK. STATUS_UNMET: nothing keeps search.limits. */

@@ -13,11 +13,12 @@ function change(value, before) {
   return `${pct > 0 ? "+" : "\u2212"}${Math.abs(pct)} % vs no core`;
 }
 
-function cards(row, before) {
+// raw: natural values of the objectives; one that failed has none.
+function cards(raw, before) {
   return element("div", { class: "cards" }, ...objectives.map((c, k) => element("div", { class: "card" },
     element("div", { class: "what" }, c.what),
-    element("div", { class: "value" }, digits(c.value[row]), " ", element("small", {}, c.unit)),
-    element("div", { class: "change" }, before && k < 3 ? change(c.raw[row], before[k]) : before && k < 6 ? `no core: ${show(before[k])} %` : ""))));
+    element("div", { class: "value" }, raw[k] === null ? "failed" : digits(raw[k] * c.factor), " ", element("small", {}, c.unit)),
+    element("div", { class: "change" }, before && k < 3 ? change(raw[k], before[k]) : before && k < 6 ? `no core: ${show(before[k])} %` : ""))));
 }
 
 function standoutTable(before) {
@@ -49,7 +50,7 @@ function summaryPart() {
     element("p", {}, element("strong", {}, `Design ${run.knee}, the knee`), ": nearest to the best of everything, with every objective scaled over the front."),
     run.robust ? element("p", { class: "note" }, "Objectives are those of several simulations of every design (motion.records, sim.replicates, sim.robust " +
       `among the settings); the chosen design is shown as one simulation under ${shortName(d.record)}.`) : "",
-    cards(rowOf.get(run.knee), before), standoutTable(before));
+    cards(objectives.map((c) => c.raw[rowOf.get(run.knee)]), before), standoutTable(before));
 }
 
 function growthPart() {

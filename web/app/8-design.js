@@ -191,10 +191,10 @@ function part(host, title, note, columns) {
 function designPart() {
   const host = document.getElementById("design"), d = run.detail;
   if (!d) return host.remove();
-  const row = rowOf.get(run.chosen), r = d.with_core;
+  const r = d.with_core;
   host.querySelector("h2").textContent = `Design ${run.chosen}${run.chosen === run.knee ? ", the knee" : ""}`;
   const scenes = [[WITH, r], [WITHOUT, d.no_core], [RIGID, d.rigid]].filter(([, s]) => s.objectives);
-  if (run.chosen !== run.knee) host.append(cards(row, run.robust ? null : d.no_core.objectives));
+  if (run.chosen !== run.knee) host.append(cards(run.chosen_f, run.robust ? null : d.no_core.objectives));
   host.append(element("p", { class: "note" }, `Simulated again with the run\u2019s settings. For another design: imtet report ${run.folder} --design ID`));
   if (!r.objectives) host.append(element("p", { class: "warn" }, `This design could not be simulated: ${r.reason}`));
   else host.append(element("p", {}, `${count(r.impacts)} impacts took ${show(r.contact_pct)} % of the ${show(r.input_j / 1e6)} MJ that the ground put in.` ));

@@ -1,0 +1,230 @@
+#include "cmd/designs.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "simulator/measures.h"
+#include "store/run_read.h"
+
+/* -- tables -------------------------------------------------------------------------------------------------------- */
+
+/* What front.csv and nearest.csv have beside the variables. */
+static int is_result(const char *name)
+{
+    const char *const others[] = {"id", "replicates", "violation"};
+    const size_t length = strlen(name), n = length > 3 && strcmp(name + length - 3, "_sd") == 0 ? length - 3 : length;
+    for (size_t i = 0; i < sizeof others / sizeof others[0]; i++)
+        if (strcmp(name, others[i]) == 0)
+            return 1;
+    for (int k = 0; k < N_MEASURES; k++)
+        if (strlen(measure(k)->name) == n && strncmp(name, measure(k)->name, n) == 0)
+            return 1;
+    return 0;
+}
+
+/* The variables alone, in their order. */
+static void drop_results(Table *t)
+{
+    size_t kept = 0, from[1024];
+    for (size_t j = 0; j < t->n_cols && kept < sizeof from / sizeof from[0]; j++)
+        if (!is_result(t->names[j]))
+            from[kept++] = j;
+    for (size_t i = 0; i < t->n_rows; i++)
+        for (size_t j = 0; j < kept; j++)
+            t->values[i * kept + j] = t->values[i * t->n_cols + from[j]];
+    for (size_t j = 0; j < kept; j++)
+        memmove(t->names[j], t->names[from[j]], sizeof *t->names);
+    t->n_cols = kept;
+}
+
+/* Row `row` becomes the only one. */
+static void keep_row(Designs *d, size_t row)
+{
+    const size_t n_var = (size_t)d->n_floors + 2;
+    memmove(d->x, d->x + row * n_var, n_var * sizeof *d->x);
+    d->line[0] = d->line[row];
+    if (d->id)
+        d->id[0] = d->id[row];
+    d->n = 1;
+}
+
+static Status choose_row(Designs *d, const char *path, const char *choice, Err *err)
+{
+    char *end;
+    const long wanted = strtol(choice, &end, 10);
+    if (end == choice || *end)
+        return fail(err, STATUS_BAD_DATA, "%s:%.40s: of a file a design is chosen by its %s", path, choice,
+                    d->id ? "id" : "row, from 1");
+    for (size_t i = 0; i < d->n; i++)
+        if ((d->id ? d->id[i] : (long)i + 1) == wanted) {
+            keep_row(d, i);
+            return STATUS_OK;
+        }
+    return d->id ? fail(err, STATUS_BAD_DATA, "%s: has no design of id %ld", path, wanted)
+                 : fail(err, STATUS_BAD_DATA, "%s: has no design %ld; it holds %zu", path, wanted, d->n);
+}
+
+/* The column id, of (t->n_rows) for the caller to free; NULL: there is none. */
+static Status take_ids(const Table *t, long **ids, Err *err)
+{
+    const int column = table_column(t, "id");
+    *ids = NULL;
+    if (column < 0)
+        return STATUS_OK;
+    *ids = calloc(t->n_rows + 1, sizeof **ids);
+    if (!*ids)
+        return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", t->n_rows);
+    for (size_t i = 0; i < t->n_rows; i++)
+        (*ids)[i] = (long)t->values[i * t->n_cols + (size_t)column];
+    return STATUS_OK;
+}
+
+static Status take_file(Designs *d, const char *path, const char *choice, int n_floors, Err *err)
+{
+    Table t;
+    long *ids = NULL;
+    TRY(table_read(&t, path, 1, err));
+    Status status = take_ids(&t, &ids, err);
+    if (status == STATUS_OK && ids)
+        drop_results(&t);
+    if (status == STATUS_OK)
+        status = design_of_table(d, &t, path, n_floors, err);
+    table_free(&t);
+    if (status != STATUS_OK) {
+        free(ids);
+        return status;
+    }
+    d->id = ids;
+    return choice ? choose_row(d, path, choice, err) : STATUS_OK;
+}
+
+/* -- runs ---------------------------------------------------------------------------------------------------------- */
+
+static Status copy_row(Designs *d, const Run *run, size_t row, Err *err)
+{
+    const size_t n_var = run->schema.n_var;
+    *d = (Designs){.n = 1,
+                   .n_floors = (int)n_var - 2,
+                   .x = malloc(n_var * sizeof *d->x),
+                   .line = malloc(sizeof *d->line),
+                   .id = malloc(sizeof *d->id)};
+    if (!d->x || !d->line || !d->id)
+        return fail(err, STATUS_NO_MEMORY, "no memory for a design");
+    memcpy(d->x, run_x(run, row), n_var * sizeof *d->x);
+    d->id[0] = run->table.row[row].id;
+    d->line[0] = (int)d->id[0];
+    return STATUS_OK;
+}
+
+static Status take_from_run(Designs *d, const char *folder, const char *choice, int n_floors, Err *err)
+{
+    Run run;
+    size_t row;
+    TRY(run_read(&run, folder, err));
+    Status status = run_pick(&run, choice ? choice : "knee", &row, err);
+    if (status == STATUS_OK && run.schema.n_var != (size_t)n_floors + 2)
+        status =
+            fail(err, STATUS_BAD_DATA, "%s: its designs have %zu variables, those of this building of %d floors %d",
+                 folder, run.schema.n_var, n_floors, n_floors + 2);
+    if (status == STATUS_OK)
+        status = copy_row(d, &run, row, err);
+    run_free(&run);
+    return status;
+}
+
+/* -- words --------------------------------------------------------------------------------------------------------- */
+
+typedef struct {
+    char path[PATH_MAX];
+    const char *choice; /* behind the last colon; NULL: there is none */
+    int is_run;
+} Place;
+
+/* The folder of run.sqlite is the run. */
+static int is_run(char path[PATH_MAX])
+{
+    static const char DATABASE[] = "run.sqlite";
+    char there[PATH_MAX], *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+    if (strcmp(name, DATABASE) == 0) {
+        snprintf(slash ? slash : name, slash ? 1 : 2, "%s", slash ? "" : ".");
+        return 1;
+    }
+    return run_path(path, there, sizeof there);
+}
+
+static int is_there(const char *word, size_t length, Place *p)
+{
+    struct stat s;
+    if (length >= sizeof p->path)
+        return 0;
+    snprintf(p->path, sizeof p->path, "%.*s", (int)length, word);
+    return stat(p->path, &s) == 0;
+}
+
+/* FILE or RUN, with or without a choice; a path with a colon in it is taken whole where it is there. */
+static void find_place(const char *word, Place *p)
+{
+    const char *colon = strrchr(word, ':');
+    p->choice = NULL;
+    if (!is_there(word, strlen(word), p) && colon && colon > word) {
+        is_there(word, (size_t)(colon - word), p);
+        p->choice = colon + 1;
+    }
+    p->is_run = is_run(p->path);
+}
+
+Status designs_take(Designs *d, const char *word, int n_floors, Err *err)
+{
+    Place p;
+    struct stat s;
+    memset(d, 0, sizeof *d);
+    if (strlen(word) >= sizeof p.path)
+        return fail(err, STATUS_MISSING, "%.60s...: the path is too long", word);
+    find_place(word, &p);
+    if (!p.is_run && stat(p.path, &s) == 0 && S_ISDIR(s.st_mode))
+        return fail(err, STATUS_MISSING, "%.200s: holds no run: run.sqlite is not there", p.path);
+    const Status status =
+        p.is_run ? take_from_run(d, p.path, p.choice, n_floors, err) : take_file(d, p.path, p.choice, n_floors, err);
+    if (status != STATUS_OK)
+        design_free(d);
+    return status;
+}
+
+/* Row with these variables, or run->table.n; one of the front first. */
+static size_t row_of(const Run *run, const double x[])
+{
+    const size_t size = run->schema.n_var * sizeof *x;
+    for (size_t i = 0; i < run->n_front; i++)
+        if (memcmp(run_x(run, run->front[i]), x, size) == 0)
+            return run->front[i];
+    for (size_t i = 0; i < run->table.n; i++)
+        if (memcmp(run_x(run, i), x, size) == 0)
+            return i;
+    return run->table.n;
+}
+
+/* What only a run can have. */
+static int is_name(const char *word)
+{
+    return strspn(word, "0123456789") == strlen(word) || strcmp(word, "knee") == 0 || strncmp(word, "best_", 5) == 0;
+}
+
+Status design_of_run(const Run *run, const char *word, size_t *row, Designs *elsewhere, Err *err)
+{
+    struct stat s;
+    Designs d;
+    if (elsewhere)
+        *elsewhere = (Designs){0};
+    if (is_name(word) || (!strpbrk(word, "/:") && stat(word, &s) != 0))
+        return run_pick(run, word, row, err);
+    TRY(designs_take(&d, word, (int)run->schema.n_var - 2, err));
+    *row = row_of(run, d.x);
+    if (*row == run->table.n && elsewhere) {
+        *elsewhere = d;
+        return STATUS_OK;
+    }
+    design_free(&d);
+    return *row < run->table.n ? STATUS_OK : fail(err, STATUS_BAD_DATA, "%s: is no design of %s", word, run->folder);
+}

@@ -1,0 +1,28 @@
+/* cmd/designs.h -- designs on the command line, by the same words in every command that takes one.
+ *
+ *   FILE          a design file (scene/design.h), all of its rows; or a table of designs of a run (front.csv, with a
+ *                 column id), of which what is no variable is left out
+ *   FILE:N        one of them: that of id N, in a file without ids the N-th row
+ *   RUN:ID        any design of a run, on its front or not; RUN is its folder, or run.sqlite in it
+ *   RUN:knee      of its front; RUN:best_j1_m likewise; RUN alone: its knee
+ *
+ * Of a command on a run also ID, knee, best_NAME alone: a design of that run.
+ * Errors  what is neither is named with the nearest that is there; STATUS_UNMET where a front is empty by its limits */
+#ifndef IMTET_CMD_DESIGNS_H
+#define IMTET_CMD_DESIGNS_H
+
+#include "scene/design.h"
+#include "store/run.h"
+
+#define DESIGN_WORDS  "FILE, FILE:N (row or id), RUN:ID, RUN:knee or RUN:best_NAME"
+#define DESIGN_OF_RUN "an id of the run, knee or best_NAME; FILE:N, OTHER:ID"
+
+/* For design_free. n_floors: of the building that they are for. */
+Status designs_take(Designs *d, const char *word, int n_floors, Err *err);
+
+/* A row of the run. A word that leads elsewhere (a file, another run) names that of the run's designs which has the same
+ * variables; where none has, elsewhere holds the first that was found, for design_free, and row is run->table.n.
+ * elsewhere NULL: such a design is refused. */
+Status design_of_run(const Run *run, const char *word, size_t *row, Designs *elsewhere, Err *err);
+
+#endif

@@ -1,0 +1,168 @@
+/* Designs by name: every command takes the same words, and every word leads to the same numbers. */
+#include "runs.h"
+
+#define SHORT    "--set sim.duration_s=20 --set sim.accuracy=coarse "
+#define SIMULATE "simulate configs/quick.ini " SHORT "--json --design "
+
+typedef struct {
+    long knee, off; /* ids; of a design that is not on the front */
+    double off_j1;
+} Known;
+
+static Known known;
+
+/* A small study, once for all tests. */
+static int make_run(void **state)
+{
+    Run h;
+    Err err = {0};
+    char path[PATH_MAX];
+    if (make_place(state) != 0)
+        return -1;
+    free(output_of("optimize configs/quick.ini --out @/run --threads 2 --max-evals 24 --set search.initial=12 "
+                   "--set search.population=12 --set search.polish=0 --set 'search.limits=j1_m<=0.055' " SHORT));
+    CHECK_OK(run_read(&h, path_of("run", path), &err), &err);
+    known.knee = h.table.row[run_knee(&h)].id;
+    for (size_t i = 0; i < h.table.n; i++)
+        if (!h.place[i].on_front && h.place[i].ok) {
+            known.off = h.table.row[i].id;
+            known.off_j1 = h.table.f[i * h.schema.n_obj];
+        }
+    run_free(&h);
+    return known.off > 0 ? 0 : -1;
+}
+
+static double j1_of(const char *word)
+{
+    char words[500];
+    snprintf(words, sizeof words, SIMULATE "%s", word);
+    json_t *o = json_of(words);
+    const double j1 = number(o, "j1_m");
+    json_decref(o);
+    return j1;
+}
+
+static void test_a_design_is_the_same_by_every_name(void **state)
+{
+    (void)state;
+    char word[100];
+    free(output_of("choose @/run --csv @/chosen.csv"));
+    const double knee = j1_of("@/run:knee");
+    static const char *const NAMES[] = {"@/run", "@/run/run.sqlite:knee", "@/chosen.csv:%ld", "@/run/front.csv:%ld",
+                                        "@/run:%ld"};
+    for (size_t i = 0; i < sizeof NAMES / sizeof NAMES[0]; i++) {
+        snprintf(word, sizeof word, NAMES[i], known.knee);
+        assert_true(j1_of(word) == knee);
+    }
+}
+
+static void test_a_row_of_a_design_file_is_taken_by_its_number(void **state)
+{
+    (void)state;
+    char header[400] = "", row[2][200] = {"", ""}, text[1200];
+    for (int j = 0; j < 20; j++) {
+        sprintf(header + strlen(header), "gap_%02d_m,", j + 1);
+        for (int i = 0; i < 2; i++)
+            strcat(row[i], i ? "0.02," : "0.2,");
+    }
+    snprintf(text, sizeof text, "%st_base_m,t_top_m\n%s0.02,0.01\n%s0.03,0.02\n", header, row[0], row[1]);
+    write_in_place("two.csv", text);
+    json_t *both = json_of(SIMULATE "@/two.csv");
+    assert_true(number(json_array_get(both, 1), "j1_m") == j1_of("@/two.csv:2"));
+    assert_true(number(json_array_get(both, 0), "j1_m") != j1_of("@/two.csv:2"));
+    json_decref(both);
+    expect(65, "has no design 3; it holds 2", SIMULATE "@/two.csv:3");
+    expect(65, "is chosen by its row", SIMULATE "@/two.csv:knee");
+}
+
+static void test_designs_off_the_front_stay_addressable(void **state)
+{
+    (void)state;
+    char word[400];
+    snprintf(word, sizeof word, "@/run:%ld", known.off);
+    assert_true(j1_of(word) == known.off_j1);
+    snprintf(word, sizeof word, "evaluate @/run --design %ld --json", known.off);
+    json_t *o = json_of(word), *first = json_array_get(json_object_get(o, "records"), 0);
+    assert_true(number(json_object_get(first, "with_core"), "j1_m") == known.off_j1);
+    json_decref(o);
+    snprintf(word, sizeof word, "report @/run --design %ld --record builtin:sylmar-like --out @/off.html", known.off);
+    free(output_of(word));
+    snprintf(word, sizeof word, "polish @/run --design %ld --evals 12", known.off);
+    free(output_of(word));
+}
+
+static void test_evaluate_without_a_record_takes_those_of_the_run(void **state)
+{
+    (void)state;
+    char *own = output_of("evaluate @/run --design knee"),
+         *named = output_of("evaluate @/run --design knee --record builtin:kobe-like");
+    assert_string_equal(own, named);
+    free(own);
+    free(named);
+    free(output_of("optimize configs/quick.ini --out @/both --max-evals 8 --set search.initial=8 "
+                   "--set search.population=8 --set search.polish=0 --set motion.records=builtin:sylmar-like " SHORT));
+    json_t *o = json_of("evaluate @/both --design knee --json");
+    assert_int_equal(json_array_size(json_object_get(o, "records")), 2);
+    json_decref(o);
+}
+
+static void test_evaluate_takes_a_design_from_elsewhere(void **state)
+{
+    (void)state;
+    json_t *o = json_of("evaluate @/both --design @/run:knee --json"),
+           *own = json_of("evaluate @/run --design knee --json");
+    const json_t *there = json_array_get(json_object_get(o, "records"), 0);
+    const json_t *here = json_array_get(json_object_get(own, "records"), 0);
+    assert_non_null(strstr(json_string_value(json_object_get(o, "design")), "/run:knee"));
+    assert_true(number(json_object_get(there, "with_core"), "j1_m") ==
+                number(json_object_get(here, "with_core"), "j1_m"));
+    json_decref(o);
+    json_decref(own);
+    expect(65, "is no design of", "polish @/both --design @/run:knee");
+}
+
+static void test_choose_names_the_extremes_and_writes_them(void **state)
+{
+    (void)state;
+    json_t *o = json_of("choose @/run --json --weights j1_m=1"), *list = json_object_get(o, "designs");
+    assert_int_equal(json_array_size(list), 1 + 7 + 1);
+    char word[100];
+    size_t i;
+    json_t *pick;
+    json_array_foreach(list, i, pick)
+    {
+        const char *name = json_string_value(json_object_get(pick, "name"));
+        const double wanted = number(json_object_get(pick, "objectives"), "j1_m");
+        if (strcmp(name, "weighted") == 0)
+            continue;
+        snprintf(word, sizeof word, "@/run:%s", name);
+        assert_true(j1_of(word) == wanted);
+    }
+    json_decref(o);
+    expect(2, "give --csv a file", "choose @/run --json --csv -");
+}
+
+static void test_words_that_name_nothing_are_refused_with_what_is_there(void **state)
+{
+    (void)state;
+    expect(65, "the nearest id is 24", SIMULATE "@/run:999");
+    expect(65, "did you mean knee", SIMULATE "@/run:nee");
+    expect(65, "there are j1_m, j2_m", SIMULATE "@/run:best_j1");
+    expect(66, "nowhere", SIMULATE "@/nowhere:knee");
+    expect(66, "holds no run", SIMULATE "@/");
+    expect(65, "has no design of id 999", SIMULATE "@/run/front.csv:999");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_a_design_is_the_same_by_every_name),
+        cmocka_unit_test(test_a_row_of_a_design_file_is_taken_by_its_number),
+        cmocka_unit_test(test_designs_off_the_front_stay_addressable),
+        cmocka_unit_test(test_evaluate_without_a_record_takes_those_of_the_run),
+        cmocka_unit_test(test_evaluate_takes_a_design_from_elsewhere),
+        cmocka_unit_test(test_choose_names_the_extremes_and_writes_them),
+        cmocka_unit_test(test_words_that_name_nothing_are_refused_with_what_is_there),
+    };
+    return cmocka_run_group_tests_name("designs", tests, make_run, clear_place);
+}
