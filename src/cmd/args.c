@@ -164,12 +164,13 @@ static Status take_operand(Args *args, const char *word, Err *err)
     const Command *c = args->command;
     if (!c->operand)
         return fail(err, STATUS_USAGE, "%s %s takes no operand, found '%.60s'", program_of(c), c->name, word);
-    if (args->operand)
+    if (args->operand && !strstr(c->operand, "..."))
         return fail(err, STATUS_USAGE, "%s %s takes one %s, found '%.60s' after '%.60s'", program_of(c), c->name,
                     c->operand, word, args->operand);
     if (!word[0])
         return fail(err, STATUS_USAGE, "%s %s: the %s is an empty word", program_of(c), c->name, c->operand);
-    args->operand = word;
+    args->operands[args->n_operands++] = word;
+    args->operand = args->operand ? args->operand : word;
     return strstr(c->operand, "RUN") ? take_run_folder(args, err) : STATUS_OK;
 }
 
@@ -187,7 +188,8 @@ Status args_parse(Args *args, const Command *command, int argc, char *const argv
     if (args->help)
         return STATUS_OK;
     args->given = calloc((size_t)argc + 1, sizeof *args->given);
-    if (!args->given)
+    args->operands = calloc((size_t)argc + 1, sizeof *args->operands);
+    if (!args->given || !args->operands)
         return fail(err, STATUS_NO_MEMORY, "no memory for %d options", argc);
     for (int i = 0; i < argc; i++)
         TRY(argv[i][0] == '-' && argv[i][1] ? take_option(args, argc, argv, &i, err)
@@ -261,6 +263,7 @@ int args_gives(const Args *args, const char *key)
 void args_free(Args *args)
 {
     free(args->given);
+    free(args->operands);
     free(args->folder);
     memset(args, 0, sizeof *args);
 }

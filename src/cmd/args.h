@@ -25,7 +25,7 @@ typedef struct {
 typedef struct Args Args;
 
 typedef struct {
-    const char *name, *operand; /* operand NULL: takes none, "[NAME]": may be left out */
+    const char *name, *operand; /* operand NULL: takes none, "[NAME]": may be left out, "NAME...": one or more */
     const char *summary, *example, *details;
     const ArgOption *options; /* up to the first without a name */
     Status (*run)(const Args *args, Err *err);
@@ -39,9 +39,11 @@ typedef struct {
 
 struct Args {
     const Command *command;
-    const char *operand; /* of a RUN its folder, also where run.sqlite in it was named */
-    char *folder;        /* what operand points to then */
-    int help;            /* --help was asked for: nothing else was checked */
+    const char *operand;   /* the first; of a RUN its folder, also where run.sqlite in it was named */
+    char *folder;          /* what operand points to then */
+    int n_operands;        /* one at most, unless the command's operand ends with "..." */
+    const char **operands; /* (n_operands) in the order of the command line */
+    int help;              /* --help was asked for: nothing else was checked */
     int n_given;
     Given *given; /* (n_given) in the order of the command line */
 };

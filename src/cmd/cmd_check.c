@@ -8,6 +8,7 @@
 #include "cmd/commands.h"
 #include "cmd/designs.h"
 #include "cmd/show.h"
+#include "scene/motion_scale.h"
 #include "scene/motion_source.h"
 #include "scene/summary.h"
 #include "settings/settings.h"
@@ -101,7 +102,7 @@ static int open_motion(Check *c, CheckedScene *p)
     Status status = motion_open(&p->motion, &p->s->motion, &e);
     if (status == STATUS_OK) {
         p->recorded_g = motion_peak(&p->motion) / GRAVITY;
-        status = motion_prepare(&p->motion, p->s->motion.pga_g, p->s->motion.stretch, &e);
+        status = motion_scale(&p->motion, &p->s->motion, &e);
     }
     return note(c, status, "motion.record", &e);
 }

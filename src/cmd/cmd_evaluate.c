@@ -11,6 +11,7 @@
 #include "cmd/show.h"
 #include "simulator/tower.h"
 #include "store/run_read.h"
+#include "scene/motion_scale.h"
 #include "scene/motion_source.h"
 #include "settings/settings.h"
 
@@ -100,7 +101,7 @@ static Status try_record(Settings *s, const char *path, Err *err)
     TRY(pick_record(s, path, err));
     Status status = motion_open(&m, &s->motion, err);
     if (status == STATUS_OK)
-        status = motion_prepare(&m, s->motion.pga_g, s->motion.stretch, err);
+        status = motion_scale(&m, &s->motion, err);
     motion_free(&m);
     return status;
 }

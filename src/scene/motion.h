@@ -18,13 +18,14 @@ typedef struct {
     double *accel; /* [m/s2] (n) */
     size_t n;
     double dt_s;
-    double scale, stretch; /* what motion_prepare multiplied the record and its time by; 0: as recorded */
-    char name[128];        /* as given by the user: a path or builtin:NAME */
-    char format[32];       /* what the reader took it for: "csv", "at2", ..., "builtin" */
-    char channel[64];      /* its name in the file; empty where it has none */
-    char processed[80];    /* what was done to the samples of the file; empty: nothing */
-    char warning[160];     /* what does not fit in the file; empty: nothing */
-    uint64_t file_hash;    /* FNV-1a of the file's bytes, or of the generated samples */
+    double scale,
+        stretch;      /* what motion_prepare and motion_scale multiplied the record and its time by; 0: as recorded */
+    char name[128];   /* as given by the user: a path or builtin:NAME */
+    char format[32];  /* what the reader took it for: "csv", "at2", ..., "builtin" */
+    char channel[64]; /* its name in the file; empty where it has none */
+    char processed[320]; /* what was done to the samples of the file; empty: nothing */
+    char warning[160];   /* what does not fit in the file; empty: nothing */
+    uint64_t file_hash;  /* FNV-1a of the file's bytes, or of the generated samples */
 } Motion;
 
 /* t -> stretch t; then scaled so that max |accel| = pga_g * 9.81 m/s2 (pga_g = 0: as recorded). */

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "scene/builtin.h"
+#include "scene/motion_process.h"
 #include "scene/motion_read.h"
 
 static Status load(Motion *m, const char *source, const MotionHow *how, Err *err)
@@ -30,5 +31,9 @@ Status motion_open(Motion *m, const MotionOptions *o, Err *err)
                            .resample_dt_s = o->resample_dt_s,
                            .counts_per_m_s2 = o->counts_per_m_s2,
                            .peak_error_max = o->peak_error_max};
-    return load(m, o->record, &how, err);
+    TRY(load(m, o->record, &how, err));
+    const Status status = motion_process(m, o, err);
+    if (status != STATUS_OK)
+        motion_free(m);
+    return status;
 }

@@ -16,7 +16,7 @@
  * built-in motion. */
 Status motion_load(Motion *m, const char *source, MotionUnit unit, Err *err);
 
-/* The record of the options, read as they say; not scaled yet (motion_prepare). */
+/* The record of the options, read and processed as they say; not scaled yet (motion_scale). */
 Status motion_open(Motion *m, const MotionOptions *o, Err *err);
 
 #endif

@@ -13,6 +13,7 @@
 #include "base/list.h"
 #include "base/table.h"
 #include "scene/builtin.h"
+#include "scene/motion_scale.h"
 
 typedef enum { KIND_REAL, KIND_WHOLE, KIND_CHOICE, KIND_TEXT, KIND_PATH, KIND_PATH_LIST } Kind;
 
@@ -120,7 +121,28 @@ static const Option OPTIONS[] = {
               "further records of the same study, a comma list: every design is simulated under each (sim.robust)",
               .flags = SETTING_FREE),
     REAL(motion.pga_g, "g", "0", 0, 1e6, "scaled to this peak ground acceleration; 0: as recorded"),
+    REAL(motion.factor, "-", "1", 1e-6, 1e6, "scaled by this factor; 1: as recorded"),
+    REAL(motion.sa_g, "g", "0", 0, 1e6,
+         "scaled to this pseudo-acceleration (5 % damping) at motion.sa_period_s; 0: as recorded"),
+    REAL(motion.sa_period_s, "s", "1", 1e-3, 1e3, "the period of motion.sa_g, after motion.stretch"),
+    CHOICE(motion.target, MotionTarget, CHOICE_WORDS(MOTION_TARGET_LIST), "none",
+           "scaled to the code spectrum nearest in the mean square of the logarithm between the two periods below"),
+    REAL(motion.target_from_s, "s", "0.2", 1e-3, 1e3, "shortest period that motion.target is fitted at"),
+    REAL(motion.target_to_s, "s", "2", 1e-3, 1e3, "longest period that motion.target is fitted at"),
+    REAL(motion.ec8_ag_g, "g", "0.3", 1e-6, 1e6, "eurocode8: design ground acceleration on rock, ag"),
+    REAL(motion.ec8_s, "-", "1.2", 0.1, 10, "eurocode8: soil factor S (type 1, ground B)"),
+    REAL(motion.ec8_tb_s, "s", "0.15", 1e-3, 100, "eurocode8: TB, where the plateau begins"),
+    REAL(motion.ec8_tc_s, "s", "0.5", 1e-3, 100, "eurocode8: TC, where the plateau ends"),
+    REAL(motion.ec8_td_s, "s", "2", 1e-3, 100, "eurocode8: TD, where the displacement becomes constant"),
+    REAL(motion.asce7_sds_g, "g", "1", 1e-6, 1e6, "asce7: SDS, design spectral acceleration at short periods"),
+    REAL(motion.asce7_sd1_g, "g", "0.6", 1e-6, 1e6, "asce7: SD1, design spectral acceleration at 1 s"),
+    REAL(motion.asce7_tl_s, "s", "8", 1e-3, 100, "asce7: TL, long-period transition"),
     REAL(motion.stretch, "-", "1", 1e-3, 1e3, "time is multiplied by this"),
+    CHOICE(motion.baseline, MotionBaseline, CHOICE_WORDS(MOTION_BASELINE_LIST), "none",
+           "subtracted from the acceleration of the record: its mean, or the straight line or parabola nearest to it"),
+    REAL(motion.highpass_hz, "Hz", "0", 0, 1e3,
+         "cutoff of a zero-phase Butterworth filter of 4th order on the record, before motion.stretch; 0: none"),
+    REAL(motion.lowpass_hz, "Hz", "0", 0, 1e4, "the same, low-pass; 0: none"),
     CHOICE(motion.unit, MotionUnit, CHOICE_WORDS(MOTION_UNIT_LIST), "from_file",
            "unit of the acceleration where the file has none"),
     TEXT(motion.channel, "auto", "component by name or number (from 1) where the file has several; auto: the only one"),
@@ -571,9 +593,40 @@ static int take_pair(void *user, const char *section, const char *name, const ch
 /* The rules that tie settings together: each broken one is handed to `broken` with the fields it ties. */
 typedef void (*BrokenFn)(const size_t fields[3], const char *text, void *user);
 
+static void check_motion(const MotionOptions *m, BrokenFn broken, void *user)
+{
+    Err e;
+    char scalings[SCALINGS_TEXT_MAX];
+    if (motion_scalings(m, scalings) > 1) {
+        fail(&e, STATUS_BAD_DATA, "motion: a record is scaled in one way, not in several: %s", scalings);
+        broken((size_t[]){AT(motion.target), AT(motion.sa_g), AT(motion.factor)}, e.text, user);
+    }
+    if (!(m->target_from_s < m->target_to_s)) {
+        fail(&e, STATUS_BAD_DATA, "motion.target_from_s: %g must be below motion.target_to_s = %g", m->target_from_s,
+             m->target_to_s);
+        broken((size_t[]){AT(motion.target_from_s), AT(motion.target_to_s), AT(motion.target)}, e.text, user);
+    }
+    if (!(m->ec8_tb_s <= m->ec8_tc_s && m->ec8_tc_s <= m->ec8_td_s)) {
+        fail(&e, STATUS_BAD_DATA, "motion.ec8_tb_s: TB = %g, TC = %g and TD = %g must rise", m->ec8_tb_s, m->ec8_tc_s,
+             m->ec8_td_s);
+        broken((size_t[]){AT(motion.ec8_tb_s), AT(motion.ec8_tc_s), AT(motion.ec8_td_s)}, e.text, user);
+    }
+    if (!(m->asce7_sd1_g / m->asce7_sds_g <= m->asce7_tl_s)) {
+        fail(&e, STATUS_BAD_DATA, "motion.asce7_tl_s: TL = %g must not be below TS = SD1 / SDS = %g", m->asce7_tl_s,
+             m->asce7_sd1_g / m->asce7_sds_g);
+        broken((size_t[]){AT(motion.asce7_tl_s), AT(motion.asce7_sd1_g), AT(motion.asce7_sds_g)}, e.text, user);
+    }
+    if (m->highpass_hz > 0 && m->lowpass_hz > 0 && m->highpass_hz >= m->lowpass_hz) {
+        fail(&e, STATUS_BAD_DATA, "motion.highpass_hz: %g must be below motion.lowpass_hz = %g", m->highpass_hz,
+             m->lowpass_hz);
+        broken((size_t[]){AT(motion.highpass_hz), AT(motion.lowpass_hz), AT(motion.lowpass_hz)}, e.text, user);
+    }
+}
+
 static void check_rules(const Settings *s, BrokenFn broken, void *user)
 {
     Err e;
+    check_motion(&s->motion, broken, user);
     if (s->design.gap_min_m >= s->design.gap_max_m) {
         fail(&e, STATUS_BAD_DATA, "design.gap_min_m: %g must be below design.gap_max_m = %g", s->design.gap_min_m,
              s->design.gap_max_m);

@@ -1,4 +1,5 @@
 #include "simulator/scenario.h"
+#include "scene/motion_scale.h"
 #include "scene/motion_source.h"
 
 #include <stdlib.h>
@@ -18,7 +19,7 @@ Status scenario_open(Scenario *w, const SceneOptions *o, const MotionOptions *re
     w->options = *o;
     w->record = *record;
     TRY(motion_open(&w->motion, record, err));
-    const Status status = motion_prepare(&w->motion, record->pga_g, record->stretch, err);
+    const Status status = motion_scale(&w->motion, record, err);
     if (status != STATUS_OK) {
         scenario_close(w);
         return status;

@@ -1,0 +1,413 @@
+/* What is done to a ground motion on request: base line, filters, scaling, code spectra; in numbers and as printed. */
+#include "program.h"
+
+#include "base/units.h"
+#include "scene/motion_process.h"
+#include "scene/motion_scale.h"
+#include "scene/motion_source.h"
+#include "scene/spectrum.h"
+#include "settings/settings.h"
+
+static MotionOptions options(void)
+{
+    Settings s;
+    settings_defaults(&s);
+    return s.motion;
+}
+
+static Motion motion_of(size_t n, double dt, double (*a)(double t))
+{
+    Motion m = {.n = n, .dt_s = dt, .name = "test"};
+    m.accel = malloc(n * sizeof *m.accel);
+    assert_non_null(m.accel);
+    for (size_t i = 0; i < n; i++)
+        m.accel[i] = a((double)i * dt);
+    return m;
+}
+
+/* ---- base line --------------------------------------------------------------------------------------------------- */
+
+static double noise(double t)
+{
+    return sin(7 * t) + 0.5 * sin(23.7 * t + 1) + 0.3 * cos(1.3 * t * t);
+}
+
+static double constant(double t)
+{
+    return noise(t) + 0.25;
+}
+
+static double ramp(double t)
+{
+    return noise(t) + 0.25 - 0.03 * t;
+}
+
+static double parabola(double t)
+{
+    return noise(t) + 0.25 - 0.03 * t + 0.004 * t * t;
+}
+
+static double (*const DRIFTING[])(double t) = {noise, constant, ramp, parabola};
+
+/* Least squares: what a polynomial of its degree adds to a record changes nothing of the result, and a record that is
+ * nothing but such a polynomial disappears. */
+static void test_a_base_line_of_its_degree_leaves_no_trace(void **state)
+{
+    (void)state;
+    for (int degree = 0; degree <= 2; degree++) {
+        Err err = {0};
+        MotionOptions o = options();
+        Motion a = motion_of(1501, 0.01, noise), b = motion_of(1501, 0.01, DRIFTING[degree + 1]);
+        o.baseline = (MotionBaseline)(BASELINE_MEAN + degree);
+        double sums[3] = {0};
+        CHECK_OK(motion_process(&a, &o, &err), &err);
+        CHECK_OK(motion_process(&b, &o, &err), &err);
+        for (size_t i = 0; i < a.n; i++) {
+            assert_true(fabs(a.accel[i] - b.accel[i]) < 1e-12);
+            for (int k = 0; k <= degree; k++)
+                sums[k] += a.accel[i] * pow((double)i / 1500, k);
+        }
+        for (int k = 0; k <= degree; k++)
+            assert_true(fabs(sums[k]) < 1e-9); /* nothing of that degree is left */
+        assert_non_null(strstr(b.processed, (const char *[]){"mean", "straight line", "parabola"}[degree]));
+        motion_free(&a);
+        motion_free(&b);
+    }
+}
+
+static void test_a_motion_is_as_recorded_unless_it_is_asked_to_be_processed(void **state)
+{
+    (void)state;
+    Err err = {0};
+    Motion m = motion_of(200, 0.01, parabola);
+    const MotionOptions o = options();
+    CHECK_OK(motion_process(&m, &o, &err), &err);
+    assert_int_equal(m.n, 200);
+    for (size_t i = 0; i < m.n; i++)
+        assert_true(m.accel[i] == parabola((double)i * 0.01));
+    assert_string_equal(m.processed, "");
+    assert_false(motion_is_corrected(&o));
+    motion_free(&m);
+}
+
+static void test_too_few_samples_for_a_base_line_are_refused(void **state)
+{
+    (void)state;
+    Err err = {0};
+    MotionOptions o = options();
+    o.baseline = BASELINE_QUADRATIC;
+    Motion m = motion_of(3, 0.01, noise);
+    assert_int_equal(motion_process(&m, &o, &err), STATUS_BAD_DATA);
+    assert_non_null(strstr(err.text, "too few"));
+    motion_free(&m);
+}
+
+/* ---- filters ----------------------------------------------------------------------------------------------------- */
+
+/* A quake of some seconds on a base line that is off: after the high-pass the ground comes to rest where it was. */
+static double offset_quake(double t)
+{
+    return 0.02 + 3 * exp(-pow((t - 12) / 4, 2)) * sin(2 * M_PI * 2 * t);
+}
+
+static void test_a_high_pass_brings_the_ground_to_rest_where_it_was(void **state)
+{
+    (void)state;
+    for (double hz = 0.05; hz < 0.3; hz *= 2) {
+        Err err = {0};
+        MotionFigures before, after;
+        MotionOptions o = options();
+        o.highpass_hz = hz;
+        Motion m = motion_of(3001, 0.01, offset_quake);
+        motion_figures(&m, &before);
+        CHECK_OK(motion_process(&m, &o, &err), &err);
+        motion_figures(&m, &after);
+        double *v = malloc(3 * m.n * sizeof *v), *d = v + m.n, *husid = d + m.n;
+        motion_histories(&m, v, d, husid);
+        const size_t pad = (size_t)ceil(3 / hz / 0.01);
+        assert_int_equal(m.n, 3001 + 2 * pad);
+        assert_true(before.pgd_m > 8);
+        assert_true(after.pgd_m < 0.6);
+        assert_true(fabs(v[m.n - 1]) < 1e-3 * after.pgv_m_s);
+        assert_true(fabs(d[m.n - 1]) < 3e-4 * before.pgd_m);
+        assert_close(after.pga_m_s2, before.pga_m_s2, 0.02); /* 2 Hz is let pass */
+        assert_non_null(strstr(m.processed, "zeros added at both ends"));
+        free(v);
+        motion_free(&m);
+    }
+}
+
+static double two_tones(double t)
+{
+    return exp(-pow((t - 15) / 5, 2)) * (sin(2 * M_PI * 2 * (t - 15)) + sin(2 * M_PI * 20 * (t - 15)));
+}
+
+static double slow_tone(double t)
+{
+    return exp(-pow((t - 15) / 5, 2)) * sin(2 * M_PI * 2 * (t - 15));
+}
+
+static void test_a_low_pass_takes_the_high_tone_and_leaves_the_low_one_in_place(void **state)
+{
+    (void)state;
+    Err err = {0};
+    MotionOptions o = options();
+    o.lowpass_hz = 8;
+    Motion m = motion_of(6001, 0.005, two_tones);
+    CHECK_OK(motion_process(&m, &o, &err), &err);
+    assert_int_equal(m.n, 6001);
+    for (size_t i = 0; i < m.n; i++)
+        assert_true(fabs(m.accel[i] - slow_tone((double)i * 0.005)) < 1.5e-3); /* (8/20)^8 = 7e-4 is left of it */
+    motion_free(&m);
+}
+
+static void test_a_cutoff_that_the_record_cannot_have_is_refused_by_its_key(void **state)
+{
+    (void)state;
+    Err err = {0};
+    MotionOptions o = options();
+    Motion m = motion_of(100, 0.01, noise);
+    o.lowpass_hz = 50;
+    assert_int_equal(motion_process(&m, &o, &err), STATUS_BAD_DATA);
+    assert_non_null(strstr(err.text, "motion.lowpass_hz"));
+    o.lowpass_hz = 0;
+    o.highpass_hz = 1e-9;
+    assert_int_equal(motion_process(&m, &o, &err), STATUS_BAD_DATA);
+    assert_non_null(strstr(err.text, "padding"));
+    motion_free(&m);
+}
+
+/* ---- scaling ----------------------------------------------------------------------------------------------------- */
+
+static double psa_at(const Motion *m, double T)
+{
+    double psa;
+    spectrum_psa(m, 0.05, 1, &T, &psa);
+    return psa;
+}
+
+static Motion scaled(const MotionOptions *o)
+{
+    Err err = {0};
+    Motion m = motion_of(3001, 0.01, offset_quake);
+    CHECK_OK(motion_scale(&m, o, &err), &err);
+    return m;
+}
+
+static void test_a_factor_multiplies_what_was_recorded(void **state)
+{
+    (void)state;
+    MotionOptions o = options();
+    o.factor = 1.75;
+    Motion m = scaled(&o);
+    for (size_t i = 0; i < m.n; i++)
+        assert_true(m.accel[i] == 1.75 * offset_quake((double)i * 0.01));
+    assert_close(m.scale, 1.75, 0);
+    motion_free(&m);
+}
+
+static void test_a_spectral_value_is_reached_at_its_period_after_stretching(void **state)
+{
+    (void)state;
+    for (double stretch = 1; stretch < 4; stretch += 2.1)
+        for (double T = 0.3; T < 5; T *= 2) {
+            MotionOptions o = options();
+            o.sa_g = 0.42;
+            o.sa_period_s = T;
+            o.stretch = stretch;
+            Motion m = scaled(&o);
+            assert_close(psa_at(&m, T), 0.42 * GRAVITY, 1e-12);
+            assert_close(m.dt_s, 0.01 * stretch, 1e-15);
+            motion_free(&m);
+        }
+}
+
+/* Of EN 1998-1 and ASCE 7 at corners and in between, by hand. */
+static void test_code_spectra_are_those_of_their_formulas(void **state)
+{
+    (void)state;
+    MotionOptions o = options();
+    assert_true(target_psa(&o, 1) == 0);
+    o.target = TARGET_EUROCODE8;
+    o.ec8_ag_g = 0.2;
+    o.ec8_s = 1.15;
+    o.ec8_tb_s = 0.2;
+    o.ec8_tc_s = 0.6;
+    o.ec8_td_s = 2;
+    assert_close(target_psa(&o, 0) / GRAVITY, 0.2 * 1.15, 1e-14);
+    assert_close(target_psa(&o, 0.1) / GRAVITY, 0.2 * 1.15 * 1.75, 1e-14);
+    assert_close(target_psa(&o, 0.4) / GRAVITY, 0.2 * 1.15 * 2.5, 1e-14);
+    assert_close(target_psa(&o, 1.2) / GRAVITY, 0.2 * 1.15 * 2.5 / 2, 1e-14);
+    assert_close(target_psa(&o, 4) / GRAVITY, 0.2 * 1.15 * 2.5 * 1.2 / 16, 1e-14);
+    o.target = TARGET_ASCE7;
+    o.asce7_sds_g = 1.2;
+    o.asce7_sd1_g = 0.6;
+    o.asce7_tl_s = 6;
+    assert_close(target_psa(&o, 0) / GRAVITY, 0.48, 1e-14);
+    assert_close(target_psa(&o, 0.05) / GRAVITY, 1.2 * 0.7, 1e-14);
+    assert_close(target_psa(&o, 0.3) / GRAVITY, 1.2, 1e-14);
+    assert_close(target_psa(&o, 3) / GRAVITY, 0.2, 1e-14);
+    assert_close(target_psa(&o, 12) / GRAVITY, 0.6 * 6 / 144, 1e-14);
+}
+
+static void test_the_scale_to_a_code_spectrum_makes_the_mean_square_least(void **state)
+{
+    (void)state;
+    for (int target = TARGET_EUROCODE8; target <= TARGET_ASCE7; target++) {
+        MotionOptions o = options();
+        o.target = (MotionTarget)target;
+        Motion m = scaled(&o);
+        const double least = target_misfit(&m, &o);
+        for (int side = 0; side < 2; side++) {
+            Err err = {0};
+            MotionOptions other = options();
+            other.factor = m.scale * (side ? 1.05 : 0.95);
+            Motion off = motion_of(3001, 0.01, offset_quake);
+            CHECK_OK(motion_scale(&off, &other, &err), &err);
+            const double misfit = target_misfit(&off, &o), shift = log(side ? 1.05 : 0.95);
+            assert_close(misfit * misfit, least * least + shift * shift, 1e-9);
+            motion_free(&off);
+        }
+        motion_free(&m);
+    }
+}
+
+static void test_scalings_that_contradict_each_other_are_refused_and_named(void **state)
+{
+    (void)state;
+    static const char *const KEYS[] = {"motion.pga_g", "motion.factor", "motion.sa_g", "motion.target"};
+    static const char *const SET[] = {"motion.pga_g=0.3", "motion.factor=2", "motion.sa_g=0.5", "motion.target=asce7"};
+    for (int i = 0; i < 4; i++)
+        for (int k = 0; k < 4; k++) {
+            Err err = {0};
+            Settings s;
+            settings_defaults(&s);
+            CHECK_OK(settings_set(&s, SET[i], &err), &err);
+            CHECK_OK(settings_set(&s, SET[k], &err), &err);
+            const Status status = settings_check(&s, &err);
+            assert_int_equal(status, i == k ? STATUS_OK : STATUS_BAD_DATA);
+            if (i != k) {
+                assert_non_null(strstr(err.text, KEYS[i]));
+                assert_non_null(strstr(err.text, KEYS[k]));
+            }
+        }
+}
+
+static void test_settings_of_a_motion_that_make_no_sense_together_are_refused(void **state)
+{
+    (void)state;
+    static const char *const SET[] = {"motion.target_from_s=3", "motion.ec8_tb_s=1", "motion.ec8_td_s=0.3",
+                                      "motion.asce7_sd1_g=50"};
+    for (size_t i = 0; i < sizeof SET / sizeof SET[0]; i++) {
+        Err err = {0};
+        Settings s;
+        settings_defaults(&s);
+        CHECK_OK(settings_set(&s, SET[i], &err), &err);
+        assert_int_equal(settings_check(&s, &err), STATUS_BAD_DATA);
+    }
+    expect(65, "motion.highpass_hz: 5 must be below motion.lowpass_hz = 2",
+           "spectrum builtin:kobe-like --set motion.highpass_hz=5 --set motion.lowpass_hz=2");
+}
+
+/* ---- as printed -------------------------------------------------------------------------------------------------- */
+
+static void test_an_uncorrected_motion_is_called_so_and_a_corrected_one_shows_both_figures(void **state)
+{
+    (void)state;
+    char *text = output_of("spectrum builtin:elcentro-like");
+    assert_non_null(strstr(text, "uncorrected"));
+    free(text);
+    text = output_of("spectrum builtin:elcentro-like --set motion.highpass_hz=0.1 --set motion.lowpass_hz=20");
+    assert_null(strstr(text, "uncorrected"));
+    assert_non_null(strstr(text, "high-pass 0.1 Hz"));
+    assert_non_null(strstr(text, "low-pass 20 Hz"));
+    assert_non_null(strstr(text, "(recorded"));
+    free(text);
+}
+
+static void test_the_figures_beside_processed_ones_are_those_of_the_record_at_the_same_scale(void **state)
+{
+    (void)state;
+    json_t *a = json_of("spectrum builtin:sylmar-like --json --set motion.baseline=linear --pga 0.3"),
+           *r = json_object_get(a, "recorded");
+    char arguments[128];
+    snprintf(arguments, sizeof arguments, "spectrum builtin:sylmar-like --json --set motion.factor=%.17g",
+             number(a, "scale"));
+    json_t *b = json_of(arguments);
+    assert_true(json_is_true(json_object_get(a, "corrected")));
+    assert_true(json_is_false(json_object_get(b, "corrected")));
+    assert_close(number(r, "pgd_m"), number(b, "pgd_m"), 1e-12);
+    assert_close(number(r, "pgv_m_s"), number(b, "pgv_m_s"), 1e-12);
+    assert_true(json_equal(json_object_get(r, "psa_m_s2"), json_object_get(b, "psa_m_s2")));
+    json_decref(a);
+    json_decref(b);
+}
+
+static void test_several_motions_are_shown_with_their_mean_and_the_target(void **state)
+{
+    (void)state;
+    static const char ALL[] = "builtin:kobe-like builtin:elcentro-like builtin:sylmar-like";
+    char arguments[256];
+    snprintf(arguments, sizeof arguments, "spectrum %s --set motion.target=eurocode8 --csv @/all.csv", ALL);
+    free(output_of(arguments));
+    Err err = {0};
+    Table t;
+    char *path = in_place("all.csv");
+    CHECK_OK(table_read(&t, path, 1, &err), &err);
+    assert_int_equal(t.n_cols, 6);
+    for (size_t i = 0; i < t.n_rows; i++) {
+        const double *row = t.values + i * t.n_cols;
+        assert_close(row[1], (row[3] + row[4] + row[5]) / 3, 1e-12);
+        assert_true(row[2] > 0);
+    }
+    table_free(&t);
+    free(path);
+    if (system("command -v gnuplot >/dev/null") == 0) {
+        snprintf(arguments, sizeof arguments, "spectrum %s --set motion.target=eurocode8 --svg @/all.svg", ALL);
+        free(output_of(arguments));
+        char *svg = read_in_place("all.svg");
+        static const char *const WORDS[] = {"kobe-like", "elcentro-like", "sylmar-like", "mean", "target", "</svg>"};
+        for (size_t i = 0; i < sizeof WORDS / sizeof WORDS[0]; i++)
+            assert_non_null(strstr(svg, WORDS[i]));
+        free(svg);
+    }
+    expect(2, "--history is of one motion", "spectrum builtin:kobe-like builtin:sylmar-like --history -");
+}
+
+static void test_a_study_keeps_in_its_provenance_what_was_done_to_the_record(void **state)
+{
+    (void)state;
+    free(output_of("optimize configs/quick.ini --out @/run --max-evals 48 --set search.initial=48 --set "
+                   "sim.duration_s=8 --set motion.highpass_hz=0.2 --set motion.baseline=mean"));
+    char *text = read_in_place("run/provenance.json");
+    json_t *o = json_loads(text, 0, NULL);
+    const char *said = json_string_value(json_object_get(json_object_get(o, "inputs"), "record_processed"));
+    assert_non_null(said);
+    assert_non_null(strstr(said, "base line: mean subtracted"));
+    assert_non_null(strstr(said, "high-pass 0.2 Hz"));
+    json_decref(o);
+    free(text);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_a_base_line_of_its_degree_leaves_no_trace),
+        cmocka_unit_test(test_a_motion_is_as_recorded_unless_it_is_asked_to_be_processed),
+        cmocka_unit_test(test_too_few_samples_for_a_base_line_are_refused),
+        cmocka_unit_test(test_a_high_pass_brings_the_ground_to_rest_where_it_was),
+        cmocka_unit_test(test_a_low_pass_takes_the_high_tone_and_leaves_the_low_one_in_place),
+        cmocka_unit_test(test_a_cutoff_that_the_record_cannot_have_is_refused_by_its_key),
+        cmocka_unit_test(test_a_factor_multiplies_what_was_recorded),
+        cmocka_unit_test(test_a_spectral_value_is_reached_at_its_period_after_stretching),
+        cmocka_unit_test(test_code_spectra_are_those_of_their_formulas),
+        cmocka_unit_test(test_the_scale_to_a_code_spectrum_makes_the_mean_square_least),
+        cmocka_unit_test(test_scalings_that_contradict_each_other_are_refused_and_named),
+        cmocka_unit_test(test_settings_of_a_motion_that_make_no_sense_together_are_refused),
+        cmocka_unit_test(test_an_uncorrected_motion_is_called_so_and_a_corrected_one_shows_both_figures),
+        cmocka_unit_test(test_the_figures_beside_processed_ones_are_those_of_the_record_at_the_same_scale),
+        cmocka_unit_test(test_several_motions_are_shown_with_their_mean_and_the_target),
+        cmocka_unit_test(test_a_study_keeps_in_its_provenance_what_was_done_to_the_record),
+    };
+    return cmocka_run_group_tests(tests, make_place, clear_place);
+}
