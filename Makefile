@@ -53,7 +53,7 @@ FLAGS_TEXT := $(subst $(SPACE);,;,$(FLAGS_LIST))
 # ---- what is built ---------------------------------------------------------------------------------------------------
 
 SRC      := $(filter-out src/sim/fast/kernel.c,$(wildcard src/*/*.c src/*/*/*.c))
-MATRICES := $(wildcard configs/sac20/guyan/*.csv configs/sac20/appendix/*.csv)
+MATRICES := $(wildcard configs/sac20/guyan/*.csv configs/sac20/appendix/*.csv configs/sac20/frame/*.csv)
 LIB_OBJ  := $(SRC:%.c=$(BUILD)/%.o) $(KERNELS:%=$(BUILD)/src/sim/fast/kernel_%.o) $(MATRICES:%=$(BUILD)/%.o) $(BUILD)/web/page.o
 LIB      := $(BUILD)/libimtet.a
 PROGRAM  := $(if $(filter release,$(MODE)),imtet,$(BUILD)/imtet)

@@ -102,7 +102,7 @@ Status bench_case_open(BenchCase *bench_case, const BenchKind *kind, const Scene
     TRY(building_load(&bench_case->building, &s->building, err));
     TRY(core_beam_make(bench_case->core, &s->core, bench_case->building.n, bench_case->building.storey_m,
                        BENCH_WALL_BASE, BENCH_WALL_TOP, err));
-    TRY(model_create(&bench_case->model, bench_case->building.n, err));
+    TRY(model_create(&bench_case->model, bench_case->building.n, bench_case->building.model.n, err));
     set_gaps(bench_case);
     return strcmp(kind->name, "one-impact") == 0 ? find_one_impact(bench_case, s, err) : set_model(bench_case, s, err);
 }

@@ -471,6 +471,204 @@ static void test_a_building_of_the_most_floors_is_simulated_alike_by_two_engines
     json_decref(r[1]);
 }
 
+/* ---- more than the floors ------------------------------------------------------------------------------------- */
+
+enum { FULL = 106 };
+static const long ALL_MODES = 100000;
+
+static void test_the_full_model_of_the_20_storey_frame_has_the_frequencies_of_its_published_matrices(void **state)
+{
+    (void)state;
+    static double omega[FULL], phi[FULL * FULL];
+    BuildingOptions o = scene_defaults().building;
+    Table K, M;
+    Err err = {0};
+    CHECK_OK(table_read(&K, "configs/sac20/full106/K.csv", 0, &err), &err);
+    CHECK_OK(table_read(&M, "configs/sac20/full106/M.csv", 0, &err), &err);
+    CHECK_OK(linalg_modes(FULL, K.values, M.values, omega, phi, &err), &err);
+    o.modes = ALL_MODES;
+    Building b = load(&o);
+    assert_int_equal(b.n, 20);
+    assert_int_equal(b.model.n, FULL);
+    for (int i = 0; i < FULL; i++)
+        assert_close(b.model.omega[i], omega[i], 1e-6); /* ten digits of stiffnesses that differ by 1e4 */
+    for (int j = 0; j < 20; j++)
+        for (int k = 0; k < 20; k++) { /* floors stand first in both */
+            assert_true(fabs(b.model.K[j * FULL + k] - K.values[j * FULL + k]) < 1e-9 * K.values[0]);
+            assert_true(fabs(b.model.M[j * FULL + k] - M.values[j * FULL + k]) < 1e-9 * M.values[0]);
+        }
+    table_free(&K);
+    table_free(&M);
+    building_free(&b);
+}
+
+static void test_a_frame_of_which_no_displacement_is_named_keeps_all_that_have_mass(void **state)
+{
+    (void)state;
+    BuildingOptions o = write_column("free", 1, "0");
+    o.modes = ALL_MODES;
+    Building b = load(&o);
+    const double L = STOREY * N, beta_l[] = {1.875104069, 4.694091133, 7.854757438, 10.99554073};
+    assert_int_equal(b.model.n, 3 * N);
+    for (int i = 0, bending = 0; bending < 4; i++)
+        if (b.model.like[i] >= 0) { /* the others stretch */
+            assert_int_equal(b.model.like[i], bending);
+            const double error = pow(beta_l[bending] / N, 4) / 1440; /* of consistent mass, relative */
+            assert_close(b.model.omega[i], pow(beta_l[bending] / L, 2) * sqrt(EI / PER_M) * (1 + error), 3e-4);
+            bending++;
+        }
+    building_free(&b);
+    o = write_portal("lumped", 1e-4, "1", "0,0");
+    o.modes = ALL_MODES;
+    b = load(&o); /* rotations have no mass: they are condensed */
+    assert_int_equal(b.model.n, 3);
+    assert_close(b.model.omega[0], b.omega[0], 1e-9);
+    building_free(&b);
+}
+
+/* Sum of what the first twelve horizontal frequencies miss, relative; higher ones mix with vertical ones. */
+static double missed_frequencies(const Building *b, const Building *full)
+{
+    double missed = 0;
+    for (int j = 0; j < 12; j++)
+        for (int i = 0, k = 0; i < b->model.n && k < full->model.n; i++) {
+            if (b->model.like[i] != j)
+                continue;
+            while (k < full->model.n && full->model.like[k] != j)
+                k++;
+            missed += fabs(b->model.omega[i] / full->model.omega[k] - 1);
+            break;
+        }
+    return missed;
+}
+
+static void test_craig_bampton_converges_to_the_full_model_from_above(void **state)
+{
+    (void)state;
+    BuildingOptions o = scene_defaults().building;
+    o.modes = ALL_MODES;
+    Building full = load(&o);
+    double last = HUGE_VAL;
+    for (o.modes = 4; o.modes < FULL - 20; o.modes *= 2) {
+        Building b = load(&o);
+        assert_int_equal(b.model.n, 20 + o.modes + 1);
+        for (int i = 0; i < b.model.n; i++) /* Rayleigh-Ritz */
+            assert_true(b.model.omega[i] > full.model.omega[i] * (1 - 1e-9));
+        const double missed = missed_frequencies(&b, &full);
+        assert_true(missed < last);
+        last = missed;
+        building_free(&b);
+    }
+    assert_true(last < 1e-4);
+    o.modes = FULL - 21;
+    Building b = load(&o);
+    for (int i = 0; i < FULL; i++) /* one mode is missing, and the shape in its place is it */
+        assert_close(b.model.omega[i], full.model.omega[i], 1e-7);
+    building_free(&b);
+    building_free(&full);
+}
+
+static void test_whatever_is_kept_the_ground_moves_every_floor_as_one(void **state)
+{
+    (void)state;
+    BuildingOptions o = scene_defaults().building;
+    for (o.modes = 0; o.modes <= 128; o.modes = 2 * o.modes + 4) {
+        Building b = load(&o);
+        const BuildingModel *m = &b.model;
+        double mass = 0;
+        for (int i = 0; i < m->n; i++)
+            mass += m->gamma[i] * m->gamma[i];
+        for (int j = 0; j < b.n; j++) {
+            double one = 0;
+            for (int i = 0; i < m->n; i++)
+                one += m->phi[j * m->n + i] * m->gamma[i];
+            assert_close(one, 1, 1e-9);
+        }
+        assert_close(mass, 5.506e6, 1e-3);
+        building_free(&b);
+    }
+}
+
+static void test_vertical_modes_of_the_full_model_resemble_none_of_the_floors(void **state)
+{
+    (void)state;
+    BuildingOptions o = scene_defaults().building;
+    o.modes = ALL_MODES;
+    Building b = load(&o);
+    int seen[20] = {0};
+    for (int i = 0, next = 0; i < 12; i++) { /* ten horizontal, the sixth and the eighth are vertical */
+        const int vertical = i == 5 || i == 7;
+        assert_int_equal(b.model.like[i], vertical ? -1 : next);
+        next += !vertical;
+    }
+    for (int i = 0; i < b.model.n; i++)
+        if (b.model.like[i] >= 0)
+            seen[b.model.like[i]]++;
+    for (int j = 0; j < 20; j++)
+        assert_true(seen[j] >= 1);
+    building_free(&b);
+}
+
+static void test_p_delta_and_damping_reach_the_full_model(void **state)
+{
+    (void)state;
+    BuildingOptions o = scene_defaults().building;
+    o.modes = ALL_MODES;
+    o.p_delta = SWITCH_ON;
+    o.damping_model = DAMPING_RAYLEIGH;
+    Building b = load(&o);
+    assert_close(b.model.omega[0], b.omega[0], 1e-5);
+    assert_close(b.omega[0] / (2 * M_PI), 0.2553, 2e-4);
+    assert_close(b.model.zeta[0], 0.03, 1e-4);
+    building_free(&b);
+    o.damping_model = DAMPING_TABLE;
+    snprintf(o.damping_table, sizeof o.damping_table, "0.01, 0.02, 0.05");
+    b = load(&o);
+    for (int i = 0; i < b.model.n; i++)
+        assert_true(b.model.zeta[i] == (b.model.like[i] == 0 ? 0.01 : b.model.like[i] == 1 ? 0.02 : 0.05));
+    building_free(&b);
+}
+
+static void test_only_a_frame_has_more_than_its_floors(void **state)
+{
+    (void)state;
+    BuildingOptions o = scene_defaults().building;
+    o.modes = 3;
+    snprintf(o.model, sizeof o.model, "appendix");
+    expect_refusal_of(&o, "building.modes: appendix has no more than its floors");
+}
+
+/* Both engines on the full model, and the rigid pair's base shear and energies with it. */
+static void test_the_full_model_is_simulated_alike_by_two_engines(void **state)
+{
+    (void)state;
+    char design[1024] = "";
+    const BuildingOptions o = folder_of("design");
+    json_t *r[2];
+    for (int j = 0; j < 20; j++)
+        snprintf(design + strlen(design), sizeof design - strlen(design), "gap_%02d_m,", j + 1);
+    strcat(design, "t_base_m,t_top_m\n");
+    for (int j = 0; j < 20; j++)
+        snprintf(design + strlen(design), sizeof design - strlen(design), "%g,", 0.02 + 0.01 * ((j * 7) % 20));
+    write_file(&o, "design.csv", "%s0.02,0.008\n", design);
+    for (int i = 0; i < 2; i++) {
+        char command[512];
+        snprintf(command, sizeof command,
+                 "simulate configs/quick.ini --set building.modes=100000 --design @/design/design.csv --record "
+                 "builtin:kobe-like --duration 30 --set sim.accuracy=fine --engine %s --json",
+                 i ? "cvode" : "fast");
+        r[i] = json_of(command);
+    }
+    static const char *const SAME[] = {"j1_m", "j2_m", "ed1_pct", "edcs_pct", "base_shear_n", "contact_force_max_n"};
+    assert_true(number(r[0], "impacts") >= 10);
+    assert_int_equal((int)number(r[0], "impacts"), (int)number(r[1], "impacts"));
+    for (size_t k = 0; k < sizeof SAME / sizeof SAME[0]; k++)
+        assert_close(number(r[0], SAME[k]), number(r[1], SAME[k]), 1e-4);
+    assert_close(number(r[0], "j3_g"), number(r[1], "j3_g"), 1e-3);
+    json_decref(r[0]);
+    json_decref(r[1]);
+}
+
 /* ---- imtet building ------------------------------------------------------------------------------------------- */
 
 static int count(const char *text, const char *word)
@@ -547,6 +745,14 @@ int main(void)
         cmocka_unit_test(test_rayleigh_damping_goes_through_its_two_modes),
         cmocka_unit_test(test_a_damping_table_gives_each_mode_its_ratio),
         cmocka_unit_test(test_a_building_of_the_most_floors_is_simulated_alike_by_two_engines),
+        cmocka_unit_test(test_the_full_model_of_the_20_storey_frame_has_the_frequencies_of_its_published_matrices),
+        cmocka_unit_test(test_a_frame_of_which_no_displacement_is_named_keeps_all_that_have_mass),
+        cmocka_unit_test(test_craig_bampton_converges_to_the_full_model_from_above),
+        cmocka_unit_test(test_whatever_is_kept_the_ground_moves_every_floor_as_one),
+        cmocka_unit_test(test_vertical_modes_of_the_full_model_resemble_none_of_the_floors),
+        cmocka_unit_test(test_p_delta_and_damping_reach_the_full_model),
+        cmocka_unit_test(test_only_a_frame_has_more_than_its_floors),
+        cmocka_unit_test(test_the_full_model_is_simulated_alike_by_two_engines),
         cmocka_unit_test(test_a_building_is_summed_up_and_drawn),
         cmocka_unit_test(test_a_drawing_shows_names_as_text_and_storeys_as_a_stick),
     };

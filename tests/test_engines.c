@@ -72,7 +72,7 @@ static void test_every_engine_agrees_with_the_fast_one_where_there_are_impacts(v
     CHECK_OK(make_core_of(&core, &s, b.n, 1, 1, &err), &err);
     for (int j = 0; j < b.n; j++)
         gaps[j] = 0.002 * (j + 1);
-    CHECK_OK(model_create(&model, b.n, &err), &err);
+    CHECK_OK(model_create(&model, b.n, b.n, &err), &err);
     CHECK_OK(model_set(&model, &s, &b, &core, gaps, &err), &err);
     const SimResult wanted = run(&(Promise){.engine = ENGINE_FAST, .tolerance = 200}, &model, &m, 0.8);
     assert_true(wanted.impacts > 5);

@@ -34,7 +34,7 @@ static void frame_open(Frame *f, CoreSection section, double t_base, double t_to
     f->x[N] = t_base;
     f->x[N + 1] = t_top;
     CHECK_OK(core_beam_make(&f->core, &f->options.core, N, f->building.storey_m, t_base, t_top, &err), &err);
-    CHECK_OK(force_monitor_create(&f->monitor, N, &err), &err);
+    CHECK_OK(force_monitor_create(&f->monitor, N, N, &err), &err);
     force_monitor_set(f->monitor, &f->options, &f->building, &f->core, f->x);
     for (int s = 0; s < N; s++)
         f->height += f->building.storey_m[s];
@@ -218,10 +218,14 @@ static ForceMonitor *bobs_monitor(int n, ContactList *list)
     for (int i = 0; i < 64; i++)
         storeys[i] = one[i] = core.omega[i] = 1;
     core.n = n;
-    const Building b = {.n = n, .K = zero, .M = zero, .phi = zero, .omega = one, .gamma = one, .storey_m = storeys};
+    const Building b = {.n = n,
+                        .K = zero,
+                        .M = zero,
+                        .storey_m = storeys,
+                        .model = {.n = n, .K = zero, .M = zero, .phi = zero, .omega = one, .gamma = one}};
     double x[66] = {0};
     x[n] = x[n + 1] = 0.01;
-    CHECK_OK(force_monitor_create(&m, n, &err), &err);
+    CHECK_OK(force_monitor_create(&m, n, n, &err), &err);
     force_monitor_set(m, &options, &b, &core, x);
     force_monitor_on_contact(m, add_contact, list);
     return m;

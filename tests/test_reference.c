@@ -33,7 +33,7 @@ static void stage_set(Stage *stage, double gap)
     CHECK_OK(make_core_of(&stage->core, &stage->s, stage->b.n, 1, 1, &err), &err);
     for (int j = 0; j < stage->b.n; j++)
         stage->gaps[j] = gap * (j + 1);
-    CHECK_OK(model_create(&stage->model, stage->b.n, &err), &err);
+    CHECK_OK(model_create(&stage->model, stage->b.n, stage->b.model.n, &err), &err);
     CHECK_OK(model_set(&stage->model, &stage->s, &stage->b, &stage->core, stage->gaps, &err), &err);
 }
 

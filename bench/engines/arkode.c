@@ -144,7 +144,7 @@ static Status run(const ArkodeKind *kind, const SimModel *model, const Motion *m
     Status status;
     memset(result, 0, sizeof *result);
     result->n_floors = model->n;
-    result->n_modes = model->nb;
+    result->n_modes = model->n;
     if (prepare(&o, &modal, &linear, kind))
         status = fail(err, STATUS_NO_MEMORY, "arkode: could not be set up: %s", o.message[0] ? o.message : "no memory");
     else

@@ -117,7 +117,7 @@ Status fixed_step_run(const FixedStepMethod *method, void *work, const SimModel 
     energy_account_start(&m.account, model);
     memset(result, 0, sizeof *result);
     result->n_floors = model->n;
-    result->n_modes = model->nb;
+    result->n_modes = model->n;
     const double step_max = options->tolerance > 0 ? options->tolerance : method->step[options->accuracy];
     const unsigned mode = denormal_off();
     result->outcome = walk(&m, method, work, motion, options->duration, step_max);

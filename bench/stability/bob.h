@@ -21,7 +21,7 @@ static inline void bobs_model(SimModel *model, int n, const Bob bobs[], double c
 {
     Err err = {0};
     const double core = core_mass > 0 ? 1 / sqrt(core_mass) : 1e-30;
-    need(model_create(model, n, &err), &err);
+    need(model_create(model, n, n, &err), &err);
     model->nb = n;
     model->nc = 1;
     model->m = n + 1;

@@ -77,17 +77,24 @@ static Status read_lines(Sheet *s, const char *text, size_t length, Err *err)
     return s->n_rows ? STATUS_OK : fail(err, STATUS_BAD_DATA, "%s: holds no rows", s->path);
 }
 
+Status sheet_parse(Sheet *s, const char *path, const char *text, size_t length, Err *err)
+{
+    memset(s, 0, sizeof *s);
+    snprintf(s->path, sizeof s->path, "%s", path);
+    const Status status = read_lines(s, text, length, err);
+    if (status != STATUS_OK)
+        sheet_free(s);
+    return status;
+}
+
 Status sheet_read(Sheet *s, const char *path, Err *err)
 {
     char *text;
     size_t length;
     memset(s, 0, sizeof *s);
-    snprintf(s->path, sizeof s->path, "%s", path);
     TRY(file_read(path, FILE_LARGEST, &text, &length, err));
-    const Status status = read_lines(s, text, length, err);
+    const Status status = sheet_parse(s, path, text, length, err);
     free(text);
-    if (status != STATUS_OK)
-        sheet_free(s);
     return status;
 }
 

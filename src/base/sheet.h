@@ -25,6 +25,9 @@ typedef struct {
 
 Status sheet_read(Sheet *s, const char *path, Err *err);
 
+/* The same from text in memory; `path` only names it in messages. */
+Status sheet_parse(Sheet *s, const char *path, const char *text, size_t length, Err *err);
+
 /* Columns by name, separated by blanks: all of `required` must be there, and no other than those of `optional`. */
 Status sheet_expect(const Sheet *s, const char *required, const char *optional, Err *err);
 

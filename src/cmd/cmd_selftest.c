@@ -192,7 +192,7 @@ static Status free_mass(SimModel *model, double restitution, Err *err)
 {
     ContactOptions contact = STEEL;
     contact.restitution = restitution;
-    TRY(model_create(model, 1, err));
+    TRY(model_create(model, 1, 1, err));
     model->nb = model->nc = 1;
     model->m = 2;
     model->m_pad = 8;

@@ -10,6 +10,7 @@
 #include "base/list.h"
 #include "base/units.h"
 #include "scene/building_read.h"
+#include "scene/reduction.h"
 
 /* ---- heights -------------------------------------------------------------------------------------------------- */
 
@@ -49,7 +50,8 @@ static Status find_heights(Building *b, const BuildingFiles *files, const Buildi
 
 /* ---- P-delta -------------------------------------------------------------------------------------------------- */
 
-static Status add_p_delta(Building *b, const BuildingOptions *o, Err *err)
+/* K (m, m), the floors first. */
+static Status add_p_delta(const Building *b, const BuildingOptions *o, int m, double K[], Err *err)
 {
     const int n = b->n;
     double weight = 0;
@@ -57,16 +59,16 @@ static Status add_p_delta(Building *b, const BuildingOptions *o, Err *err)
         for (int k = 0; k < n; k++)
             weight += GRAVITY * b->M[j * n + k];
         const double k = weight / b->storey_m[j];
-        b->K[j * n + j] -= k;
+        K[j * m + j] -= k;
         if (j > 0) {
-            b->K[(j - 1) * n + j - 1] -= k;
-            b->K[j * n + j - 1] += k;
-            b->K[(j - 1) * n + j] += k;
+            K[(j - 1) * m + j - 1] -= k;
+            K[j * m + j - 1] += k;
+            K[(j - 1) * m + j] += k;
         }
     }
-    const int pivot = linalg_indefinite_at(n, b->K);
+    const int pivot = linalg_indefinite_at(m, K);
     if (pivot < 0)
-        return fail(err, STATUS_NO_MEMORY, "building: no memory to factor %d x %d", n, n);
+        return fail(err, STATUS_NO_MEMORY, "building: no memory to factor %d x %d", m, m);
     return pivot == 0 ? STATUS_OK
                       : fail(err, STATUS_BAD_DATA, "%s: buckles under its own weight (building.p_delta)", o->model);
 }
@@ -106,7 +108,7 @@ static Status check_period(const Building *b, const BuildingOptions *o, Err *err
 
 /* ---- damping -------------------------------------------------------------------------------------------------- */
 
-/* a / w + b w = 2 zeta at two frequencies. */
+/* a / w + b w = 2 zeta at two frequencies, those of the floors alone. */
 static Status rayleigh(Building *b, const BuildingOptions *o, Err *err)
 {
     double mode[2];
@@ -121,6 +123,8 @@ static Status rayleigh(Building *b, const BuildingOptions *o, Err *err)
     const double mass = 2 * o->damping * w1 * w2 / (w1 + w2), stiffness = 2 * o->damping / (w1 + w2);
     for (int i = 0; i < b->n; i++)
         b->zeta[i] = 0.5 * (mass / b->omega[i] + stiffness * b->omega[i]);
+    for (int i = 0; i < b->model.n; i++)
+        b->model.zeta[i] = 0.5 * (mass / b->model.omega[i] + stiffness * b->model.omega[i]);
     return STATUS_OK;
 }
 
@@ -133,6 +137,8 @@ static Status damping_table(Building *b, const BuildingOptions *o, Err *err)
     for (int i = 0; i < b->n; i++)
         TRY(list_number(o->damping_table, (size_t)i < n ? (size_t)i : n - 1, "building.damping_table", &b->zeta[i],
                         err));
+    for (int i = 0; i < b->model.n; i++)
+        b->model.zeta[i] = b->zeta[b->model.like[i] >= 0 ? b->model.like[i] : b->n - 1];
     return STATUS_OK;
 }
 
@@ -140,9 +146,85 @@ Status building_damp(Building *b, const BuildingOptions *o, Err *err)
 {
     for (int i = 0; i < b->n; i++)
         b->zeta[i] = o->damping;
+    for (int i = 0; i < b->model.n; i++)
+        b->model.zeta[i] = o->damping;
     if (o->damping_model == DAMPING_RAYLEIGH)
         return rayleigh(b, o, err);
     return o->damping_model == DAMPING_TABLE ? damping_table(b, o, err) : STATUS_OK;
+}
+
+/* ---- the model that is integrated ----------------------------------------------------------------------------- */
+
+static void use_the_floors(Building *b)
+{
+    for (int i = 0; i < b->n; i++)
+        b->model.like[i] = i;
+    b->model = (BuildingModel){.n = b->n,
+                               .K = b->K,
+                               .M = b->M,
+                               .phi = b->phi,
+                               .omega = b->omega,
+                               .gamma = b->gamma,
+                               .zeta = b->zeta,
+                               .like = b->model.like};
+}
+
+/* Room for n degrees of freedom. */
+static Status allocate_model(Building *b, int n, Err *err)
+{
+    const size_t nn = (size_t)n * (size_t)n;
+    double *p = b->model_store = calloc(3 * nn + 3 * (size_t)n, sizeof *p);
+    int *like = realloc(b->model.like, (size_t)n * sizeof *like);
+    if (like)
+        b->model.like = like;
+    if (!p || !like)
+        return fail(err, STATUS_NO_MEMORY, "building: no memory for %d degrees of freedom", n);
+    b->model = (BuildingModel){.n = n, .K = p, .M = p + nn, .phi = p + 2 * nn, .omega = p + 3 * nn, .like = like};
+    b->model.gamma = b->model.omega + n;
+    b->model.zeta = b->model.gamma + n;
+    return STATUS_OK;
+}
+
+/* gamma = phi' M r */
+static void participate(const BuildingModel *m, const double r[])
+{
+    for (int j = 0; j < m->n; j++) {
+        double force = 0;
+        for (int k = 0; k < m->n; k++)
+            force += m->M[j * m->n + k] * r[k];
+        for (int i = 0; i < m->n; i++)
+            m->gamma[i] += m->phi[j * m->n + i] * force;
+    }
+}
+
+static Status use_more(Building *b, const FrameFull *more, const BuildingOptions *o, Err *err)
+{
+    const size_t bytes = (size_t)(more->n * more->n) * sizeof(double);
+    TRY(allocate_model(b, more->n, err));
+    BuildingModel *m = &b->model;
+    memcpy(m->K, more->K, bytes);
+    memcpy(m->M, more->M, bytes);
+    if (o->p_delta)
+        TRY(add_p_delta(b, o, m->n, m->K, err));
+    TRY(linalg_modes(m->n, m->K, m->M, m->omega, m->phi, err));
+    participate(m, more->influence);
+    reduction_alike(b->n, b->phi, b->M, m->n, m->phi, m->like);
+    return STATUS_OK;
+}
+
+static Status make_model(Building *b, const FrameFull *full, const BuildingOptions *o, Err *err)
+{
+    FrameFull reduced;
+    if (full->n == 0) {
+        use_the_floors(b);
+        return STATUS_OK;
+    }
+    if (o->modes >= full->n - b->n)
+        return use_more(b, full, o, err);
+    TRY(reduction_craig_bampton(full, b->n, o->modes, &reduced, err));
+    const Status status = use_more(b, &reduced, o, err);
+    frame_full_free(&reduced);
+    return status;
 }
 
 /* ---- all of it ------------------------------------------------------------------------------------------------ */
@@ -157,7 +239,8 @@ static Status allocate(Building *b, Err *err)
     b->gamma = b->omega + n;
     b->zeta = b->gamma + n;
     b->storey_m = b->zeta + n;
-    return STATUS_OK;
+    b->model.like = malloc((size_t)n * sizeof *b->model.like);
+    return b->model.like ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "building: no memory for %d modes", n);
 }
 
 /* K and M become the building's. */
@@ -169,13 +252,17 @@ static Status take(Building *b, BuildingFiles *files, const BuildingOptions *o, 
     files->K = files->M = NULL;
     const size_t bytes = (size_t)(b->n * b->n) * sizeof *b->K;
     b->hash = hash_fnv1a(b->M, bytes, hash_fnv1a(b->K, bytes, HASH_SEED));
+    const size_t full_bytes = (size_t)(files->full.n * files->full.n) * sizeof *b->K;
+    if (full_bytes)
+        b->hash = hash_fnv1a(files->full.M, full_bytes, hash_fnv1a(files->full.K, full_bytes, b->hash));
     if (files->storey_m)
         b->hash = hash_fnv1a(files->storey_m, (size_t)b->n * sizeof *files->storey_m, b->hash);
     TRY(allocate(b, err));
     TRY(find_heights(b, files, o, err));
     if (o->p_delta)
-        TRY(add_p_delta(b, o, err));
+        TRY(add_p_delta(b, o, b->n, b->K, err));
     TRY(find_modes(b, err));
+    TRY(make_model(b, &files->full, o, err));
     if (!files->storey_m) /* matrices: their headers say no unit */
         TRY(check_period(b, o, err));
     return building_damp(b, o, err);
@@ -188,9 +275,7 @@ Status building_load(Building *b, const BuildingOptions *o, Err *err)
     Status s = building_read(&files, o, err);
     if (s == STATUS_OK)
         s = take(b, &files, o, err);
-    free(files.K);
-    free(files.M);
-    free(files.storey_m);
+    building_files_free(&files);
     if (s != STATUS_OK)
         building_free(b);
     return s;
@@ -201,5 +286,7 @@ void building_free(Building *b)
     free(b->K);
     free(b->M);
     free(b->phi);
+    free(b->model.like);
+    free(b->model_store);
     memset(b, 0, sizeof *b);
 }

@@ -13,6 +13,10 @@
  *                   rotations condensed
  *   nodes.csv ...   a plane frame, condensed to its floors (scene/frame.h)
  *
+ * The model that is integrated has the floors alone (Guyan), or with building.modes = N of a frame also N fixed-interface
+ * modes (Craig-Bampton, scene/reduction.h), and with as many as there are the full model. K, M, phi, omega, gamma and
+ * zeta are always those of the floors alone; shares by mode are booked under the mode of these that a mode resembles.
+ *
  * Storey heights: of the folder where it has them; else building.heights_m, or first_storey_m and storey_m.
  *
  * P-delta  with building.p_delta = on K loses the geometric stiffness of the weights above: storey j of height h_j
@@ -32,6 +36,15 @@
 #include "base/status.h"
 #include "scene/options.h"
 
+/* In mass-normalised modes: r the motion of the ground, gamma_i = phi_i' M r. */
+typedef struct {
+    int n;                        /* degrees of freedom and modes; the first are the floors */
+    double *K, *M;                /* (n, n) */
+    double *phi;                  /* (n, n) column i is mode i */
+    double *omega, *gamma, *zeta; /* (n) [rad/s] ascending, [sqrt(kg)], [-] */
+    int *like;                    /* (n) the mode of the floors alone that it resembles; -1: none (vertical) */
+} BuildingModel;
+
 typedef struct {
     int n;            /* floors */
     double *K, *M;    /* (n, n) [N/m], [kg] */
@@ -41,6 +54,9 @@ typedef struct {
     double *zeta;     /* (n) [-] damping ratios of the modes */
     double *storey_m; /* (n) heights */
     uint64_t hash;    /* FNV-1a of the numbers in the files */
+
+    BuildingModel model; /* what is integrated; without building.modes the above */
+    double *model_store; /* NULL: the model is the above */
 } Building;
 
 Status building_load(Building *b, const BuildingOptions *o, Err *err);

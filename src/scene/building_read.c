@@ -10,33 +10,15 @@
 #include "base/sheet.h"
 #include "base/table.h"
 #include "scene/beam.h"
-#include "scene/frame.h"
+#include "scene/compiled_in.h"
 
 /* ---- matrices ------------------------------------------------------------------------------------------------- */
 
-/* The matrices of configs/sac20, linked in as they are (Makefile, rule for *.csv.o). */
-extern const char _binary_configs_sac20_guyan_K_csv_start[], _binary_configs_sac20_guyan_K_csv_end[];
-extern const char _binary_configs_sac20_guyan_M_csv_start[], _binary_configs_sac20_guyan_M_csv_end[];
-extern const char _binary_configs_sac20_appendix_K_csv_start[], _binary_configs_sac20_appendix_K_csv_end[];
-extern const char _binary_configs_sac20_appendix_M_csv_start[], _binary_configs_sac20_appendix_M_csv_end[];
-
-static const struct {
-    const char *model, *matrix, *start, *end;
-} COMPILED_IN[] = {
-    {"guyan", "K", _binary_configs_sac20_guyan_K_csv_start, _binary_configs_sac20_guyan_K_csv_end},
-    {"guyan", "M", _binary_configs_sac20_guyan_M_csv_start, _binary_configs_sac20_guyan_M_csv_end},
-    {"appendix", "K", _binary_configs_sac20_appendix_K_csv_start, _binary_configs_sac20_appendix_K_csv_end},
-    {"appendix", "M", _binary_configs_sac20_appendix_M_csv_start, _binary_configs_sac20_appendix_M_csv_end},
-};
-
-static Status read_matrix(Table *t, const char *model, const char *matrix, char path[], size_t size, Err *err)
+static Status read_matrix(Table *t, const char *model, const char *file, char path[], size_t size, Err *err)
 {
-    snprintf(path, size, "%s/%s.csv", model, matrix);
-    for (size_t i = 0; i < sizeof COMPILED_IN / sizeof COMPILED_IN[0]; i++)
-        if (!strcmp(model, COMPILED_IN[i].model) && !strcmp(matrix, COMPILED_IN[i].matrix))
-            return table_parse(t, path, COMPILED_IN[i].start, (size_t)(COMPILED_IN[i].end - COMPILED_IN[i].start), 0,
-                               err);
-    return table_read(t, path, 0, err);
+    const CompiledIn own = compiled_in(model, file);
+    snprintf(path, size, "%s/%s", model, file);
+    return own.text ? table_parse(t, path, own.text, own.length, 0, err) : table_read(t, path, 0, err);
 }
 
 static Status check_symmetric(int n, double A[], const char *path, Err *err)
@@ -62,11 +44,11 @@ static Status check_symmetric(int n, double A[], const char *path, Err *err)
     return STATUS_OK;
 }
 
-static Status load_matrix(const char *model, const char *matrix, double **A, int *n, Err *err)
+static Status load_matrix(const char *model, const char *file, double **A, int *n, Err *err)
 {
     Table t;
     char path[600];
-    TRY(read_matrix(&t, model, matrix, path, sizeof path, err));
+    TRY(read_matrix(&t, model, file, path, sizeof path, err));
     Status s = STATUS_OK;
     if (t.n_rows != t.n_cols)
         s = fail(err, STATUS_BAD_DATA, "%s: %zu rows of %zu columns; a square matrix is needed", path, t.n_rows,
@@ -101,11 +83,6 @@ BuildingUnit building_unit(BuildingUnits units)
     return list[units];
 }
 
-static int is_compiled_in(const char *model)
-{
-    return !strcmp(model, "guyan") || !strcmp(model, "appendix");
-}
-
 static void multiply(int n, double A[], double factor)
 {
     for (int i = 0; i < n * n && factor != 1; i++)
@@ -115,8 +92,8 @@ static void multiply(int n, double A[], double factor)
 static Status read_matrices(BuildingFiles *b, const BuildingOptions *o, Err *err)
 {
     int n_mass = 0;
-    TRY(load_matrix(o->model, "K", &b->K, &b->n, err));
-    TRY(load_matrix(o->model, "M", &b->M, &n_mass, err));
+    TRY(load_matrix(o->model, "K.csv", &b->K, &b->n, err));
+    TRY(load_matrix(o->model, "M.csv", &b->M, &n_mass, err));
     if (n_mass != b->n)
         return fail(err, STATUS_BAD_DATA, "%s/M.csv: %d floors, but K.csv has %d", o->model, n_mass, b->n);
     if (!is_compiled_in(o->model)) {
@@ -225,29 +202,39 @@ static Status read_storeys(BuildingFiles *b, const char *path, Err *err)
 
 /* ---- frame ---------------------------------------------------------------------------------------------------- */
 
+static Status condense_frame(BuildingFiles *b, const Frame *f, const BuildingOptions *o, Err *err)
+{
+    TRY(allocate(b, f->n_floors, err));
+    memcpy(b->storey_m, f->storey_m, (size_t)b->n * sizeof *b->storey_m);
+    TRY(frame_condense(f, o->rigid_floors, b->K, b->M, err));
+    TRY(check_symmetric(b->n, b->K, o->model, err));
+    return check_symmetric(b->n, b->M, o->model, err);
+}
+
+static Status read_full(BuildingFiles *b, const Frame *f, const BuildingOptions *o, Err *err)
+{
+    TRY(frame_full(f, o->rigid_floors, &b->full, err));
+    TRY(check_symmetric(b->full.n, b->full.K, o->model, err));
+    return check_symmetric(b->full.n, b->full.M, o->model, err);
+}
+
+/* Condensed unless that is there already, and in full where it is asked for. */
 static Status read_frame(BuildingFiles *b, const BuildingOptions *o, Err *err)
 {
     Frame f;
     TRY(frame_read(&f, o->model, FLOORS_MAX, err));
-    Status status = allocate(b, f.n_floors, err);
-    if (status == STATUS_OK) {
-        memcpy(b->storey_m, f.storey_m, (size_t)b->n * sizeof *b->storey_m);
-        status = frame_condense(&f, o->rigid_floors, b->K, b->M, err);
-    }
+    Status status = b->K ? STATUS_OK : condense_frame(b, &f, o, err);
+    if (status == STATUS_OK && o->modes > 0)
+        status = read_full(b, &f, o, err);
     frame_free(&f);
-    if (status == STATUS_OK)
-        status = check_symmetric(b->n, b->K, o->model, err);
-    if (status == STATUS_OK)
-        status = check_symmetric(b->n, b->M, o->model, err);
     return status;
 }
 
 /* ---- the folder ----------------------------------------------------------------------------------------------- */
 
-Status building_read(BuildingFiles *b, const BuildingOptions *o, Err *err)
+static Status read_folder(BuildingFiles *b, const BuildingOptions *o, Err *err)
 {
     char storeys[600];
-    memset(b, 0, sizeof *b);
     if (is_compiled_in(o->model))
         return read_matrices(b, o, err);
     if (frame_is(o->model))
@@ -256,4 +243,26 @@ Status building_read(BuildingFiles *b, const BuildingOptions *o, Err *err)
     if (access(storeys, F_OK) == 0)
         return read_storeys(b, storeys, err);
     return read_matrices(b, o, err);
+}
+
+Status building_read(BuildingFiles *b, const BuildingOptions *o, Err *err)
+{
+    memset(b, 0, sizeof *b);
+    TRY(read_folder(b, o, err));
+    if (o->modes == 0 || b->full.n)
+        return STATUS_OK;
+    if (!frame_is(o->model))
+        return fail(err, STATUS_BAD_DATA,
+                    "building.modes: %s has no more than its floors; only a plane frame (nodes.csv) and guyan have",
+                    o->model);
+    return read_frame(b, o, err);
+}
+
+void building_files_free(BuildingFiles *b)
+{
+    free(b->K);
+    free(b->M);
+    free(b->storey_m);
+    frame_full_free(&b->full);
+    memset(b, 0, sizeof *b);
 }

@@ -1,17 +1,19 @@
 /* scene/building_read.h -- stiffness, mass and storey heights of a building from its files (scene/building.h has their
  * forms).
  *
- * Ownership  K, M and storey_m are allocated; the caller frees them, after a failure too. Threads  no state */
+ * Ownership  building_read allocates, building_files_free releases, after a failure too. Threads  no state */
 #ifndef IMTET_SCENE_BUILDING_READ_H
 #define IMTET_SCENE_BUILDING_READ_H
 
 #include "base/status.h"
+#include "scene/frame.h"
 #include "scene/options.h"
 
 typedef struct {
     int n;
     double *K, *M;    /* (n, n) [N/m], [kg], symmetric and positive definite */
     double *storey_m; /* (n); NULL: the files have no heights */
+    FrameFull full;   /* of a frame, with building.modes; else n = 0 */
 } BuildingFiles;
 
 typedef struct {
@@ -21,5 +23,6 @@ typedef struct {
 BuildingUnit building_unit(BuildingUnits units);
 
 Status building_read(BuildingFiles *b, const BuildingOptions *o, Err *err);
+void building_files_free(BuildingFiles *b);
 
 #endif

@@ -115,3 +115,15 @@ const char *core_theory_word(CoreTheory theory)
     static const char *const WORDS[] = {CORE_THEORY_LIST(CHOICE_WORD)};
     return WORDS[theory];
 }
+
+void core_beam_join(const CoreBeam *c, const BuildingModel *building, double K[], double M[])
+{
+    const int m = building->n;
+    memcpy(K, building->K, (size_t)(m * m) * sizeof *K);
+    memcpy(M, building->M, (size_t)(m * m) * sizeof *M);
+    for (int i = 0; i < c->n; i++)
+        for (int j = 0; j < c->n; j++) {
+            K[i * m + j] += c->K[i * c->n + j];
+            M[i * m + j] += c->M[i * c->n + j];
+        }
+}

@@ -31,6 +31,9 @@ typedef struct {
 Status core_beam_make(CoreBeam *c, const CoreOptions *o, int n, const double storey_m[], double t_base_m,
                       double t_top_m, Err *err);
 
+/* K and M (m, m) of the building's model with the core rigidly connected to its floors. */
+void core_beam_join(const CoreBeam *c, const BuildingModel *building, double K[], double M[]);
+
 /* The section in storey 0..n-1. */
 typedef struct {
     double thickness, depth;   /* [m] of the wall; outer, in the direction of bending */

@@ -13,13 +13,20 @@
 
 enum { HELD = -1, ENDS = 2, LOCAL = ENDS * FRAME_DOFS };
 
-/* Unknowns 0..n_slaves-1 are removed, n_slaves.. are the floors'. */
+/* Unknowns 0..n_slaves-1 are removed; n_slaves.. are the masters: the floors, then others that are kept. */
 typedef struct {
     const Frame *frame;
-    int n_slaves, band; /* band: largest distance of two coupled slaves */
-    int *root;          /* (n_nodes * FRAME_DOFS) the displacement that this one equals */
-    int *unknown;       /* (n_nodes * FRAME_DOFS) its number, or HELD */
+    int n_slaves, n_masters, band; /* band: largest distance of two coupled slaves */
+    int *root;                     /* (n_nodes * FRAME_DOFS) the displacement that this one equals */
+    int *unknown;                  /* (n_nodes * FRAME_DOFS) its number, or HELD */
 } Numbering;
+
+/* While they are numbered: not yet, or master k. */
+static const int NOT_NUMBERED = INT32_MAX;
+static int as_master(int k)
+{
+    return HELD - 1 - k;
+}
 
 static int find_root(const Numbering *u, int i)
 {
@@ -82,8 +89,9 @@ static int by_height(const void *a, const void *b)
     return p->node - q->node;
 }
 
-/* From the bottom up, which keeps the band narrow. */
-static Status number_slaves(Numbering *u, Err *err)
+/* What is not yet numbered, from the bottom up, which keeps the band narrow. kept (by displacement; NULL: none): masters,
+ * the others are slaves. */
+static Status number_the_rest(Numbering *u, const char *kept, Err *err)
 {
     const Frame *f = u->frame;
     Place *place = malloc((size_t)f->n_nodes * sizeof *place);
@@ -95,34 +103,34 @@ static Status number_slaves(Numbering *u, Err *err)
     for (int k = 0; k < f->n_nodes; k++)
         for (int d = 0; d < FRAME_DOFS; d++) {
             const int root = find_root(u, place[k].node * FRAME_DOFS + d);
-            if (u->unknown[root] == INT32_MAX)
-                u->unknown[root] = u->n_slaves++;
+            if (u->unknown[root] == NOT_NUMBERED)
+                u->unknown[root] = kept && kept[root] ? as_master(u->n_masters++) : u->n_slaves++;
         }
     free(place);
     return STATUS_OK;
 }
 
-/* Held, floors, slaves, in this order; an unknown that equals a held one is held. */
-static Status number_unknowns(Numbering *u, Err *err)
+/* Held, floors, the rest, in this order; an unknown that equals a held one is held. */
+static Status number_unknowns(Numbering *u, const char *kept, Err *err)
 {
     const Frame *f = u->frame;
     const int n = f->n_nodes * FRAME_DOFS;
     for (int i = 0; i < n; i++)
-        u->unknown[i] = INT32_MAX;
+        u->unknown[i] = NOT_NUMBERED;
     for (int i = 0; i < n; i++)
         if (f->node[i / FRAME_DOFS].fixed[i % FRAME_DOFS])
             u->unknown[find_root(u, i)] = HELD;
     for (int floor = 1; floor <= f->n_floors; floor++) {
         int *unknown = &u->unknown[find_root(u, floor_node(f, floor) * FRAME_DOFS + FRAME_X)];
-        if (*unknown != INT32_MAX)
+        if (*unknown != NOT_NUMBERED)
             return fail(err, STATUS_BAD_DATA, "frame: floor %d cannot move by itself: it is held or tied", floor);
-        *unknown = -1 - floor; /* for the time being */
+        *unknown = as_master(u->n_masters++);
     }
-    TRY(number_slaves(u, err));
+    TRY(number_the_rest(u, kept, err));
     for (int i = 0; i < n; i++) {
         int *unknown = &u->unknown[find_root(u, i)];
         if (*unknown < HELD)
-            *unknown = u->n_slaves - *unknown - 2;
+            *unknown = u->n_slaves + as_master(*unknown);
     }
     for (int i = 0; i < n; i++)
         u->unknown[i] = u->unknown[find_root(u, i)];
@@ -147,19 +155,6 @@ static void find_band(Numbering *u)
             }
         u->band = hi - lo > u->band ? hi - lo : u->band;
     }
-}
-
-static Status numbering_make(Numbering *u, const Frame *f, int rigid_floors, Err *err)
-{
-    const size_t n = (size_t)f->n_nodes * FRAME_DOFS;
-    *u = (Numbering){.frame = f, .root = malloc(2 * n * sizeof *u->root)};
-    if (!u->root)
-        return fail(err, STATUS_NO_MEMORY, "frame: no memory for %zu unknowns", n);
-    u->unknown = u->root + n;
-    unite_displacements(u, rigid_floors);
-    TRY(number_unknowns(u, err));
-    find_band(u);
-    return STATUS_OK;
 }
 
 /* ---- assembly: elements --------------------------------------------------------------------------------------- */
@@ -238,6 +233,68 @@ static void element_matrices(const Frame *f, const FrameElement *e, double k[LOC
     turn(m, (b->x - a->x) / l, (b->z - a->z) / l);
 }
 
+/* ---- which unknowns are kept ---------------------------------------------------------------------------------- */
+
+static int any_is_named(const Frame *f)
+{
+    int named = 0;
+    for (int i = 0; i < f->n_nodes * FRAME_DOFS; i++)
+        named |= f->node[i / FRAME_DOFS].keep[i % FRAME_DOFS];
+    return named;
+}
+
+/* Diagonal of the mass matrix by displacement, each in the place of the one that it equals. */
+static void add_up_mass(const Numbering *u, double mass[])
+{
+    const Frame *f = u->frame;
+    for (int e = 0; e < f->n_elements; e++) {
+        double k[LOCAL][LOCAL], m[LOCAL][LOCAL];
+        element_matrices(f, &f->element[e], k, m);
+        for (int i = 0; i < LOCAL; i++)
+            mass[find_root(u, f->element[e].node[i / FRAME_DOFS] * FRAME_DOFS + i % FRAME_DOFS)] += m[i][i];
+    }
+    for (int i = 0; i < f->n_nodes * FRAME_DOFS; i++)
+        mass[find_root(u, i)] += f->node[i / FRAME_DOFS].mass[i % FRAME_DOFS];
+}
+
+/* kept[i]: displacement i is one of the full model's, that it has mass and is named in the frame, or none is named.
+ * Without mass static condensation is exact. */
+static Status find_kept(const Numbering *u, char kept[], Err *err)
+{
+    const Frame *f = u->frame;
+    const int n = f->n_nodes * FRAME_DOFS, named = any_is_named(f);
+    double *mass = calloc((size_t)n, sizeof *mass);
+    if (!mass)
+        return fail(err, STATUS_NO_MEMORY, "frame: no memory for %d unknowns", n);
+    add_up_mass(u, mass);
+    for (int i = 0; i < n; i++)
+        if (!named || f->node[i / FRAME_DOFS].keep[i % FRAME_DOFS])
+            kept[find_root(u, i)] = mass[find_root(u, i)] > 0;
+    free(mass);
+    return STATUS_OK;
+}
+
+/* full: with the unknowns of the full model beside the floors. */
+static Status numbering_make(Numbering *u, const Frame *f, int rigid_floors, int full, Err *err)
+{
+    const size_t n = (size_t)f->n_nodes * FRAME_DOFS;
+    *u = (Numbering){.frame = f, .root = malloc(2 * n * sizeof *u->root)};
+    char *kept = full ? calloc(n, 1) : NULL;
+    if (!u->root || (full && !kept)) {
+        free(kept);
+        return fail(err, STATUS_NO_MEMORY, "frame: no memory for %zu unknowns", n);
+    }
+    u->unknown = u->root + n;
+    unite_displacements(u, rigid_floors);
+    Status status = full ? find_kept(u, kept, err) : STATUS_OK;
+    if (status == STATUS_OK)
+        status = number_unknowns(u, kept, err);
+    free(kept);
+    if (status == STATUS_OK)
+        find_band(u);
+    return status;
+}
+
 /* ---- condensation --------------------------------------------------------------------------------------------- */
 
 /* The node and the direction of a slave, "node 12 cannot be held from turning". */
@@ -256,7 +313,7 @@ static Status fail_mechanism(const Numbering *u, int slave, Err *err)
 
 typedef struct {
     double *Kss;  /* (n_slaves, band + 1) lower band, column by column */
-    double *T;    /* (n_floors, n_slaves) displacements of the slaves per unit of a floor, row by row */
+    double *T;    /* (n_masters, n_slaves) displacements of the slaves per unit of a master, row by row */
     double *diag; /* (n_slaves) of Kss before it is factored */
 } Slaves;
 
@@ -298,11 +355,11 @@ static Status solve_slaves(const Numbering *u, Slaves *s, Err *err)
     for (int i = 0; i < n; i++)
         if (pow(s->Kss[(size_t)i * (size_t)height], 2) < PIVOT_LOST * s->diag[i])
             return fail_mechanism(u, i, err);
-    linalg_solve_band(n, u->band, s->Kss, u->frame->n_floors, s->T);
+    linalg_solve_band(n, u->band, s->Kss, u->n_masters, s->T);
     return STATUS_OK;
 }
 
-/* Displacement of an unknown when floor m alone moves by one. */
+/* Displacement of an unknown when master m alone moves by one. */
 static double displacement(const Numbering *u, const Slaves *s, int unknown, int m)
 {
     if (unknown < 0)
@@ -312,11 +369,32 @@ static double displacement(const Numbering *u, const Slaves *s, int unknown, int
     return s->T[(size_t)m * (size_t)u->n_slaves + (size_t)unknown];
 }
 
+/* A of an element whose unknowns are all masters. */
+static void add_masters(const Numbering *u, const int at[LOCAL], const double a[LOCAL][LOCAL], double A[])
+{
+    for (int i = 0; i < LOCAL; i++)
+        for (int j = 0; j < LOCAL; j++)
+            if (at[i] >= 0 && at[j] >= 0)
+                A[(at[i] - u->n_slaves) * u->n_masters + at[j] - u->n_slaves] += a[i][j];
+}
+
+static int has_slave(const Numbering *u, const int at[LOCAL])
+{
+    int any = 0;
+    for (int i = 0; i < LOCAL; i++)
+        any |= at[i] >= 0 && at[i] < u->n_slaves;
+    return any;
+}
+
 /* A += T' a T of one element. */
 static void add_element(const Numbering *u, const Slaves *s, const int at[LOCAL], const double a[LOCAL][LOCAL],
                         double A[])
 {
-    const int n = u->frame->n_floors;
+    const int n = u->n_masters;
+    if (!has_slave(u, at)) {
+        add_masters(u, at, a, A);
+        return;
+    }
     for (int p = 0; p < n; p++) {
         double force[LOCAL] = {0};
         for (int i = 0; i < LOCAL; i++)
@@ -331,7 +409,7 @@ static void add_element(const Numbering *u, const Slaves *s, const int at[LOCAL]
 static void add_node(const Numbering *u, const Slaves *s, int i, double M[])
 {
     const double *mass = u->frame->node[i].mass;
-    const int n = u->frame->n_floors;
+    const int n = u->n_masters;
     for (int d = 0; d < FRAME_DOFS; d++)
         for (int p = 0; p < n && mass[d] > 0; p++) {
             const int unknown = u->unknown[i * FRAME_DOFS + d];
@@ -357,17 +435,16 @@ static void sum_up(const Numbering *u, const Slaves *s, double K[], double M[])
 
 static Status condense(const Numbering *u, double K[], double M[], Err *err)
 {
-    const Frame *f = u->frame;
-    const size_t n = (size_t)u->n_slaves, floors = (size_t)f->n_floors, band = (size_t)u->band + 1;
-    Slaves s = {.Kss = calloc(n * band + floors * n + n + 1, sizeof *s.Kss)};
+    const size_t n = (size_t)u->n_slaves, masters = (size_t)u->n_masters, band = (size_t)u->band + 1;
+    Slaves s = {.Kss = calloc(n * band + masters * n + n + 1, sizeof *s.Kss)};
     if (!s.Kss)
         return fail(err, STATUS_NO_MEMORY, "frame: no memory for %zu unknowns, band %zu", n, band);
     s.T = s.Kss + n * band;
-    s.diag = s.T + floors * n;
+    s.diag = s.T + masters * n;
     assemble_slaves(u, &s);
     const Status status = solve_slaves(u, &s, err);
-    memset(K, 0, floors * floors * sizeof *K);
-    memset(M, 0, floors * floors * sizeof *M);
+    memset(K, 0, masters * masters * sizeof *K);
+    memset(M, 0, masters * masters * sizeof *M);
     if (status == STATUS_OK)
         sum_up(u, &s, K, M);
     free(s.Kss);
@@ -377,9 +454,49 @@ static Status condense(const Numbering *u, double K[], double M[], Err *err)
 Status frame_condense(const Frame *f, int rigid_floors, double K[], double M[], Err *err)
 {
     Numbering u;
-    Status status = numbering_make(&u, f, rigid_floors, err);
+    Status status = numbering_make(&u, f, rigid_floors, 0, err);
     if (status == STATUS_OK)
         status = condense(&u, K, M, err);
     free(u.root);
     return status;
+}
+
+/* Masters that move along x follow the ground. */
+static void find_influence(const Numbering *u, double influence[])
+{
+    for (int i = FRAME_X; i < u->frame->n_nodes * FRAME_DOFS; i += FRAME_DOFS)
+        if (u->unknown[i] >= u->n_slaves)
+            influence[u->unknown[i] - u->n_slaves] = 1;
+}
+
+static Status make_full(const Numbering *u, FrameFull *out, Err *err)
+{
+    const size_t n = (size_t)u->n_masters, nn = n * n;
+    out->n = u->n_masters;
+    out->K = calloc(2 * nn + n, sizeof *out->K);
+    if (!out->K)
+        return fail(err, STATUS_NO_MEMORY, "frame: no memory for %zu degrees of freedom", n);
+    out->M = out->K + nn;
+    out->influence = out->M + nn;
+    find_influence(u, out->influence);
+    return condense(u, out->K, out->M, err);
+}
+
+Status frame_full(const Frame *f, int rigid_floors, FrameFull *out, Err *err)
+{
+    Numbering u;
+    *out = (FrameFull){0};
+    Status status = numbering_make(&u, f, rigid_floors, 1, err);
+    if (status == STATUS_OK)
+        status = make_full(&u, out, err);
+    free(u.root);
+    if (status != STATUS_OK)
+        frame_full_free(out);
+    return status;
+}
+
+void frame_full_free(FrameFull *full)
+{
+    free(full->K);
+    *full = (FrameFull){0};
 }

@@ -1,6 +1,7 @@
 /* scene/frame.h -- a plane frame as engineers write it down, and its stiffness and mass condensed to the floors.
  *
  *   nodes.csv     node, x_m, z_m [, fix_x, fix_z, fix_rot (0 or 1)] [, floor (from 1 at the bottom; 0: none)]
+ *                 [, keep_x, keep_z, keep_rot (0 or 1)]
  *   sections.csv  section, A_m2, I_m4, E_pa [, shear_area_m2, poisson, mass_kg_per_m]
  *   elements.csv  element, node_i, node_j, section [, pin_i, pin_j (0 or 1)] [, added_mass_kg]
  *   masses.csv    node, mass_kg [, mass_z_kg, rotary_kg_m2]                       (may be missing)
@@ -18,6 +19,11 @@
  *
  * summed element by element, Kss factored as a band. A mechanism is refused with the node that moves.
  *
+ * Full model: the floors, then every other displacement that has mass; where nodes.csv names some (keep_x..), these
+ * alone. What is removed is condensed as above, which is exact where it has no mass.
+ *
+ * Model "guyan" is the frame of configs/sac20/frame, which is compiled in.
+ *
  * Ownership  frame_read allocates, frame_free releases (an empty Frame is fine). Threads  no state */
 #ifndef IMTET_SCENE_FRAME_H
 #define IMTET_SCENE_FRAME_H
@@ -33,6 +39,7 @@ typedef struct {
     int fixed[FRAME_DOFS];   /* held by the ground */
     double mass[FRAME_DOFS]; /* [kg] along x, along z, [kg m2] */
     int floor;               /* from 1; 0: none */
+    int keep[FRAME_DOFS];    /* named as one of the full model */
 } FrameNode;
 
 typedef struct {
@@ -63,7 +70,7 @@ typedef struct {
     double *storey_m; /* (n_floors) heights; the first above the highest node that is held sideways below floor 1 */
 } Frame;
 
-/* Is the folder a frame: does it hold nodes.csv? */
+/* Is the model a frame: is it a folder that holds nodes.csv, or guyan? */
 int frame_is(const char *folder);
 Status frame_read(Frame *f, const char *folder, int floors_max, Err *err);
 
@@ -72,6 +79,16 @@ Status frame_write(const Frame *f, const char *folder, Err *err);
 
 /* K [N/m] and M [kg] (n_floors, n_floors) row-major. */
 Status frame_condense(const Frame *f, int rigid_floors, double K[], double M[], Err *err);
+
+typedef struct {
+    int n;             /* degrees of freedom; the first are the floors */
+    double *K, *M;     /* (n, n) row-major [N/m], [kg]; rotations in rad */
+    double *influence; /* (n) of the ground's motion: 1 along x, else 0 */
+} FrameFull;
+
+/* Allocates; frame_full_free releases (an empty one is fine). */
+Status frame_full(const Frame *f, int rigid_floors, FrameFull *out, Err *err);
+void frame_full_free(FrameFull *full);
 void frame_free(Frame *f);
 
 #endif

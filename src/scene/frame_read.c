@@ -4,6 +4,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "scene/compiled_in.h"
 #include "scene/frame.h"
 
 /* ---- sheets --------------------------------------------------------------------------------------------------- */
@@ -17,7 +18,7 @@ static int is_there(const char *folder, const char *name)
 {
     char path[600];
     path_of(path, folder, name);
-    return access(path, F_OK) == 0;
+    return is_compiled_in(folder) ? compiled_in(folder, name).text != NULL : access(path, F_OK) == 0;
 }
 
 int frame_is(const char *folder)
@@ -29,8 +30,9 @@ static Status open_sheet(Sheet *s, const char *folder, const char *name, const c
                          Err *err)
 {
     char path[600];
+    const CompiledIn own = compiled_in(folder, name);
     path_of(path, folder, name);
-    TRY(sheet_read(s, path, err));
+    TRY(own.text ? sheet_parse(s, path, own.text, own.length, err) : sheet_read(s, path, err));
     const Status status = sheet_expect(s, required, optional, err);
     if (status != STATUS_OK)
         sheet_free(s);
@@ -123,13 +125,15 @@ static Status look_up(const Index *x, const Sheet *s, size_t row, const char *co
 
 static Status take_node(FrameNode *node, const Sheet *s, size_t row, Err *err)
 {
-    static const char *const FIX[] = {"fix_x", "fix_z", "fix_rot"};
+    static const char *const FIX[] = {"fix_x", "fix_z", "fix_rot"}, *const KEEP[] = {"keep_x", "keep_z", "keep_rot"};
     double floor;
     TRY(read_name(s, row, "node", node->name, err));
     TRY(sheet_number(s, row, "x_m", NAN, &node->x, err));
     TRY(sheet_number(s, row, "z_m", NAN, &node->z, err));
-    for (int d = 0; d < FRAME_DOFS; d++)
+    for (int d = 0; d < FRAME_DOFS; d++) {
         TRY(read_switch(s, row, FIX[d], &node->fixed[d], err));
+        TRY(read_switch(s, row, KEEP[d], &node->keep[d], err));
+    }
     TRY(read_share(s, row, "floor", &floor, err));
     node->floor = (int)fmin(floor, 1e6);
     return node->floor == floor
@@ -179,7 +183,7 @@ static Status take_element(const Frame *f, FrameElement *e, const Index *x, cons
 static Status read_nodes(Frame *f, Index *x, const char *folder, Err *err)
 {
     Sheet s;
-    TRY(open_sheet(&s, folder, "nodes.csv", "node x_m z_m", "fix_x fix_z fix_rot floor", err));
+    TRY(open_sheet(&s, folder, "nodes.csv", "node x_m z_m", "fix_x fix_z fix_rot floor keep_x keep_z keep_rot", err));
     f->n_nodes = (int)s.n_rows;
     f->node = calloc(s.n_rows, sizeof *f->node);
     Status status = f->node ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "frame: no memory for %zu nodes", s.n_rows);

@@ -32,6 +32,7 @@ typedef struct {
     double first_storey_m, storey_m;
     char heights_m[OPTION_TEXT_MAX]; /* storey by storey, or none */
     Switch rigid_floors;             /* of a frame */
+    long modes;                      /* fixed-interface modes beside the floors; 0: condensed */
     Switch p_delta;
 } BuildingOptions;
 

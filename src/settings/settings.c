@@ -83,6 +83,10 @@ static const Option OPTIONS[] = {
     TEXT(building.heights_m, "none", "heights of all storeys from the bottom, a comma list; none: the two above"),
     CHOICE(building.rigid_floors, Switch, CHOICE_WORDS(SWITCH_LIST), "on",
            "of a frame: on: the nodes of a floor move sideways together; off: beams stretch"),
+    WHOLE(
+        building.modes, "0", 0, 100000,
+        "of a frame: fixed-interface modes kept beside the floors (Craig-Bampton), 100000: all degrees of freedom; 0: "
+        "condensed to the floors (Guyan)"),
     CHOICE(building.p_delta, Switch, CHOICE_WORDS(SWITCH_LIST), "off",
            "on: the weights of the storeys soften the building (P-delta)"),
 

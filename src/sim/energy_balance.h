@@ -18,23 +18,30 @@ static inline double energy_balance_scale(double input, double out)
     return scale > 0 ? scale : 1;
 }
 
-/* From the joules already in result (input, kinetic_strain, contacts) and damped[nb + nc], building modes first. With
- * no energy put in every share is zero. */
-static inline void energy_balance_close(SimResult *result, int nb, int nc, const double damped[])
+/* From the shares of the n_modes modes those of groups of them. */
+static inline void energy_balance_sum_shares(SimResult *result)
+{
+    result->ed1_pct = result->mode_share_pct[0];
+    for (int i = 4; i < 10 && i < result->n_modes; i++)
+        result->ed5_10_pct += result->mode_share_pct[i];
+}
+
+/* From the joules already in result (input, kinetic_strain, contacts) and damped[nb + nc], building modes first, their
+ * shares booked as like[nb] says. With no energy put in every share is zero. */
+static inline void energy_balance_close(SimResult *result, int nb, const int like[], int nc, const double damped[])
 {
     double building = 0, core = 0;
     const double input = result->input_energy_j, percent = input > 0 ? 100 / input : 0;
     for (int i = 0; i < nb; i++) {
         building += damped[i];
-        result->mode_share_pct[i] = percent * damped[i];
-        if (i >= 4 && i < 10)
-            result->ed5_10_pct += percent * damped[i];
+        if (like[i] >= 0)
+            result->mode_share_pct[like[i]] += percent * damped[i];
     }
     for (int i = nb; i < nb + nc; i++)
         core += damped[i];
     result->damped_building_j = building;
     result->damped_core_j = core;
-    result->ed1_pct = result->mode_share_pct[0];
+    energy_balance_sum_shares(result);
     result->edcs_pct = percent * core;
     const double out = result->kinetic_strain_j + building + core + result->contact_stored_j + result->contact_loss_j +
                        result->clamp_j;

@@ -34,17 +34,17 @@ typedef struct {
 } Group;
 
 struct ForceMonitor {
-    int n, n_pad, building_out, core_out, totals_at; /* (core_out): the totals stand in the last eight */
+    int n, nb, n_pad, building_out, core_out, totals_at; /* (core_out): the totals stand in the last eight */
     int core_modes, nc, has_residual;
     double z[FLOORS_MAX + 1];
     const CoreBeam *core;
     SceneOptions options;
     double weight_n, thickness[2]; /* [N] of the floors; [m] at base and top */
 
-    double *building_rows; /* (n, building_out) a row per mode */
-    double *velocity_rows; /* (n, n_pad) */
+    double *building_rows; /* (nb, building_out) a row per mode */
+    double *velocity_rows; /* (nb, n_pad) */
     double *core_rows;     /* (n, core_out) */
-    double *total_rows;    /* (n, 8) of building modes */
+    double *total_rows;    /* (nb, 8) of building modes */
     double *force_rows;    /* (n, core_out) of a unit force on floor j, by the modes left out */
     double *ground_row;    /* (core_out) of a unit ground acceleration, by them */
     Group slow, swift;
@@ -72,24 +72,25 @@ static void layout_group(Group *g, Carve *c, int count, double spacing)
 
 static void layout(ForceMonitor *m, Carve *c)
 {
-    const size_t n = (size_t)m->n, core = (size_t)m->core_out;
-    m->building_rows = carve(c, n * (size_t)m->building_out, sizeof(double));
-    m->velocity_rows = carve(c, n * (size_t)m->n_pad, sizeof(double));
+    const size_t n = (size_t)m->n, nb = (size_t)m->nb, core = (size_t)m->core_out;
+    m->building_rows = carve(c, nb * (size_t)m->building_out, sizeof(double));
+    m->velocity_rows = carve(c, nb * (size_t)m->n_pad, sizeof(double));
     m->core_rows = carve(c, n * core, sizeof(double));
-    m->total_rows = carve(c, n * LANES8, sizeof(double));
+    m->total_rows = carve(c, nb * LANES8, sizeof(double));
     m->force_rows = carve(c, n * core, sizeof(double));
     m->ground_row = carve(c, core, sizeof(double));
     layout_group(&m->slow, c, m->building_out + m->n_pad, SLOW_SPACING);
     layout_group(&m->swift, c, m->core_out, 0);
 }
 
-Status force_monitor_create(ForceMonitor **out, int n_floors, Err *err)
+Status force_monitor_create(ForceMonitor **out, int n_floors, int nb, Err *err)
 {
     ForceMonitor *m = calloc(1, sizeof *m);
     *out = NULL;
     if (!m)
         return fail(err, STATUS_NO_MEMORY, "forces: out of memory");
     m->n = n_floors;
+    m->nb = nb;
     m->n_pad = padded(n_floors);
     m->building_out = padded(n_floors + 1);
     m->totals_at = padded(2 * n_floors + 1);
@@ -121,8 +122,8 @@ void force_monitor_on_contact(ForceMonitor *m, SimContactFn contact, void *user)
 
 /* -- a design --------------------------------------------------------------------------------------------------- */
 
-/* Shears, and moments at the foot, of every storey for mode i with shape phi_i: forces K phi_i. */
-static void storey_forces(const ForceMonitor *m, const double K[], const double phi[], int i, double shears[],
+/* Shears, and moments at the foot, of every storey for a mode of shape phi, entries `stride` apart: forces K phi. */
+static void storey_forces(const ForceMonitor *m, const double K[], const double phi[], int stride, double shears[],
                           double moments[])
 {
     const int n = m->n;
@@ -130,7 +131,7 @@ static void storey_forces(const ForceMonitor *m, const double K[], const double 
     for (int s = n - 1; s >= 0; s--) {
         double force = 0;
         for (int j = 0; j < n; j++)
-            force += K[s * n + j] * phi[j * n + i];
+            force += K[s * n + j] * phi[j * stride];
         shear += force;
         moment += shear * (m->z[s + 1] - m->z[s]);
         shears[s] = shear;
@@ -141,15 +142,16 @@ static void storey_forces(const ForceMonitor *m, const double K[], const double 
 static void set_building_rows(ForceMonitor *m, const Building *b)
 {
     const int n = m->n;
+    const BuildingModel *model = &b->model;
     double moments[FLOORS_MAX];
-    for (int i = 0; i < n; i++) {
+    for (int i = 0; i < m->nb; i++) {
         double *row = m->building_rows + i * m->building_out;
-        storey_forces(m, b->K, b->phi, i, row, moments);
+        storey_forces(m, b->K, model->phi + i, model->n, row, moments);
         row[n] = moments[0];
         m->total_rows[i * LANES8] = row[0];
         m->total_rows[i * LANES8 + 1] = moments[0];
         for (int j = 0; j < n; j++)
-            m->velocity_rows[i * m->n_pad + j] = b->phi[j * n + i];
+            m->velocity_rows[i * m->n_pad + j] = model->phi[j * model->n + i];
     }
 }
 
@@ -159,7 +161,7 @@ static void set_core_rows(ForceMonitor *m, const CoreBeam *core)
     memset(m->core_rows, 0, sizeof(double) * (size_t)(n * m->core_out));
     for (int i = 0; i < n && core; i++) {
         double *row = m->core_rows + i * m->core_out;
-        storey_forces(m, core->K, core->phi, i, row, row + n);
+        storey_forces(m, core->K, core->phi + i, n, row, row + n);
         row[2 * n] = core->phi[(n - 1) * n + i];
         row[m->totals_at] = row[0];
         row[m->totals_at + 1] = row[n];
@@ -181,11 +183,11 @@ static void set_reach(ForceMonitor *m, const Building *b, const CoreBeam *core)
     Group *const groups[] = {&m->slow, &m->swift};
     for (int i = 0; i < 2; i++)
         memset(groups[i]->reach_inverse, 0, sizeof(double) * (size_t)groups[i]->count);
-    add_squares(m->n, m->building_out, m->building_rows, b->omega, m->slow.reach_inverse);
-    add_squares(m->n, m->n_pad, m->velocity_rows, NULL, m->slow.reach_inverse + m->building_out);
+    add_squares(m->nb, m->building_out, m->building_rows, b->model.omega, m->slow.reach_inverse);
+    add_squares(m->nb, m->n_pad, m->velocity_rows, NULL, m->slow.reach_inverse + m->building_out);
     if (core) {
         add_squares(m->n, m->core_out, m->core_rows, core->omega, m->swift.reach_inverse);
-        add_squares(m->n, LANES8, m->total_rows, b->omega, m->swift.reach_inverse + m->totals_at);
+        add_squares(m->nb, LANES8, m->total_rows, b->model.omega, m->swift.reach_inverse + m->totals_at);
     }
     for (int i = 0; i < 2; i++)
         for (int k = 0; k < groups[i]->count; k++)
@@ -285,15 +287,15 @@ static inline __attribute__((always_inline)) void add_rows(int count, int width,
 CLONED static void slow_outputs(const ForceMonitor *m, const ForcePoint *p, double out[])
 {
     memset(out, 0, sizeof *out * (size_t)m->slow.count);
-    add_rows(m->n, m->building_out, m->building_rows, p->building_q, out);
-    add_rows(m->n, m->n_pad, m->velocity_rows, p->building_v, out + m->building_out);
+    add_rows(m->nb, m->building_out, m->building_rows, p->building_q, out);
+    add_rows(m->nb, m->n_pad, m->velocity_rows, p->building_v, out + m->building_out);
 }
 
 CLONED static void swift_outputs(const ForceMonitor *m, const ForcePoint *p, double out[])
 {
     memset(out, 0, sizeof *out * (size_t)m->swift.count);
     add_rows(m->core_modes, m->core_out, m->core_rows, p->core_q, out);
-    add_rows(m->n, LANES8, m->total_rows, p->building_q, out + m->totals_at);
+    add_rows(m->nb, LANES8, m->total_rows, p->building_q, out + m->totals_at);
     if (!m->has_residual)
         return;
     add_rows(1, m->core_out, m->ground_row, &p->ground, out);

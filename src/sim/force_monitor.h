@@ -5,7 +5,8 @@
  *   V_s = sum_{j >= s} (K u)_j,   M_s = sum_{j >= s} (K u)_j (z_j - z_{s-1})       shear, bending moment at its foot
  *
  * and likewise of the core; overturning is M_1. Both are linear in the modal coordinates: row i of a table of outputs
- * belongs to mode i. Core modes that an engine left out follow quasi-statically, w_i^2 q_i = -gamma_i a + sum_j R_ij f_j
+ * belongs to mode i. K is of the floors alone, also where the building's model has more degrees of freedom: what the
+ * others carry acts on the floors as statics distribute it. Core modes that an engine left out follow quasi-statically, w_i^2 q_i = -gamma_i a + sum_j R_ij f_j
  * (mode acceleration method). Peaks are taken from points that the engine gives in the order of time, with a parabola
  * through three of them wherever the middle one is the largest: spaced by h they miss (w h)^4 / 400 of a component of
  * frequency w.
@@ -30,7 +31,8 @@
 
 typedef struct ForceMonitor ForceMonitor;
 
-Status force_monitor_create(ForceMonitor **out, int n_floors, Err *err);
+/* nb: of the building's model. */
+Status force_monitor_create(ForceMonitor **out, int n_floors, int nb, Err *err);
 void force_monitor_free(ForceMonitor *m); /* NULL is fine */
 
 /* Another scene or design. core NULL: the building alone, else it must outlive the runs. x: gaps and thicknesses as for

@@ -9,15 +9,20 @@ static int padded(int n)
     return (n + 7) & ~7;
 }
 
-Status model_create(SimModel *model, int n, Err *err)
+Status model_create(SimModel *model, int n, int nb_max, Err *err)
 {
     memset(model, 0, sizeof *model);
-    const size_t n_pad = (size_t)padded(n), m_max = (size_t)padded(2 * n);
+    const size_t n_pad = (size_t)padded(n), m_max = (size_t)padded(nb_max + n);
     const size_t need = 2 * m_max * n_pad + 3 * m_max + 2 * n_pad;
     double *p = aligned_alloc(64, need * sizeof *p);
-    if (!p)
-        return fail(err, STATUS_NO_MEMORY, "model: no memory for %d floors", n);
+    model->like = malloc((size_t)nb_max * sizeof *model->like);
     model->store = p;
+    if (!p || !model->like) {
+        model_free(model);
+        return fail(err, STATUS_NO_MEMORY, "model: no memory for %d floors", n);
+    }
+    for (int i = 0; i < nb_max; i++)
+        model->like[i] = i < n ? i : -1;
     model->n = n;
     model->n_pad = (int)n_pad;
     model->R = p;
@@ -30,14 +35,16 @@ Status model_create(SimModel *model, int n, Err *err)
     return STATUS_OK;
 }
 
-static void set_mode(SimModel *model, int i, double omega, double zeta, double gamma, const double phi[], double sign)
+/* phi: row by row `stride` numbers apart */
+static void set_mode(SimModel *model, int i, double omega, double zeta, double gamma, const double phi[], int stride,
+                     double sign)
 {
     const int n = model->n;
     model->omega[i] = omega;
     model->zeta[i] = zeta;
     model->gamma[i] = gamma;
     for (int j = 0; j < n; j++)
-        model->R[i * model->n_pad + j] = model->RT[j * model->m_pad + i] = sign * phi[j * n];
+        model->R[i * model->n_pad + j] = model->RT[j * model->m_pad + i] = sign * phi[j * stride];
 }
 
 static Status set_gaps(SimModel *model, const double gaps[], Err *err)
@@ -56,7 +63,8 @@ Status model_set(SimModel *model, const SceneOptions *o, const Building *b, cons
                  Err *err)
 {
     const int n = b->n;
-    model->nb = n;
+    const BuildingModel *building = &b->model;
+    model->nb = building->n;
     model->nc = core ? n : 0;
     model->m = model->nb + model->nc;
     model->m_pad = padded(model->m);
@@ -67,10 +75,12 @@ Status model_set(SimModel *model, const SceneOptions *o, const Building *b, cons
         model->zeta[i] = 0.5;
         model->gamma[i] = 0;
     }
-    for (int i = 0; i < n; i++)
-        set_mode(model, i, b->omega[i], b->zeta[i], b->gamma[i], b->phi + i, 1);
+    for (int i = 0; i < model->nb; i++)
+        set_mode(model, i, building->omega[i], building->zeta[i], building->gamma[i], building->phi + i, building->n,
+                 1);
+    memcpy(model->like, building->like, (size_t)model->nb * sizeof *model->like);
     for (int i = 0; i < model->nc; i++)
-        set_mode(model, n + i, core->omega[i], o->core.damping, core->gamma[i], core->phi + i, -1);
+        set_mode(model, model->nb + i, core->omega[i], o->core.damping, core->gamma[i], core->phi + i, n, -1);
     for (int j = 0; j < model->n_pad; j++) {
         double sum = 0;
         for (int i = 0; i < model->m; i++)
@@ -85,5 +95,6 @@ Status model_set(SimModel *model, const SceneOptions *o, const Building *b, cons
 void model_free(SimModel *model)
 {
     free(model->store);
+    free(model->like);
     memset(model, 0, sizeof *model);
 }

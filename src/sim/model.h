@@ -4,9 +4,10 @@
  *   w_j  = u_j - v_j = sum_i R_ij q_i                                              j = 0..n-1
  *   f_j  = -s F(p_j, p_j', v0_j),  s = sign(w_j),  p_j = |w_j| - gap_j
  *
- * Modes 0..nb-1 are the building's (R_ij = phi_ji), nb..m-1 the core's (R_ij = -phi_ji); u_j = sum_{i<nb} R_ij q_i.
+ * Modes 0..nb-1 are the building's (R_ij = phi_ji; nb may exceed n, scene/building.h), nb..m-1 the core's (R_ij =
+ * -phi_ji); u_j = sum_{i<nb} R_ij q_i.
  * The absolute acceleration of floor j is sum_{i<nb} R_ij (-2 zeta_i w_i q_i' - w_i^2 q_i + contact part of mode i),
- * since the building keeps all its modes.
+ * since sum_{i<nb} R_ij gamma_i = 1: the motion of the ground is in the span of the building's modes.
  *
  * Layout   rows padded with zeros to a multiple of 8, 64-byte aligned: floors to n_pad, modes to m_pad.
  * Padding  a padded floor has an unreachable gap, a padded mode has omega = 1 and no coupling.
@@ -26,6 +27,7 @@ typedef struct {
     double *omega;    /* (m_pad) [rad/s] */
     double *zeta;     /* (m_pad) [-] */
     double *gamma;    /* (m_pad) [sqrt(kg)] */
+    int *like;        /* (nb) under which of n modes the share of a building mode is booked, -1: none */
     double *gap;      /* (n_pad) [m] */
     double *mass_eff; /* (n_pad) [kg] 1/sum_i R_ij^2: what a short contact at floor j has to turn round */
     double core_mass_kg;
@@ -33,8 +35,8 @@ typedef struct {
     void *store;
 } SimModel;
 
-/* Room for n floors with up to n core modes. */
-Status model_create(SimModel *model, int n, Err *err);
+/* Room for n floors with up to nb_max building modes, n core modes. like: mode by mode. */
+Status model_create(SimModel *model, int n, int nb_max, Err *err);
 
 /* gaps (n) [m]; core NULL: the building alone (nc = 0, no gap can close). A negative or non-finite gap is refused. */
 Status model_set(SimModel *model, const SceneOptions *o, const Building *b, const CoreBeam *core, const double gaps[],

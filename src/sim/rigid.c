@@ -2,6 +2,8 @@
  *
  *   (M + Mc) u'' + (C + Cc) u' + (K + Kc) u = -(M + Mc) 1 a(t),    C = M Phi diag(2 zeta w) Phi' M,  Cc likewise
  *
+ * The building has the n degrees of freedom of its model, the core's join those of the floors (floors <= n).
+ *
  * In the modes Psi of the pair (K + Kc, M + Mc), u = Psi y, with z = [W y; y'] (so that |z|^2 / 2 is the energy):
  *
  *   z' = [0 W; -W -D] z + [0; -Gamma] a,   D = P' diag(2 zeta w) P,   P = [Phi' M; Phic' Mc] Psi,   q' = P y'
@@ -22,22 +24,24 @@
 #include "sim/peak_monitor.h"
 
 typedef struct {
-    int n, size; /* floors; size = 2 n + 2, the state and its load */
-    double step; /* longest [s] */
+    int n, floors, size; /* degrees of freedom; size = 2 n + 2, the state and its load */
+    double step;         /* longest [s] */
 
     /* matrices by columns: entry (i, j) of a matrix with r rows is at [j r + i] */
     double *omega, *gamma; /* (n) of the pair [rad/s], [sqrt(kg)] */
     double *psi;           /* (n, n) */
+    double *shapes;        /* (floors, n) of psi */
     double *D;             /* (n, n) [1/s] */
-    double *P;             /* (2n, n) */
-    double *loss;          /* (2n) 2 zeta w of building and core modes [rad/s] */
+    double *P;             /* (n + floors, n) */
+    double *loss;          /* (n + floors) 2 zeta w of building and core modes [rad/s] */
     double *exponential;   /* (size, size) for steps of h */
     double h;
 
     double *z, *z_next; /* (size) state, then a and a' */
     double *y_ddot, *y; /* (n) */
-    double *rate;       /* (2n) q' of building and core modes */
-    double *damped;     /* (2n) [J] */
+    double *rate;       /* (n + floors) q' of building and core modes */
+    double *q;          /* (n + floors) */
+    double *damped;     /* (n + floors) [J] */
     double input;       /* [J] */
     double *work;       /* (3 size size) */
     PeakMonitor peaks;
@@ -49,19 +53,22 @@ typedef struct {
 static void layout(Rigid *d, Carve *c)
 {
     const size_t n = (size_t)d->n, size = (size_t)d->size, real = sizeof(double);
+    const size_t floors = (size_t)d->floors, both = n + floors;
     d->omega = carve(c, n, real);
     d->gamma = carve(c, n, real);
     d->psi = carve(c, n * n, real);
+    d->shapes = carve(c, floors * n, real);
     d->D = carve(c, n * n, real);
-    d->P = carve(c, 2 * n * n, real);
-    d->loss = carve(c, 2 * n, real);
+    d->P = carve(c, both * n, real);
+    d->loss = carve(c, both, real);
     d->exponential = carve(c, size * size, real);
     d->z = carve(c, size, real);
     d->z_next = carve(c, size, real);
     d->y_ddot = carve(c, n, real);
     d->y = carve(c, n, real);
-    d->rate = carve(c, 2 * n, real);
-    d->damped = carve(c, 2 * n, real);
+    d->rate = carve(c, both, real);
+    d->q = carve(c, both, real);
+    d->damped = carve(c, both, real);
     d->work = carve(c, 3 * size * size, real);
 }
 
@@ -130,17 +137,17 @@ static void set_step(Rigid *d, double h)
     d->h = h;
 }
 
-/* Rows first .. first+n-1 of P: phi' M Psi, from row-major phi and M (n, n). */
-static void project(Rigid *d, int first, const double phi[], const double M[])
+/* Rows first .. first+m-1 of P: phi' M Psi, from row-major phi and M (m, m) of the first m degrees of freedom. */
+static void project(Rigid *d, int first, int m, const double phi[], const double M[])
 {
-    const int n = d->n;
+    const int n = d->n, rows = n + d->floors;
     for (int k = 0; k < n; k++)
-        for (int l = 0; l < n; l++) {
+        for (int l = 0; l < m; l++) {
             double m_psi = 0;
-            for (int j = 0; j < n; j++)
-                m_psi += M[l * n + j] * d->psi[k * n + j];
-            for (int i = 0; i < n; i++)
-                d->P[k * 2 * n + first + i] += phi[l * n + i] * m_psi;
+            for (int j = 0; j < m; j++)
+                m_psi += M[l * m + j] * d->psi[k * n + j];
+            for (int i = 0; i < m; i++)
+                d->P[k * rows + first + i] += phi[l * m + i] * m_psi;
         }
 }
 
@@ -148,16 +155,27 @@ static Status find_pair_modes(Rigid *d, const Building *b, const CoreBeam *core,
 {
     const int n = d->n, nn = n * n;
     double *K = d->work, *M = K + nn, *psi = M + nn;
-    for (int i = 0; i < nn; i++) {
-        K[i] = b->K[i] + core->K[i];
-        M[i] = b->M[i] + core->M[i];
-    }
+    core_beam_join(core, &b->model, K, M);
     TRY(linalg_modes(n, K, M, d->omega, psi, err));
     for (int i = 0; i < n; i++)
         for (int j = 0; j < n; j++)
             d->psi[i * n + j] = psi[j * n + i];
-    linalg_participation(n, M, psi, d->gamma);
+    for (int i = 0; i < n; i++)
+        memcpy(d->shapes + i * d->floors, d->psi + i * n, (size_t)d->floors * sizeof *d->shapes);
     return STATUS_OK;
+}
+
+/* D, and Gamma = P' gamma of building and core. */
+static void set_damping(Rigid *d, const double building_gamma[], const double core_gamma[])
+{
+    const int n = d->n, rows = n + d->floors;
+    for (int j = 0; j < n; j++) {
+        for (int i = 0; i < n; i++)
+            for (int k = 0; k < rows; k++)
+                d->D[j * n + i] += d->P[i * rows + k] * d->loss[k] * d->P[j * rows + k];
+        for (int k = 0; k < rows; k++)
+            d->gamma[j] += d->P[j * rows + k] * (k < n ? building_gamma[k] : core_gamma[k - n]);
+    }
 }
 
 static Status prepare(Rigid *d, const SceneOptions *o, const Building *b, const CoreBeam *core, Err *err)
@@ -170,16 +188,13 @@ static Status prepare(Rigid *d, const SceneOptions *o, const Building *b, const 
         return fail(err, STATUS_NO_MEMORY, "rigid: no memory for %d floors", n);
     layout(d, &(Carve){.base = d->store});
     TRY(find_pair_modes(d, b, core, err));
-    project(d, 0, b->phi, b->M);
-    project(d, n, core->phi, core->M);
-    for (int i = 0; i < n; i++) {
-        d->loss[i] = 2 * b->zeta[i] * b->omega[i];
+    project(d, 0, n, b->model.phi, b->model.M);
+    project(d, n, d->floors, core->phi, core->M);
+    for (int i = 0; i < n; i++)
+        d->loss[i] = 2 * b->model.zeta[i] * b->model.omega[i];
+    for (int i = 0; i < d->floors; i++)
         d->loss[n + i] = 2 * o->core.damping * core->omega[i];
-    }
-    for (int j = 0; j < n; j++)
-        for (int i = 0; i < n; i++)
-            for (int k = 0; k < 2 * n; k++)
-                d->D[j * n + i] += d->P[i * 2 * n + k] * d->loss[k] * d->P[j * 2 * n + k];
+    set_damping(d, b->model.gamma, core->gamma);
     return STATUS_OK;
 }
 
@@ -191,18 +206,17 @@ static void find_rates(Rigid *d)
     multiply(n, n, d->D, y_dot, d->y_ddot);
     for (int i = 0; i < n; i++)
         d->y_ddot[i] = -d->omega[i] * z[i] - d->y_ddot[i] - d->gamma[i] * a;
-    multiply(2 * n, n, d->P, y_dot, d->rate);
+    multiply(n + d->floors, n, d->P, y_dot, d->rate);
 }
 
 /* q and q' of building and core by their own modes. */
 static void record_forces(Rigid *d, double t)
 {
     const int n = d->n;
-    double q[2 * FLOORS_MAX];
-    multiply(2 * n, n, d->P, d->y, q);
+    multiply(n + d->floors, n, d->P, d->y, d->q);
     force_monitor_point(
         d->forces,
-        &(ForcePoint){.t = t, .ground = d->z[2 * n], .building_q = q, .building_v = d->rate, .core_q = q + n});
+        &(ForcePoint){.t = t, .ground = d->z[2 * n], .building_q = d->q, .building_v = d->rate, .core_q = d->q + n});
 }
 
 static void look(Rigid *d, double t)
@@ -212,9 +226,9 @@ static void look(Rigid *d, double t)
     for (int i = 0; i < n; i++)
         d->y[i] = d->z[i] / d->omega[i];
     point->t = t;
-    multiply(n, n, d->psi, d->y, point->of[PEAK_DISPLACEMENT]);
-    multiply(n, n, d->psi, d->y_ddot, point->of[PEAK_ACCELERATION]);
-    for (int j = 0; j < n; j++)
+    multiply(d->floors, n, d->shapes, d->y, point->of[PEAK_DISPLACEMENT]);
+    multiply(d->floors, n, d->shapes, d->y_ddot, point->of[PEAK_ACCELERATION]);
+    for (int j = 0; j < d->floors; j++)
         point->of[PEAK_ACCELERATION][j] += d->z[2 * n];
     peak_monitor_add(&d->peaks);
     if (d->forces)
@@ -233,7 +247,7 @@ static double dot(int n, const double a[], const double b[])
 static void add_power(Rigid *d, double weight)
 {
     const int n = d->n;
-    for (int i = 0; i < 2 * n; i++)
+    for (int i = 0; i < n + d->floors; i++)
         d->damped[i] += weight * d->loss[i] * d->rate[i] * d->rate[i];
     d->input -= weight * d->z[2 * n] * dot(n, d->gamma, d->z + n);
 }
@@ -244,8 +258,8 @@ static void add_power_slope(Rigid *d, double weight)
     const int n = d->n;
     const double a = d->z[2 * n], slope = d->z[2 * n + 1];
     double *q_ddot = d->work;
-    multiply(2 * n, n, d->P, d->y_ddot, q_ddot);
-    for (int i = 0; i < 2 * n; i++)
+    multiply(n + d->floors, n, d->P, d->y_ddot, q_ddot);
+    for (int i = 0; i < n + d->floors; i++)
         d->damped[i] += weight * d->loss[i] * 2 * d->rate[i] * q_ddot[i];
     d->input -= weight * (slope * dot(n, d->gamma, d->z + n) + a * dot(n, d->gamma, d->y_ddot));
 }
@@ -293,21 +307,25 @@ static double walk(Rigid *d, const Motion *motion, double duration)
     return duration;
 }
 
-static void report(const Rigid *d, SimResult *result)
+static void report(const Rigid *d, const int like[], SimResult *result)
 {
     result->steps = d->steps;
     result->input_energy_j = d->input;
     result->kinetic_strain_j = 0.5 * dot(2 * d->n, d->z, d->z);
     peak_monitor_report(&d->peaks, result);
-    energy_balance_close(result, d->n, d->n, d->damped);
+    energy_balance_close(result, d->n, like, d->floors, d->damped);
 }
 
 Status engine_rigid(const SceneOptions *o, const Building *b, const CoreBeam *core, const Motion *motion,
                     const EngineOptions *options, SimResult *result, Err *err)
 {
     static const double STEP[] = {[ACCURACY_COARSE] = 2e-3, [ACCURACY_STANDARD] = 1e-3, [ACCURACY_FINE] = 5e-4};
-    Rigid d = {
-        .n = b->n, .size = 2 * b->n + 2, .step = STEP[options->accuracy], .peaks.n = b->n, .forces = options->forces};
+    Rigid d = {.n = b->model.n,
+               .floors = b->n,
+               .size = 2 * b->model.n + 2,
+               .step = STEP[options->accuracy],
+               .peaks.n = b->n,
+               .forces = options->forces};
     memset(result, 0, sizeof *result);
     result->n_floors = result->n_modes = b->n;
     if (d.forces)
@@ -320,7 +338,7 @@ Status engine_rigid(const SceneOptions *o, const Building *b, const CoreBeam *co
             snprintf(result->reason, sizeof result->reason, "t = %.6g s: motion or response is not a finite number",
                      reached);
         } else {
-            report(&d, result);
+            report(&d, b->model.like, result);
         }
     }
     free(d.store);

@@ -89,19 +89,16 @@ const Building *scene_building(const Scene *scene)
 
 static Status zero_gap_modes(const Building *b, const CoreBeam *c, double hz[], Err *err)
 {
-    const int n = b->n, nn = n * n;
-    double *K = malloc(3 * (size_t)nn * sizeof *K);
+    const int n = b->model.n, nn = n * n;
+    double *K = malloc((3 * (size_t)nn + (size_t)n) * sizeof *K);
     if (!K)
-        return fail(err, STATUS_NO_MEMORY, "modes: no memory for %d floors", n);
-    double *M = K + nn, *phi = M + nn;
-    for (int i = 0; i < nn; i++) {
-        K[i] = b->K[i] + c->K[i];
-        M[i] = b->M[i] + c->M[i];
-    }
-    const Status status = linalg_modes(n, K, M, hz, phi, err);
+        return fail(err, STATUS_NO_MEMORY, "modes: no memory for %d degrees of freedom", n);
+    double *M = K + nn, *phi = M + nn, *omega = phi + nn;
+    core_beam_join(c, &b->model, K, M);
+    const Status status = linalg_modes(n, K, M, omega, phi, err);
+    for (int i = 0; i < b->n && status == STATUS_OK; i++)
+        hz[i] = omega[i] / (2 * M_PI);
     free(K);
-    for (int i = 0; i < n && status == STATUS_OK; i++)
-        hz[i] /= 2 * M_PI;
     return status;
 }
 
@@ -116,7 +113,7 @@ Status scene_frequencies(const Scene *scene, const double x[], double building_h
     if (status == STATUS_OK)
         status = zero_gap_modes(&scene->building, core, zero_gap_hz, err);
     for (int i = 0; i < n && status == STATUS_OK; i++) {
-        building_hz[i] = scene->building.omega[i] / (2 * M_PI);
+        building_hz[i] = scene->building.model.omega[i] / (2 * M_PI);
         core_hz[i] = core->omega[i] / (2 * M_PI);
     }
     *core_mass_kg = core->mass_kg;
@@ -132,11 +129,11 @@ Status sim_worker_create(SimWorker **out, const Scene *scene, Err *err)
         return fail(err, STATUS_NO_MEMORY, "simulator: out of memory");
     w->scene = scene;
     w->run = scene->run;
-    Status status = model_create(&w->model, scene->building.n, err);
+    Status status = model_create(&w->model, scene->building.n, scene->building.model.n, err);
     if (status == STATUS_OK && scene->options.sim.forces)
-        status = force_monitor_create(&w->run.forces, scene->building.n, err);
+        status = force_monitor_create(&w->run.forces, scene->building.n, scene->building.model.n, err);
     if (status == STATUS_OK && scene->engine->work_create)
-        status = scene->engine->work_create(&w->run.work, scene->building.n, err);
+        status = scene->engine->work_create(&w->run.work, scene->building.n, scene->building.model.n, err);
     if (status == STATUS_OK)
         *out = w;
     else

@@ -38,7 +38,7 @@ void scene_set_engine(Scene *scene, const struct EngineEntry *engine);
 int scene_n_floors(const Scene *scene);
 const Building *scene_building(const Scene *scene);
 
-/* Undamped natural frequencies [Hz], ascending; each array has room for FLOORS_MAX. x: the design variables, gap_1..n
+/* Undamped natural frequencies [Hz], ascending, the n_floors lowest; each array has room for FLOORS_MAX. x: the design variables, gap_1..n
  * [m], t_base, t_top [m] (n_floors + 2). */
 Status scene_frequencies(const Scene *scene, const double x[], double building_hz[], double core_hz[],
                          double zero_gap_hz[], double *core_mass_kg, Err *err);

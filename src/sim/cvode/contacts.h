@@ -13,7 +13,7 @@
 
 #include "sim/engine.h"
 
-enum { MODES_MAX = 2 * FLOORS_MAX };
+enum { MODES_MAX = 512 }; /* of building and core, for these engines */
 
 typedef struct {
     const SimModel *model;

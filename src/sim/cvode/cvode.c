@@ -3,6 +3,7 @@
 #include "sim/cvode/cvode.h"
 
 #include <cvode/cvode.h>
+#include <stdio.h>
 #include <string.h>
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
@@ -63,7 +64,12 @@ Status cvode_run(const CvodeMethod *method, void *solver, const SimModel *model,
     Status status;
     memset(result, 0, sizeof *result);
     result->n_floors = model->n;
-    result->n_modes = model->nb;
+    result->n_modes = model->n;
+    if (model->m > MODES_MAX) {
+        result->outcome = RUN_ENGINE_FAILED;
+        snprintf(result->reason, sizeof result->reason, "%d modes; cvode has room for %d", model->m, MODES_MAX);
+        return STATUS_OK;
+    }
     if (prepare(&o, method, solver))
         status = fail(err, STATUS_NO_MEMORY, "cvode: could not be set up: %s", o.message[0] ? o.message : "no memory");
     else

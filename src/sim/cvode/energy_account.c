@@ -59,7 +59,7 @@ void energy_account_report(const EnergyAccount *l, const Contacts *c, const Engi
     for (int j = 0; j < model->n && model->nc > 0; j++)
         result->indentation_max_m = fmax(result->indentation_max_m, l->peaks.peak[PEAK_RELATIVE][j] - model->gap[j]);
     peak_monitor_report(&l->peaks, result);
-    energy_balance_close(result, model->nb, model->nc, l->damped);
+    energy_balance_close(result, model->nb, model->like, model->nc, l->damped);
     if (options->end_state) {
         memcpy(options->end_state, q, sizeof *q * (size_t)model->m);
         memcpy(options->end_state + model->m, v, sizeof *v * (size_t)model->m);

@@ -52,7 +52,7 @@ static void layout_level(Level *l, Carve *c, size_t n, size_t modes, size_t floo
 
 static void layout(FastWork *k, Carve *c)
 {
-    const size_t n = (size_t)k->n, floors = (size_t)k->n_pad, modes = 2 * floors;
+    const size_t n = (size_t)k->n, floors = (size_t)k->n_pad, modes = (size_t)k->m_max;
     CARVE(c, modes, &k->omega, &k->zeta, &k->gamma, &k->wd_inverse, &k->decay, &k->flexibility, &k->max_shape,
           &k->max_shape_drift);
     CARVE(c, floors, &k->gap, &k->bubble, &k->peak_u, &k->peak_d, &k->peak_a);
@@ -71,14 +71,20 @@ static void layout(FastWork *k, Carve *c)
         layout_level(&k->level[i], c, n, modes, floors);
 }
 
-Status fast_create(FastWork **out, int n_floors, Err *err)
+static int padded(int n)
+{
+    return (n + PAD - 1) / PAD * PAD;
+}
+
+Status fast_create(FastWork **out, int n_floors, int nb, Err *err)
 {
     *out = NULL;
     FastWork *k = calloc(1, sizeof *k);
     if (!k)
         return fail(err, STATUS_NO_MEMORY, "fast: no memory for its work space");
     k->n = n_floors;
-    k->n_pad = (n_floors + PAD - 1) / PAD * PAD;
+    k->n_pad = padded(n_floors);
+    k->m_max = padded(nb) + k->n_pad;
     Carve count = {0};
     layout(k, &count);
     k->store = carve_store(&count);
@@ -196,7 +202,7 @@ Status engine_fast(const SimModel *model, const Motion *motion, const EngineOpti
 {
     FastWork *own = NULL, *work = options->work;
     if (!work)
-        TRY(fast_create(&own, model->n, err));
+        TRY(fast_create(&own, model->n, model->nb, err));
     if (!work)
         work = own;
     const FastTolerances tolerances = tolerances_of(options);
@@ -207,10 +213,10 @@ Status engine_fast(const SimModel *model, const Motion *motion, const EngineOpti
     return STATUS_OK;
 }
 
-Status engine_fast_create(void **work, int n_floors, Err *err)
+Status engine_fast_create(void **work, int n_floors, int nb, Err *err)
 {
     FastWork *fast;
-    TRY(fast_create(&fast, n_floors, err));
+    TRY(fast_create(&fast, n_floors, nb, err));
     *work = fast;
     return STATUS_OK;
 }

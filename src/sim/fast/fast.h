@@ -32,7 +32,8 @@
 
 typedef struct FastWork FastWork;
 
-Status fast_create(FastWork **out, int n_floors, Err *err);
+/* For up to n_floors and nb building modes. */
+Status fast_create(FastWork **out, int n_floors, int nb, Err *err);
 void fast_free(FastWork *work); /* NULL is fine */
 
 /* "avx512", "avx2" or "base": the kernel that this processor gets. */

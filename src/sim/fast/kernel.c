@@ -247,10 +247,10 @@ static double share(double part, double whole)
     return whole > 0 ? 100 * part / whole : 0;
 }
 
-static void report_energies(const FastWork *k, SimResult *r)
+static void report_energies(FastWork *k, SimResult *r)
 {
     double contact_work = 0, missed = 0;
-    double damped[MODES_PAD_MAX + 2 * LANES];
+    double *damped = scalars(k->reach.bound_q);
     for (int i = 0; i < k->m_pad; i++) {
         const double q = scalars_const(k->now.q)[i], v = scalars_const(k->now.v)[i], w = scalars_const(k->omega)[i];
         const double energy = 0.5 * (v * v + w * w * q * q);
@@ -269,10 +269,9 @@ static void report_energies(const FastWork *k, SimResult *r)
     const double scale = energy_balance_scale(r->input_energy_j, r->input_energy_j - energy_error);
     r->energy_balance_error = fabs(energy_error) / scale + sqrt(missed / (2 * scale));
     for (int i = 0; i < k->model->nb; i++)
-        r->mode_share_pct[i] = share(damped[i], r->input_energy_j);
-    r->ed1_pct = r->mode_share_pct[0];
-    for (int i = 4; i < 10 && i < k->model->nb; i++)
-        r->ed5_10_pct += r->mode_share_pct[i];
+        if (k->model->like[i] >= 0)
+            r->mode_share_pct[k->model->like[i]] += share(damped[i], r->input_energy_j);
+    energy_balance_sum_shares(r);
     r->edcs_pct = share(r->damped_core_j, r->input_energy_j);
 }
 
@@ -301,7 +300,7 @@ void FAST_KERNEL(FastWork *k, const SimModel *model, const Motion *motion, const
     record_start(k);
     const int arrived = integrate(k, motion, options->duration);
     result->n_floors = model->n;
-    result->n_modes = model->nb;
+    result->n_modes = model->n;
     if (!arrived)
         result->outcome = state_is_finite(k) ? RUN_OUT_OF_STEPS : RUN_NOT_FINITE;
     report_peaks(k, result);

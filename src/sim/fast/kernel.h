@@ -16,8 +16,7 @@
 enum {
     PAD = 8,
     LEVEL_MAX = 24, /* the shortest step is 2^-24 of a sampling interval */
-    FLOORS_PAD_MAX = FLOORS_MAX,
-    MODES_PAD_MAX = 2 * FLOORS_MAX
+    FLOORS_PAD_MAX = FLOORS_MAX
 };
 _Static_assert(FLOORS_PAD_MAX <= 64, "sets of floors are bits of a uint64_t");
 
@@ -92,6 +91,7 @@ typedef struct FastWork {
     const FastTolerances *tolerances;
 
     /* the design */
+    int m_max;                             /* room for so many modes */
     int n, n_pad, nb_pad, m_pad;           /* building modes first, padded apart: core modes start at nb_pad */
     int nc;                                /* core modes that are kept */
     int nf, mf, bf;                        /* n_pad, m_pad, nb_pad in vectors of LANES */
