@@ -176,7 +176,7 @@ include mk/checks.mk mk/figures.mk
 format: ## clang-format over the sources
 	clang-format -i $(wildcard src/*.[ch] src/*/*.[ch] src/*/*/*.[ch] src/*/*/*.inc bench/*.[ch] bench/*/*.[ch] tests/*.[ch] tests/*/*.[ch])
 
-# Manual pages and completion are written by the program itself.
+# Manual pages are written by the program itself; completion asks it.
 SHARE := $(DESTDIR)$(PREFIX)/share
 install: all ## program, manual pages, bash completion, examples; PREFIX=/usr/local DESTDIR=
 	install -D -m 755 imtet $(DESTDIR)$(PREFIX)/bin/imtet
@@ -184,7 +184,7 @@ install: all ## program, manual pages, bash completion, examples; PREFIX=/usr/lo
 	@install -d $(SHARE)/man/man1 $(SHARE)/bash-completion/completions
 	@./imtet --man > $(SHARE)/man/man1/imtet.1
 	@for c in $$(./imtet --commands); do ./imtet --man $$c > $(SHARE)/man/man1/imtet-$$c.1; done
-	@./imtet --completion > $(SHARE)/bash-completion/completions/imtet
+	@install -m 644 scripts/completion.bash $(SHARE)/bash-completion/completions/imtet
 	@for f in LICENSE CITATION.cff README.md CHANGELOG.md results/README.md docs/*.* docs/pictures/*; do install -D -m 644 $$f $(SHARE)/doc/imtet/$$f; done
 	@for f in $(wildcard web/licences/* web/LICENSES*); do install -D -m 644 $$f $(SHARE)/doc/imtet/$$f; done
 

@@ -1,8 +1,7 @@
 /* main.c -- picks the subcommand and turns its status into an exit code.
  *
- * Beside the commands: --help, help [COMMAND], --version [--json]; and for `make install`, --commands, --man [COMMAND]
- * and
- * --completion. */
+ * Beside the commands: --help, help [COMMAND], --version [--json]; for `make install` --man [COMMAND], for that and for
+ * scripts/completion.bash --commands. */
 #include <cblas.h>
 #include <fcntl.h>
 #include <jansson.h>
@@ -90,9 +89,7 @@ static Status run(int argc, char *argv[], Err *err)
         return version(argc, argv, err);
     if (strcmp(argv[1], "--man") == 0)
         return manual(argc, argv, err);
-    if (strcmp(argv[1], "--completion") == 0)
-        completion_write(stdout);
-    else if (strcmp(argv[1], "--commands") == 0)
+    if (strcmp(argv[1], "--commands") == 0)
         for (int i = 0; command_at(i); i++)
             puts(command_at(i)->name);
     else

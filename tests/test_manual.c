@@ -101,9 +101,9 @@ static char *offered(const char *words)
     char command[1024], path[128];
     snprintf(path, sizeof path, "%s/offered", place.folder);
     snprintf(command, sizeof command,
-             "'%s' --completion > %s.sh && bash -c 'source %s.sh; COMP_WORDS=(imtet %s); "
+             "bash -c 'source scripts/completion.bash; COMP_WORDS=(%s %s); "
              "COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _imtet; echo \"${COMPREPLY[@]}\"' > %s",
-             getenv("IMTET"), path, path, words, path);
+             getenv("IMTET"), words, path);
     assert_int_equal(system(command), 0);
     return text_of(path);
 }

@@ -13,6 +13,5 @@ const Command *command_at(int i);                                       /* NULL 
 Status command_find(const char *word, const Command **found, Err *err); /* of that name, or the nearest suggested */
 void usage_write(FILE *out);                                            /* `imtet --help` */
 void manual_write(const Command *command, FILE *out);                   /* a page for man; NULL: imtet(1) */
-void completion_write(FILE *out);                                       /* for bash */
 
 #endif

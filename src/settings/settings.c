@@ -269,16 +269,6 @@ const char *settings_words(int i)
     return OPTIONS[i].words;
 }
 
-int settings_names_file(int i)
-{
-    return OPTIONS[i].kind == KIND_PATH || OPTIONS[i].kind == KIND_PATH_LIST;
-}
-
-unsigned settings_flags(int i)
-{
-    return OPTIONS[i].flags;
-}
-
 static void *field_of(Settings *s, const Option *o)
 {
     return (char *)s + o->offset;
@@ -814,6 +804,10 @@ static void describe(const Option *o, FILE *out)
         fprintf(out, " [%s, %.10g..%.10g]", o->unit, o->min, o->max);
     if (o->kind == KIND_CHOICE)
         fprintf(out, " (%s)", o->words);
+    if (o->kind == KIND_PATH)
+        fprintf(out, " (%s%sFILE)", o->words ? o->words : "", o->words ? "|" : "");
+    if (o->kind == KIND_PATH_LIST)
+        fputs(" (FILE,...)", out);
     fputc('\n', out);
 }
 

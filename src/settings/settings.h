@@ -80,8 +80,6 @@ Status settings_check(const Settings *s, Err *err);
 /* The table itself, line by line. */
 const char *settings_key(int i);   /* "section.key"; NULL behind the last */
 const char *settings_words(int i); /* "a|b|c": of a choice its words, of a path the names that are no file; or NULL */
-int settings_names_file(int i);    /* a path or a list of them */
-unsigned settings_flags(int i);    /* SettingFlags */
 
 /* Old key i and what it is called now; both NULL behind the last. Old keys are read for one release. */
 const char *settings_renamed(int i, const char **now);
