@@ -11,8 +11,9 @@ enum { ITERATIONS_MAX = 60 };
 /* Of the largest force. */
 static const double FORCE_TOLERANCE = 1e-11;
 
-static void layout(Implicit *x, Carve *c)
+static void layout(void *implicit, Carve *c)
 {
+    Implicit *x = implicit;
     const size_t N = (size_t)x->N, real = sizeof(double);
     x->A = carve(c, N * N, real);
     x->B = carve(c, N * N, real);
@@ -31,13 +32,8 @@ Status implicit_create(Implicit *x, int n, int stages, Err *err)
     memset(x, 0, sizeof *x);
     x->n = n;
     x->N = stages * n;
-    Carve count = {0};
-    layout(x, &count);
-    x->store = carve_store(&count);
-    if (!x->store)
-        return fail(err, STATUS_NO_MEMORY, "implicit step: no memory for %zu bytes", count.used);
-    layout(x, &(Carve){.base = x->store});
-    return STATUS_OK;
+    x->store = carve_all(layout, x);
+    return x->store ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "implicit step: no memory for %d unknowns", x->N);
 }
 
 void implicit_free(Implicit *x)

@@ -2,10 +2,7 @@
  *
  * A layout function calls carve for each array. The first pass (base NULL) only counts, the second hands out slices:
  *
- *   Carve c = {0};
- *   layout(m, &c);
- *   m->store = carve_store(&c);                          NULL: out of memory
- *   layout(m, &(Carve){.base = m->store});
+ *   m->store = carve_all(layout, m);                     NULL: out of memory
  *
  * Every slice starts on a cache line. The store is zeroed and released by free. */
 #ifndef IMTET_BASE_CARVE_H
@@ -34,6 +31,23 @@ static inline void *carve_store(const Carve *c)
     const size_t size = c->used ? c->used : CARVE_LINE;
     void *store = aligned_alloc(CARVE_LINE, size);
     return store ? memset(store, 0, size) : NULL;
+}
+
+static inline void *carve_all(void (*layout)(void *object, Carve *c), void *object)
+{
+    Carve c = {0};
+    layout(object, &c);
+    void *store = carve_store(&c);
+    if (store)
+        layout(object, &(Carve){.base = store});
+    return store;
+}
+
+/* A wider slice that begins with the n_old elements of the old one. */
+static inline void *carve_wider(Carve *c, const void *old, size_t n_old, size_t n, size_t size)
+{
+    char *slice = carve(c, n, size);
+    return slice && n_old > 0 ? memcpy(slice, old, n_old * size) : slice;
 }
 
 #endif

@@ -58,19 +58,34 @@ EvaluationTable evaluation_table(size_t n_var, size_t n_obj, size_t n_extra)
     return (EvaluationTable){.n_var = n_var, .n_obj = n_obj, .n_extra = n_extra};
 }
 
-static void layout(EvaluationTable *t, Carve *c)
-{
-    t->row = carve(c, t->n_max, sizeof *t->row);
-    t->x = carve(c, t->n_max * t->n_var, sizeof *t->x);
-    t->f = carve(c, t->n_max * t->n_obj, sizeof *t->f);
-    t->sd = carve(c, t->n_max * t->n_obj, sizeof *t->sd);
-    t->extra = carve(c, t->n_max * t->n_extra, sizeof *t->extra);
-}
-
 static void copy_numbers(double to[], const double from[], size_t n)
 {
-    if (n > 0)
+    if (n > 0 && from)
         memcpy(to, from, n * sizeof *to);
+}
+
+void evaluation_copy(Evaluation *to, const Evaluation *from, size_t n_var, size_t n_obj, size_t n_extra)
+{
+    const Evaluation own = *to;
+    *to = *from;
+    to->x = own.x;
+    to->f = own.f;
+    to->sd = own.sd;
+    to->extra = own.extra;
+    copy_numbers(to->x, from->x, n_var);
+    copy_numbers(to->f, from->f, n_obj);
+    copy_numbers(to->sd, from->sd, n_obj);
+    copy_numbers(to->extra, from->extra, n_extra);
+}
+
+/* The first n rows stay as they are. */
+static void layout(EvaluationTable *t, Carve *c)
+{
+    t->row = carve_wider(c, t->row, t->n, t->n_max, sizeof *t->row);
+    t->x = carve_wider(c, t->x, t->n * t->n_var, t->n_max * t->n_var, sizeof *t->x);
+    t->f = carve_wider(c, t->f, t->n * t->n_obj, t->n_max * t->n_obj, sizeof *t->f);
+    t->sd = carve_wider(c, t->sd, t->n * t->n_obj, t->n_max * t->n_obj, sizeof *t->sd);
+    t->extra = carve_wider(c, t->extra, t->n * t->n_extra, t->n_max * t->n_extra, sizeof *t->extra);
 }
 
 static Status grow(EvaluationTable *t, Err *err)
@@ -78,17 +93,13 @@ static Status grow(EvaluationTable *t, Err *err)
     EvaluationTable wider = *t;
     Carve c = {0};
     wider.n_max = t->n_max > 0 ? 2 * t->n_max : 32;
-    layout(&wider, &c);
+    EvaluationTable counted = wider;
+    layout(&counted, &c);
     wider.store = carve_store(&c);
     if (!wider.store)
         return fail(err, STATUS_NO_MEMORY, "no memory for %zu evaluations", wider.n_max);
     layout(&wider, &(Carve){.base = wider.store});
-    copy_numbers(wider.x, t->x, t->n * t->n_var);
-    copy_numbers(wider.f, t->f, t->n * t->n_obj);
-    copy_numbers(wider.sd, t->sd, t->n * t->n_obj);
-    copy_numbers(wider.extra, t->extra, t->n * t->n_extra);
     for (size_t i = 0; i < wider.n_max; i++) {
-        wider.row[i] = i < t->n ? t->row[i] : (Evaluation){0};
         wider.row[i].x = wider.x + i * t->n_var;
         wider.row[i].f = wider.f + i * t->n_obj;
         wider.row[i].sd = wider.sd + i * t->n_obj;
@@ -123,16 +134,7 @@ Status evaluation_table_append(EvaluationTable *t, const Evaluation *from, Err *
 {
     Evaluation *e;
     TRY(evaluation_table_add(t, &e, err));
-    const Evaluation own = *e;
-    *e = *from;
-    e->x = own.x;
-    e->f = own.f;
-    e->sd = own.sd;
-    e->extra = own.extra;
-    copy_numbers(e->x, from->x, from->x ? t->n_var : 0);
-    copy_numbers(e->f, from->f, from->f ? t->n_obj : 0);
-    copy_numbers(e->sd, from->sd, from->sd ? t->n_obj : 0);
-    copy_numbers(e->extra, from->extra, from->extra ? t->n_extra : 0);
+    evaluation_copy(e, from, t->n_var, t->n_obj, t->n_extra);
     return STATUS_OK;
 }
 

@@ -91,6 +91,19 @@ static inline void problem_repair(const Problem *p, double x[])
         p->repair(x, p->self);
 }
 
+/* The box as the unit cube; a variable without width is 0 there. */
+static inline void problem_to_cube(const Problem *p, const double x[], double u[])
+{
+    for (size_t d = 0; d < p->n_var; d++)
+        u[d] = p->upper[d] > p->lower[d] ? (x[d] - p->lower[d]) / (p->upper[d] - p->lower[d]) : 0.0;
+}
+
+static inline void problem_from_cube(const Problem *p, const double u[], double x[])
+{
+    for (size_t d = 0; d < p->n_var; d++)
+        x[d] = fmin(fmax(p->lower[d] + u[d] * (p->upper[d] - p->lower[d]), p->lower[d]), p->upper[d]);
+}
+
 static inline void problem_close(Problem *p)
 {
     if (p->simulator && p->simulator->close)

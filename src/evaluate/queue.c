@@ -148,17 +148,8 @@ static void copy(double to[], const double from[], size_t n)
 /* Evaluation of before, with the kind that it was asked for. */
 static void take_known(const Queue *q, Slot *s, const Evaluation *row, EvaluationKind kind)
 {
-    const Evaluation own = s->e;
-    s->e = *row;
-    s->e.x = own.x;
-    s->e.f = own.f;
-    s->e.sd = own.sd;
-    s->e.extra = own.extra;
+    evaluation_copy(&s->e, row, q->problem->n_var, q->problem->n_obj, q->problem->n_extra);
     s->e.kind = kind;
-    copy(s->e.x, row->x, q->problem->n_var);
-    copy(s->e.f, row->f, q->problem->n_obj);
-    copy(s->e.sd, row->sd, q->problem->n_obj);
-    copy(s->e.extra, row->extra, q->problem->n_extra);
     problem_judge(q->problem, &s->e, s->f, s->g);
 }
 

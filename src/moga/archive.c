@@ -7,27 +7,30 @@
 #include "evaluate/problem.h"
 #include "moga/dominance.h"
 
-static void layout(Archive *a, Carve *c)
+/* The first n rows stay as they are. */
+static void layout(void *archive, Carve *c)
 {
-    a->X = carve(c, a->n_max * a->n_var, sizeof(double));
-    a->Y = carve(c, a->n_max * a->n_obj, sizeof(double));
-    a->H = carve(c, a->n_max * a->n_con, sizeof(double));
-    a->F = carve(c, a->n_max * a->n_obj, sizeof(double));
-    a->G = carve(c, a->n_max * a->n_con, sizeof(double));
-    a->estimate = carve(c, a->n_max * a->n_obj, sizeof(double));
-    a->S = carve(c, a->n_max * a->n_obj, sizeof(double));
-    a->sd = carve(c, a->n_max * a->n_obj, sizeof(double));
-    a->error = carve(c, a->n_max * a->n_obj, sizeof(double));
-    a->violation = carve(c, a->n_max, sizeof(double));
-    a->generation = carve(c, a->n_max, sizeof(size_t));
-    a->front = carve(c, a->n_max, sizeof(size_t));
-    a->replicates = carve(c, a->n_max, sizeof(size_t));
-    a->slot = carve(c, a->n_slots, sizeof(size_t));
-    a->noise = carve(c, a->n_obj, sizeof(NoiseModel));
-    a->ok = carve(c, a->n_max, 1);
-    a->usable = carve(c, a->n_max, 1);
-    a->kind = carve(c, a->n_max, 1);
-    a->on_front = carve(c, a->n_max, 1);
+    Archive *a = archive;
+    const size_t n = a->n, n_max = a->n_max, v = a->n_var, m = a->n_obj, k = a->n_con;
+    a->X = carve_wider(c, a->X, n * v, n_max * v, sizeof *a->X);
+    a->Y = carve_wider(c, a->Y, n * m, n_max * m, sizeof *a->Y);
+    a->H = carve_wider(c, a->H, n * k, n_max * k, sizeof *a->H);
+    a->F = carve_wider(c, a->F, n * m, n_max * m, sizeof *a->F);
+    a->G = carve_wider(c, a->G, n * k, n_max * k, sizeof *a->G);
+    a->estimate = carve_wider(c, a->estimate, n * m, n_max * m, sizeof *a->estimate);
+    a->S = carve_wider(c, a->S, n * m, n_max * m, sizeof *a->S);
+    a->sd = carve_wider(c, a->sd, n * m, n_max * m, sizeof *a->sd);
+    a->error = carve_wider(c, a->error, n * m, n_max * m, sizeof *a->error);
+    a->violation = carve_wider(c, a->violation, n, n_max, sizeof *a->violation);
+    a->generation = carve_wider(c, a->generation, n, n_max, sizeof *a->generation);
+    a->front = carve_wider(c, a->front, a->n_front, n_max, sizeof *a->front);
+    a->replicates = carve_wider(c, a->replicates, n, n_max, sizeof *a->replicates);
+    a->noise = carve_wider(c, a->noise, n > 0 ? m : 0, m, sizeof *a->noise);
+    a->ok = carve_wider(c, a->ok, n, n_max, 1);
+    a->usable = carve_wider(c, a->usable, n, n_max, 1);
+    a->kind = carve_wider(c, a->kind, n, n_max, 1);
+    a->on_front = carve_wider(c, a->on_front, n, n_max, 1);
+    a->slot = carve(c, a->n_slots, sizeof *a->slot);
 }
 
 static uint64_t hash(size_t n_var, const double x[])
@@ -56,42 +59,21 @@ static size_t design_of(Archive *a, size_t row)
 
 static Status resize(Archive *a, size_t n_max, Err *err)
 {
-    Archive old = *a;
+    Archive counted = *a;
     Carve c = {0};
-    a->n_max = n_max;
-    for (a->n_slots = 4; a->n_slots < 2 * n_max;)
-        a->n_slots *= 2;
-    layout(a, &c);
-    void *store = carve_store(&c);
-    if (!store) {
-        *a = old;
+    counted.n_max = n_max;
+    for (counted.n_slots = 4; counted.n_slots < 2 * n_max;)
+        counted.n_slots *= 2;
+    Archive wider = counted;
+    layout(&counted, &c);
+    wider.store = carve_store(&c);
+    if (!wider.store)
         return fail(err, STATUS_NO_MEMORY, "no memory for an archive of %zu designs", n_max);
-    }
-    layout(a, &(Carve){.base = store});
-    a->store = store;
-    if (old.n > 0) {
-        memcpy(a->X, old.X, old.n * a->n_var * sizeof *a->X);
-        memcpy(a->Y, old.Y, old.n * a->n_obj * sizeof *a->Y);
-        memcpy(a->H, old.H, old.n * a->n_con * sizeof *a->H);
-        memcpy(a->F, old.F, old.n * a->n_obj * sizeof *a->F);
-        memcpy(a->G, old.G, old.n * a->n_con * sizeof *a->G);
-        memcpy(a->estimate, old.estimate, old.n * a->n_obj * sizeof *a->estimate);
-        memcpy(a->S, old.S, old.n * a->n_obj * sizeof *a->S);
-        memcpy(a->sd, old.sd, old.n * a->n_obj * sizeof *a->sd);
-        memcpy(a->error, old.error, old.n * a->n_obj * sizeof *a->error);
-        memcpy(a->replicates, old.replicates, old.n * sizeof *a->replicates);
-        memcpy(a->noise, old.noise, a->n_obj * sizeof *a->noise);
-        memcpy(a->usable, old.usable, old.n);
-        memcpy(a->violation, old.violation, old.n * sizeof *a->violation);
-        memcpy(a->generation, old.generation, old.n * sizeof *a->generation);
-        memcpy(a->front, old.front, old.n_front * sizeof *a->front);
-        memcpy(a->ok, old.ok, old.n);
-        memcpy(a->kind, old.kind, old.n);
-        memcpy(a->on_front, old.on_front, old.n);
-        for (size_t row = 0; row < old.n; row++)
-            design_of(a, row);
-    }
-    free(old.store);
+    layout(&wider, &(Carve){.base = wider.store});
+    free(a->store);
+    *a = wider;
+    for (size_t row = 0; row < a->n; row++)
+        design_of(a, row);
     return STATUS_OK;
 }
 

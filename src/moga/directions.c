@@ -147,6 +147,18 @@ Status directions_spread(Directions *d, size_t n_obj, size_t n, Err *err)
     return fail(err, STATUS_NO_MEMORY, "no memory for %zu directions", n);
 }
 
+void directions_unit(const Directions *d, double unit[])
+{
+    for (size_t r = 0; r < d->n; r++) {
+        const double *w = d->W + r * d->n_obj;
+        double square = 0.0;
+        for (size_t k = 0; k < d->n_obj; k++)
+            square += w[k] * w[k];
+        for (size_t k = 0; k < d->n_obj; k++)
+            unit[r * d->n_obj + k] = w[k] / sqrt(square);
+    }
+}
+
 void directions_free(Directions *d)
 {
     free(d->W);

@@ -21,8 +21,9 @@ struct Infill {
     void *store;
 };
 
-static void layout(Infill *q, Carve *c)
+static void layout(void *infill, Carve *c)
 {
+    Infill *q = infill;
     const size_t m = q->n_obj;
     q->normalisation.ideal = carve(c, m, sizeof(double));
     q->normalisation.width = carve(c, m, sizeof(double));
@@ -44,23 +45,16 @@ Status infill_create(Infill **out, InfillKind kind, size_t candidates_max, const
     q->n_dir = vectors->n;
     q->kind = kind;
     q->n_max = candidates_max;
-    Carve c = {0};
-    layout(q, &c);
-    q->store = carve_store(&c);
+    q->store = carve_all(layout, q);
     if (!q->store) {
         infill_free(q);
         *out = NULL;
         return fail(err, STATUS_NO_MEMORY, "no memory for infill among %zu designs", candidates_max);
     }
-    layout(q, &(Carve){.base = q->store});
-    for (size_t r = 0; r < q->n_dir; r++) {
-        const double *w = vectors->W + r * q->n_obj;
-        double square = 0.0;
+    directions_unit(vectors, q->unit);
+    for (size_t r = 0; r < q->n_dir; r++)
         for (size_t k = 0; k < q->n_obj; k++)
-            square += w[k] * w[k];
-        for (size_t k = 0; k < q->n_obj; k++)
-            q->across[k * q->n_dir + r] = q->unit[r * q->n_obj + k] = w[k] / sqrt(square);
-    }
+            q->across[k * q->n_dir + r] = q->unit[r * q->n_obj + k];
     return STATUS_OK;
 }
 

@@ -2,8 +2,9 @@
 
 #include "base/carve.h"
 
-static void layout(Population *p, Carve *c)
+static void layout(void *population, Carve *c)
 {
+    Population *p = population;
     p->X = carve(c, p->n_max * p->n_var, sizeof(double));
     p->F = carve(c, p->n_max * p->n_obj, sizeof(double));
     p->violation = carve(c, p->n_max, sizeof(double));
@@ -15,13 +16,8 @@ static void layout(Population *p, Carve *c)
 Status population_create(Population *p, size_t n_max, size_t n_var, size_t n_obj, Err *err)
 {
     *p = (Population){.n_max = n_max, .n_var = n_var, .n_obj = n_obj};
-    Carve c = {0};
-    layout(p, &c);
-    p->store = carve_store(&c);
-    if (!p->store)
-        return fail(err, STATUS_NO_MEMORY, "no memory for a population of %zu designs", n_max);
-    layout(p, &(Carve){.base = p->store});
-    return STATUS_OK;
+    p->store = carve_all(layout, p);
+    return p->store ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for a population of %zu designs", n_max);
 }
 
 void population_free(Population *p)

@@ -25,8 +25,9 @@ struct Selection {
     void *store;
 };
 
-static void layout(Selection *s, Carve *c)
+static void layout(void *selection, Carve *c)
 {
+    Selection *s = selection;
     const size_t n = s->n_max, m = s->n_obj, r = s->n_dir;
     s->unit = carve(c, r * m, sizeof(double));
     s->normalisation.ideal = carve(c, m, sizeof(double));
@@ -68,23 +69,13 @@ Status selection_create(Selection **out, SelectionKind kind, size_t n_max, const
     s->n_max = n_max;
     s->n_obj = s->normalisation.n_obj = directions->n_obj;
     s->n_dir = directions->n;
-    Carve c = {0};
-    layout(s, &c);
-    s->store = carve_store(&c);
+    s->store = carve_all(layout, s);
     if (!s->store) {
         selection_free(s);
         *out = NULL;
         return fail(err, STATUS_NO_MEMORY, "no memory for the environmental selection of %zu designs", n_max);
     }
-    layout(s, &(Carve){.base = s->store});
-    for (size_t r = 0; r < s->n_dir; r++) {
-        const double *w = directions->W + r * s->n_obj;
-        double square = 0.0;
-        for (size_t k = 0; k < s->n_obj; k++)
-            square += w[k] * w[k];
-        for (size_t k = 0; k < s->n_obj; k++)
-            s->unit[r * s->n_obj + k] = w[k] / sqrt(square);
-    }
+    directions_unit(directions, s->unit);
     measure_gaps(s);
     return STATUS_OK;
 }

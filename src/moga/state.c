@@ -18,9 +18,10 @@ static size_t n_vectors(size_t n_obj, const SearchConfig *c)
     return wanted < min ? min : wanted < VECTORS_MAX ? wanted : VECTORS_MAX;
 }
 
-static void layout(Search *s, size_t n_pool, Carve *c)
+static void layout(void *search, Carve *c)
 {
-    const size_t n_var = s->problem->n_var, n_obj = s->problem->n_obj;
+    Search *s = search;
+    const size_t n_var = s->problem->n_var, n_obj = s->problem->n_obj, n_pool = s->pool.n_max;
     Batch *b = &s->batch;
     Scratch *w = &s->scratch;
     b->X = carve(c, b->n_max * n_var, sizeof(double));
@@ -83,13 +84,8 @@ Status state_create(Search *s, Err *err)
     TRY(population_create(&s->population, 2 * population + pending, p->n_var, p->n_obj, err));
     TRY(population_create(&s->offspring.members, n_pool, p->n_var, p->n_obj, err));
     TRY(population_create(&s->pool, n_pool, p->n_var, p->n_obj, err));
-    Carve c = {0};
-    layout(s, n_pool, &c);
-    s->store = carve_store(&c);
-    if (!s->store)
-        return fail(err, STATUS_NO_MEMORY, "no memory for a search with population %zu", population);
-    layout(s, n_pool, &(Carve){.base = s->store});
-    return STATUS_OK;
+    s->store = carve_all(layout, s);
+    return s->store ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for a search with population %zu", population);
 }
 
 void state_free(Search *s)

@@ -31,8 +31,9 @@ struct Surrogate {
 
 static size_t descent_length(const Surrogate *s);
 
-static void layout(Surrogate *s, Carve *c)
+static void layout(void *surrogate, Carve *c)
 {
+    Surrogate *s = surrogate;
     const size_t n_var = s->problem->n_var;
     s->U = carve(c, s->n_max * n_var, sizeof(double));
     s->F = carve(c, s->n_max * s->n_out, sizeof(double));
@@ -56,23 +57,15 @@ Status surrogate_create(Surrogate **out, const Problem *problem, size_t surrogat
     s->n_out = problem->n_obj + problem->n_con;
     s->n_max = surrogate_max;
     s->predict_max = predict_max;
-    Status status = STATUS_OK;
-    if (problem->n_var <= RBF_DIM_MAX)
+    s->store = carve_all(layout, s);
+    Status status = s->store ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for %zu predictions", predict_max);
+    if (status == STATUS_OK && problem->n_var <= RBF_DIM_MAX)
         status = rbf_create(&s->rbf, surrogate_max, problem->n_var, s->n_out, err);
-    if (status == STATUS_OK) {
-        Carve c = {0};
-        layout(s, &c);
-        s->store = carve_store(&c);
-        if (!s->store)
-            status = fail(err, STATUS_NO_MEMORY, "no memory for %zu predictions", predict_max);
-    }
     if (status != STATUS_OK) {
         surrogate_free(s);
         *out = NULL;
-        return status;
     }
-    layout(s, &(Carve){.base = s->store});
-    return STATUS_OK;
+    return status;
 }
 
 void surrogate_free(Surrogate *s)
@@ -151,12 +144,6 @@ static size_t select_centres(Surrogate *s, const Archive *a, Infill *near)
     return s->n_max;
 }
 
-static void to_unit_cube(const Problem *p, const double x[], double u[])
-{
-    for (size_t d = 0; d < p->n_var; d++)
-        u[d] = p->upper[d] > p->lower[d] ? (x[d] - p->lower[d]) / (p->upper[d] - p->lower[d]) : 0.0;
-}
-
 static void measure_ranges(Surrogate *s, const Archive *a)
 {
     for (size_t k = 0; k < s->n_out; k++) {
@@ -183,7 +170,7 @@ Status surrogate_fit(Surrogate *s, const Archive *a, Infill *near, Err *err)
         return STATUS_OK;
     for (size_t i = 0; i < s->n; i++) {
         const size_t row = s->centre[i];
-        to_unit_cube(s->problem, a->X + row * a->n_var, s->U + i * a->n_var);
+        problem_to_cube(s->problem, a->X + row * a->n_var, s->U + i * a->n_var);
         memcpy(s->F + i * s->n_out, a->F + row * a->n_obj, a->n_obj * sizeof *s->F);
         memcpy(s->F + i * s->n_out + a->n_obj, a->G + row * a->n_con, a->n_con * sizeof *s->F);
         for (size_t k = 0; k < s->n_out; k++)
@@ -237,7 +224,7 @@ static size_t gather(Surrogate *s, const Population *population, size_t first)
     size_t n = 0;
     for (size_t i = first; i < population->n; i++)
         if (population->row[i] == PREDICTED) {
-            to_unit_cube(s->problem, population->X + i * population->n_var, s->u + n * population->n_var);
+            problem_to_cube(s->problem, population->X + i * population->n_var, s->u + n * population->n_var);
             s->member[n++] = i;
         }
     return n;
@@ -329,12 +316,6 @@ static void descend(const Surrogate *s, const Infill *near, size_t n, const size
         memcpy(U + p * n_var, w[p].best, n_var * sizeof *U);
 }
 
-static void from_unit_cube(const Problem *p, const double u[], double x[])
-{
-    for (size_t d = 0; d < p->n_var; d++)
-        x[d] = fmin(fmax(p->lower[d] + u[d] * (p->upper[d] - p->lower[d]), p->lower[d]), p->upper[d]);
-}
-
 void surrogate_descend(Surrogate *s, const Archive *a, const Infill *near, size_t n, const size_t vectors[], double X[])
 {
     const Problem *p = s->problem;
@@ -344,10 +325,10 @@ void surrogate_descend(Surrogate *s, const Archive *a, const Infill *near, size_
         const size_t count = n - i < RBF_BLOCK ? n - i : RBF_BLOCK;
         double *U = s->descent + i * length;
         for (size_t j = 0; j < count; j++)
-            to_unit_cube(p, a->X + infill_best(near, vectors[i + j]) * p->n_var, U + j * p->n_var);
+            problem_to_cube(p, a->X + infill_best(near, vectors[i + j]) * p->n_var, U + j * p->n_var);
         descend(s, near, count, vectors + i, U);
         for (size_t j = 0; j < count; j++)
-            from_unit_cube(p, U + j * p->n_var, X + (i + j) * p->n_var);
+            problem_from_cube(p, U + j * p->n_var, X + (i + j) * p->n_var);
     }
 }
 

@@ -20,16 +20,3 @@ int goal_holds(const Goal *goal, const Problem *problem, const double f[], const
             return 0;
     return 1;
 }
-
-void cube_from(const Problem *p, const double x[], double u[])
-{
-    for (size_t d = 0; d < p->n_var; d++)
-        u[d] = p->upper[d] > p->lower[d] ? (x[d] - p->lower[d]) / (p->upper[d] - p->lower[d]) : 0.0;
-}
-
-void cube_to(const Problem *p, const double u[], double x[])
-{
-    for (size_t d = 0; d < p->n_var; d++)
-        x[d] = fmin(fmax(p->lower[d] + u[d] * (p->upper[d] - p->lower[d]), p->lower[d]), p->upper[d]);
-    problem_repair(p, x);
-}

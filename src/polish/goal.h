@@ -18,7 +18,4 @@ double goal_value(const Goal *goal, size_t n_obj, const double f[]);
 /* Every objective a number and every bound kept. */
 int goal_holds(const Goal *goal, const Problem *problem, const double f[], const double g[]);
 
-void cube_from(const Problem *problem, const double x[], double u[]);
-void cube_to(const Problem *problem, const double u[], double x[]); /* within the box, and repaired */
-
 #endif

@@ -90,7 +90,7 @@ static double merit(unsigned n, const double u[], double gradient[], void *user)
 static void add(Local *l, const double x[], const double f[], double noise)
 {
     const size_t m = l->problem->n_obj;
-    cube_from(l->problem, x, l->U + l->n * l->problem->n_var);
+    problem_to_cube(l->problem, x, l->U + l->n * l->problem->n_var);
     memcpy(l->F + l->n * m, f, m * sizeof *f);
     for (size_t k = 0; k < m; k++)
         l->N[l->n * m + k] = noise;
@@ -105,7 +105,7 @@ static Status fit(Local *l, Err *err)
         TRY(rbf_tune(l->rbf, err));
         l->n_tuned = l->n;
     }
-    cube_from(l->problem, l->result->x, l->u_best);
+    problem_to_cube(l->problem, l->result->x, l->u_best);
     rbf_eval(l->rbf, 1, l->u_best, l->f, l->error);
     for (size_t k = 0; k < l->problem->n_obj; k++) {
         l->shift[k] = l->result->f[k] - l->f[k];
@@ -152,7 +152,8 @@ static Status propose(Local *l, double reach, double x[], Err *err)
     if (memcmp(l->u, l->u_best, n * sizeof *l->u) == 0)
         for (size_t d = 0; d < n; d++)
             l->u[d] = l->low[d] + random_uniform(&l->random) * (l->high[d] - l->low[d]);
-    cube_to(l->problem, l->u, x);
+    problem_from_cube(l->problem, l->u, x);
+    problem_repair(l->problem, x);
     return STATUS_OK;
 }
 

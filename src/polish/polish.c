@@ -94,7 +94,8 @@ static void evaluate(Polish *p, const double u[])
         return;
     }
     memcpy(p->u, u, q->n_var * sizeof *u);
-    cube_to(q, u, p->x);
+    problem_from_cube(q, u, p->x);
+    problem_repair(q, p->x);
     p->status = queue_evaluate(p->queue, 1, p->x, NULL, p->f, p->g, &ok, p->err);
     p->known = 1;
     p->ok = p->status == STATUS_OK && ok;
@@ -164,7 +165,7 @@ Status polish_knows(const char *algorithm, Err *err)
 static Status evaluate_start(Polish *p, const double start[], double u[])
 {
     const Problem *q = p->problem;
-    cube_from(q, start, u);
+    problem_to_cube(q, start, u);
     evaluate(p, u);
     if (p->status != STATUS_OK)
         return p->status;

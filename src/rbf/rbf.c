@@ -11,8 +11,9 @@
 #include "rbf/kernel.h"
 #include "rbf/model.h"
 
-static void layout(Rbf *m, Carve *c)
+static void layout(void *interpolant, Carve *c)
 {
+    Rbf *m = interpolant;
     const size_t n = m->n_max, d = m->n_dim, t = m->n_tail_max, spread = d * m->stride + KERNEL_LANES;
     m->C = carve(c, 3 * spread, sizeof(double));
     m->F = carve(c, m->n_out * n, sizeof(double));
@@ -67,16 +68,12 @@ Status rbf_create(Rbf **out, size_t n_max, size_t n_dim, size_t n_out, Err *err)
     m->n_tail_max = 1 + 2 * n_dim;
     m->stride = (n_max + KERNEL_LANES - 1) / KERNEL_LANES * KERNEL_LANES;
     m->n_workers = n_out < (size_t)threads ? n_out : (size_t)threads;
-    Carve c = {0};
-    layout(m, &c);
-    m->store = carve_store(&c);
+    m->store = carve_all(layout, m);
     if (!m->store) {
         rbf_free(m);
         *out = NULL;
-        return fail(err, STATUS_NO_MEMORY, "no memory for an interpolant on %zu designs (%.1f GB)", n_max,
-                    (double)c.used / 1e9);
+        return fail(err, STATUS_NO_MEMORY, "no memory for an interpolant on %zu designs", n_max);
     }
-    layout(m, &(Carve){.base = m->store});
     for (size_t k = 0; k < n_out; k++) {
         m->output[k].form = (RbfForm){RBF_MATERN, RBF_LINEAR, NUGGET_MIN};
         for (size_t d = 0; d < n_dim; d++)

@@ -68,7 +68,7 @@ static const char ENGINE_BARS[] = ENGINE_LIST(X);
 
 static const Option OPTIONS[] = {
     PATH(building.model, "guyan", "guyan|appendix",
-         "guyan | appendix | a folder with K.csv and M.csv, storeys.csv or a frame (docs/building.md)",
+         "a building of the program, or a folder with K.csv and M.csv, storeys.csv or a frame (docs/building.md)",
          .flags = SETTING_FREE),
     CHOICE(building.units, BuildingUnits, CHOICE_WORDS(BUILDING_UNITS_LIST), "auto",
            "of K.csv and M.csv; auto: N/m and kg, refused where no building has such a period"),
@@ -119,8 +119,7 @@ static const Option OPTIONS[] = {
     REAL(contact.poisson, "-", "0.3", 0, 0.5, "Poisson's ratio of both bodies"),
 
     PATH(motion.record, "builtin:kobe-like", CHOICE_WORDS(BUILTIN_MOTION_LIST),
-         "a ground motion file, or builtin:kobe-like | builtin:elcentro-like | builtin:sylmar-like",
-         .flags = SETTING_FREE),
+         "ground motion: one of the program, or a file (docs/motions.md)", .flags = SETTING_FREE),
     PATH_LIST(motion.records, "none",
               "further records of the same study, a comma list: every design is simulated under each (sim.robust)",
               .flags = SETTING_FREE),

@@ -50,8 +50,9 @@ typedef struct {
     void *store;
 } Rigid;
 
-static void layout(Rigid *d, Carve *c)
+static void layout(void *rigid, Carve *c)
 {
+    Rigid *d = rigid;
     const size_t n = (size_t)d->n, size = (size_t)d->size, real = sizeof(double);
     const size_t floors = (size_t)d->floors, both = n + floors;
     d->omega = carve(c, n, real);
@@ -181,12 +182,9 @@ static void set_damping(Rigid *d, const double building_gamma[], const double co
 static Status prepare(Rigid *d, const SceneOptions *o, const Building *b, const CoreBeam *core, Err *err)
 {
     const int n = d->n;
-    Carve count = {0};
-    layout(d, &count);
-    d->store = carve_store(&count);
+    d->store = carve_all(layout, d);
     if (!d->store)
         return fail(err, STATUS_NO_MEMORY, "rigid: no memory for %d floors", n);
-    layout(d, &(Carve){.base = d->store});
     TRY(find_pair_modes(d, b, core, err));
     project(d, 0, n, b->model.phi, b->model.M);
     project(d, n, d->floors, core->phi, core->M);
