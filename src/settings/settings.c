@@ -5,6 +5,7 @@
 #include <float.h>
 #include <ini.h>
 #include <limits.h>
+#include <stdarg.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -36,29 +37,20 @@ typedef char OptionText[OPTION_TEXT_MAX];
 
 /* A line of the table by its kind. The key is the path of the field; what follows the named columns is the help, and
  * .flags = ... where there are some. */
-#define REAL(field, unit_, standard_, min_, max_, ...)                                                                 \
-    {                                                                                                                  \
-        .key = #field, .kind = KIND_REAL, .offset = AT_TYPED(field, double), .unit = unit_, .standard = standard_,     \
-        .min = min_, .max = max_, .help = __VA_ARGS__                                                                  \
-    }
-#define WHOLE(field, standard_, min_, max_, ...)                                                                       \
-    {                                                                                                                  \
-        .key = #field, .kind = KIND_WHOLE, .offset = AT_TYPED(field, long), .unit = "-", .standard = standard_,        \
-        .min = min_, .max = max_, .help = __VA_ARGS__                                                                  \
-    }
-#define CHOICE(field, type, words_, standard_, ...)                                                                    \
-    {                                                                                                                  \
-        .key = #field, .kind = KIND_CHOICE, .offset = AT_TYPED(field, type), .words = words_, .standard = standard_,   \
-        .help = __VA_ARGS__                                                                                            \
-    }
-#define STRING(field, kind_, words_, standard_, ...)                                                                   \
-    {                                                                                                                  \
-        .key = #field, .kind = kind_, .offset = AT_TYPED(field, OptionText), .words = words_, .standard = standard_,   \
-        .help = __VA_ARGS__                                                                                            \
-    }
-#define TEXT(field, standard_, ...)        STRING(field, KIND_TEXT, NULL, standard_, __VA_ARGS__)
-#define PATH(field, standard_, names, ...) STRING(field, KIND_PATH, names, standard_, __VA_ARGS__)
-#define PATH_LIST(field, standard_, ...)   STRING(field, KIND_PATH_LIST, NULL, standard_, __VA_ARGS__)
+/* clang-format off */
+#define OPTION(kind_, field, type, standard_, ...) \
+    {.key = #field, .kind = kind_, .offset = AT_TYPED(field, type), .standard = standard_, .help = __VA_ARGS__}
+#define REAL(field, unit_, standard_, min_, max_, ...) \
+    OPTION(KIND_REAL, field, double, standard_, __VA_ARGS__, .unit = unit_, .min = min_, .max = max_)
+#define WHOLE(field, standard_, min_, max_, ...) \
+    OPTION(KIND_WHOLE, field, long, standard_, __VA_ARGS__, .unit = "-", .min = min_, .max = max_)
+#define CHOICE(field, type, words_, standard_, ...) \
+    OPTION(KIND_CHOICE, field, type, standard_, __VA_ARGS__, .words = words_)
+#define PATH(field, standard_, words_, ...) \
+    OPTION(KIND_PATH, field, OptionText, standard_, __VA_ARGS__, .words = words_)
+#define PATH_LIST(field, standard_, ...) OPTION(KIND_PATH_LIST, field, OptionText, standard_, __VA_ARGS__)
+#define TEXT(field, standard_, ...) OPTION(KIND_TEXT, field, OptionText, standard_, __VA_ARGS__)
+/* clang-format on */
 
 /* "fast|cvode|...": the first name brings no bar with it. */
 #define X(upper, lower) "|" #lower
@@ -584,80 +576,72 @@ static int take_pair(void *user, const char *section, const char *name, const ch
 }
 
 /* The rules that tie settings together: each broken one is handed to `broken` with the fields it ties. */
-typedef void (*BrokenFn)(const size_t fields[3], const char *text, void *user);
+typedef struct {
+    void (*broken)(const size_t fields[3], const char *text, void *user);
+    void *user;
+} Rules;
 
-static void check_motion(const MotionOptions *m, BrokenFn broken, void *user)
+__attribute__((format(printf, 3, 4))) static void break_rule(const Rules *r, const size_t fields[3], const char *format,
+                                                             ...)
 {
-    Err e;
-    char scalings[SCALINGS_TEXT_MAX];
-    if (motion_scalings(m, scalings) > 1) {
-        fail(&e, STATUS_BAD_DATA, "motion: a record is scaled in one way, not in several: %s", scalings);
-        broken((size_t[]){AT(motion.target), AT(motion.sa_g), AT(motion.factor)}, e.text, user);
-    }
-    if (!(m->target_from_s < m->target_to_s)) {
-        fail(&e, STATUS_BAD_DATA, "motion.target_from_s: %g must be below motion.target_to_s = %g", m->target_from_s,
-             m->target_to_s);
-        broken((size_t[]){AT(motion.target_from_s), AT(motion.target_to_s), AT(motion.target)}, e.text, user);
-    }
-    if (!(m->ec8_tb_s <= m->ec8_tc_s && m->ec8_tc_s <= m->ec8_td_s)) {
-        fail(&e, STATUS_BAD_DATA, "motion.ec8_tb_s: TB = %g, TC = %g and TD = %g must rise", m->ec8_tb_s, m->ec8_tc_s,
-             m->ec8_td_s);
-        broken((size_t[]){AT(motion.ec8_tb_s), AT(motion.ec8_tc_s), AT(motion.ec8_td_s)}, e.text, user);
-    }
-    if (!(m->asce7_sd1_g / m->asce7_sds_g <= m->asce7_tl_s)) {
-        fail(&e, STATUS_BAD_DATA, "motion.asce7_tl_s: TL = %g must not be below TS = SD1 / SDS = %g", m->asce7_tl_s,
-             m->asce7_sd1_g / m->asce7_sds_g);
-        broken((size_t[]){AT(motion.asce7_tl_s), AT(motion.asce7_sd1_g), AT(motion.asce7_sds_g)}, e.text, user);
-    }
-    if (m->highpass_hz > 0 && m->lowpass_hz > 0 && m->highpass_hz >= m->lowpass_hz) {
-        fail(&e, STATUS_BAD_DATA, "motion.highpass_hz: %g must be below motion.lowpass_hz = %g", m->highpass_hz,
-             m->lowpass_hz);
-        broken((size_t[]){AT(motion.highpass_hz), AT(motion.lowpass_hz), AT(motion.lowpass_hz)}, e.text, user);
-    }
+    char text[sizeof((Err *)0)->text];
+    va_list values;
+    va_start(values, format);
+    vsnprintf(text, sizeof text, format, values);
+    va_end(values);
+    r->broken(fields, text, r->user);
 }
 
-static void check_rules(const Settings *s, BrokenFn broken, void *user)
+static void check_motion(const MotionOptions *m, const Rules *r)
 {
-    Err e;
-    check_motion(&s->motion, broken, user);
-    if (s->design.gap_min_m >= s->design.gap_max_m) {
-        fail(&e, STATUS_BAD_DATA, "design.gap_min_m: %g must be below design.gap_max_m = %g", s->design.gap_min_m,
-             s->design.gap_max_m);
-        broken((size_t[]){AT(design.gap_min_m), AT(design.gap_max_m), AT(design.gap_max_m)}, e.text, user);
-    }
-    if (s->design.thickness_min_m >= s->design.thickness_max_m) {
-        fail(&e, STATUS_BAD_DATA, "design.thickness_min_m: %g must be below design.thickness_max_m = %g",
-             s->design.thickness_min_m, s->design.thickness_max_m);
-        broken((size_t[]){AT(design.thickness_min_m), AT(design.thickness_max_m), AT(design.thickness_max_m)}, e.text,
-               user);
-    }
-    if (s->sim.gap_tolerance_m > 0.0 && s->sim.replicates < 2) {
-        fail(&e, STATUS_BAD_DATA, "sim.gap_tolerance_m: needs replicates that differ: set sim.replicates to 2 or more");
-        broken((size_t[]){AT(sim.gap_tolerance_m), AT(sim.replicates), AT(sim.replicates)}, e.text, user);
-    }
-    if (s->problem.kind == PROBLEM_EXTERNAL && strcmp(s->problem.command, "none") == 0) {
-        fail(&e, STATUS_BAD_DATA,
-             "problem.command: is none; problem.kind = external needs the command of the simulator");
-        broken((size_t[]){AT(problem.command), AT(problem.kind), AT(problem.kind)}, e.text, user);
-    }
-    if (s->search.replicates_min > s->search.replicates_max) {
-        fail(&e, STATUS_BAD_DATA, "search.replicates_min: %ld is above search.replicates_max = %ld",
-             s->search.replicates_min, s->search.replicates_max);
-        broken((size_t[]){AT(search.replicates_min), AT(search.replicates_max), AT(search.replicates_max)}, e.text,
-               user);
-    }
-    if (s->search.replicates_min > 1 && !(s->search.replicate_share > 0.0)) {
-        fail(&e, STATUS_BAD_DATA,
-             "search.replicates_min: %ld simulations of a design need search.replicate_share above 0",
-             s->search.replicates_min);
-        broken((size_t[]){AT(search.replicates_min), AT(search.replicate_share), AT(search.replicate_share)}, e.text,
-               user);
-    }
-    if (s->core.section == CORE_BOX && 2 * s->design.thickness_max_m > s->core.side_m) {
-        fail(&e, STATUS_BAD_DATA, "design.thickness_max_m: twice %g m does not fit into core.side_m = %g",
-             s->design.thickness_max_m, s->core.side_m);
-        broken((size_t[]){AT(design.thickness_max_m), AT(core.side_m), AT(core.section)}, e.text, user);
-    }
+    char scalings[SCALINGS_TEXT_MAX];
+    if (motion_scalings(m, scalings) > 1)
+        break_rule(r, (size_t[]){AT(motion.target), AT(motion.sa_g), AT(motion.factor)},
+                   "motion: a record is scaled in one way, not in several: %s", scalings);
+    if (!(m->target_from_s < m->target_to_s))
+        break_rule(r, (size_t[]){AT(motion.target_from_s), AT(motion.target_to_s), AT(motion.target)},
+                   "motion.target_from_s: %g must be below motion.target_to_s = %g", m->target_from_s, m->target_to_s);
+    if (!(m->ec8_tb_s <= m->ec8_tc_s && m->ec8_tc_s <= m->ec8_td_s))
+        break_rule(r, (size_t[]){AT(motion.ec8_tb_s), AT(motion.ec8_tc_s), AT(motion.ec8_td_s)},
+                   "motion.ec8_tb_s: TB = %g, TC = %g and TD = %g must rise", m->ec8_tb_s, m->ec8_tc_s, m->ec8_td_s);
+    if (!(m->asce7_sd1_g / m->asce7_sds_g <= m->asce7_tl_s))
+        break_rule(r, (size_t[]){AT(motion.asce7_tl_s), AT(motion.asce7_sd1_g), AT(motion.asce7_sds_g)},
+                   "motion.asce7_tl_s: TL = %g must not be below TS = SD1 / SDS = %g", m->asce7_tl_s,
+                   m->asce7_sd1_g / m->asce7_sds_g);
+    if (m->highpass_hz > 0 && m->lowpass_hz > 0 && m->highpass_hz >= m->lowpass_hz)
+        break_rule(r, (size_t[]){AT(motion.highpass_hz), AT(motion.lowpass_hz), AT(motion.lowpass_hz)},
+                   "motion.highpass_hz: %g must be below motion.lowpass_hz = %g", m->highpass_hz, m->lowpass_hz);
+}
+
+static void check_rules(const Settings *s, const Rules *r)
+{
+    check_motion(&s->motion, r);
+    if (s->design.gap_min_m >= s->design.gap_max_m)
+        break_rule(r, (size_t[]){AT(design.gap_min_m), AT(design.gap_max_m), AT(design.gap_max_m)},
+                   "design.gap_min_m: %g must be below design.gap_max_m = %g", s->design.gap_min_m,
+                   s->design.gap_max_m);
+    if (s->design.thickness_min_m >= s->design.thickness_max_m)
+        break_rule(r, (size_t[]){AT(design.thickness_min_m), AT(design.thickness_max_m), AT(design.thickness_max_m)},
+                   "design.thickness_min_m: %g must be below design.thickness_max_m = %g", s->design.thickness_min_m,
+                   s->design.thickness_max_m);
+    if (s->sim.gap_tolerance_m > 0.0 && s->sim.replicates < 2)
+        break_rule(r, (size_t[]){AT(sim.gap_tolerance_m), AT(sim.replicates), AT(sim.replicates)},
+                   "sim.gap_tolerance_m: needs replicates that differ: set sim.replicates to 2 or more");
+    if (s->problem.kind == PROBLEM_EXTERNAL && strcmp(s->problem.command, "none") == 0)
+        break_rule(r, (size_t[]){AT(problem.command), AT(problem.kind), AT(problem.kind)},
+                   "problem.command: is none; problem.kind = external needs the command of the simulator");
+    if (s->search.replicates_min > s->search.replicates_max)
+        break_rule(r, (size_t[]){AT(search.replicates_min), AT(search.replicates_max), AT(search.replicates_max)},
+                   "search.replicates_min: %ld is above search.replicates_max = %ld", s->search.replicates_min,
+                   s->search.replicates_max);
+    if (s->search.replicates_min > 1 && !(s->search.replicate_share > 0.0))
+        break_rule(r, (size_t[]){AT(search.replicates_min), AT(search.replicate_share), AT(search.replicate_share)},
+                   "search.replicates_min: %ld simulations of a design need search.replicate_share above 0",
+                   s->search.replicates_min);
+    if (s->core.section == CORE_BOX && 2 * s->design.thickness_max_m > s->core.side_m)
+        break_rule(r, (size_t[]){AT(design.thickness_max_m), AT(core.side_m), AT(core.section)},
+                   "design.thickness_max_m: twice %g m does not fit into core.side_m = %g", s->design.thickness_max_m,
+                   s->core.side_m);
 }
 
 static void report_broken(const size_t fields[3], const char *text, void *user)
@@ -680,7 +664,7 @@ static Status read_stream(Reading *r, int *n_faults, Err *err)
         return fail(err, STATUS_NO_MEMORY, "%s: no memory to read it", r->path);
     if (bad_line > 0 && r->n_faults == 0)
         report_fault(r, (Place){bad_line, 1}, "neither [section] nor key = value");
-    check_rules(r->s, report_broken, r);
+    check_rules(r->s, &(Rules){report_broken, r});
     if (n_faults)
         *n_faults = r->n_faults;
     return r->n_faults ? STATUS_BAD_DATA : STATUS_OK;
@@ -739,7 +723,7 @@ static void keep_first(const size_t fields[3], const char *text, void *user)
 Status settings_check(const Settings *s, Err *err)
 {
     Err first = {0};
-    check_rules(s, keep_first, &first);
+    check_rules(s, &(Rules){keep_first, &first});
     return first.code == STATUS_OK ? STATUS_OK : fail(err, first.code, "%s", first.text);
 }
 
