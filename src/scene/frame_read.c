@@ -1,4 +1,5 @@
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -123,9 +124,11 @@ static Status look_up(const Index *x, const Sheet *s, size_t row, const char *co
 
 /* ---- the parts ------------------------------------------------------------------------------------------------ */
 
-static Status take_node(FrameNode *node, const Sheet *s, size_t row, Err *err)
+static Status take_node(Frame *f, const Index *x, const Sheet *s, size_t row, Err *err)
 {
     static const char *const FIX[] = {"fix_x", "fix_z", "fix_rot"}, *const KEEP[] = {"keep_x", "keep_z", "keep_rot"};
+    (void)x;
+    FrameNode *node = &f->node[row];
     double floor;
     TRY(read_name(s, row, "node", node->name, err));
     TRY(sheet_number(s, row, "x_m", NAN, &node->x, err));
@@ -141,8 +144,10 @@ static Status take_node(FrameNode *node, const Sheet *s, size_t row, Err *err)
                : fail(err, STATUS_BAD_DATA, "%s:%d: floor %g is no number of a floor", s->path, s->line[row], floor);
 }
 
-static Status take_section(FrameSection *section, const Sheet *s, size_t row, Err *err)
+static Status take_section(Frame *f, const Index *x, const Sheet *s, size_t row, Err *err)
 {
+    (void)x;
+    FrameSection *section = &f->section[row];
     double area, poisson;
     TRY(read_name(s, row, "section", section->name, err));
     TRY(read_positive(s, row, "A_m2", &section->area, err));
@@ -164,8 +169,9 @@ static Status find_section(const Frame *f, const Sheet *s, size_t row, int *sect
     return fail(err, STATUS_BAD_DATA, "%s:%d: section '%.40s' is not in sections.csv", s->path, s->line[row], name);
 }
 
-static Status take_element(const Frame *f, FrameElement *e, const Index *x, const Sheet *s, size_t row, Err *err)
+static Status take_element(Frame *f, const Index *x, const Sheet *s, size_t row, Err *err)
 {
+    FrameElement *e = &f->element[row];
     TRY(read_name(s, row, "element", e->name, err));
     TRY(look_up(x, s, row, "node_i", &e->node[0], err));
     TRY(look_up(x, s, row, "node_j", &e->node[1], err));
@@ -178,47 +184,6 @@ static Status take_element(const Frame *f, FrameElement *e, const Index *x, cons
         return fail(err, STATUS_BAD_DATA, "%s:%d: element %s has no length: nodes %s and %s are at one place", s->path,
                     s->line[row], e->name, a->name, b->name);
     return STATUS_OK;
-}
-
-static Status read_nodes(Frame *f, Index *x, const char *folder, Err *err)
-{
-    Sheet s;
-    TRY(open_sheet(&s, folder, "nodes.csv", "node x_m z_m", "fix_x fix_z fix_rot floor keep_x keep_z keep_rot", err));
-    f->n_nodes = (int)s.n_rows;
-    f->node = calloc(s.n_rows, sizeof *f->node);
-    Status status = f->node ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "frame: no memory for %zu nodes", s.n_rows);
-    for (size_t i = 0; i < s.n_rows && status == STATUS_OK; i++)
-        status = take_node(&f->node[i], &s, i, err);
-    if (status == STATUS_OK)
-        status = index_nodes(x, f, &s, err);
-    sheet_free(&s);
-    return status;
-}
-
-static Status read_sections(Frame *f, const char *folder, Err *err)
-{
-    Sheet s;
-    TRY(open_sheet(&s, folder, "sections.csv", "section A_m2 I_m4 E_pa", "shear_area_m2 poisson mass_kg_per_m", err));
-    f->n_sections = (int)s.n_rows;
-    f->section = calloc(s.n_rows, sizeof *f->section);
-    Status status = f->section ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "frame: no memory for %zu rows", s.n_rows);
-    for (size_t i = 0; i < s.n_rows && status == STATUS_OK; i++)
-        status = take_section(&f->section[i], &s, i, err);
-    sheet_free(&s);
-    return status;
-}
-
-static Status read_elements(Frame *f, const Index *x, const char *folder, Err *err)
-{
-    Sheet s;
-    TRY(open_sheet(&s, folder, "elements.csv", "element node_i node_j section", "pin_i pin_j added_mass_kg", err));
-    f->n_elements = (int)s.n_rows;
-    f->element = calloc(s.n_rows, sizeof *f->element);
-    Status status = f->element ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "frame: no memory for %zu rows", s.n_rows);
-    for (size_t i = 0; i < s.n_rows && status == STATUS_OK; i++)
-        status = take_element(f, &f->element[i], x, &s, i, err);
-    sheet_free(&s);
-    return status;
 }
 
 static Status take_mass(Frame *f, const Index *x, const Sheet *s, size_t row, Err *err)
@@ -238,19 +203,9 @@ static Status take_mass(Frame *f, const Index *x, const Sheet *s, size_t row, Er
     return STATUS_OK;
 }
 
-static Status read_masses(Frame *f, const Index *x, const char *folder, Err *err)
+static Status take_tie(Frame *f, const Index *x, const Sheet *s, size_t row, Err *err)
 {
-    Sheet s;
-    TRY(open_sheet(&s, folder, "masses.csv", "node mass_kg", "mass_z_kg rotary_kg_m2", err));
-    Status status = STATUS_OK;
-    for (size_t i = 0; i < s.n_rows && status == STATUS_OK; i++)
-        status = take_mass(f, x, &s, i, err);
-    sheet_free(&s);
-    return status;
-}
-
-static Status take_tie(FrameTie *tie, const Index *x, const Sheet *s, size_t row, Err *err)
-{
+    FrameTie *tie = &f->tie[row];
     static const char *const DOF[] = {"x", "z", "rot"};
     TRY(look_up(x, s, row, "node", &tie->node, err));
     TRY(look_up(x, s, row, "same_as", &tie->same_as, err));
@@ -259,15 +214,44 @@ static Status take_tie(FrameTie *tie, const Index *x, const Sheet *s, size_t row
     return STATUS_OK;
 }
 
-static Status read_ties(Frame *f, const Index *x, const char *folder, Err *err)
+/* A file of the folder; its rows are a list of the frame, or add to what is there (size 0). */
+typedef struct {
+    const char *name, *required, *optional;
+    int may_be_missing;
+    Status (*take)(Frame *f, const Index *x, const Sheet *s, size_t row, Err *err);
+    size_t size, list, count; /* of an entry; where list and number are in a Frame */
+} Part;
+
+#define LIST(name) sizeof *((Frame *)0)->name, offsetof(Frame, name), offsetof(Frame, n_##name##s)
+static const Part PARTS[] = {
+    {"nodes.csv", "node x_m z_m", "fix_x fix_z fix_rot floor keep_x keep_z keep_rot", 0, take_node, LIST(node)},
+    {"sections.csv", "section A_m2 I_m4 E_pa", "shear_area_m2 poisson mass_kg_per_m", 0, take_section, LIST(section)},
+    {"elements.csv", "element node_i node_j section", "pin_i pin_j added_mass_kg", 0, take_element, LIST(element)},
+    {"masses.csv", "node mass_kg", "mass_z_kg rotary_kg_m2", 1, take_mass, 0, 0, 0},
+    {"ties.csv", "node same_as", "x z rot", 1, take_tie, LIST(tie)},
+};
+
+static Status make_list(Frame *f, const Part *part, size_t n, Err *err)
+{
+    void *list = calloc(n, part->size);
+    if (!list)
+        return fail(err, STATUS_NO_MEMORY, "frame: no memory for %zu rows of %s", n, part->name);
+    memcpy((char *)f + part->list, &list, sizeof list);
+    *(int *)((char *)f + part->count) = (int)n;
+    return STATUS_OK;
+}
+
+static Status read_part(Frame *f, Index *x, const char *folder, const Part *part, Err *err)
 {
     Sheet s;
-    TRY(open_sheet(&s, folder, "ties.csv", "node same_as", "x z rot", err));
-    f->n_ties = (int)s.n_rows;
-    f->tie = calloc(s.n_rows, sizeof *f->tie);
-    Status status = f->tie ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "frame: no memory for %zu rows", s.n_rows);
+    if (part->may_be_missing && !is_there(folder, part->name))
+        return STATUS_OK;
+    TRY(open_sheet(&s, folder, part->name, part->required, part->optional, err));
+    Status status = part->size > 0 ? make_list(f, part, s.n_rows, err) : STATUS_OK;
     for (size_t i = 0; i < s.n_rows && status == STATUS_OK; i++)
-        status = take_tie(&f->tie[i], x, &s, i, err);
+        status = part->take(f, x, &s, i, err);
+    if (status == STATUS_OK && !x->entry)
+        status = index_nodes(x, f, &s, err);
     sheet_free(&s);
     return status;
 }
@@ -391,15 +375,9 @@ Status frame_read(Frame *f, const char *folder, int floors_max, Err *err)
 {
     Index x = {0};
     memset(f, 0, sizeof *f);
-    Status status = read_nodes(f, &x, folder, err);
-    if (status == STATUS_OK)
-        status = read_sections(f, folder, err);
-    if (status == STATUS_OK)
-        status = read_elements(f, &x, folder, err);
-    if (status == STATUS_OK && is_there(folder, "masses.csv"))
-        status = read_masses(f, &x, folder, err);
-    if (status == STATUS_OK && is_there(folder, "ties.csv"))
-        status = read_ties(f, &x, folder, err);
+    Status status = STATUS_OK;
+    for (size_t i = 0; i < sizeof PARTS / sizeof PARTS[0] && status == STATUS_OK; i++)
+        status = read_part(f, &x, folder, &PARTS[i], err);
     free(x.entry);
     if (status == STATUS_OK)
         status = find_floors(f, folder, floors_max, err);
