@@ -137,6 +137,7 @@ static void test_old_names_are_understood_and_the_new_ones_told(void **state)
     assert_string_equal(now.err + strlen(now.err) - strlen(strstr(old.err, "\n") + 1), strstr(old.err, "\n") + 1);
     forget(&old);
     forget(&now);
+    expect(2, "--ensemble is now --replicates", "simulate configs/quick.ini --design none --ensemble 3");
     expect(2, "--tied is now --rigid", "simulate configs/quick.ini --design none --tied");
     expect(2, "unknown option '--tied'", "modes configs/quick.ini --tied");
 }

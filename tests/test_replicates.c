@@ -1,5 +1,5 @@
 #include <stdio.h>
-/* One rule for replicates: a study, `imtet simulate --ensemble` and the summary of a tower agree to the last digit. */
+/* One rule for replicates: a study, `imtet simulate --replicates` and the summary of a tower agree to the last digit. */
 #include <string.h>
 
 #include "runs.h"
@@ -173,14 +173,14 @@ static void write_design(void)
     write_in_place("design.csv", text);
 }
 
-/* Mean and deviation of every objective as `imtet simulate --ensemble 6` has them. */
+/* Mean and deviation of every objective as `imtet simulate --replicates 6` has them. */
 static void simulated(const char *set, double mean[N_OBJECTIVES], double sd[N_OBJECTIVES])
 {
     char words[500];
-    snprintf(words, sizeof words, "simulate configs/quick.ini --design @/design.csv --ensemble 6 --json " SHORT "%s",
+    snprintf(words, sizeof words, "simulate configs/quick.ini --design @/design.csv --replicates 6 --json " SHORT "%s",
              set);
     char *text = output_of(words);
-    json_t *o = json_loads(text, 0, NULL), *e = json_object_get(o, "ensemble");
+    json_t *o = json_loads(text, 0, NULL), *e = json_object_get(o, "replicates");
     assert_non_null(e);
     for (int k = 0; k < N_OBJECTIVES; k++) {
         mean[k] = json_real_value(json_object_get(json_object_get(e, "mean"), measure(k)->name));

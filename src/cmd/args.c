@@ -90,7 +90,8 @@ void args_suggest(const Args *args, Err *err)
 /* Names of the version before this one. */
 static const struct {
     const char *old, *now;
-} RENAMED[] = {{"--tied", "--rigid"}, {"--members", "--replicates"}, {"--wish", "--reference"}};
+} RENAMED[] = {
+    {"--tied", "--rigid"}, {"--ensemble", "--replicates"}, {"--members", "--replicates"}, {"--wish", "--reference"}};
 
 static void replace_old_name(const Command *c, char name[64])
 {

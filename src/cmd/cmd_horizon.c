@@ -25,7 +25,7 @@ static Status print_json(const Horizon *h, const ReplicateSummary *r, Err *err)
     json_object_set_new(o, "distance", json_numbers(HORIZON_LEVELS, HORIZON_LEVEL));
     json_object_set_new(o, "reached_s", json_numbers(HORIZON_LEVELS, h->reached_s));
     json_object_set_new(o, "distance_at_end", json_number(h->distance_at_end));
-    json_object_set_new(o, "ensemble", json_replicates(r));
+    json_object_set_new(o, "replicates", json_replicates(r));
     return show_json(o, err);
 }
 

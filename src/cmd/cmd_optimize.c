@@ -108,7 +108,7 @@ static Status report_no_front(const Run *run, const StudySummary *summary, Err *
 }
 
 /* Where nothing was simulated as often as search.replicates_min asks for. */
-static void tell_few_members(const Run *run)
+static void print_few_replicates(const Run *run)
 {
     const long wanted = run->settings->search.replicates_min * run->settings->sim.replicates;
     long least = wanted;
@@ -127,7 +127,7 @@ static Status report(const Run *run, const StudySummary *summary, Err *err)
     if (summary->n_front == 0)
         return report_no_front(run, summary, err);
     TRY(nearest_write(summary->folder, NULL, 0, NULL, err));
-    tell_few_members(run);
+    print_few_replicates(run);
     printf("front: %s/front.csv\n%zu nondominated of %zu simulated designs, %zu simulations failed, %.1f s (%s)\n\n",
            summary->folder, run->n_front, summary->n_simulated, summary->n_failed, summary->seconds,
            stop_reason_words(summary->stopped));

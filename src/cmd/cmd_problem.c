@@ -120,7 +120,7 @@ const Command CMD_PROBLEM = {
     .details =
         "Searches a test problem of 22 variables and 7 objectives (problem.variables, problem.objectives) and writes\n"
         "every evaluated design, one row each in their order: variables, then objectives. With problem.noise the\n"
-        "answers that the search saw stand before the exact objectives. Problems: dtlz2, wfg4, dtlz1_inverted,\n"
+        "noisy objectives of the search stand before the exact ones. Problems: dtlz2, wfg4, dtlz1_inverted,\n"
         "dtlz5, dtlz7, wfg5.",
     .options = OPTIONS,
     .run = run,

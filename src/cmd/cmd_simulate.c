@@ -23,13 +23,13 @@ typedef struct {
 
 static Status choose_replicates(const Args *args, Job *job, Err *err)
 {
-    if (!args_has(args, "--ensemble"))
+    if (!args_has(args, "--replicates"))
         return STATUS_OK;
-    TRY(args_whole(args, "--ensemble", 2, 1000, 0, &job->replicates, err));
+    TRY(args_whole(args, "--replicates", 2, 1000, 0, &job->replicates, err));
     return job->kind == SCENE_IMPACT
                ? STATUS_OK
                : fail(err, STATUS_USAGE,
-                      "--ensemble perturbs gaps: it needs a design with gaps, neither none nor --rigid");
+                      "--replicates perturbs gaps: it needs a design with gaps, neither none nor --rigid");
 }
 
 static Status choose_kind(const Args *args, Job *job, Err *err)
@@ -100,7 +100,7 @@ static json_t *describe(const Job *job, size_t i, const Motion *m)
     json_object_set_new(o, "stretch", json_number(m->stretch));
     json_object_update_new(o, json_result(job->kind, &job->results[i]));
     if (job->replicates)
-        json_object_set_new(o, "ensemble", json_replicates(&job->summary[i]));
+        json_object_set_new(o, "replicates", json_replicates(&job->summary[i]));
     return o;
 }
 
@@ -280,7 +280,7 @@ static Status run(const Args *args, Err *err)
 static const ArgOption OPTIONS[] = {
     {"--design", "FILE", NULL, 0, DESIGN_WORDS "; none: the building alone"},
     {"--rigid", NULL, NULL, 0, "floors and core rigidly connected (zero gap): a linear building"},
-    {"--ensemble", "N", "sim.replicates", 0,
+    {"--replicates", "N", "sim.replicates", 0,
      "N replicates as a study simulates them: mean and standard deviation of every result"},
     OPTION_RECORD,
     OPTION_PGA,

@@ -122,7 +122,7 @@ json_t *json_replicates(const ReplicateSummary *r)
         json_object_set_new(mean, measure(k)->name, json_number(r->n_failed ? NAN : r->mean[k]));
         json_object_set_new(sd, measure(k)->name, json_number(r->n_failed ? NAN : r->sd[k]));
     }
-    json_object_set_new(o, "replicates", json_integer((json_int_t)r->n_replicates));
+    json_object_set_new(o, "n", json_integer((json_int_t)r->n_replicates));
     json_object_set_new(o, "failed", json_integer((json_int_t)r->n_failed));
     json_object_set_new(o, "mean", mean);
     json_object_set_new(o, "sd", sd);

@@ -9,7 +9,7 @@
  *
  *   QUEUE_AS_ASKED     queue_next gives designs in the order of asking: a batch is asked for, then taken. Numbered
  *                      n_before + 1, ... as they are asked for; independent of the number of workers
- *   QUEUE_AS_ARRIVED   in the order in which they are finished, and numbered so: nobody waits for the slowest. With one
+ *   QUEUE_AS_ARRIVED   in the order in which they are finished, and numbered so: no worker waits for the slowest. With one
  *                      worker both orders are one
  *
  * Known      evaluations that were made before the program was interrupted (queue_know) are not simulated again: as
@@ -45,7 +45,7 @@ typedef struct {
 Status queue_ask(Queue *q, const Asked *asked, Err *err);
 
 typedef struct {
-    const Evaluation *evaluation; /* kind: as asked; KIND_INFILL where nobody asked */
+    const Evaluation *evaluation; /* kind: as asked; KIND_INFILL where it was not asked for */
     const double *f, *g;          /* (n_obj) (n_con) minimised, as the problem judges it */
     const double *note;           /* NULL: known, and not asked for */
     const void *parts;            /* (n_parts) of part_size; not set where the evaluation was known */

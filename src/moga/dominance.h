@@ -4,7 +4,7 @@
  *   ... surely      the same of a + its error and b - its error, one standard error of the means each: better by more
  *                   than both errors together, in every objective. Of equal errors that is 1.4 standard deviations of
  *                   the difference, 92 % in each objective; intervals that overlap decide nothing.
- *   constrained     a feasible design beats an infeasible one, of two infeasible ones the less violating wins
+ *   constrained     a feasible design dominates an infeasible one, of two infeasible ones the less violating one
  *
  * All are strict partial orders (surely: a product of interval orders): transitive whatever the errors, and a dominated
  * design is dominated by a nondominated one. With errors of 0 surely is the same as plainly.

@@ -14,7 +14,7 @@ typedef struct {
 } Note;
 
 /* The guard's whole life, after fork() in a program with threads: only calls that are allowed in a signal handler. All
- * files are closed, for a lock or somebody's pipe would live on with them. */
+ * files are closed, for a lock or another program's pipe would live on with them. */
 static _Noreturn void watch_over(int from, size_t n_slots, pid_t group[])
 {
     Note note;

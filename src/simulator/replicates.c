@@ -7,7 +7,7 @@
 
 void replicate_design(uint32_t seed, size_t k, double tolerance_m, size_t n_gaps, double x[])
 {
-    Random random = random_stream(seed, RANDOM_ENSEMBLE, 0, (uint32_t)k);
+    Random random = random_stream(seed, RANDOM_REPLICATE, 0, (uint32_t)k);
     for (size_t j = 0; k > 0 && j < n_gaps; j++) {
         const double tiny = random_normal(&random), error = random_normal(&random);
         x[j] = fmax(x[j] * (1.0 + REPLICATE_CHANGE * tiny) + tolerance_m * error, 0.0);

@@ -38,7 +38,7 @@ const Column *schema_extra(const Schema *schema, size_t k);
 /* Objective of that name, or n_obj. */
 size_t schema_find_objective(const Schema *schema, const char *name);
 
-/* The same for a name that somebody typed: "WHERE: NAME is no objective; did you mean ...?" with that status. */
+/* The same for a name from the command line or a settings file: "WHERE: NAME is no objective; did you mean ...?" with that status. */
 Status schema_pick_objective(const Schema *schema, const char *where, const char *name, Status status, size_t *k,
                              Err *err);
 void schema_free(Schema *schema);

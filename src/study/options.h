@@ -8,7 +8,7 @@ typedef struct {
     long seed, threads, population, initial, generations, max_evals;
     double max_hours, nondominated_share, trust_error;
     double crossover_probability, crossover_eta, mutation_eta, mutation_rate;
-    long surrogate_max; /* most designs that the response surface is built on */
+    long surrogate_max; /* largest number of centres of the surrogate */
     SurrogateUse surrogate;
     Switch asynchronous;
     SelectionKind survival;

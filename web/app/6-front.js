@@ -74,7 +74,7 @@ function frontPart() {
   const [upper, lower, matrix] = Array.from({ length: 3 }, () => element("figure", { class: "scroll" }));
   const table = element("div");
   host.append(
-    element("p", { class: "note" }, "Every line is a design that no other beats in all objectives. Drag along an axis, or over a box of the " +
+    element("p", { class: "note" }, "Every line is a nondominated design. Drag along an axis, or over a box of the " +
       "scatter matrix, to keep only the designs within it; drag the range to move it, click beside it to drop it. On an axis of an " +
       "objective better is down. The black line and dot are the design marked in the table."),
     element("div", { class: "bar" }, number, clear,
