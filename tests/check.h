@@ -11,6 +11,14 @@
 #include <stdint.h>
 #include <cmocka.h>
 
+/* The sanitized pass looks for faults of memory and arithmetic: where a test repeats the same code for accuracy's sake, it
+ * does so less often there. */
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define SANITIZED 1
+#else
+#define SANITIZED 0
+#endif
+
 /* |actual - wanted| <= tolerance |wanted|; NaN fails. */
 static inline void check_close(double actual, double wanted, double tolerance, const char *what, const char *file,
                                int line)

@@ -5,12 +5,6 @@
 
 #include <limits.h>
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-static const int IS_SANITIZED = 1; /* its malloc belongs to the sanitizer, and strace does not go with it */
-#else
-static const int IS_SANITIZED = 0;
-#endif
-
 enum { SOME = 10 }; /* refusals of one kind in one command */
 
 typedef struct {
@@ -139,7 +133,7 @@ static void sweep_memory(const Deed *deed)
 static void test_without_memory_the_program_says_so_or_gives_the_same_result(void **state)
 {
     (void)state;
-    if (IS_SANITIZED)
+    if (SANITIZED) /* its malloc belongs to the sanitizer */
         skip();
     for (int i = 0; i < N_DEEDS; i++)
         sweep_memory(&DEEDS[i]);
@@ -224,7 +218,7 @@ static void test_a_write_that_fails_is_told_and_the_run_goes_on_to_the_same_fron
 {
     (void)state;
     static const Deed EXPORT = {"export @/done --csv @/run", "run"}, STUDY = {STUDY("@/run"), "run/front.csv"};
-    if (IS_SANITIZED || !can_trace())
+    if (SANITIZED || !can_trace())
         skip();
     for (size_t i = 0; i < sizeof REFUSALS / sizeof REFUSALS[0]; i++) {
         sweep_writes(&EXPORT, &REFUSALS[i]);
