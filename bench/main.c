@@ -1,6 +1,6 @@
 /* bench/main.c -- the program imtet-bench: engines compared by speed, accuracy and reliability.
  *
- *   imtet-bench sweep | throughput | stability | laws [--option [VALUE]] ... */
+ *   imtet-bench sweep | throughput | promise | stability | laws [--option [VALUE]] ... */
 #include <cblas.h>
 #include <string.h>
 
@@ -8,6 +8,7 @@
 #include "bench/stability/laws.h"
 #include "bench/stability/stability.h"
 #include "bench/throughput.h"
+#include "bench/promise.h"
 #include "bench/paper.h"
 #include "cmd/args.h"
 #include "scene/motion_source.h"
@@ -157,6 +158,69 @@ static const ArgOption THROUGHPUT_OPTIONS[] = {
     OPTIONS_MOTION,
 };
 
+/* ---- what the accuracies hold ------------------------------------------------------------------------------------ */
+
+enum { RECORDS_MAX = 8 };
+
+/* Every --record, prepared; the built-in motions without one. */
+static Status load_records(const Args *args, const Settings *s, Motion records[RECORDS_MAX], int *n, Err *err)
+{
+    static const char *const BUILTIN[] = {"builtin:kobe-like", "builtin:elcentro-like", "builtin:sylmar-like"};
+    const int builtin = !args_has(args, "--record");
+    int at = 0;
+    for (*n = 0; *n < (builtin ? 3 : RECORDS_MAX);) {
+        const char *name = builtin ? BUILTIN[*n] : args_next(args, "--record", &at);
+        if (!name)
+            break;
+        TRY(motion_load(&records[*n], name, s->motion.unit, err));
+        ++*n;
+        TRY(motion_prepare(&records[*n - 1], s->motion.pga_g, s->motion.stretch, err));
+    }
+    return STATUS_OK;
+}
+
+static Status write_promise(const PromisePlan *plan, const char *path, Err *err)
+{
+    Output o;
+    TRY(output_open(&o, path ? path : "-", err));
+    const Status status = promise_write(plan, o.stream, stderr, err);
+    if (status == STATUS_OK)
+        return output_close(&o, err);
+    output_abandon(&o);
+    return status;
+}
+
+static Status run_promise(const Args *args, Err *err)
+{
+    Settings s;
+    Motion records[RECORDS_MAX] = {0};
+    PromisePlan plan = {.records = records, .front = args_value(args, "--front")};
+    paper_defaults(&s);
+    TRY(args_whole(args, "--windows", 1, 100000, 200, &plan.n_windows, err));
+    TRY(args_apply(args, &s, NULL, NULL, err));
+    TRY(settings_check(&s, err));
+    const SceneOptions options = settings_scene(&s);
+    plan.options = &options;
+    Status status = load_records(args, &s, records, &plan.n_records, err);
+    if (status == STATUS_OK)
+        status = write_promise(&plan, args_value(args, "--out"), err);
+    for (int k = 0; k < plan.n_records; k++)
+        motion_free(&records[k]);
+    return status;
+}
+
+static const ArgOption PROMISE_OPTIONS[] = {
+    {"--record", "FILE", NULL, 1, "a ground motion; may be repeated; the built-in ones unless given"},
+    {"--windows", "N", NULL, 0, "random windows of the records; 200 unless given"},
+    {"--front", "FILE", NULL, 0, "designs to simulate under all of the first record, as `imtet export` writes them"},
+    {"--out", "FILE", NULL, 0, "the page, in Markdown"},
+    OPTION_PGA,
+    OPTION_STRETCH,
+    OPTION_UNIT,
+    OPTION_SET,
+    OPTION_END,
+};
+
 /* ---- where methods fail ------------------------------------------------------------------------------------------ */
 
 static Status run_stability(const Args *args, Err *err)
@@ -215,6 +279,15 @@ static const Command COMMANDS[] = {
          "with that of other engines at equal error. Timings want the machine to themselves.",
      .options = THROUGHPUT_OPTIONS,
      .run = run_throughput,
+     .program = "imtet-bench"},
+    {.name = "promise",
+     .summary = "how often every accuracy holds what it promises",
+     .example = "imtet-bench promise --windows 20",
+     .details =
+         "Runs a random design in every window by the engine fast at every accuracy: quantiles of the errors against\n"
+         "accuracy fine, share of windows that hold the promise, time; and of fine against CVODE in a tenth of them.",
+     .options = PROMISE_OPTIONS,
+     .run = run_promise,
      .program = "imtet-bench"},
     {.name = "stability",
      .summary = "where methods fail: every engine through every case",

@@ -36,18 +36,6 @@ static Status take(Throughput *t, int design, int whole, Err *err)
     return model_set(&bench_case->model, t->settings, &bench_case->building, bench_case->core, bench_case->gaps, err);
 }
 
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-static double median(int n, double x[])
-{
-    qsort(x, (size_t)n, sizeof *x, ascending);
-    return n % 2 ? x[n / 2] : 0.5 * (x[n / 2 - 1] + x[n / 2]);
-}
-
 static Status run_fast(Throughput *t, Err *err)
 {
     double ms[DESIGNS], all = 0;
@@ -61,9 +49,9 @@ static Status run_fast(Throughput *t, Err *err)
         steps += r->steps;
         forces += r->force_evaluations;
         impacts += r->impacts;
-        failed += r->outcome != RUN_OK || !(r->energy_balance_error <= t->settings->sim.energy_balance_max);
+        failed += r->outcome != RUN_OK || !(r->energy_balance_error <= sim_energy_balance_max(&t->settings->sim));
     }
-    const double middle = median(t->n, ms);
+    const double middle = bench_median(t->n, ms);
     fprintf(t->out, "fast, standard: %d designs, %.5g s each, one thread\n", t->n, t->bench_case.duration);
     fprintf(t->out, "  per design      %.3g ms median, %.3g min, %.3g max; %.4g designs a second\n", middle, ms[0],
             ms[t->n - 1], (double)t->n / all);
@@ -126,62 +114,6 @@ static Status run_workers(Throughput *t, Err *err)
     return STATUS_OK;
 }
 
-enum { J_COUNT = 3, JUDGED_ERRORS = J_COUNT + 1 }; /* J1, J2, J3 and the worst share */
-
-/* What one accuracy of fast misses in the window, design by design. */
-typedef struct {
-    double error[JUDGED_ERRORS][DESIGNS], seconds;
-    int beyond; /* designs with an error above what standard promises */
-} Missed;
-
-static void note_errors(Missed *m, int design, const RunErrors *e, double seconds)
-{
-    static const double PROMISED[JUDGED_ERRORS] = {1e-3, 3e-3, 2e-2, 1e-2};
-    int kept = 1;
-    for (int i = 0; i < JUDGED_ERRORS; i++) {
-        double worst = e->each[i];
-        for (int share = J_COUNT + 1; i == J_COUNT && share < BENCH_OBJECTIVES; share++)
-            worst = fmax(worst, e->each[share]);
-        m->error[i][design] = worst;
-        kept = kept && worst <= PROMISED[i];
-    }
-    m->beyond += !kept;
-    m->seconds += seconds;
-}
-
-static void print_missed(Throughput *t, const char *name, Missed *m)
-{
-    fprintf(t->out, "  %-10s %8.3g ms", name, 1e3 * m->seconds / t->n);
-    for (int i = 0; i < JUDGED_ERRORS; i++) {
-        const double middle = median(t->n, m->error[i]);
-        fprintf(t->out, "   %.0e %.0e %.0e", middle, m->error[i][t->n * 9 / 10], m->error[i][t->n - 1]);
-    }
-    fprintf(t->out, "   %d of %d\n", m->beyond, t->n);
-}
-
-/* How far coarse and standard are from fine in the window, over all designs. */
-static Status print_accuracies(Throughput *t, Err *err)
-{
-    static const Accuracy ACCURACY[] = {ACCURACY_COARSE, ACCURACY_STANDARD};
-    static const char *const NAME[] = {"coarse", "standard"};
-    Missed missed[2] = {0};
-    for (int k = 0; k < t->n; k++) {
-        TRY(take(t, k, 0, err));
-        TRY(timed_run(&t->bench_case, ENGINE_FAST, ACCURACY_FINE, 0, t->reference, err));
-        for (int a = 0; a < 2; a++) {
-            TRY(timed_run(&t->bench_case, ENGINE_FAST, ACCURACY[a], 0, t->seen, err));
-            const RunErrors e = run_errors(&t->bench_case, t->seen, t->reference);
-            note_errors(&missed[a], k, &e, t->seen->seconds);
-        }
-    }
-    fprintf(t->out, "\nerror of fast in the strong window, %d designs: median, 90 %%, max\n", t->n);
-    fprintf(t->out, "  %-10s %11s   %-17s   %-17s   %-17s   %-17s   %s\n", "accuracy", "per design", "J1", "J2", "J3",
-            "worst share", "beyond what standard promises");
-    for (int a = 0; a < 2; a++)
-        print_missed(t, NAME[a], &missed[a]);
-    return STATUS_OK;
-}
-
 /* Median over the judged designs of the error in the window. */
 static Status judge(Throughput *t, int engine, double tolerance, double *error, Err *err)
 {
@@ -193,7 +125,7 @@ static Status judge(Throughput *t, int engine, double tolerance, double *error, 
         const RunErrors e = run_errors(&t->bench_case, t->seen, t->reference);
         errors[k] = t->seen->result.outcome == RUN_OK && isfinite(e.objectives) ? e.objectives : HUGE_VAL;
     }
-    *error = median(t->n_judged, errors);
+    *error = bench_median(t->n_judged, errors);
     return STATUS_OK;
 }
 
@@ -271,8 +203,6 @@ Status throughput_print(const SceneOptions *s, const Motion *motion, int quick, 
         status = run_fast(&t, err);
     if (status == STATUS_OK && !count)
         status = run_workers(&t, err);
-    if (status == STATUS_OK && !count)
-        status = print_accuracies(&t, err);
     if (status == STATUS_OK && !count)
         status = compare_all(&t, quick, err);
     bench_case_close(&t.bench_case);

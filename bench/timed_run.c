@@ -1,6 +1,7 @@
 #include "bench/timed_run.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
@@ -10,6 +11,25 @@ static const double SHORT = 0.3;
 static const double SHARE_FLOOR_PCT = 0.1;
 
 const char *const BENCH_OBJECTIVE_NAMES[BENCH_OBJECTIVES] = {"j1", "j2", "j3", "ed1", "ed5_10", "edcs"};
+
+static int ascending(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+double bench_median(int n, double x[])
+{
+    qsort(x, (size_t)n, sizeof *x, ascending);
+    return n == 0 ? NAN : n % 2 ? x[n / 2] : 0.5 * (x[n / 2 - 1] + x[n / 2]);
+}
+
+double bench_quantile(int n, double x[], double share)
+{
+    const int at = (int)ceil(share * n) - 1;
+    qsort(x, (size_t)n, sizeof *x, ascending);
+    return n == 0 ? NAN : x[at < 0 ? 0 : at];
+}
 
 double processor_seconds(void)
 {
@@ -88,17 +108,21 @@ static void compare_onsets(const BenchCase *bench_case, const TimedRun *o, const
     }
 }
 
-RunErrors run_errors(const BenchCase *bench_case, const TimedRun *o, const TimedRun *reference)
+void result_errors(const SimResult *a, const SimResult *b, double each[BENCH_OBJECTIVES])
 {
-    const SimResult *a = &o->result, *b = &reference->result;
     const double found[] = {a->j1_m, a->j2_m, a->j3_g, a->ed1_pct, a->ed5_10_pct, a->edcs_pct};
     const double wanted[] = {b->j1_m, b->j2_m, b->j3_g, b->ed1_pct, b->ed5_10_pct, b->edcs_pct};
+    for (int k = 0; k < BENCH_OBJECTIVES; k++)
+        each[k] = fabs(found[k] - wanted[k]) / fmax(fabs(wanted[k]), k < 3 ? 1e-300 : SHARE_FLOOR_PCT);
+}
+
+RunErrors run_errors(const BenchCase *bench_case, const TimedRun *o, const TimedRun *reference)
+{
     RunErrors e = {0};
-    for (int k = 0; k < BENCH_OBJECTIVES; k++) {
-        e.each[k] = fabs(found[k] - wanted[k]) / fmax(fabs(wanted[k]), k < 3 ? 1e-300 : SHARE_FLOOR_PCT);
+    result_errors(&o->result, &reference->result, e.each);
+    for (int k = 0; k < BENCH_OBJECTIVES; k++)
         if (!(e.each[k] <= e.objectives)) /* keeps NaN */
             e.objectives = e.each[k];
-    }
     const SimModel *model = &bench_case->model;
     e.state = sqrt(energy_of(model, o->state, reference->state) / energy_of(model, reference->state, NULL));
     compare_onsets(bench_case, o, reference, &e);

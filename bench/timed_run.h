@@ -28,8 +28,13 @@ extern const char *const BENCH_OBJECTIVE_NAMES[BENCH_OBJECTIVES];
 
 Status timed_run(const BenchCase *bench_case, int engine, Accuracy accuracy, double tolerance, TimedRun *out, Err *err);
 
-/* A share below 0.1 % of the input energy is compared as if it were 0.1 %. */
+/* Relative, of a against b: J1, J2, J3, shares of mode 1, modes 5-10, core. A share below 0.1 % of the input is compared as 0.1 %. */
+void result_errors(const SimResult *a, const SimResult *b, double each[BENCH_OBJECTIVES]);
 RunErrors run_errors(const BenchCase *bench_case, const TimedRun *o, const TimedRun *reference);
+
+/* Of n numbers, which are sorted: the middle, and the least that a share of them does not exceed; NAN: of none. */
+double bench_median(int n, double x[]);
+double bench_quantile(int n, double x[], double share);
 
 /* [s] of this thread: less disturbed by other work on the machine than wall time. */
 double processor_seconds(void);

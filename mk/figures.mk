@@ -1,12 +1,20 @@
 # Figures and pictures of README and docs. Those of time want a quiet machine.
 
-.PHONY: setup-figures bench chart compare ablation pictures web setup-browser report-bench
+.PHONY: setup-figures bench promise chart compare ablation pictures web setup-browser report-bench
 
 # A record that is not there is replaced by the built-in motion.
 BENCH_RECORD ?= $(or $(wildcard ../shared/records/kobe_jma_ns.csv),builtin:kobe-like)
 bench: $(BENCH) ## simulations per second, and whether they became more work
 	@bench/guard $(BENCH)
 	@$(BENCH) throughput --record $(BENCH_RECORD)
+
+# Errors of the accuracies, on as many WINDOWS; the front is that of a short study.
+PROMISE_RECORDS = $(wildcard $(patsubst %,../shared/records/%.csv,kobe_jma_ns elcentro_ns northridge_sylmar_ns hachinohe_ns))
+promise: $(BENCH) $(PROGRAM) ## docs/promise.md: how often every accuracy holds what it promises
+	@rm -rf build/promise
+	@./$(PROGRAM) optimize configs/kobe.ini --record $(BENCH_RECORD) --max-evals 1000 --out build/promise
+	@./$(PROGRAM) export build/promise --select 60 --csv - | cut -d, -f2-23 > build/promise.csv
+	@$(BENCH) promise $(PROMISE_RECORDS:%=--record %) $(if $(WINDOWS),--windows $(WINDOWS)) --front build/promise.csv --out docs/promise.md
 
 chart: $(BENCH) ## docs/chart: speed against accuracy of every engine
 	@$(BENCH) sweep --record $(BENCH_RECORD) --csv docs/chart.csv --markdown docs/chart.md

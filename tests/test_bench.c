@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "bench/distribution.h"
+#include "bench/promise.h"
 #include "scene/motion_source.h"
 #include "scene_options.h"
 
@@ -126,6 +127,58 @@ static void test_a_sweep_has_a_row_for_every_setting_and_a_known_floor(void **st
     motion_free(&g.m);
 }
 
+static void test_windows_of_the_promise_lie_in_their_record_and_repeat(void **state)
+{
+    (void)state;
+    Ground g;
+    PromiseCase c, again;
+    ground_open(&g);
+    const PromisePlan plan = {.options = &g.s, .records = &g.m, .n_records = 1, .n_windows = 50};
+    for (long k = 0; k < plan.n_windows; k++) {
+        promise_window(&plan, 20, k, &c);
+        promise_window(&plan, 20, k, &again);
+        assert_memory_equal(c.x, again.x, 22 * sizeof *c.x);
+        assert_true(c.motion.accel == again.motion.accel && c.duration == again.duration);
+        assert_true(c.motion.accel >= g.m.accel && c.motion.accel + c.motion.n == g.m.accel + g.m.n);
+        assert_true(c.duration >= 4 && c.duration <= 15 && c.duration <= (double)(c.motion.n - 1) * c.motion.dt_s);
+        for (int j = 0; j < 20; j++)
+            assert_true(c.x[j] >= 1e-3 && c.x[j] <= 0.2);
+        assert_true(c.x[20] >= 4e-3 && c.x[20] <= 0.04 && c.x[21] >= 4e-3 && c.x[21] <= c.x[20]);
+    }
+    motion_free(&g.m);
+}
+
+static void test_quantiles_are_the_least_that_a_share_does_not_exceed(void **state)
+{
+    (void)state;
+    double x[] = {4, 1, 3, 2, 5, 6, 8, 7, 10, 9};
+    assert_true(bench_quantile(10, x, 0.9) == 9 && bench_quantile(10, x, 0.95) == 10 && bench_quantile(10, x, 0) == 1);
+    assert_true(bench_median(10, x) == 5.5 && bench_median(9, x) == 5 && isnan(bench_median(0, x)));
+}
+
+static void test_the_page_of_the_promise_has_a_row_for_every_accuracy(void **state)
+{
+    (void)state;
+    Ground g;
+    Err err;
+    char *page = NULL;
+    size_t size;
+    ground_open(&g);
+    FILE *f = open_memstream(&page, &size), *quiet = fopen("/dev/null", "w");
+    assert_true(f && quiet);
+    const PromisePlan plan = {.options = &g.s, .records = &g.m, .n_records = 1, .n_windows = 1};
+    CHECK_OK(promise_write(&plan, f, quiet, &err), &err);
+    fclose(f);
+    fclose(quiet);
+    print_message("%s", page);
+    assert_non_null(strstr(page, "\n| coarse |"));
+    assert_non_null(strstr(page, "\n| standard |"));
+    assert_non_null(strstr(page, "\n1 cases.\n"));
+    assert_non_null(strstr(page, "\n| `fine` |"));
+    free(page);
+    motion_free(&g.m);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -134,6 +187,9 @@ int main(void)
         cmocka_unit_test(test_an_error_is_zero_against_itself_and_first_order_in_a_change),
         cmocka_unit_test(test_the_distance_of_two_samples_is_that_of_their_steps),
         cmocka_unit_test(test_a_sweep_has_a_row_for_every_setting_and_a_known_floor),
+        cmocka_unit_test(test_windows_of_the_promise_lie_in_their_record_and_repeat),
+        cmocka_unit_test(test_quantiles_are_the_least_that_a_share_does_not_exceed),
+        cmocka_unit_test(test_the_page_of_the_promise_has_a_row_for_every_accuracy),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -5,7 +5,7 @@
 
 #include "sim/fast/fast.h"
 
-static const double RESIDUAL_MAX = 1e-3; /* the default of sim.energy_balance_max */
+static const double RESIDUAL_MAX = 1e-3; /* of sim.energy_balance_max by default */
 
 const EngineEntry *trial_engine(const Trial *t)
 {

@@ -156,9 +156,9 @@ static const Option OPTIONS[] = {
     REAL(sim.steps_per_contact, "-", "0", 0, 1000,
          "engine fast: steps per contact, finer than sim.accuracy, with tolerances to match; 0: by sim.accuracy"),
     REAL(sim.duration_s, "s", "0", 0, 1e6, "end of the simulation; 0: end of the motion"),
-    REAL(sim.energy_balance_max, "-", "0.001", 1e-12, 1,
+    REAL(sim.energy_balance_max, "-", "0", 0, 1,
          "a simulation whose energy-balance error exceeds this share of the input energy is repeated with smaller "
-         "steps, then rejected"),
+         "steps, then rejected; 0: by sim.accuracy, 0.03 at coarse, else 0.001"),
     WHOLE(sim.replicates, "1", 1, 1000,
           "simulations of a design under each record, with perturbed gaps: the objectives are their means"),
     REAL(sim.gap_tolerance_m, "m", "0", 0, 1, "standard deviation of a gap as built; needs sim.replicates >= 2"),

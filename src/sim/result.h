@@ -75,6 +75,7 @@ typedef struct {
     double damped_building_j, damped_core_j, kinetic_strain_j; /* the last at the end of the run */
     double indentation_max_m, indentation_ratio;               /* [-] over the contact's radius */
     long steps, force_evaluations;                             /* what the run cost */
+    int repeated; /* times the run was repeated with shorter steps, its energy balance open */
     double seconds;                                            /* wall time */
 
     int forces_known; /* they were asked for: SimOptions.forces */

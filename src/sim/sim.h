@@ -27,6 +27,9 @@ typedef enum {
 typedef struct Scene Scene;
 typedef struct SimWorker SimWorker;
 
+/* Of the input: the largest energy-balance error of a run that counts. */
+double sim_energy_balance_max(const SimOptions *o);
+
 Status scene_create(Scene **out, const SceneOptions *o, const Motion *motion, Err *err);
 void scene_free(Scene *scene); /* NULL is fine */
 
