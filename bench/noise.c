@@ -10,7 +10,7 @@ enum { REPLICATES = 16, DESIGNS = 9 };
 static double largest_spread(const ReplicateSummary *e)
 {
     double largest = 0;
-    for (int k = 0; k < N_OBJECTIVES; k++)
+    for (int k = 0; k < PAPER_OBJECTIVES; k++)
         if (strcmp(measure(k)->name, "mcore_kg") != 0)
             largest = fmax(largest, e->sd[k] / fabs(e->mean[k]));
     return largest;

@@ -76,7 +76,7 @@ static void test_of_several_records_the_worst_or_the_mean_counts(void **state)
     both.sim.robust = ROBUST_MEAN;
     run_designs(&both, 1, &mean);
     for (int i = 0; i < DESIGNS; i++)
-        for (int k = 0; k < N_OBJECTIVES; k++) {
+        for (int k = 0; k < PAPER_OBJECTIVES; k++) {
             const double x = a.sum[i].mean[k], y = b.sum[i].mean[k];
             assert_true(worst.sum[i].mean[k] == (measure(k)->sense > 0.0 ? fmax(x, y) : fmin(x, y)));
             assert_close(mean.sum[i].mean[k], 0.5 * (x + y), 1e-12);
@@ -174,7 +174,7 @@ static void write_design(void)
 }
 
 /* Mean and deviation of every objective as `imtet simulate --replicates 6` has them. */
-static void simulated(const char *set, double mean[N_OBJECTIVES], double sd[N_OBJECTIVES])
+static void simulated(const char *set, double mean[PAPER_OBJECTIVES], double sd[PAPER_OBJECTIVES])
 {
     char words[500];
     snprintf(words, sizeof words, "simulate configs/quick.ini --design @/design.csv --replicates 6 --json " SHORT "%s",
@@ -182,7 +182,7 @@ static void simulated(const char *set, double mean[N_OBJECTIVES], double sd[N_OB
     char *text = output_of(words);
     json_t *o = json_loads(text, 0, NULL), *e = json_object_get(o, "replicates");
     assert_non_null(e);
-    for (int k = 0; k < N_OBJECTIVES; k++) {
+    for (int k = 0; k < PAPER_OBJECTIVES; k++) {
         mean[k] = json_real_value(json_object_get(json_object_get(e, "mean"), measure(k)->name));
         sd[k] = json_real_value(json_object_get(json_object_get(e, "sd"), measure(k)->name));
     }
@@ -194,7 +194,7 @@ static void test_simulate_draws_the_replicates_of_a_study_and_knows_the_toleranc
 {
     (void)state;
     static const char TOLERANCE[] = "--set sim.gap_tolerance_m=0.02 --set motion.records=builtin:elcentro-like";
-    double mean[3][N_OBJECTIVES], sd[3][N_OBJECTIVES];
+    double mean[3][PAPER_OBJECTIVES], sd[3][PAPER_OBJECTIVES];
     char words[800], path[PATH_MAX];
     Run h;
     Err err = {0};

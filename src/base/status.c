@@ -85,3 +85,16 @@ const char *nearest_word(const char *word, const char *const list[], int n)
     const int longest = 1 + (int)strlen(word) / 3;
     return least <= longest ? nearest : NULL;
 }
+
+Status fail_no_word(Err *err, Status code, const char *where, const char *word, const char *noun,
+                    const char *const list[], int n)
+{
+    char all[400] = "";
+    const char *near = nearest_word(word, list, n);
+    if (near)
+        return fail(err, code, "%s: %.60s is no %s; did you mean %s?", where, word, noun, near);
+    size_t end = 0;
+    for (int i = 0; i < n && end + strlen(list[i]) + 3 < sizeof all; i++)
+        end += (size_t)snprintf(all + end, sizeof all - end, "%s%s", i ? ", " : "", list[i]);
+    return fail(err, code, "%s: %.40s is no %s; there are %s", where, word, noun, all);
+}

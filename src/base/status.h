@@ -44,6 +44,10 @@ int status_exit_code(Status code);
 /* The word of list[0..n) nearest to `word` by edit distance, or NULL if none is near enough to be meant. */
 const char *nearest_word(const char *word, const char *const list[], int n);
 
+/* "WHERE: WORD is no NOUN; did you mean ...?", or all of the list where none is near. */
+Status fail_no_word(Err *err, Status code, const char *where, const char *word, const char *noun,
+                    const char *const list[], int n);
+
 #define TRY(expr)                                                                                                      \
     do {                                                                                                               \
         Status try_status_ = (expr);                                                                                   \

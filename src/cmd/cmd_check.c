@@ -262,6 +262,19 @@ static void describe_study(Check *c, const CheckedScene *p)
            seconds < 120 ? "s" : "min");
 }
 
+static void describe_objectives(Check *c, const Schema *schema, const char *objectives)
+{
+    const char *left_out = measures_left_out(&schema->order, objectives);
+    json_t *names = json_array();
+    for (size_t k = 0; k < schema->n_obj; k++)
+        json_array_append_new(names, json_string(schema_objective(schema, k)->name));
+    json_object_set_new(c->out, "objectives", names);
+    for (size_t k = 0; k < schema->n_obj && !c->as_json; k++)
+        printf("%s%s", k ? ", " : "objectives ", schema_objective(schema, k)->name);
+    if (!c->as_json)
+        printf("\n%s%s", left_out ? left_out : "", left_out ? "\n" : "");
+}
+
 /* Limits, further records and whatever else a search opens before it starts. */
 static void open_study(Check *c, const Settings *s)
 {
@@ -269,8 +282,10 @@ static void open_study(Check *c, const Settings *s)
     Adapter *adapter;
     if (!note(c, adapter_open(&adapter, s, &e), s->problem.kind == PROBLEM_TOWER ? "scene" : "problem", &e))
         return;
-    if (s->problem.kind != PROBLEM_TOWER) {
-        const Schema *schema = adapter_schema(adapter);
+    const Schema *schema = adapter_schema(adapter);
+    if (s->problem.kind == PROBLEM_TOWER) {
+        describe_objectives(c, schema, s->search.objectives);
+    } else {
         json_object_set_new(
             c->out, "problem",
             json_pack("{s:I, s:I}", "variables", (json_int_t)schema->n_var, "objectives", (json_int_t)schema->n_obj));

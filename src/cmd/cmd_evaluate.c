@@ -50,12 +50,12 @@ static json_t *describe(const Scenario *w, const SimResult results[N_CASES])
     return o;
 }
 
-static void print_pair(const Scenario *w, const SimResult results[N_CASES])
+static void print_pair(const Scenario *w, const MeasureOrder *order, const SimResult results[N_CASES])
 {
     show_motion(stdout, &w->motion, w->options.sim.duration_s);
-    show_result_names("");
+    show_result_names("", order);
     for (int i = 0; i < N_CASES; i++)
-        show_result(i == WITH_CORE ? "with core" : "no core", &results[i]);
+        show_result(i == WITH_CORE ? "with core" : "no core", order, &results[i]);
     putchar('\n');
 }
 
@@ -70,7 +70,7 @@ static Status evaluate_on(const Settings *s, const Chosen *c, json_t *list, Err 
     if (status == STATUS_OK && list)
         json_array_append_new(list, describe(w, results));
     else if (status == STATUS_OK)
-        print_pair(w, results);
+        print_pair(w, &c->run->schema.order, results);
     problem_close(&p);
     return status;
 }
@@ -106,14 +106,14 @@ static Status try_record(Settings *s, const char *path, Err *err)
     return status;
 }
 
-static void print_rows(const char *path, const SimResult results[N_CASES])
+static void print_rows(const char *path, const MeasureOrder *order, const SimResult results[N_CASES])
 {
     static const char *const words[N_CASES] = {"with core", "no core"};
     const char *slash = strrchr(path, '/');
     for (int i = 0; i < N_CASES; i++) {
         char label[64];
         snprintf(label, sizeof label, "%-17.17s %s", slash ? slash + 1 : path, words[i]);
-        show_result(label, &results[i]);
+        show_result(label, order, &results[i]);
     }
 }
 
@@ -138,7 +138,7 @@ static Status evaluate_file(Settings *s, const Chosen *c, const char *path, Fold
     if (status == STATUS_OK && f->records)
         json_array_append_new(f->records, describe(w, results));
     else if (status == STATUS_OK)
-        print_rows(path, results);
+        print_rows(path, &c->run->schema.order, results);
     problem_close(&p);
     return status;
 }
@@ -152,7 +152,7 @@ static Status evaluate_files(Settings *s, const Chosen *c, const char *folder, i
                              Err *err)
 {
     if (!f->records)
-        show_result_names("record");
+        show_result_names("record", &c->run->schema.order);
     for (int i = 0; i < n; i++) {
         char path[PATH_MAX];
         struct stat there;

@@ -29,7 +29,7 @@ static Status print_json(const Horizon *h, const ReplicateSummary *r, Err *err)
     return show_json(o, err);
 }
 
-static void print_table(const Scenario *w, const Horizon *h, const ReplicateSummary *r)
+static void print_table(const Scenario *w, const MeasureOrder *order, const Horizon *h, const ReplicateSummary *r)
 {
     show_motion(stdout, &w->motion, w->options.sim.duration_s);
     printf("\ntwo runs whose gaps differ by %g of themselves are apart by\n", CHANGE);
@@ -40,8 +40,8 @@ static void print_table(const Scenario *w, const Horizon *h, const ReplicateSumm
             printf("  %-8g after %.4g s\n", HORIZON_LEVEL[i], h->reached_s[i]);
     printf("distance: root of energy of the difference over largest energy so far; at the end %.2g\n\n",
            h->distance_at_end);
-    show_result_names("");
-    show_replicates(r);
+    show_result_names("", order);
+    show_replicates(order, r);
 }
 
 static Status answer(const Args *args, const Problem *p, const double x[], Err *err)
@@ -52,7 +52,7 @@ static Status answer(const Args *args, const Problem *p, const double x[], Err *
     TRY(find(p, x, &h, &r, &shown, err));
     if (args_has(args, "--json"))
         return print_json(&h, &r, err);
-    print_table(tower_record(tower_of(p), 0), &h, &r);
+    print_table(tower_record(tower_of(p), 0), tower_measures(tower_of(p)), &h, &r);
     return STATUS_OK;
 }
 

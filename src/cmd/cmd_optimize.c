@@ -55,24 +55,36 @@ static void tell_motion(const Motion *motion, double duration_s, void *user)
     show_motion(stderr, motion, duration_s);
 }
 
+static void explain_objectives(const Schema *schema, const char *objectives)
+{
+    const char *left_out = measures_left_out(&schema->order, objectives);
+    putchar('\n');
+    for (size_t k = 0; k < schema->n_obj; k++) {
+        const Measure *m = measure(schema->order.of[k]);
+        printf("%-*s %s [%s], the %s the better\n", 12, m->name, m->what, m->unit, m->sense > 0 ? "less" : "more");
+    }
+    if (left_out)
+        puts(left_out);
+}
+
 static void print_front(const Run *run, const StudySummary *summary)
 {
-    const size_t n_obj = run->schema.n_obj, knee = run_knee(run);
+    const Schema *schema = &run->schema;
+    const size_t knee = run_knee(run);
     char label[TABLE_NAME_MAX + 8];
-    show_objective_names(&run->schema);
-    for (size_t k = 0; k < n_obj; k++) {
+    show_objective_names(schema);
+    for (size_t k = 0; k < schema->n_obj; k++) {
         const size_t best = run_best(run, k);
-        snprintf(label, sizeof label, "best %s", schema_objective(&run->schema, k)->name);
-        show_objectives(label, run->table.row[best].id, n_obj, run_f(run, best));
+        snprintf(label, sizeof label, "best %s", schema_objective(schema, k)->name);
+        show_objectives(label, run->table.row[best].id, schema, run_f(run, best));
     }
-    show_objectives("knee", run->table.row[knee].id, n_obj, run_f(run, knee));
+    show_objectives("knee", run->table.row[knee].id, schema, run_f(run, knee));
     if (summary->has_no_core) {
-        double alone[N_OBJECTIVES];
-        for (int k = 0; k < N_OBJECTIVES; k++)
-            alone[k] = measure_value(&summary->no_core, k);
-        show_objectives("no core", 0, N_OBJECTIVES, alone);
-        printf("\nj1 displacement, j2 interstorey drift, j3 acceleration, ed1 share of mode 1, mcore: minimised;\n"
-               "ed5_10 share of modes 5 to 10, edcs share of the core: maximised.");
+        double alone[OBJECTIVES_MAX];
+        for (size_t k = 0; k < schema->n_obj; k++)
+            alone[k] = measure_value(&summary->no_core, schema->order.of[k]);
+        show_objectives("no core", 0, schema, alone);
+        explain_objectives(schema, run->settings->search.objectives);
     }
     printf("\nknee: nearest to the ideal point when every objective is scaled to 0..1 over the front.\n");
 }
@@ -83,7 +95,7 @@ static void print_nearest(const Run *run, size_t n, const size_t rows[])
     show_objective_names(&run->schema);
     for (size_t i = 0; i < n; i++) {
         snprintf(label, sizeof label, "misses by %.3g", run->table.row[rows[i]].violation);
-        show_objectives(label, run->table.row[rows[i]].id, run->schema.n_obj, run_f(run, rows[i]));
+        show_objectives(label, run->table.row[rows[i]].id, &run->schema, run_f(run, rows[i]));
     }
     printf("\nmisses by: sum over search.limits of what exceeds them, as a share of the limit.\n");
 }
@@ -268,7 +280,7 @@ const Command CMD_OPTIMIZE = {
     .summary = "search for the Pareto front of designs",
     .example = "imtet optimize configs/quick.ini",
     .details =
-        "Searches gaps and core thicknesses for the nondominated designs in seven objectives, and\n"
+        "Searches gaps and core thicknesses for the nondominated designs in search.objectives, and\n"
         "writes them to DIR/front.csv generation by generation (results/README.md explains every file and\n"
         "column). A run that is there already is resumed, with the same result as if it had never stopped; its\n"
         "settings must be the same. `imtet optimize RUN` resumes a run with its own settings. Ctrl-C, SIGTERM and\n"

@@ -73,7 +73,7 @@ typedef struct {
     SceneKind kind;
     double gap_m, wall_m; /* the same at every floor and storey */
     double tolerance;
-    double answer[N_OBJECTIVES]; /* as `simulate` prints them */
+    double answer[PAPER_OBJECTIVES]; /* as `simulate` prints them */
 } TowerCase;
 
 /* Answers: `imtet selftest --answers` with the kernel avx512. Those of the kernels base and avx2 are within 2e-10
@@ -137,7 +137,7 @@ static Status simulate(const Scenario *w, const TowerCase *c, SimResult *r, Err 
     return status;
 }
 
-static Status answer_of(const TowerCase *c, double answer[N_OBJECTIVES], Err *err)
+static Status answer_of(const TowerCase *c, double answer[PAPER_OBJECTIVES], Err *err)
 {
     Settings s;
     Scenario w;
@@ -149,7 +149,7 @@ static Status answer_of(const TowerCase *c, double answer[N_OBJECTIVES], Err *er
     TRY(scenario_open(&w, &options, &s.motion, err));
     const Status status = simulate(&w, c, &r, err);
     scenario_close(&w);
-    for (int k = 0; status == STATUS_OK && k < N_OBJECTIVES; k++)
+    for (int k = 0; status == STATUS_OK && k < PAPER_OBJECTIVES; k++)
         answer[k] = r.outcome == RUN_OK ? measure_value(&r, k) : NAN;
     return status;
 }
@@ -158,9 +158,9 @@ static Status check_tower(Selftest *t, Err *err)
 {
     for (int i = 0; i < N_TOWER; i++) {
         const TowerCase *c = &TOWER[i];
-        double answer[N_OBJECTIVES];
+        double answer[PAPER_OBJECTIVES];
         TRY(answer_of(c, answer, err));
-        for (int k = 0; k < N_OBJECTIVES; k++)
+        for (int k = 0; k < PAPER_OBJECTIVES; k++)
             compare(t, c->name, measure(k)->name, answer[k], c->answer[k], c->tolerance);
     }
     return STATUS_OK;
@@ -170,11 +170,11 @@ static Status check_tower(Selftest *t, Err *err)
 static Status print_answers(Err *err)
 {
     for (int i = 0; i < N_TOWER; i++) {
-        double answer[N_OBJECTIVES];
+        double answer[PAPER_OBJECTIVES];
         TRY(answer_of(&TOWER[i], answer, err));
         printf("%s:\n     {", TOWER[i].name);
-        for (int k = 0; k < N_OBJECTIVES; k++)
-            printf("%.10g%s", answer[k], k + 1 < N_OBJECTIVES ? ", " : "}},\n");
+        for (int k = 0; k < PAPER_OBJECTIVES; k++)
+            printf("%.10g%s", answer[k], k + 1 < PAPER_OBJECTIVES ? ", " : "}},\n");
     }
     return STATUS_OK;
 }

@@ -141,30 +141,30 @@ static Status write_csv(const Job *job, const char *path, Err *err)
     return output_close(&o, err);
 }
 
-static void print_table(const Job *job, const Scenario *w)
+static void print_table(const Job *job, const Scenario *w, const MeasureOrder *order)
 {
     char label[32];
     show_motion(stdout, &w->motion, w->options.sim.duration_s);
     putchar('\n');
-    show_result_names(job->kind == SCENE_RIGID ? "rigidly connected" : "");
+    show_result_names(job->kind == SCENE_RIGID ? "rigidly connected" : "", order);
     for (size_t i = 0; i < job->n; i++) {
         snprintf(label, sizeof label, "design %ld", number_of(job, i));
-        show_result(job->kind == SCENE_NO_CORE ? "no core" : label, &job->results[i]);
+        show_result(job->kind == SCENE_NO_CORE ? "no core" : label, order, &job->results[i]);
         if (job->replicates)
-            show_replicates(&job->summary[i]);
+            show_replicates(order, &job->summary[i]);
     }
 }
 
-static Status print(const Args *args, const Job *job, const Scenario *w, Err *err)
+static Status print(const Args *args, const Job *job, const Tower *t, Err *err)
 {
     if (args_has(args, "--json") && args_has(args, "--csv") && strcmp(args_value(args, "--csv"), "-") == 0)
         return fail(err, STATUS_USAGE, "--json and --csv - both want standard output; give --csv a file");
     if (args_has(args, "--csv"))
         TRY(write_csv(job, args_value(args, "--csv"), err));
     if (args_has(args, "--json"))
-        return print_json(job, &w->motion, err);
+        return print_json(job, &tower_record(t, 0)->motion, err);
     if (!args_has(args, "--csv"))
-        print_table(job, w);
+        print_table(job, tower_record(t, 0), tower_measures(t));
     return STATUS_OK;
 }
 
@@ -258,7 +258,8 @@ static Status run(const Args *args, Err *err)
         return fail(err, STATUS_USAGE,
                     "--rigid: a linear building is solved in closed form, no other engine does it; leave sim.engine at "
                     "fast");
-    s.sim.forces = args_has(args, "--json") || args_has(args, "--contacts");
+    if (args_has(args, "--json") || args_has(args, "--csv") || args_has(args, "--contacts"))
+        s.sim.forces = FORCES_YES;
     TRY(tower_open(&p, &s, job.replicates ? TOWER_AS_SET : TOWER_SINGLE, job.kind == SCENE_NO_CORE ? 1 : SIZE_MAX,
                    err));
     const Scenario *w = tower_record(tower_of(&p), 0);
@@ -266,7 +267,7 @@ static Status run(const Args *args, Err *err)
     if (status == STATUS_OK)
         status = simulate(&p, &job, err);
     if (status == STATUS_OK)
-        status = print(args, &job, w, err);
+        status = print(args, &job, tower_of(&p), err);
     if (status == STATUS_OK && args_has(args, "--contacts"))
         status = write_contacts(&job, w, args_value(args, "--contacts"), err);
     free(job.tasks);

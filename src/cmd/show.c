@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include <stdio.h>
+#include <string.h>
 
 #include "base/units.h"
 
@@ -31,7 +32,6 @@ static void add_contact_forces(json_t *o, int n, const SimForces *f)
     for (int side = 0; side < SIDES; side++)
         for (int j = 0; j < n; j++)
             count[side][j] = (double)f->contacts[side][j];
-    json_object_set_new(o, "contact_force_max_n", json_number(f->contact_force_max_n));
     json_object_set_new(o, "contact_force_n", json_sides(n, f->contact_force_n));
     json_object_set_new(o, "contact_impulse_ns", json_sides(n, f->contact_impulse_ns));
     json_object_set_new(o, "contacts", json_sides(n, count));
@@ -40,19 +40,15 @@ static void add_contact_forces(json_t *o, int n, const SimForces *f)
 
 static void add_core_forces(json_t *o, size_t n, const SimForces *f)
 {
-    json_object_set_new(o, "core_base_shear_n", json_number(f->core_base_shear_n));
-    json_object_set_new(o, "core_overturning_nm", json_number(f->core_overturning_nm));
     json_object_set_new(o, "core_top_m", json_number(f->core_top_m));
     json_object_set_new(o, "core_shear_n", json_numbers(n, f->core_shear_n));
     json_object_set_new(o, "core_moment_nm", json_numbers(n, f->core_moment_nm));
     if (f->stress_known) {
-        json_object_set_new(o, "core_stress_pa", json_number(f->core_stress_pa));
         json_object_set_new(o, "core_stress_storey", json_integer(f->core_stress_storey + 1));
         json_object_set_new(o, "core_storey_stress_pa", json_numbers(n, f->core_storey_stress_pa));
         json_object_set_new(o, "core_shear_stress_pa", json_number(f->core_shear_stress_pa));
     }
     if (f->buckling_known) {
-        json_object_set_new(o, "core_buckling_ratio", json_number(f->core_buckling_ratio));
         json_object_set_new(o, "core_slenderness", json_numbers(n, f->core_slenderness));
         json_object_set_new(o, "core_buckling_pa", json_numbers(n, f->core_buckling_pa));
     }
@@ -60,10 +56,8 @@ static void add_core_forces(json_t *o, size_t n, const SimForces *f)
 
 static void add_building_forces(json_t *o, size_t n, const SimForces *f)
 {
-    json_object_set_new(o, "building_base_shear_n", json_number(f->building_base_shear_n));
     json_object_set_new(o, "building_overturning_nm", json_number(f->building_overturning_nm));
     json_object_set_new(o, "building_shear_n", json_numbers(n, f->building_shear_n));
-    json_object_set_new(o, "base_shear_n", json_number(f->base_shear_n));
     json_object_set_new(o, "base_shear_ratio", json_number(f->base_shear_ratio));
     json_object_set_new(o, "overturning_nm", json_number(f->overturning_nm));
     json_object_set_new(o, "peak_velocity_m_s", json_numbers(n, f->peak_velocity_m_s));
@@ -84,16 +78,16 @@ json_t *json_result(SceneKind kind, const SimResult *r)
     json_object_set_new(o, "scene", json_string(scene_word(kind)));
     json_object_set_new(o, "outcome", json_string(outcome_word(measure_outcome(r->outcome))));
     json_object_set_new(o, "reason", json_string(r->reason));
-    for (int k = 0; k < N_MEASURES - 1; k++)
+    for (int k = 0; k < N_MEASURES; k++)
         json_object_set_new(o, measure(k)->name, json_number(measure_value(r, k)));
     json_object_set_new(o, "impacts", json_integer(r->impacts));
+    json_object_set_new(o, "beyond_contact_law", json_boolean(beyond_contact_law(r)));
     json_object_set_new(o, "v0_limited", json_integer(r->v0_limited));
 
     const size_t n_floors = (size_t)r->n_floors, n_modes = (size_t)r->n_modes;
     json_object_set_new(o, "peak_displacement_m", json_numbers(n_floors, r->peak_displacement_m));
     json_object_set_new(o, "peak_drift_m", json_numbers(n_floors, r->peak_drift_m));
     json_object_set_new(o, "peak_acceleration_g", json_numbers(n_floors, r->peak_acceleration_g));
-    json_object_set_new(o, "drift_ratio", json_number(r->drift_ratio_max));
     json_object_set_new(o, "drift_ratio_storey", json_integer(r->drift_ratio_storey + 1));
     json_object_set_new(o, "peak_drift_ratio", json_numbers(n_floors, r->drift_ratio));
     json_object_set_new(o, "mode_share_pct", json_numbers(n_modes, r->mode_share_pct));
@@ -107,8 +101,7 @@ json_t *json_result(SceneKind kind, const SimResult *r)
     json_object_set_new(o, "contact_stored_j", json_number(r->contact_stored_j));
     json_object_set_new(o, "clamp_j", json_number(r->clamp_j));
     json_object_set_new(o, "indentation_max_m", json_number(r->indentation_max_m));
-    json_object_set_new(o, "indentation_ratio", json_number(r->indentation_ratio));
-    json_object_set_new(o, "beyond_contact_law", json_boolean(beyond_contact_law(r)));
+    json_object_set_new(o, "contact_yields", json_boolean(r->contact_yields));
     json_object_set_new(o, "steps", json_integer(r->steps));
     json_object_set_new(o, "force_evaluations", json_integer(r->force_evaluations));
     json_object_set_new(o, "seconds", json_number(r->seconds));
@@ -148,19 +141,29 @@ void show_motion(FILE *out, const Motion *m, double duration_s)
     fprintf(out, "%.4g s, %s\n", length, peak);
 }
 
-void show_result_names(const char *label)
+/* In a column of width 10 or of the name's, if that is wider. */
+static void show_number(double value, const char *name)
+{
+    const int width = strlen(name) > 10 ? (int)strlen(name) : 10;
+    if (isfinite(value))
+        printf(" %*.4g", width, value);
+    else
+        printf(" %*s", width, "-");
+}
+
+void show_result_names(const char *label, const MeasureOrder *order)
 {
     printf("%-28s", label);
-    for (int k = 0; k < N_OBJECTIVES; k++)
-        printf(" %10s", measure(k)->name);
+    for (int i = 0; i < order->n_obj; i++)
+        printf(" %10s", measure(order->of[i])->name);
     printf(" %8s %9s %11s\n", "impacts", "balance", "indentation");
 }
 
-void show_result(const char *label, const SimResult *r)
+void show_result(const char *label, const MeasureOrder *order, const SimResult *r)
 {
     printf("%-28.28s", label);
-    for (int k = 0; k < N_OBJECTIVES; k++)
-        printf(" %10.4g", measure_value(r, k));
+    for (int i = 0; i < order->n_obj; i++)
+        show_number(measure_value(r, order->of[i]), measure(order->of[i])->name);
     printf(" %8ld %9.1e %11.3g", r->impacts, r->energy_balance_error, r->indentation_ratio);
     if (r->outcome != RUN_OK)
         printf("  %s", outcome_word(measure_outcome(r->outcome)));
@@ -177,34 +180,34 @@ void show_objective_names(const Schema *schema)
     putchar('\n');
 }
 
-void show_objectives(const char *label, long id, size_t n_obj, const double natural[])
+void show_objectives(const char *label, long id, const Schema *schema, const double natural[])
 {
     printf("%-18s", label);
     if (id > 0)
         printf(" %7ld", id);
     else
         printf(" %7s", "-");
-    for (size_t k = 0; k < n_obj; k++)
-        printf(" %10.4g", natural[k]);
+    for (size_t k = 0; k < schema->n_obj; k++)
+        show_number(natural[k], schema_objective(schema, k)->name);
     putchar('\n');
 }
 
-static void show_moments(const char *word, size_t of, const double values[])
+static void show_moments(const char *word, size_t of, const MeasureOrder *order, const double values[])
 {
     char label[64];
     snprintf(label, sizeof label, "  %s of %zu", word, of);
     printf("%-28s", label);
-    for (int k = 0; k < N_OBJECTIVES; k++)
-        printf(" %10.4g", values[k]);
-    printf(" %8.3g %9.1e\n", values[N_MEASURES - 1], values[N_MEASURES - 2]);
+    for (int i = 0; i < order->n_obj; i++)
+        show_number(values[order->of[i]], measure(order->of[i])->name);
+    printf(" %8.3g %9.1e\n", values[MEASURE_IMPACTS], values[MEASURE_BALANCE]);
 }
 
-void show_replicates(const ReplicateSummary *r)
+void show_replicates(const MeasureOrder *order, const ReplicateSummary *r)
 {
     if (r->n_failed) {
         printf("  %zu of the simulations of this design failed: no mean\n", r->n_failed);
         return;
     }
-    show_moments("mean", r->n_replicates, r->mean);
-    show_moments("standard deviation", r->n_replicates, r->sd);
+    show_moments("mean", r->n_replicates, order, r->mean);
+    show_moments("standard deviation", r->n_replicates, order, r->sd);
 }

@@ -18,14 +18,14 @@ Status show_json(json_t *all, Err *err);
 void show_motion(FILE *out, const Motion *m, double duration_s);
 
 /* One line per simulation: label, objectives, impacts, outcome where it is not ok. */
-void show_result_names(const char *label);
-void show_result(const char *label, const SimResult *r);
+void show_result_names(const char *label, const MeasureOrder *order);
+void show_result(const char *label, const MeasureOrder *order, const SimResult *r);
 
-/* Two lines: mean and standard deviation of every measure; one where a replicate failed. */
-void show_replicates(const ReplicateSummary *r);
+/* Two lines: mean and standard deviation of the objectives; one where a replicate failed. */
+void show_replicates(const MeasureOrder *order, const ReplicateSummary *r);
 
-/* One line of objectives: label, a design's number (0: none). */
+/* One line of objectives: label, a design's number (0: none), a dash for what is not known. */
 void show_objective_names(const Schema *schema);
-void show_objectives(const char *label, long id, size_t n_obj, const double natural[]);
+void show_objectives(const char *label, long id, const Schema *schema, const double natural[]);
 
 #endif

@@ -22,6 +22,7 @@ typedef struct {
     Adapter *adapter;
     Queue *queue;                                                           /* to its simulator */
     double f[2 * OBJECTIVES_MAX], spread[2 * OBJECTIVES_MAX], violation[2]; /* of its first and last answer, natural */
+    double extra[2 * N_MEASURES];                                           /* the further measures of both */
     double weight[OBJECTIVES_MAX], slack[OBJECTIVES_MAX], bound[OBJECTIVES_MAX]; /* of minimised objectives */
     long replicates;                                                             /* of a design that is tried */
     double start;                                                                /* [s] of the clock */
@@ -51,7 +52,7 @@ static Status open_simulator(Refine *r, long replicates, Err *err)
 static Status evaluate(Refine *r, size_t n, const double *const designs[], size_t repeat, double F[],
                        unsigned char ok[], Err *err)
 {
-    const size_t m = r->run->schema.n_obj;
+    const size_t m = r->run->schema.n_obj, n_extra = r->run->schema.n_extra;
     Finished done;
     for (size_t i = 0; i < n; i++)
         TRY(queue_ask(r->queue, &(Asked){.x = designs[i], .repeat = repeat}, err));
@@ -62,6 +63,8 @@ static Status evaluate(Refine *r, size_t n, const double *const designs[], size_
         memcpy(r->f + i * m, done.evaluation->f, m * sizeof *r->f);
         memcpy(r->spread + i * m, done.evaluation->sd, m * sizeof *r->spread);
         memcpy(F + i * m, done.f, m * sizeof *F);
+        for (size_t k = 0; k < n_extra; k++)
+            r->extra[i * n_extra + k] = done.evaluation->extra[k];
     }
     return STATUS_OK;
 }
@@ -167,7 +170,8 @@ static Status gather_known(const Refine *r, Known *known, Err *err)
     for (size_t i = 0; i < known->n; i++) {
         const size_t row = near[i].row;
         memcpy(known->X + i * p->n_var, h->table.x + row * p->n_var, p->n_var * sizeof *known->X);
-        problem_judge(p, &(Evaluation){.f = h->F + row * p->n_obj}, known->F + i * p->n_obj, unused);
+        problem_judge(p, &(Evaluation){.f = h->F + row * p->n_obj, .extra = h->table.row[row].extra},
+                      known->F + i * p->n_obj, unused);
         known->noise[i] = 1.0 / (double)(h->table.row[row].replicates > 0 ? h->table.row[row].replicates : 1);
     }
     const int is_there = near && known->X;
@@ -236,7 +240,7 @@ static void judge_gain(const Refine *r, const double F[], Refined *out)
 /* Both designs with replicates that no step has used: the selection of the best of noisy values would bias them. */
 static Status compare(Refine *r, Refined *out, Err *err)
 {
-    const size_t n_var = r->run->schema.n_var, m = r->run->schema.n_obj;
+    const size_t n_var = r->run->schema.n_var, m = r->run->schema.n_obj, n_extra = r->run->schema.n_extra;
     double F[2 * OBJECTIVES_MAX];
     unsigned char ok[2] = {0};
     TRY(open_simulator(r, r->config->replicates, err));
@@ -246,6 +250,8 @@ static Status compare(Refine *r, Refined *out, Err *err)
     memcpy(out->f, r->f + m, m * sizeof *r->f);
     memcpy(out->spread_start, r->spread, m * sizeof *r->spread);
     memcpy(out->spread, r->spread + m, m * sizeof *r->spread);
+    for (size_t k = 0; k < n_extra; k++)
+        out->extra[k] = r->extra[n_extra + k];
     out->violation = r->violation[1];
     out->has_changed = ok[0] && ok[1] && memcmp(r->x, out->x, n_var * sizeof *r->x) != 0;
     if (out->has_changed)
@@ -258,12 +264,13 @@ static Status refine(Refine *r, Refined *out, Err *err)
     const size_t n_var = r->run->schema.n_var, m = r->run->schema.n_obj;
     double f[OBJECTIVES_MAX];
     out->x = calloc(n_var, sizeof *out->x);
-    out->f_start = calloc(4 * m, sizeof *out->f_start);
+    out->f_start = calloc(4 * m + r->run->schema.n_extra, sizeof *out->f_start);
     if (!out->x || !out->f_start)
         return fail(err, STATUS_NO_MEMORY, "no memory for a design");
     out->f = out->f_start + m;
     out->spread_start = out->f_start + 2 * m;
     out->spread = out->f_start + 3 * m;
+    out->extra = out->f_start + 4 * m;
     memcpy(out->x, r->x, n_var * sizeof *out->x);
     TRY(begin(r, f, out, err));
     TRY(follow_surface(r, f, out, err));
@@ -305,6 +312,11 @@ int refined_counts(const Refined *r)
 
 Evaluation refined_evaluation(const Refined *r)
 {
-    return (Evaluation){
-        .x = r->x, .f = r->f, .sd = r->spread, .violation = r->violation, .seconds = r->seconds, .outcome = OUTCOME_OK};
+    return (Evaluation){.x = r->x,
+                        .f = r->f,
+                        .sd = r->spread,
+                        .extra = r->extra,
+                        .violation = r->violation,
+                        .seconds = r->seconds,
+                        .outcome = OUTCOME_OK};
 }

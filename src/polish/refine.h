@@ -36,6 +36,7 @@ typedef struct {
 
 typedef struct {
     double *x, *f_start, *f, *spread_start, *spread; /* (n_var), (n_obj) natural; of step 4 */
+    double *extra;                                   /* (n_extra) of the end */
     double gain, gain_error;                         /* of the value, > 0 is better; error NAN: not known */
     double violation;                                /* of the user's limits */
     size_t n_evaluated, n_failed, n_simulated;       /* designs, of them failed; simulations */
@@ -51,7 +52,7 @@ void refined_free(Refined *r);
 /* A significant gain, or any where the standard deviation is not known; and all else kept. */
 int refined_counts(const Refined *r);
 
-/* As a run stores it; borrows x, f and spread. */
+/* As a run stores it; borrows x, f, spread and extra. */
 Evaluation refined_evaluation(const Refined *r);
 
 #endif

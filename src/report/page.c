@@ -6,7 +6,6 @@
 #include "base/json.h"
 #include "moga/hypervolume.h"
 #include "report/report.h"
-#include "simulator/measures.h"
 #include "store/output.h"
 #include "store/provenance.h"
 #include "settings/settings.h"
@@ -33,14 +32,14 @@ static json_t *json_of_settings(const Settings *s)
 
 /* ---- the chosen design ----------------------------------------------------------------------------------------- */
 
-static json_t *json_of_result(const SimResult *r)
+static json_t *json_of_result(const SimResult *r, const MeasureOrder *order)
 {
     const size_t n = (size_t)r->n_floors, n_modes = (size_t)r->n_modes;
     if (r->outcome != RUN_OK)
         return json_pack("{s:s}", "reason", r->reason);
     json_t *objectives = json_array();
-    for (int k = 0; k < N_OBJECTIVES; k++)
-        objectives = json_append(objectives, json_number(measure_value(r, k)));
+    for (int k = 0; k < order->n_obj; k++)
+        objectives = json_append(objectives, json_number(measure_value(r, order->of[k])));
     return json_pack("{s:o, s:I, s:f, s:f, s:b, s:o, s:o, s:o, s:o}", "objectives", objectives, "impacts",
                      (json_int_t)r->impacts, "input_j", r->input_energy_j, "contact_pct",
                      r->input_energy_j > 0 ? 100 * r->contact_loss_j / r->input_energy_j : 0.0, "beyond_law",
@@ -72,7 +71,7 @@ static json_t *json_of_history(const History *h, const Spectrogram *s)
                      "spectrum", json_numbers(SPECTRUM_FREQUENCIES * SPECTRUM_TIMES, s->amplitude));
 }
 
-static json_t *json_of_detail(const Detail *d)
+static json_t *json_of_detail(const Detail *d, const MeasureOrder *order)
 {
     const size_t n = (size_t)d->n_floors;
     json_t *others = json_array();
@@ -80,15 +79,17 @@ static json_t *json_of_detail(const Detail *d)
         const Elsewhere *e = &d->elsewhere[i];
         others = json_append(others, json_pack("{s:s, s:f, s:f, s:f, s:o, s:o}", "record", e->record, "pga_g", e->pga_g,
                                                "scale", e->scale, "stretch", e->stretch, "with_core",
-                                               json_of_result(&e->with_core), "no_core", json_of_result(&e->no_core)));
+                                               json_of_result(&e->with_core, order), "no_core",
+                                               json_of_result(&e->no_core, order)));
     }
     return json_pack("{s:i, s:o, s:o, s:o, s:o, s:s, s:f, s:f, s:f, s:f, s:o, s:o, s:o, s:o, s:o, s:o}", "floor",
                      d->floor + 1, "gap_m", json_numbers(n, d->gap_m), "thickness_m", json_numbers(n, d->thickness_m),
                      "building_hz", json_numbers(n, d->building_hz), "core_hz", json_numbers(n, d->core_hz), "record",
                      d->record, "pga_g", d->pga_g, "scale", d->scale, "stretch", d->stretch, "duration_s",
-                     d->duration_s, "with_core", json_of_result(&d->result[SCENE_IMPACT]), "no_core",
-                     json_of_result(&d->result[SCENE_NO_CORE]), "rigid", json_of_result(&d->result[SCENE_RIGID]),
-                     "history_with_core", json_of_history(&d->history[0], &d->spectrum[0]), "history_no_core",
+                     d->duration_s, "with_core", json_of_result(&d->result[SCENE_IMPACT], order), "no_core",
+                     json_of_result(&d->result[SCENE_NO_CORE], order), "rigid",
+                     json_of_result(&d->result[SCENE_RIGID], order), "history_with_core",
+                     json_of_history(&d->history[0], &d->spectrum[0]), "history_no_core",
                      json_of_history(&d->history[1], &d->spectrum[1]), "elsewhere", others);
 }
 
@@ -101,7 +102,12 @@ static json_t *json_of_names(const Schema *schema)
         variables = json_append(variables, json_string(schema_variable(schema, j)->name));
     for (size_t k = 0; k < schema->n_obj; k++) {
         const Column *c = schema_objective(schema, k);
-        objectives = json_append(objectives, json_pack("{s:s, s:f}", "name", c->name, "sense", c->sense));
+        json_t *o = json_pack("{s:s, s:f}", "name", c->name, "sense", c->sense);
+        if (schema->order.n_obj > 0) {
+            json_object_set_new(o, "what", json_string(measure(schema->order.of[k])->what));
+            json_object_set_new(o, "unit", json_string(measure(schema->order.of[k])->unit));
+        }
+        objectives = json_append(objectives, o);
     }
     return json_pack("{s:o, s:o}", "variables", variables, "objectives", objectives);
 }
@@ -144,7 +150,7 @@ static json_t *json_of_run(const Report *r)
                      "chosen_f", json_numbers(run->schema.n_obj, run_f(run, r->chosen)), "evaluated",
                      (json_int_t)n_evaluated(run), "failed", (json_int_t)run->n_failed, "schema",
                      json_of_names(&run->schema), "convergence", json_of_growth(run), "detail",
-                     r->has_detail ? json_of_detail(&r->detail) : json_null(), "settings",
+                     r->has_detail ? json_of_detail(&r->detail, &run->schema.order) : json_null(), "settings",
                      json_of_settings(run->settings), "provenance", run->provenance);
 }
 

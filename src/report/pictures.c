@@ -34,17 +34,20 @@ static const char STYLE[] =
     "set grid lc '#d8d8d8' lt 1 lw 1\nset tics nomirror out\nset border 3\nset key noenhanced\n"
     "set style fill solid 1 noborder\n";
 
+static void put_number(FILE *script, double value)
+{
+    if (isfinite(value))
+        fprintf(script, "%.8g ", value);
+    else
+        fputs("NaN ", script);
+}
+
 static void numbers(FILE *script, size_t n, ...)
 {
     va_list list;
     va_start(list, n);
-    for (size_t i = 0; i < n; i++) {
-        const double value = va_arg(list, double);
-        if (isfinite(value))
-            fprintf(script, "%s%.6g", i ? " " : "", value);
-        else
-            fprintf(script, "%sNaN", i ? " " : "");
-    }
+    for (size_t i = 0; i < n; i++)
+        put_number(script, va_arg(list, double));
     va_end(list);
     fputc('\n', script);
 }
@@ -57,10 +60,10 @@ static const char *file_name(const char *path)
 
 /* ---- the front ------------------------------------------------------------------------------------------------- */
 
-static double scaled(const Report *r, size_t row, size_t k)
+/* Of objective k: tonnes of the core's mass, else the unit of the files. */
+static double scale_of(const Report *r, size_t k)
 {
-    const double value = run_f(r->run, row)[k];
-    return r->has_detail && k == 6 ? value / 1000 : value; /* the core's mass in tonnes */
+    return r->has_detail && r->run->schema.order.of[k] == MEASURE_MCORE ? 1e-3 : 1;
 }
 
 static void write_rows(FILE *script, const char *block, const Report *r, size_t n, const size_t rows[])
@@ -68,25 +71,39 @@ static void write_rows(FILE *script, const char *block, const Report *r, size_t 
     fprintf(script, "$%s << EOD\n", block);
     for (size_t i = 0; i < n; i++) {
         for (size_t k = 0; k < r->run->schema.n_obj; k++)
-            fprintf(script, "%.8g ", scaled(r, rows[i], k));
+            put_number(script, run_f(r->run, rows[i])[k] * scale_of(r, k));
         fputc('\n', script);
     }
     fputs("EOD\n", script);
 }
 
+/* What objective k is, with its unit; of another problem its name, without the apostrophe that keeps it from being a
+ * formula in a spreadsheet (base/cell.h). */
+static void write_label(FILE *script, const Report *r, size_t k)
+{
+    char text[128];
+    const char *name = schema_objective(&r->run->schema, k)->name;
+    if (r->has_detail) {
+        const Measure *m = measure(r->run->schema.order.of[k]);
+        snprintf(text, sizeof text, "%s [%s]", m->what, scale_of(r, k) < 1 ? "t" : m->unit);
+    } else {
+        snprintf(text, sizeof text, "%s", name + (name[0] == '\'' && name[1] && strchr("=+-@", name[1])));
+    }
+    gnuplot_quote(script, text);
+}
+
 /* Two objectives against each other; the last one gives the colour. */
 typedef struct {
     size_t x, y;
-    const char *x_label, *y_label;
 } Panel;
 
 static void write_panel(FILE *script, const Report *r, const Panel *p)
 {
     const size_t x = p->x + 1, y = p->y + 1;
     fputs("set xlabel ", script);
-    gnuplot_quote(script, p->x_label);
+    write_label(script, r, p->x);
     fputs(" noenhanced\nset ylabel ", script);
-    gnuplot_quote(script, p->y_label);
+    write_label(script, r, p->y);
     fprintf(script,
             " noenhanced offset 1.2\n"
             "plot $FRONT using %zu:%zu:%zu with points pt 7 ps DOT lc palette, "
@@ -101,28 +118,24 @@ static void write_panel(FILE *script, const Report *r, const Panel *p)
     fputs("\nunset label\n", script);
 }
 
-/* A name without the apostrophe that keeps it from being a formula in a spreadsheet (base/cell.h). */
-static const char *label(const Report *r, size_t k)
-{
-    const char *name = schema_objective(&r->run->schema, k)->name;
-    return name + (name[0] == '\'' && name[1] && strchr("=+-@", name[1]));
-}
-
-/* Those of the tower, or the first three pairs. Returns how many there are. */
+/* Those of the paper that are there, or the first three pairs. Returns how many there are. */
 static size_t choose_panels(const Report *r, Panel panels[3])
 {
-    static const size_t PAIRS[3][2] = {{0, 1}, {0, 2}, {1, 2}};
-    static const Panel TOWER[3] = {
-        {0, 2, "peak displacement J1 [m]", "peak acceleration J3 [g]"},
-        {0, 1, "peak displacement J1 [m]", "peak interstorey drift J2 [m]"},
-        {3, 4, "energy share of the first mode [%]", "energy share of modes 5 to 10 [%]"},
-    };
-    const size_t n = r->run->schema.n_obj > 2 ? 3 : 1;
-    for (size_t i = 0; i < n; i++) {
-        const size_t x = PAIRS[i][0], y = PAIRS[i][1];
-        panels[i] = r->has_detail ? TOWER[i] : (Panel){x, y, label(r, x), label(r, y)};
+    static const int PAPER[3][2] = {{MEASURE_J1, MEASURE_J3}, {MEASURE_J1, MEASURE_J2}, {MEASURE_ED1, MEASURE_ED5_10}};
+    static const Panel PAIRS[3] = {{0, 1}, {0, 2}, {1, 2}};
+    const Schema *s = &r->run->schema;
+    size_t n = 0;
+    for (int i = 0; i < 3 && r->has_detail; i++) {
+        panels[n] = (Panel){schema_find_objective(s, measure(PAPER[i][0])->name),
+                            schema_find_objective(s, measure(PAPER[i][1])->name)};
+        n += panels[n].x < s->n_obj && panels[n].y < s->n_obj;
     }
-    return n;
+    if (n > 0)
+        return n;
+    memcpy(panels, PAIRS, sizeof PAIRS);
+    if (s->n_obj == 1)
+        panels[0].y = 0;
+    return s->n_obj > 2 ? 3 : 1;
 }
 
 static void write_legend(FILE *script, const Report *r)
@@ -138,7 +151,7 @@ static void write_legend(FILE *script, const Report *r)
               "offset 1\n",
               script);
     fputs("set cblabel ", script);
-    gnuplot_quote(script, r->has_detail ? "core mass [t]" : label(r, r->run->schema.n_obj - 1));
+    write_label(script, r, r->run->schema.n_obj - 1);
     fputs(" noenhanced\n", script);
 }
 
@@ -149,8 +162,9 @@ static void write_front(FILE *script, const Report *r)
     write_rows(script, "FRONT", r, r->run->n_front, r->run->front);
     write_rows(script, "KNEE", r, 1, &r->knee);
     fputs("$ALONE << EOD\n", script);
-    for (int k = 0; r->has_detail && k < N_OBJECTIVES; k++)
-        fprintf(script, "%.8g ", measure_value(&r->detail.result[SCENE_NO_CORE], k) / (k == 6 ? 1000 : 1));
+    for (size_t k = 0; r->has_detail && k < r->run->schema.n_obj; k++)
+        put_number(script,
+                   measure_value(&r->detail.result[SCENE_NO_CORE], r->run->schema.order.of[k]) * scale_of(r, k));
     fprintf(script,
             "\nEOD\nset multiplot layout 1,%zu margins 0.055,0.905,0.135,0.88 spacing 0.066,0\n"
             "set offsets graph 0.02, graph 0.04, graph 0.04, graph 0.02\nunset key\nunset colorbox\n",

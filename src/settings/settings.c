@@ -109,6 +109,7 @@ static const Option OPTIONS[] = {
     REAL(contact.radius_m, "m", "0.1", 1e-6, 1e3, "radius of the contacting body"),
     REAL(contact.youngs_modulus_pa, "Pa", "2.1e11", 1, 1e14, "Young's modulus of both bodies"),
     REAL(contact.poisson, "-", "0.3", 0, 0.5, "Poisson's ratio of both bodies"),
+    REAL(contact.yield_stress_pa, "Pa", "3.45e8", 1, 1e12, "yield stress of both bodies; changes no response"),
 
     PATH(motion.record, "builtin:kobe-like", CHOICE_WORDS(BUILTIN_MOTION_LIST),
          "ground motion: one of the program, or a file (docs/motions.md)", .flags = SETTING_FREE),
@@ -162,6 +163,9 @@ static const Option OPTIONS[] = {
     WHOLE(sim.replicates, "1", 1, 1000,
           "simulations of a design under each record, with perturbed gaps: the objectives are their means"),
     REAL(sim.gap_tolerance_m, "m", "0", 0, 1, "standard deviation of a gap as built; needs sim.replicates >= 2"),
+    CHOICE(sim.forces, Forces, CHOICE_WORDS(FORCES_LIST), "auto",
+           "forces, stresses and base shears of every design as columns: yes, or auto: only where an objective or a "
+           "limit needs them"),
     CHOICE(sim.robust, Robust, CHOICE_WORDS(ROBUST_LIST), "worst",
            "under several records: the worst of each objective, or the mean"),
 
@@ -223,7 +227,10 @@ static const Option OPTIONS[] = {
           "noisy evaluations: largest number of simulations of a design; 1: no replicates"),
     WHOLE(search.polish, "3", 0, 32,
           "tower: designs polished at the end, with a tenth more simulations; none where these are too few"),
-    TEXT(search.limits, "none", "constraints on objectives, as j3_g<=5,edcs_pct>=3; none"),
+    TEXT(search.objectives, "auto",
+         "tower: results that are searched for, a comma list of columns (results/README.md); paper: its seven; auto: "
+         "those of them that the building has"),
+    TEXT(search.limits, "none", "constraints on objectives and other results, as j3_g<=5,drift_ratio<=0.02; none"),
 
     PATH(run.out, "results/study", NULL, "folder of the run", .flags = SETTING_FREE | SETTING_OUTPUT),
 };

@@ -507,4 +507,10 @@ void force_monitor_report(ForceMonitor *m, double t, SimForces *out)
     out->base_shear_ratio = m->weight_n > 0 ? out->base_shear_n / m->weight_n : 0;
     report_contacts(m, out);
     report_stresses(m, out);
+    if (m->nc == 0)
+        out->core_base_shear_n = out->core_overturning_nm = out->core_top_m = NAN;
+    if (!out->stress_known)
+        out->core_stress_pa = out->core_shear_stress_pa = NAN;
+    if (!out->buckling_known)
+        out->core_buckling_ratio = NAN;
 }

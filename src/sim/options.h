@@ -16,7 +16,7 @@ typedef enum { CONTACT_LAW_LIST(CHOICE_NAME) } ContactLaw;
 
 typedef struct {
     ContactLaw law;
-    double restitution, v0_min_m_s, radius_m, youngs_modulus_pa, poisson;
+    double restitution, v0_min_m_s, radius_m, youngs_modulus_pa, poisson, yield_stress_pa;
 } ContactOptions;
 
 /* The integrators of the model, by the name of the setting; sim/engine.c has a line for each. */
@@ -36,6 +36,9 @@ typedef enum { ACCURACY_LIST(CHOICE_NAME) } Accuracy;
 #define ROBUST_LIST(X) X(ROBUST_WORST, "worst") X(ROBUST_MEAN, "mean")
 typedef enum { ROBUST_LIST(CHOICE_NAME) } Robust;
 
+#define FORCES_LIST(X) X(FORCES_AUTO, "auto") X(FORCES_YES, "yes")
+typedef enum { FORCES_LIST(CHOICE_NAME) } Forces;
+
 typedef struct {
     Engine engine;
     Accuracy accuracy;
@@ -45,7 +48,7 @@ typedef struct {
     long replicates;        /* simulations of a design under each record */
     Robust robust;          /* how a design's results under several records become one */
     double gap_tolerance_m; /* standard deviation of a gap as built */
-    int forces;             /* no setting: who wants SimResult.forces says so */
+    Forces forces;          /* auto: only where an objective or a limit needs SimResult.forces */
 } SimOptions;
 
 /* What a scene is made of; without the ground motion. */

@@ -32,8 +32,8 @@ typedef void (*SimContactFn)(const SimContact *contact, void *user);
 
 enum { SIDES = 2 }; /* of the core: [0] u > v, [1] u < v */
 
-/* Forces, where they are asked for (sim/force_monitor.h has the formulas); peaks are magnitudes. Storeys and floors from
- * 0. */
+/* Forces, where they are asked for (sim/force_monitor.h has the formulas); peaks are magnitudes, NAN where the scene has
+ * no such part. Storeys and floors from 0. */
 typedef struct {
     double contact_force_n[SIDES][FLOORS_MAX], contact_impulse_ns[SIDES][FLOORS_MAX];
     double indentation_m[SIDES][FLOORS_MAX];
@@ -74,6 +74,8 @@ typedef struct {
                                                          condition */
     double damped_building_j, damped_core_j, kinetic_strain_j; /* the last at the end of the run */
     double indentation_max_m, indentation_ratio;               /* [-] over the contact's radius */
+    double contact_pressure_pa;                                /* largest in the middle of a contact */
+    int contact_yields;                                        /* it begins to yield below the surface */
     long steps, force_evaluations;                             /* what the run cost */
     int repeated; /* times the run was repeated with shorter steps, its energy balance open */
     double seconds;                                            /* wall time */

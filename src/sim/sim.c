@@ -136,7 +136,7 @@ Status sim_worker_create(SimWorker **out, const Scene *scene, Err *err)
     w->scene = scene;
     w->run = scene->run;
     Status status = model_create(&w->model, scene->building.n, scene->building.model.n, err);
-    if (status == STATUS_OK && scene->options.sim.forces)
+    if (status == STATUS_OK && scene->options.sim.forces == FORCES_YES)
         status = force_monitor_create(&w->run.forces, scene->building.n, scene->building.model.n, err);
     if (status == STATUS_OK && scene->engine->work_create)
         status = scene->engine->work_create(&w->run.work, scene->building.n, scene->building.model.n, err);
@@ -217,6 +217,18 @@ static Status run_engine(SimWorker *w, SimResult *result, Err *err)
     return STATUS_OK;
 }
 
+/* Middle of the circle of contact, by Hertz: p0 = 2 E* / pi sqrt(p / R), E* = E / (2 (1 - nu^2)); below its surface steel
+ * (nu 0.3) begins to yield at p0 = 1.6 of the yield stress. K. L. Johnson, Contact Mechanics (1985), sections 4.2, 6.1 */
+static const double YIELD_PRESSURE = 1.6;
+
+static void set_contact_figures(const ContactOptions *o, SimResult *r)
+{
+    r->indentation_ratio = r->indentation_max_m / o->radius_m;
+    r->contact_pressure_pa =
+        o->youngs_modulus_pa / (M_PI * (1 - o->poisson * o->poisson)) * sqrt(fmax(r->indentation_ratio, 0));
+    r->contact_yields = r->contact_pressure_pa > YIELD_PRESSURE * o->yield_stress_pa;
+}
+
 static void set_drift_ratios(const double storey_m[], SimResult *r)
 {
     for (int s = 0; s < r->n_floors; s++) {
@@ -247,10 +259,12 @@ Status sim_run(SimWorker *w, SceneKind kind, const double x[], SimResult *result
     if (w->run.forces) {
         force_monitor_report(w->run.forces, w->run.duration, &result->forces);
         result->forces_known = 1;
+        if (kind == SCENE_RIGID) /* what connects them is not resolved */
+            result->forces.contact_force_max_n = NAN;
     }
     set_drift_ratios(scene->building.storey_m, result);
     result->mcore_kg = kind == SCENE_NO_CORE ? 0 : w->core.mass_kg;
-    result->indentation_ratio = result->indentation_max_m / scene->options.contact.radius_m;
+    set_contact_figures(&scene->options.contact, result);
     result->seconds = clock_seconds() - start;
     return STATUS_OK;
 }

@@ -46,7 +46,7 @@ void adapter_observe(Adapter *a, const Observer *observer)
 static void judge(const Evaluation *e, double f[], double g[], const void *user)
 {
     const Adapter *a = user;
-    limits_apply(&a->limits, e->f, g);
+    limits_apply(&a->limits, a->schema.n_obj, e, g);
     for (size_t k = 0; k < a->schema.n_obj; k++)
         f[k] = schema_objective(&a->schema, k)->sense * e->f[k];
 }

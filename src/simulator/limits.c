@@ -6,17 +6,26 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* What stands before <= or >= into name (TABLE_NAME_MAX); returns where that is, NULL: nowhere. */
+static const char *take_name(const char *text, char name[])
+{
+    const char *relation = strpbrk(text, "<>");
+    if (!relation || relation[1] != '=' || relation - text >= TABLE_NAME_MAX)
+        return NULL;
+    snprintf(name, TABLE_NAME_MAX, "%.*s", (int)(relation - text), text);
+    for (char *last = name + strlen(name); last > name && isspace((unsigned char)last[-1]);)
+        *--last = 0;
+    return relation;
+}
+
 static Status read_limit(Limits *limits, const Schema *schema, const char *text, Err *err)
 {
     char name[TABLE_NAME_MAX], *end;
-    const char *relation = strpbrk(text, "<>");
-    if (!relation || relation[1] != '=' || relation - text >= TABLE_NAME_MAX)
+    const char *relation = take_name(text, name);
+    if (!relation)
         return fail(err, STATUS_BAD_DATA, "search.limits: '%.60s' is not NAME<=NUMBER or NAME>=NUMBER", text);
-    snprintf(name, sizeof name, "%.*s", (int)(relation - text), text);
-    for (char *last = name + strlen(name); last > name && isspace((unsigned char)last[-1]);)
-        *--last = 0;
     Limit *l = &limits->limit[limits->n++];
-    TRY(schema_pick_objective(schema, "search.limits", name, STATUS_BAD_DATA, &l->objective, err));
+    TRY(schema_pick_result(schema, "search.limits", name, STATUS_BAD_DATA, &l->result, err));
     l->sign = *relation == '<' ? 1.0 : -1.0;
     l->bound = strtod(relation + 2, &end);
     if (end == relation + 2 || *end || !isfinite(l->bound))
@@ -24,15 +33,15 @@ static Status read_limit(Limits *limits, const Schema *schema, const char *text,
     return STATUS_OK;
 }
 
-/* No number keeps both of two limits of one objective where the greatest allowed is below the smallest. */
+/* No number keeps both of two limits of one result where the greatest allowed is below the smallest. */
 static Status check(const Limits *limits, const Schema *schema, Err *err)
 {
     for (size_t a = 0; a < limits->n; a++)
         for (size_t b = 0; b < limits->n; b++) {
             const Limit *max = &limits->limit[a], *min = &limits->limit[b];
-            if (max->objective == min->objective && max->sign > 0.0 && min->sign < 0.0 && min->bound > max->bound)
+            if (max->result == min->result && max->sign > 0.0 && min->sign < 0.0 && min->bound > max->bound)
                 return fail(err, STATUS_BAD_DATA, "search.limits: %s<=%g and >=%g contradict each other",
-                            schema_objective(schema, max->objective)->name, max->bound, min->bound);
+                            schema_objective(schema, max->result)->name, max->bound, min->bound);
         }
     return STATUS_OK;
 }
@@ -53,10 +62,22 @@ Status limits_read(Limits *limits, const Schema *schema, const char *list, Err *
     return check(limits, schema, err);
 }
 
-void limits_apply(const Limits *limits, const double f[], double g[])
+MeasureSet limits_measures(const char *list)
+{
+    MeasureSet set = 0;
+    char text[128], name[TABLE_NAME_MAX];
+    for (size_t i = 0; i < list_count(list); i++)
+        for (int k = 0; list_item(list, i, text, sizeof text) && take_name(text, name) && k < N_MEASURES; k++)
+            if (strcmp(measure(k)->name, name) == 0)
+                set |= (MeasureSet)1 << k;
+    return set;
+}
+
+void limits_apply(const Limits *limits, size_t n_obj, const Evaluation *e, double g[])
 {
     for (size_t c = 0; c < limits->n; c++) {
         const Limit *l = &limits->limit[c];
-        g[c] = l->sign * (f[l->objective] - l->bound) / (l->bound != 0.0 ? fabs(l->bound) : 1.0);
+        const double value = l->result < n_obj ? e->f[l->result] : e->extra[l->result - n_obj];
+        g[c] = l->sign * (value - l->bound) / (l->bound != 0.0 ? fabs(l->bound) : 1.0);
     }
 }

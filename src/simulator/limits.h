@@ -1,4 +1,4 @@
-/* simulator/limits.h -- the user's limits (search.limits = j3_g<=5,edcs_pct>=3) as constraints.
+/* simulator/limits.h -- the user's limits (search.limits = j3_g<=5,drift_ratio<=0.02) as constraints on any result.
  *
  *   g = (value - limit) / |limit| for <=, the negative of it for >=; limit 0 counts as 1
  *
@@ -12,7 +12,7 @@
 enum { LIMITS_MAX = 32 };
 
 typedef struct {
-    size_t objective;
+    size_t result;      /* an objective, or n_obj + a further measure */
     double sign, bound; /* sign (value - bound) <= 0 */
 } Limit;
 
@@ -24,7 +24,10 @@ typedef struct {
 /* list: as in the settings, "none" for none. */
 Status limits_read(Limits *l, const Schema *schema, const char *list, Err *err);
 
-/* g (n) of the natural objectives f. */
-void limits_apply(const Limits *l, const double f[], double g[]);
+/* The measures of a tower that such a list limits; words that are none are passed over. */
+MeasureSet limits_measures(const char *list);
+
+/* g (n) of an evaluation with so many objectives. */
+void limits_apply(const Limits *l, size_t n_obj, const Evaluation *e, double g[]);
 
 #endif

@@ -1,18 +1,14 @@
 #include "simulator/measures.h"
 
 #include <math.h>
+#include <string.h>
+
+#include "base/list.h"
 
 static const Measure MEASURES[N_MEASURES] = {
-    {"j1_m", 1, "largest floor displacement"},
-    {"j2_m", 1, "largest interstorey drift"},
-    {"j3_g", 1, "largest floor acceleration"},
-    {"ed1_pct", 1, "share of the input dissipated by the first building mode"},
-    {"ed5_10_pct", -1, "share dissipated by building modes 5 to 10"},
-    {"edcs_pct", -1, "share dissipated by the core"},
-    {"mcore_kg", 1, "mass of the core"},
-    {"input_energy_j", 0, "energy that the ground put in"},
-    {"energy_balance_error", 0, "of the energy balance, as a share of the input"},
-    {"impacts", 0, "closings of any gap"},
+#define X(id, name, unit, sense, needs, value, what) {name, unit, sense, needs, what},
+    MEASURE_LIST(X)
+#undef X
 };
 
 const Measure *measure(int k)
@@ -22,21 +18,95 @@ const Measure *measure(int k)
 
 double measure_value(const SimResult *r, int k)
 {
-    const double values[N_MEASURES] = {r->j1_m,           r->j2_m,           r->j3_g,
-                                       r->ed1_pct,        r->ed5_10_pct,     r->edcs_pct,
-                                       r->mcore_kg,       r->input_energy_j, r->energy_balance_error,
-                                       (double)r->impacts};
-    return values[k];
+    if ((MEASURES[k].needs & NEEDS_FORCES) && !r->forces_known)
+        return NAN;
+    switch ((MeasureId)k) {
+#define X(id, name, unit, sense, needs, value, what)                                                                   \
+    case MEASURE_##id:                                                                                                 \
+        return value;
+        MEASURE_LIST(X)
+#undef X
+    case N_MEASURES:
+        break;
+    }
+    return NAN;
 }
 
-int measure_objectives(const SimResult *r, double f[N_OBJECTIVES])
+unsigned measures_need(MeasureSet set)
 {
-    int ok = r->outcome == RUN_OK;
-    for (int k = 0; k < N_OBJECTIVES; k++) {
-        f[k] = MEASURES[k].sense * measure_value(r, k);
-        ok = ok && isfinite(f[k]);
+    unsigned needs = NEEDS_NOTHING;
+    for (int k = 0; k < N_MEASURES; k++)
+        needs |= set >> k & 1 ? MEASURES[k].needs : NEEDS_NOTHING;
+    return needs;
+}
+
+int measure_exists(int k, int n_floors)
+{
+    return k != MEASURE_ED5_10 || n_floors == 0 || n_floors >= 5;
+}
+
+const char *measures_left_out(const MeasureOrder *order, const char *objectives)
+{
+    const int is_out = strcmp(objectives, "auto") == 0 && !(order->objectives >> MEASURE_ED5_10 & 1);
+    return is_out ? "ed5_10_pct is no objective: the building has no modes 5 to 10 (search.objectives)" : NULL;
+}
+
+int measures_are_known(const SimResult *r, MeasureSet set)
+{
+    int known = r->outcome == RUN_OK;
+    for (int k = 0; k < N_MEASURES && known; k++)
+        known = !(set >> k & 1) || isfinite(measure_value(r, k));
+    return known;
+}
+
+/* -- objectives ---------------------------------------------------------------------------------------------------- */
+
+static void add_objective(MeasureOrder *o, int k)
+{
+    o->of[o->n_obj++] = k;
+    o->objectives |= (MeasureSet)1 << k;
+}
+
+static Status take_objective(MeasureOrder *o, const char *name, Err *err)
+{
+    const char *names[N_MEASURES];
+    int k = 0;
+    while (k < N_MEASURES && strcmp(MEASURES[k].name, name) != 0)
+        k++;
+    for (int i = 0; i < N_MEASURES; i++)
+        names[i] = MEASURES[i].name;
+    if (k == N_MEASURES)
+        return fail_no_word(err, STATUS_BAD_DATA, "search.objectives", name, "result", names, N_MEASURES);
+    if (o->objectives >> k & 1)
+        return fail(err, STATUS_BAD_DATA, "search.objectives: %s stands there twice", name);
+    add_objective(o, k);
+    return STATUS_OK;
+}
+
+static Status take_list(MeasureOrder *o, const char *list, Err *err)
+{
+    char name[64];
+    for (size_t i = 0; i < list_count(list); i++) {
+        if (!list_item(list, i, name, sizeof name))
+            return fail(err, STATUS_BAD_DATA, "search.objectives: name %zu is empty or too long", i + 1);
+        TRY(take_objective(o, name, err));
     }
-    return ok;
+    return STATUS_OK;
+}
+
+Status measures_order(MeasureOrder *out, const char *objectives, int n_floors, Err *err)
+{
+    const int is_auto = strcmp(objectives, "auto") == 0, is_paper = strcmp(objectives, "paper") == 0;
+    *out = (MeasureOrder){0};
+    for (int k = 0; k < PAPER_OBJECTIVES && (is_auto || is_paper); k++)
+        if (is_paper || measure_exists(k, n_floors))
+            add_objective(out, k);
+    if (!is_auto && !is_paper)
+        TRY(take_list(out, objectives, err));
+    for (int k = 0, n = out->n_obj; k < N_MEASURES; k++)
+        if (!(out->objectives >> k & 1))
+            out->of[n++] = k;
+    return STATUS_OK;
 }
 
 Outcome measure_outcome(RunOutcome outcome)

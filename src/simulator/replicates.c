@@ -33,7 +33,7 @@ static void combine_records(const ReplicatePlan *plan, const SimResult results[]
     for (size_t r = 0; r < plan->n_records; r++) {
         double mean, deviation;
         mean_and_sd(plan->n_replicates, value_of, &(Sample){results + r * plan->n_replicates, k}, &mean, &deviation);
-        if (plan->takes_mean || sense == 0.0) {
+        if (plan->takes_mean) {
             *value += mean / n;
             *sd += deviation * deviation / n;
         } else if (r == 0 || sense * mean > sense * *value) {
@@ -46,18 +46,17 @@ static void combine_records(const ReplicatePlan *plan, const SimResult results[]
 
 void replicates_summarise(const ReplicatePlan *plan, const SimResult results[], ReplicateSummary *out)
 {
-    double unused[N_OBJECTIVES];
     *out = (ReplicateSummary){.shown = results, .n_replicates = plan->n_replicates};
     for (size_t i = plan->n_records * plan->n_replicates; i-- > 0;) {
         out->seconds += results[i].seconds;
-        if (!measure_objectives(&results[i], unused)) {
+        if (!measures_are_known(&results[i], plan->judged)) {
             out->shown = &results[i];
             out->n_failed++;
         }
     }
     const int is_lost = out->n_failed > 0 && out->shown->outcome == RUN_OK;
     out->outcome = is_lost ? OUTCOME_NOT_FINITE : measure_outcome(out->shown->outcome);
-    out->reason = is_lost ? "an objective is not finite" : out->shown->reason;
+    out->reason = is_lost ? "an objective or a limited result is not finite" : out->shown->reason;
     for (int k = 0; k < N_MEASURES; k++)
         combine_records(plan, results, k, &out->mean[k], &out->sd[k]);
 }

@@ -27,7 +27,8 @@ void replicate_design(uint32_t seed, size_t k, double tolerance_m, size_t n_gaps
 
 typedef struct {
     size_t n_records, n_replicates;
-    int takes_mean; /* over the records; else the worst */
+    int takes_mean;    /* over the records; else the worst */
+    MeasureSet judged; /* what is not finite there has failed */
 } ReplicatePlan;
 
 typedef struct {

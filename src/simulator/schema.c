@@ -5,7 +5,6 @@
 
 #include "base/cell.h"
 #include "scene/design.h"
-#include "simulator/measures.h"
 #include "settings/settings.h"
 
 static Status allocate(Schema *schema, Err *err)
@@ -14,16 +13,21 @@ static Status allocate(Schema *schema, Err *err)
     return schema->column ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for %zu columns", schema->n_var);
 }
 
-static Status schema_of_tower(Schema *schema, int n_floors, Err *err)
+static Status schema_of_tower(Schema *schema, const char *objectives, int n_floors, Err *err)
 {
-    *schema = (Schema){(size_t)n_floors + 2, N_OBJECTIVES, N_MEASURES - N_OBJECTIVES, NULL, 0};
+    MeasureOrder order;
+    TRY(measures_order(&order, objectives, n_floors, err));
+    *schema = (Schema){.n_var = (size_t)n_floors + 2,
+                       .n_obj = (size_t)order.n_obj,
+                       .n_extra = (size_t)(N_MEASURES - order.n_obj),
+                       .order = order};
     TRY(allocate(schema, err));
     for (int j = 0; j < n_floors + 2; j++)
         design_variable_name(n_floors, j, schema->column[j].name);
     for (int k = 0; k < N_MEASURES; k++) {
         Column *c = &schema->column[n_floors + 2 + k];
-        snprintf(c->name, sizeof c->name, "%s", measure(k)->name);
-        c->sense = measure(k)->sense;
+        snprintf(c->name, sizeof c->name, "%s", measure(order.of[k])->name);
+        c->sense = measure(order.of[k])->sense;
     }
     return STATUS_OK;
 }
@@ -82,7 +86,7 @@ int schema_is_noisy(const Settings *s)
 Status schema_of(Schema *schema, const Settings *s, int n_floors, Err *err)
 {
     if (s->problem.kind == PROBLEM_TOWER) {
-        TRY(schema_of_tower(schema, n_floors, err));
+        TRY(schema_of_tower(schema, s->search.objectives, n_floors, err));
         schema->has_spread = s->sim.replicates > 1 || schema_is_noisy(s);
         return STATUS_OK;
     }
@@ -119,22 +123,29 @@ size_t schema_find_objective(const Schema *schema, const char *name)
     return k;
 }
 
+/* Of n columns behind the variables; noun: what a name is meant to be. */
+static Status pick(const Schema *schema, size_t n, const char *noun, const char *where, const char *name, Status status,
+                   size_t *k, Err *err)
+{
+    const char *names[OBJECTIVES_MAX + N_MEASURES];
+    for (*k = 0; *k < n; ++*k)
+        if (strcmp(schema_objective(schema, *k)->name, name) == 0)
+            return STATUS_OK;
+    for (size_t i = 0; i < n; i++)
+        names[i] = schema_objective(schema, i)->name;
+    return fail_no_word(err, status, where, name, noun, names, (int)n);
+}
+
 Status schema_pick_objective(const Schema *schema, const char *where, const char *name, Status status, size_t *k,
                              Err *err)
 {
-    const char *names[OBJECTIVES_MAX];
-    *k = schema_find_objective(schema, name);
-    if (*k < schema->n_obj)
-        return STATUS_OK;
-    for (size_t i = 0; i < schema->n_obj; i++)
-        names[i] = schema_objective(schema, i)->name;
-    const char *near = nearest_word(name, names, (int)schema->n_obj);
-    if (near)
-        return fail(err, status, "%s: %.60s is no objective; did you mean %s?", where, name, near);
-    char list[200] = "";
-    for (size_t i = 0, n = 0; i < schema->n_obj && n + TABLE_NAME_MAX + 2 < sizeof list; i++)
-        n += (size_t)snprintf(list + n, sizeof list - n, "%s%s", i ? ", " : "", names[i]);
-    return fail(err, status, "%s: %.60s is no objective; there are %s", where, name, list);
+    return pick(schema, schema->n_obj, "objective", where, name, status, k, err);
+}
+
+Status schema_pick_result(const Schema *schema, const char *where, const char *name, Status status, size_t *k, Err *err)
+{
+    return pick(schema, schema->n_obj + schema->n_extra, schema->n_extra > 0 ? "result" : "objective", where, name,
+                status, k, err);
 }
 
 void schema_free(Schema *schema)

@@ -9,19 +9,21 @@
 
 #include "base/list.h"
 #include "base/table.h"
+#include "simulator/measures.h"
 
 typedef struct Settings Settings;
 
-enum { EXTRA_MAX = 3, OBJECTIVES_MAX = 100 };
+enum { OBJECTIVES_MAX = 100 };
 
 typedef struct {
     char name[TABLE_NAME_MAX];
-    double sense; /* of an objective: +1 less is better, -1 more is better */
+    double sense; /* of an objective or measure: +1 less is better, -1 more is better */
 } Column;
 
 typedef struct {
     size_t n_var, n_obj, n_extra;
     Column *column;
+    MeasureOrder order; /* of the tower: measures behind the columns; else empty */
     int has_spread; /* front.csv ends with NAME_sd of every objective and replicates: designs are several simulations
                      */
 } Schema;
@@ -41,6 +43,9 @@ size_t schema_find_objective(const Schema *schema, const char *name);
 /* The same for a name from the command line or a settings file: "WHERE: NAME is no objective; did you mean ...?" with that status. */
 Status schema_pick_objective(const Schema *schema, const char *where, const char *name, Status status, size_t *k,
                              Err *err);
+/* The same among objectives and further measures: *k counts on behind n_obj. */
+Status schema_pick_result(const Schema *schema, const char *where, const char *name, Status status, size_t *k,
+                          Err *err);
 void schema_free(Schema *schema);
 
 #endif

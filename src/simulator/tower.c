@@ -7,6 +7,7 @@
 #include "base/list.h"
 #include "evaluate/threads.h"
 #include "settings/settings.h"
+#include "simulator/limits.h"
 
 enum { RECORDS_MAX = 16 };
 
@@ -21,6 +22,7 @@ struct Tower {
     double tolerance_m; /* standard deviation of a gap as built */
     size_t n_workers, n_floors;
     ReplicatePlan plan; /* n_records of which are open */
+    MeasureOrder order;
     Record record[RECORDS_MAX];
     double lower[FLOORS_MAX + 2], upper[FLOORS_MAX + 2];
 };
@@ -43,9 +45,12 @@ static void combine(const void *self, const void *parts, Evaluation *e)
     ReplicateSummary sum;
     replicates_summarise(&t->plan, parts, &sum);
     evaluation_set_outcome(e, sum.outcome, sum.reason);
-    memcpy(e->f, sum.mean, N_OBJECTIVES * sizeof *e->f);
-    memcpy(e->sd, sum.sd, N_OBJECTIVES * sizeof *e->sd);
-    memcpy(e->extra, sum.mean + N_OBJECTIVES, (N_MEASURES - N_OBJECTIVES) * sizeof *e->extra);
+    for (int i = 0; i < t->order.n_obj; i++) {
+        e->f[i] = sum.mean[t->order.of[i]];
+        e->sd[i] = sum.sd[t->order.of[i]];
+    }
+    for (int i = t->order.n_obj; i < N_MEASURES; i++)
+        e->extra[i - t->order.n_obj] = sum.mean[t->order.of[i]];
     e->seconds = sum.seconds;
     e->replicates = (int)sum.n_replicates;
 }
@@ -78,12 +83,14 @@ static Status open_workers(Tower *t, Record *r, Err *err)
 
 static Status open_record(Tower *t, const Settings *settings, const char *name, Err *err)
 {
-    const SceneOptions options = settings_scene(settings);
+    SceneOptions options = settings_scene(settings);
     MotionOptions motion = settings->motion;
     Record *r = &t->record[t->plan.n_records];
     if (t->plan.n_records == RECORDS_MAX)
         return fail(err, STATUS_BAD_DATA, "motion.records: more than %d records", RECORDS_MAX);
     snprintf(motion.record, sizeof motion.record, "%s", name);
+    if (measures_need(t->plan.judged) & NEEDS_FORCES)
+        options.sim.forces = FORCES_YES;
     TRY(scenario_open(&r->scenario, &options, &motion, err));
     r->scene = r->scenario.scene;
     t->plan.n_records++;
@@ -127,8 +134,8 @@ static void swap_if_top_heavy(double x[], const void *self)
 static Problem problem_on(Tower *t)
 {
     return (Problem){.n_var = t->n_floors + 2,
-                     .n_obj = N_OBJECTIVES,
-                     .n_extra = N_MEASURES - N_OBJECTIVES,
+                     .n_obj = (size_t)t->order.n_obj,
+                     .n_extra = (size_t)(N_MEASURES - t->order.n_obj),
                      .lower = t->lower,
                      .upper = t->upper,
                      .repair = swap_if_top_heavy,
@@ -141,13 +148,17 @@ static Problem problem_on(Tower *t)
 }
 
 /* The problem, or what is there of the tower released. */
-static Status finish_opening(Problem *p, Tower *t, Status status)
+static Status finish_opening(Problem *p, Tower *t, const char *objectives, Status status, Err *err)
 {
+    if (status == STATUS_OK) {
+        t->n_floors = (size_t)scene_n_floors(t->record[0].scene);
+        status = measures_order(&t->order, objectives, (int)t->n_floors, err);
+        t->plan.judged |= t->order.objectives;
+    }
     if (status != STATUS_OK) {
         tower_close(t);
         return status;
     }
-    t->n_floors = (size_t)scene_n_floors(t->record[0].scene);
     *p = problem_on(t);
     return STATUS_OK;
 }
@@ -155,14 +166,17 @@ static Status finish_opening(Problem *p, Tower *t, Status status)
 Status tower_open(Problem *p, const Settings *s, TowerUse use, size_t n_tasks, Err *err)
 {
     const size_t workers = threads_wanted(s->search.threads);
+    MeasureOrder order;
+    TRY(measures_order(&order, s->search.objectives, 0, err));
     Tower *t = calloc(1, sizeof *t);
     if (!t)
         return fail(err, STATUS_NO_MEMORY, "no memory for a scene");
     t->seed = (uint32_t)s->search.seed;
     t->tolerance_m = s->sim.gap_tolerance_m;
     t->n_workers = workers < n_tasks ? workers : n_tasks;
-    t->plan = (ReplicatePlan){0, use == TOWER_SINGLE ? 1 : (size_t)s->sim.replicates, s->sim.robust == ROBUST_MEAN};
-    TRY(finish_opening(p, t, open_records(t, s, use, err)));
+    t->plan = (ReplicatePlan){0, use == TOWER_SINGLE ? 1 : (size_t)s->sim.replicates, s->sim.robust == ROBUST_MEAN,
+                              order.objectives | limits_measures(s->search.limits)};
+    TRY(finish_opening(p, t, s->search.objectives, open_records(t, s, use, err), err));
     set_bounds(t, &s->design);
     return STATUS_OK;
 }
@@ -172,8 +186,8 @@ Status tower_open_scene(Problem *p, const Scene *scene, size_t n_replicates, uin
     Tower *t = calloc(1, sizeof *t);
     if (!t)
         return fail(err, STATUS_NO_MEMORY, "no memory for a scene");
-    *t = (Tower){.seed = seed, .n_workers = n_workers, .plan = {1, n_replicates, 0}, .record[0].scene = scene};
-    return finish_opening(p, t, open_workers(t, &t->record[0], err));
+    *t = (Tower){.seed = seed, .n_workers = n_workers, .plan = {1, n_replicates, 0, 0}, .record[0].scene = scene};
+    return finish_opening(p, t, "auto", open_workers(t, &t->record[0], err), err);
 }
 
 const Tower *tower_of(const Problem *p)
@@ -189,6 +203,11 @@ int tower_n_floors(const Tower *t)
 size_t tower_n_records(const Tower *t)
 {
     return t->plan.n_records;
+}
+
+const MeasureOrder *tower_measures(const Tower *t)
+{
+    return &t->order;
 }
 
 const Scenario *tower_record(const Tower *t, size_t i)

@@ -1,7 +1,7 @@
 /* simulator/tower.h -- the simulator of the building with its core: settings made a problem of gaps and thicknesses.
  *
  *   design     n_floors gaps, t_base, t_top [m]; t_top > t_base is repaired by swapping the two
- *   objectives the first N_OBJECTIVES measures, extra the others (simulator/measures.h)
+ *   objectives those of search.objectives, extra the other measures (simulator/measures.h)
  *   parts      n_records x n_replicates (simulator/replicates.h), each a SimResult; replicate k of repeat r is the
  *              replicate r n_replicates + k of the design
  *   variant    SceneKind: SCENE_IMPACT is the design, the others are baselines of which only the first part counts
@@ -34,6 +34,7 @@ const Tower *tower_of(const Problem *p);
 
 int tower_n_floors(const Tower *t);
 size_t tower_n_records(const Tower *t);
+const MeasureOrder *tower_measures(const Tower *t);
 const Scenario *tower_record(const Tower *t, size_t i); /* 0: motion.record */
 
 typedef struct {

@@ -112,14 +112,16 @@ static Status damaged(const Reading *r, const char *what, long id, Err *err)
     return fail(err, STATUS_IO, "%s: is damaged: %s of evaluation %ld cannot be read", database_path(r->db), what, id);
 }
 
-/* "[1,2.5,null]"; no text at all: n times NAN. */
-static int parse_numbers(const char *text, size_t n, double values[])
+/* "[1,2.5,null]"; no text at all: n times NAN. A list may have n_least numbers alone: the others are not known. */
+static int parse_numbers(const char *text, size_t n_least, size_t n, double values[])
 {
     const int known = text[0] != 0;
     for (size_t i = 0; i < n; i++)
         values[i] = NAN;
     for (size_t i = 0; i < n && known; i++) {
         char *end;
+        if (i >= n_least && i > 0 && *text == ']')
+            break;
         if (*text++ != (i == 0 ? '[' : ','))
             return 0;
         if (strncmp(text, "null", 4) == 0) {
@@ -145,14 +147,16 @@ static Status parse_row(const Reading *r, const RowText *t, Evaluation *e, Err *
     if (e->outcome == OUTCOME_COUNT)
         return damaged(r, "outcome", e->id, err);
     evaluation_set_outcome(e, e->outcome, t->reason);
-    if (!t->x[0] || !parse_numbers(t->x, table->n_var, e->x))
+    if (!t->x[0] || !parse_numbers(t->x, table->n_var, table->n_var, e->x))
         return damaged(r, "x", e->id, err);
-    if (!parse_numbers(t->f, table->n_obj, e->f))
+    if (!parse_numbers(t->f, table->n_obj, table->n_obj, e->f))
         return damaged(r, "f", e->id, err);
-    if (!parse_numbers(t->sd, table->n_obj, e->sd))
+    if (!parse_numbers(t->sd, table->n_obj, table->n_obj, e->sd))
         return damaged(r, "spread", e->id, err);
-    return table->n_extra == 0 || parse_numbers(t->extra, table->n_extra, e->extra) ? STATUS_OK
-                                                                                    : damaged(r, "extra", e->id, err);
+    /* an earlier version had fewer measures: the first of them */
+    return table->n_extra == 0 || parse_numbers(t->extra, 0, table->n_extra, e->extra)
+               ? STATUS_OK
+               : damaged(r, "extra", e->id, err);
 }
 
 static Status take_row(sqlite3_stmt *row, void *user, Err *err)

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "settings/settings.h"
+#include "simulator/measures.h"
 #include "store/repeats.h"
 #include "store/rows.h"
 
@@ -141,6 +142,7 @@ static Status take_head(sqlite3_stmt *row, void *user, Err *err)
         return fail(err, STATUS_NO_MEMORY, "%s: no memory for its settings", database_path(l->d));
     settings_defaults(run->settings);
     run->settings->core.theory = CORE_EULER_BERNOULLI; /* of runs from before the setting: their only theory */
+    run->settings->search.objectives[0] = 0;
     TRY(settings_parse(run->settings, database_path(l->d), column_text(row, 0), err));
     run->provenance = strdup(column_text(row, 1));
     if (!run->provenance)
@@ -152,6 +154,9 @@ static Status take_head(sqlite3_stmt *row, void *user, Err *err)
     const int is_tower = run->settings->problem.kind == PROBLEM_TOWER;
     if (n_var < (is_tower ? 3 : 1) || n_var > 10000 || (!is_tower && n_var != run->settings->problem.variables))
         return fail(err, STATUS_IO, "%s: is damaged: it has %ld variables", database_path(l->d), n_var);
+    if (!run->settings->search.objectives[0]) /* from before the setting: the paper's seven */
+        snprintf(run->settings->search.objectives, OPTION_TEXT_MAX, "%s",
+                 measure_exists(MEASURE_ED5_10, (int)n_var - 2) ? "auto" : "paper");
     return schema_of(&run->schema, run->settings, (int)n_var - 2, err);
 }
 

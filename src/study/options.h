@@ -15,7 +15,7 @@ typedef struct {
     double replicate_share;              /* share of max_evals */
     long replicates_min, replicates_max; /* of a design */
     long polish;                         /* designs at the end */
-    char limits[OPTION_TEXT_MAX];
+    char objectives[OPTION_TEXT_MAX], limits[OPTION_TEXT_MAX];
     char start[OPTION_TEXT_MAX]; /* a CSV of designs or a run's folder, or none */
 } SearchOptions;
 

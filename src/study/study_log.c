@@ -26,7 +26,10 @@ static Status log_problem(RunStore *store, const Adapter *adapter, const Setting
     const Schema *schema = adapter_schema(adapter);
     const int threads = adapter_threads(adapter);
     if (adapter_tower(adapter)) {
+        const char *left_out = measures_left_out(&schema->order, used->search.objectives);
         TRY(log_motions(store, adapter_tower(adapter), err));
+        if (left_out)
+            TRY(store_log(store, err, "%s", left_out));
         return store_log(store, err, "%s: %zu floors, %d threads, seed %ld", program, schema->n_var - 2, threads,
                          used->search.seed);
     }

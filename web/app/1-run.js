@@ -18,21 +18,21 @@ const WORDS = {
   t_top_m: ["thickness, top", "mm", 1e3, "thickness of the core, last storey"],
 };
 
-function words(name) {
+function words(name, unit, what) {
   const gap = run.tower && name.match(/^gap_0*(\d+)_m$/);
   if (gap) return [`gap ${gap[1]}`, "mm", 1e3, `gap at floor ${gap[1]}`];
   if (run.tower && WORDS[name]) return WORDS[name];
-  return [name, "", 1, name];
+  return [name, unit === "-" ? "" : unit, 1, what];
 }
 
-function columnOf(name, place, sense) {
-  const [title, unit, factor, what] = words(name);
+function columnOf(name, place, sense, givenUnit = "", givenWhat = name) {
+  const [title, unit, factor, what] = words(name, givenUnit, givenWhat);
   return { name, title, unit, factor, what, sense, place, raw: new Float64Array(n), value: new Float64Array(n) };
 }
 
 const nVar = run.schema.variables.length;
 const variables = run.schema.variables.map((name, j) => columnOf(name, 1 + j, 0));
-const objectives = run.schema.objectives.map(({ name, sense }, k) => columnOf(name, 1 + nVar + k, sense));
+const objectives = run.schema.objectives.map(({ name, sense, unit, what }, k) => columnOf(name, 1 + nVar + k, sense, unit, what));
 const columns = [...objectives, ...variables];
 const ids = new Float64Array(n);
 

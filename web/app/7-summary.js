@@ -18,7 +18,7 @@ function cards(raw, before) {
   return element("div", { class: "cards" }, ...objectives.map((c, k) => element("div", { class: "card" },
     element("div", { class: "what" }, c.what),
     element("div", { class: "value" }, raw[k] === null ? "failed" : digits(raw[k] * c.factor), " ", element("small", {}, c.unit)),
-    element("div", { class: "change" }, before && k < 3 ? change(raw[k], before[k]) : before && k < 6 ? `no core: ${show(before[k])} %` : ""))));
+    element("div", { class: "change" }, (before?.[k] ?? null) === null ? "" : c.unit === "%" ? `no core: ${show(before[k])} %` : change(raw[k], before[k])))));
 }
 
 function standoutTable(before) {
@@ -32,7 +32,7 @@ function standoutTable(before) {
     element("tbody", {},
       line("knee", String(run.knee), objectives.map((c) => c.value[knee]), null, "knee"),
       ...rows.map(([label, i, best]) => line(label, String(ids[i]), objectives.map((c) => c.value[i]), best, "")),
-      before ? line("building without core", "", objectives.map((c, k) => before[k] * c.factor), null, "") : null)));
+      before ? line("building without core", "", objectives.map((c, k) => before[k] === null ? NaN : before[k] * c.factor), null, "") : null)));
 }
 
 // As in the program's own output: the peak, and what the record was multiplied by.

@@ -158,12 +158,12 @@ function spectrumPair(host, d) {
 
 function otherTable(d) {
   const all = [{ record: d.record, pga_g: d.pga_g, scale: d.scale, stretch: d.stretch, with_core: d.with_core, no_core: d.no_core }, ...d.elsewhere];
-  const kept = objectives.slice(0, 6);
+  const kept = objectives.map((c, k) => [c, k]).filter(([c]) => c.name !== "mcore_kg");
   const line = (label, words, r) => element("tr", {}, element("td", {}, label), element("td", {}, words),
-    ...(r.objectives ? [...kept.map((c, k) => element("td", {}, digits(r.objectives[k]))), element("td", {}, r.impacts ? count(r.impacts) : "")]
-      : [element("td", { colspan: 7 }, `not simulated: ${r.reason}`)]));
+    ...(r.objectives ? [...kept.map(([c, k]) => element("td", {}, digits((r.objectives[k] ?? NaN) * c.factor))), element("td", {}, r.impacts ? count(r.impacts) : "")]
+      : [element("td", { colspan: kept.length + 1 }, `not simulated: ${r.reason}`)]));
   return element("div", { class: "scroll" }, element("table", {},
-    element("thead", {}, element("tr", {}, element("th", { scope: "col" }, "earthquake"), element("th", {}, ""), ...kept.map((c) => element("th", { scope: "col", title: c.what }, ...heading(c))), element("th", { scope: "col" }, "impacts"))),
+    element("thead", {}, element("tr", {}, element("th", { scope: "col" }, "earthquake"), element("th", {}, ""), ...kept.map(([c]) => element("th", { scope: "col", title: c.what }, ...heading(c))), element("th", { scope: "col" }, "impacts"))),
     element("tbody", {}, ...all.flatMap((e) => [line(`${shortName(e.record)}, ${peakText(e)}`, WITH, e.with_core), line("", WITHOUT, e.no_core)]))));
 }
 

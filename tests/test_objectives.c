@@ -1,0 +1,248 @@
+/* search.objectives and search.limits on any result: what is searched for, what is computed, and what the files say. */
+#include "runs.h"
+
+#include <sys/stat.h>
+
+#include "store/database.h"
+
+/* A short, cheap study of the tower. */
+static const char TOWER[] = "[sim]\nduration_s = 24\naccuracy = coarse\n[motion]\npga_g = 0.3\nstretch = 3.1\n"
+                            "[search]\ninitial = 16\npopulation = 8\nmax_evals = 30\nsurrogate_max = 30\nthreads = 1\n"
+                            "polish = 0\n";
+
+static void optimize(const char *name, const char *more)
+{
+    char arguments[1024];
+    write_in_place("tower.ini", TOWER);
+    snprintf(arguments, sizeof arguments, "optimize @/tower.ini --out @/%s %s", name, more);
+    free(output_of(arguments));
+}
+
+static void read_run(const char *name, Run *run)
+{
+    char path[PATH_MAX];
+    Err err = {0};
+    CHECK_OK(run_read(run, path_of(name, path), &err), &err);
+}
+
+static Table table_of(const char *name)
+{
+    Table t;
+    Err err = {0};
+    char path[PATH_MAX];
+    CHECK_OK(table_read(&t, path_of(name, path), 1, &err), &err);
+    return t;
+}
+
+/* The further measure of that name; NAN where the cell is empty. */
+static double extra_of(const Run *run, size_t row, const char *name)
+{
+    for (size_t k = 0; k < run->schema.n_extra; k++)
+        if (strcmp(schema_extra(&run->schema, k)->name, name) == 0)
+            return run->table.row[row].extra[k];
+    fail_msg("%s is no further measure", name);
+    return NAN;
+}
+
+static void test_what_is_not_asked_for_is_not_computed_and_left_empty(void **state)
+{
+    (void)state;
+    Run run;
+    optimize("plain", "");
+    read_run("plain", &run);
+    assert_int_equal(run.schema.n_obj, 7);
+    for (size_t i = 0; i < run.table.n; i++) {
+        assert_true(isnan(extra_of(&run, i, "contact_force_max_n")) && isnan(extra_of(&run, i, "core_stress_pa")));
+        assert_true(isnan(extra_of(&run, i, "base_shear_n")));
+        assert_true(extra_of(&run, i, "drift_ratio") > 0.0);
+        assert_true((extra_of(&run, i, "indentation_ratio") > 0.1) == (extra_of(&run, i, "beyond_contact_law") == 1.0));
+    }
+    run_free(&run);
+    optimize("forces", "--set sim.forces=yes");
+    Run forces;
+    read_run("forces", &forces);
+    read_run("plain", &run);
+    assert_memory_equal(forces.F, run.F, run.table.n * 7 * sizeof *run.F);
+    for (size_t i = 0; i < forces.table.n; i++)
+        assert_true(extra_of(&forces, i, "core_stress_pa") > 0.0 && extra_of(&forces, i, "base_shear_n") > 0.0);
+    run_free(&run);
+    run_free(&forces);
+}
+
+static void test_every_result_of_a_study_is_that_of_a_simulation_of_the_same_design(void **state)
+{
+    (void)state;
+    Run run;
+    char path[PATH_MAX];
+    optimize("other", "--set 'search.objectives=core_stress_pa, impacts , j1_m'");
+    read_run("other", &run);
+    assert_int_equal(run.schema.n_obj, 3);
+    const size_t row = run.front[0];
+    FILE *f = fopen(path_of("one.csv", path), "w");
+    for (size_t j = 0; j < run.schema.n_var; j++)
+        fprintf(f, "%s%s", j ? "," : "", schema_variable(&run.schema, j)->name);
+    for (size_t j = 0; j < run.schema.n_var; j++)
+        fprintf(f, "%s%.17g", j ? "," : "\n", run_x(&run, row)[j]);
+    fclose(f);
+    json_t *o = json_of("simulate @/tower.ini --design @/one.csv --json");
+    assert_true(number(o, "core_stress_pa") == run_f(&run, row)[0]);
+    assert_true(number(o, "impacts") == run_f(&run, row)[1]);
+    assert_true(number(o, "j1_m") == run_f(&run, row)[2]);
+    for (size_t k = 0; k < run.schema.n_extra; k++) {
+        const json_t *value = json_object_get(o, schema_extra(&run.schema, k)->name);
+        const double stored = run.table.row[row].extra[k];
+        if (json_is_number(value))
+            assert_true(json_number_value(value) == stored);
+        else
+            assert_true(json_is_null(value) ? isnan(stored) : json_is_true(value) == (stored == 1.0));
+    }
+    json_decref(o);
+    run_free(&run);
+}
+
+static void test_every_file_and_command_follows_the_objectives_by_name(void **state)
+{
+    (void)state;
+    Table front = table_of("other/front.csv");
+    assert_int_equal(front.n_cols, 1 + 22 + 3);
+    assert_string_equal(front.names[23], "core_stress_pa");
+    assert_string_equal(front.names[25], "j1_m");
+    double least = HUGE_VAL;
+    for (size_t i = 0; i < front.n_rows; i++)
+        least = fmin(least, front.values[i * front.n_cols + 23]);
+    table_free(&front);
+    char *chosen = output_of("choose @/other --min core_stress_pa=1 --weights core_stress_pa=1,impacts=1e-9");
+    char wanted[32];
+    snprintf(wanted, sizeof wanted, "%.4g", least);
+    assert_non_null(strstr(chosen, wanted));
+    free(chosen);
+    json_t *o = json_of("export @/other --json");
+    const json_t *columns = json_object_get(o, "columns"), *column;
+    size_t i, objectives = 0;
+    json_array_foreach(columns, i, column) objectives +=
+        strcmp(json_string_value(json_object_get(column, "role")), "objective") == 0;
+    assert_int_equal(objectives, 3);
+    json_decref(o);
+    free(output_of("report @/other"));
+    free(output_of("polish @/other --design knee --improve core_stress_pa --evals 30"));
+    free(output_of("optimize @/other"));
+    char *said = output_of("optimize @/other --max-evals 34 --force-settings");
+    assert_non_null(strstr(said, "largest bending stress of the core [Pa], the less the better"));
+    free(said);
+    expect(65, "search.objectives is core_stress_pa, impacts , j1_m there, now auto",
+           "optimize @/tower.ini --out @/other");
+}
+
+static void test_a_limit_on_a_further_result_decides_what_is_on_the_front(void **state)
+{
+    (void)state;
+    Run free_of, run;
+    char more[128];
+    read_run("forces", &free_of);
+    double limit = 0.0;
+    for (size_t i = 0; i < free_of.n_front; i++)
+        limit += extra_of(&free_of, free_of.front[i], "contact_force_max_n") / (double)free_of.n_front;
+    run_free(&free_of);
+    snprintf(more, sizeof more, "--set 'search.limits=contact_force_max_n<=%.17g, drift_ratio<=1'", limit);
+    optimize("limited", more);
+    read_run("limited", &run);
+    size_t beyond = 0;
+    for (size_t i = 0; i < run.table.n; i++) {
+        const double force = extra_of(&run, i, "contact_force_max_n");
+        assert_close(run.table.row[i].violation, fmax(0.0, force / limit - 1.0), 1e-9);
+        beyond += run.table.row[i].violation > 0.0;
+        assert_true(!run.place[i].on_front || force <= limit);
+    }
+    assert_true(beyond > 0 && beyond < run.table.n && run.n_front > 0);
+    run_free(&run);
+}
+
+static void test_names_that_are_no_results_are_refused_with_the_words_there_are(void **state)
+{
+    (void)state;
+    write_in_place("tower.ini", TOWER);
+    expect(65, "search.objectives: core_stres_pa is no result; did you mean core_stress_pa?",
+           "check @/tower.ini --set search.objectives=j1_m,core_stres_pa");
+    expect(65, "search.objectives: nonsense_of_sorts is no result; there are j1_m, j2_m",
+           "check @/tower.ini --set search.objectives=nonsense_of_sorts");
+    expect(65, "search.objectives: j1_m stands there twice",
+           "check @/tower.ini --set search.objectives=j1_m,j2_m,j1_m");
+    expect(65, "search.limits: drift_ration is no result; did you mean drift_ratio?",
+           "check @/tower.ini --set 'search.limits=drift_ration<=0.02'");
+    expect(65, "search.limits: drift_ratio<=0.01 and >=0.02 contradict each other",
+           "check @/tower.ini --set 'search.limits=drift_ratio<=0.01,drift_ratio>=0.02'");
+}
+
+static void test_four_storeys_are_not_searched_for_modes_that_they_do_not_have(void **state)
+{
+    (void)state;
+    char *folder = in_place("four");
+    assert_int_equal(mkdir(folder, 0777), 0);
+    free(folder);
+    write_in_place("tower.ini", TOWER);
+    write_in_place("four/storeys.csv",
+                   "height_m,mass_t,stiffness_kn_m\n4,200,200000\n4,200,200000\n4,200,150000\n4,200,150000\n");
+    static const char OPTIONS[] = "--set building.model=@/four --set sim.duration_s=15";
+    char command[512];
+    snprintf(command, sizeof command, "check @/tower.ini %s", OPTIONS);
+    char *said = output_of(command);
+    assert_non_null(strstr(said, "objectives j1_m, j2_m, j3_g, ed1_pct, edcs_pct, mcore_kg\n"));
+    assert_non_null(strstr(said, "ed5_10_pct is no objective: the building has no modes 5 to 10"));
+    free(said);
+    snprintf(command, sizeof command, "optimize @/tower.ini --out @/of-four %s", OPTIONS);
+    said = output_of(command);
+    assert_non_null(strstr(said, "ed5_10_pct is no objective"));
+    free(said);
+    Table front = table_of("of-four/front.csv");
+    assert_int_equal(front.n_cols, 1 + 6 + 6);
+    table_free(&front);
+    snprintf(command, sizeof command, "check @/tower.ini %s --set search.objectives=paper --json", OPTIONS);
+    json_t *o = json_of(command);
+    assert_int_equal(json_array_size(json_object_get(o, "objectives")), 7);
+    json_decref(o);
+}
+
+static void test_a_run_with_fewer_measures_is_read_and_goes_on(void **state)
+{
+    (void)state;
+    Database *d;
+    Err err = {0};
+    char path[PATH_MAX];
+    Run run;
+    CHECK_OK(database_open(&d, path_of("plain/run.sqlite", path), DATABASE_WRITE, &err), &err);
+    CHECK_OK(database_do(d, &err,
+                         "UPDATE evaluation SET digest = NULL, extra = '[' || json_extract(extra, '$[0]') || ',' || "
+                         "json_extract(extra, '$[1]') || ',' || json_extract(extra, '$[2]') || ']'",
+                         ""),
+             &err);
+    CHECK_OK(
+        database_do(d, &err, "UPDATE run SET settings = replace(settings, 'objectives = auto' || char(10), '')", ""),
+        &err);
+    database_close(d);
+    read_run("plain", &run);
+    assert_string_equal(run.settings->search.objectives, "auto");
+    for (size_t i = 0; i < run.table.n; i++) {
+        assert_true(extra_of(&run, i, "input_energy_j") > 0.0 && extra_of(&run, i, "impacts") >= 0.0);
+        assert_true(isnan(extra_of(&run, i, "drift_ratio")));
+    }
+    run_free(&run);
+    free(output_of("optimize @/plain --max-evals 34 --force-settings"));
+    read_run("plain", &run);
+    assert_int_equal(run.table.n, 34);
+    assert_true(extra_of(&run, 33, "drift_ratio") > 0.0);
+    run_free(&run);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_what_is_not_asked_for_is_not_computed_and_left_empty),
+        cmocka_unit_test(test_every_result_of_a_study_is_that_of_a_simulation_of_the_same_design),
+        cmocka_unit_test(test_every_file_and_command_follows_the_objectives_by_name),
+        cmocka_unit_test(test_a_limit_on_a_further_result_decides_what_is_on_the_front),
+        cmocka_unit_test(test_names_that_are_no_results_are_refused_with_the_words_there_are),
+        cmocka_unit_test(test_four_storeys_are_not_searched_for_modes_that_they_do_not_have),
+        cmocka_unit_test(test_a_run_with_fewer_measures_is_read_and_goes_on),
+    };
+    return cmocka_run_group_tests_name("objectives", tests, prepare, clear_place);
+}
