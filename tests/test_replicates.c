@@ -17,6 +17,7 @@ static Settings short_scene(const char *records, long replicates, const char *to
     paper_defaults(&s);
     s.sim.duration_s = 25.0; /* tiny changes have not grown yet, wide ones tell */
     s.sim.accuracy = ACCURACY_COARSE;
+    s.sim.forces = FORCES_YES; /* every measure */
     s.sim.replicates = replicates;
     snprintf(text, sizeof text, "motion.records=%s", records);
     CHECK_OK(settings_set(&s, text, &err), &err);
