@@ -383,33 +383,36 @@ static void test_the_picture_of_a_motion_is_whole_or_not_there(void **state)
 static void test_simulate_gives_the_same_numbers_as_json_and_as_csv(void **state)
 {
     (void)state;
-    static const char *const KEYS[] = {"j1_m",     "j2_m",           "j3_g",
-                                       "ed1_pct",  "ed5_10_pct",     "edcs_pct",
-                                       "mcore_kg", "input_energy_j", "energy_balance_error",
-                                       "impacts"};
     write_designs("two.csv", 2, (double[]){0.001, 0.004}, (double[]){0.012, 0.03}, (double[]){0.0064, 0.01});
     json_t *list = json_of("simulate configs/quick.ini" SHORT "--design @/two.csv --json");
     free(output_of("simulate configs/quick.ini" SHORT "--design @/two.csv --csv @/results.csv"));
-    char *csv = read_in_place("results.csv"), *line = csv, *rest = csv;
+    char *csv = read_in_place("results.csv"), *line, *rest = csv;
     char *streamed = output_of("simulate configs/quick.ini" SHORT "--design @/two.csv --csv -");
     assert_string_equal(streamed, csv);
     free(streamed);
     assert_int_equal(json_array_size(list), 2);
-    line = strsep(&rest, "\n");
-    assert_string_equal(
-        line, "design,j1_m,j2_m,j3_g,ed1_pct,ed5_10_pct,edcs_pct,mcore_kg,input_energy_j,energy_balance_error,"
-              "impacts,outcome");
+    char *names = strdup(strsep(&rest, "\n"));
+    assert_int_equal(strncmp(names, "design,j1_m,j2_m,j3_g,ed1_pct,ed5_10_pct,edcs_pct,mcore_kg,input_energy_j,", 72),
+                     0);
+    assert_non_null(strstr(names, ",impacts,"));
+    assert_non_null(strstr(names, ",core_stress_pa,"));
     for (size_t i = 0; i < 2; i++) {
         const json_t *o = json_array_get(list, i);
         assert_string_equal(json_string_value(json_object_get(o, "outcome")), "ok");
         assert_int_equal(json_array_size(json_object_get(o, "peak_drift_m")), 20);
         line = strsep(&rest, "\n");
         assert_int_equal(strtol(strsep(&line, ","), NULL, 10), (long)i + 1);
-        for (size_t k = 0; k < 10; k++)
-            assert_true(strtod(strsep(&line, ","), NULL) == number(o, KEYS[k]));
+        char *copy = strdup(names), *left = copy, *name;
+        for (strsep(&left, ","); strcmp(name = strsep(&left, ","), "outcome") != 0;) {
+            const json_t *value = json_object_get(o, name);
+            const double cell = strtod(strsep(&line, ","), NULL);
+            assert_true(json_is_boolean(value) ? cell == json_is_true(value) : cell == number(o, name));
+        }
+        free(copy);
         assert_string_equal(line, "ok");
         assert_true(number(o, "impacts") > 0);
     }
+    free(names);
     free(csv);
     json_decref(list);
 }

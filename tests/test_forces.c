@@ -165,7 +165,7 @@ static void test_floors_pushed_by_their_own_weight_have_a_base_shear_of_one(void
     force_monitor_report(f.monitor, 1, &r);
     assert_close(r.base_shear_ratio, 1, 1e-9);
     assert_close(r.building_overturning_nm, moment, 1e-9);
-    assert_true(r.core_base_shear_n == 0 && !r.stress_known);
+    assert_true(isnan(r.core_base_shear_n) && isnan(r.core_stress_pa) && !r.stress_known);
     frame_close(&f);
 }
 
@@ -403,7 +403,7 @@ static void test_the_rigid_pair_has_the_base_shear_of_its_parts(void **state)
     const SimForces *f = &r.forces;
     assert_true(f->base_shear_n > 0 && f->base_shear_n <= f->core_base_shear_n + f->building_base_shear_n);
     assert_true(f->core_top_m > 0.999 * r.j1_m && f->core_top_m < 1.001 * r.j1_m);
-    assert_true(f->contact_force_max_n == 0);
+    assert_true(isnan(f->contact_force_max_n));
 }
 
 int main(void)
