@@ -8,6 +8,7 @@
     X(OPTIMIZE)                                                                                                        \
     X(SIMULATE)                                                                                                        \
     X(EVALUATE)                                                                                                        \
+    X(VERIFY)                                                                                                          \
     X(EXPORT)                                                                                                          \
     X(STATUS)                                                                                                          \
     X(LIST)                                                                                                            \

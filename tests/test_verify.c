@@ -1,0 +1,110 @@
+/* imtet verify: a design on the full model of the building beside the reduced one. */
+#include "program.h"
+
+static void write_design(const char *name)
+{
+    char *path = in_place(name);
+    FILE *f = fopen(path, "w");
+    assert_non_null(f);
+    for (int j = 0; j < 20; j++)
+        fprintf(f, "gap_%02d_m,", j + 1);
+    fprintf(f, "t_base_m,t_top_m\n");
+    for (int row = 0; row < 2; row++) {
+        for (int j = 0; j < 20; j++)
+            fprintf(f, "%g,", 0.02 + 0.01 * ((j * 7 + row) % 20));
+        fprintf(f, "0.02,0.008\n");
+    }
+    assert_int_equal(fclose(f), 0);
+    free(path);
+}
+
+static const char *const KEYS[] = {"j1_m",       "j2_m",     "j3_g",         "ed1_pct",
+                                   "ed5_10_pct", "edcs_pct", "base_shear_n", "peak_drift_m"};
+
+static void expect_same(const json_t *a, const json_t *b)
+{
+    for (size_t k = 0; k < sizeof KEYS / sizeof KEYS[0]; k++)
+        assert_true(json_equal(json_object_get(a, KEYS[k]), json_object_get(b, KEYS[k])));
+}
+
+static void test_both_models_are_what_simulate_gives(void **state)
+{
+    (void)state;
+    write_design("d.csv");
+    json_t *v = json_of("verify configs/quick.ini --design @/d.csv:1 --duration 40 --json");
+    json_t *all = json_of("simulate configs/quick.ini --design @/d.csv --duration 40 --json");
+    json_t *full =
+        json_of("simulate configs/quick.ini --design @/d.csv:1 --duration 40 --set building.modes=100000 --json");
+    json_t *reduced = json_object_get(v, "reduced"), *error = json_object_get(v, "error");
+    expect_same(reduced, json_array_get(all, 0));
+    expect_same(json_object_get(v, "full"), full);
+    assert_int_equal((int)number(json_object_get(v, "degrees_of_freedom"), "reduced"), 20);
+    assert_int_equal((int)number(json_object_get(v, "degrees_of_freedom"), "full"), 106);
+    assert_close(number(error, "j2_m"), number(reduced, "j2_m") / number(full, "j2_m") - 1, 1e-9);
+    assert_true(number(full, "impacts") >= 10);
+    assert_true(fabs(number(error, "j1_m")) < 0.005 && fabs(number(error, "ed1_pct")) < 0.01);
+    json_decref(v);
+    json_decref(all);
+    json_decref(full);
+}
+
+static void test_designs_and_records_make_a_list_in_their_order(void **state)
+{
+    (void)state;
+    write_design("d.csv");
+    json_t *v = json_of("verify configs/quick.ini --design @/d.csv --duration 5 --record builtin:kobe-like --record "
+                        "builtin:elcentro-like --json");
+    assert_int_equal((int)json_array_size(v), 4);
+    for (size_t i = 0; i < 4; i++) {
+        const json_t *o = json_array_get(v, i);
+        assert_int_equal((int)number(o, "design"), 1 + (int)i % 2);
+        assert_string_equal(json_string_value(json_object_get(o, "record")),
+                            i < 2 ? "builtin:kobe-like" : "builtin:elcentro-like");
+    }
+    json_decref(v);
+}
+
+static void test_fixed_interface_modes_are_verified_as_the_reduced_model(void **state)
+{
+    (void)state;
+    json_t *v = json_of("verify configs/quick.ini --design none --duration 20 --set building.modes=30 --json");
+    const json_t *error = json_object_get(v, "error");
+    assert_int_equal((int)number(json_object_get(v, "degrees_of_freedom"), "reduced"), 51);
+    assert_true(fabs(number(error, "j1_m")) < 1e-4 && fabs(number(error, "j3_g")) < 1e-3);
+    assert_null(json_object_get(v, "design"));
+    json_decref(v);
+}
+
+static void test_peaks_over_the_height_are_listed_and_drawn(void **state)
+{
+    (void)state;
+    char *text = output_of("verify configs/quick.ini --design none --duration 5 --svg @/peaks.svg");
+    assert_non_null(strstr(text, "no core, full (106)"));
+    assert_non_null(strstr(text, "\n   20    80.77"));
+    char *svg = read_in_place("peaks.svg");
+    assert_non_null(strstr(svg, "peak interstorey drift [m]"));
+    free(svg);
+    free(text);
+}
+
+static void test_what_has_no_full_model_is_refused(void **state)
+{
+    (void)state;
+    write_design("d.csv");
+    expect(2, "--design is missing", "verify configs/quick.ini");
+    expect(65, "building.modes: appendix has no more than its floors",
+           "verify configs/quick.ini --design none --set building.model=appendix");
+    expect(66, "nowhere", "verify nowhere --design none");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_both_models_are_what_simulate_gives),
+        cmocka_unit_test(test_designs_and_records_make_a_list_in_their_order),
+        cmocka_unit_test(test_fixed_interface_modes_are_verified_as_the_reduced_model),
+        cmocka_unit_test(test_peaks_over_the_height_are_listed_and_drawn),
+        cmocka_unit_test(test_what_has_no_full_model_is_refused),
+    };
+    return cmocka_run_group_tests(tests, make_place, clear_place);
+}
