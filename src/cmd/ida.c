@@ -1,0 +1,203 @@
+#include "cmd/ida.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "report/gnuplot.h"
+
+const double IDA_FRACTILE[IDA_FRACTILES] = {0.16, 0.5, 0.84};
+const char *const IDA_FRACTILE_WORD[IDA_FRACTILES] = {"16 %", "median", "84 %"};
+
+Status ida_levels(const char *text, double levels[IDA_LEVELS_MAX], size_t *n, Err *err)
+{
+    double from, step, to;
+    char more;
+    if (sscanf(text, "%lf:%lf:%lf%c", &from, &step, &to, &more) != 3 || !(from > 0 && step > 0 && to >= from) ||
+        !isfinite(to) || !(step >= 1e-9 * to))
+        return fail(err, STATUS_USAGE, "--pga %.60s: a range is FROM:STEP:TO in g, all above 0, as 0.05:0.05:0.6",
+                    text);
+    const double steps = floor((to - from) / step + 1e-6);
+    if (!(steps < IDA_LEVELS_MAX))
+        return fail(err, STATUS_USAGE, "--pga %.60s: more than %d intensities", text, IDA_LEVELS_MAX);
+    *n = (size_t)steps + 1;
+    for (size_t i = 0; i < *n; i++) {
+        char digits[32]; /* 0.15, not 0.15000000000000002 */
+        snprintf(digits, sizeof digits, "%.9g", from + (double)i * step);
+        levels[i] = strtod(digits, NULL);
+    }
+    return STATUS_OK;
+}
+
+/* ---- fractiles --------------------------------------------------------------------------------------------------- */
+
+static int by_value(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static double value_of(const EvaluatedRun *run, EvaluatedCase which, int k)
+{
+    const SimResult *r = &run->result[which];
+    const double value = measure_value(r, k);
+    return r->outcome == RUN_OK && isfinite(value) ? value : INFINITY;
+}
+
+double ida_fractile(const Evaluations *e, size_t l, EvaluatedCase which, int k, double p)
+{
+    double *sorted = malloc(e->n_records * sizeof *sorted), value = NAN;
+    size_t n = 0;
+    for (size_t r = 0; sorted && r < e->n_records; r++)
+        if (e->record[r].readable == STATUS_OK)
+            sorted[n++] = value_of(&e->run[r * e->n_levels + l], which, k);
+    if (n > 0) {
+        qsort(sorted, n, sizeof *sorted, by_value);
+        const double place = p * (double)(n - 1), low = floor(place), share = place - low;
+        const size_t i = (size_t)low;
+        value = share > 0 ? sorted[i] + share * (sorted[i + 1] - sorted[i]) : sorted[i];
+        if (share > 0 && !isfinite(sorted[i + 1]))
+            value = INFINITY;
+    }
+    free(sorted);
+    return value;
+}
+
+/* ---- for people and programs ------------------------------------------------------------------------------------- */
+
+static int n_shown(const MeasureOrder *order)
+{
+    return order->n_obj < IDA_SHOWN ? order->n_obj : IDA_SHOWN;
+}
+
+void ida_print(const Evaluations *e, const MeasureOrder *order)
+{
+    for (int c = 0; c < N_EVALUATED; c++) {
+        printf("%s, %zu records: median (16 %% to 84 %%)\n%8s", EVALUATION_CASES[c].word, e->n_read, "pga_g");
+        for (int i = 0; i < n_shown(order); i++)
+            printf("  %-29s", measure(order->of[i])->name);
+        putchar('\n');
+        for (size_t l = 0; l < e->n_levels; l++) {
+            double value[IDA_FRACTILES];
+            printf("%8.4g", e->level[l]);
+            for (int i = 0; i < n_shown(order); i++) {
+                for (int f = 0; f < IDA_FRACTILES; f++)
+                    value[f] = ida_fractile(e, l, (EvaluatedCase)c, order->of[i], IDA_FRACTILE[f]);
+                printf("  %8.4g (%8.4g to %8.4g)", value[1], value[0], value[2]);
+            }
+            putchar('\n');
+        }
+        putchar('\n');
+    }
+}
+
+static json_t *json_fractiles(const Evaluations *e, EvaluatedCase which, double p)
+{
+    json_t *o = json_object();
+    for (int k = 0; k < N_MEASURES; k++) {
+        json_t *list = json_array();
+        for (size_t l = 0; l < e->n_levels; l++)
+            json_array_append_new(list, json_number(ida_fractile(e, l, which, k, p)));
+        json_object_set_new(o, measure(k)->name, list);
+    }
+    return o;
+}
+
+json_t *ida_json(const Evaluations *e)
+{
+    static const char *const KEYS[IDA_FRACTILES] = {"fractile_16", "median", "fractile_84"};
+    json_t *o = json_object();
+    json_object_set_new(o, "pga_g", json_numbers(e->n_levels, e->level));
+    for (int c = 0; c < N_EVALUATED; c++) {
+        json_t *one = json_object();
+        for (int i = 0; i < IDA_FRACTILES; i++)
+            json_object_set_new(one, KEYS[i], json_fractiles(e, (EvaluatedCase)c, IDA_FRACTILE[i]));
+        json_object_set_new(o, EVALUATION_CASES[c].key, one);
+    }
+    return o;
+}
+
+/* ---- the picture ------------------------------------------------------------------------------------------------- */
+
+typedef struct {
+    const Evaluations *e;
+    const MeasureOrder *order;
+} Picture;
+
+static void write_number(FILE *script, double value)
+{
+    if (isfinite(value))
+        fprintf(script, " %.6g", value);
+    else
+        fputs(" NaN", script);
+}
+
+/* $R0, $R1, ...: the records; $F00 ... $F22: fractiles of the cases. Columns: intensity, objectives. */
+static void write_blocks(FILE *script, const Evaluations *e, const MeasureOrder *order)
+{
+    for (size_t r = 0; r < e->n_records; r++) {
+        if (e->record[r].readable != STATUS_OK)
+            continue;
+        fprintf(script, "$R%zu << EOD\n", r);
+        for (size_t l = 0; l < e->n_levels; l++) {
+            fprintf(script, "%.6g", e->level[l]);
+            for (int k = 0; k < n_shown(order); k++)
+                write_number(script, value_of(&e->run[r * e->n_levels + l], EVALUATED_DESIGN, order->of[k]));
+            fputc('\n', script);
+        }
+        fputs("EOD\n", script);
+    }
+    for (int c = 0; c < N_EVALUATED; c++)
+        for (int i = 0; i < IDA_FRACTILES; i++) {
+            fprintf(script, "$F%d%d << EOD\n", c, i);
+            for (size_t l = 0; l < e->n_levels; l++) {
+                fprintf(script, "%.6g", e->level[l]);
+                for (int k = 0; k < n_shown(order); k++)
+                    write_number(script, ida_fractile(e, l, (EvaluatedCase)c, order->of[k], IDA_FRACTILE[i]));
+                fputc('\n', script);
+            }
+            fputs("EOD\n", script);
+        }
+}
+
+static void write_panel(FILE *script, const Picture *p, int k)
+{
+    static const char *const COLOURS[N_EVALUATED] = {"#0072b2", "#8a6d00", "#d55e00"};
+    const Evaluations *e = p->e;
+    const Measure *of = measure(p->order->of[k]);
+    fprintf(script, "set xlabel '%s [%s]'\nset %s\nplot ", of->what, of->unit, k == 0 ? "key" : "key off");
+    for (size_t r = 0; r < e->n_records; r++)
+        if (e->record[r].readable == STATUS_OK)
+            fprintf(script, "$R%zu using %d:1 with lines lc '#b8c8d8' notitle, ", r, k + 2);
+    for (int c = 0; c < N_EVALUATED; c++)
+        for (int i = 0; i < IDA_FRACTILES; i++) {
+            fprintf(script, "$F%d%d using %d:1 with lines lc '%s' %s ", c, i, k + 2, COLOURS[c],
+                    i == 1 ? "lw 2.5" : "lw 1.2 dt (6,4)");
+            if (i == 1)
+                fprintf(script, "title '%s: median, 16 and 84 %%'", EVALUATION_CASES[c].word);
+            else
+                fputs("notitle", script);
+            fputs(c + 1 < N_EVALUATED || i + 1 < IDA_FRACTILES ? ", " : "\n", script);
+        }
+}
+
+static void write_script(FILE *script, const void *user)
+{
+    const Picture *p = user;
+    write_blocks(script, p->e, p->order);
+    fprintf(script,
+            "set terminal svg size 1300,520 font 'sans,13' noenhanced background '#ffffff'\n"
+            "set grid lc '#d0d0d0'\nset tics nomirror\nset xrange [0:*]\nset yrange [0:*]\n"
+            "set ylabel 'peak ground acceleration [g]'\n"
+            "set multiplot layout 1,%d margins 0.06,0.98,0.13,0.82 spacing 0.07,0\n"
+            "set key at screen 0.5,0.98 center top horizontal\n",
+            n_shown(p->order));
+    for (int k = 0; k < n_shown(p->order); k++)
+        write_panel(script, p, k);
+    fputs("unset multiplot\n", script);
+}
+
+Status ida_draw(const Evaluations *e, const MeasureOrder *order, const char *path, Err *err)
+{
+    return gnuplot_draw(path, write_script, &(Picture){e, order}, err);
+}

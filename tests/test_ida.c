@@ -1,0 +1,203 @@
+/* Incremental dynamic analysis: intensities, fractiles, and `imtet evaluate` over a range of peaks. */
+#include "program.h"
+
+#include "cmd/ida.h"
+
+static void test_a_range_of_intensities_ends_at_its_end_in_round_numbers(void **state)
+{
+    (void)state;
+    double levels[IDA_LEVELS_MAX];
+    size_t n;
+    Err err = {0};
+    CHECK_OK(ida_levels("0.05:0.05:0.6", levels, &n, &err), &err);
+    assert_int_equal(n, 12);
+    for (size_t i = 0; i < n; i++) {
+        char text[16];
+        snprintf(text, sizeof text, "%.2f", 0.05 * (double)(i + 1));
+        assert_true(levels[i] == strtod(text, NULL));
+    }
+    CHECK_OK(ida_levels("0.1:0.25:0.7", levels, &n, &err), &err);
+    assert_int_equal(n, 3); /* 0.1, 0.35, 0.6 */
+    CHECK_OK(ida_levels("0.3:1:0.3", levels, &n, &err), &err);
+    assert_int_equal(n, 1);
+    static const char *const BAD[] = {"0:0.1:1", "0.1:0:1", "0.5:0.1:0.4", "0.1:0.1",       "0.1:0.1:1g",
+                                      "a:b:c",   "nan:1:2", "0.1:0.1:inf", "0.001:0.001:2", "1e-9:1e-18:1"};
+    for (size_t i = 0; i < sizeof BAD / sizeof BAD[0]; i++)
+        assert_int_equal(ida_levels(BAD[i], levels, &n, &err), STATUS_USAGE);
+}
+
+/* n records of which J1 is as given (INFINITY: failed), one intensity. */
+static double fractile_of(size_t n, const double j1[], double p)
+{
+    EvaluatedRecord record[8] = {0};
+    EvaluatedRun *run = calloc(8, sizeof *run);
+    const double level = 0.3;
+    for (size_t i = 0; i < n; i++) {
+        run[i].record = &record[i];
+        run[i].result[EVALUATED_DESIGN].j1_m = isfinite(j1[i]) ? j1[i] : 99;
+        run[i].result[EVALUATED_DESIGN].outcome = isfinite(j1[i]) ? RUN_OK : RUN_NOT_FINITE;
+    }
+    const Evaluations e = {.n_records = n, .n_levels = 1, .record = record, .level = &level, .run = run, .n_read = n};
+    const double value = ida_fractile(&e, 0, EVALUATED_DESIGN, 0, p);
+    free(run);
+    return value;
+}
+
+static void test_fractiles_are_straight_lines_between_the_sorted_values(void **state)
+{
+    (void)state;
+    const double five[] = {5, 1, 4, 2, 3};
+    assert_close(fractile_of(5, five, 0.5), 3, 1e-15);
+    assert_close(fractile_of(5, five, 0.16), 1.64, 1e-14);
+    assert_close(fractile_of(5, five, 0.84), 4.36, 1e-14);
+    assert_close(fractile_of(4, five, 0.5), 3, 1e-15);
+    assert_close(fractile_of(1, five, 0.84), 5, 1e-15);
+    assert_close(fractile_of(5, five, 1), 5, 1e-15);
+}
+
+static void test_a_failed_simulation_counts_as_infinite(void **state)
+{
+    (void)state;
+    const double values[] = {3, INFINITY, 1, 2, INFINITY};
+    assert_close(fractile_of(5, values, 0.5), 3, 1e-15);
+    assert_true(isinf(fractile_of(5, values, 0.84)));
+    assert_true(isinf(fractile_of(5, values, 0.51)));
+    assert_close(fractile_of(5, values, 0.25), 2, 1e-15);
+}
+
+/* ---- as a command ------------------------------------------------------------------------------------------------ */
+
+#define RANGE "evaluate @/run --design knee --record builtin:kobe-like --record builtin:sylmar-like --pga 0.1:0.1:0.3 "
+
+static int make_run(void **state)
+{
+    if (make_place(state) != 0)
+        return -1;
+    free(output_of("optimize configs/quick.ini --out @/run --max-evals 8 --set search.initial=8 --set "
+                   "search.population=8 --set search.polish=0 --set motion.stretch=1 --set sim.duration_s=8"));
+    return 0;
+}
+
+static const json_t *record_at(const json_t *o, size_t i)
+{
+    return json_array_get(json_object_get(o, "records"), i);
+}
+
+static double value_at(const json_t *o, size_t i, const char *scene, const char *key)
+{
+    return number(json_object_get(record_at(o, i), scene), key);
+}
+
+static void test_every_record_is_simulated_at_every_intensity(void **state)
+{
+    (void)state;
+    json_t *all = json_of(RANGE "--json");
+    assert_int_equal(json_array_size(json_object_get(all, "records")), 6);
+    for (size_t i = 0; i < 6; i++) {
+        char arguments[160];
+        snprintf(arguments, sizeof arguments, "evaluate @/run --design knee --record builtin:%s --pga 0.%zu --json",
+                 i < 3 ? "kobe-like" : "sylmar-like", i % 3 + 1);
+        json_t *one = json_of(arguments);
+        assert_close(number(record_at(all, i), "pga_g"), 0.1 * (double)(i % 3 + 1), 1e-12);
+        static const char *const SCENES[] = {"with_core", "rigid", "no_core"};
+        for (int c = 0; c < 3; c++)
+            assert_true(value_at(all, i, SCENES[c], "j3_g") == value_at(one, 0, SCENES[c], "j3_g"));
+        json_decref(one);
+    }
+    json_decref(all);
+}
+
+static void test_scenes_without_impacts_grow_in_proportion(void **state)
+{
+    (void)state;
+    json_t *o = json_of(RANGE "--json");
+    for (size_t i = 1; i < 3; i++) {
+        assert_close(value_at(o, i, "no_core", "j1_m"), (double)(i + 1) * value_at(o, 0, "no_core", "j1_m"), 1e-9);
+        assert_close(value_at(o, i, "rigid", "j2_m"), (double)(i + 1) * value_at(o, 0, "rigid", "j2_m"), 1e-6);
+    }
+    json_decref(o);
+}
+
+static void test_the_csv_has_every_run_and_the_fractiles_at_any_number_of_threads(void **state)
+{
+    (void)state;
+    free(output_of(RANGE "--csv @/one.csv --threads 1"));
+    free(output_of(RANGE "--csv @/three.csv --threads 3"));
+    char *one = read_in_place("one.csv"), *three = read_in_place("three.csv");
+    assert_string_equal(one, three);
+    size_t lines = 0, medians = 0;
+    for (const char *p = one; (p = strchr(p, '\n')); p++) {
+        lines++;
+        medians += strncmp(p + 1, "median,", 7) == 0;
+    }
+    assert_int_equal(lines, 1 + 2 * 3 * 3 + 3 * 3 * 3);
+    assert_int_equal(medians, 9);
+    assert_non_null(strstr(one, "\nbuiltin:sylmar-like,rigid,ok,0.2,"));
+    free(one);
+    free(three);
+}
+
+static void test_the_table_and_the_picture_show_the_three_scenes(void **state)
+{
+    (void)state;
+    char *table = output_of(RANGE);
+    static const char *const WORDS[] = {"with core, 2 records: median", "rigidly connected, 2 records", "no core, 2"};
+    for (int i = 0; i < 3; i++)
+        assert_non_null(strstr(table, WORDS[i]));
+    free(table);
+    if (system("command -v gnuplot >/dev/null") == 0) {
+        free(output_of(RANGE "--svg @/ida.svg"));
+        char *svg = read_in_place("ida.svg");
+        assert_non_null(strstr(svg, "rigidly connected: median, 16 and 84 %"));
+        assert_non_null(strstr(svg, "</svg>"));
+        free(svg);
+    }
+}
+
+static void test_a_range_does_not_go_with_another_scaling(void **state)
+{
+    (void)state;
+    expect(2, "motion.sa_g does not go with it", RANGE "--set motion.sa_g=0.5");
+    expect(2, "a range is FROM:STEP:TO", "evaluate @/run --design knee --pga 0.1:0.1");
+    expect(2, "--svg draws an incremental dynamic analysis", "evaluate @/run --design knee --svg @/no.svg");
+    expect(65, "motion.pga_g", "evaluate @/run --design knee --pga 0.3 --set motion.factor=2");
+}
+
+static void test_names_of_records_are_whole_and_rows_go_to_csv(void **state)
+{
+    (void)state;
+    static const char NAME[] = "a_record_with_a_name_that_is_much_longer_than_forty_characters.csv";
+    char name[128];
+    char *folder = in_place("many");
+    snprintf(name, sizeof name, "mkdir -p %s", folder);
+    assert_int_equal(system(name), 0);
+    snprintf(name, sizeof name, "many/%s", NAME);
+    write_in_place(name, "t,a_m_s2\n0,0\n0.02,1\n0.04,-2\n0.06,1\n0.08,0.5\n");
+    write_in_place("many/b.csv", "t,a_m_s2\n0,0\n0.02,1\n0.04,oops\n");
+    char *table = output_of("evaluate @/run --design knee --records @/many");
+    assert_non_null(strstr(table, "a_record_with_a_name_that_is_much_longer_than_forty_characters.csv  no core"));
+    assert_non_null(strstr(table, "not read: "));
+    free(table);
+    free(output_of("evaluate @/run --design knee --records @/many --csv @/rows.csv"));
+    char *rows = read_in_place("rows.csv");
+    assert_non_null(strstr(rows, NAME));
+    assert_non_null(strstr(rows, ",no_core,ok,"));
+    free(rows);
+    free(folder);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_a_range_of_intensities_ends_at_its_end_in_round_numbers),
+        cmocka_unit_test(test_fractiles_are_straight_lines_between_the_sorted_values),
+        cmocka_unit_test(test_a_failed_simulation_counts_as_infinite),
+        cmocka_unit_test(test_every_record_is_simulated_at_every_intensity),
+        cmocka_unit_test(test_scenes_without_impacts_grow_in_proportion),
+        cmocka_unit_test(test_the_csv_has_every_run_and_the_fractiles_at_any_number_of_threads),
+        cmocka_unit_test(test_the_table_and_the_picture_show_the_three_scenes),
+        cmocka_unit_test(test_a_range_does_not_go_with_another_scaling),
+        cmocka_unit_test(test_names_of_records_are_whole_and_rows_go_to_csv),
+    };
+    return cmocka_run_group_tests(tests, make_run, clear_place);
+}
