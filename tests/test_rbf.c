@@ -268,6 +268,48 @@ static void test_a_value_that_is_not_finite_is_refused(void **state)
     rbf_free(m);
 }
 
+/* Without that centre nothing is known of its variable: its coefficient of the tail has no leave-one-out error. */
+static void test_a_centre_that_alone_moves_a_variable_is_fitted_all_the_same(void **state)
+{
+    (void)state;
+    for (uint32_t seed = 1; seed <= 50; seed++) {
+        double X[N * D], F[N * OUT], f[OUT], e[OUT];
+        scatter(seed, N, X, F);
+        for (int i = 0; i < N; i++)
+            for (int d = 0; d < D; d++)
+                X[i * D + d] = i == d ? 0.3 : 0.0;
+        for (int i = 0; i < N * OUT; i++)
+            F[i] = X[i / OUT * D] + 2.0 * X[i / OUT * D + 1];
+        Rbf *m = fitted(N, X, F, 1);
+        assert_int_equal(rbf_left_out(m), 0);
+        rbf_eval(m, 1, (const double[D]){0.1, 0.2, 0.1, 0.1}, f, e);
+        for (int k = 0; k < OUT; k++)
+            assert_true(isfinite(f[k]) && isfinite(e[k]) && isfinite(rbf_explained(m, (size_t)k)));
+        rbf_free(m);
+    }
+}
+
+static void test_the_mean_stands_for_an_output_that_cannot_be_fitted(void **state)
+{
+    (void)state;
+    double X[N * D], F[N * OUT], f[OUT], mean = 0.0;
+    Err err = {0};
+    scatter(1, N, X, F);
+    Rbf *m = fitted(N, X, F, 1);
+    m->output[0].shape.theta[1] = NAN;
+    CHECK_OK(rbf_fit(m, N, X, F, NULL, &err), &err);
+    assert_int_equal(rbf_left_out(m), 1);
+    m->output[0].shape.theta[1] = 1.0;
+    rbf_eval(m, 1, (const double[D]){0.1, 0.2, 0.1, 0.1}, f, NULL);
+    for (int i = 0; i < N; i++)
+        mean += F[i * OUT] / N;
+    assert_close(f[0], mean, 1e-12);
+    assert_true(rbf_explained(m, 0) == 0.0 && rbf_explained(m, 1) > 0.0);
+    for (int i = 0; i < N; i++)
+        assert_close(rbf_leave_one_out(m, 0)[i], (F[i * OUT] - mean) * N / (N - 1), 1e-9);
+    rbf_free(m);
+}
+
 static void test_the_slope_of_the_surface_equals_differences_for_every_form(void **state)
 {
     (void)state;
@@ -311,6 +353,8 @@ int main(void)
         cmocka_unit_test(test_the_error_estimate_is_of_the_size_of_the_true_error),
         cmocka_unit_test(test_a_constant_output_is_predicted_without_error),
         cmocka_unit_test(test_a_value_that_is_not_finite_is_refused),
+        cmocka_unit_test(test_a_centre_that_alone_moves_a_variable_is_fitted_all_the_same),
+        cmocka_unit_test(test_the_mean_stands_for_an_output_that_cannot_be_fitted),
         cmocka_unit_test(test_the_slope_of_the_surface_equals_differences_for_every_form),
     };
     return cmocka_run_group_tests_name("rbf", tests, NULL, NULL);

@@ -42,13 +42,22 @@ static void test_what_is_wrong_in_one_cell_is_named(void **state)
         {"UPDATE evaluation SET x = replace(x, '1', '3') WHERE id = 5", "evaluation 5 is not what was written",
          STATUS_IO},
         {"UPDATE evaluation SET outcome = 'error' WHERE id = 6", "evaluation 6 is not what was written", STATUS_IO},
+        {"UPDATE evaluation SET kind = 'infill' WHERE id = 6", "evaluation 6 is not what was written", STATUS_IO},
+        {"UPDATE evaluation SET kind = NULL WHERE id = 6", "evaluation 6 is not what was written", STATUS_IO},
+        {"UPDATE evaluation SET generation = 1 WHERE id = 6", "evaluation 6 is not what was written", STATUS_IO},
+        {"UPDATE generation SET hypervolume = hypervolume / 2 WHERE number = 1", "generation 1 is not what was written",
+         STATUS_IO},
+        {"UPDATE generation SET front = front + 1 WHERE number = 2", "generation 2 is not what was written", STATUS_IO},
+        {"UPDATE front SET left = 1 WHERE left IS NULL", "its front is not what was written", STATUS_IO},
+        {"UPDATE run SET settings = replace(settings, 'seed = 1', 'seed = 3')", "its settings are not what was written",
+         STATUS_IO},
         {"DELETE FROM run", "it has no settings", STATUS_IO},
         {"UPDATE run SET n_var = 5", "it has 5 variables", STATUS_IO},
         {"UPDATE run SET n_var = 0", "it has 0 variables", STATUS_IO},
         {"UPDATE run SET n_var = 20000", "it has 20000 variables", STATUS_IO},
         {"UPDATE run SET settings = '[problem]' || char(10) || 'kind = nonsense'", "problem.kind", STATUS_BAD_DATA},
         {"UPDATE run SET settings = '', n_var = 2", "it has 2 variables", STATUS_IO}, /* of a tower */
-        {"ALTER TABLE session DROP COLUMN stopped", "no such column: stopped", STATUS_IO},
+        {"ALTER TABLE session DROP COLUMN stopped", "1 of its 6 tables are not those of a run", STATUS_IO},
     };
     char folder[PATH_MAX];
     for (size_t i = 0; i < sizeof CASES / sizeof CASES[0]; i++) {
@@ -70,7 +79,7 @@ static void test_values_that_are_not_known_are_nan_and_a_word_that_is_not_known_
     CHECK_OK(run_read(&h,
                       changed("UPDATE evaluation SET f = '[1,null,3]', spread = NULL, seconds = NULL, "
                               "digest = NULL WHERE id = 1;"
-                              "UPDATE evaluation SET kind = 'guessed' WHERE id = 2;"
+                              "UPDATE evaluation SET kind = 'guessed', digest = NULL WHERE id = 2;"
                               "UPDATE state SET bytes = x'';"
                               "UPDATE session SET search = NULL, ended = NULL",
                               folder),

@@ -185,6 +185,53 @@ static void test_three_objectives_beat_a_latin_hypercube_of_the_same_size(void *
     assert_true(volume(seen.n, 3, seen.F) > 1.3 * volume_of_hypercube(&here, 120));
 }
 
+/* f = (sum x, 2 sum x): every search ends in the corner, and the designs nearest to the front become the same ones. */
+static Status sums(size_t n, const double X[], const size_t draws[], double F[], double G[], unsigned char ok[],
+                   void *user, Err *err)
+{
+    (void)draws;
+    (void)G;
+    (void)err;
+    const World *w = user;
+    for (size_t i = 0; i < n; i++) {
+        F[2 * i] = 0.0;
+        for (size_t d = 0; d < w->problem.n_var; d++)
+            F[2 * i] += X[i * w->problem.n_var + d];
+        F[2 * i + 1] = 2.0 * F[2 * i];
+        ok[i] = 1;
+    }
+    return STATUS_OK;
+}
+
+static void test_answers_that_no_surrogate_fits_do_not_end_the_search(void **state)
+{
+    (void)state;
+    StopReason reason = STOP_NONE;
+    Err err = {0};
+    for (uint32_t seed = 1; seed <= 3; seed++) {
+        world(&here, 5, 2);
+        here.problem = function_problem(&here.function, 5, 2, 0, here.lower, here.upper, sums, &here);
+        SearchConfig c = search_config(seed, 96, 80, 0.05);
+        c.generations = 1000;
+        c.max_evals = 400;
+        CHECK_OK(search_run(&here.problem, &c, observe, &seen, &reason, &err), &err);
+        assert_int_equal(seen.n, 400);
+    }
+}
+
+static void test_a_first_sample_of_four_designs_is_enough(void **state)
+{
+    (void)state;
+    for (uint32_t seed = 1; seed <= 3; seed++) {
+        world(&here, 10, 3);
+        SearchConfig c = search_config(seed, 4, 200, 0.05);
+        c.initial = 4;
+        c.generations = 1000;
+        c.max_evals = 100;
+        assert_int_equal(run(&here, &c, &seen), STOP_EVALUATIONS);
+    }
+}
+
 static void test_seven_objectives_beat_a_latin_hypercube_of_the_same_size(void **state)
 {
     (void)state;
@@ -527,6 +574,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(test_three_objectives_beat_a_latin_hypercube_of_the_same_size, fresh),
+        cmocka_unit_test_setup(test_answers_that_no_surrogate_fits_do_not_end_the_search, fresh),
+        cmocka_unit_test_setup(test_a_first_sample_of_four_designs_is_enough, fresh),
         cmocka_unit_test_setup(test_seven_objectives_beat_a_latin_hypercube_of_the_same_size, fresh),
         cmocka_unit_test(test_whoever_gains_more_has_the_greater_share_of_a_batch),
         cmocka_unit_test(test_variation_gets_the_share_of_a_batch_that_infill_loses_to_failures),

@@ -3,6 +3,9 @@
 #include <limits.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include "cmd/designs.h"
 #include "scene/builtin.h"
 #include "settings/settings.h"
@@ -68,6 +71,14 @@ static Status take_target(const Args *args, const char *name, char path[PATH_MAX
     return n < PATH_MAX ? STATUS_OK : fail(err, STATUS_IO, "%.200s...: the path is too long", given ? given : name);
 }
 
+/* A folder that comes from elsewhere may hold a link in the report's place, which leads to another file. */
+static void drop_link(const char *path)
+{
+    struct stat there;
+    if (lstat(path, &there) == 0 && S_ISLNK(there.st_mode))
+        unlink(path);
+}
+
 Status look_at_run(const Args *args, const char *name, LookFn show, Err *err)
 {
     char path[PATH_MAX];
@@ -75,6 +86,8 @@ Status look_at_run(const Args *args, const char *name, LookFn show, Err *err)
     Report r = {0};
     TRY(take_target(args, name, path, err));
     TRY(run_read(&run, args->operand, err));
+    if (!args_value(args, "--out"))
+        drop_link(path);
     Status status = open_report(args, &run, &r, err);
     if (status == STATUS_OK)
         status = show(&r, path, err);

@@ -83,6 +83,7 @@ static int report(Search *s, int is_last, ObserveFn observe, void *user)
         .n_replicates = a->n_replicates,
         .generation_now = s->generation,
         .n_predicted = s->n_predicted,
+        .n_left_out = surrogate_left_out(s->surrogate),
         .surrogate_error = surrogate_error(s->surrogate),
         .seconds = search_seconds(s),
         .simulation_s = t->n_simulated > 0 ? t->simulating / (double)t->n_simulated : NAN,

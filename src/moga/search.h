@@ -80,6 +80,7 @@ typedef struct {
     size_t n_replicates; /* rows that are further replicates */
     size_t generation_now;
     size_t n_predicted;     /* predictions trusted for the first time in this generation */
+    size_t n_left_out;      /* objectives and constraints that the surrogate leaves out: their mean stands for them */
     double surrogate_error; /* median leave-one-out error, share of range, worst objective; NAN: no surrogate yet */
     double seconds;
     double simulation_s; /* wall time per evaluation of this session, all workers together; NAN: none yet */

@@ -205,6 +205,11 @@ int surrogate_is_usable(const Surrogate *s)
     return s->fitted && explained > R2_MIN + R2_CHANCE / sqrt((double)s->n);
 }
 
+size_t surrogate_left_out(const Surrogate *s)
+{
+    return s->fitted ? rbf_left_out(s->rbf) : 0;
+}
+
 double surrogate_error(const Surrogate *s)
 {
     double worst = s->fitted ? 0.0 : NAN;

@@ -34,6 +34,9 @@ int surrogate_is_usable(const Surrogate *s);
 /* Median leave-one-out error as a share of the objective's range, of the worst objective; NAN: not fitted. */
 double surrogate_error(const Surrogate *s);
 
+/* Objectives and constraints that the last fit left out (rbf/rbf.h): their mean stands for them. */
+size_t surrogate_left_out(const Surrogate *s);
+
 /* Estimates of the centres among the archive's designs, from their leave-one-out errors (moga/noise.h). */
 void surrogate_estimate(const Surrogate *s, Archive *archive);
 

@@ -30,6 +30,7 @@ typedef struct {
     size_t n_tail;      /* columns of the tail really used: fewer when there are too few centres */
     double mean, scale; /* of F: the interpolant is built on (f - mean) / scale */
     double explained;
+    int is_left_out; /* it cannot be fitted: its mean stands for it */
     Shape shape;
     double *S;             /* (n_dim, stride) centres, warped and scaled */
     double *tail;          /* (1 + 2 n_dim) coefficients b */

@@ -226,19 +226,15 @@ static void standardise(const Rbf *m, Output *o, const double f[])
     o->scale = square > 0.0 ? sqrt(square) : 1.0;
 }
 
-/* A w + P b = y, standardised, and the leave-one-out errors. */
-static int fit_output(const Rbf *m, Worker *k, Output *o, const double f[], const double noise[])
+/* A w + P b = y, standardised, and the leave-one-out errors; 0: not all of it is finite. A centre that alone determines a
+ * coefficient of the tail, as where all others have the same value of a variable, leaves no error to compute. */
+static int fit_with_tail(const Rbf *m, Worker *k, Output *o, RbfTail tail)
 {
     const size_t n = m->n;
-    memcpy(k->noise, noise, n * sizeof *noise);
-    standardise(m, o, f);
-    for (size_t i = 0; i < n; i++)
-        k->y[i] = (f[i] - o->mean) / o->scale;
     RbfForm form = o->form;
-    model_scale(m, n, m->C, &o->shape, o->S);
-    if (!isfinite(o->mean) || !isfinite(o->scale) || !model_factor(m, k, n, o->S, &form))
+    if (!model_factor(m, k, n, o->S, &form))
         return 0;
-    o->n_tail = model_weights(m, k, n, m->C, model_tail(form.tail, n, m->n_dim));
+    o->n_tail = model_weights(m, k, n, m->C, model_tail(tail, n, m->n_dim));
     memcpy(o->tail, k->b, o->n_tail * sizeof *o->tail);
     memcpy(o->weight, k->w, n * sizeof *o->weight);
     model_leave_one_out(k, n, o->n_tail);
@@ -251,6 +247,36 @@ static int fit_output(const Rbf *m, Worker *k, Output *o, const double f[], cons
     return isfinite(square);
 }
 
+/* The mean of the values stands for an output that cannot be fitted. */
+static void leave_out(const Rbf *m, Output *o, const double f[])
+{
+    const double n = (double)m->n;
+    o->is_left_out = 1;
+    o->n_tail = 1;
+    o->tail[0] = 0.0;
+    memset(o->weight, 0, m->n * sizeof *o->weight);
+    memset(o->S, 0, m->n_dim * m->stride * sizeof *o->S); /* whatever they are: the distances count for nothing */
+    for (size_t i = 0; i < m->n; i++)
+        o->leave_one_out[i] = (f[i] - o->mean) * n / (n - 1.0);
+    o->explained = 0.0;
+}
+
+/* 0: a value is not finite. */
+static int fit_output(const Rbf *m, Worker *k, Output *o, const double f[], const double noise[])
+{
+    memcpy(k->noise, noise, m->n * sizeof *noise);
+    standardise(m, o, f);
+    if (!isfinite(o->mean) || !isfinite(o->scale))
+        return 0;
+    for (size_t i = 0; i < m->n; i++)
+        k->y[i] = (f[i] - o->mean) / o->scale;
+    o->is_left_out = 0;
+    model_scale(m, m->n, m->C, &o->shape, o->S);
+    if (!fit_with_tail(m, k, o, o->form.tail) && !fit_with_tail(m, k, o, RBF_CONSTANT))
+        leave_out(m, o, f);
+    return 1;
+}
+
 Status model_fit(Rbf *m, Err *err)
 {
 #pragma omp parallel for schedule(dynamic, 1) num_threads((int)m->n_workers)
@@ -261,10 +287,17 @@ Status model_fit(Rbf *m, Err *err)
                 : STATUS_BAD_DATA;
     for (size_t k = 0; k < m->n_out; k++)
         if (m->status[k] != STATUS_OK)
-            return fail(err, STATUS_BAD_DATA,
-                        "interpolant: output %zu of %zu designs cannot be fitted (a value that is not finite?)", k + 1,
+            return fail(err, STATUS_BAD_DATA, "interpolant: a value of output %zu of %zu designs is not finite", k + 1,
                         m->n);
     return STATUS_OK;
+}
+
+size_t rbf_left_out(const Rbf *m)
+{
+    size_t n = 0;
+    for (size_t k = 0; k < m->n_out; k++)
+        n += m->output[k].is_left_out != 0;
+    return n;
 }
 
 static double log_away(double u)

@@ -17,7 +17,9 @@
  * Memory      all of it in rbf_create, for at most n_max centres
  * Threads     rbf_fit and rbf_tune share the outputs out over OpenMP threads (set BLAS to one); rbf_eval only reads
  * Shapes      row-major X (n, n_dim), F (n, n_out); x scaled to the unit cube; n_dim <= RBF_DIM_MAX
- * Errors      near-equal centres raise the nugget until the matrix factors; BAD_DATA if that does not help (NaN)
+ * Errors      near-equal centres raise the nugget until the matrix factors; centres that do not determine the tail make it
+ *             constant; an output that cannot be fitted all the same is left out: its mean stands for it, explained is 0.
+ *             BAD_DATA: a value is not finite
  * Sources     Rippa, Adv. Comput. Math. 11 (1999) 193-210 (leave-one-out)
  *             Rasmussen and Williams, Gaussian Processes for Machine Learning (2006) ch. 2 and 5 (kernels, tail,
  *             likelihood)
@@ -55,6 +57,8 @@ void rbf_slope(const Rbf *m, size_t n, const double X[], double F[], double J[])
 
 const double *rbf_leave_one_out(const Rbf *m, size_t output); /* (n) f_i minus the prediction made without i */
 double rbf_explained(const Rbf *m, size_t output);            /* 1 - leave-one-out variance / variance; 1: perfect */
+
+size_t rbf_left_out(const Rbf *m);                            /* outputs that the last fit left out */
 
 /* Forms, scales, warps and how often they were tuned: with the data of the next rbf_fit all of the model's state. */
 void rbf_pack(Rbf *m, Pack *p);

@@ -78,7 +78,7 @@ static Status draw(Output *o, FILE *script, FILE *faults, GnuplotScript write, c
 Status gnuplot_draw(const char *path, GnuplotScript write, const void *user, Err *err)
 {
     Output o;
-    TRY(output_open(&o, path, err));
+    TRY(output_open_inside(&o, path, err));
     FILE *script = tmpfile(), *faults = tmpfile();
     Status status = script && faults ? draw(&o, script, faults, write, user, err)
                                      : fail(err, STATUS_IO, "no temporary file for gnuplot: %s", strerror(errno));

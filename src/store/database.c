@@ -16,7 +16,20 @@ enum { BUSY_MS = 3000 };
 struct Database {
     sqlite3 *db;
     char path[PATH_MAX];
+    int format;
+    dev_t device; /* of the file that was opened for writing, and its number there; 0: none was */
+    ino_t file;
 };
+
+int database_format(const Database *d)
+{
+    return d->format;
+}
+
+void database_set_format(Database *d, int format)
+{
+    d->format = format;
+}
 
 const char *database_path(const Database *d)
 {
@@ -169,12 +182,13 @@ static Status take_word(sqlite3_stmt *row, void *user, Err *err)
     return STATUS_OK;
 }
 
-static Status check_format(const Database *d, double format, Err *err)
+static Status check_format(Database *d, double format, Err *err)
 {
+    d->format = (int)format;
     if (format > DATABASE_FORMAT)
         return fail(err, STATUS_IO, "%s: has format %g, this program reads %d; a newer imtet wrote it", d->path, format,
                     DATABASE_FORMAT);
-    if (format < DATABASE_FORMAT)
+    if (format < DATABASE_FORMAT_OLDEST)
         return fail(err, STATUS_IO,
                     "%s: has format %g, this program reads %d; an older imtet wrote it: only that one can resume "
                     "it, its front.csv and settings.ini can be read by anyone",
@@ -231,6 +245,11 @@ static Status prepare(Database *d, DatabaseMode mode, Err *err)
 {
     if (mode == DATABASE_WRITE)
         TRY(database_do(d, err, "PRAGMA journal_mode=WAL; PRAGMA synchronous=FULL; PRAGMA foreign_keys=ON", ""));
+    struct stat there;
+    if (mode == DATABASE_WRITE && stat(d->path, &there) == 0) {
+        d->device = there.st_dev;
+        d->file = there.st_ino;
+    }
     return check(d, mode, err);
 }
 
@@ -314,6 +333,50 @@ Status database_open(Database **out, const char *path, DatabaseMode mode, Err *e
         *out = NULL;
     }
     return status;
+}
+
+/* -- a file that is removed while it is written to ------------------------------------------------------------------ */
+
+void database_remove_journal(const char *path)
+{
+    static const char *const ENDS[] = {"-wal", "-shm"};
+    char journal[PATH_MAX + 8];
+    for (size_t i = 0; i < sizeof ENDS / sizeof ENDS[0]; i++) {
+        snprintf(journal, sizeof journal, "%s%s", path, ENDS[i]);
+        unlink(journal);
+    }
+}
+
+/* A copy from the file that is still open, in the place of the one that is gone; its journal went with it. */
+static Status put_back(Database *d, Err *err)
+{
+    char temporary[PATH_MAX + 8];
+    snprintf(temporary, sizeof temporary, "%s.tmp", d->path);
+    unlink(temporary);
+    TRY(database_do(d, err, "VACUUM INTO ?", "t", temporary));
+    database_remove_journal(d->path);
+    if (rename(temporary, d->path) != 0)
+        return fail(err, STATUS_IO, "%s: was removed while the run went on, and cannot be put back: %s", d->path,
+                    strerror(errno));
+    return fail(err, STATUS_IO,
+                "%s: was removed while the run went on; what it held was put back: the same command resumes the run",
+                d->path);
+}
+
+Status database_check_place(Database *d, Err *err)
+{
+    char journal[PATH_MAX + 8];
+    struct stat there;
+    snprintf(journal, sizeof journal, "%s-wal", d->path);
+    if (stat(d->path, &there) != 0)
+        return put_back(d, err);
+    if (there.st_ino != d->file || there.st_dev != d->device)
+        return fail(err, STATUS_IO, "%s: another file took its place while the run went on", d->path);
+    if (access(journal, F_OK) == 0)
+        return STATUS_OK;
+    TRY(database_do(d, err, "PRAGMA wal_checkpoint(TRUNCATE)", "")); /* out of the journal that is still open */
+    return fail(err, STATUS_IO,
+                "%s: was removed while the run went on; nothing is lost: the same command resumes the run", journal);
 }
 
 Status database_create(Database **out, const char *path, Err *err)

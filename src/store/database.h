@@ -21,7 +21,8 @@
 
 enum {
     DATABASE_APPLICATION = 0x494d5445 /* "IMTE" */,
-    DATABASE_FORMAT = 2 /* raised with every change of the tables */
+    DATABASE_FORMAT = 3,       /* raised with every change of the tables */
+    DATABASE_FORMAT_OLDEST = 2 /* that is still read; tables_upgrade makes the present one of it */
 };
 
 typedef struct Database Database;
@@ -34,6 +35,15 @@ Status database_open(Database **out, const char *path, DatabaseMode mode, Err *e
 void database_grow(Database *d);  /* what was there is read: from here on rows may be longer than the file was */
 void database_close(Database *d); /* NULL is fine; what was committed is on the disk already */
 const char *database_path(const Database *d);
+int database_format(const Database *d); /* of the file when it was opened, or since database_set_format */
+void database_set_format(Database *d, int format);
+
+/* The file and its journal are still where they were opened. If not: STATUS_IO, after what the database holds was put back
+ * where it was removed. Not within a transaction. */
+Status database_check_place(Database *d, Err *err);
+
+/* The journal of an earlier file in that place, which SQLite would take for that of the next one. */
+void database_remove_journal(const char *path);
 
 /* One statement (or several without values) that returns no rows. types: a letter for each ? of it: i long, d double
  * (not finite: NULL), t text (NULL: NULL), b bytes (const void *, size_t). */

@@ -1,6 +1,7 @@
 #include "store/folder.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -18,6 +19,23 @@ int folder_has(const Folder *folder, const char *name)
     char path[PATH_MAX];
     folder_path(folder, name, path);
     return access(path, F_OK) == 0;
+}
+
+size_t folder_rows(const Folder *folder, const char *name)
+{
+    char path[PATH_MAX], bytes[1 << 14];
+    size_t lines = 0;
+    ssize_t n;
+    folder_path(folder, name, path);
+    const int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    struct stat about;
+    if (fd < 0)
+        return 0;
+    while (fstat(fd, &about) == 0 && S_ISREG(about.st_mode) && (n = read(fd, bytes, sizeof bytes)) > 0)
+        for (const char *at = bytes; (at = memchr(at, '\n', (size_t)(bytes + n - at))); at++)
+            lines++;
+    close(fd);
+    return lines > 0 ? lines - 1 : 0;
 }
 
 static Status make_folders(const char *folder, Err *err)
@@ -42,14 +60,26 @@ static Status take_lock(Folder *folder, Err *err)
     return lock_take(path, &folder->lock, err);
 }
 
+static int holds_run(const Folder *folder)
+{
+    return folder_has(folder, "run.sqlite") || folder_rows(folder, "evaluations.csv") > 0;
+}
+
+/* It is looked at again once the lock is held: another process may have had a whole run meanwhile. */
 static Status take_free_folder(Folder *folder, const char *path, Err *err)
 {
     char lock[PATH_MAX];
     LockHolder holder;
     for (int i = 2;; i++) {
         folder_path(folder, "lock", lock);
-        if (!folder_has(folder, "run.sqlite") && !lock_is_held(lock, &holder))
-            return take_lock(folder, err);
+        if (!holds_run(folder) && !lock_is_held(lock, &holder)) {
+            const Status status = take_lock(folder, err);
+            if (status != STATUS_OK && !lock_is_held(lock, &holder))
+                return status;
+            if (status == STATUS_OK && !holds_run(folder))
+                return STATUS_OK;
+            folder_release(folder);
+        }
         if (snprintf(folder->path, sizeof folder->path, "%s-%d", path, i) >= (int)sizeof folder->path)
             return fail(err, STATUS_IO, "%.200s...: the path is too long", path);
     }
@@ -76,7 +106,7 @@ Status folder_write(const Folder *folder, const char *name, WriteFn write, const
     char path[PATH_MAX];
     Output o;
     folder_path(folder, name, path);
-    TRY(output_open(&o, path, err));
+    TRY(output_open_inside(&o, path, err));
     write(o.stream, content);
     return output_close(&o, err);
 }
@@ -84,6 +114,9 @@ Status folder_write(const Folder *folder, const char *name, WriteFn write, const
 Status append_open(Append *a, const Folder *folder, const char *name, Err *err)
 {
     folder_path(folder, name, a->path);
+    struct stat about;
+    if (lstat(a->path, &about) == 0 && !S_ISREG(about.st_mode))
+        return fail(err, STATUS_IO, "%s: is a link or no file, which is not written to; remove it", a->path);
     a->stream = fopen(a->path, "ae");
     return a->stream ? STATUS_OK : fail(err, STATUS_IO, "%s: cannot be written: %s", a->path, strerror(errno));
 }

@@ -1,6 +1,7 @@
 /* store/folder.h -- the folder of a run, its lock, and files in it that are replaced whole or appended to.
  *
  * Life cycle  folder_take -> folder_write, append_open ... -> folder_release ({.lock = -1} is fine)
+ * Links       in it are not followed when writing: the folder may come from elsewhere
  * Errors      STATUS_IO with path and cause */
 #ifndef IMTET_STORE_FOLDER_H
 #define IMTET_STORE_FOLDER_H
@@ -22,6 +23,7 @@ void folder_release(Folder *folder);
 
 void folder_path(const Folder *folder, const char *name, char path[PATH_MAX]);
 int folder_has(const Folder *folder, const char *name);
+size_t folder_rows(const Folder *folder, const char *name); /* of a CSV file, its header left out; no file: 0 */
 
 /* The file replaced as a whole (store/output.h). */
 typedef void (*WriteFn)(FILE *f, const void *content);

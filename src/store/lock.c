@@ -44,7 +44,7 @@ Status lock_take(const char *path, int *fd, Err *err)
 {
     LockHolder holder = {0};
     char host[65] = "", text[96];
-    *fd = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    *fd = open(path, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
     if (*fd < 0)
         return fail(err, STATUS_IO, "%s: cannot be written: %s", path, strerror(errno));
     const int cause = try_lock(*fd, &holder);

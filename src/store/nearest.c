@@ -42,7 +42,7 @@ Status nearest_write(const char *folder, const Run *run, size_t n, const size_t 
         unlink(path);
         return STATUS_OK;
     }
-    TRY(output_open(&o, path, err));
+    TRY(output_open_inside(&o, path, err));
     fputs("id,violation", o.stream);
     for (size_t j = 0; j < run->schema.n_var; j++)
         fprintf(o.stream, ",%s", schema_variable(&run->schema, j)->name);

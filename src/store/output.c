@@ -8,23 +8,39 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-Status output_open(Output *o, const char *path, Err *err)
+/* A new file: what lies there under that name, a link that somebody prepared say, is removed. */
+static FILE *open_new(const char *path)
 {
-    struct stat there;
+    unlink(path);
+    return fopen(path, "wxe");
+}
+
+static Status open_at(Output *o, const char *path, int in_place, Err *err)
+{
     memset(o, 0, sizeof *o);
     const int to_stdout = strcmp(path, "-") == 0;
-    const int in_place = to_stdout || (lstat(path, &there) == 0 && !S_ISREG(there.st_mode));
     const int n = snprintf(o->path, sizeof o->path, "%s", path);
     const int m = snprintf(o->temporary, sizeof o->temporary, "%s.%ld.tmp", path, (long)getpid());
     if (n >= PATH_MAX || m >= PATH_MAX)
         return fail(err, STATUS_IO, "%.200s...: the path is too long", path);
-    if (in_place)
+    if (in_place || to_stdout)
         o->temporary[0] = 0;
     /* Not /dev/stdout: opening that again would cut off what a file behind it holds already. */
-    o->stream = to_stdout ? fdopen(dup(STDOUT_FILENO), "w") : fopen(in_place ? o->path : o->temporary, "w");
+    o->stream = to_stdout ? fdopen(dup(STDOUT_FILENO), "w") : in_place ? fopen(o->path, "w") : open_new(o->temporary);
     if (!o->stream)
         return fail(err, status_of_errno(errno, STATUS_IO), "%s: cannot be written: %s", path, strerror(errno));
     return STATUS_OK;
+}
+
+Status output_open(Output *o, const char *path, Err *err)
+{
+    struct stat there;
+    return open_at(o, path, lstat(path, &there) == 0 && !S_ISREG(there.st_mode), err);
+}
+
+Status output_open_inside(Output *o, const char *path, Err *err)
+{
+    return open_at(o, path, 0, err);
 }
 
 Status output_sync(FILE *stream, const char *path, Err *err)

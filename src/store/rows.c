@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/hash.h"
+#include "store/digest.h"
 #include "store/output.h"
 
 const char *column_text(sqlite3_stmt *row, int column)
@@ -31,20 +31,13 @@ typedef struct {
     const char *outcome, *reason, *x, *f, *sd, *extra;
 } RowText;
 
-static long digest_of(long id, double seconds, double violation, const RowText *t)
+static long digest_of(const Evaluation *e, const RowText *t)
 {
-    const double numbers[] = {seconds, violation};
     const char *const texts[] = {t->outcome, t->reason, t->x, t->f, t->sd, t->extra};
-    uint64_t hash = hash_fnv1a(&id, sizeof id, HASH_SEED);
-    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
-        const double known = isfinite(numbers[i]) ? numbers[i] + 0.0 : -1e308; /* SQLite keeps no -0 */
-        hash = hash_fnv1a(&known, sizeof known, hash);
-    }
-    for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
-        const char *text = texts[i] ? texts[i] : "";
-        hash = hash_fnv1a(text, strlen(text) + 1, hash);
-    }
-    return (long)hash;
+    uint64_t hash = digest_number(e->violation, digest_number(e->seconds, digest_whole(e->id, HASH_SEED)));
+    for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++)
+        hash = digest_text(texts[i], hash);
+    return (long)(hash ^ digest_kind(e->kind, e->generation));
 }
 
 /* -- writing ------------------------------------------------------------------------------------------------------- */
@@ -78,7 +71,7 @@ static Status insert_text(Database *db, const Evaluation *e, const RowText *t, E
                        "INSERT OR REPLACE INTO evaluation(id, generation, kind, outcome, reason, seconds, x, f, "
                        "spread, violation, extra, digest) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
                        "iitttdtttdti", e->id, e->generation, kind, t->outcome, t->reason, e->seconds, t->x, t->f, t->sd,
-                       e->violation, t->extra, digest_of(e->id, e->seconds, e->violation, t));
+                       e->violation, t->extra, digest_of(e, t));
 }
 
 Status rows_insert(Database *db, RowShape shape, const Evaluation *e, Err *err)
@@ -98,6 +91,21 @@ Status rows_insert(Database *db, RowShape shape, const Evaluation *e, Err *err)
     free(sd);
     free(extra);
     return status;
+}
+
+/* By (a | b) - (a & b), the exclusive or that SQL lacks. */
+Status rows_finish(Database *db, long id, EvaluationKind kind, long generation, Err *err)
+{
+    return database_do(
+        db, err, "UPDATE evaluation SET kind = ?, generation = ?, digest = (digest | ?) - (digest & ?) WHERE id = ?",
+        "tiiii", kind_word(kind), generation, (long)digest_kind(kind, generation), (long)digest_kind(kind, generation),
+        id);
+}
+
+Status rows_unfinish(Database *db, long id, EvaluationKind kind, long generation, Err *err)
+{
+    return database_do(db, err, "UPDATE evaluation SET kind = NULL, digest = (digest | ?) - (digest & ?) WHERE id = ?",
+                       "iii", (long)digest_kind(kind, generation), (long)digest_kind(kind, generation), id);
 }
 
 /* -- reading ------------------------------------------------------------------------------------------------------- */
@@ -176,9 +184,9 @@ static Status take_row(sqlite3_stmt *row, void *user, Err *err)
     e->seconds = column_number(row, 5);
     e->violation = column_number(row, 9);
     TRY(parse_row(r, &text, e, err));
-    /* a row without a digest was put there by another program */
-    if (sqlite3_column_type(row, 11) == SQLITE_NULL ||
-        sqlite3_column_int64(row, 11) == digest_of(e->id, e->seconds, e->violation, &text))
+    /* a row without a digest was put there by another program; before format 3 kind and generation were not in it */
+    const long plain = database_format(r->db) < 3 ? (long)digest_kind(e->kind, e->generation) : 0;
+    if (sqlite3_column_type(row, 11) == SQLITE_NULL || sqlite3_column_int64(row, 11) == (digest_of(e, &text) ^ plain))
         return STATUS_OK;
     return fail(err, STATUS_IO, "%s: is damaged: evaluation %ld is not what was written", database_path(r->db), e->id);
 }

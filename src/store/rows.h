@@ -2,7 +2,7 @@
  *
  *   x, f, sd, extra   JSON lists [1,2.5,null]; NULL where no number is known, f also where the design failed
  *   kind              NULL: KIND_UNFINISHED
- *   digest            FNV-1a of id, seconds, violation and all texts, by which a row is found that the disk has changed
+ *   digest            of all of it, by which a row is found that the disk has changed (store/digest.h)
  *
  * Threads  as Database
  * Errors   a row that cannot be read, or is not what was written: STATUS_IO with its id */
@@ -17,6 +17,10 @@ typedef struct {
     size_t n_var, n_obj, n_extra;
 } RowShape;
 Status rows_insert(Database *db, RowShape shape, const Evaluation *e, Err *err);
+
+/* A row that had no kind yet gets it, and the generation that it belongs to; or loses it again. */
+Status rows_finish(Database *db, long id, EvaluationKind kind, long generation, Err *err);
+Status rows_unfinish(Database *db, long id, EvaluationKind kind, long generation, Err *err);
 
 /* The evaluations first..last, in the order of their ids, behind those of the table. */
 Status rows_read(Database *db, EvaluationTable *table, long first, long last, Err *err);

@@ -62,8 +62,11 @@ typedef struct {
     long planned_evals;
     long tried_to_polish; /* spread-out designs, at the end of a search of polished_at simulations */
     long polished_at;
-    void *state; /* (n_state bytes) of the search at the end of the last generation; NULL: none is finished yet */
+    void *
+        state; /* (n_state bytes) of the search at the end of generation state_generation; NULL: none is finished yet */
     size_t n_state;
+    long state_generation; /* the last one; where that one's state is damaged, the one before */
+    int state_is_damaged;  /* that of no generation is what was written */
 } Run;
 
 void run_free(Run *run);

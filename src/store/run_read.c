@@ -9,19 +9,29 @@
 #include "simulator/measures.h"
 #include "store/repeats.h"
 #include "store/rows.h"
+#include "store/tables.h"
+#include "store/digest.h"
 
 typedef struct {
     Run *run;
     Database *d;
+    const char *digest;       /* the column of that name; NULL in a database of an earlier format */
+    uint64_t front;           /* digest of the designs on the search's front */
+    uint64_t front_as_stored; /* ... with the newest state */
+    int has_front_as_stored;
 } Loading;
 
 /* -- evaluations --------------------------------------------------------------------------------------------------- */
 
 static Status take_front(sqlite3_stmt *row, void *user, Err *err)
 {
-    Run *run = ((Loading *)user)->run;
-    const size_t i = run_find(run, (long)sqlite3_column_int64(row, 0));
+    Loading *l = user;
+    Run *run = l->run;
+    const long id = (long)sqlite3_column_int64(row, 0);
+    const size_t i = run_find(run, id);
     (void)err;
+    if (column_whole(row, 2, NEVER) == NEVER)
+        l->front ^= digest_member(id);
     if (i < run->table.n) {
         run->place[i].entered = column_whole(row, 1, NEVER);
         run->place[i].left = column_whole(row, 2, NEVER);
@@ -71,6 +81,23 @@ static Status load_evaluations(Loading *l, Err *err)
     return run_settle_front(run, err);
 }
 
+long run_generation_digest(const RunGeneration *g)
+{
+    const long whole[] = {g->number, g->simulated, g->failed, g->front, g->predicted};
+    const double numbers[] = {g->surrogate_error, g->hypervolume, g->seconds};
+    uint64_t hash = HASH_SEED;
+    for (size_t i = 0; i < sizeof whole / sizeof whole[0]; i++)
+        hash = digest_whole(whole[i], hash);
+    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
+        hash = digest_number(numbers[i], hash);
+    return (long)digest_text(g->finished, hash);
+}
+
+long run_state_digest(long generation, const void *bytes, size_t n)
+{
+    return (long)hash_fnv1a(bytes, n, digest_whole(generation, HASH_SEED));
+}
+
 /* -- the rest ------------------------------------------------------------------------------------------------------ */
 
 static void *one_more(void *list, size_t n, size_t size)
@@ -80,7 +107,8 @@ static void *one_more(void *list, size_t n, size_t size)
 
 static Status take_generation(sqlite3_stmt *row, void *user, Err *err)
 {
-    Run *run = ((Loading *)user)->run;
+    const Loading *l = user;
+    Run *run = l->run;
     RunGeneration *wider = one_more(run->generation, run->n_generations, sizeof *wider);
     if (!wider)
         return fail(err, STATUS_NO_MEMORY, "no memory for %zu generations", run->n_generations);
@@ -95,6 +123,9 @@ static Status take_generation(sqlite3_stmt *row, void *user, Err *err)
                          .hypervolume = column_number(row, 6),
                          .seconds = column_number(row, 7)};
     snprintf(g->finished, sizeof g->finished, "%s", column_text(row, 8));
+    if (column_whole(row, 9, run_generation_digest(g)) != run_generation_digest(g))
+        return fail(err, STATUS_IO, "%s: is damaged: generation %ld is not what was written", database_path(l->d),
+                    g->number);
     return STATUS_OK;
 }
 
@@ -121,15 +152,30 @@ static Status take_session(sqlite3_stmt *row, void *user, Err *err)
     return STATUS_OK;
 }
 
+/* The newest first; one that is not what was written gives way to the one before. */
 static Status take_state(sqlite3_stmt *row, void *user, Err *err)
 {
-    Run *run = ((Loading *)user)->run;
-    run->n_state = (size_t)sqlite3_column_bytes(row, 0);
-    run->state = malloc(run->n_state + 1);
+    Loading *l = user;
+    Run *run = l->run;
+    const long generation = (long)sqlite3_column_int64(row, 0), digest = column_whole(row, 2, 0);
+    const size_t n = (size_t)sqlite3_column_bytes(row, 1);
+    const void *bytes = sqlite3_column_blob(row, 1);
+    const int is_whole = digest == 0 || digest == run_state_digest(generation, bytes, n);
+    if (!run->state && sqlite3_column_type(row, 3) != SQLITE_NULL) {
+        l->has_front_as_stored = 1;
+        l->front_as_stored = (uint64_t)sqlite3_column_int64(row, 3);
+    }
+    if (run->state && (!run->state_is_damaged || !is_whole))
+        return STATUS_OK;
+    free(run->state);
+    run->state_generation = generation;
+    run->state_is_damaged = !is_whole;
+    run->n_state = n;
+    run->state = malloc(n + 1);
     if (!run->state)
-        return fail(err, STATUS_NO_MEMORY, "no memory for a state of %zu bytes", run->n_state);
-    if (run->n_state > 0)
-        memcpy(run->state, sqlite3_column_blob(row, 0), run->n_state);
+        return fail(err, STATUS_NO_MEMORY, "no memory for a state of %zu bytes", n);
+    if (n > 0)
+        memcpy(run->state, bytes, n);
     return STATUS_OK;
 }
 
@@ -154,37 +200,56 @@ static Status take_head(sqlite3_stmt *row, void *user, Err *err)
     const int is_tower = run->settings->problem.kind == PROBLEM_TOWER;
     if (n_var < (is_tower ? 3 : 1) || n_var > 10000 || (!is_tower && n_var != run->settings->problem.variables))
         return fail(err, STATUS_IO, "%s: is damaged: it has %ld variables", database_path(l->d), n_var);
+    if (!tables_head_is_whole(row))
+        return fail(err, STATUS_IO, "%s: is damaged: its settings are not what was written", database_path(l->d));
     if (!run->settings->search.objectives[0]) /* from before the setting: the paper's seven */
         snprintf(run->settings->search.objectives, OPTION_TEXT_MAX, "%s",
                  measure_exists(MEASURE_ED5_10, (int)n_var - 2) ? "auto" : "paper");
     return schema_of(&run->schema, run->settings, (int)n_var - 2, err);
 }
 
+/* The columns, with the digest where the format has one, from the rest of the query. */
+static Status each(Loading *l, const char *columns, const char *from, DatabaseRowFn take, Err *err)
+{
+    char sql[320];
+    snprintf(sql, sizeof sql, "SELECT %s, %s FROM %s", columns, l->digest, from);
+    return database_each(l->d, sql, take, l, err);
+}
+
+static Status load_states(Loading *l, Err *err)
+{
+    const char *query = database_format(l->d) < 3
+                            ? "SELECT generation, bytes, NULL, NULL FROM state LIMIT 1"
+                            : "SELECT generation, bytes, digest, front FROM state ORDER BY generation DESC LIMIT 2";
+    TRY(database_each(l->d, query, take_state, l, err));
+    return !l->has_front_as_stored || l->front == l->front_as_stored
+               ? STATUS_OK
+               : fail(err, STATUS_IO, "%s: is damaged: its front is not what was written", database_path(l->d));
+}
+
 static Status load(Loading *l, Err *err)
 {
     Run *run = l->run;
     Database *d = l->d;
-    TRY(database_each(
-        d, "SELECT settings, provenance, planned_evals, n_var, tried_to_polish, polished_at FROM run LIMIT 1",
-        take_head, l, err));
+    TRY(tables_check(d, err));
+    TRY(each(l, "settings, provenance, planned_evals, n_var, tried_to_polish, polished_at", "run LIMIT 1", take_head,
+             err));
     if (!run->schema.column)
         return fail(err, STATUS_IO, "%s: is damaged: it has no settings", database_path(d));
     TRY(load_evaluations(l, err));
-    TRY(database_each(d,
-                      "SELECT number, simulated, failed, front, predicted, surrogate_error, hypervolume, seconds, "
-                      "finished FROM generation ORDER BY number",
-                      take_generation, l, err));
+    TRY(each(l, "number, simulated, failed, front, predicted, surrogate_error, hypervolume, seconds, finished",
+             "generation ORDER BY number", take_generation, err));
     TRY(database_each(
         d,
         "SELECT started, ended, host, pid, threads, simulated_before, seconds, stopped, is_final, search, "
         "waited, surrogate FROM session ORDER BY number",
         take_session, l, err));
-    return database_each(d, "SELECT bytes FROM state LIMIT 1", take_state, l, err);
+    return load_states(l, err);
 }
 
 Status run_load(Run *run, Database *d, const char *folder, Err *err)
 {
-    Loading l = {run, d};
+    Loading l = {.run = run, .d = d, .digest = database_format(d) < 3 ? "NULL" : "digest"};
     memset(run, 0, sizeof *run);
     snprintf(run->folder, sizeof run->folder, "%s", folder);
     TRY(database_do(d, err, "BEGIN", "")); /* one state of a run that is worked on */

@@ -14,4 +14,8 @@ int run_path(const char *folder, char path[], size_t size);
 Status run_read(Run *run, const char *folder, Err *err);
 Status run_load(Run *run, Database *d, const char *folder, Err *err);
 
+/* Check values (store/digest.h) of a generation and of the state of the search at its end. */
+long run_generation_digest(const RunGeneration *g);
+long run_state_digest(long generation, const void *bytes, size_t n);
+
 #endif

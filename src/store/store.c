@@ -13,6 +13,7 @@
 #include "base/clock.h"
 #include "settings/settings.h"
 #include "store/csv_files.h"
+#include "store/digest.h"
 #include "store/front_share.h"
 #include "store/logs.h"
 #include "store/rows.h"
@@ -30,6 +31,7 @@ struct RunStore {
     double last_commit;          /* [s] */
     size_t n_known;              /* designs of finished generations */
     unsigned char *was_on_front; /* (n_known) at the end of the last generation */
+    uint64_t front;              /* digest of those on it */
     FrontShare share;
     long session;
     CsvFiles files;
@@ -68,17 +70,36 @@ static Status open_database(RunStore *store, Err *err)
     return database_open(&store->db, path, DATABASE_WRITE, err);
 }
 
+/* evaluations.csv follows the database. Where it has more, the journal was lost, as by a copy of run.sqlite alone. */
+static Status check_nothing_lost(const RunStore *store, Err *err)
+{
+    const size_t n = store->run.table.n, n_exported = folder_rows(&store->folder, "evaluations.csv");
+    if (n_exported <= n)
+        return STATUS_OK;
+    return fail(err, STATUS_IO,
+                "%s: evaluations.csv has %zu evaluations, run.sqlite %s%zu: %s is missing. Put it back; to resume "
+                "without those evaluations rename evaluations.csv; for another run: --new",
+                store_folder(store), n_exported, store->has_run ? "" : "is not there, ", n,
+                store->has_run ? "its journal run.sqlite-wal, or part of it," : "the database");
+}
+
+static Status load_run(RunStore *store, Err *err)
+{
+    TRY(open_database(store, err));
+    TRY(run_load(&store->run, store->db, store_folder(store), err));
+    database_grow(store->db);
+    return STATUS_OK;
+}
+
 static Status open_folder(RunStore *store, const char *folder, int fresh, Err *err)
 {
     TRY(folder_take(&store->folder, folder, fresh, err));
     if (!folder_has(&store->folder, "run.sqlite"))
-        return STATUS_OK;
-    TRY(open_database(store, err));
-    TRY(run_load(&store->run, store->db, store_folder(store), err));
-    database_grow(store->db);
+        return check_nothing_lost(store, err);
+    TRY(load_run(store, err));
     store->has_run = 1;
     store->has_polished = run_has_polished(&store->run);
-    return STATUS_OK;
+    return check_nothing_lost(store, err);
 }
 
 Status store_open(RunStore **out, const char *folder, int fresh, Err *err)
@@ -161,8 +182,11 @@ static Status take_up(RunStore *store, Err *err)
     store->was_on_front = calloc(store->n_known + 1, 1);
     if (!store->was_on_front)
         return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", store->n_known);
-    for (size_t i = 0; i < store->n_known; i++)
+    for (size_t i = 0; i < store->n_known; i++) {
         store->was_on_front[i] = run->place[i].entered != NEVER && run->place[i].left == NEVER;
+        if (store->was_on_front[i])
+            store->front ^= digest_member(run->table.row[i].id);
+    }
     return STATUS_OK;
 }
 
@@ -170,7 +194,8 @@ Status store_resume(RunStore *store, const Schema *schema, const Settings *used,
 {
     store->schema = schema;
     TRY(take_up(store, err));
-    TRY(tables_set_settings(store->db, used, err));
+    TRY(tables_upgrade(store->db, &store->run.table, err));
+    TRY(tables_set_settings(store->db, used, &store->run, err));
     TRY(write_origin(store, used, store->run.provenance, err));
     TRY(csv_files_resume(&store->files, &store->folder, schema, &store->run, err));
     return logs_open(&store->logs, &store->folder, err);
@@ -237,8 +262,7 @@ Status store_evaluation(RunStore *store, const Evaluation *e, Err *err)
 static Status store_kinds(RunStore *store, const SearchView *v, Err *err)
 {
     for (size_t i = store->n_known; i < v->n; i++)
-        TRY(database_do(store->db, err, "UPDATE evaluation SET kind = ?, generation = ? WHERE id = ?", "tii",
-                        kind_word(v->kind[i]), (long)v->generation[i], (long)i + 1));
+        TRY(rows_finish(store->db, (long)i + 1, (EvaluationKind)v->kind[i], (long)v->generation[i], err));
     if (v->is_asynchronous)
         return STATUS_OK;
     /* what another program or machine had asked for in this generation before it was cut short */
@@ -262,27 +286,48 @@ static Status store_front_changes(RunStore *store, const SearchView *v, Err *err
         if (!v->on_front[i] && flags[i])
             TRY(database_do(store->db, err, "UPDATE front SET left = ? WHERE evaluation = ?", "ii",
                             (long)v->generation_now, (long)i + 1));
+        if (v->on_front[i] != flags[i])
+            store->front ^= digest_member((long)i + 1);
         flags[i] = v->on_front[i];
     }
     return STATUS_OK;
 }
 
-static Status store_moment(RunStore *store, const SearchView *v, double seconds, double session, Err *err)
+static Status store_moment(RunStore *store, const SearchView *v, double seconds, Err *err)
 {
-    char finished[24];
-    utc_now(finished);
+    RunGeneration g = {.number = (long)v->generation_now,
+                       .simulated = (long)v->n,
+                       .failed = (long)v->n_failed,
+                       .front = (long)v->n_front,
+                       .predicted = (long)v->n_predicted,
+                       .surrogate_error = v->surrogate_error,
+                       .hypervolume = store_hypervolume(store),
+                       .seconds = seconds};
+    utc_now(g.finished);
+    return database_do(store->db, err,
+                       "INSERT INTO generation(number, simulated, failed, front, predicted, surrogate_error, "
+                       "hypervolume, seconds, finished, digest) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+                       "iiiiidddti", g.number, g.simulated, g.failed, g.front, g.predicted, g.surrogate_error,
+                       g.hypervolume, g.seconds, g.finished, run_generation_digest(&g));
+}
+
+/* The states of two generations are kept: one that the disk has damaged gives way to the one before. */
+static Status store_state(RunStore *store, const SearchView *v, Err *err)
+{
+    const long generation = (long)v->generation_now;
     if (!v->state)
         return fail(err, STATUS_NO_MEMORY, "no memory for the state of the search");
-    TRY(database_do(store->db, err,
-                    "INSERT INTO generation(number, simulated, failed, front, predicted, surrogate_error, hypervolume, "
-                    "seconds, finished) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)",
-                    "iiiiidddt", (long)v->generation_now, (long)v->n, (long)v->n_failed, (long)v->n_front,
-                    (long)v->n_predicted, v->surrogate_error, store_hypervolume(store), seconds, finished));
-    TRY(database_do(store->db, err,
-                    "UPDATE session SET seconds = ?, search = ?, waited = ?, surrogate = ? WHERE number = ?", "ddddi",
-                    session, v->seconds, v->waited_s, v->surrogate_s, store->session));
-    return database_do(store->db, err, "INSERT OR REPLACE INTO state(id, generation, bytes) VALUES (1, ?, ?)", "ib",
-                       (long)v->generation_now, v->state, v->n_state);
+    TRY(database_do(store->db, err, "DELETE FROM state WHERE generation < ?", "i", generation - 1));
+    return database_do(
+        store->db, err, "INSERT OR REPLACE INTO state(generation, bytes, digest, front) VALUES (?, ?, ?, ?)", "ibii",
+        generation, v->state, v->n_state, run_state_digest(generation, v->state, v->n_state), (long)store->front);
+}
+
+static Status store_effort(RunStore *store, const SearchView *v, double session, Err *err)
+{
+    return database_do(store->db, err,
+                       "UPDATE session SET seconds = ?, search = ?, waited = ?, surrogate = ? WHERE number = ?",
+                       "ddddi", session, v->seconds, v->waited_s, v->surrogate_s, store->session);
 }
 
 static Status put_generation(RunStore *store, const SearchView *v, double seconds, double session, Err *err)
@@ -290,7 +335,9 @@ static Status put_generation(RunStore *store, const SearchView *v, double second
     TRY(begin(store, err));
     TRY(store_kinds(store, v, err));
     TRY(store_front_changes(store, v, err));
-    TRY(store_moment(store, v, seconds, session, err));
+    TRY(store_moment(store, v, seconds, err));
+    TRY(store_effort(store, v, session, err));
+    TRY(store_state(store, v, err));
     return store_flush(store, err);
 }
 
@@ -298,6 +345,7 @@ static Status put_generation(RunStore *store, const SearchView *v, double second
 static Status commit_generation(RunStore *store, const SearchView *v, double seconds, double session, Err *err)
 {
     TRY(store_flush(store, err)); /* simulations that wait are not lost with it */
+    TRY(database_check_place(store->db, err));
     const Status status = put_generation(store, v, seconds, session, err);
     if (store->in_transaction)
         database_do(store->db, NULL, "ROLLBACK", "");
@@ -311,6 +359,41 @@ Status store_generation(RunStore *store, const SearchView *v, double seconds, do
     TRY(commit_generation(store, v, seconds, session, err));
     TRY(csv_files_append(&store->files, store->db, v->n, err));
     return csv_files_front(&store->files, v, err);
+}
+
+/* -- back to the generation before --------------------------------------------------------------------------------- */
+
+/* What is known of later generations is taken out again, their evaluations stay. A design that left the front, came back
+ * in one of them and is taken off again by the next one has lost its first leaving: its digest is not known. */
+static Status step_back(RunStore *store, Err *err)
+{
+    const Run *run = &store->run;
+    const long last = run->state_generation;
+    for (size_t i = 0; i < run->table.n; i++) {
+        const Evaluation *e = &run->table.row[i];
+        if (e->id < POLISHED_FIRST && e->kind != KIND_UNFINISHED && e->generation > last)
+            TRY(rows_unfinish(store->db, e->id, e->kind, e->generation, err));
+    }
+    TRY(database_do(store->db, err, "DELETE FROM front WHERE entered > ?", "i", last));
+    TRY(database_do(store->db, err, "UPDATE front SET left = NULL WHERE left > ?", "i", last));
+    TRY(database_do(store->db, err, "DELETE FROM generation WHERE number > ?", "i", last));
+    TRY(database_do(store->db, err, "DELETE FROM state WHERE generation > ?", "i", last));
+    return database_do(store->db, err, "UPDATE state SET front = NULL", "");
+}
+
+Status store_step_back(RunStore *store, Err *err)
+{
+    Run *run = &store->run;
+    TRY(begin(store, err));
+    Status status = step_back(store, err);
+    if (status == STATUS_OK)
+        status = store_flush(store, err);
+    else
+        database_do(store->db, NULL, "ROLLBACK", "");
+    store->in_transaction = 0;
+    TRY(status);
+    run_free(run);
+    return run_load(run, store->db, store_folder(store), err);
 }
 
 /* -- logs and the end ---------------------------------------------------------------------------------------------- */
@@ -415,6 +498,7 @@ Status store_add_evaluations(RunStore *store, size_t n, const Evaluation designs
     Run now;
     long id = 0;
     store->schema = &store->run.schema;
+    TRY(tables_upgrade(store->db, &store->run.table, err));
     TRY(begin(store, err));
     for (size_t i = 0; i < n; i++) {
         TRY(insert_polished(store, &designs[i], &id, err));

@@ -12,15 +12,20 @@
  * COMMIT_S after the one before, and at the end of its batch. What a kill can cost is what was under way and COMMIT_S
  * of evaluations. The end of a generation is one transaction: kinds, front, hypervolume, state of the search.
  *
- *   run          settings (INI), provenance (JSON), planned_evals, n_var, created, tried_to_polish, polished_at
+ *   run          settings (INI), provenance (JSON), planned_evals, n_var, created, tried_to_polish, polished_at, digest
  *   evaluation   id, generation, kind (NULL: its generation is not finished), outcome, reason, seconds,
  *                x, f, spread (JSON lists; NULL: none), violation, extra, digest (store/rows.h)
- *   generation   number, simulated, failed, front, predicted, surrogate_error, hypervolume, seconds, finished
+ *   generation   number, simulated, failed, front, predicted, surrogate_error, hypervolume, seconds, finished,
+ *                digest
  *   front        evaluation, entered, left: it was on the front of the generations entered <= g < left
- *   state        generation, bytes (moga/search.h)
+ *   state        generation, bytes (moga/search.h), digest, front: of the last two generations
  *   session      started, ended, host, pid, program, threads, simulated_before, seconds, stopped, is_final,
  *                search, waited, surrogate
  *   designs      a view: the evaluations with their columns by name
+ *
+ * Damage      digests of all rows but those of `session` are checked when a run is read (store/digest.h), and the text of
+ *             the tables. A run that lost its journal is refused: evaluations.csv has more than the database. A database
+ *             that is removed while the run goes on is put back at the end of a generation, which ends the session
  *
  * Life cycle  store_open -> store_begin or store_resume -> ... -> store_close, or store_free after a fault
  *             store_open_run -> store_add_evaluations -> store_free
@@ -58,6 +63,10 @@ Status store_forget_empty(RunStore *store, Err *err);
 /* A new run, or the one that is there, with other limits or threads. Borrow the schema. */
 Status store_begin(RunStore *store, const Schema *schema, const Settings *used, const char *provenance, Err *err);
 Status store_resume(RunStore *store, const Schema *schema, const Settings *used, Err *err);
+
+/* Where store_run's state is not that of the last generation, which is damaged: as if that generation were not finished. Its
+ * evaluations stay. Before store_resume; store_run is read again. */
+Status store_step_back(RunStore *store, Err *err);
 
 /* A start of the program on this run; to be called after one of the two. */
 Status store_session(RunStore *store, const char *program, int threads, size_t n_simulated, Err *err);

@@ -27,6 +27,7 @@ typedef struct {
     double seconds_before;   /* of earlier sessions */
     size_t generation;       /* that is under way */
     size_t first_generation; /* of this session */
+    long left_generation;    /* whose state was damaged, so that the one before is resumed; 0: none */
     int asked, late;         /* why it stopped */
     pthread_mutex_t lock;    /* of an asynchronous search: results come while a generation is written */
     int has_new_limits;
@@ -187,6 +188,11 @@ static Status check_state(const Study *study, const Run *run, Err *err)
 {
     StopReason unused;
     const int goes_on = study->has_new_limits || !came_to_its_end(run, &unused);
+    if (goes_on && run->state_is_damaged)
+        return fail(err, STATUS_IO,
+                    "%s: the state of the search is damaged; its evaluations are whole. Begin anew from its front: "
+                    "--new --set search.start=%s",
+                    study->summary->folder, study->summary->folder);
     return !goes_on || !run->state || search_state_is_current(run->state, run->n_state)
                ? STATUS_OK
                : fail(err, STATUS_BAD_DATA,
@@ -194,6 +200,19 @@ static Status check_state(const Study *study, const Run *run, Err *err)
                       "nothing was changed. Resume it with that version, or begin anew from its front: "
                       "--new --set search.start=%s",
                       study->summary->folder, study->summary->folder);
+}
+
+/* The last generation is made again from the state of the one before, with the evaluations that are there. */
+static Status leave_damaged_state(Study *study, Err *err)
+{
+    const Run *run = store_run(study->store);
+    StopReason unused;
+    const size_t n = run->n_generations;
+    if ((!study->has_new_limits && came_to_its_end(run, &unused)) || !run->state || n == 0 ||
+        run->state_generation == run->generation[n - 1].number)
+        return STATUS_OK;
+    study->left_generation = run->generation[n - 1].number;
+    return store_step_back(study->store, err);
 }
 
 static Status resume(Study *study, Err *err)
@@ -208,6 +227,7 @@ static Status resume(Study *study, Err *err)
                                         .lines = study->differences},
                           sum->n_before, &study->has_new_limits, err));
     TRY(check_state(study, run, err));
+    TRY(leave_damaged_state(study, err));
     study->seconds_before = sum->seconds;
     study->generation = run->n_generations > 0 ? (size_t)run->generation[run->n_generations - 1].number + 1 : 0;
     study->first_generation = study->generation;
@@ -368,12 +388,27 @@ static void tell_motions(const Study *study)
         o->motion(&tower_record(t, i)->motion, study->used.sim.duration_s, o->user);
 }
 
+static Status tell_left_generation(const Study *study, Err *err)
+{
+    static const char WORDS[] =
+        "the state after generation %ld is damaged; the one before is resumed, no evaluation is lost";
+    if (study->left_generation == 0)
+        return STATUS_OK;
+    if (study->differences) {
+        fprintf(study->differences, "%s: ", study->summary->folder);
+        fprintf(study->differences, WORDS, study->left_generation);
+        fputc('\n', study->differences);
+    }
+    return store_log(study->store, err, WORDS, study->left_generation);
+}
+
 static Status work(Study *study, Err *err)
 {
     if (study->options->started)
         study->options->started(study->summary->folder, study->summary->n_before, study->options->user);
     tell_motions(study);
     TRY(study_log_start(study->store, study->adapter, &study->used, study->summary->n_before, err));
+    TRY(tell_left_generation(study, err));
     TRY(run_search(study, err));
     TRY(study->status);
     TRY(polish(study, err));

@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "base/json.h"
 #include "moga/hypervolume.h"
@@ -67,7 +68,7 @@ static json_t *generation_event(const SearchView *v, double hypervolume, double 
 Status study_log_generation(RunStore *store, const SearchView *view, double seconds, Err *err)
 {
     const double hypervolume = store_hypervolume(store);
-    char improvement[32], surrogate[24] = "-", repeats[40] = "";
+    char improvement[32], surrogate[64] = "-", repeats[40] = "";
     double igd;
     TRY(improvement_lately(view, &igd, err));
     TRY(store_event(store, generation_event(view, hypervolume, igd, seconds), err));
@@ -76,6 +77,9 @@ Status study_log_generation(RunStore *store, const SearchView *view, double seco
         snprintf(repeats, sizeof repeats, " (%zu repeats)", view->n_replicates);
     if (isfinite(view->surrogate_error))
         snprintf(surrogate, sizeof surrogate, "%.3g", view->surrogate_error);
+    if (view->n_left_out > 0)
+        snprintf(surrogate + strlen(surrogate), sizeof surrogate - strlen(surrogate), " (without %zu outputs)",
+                 view->n_left_out);
     return store_log(store, err,
                      "generation %zu: %zu simulated%s, %zu failed, front %zu, hypervolume %.4f (standard error %.4f), "
                      "IGD+ against the front at 90 %% of the evaluations %s, predictions kept %zu, surrogate error %s, "
@@ -97,7 +101,7 @@ static Status log_costs(RunStore *store, const StudySummary *sum, int threads, E
         effort_words(&e, text);
         TRY(store_log(store, err, "%s", text));
     }
-    if (!isfinite(sum->own_s) || !isfinite(sum->simulation_s))
+    if (!(sum->own_s + sum->simulation_s > 0.0))
         return STATUS_OK;
     return store_log(
         store, err, "wall time per simulation: %.3g ms in the simulator, %.3g ms of surrogate and search (%.0f %%); %s",

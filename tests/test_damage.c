@@ -1,0 +1,309 @@
+/* A run's folder that was copied in part, deleted under a running study, changed bit by bit, or made to lead elsewhere: it is
+ * said, nothing is overwritten, and what can go on goes on to the same end. */
+#include "runs.h"
+
+#include <signal.h>
+#include <sqlite3.h>
+#include <sys/stat.h>
+
+#include "store/digest.h"
+#include "store/lock.h"
+
+/* Generations of some ten designs, which take 10 ms each. */
+static const char SLOW[] = "[problem]\nkind = external\ncommand = sh tests/worker.sh steady\nvariables = 3\n"
+                           "objectives = 2\n[search]\ninitial = 16\npopulation = 12\nmax_evals = 60\n"
+                           "surrogate_max = 30\nthreads = 2\n";
+
+__attribute__((format(printf, 1, 2))) static void shell(const char *format, ...)
+{
+    char spread[1024], command[2048];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(spread, sizeof spread, format, list);
+    va_end(list);
+    snprintf(command, sizeof command, "cd '%s' && %s", place.folder, spread);
+    if (system(command) != 0)
+        fail_msg("%s", command);
+}
+
+static void sql(const char *database, const char *statements)
+{
+    char path[PATH_MAX], *why = NULL;
+    sqlite3 *db;
+    assert_int_equal(sqlite3_open(path_of(database, path), &db), SQLITE_OK);
+    if (sqlite3_exec(db, statements, NULL, NULL, &why) != SQLITE_OK)
+        fail_msg("%s: %s", statements, why);
+    sqlite3_close(db);
+}
+
+static size_t rows_of(const char *name)
+{
+    char path[PATH_MAX];
+    size_t lines = 0;
+    if (access(path_of(name, path), F_OK) != 0)
+        return 0;
+    char *text = text_of(path);
+    for (const char *at = text; (at = strchr(at, '\n')); at++)
+        lines++;
+    free(text);
+    return lines > 0 ? lines - 1 : 0;
+}
+
+/* A study that has finished a generation or two and is at work. */
+static pid_t start_and_wait(const char *out)
+{
+    char name[64];
+    snprintf(name, sizeof name, "%s/evaluations.csv", out);
+    const pid_t pid = start("slow.ini", out);
+    while (rows_of(name) < 20)
+        rest(0.02);
+    return pid;
+}
+
+static void killed_run(const char *out)
+{
+    const pid_t pid = start_and_wait(out);
+    kill(pid, SIGKILL);
+    wait_end(pid);
+}
+
+/* -- two at once, and starts that were cut short -------------------------------------------------------------------- */
+
+/* The lock's holder seems to be gone, so that the folder seems free; when it lets go there is a run. */
+static void test_a_run_that_appears_while_the_lock_is_waited_for_is_not_overwritten(void **state)
+{
+    (void)state;
+    char path[PATH_MAX], host[65] = "", text[96];
+    int fd;
+    Err err = {0};
+    gethostname(host, sizeof host - 1);
+    shell("mkdir race");
+    CHECK_OK(lock_take(path_of("race/lock", path), &fd, &err), &err);
+    snprintf(text, sizeof text, "%d %s\n", 0x3fffff, host);
+    assert_int_equal(pwrite(fd, text, strlen(text), 0), strlen(text));
+    const pid_t pid = fork();
+    if (pid == 0) {
+        char *words[] = {getenv("IMTET"),  "optimize", in_place("textbook.ini"), "--new", "--out",
+                         in_place("race"), NULL};
+        _exit(freopen(in_place("new.txt"), "w", stdout) ? execv(words[0], words) : 127);
+    }
+    rest(0.3);
+    shell("cp sound/run.sqlite race/");
+    lock_release(fd);
+    assert_int_equal(wait_end(pid), 0);
+    shell("cmp sound/run.sqlite race/run.sqlite && test -f race-2/front.csv");
+}
+
+static void test_a_folder_with_evaluations_and_no_database_is_never_overwritten(void **state)
+{
+    (void)state;
+    shell(
+        "mkdir half && head -1 sound/evaluations.csv > half/evaluations.csv"); /* killed before anything was simulated */
+    free(output_of("optimize @/textbook.ini --out @/half"));
+    assert_same_run("sound", "half");
+    shell("mkdir bare && cp sound/evaluations.csv bare");
+    expect(74, "bare: evaluations.csv has 40 evaluations, run.sqlite is not there",
+           "optimize @/textbook.ini --out @/bare");
+    free(output_of("optimize @/textbook.ini --new --out @/bare"));
+    shell("cmp sound/evaluations.csv bare/evaluations.csv && test -f bare-2/front.csv && test ! -f bare/run.sqlite");
+}
+
+/* -- journals ------------------------------------------------------------------------------------------------------ */
+
+static void test_a_lost_journal_is_noticed(void **state)
+{
+    (void)state;
+    killed_run("lost");
+    shell("mv lost/run.sqlite-wal kept && cp -r lost other");
+    expect(74, "lost: evaluations.csv has ", "optimize @/lost");
+    shell("mv kept lost/run.sqlite-wal");
+    free(output_of("optimize @/lost"));
+    assert_same_run("slow", "lost");
+    shell("mv other/evaluations.csv other/before.csv"); /* as the message says */
+    free(output_of("optimize @/slow.ini --out @/other"));
+    assert_same_run("slow", "other");
+}
+
+static void test_the_journal_of_another_run_stays_out_of_a_new_database(void **state)
+{
+    (void)state;
+    killed_run("left");
+    shell("mkdir next && cp left/run.sqlite-wal left/run.sqlite-shm next");
+    free(output_of("optimize @/textbook.ini --out @/next"));
+    assert_same_run("sound", "next");
+}
+
+/* -- in flight ----------------------------------------------------------------------------------------------------- */
+
+static void test_a_database_that_is_removed_in_flight_is_put_back(void **state)
+{
+    (void)state;
+    static const char *const FILES[] = {"run.sqlite", "run.sqlite-wal", "run.sqlite*"};
+    for (size_t i = 0; i < sizeof FILES / sizeof FILES[0]; i++) {
+        const pid_t pid = start_and_wait("flight");
+        shell("rm flight/%s", FILES[i]);
+        const int status = wait_end(pid);
+        char *said = read_in_place("said");
+        if (!WIFEXITED(status) || WEXITSTATUS(status) != 74 || !strstr(said, "the same command resumes the run"))
+            fail_msg("%s: %x: %s", FILES[i], status, said);
+        free(said);
+        free(output_of("optimize @/flight"));
+        assert_same_run("slow", "flight");
+        shell("rm -r flight");
+    }
+}
+
+static void test_another_database_in_the_place_of_a_run_ends_it(void **state)
+{
+    (void)state;
+    const pid_t pid = start_and_wait("taken");
+    shell("cp sound/run.sqlite taken/new && mv taken/new taken/run.sqlite");
+    const int status = wait_end(pid);
+    char *said = read_in_place("said");
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != 74 || !strstr(said, "another file took its place"))
+        fail_msg("%x: %s", status, said);
+    free(said);
+}
+
+/* -- links --------------------------------------------------------------------------------------------------------- */
+
+static void test_links_in_a_foreign_folder_are_not_followed(void **state)
+{
+    (void)state;
+    static const char *const FILES[] = {"front.csv",     "evaluations.csv", "settings.ini", "provenance.json",
+                                        "report.html",   "log.txt",         "log.jsonl",    "lock",
+                                        "run.sqlite.tmp"};
+    for (size_t i = 0; i < sizeof FILES / sizeof FILES[0]; i++) {
+        Said said;
+        shell("rm -rf foreign && cp -r sound foreign && echo mine > victim && ln -sf ../victim foreign/%s", FILES[i]);
+        run(&said, "optimize @/foreign --max-evals 44 --force-settings");
+        forget(&said);
+        run(&said, "report @/foreign");
+        forget(&said);
+        shell("test \"$(cat victim)\" = mine || { echo %s; false; }", FILES[i]);
+    }
+    shell("echo mine > victim && ln -s victim link");
+    free(output_of("export @/sound --csv @/link")); /* a path that was typed may be a link */
+    shell("test -L link && cmp victim sound/front.csv");
+}
+
+/* -- bits ---------------------------------------------------------------------------------------------------------- */
+
+static const char DAMAGE_LAST[] = "UPDATE state SET bytes = zeroblob(length(bytes)) "
+                                  "WHERE generation = (SELECT max(generation) FROM state)";
+
+static void test_a_damaged_state_gives_way_to_the_one_before_with_the_same_end(void **state)
+{
+    (void)state;
+    Said said;
+    static const char FURTHER[] = "optimize @/%s --max-evals 60 --force-settings";
+    shell("cp -r sound whole && cp -r sound damaged && cp -r sound hopeless");
+    sql("damaged/run.sqlite", DAMAGE_LAST);
+    sql("hopeless/run.sqlite", "UPDATE state SET bytes = zeroblob(length(bytes))");
+    run(&said, FURTHER, "whole");
+    assert_int_equal(said.code, 0);
+    forget(&said);
+    free(output_of("status @/damaged"));
+    run(&said, FURTHER, "damaged");
+    if (said.code != 0 || !strstr(said.err, "is damaged; the one before is resumed"))
+        fail_msg("%d: %s", said.code, said.err);
+    forget(&said);
+    assert_same_run("whole", "damaged");
+    free(output_of("status @/hopeless"));
+    run(&said, FURTHER, "hopeless");
+    if (said.code != 74 || !strstr(said.err, "the state of the search is damaged"))
+        fail_msg("%d: %s", said.code, said.err);
+    forget(&said);
+}
+
+/* One bit of the statement that made a table: SQLite takes the column for another one. */
+static void test_a_bit_in_the_text_of_a_table_is_found(void **state)
+{
+    (void)state;
+    char path[PATH_MAX], bytes[8192];
+    static const char WORDS[] = "PRIMARY KEY REFERENCES";
+    shell("cp -r sound bit");
+    FILE *f = fopen(path_of("bit/run.sqlite", path), "r+b");
+    assert_non_null(f);
+    const size_t n = fread(bytes, 1, sizeof bytes, f);
+    const char *at = memmem(bytes, n, WORDS, strlen(WORDS));
+    assert_non_null(at);
+    assert_int_equal(fseek(f, at - bytes, SEEK_SET), 0);
+    fputc('P' ^ 4, f);
+    assert_int_equal(fclose(f), 0);
+    expect(74, "1 of its 6 tables", "export @/bit --csv -");
+    expect(74, "1 of its 6 tables", "optimize @/bit --max-evals 50 --force-settings");
+}
+
+/* -- an earlier format --------------------------------------------------------------------------------------------- */
+
+/* As it was before states and generations had digests, and those of evaluations were without kind and generation. */
+static void make_format_2(const char *name)
+{
+    char path[PATH_MAX], database[PATH_MAX], change[256];
+    Run run;
+    Err err = {0};
+    CHECK_OK(run_read(&run, path_of(name, path), &err), &err);
+    snprintf(database, sizeof database, "%s/run.sqlite", name);
+    for (size_t i = 0; i < run.table.n; i++) {
+        const long mark = (long)digest_kind(run.table.row[i].kind, run.table.row[i].generation);
+        snprintf(change, sizeof change, "UPDATE evaluation SET digest = (digest | %ld) - (digest & %ld) WHERE id = %ld",
+                 mark, mark, run.table.row[i].id);
+        sql(database, change);
+    }
+    run_free(&run);
+    sql(database,
+        "ALTER TABLE run DROP COLUMN digest; ALTER TABLE generation DROP COLUMN digest;"
+        "ALTER TABLE state RENAME TO new;"
+        "CREATE TABLE state(id INTEGER PRIMARY KEY CHECK (id = 1), generation INTEGER NOT NULL, bytes BLOB NOT "
+        "NULL); INSERT INTO state SELECT 1, generation, bytes FROM new ORDER BY generation DESC LIMIT 1;"
+        "DROP TABLE new; PRAGMA user_version = 2");
+}
+
+static void test_a_run_of_the_format_before_is_read_and_resumed(void **state)
+{
+    (void)state;
+    Said said;
+    shell("cp -r sound new && cp -r sound old");
+    make_format_2("old");
+    free(output_of("status @/old"));
+    assert_same_run("sound", "old");
+    run(&said, "optimize @/new --max-evals 60 --force-settings");
+    assert_int_equal(said.code, 0);
+    forget(&said);
+    run(&said, "optimize @/old --max-evals 60 --force-settings");
+    if (said.code != 0)
+        fail_msg("%s", said.err);
+    forget(&said);
+    assert_same_run("new", "old");
+    sql("old/run.sqlite", "UPDATE evaluation SET kind = 'infill' WHERE id = 2");
+    expect(74, "evaluation 2 is not what was written", "status @/old");
+}
+
+static int make_sound(void **state)
+{
+    if (prepare(state) != 0)
+        return -1;
+    write_in_place("textbook.ini", TEXTBOOK);
+    write_in_place("slow.ini", SLOW);
+    free(output_of("optimize @/textbook.ini --out @/sound"));
+    free(output_of("optimize @/slow.ini --out @/slow"));
+    return 0;
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_a_run_that_appears_while_the_lock_is_waited_for_is_not_overwritten),
+        cmocka_unit_test(test_a_folder_with_evaluations_and_no_database_is_never_overwritten),
+        cmocka_unit_test(test_a_lost_journal_is_noticed),
+        cmocka_unit_test(test_the_journal_of_another_run_stays_out_of_a_new_database),
+        cmocka_unit_test(test_a_database_that_is_removed_in_flight_is_put_back),
+        cmocka_unit_test(test_another_database_in_the_place_of_a_run_ends_it),
+        cmocka_unit_test(test_links_in_a_foreign_folder_are_not_followed),
+        cmocka_unit_test(test_a_damaged_state_gives_way_to_the_one_before_with_the_same_end),
+        cmocka_unit_test(test_a_bit_in_the_text_of_a_table_is_found),
+        cmocka_unit_test(test_a_run_of_the_format_before_is_read_and_resumed),
+    };
+    return cmocka_run_group_tests_name("damage", tests, make_sound, clear_place);
+}
