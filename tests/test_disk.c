@@ -235,7 +235,7 @@ static void test_damage_is_found_on_opening_whatever_was_hit(void **state)
     overwrite("sound/run.sqlite", 60, "\0\0\0\x63", 4); /* user_version */
     expect(74, "has format 99, this program reads 3; a newer imtet wrote it", "status @/sound");
     overwrite("sound/run.sqlite", 60, "\0\0\0\1", 4);
-    expect(74, "has format 1, this program reads 2; an older imtet wrote it", "status @/sound");
+    expect(74, "has format 1, this program reads 3; an older imtet wrote it", "status @/sound");
     expect(74, "an older imtet wrote it: only that one can resume it", "optimize @/sound");
     char *list = output_of("list @");
     assert_non_null(strstr(list, "unreadable"));

@@ -315,8 +315,6 @@ static Status store_moment(RunStore *store, const SearchView *v, double seconds,
 static Status store_state(RunStore *store, const SearchView *v, Err *err)
 {
     const long generation = (long)v->generation_now;
-    if (!v->state)
-        return fail(err, STATUS_NO_MEMORY, "no memory for the state of the search");
     TRY(database_do(store->db, err, "DELETE FROM state WHERE generation < ?", "i", generation - 1));
     return database_do(
         store->db, err, "INSERT OR REPLACE INTO state(generation, bytes, digest, front) VALUES (?, ?, ?, ?)", "ibii",
@@ -332,6 +330,8 @@ static Status store_effort(RunStore *store, const SearchView *v, double session,
 
 static Status put_generation(RunStore *store, const SearchView *v, double seconds, double session, Err *err)
 {
+    if (!v->state)
+        return fail(err, STATUS_NO_MEMORY, "no memory for the state of the search");
     TRY(begin(store, err));
     TRY(store_kinds(store, v, err));
     TRY(store_front_changes(store, v, err));
