@@ -58,7 +58,7 @@ void rbf_slope(const Rbf *m, size_t n, const double X[], double F[], double J[])
 const double *rbf_leave_one_out(const Rbf *m, size_t output); /* (n) f_i minus the prediction made without i */
 double rbf_explained(const Rbf *m, size_t output);            /* 1 - leave-one-out variance / variance; 1: perfect */
 
-size_t rbf_left_out(const Rbf *m);                            /* outputs that the last fit left out */
+size_t rbf_left_out(const Rbf *m); /* outputs that the last fit left out */
 
 /* Forms, scales, warps and how often they were tuned: with the data of the next rbf_fit all of the model's state. */
 void rbf_pack(Rbf *m, Pack *p);
