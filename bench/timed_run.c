@@ -95,7 +95,7 @@ static const ContactOnset *first_onset(const TimedRun *o, int j)
 /* The first onsets of the floors that the reference closes first; speeds below the contact law's floor are alike. */
 static void compare_onsets(const BenchCase *bench_case, const TimedRun *o, const TimedRun *reference, RunErrors *e)
 {
-    const double slow = bench_case->model.contact.v0_floor;
+    const double slow = bench_case->model.contact[0].v0_floor;
     int compared = 0;
     e->first_s = e->first_speed = NAN;
     for (int i = 0; i < reference->n_onsets && compared < BENCH_FIRST; i++) {

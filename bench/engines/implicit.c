@@ -103,7 +103,7 @@ static int linearise(Implicit *x, const Contacts *c, double *worst, double *larg
             continue;
         law[n] = (ContactForce){0};
         if (p > 0) {
-            law[n] = contact_force(&model->contact, model->mass_eff[j], p, s * x->wd[k], contacts_speed(c, j, s));
+            law[n] = contact_force(&model->contact[j], model->mass_eff[j], p, s * x->wd[k], contacts_speed(c, j, s));
             x->evaluations++;
         }
         x->rhs[n] = -(x->f[k] + s * law[n].force);

@@ -39,7 +39,7 @@ static int find_contacts(const Ode *o, double g, const double y[], int floor[], 
         if (!(p > 0))
             continue;
         const double p_dot = s * relative_displacement(model, j, y + model->m);
-        const ContactForce f = contact_force(&model->contact, model->mass_eff[j], p, p_dot, o->contacts.v0[j]);
+        const ContactForce f = contact_force(&model->contact[j], model->mass_eff[j], p, p_dot, o->contacts.v0[j]);
         floor[n] = j;
         dp[n] = g * f.dp;
         dv[n++] = g * f.dv;

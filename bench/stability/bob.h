@@ -26,7 +26,8 @@ static inline void bobs_model(SimModel *model, int n, const Bob bobs[], double c
     model->nc = 1;
     model->m = n + 1;
     model->m_pad = (model->m + 7) & ~7;
-    model->contact = *contact;
+    for (int j = 0; j < n; j++)
+        model->contact[j] = *contact;
     memset(model->R, 0, sizeof(double) * (size_t)(model->m_pad * model->n_pad));
     memset(model->RT, 0, sizeof(double) * (size_t)(model->m_pad * model->n_pad));
     for (int i = 0; i < model->m_pad; i++) {

@@ -26,7 +26,7 @@ static void slopes(const Side *s, double t, const double y[SIZE], double d[SIZE]
     d[V] = -2 * s->bob->zeta * w * y[V] - w * w * y[Q] - ground - s->side * f.force / m;
     d[INPUT] = -m * ground * y[V];
     d[DAMPED] = m * 2 * s->bob->zeta * w * y[V] * y[V];
-    d[LOST] = (f.raw - f.hertz) * s->side * y[V];
+    d[LOST] = (f.raw - f.elastic) * s->side * y[V];
     d[CLAMP] = (f.force - f.raw) * s->side * y[V];
 }
 

@@ -209,7 +209,7 @@ static Status free_mass(SimModel *model, double restitution, Err *err)
     model->R[model->n_pad] = model->RT[1] = -1e-30; /* the wall, a core of infinite mass */
     model->gap[0] = GAP_M;
     model->mass_eff[0] = MASS_KG;
-    return contact_make(&model->contact, &contact, err);
+    return contact_make(&model->contact[0], &contact, err);
 }
 
 static Status impact(double restitution, SimResult *r, Err *err)

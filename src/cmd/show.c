@@ -102,6 +102,11 @@ json_t *json_result(SceneKind kind, const SimResult *r)
     json_object_set_new(o, "clamp_j", json_number(r->clamp_j));
     json_object_set_new(o, "indentation_max_m", json_number(r->indentation_max_m));
     json_object_set_new(o, "contact_yields", json_boolean(r->contact_yields));
+    if (r->bumper_strain > 0) {
+        json_object_set_new(o, "bumper_compression_m", json_number(r->bumper_compression_m));
+        json_object_set_new(o, "bumper_strain", json_number(r->bumper_strain));
+        json_object_set_new(o, "bumper_bottoms_out", json_boolean(r->bumper_bottoms_out));
+    }
     json_object_set_new(o, "steps", json_integer(r->steps));
     json_object_set_new(o, "force_evaluations", json_integer(r->force_evaluations));
     json_object_set_new(o, "seconds", json_number(r->seconds));
@@ -169,6 +174,8 @@ void show_result(const char *label, const MeasureOrder *order, const SimResult *
         printf("  %s", outcome_word(measure_outcome(r->outcome)));
     if (beyond_contact_law(r))
         printf("  deeper than %g of the contact's radius: beyond the contact law", INDENTATION_RATIO_MAX);
+    if (r->bumper_bottoms_out)
+        printf("  a bumper is compressed by %.3g of its thickness: it bottoms out", r->bumper_strain);
     putchar('\n');
 }
 

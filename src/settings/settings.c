@@ -110,6 +110,12 @@ static const Option OPTIONS[] = {
     REAL(contact.youngs_modulus_pa, "Pa", "2.1e11", 1, 1e14, "Young's modulus of both bodies"),
     REAL(contact.poisson, "-", "0.3", 0, 0.5, "Poisson's ratio of both bodies"),
     REAL(contact.yield_stress_pa, "Pa", "3.45e8", 1, 1e12, "yield stress of both bodies; changes no response"),
+    REAL(contact.bumper_stiffness_n_m, "N/m", "0", 0, 1e14,
+         "stiffness of a bumper in series with the steel, at every floor and side; 0: none, steel on steel"),
+    REAL(contact.bumper_damping, "-", "0.1", 0, 0.9, "damping ratio of the bumper (docs/theory.md)"),
+    REAL(contact.bumper_thickness_m, "m", "0.2", 1e-4, 10, "thickness of the bumper, within the gap"),
+    REAL(contact.bumper_strain_max, "-", "0.5", 1e-3, 1,
+         "a bumper compressed by more of its thickness bottoms out: the result says so"),
 
     PATH(motion.record, "builtin:kobe-like", CHOICE_WORDS(BUILTIN_MOTION_LIST),
          "ground motion: one of the program, or a file (docs/motions.md)", .flags = SETTING_FREE),

@@ -45,6 +45,76 @@ double contact_hertz_duration(double k, double m, double v)
     return 2.943275184 * contact_hertz_indentation(k, m, v) / v; /* 2 int_0^1 dx / sqrt(1 - x^2.5) */
 }
 
+double contact_bumper_duration(const Contact *c, double m)
+{
+    return c->bumper > 0 ? M_PI * sqrt(m / c->bumper) : 0;
+}
+
+/* Springs in series add their squares; the Hertz contact meets less force than alone and lasts longer. */
+double contact_duration_min(double hertz, double bumper)
+{
+    return bumper > 0 ? hypot(hertz, bumper) : hertz;
+}
+
+/* y > 0 with y^3 + y^2 = q by Halley's method, which here converges from any start: sqrt(p_h) in units of k_b/k. */
+static double series_root(double q)
+{
+    double y = sqrt(q / (1 + sqrt(sqrt(q))));
+    for (int i = 0; i < 20; i++) {
+        const double g = y * y * (y + 1) - q, slope = y * (3 * y + 2);
+        const double step = 2 * g * slope / (2 * slope * slope - g * (6 * y + 2));
+        y -= step;
+        if (!(fabs(step) > 1e-6 * y)) /* what is left is of its cube */
+            break;
+    }
+    return y;
+}
+
+ContactShare contact_share(const Contact *c, double p)
+{
+    const double ratio = c->k / c->bumper, root = series_root(p * ratio * ratio) / ratio;
+    const double hertz = 1.5 * c->k * root;
+    return (ContactShare){
+        .root = root, .force = c->k * root * root * root, .hertz = hertz, .share = c->bumper / (hertz + c->bumper)};
+}
+
+ContactForce contact_bumper_force(const Contact *c, double mass, double p, double p_dot, double v0)
+{
+    const ContactShare s = contact_share(c, p);
+    const double slope = s.share * s.hertz, apart = (c->a - c->bumper_a) / v0;
+    const double damping = c->bumper_a / v0 + apart * s.share;
+    /* F d share/dp, with d hertz/dp = share hertz / (2 p_h) */
+    const double share_slope = -s.share * s.share * s.share * s.hertz * s.hertz / (3 * c->bumper);
+    ContactForce f = {.raw = s.force * (1 + damping * p_dot),
+                      .elastic = s.force,
+                      .dp = slope * (1 + damping * p_dot) + apart * share_slope * p_dot,
+                      .dv = s.force * damping};
+    if (c->xi > 0 && p_dot > 0) {
+        const double dashpot = 2 * c->xi * s.share * sqrt(mass * s.force / p);
+        f.raw += dashpot * p_dot;
+        f.dp += dashpot * p_dot * (share_slope / (s.share * s.force) + 0.5 * (slope / s.force - 1 / p));
+        f.dv += dashpot;
+    }
+    f.force = f.raw;
+    if (f.raw <= 0) /* keeps NaN */
+        f.force = f.dp = f.dv = 0;
+    return f;
+}
+
+double contact_bumper_stored(const Contact *c, double p)
+{
+    if (!(p > 0))
+        return 0;
+    const ContactShare s = contact_share(c, p);
+    return s.force * (0.4 * s.root * s.root + 0.5 * s.force / c->bumper);
+}
+
+/* a of a bumper that rebounds like a linear spring and dashpot of damping ratio zeta, from contact to contact. */
+static double bumper_damping(double zeta)
+{
+    return zeta > 0 ? contact_damping(exp(-M_PI * zeta / sqrt(1 - zeta * zeta))) : 0;
+}
+
 Status contact_make(Contact *c, const ContactOptions *o, Err *err)
 {
     const double r = o->restitution, nu = o->poisson;
@@ -75,5 +145,7 @@ Status contact_make(Contact *c, const ContactOptions *o, Err *err)
         break;
     }
     c->v0_floor = o->v0_min_m_s;
+    c->bumper = o->bumper_stiffness_n_m;
+    c->bumper_a = bumper_damping(o->bumper_damping);
     return STATUS_OK;
 }

@@ -12,10 +12,18 @@
  *                        xi = 9 sqrt(5)/2 (1 - r^2) / (r (r (9 pi - 16) + 16))
  *                        Earthquake Eng. Struct. Dyn. 34 (2005) 595-611; 35 (2006) 517-524
  *
+ * With a bumper, a spring k_b on the face that is hit, p = p_h + p_b is shared between steel and bumper so that
+ *
+ *   F_el = k p_h^1.5 = k_b p_b,   F = F_el (1 + (a s + a_b (1 - s)) p'/v0) + s c p',   s = dp_h/dp = k_b / (k_b + 1.5 k sqrt(p_h))
+ *
+ * with c from F_el/p in place of k sqrt(p), and a_b such that a bumper alone rebounds like a linear spring and dashpot of
+ * damping ratio zeta_b, e = exp(-pi zeta_b / sqrt(1 - zeta_b^2)). Each part loses its own share of the energy that passes
+ * through it; the force has no state of its own, begins at zero and is never tensile. docs/theory.md says why.
+ *
  * The law would be tensile when separation is faster than v0/a: tension is clamped at zero, and the energy that the
  * clamp removes is reported. v0 is never taken smaller than v0_floor.
  * Source   Hunt and Crossley, J. Appl. Mech. 42 (1975) 440-445; Marhefka and Orin, IEEE Trans. SMC-A 29 (1999) 566-572
- *          (rebound equation)
+ *          (rebound equation); S. A. Anagnostopoulos, Earthquake Eng. Struct. Dyn. 16 (1988) 443-456 (e of zeta_b)
  * Threads  no state */
 #ifndef IMTET_SIM_CONTACT_H
 #define IMTET_SIM_CONTACT_H
@@ -30,8 +38,11 @@ typedef struct {
     double a;        /* [-] */
     double xi;       /* [-] */
     double v0_floor; /* [m/s] */
+    double bumper;   /* [N/m] k_b; 0: none */
+    double bumper_a; /* [-] a_b */
 } Contact;
 
+/* With the bumper of the options. */
 Status contact_make(Contact *c, const ContactOptions *o, Err *err);
 
 /* Rebound over approach speed of an isolated impact, e(a): 1 at a = 0, falling to 0. */
@@ -44,16 +55,46 @@ double contact_damping(double e);
 double contact_hertz_indentation(double k, double m, double v);
 double contact_hertz_duration(double k, double m, double v);
 
+/* pi sqrt(m/k_b) [s], of an impact on the bumper alone; 0 without a bumper. */
+double contact_bumper_duration(const Contact *c, double m);
+
+/* No impact is shorter, where Hertz's alone and the bumper's alone last so long [s]. */
+double contact_duration_min(double hertz, double bumper);
+
+/* How the approach p > 0 [m] and its increments are shared between steel and bumper. */
 typedef struct {
-    double force, raw, hertz; /* [N] clamped, as the law says, its elastic part k p^1.5 */
-    double dp, dv;            /* d force/d p [N/m], d force/d p' [N s/m] */
+    double root;  /* [sqrt(m)] of the indentation p_h of the steel */
+    double force; /* [N] elastic */
+    double hertz; /* [N/m] 1.5 k sqrt(p_h), slope of the steel alone */
+    double share; /* [-] dp_h/dp */
+} ContactShare;
+ContactShare contact_share(const Contact *c, double p);
+
+/* Indentation of the steel [m] at approach p; the bumper has the rest. */
+static inline double contact_indentation(const Contact *c, double p)
+{
+    if (!(c->bumper > 0 && p > 0))
+        return p;
+    const double root = contact_share(c, p).root;
+    return root * root;
+}
+
+typedef struct {
+    double force, raw, elastic; /* [N] clamped, as the law says, its elastic part */
+    double dp, dv;              /* d force/d p [N/m], d force/d p' [N s/m] */
 } ContactForce;
+
+/* contact_force and contact_stored of a contact with a bumper. */
+ContactForce contact_bumper_force(const Contact *c, double mass, double p, double p_dot, double v0);
+double contact_bumper_stored(const Contact *c, double p);
 
 /* p > 0; v0 not below v0_floor; mass [kg]: the effective mass of the contact. */
 static inline ContactForce contact_force(const Contact *c, double mass, double p, double p_dot, double v0)
 {
+    if (c->bumper > 0)
+        return contact_bumper_force(c, mass, p, p_dot, v0);
     const double root = sqrt(p), hertz = c->k * p * root, damping = c->a / v0, loss = 1.0 + damping * p_dot;
-    ContactForce f = {.raw = hertz * loss, .hertz = hertz, .dp = 1.5 * c->k * root * loss, .dv = hertz * damping};
+    ContactForce f = {.raw = hertz * loss, .elastic = hertz, .dp = 1.5 * c->k * root * loss, .dv = hertz * damping};
     if (c->xi > 0 && p_dot > 0) {
         const double dashpot = 2 * c->xi * sqrt(mass * c->k * root);
         f.raw += dashpot * p_dot;
@@ -66,9 +107,11 @@ static inline ContactForce contact_force(const Contact *c, double mass, double p
     return f;
 }
 
-/* Elastic energy 2/5 k p^2.5 [J]. */
+/* Elastic energy 2/5 k p_h^2.5 + k_b p_b^2 / 2 [J]. */
 static inline double contact_stored(const Contact *c, double p)
 {
+    if (c->bumper > 0)
+        return contact_bumper_stored(c, p);
     return p > 0 ? 0.4 * c->k * p * p * sqrt(p) : 0.0;
 }
 

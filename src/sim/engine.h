@@ -2,7 +2,7 @@
  *
  *   run(model, motion, options, result)    from rest at t = 0 to options.duration
  *
- * An engine fills all of SimResult but mcore_kg, indentation_ratio and seconds (the caller's).
+ * An engine fills all of SimResult but mcore_kg, indentation_ratio, bumper_strain and seconds (the caller's).
  * Energies as in sim/energy_balance.h; maxima are over continuous time. After the last sample the ground stands still
  * (a = 0 from there on, also where the last sample is not zero). What an engine cannot do is an outcome with a reason.
  *
@@ -60,6 +60,16 @@ typedef struct EngineEntry {
     Status (*work_create)(void **work, int n_floors, int nb, Err *err);
     void (*work_free)(void *work); /* NULL is fine */
 } EngineEntry;
+
+/* The deepest approach [m] of a floor to the core, with a bumper the steel's indentation and the bumper's compression.
+ */
+static inline void result_add_approach(SimResult *r, const Contact *c, double approach)
+{
+    const double indentation = contact_indentation(c, approach);
+    r->indentation_max_m = fmax(r->indentation_max_m, indentation);
+    if (c->bumper > 0)
+        r->bumper_compression_m = fmax(r->bumper_compression_m, approach - indentation);
+}
 
 /* By Engine, the setting sim.engine. */
 const EngineEntry *engine_entry(Engine engine);

@@ -88,7 +88,9 @@ Status model_set(SimModel *model, const SceneOptions *o, const Building *b, cons
         model->mass_eff[j] = sum > 0 ? 1 / sum : 1e300;
     }
     model->core_mass_kg = core ? core->mass_kg : 0;
-    TRY(contact_make(&model->contact, &o->contact, err));
+    TRY(contact_make(&model->contact[0], &o->contact, err));
+    for (int j = 1; j < n; j++)
+        model->contact[j] = model->contact[0];
     return set_gaps(model, core ? gaps : NULL, err);
 }
 

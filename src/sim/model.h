@@ -31,7 +31,7 @@ typedef struct {
     double *gap;      /* (n_pad) [m] */
     double *mass_eff; /* (n_pad) [kg] 1/sum_i R_ij^2: what a short contact at floor j has to turn round */
     double core_mass_kg;
-    Contact contact;
+    Contact contact[FLOORS_MAX]; /* (n) */
     void *store;
 } SimModel;
 

@@ -17,6 +17,9 @@ typedef enum { CONTACT_LAW_LIST(CHOICE_NAME) } ContactLaw;
 typedef struct {
     ContactLaw law;
     double restitution, v0_min_m_s, radius_m, youngs_modulus_pa, poisson, yield_stress_pa;
+    double bumper_stiffness_n_m; /* 0: none */
+    double bumper_damping;       /* [-] damping ratio */
+    double bumper_thickness_m, bumper_strain_max;
 } ContactOptions;
 
 /* The integrators of the model, by the name of the setting; sim/engine.c has a line for each. */

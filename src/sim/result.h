@@ -73,7 +73,9 @@ typedef struct {
     double contact_loss_j, contact_stored_j, clamp_j; /* lost in contacts, still stored, removed by the no-tension
                                                          condition */
     double damped_building_j, damped_core_j, kinetic_strain_j; /* the last at the end of the run */
-    double indentation_max_m, indentation_ratio;               /* [-] over the contact's radius */
+    double indentation_max_m, indentation_ratio;               /* of the steel; [-] over the contact's radius */
+    double bumper_compression_m, bumper_strain; /* largest; [-] over the bumper's thickness; 0: no bumper */
+    int bumper_bottoms_out;                     /* the strain exceeds ContactOptions.bumper_strain_max */
     double contact_pressure_pa;                                /* largest in the middle of a contact */
     int contact_yields;                                        /* it begins to yield below the surface */
     long steps, force_evaluations;                             /* what the run cost */

@@ -227,6 +227,8 @@ static void set_contact_figures(const ContactOptions *o, SimResult *r)
     r->contact_pressure_pa =
         o->youngs_modulus_pa / (M_PI * (1 - o->poisson * o->poisson)) * sqrt(fmax(r->indentation_ratio, 0));
     r->contact_yields = r->contact_pressure_pa > YIELD_PRESSURE * o->yield_stress_pa;
+    r->bumper_strain = r->bumper_compression_m / o->bumper_thickness_m;
+    r->bumper_bottoms_out = r->bumper_strain > o->bumper_strain_max;
 }
 
 static void set_drift_ratios(const double storey_m[], SimResult *r)

@@ -73,7 +73,7 @@ static double approach(const Contacts *c, int j, int s, double *wait)
 double contacts_speed(const Contacts *c, int j, int s)
 {
     double wait;
-    return c->side[j] == s ? c->v0[j] : fmax(approach(c, j, s, &wait), c->model->contact.v0_floor);
+    return c->side[j] == s ? c->v0[j] : fmax(approach(c, j, s, &wait), c->model->contact[j].v0_floor);
 }
 
 /* The force of a floor that touches on side s with penetration p > 0, added to g. */
@@ -81,9 +81,9 @@ static void add_contact(const Contacts *c, int j, int s, double p, const double 
 {
     const SimModel *model = c->model;
     const double p_dot = s * relative_displacement(model, j, v);
-    const ContactForce f = contact_force(&model->contact, model->mass_eff[j], p, p_dot, contacts_speed(c, j, s));
+    const ContactForce f = contact_force(&model->contact[j], model->mass_eff[j], p, p_dot, contacts_speed(c, j, s));
     push_modes(model->m, model->RT + (size_t)j * (size_t)model->m_pad, -s * f.force, g);
-    power->lost += (f.raw - f.hertz) * p_dot;
+    power->lost += (f.raw - f.elastic) * p_dot;
     power->clamp += (f.force - f.raw) * p_dot;
 }
 
@@ -111,9 +111,9 @@ ContactPower contacts_add(const Contacts *c, const double q[], const double v[],
 static void close_gap(Contacts *c, int j, int side, double t, double speed)
 {
     c->side[j] = side;
-    c->v0[j] = fmax(speed, c->model->contact.v0_floor);
+    c->v0[j] = fmax(speed, c->model->contact[j].v0_floor);
     c->impacts++;
-    c->floored += speed < c->model->contact.v0_floor;
+    c->floored += speed < c->model->contact[j].v0_floor;
     c->recorded[j] = c->recorded_loss[j] = 0;
     if (c->forces)
         force_monitor_onset(c->forces, j, side, t, speed);
@@ -169,11 +169,11 @@ uint64_t contacts_record(Contacts *c, double t, const double q[], const double v
         const double p_dot = s * relative_displacement(model, j, v);
         ContactForce f = {0};
         if (s && p > 0)
-            f = contact_force(&model->contact, model->mass_eff[j], p, p_dot, c->v0[j]);
-        const double loss = (f.raw - f.hertz) * p_dot;
+            f = contact_force(&model->contact[j], model->mass_eff[j], p, p_dot, c->v0[j]);
+        const double loss = (f.raw - f.elastic) * p_dot;
         if (s)
             force_monitor_contact(c->forces, j, half * (c->recorded[j] + f.force), half * (c->recorded_loss[j] + loss),
-                                  f.force, p);
+                                  f.force, contact_indentation(&model->contact[j], p));
         c->recorded[j] = f.force;
         c->recorded_loss[j] = loss;
         force[j] = -s * f.force;
@@ -196,7 +196,7 @@ double contacts_stored(const Contacts *c, const double q[])
     double stored = 0;
     for (int j = 0; j < c->model->n && c->model->nc > 0; j++)
         if (c->side[j])
-            stored += contact_stored(&c->model->contact,
+            stored += contact_stored(&c->model->contact[j],
                                      c->side[j] * relative_displacement(c->model, j, q) - c->model->gap[j]);
     return stored;
 }

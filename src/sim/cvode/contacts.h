@@ -28,7 +28,7 @@ typedef struct {
     double t_recorded, recorded[FLOORS_MAX], recorded_loss[FLOORS_MAX];   /* [s], [N], [W] at the last record */
 } Contacts;
 
-/* Where the contacts' power goes [W]: F p' = k p^1.5 p' (stored) + (F_raw - k p^1.5) p' (lost)
+/* Where the contacts' power goes [W]: F p' = F_el p' (stored) + (F_raw - F_el) p' (lost)
  *                                           + (F - F_raw) p' (clamp, never positive) */
 typedef struct {
     double lost, clamp;

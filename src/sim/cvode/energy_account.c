@@ -57,7 +57,7 @@ void energy_account_report(const EnergyAccount *l, const Contacts *c, const Engi
         result->kinetic_strain_j += 0.5 * (v[i] * v[i] + pow(model->omega[i] * q[i], 2));
     result->contact_stored_j = contacts_stored(c, q);
     for (int j = 0; j < model->n && model->nc > 0; j++)
-        result->indentation_max_m = fmax(result->indentation_max_m, l->peaks.peak[PEAK_RELATIVE][j] - model->gap[j]);
+        result_add_approach(result, &model->contact[j], l->peaks.peak[PEAK_RELATIVE][j] - model->gap[j]);
     peak_monitor_report(&l->peaks, result);
     energy_balance_close(result, model->nb, model->like, model->nc, l->damped);
     if (options->end_state) {

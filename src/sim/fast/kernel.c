@@ -238,7 +238,8 @@ static double still_stored(const FastWork *k)
     double stored = 0;
     for (int j = 0; j < k->n; j++)
         if (k->side[j])
-            stored += contact_stored(&k->model->contact, fabs(scalars_const(k->now.w)[j]) - scalars_const(k->gap)[j]);
+            stored +=
+                contact_stored(&k->model->contact[j], fabs(scalars_const(k->now.w)[j]) - scalars_const(k->gap)[j]);
     return stored;
 }
 
@@ -307,7 +308,8 @@ void FAST_KERNEL(FastWork *k, const SimModel *model, const Motion *motion, const
     report_energies(k, result);
     result->impacts = k->impacts;
     result->v0_limited = k->v0_limited;
-    result->indentation_max_m = k->indentation_max;
+    for (int j = 0; j < model->n; j++)
+        result_add_approach(result, &model->contact[j], k->approach_max[j]);
     result->steps = k->steps + k->flights;
     result->force_evaluations = k->forces;
 }

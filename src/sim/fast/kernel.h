@@ -103,6 +103,7 @@ typedef struct FastWork {
     vec *gap;                              /* (n_pad) */
     uint64_t floors;                       /* bit j: floor j is one */
     double shortest_at_1;                  /* [s] shortest Hertz contact of any floor at 1 m/s */
+    double shortest_bumper;                /* [s] shortest contact of any bumper alone; 0: steel on steel somewhere */
     int oscillatory;                       /* every mode is below critical damping and has a frequency */
     double base;                           /* [s] the interval that the levels divide */
     Level level[LEVEL_MAX + 1];
@@ -130,7 +131,8 @@ typedef struct FastWork {
     RecordScratch record;
 
     /* energy account and counts */
-    double contact_lost, contact_clamped, indentation_max;
+    double contact_lost, contact_clamped;
+    double approach_max[FLOORS_PAD_MAX]; /* [m] deepest, of steel and bumper together */
     long impacts, v0_limited, steps, flights, forces;
 } FastWork;
 
