@@ -46,12 +46,12 @@ typedef struct {
     Engine engine;
     Accuracy accuracy;
     double steps_per_contact;
-    double duration_s; /* 0: the whole motion */
+    double duration_s;         /* 0: the whole motion */
     double energy_balance_max; /* 0: by accuracy, sim_energy_balance_max */
-    long replicates;        /* simulations of a design under each record */
-    Robust robust;          /* how a design's results under several records become one */
-    double gap_tolerance_m; /* standard deviation of a gap as built */
-    Forces forces;          /* auto: only where an objective or a limit needs SimResult.forces */
+    long replicates;           /* simulations of a design under each record */
+    Robust robust;             /* how a design's results under several records become one */
+    double gap_tolerance_m;    /* standard deviation of a gap as built */
+    Forces forces;             /* auto: only where an objective or a limit needs SimResult.forces */
 } SimOptions;
 
 /* What a scene is made of; without the ground motion. */

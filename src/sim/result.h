@@ -76,11 +76,11 @@ typedef struct {
     double indentation_max_m, indentation_ratio;               /* of the steel; [-] over the contact's radius */
     double bumper_compression_m, bumper_strain; /* largest; [-] over the bumper's thickness; 0: no bumper */
     int bumper_bottoms_out;                     /* the strain exceeds ContactOptions.bumper_strain_max */
-    double contact_pressure_pa;                                /* largest in the middle of a contact */
-    int contact_yields;                                        /* it begins to yield below the surface */
-    long steps, force_evaluations;                             /* what the run cost */
-    int repeated; /* times the run was repeated with shorter steps, its energy balance open */
-    double seconds;                                            /* wall time */
+    double contact_pressure_pa;                 /* largest in the middle of a contact */
+    int contact_yields;                         /* it begins to yield below the surface */
+    long steps, force_evaluations;              /* what the run cost */
+    int repeated;   /* times the run was repeated with shorter steps, its energy balance open */
+    double seconds; /* wall time */
 
     int forces_known; /* they were asked for: SimOptions.forces */
     SimForces forces;
