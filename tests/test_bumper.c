@@ -42,7 +42,7 @@ typedef struct {
 /* Stiffness over ten decades, every damping, and now and then Jankowski's dashpot. */
 static Blow random_blow(uint32_t i)
 {
-    Random r = random_stream(7, RANDOM_ENSEMBLE, 0, i);
+    Random r = random_stream(7, RANDOM_REPLICATE, 0, i);
     Blow b = {.contact = {.k = STEEL, .a = 1.5 * random_uniform(&r), .v0_floor = 1e-300}};
     b.contact.bumper = pow(10, 5 + 10 * random_uniform(&r));
     b.contact.bumper_a = 1.5 * random_uniform(&r);
@@ -61,7 +61,7 @@ static void test_the_force_is_that_of_steel_and_spring_in_series_with_its_slopes
     (void)state;
     for (uint32_t i = 0; i < 2000; i++) {
         const Blow b = random_blow(i);
-        Random r = random_stream(8, RANDOM_ENSEMBLE, 0, i);
+        Random r = random_stream(8, RANDOM_REPLICATE, 0, i);
         const double p = pow(10, -8 + 7 * random_uniform(&r)), p_dot = b.v * (2 * random_uniform(&r) - 1);
         const ContactForce f = contact_force(&b.contact, b.mass, p, p_dot, b.v);
         assert_close(f.force + 1e-9, series_law(&b.contact, b.mass, p, p_dot, b.v) + 1e-9, 1e-9);
