@@ -5,17 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/carve.h"
 #include "base/clock.h"
 #include "base/random.h"
+#include "polish/constants.h"
 #include "rbf/rbf.h"
-
-enum { SURFACE_STEPS = 60 };
-
-/* Half widths of the first box, as a part of the whole, and what is left of it after a round without success. */
-static const double TRUST = 0.1, TRUST_MOST = 0.4, TRUST_LEAST = 1e-5, SHRINK = 0.95;
-
-static const double MOVED = 0.5;        /* share of the variables that a proposal may move */
-static const double LEAST_ERROR = 1e-5; /* of a prediction, by the objective's value at the start */
 
 typedef struct {
     Queue *queue;
@@ -23,18 +17,18 @@ typedef struct {
     const LocalConfig *config;
     LocalResult *result;
     Rbf *rbf;
-    size_t n, n_max, n_tuned;            /* known designs; how many there were when the surface was tuned */
-    double *U, *F, *N;                   /* (n_max, n_var) in the unit cube, (n_max, n_obj), noise (n_max, n_obj) */
-    double *X, *F_new, *G_new;           /* one batch */
-    double *u_best, *u, *low, *high;     /* (n_var) the centre; the proposal under way and its box */
-    double *f, *J;                       /* (n_obj), (n_obj, n_var) of the surface where it was asked last */
-    double *error, *least_error, *shift; /* (n_obj) shift: added to the surface, so that it is right at the centre */
-    double value, trust;                 /* of the centre; of the first box */
+    size_t n, n_max, n_tuned;          /* known designs; how many there were when the surrogate was tuned */
+    double *U, *F, *N;                 /* (n_max, n_var) in the unit cube, (n_max, n_obj), noise (n_max, n_obj) */
+    double *X, *F_new, *G_new;         /* one batch */
+    double *u_best, *u, *low, *high;   /* (n_var) the centre; the proposal under way and its box */
+    double *f, *J;                     /* (n_obj), (n_obj, n_var) of the surrogate, evaluated last */
+    double *error, *error_min, *shift; /* (n_obj) shift: added to the surrogate, which is then exact at the centre */
+    double value, trust;               /* of the centre; of the first box */
     Random random;
     void *store;
 } Local;
 
-/* -- merit of a design on the surface ------------------------------------------------------------------------------ */
+/* -- merit of a design on the surrogate ---------------------------------------------------------------------------- */
 
 /* log P(z' < z) of a standard normal z', and its derivative; its asymptote far below. */
 static double log_chance(double z, double *slope)
@@ -97,11 +91,10 @@ static void add(Local *l, const double x[], const double f[], double noise)
     l->n++;
 }
 
-/* Tuned where the set has grown by an eighth. */
 static Status fit(Local *l, Err *err)
 {
     TRY(rbf_fit(l->rbf, l->n, l->U, l->F, l->N, err));
-    if (l->n_tuned == 0 || l->n > l->n_tuned + l->n_tuned / 8) {
+    if (l->n_tuned == 0 || l->n > l->n_tuned + l->n_tuned / LOCAL_RETUNE_SHARE) {
         TRY(rbf_tune(l->rbf, err));
         l->n_tuned = l->n;
     }
@@ -109,7 +102,7 @@ static Status fit(Local *l, Err *err)
     rbf_eval(l->rbf, 1, l->u_best, l->f, l->error);
     for (size_t k = 0; k < l->problem->n_obj; k++) {
         l->shift[k] = l->result->f[k] - l->f[k];
-        l->error[k] = fmax(l->error[k], l->least_error[k]);
+        l->error[k] = fmax(l->error[k], l->error_min[k]);
     }
     return STATUS_OK;
 }
@@ -120,7 +113,7 @@ static void draw_box(Local *l, double reach)
     const size_t n = l->problem->n_var;
     size_t moved = 0;
     for (size_t d = 0; d < n; d++) {
-        l->u[d] = random_uniform(&l->random) < MOVED ? reach : 0.0;
+        l->u[d] = random_uniform(&l->random) < FREE_SHARE ? reach : 0.0;
         moved += l->u[d] > 0.0;
     }
     for (size_t d = 0; d < n; d++) {
@@ -143,7 +136,7 @@ static Status propose(Local *l, double reach, double x[], Err *err)
     nlopt_set_lower_bounds(opt, l->low);
     nlopt_set_upper_bounds(opt, l->high);
     nlopt_set_max_objective(opt, merit, l);
-    nlopt_set_maxeval(opt, SURFACE_STEPS);
+    nlopt_set_maxeval(opt, LOCAL_STEPS);
     nlopt_set_xtol_rel(opt, 1e-6);
     nlopt_optimize(opt, l->u, &unused);
     nlopt_destroy(opt);
@@ -199,42 +192,38 @@ static Status do_round(Local *l, Err *err)
         TRY(propose(l, ldexp(l->trust, -(int)i), l->X + i * p->n_var, err));
     TRY(queue_evaluate(l->queue, n, l->X, NULL, l->F_new, l->G_new, ok, err));
     const size_t found = take(l, n, ok);
-    l->trust = found < LOCAL_BATCH ? fmin(ldexp(l->trust, 1 - (int)found), TRUST_MOST) : SHRINK * l->trust;
+    l->trust = found < LOCAL_BATCH ? fmin(ldexp(l->trust, 1 - (int)found), TRUST_MAX) : TRUST_SHRINK * l->trust;
     return STATUS_OK;
 }
 
 /* -- in and out ---------------------------------------------------------------------------------------------------- */
 
-static double *carve(double **at, size_t n)
+static void layout(void *local, Carve *c)
 {
-    double *part = *at;
-    *at += n;
-    return part;
+    Local *l = local;
+    const size_t n = l->problem->n_var, m = l->problem->n_obj, real = sizeof(double);
+    l->U = carve(c, l->n_max * n, real);
+    l->F = carve(c, l->n_max * m, real);
+    l->N = carve(c, l->n_max * m, real);
+    l->X = carve(c, LOCAL_BATCH * n, real);
+    l->F_new = carve(c, LOCAL_BATCH * m, real);
+    l->G_new = carve(c, LOCAL_BATCH * l->problem->n_con, real);
+    l->u_best = carve(c, n, real);
+    l->u = carve(c, n, real);
+    l->low = carve(c, n, real);
+    l->high = carve(c, n, real);
+    l->f = carve(c, m, real);
+    l->error = carve(c, m, real);
+    l->error_min = carve(c, m, real);
+    l->shift = carve(c, m, real);
+    l->J = carve(c, m * n, real);
 }
 
 static Status create(Local *l, Err *err)
 {
-    const size_t n = l->problem->n_var, m = l->problem->n_obj, c = l->problem->n_con;
-    double *at = calloc(l->n_max * (n + 2 * m) + LOCAL_BATCH * (n + m + c) + 4 * n + 4 * m + m * n, sizeof *at);
-    l->store = at;
-    if (!at)
-        return fail(err, STATUS_NO_MEMORY, "no memory for a surface on %zu designs", l->n_max);
-    l->U = carve(&at, l->n_max * n);
-    l->F = carve(&at, l->n_max * m);
-    l->N = carve(&at, l->n_max * m);
-    l->X = carve(&at, LOCAL_BATCH * n);
-    l->F_new = carve(&at, LOCAL_BATCH * m);
-    l->G_new = carve(&at, LOCAL_BATCH * c);
-    l->u_best = carve(&at, n);
-    l->u = carve(&at, n);
-    l->low = carve(&at, n);
-    l->high = carve(&at, n);
-    l->f = carve(&at, m);
-    l->error = carve(&at, m);
-    l->least_error = carve(&at, m);
-    l->shift = carve(&at, m);
-    l->J = carve(&at, m * n);
-    return rbf_create(&l->rbf, l->n_max, n, m, err);
+    l->store = carve_all(layout, l);
+    return l->store ? rbf_create(&l->rbf, l->n_max, l->problem->n_var, l->problem->n_obj, err)
+                    : fail(err, STATUS_NO_MEMORY, "no memory for a surrogate on %zu designs", l->n_max);
 }
 
 static void take_known(Local *l)
@@ -244,7 +233,7 @@ static void take_known(Local *l)
     for (size_t i = 0; i < known->n; i++)
         add(l, known->X + i * n, known->F + i * m, known->noise[i]);
     for (size_t k = 0; k < m; k++)
-        l->least_error[k] = LEAST_ERROR * (l->result->f[k] != 0.0 ? fabs(l->result->f[k]) : 1.0);
+        l->error_min[k] = ERROR_MIN * (l->result->f[k] != 0.0 ? fabs(l->result->f[k]) : 1.0);
     l->value = goal_value(&l->config->goal, m, l->result->f);
 }
 
@@ -257,7 +246,7 @@ Status local_run(Queue *queue, const LocalConfig *config, LocalResult *result, E
                .config = config,
                .result = result,
                .n_max = config->known.n + config->max_evals,
-               .trust = TRUST,
+               .trust = TRUST_FIRST,
                .random = random_stream(config->seed, RANDOM_POLISHING, 0, 0)};
     result->n_evaluated = result->n_failed = 0;
     if (problem->n_var > RBF_DIM_MAX || config->known.n <= problem->n_var)
@@ -265,7 +254,7 @@ Status local_run(Queue *queue, const LocalConfig *config, LocalResult *result, E
     Status status = create(&l, err);
     if (status == STATUS_OK)
         take_known(&l);
-    while (status == STATUS_OK && result->n_evaluated < config->max_evals && l.trust > TRUST_LEAST &&
+    while (status == STATUS_OK && result->n_evaluated < config->max_evals && l.trust > TRUST_MIN &&
            !(config->max_seconds > 0.0 && clock_seconds() - start > config->max_seconds))
         status = do_round(&l, err);
     rbf_free(l.rbf);

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/carve.h"
 #include "base/clock.h"
 
 typedef struct {
@@ -34,13 +35,27 @@ typedef struct {
     double *x, *f, *g;  /* of the last evaluation; x (n_var) in its own units */
     double *scale;      /* (n_obj) */
     double *each;       /* (n_obj + n_con) scratch */
-    double *u;          /* (n_var) the last evaluated point in the unit cube */
+    double *u, *at;     /* (n_var) the last evaluated point in the unit cube; NLopt's own */
     double excess;      /* worst of the constraints there, in units of their scale */
     double least;       /* best allowed value so far */
     int known, ok;      /* u has been evaluated; it did not fail */
     Status status;
     Err *err;
+    void *store;
 } Polish;
+
+static void layout(void *polish, Carve *c)
+{
+    Polish *p = polish;
+    const size_t n = p->problem->n_var, m = p->problem->n_obj, n_con = p->problem->n_con, real = sizeof(double);
+    p->x = carve(c, n, real);
+    p->u = carve(c, n, real);
+    p->at = carve(c, n, real);
+    p->f = carve(c, m, real);
+    p->g = carve(c, n_con, real);
+    p->scale = carve(c, m, real);
+    p->each = carve(c, m + n_con, real);
+}
 
 /* Every constraint of the last evaluation, in units of its scale; returns how many. */
 static size_t excesses(const Polish *p, double excess[])
@@ -162,11 +177,11 @@ Status polish_knows(const char *algorithm, Err *err)
     return find_method(algorithm, &unused, err);
 }
 
-static Status evaluate_start(Polish *p, const double start[], double u[])
+static Status evaluate_start(Polish *p, const double start[])
 {
     const Problem *q = p->problem;
-    problem_to_cube(q, start, u);
-    evaluate(p, u);
+    problem_to_cube(q, start, p->at);
+    evaluate(p, p->at);
     if (p->status != STATUS_OK)
         return p->status;
     if (!p->ok)
@@ -183,7 +198,7 @@ static Status evaluate_start(Polish *p, const double start[], double u[])
     return STATUS_OK;
 }
 
-static void run_method(Polish *p, const Method *m, double u[])
+static void run_method(Polish *p, const Method *m)
 {
     double unused;
     nlopt_set_lower_bounds1(p->opt, 0.0);
@@ -196,14 +211,13 @@ static void run_method(Polish *p, const Method *m, double u[])
     if (m->takes_constraints && n_each > 0)
         nlopt_add_inequality_mconstraint(p->opt, (unsigned)n_each, constraints, p, NULL);
     nlopt_srand(p->config->seed);
-    nlopt_optimize(p->opt, u, &unused); /* whatever it says: the best was kept on the way */
+    nlopt_optimize(p->opt, p->at, &unused); /* whatever it says: the best was kept on the way */
 }
 
 Status polish_run(Queue *queue, const PolishConfig *config, const double start[], PolishResult *result, Err *err)
 {
     const Method *method = NULL;
     const Problem *problem = queue_problem(queue);
-    const size_t n = problem->n_var, m = problem->n_obj;
     TRY(find_method(config->algorithm, &method, err));
     Polish p = {.queue = queue,
                 .problem = problem,
@@ -211,27 +225,19 @@ Status polish_run(Queue *queue, const PolishConfig *config, const double start[]
                 .result = result,
                 .least = -INFINITY,
                 .status = STATUS_OK,
+                .start = clock_seconds(),
                 .err = err};
     result->n_evaluated = result->n_failed = 0;
-    double *store = calloc(3 * n + 3 * m + 2 * problem->n_con + 1, sizeof *store);
-    p.opt = nlopt_create(method->algorithm, (unsigned)n);
-    Status status = store && p.opt ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for polishing");
+    p.store = carve_all(layout, &p);
+    p.opt = nlopt_create(method->algorithm, (unsigned)problem->n_var);
+    Status status = p.store && p.opt ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for polishing");
+    if (status == STATUS_OK)
+        status = evaluate_start(&p, start);
     if (status == STATUS_OK) {
-        double *u = store + 2 * n;
-        p.x = store;
-        p.u = store + n;
-        p.f = store + 3 * n;
-        p.scale = p.f + m;
-        p.each = p.scale + m;
-        p.g = p.each + m + problem->n_con;
-        p.start = clock_seconds();
-        status = evaluate_start(&p, start, u);
-        if (status == STATUS_OK) {
-            run_method(&p, method, u);
-            status = p.status;
-        }
+        run_method(&p, method);
+        status = p.status;
     }
     nlopt_destroy(p.opt);
-    free(store);
+    free(p.store);
     return status;
 }
