@@ -61,7 +61,7 @@ static Status run_all(BenchCase *bench_case, const SceneOptions *s, int engine, 
     samples->n = 0;
     for (size_t k = 1; k <= DISTRIBUTION_RUNS; k++) { /* replicate 0 is the design itself, in every series */
         memcpy(changed, bench_case->gaps, sizeof changed);
-        replicate_design(series, k, 0, (size_t)bench_case->building.n, changed);
+        replicate_design(series, k, s->sim.gap_tolerance_m, (size_t)bench_case->building.n, changed);
         TRY(model_set(&bench_case->model, s, &bench_case->building, bench_case->core, changed, err));
         memset(&r, 0, sizeof r);
         TRY(bench_engine(engine)->run(&bench_case->model, &bench_case->motion, &options, &r, err));
@@ -138,6 +138,7 @@ Status distribution_test_run(DistributionTest *test, const Sweep *sweep, const B
     longer.duration = fmin(WINDOW_S, (double)(bench_case->motion.n - 1) * bench_case->motion.dt_s);
     const Status status = test_engines(test, sweep, &longer, s, limit_s, samples, progress, err);
     test->duration = longer.duration;
+    test->tolerance_m = s->sim.gap_tolerance_m;
     free(samples);
     return status;
 }
@@ -158,7 +159,7 @@ void distribution_test_write(const DistributionTest *p, FILE *out)
         out,
         "\n## After the horizon\n\n"
         "%d runs of every engine over %.3g s, gaps of %g mm times the number of the floor, changed by %g of "
-        "themselves:\n"
+        "themselves, sim.gap_tolerance_m = %g:\n"
         "distance of the distributions (Kolmogorov and Smirnov) from those of `fast` at %g steps per contact. Two\n"
         "samples of one distribution are further apart than %.2f in one of twenty comparisons; the first row is the\n"
         "reference once more. Each engine at its fastest tolerance with an error of %g before the horizon; those that\n"
@@ -166,7 +167,7 @@ void distribution_test_write(const DistributionTest *p, FILE *out)
         "there\n"
         "a distance near 1 shows the error before the horizon.\n\n"
         "| engine | tolerance | ms per run | finished |",
-        DISTRIBUTION_RUNS, p->duration, 1e3 * GAP_M, REPLICATE_CHANGE, REFERENCE_STEPS, ks_critical(DISTRIBUTION_RUNS),
+        DISTRIBUTION_RUNS, p->duration, 1e3 * GAP_M, REPLICATE_CHANGE, p->tolerance_m, REFERENCE_STEPS, ks_critical(DISTRIBUTION_RUNS),
         ENOUGH);
     for (int k = 0; k < BENCH_OBJECTIVES; k++)
         fprintf(out, " %s |", BENCH_OBJECTIVE_NAMES[k]);

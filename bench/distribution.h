@@ -22,6 +22,7 @@ typedef struct {
 
 typedef struct {
     double duration;                 /* [s]; 0: not done */
+    double tolerance_m;              /* sim.gap_tolerance_m */
     double spread[BENCH_OBJECTIVES]; /* of the reference: standard deviation over mean */
     EngineDistribution again;        /* a second sample of the reference */
     EngineDistribution engine[BENCH_ENGINES];

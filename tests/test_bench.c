@@ -179,6 +179,30 @@ static void test_the_page_of_the_promise_has_a_row_for_every_accuracy(void **sta
     motion_free(&g.m);
 }
 
+/* Gaps that scatter by millimetres spread the results, gaps that scatter by 1e-8 of themselves do so far less. */
+static void test_the_distribution_test_draws_replicates_by_the_tolerance_of_the_settings(void **state)
+{
+    (void)state;
+    double spread[2];
+    Ground g;
+    ground_open(&g);
+    for (int i = 0; i < 2; i++) {
+        BenchCase bench_case = {0};
+        DistributionTest test = {0};
+        Err err;
+        g.s.sim.gap_tolerance_m = i * 5e-3;
+        CHECK_OK(bench_case_open(&bench_case, bench_kind(2), &g.s, &g.m, 1, &err), &err);
+        CHECK_OK(distribution_test_run(&test, &(Sweep){0}, &bench_case, &g.s, 1, stderr, &err), &err);
+        assert_int_equal(test.again.finished, DISTRIBUTION_RUNS);
+        assert_close(test.tolerance_m, g.s.sim.gap_tolerance_m, 0);
+        spread[i] = test.spread[0];
+        bench_case_close(&bench_case);
+    }
+    print_message("spread of j1: %g, %g with errors of 5 mm\n", spread[0], spread[1]);
+    assert_true(spread[1] > 2 * spread[0]);
+    motion_free(&g.m);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -186,6 +210,7 @@ int main(void)
         cmocka_unit_test(test_scenes_have_as_many_impacts_as_their_names_say),
         cmocka_unit_test(test_an_error_is_zero_against_itself_and_first_order_in_a_change),
         cmocka_unit_test(test_the_distance_of_two_samples_is_that_of_their_steps),
+        cmocka_unit_test(test_the_distribution_test_draws_replicates_by_the_tolerance_of_the_settings),
         cmocka_unit_test(test_a_sweep_has_a_row_for_every_setting_and_a_known_floor),
         cmocka_unit_test(test_windows_of_the_promise_lie_in_their_record_and_repeat),
         cmocka_unit_test(test_quantiles_are_the_least_that_a_share_does_not_exceed),
