@@ -60,11 +60,11 @@ static void static_answer(const double phi[], const double omega[], const double
 static void push_core(Frame *f, const double push[], int modes, SimForces *out)
 {
     double zero[N] = {0}, q[N], force[N];
-    uint64_t in_contact = 0;
+    FloorSet in_contact = 0;
     static_answer(f->core.phi, f->core.omega, push, modes, q);
     for (int j = 0; j < N; j++) {
         force[j] = -push[j]; /* on the floor */
-        in_contact |= (uint64_t)(push[j] != 0) << j;
+        in_contact |= (FloorSet)(push[j] != 0) << j;
     }
     force_monitor_start(f->monitor, modes);
     force_monitor_point(

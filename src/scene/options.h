@@ -6,7 +6,7 @@
 
 #include "base/option.h"
 
-enum { FLOORS_MAX = 64 }; /* of a building */
+enum { FLOORS_MAX = 128 }; /* of a building */
 
 /* What the entries of K.csv and M.csv are in; kip_in: kip/in and kip s2/in. */
 #define BUILDING_UNITS_LIST(X)                                                                                         \

@@ -299,8 +299,8 @@ CLONED static void swift_outputs(const ForceMonitor *m, const ForcePoint *p, dou
     if (!m->has_residual)
         return;
     add_rows(1, m->core_out, m->ground_row, &p->ground, out);
-    for (uint64_t in = p->in_contact; in; in &= in - 1) {
-        const int j = __builtin_ctzll(in);
+    for (FloorSet in = p->in_contact; in; in &= in - 1) {
+        const int j = floor_set_first(in);
         add_rows(1, m->core_out, m->force_rows + j * m->core_out, p->force + j, out);
     }
 }

@@ -26,6 +26,7 @@
 #define IMTET_SIM_FORCE_MONITOR_H
 
 #include "scene/core_beam.h"
+#include "sim/floor_set.h"
 #include "sim/options.h"
 #include "sim/result.h"
 
@@ -48,11 +49,11 @@ void force_monitor_on_contact(ForceMonitor *m, SimContactFn contact, void *user)
 void force_monitor_start(ForceMonitor *m, int core_modes);
 
 /* Modal coordinates and velocities of the building, coordinates of the core; force (n) [N] on the floors by their
- * contacts, in_contact bit by bit where it is not zero; ground acceleration [m/s2]. */
+ * contacts, in_contact where it is not zero; ground acceleration [m/s2]. */
 typedef struct {
     double t, ground;
     const double *building_q, *building_v, *core_q, *force;
-    uint64_t in_contact;
+    FloorSet in_contact;
 } ForcePoint;
 void force_monitor_point(ForceMonitor *m, const ForcePoint *p);
 

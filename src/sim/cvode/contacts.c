@@ -158,11 +158,11 @@ void contacts_settle(Contacts *c, const double w[])
     }
 }
 
-uint64_t contacts_record(Contacts *c, double t, const double q[], const double v[], double force[])
+FloorSet contacts_record(Contacts *c, double t, const double q[], const double v[], double force[])
 {
     const SimModel *model = c->model;
     const double half = 0.5 * (t - c->t_recorded);
-    uint64_t in_contact = 0;
+    FloorSet in_contact = 0;
     for (int j = 0; j < model->n; j++) {
         const int s = c->side[j];
         const double p = s * relative_displacement(model, j, q) - model->gap[j];
@@ -177,7 +177,7 @@ uint64_t contacts_record(Contacts *c, double t, const double q[], const double v
         c->recorded[j] = f.force;
         c->recorded_loss[j] = loss;
         force[j] = -s * f.force;
-        in_contact |= (uint64_t)(f.force > 0) << j;
+        in_contact |= (FloorSet)(f.force > 0) << j;
     }
     c->t_recorded = t;
     return in_contact;

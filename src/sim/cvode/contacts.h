@@ -57,8 +57,8 @@ int contacts_switch(Contacts *c, double t, const double q[], const double v[], c
 void contacts_settle(Contacts *c, const double w[]);
 
 /* Gives the monitor what the contacts did since the last call, by the trapezoidal rule, and the forces f_j (n) now.
- * Returns bit by bit which floors are in contact. By event only. */
-uint64_t contacts_record(Contacts *c, double t, const double q[], const double v[], double force[]);
+ * Returns the floors that are in contact. By event only. */
+FloorSet contacts_record(Contacts *c, double t, const double q[], const double v[], double force[]);
 
 int contacts_any(const Contacts *c);
 double contacts_stored(const Contacts *c, const double q[]);

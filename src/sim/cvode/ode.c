@@ -191,7 +191,7 @@ static void record_forces(Ode *o, double t, const double y[])
 {
     const SimModel *model = o->model;
     double force[FLOORS_MAX] = {0};
-    const uint64_t in_contact = model->nc ? contacts_record(&o->contacts, t, y, y + model->m, force) : 0;
+    const FloorSet in_contact = model->nc ? contacts_record(&o->contacts, t, y, y + model->m, force) : 0;
     force_monitor_point(o->contacts.forces, &(ForcePoint){.t = t,
                                                           .ground = o->a_sampled,
                                                           .building_q = y,

@@ -18,7 +18,6 @@ enum {
     LEVEL_MAX = 24, /* the shortest step is 2^-24 of a sampling interval */
     FLOORS_PAD_MAX = FLOORS_MAX
 };
-_Static_assert(FLOORS_PAD_MAX <= 64, "sets of floors are bits of a uint64_t");
 
 /* Compliances of w (and w') at the end of a step to a unit ramp x and a unit bubble x (1 - x) of force. */
 enum { RAMP_W, BUBBLE_W, RAMP_V, BUBBLE_V, COMPLIANCES };
@@ -101,7 +100,7 @@ typedef struct FastWork {
     double *R, *R_abs, *D_abs;             /* (m_pad, n_pad) of the floors, of their distances from the floor below */
     double *RT;                            /* (n_pad, m_pad) */
     vec *gap;                              /* (n_pad) */
-    uint64_t floors;                       /* bit j: floor j is one */
+    FloorSet floors;                       /* all of them */
     double shortest_at_1;                  /* [s] shortest Hertz contact of any floor at 1 m/s */
     double shortest_bumper;                /* [s] shortest contact of any bumper alone; 0: steel on steel somewhere */
     int oscillatory;                       /* every mode is below critical damping and has a frequency */
@@ -114,10 +113,10 @@ typedef struct FastWork {
     vec *peak_u, *peak_d, *peak_a; /* (n_pad) */
     double v0[FLOORS_PAD_MAX];     /* [m/s] of the open contact */
     int side[FLOORS_PAD_MAX];      /* 0 no contact, +1 or -1 */
-    uint64_t in_contact;           /* bit j: floor j is */
-    int state_valid;               /* 0: after free flight w, w' and sample[0] are not current */
-    double speed;                  /* [m/s] largest |w'| */
-    double step_start;             /* [s] of the step under way */
+    FloorSet in_contact;
+    int state_valid;   /* 0: after free flight w, w' and sample[0] are not current */
+    double speed;      /* [m/s] largest |w'| */
+    double step_start; /* [s] of the step under way */
 
     /* step control */
     int flight_level, contact_level; /* where the next free flight, the next contact step is tried */
