@@ -19,8 +19,11 @@ static int make_run(void **state)
     char path[PATH_MAX];
     if (make_place(state) != 0)
         return -1;
-    free(output_of("optimize configs/quick.ini --out @/run --threads 2 --max-evals 24 --set search.initial=12 "
-                   "--set search.population=12 --set search.polish=0 --set 'search.limits=j1_m<=0.055' " SHORT));
+    char *said = output_of("optimize configs/quick.ini --out @/run --threads 2 --max-evals 24 --set search.initial=12 "
+                           "--set search.population=12 --set search.polish=0 --set 'search.limits=j1_m<=0.055' " SHORT);
+    assert_non_null(strstr(said, "\nviscous links ("));
+    assert_non_null(strstr(said, ": impacts win in "));
+    free(said);
     CHECK_OK(run_read(&h, path_of("run", path), &err), &err);
     known.knee = h.table.row[run_knee(&h)].id;
     for (size_t i = 0; i < h.table.n; i++)

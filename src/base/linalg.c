@@ -1,5 +1,6 @@
 #include "base/linalg.h"
 
+#include <cblas.h>
 #include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
@@ -98,4 +99,39 @@ int linalg_factor_band(int n, int band, double A[])
 void linalg_solve_band(int n, int band, const double A[], int m, double B[])
 {
     LAPACKE_dpbtrs(LAPACK_COL_MAJOR, 'L', n, band, m, A, band + 1, B, n);
+}
+
+void linalg_product(int r, int k, int c, const double A[], const double B[], double C[])
+{
+    cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, r, c, k, 1, A, r, B, k, 0, C, r);
+}
+
+void linalg_exponential(int n, double A[], double out[], double work[])
+{
+    const size_t nn = (size_t)n * (size_t)n;
+    double *term = work, *next = work + nn, norm = 0;
+    int halvings = 0;
+    for (int j = 0; j < n; j++) {
+        double sum = 0;
+        for (int i = 0; i < n; i++)
+            sum += fabs(A[j * n + i]);
+        norm = fmax(norm, sum);
+    }
+    for (; norm > 0.5 && halvings < 60; halvings++)
+        norm *= 0.5;
+    for (size_t i = 0; i < nn; i++)
+        A[i] = ldexp(A[i], -halvings);
+    memset(out, 0, nn * sizeof *out);
+    memset(term, 0, nn * sizeof *term);
+    for (int i = 0; i < n; i++)
+        out[i * n + i] = term[i * n + i] = 1;
+    for (int k = 1; k <= 16; k++) { /* 0.5^17 / 17! < 1e-19 */
+        linalg_product(n, n, n, A, term, next);
+        for (size_t i = 0; i < nn; i++)
+            out[i] += term[i] = next[i] / k;
+    }
+    for (; halvings > 0; halvings--) {
+        linalg_product(n, n, n, out, out, next);
+        memcpy(out, next, nn * sizeof *out);
+    }
 }

@@ -30,4 +30,10 @@ int linalg_factor_band(int n, int band, double A[]);
 /* A X = B with that factor; B (m, n): a right-hand side per row, overwritten. */
 void linalg_solve_band(int n, int band, const double A[], int m, double B[]);
 
+/* C (r, c) = A (r, k) B (k, c), all by columns: entry (i, j) of a matrix with r rows is at [j r + i]. */
+void linalg_product(int r, int k, int c, const double A[], const double B[], double C[]);
+
+/* out = exp(A), A (n, n) overwritten: Taylor to full precision where |A| <= 1/2, then squared back up. work (2 n n) */
+void linalg_exponential(int n, double A[], double out[], double work[]);
+
 #endif

@@ -79,11 +79,8 @@ static void print_front(const Run *run, const StudySummary *summary)
         show_objectives(label, run->table.row[best].id, schema, run_f(run, best));
     }
     show_objectives("knee", run->table.row[knee].id, schema, run_f(run, knee));
-    if (summary->has_no_core) {
-        double alone[OBJECTIVES_MAX];
-        for (size_t k = 0; k < schema->n_obj; k++)
-            alone[k] = measure_value(&summary->no_core, schema->order.of[k]);
-        show_objectives("no core", 0, schema, alone);
+    if (summary->has_baselines) {
+        show_baselines(schema, run_f(run, knee), summary->baseline);
         explain_objectives(schema, run->settings->search.objectives);
     }
     printf("\nknee: nearest to the ideal point when every objective is scaled to 0..1 over the front.\n");

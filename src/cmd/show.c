@@ -16,6 +16,12 @@ static const char *scene_word(SceneKind kind)
         return "no_core";
     case SCENE_RIGID:
         return "rigid";
+    case SCENE_TMD:
+        return "tmd";
+    case SCENE_LINKS:
+        return "links";
+    case N_SCENES:
+        break;
     }
     return "unknown";
 }
@@ -66,7 +72,7 @@ static void add_building_forces(json_t *o, size_t n, const SimForces *f)
 static void add_forces(json_t *o, SceneKind kind, int n, const SimForces *f)
 {
     add_building_forces(o, (size_t)n, f);
-    if (kind != SCENE_NO_CORE)
+    if (kind != SCENE_NO_CORE && kind != SCENE_TMD)
         add_core_forces(o, (size_t)n, f);
     if (kind == SCENE_IMPACT)
         add_contact_forces(o, n, f);
@@ -82,6 +88,10 @@ json_t *json_result(SceneKind kind, const SimResult *r)
         json_object_set_new(o, measure(k)->name, json_number(measure_value(r, k)));
     json_object_set_new(o, "impacts", json_integer(r->impacts));
     json_object_set_new(o, "beyond_contact_law", json_boolean(beyond_contact_law(r)));
+    if (kind == SCENE_TMD || kind == SCENE_LINKS) {
+        json_object_set_new(o, "stroke_m", json_number(r->stroke_m));
+        json_object_set_new(o, "dashpot_n", json_number(r->dashpot_n));
+    }
     json_object_set_new(o, "v0_limited", json_integer(r->v0_limited));
 
     const size_t n_floors = (size_t)r->n_floors, n_modes = (size_t)r->n_modes;
@@ -217,4 +227,39 @@ void show_replicates(const MeasureOrder *order, const ReplicateSummary *r)
     }
     show_moments("mean", r->n_replicates, order, r->mean);
     show_moments("standard deviation", r->n_replicates, order, r->sd);
+}
+
+/* Names of the objectives that are better (sign 1) or worse (-1) than the baseline's, by more than a thousandth. */
+static void print_better(const char *verb, const Schema *schema, double sign, const double natural[], const Baseline *b)
+{
+    static const double SHARE = 1e-3;
+    int n = 0;
+    for (size_t k = 0; k < schema->n_obj; k++) {
+        const Column *c = schema_objective(schema, k);
+        const double other = b->value[schema->order.of[k]];
+        if (sign * c->sense * (other - natural[k]) > SHARE * fabs(other))
+            printf("%s%s", n++ ? ", " : verb, c->name);
+    }
+    if (n == 0)
+        printf("%snothing", verb);
+}
+
+void show_baselines(const Schema *schema, const double natural[], const Baseline baseline[N_BASELINES])
+{
+    double values[OBJECTIVES_MAX];
+    for (int k = 0; k < N_BASELINES; k++) {
+        for (size_t i = 0; i < schema->n_obj; i++)
+            values[i] = baseline[k].value[schema->order.of[i]];
+        show_objectives(baseline_words((BaselineKind)k), 0, schema, values);
+    }
+    putchar('\n');
+    for (int k = 0; k < N_BASELINES; k++) {
+        char device[DEVICE_TEXT_MAX];
+        baseline_device_text((BaselineKind)k, &baseline[k].device, device);
+        printf("%s%s%s%s%s: impacts ", k ? "" : "the knee against\n", baseline_words((BaselineKind)k),
+               *device ? " (" : "", device, *device ? ")" : "");
+        print_better("win in ", schema, 1, natural, &baseline[k]);
+        print_better("; lose in ", schema, -1, natural, &baseline[k]);
+        putchar('\n');
+    }
 }

@@ -3,7 +3,7 @@
 #define IMTET_CMD_SHOW_H
 
 #include "base/json.h"
-#include "simulator/replicates.h"
+#include "simulator/baselines.h"
 #include "simulator/schema.h"
 
 json_t *json_result(SceneKind kind, const SimResult *r);
@@ -23,6 +23,10 @@ void show_result(const char *label, const MeasureOrder *order, const SimResult *
 
 /* Two lines: mean and standard deviation of the objectives; one where a replicate failed. */
 void show_replicates(const MeasureOrder *order, const ReplicateSummary *r);
+
+/* A line of objectives for each, with its device; then in which objectives the natural values of a design with impacts win
+ * against it, and in which they lose. */
+void show_baselines(const Schema *schema, const double natural[], const Baseline baseline[N_BASELINES]);
 
 /* One line of objectives: label, a design's number (0: none), a dash for what is not known. */
 void show_objective_names(const Schema *schema);

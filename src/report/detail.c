@@ -11,13 +11,15 @@
 
 static const double QUIET = 0.02; /* of the peak displacement */
 
-static Status simulate(const Problem *p, size_t n_scenes, const double x[], SimResult results[], Err *err)
+/* Under the first record; the baselines under all of them too. */
+static Status simulate(const Problem *p, const double x[], Detail *d, Err *err)
 {
-    static const SceneKind SCENES[N_SCENES] = {SCENE_IMPACT, SCENE_NO_CORE, SCENE_RIGID};
-    SimTask tasks[N_SCENES];
-    for (size_t i = 0; i < n_scenes; i++)
-        tasks[i] = (SimTask){SCENES[i], x};
-    return tower_simulate(p, n_scenes, tasks, results, err);
+    static const SceneKind SCENES[N_BASELINES] = {SCENE_NO_CORE, SCENE_RIGID, SCENE_TMD, SCENE_LINKS};
+    TRY(tower_simulate(p, 1, &(SimTask){SCENE_IMPACT, x}, &d->result[SCENE_IMPACT], err));
+    TRY(baselines_find(p, x, d->baseline, err));
+    for (int k = 0; k < N_BASELINES; k++)
+        d->result[SCENES[k]] = d->baseline[k].first;
+    return STATUS_OK;
 }
 
 static void describe(const Scenario *w, const double x[], Detail *d)
@@ -102,7 +104,7 @@ static Status take_here(const Problem *p, int n_var, const double x[], const Det
         return fail(err, STATUS_BAD_DATA, "--floor %d: the building has %d", d->floor + 1, d->n_floors);
     describe(w, x, d);
     TRY(scene_frequencies(w->scene, x, d->building_hz, d->core_hz, rigid_hz, &mass, err));
-    TRY(simulate(p, N_SCENES, x, d->result, err));
+    TRY(simulate(p, x, d, err));
     return take_histories(w, x, d, err);
 }
 
@@ -111,12 +113,13 @@ static Status take_elsewhere(const Settings *other, const char *record, const do
     Settings s = *other;
     Problem p;
     SimResult results[2];
+    const SimTask tasks[2] = {{SCENE_IMPACT, x}, {SCENE_NO_CORE, x}};
     if (strlen(record) >= sizeof s.motion.record)
         return fail(err, STATUS_MISSING, "%.60s...: the path is too long", record);
     snprintf(s.motion.record, sizeof s.motion.record, "%s", record);
     TRY(tower_open(&p, &s, TOWER_SINGLE, 2, err));
     const Motion *m = &tower_record(tower_of(&p), 0)->motion;
-    const Status status = simulate(&p, 2, x, results, err);
+    const Status status = tower_simulate(&p, 2, tasks, results, err);
     snprintf(e->record, sizeof e->record, "%s", m->name);
     e->pga_g = motion_peak(m) / GRAVITY;
     e->scale = m->scale;
@@ -130,8 +133,10 @@ static Status take_elsewhere(const Settings *other, const char *record, const do
 Status detail_make(const Settings *s, int n_var, const double x[], const DetailOptions *options, Detail *out, Err *err)
 {
     Problem p;
+    Settings once = *s;
+    once.sim.replicates = 1;
     memset(out, 0, sizeof *out);
-    TRY(tower_open(&p, s, TOWER_SINGLE, N_SCENES, err));
+    TRY(tower_open(&p, &once, TOWER_AS_SET, N_SCENES, err));
     Status status = take_here(&p, n_var, x, options, out, err);
     problem_close(&p);
     if (status == STATUS_OK && options->n_records > 0) {

@@ -1,16 +1,17 @@
-/* report/detail.h -- one design of the tower looked at closely: simulated again as the run did it, beside the building
- * alone and the building rigidly connected to its core, then on other earthquakes.
+/* report/detail.h -- one design of the tower looked at closely: simulated again as the run did it, beside its baselines
+ * (simulator/baselines.h), then on other earthquakes.
  *
  * Ownership  detail_make allocates, detail_free releases (a zeroed Detail is fine) */
 #ifndef IMTET_REPORT_DETAIL_H
 #define IMTET_REPORT_DETAIL_H
 
 #include "report/history.h"
+#include "simulator/baselines.h"
 #include "study/record_paths.h"
 
 typedef struct Settings Settings;
 
-enum { N_SCENES = 3, SPECTRUM_FREQUENCIES = 72, SPECTRUM_TIMES = 320 };
+enum { SPECTRUM_FREQUENCIES = 72, SPECTRUM_TIMES = 320 };
 
 /* Amplitude of the floor's displacement by frequency and time (report/wavelet.h). */
 typedef struct {
@@ -30,7 +31,8 @@ typedef struct {
     double building_hz[FLOORS_MAX], core_hz[FLOORS_MAX];
     char record[128];
     double pga_g, scale, stretch, duration_s;
-    SimResult result[N_SCENES]; /* by SceneKind */
+    SimResult result[N_SCENES];     /* by SceneKind, under the first record */
+    Baseline baseline[N_BASELINES]; /* under all records of the run, by its rule */
     /* until the floor's displacement stays below 2 % of its peak */
     History history[2];    /* SCENE_IMPACT, SCENE_NO_CORE */
     Spectrogram *spectrum; /* (2) the same */

@@ -71,6 +71,24 @@ static json_t *json_of_history(const History *h, const Spectrogram *s)
                      "spectrum", json_numbers(SPECTRUM_FREQUENCIES * SPECTRUM_TIMES, s->amplitude));
 }
 
+/* Values of all records by the rule of the run. */
+static json_t *json_of_baselines(const Baseline baseline[N_BASELINES], const MeasureOrder *order)
+{
+    json_t *list = json_array();
+    for (int k = 0; k < N_BASELINES; k++) {
+        double values[N_MEASURES];
+        for (int i = 0; i < order->n_obj; i++)
+            values[i] = baseline[k].value[order->of[i]];
+        char device[DEVICE_TEXT_MAX];
+        baseline_device_text((BaselineKind)k, &baseline[k].device, device);
+        const int ok = baseline[k].outcome == OUTCOME_OK;
+        list = json_append(list, json_pack("{s:s, s:s, s:s, s:o}", "key", baseline_key((BaselineKind)k), "words",
+                                           baseline_words((BaselineKind)k), "device", device, "objectives",
+                                           ok ? json_numbers((size_t)order->n_obj, values) : json_null()));
+    }
+    return list;
+}
+
 static json_t *json_of_detail(const Detail *d, const MeasureOrder *order)
 {
     const size_t n = (size_t)d->n_floors;
@@ -82,15 +100,16 @@ static json_t *json_of_detail(const Detail *d, const MeasureOrder *order)
                                                json_of_result(&e->with_core, order), "no_core",
                                                json_of_result(&e->no_core, order)));
     }
-    return json_pack("{s:i, s:o, s:o, s:o, s:o, s:s, s:f, s:f, s:f, s:f, s:o, s:o, s:o, s:o, s:o, s:o}", "floor",
-                     d->floor + 1, "gap_m", json_numbers(n, d->gap_m), "thickness_m", json_numbers(n, d->thickness_m),
-                     "building_hz", json_numbers(n, d->building_hz), "core_hz", json_numbers(n, d->core_hz), "record",
-                     d->record, "pga_g", d->pga_g, "scale", d->scale, "stretch", d->stretch, "duration_s",
-                     d->duration_s, "with_core", json_of_result(&d->result[SCENE_IMPACT], order), "no_core",
-                     json_of_result(&d->result[SCENE_NO_CORE], order), "rigid",
-                     json_of_result(&d->result[SCENE_RIGID], order), "history_with_core",
-                     json_of_history(&d->history[0], &d->spectrum[0]), "history_no_core",
-                     json_of_history(&d->history[1], &d->spectrum[1]), "elsewhere", others);
+    return json_pack(
+        "{s:i, s:o, s:o, s:o, s:o, s:s, s:f, s:f, s:f, s:f, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "floor",
+        d->floor + 1, "gap_m", json_numbers(n, d->gap_m), "thickness_m", json_numbers(n, d->thickness_m), "building_hz",
+        json_numbers(n, d->building_hz), "core_hz", json_numbers(n, d->core_hz), "record", d->record, "pga_g", d->pga_g,
+        "scale", d->scale, "stretch", d->stretch, "duration_s", d->duration_s, "with_core",
+        json_of_result(&d->result[SCENE_IMPACT], order), "no_core", json_of_result(&d->result[SCENE_NO_CORE], order),
+        "rigid", json_of_result(&d->result[SCENE_RIGID], order), "tmd", json_of_result(&d->result[SCENE_TMD], order),
+        "links", json_of_result(&d->result[SCENE_LINKS], order), "baselines", json_of_baselines(d->baseline, order),
+        "history_with_core", json_of_history(&d->history[0], &d->spectrum[0]), "history_no_core",
+        json_of_history(&d->history[1], &d->spectrum[1]), "elsewhere", others);
 }
 
 /* ---- the run --------------------------------------------------------------------------------------------------- */

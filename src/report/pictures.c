@@ -212,7 +212,9 @@ static void write_gaps(FILE *script, const Report *r)
 static const char SCENE_LINES[] =
     "plot $P using (column(1+K)):1 with linespoints lw 2.2 pt 7 ps 0.7 lc rgb WITH title 'with core', "
     "'' using (column(4+K)):1 with linespoints lw 2.2 dt (8,4) pt 13 ps 0.8 lc rgb WITHOUT title 'without core', "
-    "'' using (column(7+K)):1 with linespoints lw 2.2 dt (3,3) pt 9 ps 0.8 lc rgb RIGID title 'rigidly connected'\n";
+    "'' using (column(7+K)):1 with linespoints lw 2.2 dt (3,3) pt 9 ps 0.8 lc rgb RIGID title 'rigidly connected', "
+    "'' using (column(10+K)):1 with linespoints lw 1.6 dt (12,4) pt 5 ps 0.6 lc rgb GREEN title 'tuned mass damper', "
+    "'' using (column(13+K)):1 with linespoints lw 1.6 dt (2,4) pt 11 ps 0.7 lc rgb PURPLE title 'viscous links'\n";
 
 static void write_peaks(FILE *script, const Report *r)
 {
@@ -250,9 +252,9 @@ static void write_modes_of(FILE *script, const char *block, size_t n, const SimR
 
 static void write_modes(FILE *script, const Report *r)
 {
-    const SimResult *const all[N_SCENES] = {&r->detail.result[SCENE_IMPACT], &r->detail.result[SCENE_NO_CORE],
-                                            &r->detail.result[SCENE_RIGID]};
-    write_modes_of(script, "M", N_SCENES, all);
+    const SimResult *const all[] = {&r->detail.result[SCENE_IMPACT], &r->detail.result[SCENE_NO_CORE],
+                                    &r->detail.result[SCENE_RIGID]};
+    write_modes_of(script, "M", sizeof all / sizeof all[0], all);
     fputs(
         "set xlabel 'mode of the building'\nset ylabel 'share of the input energy [%]'\nset yrange [0:*]\n"
         "set style data histograms\nset style histogram clustered gap 1\nset boxwidth 0.9 relative\nset grid noxtics\n"

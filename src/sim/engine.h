@@ -84,8 +84,4 @@ ENGINE_LIST(X)
 Status engine_fast_create(void **work, int n_floors, int nb, Err *err);
 void engine_fast_free(void *work);
 
-/* Floors and core rigidly connected (zero gap), linear: M + Mc, K + Kc, C + Cc. */
-Status engine_rigid(const SceneOptions *o, const Building *b, const CoreBeam *core, const Motion *motion,
-                    const EngineOptions *options, SimResult *result, Err *err);
-
 #endif

@@ -54,6 +54,12 @@ typedef struct {
     Forces forces;             /* auto: only where an objective or a limit needs SimResult.forces */
 } SimOptions;
 
+/* Linear devices in the place of impacts (sim/linear.h). */
+typedef struct {
+    double tmd_hz, tmd_damping; /* SCENE_TMD: of the tuned mass, whose mass is the core's */
+    double link_ns_m;           /* SCENE_LINKS: [N s/m] of every dashpot between a floor and the core */
+} LinearDevice;
+
 /* What a scene is made of; without the ground motion. */
 typedef struct {
     BuildingOptions building;

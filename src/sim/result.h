@@ -78,9 +78,11 @@ typedef struct {
     int bumper_bottoms_out;                     /* the strain exceeds ContactOptions.bumper_strain_max */
     double contact_pressure_pa;                 /* largest in the middle of a contact */
     int contact_yields;                         /* it begins to yield below the surface */
-    long steps, force_evaluations;              /* what the run cost */
-    int repeated;   /* times the run was repeated with shorter steps, its energy balance open */
-    double seconds; /* wall time */
+    double stroke_m,
+        dashpot_n; /* SCENE_TMD, SCENE_LINKS: largest distance across a device, largest force of a dashpot */
+    long steps, force_evaluations; /* what the run cost */
+    int repeated;                  /* times the run was repeated with shorter steps, its energy balance open */
+    double seconds;                /* wall time */
 
     int forces_known; /* they were asked for: SimOptions.forces */
     SimForces forces;

@@ -9,6 +9,7 @@
 #include "base/linalg.h"
 #include "scene/core_beam.h"
 #include "sim/engine.h"
+#include "sim/linear.h"
 #include "sim/model.h"
 
 struct Scene {
@@ -23,6 +24,7 @@ struct SimWorker {
     const Scene *scene;
     SimModel model;
     CoreBeam core;
+    LinearDevice device;
     EngineOptions run;
 };
 
@@ -195,10 +197,21 @@ static void check_result(SimResult *r, double energy_balance_max)
         snprintf(r->reason, sizeof r->reason, "%s", run_outcome_words(r->outcome));
 }
 
-static Status run_rigid(SimWorker *w, SimResult *result, Err *err)
+static int is_linear(SceneKind kind)
+{
+    return kind == SCENE_RIGID || kind == SCENE_TMD || kind == SCENE_LINKS;
+}
+
+static LinearKind linear_kind(SceneKind kind)
+{
+    return kind == SCENE_RIGID ? LINEAR_RIGID : kind == SCENE_TMD ? LINEAR_TMD : LINEAR_LINKS;
+}
+
+static Status run_linear(SimWorker *w, SceneKind kind, SimResult *result, Err *err)
 {
     const Scene *scene = w->scene;
-    TRY(engine_rigid(&scene->options, &scene->building, &w->core, scene->motion, &w->run, result, err));
+    TRY(engine_linear(linear_kind(kind), &scene->options, &scene->building, &w->core, &w->device, scene->motion,
+                      &w->run, result, err));
     check_result(result, sim_energy_balance_max(&scene->options.sim));
     return STATUS_OK;
 }
@@ -242,6 +255,26 @@ static void set_drift_ratios(const double storey_m[], SimResult *r)
     }
 }
 
+void sim_worker_device(SimWorker *worker, const LinearDevice *device)
+{
+    worker->device = *device;
+}
+
+Status sim_sketch(SimWorker *w, SceneKind kind, const double x[], const LinearSketch *sketch, SimResult *result,
+                  Err *err)
+{
+    const Scene *scene = w->scene;
+    const int n = scene->building.n;
+    const LinearRun run = {fmin(sketch->duration, w->run.duration), sketch->step, NULL};
+    LinearSystem s;
+    TRY(core_beam_make(&w->core, &scene->options.core, n, scene->building.storey_m, x[n], x[n + 1], err));
+    TRY(linear_system_make(&s, linear_kind(kind), &scene->options, &scene->building, &w->core, &w->device,
+                           sketch->n_modes, err));
+    const Status status = linear_run(&s, scene->motion, &run, result, err);
+    linear_system_free(&s);
+    return status;
+}
+
 Status sim_run(SimWorker *w, SceneKind kind, const double x[], SimResult *result, Err *err)
 {
     const Scene *scene = w->scene;
@@ -251,9 +284,10 @@ Status sim_run(SimWorker *w, SceneKind kind, const double x[], SimResult *result
     if (kind != SCENE_NO_CORE)
         TRY(core_beam_make(&w->core, &scene->options.core, n, scene->building.storey_m, x[n], x[n + 1], err));
     if (w->run.forces)
-        force_monitor_set(w->run.forces, &scene->options, &scene->building, kind == SCENE_NO_CORE ? NULL : &w->core, x);
-    if (kind == SCENE_RIGID) {
-        TRY(run_rigid(w, result, err));
+        force_monitor_set(w->run.forces, &scene->options, &scene->building,
+                          kind == SCENE_NO_CORE || kind == SCENE_TMD ? NULL : &w->core, x);
+    if (is_linear(kind)) {
+        TRY(run_linear(w, kind, result, err));
     } else {
         TRY(model_set(&w->model, &scene->options, &scene->building, kind == SCENE_IMPACT ? &w->core : NULL, x, err));
         TRY(run_engine(w, result, err));
@@ -263,6 +297,8 @@ Status sim_run(SimWorker *w, SceneKind kind, const double x[], SimResult *result
         result->forces_known = 1;
         if (kind == SCENE_RIGID) /* what connects them is not resolved */
             result->forces.contact_force_max_n = NAN;
+        if (kind == SCENE_LINKS) /* what acts on a floor from the core */
+            result->forces.contact_force_max_n = result->dashpot_n;
     }
     set_drift_ratios(scene->building.storey_m, result);
     result->mcore_kg = kind == SCENE_NO_CORE ? 0 : w->core.mass_kg;

@@ -21,7 +21,10 @@
 typedef enum {
     SCENE_IMPACT,  /* building and core with gaps */
     SCENE_NO_CORE, /* the building alone */
-    SCENE_RIGID    /* floors and core rigidly connected: linear */
+    SCENE_RIGID,   /* floors and core rigidly connected: linear */
+    SCENE_TMD,     /* no core, but a tuned mass damper of its mass at the roof: linear */
+    SCENE_LINKS,   /* floors and core joined by dashpots: linear */
+    N_SCENES
 } SceneKind;
 
 typedef struct Scene Scene;
@@ -58,6 +61,18 @@ void sim_worker_floors(const SimWorker *worker, const SimSample *sample, double 
 /* Every run from now on calls contact for every contact that ends or is open at the end, and with NULL where the run
  * begins; contact NULL: none does. Only with SimOptions.forces. */
 void sim_worker_contacts(SimWorker *worker, SimContactFn contact, void *user);
+
+/* Of SCENE_TMD and SCENE_LINKS in every run from now on. */
+void sim_worker_device(SimWorker *worker, const LinearDevice *device);
+
+/* Parameters of a device are searched for on less of the scene: the lowest modes of building and of core, longer steps [s],
+ * the first part of the motion [s]; only SCENE_TMD and SCENE_LINKS. */
+typedef struct {
+    int n_modes;
+    double step, duration;
+} LinearSketch;
+Status sim_sketch(SimWorker *worker, SceneKind kind, const double x[], const LinearSketch *sketch, SimResult *result,
+                  Err *err);
 
 /* x (n_floors + 2) as above; ignored for SCENE_NO_CORE. */
 Status sim_run(SimWorker *worker, SceneKind kind, const double x[], SimResult *result, Err *err);

@@ -9,8 +9,6 @@
 #include "settings/settings.h"
 #include "simulator/limits.h"
 
-enum { RECORDS_MAX = 16 };
-
 typedef struct {
     Scenario scenario;  /* zeroed where the scene is borrowed */
     const Scene *scene; /* its own, or borrowed */
@@ -23,7 +21,7 @@ struct Tower {
     size_t n_workers, n_floors;
     ReplicatePlan plan; /* n_records of which are open */
     MeasureOrder order;
-    Record record[RECORDS_MAX];
+    Record record[TOWER_RECORDS_MAX];
     double lower[FLOORS_MAX + 2], upper[FLOORS_MAX + 2];
 };
 
@@ -86,8 +84,8 @@ static Status open_record(Tower *t, const Settings *settings, const char *name, 
     SceneOptions options = settings_scene(settings);
     MotionOptions motion = settings->motion;
     Record *r = &t->record[t->plan.n_records];
-    if (t->plan.n_records == RECORDS_MAX)
-        return fail(err, STATUS_BAD_DATA, "motion.records: more than %d records", RECORDS_MAX);
+    if (t->plan.n_records == TOWER_RECORDS_MAX)
+        return fail(err, STATUS_BAD_DATA, "motion.records: more than %d records", TOWER_RECORDS_MAX);
     snprintf(motion.record, sizeof motion.record, "%s", name);
     if (measures_need(t->plan.judged) & NEEDS_FORCES)
         options.sim.forces = FORCES_YES;
@@ -213,6 +211,21 @@ const MeasureOrder *tower_measures(const Tower *t)
 const Scenario *tower_record(const Tower *t, size_t i)
 {
     return &t->record[i].scenario;
+}
+
+size_t tower_n_workers(const Tower *t)
+{
+    return t->n_workers;
+}
+
+SimWorker *tower_worker(const Tower *t, size_t record, size_t worker)
+{
+    return t->record[record].worker[worker];
+}
+
+int tower_takes_mean(const Tower *t)
+{
+    return t->plan.takes_mean;
 }
 
 /* -- simulations outside a search ---------------------------------------------------------------------------------- */

@@ -18,6 +18,8 @@
 typedef struct Settings Settings;
 typedef struct Tower Tower;
 
+enum { TOWER_RECORDS_MAX = 16 };
+
 typedef enum {
     TOWER_AS_SET, /* motion.record and motion.records, sim.replicates, sim.gap_tolerance_m, sim.robust */
     TOWER_SINGLE  /* motion.record alone, one replicate */
@@ -36,6 +38,9 @@ int tower_n_floors(const Tower *t);
 size_t tower_n_records(const Tower *t);
 const MeasureOrder *tower_measures(const Tower *t);
 const Scenario *tower_record(const Tower *t, size_t i); /* 0: motion.record */
+size_t tower_n_workers(const Tower *t);
+SimWorker *tower_worker(const Tower *t, size_t record, size_t worker); /* while no queue uses it */
+int tower_takes_mean(const Tower *t);                                  /* over the records; else the worst */
 
 typedef struct {
     SceneKind kind;

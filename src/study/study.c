@@ -140,15 +140,6 @@ static int observe(const SearchView *view, void *user)
 
 /* -- beginning ----------------------------------------------------------------------------------------------------- */
 
-static Status simulate_without_core(Study *study, Err *err)
-{
-    const SimTask task = {SCENE_NO_CORE, NULL};
-    study->summary->has_no_core = adapter_tower(study->adapter) != NULL;
-    return study->summary->has_no_core
-               ? tower_simulate(adapter_problem(study->adapter), 1, &task, &study->summary->no_core, err)
-               : STATUS_OK;
-}
-
 static Status begin(Study *study, Err *err)
 {
     char *provenance;
@@ -244,8 +235,7 @@ static Status prepare(Study *study, const Settings *s, Err *err)
     snprintf(study->summary->folder, sizeof study->summary->folder, "%s", store_folder(study->store));
     study->summary->max_evals = s->search.max_evals;
     study->used = settings_as_used(s, study->summary->folder);
-    TRY(store_run(study->store) ? resume(study, err) : begin(study, err));
-    return simulate_without_core(study, err);
+    return store_run(study->store) ? resume(study, err) : begin(study, err);
 }
 
 SearchConfig study_search_config(const Settings *s)
@@ -380,6 +370,16 @@ static Status polish(Study *study, Err *err)
     return status == STATUS_STOPPED ? STATUS_OK : status;
 }
 
+/* What the knee is compared with. */
+static Status find_baselines(Study *study, Err *err)
+{
+    const Run *run = study->options->run;
+    if (!run || run->n_front == 0 || !adapter_tower(study->adapter))
+        return STATUS_OK;
+    study->summary->has_baselines = 1;
+    return baselines_find(adapter_problem(study->adapter), run_x(run, run_knee(run)), study->summary->baseline, err);
+}
+
 static void tell_motions(const Study *study)
 {
     const StudyOptions *o = study->options;
@@ -427,6 +427,8 @@ Status study_run(const Settings *s, const StudyOptions *options, StudySummary *s
         status = work(&study, err);
     else if (status == STATUS_OK && options->run)
         *options->run = store_give_run(study.store);
+    if (status == STATUS_OK)
+        status = find_baselines(&study, err);
     if (status != STATUS_OK && study.store) {
         Err ignored; /* the fault itself is what is returned */
         store_flush(study.store, &ignored);

@@ -55,7 +55,7 @@ typedef struct {
 Status study_run(const Settings *s, const StudyOptions *options, StudySummary *summary, FILE *differences, Err *err);
 
 /* Whether there is nothing more to do within the limits of the run; then it passes over to `run`, and the summary is
- * filled, without the building alone. */
+ * filled, without the baselines. */
 int study_finished(RunStore *store, StudySummary *summary, Run *run);
 
 /* What the search reads from the settings. */

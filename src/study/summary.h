@@ -5,7 +5,7 @@
 #include <limits.h>
 
 #include "moga/search.h"
-#include "sim/result.h"
+#include "simulator/baselines.h"
 
 typedef struct {
     char folder[PATH_MAX];
@@ -18,8 +18,8 @@ typedef struct {
     double simulation_s, own_s;                     /* as in SearchView */
     double search_s, waited_s, surrogate_s, busy_s; /* of this session; busy_s: in simulations, all threads added */
     int surrogate_disabled;
-    int has_no_core;   /* of a tower */
-    SimResult no_core; /* the building alone under the same motion */
+    int has_baselines; /* of a tower whose front has a knee; of its core */
+    Baseline baseline[N_BASELINES];
 } StudySummary;
 
 #endif

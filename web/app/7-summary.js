@@ -6,22 +6,35 @@ function bestRow(c) {
   return best;
 }
 
-function change(value, before) {
+function change(value, before, words) {
   if (!(before > 0)) return "";
   const pct = Math.round((100 * (value - before)) / before);
-  if (value > 2 * before) return `${show(value / before)} \u00d7 no core`;
-  return `${pct > 0 ? "+" : "\u2212"}${Math.abs(pct)} % vs no core`;
+  if (value > 2 * before) return `${show(value / before)} \u00d7 ${words}`;
+  return `${pct > 0 ? "+" : "\u2212"}${Math.abs(pct)} % vs ${words}`;
 }
 
-// raw: natural values of the objectives; one that failed has none.
-function cards(raw, before) {
+// raw: natural values of the objectives; one that failed has none. baselines: [{words, objectives}].
+function cards(raw, baselines) {
+  const known = (baselines ?? []).filter((b) => b.objectives);
+  const compared = (c, k, b) => (c.unit === "%" ? `${b.words}: ${show(b.objectives[k])} %` : change(raw[k], b.objectives[k], b.words));
   return element("div", { class: "cards" }, ...objectives.map((c, k) => element("div", { class: "card" },
     element("div", { class: "what" }, c.what),
     element("div", { class: "value" }, raw[k] === null ? "failed" : digits(raw[k] * c.factor), " ", element("small", {}, c.unit)),
-    element("div", { class: "change" }, (before?.[k] ?? null) === null ? "" : c.unit === "%" ? `no core: ${show(before[k])} %` : change(raw[k], before[k])))));
+    ...known.filter((b, i) => b.objectives[k] !== null && (i === 0 || c.unit !== "%")).map((b) => element("div", { class: "change" }, compared(c, k, b))))));
 }
 
-function standoutTable(before) {
+// In which objectives impacts win and lose; equal within a thousandth: neither.
+function comparison(raw, baselines) {
+  const against = (b) => {
+    const of = (sign) => objectives.filter((c, k) => b.objectives[k] !== null && sign * c.sense * (b.objectives[k] - raw[k]) > 1e-3 * Math.abs(b.objectives[k])).map((c) => c.title);
+    const part = (verb, names) => (names.length ? `${verb} in ${names.join(", ")}` : `${verb} in none`);
+    return `${part("win", of(1))} and ${part("lose", of(-1))} against ${b.words}`;
+  };
+  const known = (baselines ?? []).filter((b) => b.objectives);
+  return known.length ? element("p", { class: "comparison" }, `Impacts ${known.map(against).join("; they ")}.`) : "";
+}
+
+function standoutTable(baselines) {
   const rows = objectives.map((c) => [`best ${c.title}`, bestRow(c), c]);
   const knee = rowOf.get(run.knee);
   const line = (label, id, values, best, kind) => element("tr", { class: kind }, element("td", {}, label), element("td", {}, id),
@@ -32,7 +45,7 @@ function standoutTable(before) {
     element("tbody", {},
       line("knee", String(run.knee), objectives.map((c) => c.value[knee]), null, "knee"),
       ...rows.map(([label, i, best]) => line(label, String(ids[i]), objectives.map((c) => c.value[i]), best, "")),
-      before ? line("building without core", "", objectives.map((c, k) => before[k] === null ? NaN : before[k] * c.factor), null, "") : null)));
+      ...(baselines ?? []).filter((b) => b.objectives).map((b) => line(b.words, "", objectives.map((c, k) => (b.objectives[k] === null ? NaN : b.objectives[k] * c.factor)), null, "")))));
 }
 
 // As in the program's own output: the peak, and what the record was multiplied by.
@@ -40,7 +53,8 @@ const peakText = (d) => `peak ${show(d.pga_g)} g` +
   (d.scale === 1 && d.stretch === 1 ? ", as recorded" : ` (${show(d.pga_g / d.scale)} g \u00d7 ${show(d.scale)}, time \u00d7 ${show(d.stretch)})`);
 
 function summaryPart() {
-  const d = run.detail, before = d && !run.robust && d.no_core.objectives;
+  const d = run.detail, knee = objectives.map((c) => c.raw[rowOf.get(run.knee)]);
+  const baselines = d && run.chosen === run.knee ? d.baselines : d?.baselines.slice(0, 1); // the others are those of the chosen design
   document.title = `${run.name} \u2013 imtet report`;
   document.getElementById("title").textContent = `Study ${run.name}`;
   const simulated = run.evaluated ? `${count(run.evaluated)} designs ${d ? "simulated" : "evaluated"}, ${count(run.failed)} failed, ` : "";
@@ -50,7 +64,7 @@ function summaryPart() {
     element("p", {}, element("strong", {}, `Design ${run.knee}, the knee`), ": nearest to the best of everything, with every objective scaled over the front."),
     run.robust ? element("p", { class: "note" }, "Objectives are those of several simulations of every design (motion.records, sim.replicates, sim.robust " +
       `among the settings); the chosen design is shown as one simulation under ${shortName(d.record)}.`) : "",
-    cards(objectives.map((c) => c.raw[rowOf.get(run.knee)]), before), standoutTable(before));
+    cards(knee, baselines), baselines ? comparison(knee, baselines) : "", standoutTable(baselines));
 }
 
 function growthPart() {

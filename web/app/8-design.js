@@ -23,11 +23,17 @@ function legend(entries) {
   }));
 }
 
-const WITH = "with core", WITHOUT = "without core", RIGID = "rigidly connected";
-const SCENE_COLOUR = new Map([[WITH, BLUE], [WITHOUT, VERMILLION], [RIGID, OLIVE]]);
-const SCENE_SYMBOL = new Map([[WITH, "circle"], [WITHOUT, "diamond2"], [RIGID, "triangle"]]);
-const SCENE_MARK = new Map([[WITH, "\u25cf"], [WITHOUT, "\u25c6"], [RIGID, "\u25b2"]]);
+const WITH = "with core", WITHOUT = "without core", RIGID = "rigidly connected", TMD = "tuned mass damper", LINKS = "viscous links";
+const SCENE_COLOUR = new Map([[WITH, BLUE], [WITHOUT, VERMILLION], [RIGID, OLIVE], [TMD, GREEN], [LINKS, PURPLE]]);
+const SCENE_SYMBOL = new Map([[WITH, "circle"], [WITHOUT, "diamond2"], [RIGID, "triangle"], [TMD, "square"], [LINKS, "cross"]]);
+const SCENE_MARK = new Map([[WITH, "\u25cf"], [WITHOUT, "\u25c6"], [RIGID, "\u25b2"], [TMD, "\u25a0"], [LINKS, "+"]]);
 const sceneLegend = (scenes, marks) => legend(scenes.map((s) => [s, SCENE_COLOUR.get(s), marks ? SCENE_MARK.get(s) : null]));
+
+const BASELINE_NOTE = {
+  rigid: () => "Rigidly connected: floors and core move together without a gap, a linear building.",
+  tmd: (device) => `Tuned mass damper: the core\u2019s mass on a spring and a dashpot at the roof (${device}).`,
+  links: (device) => `Viscous links: a dashpot between every floor and the core (${device}).`,
+};
 
 // ---- heights
 
@@ -193,8 +199,8 @@ function designPart() {
   if (!d) return host.remove();
   const r = d.with_core;
   host.querySelector("h2").textContent = `Design ${run.chosen}${run.chosen === run.knee ? ", the knee" : ""}`;
-  const scenes = [[WITH, r], [WITHOUT, d.no_core], [RIGID, d.rigid]].filter(([, s]) => s.objectives);
-  if (run.chosen !== run.knee) host.append(cards(run.chosen_f, run.robust ? null : d.no_core.objectives));
+  const scenes = [[WITH, r], [WITHOUT, d.no_core], [RIGID, d.rigid], [TMD, d.tmd], [LINKS, d.links]].filter(([, s]) => s.objectives);
+  if (run.chosen !== run.knee) host.append(cards(run.chosen_f, d.baselines), comparison(run.chosen_f, d.baselines));
   host.append(element("p", { class: "note" }, `Simulated again with the run\u2019s settings. For another design: imtet report ${run.folder} --design ID`));
   if (!r.objectives) host.append(element("p", { class: "warn" }, `This design could not be simulated: ${r.reason}`));
   else host.append(element("p", {}, `${count(r.impacts)} impacts took ${show(r.contact_pct)} % of the ${show(r.input_j / 1e6)} MJ that the ground put in.` ));
@@ -203,11 +209,11 @@ function designPart() {
   gapFigure(shape, d);
   thicknessFigure(shape, d);
   if (scenes.length) {
-    const peaks = part(host, "Peaks of every floor", "Rigidly connected: floors and core move together without a gap, a linear building.", "grid3");
+    const peaks = part(host, "Peaks of every floor", d.baselines.filter((b) => b.key !== "no_core").map((b) => BASELINE_NOTE[b.key](b.device)).join(" "), "grid3");
     peakFigure(peaks, scenes, "displacement_m", "Displacement", "peak displacement [m]");
     peakFigure(peaks, scenes, "drift_m", "Interstorey drift", "peak interstorey drift [m]");
     peakFigure(peaks, scenes, "acceleration_g", "Acceleration", "peak absolute acceleration [g]");
-    modeFigure(part(host, "Where the energy goes", "Impacts hand energy from slow modes to fast ones, which damp it sooner. What is missing to 100 % was damped by the core, by modes above the tenth, or lost in impacts.", "grid1"), scenes, "Energy damped by each mode", null);
+    modeFigure(part(host, "Where the energy goes", "Impacts hand energy from slow modes to fast ones, which damp it sooner. What is missing to 100 % was damped by the core, by modes above the tenth, or lost in impacts.", "grid1"), scenes.slice(0, 3), "Energy damped by each mode", null);
   }
   if (d.history_with_core || d.history_no_core) {
     energyPair(part(host, "Energies over time", "Stacked: at every instant the parts add up to what the ground has put in so far. Shown until the displacement stays below 2 % of its peak.", "grid2"), d);

@@ -1,0 +1,373 @@
+#include "sim/linear.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/carve.h"
+#include "base/linalg.h"
+#include "sim/energy_balance.h"
+#include "sim/peak_monitor.h"
+
+/* Stretches (straight loads, one sample of the motion each) are crossed in blocks, so that products of matrices do the
+ * work; a block has at most so many numbers of output. */
+enum { BLOCK_NUMBERS = 1 << 16, BLOCK_STRETCHES = 32 };
+
+/* Rows of the outputs of a state. */
+typedef struct {
+    int u, acceleration, apart, rate, power, n; /* where each group begins; in all */
+} Rows;
+
+typedef struct {
+    const LinearSystem *s;
+    const LinearRun *run;
+    Rows rows;
+    int size, parts_max, stretches_max; /* 2 m + 2, the state and its load */
+    double *D;                          /* (m, m) [1/s] */
+    double *Y_ddot;                     /* (m, size) y'' of a state */
+    double *coordinates;                /* (n_building + n_core, size) modal coordinates, where forces are wanted */
+    double *outputs, *slopes;           /* (rows.n, size); (n_loss + 1, size) derivatives of rates and power */
+    double *exponential, *whole;        /* (size, size) for a part of h, for all parts of a stretch */
+    double h;
+    int parts;
+    double *z;                             /* (size) */
+    double *Z, *Z_next;                    /* (size, stretches) */
+    double *Y;                             /* (parts + 1) (rows.n, stretches) */
+    double *Q;                             /* (parts + 1) (n_building + n_core, stretches) */
+    double *Y_slope;                       /* (n_loss + 1, stretches) */
+    double *damped, *rate_max, *apart_max; /* (n_loss) [J], [m/s]; (n_apart) [m] */
+    double input;                          /* [J] */
+    double *work;                          /* (3 size size) */
+    PeakMonitor peaks;
+    long steps;
+    void *store;
+} Linear;
+
+static int n_coordinates(const Linear *d)
+{
+    return d->s->n_building + d->s->n_core;
+}
+
+static void layout(void *linear, Carve *c)
+{
+    Linear *d = linear;
+    const size_t m = (size_t)d->s->m, size = (size_t)d->size, out = (size_t)d->rows.n, real = sizeof(double);
+    const size_t stretches = (size_t)d->stretches_max, losses = (size_t)d->s->n_loss;
+    const size_t coordinates = d->run->forces ? (size_t)n_coordinates(d) : 0;
+    d->D = carve(c, m * m, real);
+    d->Y_ddot = carve(c, m * size, real);
+    d->coordinates = carve(c, coordinates * size, real);
+    d->outputs = carve(c, out * size, real);
+    d->slopes = carve(c, (losses + 1) * size, real);
+    d->exponential = carve(c, size * size, real);
+    d->whole = carve(c, size * size, real);
+    d->z = carve(c, size, real);
+    d->Z = carve(c, size * stretches, real);
+    d->Z_next = carve(c, size * stretches, real);
+    d->Y = carve(c, (size_t)(d->parts_max + 1) * out * stretches, real);
+    d->Q = carve(c, (size_t)(d->parts_max + 1) * coordinates * stretches, real);
+    d->Y_slope = carve(c, (losses + 1) * stretches, real);
+    d->damped = carve(c, losses, real);
+    d->rate_max = carve(c, losses, real);
+    d->apart_max = carve(c, (size_t)d->s->n_apart, real);
+    d->work = carve(c, 3 * size * size, real);
+}
+
+/* -- matrices ------------------------------------------------------------------------------------------------------ */
+
+/* y'' = -W (W y) - D y' - Gamma a as rows of the state. */
+static void set_acceleration(Linear *d)
+{
+    const LinearSystem *s = d->s;
+    const int m = s->m;
+    for (int j = 0; j < m; j++)
+        for (int i = 0; i < m; i++) {
+            for (int k = 0; k < s->n_loss; k++)
+                d->D[j * m + i] += s->P[i * s->n_loss + k] * s->loss[k] * s->P[j * s->n_loss + k];
+            d->Y_ddot[(m + j) * m + i] = -d->D[j * m + i];
+        }
+    for (int i = 0; i < m; i++) {
+        d->Y_ddot[i * m + i] = -s->omega[i];
+        d->Y_ddot[2 * m * m + i] = -s->gamma[i];
+    }
+}
+
+/* Rows `at` .. of a matrix of `rows`: A (r, m) of y, that is A / w of W y; stride: rows of A. */
+static void output_of_y(const Linear *d, double matrix[], int rows, int at, int r, int stride, const double A[])
+{
+    for (int k = 0; k < d->s->m; k++)
+        for (int i = 0; i < r; i++)
+            matrix[k * rows + at + i] = A[k * stride + i] / d->s->omega[k];
+}
+
+static void set_outputs(Linear *d)
+{
+    const LinearSystem *s = d->s;
+    const int n = s->n, m = s->m, losses = s->n_loss, out = d->rows.n;
+    output_of_y(d, d->outputs, out, d->rows.u, n, n, s->psi);
+    output_of_y(d, d->outputs, out, d->rows.apart, s->n_apart, s->n_apart, s->apart);
+    if (d->run->forces)
+        output_of_y(d, d->coordinates, n_coordinates(d), 0, n_coordinates(d), losses, s->P);
+    linalg_product(n, m, d->size, s->psi, d->Y_ddot, d->work);
+    for (int k = 0; k < d->size; k++)
+        for (int j = 0; j < n; j++)
+            d->outputs[k * out + d->rows.acceleration + j] = d->work[k * n + j] + (k == 2 * m);
+    for (int k = 0; k < m; k++) {
+        memcpy(d->outputs + (m + k) * out + d->rows.rate, s->P + k * losses, (size_t)losses * sizeof *s->P);
+        d->outputs[(m + k) * out + d->rows.power] = s->gamma[k];
+    }
+    linalg_product(losses, m, d->size, s->P, d->Y_ddot, d->work);
+    for (int k = 0; k < d->size; k++) {
+        memcpy(d->slopes + k * (losses + 1), d->work + k * losses, (size_t)losses * sizeof *d->work);
+        for (int i = 0; i < m; i++)
+            d->slopes[k * (losses + 1) + losses] += s->gamma[i] * d->Y_ddot[k * m + i];
+    }
+}
+
+/* out = A^power, A (n, n) kept; work (2 n n) */
+static void raise(int n, const double A[], int power, double out[], double work[])
+{
+    const size_t bytes = (size_t)n * (size_t)n * sizeof *A;
+    double *square = work, *next = work + n * n;
+    memset(out, 0, bytes);
+    for (int i = 0; i < n; i++)
+        out[i * n + i] = 1;
+    memcpy(square, A, bytes);
+    for (; power > 0; power >>= 1) {
+        if (power & 1) {
+            linalg_product(n, n, n, square, out, next);
+            memcpy(out, next, bytes);
+        }
+        linalg_product(n, n, n, square, square, next);
+        memcpy(square, next, bytes);
+    }
+}
+
+/* (z, a, a') after h = exponential (z, a, a'). */
+static void set_step(Linear *d, double h, int parts)
+{
+    const int m = d->s->m, size = d->size;
+    double *A = d->work;
+    memset(A, 0, sizeof *A * (size_t)(size * size));
+    for (int i = 0; i < m; i++) {
+        A[(m + i) * size + i] = h * d->s->omega[i];
+        for (int k = 0; k < size; k++)
+            A[k * size + m + i] = h * d->Y_ddot[k * m + i];
+    }
+    A[(2 * m + 1) * size + 2 * m] = h;
+    linalg_exponential(size, A, d->exponential, d->work + size * size);
+    raise(size, d->exponential, parts, d->whole, d->work);
+    d->h = h;
+    d->parts = parts;
+}
+
+/* -- a block of stretches ------------------------------------------------------------------------------------------ */
+
+/* Y (rows.n, count) at one instant of every stretch: weight f of the energies, f = loss rate^2 and -a Gamma' y'. */
+static void add_power(Linear *d, int count, const double Z[], const double Y[], double weight)
+{
+    for (int i = 0; i < count; i++) {
+        const double *y = Y + i * d->rows.n, *rate = y + d->rows.rate;
+        for (int k = 0; k < d->s->n_loss; k++)
+            d->damped[k] += weight * d->s->loss[k] * rate[k] * rate[k];
+        d->input -= weight * Z[i * d->size + 2 * d->s->m] * y[d->rows.power];
+    }
+}
+
+/* The same of f'. */
+static void add_power_slope(Linear *d, int count, const double Z[], const double Y[], double weight)
+{
+    const int losses = d->s->n_loss, m = d->s->m;
+    linalg_product(losses + 1, d->size, count, d->slopes, Z, d->Y_slope);
+    for (int i = 0; i < count; i++) {
+        const double *y = Y + i * d->rows.n, *rate = y + d->rows.rate, *slope = d->Y_slope + i * (losses + 1);
+        const double *load = Z + i * d->size + 2 * m;
+        for (int k = 0; k < losses; k++)
+            d->damped[k] += weight * d->s->loss[k] * 2 * rate[k] * slope[k];
+        d->input -= weight * (load[1] * y[d->rows.power] + load[0] * slope[losses]);
+    }
+}
+
+static void raise_magnitudes(int n, const double now[], double largest[])
+{
+    for (int i = 0; i < n; i++)
+        largest[i] = fmax(largest[i], fabs(now[i]));
+}
+
+/* y (rows.n), q (n_coordinates) at time t; q is read where forces are wanted. */
+static void look(Linear *d, double t, double ground, const double y[], const double q[])
+{
+    const LinearSystem *s = d->s;
+    PeakPoint *point = peak_monitor_next(&d->peaks);
+    point->t = t;
+    memcpy(point->of[PEAK_DISPLACEMENT], y + d->rows.u, (size_t)s->n * sizeof *y);
+    memcpy(point->of[PEAK_ACCELERATION], y + d->rows.acceleration, (size_t)s->n * sizeof *y);
+    peak_monitor_add(&d->peaks);
+    raise_magnitudes(s->n_apart, y + d->rows.apart, d->apart_max);
+    raise_magnitudes(s->n_apart, y + d->rows.rate + s->n_loss - s->n_apart, d->rate_max);
+    if (d->run->forces)
+        force_monitor_point(d->run->forces, &(ForcePoint){.t = t,
+                                                          .ground = ground,
+                                                          .building_q = q,
+                                                          .building_v = y + d->rows.rate,
+                                                          .core_q = q + s->n_building});
+}
+
+/* Columns of Z: the states where the stretches begin, with their loads; d->z goes to where the last one ends. */
+static void find_starts(Linear *d, int count, const double a[], const double slope[])
+{
+    const int m = d->s->m, size = d->size;
+    for (int i = 0; i < count; i++) {
+        d->z[2 * m] = a[i];
+        d->z[2 * m + 1] = slope[i];
+        memcpy(d->Z + i * size, d->z, (size_t)size * sizeof *d->z);
+        linalg_product(size, size, 1, d->whole, d->Z + i * size, d->z);
+    }
+}
+
+/* count stretches from t on, each of `length`, during which the ground acceleration is a + slope (time since its start). */
+static void cross(Linear *d, double t, double length, int count, const double a[], const double slope[])
+{
+    const int parts = (int)ceil(length / d->run->step), out = d->rows.n, n_q = n_coordinates(d);
+    const double h = length / (double)parts;
+    if (!(fabs(h - d->h) <= 1e-13 * h) || parts != d->parts)
+        set_step(d, h, parts);
+    find_starts(d, count, a, slope);
+    linalg_product(out, d->size, count, d->outputs, d->Z, d->Y);
+    add_power(d, count, d->Z, d->Y, 0.5 * h);
+    add_power_slope(d, count, d->Z, d->Y, h * h / 12);
+    for (int k = 1; k <= parts; k++) {
+        double *Y = d->Y + (size_t)k * (size_t)(out * count), *before = d->Z;
+        linalg_product(d->size, d->size, count, d->exponential, d->Z, d->Z_next);
+        d->Z = d->Z_next;
+        d->Z_next = before;
+        linalg_product(out, d->size, count, d->outputs, d->Z, Y);
+        if (d->run->forces)
+            linalg_product(n_q, d->size, count, d->coordinates, d->Z, d->Q + (size_t)k * (size_t)(n_q * count));
+        add_power(d, count, d->Z, Y, k < parts ? h : 0.5 * h);
+    }
+    add_power_slope(d, count, d->Z, d->Y + (size_t)parts * (size_t)(out * count), -h * h / 12);
+    for (int i = 0; i < count; i++)
+        for (int k = 1; k <= parts; k++)
+            look(d, t + i * length + k * h, a[i] + slope[i] * k * h, d->Y + (size_t)(k * count + i) * (size_t)out,
+                 d->Q + (d->run->forces ? (size_t)(k * count + i) * (size_t)n_q : 0));
+    d->steps += (long)count * parts;
+}
+
+/* -- a run --------------------------------------------------------------------------------------------------------- */
+
+static int is_finite(const Linear *d)
+{
+    double sum = d->input;
+    for (int i = 0; i < 2 * d->s->m; i++)
+        sum += d->z[i] * d->z[i];
+    return isfinite(sum);
+}
+
+/* The load of stretch k; after the last sample the ground is at rest. */
+static void load_of(const Motion *motion, size_t k, double *a, double *slope)
+{
+    const int shaking = k + 1 < motion->n;
+    *a = shaking ? motion->accel[k] : 0;
+    *slope = shaking ? (motion->accel[k + 1] - motion->accel[k]) / motion->dt_s : 0;
+}
+
+/* Sample by sample to the end. Returns how far the response was finite. */
+static double walk(Linear *d, const Motion *motion)
+{
+    const double dt = motion->dt_s, duration = d->run->duration;
+    const size_t whole = (size_t)(duration / dt * (1 + 1e-9));
+    double a[BLOCK_STRETCHES], slope[BLOCK_STRETCHES];
+    for (size_t k = 0; k < whole;) {
+        const int count = (int)(whole - k < (size_t)d->stretches_max ? whole - k : (size_t)d->stretches_max);
+        for (int i = 0; i < count; i++)
+            load_of(motion, k + (size_t)i, &a[i], &slope[i]);
+        cross(d, (double)k * dt, dt, count, a, slope);
+        if (!is_finite(d))
+            return (double)k * dt;
+        k += (size_t)count;
+    }
+    const double left = duration - (double)whole * dt;
+    if (left > 1e-9 * dt) {
+        load_of(motion, whole, &a[0], &slope[0]);
+        cross(d, (double)whole * dt, left, 1, a, slope);
+    }
+    return is_finite(d) ? duration : (double)whole * dt;
+}
+
+static Status prepare(Linear *d, const Motion *motion, Err *err)
+{
+    const LinearSystem *s = d->s;
+    const int n = s->n, apart = 2 * n, rate = apart + s->n_apart, power = rate + s->n_loss;
+    const int all = power + 1;
+    d->rows = (Rows){0, n, apart, rate, power, all};
+    d->size = 2 * s->m + 2;
+    d->parts_max = (int)ceil(motion->dt_s / d->run->step) + 1;
+    const int fit = BLOCK_NUMBERS / (d->parts_max * all);
+    d->stretches_max = fit < 1 ? 1 : fit > BLOCK_STRETCHES ? BLOCK_STRETCHES : fit;
+    d->store = carve_all(layout, d);
+    if (!d->store)
+        return fail(err, STATUS_NO_MEMORY, "linear: no memory for %d floors", n);
+    set_acceleration(d);
+    set_outputs(d);
+    return STATUS_OK;
+}
+
+static double largest_of(int n, const double values[])
+{
+    double largest = 0;
+    for (int i = 0; i < n; i++)
+        largest = fmax(largest, values[i]);
+    return largest;
+}
+
+static void report(const Linear *d, SimResult *result)
+{
+    const LinearSystem *s = d->s;
+    double energy = 0;
+    for (int i = 0; i < 2 * s->m; i++)
+        energy += 0.5 * d->z[i] * d->z[i];
+    result->steps = d->steps;
+    result->input_energy_j = d->input;
+    result->kinetic_strain_j = energy;
+    result->stroke_m = largest_of(s->n_apart, d->apart_max);
+    result->dashpot_n = s->n_apart > 0 ? s->loss[s->n_loss - 1] * largest_of(s->n_apart, d->rate_max) : 0;
+    peak_monitor_report(&d->peaks, result);
+    energy_balance_close(result, s->n_building, s->like, s->n_loss - s->n_building, d->damped);
+}
+
+Status linear_run(const LinearSystem *s, const Motion *motion, const LinearRun *run, SimResult *result, Err *err)
+{
+    Linear d = {.s = s, .run = run, .peaks.n = s->n};
+    memset(result, 0, sizeof *result);
+    result->n_floors = result->n_modes = s->n;
+    if (run->forces)
+        force_monitor_start(run->forces, s->n_core);
+    const Status status = prepare(&d, motion, err);
+    if (status == STATUS_OK) {
+        const double reached = walk(&d, motion);
+        if (reached < run->duration) {
+            result->outcome = RUN_NOT_FINITE;
+            snprintf(result->reason, sizeof result->reason, "t = %.6g s: motion or response is not a finite number",
+                     reached);
+        } else {
+            report(&d, result);
+        }
+    }
+    free(d.store);
+    return status;
+}
+
+Status engine_linear(LinearKind kind, const SceneOptions *o, const Building *b, const CoreBeam *core,
+                     const LinearDevice *device, const Motion *motion, const EngineOptions *options, SimResult *result,
+                     Err *err)
+{
+    static const double STEP[] = {[ACCURACY_COARSE] = 2e-3, [ACCURACY_STANDARD] = 1e-3, [ACCURACY_FINE] = 5e-4};
+    const LinearRun run = {options->duration, STEP[options->accuracy], options->forces};
+    LinearSystem s;
+    TRY(linear_system_make(&s, kind, o, b, core, device, b->model.n, err));
+    const Status status = linear_run(&s, motion, &run, result, err);
+    linear_system_free(&s);
+    return status;
+}

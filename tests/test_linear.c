@@ -1,0 +1,452 @@
+/* Linear structures (sim/linear.h) and the baselines that are made of them. */
+#include <complex.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/linalg.h"
+#include "check.h"
+#include "scene_options.h"
+#include "sim/linear.h"
+#include "simulator/baselines.h"
+#include "settings/settings.h"
+
+enum { N = 3 };
+
+typedef struct {
+    Building b;
+    double K[N * N], M[N * N], phi[N * N], omega[N], gamma[N], zeta[N], storey[N];
+    int like[N];
+} Frame;
+
+/* n equal storeys of stiffness k and mass m. */
+static void make_frame(Frame *f, int n, double k, double m, double zeta)
+{
+    Err err = {0};
+    memset(f, 0, sizeof *f);
+    f->b = (Building){.n = n,
+                      .K = f->K,
+                      .M = f->M,
+                      .phi = f->phi,
+                      .omega = f->omega,
+                      .gamma = f->gamma,
+                      .zeta = f->zeta,
+                      .storey_m = f->storey};
+    for (int j = 0; j < n; j++) {
+        f->M[j * n + j] = m;
+        f->K[j * n + j] = j + 1 < n ? 2 * k : k;
+        if (j + 1 < n)
+            f->K[j * n + j + 1] = f->K[(j + 1) * n + j] = -k;
+        f->zeta[j] = zeta;
+        f->storey[j] = 3;
+        f->like[j] = j;
+    }
+    CHECK_OK(linalg_modes(n, f->K, f->M, f->omega, f->phi, &err), &err);
+    linalg_participation(n, f->M, f->phi, f->gamma);
+    f->b.model = (BuildingModel){n, f->K, f->M, f->phi, f->omega, f->gamma, f->zeta, f->like};
+}
+
+static void make_core(CoreBeam *core, const SceneOptions *o, int n)
+{
+    Err err = {0};
+    const double storey[N] = {3, 3, 3};
+    CHECK_OK(core_beam_make(core, &o->core, n, storey, 0.02, 0.01, &err), &err);
+}
+
+static SimResult run_system(LinearKind kind, const SceneOptions *o, const Frame *f, const CoreBeam *core,
+                            LinearDevice device, const Motion *motion, double step)
+{
+    Err err = {0};
+    LinearSystem s;
+    SimResult r;
+    const LinearRun run = {(double)(motion->n - 1) * motion->dt_s, step, NULL};
+    CHECK_OK(linear_system_make(&s, kind, o, &f->b, core, &device, f->b.n, &err), &err);
+    CHECK_OK(linear_run(&s, motion, &run, &r, &err), &err);
+    linear_system_free(&s);
+    return r;
+}
+
+/* |x1| of an undamped structure of frequency w1 and mass 1 with a tuned mass mu, ground exp(i w t). */
+static double amplitude(double w1, double mu, LinearDevice d, double w)
+{
+    const double wt = 2 * M_PI * d.tmd_hz;
+    const double complex link = mu * wt * wt + I * w * 2 * d.tmd_damping * mu * wt;
+    const double complex a = w1 * w1 - w * w + link, b = -link, c = link - mu * w * w;
+    return cabs((-c + b * mu) / (a * c - b * b));
+}
+
+static void test_a_tuned_mass_answers_a_harmonic_as_its_transfer_function(void **state)
+{
+    (void)state;
+    enum { SAMPLES = 60001 };
+    const SceneOptions o = paper_scene();
+    const double w1 = 2 * M_PI, ratios[] = {0.85, 0.95, 1.1, 1.3};
+    double *accel = malloc(SAMPLES * sizeof *accel);
+    CoreBeam *core = calloc(1, sizeof *core);
+    Frame f;
+    make_frame(&f, 1, w1 * w1, 1, 0);
+    core->mass_kg = 0.05;
+    const LinearDevice d = warburton_device(1, 0.05);
+    for (size_t k = 0; k < sizeof ratios / sizeof ratios[0]; k++) {
+        const double w = ratios[k] * w1, dt = 0.005;
+        for (int i = 0; i < SAMPLES; i++) /* slowly risen, so that no transient is larger than the steady state */
+            accel[i] = pow(sin(M_PI / 2 * fmin(i * dt / 250, 1)), 2) * sin(w * i * dt);
+        const Motion m = {.dt_s = dt, .n = SAMPLES, .accel = accel};
+        const SimResult r = run_system(LINEAR_TMD, &o, &f, core, d, &m, 0.005);
+        assert_close(r.j1_m, amplitude(w1, 0.05, d, w), 2e-3);
+        assert_true(r.energy_balance_error < 1e-6);
+    }
+    free(accel);
+    free(core);
+}
+
+/* int |x1|^2 dw, white noise at the base. */
+static double variance(double mu, LinearDevice d)
+{
+    double sum = 0;
+    for (double w = 1e-3; w < 6 * 2 * M_PI; w += 2e-3) {
+        const double a = amplitude(2 * M_PI, mu, d, w);
+        sum += a * a;
+    }
+    return sum;
+}
+
+static void test_warburtons_device_has_the_least_variance_under_white_noise(void **state)
+{
+    (void)state;
+    for (double mu = 0.02; mu < 0.3; mu *= 2) {
+        const LinearDevice best = warburton_device(1, mu);
+        const double least = variance(mu, best);
+        for (int k = 0; k < 4; k++) {
+            LinearDevice other = best;
+            other.tmd_hz *= k == 0 ? 1.02 : k == 1 ? 0.98 : 1;
+            other.tmd_damping *= k == 2 ? 1.1 : k == 3 ? 0.9 : 1;
+            assert_true(variance(mu, other) > least);
+        }
+    }
+}
+
+/* -- an independent integration: Runge and Kutta in the displacements ------------------------------------------------ */
+
+typedef struct {
+    int n; /* displacements */
+    double K[4 * N * N], C[4 * N * N], M_inverse[4 * N * N], load[2 * N];
+} Physical;
+
+static void rates(const Physical *p, double a, const double z[], double out[])
+{
+    double force[2 * N];
+    for (int i = 0; i < p->n; i++) {
+        force[i] = -p->load[i] * a;
+        for (int j = 0; j < p->n; j++)
+            force[i] -= p->K[i * p->n + j] * z[j] + p->C[i * p->n + j] * z[p->n + j];
+    }
+    for (int i = 0; i < p->n; i++) {
+        out[i] = z[p->n + i];
+        out[p->n + i] = 0;
+        for (int j = 0; j < p->n; j++)
+            out[p->n + i] += p->M_inverse[i * p->n + j] * force[j];
+    }
+}
+
+static double ground_at(const Motion *m, double t)
+{
+    const size_t k = (size_t)fmin(t / m->dt_s, (double)(m->n - 2));
+    const double part = t / m->dt_s - (double)k;
+    return m->accel[k] * (1 - part) + m->accel[k + 1] * part;
+}
+
+static void step(const Physical *p, const Motion *m, double t, double h, double z[])
+{
+    double k[4][4 * N], at[4 * N];
+    for (int stage = 0; stage < 4; stage++) {
+        const double part = stage == 0 ? 0 : stage < 3 ? 0.5 : 1;
+        for (int i = 0; i < 2 * p->n; i++)
+            at[i] = z[i] + (stage ? part * h * k[stage - 1][i] : 0);
+        rates(p, ground_at(m, t + part * h), at, k[stage]);
+    }
+    for (int i = 0; i < 2 * p->n; i++)
+        z[i] += h / 6 * (k[0][i] + 2 * k[1][i] + 2 * k[2][i] + k[3][i]);
+}
+
+/* J1, J2, J3 of the first floors. */
+static void integrate(const Physical *p, int floors, const Motion *m, int parts, double J[3])
+{
+    double z[4 * N] = {0}, rate[4 * N];
+    const double h = m->dt_s / parts;
+    memset(J, 0, 3 * sizeof *J);
+    for (size_t k = 0; k < (m->n - 1) * (size_t)parts; k++) {
+        step(p, m, (double)k * h, h, z);
+        const double a = ground_at(m, (double)(k + 1) * h);
+        rates(p, a, z, rate);
+        for (int j = 0; j < floors; j++) {
+            J[0] = fmax(J[0], fabs(z[j]));
+            J[1] = fmax(J[1], fabs(z[j] - (j ? z[j - 1] : 0)));
+            J[2] = fmax(J[2], fabs(rate[p->n + j] + a) / 9.81);
+        }
+    }
+}
+
+/* C = M phi diag(2 zeta w) phi' M into the block at `first` of an (n, n) matrix. */
+static void modal_damping(int n, int first, int size, const double M[], const double phi[], const double omega[],
+                          double zeta, double C[])
+{
+    double m_phi[N * N] = {0};
+    for (int i = 0; i < size; i++)
+        for (int k = 0; k < size; k++)
+            for (int j = 0; j < size; j++)
+                m_phi[i * size + k] += M[i * size + j] * phi[j * size + k];
+    for (int i = 0; i < size; i++)
+        for (int j = 0; j < size; j++)
+            for (int k = 0; k < size; k++)
+                C[(first + i) * n + first + j] += 2 * zeta * omega[k] * m_phi[i * size + k] * m_phi[j * size + k];
+}
+
+static void invert(int n, const double A[], double out[])
+{
+    Err err = {0};
+    double copy[4 * N * N];
+    memcpy(copy, A, (size_t)(n * n) * sizeof *A);
+    memset(out, 0, (size_t)(n * n) * sizeof *out);
+    for (int i = 0; i < n; i++)
+        out[i * n + i] = 1;
+    CHECK_OK(linalg_solve_spd(n, n, copy, out, &err), &err);
+}
+
+/* Building and core side by side. */
+static void lay_out_pair(Physical *p, const SceneOptions *o, const Frame *f, const CoreBeam *core, double c)
+{
+    const int n = 2 * N;
+    double M[4 * N * N] = {0};
+    memset(p, 0, sizeof *p);
+    p->n = n;
+    for (int i = 0; i < N; i++)
+        for (int j = 0; j < N; j++) {
+            p->K[i * n + j] = f->K[i * N + j];
+            p->K[(N + i) * n + N + j] = core->K[i * N + j];
+            M[i * n + j] = f->M[i * N + j];
+            M[(N + i) * n + N + j] = core->M[i * N + j];
+        }
+    modal_damping(n, 0, N, f->M, f->phi, f->omega, f->zeta[0], p->C);
+    modal_damping(n, N, N, core->M, core->phi, core->omega, o->core.damping, p->C);
+    for (int j = 0; j < N; j++) {
+        p->C[j * n + j] += c;
+        p->C[(N + j) * n + N + j] += c;
+        p->C[j * n + N + j] -= c;
+        p->C[(N + j) * n + j] -= c;
+    }
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < n; j++)
+            p->load[i] += M[i * n + j];
+    invert(n, M, p->M_inverse);
+}
+
+static void lay_out_tmd(Physical *p, const Frame *f, double mass, LinearDevice d)
+{
+    const int n = N + 1;
+    const double w = 2 * M_PI * d.tmd_hz, k = mass * w * w, c = 2 * d.tmd_damping * mass * w;
+    double M[4 * N * N] = {0};
+    memset(p, 0, sizeof *p);
+    p->n = n;
+    for (int i = 0; i < N; i++)
+        for (int j = 0; j < N; j++) {
+            p->K[i * n + j] = f->K[i * N + j];
+            M[i * n + j] = f->M[i * N + j];
+        }
+    M[N * n + N] = mass;
+    modal_damping(n, 0, N, f->M, f->phi, f->omega, f->zeta[0], p->C);
+    for (int i = N - 1; i <= N; i++)
+        for (int j = N - 1; j <= N; j++) {
+            p->K[i * n + j] += i == j ? k : -k;
+            p->C[i * n + j] += i == j ? c : -c;
+        }
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < n; j++)
+            p->load[i] += M[i * n + j];
+    invert(n, M, p->M_inverse);
+}
+
+enum { SHAKES = 301 };
+static void make_shaking(double accel[SHAKES])
+{
+    for (int i = 0; i < SHAKES; i++)
+        accel[i] = 3 * sin(0.13 * i) * cos(0.031 * i * i * 0.05) * (i < 250 ? 1 : 0);
+}
+
+static void test_tuned_mass_and_links_agree_with_runge_and_kutta_in_the_displacements(void **state)
+{
+    (void)state;
+    SceneOptions o = paper_scene();
+    double accel[SHAKES], J[3];
+    Frame f;
+    Physical p;
+    CoreBeam *core = calloc(1, sizeof *core);
+    const LinearDevice d = {.tmd_hz = 1.3, .tmd_damping = 0.2, .link_ns_m = 4e5};
+    o.core.side_m = 1; /* slender, so that its fastest mode needs no tiny steps */
+    make_shaking(accel);
+    make_frame(&f, N, 4e7, 1e5, 0.03);
+    make_core(core, &o, N);
+    const Motion m = {.dt_s = 0.05, .n = SHAKES, .accel = accel};
+    for (int is_tmd = 0; is_tmd < 2; is_tmd++) {
+        const SimResult r = run_system(is_tmd ? LINEAR_TMD : LINEAR_LINKS, &o, &f, core, d, &m, 5e-4);
+        if (is_tmd)
+            lay_out_tmd(&p, &f, core->mass_kg, d);
+        else
+            lay_out_pair(&p, &o, &f, core, d.link_ns_m);
+        integrate(&p, N, &m, 400, J);
+        assert_close(r.j1_m, J[0], 1e-6);
+        assert_close(r.j2_m, J[1], 1e-6);
+        assert_close(r.j3_g, J[2], 1e-5);
+        assert_true(r.energy_balance_error < 1e-7);
+        assert_true(r.stroke_m > 0 && r.dashpot_n > 0);
+    }
+    free(core);
+}
+
+static void test_links_without_damping_are_no_links_and_with_much_of_it_the_rigid_connection(void **state)
+{
+    (void)state;
+    const SceneOptions o = paper_scene();
+    double accel[SHAKES], J[3];
+    Frame f;
+    Physical p;
+    CoreBeam *core = calloc(1, sizeof *core);
+    make_shaking(accel);
+    make_frame(&f, N, 4e7, 1e5, 0.03);
+    make_core(core, &o, N);
+    const Motion m = {.dt_s = 0.05, .n = SHAKES, .accel = accel};
+    const SimResult loose = run_system(LINEAR_LINKS, &o, &f, core, (LinearDevice){.link_ns_m = 0}, &m, 5e-4);
+    lay_out_tmd(&p, &f, 1e-9, (LinearDevice){.tmd_hz = 1, .tmd_damping = 0.1});
+    integrate(&p, N, &m, 200, J);
+    assert_close(loose.j1_m, J[0], 1e-6);
+    const SimResult rigid = run_system(LINEAR_RIGID, &o, &f, core, (LinearDevice){0}, &m, 5e-4);
+    double before = INFINITY;
+    for (double c = 1e10; c < 1e14; c *= 10) {
+        const SimResult tight = run_system(LINEAR_LINKS, &o, &f, core, (LinearDevice){.link_ns_m = c}, &m, 5e-4);
+        const double off = fabs(tight.j1_m / rigid.j1_m - 1);
+        assert_true(off < 0.3 * before || off < 1e-5);
+        before = off;
+    }
+    assert_true(before < 2e-3);
+    free(core);
+}
+
+/* -- baselines of a tower ------------------------------------------------------------------------------------------ */
+
+static void open_tower(Problem *p, const char *records, Robust robust, long threads)
+{
+    Settings s;
+    Err err = {0};
+    char text[200];
+    paper_defaults(&s);
+    s.sim.duration_s = 25;
+    s.sim.robust = robust;
+    s.search.threads = threads;
+    snprintf(text, sizeof text, "motion.records=%s", records);
+    CHECK_OK(settings_set(&s, text, &err), &err);
+    CHECK_OK(tower_open(p, &s, TOWER_AS_SET, SIZE_MAX, &err), &err);
+}
+
+static void design_of(double x[22])
+{
+    for (int j = 0; j < 22; j++)
+        x[j] = j < 20 ? 1e-6 : j == 20 ? 0.03 : 0.01;
+}
+
+static void test_baselines_are_of_the_records_by_the_rule_of_the_study_on_any_number_of_threads(void **state)
+{
+    (void)state;
+    Problem p;
+    Err err = {0};
+    double x[22];
+    Baseline *both[3]; /* worst, mean, worst on two threads */
+    design_of(x);
+    for (int i = 0; i < 3; i++) {
+        both[i] = calloc(N_BASELINES, sizeof **both);
+        open_tower(&p, "builtin:sylmar-like", i == 1 ? ROBUST_MEAN : ROBUST_WORST, i == 2 ? 2 : 1);
+        CHECK_OK(baselines_find(&p, x, both[i], &err), &err);
+        for (int k = BASELINE_NO_CORE; k <= BASELINE_RIGID; k++) {
+            SimResult each[2];
+            for (size_t r = 0; r < 2; r++)
+                CHECK_OK(sim_run(tower_worker(tower_of(&p), r, 0), k ? SCENE_RIGID : SCENE_NO_CORE, x, &each[r], &err),
+                         &err);
+            assert_close(both[i][k].value[0],
+                         i == 1 ? 0.5 * (each[0].j1_m + each[1].j1_m) : fmax(each[0].j1_m, each[1].j1_m), 1e-12);
+        }
+        problem_close(&p);
+    }
+    assert_memory_equal(both[0][BASELINE_TMD].value, both[2][BASELINE_TMD].value, sizeof both[0]->value);
+    assert_memory_equal(both[0][BASELINE_LINKS].value, both[2][BASELINE_LINKS].value, sizeof both[0]->value);
+    for (int i = 0; i < 3; i++)
+        free(both[i]);
+}
+
+static double goal(const Baseline *b, const Baseline *no_core)
+{
+    double sum = 0;
+    for (int k = 0; k < 3; k++)
+        sum += b->value[k] / no_core->value[k];
+    return sum;
+}
+
+static void test_devices_are_better_than_none_and_than_their_neighbours(void **state)
+{
+    (void)state;
+    Problem p;
+    Err err = {0};
+    double x[22];
+    Baseline b[N_BASELINES];
+    design_of(x);
+    open_tower(&p, "none", ROBUST_WORST, 1);
+    CHECK_OK(baselines_find(&p, x, b, &err), &err);
+    for (int k = BASELINE_TMD; k <= BASELINE_LINKS; k++) {
+        const double found = goal(&b[k], &b[BASELINE_NO_CORE]);
+        assert_true(found < 3);
+        for (int i = 0; i < 6; i++) {
+            LinearDevice d = b[k].device;
+            Baseline other = b[k];
+            d.tmd_hz *= i == 0 ? 1.3 : i == 1 ? 0.75 : 1;
+            d.tmd_damping *= i == 2 ? 2 : i == 3 ? 0.5 : 1;
+            d.link_ns_m *= i == 4 ? 2 : i == 5 ? 0.5 : 1;
+            SimWorker *w = tower_worker(tower_of(&p), 0, 0);
+            sim_worker_device(w, &d);
+            CHECK_OK(sim_run(w, k == BASELINE_TMD ? SCENE_TMD : SCENE_LINKS, x, &other.first, &err), &err);
+            other.value[0] = other.first.j1_m;
+            other.value[1] = other.first.j2_m;
+            other.value[2] = other.first.j3_g;
+            /* the sketch that was searched on is not the whole scene */
+            assert_true(goal(&other, &b[BASELINE_NO_CORE]) > found - 0.02);
+        }
+    }
+    problem_close(&p);
+}
+
+static void test_the_rigid_connection_is_the_limit_of_gaps_that_vanish(void **state)
+{
+    (void)state;
+    Problem p;
+    Err err = {0};
+    double x[22];
+    SimResult rigid, closed;
+    design_of(x);
+    open_tower(&p, "none", ROBUST_WORST, 1);
+    SimWorker *w = tower_worker(tower_of(&p), 0, 0);
+    CHECK_OK(sim_run(w, SCENE_RIGID, x, &rigid, &err), &err);
+    CHECK_OK(sim_run(w, SCENE_IMPACT, x, &closed, &err), &err);
+    assert_close(closed.j1_m, rigid.j1_m, 0.02);
+    assert_close(closed.j2_m, rigid.j2_m, 0.05);
+    problem_close(&p);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_a_tuned_mass_answers_a_harmonic_as_its_transfer_function),
+        cmocka_unit_test(test_warburtons_device_has_the_least_variance_under_white_noise),
+        cmocka_unit_test(test_tuned_mass_and_links_agree_with_runge_and_kutta_in_the_displacements),
+        cmocka_unit_test(test_links_without_damping_are_no_links_and_with_much_of_it_the_rigid_connection),
+        cmocka_unit_test(test_baselines_are_of_the_records_by_the_rule_of_the_study_on_any_number_of_threads),
+        cmocka_unit_test(test_devices_are_better_than_none_and_than_their_neighbours),
+        cmocka_unit_test(test_the_rigid_connection_is_the_limit_of_gaps_that_vanish),
+    };
+    return cmocka_run_group_tests_name("linear", tests, NULL, NULL);
+}
