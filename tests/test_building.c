@@ -724,6 +724,34 @@ static void test_a_drawing_shows_names_as_text_and_storeys_as_a_stick(void **sta
     expect(66, "nowhere/K.csv", "building nowhere");
 }
 
+static void test_modes_have_shapes_that_are_listed_and_drawn(void **state)
+{
+    (void)state;
+    json_t *m = json_of("modes configs/quick.ini --svg @/shapes.svg --json");
+    const json_t *shapes = json_object_get(m, "building_shapes"), *share = json_object_get(m, "building_mass_share");
+    double sum = 0;
+    assert_int_equal((int)json_array_size(shapes), 20);
+    for (size_t i = 0; i < 20; i++) {
+        const json_t *shape = json_array_get(shapes, i);
+        size_t changes = 0;
+        double largest = 0;
+        for (size_t j = 0; j < 20; j++) {
+            const double u = json_number_value(json_array_get(shape, j));
+            largest = fmax(largest, fabs(u));
+            changes += j > 0 && u * json_number_value(json_array_get(shape, j - 1)) < 0;
+        }
+        assert_close(largest, 1, 1e-12);
+        if (i < 19) /* the last one is local */
+            assert_int_equal((int)changes, (int)i);
+        sum += json_number_value(json_array_get(share, i));
+    }
+    assert_close(sum, 1, 1e-12);
+    json_decref(m);
+    char *svg = read_in_place("shapes.svg");
+    assert_non_null(strstr(svg, "mode 10: "));
+    free(svg);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -754,6 +782,7 @@ int main(void)
         cmocka_unit_test(test_only_a_frame_has_more_than_its_floors),
         cmocka_unit_test(test_the_full_model_is_simulated_alike_by_two_engines),
         cmocka_unit_test(test_a_building_is_summed_up_and_drawn),
+        cmocka_unit_test(test_modes_have_shapes_that_are_listed_and_drawn),
         cmocka_unit_test(test_a_drawing_shows_names_as_text_and_storeys_as_a_stick),
     };
     return cmocka_run_group_tests(tests, make_place, clear_place);

@@ -8,6 +8,7 @@
 #include "cmd/commands.h"
 #include "cmd/designs.h"
 #include "cmd/show.h"
+#include "report/heights.h"
 #include "simulator/scenario.h"
 #include "settings/settings.h"
 
@@ -22,6 +23,9 @@ typedef struct {
     double damping[FLOORS_MAX], building_share[FLOORS_MAX], core_share[FLOORS_MAX]; /* [-] participating masses */
     double psa_building[FLOORS_MAX], psa_zero_gap[FLOORS_MAX]; /* [g] with --spectrum, at their periods */
     int has_spectrum;
+    double z[FLOORS_MAX];                 /* [m] of the floors */
+    double shape[FLOORS_MAX][FLOORS_MAX]; /* [mode][floor] of the building, largest 1 */
+    int vertical[FLOORS_MAX];             /* resembles no mode of the floors */
 } Modes;
 
 static Status choose_thickness(const Args *args, Modes *m, Err *err)
@@ -39,14 +43,30 @@ static Status choose_thickness(const Args *args, Modes *m, Err *err)
     return STATUS_OK;
 }
 
-/* gamma_i^2 over the whole mass of M (n, n). */
-static void mass_shares(int n, const double M[], const double gamma[], double share[])
+/* gamma_i^2 over their sum, which is the whole mass; of `all` modes the first n. */
+static void mass_shares(int n, int all, const double gamma[], double share[])
 {
     double mass = 0;
-    for (int i = 0; i < n * n; i++)
-        mass += M[i];
+    for (int i = 0; i < all; i++)
+        mass += gamma[i] * gamma[i];
     for (int i = 0; i < n; i++)
         share[i] = gamma[i] * gamma[i] / mass;
+}
+
+static void find_shapes(const Building *b, Modes *m)
+{
+    double z = 0;
+    for (int i = 0; i < m->n; i++) {
+        double largest = 0;
+        for (int j = 0; j < m->n; j++) {
+            const double value = b->model.phi[j * b->model.n + i];
+            largest = fabs(value) > fabs(largest) ? value : largest;
+        }
+        for (int j = 0; j < m->n; j++)
+            m->shape[i][j] = b->model.phi[j * b->model.n + i] / largest;
+        m->vertical[i] = b->model.like[i] < 0;
+        m->z[i] = z += b->storey_m[i];
+    }
 }
 
 static Status participate(const Scenario *w, Modes *m, Err *err)
@@ -57,10 +77,11 @@ static Status participate(const Scenario *w, Modes *m, Err *err)
         return fail(err, STATUS_NO_MEMORY, "modes: no memory for %d storeys", m->n);
     const Status status = core_beam_make(core, &w->options.core, m->n, b->storey_m, m->t_base_m, m->t_top_m, err);
     if (status == STATUS_OK)
-        mass_shares(m->n, core->M, core->gamma, m->core_share);
+        mass_shares(m->n, m->n, core->gamma, m->core_share);
     free(core);
-    mass_shares(m->n, b->M, b->gamma, m->building_share);
-    memcpy(m->damping, b->zeta, (size_t)m->n * sizeof *b->zeta);
+    mass_shares(m->n, b->model.n, b->model.gamma, m->building_share);
+    memcpy(m->damping, b->model.zeta, (size_t)m->n * sizeof *m->damping);
+    find_shapes(b, m);
     return status;
 }
 
@@ -110,6 +131,10 @@ static Status print_json(const Modes *m, const Settings *s, Err *err)
     json_object_set_new(o, "building_mass_share", json_numbers((size_t)m->n, m->building_share));
     json_object_set_new(o, "core_mass_share", json_numbers((size_t)m->n, m->core_share));
     json_object_set_new(o, "building_damping", json_numbers((size_t)m->n, m->damping));
+    json_t *shapes = json_array();
+    for (int i = 0; i < m->n; i++)
+        json_array_append_new(shapes, json_numbers((size_t)m->n, m->shape[i]));
+    json_object_set_new(o, "building_shapes", shapes);
     if (m->has_spectrum) {
         json_object_set_new(o, "building_psa_g", json_numbers((size_t)m->n, m->psa_building));
         json_object_set_new(o, "zero_gap_psa_g", json_numbers((size_t)m->n, m->psa_zero_gap));
@@ -138,6 +163,27 @@ static void print_table(const Modes *m, const Settings *s)
     }
 }
 
+enum { SHAPES_DRAWN = 10, COLUMNS = 5 };
+
+/* The first horizontal modes of the building. */
+static Status draw_shapes(const Modes *m, const Settings *s, const char *path, Err *err)
+{
+    HeightPanel panels[SHAPES_DRAWN] = {{0}};
+    char titles[SHAPES_DRAWN][64], title[OPTION_TEXT_MAX + 64];
+    int n = 0;
+    for (int i = 0; i < m->n && n < SHAPES_DRAWN; i++) {
+        if (m->vertical[i])
+            continue;
+        snprintf(titles[n], sizeof titles[n], "mode %d: %.4g Hz, %.3g %%", i + 1, m->building[i],
+                 100 * m->building_share[i]);
+        panels[n] = (HeightPanel){.title = titles[n], .curve = {m->shape[i]}, .from_ground = 1};
+        n++;
+    }
+    snprintf(title, sizeof title, "mode shapes of %s: frequency, participating mass", s->building.model);
+    const Heights h = {title, m->n, m->z, n < COLUMNS ? n : COLUMNS, n, panels};
+    return heights_draw(&h, path, err);
+}
+
 static Status run(const Args *args, Err *err)
 {
     Settings s;
@@ -149,6 +195,8 @@ static Status run(const Args *args, Err *err)
                                      : scenario_open_still(&w, &options, err));
     Status status = compute(args, &w, &m, err);
     scenario_close(&w);
+    if (status == STATUS_OK && args_has(args, "--svg"))
+        status = draw_shapes(&m, &s, args_value(args, "--svg"), err);
     if (status == STATUS_OK && args_has(args, "--json"))
         status = print_json(&m, &s, err);
     else if (status == STATUS_OK)
@@ -160,6 +208,7 @@ static const ArgOption OPTIONS[] = {
     {"--design", "FILE", NULL, 0, "take the core's thickness from it: " DESIGN_WORDS},
     {"--spectrum", NULL, NULL, 0,
      "pseudo-acceleration of the configured motion at the periods [g], with the building's damping"},
+    {"--svg", "FILE", NULL, 0, "the building's first ten mode shapes, drawn by gnuplot"},
     OPTION_JSON,
     OPTION_SET,
     OPTION_END,
@@ -174,7 +223,8 @@ const Command CMD_MODES = {
         "Natural frequencies [Hz] of the building, of the core and of the two rigidly connected (zero gap), with the\n"
         "share of the mass that takes part in each mode and the building's damping. Without --design the core's\n"
         "thickness runs from 12 mm in the first storey to 6.4 mm in the last; an effective section (core.section)\n"
-        "does not depend on it. `imtet building` draws mode shapes.",
+        "does not depend on it. With building.modes the lowest modes of the fuller model are listed, vertical ones "
+        "included.",
     .options = OPTIONS,
     .run = run,
 };
