@@ -394,6 +394,27 @@ static void test_a_stiff_undamped_oscillator_is_followed_between_samples(void **
     }
 }
 
+/* Oscillators are advanced four at a time. */
+static void test_the_answer_of_a_period_does_not_depend_on_those_beside_it(void **state)
+{
+    enum { N = 11 };
+    (void)state;
+    double T[N], psa[N], alone;
+    Motion m = {.n = 4000, .dt_s = 0.01, .accel = malloc(4000 * sizeof(double))};
+    for (size_t i = 0; i < m.n; i++)
+        m.accel[i] = sin(0.11 * (double)i) * cos(0.0003 * (double)(i * i));
+    for (int i = 0; i < N; i++)
+        T[i] = i == 5 ? 0 : 0.015 * pow(2.1, i);
+    for (size_t n = 1; n <= N; n++) {
+        spectrum_psa(&m, 0.05, n, T, psa);
+        for (size_t i = 0; i < n; i++) {
+            spectrum_psa(&m, 0.05, 1, &T[i], &alone);
+            assert_true(psa[i] == alone);
+        }
+    }
+    motion_free(&m);
+}
+
 static void test_short_and_long_periods_reach_their_limits(void **state)
 {
     (void)state;
@@ -483,6 +504,7 @@ int main(void)
         cmocka_unit_test(test_a_harmonic_motion_gives_the_textbook_response),
         cmocka_unit_test(test_an_irregular_motion_agrees_with_fine_runge_kutta),
         cmocka_unit_test(test_a_stiff_undamped_oscillator_is_followed_between_samples),
+        cmocka_unit_test(test_the_answer_of_a_period_does_not_depend_on_those_beside_it),
         cmocka_unit_test(test_short_and_long_periods_reach_their_limits),
         cmocka_unit_test(test_figures_of_a_triangle_pulse),
         cmocka_unit_test(test_figures_of_a_constant),

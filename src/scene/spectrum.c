@@ -1,6 +1,7 @@
 #include "scene/spectrum.h"
 
 #include <math.h>
+#include <stdint.h>
 
 #include "base/units.h"
 
@@ -52,7 +53,7 @@ typedef struct {
 } State;
 
 /* Ground acceleration a + slope tau. The response to unit initial displacement is h1 + 2 zeta w h. */
-static inline State advance(const Oscillator *o, const Flow *f, State y, double a, double slope)
+static State advance(const Oscillator *o, const Flow *f, State y, double a, double slope)
 {
     const double g = f->h1 + 2 * o->zeta * o->w * f->h;
     return (State){.u = g * y.u + f->h * y.v - a * f->I1 - slope * f->I2,
@@ -128,52 +129,146 @@ static double largest_inside(const Interval *in, double dt, double v_end)
     return largest;
 }
 
-/* Can |u| be larger than `largest` in the interval? It is a line p (what the ground's line leads to in the end) and a
- * free vibration e about it, whose energy never grows: |u| <= max |p| + root(e(0)^2 + (e'(0) / w)^2). */
-static inline int may_exceed(const Interval *in, double dt, double largest)
-{
-    const Oscillator *o = in->o;
-    const double rise = -in->slope * o->per_ww, p = -in->a * o->per_ww - 2 * o->zeta * o->w * rise * o->per_ww;
-    const double e = in->y.u - p, de = (in->y.v - rise) * o->w * o->per_ww;
-    const double room = largest - fmax(fabs(p), fabs(p + rise * dt));
-    return !(room >= 0 && e * e + de * de <= room * room);
-}
+/* ---- four oscillators at once ------------------------------------------------------------------------------------ */
 
-/* Advances y over an interval and returns the largest |u| in it, or `so_far` where that is larger. */
-static double cross(const Oscillator *o, const Flow *f, State *y, double a, double slope, double dt, double so_far)
-{
-    const Interval in = {.o = o, .y = *y, .a = a, .slope = slope};
-    *y = advance(o, f, in.y, a, slope);
-    if (!may_exceed(&in, dt, so_far))
-        return so_far;
-    return fmax(so_far, fmax(fabs(y->u), largest_inside(&in, dt, y->v)));
-}
+typedef double v2 __attribute__((vector_size(16))); /* what every x86-64 and every ARM64 computes at once */
+typedef int64_t m2 __attribute__((vector_size(16)));
+enum { PAIRS = 2, LANES = 2 * PAIRS };
 
-static double largest_displacement(const Motion *m, const Oscillator *o)
+/* What an interval of length dt does to four oscillators, and what the bound on |u| needs. */
+typedef struct {
+    v2 uu[PAIRS], uv[PAIRS], vu[PAIRS], vv[PAIRS]; /* u' = uu u + uv v - ua a - us slope, v' likewise */
+    v2 ua[PAIRS], us[PAIRS], va[PAIRS], vs[PAIRS];
+    v2 per_ww[PAIRS], lag[PAIRS], per_w[PAIRS], ww[PAIRS],
+        damping[PAIRS]; /* 1 / w^2, 2 zeta / w^3, 1 / w, w^2, 2 zeta w */
+    double dt, chord;   /* dt^4 / 64 */
+} Flow4;
+
+static Flow4 flow4(const Oscillator o[LANES], double dt)
 {
-    const Flow f = flow(o, m->dt_s);
-    State y = {0};
-    double largest = 0;
-    for (size_t i = 0; i + 1 < m->n; i++) {
-        const double slope = (m->accel[i + 1] - m->accel[i]) / m->dt_s;
-        largest = cross(o, &f, &y, m->accel[i], slope, m->dt_s, largest);
+    Flow4 g = {.dt = dt, .chord = pow(dt, 4) / 64};
+    for (int k = 0; k < LANES; k++) {
+        const Flow f = flow(&o[k], dt);
+        const int h = k / 2, j = k % 2;
+        g.uu[h][j] = f.h1 + 2 * o[k].zeta * o[k].w * f.h;
+        g.uv[h][j] = f.h;
+        g.ua[h][j] = f.I1;
+        g.us[h][j] = f.I2;
+        g.vu[h][j] = -o[k].w * o[k].w * f.h;
+        g.vv[h][j] = f.h1;
+        g.va[h][j] = f.h;
+        g.vs[h][j] = f.I1;
+        g.per_ww[h][j] = o[k].per_ww;
+        g.lag[h][j] = 2 * o[k].zeta * o[k].w * o[k].per_ww;
+        g.per_w[h][j] = o[k].w * o[k].per_ww;
+        g.ww[h][j] = o[k].w * o[k].w;
+        g.damping[h][j] = 2 * o[k].zeta * o[k].w;
     }
-    const double half_period = M_PI / o->wd;
-    const Flow rest = flow(o, half_period);
-    return cross(o, &rest, &y, 0, 0, half_period, largest);
+    return g;
+}
+
+typedef struct {
+    v2 u[PAIRS], v[PAIRS], largest[PAIRS];
+} State4;
+
+/* Can |u| of pair h be larger than so far in the interval? It is a line p (what the ground's line leads to in the end)
+ * and a free vibration e about it, whose energy never grows: |u| <= max |p| + root(e(0)^2 + (e'(0) / w)^2). All bits
+ * where it can. */
+static inline m2 may_exceed(const Flow4 *g, const State4 *y, int h, double a, double slope)
+{
+    const m2 magnitude = {INT64_MAX, INT64_MAX}; /* all but the sign */
+    const v2 rise = -slope * g->per_ww[h], p = -a * g->per_ww[h] - g->lag[h] * rise;
+    const v2 e = y->u[h] - p, de = (y->v[h] - rise) * g->per_w[h], square = e * e + de * de;
+    const v2 room0 = y->largest[h] - (v2)((m2)p & magnitude);
+    const v2 room1 = y->largest[h] - (v2)((m2)(p + rise * g->dt) & magnitude);
+    return ~((room0 >= 0) & (room1 >= 0) & (square <= room0 * room0) & (square <= room1 * room1));
+}
+
+/* Can |u| be larger than so far, which is no less than at both ends? Where |u''| <= c, u lies less than dt^2 / 8 c above
+ * its chord; u'' = r at the beginning, r' = j there, is a free vibration: c^2 = r^2 + (j / w)^2. The better bound for
+ * periods much longer than dt. */
+static inline m2 may_exceed_chord(const Flow4 *g, const State4 *y, const State4 *end, int h, double a, double slope)
+{
+    const m2 magnitude = {INT64_MAX, INT64_MAX};
+    const v2 r = -a - g->damping[h] * y->v[h] - g->ww[h] * y->u[h];
+    const v2 j = -slope - g->damping[h] * r - g->ww[h] * y->v[h];
+    const v2 above = g->chord * (r * r + j * j * g->per_ww[h]);
+    const v2 room0 = end->largest[h] - (v2)((m2)y->u[h] & magnitude);
+    const v2 room1 = end->largest[h] - (v2)((m2)end->u[h] & magnitude);
+    return ~((above <= room0 * room0) & (above <= room1 * room1));
+}
+
+static __attribute__((noinline)) void look_inside(const Oscillator o[LANES], const State4 *y, State4 *end, double a,
+                                                  double slope, double dt, const m2 where[PAIRS])
+{
+    for (int k = 0; k < LANES; k++) {
+        const int h = k / 2, j = k % 2;
+        const Interval in = {.o = &o[k], .y = {y->u[h][j], y->v[h][j]}, .a = a, .slope = slope};
+        if (where[h][j])
+            end->largest[h][j] = fmax(end->largest[h][j], largest_inside(&in, dt, end->v[h][j]));
+    }
+}
+
+/* Advances y over an interval and raises the largest |u| to what is in it. */
+static inline void cross(const Oscillator o[LANES], const Flow4 *g, State4 *y, double a, double slope)
+{
+    const m2 magnitude = {INT64_MAX, INT64_MAX};
+    m2 where[PAIRS], any = {0, 0};
+    State4 end;
+#pragma GCC unroll 2
+    for (int h = 0; h < PAIRS; h++) {
+        where[h] = may_exceed(g, y, h, a, slope);
+        any |= where[h];
+        end.u[h] = g->uu[h] * y->u[h] + g->uv[h] * y->v[h] - a * g->ua[h] - slope * g->us[h];
+        end.v[h] = g->vu[h] * y->u[h] + g->vv[h] * y->v[h] - a * g->va[h] - slope * g->vs[h];
+        const v2 reached = (v2)((m2)end.u[h] & magnitude);
+        const m2 higher = reached > y->largest[h];
+        end.largest[h] = (v2)(((m2)reached & higher) | ((m2)y->largest[h] & ~higher));
+    }
+    if (any[0] | any[1]) {
+        any = (m2){0, 0};
+#pragma GCC unroll 2
+        for (int h = 0; h < PAIRS; h++) {
+            where[h] &= may_exceed_chord(g, y, &end, h, a, slope);
+            any |= where[h];
+        }
+        if (any[0] | any[1])
+            look_inside(o, y, &end, a, slope, g->dt, where);
+    }
+    *y = end;
+}
+
+/* Over the motion and then half a period of each of them at rest. */
+static void largest_displacements(const Motion *m, const Oscillator o[LANES], double largest[LANES])
+{
+    State4 y = {0};
+    const Flow4 g = flow4(o, m->dt_s);
+    for (size_t i = 0; i + 1 < m->n; i++)
+        cross(o, &g, &y, m->accel[i], (m->accel[i + 1] - m->accel[i]) / m->dt_s);
+    for (int k = 0; k < LANES; k++) {
+        const double half_period = M_PI / o[k].wd;
+        const Flow rest = flow(&o[k], half_period);
+        const Interval in = {.o = &o[k], .y = {y.u[k / 2][k % 2], y.v[k / 2][k % 2]}};
+        const State end = advance(&o[k], &rest, in.y, 0, 0);
+        largest[k] = fmax(y.largest[k / 2][k % 2], fmax(fabs(end.u), largest_inside(&in, half_period, end.v)));
+    }
 }
 
 void spectrum_psa(const Motion *m, double zeta, size_t n, const double T[], double psa[])
 {
+    const size_t groups = (n + LANES - 1) / LANES;
 #pragma omp parallel for schedule(dynamic)
-    for (size_t i = 0; i < n; i++) {
-        if (!(T[i] > 0)) { /* rigid: moves with the ground */
-            psa[i] = motion_peak(m);
-            continue;
+    for (size_t i = 0; i < groups; i++) {
+        Oscillator o[LANES];
+        double largest[LANES];
+        const size_t here = n - i * LANES < LANES ? n - i * LANES : LANES;
+        for (size_t k = 0; k < LANES; k++) { /* idle lanes repeat the last one */
+            const double period = T[i * LANES + (k < here ? k : here - 1)], w = 2 * M_PI / (period > 0 ? period : 1);
+            o[k] = (Oscillator){.w = w, .zeta = zeta, .wd = w * sqrt(1 - zeta * zeta), .per_ww = 1 / (w * w)};
         }
-        const double w = 2 * M_PI / T[i];
-        const Oscillator o = {.w = w, .zeta = zeta, .wd = w * sqrt(1 - zeta * zeta), .per_ww = 1 / (w * w)};
-        psa[i] = w * w * largest_displacement(m, &o);
+        largest_displacements(m, o, largest);
+        for (size_t k = 0; k < here; k++) /* a rigid one moves with the ground */
+            psa[i * LANES + k] = T[i * LANES + k] > 0 ? o[k].w * o[k].w * largest[k] : motion_peak(m);
     }
 }
 
