@@ -22,7 +22,7 @@ typedef struct {
 static const Preset PRESETS[] = {
     {"coarse", ACCURACY_COARSE, 0},
     {"standard", ACCURACY_STANDARD, 0},
-    {"standard, 2 steps per contact", ACCURACY_STANDARD, 2},
+    {"standard, 1 step per contact", ACCURACY_STANDARD, 1},
     {"standard, 4 steps per contact", ACCURACY_STANDARD, 4},
     {"standard, 8 steps per contact", ACCURACY_STANDARD, 8},
 };

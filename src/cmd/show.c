@@ -93,6 +93,8 @@ json_t *json_result(SceneKind kind, const SimResult *r)
         json_object_set_new(o, "dashpot_n", json_number(r->dashpot_n));
     }
     json_object_set_new(o, "v0_limited", json_integer(r->v0_limited));
+    json_object_set_new(o, "settled_s", json_number(r->settled_s));
+    json_object_set_new(o, "repeated", json_integer(r->repeated));
 
     const size_t n_floors = (size_t)r->n_floors, n_modes = (size_t)r->n_modes;
     json_object_set_new(o, "peak_displacement_m", json_numbers(n_floors, r->peak_displacement_m));

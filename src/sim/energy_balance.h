@@ -18,6 +18,12 @@ static inline double energy_balance_scale(double input, double out)
     return scale > 0 ? scale : 1;
 }
 
+/* [%] Of the input: not a number where the ground has put in no net energy. */
+static inline double energy_share(double part, double input)
+{
+    return input > 0 ? 100 * part / input : NAN;
+}
+
 /* From the shares of the n_modes modes those of groups of them. */
 static inline void energy_balance_sum_shares(SimResult *result)
 {
@@ -27,22 +33,22 @@ static inline void energy_balance_sum_shares(SimResult *result)
 }
 
 /* From the joules already in result (input, kinetic_strain, contacts) and damped[nb + nc], building modes first, their
- * shares booked as like[nb] says. With no energy put in every share is zero. */
+ * shares booked as like[nb] says. */
 static inline void energy_balance_close(SimResult *result, int nb, const int like[], int nc, const double damped[])
 {
     double building = 0, core = 0;
-    const double input = result->input_energy_j, percent = input > 0 ? 100 / input : 0;
+    const double input = result->input_energy_j;
     for (int i = 0; i < nb; i++) {
         building += damped[i];
         if (like[i] >= 0)
-            result->mode_share_pct[like[i]] += percent * damped[i];
+            result->mode_share_pct[like[i]] += energy_share(damped[i], input);
     }
     for (int i = nb; i < nb + nc; i++)
         core += damped[i];
     result->damped_building_j = building;
     result->damped_core_j = core;
     energy_balance_sum_shares(result);
-    result->edcs_pct = percent * core;
+    result->edcs_pct = energy_share(core, input);
     const double out = result->kinetic_strain_j + building + core + result->contact_stored_j + result->contact_loss_j +
                        result->clamp_j;
     result->energy_balance_error = fabs(input - out) / energy_balance_scale(input, out);

@@ -34,6 +34,7 @@ typedef struct {
     OnsetLog *onsets;         /* filled from onsets->n on; NULL: not wanted */
     double steps_per_contact; /* `fast`: all that `accuracy` says follows so many steps; 0: as it is */
     double refinement;        /* `fast`: all that `accuracy` says is refined by this factor; 0: by none */
+    const double *tail_input; /* `fast`: (n of the motion) [J] of tail_input, sim/tail.h; NULL: contacts to the end */
     SimSampleFn sample;       /* `fast`: called at every sample of the motion; NULL: not wanted */
     void *sample_user;
     ForceMonitor *forces; /* set for this design; NULL: not wanted */

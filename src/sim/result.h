@@ -59,10 +59,12 @@ typedef struct {
     char reason[160]; /* empty when outcome is RUN_OK */
 
     double j1_m, j2_m, j3_g;              /* max |u|, max interstorey drift, max absolute acceleration / 9.81 */
-    double ed1_pct, ed5_10_pct, edcs_pct; /* shares of input_energy_j dissipated by modes 1, 5..10, the core */
+    double ed1_pct, ed5_10_pct, edcs_pct; /* shares of input_energy_j dissipated by modes 1, 5..10, the core;
+                                             not numbers where it is not positive */
     double mcore_kg;
     double input_energy_j;       /* - int a (1'M u' + 1'Mc v') dt */
     double energy_balance_error; /* |input - kinetic - strain - damped - contacts| / input */
+    double settled_s;            /* from here on no contact was followed: too little energy was left */
     long impacts, v0_limited;    /* contact onsets on all floors; those slower than the lower limit of v0 */
 
     int n_floors, n_modes;

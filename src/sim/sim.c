@@ -11,13 +11,15 @@
 #include "sim/engine.h"
 #include "sim/linear.h"
 #include "sim/model.h"
+#include "sim/tail.h"
 
 struct Scene {
     SceneOptions options;
     const Motion *motion; /* borrowed */
     Building building;
     const EngineEntry *engine;
-    EngineOptions run; /* of every run; each worker adds its own work space and sample function */
+    double *tail_input; /* (n of the motion), NULL without one */
+    EngineOptions run;  /* of every run; each worker adds its own work space and sample function */
 };
 
 struct SimWorker {
@@ -48,6 +50,15 @@ double sim_energy_balance_max(const SimOptions *o)
     return o->energy_balance_max > 0 ? o->energy_balance_max : o->accuracy == ACCURACY_COARSE ? 0.03 : 1e-3;
 }
 
+static Status set_tail_input(Scene *scene, Err *err)
+{
+    double *input = malloc(scene->motion->n * sizeof *input);
+    if (!input)
+        return fail(err, STATUS_NO_MEMORY, "%s: no memory for %zu samples", scene->motion->name, scene->motion->n);
+    scene->run.tail_input = scene->tail_input = input;
+    return tail_input(&scene->building.model, scene->motion, input, err);
+}
+
 Status scene_create(Scene **out, const SceneOptions *o, const Motion *motion, Err *err)
 {
     *out = NULL;
@@ -65,18 +76,22 @@ Status scene_create(Scene **out, const SceneOptions *o, const Motion *motion, Er
     scene->run.duration = o->sim.duration_s;
     if (scene->run.duration == 0 && motion)
         scene->run.duration = (double)(motion->n - 1) * motion->dt_s;
-    const Status status = building_load(&scene->building, &o->building, err);
+    Status status = building_load(&scene->building, &o->building, err);
+    if (status == STATUS_OK && motion)
+        status = set_tail_input(scene, err);
     if (status == STATUS_OK)
         *out = scene;
     else
-        free(scene);
+        scene_free(scene);
     return status;
 }
 
 void scene_free(Scene *scene)
 {
-    if (scene)
+    if (scene) {
         building_free(&scene->building);
+        free(scene->tail_input);
+    }
     free(scene);
 }
 
@@ -184,8 +199,10 @@ void sim_worker_floors(const SimWorker *worker, const SimSample *sample, double 
 
 static void check_result(SimResult *r, double energy_balance_max)
 {
-    const double all[] = {r->j1_m, r->j2_m, r->j3_g, r->ed1_pct, r->ed5_10_pct, r->edcs_pct, r->energy_balance_error};
-    for (size_t i = 0; i < sizeof all / sizeof all[0] && r->outcome == RUN_OK; i++)
+    const double all[] = {r->j1_m,           r->j2_m,    r->j3_g,       r->energy_balance_error,
+                          r->input_energy_j, r->ed1_pct, r->ed5_10_pct, r->edcs_pct};
+    const size_t n = sizeof all / sizeof all[0] - (r->input_energy_j > 0 ? 0 : 3); /* shares of nothing are undefined */
+    for (size_t i = 0; i < n && r->outcome == RUN_OK; i++)
         if (!isfinite(all[i]))
             r->outcome = RUN_NOT_FINITE;
     if (r->outcome == RUN_OK && r->energy_balance_error > energy_balance_max) {
@@ -300,6 +317,8 @@ Status sim_run(SimWorker *w, SceneKind kind, const double x[], SimResult *result
         if (kind == SCENE_LINKS) /* what acts on a floor from the core */
             result->forces.contact_force_max_n = result->dashpot_n;
     }
+    if (result->settled_s == 0)
+        result->settled_s = w->run.duration; /* of an engine that follows contacts to the end */
     set_drift_ratios(scene->building.storey_m, result);
     result->mcore_kg = kind == SCENE_NO_CORE ? 0 : w->core.mass_kg;
     set_contact_figures(&scene->options.contact, result);

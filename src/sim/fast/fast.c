@@ -134,13 +134,15 @@ FastTolerances fast_tolerances(Accuracy accuracy)
                              .energy_tolerance = 3e-5,
                              .steps_max = 2e7,
                              .peak_tolerance = 3e-3,
-                             .flexibility_left_out = 0.1},
-        [ACCURACY_STANDARD] = {.steps_per_contact = 1,
-                               .solver_tolerance = 2e-3,
-                               .energy_tolerance = 3e-6,
+                             .flexibility_left_out = 0.1,
+                             .tail_tolerance = 2e-3},
+        [ACCURACY_STANDARD] = {.steps_per_contact = 2,
+                               .solver_tolerance = 5e-4,
+                               .energy_tolerance = 3e-7,
                                .steps_max = 2e7,
-                               .peak_tolerance = 1e-3,
-                               .flexibility_left_out = 0.005},
+                               .peak_tolerance = 4e-4,
+                               .flexibility_left_out = 0.002,
+                               .tail_tolerance = 4e-4},
         [ACCURACY_FINE] = {.steps_per_contact = 80,
                            .solver_tolerance = 1e-12,
                            .energy_tolerance = 0,
@@ -159,6 +161,7 @@ FastTolerances fast_tolerances_finer(Accuracy accuracy, double times)
     tolerances.energy_tolerance /= times * times * times;
     tolerances.peak_tolerance /= times;
     tolerances.flexibility_left_out /= times * times;
+    tolerances.tail_tolerance /= times;
     return tolerances;
 }
 

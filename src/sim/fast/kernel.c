@@ -205,6 +205,39 @@ static long free_intervals(FastWork *k, const Motion *motion, long first, long e
     return n;
 }
 
+/* Samples of the motion between two looks at what is left. */
+enum { SETTLED_EVERY = 16 };
+
+/* Of the largest energy: where no more is left, no peak is to come that was not there with ten times the amplitude. */
+static const double PEAK_ENERGY = 0.01;
+
+/* Is so little energy left, and to come from sample i of the motion on, that contacts can change no result? */
+static int is_settled(FastWork *k, const Motion *motion, long i)
+{
+    const double *input = k->options->tail_input;
+    if (!input || k->m_pad == k->nb_pad)
+        return 0;
+    const double energy = 0.5 * twice_energy(k, &k->now, 0, k->mf);
+    k->most_energy = larger(energy, k->most_energy);
+    const double root = sqrt(energy) + sqrt(i < (long)motion->n ? k->mass_ratio * input[i] : 0), left = root * root;
+    return !k->in_contact && left <= k->tolerances->tail_tolerance * energy_scale(k) &&
+           left <= PEAK_ENERGY * k->most_energy;
+}
+
+/* The rest of the motion without contacts: linear, so that the energies are exact. */
+static void settle(FastWork *k, const Motion *motion, long from, long end)
+{
+    const Level *l = level_ready(k, 0, 0);
+    for (long i = from; i < end; i++) {
+        const Ramp a = ground(motion, i);
+        k->step_start = (double)i * motion->dt_s;
+        flow_interval(k, l, a.start, a.end);
+        send_sample(k, (double)(i + 1) * motion->dt_s);
+    }
+    k->flights += end - from;
+    leave_free_intervals(k);
+}
+
 static int integrate(FastWork *k, const Motion *motion, double duration)
 {
     const long full = (long)floor(duration / motion->dt_s * (1 + 1e-14));
@@ -214,8 +247,16 @@ static int integrate(FastWork *k, const Motion *motion, double duration)
     k->contact_level = LEVEL_MAX;
     set_base(k, 0);
     set_base(k, motion->dt_s);
+    long look = 0; /* at the next sample from this one on */
+    k->settled = duration;
     send_sample(k, 0);
     for (long i = 0; i < full;) {
+        if (i >= look && is_settled(k, motion, i)) {
+            k->settled = (double)i * motion->dt_s;
+            settle(k, motion, i, full);
+            break;
+        }
+        look = i >= look ? i + SETTLED_EVERY : look;
         const long passed = free_intervals(k, motion, i, full);
         const Ramp a = ground(motion, i);
         if ((!passed && !interval(k, (double)i * motion->dt_s, a.start, a.end)) || !state_is_finite(k))
@@ -243,11 +284,6 @@ static double still_stored(const FastWork *k)
     return stored;
 }
 
-static double share(double part, double whole)
-{
-    return whole > 0 ? 100 * part / whole : 0;
-}
-
 static void report_energies(FastWork *k, SimResult *r)
 {
     double contact_work = 0, missed = 0;
@@ -271,9 +307,9 @@ static void report_energies(FastWork *k, SimResult *r)
     r->energy_balance_error = fabs(energy_error) / scale + sqrt(missed / (2 * scale));
     for (int i = 0; i < k->model->nb; i++)
         if (k->model->like[i] >= 0)
-            r->mode_share_pct[k->model->like[i]] += share(damped[i], r->input_energy_j);
+            r->mode_share_pct[k->model->like[i]] += energy_share(damped[i], r->input_energy_j);
     energy_balance_sum_shares(r);
-    r->edcs_pct = share(r->damped_core_j, r->input_energy_j);
+    r->edcs_pct = energy_share(r->damped_core_j, r->input_energy_j);
 }
 
 static void report_peaks(const FastWork *k, SimResult *r)
@@ -307,6 +343,7 @@ void FAST_KERNEL(FastWork *k, const SimModel *model, const Motion *motion, const
     report_peaks(k, result);
     report_energies(k, result);
     result->impacts = k->impacts;
+    result->settled_s = k->settled;
     result->v0_limited = k->v0_limited;
     for (int j = 0; j < model->n; j++)
         result_add_approach(result, &model->contact[j], k->approach_max[j]);

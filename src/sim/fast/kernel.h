@@ -113,6 +113,7 @@ typedef struct FastWork {
     vec *peak_u, *peak_d, *peak_a; /* (n_pad) */
     double v0[FLOORS_PAD_MAX];     /* [m/s] of the open contact */
     int side[FLOORS_PAD_MAX];      /* 0 no contact, +1 or -1 */
+    double force_slope[FLOORS_PAD_MAX], force_bend[FLOORS_PAD_MAX]; /* [N/s], [N/s2] f' and f''/2 of the open contact */
     FloorSet in_contact;
     int state_valid;   /* 0: after free flight w, w' and sample[0] are not current */
     double speed;      /* [m/s] largest |w'| */
@@ -122,6 +123,8 @@ typedef struct FastWork {
     int flight_level, contact_level; /* where the next free flight, the next contact step is tried */
     int may_grow;                    /* the last contact step could have been twice as long */
     double energy_scale;             /* [J] */
+    double most_energy, mass_ratio;  /* [J] of the modes at any sample; building and core over the building */
+    double settled;                  /* [s] where contacts ended */
     long free_from, free_count;      /* the interval from which free intervals are tried, and over how many */
 
     FlightScratch flight;

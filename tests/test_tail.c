@@ -1,0 +1,151 @@
+/* The end of a run: what is left of a motion is known beforehand, and contacts end where it can change nothing. */
+#include "check.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "bench/case.h"
+#include "scene/motion_source.h"
+#include "scene_options.h"
+#include "sim/sim.h"
+#include "sim/tail.h"
+
+static Motion kobe_like(void)
+{
+    Motion m;
+    Err err;
+    CHECK_OK(motion_load(&m, "builtin:kobe-like", UNIT_FROM_FILE, &err), &err);
+    CHECK_OK(motion_prepare(&m, 0.3, 3.1, &err), &err);
+    return m;
+}
+
+static SimResult run_with(const SceneOptions *o, const Motion *m, SceneKind kind, const double x[])
+{
+    Err err;
+    Scene *scene;
+    SimWorker *worker;
+    SimResult r;
+    CHECK_OK(scene_create(&scene, o, m, &err), &err);
+    CHECK_OK(sim_worker_create(&worker, scene, &err), &err);
+    CHECK_OK(sim_run(worker, kind, x, &r, &err), &err);
+    sim_worker_free(worker);
+    scene_free(scene);
+    return r;
+}
+
+static void test_what_is_left_of_a_motion_is_what_it_gives_to_the_building_at_rest(void **state)
+{
+    (void)state;
+    const SceneOptions o = paper_scene();
+    Motion m = kobe_like();
+    Building b;
+    Err err;
+    double *input = malloc(m.n * sizeof *input);
+    CHECK_OK(building_load(&b, &o.building, &err), &err);
+    CHECK_OK(tail_input(&b.model, &m, input, &err), &err);
+    double most = 0;
+    for (size_t k = m.n - 1; k-- > 0;) {
+        const double above = input[k] - input[k + 1];
+        assert_true(above >= 0);
+        if (k % 97 || above == 0) /* above 0: the largest so far, and so that of sample k itself */
+            continue;
+        const Motion rest = {.accel = m.accel + k, .n = m.n - k, .dt_s = m.dt_s};
+        const SimResult r = run_with(&o, &rest, SCENE_NO_CORE, NULL);
+        assert_close(input[k], r.input_energy_j, 1e-9);
+        most = fmax(most, input[k]);
+    }
+    assert_true(most > 0);
+    building_free(&b);
+    free(input);
+    motion_free(&m);
+}
+
+static void test_contacts_end_where_they_can_change_nothing(void **state)
+{
+    (void)state;
+    SceneOptions o = paper_scene(), never = o;
+    Motion m = kobe_like();
+    const double length = (double)(m.n - 1) * m.dt_s;
+    never.sim.accuracy = o.sim.accuracy = ACCURACY_STANDARD;
+    double x[FLOORS_MAX + 2], earliest = length;
+    for (uint32_t design = 0; design < 6; design++) {
+        bench_irregular_gaps(design, 20, x);
+        x[20] = BENCH_WALL_BASE;
+        x[21] = BENCH_WALL_TOP;
+        const SimResult r = run_with(&o, &m, SCENE_IMPACT, x);
+        never.sim.duration_s = r.settled_s; /* nothing but contacts until then */
+        const SimResult s = run_with(&never, &m, SCENE_IMPACT, x);
+        print_message("design %u: settled at %.0f of %.0f s, %ld impacts\n", design, r.settled_s, length, r.impacts);
+        assert_true(r.outcome == RUN_OK && r.settled_s <= length);
+        assert_int_equal(r.impacts, s.impacts);
+        assert_true(r.j1_m == s.j1_m && r.j2_m == s.j2_m && r.j3_g == s.j3_g);
+        assert_true(s.kinetic_strain_j <= 4e-4 * s.input_energy_j); /* the tail tolerance of standard */
+        assert_close(r.contact_loss_j, s.contact_loss_j, 1e-15);
+        earliest = fmin(earliest, r.settled_s);
+    }
+    assert_true(earliest < 0.9 * length);
+    motion_free(&m);
+}
+
+static void test_a_run_without_its_end_has_the_peaks_and_nearly_the_shares_of_the_whole(void **state)
+{
+    (void)state;
+    const SceneOptions o = paper_scene();
+    SceneOptions fine = o;
+    Motion m = kobe_like();
+    double x[FLOORS_MAX + 2];
+    fine.sim.steps_per_contact = 8; /* a quarter of the tail tolerance */
+    for (uint32_t design = 0; design < 3; design++) {
+        bench_irregular_gaps(design, 20, x);
+        x[20] = BENCH_WALL_BASE;
+        x[21] = BENCH_WALL_TOP;
+        const SimResult r = run_with(&o, &m, SCENE_IMPACT, x), s = run_with(&fine, &m, SCENE_IMPACT, x);
+        assert_true(s.settled_s > r.settled_s);
+        assert_close(r.j1_m, s.j1_m, 1e-3);
+        assert_close(r.j2_m, s.j2_m, 3e-3);
+        assert_close(r.ed1_pct, s.ed1_pct, 1e-2);
+        assert_close(r.ed5_10_pct, s.ed5_10_pct, 1e-2);
+        assert_close(r.edcs_pct, s.edcs_pct, 1e-2);
+    }
+    motion_free(&m);
+}
+
+static void test_at_fine_accuracy_contacts_are_followed_to_the_end(void **state)
+{
+    (void)state;
+    SceneOptions o = paper_scene();
+    Motion m = kobe_like();
+    double x[FLOORS_MAX + 2];
+    bench_irregular_gaps(1, 20, x);
+    x[20] = BENCH_WALL_BASE;
+    x[21] = BENCH_WALL_TOP;
+    o.sim.accuracy = ACCURACY_FINE;
+    m.n = m.n / 3;
+    const SimResult r = run_with(&o, &m, SCENE_IMPACT, x);
+    assert_close(r.settled_s, (double)(m.n - 1) * m.dt_s, 1e-12);
+    motion_free(&m);
+}
+
+static void test_shares_of_no_net_input_are_undefined(void **state)
+{
+    (void)state;
+    const SceneOptions o = paper_scene();
+    double accel[50] = {0};
+    const Motion still = {.accel = accel, .n = 50, .dt_s = 0.02, .name = "still"};
+    const SimResult r = run_with(&o, &still, SCENE_NO_CORE, NULL);
+    assert_int_equal(r.outcome, RUN_OK);
+    assert_true(r.j1_m == 0 && r.input_energy_j == 0);
+    assert_true(isnan(r.ed1_pct) && isnan(r.ed5_10_pct) && isnan(r.edcs_pct));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_what_is_left_of_a_motion_is_what_it_gives_to_the_building_at_rest),
+        cmocka_unit_test(test_contacts_end_where_they_can_change_nothing),
+        cmocka_unit_test(test_a_run_without_its_end_has_the_peaks_and_nearly_the_shares_of_the_whole),
+        cmocka_unit_test(test_at_fine_accuracy_contacts_are_followed_to_the_end),
+        cmocka_unit_test(test_shares_of_no_net_input_are_undefined),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
