@@ -10,6 +10,7 @@
 #include "base/linalg.h"
 #include "base/table.h"
 #include "sim/engine.h"
+#include "sim/linear.h"
 #include "scene_options.h"
 
 static const char RECORDS[] = "../shared/records/", EARLY_WINDOW[] = "../shared/reference/early_window.csv";
@@ -102,8 +103,9 @@ static SimResult run_tied(const Stage *stage, const Motion *m, double duration, 
 {
     SimResult r;
     Err err;
-    CHECK_OK(engine_rigid(&stage->s, &stage->b, &stage->core, m,
-                          &(EngineOptions){.duration = duration, .accuracy = accuracy}, &r, &err),
+    const LinearDevice none = {0};
+    CHECK_OK(engine_linear(LINEAR_RIGID, &stage->s, &stage->b, &stage->core, &none, m,
+                           &(EngineOptions){.duration = duration, .accuracy = accuracy}, &r, &err),
              &err);
     return r;
 }
