@@ -21,7 +21,6 @@
     X(IMPORT)                                                                                                          \
     X(MODES)                                                                                                           \
     X(SPECTRUM)                                                                                                        \
-    X(PROBLEM)                                                                                                         \
     X(SELFTEST)                                                                                                        \
     X(CHECK)                                                                                                           \
     X(SETTINGS)
