@@ -131,8 +131,6 @@ static Status run_sweep(const Args *args, Err *err)
     return status;
 }
 
-#define OPTIONS_MOTION OPTION_RECORD, OPTION_PGA, OPTION_STRETCH, OPTION_UNIT, OPTION_SET, OPTION_END
-
 static const ArgOption SWEEP_OPTIONS[] = {
     {"--case", "NAME,...", NULL, 0, "linear, one-impact, irregular, tiny, zero; all unless given"},
     {"--engine", "NAME,...", NULL, 0, "all unless given"},
@@ -140,6 +138,8 @@ static const ArgOption SWEEP_OPTIONS[] = {
     {"--markdown", "FILE", NULL, 0, "tables of what each engine needs for a given error, and of what failed"},
     OPTION_CSV,
     OPTIONS_MOTION,
+    OPTION_SET,
+    OPTION_END,
 };
 
 /* ---- designs per second ------------------------------------------------------------------------------------------ */
@@ -158,6 +158,8 @@ static const ArgOption THROUGHPUT_OPTIONS[] = {
     {"--count", NULL, NULL, 0, "four designs by the fast engine, and nothing else: counts of its work"},
     {"--quick", NULL, NULL, 0, "fewer designs, shorter comparisons"},
     OPTIONS_MOTION,
+    OPTION_SET,
+    OPTION_END,
 };
 
 /* ---- what the accuracies hold ------------------------------------------------------------------------------------ */

@@ -101,9 +101,7 @@ static Status run(const Args *args, Err *err)
     Model m;
     const char *svg = args_value(args, "--svg");
     settings_defaults(&s);
-    if (strlen(args->operand) >= sizeof s.building.model)
-        return fail(err, STATUS_USAGE, "%.60s...: the path is too long", args->operand);
-    snprintf(s.building.model, sizeof s.building.model, "%s", args->operand);
+    TRY(option_put_path(s.building.model, args->operand, err));
     TRY(args_apply(args, &s, NULL, NULL, err));
     TRY(open_model(&m, &s, err));
     Status status = svg ? write_svg(&m, svg, err) : STATUS_OK;

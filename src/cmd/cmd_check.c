@@ -351,13 +351,8 @@ static Status run(const Args *args, Err *err)
 }
 
 static const ArgOption OPTIONS[] = {
-    OPTION_RECORD,
-    OPTION_PGA,
-    OPTION_STRETCH,
-    OPTION_UNIT,
-    {"--design", "FILE", NULL, 0, "check these designs too, and time the first one"},
-    OPTION_JSON,
-    OPTION_SET,
+    OPTIONS_MOTION, {"--design", "FILE", NULL, 0, "check these designs too, and time the first one"},
+    OPTION_JSON,    OPTION_SET,
     OPTION_END,
 };
 

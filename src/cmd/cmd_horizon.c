@@ -79,15 +79,7 @@ static Status run(const Args *args, Err *err)
 }
 
 static const ArgOption OPTIONS[] = {
-    {"--design", "FILE", NULL, 0, DESIGN_WORDS},
-    OPTION_RECORD,
-    OPTION_PGA,
-    OPTION_STRETCH,
-    OPTION_UNIT,
-    OPTION_DURATION,
-    OPTION_JSON,
-    OPTION_SET,
-    OPTION_END,
+    {"--design", "FILE", NULL, 0, DESIGN_WORDS}, OPTIONS_MOTION, OPTION_DURATION, OPTION_JSON, OPTION_SET, OPTION_END,
 };
 
 const Command CMD_HORIZON = {

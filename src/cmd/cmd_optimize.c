@@ -190,8 +190,7 @@ static Status take_run(const Args *args, Settings *s, RunStore **store, Err *err
         TRY(store_open(store, args->operand, 0, err));
         *s = *store_run(*store)->settings;
     }
-    if (snprintf(s->run.out, sizeof s->run.out, "%s", args->operand) >= (int)sizeof s->run.out)
-        return fail(err, STATUS_USAGE, "%.200s...: the path is too long", args->operand);
+    TRY(option_put_path(s->run.out, args->operand, err));
     TRY(args_apply(args, s, NULL, NULL, err));
     TRY(settings_check(s, err));
     return record_paths_find(s, NULL, &(RecordPaths){NULL, NULL}, err);
@@ -256,10 +255,7 @@ static Status run(const Args *args, Err *err)
 }
 
 static const ArgOption OPTIONS[] = {
-    OPTION_RECORD,
-    OPTION_PGA,
-    OPTION_STRETCH,
-    OPTION_UNIT,
+    OPTIONS_MOTION,
     {"--out", "DIR", "run.out", 0, "the run's folder; a run that it holds is resumed"},
     {"--new", NULL, NULL, 0, "a new run in any case: a number is added to a folder that holds one"},
     {"--force-settings", NULL, NULL, 0, "resume with other limits (simulations, generations, hours)"},

@@ -251,10 +251,7 @@ static Status open_all(const Args *args, const Settings *settings, Spectrum s[],
 {
     for (int k = 0; k < args->n_operands; k++) {
         MotionOptions o = settings->motion;
-        const char *path = args->operands[k];
-        if (strlen(path) >= sizeof o.record)
-            return fail(err, STATUS_MISSING, "%.60s...: the path is too long", path);
-        snprintf(o.record, sizeof o.record, "%s", path);
+        TRY(option_put_path(o.record, args->operands[k], err));
         TRY(spectrum_open(&s[k], &o, err));
     }
     return STATUS_OK;

@@ -195,11 +195,7 @@ static Status verify_all(const Args *args, Job *job, Err *err)
     if (!args_has(args, "--record"))
         return verify_under(job, &s, err);
     for (int i = 0; (path = args_next(args, "--record", &i));) {
-        char assignment[OPTION_TEXT_MAX + 32];
-        if (strlen(path) >= OPTION_TEXT_MAX)
-            return fail(err, STATUS_BAD_DATA, "%.60s...: the path is too long", path);
-        snprintf(assignment, sizeof assignment, "motion.record=%s", path);
-        TRY(settings_set(&s, assignment, err));
+        TRY(option_put_path(s.motion.record, path, err));
         TRY(verify_under(job, &s, err));
         job->svg = NULL; /* the first one is drawn */
     }

@@ -83,10 +83,7 @@ static Status settings_for(const Settings *s, const char *path, const double *le
         motion_unscale(&own->motion);
         own->motion.pga_g = *level;
     }
-    if (strlen(path) >= sizeof own->motion.record)
-        return fail(err, STATUS_BAD_DATA, "%.60s...: the path is too long", path);
-    snprintf(own->motion.record, sizeof own->motion.record, "%s", path);
-    return STATUS_OK;
+    return option_put_path(own->motion.record, path, err);
 }
 
 static Status try_record(const Settings *s, const char *path, const double *level, Err *err)

@@ -114,9 +114,7 @@ static Status take_elsewhere(const Settings *other, const char *record, const do
     Problem p;
     SimResult results[2];
     const SimTask tasks[2] = {{SCENE_IMPACT, x}, {SCENE_NO_CORE, x}};
-    if (strlen(record) >= sizeof s.motion.record)
-        return fail(err, STATUS_MISSING, "%.60s...: the path is too long", record);
-    snprintf(s.motion.record, sizeof s.motion.record, "%s", record);
+    TRY(option_put_path(s.motion.record, record, err));
     TRY(tower_open(&p, &s, TOWER_SINGLE, 2, err));
     const Motion *m = &tower_record(tower_of(&p), 0)->motion;
     const Status status = tower_simulate(&p, 2, tasks, results, err);

@@ -6,6 +6,7 @@
 #include <limits.h>
 #include <nlopt.h>
 #include <sqlite3.h>
+#include <stdlib.h>
 #include <sundials/sundials_version.h>
 #include <time.h>
 #include <unistd.h>
@@ -88,6 +89,15 @@ static json_t *machine(int threads)
 uint64_t provenance_add_hash(uint64_t so_far, uint64_t file_hash)
 {
     return (so_far ^ file_hash) * HASH_PRIME;
+}
+
+uint64_t provenance_hash(const char *provenance, const char *input)
+{
+    json_t *all = provenance ? json_loads(provenance, 0, NULL) : NULL;
+    const char *text = json_string_value(json_object_get(json_object_get(all, "inputs"), input));
+    const uint64_t hash = text ? strtoull(text, NULL, 16) : 0;
+    json_decref(all);
+    return hash;
 }
 
 Status provenance_inputs(Inputs *out, const Adapter *adapter, Err *err)

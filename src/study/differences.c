@@ -1,8 +1,6 @@
 #include "study/differences.h"
 
 #include <inttypes.h>
-#include <jansson.h>
-#include <stdlib.h>
 
 #include "settings/settings.h"
 #include "store/provenance.h"
@@ -29,12 +27,6 @@ static void compare_one(const char *key, unsigned flags, const char *was, const 
         add_difference(user, key, (flags & SETTING_LIMIT) != 0, was, is);
 }
 
-static uint64_t stored_hash(const json_t *provenance, const char *key)
-{
-    const char *text = json_string_value(json_object_get(json_object_get(provenance, "inputs"), key));
-    return text ? strtoull(text, NULL, 16) : 0;
-}
-
 static void compare_hash(Differences *d, const char *key, uint64_t was, uint64_t is)
 {
     char before[40], after[40];
@@ -48,12 +40,12 @@ static Status compare_inputs(const Comparison *c, Differences *d, Err *err)
 {
     Inputs now;
     TRY(provenance_inputs(&now, c->adapter, err));
-    json_t *provenance = json_loads(c->run->provenance, 0, NULL);
-    compare_hash(d, "motion.record", stored_hash(provenance, "record_fnv1a"), now.record);
-    if (now.record == stored_hash(provenance, "record_fnv1a"))
-        compare_hash(d, "motion.records", stored_hash(provenance, "records_fnv1a"), now.records);
-    compare_hash(d, "building.model", stored_hash(provenance, "matrices_fnv1a"), now.matrices);
-    json_decref(provenance);
+    const char *provenance = c->run->provenance;
+    const uint64_t record = provenance_hash(provenance, "record_fnv1a");
+    compare_hash(d, "motion.record", record, now.record);
+    if (now.record == record)
+        compare_hash(d, "motion.records", provenance_hash(provenance, "records_fnv1a"), now.records);
+    compare_hash(d, "building.model", provenance_hash(provenance, "matrices_fnv1a"), now.matrices);
     return STATUS_OK;
 }
 

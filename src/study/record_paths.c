@@ -1,7 +1,5 @@
 #include "study/record_paths.h"
 
-#include <inttypes.h>
-#include <jansson.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -10,15 +8,6 @@
 #include "scene/motion_source.h"
 #include "settings/settings.h"
 #include "store/provenance.h"
-
-static Status take_place(char setting[OPTION_TEXT_MAX], const char *place, Err *err)
-{
-    if (place && strlen(place) >= OPTION_TEXT_MAX)
-        return fail(err, STATUS_MISSING, "%.60s...: the path is too long", place);
-    if (place)
-        snprintf(setting, OPTION_TEXT_MAX, "%s", place);
-    return STATUS_OK;
-}
 
 static Status check_is_there(const char *path, const char *key, Err *err)
 {
@@ -66,34 +55,24 @@ static Status hash_all(const Settings *s, uint64_t *record, uint64_t *records, E
     return STATUS_OK;
 }
 
-/* Is this what the provenance says of the content? */
-static int is_known(const char *provenance, const char *key, uint64_t hash)
-{
-    char hex[24];
-    json_t *all = provenance ? json_loads(provenance, 0, NULL) : NULL;
-    const char *known = json_string_value(json_object_get(json_object_get(all, "inputs"), key));
-    snprintf(hex, sizeof hex, "%016" PRIx64, hash);
-    const int same = known && strcmp(known, hex) == 0;
-    json_decref(all);
-    return same;
-}
-
 Status record_paths_find(Settings *s, const char *provenance, const RecordPaths *moved, Err *err)
 {
     const Settings was = *s;
     uint64_t record, records;
     if (s->problem.kind != PROBLEM_TOWER)
         return STATUS_OK;
-    TRY(take_place(s->motion.record, moved->record, err));
-    TRY(take_place(s->motion.records, moved->records, err));
+    if (moved->record)
+        TRY(option_put_path(s->motion.record, moved->record, err));
+    if (moved->records)
+        TRY(option_put_path(s->motion.records, moved->records, err));
     TRY(check_all_there(s, err));
     if (!moved->record && !moved->records)
         return STATUS_OK;
     TRY(hash_all(s, &record, &records, err));
-    if (moved->record && !is_known(provenance, "record_fnv1a", record))
+    if (moved->record && provenance_hash(provenance, "record_fnv1a") != record)
         return fail(err, STATUS_BAD_DATA, "%s: does not hold what the run's record %.200s held", moved->record,
                     was.motion.record);
-    if (moved->records && !is_known(provenance, "records_fnv1a", records))
+    if (moved->records && provenance_hash(provenance, "records_fnv1a") != records)
         return fail(err, STATUS_BAD_DATA, "%.200s: do not hold what the run's records %.200s held", moved->records,
                     was.motion.records);
     return STATUS_OK;
