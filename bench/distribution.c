@@ -16,17 +16,11 @@ typedef struct {
     double value[BENCH_OBJECTIVES][DISTRIBUTION_RUNS];
 } Samples;
 
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 double ks_distance(int n_a, double a[], int n_b, double b[])
 {
     double largest = 0;
-    qsort(a, (size_t)n_a, sizeof *a, ascending);
-    qsort(b, (size_t)n_b, sizeof *b, ascending);
+    sort_values((size_t)n_a, a);
+    sort_values((size_t)n_b, b);
     for (int i = 0, j = 0; i < n_a && j < n_b;) {
         const double x = fmin(a[i], b[j]);
         while (i < n_a && a[i] <= x)
@@ -167,8 +161,8 @@ void distribution_test_write(const DistributionTest *p, FILE *out)
         "there\n"
         "a distance near 1 shows the error before the horizon.\n\n"
         "| engine | tolerance | ms per run | finished |",
-        DISTRIBUTION_RUNS, p->duration, 1e3 * GAP_M, REPLICATE_CHANGE, p->tolerance_m, REFERENCE_STEPS, ks_critical(DISTRIBUTION_RUNS),
-        ENOUGH);
+        DISTRIBUTION_RUNS, p->duration, 1e3 * GAP_M, REPLICATE_CHANGE, p->tolerance_m, REFERENCE_STEPS,
+        ks_critical(DISTRIBUTION_RUNS), ENOUGH);
     for (int k = 0; k < BENCH_OBJECTIVES; k++)
         fprintf(out, " %s |", BENCH_OBJECTIVE_NAMES[k]);
     fprintf(out, "\n|---|---|---|---|---|---|---|---|---|---|\n");

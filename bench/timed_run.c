@@ -1,4 +1,5 @@
 #include "bench/timed_run.h"
+#include "base/stat.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -12,22 +13,16 @@ static const double SHARE_FLOOR_PCT = 0.1;
 
 const char *const BENCH_OBJECTIVE_NAMES[BENCH_OBJECTIVES] = {"j1", "j2", "j3", "ed1", "ed5_10", "edcs"};
 
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 double bench_median(int n, double x[])
 {
-    qsort(x, (size_t)n, sizeof *x, ascending);
+    sort_values((size_t)n, x);
     return n == 0 ? NAN : n % 2 ? x[n / 2] : 0.5 * (x[n / 2 - 1] + x[n / 2]);
 }
 
 double bench_quantile(int n, double x[], double share)
 {
     const int at = (int)ceil(share * n) - 1;
-    qsort(x, (size_t)n, sizeof *x, ascending);
+    sort_values((size_t)n, x);
     return n == 0 ? NAN : x[at < 0 ? 0 : at];
 }
 

@@ -8,19 +8,12 @@
 #ifndef IMTET_BASE_OPTION_H
 #define IMTET_BASE_OPTION_H
 
-#include <stdio.h>
-
 #include "base/status.h"
 
 enum { OPTION_TEXT_MAX = 512 }; /* bytes, the final zero included */
 
 /* A path from outside; STATUS_MISSING where there is no room for it. */
-static inline Status option_put_path(char option[OPTION_TEXT_MAX], const char *path, Err *err)
-{
-    return snprintf(option, OPTION_TEXT_MAX, "%s", path) < OPTION_TEXT_MAX
-               ? STATUS_OK
-               : fail(err, STATUS_MISSING, "%.60s...: the path is too long", path);
-}
+Status option_put_path(char option[OPTION_TEXT_MAX], const char *path, Err *err);
 
 #define CHOICE_NAME(name, word) name,
 #define CHOICE_WORD(name, word) word,

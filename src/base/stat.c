@@ -1,6 +1,6 @@
 #include "base/stat.h"
 
-#include <math.h>
+#include <stdlib.h>
 
 void mean_and_sd(size_t n, double (*value)(size_t i, const void *user), const void *user, double *mean, double *sd)
 {
@@ -22,4 +22,15 @@ static double element(size_t i, const void *user)
 void mean_and_sd_of(size_t n, const double v[], double *mean, double *sd)
 {
     mean_and_sd(n, element, v, mean, sd);
+}
+
+static int ascending(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+void sort_values(size_t n, double v[])
+{
+    qsort(v, n, sizeof *v, ascending);
 }

@@ -1,4 +1,4 @@
-/* base/stat.h -- mean and standard deviation, defined once.
+/* base/stat.h -- numbers in a row: mean and standard deviation, order, whether all are finite.
  *
  *   mean = sum_i v_i / n        sd = root(sum_i (v_i - mean)^2 / (n - 1))        NAN: no value, less than two
  *
@@ -6,6 +6,7 @@
 #ifndef IMTET_BASE_STAT_H
 #define IMTET_BASE_STAT_H
 
+#include <math.h>
 #include <stddef.h>
 
 /* Of the values value(i, user), i = 0..n-1; sd may be NULL. */
@@ -13,5 +14,15 @@ void mean_and_sd(size_t n, double (*value)(size_t i, const void *user), const vo
 
 /* Of v (n). */
 void mean_and_sd_of(size_t n, const double v[], double *mean, double *sd);
+
+void sort_values(size_t n, double v[]); /* ascending */
+
+static inline int all_finite(size_t n, const double v[])
+{
+    size_t i = 0;
+    while (i < n && isfinite(v[i]))
+        i++;
+    return i == n;
+}
 
 #endif

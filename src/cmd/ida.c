@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/stat.h"
 #include "report/gnuplot.h"
 
 const double IDA_FRACTILE[IDA_FRACTILES] = {0.16, 0.5, 0.84};
@@ -31,12 +32,6 @@ Status ida_levels(const char *text, double levels[IDA_LEVELS_MAX], size_t *n, Er
 
 /* ---- fractiles --------------------------------------------------------------------------------------------------- */
 
-static int by_value(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static double value_of(const EvaluatedRun *run, EvaluatedCase which, int k)
 {
     const SimResult *r = &run->result[which];
@@ -52,7 +47,7 @@ double ida_fractile(const Evaluations *e, size_t l, EvaluatedCase which, int k, 
         if (e->record[r].readable == STATUS_OK)
             sorted[n++] = value_of(&e->run[r * e->n_levels + l], which, k);
     if (n > 0) {
-        qsort(sorted, n, sizeof *sorted, by_value);
+        sort_values(n, sorted);
         const double place = p * (double)(n - 1), low = floor(place), share = place - low;
         const size_t i = (size_t)low;
         value = share > 0 ? sorted[i] + share * (sorted[i + 1] - sorted[i]) : sorted[i];

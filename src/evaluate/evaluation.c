@@ -116,17 +116,26 @@ static void set_unknown(double v[], size_t n)
         v[i] = NAN;
 }
 
+void evaluation_forget(Evaluation *e, size_t n_obj, size_t n_extra)
+{
+    *e = (Evaluation){.kind = KIND_UNFINISHED,
+                      .seconds = NAN,
+                      .violation = NAN,
+                      .x = e->x,
+                      .f = e->f,
+                      .sd = e->sd,
+                      .extra = e->extra};
+    set_unknown(e->f, n_obj);
+    set_unknown(e->sd, n_obj);
+    set_unknown(e->extra, n_extra);
+}
+
 Status evaluation_table_add(EvaluationTable *t, Evaluation **row, Err *err)
 {
     if (t->n == t->n_max)
         TRY(grow(t, err));
-    Evaluation *e = &t->row[t->n++];
-    e->kind = KIND_UNFINISHED;
-    e->seconds = e->violation = NAN;
-    set_unknown(e->f, t->n_obj);
-    set_unknown(e->sd, t->n_obj);
-    set_unknown(e->extra, t->n_extra);
-    *row = e;
+    *row = &t->row[t->n++];
+    evaluation_forget(*row, t->n_obj, t->n_extra);
     return STATUS_OK;
 }
 

@@ -75,6 +75,9 @@ typedef struct {
 /* All numbers that `from` has (NULL arrays: none) into the arrays of `to`, of the same shapes. */
 void evaluation_copy(Evaluation *to, const Evaluation *from, size_t n_var, size_t n_obj, size_t n_extra);
 
+/* Nothing is known: x stays, every other number is NAN; OUTCOME_OK, KIND_UNFINISHED. */
+void evaluation_forget(Evaluation *e, size_t n_obj, size_t n_extra);
+
 /* Outcome and reason; the text becomes a cell of a CSV file (base/cell.h). */
 void evaluation_set_outcome(Evaluation *e, Outcome outcome, const char *reason);
 

@@ -108,12 +108,6 @@ static Status widen(Queue *q, Err *err)
     return STATUS_OK;
 }
 
-static void set_unknown(double v[], size_t n)
-{
-    for (size_t i = 0; i < n; i++)
-        v[i] = NAN;
-}
-
 /* An idle slot, nothing known in it. */
 static Status slot_get(Queue *q, Slot **out, Err *err)
 {
@@ -129,12 +123,8 @@ static Status slot_get(Queue *q, Slot **out, Err *err)
     }
     Slot *s = q->idle[--q->n_idle];
     const Slot was = *s;
-    *s = (Slot){.index = was.index, .f = was.f, .g = was.g, .note = was.note, .parts = was.parts};
-    s->e = (Evaluation){
-        .x = was.e.x, .f = was.e.f, .sd = was.e.sd, .extra = was.e.extra, .seconds = NAN, .violation = NAN};
-    set_unknown(s->e.f, p->n_obj);
-    set_unknown(s->e.sd, p->n_obj);
-    set_unknown(s->e.extra, p->n_extra);
+    *s = (Slot){.e = was.e, .index = was.index, .f = was.f, .g = was.g, .note = was.note, .parts = was.parts};
+    evaluation_forget(&s->e, p->n_obj, p->n_extra);
     *out = s;
     return STATUS_OK;
 }
@@ -453,8 +443,8 @@ static void complete(const Queue *q, Slot *s)
     const Problem *p = q->problem;
     Evaluation *e = &s->e;
     p->simulator->combine(p->self, s->parts, e);
-    if (e->outcome != OUTCOME_OK)
-        set_unknown(e->f, p->n_obj);
+    for (size_t k = 0; e->outcome != OUTCOME_OK && k < p->n_obj; k++)
+        e->f[k] = NAN;
     problem_judge(p, e, s->f, s->g);
     e->violation = e->outcome == OUTCOME_OK ? violation_of(p->n_con, s->g) : INFINITY;
 }

@@ -4,6 +4,7 @@
 
 #include "base/carve.h"
 #include "base/hash.h"
+#include "base/stat.h"
 #include "evaluate/problem.h"
 #include "moga/dominance.h"
 
@@ -87,14 +88,6 @@ void pareto_archive_free(Archive *a)
 {
     free(a->store);
     *a = (Archive){0};
-}
-
-static int all_finite(size_t n, const double v[])
-{
-    for (size_t i = 0; i < n; i++)
-        if (!isfinite(v[i]))
-            return 0;
-    return 1;
 }
 
 /* The front is compared with the new design alone, which stays outside where a member dominates it, and otherwise

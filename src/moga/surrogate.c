@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "base/carve.h"
+#include "base/stat.h"
 #include "moga/constants.h"
 #include "moga/dominance.h"
 
@@ -106,12 +107,6 @@ static int compare_rows(const void *first, const void *second, void *distance)
 static int compare_sizes(const void *first, const void *second)
 {
     const size_t a = *(const size_t *)first, b = *(const size_t *)second;
-    return (a > b) - (a < b);
-}
-
-static int compare_doubles(const void *first, const void *second)
-{
-    const double a = *(const double *)first, b = *(const double *)second;
     return (a > b) - (a < b);
 }
 
@@ -217,7 +212,7 @@ double surrogate_error(const Surrogate *s)
         const double *e = rbf_leave_one_out(s->rbf, k);
         for (size_t i = 0; i < s->n; i++)
             s->errors[i] = fabs(e[i]) / s->range[k];
-        qsort(s->errors, s->n, sizeof *s->errors, compare_doubles);
+        sort_values(s->n, s->errors);
         worst = fmax(worst, 0.5 * (s->errors[(s->n - 1) / 2] + s->errors[s->n / 2]));
     }
     return worst;

@@ -8,6 +8,7 @@
 #include "base/carve.h"
 #include "base/clock.h"
 #include "base/random.h"
+#include "base/stat.h"
 #include "polish/constants.h"
 #include "rbf/rbf.h"
 
@@ -148,14 +149,6 @@ static Status propose(Local *l, double reach, double x[], Err *err)
     problem_from_cube(l->problem, l->u, x);
     problem_repair(l->problem, x);
     return STATUS_OK;
-}
-
-static int all_finite(size_t n, const double f[])
-{
-    for (size_t k = 0; k < n; k++)
-        if (!isfinite(f[k]))
-            return 0;
-    return 1;
 }
 
 /* What came back of a batch; returns the box that the new centre is from, LOCAL_BATCH where nothing is better. */

@@ -7,6 +7,7 @@
 
 #include "base/carve.h"
 #include "base/clock.h"
+#include "base/stat.h"
 
 typedef struct {
     const char *name;
@@ -113,9 +114,7 @@ static void evaluate(Polish *p, const double u[])
     problem_repair(q, p->x);
     p->status = queue_evaluate(p->queue, 1, p->x, NULL, p->f, p->g, &ok, p->err);
     p->known = 1;
-    p->ok = p->status == STATUS_OK && ok;
-    for (size_t k = 0; k < q->n_obj; k++)
-        p->ok = p->ok && isfinite(p->f[k]);
+    p->ok = p->status == STATUS_OK && ok && all_finite(q->n_obj, p->f);
     p->result->n_evaluated++;
     p->result->n_failed += !p->ok;
     p->excess = p->ok ? excess_of(p) : WALL;

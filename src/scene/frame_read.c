@@ -5,6 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/stat.h"
 #include "scene/compiled_in.h"
 #include "scene/frame.h"
 
@@ -268,12 +269,6 @@ static double frame_extent(const Frame *f)
     return hi - lo;
 }
 
-static int by_value(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* Heights of the level elements whose ends may move sideways, each once: *n of z, ascending. */
 static void find_levels(const Frame *f, double tolerance, double z[], int *n)
 {
@@ -284,7 +279,7 @@ static void find_levels(const Frame *f, double tolerance, double z[], int *n)
         if (fabs(a->z - b->z) <= tolerance && !a->fixed[FRAME_X] && !b->fixed[FRAME_X])
             z[found++] = a->z;
     }
-    qsort(z, (size_t)found, sizeof *z, by_value);
+    sort_values((size_t)found, z);
     for (int i = 0; i < found; i++)
         if (*n == 0 || z[i] - z[*n - 1] > tolerance)
             z[(*n)++] = z[i];

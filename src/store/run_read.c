@@ -5,6 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/stat.h"
 #include "settings/settings.h"
 #include "simulator/measures.h"
 #include "store/repeats.h"
@@ -41,10 +42,7 @@ static Status take_front(sqlite3_stmt *row, void *user, Err *err)
 
 static int is_ok(const Run *run, const Evaluation *e)
 {
-    int ok = e->outcome == OUTCOME_OK;
-    for (size_t k = 0; k < run->schema.n_obj; k++)
-        ok = ok && isfinite(e->f[k]);
-    return ok;
+    return e->outcome == OUTCOME_OK && all_finite(run->schema.n_obj, e->f);
 }
 
 static void place_all(Run *run)
