@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "base/table.h"
+#include "scene/formats/record.h"
 #include "scene/motion_read.h"
 
 enum { N_SAMPLES = 43, PEAK_AT = 15 };
@@ -63,6 +64,7 @@ static const struct {
     {"isesd.cor", "isesd", "auto", 0, "NS", 1e-6},
     {"three.slist", "slist", "2", 1, "XX_SYN_00_HNE_D", 1e-6},
     {"one.tspair", "tspair", "auto", 0, "XX_SYN_00_HNN_D", 1e-6},
+    {"one.csmnc", "csmnc", "auto", 0, "NS", 1e-6},
     {"one_column.txt", "csv", "auto", 0, "", 1e-9},
     {"two_columns.txt", "csv", "auto", 0, NULL, 1e-9},
     {"many_columns.csv", "csv", "NS", 0, "NS", 1e-9},
@@ -293,6 +295,9 @@ static const struct {
     {"three.csmip.v2", "=   -123.400", "=   -223.400", "its samples peak at 123.4 cm_s2, its header says 223.4"},
     {"one.esm", "PGA_CM/S^2: -123.4", "PGA_CM/S^2: -223.4", "its header says 223.4"},
     {"three.v1a", "Peak  -1234.0", "Peak  -2234.0", "its header says 223.4"},
+    {"one.csmnc", "     43  EQ", "     44  EQ", ": ends after 43 samples, but its header announces 44"},
+    {"one.csmnc", "-123.400", "-223.400", "its samples peak at 123.4 cm_s2, its header says 223.4"},
+    {"one.csmnc", "UNCORRECTED ACCELERATION", "CORRECTED VELOCITY", ":11: not an acceleration"},
     {"one_column.txt", "dt = 0.01 s", "", ":2: has one column and does not say its step; set motion.dt_s"},
     {"many_columns.csv", "0.15,-123.4", "0.15", ":18: has 4 columns where the lines above have 5"},
     {"many_columns.csv", "0.15,", "0.14,", ":18: time 0.14 s does not come after 0.14 s"},
@@ -387,7 +392,7 @@ static void test_counts_are_refused_without_a_gain_and_what_is_no_record_by_its_
     refused("three.mseed", &(MotionHow){0}, "holds 3 channels: 1 'XX.SYN.00.HNN', 2 'XX.SYN.00.HNE'");
     refused("knet.tar.gz", &(MotionHow){0}, "holds 3 channels: 1 'N-S, SYN0010101010000.NS'");
     assert_int_equal(motion_parse(&m, "a.evt", EVT, sizeof EVT, &(MotionHow){0}, &err), STATUS_BAD_DATA);
-    assert_non_null(strstr(err.text, "a.evt: is not read: Kinemetrics EVT"));
+    assert_non_null(strstr(err.text, "a.evt: Kinemetrics EVT without a header of 2040 bytes"));
     Text t = read_specimen("knet.tar.gz");
     assert_int_equal(motion_parse(&m, "cut.tar.gz", t.text, t.length / 2, &(MotionHow){0}, &err), STATUS_BAD_DATA);
     assert_non_null(strstr(err.text, "cut.tar.gz: a damaged archive"));
@@ -687,8 +692,8 @@ static void test_an_unknown_format_is_said_to_be_unknown_and_its_first_line_is_q
 {
     (void)state;
     expect_refusal("A title of some agency\n16628 W. LOST CANYON RD.\n1 2 3\n",
-                   "in no format that is known here (docs/motions.md lists them), and no plain columns: 'W.' is not a "
-                   "number; the first line is 'A title of some agency'");
+                   "in no format that is known here (docs/motions.md lists them), and no plain columns of numbers; the "
+                   "first line is 'A title of some agency'");
     expect_refusal("Response and Fourier amplitude spectra (86 periods)\n1 2\n",
                    "is not read: response and Fourier spectra of CSMIP (V3); take its V2 or V1");
     expect_refusal("<!DOCTYPE html>\n<p>Log in</p>\n", "a web page, perhaps of a log-in");
@@ -756,9 +761,194 @@ static void test_units_in_other_words_are_taken_or_named(void **state)
     assert_non_null(strstr(err.text, "unit 'mg' is not known"));
 }
 
+/* Recorders of Kinemetrics: five tenths of a second at 100 Hz, 24 bits; the 43 samples and seven zeros. */
+static void test_a_file_of_a_kinemetrics_recorder_is_read_to_its_samples(void **state)
+{
+    (void)state;
+    static const char *const NAMES[] = {"1 HNN", "2 HNE", "3 HNZ"};
+    for (int k = 0; k < 3; k++) {
+        Motion m;
+        Err err;
+        CHECK_OK(motion_read(&m, "tests/motion/three.evt", &(MotionHow){.channel = NAMES[k]}, &err), &err);
+        assert_int_equal(m.n, 50);
+        assert_close(m.dt_s, DT, 1e-12);
+        assert_string_equal(m.format, "evt");
+        assert_close(m.accel[PEAK_AT], 0.01 * PEAK_GAL[k], 1e-5);
+        assert_true(motion_peak(&m) == fabs(m.accel[PEAK_AT]) && m.accel[49] == 0);
+        motion_free(&m);
+    }
+}
+
+static void test_what_is_wrong_in_a_file_of_a_kinemetrics_recorder_is_said(void **state)
+{
+    (void)state;
+    static const struct {
+        size_t at;
+        unsigned char byte;
+        const char *says;
+    } CASES[] = {
+        {1, 0, "least significant byte first"},
+        {8, 9, "without a header of 2040 bytes"},
+        {16 + 0x237, 9, "holds 5 frames of a tenth of a second, its header announces 9"},
+        {2056 + 16, 4, "is of type 4"},
+        {2056 + 16 + 14, 1 << 6, "samples of 2 bytes"},
+        {2056 + 16 + 11, 3, "60 are expected"},
+        {2056 + 16 + 13, 99, "no usable channels or rate"},
+        {2056 + 138 + 16 + 11, 3, "60 are expected"},
+        {2056 + 4 + 3, 1, "holds 0 frames"},
+    };
+    for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
+        Text t = read_specimen("three.evt");
+        Motion m;
+        Err err = {0};
+        t.text[CASES[i].at] = (char)CASES[i].byte;
+        assert_int_equal(motion_parse(&m, "a.evt", t.text, t.length, &FIRST, &err), STATUS_BAD_DATA);
+        if (!strstr(err.text, CASES[i].says))
+            fail_msg("'%s' should be in '%s'", CASES[i].says, err.text);
+        free(t.text);
+    }
+}
+
+/* ---- peaks of headers, format by format ------------------------------------------------------------------------- */
+
+/* Every format whose header states a peak: the stated one made 2 % and 8 % larger, in the width of the file. */
+static void test_every_format_with_a_peak_in_its_header_is_checked_against_it(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *file, *from, *by_2, *by_8;
+    } PEAKS[] = {
+        {"one.knet", "123.400", "125.868", "133.272"},
+        {"one.esm", "PGA_CM/S^2: -123.4", "PGA_CM/S^2: -125.9", "PGA_CM/S^2: -133.3"},
+        {"afad.txt", "(N-S) 123.4", "(N-S) 125.9", "(N-S) 133.3"},
+        {"asa.unam", "/-123.40", "/-125.87", "/-133.27"},
+        {"cwb.dat", "85.600~", "87.312~", "92.448~"},
+        {"three.v1a", "Peak  -1234.0", "Peak  -1258.7", "Peak  -1332.7"},
+        {"three.v2a", "Peak  -1234.0", "Peak  -1258.7", "Peak  -1332.7"},
+        {"one.csmnc", "-123.400", "-125.868", "-133.272"},
+        {"one.cosmos.v1", "Max =   -123.400", "Max =   -125.868", "Max =   -133.272"},
+        {"three.cosmos.v2", "Max =   -123.400", "Max =   -125.868", "Max =   -133.272"},
+        {"three.csmip.v1", "Max  =   -.126 g", "Max  =   -.129 g", "Max  =   -.136 g"},
+        {"three.csmip.v2", "=   -123.400", "=   -125.868", "=   -133.272"},
+    };
+    for (size_t i = 0; i < sizeof PEAKS / sizeof *PEAKS; i++)
+        for (int refused_ = 0; refused_ < 2; refused_++) {
+            Text t = changed(read_specimen(PEAKS[i].file), PEAKS[i].from, refused_ ? PEAKS[i].by_8 : PEAKS[i].by_2, 0);
+            Motion m;
+            Err err = {0};
+            const Status status = motion_parse(&m, PEAKS[i].file, t.text, t.length, &FIRST, &err);
+            if (status != (refused_ ? STATUS_BAD_DATA : STATUS_OK) ||
+                (!refused_ && !strstr(m.warning, "its header says")) ||
+                (refused_ && !strstr(err.text, "motion.peak_error_max")))
+                fail_msg("%s, %d %%: status %d, '%s'", PEAKS[i].file, refused_ ? 8 : 2, status,
+                         refused_ ? err.text : m.warning);
+            motion_free(&m);
+            free(t.text);
+        }
+}
+
+/* Real numbers 30 and 32 of an SMC header are the extremes. */
+static void test_the_extremes_in_an_smc_header_are_checked(void **state)
+{
+    (void)state;
+    for (int by_8 = 0; by_8 < 2; by_8++) {
+        Text t = read_specimen("one.smc");
+        char *at = t.text;
+        for (int i = 0; i < 29; i++) /* real number 2 is the rate */
+            at = strstr(at + 1, "1.7000000E+38");
+        memcpy(at - 1, by_8 ? "-1.332720E+02 " : "-1.258680E+02 ", 14);
+        at = strstr(strstr(at, "1.7000000E+38") + 1, "1.7000000E+38");
+        memcpy(at, "7.8200000E+01", 13);
+        Motion m;
+        Err err = {0};
+        const Status status = motion_parse(&m, "one.smc", t.text, t.length, &FIRST, &err);
+        assert_int_equal(status, by_8 ? STATUS_BAD_DATA : STATUS_OK);
+        assert_non_null(
+            strstr(by_8 ? err.text : m.warning, by_8 ? "its header says 133.27" : "its header says 125.87"));
+        motion_free(&m);
+        free(t.text);
+    }
+}
+
+/* ---- names and headers that people have --------------------------------------------------------------------------- */
+
+static void test_kiknet_numbers_are_directions_in_the_borehole_and_at_the_surface(void **state)
+{
+    (void)state;
+    static const char *const NAMES[] = {"NS1", "EW1", "UD1", "NS2", "EW2", "UD2"};
+    for (int k = 0; k < 6; k++) {
+        char direction[32];
+        snprintf(direction, sizeof direction, "Dir.              %d", k + 1);
+        Text t = changed(read_specimen("one.kiknet"), "Dir.              5", direction, 0);
+        Motion m;
+        Err err = {0};
+        CHECK_OK(motion_parse(&m, "one.kiknet", t.text, t.length, &(MotionHow){0}, &err), &err);
+        assert_string_equal(m.channel, NAMES[k]);
+        motion_free(&m);
+        free(t.text);
+    }
+}
+
+static void test_five_columns_without_a_step_ask_for_the_step_and_not_for_a_channel(void **state)
+{
+    (void)state;
+    Motion m;
+    Err err = {0};
+    Text t = rows_of("", 20, 5);
+    assert_int_equal(motion_parse(&m, "opensees.txt", t.text, t.length, &(MotionHow){.unit = UNIT_G}, &err),
+                     STATUS_BAD_DATA);
+    assert_non_null(strstr(err.text, "set motion.dt_s"));
+    assert_null(strstr(err.text, "channels"));
+    free(t.text);
+}
+
+static void test_the_body_of_a_file_of_three_components_is_asked_about_and_not_joined(void **state)
+{
+    (void)state;
+    Motion m;
+    Err err = {0};
+    for (int width = 2; width <= 4; width++) {
+        Text t = rows_of("# m/s2, dt=0.01\n", 40, width);
+        assert_int_equal(motion_parse(&m, "body", t.text, t.length, &(MotionHow){0}, &err), STATUS_BAD_DATA);
+        assert_non_null(strstr(err.text, "columns without names"));
+        free(t.text);
+    }
+}
+
+static void test_a_step_in_the_first_line_above_words_is_found(void **state)
+{
+    (void)state;
+    Motion m;
+    Err err = {0};
+    CHECK_OK(parse_text(&m, "Time Step: 0.005\nAcceleration (g)\n0.0\n0.01\n-0.02\n0.005\n", &err), &err);
+    assert_close(m.dt_s, 0.005, 1e-15);
+    assert_int_equal(m.n, 4);
+    assert_close(m.accel[2], -0.02 * 9.81, 1e-12);
+    motion_free(&m);
+}
+
+static void test_names_too_long_for_a_message_lose_their_middle(void **state)
+{
+    (void)state;
+    char out[64];
+    name_shorten(out, 20, "360 Deg, CE.23497.HNE.20160224.V2");
+    assert_string_equal(out, "360 De...20160224.V2");
+    name_shorten(out, 40, "360 Deg, CHAN001.V2");
+    assert_string_equal(out, "360 Deg, CHAN001.V2");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_a_file_of_a_kinemetrics_recorder_is_read_to_its_samples),
+        cmocka_unit_test(test_what_is_wrong_in_a_file_of_a_kinemetrics_recorder_is_said),
+        cmocka_unit_test(test_every_format_with_a_peak_in_its_header_is_checked_against_it),
+        cmocka_unit_test(test_the_extremes_in_an_smc_header_are_checked),
+        cmocka_unit_test(test_kiknet_numbers_are_directions_in_the_borehole_and_at_the_surface),
+        cmocka_unit_test(test_five_columns_without_a_step_ask_for_the_step_and_not_for_a_channel),
+        cmocka_unit_test(test_the_body_of_a_file_of_three_components_is_asked_about_and_not_joined),
+        cmocka_unit_test(test_a_step_in_the_first_line_above_words_is_found),
+        cmocka_unit_test(test_names_too_long_for_a_message_lose_their_middle),
         cmocka_unit_test(test_binary_files_and_archives_are_read_to_their_samples),
         cmocka_unit_test(test_counts_are_refused_without_a_gain_and_what_is_no_record_by_its_name),
         cmocka_unit_test(test_a_mutated_binary_file_or_archive_is_read_or_refused),

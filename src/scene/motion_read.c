@@ -19,9 +19,9 @@ static const double LARGEST_PEAK_G = 20.0;
 
 /* Asked in this order; the last one takes what no other did. */
 static const MotionFormat *const FORMATS[] = {
-    &FORMAT_KNET,      &FORMAT_ESM,   &FORMAT_JMA,    &FORMAT_CWB,     &FORMAT_AFAD, &FORMAT_UNAM,   &FORMAT_ISESD,
-    &FORMAT_GEONET,    &FORMAT_SMC,   &FORMAT_COSMOS, &FORMAT_CSMIP,   &FORMAT_BHRC, &FORMAT_USC,    &FORMAT_SAC_TEXT,
-    &FORMAT_SIMCENTER, &FORMAT_SLIST, &FORMAT_TSPAIR, &FORMAT_REFUSED, &FORMAT_AT2,  &FORMAT_COLUMNS};
+    &FORMAT_KNET,     &FORMAT_ESM,       &FORMAT_JMA,   &FORMAT_CWB,    &FORMAT_AFAD,    &FORMAT_UNAM, &FORMAT_CSMNC,
+    &FORMAT_ISESD,    &FORMAT_GEONET,    &FORMAT_SMC,   &FORMAT_COSMOS, &FORMAT_CSMIP,   &FORMAT_BHRC, &FORMAT_USC,
+    &FORMAT_SAC_TEXT, &FORMAT_SIMCENTER, &FORMAT_SLIST, &FORMAT_TSPAIR, &FORMAT_REFUSED, &FORMAT_AT2,  &FORMAT_COLUMNS};
 
 static const BinaryFormat *const BINARY_FORMATS[] = {&FORMAT_MSEED, &FORMAT_SAC, &FORMAT_EVT};
 enum { N_BINARY_FORMATS = sizeof BINARY_FORMATS / sizeof BINARY_FORMATS[0], ARCHIVES_DEEP = 2 };
@@ -68,8 +68,9 @@ static void list_channels(const Record *r, char list[LIST_MAX])
     size_t used = 0;
     list[0] = 0;
     for (size_t i = 0; i < n && used + (size_t)shown + 24 < LIST_MAX; i++) {
-        used += (size_t)snprintf(list + used, LIST_MAX - used, "%s%zu '%.*s'", i ? ", " : "", i + 1, shown,
-                                 r->channel[i].name);
+        char name[CHANNEL_NAME_MAX + 1];
+        name_shorten(name, (size_t)shown, r->channel[i].name);
+        used += (size_t)snprintf(list + used, LIST_MAX - used, "%s%zu '%s'", i ? ", " : "", i + 1, name);
         if (i + 1 < n && used + (size_t)shown + 24 >= LIST_MAX)
             snprintf(list + used, LIST_MAX - used, ", ... %zu", n);
     }

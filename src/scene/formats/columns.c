@@ -188,14 +188,11 @@ static int is_table(const Columns *columns, const Preface *preface, Lines start)
 
 static Status fail_unknown(const Lines *l, Lines start, Err *err)
 {
-    const char *why = strchr(err->text, '\'');
-    char found[120];
-    snprintf(found, sizeof found, "%.119s", why ? why : err->text);
     lines_next_filled(&start);
     return fail(err, STATUS_BAD_DATA,
-                "%s:%d: in no format that is known here (docs/motions.md lists them), and no plain columns: %s; the "
-                "first line is '%.*s'",
-                l->path, l->number, found, line_shown(&start), start.from);
+                "%s:%d: in no format that is known here (docs/motions.md lists them), and no plain columns of "
+                "numbers; the first line is '%.*s'",
+                l->path, l->number, line_shown(&start), start.from);
 }
 
 static Status read_rows(Record *r, Lines *l, Preface *preface, Columns *columns, Err *err)
@@ -211,7 +208,9 @@ static Status read_rows(Record *r, Lines *l, Preface *preface, Columns *columns,
         } else {
             const Status s = columns_add(columns, r, l, err);
             if (s != STATUS_OK)
-                return is_table(columns, preface, start) ? s : fail_unknown(l, start, err);
+                return is_table(columns, preface, start) || !strstr(err->text, "is not a number")
+                           ? s
+                           : fail_unknown(l, start, err);
         }
     }
     return STATUS_OK;

@@ -70,6 +70,7 @@ static Status collect(MSTraceGroup *group, const char *path, const char *bytes, 
 static Status read_traces(Record *r, const char *path, const char *bytes, size_t n, Err *err)
 {
     const Lines l = {.path = path, .number = 1};
+#pragma omp critical(libmseed) /* records are read side by side, and the library keeps this for all of them */
     ms_loginit(say_nothing, NULL, say_nothing, NULL);
     MSTraceGroup *group = mst_initgroup(NULL);
     if (!group)

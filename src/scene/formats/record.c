@@ -27,6 +27,15 @@ void record_free(Record *r)
     r->n = r->capacity = r->n_channels = 0;
 }
 
+void name_shorten(char *out, size_t room, const char *name)
+{
+    const size_t n = strlen(name), head = (room - 2) / 3;
+    if (n <= room)
+        memcpy(out, name, n + 1);
+    else
+        snprintf(out, room + 1, "%.*s..%s", (int)head, name, name + n - (room - 2 - head));
+}
+
 Status record_append(Record *r, const Record *from, const char *path, const char *member, Err *err)
 {
     const Lines l = {.path = path};
@@ -35,12 +44,14 @@ Status record_append(Record *r, const Record *from, const char *path, const char
         TRY(record_add(r, &l, from->row[i], err));
     for (size_t k = 0; k < from->n_channels; k++) {
         Channel *c;
-        char name[2 * CHANNEL_NAME_MAX];
+        char name[2 * CHANNEL_NAME_MAX], own[CHANNEL_NAME_MAX / 2 + 1], of[CHANNEL_NAME_MAX];
         TRY(record_channel(r, &l, &c, err));
         *c = from->channel[k];
         c->first += offset;
-        const int n = snprintf(name, sizeof name, "%s%s%s", c->name, c->name[0] ? ", " : "", member);
-        channel_name(c, name, name + (n < (int)sizeof name ? n : (int)sizeof name - 1));
+        name_shorten(own, sizeof own - 1, c->name);
+        name_shorten(of, sizeof of - 4 - strlen(own), member);
+        snprintf(name, sizeof name, "%s%s%s", own, own[0] ? ", " : "", of);
+        channel_name(c, name, name + strlen(name));
     }
     return STATUS_OK;
 }

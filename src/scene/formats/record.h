@@ -56,7 +56,7 @@ typedef struct {
 Status record_pairs(Record *r, Lines *l, double count, int width, Err *err);
 
 extern const MotionFormat FORMAT_AT2, FORMAT_COSMOS, FORMAT_CSMIP, FORMAT_SMC, FORMAT_KNET, FORMAT_ESM, FORMAT_GEONET,
-    FORMAT_JMA, FORMAT_CWB, FORMAT_AFAD, FORMAT_UNAM, FORMAT_ISESD, FORMAT_BHRC, FORMAT_USC, FORMAT_SLIST,
+    FORMAT_JMA, FORMAT_CWB, FORMAT_AFAD, FORMAT_UNAM, FORMAT_CSMNC, FORMAT_ISESD, FORMAT_BHRC, FORMAT_USC, FORMAT_SLIST,
     FORMAT_TSPAIR, FORMAT_REFUSED, FORMAT_COLUMNS;
 
 /* Files that are no text. */
@@ -69,7 +69,10 @@ typedef struct {
 extern const BinaryFormat FORMAT_MSEED, FORMAT_SAC, FORMAT_EVT;
 extern const MotionFormat FORMAT_SAC_TEXT, FORMAT_SIMCENTER;
 
-/* Channels and rows of `from` behind those of r; ", MEMBER" is added to their names. */
+/* The name in `room` bytes and a NUL: what is too long loses its middle, for beginning and end tell names apart. */
+void name_shorten(char *out, size_t room, const char *name);
+
+/* Channels and rows of `from` behind those of r; ", MEMBER" is added to their names, the member shortened to fit. */
 Status record_append(Record *r, const Record *from, const char *path, const char *member, Err *err);
 
 Status record_add(Record *r, const Lines *l, Row row, Err *err);

@@ -36,22 +36,3 @@ static Status read(Record *r, Lines *l, const ReadHints *hints, Err *err)
 }
 
 const MotionFormat FORMAT_REFUSED = {"refused", recognise, read};
-
-/* ---- no texts ---------------------------------------------------------------------------------------------------- */
-
-/* Kinemetrics K2 and its kin: tags "K", byte order, version, instrument. */
-static int recognise_evt(const unsigned char bytes[], size_t n)
-{
-    return n > 16 && bytes[0] == 'K' && bytes[1] <= 1 && bytes[2] <= 2 && bytes[3] < 32;
-}
-
-static Status refuse_evt(Record *r, const char *path, const char *bytes, size_t n, Err *err)
-{
-    (void)r;
-    (void)bytes;
-    (void)n;
-    return fail(err, STATUS_BAD_DATA,
-                "%s: is not read: Kinemetrics EVT; convert it to miniSEED, SAC or text (K2COSMOS, kw2asc)", path);
-}
-
-const BinaryFormat FORMAT_EVT = {"evt", recognise_evt, refuse_evt};
