@@ -21,7 +21,7 @@ static int make_run(void **state)
         return -1;
     char *said = output_of("optimize configs/quick.ini --out @/run --threads 2 --max-evals 24 --set search.initial=12 "
                            "--set search.population=12 --set search.polish=0 --set 'search.limits=j1_m<=0.055' " SHORT);
-    assert_non_null(strstr(said, "\nviscous links ("));
+    assert_non_null(strstr(said, "against viscous links ("));
     assert_non_null(strstr(said, ": impacts win in "));
     free(said);
     CHECK_OK(run_read(&h, path_of("run", path), &err), &err);
@@ -124,6 +124,24 @@ static void test_evaluate_takes_a_design_from_elsewhere(void **state)
     expect(65, "is no design of", "polish @/both --design @/run:knee");
 }
 
+static void test_evaluate_compares_with_devices_and_replicates_have_a_named_deviation(void **state)
+{
+    (void)state;
+    json_t *o = json_of("evaluate @/run --design knee --json --replicates 3 --set uncertain.contact_stiffness=0.2");
+    const json_t *record = json_array_get(json_object_get(o, "records"), 0);
+    assert_true(number(json_object_get(record, "links"), "link_ns_m") > 0);
+    assert_true(number(json_object_get(record, "tmd"), "stroke_m") > 0);
+    const json_t *replicates = json_object_get(record, "replicates");
+    assert_string_equal(json_string_value(json_object_get(replicates, "spread")), "as built");
+    assert_true(number(replicates, "n") == 3);
+    json_decref(o);
+    char *said = output_of("evaluate @/run --design knee --replicates 3");
+    assert_non_null(strstr(said, "sd predictability of 3"));
+    assert_non_null(strstr(said, "against viscous links ("));
+    free(said);
+    expect(65, "needs replicates that differ", "evaluate @/run --design knee --set uncertain.damping=0.1");
+}
+
 static void test_choose_names_the_extremes_and_writes_them(void **state)
 {
     (void)state;
@@ -164,6 +182,7 @@ int main(void)
         cmocka_unit_test(test_designs_off_the_front_stay_addressable),
         cmocka_unit_test(test_evaluate_without_a_record_takes_those_of_the_run),
         cmocka_unit_test(test_evaluate_takes_a_design_from_elsewhere),
+        cmocka_unit_test(test_evaluate_compares_with_devices_and_replicates_have_a_named_deviation),
         cmocka_unit_test(test_choose_names_the_extremes_and_writes_them),
         cmocka_unit_test(test_words_that_name_nothing_are_refused_with_what_is_there),
     };

@@ -4,6 +4,8 @@
 
 #include "runs.h"
 #include "scene_options.h"
+#include "base/stat.h"
+#include "sim/as_built.h"
 #include "simulator/adapter.h"
 #include "settings/settings.h"
 
@@ -158,6 +160,154 @@ static void test_a_design_asked_for_again_gets_further_replicates(void **state)
     problem_close(&p);
 }
 
+static SimResult run_scene(const Settings *s, const AsBuilt *built)
+{
+    double X[DESIGNS * N_VAR];
+    Problem p;
+    Err err = {0};
+    SimResult r;
+    designs(X);
+    CHECK_OK(tower_open(&p, s, TOWER_SINGLE, 1, &err), &err);
+    SimWorker *w = tower_worker(tower_of(&p), 0, 0);
+    CHECK_OK(sim_worker_as_built(w, built, &err), &err);
+    CHECK_OK(sim_run(w, SCENE_IMPACT, X, &r, &err), &err);
+    problem_close(&p);
+    return r;
+}
+
+static void test_a_structure_as_built_is_the_scene_whose_settings_say_so(void **state)
+{
+    (void)state;
+    const Settings s = short_scene("none", 1, "0");
+    const SimResult designed = run_scene(&s, NULL);
+    for (int k = 0; k < 5; k++) {
+        Settings other = s;
+        AsBuilt b = AS_DESIGNED;
+        switch (k) {
+        case 0:
+            b.restitution = -0.2;
+            other.contact.restitution -= 0.2;
+            break;
+        case 1:
+            b.contact_stiffness = 2;
+            other.contact.youngs_modulus_pa *= 2;
+            break;
+        case 2:
+            b.core_stiffness = 1.5;
+            other.core.youngs_modulus_pa *= 1.5;
+            break;
+        case 3:
+            b.core_damping = 0.5;
+            other.core.damping *= 0.5;
+            break;
+        default:
+            b.building_damping = 3;
+            other.building.damping *= 3;
+        }
+        const SimResult built = run_scene(&s, &b), wanted = run_scene(&other, NULL);
+        assert_close(built.j1_m, wanted.j1_m, 1e-9);
+        assert_close(built.j3_g, wanted.j3_g, 1e-6);
+        assert_true(fabs(built.j3_g / designed.j3_g - 1) > 1e-4);
+    }
+}
+
+static void test_a_stiffer_building_vibrates_faster_by_the_root_of_it(void **state)
+{
+    (void)state;
+    Building b, out;
+    Err err = {0};
+    double *store = NULL;
+    AsBuilt stiff = AS_DESIGNED;
+    stiff.building_stiffness = 1.21;
+    CHECK_OK(load_model(&b, "guyan", &err), &err);
+    CHECK_OK(as_built_building(&stiff, &b, &out, &store, &err), &err);
+    for (int i = 0; i < b.n; i++) {
+        assert_close(out.omega[i], 1.1 * b.omega[i], 1e-12);
+        assert_close(out.model.omega[i], 1.1 * b.model.omega[i], 1e-12);
+        assert_close(out.K[i * b.n + i], 1.21 * b.K[i * b.n + i], 1e-12);
+        assert_true(out.zeta[i] == b.zeta[i] && out.phi == b.phi);
+    }
+    free(store);
+    building_free(&b);
+}
+
+static void test_what_is_uncertain_has_its_mean_and_deviation_and_the_rest_is_as_designed(void **state)
+{
+    (void)state;
+    enum { DRAWS = 20000 };
+    const UncertainOptions u = {.restitution = 0.1, .core_stiffness = 0.3, .damping = 0.5};
+    double sum[3] = {0}, squares[3] = {0};
+    assert_true(replicate_as_built(1, 0, &u).core_stiffness == 1);
+    for (size_t k = 1; k <= DRAWS; k++) {
+        const AsBuilt b = replicate_as_built(1, k, &u);
+        const double of[3] = {b.restitution, b.core_stiffness - 1, b.building_damping - 1};
+        assert_true(b.contact_stiffness == 1 && b.building_stiffness == 1 && b.core_stiffness > 0);
+        for (int i = 0; i < 3; i++) {
+            sum[i] += of[i] / DRAWS;
+            squares[i] += of[i] * of[i] / DRAWS;
+        }
+    }
+    const double wanted[3] = {0.1, 0.3, 0.5};
+    for (int i = 0; i < 3; i++) {
+        assert_true(fabs(sum[i]) < 5 * wanted[i] / sqrt(DRAWS));
+        assert_close(sqrt(squares[i]), wanted[i], 0.05);
+    }
+}
+
+static void test_rules_over_all_replicates_have_their_closed_values(void **state)
+{
+    (void)state;
+    const ReplicatePlan plus = {.rule = ROBUST_MEAN_PLUS_SD}, quantile = {.rule = ROBUST_QUANTILE, .quantile = 0.9};
+    double v[5] = {3, 1, 5, 2, 4}, sd;
+    assert_close(robust_pooled(&plus, 1, 5, v, &sd), 3 + sqrt(2.5), 1e-14);
+    assert_close(sd, sqrt(2.5), 1e-14);
+    assert_close(robust_pooled(&plus, -1, 5, v, &sd), 3 - sqrt(2.5), 1e-14);
+    assert_close(robust_pooled(&quantile, 1, 5, v, &sd), 4.6, 1e-14);
+    assert_close(robust_pooled(&quantile, -1, 5, v, &sd), 1.4, 1e-14);
+    assert_close(robust_pooled(&plus, 1, 1, v, &sd), 1, 1e-14);
+}
+
+static void test_the_two_deviations_of_replicates_have_two_names(void **state)
+{
+    (void)state;
+    const UncertainOptions none = {0}, some = {.damping = 0.1};
+    assert_string_equal(spread_word(0, &none), "predictability");
+    assert_string_equal(spread_word(0.005, &none), "as built");
+    assert_string_equal(spread_word(0, &some), "as built");
+}
+
+/* A study under mean_plus_sd has mean and deviation of the replicates that are simulated one by one. */
+static void test_mean_plus_sd_is_that_of_the_single_simulations(void **state)
+{
+    (void)state;
+    enum { REPLICATES = 4 };
+    Settings s = short_scene("none", REPLICATES, "0.01");
+    Replicated out;
+    double X[DESIGNS * N_VAR], v[REPLICATES], mean, sd;
+    s.uncertain.contact_stiffness = 0.5;
+    s.sim.robust = ROBUST_MEAN_PLUS_SD;
+    run_designs(&s, 2, &out);
+    designs(X);
+    for (size_t k = 0; k < REPLICATES; k++) {
+        Settings single = s;
+        double x[N_VAR];
+        Problem p;
+        Err err = {0};
+        SimResult r;
+        const AsBuilt b = replicate_as_built((uint32_t)s.search.seed, k, &s.uncertain);
+        memcpy(x, X, sizeof x);
+        replicate_design((uint32_t)s.search.seed, k, 0.01, 20, x);
+        CHECK_OK(tower_open(&p, &single, TOWER_SINGLE, 1, &err), &err);
+        CHECK_OK(sim_worker_as_built(tower_worker(tower_of(&p), 0, 0), k ? &b : NULL, &err), &err);
+        CHECK_OK(sim_run(tower_worker(tower_of(&p), 0, 0), SCENE_IMPACT, x, &r, &err), &err);
+        v[k] = r.j3_g;
+        problem_close(&p);
+    }
+    mean_and_sd_of(REPLICATES, v, &mean, &sd);
+    assert_close(out.sum[0].mean[MEASURE_J3], mean + sd, 1e-12);
+    assert_close(out.sum[0].sd[MEASURE_J3], sd, 1e-12);
+}
+
 #define SHORT "--set sim.duration_s=25 --set sim.accuracy=coarse --set motion.record=builtin:sylmar-like "
 
 static void write_design(void)
@@ -225,6 +375,12 @@ int main(void)
         cmocka_unit_test(test_replicates_with_gap_errors_have_mean_and_deviation),
         cmocka_unit_test(test_without_contact_there_is_no_spread),
         cmocka_unit_test(test_a_design_asked_for_again_gets_further_replicates),
+        cmocka_unit_test(test_a_structure_as_built_is_the_scene_whose_settings_say_so),
+        cmocka_unit_test(test_a_stiffer_building_vibrates_faster_by_the_root_of_it),
+        cmocka_unit_test(test_what_is_uncertain_has_its_mean_and_deviation_and_the_rest_is_as_designed),
+        cmocka_unit_test(test_rules_over_all_replicates_have_their_closed_values),
+        cmocka_unit_test(test_the_two_deviations_of_replicates_have_two_names),
+        cmocka_unit_test(test_mean_plus_sd_is_that_of_the_single_simulations),
         cmocka_unit_test(test_simulate_draws_the_replicates_of_a_study_and_knows_the_tolerance),
     };
     return cmocka_run_group_tests_name("replicates", tests, prepare, clear_place);

@@ -24,15 +24,23 @@ typedef struct {
 
 /* ---- results ----------------------------------------------------------------------------------------------------- */
 
-static json_t *describe(const EvaluatedRun *run)
+static json_t *describe(const Evaluations *e, const EvaluatedRun *run)
 {
     json_t *o = json_object();
     json_object_set_new(o, "record", json_string(run->record->path));
     json_object_set_new(o, "pga_g", json_number(run->pga_g));
     json_object_set_new(o, "scale", json_number(run->scale));
     json_object_set_new(o, "stretch", json_number(run->stretch));
-    for (int c = 0; c < N_EVALUATED; c++)
+    for (int c = 0; c < evaluated_cases(e, run); c++)
         json_object_set_new(o, EVALUATION_CASES[c].key, json_result(EVALUATION_CASES[c].kind, &run->result[c]));
+    if (evaluated_cases(e, run) == N_WITH_DEVICES) {
+        json_t *tmd = json_object_get(o, "tmd"), *links = json_object_get(o, "links");
+        json_object_set_new(tmd, "tmd_hz", json_number(run->device[EVALUATED_TMD].tmd_hz));
+        json_object_set_new(tmd, "tmd_damping", json_number(run->device[EVALUATED_TMD].tmd_damping));
+        json_object_set_new(links, "link_ns_m", json_number(run->device[EVALUATED_LINKS].link_ns_m));
+    }
+    if (e->replicates > 0)
+        json_object_set_new(o, "replicates", json_replicates(&run->replicates));
     return o;
 }
 
@@ -41,7 +49,7 @@ static Status show_as_json(const Args *args, const Chosen *c, const Evaluations 
     json_t *all = json_object(), *records = json_array(), *unreadable = json_array();
     for (size_t i = 0; i < e->n_records * e->n_levels; i++)
         if (e->run[i].record->readable == STATUS_OK)
-            json_array_append_new(records, describe(&e->run[i]));
+            json_array_append_new(records, describe(e, &e->run[i]));
     for (size_t i = 0; i < e->n_records; i++)
         if (e->record[i].readable != STATUS_OK)
             json_array_append_new(
@@ -90,7 +98,7 @@ static Status write_csv(const Evaluations *e, const char *path, Err *err)
         fprintf(o.stream, ",%s", measure(k)->name);
     fputc('\n', o.stream);
     for (size_t i = 0; i < e->n_records * e->n_levels; i++)
-        for (int c = 0; c < N_EVALUATED && e->run[i].record->readable == STATUS_OK; c++)
+        for (int c = 0; e->run[i].record->readable == STATUS_OK && c < evaluated_cases(e, &e->run[i]); c++)
             write_row(o.stream, e, i, (EvaluatedCase)c);
     for (size_t l = 0; e->level && l < e->n_levels; l++)
         for (int c = 0; c < N_EVALUATED; c++)
@@ -100,16 +108,40 @@ static Status write_csv(const Evaluations *e, const char *path, Err *err)
 
 /* ---- for people -------------------------------------------------------------------------------------------------- */
 
-/* The records that were named, each under its motion. */
-static void print_named(const Evaluations *e, const MeasureOrder *order)
+/* In which objectives impacts win and lose; none at several intensities. */
+static void show_verdicts(const Evaluations *e, const Schema *schema, const EvaluatedRun *run)
 {
+    static const EvaluatedCase CASES[N_BASELINES] = {EVALUATED_NO_CORE, EVALUATED_RIGID, EVALUATED_TMD,
+                                                     EVALUATED_LINKS};
+    double values[OBJECTIVES_MAX];
+    Baseline b;
+    if (evaluated_cases(e, run) < N_WITH_DEVICES)
+        return;
+    for (size_t i = 0; i < schema->n_obj; i++)
+        values[i] = measure_value(&run->result[EVALUATED_DESIGN], schema->order.of[i]);
+    for (int k = 0; k < N_BASELINES; k++) {
+        for (int m = 0; m < N_MEASURES; m++)
+            b.value[m] = measure_value(&run->result[CASES[k]], m);
+        b.device = run->device[CASES[k]];
+        show_verdict((BaselineKind)k, schema, values, &b);
+    }
+}
+
+/* The records that were named, each under its motion. */
+static void print_named(const Evaluations *e, const Schema *schema)
+{
+    const MeasureOrder *order = &schema->order;
     for (size_t i = 0; i < e->n_records; i++) {
         if (e->record[i].from_folder)
             continue;
         fputs(e->run[i].motion, stdout);
         show_result_names("", order);
-        for (int c = 0; c < N_EVALUATED; c++)
+        for (int c = 0; c < evaluated_cases(e, &e->run[i]); c++) {
             show_result(EVALUATION_CASES[c].word, order, &e->run[i].result[c]);
+            if (c == EVALUATED_DESIGN && e->replicates > 0)
+                show_replicates(order, &e->run[i].replicates);
+        }
+        show_verdicts(e, schema, &e->run[i]);
         putchar('\n');
     }
 }
@@ -153,7 +185,7 @@ static void print_all(const Args *args, const Chosen *c, const Evaluations *e)
     if (e->level)
         ida_print(e, order);
     else {
-        print_named(e, order);
+        print_named(e, &c->run->schema);
         print_folder(e, order);
     }
     print_refused(e);
@@ -241,6 +273,8 @@ static Status evaluate_design(const Args *args, const Run *run, const Chosen *c,
     Evaluations e = {0};
     TRY(args_apply(args, &s, NULL, NULL, err));
     TRY(take_intensities(args, &s, levels, &e, err));
+    if (args_has(args, "--replicates"))
+        TRY(args_whole(args, "--replicates", 2, 1000, 0, &e.replicates, err));
     TRY(settings_check(&s, err));
     if (s.problem.kind != PROBLEM_TOWER)
         return fail(err, STATUS_BAD_DATA, "this run searched another problem than the tower: no ground motion applies");
@@ -286,6 +320,8 @@ static const ArgOption OPTIONS[] = {
     OPTION_ENGINE,
     OPTION_SET,
     {"--threads", "N", "search.threads", 0, "0: one per processor"},
+    {"--replicates", "N", "sim.replicates", 0,
+     "N replicates of the design under each record: mean and standard deviation, named"},
     OPTION_JSON,
     {"--csv", "FILE", NULL, 0, "a row per record, intensity and scene as CSV into FILE; -: standard output"},
     {"--svg", "FILE", NULL, 0, "response against intensity with 16 %, median and 84 %, drawn by gnuplot"},

@@ -68,6 +68,8 @@ static Status run(const Args *args, Err *err)
     if (s.sim.engine != ENGINE_FAST)
         return fail(err, STATUS_USAGE, "horizon: only the engine fast shows its states; leave sim.engine as it is");
     s.sim.replicates = REPLICATES;
+    s.sim.gap_tolerance_m = 0; /* chaos alone */
+    s.uncertain = (UncertainOptions){0};
     TRY(tower_open(&p, &s, TOWER_AS_SET, SIZE_MAX, err));
     Status status = designs_take(&d, path, tower_n_floors(tower_of(&p)), err);
     if (status == STATUS_OK) {

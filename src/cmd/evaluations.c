@@ -13,11 +13,13 @@
 #include "evaluate/threads.h"
 #include "scene/motion_scale.h"
 #include "scene/motion_source.h"
-#include "simulator/tower.h"
+#include "simulator/baselines.h"
 
-const struct EvaluationCase EVALUATION_CASES[N_EVALUATED] = {{SCENE_IMPACT, "with core", "with_core"},
-                                                             {SCENE_RIGID, "rigidly connected", "rigid"},
-                                                             {SCENE_NO_CORE, "no core", "no_core"}};
+const struct EvaluationCase EVALUATION_CASES[N_WITH_DEVICES] = {{SCENE_IMPACT, "with core", "with_core"},
+                                                                {SCENE_RIGID, "rigidly connected", "rigid"},
+                                                                {SCENE_NO_CORE, "no core", "no_core"},
+                                                                {SCENE_TMD, "tuned mass damper", "tmd"},
+                                                                {SCENE_LINKS, "viscous links", "links"}};
 
 const char *evaluated_name(const EvaluatedRecord *r)
 {
@@ -144,19 +146,59 @@ static Status simulate(const Problem *p, size_t n_var, const double x[], SimResu
     return tower_simulate(p, N_EVALUATED, tasks, results, err);
 }
 
-static Status run_one(EvaluatedRun *run, const Settings *s, const double *level, size_t n_var, const double x[],
-                      Err *err)
+int evaluated_cases(const Evaluations *e, const EvaluatedRun *run)
+{
+    return e->level || run->record->from_folder ? N_EVALUATED : N_WITH_DEVICES;
+}
+
+static Status simulate_devices(const Problem *p, const double x[], EvaluatedRun *run, Err *err)
+{
+    const SimResult *alone = &run->result[EVALUATED_NO_CORE];
+    const double no_core[3] = {alone->j1_m, alone->j2_m, alone->j3_g};
+    SimWorker *w = tower_worker(tower_of(p), 0, 0);
+    for (int i = EVALUATED_TMD; i <= EVALUATED_LINKS; i++) {
+        TRY(baseline_tune(tower_of(p), 0, i == EVALUATED_TMD ? BASELINE_TMD : BASELINE_LINKS, x, no_core,
+                          &run->device[i], err));
+        sim_worker_device(w, &run->device[i]);
+        TRY(sim_run(w, EVALUATION_CASES[i].kind, x, &run->result[i], err));
+    }
+    return STATUS_OK;
+}
+
+/* The same record with replicates. */
+static Status replicate(const Settings *s, long n, const double x[], EvaluatedRun *run, Err *err)
+{
+    Problem p;
+    SimResult shown;
+    Settings own = *s;
+    own.sim.replicates = n;
+    snprintf(own.motion.records, sizeof own.motion.records, "none");
+    TRY(tower_open(&p, &own, TOWER_AS_SET, 1, err));
+    const Status status = tower_replicate(&p, 1, x, &shown, &run->replicates, err);
+    problem_close(&p);
+    return status;
+}
+
+static Status run_one(const Evaluations *e, EvaluatedRun *run, const Settings *s, const double *level, size_t n_var,
+                      const double x[], Err *err)
 {
     Problem p;
     Settings *own;
     Status status = settings_for(s, run->record->path, level, &own, err);
     if (status == STATUS_OK)
         status = tower_open(&p, own, TOWER_SINGLE, 1, err);
-    free(own);
-    TRY(status);
+    if (status != STATUS_OK) {
+        free(own);
+        return status;
+    }
     status = describe_motion(run, tower_record(tower_of(&p), 0), err);
     if (status == STATUS_OK)
         status = simulate(&p, n_var, x, run->result, err);
+    if (status == STATUS_OK && evaluated_cases(e, run) == N_WITH_DEVICES)
+        status = simulate_devices(&p, x, run, err);
+    if (status == STATUS_OK && e->replicates > 0)
+        status = replicate(own, e->replicates, x, run, err);
+    free(own);
     problem_close(&p);
     return status;
 }
@@ -195,7 +237,7 @@ static Status run_all(Evaluations *e, const Settings *s, size_t n_var, const dou
         Status status = STATUS_OK;
         run->record = &e->record[i / (long)e->n_levels];
         if (run->record->readable == STATUS_OK)
-            status = run_one(run, s, e->level ? &e->level[i % (long)e->n_levels] : NULL, n_var, x, &why);
+            status = run_one(e, run, s, e->level ? &e->level[i % (long)e->n_levels] : NULL, n_var, x, &why);
 #pragma omp critical(evaluations)
         {
             if (run->record->readable == STATUS_OK)

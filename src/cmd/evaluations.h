@@ -13,14 +13,22 @@
 #include <stdio.h>
 
 #include "settings/settings.h"
-#include "sim/sim.h"
+#include "simulator/replicates.h"
 
-typedef enum { EVALUATED_DESIGN, EVALUATED_RIGID, EVALUATED_NO_CORE, N_EVALUATED } EvaluatedCase;
+typedef enum {
+    EVALUATED_DESIGN,
+    EVALUATED_RIGID,
+    EVALUATED_NO_CORE,
+    N_EVALUATED, /* everywhere */
+    EVALUATED_TMD = N_EVALUATED,
+    EVALUATED_LINKS,
+    N_WITH_DEVICES /* of records that were named, at one intensity */
+} EvaluatedCase;
 
 extern const struct EvaluationCase {
     SceneKind kind;
     const char *word, *key; /* for people; in JSON and CSV */
-} EVALUATION_CASES[N_EVALUATED];
+} EVALUATION_CASES[N_WITH_DEVICES];
 
 typedef struct {
     char *path;
@@ -33,7 +41,9 @@ typedef struct {
     const EvaluatedRecord *record;
     char *motion; /* a line for people: name, length, peak, scaling */
     double pga_g, scale, stretch;
-    SimResult result[N_EVALUATED];
+    SimResult result[N_WITH_DEVICES];
+    LinearDevice device[N_WITH_DEVICES]; /* optimized under this record (simulator/baselines.h) */
+    ReplicateSummary replicates;         /* of the design, where there are some */
 } EvaluatedRun;
 
 typedef struct {
@@ -42,7 +52,11 @@ typedef struct {
     const double *level;     /* [g] (n_levels) peaks that the records are scaled to; NULL: as the settings say, once */
     EvaluatedRun *run;       /* (n_records, n_levels) of those that can be read, zeroed for the others */
     size_t n_read;
+    long replicates; /* of the design under each record; 0: itself alone */
 } Evaluations;
+
+/* Cases of a run: N_EVALUATED, or N_WITH_DEVICES. */
+int evaluated_cases(const Evaluations *e, const EvaluatedRun *run);
 
 Status evaluations_add(Evaluations *e, const char *path, int from_folder, Err *err);
 

@@ -134,6 +134,8 @@ json_t *json_replicates(const ReplicateSummary *r)
     }
     json_object_set_new(o, "n", json_integer((json_int_t)r->n_replicates));
     json_object_set_new(o, "failed", json_integer((json_int_t)r->n_failed));
+    json_object_set_new(o, "spread", json_string(r->spread));
+    json_object_set_new(o, "rule", json_string(r->rule));
     json_object_set_new(o, "mean", mean);
     json_object_set_new(o, "sd", sd);
     return o;
@@ -215,7 +217,7 @@ static void show_moments(const char *word, size_t of, const MeasureOrder *order,
 {
     char label[64];
     snprintf(label, sizeof label, "  %s of %zu", word, of);
-    printf("%-28s", label);
+    printf("%-28.28s", label);
     for (int i = 0; i < order->n_obj; i++)
         show_number(values[order->of[i]], measure(order->of[i])->name);
     printf(" %8.3g %9.1e\n", values[MEASURE_IMPACTS], values[MEASURE_BALANCE]);
@@ -227,8 +229,10 @@ void show_replicates(const MeasureOrder *order, const ReplicateSummary *r)
         printf("  %zu of the simulations of this design failed: no mean\n", r->n_failed);
         return;
     }
-    show_moments("mean", r->n_replicates, order, r->mean);
-    show_moments("standard deviation", r->n_replicates, order, r->sd);
+    char label[48];
+    show_moments(r->rule, r->n_replicates, order, r->mean);
+    snprintf(label, sizeof label, "sd %s", r->spread);
+    show_moments(label, r->n_replicates, order, r->sd);
 }
 
 /* Names of the objectives that are better (sign 1) or worse (-1) than the baseline's, by more than a thousandth. */
@@ -246,6 +250,16 @@ static void print_better(const char *verb, const Schema *schema, double sign, co
         printf("%snothing", verb);
 }
 
+void show_verdict(BaselineKind kind, const Schema *schema, const double natural[], const Baseline *b)
+{
+    char device[DEVICE_TEXT_MAX];
+    baseline_device_text(kind, &b->device, device);
+    printf("against %s%s%s%s: impacts ", baseline_words(kind), *device ? " (" : "", device, *device ? ")" : "");
+    print_better("win in ", schema, 1, natural, b);
+    print_better("; lose in ", schema, -1, natural, b);
+    putchar('\n');
+}
+
 void show_baselines(const Schema *schema, const double natural[], const Baseline baseline[N_BASELINES])
 {
     double values[OBJECTIVES_MAX];
@@ -255,13 +269,6 @@ void show_baselines(const Schema *schema, const double natural[], const Baseline
         show_objectives(baseline_words((BaselineKind)k), 0, schema, values);
     }
     putchar('\n');
-    for (int k = 0; k < N_BASELINES; k++) {
-        char device[DEVICE_TEXT_MAX];
-        baseline_device_text((BaselineKind)k, &baseline[k].device, device);
-        printf("%s%s%s%s%s: impacts ", k ? "" : "the knee against\n", baseline_words((BaselineKind)k),
-               *device ? " (" : "", device, *device ? ")" : "");
-        print_better("win in ", schema, 1, natural, &baseline[k]);
-        print_better("; lose in ", schema, -1, natural, &baseline[k]);
-        putchar('\n');
-    }
+    for (int k = 0; k < N_BASELINES; k++)
+        show_verdict((BaselineKind)k, schema, natural, &baseline[k]);
 }

@@ -24,7 +24,10 @@ void show_result(const char *label, const MeasureOrder *order, const SimResult *
 /* Two lines: mean and standard deviation of the objectives; one where a replicate failed. */
 void show_replicates(const MeasureOrder *order, const ReplicateSummary *r);
 
-/* A line of objectives for each, with its device; then in which objectives the natural values of a design with impacts win
+/* "against viscous links (...): impacts win in ...; lose in ..." by more than a thousandth. */
+void show_verdict(BaselineKind kind, const Schema *schema, const double natural[], const Baseline *baseline);
+
+/* A line of objectives for each; then in which objectives the natural values of a design with impacts win
  * against it, and in which they lose. */
 void show_baselines(const Schema *schema, const double natural[], const Baseline baseline[N_BASELINES]);
 

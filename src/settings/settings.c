@@ -173,7 +173,17 @@ static const Option OPTIONS[] = {
            "forces, stresses and base shears of every design as columns: yes, or auto: only where an objective or a "
            "limit needs them"),
     CHOICE(sim.robust, Robust, CHOICE_WORDS(ROBUST_LIST), "worst",
-           "under several records: the worst of each objective, or the mean"),
+           "several records: worst or mean of their means over the replicates; mean_plus_sd, quantile: of all "
+           "replicates of "
+           "all records"),
+    REAL(sim.quantile, "-", "0.9", 0.5, 1, "sim.robust = quantile: this share of the simulations is better"),
+
+    REAL(uncertain.restitution, "-", "0", 0, 1,
+         "standard deviation of contact.restitution as built; all of these need sim.replicates >= 2"),
+    REAL(uncertain.contact_stiffness, "-", "0", 0, 10, "of the contact's stiffness, bumper included, as a share of it"),
+    REAL(uncertain.core_stiffness, "-", "0", 0, 10, "of the core's stiffness, as a share of it"),
+    REAL(uncertain.building_stiffness, "-", "0", 0, 10, "of the building's stiffness, as a share of it"),
+    REAL(uncertain.damping, "-", "0", 0, 10, "of the damping ratios of building and core, each as a share of it"),
 
     REAL(design.gap_min_m, "m", "0.001", 0, 10, "bound of the search: smallest gap"),
     REAL(design.gap_max_m, "m", "0.5", 1e-6, 10, "bound of the search: largest gap"),
@@ -640,6 +650,11 @@ static void check_rules(const Settings *s, const Rules *r)
     if (s->sim.gap_tolerance_m > 0.0 && s->sim.replicates < 2)
         break_rule(r, (size_t[]){AT(sim.gap_tolerance_m), AT(sim.replicates), AT(sim.replicates)},
                    "sim.gap_tolerance_m: needs replicates that differ: set sim.replicates to 2 or more");
+    const UncertainOptions *u = &s->uncertain;
+    if (u->restitution + u->contact_stiffness + u->core_stiffness + u->building_stiffness + u->damping > 0.0 &&
+        s->sim.replicates < 2)
+        break_rule(r, (size_t[]){AT(uncertain.restitution), AT(sim.replicates), AT(sim.replicates)},
+                   "[uncertain]: needs replicates that differ: set sim.replicates to 2 or more");
     if (s->problem.kind == PROBLEM_EXTERNAL && strcmp(s->problem.command, "none") == 0)
         break_rule(r, (size_t[]){AT(problem.command), AT(problem.kind), AT(problem.kind)},
                    "problem.command: is none; problem.kind = external needs the command of the simulator");

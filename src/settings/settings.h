@@ -28,6 +28,7 @@ typedef struct Settings {
     ContactOptions contact;
     MotionOptions motion;
     SimOptions sim;
+    UncertainOptions uncertain;
     DesignOptions design;
     ProblemOptions problem;
     SearchOptions search;

@@ -36,7 +36,11 @@ typedef enum {
 #define ACCURACY_LIST(X) X(ACCURACY_COARSE, "coarse") X(ACCURACY_STANDARD, "standard") X(ACCURACY_FINE, "fine")
 typedef enum { ACCURACY_LIST(CHOICE_NAME) } Accuracy;
 
-#define ROBUST_LIST(X) X(ROBUST_WORST, "worst") X(ROBUST_MEAN, "mean")
+#define ROBUST_LIST(X)                                                                                                 \
+    X(ROBUST_WORST, "worst")                                                                                           \
+    X(ROBUST_MEAN, "mean")                                                                                             \
+    X(ROBUST_MEAN_PLUS_SD, "mean_plus_sd")                                                                             \
+    X(ROBUST_QUANTILE, "quantile")
 typedef enum { ROBUST_LIST(CHOICE_NAME) } Robust;
 
 #define FORCES_LIST(X) X(FORCES_AUTO, "auto") X(FORCES_YES, "yes")
@@ -50,9 +54,21 @@ typedef struct {
     double energy_balance_max; /* 0: by accuracy, sim_energy_balance_max */
     long replicates;           /* simulations of a design under each record */
     Robust robust;             /* how a design's results under several records become one */
+    double quantile;           /* of ROBUST_QUANTILE, on the bad side */
     double gap_tolerance_m;    /* standard deviation of a gap as built */
     Forces forces;             /* auto: only where an objective or a limit needs SimResult.forces */
 } SimOptions;
+
+/* Standard deviations of what is built about what was designed, section [uncertain]: of the coefficient of restitution [-],
+ * and as shares of the stiffnesses and of the damping ratios. 0: as designed. */
+typedef struct {
+    double restitution, contact_stiffness, core_stiffness, building_stiffness, damping;
+} UncertainOptions;
+
+/* One structure as built: restitution is added (and stays within 0.05 to 1), the others are factors. */
+typedef struct {
+    double restitution, contact_stiffness, core_stiffness, building_stiffness, core_damping, building_damping;
+} AsBuilt;
 
 /* Linear devices in the place of impacts (sim/linear.h). */
 typedef struct {

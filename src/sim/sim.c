@@ -8,6 +8,7 @@
 #include "base/clock.h"
 #include "base/linalg.h"
 #include "scene/core_beam.h"
+#include "sim/as_built.h"
 #include "sim/engine.h"
 #include "sim/linear.h"
 #include "sim/model.h"
@@ -24,6 +25,11 @@ struct Scene {
 
 struct SimWorker {
     const Scene *scene;
+    const SceneOptions *options; /* the scene's, or own_... */
+    const Building *building;
+    SceneOptions own_options;
+    Building own_building;
+    double *own_store; /* of own_building; NULL: never needed */
     SimModel model;
     CoreBeam core;
     LinearDevice device;
@@ -151,6 +157,8 @@ Status sim_worker_create(SimWorker **out, const Scene *scene, Err *err)
     if (!w)
         return fail(err, STATUS_NO_MEMORY, "simulator: out of memory");
     w->scene = scene;
+    w->options = &scene->options;
+    w->building = &scene->building;
     w->run = scene->run;
     Status status = model_create(&w->model, scene->building.n, scene->building.model.n, err);
     if (status == STATUS_OK && scene->options.sim.forces == FORCES_YES)
@@ -172,6 +180,7 @@ void sim_worker_free(SimWorker *worker)
     force_monitor_free(worker->run.forces);
     if (worker->scene->engine->work_free)
         worker->scene->engine->work_free(worker->run.work);
+    free(worker->own_store);
     free(worker);
 }
 
@@ -227,9 +236,9 @@ static LinearKind linear_kind(SceneKind kind)
 static Status run_linear(SimWorker *w, SceneKind kind, SimResult *result, Err *err)
 {
     const Scene *scene = w->scene;
-    TRY(engine_linear(linear_kind(kind), &scene->options, &scene->building, &w->core, &w->device, scene->motion,
-                      &w->run, result, err));
-    check_result(result, sim_energy_balance_max(&scene->options.sim));
+    TRY(engine_linear(linear_kind(kind), w->options, w->building, &w->core, &w->device, scene->motion, &w->run, result,
+                      err));
+    check_result(result, sim_energy_balance_max(&w->options->sim));
     return STATUS_OK;
 }
 
@@ -240,7 +249,7 @@ static Status run_engine(SimWorker *w, SimResult *result, Err *err)
         w->run.refinement = REFINEMENTS[i];
         TRY(scene->engine->run(&w->model, scene->motion, &w->run, result, err));
         result->repeated = i;
-        check_result(result, sim_energy_balance_max(&scene->options.sim));
+        check_result(result, sim_energy_balance_max(&w->options->sim));
         if (result->outcome != RUN_ENERGY_BALANCE)
             break;
     }
@@ -272,6 +281,19 @@ static void set_drift_ratios(const double storey_m[], SimResult *r)
     }
 }
 
+Status sim_worker_as_built(SimWorker *w, const AsBuilt *built, Err *err)
+{
+    w->options = &w->scene->options;
+    w->building = &w->scene->building;
+    if (!built)
+        return STATUS_OK;
+    as_built_options(built, &w->scene->options, &w->own_options);
+    TRY(as_built_building(built, &w->scene->building, &w->own_building, &w->own_store, err));
+    w->options = &w->own_options;
+    w->building = &w->own_building;
+    return STATUS_OK;
+}
+
 void sim_worker_device(SimWorker *worker, const LinearDevice *device)
 {
     worker->device = *device;
@@ -280,33 +302,30 @@ void sim_worker_device(SimWorker *worker, const LinearDevice *device)
 Status sim_sketch(SimWorker *w, SceneKind kind, const double x[], const LinearSketch *sketch, SimResult *result,
                   Err *err)
 {
-    const Scene *scene = w->scene;
-    const int n = scene->building.n;
+    const int n = w->building->n;
     const LinearRun run = {fmin(sketch->duration, w->run.duration), sketch->step, NULL};
     LinearSystem s;
-    TRY(core_beam_make(&w->core, &scene->options.core, n, scene->building.storey_m, x[n], x[n + 1], err));
-    TRY(linear_system_make(&s, linear_kind(kind), &scene->options, &scene->building, &w->core, &w->device,
-                           sketch->n_modes, err));
-    const Status status = linear_run(&s, scene->motion, &run, result, err);
+    TRY(core_beam_make(&w->core, &w->options->core, n, w->building->storey_m, x[n], x[n + 1], err));
+    TRY(linear_system_make(&s, linear_kind(kind), w->options, w->building, &w->core, &w->device, sketch->n_modes, err));
+    const Status status = linear_run(&s, w->scene->motion, &run, result, err);
     linear_system_free(&s);
     return status;
 }
 
 Status sim_run(SimWorker *w, SceneKind kind, const double x[], SimResult *result, Err *err)
 {
-    const Scene *scene = w->scene;
-    const int n = scene->building.n;
+    const int n = w->building->n;
     const double start = clock_seconds();
     memset(result, 0, sizeof *result);
     if (kind != SCENE_NO_CORE)
-        TRY(core_beam_make(&w->core, &scene->options.core, n, scene->building.storey_m, x[n], x[n + 1], err));
+        TRY(core_beam_make(&w->core, &w->options->core, n, w->building->storey_m, x[n], x[n + 1], err));
     if (w->run.forces)
-        force_monitor_set(w->run.forces, &scene->options, &scene->building,
+        force_monitor_set(w->run.forces, w->options, w->building,
                           kind == SCENE_NO_CORE || kind == SCENE_TMD ? NULL : &w->core, x);
     if (is_linear(kind)) {
         TRY(run_linear(w, kind, result, err));
     } else {
-        TRY(model_set(&w->model, &scene->options, &scene->building, kind == SCENE_IMPACT ? &w->core : NULL, x, err));
+        TRY(model_set(&w->model, w->options, w->building, kind == SCENE_IMPACT ? &w->core : NULL, x, err));
         TRY(run_engine(w, result, err));
     }
     if (w->run.forces) {
@@ -319,9 +338,9 @@ Status sim_run(SimWorker *w, SceneKind kind, const double x[], SimResult *result
     }
     if (result->settled_s == 0)
         result->settled_s = w->run.duration; /* of an engine that follows contacts to the end */
-    set_drift_ratios(scene->building.storey_m, result);
+    set_drift_ratios(w->building->storey_m, result);
     result->mcore_kg = kind == SCENE_NO_CORE ? 0 : w->core.mass_kg;
-    set_contact_figures(&scene->options.contact, result);
+    set_contact_figures(&w->options->contact, result);
     result->seconds = clock_seconds() - start;
     return STATUS_OK;
 }

@@ -62,6 +62,9 @@ void sim_worker_floors(const SimWorker *worker, const SimSample *sample, double 
  * begins; contact NULL: none does. Only with SimOptions.forces. */
 void sim_worker_contacts(SimWorker *worker, SimContactFn contact, void *user);
 
+/* Every run from now on is of a structure that was built so; NULL: as the options say. */
+Status sim_worker_as_built(SimWorker *worker, const AsBuilt *built, Err *err);
+
 /* Of SCENE_TMD and SCENE_LINKS in every run from now on. */
 void sim_worker_device(SimWorker *worker, const LinearDevice *device);
 

@@ -77,14 +77,16 @@ static LinearDevice device_at(const Tuning *t, const double u[])
 }
 
 /* J1, J2, J3 over the records by the rule. */
-static void combine(int takes_mean, size_t n, const SimResult results[], double J[3])
+static void combine(const Tower *t, const SimResult results[], double J[3])
 {
-    memset(J, 0, 3 * sizeof *J);
-    for (size_t r = 0; r < n; r++) {
-        const double of[3] = {results[r].j1_m, results[r].j2_m, results[r].j3_g};
-        for (int k = 0; k < 3; k++)
-            J[k] = takes_mean ? J[k] + of[k] / (double)n : fmax(J[k], of[k]);
-    }
+    ReplicatePlan plan = tower_plan(t);
+    ReplicateSummary sum;
+    plan.n_replicates = 1;
+    plan.judged = 0;
+    replicates_summarise(&plan, results, &sum);
+    J[0] = sum.mean[MEASURE_J1];
+    J[1] = sum.mean[MEASURE_J2];
+    J[2] = sum.mean[MEASURE_J3];
 }
 
 static double goal_of(Tuning *t, const LinearDevice *device)
@@ -99,7 +101,7 @@ static double goal_of(Tuning *t, const LinearDevice *device)
     }
     if (t->status != STATUS_OK)
         return INFINITY;
-    combine(tower_takes_mean(t->tower), n, results, J);
+    combine(t->tower, results, J);
     for (int k = 0; k < 3; k++)
         goal += J[k] / t->no_core[k];
     if (goal < t->best) {
@@ -246,7 +248,7 @@ static Status tune_all(Job *job, Err *err)
     Status status[N_BASELINES] = {STATUS_OK};
     Err why[N_BASELINES] = {{0}};
     const int several = tower_n_workers(job->tower) > 1;
-    combine(tower_takes_mean(job->tower), job->n_records, job->results, J);
+    combine(job->tower, job->results, J);
 #pragma omp parallel for schedule(dynamic, 1) num_threads(several ? 2 : 1)
     for (int k = BASELINE_TMD; k <= BASELINE_LINKS; k++)
         status[k] = baseline_tune(job->tower, (size_t)omp_get_thread_num(), (BaselineKind)k, job->x, J, &job->device[k],
@@ -259,8 +261,9 @@ static Status tune_all(Job *job, Err *err)
 
 static void summarise(const Job *job, Baseline out[N_BASELINES])
 {
-    const ReplicatePlan plan = {
-        .n_records = job->n_records, .n_replicates = 1, .takes_mean = tower_takes_mean(job->tower)};
+    ReplicatePlan plan = tower_plan(job->tower);
+    plan.n_replicates = 1;
+    plan.judged = 0;
     ReplicateSummary sum;
     for (int k = 0; k < N_BASELINES; k++) {
         replicates_summarise(&plan, job->results + (size_t)k * job->n_records, &sum);

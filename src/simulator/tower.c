@@ -18,6 +18,7 @@ typedef struct {
 struct Tower {
     uint32_t seed;
     double tolerance_m; /* standard deviation of a gap as built */
+    UncertainOptions uncertain;
     size_t n_workers, n_floors;
     ReplicatePlan plan; /* n_records of which are open */
     MeasureOrder order;
@@ -30,11 +31,16 @@ static Status simulate(void *self, size_t worker, const Task *task, Err *err)
     const Tower *t = self;
     const size_t n = t->plan.n_replicates, k = task->repeat * n + task->part % n;
     const SceneKind kind = (SceneKind)task->variant;
+    SimWorker *w = t->record[task->part / n].worker[worker];
     double x[FLOORS_MAX + 2];
     memcpy(x, task->x, (t->n_floors + 2) * sizeof *x);
     if (kind == SCENE_IMPACT)
         replicate_design(t->seed, k, t->tolerance_m, t->n_floors, x);
-    return sim_run(t->record[task->part / n].worker[worker], kind, x, task->result, err);
+    if (is_uncertain(&t->uncertain)) {
+        const AsBuilt built = replicate_as_built(t->seed, k, &t->uncertain);
+        TRY(sim_worker_as_built(w, kind == SCENE_IMPACT && k > 0 ? &built : NULL, err));
+    }
+    return sim_run(w, kind, x, task->result, err);
 }
 
 static void combine(const void *self, const void *parts, Evaluation *e)
@@ -171,9 +177,13 @@ Status tower_open(Problem *p, const Settings *s, TowerUse use, size_t n_tasks, E
         return fail(err, STATUS_NO_MEMORY, "no memory for a scene");
     t->seed = (uint32_t)s->search.seed;
     t->tolerance_m = s->sim.gap_tolerance_m;
+    t->uncertain = s->uncertain;
     t->n_workers = workers < n_tasks ? workers : n_tasks;
-    t->plan = (ReplicatePlan){0, use == TOWER_SINGLE ? 1 : (size_t)s->sim.replicates, s->sim.robust == ROBUST_MEAN,
-                              order.objectives | limits_measures(s->search.limits)};
+    t->plan = (ReplicatePlan){.n_replicates = use == TOWER_SINGLE ? 1 : (size_t)s->sim.replicates,
+                              .rule = s->sim.robust,
+                              .quantile = s->sim.quantile,
+                              .spread = spread_word(s->sim.gap_tolerance_m, &s->uncertain),
+                              .judged = order.objectives | limits_measures(s->search.limits)};
     TRY(finish_opening(p, t, s->search.objectives, open_records(t, s, use, err), err));
     set_bounds(t, &s->design);
     return STATUS_OK;
@@ -184,7 +194,10 @@ Status tower_open_scene(Problem *p, const Scene *scene, size_t n_replicates, uin
     Tower *t = calloc(1, sizeof *t);
     if (!t)
         return fail(err, STATUS_NO_MEMORY, "no memory for a scene");
-    *t = (Tower){.seed = seed, .n_workers = n_workers, .plan = {1, n_replicates, 0, 0}, .record[0].scene = scene};
+    *t = (Tower){.seed = seed,
+                 .n_workers = n_workers,
+                 .plan = {.n_records = 1, .n_replicates = n_replicates, .spread = "predictability"},
+                 .record[0].scene = scene};
     return finish_opening(p, t, "auto", open_workers(t, &t->record[0], err), err);
 }
 
@@ -223,9 +236,9 @@ SimWorker *tower_worker(const Tower *t, size_t record, size_t worker)
     return t->record[record].worker[worker];
 }
 
-int tower_takes_mean(const Tower *t)
+ReplicatePlan tower_plan(const Tower *t)
 {
-    return t->plan.takes_mean;
+    return t->plan;
 }
 
 /* -- simulations outside a search ---------------------------------------------------------------------------------- */

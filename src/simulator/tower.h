@@ -40,7 +40,7 @@ const MeasureOrder *tower_measures(const Tower *t);
 const Scenario *tower_record(const Tower *t, size_t i); /* 0: motion.record */
 size_t tower_n_workers(const Tower *t);
 SimWorker *tower_worker(const Tower *t, size_t record, size_t worker); /* while no queue uses it */
-int tower_takes_mean(const Tower *t);                                  /* over the records; else the worst */
+ReplicatePlan tower_plan(const Tower *t);
 
 typedef struct {
     SceneKind kind;
