@@ -3,6 +3,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <time.h>
 #include <string.h>
 
 #include "scene/motion_source.h"
@@ -415,6 +416,23 @@ static void test_the_answer_of_a_period_does_not_depend_on_those_beside_it(void 
     motion_free(&m);
 }
 
+static void test_the_spectrum_of_a_long_motion_takes_seconds(void **state)
+{
+    enum { N = 121 };
+    (void)state;
+    double T[N], psa[N];
+    uint32_t random = 7;
+    Motion m = {.n = 400000, .dt_s = 0.005, .accel = malloc(400000 * sizeof(double))};
+    for (size_t i = 0; i < m.n; i++)
+        m.accel[i] = (double)(random = random * 1664525u + 1013904223u) / 4294967296.0 - 0.5;
+    for (int i = 0; i < N; i++)
+        T[i] = 0.02 * pow(1000, i / 120.0);
+    const clock_t began = clock();
+    spectrum_psa(&m, 0.05, N, T, psa);
+    assert_true((double)(clock() - began) / CLOCKS_PER_SEC < 4); /* 0.4 s; one oscillator after the other 7 s */
+    motion_free(&m);
+}
+
 static void test_short_and_long_periods_reach_their_limits(void **state)
 {
     (void)state;
@@ -505,6 +523,7 @@ int main(void)
         cmocka_unit_test(test_an_irregular_motion_agrees_with_fine_runge_kutta),
         cmocka_unit_test(test_a_stiff_undamped_oscillator_is_followed_between_samples),
         cmocka_unit_test(test_the_answer_of_a_period_does_not_depend_on_those_beside_it),
+        cmocka_unit_test(test_the_spectrum_of_a_long_motion_takes_seconds),
         cmocka_unit_test(test_short_and_long_periods_reach_their_limits),
         cmocka_unit_test(test_figures_of_a_triangle_pulse),
         cmocka_unit_test(test_figures_of_a_constant),

@@ -178,6 +178,8 @@ static void print_scene(const CheckedScene *p)
     printf("motion    %s: %zu samples, %.4g s, peak %.4g g (recorded %.4g g x %.4g, time x %g)\n", s->motion.record,
            p->motion.n, duration(&p->motion), motion_peak(&p->motion) / GRAVITY, p->recorded_g, p->motion.scale,
            s->motion.stretch);
+    if (p->motion.processed[0])
+        printf("          %s\n", p->motion.processed);
     printf("          holds frequencies up to %.4g Hz: %d of %d modes of the core\n", f->content_hz,
            f->core_modes_within, f->n_floors);
     printf("forces    weight %.4g MN; base shear without a core about %.3g of it (response spectrum, SRSS)\n",
