@@ -148,9 +148,7 @@ static void climb(const Rbf *m, Worker *k, size_t n, RbfForm *form, Shape *shape
         }
         for (size_t i = 0; i < n_p; i++) {
             const double same_sign = g[i] * last[i];
-            k->step[i] = same_sign > 0.0   ? fmin(TUNE_GROW * k->step[i], TUNE_STEP_MAX)
-                         : same_sign < 0.0 ? fmax(TUNE_SHRINK * k->step[i], TUNE_STEP_MIN)
-                                           : k->step[i];
+            k->step[i] *= same_sign > 0.0 ? TUNE_GROW : same_sign < 0.0 ? TUNE_SHRINK : 1.0;
             last[i] = same_sign < 0.0 ? 0.0 : g[i];
             if (last[i] != 0.0)
                 p[i] = fmin(fmax(p[i] - copysign(k->step[i], g[i]), min_parameter(m, i)), max_parameter(m, i));
