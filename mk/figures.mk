@@ -1,6 +1,6 @@
 # Figures and pictures of README and docs. Those of time want a quiet machine.
 
-.PHONY: setup-figures bench promise chart compare ablation pictures web setup-browser report-bench
+.PHONY: setup-figures bench promise paper chart compare ablation pictures web setup-browser report-bench
 
 # A record that is not there is replaced by the built-in motion.
 BENCH_RECORD ?= $(or $(wildcard ../shared/records/kobe_jma_ns.csv),builtin:kobe-like)
@@ -23,6 +23,9 @@ chart: $(BENCH) ## docs/chart: speed against accuracy of every engine
 # CELLS and SEEDS choose a part, KEEP names a folder in which runs stay and are not repeated.
 compare: $(PROGRAM) $(BENCH) setup-figures ## docs/search.md: the search on textbook problems and the tower, with and without surrogate
 	@scripts/compare --program ./$(PROGRAM) --bench $(BENCH) --out docs/search.md $(if $(CELLS),--cells $(CELLS)) $(if $(SEEDS),--seeds $(SEEDS)) $(if $(KEEP),--keep $(KEEP))
+
+paper: $(PROGRAM) ## docs/paper.md: the paper item by item, with its records where they are at hand; ARGS="--evals N"
+	@scripts/paper --program ./$(PROGRAM) $(ARGS)
 
 ablation: setup-figures ## what each tuned constant of the search earns: every one turned off; ARGS="--only NAME,..."
 	@scripts/ablation $(ARGS)

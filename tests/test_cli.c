@@ -330,6 +330,34 @@ static void test_every_contact_has_a_row(void **state)
     json_decref(o);
 }
 
+static void test_the_energies_of_a_history_add_up_at_every_sample(void **state)
+{
+    (void)state;
+    Err err = {0};
+    Table t;
+    write_designs("energies.csv", 1, (double[]){0.01}, (double[]){0.012}, (double[]){0.0064});
+    json_t *o = json_of("simulate configs/quick.ini --set sim.duration_s=40 --design @/energies.csv --json --history "
+                        "@/history.csv");
+    char *path = in_place("history.csv");
+    CHECK_OK(table_read(&t, path, 1, &err), &err);
+    const int u = table_column(&t, "u_m"), input = table_column(&t, "input_j");
+    double top = 0;
+    for (size_t i = 0; i < t.n_rows; i++) {
+        const double *row = t.values + i * t.n_cols;
+        double parts = 0;
+        for (int k = u + 1; k < input; k++)
+            parts += row[k];
+        assert_true(fabs(parts - row[input]) <= 1e-6 * number(o, "input_energy_j"));
+        top = fmax(top, fabs(row[u]));
+    }
+    assert_close(t.values[(t.n_rows - 1) * t.n_cols + (size_t)input], number(o, "input_energy_j"), 1e-3);
+    assert_true(top <= number(o, "j1_m") && top > 0.99 * number(o, "j1_m"));
+    table_free(&t);
+    free(path);
+    json_decref(o);
+    expect(2, "no samples", "simulate configs/quick.ini --design @/energies.csv --rigid --history -");
+}
+
 /* Husid's curve ends at 1, velocity and displacement reach the peaks of the table. */
 static void test_the_histories_reach_the_figures_of_the_motion(void **state)
 {
@@ -512,6 +540,7 @@ int main(void)
         cmocka_unit_test(test_modes_of_the_effective_core_are_those_of_the_paper),
         cmocka_unit_test(test_modes_take_the_wall_from_a_design),
         cmocka_unit_test(test_every_contact_has_a_row),
+        cmocka_unit_test(test_the_energies_of_a_history_add_up_at_every_sample),
         cmocka_unit_test(test_the_spectrum_is_the_same_as_json_and_as_csv),
         cmocka_unit_test(test_the_histories_reach_the_figures_of_the_motion),
         cmocka_unit_test(test_the_picture_of_a_motion_is_whole_or_not_there),

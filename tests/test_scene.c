@@ -57,6 +57,37 @@ static void test_the_effective_core_has_the_frequencies_of_table_1(void **state)
     assert_close(mass, 7.584e5, 1e-3);
 }
 
+/* Twenty numbers from the first to the last, as a comma list. */
+static void list_of(char list[OPTION_TEXT_MAX], double first, double last)
+{
+    size_t used = 0;
+    for (int j = 0; j < 20; j++)
+        used += (size_t)snprintf(list + used, OPTION_TEXT_MAX - used, "%s%.9g", j ? ", " : "",
+                                 first + (last - first) * j / 19);
+}
+
+static void test_an_effective_core_may_be_given_storey_by_storey(void **state)
+{
+    (void)state;
+    CoreBeam linear, listed;
+    SceneOptions s = paper_scene();
+    Err err = {0};
+    s.core.section = CORE_EFFECTIVE;
+    CHECK_OK(make_core_of(&linear, &s, 20, 1, 1, &err), &err);
+    list_of(s.core.areas_m2, s.core.area_base_m2, s.core.area_top_m2);
+    list_of(s.core.inertias_m4, s.core.inertia_base_m4, s.core.inertia_top_m4);
+    s.core.area_base_m2 = s.core.inertia_top_m4 = 1e3;
+    CHECK_OK(make_core_of(&listed, &s, 20, 1, 1, &err), &err);
+    assert_close(listed.mass_kg, linear.mass_kg, 1e-8);
+    for (int i = 0; i < 20; i++)
+        assert_close(listed.omega[i], linear.omega[i], 1e-8);
+    list_of(s.core.masses_kg, 2000, 1000);
+    CHECK_OK(make_core_of(&listed, &s, 20, 1, 1, &err), &err);
+    assert_close(listed.mass_kg, 20 * 1500, 1e-9);
+    assert_true(make_core_of(&listed, &s, 19, 1, 1, &err) != STATUS_OK);
+    assert_non_null(strstr(err.text, "core.areas_m2: has 20 values; the building has 19 storeys"));
+}
+
 static void test_both_buildings_have_their_known_frequencies(void **state)
 {
     (void)state;
@@ -489,6 +520,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_the_effective_core_has_the_frequencies_of_table_1),
+        cmocka_unit_test(test_an_effective_core_may_be_given_storey_by_storey),
         cmocka_unit_test(test_both_buildings_have_their_known_frequencies),
         cmocka_unit_test(test_the_box_core_has_its_known_mass_and_frequencies),
         cmocka_unit_test(test_a_uniform_core_is_a_textbook_cantilever),

@@ -131,10 +131,13 @@ static Status print_json(const Modes *m, const Settings *s, Err *err)
     json_object_set_new(o, "building_mass_share", json_numbers((size_t)m->n, m->building_share));
     json_object_set_new(o, "core_mass_share", json_numbers((size_t)m->n, m->core_share));
     json_object_set_new(o, "building_damping", json_numbers((size_t)m->n, m->damping));
-    json_t *shapes = json_array();
-    for (int i = 0; i < m->n; i++)
+    json_t *shapes = json_array(), *horizontal = json_array();
+    for (int i = 0; i < m->n; i++) {
         json_array_append_new(shapes, json_numbers((size_t)m->n, m->shape[i]));
+        json_array_append_new(horizontal, json_boolean(!m->vertical[i]));
+    }
     json_object_set_new(o, "building_shapes", shapes);
+    json_object_set_new(o, "building_horizontal", horizontal);
     if (m->has_spectrum) {
         json_object_set_new(o, "building_psa_g", json_numbers((size_t)m->n, m->psa_building));
         json_object_set_new(o, "zero_gap_psa_g", json_numbers((size_t)m->n, m->psa_zero_gap));

@@ -7,6 +7,7 @@
 #include "cmd/commands.h"
 #include "cmd/designs.h"
 #include "cmd/show.h"
+#include "report/history.h"
 #include "simulator/tower.h"
 #include "store/output.h"
 #include "settings/settings.h"
@@ -247,6 +248,42 @@ static Status write_contacts(const Job *job, const Scenario *w, const char *path
     return status;
 }
 
+/* -- over time ----------------------------------------------------------------------------------------------------- */
+
+static void print_history(FILE *out, size_t design, const History *h)
+{
+    for (size_t k = 0; k < h->n; k++) {
+        fprintf(out, "%zu,%.9g,%.9g", design, h->t[k], h->u[k]);
+        for (int e = 0; e < N_ENERGIES; e++)
+            fprintf(out, ",%.9g", h->energy[e][k]);
+        fputc('\n', out);
+    }
+}
+
+/* Every design once more, on its own: a floor's displacement and the energies at every sample of the motion. */
+static Status write_history(const Args *args, const Job *job, const Scenario *w, const char *path, Err *err)
+{
+    Output o;
+    long floor;
+    Status status = STATUS_OK;
+    TRY(args_whole(args, "--floor", 1, scene_n_floors(w->scene), scene_n_floors(w->scene), &floor, err));
+    if (job->kind == SCENE_RIGID)
+        return fail(err, STATUS_USAGE, "--history: the engine of a rigid connection has no samples; leave --rigid out");
+    TRY(output_open(&o, path, err));
+    fprintf(o.stream, "design,t_s,u_m,kinetic_j,strain_j,damped_building_j,core_j,damped_core_j,contacts_j,input_j\n");
+    for (size_t i = 0; i < job->n && status == STATUS_OK; i++) {
+        History h;
+        status = history_run(w, job->kind, job->tasks[i].x, (int)floor - 1, &h, err);
+        if (status == STATUS_OK)
+            print_history(o.stream, i + 1, &h);
+        history_free(&h);
+    }
+    if (status == STATUS_OK)
+        return output_close(&o, err);
+    output_abandon(&o);
+    return status;
+}
+
 static Status run(const Args *args, Err *err)
 {
     Settings s;
@@ -270,6 +307,8 @@ static Status run(const Args *args, Err *err)
         status = print(args, &job, tower_of(&p), err);
     if (status == STATUS_OK && args_has(args, "--contacts"))
         status = write_contacts(&job, w, args_value(args, "--contacts"), err);
+    if (status == STATUS_OK && args_has(args, "--history"))
+        status = write_history(args, &job, w, args_value(args, "--history"), err);
     free(job.tasks);
     free(job.results);
     free(job.summary);
@@ -289,6 +328,8 @@ static const ArgOption OPTIONS[] = {
     OPTION_JSON,
     OPTION_CSV,
     {"--contacts", "FILE", NULL, 0, "one row per contact: time, floor, side, speeds, force, duration, energy lost"},
+    {"--history", "FILE", NULL, 0, "energies and the displacement of a floor over time, as CSV; -: standard output"},
+    {"--floor", "N", NULL, 0, "of --history; the top one if not given"},
     OPTION_SET,
     OPTION_END,
 };

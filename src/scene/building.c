@@ -14,25 +14,9 @@
 
 /* ---- heights -------------------------------------------------------------------------------------------------- */
 
-static Status list_number(const char *list, size_t i, const char *key, double *value, Err *err)
-{
-    char item[64], *end;
-    if (!list_item(list, i, item, sizeof item))
-        return fail(err, STATUS_BAD_DATA, "%s: '%.60s' has no number %zu", key, list, i + 1);
-    *value = strtod(item, &end);
-    if (end == item || *end || !(*value > 0) || !isfinite(*value))
-        return fail(err, STATUS_BAD_DATA, "%s: '%s' is no number above 0", key, item);
-    return STATUS_OK;
-}
-
-static int is_given(const char *list)
-{
-    return strcmp(list, "none") != 0;
-}
-
 static Status find_heights(Building *b, const BuildingFiles *files, const BuildingOptions *o, Err *err)
 {
-    const int listed = is_given(o->heights_m);
+    const int listed = list_is_given(o->heights_m);
     if (listed && list_count(o->heights_m) != (size_t)b->n)
         return fail(err, STATUS_BAD_DATA, "building.heights_m: has %zu heights; the building has %d storeys",
                     list_count(o->heights_m), b->n);
@@ -43,7 +27,7 @@ static Status find_heights(Building *b, const BuildingFiles *files, const Buildi
         if (files->storey_m)
             b->storey_m[j] = files->storey_m[j];
         if (listed)
-            TRY(list_number(o->heights_m, (size_t)j, "building.heights_m", &b->storey_m[j], err));
+            TRY(list_positive(o->heights_m, (size_t)j, "building.heights_m", &b->storey_m[j], err));
     }
     return STATUS_OK;
 }
@@ -113,7 +97,7 @@ static Status rayleigh(Building *b, const BuildingOptions *o, Err *err)
 {
     double mode[2];
     for (size_t i = 0; i < 2; i++) {
-        TRY(list_number(o->rayleigh_modes, i, "building.rayleigh_modes", &mode[i], err));
+        TRY(list_positive(o->rayleigh_modes, i, "building.rayleigh_modes", &mode[i], err));
         if (mode[i] != floor(mode[i]) || mode[i] > b->n)
             return fail(err, STATUS_BAD_DATA, "building.rayleigh_modes: %g is none of the %d modes", mode[i], b->n);
     }
@@ -130,13 +114,13 @@ static Status rayleigh(Building *b, const BuildingOptions *o, Err *err)
 
 static Status damping_table(Building *b, const BuildingOptions *o, Err *err)
 {
-    const size_t n = is_given(o->damping_table) ? list_count(o->damping_table) : 0;
+    const size_t n = list_is_given(o->damping_table) ? list_count(o->damping_table) : 0;
     if (n == 0)
         return fail(err, STATUS_BAD_DATA,
                     "building.damping_table: is none; building.damping_model = table wants a list");
     for (int i = 0; i < b->n; i++)
-        TRY(list_number(o->damping_table, (size_t)i < n ? (size_t)i : n - 1, "building.damping_table", &b->zeta[i],
-                        err));
+        TRY(list_positive(o->damping_table, (size_t)i < n ? (size_t)i : n - 1, "building.damping_table", &b->zeta[i],
+                          err));
     for (int i = 0; i < b->model.n; i++)
         b->model.zeta[i] = b->zeta[b->model.like[i] >= 0 ? b->model.like[i] : b->n - 1];
     return STATUS_OK;

@@ -5,10 +5,12 @@
 #include <string.h>
 
 #include "base/linalg.h"
+#include "base/list.h"
 #include "scene/beam.h"
 
 typedef struct {
     double area, inertia, shear_area; /* [m2], [m4], [m2] 0: no shear deformation */
+    double mass_kg;                   /* of the storey; 0: density times area */
 } Section;
 
 /* Shear area over area of a thin-walled square tube: Cowper, J. Appl. Mech. 33 (1966) 335-340. */
@@ -25,16 +27,36 @@ static Section section_at(const CoreOptions *o, double share, double t)
     case CORE_BOX: {
         const double outer = o->side_m, inner = outer - 2 * t;
         const double area = outer * outer - inner * inner;
-        return (Section){area, (pow(outer, 4) - pow(inner, 4)) / 12, tube_shear_factor(o->poisson) * area};
+        return (Section){area, (pow(outer, 4) - pow(inner, 4)) / 12, tube_shear_factor(o->poisson) * area, 0};
     }
     case CORE_PLATE:
-        return (Section){o->width_m * t, o->width_m * t * t * t / 12, PLATE_SHEAR_FACTOR * o->width_m * t};
+        return (Section){o->width_m * t, o->width_m * t * t * t / 12, PLATE_SHEAR_FACTOR * o->width_m * t, 0};
     case CORE_EFFECTIVE:
         break;
     }
     return (Section){o->area_base_m2 + (o->area_top_m2 - o->area_base_m2) * share,
                      o->inertia_base_m4 + (o->inertia_top_m4 - o->inertia_base_m4) * share,
-                     o->shear_area_base_m2 + (o->shear_area_top_m2 - o->shear_area_base_m2) * share};
+                     o->shear_area_base_m2 + (o->shear_area_top_m2 - o->shear_area_base_m2) * share, 0};
+}
+
+/* Value `storey` of a list of n, where there is one. */
+static Status take_listed(const char *list, int n, int storey, const char *key, double *value, Err *err)
+{
+    if (!list_is_given(list))
+        return STATUS_OK;
+    if (list_count(list) != (size_t)n)
+        return fail(err, STATUS_BAD_DATA, "%s: has %zu values; the building has %d storeys", key, list_count(list), n);
+    return list_positive(list, (size_t)storey, key, value, err);
+}
+
+/* What an effective section has storey by storey. */
+static Status take_lists(const CoreOptions *o, int n, int storey, Section *a, Err *err)
+{
+    if (o->section != CORE_EFFECTIVE)
+        return STATUS_OK;
+    TRY(take_listed(o->areas_m2, n, storey, "core.areas_m2", &a->area, err));
+    TRY(take_listed(o->inertias_m4, n, storey, "core.inertias_m4", &a->inertia, err));
+    return take_listed(o->masses_kg, n, storey, "core.masses_kg", &a->mass_kg, err);
 }
 
 static Beam storey_beam(const CoreOptions *o, const Section *a, double length)
@@ -43,7 +65,7 @@ static Beam storey_beam(const CoreOptions *o, const Section *a, double length)
     const int shears = o->theory == CORE_TIMOSHENKO;
     return (Beam){.EI = E * a->inertia,
                   .kGA = shears ? G * a->shear_area : 0,
-                  .mass_per_m = o->density_kg_m3 * a->area,
+                  .mass_per_m = a->mass_kg > 0 ? a->mass_kg / length : o->density_kg_m3 * a->area,
                   .rotary_kg_m = shears ? o->density_kg_m3 * a->inertia : 0,
                   .length = length};
 }
@@ -70,7 +92,8 @@ Status core_beam_make(CoreBeam *c, const CoreOptions *o, int n, const double sto
     c->n = n;
     for (int e = 0; e < n; e++) {
         const double share = n > 1 ? (double)e / (n - 1) : 0;
-        const Section section = section_at(o, share, t_base_m + (t_top_m - t_base_m) * share);
+        Section section = section_at(o, share, t_base_m + (t_top_m - t_base_m) * share);
+        TRY(take_lists(o, n, e, &section, err));
         beam[e] = storey_beam(o, &section, storey_m[e]);
         c->mass_kg += beam[e].mass_per_m * beam[e].length;
     }

@@ -5,8 +5,8 @@
  *
  *   box        A = B^2 - (B-2t)^2,  I = (B^4 - (B-2t)^4)/12,  shear area 20 (1+nu) / (48 + 39 nu) A   (Cowper 1966)
  *   plate      A = b t,             I = b t^3/12,             shear area 5/6 A
- *   effective  A, I and shear area given at the first and last storey (shear area 0: no shear deformation); the
- *              thicknesses are ignored
+ *   effective  A, I and shear area given at the first and last storey (shear area 0: no shear deformation), or A, I and
+ *              mass storey by storey; the thicknesses are ignored
  *
  *   timoshenko       shear deformation and rotary inertia of the sections; the condensation then raises the frequencies
  *                    of a fine beam: the first four of 80 m x 11.3 m by 1e-5, 6e-4, 3e-3, 7e-3 (tests/test_scene.c)

@@ -48,6 +48,7 @@ typedef struct {
     double side_m, width_m, damping, youngs_modulus_pa, poisson, density_kg_m3;
     double area_base_m2, area_top_m2, inertia_base_m4, inertia_top_m4;
     double shear_area_base_m2, shear_area_top_m2; /* 0: no shear deformation */
+    char areas_m2[OPTION_TEXT_MAX], inertias_m4[OPTION_TEXT_MAX], masses_kg[OPTION_TEXT_MAX]; /* by storey, or none */
 } CoreOptions;
 
 #define MOTION_UNIT_LIST(X)                                                                                            \

@@ -99,6 +99,10 @@ static const Option OPTIONS[] = {
     REAL(core.inertia_top_m4, "m4", "24.0503", 1e-9, 1e6, "effective: second moment of area in the last storey"),
     REAL(core.shear_area_base_m2, "m2", "0", 0, 1e4, "effective: first storey; 0: no shear deformation"),
     REAL(core.shear_area_top_m2, "m2", "0", 0, 1e4, "effective: last storey"),
+    TEXT(core.areas_m2, "none",
+         "effective: areas [m2] storey by storey from the bottom, a comma list; none: the two above"),
+    TEXT(core.inertias_m4, "none", "effective: second moments of area [m4], the same way"),
+    TEXT(core.masses_kg, "none", "effective: masses of the storeys [kg]; none: density times area"),
 
     CHOICE(contact.law, ContactLaw, CHOICE_WORDS(CONTACT_LAW_LIST), "paper",
            "paper: a = 1.5 (1 - r); exact: a such that an isolated impact rebounds with r; the others by their authors "
