@@ -157,7 +157,7 @@ static void test_whatever_takes_a_motion_shows_how_it_is_scaled(void **state)
     (void)state;
     shows("spectrum builtin:kobe-like");
     shows("simulate configs/quick.ini --design none --set sim.duration_s=1");
-    shows("optimize configs/quick.ini --out @/scaled --set sim.duration_s=1 --set search.initial=4 --max-evals 4 "
+    shows("optimize configs/quick.ini --out @/scaled --set sim.duration_s=20 --set search.initial=4 --max-evals 4 "
           "--set search.polish=0");
     shows("evaluate @/scaled --design knee --record builtin:kobe-like");
 }
