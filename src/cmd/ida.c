@@ -119,14 +119,6 @@ typedef struct {
     const MeasureOrder *order;
 } Picture;
 
-static void write_number(FILE *script, double value)
-{
-    if (isfinite(value))
-        fprintf(script, " %.6g", value);
-    else
-        fputs(" NaN", script);
-}
-
 /* $R0, $R1, ...: the records; $F00 ... $F22: fractiles of the cases. Columns: intensity, objectives. */
 static void write_blocks(FILE *script, const Evaluations *e, const MeasureOrder *order)
 {
@@ -135,9 +127,9 @@ static void write_blocks(FILE *script, const Evaluations *e, const MeasureOrder 
             continue;
         fprintf(script, "$R%zu << EOD\n", r);
         for (size_t l = 0; l < e->n_levels; l++) {
-            fprintf(script, "%.6g", e->level[l]);
+            fprintf(script, "%.6g ", e->level[l]);
             for (int k = 0; k < n_shown(order); k++)
-                write_number(script, value_of(&e->run[r * e->n_levels + l], EVALUATED_DESIGN, order->of[k]));
+                gnuplot_number(script, value_of(&e->run[r * e->n_levels + l], EVALUATED_DESIGN, order->of[k]));
             fputc('\n', script);
         }
         fputs("EOD\n", script);
@@ -146,9 +138,9 @@ static void write_blocks(FILE *script, const Evaluations *e, const MeasureOrder 
         for (int i = 0; i < IDA_FRACTILES; i++) {
             fprintf(script, "$F%d%d << EOD\n", c, i);
             for (size_t l = 0; l < e->n_levels; l++) {
-                fprintf(script, "%.6g", e->level[l]);
+                fprintf(script, "%.6g ", e->level[l]);
                 for (int k = 0; k < n_shown(order); k++)
-                    write_number(script, ida_fractile(e, l, (EvaluatedCase)c, order->of[k], IDA_FRACTILE[i]));
+                    gnuplot_number(script, ida_fractile(e, l, (EvaluatedCase)c, order->of[k], IDA_FRACTILE[i]));
                 fputc('\n', script);
             }
             fputs("EOD\n", script);

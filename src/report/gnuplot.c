@@ -1,6 +1,7 @@
 #include "report/gnuplot.h"
 
 #include <errno.h>
+#include <math.h>
 #include <spawn.h>
 #include <string.h>
 #include <sys/wait.h>
@@ -9,6 +10,14 @@
 #include "store/output.h"
 
 extern char **environ;
+
+void gnuplot_number(FILE *script, double value)
+{
+    if (isfinite(value))
+        fprintf(script, "%.8g ", value);
+    else
+        fputs("NaN ", script);
+}
 
 void gnuplot_quote(FILE *script, const char *text)
 {

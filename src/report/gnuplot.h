@@ -13,6 +13,9 @@ typedef void (*GnuplotScript)(FILE *script, const void *user);
 
 Status gnuplot_draw(const char *path, GnuplotScript write, const void *user, Err *err);
 
+/* A number and a blank; NaN where it is none. */
+void gnuplot_number(FILE *script, double value);
+
 /* 'text' in the quotes of a gnuplot script, control characters left out. */
 void gnuplot_quote(FILE *script, const char *text);
 

@@ -34,20 +34,12 @@ static const char STYLE[] =
     "set grid lc '#d8d8d8' lt 1 lw 1\nset tics nomirror out\nset border 3\nset key noenhanced\n"
     "set style fill solid 1 noborder\n";
 
-static void put_number(FILE *script, double value)
-{
-    if (isfinite(value))
-        fprintf(script, "%.8g ", value);
-    else
-        fputs("NaN ", script);
-}
-
 static void numbers(FILE *script, size_t n, ...)
 {
     va_list list;
     va_start(list, n);
     for (size_t i = 0; i < n; i++)
-        put_number(script, va_arg(list, double));
+        gnuplot_number(script, va_arg(list, double));
     va_end(list);
     fputc('\n', script);
 }
@@ -71,7 +63,7 @@ static void write_rows(FILE *script, const char *block, const Report *r, size_t 
     fprintf(script, "$%s << EOD\n", block);
     for (size_t i = 0; i < n; i++) {
         for (size_t k = 0; k < r->run->schema.n_obj; k++)
-            put_number(script, run_f(r->run, rows[i])[k] * scale_of(r, k));
+            gnuplot_number(script, run_f(r->run, rows[i])[k] * scale_of(r, k));
         fputc('\n', script);
     }
     fputs("EOD\n", script);
@@ -163,8 +155,8 @@ static void write_front(FILE *script, const Report *r)
     write_rows(script, "KNEE", r, 1, &r->knee);
     fputs("$ALONE << EOD\n", script);
     for (size_t k = 0; r->has_detail && k < r->run->schema.n_obj; k++)
-        put_number(script,
-                   measure_value(&r->detail.result[SCENE_NO_CORE], r->run->schema.order.of[k]) * scale_of(r, k));
+        gnuplot_number(script,
+                       measure_value(&r->detail.result[SCENE_NO_CORE], r->run->schema.order.of[k]) * scale_of(r, k));
     fprintf(script,
             "\nEOD\nset multiplot layout 1,%zu margins 0.055,0.905,0.135,0.88 spacing 0.066,0\n"
             "set offsets graph 0.02, graph 0.04, graph 0.04, graph 0.02\nunset key\nunset colorbox\n",
