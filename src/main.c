@@ -8,17 +8,32 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
+#include "base/linalg.h"
 #include "cmd/manual.h"
 #include "cmd/show.h"
 #include "store/provenance.h"
+
+/* Below this the first deep call would end the program by a fault of its own. */
+static const rlim_t STACK_MIN = 256 << 10;
+
+static Status check_limits(const Command *command, Err *err)
+{
+    struct rlimit stack;
+    if (getrlimit(RLIMIT_STACK, &stack) == 0 && stack.rlim_cur < STACK_MIN)
+        return fail(err, STATUS_NO_MEMORY, "the stack is limited to %zu kB (ulimit -s); %zu kB are needed",
+                    (size_t)(stack.rlim_cur >> 10), (size_t)(STACK_MIN >> 10));
+    return command->only_reads ? STATUS_OK : linalg_room(1, err);
+}
 
 static Status run_command(int argc, char *argv[], Err *err)
 {
     const Command *command;
     Args args;
     TRY(command_find(argv[1], &command, err));
+    TRY(check_limits(command, err));
     Status status = args_parse(&args, command, argc - 2, argv + 2, err);
     if (status == STATUS_OK && args.help)
         command_help(command, stdout);

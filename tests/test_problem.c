@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
@@ -211,6 +212,8 @@ static void test_a_good_worker_answers_every_design(void **state)
     expect_every_third("good", OUTCOME_OK, "", 20);
     expect_every_third("spaced", OUTCOME_OK, "", 20);
     expect_every_third("slowly", OUTCOME_OK, "", 20);
+    expect_every_third("calm", OUTCOME_OK, "", 20); /* with an error that is null */
+    expect_every_third("real", OUTCOME_OK, "", 20); /* id 17.0 */
 }
 
 static void test_a_reported_error_fails_that_design_with_its_reason(void **state)
@@ -232,6 +235,56 @@ static void test_a_silent_worker_fails_one_design_and_is_replaced(void **state)
     expect_every_third("silent", OUTCOME_TIMEOUT, "0.4 s", 0.4);
 }
 
+/* One that answers once and ends is gone when the next request comes, or going: no design is lost by that. */
+static void test_a_worker_that_ends_after_its_answer_costs_no_design(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 5; i++)
+        expect_every_third("once", OUTCOME_OK, "", 20);
+}
+
+/* Its child holds the output open for a minute. */
+static void test_a_worker_that_leaves_a_child_behind_is_seen_to_be_dead(void **state)
+{
+    (void)state;
+    expect_every_third("child", OUTCOME_DEAD, "ended", 20);
+}
+
+static void test_millions_of_blank_lines_are_passed_over_quickly(void **state)
+{
+    (void)state;
+    struct rusage before, after;
+    Batch a;
+    getrusage(RUSAGE_SELF, &before);
+    ask(&a, "sh tests/worker.sh blanks", 1, 60);
+    getrusage(RUSAGE_SELF, &after);
+    for (size_t i = 0; i < N; i++)
+        assert_int_equal(a.answers[i].outcome, OUTCOME_OK);
+    assert_true(after.ru_utime.tv_sec - before.ru_utime.tv_sec < 3);
+}
+
+static void test_messages_are_cut_between_characters_and_shown_whatever_they_are(void **state)
+{
+    (void)state;
+    expect_every_third("umlauts", OUTCOME_ERROR, "aääääääääää", 20);
+    expect_every_third("latin", OUTCOME_GARBLED, "zu gro", 20);
+    Evaluation e;
+    char want[160] = "a";
+    for (int i = 0; i < 79; i++)
+        strcat(want, "ä"); /* 159 bytes */
+    char text[256];
+    snprintf(text, sizeof text, "%sä", want);
+    evaluation_set_outcome(&e, OUTCOME_ERROR, text);
+    assert_string_equal(e.reason, want);
+    evaluation_set_outcome(&e, OUTCOME_ERROR, "zu gro\337, \303");
+    assert_string_equal(e.reason, "zu gro\\xDF; \\xC3");
+    snprintf(text, sizeof text, "=%s", want); /* an apostrophe before it */
+    evaluation_set_outcome(&e, OUTCOME_ERROR, text);
+    json_t *string = json_string(e.reason);
+    assert_non_null(string);
+    json_decref(string);
+}
+
 static void test_a_talkative_worker_fails_one_design_and_is_replaced(void **state)
 {
     (void)state;
@@ -248,6 +301,7 @@ static void test_answers_that_are_no_objectives_fail_the_design_alone(void **sta
     expect_every_third("null", OUTCOME_NOT_FINITE, "2 finite numbers", 20);
     expect_every_third("short", OUTCOME_NOT_FINITE, "2 finite numbers", 20);
     expect_every_third("nan", OUTCOME_NOT_FINITE, "2 finite numbers", 20);
+    expect_every_third("overflow", OUTCOME_NOT_FINITE, "2 finite numbers", 20);
     expect_every_third("infinity", OUTCOME_NOT_FINITE, "2 finite numbers", 20);
 }
 
@@ -282,10 +336,22 @@ static void test_words_of_the_command_may_be_quoted_and_no_shell_reads_them(void
     assert_int_equal(external_open(&p, &options, 1, &err), STATUS_BAD_DATA);
 }
 
-/* Workers and a child of each hold an end of a pipe: it ends when the last of them does. */
-static void test_workers_end_with_a_program_that_is_killed(void **state)
+/* The first child of a process: the guard of its workers. */
+static pid_t guard_of(pid_t pid)
 {
-    (void)state;
+    char path[64];
+    int guard = 0;
+    snprintf(path, sizeof path, "/proc/%d/task/%d/children", (int)pid, (int)pid);
+    FILE *f = fopen(path, "r");
+    assert_non_null(f);
+    assert_int_equal(fscanf(f, "%d", &guard), 1);
+    fclose(f);
+    return guard;
+}
+
+/* Workers and a child of each hold an end of a pipe: it ends when the last of them does. */
+static void kill_a_program_with_workers(int kill_guard)
+{
     const double X[4] = {0};
     double F[4];
     unsigned char ok[2];
@@ -308,11 +374,27 @@ static void test_workers_end_with_a_program_that_is_killed(void **state)
     close(ends[1]);
     for (int n = 0; n < 2; n++)
         assert_int_equal(read(ends[0], words, 1), 1);
+    if (kill_guard) {
+        kill(guard_of(pid), SIGKILL);
+        nanosleep(&(struct timespec){1, 0}, NULL);
+    }
     kill(pid, SIGKILL);
     assert_int_equal(waitpid(pid, NULL, 0), pid);
     assert_int_equal(poll(&(struct pollfd){ends[0], POLLIN, 0}, 1, 20000), 1);
     assert_int_equal(read(ends[0], words, sizeof words), 0);
     close(ends[0]);
+}
+
+static void test_workers_end_with_a_program_that_is_killed(void **state)
+{
+    (void)state;
+    kill_a_program_with_workers(0);
+}
+
+static void test_workers_end_with_a_program_whose_guard_was_killed_before(void **state)
+{
+    (void)state;
+    kill_a_program_with_workers(1);
 }
 
 static void test_a_command_that_does_not_exist_ends_the_search_by_name(void **state)
@@ -476,6 +558,11 @@ int main(void)
         cmocka_unit_test(test_a_reported_error_fails_that_design_with_its_reason),
         cmocka_unit_test(test_a_worker_that_dies_fails_one_design_and_is_replaced),
         cmocka_unit_test(test_a_silent_worker_fails_one_design_and_is_replaced),
+        cmocka_unit_test(test_a_worker_that_ends_after_its_answer_costs_no_design),
+        cmocka_unit_test(test_a_worker_that_leaves_a_child_behind_is_seen_to_be_dead),
+        cmocka_unit_test(test_millions_of_blank_lines_are_passed_over_quickly),
+        cmocka_unit_test(test_messages_are_cut_between_characters_and_shown_whatever_they_are),
+        cmocka_unit_test(test_workers_end_with_a_program_whose_guard_was_killed_before),
         cmocka_unit_test(test_a_talkative_worker_fails_one_design_and_is_replaced),
         cmocka_unit_test(test_answers_that_are_no_objectives_fail_the_design_alone),
         cmocka_unit_test(test_a_worker_that_never_behaves_fails_every_design_and_nothing_hangs),

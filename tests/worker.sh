@@ -17,6 +17,13 @@ while read -r line; do
     case $mode in
     error) echo "{\"id\":$id,\"error\":\"no, \\\"never\\\" this one\"}" ;;
     formula) echo "{\"id\":$id,\"error\":\"=1+1,=2\"}" ;;
+    umlauts) printf '{"id":%s,"error":"a' "$id"; printf 'ä%.0s' $(seq 100); echo '"}' ;;
+    latin) printf '{"id":%s,"error":"zu gro\337"}\n' "$id" ;;
+    calm) echo "{\"id\":$id,\"error\":null,\"f\":[$x1,$x2]}" ;;
+    real) echo "{\"id\":$id.0,\"f\":[$x1,$x2]}" ;;
+    overflow) echo "{\"id\":$id,\"f\":[1,-1e999]}" ;;
+    blanks) yes '' | head -c 5000000; echo "$good" ;;
+    child) sleep 60 & exit 3 ;;
     dies) exit 3 ;;
     killed) kill -9 $$ ;;
     silent) sleep 60 ;;
@@ -33,4 +40,5 @@ while read -r line; do
     slowly) printf '%s' "{\"id\":$id,"; sleep 0.05; echo "\"f\":[$x1,$x2]}" ;;
     *) echo "$good" ;;
     esac
+    [ "$1" = once ] && exit 0
 done

@@ -41,5 +41,8 @@ void cell_text(char cell[], size_t size, const char *text)
         cell[n++] = c;
         begins = c == ';' || (begins && (c == ' ' || blank > 0));
     }
+    if (((unsigned char)*text & 0xc0) == 0x80) /* the middle of a character: it goes as a whole */
+        while (n > 0 && ((unsigned char)cell[--n] & 0xc0) == 0x80)
+            ;
     cell[n] = 0;
 }

@@ -11,7 +11,7 @@
 
 #include <stddef.h>
 
-/* At most size - 1 characters and a NUL; text and cell do not overlap. */
+/* At most size - 1 characters and a NUL, none of UTF-8 cut in two; text and cell do not overlap. */
 void cell_text(char cell[], size_t size, const char *text);
 
 #endif

@@ -1,10 +1,30 @@
 #include "base/json.h"
 
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/visible.h"
 
 json_t *json_number(double value)
 {
     return isfinite(value) ? json_real(value) : json_null();
+}
+
+json_t *json_words(const char *text)
+{
+    enum { LONGEST = 8 }; /* [bytes] of a character that is shown, for one of the text */
+    json_t *string = json_string(text);
+    if (string)
+        return string;
+    const size_t size = LONGEST * strlen(text) + 1;
+    char *shown = calloc(size, 1);
+    if (!shown)
+        return NULL;
+    visible_text(shown, size, text);
+    string = json_string(shown);
+    free(shown);
+    return string;
 }
 
 json_t *json_append(json_t *list, json_t *value)

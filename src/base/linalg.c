@@ -3,8 +3,11 @@
 #include <cblas.h>
 #include <lapacke.h>
 #include <math.h>
+#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
 
 /* Rows of A are columns for LAPACK: the same thing for a symmetric matrix, and no copies are made. */
 
@@ -17,6 +20,46 @@ static void fix_sign(int n, double *mode)
     if (mode[largest] < 0)
         for (int j = 0; j < n; j++)
             mode[j] = -mode[j];
+}
+
+/* Of one thread: the buffer of OpenBLAS (128 MiB), stack and arena of the C library. */
+static const size_t BYTES_OF_THREAD = (size_t)200 << 20;
+
+/* OpenBLAS makes a buffer for every call under way and keeps it. */
+static Status make_buffers(size_t n_threads, Err *err)
+{
+    enum { N = 128 };
+    double *A = calloc(N * N * (n_threads + 1), sizeof *A);
+    if (!A)
+        return fail(err, STATUS_NO_MEMORY, "no memory for linear algebra");
+    for (int i = 0; i < N; i++)
+        A[i * N + i] = 1.0;
+#pragma omp parallel num_threads((int)n_threads)
+    {
+        double *B = A + N * N * (1 + omp_get_thread_num());
+#pragma omp barrier
+        cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasNoTrans, CblasNonUnit, N, N, 1.0, A, N, B, N);
+    }
+    free(A);
+    return STATUS_OK;
+}
+
+Status linalg_room(size_t n_threads, Err *err)
+{
+    struct rlimit limit;
+    const size_t more = n_threads > 1 ? n_threads - 1 : 1, size = more * BYTES_OF_THREAD;
+    if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
+        return STATUS_OK;
+    void *room = mmap(NULL, size, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (room == MAP_FAILED)
+        return fail(
+            err, STATUS_NO_MEMORY,
+            "the address space is limited to %zu MiB (ulimit -v), in which there is no room for the linear algebra "
+            "of %zu more thread%s, %zu MiB; raise the limit%s",
+            (size_t)(limit.rlim_cur >> 20), more, more > 1 ? "s" : "", size >> 20,
+            n_threads > 1 ? ", or take fewer --threads" : "");
+    munmap(room, size);
+    return make_buffers(n_threads, err);
 }
 
 static int lacked_memory(int info)

@@ -5,7 +5,14 @@
 #ifndef IMTET_BASE_LINALG_H
 #define IMTET_BASE_LINALG_H
 
+#include <stddef.h>
+
 #include "base/status.h"
+
+/* Where the address space is limited (RLIMIT_AS, `ulimit -v`): room for the linear algebra of so many threads at once, the
+ * first of which has been here before. OpenBLAS, which would ask for memory for ever, gets it now; where there is none:
+ * STATUS_NO_MEMORY. To be called before memory is taken for other things. */
+Status linalg_room(size_t n_threads, Err *err);
 
 /* K x = w^2 M x, ascending: omega[i] = sqrt(w^2) [rad/s], phi (n, n) with column i = mode i, phi' M phi = 1, the
  * largest entry by magnitude of every mode positive. A negative w^2 within rounding counts as zero. K and M are kept.

@@ -39,7 +39,7 @@ static size_t decode(const char *text, uint32_t *code)
                 return 0;
             *code = *code << 6 | ((unsigned char)text[i] & 0x3f);
         }
-        return *code >= FORM[n - 1].least && *code <= 0x10ffff ? n : 0;
+        return *code >= FORM[n - 1].least && *code <= 0x10ffff && (*code < 0xd800 || *code > 0xdfff) ? n : 0;
     }
     return 0;
 }
@@ -60,6 +60,15 @@ static size_t show_one(const char *text, char shown[16])
     else
         snprintf(shown, 16, "%.*s", (int)n, text);
     return n ? n : 1;
+}
+
+int visible_cut(const char *text, size_t most)
+{
+    size_t n = strnlen(text, most + 1);
+    if (n > most)
+        for (n = most; n > 0 && ((unsigned char)text[n] & 0xc0) == 0x80; n--)
+            ;
+    return (int)n;
 }
 
 void visible_text(char out[], size_t size, const char *text)

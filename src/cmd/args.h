@@ -30,6 +30,7 @@ typedef struct {
     const ArgOption *options; /* up to the first without a name */
     Status (*run)(const Args *args, Err *err);
     const char *program; /* of which it is a command; NULL: imtet */
+    int only_reads;      /* runs and files: no linear algebra */
 } Command;
 
 typedef struct {

@@ -3,6 +3,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/json.h"
 #include "base/list.h"
 #include "base/units.h"
 #include "cmd/commands.h"
@@ -269,7 +270,7 @@ static void describe_objectives(Check *c, const Schema *schema, const char *obje
     const char *left_out = measures_left_out(&schema->order, objectives);
     json_t *names = json_array();
     for (size_t k = 0; k < schema->n_obj; k++)
-        json_array_append_new(names, json_string(schema_objective(schema, k)->name));
+        json_array_append_new(names, json_words(schema_objective(schema, k)->name));
     json_object_set_new(c->out, "objectives", names);
     for (size_t k = 0; k < schema->n_obj && !c->as_json; k++)
         printf("%s%s", k ? ", " : "objectives ", schema_objective(schema, k)->name);

@@ -268,4 +268,5 @@ const Command CMD_CHOOSE = {
         "whole front by name: RUN:knee, RUN:best_j1_m.",
     .options = OPTIONS,
     .run = run,
+    .only_reads = 1,
 };

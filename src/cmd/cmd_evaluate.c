@@ -3,6 +3,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "base/json.h"
 #include "base/cell.h"
 #include "base/list.h"
 #include "cmd/commands.h"
@@ -27,7 +28,7 @@ typedef struct {
 static json_t *describe(const Evaluations *e, const EvaluatedRun *run)
 {
     json_t *o = json_object();
-    json_object_set_new(o, "record", json_string(run->record->path));
+    json_object_set_new(o, "record", json_words(run->record->path));
     json_object_set_new(o, "pga_g", json_number(run->pga_g));
     json_object_set_new(o, "scale", json_number(run->scale));
     json_object_set_new(o, "stretch", json_number(run->stretch));
@@ -54,8 +55,8 @@ static Status show_as_json(const Args *args, const Chosen *c, const Evaluations 
         if (e->record[i].readable != STATUS_OK)
             json_array_append_new(
                 unreadable, json_pack("{s:s, s:s}", "record", e->record[i].path, "reason", e->record[i].why.text));
-    json_object_set_new(all, "run", json_string(args->operand));
-    json_object_set_new(all, "design", c->id > 0 ? json_integer(c->id) : json_string(c->word));
+    json_object_set_new(all, "run", json_words(args->operand));
+    json_object_set_new(all, "design", c->id > 0 ? json_integer(c->id) : json_words(c->word));
     json_object_set_new(all, "variables_m", json_numbers(c->run->schema.n_var, c->x));
     json_object_set_new(all, "records", records);
     json_object_set_new(all, "unreadable", unreadable);

@@ -77,4 +77,5 @@ const Command CMD_EXPORT = {
         "results/README.md explains every column. The run may still be going on.",
     .options = OPTIONS,
     .run = run,
+    .only_reads = 1,
 };

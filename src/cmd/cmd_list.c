@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/json.h"
 #include "cmd/commands.h"
 #include "cmd/show.h"
 #include "store/run_read.h"
@@ -18,8 +19,8 @@ static void list_run(const char *name, const char *folder, json_t *list)
     Err err = {0};
     if (run_read(&run, folder, &err) != STATUS_OK) {
         if (list)
-            json_array_append_new(
-                list, json_pack("{s:s, s:s, s:s}", "run", folder, "state", "unreadable", "reason", err.text));
+            json_array_append_new(list, json_pack("{s:o, s:s, s:o}", "run", json_words(folder), "state", "unreadable",
+                                                  "reason", json_words(err.text)));
         else
             printf("%-24s unreadable: %s\n", name, err.text);
         return;
@@ -30,11 +31,11 @@ static void list_run(const char *name, const char *folder, json_t *list)
     char hypervolume[32];
     number_words(s.hypervolume, 4, hypervolume);
     if (list)
-        json_array_append_new(list, json_pack("{s:s, s:s, s:I, s:I, s:I, s:I, s:o, s:s}", "run", folder, "state",
-                                              state_words(s.state), "simulated", (json_int_t)s.progress.simulated,
-                                              "max_evals", (json_int_t)s.max_evals, "failed", (json_int_t)s.n_failed,
-                                              "front", (json_int_t)run.n_front, "hypervolume",
-                                              json_number(s.hypervolume), "started", started));
+        json_array_append_new(list, json_pack("{s:o, s:s, s:I, s:I, s:I, s:I, s:o, s:s}", "run", json_words(folder),
+                                              "state", state_words(s.state), "simulated",
+                                              (json_int_t)s.progress.simulated, "max_evals", (json_int_t)s.max_evals,
+                                              "failed", (json_int_t)s.n_failed, "front", (json_int_t)run.n_front,
+                                              "hypervolume", json_number(s.hypervolume), "started", started));
     else
         printf("%-24s %-10s %8zu of %-8ld %7zu %7zu %12s  %s\n", name, state_words(s.state), s.progress.simulated,
                s.max_evals, s.n_failed, run.n_front, hypervolume, started);
@@ -91,4 +92,5 @@ const Command CMD_LIST = {
                "interrupted (it was killed, and can be resumed too).",
     .options = OPTIONS,
     .run = run,
+    .only_reads = 1,
 };

@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/json.h"
 #include "base/units.h"
 #include "scene/core_beam.h"
 #include "scene/spectrum.h"
@@ -118,7 +119,7 @@ static Status compute(const Args *args, const Scenario *w, Modes *m, Err *err)
 static Status print_json(const Modes *m, const Settings *s, Err *err)
 {
     json_t *o = json_object();
-    json_object_set_new(o, "building", json_string(s->building.model));
+    json_object_set_new(o, "building", json_words(s->building.model));
     json_object_set_new(o, "t_base_m", json_number(m->t_base_m));
     json_object_set_new(o, "t_top_m", json_number(m->t_top_m));
     json_object_set_new(o, "core_mass_kg", json_number(m->core_mass_kg));

@@ -21,4 +21,5 @@ const Command CMD_SETTINGS = {
     .details = "Prints every setting with its default, preceded by its meaning, unit and range: a valid configuration.",
     .options = OPTIONS,
     .run = run,
+    .only_reads = 1,
 };

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/json.h"
 #include "base/units.h"
 #include "cmd/commands.h"
 #include "cmd/designs.h"
@@ -95,7 +96,7 @@ static json_t *describe(const Job *job, size_t i, const Motion *m)
 {
     json_t *o = json_object();
     json_object_set_new(o, "design", json_integer(number_of(job, i)));
-    json_object_set_new(o, "record", json_string(m->name));
+    json_object_set_new(o, "record", json_words(m->name));
     json_object_set_new(o, "pga_g", json_number(motion_peak(m) / GRAVITY));
     json_object_set_new(o, "scale", json_number(m->scale));
     json_object_set_new(o, "stretch", json_number(m->stretch));
@@ -309,6 +310,8 @@ static Status run(const Args *args, Err *err)
         status = write_contacts(&job, w, args_value(args, "--contacts"), err);
     if (status == STATUS_OK && args_has(args, "--history"))
         status = write_history(args, &job, w, args_value(args, "--history"), err);
+    if (status == STATUS_OK && job.n == 1 && job.results[0].outcome != RUN_OK)
+        status = fail(err, STATUS_INTERNAL, "the simulation failed: %s", job.results[0].reason);
     free(job.tasks);
     free(job.results);
     free(job.summary);

@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/json.h"
 #include "base/cell.h"
 #include "base/units.h"
 #include "cmd/commands.h"
@@ -27,12 +28,12 @@ static json_t *describe(const Spectrum *s)
     const MotionFigures *f = &s->figures;
     const Motion *m = &s->motion;
     json_t *o = json_object();
-    json_object_set_new(o, "motion", json_string(m->name));
+    json_object_set_new(o, "motion", json_words(m->name));
     json_object_set_new(o, "format", json_string(m->format));
-    json_object_set_new(o, "channel", json_string(m->channel));
-    json_object_set_new(o, "processed", json_string(m->processed));
+    json_object_set_new(o, "channel", json_words(m->channel));
+    json_object_set_new(o, "processed", json_words(m->processed));
     json_object_set_new(o, "corrected", json_boolean(motion_is_corrected(&s->options)));
-    json_object_set_new(o, "warning", json_string(m->warning));
+    json_object_set_new(o, "warning", json_words(m->warning));
     json_object_set_new(o, "scale", json_number(m->scale));
     json_object_set_new(o, "stretch", json_number(m->stretch));
     json_object_set_new(o, "samples", json_integer((json_int_t)m->n));

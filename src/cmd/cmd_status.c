@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/json.h"
 #include "cmd/commands.h"
 #include "cmd/show.h"
 #include "moga/hypervolume.h"
@@ -151,9 +152,9 @@ static json_t *json_failures(const Failures *f)
 static json_t *describe(const char *folder, const Run *run, const Standing *s, const Failures *f, const double igd[])
 {
     json_t *o = json_pack(
-        "{s:s, s:s, s:I, s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:o}", "run", folder, "state", state_words(s->state),
-        "simulated", (json_int_t)s->progress.simulated, "max_evals", (json_int_t)s->max_evals, "failed",
-        (json_int_t)s->n_failed, "front", (json_int_t)run->n_front, "polished", (json_int_t)s->n_polished,
+        "{s:o, s:s, s:I, s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:o}", "run", json_words(folder), "state",
+        state_words(s->state), "simulated", (json_int_t)s->progress.simulated, "max_evals", (json_int_t)s->max_evals,
+        "failed", (json_int_t)s->n_failed, "front", (json_int_t)run->n_front, "polished", (json_int_t)s->n_polished,
         "hypervolume", json_number(s->hypervolume), "simulations_per_second", json_number(progress_rate(&s->progress)),
         "seconds", json_number(s->seconds), "seconds_left", json_number(s->left_s));
     if (s->state == RUN_RUNNING)
@@ -199,4 +200,5 @@ const Command CMD_STATUS = {
         "run may be going on in another terminal: it is only read.",
     .options = OPTIONS,
     .run = run,
+    .only_reads = 1,
 };

@@ -1,12 +1,13 @@
 #include "cmd/signals.h"
 
+#include <errno.h>
 #include <signal.h>
 #include <stdatomic.h>
 #include <stddef.h>
 #include <time.h>
 
 /* A handler has no argument for its state: the one place where the program keeps some of its own. */
-static volatile sig_atomic_t asked;
+static atomic_int asked;
 static atomic_llong first_ns; /* when the first one came, 0: none did */
 
 /* `timeout` and others signal the process and then its group: that is one request. */
@@ -25,30 +26,31 @@ static long long now_ns(void)
 static void note(int signal_number)
 {
     const long long now = now_ns();
+    const int before = errno; /* of the call that is interrupted */
     long long first = 0;
     if (atomic_compare_exchange_strong(&first_ns, &first, now))
-        asked = signal_number;
+        atomic_store(&asked, signal_number);
     else if (now - first >= ONE_WISH_NS) {
         signal(signal_number, SIG_DFL);
         raise(signal_number); /* comes when the handler returns */
     }
+    errno = before;
 }
 
 void signals_catch(void)
 {
     const struct sigaction wanted = {.sa_handler = note, .sa_flags = SA_RESTART};
     struct sigaction before;
-    asked = 0;
+    atomic_store(&asked, 0);
     atomic_store(&first_ns, 0);
     for (int i = 0; i < N_STOP_SIGNALS; i++)
-        if (sigaction(STOP_SIGNALS[i], NULL, &before) == 0 &&
-            (STOP_SIGNALS[i] != SIGHUP || before.sa_handler != SIG_IGN))
-            sigaction(STOP_SIGNALS[i], &wanted, NULL); /* under nohup the end of the terminal stays without meaning */
+        if (sigaction(STOP_SIGNALS[i], NULL, &before) == 0 && before.sa_handler != SIG_IGN)
+            sigaction(STOP_SIGNALS[i], &wanted, NULL); /* what nohup, or the shell behind `&`, ignores stays ignored */
     signal(SIGXFSZ, SIG_IGN);
 }
 
 int signals_asked(void *unused)
 {
     (void)unused;
-    return asked;
+    return atomic_load(&asked);
 }

@@ -6,6 +6,7 @@
 
 #include "base/carve.h"
 #include "base/cell.h"
+#include "base/visible.h"
 
 static const char *const OUTCOME_WORDS[] = {
 #define X(name, word) word,
@@ -49,8 +50,10 @@ EvaluationKind kind_of_word(const char *word)
 
 void evaluation_set_outcome(Evaluation *e, Outcome outcome, const char *reason)
 {
+    char shown[sizeof e->reason];
     e->outcome = outcome;
-    cell_text(e->reason, sizeof e->reason, reason);
+    visible_text(shown, sizeof shown, reason);
+    cell_text(e->reason, sizeof e->reason, shown);
 }
 
 EvaluationTable evaluation_table(size_t n_var, size_t n_obj, size_t n_extra)

@@ -78,7 +78,8 @@ void evaluation_copy(Evaluation *to, const Evaluation *from, size_t n_var, size_
 /* Nothing is known: x stays, every other number is NAN; OUTCOME_OK, KIND_UNFINISHED. */
 void evaluation_forget(Evaluation *e, size_t n_obj, size_t n_extra);
 
-/* Outcome and reason; the text becomes a cell of a CSV file (base/cell.h). */
+/* Outcome and reason; the text becomes one of visible characters (base/visible.h) and a cell of a CSV file
+ * (base/cell.h), of valid UTF-8 whatever a worker wrote. */
 void evaluation_set_outcome(Evaluation *e, Outcome outcome, const char *reason);
 
 typedef struct {

@@ -12,6 +12,7 @@ const char *stop_reason_words(StopReason reason)
         [STOP_TIME] = "time limit reached",
         [STOP_SHARE] = "the wanted share of the archive is nondominated",
         [STOP_ASKED] = "stopped on request",
+        [STOP_FAILURES] = "too many simulations in a row have failed",
     };
     return words[reason];
 }

@@ -61,7 +61,15 @@
 #include "evaluate/problem.h"
 #include "moga/config.h"
 
-typedef enum { STOP_NONE, STOP_GENERATIONS, STOP_EVALUATIONS, STOP_TIME, STOP_SHARE, STOP_ASKED } StopReason;
+typedef enum {
+    STOP_NONE,
+    STOP_GENERATIONS,
+    STOP_EVALUATIONS,
+    STOP_TIME,
+    STOP_SHARE,
+    STOP_ASKED,
+    STOP_FAILURES
+} StopReason;
 const char *stop_reason_words(StopReason reason);
 
 /* All evaluations so far, in their order; row i is design number i + 1. */

@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include "base/carve.h"
+#include "base/linalg.h"
 #include "rbf/constants.h"
 #include "rbf/kernel.h"
 #include "rbf/model.h"
@@ -58,6 +59,9 @@ static void layout(void *interpolant, Carve *c)
 Status rbf_create(Rbf **out, size_t n_max, size_t n_dim, size_t n_out, Err *err)
 {
     const int threads = omp_get_max_threads();
+    *out = NULL;
+    if (threads > 1 && n_out > 1)
+        TRY(linalg_room(n_out < (size_t)threads ? n_out : (size_t)threads, err));
     Rbf *m = calloc(1, sizeof *m);
     *out = m;
     if (!m)

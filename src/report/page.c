@@ -25,7 +25,7 @@ static json_t *json_of_settings(const Settings *s)
     if (!stream)
         return NULL;
     settings_write(s, stream, 0);
-    json_t *string = fclose(stream) == 0 ? json_string(text) : NULL;
+    json_t *string = fclose(stream) == 0 ? json_words(text) : NULL;
     free(text);
     return string;
 }
@@ -95,16 +95,16 @@ static json_t *json_of_detail(const Detail *d, const MeasureOrder *order)
     json_t *others = json_array();
     for (size_t i = 0; i < d->n_elsewhere; i++) {
         const Elsewhere *e = &d->elsewhere[i];
-        others = json_append(others, json_pack("{s:s, s:f, s:f, s:f, s:o, s:o}", "record", e->record, "pga_g", e->pga_g,
-                                               "scale", e->scale, "stretch", e->stretch, "with_core",
+        others = json_append(others, json_pack("{s:o, s:f, s:f, s:f, s:o, s:o}", "record", json_words(e->record),
+                                               "pga_g", e->pga_g, "scale", e->scale, "stretch", e->stretch, "with_core",
                                                json_of_result(&e->with_core, order), "no_core",
                                                json_of_result(&e->no_core, order)));
     }
     return json_pack(
-        "{s:i, s:o, s:o, s:o, s:o, s:s, s:f, s:f, s:f, s:f, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "floor",
+        "{s:i, s:o, s:o, s:o, s:o, s:o, s:f, s:f, s:f, s:f, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "floor",
         d->floor + 1, "gap_m", json_numbers(n, d->gap_m), "thickness_m", json_numbers(n, d->thickness_m), "building_hz",
-        json_numbers(n, d->building_hz), "core_hz", json_numbers(n, d->core_hz), "record", d->record, "pga_g", d->pga_g,
-        "scale", d->scale, "stretch", d->stretch, "duration_s", d->duration_s, "with_core",
+        json_numbers(n, d->building_hz), "core_hz", json_numbers(n, d->core_hz), "record", json_words(d->record),
+        "pga_g", d->pga_g, "scale", d->scale, "stretch", d->stretch, "duration_s", d->duration_s, "with_core",
         json_of_result(&d->result[SCENE_IMPACT], order), "no_core", json_of_result(&d->result[SCENE_NO_CORE], order),
         "rigid", json_of_result(&d->result[SCENE_RIGID], order), "tmd", json_of_result(&d->result[SCENE_TMD], order),
         "links", json_of_result(&d->result[SCENE_LINKS], order), "baselines", json_of_baselines(d->baseline, order),
@@ -118,10 +118,10 @@ static json_t *json_of_names(const Schema *schema)
 {
     json_t *variables = json_array(), *objectives = json_array();
     for (size_t j = 0; j < schema->n_var; j++)
-        variables = json_append(variables, json_string(schema_variable(schema, j)->name));
+        variables = json_append(variables, json_words(schema_variable(schema, j)->name));
     for (size_t k = 0; k < schema->n_obj; k++) {
         const Column *c = schema_objective(schema, k);
-        json_t *o = json_pack("{s:s, s:f}", "name", c->name, "sense", c->sense);
+        json_t *o = json_pack("{s:o, s:f}", "name", json_words(c->name), "sense", c->sense);
         if (schema->order.n_obj > 0) {
             json_object_set_new(o, "what", json_string(measure(schema->order.of[k])->what));
             json_object_set_new(o, "unit", json_string(measure(schema->order.of[k])->unit));
@@ -162,15 +162,15 @@ static json_t *json_of_run(const Report *r)
     for (size_t n = strlen(name); n > 1 && name[n - 1] == '/'; n--)
         name[n - 1] = 0;
     const char *slash = strrchr(name, '/');
-    return json_pack("{s:s, s:s, s:s, s:s, s:b, s:b, s:I, s:I, s:o, s:I, s:I, s:o, s:o, s:o, s:o, s:s}", "version",
-                     program_version(), "revision", program_revision(), "name", slash && slash[1] ? slash + 1 : name,
-                     "folder", name, "tower", r->has_detail, "robust", r->is_robust, "knee",
-                     (json_int_t)run->table.row[r->knee].id, "chosen", (json_int_t)run->table.row[r->chosen].id,
-                     "chosen_f", json_numbers(run->schema.n_obj, run_f(run, r->chosen)), "evaluated",
-                     (json_int_t)n_evaluated(run), "failed", (json_int_t)run->n_failed, "schema",
-                     json_of_names(&run->schema), "convergence", json_of_growth(run), "detail",
-                     r->has_detail ? json_of_detail(&r->detail, &run->schema.order) : json_null(), "settings",
-                     json_of_settings(run->settings), "provenance", run->provenance);
+    return json_pack(
+        "{s:s, s:s, s:o, s:o, s:b, s:b, s:I, s:I, s:o, s:I, s:I, s:o, s:o, s:o, s:o, s:s}", "version",
+        program_version(), "revision", program_revision(), "name", json_words(slash && slash[1] ? slash + 1 : name),
+        "folder", json_words(name), "tower", r->has_detail, "robust", r->is_robust, "knee",
+        (json_int_t)run->table.row[r->knee].id, "chosen", (json_int_t)run->table.row[r->chosen].id, "chosen_f",
+        json_numbers(run->schema.n_obj, run_f(run, r->chosen)), "evaluated", (json_int_t)n_evaluated(run), "failed",
+        (json_int_t)run->n_failed, "schema", json_of_names(&run->schema), "convergence", json_of_growth(run), "detail",
+        r->has_detail ? json_of_detail(&r->detail, &run->schema.order) : json_null(), "settings",
+        json_of_settings(run->settings), "provenance", run->provenance);
 }
 
 /* JSON in which no text can end the script element or begin a comment: < stands only inside strings. */

@@ -11,23 +11,29 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/pidfd.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
 
 #include "base/clock.h"
 #include "base/list.h"
+#include "base/visible.h"
 #include "evaluate/threads.h"
 #include "simulator/guard.h"
 
 enum { LINE_MAX_BYTES = 1 << 20, READ_BYTES = 1 << 16, WORDS_MAX = 128, GRACE_MS = 1000, LOOK_MS = 200 };
 
+/* A process that ends so soon after a request had ended after its answer before. */
+static const double LEFT_BEFORE_S = 1.0;
+
 /* How long requests under way may still take when no more are wanted. */
 static const double LAST_ANSWERS_S = 5.0;
 
 typedef struct {
-    pid_t pid; /* 0: not running */
-    const Guard *guard;
+    pid_t pid;   /* 0: not running */
+    int its_end; /* readable when the process has ended (pidfd); -1: the system has none */
+    Guard *guard;
     size_t slot; /* the guard's for its process group */
     int in, out;
     char *line; /* (LINE_MAX_BYTES) what has come of an answer */
@@ -37,6 +43,9 @@ typedef struct {
     ExternalAnswer *answer; /* to be filled; NULL: idle */
     long id;
     double asked, deadline;
+    size_t n_answered; /* by this process */
+    int again;         /* the request goes to a fresh process */
+    int is_second;     /* ... it did */
 } Worker;
 
 typedef struct {
@@ -129,6 +138,8 @@ static Status worker_start(External *e, Worker *w, Err *err)
         return fail(err, STATUS_BAD_DATA, "problem.command: %s cannot be started: %s", e->words[0], strerror(failed));
     }
     guard_tell(w->guard, w->slot, w->pid);
+    w->its_end = pidfd_open(w->pid, 0);
+    w->n_answered = 0;
     fcntl(w->in, F_SETFL, O_NONBLOCK);
     fcntl(w->out, F_SETFL, O_NONBLOCK);
     return STATUS_OK;
@@ -139,6 +150,9 @@ static void worker_forget(Worker *w)
     guard_tell(w->guard, w->slot, 0);
     close(w->in);
     close(w->out);
+    if (w->its_end >= 0)
+        close(w->its_end);
+    w->its_end = -1;
     w->pid = 0;
 }
 
@@ -216,6 +230,7 @@ static Status send_request(External *e, Worker *w, const Task *task, Err *err)
     w->id = task->id;
     TRY(write_request(e, w, task->x, err));
     w->answer = task->result;
+    w->again = w->is_second = 0;
     w->asked = clock_seconds();
     w->deadline = w->asked + e->timeout_s;
     return STATUS_OK;
@@ -244,6 +259,15 @@ static int take_objectives(const External *e, const json_t *list, double f[])
     return 1;
 }
 
+/* A number that is too large to be one, 1e999 say. Its length, or 0. */
+static size_t overflow_length(const char *text)
+{
+    char *end;
+    if (*text != '-' && !isdigit((unsigned char)*text))
+        return 0;
+    return isinf(strtod(text, &end)) && end > text + 2 ? (size_t)(end - text) : 0;
+}
+
 /* What Python, C and others print for numbers that are none is no JSON: outside strings it becomes "". */
 static void blank_non_numbers(char *line)
 {
@@ -254,6 +278,13 @@ static void blank_non_numbers(char *line)
             c++;
         else if (*c == '"')
             in_string = !in_string;
+        const size_t too_large = in_string ? 0 : overflow_length(c);
+        if (too_large > 0) {
+            memset(c, ' ', too_large);
+            memset(c, '"', 2);
+            c += too_large - 1;
+            continue;
+        }
         for (size_t k = 0; !in_string && k < sizeof WORDS / sizeof WORDS[0]; k++) {
             const size_t length = strlen(WORDS[k]);
             if (strncmp(c, WORDS[k], length) != 0 || isalnum((unsigned char)c[length]))
@@ -272,14 +303,16 @@ static void take_answer(const External *e, Worker *w, char *line, size_t length)
     blank_non_numbers(line);
     json_t *o = json_loadb(line, length, 0, &error);
     const json_t *f = json_object_get(o, "f"), *why = json_object_get(o, "error"), *id = json_object_get(o, "id");
-    if (!json_is_object(o) || !json_is_integer(id))
-        settle(w, OUTCOME_GARBLED, 1, "wrote what is no answer: %.60s", line);
-    else if (json_integer_value(id) != w->id)
-        settle(w, OUTCOME_GARBLED, 1, "answered id %lld instead of %ld", (long long)json_integer_value(id), w->id);
-    else if (why)
-        settle(w, OUTCOME_ERROR, 0, "%.120s", json_is_string(why) ? json_string_value(why) : "error");
+    const char *reason = json_is_string(why) ? json_string_value(why) : "error";
+    w->n_answered++;
+    if (!json_is_object(o) || !json_is_number(id))
+        settle(w, OUTCOME_GARBLED, 1, "wrote what is no answer: %.*s", visible_cut(line, 60), line);
+    else if (json_number_value(id) != (double)w->id)
+        settle(w, OUTCOME_GARBLED, 1, "answered id %.15g instead of %ld", json_number_value(id), w->id);
+    else if (why && !json_is_null(why))
+        settle(w, OUTCOME_ERROR, 0, "%.*s", visible_cut(reason, 120), reason);
     else if (!json_is_array(f))
-        settle(w, OUTCOME_GARBLED, 1, "neither f nor error in the answer: %.60s", line);
+        settle(w, OUTCOME_GARBLED, 1, "neither f nor error in the answer: %.*s", visible_cut(line, 60), line);
     else if (!take_objectives(e, f, w->answer->f))
         settle(w, OUTCOME_NOT_FINITE, 0, "f is not %zu finite numbers", e->n_obj);
     else
@@ -287,19 +320,35 @@ static void take_answer(const External *e, Worker *w, char *line, size_t length)
     json_decref(o);
 }
 
-/* The first whole line in the buffer is the answer; what follows it waits for the next request, which it spoils. */
+/* The first whole line in the buffer that is not blank is the answer; what follows it waits for the next request, which it
+ * spoils. */
 static void look_for_answer(const External *e, Worker *w)
 {
-    for (char *end; w->answer && (end = memchr(w->line, '\n', w->n_line)) != NULL;) {
-        const size_t length = (size_t)(end - w->line), used = length + 1;
+    size_t used = 0;
+    for (char *end; w->answer && (end = memchr(w->line + used, '\n', w->n_line - used)) != NULL;) {
+        char *line = w->line + used;
+        const size_t length = (size_t)(end - line);
         *end = 0;
-        if (strspn(w->line, " \t\r") < length)
-            take_answer(e, w, w->line, length);
-        memmove(w->line, w->line + used, w->n_line - used);
-        w->n_line -= used;
+        used += length + 1;
+        if (strspn(line, " \t\r") < length)
+            take_answer(e, w, line, length);
     }
+    memmove(w->line, w->line + used, w->n_line - used);
+    w->n_line -= used;
     if (w->answer && w->n_line == LINE_MAX_BYTES)
         settle(w, OUTCOME_GARBLED, 1, "wrote a line of more than %d bytes", LINE_MAX_BYTES);
+}
+
+/* A process that ends after its answers, as one that starts itself anew now and then, may be asked once more before it is
+ * gone: no fault of the design, which another process gets. */
+static void take_end(Worker *w)
+{
+    const int was_leaving =
+        w->n_answered > 0 && w->n_line == 0 && !w->is_second && clock_seconds() < w->asked + LEFT_BEFORE_S;
+    if (was_leaving)
+        w->again = 1;
+    else
+        settle(w, OUTCOME_DEAD, 1, "the worker ended without an answer");
 }
 
 static void read_more(const External *e, Worker *w)
@@ -310,21 +359,37 @@ static void read_more(const External *e, Worker *w)
         w->n_line += (size_t)n;
         look_for_answer(e, w);
     } else if (n == 0 || (errno != EAGAIN && errno != EINTR)) {
-        settle(w, OUTCOME_DEAD, 1, "the worker ended without an answer");
+        take_end(w);
     }
+}
+
+static Status ask_again(External *e, Worker *w, Err *err)
+{
+    worker_kill(w);
+    TRY(worker_start(e, w, err));
+    w->n_sent = 0;
+    w->again = 0;
+    w->is_second = 1;
+    return STATUS_OK;
 }
 
 /* -- as a simulator ------------------------------------------------------------------------------------------------ */
 
+/* The end of a process counts where it left nothing to be read: a child of it may hold its output open. */
 static void wait_for(const External *e, Worker *w)
 {
-    struct pollfd ends[2] = {{w->n_sent < w->n_request ? w->in : -1, POLLOUT, 0}, {w->out, POLLIN, 0}};
+    struct pollfd ends[3] = {
+        {w->n_sent < w->n_request ? w->in : -1, POLLOUT, 0}, {w->out, POLLIN, 0}, {w->its_end, POLLIN, 0}};
     const double left_ms = 1e3 * (w->deadline - clock_seconds());
-    const int came = poll(ends, 2, left_ms > 0.0 ? (int)fmin(ceil(left_ms), LOOK_MS) : 0) > 0;
-    if (came && ends[0].revents)
-        send_more(w);
+    const int came = poll(ends, 3, left_ms > 0.0 ? (int)fmin(ceil(left_ms), LOOK_MS) : 0) > 0;
     if (came && ends[1].revents)
         read_more(e, w);
+    else if (came && ends[2].revents)
+        take_end(w);
+    else if (came && ends[0].revents)
+        send_more(w);
+    else
+        guard_look(w->guard);
     if (w->answer && clock_seconds() >= w->deadline)
         settle(w, OUTCOME_TIMEOUT, 1, "no answer within %g s", e->timeout_s);
 }
@@ -345,6 +410,8 @@ static Status simulate(void *self, size_t worker, const Task *task, Err *err)
             return fail(err, STATUS_STOPPED, "stopped");
         }
         wait_for(e, w);
+        if (w->answer && w->again)
+            TRY(ask_again(e, w, err));
     }
     return STATUS_OK;
 }
@@ -439,7 +506,7 @@ static Status create_workers(External *e, size_t n, Err *err)
     e->worker = calloc(n, sizeof *e->worker);
     for (; e->worker && e->n_workers < n; e->n_workers++) {
         Worker *w = &e->worker[e->n_workers];
-        *w = (Worker){.guard = &e->guard, .slot = e->n_workers, .line = malloc(LINE_MAX_BYTES)};
+        *w = (Worker){.guard = &e->guard, .its_end = -1, .slot = e->n_workers, .line = malloc(LINE_MAX_BYTES)};
         if (!w->line)
             break;
     }

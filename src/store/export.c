@@ -77,7 +77,7 @@ void export_evaluations(FILE *f, const EvaluationTable *t, size_t first, int unf
 
 static void put_setting(const char *key, const char *value, void *user)
 {
-    json_object_set_new(user, key, json_string(value));
+    json_object_set_new(user, key, json_words(value));
 }
 
 static json_t *json_settings(const Settings *s)
@@ -92,7 +92,7 @@ static json_t *json_columns(const Schema *schema)
     json_t *list = json_array();
     for (size_t c = 0; c < schema->n_var + schema->n_obj + schema->n_extra; c++) {
         const int is_objective = c >= schema->n_var && c < schema->n_var + schema->n_obj;
-        json_array_append_new(list, json_pack("{s:s, s:s, s:s*}", "name", schema->column[c].name, "role",
+        json_array_append_new(list, json_pack("{s:o, s:s, s:s*}", "name", json_words(schema->column[c].name), "role",
                                               c < schema->n_var ? "variable"
                                               : is_objective    ? "objective"
                                                                 : "measure",

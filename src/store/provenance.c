@@ -1,3 +1,4 @@
+#include "base/json.h"
 #include "store/provenance.h"
 
 #include <cblas.h>
@@ -124,18 +125,20 @@ static char *hex(uint64_t hash, char text[24])
 static json_t *inputs_of_tower(const Scenario *w, const Inputs *hashes)
 {
     char record[24], records[24], matrices[24];
-    return json_pack("{s:s, s:s, s:s, s:s, s:s, s:s, s:s, s:I, s:f, s:s, s:i, s:s}", "record", w->record.record,
-                     "record_format", w->motion.format, "record_channel", w->motion.channel, "record_processed",
-                     w->motion.processed, "record_fnv1a", hex(hashes->record, record), "records", w->record.records,
-                     "records_fnv1a", hex(hashes->records, records), "samples", (json_int_t)w->motion.n, "step_s",
-                     w->motion.dt_s, "building", w->options.building.model, "floors", scene_n_floors(w->scene),
+    return json_pack("{s:o, s:s, s:o, s:o, s:s, s:o, s:s, s:I, s:f, s:o, s:i, s:s}", "record",
+                     json_words(w->record.record), "record_format", w->motion.format, "record_channel",
+                     json_words(w->motion.channel), "record_processed", json_words(w->motion.processed), "record_fnv1a",
+                     hex(hashes->record, record), "records", json_words(w->record.records), "records_fnv1a",
+                     hex(hashes->records, records), "samples", (json_int_t)w->motion.n, "step_s", w->motion.dt_s,
+                     "building", json_words(w->options.building.model), "floors", scene_n_floors(w->scene),
                      "matrices_fnv1a", hex(hashes->matrices, matrices));
 }
 
 static json_t *inputs(const Settings *s, const Tower *t, const Inputs *hashes)
 {
     return t ? inputs_of_tower(tower_record(t, 0), hashes)
-             : json_pack("{s:s}", "command", s->problem.kind == PROBLEM_EXTERNAL ? s->problem.command : "built in");
+             : json_pack("{s:o}", "command",
+                         json_words(s->problem.kind == PROBLEM_EXTERNAL ? s->problem.command : "built in"));
 }
 
 Status provenance_text(char **out, const Settings *s, const Adapter *adapter, Err *err)

@@ -14,6 +14,7 @@ typedef struct {
     SelectionKind survival;
     double replicate_share;              /* share of max_evals */
     long replicates_min, replicates_max; /* of a design */
+    long failures_max;                   /* evaluations in a row that fail; 0: any number */
     long polish;                         /* designs at the end */
     char objectives[OPTION_TEXT_MAX], limits[OPTION_TEXT_MAX];
     char start[OPTION_TEXT_MAX]; /* a CSV of designs or a run's folder, or none */

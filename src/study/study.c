@@ -29,6 +29,9 @@ typedef struct {
     size_t first_generation; /* of this session */
     long left_generation;    /* whose state was damaged, so that the one before is resumed; 0: none */
     int asked, late;         /* why it stopped */
+    long failures;           /* simulations in a row that failed, up to now */
+    int failing;             /* search.failures_max of them */
+    char failure[200];       /* why the last one failed */
     pthread_mutex_t lock;    /* of an asynchronous search: results come while a generation is written */
     int has_new_limits;
     Status status; /* of writing; ends the search */
@@ -62,6 +65,11 @@ static int may_go_on(void *user)
         study->asked = 1;
         return 0;
     }
+    int failing;
+#pragma omp atomic read
+    failing = study->failing;
+    if (failing)
+        return 0;
     if (hours > 0.0 && session_seconds(study) >= 3600.0 * hours) {
 #pragma omp atomic write
         study->late = 1;
@@ -70,12 +78,26 @@ static int may_go_on(void *user)
     return 1;
 }
 
+static void count_failures(Study *study, const Evaluation *e)
+{
+    const long most = study->used.search.failures_max;
+    study->failures = e->outcome == OUTCOME_OK ? 0 : study->failures + 1;
+    if (study->failures == 0 || study->failing)
+        return;
+    snprintf(study->failure, sizeof study->failure, "%s: %s", outcome_word(e->outcome), e->reason);
+    if (most > 0 && study->failures >= most) {
+#pragma omp atomic write
+        study->failing = 1;
+    }
+}
+
 static Status evaluation_done(const Evaluation *e, void *user, Err *err)
 {
     Study *study = user;
     pthread_mutex_lock(&study->lock);
     study->summary->n_simulated++;
     study->summary->n_failed += e->outcome != OUTCOME_OK;
+    count_failures(study, e);
     if (isfinite(e->seconds))
         study->summary->busy_s += e->seconds;
     Evaluation row = *e; /* of a generation that is not finished */
@@ -326,12 +348,20 @@ static Status finish(Study *study, Err *err)
     const int is_final = sum->stopped != STOP_ASKED;
     if (!is_final && study->late)
         sum->stopped = STOP_TIME;
+    if (!is_final && study->failing)
+        sum->stopped = STOP_FAILURES;
     const char *why = stop_reason_words(sum->stopped);
     sum->seconds = study->seconds_before + session;
     TRY(study_log_end(study->store, sum, adapter_threads(study->adapter), is_final, err));
     RunStore *store = study->store;
     study->store = NULL;
     TRY(store_close(store, why, is_final, session, is_final ? study->options->run : NULL, err));
+    if (sum->stopped == STOP_FAILURES)
+        return fail(
+            err, STATUS_INTERNAL,
+            "%.200s: the last %ld of %zu simulations failed (search.failures_max), the last one as %s; mend what "
+            "is wrong, then the same command resumes the run",
+            sum->folder, study->failures, sum->n_simulated, study->failure);
     return is_final ? STATUS_OK
                     : fail(err, STATUS_STOPPED, "%.200s: %s after %zu of %ld simulations", sum->folder, why,
                            sum->n_simulated, sum->max_evals);

@@ -1,0 +1,147 @@
+/* External workers and limits of the system, as the program meets them: what its files and its exit status say. */
+#include "runs.h"
+
+#include <signal.h>
+#include <sys/stat.h>
+
+static void write_external(const char *name, const char *command, const char *search)
+{
+    char text[512];
+    snprintf(text, sizeof text,
+             "[problem]\nkind = external\ncommand = %s\nvariables = 3\nobjectives = 2\n"
+             "[search]\ninitial = 12\npopulation = 12\nthreads = 2\n%s",
+             command, search);
+    write_in_place(name, text);
+}
+
+static size_t count_failures(const json_t *status)
+{
+    size_t n = 0;
+    const char *outcome;
+    json_t *failure;
+    json_object_foreach(json_object_get(status, "failures"), outcome, failure) n += (size_t)number(failure, "count");
+    return n;
+}
+
+static void test_no_design_is_left_out_whatever_its_message(void **state)
+{
+    (void)state;
+    static const char *const MODES[] = {"umlauts", "latin"};
+    for (size_t i = 0; i < 2; i++) {
+        char command[64];
+        snprintf(command, sizeof command, "sh tests/worker.sh %s", MODES[i]);
+        write_external("words.ini", command, "max_evals = 24\n");
+        free(output_of("optimize @/words.ini --out @/words"));
+        json_t *all = json_of("export @/words --json"), *status = json_of("status @/words --json");
+        assert_int_equal(json_array_size(json_object_get(all, "evaluations")), 24);
+        assert_int_equal(count_failures(status), 8);
+        char *csv = read_in_place("words/evaluations.csv");
+        json_t *text = json_string(csv); /* refuses what is no UTF-8 */
+        assert_non_null(text);
+        json_decref(text);
+        free(csv);
+        json_decref(all);
+        json_decref(status);
+        char remove[128];
+        snprintf(remove, sizeof remove, "rm -r '%s/words'", place.folder);
+        assert_int_equal(system(remove), 0);
+    }
+}
+
+/* A folder named in Latin-1. */
+static void test_names_that_are_no_utf_8_are_shown(void **state)
+{
+    (void)state;
+    write_in_place("textbook.ini", TEXTBOOK);
+    free(output_of("optimize @/textbook.ini --out @/runs/stra\337e"));
+    json_t *status = json_of("status @/runs/stra\337e --json"), *list = json_of("list @/runs --json"),
+           *all = json_of("export @/runs/stra\337e --json");
+    assert_non_null(strstr(json_string_value(json_object_get(status, "run")), "stra\\xDFe"));
+    assert_int_equal(json_array_size(list), 1);
+    assert_non_null(json_object_get(json_object_get(all, "settings"), "run.out"));
+    free(output_of("report @/runs/stra\337e"));
+    json_decref(status);
+    json_decref(list);
+    json_decref(all);
+}
+
+static void test_a_run_whose_workers_all_fail_stops_after_some_with_the_reason(void **state)
+{
+    (void)state;
+    write_external("dead.ini", "true", "max_evals = 4000\nfailures_max = 20\n");
+    expect(70, "the last 20 of 20 simulations failed (search.failures_max), the last one as dead: the worker ended",
+           "optimize @/dead.ini --threads 1 --out @/dead");
+    json_t *status = json_of("status @/dead --json");
+    assert_string_equal(json_string_value(json_object_get(status, "state")), "stopped");
+    json_decref(status);
+    expect(70, "of 40 simulations failed", "optimize @/dead --threads 1");
+    expect(70, "none of 60 simulations succeeded",
+           "optimize @/dead.ini --set search.failures_max=0 --max-evals 60 --out @/all");
+    write_external("third.ini", "sh tests/worker.sh error",
+                   "max_evals = 60\nfailures_max = 5\n"); /* never 5 in a row */
+    free(output_of("optimize @/third.ini --out @/third"));
+}
+
+/* -- the system ---------------------------------------------------------------------------------------------------- */
+
+static void test_too_little_address_space_or_stack_is_said_at_once(void **state)
+{
+    (void)state;
+    if (getenv("ASAN_OPTIONS"))
+        skip();
+    static const struct {
+        const char *limit, *command, *words;
+    } CASES[] = {
+        {"ulimit -v 300000; timeout 60", "modes configs/quick.ini", "address space is limited to 292 MiB"},
+        {"ulimit -s 64; timeout 60", "optimize @/textbook.ini --out @/narrow", "the stack is limited to 64 kB"},
+    };
+    for (size_t i = 0; i < sizeof CASES / sizeof CASES[0]; i++) {
+        snprintf(place.under, sizeof place.under, "%s", CASES[i].limit);
+        expect(71, CASES[i].words, CASES[i].command);
+    }
+    for (int kb = 250000; kb <= 650000; kb += 100000) { /* enough or not: it ends */
+        Said said;
+        snprintf(place.under, sizeof place.under, "ulimit -v %d; timeout -s KILL 60", kb);
+        run(&said, "optimize @/textbook.ini --threads 2 --new --out @/narrow");
+        if (said.code != 71 && (said.code != 0 || kb < 300000))
+            fail_msg("%d kB: %d: %s", kb, said.code, said.err);
+        forget(&said);
+    }
+    place.under[0] = 0;
+}
+
+/* As a shell starts what stands before `&`. */
+static void test_a_signal_that_was_ignored_at_the_start_stays_ignored(void **state)
+{
+    (void)state;
+    int status;
+    write_external("slow.ini", "sh tests/worker.sh steady", "max_evals = 40\n");
+    struct sigaction ignored = {.sa_handler = SIG_IGN}, before;
+    assert_int_equal(sigaction(SIGINT, &ignored, &before), 0);
+    const pid_t pid = start("slow.ini", "ignoring");
+    sigaction(SIGINT, &before, NULL);
+    rest(0.4);
+    kill(pid, SIGINT);
+    status = wait_end(pid);
+    assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+}
+
+static void test_a_simulation_that_fails_is_no_success(void **state)
+{
+    (void)state;
+    expect(70, "the simulation failed: ",
+           "simulate configs/quick.ini --design none --set sim.duration_s=20 --set sim.energy_balance_max=1e-30");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_no_design_is_left_out_whatever_its_message),
+        cmocka_unit_test(test_names_that_are_no_utf_8_are_shown),
+        cmocka_unit_test(test_a_run_whose_workers_all_fail_stops_after_some_with_the_reason),
+        cmocka_unit_test(test_too_little_address_space_or_stack_is_said_at_once),
+        cmocka_unit_test(test_a_signal_that_was_ignored_at_the_start_stays_ignored),
+        cmocka_unit_test(test_a_simulation_that_fails_is_no_success),
+    };
+    return cmocka_run_group_tests_name("workers", tests, prepare, clear_place);
+}
