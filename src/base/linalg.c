@@ -3,7 +3,6 @@
 #include <cblas.h>
 #include <lapacke.h>
 #include <math.h>
-#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -22,26 +21,22 @@ static void fix_sign(int n, double *mode)
             mode[j] = -mode[j];
 }
 
-/* Of one thread: the buffer of OpenBLAS (128 MiB), stack and arena of the C library. */
-static const size_t BYTES_OF_THREAD = (size_t)200 << 20;
+/* Of one thread: the buffer of OpenBLAS (128 MiB), stack (8 MiB) and the C library's arena (128 MiB while it is made). */
+static const size_t BYTES_OF_THREAD = (size_t)264 << 20;
 
-/* OpenBLAS makes a buffer for every call under way and keeps it. */
-static Status make_buffers(size_t n_threads, Err *err)
+/* Of OpenBLAS, which keeps a buffer that was given back for the next call. */
+__attribute__((weak)) void *blas_memory_alloc(int unused);
+__attribute__((weak)) void blas_memory_free(void *buffer);
+
+static void make_buffers(size_t n_threads)
 {
-    enum { N = 128 };
-    double *A = calloc(N * N * (n_threads + 1), sizeof *A);
-    if (!A)
-        return fail(err, STATUS_NO_MEMORY, "no memory for linear algebra");
-    for (int i = 0; i < N; i++)
-        A[i * N + i] = 1.0;
-#pragma omp parallel num_threads((int)n_threads)
-    {
-        double *B = A + N * N * (1 + omp_get_thread_num());
-#pragma omp barrier
-        cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasNoTrans, CblasNonUnit, N, N, 1.0, A, N, B, N);
-    }
-    free(A);
-    return STATUS_OK;
+    enum { MOST = 64 };
+    void *buffer[MOST];
+    const size_t n = !blas_memory_alloc || !blas_memory_free ? 0 : n_threads < MOST ? n_threads : MOST;
+    for (size_t i = 0; i < n; i++)
+        buffer[i] = blas_memory_alloc(0);
+    for (size_t i = 0; i < n; i++)
+        blas_memory_free(buffer[i]);
 }
 
 Status linalg_room(size_t n_threads, Err *err)
@@ -59,7 +54,8 @@ Status linalg_room(size_t n_threads, Err *err)
             (size_t)(limit.rlim_cur >> 20), more, more > 1 ? "s" : "", size >> 20,
             n_threads > 1 ? ", or take fewer --threads" : "");
     munmap(room, size);
-    return make_buffers(n_threads, err);
+    make_buffers(n_threads);
+    return STATUS_OK;
 }
 
 static int lacked_memory(int info)
