@@ -7,6 +7,7 @@
 #include "base/random.h"
 #include "scene/design.h"
 #include "sim/sim.h"
+#include "simulator/estimate.h"
 
 static const double GAP_MIN = 1e-3, GAP_MAX = 0.2, CORE_MIN = 4e-3, CORE_MAX = 0.04; /* [m] */
 static const double WINDOW_MIN_S = 8, WINDOW_MAX_S = 15, STRONG = 0.3;               /* of the peak */
@@ -26,7 +27,13 @@ static const Preset PRESETS[] = {
     {"standard, 4 steps per contact", ACCURACY_STANDARD, 4},
     {"standard, 8 steps per contact", ACCURACY_STANDARD, 8},
 };
-enum { N_PRESETS = sizeof PRESETS / sizeof PRESETS[0], N_ERRORS = PROMISED + 1 };
+enum { N_PRESETS = sizeof PRESETS / sizeof PRESETS[0], N_ERRORS = PROMISED + 1, STANDARD = 1, TWICE_STANDARD = 3 };
+
+static const int ESTIMATED[] = {MEASURE_J1, MEASURE_J2, MEASURE_J3, MEASURE_ED1, MEASURE_ED5_10, MEASURE_EDCS};
+enum { N_ESTIMATED = sizeof ESTIMATED / sizeof ESTIMATED[0] };
+
+/* Below this share of a value neither estimate nor error is looked at: rounding. */
+static const double SMALLEST_ERROR = 1e-10;
 
 /* Errors (N_ERRORS, n) of the cases: relative of J1, J2, J3, worst share, and of the shares in points of the input. */
 typedef struct {
@@ -40,6 +47,7 @@ typedef struct {
     int n_floors;
     long n, n_max, left_out; /* cases that count, room, cases without a reference */
     Missed missed[N_PRESETS];
+    double *ratio[N_ESTIMATED]; /* (n) estimated over true error at standard */
 } Promise;
 
 /* ---- the cases --------------------------------------------------------------------------------------------------- */
@@ -136,10 +144,21 @@ static void note(Promise *p, Missed *m, const SimResult *found, const SimResult 
     m->seconds += seconds;
 }
 
+static void note_estimates(Promise *p, const SimResult *standard, const SimResult *finer, const SimResult *wanted)
+{
+    double error[N_MEASURES];
+    estimate_errors(standard, finer, error);
+    for (int i = 0; i < N_ESTIMATED; i++) {
+        const double value = measure_value(wanted, ESTIMATED[i]), least = SMALLEST_ERROR * fabs(value);
+        const double missed = fmax(fabs(measure_value(standard, ESTIMATED[i]) - value), least);
+        p->ratio[i][p->n] = fmax(error[ESTIMATED[i]], least) / missed;
+    }
+}
+
 static Status measure_case(Promise *p, const PromiseCase *c, int times, Err *err)
 {
     static const Preset FINE = {"fine", ACCURACY_FINE, 0};
-    SimResult wanted, found;
+    SimResult wanted, found[N_PRESETS];
     double seconds;
     TRY(simulate(p, c, ENGINE_FAST, &FINE, 1, &wanted, &seconds, err));
     if (wanted.outcome != RUN_OK || !(wanted.j1_m > 0)) {
@@ -147,9 +166,10 @@ static Status measure_case(Promise *p, const PromiseCase *c, int times, Err *err
         return STATUS_OK;
     }
     for (int k = 0; k < N_PRESETS; k++) {
-        TRY(simulate(p, c, ENGINE_FAST, &PRESETS[k], times, &found, &seconds, err));
-        note(p, &p->missed[k], &found, &wanted, seconds);
+        TRY(simulate(p, c, ENGINE_FAST, &PRESETS[k], times, &found[k], &seconds, err));
+        note(p, &p->missed[k], &found[k], &wanted, seconds);
     }
+    note_estimates(p, &found[STANDARD], &found[TWICE_STANDARD], &wanted);
     p->n++;
     return STATUS_OK;
 }
@@ -163,6 +183,12 @@ static Status clear(Promise *p, long n_max, Err *err)
         if (!error)
             return fail(err, STATUS_NO_MEMORY, "promise: no memory for %ld cases", n_max);
         p->missed[k] = (Missed){.error = error};
+    }
+    for (int i = 0; i < N_ESTIMATED; i++) {
+        double *ratio = realloc(p->ratio[i], (size_t)n_max * sizeof *ratio);
+        if (!ratio)
+            return fail(err, STATUS_NO_MEMORY, "promise: no memory for %ld cases", n_max);
+        p->ratio[i] = ratio;
     }
     return STATUS_OK;
 }
@@ -179,7 +205,7 @@ static const char HEADER[] = "J1 | J2 | J3 | worst share | share, points |";
 
 static void write_table(Promise *p, FILE *out)
 {
-    const double n = (double)p->n, standard = p->missed[1].seconds;
+    const double n = (double)p->n, standard = p->missed[STANDARD].seconds;
     fprintf(out,
             "| `sim.accuracy` | ms per design | over `standard` | run again | %s held |\n"
             "|---|---|---|---|---|---|---|---|---|---|\n",
@@ -198,6 +224,25 @@ static void write_table(Promise *p, FILE *out)
     fprintf(out, ".\n\n");
 }
 
+/* How the estimate of the error does: share of the cases in which it is not too small; how much too large it is. */
+static void write_estimates(Promise *p, FILE *out)
+{
+    fprintf(out, "Estimated error at `standard` (%g times the difference to twice the steps):\n\n| |", ESTIMATE_FACTOR);
+    for (int i = 0; i < N_ESTIMATED; i++)
+        fprintf(out, " %s |", measure(ESTIMATED[i])->name);
+    fprintf(out, "\n|---|---|---|---|---|---|---|\n| the error is below it |");
+    for (int i = 0; i < N_ESTIMATED; i++) {
+        long above = 0;
+        for (long k = 0; k < p->n; k++)
+            above += p->ratio[i][k] >= 1;
+        fprintf(out, " %.1f %% |", 100 * (double)above / (double)p->n);
+    }
+    fprintf(out, "\n| times the error, median |");
+    for (int i = 0; i < N_ESTIMATED; i++)
+        fprintf(out, " %.1f |", bench_median((int)p->n, p->ratio[i]));
+    fprintf(out, "\n\n");
+}
+
 static Status write_windows(Promise *p, FILE *out, Err *err)
 {
     const PromisePlan *plan = p->plan;
@@ -212,6 +257,7 @@ static Status write_windows(Promise *p, FILE *out, Err *err)
         fprintf(out, "%s `%s`", k ? "," : "", plan->records[k].name);
     fprintf(out, ". Errors against `fine`: median / 90 %% / 95 %%.\n\n");
     write_table(p, out);
+    write_estimates(p, out);
     return STATUS_OK;
 }
 
@@ -229,6 +275,7 @@ static Status write_designs(Promise *p, const Designs *d, FILE *out, Err *err)
     }
     fprintf(out, "## Designs of a front\n\nAll of `%s`, %.0f s.\n\n", record->name, c.duration);
     write_table(p, out);
+    write_estimates(p, out);
     return STATUS_OK;
 }
 
@@ -298,5 +345,7 @@ Status promise_write(const PromisePlan *plan, FILE *out, FILE *progress, Err *er
     const Status status = write_page(&p, out, progress, err);
     for (int k = 0; k < N_PRESETS; k++)
         free(p.missed[k].error);
+    for (int i = 0; i < N_ESTIMATED; i++)
+        free(p.ratio[i]);
     return status;
 }

@@ -138,7 +138,7 @@ static void print_named(const Evaluations *e, const Schema *schema)
         fputs(e->run[i].motion, stdout);
         show_result_names("", order);
         for (int c = 0; c < evaluated_cases(e, &e->run[i]); c++) {
-            show_result(EVALUATION_CASES[c].word, order, &e->run[i].result[c]);
+            show_result(EVALUATION_CASES[c].word, order, &e->run[i].result[c], NULL);
             if (c == EVALUATED_DESIGN && e->replicates > 0)
                 show_replicates(order, &e->run[i].replicates);
         }
@@ -164,7 +164,7 @@ static void print_folder(const Evaluations *e, const MeasureOrder *order)
     for (size_t i = 0; i < e->n_records; i++)
         for (int c = 0; c < N_EVALUATED && e->record[i].from_folder && e->record[i].readable == STATUS_OK; c++) {
             printf("%-*s  ", width, evaluated_name(&e->record[i]));
-            show_result(EVALUATION_CASES[c].word, order, &e->run[i].result[c]);
+            show_result(EVALUATION_CASES[c].word, order, &e->run[i].result[c], NULL);
         }
 }
 

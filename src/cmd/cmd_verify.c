@@ -135,7 +135,7 @@ static void print_design(const Job *job, size_t i)
                      WORDS[m], job->dofs[m]);
         else
             snprintf(label, sizeof label, "no core, %s (%d)", WORDS[m], job->dofs[m]);
-        show_result(label, &job->order, &job->results[m][i]);
+        show_result(label, &job->order, &job->results[m][i], NULL);
     }
     printf("%-28s", "  error of the reduced [%]");
     for (int o = 0; o < job->order.n_obj; o++) {

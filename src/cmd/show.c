@@ -125,6 +125,15 @@ json_t *json_result(SceneKind kind, const SimResult *r)
     return o;
 }
 
+json_t *json_errors(const double error[])
+{
+    json_t *o = json_object();
+    for (int k = 0; k < N_MEASURES; k++)
+        if (isfinite(error[k]))
+            json_object_set_new(o, measure(k)->name, json_number(error[k]));
+    return o;
+}
+
 json_t *json_replicates(const ReplicateSummary *r)
 {
     json_t *o = json_object(), *mean = json_object(), *sd = json_object();
@@ -160,14 +169,26 @@ void show_motion(FILE *out, const Motion *m, double duration_s)
     fprintf(out, "%.4g s, %s\n", length, peak);
 }
 
+/* Digits of a value that an error leaves standing: one to four. */
+static int digits_known(double value, double error)
+{
+    const double digits = 1 + floor(log10(fabs(value / error)));
+    return digits >= 1 && digits < 4 ? (int)digits : digits < 1 ? 1 : 4;
+}
+
 /* In a column of width 10 or of the name's, if that is wider. */
-static void show_number(double value, const char *name)
+static void show_digits(double value, int digits, const char *name)
 {
     const int width = strlen(name) > 10 ? (int)strlen(name) : 10;
     if (isfinite(value))
-        printf(" %*.4g", width, value);
+        printf(" %*.*g", width, digits, value);
     else
         printf(" %*s", width, "-");
+}
+
+static void show_number(double value, const char *name)
+{
+    show_digits(value, 4, name);
 }
 
 void show_result_names(const char *label, const MeasureOrder *order)
@@ -178,11 +199,21 @@ void show_result_names(const char *label, const MeasureOrder *order)
     printf(" %8s %9s %11s\n", "impacts", "balance", "indentation");
 }
 
-void show_result(const char *label, const MeasureOrder *order, const SimResult *r)
+static void show_errors(const MeasureOrder *order, const double error[])
+{
+    printf("%-28s", "  estimated error");
+    for (int i = 0; i < order->n_obj; i++)
+        show_digits(error[order->of[i]], 1, measure(order->of[i])->name);
+    putchar('\n');
+}
+
+void show_result(const char *label, const MeasureOrder *order, const SimResult *r, const double error[])
 {
     printf("%-28.28s", label);
     for (int i = 0; i < order->n_obj; i++)
-        show_number(measure_value(r, order->of[i]), measure(order->of[i])->name);
+        show_digits(measure_value(r, order->of[i]),
+                    error ? digits_known(measure_value(r, order->of[i]), error[order->of[i]]) : 4,
+                    measure(order->of[i])->name);
     printf(" %8ld %9.1e %11.3g", r->impacts, r->energy_balance_error, r->indentation_ratio);
     if (r->outcome != RUN_OK)
         printf("  %s", outcome_word(measure_outcome(r->outcome)));
@@ -191,6 +222,8 @@ void show_result(const char *label, const MeasureOrder *order, const SimResult *
     if (r->bumper_bottoms_out)
         printf("  a bumper is compressed by %.3g of its thickness: it bottoms out", r->bumper_strain);
     putchar('\n');
+    if (error)
+        show_errors(order, error);
 }
 
 void show_objective_names(const Schema *schema)

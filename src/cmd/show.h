@@ -8,6 +8,9 @@
 
 json_t *json_result(SceneKind kind, const SimResult *r);
 
+/* Of every measure that has one. */
+json_t *json_errors(const double error[]);
+
 /* replicates, failed, mean {}, sd {} */
 json_t *json_replicates(const ReplicateSummary *r);
 
@@ -17,9 +20,10 @@ Status show_json(json_t *all, Err *err);
 /* The ground motion: name, length (and how much of it was simulated; duration_s 0: all), peak, scaling. */
 void show_motion(FILE *out, const Motion *m, double duration_s);
 
-/* One line per simulation: label, objectives, impacts, outcome where it is not ok. */
+/* One line per simulation: label, objectives, impacts, outcome where it is not ok. error (N_MEASURES) or NULL: a second
+ * line has those of the objectives, and of a value no digit is shown that they leave open. */
 void show_result_names(const char *label, const MeasureOrder *order);
-void show_result(const char *label, const MeasureOrder *order, const SimResult *r);
+void show_result(const char *label, const MeasureOrder *order, const SimResult *r, const double error[]);
 
 /* Two lines: mean and standard deviation of the objectives; one where a replicate failed. */
 void show_replicates(const MeasureOrder *order, const ReplicateSummary *r);

@@ -161,7 +161,7 @@ FastTolerances fast_tolerances_finer(Accuracy accuracy, double times)
     tolerances.energy_tolerance /= times * times * times;
     tolerances.peak_tolerance /= times;
     tolerances.flexibility_left_out /= times * times;
-    tolerances.tail_tolerance /= times;
+    tolerances.tail_tolerance /= times * times;
     return tolerances;
 }
 

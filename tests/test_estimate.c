@@ -1,0 +1,94 @@
+/* The estimated error of a result: twice the steps, and above the error in most windows. */
+#include "check.h"
+
+#include <string.h>
+
+#include "bench/promise.h"
+#include "scene/motion_source.h"
+#include "scene_options.h"
+#include "sim/sim.h"
+#include "simulator/estimate.h"
+
+static void test_a_second_run_has_twice_the_steps_of_the_first(void **state)
+{
+    (void)state;
+    SceneOptions o = paper_scene();
+    SimOptions finer;
+    assert_true(estimate_options(&o.sim, &finer));
+    assert_true(finer.steps_per_contact == 4); /* standard has two */
+    o.sim.steps_per_contact = 7;
+    assert_true(estimate_options(&o.sim, &finer) && finer.steps_per_contact == 14);
+    o.sim.engine = ENGINE_CVODE;
+    assert_false(estimate_options(&o.sim, &finer));
+}
+
+static void test_equal_results_have_no_error_and_failed_ones_an_unknown_one(void **state)
+{
+    (void)state;
+    static SimResult a, b;
+    double error[N_MEASURES];
+    a.j1_m = b.j1_m = 0.7;
+    a.j3_g = 2;
+    b.j3_g = 2.001;
+    estimate_errors(&a, &b, error);
+    assert_true(error[MEASURE_J1] == 0);
+    assert_close(error[MEASURE_J3], 0.001 * ESTIMATE_FACTOR, 1e-9);
+    b.outcome = RUN_OUT_OF_STEPS;
+    estimate_errors(&a, &b, error);
+    for (int k = 0; k < N_MEASURES; k++)
+        assert_true(isnan(error[k]));
+}
+
+static SimResult run_window(const SceneOptions *o, const PromiseCase *c)
+{
+    SceneOptions s = *o;
+    Scene *scene;
+    SimWorker *worker;
+    SimResult r;
+    Err err;
+    s.sim.duration_s = c->duration;
+    s.core.theory = c->theory;
+    CHECK_OK(scene_create(&scene, &s, &c->motion, &err), &err);
+    CHECK_OK(sim_worker_create(&worker, scene, &err), &err);
+    CHECK_OK(sim_run(worker, SCENE_IMPACT, c->x, &r, &err), &err);
+    sim_worker_free(worker);
+    scene_free(scene);
+    return r;
+}
+
+static void test_the_error_is_below_its_estimate_in_nine_of_ten_results(void **state)
+{
+    (void)state;
+    static const int RESULTS[] = {MEASURE_J1, MEASURE_J2, MEASURE_J3, MEASURE_ED1, MEASURE_ED5_10, MEASURE_EDCS};
+    SceneOptions o = paper_scene(), twice = o, fine = o;
+    Motion m;
+    Err err;
+    int below = 0, all = 0;
+    CHECK_OK(motion_load(&m, "builtin:kobe-like", UNIT_FROM_FILE, &err), &err);
+    CHECK_OK(motion_prepare(&m, 0.3, 3.1, &err), &err);
+    assert_true(estimate_options(&o.sim, &twice.sim));
+    fine.sim.accuracy = ACCURACY_FINE;
+    const PromisePlan plan = {.options = &o, .records = &m, .n_records = 1, .n_windows = 10};
+    for (long k = 0; k < plan.n_windows; k++) {
+        PromiseCase c;
+        double error[N_MEASURES];
+        promise_window(&plan, 20, k, &c);
+        const SimResult r = run_window(&o, &c), t = run_window(&twice, &c), f = run_window(&fine, &c);
+        estimate_errors(&r, &t, error);
+        for (size_t i = 0; i < sizeof RESULTS / sizeof RESULTS[0]; i++, all++)
+            below += fabs(measure_value(&r, RESULTS[i]) - measure_value(&f, RESULTS[i])) <= error[RESULTS[i]];
+    }
+    print_message("%d of %d errors are below their estimate\n", below, all);
+    assert_true(10 * below >= 9 * all);
+    motion_free(&m);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_a_second_run_has_twice_the_steps_of_the_first),
+        cmocka_unit_test(test_equal_results_have_no_error_and_failed_ones_an_unknown_one),
+        cmocka_unit_test(test_the_error_is_below_its_estimate_in_nine_of_ten_results),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
