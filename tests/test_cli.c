@@ -340,12 +340,13 @@ static void test_the_energies_of_a_history_add_up_at_every_sample(void **state)
                         "@/history.csv");
     char *path = in_place("history.csv");
     CHECK_OK(table_read(&t, path, 1, &err), &err);
-    const int u = table_column(&t, "u_m"), input = table_column(&t, "input_j");
+    const int u = table_column(&t, "floor_20_m"), first = table_column(&t, "kinetic_j");
+    const int input = table_column(&t, "input_j");
     double top = 0;
     for (size_t i = 0; i < t.n_rows; i++) {
         const double *row = t.values + i * t.n_cols;
         double parts = 0;
-        for (int k = u + 1; k < input; k++)
+        for (int k = first; k < input; k++)
             parts += row[k];
         assert_true(fabs(parts - row[input]) <= 1e-6 * number(o, "input_energy_j"));
         top = fmax(top, fabs(row[u]));
@@ -355,7 +356,6 @@ static void test_the_energies_of_a_history_add_up_at_every_sample(void **state)
     table_free(&t);
     free(path);
     json_decref(o);
-    expect(2, "no samples", "simulate configs/quick.ini --design @/energies.csv --rigid --history -");
 }
 
 /* Husid's curve ends at 1, velocity and displacement reach the peaks of the table. */

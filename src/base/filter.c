@@ -2,7 +2,9 @@
 
 #include <math.h>
 
-enum { LANES = 8 };
+#include "base/clones.h"
+
+enum { VECTORS = 3 /* together: each waits for its own last row */ };
 
 Status filter_butterworth(Filter *f, FilterKind kind, double cutoff_hz, double dt_s, Err *err)
 {
@@ -28,29 +30,55 @@ size_t filter_padding(const Filter *f)
     return (size_t)ceil(1.5 * FILTER_ORDER / f->cutoff_dt);
 }
 
-/* One pass over `lanes` of the columns from row `first`, `step` being +1 or -1 rows: the sections one after the other,
- * each with its two states (transposed direct form II). */
-static void pass(const Filter *f, size_t n, size_t width, int lanes, double *first, ptrdiff_t step)
+/* Both sections (transposed direct form II) on one value or vector of values; s: their states. */
+#define FILTER_STEP(f, x, s)                                                                                           \
+    _Pragma("GCC unroll 2") for (int k_ = 0; k_ < FILTER_SECTIONS; k_++)                                               \
+    {                                                                                                                  \
+        const Biquad *const q_ = &(f)->section[k_];                                                                    \
+        const __typeof__(x) in_ = x;                                                                                   \
+        x = q_->b0 * in_ + s[k_][0];                                                                                   \
+        s[k_][0] = q_->b1 * in_ - q_->a1 * x + s[k_][1];                                                               \
+        s[k_][1] = q_->b2 * in_ - q_->a2 * x;                                                                          \
+    }
+
+typedef double v8 __attribute__((vector_size(64), aligned(8)));
+
+/* One pass over VECTORS vectors of eight columns from row `first`, `step` being +1 or -1 rows. */
+CLONED static void pass(const Filter *f, size_t n, size_t width, double *first, ptrdiff_t step)
 {
-    double s[FILTER_SECTIONS][2][LANES] = {0};
+    v8 s[VECTORS][FILTER_SECTIONS][2] = {0};
     double *row = first;
     for (size_t i = 0; i < n; i++, row += step * (ptrdiff_t)width)
-        for (int k = 0; k < FILTER_SECTIONS; k++) {
-            const Biquad *q = &f->section[k];
-            for (int j = 0; j < lanes; j++) {
-                const double x = row[j], y = q->b0 * x + s[k][0][j];
-                s[k][0][j] = q->b1 * x - q->a1 * y + s[k][1][j];
-                s[k][1][j] = q->b2 * x - q->a2 * y;
-                row[j] = y;
-            }
+#pragma GCC unroll 3
+        for (int j = 0; j < VECTORS; j++) {
+            v8 x = ((v8 *)row)[j];
+            FILTER_STEP(f, x, s[j]);
+            ((v8 *)row)[j] = x;
         }
+}
+
+/* The same over one column. */
+static void pass_column(const Filter *f, size_t n, size_t width, double *first, ptrdiff_t step)
+{
+    double s[FILTER_SECTIONS][2] = {0};
+    double *row = first;
+    for (size_t i = 0; i < n; i++, row += step * (ptrdiff_t)width) {
+        double x = *row;
+        FILTER_STEP(f, x, s);
+        *row = x;
+    }
 }
 
 void filter_zero_phase(const Filter *f, size_t n, size_t width, double x[])
 {
-    for (size_t at = 0; n > 0 && at < width; at += LANES) {
-        const int lanes = width - at < LANES ? (int)(width - at) : LANES;
-        pass(f, n, width, lanes, x + at, 1);
-        pass(f, n, width, lanes, x + (n - 1) * width + at, -1);
+    enum { LANES = 8 * VECTORS };
+    size_t at = 0;
+    for (; n > 0 && at + LANES <= width; at += LANES) {
+        pass(f, n, width, x + at, 1);
+        pass(f, n, width, x + (n - 1) * width + at, -1);
+    }
+    for (; n > 0 && at < width; at++) {
+        pass_column(f, n, width, x + at, 1);
+        pass_column(f, n, width, x + (n - 1) * width + at, -1);
     }
 }

@@ -8,7 +8,7 @@
 #include "cmd/commands.h"
 #include "cmd/designs.h"
 #include "cmd/show.h"
-#include "report/history.h"
+#include "cmd/time_files.h"
 #include "simulator/estimate.h"
 #include "simulator/tower.h"
 #include "store/output.h"
@@ -202,118 +202,31 @@ static Status print(const Args *args, const Job *job, const Tower *t, Err *err)
     return STATUS_OK;
 }
 
-/* -- contacts one by one ------------------------------------------------------------------------------------------- */
+/* -- responses over time ------------------------------------------------------------------------------------------- */
 
-typedef struct {
-    size_t n, room; /* of the run under way */
-    SimContact *at;
-    int out_of_memory;
-} ContactList;
-
-static void add_contact(const SimContact *contact, void *user)
+static Status write_times(const Args *args, const Job *job, const Scenario *w, Err *err)
 {
-    ContactList *list = user;
-    if (!contact) { /* a run begins */
-        list->n = 0;
-        return;
-    }
-    if (list->n == list->room) {
-        const size_t room = list->room ? 2 * list->room : 256;
-        SimContact *at = realloc(list->at, room * sizeof *at);
-        list->out_of_memory |= !at;
-        if (!at)
-            return;
-        list->at = at;
-        list->room = room;
-    }
-    list->at[list->n++] = *contact;
-}
-
-static void print_contacts(FILE *out, long design, const ContactList *list)
-{
-    for (size_t i = 0; i < list->n; i++) {
-        const SimContact *c = &list->at[i];
-        const double of[] = {c->t, c->duration, c->approach, c->rebound, c->force, c->indentation, c->impulse, c->lost};
-        fprintf(out, "%ld,%d,%d,%d", design, c->floor + 1, c->side, c->open);
-        for (size_t k = 0; k < sizeof of / sizeof of[0]; k++) {
-            fputc(',', out);
-            print_number(out, of[k]);
-        }
-        fputc('\n', out);
-    }
-}
-
-static Status write_designs_contacts(const Job *job, SimWorker *worker, FILE *out, Err *err)
-{
-    ContactList list = {0};
-    SimResult result;
-    Status status = STATUS_OK;
-    sim_worker_contacts(worker, add_contact, &list);
-    fprintf(out,
-            "design,floor,side,open,t_s,duration_s,approach_m_s,rebound_m_s,force_n,indentation_m,impulse_ns,lost_j\n");
-    for (size_t i = 0; i < job->n && status == STATUS_OK; i++) {
-        status = sim_run(worker, job->kind, job->tasks[i].x, &result, err);
-        if (status == STATUS_OK && list.out_of_memory)
-            status = fail(err, STATUS_NO_MEMORY, "--contacts: no memory for %zu contacts", list.n);
-        if (status == STATUS_OK)
-            print_contacts(out, number_of(job, i), &list);
-    }
-    free(list.at);
-    return status;
-}
-
-/* Every design once more, on its own: the same simulation, to the last bit. */
-static Status write_contacts(const Job *job, const Scenario *w, const char *path, Err *err)
-{
-    Output o;
-    SimWorker *worker;
-    if (job->kind != SCENE_IMPACT)
+    const char *contacts = args_value(args, "--contacts"), *history = args_value(args, "--history");
+    const char *spectra = args_value(args, "--floor-spectra");
+    TimeJob times = {
+        .scene = w->scene, .motion = &w->motion, .n = job->n, .tasks = job->tasks, .results = job->results};
+    if (!contacts && !history && !spectra)
+        return STATUS_OK;
+    if (contacts && job->kind != SCENE_IMPACT)
         return fail(err, STATUS_USAGE, "--contacts needs a design with gaps, not none or --rigid");
-    TRY(output_open(&o, path, err));
-    Status status = sim_worker_create(&worker, w->scene, err);
-    if (status == STATUS_OK) {
-        status = write_designs_contacts(job, worker, o.stream, err);
-        sim_worker_free(worker);
-    }
-    if (status == STATUS_OK)
-        return output_close(&o, err);
-    output_abandon(&o);
-    return status;
-}
-
-/* -- over time ----------------------------------------------------------------------------------------------------- */
-
-static void print_history(FILE *out, size_t design, const History *h)
-{
-    for (size_t k = 0; k < h->n; k++) {
-        fprintf(out, "%zu,%.9g,%.9g", design, h->t[k], h->u[k]);
-        for (int e = 0; e < N_ENERGIES; e++)
-            fprintf(out, ",%.9g", h->energy[e][k]);
-        fputc('\n', out);
-    }
-}
-
-/* Every design once more, on its own: a floor's displacement and the energies at every sample of the motion. */
-static Status write_history(const Args *args, const Job *job, const Scenario *w, const char *path, Err *err)
-{
-    Output o;
-    long floor;
-    Status status = STATUS_OK;
-    TRY(args_whole(args, "--floor", 1, scene_n_floors(w->scene), scene_n_floors(w->scene), &floor, err));
-    if (job->kind == SCENE_RIGID)
-        return fail(err, STATUS_USAGE, "--history: the engine of a rigid connection has no samples; leave --rigid out");
-    TRY(output_open(&o, path, err));
-    fprintf(o.stream, "design,t_s,u_m,kinetic_j,strain_j,damped_building_j,core_j,damped_core_j,contacts_j,input_j\n");
-    for (size_t i = 0; i < job->n && status == STATUS_OK; i++) {
-        History h;
-        status = history_run(w, job->kind, job->tasks[i].x, (int)floor - 1, &h, err);
-        if (status == STATUS_OK)
-            print_history(o.stream, i + 1, &h);
-        history_free(&h);
-    }
-    if (status == STATUS_OK)
-        return output_close(&o, err);
-    output_abandon(&o);
+    TRY(args_number(args, "--every", 1e-9, 1e6, 0, &times.every_s, err));
+    long *number = calloc(job->n, sizeof *number);
+    if (!number)
+        return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", job->n);
+    for (size_t i = 0; i < job->n; i++)
+        number[i] = number_of(job, i);
+    times.number = number;
+    Status status = contacts ? write_contacts(&times, contacts, err) : STATUS_OK;
+    if (status == STATUS_OK && history)
+        status = write_histories(&times, history, err);
+    if (status == STATUS_OK && spectra)
+        status = write_floor_spectra(&times, spectra, err);
+    free(number);
     return status;
 }
 
@@ -340,10 +253,8 @@ static Status run(const Args *args, Err *err)
         status = estimate(&s, &job, err);
     if (status == STATUS_OK)
         status = print(args, &job, tower_of(&p), err);
-    if (status == STATUS_OK && args_has(args, "--contacts"))
-        status = write_contacts(&job, w, args_value(args, "--contacts"), err);
-    if (status == STATUS_OK && args_has(args, "--history"))
-        status = write_history(args, &job, w, args_value(args, "--history"), err);
+    if (status == STATUS_OK)
+        status = write_times(args, &job, w, err);
     if (status == STATUS_OK && job.n == 1 && job.results[0].outcome != RUN_OK)
         status = fail(err, STATUS_INTERNAL, "the simulation failed: %s", job.results[0].reason);
     free(job.tasks);
@@ -366,8 +277,10 @@ static const ArgOption OPTIONS[] = {
     OPTION_JSON,
     OPTION_CSV,
     {"--contacts", "FILE", NULL, 0, "one row per contact: time, floor, side, speeds, force, duration, energy lost"},
-    {"--history", "FILE", NULL, 0, "energies and the displacement of a floor over time, as CSV; -: standard output"},
-    {"--floor", "N", NULL, 0, "of --history; the top one if not given"},
+    {"--history", "FILE", NULL, 0,
+     "time histories: floors, nodes of the core, contact forces, energies; - is standard output"},
+    {"--every", "DT", NULL, 0, "of --history: a row every DT s at most, by halving the record's step"},
+    {"--floor-spectra", "FILE", NULL, 0, "response spectra of every floor's acceleration, 5 % damped"},
     OPTION_SET,
     OPTION_END,
 };

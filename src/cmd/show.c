@@ -100,6 +100,8 @@ json_t *json_result(SceneKind kind, const SimResult *r)
     json_object_set_new(o, "peak_displacement_m", json_numbers(n_floors, r->peak_displacement_m));
     json_object_set_new(o, "peak_drift_m", json_numbers(n_floors, r->peak_drift_m));
     json_object_set_new(o, "peak_acceleration_g", json_numbers(n_floors, r->peak_acceleration_g));
+    json_object_set_new(o, "peak_filtered_g",
+                        r->filtered_known ? json_numbers(n_floors, r->peak_filtered_g) : json_null());
     json_object_set_new(o, "drift_ratio_storey", json_integer(r->drift_ratio_storey + 1));
     json_object_set_new(o, "peak_drift_ratio", json_numbers(n_floors, r->drift_ratio));
     json_object_set_new(o, "mode_share_pct", json_numbers(n_modes, r->mode_share_pct));

@@ -1,5 +1,6 @@
 #include "report/history.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -25,26 +26,33 @@ static Status make_room(History *h, size_t room, Err *err)
 static void add_mode(const SimSample *s, int i, double energy[N_ENERGIES])
 {
     const double wq = s->omega[i] * s->q[i], kinetic = 0.5 * s->v[i] * s->v[i], strain = 0.5 * wq * wq;
-    const double damped = s->ground_j[i] + s->contact_j[i] - kinetic - strain;
+    const double damped = s->damped_j[i];
     const int in_building = i < s->n_building;
-    energy[ENERGY_INPUT] += s->ground_j[i];
-    energy[ENERGY_CONTACTS] -= s->contact_j[i];
     energy[in_building ? ENERGY_KINETIC : ENERGY_CORE] += kinetic;
     energy[in_building ? ENERGY_STRAIN : ENERGY_CORE] += strain;
     energy[in_building ? ENERGY_DAMPED_BUILDING : ENERGY_DAMPED_CORE] += damped;
+}
+
+void history_energies(const SimSample *s, double energy[N_ENERGIES])
+{
+    for (int k = 0; k < N_ENERGIES; k++)
+        energy[k] = s->damped_j ? 0 : NAN;
+    for (int i = 0; s->damped_j && i < s->n_modes; i++)
+        add_mode(s, i, energy);
+    energy[ENERGY_INPUT] = s->input_j;
+    energy[ENERGY_CONTACTS] = s->contacts_j;
 }
 
 static void note(const SimSample *sample, void *user)
 {
     Track *track = user;
     History *h = track->h;
-    double u[FLOORS_MAX], energy[N_ENERGIES] = {0};
+    double u[FLOORS_MAX], energy[N_ENERGIES];
     if (sample->t == 0)
         h->n = 0;
     if (h->n == track->room)
         return;
-    for (int i = 0; i < sample->n_modes; i++)
-        add_mode(sample, i, energy);
+    history_energies(sample, energy);
     sim_worker_floors(track->worker, sample, u);
     h->t[h->n] = sample->t;
     h->u[h->n] = u[track->floor];
@@ -63,7 +71,7 @@ static Status follow(const Scenario *scenario, const Scene *scene, SceneKind kin
     TRY(make_room(out, samples, err));
     TRY(sim_worker_create(&worker, scene, err));
     Track track = {.h = out, .room = samples, .floor = floor, .worker = worker};
-    sim_worker_sample(worker, note, &track);
+    sim_worker_sample(worker, 0, note, &track);
     const Status status = sim_run(worker, kind, x, &result, err);
     sim_worker_free(worker);
     if (status == STATUS_OK && result.outcome != RUN_OK)

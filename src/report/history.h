@@ -29,6 +29,9 @@ typedef struct {
     double *energy[N_ENERGIES]; /* (n) [J] */
 } History;
 
+/* Of one sample; NAN where the engine has none. */
+void history_energies(const SimSample *s, double energy[N_ENERGIES]);
+
 /* floor: from 0. x as for sim_run. A run that does not finish gives an empty History. */
 Status history_run(const Scenario *scenario, SceneKind kind, const double x[], int floor, History *out, Err *err);
 void history_free(History *h);

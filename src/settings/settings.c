@@ -174,8 +174,9 @@ static const Option OPTIONS[] = {
           "simulations of a design under each record, with perturbed gaps: the objectives are their means"),
     REAL(sim.gap_tolerance_m, "m", "0", 0, 1, "standard deviation of a gap as built; needs sim.replicates >= 2"),
     CHOICE(sim.forces, Forces, CHOICE_WORDS(FORCES_LIST), "auto",
-           "forces, stresses and base shears of every design as columns: yes, or auto: only where an objective or a "
-           "limit needs them"),
+           "yes: forces, stresses, base shears and filtered accelerations of every design as columns; auto: only where "
+           "an objective or a limit needs them"),
+    REAL(sim.filter_hz, "Hz", "25", 0.01, 1000, "low-pass of j3_filtered_g, the acceleration that equipment feels"),
     CHOICE(sim.robust, Robust, CHOICE_WORDS(ROBUST_LIST), "worst",
            "several records: worst or mean of their means over the replicates; mean_plus_sd, quantile: of all "
            "replicates of "

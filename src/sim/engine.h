@@ -35,10 +35,13 @@ typedef struct {
     double steps_per_contact; /* `fast`: all that `accuracy` says follows so many steps; 0: as it is */
     double refinement;        /* `fast`: all that `accuracy` says is refined by this factor; 0: by none */
     const double *tail_input; /* `fast`: (n of the motion) [J] of tail_input, sim/tail.h; NULL: contacts to the end */
-    SimSampleFn sample;       /* `fast`: called at every sample of the motion; NULL: not wanted */
+    SimSampleFn sample;       /* NULL: not wanted */
     void *sample_user;
-    ForceMonitor *forces; /* set for this design; NULL: not wanted */
-    void *work;           /* from EngineEntry.work_create; NULL: the run allocates its own */
+    double sample_spacing; /* [s] at most, by halving the motion's samples; 0: every sample of the motion */
+    int sample_floors;     /* displacements of the floors are all that is wanted: the core's modes, force and energies
+                                 may be anything */
+    ForceMonitor *forces;  /* set for this design; NULL: not wanted */
+    void *work;            /* from EngineEntry.work_create; NULL: the run allocates its own */
 } EngineOptions;
 
 typedef Status (*EngineFn)(const SimModel *model, const Motion *motion, const EngineOptions *options, SimResult *result,

@@ -214,6 +214,28 @@ static void look(Linear *d, double t, double ground, const double y[], const dou
                                                           .core_q = q + s->n_building});
 }
 
+static void send_sample(const Linear *d, double t, double spacing, double ground, const double u[],
+                        const double u_ddot[])
+{
+    const EngineOptions *o = d->run->sampling;
+    o->sample(
+        &(SimSample){
+            .t = t, .spacing = spacing, .ground = ground, .u = u, .u_ddot = u_ddot, .input_j = NAN, .contacts_j = NAN},
+        o->sample_user);
+}
+
+/* Parts of a stretch from one sample to the next, which divide it evenly; more than there are where none is wanted. */
+static int parts_per_sample(const Linear *d, int parts, double h)
+{
+    const EngineOptions *o = d->run->sampling;
+    int n = parts;
+    if (!o || !o->sample)
+        return parts + 1;
+    while (n > 1 && o->sample_spacing > 0 && (n * h > o->sample_spacing * (1 + 1e-12) || parts % n != 0))
+        n--;
+    return n;
+}
+
 /* Columns of Z: the states where the stretches begin, with their loads; d->z goes to where the last one ends. */
 static void find_starts(Linear *d, int count, const double a[], const double slope[])
 {
@@ -226,11 +248,12 @@ static void find_starts(Linear *d, int count, const double a[], const double slo
     }
 }
 
-/* count stretches from t on, each of `length`, during which the ground acceleration is a + slope (time since its start). */
-static void cross(Linear *d, double t, double length, int count, const double a[], const double slope[])
+/* count stretches from t on, each of `length`, whole ones or what is left of one, during which the ground acceleration is a + slope (time since its start). */
+static void cross(Linear *d, double t, double length, int is_whole, int count, const double a[], const double slope[])
 {
     const int parts = (int)ceil(length / d->run->step), out = d->rows.n, n_q = n_coordinates(d);
     const double h = length / (double)parts;
+    const int each = parts_per_sample(d, parts, h);
     if (!(fabs(h - d->h) <= 1e-13 * h) || parts != d->parts)
         set_step(d, h, parts);
     find_starts(d, count, a, slope);
@@ -249,9 +272,13 @@ static void cross(Linear *d, double t, double length, int count, const double a[
     }
     add_power_slope(d, count, d->Z, d->Y + (size_t)parts * (size_t)(out * count), -h * h / 12);
     for (int i = 0; i < count; i++)
-        for (int k = 1; k <= parts; k++)
-            look(d, t + i * length + k * h, a[i] + slope[i] * k * h, d->Y + (size_t)(k * count + i) * (size_t)out,
+        for (int k = 1; k <= parts; k++) {
+            const double *y = d->Y + (size_t)(k * count + i) * (size_t)out, ground = a[i] + slope[i] * k * h;
+            look(d, t + i * length + k * h, ground, y,
                  d->Q + (d->run->forces ? (size_t)(k * count + i) * (size_t)n_q : 0));
+            if (is_whole && k % each == 0)
+                send_sample(d, t + i * length + k * h, each * h, ground, y + d->rows.u, y + d->rows.acceleration);
+        }
     d->steps += (long)count * parts;
 }
 
@@ -278,12 +305,17 @@ static double walk(Linear *d, const Motion *motion)
 {
     const double dt = motion->dt_s, duration = d->run->duration;
     const size_t whole = (size_t)(duration / dt * (1 + 1e-9));
+    const int parts = (int)ceil(dt / d->run->step), each = parts_per_sample(d, parts, dt / parts);
     double a[BLOCK_STRETCHES], slope[BLOCK_STRETCHES];
+    if (each <= parts) {
+        const double rest[FLOORS_MAX] = {0};
+        send_sample(d, 0, each * dt / parts, motion->accel[0], rest, rest);
+    }
     for (size_t k = 0; k < whole;) {
         const int count = (int)(whole - k < (size_t)d->stretches_max ? whole - k : (size_t)d->stretches_max);
         for (int i = 0; i < count; i++)
             load_of(motion, k + (size_t)i, &a[i], &slope[i]);
-        cross(d, (double)k * dt, dt, count, a, slope);
+        cross(d, (double)k * dt, dt, 1, count, a, slope);
         if (!is_finite(d))
             return (double)k * dt;
         k += (size_t)count;
@@ -291,7 +323,7 @@ static double walk(Linear *d, const Motion *motion)
     const double left = duration - (double)whole * dt;
     if (left > 1e-9 * dt) {
         load_of(motion, whole, &a[0], &slope[0]);
-        cross(d, (double)whole * dt, left, 1, a, slope);
+        cross(d, (double)whole * dt, left, 0, 1, a, slope);
     }
     return is_finite(d) ? duration : (double)whole * dt;
 }
@@ -364,7 +396,7 @@ Status engine_linear(LinearKind kind, const SceneOptions *o, const Building *b, 
                      Err *err)
 {
     static const double STEP[] = {[ACCURACY_COARSE] = 2e-3, [ACCURACY_STANDARD] = 1e-3, [ACCURACY_FINE] = 5e-4};
-    const LinearRun run = {options->duration, STEP[options->accuracy], options->forces};
+    const LinearRun run = {options->duration, STEP[options->accuracy], options->forces, options};
     LinearSystem s;
     TRY(linear_system_make(&s, kind, o, b, core, device, b->model.n, err));
     const Status status = linear_run(&s, motion, &run, result, err);

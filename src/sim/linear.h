@@ -50,6 +50,7 @@ void linear_system_free(LinearSystem *s);
 typedef struct {
     double duration, step;
     ForceMonitor *forces;
+    const EngineOptions *sampling; /* whose samples are wanted; spaced evenly within the motion's; NULL: none */
 } LinearRun;
 Status linear_run(const LinearSystem *s, const Motion *motion, const LinearRun *run, SimResult *result, Err *err);
 

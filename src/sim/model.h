@@ -43,4 +43,7 @@ Status model_set(SimModel *model, const SceneOptions *o, const Building *b, cons
                  Err *err);
 void model_free(SimModel *model);
 
+/* out_j = sum_{first <= i < end} R_ij x_i for every floor; out (n_pad). */
+void floors_from_modes(const SimModel *model, int first, int end, const double x[], double out[]);
+
 #endif

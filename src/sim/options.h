@@ -56,6 +56,8 @@ typedef struct {
     Robust robust;             /* how a design's results under several records become one */
     double quantile;           /* of ROBUST_QUANTILE, on the bad side */
     double gap_tolerance_m;    /* standard deviation of a gap as built */
+    double filter_hz;          /* cutoff frequency of SimResult.j3_filtered_g */
+    int filtered;              /* no setting: who wants it says so */
     Forces forces;             /* auto: only where an objective or a limit needs SimResult.forces */
 } SimOptions;
 

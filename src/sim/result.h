@@ -86,7 +86,10 @@ typedef struct {
     int repeated;                  /* times the run was repeated with shorter steps, its energy balance open */
     double seconds;                /* wall time */
 
-    int forces_known; /* they were asked for: SimOptions.forces */
+    int filtered_known; /* it was asked for: SimOptions.filtered */
+    double peak_filtered_g[FLOORS_MAX],
+        j3_filtered_g; /* as peak_acceleration_g behind a low-pass (sim/floor_filter.h) */
+    int forces_known;  /* they were asked for: SimOptions.forces */
     SimForces forces;
 } SimResult;
 
@@ -98,17 +101,22 @@ static inline int beyond_contact_law(const SimResult *r)
     return r->indentation_ratio > INDENTATION_RATIO_MAX;
 }
 
-/* The state at one instant, the energies since the start: modes 0..n_building-1 are the building's, the others the
- * core's, each group padded with idle ones. What a mode has damped is ground + contact - (v^2 + omega^2 q^2) / 2. */
+/* The state at one instant: modes 0..n_building-1 are the building's, the others the core's, each group padded with idle
+ * ones. Energies since the start, as in SimResult; what the mode q has is (q'^2 + omega^2 q^2) / 2. */
 typedef struct {
-    double t; /* [s] */
+    double t, spacing; /* [s]; from one sample to the next */
+    double ground;     /* [m/s2] */
     int n_modes, n_building;
-    const double *omega, *q, *v;            /* (n_modes) [rad/s], [m sqrt(kg)], [m sqrt(kg)/s] */
-    const double *ground_j, *contact_j;     /* (n_modes) work done on the mode by the ground and by the contacts */
-    double contact_loss_j, contact_clamp_j; /* as in SimResult */
+    const double *omega, *q, *v; /* (n_modes) [rad/s], [m sqrt(kg)], [m sqrt(kg)/s] */
+    const double *force;         /* (n_floors) [N] of the contacts on the floors; NULL: not known */
+    const double *u,
+        *u_ddot;            /* (n_floors) displacements and absolute accelerations of a linear scene, which has no q, v
+                                 and force here; else NULL */
+    const double *damped_j; /* (n_modes) */
+    double input_j, contacts_j; /* by the ground; taken by the contacts: lost, stored, clamped */
 } SimSample;
 
-/* Called at t = 0 and at every sample of the motion, again from t = 0 when the run is repeated with shorter steps. */
+/* Called at t = 0 and then every `spacing`, again from t = 0 when the run is repeated with shorter steps. */
 typedef void (*SimSampleFn)(const SimSample *sample, void *user);
 
 #endif

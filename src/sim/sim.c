@@ -7,9 +7,11 @@
 
 #include "base/clock.h"
 #include "base/linalg.h"
+#include "base/units.h"
 #include "scene/core_beam.h"
 #include "sim/as_built.h"
 #include "sim/engine.h"
+#include "sim/floor_filter.h"
 #include "sim/linear.h"
 #include "sim/model.h"
 #include "sim/tail.h"
@@ -34,6 +36,7 @@ struct SimWorker {
     CoreBeam core;
     LinearDevice device;
     EngineOptions run;
+    FloorFilter *filter; /* NULL: not wanted */
 };
 
 /* A run whose energy balance does not close is repeated with so many times the steps before it counts as failed. */
@@ -163,6 +166,9 @@ Status sim_worker_create(SimWorker **out, const Scene *scene, Err *err)
     Status status = model_create(&w->model, scene->building.n, scene->building.model.n, err);
     if (status == STATUS_OK && scene->options.sim.forces == FORCES_YES)
         status = force_monitor_create(&w->run.forces, scene->building.n, scene->building.model.n, err);
+    if (status == STATUS_OK && scene->options.sim.filtered)
+        status = floor_filter_create(&w->filter, scene->building.n, scene->options.sim.filter_hz, err);
+    sim_worker_sample(w, 0, NULL, NULL);
     if (status == STATUS_OK && scene->engine->work_create)
         status = scene->engine->work_create(&w->run.work, scene->building.n, scene->building.model.n, err);
     if (status == STATUS_OK)
@@ -178,16 +184,32 @@ void sim_worker_free(SimWorker *worker)
         return;
     model_free(&worker->model);
     force_monitor_free(worker->run.forces);
+    floor_filter_free(worker->filter);
     if (worker->scene->engine->work_free)
         worker->scene->engine->work_free(worker->run.work);
     free(worker->own_store);
     free(worker);
 }
 
-void sim_worker_sample(SimWorker *worker, SimSampleFn sample, void *user)
+/* For the filter: the floors of a sample. */
+static void take_floors(const SimSample *sample, void *user)
 {
-    worker->run.sample = sample;
-    worker->run.sample_user = user;
+    SimWorker *w = user;
+    if (sample->t == 0)
+        floor_filter_start(w->filter, sample->spacing);
+    double *u = floor_filter_add(w->filter, sample->ground);
+    if (u)
+        sim_worker_floors(w, sample, u);
+}
+
+void sim_worker_sample(SimWorker *worker, double spacing, SimSampleFn sample, void *user)
+{
+    EngineOptions *run = &worker->run;
+    const int filters = !sample && worker->filter;
+    run->sample = filters ? take_floors : sample;
+    run->sample_user = filters ? worker : user;
+    run->sample_spacing = filters ? floor_filter_spacing(worker->scene->options.sim.filter_hz) : spacing;
+    run->sample_floors = filters;
 }
 
 void sim_worker_contacts(SimWorker *worker, SimContactFn contact, void *user)
@@ -199,11 +221,53 @@ void sim_worker_contacts(SimWorker *worker, SimContactFn contact, void *user)
 void sim_worker_floors(const SimWorker *worker, const SimSample *sample, double u[])
 {
     const SimModel *model = &worker->model;
-    for (int j = 0; j < model->n; j++) {
-        u[j] = 0;
-        for (int i = 0; i < model->nb; i++)
-            u[j] += model->R[(size_t)i * (size_t)model->n_pad + (size_t)j] * sample->q[i];
+    if (sample->u)
+        memcpy(u, sample->u, (size_t)model->n * sizeof *u);
+    else
+        floors_from_modes(model, 0, model->nb, sample->q, u);
+}
+
+/* Nodes of the core, whose rows of R are -phi. */
+static void core_nodes(const SimModel *model, const SimSample *s, const double x[], double out[])
+{
+    const int kept = s->n_modes - s->n_building, nc = kept < model->nc ? kept : model->nc;
+    double w[FLOORS_MAX] = {0};
+    floors_from_modes(model, model->nb, model->nb + nc, x + s->n_building - model->nb, w);
+    for (int j = 0; j < model->n; j++)
+        out[j] = 0 - w[j];
+}
+
+/* Absolute accelerations: sum_i R_ij (-2 zeta w q' - w^2 q + sum_l R_il f_l) over the building's modes. */
+static void accelerations(const SimModel *model, const SimSample *s, double out[])
+{
+    memset(out, 0, (size_t)model->n * sizeof *out);
+    for (int i = 0; i < model->nb; i++) {
+        const double w = s->omega[i], *row = model->R + (size_t)i * (size_t)model->n_pad;
+        double pull = -w * (2 * model->zeta[i] * s->v[i] + w * s->q[i]);
+        for (int j = 0; j < model->n && s->force; j++)
+            pull += row[j] * s->force[j];
+        for (int j = 0; j < model->n; j++)
+            out[j] += row[j] * pull;
     }
+}
+
+void sim_worker_motion(const SimWorker *worker, const SimSample *s, FloorMotion *out)
+{
+    const SimModel *model = &worker->model;
+    const size_t size = (size_t)model->n * sizeof *s->u;
+    if (s->u) { /* floors and core are one */
+        memcpy(out->u, s->u, size);
+        memcpy(out->u_ddot, s->u_ddot, size);
+        memcpy(out->core, s->u, size);
+        for (int j = 0; j < model->n; j++)
+            out->u_dot[j] = out->core_dot[j] = NAN;
+        return;
+    }
+    floors_from_modes(model, 0, model->nb, s->q, out->u);
+    floors_from_modes(model, 0, model->nb, s->v, out->u_dot);
+    accelerations(model, s, out->u_ddot);
+    core_nodes(model, s, s->q, out->core);
+    core_nodes(model, s, s->v, out->core_dot);
 }
 
 static void check_result(SimResult *r, double energy_balance_max)
@@ -270,6 +334,19 @@ static void set_contact_figures(const ContactOptions *o, SimResult *r)
     r->bumper_bottoms_out = r->bumper_strain > o->bumper_strain_max;
 }
 
+static Status filter_floors(SimWorker *w, SimResult *r, Err *err)
+{
+    if (w->run.sample != take_floors || r->outcome != RUN_OK)
+        return STATUS_OK;
+    TRY(floor_filter_peaks(w->filter, r->peak_filtered_g, err));
+    for (int j = 0; j < r->n_floors; j++) {
+        r->peak_filtered_g[j] /= GRAVITY;
+        r->j3_filtered_g = fmax(r->j3_filtered_g, r->peak_filtered_g[j]);
+    }
+    r->filtered_known = 1;
+    return STATUS_OK;
+}
+
 static void set_drift_ratios(const double storey_m[], SimResult *r)
 {
     for (int s = 0; s < r->n_floors; s++) {
@@ -303,7 +380,7 @@ Status sim_sketch(SimWorker *w, SceneKind kind, const double x[], const LinearSk
                   Err *err)
 {
     const int n = w->building->n;
-    const LinearRun run = {fmin(sketch->duration, w->run.duration), sketch->step, NULL};
+    const LinearRun run = {fmin(sketch->duration, w->run.duration), sketch->step, NULL, NULL};
     LinearSystem s;
     TRY(core_beam_make(&w->core, &w->options->core, n, w->building->storey_m, x[n], x[n + 1], err));
     TRY(linear_system_make(&s, linear_kind(kind), w->options, w->building, &w->core, &w->device, sketch->n_modes, err));
@@ -338,6 +415,7 @@ Status sim_run(SimWorker *w, SceneKind kind, const double x[], SimResult *result
     }
     if (result->settled_s == 0)
         result->settled_s = w->run.duration; /* of an engine that follows contacts to the end */
+    TRY(filter_floors(w, result, err));
     set_drift_ratios(w->building->storey_m, result);
     result->mcore_kg = kind == SCENE_NO_CORE ? 0 : w->core.mass_kg;
     set_contact_figures(&w->options->contact, result);

@@ -52,11 +52,20 @@ Status scene_frequencies(const Scene *scene, const double x[], double building_h
 Status sim_worker_create(SimWorker **out, const Scene *scene, Err *err);
 void sim_worker_free(SimWorker *worker); /* NULL is fine */
 
-/* Every run from now on shows its states to sample, NULL: none does. The engine `fast` alone has them. */
-void sim_worker_sample(SimWorker *worker, SimSampleFn sample, void *user);
+/* Every run from now on shows its states to sample, NULL: none does; spacing as EngineOptions.sample_spacing. It does not
+ * find SimResult.peak_filtered_g then. */
+void sim_worker_sample(SimWorker *worker, double spacing, SimSampleFn sample, void *user);
 
 /* Displacements u (n_floors) [m] of the floors at a sample. */
 void sim_worker_floors(const SimWorker *worker, const SimSample *sample, double u[]);
+
+/* Floors and nodes of the core: relative to the ground [m], [m/s]; accelerations of the floors absolute [m/s2]. The core
+ * by the modes that the engine follows, 0 where there is none. Of the linear scenes the velocities are NAN, and the core
+ * moves with the floors. */
+typedef struct {
+    double u[FLOORS_MAX], u_dot[FLOORS_MAX], u_ddot[FLOORS_MAX], core[FLOORS_MAX], core_dot[FLOORS_MAX];
+} FloorMotion;
+void sim_worker_motion(const SimWorker *worker, const SimSample *sample, FloorMotion *out);
 
 /* Every run from now on calls contact for every contact that ends or is open at the end, and with NULL where the run
  * begins; contact NULL: none does. Only with SimOptions.forces. */

@@ -43,7 +43,7 @@ static Status follow(const Scenario *scenario, const double x[], Track *track, E
     SimWorker *worker;
     SimResult result;
     TRY(sim_worker_create(&worker, scenario->scene, err));
-    sim_worker_sample(worker, note, track);
+    sim_worker_sample(worker, 0, note, track);
     Status status = sim_run(worker, SCENE_IMPACT, x, &result, err);
     sim_worker_free(worker);
     if (status == STATUS_OK && track->no_memory)

@@ -18,7 +18,8 @@ const Measure *measure(int k)
 
 double measure_value(const SimResult *r, int k)
 {
-    if ((MEASURES[k].needs & NEEDS_FORCES) && !r->forces_known)
+    const unsigned needs = MEASURES[k].needs;
+    if (((needs & NEEDS_FORCES) && !r->forces_known) || ((needs & NEEDS_FILTER) && !r->filtered_known))
         return NAN;
     switch ((MeasureId)k) {
 #define X(id, name, unit, sense, needs, value, what)                                                                   \

@@ -52,7 +52,9 @@ enum { NEEDS_NOTHING = 0, NEEDS_FORCES = 1, NEEDS_FILTER = 2 };
       "largest bending stress over the buckling stress of the bare wall")                                              \
     X(BUILDING_SHEAR, "building_base_shear_n", "N", 1, NEEDS_FORCES, r->forces.building_base_shear_n,                  \
       "base shear of the building")                                                                                    \
-    X(BASE_SHEAR, "base_shear_n", "N", 1, NEEDS_FORCES, r->forces.base_shear_n, "base shear of building and core")
+    X(BASE_SHEAR, "base_shear_n", "N", 1, NEEDS_FORCES, r->forces.base_shear_n, "base shear of building and core")     \
+    X(J3_FILTERED, "j3_filtered_g", "g", 1, NEEDS_FILTER, r->j3_filtered_g,                                            \
+      "largest floor acceleration behind a low-pass of sim.filter_hz")
 
 typedef enum {
 #define X(id, name, unit, sense, needs, value, what) MEASURE_##id,

@@ -93,7 +93,9 @@ static Status open_record(Tower *t, const Settings *settings, const char *name, 
     if (t->plan.n_records == TOWER_RECORDS_MAX)
         return fail(err, STATUS_BAD_DATA, "motion.records: more than %d records", TOWER_RECORDS_MAX);
     snprintf(motion.record, sizeof motion.record, "%s", name);
-    if (measures_need(t->plan.judged) & NEEDS_FORCES)
+    const unsigned needs = measures_need(t->plan.judged);
+    options.sim.filtered = options.sim.forces == FORCES_YES || (needs & NEEDS_FILTER);
+    if (needs & NEEDS_FORCES)
         options.sim.forces = FORCES_YES;
     TRY(scenario_open(&r->scenario, &options, &motion, err));
     r->scene = r->scenario.scene;

@@ -17,36 +17,6 @@ CLONED double dot_product(int n, const double a[], const double b[])
     return ((sum[0] + sum[4]) + (sum[1] + sum[5])) + ((sum[2] + sum[6]) + (sum[3] + sum[7]));
 }
 
-typedef double v8 __attribute__((vector_size(64)));
-
-/* Three vectors of floors from a pair of sums each: six chains of multiply-adds hide their latency. */
-CLONED void floors_from_modes(const SimModel *model, int first, int end, const double x[], double out[])
-{
-    const size_t stride = (size_t)model->n_pad / 8;
-    for (size_t block = 0; block < stride; block += 3) {
-        const size_t b = block + 1 < stride ? 1 : 0, c = block + 2 < stride ? 2 : 0; /* 0: once more the first */
-        const v8 *row = (const v8 *)model->R + (size_t)first * stride + block;
-        v8 a0 = {0}, b0 = {0}, c0 = {0}, a1 = {0}, b1 = {0}, c1 = {0};
-        int i = first;
-        for (; i + 2 <= end; i += 2, row += 2 * stride) {
-            a0 += row[0] * x[i];
-            b0 += row[b] * x[i];
-            c0 += row[c] * x[i];
-            a1 += row[stride] * x[i + 1];
-            b1 += row[stride + b] * x[i + 1];
-            c1 += row[stride + c] * x[i + 1];
-        }
-        if (i < end) {
-            a0 += row[0] * x[i];
-            b0 += row[b] * x[i];
-            c0 += row[c] * x[i];
-        }
-        const v8 sum[3] = {a0 + a1, b0 + b1, c0 + c1};
-        const size_t rest = stride - block < 3 ? stride - block : 3;
-        memcpy(out + 8 * block, sum, rest * sizeof sum[0]);
-    }
-}
-
 double relative_displacement(const SimModel *model, int j, const double q[])
 {
     return dot_product(model->m, model->RT + (size_t)j * (size_t)model->m_pad, q);
@@ -181,6 +151,19 @@ FloorSet contacts_record(Contacts *c, double t, const double q[], const double v
     }
     c->t_recorded = t;
     return in_contact;
+}
+
+void contacts_forces(const Contacts *c, const double q[], const double v[], double force[])
+{
+    const SimModel *model = c->model;
+    for (int j = 0; j < model->n; j++) {
+        const int s = model->nc > 0 ? c->side[j] : 0;
+        const double p = s * relative_displacement(model, j, q) - model->gap[j];
+        const double p_dot = s * relative_displacement(model, j, v);
+        const int touches = s && p > 0;
+        force[j] =
+            touches ? -s * contact_force(&model->contact[j], model->mass_eff[j], p, p_dot, c->v0[j]).force : 0;
+    }
 }
 
 int contacts_any(const Contacts *c)

@@ -37,9 +37,6 @@ typedef struct {
 /* Eight partial sums, then their sum: vectorized, and in the same order on every processor. */
 double dot_product(int n, const double a[], const double b[]);
 
-/* out_j = sum_{first <= i < end} R_ij x_i for every floor; out (n_pad). */
-void floors_from_modes(const SimModel *model, int first, int end, const double x[], double out[]);
-
 double relative_displacement(const SimModel *model, int j, const double q[]);
 
 /* Adds the modal forces R_ij f_j at the state q, q' to g. */
@@ -59,6 +56,9 @@ void contacts_settle(Contacts *c, const double w[]);
 /* Gives the monitor what the contacts did since the last call, by the trapezoidal rule, and the forces f_j (n) now.
  * Returns the floors that are in contact. By event only. */
 FloorSet contacts_record(Contacts *c, double t, const double q[], const double v[], double force[]);
+
+/* By event: the forces f_j (n) at the state q, q'. */
+void contacts_forces(const Contacts *c, const double q[], const double v[], double force[]);
 
 int contacts_any(const Contacts *c);
 double contacts_stored(const Contacts *c, const double q[]);

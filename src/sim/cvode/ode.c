@@ -201,6 +201,51 @@ static void record_forces(Ode *o, double t, const double y[])
                                                           .in_contact = in_contact});
 }
 
+/* Shows a state to who asked for samples. */
+static void send_sample(Ode *o, double t, double spacing, const double y[])
+{
+    const SimModel *model = o->model;
+    const int m = model->m;
+    double force[FLOORS_MAX];
+    contacts_forces(&o->contacts, y, y + m, force);
+    SimSample s = {.t = t,
+                   .spacing = spacing,
+                   .ground = ground(o, t),
+                   .n_modes = m,
+                   .n_building = model->nb,
+                   .omega = model->omega,
+                   .q = y,
+                   .v = y + m,
+                   .force = force,
+                   .input_j = NAN,
+                   .contacts_j = NAN};
+    if (o->with_energies) {
+        s.damped_j = y + 2 * m;
+        s.input_j = y[3 * m];
+        s.contacts_j = y[3 * m + 1] + y[3 * m + 2] + contacts_stored(&o->contacts, y);
+    }
+    o->options->sample(&s, o->options->sample_user);
+}
+
+/* Samples in the step that was just made to t, the motion's sampling interval halved until they are near enough. */
+static int send_samples(Ode *o, double t)
+{
+    const double wanted = o->options->sample_spacing, dt = o->motion->dt_s;
+    const double end = floor(o->options->duration / dt * (1 + 1e-14)) * dt; /* of the last whole interval */
+    double spacing = dt;
+    while (wanted > 0 && spacing > wanted * (1 + 1e-12))
+        spacing *= 0.5;
+    for (;;) {
+        const double at = (double)o->samples * spacing;
+        if (at > fmin(t, end) * (1 + 1e-12))
+            return 0;
+        if (o->samples > 0 && o->solver->interpolate(o, fmin(at, t), o->between))
+            return -1;
+        send_sample(o, at, spacing, ode_values(o->samples > 0 ? o->between : o->y));
+        o->samples++;
+    }
+}
+
 /* Notes the peaks at a state, and its powers for so many seconds. */
 static void sample(Ode *o, double t, const double y[], double seconds)
 {
@@ -368,7 +413,7 @@ static RunOutcome cross(Ode *o, double *t, double t_stop)
         else if (flag == ODE_ROOT)
             o->solver->found(o, found);
         from = to;
-        if (sample_step(o, t_before, *t))
+        if (sample_step(o, t_before, *t) || (o->options->sample && send_samples(o, *t)))
             return RUN_ENGINE_FAILED;
         o->stuck = *t - t_before < NOWHERE * (1 + *t) ? o->stuck + 1 : 0;
         if (switch_contacts(o, *t, found) && start_anew(o, *t, t_stop))
@@ -384,6 +429,8 @@ static RunOutcome walk(Ode *o)
     const long samples = (long)o->motion->n;
     double t = 0;
     sample(o, 0, ode_values(o->y), 0);
+    if (o->options->sample && send_samples(o, 0))
+        return RUN_ENGINE_FAILED;
     if (start_anew(o, 0, duration))
         return RUN_ENGINE_FAILED;
     for (long k = o->stop_at_samples ? 0 : samples - 2; k + 1 < samples && t < duration; k++) {

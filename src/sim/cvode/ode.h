@@ -45,6 +45,7 @@ struct Ode {
     long interval;                          /* stop_at_samples: the sampling interval */
     double v_sampled[MODES_MAX], a_sampled; /* at the last point of the quadrature: velocities, ground, contacts */
     ContactPower power_sampled;
+    long samples; /* shown so far */
     long steps_max;
     int stuck;  /* successive steps without progress */
     int finite; /* what was last evaluated */

@@ -132,6 +132,8 @@ static int interval(FastWork *k, double start, double a0, double a1)
         const int resolving = has_core ? resolving_level(k, in.speed_gain) : LEVEL_MAX;
         if (!(!k->in_contact && fly_on(k, &in, resolving)) && !step_on(k, &in, resolving))
             return 0;
+        if (k->options->sample && in.at < TICKS && in.at % (TICKS >> k->sample_level) == 0)
+            send_now(k, in.start + k->base * in.at / TICKS, ground_at(&in, in.at));
     }
     return 1;
 }
@@ -145,24 +147,6 @@ static int state_is_finite(const FastWork *k)
     for (int lane = 0; lane < LANES; lane++)
         all += sum[lane];
     return all == 0;
-}
-
-static void send_sample(const FastWork *k, double t)
-{
-    const SimSample sample = {
-        .t = t,
-        .n_modes = k->m_pad,
-        .n_building = k->nb_pad,
-        .omega = scalars_const(k->omega),
-        .q = scalars_const(k->now.q),
-        .v = scalars_const(k->now.v),
-        .ground_j = scalars_const(k->now.ground_work),
-        .contact_j = scalars_const(k->now.contact_work),
-        .contact_loss_j = k->contact_lost,
-        .contact_clamp_j = k->contact_clamped,
-    };
-    if (k->options->sample)
-        k->options->sample(&sample, k->options->sample_user);
 }
 
 typedef struct {
@@ -194,9 +178,9 @@ static long free_intervals(FastWork *k, const Motion *motion, long first, long e
     k->free_count = n < FREE_INTERVALS_MAX ? 2 * n : n;
     const Level *l = level_ready(k, 0, 0);
     for (long i = first; i < first + n; i++) {
-        if (i > first)
-            send_sample(k, (double)i * motion->dt_s);
         const Ramp a = ground(motion, i);
+        if (i > first)
+            send_now(k, (double)i * motion->dt_s, a.start);
         k->step_start = (double)i * motion->dt_s;
         flow_interval(k, l, a.start, a.end);
     }
@@ -232,7 +216,7 @@ static void settle(FastWork *k, const Motion *motion, long from, long end)
         const Ramp a = ground(motion, i);
         k->step_start = (double)i * motion->dt_s;
         flow_interval(k, l, a.start, a.end);
-        send_sample(k, (double)(i + 1) * motion->dt_s);
+        send_now(k, (double)(i + 1) * motion->dt_s, ground(motion, i + 1).start);
     }
     k->flights += end - from;
     leave_free_intervals(k);
@@ -249,7 +233,8 @@ static int integrate(FastWork *k, const Motion *motion, double duration)
     set_base(k, motion->dt_s);
     long look = 0; /* at the next sample from this one on */
     k->settled = duration;
-    send_sample(k, 0);
+    set_sample_level(k);
+    send_now(k, 0, ground(motion, 0).start);
     for (long i = 0; i < full;) {
         if (i >= look && is_settled(k, motion, i)) {
             k->settled = (double)i * motion->dt_s;
@@ -262,12 +247,13 @@ static int integrate(FastWork *k, const Motion *motion, double duration)
         if ((!passed && !interval(k, (double)i * motion->dt_s, a.start, a.end)) || !state_is_finite(k))
             return 0;
         i += passed ? passed : 1;
-        send_sample(k, (double)i * motion->dt_s);
+        send_now(k, (double)i * motion->dt_s, ground(motion, i).start);
     }
     const double rest = duration - (double)full * motion->dt_s;
     if (rest > 1e-9 * motion->dt_s) {
         const Ramp a = ground(motion, full);
         set_base(k, rest);
+        k->sample_level = 0;
         return interval(k, duration - rest, a.start, a.start + (a.end - a.start) * rest / motion->dt_s) &&
                state_is_finite(k);
     }

@@ -77,9 +77,11 @@ typedef struct {
     vec *u, *drift, *a, *core;
 } ReachScratch;
 
-/* A point inside a step, for a force monitor: modes (m_pad), floors (n_pad). */
+/* A point inside a step, for a force monitor or a sample: modes (m_pad), floors (n_pad). */
 typedef struct {
     vec *q, *v, *force;
+    vec *ground_work, *contact_work, *damped; /* [J] on each mode, of it dissipated */
+    vec *batch_q[4], *batch_u[4];             /* of four samples: modes, floors */
     double energy[2]; /* [2 J] kinetic and strain of building and core at the start of the step */
 } RecordScratch;
 
@@ -105,6 +107,7 @@ typedef struct FastWork {
     double shortest_bumper;                /* [s] shortest contact of any bumper alone; 0: steel on steel somewhere */
     int oscillatory;                       /* every mode is below critical damping and has a frequency */
     double base;                           /* [s] the interval that the levels divide */
+    int sample_level;                      /* samples are as far apart as a step of this level */
     Level level[LEVEL_MAX + 1];
 
     /* the motion so far */

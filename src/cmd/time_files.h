@@ -1,0 +1,27 @@
+/* cmd/time_files.h -- what `imtet simulate` writes of a response over time: histories, contacts one by one, floor spectra.
+ *
+ * Every design is simulated once more, on its own: the same simulation, to the last bit. results/README.md explains the
+ * columns. Files are written whole or not at all, - is standard output.
+ *
+ * Threads  one */
+#ifndef IMTET_CMD_TIME_FILES_H
+#define IMTET_CMD_TIME_FILES_H
+
+#include "simulator/tower.h"
+
+/* The designs, with their numbers and the results that they had. */
+typedef struct {
+    const Scene *scene;
+    const Motion *motion;
+    size_t n;
+    const SimTask *tasks;     /* (n) */
+    const SimResult *results; /* (n) */
+    const long *number;       /* (n) */
+    double every_s;           /* --history: [s] at most from row to row; 0: the motion's samples */
+} TimeJob;
+
+Status write_histories(const TimeJob *job, const char *path, Err *err);
+Status write_contacts(const TimeJob *job, const char *path, Err *err);
+Status write_floor_spectra(const TimeJob *job, const char *path, Err *err);
+
+#endif

@@ -1,0 +1,45 @@
+/* sim/floor_filter.h -- peak floor accelerations after a low-pass filter: what equipment feels, without the spike of
+ * milliseconds that an impact makes.
+ *
+ *   a_k = (u_k-1 - 2 u_k + u_k+1) / h^2 + ground      exactly the mean of the acceleration, weighted by a triangle of
+ *                                                     half-width h: no impact falls between two samples, and what lies
+ *                                                     near 1/h Hz is not mistaken for a slow motion, sin^2(x)/x^2, x = pi f h
+ *   a_k - (a_k-1 - 2 a_k + a_k+1) / 12                takes that gain away again: 1 - O(x^4)
+ *
+ * then Butterworth of fourth order forward and backward (base/filter.h), gain 1 / (1 + (f/fc)^8), and the largest
+ * magnitude, with a parabola through the largest sample and its neighbours. h <= 1 / (10 fc): at fc the gain is within
+ * 0.2 % of that, and a motion at 1/h - fc is seen at fc with 0.6 % of its amplitude.
+ *
+ * Life cycle  floor_filter_create -> (floor_filter_start -> floor_filter_add ... -> floor_filter_peaks) ... -> free
+ * Memory      grows with the longest run
+ * Threads     one filter per simulation under way */
+#ifndef IMTET_SIM_FLOOR_FILTER_H
+#define IMTET_SIM_FLOOR_FILTER_H
+
+#include <stddef.h>
+
+#include "base/status.h"
+
+typedef struct FloorFilter FloorFilter;
+
+Status floor_filter_create(FloorFilter **out, int n_floors, double cutoff_hz, Err *err);
+void floor_filter_free(FloorFilter *f); /* NULL is fine */
+
+double floor_filter_spacing(double cutoff_hz); /* [s] most that samples may be apart */
+
+/* A run from rest, samples every h [s]. */
+void floor_filter_start(FloorFilter *f, double h);
+
+/* Where the displacements of the next sample go (n_floors padded to 8) [m]; ground acceleration [m/s2] there. NULL: no
+ * memory. */
+double *floor_filter_add(FloorFilter *f, double ground);
+
+/* Peak of every floor (n_floors) [m/s2]; the samples are gone then. Fails where there was no memory for them. */
+Status floor_filter_peaks(FloorFilter *f, double peaks[], Err *err);
+
+double floor_filter_step(const FloorFilter *f); /* [s] h */
+
+/* Before the filter: a_k of every floor, row by row (n, width) [m/s2]. They hold until the next start. */
+Status floor_filter_accelerations(FloorFilter *f, const double **rows, size_t *n, size_t *width, Err *err);
+
+#endif

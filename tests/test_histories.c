@@ -1,0 +1,385 @@
+/* Responses over time: `imtet simulate --history`, --floor-spectra and j3_filtered_g, against the contact law, the equations
+ * of motion, the other engine and closed forms. */
+#include "runs.h"
+#include "scene_options.h"
+
+#include <sys/stat.h>
+
+#include "scene/motion_source.h"
+#include "sim/floor_filter.h"
+#include "sim/sim.h"
+
+static Table table_of(const char *name)
+{
+    Table t;
+    Err err = {0};
+    char path[PATH_MAX];
+    CHECK_OK(table_read(&t, path_of(name, path), 1, &err), &err);
+    return t;
+}
+
+static double cell(const Table *t, size_t row, const char *column)
+{
+    const int c = table_column(t, column);
+    if (c < 0)
+        fail_msg("there is no column %s", column);
+    return t->values[row * t->n_cols + (size_t)c];
+}
+
+/* ---- the command ----------------------------------------------------------------------------------------------- */
+
+/* Twenty floors with gaps of 10 to 48 mm. */
+static void write_design(void)
+{
+    char text[2048];
+    size_t n = 0;
+    for (int j = 0; j < 20; j++)
+        n += (size_t)sprintf(text + n, "gap_%02d_m,", j + 1);
+    n += (size_t)sprintf(text + n, "t_base_m,t_top_m\n");
+    for (int j = 0; j < 20; j++)
+        n += (size_t)sprintf(text + n, "%g,", 0.01 + 0.002 * j);
+    sprintf(text + n, "0.012,0.0064\n");
+    write_in_place("design.csv", text);
+}
+
+#define WINDOW "configs/quick.ini --design @/design.csv --set sim.duration_s=22.01 --set sim.accuracy=fine "
+
+static void test_forces_of_a_history_are_those_of_the_contact_law(void **state)
+{
+    (void)state;
+    write_design();
+    free(output_of("simulate " WINDOW "--history @/fast.csv --every 5e-4 --contacts @/contacts.csv"));
+    const Table h = table_of("fast.csv"), contacts = table_of("contacts.csv");
+    const double nu = 0.3, k = 2 * 2.1e11 * sqrt(0.1) / (3 * (1 - nu * nu)), a = 1.5 * (1 - 0.7);
+    size_t compared = 0;
+    assert_true(contacts.n_rows > 5);
+    for (size_t i = 0; i < contacts.n_rows; i++) {
+        const int floor = (int)cell(&contacts, i, "floor"), side = (int)cell(&contacts, i, "side");
+        const double from = cell(&contacts, i, "t_s"), to = from + cell(&contacts, i, "duration_s");
+        const double v0 = fmax(cell(&contacts, i, "approach_m_s"), 1e-3), peak = cell(&contacts, i, "force_n");
+        char name[5][32];
+        static const char *const PATTERN[5] = {"floor_%02d_m", "core_%02d_m", "floor_%02d_m_s", "core_%02d_m_s",
+                                               "contact_%02d_n"};
+        for (int c = 0; c < 5; c++)
+            snprintf(name[c], sizeof name[c], PATTERN[c], floor);
+        for (size_t r = 0; r < h.n_rows; r++) {
+            const double t = cell(&h, r, "t_s");
+            if (!(t > from && t < to))
+                continue;
+            const double p = side * (cell(&h, r, name[0]) - cell(&h, r, name[1])) - (0.01 + 0.002 * (floor - 1));
+            const double rate = side * (cell(&h, r, name[2]) - cell(&h, r, name[3]));
+            const double law = p > 0 ? fmax(k * pow(p, 1.5) * (1 + a * rate / v0), 0) : 0;
+            if (fabs(law + side * cell(&h, r, name[4])) > 5e-4 * peak)
+                fail_msg("t = %.6g s, floor %d: force %g N, by the law %g", t, floor, cell(&h, r, name[4]),
+                         -side * law);
+            compared++;
+        }
+    }
+    assert_true(compared > 10);
+    table_free((Table *)&h);
+    table_free((Table *)&contacts);
+}
+
+static void test_histories_of_both_engines_agree_before_the_horizon(void **state)
+{
+    (void)state;
+    free(output_of("simulate " WINDOW "--engine cvode --history @/cvode.csv --every 5e-4"));
+    const Table a = table_of("fast.csv"), b = table_of("cvode.csv");
+    assert_int_equal(a.n_rows, b.n_rows);
+    assert_int_equal(a.n_cols, b.n_cols);
+    for (size_t c = 1; c < a.n_cols; c++) {
+        double apart = 0, most = 0;
+        for (size_t r = 0; r < a.n_rows; r++) {
+            apart = fmax(apart, fabs(a.values[r * a.n_cols + c] - b.values[r * b.n_cols + c]));
+            most = fmax(most, fabs(b.values[r * b.n_cols + c]));
+        }
+        if (!(apart <= 2e-4 * most))
+            fail_msg("%s: %g apart, largest %g", a.names[c], apart, most);
+    }
+    table_free((Table *)&a);
+    table_free((Table *)&b);
+}
+
+static void test_a_history_reaches_the_peaks_and_its_energies_add_up(void **state)
+{
+    (void)state;
+    json_t *o = json_of("simulate " WINDOW "--json");
+    const Table h = table_of("fast.csv");
+    double u = 0, drift = 0, accel = 0, input = 0, error = 0;
+    for (size_t r = 0; r < h.n_rows; r++) {
+        double parts = 0;
+        for (int j = 1; j <= 20; j++) {
+            char name[3][32];
+            snprintf(name[0], sizeof name[0], "floor_%02d_m", j);
+            snprintf(name[1], sizeof name[1], "drift_%02d_m", j);
+            snprintf(name[2], sizeof name[2], "accel_%02d_g", j);
+            u = fmax(u, fabs(cell(&h, r, name[0])));
+            drift = fmax(drift, fabs(cell(&h, r, name[1])));
+            accel = fmax(accel, fabs(cell(&h, r, name[2])));
+        }
+        static const char *const PARTS[] = {"kinetic_j", "strain_j",      "damped_building_j",
+                                            "core_j",    "damped_core_j", "contacts_j"};
+        for (size_t k = 0; k < 6; k++)
+            parts += cell(&h, r, PARTS[k]);
+        input = cell(&h, r, "input_j");
+        error = fmax(error, fabs(parts - input));
+    }
+    assert_close(u, number(o, "j1_m"), 1e-6);
+    assert_close(drift, number(o, "j2_m"), 1e-6);
+    assert_close(accel, number(o, "j3_g"), 1e-2);
+    assert_true(error < 1e-12 * input);
+    assert_true(number(o, "j3_filtered_g") < number(o, "j3_g"));
+    json_decref(o);
+    free(output_of("simulate configs/quick.ini --design none --set sim.duration_s=15 --history @/none.csv"));
+    free(output_of(
+        "simulate configs/quick.ini --design @/design.csv --rigid --set sim.duration_s=15 --history @/rigid.csv "
+        "--every 0.031"));
+    const Table none = table_of("none.csv");
+    assert_close(cell(&none, 1, "t_s"), 0.062, 1e-12);
+    table_free((Table *)&none);
+    char *rigid = read_in_place("rigid.csv"), *rest = rigid, *line;
+    strsep(&rest, "\n");
+    for (int r = 0; (line = strsep(&rest, "\n")) && *line;
+         r++) { /* floor and core are one; forces and energies empty */
+        double of[3 + 6 * 20];
+        for (size_t c = 0; c < sizeof of / sizeof of[0]; c++)
+            of[c] = strtod(strsep(&line, ","), NULL);
+        assert_close(of[1], 0.062 / 3 * r, 1e-9); /* at most 0.031 s, and 0.062 s divided evenly */
+        assert_true(of[3 + 19] == of[3 + 4 * 20 + 19]);
+        assert_int_equal(strspn(line, ","), strlen(line));
+    }
+    free(rigid);
+    table_free((Table *)&h);
+}
+
+/* ---- equations of motion --------------------------------------------------------------------------------------- */
+
+/* Sums over nodes of building and core: 1'K u, 1'M u', 1'C u; C = M Phi diag(2 zeta w) Phi' M. */
+typedef struct {
+    const SimWorker *worker;
+    const Building *building;
+    const CoreBeam *core;
+    double core_damping;
+    size_t n, room;
+    double (*at)[5]; /* t, base shear, momentum relative to the ground, damping impulse, ground */
+    double mass;
+} Sums;
+
+static double damping_sum(int n, const double M[], const double phi[], const double omega[], const double zeta[],
+                          double z, const double u[])
+{
+    double sum = 0;
+    for (int i = 0; i < n; i++) {
+        double of_one = 0, of_u = 0;
+        for (int j = 0; j < n; j++)
+            for (int l = 0; l < n; l++) {
+                of_one += phi[j * n + i] * M[j * n + l];
+                of_u += phi[j * n + i] * M[j * n + l] * u[l];
+            }
+        sum += of_one * 2 * (zeta ? zeta[i] : z) * omega[i] * of_u;
+    }
+    return sum;
+}
+
+static double sum_of(int n, const double A[], const double u[])
+{
+    double sum = 0;
+    for (int j = 0; j < n; j++)
+        for (int l = 0; l < n; l++)
+            sum += A[j * n + l] * u[l];
+    return sum;
+}
+
+static void add_sums(const SimSample *s, void *user)
+{
+    Sums *sums = user;
+    FloorMotion f;
+    const Building *b = sums->building;
+    const CoreBeam *c = sums->core;
+    const int n = b->n;
+    if (s->t == 0)
+        sums->n = 0;
+    assert_true(sums->n < sums->room);
+    sim_worker_motion(sums->worker, s, &f);
+    double *at = sums->at[sums->n++];
+    at[0] = s->t;
+    at[1] = sum_of(n, b->K, f.u) + sum_of(n, c->K, f.core);
+    at[2] = sum_of(n, b->M, f.u_dot) + sum_of(n, c->M, f.core_dot);
+    at[3] = damping_sum(n, b->M, b->phi, b->omega, b->zeta, 0, f.u) +
+            damping_sum(n, c->M, c->phi, c->omega, NULL, sums->core_damping, f.core);
+    at[4] = s->ground;
+}
+
+static void test_the_base_shear_is_what_inertia_and_damping_need(void **state)
+{
+    (void)state;
+    Err err = {0};
+    Motion motion = {0};
+    Scene *scene;
+    SimWorker *worker;
+    SimResult r;
+    CoreBeam core;
+    double x[22];
+    SceneOptions o = paper_scene();
+    o.sim.duration_s = 6;
+    o.sim.accuracy = ACCURACY_FINE;
+    o.sim.forces = FORCES_YES;
+    MotionOptions m = {.record = "builtin:elcentro-like", .stretch = 1, .peak_error_max = 0.05};
+    CHECK_OK(motion_open(&motion, &m, &err), &err);
+    CHECK_OK(scene_create(&scene, &o, &motion, &err), &err);
+    CHECK_OK(sim_worker_create(&worker, scene, &err), &err);
+    for (int j = 0; j < 22; j++)
+        x[j] = j < 20 ? 0.004 + 0.001 * j : j == 20 ? 0.012 : 0.0064;
+    CHECK_OK(core_beam_make(&core, &o.core, 20, scene_building(scene)->storey_m, x[20], x[21], &err), &err);
+    Sums s = {.worker = worker,
+              .building = scene_building(scene),
+              .core = &core,
+              .core_damping = o.core.damping,
+              .room = 80000};
+    s.at = malloc(s.room * sizeof *s.at);
+    const double one[20] = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
+    s.mass = sum_of(20, s.building->M, one) + sum_of(20, core.M, one);
+    sim_worker_sample(worker, 1.6e-4, add_sums, &s);
+    CHECK_OK(sim_run(worker, SCENE_IMPACT, x, &r, &err), &err);
+    assert_int_equal(r.outcome, RUN_OK);
+    assert_true(r.impacts > 20 && s.n > 30000);
+    double shear = 0, inertia = 0, largest = 0, worst = 0, peak = 0;
+    for (size_t k = 0; k + 2 < s.n; k += 2) { /* Simpson: base shear and ground over two samples */
+        const double *a = s.at[k], *b = s.at[k + 1], *c = s.at[k + 2], h = c[0] - a[0];
+        shear += h / 6 * (a[1] + 4 * b[1] + c[1]);
+        inertia += c[2] - a[2] + s.mass * h / 6 * (a[4] + 4 * b[4] + c[4]) + c[3] - a[3];
+        worst = fmax(worst, fabs(shear + inertia));
+        largest = fmax(largest, fabs(shear));
+        peak = fmax(peak, fmax(fabs(a[1]), fabs(b[1])));
+    }
+    if (!(worst < 1e-6 * largest))
+        fail_msg("base shear and inertia with damping differ by %g of %g N s", worst, largest);
+    assert_close(r.forces.base_shear_n, peak, 1e-3);
+    free(s.at);
+    sim_worker_free(worker);
+    scene_free(scene);
+    motion_free(&motion);
+}
+
+/* ---- the filter ------------------------------------------------------------------------------------------------ */
+
+static const double CUTOFF = 25;
+
+/* Peak of floor 0 where its displacement is u(t) [m] for four seconds, samples h apart. */
+static double filtered_peak(double h, double (*u)(double t, double parameter), double parameter, double ground)
+{
+    FloorFilter *f;
+    Err err = {0};
+    double peaks[3];
+    CHECK_OK(floor_filter_create(&f, 3, CUTOFF, &err), &err);
+    floor_filter_start(f, h);
+    for (size_t i = 0; (double)i * h < 4; i++) {
+        double *row = floor_filter_add(f, ground);
+        assert_non_null(row);
+        for (int j = 0; j < 8; j++)
+            row[j] = j == 0 ? u((double)i * h, parameter) : 0;
+    }
+    CHECK_OK(floor_filter_peaks(f, peaks, &err), &err);
+    assert_true(peaks[1] <= fabs(ground) * 1.2 && peaks[1] >= fabs(ground));
+    floor_filter_free(f);
+    return peaks[0];
+}
+
+/* A sine that begins and ends softly, of acceleration 1. */
+static double sine(double t, double hz)
+{
+    const double w = 2 * M_PI * hz, envelope = t > 0 && t < 4 ? pow(sin(M_PI * t / 4), 2) : 0;
+    return envelope * sin(w * t) / (w * w);
+}
+
+static void test_a_sine_keeps_the_gain_of_butterworth(void **state)
+{
+    (void)state;
+    const double h = floor_filter_spacing(CUTOFF), shares[] = {0.1, 0.3, 0.5, 0.7, 0.9, 1};
+    for (size_t i = 0; i < sizeof shares / sizeof shares[0]; i++) {
+        const double gain = 1 / (1 + pow(shares[i], 8));
+        assert_close(filtered_peak(h, sine, shares[i] * CUTOFF, 0), gain, shares[i] > 0.8 ? 0.02 : 5e-3);
+        assert_close(filtered_peak(h / 4, sine, shares[i] * CUTOFF, 0), gain, 4e-3);
+    }
+    assert_true(filtered_peak(h, sine, 4 * CUTOFF, 0) < 1e-3);
+    assert_true(filtered_peak(h, sine, 9 * CUTOFF, 0) < 0.01); /* 225 Hz, near the sampling rate of 250 Hz */
+}
+
+/* A speed of 1 m/s, gained at t0. */
+static double kink(double t, double t0)
+{
+    return t > t0 && t < 4 ? t - t0 : 0;
+}
+
+/* A spike of 1 m/s, however short, is the filter's response to an impulse: int G df = 2 fc (pi/8) / sin(pi/8). */
+static void test_an_impact_between_two_samples_is_the_response_to_an_impulse(void **state)
+{
+    (void)state;
+    const double h = floor_filter_spacing(CUTOFF), wanted = 2 * CUTOFF * (M_PI / 8) / sin(M_PI / 8);
+    for (int i = 0; i < 10; i++) {
+        assert_close(filtered_peak(h, kink, 2 + 0.1 * i * h, 0), wanted, 0.03);
+        assert_close(filtered_peak(h / 8, kink, 2 + 0.1 * i * h, 0), wanted, 3e-3);
+    }
+}
+
+static double nothing(double t, double parameter)
+{
+    (void)t;
+    return 0 * parameter;
+}
+
+static void test_what_stands_still_feels_the_ground(void **state)
+{
+    (void)state;
+    const double felt = filtered_peak(1e-3, nothing, 0, 3.7);
+    assert_true(felt >= 3.7 && felt < 1.2 * 3.7); /* overshoots where it sets in */
+}
+
+/* ---- floor spectra ----------------------------------------------------------------------------------------------- */
+
+/* On a building that is as stiff as rock the floor does as the ground: a sine of 1 Hz in resonance with an oscillator of 5 %
+ * damping, 1 / (2 zeta) = 10 times the acceleration, and the acceleration itself far above. */
+static void test_a_sine_has_ten_times_its_acceleration_in_the_floor_spectrum(void **state)
+{
+    (void)state;
+    char *folder = in_place("stiff"), *path = in_place("sine.csv");
+    assert_int_equal(mkdir(folder, 0777), 0);
+    write_in_place("stiff/storeys.csv", "height_m,mass_t,stiffness_kn_m\n4,1,40000000\n4,1,40000000\n");
+    FILE *f = fopen(path, "w");
+    assert_non_null(f);
+    fputs("t_s,a_m_s2\n", f);
+    for (int i = 0; i <= 4000; i++)
+        fprintf(f, "%.2f,%.12g\n", 0.01 * i, 0.981 * sin(2 * M_PI * 0.01 * i));
+    fclose(f);
+    free(output_of("simulate configs/quick.ini --design none --record @/sine.csv --set building.model=@/stiff "
+                   "--set motion.pga_g=0 --set motion.stretch=1 --floor-spectra @/spectra.csv"));
+    const Table t = table_of("spectra.csv");
+    size_t nearest = 0;
+    for (size_t r = 0; r < t.n_rows; r++) {
+        if (fabs(cell(&t, r, "period_s") - 1) < fabs(cell(&t, nearest, "period_s") - 1))
+            nearest = r;
+        assert_close(cell(&t, r, "floor_01_psa_g"), cell(&t, r, "ground_psa_g"), 5e-3);
+    }
+    const double ratio = cell(&t, nearest, "period_s");
+    const double wanted = 0.1 / hypot(1 - ratio * ratio, 0.1 * ratio);
+    assert_close(cell(&t, nearest, "floor_02_psa_g"), wanted, 2e-2);
+    assert_close(cell(&t, 0, "floor_02_psa_g"), 0.1, 5e-3);
+    table_free((Table *)&t);
+    free(folder);
+    free(path);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_forces_of_a_history_are_those_of_the_contact_law),
+        cmocka_unit_test(test_histories_of_both_engines_agree_before_the_horizon),
+        cmocka_unit_test(test_a_history_reaches_the_peaks_and_its_energies_add_up),
+        cmocka_unit_test(test_the_base_shear_is_what_inertia_and_damping_need),
+        cmocka_unit_test(test_a_sine_keeps_the_gain_of_butterworth),
+        cmocka_unit_test(test_an_impact_between_two_samples_is_the_response_to_an_impulse),
+        cmocka_unit_test(test_what_stands_still_feels_the_ground),
+        cmocka_unit_test(test_a_sine_has_ten_times_its_acceleration_in_the_floor_spectrum),
+    };
+    return cmocka_run_group_tests_name("histories", tests, prepare, clear_place);
+}
