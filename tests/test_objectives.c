@@ -91,7 +91,9 @@ static void test_every_result_of_a_study_is_that_of_a_simulation_of_the_same_des
     for (size_t k = 0; k < run.schema.n_extra; k++) {
         const json_t *value = json_object_get(o, schema_extra(&run.schema, k)->name);
         const double stored = run.table.row[row].extra[k];
-        if (json_is_number(value))
+        if (strcmp(schema_extra(&run.schema, k)->name, "j3_filtered_g") == 0)
+            assert_true(isnan(stored) && json_is_real(value)); /* forces do not bring the filter with them */
+        else if (json_is_number(value))
             assert_true(json_number_value(value) == stored);
         else
             assert_true(json_is_null(value) ? isnan(stored) : json_is_true(value) == (stored == 1.0));
