@@ -241,6 +241,10 @@ static void test_a_gain_counts_beyond_twice_its_error_where_the_rest_is_kept(voi
     assert_false(refined_counts(&(Refined){.has_changed = 1, .keeps = 0, .gain = 0.21, .gain_error = 0.1}));
     assert_false(refined_counts(&(Refined){.has_changed = 0, .keeps = 1, .gain = 0.21, .gain_error = 0.1}));
     assert_true(refined_counts(&(Refined){.has_changed = 1, .keeps = 1, .gain = 0.01, .gain_error = NAN}));
+    assert_true(refined_counts(&(Refined){.has_changed = 1, .keeps = 1, .gain = 0.002, .gain_min = 0.001}));
+    assert_false(refined_counts(&(Refined){.has_changed = 1, .keeps = 1, .gain = 5e-4, .gain_min = 0.001}));
+    assert_false(
+        refined_counts(&(Refined){.has_changed = 1, .keeps = 1, .gain = 5e-4, .gain_min = 0.001, .gain_error = NAN}));
 }
 
 int main(void)

@@ -9,6 +9,7 @@
 #include "store/output.h"
 #include "store/store.h"
 #include "polish/refine.h"
+#include "settings/settings.h"
 
 typedef struct {
     RunStore *store; /* open from the first look at the design until the better one is in */
@@ -56,6 +57,7 @@ static Status take_options(const Args *args, Work *w, Err *err)
     TRY(args_whole(args, "--replicates", 1, 1000, 4, &w->config.replicates, err));
     TRY(args_number(args, "--seconds", 0, 1e9, 0, &w->config.max_seconds, err));
     TRY(args_number(args, "--slack", 0, 1e6, -1, &w->config.slack, err));
+    w->config.gain_min = w->run->settings->search.polish_gain_min;
     w->config.algorithm = args_value(args, "--algorithm");
     w->config.weight = w->weight;
     w->config.keep = w->keep;
@@ -113,11 +115,12 @@ static void show_gain(const Work *w, size_t k)
 
 static const char *verdict_of(const Refined *r)
 {
-    return !r->has_changed        ? "No improvement was found that keeps the others."
-           : !r->keeps            ? "Simulated again, what was to be kept is not."
-           : isnan(r->gain_error) ? "One simulation each: nothing is known of the spread."
-           : refined_counts(r)    ? "Simulated again on both designs this is more than the standard deviation."
-                                  : "Simulated again on both designs this is not more than the standard deviation.";
+    return !r->has_changed          ? "No improvement was found that keeps the others."
+           : !r->keeps              ? "Simulated again, what was to be kept is not."
+           : isnan(r->gain_error)   ? "One simulation each: nothing is known of the spread."
+           : refined_counts(r)      ? "Simulated again on both designs this is more than the standard deviation."
+           : r->gain <= r->gain_min ? "Simulated again on both designs this is less than search.polish_gain_min."
+                                    : "Simulated again on both designs this is not more than the standard deviation.";
 }
 
 static void show(const Work *w, long id)

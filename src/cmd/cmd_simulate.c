@@ -7,6 +7,7 @@
 #include "base/units.h"
 #include "cmd/commands.h"
 #include "cmd/designs.h"
+#include "cmd/sensitivities.h"
 #include "cmd/show.h"
 #include "cmd/time_files.h"
 #include "simulator/estimate.h"
@@ -237,6 +238,8 @@ static Status run(const Args *args, Err *err)
     Job job = {0};
     TRY(choose_kind(args, &job, err));
     TRY(args_settings(args, &s, NULL, NULL, err));
+    if (args_has(args, "--sensitivity"))
+        return show_sensitivities(args, &s, err);
     if (job.kind == SCENE_RIGID && s.sim.engine != ENGINE_FAST)
         return fail(err, STATUS_USAGE,
                     "--rigid: a linear building is solved in closed form, no other engine does it; leave sim.engine at "
@@ -271,6 +274,9 @@ static const ArgOption OPTIONS[] = {
     {"--rigid", NULL, NULL, 0, "floors and core rigidly connected (zero gap): a linear building"},
     {"--replicates", "N", "sim.replicates", 0,
      "N replicates as a study simulates them: mean and standard deviation of every result"},
+    {"--sensitivity", NULL, NULL, 0,
+     "how each result changes with gaps, thickness, contact and damping, with its error; --replicates makes it "
+     "smaller"},
     OPTIONS_MOTION,
     OPTION_DURATION,
     OPTION_ENGINE,

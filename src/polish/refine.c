@@ -281,7 +281,7 @@ static Status refine(Refine *r, Refined *out, Err *err)
 Status refine_design(const Run *h, size_t row, const RefineConfig *config, Refined *out, Err *err)
 {
     RefineConfig used = *config;
-    *out = (Refined){0};
+    *out = (Refined){.gain_min = config->gain_min};
     if (schema_is_noisy(h->settings) && h->settings->problem.kind != PROBLEM_TOWER)
         return fail(
             err, STATUS_BAD_DATA,
@@ -307,7 +307,8 @@ void refined_free(Refined *r)
 
 int refined_counts(const Refined *r)
 {
-    return r->has_changed && r->keeps && r->gain > (isfinite(r->gain_error) ? 2.0 * r->gain_error : 0.0);
+    return r->has_changed && r->keeps &&
+           r->gain > fmax(r->gain_min, isfinite(r->gain_error) ? 2.0 * r->gain_error : 0.0);
 }
 
 Evaluation refined_evaluation(const Refined *r)

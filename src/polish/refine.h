@@ -10,8 +10,8 @@
  *   4 design and result once more, with replicates that no step has used:
  *         error_k = root((sd_start_k^2 + sd_end_k^2) / replicates)
  *
- * A gain counts where it is more than twice sum_k weight_k error_k / range_k (as if all errors went together) and no
- * kept objective lost more than it may and twice its error. With a single replicate the standard deviation is not known,
+ * A gain counts where it is more than gain_min (a practical threshold) and more than twice sum_k weight_k error_k / range_k
+ * (as if all errors went together), and no kept objective lost more than it may and twice its error. With a single replicate the standard deviation is not known,
  * and runs with noise are refused unless they are of the tower.
  *
  * Ownership  refine_design fills x, f, ... of the caller's Refined; refined_free releases what it allocated
@@ -27,6 +27,7 @@ typedef struct {
     const double *weight;      /* (n_obj) >= 0; 0: not to be improved */
     const unsigned char *keep; /* (n_obj) */
     double slack;              /* share of the value; < 0: one spread */
+    double gain_min;           /* [-] of the value: a practical threshold, in ranges of the front */
     long replicates;           /* of a tower; other problems: 1 */
     size_t max_evals;          /* simulations, those of all steps together */
     double max_seconds;        /* 0: no limit */
@@ -38,6 +39,7 @@ typedef struct {
     double *x, *f_start, *f, *spread_start, *spread; /* (n_var), (n_obj) natural; of step 4 */
     double *extra;                                   /* (n_extra) of the end */
     double gain, gain_error;                         /* of the value, > 0 is better; error NAN: not known */
+    double gain_min;                                 /* of the config */
     double violation;                                /* of the user's limits */
     size_t n_evaluated, n_failed, n_simulated;       /* designs, of them failed; simulations */
     double seconds;
@@ -49,7 +51,7 @@ typedef struct {
 Status refine_design(const Run *h, size_t row, const RefineConfig *config, Refined *out, Err *err);
 void refined_free(Refined *r);
 
-/* A significant gain, or any where the standard deviation is not known; and all else kept. */
+/* A gain above gain_min that is significant, or of which no standard deviation is known; and all else kept. */
 int refined_counts(const Refined *r);
 
 /* As a run stores it; borrows x, f, spread and extra. */

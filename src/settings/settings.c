@@ -181,7 +181,7 @@ static const Option OPTIONS[] = {
            "several records: worst or mean of their means over the replicates; mean_plus_sd, quantile: of all "
            "replicates of "
            "all records"),
-    REAL(sim.quantile, "-", "0.9", 0.5, 1, "sim.robust = quantile: this share of the simulations is better"),
+    REAL(sim.quantile, "-", "0.9", 0, 1, "sim.robust = quantile: this share of the simulations is better"),
 
     REAL(uncertain.restitution, "-", "0", 0, 1,
          "standard deviation of contact.restitution as built; all of these need sim.replicates >= 2"),
@@ -251,6 +251,8 @@ static const Option OPTIONS[] = {
           "noisy evaluations: largest number of simulations of a design; 1: no replicates"),
     WHOLE(search.polish, "3", 0, 32,
           "tower: designs polished at the end, with a tenth more simulations; none where these are too few"),
+    REAL(search.polish_gain_min, "-", "0.001", 0, 1,
+         "polishing: a gain counts from this share of the range of the objectives on the front on"),
     TEXT(search.objectives, "auto",
          "tower: results that are searched for, a comma list of columns (results/README.md); paper: its seven; auto: "
          "those of them that the building has"),

@@ -362,6 +362,7 @@ Status sim_worker_as_built(SimWorker *w, const AsBuilt *built, Err *err)
 {
     w->options = &w->scene->options;
     w->building = &w->scene->building;
+    w->run.tail_input = built ? NULL : w->scene->run.tail_input; /* of the building as designed */
     if (!built)
         return STATUS_OK;
     as_built_options(built, &w->scene->options, &w->own_options);

@@ -34,6 +34,7 @@ static Status refine(const FinalPolish *p, const Run *run, size_t row, Refined *
         &(RefineConfig){.weight = weight,
                         .keep = keep,
                         .slack = -1.0,
+                        .gain_min = s->search.polish_gain_min,
                         .replicates = s->sim.replicates > REPLICATES_MIN ? s->sim.replicates : REPLICATES_MIN,
                         .max_evals = evals_each(s),
                         .go_on = p->go_on,

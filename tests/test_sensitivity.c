@@ -1,0 +1,126 @@
+/* Slopes of results: closed forms where there are some. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "check.h"
+#include "scene_options.h"
+#include "settings/settings.h"
+#include "simulator/sensitivity.h"
+
+enum { N_VAR = 22 };
+
+static void short_scene(Settings *s, double x[N_VAR], double gap)
+{
+    paper_defaults(s);
+    s->sim.duration_s = 25;
+    s->sim.accuracy = ACCURACY_COARSE;
+    for (int j = 0; j < N_VAR; j++)
+        x[j] = j < 20 ? gap + 0.001 * j : j == 20 ? 0.03 : 0.01;
+}
+
+static const Sensitivity *named(const Sensitivity *list, size_t n, const char *name)
+{
+    for (size_t i = 0; i < n; i++)
+        if (strcmp(list[i].name, name) == 0)
+            return &list[i];
+    fail_msg("%s is missing", name);
+    return NULL;
+}
+
+/* Of a square tube the mass is quadratic in the thickness, so that the central difference is exact. */
+static void test_the_mass_changes_with_the_thickness_as_the_section_says(void **state)
+{
+    (void)state;
+    Settings s;
+    Err err = {0};
+    Sensitivity *list;
+    size_t n;
+    double x[N_VAR], base = 0, top = 0;
+    short_scene(&s, x, 5);
+    CHECK_OK(sensitivity_find(&s, x, 1, &list, &n, &err), &err);
+    for (int j = 0; j < 20; j++) {
+        const double part = j / 19.0, t = x[20] + (x[21] - x[20]) * part;
+        const double height = j == 0 ? s.building.first_storey_m : s.building.storey_m;
+        const double slope = s.core.density_kg_m3 * height * (4 * s.core.side_m - 8 * t);
+        base += (1 - part) * slope;
+        top += part * slope;
+    }
+    assert_close(named(list, n, "t_base_m")->slope[MEASURE_MCORE], base, 1e-9);
+    assert_close(named(list, n, "t_top_m")->slope[MEASURE_MCORE], top, 1e-9);
+    free(list);
+}
+
+static void test_without_contact_only_the_building_matters_and_its_slope_is_that_of_the_building_alone(void **state)
+{
+    (void)state;
+    Settings s;
+    Err err = {0};
+    Sensitivity *list;
+    size_t n;
+    double x[N_VAR], j1[2];
+    short_scene(&s, x, 5);
+    CHECK_OK(sensitivity_find(&s, x, 3, &list, &n, &err), &err);
+    for (int j = 0; j < 20; j++)
+        assert_true(list[j].slope[MEASURE_J1] == 0 && list[j].error[MEASURE_J1] == 0);
+    assert_true(named(list, n, "contact.radius_m")->slope[MEASURE_J3] == 0);
+    const Sensitivity *damping = named(list, n, "building.damping");
+    for (int side = 0; side < 2; side++) {
+        Settings other = s;
+        Problem p;
+        SimResult r;
+        other.building.damping += (side ? 0.5 : -0.5) * damping->step;
+        CHECK_OK(tower_open(&p, &other, TOWER_SINGLE, 1, &err), &err);
+        CHECK_OK(tower_simulate(&p, 1, &(SimTask){SCENE_NO_CORE, NULL}, &r, &err), &err);
+        j1[side] = r.j1_m;
+        problem_close(&p);
+    }
+    assert_true(damping->slope[MEASURE_J1] < 0);
+    assert_close(damping->slope[MEASURE_J1], (j1[1] - j1[0]) / damping->step, 1e-6);
+    assert_true(damping->error[MEASURE_J1] < 0.01 * fabs(damping->slope[MEASURE_J1]));
+    free(list);
+}
+
+static void test_with_contact_the_slopes_are_differences_of_simulations_on_any_number_of_threads(void **state)
+{
+    (void)state;
+    Settings s;
+    Err err = {0};
+    Sensitivity *one, *two;
+    size_t n, same;
+    double x[N_VAR], j1[2];
+    short_scene(&s, x, 0.05);
+    s.search.threads = 1;
+    CHECK_OK(sensitivity_find(&s, x, 2, &one, &n, &err), &err);
+    s.search.threads = 2;
+    CHECK_OK(sensitivity_find(&s, x, 2, &two, &same, &err), &err);
+    assert_int_equal(n, same);
+    for (size_t i = 0; i < n; i++)
+        for (int k = 0; k < N_MEASURES; k++)
+            assert_true(one[i].slope[k] == two[i].slope[k] || (isnan(one[i].slope[k]) && isnan(two[i].slope[k])));
+    free(two);
+    CHECK_OK(sensitivity_find(&s, x, 1, &two, &n, &err), &err);
+    for (int side = 0; side < 2; side++) {
+        double changed[N_VAR];
+        Problem p;
+        SimResult r;
+        memcpy(changed, x, sizeof x);
+        changed[19] += (side ? 0.5e-3 : -0.5e-3);
+        CHECK_OK(tower_open(&p, &s, TOWER_SINGLE, 1, &err), &err);
+        CHECK_OK(tower_simulate(&p, 1, &(SimTask){SCENE_IMPACT, changed}, &r, &err), &err);
+        j1[side] = r.j1_m;
+        problem_close(&p);
+    }
+    assert_close(two[19].slope[MEASURE_J1], (j1[1] - j1[0]) / 1e-3, 1e-9);
+    free(one);
+    free(two);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_the_mass_changes_with_the_thickness_as_the_section_says),
+        cmocka_unit_test(test_without_contact_only_the_building_matters_and_its_slope_is_that_of_the_building_alone),
+        cmocka_unit_test(test_with_contact_the_slopes_are_differences_of_simulations_on_any_number_of_threads),
+    };
+    return cmocka_run_group_tests_name("sensitivity", tests, NULL, NULL);
+}
