@@ -1,5 +1,6 @@
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "check.h"
 #include "moga/archive.h"
@@ -371,6 +372,41 @@ static void feasible_first(SelectionKind kind)
     directions_free(&d);
 }
 
+/* n^2 of them at most: it was n^3. */
+static void test_thousands_of_designs_are_selected_in_seconds(void **state)
+{
+    (void)state;
+    enum { M = 7, WANTED = 3000, N = 2 * WANTED };
+    double *F = calloc(N * M, sizeof *F);
+    size_t *selected = calloc(N, sizeof *selected), outer, inner;
+    Directions d;
+    Selection *s;
+    Err err = {0};
+    Random r = random_stream(1, RANDOM_TEST, 0, 0);
+    assert_true(F && selected);
+    for (size_t i = 0; i < N; i++) {
+        double square = 0.0;
+        for (size_t k = 0; k < M; k++) {
+            F[i * M + k] = fabs(random_normal(&r));
+            square += F[i * M + k] * F[i * M + k];
+        }
+        for (size_t k = 0; k < M; k++) /* none dominates another */
+            F[i * M + k] /= sqrt(square);
+    }
+    directions_choose(M, WANTED, &outer, &inner);
+    CHECK_OK(directions_create(&d, M, outer, inner, &err), &err);
+    CHECK_OK(selection_create(&s, SELECTION_NSGA3, N, &d, &err), &err);
+    const clock_t begun = clock();
+    assert_int_equal(selection_select(s, N, F, NULL, WANTED, 0.0, &r, selected), WANTED);
+    const double seconds = (double)(clock() - begun) / CLOCKS_PER_SEC;
+    if (seconds > 5.0)
+        fail_msg("%.1f s", seconds);
+    selection_free(s);
+    directions_free(&d);
+    free(F);
+    free(selected);
+}
+
 static void test_feasible_designs_survive_before_infeasible_ones(void **state)
 {
     (void)state;
@@ -445,6 +481,60 @@ static void test_a_batch_spreads_over_the_directions_instead_of_crowding(void **
 }
 
 /* The chosen are farther apart than twice as many drawn at random are in the mean, and the axes are there. */
+/* Every gain computed anew before each pick. */
+static size_t pick_by_definition(Infill *q, size_t n, size_t m, const double F[], const double violation[],
+                                 const double uncertainty[], const unsigned char allowed[])
+{
+    size_t best = SIZE_MAX;
+    double max = 0.0;
+    for (size_t i = 0; i < n; i++) {
+        const double gain = infill_gain(q, F + i * m);
+        if (!allowed[i])
+            continue;
+        const int ties = best != SIZE_MAX && violation[i] == violation[best] && gain == max;
+        if (best == SIZE_MAX || violation[i] < violation[best] || (violation[i] == violation[best] && gain > max) ||
+            (ties && uncertainty[i] > uncertainty[best])) {
+            best = i;
+            max = gain;
+        }
+    }
+    return best;
+}
+
+static void test_picks_are_those_of_gains_computed_anew_each_time(void **state)
+{
+    (void)state;
+    enum { N = 60, M = 3, SEEDS = 200 };
+    double F[N * M], violation[N], uncertainty[N];
+    size_t rows[N];
+    for (uint32_t seed = 0; seed < SEEDS; seed++) {
+        unsigned char allowed[N];
+        Directions d;
+        Infill *q;
+        Err err = {0};
+        Random r = random_stream(seed, RANDOM_TEST, 1, 0);
+        coarse_points(seed, N, M, F);
+        for (size_t i = 0; i < N; i++) {
+            rows[i] = i;
+            violation[i] = seed % 3 == 0 ? (double)random_below(&r, 2) : 0.0;
+            uncertainty[i] = (double)random_below(&r, 3);
+            allowed[i] = random_below(&r, 8) > 0;
+        }
+        CHECK_OK(directions_create(&d, M, 5, 0, &err), &err);
+        CHECK_OK(infill_create(&q, (InfillKind)(seed % 2), N, &d, &err), &err);
+        infill_measure(q, 5, rows, F);
+        infill_offer(q, N, F, violation, uncertainty);
+        for (int k = 0; k < N; k++) {
+            const size_t wanted = pick_by_definition(q, N, M, F, violation, uncertainty, allowed);
+            assert_true(infill_pick(q, allowed) == wanted);
+            if (k % 4 == 0) /* the other criterion's */
+                infill_take(q, random_below(&r, N));
+        }
+        infill_free(q);
+        directions_free(&d);
+    }
+}
+
 static void test_spread_directions_have_the_axes_and_keep_apart(void **state)
 {
     (void)state;
@@ -553,9 +643,11 @@ int main(void)
         cmocka_unit_test(test_normalisation_finds_the_intercepts_of_a_plane),
         cmocka_unit_test(test_selection_keeps_the_wanted_number_the_best_layers_and_the_corners_of_the_front),
         cmocka_unit_test(test_every_direction_keeps_its_own_design_in_rvea),
+        cmocka_unit_test(test_thousands_of_designs_are_selected_in_seconds),
         cmocka_unit_test(test_feasible_designs_survive_before_infeasible_ones),
         cmocka_unit_test(test_front_flags_equal_a_brute_force_filter_after_every_insertion),
         cmocka_unit_test(test_a_batch_spreads_over_the_directions_instead_of_crowding),
+        cmocka_unit_test(test_picks_are_those_of_gains_computed_anew_each_time),
         cmocka_unit_test(test_spread_directions_have_the_axes_and_keep_apart),
         cmocka_unit_test(test_the_slope_of_pbi_equals_differences),
         cmocka_unit_test(test_the_lengths_of_rays_measure_the_hypervolume),

@@ -17,6 +17,9 @@ struct Infill {
     double *best_value;                    /* (n_dir) of the front, lowered by what is picked */
     size_t *best;                          /* (n_dir) row of the front that has it */
     double *value;                         /* (n, n_dir) of the candidates */
+    double *gain;                          /* (n) when it was computed last: what is picked later only lowers it */
+    size_t *computed;                      /* (n) how much had been taken then */
+    size_t n_taken;                        /* since the candidates were offered */
     const double *violation, *uncertainty; /* (n) */
     void *store;
 };
@@ -33,6 +36,8 @@ static void layout(void *infill, Carve *c)
     q->best_value = carve(c, q->n_dir, sizeof(double));
     q->best = carve(c, q->n_dir, sizeof(size_t));
     q->value = carve(c, q->n_max * q->n_dir, sizeof(double));
+    q->gain = carve(c, q->n_max, sizeof(double));
+    q->computed = carve(c, q->n_max, sizeof(size_t));
 }
 
 Status infill_create(Infill **out, InfillKind kind, size_t candidates_max, const Directions *vectors, Err *err)
@@ -201,8 +206,11 @@ void infill_offer(Infill *q, size_t n, const double F[], const double violation[
     q->n = n;
     q->violation = violation;
     q->uncertainty = uncertainty;
-    for (size_t i = 0; i < n; i++)
+    q->n_taken = 0;
+    for (size_t i = 0; i < n; i++) {
         values_of(q, F + i * q->n_obj, q->value + i * q->n_dir);
+        q->computed[i] = SIZE_MAX;
+    }
 }
 
 static double gain_left(const Infill *q, size_t i)
@@ -214,27 +222,44 @@ static double gain_left(const Infill *q, size_t i)
 }
 
 /* Feasible before infeasible, then gain or violation, then uncertainty. */
-static int is_better(const Infill *q, size_t a, double gain_a, size_t b, double gain_b)
+static int is_better(const Infill *q, size_t a, size_t b)
 {
     if (q->violation[a] != q->violation[b])
         return q->violation[a] < q->violation[b];
-    if (gain_a != gain_b)
-        return gain_a > gain_b;
+    if (q->gain[a] != q->gain[b])
+        return q->gain[a] > q->gain[b];
     return q->uncertainty[a] > q->uncertainty[b];
 }
 
-size_t infill_pick(Infill *q, unsigned char allowed[])
+static void compute_gain(Infill *q, size_t i)
+{
+    q->gain[i] = gain_left(q, i);
+    q->computed[i] = q->n_taken;
+}
+
+/* The first of the best by the gains as they were computed last. */
+static size_t best_so_far(Infill *q, const unsigned char allowed[])
 {
     size_t best = SIZE_MAX;
-    double max = 0.0;
     for (size_t i = 0; i < q->n; i++) {
         if (!allowed[i])
             continue;
-        const double gain = gain_left(q, i);
-        if (best == SIZE_MAX || is_better(q, i, gain, best, max)) {
-            max = gain;
+        if (q->computed[i] == SIZE_MAX)
+            compute_gain(q, i);
+        if (best == SIZE_MAX || is_better(q, i, best))
             best = i;
-        }
+    }
+    return best;
+}
+
+/* A gain never grows while designs are taken, so that the best one whose gain is up to date is the best of all: Minoux,
+ * Accelerated greedy algorithms for maximizing submodular set functions, LNCIS 7 (1978) 234-243. */
+size_t infill_pick(Infill *q, unsigned char allowed[])
+{
+    size_t best = best_so_far(q, allowed);
+    while (best != SIZE_MAX && q->computed[best] != q->n_taken) {
+        compute_gain(q, best);
+        best = best_so_far(q, allowed);
     }
     if (best == SIZE_MAX)
         return best;
@@ -245,6 +270,7 @@ size_t infill_pick(Infill *q, unsigned char allowed[])
 
 void infill_take(Infill *q, size_t candidate)
 {
+    q->n_taken++;
     for (size_t r = 0; r < q->n_dir; r++)
         q->best_value[r] = fmin(q->best_value[r], q->value[candidate * q->n_dir + r]);
 }

@@ -13,14 +13,16 @@ struct Selection {
     double *unit; /* (n_dir, n_obj) directions of length 1 */
     double *gap;  /* (n_dir) angle to the next direction [rad] */
     Normalisation normalisation;
-    size_t *rank;      /* (n_max) */
-    size_t *scratch;   /* (3 n_max) */
-    size_t *list;      /* (n_max) rows of one layer */
-    size_t *niche;     /* (n_max) direction of each row */
-    double *distance;  /* (n_max) from it */
-    double *penalised; /* (n_max) distance of RVEA */
-    size_t *members;   /* (n_dir) taken so far */
-    size_t *ties;      /* (n_dir or n_max) */
+    size_t *rank;       /* (n_max) */
+    size_t *scratch;    /* (3 n_max) */
+    size_t *list;       /* (n_max) rows of one layer */
+    size_t *niche;      /* (n_max) direction of each row */
+    double *distance;   /* (n_max) from it */
+    double *penalised;  /* (n_max) distance of RVEA */
+    double *z;          /* (n_obj) normalised objectives of a design */
+    size_t *members;    /* (n_dir) taken so far */
+    size_t *candidates; /* (n_dir) that are left in the layer which does not fit */
+    size_t *ties;       /* (n_dir or n_max) */
     unsigned char *taken;
     void *store;
 };
@@ -40,7 +42,9 @@ static void layout(void *selection, Carve *c)
     s->distance = carve(c, n, sizeof(double));
     s->penalised = carve(c, n, sizeof(double));
     s->gap = carve(c, r, sizeof(double));
+    s->z = carve(c, m, sizeof(double));
     s->members = carve(c, r, sizeof(size_t));
+    s->candidates = carve(c, r, sizeof(size_t));
     s->ties = carve(c, n > r ? n : r, sizeof(size_t));
     s->taken = carve(c, n, 1);
 }
@@ -93,13 +97,13 @@ static void associate(Selection *s, size_t i, const double f[])
     const size_t m = s->n_obj;
     double square = 0.0, longest = -INFINITY;
     for (size_t k = 0; k < m; k++) {
-        const double z = normalised(&s->normalisation, k, f[k]);
-        square += z * z;
+        s->z[k] = normalised(&s->normalisation, k, f[k]);
+        square += s->z[k] * s->z[k];
     }
     for (size_t r = 0; r < s->n_dir; r++) {
         double along = 0.0;
         for (size_t k = 0; k < m; k++)
-            along += normalised(&s->normalisation, k, f[k]) * s->unit[r * m + k];
+            along += s->z[k] * s->unit[r * m + k];
         if (along > longest) {
             longest = along;
             s->niche[i] = r;
@@ -118,21 +122,15 @@ static size_t rows_of_layer(Selection *s, size_t n, size_t layer)
 }
 
 /* One of the directions that still have candidates and, among those, the fewest members. */
-static size_t emptiest_direction(Selection *s, size_t n_list, Random *random)
+static size_t emptiest_direction(Selection *s, Random *random)
 {
     size_t fewest = SIZE_MAX, n_ties = 0;
-    for (size_t j = 0; j < n_list; j++) {
-        const size_t r = s->niche[s->list[j]];
-        if (!s->taken[s->list[j]] && s->members[r] < fewest)
+    for (size_t r = 0; r < s->n_dir; r++)
+        if (s->candidates[r] > 0 && s->members[r] < fewest)
             fewest = s->members[r];
-    }
-    for (size_t r = 0; r < s->n_dir; r++) {
-        size_t j = 0;
-        while (s->members[r] == fewest && j < n_list && (s->taken[s->list[j]] || s->niche[s->list[j]] != r))
-            j++;
-        if (s->members[r] == fewest && j < n_list)
+    for (size_t r = 0; r < s->n_dir; r++)
+        if (s->candidates[r] > 0 && s->members[r] == fewest)
             s->ties[n_ties++] = r;
-    }
     return s->ties[random_below(random, n_ties)];
 }
 
@@ -153,10 +151,14 @@ static size_t candidate_of(Selection *s, size_t r, size_t n_list, Random *random
 
 static void fill_niches(Selection *s, size_t n_list, size_t wanted, Random *random)
 {
+    memset(s->candidates, 0, s->n_dir * sizeof *s->candidates);
+    for (size_t j = 0; j < n_list; j++)
+        s->candidates[s->niche[s->list[j]]]++;
     while (wanted-- > 0) {
-        const size_t r = emptiest_direction(s, n_list, random), i = candidate_of(s, r, n_list, random);
+        const size_t r = emptiest_direction(s, random), i = candidate_of(s, r, n_list, random);
         s->taken[i] = 1;
         s->members[r]++;
+        s->candidates[r]--;
     }
 }
 
