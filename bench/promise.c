@@ -269,8 +269,7 @@ static Status write_designs(Promise *p, const Designs *d, FILE *out, Err *err)
     const long n = d->n < FRONT_MAX ? (long)d->n : FRONT_MAX;
     TRY(clear(p, n, err));
     for (long k = 0; k < n; k++) {
-        memcpy(c.x, d->x + (size_t)k * d->n / (size_t)n * (size_t)(p->n_floors + 2),
-               (size_t)(p->n_floors + 2) * sizeof *c.x);
+        memcpy(c.x, d->x + (size_t)k * d->n / (size_t)n * (size_t)d->space.n_var, (size_t)d->space.n_var * sizeof *c.x);
         TRY(measure_case(p, &c, 1, err));
     }
     fprintf(out, "## Designs of a front\n\nAll of `%s`, %.0f s.\n\n", record->name, c.duration);
@@ -282,7 +281,9 @@ static Status write_designs(Promise *p, const Designs *d, FILE *out, Err *err)
 static Status write_front(Promise *p, FILE *out, Err *err)
 {
     Designs d = {0};
-    TRY(design_read(&d, p->plan->front, p->n_floors, err));
+    DesignSpace space;
+    TRY(design_space_make(&space, &p->plan->options->design, p->n_floors, err));
+    TRY(design_read(&d, p->plan->front, &space, err));
     const Status status = write_designs(p, &d, out, err);
     design_free(&d);
     return status;

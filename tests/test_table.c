@@ -209,6 +209,14 @@ static void write_file(const char *path, const char *text)
     assert_int_equal(fclose(f), 0);
 }
 
+static const DesignSpace *paper_space(int n_floors)
+{
+    static DesignSpace space;
+    Err err;
+    CHECK_OK(design_space_make(&space, &(DesignOptions){0}, n_floors, &err), &err);
+    return &space;
+}
+
 static void test_a_design_file_gives_its_rows_and_their_lines(void **state)
 {
     (void)state;
@@ -218,7 +226,7 @@ static void test_a_design_file_gives_its_rows_and_their_lines(void **state)
     const int fd = mkstemp(path);
     assert_true(fd >= 0);
     write_file(path, DESIGNS);
-    CHECK_OK(design_read(&d, path, 2, &err), &err);
+    CHECK_OK(design_read(&d, path, paper_space(2), &err), &err);
     const double want[] = {0.01, 0, 0.012, 0.0064, 0.03, 0.04, 0.02, 0.03};
     assert_int_equal(d.n, 2);
     assert_memory_equal(d.x, want, sizeof want);
@@ -234,7 +242,7 @@ static void test_variables_are_named_by_floor_from_the_bottom(void **state)
     static const char *const WANT[] = {"gap_01_m", "gap_02_m", "gap_03_m", "t_base_m", "t_top_m"};
     char name[TABLE_NAME_MAX];
     for (int j = 0; j < 5; j++) {
-        design_variable_name(3, j, name);
+        design_variable_name(paper_space(3), j, name);
         assert_string_equal(name, WANT[j]);
     }
 }
@@ -242,7 +250,7 @@ static void test_variables_are_named_by_floor_from_the_bottom(void **state)
 static Status read_two_floors(const char *path, Err *err)
 {
     Designs d;
-    const Status status = design_read(&d, path, 2, err);
+    const Status status = design_read(&d, path, paper_space(2), err);
     design_free(&d);
     return status;
 }

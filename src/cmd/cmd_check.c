@@ -27,8 +27,10 @@ typedef struct {
     const Settings *s;
     Building building;
     Motion motion;
-    double recorded_g;        /* its peak before scaling */
-    double x[FLOORS_MAX + 2]; /* a design to try */
+    double recorded_g; /* its peak before scaling */
+    DesignSpace space;
+    double x[DESIGN_VARIABLES_MAX]; /* a design to try */
+    Design design;                  /* the same */
     SceneSummary summary;
 } CheckedScene;
 
@@ -118,24 +120,28 @@ static int choose_design(Check *c, CheckedScene *p, const char *path)
 {
     const DesignOptions *box = &p->s->design;
     const int n = p->building.n;
-    for (int j = 0; j < n; j++)
-        p->x[j] = box->gap_min_m + (box->gap_max_m - box->gap_min_m) * fmod(GOLDEN_RATIO * (j + 1), 1);
-    p->x[n] = p->x[n + 1] = 0.5 * (box->thickness_min_m + box->thickness_max_m);
+    double lower[DESIGN_VARIABLES_MAX], upper[DESIGN_VARIABLES_MAX];
+    Err e = {0};
+    if (!note(c, design_space_make(&p->space, box, n, &e), "design", &e))
+        return 0;
+    const DesignSpace *s = &p->space;
+    design_bounds(s, box, lower, upper);
+    for (int j = 0; j < s->n_var; j++)
+        p->x[j] = lower[j] + (upper[j] - lower[j]) * (j < s->n_gaps ? fmod(GOLDEN_RATIO * (j + 1), 1) : 0.5);
     if (!path)
         return 1;
-    Err e = {0};
     Designs d;
-    if (!note(c, designs_take(&d, path, n, &e), "--design", &e))
+    if (!note(c, designs_take(&d, path, s, &e), "--design", &e))
         return 0;
-    memcpy(p->x, d.x, (size_t)(n + 2) * sizeof *p->x);
+    memcpy(p->x, d.x, (size_t)s->n_var * sizeof *p->x);
     for (size_t i = 0; i < d.n; i++)
-        for (int j = 0; j < n; j++)
-            if (d.x[i * (size_t)(n + 2) + (size_t)j] > GAP_MAX_M) {
+        for (int j = 0; j < s->n_gaps; j++)
+            if (d.x[i * (size_t)s->n_var + (size_t)j] > GAP_MAX_M) {
                 char text[100];
-                snprintf(text, sizeof text, "line %d: the gap of floor %d is %g m and does not close", d.line[i], j + 1,
-                         d.x[i * (size_t)(n + 2) + (size_t)j]);
+                snprintf(text, sizeof text, "line %d: the gap of %s %d is %g m and does not close", d.line[i],
+                         s->gap_zones ? "zone" : "floor", j + 1, d.x[i * (size_t)s->n_var + (size_t)j]);
                 warn("--design", text, c);
-                j = n;
+                j = s->n_gaps;
             }
     design_free(&d);
     return 1;
@@ -144,8 +150,12 @@ static int choose_design(Check *c, CheckedScene *p, const char *path)
 static int summarise(Check *c, CheckedScene *p)
 {
     Err e = {0};
-    const int n = p->building.n;
-    const Status status = scene_summarise(&p->summary, &p->building, &p->s->core, &p->motion, p->x[n], p->x[n + 1], &e);
+    CoreOptions core = p->s->core;
+    design_of(&p->space, p->x, &p->design);
+    if (p->design.side > 0)
+        core.side_m = p->design.side;
+    const Status status =
+        scene_summarise(&p->summary, &p->building, &core, &p->motion, p->design.t_base, p->design.t_top, &e);
     if (!note(c, status, "core", &e))
         return 0;
     scene_warnings(&p->summary, &p->s->core, &p->s->design, &p->motion, warn, c);
@@ -164,7 +174,6 @@ static void print_scene(const CheckedScene *p)
 {
     const SceneSummary *f = &p->summary;
     const Settings *s = p->s;
-    const double *t = p->x + f->n_floors;
     printf("building  %s: %d floors, %.4g m, %.4g kg (floors of %.4g to %.4g kg)\n", s->building.model, f->n_floors,
            f->height_m, f->mass_kg, f->floor_mass_min_kg, f->floor_mass_max_kg);
     printf("          periods");
@@ -172,8 +181,8 @@ static void print_scene(const CheckedScene *p)
         printf("%s %.4g s (damping %.3g %%)", i ? "," : "", f->period_s[i], 100 * f->damping[i]);
     printf("\n          %.3g s per storey; the first mode moves %.3g %% of the mass\n", f->period_s[0] / f->n_floors,
            100 * f->first_mode_mass);
-    printf("core      %.4g kg at %g to %g mm, damping %g %%, %s\n", f->core_mass_kg, 1e3 * t[0], 1e3 * t[1],
-           100 * s->core.damping, core_theory_word(s->core.theory));
+    printf("core      %.4g kg at %g to %g mm, damping %g %%, %s\n", f->core_mass_kg, 1e3 * p->design.t_base,
+           1e3 * p->design.t_top, 100 * s->core.damping, core_theory_word(s->core.theory));
     printf("          first mode %.4g Hz bending alone, %.4g Hz (%+.2g %%) with shear and rotary inertia\n",
            f->euler_bernoulli_hz, f->timoshenko_hz, 100 * (f->timoshenko_hz / f->euler_bernoulli_hz - 1));
     printf("motion    %s: %zu samples, %.4g s, peak %.4g g (recorded %.4g g x %.4g, time x %g)\n", s->motion.record,
@@ -204,7 +213,7 @@ static void scene_json(Check *c, const CheckedScene *p)
     json_object_set_new(c->out, "core",
                         json_pack("{s:s, s:f, s:f, s:f, s:f, s:f, s:f, s:i}", "theory",
                                   core_theory_word(s->core.theory), "mass_kg", f->core_mass_kg, "t_base_m",
-                                  p->x[f->n_floors], "t_top_m", p->x[f->n_floors + 1], "first_mode_hz", f->core_hz,
+                                  p->design.t_base, "t_top_m", p->design.t_top, "first_mode_hz", f->core_hz,
                                   "timoshenko_hz", f->timoshenko_hz, "euler_bernoulli_hz", f->euler_bernoulli_hz,
                                   "modes_within_motion", f->core_modes_within));
     json_object_set_new(c->out, "motion",
@@ -250,7 +259,7 @@ static void describe_study(Check *c, const CheckedScene *p)
     const long threads = s->search.threads > 0 ? s->search.threads : processors();
     const double seconds = (double)simulations * r.seconds / (double)threads;
     json_object_set_new(c->out, "study",
-                        json_pack("{s:i, s:[f,f], s:[f,f], s:I, s:I, s:f, s:I, s:f}", "variables", p->building.n + 2,
+                        json_pack("{s:i, s:[f,f], s:[f,f], s:I, s:I, s:f, s:I, s:f}", "variables", p->space.n_var,
                                   "gap_m", s->design.gap_min_m, s->design.gap_max_m, "thickness_m",
                                   s->design.thickness_min_m, s->design.thickness_max_m, "simulations",
                                   (json_int_t)simulations, "threads", (json_int_t)threads, "simulation_s", r.seconds,
@@ -258,8 +267,13 @@ static void describe_study(Check *c, const CheckedScene *p)
     if (c->as_json)
         return;
     printf("search    %d variables: %d gaps of %g to %g mm, core thickness %g to %g mm at base and top\n",
-           p->building.n + 2, p->building.n, 1e3 * s->design.gap_min_m, 1e3 * s->design.gap_max_m,
+           p->space.n_var, p->space.n_gaps, 1e3 * s->design.gap_min_m, 1e3 * s->design.gap_max_m,
            1e3 * s->design.thickness_min_m, 1e3 * s->design.thickness_max_m);
+    if (p->space.n_bumpers > 0)
+        printf("          %d bumper%s of %.3g to %.3g N/m\n", p->space.n_bumpers, p->space.n_bumpers == 1 ? "" : "s",
+               s->design.bumper_min_n_m, s->design.bumper_max_n_m);
+    if (p->space.has_side)
+        printf("          side of the core's box %g to %g m\n", s->design.side_min_m, s->design.side_max_m);
     printf("time      %ld simulations, %.2g s each (measured, %ld impacts), on %ld thread%s: about %.2g %s\n",
            simulations, r.seconds, r.impacts, threads, threads == 1 ? "" : "s", seconds < 120 ? seconds : seconds / 60,
            seconds < 120 ? "s" : "min");

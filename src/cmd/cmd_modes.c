@@ -29,18 +29,28 @@ typedef struct {
     int vertical[FLOORS_MAX];             /* resembles no mode of the floors */
 } Modes;
 
-static Status choose_thickness(const Args *args, Modes *m, Err *err)
+/* x, and the core by it. */
+static Status choose_core(const Args *args, const Scenario *w, Modes *m, CoreOptions *core, double x[], Err *err)
 {
     const char *path = args_value(args, "--design");
+    const DesignSpace *space = scene_design(w->scene);
     Designs d;
-    m->t_base_m = T_BASE_M;
-    m->t_top_m = T_TOP_M;
-    if (!path)
-        return STATUS_OK;
-    TRY(designs_take(&d, path, m->n, err));
-    m->t_base_m = d.x[m->n];
-    m->t_top_m = d.x[m->n + 1];
-    design_free(&d);
+    Design design;
+    x[space->n_gaps] = T_BASE_M;
+    x[space->n_gaps + 1] = T_TOP_M;
+    if (space->has_side)
+        x[space->n_var - 1] = w->options.core.side_m;
+    if (path) {
+        TRY(designs_take(&d, path, space, err));
+        memcpy(x, d.x, (size_t)space->n_var * sizeof *x);
+        design_free(&d);
+    }
+    design_of(space, x, &design);
+    m->t_base_m = design.t_base;
+    m->t_top_m = design.t_top;
+    *core = w->options.core;
+    if (design.side > 0)
+        core->side_m = design.side;
     return STATUS_OK;
 }
 
@@ -70,13 +80,13 @@ static void find_shapes(const Building *b, Modes *m)
     }
 }
 
-static Status participate(const Scenario *w, Modes *m, Err *err)
+static Status participate(const Scenario *w, const CoreOptions *options, Modes *m, Err *err)
 {
     const Building *b = scene_building(w->scene);
     CoreBeam *core = malloc(sizeof *core);
     if (!core)
         return fail(err, STATUS_NO_MEMORY, "modes: no memory for %d storeys", m->n);
-    const Status status = core_beam_make(core, &w->options.core, m->n, b->storey_m, m->t_base_m, m->t_top_m, err);
+    const Status status = core_beam_make(core, options, m->n, b->storey_m, m->t_base_m, m->t_top_m, err);
     if (status == STATUS_OK)
         mass_shares(m->n, m->n, core->gamma, m->core_share);
     free(core);
@@ -101,15 +111,14 @@ static void find_spectrum(const Scenario *w, Modes *m)
 
 static Status compute(const Args *args, const Scenario *w, Modes *m, Err *err)
 {
-    double x[FLOORS_MAX + 2] = {0};
+    double x[DESIGN_VARIABLES_MAX] = {0};
+    CoreOptions core;
     m->n = scene_n_floors(w->scene);
-    TRY(choose_thickness(args, m, err));
-    x[m->n] = m->t_base_m;
-    x[m->n + 1] = m->t_top_m;
+    TRY(choose_core(args, w, m, &core, x, err));
     for (CoreTheory k = CORE_TIMOSHENKO; k <= CORE_EULER_BERNOULLI; k++)
-        TRY(core_beam_first_hz(&w->options.core, k, m->n, scene_building(w->scene)->storey_m, m->t_base_m, m->t_top_m,
+        TRY(core_beam_first_hz(&core, k, m->n, scene_building(w->scene)->storey_m, m->t_base_m, m->t_top_m,
                                &m->by_theory[k], err));
-    TRY(participate(w, m, err));
+    TRY(participate(w, &core, m, err));
     TRY(scene_frequencies(w->scene, x, m->building, m->core, m->zero_gap, &m->core_mass_kg, err));
     if (args_has(args, "--spectrum"))
         find_spectrum(w, m);

@@ -51,21 +51,21 @@ static Status choose_kind(const Args *args, Job *job, Err *err)
 
 static void warn_top_heavy(const Designs *d, const char *path)
 {
-    const size_t n_var = (size_t)d->n_floors + 2;
+    const size_t n_var = (size_t)d->space.n_var;
     for (size_t i = 0; i < d->n; i++) {
-        const double *wall = &d->x[i * n_var + n_var - 2];
+        const double *wall = &d->x[i * n_var + (size_t)d->space.n_gaps];
         if (wall[1] > wall[0])
             fprintf(stderr, "%s:%d: t_top_m %g is thicker than t_base_m %g; the search would not propose this\n", path,
                     d->line[i], wall[1], wall[0]);
     }
 }
 
-static Status lay_out_job(const Args *args, Job *job, int n_floors, Err *err)
+static Status lay_out_job(const Args *args, Job *job, const DesignSpace *space, Err *err)
 {
     const char *path = args_value(args, "--design");
     job->n = 1;
     if (job->kind != SCENE_NO_CORE) {
-        TRY(designs_take(&job->designs, path, n_floors, err));
+        TRY(designs_take(&job->designs, path, space, err));
         warn_top_heavy(&job->designs, path);
         job->n = job->designs.n;
     }
@@ -75,7 +75,7 @@ static Status lay_out_job(const Args *args, Job *job, int n_floors, Err *err)
     if (!job->tasks || !job->results || !job->summary)
         return fail(err, STATUS_NO_MEMORY, "no memory for %zu simulations", job->n);
     for (size_t i = 0; i < job->n; i++)
-        job->tasks[i] = (SimTask){job->kind, job->designs.x ? &job->designs.x[i * (size_t)(n_floors + 2)] : NULL};
+        job->tasks[i] = (SimTask){job->kind, job->designs.x ? &job->designs.x[i * (size_t)space->n_var] : NULL};
     return STATUS_OK;
 }
 
@@ -249,7 +249,7 @@ static Status run(const Args *args, Err *err)
     TRY(tower_open(&p, &s, job.replicates ? TOWER_AS_SET : TOWER_SINGLE, job.kind == SCENE_NO_CORE ? 1 : SIZE_MAX,
                    err));
     const Scenario *w = tower_record(tower_of(&p), 0);
-    Status status = lay_out_job(args, &job, scene_n_floors(w->scene), err);
+    Status status = lay_out_job(args, &job, scene_design(w->scene), err);
     if (status == STATUS_OK)
         status = simulate(&p, &job, err);
     if (status == STATUS_OK)

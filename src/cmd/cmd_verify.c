@@ -24,6 +24,7 @@ typedef struct {
     SceneKind kind;
     Designs designs;
     size_t n;
+    DesignSpace space;
     int n_floors, dofs[MODELS]; /* degrees of freedom of the building */
     double z[FLOORS_MAX];       /* [m] of the floors */
     SimResult *results[MODELS]; /* (n) under the record at hand */
@@ -55,7 +56,7 @@ static Status simulate(Job *job, const Problem *p, int model, Err *err)
     if (!tasks)
         return fail(err, STATUS_NO_MEMORY, "no memory for %zu simulations", job->n);
     for (size_t i = 0; i < job->n; i++)
-        tasks[i] = (SimTask){job->kind, job->designs.x ? job->designs.x + i * (size_t)(job->n_floors + 2) : NULL};
+        tasks[i] = (SimTask){job->kind, job->designs.x ? job->designs.x + i * (size_t)job->space.n_var : NULL};
     const Status status = tower_simulate(p, job->n, tasks, job->results[model], err);
     free(tasks);
     for (size_t i = 0; i < job->n && status == STATUS_OK; i++)
@@ -232,7 +233,7 @@ static Status take_designs(const Args *args, const char *folder, Job *job, Err *
         snprintf(own, sizeof own, "%s:%s", folder, word ? word : "knee");
         word = own;
     }
-    TRY(designs_take(&job->designs, word, job->n_floors, err));
+    TRY(designs_take(&job->designs, word, &job->space, err));
     job->n = job->designs.n;
     return STATUS_OK;
 }
@@ -248,6 +249,7 @@ static Status verify_by(const Args *args, Settings *s, const char *folder, Err *
     TRY(building_load(&b, &s->building, err));
     job.n_floors = b.n;
     building_free(&b);
+    TRY(design_space_make(&job.space, &s->design, job.n_floors, err));
     TRY(measures_order(&job.order, s->search.objectives, job.n_floors, err));
     Status status = take_designs(args, folder, &job, err);
     for (int m = 0; m < MODELS && status == STATUS_OK; m++) {

@@ -42,7 +42,7 @@ static void drop_results(Table *t)
 /* Row `row` becomes the only one. */
 static void keep_row(Designs *d, size_t row)
 {
-    const size_t n_var = (size_t)d->n_floors + 2;
+    const size_t n_var = (size_t)d->space.n_var;
     memmove(d->x, d->x + row * n_var, n_var * sizeof *d->x);
     d->line[0] = d->line[row];
     if (d->id)
@@ -81,7 +81,7 @@ static Status take_ids(const Table *t, long **ids, Err *err)
     return STATUS_OK;
 }
 
-static Status take_file(Designs *d, const char *path, const char *choice, int n_floors, Err *err)
+static Status take_file(Designs *d, const char *path, const char *choice, const DesignSpace *space, Err *err)
 {
     Table t;
     long *ids = NULL;
@@ -90,7 +90,7 @@ static Status take_file(Designs *d, const char *path, const char *choice, int n_
     if (status == STATUS_OK && ids)
         drop_results(&t);
     if (status == STATUS_OK)
-        status = design_of_table(d, &t, path, n_floors, err);
+        status = design_of_table(d, &t, path, space, err);
     table_free(&t);
     if (status != STATUS_OK) {
         free(ids);
@@ -106,7 +106,7 @@ static Status copy_row(Designs *d, const Run *run, size_t row, Err *err)
 {
     const size_t n_var = run->schema.n_var;
     *d = (Designs){.n = 1,
-                   .n_floors = (int)n_var - 2,
+                   .space = run->schema.design,
                    .x = malloc(n_var * sizeof *d->x),
                    .line = malloc(sizeof *d->line),
                    .id = malloc(sizeof *d->id)};
@@ -118,16 +118,30 @@ static Status copy_row(Designs *d, const Run *run, size_t row, Err *err)
     return STATUS_OK;
 }
 
-static Status take_from_run(Designs *d, const char *folder, const char *choice, int n_floors, Err *err)
+static Status check_space(const Run *run, const char *folder, const DesignSpace *space, Err *err)
+{
+    char name[TABLE_NAME_MAX];
+    if (run->schema.n_var != (size_t)space->n_var)
+        return fail(err, STATUS_BAD_DATA,
+                    "%s: its designs have %zu variables, those of this building of %d floors %d (design.variables)",
+                    folder, run->schema.n_var, space->n_floors, space->n_var);
+    for (int j = 0; j < space->n_var; j++) {
+        design_variable_name(space, j, name);
+        if (strcmp(schema_variable(&run->schema, (size_t)j)->name, name) != 0)
+            return fail(err, STATUS_BAD_DATA, "%s: variable %d of its designs is %s, here it is %s (design.variables)",
+                        folder, j + 1, schema_variable(&run->schema, (size_t)j)->name, name);
+    }
+    return STATUS_OK;
+}
+
+static Status take_from_run(Designs *d, const char *folder, const char *choice, const DesignSpace *space, Err *err)
 {
     Run run;
     size_t row;
     TRY(run_read(&run, folder, err));
     Status status = run_pick(&run, choice ? choice : "knee", &row, err);
-    if (status == STATUS_OK && run.schema.n_var != (size_t)n_floors + 2)
-        status =
-            fail(err, STATUS_BAD_DATA, "%s: its designs have %zu variables, those of this building of %d floors %d",
-                 folder, run.schema.n_var, n_floors, n_floors + 2);
+    if (status == STATUS_OK)
+        status = check_space(&run, folder, space, err);
     if (status == STATUS_OK)
         status = copy_row(d, &run, row, err);
     run_free(&run);
@@ -175,7 +189,7 @@ static void find_place(const char *word, Place *p)
     p->is_run = is_run(p->path);
 }
 
-Status designs_take(Designs *d, const char *word, int n_floors, Err *err)
+Status designs_take(Designs *d, const char *word, const DesignSpace *space, Err *err)
 {
     Place p;
     struct stat s;
@@ -186,7 +200,7 @@ Status designs_take(Designs *d, const char *word, int n_floors, Err *err)
     if (!p.is_run && stat(p.path, &s) == 0 && S_ISDIR(s.st_mode))
         return fail(err, STATUS_MISSING, "%.200s: holds no run: run.sqlite is not there", p.path);
     const Status status =
-        p.is_run ? take_from_run(d, p.path, p.choice, n_floors, err) : take_file(d, p.path, p.choice, n_floors, err);
+        p.is_run ? take_from_run(d, p.path, p.choice, space, err) : take_file(d, p.path, p.choice, space, err);
     if (status != STATUS_OK)
         design_free(d);
     return status;
@@ -219,7 +233,7 @@ Status design_of_run(const Run *run, const char *word, size_t *row, Designs *els
         *elsewhere = (Designs){0};
     if (is_name(word) || (!strpbrk(word, "/:") && stat(word, &s) != 0))
         return run_pick(run, word, row, err);
-    TRY(designs_take(&d, word, (int)run->schema.n_var - 2, err));
+    TRY(designs_take(&d, word, &run->schema.design, err));
     *row = row_of(run, d.x);
     if (*row == run->table.n && elsewhere) {
         *elsewhere = d;

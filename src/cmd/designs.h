@@ -17,8 +17,8 @@
 #define DESIGN_WORDS  "FILE, FILE:N (row or id), RUN:ID, RUN:knee or RUN:best_NAME"
 #define DESIGN_OF_RUN "an id of the run, knee or best_NAME; FILE:N, OTHER:ID"
 
-/* For design_free. n_floors: of the building that they are for. */
-Status designs_take(Designs *d, const char *word, int n_floors, Err *err);
+/* For design_free. space: of the building and the settings that they are for. */
+Status designs_take(Designs *d, const char *word, const DesignSpace *space, Err *err);
 
 /* A row of the run. A word that leads elsewhere (a file, another run) names that of the run's designs which has the same
  * variables; where none has, elsewhere holds the first that was found, for design_free, and row is run->table.n.

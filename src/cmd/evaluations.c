@@ -137,10 +137,9 @@ static Status describe_motion(EvaluatedRun *run, const Scenario *w, Err *err)
 static Status simulate(const Problem *p, size_t n_var, const double x[], SimResult results[], Err *err)
 {
     SimTask tasks[N_EVALUATED];
-    const int n_floors = tower_n_floors(tower_of(p));
-    if (n_floors + 2 != (int)n_var)
-        return fail(err, STATUS_BAD_DATA, "the front has designs of %d floors, the building has %d", (int)n_var - 2,
-                    n_floors);
+    if (p->n_var != n_var)
+        return fail(err, STATUS_BAD_DATA, "the front has designs of %zu variables, this building has %zu", n_var,
+                    p->n_var);
     for (int i = 0; i < N_EVALUATED; i++)
         tasks[i] = (SimTask){EVALUATION_CASES[i].kind, x};
     return tower_simulate(p, N_EVALUATED, tasks, results, err);

@@ -83,9 +83,9 @@ static Status take_design(const Args *args, const Settings *s, Designs *d, Err *
     if (!word || strcmp(word, "none") == 0 || args_has(args, "--rigid"))
         return fail(err, STATUS_USAGE, "--sensitivity needs --design with gaps, neither none nor --rigid");
     TRY(tower_open(&p, s, TOWER_SINGLE, 1, err));
-    const int n_floors = tower_n_floors(tower_of(&p));
+    const DesignSpace space = *tower_design(tower_of(&p));
     problem_close(&p);
-    return designs_take(d, word, n_floors, err);
+    return designs_take(d, word, &space, err);
 }
 
 Status show_sensitivities(const Args *args, const Settings *s, Err *err)

@@ -25,10 +25,13 @@ static Status simulate(const Problem *p, const double x[], Detail *d, Err *err)
 static void describe(const Scenario *w, const double x[], Detail *d)
 {
     const int n = d->n_floors;
-    const double t_base = x[n], t_top = x[n + 1], given = w->options.sim.duration_s;
+    const double given = w->options.sim.duration_s, as_set = w->options.contact.bumper_stiffness_n_m;
+    Design design;
+    design_of(scene_design(w->scene), x, &design);
     for (int j = 0; j < n; j++) {
-        d->gap_m[j] = x[j];
-        d->thickness_m[j] = n > 1 ? t_base + (t_top - t_base) * j / (n - 1) : t_base;
+        d->gap_m[j] = design.gap[j];
+        d->thickness_m[j] = design_thickness(scene_design(w->scene), &design, j);
+        d->bumper_n_m[j] = design.bumper[j] >= 0 ? design.bumper[j] : as_set;
     }
     snprintf(d->record, sizeof d->record, "%s", w->motion.name);
     d->pga_g = motion_peak(&w->motion) / GRAVITY;
@@ -97,9 +100,9 @@ static Status take_here(const Problem *p, int n_var, const double x[], const Det
     double rigid_hz[FLOORS_MAX], mass;
     d->n_floors = scene_n_floors(w->scene);
     d->floor = options->floor < 0 ? (d->n_floors - 1) / 2 : options->floor;
-    if (d->n_floors + 2 != n_var)
-        return fail(err, STATUS_BAD_DATA, "the front has designs of %d floors, the building has %d", n_var - 2,
-                    d->n_floors);
+    if ((int)p->n_var != n_var)
+        return fail(err, STATUS_BAD_DATA, "the front has designs of %d variables, the building has %zu", n_var,
+                    p->n_var);
     if (d->floor >= d->n_floors)
         return fail(err, STATUS_BAD_DATA, "--floor %d: the building has %d", d->floor + 1, d->n_floors);
     describe(w, x, d);

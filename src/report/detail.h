@@ -27,7 +27,7 @@ typedef struct {
 
 typedef struct {
     int n_floors, floor; /* floor from 0: whose displacement is followed */
-    double gap_m[FLOORS_MAX], thickness_m[FLOORS_MAX];
+    double gap_m[FLOORS_MAX], thickness_m[FLOORS_MAX], bumper_n_m[FLOORS_MAX]; /* the last 0: steel on steel */
     double building_hz[FLOORS_MAX], core_hz[FLOORS_MAX];
     char record[128];
     double pga_g, scale, stretch, duration_s;

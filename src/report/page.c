@@ -101,13 +101,14 @@ static json_t *json_of_detail(const Detail *d, const MeasureOrder *order)
                                                json_of_result(&e->no_core, order)));
     }
     return json_pack(
-        "{s:i, s:o, s:o, s:o, s:o, s:o, s:f, s:f, s:f, s:f, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "floor",
-        d->floor + 1, "gap_m", json_numbers(n, d->gap_m), "thickness_m", json_numbers(n, d->thickness_m), "building_hz",
-        json_numbers(n, d->building_hz), "core_hz", json_numbers(n, d->core_hz), "record", json_words(d->record),
-        "pga_g", d->pga_g, "scale", d->scale, "stretch", d->stretch, "duration_s", d->duration_s, "with_core",
-        json_of_result(&d->result[SCENE_IMPACT], order), "no_core", json_of_result(&d->result[SCENE_NO_CORE], order),
-        "rigid", json_of_result(&d->result[SCENE_RIGID], order), "tmd", json_of_result(&d->result[SCENE_TMD], order),
-        "links", json_of_result(&d->result[SCENE_LINKS], order), "baselines", json_of_baselines(d->baseline, order),
+        "{s:i, s:o, s:o, s:o, s:o, s:o, s:o, s:f, s:f, s:f, s:f, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "floor",
+        d->floor + 1, "gap_m", json_numbers(n, d->gap_m), "thickness_m", json_numbers(n, d->thickness_m), "bumper_n_m",
+        json_numbers(n, d->bumper_n_m), "building_hz", json_numbers(n, d->building_hz), "core_hz",
+        json_numbers(n, d->core_hz), "record", json_words(d->record), "pga_g", d->pga_g, "scale", d->scale, "stretch",
+        d->stretch, "duration_s", d->duration_s, "with_core", json_of_result(&d->result[SCENE_IMPACT], order),
+        "no_core", json_of_result(&d->result[SCENE_NO_CORE], order), "rigid",
+        json_of_result(&d->result[SCENE_RIGID], order), "tmd", json_of_result(&d->result[SCENE_TMD], order), "links",
+        json_of_result(&d->result[SCENE_LINKS], order), "baselines", json_of_baselines(d->baseline, order),
         "history_with_core", json_of_history(&d->history[0], &d->spectrum[0]), "history_no_core",
         json_of_history(&d->history[1], &d->spectrum[1]), "elsewhere", others);
 }

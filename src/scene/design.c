@@ -1,61 +1,190 @@
 #include "scene/design.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-void design_variable_name(int n_floors, int j, char name[TABLE_NAME_MAX])
+#include "base/list.h"
+
+/* -- variables ----------------------------------------------------------------------------------------------------- */
+
+enum { HAS_GAPS = 1, HAS_THICKNESS = 2, HAS_BUMPER = 4, HAS_SIDE = 8 };
+
+/* The words of design.variables as a set. */
+static Status take_words(const char *list, unsigned *set, Err *err)
 {
-    if (j < n_floors)
-        snprintf(name, TABLE_NAME_MAX, "gap_%02d_m", j + 1);
-    else
-        snprintf(name, TABLE_NAME_MAX, "%s", j == n_floors ? "t_base_m" : "t_top_m");
+    static const char *const WORDS[] = {"gaps", "thickness", "bumper", "side"};
+    enum { N = sizeof WORDS / sizeof WORDS[0] };
+    char word[64];
+    *set = 0;
+    for (size_t i = 0; i < list_count(list); i++) {
+        int k = 0;
+        if (!list_item(list, i, word, sizeof word))
+            return fail(err, STATUS_BAD_DATA, "design.variables: item %zu is empty or too long", i + 1);
+        if (strcmp(word, "symmetric") == 0)
+            return fail(err, STATUS_BAD_DATA,
+                        "design.variables: 'symmetric' is no choice: every gap is the same on both sides of the core; "
+                        "leave the word out");
+        while (k < N && strcmp(WORDS[k], word) != 0)
+            k++;
+        if (k == N)
+            return fail_no_word(err, STATUS_BAD_DATA, "design.variables", word, "variable", WORDS, N);
+        *set |= 1U << k;
+    }
+    return *set & HAS_GAPS && *set & HAS_THICKNESS
+               ? STATUS_OK
+               : fail(err, STATUS_BAD_DATA, "design.variables: gaps and thickness are always there; add to them");
 }
 
-static Status check_names(const Table *t, const char *path, int n_floors, Err *err)
+static Status check_zones(const char *key, long zones, int n_floors, Err *err)
 {
-    char name[TABLE_NAME_MAX];
-    const size_t n_var = (size_t)n_floors + 2;
+    return n_floors == 0 || zones <= n_floors
+               ? STATUS_OK
+               : fail(err, STATUS_BAD_DATA, "%s: %ld zones, but only %d floors", key, zones, n_floors);
+}
+
+Status design_space_make(DesignSpace *space, const DesignOptions *o, int n_floors, Err *err)
+{
+    unsigned set = HAS_GAPS | HAS_THICKNESS;
+    if (o->variables[0])
+        TRY(take_words(o->variables, &set, err));
+    TRY(check_zones("design.gap_zones", o->gap_zones, n_floors, err));
+    const int has_bumper = (set & HAS_BUMPER) != 0;
+    if (has_bumper)
+        TRY(check_zones("design.bumper_zones", o->bumper_zones, n_floors, err));
+    *space = (DesignSpace){.n_floors = n_floors,
+                           .gap_zones = (int)o->gap_zones,
+                           .bumper_zones = (int)o->bumper_zones,
+                           .has_side = (set & HAS_SIDE) != 0};
+    space->n_gaps = space->gap_zones ? space->gap_zones : n_floors;
+    space->n_bumpers = !has_bumper ? 0 : space->bumper_zones ? space->bumper_zones : n_floors;
+    space->n_var = space->n_gaps + 2 + space->n_bumpers + space->has_side;
+    return STATUS_OK;
+}
+
+int design_space_floors(const DesignOptions *o, int n_var)
+{
+    DesignSpace s;
+    Err unused;
+    for (int n = 1; n <= FLOORS_MAX; n++)
+        if (design_space_make(&s, o, n, &unused) == STATUS_OK && s.n_var == n_var)
+            return s.gap_zones && (s.n_bumpers == 0 || s.bumper_zones) ? 0 : n;
+    return 0;
+}
+
+static void zoned_name(char name[TABLE_NAME_MAX], const char *stem, const char *unit, int zones, int i)
+{
+    if (zones == 1)
+        snprintf(name, TABLE_NAME_MAX, "%s_%s", stem, unit);
+    else if (zones)
+        snprintf(name, TABLE_NAME_MAX, "%s_zone_%d_%s", stem, i + 1, unit);
+    else
+        snprintf(name, TABLE_NAME_MAX, "%s_%02d_%s", stem, i + 1, unit);
+}
+
+void design_variable_name(const DesignSpace *s, int j, char name[TABLE_NAME_MAX])
+{
+    if (j < s->n_gaps)
+        zoned_name(name, "gap", "m", s->gap_zones, j);
+    else if (j < s->n_gaps + 2)
+        snprintf(name, TABLE_NAME_MAX, "%s", j == s->n_gaps ? "t_base_m" : "t_top_m");
+    else if (j < s->n_gaps + 2 + s->n_bumpers)
+        zoned_name(name, "bumper", "log10_n_m", s->bumper_zones, j - s->n_gaps - 2);
+    else
+        snprintf(name, TABLE_NAME_MAX, "side_m");
+}
+
+void design_bounds(const DesignSpace *s, const DesignOptions *o, double lower[], double upper[])
+{
+    const int wall = s->n_gaps, bumper = wall + 2, side = bumper + s->n_bumpers;
+    for (int j = 0; j < s->n_var; j++) {
+        lower[j] = j < wall     ? o->gap_min_m
+                   : j < bumper ? o->thickness_min_m
+                   : j < side   ? log10(o->bumper_min_n_m)
+                                : o->side_min_m;
+        upper[j] = j < wall     ? o->gap_max_m
+                   : j < bumper ? o->thickness_max_m
+                   : j < side   ? log10(o->bumper_max_n_m)
+                                : o->side_max_m;
+    }
+}
+
+/* Which of `count` variables floor j has: its zone's, or its own. */
+static int zone_of(int count, int n_floors, int j)
+{
+    return j * count / n_floors;
+}
+
+void design_of(const DesignSpace *s, const double x[], Design *d)
+{
+    const double *bumper = x + s->n_gaps + 2;
+    for (int j = 0; j < s->n_floors; j++) {
+        d->gap[j] = x[zone_of(s->n_gaps, s->n_floors, j)];
+        d->bumper[j] = s->n_bumpers ? pow(10, bumper[zone_of(s->n_bumpers, s->n_floors, j)]) : -1;
+    }
+    d->t_base = x[s->n_gaps];
+    d->t_top = x[s->n_gaps + 1];
+    d->side = s->has_side ? bumper[s->n_bumpers] : 0;
+}
+
+double design_thickness(const DesignSpace *s, const Design *d, int j)
+{
+    return s->n_floors > 1 ? d->t_base + (d->t_top - d->t_base) * j / (s->n_floors - 1) : d->t_base;
+}
+
+/* -- files --------------------------------------------------------------------------------------------------------- */
+
+static Status check_names(const Table *t, const char *path, const DesignSpace *s, Err *err)
+{
+    char name[TABLE_NAME_MAX], first[TABLE_NAME_MAX], last[TABLE_NAME_MAX];
+    const size_t n_var = (size_t)s->n_var;
     for (size_t j = 0; j < n_var && j < t->n_cols; j++) {
-        design_variable_name(n_floors, (int)j, name);
+        design_variable_name(s, (int)j, name);
         if (strcmp(t->names[j], name) != 0)
             return fail(err, STATUS_BAD_DATA,
-                        "%s: column %zu of the header is '%s'; a design of %d floors has %s there", path, j + 1,
-                        t->names[j], n_floors, name);
+                        "%s: column %zu of the header is '%s'; a design of %d floors has %s there (design.variables)",
+                        path, j + 1, t->names[j], s->n_floors, name);
     }
+    design_variable_name(s, 0, first);
+    design_variable_name(s, s->n_var - 1, last);
     if (t->n_cols != n_var)
-        return fail(
-            err, STATUS_BAD_DATA,
-            "%s: the header has %zu columns; a design of %d floors has %zu: gap_01_m..gap_%02d_m,t_base_m,t_top_m",
-            path, t->n_cols, n_floors, n_var, n_floors);
+        return fail(err, STATUS_BAD_DATA,
+                    "%s: the header has %zu columns; a design of %d floors has %zu: %s..%s (design.variables)", path,
+                    t->n_cols, s->n_floors, n_var, first, last);
     return STATUS_OK;
 }
 
 static Status check_values(const Designs *d, const char *path, Err *err)
 {
     char name[TABLE_NAME_MAX];
-    const int n_var = d->n_floors + 2;
+    const DesignSpace *s = &d->space;
     for (size_t i = 0; i < d->n; i++)
-        for (int j = 0; j < n_var; j++) {
-            const double value = d->x[i * (size_t)n_var + (size_t)j];
-            design_variable_name(d->n_floors, j, name);
-            if (j < d->n_floors && value < 0)
+        for (int j = 0; j < s->n_var; j++) {
+            const double value = d->x[i * (size_t)s->n_var + (size_t)j];
+            const int is_log = j >= s->n_gaps + 2 && j < s->n_gaps + 2 + s->n_bumpers;
+            design_variable_name(s, j, name);
+            if (j < s->n_gaps && value < 0)
                 return fail(err, STATUS_BAD_DATA, "%s:%d: %s is %g; a gap is not negative", path, d->line[i], name,
                             value);
-            if (j >= d->n_floors && value <= 0)
-                return fail(err, STATUS_BAD_DATA, "%s:%d: %s is %g; a thickness must be above 0", path, d->line[i],
-                            name, value);
+            if (is_log && !(value > 0 && value < 15))
+                return fail(err, STATUS_BAD_DATA,
+                            "%s:%d: %s is %g; it is the decimal logarithm of a stiffness in N/m, 8 for 1e8 N/m", path,
+                            d->line[i], name, value);
+            if (j >= s->n_gaps && value <= 0)
+                return fail(err, STATUS_BAD_DATA, "%s:%d: %s is %g; %s must be above 0", path, d->line[i], name, value,
+                            j < s->n_gaps + 2 ? "a thickness" : "it");
         }
     return STATUS_OK;
 }
 
-Status design_of_table(Designs *d, Table *t, const char *path, int n_floors, Err *err)
+Status design_of_table(Designs *d, Table *t, const char *path, const DesignSpace *space, Err *err)
 {
     memset(d, 0, sizeof *d);
-    TRY(check_names(t, path, n_floors, err));
+    TRY(check_names(t, path, space, err));
     if (t->n_rows == 0)
         return fail(err, STATUS_BAD_DATA, "%s: holds no designs", path);
-    *d = (Designs){.n = t->n_rows, .n_floors = n_floors, .x = t->values, .line = t->line};
+    *d = (Designs){.n = t->n_rows, .space = *space, .x = t->values, .line = t->line};
     t->values = NULL;
     t->line = NULL;
     const Status status = check_values(d, path, err);
@@ -64,12 +193,12 @@ Status design_of_table(Designs *d, Table *t, const char *path, int n_floors, Err
     return status;
 }
 
-Status design_read(Designs *d, const char *path, int n_floors, Err *err)
+Status design_read(Designs *d, const char *path, const DesignSpace *space, Err *err)
 {
     Table t;
     memset(d, 0, sizeof *d);
     TRY(table_read(&t, path, 1, err));
-    const Status status = design_of_table(d, &t, path, n_floors, err);
+    const Status status = design_of_table(d, &t, path, space, err);
     table_free(&t);
     return status;
 }

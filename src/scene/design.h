@@ -1,12 +1,20 @@
-/* scene/design.h -- designs read from a CSV file.
+/* scene/design.h -- the design variables: which there are, what a design x of them is, and designs read from a CSV file.
  *
- *   gap_01_m,...,gap_NN_m,t_base_m,t_top_m        one column per floor, bottom floor first, then the core's thickness
- *   0.05,...,0.05,0.012,0.0064                    any number of rows
+ *   design.variables = gaps, thickness                gap_01_m..gap_NN_m, t_base_m, t_top_m        the paper's
+ *   design.gap_zones = 5                              gap_zone_1_m..gap_zone_5_m in place of a gap per floor
+ *   ..., bumper    design.bumper_zones = 1 | 0 | 3    bumper_log10_n_m | bumper_01_log10_n_m.. | bumper_zone_1_log10_n_m..
+ *   ..., side                                         side_m of the core's box
  *
- * Every fault names file, line and column. A negative or non-finite gap and a thickness that is not positive are refused;
- * t_top_m > t_base_m is let pass; the caller judges.
+ * x is in the order of these columns. A stiffness is its decimal logarithm in N/m: x is what the search scales linearly.
+ * Zone z of Z has the floors from z n/Z to (z + 1) n/Z. A gap is the same on both sides of the core.
  *
- * Ownership  design_read allocates, design_free releases (an empty Designs is fine). */
+ *   gap_01_m,...,gap_NN_m,t_base_m,t_top_m            a file: one column per variable in this order
+ *   0.05,...,0.05,0.012,0.0064                        any number of rows
+ *
+ * Every fault names file, line and column. A negative or non-finite gap, a thickness or side that is not positive are
+ * refused; t_top_m > t_base_m is let pass; the caller judges.
+ *
+ * Ownership  design_read allocates, design_free releases (an empty Designs is fine). Threads  no state */
 #ifndef IMTET_SCENE_DESIGN_H
 #define IMTET_SCENE_DESIGN_H
 
@@ -14,22 +22,52 @@
 
 #include "base/status.h"
 #include "base/table.h"
+#include "scene/options.h"
+
+enum { DESIGN_VARIABLES_MAX = 2 * FLOORS_MAX + 3 };
+
+/* x: n_gaps gaps, t_base, t_top, n_bumpers stiffnesses, has_side sides. */
+typedef struct {
+    int n_floors, n_var, n_gaps, n_bumpers, has_side;
+    int gap_zones, bumper_zones; /* 0: a variable per floor */
+} DesignSpace;
+
+/* n_floors 0: not known; then gaps and bumpers that are one per floor are none. */
+Status design_space_make(DesignSpace *space, const DesignOptions *o, int n_floors, Err *err);
+
+/* Floors of designs of n_var variables; 0: any number of floors has so many, or none. */
+int design_space_floors(const DesignOptions *o, int n_var);
+
+/* Name of variable j = 0..n_var-1. */
+void design_variable_name(const DesignSpace *space, int j, char name[TABLE_NAME_MAX]);
+
+/* The box of the search (n_var). */
+void design_bounds(const DesignSpace *space, const DesignOptions *o, double lower[], double upper[]);
+
+/* A design as it is built. */
+typedef struct {
+    double gap[FLOORS_MAX];    /* [m] */
+    double bumper[FLOORS_MAX]; /* [N/m]; < 0: as contact.bumper_stiffness_n_m says */
+    double t_base, t_top;      /* [m] */
+    double side;               /* [m]; 0: as core.side_m says */
+} Design;
+void design_of(const DesignSpace *space, const double x[], Design *d);
+
+/* Thickness of the core in storey j = 0..n_floors-1 [m]. */
+double design_thickness(const DesignSpace *space, const Design *d, int j);
 
 typedef struct {
     size_t n;
-    int n_floors;
-    double *x; /* [m] (n, n_floors + 2) */
+    DesignSpace space;
+    double *x; /* (n, space.n_var) */
     int *line; /* (n) of the file */
     long *id;  /* (n) as the run that they are of numbers them; NULL: designs of a file */
 } Designs;
 
-/* Name of variable j = 0..n_floors+1. */
-void design_variable_name(int n_floors, int j, char name[TABLE_NAME_MAX]);
-
-Status design_read(Designs *d, const char *path, int n_floors, Err *err);
+Status design_read(Designs *d, const char *path, const DesignSpace *space, Err *err);
 
 /* The same of a table that is read already; its numbers pass over to the designs. */
-Status design_of_table(Designs *d, Table *t, const char *path, int n_floors, Err *err);
+Status design_of_table(Designs *d, Table *t, const char *path, const DesignSpace *space, Err *err);
 void design_free(Designs *d);
 
 #endif

@@ -88,7 +88,10 @@ typedef struct {
 } MotionOptions;
 
 typedef struct {
+    char variables[OPTION_TEXT_MAX]; /* words (scene/design.h); empty: gaps, thickness */
+    long gap_zones, bumper_zones;    /* 0: one per floor */
     double gap_min_m, gap_max_m, thickness_min_m, thickness_max_m;
-} DesignOptions; /* bounds of the design variables */
+    double bumper_min_n_m, bumper_max_n_m, side_min_m, side_max_m;
+} DesignOptions; /* the design variables and their bounds */
 
 #endif

@@ -14,6 +14,7 @@
 #include "base/list.h"
 #include "base/table.h"
 #include "scene/builtin.h"
+#include "scene/design.h"
 #include "scene/motion_scale.h"
 
 typedef enum { KIND_REAL, KIND_WHOLE, KIND_CHOICE, KIND_TEXT, KIND_PATH, KIND_PATH_LIST } Kind;
@@ -190,10 +191,19 @@ static const Option OPTIONS[] = {
     REAL(uncertain.building_stiffness, "-", "0", 0, 10, "of the building's stiffness, as a share of it"),
     REAL(uncertain.damping, "-", "0", 0, 10, "of the damping ratios of building and core, each as a share of it"),
 
+    TEXT(design.variables, "gaps, thickness",
+         "what is designed: gaps, thickness, and further bumper (stiffness, by its logarithm), side (of the box)"),
+    WHOLE(design.gap_zones, "0", 0, 128, "0: a gap for every floor; else one for each of so many zones of floors"),
+    WHOLE(design.bumper_zones, "1", 0, 128, "bumpers of so many zones of floors differ; 1: all are alike; 0: by floor"),
     REAL(design.gap_min_m, "m", "0.001", 0, 10, "bound of the search: smallest gap"),
     REAL(design.gap_max_m, "m", "0.5", 1e-6, 10, "bound of the search: largest gap"),
     REAL(design.thickness_min_m, "m", "0.004", 1e-6, 10, "bound of the search: smallest core thickness"),
     REAL(design.thickness_max_m, "m", "0.04", 1e-6, 10, "bound of the search: largest core thickness"),
+    REAL(design.bumper_min_n_m, "N/m", "1e7", 1e3, 1e13, "bound of the search: softest bumper"),
+    REAL(design.bumper_max_n_m, "N/m", "1e10", 1e3, 1e14, "bound of the search: stiffest bumper"),
+    REAL(design.side_min_m, "m", "6", 0.1, 200, "bound of the search: smallest side of the box"),
+    REAL(design.side_max_m, "m", "15", 0.1, 200,
+         "bound of the search: largest side of the box, by the footprint it may take"),
 
     CHOICE(problem.kind, ProblemKind, CHOICE_WORDS(PROBLEM_KIND_LIST), "tower",
            "tower: gaps and core thickness of the scene; external: your own simulator; the others: test problems of "
@@ -646,6 +656,31 @@ static void check_motion(const MotionOptions *m, const Rules *r)
                    "motion.highpass_hz: %g must be below motion.lowpass_hz = %g", m->highpass_hz, m->lowpass_hz);
 }
 
+static void check_variables(const Settings *s, const Rules *r)
+{
+    const DesignOptions *d = &s->design;
+    DesignSpace space;
+    Err err;
+    if (design_space_make(&space, d, 0, &err) != STATUS_OK) {
+        break_rule(r, (size_t[]){AT(design.variables), AT(design.variables), AT(design.variables)}, "%s", err.text);
+        return;
+    }
+    if (d->bumper_min_n_m >= d->bumper_max_n_m)
+        break_rule(r, (size_t[]){AT(design.bumper_min_n_m), AT(design.bumper_max_n_m), AT(design.bumper_max_n_m)},
+                   "design.bumper_min_n_m: %g must be below design.bumper_max_n_m = %g", d->bumper_min_n_m,
+                   d->bumper_max_n_m);
+    if (d->side_min_m >= d->side_max_m)
+        break_rule(r, (size_t[]){AT(design.side_min_m), AT(design.side_max_m), AT(design.side_max_m)},
+                   "design.side_min_m: %g must be below design.side_max_m = %g", d->side_min_m, d->side_max_m);
+    if (space.has_side && s->core.section != CORE_BOX)
+        break_rule(r, (size_t[]){AT(design.variables), AT(core.section), AT(core.section)},
+                   "design.variables: side is that of core.section = box");
+    if (space.has_side && 2 * d->thickness_max_m > d->side_min_m)
+        break_rule(r, (size_t[]){AT(design.side_min_m), AT(design.thickness_max_m), AT(design.variables)},
+                   "design.side_min_m: twice design.thickness_max_m = %g m does not fit into %g m", d->thickness_max_m,
+                   d->side_min_m);
+}
+
 static void check_rules(const Settings *s, const Rules *r)
 {
     check_motion(&s->motion, r);
@@ -676,6 +711,7 @@ static void check_rules(const Settings *s, const Rules *r)
         break_rule(r, (size_t[]){AT(search.replicates_min), AT(search.replicate_share), AT(search.replicate_share)},
                    "search.replicates_min: %ld simulations of a design need search.replicate_share above 0",
                    s->search.replicates_min);
+    check_variables(s, r);
     if (s->core.section == CORE_BOX && 2 * s->design.thickness_max_m > s->core.side_m)
         break_rule(r, (size_t[]){AT(design.thickness_max_m), AT(core.side_m), AT(core.section)},
                    "design.thickness_max_m: twice %g m does not fit into core.side_m = %g", s->design.thickness_max_m,

@@ -39,7 +39,7 @@ typedef struct Settings {
 /* What a scene needs of them. */
 static inline SceneOptions settings_scene(const Settings *s)
 {
-    return (SceneOptions){s->building, s->core, s->contact, s->sim};
+    return (SceneOptions){s->building, s->core, s->contact, s->sim, s->design};
 }
 
 void settings_defaults(Settings *s);

@@ -196,7 +196,7 @@ static void set_reach(ForceMonitor *m, const Building *b, const CoreBeam *core)
 }
 
 void force_monitor_set(ForceMonitor *m, const SceneOptions *o, const Building *b, const CoreBeam *core,
-                       const double x[])
+                       const double thickness[2])
 {
     const int n = m->n;
     m->options = *o;
@@ -207,8 +207,8 @@ void force_monitor_set(ForceMonitor *m, const SceneOptions *o, const Building *b
         m->z[s + 1] = m->z[s] + b->storey_m[s];
     for (int i = 0; i < n * n; i++)
         m->weight_n += b->M[i] * GRAVITY;
-    m->thickness[0] = core ? x[n] : 0;
-    m->thickness[1] = core ? x[n + 1] : 0;
+    m->thickness[0] = core ? thickness[0] : 0;
+    m->thickness[1] = core ? thickness[1] : 0;
     set_building_rows(m, b);
     set_core_rows(m, core);
     set_reach(m, b, core);

@@ -84,6 +84,7 @@ typedef struct {
     CoreOptions core;
     ContactOptions contact;
     SimOptions sim;
+    DesignOptions design; /* which variables a design x has (scene/design.h) */
 } SceneOptions;
 
 #endif

@@ -20,6 +20,7 @@ struct Scene {
     SceneOptions options;
     const Motion *motion; /* borrowed */
     Building building;
+    DesignSpace design;
     const EngineEntry *engine;
     double *tail_input; /* (n of the motion), NULL without one */
     EngineOptions run;  /* of every run; each worker adds its own work space and sample function */
@@ -86,6 +87,8 @@ Status scene_create(Scene **out, const SceneOptions *o, const Motion *motion, Er
     if (scene->run.duration == 0 && motion)
         scene->run.duration = (double)(motion->n - 1) * motion->dt_s;
     Status status = building_load(&scene->building, &o->building, err);
+    if (status == STATUS_OK)
+        status = design_space_make(&scene->design, &o->design, scene->building.n, err);
     if (status == STATUS_OK && motion)
         status = set_tail_input(scene, err);
     if (status == STATUS_OK)
@@ -119,6 +122,11 @@ const Building *scene_building(const Scene *scene)
     return &scene->building;
 }
 
+const DesignSpace *scene_design(const Scene *scene)
+{
+    return &scene->design;
+}
+
 static Status zero_gap_modes(const Building *b, const CoreBeam *c, double hz[], Err *err)
 {
     const int n = b->model.n, nn = n * n;
@@ -138,10 +146,15 @@ Status scene_frequencies(const Scene *scene, const double x[], double building_h
                          double zero_gap_hz[], double *core_mass_kg, Err *err)
 {
     const int n = scene->building.n;
+    CoreOptions options = scene->options.core;
     CoreBeam *core = malloc(sizeof *core);
     if (!core)
         return fail(err, STATUS_NO_MEMORY, "modes: out of memory");
-    Status status = core_beam_make(core, &scene->options.core, n, scene->building.storey_m, x[n], x[n + 1], err);
+    Design d;
+    design_of(&scene->design, x, &d);
+    if (d.side > 0)
+        options.side_m = d.side;
+    Status status = core_beam_make(core, &options, n, scene->building.storey_m, d.t_base, d.t_top, err);
     if (status == STATUS_OK)
         status = zero_gap_modes(&scene->building, core, zero_gap_hz, err);
     for (int i = 0; i < n && status == STATUS_OK; i++) {
@@ -372,6 +385,17 @@ Status sim_worker_as_built(SimWorker *w, const AsBuilt *built, Err *err)
     return STATUS_OK;
 }
 
+static Status make_core(SimWorker *w, const Design *d, Err *err)
+{
+    if (d->side > 0 && w->options != &w->own_options) {
+        w->own_options = *w->options;
+        w->options = &w->own_options;
+    }
+    if (d->side > 0)
+        w->own_options.core.side_m = d->side;
+    return core_beam_make(&w->core, &w->options->core, w->building->n, w->building->storey_m, d->t_base, d->t_top, err);
+}
+
 void sim_worker_device(SimWorker *worker, const LinearDevice *device)
 {
     worker->device = *device;
@@ -380,30 +404,51 @@ void sim_worker_device(SimWorker *worker, const LinearDevice *device)
 Status sim_sketch(SimWorker *w, SceneKind kind, const double x[], const LinearSketch *sketch, SimResult *result,
                   Err *err)
 {
-    const int n = w->building->n;
     const LinearRun run = {fmin(sketch->duration, w->run.duration), sketch->step, NULL, NULL};
     LinearSystem s;
-    TRY(core_beam_make(&w->core, &w->options->core, n, w->building->storey_m, x[n], x[n + 1], err));
+    Design d;
+    design_of(&w->scene->design, x, &d);
+    TRY(make_core(w, &d, err));
     TRY(linear_system_make(&s, linear_kind(kind), w->options, w->building, &w->core, &w->device, sketch->n_modes, err));
     const Status status = linear_run(&s, w->scene->motion, &run, result, err);
     linear_system_free(&s);
     return status;
 }
 
+static Status set_impacts(SimWorker *w, const Design *d, Err *err)
+{
+    TRY(model_set(&w->model, w->options, w->building, &w->core, d->gap, err));
+    /* as built: the modulus is that of all parts of the contact */
+    const double built = w->options->contact.youngs_modulus_pa / w->scene->options.contact.youngs_modulus_pa;
+    for (int j = 0; j < w->model.n; j++)
+        if (d->bumper[j] >= 0)
+            w->model.contact[j].bumper = built * d->bumper[j];
+    return STATUS_OK;
+}
+
 Status sim_run(SimWorker *w, SceneKind kind, const double x[], SimResult *result, Err *err)
 {
-    const int n = w->building->n;
+    Design d = {0};
+    if (kind != SCENE_NO_CORE)
+        design_of(&w->scene->design, x, &d);
+    return sim_run_built(w, kind, &d, result, err);
+}
+
+Status sim_run_built(SimWorker *w, SceneKind kind, const Design *d, SimResult *result, Err *err)
+{
     const double start = clock_seconds();
     memset(result, 0, sizeof *result);
     if (kind != SCENE_NO_CORE)
-        TRY(core_beam_make(&w->core, &w->options->core, n, w->building->storey_m, x[n], x[n + 1], err));
+        TRY(make_core(w, d, err));
     if (w->run.forces)
         force_monitor_set(w->run.forces, w->options, w->building,
-                          kind == SCENE_NO_CORE || kind == SCENE_TMD ? NULL : &w->core, x);
+                          kind == SCENE_NO_CORE || kind == SCENE_TMD ? NULL : &w->core,
+                          (double[]){d->t_base, d->t_top});
     if (is_linear(kind)) {
         TRY(run_linear(w, kind, result, err));
     } else {
-        TRY(model_set(&w->model, w->options, w->building, kind == SCENE_IMPACT ? &w->core : NULL, x, err));
+        TRY(kind == SCENE_IMPACT ? set_impacts(w, d, err)
+                                 : model_set(&w->model, w->options, w->building, NULL, NULL, err));
         TRY(run_engine(w, result, err));
     }
     if (w->run.forces) {

@@ -14,6 +14,7 @@
 #ifndef IMTET_SIM_SIM_H
 #define IMTET_SIM_SIM_H
 
+#include "scene/design.h"
 #include "scene/motion.h"
 #include "sim/options.h"
 #include "sim/result.h"
@@ -43,9 +44,10 @@ void scene_set_engine(Scene *scene, const struct EngineEntry *engine);
 
 int scene_n_floors(const Scene *scene);
 const Building *scene_building(const Scene *scene);
+const DesignSpace *scene_design(const Scene *scene); /* the variables of a design x: SceneOptions.design */
 
-/* Undamped natural frequencies [Hz], ascending, the n_floors lowest; each array has room for FLOORS_MAX. x: the design variables, gap_1..n
- * [m], t_base, t_top [m] (n_floors + 2). */
+/* Undamped natural frequencies [Hz], ascending, the n_floors lowest; each array has room for FLOORS_MAX. x: a design
+ * of scene_design. */
 Status scene_frequencies(const Scene *scene, const double x[], double building_hz[], double core_hz[],
                          double zero_gap_hz[], double *core_mass_kg, Err *err);
 
@@ -86,7 +88,10 @@ typedef struct {
 Status sim_sketch(SimWorker *worker, SceneKind kind, const double x[], const LinearSketch *sketch, SimResult *result,
                   Err *err);
 
-/* x (n_floors + 2) as above; ignored for SCENE_NO_CORE. */
+/* x as above; ignored for SCENE_NO_CORE. */
 Status sim_run(SimWorker *worker, SceneKind kind, const double x[], SimResult *result, Err *err);
+
+/* The same of a design as it is built. */
+Status sim_run_built(SimWorker *worker, SceneKind kind, const Design *design, SimResult *result, Err *err);
 
 #endif

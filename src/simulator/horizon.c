@@ -75,11 +75,11 @@ static void compare(const Track *a, const Track *b, Horizon *out)
 
 Status horizon_find(const Scenario *scenario, const double x[], double change, Horizon *out, Err *err)
 {
-    const size_t n = (size_t)scene_n_floors(scenario->scene);
-    double changed[FLOORS_MAX + 2];
+    const DesignSpace *design = scene_design(scenario->scene);
+    double changed[DESIGN_VARIABLES_MAX];
     Track one = {0}, other = {0};
-    for (size_t j = 0; j < n + 2; j++)
-        changed[j] = x[j] * (j < n ? 1 + change : 1);
+    for (int j = 0; j < design->n_var; j++)
+        changed[j] = x[j] * (j < design->n_gaps ? 1 + change : 1);
     Status status = follow(scenario, x, &one, err);
     if (status == STATUS_OK)
         status = follow(scenario, changed, &other, err);

@@ -13,19 +13,22 @@ static Status allocate(Schema *schema, Err *err)
     return schema->column ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for %zu columns", schema->n_var);
 }
 
-static Status schema_of_tower(Schema *schema, const char *objectives, int n_floors, Err *err)
+static Status schema_of_tower(Schema *schema, const Settings *s, int n_floors, Err *err)
 {
     MeasureOrder order;
-    TRY(measures_order(&order, objectives, n_floors, err));
-    *schema = (Schema){.n_var = (size_t)n_floors + 2,
+    DesignSpace design;
+    TRY(design_space_make(&design, &s->design, n_floors, err));
+    TRY(measures_order(&order, s->search.objectives, n_floors, err));
+    *schema = (Schema){.n_var = (size_t)design.n_var,
+                       .design = design,
                        .n_obj = (size_t)order.n_obj,
                        .n_extra = (size_t)(N_MEASURES - order.n_obj),
                        .order = order};
     TRY(allocate(schema, err));
-    for (int j = 0; j < n_floors + 2; j++)
-        design_variable_name(n_floors, j, schema->column[j].name);
+    for (int j = 0; j < design.n_var; j++)
+        design_variable_name(&design, j, schema->column[j].name);
     for (int k = 0; k < N_MEASURES; k++) {
-        Column *c = &schema->column[n_floors + 2 + k];
+        Column *c = &schema->column[design.n_var + k];
         snprintf(c->name, sizeof c->name, "%s", measure(order.of[k])->name);
         c->sense = measure(order.of[k])->sense;
     }
@@ -86,7 +89,7 @@ int schema_is_noisy(const Settings *s)
 Status schema_of(Schema *schema, const Settings *s, int n_floors, Err *err)
 {
     if (s->problem.kind == PROBLEM_TOWER) {
-        TRY(schema_of_tower(schema, s->search.objectives, n_floors, err));
+        TRY(schema_of_tower(schema, s, n_floors, err));
         schema->has_spread = s->sim.replicates > 1 || schema_is_noisy(s);
         return STATUS_OK;
     }

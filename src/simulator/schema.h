@@ -9,6 +9,7 @@
 
 #include "base/list.h"
 #include "base/table.h"
+#include "scene/design.h"
 #include "simulator/measures.h"
 
 typedef struct Settings Settings;
@@ -22,6 +23,7 @@ typedef struct {
 
 typedef struct {
     size_t n_var, n_obj, n_extra;
+    DesignSpace design; /* of a tower */
     Column *column;
     MeasureOrder order; /* of the tower: measures behind the columns; else empty */
     int has_spread; /* front.csv ends with NAME_sd of every objective and replicates: designs are several simulations

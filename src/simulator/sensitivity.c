@@ -20,7 +20,8 @@ enum { N_KEYS = sizeof KEYS / sizeof KEYS[0] };
 
 typedef struct {
     Settings settings;
-    size_t n_replicates, n_floors;
+    size_t n_replicates;
+    DesignSpace space;
     const double *x;
     SimResult *results; /* (SIDES_OF_TWO_STEPS, n_replicates) of a parameter */
     Err *why;           /* the same */
@@ -40,14 +41,17 @@ static Status simulate(const Job *job, const Tower *t, size_t variable, double c
     const uint32_t seed = (uint32_t)job->settings.search.seed;
     const UncertainOptions *u = &job->settings.uncertain;
     SimWorker *w = tower_worker(t, 0, (size_t)omp_get_thread_num());
-    double x[FLOORS_MAX + 2];
-    memcpy(x, job->x, (job->n_floors + 2) * sizeof *x);
-    if (variable < job->n_floors + 2)
+    const size_t n_var = (size_t)job->space.n_var;
+    double x[DESIGN_VARIABLES_MAX];
+    Design design;
+    memcpy(x, job->x, n_var * sizeof *x);
+    if (variable < n_var)
         x[variable] += change;
-    replicate_design(seed, k, job->settings.sim.gap_tolerance_m, job->n_floors, x);
+    design_of(&job->space, x, &design);
+    replicate_design(seed, k, job->settings.sim.gap_tolerance_m, (size_t)job->space.n_floors, design.gap);
     const AsBuilt built = replicate_as_built(seed, k, u);
     TRY(sim_worker_as_built(w, k > 0 && is_uncertain(u) ? &built : NULL, err));
-    return sim_run(w, SCENE_IMPACT, x, out, err);
+    return sim_run_built(w, SCENE_IMPACT, &design, out, err);
 }
 
 /* Sides first .. first + n - 1 of the steps on one tower. */
@@ -110,10 +114,10 @@ static void conclude(const Job *job, Sensitivity *out)
 
 static Status vary_design(Job *job, const Tower *t, Sensitivity *out, Err *err)
 {
-    for (size_t j = 0; j < job->n_floors + 2; j++) {
-        design_variable_name((int)job->n_floors, (int)j, out[j].name);
+    for (size_t j = 0; j < (size_t)job->space.n_var; j++) {
+        design_variable_name(&job->space, (int)j, out[j].name);
         out[j].value = job->x[j];
-        out[j].step = j < job->n_floors ? fmin(GAP_STEP, 0.5 * job->x[j]) : SHARE * job->x[j];
+        out[j].step = j < (size_t)job->space.n_gaps ? fmin(GAP_STEP, 0.5 * job->x[j]) : SHARE * job->x[j];
         if (out[j].step <= 0) {
             for (int k = 0; k < N_MEASURES; k++)
                 out[j].slope[k] = out[j].error[k] = NAN;
@@ -144,8 +148,8 @@ static Status vary_settings(Job *job, Sensitivity *out, size_t *n, Err *err)
 static Status find(Job *job, const Tower *t, Sensitivity **out, size_t *n, Err *err)
 {
     const size_t parts = SIDES_OF_TWO_STEPS * job->n_replicates;
-    job->n_floors = (size_t)tower_n_floors(t);
-    *n = job->n_floors + 2;
+    job->space = *tower_design(t);
+    *n = (size_t)job->space.n_var;
     *out = calloc(*n + N_KEYS, sizeof **out);
     job->results = calloc(parts, sizeof *job->results);
     job->why = calloc(parts, sizeof *job->why);

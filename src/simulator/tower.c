@@ -23,8 +23,13 @@ struct Tower {
     ReplicatePlan plan; /* n_records of which are open */
     MeasureOrder order;
     Record record[TOWER_RECORDS_MAX];
-    double lower[FLOORS_MAX + 2], upper[FLOORS_MAX + 2];
+    double lower[DESIGN_VARIABLES_MAX], upper[DESIGN_VARIABLES_MAX];
 };
+
+const DesignSpace *tower_design(const Tower *t)
+{
+    return scene_design(t->record[0].scene);
+}
 
 static Status simulate(void *self, size_t worker, const Task *task, Err *err)
 {
@@ -32,15 +37,16 @@ static Status simulate(void *self, size_t worker, const Task *task, Err *err)
     const size_t n = t->plan.n_replicates, k = task->repeat * n + task->part % n;
     const SceneKind kind = (SceneKind)task->variant;
     SimWorker *w = t->record[task->part / n].worker[worker];
-    double x[FLOORS_MAX + 2];
-    memcpy(x, task->x, (t->n_floors + 2) * sizeof *x);
+    Design design = {0};
+    if (kind != SCENE_NO_CORE)
+        design_of(tower_design(t), task->x, &design);
     if (kind == SCENE_IMPACT)
-        replicate_design(t->seed, k, t->tolerance_m, t->n_floors, x);
+        replicate_design(t->seed, k, t->tolerance_m, t->n_floors, design.gap);
     if (is_uncertain(&t->uncertain)) {
         const AsBuilt built = replicate_as_built(t->seed, k, &t->uncertain);
         TRY(sim_worker_as_built(w, kind == SCENE_IMPACT && k > 0 ? &built : NULL, err));
     }
-    return sim_run(w, kind, x, task->result, err);
+    return sim_run_built(w, kind, &design, task->result, err);
 }
 
 static void combine(const void *self, const void *parts, Evaluation *e)
@@ -116,20 +122,12 @@ static Status open_records(Tower *t, const Settings *s, TowerUse use, Err *err)
     return STATUS_OK;
 }
 
-static void set_bounds(Tower *t, const DesignOptions *o)
-{
-    for (size_t j = 0; j < t->n_floors + 2; j++) {
-        t->lower[j] = j < t->n_floors ? o->gap_min_m : o->thickness_min_m;
-        t->upper[j] = j < t->n_floors ? o->gap_max_m : o->thickness_max_m;
-    }
-}
-
 /* Swapping keeps both thicknesses in the box and the sample spread out; clipping would pile designs up on
  * t_top = t_base. */
 static void swap_if_top_heavy(double x[], const void *self)
 {
     const Tower *t = self;
-    double *t_base = &x[t->n_floors], *t_top = t_base + 1;
+    double *t_base = &x[tower_design(t)->n_gaps], *t_top = t_base + 1;
     if (*t_top > *t_base) {
         const double thicker = *t_top;
         *t_top = *t_base;
@@ -139,7 +137,7 @@ static void swap_if_top_heavy(double x[], const void *self)
 
 static Problem problem_on(Tower *t)
 {
-    return (Problem){.n_var = t->n_floors + 2,
+    return (Problem){.n_var = (size_t)tower_design(t)->n_var,
                      .n_obj = (size_t)t->order.n_obj,
                      .n_extra = (size_t)(N_MEASURES - t->order.n_obj),
                      .lower = t->lower,
@@ -187,7 +185,7 @@ Status tower_open(Problem *p, const Settings *s, TowerUse use, size_t n_tasks, E
                               .spread = spread_word(s->sim.gap_tolerance_m, &s->uncertain),
                               .judged = order.objectives | limits_measures(s->search.limits)};
     TRY(finish_opening(p, t, s->search.objectives, open_records(t, s, use, err), err));
-    set_bounds(t, &s->design);
+    design_bounds(tower_design(t), &s->design, t->lower, t->upper);
     return STATUS_OK;
 }
 

@@ -1,6 +1,6 @@
 /* simulator/tower.h -- the simulator of the building with its core: settings made a problem of gaps and thicknesses.
  *
- *   design     n_floors gaps, t_base, t_top [m]; t_top > t_base is repaired by swapping the two
+ *   design     by design.variables (scene/design.h); t_top > t_base is repaired by swapping the two
  *   objectives those of search.objectives, extra the other measures (simulator/measures.h)
  *   parts      n_records x n_replicates (simulator/replicates.h), each a SimResult; replicate k of repeat r is the
  *              replicate r n_replicates + k of the design
@@ -35,6 +35,7 @@ Status tower_open_scene(Problem *p, const Scene *scene, size_t n_replicates, uin
 const Tower *tower_of(const Problem *p);
 
 int tower_n_floors(const Tower *t);
+const DesignSpace *tower_design(const Tower *t);
 size_t tower_n_records(const Tower *t);
 const MeasureOrder *tower_measures(const Tower *t);
 const Scenario *tower_record(const Tower *t, size_t i); /* 0: motion.record */
@@ -44,7 +45,7 @@ ReplicatePlan tower_plan(const Tower *t);
 
 typedef struct {
     SceneKind kind;
-    const double *x; /* (n_floors + 2); NULL for SCENE_NO_CORE */
+    const double *x; /* (n_var); NULL for SCENE_NO_CORE */
 } SimTask;
 
 /* n simulations of the first record, without replicates, shared out over the workers. */

@@ -1,5 +1,6 @@
 #include "store/run_read.h"
 
+#include <jansson.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -177,6 +178,18 @@ static Status take_state(sqlite3_stmt *row, void *user, Err *err)
     return STATUS_OK;
 }
 
+/* Of the building of a tower: by the variables that are one per floor, else as the provenance says. */
+static int floors_of(const Run *run, int n_var)
+{
+    int n = design_space_floors(&run->settings->design, n_var);
+    if (n > 0)
+        return n;
+    json_t *all = json_loads(run->provenance, 0, NULL);
+    n = (int)json_integer_value(json_object_get(json_object_get(all, "inputs"), "floors"));
+    json_decref(all);
+    return n > 0 && n <= FLOORS_MAX ? n : 0;
+}
+
 static Status take_head(sqlite3_stmt *row, void *user, Err *err)
 {
     const Loading *l = user;
@@ -200,10 +213,14 @@ static Status take_head(sqlite3_stmt *row, void *user, Err *err)
         return fail(err, STATUS_IO, "%s: is damaged: it has %ld variables", database_path(l->d), n_var);
     if (!tables_head_is_whole(row))
         return fail(err, STATUS_IO, "%s: is damaged: its settings are not what was written", database_path(l->d));
+    const int n_floors = is_tower ? floors_of(run, (int)n_var) : 0;
     if (!run->settings->search.objectives[0]) /* from before the setting: the paper's seven */
         snprintf(run->settings->search.objectives, OPTION_TEXT_MAX, "%s",
-                 measure_exists(MEASURE_ED5_10, (int)n_var - 2) ? "auto" : "paper");
-    return schema_of(&run->schema, run->settings, (int)n_var - 2, err);
+                 measure_exists(MEASURE_ED5_10, n_floors) ? "auto" : "paper");
+    TRY(schema_of(&run->schema, run->settings, n_floors, err));
+    return run->schema.n_var == (size_t)n_var
+               ? STATUS_OK
+               : fail(err, STATUS_IO, "%s: is damaged: it has %ld variables", database_path(l->d), n_var);
 }
 
 /* The columns, with the digest where the format has one, from the rest of the query. */

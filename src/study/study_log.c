@@ -31,7 +31,7 @@ static Status log_problem(RunStore *store, const Adapter *adapter, const Setting
         TRY(log_motions(store, adapter_tower(adapter), err));
         if (left_out)
             TRY(store_log(store, err, "%s", left_out));
-        return store_log(store, err, "%s: %zu floors, %d threads, seed %ld", program, schema->n_var - 2, threads,
+        return store_log(store, err, "%s: %d floors, %d threads, seed %ld", program, schema->design.n_floors, threads,
                          used->search.seed);
     }
     return store_log(store, err, "%s: %zu variables, %zu objectives, %d threads, seed %ld", program, schema->n_var,

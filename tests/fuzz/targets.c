@@ -123,7 +123,9 @@ void fuzz_table(const uint8_t *data, size_t size)
     }
     const int fd = file_of(data, size, path);
     Err err = {0};
-    const Status status = design_read(&d, path, 2, &err);
+    DesignSpace space;
+    demand(design_space_make(&space, &(DesignOptions){0}, 2, &err) == STATUS_OK, "the paper's variables");
+    const Status status = design_read(&d, path, &space, &err);
     demand_reason(status, &err);
     for (size_t i = 0; status == STATUS_OK && i < d.n * 4; i++)
         demand(d.x[i] >= 0, "gaps and walls are not negative");

@@ -16,11 +16,19 @@ const WORDS = {
   mcore_kg: ["core mass", "t", 1e-3, "mass of the core"],
   t_base_m: ["thickness, base", "mm", 1e3, "thickness of the core, first storey"],
   t_top_m: ["thickness, top", "mm", 1e3, "thickness of the core, last storey"],
+  side_m: ["side of the core", "m", 1, "outer side of the core's box"],
 };
 
 function words(name, unit, what) {
   const gap = run.tower && name.match(/^gap_0*(\d+)_m$/);
   if (gap) return [`gap ${gap[1]}`, "mm", 1e3, `gap at floor ${gap[1]}`];
+  const zone = run.tower && name.match(/^gap(?:_zone_(\d+))?_m$/);
+  if (zone) return [zone[1] ? `gap, zone ${zone[1]}` : "gap", "mm", 1e3, zone[1] ? `gap at the floors of zone ${zone[1]}` : "gap at every floor"];
+  const bumper = run.tower && name.match(/^bumper(?:_(zone_)?0*(\d+))?_log10_n_m$/);
+  if (bumper) {
+    const where = bumper[2] ? `${bumper[1] ? "zone" : "floor"} ${bumper[2]}` : "every floor";
+    return [bumper[2] ? `bumper, ${where}` : "bumper", "log10 N/m", 1, `stiffness of the bumper at ${where}, decimal logarithm`];
+  }
   if (run.tower && WORDS[name]) return WORDS[name];
   return [name, unit === "-" ? "" : unit, 1, what];
 }

@@ -122,11 +122,11 @@ function scatterMatrix(host) {
     card.style.left = `${margin.left + (m - 4) * (size.w + gap)}px`;
     card.style.top = `${margin.top}px`;
     card.style.width = `${w}px`;
-    const shown = run.tower ? variables.slice(0, -2) : variables;
+    const shown = run.tower ? variables.filter((c) => c.name.startsWith("gap_")) : variables;
     const rows = shown.map((c, k) => ({ k: k + 1, v: run.tower ? c.value[i] : (c.value[i] - c.min) / (c.max - c.min || 1) }));
     card.replaceChildren(element("h3", {}, `Design ${ids[i]}`), charts.plot({
       width: w, height: h, marginLeft: 45, marginBottom: 34, ariaLabel: `Variables of design ${ids[i]}`,
-      x: { label: run.tower ? "floor" : "variable", ticks: rows.map((r) => r.k).filter((k) => k === 1 || k % 5 === 0), tickFormat: "d", tickSize: 3 },
+      x: { label: !run.tower ? "variable" : shown[0].name.startsWith("gap_zone_") ? "zone" : "floor", ticks: rows.map((r) => r.k).filter((k) => k === 1 || k % 5 === 0), tickFormat: "d", tickSize: 3 },
       y: { label: run.tower ? "gap [mm]" : "place in its range over the front", grid: true, zero: true, domain: [0, Math.max(...shown.map((c) => (run.tower ? c.max : 1)))] },
       marks: [charts.rectY(rows, { x1: (r) => r.k - 0.4, x2: (r) => r.k + 0.4, y1: 0, y2: "v", fill: INK }), charts.ruleY([0])],
     }));

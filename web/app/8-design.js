@@ -42,10 +42,13 @@ const floorAxis = (floors) => ({ label: "floor", domain: [0.5, floors + 0.5], ti
 
 function gapFigure(host, d) {
   const floors = d.gap_m.length;
-  const rows = d.gap_m.map((g, j) => ({ floor: j + 1, gap: 1e3 * g }));
-  figure(host, "Gaps over the height", "Clearance between floor and core on either side.", (width) => charts.plot({
+  const rows = d.gap_m.map((g, j) => ({ floor: j + 1, gap: 1e3 * g, bumper: d.bumper_n_m[j] }));
+  const soft = Math.min(...d.bumper_n_m), hard = Math.max(...d.bumper_n_m);
+  const stiffness = soft === hard ? `${show(soft / 1e6)} MN/m` : `${show(soft / 1e6)} to ${show(hard / 1e6)} MN/m`;
+  const bumpers = hard > 0 ? ` Bumpers of ${stiffness}.` : "";
+  figure(host, "Gaps over the height", `Clearance between floor and core on either side.${bumpers}`, (width) => charts.plot({
     width, height: 380, marginLeft: 45, ariaLabel: "Gap of every floor", x: { label: "gap [mm]", grid: true, zero: true, nice: true }, y: floorAxis(floors),
-    marks: [charts.rectX(rows, { x1: 0, x2: "gap", y1: (r) => r.floor - 0.38, y2: (r) => r.floor + 0.38, fill: BLUE, title: (r) => `floor ${r.floor}: ${show(r.gap)} mm` }), charts.ruleX([0])],
+    marks: [charts.rectX(rows, { x1: 0, x2: "gap", y1: (r) => r.floor - 0.38, y2: (r) => r.floor + 0.38, fill: BLUE, title: (r) => `floor ${r.floor}: ${show(r.gap)} mm${r.bumper > 0 ? `, bumper ${show(r.bumper / 1e6)} MN/m` : ""}` }), charts.ruleX([0])],
   }));
 }
 

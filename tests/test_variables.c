@@ -1,0 +1,225 @@
+/* Design variables: which there are, what a design of them is, and every command that takes one. */
+#include "runs.h"
+
+#include "base/random.h"
+#include "scene/motion_source.h"
+#include "scene_options.h"
+#include "sim/sim.h"
+
+static DesignSpace space_of(const char *variables, long gap_zones, long bumper_zones, int n_floors)
+{
+    DesignOptions o = scene_defaults().design;
+    DesignSpace space;
+    Err err = {0};
+    snprintf(o.variables, sizeof o.variables, "%s", variables);
+    o.gap_zones = gap_zones;
+    o.bumper_zones = bumper_zones;
+    CHECK_OK(design_space_make(&space, &o, n_floors, &err), &err);
+    const int by_floor = gap_zones == 0 || (space.n_bumpers > 0 && bumper_zones == 0);
+    assert_int_equal(design_space_floors(&o, space.n_var), by_floor ? n_floors : 0);
+    return space;
+}
+
+static void expect_names(const DesignSpace *s, const char *const names[], int n)
+{
+    char name[TABLE_NAME_MAX];
+    assert_int_equal(s->n_var, n);
+    for (int j = 0; j < n; j++) {
+        design_variable_name(s, j, name);
+        assert_string_equal(name, names[j]);
+    }
+}
+
+static void test_the_default_is_a_gap_per_floor_and_two_thicknesses(void **state)
+{
+    (void)state;
+    static const char *const WANT[] = {"gap_01_m", "gap_02_m", "gap_03_m", "t_base_m", "t_top_m"};
+    const DesignSpace s = space_of("gaps, thickness", 0, 1, 3);
+    double lower[5], upper[5];
+    const DesignOptions o = scene_defaults().design;
+    expect_names(&s, WANT, 5);
+    design_bounds(&s, &o, lower, upper);
+    assert_true(lower[2] == 0.001 && upper[2] == 0.5 && lower[3] == 0.004 && upper[4] == 0.04);
+}
+
+static void test_zones_bumpers_and_side_are_columns_after_the_papers(void **state)
+{
+    (void)state;
+    static const char *const ONE[] = {"gap_zone_1_m", "gap_zone_2_m",     "t_base_m",
+                                      "t_top_m",      "bumper_log10_n_m", "side_m"};
+    static const char *const ZONES[] = {"gap_m", "t_base_m", "t_top_m", "bumper_zone_1_log10_n_m",
+                                        "bumper_zone_2_log10_n_m"};
+    static const char *const FLOORS[] = {"gap_m", "t_base_m", "t_top_m", "bumper_01_log10_n_m", "bumper_02_log10_n_m"};
+    const DesignSpace one = space_of("gaps, thickness, bumper, side", 2, 1, 7);
+    const DesignSpace zones = space_of("thickness,bumper,gaps", 1, 2, 7);
+    const DesignSpace floors = space_of("gaps, thickness, bumper", 1, 0, 2);
+    expect_names(&one, ONE, 6);
+    expect_names(&zones, ZONES, 5);
+    expect_names(&floors, FLOORS, 5);
+}
+
+static void test_every_floor_has_the_gap_and_the_bumper_of_its_zone(void **state)
+{
+    (void)state;
+    for (int n = 2; n <= 40; n++)
+        for (int zones = 1; zones <= n && zones < 9; zones++) {
+            const DesignSpace s = space_of("gaps, thickness, bumper, side", zones, zones, n);
+            double x[DESIGN_VARIABLES_MAX];
+            Design d;
+            int floors[9] = {0};
+            for (int j = 0; j < s.n_var; j++)
+                x[j] = j < zones ? 0.01 * (j + 1) : j < zones + 2 ? 0.02 / (j - zones + 1) : 7 + 0.1 * (j - zones - 2);
+            design_of(&s, x, &d);
+            assert_true(d.t_base == 0.02 && d.t_top == 0.01 && d.side == x[s.n_var - 1]);
+            for (int j = 0; j < n; j++) {
+                const int z = (int)round(d.gap[j] / 0.01) - 1;
+                assert_true(z >= 0 && z < zones && (j == 0 || d.gap[j] >= d.gap[j - 1]));
+                assert_close(d.bumper[j], pow(10, 7 + 0.1 * z), 1e-12);
+                floors[z]++;
+            }
+            for (int z = 0; z < zones; z++) /* as even as can be */
+                assert_true(floors[z] == n / zones || floors[z] == n / zones + 1);
+        }
+}
+
+static void test_wrong_variables_are_refused_with_their_key(void **state)
+{
+    (void)state;
+    static const char *const LISTS[] = {
+        "gaps", "thickness, bumper", "gaps, thickness, bumpr", "gaps,,thickness", "gaps, thickness, symmetric", "none"};
+    for (size_t i = 0; i < sizeof LISTS / sizeof LISTS[0]; i++) {
+        Said s;
+        run(&s, "simulate configs/quick.ini --design none --set 'design.variables=%s'", LISTS[i]);
+        assert_int_not_equal(s.code, 0);
+        assert_non_null(strstr(s.err, "design.variables"));
+        forget(&s);
+    }
+    DesignSpace space;
+    Err err = {0};
+    DesignOptions o = scene_defaults().design;
+    o.gap_zones = 5;
+    assert_int_equal(design_space_make(&space, &o, 4, &err), STATUS_BAD_DATA);
+    assert_non_null(strstr(err.text, "design.gap_zones"));
+}
+
+/* -- the same building by other variables -------------------------------------------------------------------------- */
+
+static SimResult simulate(const SceneOptions *o, const double x[])
+{
+    Err err = {0};
+    Motion motion;
+    Scene *scene;
+    SimWorker *worker;
+    SimResult r;
+    CHECK_OK(motion_load(&motion, "builtin:kobe-like", UNIT_FROM_FILE, &err), &err);
+    CHECK_OK(motion_prepare(&motion, 0.3, 1.5, &err), &err);
+    CHECK_OK(scene_create(&scene, o, &motion, &err), &err);
+    CHECK_OK(sim_worker_create(&worker, scene, &err), &err);
+    CHECK_OK(sim_run(worker, SCENE_IMPACT, x, &r, &err), &err);
+    sim_worker_free(worker);
+    scene_free(scene);
+    motion_free(&motion);
+    assert_int_equal(r.outcome, RUN_OK);
+    assert_true(r.impacts > 10);
+    return r;
+}
+
+static void test_a_design_is_simulated_the_same_by_any_variables(void **state)
+{
+    (void)state;
+    SceneOptions plain = scene_defaults(), zoned = plain;
+    double x[22], z[10] = {0.002, 0.004, 0.008, 0.012, 0.016, 0.012, 0.0064, 9, 8.5, 9.4};
+    plain.sim.duration_s = zoned.sim.duration_s = 14;
+    plain.sim.forces = zoned.sim.forces = FORCES_YES;
+    plain.contact.bumper_stiffness_n_m = 1e9;
+    plain.core.side_m = 9.4;
+    snprintf(zoned.design.variables, sizeof zoned.design.variables, "gaps, thickness, bumper, side");
+    zoned.design.gap_zones = 5;
+    zoned.design.bumper_zones = 2;
+    for (int j = 0; j < 20; j++)
+        x[j] = z[j / 4];
+    x[20] = z[5];
+    x[21] = z[6];
+    SimResult a = simulate(&plain, x), b = simulate(&zoned, z);
+    assert_true(a.j1_m != b.j1_m); /* the bumpers of the upper half differ */
+    z[8] = 9;
+    b = simulate(&zoned, z);
+    assert_close(b.j1_m, a.j1_m, 1e-12);
+    assert_close(b.j3_g, a.j3_g, 1e-12);
+    assert_close(b.mcore_kg, a.mcore_kg, 1e-15);
+    assert_close(b.forces.core_stress_pa, a.forces.core_stress_pa, 1e-12);
+}
+
+/* -- commands ------------------------------------------------------------------------------------------------------ */
+
+#define SHORT "--set sim.duration_s=20 --set sim.accuracy=coarse "
+#define WIDE  "--set design.variables=gaps,thickness,bumper,side --set design.gap_zones=3 "
+
+static int make_run(void **state)
+{
+    if (make_place(state) != 0)
+        return -1;
+    free(output_of("optimize configs/quick.ini --out @/run --threads 2 --max-evals 24 --set search.initial=12 "
+                   "--set search.population=12 --set search.polish=0 " WIDE SHORT));
+    return 0;
+}
+
+static void test_every_command_follows_the_variables_of_a_run(void **state)
+{
+    (void)state;
+    static const char HEADER[] =
+        "id,gap_zone_1_m,gap_zone_2_m,gap_zone_3_m,t_base_m,t_top_m,bumper_log10_n_m,side_m,j1_m,";
+    static const char *const COMMANDS[] = {
+        "choose @/run --csv @/chosen.csv",
+        "simulate configs/quick.ini " SHORT WIDE "--json --design @/run:knee",
+        "simulate configs/quick.ini " SHORT WIDE "--design @/run/front.csv",
+        "simulate configs/quick.ini " SHORT WIDE "--replicates 2 --design @/run:knee",
+        "evaluate @/run --design knee",
+        "polish @/run --design knee --evals 16",
+        "modes configs/quick.ini " WIDE "--design @/run:knee",
+        "check configs/quick.ini " WIDE SHORT,
+        "plot @/run --out @/pictures",
+        "optimize configs/quick.ini --out @/again --max-evals 20 --set search.polish=0 --set search.start=@/run " WIDE
+            SHORT,
+        "report @/run",
+    };
+    char path[PATH_MAX];
+    char *front = text_of(path_of("run/front.csv", path));
+    assert_int_equal(strncmp(front, HEADER, sizeof HEADER - 1), 0);
+    free(front);
+    for (size_t i = 0; i < sizeof COMMANDS / sizeof COMMANDS[0]; i++) {
+        Said s;
+        run(&s, "%s", COMMANDS[i]);
+        if (s.code != 0)
+            fail_msg("%s: %s", COMMANDS[i], s.err);
+        forget(&s);
+    }
+}
+
+static void test_designs_of_other_variables_are_refused(void **state)
+{
+    (void)state;
+    Said s;
+    run(&s, "simulate configs/quick.ini " SHORT "--design @/run:knee");
+    assert_int_not_equal(s.code, 0);
+    assert_non_null(strstr(s.err, "design.variables"));
+    forget(&s);
+    run(&s, "simulate configs/quick.ini " SHORT "--design @/run/front.csv");
+    assert_int_not_equal(s.code, 0);
+    assert_non_null(strstr(s.err, "gap_zone_1_m"));
+    forget(&s);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_the_default_is_a_gap_per_floor_and_two_thicknesses),
+        cmocka_unit_test(test_zones_bumpers_and_side_are_columns_after_the_papers),
+        cmocka_unit_test(test_every_floor_has_the_gap_and_the_bumper_of_its_zone),
+        cmocka_unit_test(test_wrong_variables_are_refused_with_their_key),
+        cmocka_unit_test(test_a_design_is_simulated_the_same_by_any_variables),
+        cmocka_unit_test(test_every_command_follows_the_variables_of_a_run),
+        cmocka_unit_test(test_designs_of_other_variables_are_refused),
+    };
+    return cmocka_run_group_tests(tests, make_run, clear_place);
+}
