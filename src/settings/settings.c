@@ -16,6 +16,7 @@
 #include "scene/builtin.h"
 #include "scene/design.h"
 #include "scene/motion_scale.h"
+#include "sim/tolerance.h"
 
 typedef enum { KIND_REAL, KIND_WHOLE, KIND_CHOICE, KIND_TEXT, KIND_PATH, KIND_PATH_LIST } Kind;
 
@@ -165,6 +166,10 @@ static const Option OPTIONS[] = {
            "integrator: fast, or cvode (SUNDIALS, another method, slower) for a cross-check"),
     CHOICE(sim.accuracy, Accuracy, CHOICE_WORDS(ACCURACY_LIST), "standard",
            "preset of step and tolerances: time of a simulation against its error (docs/chart.md)"),
+    TEXT(sim.tolerance, "none",
+         "engine fast: relative error of J3 and the shares, in 95 % of windows of strong shaking, that steps, core "
+         "modes and "
+         "the end of the contacts are chosen for; auto: a tenth of what sim.gap_tolerance_m makes; none: sim.accuracy"),
     REAL(sim.steps_per_contact, "-", "0", 0, 1000,
          "engine fast: steps per contact, finer than sim.accuracy, with tolerances to match; 0: by sim.accuracy"),
     REAL(sim.duration_s, "s", "0", 0, 1e6, "end of the simulation; 0: end of the motion"),
@@ -695,6 +700,11 @@ static void check_rules(const Settings *s, const Rules *r)
     if (s->sim.gap_tolerance_m > 0.0 && s->sim.replicates < 2)
         break_rule(r, (size_t[]){AT(sim.gap_tolerance_m), AT(sim.replicates), AT(sim.replicates)},
                    "sim.gap_tolerance_m: needs replicates that differ: set sim.replicates to 2 or more");
+    Err err = {0};
+    double steps;
+    if (tolerance_steps(&s->sim, &steps, &err) != STATUS_OK)
+        break_rule(r, (size_t[]){AT(sim.tolerance), AT(sim.steps_per_contact), AT(sim.steps_per_contact)}, "%s",
+                   err.text);
     const UncertainOptions *u = &s->uncertain;
     if (u->restitution + u->contact_stiffness + u->core_stiffness + u->building_stiffness + u->damping > 0.0 &&
         s->sim.replicates < 2)

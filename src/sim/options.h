@@ -49,6 +49,7 @@ typedef enum { FORCES_LIST(CHOICE_NAME) } Forces;
 typedef struct {
     Engine engine;
     Accuracy accuracy;
+    char tolerance[OPTION_TEXT_MAX]; /* none, auto or a number (sim/tolerance.h) */
     double steps_per_contact;
     double duration_s;         /* 0: the whole motion */
     double energy_balance_max; /* 0: by accuracy, sim_energy_balance_max */

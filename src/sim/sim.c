@@ -15,6 +15,7 @@
 #include "sim/linear.h"
 #include "sim/model.h"
 #include "sim/tail.h"
+#include "sim/tolerance.h"
 
 struct Scene {
     SceneOptions options;
@@ -75,14 +76,16 @@ Status scene_create(Scene **out, const SceneOptions *o, const Motion *motion, Er
     if (motion && (motion->n < 2 || !(motion->dt_s > 0 && isfinite(motion->dt_s))))
         return fail(err, STATUS_BAD_DATA, "%s: %zu samples, %g s apart, are no motion; two or more are needed",
                     motion->name, motion->n, motion->dt_s);
+    double steps;
+    TRY(tolerance_steps(&o->sim, &steps, err));
     Scene *scene = calloc(1, sizeof *scene);
     if (!scene)
         return fail(err, STATUS_NO_MEMORY, "scene: out of memory");
     scene->options = *o;
     scene->motion = motion;
     scene->engine = engine_entry(o->sim.engine);
-    scene->run.accuracy = o->sim.accuracy;
-    scene->run.steps_per_contact = o->sim.steps_per_contact;
+    scene->run.accuracy = steps > 0 ? ACCURACY_STANDARD : o->sim.accuracy;
+    scene->run.steps_per_contact = steps > 0 ? steps : o->sim.steps_per_contact;
     scene->run.duration = o->sim.duration_s;
     if (scene->run.duration == 0 && motion)
         scene->run.duration = (double)(motion->n - 1) * motion->dt_s;

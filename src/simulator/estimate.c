@@ -1,14 +1,21 @@
 #include "simulator/estimate.h"
 
 #include <math.h>
+#include <stdio.h>
 
 #include "sim/fast/fast.h"
+#include "sim/tolerance.h"
 
 int estimate_options(const SimOptions *o, SimOptions *finer)
 {
-    const double steps =
-        o->steps_per_contact > 0 ? o->steps_per_contact : fast_tolerances(o->accuracy).steps_per_contact;
+    Err unused;
+    double steps = 0;
     *finer = *o;
+    if (tolerance_steps(o, &steps, &unused) == STATUS_OK && steps > 0)
+        finer->accuracy = ACCURACY_STANDARD;
+    else
+        steps = o->steps_per_contact > 0 ? o->steps_per_contact : fast_tolerances(o->accuracy).steps_per_contact;
+    snprintf(finer->tolerance, sizeof finer->tolerance, "none");
     finer->steps_per_contact = 2 * steps;
     return o->engine == ENGINE_FAST;
 }
