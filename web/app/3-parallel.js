@@ -112,7 +112,7 @@ function parallelCoordinates(host, name, shown) {
   // Long titles on narrow axes stand in two lines.
   function label(g, axis, room) {
     const words = axis.c.title.split(" ");
-    const wraps = words.length > 1 && 7 * axis.c.title.length > room;
+    const wraps = words.length > 1 && 7 * axis.c.title.length > Math.min(room, 2 * margin.left);
     const text = g.append("text").attr("class", "title").attr("text-anchor", "middle");
     if (wraps) {
       text.append("tspan").attr("x", 0).attr("y", 12).text(words.slice(0, -1).join(" "));

@@ -93,8 +93,8 @@ function modeFigure(host, scenes, title, caption) {
 
 // ---- over time
 
-const ENERGIES = [["damped_building", "damped by the building", BLUE], ["damped_core", "damped by the core", GREEN],
-  ["contacts", "lost in impacts", ORANGE], ["core", "moving in the core", PURPLE], ["strain", "strain of the building", SKY], ["kinetic", "motion of the building", GREY]];
+const ENERGIES = [["damped_building", "damping of the building", BLUE], ["damped_core", "damping of the core", GREEN],
+  ["contacts", "impacts", ORANGE], ["core", "kinetic and strain energy of the core", PURPLE], ["strain", "strain energy of the building", SKY], ["kinetic", "kinetic energy of the building", GREY]];
 
 function energyFigure(host, title, h, top) {
   const rows = [];
@@ -121,7 +121,7 @@ function energyFigure(host, title, h, top) {
 function energyPair(host, d) {
   const all = [[`Energies, ${WITH}`, d.history_with_core], [`Energies, ${WITHOUT}`, d.history_no_core]].filter(([, h]) => h);
   const top = Math.max(...all.map(([, h]) => h.energies.input.reduce((a, b) => Math.max(a, b), 0))) / 1e6;
-  host.before(legend([...ENERGIES.map(([, label, colour]) => [label, colour]), ["input by the ground", INK]]));
+  host.before(legend([...ENERGIES.map(([, label, colour]) => [label, colour]), ["input energy", INK]]));
   for (const [title, h] of all) energyFigure(host, title, h, top);
 }
 
@@ -206,7 +206,7 @@ function designPart() {
   if (run.chosen !== run.knee) host.append(cards(run.chosen_f, d.baselines), comparison(run.chosen_f, d.baselines));
   host.append(element("p", { class: "note" }, `Simulated again with the run\u2019s settings. For another design: imtet report ${run.folder} --design ID`));
   if (!r.objectives) host.append(element("p", { class: "warn" }, `This design could not be simulated: ${r.reason}`));
-  else host.append(element("p", {}, `${count(r.impacts)} impacts took ${show(r.contact_pct)} % of the ${show(r.input_j / 1e6)} MJ that the ground put in.` ));
+  else host.append(element("p", {}, `${count(r.impacts)} impacts dissipated ${show(r.contact_pct)} % of the input energy of ${show(r.input_j / 1e6)} MJ.` ));
   if (r.beyond_law) host.append(element("p", { class: "warn" }, "The maximum indentation is more than a tenth of the contact\u2019s radius: beyond what the contact law is meant for."));
   const shape = part(host, "Shape", null, "grid21");
   gapFigure(shape, d);
@@ -216,10 +216,10 @@ function designPart() {
     peakFigure(peaks, scenes, "displacement_m", "Displacement", "peak displacement [m]");
     peakFigure(peaks, scenes, "drift_m", "Interstorey drift", "peak interstorey drift [m]");
     peakFigure(peaks, scenes, "acceleration_g", "Acceleration", "peak absolute acceleration [g]");
-    modeFigure(part(host, "Where the energy goes", "Impacts hand energy from slow modes to fast ones, which damp it sooner. What is missing to 100 % was damped by the core, by modes above the tenth, or lost in impacts.", "grid1"), scenes.slice(0, 3), "Energy damped by each mode", null);
+    modeFigure(part(host, "Dissipated energy by mode", "Impacts transfer energy from low modes to high ones, which dissipate it faster. The rest to 100 % was dissipated by the core, by modes above the tenth and in impacts.", "grid1"), scenes.slice(0, 3), "Energy dissipated by each mode", null);
   }
   if (d.history_with_core || d.history_no_core) {
-    energyPair(part(host, "Energies over time", "Stacked: at every instant the parts add up to what the ground has put in so far. Shown until the displacement stays below 2 % of its peak.", "grid2"), d);
+    energyPair(part(host, "Energies over time", "Stacked: the parts add up to the input energy so far. Shown until the displacement stays below 2 % of its peak.", "grid2"), d);
     const histories = part(host, "Displacement over time", null, "grid2");
     const top = spectrumPair(histories, d);
     histories.before(element("p", { class: "note" }, `Below each history its Morlet wavelet amplitude by frequency; colour from 0 to ${show(top)} m by its square root, the same on both sides; dashed: natural frequencies of the building.`));
