@@ -195,7 +195,7 @@ const tried = {
     assert.equal(parts.includes("design"), run.tower);
     if (!run.tower) return;
     const titles = await page.evaluate("Array.from(document.querySelectorAll('#design h3'), (h) => h.textContent).join('|')");
-    for (const title of ["Gaps over the height", "Thickness of the core", "Displacement", "Interstorey drift", "Acceleration", "Energy damped by each mode", "Energies, with core", "Energies, without core", "Displacement of floor", "Other earthquakes"])
+    for (const title of ["Gaps over the height", "Thickness of the core", "Displacement", "Interstorey drift", "Acceleration", "Energy dissipated by each mode", "Energies, with core", "Energies, without core", "Displacement of floor", "Other earthquakes"])
       assert.ok(titles.includes(title), `no part ${title} in ${titles}`);
     assert.equal(await page.evaluate("Array.from(document.querySelectorAll('#design svg')).filter((s) => /NaN/.test(s.innerHTML.replace(/base64,[^\x22]*/g, ''))).length"), 0);
   },
