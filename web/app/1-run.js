@@ -14,8 +14,8 @@ const WORDS = {
   ed5_10_pct: ["modes 5\u201310", "%", 1, "share of the input energy dissipated by modes 5 to 10"],
   edcs_pct: ["core share", "%", 1, "share of the input energy dissipated by the core"],
   mcore_kg: ["core mass", "t", 1e-3, "mass of the core"],
-  t_base_m: ["thickness, base", "mm", 1e3, "thickness of the core, first storey"],
-  t_top_m: ["thickness, top", "mm", 1e3, "thickness of the core, last storey"],
+  t_base_m: ["t base", "mm", 1e3, "thickness of the core, first storey"],
+  t_top_m: ["t top", "mm", 1e3, "thickness of the core, last storey"],
   side_m: ["side of the core", "m", 1, "outer side of the core's box"],
 };
 
