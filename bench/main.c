@@ -1,7 +1,6 @@
-/* bench/main.c -- the program imtet-bench: engines compared by speed, accuracy and reliability; searches of textbook
- * problems.
+/* bench/main.c -- the program imtet-bench: engines compared by speed, accuracy and reliability.
  *
- *   imtet-bench sweep | throughput | promise | problem | stability | laws [--option [VALUE]] ... */
+ *   imtet-bench sweep | throughput | promise | stability | laws [--option [VALUE]] ... */
 #include <cblas.h>
 #include <string.h>
 
@@ -11,7 +10,6 @@
 #include "bench/throughput.h"
 #include "bench/promise.h"
 #include "bench/paper.h"
-#include "bench/problem.h"
 #include "cmd/args.h"
 #include "scene/motion_source.h"
 #include "store/output.h"
@@ -292,18 +290,6 @@ static const Command COMMANDS[] = {
          "accuracy fine, share of windows that hold the promise, time; and of fine against CVODE in a tenth of them.",
      .options = PROMISE_OPTIONS,
      .run = run_promise,
-     .program = "imtet-bench"},
-    {.name = "problem",
-     .operand = "NAME",
-     .summary = "the search on a textbook problem: dtlz2, wfg4, ...",
-     .example = "imtet-bench problem dtlz2 --max-evals 500 --seed 1 --csv dtlz2.csv",
-     .details =
-         "Searches a test problem of 22 variables and 7 objectives (problem.variables, problem.objectives) and writes\n"
-         "every evaluated design, one row each in their order: variables, then objectives. With problem.noise the\n"
-         "noisy objectives of the search stand before the exact ones. Problems: dtlz2, wfg4, dtlz1_inverted,\n"
-         "dtlz5, dtlz7, wfg5.",
-     .options = PROBLEM_OPTIONS,
-     .run = problem_run,
      .program = "imtet-bench"},
     {.name = "stability",
      .summary = "where methods fail: every engine through every case",

@@ -1,12 +1,11 @@
 /* The bench measures what it says: its scenes, its errors, its tables. */
-#include "program.h"
+#include "check.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "bench/distribution.h"
-#include "bench/problem.h"
 #include "bench/promise.h"
 #include "scene/motion_source.h"
 #include "scene_options.h"
@@ -180,51 +179,6 @@ static void test_the_page_of_the_promise_has_a_row_for_every_accuracy(void **sta
     motion_free(&g.m);
 }
 
-static Status problem(const char *name, const char *threads, const char *csv, Err *err)
-{
-    static const Command COMMAND = {
-        .name = "problem", .operand = "NAME", .example = "", .options = PROBLEM_OPTIONS, .program = "imtet-bench"};
-    char *const words[] = {(char *)name, "--max-evals",   "60",    "--seed",   "3", "--set", "search.initial=50",
-                           "--threads",  (char *)threads, "--csv", (char *)csv};
-    Args args;
-    TRY(args_parse(&args, &COMMAND, csv ? 11 : 9, words, err));
-    const Status status = problem_run(&args, err);
-    args_free(&args);
-    return status;
-}
-
-static void test_a_textbook_problem_is_written_design_by_design(void **state)
-{
-    (void)state;
-    Table t;
-    Err err = {0};
-    char *path = in_place("one.csv"), *other = in_place("three.csv");
-    CHECK_OK(problem("dtlz2", "1", path, &err), &err);
-    CHECK_OK(problem("dtlz2", "3", other, &err), &err);
-    char *one = read_in_place("one.csv"), *three = read_in_place("three.csv");
-    assert_string_equal(one, three);
-    CHECK_OK(table_read(&t, path, 1, &err), &err);
-    assert_int_equal(t.n_rows, 60);
-    assert_int_equal(t.n_cols, 29);
-    for (size_t i = 0; i < t.n_rows; i++) {
-        double g = 1, square = 0;
-        for (size_t d = 6; d < 22; d++)
-            g += (t.values[i * 29 + d] - 0.5) * (t.values[i * 29 + d] - 0.5);
-        for (size_t k = 22; k < 29; k++)
-            square += t.values[i * 29 + k] * t.values[i * 29 + k];
-        assert_close(square, g * g, 1e-12);
-    }
-    table_free(&t);
-    free(path);
-    free(other);
-    free(one);
-    free(three);
-    assert_int_equal(problem("wfg", "1", "no.csv", &err), STATUS_USAGE);
-    assert_non_null(strstr(err.text, "did you mean wfg4"));
-    assert_int_equal(problem("wfg4", "1", NULL, &err), STATUS_USAGE);
-    assert_non_null(strstr(err.text, "--csv FILE is missing"));
-}
-
 /* Gaps that scatter by millimetres spread the results, gaps that scatter by 1e-8 of themselves do so far less. */
 static void test_the_distribution_test_draws_replicates_by_the_tolerance_of_the_settings(void **state)
 {
@@ -256,12 +210,11 @@ int main(void)
         cmocka_unit_test(test_scenes_have_as_many_impacts_as_their_names_say),
         cmocka_unit_test(test_an_error_is_zero_against_itself_and_first_order_in_a_change),
         cmocka_unit_test(test_the_distance_of_two_samples_is_that_of_their_steps),
-        cmocka_unit_test(test_a_textbook_problem_is_written_design_by_design),
         cmocka_unit_test(test_the_distribution_test_draws_replicates_by_the_tolerance_of_the_settings),
         cmocka_unit_test(test_a_sweep_has_a_row_for_every_setting_and_a_known_floor),
         cmocka_unit_test(test_windows_of_the_promise_lie_in_their_record_and_repeat),
         cmocka_unit_test(test_quantiles_are_the_least_that_a_share_does_not_exceed),
         cmocka_unit_test(test_the_page_of_the_promise_has_a_row_for_every_accuracy),
     };
-    return cmocka_run_group_tests(tests, make_place, clear_place);
+    return cmocka_run_group_tests(tests, NULL, NULL);
 }

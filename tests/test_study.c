@@ -375,6 +375,34 @@ static void test_a_search_begins_with_given_designs_and_a_front_is_thinned(void 
     free(three_path);
 }
 
+static void test_a_textbook_problem_is_written_design_by_design(void **state)
+{
+    (void)state;
+    Table t;
+    Err err = {0};
+    free(output_of("problem dtlz2 --max-evals 60 --seed 3 --threads 1 --csv @/one.csv --set search.initial=50"));
+    free(output_of("problem dtlz2 --max-evals 60 --seed 3 --threads 3 --csv @/three.csv --set search.initial=50"));
+    char *path = in_place("one.csv"), *one = read_in_place("one.csv"), *three = read_in_place("three.csv");
+    assert_string_equal(one, three);
+    CHECK_OK(table_read(&t, path, 1, &err), &err);
+    assert_int_equal(t.n_rows, 60);
+    assert_int_equal(t.n_cols, 29);
+    for (size_t i = 0; i < t.n_rows; i++) {
+        double g = 1, square = 0;
+        for (size_t d = 6; d < 22; d++)
+            g += (t.values[i * 29 + d] - 0.5) * (t.values[i * 29 + d] - 0.5);
+        for (size_t k = 22; k < 29; k++)
+            square += t.values[i * 29 + k] * t.values[i * 29 + k];
+        assert_close(square, g * g, 1e-12);
+    }
+    table_free(&t);
+    free(path);
+    free(one);
+    free(three);
+    expect(2, "did you mean wfg4", "problem wfg --csv @/no.csv");
+    expect(2, "--csv", "problem wfg4");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -389,6 +417,7 @@ int main(void)
         cmocka_unit_test(test_an_external_simulator_is_searched_and_every_design_exported),
         cmocka_unit_test(test_designs_are_chosen_by_limits_weights_and_a_reference_point_and_polished),
         cmocka_unit_test(test_a_search_begins_with_given_designs_and_a_front_is_thinned),
+        cmocka_unit_test(test_a_textbook_problem_is_written_design_by_design),
         cmocka_unit_test(test_a_run_that_is_killed_leaves_its_last_finished_generation),
     };
     return cmocka_run_group_tests(tests, make_place, clear_place);

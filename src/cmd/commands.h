@@ -21,6 +21,7 @@
     X(IMPORT)                                                                                                          \
     X(MODES)                                                                                                           \
     X(SPECTRUM)                                                                                                        \
+    X(PROBLEM)                                                                                                         \
     X(SELFTEST)                                                                                                        \
     X(CHECK)                                                                                                           \
     X(SETTINGS)

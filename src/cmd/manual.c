@@ -26,11 +26,8 @@ Status command_find(const char *word, const Command **found, Err *err)
         if (strcmp(word, names[i]) == 0)
             return STATUS_OK;
     }
-    if (strcmp(word, "bench") == 0 || strcmp(word, "problem") == 0)
-        return fail(
-            err, STATUS_USAGE,
-            "unknown command '%s'; engines are compared, and textbook problems searched, by the program imtet-bench",
-            word);
+    if (strcmp(word, "bench") == 0)
+        return fail(err, STATUS_USAGE, "unknown command 'bench'; engines are compared by the program imtet-bench");
     static const char *const OPTIONS[] = {"--help", "--version"};
     return word[0] == '-' ? args_unknown("option", word, OPTIONS, 2, "`imtet --help`", err)
                           : args_unknown("command", word, names, N_COMMANDS, "`imtet --help`", err);

@@ -1,9 +1,8 @@
-#include "bench/problem.h"
-
 #include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "cmd/commands.h"
 #include "simulator/textbook.h"
 #include "store/output.h"
 #include "study/study.h"
@@ -78,7 +77,7 @@ static Status search(const Args *args, const Settings *s, const Adapter *adapter
     return output_close(&o, err);
 }
 
-Status problem_run(const Args *args, Err *err)
+static Status run(const Args *args, Err *err)
 {
     const char *names[16];
     int n_names = 0, known = 0;
@@ -90,7 +89,7 @@ Status problem_run(const Args *args, Err *err)
         known |= strcmp(args->operand, names[n_names]) == 0;
     }
     if (!known)
-        return args_unknown("problem", args->operand, names, n_names, "`imtet-bench problem --help`", err);
+        return args_unknown("problem", args->operand, names, n_names, "`imtet problem --help`", err);
     if (!args_has(args, "--csv"))
         return fail(err, STATUS_USAGE, "--csv FILE is missing: where the table goes");
     settings_defaults(&s);
@@ -104,11 +103,25 @@ Status problem_run(const Args *args, Err *err)
     return status;
 }
 
-const ArgOption PROBLEM_OPTIONS[] = {
+static const ArgOption OPTIONS[] = {
     {"--max-evals", "N", "search.max_evals", 0, "stop after so many evaluations"},
     {"--seed", "N", "search.seed", 0, "same seed, same settings: same bytes"},
     {"--threads", "N", "search.threads", 0, "0: one per processor"},
     OPTION_CSV,
     OPTION_SET,
     OPTION_END,
+};
+
+const Command CMD_PROBLEM = {
+    .name = "problem",
+    .operand = "NAME",
+    .summary = "the search on a problem from a textbook: dtlz2, wfg4, ...",
+    .example = "imtet problem dtlz2 --max-evals 500 --seed 1 --csv dtlz2.csv",
+    .details =
+        "Searches a test problem of 22 variables and 7 objectives (problem.variables, problem.objectives) and writes\n"
+        "every evaluated design, one row each in their order: variables, then objectives. With problem.noise the\n"
+        "noisy objectives of the search stand before the exact ones. Problems: dtlz2, wfg4, dtlz1_inverted,\n"
+        "dtlz5, dtlz7, wfg5.",
+    .options = OPTIONS,
+    .run = run,
 };
