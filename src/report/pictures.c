@@ -271,14 +271,15 @@ static void write_history(FILE *script, const char *block, const History *h)
     fputs("EOD\n", script);
 }
 
-static const char ENERGY_AREAS[] = "plot 0 with lines lc rgb '#000000' notitle, "
-                                   "$H using 1:9 with filledcurves y1=0 lc rgb GREY title 'kinetic, building', "
-                                   "'' using 1:8 with filledcurves y1=0 lc rgb SKY title 'strain, building', "
-                                   "'' using 1:7 with filledcurves y1=0 lc rgb PURPLE title 'kinetic and strain, core', "
-                                   "'' using 1:6 with filledcurves y1=0 lc rgb ORANGE title 'impacts', "
-                                   "'' using 1:5 with filledcurves y1=0 lc rgb GREEN title 'damping, core', "
-                                   "'' using 1:4 with filledcurves y1=0 lc rgb WITH title 'damping, building', "
-                                   "'' using 1:3 with lines lw 1.5 lc rgb 'black' title 'input energy'\n";
+static const char ENERGY_AREAS[] =
+    "plot 0 with lines lc rgb '#000000' notitle, "
+    "$H using 1:9 with filledcurves y1=0 lc rgb GREY title 'kinetic, building', "
+    "'' using 1:8 with filledcurves y1=0 lc rgb SKY title 'strain, building', "
+    "'' using 1:7 with filledcurves y1=0 lc rgb PURPLE title 'kinetic and strain, core', "
+    "'' using 1:6 with filledcurves y1=0 lc rgb ORANGE title 'impacts', "
+    "'' using 1:5 with filledcurves y1=0 lc rgb GREEN title 'damping, core', "
+    "'' using 1:4 with filledcurves y1=0 lc rgb WITH title 'damping, building', "
+    "'' using 1:3 with lines lw 1.5 lc rgb 'black' title 'input energy'\n";
 
 static double largest(size_t n, const double values[])
 {
