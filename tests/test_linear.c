@@ -346,7 +346,7 @@ static void open_tower(Problem *p, const char *records, Robust robust, long thre
     CHECK_OK(tower_open(p, &s, TOWER_AS_SET, SIZE_MAX, &err), &err);
 }
 
-static void design_of(double x[22])
+static void rigid_design(double x[22])
 {
     for (int j = 0; j < 22; j++)
         x[j] = j < 20 ? 1e-6 : j == 20 ? 0.03 : 0.01;
@@ -359,7 +359,7 @@ static void test_baselines_are_of_the_records_by_the_rule_of_the_study_on_any_nu
     Err err = {0};
     double x[22];
     Baseline *both[3]; /* worst, mean, worst on two threads */
-    design_of(x);
+    rigid_design(x);
     for (int i = 0; i < 3; i++) {
         both[i] = calloc(N_BASELINES, sizeof **both);
         open_tower(&p, "builtin:sylmar-like", i == 1 ? ROBUST_MEAN : ROBUST_WORST, i == 2 ? 2 : 1);
@@ -395,7 +395,7 @@ static void test_devices_are_better_than_none_and_than_their_neighbours(void **s
     Err err = {0};
     double x[22];
     Baseline b[N_BASELINES];
-    design_of(x);
+    rigid_design(x);
     open_tower(&p, "none", ROBUST_WORST, 1);
     CHECK_OK(baselines_find(&p, x, b, &err), &err);
     for (int k = BASELINE_TMD; k <= BASELINE_LINKS; k++) {
@@ -427,7 +427,7 @@ static void test_the_rigid_connection_is_the_limit_of_gaps_that_vanish(void **st
     Err err = {0};
     double x[22];
     SimResult rigid, closed;
-    design_of(x);
+    rigid_design(x);
     open_tower(&p, "none", ROBUST_WORST, 1);
     SimWorker *w = tower_worker(tower_of(&p), 0, 0);
     CHECK_OK(sim_run(w, SCENE_RIGID, x, &rigid, &err), &err);
