@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 
 #include "store/database.h"
+#include "study/front_review.h"
 
 /* A short, cheap study of the tower. */
 static const char TOWER[] = "[sim]\nduration_s = 24\naccuracy = coarse\n[motion]\npga_g = 0.3\nstretch = 3.1\n"
@@ -236,6 +237,56 @@ static void test_a_run_with_fewer_measures_is_read_and_goes_on(void **state)
     run_free(&run);
 }
 
+/* ---- the end of a study ------------------------------------------------------------------------------------------- */
+
+static void test_the_end_of_a_study_names_gaps_that_never_close(void **state)
+{
+    (void)state;
+    write_in_place("tower.ini", TOWER);
+    char *said = output_of("optimize @/tower.ini --out @/calm --set motion.pga_g=0.0005");
+    assert_non_null(strstr(said,
+                           "spread over the front, by floor: 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, "
+                           "17, 18, 19, 20\n"));
+    assert_non_null(strstr(said, "\n0 of "));
+    assert_non_null(strstr(said, "designs of the front are beyond the contact law"));
+    free(said);
+    json_t *o = json_of("status @/calm --json"), *review = json_object_get(o, "front_review");
+    assert_int_equal(json_integer_value(json_object_get(review, "beyond_contact_law")), 0);
+    assert_int_equal(json_array_size(json_object_get(review, "gaps_on_smallest")), 20);
+    json_decref(o);
+}
+
+static void test_gaps_on_their_bounds_are_counted_floor_by_floor(void **state)
+{
+    (void)state;
+    enum { FLOORS = 3, DESIGNS = 4 };
+    Settings s;
+    Run run = {.settings = &s, .n_front = 3, .front = (size_t[]){0, 1, 3}};
+    Err err = {0};
+    Evaluation *e;
+    settings_defaults(&s); /* gaps of 1 to 500 mm */
+    CHECK_OK(schema_of(&run.schema, &s, FLOORS, &err), &err);
+    run.table = evaluation_table(run.schema.n_var, run.schema.n_obj, run.schema.n_extra);
+    static const double X[DESIGNS][FLOORS + 2] = {{0.001, 0.2, 0.5, 0.01, 0.01},
+                                                  {0.001, 0.5, 0.4999999, 0.01, 0.01},
+                                                  {0.001, 0.5, 0.5, 0.01, 0.01}, /* not on the front */
+                                                  {0.0011, 0.001, 0.5, 0.04, 0.004}};
+    for (int i = 0; i < DESIGNS; i++) {
+        CHECK_OK(evaluation_table_add(&run.table, &e, &err), &err);
+        memcpy(e->x, X[i], sizeof X[i]);
+        for (size_t k = 0; k < run.schema.n_extra; k++)
+            if (strcmp(schema_extra(&run.schema, k)->name, "beyond_contact_law") == 0)
+                e->extra[k] = i != 1;
+    }
+    const FrontReview r = front_review(&run);
+    assert_int_equal(r.n_gaps, FLOORS);
+    assert_true(r.at_smallest[0] == 2 && r.at_smallest[1] == 1 && r.at_smallest[2] == 0);
+    assert_true(r.at_largest[0] == 0 && r.at_largest[1] == 1 && r.at_largest[2] == 2);
+    assert_int_equal(r.n_beyond, 2);
+    evaluation_table_free(&run.table);
+    schema_free(&run.schema);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -246,6 +297,8 @@ int main(void)
         cmocka_unit_test(test_names_that_are_no_results_are_refused_with_the_words_there_are),
         cmocka_unit_test(test_four_storeys_are_not_searched_for_modes_that_they_do_not_have),
         cmocka_unit_test(test_a_run_with_fewer_measures_is_read_and_goes_on),
+        cmocka_unit_test(test_the_end_of_a_study_names_gaps_that_never_close),
+        cmocka_unit_test(test_gaps_on_their_bounds_are_counted_floor_by_floor),
     };
     return cmocka_run_group_tests_name("objectives", tests, prepare, clear_place);
 }

@@ -7,6 +7,7 @@
 #include "cmd/show.h"
 #include "moga/hypervolume.h"
 #include "store/run_read.h"
+#include "study/front_review.h"
 #include "study/improvement.h"
 #include "study/progress.h"
 
@@ -149,6 +150,18 @@ static json_t *json_failures(const Failures *f)
     return o;
 }
 
+/* By floor: designs of the front whose gap is on a bound of the search; and those beyond the contact law. */
+static json_t *json_review(const FrontReview *r)
+{
+    json_t *smallest = json_array(), *largest = json_array();
+    for (size_t j = 0; j < r->n_gaps; j++) {
+        json_array_append_new(smallest, json_integer((json_int_t)r->at_smallest[j]));
+        json_array_append_new(largest, json_integer((json_int_t)r->at_largest[j]));
+    }
+    return json_pack("{s:I, s:o, s:o}", "beyond_contact_law", (json_int_t)r->n_beyond, "gaps_on_smallest", smallest,
+                     "gaps_on_largest", largest);
+}
+
 static json_t *describe(const char *folder, const Run *run, const Standing *s, const Failures *f, const double igd[])
 {
     json_t *o = json_pack(
@@ -164,6 +177,8 @@ static json_t *describe(const char *folder, const Run *run, const Standing *s, c
     json_object_set_new(o, "generations", json_generations(run, igd));
     json_object_set_new(o, "failures", json_failures(f));
     json_object_set_new(o, "sessions", json_sessions(run));
+    const FrontReview review = front_review(run);
+    json_object_set_new(o, "front_review", review.n_gaps > 0 ? json_review(&review) : json_null());
     return o;
 }
 

@@ -65,6 +65,7 @@ typedef struct {
     double input_energy_j;       /* - int a (1'M u' + 1'Mc v') dt */
     double energy_balance_error; /* |input - kinetic - strain - damped - contacts| / input */
     double settled_s;            /* from here on no contact was followed: too little energy was left */
+    long closings[FLOORS_MAX];   /* of the gap of every floor, on either side */
     long impacts, v0_limited;    /* contact onsets on all floors; those slower than the lower limit of v0 */
 
     int n_floors, n_modes;

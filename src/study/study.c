@@ -400,13 +400,14 @@ static Status polish(Study *study, Err *err)
     return status == STATUS_STOPPED ? STATUS_OK : status;
 }
 
-/* What the knee is compared with. */
+/* What the knee is compared with, and what the front says about its gaps. */
 static Status find_baselines(Study *study, Err *err)
 {
     const Run *run = study->options->run;
     if (!run || run->n_front == 0 || !adapter_tower(study->adapter))
         return STATUS_OK;
     study->summary->has_baselines = 1;
+    TRY(front_review_closings(adapter_problem(study->adapter), run, &study->summary->review, err));
     return baselines_find(adapter_problem(study->adapter), run_x(run, run_knee(run)), study->summary->baseline, err);
 }
 

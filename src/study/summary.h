@@ -6,6 +6,7 @@
 
 #include "moga/search.h"
 #include "simulator/baselines.h"
+#include "study/front_review.h"
 
 typedef struct {
     char folder[PATH_MAX];
@@ -20,6 +21,7 @@ typedef struct {
     int surrogate_disabled;
     int has_baselines; /* of a tower whose front has a knee; of its core */
     Baseline baseline[N_BASELINES];
+    FrontReview review; /* of the same */
 } StudySummary;
 
 #endif

@@ -83,6 +83,7 @@ static void close_gap(Contacts *c, int j, int side, double t, double speed)
     c->side[j] = side;
     c->v0[j] = fmax(speed, c->model->contact[j].v0_floor);
     c->impacts++;
+    c->closings[j]++;
     c->floored += speed < c->model->contact[j].v0_floor;
     c->recorded[j] = c->recorded_loss[j] = 0;
     if (c->forces)
@@ -161,8 +162,7 @@ void contacts_forces(const Contacts *c, const double q[], const double v[], doub
         const double p = s * relative_displacement(model, j, q) - model->gap[j];
         const double p_dot = s * relative_displacement(model, j, v);
         const int touches = s && p > 0;
-        force[j] =
-            touches ? -s * contact_force(&model->contact[j], model->mass_eff[j], p, p_dot, c->v0[j]).force : 0;
+        force[j] = touches ? -s * contact_force(&model->contact[j], model->mass_eff[j], p, p_dot, c->v0[j]).force : 0;
     }
 }
 

@@ -22,10 +22,11 @@ typedef struct {
     double v0[FLOORS_MAX]; /* approach speed when it closed, at least v0_floor [m/s] */
     double t_before;       /* [s] by overlap only: the start of the step */
     double q_before[MODES_MAX], v_before[MODES_MAX], a_before[MODES_MAX]; /* modal motion there */
-    long impacts, floored;                                                /* contact onsets, those with v0 limited */
-    OnsetLog *log;                                                        /* NULL: none */
-    ForceMonitor *forces;                                                 /* NULL: none */
-    double t_recorded, recorded[FLOORS_MAX], recorded_loss[FLOORS_MAX];   /* [s], [N], [W] at the last record */
+    long closings[FLOORS_MAX];
+    long impacts, floored;                                              /* contact onsets, those with v0 limited */
+    OnsetLog *log;                                                      /* NULL: none */
+    ForceMonitor *forces;                                               /* NULL: none */
+    double t_recorded, recorded[FLOORS_MAX], recorded_loss[FLOORS_MAX]; /* [s], [N], [W] at the last record */
 } Contacts;
 
 /* Where the contacts' power goes [W]: F p' = F_el p' (stored) + (F_raw - F_el) p' (lost)

@@ -49,6 +49,7 @@ void energy_account_report(const EnergyAccount *l, const Contacts *c, const Engi
     result->steps = l->steps;
     result->force_evaluations = l->evaluations;
     result->impacts = c->impacts;
+    memcpy(result->closings, c->closings, (size_t)c->model->n * sizeof *c->closings);
     result->v0_limited = c->floored;
     result->input_energy_j = l->input;
     result->contact_loss_j = l->lost;

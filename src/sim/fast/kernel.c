@@ -329,6 +329,7 @@ void FAST_KERNEL(FastWork *k, const SimModel *model, const Motion *motion, const
     report_peaks(k, result);
     report_energies(k, result);
     result->impacts = k->impacts;
+    memcpy(result->closings, k->closings, (size_t)model->n * sizeof *k->closings);
     result->settled_s = k->settled;
     result->v0_limited = k->v0_limited;
     for (int j = 0; j < model->n; j++)

@@ -138,6 +138,7 @@ typedef struct FastWork {
     /* energy account and counts */
     double contact_lost, contact_clamped;
     double approach_max[FLOORS_PAD_MAX]; /* [m] deepest, of steel and bumper together */
+    long closings[FLOORS_PAD_MAX];
     long impacts, v0_limited, steps, flights, forces;
 } FastWork;
 

@@ -1,0 +1,74 @@
+#include "study/front_review.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "settings/settings.h"
+#include "simulator/tower.h"
+
+enum { SIMULATED_MAX = 16 };
+
+/* Of the range: so near a gap is on its bound. */
+static const double ON_BOUND = 1e-9;
+
+static int is_gap(const Run *run, size_t j)
+{
+    return run->schema.order.n_obj > 0 && strncmp(schema_variable(&run->schema, j)->name, "gap_", 4) == 0;
+}
+
+/* NAN: not known. */
+static double result_of(const Run *run, size_t row, MeasureId id)
+{
+    const MeasureOrder *order = &run->schema.order;
+    int k = 0;
+    while (order->of[k] != (int)id)
+        k++;
+    return k < order->n_obj ? run_f(run, row)[k] : run->table.row[row].extra[k - order->n_obj];
+}
+
+static void count_bounds(const Run *run, size_t row, FrontReview *r)
+{
+    const DesignOptions *o = &run->settings->design;
+    const double near = ON_BOUND * (o->gap_max_m - o->gap_min_m);
+    size_t gap = 0;
+    for (size_t j = 0; j < run->schema.n_var && gap < FLOORS_MAX; j++) {
+        const double x = run_x(run, row)[j];
+        if (!is_gap(run, j))
+            continue;
+        r->at_smallest[gap] += x <= o->gap_min_m + near;
+        r->at_largest[gap] += x >= o->gap_max_m - near;
+        gap++;
+    }
+    r->n_gaps = gap;
+}
+
+FrontReview front_review(const Run *run)
+{
+    FrontReview r = {.n_front = run->n_front};
+    for (size_t i = 0; i < run->n_front && run->schema.order.n_obj > 0; i++) {
+        count_bounds(run, run->front[i], &r);
+        r.n_beyond += result_of(run, run->front[i], MEASURE_BEYOND_LAW) > 0.0;
+    }
+    return r;
+}
+
+Status front_review_closings(const Problem *tower, const Run *run, FrontReview *out, Err *err)
+{
+    size_t rows[SIMULATED_MAX];
+    SimTask tasks[SIMULATED_MAX];
+    *out = front_review(run);
+    const size_t n = run_spread_out(run, SIMULATED_MAX, 1, rows);
+    SimResult *results = calloc(SIMULATED_MAX, sizeof *results);
+    if (!results)
+        return fail(err, STATUS_NO_MEMORY, "no memory for %d simulations", SIMULATED_MAX);
+    for (size_t i = 0; i < n; i++)
+        tasks[i] = (SimTask){.kind = SCENE_IMPACT, .x = run_x(run, rows[i])};
+    const Status status = n > 0 ? tower_simulate(tower, n, tasks, results, err) : STATUS_OK;
+    for (size_t i = 0; i < n && status == STATUS_OK; i++)
+        for (size_t j = 0; j < out->n_gaps; j++)
+            out->closes[j] += results[i].closings[j] > 0;
+    out->n_simulated = n;
+    free(results);
+    return status;
+}

@@ -1,0 +1,27 @@
+/* study/front_review.h -- what a front of the tower says about its own search box and contact law: gaps that sit on a bound,
+ * gaps that never close, designs beyond the contact law.
+ *
+ * Errors   none but those of simulations
+ * Threads  no state */
+#ifndef IMTET_STUDY_FRONT_REVIEW_H
+#define IMTET_STUDY_FRONT_REVIEW_H
+
+#include "evaluate/problem.h"
+#include "sim/result.h"
+#include "store/run.h"
+
+typedef struct {
+    size_t n_front, n_gaps;                                 /* 0 gaps: of another problem */
+    size_t n_beyond;                                        /* designs beyond the contact law */
+    size_t at_smallest[FLOORS_MAX], at_largest[FLOORS_MAX]; /* (n_gaps) designs with this gap on that bound */
+    size_t n_simulated;                                     /* designs that were simulated again */
+    size_t closes[FLOORS_MAX];                              /* (n_gaps) of them those in which this gap closes */
+} FrontReview;
+
+/* As the run has stored it; nothing is simulated. */
+FrontReview front_review(const Run *run);
+
+/* The same, with some spread-out designs simulated again under the first record. */
+Status front_review_closings(const Problem *tower, const Run *run, FrontReview *out, Err *err);
+
+#endif
