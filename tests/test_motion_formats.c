@@ -809,6 +809,21 @@ static void test_what_is_wrong_in_a_file_of_a_kinemetrics_recorder_is_said(void 
     }
 }
 
+/* A miniSEED of floats holds whatever four bytes are. */
+static void test_a_sample_of_a_binary_file_that_is_no_number_is_refused(void **state)
+{
+    (void)state;
+    static const unsigned char NOT_A_NUMBER[] = {0x7f, 0xc0, 0, 0};
+    Text t = read_specimen("three.mseed");
+    memcpy(t.text + 64 + 4 * 40, NOT_A_NUMBER, 4);
+    Motion m;
+    Err err = {0};
+    const MotionHow how = {.channel = "1", .counts_per_m_s2 = 1e5};
+    assert_int_equal(motion_parse(&m, "a.mseed", t.text, t.length, &how, &err), STATUS_BAD_DATA);
+    assert_non_null(strstr(err.text, "a.mseed: sample 41 of the channel is not a finite number"));
+    free(t.text);
+}
+
 /* ---- peaks of headers, format by format ------------------------------------------------------------------------- */
 
 /* Every format whose header states a peak: the stated one made 2 % and 8 % larger, in the width of the file. */
@@ -940,6 +955,7 @@ static void test_names_too_long_for_a_message_lose_their_middle(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_a_sample_of_a_binary_file_that_is_no_number_is_refused),
         cmocka_unit_test(test_a_file_of_a_kinemetrics_recorder_is_read_to_its_samples),
         cmocka_unit_test(test_what_is_wrong_in_a_file_of_a_kinemetrics_recorder_is_said),
         cmocka_unit_test(test_every_format_with_a_peak_in_its_header_is_checked_against_it),

@@ -258,8 +258,11 @@ static Status uniform_step(const Series *s, double *dt, Err *err)
 static Status check_peak(const Series *s, double to_m_s2, MotionUnit unit, double scale, Err *err)
 {
     const Row *peak = row_at(s, 0);
-    for (size_t i = 0; i < s->n; i++)
+    for (size_t i = 0; i < s->n; i++) {
+        if (!isfinite(row_at(s, i)->a))
+            return fail(err, STATUS_BAD_DATA, "%s: sample %zu of the channel is not a finite number", s->path, i + 1);
         peak = fabs(row_at(s, i)->a) > fabs(peak->a) ? row_at(s, i) : peak;
+    }
     if (!(fabs(peak->a) * to_m_s2 <= LARGEST_PEAK_G * GRAVITY))
         return fail(err, STATUS_BAD_DATA, "%s:%d: an acceleration of %g %s is beyond %g g; is the unit right?", s->path,
                     peak->line, scale * peak->a, UNIT_NAMES[unit], LARGEST_PEAK_G);
