@@ -1,6 +1,6 @@
 # Figures and pictures of README and docs. Those of time want a quiet machine.
 
-.PHONY: setup-figures bench promise paper chart compare ablation pictures web setup-browser report-bench
+.PHONY: setup-figures bench promise paper chart compare ablation pictures defend web setup-browser report-bench
 
 # A record that is not there is replaced by the built-in motion.
 BENCH_RECORD ?= $(or $(wildcard ../shared/records/kobe_jma_ns.csv),builtin:kobe-like)
@@ -36,6 +36,10 @@ pictures: $(PROGRAM) ## docs/pictures, those of a study: RUN=results/kobe RECORD
 	@cp $(foreach p,front peaks modes energies displacement elsewhere,$(BUILD)/pictures/$p.png) docs/pictures
 	@node tests/report/picture.mjs $(BUILD)/pictures/report.html docs/pictures/report-front.jpg '#front' 1180 'J3 acceleration [g] to=6' 'J1 displacement [m] to=0.8'
 	@node tests/report/picture.mjs $(BUILD)/pictures/report.html docs/pictures/report-design.jpg '#design' 2250
+
+DEFEND_EVALS ?= 1500
+defend: $(PROGRAM) ## docs/defend.md: forces, stresses, baselines, deviations, limits of a Kobe study; RECORD=FILE DEFEND_EVALS=N
+	@scripts/defend --program ./$(PROGRAM) --evals $(DEFEND_EVALS) --record $(or $(RECORD),../shared/records/kobe_jma_ns.csv)
 
 web: setup-browser ## web/charts.js bundled anew from npm
 	@cd web && npm ci --ignore-scripts --no-audit --no-fund --silent && node bundle.mjs

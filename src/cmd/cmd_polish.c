@@ -127,11 +127,14 @@ static void show(const Work *w, long id)
 {
     const Schema *schema = &w->run->schema;
     const Refined *r = &w->result;
+    char label[32];
     show_objective_names(schema);
     show_objectives("before", w->run->table.row[w->row].id, schema, r->f_start);
+    snprintf(label, sizeof label, "sd %s",
+             spread_word(w->run->settings->sim.gap_tolerance_m, &w->run->settings->uncertain));
     show_objectives("polished", id, schema, r->f);
     if (isfinite(r->spread_start[0]))
-        show_objectives("spread before", 0, schema, r->spread_start);
+        show_objectives(label, 0, schema, r->spread_start);
     printf("\n%zu designs tried in %zu simulations, %zu failed, %.1f s\n", r->n_evaluated, r->n_simulated, r->n_failed,
            r->seconds);
     for (size_t k = 0; r->has_changed && k < schema->n_obj; k++)

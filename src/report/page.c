@@ -164,9 +164,10 @@ static json_t *json_of_run(const Report *r)
         name[n - 1] = 0;
     const char *slash = strrchr(name, '/');
     return json_pack(
-        "{s:s, s:s, s:o, s:o, s:b, s:b, s:I, s:I, s:o, s:I, s:I, s:o, s:o, s:o, s:o, s:s}", "version",
+        "{s:s, s:s, s:o, s:o, s:b, s:b, s:s, s:I, s:I, s:o, s:I, s:I, s:o, s:o, s:o, s:o, s:s}", "version",
         program_version(), "revision", program_revision(), "name", json_words(slash && slash[1] ? slash + 1 : name),
-        "folder", json_words(name), "tower", r->has_detail, "robust", r->is_robust, "knee",
+        "folder", json_words(name), "tower", r->has_detail, "robust", r->is_robust, "spread",
+        spread_word(run->settings->sim.gap_tolerance_m, &run->settings->uncertain), "knee",
         (json_int_t)run->table.row[r->knee].id, "chosen", (json_int_t)run->table.row[r->chosen].id, "chosen_f",
         json_numbers(run->schema.n_obj, run_f(run, r->chosen)), "evaluated", (json_int_t)n_evaluated(run), "failed",
         (json_int_t)run->n_failed, "schema", json_of_names(&run->schema), "convergence", json_of_growth(run), "detail",

@@ -63,7 +63,7 @@ function summaryPart() {
   document.getElementById("summary").append(
     element("p", {}, element("strong", {}, `Design ${run.knee}, the knee`), ": nearest to the best of everything, with every objective scaled over the front."),
     run.robust ? element("p", { class: "note" }, "Objectives are those of several simulations of every design (motion.records, sim.replicates, sim.robust " +
-      `among the settings); the chosen design is shown as one simulation under ${shortName(d.record)}.`) : "",
+      `among the settings), standard deviations those of ${run.spread === "as built" ? "structures as built" : "predictability (chaos alone)"}; the chosen design is shown as one simulation under ${shortName(d.record)}.`) : "",
     cards(knee, baselines), baselines ? comparison(knee, baselines) : "", standoutTable(baselines));
 }
 
