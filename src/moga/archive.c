@@ -218,7 +218,8 @@ void pareto_archive_update_noise(Archive *a)
 
 void pareto_archive_reset_estimates(Archive *a)
 {
-    memcpy(a->estimate, a->F, a->n * a->n_obj * sizeof *a->F);
+    if (a->n_replicates > 0)
+        memcpy(a->estimate, a->F, a->n * a->n_obj * sizeof *a->F);
 }
 
 size_t pareto_archive_find(const Archive *a, const double x[])

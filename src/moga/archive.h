@@ -55,7 +55,7 @@ Status pareto_archive_insert(Archive *a, size_t n, const double X[], const doubl
 /* After replicates: noise models, standard errors and the front. */
 void pareto_archive_update_noise(Archive *a);
 
-void pareto_archive_reset_estimates(Archive *a); /* to the means */
+void pareto_archive_reset_estimates(Archive *a); /* to the means; without replicates they are */
 
 /* Row of exactly this design, or n where it has not been evaluated. */
 size_t pareto_archive_find(const Archive *a, const double x[]);

@@ -100,6 +100,8 @@ static Status fit_surrogate(Search *s, Err *err)
 
 static void judge_batch(Search *s)
 {
+    if (!control_allows(&s->control, s->config->surrogate))
+        return;
     const Batch *b = &s->batch;
     const BatchResults results = {.n = b->n,
                                   .n_obj = s->problem->n_obj,

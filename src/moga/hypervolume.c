@@ -37,8 +37,11 @@ void hypervolume_add(Hypervolume *h, const double f[])
         size_t k = 0;
         while (k < m && f[k] <= s[k])
             k++;
-        if (k < m)
-            memmove(h->sample + left++ * m, s, m * sizeof *s);
+        if (k == m)
+            continue;
+        if (left < i)
+            memcpy(h->sample + left * m, s, m * sizeof *s);
+        left++;
     }
     h->n_left = left;
 }

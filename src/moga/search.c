@@ -51,6 +51,8 @@ static size_t mark_reported(Search *s, int is_last)
     unsigned char *reported = s->rows.reported;
     size_t n = 0;
     memcpy(reported, a->on_front, a->n);
+    if (wanted <= 1)
+        return a->n_front;
     for (size_t i = 0; i < a->n_front; i++) {
         reported[a->front[i]] = a->replicates[a->front[i]] >= wanted;
         n += reported[a->front[i]];

@@ -2,9 +2,12 @@
 
 #include <math.h>
 
-/* The front to be improved; where nothing is feasible yet, the population. */
+/* The front to be improved; where nothing is feasible yet, the population. Plain search does not look at it, but for the
+ * choice of designs to be replicated. */
 void search_measure_front(Search *s)
 {
+    if (!control_allows(&s->control, s->config->surrogate) && !s->problem->is_noisy)
+        return;
     const Archive *a = &s->archive;
     const Population *p = &s->population;
     for (size_t i = 0; i < p->n; i++)

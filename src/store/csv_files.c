@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/clock.h"
 #include "store/export.h"
 #include "settings/settings.h"
 #include "store/rows.h"
@@ -156,6 +157,10 @@ static void put_lines(FILE *f, const void *lines)
 
 Status csv_files_front(CsvFiles *c, const SearchView *v, Err *err)
 {
+    const double begun = clock_seconds();
+    c->is_behind = v->n > FRONT_ALWAYS && begun < c->next_front;
+    if (c->is_behind)
+        return STATUS_OK;
     Run front = {.schema = *c->schema, .table = evaluation_table(v->n_var, v->n_obj, c->schema->n_extra)};
     Status status = gather_front(c, v, &front, err);
     if (status == STATUS_OK)
@@ -165,6 +170,7 @@ Status csv_files_front(CsvFiles *c, const SearchView *v, Err *err)
     evaluation_table_free(&front.table);
     free(front.place);
     free(front.front);
+    c->next_front = clock_seconds() + 10.0 * (clock_seconds() - begun);
     return status;
 }
 

@@ -1,7 +1,8 @@
 /* store/csv_files.h -- evaluations.csv and front.csv beside the database, in step with its finished generations.
  *
  * evaluations.csv grows by the rows of each generation. front.csv, the front of the search joined by the polished designs
- * of earlier sessions, is replaced as a whole; numbers cost more to print than to find, so that the line of a design is
+ * of earlier sessions, is replaced as a whole, in a large run (FRONT_ALWAYS evaluations) seldom enough that it takes a tenth of
+ * the time at most, and at the end (is_behind); numbers cost more to print than to find, so that the line of a design is
  * printed once, when it comes onto the front, and kept until it leaves; anew where replicates change means and deviations.
  *
  * Life cycle  {0} -> csv_files_begin or csv_files_resume -> csv_files_append, ... -> csv_files_close, or csv_files_free
@@ -23,7 +24,11 @@ typedef struct {
     EvaluationTable search; /* what evaluations.csv has of the search */
     char **line;            /* (n_lines) of front.csv, by design; NULL: not on the front */
     size_t n_lines;
+    double next_front; /* [s] of the clock, before which front.csv is not replaced again */
+    int is_behind;     /* front.csv is of an earlier generation */
 } CsvFiles;
+
+enum { FRONT_ALWAYS = 4000 };
 
 Status csv_files_begin(CsvFiles *c, const Folder *folder, const Schema *schema, const Settings *used, Err *err);
 Status csv_files_resume(CsvFiles *c, const Folder *folder, const Schema *schema, const Run *run, Err *err);
@@ -31,7 +36,7 @@ Status csv_files_resume(CsvFiles *c, const Folder *folder, const Schema *schema,
 /* Up to evaluation n, as the database has them now. */
 Status csv_files_append(CsvFiles *c, Database *db, size_t n, Err *err);
 
-/* front.csv as of this generation, whose evaluations are appended. */
+/* front.csv as of this generation, whose evaluations are appended, where it is due. */
 Status csv_files_front(CsvFiles *c, const SearchView *view, Err *err);
 
 /* Both files, of the run. */

@@ -11,12 +11,13 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { BUSY_MS = 3000 };
+enum { BUSY_MS = 3000, KEPT_STATEMENTS = 12 };
 
 struct Database {
     sqlite3 *db;
     char path[PATH_MAX];
     int format;
+    sqlite3_stmt *kept[KEPT_STATEMENTS]; /* prepared, the one used last first */
     dev_t device; /* of the file that was opened for writing, and its number there; 0: none was */
     ino_t file;
 };
@@ -90,12 +91,37 @@ static int bind_value(sqlite3_stmt *s, int i, char type, va_list *values)
     }
 }
 
+/* The statement moves to the front; the one that was not used for longest goes. */
+static int take_statement(Database *d, const char *sql, sqlite3_stmt **s)
+{
+    size_t i = 0;
+    while (i < KEPT_STATEMENTS - 1 && d->kept[i] && strcmp(sqlite3_sql(d->kept[i]), sql) != 0)
+        i++;
+    *s = d->kept[i];
+    if (*s && strcmp(sqlite3_sql(*s), sql) != 0) {
+        sqlite3_finalize(*s);
+        *s = NULL;
+    }
+    const int code = *s ? SQLITE_OK : sqlite3_prepare_v2(d->db, sql, -1, s, NULL);
+    memmove(d->kept + 1, d->kept, i * sizeof *d->kept);
+    d->kept[0] = *s;
+    return code;
+}
+
+static void forget_statements(Database *d)
+{
+    for (size_t i = 0; i < KEPT_STATEMENTS; i++) {
+        sqlite3_finalize(d->kept[i]);
+        d->kept[i] = NULL;
+    }
+}
+
 Status database_do(Database *d, Err *err, const char *sql, const char *types, ...)
 {
     sqlite3_stmt *s = NULL;
     if (!types[0])
         return sqlite3_exec(d->db, sql, NULL, NULL, NULL) == SQLITE_OK ? STATUS_OK : complain(d, err);
-    int code = sqlite3_prepare_v2(d->db, sql, -1, &s, NULL);
+    int code = take_statement(d, sql, &s);
     va_list values;
     va_start(values, types);
     for (int i = 0; code == SQLITE_OK && types[i]; i++)
@@ -104,7 +130,12 @@ Status database_do(Database *d, Err *err, const char *sql, const char *types, ..
     if (code == SQLITE_OK)
         code = sqlite3_step(s);
     const Status status = code == SQLITE_DONE || code == SQLITE_ROW ? STATUS_OK : complain(d, err);
-    sqlite3_finalize(s);
+    if (status != STATUS_OK) {
+        forget_statements(d);
+        return status;
+    }
+    sqlite3_reset(s);
+    sqlite3_clear_bindings(s);
     return status;
 }
 
@@ -397,6 +428,7 @@ void database_close(Database *d)
 {
     if (!d)
         return;
+    forget_statements(d);
     sqlite3_close(d->db);
     free(d);
 }

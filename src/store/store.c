@@ -271,6 +271,7 @@ static Status store_kinds(RunStore *store, const SearchView *v, Err *err)
 
 static Status store_front_changes(RunStore *store, const SearchView *v, Err *err)
 {
+    enum { BLOCK = 64 };
     unsigned char *flags = realloc(store->was_on_front, v->n + 1);
     if (!flags)
         return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", v->n);
@@ -278,6 +279,10 @@ static Status store_front_changes(RunStore *store, const SearchView *v, Err *err
     memset(flags + store->n_known, 0, v->n - store->n_known);
     store->n_known = v->n;
     for (size_t i = 0; i < v->n; i++) {
+        if (i % BLOCK == 0 && i + BLOCK <= v->n && memcmp(v->on_front + i, flags + i, BLOCK) == 0) {
+            i += BLOCK - 1; /* nothing has changed here */
+            continue;
+        }
         if (v->on_front[i] && !flags[i])
             TRY(database_do(store->db, err,
                             "INSERT INTO front(evaluation, entered) VALUES (?, ?) ON CONFLICT(evaluation) DO UPDATE "
@@ -425,14 +430,14 @@ static Status end_session(RunStore *store, const char *stopped, int is_final, do
 static Status read_at_the_end(RunStore *store, Run *run, Err *err)
 {
     TRY(run_load(run, store->db, store_folder(store), err));
-    return store->has_polished ? csv_files_replace(&store->folder, run, err) : STATUS_OK;
+    return store->has_polished || store->files.is_behind ? csv_files_replace(&store->folder, run, err) : STATUS_OK;
 }
 
 Status store_close(RunStore *store, const char *stopped, int is_final, double session, Run *run, Err *err)
 {
     Run unwanted = {0}, *last = run ? run : &unwanted;
     Status status = end_session(store, stopped, is_final, session, err);
-    if (status == STATUS_OK && (run || store->has_polished))
+    if (status == STATUS_OK && (run || store->has_polished || store->files.is_behind))
         status = read_at_the_end(store, last, err);
     if (status == STATUS_OK)
         status = csv_files_close(&store->files, err);

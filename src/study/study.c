@@ -29,6 +29,7 @@ typedef struct {
     size_t first_generation; /* of this session */
     long left_generation;    /* whose state was damaged, so that the one before is resumed; 0: none */
     int asked, late;         /* why it stopped */
+    size_t n_improvement;    /* evaluations at which the improvement of the front is logged next */
     long failures;           /* simulations in a row that failed, up to now */
     int failing;             /* search.failures_max of them */
     char failure[200];       /* why the last one failed */
@@ -112,7 +113,7 @@ static Status write_generation(Study *study, const SearchView *view, Err *err)
 {
     const double session = session_seconds(study), seconds = study->seconds_before + session;
     TRY(store_generation(study->store, view, seconds, session, err));
-    return study_log_generation(study->store, view, seconds, err);
+    return study_log_generation(study->store, view, seconds, &study->n_improvement, err);
 }
 
 static void take_view(StudySummary *sum, const SearchView *view)

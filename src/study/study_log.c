@@ -11,6 +11,9 @@
 #include "study/improvement.h"
 #include "study/progress.h"
 
+/* Evaluations up to which the improvement is logged with every generation: it costs a pass over all of them. */
+enum { IMPROVEMENT_ALWAYS = 4000 };
+
 static Status log_motions(RunStore *store, const Tower *t, Err *err)
 {
     for (size_t i = 0; i < tower_n_records(t); i++) {
@@ -65,12 +68,15 @@ static json_t *generation_event(const SearchView *v, double hypervolume, double 
                      v->surrogate_s);
 }
 
-Status study_log_generation(RunStore *store, const SearchView *view, double seconds, Err *err)
+Status study_log_generation(RunStore *store, const SearchView *view, double seconds, size_t *n_improvement, Err *err)
 {
     const double hypervolume = store_hypervolume(store);
     char improvement[32], surrogate[64] = "-", repeats[40] = "";
-    double igd;
-    TRY(improvement_lately(view, &igd, err));
+    double igd = NAN;
+    if (view->n >= *n_improvement) {
+        TRY(improvement_lately(view, &igd, err));
+        *n_improvement = view->n > IMPROVEMENT_ALWAYS ? view->n + view->n / 10 : 0;
+    }
     TRY(store_event(store, generation_event(view, hypervolume, igd, seconds), err));
     number_words(igd, 4, improvement);
     if (view->n_replicates > 0)
