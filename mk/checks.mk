@@ -10,7 +10,7 @@ lint: ## format, versions, structure, headers, static analysis; LINT_BASE=all: c
 # Every reader of foreign bytes under libFuzzer; what it finds goes to build/fuzz.
 FUZZ_S       ?= 600
 FUZZ_OBJ     := $(patsubst %,$(BUILD)/tests/fuzz/%.o,targets worker run)
-FUZZ_TARGETS := settings motion table worker database cells
+FUZZ_TARGETS := settings motion instrument archive table worker database cells
 fuzz: ## the readers under libFuzzer (clang), FUZZ_S=600 seconds in all
 	@$(MAKE) --no-print-directory MODE=fuzz CC=clang WARNINGS=-w fuzz-here
 	@scripts/fuzz build/fuzz $(FUZZ_S) $(FUZZ_TARGETS)

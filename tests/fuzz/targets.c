@@ -10,7 +10,9 @@
 #include "scene/design.h"
 #include "settings/settings.h"
 #include "base/table.h"
+#include "scene/motion_process.h"
 #include "scene/motion_read.h"
+#include "scene/motion_scale.h"
 
 /* What must hold whatever the bytes are; a fuzzer and a test both notice an abort. */
 static void demand(int holds, const char *what)
@@ -86,19 +88,53 @@ static void demand_motion(const Motion *m)
         demand(fabs(m->accel[i]) <= 200, "samples are finite and below 20 g");
 }
 
+/* Base line, filters and a scaling give finite samples or a reason. */
+static void process(Motion *m)
+{
+    Settings s;
+    Err err = {0};
+    settings_defaults(&s);
+    s.motion.baseline = BASELINE_QUADRATIC;
+    s.motion.highpass_hz = 0.5;
+    s.motion.lowpass_hz = 5;
+    s.motion.target = TARGET_ASCE7;
+    Status status = motion_process(m, &s.motion, &err);
+    if (status == STATUS_OK)
+        status = motion_scale(m, &s.motion, &err);
+    demand_reason(status, &err);
+    for (size_t i = 0; status == STATUS_OK && i < m->n; i++)
+        demand(isfinite(m->accel[i]), "processed samples are finite");
+}
+
+static void read_motion(const uint8_t *data, size_t size, const MotionHow *how, int processed)
+{
+    Err err = {0};
+    Motion m;
+    const Status status = motion_parse(&m, "input", (const char *)data, size, how, &err);
+    demand_reason(status, &err);
+    if (status == STATUS_OK)
+        demand_motion(&m);
+    if (status == STATUS_OK && processed && m.n < 4096)
+        process(&m);
+    motion_free(&m);
+}
+
 void fuzz_motion(const uint8_t *data, size_t size)
 {
-    static const MotionHow HOWS[] = {
-        {0}, {.unit = UNIT_G, .channel = "1", .dt_s = 0.01}, {.channel = "2", .resample_dt_s = 0.5}};
-    for (size_t i = 0; i < sizeof HOWS / sizeof HOWS[0]; i++) {
-        Err err = {0};
-        Motion m;
-        const Status status = motion_parse(&m, "input", (const char *)data, size, &HOWS[i], &err);
-        demand_reason(status, &err);
-        if (status == STATUS_OK)
-            demand_motion(&m);
-        motion_free(&m);
-    }
+    read_motion(data, size, &(MotionHow){0}, 0);
+    read_motion(data, size, &(MotionHow){.unit = UNIT_G, .channel = "1", .dt_s = 0.01}, 0);
+    read_motion(data, size, &(MotionHow){.channel = "2", .resample_dt_s = 0.5}, 0);
+}
+
+void fuzz_instrument(const uint8_t *data, size_t size)
+{
+    read_motion(data, size, &(MotionHow){.channel = "1", .counts_per_m_s2 = 1e5}, 1);
+    read_motion(data, size, &(MotionHow){.channel = "3", .unit = UNIT_CM_S2}, 0);
+}
+
+void fuzz_archive(const uint8_t *data, size_t size)
+{
+    read_motion(data, size, &(MotionHow){.channel = "2", .counts_per_m_s2 = 1e5}, 0);
 }
 
 static void demand_table(const Table *t)
