@@ -114,7 +114,7 @@ static void read_motion(const uint8_t *data, size_t size, const MotionHow *how, 
     demand_reason(status, &err);
     if (status == STATUS_OK)
         demand_motion(&m);
-    if (status == STATUS_OK && processed && m.n < 4096)
+    if (status == STATUS_OK && processed && m.n < 4096 && m.dt_s > 1e-3)
         process(&m);
     motion_free(&m);
 }
