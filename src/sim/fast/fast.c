@@ -68,6 +68,7 @@ static void layout(FastWork *k, Carve *c)
         CARVE(c, floors, &k->record.batch_u[i]);
     }
     k->R = carve(c, modes * floors, sizeof(double));
+    k->flex = carve(c, n * floors, sizeof(double));
     k->R_abs = carve(c, modes * floors, sizeof(double));
     k->D_abs = carve(c, modes * floors, sizeof(double));
     k->RT = carve(c, modes * floors, sizeof(double));
@@ -145,7 +146,7 @@ FastTolerances fast_tolerances(Accuracy accuracy)
                                .energy_tolerance = 3e-7,
                                .steps_max = 2e7,
                                .peak_tolerance = 4e-4,
-                               .flexibility_left_out = 0.002,
+                               .flexibility_left_out = 0.02,
                                .tail_tolerance = 4e-4},
         [ACCURACY_FINE] = {.steps_per_contact = 80,
                            .solver_tolerance = 1e-12,

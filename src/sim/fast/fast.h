@@ -19,7 +19,8 @@
  *           missed by, sqrt(sum d_i^2 / 2 E_in), which would show an error in the linear flow.
  * Maxima    flights: extremum of the Hermite cubic; contacts: parabola through start, middle and end of each step,
  *           refused where the peak is uncertain.
- * Core      modes whose static flexibility would hardly soften a contact are left out.
+ * Core      modes whose static flexibility hardly softens a contact follow the forces without delay, w += S f with
+ *           S_ij = sum R_i R_j / w^2, w' += S f'; they damp nothing and do not follow the ground.
  *
  * Files     kernel.c: step control, results, and the *.inc files in order: design, step_tables, contact_quadrature,
  *           peaks, free_flight, free_interval, contact_forces, contact_step.

@@ -102,6 +102,8 @@ typedef struct FastWork {
     double *R, *R_abs, *D_abs;             /* (m_pad, n_pad) of the floors, of their distances from the floor below */
     double *RT;                            /* (n_pad, m_pad) */
     vec *gap;                              /* (n_pad) */
+    double *flex;                          /* (n, n_pad) [m/N] static flexibility of the core modes left out: of w */
+    int has_flex;                          /* some are left out */
     FloorSet floors;                       /* all of them */
     double shortest_at_1;                  /* [s] shortest Hertz contact of any floor at 1 m/s */
     double shortest_bumper;                /* [s] shortest contact of any bumper alone; 0: steel on steel somewhere */

@@ -8,7 +8,7 @@ typedef struct {
     double energy_tolerance;     /* of one step, share of the input energy so far; 0: all steps are as above */
     double steps_max;            /* steps after which a run is given up */
     double peak_tolerance;       /* share of a peak that may be uncertain inside a step */
-    double flexibility_left_out; /* of the highest core modes, share of a contact's; 0: all modes are kept */
+    double flexibility_left_out; /* static, of the highest core modes, share of a contact's; 0: all are kept */
     double tail_tolerance;       /* contacts end where no more than this share of the input is left; 0: never */
 } FastTolerances;
 

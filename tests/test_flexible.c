@@ -1,0 +1,93 @@
+/* Core modes that the engine leaves out act as springs: results hardly depend on how many are left out. */
+#include "check.h"
+
+#include <stdlib.h>
+
+#include "bench/promise.h"
+#include "scene/motion_source.h"
+#include "scene_options.h"
+#include "sim/fast/fast.h"
+
+enum { WINDOWS = 11, RESULTS = 3 };
+
+typedef struct {
+    Building b;
+    CoreBeam core;
+    SimModel model;
+    FastWork *work;
+} Stage;
+
+static void stage_open(Stage *t, const SceneOptions *o)
+{
+    Err err;
+    CHECK_OK(building_load(&t->b, &o->building, &err), &err);
+    CHECK_OK(model_create(&t->model, t->b.n, t->b.model.n, &err), &err);
+    CHECK_OK(fast_create(&t->work, t->b.n, t->b.model.n, &err), &err);
+}
+
+static void stage_close(Stage *t)
+{
+    fast_free(t->work);
+    model_free(&t->model);
+    building_free(&t->b);
+}
+
+static void stage_set(Stage *t, const SceneOptions *options, const PromiseCase *c)
+{
+    SceneOptions o = *options;
+    Err err;
+    o.core.theory = c->theory;
+    CHECK_OK(core_beam_make(&t->core, &o.core, t->b.n, t->b.storey_m, c->x[t->b.n], c->x[t->b.n + 1], &err), &err);
+    CHECK_OK(model_set(&t->model, &o, &t->b, &t->core, c->x, &err), &err);
+}
+
+static SimResult run_leaving_out(Stage *t, const PromiseCase *c, double flexibility)
+{
+    SimResult r;
+    FastTolerances tolerances = fast_tolerances(ACCURACY_STANDARD);
+    tolerances.flexibility_left_out = flexibility;
+    fast_run(t->work, &t->model, &c->motion, &(EngineOptions){.duration = c->duration}, &tolerances, &r);
+    return r;
+}
+
+static void test_few_core_modes_and_springs_give_what_all_modes_give(void **state)
+{
+    (void)state;
+    static const double ALLOWED[RESULTS] = {3e-5, 2e-4, 1e-3}; /* without the springs 1e-4, 1e-3, 2e-3 */
+    const SceneOptions o = paper_scene();
+    double error[RESULTS][WINDOWS];
+    Motion m;
+    Stage t;
+    Err err;
+    CHECK_OK(motion_load(&m, "builtin:kobe-like", UNIT_FROM_FILE, &err), &err);
+    CHECK_OK(motion_prepare(&m, 0.3, 3.1, &err), &err);
+    const PromisePlan plan = {.options = &o, .records = &m, .n_records = 1, .n_windows = WINDOWS};
+    stage_open(&t, &o);
+    for (int k = 0; k < WINDOWS; k++) {
+        PromiseCase c;
+        double each[BENCH_OBJECTIVES];
+        promise_window(&plan, 20, k, &c);
+        stage_set(&t, &o, &c);
+        const SimResult all = run_leaving_out(&t, &c, 0), few = run_leaving_out(&t, &c, 0.1);
+        assert_true(few.outcome == RUN_OK && few.energy_balance_error < 3e-4);
+        assert_true(few.steps < 1.1 * (double)all.steps);
+        result_errors(&few, &all, each);
+        for (int i = 0; i < RESULTS; i++)
+            error[i][k] = each[i];
+    }
+    for (int i = 0; i < RESULTS; i++) {
+        const double median = bench_median(WINDOWS, error[i]);
+        print_message("%s: median %.1e\n", BENCH_OBJECTIVE_NAMES[i], median);
+        assert_true(median <= ALLOWED[i]);
+    }
+    stage_close(&t);
+    motion_free(&m);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_few_core_modes_and_springs_give_what_all_modes_give),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
