@@ -160,6 +160,7 @@ static void print_table(const Job *job)
 
 static Status draw(const Job *job, Err *err)
 {
+    const char *slash = strrchr(job->motion, '/');
     const SimResult *r = job->results[REDUCED], *f = job->results[FULL];
     const HeightPanel panels[] = {
         {.title = "peak displacement [m]",
@@ -169,9 +170,13 @@ static Status draw(const Job *job, Err *err)
         {.title = "peak interstorey drift [m]", .curve = {r->peak_drift_m, f->peak_drift_m}},
         {.title = "peak acceleration [g]", .curve = {r->peak_acceleration_g, f->peak_acceleration_g}},
     };
-    return heights_draw(
-        &(Heights){.title = job->motion, .n = job->n_floors, .z = job->z, .columns = 3, .n_panels = 3, .panel = panels},
-        job->svg, err);
+    return heights_draw(&(Heights){.title = slash ? slash + 1 : job->motion,
+                                   .n = job->n_floors,
+                                   .z = job->z,
+                                   .columns = 3,
+                                   .n_panels = 3,
+                                   .panel = panels},
+                        job->svg, err);
 }
 
 /* ---- designs and records ----------------------------------------------------------------------------------------- */

@@ -27,7 +27,8 @@ static void write_panel(FILE *script, const Heights *h, int panel)
     fprintf(script, " noenhanced\nset ylabel '%s'\nset format y '%s'\nplot ",
             panel % h->columns == 0 ? "height [m]" : "", panel % h->columns == 0 ? "%g" : "");
     for (int c = 0; c < HEIGHT_CURVES_MAX && p->curve[c]; c++) {
-        fprintf(script, "%s$P%d using %d:1 with lines lw 1.5 lc '%s' ", c ? ", " : "", panel, c + 2, COLOURS[c]);
+        fprintf(script, "%s$P%d using %d:1 with lines lw 1.5 lc '%s' dt %s ", c ? ", " : "", panel, c + 2, COLOURS[c],
+                c ? "(7,4)" : "1");
         if (p->name[c]) {
             fputs("title ", script);
             gnuplot_quote(script, p->name[c]);
