@@ -9,6 +9,7 @@
 #include "moga/normalisation.h"
 #include "moga/hypervolume.h"
 #include "moga/infill.h"
+#include "moga/nd_tree.h"
 #include "moga/selection.h"
 #include "moga/variation.h"
 #include "wfg.h"
@@ -416,6 +417,60 @@ static void test_feasible_designs_survive_before_infeasible_ones(void **state)
 
 /* -- archive and infill -------------------------------------------------------------------------------------------- */
 
+/* Of stream number `seed`: on a coarse grid with ties, free, or near a sphere where few are dominated; every fifth point is
+ * an earlier one again. */
+static void make_stream(uint32_t seed, size_t n, size_t m, double F[])
+{
+    Random r = random_stream(seed, RANDOM_TEST, 2, 0);
+    for (size_t i = 0; i < n; i++) {
+        double square = 0.0;
+        for (size_t k = 0; k < m; k++) {
+            F[i * m + k] = seed % 2 ? (double)random_below(&r, 2 + seed % 7) : random_uniform(&r);
+            square += (F[i * m + k] + 1e-3) * (F[i * m + k] + 1e-3);
+        }
+        for (size_t k = 0; k < m && seed % 3 == 0; k++)
+            F[i * m + k] = (F[i * m + k] + 1e-3) / sqrt(square) * (seed % 6 ? 1.0 : 1.0 + 0.1 * random_uniform(&r));
+        if (i > 0 && random_below(&r, 5) == 0)
+            memcpy(F + i * m, F + random_below(&r, i) * m, m * sizeof *F);
+    }
+}
+
+static void insert_by_definition(size_t m, const double F[], size_t row, unsigned char in[])
+{
+    in[row] = 1;
+    for (size_t j = 0; j < row && in[row]; j++)
+        in[row] = !(in[j] && dominates(m, F + j * m, F + row * m));
+    for (size_t j = 0; j < row && in[row]; j++)
+        in[j] = in[j] && !dominates(m, F + row * m, F + j * m);
+}
+
+static void test_the_tree_of_the_front_equals_brute_force_on_200_streams(void **state)
+{
+    (void)state;
+    enum { N = 400, M_MAX = 10 };
+    static double F[N * M_MAX];
+    for (uint32_t seed = 0; seed < 200; seed++) {
+        const size_t m = 2 + seed % (M_MAX - 1);
+        unsigned char in[N] = {0}, wanted[N] = {0};
+        NdTree *t;
+        NdChange change;
+        Err err = {0};
+        make_stream(seed, N, m, F);
+        CHECK_OK(nd_tree_create(&t, m, &err), &err);
+        for (size_t i = 0; i < N; i++) {
+            CHECK_OK(nd_tree_insert(t, F, i, &change, &err), &err);
+            in[i] = change.is_in != 0;
+            for (size_t j = 0; j < change.n_removed; j++) {
+                assert_int_equal(in[change.removed[j]], 1);
+                in[change.removed[j]] = 0;
+            }
+            insert_by_definition(m, F, i, wanted);
+            assert_memory_equal(in, wanted, N);
+        }
+        nd_tree_free(t);
+    }
+}
+
 static void test_front_flags_equal_a_brute_force_filter_after_every_insertion(void **state)
 {
     (void)state;
@@ -645,6 +700,7 @@ int main(void)
         cmocka_unit_test(test_every_direction_keeps_its_own_design_in_rvea),
         cmocka_unit_test(test_thousands_of_designs_are_selected_in_seconds),
         cmocka_unit_test(test_feasible_designs_survive_before_infeasible_ones),
+        cmocka_unit_test(test_the_tree_of_the_front_equals_brute_force_on_200_streams),
         cmocka_unit_test(test_front_flags_equal_a_brute_force_filter_after_every_insertion),
         cmocka_unit_test(test_a_batch_spreads_over_the_directions_instead_of_crowding),
         cmocka_unit_test(test_picks_are_those_of_gains_computed_anew_each_time),

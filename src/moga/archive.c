@@ -81,18 +81,20 @@ static Status resize(Archive *a, size_t n_max, Err *err)
 Status pareto_archive_init(Archive *a, size_t n_max, size_t n_var, size_t n_obj, size_t n_con, Err *err)
 {
     *a = (Archive){.n_var = n_var, .n_obj = n_obj, .n_con = n_con};
+    TRY(nd_tree_create(&a->tree, n_obj, err));
     return resize(a, n_max > 0 ? n_max : 1, err);
 }
 
 void pareto_archive_free(Archive *a)
 {
+    nd_tree_free(a->tree);
     free(a->store);
     *a = (Archive){0};
 }
 
 /* The front is compared with the new design alone, which stays outside where a member dominates it, and otherwise
  * replaces those that it dominates. */
-static void update_front(Archive *a, size_t row)
+static void compare_with_front(Archive *a, size_t row)
 {
     const size_t m = a->n_obj;
     const double *f = a->F + row * m, *error = a->error + row * m;
@@ -112,6 +114,25 @@ static void update_front(Archive *a, size_t row)
     a->n_front = kept + 1;
 }
 
+/* The same by the tree: without replicates the standard errors are 0. */
+static Status follow_tree(Archive *a, size_t row, Err *err)
+{
+    NdChange change;
+    size_t kept = 0;
+    TRY(nd_tree_insert(a->tree, a->F, row, &change, err));
+    if (!change.is_in)
+        return STATUS_OK;
+    for (size_t i = 0; i < change.n_removed; i++)
+        a->on_front[change.removed[i]] = 0;
+    for (size_t i = 0; change.n_removed > 0 && i < a->n_front; i++)
+        if (a->on_front[a->front[i]])
+            a->front[kept++] = a->front[i];
+    a->n_front -= change.n_removed;
+    a->on_front[row] = 1;
+    a->front[a->n_front++] = row;
+    return STATUS_OK;
+}
+
 static void set_errors(Archive *a, size_t row)
 {
     for (size_t k = 0; k < a->n_obj; k++) {
@@ -121,7 +142,7 @@ static void set_errors(Archive *a, size_t row)
     }
 }
 
-static void add_design(Archive *a, size_t row)
+static Status add_design(Archive *a, size_t row, Err *err)
 {
     memcpy(a->F + row * a->n_obj, a->Y + row * a->n_obj, a->n_obj * sizeof *a->F);
     memcpy(a->estimate + row * a->n_obj, a->Y + row * a->n_obj, a->n_obj * sizeof *a->estimate);
@@ -132,8 +153,12 @@ static void add_design(Archive *a, size_t row)
     a->usable[row] = a->ok[row];
     a->violation[row] = a->ok[row] ? violation_of(a->n_con, a->G + row * a->n_con) : INFINITY;
     set_errors(a, row);
-    if (a->usable[row] && !(a->violation[row] > 0.0))
-        update_front(a, row);
+    if (!a->usable[row] || a->violation[row] > 0.0)
+        return STATUS_OK;
+    if (a->n_replicates == 0)
+        return follow_tree(a, row, err);
+    compare_with_front(a, row);
+    return STATUS_OK;
 }
 
 /* Welford's running mean and sum of squares. A design with a replicate that failed is no longer usable. */
@@ -160,17 +185,18 @@ static void add_replicate(Archive *a, size_t row, size_t design)
     a->violation[design] = violation_of(a->n_con, a->G + design * a->n_con);
 }
 
-static void add_row(Archive *a, size_t row)
+static Status add_row(Archive *a, size_t row, Err *err)
 {
     const size_t design = design_of(a, row), was_usable = a->usable[design];
     a->on_front[row] = 0;
     a->n_failed += !a->ok[row];
     if (design == row)
-        add_design(a, row);
+        TRY(add_design(a, row, err));
     else
         add_replicate(a, row, design);
     a->n_usable += a->usable[design];
     a->n_usable -= design == row ? 0 : was_usable;
+    return STATUS_OK;
 }
 
 Status pareto_archive_insert(Archive *a, size_t n, const double X[], const double F[], const double G[],
@@ -188,7 +214,7 @@ Status pareto_archive_insert(Archive *a, size_t n, const double X[], const doubl
                      (a->n_con == 0 || all_finite(a->n_con, G + i * a->n_con));
         a->kind[row] = kind;
         a->generation[row] = generation;
-        add_row(a, row);
+        TRY(add_row(a, row, err));
     }
     return STATUS_OK;
 }
@@ -211,7 +237,7 @@ void pareto_archive_update_noise(Archive *a)
             continue;
         set_errors(a, row);
         if (!(a->violation[row] > 0.0))
-            update_front(a, row);
+            compare_with_front(a, row);
     }
     a->is_stale = 0;
 }

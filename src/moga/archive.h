@@ -9,6 +9,9 @@
  *
  * Up to date after each insertion without replicates; after one with replicates pareto_archive_update_noise is due.
  *
+ * A new design is compared with few others (moga/nd_tree.h); with all of the front once there are replicates, whose standard
+ * errors change what dominates what.
+ *
  * Life cycle  pareto_archive_init -> pareto_archive_insert (pareto_archive_update_noise) ... -> pareto_archive_free
  * Memory      grows by doubling: pointers move
  * Threads     one writer */
@@ -18,6 +21,7 @@
 #include <stddef.h>
 
 #include "base/status.h"
+#include "moga/nd_tree.h"
 #include "moga/noise.h"
 
 typedef struct {
@@ -39,6 +43,7 @@ typedef struct {
     double *estimate;        /* (n, n_obj) what the search compares */
 
     size_t *front;         /* (n_front) rows of the front, ascending */
+    NdTree *tree;          /* of the front, while there are no replicates */
     size_t n_slots, *slot; /* hash table of the designs */
     NoiseModel *noise;     /* (n_obj) */
     int is_stale;          /* pareto_archive_update_noise is due */
