@@ -1,6 +1,6 @@
 # Figures and pictures of README and docs. Those of time want a quiet machine.
 
-.PHONY: setup-figures bench promise paper chart compare ablation pictures defend web setup-browser report-bench
+.PHONY: setup-figures bench promise paper chart compare ablation pictures defend defend-bumpers web setup-browser report-bench
 
 # A record that is not there is replaced by the built-in motion.
 BENCH_RECORD ?= $(or $(wildcard ../shared/records/kobe_jma_ns.csv),builtin:kobe-like)
@@ -43,6 +43,9 @@ defend: $(PROGRAM) ## docs/defend.md: forces, stresses, baselines, deviations, l
 
 web: setup-browser ## web/charts.js bundled anew from npm
 	@cd web && npm ci --ignore-scripts --no-audit --no-fund --silent && node bundle.mjs
+
+defend-bumpers: $(PROGRAM) setup-figures ## docs/defend-bumpers.md: a study with bumpers beside one without; RECORD=FILE
+	@scripts/defend-bumpers --program ./$(PROGRAM) --record $(or $(RECORD),$(BENCH_RECORD)) $(ARGS)
 
 setup-figures: ## packages for the tables of the search
 	@scripts/setup packages-figures.txt

@@ -14,6 +14,7 @@ typedef struct {
     double dt;        /* [s] sampling interval; the push takes two of them, the flight to the wall three more */
     double until;     /* [s] end of the run; 0: as long after the closing as before it, and twice the contact */
     double tolerance; /* < 0: steps per contact as the accuracy says */
+    double bumper;    /* [N/m], of the same damping as the steel; 0: none */
 } Throw;
 
 typedef struct {
@@ -28,7 +29,15 @@ static Contact paper_law(double k, double r, double v0_floor)
 
 static Throw throw_of(double mass, double k, double v, double r)
 {
-    return (Throw){mass, k, v, r, 7.3 * contact_hertz_duration(k, mass, v), 0, -1};
+    return (Throw){mass, k, v, r, 7.3 * contact_hertz_duration(k, mass, v), 0, -1, 0};
+}
+
+static Contact law_of(const Throw *x)
+{
+    Contact c = paper_law(x->k, x->r, 1e-300);
+    c.bumper = x->bumper;
+    c.bumper_a = c.a;
+    return c;
 }
 
 static void throw_mass(Trial *t, const Throw *x, Thrown *out)
@@ -37,9 +46,10 @@ static void throw_mass(Trial *t, const Throw *x, Thrown *out)
     double accel[3] = {0, -x->v / x->dt, 0};
     const Motion motion = {.accel = accel, .n = 3, .dt_s = x->dt};
     const Bob bob = {.mass = x->mass, .gap = x->v * 4 * x->dt};
-    const Contact contact = paper_law(x->k, x->r, 1e-300);
+    const Contact contact = law_of(x);
     out->penetration = contact_hertz_indentation(x->k, x->mass, x->v);
-    out->duration = contact_hertz_duration(x->k, x->mass, x->v);
+    out->duration =
+        contact_duration_min(contact_hertz_duration(x->k, x->mass, x->v), contact_bumper_duration(&contact, x->mass));
     out->closing = 5 * x->dt;
     out->energy = 0.5 * x->mass * x->v * x->v;
     out->end = x->until > 0 ? x->until : 2 * out->closing - x->dt + 2 * out->duration;
@@ -75,6 +85,48 @@ static void hertz_impact(Trial *t)
             trial_note(t, &cut.result, (cut.result.contact_stored_j > 0) != late ? 0 : 1, 0.5,
                        "in contact %g durations after closing", late ? 1 + off : 1 - off);
         }
+    }
+}
+
+/* Where so much energy [J] is stored. */
+static double approach_of(const Contact *c, double energy)
+{
+    double low = 0, high = 1;
+    while (contact_stored(c, high) < energy)
+        high *= 2;
+    for (int i = 0; i < 100; i++) {
+        const double middle = 0.5 * (low + high);
+        *(contact_stored(c, middle) < energy ? &low : &high) = middle;
+    }
+    return high;
+}
+
+static void bumper_impact(Trial *t)
+{
+    TRIAL_EACH_ACCURACY(t)
+    {
+        for (double bumper = 1e6; bumper < 1e12; bumper *= t->size == SIZE_QUICK ? 1e3 : 10)
+            for (int damped = 0; damped < 2; damped++) {
+                Throw x = throw_of(280000, STEEL, 0.4, damped ? 0.7 : 1);
+                x.bumper = bumper;
+                x.dt =
+                    7.3 * contact_duration_min(contact_hertz_duration(x.k, x.mass, x.v), M_PI * sqrt(x.mass / bumper));
+                const Contact law = law_of(&x);
+                const double want = contact_rebound(law.a);
+                Thrown out;
+                throw_mass(t, &x, &out);
+                const SimResult *r = &out.result;
+                trial_compare(t, r, rebound(&out), want, want, trial_allowed(t, 1e-4, 2e-2), "rebound ratio, %g N/m",
+                              bumper);
+                if (damped)
+                    continue;
+                const double depth = approach_of(&law, out.energy);
+                const double force = contact_force(&law, x.mass, depth, 0, 1).elastic;
+                trial_compare(t, r, r->indentation_max_m + r->bumper_compression_m, depth, depth,
+                              trial_allowed(t, 1e-3, 3e-2), "largest approach, %g N/m", bumper);
+                trial_compare(t, r, r->j3_g * 9.81 * x.mass, force, force, trial_allowed(t, 1e-3, 5e-2),
+                              "largest force, %g N/m", bumper);
+            }
     }
 }
 
@@ -599,6 +651,9 @@ static void simultaneous(Trial *t)
 static const Case CASES[] = {
     {"hertz-impact", "one impact with r = 1 returns its speed; indentation, force and duration are Hertz's",
      hertz_impact},
+    {"bumper-impact",
+     "impacts on bumpers from 1e6 to 1e11 N/m: rebound of steel and bumper alike; approach and force by energy",
+     bumper_impact},
     {"order-of-convergence", "the rebound at r = 0.7 converges, and its order is measured", convergence},
     {"twelve-decades",
      "the rebound has its closed form over 12 decades of mass, stiffness and speed and r from 0 to 0.99",

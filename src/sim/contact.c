@@ -22,12 +22,15 @@ double contact_rebound(double a)
     return 0.5 * (low + high);
 }
 
+/* The root of mismatch in a: positive above 0, where both sides vanish, and falling without bound towards 1/e. */
 double contact_damping(double e)
 {
     double low = 0, high = 1 / e;
+    if (1 - e < 1e-5) /* mismatch, of third order in a, is lost in rounding */
+        return 1.5 * (1 - e);
     for (int i = 0; i < 200 && high - low > 1e-16 * high; i++) {
         const double a = 0.5 * (low + high);
-        if (contact_rebound(a) > e)
+        if (mismatch(a, e) > 0)
             low = a;
         else
             high = a;

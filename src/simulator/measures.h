@@ -41,6 +41,8 @@ enum { NEEDS_NOTHING = 0, NEEDS_FORCES = 1, NEEDS_FILTER = 2 };
       "1: it is above 0.1, where Hertz's law no longer holds")                                                         \
     X(PRESSURE, "contact_pressure_pa", "Pa", 1, NEEDS_NOTHING, r->contact_pressure_pa,                                 \
       "largest pressure in the middle of a contact, by Hertz")                                                         \
+    X(BUMPER_STRAIN, "bumper_strain", "-", 1, NEEDS_NOTHING, r->bumper_strain,                                         \
+      "largest compression of a bumper over its thickness; 0: steel on steel")                                         \
     X(CONTACT_FORCE, "contact_force_max_n", "N", 1, NEEDS_FORCES, r->forces.contact_force_max_n,                       \
       "largest contact force of a floor")                                                                              \
     X(CORE_SHEAR, "core_base_shear_n", "N", 1, NEEDS_FORCES, r->forces.core_base_shear_n, "base shear of the core")    \
