@@ -136,6 +136,7 @@ Status detail_make(const Settings *s, int n_var, const double x[], const DetailO
     Problem p;
     Settings once = *s;
     once.sim.replicates = 1;
+    once.sim.forces = FORCES_YES; /* what the design has to bear */
     memset(out, 0, sizeof *out);
     TRY(tower_open(&p, &once, TOWER_AS_SET, N_SCENES, err));
     Status status = take_here(&p, n_var, x, options, out, err);

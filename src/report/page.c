@@ -89,6 +89,35 @@ static json_t *json_of_baselines(const Baseline baseline[N_BASELINES], const Mea
     return list;
 }
 
+/* What a building and a core have to bear, as people read it. */
+static const struct {
+    MeasureId id;
+    const char *title, *unit;
+    double factor;
+} LOADS[] = {{MEASURE_DRIFT_RATIO, "drift ratio", "%", 100},          {MEASURE_J3_FILTERED, "J3 filtered", "g", 1},
+             {MEASURE_CONTACT_FORCE, "force on a floor", "MN", 1e-6}, {MEASURE_CORE_STRESS, "core stress", "MPa", 1e-6},
+             {MEASURE_CORE_BUCKLING, "stress / buckling", "", 1},     {MEASURE_BASE_SHEAR, "base shear", "MN", 1e-6}};
+enum { N_LOADS = sizeof LOADS / sizeof LOADS[0] };
+
+/* Under the first record, for the chosen design and its baselines. */
+static json_t *json_of_loads(const Detail *d)
+{
+    static const char *const WORDS[N_SCENES] = {"impacts", "no core", "rigidly connected", "tuned mass damper",
+                                                "viscous links"};
+    json_t *columns = json_array(), *rows = json_array();
+    for (int k = 0; k < N_LOADS; k++)
+        columns = json_append(columns, json_pack("{s:s, s:s}", "title", LOADS[k].title, "unit", LOADS[k].unit));
+    for (int scene = 0; scene < N_SCENES; scene++) {
+        double values[N_LOADS];
+        for (int k = 0; k < N_LOADS; k++)
+            values[k] = LOADS[k].factor * measure_value(&d->result[scene], LOADS[k].id);
+        if (d->result[scene].outcome == RUN_OK)
+            rows = json_append(rows,
+                               json_pack("{s:s, s:o}", "words", WORDS[scene], "values", json_numbers(N_LOADS, values)));
+    }
+    return json_pack("{s:o, s:o}", "columns", columns, "rows", rows);
+}
+
 static json_t *json_of_detail(const Detail *d, const MeasureOrder *order)
 {
     const size_t n = (size_t)d->n_floors;
@@ -101,16 +130,16 @@ static json_t *json_of_detail(const Detail *d, const MeasureOrder *order)
                                                json_of_result(&e->no_core, order)));
     }
     return json_pack(
-        "{s:i, s:o, s:o, s:o, s:o, s:o, s:o, s:f, s:f, s:f, s:f, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "floor",
-        d->floor + 1, "gap_m", json_numbers(n, d->gap_m), "thickness_m", json_numbers(n, d->thickness_m), "bumper_n_m",
-        json_numbers(n, d->bumper_n_m), "building_hz", json_numbers(n, d->building_hz), "core_hz",
+        "{s:i, s:o, s:o, s:o, s:o, s:o, s:o, s:f, s:f, s:f, s:f, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}",
+        "floor", d->floor + 1, "gap_m", json_numbers(n, d->gap_m), "thickness_m", json_numbers(n, d->thickness_m),
+        "bumper_n_m", json_numbers(n, d->bumper_n_m), "building_hz", json_numbers(n, d->building_hz), "core_hz",
         json_numbers(n, d->core_hz), "record", json_words(d->record), "pga_g", d->pga_g, "scale", d->scale, "stretch",
         d->stretch, "duration_s", d->duration_s, "with_core", json_of_result(&d->result[SCENE_IMPACT], order),
         "no_core", json_of_result(&d->result[SCENE_NO_CORE], order), "rigid",
         json_of_result(&d->result[SCENE_RIGID], order), "tmd", json_of_result(&d->result[SCENE_TMD], order), "links",
-        json_of_result(&d->result[SCENE_LINKS], order), "baselines", json_of_baselines(d->baseline, order),
-        "history_with_core", json_of_history(&d->history[0], &d->spectrum[0]), "history_no_core",
-        json_of_history(&d->history[1], &d->spectrum[1]), "elsewhere", others);
+        json_of_result(&d->result[SCENE_LINKS], order), "loads", json_of_loads(d), "baselines",
+        json_of_baselines(d->baseline, order), "history_with_core", json_of_history(&d->history[0], &d->spectrum[0]),
+        "history_no_core", json_of_history(&d->history[1], &d->spectrum[1]), "elsewhere", others);
 }
 
 /* ---- the run --------------------------------------------------------------------------------------------------- */

@@ -9,6 +9,7 @@ function bestRow(c) {
 function change(value, before, words) {
   if (!(before > 0)) return "";
   const pct = Math.round((100 * (value - before)) / before);
+  if (pct === 0) return "";
   if (value > 2 * before) return `${show(value / before)} \u00d7 ${words}`;
   return `${pct > 0 ? "+" : "\u2212"}${Math.abs(pct)} % vs ${words}`;
 }
@@ -28,10 +29,19 @@ function comparison(raw, baselines) {
   const against = (b) => {
     const of = (sign) => objectives.filter((c, k) => b.objectives[k] !== null && sign * c.sense * (b.objectives[k] - raw[k]) > 1e-3 * Math.abs(b.objectives[k])).map((c) => c.title);
     const part = (verb, names) => (names.length ? `${verb} in ${names.join(", ")}` : `${verb} in none`);
-    return `${part("win", of(1))} and ${part("lose", of(-1))} against ${b.words}`;
+    return element("li", {}, `against ${b.words}${b.device ? ` (${b.device})` : ""}: ${part("win", of(1))}; ${part("lose", of(-1))}`);
   };
   const known = (baselines ?? []).filter((b) => b.objectives);
-  return known.length ? element("p", { class: "comparison" }, `Impacts ${known.map(against).join("; they ")}.`) : "";
+  return known.length ? element("div", { class: "comparison" }, "Impacts", element("ul", {}, ...known.map(against))) : "";
+}
+
+// What the design has to bear, beside its baselines.
+function loadTable(loads) {
+  return element("div", { class: "scroll" }, element("table", { id: "loads" },
+    element("thead", {}, element("tr", {}, element("th", { scope: "col" }, "has to bear"),
+      ...loads.columns.map((c) => element("th", { scope: "col" }, c.title, element("small", {}, ` ${c.unit}`))))),
+    element("tbody", {}, ...loads.rows.map((r) => element("tr", {}, element("td", {}, r.words),
+      ...r.values.map((v) => element("td", {}, v === null ? "" : digits(v))))))));
 }
 
 function standoutTable(baselines) {
@@ -64,7 +74,7 @@ function summaryPart() {
     element("p", {}, element("strong", {}, `Design ${run.knee}, the knee`), ": nearest to the best of everything, with every objective scaled over the front."),
     run.robust ? element("p", { class: "note" }, "Objectives are those of several simulations of every design (motion.records, sim.replicates, sim.robust " +
       `among the settings), standard deviations those of ${run.spread === "as built" ? "structures as built" : "predictability (chaos alone)"}; the chosen design is shown as one simulation under ${shortName(d.record)}.`) : "",
-    cards(knee, baselines), baselines ? comparison(knee, baselines) : "", standoutTable(baselines));
+    cards(knee, baselines), baselines ? comparison(knee, baselines) : "", d && run.chosen === run.knee ? loadTable(d.loads) : "", standoutTable(baselines));
 }
 
 function growthPart() {

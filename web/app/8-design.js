@@ -203,7 +203,7 @@ function designPart() {
   const r = d.with_core;
   host.querySelector("h2").textContent = `Design ${run.chosen}${run.chosen === run.knee ? ", the knee" : ""}`;
   const scenes = [[WITH, r], [WITHOUT, d.no_core], [RIGID, d.rigid], [TMD, d.tmd], [LINKS, d.links]].filter(([, s]) => s.objectives);
-  if (run.chosen !== run.knee) host.append(cards(run.chosen_f, d.baselines), comparison(run.chosen_f, d.baselines));
+  if (run.chosen !== run.knee) host.append(cards(run.chosen_f, d.baselines), comparison(run.chosen_f, d.baselines), loadTable(d.loads));
   host.append(element("p", { class: "note" }, `Simulated again with the run\u2019s settings. For another design: imtet report ${run.folder} --design ID`));
   if (!r.objectives) host.append(element("p", { class: "warn" }, `This design could not be simulated: ${r.reason}`));
   else host.append(element("p", {}, `${count(r.impacts)} impacts dissipated ${show(r.contact_pct)} % of the input energy of ${show(r.input_j / 1e6)} MJ.` ));
