@@ -12,6 +12,7 @@
 #include "cmd/ida.h"
 #include "cmd/show.h"
 #include "scene/motion_scale.h"
+#include "settings/settings.h"
 #include "store/output.h"
 #include "store/run_read.h"
 

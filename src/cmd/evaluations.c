@@ -13,6 +13,7 @@
 #include "evaluate/threads.h"
 #include "scene/motion_scale.h"
 #include "scene/motion_source.h"
+#include "settings/settings.h"
 #include "simulator/baselines.h"
 
 const struct EvaluationCase EVALUATION_CASES[N_WITH_DEVICES] = {{SCENE_IMPACT, "with core", "with_core"},

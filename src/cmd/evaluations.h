@@ -12,8 +12,9 @@
 
 #include <stdio.h>
 
-#include "settings/settings.h"
 #include "simulator/replicates.h"
+
+typedef struct Settings Settings;
 
 typedef enum {
     EVALUATED_DESIGN,

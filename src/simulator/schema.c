@@ -90,11 +90,15 @@ Status schema_of(Schema *schema, const Settings *s, int n_floors, Err *err)
 {
     if (s->problem.kind == PROBLEM_TOWER) {
         TRY(schema_of_tower(schema, s, n_floors, err));
-        schema->has_spread = s->sim.replicates > 1 || schema_is_noisy(s);
+        schema->replicates = s->sim.replicates;
+        schema->is_noisy = schema_is_noisy(s);
+        schema->has_spread = s->sim.replicates > 1 || schema->is_noisy;
         return STATUS_OK;
     }
     *schema = (Schema){.n_var = (size_t)s->problem.variables,
                        .n_obj = (size_t)s->problem.objectives,
+                       .replicates = s->sim.replicates,
+                       .is_noisy = schema_is_noisy(s),
                        .has_spread = schema_is_noisy(s)};
     TRY(allocate(schema, err));
     const Status status = fill_from_settings(schema, s, err);

@@ -26,8 +26,9 @@ typedef struct {
     DesignSpace design; /* of a tower */
     Column *column;
     MeasureOrder order; /* of the tower: measures behind the columns; else empty */
-    int has_spread; /* front.csv ends with NAME_sd of every objective and replicates: designs are several simulations
-                     */
+    long replicates;    /* simulations of each record behind one evaluation: sim.replicates */
+    int is_noisy;       /* schema_is_noisy */
+    int has_spread; /* front.csv ends with NAME_sd of every objective and replicates: designs are several simulations */
 } Schema;
 
 /* Whether designs are simulated again because they answer differently each time. */

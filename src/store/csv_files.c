@@ -6,7 +6,6 @@
 
 #include "base/clock.h"
 #include "store/export.h"
-#include "settings/settings.h"
 #include "store/rows.h"
 
 static void put_header(FILE *f, const void *schema)
@@ -33,17 +32,15 @@ Status csv_files_replace(const Folder *folder, const Run *run, Err *err)
     return folder_write(folder, "front.csv", put_front, run, err);
 }
 
-static CsvFiles csv_files(const Folder *folder, const Schema *schema, const Settings *used)
+static CsvFiles csv_files(const Folder *folder, const Schema *schema)
 {
-    return (CsvFiles){.folder = folder,
-                      .schema = schema,
-                      .replicates = used->sim.replicates,
-                      .search = evaluation_table(schema->n_var, schema->n_obj, schema->n_extra)};
+    return (CsvFiles){
+        .folder = folder, .schema = schema, .search = evaluation_table(schema->n_var, schema->n_obj, schema->n_extra)};
 }
 
-Status csv_files_begin(CsvFiles *c, const Folder *folder, const Schema *schema, const Settings *used, Err *err)
+Status csv_files_begin(CsvFiles *c, const Folder *folder, const Schema *schema, Err *err)
 {
-    *c = csv_files(folder, schema, used);
+    *c = csv_files(folder, schema);
     TRY(folder_write(folder, "evaluations.csv", put_header, schema, err));
     return append_open(&c->evaluations, folder, "evaluations.csv", err);
 }
@@ -51,7 +48,7 @@ Status csv_files_begin(CsvFiles *c, const Folder *folder, const Schema *schema, 
 Status csv_files_resume(CsvFiles *c, const Folder *folder, const Schema *schema, const Run *run, Err *err)
 {
     const size_t n = run_n_finished(run);
-    *c = csv_files(folder, schema, run->settings);
+    *c = csv_files(folder, schema);
     c->run = run;
     for (size_t i = 0; i < n; i++)
         TRY(evaluation_table_append(&c->search, &run->table.row[i], err));
@@ -79,11 +76,11 @@ static Status add_design(const CsvFiles *c, const SearchView *v, size_t row, Eva
 {
     TRY(evaluation_table_append(front, &c->search.row[row], err));
     Evaluation *e = &front->row[front->n - 1];
-    e->replicates = (int)((long)v->replicates[row] * c->replicates);
+    e->replicates = (int)((long)v->replicates[row] * c->schema->replicates);
     for (size_t k = 0; k < v->n_obj; k++) {
         e->f[k] = schema_objective(c->schema, k)->sense * v->F[row * v->n_obj + k];
         if (v->n_replicates > 0)
-            e->sd[k] = v->sd[row * v->n_obj + k] * sqrt((double)c->replicates);
+            e->sd[k] = v->sd[row * v->n_obj + k] * sqrt((double)c->schema->replicates);
     }
     return STATUS_OK;
 }

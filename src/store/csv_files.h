@@ -18,8 +18,7 @@
 typedef struct {
     const Folder *folder; /* borrowed, like schema and run */
     const Schema *schema;
-    const Run *run;  /* as it was when the session began; NULL: a new one */
-    long replicates; /* sim.replicates */
+    const Run *run; /* as it was when the session began; NULL: a new one */
     Append evaluations;
     EvaluationTable search; /* what evaluations.csv has of the search */
     char **line;            /* (n_lines) of front.csv, by design; NULL: not on the front */
@@ -30,7 +29,7 @@ typedef struct {
 
 enum { FRONT_ALWAYS = 4000 };
 
-Status csv_files_begin(CsvFiles *c, const Folder *folder, const Schema *schema, const Settings *used, Err *err);
+Status csv_files_begin(CsvFiles *c, const Folder *folder, const Schema *schema, Err *err);
 Status csv_files_resume(CsvFiles *c, const Folder *folder, const Schema *schema, const Run *run, Err *err);
 
 /* Up to evaluation n, as the database has them now. */

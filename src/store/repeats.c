@@ -3,7 +3,6 @@
 #include <math.h>
 
 #include "moga/archive.h"
-#include "settings/settings.h"
 
 static int is_known_to_search(const Evaluation *r)
 {
@@ -24,11 +23,11 @@ static Status insert_row(Archive *a, const Run *run, size_t i, Err *err)
 static void take_design(Run *run, size_t i, const Archive *a, size_t at)
 {
     const size_t m = run->schema.n_obj;
-    const double replicates = (double)run->settings->sim.replicates;
+    const double replicates = (double)run->schema.replicates;
     Evaluation *r = &run->table.row[i];
     if (a->replicates[at] == 0)
         return;
-    r->replicates = (int)((long)a->replicates[at] * run->settings->sim.replicates);
+    r->replicates = (int)((long)a->replicates[at] * run->schema.replicates);
     for (size_t k = 0; k < m && a->usable[at]; k++) {
         run->F[i * m + k] = schema_objective(&run->schema, k)->sense * a->F[at * m + k];
         if (a->n_replicates > 0)
@@ -51,7 +50,7 @@ static Status join(Run *run, Archive *a, Err *err)
 Status repeats_join(Run *run, Err *err)
 {
     Archive a;
-    if (!schema_is_noisy(run->settings) || run->table.n == 0)
+    if (!run->schema.is_noisy || run->table.n == 0)
         return STATUS_OK;
     TRY(pareto_archive_init(&a, run->table.n, run->schema.n_var, run->schema.n_obj, 0, err));
     const Status status = join(run, &a, err);

@@ -170,7 +170,7 @@ Status store_begin(RunStore *store, const Schema *schema, const Settings *used, 
     TRY(open_database(store, err));
     database_grow(store->db);
     TRY(write_origin(store, used, provenance, err));
-    TRY(csv_files_begin(&store->files, &store->folder, schema, used, err));
+    TRY(csv_files_begin(&store->files, &store->folder, schema, err));
     return logs_open(&store->logs, &store->folder, err);
 }
 

@@ -439,7 +439,7 @@ static Status work(Study *study, Err *err)
     if (study->options->started)
         study->options->started(study->summary->folder, study->summary->n_before, study->options->user);
     tell_motions(study);
-    TRY(study_log_start(study->store, study->adapter, &study->used, study->summary->n_before, err));
+    TRY(study_log_start(study->store, study->adapter, &study->used.search, study->summary->n_before, err));
     TRY(tell_left_generation(study, err));
     TRY(run_search(study, err));
     TRY(study->status);

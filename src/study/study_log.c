@@ -6,7 +6,6 @@
 
 #include "base/json.h"
 #include "moga/hypervolume.h"
-#include "settings/settings.h"
 #include "store/provenance.h"
 #include "study/improvement.h"
 #include "study/progress.h"
@@ -25,23 +24,24 @@ static Status log_motions(RunStore *store, const Tower *t, Err *err)
     return STATUS_OK;
 }
 
-static Status log_problem(RunStore *store, const Adapter *adapter, const Settings *used, const char *program, Err *err)
+static Status log_problem(RunStore *store, const Adapter *adapter, const SearchOptions *used, const char *program,
+                          Err *err)
 {
     const Schema *schema = adapter_schema(adapter);
     const int threads = adapter_threads(adapter);
     if (adapter_tower(adapter)) {
-        const char *left_out = measures_left_out(&schema->order, used->search.objectives);
+        const char *left_out = measures_left_out(&schema->order, used->objectives);
         TRY(log_motions(store, adapter_tower(adapter), err));
         if (left_out)
             TRY(store_log(store, err, "%s", left_out));
         return store_log(store, err, "%s: %d floors, %d threads, seed %ld", program, schema->design.n_floors, threads,
-                         used->search.seed);
+                         used->seed);
     }
     return store_log(store, err, "%s: %zu variables, %zu objectives, %d threads, seed %ld", program, schema->n_var,
-                     schema->n_obj, threads, used->search.seed);
+                     schema->n_obj, threads, used->seed);
 }
 
-Status study_log_start(RunStore *store, const Adapter *adapter, const Settings *used, size_t n, Err *err)
+Status study_log_start(RunStore *store, const Adapter *adapter, const SearchOptions *used, size_t n, Err *err)
 {
     const int threads = adapter_threads(adapter);
     char program[96];
@@ -49,8 +49,7 @@ Status study_log_start(RunStore *store, const Adapter *adapter, const Settings *
     TRY(store_session(store, program, threads, n, err));
     TRY(store_event(store,
                     json_pack("{s:s, s:s, s:i, s:I, s:I}", "event", n ? "resumes" : "starts", "program", program,
-                              "threads", threads, "simulated", (json_int_t)n, "max_evals",
-                              (json_int_t)used->search.max_evals),
+                              "threads", threads, "simulated", (json_int_t)n, "max_evals", (json_int_t)used->max_evals),
                     err));
     if (n > 0)
         TRY(store_log(store, err, "resumed after %zu simulations", n));

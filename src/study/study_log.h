@@ -7,10 +7,11 @@
 
 #include "simulator/adapter.h"
 #include "store/store.h"
+#include "study/options.h"
 #include "study/summary.h"
 
 /* n: evaluations that the run holds already. */
-Status study_log_start(RunStore *store, const Adapter *adapter, const Settings *used, size_t n, Err *err);
+Status study_log_start(RunStore *store, const Adapter *adapter, const SearchOptions *used, size_t n, Err *err);
 
 /* seconds: of work on the run so far, all sessions. n_improvement: evaluations from which the improvement of the front is
  * measured again, 0 in the beginning. */
