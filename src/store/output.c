@@ -8,7 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* A new file: what lies there under that name, a link that somebody prepared say, is removed. */
+/* A new file: what lies there under that name, a prepared link say, is removed. */
 static FILE *open_new(const char *path)
 {
     unlink(path);
