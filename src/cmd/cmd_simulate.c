@@ -239,7 +239,7 @@ static Status run(const Args *args, Err *err)
     TRY(choose_kind(args, &job, err));
     TRY(args_settings(args, &s, NULL, NULL, err));
     if (args_has(args, "--sensitivity"))
-        return show_sensitivities(args, &s, err);
+        return show_sensitivities(args, &s, (size_t)s.sim.replicates, err);
     if (job.kind == SCENE_RIGID && s.sim.engine != ENGINE_FAST)
         return fail(err, STATUS_USAGE,
                     "--rigid: a linear building is solved in closed form, no other engine does it; leave sim.engine at "

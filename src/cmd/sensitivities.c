@@ -6,7 +6,6 @@
 
 #include "cmd/designs.h"
 #include "cmd/show.h"
-#include "settings/settings.h"
 #include "simulator/sensitivity.h"
 #include "store/output.h"
 
@@ -88,13 +87,13 @@ static Status take_design(const Args *args, const Settings *s, Designs *d, Err *
     return designs_take(d, word, &space, err);
 }
 
-Status show_sensitivities(const Args *args, const Settings *s, Err *err)
+Status show_sensitivities(const Args *args, const Settings *s, size_t n_replicates, Err *err)
 {
     Designs d = {0};
     Sensitivity *list;
     size_t n;
     TRY(take_design(args, s, &d, err));
-    const Status status = sensitivity_find(s, d.x, (size_t)s->sim.replicates, &list, &n, err);
+    const Status status = sensitivity_find(s, d.x, n_replicates, &list, &n, err);
     design_free(&d);
     TRY(status);
     const Status shown = show(args, n, list, err);

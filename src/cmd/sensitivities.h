@@ -5,6 +5,6 @@
 #include "cmd/args.h"
 
 /* Of the first design of --design; as a table, as --json, as --csv. */
-Status show_sensitivities(const Args *args, const Settings *s, Err *err);
+Status show_sensitivities(const Args *args, const Settings *s, size_t n_replicates, Err *err);
 
 #endif
