@@ -824,6 +824,21 @@ static void test_a_sample_of_a_binary_file_that_is_no_number_is_refused(void **s
     free(t.text);
 }
 
+static void test_a_miniseed_record_that_announces_more_samples_than_it_has_room_for_is_refused(void **state)
+{
+    (void)state;
+    for (int second = 0; second < 2; second++) {
+        Text t = read_specimen("three.mseed");
+        t.text[30 + (second ? 512 : 0)] = 0x7f; /* the number of samples, first byte */
+        Motion m;
+        Err err = {0};
+        const MotionHow how = {.channel = "1", .counts_per_m_s2 = 1e5};
+        assert_int_equal(motion_parse(&m, "a.mseed", t.text, t.length, &how, &err), STATUS_BAD_DATA);
+        assert_non_null(strstr(err.text, second ? "no usable record at byte 512" : "no usable record at byte 0"));
+        free(t.text);
+    }
+}
+
 /* ---- peaks of headers, format by format ------------------------------------------------------------------------- */
 
 /* Every format whose header states a peak: the stated one made 2 % and 8 % larger, in the width of the file. */
@@ -955,6 +970,7 @@ static void test_names_too_long_for_a_message_lose_their_middle(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_a_miniseed_record_that_announces_more_samples_than_it_has_room_for_is_refused),
         cmocka_unit_test(test_a_sample_of_a_binary_file_that_is_no_number_is_refused),
         cmocka_unit_test(test_a_file_of_a_kinemetrics_recorder_is_read_to_its_samples),
         cmocka_unit_test(test_what_is_wrong_in_a_file_of_a_kinemetrics_recorder_is_said),

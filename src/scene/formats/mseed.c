@@ -47,16 +47,57 @@ static Status take_trace(Record *r, const Lines *l, const MSTrace *t, Err *err)
     return STATUS_OK;
 }
 
+/* Bytes that a sample takes at least, times two: a Steim frame of 64 bytes holds 105 samples at most. */
+static int half_bytes(int encoding)
+{
+    switch (encoding) {
+    case DE_ASCII:
+        return 2;
+    case DE_INT32:
+    case DE_FLOAT32:
+        return 8;
+    case DE_FLOAT64:
+        return 16;
+    case DE_GEOSCOPE24:
+        return 6;
+    case DE_INT16:
+    case DE_GEOSCOPE163:
+    case DE_GEOSCOPE164:
+    case DE_CDSN:
+    case DE_SRO:
+    case DE_DWWSSN:
+        return 4;
+    default:
+        return 1;
+    }
+}
+
+/* The library decodes as many samples as the header announces, wherever the record ends. */
+static int announces_too_much(const MSRecord *r)
+{
+    const int64_t room = (int64_t)r->reclen - r->fsdh->data_offset;
+    return r->samplecnt > 0 && (r->fsdh->data_offset < 48 || r->samplecnt * half_bytes(r->encoding) > 2 * room);
+}
+
+/* The record at `bytes`: its header alone, then with its samples. 0: as it should be. */
+static int parse_record(const char *bytes, size_t n, MSRecord **record)
+{
+    const int left = n > (1 << 30) ? 1 << 30 : (int)n;
+    if (!MS_ISVALIDHEADER(bytes) || msr_parse((char *)bytes, left, record, 0, 0, 0) != 0)
+        return -1;
+    if ((*record)->reclen < 64 || announces_too_much(*record))
+        return -1;
+    return msr_parse((char *)bytes, left, record, (*record)->reclen, 1, 0);
+}
+
 static Status collect(MSTraceGroup *group, const char *path, const char *bytes, size_t n, Err *err)
 {
     MSRecord *record = NULL;
     Status status = STATUS_OK;
     for (size_t at = 0; at + 48 < n && status == STATUS_OK;) {
-        const int left = n - at > (1 << 30) ? 1 << 30 : (int)(n - at);
-        const int code = MS_ISVALIDHEADER(bytes + at) ? msr_parse((char *)bytes + at, left, &record, 0, 1, 0) : -1;
-        if (code != 0 || record->reclen < 64) {
-            status =
-                at ? STATUS_OK : fail(err, STATUS_BAD_DATA, "%s: miniSEED: no usable record at byte %zu", path, at);
+        if (parse_record(bytes + at, n - at, &record) != 0) {
+            if (at == 0 || MS_ISVALIDHEADER(bytes + at)) /* else padding behind the records */
+                status = fail(err, STATUS_BAD_DATA, "%s: miniSEED: no usable record at byte %zu", path, at);
             break;
         }
         if (!mst_addmsrtogroup(group, record, 0, -1, -1))
