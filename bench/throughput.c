@@ -114,6 +114,70 @@ static Status run_workers(Throughput *t, Err *err)
     return STATUS_OK;
 }
 
+/* -- what is asked for beside the objectives ----------------------------------------------------------------------- */
+
+enum { PLAIN, WITH_FORCES, FILTERED, N_ASKED, ASKED_ROUNDS = 5 };
+
+/* Processor time [s] of all designs one after the other. */
+static Status time_designs(const Throughput *t, SimWorker *worker, double *seconds, Err *err)
+{
+    const int n = t->bench_case.building.n;
+    double x[FLOORS_MAX + 2];
+    SimResult r;
+    const double start = processor_seconds();
+    for (int k = 0; k < t->n; k++) {
+        bench_irregular_gaps((uint32_t)k, n, x);
+        x[n] = BENCH_WALL_BASE;
+        x[n + 1] = BENCH_WALL_TOP;
+        TRY(sim_run(worker, SCENE_IMPACT, x, &r, err));
+    }
+    *seconds = processor_seconds() - start;
+    return STATUS_OK;
+}
+
+static Status time_asked(const Throughput *t, SimWorker *const workers[], double ratio[N_ASKED][ASKED_ROUNDS], Err *err)
+{
+    for (int round = 0; round < ASKED_ROUNDS; round++) {
+        double seconds[N_ASKED];
+        for (int a = 0; a < N_ASKED; a++)
+            TRY(time_designs(t, workers[a], &seconds[a], err));
+        for (int a = 0; a < N_ASKED; a++)
+            ratio[a][round] = seconds[a] / seconds[PLAIN];
+    }
+    return STATUS_OK;
+}
+
+static Status open_asked(const Throughput *t, Scene *scenes[], SimWorker *workers[], Err *err)
+{
+    for (int a = 0; a < N_ASKED; a++) {
+        SceneOptions o = *t->settings;
+        o.sim.forces = a == WITH_FORCES ? FORCES_YES : FORCES_AUTO;
+        o.sim.filtered = a == FILTERED;
+        TRY(scene_create(&scenes[a], &o, t->whole, err));
+        TRY(sim_worker_create(&workers[a], scenes[a], err));
+    }
+    return STATUS_OK;
+}
+
+/* Forces and the filter, each in turn with neither: medians of ratios of processor time, which other load leaves alone. */
+static Status run_asked(const Throughput *t, Err *err)
+{
+    Scene *scenes[N_ASKED] = {NULL};
+    SimWorker *workers[N_ASKED] = {NULL};
+    double ratio[N_ASKED][ASKED_ROUNDS];
+    Status status = open_asked(t, scenes, workers, err);
+    if (status == STATUS_OK)
+        status = time_asked(t, workers, ratio, err);
+    for (int a = 0; a < N_ASKED; a++) {
+        sim_worker_free(workers[a]);
+        scene_free(scenes[a]);
+    }
+    TRY(status);
+    fprintf(t->out, "  asked for       forces %.3f, filtered acceleration %.3f times the processor time without\n",
+            bench_median(ASKED_ROUNDS, ratio[WITH_FORCES]), bench_median(ASKED_ROUNDS, ratio[FILTERED]));
+    return STATUS_OK;
+}
+
 /* Median over the judged designs of the error in the window. */
 static Status judge(Throughput *t, int engine, double tolerance, double *error, Err *err)
 {
@@ -203,6 +267,8 @@ Status throughput_print(const SceneOptions *s, const Motion *motion, int quick, 
         status = run_fast(&t, err);
     if (status == STATUS_OK && !count)
         status = run_workers(&t, err);
+    if (status == STATUS_OK && !count)
+        status = run_asked(&t, err);
     if (status == STATUS_OK && !count)
         status = compare_all(&t, quick, err);
     bench_case_close(&t.bench_case);
