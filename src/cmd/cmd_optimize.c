@@ -86,30 +86,41 @@ static void print_front(const Run *run, const StudySummary *summary)
     printf("\nknee: nearest to the ideal point when every objective is scaled to 0..1 over the front.\n");
 }
 
-/* The words and the floors whose count is between least and most; nothing where there are none. */
-static void print_gaps(const char *words, size_t n_gaps, const size_t count[], size_t least, size_t most)
+/* The gaps that at least half of the front has on a bound; nothing where there are none. */
+static void print_gaps(const char *bound, const Schema *schema, const FrontReview *r, const size_t on_bound[])
 {
     size_t n = 0;
-    for (size_t j = 0; j < n_gaps; j++)
-        if (count[j] >= least && count[j] <= most)
-            printf("%s%zu", n++ ? ", " : words, j + 1);
+    for (size_t j = 0; j < r->n_gaps; j++)
+        if (2 * on_bound[j] >= r->n_front) {
+            if (n++ == 0)
+                printf("on %s in half of the front or more: ", bound);
+            printf("%s%s", n > 1 ? ", " : "", schema_variable(schema, j)->name);
+        }
     if (n > 0)
         putchar('\n');
 }
 
-static void print_review(const FrontReview *r)
+static void print_never_closing(const FrontReview *r)
 {
-    char words[120];
+    size_t n = 0;
+    for (size_t j = 0; j < r->n_floors; j++)
+        if (r->closes[j] == 0) {
+            if (n++ == 0)
+                printf("gaps that close in none of %zu designs spread over the front, by floor: ", r->n_simulated);
+            printf("%s%zu", n > 1 ? ", " : "", j + 1);
+        }
+    if (n > 0)
+        putchar('\n');
+}
+
+static void print_review(const Schema *schema, const FrontReview *r)
+{
     if (r->n_gaps == 0)
         return;
     putchar('\n');
-    print_gaps("gaps on design.gap_min_m in half of the front or more, by floor: ", r->n_gaps, r->at_smallest,
-               (r->n_front + 1) / 2, r->n_front);
-    print_gaps("gaps on design.gap_max_m in half of the front or more, by floor: ", r->n_gaps, r->at_largest,
-               (r->n_front + 1) / 2, r->n_front);
-    snprintf(words, sizeof words,
-             "gaps that close in none of %zu designs spread over the front, by floor: ", r->n_simulated);
-    print_gaps(words, r->n_gaps, r->closes, 0, 0);
+    print_gaps("design.gap_min_m", schema, r, r->at_smallest);
+    print_gaps("design.gap_max_m", schema, r, r->at_largest);
+    print_never_closing(r);
     printf("%zu of %zu designs of the front are beyond the contact law (indentation_ratio above %g)\n", r->n_beyond,
            r->n_front, INDENTATION_RATIO_MAX);
 }
@@ -173,7 +184,7 @@ static Status report(const Run *run, const StudySummary *summary, Err *err)
                summary->n_repeats);
     print_front(run, summary);
     if (summary->has_baselines)
-        print_review(&summary->review);
+        print_review(&run->schema, &summary->review);
     if (summary->n_tried_to_polish > 0)
         printf("polished: %zu of %zu designs became better by more than their spread (search.polish)\n",
                summary->n_polished, summary->n_tried_to_polish);

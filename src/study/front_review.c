@@ -66,8 +66,9 @@ Status front_review_closings(const Problem *tower, const Run *run, FrontReview *
         tasks[i] = (SimTask){.kind = SCENE_IMPACT, .x = run_x(run, rows[i])};
     const Status status = n > 0 ? tower_simulate(tower, n, tasks, results, err) : STATUS_OK;
     for (size_t i = 0; i < n && status == STATUS_OK; i++)
-        for (size_t j = 0; j < out->n_gaps; j++)
+        for (int j = 0; j < results[i].n_floors; j++)
             out->closes[j] += results[i].closings[j] > 0;
+    out->n_floors = n > 0 ? (size_t)results[0].n_floors : 0;
     out->n_simulated = n;
     free(results);
     return status;
