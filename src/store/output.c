@@ -102,7 +102,7 @@ void print_number(FILE *stream, double value)
         return;
     for (int digits = 15; digits <= 17; digits++) {
         snprintf(text, sizeof text, "%.*g", digits, value);
-        if (strtod(text, NULL) == value)
+        if (digits < 17 && strtod(text, NULL) == value)
             break;
     }
     fputs(text, stream);

@@ -11,7 +11,7 @@
 #include "study/progress.h"
 
 /* Evaluations up to which the improvement is logged with every generation: it costs a pass over all of them. */
-enum { IMPROVEMENT_ALWAYS = 4000 };
+enum { IMPROVEMENT_ALWAYS = 1000 };
 
 static Status log_motions(RunStore *store, const Tower *t, Err *err)
 {
