@@ -126,6 +126,17 @@ static void test_a_signal_that_was_ignored_at_the_start_stays_ignored(void **sta
     assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 0);
 }
 
+static void test_a_building_beyond_all_buildings_is_refused_whatever_its_units(void **state)
+{
+    (void)state;
+    char path[PATH_MAX];
+    assert_int_equal(mkdir(path_of("stiff", path), 0777), 0);
+    write_in_place("stiff/K.csv", "2e300,-1e300\n-1e300,1e300\n");
+    write_in_place("stiff/M.csv", "1e5,0\n0,1e5\n");
+    expect(65, "the first period is ",
+           "simulate configs/quick.ini --design none --set building.model=@/stiff --set building.units=N_m_kg");
+}
+
 static void test_a_simulation_that_fails_is_no_success(void **state)
 {
     (void)state;
@@ -141,6 +152,7 @@ int main(void)
         cmocka_unit_test(test_a_run_whose_workers_all_fail_stops_after_some_with_the_reason),
         cmocka_unit_test(test_too_little_address_space_or_stack_is_said_at_once),
         cmocka_unit_test(test_a_signal_that_was_ignored_at_the_start_stays_ignored),
+        cmocka_unit_test(test_a_building_beyond_all_buildings_is_refused_whatever_its_units),
         cmocka_unit_test(test_a_simulation_that_fails_is_no_success),
     };
     return cmocka_run_group_tests_name("workers", tests, prepare, clear_place);

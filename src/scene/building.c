@@ -71,11 +71,17 @@ static int is_period(double per_storey)
     return per_storey >= 0.01 && per_storey <= 1;
 }
 
+/* [s] Beyond it and its inverse the energies of building and core differ by more digits than there are. */
+static const double PERIOD_MIN = 1e-6;
+
 /* Units that are wrong by a factor of a thousand move the period by 32. */
 static Status check_period(const Building *b, const BuildingOptions *o, Err *err)
 {
     static const char *const WORDS[] = {BUILDING_UNITS_LIST(CHOICE_WORD)};
-    const double per_storey = 2 * M_PI / b->omega[0] / b->n;
+    const double period = 2 * M_PI / b->omega[0], per_storey = period / b->n;
+    if (period < PERIOD_MIN || (isfinite(period) && period > 1.0 / PERIOD_MIN))
+        return fail(err, STATUS_BAD_DATA, "%s: the first period is %.3g s: is a stiffness or a mass wrong?", o->model,
+                    period);
     if (o->units != BUILDING_AUTO || is_period(per_storey))
         return STATUS_OK;
     for (BuildingUnits u = BUILDING_N_M_KG; u <= BUILDING_KIP_IN; u++) {
