@@ -321,13 +321,13 @@ static Status write_reference(Promise *p, FILE *out, Err *err)
 
 static Status write_page(Promise *p, FILE *out, FILE *progress, Err *err)
 {
-    fprintf(
-        out,
-        "# What the accuracies hold\n\n"
-        "Made by `make promise`. The promise: J1 within %g, J2 within %g, J3 within %g, every share within %g of\n"
-        "itself, in %.0f %% of the windows. `fine` is the reference. Times are of one thread on a machine that ran\n"
-        "other things as well: compare the ratios, which were taken in turn.\n\n",
-        PROMISE[0], PROMISE[1], PROMISE[2], PROMISE[3], 100 * PROMISE_SHARE);
+    fprintf(out,
+            "# What the accuracies hold\n\n"
+            "Made by `make promise`. The promise: J1 within %g, J2 within %g, J3 within %g, every share within %g of\n"
+            "itself, each in %.0f %% of the windows; held: all of them at once. `fine` is the reference. Times are of "
+            "one thread on a machine that ran\n"
+            "other things as well: compare the ratios, which were taken in turn.\n\n",
+            PROMISE[0], PROMISE[1], PROMISE[2], PROMISE[3], 100 * PROMISE_SHARE);
     TRY(write_windows(p, out, err));
     fprintf(progress, "promise: windows are done\n");
     if (p->plan->front)

@@ -16,7 +16,7 @@
 
 #include "bench/timed_run.h"
 
-/* J1, J2, J3, the shares: held by PROMISE_SHARE of the windows at `standard`. */
+/* J1, J2, J3, the shares: each held by PROMISE_SHARE of the windows at `standard`. */
 enum { PROMISED = 4 };
 static const double PROMISE[PROMISED] = {1e-3, 3e-3, 1e-2, 1e-2}, PROMISE_SHARE = 0.95;
 
