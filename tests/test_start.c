@@ -43,7 +43,7 @@ static void test_given_designs_come_first_inside_the_box_and_once(void **state)
 /* Only the first sample: the same designs in either mode, whatever their order. */
 static const char TOWER[] =
     "[motion]\nrecord = builtin:kobe-like\nrecords = builtin:sylmar-like\npga_g = 0.3\nstretch = 3.1\n"
-    "[sim]\nreplicates = 2\nduration_s = 3\n"
+    "[sim]\nreplicates = 2\nduration_s = 20\n"
     "[search]\ninitial = 12\npopulation = 12\nmax_evals = 12\npolish = 0\n";
 
 static void test_a_design_of_the_tower_has_the_same_objectives_in_either_mode(void **state)

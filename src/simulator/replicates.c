@@ -108,6 +108,14 @@ static void combine_records(const ReplicatePlan *plan, const SimResult results[]
     *sd = sqrt(*sd);
 }
 
+/* Why a measure that counts has no value although the simulation succeeded. */
+static const char *why_lost(const SimResult *r)
+{
+    return r->input_energy_j > 0.0 ? "an objective or a limited result is not finite"
+                                   : "the motion puts in no net energy, so shares of it are undefined: use more of the "
+                                     "motion (sim.duration_s) or other objectives (search.objectives)";
+}
+
 void replicates_summarise(const ReplicatePlan *plan, const SimResult results[], ReplicateSummary *out)
 {
     static const char *const RULES[] = {"mean", "mean", "mean + sd", "quantile"};
@@ -122,7 +130,7 @@ void replicates_summarise(const ReplicatePlan *plan, const SimResult results[], 
     }
     const int is_lost = out->n_failed > 0 && out->shown->outcome == RUN_OK;
     out->outcome = is_lost ? OUTCOME_NOT_FINITE : measure_outcome(out->shown->outcome);
-    out->reason = is_lost ? "an objective or a limited result is not finite" : out->shown->reason;
+    out->reason = is_lost ? why_lost(out->shown) : out->shown->reason;
     const int has_records = plan->rule == ROBUST_WORST || plan->rule == ROBUST_MEAN;
     for (int k = 0; k < N_MEASURES; k++)
         (has_records ? combine_records : combine_all)(plan, results, k, &out->mean[k], &out->sd[k]);
