@@ -262,12 +262,12 @@ static void add_up_mass(const Numbering *u, double mass[])
 static Status find_kept(const Numbering *u, char kept[], Err *err)
 {
     const Frame *f = u->frame;
-    const int n = f->n_nodes * FRAME_DOFS, named = any_is_named(f);
-    double *mass = calloc((size_t)n, sizeof *mass);
+    const int named = any_is_named(f);
+    double *mass = calloc((size_t)f->n_nodes, FRAME_DOFS * sizeof *mass);
     if (!mass)
-        return fail(err, STATUS_NO_MEMORY, "frame: no memory for %d unknowns", n);
+        return fail(err, STATUS_NO_MEMORY, "frame: no memory for the masses of %d nodes", f->n_nodes);
     add_up_mass(u, mass);
-    for (int i = 0; i < n; i++)
+    for (int i = 0; i < f->n_nodes * FRAME_DOFS; i++)
         if (!named || f->node[i / FRAME_DOFS].keep[i % FRAME_DOFS])
             kept[find_root(u, i)] = mass[find_root(u, i)] > 0;
     free(mass);
