@@ -159,6 +159,8 @@ static void test_quantiles_are_the_least_that_a_share_does_not_exceed(void **sta
 static void test_the_page_of_the_promise_has_a_row_for_every_accuracy(void **state)
 {
     (void)state;
+    if (SANITIZED) /* many runs of code that the other tests go through */
+        skip();
     Ground g;
     Err err;
     char *page = NULL;
@@ -183,6 +185,8 @@ static void test_the_page_of_the_promise_has_a_row_for_every_accuracy(void **sta
 static void test_the_distribution_test_draws_replicates_by_the_tolerance_of_the_settings(void **state)
 {
     (void)state;
+    if (SANITIZED) /* many runs of code that the other tests go through */
+        skip();
     double spread[2];
     Ground g;
     ground_open(&g);
