@@ -445,6 +445,19 @@ static void test_simulate_gives_the_same_numbers_as_json_and_as_csv(void **state
     json_decref(list);
 }
 
+static void test_no_output_replaces_a_file_that_is_read_a_run_or_another_output(void **state)
+{
+    (void)state;
+    write_in_place("own.ini", "[sim]\nduration_s = 5\n");
+    write_in_place("own.sqlite", "SQLite format 3");
+    expect(2, "which the command reads", "simulate @/own.ini --design none --history @/own.ini");
+    expect(2, "are one file", "simulate @/own.ini --design none --history @/a.csv --floor-spectra @/a.csv");
+    expect(2, "is a database", "simulate @/own.ini --design none --history @/own.sqlite");
+    char *settings = read_in_place("own.ini");
+    assert_string_equal(settings, "[sim]\nduration_s = 5\n");
+    free(settings);
+}
+
 static void test_the_building_alone_and_the_tied_one_have_no_impacts(void **state)
 {
     (void)state;
@@ -545,6 +558,7 @@ int main(void)
         cmocka_unit_test(test_the_histories_reach_the_figures_of_the_motion),
         cmocka_unit_test(test_the_picture_of_a_motion_is_whole_or_not_there),
         cmocka_unit_test(test_simulate_gives_the_same_numbers_as_json_and_as_csv),
+        cmocka_unit_test(test_no_output_replaces_a_file_that_is_read_a_run_or_another_output),
         cmocka_unit_test(test_the_building_alone_and_the_tied_one_have_no_impacts),
         cmocka_unit_test(test_a_top_heavy_design_is_simulated_with_a_warning),
         cmocka_unit_test(test_a_building_of_five_floors_goes_all_the_way),

@@ -360,6 +360,20 @@ static void test_a_file_of_too_many_channels_is_refused(void **state)
     assert_non_null(strstr(err.text, "row:1: more than 128 channels"));
 }
 
+static void test_words_without_numbers_are_no_known_format_and_their_first_line_is_quoted(void **state)
+{
+    (void)state;
+    static const char *const TEXTS[] = {"W. 12 garbage\n", "alpha\nbeta\n", "time acceleration\nabc def\n"};
+    for (size_t i = 0; i < sizeof TEXTS / sizeof TEXTS[0]; i++) {
+        Err err = {0};
+        char quoted[40];
+        snprintf(quoted, sizeof quoted, "first line is '%.*s'", (int)strcspn(TEXTS[i], "\n"), TEXTS[i]);
+        assert_int_equal(motion_parse(&(Motion){0}, "text", TEXTS[i], strlen(TEXTS[i]), &FIRST, &err), STATUS_BAD_DATA);
+        if (!strstr(err.text, "in no format that is known here") || !strstr(err.text, quoted))
+            fail_msg("%s", err.text);
+    }
+}
+
 static void test_a_file_of_nothing_but_a_byte_order_mark_is_refused(void **state)
 {
     (void)state;
@@ -996,6 +1010,7 @@ int main(void)
         cmocka_unit_test(test_line_ends_and_blanks_at_line_ends_do_not_matter),
         cmocka_unit_test(test_a_specimen_wrong_in_one_way_is_refused_with_line_and_reason),
         cmocka_unit_test(test_a_file_of_too_many_channels_is_refused),
+        cmocka_unit_test(test_words_without_numbers_are_no_known_format_and_their_first_line_is_quoted),
         cmocka_unit_test(test_a_file_of_nothing_but_a_byte_order_mark_is_refused),
         cmocka_unit_test(test_a_channel_must_be_chosen_where_there_are_several),
         cmocka_unit_test(test_a_column_of_velocities_is_not_taken_for_an_acceleration),

@@ -3,6 +3,7 @@
 #include <dirent.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 #include "settings/settings.h"
 
@@ -175,6 +176,37 @@ static Status take_operand(Args *args, const char *word, Err *err)
     return strstr(c->operand, "RUN") ? take_run_folder(args, err) : STATUS_OK;
 }
 
+static int is_same_file(const char *path, const char *other)
+{
+    struct stat a, b;
+    if (strcmp(path, "-") == 0)
+        return 0;
+    if (stat(path, &a) != 0)
+        return strcmp(path, other) == 0;
+    return S_ISREG(a.st_mode) && stat(other, &b) == 0 && a.st_dev == b.st_dev && a.st_ino == b.st_ino;
+}
+
+/* A file that is written is neither one that the command reads nor another that it writes. */
+static Status check_outputs(const Args *args, Err *err)
+{
+    static const char *const WRITTEN[] = {"--csv", "--svg", "--history", "--contacts", "--floor-spectra"};
+    for (int i = 0; i < args->n_given; i++)
+        for (size_t k = 0; k < sizeof WRITTEN / sizeof WRITTEN[0]; k++) {
+            const Given *out = &args->given[i];
+            if (strcmp(out->option->name, WRITTEN[k]) != 0)
+                continue;
+            for (int j = 0; j < args->n_operands; j++)
+                if (is_same_file(out->value, args->operands[j]))
+                    return fail(err, STATUS_USAGE, "%s would replace %s, which the command reads; name another file",
+                                out->option->name, out->value);
+            for (int j = 0; j < args->n_given; j++)
+                if (j != i && args->given[j].value && is_same_file(out->value, args->given[j].value))
+                    return fail(err, STATUS_USAGE, "%s and %s are one file, %s; name another file", out->option->name,
+                                args->given[j].option->name, out->value);
+        }
+    return STATUS_OK;
+}
+
 static int asks_for_help(const char *word)
 {
     return strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0;
@@ -198,7 +230,7 @@ Status args_parse(Args *args, const Command *command, int argc, char *const argv
     if (command->operand && command->operand[0] != '[' && !args->operand)
         return fail(err, STATUS_USAGE, "%s %s needs a %s; for example: %s", program_of(command), command->name,
                     command->operand, command->example);
-    return STATUS_OK;
+    return check_outputs(args, err);
 }
 
 const char *args_value(const Args *args, const char *name)

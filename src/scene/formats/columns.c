@@ -353,7 +353,11 @@ static Status read(Record *r, Lines *l, const ReadHints *hints, Err *err)
 {
     Preface preface = {0};
     Columns columns = {0};
+    const Lines start = *l;
+    Lines first = start;
     TRY(read_rows(r, l, &preface, &columns, err));
+    if (columns.n_rows == 0 && lines_next_filled(&first) && !is_comment(&first))
+        return fail_unknown(l, start, err);
     take_counted_pair(r, &columns, &preface);
     if (preface.names.from && count_names(&preface.names) != columns.width)
         take_numbers(&preface.names, &preface);
