@@ -28,6 +28,16 @@ static inline char *path_of(const char *name, char path[PATH_MAX])
     return path;
 }
 
+/* A CSV file with a header, in the test's own folder; released by table_free. */
+static inline Table table_of(const char *name)
+{
+    Table t;
+    Err err = {0};
+    char path[PATH_MAX];
+    CHECK_OK(table_read(&t, path_of(name, path), 1, &err), &err);
+    return t;
+}
+
 static inline Settings settings_of(const char *text, const char *out)
 {
     Settings s;

@@ -9,15 +9,6 @@
 #include "sim/floor_filter.h"
 #include "sim/sim.h"
 
-static Table table_of(const char *name)
-{
-    Table t;
-    Err err = {0};
-    char path[PATH_MAX];
-    CHECK_OK(table_read(&t, path_of(name, path), 1, &err), &err);
-    return t;
-}
-
 static double cell(const Table *t, size_t row, const char *column)
 {
     const int c = table_column(t, column);

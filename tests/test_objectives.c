@@ -26,15 +26,6 @@ static void read_run(const char *name, Run *run)
     CHECK_OK(run_read(run, path_of(name, path), &err), &err);
 }
 
-static Table table_of(const char *name)
-{
-    Table t;
-    Err err = {0};
-    char path[PATH_MAX];
-    CHECK_OK(table_read(&t, path_of(name, path), 1, &err), &err);
-    return t;
-}
-
 /* The further measure of that name; NAN where the cell is empty. */
 static double extra_of(const Run *run, size_t row, const char *name)
 {

@@ -497,7 +497,8 @@ static const char *skip_blanks(const char *text)
     return text + strspn(text, " \t");
 }
 
-int setting_is_path(const char *value)
+/* Does the value of a path name a file? builtin:NAME and none do not. */
+static int is_file(const char *value)
 {
     return strncmp(value, "builtin:", 8) != 0 && strcmp(value, "none") != 0;
 }
@@ -517,7 +518,7 @@ static void change_paths(Settings *s, const Option *o, ListItemFn change, void *
 static void make_absolute(char path[OPTION_TEXT_MAX], void *user)
 {
     (void)user;
-    if (!setting_is_path(path))
+    if (!is_file(path))
         return;
     char *absolute = realpath(path, NULL);
     if (absolute && strlen(absolute) < OPTION_TEXT_MAX)
@@ -536,7 +537,7 @@ static void anchor_path(char path[OPTION_TEXT_MAX], void *user)
 {
     const Reading *r = user;
     const char *slash = strrchr(r->path, '/');
-    if (!slash || path[0] == '/' || !setting_is_path(path))
+    if (!slash || path[0] == '/' || !is_file(path))
         return;
     char anchored[2 * OPTION_TEXT_MAX];
     snprintf(anchored, sizeof anchored, "%.*s/%s", (int)(slash - r->path), r->path, path);

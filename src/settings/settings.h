@@ -69,9 +69,6 @@ void settings_each(const Settings *s, SettingFn take, void *user);
 /* "section.key=value" as given to --set. */
 Status settings_set(Settings *s, const char *assignment, Err *err);
 
-/* Does the value of a path name a file? builtin:NAME and none do not. */
-int setting_is_path(const char *value);
-
 /* Every setting that names a file that is there: as its absolute path, so that it can be looked up from anywhere. */
 void settings_make_absolute(Settings *s);
 

@@ -150,7 +150,7 @@ const Textbook *textbook(size_t i)
     return i < sizeof PROBLEMS / sizeof *PROBLEMS ? &PROBLEMS[i] : NULL;
 }
 
-double textbook_upper(const Textbook *t, size_t j)
+static double textbook_upper(const Textbook *t, size_t j)
 {
     return t->widening ? 2.0 * (double)(j + 1) : 1.0;
 }

@@ -33,7 +33,6 @@ typedef struct {
 
 /* Problem i = 0, 1, ... in the order of the setting problem.kind; NULL behind the last. */
 const Textbook *textbook(size_t i);
-double textbook_upper(const Textbook *t, size_t j);
 
 /* Released by problem_close. */
 Status textbook_open(Problem *p, const ProblemOptions *options, uint32_t seed, Err *err);

@@ -27,24 +27,20 @@ void export_front_header(FILE *f, const Schema *schema)
     write_names(f, "id", schema, 0, schema->has_spread);
 }
 
-void export_front_row(FILE *f, const Schema *schema, const FrontRow *row)
-{
-    fprintf(f, "%ld", row->id);
-    print_cells(f, schema->n_var, row->x);
-    print_cells(f, schema->n_obj, row->f);
-    if (schema->has_spread) {
-        print_cells(f, schema->n_obj, row->sd);
-        fputc(',', f);
-        if (row->replicates > 0)
-            fprintf(f, "%d", row->replicates);
-    }
-    fputc('\n', f);
-}
-
 void export_design(FILE *f, const Run *run, size_t row)
 {
+    const Schema *schema = &run->schema;
     const Evaluation *e = &run->table.row[row];
-    export_front_row(f, &run->schema, &(FrontRow){e->id, e->x, run_f(run, row), e->sd, e->replicates});
+    fprintf(f, "%ld", e->id);
+    print_cells(f, schema->n_var, e->x);
+    print_cells(f, schema->n_obj, run_f(run, row));
+    if (schema->has_spread) {
+        print_cells(f, schema->n_obj, e->sd);
+        fputc(',', f);
+        if (e->replicates > 0)
+            fprintf(f, "%d", e->replicates);
+    }
+    fputc('\n', f);
 }
 
 void export_front(FILE *f, const Run *run)

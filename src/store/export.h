@@ -9,16 +9,10 @@
 
 #include "store/run.h"
 
-/* front.csv. One row: id, x (n_var), f (n_obj, natural); sd (n_obj) and replicates are read where the schema has them;
- * replicates 0: not known. */
-typedef struct {
-    long id;
-    const double *x, *f, *sd;
-    int replicates;
-} FrontRow;
+/* front.csv. A row: id, x (n_var), f (n_obj, natural); where the schema has them sd (n_obj) and replicates, empty where
+ * they are not known. */
 void export_front_header(FILE *f, const Schema *schema);
-void export_front_row(FILE *f, const Schema *schema, const FrontRow *row);
-void export_design(FILE *f, const Run *run, size_t row); /* the same of a row of the run */
+void export_design(FILE *f, const Run *run, size_t row);
 void export_front(FILE *f, const Run *run);
 
 /* Rows from `first` on, of finished generations and polished designs: evaluations.csv. With unfinished_too also what is

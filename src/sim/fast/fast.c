@@ -158,7 +158,8 @@ FastTolerances fast_tolerances(Accuracy accuracy)
     return TOLERANCES[accuracy];
 }
 
-FastTolerances fast_tolerances_finer(Accuracy accuracy, double times)
+/* Of an accuracy with so many times the steps per contact, and tolerances to match. */
+static FastTolerances refined(Accuracy accuracy, double times)
 {
     FastTolerances tolerances = fast_tolerances(accuracy);
     tolerances.steps_per_contact *= times;
@@ -199,7 +200,7 @@ static FastTolerances tolerances_of(const EngineOptions *options)
         times *= options->steps_per_contact / tolerances.steps_per_contact;
     if (options->tolerance > 0 && options->accuracy != ACCURACY_FINE)
         times *= options->tolerance / tolerances.steps_per_contact;
-    tolerances = fast_tolerances_finer(options->accuracy, times);
+    tolerances = refined(options->accuracy, times);
     if (options->tolerance > 0 && options->accuracy == ACCURACY_FINE)
         tolerances.steps_per_contact = options->tolerance;
     return tolerances;

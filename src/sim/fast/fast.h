@@ -42,9 +42,6 @@ const char *fast_kernel_name(void);
 
 FastTolerances fast_tolerances(Accuracy accuracy);
 
-/* The same with so many times the steps per contact, and tolerances to match. */
-FastTolerances fast_tolerances_finer(Accuracy accuracy, double times);
-
 /* Of the options: duration, onsets and sample. */
 void fast_run(FastWork *work, const SimModel *model, const Motion *motion, const EngineOptions *options,
               const FastTolerances *tolerances, SimResult *result);
