@@ -174,7 +174,7 @@ static Status write_csv_of_all(size_t n, const Spectrum s[], const char *path, E
 {
     Output o;
     double mean[N_PERIODS];
-    spectra_mean(n, s, mean);
+    spectra_average(n, s, mean);
     TRY(output_open(&o, path, err));
     fprintf(o.stream, "period_s,mean_psa_m_s2%s", s->options.target != TARGET_NONE ? ",target_psa_m_s2" : "");
     for (size_t k = 0; k < n; k++) {
@@ -199,7 +199,7 @@ static json_t *describe_all(size_t n, const Spectrum s[])
 {
     double mean[N_PERIODS];
     json_t *o = json_object(), *list = json_array();
-    spectra_mean(n, s, mean);
+    spectra_average(n, s, mean);
     for (size_t k = 0; k < n; k++)
         json_array_append_new(list, describe(&s[k]));
     json_object_set_new(o, "motions", list);
@@ -214,7 +214,7 @@ static void print_all(size_t n, const Spectrum s[])
 {
     const int has_target = s->options.target != TARGET_NONE;
     double mean[N_PERIODS];
-    spectra_mean(n, s, mean);
+    spectra_average(n, s, mean);
     for (size_t k = 0; k < n; k++) {
         printf("%zu  ", k + 1);
         print_head(&s[k]);

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/stat.h"
 #include "base/units.h"
 #include "report/gnuplot.h"
 #include "scene/motion_process.h"
@@ -71,13 +72,21 @@ void spectrum_close(Spectrum *s)
     motion_free(&s->motion);
 }
 
-void spectra_mean(size_t n, const Spectrum s[], double mean[N_PERIODS])
+typedef struct {
+    const Spectrum *s;
+    int period;
+} Column;
+
+static double psa_of(size_t k, const void *user)
 {
-    for (int i = 0; i < N_PERIODS; i++) {
-        mean[i] = 0;
-        for (size_t k = 0; k < n; k++)
-            mean[i] += s[k].psa[i] / (double)n;
-    }
+    const Column *c = user;
+    return c->s[k].psa[c->period];
+}
+
+void spectra_average(size_t n, const Spectrum s[], double mean[N_PERIODS])
+{
+    for (int i = 0; i < N_PERIODS; i++)
+        mean_and_sd(n, psa_of, &(Column){s, i}, &mean[i], NULL);
 }
 
 const char *spectrum_name(const Spectrum *s)
@@ -164,7 +173,7 @@ static void write_several(FILE *script, const void *user)
     const Several *all = user;
     const int has_target = all->s->options.target != TARGET_NONE;
     double mean[N_PERIODS];
-    spectra_mean(all->n, all->s, mean);
+    spectra_average(all->n, all->s, mean);
     fprintf(script, "$S << EOD\n");
     for (int i = 0; i < N_PERIODS; i++) {
         fprintf(script, "%.6g %.6g %.6g", all->s->T[i], mean[i] / GRAVITY, all->s->target[i] / GRAVITY);

@@ -30,7 +30,7 @@ Status spectrum_open(Spectrum *s, const MotionOptions *o, Err *err);
 void spectrum_close(Spectrum *s);
 
 /* Mean of n spectra [m/s2] at each period. */
-void spectra_mean(size_t n, const Spectrum s[], double mean[N_PERIODS]);
+void spectra_average(size_t n, const Spectrum s[], double mean[N_PERIODS]);
 
 const char *spectrum_name(const Spectrum *s); /* the last part of its path */
 

@@ -1,15 +1,15 @@
 /* polish/local.h -- the goal of polish/goal.h solved on a surrogate and the true evaluation in turn.
  *
- *   each round  1 surface of the known designs, those tried before among them (rbf/rbf.h)
+ *   each round  1 surrogate of the known designs, those tried before among them (rbf/rbf.h)
  *               2 in LOCAL_BATCH boxes about the best design, the first `trust` wide each way and every further one
- *                 half as wide, half of the variables free to move, NLopt (CCSA, with the surface's derivatives)
+ *                 half as wide, half of the variables free to move, NLopt (CCSA, with its derivatives)
  *                 looks for the most
  *                     expected improvement of the value  x  probability that each bound is kept,
- *                 of normal errors with the deviation of the surface's own leave-one-out errors about the best
+ *                 of normal errors with the deviation of its leave-one-out errors about the best
  *               3 these designs are evaluated together; the best that keeps everything is the new centre
  *               trust becomes twice the box in which that was found, or a little less where none was
  *
- * The halves matter: where an objective is jagged, proposals that differ find by chance what no surface foresees.
+ * The halves matter: where an objective is jagged, proposals that differ find by chance what no surrogate predicts.
  *
  * Guards      a failed evaluation is never believed; the answer is never worse than the start
  * Repeatable  same numbers for the same seed; max_seconds is looked at between rounds
@@ -47,7 +47,7 @@ typedef struct {
     double *x, *f; /* (n_var) (n_obj): the caller's; the start and its objectives, then the best */
 } LocalResult;
 
-/* With fewer known designs than variables there is no surface, and nothing is tried. */
+/* With fewer known designs than variables there is no surrogate and nothing is tried. */
 Status local_run(Queue *queue, const LocalConfig *config, LocalResult *result, Err *err);
 
 #endif

@@ -10,7 +10,7 @@
 #include "simulator/adapter.h"
 #include "settings/settings.h"
 
-enum { CENTRES_MAX = 150, LOCAL_MAX = 600 /* designs that the surface tries: a fit costs their cube */ };
+enum { CENTRES_MAX = 150, LOCAL_MAX = 600 /* designs tried on the surrogate: a fit costs their cube */ };
 
 /* Where the standard deviation of every objective is below this share of its value one simulation tells all. */
 static const double PREDICTABLE = 1e-3;
@@ -119,7 +119,7 @@ static double seconds_left(const Refine *r)
     return r->config->max_seconds > 0.0 ? fmax(r->config->max_seconds - spent, 1e-9) : 0.0;
 }
 
-/* -- surface and simulator in turn --------------------------------------------------------------------------------- */
+/* -- surrogate and simulator in turn ------------------------------------------------------------------------------- */
 
 typedef struct {
     double distance;
@@ -180,7 +180,7 @@ static Status gather_known(const Refine *r, Known *known, Err *err)
 }
 
 /* From out->x with the objectives f; the best is left there. */
-static Status follow_surface(Refine *r, double f[], Refined *out, Err *err)
+static Status improve_on_surrogate(Refine *r, double f[], Refined *out, Err *err)
 {
     const size_t left = evals_left(r, out), wanted = r->config->algorithm ? left / 2 : left;
     LocalConfig config = {.goal = {r->weight, r->bound},
@@ -227,12 +227,12 @@ static void judge_gain(const Refine *r, const double F[], Refined *out)
     out->keeps = 1;
     for (size_t k = 0; k < m; k++) {
         const double error = hypot(out->spread_start[k], out->spread[k]) / sqrt((double)r->config->replicates);
-        const double loss = F[m + k] - F[k], doubt = isfinite(error) ? 2.0 * error : 0.0;
+        const double loss = F[m + k] - F[k], margin = isfinite(error) ? 2.0 * error : 0.0;
         if (r->weight[k] > 0.0) {
             out->gain -= r->weight[k] * loss;
             out->gain_error += r->weight[k] * error;
         }
-        if (r->config->keep[k] && loss > r->slack[k] + doubt)
+        if (r->config->keep[k] && loss > r->slack[k] + margin)
             out->keeps = 0;
     }
 }
@@ -273,7 +273,7 @@ static Status refine(Refine *r, Refined *out, Err *err)
     out->extra = out->f_start + 4 * m;
     memcpy(out->x, r->x, n_var * sizeof *out->x);
     TRY(begin(r, f, out, err));
-    TRY(follow_surface(r, f, out, err));
+    TRY(improve_on_surrogate(r, f, out, err));
     TRY(polish_simulator(r, out, err));
     return compare(r, out, err);
 }

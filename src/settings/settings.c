@@ -5,7 +5,6 @@
 #include <float.h>
 #include <ini.h>
 #include <limits.h>
-#include <stdarg.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,9 +13,7 @@
 #include "base/list.h"
 #include "base/table.h"
 #include "scene/builtin.h"
-#include "scene/design.h"
-#include "scene/motion_scale.h"
-#include "sim/tolerance.h"
+#include "settings/rules.h"
 
 typedef enum { KIND_REAL, KIND_WHOLE, KIND_CHOICE, KIND_TEXT, KIND_PATH, KIND_PATH_LIST } Kind;
 
@@ -624,116 +621,11 @@ static int take_pair(void *user, const char *section, const char *name, const ch
     return 1;
 }
 
-/* The rules that tie settings together: each broken one is handed to `broken` with the fields it ties. */
-typedef struct {
-    void (*broken)(const size_t fields[3], const char *text, void *user);
-    void *user;
-} Rules;
-
-__attribute__((format(printf, 3, 4))) static void break_rule(const Rules *r, const size_t fields[3], const char *format,
-                                                             ...)
-{
-    char text[sizeof((Err *)0)->text];
-    va_list values;
-    va_start(values, format);
-    vsnprintf(text, sizeof text, format, values);
-    va_end(values);
-    r->broken(fields, text, r->user);
-}
-
-static void check_motion(const MotionOptions *m, const Rules *r)
-{
-    char scalings[SCALINGS_TEXT_MAX];
-    if (motion_scalings(m, scalings) > 1)
-        break_rule(r, (size_t[]){AT(motion.target), AT(motion.sa_g), AT(motion.factor)},
-                   "motion: a record is scaled in one way, not in several: %s", scalings);
-    if (!(m->target_from_s < m->target_to_s))
-        break_rule(r, (size_t[]){AT(motion.target_from_s), AT(motion.target_to_s), AT(motion.target)},
-                   "motion.target_from_s: %g must be below motion.target_to_s = %g", m->target_from_s, m->target_to_s);
-    if (!(m->ec8_tb_s <= m->ec8_tc_s && m->ec8_tc_s <= m->ec8_td_s))
-        break_rule(r, (size_t[]){AT(motion.ec8_tb_s), AT(motion.ec8_tc_s), AT(motion.ec8_td_s)},
-                   "motion.ec8_tb_s: TB = %g, TC = %g and TD = %g must rise", m->ec8_tb_s, m->ec8_tc_s, m->ec8_td_s);
-    if (!(m->asce7_sd1_g / m->asce7_sds_g <= m->asce7_tl_s))
-        break_rule(r, (size_t[]){AT(motion.asce7_tl_s), AT(motion.asce7_sd1_g), AT(motion.asce7_sds_g)},
-                   "motion.asce7_tl_s: TL = %g must not be below TS = SD1 / SDS = %g", m->asce7_tl_s,
-                   m->asce7_sd1_g / m->asce7_sds_g);
-    if (m->highpass_hz > 0 && m->lowpass_hz > 0 && m->highpass_hz >= m->lowpass_hz)
-        break_rule(r, (size_t[]){AT(motion.highpass_hz), AT(motion.lowpass_hz), AT(motion.lowpass_hz)},
-                   "motion.highpass_hz: %g must be below motion.lowpass_hz = %g", m->highpass_hz, m->lowpass_hz);
-}
-
-static void check_variables(const Settings *s, const Rules *r)
-{
-    const DesignOptions *d = &s->design;
-    DesignSpace space;
-    Err err;
-    if (design_space_make(&space, d, 0, &err) != STATUS_OK) {
-        break_rule(r, (size_t[]){AT(design.variables), AT(design.variables), AT(design.variables)}, "%s", err.text);
-        return;
-    }
-    if (d->bumper_min_n_m >= d->bumper_max_n_m)
-        break_rule(r, (size_t[]){AT(design.bumper_min_n_m), AT(design.bumper_max_n_m), AT(design.bumper_max_n_m)},
-                   "design.bumper_min_n_m: %g must be below design.bumper_max_n_m = %g", d->bumper_min_n_m,
-                   d->bumper_max_n_m);
-    if (d->side_min_m >= d->side_max_m)
-        break_rule(r, (size_t[]){AT(design.side_min_m), AT(design.side_max_m), AT(design.side_max_m)},
-                   "design.side_min_m: %g must be below design.side_max_m = %g", d->side_min_m, d->side_max_m);
-    if (space.has_side && s->core.section != CORE_BOX)
-        break_rule(r, (size_t[]){AT(design.variables), AT(core.section), AT(core.section)},
-                   "design.variables: side is that of core.section = box");
-    if (space.has_side && 2 * d->thickness_max_m > d->side_min_m)
-        break_rule(r, (size_t[]){AT(design.side_min_m), AT(design.thickness_max_m), AT(design.variables)},
-                   "design.side_min_m: twice design.thickness_max_m = %g m does not fit into %g m", d->thickness_max_m,
-                   d->side_min_m);
-}
-
-static void check_rules(const Settings *s, const Rules *r)
-{
-    check_motion(&s->motion, r);
-    if (s->design.gap_min_m >= s->design.gap_max_m)
-        break_rule(r, (size_t[]){AT(design.gap_min_m), AT(design.gap_max_m), AT(design.gap_max_m)},
-                   "design.gap_min_m: %g must be below design.gap_max_m = %g", s->design.gap_min_m,
-                   s->design.gap_max_m);
-    if (s->design.thickness_min_m >= s->design.thickness_max_m)
-        break_rule(r, (size_t[]){AT(design.thickness_min_m), AT(design.thickness_max_m), AT(design.thickness_max_m)},
-                   "design.thickness_min_m: %g must be below design.thickness_max_m = %g", s->design.thickness_min_m,
-                   s->design.thickness_max_m);
-    if (s->sim.gap_tolerance_m > 0.0 && s->sim.replicates < 2)
-        break_rule(r, (size_t[]){AT(sim.gap_tolerance_m), AT(sim.replicates), AT(sim.replicates)},
-                   "sim.gap_tolerance_m: needs replicates that differ: set sim.replicates to 2 or more");
-    Err err = {0};
-    double steps;
-    if (tolerance_steps(&s->sim, &steps, &err) != STATUS_OK)
-        break_rule(r, (size_t[]){AT(sim.tolerance), AT(sim.steps_per_contact), AT(sim.steps_per_contact)}, "%s",
-                   err.text);
-    const UncertainOptions *u = &s->uncertain;
-    if (u->restitution + u->contact_stiffness + u->core_stiffness + u->building_stiffness + u->damping > 0.0 &&
-        s->sim.replicates < 2)
-        break_rule(r, (size_t[]){AT(uncertain.restitution), AT(sim.replicates), AT(sim.replicates)},
-                   "[uncertain]: needs replicates that differ: set sim.replicates to 2 or more");
-    if (s->problem.kind == PROBLEM_EXTERNAL && strcmp(s->problem.command, "none") == 0)
-        break_rule(r, (size_t[]){AT(problem.command), AT(problem.kind), AT(problem.kind)},
-                   "problem.command: is none; problem.kind = external needs the command of the simulator");
-    if (s->search.replicates_min > s->search.replicates_max)
-        break_rule(r, (size_t[]){AT(search.replicates_min), AT(search.replicates_max), AT(search.replicates_max)},
-                   "search.replicates_min: %ld is above search.replicates_max = %ld", s->search.replicates_min,
-                   s->search.replicates_max);
-    if (s->search.replicates_min > 1 && !(s->search.replicate_share > 0.0))
-        break_rule(r, (size_t[]){AT(search.replicates_min), AT(search.replicate_share), AT(search.replicate_share)},
-                   "search.replicates_min: %ld simulations of a design need search.replicate_share above 0",
-                   s->search.replicates_min);
-    check_variables(s, r);
-    if (s->core.section == CORE_BOX && 2 * s->design.thickness_max_m > s->core.side_m)
-        break_rule(r, (size_t[]){AT(design.thickness_max_m), AT(core.side_m), AT(core.section)},
-                   "design.thickness_max_m: twice %g m does not fit into core.side_m = %g", s->design.thickness_max_m,
-                   s->core.side_m);
-}
-
-static void report_broken(const size_t fields[3], const char *text, void *user)
+static void report_broken(const size_t fields[RULE_FIELDS], const char *text, void *user)
 {
     Reading *r = user;
     Place at = {0, 0};
-    for (int k = 0; k < 3 && !at.line; k++)
+    for (int k = 0; k < RULE_FIELDS && !at.line; k++)
         for (int i = 0; i < N_OPTIONS && !at.line; i++)
             if (OPTIONS[i].offset == fields[k])
                 at = r->seen[i];
@@ -749,7 +641,7 @@ static Status read_stream(Reading *r, int *n_faults, Err *err)
         return fail(err, STATUS_NO_MEMORY, "%s: no memory to read it", r->path);
     if (bad_line > 0 && r->n_faults == 0)
         report_fault(r, (Place){bad_line, 1}, "neither [section] nor key = value");
-    check_rules(r->s, &(Rules){report_broken, r});
+    rules_check(r->s, report_broken, r);
     if (n_faults)
         *n_faults = r->n_faults;
     return r->n_faults ? STATUS_BAD_DATA : STATUS_OK;
@@ -797,7 +689,7 @@ Status settings_set(Settings *s, const char *assignment, Err *err)
     return set_key(s, key, equals + 1, err);
 }
 
-static void keep_first(const size_t fields[3], const char *text, void *user)
+static void keep_first(const size_t fields[RULE_FIELDS], const char *text, void *user)
 {
     (void)fields;
     Err *first = user;
@@ -808,7 +700,7 @@ static void keep_first(const size_t fields[3], const char *text, void *user)
 Status settings_check(const Settings *s, Err *err)
 {
     Err first = {0};
-    check_rules(s, &(Rules){keep_first, &first});
+    rules_check(s, keep_first, &first);
     return first.code == STATUS_OK ? STATUS_OK : fail(err, first.code, "%s", first.text);
 }
 

@@ -6,7 +6,7 @@
  *
  * The reader, the range check, `--set section.key=value`, `imtet settings` and the copy saved with a run are loops
  * over the table: a new setting is one line there and one field in the options of its module. Rules that tie settings
- * together stand below the table (settings_check). A module takes its own options; only what needs all includes this
+ * together: rules.h. A module takes its own options; only what needs all includes this
  * header, others declare `typedef struct Settings Settings;`.
  *
  * Ownership  Settings is a plain value: copy it freely.   Threads  no state. */

@@ -1,0 +1,137 @@
+#include "settings/rules.h"
+
+#include <stdarg.h>
+#include <string.h>
+
+#include "scene/design.h"
+#include "scene/motion_scale.h"
+#include "sim/tolerance.h"
+
+typedef struct {
+    BrokenRuleFn broken;
+    void *user;
+} Rules;
+
+#define AT(field) offsetof(Settings, field)
+
+/* The fields of a rule, the one to change first. */
+#define TIED(a, b, c) ((const size_t[RULE_FIELDS]){AT(a), AT(b), AT(c)})
+#define PAIR(a, b)    TIED(a, b, b)
+
+__attribute__((format(printf, 3, 4))) static void break_rule(const Rules *r, const size_t fields[RULE_FIELDS],
+                                                             const char *format, ...)
+{
+    char text[sizeof((Err *)0)->text];
+    va_list values;
+    va_start(values, format);
+    vsnprintf(text, sizeof text, format, values);
+    va_end(values);
+    r->broken(fields, text, r->user);
+}
+
+/* low below high; both real. */
+#define BELOW(low, high)                                                                                               \
+    {                                                                                                                  \
+        AT(low), AT(high), #low, #high                                                                                 \
+    }
+static const struct {
+    size_t low, high;
+    const char *low_key, *high_key;
+} BELOW_EACH_OTHER[] = {
+    BELOW(design.gap_min_m, design.gap_max_m),           BELOW(design.thickness_min_m, design.thickness_max_m),
+    BELOW(design.bumper_min_n_m, design.bumper_max_n_m), BELOW(design.side_min_m, design.side_max_m),
+    BELOW(motion.target_from_s, motion.target_to_s),
+};
+
+static double real_at(const Settings *s, size_t field)
+{
+    double value;
+    memcpy(&value, (const char *)s + field, sizeof value);
+    return value;
+}
+
+static void check_bounds(const Settings *s, const Rules *r)
+{
+    for (size_t i = 0; i < sizeof BELOW_EACH_OTHER / sizeof BELOW_EACH_OTHER[0]; i++) {
+        const size_t low = BELOW_EACH_OTHER[i].low, high = BELOW_EACH_OTHER[i].high;
+        if (!(real_at(s, low) < real_at(s, high)))
+            break_rule(r, (const size_t[RULE_FIELDS]){low, high, high}, "%s: %g must be below %s = %g",
+                       BELOW_EACH_OTHER[i].low_key, real_at(s, low), BELOW_EACH_OTHER[i].high_key, real_at(s, high));
+    }
+}
+
+static void check_motion(const MotionOptions *m, const Rules *r)
+{
+    char scalings[SCALINGS_TEXT_MAX];
+    if (motion_scalings(m, scalings) > 1)
+        break_rule(r, TIED(motion.target, motion.sa_g, motion.factor),
+                   "motion: a record is scaled in one way, not in several: %s", scalings);
+    if (!(m->ec8_tb_s <= m->ec8_tc_s && m->ec8_tc_s <= m->ec8_td_s))
+        break_rule(r, TIED(motion.ec8_tb_s, motion.ec8_tc_s, motion.ec8_td_s),
+                   "motion.ec8_tb_s: TB = %g, TC = %g and TD = %g must rise", m->ec8_tb_s, m->ec8_tc_s, m->ec8_td_s);
+    if (!(m->asce7_sd1_g / m->asce7_sds_g <= m->asce7_tl_s))
+        break_rule(r, TIED(motion.asce7_tl_s, motion.asce7_sd1_g, motion.asce7_sds_g),
+                   "motion.asce7_tl_s: TL = %g must not be below TS = SD1 / SDS = %g", m->asce7_tl_s,
+                   m->asce7_sd1_g / m->asce7_sds_g);
+    if (m->highpass_hz > 0 && m->lowpass_hz > 0 && m->highpass_hz >= m->lowpass_hz)
+        break_rule(r, PAIR(motion.highpass_hz, motion.lowpass_hz),
+                   "motion.highpass_hz: %g must be below motion.lowpass_hz = %g", m->highpass_hz, m->lowpass_hz);
+}
+
+static void check_variables(const Settings *s, const Rules *r)
+{
+    const DesignOptions *d = &s->design;
+    DesignSpace space;
+    Err err;
+    if (design_space_make(&space, d, 0, &err) != STATUS_OK) {
+        break_rule(r, PAIR(design.variables, design.variables), "%s", err.text);
+        return;
+    }
+    if (space.has_side && s->core.section != CORE_BOX)
+        break_rule(r, PAIR(design.variables, core.section), "design.variables: side is that of core.section = box");
+    if (space.has_side && 2 * d->thickness_max_m > d->side_min_m)
+        break_rule(r, TIED(design.side_min_m, design.thickness_max_m, design.variables),
+                   "design.side_min_m: twice design.thickness_max_m = %g m does not fit into %g m", d->thickness_max_m,
+                   d->side_min_m);
+    if (s->core.section == CORE_BOX && 2 * d->thickness_max_m > s->core.side_m)
+        break_rule(r, TIED(design.thickness_max_m, core.side_m, core.section),
+                   "design.thickness_max_m: twice %g m does not fit into core.side_m = %g", d->thickness_max_m,
+                   s->core.side_m);
+}
+
+static void check_replicates(const Settings *s, const Rules *r)
+{
+    const UncertainOptions *u = &s->uncertain;
+    const int varies =
+        u->restitution + u->contact_stiffness + u->core_stiffness + u->building_stiffness + u->damping > 0;
+    if (s->sim.gap_tolerance_m > 0 && s->sim.replicates < 2)
+        break_rule(r, PAIR(sim.gap_tolerance_m, sim.replicates),
+                   "sim.gap_tolerance_m: needs replicates that differ: set sim.replicates to 2 or more");
+    if (varies && s->sim.replicates < 2)
+        break_rule(r, PAIR(uncertain.restitution, sim.replicates),
+                   "[uncertain]: needs replicates that differ: set sim.replicates to 2 or more");
+    if (s->search.replicates_min > s->search.replicates_max)
+        break_rule(r, PAIR(search.replicates_min, search.replicates_max),
+                   "search.replicates_min: %ld is above search.replicates_max = %ld", s->search.replicates_min,
+                   s->search.replicates_max);
+    if (s->search.replicates_min > 1 && !(s->search.replicate_share > 0))
+        break_rule(r, PAIR(search.replicates_min, search.replicate_share),
+                   "search.replicates_min: %ld simulations of a design need search.replicate_share above 0",
+                   s->search.replicates_min);
+}
+
+void rules_check(const Settings *s, BrokenRuleFn broken, void *user)
+{
+    const Rules rules = {broken, user}, *r = &rules;
+    Err err = {0};
+    double steps;
+    check_bounds(s, r);
+    check_motion(&s->motion, r);
+    check_variables(s, r);
+    check_replicates(s, r);
+    if (tolerance_steps(&s->sim, &steps, &err) != STATUS_OK)
+        break_rule(r, PAIR(sim.tolerance, sim.steps_per_contact), "%s", err.text);
+    if (s->problem.kind == PROBLEM_EXTERNAL && strcmp(s->problem.command, "none") == 0)
+        break_rule(r, PAIR(problem.command, problem.kind),
+                   "problem.command: is none; problem.kind = external needs the command of the simulator");
+}
