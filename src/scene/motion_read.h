@@ -9,7 +9,8 @@
  *   usc      USC, volume 1                     isesd    ISESD and its CD-ROM, corrected
  *   slist    IRIS ASCII, and tspair            mseed    miniSEED 2
  *   sac      SAC, binary and alphanumeric      simcenter  SimCenter JSON
- *   csmnc    CSMNC (China)                     evt      Kinemetrics EVT
+ *   csmnc    CSMNC (China)                     csn      CSN (Chile), text
+ *   evt      Kinemetrics EVT
  *   csv      plain text: one, two or many columns
  *
  * and archives of them (zip, tar, gzip, bzip2, xz).
