@@ -1,10 +1,11 @@
 /* bench/main.c -- the program imtet-bench: engines compared by speed, accuracy and reliability.
  *
- *   imtet-bench sweep | throughput | promise | stability | laws [--option [VALUE]] ... */
+ *   imtet-bench sweep | throughput | promise | stability | laws | search [--option [VALUE]] ... */
 #include <cblas.h>
 #include <string.h>
 
 #include "bench/distribution.h"
+#include "bench/search/factors.h"
 #include "bench/stability/laws.h"
 #include "bench/stability/stability.h"
 #include "bench/throughput.h"
@@ -260,6 +261,33 @@ static const ArgOption LAWS_OPTIONS[] = {
     OPTION_END,
 };
 
+/* ---- the search -------------------------------------------------------------------------------------------------- */
+
+static Status run_factors(const Args *args, Err *err)
+{
+    Settings s;
+    FactorPlan plan = {.settings = &s, .problems = args_value(args, "--problem"), .aside = args_has(args, "--aside")};
+    settings_defaults(&s);
+    TRY(args_apply(args, &s, NULL, NULL, err));
+    TRY(settings_check(&s, err));
+    TRY(args_whole(args, "--seeds", 1, 16, 3, &plan.n_seeds, err));
+    TRY(args_whole(args, "--first-seed", 0, 1000000, 101, &plan.first_seed, err));
+    TRY(args_whole(args, "--evals", 100, 100000, 300, &plan.budgets[0], err));
+    TRY(args_whole(args, "--more-evals", 0, 100000, 0, &plan.budgets[1], err));
+    return factors_run(&plan, stdout, err);
+}
+
+static const ArgOption FACTOR_OPTIONS[] = {
+    {"--problem", "LIST", NULL, 0, "some of the problems; all but those kept aside unless given"},
+    {"--aside", NULL, NULL, 0, "those kept aside instead"},
+    {"--evals", "N", NULL, 0, "evaluations with the surrogate; 300 unless given"},
+    {"--more-evals", "N", NULL, 0, "another budget beside it"},
+    {"--seeds", "N", NULL, 0, "3 unless given"},
+    {"--first-seed", "N", NULL, 0, "101 unless given"},
+    OPTION_SET,
+    OPTION_END,
+};
+
 /* ---- the command line -------------------------------------------------------------------------------------------- */
 
 static const Command COMMANDS[] = {
@@ -308,6 +336,15 @@ static const Command COMMANDS[] = {
          "v0 changes. Fails where a law does not return what it is known to.",
      .options = LAWS_OPTIONS,
      .run = run_laws,
+     .program = "imtet-bench"},
+    {.name = "search",
+     .summary = "evaluations that the surrogate saves, on problems of other families",
+     .example = "imtet-bench search --evals 300 --more-evals 500",
+     .details = "How many evaluations a plain search needs for the hypervolume that the surrogate reaches, as a "
+                "multiple, and\n"
+                "that hypervolume: medians over the seeds, the geometric mean over the problems.",
+     .options = FACTOR_OPTIONS,
+     .run = run_factors,
      .program = "imtet-bench"},
 };
 enum { N_COMMANDS = sizeof COMMANDS / sizeof COMMANDS[0] };

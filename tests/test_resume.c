@@ -316,6 +316,50 @@ static void test_a_state_that_is_cut_short_or_of_another_search_is_refused(void 
     forget(&whole);
 }
 
+static void test_a_search_that_converges_stops_at_the_same_place_wherever_it_was_resumed(void **state)
+{
+    (void)state;
+    world(&here, 3, 2, 0);
+    SearchConfig c = config(20, 290);
+    c.generations = 79;
+    c.stop_after = 100;
+    check_every_moment(&c, 5);
+    run(&here, &c, NULL, &whole);
+    assert_int_equal(whole.reason, STOP_CONVERGED);
+    const SearchStart end = moment(&whole, whole.moments.n - 1);
+    run(&here, &c, &end, &rest);
+    assert_int_equal(rest.reason, STOP_CONVERGED);
+    assert_int_equal(rest.moments.n, 0);
+    c.stop_after = 0; /* it goes on, as if it had never been asked to stop */
+    run(&here, &c, &end, &rest);
+    assert_int_equal(rest.reason, STOP_EVALUATIONS);
+    forget(&rest);
+    forget(&whole);
+}
+
+/* Every eight bytes of it in turn. */
+static void test_a_state_with_a_nan_anywhere_is_refused(void **state)
+{
+    (void)state;
+    const double nan = NAN;
+    world(&here, 6, 3, 0);
+    const SearchConfig c = config(20, 60);
+    run(&here, &c, NULL, &whole);
+    memset(&rest, 0, sizeof rest);
+    SearchStart start = moment(&whole, 3);
+    unsigned char *forged = malloc(start.n_state);
+    assert_non_null(forged);
+    for (size_t at = 0; at + sizeof nan <= start.n_state; at += sizeof nan) {
+        memcpy(forged, start.state, start.n_state);
+        memcpy(forged + at, &nan, sizeof nan);
+        SearchStart other = start;
+        other.state = forged;
+        refuse(&c, &other);
+    }
+    free(forged);
+    forget(&whole);
+}
+
 /* What a Pack reads is what it wrote; a fault stops it before anything is changed. */
 static void test_a_pack_reads_what_it_wrote_and_keeps_the_first_fault(void **state)
 {
@@ -366,6 +410,8 @@ int main(void)
         cmocka_unit_test(test_more_simulations_than_planned_go_on_where_the_plan_ended),
         cmocka_unit_test(test_a_search_at_its_limit_simulates_nothing_more),
         cmocka_unit_test(test_a_state_that_is_cut_short_or_of_another_search_is_refused),
+        cmocka_unit_test(test_a_search_that_converges_stops_at_the_same_place_wherever_it_was_resumed),
+        cmocka_unit_test(test_a_state_with_a_nan_anywhere_is_refused),
         cmocka_unit_test(test_a_pack_reads_what_it_wrote_and_keeps_the_first_fault),
     };
     return cmocka_run_group_tests_name("resume", tests, quiet, NULL);

@@ -11,6 +11,7 @@
 #include "moga/dominance.h"
 #include "moga/hypervolume.h"
 #include "moga/control.h"
+#include "moga/convergence.h"
 #include "moga/search.h"
 #include "moga/variation.h"
 
@@ -450,6 +451,76 @@ static void test_every_way_to_stop_is_named(void **state)
 }
 
 /* With an error limit that nothing exceeds all predictions stand, and still a few are checked in each generation. */
+static double gain_between(const Seen *s, size_t m, const size_t cuts[2], double h[2])
+{
+    Err err = {0};
+    unsigned char all[ROWS_MAX];
+    memset(all, 1, sizeof all);
+    CHECK_OK(convergence_shares(&(GrowingFront){s->n, m, s->F, NULL, all, s->on_front}, 2, cuts, h, &err), &err);
+    return h[1] - h[0];
+}
+
+/* Two objectives and three variables: the front is filled soon. */
+static void test_a_converged_search_stops_and_has_lost_no_more_than_the_noise_of_hypervolume(void **state)
+{
+    (void)state;
+    static Seen stopped, all;
+    memset(&stopped, 0, sizeof stopped);
+    memset(&all, 0, sizeof all);
+    SearchConfig c = config(20, 590);
+    c.stop_after = 120;
+    world(&here, 3, 2);
+    assert_int_equal(run(&here, &c, &stopped), STOP_CONVERGED);
+    assert_in_range(stopped.n, 140, 480);
+    c.stop_after = 0;
+    world(&here, 3, 2);
+    assert_int_equal(run(&here, &c, &all), STOP_EVALUATIONS);
+    assert_memory_equal(all.X, stopped.X, stopped.n * 3 * sizeof *all.X);
+    double h[2];
+    const double lost = gain_between(&all, 2, (size_t[]){stopped.n, all.n}, h);
+    if (!(lost <= 4.0 * hypervolume_error(h[1])))
+        fail_msg("stopped after %zu, %.4f below the hypervolume %.4f of %zu", stopped.n, lost, h[1], all.n);
+}
+
+static void test_a_search_that_improves_does_not_stop(void **state)
+{
+    (void)state;
+    memset(&seen, 0, sizeof seen);
+    SearchConfig c = config(40, 400);
+    c.surrogate = SURROGATE_OFF; /* far from the front for long */
+    c.stop_after = 100;
+    world(&here, 22, 3);
+    assert_int_equal(run(&here, &c, &seen), STOP_EVALUATIONS);
+}
+
+/* h = h_inf - c n^-a gains 2^-a of the last gain when n is doubled. */
+static void test_the_gain_of_a_power_law_is_foretold_exactly(void **state)
+{
+    (void)state;
+    const double at[] = {0.9 - pow(100, -0.7), 0.9 - pow(200, -0.7), 0.9 - pow(400, -0.7)};
+    assert_close(convergence_expected(at), pow(400, -0.7) - pow(800, -0.7), 1e-12);
+    assert_close(convergence_expected((double[]){0.1, 0.2, 0.4}), 0.2,
+                 1e-12); /* still faster: no more than as much again */
+    assert_close(convergence_expected((double[]){0.1, 0.2, 0.2}), 0.0, 1e-12);
+    assert_true(isnan(convergence_expected((double[]){NAN, 0.1, 0.2})) == 0);
+    assert_true(isnan(convergence_expected((double[]){NAN, NAN, NAN})));
+}
+
+/* Box of one front: h grows with every corner that is cut off, and is the exact area in the end. */
+static void test_shares_are_areas_in_a_box_about_the_front(void **state)
+{
+    (void)state;
+    Err err = {0};
+    const double F[] = {9, 9, 2, 2, 0, 10, 10, 0, 5, 5};
+    const unsigned char counts[] = {1, 1, 1, 1, 0}, front[] = {0, 1, 1, 1, 0};
+    double h[3];
+    CHECK_OK(convergence_shares(&(GrowingFront){5, 2, F, NULL, counts, front}, 3, (size_t[]){1, 2, 5}, h, &err), &err);
+    const double box = 11.0 * 11.0;
+    assert_close(h[0], 4.0 / box, 4.0 * hypervolume_error(4.0 / box) / (4.0 / box));
+    assert_close(h[1], 81.0 / box, 4.0 * hypervolume_error(81.0 / box) / (81.0 / box));
+    assert_close(h[2], (81.0 + 2 * 2.0) / box, 4.0 * hypervolume_error(85.0 / box) / (85.0 / box));
+}
+
 static void test_a_search_that_trusts_everything_still_simulates_a_few(void **state)
 {
     (void)state;
@@ -594,6 +665,10 @@ int main(void)
         cmocka_unit_test_setup(test_an_archive_beyond_the_surface_s_size_is_thinned, fresh),
         cmocka_unit_test_setup(test_settings_that_make_no_sense_are_refused_by_name, fresh),
         cmocka_unit_test_setup(test_a_front_of_a_single_design_still_spends_the_budget, fresh),
+        cmocka_unit_test_setup(test_a_converged_search_stops_and_has_lost_no_more_than_the_noise_of_hypervolume, fresh),
+        cmocka_unit_test_setup(test_a_search_that_improves_does_not_stop, fresh),
+        cmocka_unit_test(test_the_gain_of_a_power_law_is_foretold_exactly),
+        cmocka_unit_test(test_shares_are_areas_in_a_box_about_the_front),
         cmocka_unit_test_setup(test_without_a_surrogate_nothing_is_predicted_and_the_front_is_worse, fresh),
         cmocka_unit_test_setup(test_a_start_of_size_zero_follows_the_number_of_variables, fresh),
     };

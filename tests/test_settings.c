@@ -174,7 +174,7 @@ static void is_the_changed_one(const char *key, unsigned flags, const char *was,
 {
     Changed *c = user;
     static const char *const LIMITS[] = {"search.max_evals", "search.generations", "search.max_hours",
-                                         "search.nondominated_share", "problem.timeout_s"};
+                                         "search.nondominated_share", "search.stop_after", "problem.timeout_s"};
     static const char *const FREE[] = {"search.threads", "search.failures_max", "run.out",       "search.start",
                                        "motion.record",  "motion.records",      "building.model"};
     unsigned wanted = 0;

@@ -30,6 +30,13 @@ void pack(Pack *p, void *value, size_t size)
     }
 }
 
+void pack_numbers(Pack *p, double *x, size_t n, double least, double most)
+{
+    pack(p, x, n * sizeof *x);
+    for (size_t i = 0; i < n && p->reading && !p->faulty; i++)
+        p->faulty = !(x[i] >= least && x[i] <= most);
+}
+
 void pack_size(Pack *p, size_t *value, size_t most)
 {
     uint64_t wide = *value;

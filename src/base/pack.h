@@ -9,7 +9,7 @@
  *   Pack in = {.bytes = b, .n = n, .reading = 1};  walk(&in, t);       pack_finished(&in): all of it fitted
  *
  * What is added to a state is one line in its walk, and cannot be written in one order and read in another. A fault
- * (memory, too few bytes, a count above its limit) is kept and turns the rest of the walk into nothing; what was to be
+ * (memory, too few bytes, a count or number beyond its limits) is kept and turns the rest of the walk into nothing; what was to be
  * read is then unchanged. Numbers are in the order of bytes of the machine.
  *
  * Threads  a Pack belongs to one thread. */
@@ -27,6 +27,9 @@ typedef struct {
 } Pack;
 
 void pack(Pack *p, void *value, size_t size);
+
+/* n numbers; when they are read, one that is no number or lies outside least..most is a fault. */
+void pack_numbers(Pack *p, double *x, size_t n, double least, double most);
 
 /* A count or an index: 64 bits; one above `most` is a fault. */
 void pack_size(Pack *p, size_t *value, size_t most);

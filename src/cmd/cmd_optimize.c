@@ -11,6 +11,7 @@
 #include "cmd/signals.h"
 #include "store/nearest.h"
 #include "store/run_read.h"
+#include "study/improvement.h"
 #include "study/output_place.h"
 #include "study/study.h"
 #include "settings/settings.h"
@@ -176,9 +177,13 @@ static Status report(const Run *run, const StudySummary *summary, Err *err)
         return report_no_front(run, summary, err);
     TRY(nearest_write(summary->folder, NULL, 0, NULL, err));
     print_few_replicates(run);
-    printf("front: %s/front.csv\n%zu nondominated of %zu simulated designs, %zu simulations failed, %.1f s (%s)\n\n",
+    printf("front: %s/front.csv\n%zu nondominated of %zu simulated designs, %zu simulations failed, %.1f s (%s)\n",
            summary->folder, run->n_front, summary->n_simulated, summary->n_failed, summary->seconds,
            stop_reason_words(summary->stopped));
+    double expected;
+    TRY(improvement_expected(run, &expected, err));
+    show_expected_gain(expected);
+    putchar('\n');
     if (summary->n_repeats > 0)
         printf("%zu of the simulations repeat a design, to average the noise (search.replicate_share)\n\n",
                summary->n_repeats);

@@ -78,7 +78,7 @@ static void print_head(const char *folder, const Run *run, const Standing *s)
 }
 
 /* The first, the last, and some evenly between. */
-static void print_generations(const Run *run, const double igd[])
+static void print_generations(const Run *run, const double igd[], double expected)
 {
     const size_t n = run->n_generations, rows = n < ROWS_MAX ? n : ROWS_MAX;
     char worked[32], hypervolume[32], advance[32];
@@ -97,6 +97,7 @@ static void print_generations(const Run *run, const double igd[])
     }
     printf("hypervolume: standard error %.4f at most; IGD+: against the last front, normalised by its ranges\n",
            hypervolume_error(0.5));
+    show_expected_gain(expected);
 }
 
 static void print_failures(const Failures *f)
@@ -189,13 +190,17 @@ static Status run(const Args *args, Err *err)
     TRY(run_read(&run, args->operand, err));
     standing_of(&standing, args->operand, &run);
     const Failures failures = failures_of(&run);
-    double *igd = calloc(run.n_generations + 1, sizeof *igd);
+    double expected = NAN, *igd = calloc(run.n_generations + 1, sizeof *igd);
     Status status = igd ? improvement_of_run(&run, igd, err) : fail(err, STATUS_NO_MEMORY, "no memory for generations");
+    if (status == STATUS_OK)
+        status = improvement_expected(&run, &expected, err);
     if (status == STATUS_OK && args_has(args, "--json")) {
-        status = show_json(describe(args->operand, &run, &standing, &failures, igd), err);
+        json_t *o = describe(args->operand, &run, &standing, &failures, igd);
+        json_object_set_new(o, "expected_gain", json_number(expected));
+        status = show_json(o, err);
     } else if (status == STATUS_OK) {
         print_head(args->operand, &run, &standing);
-        print_generations(&run, igd);
+        print_generations(&run, igd, expected);
         print_failures(&failures);
     }
     free(igd);

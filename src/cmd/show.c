@@ -307,3 +307,11 @@ void show_baselines(const Schema *schema, const double natural[], const Baseline
     for (int k = 0; k < N_BASELINES; k++)
         show_verdict((BaselineKind)k, schema, natural, &baseline[k]);
 }
+
+void show_expected_gain(double gain)
+{
+    if (isfinite(gain))
+        printf(
+            "as many simulations again: some %.2g more hypervolume expected, as a share of the box about the front\n",
+            fmax(gain, 0.0));
+}

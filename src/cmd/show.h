@@ -35,6 +35,9 @@ void show_verdict(BaselineKind kind, const Schema *schema, const double natural[
  * against it, and in which they lose. */
 void show_baselines(const Schema *schema, const double natural[], const Baseline baseline[N_BASELINES]);
 
+/* One line: the hypervolume that as many simulations again are expected to gain (study/improvement.h); NAN: nothing. */
+void show_expected_gain(double gain);
+
 /* One line of objectives: label, a design's number (0: none), a dash for what is not known. */
 void show_objective_names(const Schema *schema);
 void show_objectives(const char *label, long id, const Schema *schema, const double natural[]);

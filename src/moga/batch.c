@@ -19,7 +19,7 @@ static int in_batch(const Search *s, size_t n, const double x[])
 size_t batch_add(Search *s, size_t n, const double x[], EvaluationKind kind)
 {
     Batch *b = &s->batch;
-    if (n >= b->size_max || s->archive.n + queue_pending(s->queue) + n + s->reserved >= s->config->max_evals ||
+    if (n >= b->size_max || s->archive.n + queue_pending(s->queue) + n + s->reserved >= search_evals(s) ||
         in_batch(s, n, x) || pareto_archive_find(&s->archive, x) < s->archive.n || queue_has(s->queue, x))
         return n;
     memcpy(b->X + n * s->problem->n_var, x, s->problem->n_var * sizeof *x);
@@ -96,7 +96,7 @@ size_t batch_pending_max(const SearchConfig *c, size_t n_workers)
 static size_t pending_wanted(const Search *s, size_t n)
 {
     const size_t workers = s->problem->n_workers, pending = queue_pending(s->queue);
-    const int is_last = s->archive.n + pending >= s->config->max_evals || s->generation >= s->config->generations;
+    const int is_last = s->archive.n + pending >= search_evals(s) || s->generation >= s->config->generations;
     const size_t max = n == 0 && pending > 0 ? pending - 1 : pending;
     const size_t wanted = workers < 2 || is_last ? 0 : workers + batch_size(s) / LOOK_AHEAD_SHARE;
     return !s->config->asynchronous ? 0 : wanted < max ? wanted : max;

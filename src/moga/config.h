@@ -26,6 +26,7 @@ typedef struct {
     size_t replicates_min;     /* ... of each design that is reported to be on the front */
     size_t replicates_max;     /* ... of each design */
     double max_seconds;        /* 0: no limit */
+    size_t stop_after;         /* evaluations that gain nothing above the noise of hypervolume end it; 0: never */
     double nondominated_share; /* stop when this share of the archive is nondominated; 1: never */
     double trust_error;        /* share of an objective's range in the archive */
     double crossover_probability, crossover_eta, mutation_eta, mutation_rate;

@@ -1,5 +1,6 @@
 #include "moga/control.h"
 
+#include <float.h>
 #include <math.h>
 
 #include "moga/constants.h"
@@ -16,10 +17,13 @@ void control_begin(SurrogateControl *c)
 
 void control_pack(SurrogateControl *c, Pack *p)
 {
-    pack(p, &c->agreement, sizeof c->agreement);
-    pack(p, &c->failure_rate, sizeof c->failure_rate);
-    pack(p, &c->generators, sizeof c->generators);
-    pack(p, &c->criteria, sizeof c->criteria);
+    pack_numbers(p, &c->agreement, 1, -1.0, 1.0);
+    pack_numbers(p, &c->failure_rate, 1, 0.0, 1.0);
+    for (int i = 0; i < 2; i++) {
+        Credit *credit = i == 0 ? &c->generators : &c->criteria;
+        pack_numbers(p, credit->gain, 2, 0.0, 1.0);
+        pack_numbers(p, credit->designs, 2, DBL_MIN, 1.0);
+    }
     pack_size(p, &c->cost, COST_TOO_HIGH);
 }
 

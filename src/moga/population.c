@@ -1,5 +1,8 @@
 #include "moga/population.h"
 
+#include <float.h>
+#include <math.h>
+
 #include "base/carve.h"
 
 static void layout(void *population, Carve *c)
@@ -70,14 +73,14 @@ void population_pack(Population *population, Pack *p, size_t n_rows)
 {
     size_t n = population->n;
     pack_size(p, &n, population->n_max);
-    pack(p, population->X, n * population->n_var * sizeof *population->X);
-    pack(p, population->F, n * population->n_obj * sizeof *population->F);
-    pack(p, population->violation, n * sizeof *population->violation);
-    pack(p, population->uncertainty, n * sizeof *population->uncertainty);
+    pack_numbers(p, population->X, n * population->n_var, -DBL_MAX, DBL_MAX);
+    pack_numbers(p, population->F, n * population->n_obj, -INFINITY, INFINITY);
+    pack_numbers(p, population->violation, n, 0.0, INFINITY);
+    pack_numbers(p, population->uncertainty, n, 0.0, INFINITY);
     for (size_t i = 0; i < n && !p->faulty; i++) {
         size_t code = population->row[i] == PREDICTED ? 0 : population->row[i] + 1;
         pack_size(p, &code, n_rows);
-        pack_size(p, &population->age[i], SIZE_MAX);
+        pack_size(p, &population->age[i], UINT32_MAX);
         population->row[i] = code == 0 ? PREDICTED : code - 1;
     }
     population->n = p->faulty ? population->n : n;

@@ -44,7 +44,8 @@ static size_t n_pending_replicates(const Search *s)
 static size_t evaluations_left(const Search *s)
 {
     const size_t asked = s->archive.n + queue_pending(s->queue);
-    return s->config->max_evals > asked ? s->config->max_evals - asked : 0;
+    const size_t end = search_evals(s);
+    return end > asked ? end - asked : 0;
 }
 
 double search_replicates(size_t n, double share, size_t n_var)
@@ -62,6 +63,11 @@ static size_t replicates_due(const Search *s, size_t n, double part)
     if (!s->problem->is_noisy || s->config->replicates_max < 2 || due <= (double)made || !is_noticeable)
         return 0;
     return (size_t)due - made;
+}
+
+size_t replication_due(const Search *s)
+{
+    return replicates_due(s, s->archive.n + queue_pending(s->queue), 1.0);
 }
 
 /* -- which --------------------------------------------------------------------------------------------------------- */
@@ -159,7 +165,7 @@ size_t replication_add(Search *s, size_t n)
 size_t replication_last(Search *s)
 {
     const size_t room = evaluations_left(s);
-    s->reserved = replicates_due(s, s->config->max_evals, 1.0);
+    s->reserved = replicates_due(s, search_evals(s), 1.0);
     if (room > s->reserved)
         return 0;
     s->reserved = 0; /* where no design is left to replicate, new ones use the evaluations */

@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+#include "moga/hypervolume.h"
+
 const char *stop_reason_words(StopReason reason)
 {
     static const char *const words[] = {
@@ -11,6 +13,7 @@ const char *stop_reason_words(StopReason reason)
         [STOP_EVALUATIONS] = "all simulations spent",
         [STOP_TIME] = "time limit reached",
         [STOP_SHARE] = "the wanted share of the archive is nondominated",
+        [STOP_CONVERGED] = "the last search.stop_after simulations gained nothing above the noise of hypervolume",
         [STOP_ASKED] = "stopped on request",
         [STOP_FAILURES] = "too many simulations in a row have failed",
     };
@@ -21,13 +24,53 @@ static StopReason reason_to_stop(const Search *s)
 {
     const SearchConfig *c = s->config;
     const Archive *a = &s->archive;
-    if (a->n >= c->max_evals)
-        return STOP_EVALUATIONS;
+    if (a->n >= search_evals(s))
+        return a->n < c->max_evals ? STOP_CONVERGED : STOP_EVALUATIONS;
     if (s->generation >= c->generations)
         return STOP_GENERATIONS;
     if (c->nondominated_share < 1.0 && (double)a->n_front >= c->nondominated_share * (double)a->n)
         return STOP_SHARE;
     return c->max_seconds > 0.0 && search_seconds(s) >= c->max_seconds ? STOP_TIME : STOP_NONE;
+}
+
+/* -- convergence --------------------------------------------------------------------------------------------------- */
+
+/* Eight times in stop_after evaluations: this generation has passed one of those marks. */
+static int is_due(const Search *s)
+{
+    const Archive *a = &s->archive;
+    const size_t wanted = s->config->stop_after, step = wanted / 8 + 1;
+    size_t before = a->n;
+    while (before > 0 && a->generation[before - 1] == s->generation)
+        before--;
+    return wanted > 0 && s->convergence.end == 0 && a->n > wanted && a->n / step > before / step;
+}
+
+/* GrowingFront that count into s->rows.reported, which the next view sets anew. */
+static Status look_for_convergence(Search *s, Err *err)
+{
+    const Archive *a = &s->archive;
+    unsigned char *counts = s->rows.reported;
+    const size_t cuts[] = {a->n - s->config->stop_after, a->n};
+    double h[2];
+    if (!is_due(s))
+        return STATUS_OK;
+    for (size_t i = 0; i < a->n; i++)
+        counts[i] = a->usable[i] && a->replicates[i] > 0 && a->violation[i] == 0.0;
+    const GrowingFront designs = {a->n, a->n_obj, a->F, a->error, counts, a->on_front};
+    TRY(convergence_shares(&designs, 2, cuts, h, err));
+    if (!(h[1] - h[0] <= hypervolume_error(h[1])))
+        return STATUS_OK;
+    s->convergence.after = s->config->stop_after;
+    s->convergence.end = a->n + queue_pending(s->queue) + replication_due(s);
+    return STATUS_OK;
+}
+
+/* A search that is resumed with another stop_after may not be over any more. */
+static void reconsider_convergence(Search *s)
+{
+    if (s->convergence.after != s->config->stop_after)
+        s->convergence = (Convergence){0};
 }
 
 /* -- the view of the observer -------------------------------------------------------------------------------------- */
@@ -110,6 +153,7 @@ static Status begin(Search *s, const SearchStart *start, StopReason *reason, Err
         return STATUS_OK;
     TRY(state_restore(s, start, err));
     TRY(state_grow_rows(s, err));
+    reconsider_convergence(s);
     *reason = start->state ? reason_to_stop(s) : STOP_NONE;
     s->generation += start->state != NULL;
     return STATUS_OK;
@@ -121,6 +165,7 @@ static Status run_loop(Search *s, const SearchStart *start, ObserveFn observe, v
     for (; *reason == STOP_NONE; s->generation += *reason == STOP_NONE) {
         TRY(s->generation == 0 ? generation_first(s, err) : generation_next(s, err));
         TRY(state_grow_rows(s, err));
+        TRY(look_for_convergence(s, err));
         *reason = reason_to_stop(s);
         if (report(s, *reason != STOP_NONE, observe, user) && *reason == STOP_NONE)
             *reason = STOP_ASKED;

@@ -50,6 +50,8 @@
  *               it had not stopped. The state is what the evaluations do not tell: population, hyperparameters, running
  *               means. A new variable that outlives a generation is one more line in pack_search (state.c), and
  *               STATE_VERSION one higher
+ * Converged     stop_after evaluations that gain no more hypervolume than its standard error end the search
+ *               (moga/convergence.h); where evaluations are noisy after the last replicates
  * Ownership     search_run owns all it allocates; a SearchView is valid inside the callback only
  * Sources       Deb and Jain, IEEE Trans. Evol. Comput. 18 (2014) 577-601 (NSGA-III)
  *               Deb and Agrawal, Complex Systems 9 (1995) 115-148 (SBX)
@@ -67,6 +69,7 @@ typedef enum {
     STOP_EVALUATIONS,
     STOP_TIME,
     STOP_SHARE,
+    STOP_CONVERGED,
     STOP_ASKED,
     STOP_FAILURES
 } StopReason;

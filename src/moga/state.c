@@ -1,5 +1,6 @@
 #include "moga/state.h"
 
+#include <float.h>
 #include <stdlib.h>
 
 #include "base/carve.h"
@@ -126,7 +127,7 @@ Status state_grow_rows(Search *s, Err *err)
 
 /* -- as bytes ------------------------------------------------------------------------------------------------------ */
 
-enum { STATE_VERSION = 7 };
+enum { STATE_VERSION = 8 };
 
 /* Designs that are asked for and not evaluated yet. */
 static void pack_pending(Search *s, Pack *p)
@@ -134,7 +135,7 @@ static void pack_pending(Search *s, Pack *p)
     const size_t n_var = s->problem->n_var, n_note = NOTE_PREDICTED + s->problem->n_obj;
     double *x = s->scratch.x, *note = s->scratch.note;
     size_t n = queue_pending(s->queue);
-    pack_size(p, &n, SIZE_MAX / 2);
+    pack_size(p, &n, UINT32_MAX);
     for (size_t i = 0; i < n && !p->faulty; i++) {
         Asked asked = {.x = x, .note = note};
         size_t kind;
@@ -144,9 +145,9 @@ static void pack_pending(Search *s, Pack *p)
             memcpy(note, asked.note, n_note * sizeof *note);
         }
         kind = asked.kind;
-        pack(p, x, n_var * sizeof *x);
+        pack_numbers(p, x, n_var, -DBL_MAX, DBL_MAX);
         pack(p, note, n_note * sizeof *note);
-        pack_size(p, &asked.repeat, SIZE_MAX / 2);
+        pack_size(p, &asked.repeat, UINT32_MAX);
         pack_size(p, &kind, KIND_COUNT - 1);
         asked.kind = (EvaluationKind)kind;
         p->faulty = p->faulty || !(note[NOTE_CRITERION] >= 0.0 && note[NOTE_CRITERION] < INFILL_KINDS);
@@ -178,6 +179,7 @@ static void pack_search(Search *s, Pack *p)
     control_pack(&s->control, p);
     population_pack(&s->population, p, s->archive.n);
     surrogate_pack(s->surrogate, p);
+    convergence_pack(&s->convergence, p);
     pack_pending(s, p);
 }
 

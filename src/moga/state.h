@@ -22,6 +22,7 @@
 #include "moga/constants.h"
 #include "moga/config.h"
 #include "moga/control.h"
+#include "moga/convergence.h"
 #include "moga/directions.h"
 #include "moga/infill.h"
 #include "moga/population.h"
@@ -93,6 +94,7 @@ typedef struct {
     Batch batch;
     PerRow rows;
     Scratch scratch;
+    Convergence convergence;
     size_t generation;
     size_t n_predicted; /* predictions trusted for the first time in this generation */
     size_t reserved;    /* evaluations kept for the last replicates */
@@ -111,6 +113,13 @@ static inline double search_seconds(const Search *s)
 static inline size_t search_planned(const SearchConfig *c)
 {
     return c->planned_evals > 0 ? c->planned_evals : c->max_evals;
+}
+
+/* Evaluations with which the search ends. */
+static inline size_t search_evals(const Search *s)
+{
+    const size_t end = s->convergence.end, max = s->config->max_evals;
+    return end > 0 && end < max ? end : max;
 }
 
 /* state.c */
@@ -146,6 +155,8 @@ size_t infill_select_batch(Search *s);
  * designs that it reports. Both return the new n. */
 size_t replication_add(Search *s, size_t n);
 size_t replication_last(Search *s);
+size_t
+replication_due(const Search *s); /* replicates that the evaluations so far bring with them and that are not made yet */
 int replication_noise_is_significant(const Search *s); /* estimates are to be compared instead of means */
 
 /* batch.c */

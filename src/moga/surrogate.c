@@ -2,6 +2,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 
 #include "base/carve.h"
@@ -334,7 +335,7 @@ void surrogate_descend(Surrogate *s, const Archive *a, const Infill *near, size_
 
 void surrogate_pack(Surrogate *s, Pack *p)
 {
-    pack_size(p, &s->n_tuned, SIZE_MAX);
+    pack_size(p, &s->n_tuned, UINT32_MAX);
     if (s->rbf)
         rbf_pack(s->rbf, p);
 }

@@ -1,6 +1,7 @@
 #include "rbf/rbf.h"
 
 #include <cblas.h>
+#include <float.h>
 #include <lapacke.h>
 #include <math.h>
 #include <omp.h>
@@ -476,20 +477,20 @@ double rbf_explained(const Rbf *m, size_t output)
 
 static int form_is_known(RbfForm f)
 {
-    return (unsigned)f.kernel < RBF_N_KERNELS && (unsigned)f.tail < RBF_N_TAILS && f.nugget >= 0.0;
+    return (unsigned)f.kernel < RBF_N_KERNELS && (unsigned)f.tail < RBF_N_TAILS;
 }
 
 void rbf_pack(Rbf *m, Pack *p)
 {
-    pack_size(p, &m->n_tuned, SIZE_MAX);
+    pack_size(p, &m->n_tuned, UINT32_MAX);
     for (size_t k = 0; k < m->n_out; k++) {
         Output *o = &m->output[k];
         RbfForm form = o->form;
         pack(p, &form.kernel, sizeof form.kernel);
         pack(p, &form.tail, sizeof form.tail);
-        pack(p, &form.nugget, sizeof form.nugget);
-        pack(p, o->shape.theta, m->n_dim * sizeof *o->shape.theta);
-        pack(p, o->shape.warp, sizeof o->shape.warp);
+        pack_numbers(p, &form.nugget, 1, 0.0, DBL_MAX);
+        pack_numbers(p, o->shape.theta, m->n_dim, DBL_MIN, DBL_MAX);
+        pack_numbers(p, o->shape.warp, 2, DBL_MIN, DBL_MAX);
         p->faulty = p->faulty || !form_is_known(form);
         if (!p->faulty)
             o->form = form;

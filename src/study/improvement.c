@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "moga/convergence.h"
+
 static int keeps_limits(const SearchView *v, size_t row)
 {
     for (size_t c = 0; c < v->n_con; c++)
@@ -88,5 +90,46 @@ Status improvement_of_run(const Run *run, double igd[], Err *err)
     igd_free(q);
     free(F);
     free(front);
+    return status;
+}
+
+static size_t search_rows(const Run *run)
+{
+    size_t n = 0;
+    while (n < run->table.n && run->table.row[n].id < POLISHED_FIRST)
+        n++;
+    return n;
+}
+
+static Status expected(const Run *run, size_t n, const double F[], const unsigned char on_front[],
+                       unsigned char counts[], double *gain, Err *err)
+{
+    const size_t cuts[] = {n / 4, n / 2, n};
+    double h[3];
+    for (size_t i = 0; i < n; i++)
+        counts[i] = is_first_answer(&run->table.row[i]) && run->place[i].ok && !(run->table.row[i].violation > 0.0);
+    TRY(convergence_shares(&(GrowingFront){n, run->schema.n_obj, F, NULL, counts, on_front}, 3, cuts, h, err));
+    *gain = convergence_expected(h);
+    return STATUS_OK;
+}
+
+Status improvement_expected(const Run *run, double *gain, Err *err)
+{
+    const size_t n = search_rows(run);
+    double *F = calloc(run->table.n * run->schema.n_obj + 1, sizeof *F);
+    size_t *front = calloc(run->table.n + 1, sizeof *front);
+    unsigned char *flags = calloc(2, n + 1);
+    Status status =
+        F && front && flags ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", run->table.n);
+    *gain = NAN;
+    if (status == STATUS_OK) {
+        const size_t n_front = minimise(run, F, front);
+        for (size_t i = 0; i < n_front; i++)
+            flags[front[i]] = 1;
+        status = expected(run, n, F, flags, flags + n, gain, err);
+    }
+    free(F);
+    free(front);
+    free(flags);
     return status;
 }

@@ -17,4 +17,7 @@ Status improvement_lately(const SearchView *v, double *igd, Err *err);
  * there is no front. */
 Status improvement_of_run(const Run *run, double igd[], Err *err);
 
+/* Hypervolume that as many simulations again would gain (moga/convergence.h), NAN: nothing is known. */
+Status improvement_expected(const Run *run, double *gain, Err *err);
+
 #endif

@@ -14,6 +14,7 @@ typedef struct {
     SelectionKind survival;
     double replicate_share;              /* share of max_evals */
     long replicates_min, replicates_max; /* of a design */
+    long stop_after;                     /* evaluations without gain; 0: any number */
     long failures_max;                   /* evaluations in a row that fail; 0: any number */
     long polish;                         /* designs at the end */
     double polish_gain_min;              /* [-] of the range of an objective on the front */

@@ -275,6 +275,7 @@ SearchConfig study_search_config(const Settings *s)
         .selection = s->search.survival,
         .asynchronous = s->search.asynchronous == SWITCH_ON,
         .max_seconds = 3600 * s->search.max_hours,
+        .stop_after = (size_t)s->search.stop_after,
         .nondominated_share = s->search.nondominated_share,
         .trust_error = s->search.trust_error,
         .replicate_share = s->search.replicate_share,

@@ -1,0 +1,300 @@
+#include "bench/search/families.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/random.h"
+#include "evaluate/threads.h"
+
+typedef enum { SPHERE, RASTRIGIN, ACKLEY, ROSENBROCK } Distance;
+typedef enum { LINEAR, CONVEX, CONCAVE, CURVE, PIECES, QUADRATICS } Front;
+typedef enum { FAIL_NEVER, FAIL_SLAB, FAIL_BALL, FAIL_CHECKER } Failing;
+
+typedef struct {
+    Family family;
+    Distance distance;
+    Front front;
+    Failing failing;
+    double waves;  /* of Rastrigin's cosine in the unit interval */
+    double height; /* ... its height */
+    int is_rotated, is_scaled;
+} Recipe;
+
+static const Recipe RECIPES[] = {
+    {{"ripples2", "Rastrigin, two objectives", 10, 2, 0, 0}, RASTRIGIN, CONVEX, FAIL_NEVER, 4, 0.3, 0, 0},
+    {{"ripples5", "Rastrigin, rotated, five objectives", 15, 5, 0, 0}, RASTRIGIN, CONCAVE, FAIL_NEVER, 3, 0.2, 1, 0},
+    {{"ackley3", "Ackley, shifted, three objectives", 12, 3, 0, 0}, ACKLEY, LINEAR, FAIL_NEVER, 0, 0, 0, 0},
+    {{"valley3", "Rosenbrock, rotated", 12, 3, 0, 0}, ROSENBROCK, CONCAVE, FAIL_NEVER, 0, 0, 1, 0},
+    {{"curve6", "degenerate: the front is a curve", 14, 6, 0, 0}, SPHERE, CURVE, FAIL_NEVER, 0, 0, 1, 0},
+    {{"pieces4", "disconnected", 12, 4, 0, 0}, SPHERE, PIECES, FAIL_NEVER, 0, 0, 1, 0},
+    {{"scales40", "objectives of 1e-3 to 1e6, 40 variables", 40, 3, 0, 0}, SPHERE, CONVEX, FAIL_NEVER, 0, 0, 1, 1},
+    {{"quadratics10", "ten quadratics, rotated", 16, 10, 0, 0}, SPHERE, QUADRATICS, FAIL_NEVER, 0, 0, 1, 0},
+    {{"limits4", "quadratics under two limits", 10, 4, 2, 0}, SPHERE, QUADRATICS, FAIL_NEVER, 0, 0, 1, 0},
+    {{"slab3", "a third of the box fails, the best of it", 10, 3, 0, 0}, SPHERE, CONCAVE, FAIL_SLAB, 0, 0, 1, 0},
+    {{"ball4", "fails about the minima of the quadratics", 8, 4, 0, 0}, SPHERE, QUADRATICS, FAIL_BALL, 0, 0, 1, 0},
+    {{"ripples3", "Rastrigin, rotated, aside", 12, 3, 0, 1}, RASTRIGIN, LINEAR, FAIL_NEVER, 5, 0.25, 1, 0},
+    {{"valley6", "Rosenbrock in six objectives, aside", 20, 6, 0, 1}, ROSENBROCK, CONVEX, FAIL_NEVER, 0, 0, 1, 1},
+    {{"limits7", "Ackley under a limit, aside", 14, 7, 1, 1}, ACKLEY, CONCAVE, FAIL_NEVER, 0, 0, 0, 0},
+    {{"checker3", "a third of the box fails, in squares, aside", 8, 3, 0, 1},
+     SPHERE,
+     QUADRATICS,
+     FAIL_CHECKER,
+     0,
+     0,
+     0,
+     0},
+    {{"slab5", "a third of the box fails, aside", 12, 5, 0, 1}, SPHERE, QUADRATICS, FAIL_SLAB, 0, 0, 1, 0},
+};
+enum { N_RECIPES = sizeof RECIPES / sizeof *RECIPES };
+
+/* A recipe with its constants. */
+typedef struct {
+    Recipe recipe;
+    double shift[FAMILY_VAR_MAX];                   /* of the distance's zero */
+    double turn[FAMILY_VAR_MAX][FAMILY_VAR_MAX];    /* orthogonal */
+    double minimum[FAMILY_OBJ_MAX][FAMILY_VAR_MAX]; /* of each quadratic */
+    double weight[FAMILY_OBJ_MAX][FAMILY_VAR_MAX];
+    double lower[FAMILY_VAR_MAX], upper[FAMILY_VAR_MAX];
+} Made;
+
+size_t family_count(void)
+{
+    return N_RECIPES;
+}
+
+const Family *family(size_t i)
+{
+    return &RECIPES[i].family;
+}
+
+/* -- parts --------------------------------------------------------------------------------------------------------- */
+
+/* y = turn (x - shift) of the variables from `first` on. */
+static size_t turned(const Made *m, size_t first, const double x[], double y[])
+{
+    const size_t n = m->recipe.family.n_var - first;
+    for (size_t i = 0; i < n; i++) {
+        y[i] = m->recipe.is_rotated ? 0.0 : x[first + i] - m->shift[first + i];
+        for (size_t j = 0; m->recipe.is_rotated && j < n; j++)
+            y[i] += m->turn[i][j] * (x[first + j] - m->shift[first + j]);
+    }
+    return n;
+}
+
+static double rosenbrock(size_t n, const double y[])
+{
+    double sum = 0.0;
+    for (size_t i = 0; i + 1 < n; i++) {
+        const double a = 1.0 + 2.0 * y[i], b = 1.0 + 2.0 * y[i + 1], bend = b - a * a;
+        sum += (10.0 * bend * bend + (1.0 - a) * (1.0 - a)) / (double)n;
+    }
+    return sum;
+}
+
+static double distance(const Made *m, size_t n, const double y[])
+{
+    double square = 0.0, waves = 0.0;
+    if (m->recipe.distance == ROSENBROCK)
+        return rosenbrock(n, y);
+    for (size_t i = 0; i < n; i++) {
+        square += y[i] * y[i];
+        waves += 1.0 - cos(2.0 * M_PI * m->recipe.waves * y[i]);
+    }
+    if (m->recipe.distance == RASTRIGIN)
+        return 4.0 * square + m->recipe.height * waves;
+    if (m->recipe.distance == ACKLEY)
+        return 4.0 * (1.0 - exp(-4.0 * sqrt(square / (double)n)));
+    return 4.0 * square;
+}
+
+/* -- fronts -------------------------------------------------------------------------------------------------------- */
+
+static void simplex(size_t n_obj, const double x[], double f[])
+{
+    for (size_t k = 0; k < n_obj; k++) {
+        f[k] = k > 0 ? 1.0 - x[n_obj - 1 - k] : 1.0;
+        for (size_t d = 0; d + k + 1 < n_obj; d++)
+            f[k] *= x[d];
+    }
+}
+
+static void on_front(const Made *m, const double x[], double g, double f[])
+{
+    const size_t n = m->recipe.family.n_obj;
+    if (m->recipe.front == CURVE) {
+        for (size_t k = 0; k < n; k++) {
+            const double off = x[0] - (double)k / (double)(n - 1);
+            f[k] = off * off + g * (1.0 + 0.2 * (double)k);
+        }
+        return;
+    }
+    simplex(n, x, f);
+    for (size_t k = 0; k < n; k++) {
+        const double s = f[k];
+        f[k] = m->recipe.front == CONVEX ? s * s : m->recipe.front == CONCAVE ? sqrt(s) : s;
+        if (m->recipe.front == PIECES && k + 1 == n)
+            f[k] += 0.3 * (1.0 + sin(9.0 * M_PI * x[0]));
+        f[k] = f[k] * (1.0 + g) + 0.2 * g;
+    }
+}
+
+static void quadratics(const Made *m, const double x[], double f[])
+{
+    double y[FAMILY_VAR_MAX];
+    const size_t n = turned(m, 0, x, y);
+    for (size_t k = 0; k < m->recipe.family.n_obj; k++) {
+        f[k] = 0.0;
+        for (size_t i = 0; i < n; i++)
+            f[k] += m->weight[k][i] * (y[i] - m->minimum[k][i]) * (y[i] - m->minimum[k][i]);
+    }
+}
+
+static double scale_of(const Made *m, size_t k)
+{
+    static const double SCALES[] = {1e-3, 1e6, 1.0, 1e3, 1e-1, 1e2};
+    return m->recipe.is_scaled ? SCALES[k % 6] : 1.0;
+}
+
+static double square_off(size_t n, const double x[], const double centre[])
+{
+    double square = 0.0;
+    for (size_t i = 0; i < n; i++)
+        square += (x[i] - centre[i]) * (x[i] - centre[i]);
+    return square;
+}
+
+/* A third of the box or so, which holds the best of an objective at least. */
+static int fails(const Made *m, const double x[])
+{
+    const size_t n = m->recipe.family.n_var;
+    double side = 0.0;
+    switch (m->recipe.failing) {
+    case FAIL_NEVER:
+        return 0;
+    case FAIL_SLAB: /* x[2] near the distance's zero, and its side */
+        return x[2] > m->shift[2] - 0.08 && x[2] < m->shift[2] + 0.25;
+    case FAIL_BALL:
+        for (size_t i = 0; i < n; i++)
+            side += x[i] / (double)n;
+        return square_off(n, x, m->shift) < 0.03 * (double)n || side < 0.42;
+    case FAIL_CHECKER:
+        return ((int)(4.0 * x[0]) + (int)(4.0 * x[1])) % 3 == 0;
+    }
+    return 0;
+}
+
+static void evaluate(const Made *m, const double x[], double f[], double g[])
+{
+    const Family *a = &m->recipe.family;
+    double y[FAMILY_VAR_MAX];
+    if (m->recipe.front == QUADRATICS) {
+        quadratics(m, x, f);
+    } else {
+        const size_t n = turned(m, m->recipe.front == CURVE ? 1 : a->n_obj - 1, x, y);
+        on_front(m, x, distance(m, n, y), f);
+    }
+    for (size_t k = 0; k < a->n_obj; k++)
+        f[k] *= scale_of(m, k);
+    if (a->n_con > 0) /* outside a ball about the best designs */
+        g[0] = 0.03 * (double)a->n_var - square_off(a->n_var, x, m->shift);
+    if (a->n_con > 1)
+        g[1] = x[0] + x[1] + x[2] - 1.4;
+}
+
+/* -- as a problem -------------------------------------------------------------------------------------------------- */
+
+static Status simulate(void *self, size_t worker, const Task *task, Err *err)
+{
+    const Made *m = self;
+    const Family *a = &m->recipe.family;
+    double *f = task->result, *g = f + a->n_obj;
+    (void)worker;
+    (void)err;
+    evaluate(m, task->x, f, g);
+    g[a->n_con] = fails(m, task->x);
+    return STATUS_OK;
+}
+
+static void combine(const void *self, const void *parts, Evaluation *e)
+{
+    const Made *m = self;
+    const Family *a = &m->recipe.family;
+    const double *f = parts, *g = f + a->n_obj;
+    memcpy(e->f, f, a->n_obj * sizeof *f);
+    if (a->n_con > 0)
+        memcpy(e->extra, g, a->n_con * sizeof *g);
+    if (g[a->n_con] != 0.0)
+        evaluation_set_outcome(e, OUTCOME_ERROR, "fails");
+}
+
+static void judge(const Evaluation *e, double f[], double g[], const void *user)
+{
+    const Made *m = user;
+    memcpy(f, e->f, m->recipe.family.n_obj * sizeof *f);
+    if (m->recipe.family.n_con > 0)
+        memcpy(g, e->extra, m->recipe.family.n_con * sizeof *g);
+}
+
+static const Simulator FAMILY = {simulate, combine, free};
+
+/* Rows of normal numbers made orthogonal, Gram and Schmidt twice. */
+static void draw_turn(Random *r, size_t n, double turn[][FAMILY_VAR_MAX])
+{
+    for (size_t i = 0; i < n; i++) {
+        for (size_t j = 0; j < n; j++)
+            turn[i][j] = random_normal(r);
+        for (size_t pass = 0; pass < 2 * i; pass++) {
+            double along = 0.0;
+            for (size_t j = 0; j < n; j++)
+                along += turn[i][j] * turn[pass % i][j];
+            for (size_t j = 0; j < n; j++)
+                turn[i][j] -= along * turn[pass % i][j];
+        }
+        double square = 0.0;
+        for (size_t j = 0; j < n; j++)
+            square += turn[i][j] * turn[i][j];
+        for (size_t j = 0; j < n; j++)
+            turn[i][j] /= sqrt(square);
+    }
+}
+
+static void draw(Made *m, size_t i)
+{
+    Random r = random_stream((uint32_t)i, RANDOM_TEST, 1, 0);
+    for (size_t j = 0; j < FAMILY_VAR_MAX; j++) {
+        m->upper[j] = 1.0;
+        m->shift[j] = 0.3 + 0.4 * random_uniform(&r);
+    }
+    draw_turn(&r, m->recipe.family.n_var, m->turn);
+    for (size_t k = 0; k < FAMILY_OBJ_MAX; k++)
+        for (size_t j = 0; j < FAMILY_VAR_MAX; j++) {
+            m->minimum[k][j] = 0.5 * random_uniform(&r) - 0.25;
+            m->weight[k][j] = pow(10.0, random_uniform(&r));
+        }
+}
+
+Status family_open(Problem *p, size_t i, Err *err)
+{
+    const Family *a = family(i);
+    Made *m = calloc(1, sizeof *m);
+    if (!m)
+        return fail(err, STATUS_NO_MEMORY, "no memory for a problem");
+    m->recipe = RECIPES[i];
+    draw(m, i);
+    *p = (Problem){.n_var = a->n_var,
+                   .n_obj = a->n_obj,
+                   .n_con = a->n_con,
+                   .n_extra = a->n_con,
+                   .lower = m->lower,
+                   .upper = m->upper,
+                   .judge = judge,
+                   .user = m,
+                   .simulator = &FAMILY,
+                   .self = m,
+                   .n_parts = 1,
+                   .part_size = (a->n_obj + a->n_con + 1) * sizeof(double),
+                   .n_workers = 1,
+                   .executor = &EXECUTOR_CLIENT};
+    return STATUS_OK;
+}

@@ -1,0 +1,31 @@
+/* bench/search/families.h -- problems to develop the search on, of other families than those in the program: shifted,
+ * rotated, multimodal, degenerate, disconnected, constrained, failing, of mixed scales; 2 to 10 objectives, 6 to 40
+ * variables in the unit cube. A third of them is kept aside: looked at when a development is over.
+ *
+ * Every objective is built on two kinds of parts, with constants drawn once per problem from a keyed stream:
+ *   position   where on the front
+ *   distance   >= 0, how far from it: a sphere, Rastrigin, Ackley or Rosenbrock function of shifted, perhaps rotated
+ *              variables, 0 at an inner point
+ * or it is a convex quadratic of its own minimum (quadratics).
+ *
+ * Threads  pure functions of what family_open has made */
+#ifndef IMTET_BENCH_SEARCH_FAMILIES_H
+#define IMTET_BENCH_SEARCH_FAMILIES_H
+
+#include "evaluate/problem.h"
+
+enum { FAMILY_VAR_MAX = 40, FAMILY_OBJ_MAX = 10, FAMILY_CON_MAX = 2 };
+
+typedef struct {
+    const char *name, *what;
+    size_t n_var, n_obj, n_con;
+    int is_aside;
+} Family;
+
+size_t family_count(void);
+const Family *family(size_t i);
+
+/* Released by problem_close. */
+Status family_open(Problem *p, size_t i, Err *err);
+
+#endif
