@@ -186,6 +186,38 @@ static void test_names_of_records_are_whole_and_rows_go_to_csv(void **state)
     free(folder);
 }
 
+/* Of the only record, in the row of the design; the other scenes have none. */
+static void test_the_csv_has_mean_and_deviation_of_the_replicates_as_the_json_has(void **state)
+{
+    (void)state;
+#define REPLICATED "evaluate @/run --design knee --set sim.gap_tolerance_m=0.01 "
+    json_t *o = json_of(REPLICATED "--replicates 3 --json"), *r = json_object_get(record_at(o, 0), "replicates");
+    free(output_of(REPLICATED "--set sim.replicates=3 --csv @/replicates.csv"));
+    char *text = read_in_place("replicates.csv"), *rest = text, *header = strsep(&rest, "\n"), *name, *cell;
+    char *row = strsep(&rest, "\n"), *rigid = strsep(&rest, "\n");
+    int n = 0;
+    assert_non_null(strstr(row, ",1,3,mean,as built,"));
+    assert_non_null(strstr(rigid, ",,,,,,,,"));
+    while ((name = strsep(&header, ",")) && (cell = strsep(&row, ","))) {
+        const char *end = strrchr(name, '_');
+        const int is_mean = end && strcmp(end, "_mean") == 0, is_sd = end && strcmp(end, "_sd") == 0;
+        if (!is_mean && !is_sd)
+            continue;
+        char key[64];
+        snprintf(key, sizeof key, "%.*s", (int)(end - name), name);
+        const json_t *wanted = json_object_get(json_object_get(r, is_mean ? "mean" : "sd"), key);
+        n += json_is_number(wanted);
+        assert_true(json_is_number(wanted) ? strtod(cell, NULL) == json_number_value(wanted) : !*cell);
+    }
+    assert_true(n > 20);
+    free(text);
+    json_decref(o);
+    char *table = output_of(REPLICATED "--replicates 3 --records @/many");
+    assert_non_null(strstr(table, "  sd as built of 3"));
+    free(table);
+    expect(2, "without replicates", RANGE "--set sim.replicates=3");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -198,6 +230,7 @@ int main(void)
         cmocka_unit_test(test_the_table_and_the_picture_show_the_three_scenes),
         cmocka_unit_test(test_a_range_does_not_go_with_another_scaling),
         cmocka_unit_test(test_names_of_records_are_whole_and_rows_go_to_csv),
+        cmocka_unit_test(test_the_csv_has_mean_and_deviation_of_the_replicates_as_the_json_has),
     };
     return cmocka_run_group_tests(tests, make_run, clear_place);
 }

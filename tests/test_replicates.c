@@ -367,6 +367,34 @@ static void test_simulate_draws_the_replicates_of_a_study_and_knows_the_toleranc
     run_free(&h);
 }
 
+/* The CSV of `imtet simulate` with these words. */
+static char *csv_of(const char *set)
+{
+    char words[700];
+    snprintf(words, sizeof words, "simulate configs/quick.ini --design @/design.csv --csv - " SHORT "%s", set);
+    return output_of(words);
+}
+
+static void test_replicates_and_records_follow_one_rule_however_they_are_asked_for(void **state)
+{
+    (void)state;
+    write_design();
+    char *by_option = csv_of("--replicates 3 --set sim.gap_tolerance_m=0.02");
+    char *by_set = csv_of("--set sim.replicates=3 --set sim.gap_tolerance_m=0.02");
+    assert_string_equal(by_option, by_set);
+    assert_non_null(strstr(by_set, ",1,3,mean,as built,"));
+    free(by_option);
+    free(by_set);
+    char *records = csv_of("--set motion.records=builtin:elcentro-like --set sim.robust=worst");
+    assert_non_null(strstr(records, ",2,1,worst,predictability,"));
+    free(records);
+    char *alone = csv_of("");
+    assert_null(strstr(alone, "_mean"));
+    free(alone);
+    expect(2, "needs a design with gaps", "simulate configs/quick.ini --design none --set sim.replicates=4");
+    expect(2, "needs a design with gaps", "simulate configs/quick.ini --design @/design.csv --rigid --replicates 4");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -382,6 +410,7 @@ int main(void)
         cmocka_unit_test(test_the_two_deviations_of_replicates_have_two_names),
         cmocka_unit_test(test_mean_plus_sd_is_that_of_the_single_simulations),
         cmocka_unit_test(test_simulate_draws_the_replicates_of_a_study_and_knows_the_tolerance),
+        cmocka_unit_test(test_replicates_and_records_follow_one_rule_however_they_are_asked_for),
     };
     return cmocka_run_group_tests_name("replicates", tests, prepare, clear_place);
 }

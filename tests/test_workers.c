@@ -144,6 +144,25 @@ static void test_a_simulation_that_fails_is_no_success(void **state)
            "simulate configs/quick.ini --design none --set sim.duration_s=20 --set sim.energy_balance_max=1e-30");
 }
 
+/* The motion is still at rest: a search has no shares of energy to go by, and a single simulation says the same. */
+static void test_a_design_without_input_fails_in_a_search_and_in_a_simulation_alike(void **state)
+{
+    (void)state;
+#define AT_REST "configs/quick.ini --set sim.duration_s=6 "
+    write_in_place("zones.csv", "gap_m,t_base_m,t_top_m\n0.1,0.02,0.01\n");
+    expect(70, "no net energy",
+           "optimize " AT_REST "--max-evals 8 --set search.initial=8 --set search.population=4 "
+           "--out @/rest");
+    expect(70, "no net energy", "simulate " AT_REST "--set design.gap_zones=1 --design @/zones.csv");
+    Said s;
+    run(&s, "simulate " AT_REST "--set design.gap_zones=1 --design @/zones.csv --json");
+    assert_int_equal(s.code, 70);
+    assert_non_null(strstr(s.out, "\"outcome\": \"not_finite\""));
+    forget(&s);
+    free(output_of("simulate " AT_REST "--set design.gap_zones=1 --design @/zones.csv "
+                   "--set search.objectives=j1_m,j3_g")); /* known at rest */
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -154,6 +173,7 @@ int main(void)
         cmocka_unit_test(test_a_signal_that_was_ignored_at_the_start_stays_ignored),
         cmocka_unit_test(test_a_building_beyond_all_buildings_is_refused_whatever_its_units),
         cmocka_unit_test(test_a_simulation_that_fails_is_no_success),
+        cmocka_unit_test(test_a_design_without_input_fails_in_a_search_and_in_a_simulation_alike),
     };
     return cmocka_run_group_tests_name("workers", tests, prepare, clear_place);
 }

@@ -77,6 +77,8 @@ static void write_row(FILE *out, const Evaluations *e, size_t i, EvaluatedCase w
     print_cells(out, 3, motion);
     for (int k = 0; k < N_MEASURES; k++)
         print_cells(out, 1, &(double){r->outcome == RUN_OK ? measure_value(r, k) : NAN});
+    if (e->replicates > 0)
+        write_replicates(out, which == EVALUATED_DESIGN ? &run->replicates : NULL);
     fputc('\n', out);
 }
 
@@ -98,6 +100,8 @@ static Status write_csv(const Evaluations *e, const char *path, Err *err)
     fprintf(o.stream, "record,scene,outcome,pga_g,scale,stretch");
     for (int k = 0; k < N_MEASURES; k++)
         fprintf(o.stream, ",%s", measure(k)->name);
+    if (e->replicates > 0)
+        write_replicates_names(o.stream);
     fputc('\n', o.stream);
     for (size_t i = 0; i < e->n_records * e->n_levels; i++)
         for (int c = 0; e->run[i].record->readable == STATUS_OK && c < evaluated_cases(e, &e->run[i]); c++)
@@ -141,7 +145,7 @@ static void print_named(const Evaluations *e, const Schema *schema)
         for (int c = 0; c < evaluated_cases(e, &e->run[i]); c++) {
             show_result(EVALUATION_CASES[c].word, order, &e->run[i].result[c], NULL);
             if (c == EVALUATED_DESIGN && e->replicates > 0)
-                show_replicates(order, &e->run[i].replicates);
+                show_replicates(0, order, &e->run[i].replicates);
         }
         show_verdicts(e, schema, &e->run[i]);
         putchar('\n');
@@ -166,6 +170,8 @@ static void print_folder(const Evaluations *e, const MeasureOrder *order)
         for (int c = 0; c < N_EVALUATED && e->record[i].from_folder && e->record[i].readable == STATUS_OK; c++) {
             printf("%-*s  ", width, evaluated_name(&e->record[i]));
             show_result(EVALUATION_CASES[c].word, order, &e->run[i].result[c], NULL);
+            if (c == EVALUATED_DESIGN && e->replicates > 0)
+                show_replicates(width + 2, order, &e->run[i].replicates);
         }
 }
 
@@ -275,9 +281,11 @@ static Status evaluate_design(const Args *args, const Run *run, const Chosen *c,
     Evaluations e = {0};
     TRY(args_apply(args, &s, NULL, NULL, err));
     TRY(take_intensities(args, &s, levels, &e, err));
-    if (args_has(args, "--replicates"))
-        TRY(args_whole(args, "--replicates", 2, 1000, 0, &e.replicates, err));
     TRY(settings_check(&s, err));
+    if (e.level && s.sim.replicates > 1 && args_gives(args, "sim.replicates"))
+        return fail(err, STATUS_USAGE, "sim.replicates = %ld: --pga %s shows every intensity once, without replicates",
+                    s.sim.replicates, args_value(args, "--pga"));
+    e.replicates = !e.level && s.sim.replicates > 1 ? s.sim.replicates : 0;
     if (s.problem.kind != PROBLEM_TOWER)
         return fail(err, STATUS_BAD_DATA, "this run searched another problem than the tower: no ground motion applies");
     const Status status = run_and_give(args, &s, c, &e, err);
@@ -323,7 +331,7 @@ static const ArgOption OPTIONS[] = {
     OPTION_SET,
     {"--threads", "N", "search.threads", 0, "0: one per processor"},
     {"--replicates", "N", "sim.replicates", 0,
-     "N replicates of the design under each record: mean and standard deviation, named"},
+     "N replicates of the design under each record: mean and standard deviation, named; as the run's if not given"},
     OPTION_JSON,
     {"--csv", "FILE", NULL, 0, "a row per record, intensity and scene as CSV into FILE; -: standard output"},
     {"--svg", "FILE", NULL, 0, "response against intensity with 16 %, median and 84 %, drawn by gnuplot"},
@@ -339,8 +347,8 @@ const Command CMD_EVALUATE = {
         "Simulates one design under each record, by default the run's own, with the same core rigidly connected and "
         "the\n"
         "building without a core beside it. Files of a folder that cannot be read are listed with the reason. Peak,\n"
-        "stretch and all else are the run's unless an option says otherwise. --pga 0.05:0.05:0.6 makes it an\n"
-        "incremental dynamic analysis.",
+        "stretch, replicates and all else are the run's unless an option says otherwise; each record stands alone.\n"
+        "--pga 0.05:0.05:0.6 makes it an incremental dynamic analysis, without replicates.",
     .options = OPTIONS,
     .run = run,
 };

@@ -41,7 +41,7 @@ static void print_table(const Scenario *w, const MeasureOrder *order, const Hori
     printf("distance: root of energy of the difference over largest energy so far; at the end %.2g\n\n",
            h->distance_at_end);
     show_result_names("", order);
-    show_replicates(order, r);
+    show_replicates(0, order, r);
 }
 
 static Status answer(const Args *args, const Problem *p, const double x[], Err *err)

@@ -143,9 +143,10 @@ static Status report_no_front(const Run *run, const StudySummary *summary, Err *
     size_t rows[NEAREST_MAX];
     const size_t n = nearest_rows(run, rows);
     TRY(nearest_write(summary->folder, run, n, rows, err));
-    if (n == 0)
-        return fail(err, STATUS_INTERNAL, "none of %zu simulations succeeded; %s/evaluations.csv says why",
-                    summary->n_simulated, summary->folder);
+    if (n == 0 && run->table.n > 0)
+        return fail(err, STATUS_INTERNAL,
+                    "none of %zu simulations succeeded; the first: %s; %s/evaluations.csv has all",
+                    summary->n_simulated, run->table.row[0].reason, summary->folder);
     if (strcmp(run->settings->search.limits, "none") == 0)
         return fail(err, STATUS_INTERNAL, "every design failed at least once; %s/evaluations.csv says why",
                     summary->folder);

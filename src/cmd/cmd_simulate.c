@@ -22,19 +22,18 @@ typedef struct {
     SimTask *tasks;            /* (n) */
     SimResult *results;        /* (n) */
     double *error;             /* (n, N_MEASURES) estimated; NULL: there is no estimate */
-    long replicates;           /* of a design; 0: it alone */
-    ReplicateSummary *summary; /* (n) where there are replicates */
+    int has_parts;             /* replicates or further records, summed up by the rule of a study */
+    ReplicateSummary *summary; /* (n) where there are some */
 } Job;
 
-static Status choose_replicates(const Args *args, Job *job, Err *err)
+/* A building without impacts has no replicates: asked for by name they are refused. */
+static Status choose_parts(const Args *args, const Settings *s, Job *job, Err *err)
 {
-    if (!args_has(args, "--replicates"))
-        return STATUS_OK;
-    TRY(args_whole(args, "--replicates", 2, 1000, 0, &job->replicates, err));
-    return job->kind == SCENE_IMPACT
-               ? STATUS_OK
-               : fail(err, STATUS_USAGE,
-                      "--replicates perturbs gaps: it needs a design with gaps, neither none nor --rigid");
+    if (job->kind != SCENE_IMPACT && args_gives(args, "sim.replicates"))
+        return fail(err, STATUS_USAGE,
+                    "--replicates perturbs gaps: it needs a design with gaps, neither none nor --rigid");
+    job->has_parts = job->kind == SCENE_IMPACT && (s->sim.replicates > 1 || strcmp(s->motion.records, "none") != 0);
+    return STATUS_OK;
 }
 
 static Status choose_kind(const Args *args, Job *job, Err *err)
@@ -46,7 +45,7 @@ static Status choose_kind(const Args *args, Job *job, Err *err)
     if (none && rigid)
         return fail(err, STATUS_USAGE, "--rigid needs a core: give --design FILE instead of none");
     job->kind = none ? SCENE_NO_CORE : rigid ? SCENE_RIGID : SCENE_IMPACT;
-    return choose_replicates(args, job, err);
+    return STATUS_OK;
 }
 
 static void warn_top_heavy(const Designs *d, const char *path)
@@ -87,8 +86,8 @@ static long number_of(const Job *job, size_t i)
 
 static Status simulate(const Problem *p, Job *job, Err *err)
 {
-    TRY(job->replicates ? tower_replicate(p, job->n, job->designs.x, job->results, job->summary, err)
-                        : tower_simulate(p, job->n, job->tasks, job->results, err));
+    TRY(job->has_parts ? tower_replicate(p, job->n, job->designs.x, job->results, job->summary, err)
+                       : tower_simulate(p, job->n, job->tasks, job->results, err));
     for (size_t i = 0; i < job->n; i++)
         if (job->results[i].outcome != RUN_OK)
             fprintf(stderr, "design %ld failed: %s\n", number_of(job, i), job->results[i].reason);
@@ -134,7 +133,7 @@ static json_t *describe(const Job *job, size_t i, const Motion *m)
     json_object_update_new(o, json_result(job->kind, &job->results[i]));
     if (job->error)
         json_object_set_new(o, "estimated_error", json_errors(errors_of(job, i)));
-    if (job->replicates)
+    if (job->has_parts)
         json_object_set_new(o, "replicates", json_replicates(&job->summary[i]));
     return o;
 }
@@ -156,8 +155,8 @@ static Status write_csv(const Job *job, const char *path, Err *err)
     fprintf(o.stream, "design");
     for (int k = 0; k < N_MEASURES; k++)
         fprintf(o.stream, ",%s", measure(k)->name);
-    for (int k = 0; job->replicates && k < N_MEASURES; k++)
-        fprintf(o.stream, ",%s_mean,%s_sd", measure(k)->name, measure(k)->name);
+    if (job->has_parts)
+        write_replicates_names(o.stream);
     fprintf(o.stream, ",outcome\n");
     for (size_t i = 0; i < job->n; i++) {
         fprintf(o.stream, "%ld", number_of(job, i));
@@ -165,28 +164,26 @@ static Status write_csv(const Job *job, const char *path, Err *err)
             fputc(',', o.stream);
             print_number(o.stream, measure_value(&job->results[i], k));
         }
-        for (int k = 0; job->replicates && k < N_MEASURES; k++) {
-            fputc(',', o.stream);
-            print_number(o.stream, job->summary[i].n_failed ? NAN : job->summary[i].mean[k]);
-            fputc(',', o.stream);
-            print_number(o.stream, job->summary[i].n_failed ? NAN : job->summary[i].sd[k]);
-        }
+        if (job->has_parts)
+            write_replicates(o.stream, &job->summary[i]);
         fprintf(o.stream, ",%s\n", outcome_word(measure_outcome(job->results[i].outcome)));
     }
     return output_close(&o, err);
 }
 
-static void print_table(const Job *job, const Scenario *w, const MeasureOrder *order)
+static void print_table(const Job *job, const Tower *t)
 {
+    const MeasureOrder *order = tower_measures(t);
     char label[32];
-    show_motion(stdout, &w->motion, w->options.sim.duration_s);
+    for (size_t i = 0; i < tower_n_records(t); i++)
+        show_motion(stdout, &tower_record(t, i)->motion, tower_record(t, i)->options.sim.duration_s);
     putchar('\n');
     show_result_names(job->kind == SCENE_RIGID ? "rigidly connected" : "", order);
     for (size_t i = 0; i < job->n; i++) {
         snprintf(label, sizeof label, "design %ld", number_of(job, i));
         show_result(job->kind == SCENE_NO_CORE ? "no core" : label, order, &job->results[i], errors_of(job, i));
-        if (job->replicates)
-            show_replicates(order, &job->summary[i]);
+        if (job->has_parts)
+            show_replicates(0, order, &job->summary[i]);
     }
 }
 
@@ -199,7 +196,7 @@ static Status print(const Args *args, const Job *job, const Tower *t, Err *err)
     if (args_has(args, "--json"))
         return print_json(job, &tower_record(t, 0)->motion, err);
     if (!args_has(args, "--csv"))
-        print_table(job, tower_record(t, 0), tower_measures(t));
+        print_table(job, t);
     return STATUS_OK;
 }
 
@@ -246,8 +243,8 @@ static Status run(const Args *args, Err *err)
                     "fast");
     if (args_has(args, "--json") || args_has(args, "--csv") || args_has(args, "--contacts"))
         s.sim.forces = FORCES_YES;
-    TRY(tower_open(&p, &s, job.replicates ? TOWER_AS_SET : TOWER_SINGLE, job.kind == SCENE_NO_CORE ? 1 : SIZE_MAX,
-                   err));
+    TRY(choose_parts(args, &s, &job, err));
+    TRY(tower_open(&p, &s, job.has_parts ? TOWER_AS_SET : TOWER_SINGLE, job.kind == SCENE_NO_CORE ? 1 : SIZE_MAX, err));
     const Scenario *w = tower_record(tower_of(&p), 0);
     Status status = lay_out_job(args, &job, scene_design(w->scene), err);
     if (status == STATUS_OK)
@@ -273,7 +270,7 @@ static const ArgOption OPTIONS[] = {
     {"--design", "FILE", NULL, 0, DESIGN_WORDS "; none: the building alone"},
     {"--rigid", NULL, NULL, 0, "floors and core rigidly connected (zero gap): a linear building"},
     {"--replicates", "N", "sim.replicates", 0,
-     "N replicates as a study simulates them: mean and standard deviation of every result"},
+     "N replicates as a study simulates them, under motion.record and motion.records: mean and standard deviation"},
     {"--sensitivity", NULL, NULL, 0,
      "how each result changes with gaps, thickness, contact and damping, with its error; --replicates makes it "
      "smaller"},
@@ -301,6 +298,8 @@ const Command CMD_SIMULATE = {
         "per floor from the bottom, then the core's wall in the first and in the last storey [m]. A front.csv will "
         "do,\n"
         "and so will a design of a run: --design results/quick:knee, results/quick:417, results/quick:best_j1_m.\n"
+        "With sim.replicates above 1, or with motion.records, the line of the design, as designed and under\n"
+        "motion.record, is followed by what a study makes of all of them (sim.robust) and their standard deviation.\n"
         "--json gives one object for one design and a list of them for several. The estimated error is that of the\n"
         "integration, by a second run with twice the steps (docs/promise.md); digits it leaves open are not shown.",
     .options = OPTIONS,

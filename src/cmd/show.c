@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/units.h"
+#include "store/output.h"
 
 static const char *scene_word(SceneKind kind)
 {
@@ -144,6 +145,7 @@ json_t *json_replicates(const ReplicateSummary *r)
         json_object_set_new(sd, measure(k)->name, json_number(r->n_failed ? NAN : r->sd[k]));
     }
     json_object_set_new(o, "n", json_integer((json_int_t)r->n_replicates));
+    json_object_set_new(o, "records", json_integer((json_int_t)r->n_records));
     json_object_set_new(o, "failed", json_integer((json_int_t)r->n_failed));
     json_object_set_new(o, "spread", json_string(r->spread));
     json_object_set_new(o, "rule", json_string(r->rule));
@@ -248,26 +250,50 @@ void show_objectives(const char *label, long id, const Schema *schema, const dou
     putchar('\n');
 }
 
-static void show_moments(const char *word, size_t of, const MeasureOrder *order, const double values[])
+static void show_moments(int indent, const char *word, const ReplicateSummary *r, const MeasureOrder *order,
+                         const double values[])
 {
     char label[64];
-    snprintf(label, sizeof label, "  %s of %zu", word, of);
-    printf("%-28.28s", label);
+    if (r->n_records > 1)
+        snprintf(label, sizeof label, "  %s, %zu records x %zu", word, r->n_records, r->n_replicates);
+    else
+        snprintf(label, sizeof label, "  %s of %zu", word, r->n_replicates);
+    printf("%*s%-28s", indent, "", label);
     for (int i = 0; i < order->n_obj; i++)
         show_number(values[order->of[i]], measure(order->of[i])->name);
     printf(" %8.3g %9.1e\n", values[MEASURE_IMPACTS], values[MEASURE_BALANCE]);
 }
 
-void show_replicates(const MeasureOrder *order, const ReplicateSummary *r)
+void show_replicates(int indent, const MeasureOrder *order, const ReplicateSummary *r)
 {
     if (r->n_failed) {
-        printf("  %zu of the simulations of this design failed: no mean\n", r->n_failed);
+        printf("%*s  %zu of the simulations of this design failed: no mean\n", indent, "", r->n_failed);
         return;
     }
     char label[48];
-    show_moments(r->rule, r->n_replicates, order, r->mean);
+    show_moments(indent, r->rule, r, order, r->mean);
     snprintf(label, sizeof label, "sd %s", r->spread);
-    show_moments(label, r->n_replicates, order, r->sd);
+    if (r->n_records * r->n_replicates > 1 && isfinite(r->sd[order->of[0]]))
+        show_moments(indent, label, r, order, r->sd);
+}
+
+void write_replicates_names(FILE *out)
+{
+    fputs(",records,replicates,rule,spread", out);
+    for (int k = 0; k < N_MEASURES; k++)
+        fprintf(out, ",%s_mean,%s_sd", measure(k)->name, measure(k)->name);
+}
+
+void write_replicates(FILE *out, const ReplicateSummary *r)
+{
+    if (r)
+        fprintf(out, ",%zu,%zu,%s,%s", r->n_records, r->n_replicates, r->rule, r->spread);
+    else
+        fputs(",,,,", out);
+    for (int k = 0; k < N_MEASURES; k++) {
+        const int known = r && !r->n_failed;
+        print_cells(out, 2, (const double[]){known ? r->mean[k] : NAN, known ? r->sd[k] : NAN});
+    }
 }
 
 /* Names of the objectives that are better (sign 1) or worse (-1) than the baseline's, by more than a thousandth. */

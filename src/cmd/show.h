@@ -25,8 +25,13 @@ void show_motion(FILE *out, const Motion *m, double duration_s);
 void show_result_names(const char *label, const MeasureOrder *order);
 void show_result(const char *label, const MeasureOrder *order, const SimResult *r, const double error[]);
 
-/* Two lines: mean and standard deviation of the objectives; one where a replicate failed. */
-void show_replicates(const MeasureOrder *order, const ReplicateSummary *r);
+/* Lines of mean and standard deviation of the objectives; one line where a replicate failed. indent: blanks before. */
+void show_replicates(int indent, const MeasureOrder *order, const ReplicateSummary *r);
+
+/* Cells of a CSV row, each with a comma before it: records, replicates of each, rule, spread, then mean and standard
+ * deviation of every measure. NULL: all empty. */
+void write_replicates_names(FILE *out);
+void write_replicates(FILE *out, const ReplicateSummary *r);
 
 /* "against viscous links (...): impacts win in ...; lose in ..." by more than a thousandth. */
 void show_verdict(BaselineKind kind, const Schema *schema, const double natural[], const Baseline *baseline);

@@ -82,7 +82,6 @@ static void combine(const Tower *t, const SimResult results[], double J[3])
     ReplicatePlan plan = tower_plan(t);
     ReplicateSummary sum;
     plan.n_replicates = 1;
-    plan.judged = 0;
     replicates_summarise(&plan, results, &sum);
     J[0] = sum.mean[MEASURE_J1];
     J[1] = sum.mean[MEASURE_J2];
@@ -263,7 +262,6 @@ static void summarise(const Job *job, Baseline out[N_BASELINES])
 {
     ReplicatePlan plan = tower_plan(job->tower);
     plan.n_replicates = 1;
-    plan.judged = 0;
     ReplicateSummary sum;
     for (int k = 0; k < N_BASELINES; k++) {
         replicates_summarise(&plan, job->results + (size_t)k * job->n_records, &sum);

@@ -1,6 +1,7 @@
 #include "simulator/measures.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "base/list.h"
@@ -52,12 +53,19 @@ const char *measures_left_out(const MeasureOrder *order, const char *objectives)
     return is_out ? "ed5_10_pct is no objective: the building has no modes 5 to 10 (search.objectives)" : NULL;
 }
 
-int measures_are_known(const SimResult *r, MeasureSet set)
+void measures_settle(SimResult *r, MeasureSet set)
 {
-    int known = r->outcome == RUN_OK;
-    for (int k = 0; k < N_MEASURES && known; k++)
-        known = !(set >> k & 1) || isfinite(measure_value(r, k));
-    return known;
+    for (int k = 0; k < N_MEASURES && r->outcome == RUN_OK; k++) {
+        if (!(set >> k & 1) || isfinite(measure_value(r, k)))
+            continue;
+        r->outcome = RUN_NOT_FINITE;
+        if (r->input_energy_j > 0)
+            snprintf(r->reason, sizeof r->reason, "%s is not finite", MEASURES[k].name);
+        else
+            snprintf(r->reason, sizeof r->reason,
+                     "the motion puts in no net energy, so shares of it are undefined: use more of the motion "
+                     "(sim.duration_s) or other objectives (search.objectives)");
+    }
 }
 
 /* -- objectives ---------------------------------------------------------------------------------------------------- */

@@ -100,8 +100,9 @@ const char *measures_left_out(const MeasureOrder *order, const char *objectives)
 /* Whether a building of n_floors can have anything but 0 there. */
 int measure_exists(int k, int n_floors);
 
-/* Did the run finish, with finite numbers in the set? */
-int measures_are_known(const SimResult *r, MeasureSet set);
+/* The one rule of whether a simulation succeeded: it finished, and every measure of the set is finite; one that has none
+ * fails with its reason. */
+void measures_settle(SimResult *r, MeasureSet set);
 
 /* What a run comes to as an evaluation. */
 Outcome measure_outcome(RunOutcome outcome);

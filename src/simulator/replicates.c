@@ -108,29 +108,24 @@ static void combine_records(const ReplicatePlan *plan, const SimResult results[]
     *sd = sqrt(*sd);
 }
 
-/* Why a measure that counts has no value although the simulation succeeded. */
-static const char *why_lost(const SimResult *r)
-{
-    return r->input_energy_j > 0.0 ? "an objective or a limited result is not finite"
-                                   : "the motion puts in no net energy, so shares of it are undefined: use more of the "
-                                     "motion (sim.duration_s) or other objectives (search.objectives)";
-}
-
 void replicates_summarise(const ReplicatePlan *plan, const SimResult results[], ReplicateSummary *out)
 {
-    static const char *const RULES[] = {"mean", "mean", "mean + sd", "quantile"};
-    *out = (ReplicateSummary){
-        .shown = results, .rule = RULES[plan->rule], .spread = plan->spread, .n_replicates = plan->n_replicates};
+    static const char *const RULES[] = {"worst", "mean", "mean + sd", "quantile"};
+    const int is_mean = plan->rule == ROBUST_WORST && plan->n_records == 1;
+    *out = (ReplicateSummary){.shown = results,
+                              .rule = RULES[is_mean ? ROBUST_MEAN : plan->rule],
+                              .spread = plan->spread,
+                              .n_records = plan->n_records,
+                              .n_replicates = plan->n_replicates};
     for (size_t i = plan->n_records * plan->n_replicates; i-- > 0;) {
         out->seconds += results[i].seconds;
-        if (!measures_are_known(&results[i], plan->judged)) {
+        if (results[i].outcome != RUN_OK) {
             out->shown = &results[i];
             out->n_failed++;
         }
     }
-    const int is_lost = out->n_failed > 0 && out->shown->outcome == RUN_OK;
-    out->outcome = is_lost ? OUTCOME_NOT_FINITE : measure_outcome(out->shown->outcome);
-    out->reason = is_lost ? why_lost(out->shown) : out->shown->reason;
+    out->outcome = measure_outcome(out->shown->outcome);
+    out->reason = out->shown->reason;
     const int has_records = plan->rule == ROBUST_WORST || plan->rule == ROBUST_MEAN;
     for (int k = 0; k < N_MEASURES; k++)
         (has_records ? combine_records : combine_all)(plan, results, k, &out->mean[k], &out->sd[k]);

@@ -41,17 +41,16 @@ typedef struct {
     Robust rule;
     double quantile;    /* of ROBUST_QUANTILE */
     const char *spread; /* spread_word of the replicates; NULL: not known */
-    MeasureSet judged;  /* what is not finite there has failed */
 } ReplicatePlan;
 
 typedef struct {
     const SimResult *shown; /* the first that failed, else the design itself under the first record */
     Outcome outcome;
     const char *reason;
-    const char *rule, *spread;               /* what `mean` is, "mean" or the rule; of the plan */
-    size_t n_replicates, n_failed;           /* of each record; of all simulations */
-    double mean[N_MEASURES], sd[N_MEASURES]; /* natural; not finite where a simulation failed; sd NAN: one replicate */
-    double seconds;                          /* of all simulations */
+    const char *rule, *spread;                /* what `mean` is, "mean" or the rule of several records; of the plan */
+    size_t n_records, n_replicates, n_failed; /* n_replicates of each record; n_failed of all simulations */
+    double mean[N_MEASURES], sd[N_MEASURES];  /* natural; not finite where a simulation failed; sd NAN: one replicate */
+    double seconds;                           /* of all simulations */
 } ReplicateSummary;
 
 /* results (n_records, n_replicates); the summary points into them. */

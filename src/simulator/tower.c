@@ -19,6 +19,7 @@ struct Tower {
     uint32_t seed;
     double tolerance_m; /* standard deviation of a gap as built */
     UncertainOptions uncertain;
+    MeasureSet judged; /* what is not finite there has failed */
     size_t n_workers, n_floors;
     ReplicatePlan plan; /* n_records of which are open */
     MeasureOrder order;
@@ -46,7 +47,10 @@ static Status simulate(void *self, size_t worker, const Task *task, Err *err)
         const AsBuilt built = replicate_as_built(t->seed, k, &t->uncertain);
         TRY(sim_worker_as_built(w, kind == SCENE_IMPACT && k > 0 ? &built : NULL, err));
     }
-    return sim_run_built(w, kind, &design, task->result, err);
+    TRY(sim_run_built(w, kind, &design, task->result, err));
+    if (kind == SCENE_IMPACT)
+        measures_settle(task->result, t->judged);
+    return STATUS_OK;
 }
 
 static void combine(const void *self, const void *parts, Evaluation *e)
@@ -99,7 +103,7 @@ static Status open_record(Tower *t, const Settings *settings, const char *name, 
     if (t->plan.n_records == TOWER_RECORDS_MAX)
         return fail(err, STATUS_BAD_DATA, "motion.records: more than %d records", TOWER_RECORDS_MAX);
     snprintf(motion.record, sizeof motion.record, "%s", name);
-    const unsigned needs = measures_need(t->plan.judged);
+    const unsigned needs = measures_need(t->judged);
     options.sim.filtered = options.sim.forces == FORCES_YES || (needs & NEEDS_FILTER);
     if (needs & NEEDS_FORCES)
         options.sim.forces = FORCES_YES;
@@ -157,7 +161,7 @@ static Status finish_opening(Problem *p, Tower *t, const char *objectives, Statu
     if (status == STATUS_OK) {
         t->n_floors = (size_t)scene_n_floors(t->record[0].scene);
         status = measures_order(&t->order, objectives, (int)t->n_floors, err);
-        t->plan.judged |= t->order.objectives;
+        t->judged |= t->order.objectives;
     }
     if (status != STATUS_OK) {
         tower_close(t);
@@ -182,8 +186,8 @@ Status tower_open(Problem *p, const Settings *s, TowerUse use, size_t n_tasks, E
     t->plan = (ReplicatePlan){.n_replicates = use == TOWER_SINGLE ? 1 : (size_t)s->sim.replicates,
                               .rule = s->sim.robust,
                               .quantile = s->sim.quantile,
-                              .spread = spread_word(s->sim.gap_tolerance_m, &s->uncertain),
-                              .judged = order.objectives | limits_measures(s->search.limits)};
+                              .spread = spread_word(s->sim.gap_tolerance_m, &s->uncertain)};
+    t->judged = order.objectives | limits_measures(s->search.limits);
     TRY(finish_opening(p, t, s->search.objectives, open_records(t, s, use, err), err));
     design_bounds(tower_design(t), &s->design, t->lower, t->upper);
     return STATUS_OK;
