@@ -52,12 +52,12 @@ FLAGS_TEXT := $(subst $(SPACE);,;,$(FLAGS_LIST))
 
 # ---- what is built ---------------------------------------------------------------------------------------------------
 
-SRC      := $(filter-out src/sim/fast/kernel.c,$(wildcard src/*/*.c src/*/*/*.c))
+SRC      := $(filter-out src/sim/fast/kernel.c src/mpi/%,$(wildcard src/*/*.c src/*/*/*.c))
 MATRICES := $(wildcard configs/sac20/guyan/*.csv configs/sac20/appendix/*.csv configs/sac20/frame/*.csv)
 LIB_OBJ  := $(SRC:%.c=$(BUILD)/%.o) $(KERNELS:%=$(BUILD)/src/sim/fast/kernel_%.o) $(MATRICES:%=$(BUILD)/%.o) $(BUILD)/web/page.o
 LIB      := $(BUILD)/libimtet.a
 PROGRAM  := $(if $(filter release,$(MODE)),imtet,$(BUILD)/imtet)
-TEST_SRC := $(wildcard tests/test_*.c)
+TEST_SRC := $(filter-out tests/test_mpi.c,$(wildcard tests/test_*.c))
 TESTS    := $(TEST_SRC:%.c=$(BUILD)/%)
 STABILITY.asan := --engine fast
 
@@ -122,7 +122,7 @@ $(BUILD)/src/store/provenance.o: $(BUILD)/revision
 $(BUILD)/src/store/provenance.o: CPPFLAGS += -DIMTET_VERSION='"$(VERSION)"' -DIMTET_REVISION='"$(REVISION)"' \
                                              -DIMTET_CFLAGS='"$(FLAGS_TEXT)"'
 
-include bench/bench.mk
+include bench/bench.mk src/mpi/mpi.mk
 
 # ---- tests -----------------------------------------------------------------------------------------------------------
 
@@ -180,6 +180,7 @@ format: ## clang-format over the sources
 SHARE := $(DESTDIR)$(PREFIX)/share
 install: all ## program, manual pages, bash completion, examples; PREFIX=/usr/local DESTDIR=
 	install -D -m 755 imtet $(DESTDIR)$(PREFIX)/bin/imtet
+	@if [ -e imtet_mpi ]; then install -m 755 imtet_mpi scripts/imtet-mpirun $(DESTDIR)$(PREFIX)/bin; fi
 	@for f in $$(cd configs && find . -type f); do install -D -m 644 configs/$$f $(SHARE)/imtet/configs/$$f; done
 	@install -d $(SHARE)/man/man1 $(SHARE)/bash-completion/completions
 	@./imtet --man > $(SHARE)/man/man1/imtet.1
@@ -189,7 +190,7 @@ install: all ## program, manual pages, bash completion, examples; PREFIX=/usr/lo
 	@for f in $(wildcard web/licences/* web/LICENSES*); do install -D -m 644 $$f $(SHARE)/doc/imtet/$$f; done
 
 clean: ## removes build/ and ./imtet
-	rm -rf build imtet
+	rm -rf build imtet imtet_mpi
 
 # What the compiler wrote is up to date: make need not ask its built-in rules how to link one.
 %.d: ;

@@ -14,6 +14,8 @@
 #include "base/linalg.h"
 #include "cmd/manual.h"
 #include "cmd/show.h"
+#include "evaluate/cluster.h"
+#include "simulator/adapter.h"
 #include "store/provenance.h"
 
 /* Below this the first deep call would end the program by a fault of its own. */
@@ -132,16 +134,27 @@ static void hold_standard_streams(void)
             return;
 }
 
+/* A rank of a cluster other than the first evaluates for that one and runs no command. */
+static Status run_here(int argc, char *argv[], Err *err)
+{
+    char version[CLUSTER_VERSION_MAX] = "";
+    int serves;
+    program_identity(sizeof version, version);
+    TRY(cluster_join(&argc, &argv, version, simulator_open, &serves, err));
+    return serves ? STATUS_OK : run(argc, argv, err);
+}
+
 int main(int argc, char *argv[])
 {
     Err err = {0};
     hold_standard_streams();
     json_set_alloc_funcs(json_memory, free);
     openblas_set_num_threads(1); /* simulations run side by side; threads below them would fight for the processors */
-    Status status = run(argc, argv, &err);
+    Status status = run_here(argc, argv, &err);
     if ((fflush(stdout) != 0 || ferror(stdout)) && status == STATUS_OK)
         status = fail(&err, STATUS_IO, "standard output: cannot be written");
     if (status != STATUS_OK)
         fprintf(stderr, "imtet: %s\n", err.text[0] ? err.text : status_words(status));
+    cluster_leave(status_exit_code(status));
     return status_exit_code(status);
 }

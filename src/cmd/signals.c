@@ -13,7 +13,7 @@ static atomic_llong first_ns; /* when the first one came, 0: none did */
 /* `timeout` and others signal the process and then its group: that is one request. */
 static const long long ONE_WISH_NS = 200000000;
 
-static const int STOP_SIGNALS[] = {SIGINT, SIGTERM, SIGHUP};
+static const int STOP_SIGNALS[] = {SIGINT, SIGTERM, SIGHUP, SIGUSR1};
 enum { N_STOP_SIGNALS = sizeof STOP_SIGNALS / sizeof STOP_SIGNALS[0] };
 
 static long long now_ns(void)

@@ -17,6 +17,7 @@
 #define IMTET_EVALUATE_PROBLEM_H
 
 #include <math.h>
+#include <stdint.h>
 
 #include "evaluate/evaluation.h"
 
@@ -73,6 +74,10 @@ typedef struct {
     void *self; /* of simulator and repair */
     size_t n_parts, part_size, n_workers;
     const Executor *executor; /* evaluate/threads.h */
+    const void *recipe;       /* (recipe_size) bytes without pointers, of which another process opens the same problem;
+                                 NULL: there are none */
+    size_t recipe_size;
+    uint64_t inputs; /* hash of the files that it was opened from; 0: none, or not known */
     Observer observer;
 } Problem;
 

@@ -4,6 +4,7 @@
 #include <pthread.h>
 #include <stdlib.h>
 
+#include "evaluate/cluster.h"
 #include "evaluate/tasks.h"
 
 size_t threads_wanted(long setting)
@@ -93,4 +94,12 @@ const Executor EXECUTOR_CLIENT = {client_start, client_help, client_stop};
 const Executor *executor_for(size_t n_workers)
 {
     return n_workers > 1 ? &EXECUTOR_THREADS : &EXECUTOR_CLIENT;
+}
+
+void executor_choose(Problem *p)
+{
+    size_t n_ranks;
+    const Executor *ranks = p->recipe ? cluster_executor(&n_ranks) : NULL;
+    p->executor = ranks ? ranks : executor_for(p->n_workers);
+    p->n_workers *= ranks ? n_ranks : 1;
 }

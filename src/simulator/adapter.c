@@ -9,12 +9,14 @@
 #include "moga/search.h"
 #include "settings/settings.h"
 #include "simulator/external.h"
+#include "simulator/recipe.h"
 #include "simulator/textbook.h"
 
 struct Adapter {
     Schema schema;
     Limits limits;
     Problem problem;
+    Recipe recipe; /* of an external simulator */
     int threads;
 };
 
@@ -66,21 +68,39 @@ static Status check_repeats(const Adapter *a, const Settings *s, Err *err)
 }
 
 /* The one place that picks a simulator. */
-static Status open_simulator(Adapter *a, const Settings *s, Err *err)
+static Status open_simulator(Problem *p, const Settings *s, TowerUse use, Err *err)
 {
     switch (s->problem.kind) {
     case PROBLEM_TOWER:
-        return tower_open(&a->problem, s, TOWER_AS_SET, SIZE_MAX, err);
+        return tower_open(p, s, use, SIZE_MAX, err);
     case PROBLEM_EXTERNAL:
-        return external_open(&a->problem, &s->problem, (size_t)a->threads, err);
+        return external_open(p, &s->problem, threads_wanted(s->search.threads), err);
     default:
-        return textbook_open(&a->problem, &s->problem, (uint32_t)s->search.seed, err);
+        return textbook_open(p, &s->problem, (uint32_t)s->search.seed, err);
     }
+}
+
+Status simulator_open(Problem *p, const void *recipe, size_t size, Err *err)
+{
+    const Recipe *r = recipe;
+    return size == sizeof *r ? open_simulator(p, &r->settings, r->use, err)
+                             : fail(err, STATUS_INTERNAL, "a problem of %zu bytes instead of %zu", size, sizeof *r);
+}
+
+/* Of a simulator whose problem has no recipe yet. */
+static void add_recipe(Adapter *a, const Settings *s)
+{
+    a->recipe.settings = *s;
+    a->problem.recipe = &a->recipe;
+    a->problem.recipe_size = sizeof a->recipe;
+    executor_choose(&a->problem);
 }
 
 static Status open(Adapter *a, const Settings *s, Err *err)
 {
-    TRY(open_simulator(a, s, err));
+    TRY(open_simulator(&a->problem, s, TOWER_AS_SET, err));
+    if (s->problem.kind == PROBLEM_EXTERNAL)
+        add_recipe(a, s);
     const Tower *t = adapter_tower(a);
     TRY(schema_of(&a->schema, s, t ? tower_n_floors(t) : 0, err));
     TRY(limits_read(&a->limits, &a->schema, s->search.limits, err));

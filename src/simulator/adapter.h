@@ -15,6 +15,9 @@
 typedef struct Adapter Adapter;
 
 Status adapter_open(Adapter **out, const Settings *s, Err *err);
+
+/* The simulator alone, as another process opens it: a ReopenFn (evaluate/cluster.h). recipe: simulator/recipe.h. */
+Status simulator_open(Problem *p, const void *recipe, size_t size, Err *err);
 void adapter_close(Adapter *a); /* NULL is fine */
 
 const Problem *adapter_problem(const Adapter *a);

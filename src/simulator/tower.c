@@ -4,10 +4,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/hash.h"
 #include "base/list.h"
 #include "evaluate/threads.h"
-#include "settings/settings.h"
 #include "simulator/limits.h"
+#include "simulator/recipe.h"
 
 typedef struct {
     Scenario scenario;  /* zeroed where the scene is borrowed */
@@ -25,6 +26,7 @@ struct Tower {
     MeasureOrder order;
     Record record[TOWER_RECORDS_MAX];
     double lower[DESIGN_VARIABLES_MAX], upper[DESIGN_VARIABLES_MAX];
+    Recipe recipe; /* of more tasks than one */
 };
 
 const DesignSpace *tower_design(const Tower *t)
@@ -171,6 +173,26 @@ static Status finish_opening(Problem *p, Tower *t, const char *objectives, Statu
     return STATUS_OK;
 }
 
+static uint64_t hash_of_files(const Tower *t)
+{
+    uint64_t hash = scene_building(t->record[0].scene)->hash;
+    for (size_t r = 0; r < t->plan.n_records; r++)
+        hash = (hash ^ t->record[r].scenario.motion.file_hash) * HASH_PRIME;
+    return hash;
+}
+
+/* With the ranks of a cluster, where this process has some. */
+static void share(Problem *p, Tower *t, const Settings *s, TowerUse use)
+{
+    t->recipe.settings = *s;
+    t->recipe.settings.problem.kind = PROBLEM_TOWER;
+    t->recipe.use = use;
+    p->recipe = &t->recipe;
+    p->recipe_size = sizeof t->recipe;
+    p->inputs = hash_of_files(t);
+    executor_choose(p);
+}
+
 Status tower_open(Problem *p, const Settings *s, TowerUse use, size_t n_tasks, Err *err)
 {
     const size_t workers = threads_wanted(s->search.threads);
@@ -190,6 +212,8 @@ Status tower_open(Problem *p, const Settings *s, TowerUse use, size_t n_tasks, E
     t->judged = order.objectives | limits_measures(s->search.limits);
     TRY(finish_opening(p, t, s->search.objectives, open_records(t, s, use, err), err));
     design_bounds(tower_design(t), &s->design, t->lower, t->upper);
+    if (n_tasks > 1)
+        share(p, t, s, use);
     return STATUS_OK;
 }
 
@@ -266,7 +290,8 @@ Status tower_simulate(const Problem *p, size_t n, const SimTask tasks[], SimResu
     Queue *q;
     Problem few = *p;
     few.n_workers = n < few.n_workers ? n : few.n_workers;
-    few.executor = executor_for(few.n_workers);
+    if (few.n_workers < 2)
+        few.executor = executor_for(1);
     TRY(queue_open(&q, &few, QUEUE_AS_ASKED, 0, 0, err));
     const Status status = run_all(q, n, tasks, results, err);
     queue_close(q);

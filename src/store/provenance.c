@@ -8,6 +8,7 @@
 #include <nlopt.h>
 #include <sqlite3.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sundials/sundials_version.h>
 #include <time.h>
 #include <unistd.h>
@@ -60,6 +61,16 @@ json_t *program_description(void)
 {
     return json_pack("{s:s, s:s, s:s, s:s, s:s, s:o*}", "program", "imtet", "version", IMTET_VERSION, "revision",
                      IMTET_REVISION, "compiler", COMPILER, "flags", IMTET_CFLAGS, "libraries", libraries());
+}
+
+void program_identity(size_t n, char text[])
+{
+    json_t *all = program_description();
+    char *words = json_dumps(all, JSON_COMPACT);
+    const uint64_t hash = words ? hash_fnv1a(words, strlen(words), HASH_SEED) : 0;
+    snprintf(text, n, "%s (%s, %s, build %016" PRIx64 ")", IMTET_VERSION, IMTET_REVISION, fast_kernel_name(), hash);
+    free(words);
+    json_decref(all);
 }
 
 /* PRETTY_NAME of the operating system: with it the versions of all packages are known. */

@@ -33,6 +33,7 @@ typedef struct {
     long failures;           /* simulations in a row that failed, up to now */
     int failing;             /* search.failures_max of them */
     char failure[200];       /* why the last one failed */
+    char lost[200];          /* what ended the session beside a request: a rank that died, say */
     pthread_mutex_t lock;    /* of an asynchronous search: results come while a generation is written */
     int has_new_limits;
     Status status; /* of writing; ends the search */
@@ -316,6 +317,17 @@ static int search_threads(const Study *study)
     return study->used.search.asynchronous ? (threads + 3) / 4 : threads;
 }
 
+/* A stop is no error: the session ends as others do. */
+static Status note_stop(Study *study, Status status, const Err *err)
+{
+    if (status != STATUS_STOPPED)
+        return status;
+    study->summary->stopped = STOP_ASKED;
+    if (strcmp(err->text, "stopped") != 0)
+        snprintf(study->lost, sizeof study->lost, "%.199s", err->text);
+    return STATUS_OK;
+}
+
 static Status run_search(Study *study, Err *err)
 {
     const Run *run = store_run(study->store);
@@ -338,9 +350,7 @@ static Status run_search(Study *study, Err *err)
                                start.row && start.n + start.n_later > 0 ? &start : NULL, observe, study,
                                &study->summary->stopped, err);
     free(given);
-    if (status == STATUS_STOPPED)
-        study->summary->stopped = STOP_ASKED;
-    return status == STATUS_STOPPED ? STATUS_OK : status;
+    return note_stop(study, status, err);
 }
 
 static Status finish(Study *study, Err *err)
@@ -352,7 +362,7 @@ static Status finish(Study *study, Err *err)
         sum->stopped = STOP_TIME;
     if (!is_final && study->failing)
         sum->stopped = STOP_FAILURES;
-    const char *why = stop_reason_words(sum->stopped);
+    const char *why = study->lost[0] ? study->lost : stop_reason_words(sum->stopped);
     sum->seconds = study->seconds_before + session;
     TRY(study_log_end(study->store, sum, adapter_threads(study->adapter), is_final, err));
     RunStore *store = study->store;
@@ -396,10 +406,7 @@ static Status polish(Study *study, Err *err)
     const FinalPolish p = {.used = &study->used, .n_simulated = sum->n_simulated, .go_on = may_go_on, .user = study};
     if (sum->stopped == STOP_ASKED)
         return STATUS_OK;
-    const Status status = final_polish(study->store, &p, &sum->n_tried_to_polish, &sum->n_polished, err);
-    if (status == STATUS_STOPPED)
-        sum->stopped = STOP_ASKED;
-    return status == STATUS_STOPPED ? STATUS_OK : status;
+    return note_stop(study, final_polish(study->store, &p, &sum->n_tried_to_polish, &sum->n_polished, err), err);
 }
 
 /* What the knee is compared with, and what the front says about its gaps. */

@@ -1,0 +1,141 @@
+#include "evaluate/cluster.h"
+
+#include <mpi.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "mpi/message.h"
+
+typedef struct {
+    char host[HOST_MAX], version[CLUSTER_VERSION_MAX];
+} Hello;
+
+void host_name(char host[HOST_MAX])
+{
+    memset(host, 0, HOST_MAX);
+    gethostname(host, HOST_MAX - 1);
+}
+
+static int rank_of_this(void)
+{
+    int rank;
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    return rank;
+}
+
+static int n_ranks(void)
+{
+    int n;
+    MPI_Comm_size(MPI_COMM_WORLD, &n);
+    return n;
+}
+
+/* Of all ranks, on rank 0. */
+static Status compare_versions(const Hello hello[], Err *err)
+{
+    for (int i = 1; i < n_ranks(); i++)
+        if (memcmp(hello[i].version, hello[0].version, sizeof hello[i].version) != 0)
+            return fail(err, STATUS_BAD_DATA,
+                        "rank %d on %s is imtet %s, rank 0 on %s is %s: all ranks must be one program", i,
+                        hello[i].host, hello[i].version, hello[0].host, hello[0].version);
+    return STATUS_OK;
+}
+
+/* The verdict of rank 0 is that of all; the reason is rank 0's to tell. */
+static Status check_versions(const char version[CLUSTER_VERSION_MAX], Err *err)
+{
+    Hello mine;
+    int verdict = STATUS_OK;
+    Hello *all = calloc((size_t)n_ranks(), sizeof *all);
+    if (!all)
+        MPI_Abort(MPI_COMM_WORLD, status_exit_code(STATUS_NO_MEMORY));
+    host_name(mine.host);
+    memcpy(mine.version, version, sizeof mine.version);
+    MPI_Gather(&mine, sizeof mine, MPI_BYTE, all, sizeof mine, MPI_BYTE, 0, MPI_COMM_WORLD);
+    if (rank_of_this() == 0)
+        verdict = (int)compare_versions(all, err);
+    MPI_Bcast(&verdict, 1, MPI_INT, 0, MPI_COMM_WORLD);
+    free(all);
+    return (Status)verdict;
+}
+
+/* Launchers signal every rank: rank 0 alone decides what a signal means. */
+static void ignore_signals(void)
+{
+    static const int SIGNALS[] = {SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGUSR2};
+    for (size_t i = 0; i < sizeof SIGNALS / sizeof SIGNALS[0]; i++)
+        signal(SIGNALS[i], SIG_IGN);
+}
+
+Status cluster_join(int *argc, char ***argv, const char version[CLUSTER_VERSION_MAX], ReopenFn reopen, int *serves,
+                    Err *err)
+{
+    int level;
+    MPI_Init_thread(argc, argv, MPI_THREAD_SERIALIZED, &level);
+    *serves = rank_of_this() > 0;
+    if (*serves)
+        ignore_signals();
+    Status status = check_versions(version, err);
+    if (status == STATUS_OK && level < MPI_THREAD_SERIALIZED)
+        status = fail(err, STATUS_INTERNAL, "this MPI cannot be called by one thread after the other");
+    if (status != STATUS_OK) {
+        MPI_Finalize();
+        return *serves ? STATUS_OK : status;
+    }
+    return *serves ? serve(reopen, err) : STATUS_OK;
+}
+
+/* For every rank to say that it has left. */
+static const double LEAVE_S = 5.0;
+
+/* What still comes is dropped until every rank has left; 0: one does not. */
+static int wait_until_all_left(void)
+{
+    int left = 0, there;
+    const double give_up = clock_seconds() + LEAVE_S;
+    while (left < n_ranks() - 1 && clock_seconds() < give_up) {
+        MPI_Message message;
+        MPI_Status about;
+        int n;
+        MPI_Improbe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &there, &message, &about);
+        if (!there) {
+            nanosleep(&(struct timespec){.tv_nsec = 200000}, NULL);
+            continue;
+        }
+        MPI_Get_count(&about, MPI_BYTE, &n);
+        char *bytes = malloc((size_t)n + 1);
+        if (!bytes)
+            return 0;
+        MPI_Mrecv(bytes, n, MPI_BYTE, &message, &about);
+        free(bytes);
+        left += about.MPI_TAG == TAG_LEFT;
+    }
+    return left == n_ranks() - 1;
+}
+
+void cluster_leave(int exit_code)
+{
+    int is_over, is_whole = 1;
+    MPI_Finalized(&is_over);
+    if (is_over)
+        return;
+    if (rank_of_this() == 0) {
+        for (int i = 1; i < n_ranks(); i++)
+            MPI_Send(NULL, 0, MPI_BYTE, i, TAG_LEAVE, MPI_COMM_WORLD);
+        is_whole = wait_until_all_left();
+    } else {
+        is_whole = exit_code == 0;
+    }
+    if (!is_whole)
+        MPI_Abort(MPI_COMM_WORLD, exit_code);
+    MPI_Finalize();
+}
+
+const Executor *cluster_executor(size_t *n)
+{
+    *n = rank_of_this() == 0 ? (size_t)n_ranks() - 1 : 0;
+    return *n > 0 ? &EXECUTOR_RANKS : NULL;
+}

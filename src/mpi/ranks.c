@@ -1,0 +1,417 @@
+#include <inttypes.h>
+#include <math.h>
+#include <mpi.h>
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <time.h>
+
+#include "base/clock.h"
+#include "evaluate/tasks.h"
+#include "mpi/message.h"
+
+/* Tasks wait at a rank for so long in all, so that it has the next ones when it is done; where a task takes longer than
+ * PREFETCH_MAX_S the way of a message, a millisecond, is nothing, and none waits: a short batch ends earlier. */
+static const double AHEAD_S = 0.02, PREFETCH_MAX_S = 0.2;
+enum { DEPTH_MAX = 64 }; /* tasks of a worker, the one under way included */
+
+static const double PAUSE_MAX_S = 5e-4, LOOK_S = 0.05;
+
+/* After a stop: as long as results come, and so long after the last one. mpirun allows a second before it kills. */
+static const double LAST_ANSWERS_S = 0.6;
+
+/* To read records and build scenes, on machines that share a file system. */
+static const double OPEN_S = 600.0;
+
+enum { MESSAGES_AT_ONCE = 64 };
+
+typedef struct {
+    Buffer out; /* tasks to be sent, or being sent */
+    MPI_Request request;
+    int is_sending;
+    size_t n_workers, n_under_way;
+    double silent_s;
+    char host[HOST_MAX];
+} Rank;
+
+typedef struct {
+    Task task;
+    int rank; /* that does it; 0: none */
+} Ticket;
+
+typedef struct {
+    Queue *queue;
+    const Problem *problem;
+    int n;
+    Rank *rank; /* (n + 1); [0], this one, is not used */
+    Ticket *ticket;
+    size_t *idle; /* (n_idle) tickets */
+    size_t n_tickets, n_idle, n_under_way;
+    Buffer in;
+    int64_t epoch;
+    double task_s; /* [s] a task takes, over the last ones */
+    double looked_s, came_s;
+    int has_stopped;
+    atomic_int ending;
+    int is_running;
+    pthread_t thread;
+} Ranks;
+
+static void rest(double seconds)
+{
+    nanosleep(&(struct timespec){.tv_nsec = (long)(1e9 * seconds)}, NULL);
+}
+
+/* -- receiving ------------------------------------------------------------------------------------------------------- */
+
+static void give(Ranks *r, Ticket *t, Status status, const Err *why)
+{
+    Rank *rank = &r->rank[t->rank];
+    t->rank = 0;
+    rank->n_under_way--;
+    r->n_under_way--;
+    queue_give(r->queue, &t->task, status, why);
+    r->idle[r->n_idle++] = (size_t)(t - r->ticket);
+}
+
+static void take_results(Ranks *r, size_t n)
+{
+    int64_t epoch;
+    r->in.n = 0;
+    buffer_get(&r->in, &epoch, sizeof epoch);
+    while (epoch == r->epoch && r->in.n < n) {
+        DoneMessage m;
+        Err why = {0};
+        buffer_get(&r->in, &m, sizeof m);
+        Ticket *t = &r->ticket[m.ticket];
+        const char *part = r->in.bytes + r->in.n;
+        r->in.n += m.status == STATUS_OK ? r->problem->part_size : sizeof why.text;
+        if (t->rank == 0) /* given up meanwhile */
+            continue;
+        if (m.status == STATUS_OK)
+            memcpy(t->task.result, part, r->problem->part_size);
+        else
+            memcpy(why.text, part, sizeof why.text);
+        t->task.taken = clock_seconds() - m.seconds;
+        r->task_s = r->task_s > 0.0 ? 0.95 * r->task_s + 0.05 * m.seconds : m.seconds;
+        give(r, t, (Status)m.status, &why);
+    }
+    r->came_s = clock_seconds();
+}
+
+static void widen(Buffer *b, size_t n)
+{
+    char *wider = n > b->n_max ? realloc(b->bytes, n) : b->bytes;
+    if (!wider)
+        MPI_Abort(MPI_COMM_WORLD, status_exit_code(STATUS_NO_MEMORY));
+    b->bytes = wider;
+    b->n_max = n > b->n_max ? n : b->n_max;
+}
+
+/* The next message, whatever it is, into r->in; its tag, or 0: there is none. */
+static int receive(Ranks *r, int *from, size_t *n)
+{
+    MPI_Message message;
+    MPI_Status about;
+    int there, count;
+    MPI_Improbe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &there, &message, &about);
+    if (!there)
+        return 0;
+    MPI_Get_count(&about, MPI_BYTE, &count);
+    widen(&r->in, (size_t)count);
+    MPI_Mrecv(r->in.bytes, count, MPI_BYTE, &message, &about);
+    *from = about.MPI_SOURCE;
+    *n = (size_t)count;
+    r->rank[*from].silent_s = 0.0;
+    return about.MPI_TAG;
+}
+
+static int receive_all(Ranks *r)
+{
+    int moved = 0, from, tag;
+    size_t n;
+    while (moved < MESSAGES_AT_ONCE && (tag = receive(r, &from, &n)) != 0) {
+        moved++;
+        if (tag == TAG_DONE)
+            take_results(r, n);
+    }
+    return moved;
+}
+
+/* -- sending --------------------------------------------------------------------------------------------------------- */
+
+static size_t depth_of(const Ranks *r)
+{
+    if (!(r->task_s > 0.0) || r->task_s > PREFETCH_MAX_S)
+        return 1;
+    return 1 + (size_t)fmin(ceil(AHEAD_S / r->task_s), DEPTH_MAX - 1);
+}
+
+static Status more_tickets(Ranks *r, Err *err)
+{
+    const size_t n = r->n_tickets > 0 ? 2 * r->n_tickets : 256;
+    Ticket *ticket = realloc(r->ticket, n * sizeof *ticket);
+    if (ticket)
+        r->ticket = ticket;
+    size_t *idle = realloc(r->idle, n * sizeof *idle);
+    if (idle)
+        r->idle = idle;
+    if (!ticket || !idle)
+        return fail(err, STATUS_NO_MEMORY, "no memory for %zu tasks under way", n);
+    for (; r->n_tickets < n; r->n_tickets++) {
+        r->ticket[r->n_tickets] = (Ticket){.rank = 0};
+        r->idle[r->n_idle++] = r->n_tickets;
+    }
+    return STATUS_OK;
+}
+
+static void append(Ranks *r, int to, const Task *task)
+{
+    Rank *rank = &r->rank[to];
+    const size_t ticket = r->idle[--r->n_idle];
+    const TaskMessage m = {ticket, task->id, task->part, task->repeat, task->variant};
+    r->ticket[ticket] = (Ticket){*task, to};
+    if (rank->out.n == 0)
+        buffer_put(&rank->out, &r->epoch, sizeof r->epoch);
+    buffer_put(&rank->out, &m, sizeof m);
+    buffer_put(&rank->out, task->x, r->problem->n_var * sizeof *task->x);
+    if (rank->n_under_way++ == 0)
+        rank->silent_s = 0.0;
+    r->n_under_way++;
+}
+
+static int has_room(const Ranks *r, const Rank *rank, size_t level)
+{
+    return !rank->is_sending && rank->n_under_way < level * rank->n_workers &&
+           rank->out.n + sizeof r->epoch + task_bytes(r->problem->n_var) <= rank->out.n_max;
+}
+
+/* Every rank gets one task for each of its workers before any gets a second, and so on. */
+static void deal(Ranks *r)
+{
+    const size_t depth = depth_of(r);
+    Task task;
+    Err why = {0};
+    for (size_t level = 1; level <= depth; level = level < depth && 2 * level > depth ? depth : 2 * level)
+        for (int i = 1; i <= r->n; i++)
+            while (has_room(r, &r->rank[i], level)) {
+                if (!queue_take(r->queue, 0, &task))
+                    return;
+                const Status status = r->n_idle > 0 ? STATUS_OK : more_tickets(r, &why);
+                if (status == STATUS_OK)
+                    append(r, i, &task);
+                else
+                    queue_give(r->queue, &task, status, &why);
+            }
+}
+
+static int send_all(Ranks *r)
+{
+    int moved = 0;
+    for (int i = 1; i <= r->n; i++) {
+        Rank *rank = &r->rank[i];
+        int is_through = 1;
+        if (rank->is_sending)
+            MPI_Test(&rank->request, &is_through, MPI_STATUS_IGNORE);
+        if (rank->is_sending && is_through)
+            rank->is_sending = 0, rank->out.n = 0;
+    }
+    deal(r);
+    for (int i = 1; i <= r->n; i++) {
+        Rank *rank = &r->rank[i];
+        if (rank->is_sending || rank->out.n == 0)
+            continue;
+        MPI_Isend(rank->out.bytes, (int)rank->out.n, MPI_BYTE, i, TAG_TASKS, MPI_COMM_WORLD, &rank->request);
+        rank->is_sending = 1;
+        moved++;
+    }
+    return moved;
+}
+
+/* -- ranks that do not answer, and the end --------------------------------------------------------------------------- */
+
+/* Tasks of that rank, 0: of all, count as never begun. */
+static void give_up(Ranks *r, int rank, const char *words)
+{
+    Err why;
+    fail(&why, STATUS_STOPPED, "%s", words);
+    for (size_t i = 0; i < r->n_tickets; i++)
+        if (r->ticket[i].rank > 0 && (rank == 0 || r->ticket[i].rank == rank))
+            give(r, &r->ticket[i], STATUS_STOPPED, &why);
+}
+
+static void tell_stop(Ranks *r)
+{
+    r->has_stopped = 1;
+    r->came_s = clock_seconds();
+    for (int i = 1; i <= r->n; i++)
+        if (r->rank[i].n_under_way > 0)
+            MPI_Send(&r->epoch, sizeof r->epoch, MPI_BYTE, i, TAG_STOP, MPI_COMM_WORLD);
+}
+
+/* Seconds that this process ran: where the whole job was suspended, no rank was silent. */
+static void count_silence(Ranks *r, double seconds)
+{
+    char words[HOST_MAX + 120];
+    for (int i = 1; i <= r->n; i++) {
+        Rank *rank = &r->rank[i];
+        if (rank->n_under_way == 0)
+            continue;
+        rank->silent_s += fmin(seconds, 2 * LOOK_S);
+        if (rank->silent_s < SILENT_S)
+            continue;
+        snprintf(words, sizeof words, "rank %d on %s was taken for dead (silent for %g s)", i, rank->host, SILENT_S);
+        give_up(r, i, words);
+    }
+}
+
+static const Task *any_task(const Ranks *r)
+{
+    size_t i = 0;
+    while (r->ticket[i].rank == 0)
+        i++;
+    return &r->ticket[i].task;
+}
+
+/* Now and then. */
+static void look_after(Ranks *r)
+{
+    const double now = clock_seconds(), since = now - r->looked_s;
+    if (since < LOOK_S)
+        return;
+    r->looked_s = now;
+    if (r->n_under_way == 0)
+        return;
+    count_silence(r, since);
+    if (r->n_under_way > 0 && !r->has_stopped) {
+        const Task *task = any_task(r);
+        if (r->ending || !task->may_go_on(task->user))
+            tell_stop(r);
+    } else if (now > r->came_s + LAST_ANSWERS_S) {
+        give_up(r, 0, "stopped");
+    }
+}
+
+static void *exchange(void *user)
+{
+    Ranks *r = user;
+    double pause = PAUSE_MIN_S;
+    while (!r->ending || r->n_under_way > 0) {
+        const int moved = receive_all(r) + send_all(r);
+        look_after(r);
+        pause = moved > 0 ? PAUSE_MIN_S : longer_pause(pause, PAUSE_MAX_S);
+        if (moved == 0)
+            rest(pause);
+    }
+    return NULL;
+}
+
+/* -- life ------------------------------------------------------------------------------------------------------------ */
+
+static Status check_opened(Ranks *r, int from, const OpenedMessage *m, Err *err)
+{
+    Rank *rank = &r->rank[from];
+    memcpy(rank->host, m->host, sizeof rank->host);
+    rank->n_workers = m->n_workers;
+    if (m->status != STATUS_OK)
+        return fail(err, (Status)m->status, "rank %d on %s: %s", from, m->host, m->why);
+    if (m->inputs != r->problem->inputs)
+        return fail(err, STATUS_BAD_DATA,
+                    "rank %d on %s reads other files than rank 0 (content %016" PRIx64 ", here %016" PRIx64
+                    "): records and building must be the same on every machine",
+                    from, m->host, m->inputs, r->problem->inputs);
+    return STATUS_OK;
+}
+
+/* Of several faults the one of the first rank. */
+static Status wait_until_open(Ranks *r, Err *err)
+{
+    const double give_up_s = clock_seconds() + OPEN_S;
+    Status status = STATUS_OK;
+    int first_bad = r->n + 1, from, tag;
+    for (int n_open = 0; n_open < r->n;) {
+        OpenedMessage m;
+        Err why = {0};
+        size_t n;
+        while ((tag = receive(r, &from, &n)) == 0 && clock_seconds() < give_up_s)
+            rest(PAUSE_MAX_S);
+        if (tag == 0)
+            return fail(err, STATUS_INTERNAL, "only %d of %d ranks have opened the problem within %g s", n_open, r->n,
+                        OPEN_S);
+        if (tag == TAG_OPENED)
+            memcpy(&m, r->in.bytes, sizeof m);
+        if (tag != TAG_OPENED || m.epoch != r->epoch)
+            continue;
+        n_open++;
+        if (check_opened(r, from, &m, &why) != STATUS_OK && from < first_bad) {
+            first_bad = from;
+            *err = why;
+            status = why.code;
+        }
+    }
+    return status;
+}
+
+static Status open_problem(Ranks *r, Err *err)
+{
+    const OpenMessage m = {r->epoch, r->problem->recipe_size};
+    for (int i = 1; i <= r->n; i++)
+        MPI_Send(&m, sizeof m, MPI_BYTE, i, TAG_OPEN, MPI_COMM_WORLD);
+    MPI_Bcast((void *)r->problem->recipe, (int)m.recipe_size, MPI_BYTE, 0, MPI_COMM_WORLD);
+    return wait_until_open(r, err);
+}
+
+static Status make_room(Ranks *r, Err *err)
+{
+    r->rank = calloc((size_t)r->n + 1, sizeof *r->rank);
+    int is_there = r->rank != NULL;
+    for (int i = 1; is_there && i <= r->n; i++) {
+        Buffer *out = &r->rank[i].out;
+        out->n_max = at_least(TASKS_BYTES, task_bytes(r->problem->n_var));
+        out->bytes = malloc(out->n_max);
+        is_there = out->bytes != NULL;
+    }
+    return is_there ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for %d ranks", r->n);
+}
+
+static void stop(void *self)
+{
+    Ranks *r = self;
+    r->ending = 1;
+    if (r->is_running)
+        pthread_join(r->thread, NULL);
+    for (int i = 1; r->rank && i <= r->n; i++) {
+        int is_through = 1;
+        if (r->rank[i].is_sending)
+            MPI_Test(&r->rank[i].request, &is_through, MPI_STATUS_IGNORE);
+        if (is_through)
+            free(r->rank[i].out.bytes); /* else of a rank that is dead, and the program ends */
+    }
+    free(r->rank);
+    free(r->in.bytes);
+    free(r->ticket);
+    free(r->idle);
+    free(r);
+}
+
+static Status start(void **self, Queue *q, Err *err)
+{
+    size_t n;
+    Ranks *r = calloc(1, sizeof *r);
+    *self = r;
+    if (!r)
+        return fail(err, STATUS_NO_MEMORY, "no memory for ranks");
+    cluster_executor(&n);
+    r->queue = q;
+    r->problem = queue_problem(q);
+    r->n = (int)n;
+    r->epoch = (int64_t)(1e9 * clock_seconds());
+    r->looked_s = clock_seconds();
+    TRY(make_room(r, err));
+    TRY(open_problem(r, err));
+    r->is_running = pthread_create(&r->thread, NULL, exchange, r) == 0;
+    return r->is_running ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no thread for %d ranks", r->n);
+}
+
+const Executor EXECUTOR_RANKS = {start, NULL, stop};

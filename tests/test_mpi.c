@@ -1,0 +1,412 @@
+/* Ranks of MPI: the bytes of one process, whoever evaluates; a rank that dies, hangs or is another program is named.
+ * IMTET_MPI in the environment: the program; MPI_RANKS: how many at most, 4 if not given; MPI_TEST: these tests alone. */
+#include "program.h"
+
+#include <fcntl.h>
+#include <omp.h>
+#include <signal.h>
+#include <spawn.h>
+#include <time.h>
+
+static const char TOWER[] = "[motion]\nrecord = builtin:kobe-like\nrecords = builtin:elcentro-like\npga_g = 0.3\n"
+                            "[sim]\nduration_s = 6\nreplicates = 2\ngap_tolerance_m = 0.001\n"
+                            "[search]\ninitial = 24\npopulation = 16\nmax_evals = 48\nsurrogate_max = 30\npolish = 1\n"
+                            "threads = 1\n";
+static const char STEADY[] = "[problem]\nkind = external\ncommand = sh tests/worker.sh steady\nvariables = 3\n"
+                             "objectives = 2\nnoisy = yes\n[search]\ninitial = 36\npopulation = 12\nmax_evals = 150\n"
+                             "surrogate = off\nthreads = 1\n";
+
+static const char *program(void)
+{
+    const char *name = getenv("IMTET_MPI");
+    if (!name || system("command -v mpirun >/dev/null") != 0)
+        skip();
+    return name;
+}
+
+static double now_s(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static void rest(double seconds)
+{
+    nanosleep(&(struct timespec){(time_t)seconds, (long)(1e9 * fmod(seconds, 1))}, NULL);
+}
+
+static pid_t spawn(const char *command)
+{
+    pid_t pid;
+    char *words[] = {"sh", "-c", (char *)command, NULL};
+    assert_int_equal(posix_spawnp(&pid, "sh", NULL, NULL, words, environ), 0);
+    return pid;
+}
+
+static const char *launcher = "mpirun";
+
+/* `mpirun -n RANKS imtet_mpi ARGUMENTS` in the background, @ as in run(); what it says is in @/said. The shell becomes
+ * mpirun. */
+__attribute__((format(printf, 2, 3))) static pid_t launch(int ranks, const char *format, ...)
+{
+    char arguments[1024], spread[2048], command[4096];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(arguments, sizeof arguments, format, list);
+    va_end(list);
+    size_t n = 0;
+    for (const char *p = arguments; *p && n + sizeof place.folder < sizeof spread; p++)
+        n += (size_t)(*p == '@' ? sprintf(spread + n, "%s", place.folder) : sprintf(spread + n, "%c", *p));
+    snprintf(command, sizeof command, "exec %s -n %d '%s' %s >'%s/said' 2>&1 </dev/null", launcher, ranks, program(),
+             spread, place.folder);
+    return spawn(command);
+}
+
+static int code_of(pid_t pid)
+{
+    int status;
+    assert_int_equal(waitpid(pid, &status, 0), pid);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+static void expect_code(pid_t pid, int wanted)
+{
+    const int code = code_of(pid);
+    char *said = read_in_place("said");
+    if (code != wanted)
+        fail_msg("exit %d, wanted %d: %s", code, wanted, said);
+    free(said);
+}
+
+static void expect_said(const char *words)
+{
+    char *said = read_in_place("said");
+    if (!strstr(said, words))
+        fail_msg("wanted: %s\nsaid: %s", words, said);
+    free(said);
+}
+
+static void assert_same_files(const char *a, const char *b)
+{
+    static const char *const FILES[] = {"front.csv", "evaluations.csv"};
+    for (size_t i = 0; i < sizeof FILES / sizeof FILES[0]; i++) {
+        char name[2][64];
+        snprintf(name[0], sizeof name[0], "%s/%s", a, FILES[i]);
+        snprintf(name[1], sizeof name[1], "%s/%s", b, FILES[i]);
+        char *first = read_in_place(name[0]), *second = read_in_place(name[1]);
+        if (strcmp(first, second) != 0)
+            fail_msg("%s differs from %s", name[1], name[0]);
+        free(first);
+        free(second);
+    }
+}
+
+/* Process of that rank; the ranks are mpirun's children, in their order. */
+static pid_t process_of(pid_t mpirun, int rank)
+{
+    char path[64];
+    long pid[16];
+    int n = 0;
+    snprintf(path, sizeof path, "/proc/%d/task/%d/children", (int)mpirun, (int)mpirun);
+    FILE *f = fopen(path, "r");
+    assert_non_null(f);
+    while (n < 16 && fscanf(f, "%ld", &pid[n]) == 1)
+        n++;
+    fclose(f);
+    assert_true(rank < n);
+    return (pid_t)pid[rank];
+}
+
+static size_t lines_in(const char *name)
+{
+    char *path = in_place(name);
+    size_t n = 0;
+    FILE *f = fopen(path, "r");
+    for (int c; f && (c = fgetc(f)) != EOF;)
+        n += c == '\n';
+    if (f)
+        fclose(f);
+    free(path);
+    return n;
+}
+
+/* Until the run has a generation: evaluations.csv has a header and more. */
+static void wait_for_evaluations(const char *run)
+{
+    char name[64];
+    const double until = now_s() + 60;
+    snprintf(name, sizeof name, "%s/evaluations.csv", run);
+    while (lines_in(name) < 10 && now_s() < until)
+        rest(0.02);
+    assert_true(lines_in(name) >= 10);
+    rest(0.3); /* into the next generation */
+}
+
+static void test_the_ordinary_program_does_not_link_mpi(void **state)
+{
+    (void)state;
+    char command[512];
+    snprintf(command, sizeof command, "ldd '%s' | grep -q libc && ! ldd '%s' | grep -qi libmpi", getenv("IMTET"),
+             getenv("IMTET"));
+    assert_int_equal(system(command), 0);
+    snprintf(command, sizeof command, "ldd '%s' | grep -qi libmpi", program());
+    assert_int_equal(system(command), 0);
+}
+
+static void test_a_batch_has_the_same_bytes_at_any_number_of_ranks_and_threads(void **state)
+{
+    (void)state;
+    static const int RANKS[] = {1, 2, 3, 8};
+    const int most = getenv("MPI_RANKS") ? atoi(getenv("MPI_RANKS")) : 4;
+    program();
+    write_in_place("tower.ini", TOWER);
+    free(output_of("optimize @/tower.ini --out @/alone"));
+    for (size_t i = 0; i < sizeof RANKS / sizeof RANKS[0]; i++)
+        for (int threads = 1; RANKS[i] <= most && threads <= 2; threads++) {
+            char run_name[32];
+            snprintf(run_name, sizeof run_name, "on-%d-%d", RANKS[i], threads);
+            expect_code(launch(RANKS[i], "optimize @/tower.ini --out @/%s --threads %d", run_name, threads), 0);
+            assert_same_files("alone", run_name);
+        }
+}
+
+static void test_an_external_simulator_runs_beside_every_rank(void **state)
+{
+    (void)state;
+    program();
+    write_in_place("steady.ini", STEADY);
+    free(output_of("optimize @/steady.ini --out @/steady --threads 3"));
+    expect_code(launch(4, "optimize @/steady.ini --out @/spread"), 0);
+    assert_same_files("steady", "spread");
+}
+
+/* One other rank of one thread is one worker: then the order of arrival is that of asking. */
+static void test_asynchronous_with_one_worker_is_the_run_in_batches(void **state)
+{
+    (void)state;
+    program();
+    write_in_place("steady.ini", STEADY);
+    free(output_of("optimize @/steady.ini --out @/batches --threads 1 --set search.asynchronous=on"));
+    expect_code(launch(2, "optimize @/steady.ini --out @/one --set search.asynchronous=on"), 0);
+    assert_same_files("batches", "one");
+    expect_code(launch(4, "optimize @/steady.ini --out @/several --set search.asynchronous=on"), 0);
+    assert_int_equal(lines_in("several/evaluations.csv"), 151);
+}
+
+static void test_other_commands_give_their_tasks_to_the_ranks(void **state)
+{
+    (void)state;
+    program();
+    static const char SIMULATE[] = "simulate @/tower.ini --design @/designs.csv --replicates 3 --csv -";
+    const char *variables = "gap_01_m,gap_02_m,gap_03_m,gap_04_m,gap_05_m,gap_06_m,gap_07_m,gap_08_m,gap_09_m,gap_10_m,"
+                            "gap_11_m,gap_12_m,gap_13_m,gap_14_m,gap_15_m,gap_16_m,gap_17_m,gap_18_m,gap_19_m,gap_20_m,"
+                            "t_base_m,t_top_m\n";
+    char designs[4096];
+    size_t n = (size_t)snprintf(designs, sizeof designs, "%s", variables);
+    for (int i = 0; i < 6; i++)
+        for (int j = 0; j < 22; j++)
+            n += (size_t)snprintf(designs + n, sizeof designs - n, "%g%c",
+                                  j < 20 ? 0.01 + 0.003 * ((i + j) % 7) : 0.02 - 0.005 * (j - 20), j < 21 ? ',' : '\n');
+    write_in_place("designs.csv", designs);
+    write_in_place("tower.ini", TOWER);
+    char *alone = output_of(SIMULATE);
+    expect_code(launch(3, "%s", SIMULATE), 0);
+    char *said = read_in_place("said");
+    assert_string_equal(said, alone);
+    free(said);
+    free(alone);
+}
+
+/* -- faults ---------------------------------------------------------------------------------------------------------- */
+
+enum { MPIRUN = -1 };
+
+static void kill_and_resume(int rank, int code)
+{
+    program();
+    write_in_place("steady.ini", STEADY);
+    assert_int_equal(system("true"), 0);
+    char command[256];
+    snprintf(command, sizeof command, "rm -rf '%s/killed'", place.folder);
+    assert_int_equal(system(command), 0);
+    const pid_t mpirun = launch(4, "optimize @/steady.ini --out @/killed");
+    wait_for_evaluations("killed");
+    const size_t before = lines_in("killed/evaluations.csv");
+    kill(rank == MPIRUN ? mpirun : process_of(mpirun, rank), SIGKILL);
+    assert_int_equal(code_of(mpirun), code);
+    rest(rank == MPIRUN ? 2.0 : 0.0);
+    assert_true(lines_in("killed/evaluations.csv") >= before);
+    if (rank > 0)
+        expect_said("process rank 2");
+    expect_code(launch(3, "optimize @/killed"), 0);
+    if (lines_in("whole/front.csv") == 0)
+        free(output_of("optimize @/steady.ini --out @/whole"));
+    assert_same_files("whole", "killed");
+}
+
+static void test_a_killed_rank_is_named_and_the_same_command_goes_on(void **state)
+{
+    (void)state;
+    kill_and_resume(2, 128 + SIGKILL);
+}
+
+static void test_a_killed_rank_0_loses_nothing(void **state)
+{
+    (void)state;
+    kill_and_resume(0, 128 + SIGKILL);
+}
+
+static void test_a_killed_mpirun_loses_nothing(void **state)
+{
+    (void)state;
+    kill_and_resume(MPIRUN, 128 + SIGKILL);
+}
+
+static void test_a_rank_that_hangs_is_taken_for_dead_and_named(void **state)
+{
+    (void)state;
+    program();
+    write_in_place("steady.ini", STEADY);
+    const pid_t mpirun = launch(3, "optimize @/steady.ini --out @/hangs");
+    wait_for_evaluations("hangs");
+    kill(process_of(mpirun, 1), SIGSTOP);
+    expect_code(mpirun, 75);
+    expect_said("rank 1 on ");
+    expect_said("was taken for dead");
+    expect_said("Resume it with");
+}
+
+static void test_a_simulator_that_does_not_answer_is_a_timeout_on_a_rank_that_lives(void **state)
+{
+    (void)state;
+    program();
+    write_in_place("deaf.ini", "[problem]\nkind = external\ncommand = sh tests/worker.sh silent\nvariables = 3\n"
+                               "objectives = 2\ntimeout_s = 0.5\n[search]\nmax_evals = 12\ninitial = 12\n"
+                               "population = 12\nthreads = 1\n");
+    expect_code(launch(4, "optimize @/deaf.ini --out @/deaf"), 0);
+    char *all = read_in_place("deaf/evaluations.csv");
+    int n = 0;
+    for (const char *at = all; (at = strstr(at, ",timeout,")); at++)
+        n++;
+    free(all);
+    assert_int_equal(n, 4);
+}
+
+static void test_a_stop_passed_on_by_mpirun_ends_with_75_and_goes_on(void **state)
+{
+    (void)state;
+    program();
+    write_in_place("steady.ini", STEADY);
+    const pid_t mpirun = launch(3, "optimize @/steady.ini --out @/stopped");
+    wait_for_evaluations("stopped");
+    kill(mpirun, SIGUSR1);
+    expect_code(mpirun, 75);
+    expect_said("Resume it with");
+    expect_code(launch(2, "optimize @/stopped"), 0);
+    free(output_of("optimize @/steady.ini --out @/never-stopped"));
+    assert_same_files("never-stopped", "stopped");
+}
+
+static pid_t child_of(pid_t parent)
+{
+    const double until = now_s() + 10;
+    while (now_s() < until) {
+        char path[64];
+        long pid;
+        snprintf(path, sizeof path, "/proc/%d/task/%d/children", (int)parent, (int)parent);
+        FILE *f = fopen(path, "r");
+        const int n = f ? fscanf(f, "%ld", &pid) : 0;
+        if (f)
+            fclose(f);
+        if (n == 1)
+            return (pid_t)pid;
+        rest(0.05);
+    }
+    fail_msg("process %d has no child", (int)parent);
+    return 0;
+}
+
+/* What mpirun makes of it otherwise: 1, 143, 137. */
+static void test_under_imtet_mpirun_a_signal_and_a_killed_rank_end_with_75(void **state)
+{
+    (void)state;
+    program();
+    write_in_place("steady.ini", STEADY);
+    launcher = "scripts/imtet-mpirun";
+    pid_t wrapper = launch(3, "optimize @/steady.ini --out @/wrapped");
+    wait_for_evaluations("wrapped");
+    kill(wrapper, SIGTERM);
+    expect_code(wrapper, 75);
+    expect_said("Resume it with");
+    wrapper = launch(3, "optimize @/wrapped");
+    rest(2.5);
+    kill(process_of(child_of(wrapper), 1), SIGKILL);
+    expect_code(wrapper, 75);
+    expect_said("process rank 1");
+    launcher = "mpirun";
+}
+
+static void test_another_program_or_record_on_a_rank_is_refused_by_name(void **state)
+{
+    (void)state;
+    const char *other = getenv("IMTET_MPI_OTHER");
+    char command[2048];
+    program();
+    if (!other)
+        skip();
+    snprintf(
+        command, sizeof command,
+        "cd '%s' && mkdir -p here there && seq 1 400 | awk '{ print 0.01 * $1 \",\" sin($1 / 9) }' > here/r.csv && "
+        "awk -F, '{ print $1 \",\" (-$2) }' here/r.csv > there/r.csv",
+        place.folder);
+    assert_int_equal(system(command), 0);
+    write_in_place("tower.ini", TOWER);
+    snprintf(command, sizeof command,
+             "exec mpirun -n 2 '%s' optimize '%s/tower.ini' --out '%s/x' : -n 1 '%s' optimize x >'%s/said' 2>&1",
+             program(), place.folder, place.folder, other, place.folder);
+    expect_code(spawn(command), 65);
+    expect_said("rank 2 on ");
+    expect_said("all ranks must be one program");
+    snprintf(
+        command, sizeof command,
+        "exec mpirun -n 2 -wdir '%s/here' '%s' optimize '%s/tower.ini' --set motion.records=none --set "
+        "motion.record=r.csv --set motion.unit=m_s2 --out '%s/y' : -n 1 -wdir '%s/there' '%s' serve >'%s/said' 2>&1",
+        place.folder, program(), place.folder, place.folder, place.folder, program(), place.folder);
+    expect_code(spawn(command), 65);
+    expect_said("rank 2 on ");
+    expect_said("reads other files than rank 0");
+}
+
+static int prepare(void **state)
+{
+    if (geteuid() == 0) {
+        setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
+        setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
+    }
+    setenv("OMPI_MCA_rmaps_base_oversubscribe", "1", 1);
+    setenv("OMP_WAIT_POLICY", "passive", 0);
+    return make_place(state);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_the_ordinary_program_does_not_link_mpi),
+        cmocka_unit_test(test_a_batch_has_the_same_bytes_at_any_number_of_ranks_and_threads),
+        cmocka_unit_test(test_an_external_simulator_runs_beside_every_rank),
+        cmocka_unit_test(test_asynchronous_with_one_worker_is_the_run_in_batches),
+        cmocka_unit_test(test_other_commands_give_their_tasks_to_the_ranks),
+        cmocka_unit_test(test_a_killed_rank_is_named_and_the_same_command_goes_on),
+        cmocka_unit_test(test_a_killed_rank_0_loses_nothing),
+        cmocka_unit_test(test_a_killed_mpirun_loses_nothing),
+        cmocka_unit_test(test_a_rank_that_hangs_is_taken_for_dead_and_named),
+        cmocka_unit_test(test_a_simulator_that_does_not_answer_is_a_timeout_on_a_rank_that_lives),
+        cmocka_unit_test(test_a_stop_passed_on_by_mpirun_ends_with_75_and_goes_on),
+        cmocka_unit_test(test_under_imtet_mpirun_a_signal_and_a_killed_rank_end_with_75),
+        cmocka_unit_test(test_another_program_or_record_on_a_rank_is_refused_by_name),
+    };
+    if (getenv("MPI_TEST"))
+        cmocka_set_test_filter(getenv("MPI_TEST"));
+    return cmocka_run_group_tests(tests, prepare, clear_place);
+}
