@@ -82,6 +82,26 @@ static void test_a_run_whose_workers_all_fail_stops_after_some_with_the_reason(v
     free(output_of("optimize @/third.ini --out @/third"));
 }
 
+/* -- a motion that is still at rest -------------------------------------------------------------------------------- */
+
+/* All designs have the same objectives; shares of the energy that went in are undefined. */
+static void test_a_motion_that_is_still_at_rest_ends_with_a_front_or_with_the_reason(void **state)
+{
+    (void)state;
+    static const char AT_REST[] = "optimize configs/quick.ini --set sim.duration_s=6 --set search.surrogate_max=40 "
+                                  "--set search.population=24 --set search.polish=0 --max-evals 240 --threads 1";
+    char command[512];
+    for (int seed = 1; seed <= 2; seed++) {
+        snprintf(command, sizeof command, "%s --seed %d --set search.objectives=j1_m,j2_m,j3_g --out @/rest%d", AT_REST,
+                 seed, seed);
+        char *out = output_of(command);
+        assert_non_null(strstr(out, " of 240 simulated designs, 0 simulations failed"));
+        free(out);
+    }
+    snprintf(command, sizeof command, "%s --out @/shares", AT_REST);
+    expect(70, "the motion puts in no net energy; so shares of it are undefined", command);
+}
+
 /* -- the system ---------------------------------------------------------------------------------------------------- */
 
 static void test_too_little_address_space_or_stack_is_said_at_once(void **state)
@@ -169,6 +189,7 @@ int main(void)
         cmocka_unit_test(test_no_design_is_left_out_whatever_its_message),
         cmocka_unit_test(test_names_that_are_no_utf_8_are_shown),
         cmocka_unit_test(test_a_run_whose_workers_all_fail_stops_after_some_with_the_reason),
+        cmocka_unit_test(test_a_motion_that_is_still_at_rest_ends_with_a_front_or_with_the_reason),
         cmocka_unit_test(test_too_little_address_space_or_stack_is_said_at_once),
         cmocka_unit_test(test_a_signal_that_was_ignored_at_the_start_stays_ignored),
         cmocka_unit_test(test_a_building_beyond_all_buildings_is_refused_whatever_its_units),

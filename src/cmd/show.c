@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/units.h"
+#include "moga/hypervolume.h"
 #include "store/output.h"
 
 static const char *scene_word(SceneKind kind)
@@ -336,7 +337,9 @@ void show_baselines(const Schema *schema, const double natural[], const Baseline
 
 void show_expected_gain(double gain)
 {
-    if (isfinite(gain))
+    if (isfinite(gain) && gain < hypervolume_error(0.5))
+        puts("as many simulations again: no more hypervolume expected than its noise");
+    else if (isfinite(gain))
         printf(
             "as many simulations again: some %.2g more hypervolume expected, as a share of the box about the front\n",
             fmax(gain, 0.0));
