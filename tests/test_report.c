@@ -14,6 +14,7 @@
 
 #include "base/random.h"
 #include "store/run_read.h"
+#include "report/importance.h"
 #include "report/report.h"
 #include "report/wavelet.h"
 #include "settings/settings.h"
@@ -117,6 +118,42 @@ static void test_the_wavelet_of_a_burst_is_largest_at_its_instant_as_a_product_o
     assert_close(amplitude[0], peak, 1e-3);
     assert_close(amplitude[1], peak * shape, 1e-3);
     assert_close(amplitude[2], peak * shape, 1e-3);
+}
+
+/* 200 designs of three variables in the unit cube and f = a x1 + b x2 + c x1 x2. */
+static Importance importance_of_plane(double a, double b, double c)
+{
+    Err err = {0};
+    Importance m;
+    Random r = random_stream(3, RANDOM_TEST, 0, 0);
+    Run run = {.schema = {.n_var = 3, .n_obj = 1}, .table = evaluation_table(3, 1, 0)};
+    for (int i = 0; i < 200; i++) {
+        Evaluation *e;
+        CHECK_OK(evaluation_table_add(&run.table, &e, &err), &err);
+        e->kind = KIND_SAMPLED;
+        for (int j = 0; j < 3; j++)
+            e->x[j] = random_uniform(&r);
+        e->f[0] = a * e->x[0] + b * e->x[1] + c * e->x[0] * e->x[1];
+    }
+    run.F = run.table.f;
+    CHECK_OK(importance_of(&run, &m, &err), &err);
+    evaluation_table_free(&run.table);
+    return m;
+}
+
+/* Var (a x1 + b x2) = (a^2 + b^2) / 12; of x1 x2: Var 7/144, each alone 3/144, together 1/144. */
+static void test_importance_is_the_share_of_the_variance_that_a_variable_has_a_part_in(void **state)
+{
+    (void)state;
+    Importance sum = importance_of_plane(1, 2, 0), product = importance_of_plane(0, 0, 1);
+    assert_true(sum.n_centres == 200 && sum.explained[0] > 0.999 && product.explained[0] > 0.99);
+    assert_close(sum.total[0], 0.2, 0.1);
+    assert_close(sum.total[1], 0.8, 0.1);
+    assert_true(sum.total[2] < 1e-4 && product.total[2] < 1e-3);
+    assert_close(product.total[0], 4.0 / 7, 0.1);
+    assert_close(product.total[1], 4.0 / 7, 0.1);
+    importance_free(&sum);
+    importance_free(&product);
 }
 
 static void open_tower(Run *run, Report *r)
@@ -472,6 +509,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_the_wavelet_of_a_steady_swing_is_its_amplitude_at_its_frequency),
         cmocka_unit_test(test_the_wavelet_of_a_burst_is_largest_at_its_instant_as_a_product_of_gaussians_says),
+        cmocka_unit_test(test_importance_is_the_share_of_the_variance_that_a_variable_has_a_part_in),
         cmocka_unit_test(test_energies_add_up_to_the_input_at_every_instant_and_end_as_the_result_says),
         cmocka_unit_test(test_the_chosen_design_is_simulated_as_the_search_did),
         cmocka_unit_test(test_growth_is_the_hypervolume_that_status_tells),

@@ -1,5 +1,8 @@
 // What the report takes from Observable Plot and d3; the bundler leaves the rest out.
 export {
-  areaY, dot, line, lineY, plot, raster, rectX, rectY, ruleX, ruleY,
+  areaY, barX, cell, dot, legend, line, lineY, plot, raster, rectX, rectY, ruleX, ruleY, text,
 } from "@observablehq/plot";
-export { axisLeft, brush, brushY, interpolateViridis, scaleLinear, scalePoint, select } from "d3";
+export {
+  axisLeft, brush, brushY, drag, interpolateViridis, rank, scaleLinear, scaleLog, scalePoint, select, symbol,
+  symbolCircle, symbolDiamond2, symbolSquare, symbolStar, symbolTriangle,
+} from "d3";

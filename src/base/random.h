@@ -26,7 +26,8 @@ typedef enum {
     RANDOM_TEST,
     RANDOM_DIRECTIONS,
     RANDOM_DESCENT,
-    RANDOM_POLISHING
+    RANDOM_POLISHING,
+    RANDOM_IMPORTANCE
 } RandomPurpose;
 
 typedef struct {

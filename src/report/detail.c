@@ -29,6 +29,7 @@ static void describe(const Scenario *w, const double x[], Detail *d)
     Design design;
     design_of(scene_design(w->scene), x, &design);
     for (int j = 0; j < n; j++) {
+        d->storey_m[j] = scene_building(w->scene)->storey_m[j];
         d->gap_m[j] = design.gap[j];
         d->thickness_m[j] = design_thickness(scene_design(w->scene), &design, j);
         d->bumper_n_m[j] = design.bumper[j] >= 0 ? design.bumper[j] : as_set;

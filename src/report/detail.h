@@ -26,7 +26,8 @@ typedef struct {
 } Elsewhere;
 
 typedef struct {
-    int n_floors, floor; /* floor from 0: whose displacement is followed */
+    int n_floors, floor;         /* floor from 0: whose displacement is followed */
+    double storey_m[FLOORS_MAX]; /* heights */
     double gap_m[FLOORS_MAX], thickness_m[FLOORS_MAX], bumper_n_m[FLOORS_MAX]; /* the last 0: steel on steel */
     double building_hz[FLOORS_MAX], core_hz[FLOORS_MAX];
     char record[128];

@@ -12,6 +12,7 @@
 #define IMTET_REPORT_REPORT_H
 
 #include "report/detail.h"
+#include "report/importance.h"
 #include "store/run.h"
 
 typedef struct {
@@ -20,6 +21,7 @@ typedef struct {
     int is_robust;       /* objectives are those of several simulations, not of the one in detail */
     int has_detail;
     Detail detail;
+    Importance importance;
 } Report;
 
 /* chosen: row of the run, on its front or not; the front may not be empty (run_why_empty). */

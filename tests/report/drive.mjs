@@ -25,8 +25,9 @@ const rows = lines.map((line) => line.split(",").map(Number));
 
 // ---- hands
 
-async function open() {
-  await page.call("Page.navigate", { url: pathToFileURL(file).href });
+async function open(hash = "") {
+  await page.call("Page.navigate", { url: "about:blank" });
+  await page.call("Page.navigate", { url: pathToFileURL(file).href + hash });
   await page.until("document.documentElement?.dataset.ready === 'yes'");
 }
 
@@ -36,7 +37,7 @@ async function settle() {
   await page.until("!document.documentElement.dataset.busy");
   await frame();
 }
-const mouse = (type, x, y) => page.call("Input.dispatchMouseEvent", { type, x, y, button: "left", buttons: type === "mouseReleased" ? 0 : 1, clickCount: 1 });
+const mouse = (type, x, y, buttons = type === "mouseReleased" ? 0 : 1) => page.call("Input.dispatchMouseEvent", { type, x, y, button: buttons || type === "mouseReleased" ? "left" : "none", buttons, clickCount: 1 });
 
 async function boxOf(selector, nth = 0) {
   return page.evaluate(`(() => { const e = document.querySelectorAll(${JSON.stringify(selector)})[${nth}];
@@ -65,6 +66,25 @@ async function type(label, text) {
   await page.call("Input.insertText", { text });
   for (const kind of ["keyDown", "keyUp"]) await page.call("Input.dispatchKeyEvent", { type: kind, key: "Enter", code: "Enter", windowsVirtualKeyCode: 13, text: kind === "keyDown" ? "\r" : undefined });
   await settle();
+}
+
+async function press(key) {
+  const code = { Enter: 13, Escape: 27, Delete: 46, ArrowRight: 39, ArrowLeft: 37 }[key] ?? key.toUpperCase().charCodeAt(0);
+  for (const type of ["keyDown", "keyUp"]) await page.call("Input.dispatchKeyEvent", { type, key, windowsVirtualKeyCode: code, text: type === "keyDown" && key.length === 1 ? key : undefined });
+  await settle();
+}
+
+const headingOf = (name) => `.heading[data-name="${name}"]`;
+const shownAxes = () => page.evaluate("Array.from(document.querySelectorAll('g.axis')).sort((a, b) => a.getBoundingClientRect().x - b.getBoundingClientRect().x).map((g) => g.querySelector('.heading').dataset.name)");
+
+// Upwards positive: from the first tick of an axis to its last.
+const tickPlace = (name) => `(() => { const t = document.querySelector('${headingOf(name)}').parentElement.querySelectorAll('.tick'); const y = (e) => e.getBoundingClientRect().y; return y(t[0]) - y(t[t.length - 1]); })()`;
+
+// By so many distances between axes to the right, and so many pixels down.
+async function dragTitle(name, right, down) {
+  const far = await page.evaluate("(() => { const g = document.querySelectorAll('g.axis'); return g[1].getBoundingClientRect().x - g[0].getBoundingClientRect().x; })()");
+  const box = await boxOf(headingOf(name));
+  await drag(box, [0.5, 0.5], [0.5 + (right * far) / box.width, 0.5 + down / box.height], 10);
 }
 
 async function downloaded() {
@@ -121,7 +141,7 @@ const tried = {
   async "a range typed on the keyboard selects the same as a search through the file"() {
     const column = 1 + run.schema.variables.length, values = rows.map((r) => r[column]).sort((a, b) => a - b);
     const low = +values[Math.floor(values.length / 4)].toPrecision(4), high = +values[Math.floor(values.length / 2)].toPrecision(4);
-    const label = await page.evaluate("document.querySelector('#ranges input').getAttribute('aria-label').replace(/ from$/, '')");
+    const label = await page.evaluate("document.querySelector('#ranges input[type=text]').getAttribute('aria-label').replace(/ from$/, '')");
     await type(`${label} from`, String(low));
     await type(`${label} to`, String(high));
     const chosen = all.filter((i) => rows[i][column] >= low && rows[i][column] <= high);
@@ -129,14 +149,14 @@ const tried = {
     assert.equal(await downloaded(), csvOf(chosen));
     await click("#clear");
   },
-  async "a box in the scatter matrix is two ranges"() {
+  async "a box in a scatter plot is two ranges"() {
     if (run.schema.objectives.length < 2) return;
     const first = await boxOf("g.panel .brush .overlay", 0);
     await drag(first, [0.02, 0.98], [0.75, 0.25]);
     const text = await downloaded(), chosen = all.filter((i) => text.includes(`\n${lines[i]}\n`));
     assert.ok(chosen.length > 0 && chosen.length < rows.length, `${chosen.length} of ${rows.length} selected`);
     for (const column of [1 + run.schema.variables.length, 2 + run.schema.variables.length]) assert.ok(chosen.every((i) => Number.isFinite(rows[i][column])));
-    const ranges = await page.evaluate("Array.from(document.querySelectorAll('#ranges input')).filter((e) => e.value !== '').length");
+    const ranges = await page.evaluate("Array.from(document.querySelectorAll('#ranges input[type=text]')).filter((e) => e.value !== '').length");
     assert.equal(ranges, 4);
     await click("#clear");
   },
@@ -153,6 +173,139 @@ const tried = {
       assert.equal(await page.evaluate("Array.from(document.querySelectorAll('g.axis')).filter((g) => g.getClientRects().length).length"), count);
     }
   },
+  async "a title dragged sideways moves its axis, down turns it over, up hides it"() {
+    const names = run.schema.objectives.map((o) => o.name);
+    if (names.length < 3) return;
+    await dragTitle(names[0], 1.2, 0);
+    assert.deepEqual(await shownAxes(), [names[1], names[0], ...names.slice(2)]);
+    const before = await page.evaluate(tickPlace(names[0]));
+    await dragTitle(names[0], 0, 90);
+    const after = await page.evaluate(tickPlace(names[0]));
+    assert.ok(Math.sign(before) === -Math.sign(after), `${names[0]} is turned over: ${before}, ${after}`);
+    await dragTitle(names[0], 0, -60);
+    assert.deepEqual(await shownAxes(), names.slice(1));
+    await click("input[name=axes][value=objectives]");
+    assert.deepEqual(await shownAxes(), names);
+  },
+  async "keys move, turn over and hide an axis, and open its menu"() {
+    const names = run.schema.objectives.map((o) => o.name), focus = (name) => page.evaluate(`document.querySelector(${JSON.stringify(headingOf(name))}).focus()`);
+    if (names.length < 3) return;
+    await focus(names[0]);
+    await press("ArrowRight");
+    assert.deepEqual(await shownAxes(), [names[1], names[0], ...names.slice(2)]);
+    await press("l"); // the focus went with it
+    assert.match(decodeURIComponent(await page.evaluate("location.hash")), new RegExp(`log=${names[0]}`));
+    await press("l");
+    await press("Enter");
+    assert.equal(await page.evaluate("document.querySelectorAll('#axis-menu:not([hidden]) [role=menuitem]').length"), 6);
+    await press("Escape");
+    assert.equal(await page.evaluate("document.getElementById('axis-menu').hidden && document.activeElement.dataset.name"), names[0]);
+    await press("Delete");
+    assert.deepEqual(await shownAxes(), names.slice(1));
+    await click("input[name=axes][value=objectives]");
+  },
+  async "the pointer on a line, a dot or a row shows its design in all three, a click marks it"() {
+    await page.evaluate("document.querySelector('g.axis').scrollIntoView({ block: 'center' })");
+    const box = await boxOf(".layers", 0);
+    const axes = await page.evaluate("Array.from(document.querySelectorAll('g.axis'), (g) => +g.getAttribute('transform').match(/[\\d.]+/)[0])");
+    let shown = "";
+    for (let k = 1; k < 40 && !shown; k++) {
+      await mouse("mouseMoved", box.x + (axes[0] + axes[1]) / 2, box.y + 60 + (k / 40) * (box.height - 70), 0);
+      shown = await page.evaluate("document.getElementById('tip').hidden ? '' : document.querySelector('#tip strong').textContent");
+    }
+    const id = +shown.match(/^Design (\d+)/)?.[1];
+    assert.ok(rows.some((r) => r[0] === id), `a design of the front is named: ${shown}`);
+    const at = rows.findIndex((r) => r[0] === id), value = rows[at][1 + run.schema.variables.length] * run.schema.objectives[0].factor;
+    const told = await page.evaluate("parseFloat(document.querySelector('#tip dd').textContent)");
+    assert.ok(Math.abs(told - value) <= 0.006 * Math.abs(value), `${told} is ${value}`);
+    assert.deepEqual(await page.evaluate("Array.from(document.querySelectorAll('#designs tbody tr.hovered'), (tr) => +tr.dataset.id)"), (await tableIds()).includes(id) ? [id] : []);
+    for (const type of ["mousePressed", "mouseReleased"]) {
+      const where = await page.evaluate("(() => { const t = document.getElementById('tip'); return [t.offsetLeft, t.offsetTop]; })()");
+      await mouse(type, where[0] - 16, where[1] - 16);
+    }
+    assert.ok((await page.evaluate("document.querySelector('#overlays').textContent")).startsWith(`Design ${id}`) || !run.tower);
+    assert.match(await page.evaluate("location.hash"), id === run.chosen ? /^/ : new RegExp(`mark=${id}`));
+  },
+  async "keep and exclude leave what they say, and everything comes back"() {
+    const box = await boxOf("g.axis .brush .overlay", 0);
+    await drag(box, [0.5, 0.45], [0.5, 1]);
+    const inside = await counted();
+    assert.ok(inside > 0 && inside < rows.length);
+    await click("#keep");
+    assert.equal(await counted(), inside);
+    assert.match(await page.evaluate("document.getElementById('count').textContent"), new RegExp(`${inside} of ${inside} .*${rows.length - inside} put aside`));
+    await click("#restore");
+    assert.equal(await counted(), rows.length);
+    await drag(await boxOf("g.axis .brush .overlay", 0), [0.5, 0.45], [0.5, 1]);
+    const again = await counted();
+    await click("#exclude");
+    assert.equal(await counted(), rows.length - again);
+    assert.equal((await downloaded()).trim().split("\n").length - 1, rows.length - again);
+    await click("#restore");
+    assert.equal(await counted(), rows.length);
+  },
+  async "the address carries axes, ranges, steps and colours to another window"() {
+    const names = run.schema.objectives.map((o) => o.name);
+    const value = (q) => rows.map((r) => r[1 + run.schema.variables.length] * run.schema.objectives[0].factor).sort((a, b) => a - b)[Math.floor(q * (rows.length - 1))];
+    const [low, high] = [value(0.2), value(0.7)].map((v) => +v.toPrecision(5));
+    const hash = `axes=-${names[1]},${names[0]}&in=${names[0]}:${low}:${high}&x=${names[1]}&y=${names[0]}&colour=${names[0]}&steps=%2B${names[0]}:${value(0.1).toPrecision(5)}:`;
+    await open(`#${hash}`);
+    const inside = rows.filter((r) => ((v) => v >= low && v <= high && v >= +value(0.1).toPrecision(5))(r[1 + run.schema.variables.length] * run.schema.objectives[0].factor)).length;
+    assert.equal(await counted(), inside);
+    assert.deepEqual(await shownAxes(), [names[1], names[0]]);
+    assert.deepEqual(await page.evaluate("['x', 'y', 'colour'].map((id) => document.getElementById(id).selectedIndex)"), [1, 0, 0]);
+    assert.equal(new URLSearchParams((await page.evaluate("location.hash")).slice(1)).get("axes"), `-${names[1]},${names[0]}`);
+    await open();
+    assert.equal(await counted(), rows.length);
+  },
+  async "any two columns are plotted against each other, a box there selects"() {
+    await page.evaluate(`(() => { for (const [id, k] of [["x", ${run.schema.objectives.length}], ["y", 0]]) { const e = document.getElementById(id); e.selectedIndex = k; e.dispatchEvent(new Event("change")); } })()`);
+    await settle();
+    await drag(await boxOf("g.panel .brush .overlay", 0), [0.02, 0.98], [0.6, 0.3]);
+    const text = await downloaded(), chosen = all.filter((i) => text.includes(`\n${lines[i]}\n`)), ranges = new URLSearchParams((await page.evaluate("location.hash")).slice(1)).get("in") ?? "";
+    assert.ok(ranges.includes(run.schema.variables[0]) && ranges.includes(run.schema.objectives[0].name), ranges);
+    assert.equal(chosen.length, await counted());
+    await click("#clear");
+  },
+  async "the matrix tells Spearman's rank correlation"() {
+    if (run.schema.objectives.length < 2) return;
+    await page.evaluate("document.querySelectorAll('details.part').forEach((d) => (d.open = true))");
+    await settle();
+    const [a, b] = [1, 2].map((k) => rows.map((r) => r[k + run.schema.variables.length]));
+    const ranks = (v) => v.map((x) => v.filter((y) => y < x).length);
+    const [p, q] = [ranks(a), ranks(b)], mean = (v) => v.reduce((s, x) => s + x, 0) / v.length, [mp, mq] = [mean(p), mean(q)];
+    const sum = (f) => p.reduce((s, _, i) => s + f(p[i] - mp, q[i] - mq), 0), r = sum((x, y) => x * y) / Math.sqrt(sum((x) => x * x) * sum((_, y) => y * y));
+    await page.evaluate("document.querySelector('g.correlation').scrollIntoView({ block: 'center' })");
+    await settle();
+    const told = await page.evaluate("document.querySelector('g.correlation text').textContent.replace('\u2212', '-')");
+    assert.ok(Math.abs(+told - r) < 0.006, `${told} is ${r}`);
+  },
+  async "every design is of one type, and the typical ones are designs of the front"() {
+    const types = await page.evaluate("Array.from(document.querySelectorAll('#types tbody tr'), (tr) => [+tr.cells[1].textContent.replaceAll(',', ''), +tr.cells[2].textContent])");
+    if (rows.length < 16) return;
+    assert.ok(types.length >= 2);
+    assert.equal(types.reduce((sum, [many]) => sum + many, 0), rows.length);
+    for (const [, id] of types) assert.ok(rows.some((r) => r[0] === id));
+  },
+  async "the first screen has the sentence, the picture and every warning"() {
+    if (!run.tower) return;
+    await page.evaluate("window.scrollTo(0, 0)");
+    const bottoms = await page.evaluate("Array.from(document.querySelectorAll('#summary .chart svg'), (e) => e.getBoundingClientRect().bottom)");
+    assert.ok(bottoms.length === 3 && bottoms.every((v) => v <= 900), `the picture ends at ${bottoms}`);
+    const lead = await page.evaluate("document.getElementById('subtitle').textContent"), warned = await page.evaluate("document.querySelector('.warnings')?.textContent ?? ''");
+    for (const word of [`${run.detail.gap_m.length} storeys`, run.evaluated.toLocaleString("en-US"), `design ${run.chosen}`, `peak ${+run.detail.pga_g.toPrecision(3)} g`]) assert.ok(lead.includes(word), `${word} in: ${lead}`);
+    const alone = run.detail.baselines.find((b) => b.key === "no_core").objectives;
+    for (const [k, o] of run.schema.objectives.entries()) {
+      const isWorse = alone[k] && o.sense * (run.chosen_f[k] - alone[k]) > 1e-3 * Math.abs(alone[k]);
+      if (isWorse) assert.match(warned, new RegExp(`Worse than without core in [^.]*${o.title}`));
+    }
+    assert.equal(/beyond the contact law/.test(warned), run.beyond_law.length > 0);
+    assert.equal(/never close/.test(warned), run.detail.with_core.closings.includes(0));
+  },
+  async "no letter of a chart is smaller than 12 px"() {
+    const small = await page.evaluate(`Array.from(document.querySelectorAll("svg text, svg tspan")).filter((e) => e.getClientRects().length && parseFloat(getComputedStyle(e).fontSize) < 12).map((e) => e.textContent).slice(0, 5)`);
+    assert.deepEqual(small, []);
+  },
   async "everything can be reached by the Tab key"() {
     const seen = new Set();
     await page.evaluate("document.activeElement.blur(), document.querySelectorAll('details').forEach((d) => (d.open = false))");
@@ -160,13 +313,13 @@ const tried = {
       for (const kind of ["keyDown", "keyUp"]) await page.call("Input.dispatchKeyEvent", { type: kind, key: "Tab", code: "Tab", windowsVirtualKeyCode: 9 });
       seen.add(await page.evaluate("(() => { const e = document.activeElement; return e.id || e.tagName + (e.parentElement?.id ? ' in ' + e.parentElement.id : ''); })()"));
     }
-    for (const wanted of ["download", "colour", "SUMMARY in ranges"]) assert.ok(seen.has(wanted), `${wanted} is never focused: ${[...seen]}`);
+    for (const wanted of ["download", "colour", "x", "y", "SUMMARY in ranges"]) assert.ok(seen.has(wanted), `${wanted} is never focused: ${[...seen]}`);
   },
   async "no heading of an axis lies on another, nothing is wider than the window"() {
     for (const value of ["all", "objectives"]) {
       await click(`input[name=axes][value=${value}]`);
       const clash = await page.evaluate(`(() => {
-        const seen = Array.from(document.querySelectorAll("g.axis text.title, g.panel text.title")).filter((e) => e.getClientRects().length).map((e) => [e.textContent, e.getBoundingClientRect()]);
+        const seen = Array.from(document.querySelectorAll(".layers text.title")).filter((e) => e.getClientRects().length).map((e) => [e.textContent, e.getBoundingClientRect()]);
         for (let i = 0; i < seen.length; i++) for (let j = 0; j < i; j++) {
           const [a, r] = seen[i], [b, q] = seen[j];
           if (r.left < q.right && q.left < r.right && r.top < q.bottom && q.top < r.bottom) return a + " on " + b;
@@ -175,7 +328,7 @@ const tried = {
       })()`);
       assert.equal(clash, "");
     }
-    for (const width of [420, 1360]) {
+    for (const width of [800, 420, 1360]) {
       await page.call("Emulation.setDeviceMetricsOverride", { width, height: 900, deviceScaleFactor: 1, mobile: false });
       await page.until(`document.documentElement.scrollWidth <= ${width}`, 5); // it is laid out again
     }
@@ -183,10 +336,12 @@ const tried = {
   async "it prints"() {
     const { data } = await page.call("Page.printToPDF", { printBackground: true });
     assert.ok(Buffer.from(data, "base64").subarray(0, 5).toString() === "%PDF-");
+    await page.evaluate("window.dispatchEvent(new Event('beforeprint'))"); // opens what is folded
     await page.call("Emulation.setEmulatedMedia", { media: "print" });
     const [ids, headings, others] = JSON.parse(await page.evaluate(`JSON.stringify(["#designs tr:not([hidden]) td:first-child", "#designs th:not(.variable)", "button.plain"].map((cells) =>
       Array.from(document.querySelectorAll(cells), (cell) => cell.innerText.trim() && cell.querySelector("button")?.getClientRects().length !== 0 && cell.getClientRects().length)))`));
     await page.call("Emulation.setEmulatedMedia", { media: "" });
+    await page.evaluate("window.dispatchEvent(new Event('afterprint'))");
     assert.ok(ids.length && headings.length && [...ids, ...headings].every(Boolean), "ids or headings are not on paper");
     assert.ok(!others.some(Boolean), "buttons are on paper");
   },
@@ -194,10 +349,10 @@ const tried = {
     const parts = await page.evaluate("Array.from(document.querySelectorAll('main > section'), (s) => s.id)");
     assert.equal(parts.includes("design"), run.tower);
     if (!run.tower) return;
-    const titles = await page.evaluate("Array.from(document.querySelectorAll('#design h3'), (h) => h.textContent).join('|')");
+    const titles = await page.evaluate("Array.from(document.querySelectorAll('#summary h3, #design h3'), (h) => h.textContent).join('|')");
     for (const title of ["Gaps over the height", "Thickness of the core", "Displacement", "Interstorey drift", "Acceleration", "Energy dissipated by each mode", "Energies, with core", "Energies, without core", "Displacement of floor", "Other earthquakes"])
       assert.ok(titles.includes(title), `no part ${title} in ${titles}`);
-    assert.equal(await page.evaluate("Array.from(document.querySelectorAll('#design svg')).filter((s) => /NaN/.test(s.innerHTML.replace(/base64,[^\x22]*/g, ''))).length"), 0);
+    assert.equal(await page.evaluate("Array.from(document.querySelectorAll('svg')).filter((s) => /NaN/.test(s.innerHTML.replace(/base64,[^\x22]*/g, ''))).length"), 0);
   },
   async "the browser complains of nothing and asks nobody for anything"() {
     assert.deepEqual(complaints(), []);

@@ -5,42 +5,32 @@ const run = JSON.parse(document.getElementById("run").textContent);
 const lines = document.getElementById("rows").textContent.trim().split("\n").filter((line) => line);
 const n = lines.length;
 
-// Names of the tower's columns: title, unit, and by what a number is multiplied for the eye. Files keep their own units.
-const WORDS = {
-  j1_m: ["J1 displacement", "m", 1, "peak floor displacement"],
-  j2_m: ["J2 interstorey drift", "m", 1, "peak interstorey drift"],
-  j3_g: ["J3 acceleration", "g", 1, "peak absolute floor acceleration"],
-  ed1_pct: ["mode 1", "%", 1, "share of the input energy dissipated by mode 1"],
-  ed5_10_pct: ["modes 5\u201310", "%", 1, "share of the input energy dissipated by modes 5 to 10"],
-  edcs_pct: ["core share", "%", 1, "share of the input energy dissipated by the core"],
-  mcore_kg: ["core mass", "t", 1e-3, "mass of the core"],
+// ---- columns: titles and units of objectives come with the run, those of the tower's variables follow from their names
+
+const SINGLE = {
   t_base_m: ["t base", "mm", 1e3, "thickness of the core, first storey"],
   t_top_m: ["t top", "mm", 1e3, "thickness of the core, last storey"],
   side_m: ["side of the core", "m", 1, "outer side of the core's box"],
 };
 
-function words(name, unit, what) {
-  const gap = run.tower && name.match(/^gap_0*(\d+)_m$/);
-  if (gap) return [`gap ${gap[1]}`, "mm", 1e3, `gap at floor ${gap[1]}`];
-  const zone = run.tower && name.match(/^gap(?:_zone_(\d+))?_m$/);
-  if (zone) return [zone[1] ? `gap, zone ${zone[1]}` : "gap", "mm", 1e3, zone[1] ? `gap at the floors of zone ${zone[1]}` : "gap at every floor"];
+function variableWords(name) {
+  const gap = run.tower && name.match(/^gap(?:_(zone_)?0*(\d+))?_m$/);
   const bumper = run.tower && name.match(/^bumper(?:_(zone_)?0*(\d+))?_log10_n_m$/);
-  if (bumper) {
-    const where = bumper[2] ? `${bumper[1] ? "zone" : "floor"} ${bumper[2]}` : "every floor";
-    return [bumper[2] ? `bumper, ${where}` : "bumper", "log10 N/m", 1, `stiffness of the bumper at ${where}, decimal logarithm`];
-  }
-  if (run.tower && WORDS[name]) return WORDS[name];
-  return [name, unit === "-" ? "" : unit, 1, what];
+  const [, zone, number] = gap || bumper || [];
+  const where = number ? `${zone ? "zone" : "floor"} ${number}` : "every floor";
+  const short = number ? (zone ? `, zone ${number}` : ` ${number}`) : "";
+  if (gap) return [`gap${short}`, "mm", 1e3, `gap at ${where}`];
+  if (bumper) return [`bumper${short}`, "log10 N/m", 1, `stiffness of the bumper at ${where}, decimal logarithm`];
+  return (run.tower && SINGLE[name]) || [name, "", 1, name];
 }
 
-function columnOf(name, place, sense, givenUnit = "", givenWhat = name) {
-  const [title, unit, factor, what] = words(name, givenUnit, givenWhat);
+function columnOf(name, place, sense, [title, unit, factor, what]) {
   return { name, title, unit, factor, what, sense, place, raw: new Float64Array(n), value: new Float64Array(n) };
 }
 
 const nVar = run.schema.variables.length;
-const variables = run.schema.variables.map((name, j) => columnOf(name, 1 + j, 0));
-const objectives = run.schema.objectives.map(({ name, sense, unit, what }, k) => columnOf(name, 1 + nVar + k, sense, unit, what));
+const variables = run.schema.variables.map((name, j) => columnOf(name, 1 + j, 0, variableWords(name)));
+const objectives = run.schema.objectives.map((o, k) => columnOf(o.name, 1 + nVar + k, o.sense, [o.title, o.unit, o.factor, o.what]));
 const columns = [...objectives, ...variables];
 const ids = new Float64Array(n);
 
@@ -52,24 +42,27 @@ for (let i = 0; i < n; i++) {
     c.value[i] = c.raw[i] * c.factor;
   }
 }
-for (const c of columns) {
-  c.min = Infinity;
-  c.max = -Infinity;
-  for (const v of c.value) {
-    if (v < c.min) c.min = v;
-    if (v > c.max) c.max = v;
-  }
-}
+const rowOf = new Map(Array.from(ids, (id, i) => [id, i]));
+const beyondLaw = new Set(run.beyond_law);
+
 // Columns that are numbered, as the gaps are, share one scale.
-const groups = new Map();
+const families = new Map();
 for (const c of columns) {
   const stem = c.name.replace(/\d+/g, "#");
-  const group = groups.get(stem) ?? { low: Infinity, high: -Infinity };
-  group.low = Math.min(group.low, c.min);
-  group.high = Math.max(group.high, c.max);
-  groups.set(stem, (c.group = group));
+  if (!families.has(stem)) families.set(stem, []);
+  c.family = families.get(stem);
+  c.family.push(c);
 }
-const rowOf = new Map(Array.from(ids, (id, i) => [id, i]));
+
+// Bounds of the search, in the units of the eye; -1, 0, 1: whether a value lies at one of them.
+variables.forEach((c, j) => {
+  const b = run.schema.bounds;
+  c.bounds = b ? [b.lower[j] * c.factor, b.upper[j] * c.factor] : [NaN, NaN];
+});
+function atBound(c, v) {
+  const [low, high] = c.bounds, near = 1e-3 * (high - low);
+  return v <= low + near ? -1 : v >= high - near ? 1 : 0;
+}
 
 // ---- words and numbers
 
@@ -88,6 +81,7 @@ function digits(v) {
 }
 
 const withUnit = (c, v) => show(v) + (c.unit ? `\u202f${c.unit}` : "");
+const titleUnit = (c) => c.title + (c.unit ? ` [${c.unit}]` : "");
 const count = (v) => v.toLocaleString("en-US");
 
 function element(tag, attributes = {}, ...children) {
@@ -109,3 +103,49 @@ const BLUE = "#0072b2", VERMILLION = "#d55e00", OLIVE = "#8a6d00", ORANGE = "#e6
   PURPLE = "#cc79a7", GREY = "#9aa4af", INK = "#1b2430";
 const RAMP = Array.from({ length: 32 }, (_, i) => charts.interpolateViridis((0.92 * i) / 31));
 const SHADES = RAMP.length;
+
+// ---- the chosen design and what it is compared with
+
+const SCENES = {
+  impacts: { words: "with core", colour: BLUE, mark: "\u25cf", symbol: "circle", path: charts.symbolCircle, dash: [] },
+  no_core: { words: "without core", colour: VERMILLION, mark: "\u25c6", symbol: "diamond2", path: charts.symbolDiamond2, dash: [8, 4] },
+  rigid: { words: "rigidly connected", colour: OLIVE, mark: "\u25b2", symbol: "triangle", path: charts.symbolTriangle, dash: [3, 3] },
+  tmd: { words: "tuned mass damper", colour: GREEN, mark: "\u25a0", symbol: "square", path: charts.symbolSquare, dash: [12, 4] },
+  links: { words: "viscous links", colour: PURPLE, mark: "\u2605", symbol: "star", path: charts.symbolStar, dash: [2, 4] },
+};
+
+// Beside the designs in every picture of the front: a value per column, in the units of the eye, NaN where there is none.
+// What is pushed here is drawn after the next layoutChanged.
+const overlays = (run.detail?.baselines ?? []).filter((b) => b.objectives).map((b) => ({
+  ...SCENES[b.key], key: b.key, isShown: true, raw: b.objectives, device: b.device,
+  value: new Map(objectives.map((c, k) => [c, b.objectives[k] === null ? NaN : b.objectives[k] * c.factor])),
+}));
+const shownOverlays = () => overlays.filter((o) => o.isShown);
+
+// Least and largest value of the designs that are kept, and of what is shown beside them.
+function extent(c, beside = shownOverlays()) {
+  let low = Infinity, high = -Infinity;
+  const take = (v) => {
+    if (v < low) low = v;
+    if (v > high) high = v;
+  };
+  for (const one of c.sense ? [c] : c.family) for (let i = 0; i < n; i++) if (state.kept[i]) take(one.value[i]);
+  for (const o of beside) take(o.value.get(c) ?? NaN);
+  return [low, high];
+}
+
+function scaleOf(c, from, to, pad) {
+  const [low, high] = extent(c);
+  if (state.log.has(c) && low > 0) {
+    const room = (high / low) ** pad;
+    return charts.scaleLog([low / room, high * room], [from, to]);
+  }
+  const room = high > low ? pad * (high - low) : 0.5 * Math.abs(high) || 0.5;
+  return charts.scaleLinear([low - room, high + room], [from, to]);
+}
+
+// Of a logarithmic scale those that begin with 1, 2 or 5 where all are too many.
+function ticksOf(scale, many) {
+  const ticks = scale.ticks(many);
+  return ticks.length <= 2 * many ? ticks : ticks.filter((v) => /^[125]/.test(v.toExponential(3)) && /^.\.000/.test(v.toExponential(3)));
+}

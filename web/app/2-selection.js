@@ -1,17 +1,26 @@
-// Which designs are looked at: those within every range. One state for all pictures, one frame for every change of it.
+// Which designs are looked at and how: one state for all pictures, in the page's address too; one frame for every change.
 
 const state = {
-  axes: "objectives", // objectives, variables, all
+  axes: [...objectives], // of the parallel coordinates, from left to right
+  inverted: new Set(), // columns with their better, or larger, side up
+  log: new Set(),
+  x: objectives[0],
+  y: objectives[Math.min(1, objectives.length - 1)],
   colour: objectives[objectives.length - 1],
   ranges: new Map(), // column -> [low, high] in the units of the eye
+  steps: [], // [{ keep, ranges }]: what was kept and excluded before
+  kept: new Uint8Array(n).fill(1),
+  nKept: n,
   selected: new Uint8Array(n).fill(1),
   nSelected: n,
   marked: rowOf.get(run.chosen),
+  hovered: undefined, // row under the pointer
 };
 
-// What is drawn anew when the selection, and when the axes or colours changed. While a range is dragged, only what is in
-// sight follows at once; the rest follows REST_MS after the last change, as do lines that take more than a frame.
-const views = { selection: [], layout: [] };
+// What is drawn anew when the selection, the axes or colours, and the design under the pointer changed. While a range is
+// dragged, only what is in sight follows at once; the rest follows REST_MS after the last change, as do lines that take
+// more than a frame.
+const views = { selection: [], layout: [], hover: [] };
 const REST_MS = 100;
 let resting; // timer; undefined: at rest
 const atRest = new Set();
@@ -34,6 +43,7 @@ function redraw(view) {
 
 function redrawAll() {
   for (const view of views.selection) redraw(view);
+  saveAddress();
 }
 
 // In the next frame, or at rest; a task that is not wanted any more is dropped.
@@ -56,20 +66,36 @@ function rest() {
   for (const view of views.selection) if (view.isStale) redraw(view);
   for (const waits of atRest) waits.frame = requestAnimationFrame(waits.task);
   atRest.clear();
+  saveAddress();
   delete document.documentElement.dataset.busy;
 }
 window.addEventListener("beforeprint", rest);
 
-function findSelected() {
-  const { selected } = state;
-  selected.fill(1);
-  for (const [c, [low, high]] of state.ranges) {
+// Marks 1 in `out` where `from` is 1 and every range holds; returns how many.
+function within(ranges, from, out) {
+  out.set(from);
+  for (const [c, [low, high]] of ranges) {
     const { value } = c;
-    for (let i = 0; i < n; i++) if (!(value[i] >= low && value[i] <= high)) selected[i] = 0;
+    for (let i = 0; i < n; i++) if (!(value[i] >= low && value[i] <= high)) out[i] = 0;
   }
   let sum = 0;
-  for (let i = 0; i < n; i++) sum += selected[i];
-  state.nSelected = sum;
+  for (let i = 0; i < n; i++) sum += out[i];
+  return sum;
+}
+
+function findSelected() {
+  state.nSelected = within(state.ranges, state.kept, state.selected);
+}
+
+function findKept() {
+  const { kept } = state, hit = new Uint8Array(n);
+  kept.fill(1);
+  for (const { keep, ranges } of state.steps) {
+    within(ranges, kept, hit);
+    for (let i = 0; i < n; i++) kept[i] = keep ? hit[i] : kept[i] & ~hit[i];
+  }
+  state.nKept = kept.reduce((a, b) => a + b, 0);
+  findSelected();
 }
 
 let waiting = false;
@@ -103,9 +129,19 @@ function setRanges(pairs) {
   selectionChanged();
 }
 
-function clearRanges() {
+// The selected designs alone from now on, or all but them; scales follow. Nothing left: not done.
+function takeStep(keep) {
+  if (!state.ranges.size || state.nSelected === (keep ? 0 : state.nKept)) return;
+  state.steps.push({ keep, ranges: new Map(state.ranges) });
   state.ranges.clear();
-  selectionChanged();
+  findKept();
+  layoutChanged();
+}
+
+function dropSteps() {
+  state.steps = [];
+  findKept();
+  layoutChanged();
 }
 
 function mark(row) {
@@ -113,15 +149,70 @@ function mark(row) {
   redrawAll();
 }
 
-// Shade of every design, 0..SHADES-1, and the designs in the order of their shades, so that few strokes change colour.
-let shade = new Uint8Array(n);
-let byShade = [];
-function findShades() {
-  const { value, min, max } = state.colour;
-  const scale = max > min ? (SHADES - 1) / (max - min) : 0;
-  for (let i = 0; i < n; i++) shade[i] = Math.round((value[i] - min) * scale);
-  byShade = Array.from({ length: n }, (_, i) => i).sort((a, b) => shade[a] - shade[b]);
+function hover(row, event) {
+  if (row !== state.hovered) {
+    state.hovered = row;
+    for (const draw of views.hover) draw();
+  }
+  showTip(row, event);
 }
+
+// ---- the address: #axes=j1_m,-j3_g&log=j3_g&in=j1_m:0.4:0.8&steps=+j1_m:0:1;-j3_g:9:&x=j1_m&y=j2_m&colour=type&mark=17
+
+const byName = (name) => columns.find((c) => c.name === name);
+const rangesText = (ranges) => Array.from(ranges, ([c, [a, b]]) => [encodeURIComponent(c.name), ...[a, b].map((v) => (Number.isFinite(v) ? +v.toPrecision(6) : ""))].join(":")).join(",");
+function rangesFrom(text) {
+  const parts = text.split(",").map((part) => part.split(":")).map(([name, ...ends]) => [decodeURIComponent(name), ...ends]).filter(([name]) => byName(name));
+  const end = (word, open) => (word && Number.isFinite(+word) ? +word : open);
+  return new Map(parts.map(([name, a, b]) => [byName(name), [end(a, -Infinity), end(b, Infinity)]]));
+}
+
+function addressOf() {
+  const names = (list) => list.map((c) => c.name).join(",");
+  const all = {
+    axes: state.axes.map((c) => (state.inverted.has(c) ? "-" : "") + c.name).join(","), log: names([...state.log]), in: rangesText(state.ranges),
+    steps: state.steps.map(({ keep, ranges }) => (keep ? "+" : "-") + rangesText(ranges)).join(";"), x: state.x.name, y: state.y.name,
+    colour: state.colour.name, mark: state.marked === undefined ? "" : ids[state.marked],
+  };
+  return new URLSearchParams(Object.entries(all).filter(([key, v]) => v !== "" && v !== standard?.[key])).toString();
+}
+let standard, lastAddress;
+
+// Only what differs from the page as it opens; a section's name in the address (#design) stays.
+function saveAddress() {
+  const now = addressOf();
+  if (now === (lastAddress ?? "")) return;
+  lastAddress = now;
+  history.replaceState(null, "", now ? `#${now}` : location.pathname + location.search);
+}
+
+function readAddress() {
+  const given = Object.fromEntries(new URLSearchParams(location.hash.slice(1)));
+  const list = (text) => text.split(",").map(byName).filter(Boolean), all = { ...standard, ...given };
+  const named = all.axes.split(",").map((word) => [byName(word.replace(/^-/, "")), word.startsWith("-")]).filter(([c]) => c);
+  if (named.length) state.axes = named.map(([c]) => c);
+  state.inverted = new Set(named.filter(([, up]) => up).map(([c]) => c));
+  state.log = new Set(list(all.log ?? ""));
+  state.ranges = rangesFrom(all.in ?? "");
+  state.steps = (all.steps ?? "").split(";").filter(Boolean).map((text) => ({ keep: text[0] === "+", ranges: rangesFrom(text.slice(1)) }));
+  for (const key of ["x", "y", "colour"]) state[key] = byName(all[key]) ?? state[key];
+  state.marked = rowOf.get(+all.mark) ?? state.marked;
+  findKept();
+  findShades();
+}
+
+// ---- colours and canvases
+
+// Shade of every design, 0..SHADES-1, and the designs in the order of their shades, so that few strokes change colour.
+let shade = new Uint8Array(n), byShade = [], shadeColours = RAMP;
+function findShades() {
+  const { value, palette } = state.colour, [low, high] = extent(state.colour, []), many = palette ? palette.length : SHADES;
+  const scale = high > low ? (SHADES - 1) / (high - low) : 0;
+  shadeColours = palette ?? RAMP;
+  for (let i = 0; i < n; i++) shade[i] = palette ? value[i] - 1 : Math.max(0, Math.min(many - 1, Math.round((value[i] - low) * scale)));
+  byShade = Array.from({ length: n }, (_, i) => i).filter((i) => state.kept[i]).sort((a, b) => shade[a] - shade[b]);
+}
+views.layout.push(findShades);
 
 // A canvas of css size (w, h), sharp on fine screens; coordinates in css pixels.
 function prepare(canvas, w, h) {
@@ -136,7 +227,22 @@ function prepare(canvas, w, h) {
 }
 
 // A range may be open; its ends on a picture are not.
-const within = (v, [a, b]) => Math.max(Math.min(a, b), Math.min(Math.max(a, b), v));
+const clamp = (v, [a, b]) => Math.max(Math.min(a, b), Math.min(Math.max(a, b), v));
 
 // Faint where they are many, never invisible.
 const opacity = (many) => Math.max(0.12, Math.min(0.85, 90 / Math.sqrt(many + 1) / 10));
+
+// The design under the pointer, in words, beside it.
+const tip = document.body.appendChild(element("div", { id: "tip", hidden: true, "aria-hidden": "true" }));
+function showTip(row, event) {
+  tip.hidden = row === undefined || !event;
+  if (tip.hidden) return;
+  if (+tip.dataset.row !== row) {
+    tip.dataset.row = row;
+    tip.replaceChildren(element("strong", {}, designName(row)), element("dl", {}, ...objectives.flatMap((c) => [element("dt", {}, c.title), element("dd", {}, withUnit(c, c.value[row]))])));
+  }
+  tip.style.left = `${Math.min(event.clientX + 16, window.innerWidth - tip.offsetWidth - 8)}px`;
+  tip.style.top = `${Math.max(4, Math.min(event.clientY + 16, window.innerHeight - tip.offsetHeight - 8))}px`;
+}
+
+const designName = (row) => `Design ${ids[row]}${ids[row] === run.knee ? ", the knee" : ""}${beyondLaw.has(ids[row]) ? ", beyond the contact law" : ""}`;

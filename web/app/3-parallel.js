@@ -1,35 +1,71 @@
-// Parallel coordinates: a line per design, an axis per column; a brush on an axis is a range of its column. `name` is
-// what state.axes calls these columns.
+// Parallel coordinates: a line per design, an axis per column; a brush on an axis is a range of its column. A title is
+// dragged: sideways to another place, down to turn the axis over, up to take it away; the same by keys and by a menu.
 
 const SEGMENTS_PER_FRAME = 4000;
+const INVERT_PX = 45, HIDE_PX = -32; // of a dragged title
+const NEAR_PX = 8; // of a line under the pointer
 
-function parallelCoordinates(host, name, shown) {
-  const isShown = () => state.axes === name || state.axes === "all";
+const isLow = (c) => (c.sense < 0) !== state.inverted.has(c); // the axis begins with its largest value below
+
+const axisMenu = document.body.appendChild(element("div", { id: "axis-menu", role: "menu", hidden: true }));
+
+function axisActions(c) {
+  const at = state.axes.indexOf(c);
+  const move = (by) => {
+    state.axes.splice(at, 1);
+    state.axes.splice(at + by, 0, c);
+  };
+  const toggle = (set) => (set.has(c) ? set.delete(c) : set.add(c));
+  return [
+    ["Move left", at > 0, () => move(-1), "ArrowLeft"], ["Move right", at < state.axes.length - 1, () => move(1), "ArrowRight"],
+    ["Turn over", true, () => toggle(state.inverted), "i"],
+    [state.log.has(c) ? "Linear" : "Logarithmic", extent(c, [])[0] > 0, () => toggle(state.log), "l"],
+    ["Colour by it", true, () => (state.colour = c), "c"],
+    ["Hide", state.axes.length > 1, () => state.axes.splice(at, 1), "Delete"],
+  ];
+}
+
+function actOnAxis(c, act) {
+  act();
+  axisMenu.hidden = true;
+  layoutChanged();
+  document.querySelector(`#front .heading[data-name="${CSS.escape(c.name)}"]`)?.focus();
+}
+
+function openAxisMenu(c, box) {
+  axisMenu.replaceChildren(...axisActions(c).map(([words, can, act, key]) => element("button", { type: "button", role: "menuitem", disabled: !can, onclick: () => actOnAxis(c, act) }, words, element("kbd", {}, key.replace("Arrow", "").replace("Delete", "Del")))));
+  axisMenu.hidden = false;
+  axisMenu.style.left = `${clamp(box.left, [4, window.innerWidth - axisMenu.offsetWidth - 4])}px`;
+  axisMenu.style.top = `${box.bottom + 4}px`;
+  axisMenu.querySelector("button:enabled").focus();
+  axisMenu.onkeydown = (event) => {
+    const items = [...axisMenu.querySelectorAll("button:enabled")], at = items.indexOf(document.activeElement);
+    const to = { ArrowDown: at + 1, ArrowUp: at - 1 }[event.key];
+    if (to !== undefined) items.at(to % items.length).focus();
+    if (event.key === "Escape") actOnAxis(c, () => {});
+    if (to !== undefined) event.preventDefault();
+  };
+}
+document.addEventListener("pointerdown", (event) => {
+  if (!axisMenu.contains(event.target)) axisMenu.hidden = true;
+});
+window.addEventListener("scroll", () => (axisMenu.hidden = true), { passive: true });
+
+function parallelCoordinates(host) {
   const layers = host.appendChild(element("div", { class: "layers" }));
-  const back = layers.appendChild(element("canvas", { "aria-hidden": "true" }));
-  const front = layers.appendChild(element("canvas", { role: "img", "aria-label": `Parallel coordinates of the ${name}` }));
+  const [back, front, over] = [0, 1, 2].map((k) => layers.appendChild(element("canvas", k === 1 ? { role: "img", "aria-label": "Parallel coordinates of the front" } : { "aria-hidden": "true" })));
   const svg = charts.select(layers).append("svg");
-  const margin = { top: 46, right: 40, bottom: 14, left: 46 }, height = shown === objectives ? 400 : 320;
-  let width = 0, axes = [], places, x, pens, isBackDrawn;
+  const margin = { top: 58, right: 56, bottom: 14, left: 56 }, height = 400;
+  let width = 0, axes = [], places, pens, isBackDrawn;
   const frames = { back: null, front: null };
 
-  // Better is down on every objective's axis.
-  function axisOf(c) {
-    const { low, high } = c.sense ? { low: c.min, high: c.max } : c.group;
-    const pad = high > low ? 0.02 * (high - low) : 0.5 * Math.abs(high) || 0.5;
-    const ends = [low - pad, high + pad];
-    return {
-      c,
-      y: charts.scaleLinear(c.sense < 0 ? [ends[1], ends[0]] : ends, [height - margin.bottom, margin.top]),
-    };
-  }
+  const axisOf = (c) => ({ c, y: scaleOf(c, ...(isLow(c) ? [margin.top, height - margin.bottom] : [height - margin.bottom, margin.top]), 0.02) });
 
   // Heights of every design on every axis, so that a brush only has to draw.
   function placeLines() {
     places = new Float32Array(n * axes.length);
     axes.forEach(({ c, y }, k) => {
-      const slope = y(1) - y(0), start = y(0);
-      for (let i = 0; i < n; i++) places[i * axes.length + k] = start + slope * c.value[i];
+      for (let i = 0; i < n; i++) places[i * axes.length + k] = y(c.value[i]);
     });
   }
 
@@ -44,12 +80,12 @@ function parallelCoordinates(host, name, shown) {
 
   // Many lines take more than a frame: they come in passes over the whole, so that the first one shows what the last
   // one will; a new change drops what is still to come.
-  function inPasses(lane, lines, drawLine, after) {
-    const passes = Math.ceil((lines.length * axes.length) / SEGMENTS_PER_FRAME) || 1;
+  function inPasses(lane, rows, drawLine, after) {
+    const passes = Math.ceil((rows.length * axes.length) / SEGMENTS_PER_FRAME) || 1;
     let pass = 0;
     drop(frames[lane]);
     const next = () => {
-      for (let k = pass; k < lines.length; k += passes) drawLine(lines[k]);
+      for (let k = pass; k < rows.length; k += passes) drawLine(rows[k]);
       after();
       frames[lane] = ++pass < passes ? later(next) : null;
     };
@@ -66,17 +102,39 @@ function parallelCoordinates(host, name, shown) {
     inPasses("back", byShade, (i) => stroke(pen, i), () => {});
   }
 
-  function drawMarked() {
-    if (state.marked === undefined) return;
-    const pen = pens.front;
-    pen.save();
+  // In white beneath, so that it stands out of the others.
+  function bold(pen, colour, thick, draw) {
     pen.globalAlpha = 1;
-    for (const [colour, thick] of [["#ffffff", 5], [INK, 2.4]]) {
-      pen.strokeStyle = colour;
-      pen.lineWidth = thick;
-      stroke(pen, state.marked);
+    for (const [ink, w] of [["#ffffff", thick + 2.6], [colour, thick]]) {
+      pen.strokeStyle = ink;
+      pen.lineWidth = w;
+      draw(pen);
     }
-    pen.restore();
+    pen.setLineDash([]);
+  }
+
+  // What is compared with: dashed between axes that it has values on, else its symbol alone.
+  function drawOverlay(pen, o) {
+    const at = axes.map((axis) => axis.y(o.value.get(axis.c) ?? NaN));
+    bold(pen, o.colour, 2, () => {
+      pen.setLineDash(o.dash);
+      pen.beginPath();
+      at.forEach((y, k) => {
+        if (k && Number.isFinite(at[k - 1])) pen.lineTo(axes[k].at, y);
+        else pen.moveTo(axes[k].at, y);
+      });
+      pen.stroke();
+    });
+    pen.fillStyle = pen.strokeStyle = o.colour;
+    at.forEach((y, k) => Number.isFinite(y) && drawSymbol(pen, o, axes[k].at, y, 55));
+  }
+
+  function drawOver() {
+    const pen = pens.over;
+    pen.clearRect(0, 0, width, height);
+    for (const o of shownOverlays()) drawOverlay(pen, o);
+    if (state.marked !== undefined) bold(pen, INK, 2.4, () => stroke(pen, state.marked));
+    if (state.hovered !== undefined) bold(pen, ORANGE, 2.6, () => stroke(pen, state.hovered));
   }
 
   function drawFront() {
@@ -89,10 +147,37 @@ function parallelCoordinates(host, name, shown) {
     pen.globalAlpha = opacity(state.nSelected);
     let last = -1;
     inPasses("front", byShade.filter((i) => state.selected[i]), (i) => {
-      if (shade[i] !== last) pen.strokeStyle = RAMP[(last = shade[i])];
+      if (shade[i] !== last) pen.strokeStyle = shadeColours[(last = shade[i])];
       stroke(pen, i);
-    }, drawMarked);
+    }, () => {});
+    drawOver();
   }
+
+  // ---- the pointer
+
+  function rowAt(px, py) {
+    const k = axes.findIndex((axis, i) => i + 1 < axes.length && px >= axis.at && px <= axes[i + 1].at);
+    if (k < 0) return undefined;
+    const s = (px - axes[k].at) / (axes[k + 1].at - axes[k].at), m = axes.length;
+    let best, least = NEAR_PX;
+    for (let i = 0; i < n; i++) {
+      const far = state.selected[i] ? Math.abs(places[i * m + k] * (1 - s) + places[i * m + k + 1] * s - py) : Infinity;
+      if (far < least) [best, least] = [i, far];
+    }
+    return best;
+  }
+
+  layers.addEventListener("pointermove", (event) => {
+    if (event.buttons || event.target.closest(".heading")) return;
+    const box = layers.getBoundingClientRect();
+    hover(rowAt(event.clientX - box.left, event.clientY - box.top), event);
+  });
+  layers.addEventListener("pointerleave", () => hover(undefined));
+  layers.addEventListener("click", (event) => {
+    if (state.hovered !== undefined && !event.target.closest(".heading, .brush")) mark(state.hovered);
+  });
+
+  // ---- axes
 
   function brushed({ sourceEvent, selection }, axis) {
     if (!sourceEvent) return; // moved by us
@@ -104,58 +189,120 @@ function parallelCoordinates(host, name, shown) {
   function showRanges() {
     svg.selectAll("g.axis").each(function (axis) {
       const range = state.ranges.get(axis.c);
-      const ends = range ? range.map((v) => axis.y(within(v, axis.y.domain()))).sort((a, b) => a - b) : null;
+      const ends = range ? range.map((v) => axis.y(clamp(v, axis.y.domain()))).sort((a, b) => a - b) : null;
       charts.select(this).select("g.brush").call(axis.brush.move, ends);
     });
   }
 
-  // Long titles on narrow axes stand in two lines.
-  function label(g, axis, room) {
-    const words = axis.c.title.split(" ");
-    const wraps = words.length > 1 && 7 * axis.c.title.length > Math.min(room, 2 * margin.left);
+  // In as many lines as its place needs, the unit below.
+  function label(g, c, room) {
+    const rows = wrapped(c.title, Math.max(4, Math.min(room, 2 * margin.left) / 7.5), 3);
     const text = g.append("text").attr("class", "title").attr("text-anchor", "middle");
-    if (wraps) {
-      text.append("tspan").attr("x", 0).attr("y", 12).text(words.slice(0, -1).join(" "));
-      text.append("tspan").attr("x", 0).attr("y", 25).text(words[words.length - 1]);
-    } else text.append("tspan").attr("x", 0).attr("y", 25).text(axis.c.title);
-    if (axis.c.unit) g.append("text").attr("class", "unit").attr("text-anchor", "middle").attr("y", 38).text(axis.c.unit);
-    g.append("title").text(axis.c.what);
+    rows.forEach((row, k) => text.append("tspan").attr("x", 0).attr("y", 39 - 14 * (rows.length - 1 - k)).text(row));
+    if (c.unit) g.append("text").attr("class", "unit").attr("text-anchor", "middle").attr("y", 53).text(c.unit);
   }
+
+  function headAxis(group, axis, room) {
+    const { c } = axis;
+    const g = group.append("g").attr("class", "heading").attr("tabindex", 0).attr("role", "button").attr("aria-haspopup", "menu").attr("data-name", c.name)
+      .attr("aria-label", `Axis ${titleUnit(c)}: arrow keys move it, i turns it over, l makes it logarithmic, c colours by it, Delete hides it, Enter opens its menu`);
+    g.append("rect").attr("x", -Math.min(room, 2 * margin.left) / 2 + 2).attr("y", 0).attr("width", Math.min(room, 2 * margin.left) - 4).attr("height", margin.top - 2);
+    label(g, c, room);
+    g.append("title").text(`${c.what}. Drag sideways to move, down to turn over, up to hide; click for more.`);
+    g.call(dragging(axis));
+    g.on("keydown", (event) => {
+      const action = axisActions(c).find(([, can, , key]) => can && (key === event.key || key === event.key.toLowerCase()));
+      if (event.key === "Enter" || event.key === " ") openAxisMenu(c, event.currentTarget.getBoundingClientRect());
+      else if (action) actOnAxis(c, action[2]);
+      else return;
+      event.preventDefault();
+    });
+  }
+
+  // The lines follow a dragged axis; the others make room as it passes them.
+  function dragging(axis) {
+    let x0, y0, dy, isMoved;
+    return charts.drag().container(layers).subject(() => ({ x: axis.at, y: 0 })).on("start", (event) => {
+      [x0, y0, dy, isMoved] = [event.x, event.y, 0, false];
+    }).on("drag", function (event) {
+      dy = event.y - y0;
+      isMoved ||= Math.hypot(event.x - x0, dy) > 4;
+      if (!isMoved) return;
+      axis.at = clamp(event.x, [margin.left, width - margin.right]);
+      axes.sort((a, b) => a.at - b.at);
+      const at = stations(axes.length);
+      axes.forEach((a, k) => a !== axis && (a.at = at[k]));
+      placeLines();
+      svg.selectAll("g.axis").attr("transform", (a) => `translate(${a.at},0)`);
+      charts.select(this).attr("data-act", dy > INVERT_PX ? "turn over" : dy < HIDE_PX && axes.length > 1 ? "hide" : null);
+      drawFront();
+    }).on("end", (event) => {
+      const c = axis.c;
+      if (!isMoved) return openAxisMenu(c, event.sourceEvent.target.getBoundingClientRect());
+      state.axes = axes.map((a) => a.c);
+      if (dy > INVERT_PX) state.inverted[state.inverted.has(c) ? "delete" : "add"](c);
+      if (dy < HIDE_PX && state.axes.length > 1) state.axes = state.axes.filter((a) => a !== c);
+      layoutChanged();
+    });
+  }
+
+  const stations = (many) => (many > 1 ? Array.from({ length: many }, (_, k) => margin.left + (k * (width - margin.left - margin.right)) / (many - 1)) : [width / 2]);
 
   function drawAxes() {
     const room = axes.length > 1 ? axes[1].at - axes[0].at : width;
     svg.attr("width", width).attr("height", height).selectAll("*").remove();
     const g = svg.selectAll("g.axis").data(axes).join("g").attr("class", "axis").attr("transform", (a) => `translate(${a.at},0)`);
     g.each(function (axis, k) {
-      const isLabelled = room > 70 || k === 0 || axes[k - 1].c.group !== axis.c.group;
+      const hasNumbers = room > 56 || k === 0 || axes[k - 1].c.family !== axis.c.family;
       const group = charts.select(this);
-      axis.brush = charts.brushY().extent([[-10, margin.top - 4], [10, height - margin.bottom + 4]])
+      axis.brush = charts.brushY().extent([[-10, margin.top - 2], [10, height - margin.bottom + 4]])
         .on("brush end", (event) => brushed(event, axis));
-      group.append("g").call(charts.axisLeft(axis.y).ticks(room > 70 ? 6 : 4).tickSize(4)
-        .tickFormat(isLabelled ? show : () => ""));
-      label(group, axis, room);
+      group.append("g").call(charts.axisLeft(axis.y).tickValues(ticksOf(axis.y, 6)).tickSize(4).tickFormat(hasNumbers ? show : () => ""));
       group.append("g").attr("class", "brush").call(axis.brush);
+      headAxis(group, axis, room);
     });
   }
 
   function layout() {
-    host.hidden = !isShown();
-    if (host.hidden) return;
+    const many = state.axes.length;
+    layers.style.minWidth = `${Math.max(300, margin.left + margin.right + 52 * (many - 1))}px`;
     width = layers.clientWidth;
     layers.style.height = `${height}px`;
-    axes = shown.map(axisOf);
-    x = charts.scalePoint(axes.map((_, k) => k), [margin.left, width - margin.right]);
-    axes.forEach((axis, k) => (axis.at = axes.length > 1 ? x(k) : width / 2));
-    pens = { back: prepare(back, width, height), front: prepare(front, width, height) };
+    axes = state.axes.map(axisOf);
+    stations(many).forEach((at, k) => (axes[k].at = at));
+    pens = { back: prepare(back, width, height), front: prepare(front, width, height), over: prepare(over, width, height) };
     placeLines();
     drawAxes();
     isBackDrawn = false;
   }
 
   views.layout.push(layout);
+  views.hover.push(() => drawOver());
   follow(host, () => {
-    if (host.hidden) return;
     drawFront();
     showRanges();
   });
 }
+
+// Words of a title in at most `most` lines of about `room` letters; what is left over ends with an ellipsis.
+function wrapped(title, room, most) {
+  const rows = [];
+  for (const word of title.split(" "))
+    if (rows.length && (rows[rows.length - 1] + word).length < room) rows[rows.length - 1] += ` ${word}`;
+    else rows.push(word);
+  const cut = (row) => (row.length > room + 1 ? `${row.slice(0, Math.max(3, room - 1))}\u2026` : row);
+  return (rows.length > most ? [...rows.slice(0, most - 1), rows.slice(most - 1).join(" ")] : rows).map(cut);
+}
+
+const drawSymbol = (pen, o, x, y, size) => {
+  pen.save();
+  pen.translate(x, y);
+  pen.beginPath();
+  charts.symbol(o.path, size).context(pen)();
+  pen.lineWidth = 1.4;
+  pen.strokeStyle = "#fff";
+  pen.stroke();
+  pen.fillStyle = o.colour;
+  pen.fill();
+  pen.restore();
+};

@@ -1,6 +1,6 @@
 // The selected designs as a table and as a file.
 
-const PAGE = 20;
+const PAGE = 12;
 
 // A cell that a spreadsheet would run as a formula is given an apostrophe; numbers stay as they are.
 function cell(text) {
@@ -41,6 +41,10 @@ function designTable(host) {
     const cells = shown.map((c) => element("td", { class: !c.sense && "variable" }, ""));
     const row = { name, note, cells, tr: element("tr", {}, element("td", {}, name, note), ...cells) };
     name.addEventListener("click", () => mark(row.design));
+    row.tr.addEventListener("pointerenter", () => hover(row.design));
+    row.tr.addEventListener("pointerleave", () => hover(undefined));
+    name.addEventListener("focus", () => hover(row.design));
+    name.addEventListener("blur", () => hover(undefined));
     return row;
   });
   body.append(...rows.map((row) => row.tr));
@@ -54,7 +58,8 @@ function designTable(host) {
     row.tr.dataset.id = ids[i];
     row.tr.className = [row.isMarked && "marked", ids[i] === run.knee && "knee"].filter(Boolean).join(" ");
     row.name.textContent = String(ids[i]);
-    row.note.data = (ids[i] === run.knee ? " knee" : "") + (ids[i] === run.chosen && run.chosen !== run.knee ? " chosen" : "");
+    row.note.data = (ids[i] === run.knee ? " knee" : "") + (ids[i] === run.chosen && run.chosen !== run.knee ? " chosen" : "") + (beyondLaw.has(ids[i]) ? " \u26a0" : "");
+    row.tr.title = beyondLaw.has(ids[i]) ? "maximum indentation beyond what the contact law is meant for" : "";
     shown.forEach((c, k) => (row.cells[k].textContent = digits(c.value[i])));
   }
 
@@ -93,6 +98,9 @@ function designTable(host) {
     where.textContent = found.length ? `${count(first + 1)}\u2013${count(first + found.length)} of ${count(state.nSelected)}` : "no design within these ranges";
   }
 
+  views.hover.push(() => {
+    for (const row of rows) row.tr.classList.toggle("hovered", row.design !== undefined && row.design === state.hovered);
+  });
   putInOrder();
   follow(host, draw);
 }

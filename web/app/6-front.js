@@ -1,42 +1,57 @@
-// The part on the front: what is shown, ranges by hand, both pictures, the table.
+// The part on the front: what is shown, ranges by hand, all pictures of it, the table.
 
-function choice(name, text, options, value, take) {
-  return element("fieldset", {}, element("legend", {}, text), ...options.map(([key, label]) => element("label", {},
-    element("input", { type: "radio", name, value: key, checked: key === value, onchange: () => take(key) }), ` ${label}`)));
-}
+const PRESETS = { objectives: () => [...objectives], variables: () => [...variables], all: () => [...objectives, ...variables] };
 
-function colourChoice() {
-  const low = element("span"), high = element("span"), ramp = element("canvas", { class: "ramp", width: SHADES, height: 1, "aria-hidden": "true" });
-  const pen = ramp.getContext("2d");
-  RAMP.forEach((colour, i) => {
-    pen.fillStyle = colour;
-    pen.fillRect(i, 0, 1, 1);
-  });
-  const select = element("select", { id: "colour", onchange: () => {
-    state.colour = columns[select.selectedIndex];
-    findShades();
-    draw();
+function presetChoice() {
+  const inputs = [["objectives", "objectives"], ["variables", "variables"], ["all", "both"]].map(([value, label]) => [value, label, element("input", { type: "radio", name: "axes", value, onchange: () => {
+    state.axes = PRESETS[value]();
     layoutChanged();
-  } }, ...columns.map((c) => element("option", { selected: c === state.colour }, c.title)));
-  function draw() {
-    low.textContent = `${show(state.colour.min)} `;
-    high.textContent = ` ${withUnit(state.colour, state.colour.max)}`;
-  }
-  draw();
-  return [element("label", {}, "Colour ", select), element("span", { class: "ramplegend" }, low, ramp, high)];
+  } })]);
+  views.layout.push(() => {
+    for (const [value, , input] of inputs) input.checked = PRESETS[value]().length === state.axes.length && PRESETS[value]().every((c) => state.axes.includes(c));
+  });
+  return element("fieldset", {}, element("legend", {}, "Axes"), ...inputs.map(([, label, input]) => element("label", {}, input, ` ${label}`)));
 }
 
-// A range by two numbers, for those who would rather type than drag.
+// The bar of the colour, by the library; of types their names.
+function colourBar() {
+  const host = element("div", { class: "colourbar" });
+  views.layout.push(() => {
+    const c = state.colour, [low, high] = extent(c, []);
+    host.replaceChildren(c.palette ? legend(types.map((t, k) => [`${k + 1} ${t.name}`, c.palette[k]]))
+      : charts.legend({ color: { type: "linear", domain: [low, high > low ? high : low + 1], interpolate: (t) => charts.interpolateViridis(0.92 * t) }, label: titleUnit(c), ticks: 4, tickFormat: show, width: 230, style: { fontSize: "12px" } }));
+  });
+  return host;
+}
+
+// One legend for all pictures of the front: what is compared with, each of them to be turned off; the marked design.
+function overlayLegend() {
+  const marked = element("span", { "data-mark": "\u25cf" });
+  marked.style.setProperty("--key", INK);
+  follow(null, () => (marked.textContent = state.marked === undefined ? "no design marked" : designName(state.marked)));
+  return element("div", { class: "legend", id: "overlays" }, marked, ...overlays.map((o) => {
+    const item = element("span", { "data-mark": o.mark, title: o.device }, o.words);
+    item.style.setProperty("--key", o.colour);
+    return element("label", {}, element("input", { type: "checkbox", checked: true, name: o.key, onchange: (event) => {
+      o.isShown = event.target.checked;
+      layoutChanged();
+    } }), item);
+  }));
+}
+
+// Axes by a tick and ranges by two numbers, for those who would rather type than drag.
 function rangeInputs() {
   const box = element("div", { class: "ranges" });
   const inputs = columns.map((c) => {
-    const unit = c.unit ? ` [${c.unit}]` : "";
+    const axis = element("input", { type: "checkbox", "aria-label": `${titleUnit(c)} is an axis`, onchange: () => {
+      if (axis.checked) state.axes.push(c);
+      else if (state.axes.length > 1) state.axes.splice(state.axes.indexOf(c), 1);
+      layoutChanged();
+    } });
     const [low, high] = ["from", "to"].map((word) => element("input", {
-      type: "text", name: `${c.name} ${word}`, inputmode: "decimal", "aria-label": `${c.title}${unit} ${word}`, onchange: () => take(c, low, high),
+      type: "text", name: `${c.name} ${word}`, inputmode: "decimal", "aria-label": `${titleUnit(c)} ${word}`, onchange: () => take(c, low, high),
     }));
-    low.placeholder = show(c.min);
-    high.placeholder = show(c.max);
-    return { c, low, high, row: element("div", {}, element("span", { class: "name", title: c.what }, c.title + unit), low, "\u2013", high) };
+    return { c, axis, low, high, row: element("div", {}, axis, element("span", { class: "name", title: c.what }, titleUnit(c)), low, "\u2013", high) };
   });
 
   function read(input, standard) {
@@ -52,6 +67,12 @@ function rangeInputs() {
   }
 
   box.append(...inputs.map(({ row }) => row));
+  views.layout.push(() => {
+    for (const { c, axis, low, high } of inputs) {
+      axis.checked = state.axes.includes(c);
+      [low.placeholder, high.placeholder] = extent(c, []).map(show);
+    }
+  });
   follow(null, () => {
     for (const { c, low, high } of inputs) {
       const range = state.ranges.get(c);
@@ -59,37 +80,50 @@ function rangeInputs() {
       if (document.activeElement !== high) high.value = range && range[1] < Infinity ? show(range[1]) : "";
     }
   });
-  return element("details", { id: "ranges" }, element("summary", {}, "Ranges as numbers"), box);
+  return element("details", { id: "ranges" }, element("summary", {}, "Axes and ranges as numbers"), box);
+}
+
+function selectionBar() {
+  const button = (id, text, act, kind = "plain") => element("button", { class: kind, id, type: "button", onclick: act }, text);
+  const number = element("span", { class: "count", id: "count", role: "status" });
+  const keep = button("keep", "Keep", () => takeStep(true)), exclude = button("exclude", "Exclude", () => takeStep(false));
+  const clear = button("clear", "Clear ranges", () => (state.ranges.clear(), selectionChanged())), all = button("restore", "All designs again", dropSteps);
+  keep.title = "look at the selected designs alone";
+  exclude.title = "look at all but the selected designs";
+  follow(null, () => {
+    number.textContent = `${count(state.nSelected)} of ${count(state.nKept)} designs selected${state.nKept < n ? `, ${count(n - state.nKept)} put aside` : ""}`;
+    clear.disabled = state.ranges.size === 0;
+    keep.disabled = !state.ranges.size || state.nSelected === 0;
+    exclude.disabled = !state.ranges.size || state.nSelected === state.nKept;
+    all.disabled = !state.steps.length;
+  });
+  return element("div", { class: "bar" }, number, keep, exclude, clear, all, button("download", "Download selection as CSV", download, "plain main"));
 }
 
 function frontPart() {
   const host = document.getElementById("front");
-  const number = element("span", { class: "count", id: "count", role: "status" });
-  const clear = element("button", { class: "plain", id: "clear", type: "button", onclick: clearRanges }, "Clear ranges");
-  follow(null, () => {
-    number.textContent = `${count(state.nSelected)} of ${count(n)} designs selected`;
-    clear.disabled = state.ranges.size === 0;
-  });
-  const axes = [["objectives", "objectives"], ["variables", "variables"], ["all", "both"]];
-  const [upper, lower, matrix] = Array.from({ length: 3 }, () => element("figure", { class: "scroll" }));
-  const table = element("div");
+  const colour = columnSelect("colour", "Colour", "colour");
   host.append(
-    element("p", { class: "note" }, "Every line is a nondominated design. Drag along an axis, or over a box of the " +
-      "scatter matrix, to keep only the designs within it; drag the range to move it, click beside it to drop it. On an axis of an " +
-      "objective better is down. The black line and dot are the design marked in the table."),
-    element("div", { class: "bar" }, number, clear,
-      element("button", { class: "plain main", id: "download", type: "button", onclick: download }, "Download selection as CSV")), element("div", { class: "bar hide-in-print" },
-      choice("axes", "Axes", axes, state.axes, (key) => {
-        state.axes = key;
-        layoutChanged();
-      }), ...colourChoice()),
-    upper, lower, rangeInputs(), matrix,
-    element("h3", { class: "part" }, "Selected designs"),
-    element("p", { class: "note" }, "Click a heading to sort, a number to mark that design in the pictures."),
-    table);
-  parallelCoordinates(upper, "objectives", objectives);
-  parallelCoordinates(lower, "variables", variables);
-  if (objectives.length > 1) scatterMatrix(matrix);
-  designTable(table);
-  findShades();
+    element("p", { class: "note" }, "Every line is a nondominated design; on an axis of an objective better is down. Drag along an axis, or over a box of dots, to select; " +
+      "drag a title sideways to move its axis, down to turn it over, up to hide it; click a line or dot to mark its design."),
+    selectionBar(), element("div", { class: "bar hide-in-print" }, presetChoice(), colour, colourBar()), overlayLegend());
+  parallelCoordinates(host.appendChild(element("figure", { class: "scroll" })));
+  host.append(rangeInputs());
+  const grid = host.appendChild(element("div", { class: "grid2" }));
+  if (columns.length > 1) {
+    const pair = grid.appendChild(element("figure", {}, element("h3", {}, "Two columns against each other"), element("div", { class: "bar" }, columnSelect("x", "x", "x"), columnSelect("y", "y", "y"))));
+    pairPlot(pair);
+  }
+  const families_ = [...families.values()].filter((f) => run.tower && !f[0].sense && f.length > 1);
+  for (const family of families_) heatFigure(grid, family);
+  if (objectives.length > 1) {
+    const matrix = folded(host, "All pairs of objectives, with their rank correlations");
+    matrix.append(element("p", { class: "note" }, "Above the diagonal Spearman\u2019s rank correlation of the selected designs: blue, they grow together; vermillion, one is paid for with the other. Signs are those of the numbers, not of better and worse."));
+    scatterMatrix(matrix.appendChild(element("figure", { class: "scroll" })));
+  }
+  typesPart(host);
+  if (run.importance) importanceFigure(folded(host, "Which variables matter"));
+  const list = folded(host, "Selected designs as a table", true);
+  list.append(element("p", { class: "note" }, "Click a heading to sort, a number to mark that design in the pictures."));
+  designTable(list.appendChild(element("div")));
 }

@@ -1,4 +1,4 @@
-// What was run, what stands out, how the front grew, what the run was made of.
+// The first screen: what was studied and found, in a sentence, a picture and warnings; then growth and provenance.
 
 function bestRow(c) {
   let best = 0;
@@ -6,33 +6,86 @@ function bestRow(c) {
   return best;
 }
 
-function change(value, before, words) {
-  if (!(before > 0)) return "";
+// As in the program's own output: the peak, and what the record was multiplied by.
+const peakText = (d) => `peak ${show(d.pga_g)} g` +
+  (d.scale === 1 && d.stretch === 1 ? ", as recorded" : ` (${show(d.pga_g / d.scale)} g \u00d7 ${show(d.scale)}, time \u00d7 ${show(d.stretch)})`);
+
+// ---- in a sentence
+
+const storeys = (d) => `${d.gap_m.length} storeys, ${show(d.storey_m.reduce((a, b) => a + b, 0))} m`;
+
+function change(value, before) {
   const pct = Math.round((100 * (value - before)) / before);
-  if (pct === 0) return "";
-  if (value > 2 * before) return `${show(value / before)} \u00d7 ${words}`;
-  return `${pct > 0 ? "+" : "\u2212"}${Math.abs(pct)} % vs ${words}`;
+  if (pct === 0) return "the same";
+  return value > 2 * before ? (value > 50 * before ? `from ${show(before)}` : `${show(value / before)} times`) : `${pct > 0 ? "+" : "\u2212"}${Math.abs(pct)} %`;
 }
 
-// raw: natural values of the objectives; one that failed has none. baselines: [{words, objectives}].
-function cards(raw, baselines) {
-  const known = (baselines ?? []).filter((b) => b.objectives);
-  const compared = (c, k, b) => (c.unit === "%" ? `${b.words}: ${show(b.objectives[k])} %` : change(raw[k], b.objectives[k], b.words));
-  return element("div", { class: "cards" }, ...objectives.map((c, k) => element("div", { class: "card" },
-    element("div", { class: "what" }, c.what),
-    element("div", { class: "value" }, raw[k] === null ? "failed" : digits(raw[k] * c.factor), " ", element("small", {}, c.unit)),
-    ...known.filter((b, i) => b.objectives[k] !== null && (i === 0 || c.unit !== "%")).map((b) => element("div", { class: "change" }, compared(c, k, b))))));
+// -1: the design is worse than the baseline in objective k, 1: better, 0: neither, within a thousandth; NaN: not known, or the
+// baseline has nothing of it (a core, say).
+function verdict(raw, b, k) {
+  const before = b.raw[k], gain = objectives[k].sense * (before - raw[k]);
+  return !before || raw[k] === null ? NaN : Math.abs(gain) <= 1e-3 * Math.abs(before) ? 0 : Math.sign(gain);
 }
 
-// In which objectives impacts win and lose; equal within a thousandth: neither.
-function comparison(raw, baselines) {
-  const against = (b) => {
-    const of = (sign) => objectives.filter((c, k) => b.objectives[k] !== null && sign * c.sense * (b.objectives[k] - raw[k]) > 1e-3 * Math.abs(b.objectives[k])).map((c) => c.title);
-    const part = (verb, names) => (names.length ? `${verb} in ${names.join(", ")}` : `${verb} in none`);
-    return element("li", {}, `against ${b.words}${b.device ? ` (${b.device})` : ""}: ${part("win", of(1))}; ${part("lose", of(-1))}`);
+// The first objective that gains against the building alone, and the one that pays most.
+function gainAndPrice(raw, b) {
+  const known = objectives.map((c, k) => ({ c, k, ratio: (raw[k] / b.raw[k]) ** c.sense }));
+  const gain = known.find(({ k }) => verdict(raw, b, k) > 0), price = known.filter(({ k }) => verdict(raw, b, k) < 0).sort((p, q) => q.ratio - p.ratio)[0];
+  const words = (verb, { c, k }) => `${verb} ${c.title} from ${withUnit(c, b.raw[k] * c.factor)} to ${withUnit(c, raw[k] * c.factor)} (${change(raw[k] * c.factor, b.raw[k] * c.factor)})`;
+  return [gain && words("it brings", gain), price && words("at the price of", price)].filter(Boolean).join(", ");
+}
+
+function sentence(d) {
+  const whose = run.chosen === run.knee ? `the knee, design ${run.chosen}` : `design ${run.chosen}`;
+  const done = `${run.evaluated ? `${count(run.evaluated)} designs ${d ? "simulated" : "evaluated"}, ${count(run.failed)} failed; ` : ""}${count(n)} on the front`;
+  if (!d) return `${done}. ${whose[0].toUpperCase()}${whose.slice(1)}, is nearest to the best of every objective.`;
+  const alone = overlays.find((o) => o.key === "no_core"), more = run.robust ? ", with further motions or replicates" : "";
+  const what = alone && gainAndPrice(run.chosen_f, alone);
+  return `A building of ${storeys(d)} (${run.building.replace(/.*\//, "")}) under ${shortName(d.record)}, ${peakText(d)}${more}, protected by impacts on a core inside: ${done}. Against the building without core, ${whose}: ${what || "neither gains nor pays"}.`;
+}
+
+// ---- cards: the objectives of the chosen design, better or worse than what it is compared with
+
+const VERDICT = { "-1": ["worse", "\u2716"], 0: ["same", "="], 1: ["better", "\u2714"] };
+
+function cards(raw) {
+  const against = (c, k, o) => {
+    const [kind, sign] = VERDICT[verdict(raw, o, k)] ?? [];
+    if (!kind) return "";
+    return element("div", { class: `change ${kind}`, title: `${kind} than ${o.words}: ${withUnit(c, o.raw[k] * c.factor)}` }, `${sign} ${change(raw[k] * c.factor, o.raw[k] * c.factor)} `, element("small", {}, o.key === "no_core" ? "no core" : "rigid"));
   };
-  const known = (baselines ?? []).filter((b) => b.objectives);
-  return known.length ? element("div", { class: "comparison" }, "Impacts", element("ul", {}, ...known.map(against))) : "";
+  return element("div", { class: "cards" }, ...objectives.map((c, k) => element("div", { class: "card", title: c.what },
+    element("div", { class: "what" }, c.title, element("span", { title: c.sense > 0 ? "less is better" : "more is better" }, c.sense > 0 ? " \u2193" : " \u2191")),
+    element("div", { class: "value" }, raw[k] === null ? "failed" : digits(raw[k] * c.factor), " ", element("small", {}, c.unit)),
+    ...overlays.filter((o) => ["no_core", "rigid"].includes(o.key)).map((o) => against(c, k, o)))));
+}
+
+// ---- warnings
+
+const listed = (words, most = 8) => words.slice(0, most).join(", ") + (words.length > most ? ` and ${words.length - most} more` : "");
+
+function boundWarning(d) {
+  const row = rowOf.get(run.chosen), gaps = variables.filter((c) => /^gap_/.test(c.name));
+  const at = (i, side) => gaps.filter((c) => atBound(c, c.value[i]) === side);
+  const many = Array.from({ length: n }, (_, i) => i).filter((i) => gaps.some((c) => atBound(c, c.value[i]))).length;
+  const own = row === undefined ? [] : [[1, "largest"], [-1, "smallest"]].map(([side, word]) => [at(row, side), word]).filter(([list]) => list.length)
+    .map(([list, word]) => `the ${word} (${withUnit(list[0], list[0].bounds[word === "largest" ? 1 : 0])}): ${listed(list.map((c) => c.title))}`);
+  const shut = (d.with_core.closings ?? []).flatMap((hits, j) => (hits ? [] : [j + 1]));
+  return [many ? `Gaps at a bound of the search in ${count(many)} of ${count(n)} designs of the front${own.length ? `; in this one at ${own.join("; at ")}` : ""}. A wider box may hold better designs, unless such a gap never closes.` : "",
+    shut.length ? `Gaps that never close under this motion: ${shut.length === 1 ? "floor" : "floors"} ${listed(shut, 12)}.` : ""];
+}
+
+function warnings(d) {
+  const worse = overlays.filter((o) => ["no_core", "rigid"].includes(o.key)).map((o) => [o, objectives.filter((_, k) => verdict(run.chosen_f, o, k) < 0)]).filter(([, list]) => list.length);
+  const all = [
+    d.with_core.reason ? ["worse", `This design could not be simulated: ${d.with_core.reason}`] : null,
+    ...worse.map(([o, list]) => ["worse", `Worse than ${o.words} in ${list.map((c) => c.title).join(", ")}.`]),
+    d.with_core.beyond_law ? ["worse", "The maximum indentation is more than a tenth of the contact\u2019s radius: beyond what the contact law is meant for."] : null,
+    beyondLaw.size ? ["note", `${count(beyondLaw.size)} of ${count(n)} designs of the front are beyond the contact law (\u26a0 in the table).`] : null,
+    ...boundWarning(d).filter(Boolean).map((text) => ["note", text]),
+    run.evaluated && run.failed > 0.05 * run.evaluated ? ["note", `${count(run.failed)} of ${count(run.evaluated)} simulations failed (imtet status says why).`] : null,
+  ].filter(Boolean);
+  return all.length ? element("ul", { class: "warnings", "aria-label": "Warnings" }, ...all.map(([kind, text]) => element("li", { class: kind }, element("span", { "aria-hidden": "true" }, kind === "worse" ? "\u2716 " : "\u26a0 "), text))) : "";
 }
 
 // What the design has to bear, beside its baselines.
@@ -40,11 +93,11 @@ function loadTable(loads) {
   return element("div", { class: "scroll" }, element("table", { id: "loads" },
     element("thead", {}, element("tr", {}, element("th", { scope: "col" }, "has to bear"),
       ...loads.columns.map((c) => element("th", { scope: "col" }, c.title, element("small", {}, ` ${c.unit}`))))),
-    element("tbody", {}, ...loads.rows.map((r) => element("tr", {}, element("td", {}, r.words),
+    element("tbody", {}, ...loads.rows.map((r) => element("tr", {}, element("td", {}, SCENES[r.key].words),
       ...r.values.map((v) => element("td", {}, v === null ? "" : digits(v))))))));
 }
 
-function standoutTable(baselines) {
+function standoutTable() {
   const rows = objectives.map((c) => [`best ${c.title}`, bestRow(c), c]);
   const knee = rowOf.get(run.knee);
   const line = (label, id, values, best, kind) => element("tr", { class: kind }, element("td", {}, label), element("td", {}, id),
@@ -55,26 +108,19 @@ function standoutTable(baselines) {
     element("tbody", {},
       line("knee", String(run.knee), objectives.map((c) => c.value[knee]), null, "knee"),
       ...rows.map(([label, i, best]) => line(label, String(ids[i]), objectives.map((c) => c.value[i]), best, "")),
-      ...(baselines ?? []).filter((b) => b.objectives).map((b) => line(b.words, "", objectives.map((c, k) => (b.objectives[k] === null ? NaN : b.objectives[k] * c.factor)), null, "")))));
+      ...overlays.map((o) => line(o.device ? `${o.words} (${o.device})` : o.words, "", objectives.map((c) => o.value.get(c)), null, "")))));
 }
 
-// As in the program's own output: the peak, and what the record was multiplied by.
-const peakText = (d) => `peak ${show(d.pga_g)} g` +
-  (d.scale === 1 && d.stretch === 1 ? ", as recorded" : ` (${show(d.pga_g / d.scale)} g \u00d7 ${show(d.scale)}, time \u00d7 ${show(d.stretch)})`);
-
 function summaryPart() {
-  const d = run.detail, knee = objectives.map((c) => c.raw[rowOf.get(run.knee)]);
-  const baselines = d && run.chosen === run.knee ? d.baselines : d?.baselines.slice(0, 1); // the others are those of the chosen design
+  const d = run.detail, host = document.getElementById("summary");
   document.title = `${run.name} \u2013 imtet report`;
   document.getElementById("title").textContent = `Study ${run.name}`;
-  const simulated = run.evaluated ? `${count(run.evaluated)} designs ${d ? "simulated" : "evaluated"}, ${count(run.failed)} failed, ` : "";
-  document.getElementById("subtitle").textContent = `${simulated}${count(n)} on the front` +
-    (d ? `. Ground motion ${d.record.replace(/.*\//, "")}, ${peakText(d)}, ${show(d.duration_s)} s` : "");
-  document.getElementById("summary").append(
-    element("p", {}, element("strong", {}, `Design ${run.knee}, the knee`), ": nearest to the best of everything, with every objective scaled over the front."),
-    run.robust ? element("p", { class: "note" }, "Objectives are those of several simulations of every design (motion.records, sim.replicates, sim.robust " +
-      `among the settings), standard deviations those of ${run.spread === "as built" ? "structures as built" : "predictability (chaos alone)"}; the chosen design is shown as one simulation under ${shortName(d.record)}.`) : "",
-    cards(knee, baselines), baselines ? comparison(knee, baselines) : "", d && run.chosen === run.knee ? loadTable(d.loads) : "", standoutTable(baselines));
+  host.append(element("p", { class: "lead", id: "subtitle" }, sentence(d)), d ? warnings(d) : "", cards(run.chosen_f));
+  if (d) peakPart(host, d, 290);
+  const more = folded(host, "The best designs of the front, beside the baselines");
+  more.append(element("p", { class: "note" }, "The knee is nearest to the best of everything, with every objective scaled over the front."), standoutTable());
+  if (run.robust) more.append(element("p", { class: "note" }, "Objectives are those of several simulations of every design (motion.records, sim.replicates, sim.robust among the settings), standard deviations those of " +
+    `${run.spread === "as built" ? "structures as built" : "predictability (chaos alone)"}; the chosen design is shown as one simulation under ${shortName(d.record)}.`));
 }
 
 function growthPart() {
@@ -82,8 +128,8 @@ function growthPart() {
   if (c.simulated.length < 2) return host.remove();
   const rows = c.simulated.map((x, i) => ({ x, y: 100 * c.volume[i], e: 200 * c.error[i] }));
   const figure = host.appendChild(element("figure"));
-  drawn(figure, (width) => charts.plot({
-    width, height: 260, marginLeft: 60, ariaLabel: "Hypervolume over the number of designs",
+  drawn(figure, (width) => chart({
+    width, height: 200, ariaLabel: "Hypervolume over the number of designs",
     x: { label: "designs simulated", tickFormat: count }, y: { label: "hypervolume [%]", grid: true, zero: true, nice: true },
     marks: [
       charts.areaY(rows, { x: "x", y1: (r) => r.y - r.e, y2: (r) => r.y + r.e, fill: BLUE, fillOpacity: 0.2 }),
@@ -110,9 +156,14 @@ function provenancePart() {
     if (text) host.append(element("details", {}, element("summary", {}, title), element("pre", { tabindex: "0" }, text)));
 }
 
-// Links to the parts that this run has.
+// Links to the parts that this run has; the address keeps the state of the pictures.
 function contents() {
-  const names = [["summary", "Summary"], ["front", "Front"], ["growth", "Growth"], ["design", `Design ${run.chosen}`], ["provenance", "Provenance"]];
-  document.getElementById("parts").append(...names.filter(([id]) => document.getElementById(id))
-    .map(([id, text]) => element("a", { href: `#${id}` }, text)));
+  const names = [["summary", `Study ${run.name}`], ["front", "Front"], ["growth", "Growth"], ["design", `Design ${run.chosen}`], ["provenance", "Provenance"]];
+  document.getElementById("parts").append(...names.filter(([id]) => document.getElementById(id)).map(([id, text]) => element("a", { href: `#${id}`, onclick: (event) => {
+    event.preventDefault();
+    const part = document.getElementById(id);
+    part.setAttribute("tabindex", "-1");
+    part.focus({ preventScroll: true });
+    part.scrollIntoView();
+  } }, text)));
 }

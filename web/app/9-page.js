@@ -6,15 +6,22 @@ growthPart();
 designPart();
 provenancePart();
 contents();
+standard = Object.fromEntries(new URLSearchParams(addressOf()));
+readAddress();
 layoutChanged();
 performance.mark("front drawn");
 
 function drawDesign() {
-  for (const draw of drawings) draw();
+  drawAll();
   performance.mark("all drawn");
   document.documentElement.dataset.ready = "yes";
 }
 requestAnimationFrame(() => setTimeout(drawDesign));
+
+window.addEventListener("hashchange", () => {
+  readAddress();
+  layoutChanged();
+});
 
 let width = window.innerWidth, timer;
 window.addEventListener("resize", () => {

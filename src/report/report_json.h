@@ -1,0 +1,18 @@
+/* report/report_json.h -- what the page draws, as JSON: the run, and one design in detail.
+ *
+ * The designs of the front are not in it: the page has them as rows of front.csv (report/page.c).
+ *
+ * Ownership  the caller's reference. Errors  no memory, or a name that is no UTF-8: NULL */
+#ifndef IMTET_REPORT_REPORT_JSON_H
+#define IMTET_REPORT_REPORT_JSON_H
+
+#include <jansson.h>
+
+#include "report/report.h"
+
+json_t *report_json(const Report *r);
+
+/* Of the tower: gaps, thickness, peaks and shares beside the baselines, histories, other earthquakes. */
+json_t *detail_json(const Detail *d, const MeasureOrder *order);
+
+#endif

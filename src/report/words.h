@@ -1,0 +1,21 @@
+/* report/words.h -- how pages and pictures call an objective or another measure: short title, unit, factor to that unit.
+ *
+ *   shown = factor * natural value                    files keep their own names and units (simulator/measures.h)
+ *
+ * Threads  pure functions; texts live as long as the program, or as the schema */
+#ifndef IMTET_REPORT_WORDS_H
+#define IMTET_REPORT_WORDS_H
+
+#include "simulator/schema.h"
+
+typedef struct {
+    const char *title, *unit; /* unit "": a number */
+    double factor;
+} Words;
+
+Words words_of_measure(int measure);
+
+/* Of objective k; one of another problem than the tower has its name and no unit. */
+Words words_of_objective(const Schema *schema, size_t k);
+
+#endif

@@ -1,0 +1,228 @@
+// Scatter plots: two columns against each other, chosen freely, and a matrix of all objectives with their rank correlations;
+// a brushed box is two ranges.
+
+// Panels on one picture; `arrange` (width) gives { height, panels: [{ cx, cy, left, top, w, h, hasX, hasY }] } and `decorate`
+// (svg, width) what else is on it. Dots are put into the pixels.
+function scatterPlot(host, label, arrange, decorate = () => {}) {
+  const layers = host.appendChild(element("div", { class: "layers" }));
+  const [back, front, over] = [0, 1, 2].map((k) => layers.appendChild(element("canvas", k === 1 ? { role: "img", "aria-label": label } : { "aria-hidden": "true" })));
+  const svg = charts.select(layers).append("svg");
+  let panels = [], width = 0, height = 0, pens, image;
+
+  // Places of every design in every panel, so that a brush only has to put dots down.
+  function place(p) {
+    p.x = scaleOf(p.cx, p.left, p.left + p.w, 0.05);
+    p.y = scaleOf(p.cy, p.top + p.h, p.top, 0.05);
+    p.dots = new Float32Array(2 * n);
+    for (let i = 0; i < n; i++) {
+      p.dots[2 * i] = p.x(p.cx.value[i]);
+      p.dots[2 * i + 1] = p.y(p.cy.value[i]);
+    }
+  }
+
+  const dotSize = (many) => (many > 4000 ? 1.5 : many > 800 ? 2.2 : 3.2) * (panels.length === 1 ? 1.5 : 1);
+
+  // Dots go straight into the pixels: that is what keeps a quarter of a million of them at hand while brushing.
+  function putDots(pen, many, rows, colourOf) {
+    const { width: w, height: h } = pen.canvas, ratio = w / width;
+    if (!image || image.width !== w || image.height !== h) image = pen.createImageData(w, h);
+    const pixels = new Uint32Array(image.data.buffer).fill(0);
+    const s = Math.max(1, Math.round(dotSize(many) * ratio)), half = s / 2;
+    for (const i of rows) {
+      const colour = colourOf(i);
+      for (const { dots } of panels) {
+        let at = Math.round(dots[2 * i + 1] * ratio - half) * w + Math.round(dots[2 * i] * ratio - half);
+        for (let row = 0; row < s; row++, at += w) for (let k = at; k < at + s; k++) pixels[k] = colour;
+      }
+    }
+    pen.putImageData(image, 0, 0);
+  }
+
+  function spot(pen, row, colour, r) {
+    if (row === undefined) return;
+    for (const { dots } of panels) {
+      pen.beginPath();
+      pen.arc(dots[2 * row], dots[2 * row + 1], r, 0, 7);
+      pen.fillStyle = colour;
+      pen.fill();
+      pen.lineWidth = 2;
+      pen.strokeStyle = "#fff";
+      pen.stroke();
+    }
+  }
+
+  function drawOver() {
+    if (!panels.length) return;
+    const pen = pens.over;
+    pen.clearRect(0, 0, width, height);
+    for (const o of shownOverlays())
+      for (const p of panels) {
+        const at = [p.x(o.value.get(p.cx) ?? NaN), p.y(o.value.get(p.cy) ?? NaN)];
+        if (at.every(Number.isFinite)) drawSymbol(pen, o, ...at, panels.length === 1 ? 110 : 55);
+      }
+    spot(pen, state.marked, INK, 4.5);
+    spot(pen, state.hovered, ORANGE, 5.5);
+  }
+
+  function drawFront() {
+    if (!panels.length) return;
+    back.hidden = state.ranges.size === 0;
+    const colours = shadeColours.map(pixel);
+    putDots(pens.front, state.nSelected, byShade.filter((i) => state.selected[i]), (i) => colours[shade[i]]);
+    drawOver();
+  }
+
+  function brushed({ sourceEvent, selection }, p) {
+    if (!sourceEvent) return;
+    if (!selection) return setRanges([[p.cx, null], [p.cy, null]]);
+    const [[x0, y0], [x1, y1]] = selection;
+    setRanges([[p.cx, [p.x.invert(x0), p.x.invert(x1)]], [p.cy, [p.y.invert(y1), p.y.invert(y0)]]]);
+  }
+
+  // The panel of two ranges shows its box; the others show none.
+  function showRanges() {
+    svg.selectAll("g.brush").each(function (p) {
+      const rx = state.ranges.get(p.cx), ry = state.ranges.get(p.cy);
+      const x = (v) => p.x(clamp(v, p.x.domain())), y = (v) => p.y(clamp(v, p.y.domain()));
+      charts.select(this).call(p.brush.move, rx && ry && p.cx !== p.cy ? [[x(rx[0]), y(ry[1])], [x(rx[1]), y(ry[0])]] : null);
+    });
+  }
+
+  // ---- the pointer
+
+  layers.addEventListener("pointermove", (event) => {
+    if (event.buttons || !panels.length) return;
+    const box = layers.getBoundingClientRect(), x = event.clientX - box.left, y = event.clientY - box.top;
+    const p = panels.find(({ left, top, w, h }) => x >= left && x <= left + w && y >= top && y <= top + h);
+    let best, least = 64;
+    for (let i = 0; p && i < n; i++) {
+      const far = state.selected[i] ? (p.dots[2 * i] - x) ** 2 + (p.dots[2 * i + 1] - y) ** 2 : Infinity;
+      if (far < least) [best, least] = [i, far];
+    }
+    hover(best, event);
+  });
+  layers.addEventListener("pointerleave", () => hover(undefined));
+  layers.addEventListener("click", () => state.hovered !== undefined && mark(state.hovered));
+
+  // ---- axes
+
+  function drawAxes(group, p) {
+    const bottom = p.top + p.h, many = Math.max(2, Math.min(6, Math.floor(p.w / 60)));
+    group.append("rect").attr("class", "cell").attr("x", p.left).attr("y", p.top).attr("width", p.w).attr("height", p.h);
+    if (p.hasY)
+      group.append("g").attr("transform", `translate(${p.left},0)`).call(charts.axisLeft(p.y).tickValues(ticksOf(p.y, Math.max(2, Math.floor(p.h / 40)))).tickSize(3).tickFormat(show)).call((g) => g.select(".domain").remove());
+    if (!p.hasX) return;
+    let end = -Infinity; // of the last number, that the next one does not run into it
+    for (const v of ticksOf(p.x, many)) {
+      const x = p.x(v), half = 3.6 * show(v).length;
+      if (x - half < end + 6) continue;
+      end = x + half;
+      group.append("text").attr("class", "number").attr("text-anchor", "middle").attr("x", x).attr("y", bottom + 15).text(show(v));
+    }
+  }
+
+  function layout() {
+    width = layers.clientWidth;
+    panels = [];
+    if (!width) return;
+    ({ height, panels } = arrange(width));
+    layers.style.height = `${height}px`;
+    panels.forEach(place);
+    pens = { back: prepare(back, width, height), front: prepare(front, width, height), over: prepare(over, width, height) };
+    svg.attr("width", width).attr("height", height).selectAll("*").remove();
+    decorate(svg, width, panels);
+    svg.selectAll("g.panel").data(panels).join("g").attr("class", "panel").each(function (p) {
+      const group = charts.select(this);
+      drawAxes(group, p);
+      p.brush = charts.brush().extent([[p.left, p.top], [p.left + p.w, p.top + p.h]]).on("brush end", (event) => brushed(event, p));
+      group.append("g").attr("class", "brush").call(p.brush);
+    });
+    putDots(pens.back, n, byShade, () => pixel("#d3d9df"));
+  }
+
+  views.layout.push(layout);
+  views.hover.push(drawOver);
+  follow(host, () => {
+    drawFront();
+    showRanges();
+  });
+}
+
+const pixel = (hex) => (0xff000000 | (parseInt(hex.slice(5, 7), 16) << 16) | (parseInt(hex.slice(3, 5), 16) << 8) | parseInt(hex.slice(1, 3), 16)) >>> 0;
+
+// ---- two columns of one's choice
+
+function columnSelect(id, label, key) {
+  const select = element("select", { id, onchange: () => {
+    state[key] = columns[select.selectedIndex];
+    layoutChanged();
+  } }, ...columns.map((c) => element("option", {}, c.title)));
+  views.layout.push(() => (select.selectedIndex = columns.indexOf(state[key])));
+  return element("label", {}, `${label} `, select);
+}
+
+function pairPlot(host) {
+  const margin = { top: 8, right: 10, bottom: 46, left: 66 };
+  scatterPlot(host, "Two columns against each other", (width) => {
+    const w = width - margin.left - margin.right, h = Math.min(320, 0.75 * w);
+    return { height: h + margin.top + margin.bottom, panels: [{ cx: state.x, cy: state.y, left: margin.left, top: margin.top, w, h, hasX: true, hasY: true }] };
+  }, (svg, width, [p]) => {
+    svg.append("text").attr("class", "title").attr("text-anchor", "middle").attr("x", p.left + p.w / 2).attr("y", p.top + p.h + 36).text(titleUnit(p.cx));
+    svg.append("text").attr("class", "title").attr("text-anchor", "middle").attr("transform", `translate(16,${p.top + p.h / 2}) rotate(-90)`).text(titleUnit(p.cy));
+  });
+}
+
+// ---- all objectives: titles on the diagonal, dots below it, correlations above
+
+// Spearman's coefficient over the selected designs.
+function rankCorrelation(a, b) {
+  const rows = byShade.filter((i) => state.selected[i]);
+  const [ra, rb] = [a, b].map((c) => charts.rank(rows, (i) => c.value[i])), mean = (rows.length - 1) / 2;
+  let ab = 0, aa = 0, bb = 0;
+  for (let k = 0; k < rows.length; k++) {
+    ab += (ra[k] - mean) * (rb[k] - mean);
+    aa += (ra[k] - mean) ** 2;
+    bb += (rb[k] - mean) ** 2;
+  }
+  return aa > 0 && bb > 0 ? ab / Math.sqrt(aa * bb) : NaN;
+}
+
+function scatterMatrix(host) {
+  const margin = { top: 4, right: 4, bottom: 22, left: 52 }, gap = 6, m = objectives.length;
+  const size = (width) => {
+    const w = (width - margin.left - margin.right - gap * (m - 1)) / m;
+    return { w, h: Math.max(44, Math.min(0.66 * w, 150)) };
+  };
+  const at = ({ w, h }, row, col) => ({ left: margin.left + col * (w + gap), top: margin.top + row * (h + gap) });
+  let cells = [];
+
+  scatterPlot(host, "Scatter matrix of the objectives", (width) => {
+    const s = size(width), panels = [];
+    for (let row = 1; row < m; row++)
+      for (let col = 0; col < row; col++)
+        panels.push({ cx: objectives[col], cy: objectives[row], ...at(s, row, col), ...s, hasX: row === m - 1, hasY: col === 0 && s.h > 36 });
+    return { height: margin.top + margin.bottom + (s.h + gap) * m - gap, panels };
+  }, (svg, width) => {
+    const s = size(width);
+    objectives.forEach((c, k) => {
+      const { left, top } = at(s, k, k), rows = [...wrapped(c.title, Math.max(5, s.w / 7), s.h > 70 ? 3 : 2), ...(c.unit ? [`[${c.unit}]`] : [])];
+      const text = svg.append("text").attr("class", "title").attr("text-anchor", "middle");
+      rows.forEach((row, i) => text.append("tspan").attr("x", left + s.w / 2).attr("y", top + s.h / 2 + 15 * (i - (rows.length - 1) / 2) + 4).text(row));
+    });
+    cells = [];
+    for (let row = 0; row < m; row++)
+      for (let col = row + 1; col < m; col++) {
+        const { left, top } = at(s, row, col), g = svg.append("g").attr("class", "correlation");
+        const box = g.append("rect").attr("x", left).attr("y", top).attr("width", s.w).attr("height", s.h);
+        cells.push({ a: objectives[row], b: objectives[col], box, text: g.append("text").attr("text-anchor", "middle").attr("x", left + s.w / 2).attr("y", top + s.h / 2 + 5) });
+      }
+  });
+  // Sign and strength: blue together, vermillion against each other.
+  follow(host, () => {
+    for (const { a, b, box, text } of cells) {
+      const r = rankCorrelation(a, b);
+      box.attr("fill", r < 0 ? VERMILLION : BLUE).attr("fill-opacity", Number.isFinite(r) ? 0.55 * Math.abs(r) : 0);
+      text.text(Number.isFinite(r) ? `${r < 0 ? "\u2212" : "+"}${Math.abs(r).toFixed(2)}` : "\u2013");
+    }
+  });
+}

@@ -1,0 +1,170 @@
+// The variables of the front: a heat map of those that are numbered (gaps by floor), what matters for which objective, and
+// a few typical designs.
+
+// ---- heat map: a column of pixels per design, or per few of them
+
+const COLUMNS_MAX = 480;
+
+// The selected designs from the least to the largest value of the colour's column, in at most COLUMNS_MAX groups.
+function groupsInOrder() {
+  const { value } = state.colour, rows = byShade.filter((i) => state.selected[i]).sort((a, b) => value[a] - value[b]);
+  const many = Math.min(rows.length, COLUMNS_MAX);
+  return Array.from({ length: many }, (_, k) => rows.slice(Math.floor((k * rows.length) / many), Math.floor(((k + 1) * rows.length) / many)));
+}
+
+const meanOf = (c, rows) => rows.reduce((sum, i) => sum + c.value[i], 0) / rows.length;
+
+function heatFigure(host, family) {
+  const [first] = family, isZone = /zone/.test(first.title), stem = first.title.replace(/[, ]+(zone )?\d+$/, "");
+  let groups = [];
+  const f = figure(host, `${stem[0].toUpperCase()}${stem.slice(1)}s of the front, by ${isZone ? "zone" : "floor"}`, null, (width) => {
+    const m = family.length;
+    groups = groupsInOrder();
+    const values = new Float64Array(groups.length * m);
+    family.forEach((c, j) => groups.forEach((rows, k) => (values[j * groups.length + k] = meanOf(c, rows))));
+    const ends = [0, 1].map((s) => (Number.isFinite(first.bounds[s]) ? first.bounds[s] : Math[s ? "max" : "min"](...values)));
+    return chart({
+      width, height: Math.min(320, 90 + 16 * m), ariaLabel: `${stem} of every design of the front`,
+      x: { label: `${count(state.nSelected)} designs, from the least to the largest ${state.colour.title}`, domain: [0, groups.length || 1], ticks: [] },
+      y: { ...floorAxis(m), label: isZone ? "zone" : "floor" },
+      color: { scheme: "YlGnBu", domain: ends, label: titleUnit({ ...first, title: stem }), legend: true, tickFormat: show },
+      marks: groups.length ? [charts.raster(values, { width: groups.length, height: m, x1: 0, x2: groups.length, y1: 0.5, y2: m + 0.5, imageRendering: "pixelated" }), cursors()] : [],
+    });
+  });
+
+  function cursors() {
+    const at = groups.findIndex((rows) => rows.includes(state.marked));
+    return at < 0 ? null : charts.ruleX([at + 0.5], { stroke: INK, strokeWidth: 2.5 });
+  }
+
+  // A rule over the picture, which is not drawn again for it.
+  const rule = f.appendChild(element("div", { class: "cursor", hidden: true }));
+  views.hover.push(() => {
+    const image = f.querySelector("image")?.getBoundingClientRect(), k = groups.findIndex((rows) => rows.includes(state.hovered)), box = f.getBoundingClientRect();
+    rule.hidden = !image || k < 0;
+    if (rule.hidden) return;
+    rule.style.left = `${image.left - box.left + ((k + 0.5) * image.width) / groups.length}px`;
+    rule.style.top = `${image.top - box.top}px`;
+    rule.style.height = `${image.height}px`;
+  });
+
+  f.addEventListener("pointermove", (event) => {
+    const image = f.querySelector("image")?.getBoundingClientRect();
+    const k = image && Math.floor((groups.length * (event.clientX - image.left)) / image.width);
+    const isInside = groups[k] && event.clientY >= image.top && event.clientY <= image.bottom;
+    hover(isInside ? groups[k][groups[k].length >> 1] : undefined, event);
+  });
+  f.addEventListener("pointerleave", () => hover(undefined));
+  f.addEventListener("click", () => state.hovered !== undefined && mark(state.hovered));
+  follow(f, () => document.documentElement.dataset.ready && f.redraw());
+  return f;
+}
+
+// ---- importance
+
+const KNOWN_R2 = 0.5; // below it the surrogate explains too little to say what matters
+
+function importanceFigure(host) {
+  const m = run.importance;
+  if (!m) return;
+  const named = objectives.map((c, k) => `${c.title}, R\u00b2 ${Math.max(0, m.explained[k]).toFixed(2)}`);
+  const rows = objectives.flatMap((_, k) => variables.map((c, j) => ({ objective: named[k], variable: c.title, what: c.what, known: m.explained[k] >= KNOWN_R2, total: m.total[k][j] })))
+    .filter((r) => r.total !== null);
+  const largest = Math.max(...rows.filter((r) => r.known).map((r) => r.total), 0.1), isCrowded = variables.length > 26;
+  figure(host, "Which variables matter for which objective",
+    `Total Sobol index: the share of an objective\u2019s variance over the box of the search in which the variable has a part, alone or with others. Found on a radial basis interpolant of ${count(m.centres)} of the run\u2019s designs; R\u00b2 is how much of the objective it explains when designs are left out. ` +
+    `Rows below R\u00b2 ${KNOWN_R2} are left pale: the interpolant does not know.`, (width) => chart({
+      width, height: 110 + 30 * objectives.length, marginLeft: Math.min(230, 0.4 * width), marginBottom: 90, ariaLabel: "Total Sobol indices of variables for objectives",
+      x: { label: null, domain: variables.map((c) => c.title), tickRotate: -90, tickSize: 0 }, y: { label: null, domain: named, tickSize: 0 },
+      color: { scheme: "YlGnBu", domain: [0, largest], label: "total Sobol index", legend: true },
+      marks: [
+        charts.cell(rows, { x: "variable", y: "objective", fill: "total", fillOpacity: (r) => (r.known ? 1 : 0.12), inset: 0.5, title: (r) => `${r.what} for ${r.objective}: ${show(r.total)}${r.known ? "" : ", not reliable"}` }),
+        isCrowded || width < 700 ? null : charts.text(rows.filter((r) => r.known && r.total >= 0.05), { x: "variable", y: "objective", text: (r) => r.total.toFixed(2), fill: (r) => (r.total > 0.55 * largest ? "#fff" : INK) }),
+      ],
+    }));
+}
+
+// ---- typical designs
+
+const TYPES_MAX = 4;
+const DISTINCT = 0.35; // of the standard deviation over the front: by that much a type differs in an objective
+const TYPE_COLOURS = [BLUE, VERMILLION, GREEN, PURPLE];
+
+// Objectives over their ranges on the front, minimised.
+const scaled = (c, i) => (c.max > c.min ? (c.sense > 0 ? c.value[i] - c.min : c.max - c.value[i]) / (c.max - c.min) : 0);
+
+function nameOfType(rows, taken) {
+  const by = objectives.map((c) => {
+    const all = Array.from({ length: n }, (_, i) => c.value[i]), mean = all.reduce((a, b) => a + b, 0) / n;
+    const sd = Math.sqrt(all.reduce((a, v) => a + (v - mean) ** 2, 0) / n) || 1;
+    return { c, far: (meanOf(c, rows) - mean) / sd };
+  }).sort((a, b) => Math.abs(b.far) - Math.abs(a.far)).filter(({ far }) => Math.abs(far) > DISTINCT);
+  const word = ({ c, far }) => `${far < 0 ? "small" : "large"} ${c.title}`;
+  const names = [2, 3, 4].map((k) => by.slice(0, k).map(word).join(", "));
+  return by.length ? names.find((name) => !taken.includes(name)) ?? names[2] : "balanced";
+}
+
+// Lloyd's algorithm from the points farthest from each other: the same clusters every time. Returns the cluster of every point.
+function kMeans(points, k, distance2) {
+  const centres = [points[0]];
+  const nearest = (p) => centres.reduce((best, c, t) => (distance2(p, c) < distance2(p, centres[best]) ? t : best), 0);
+  while (centres.length < k) centres.push(points.reduce((far, p) => (distance2(p, centres[nearest(p)]) > distance2(far, centres[nearest(far)]) ? p : far)));
+  for (let round = 0; round < 30; round++) {
+    const sums = centres.map((c) => ({ many: 0, sum: c.map(() => 0) }));
+    for (const p of points) {
+      const own = sums[nearest(p)];
+      own.many++;
+      p.forEach((v, j) => (own.sum[j] += v));
+    }
+    sums.forEach(({ many, sum }, t) => many && (centres[t] = sum.map((v) => v / many)));
+  }
+  return points.map(nearest);
+}
+
+// Typical is the design nearest to the middle of its cluster.
+function findTypes() {
+  const points = Array.from({ length: n }, (_, i) => objectives.map((c) => scaled(c, i)));
+  const k = Math.min(TYPES_MAX, Math.floor(n / 8));
+  if (k < 2 || objectives.length < 2) return [];
+  const distance2 = (p, q) => p.reduce((sum, v, j) => sum + (v - q[j]) ** 2, 0), of = kMeans(points, k, distance2), taken = [];
+  return Array.from({ length: k }, (_, t) => {
+    const rows = Array.from({ length: n }, (_, i) => i).filter((i) => of[i] === t);
+    const middle = objectives.map((_, j) => rows.reduce((sum, i) => sum + points[i][j], 0) / rows.length), far = (i) => distance2(points[i], middle);
+    return { rows, typical: rows.reduce((best, i) => (far(i) < far(best) ? i : best), rows[0]) };
+  }).filter((type) => type.rows.length).sort((a, b) => b.rows.length - a.rows.length)
+    .map((type) => {
+      const name = nameOfType(type.rows, taken);
+      taken.push(name);
+      return { ...type, name };
+    });
+}
+
+for (const c of objectives) [c.min, c.max] = [c.value.reduce((a, b) => Math.min(a, b), Infinity), c.value.reduce((a, b) => Math.max(a, b), -Infinity)];
+const types = findTypes();
+if (types.length) {
+  const c = columnOf("type", -1, 0, ["type of design", "", 1, types.map((t, k) => `${k + 1}: ${t.name}`).join("; ")]);
+  types.forEach((t, k) => t.rows.forEach((i) => (c.raw[i] = c.value[i] = k + 1)));
+  columns.push(Object.assign(c, { family: [c], bounds: [NaN, NaN], palette: TYPE_COLOURS.slice(0, types.length) }));
+}
+
+function typesPart(host) {
+  if (!types.length) return;
+  const gaps = variables.filter((c) => c.name.startsWith("gap_"));
+  const part = folded(host, `Typical designs: ${types.length} kinds on this front`, true);
+  const line = (t, k) => {
+    const name = element("button", { type: "button", title: "mark its typical design", onclick: () => mark(t.typical) }, t.name);
+    const key = element("span", { class: "key" }, String(k + 1));
+    key.style.background = TYPE_COLOURS[k];
+    return element("tr", {}, element("td", {}, key, name), element("td", {}, count(t.rows.length)), element("td", {}, String(ids[t.typical])), ...objectives.map((c) => element("td", {}, digits(c.value[t.typical]))));
+  };
+  part.append(element("p", { class: "note" }, "Clusters of the front (k-means, objectives over their ranges), each named by what sets it apart and shown by the design nearest to its middle."),
+    element("div", { class: "scroll" }, element("table", { id: "types" }, element("thead", {}, element("tr", {}, ...["type", "designs", "typical"].map((w) => element("th", { scope: "col" }, w)), ...objectives.map((c) => element("th", { scope: "col", title: c.what }, ...heading(c))))),
+      element("tbody", {}, ...types.map(line)))));
+  if (!run.tower || gaps.length < 2) return;
+  const rows = types.flatMap((t, k) => gaps.map((c, j) => ({ type: `${k + 1}`, place: j + 1, gap: c.value[t.typical], colour: TYPE_COLOURS[k] })));
+  figure(part, "Gaps of the typical designs", null, (width) => chart({
+    width, height: 250, marginTop: 26, ariaLabel: "Gaps of the typical designs", color: { type: "identity" },
+    fx: { label: null, tickFormat: (k) => `type ${k}` }, x: { label: "gap [mm]", grid: true, zero: true, ticks: 3 }, y: { ...floorAxis(gaps.length), label: /zone/.test(gaps[0].name) ? "zone" : "floor" },
+    marks: [charts.rectX(rows, { fx: "type", x1: 0, x2: "gap", y1: (r) => r.place - 0.4, y2: (r) => r.place + 0.4, fill: "colour", title: (r) => `type ${r.type}, ${r.place}: ${show(r.gap)} mm` }), charts.ruleX([0])],
+  }));
+}
