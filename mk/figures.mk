@@ -1,6 +1,6 @@
 # Figures and pictures of README and docs. Those of time want a quiet machine.
 
-.PHONY: setup-figures bench promise paper chart compare ablation pictures defend defend-bumpers web setup-browser report-bench
+.PHONY: setup-figures bench promise paper chart compare ablation pictures defend defend-bumpers web setup-browser report-bench scale-cost
 
 # A record that is not there is replaced by the built-in motion.
 BENCH_RECORD ?= $(or $(wildcard ../shared/records/kobe_jma_ns.csv),builtin:kobe-like)
@@ -29,6 +29,10 @@ paper: $(PROGRAM) ## docs/paper.md: the paper item by item, with its records whe
 
 ablation: setup-figures ## what each tuned constant of the search earns: every one turned off; ARGS="--only NAME,..."
 	@scripts/ablation $(ARGS)
+
+# SIZES chooses some; PLACE=FOLDER has the room for a run of 10^6 (2.5 GB).
+scale-cost: $(PROGRAM) ## docs/scale.md: what a study costs beside its simulations, from 10^3 to 10^6 of them
+	@scripts/scale-cost --program ./$(PROGRAM) --out docs/scale.md $(if $(SIZES),--sizes $(SIZES)) $(if $(PLACE),--place $(PLACE))
 
 pictures: $(PROGRAM) ## docs/pictures, those of a study: RUN=results/kobe RECORDS="elcentro.csv sylmar.csv"
 	@./$(PROGRAM) plot $(RUN) $(RECORDS:%=--record %) --out $(BUILD)/pictures

@@ -517,6 +517,7 @@ static void test_estimates_of_a_surface_are_nearer_to_the_truth_than_means(void 
     CHECK_OK(surrogate_create(&surrogate, &w.problem, ALL, 1, &err), &err);
     CHECK_OK(pareto_archive_init(&a, ALL, VAR, OBJ, 0, &err), &err);
     CHECK_OK(pareto_archive_insert(&a, FIRST, X, F, NULL, ok, 0, 0, &err), &err);
+    pareto_archive_list_front(&a);
     infill_measure(near, a.n_front, a.front, a.F);
     CHECK_OK(surrogate_fit(surrogate, &a, near, &err), &err);
     surrogate_estimate(surrogate, &a);

@@ -8,6 +8,26 @@
 #include "evaluate/problem.h"
 #include "moga/dominance.h"
 
+/* Grows by doubling up to so many. */
+enum { MANY_ROWS = 100000 };
+
+/* What differs from the rows themselves once there are replicates. */
+static void layout_means(Archive *a, Carve *c)
+{
+    const size_t n = a->n, n_max = a->n_max, m = a->n_obj, k = a->n_con, known = a->S ? n * m : 0;
+    if (!a->has_means) {
+        a->F = a->estimate = a->Y;
+        a->G = a->H;
+        return;
+    }
+    a->F = carve_wider(c, a->F, n * m, n_max * m, sizeof *a->F);
+    a->G = carve_wider(c, a->G, n * k, n_max * k, sizeof *a->G);
+    a->estimate = carve_wider(c, a->estimate, n * m, n_max * m, sizeof *a->estimate);
+    a->S = carve_wider(c, a->S, known, n_max * m, sizeof *a->S);
+    a->sd = carve_wider(c, a->sd, known, n_max * m, sizeof *a->sd);
+    a->error = carve_wider(c, a->error, known, n_max * m, sizeof *a->error);
+}
+
 /* The first n rows stay as they are. */
 static void layout(void *archive, Carve *c)
 {
@@ -16,15 +36,10 @@ static void layout(void *archive, Carve *c)
     a->X = carve_wider(c, a->X, n * v, n_max * v, sizeof *a->X);
     a->Y = carve_wider(c, a->Y, n * m, n_max * m, sizeof *a->Y);
     a->H = carve_wider(c, a->H, n * k, n_max * k, sizeof *a->H);
-    a->F = carve_wider(c, a->F, n * m, n_max * m, sizeof *a->F);
-    a->G = carve_wider(c, a->G, n * k, n_max * k, sizeof *a->G);
-    a->estimate = carve_wider(c, a->estimate, n * m, n_max * m, sizeof *a->estimate);
-    a->S = carve_wider(c, a->S, n * m, n_max * m, sizeof *a->S);
-    a->sd = carve_wider(c, a->sd, n * m, n_max * m, sizeof *a->sd);
-    a->error = carve_wider(c, a->error, n * m, n_max * m, sizeof *a->error);
+    layout_means(a, c);
     a->violation = carve_wider(c, a->violation, n, n_max, sizeof *a->violation);
     a->generation = carve_wider(c, a->generation, n, n_max, sizeof *a->generation);
-    a->front = carve_wider(c, a->front, a->n_front, n_max, sizeof *a->front);
+    a->front = carve_wider(c, a->front, a->n_listed, n_max, sizeof *a->front);
     a->replicates = carve_wider(c, a->replicates, n, n_max, sizeof *a->replicates);
     a->noise = carve_wider(c, a->noise, n > 0 ? m : 0, m, sizeof *a->noise);
     a->ok = carve_wider(c, a->ok, n, n_max, 1);
@@ -58,11 +73,13 @@ static size_t design_of(Archive *a, size_t row)
     return *slot - 1;
 }
 
-static Status resize(Archive *a, size_t n_max, Err *err)
+/* Room for n_max rows, with or without means. */
+static Status resize(Archive *a, size_t n_max, int has_means, Err *err)
 {
     Archive counted = *a;
     Carve c = {0};
     counted.n_max = n_max;
+    counted.has_means = has_means;
     for (counted.n_slots = 4; counted.n_slots < 2 * n_max;)
         counted.n_slots *= 2;
     Archive wider = counted;
@@ -82,7 +99,7 @@ Status pareto_archive_init(Archive *a, size_t n_max, size_t n_var, size_t n_obj,
 {
     *a = (Archive){.n_var = n_var, .n_obj = n_obj, .n_con = n_con};
     TRY(nd_tree_create(&a->tree, n_obj, err));
-    return resize(a, n_max > 0 ? n_max : 1, err);
+    return resize(a, n_max > 0 ? n_max : 1, 0, err);
 }
 
 void pareto_archive_free(Archive *a)
@@ -92,12 +109,24 @@ void pareto_archive_free(Archive *a)
     *a = (Archive){0};
 }
 
+void pareto_archive_list_front(Archive *a)
+{
+    size_t kept = 0;
+    if (a->n_listed == a->n_front)
+        return;
+    for (size_t i = 0; i < a->n_listed; i++)
+        if (a->on_front[a->front[i]])
+            a->front[kept++] = a->front[i];
+    a->n_listed = kept;
+}
+
 /* The front is compared with the new design alone, which stays outside where a member dominates it, and otherwise
  * replaces those that it dominates. */
 static void compare_with_front(Archive *a, size_t row)
 {
     const size_t m = a->n_obj;
     const double *f = a->F + row * m, *error = a->error + row * m;
+    pareto_archive_list_front(a);
     for (size_t i = 0; i < a->n_front; i++)
         if (dominates_surely(m, a->F + a->front[i] * m, a->error + a->front[i] * m, f, error))
             return;
@@ -111,25 +140,21 @@ static void compare_with_front(Archive *a, size_t row)
     }
     a->on_front[row] = 1;
     a->front[kept] = row;
-    a->n_front = kept + 1;
+    a->n_front = a->n_listed = kept + 1;
 }
 
 /* The same by the tree: without replicates the standard errors are 0. */
 static Status follow_tree(Archive *a, size_t row, Err *err)
 {
     NdChange change;
-    size_t kept = 0;
     TRY(nd_tree_insert(a->tree, a->F, row, &change, err));
     if (!change.is_in)
         return STATUS_OK;
     for (size_t i = 0; i < change.n_removed; i++)
         a->on_front[change.removed[i]] = 0;
-    for (size_t i = 0; change.n_removed > 0 && i < a->n_front; i++)
-        if (a->on_front[a->front[i]])
-            a->front[kept++] = a->front[i];
-    a->n_front -= change.n_removed;
+    a->n_front += 1 - change.n_removed;
     a->on_front[row] = 1;
-    a->front[a->n_front++] = row;
+    a->front[a->n_listed++] = row;
     return STATUS_OK;
 }
 
@@ -142,17 +167,23 @@ static void set_errors(Archive *a, size_t row)
     }
 }
 
-static Status add_design(Archive *a, size_t row, Err *err)
+static void take_as_means(Archive *a, size_t row)
 {
     memcpy(a->F + row * a->n_obj, a->Y + row * a->n_obj, a->n_obj * sizeof *a->F);
     memcpy(a->estimate + row * a->n_obj, a->Y + row * a->n_obj, a->n_obj * sizeof *a->estimate);
     if (a->n_con > 0)
         memcpy(a->G + row * a->n_con, a->H + row * a->n_con, a->n_con * sizeof *a->G);
     memset(a->S + row * a->n_obj, 0, a->n_obj * sizeof *a->S);
+    set_errors(a, row);
+}
+
+static Status add_design(Archive *a, size_t row, Err *err)
+{
     a->replicates[row] = 1;
     a->usable[row] = a->ok[row];
-    a->violation[row] = a->ok[row] ? violation_of(a->n_con, a->G + row * a->n_con) : INFINITY;
-    set_errors(a, row);
+    a->violation[row] = a->ok[row] ? violation_of(a->n_con, a->H + row * a->n_con) : INFINITY;
+    if (a->has_means)
+        take_as_means(a, row);
     if (!a->usable[row] || a->violation[row] > 0.0)
         return STATUS_OK;
     if (a->n_replicates == 0)
@@ -162,8 +193,10 @@ static Status add_design(Archive *a, size_t row, Err *err)
 }
 
 /* Welford's running mean and sum of squares. A design with a replicate that failed is no longer usable. */
-static void add_replicate(Archive *a, size_t row, size_t design)
+static Status add_replicate(Archive *a, size_t row, size_t design, Err *err)
 {
+    if (!a->has_means)
+        TRY(resize(a, a->n_max, 1, err));
     const double n = (double)++a->replicates[design];
     a->n_replicates++;
     a->replicates[row] = 0;
@@ -172,7 +205,7 @@ static void add_replicate(Archive *a, size_t row, size_t design)
     a->is_stale = 1;
     a->usable[design] = a->usable[design] && a->ok[row];
     if (!a->usable[design])
-        return;
+        return STATUS_OK;
     for (size_t k = 0; k < a->n_obj; k++) {
         const size_t i = design * a->n_obj + k;
         const double y = a->Y[row * a->n_obj + k], off = y - a->F[i];
@@ -183,6 +216,7 @@ static void add_replicate(Archive *a, size_t row, size_t design)
     for (size_t k = 0; k < a->n_con; k++)
         a->G[design * a->n_con + k] += (a->H[row * a->n_con + k] - a->G[design * a->n_con + k]) / n;
     a->violation[design] = violation_of(a->n_con, a->G + design * a->n_con);
+    return STATUS_OK;
 }
 
 static Status add_row(Archive *a, size_t row, Err *err)
@@ -193,7 +227,7 @@ static Status add_row(Archive *a, size_t row, Err *err)
     if (design == row)
         TRY(add_design(a, row, err));
     else
-        add_replicate(a, row, design);
+        TRY(add_replicate(a, row, design, err));
     a->n_usable += a->usable[design];
     a->n_usable -= design == row ? 0 : was_usable;
     return STATUS_OK;
@@ -202,8 +236,10 @@ static Status add_row(Archive *a, size_t row, Err *err)
 Status pareto_archive_insert(Archive *a, size_t n, const double X[], const double F[], const double G[],
                              const unsigned char ok[], unsigned char kind, size_t generation, Err *err)
 {
-    if (a->n + n > a->n_max)
-        TRY(resize(a, a->n + n > 2 * a->n_max ? a->n + n : 2 * a->n_max, err));
+    if (a->n + n > a->n_max) {
+        const size_t wider = a->n_max + (a->n_max < MANY_ROWS ? a->n_max : a->n_max / 4);
+        TRY(resize(a, a->n + n > wider ? a->n + n : wider, a->has_means, err));
+    }
     for (size_t i = 0; i < n; i++) {
         const size_t row = a->n++;
         memcpy(a->X + row * a->n_var, X + i * a->n_var, a->n_var * sizeof *X);
@@ -230,7 +266,7 @@ void pareto_archive_update_noise(Archive *a)
             a->front[n++] = row;
     for (size_t k = 0; k < a->n_obj; k++)
         a->noise[k] = noise_fit(n, a->front, a->replicates, a->n_obj, k, a->F, a->S);
-    a->n_front = 0;
+    a->n_front = a->n_listed = 0;
     memset(a->on_front, 0, a->n);
     for (size_t row = 0; row < a->n; row++) {
         if (!a->usable[row])

@@ -13,7 +13,8 @@
  * errors change what dominates what.
  *
  * Life cycle  pareto_archive_init -> pareto_archive_insert (pareto_archive_update_noise) ... -> pareto_archive_free
- * Memory      grows by doubling: pointers move
+ * Memory      without replicates F, G and estimate are Y, H and Y, and S, sd and error are NULL. Grows by doubling, of many
+ *             rows by a quarter: pointers move
  * Threads     one writer */
 #ifndef IMTET_MOGA_ARCHIVE_H
 #define IMTET_MOGA_ARCHIVE_H
@@ -37,12 +38,14 @@ typedef struct {
     unsigned char *on_front; /* (n) */
     double *F, *G;           /* (n, n_obj) (n, n_con) means */
     double *violation;       /* (n) sum of max(0, g) */
+    int has_means;           /* there were replicates: the next three are not NULL */
     double *S;               /* (n, n_obj) sum of squared deviations from the mean */
     double *sd;              /* (n, n_obj) standard deviation of one replicate */
     double *error;           /* (n, n_obj) standard error of the mean */
     double *estimate;        /* (n, n_obj) what the search compares */
 
-    size_t *front;         /* (n_front) rows of the front, ascending */
+    size_t *front;         /* (n_front) rows of the front, ascending, since pareto_archive_list_front */
+    size_t n_listed;       /* rows of `front` until then: those that have left are among them */
     NdTree *tree;          /* of the front, while there are no replicates */
     size_t n_slots, *slot; /* hash table of the designs */
     NoiseModel *noise;     /* (n_obj) */
@@ -59,6 +62,9 @@ Status pareto_archive_insert(Archive *a, size_t n, const double X[], const doubl
 
 /* After replicates: noise models, standard errors and the front. */
 void pareto_archive_update_noise(Archive *a);
+
+/* Rows that have left the front leave its list. */
+void pareto_archive_list_front(Archive *a);
 
 void pareto_archive_reset_estimates(Archive *a); /* to the means; without replicates they are */
 

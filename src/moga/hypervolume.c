@@ -6,38 +6,28 @@
 
 #include "base/random.h"
 
-/* Samples lie in the order of the cells of a grid, so that a design which dominates none of a cell passes over it. */
-enum { CELLS_MAX = 256, GRID_DIM_MAX = 8 };
+/* Samples are bits of words. For each objective and each of so many levels between the bounds of the box: which samples are not
+ * below that level. What a design dominates is in all sets of its own levels, which few others are. */
+enum { LEVELS = 64, WORD = 64, WORDS = (HYPERVOLUME_SAMPLES + WORD - 1) / WORD };
 
 struct Hypervolume {
-    size_t n_obj, n_left, n_cells, per_axis, n_axes;
-    size_t first[CELLS_MAX], n[CELLS_MAX]; /* samples of each cell that are not dominated yet */
-    double *highest;                       /* (n_cells, n_obj) of its samples */
-    double sample[];                       /* (HYPERVOLUME_SAMPLES, n_obj), then highest */
+    size_t n_obj, n_left;
+    uint64_t left[WORDS]; /* samples that are not dominated yet */
+    uint64_t *above;      /* (n_obj, LEVELS, WORDS) */
+    double *lower, *per;  /* (n_obj) levels per unit of the objective */
+    double sample[];      /* (HYPERVOLUME_SAMPLES, n_obj), then lower, per, above */
 };
 
-static void choose_grid(Hypervolume *h)
+/* Never falls while the value grows. */
+static size_t level_of(const Hypervolume *h, size_t k, double value)
 {
-    h->n_axes = h->n_obj < GRID_DIM_MAX ? h->n_obj : GRID_DIM_MAX;
-    for (h->per_axis = 1;; h->per_axis++) {
-        size_t n = 1;
-        for (size_t k = 0; k < h->n_axes; k++)
-            n *= h->per_axis + 1;
-        if (n > CELLS_MAX)
-            break;
-        h->n_cells = n;
-    }
+    const double level = (value - h->lower[k]) * h->per[k];
+    return !(level > 0.0) ? 0 : level < LEVELS ? (size_t)level : LEVELS - 1;
 }
 
-/* u (n_obj) in the unit cube. */
-static size_t cell_of(const Hypervolume *h, const double u[])
+static uint64_t *samples_above(const Hypervolume *h, size_t k, size_t level)
 {
-    size_t cell = 0;
-    for (size_t k = 0; k < h->n_axes; k++) {
-        const size_t at = (size_t)(u[k] * (double)h->per_axis);
-        cell = cell * h->per_axis + (at < h->per_axis ? at : h->per_axis - 1);
-    }
-    return cell;
+    return h->above + (k * LEVELS + level) * WORDS;
 }
 
 static void sample_at(const Hypervolume *h, uint32_t seed, size_t i, double u[])
@@ -47,26 +37,22 @@ static void sample_at(const Hypervolume *h, uint32_t seed, size_t i, double u[])
         u[k] = random_uniform(&r);
 }
 
-static void fill(Hypervolume *h, const double lower[], const double reference[], uint32_t seed, double u[])
+static void fill(Hypervolume *h, const double lower[], const double reference[], uint32_t seed)
 {
     const size_t m = h->n_obj;
-    for (size_t i = 0; i < HYPERVOLUME_SAMPLES; i++) {
-        sample_at(h, seed, i, u);
-        h->n[cell_of(h, u)]++;
+    for (size_t k = 0; k < m; k++) {
+        h->lower[k] = lower[k];
+        h->per[k] = LEVELS / (reference[k] - lower[k]);
     }
-    for (size_t c = 0, first = 0; c < h->n_cells; first += h->n[c++]) {
-        h->first[c] = first;
-        for (size_t k = 0; k < m; k++)
-            h->highest[c * m + k] = -INFINITY;
-    }
-    memset(h->n, 0, sizeof h->n);
     for (size_t i = 0; i < HYPERVOLUME_SAMPLES; i++) {
-        sample_at(h, seed, i, u);
-        const size_t c = cell_of(h, u);
-        double *s = h->sample + (h->first[c] + h->n[c]++) * m;
+        double *s = h->sample + i * m;
+        const uint64_t bit = (uint64_t)1 << i % WORD;
+        sample_at(h, seed, i, s);
+        h->left[i / WORD] |= bit;
         for (size_t k = 0; k < m; k++) {
-            s[k] = lower[k] + (reference[k] - lower[k]) * u[k];
-            h->highest[c * m + k] = fmax(h->highest[c * m + k], s[k]);
+            s[k] = lower[k] + (reference[k] - lower[k]) * s[k];
+            for (size_t level = 0; level <= level_of(h, k, s[k]); level++)
+                samples_above(h, k, level)[i / WORD] |= bit;
         }
     }
 }
@@ -74,16 +60,17 @@ static void fill(Hypervolume *h, const double lower[], const double reference[],
 Status hypervolume_create(Hypervolume **out, size_t n_obj, const double lower[], const double reference[],
                           uint32_t seed, Err *err)
 {
-    const size_t n = (HYPERVOLUME_SAMPLES + CELLS_MAX + 1) * n_obj;
-    Hypervolume *h = calloc(1, sizeof *h + n * sizeof h->sample[0]);
+    const size_t n = (HYPERVOLUME_SAMPLES + 2) * n_obj;
+    Hypervolume *h = calloc(1, sizeof *h + n * sizeof h->sample[0] + n_obj * LEVELS * WORDS * sizeof h->left[0]);
     *out = h;
     if (!h)
         return fail(err, STATUS_NO_MEMORY, "no memory for %d samples of %zu objectives", HYPERVOLUME_SAMPLES, n_obj);
     h->n_obj = n_obj;
     h->n_left = HYPERVOLUME_SAMPLES;
-    h->highest = h->sample + HYPERVOLUME_SAMPLES * n_obj;
-    choose_grid(h);
-    fill(h, lower, reference, seed, h->highest + CELLS_MAX * n_obj);
+    h->lower = h->sample + HYPERVOLUME_SAMPLES * n_obj;
+    h->per = h->lower + n_obj;
+    h->above = (uint64_t *)(h->per + n_obj);
+    fill(h, lower, reference, seed);
     return STATUS_OK;
 }
 
@@ -98,21 +85,22 @@ static int reaches(size_t m, const double f[], const double s[])
 void hypervolume_add(Hypervolume *h, const double f[])
 {
     const size_t m = h->n_obj;
-    for (size_t c = 0; c < h->n_cells; c++) {
-        double *samples = h->sample + h->first[c] * m;
-        size_t left = 0;
-        if (h->n[c] == 0 || !reaches(m, f, h->highest + c * m))
-            continue;
-        for (size_t i = 0; i < h->n[c]; i++) {
-            if (reaches(m, f, samples + i * m))
-                continue;
-            if (left < i)
-                memcpy(samples + left * m, samples + i * m, m * sizeof *samples);
-            left++;
-        }
-        h->n_left -= h->n[c] - left;
-        h->n[c] = left;
+    uint64_t near[WORDS];
+    memcpy(near, h->left, sizeof near);
+    for (size_t k = 0; k < m; k++) {
+        const uint64_t *above = samples_above(h, k, level_of(h, k, f[k]));
+#pragma omp simd
+        for (size_t w = 0; w < WORDS; w++)
+            near[w] &= above[w];
     }
+    for (size_t w = 0; w < WORDS; w++)
+        for (uint64_t rest = near[w]; rest; rest &= rest - 1) {
+            const size_t bit = (size_t)__builtin_ctzll(rest);
+            if (!reaches(m, f, h->sample + (w * WORD + bit) * m))
+                continue;
+            h->left[w] ^= (uint64_t)1 << bit;
+            h->n_left--;
+        }
 }
 
 double hypervolume_share(const Hypervolume *h)

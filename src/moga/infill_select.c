@@ -87,7 +87,7 @@ static size_t take_variation(Search *s, size_t size)
     return n;
 }
 
-/* No new design on the surrogate: children of variation. */
+/* No new design on the surrogate, or without it too few among the first children: all children of variation. */
 size_t infill_select_batch(Search *s)
 {
     const size_t size = batch_size(s);
@@ -100,7 +100,7 @@ size_t infill_select_batch(Search *s)
         n = pick_variation(s, pick_infill(s, size - shares.n_variation, shares.hypervolume), size);
     } else
         n = take_variation(s, size);
-    if (n > 0)
+    if (n >= size || (with_surrogate && n > 0))
         return n;
     offspring_make(s, 1);
     exclude(s, 0);

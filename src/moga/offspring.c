@@ -121,6 +121,7 @@ void offspring_make(Search *s, int variation_alone)
             add_descended(s, shares.hypervolume);
         search_predict(s, &o->members, 0, 1);
     }
-    add_variation(s, with_surrogate && shares.n_variation == 0 ? 0 : s->config->population);
+    const size_t all = s->config->population, few = batch_size(s) < all ? batch_size(s) : all;
+    add_variation(s, variation_alone ? all : !with_surrogate ? few : shares.n_variation == 0 ? 0 : all);
     add_pending(s);
 }

@@ -76,26 +76,29 @@ static void reconsider_convergence(Search *s)
 /* -- the view of the observer -------------------------------------------------------------------------------------- */
 
 /* Replicates of a design that is reported to be on the front; at the end no more than one of them has. */
-static size_t replicates_wanted(const Search *s, int is_last)
+static size_t replicates_wanted(Search *s, int is_last)
 {
-    const Archive *a = &s->archive;
+    Archive *a = &s->archive;
     size_t max = 0;
     if (!s->problem->is_noisy)
         return 0;
+    pareto_archive_list_front(a);
     for (size_t i = 0; i < a->n_front; i++)
         max = a->replicates[a->front[i]] > max ? a->replicates[a->front[i]] : max;
     return is_last && max < s->config->replicates_min ? max : s->config->replicates_min;
 }
 
-static size_t mark_reported(Search *s, int is_last)
+/* n_reported; which: on_front of the archive, or with replicates enough. */
+static size_t mark_reported(Search *s, int is_last, const unsigned char **which)
 {
     const Archive *a = &s->archive;
     const size_t wanted = replicates_wanted(s, is_last);
     unsigned char *reported = s->rows.reported;
     size_t n = 0;
-    memcpy(reported, a->on_front, a->n);
+    *which = wanted <= 1 ? a->on_front : reported;
     if (wanted <= 1)
         return a->n_front;
+    memcpy(reported, a->on_front, a->n);
     for (size_t i = 0; i < a->n_front; i++) {
         reported[a->front[i]] = a->replicates[a->front[i]] >= wanted;
         n += reported[a->front[i]];
@@ -107,7 +110,8 @@ static int report(Search *s, int is_last, ObserveFn observe, void *user)
 {
     const Archive *a = &s->archive;
     const SearchTimes *t = &s->control.times;
-    const size_t n_reported = mark_reported(s, is_last);
+    const unsigned char *reported;
+    const size_t n_reported = mark_reported(s, is_last, &reported);
     state_save(s);
     const SearchView view = {
         .n = a->n,
@@ -123,7 +127,7 @@ static int report(Search *s, int is_last, ObserveFn observe, void *user)
         .ok = a->ok,
         .kind = a->kind,
         .generation = a->generation,
-        .on_front = s->rows.reported,
+        .on_front = reported,
         .n_front = n_reported,
         .n_failed = a->n_failed,
         .n_replicates = a->n_replicates,
@@ -137,6 +141,7 @@ static int report(Search *s, int is_last, ObserveFn observe, void *user)
         .is_disabled = s->control.cost == COST_TOO_HIGH,
         .waited_s = t->waiting,
         .surrogate_s = t->surrogate,
+        .is_last = is_last,
         .is_asynchronous = s->config->asynchronous != 0,
         .state = pack_finished(&s->state) ? s->state.bytes : NULL,
         .n_state = s->state.n,

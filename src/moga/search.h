@@ -99,6 +99,7 @@ typedef struct {
     double waited_s;     /* of `seconds`: waiting for evaluations */
     double surrogate_s;  /* ... fits, predictions, descents; the rest is search */
     int is_asynchronous;
+    int is_last;       /* the search ends by itself; none follows */
     int is_disabled;   /* SURROGATE_AUTO: the surrogate costs more than it saves */
     const void *state; /* (n_state bytes) of the search at this moment; NULL: no memory for it */
     size_t n_state;

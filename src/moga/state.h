@@ -144,7 +144,8 @@ Status search_fit_surrogate(Search *s, Err *err);
 void search_predict(Search *s, Population *p, size_t first, int with_uncertainty);
 void search_descend(Search *s, InfillKind kind, size_t n, const size_t vectors[], double X[]);
 
-/* offspring.c: with the surrogate where it is in use, or by variation alone. step: of the random stream. */
+/* offspring.c: with the surrogate where it is in use, else as many children of variation as a batch takes; or by variation
+ * alone, a whole population of children. step: of the random stream. */
 void offspring_make(Search *s, int variation_alone);
 void offspring_survive(Search *s, Population *p, uint32_t step);
 

@@ -8,8 +8,9 @@ void search_measure_front(Search *s)
 {
     if (!control_allows(&s->control, s->config->surrogate) && !s->problem->is_noisy)
         return;
-    const Archive *a = &s->archive;
+    Archive *a = &s->archive;
     const Population *p = &s->population;
+    pareto_archive_list_front(a);
     for (size_t i = 0; i < p->n; i++)
         s->scratch.members[i] = i;
     for (int k = 0; k < 2 * INFILL_KINDS; k++) {

@@ -1,6 +1,7 @@
 #include "store/csv_files.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -32,143 +33,150 @@ Status csv_files_replace(const Folder *folder, const Run *run, Err *err)
     return folder_write(folder, "front.csv", put_front, run, err);
 }
 
-static CsvFiles csv_files(const Folder *folder, const Schema *schema)
-{
-    return (CsvFiles){
-        .folder = folder, .schema = schema, .search = evaluation_table(schema->n_var, schema->n_obj, schema->n_extra)};
-}
-
 Status csv_files_begin(CsvFiles *c, const Folder *folder, const Schema *schema, Err *err)
 {
-    *c = csv_files(folder, schema);
+    *c = (CsvFiles){.folder = folder, .schema = schema};
     TRY(folder_write(folder, "evaluations.csv", put_header, schema, err));
     return append_open(&c->evaluations, folder, "evaluations.csv", err);
 }
 
+/* Of the rows behind those that are known. */
+static Status keep_deviations(CsvFiles *c, size_t n, const double sd[], Err *err)
+{
+    const size_t m = c->schema->n_obj;
+    if (!c->schema->has_spread || n == 0)
+        return STATUS_OK;
+    double *wider = realloc(c->sd, (c->n_appended + n) * m * sizeof *wider);
+    if (!wider)
+        return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", c->n_appended + n);
+    memcpy(wider + c->n_appended * m, sd, n * m * sizeof *sd);
+    c->sd = wider;
+    return STATUS_OK;
+}
+
+/* A file that has just the designs of the finished generations, in their order, is left as it is. */
 Status csv_files_resume(CsvFiles *c, const Folder *folder, const Schema *schema, const Run *run, Err *err)
 {
     const size_t n = run_n_finished(run);
-    *c = csv_files(folder, schema);
-    c->run = run;
-    for (size_t i = 0; i < n; i++)
-        TRY(evaluation_table_append(&c->search, &run->table.row[i], err));
-    TRY(folder_write(folder, "evaluations.csv", put_evaluations, run, err));
+    *c = (CsvFiles){.folder = folder, .schema = schema, .run = run};
+    TRY(keep_deviations(c, n, run->table.sd, err));
+    c->n_appended = n;
+    if (run_has_polished(run) || !folder_counts(folder, "evaluations.csv", n))
+        TRY(folder_write(folder, "evaluations.csv", put_evaluations, run, err));
     if (run->n_generations > 0)
         TRY(folder_write(folder, "front.csv", put_front, run, err));
     return append_open(&c->evaluations, folder, "evaluations.csv", err);
 }
 
+static Status append_rows(CsvFiles *c, const EvaluationTable *rows, Err *err)
+{
+    TRY(keep_deviations(c, rows->n, rows->sd, err));
+    export_evaluations(c->evaluations.stream, rows, 0, 0);
+    c->n_appended += rows->n;
+    return append_flush(&c->evaluations, err);
+}
+
 Status csv_files_append(CsvFiles *c, Database *db, size_t n, Err *err)
 {
-    const size_t first = c->search.n;
-    TRY(rows_read(db, &c->search, (long)first + 1, (long)n, err));
-    if (c->search.n != n)
-        return fail(err, STATUS_INTERNAL, "%s: the search knows of %zu simulations, %zu are stored", database_path(db),
-                    n, c->search.n);
-    export_evaluations(c->evaluations.stream, &c->search, first, 0);
-    return append_flush(&c->evaluations, err);
+    EvaluationTable rows = evaluation_table(c->schema->n_var, c->schema->n_obj, c->schema->n_extra);
+    if (n == c->n_appended)
+        return STATUS_OK;
+    Status status = rows_read(db, &rows, (long)c->n_appended + 1, (long)n, err);
+    if (status == STATUS_OK && rows.n != n - c->n_appended)
+        status = fail(err, STATUS_INTERNAL, "%s: the search knows of %zu simulations, %zu are stored",
+                      database_path(db), n, c->n_appended + rows.n);
+    if (status == STATUS_OK)
+        status = append_rows(c, &rows, err);
+    evaluation_table_free(&rows);
+    return status;
 }
 
 /* -- front.csv ----------------------------------------------------------------------------------------------------- */
 
-/* The design in that row as the search sees it now: with the means and deviations of its replicates. */
-static Status add_design(const CsvFiles *c, const SearchView *v, size_t row, EvaluationTable *front, Err *err)
+typedef struct {
+    const CsvFiles *files;
+    const SearchView *view;
+} Front;
+
+/* The design in that row as the search sees it now: with the means and deviations of its replicates. Borrows x. */
+static Evaluation design_at(const Front *front, size_t row, double f[], double sd[])
 {
-    TRY(evaluation_table_append(front, &c->search.row[row], err));
-    Evaluation *e = &front->row[front->n - 1];
-    e->replicates = (int)((long)v->replicates[row] * c->schema->replicates);
+    const SearchView *v = front->view;
+    const CsvFiles *c = front->files;
     for (size_t k = 0; k < v->n_obj; k++) {
-        e->f[k] = schema_objective(c->schema, k)->sense * v->F[row * v->n_obj + k];
-        if (v->n_replicates > 0)
-            e->sd[k] = v->sd[row * v->n_obj + k] * sqrt((double)c->schema->replicates);
+        f[k] = schema_objective(c->schema, k)->sense * v->F[row * v->n_obj + k];
+        sd[k] = v->n_replicates > 0 ? v->sd[row * v->n_obj + k] * sqrt((double)c->schema->replicates)
+                : c->sd             ? c->sd[row * v->n_obj + k]
+                                    : NAN;
     }
-    return STATUS_OK;
+    return (Evaluation){.id = (long)row + 1,
+                        .kind = (EvaluationKind)v->kind[row],
+                        .replicates = (int)((long)v->replicates[row] * c->schema->replicates),
+                        .x = (double *)(uintptr_t)(v->X + row * v->n_var),
+                        .f = f,
+                        .sd = sd};
+}
+
+static void put_front_of_search(FILE *f, const void *user)
+{
+    const Front *front = user;
+    double means[OBJECTIVES_MAX], sd[OBJECTIVES_MAX];
+    export_front_header(f, front->files->schema);
+    for (size_t i = 0; i < front->view->n; i++)
+        if (front->view->on_front[i]) {
+            const Evaluation e = design_at(front, i, means, sd);
+            export_design_as(f, front->files->schema, &e, means);
+        }
 }
 
 /* The front of the search and the polished designs, as a run without anything else. */
-static Status gather_front(const CsvFiles *c, const SearchView *v, Run *front, Err *err)
+static Status gather_front(const Front *from, Run *front, Err *err)
 {
     EvaluationTable *t = &front->table;
-    const size_t polished = c->run ? run_find(c->run, POLISHED_FIRST) : 0, end = c->run ? c->run->table.n : 0;
-    for (size_t i = 0; i < v->n; i++)
-        if (v->on_front[i])
-            TRY(add_design(c, v, i, t, err));
+    const Run *run = from->files->run;
+    const size_t polished = run_find(run, POLISHED_FIRST);
+    double means[OBJECTIVES_MAX], sd[OBJECTIVES_MAX];
+    for (size_t i = 0; i < from->view->n; i++)
+        if (from->view->on_front[i]) {
+            const Evaluation e = design_at(from, i, means, sd);
+            TRY(evaluation_table_append(t, &e, err));
+        }
     const size_t n = t->n;
-    for (size_t i = polished; i < end; i++)
-        TRY(evaluation_table_append(t, &c->run->table.row[i], err));
+    for (size_t i = polished; i < run->table.n; i++)
+        TRY(evaluation_table_append(t, &run->table.row[i], err));
     front->place = calloc(t->n + 1, sizeof *front->place);
     if (!front->place)
         return fail(err, STATUS_NO_MEMORY, "no memory for a front of %zu designs", t->n);
     for (size_t i = 0; i < t->n; i++)
-        front->place[i] = (RunPlace){.ok = i < n || c->run->place[polished + i - n].ok, .on_front = i < n};
+        front->place[i] = (RunPlace){.ok = i < n || run->place[polished + i - n].ok, .on_front = i < n};
     front->F = t->f;
     return run_settle_front(front, err);
 }
 
-/* Lines of designs that came onto the front; all of them where replicates change its numbers. */
-static Status print_lines(CsvFiles *c, const SearchView *v, const Run *front, Err *err)
+static Status replace_joined_front(const Front *from, Err *err)
 {
-    char **line = realloc(c->line, (v->n + 1) * sizeof *line);
-    size_t length;
-    if (!line)
-        return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", v->n);
-    memset(line + c->n_lines, 0, (v->n - c->n_lines) * sizeof *line);
-    c->line = line;
-    c->n_lines = v->n;
-    for (size_t i = 0; i < v->n; i++)
-        if (!v->on_front[i] || v->n_replicates > 0) {
-            free(line[i]);
-            line[i] = NULL;
-        }
-    for (size_t i = 0; i < front->n_front; i++) {
-        const long id = front->table.row[front->front[i]].id;
-        if (id >= POLISHED_FIRST || line[id - 1])
-            continue;
-        FILE *f = open_memstream(&line[id - 1], &length);
-        if (f)
-            export_design(f, front, front->front[i]);
-        if (!f || fclose(f) != 0)
-            return fail(err, STATUS_NO_MEMORY, "no memory for the front");
-    }
-    return STATUS_OK;
-}
-
-typedef struct {
-    const Run *front;
-    char **line;
-} Lines;
-
-static void put_lines(FILE *f, const void *lines)
-{
-    const Lines *l = lines;
-    export_front_header(f, &l->front->schema);
-    for (size_t i = 0; i < l->front->n_front; i++) {
-        const size_t row = l->front->front[i];
-        const long id = l->front->table.row[row].id;
-        if (id < POLISHED_FIRST)
-            fputs(l->line[id - 1], f);
-        else
-            export_design(f, l->front, row);
-    }
+    const Schema *schema = from->files->schema;
+    Run front = {.schema = *schema, .table = evaluation_table(schema->n_var, schema->n_obj, schema->n_extra)};
+    Status status = gather_front(from, &front, err);
+    if (status == STATUS_OK)
+        status = folder_write(from->files->folder, "front.csv", put_front, &front, err);
+    evaluation_table_free(&front.table);
+    free(front.place);
+    free(front.front);
+    return status;
 }
 
 Status csv_files_front(CsvFiles *c, const SearchView *v, Err *err)
 {
+    const Front front = {c, v};
     const double begun = clock_seconds();
-    c->is_behind = v->n > FRONT_ALWAYS && begun < c->next_front;
+    c->is_behind = v->n > FRONT_ALWAYS && begun < c->next_front && !v->is_last;
     if (c->is_behind)
         return STATUS_OK;
-    Run front = {.schema = *c->schema, .table = evaluation_table(v->n_var, v->n_obj, c->schema->n_extra)};
-    Status status = gather_front(c, v, &front, err);
-    if (status == STATUS_OK)
-        status = print_lines(c, v, &front, err);
-    if (status == STATUS_OK)
-        status = folder_write(c->folder, "front.csv", put_lines, &(Lines){&front, c->line}, err);
-    evaluation_table_free(&front.table);
-    free(front.place);
-    free(front.front);
+    TRY(c->run && run_has_polished(c->run) ? replace_joined_front(&front, err)
+                                           : folder_write(c->folder, "front.csv", put_front_of_search, &front, err));
     c->next_front = clock_seconds() + 10.0 * (clock_seconds() - begun);
-    return status;
+    return STATUS_OK;
 }
 
 Status csv_files_close(CsvFiles *c, Err *err)
@@ -179,9 +187,6 @@ Status csv_files_close(CsvFiles *c, Err *err)
 void csv_files_free(CsvFiles *c)
 {
     append_free(&c->evaluations);
-    evaluation_table_free(&c->search);
-    for (size_t i = 0; i < c->n_lines; i++)
-        free(c->line[i]);
-    free(c->line);
+    free(c->sd);
     *c = (CsvFiles){0};
 }

@@ -1,11 +1,11 @@
 /* store/csv_files.h -- evaluations.csv and front.csv beside the database, in step with its finished generations.
  *
- * evaluations.csv grows by the rows of each generation. front.csv, the front of the search joined by the polished designs
+ * evaluations.csv grows by the rows that are committed. front.csv, the front of the search joined by the polished designs
  * of earlier sessions, is replaced as a whole, in a large run (FRONT_ALWAYS evaluations) seldom enough that it takes a tenth of
- * the time at most, and at the end (is_behind); numbers cost more to print than to find, so that the line of a design is
- * printed once, when it comes onto the front, and kept until it leaves; anew where replicates change means and deviations.
+ * the time at most, and at the end (is_behind).
  *
  * Life cycle  {0} -> csv_files_begin or csv_files_resume -> csv_files_append, ... -> csv_files_close, or csv_files_free
+ * Memory      a batch of rows; with deviations those of all designs
  * Threads     one at a time */
 #ifndef IMTET_STORE_CSV_FILES_H
 #define IMTET_STORE_CSV_FILES_H
@@ -20,9 +20,8 @@ typedef struct {
     const Schema *schema;
     const Run *run; /* as it was when the session began; NULL: a new one */
     Append evaluations;
-    EvaluationTable search; /* what evaluations.csv has of the search */
-    char **line;            /* (n_lines) of front.csv, by design; NULL: not on the front */
-    size_t n_lines;
+    size_t n_appended; /* designs of the search that evaluations.csv has */
+    double *sd;        /* (n_appended, n_obj) of each as stored; NULL: no deviations are known */
     double next_front; /* [s] of the clock, before which front.csv is not replaced again */
     int is_behind;     /* front.csv is of an earlier generation */
 } CsvFiles;

@@ -27,13 +27,11 @@ void export_front_header(FILE *f, const Schema *schema)
     write_names(f, "id", schema, 0, schema->has_spread);
 }
 
-void export_design(FILE *f, const Run *run, size_t row)
+void export_design_as(FILE *f, const Schema *schema, const Evaluation *e, const double means[])
 {
-    const Schema *schema = &run->schema;
-    const Evaluation *e = &run->table.row[row];
     fprintf(f, "%ld", e->id);
     print_cells(f, schema->n_var, e->x);
-    print_cells(f, schema->n_obj, run_f(run, row));
+    print_cells(f, schema->n_obj, means);
     if (schema->has_spread) {
         print_cells(f, schema->n_obj, e->sd);
         fputc(',', f);
@@ -41,6 +39,11 @@ void export_design(FILE *f, const Run *run, size_t row)
             fprintf(f, "%d", e->replicates);
     }
     fputc('\n', f);
+}
+
+void export_design(FILE *f, const Run *run, size_t row)
+{
+    export_design_as(f, &run->schema, &run->table.row[row], run_f(run, row));
 }
 
 void export_front(FILE *f, const Run *run)

@@ -13,6 +13,7 @@
  * they are not known. */
 void export_front_header(FILE *f, const Schema *schema);
 void export_design(FILE *f, const Run *run, size_t row);
+void export_design_as(FILE *f, const Schema *schema, const Evaluation *e, const double means[]); /* means (n_obj) */
 void export_front(FILE *f, const Run *run);
 
 /* Rows from `first` on, of finished generations and polished designs: evaluations.csv. With unfinished_too also what is

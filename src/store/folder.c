@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -36,6 +37,22 @@ size_t folder_rows(const Folder *folder, const char *name)
             lines++;
     close(fd);
     return lines > 0 ? lines - 1 : 0;
+}
+
+int folder_counts(const Folder *folder, const char *name, size_t n)
+{
+    char path[PATH_MAX], *line = NULL;
+    size_t room = 0, count = 0;
+    ssize_t length = 0;
+    folder_path(folder, name, path);
+    FILE *f = folder_rows(folder, name) == n ? fopen(path, "re") : NULL;
+    int is_so = f && getline(&line, &room, f) > 0;
+    for (; is_so && (length = getline(&line, &room, f)) > 0; count++)
+        is_so = strtoul(line, NULL, 10) == count + 1 && line[length - 1] == '\n';
+    free(line);
+    if (f)
+        fclose(f);
+    return is_so && count == n;
 }
 
 static Status make_folders(const char *folder, Err *err)

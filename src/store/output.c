@@ -8,6 +8,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/number.h"
+
 /* A new file: what lies there under that name, a prepared link say, is removed. */
 static FILE *open_new(const char *path)
 {
@@ -110,15 +112,9 @@ void output_abandon(Output *o)
 
 void print_number(FILE *stream, double value)
 {
-    char text[40];
-    if (!isfinite(value))
-        return;
-    for (int digits = 15; digits <= 17; digits++) {
-        snprintf(text, sizeof text, "%.*g", digits, value);
-        if (digits < 17 && strtod(text, NULL) == value)
-            break;
-    }
-    fputs(text, stream);
+    char text[NUMBER_TEXT_MAX];
+    if (isfinite(value))
+        fwrite(text, 1, number_text(value, text), stream);
 }
 
 void print_cells(FILE *stream, size_t n, const double values[])

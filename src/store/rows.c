@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/number.h"
 #include "store/digest.h"
-#include "store/output.h"
 
 const char *column_text(sqlite3_stmt *row, int column)
 {
@@ -42,26 +42,30 @@ static long digest_of(const Evaluation *e, const RowText *t)
 
 /* -- writing ------------------------------------------------------------------------------------------------------- */
 
-/* "[1,2.5,null]" into *text, which the caller frees; NULL where no number is finite. */
-static Status numbers_text(size_t n, const double values[], char **text, Err *err)
+/* Characters of n numbers as a list. */
+static size_t list_room(size_t n)
 {
-    size_t length, known = 0;
-    *text = NULL;
+    return n * NUMBER_TEXT_MAX + 3;
+}
+
+/* "[1,2.5,null]" at *room, which moves behind it; NULL where no number is finite. */
+static const char *list_text(size_t n, const double values[], char **room)
+{
+    char *const text = *room, *to = text;
+    size_t known = 0;
     for (size_t i = 0; values && i < n; i++)
         known += isfinite(values[i]) != 0;
     if (known == 0)
-        return STATUS_OK;
-    FILE *f = open_memstream(text, &length);
-    for (size_t i = 0; f && i < n; i++) {
-        fputc(i == 0 ? '[' : ',', f);
+        return NULL;
+    for (size_t i = 0; i < n; i++) {
+        *to++ = i == 0 ? '[' : ',';
         if (isfinite(values[i]))
-            print_number(f, values[i]);
+            to += number_text(values[i], to);
         else
-            fputs("null", f);
+            to = stpcpy(to, "null");
     }
-    if (f)
-        fputc(']', f);
-    return f && fclose(f) == 0 ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for %zu numbers", n);
+    *room = stpcpy(to, "]") + 1;
+    return text;
 }
 
 static Status insert_text(Database *db, const Evaluation *e, const RowText *t, Err *err)
@@ -76,20 +80,17 @@ static Status insert_text(Database *db, const Evaluation *e, const RowText *t, E
 
 Status rows_insert(Database *db, RowShape shape, const Evaluation *e, Err *err)
 {
-    char *x = NULL, *f = NULL, *sd = NULL, *extra = NULL;
-    Status status = numbers_text(shape.n_var, e->x, &x, err);
-    if (status == STATUS_OK && e->outcome == OUTCOME_OK)
-        status = numbers_text(shape.n_obj, e->f, &f, err);
-    if (status == STATUS_OK)
-        status = numbers_text(shape.n_obj, e->sd, &sd, err);
-    if (status == STATUS_OK)
-        status = numbers_text(shape.n_extra, e->extra, &extra, err);
-    if (status == STATUS_OK)
-        status = insert_text(db, e, &(RowText){outcome_word(e->outcome), e->reason, x, f, sd, extra}, err);
-    free(x);
-    free(f);
-    free(sd);
-    free(extra);
+    char *const store = malloc(list_room(shape.n_var) + 2 * list_room(shape.n_obj) + list_room(shape.n_extra));
+    char *room = store;
+    if (!store)
+        return fail(err, STATUS_NO_MEMORY, "no memory for the text of a row");
+    RowText t = {.outcome = outcome_word(e->outcome), .reason = e->reason};
+    t.x = list_text(shape.n_var, e->x, &room);
+    t.f = e->outcome == OUTCOME_OK ? list_text(shape.n_obj, e->f, &room) : NULL;
+    t.sd = list_text(shape.n_obj, e->sd, &room);
+    t.extra = list_text(shape.n_extra, e->extra, &room);
+    const Status status = insert_text(db, e, &t, err);
+    free(store);
     return status;
 }
 
@@ -127,7 +128,7 @@ static int parse_numbers(const char *text, size_t n_least, size_t n, double valu
     for (size_t i = 0; i < n; i++)
         values[i] = NAN;
     for (size_t i = 0; i < n && known; i++) {
-        char *end;
+        const char *end;
         if (i >= n_least && i > 0 && *text == ']')
             break;
         if (*text++ != (i == 0 ? '[' : ','))
@@ -136,7 +137,7 @@ static int parse_numbers(const char *text, size_t n_least, size_t n, double valu
             text += 4;
             continue;
         }
-        values[i] = strtod(text, &end);
+        values[i] = number_read(text, &end);
         if (end == text || !isfinite(values[i]))
             return 0;
         text = end;

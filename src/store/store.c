@@ -28,7 +28,8 @@ struct RunStore {
     int has_run, has_polished;
 
     int in_transaction;
-    double last_commit;          /* [s] */
+    double last_commit;          /* [s] of the clock */
+    double last_generation;      /* ... */
     size_t n_known;              /* designs of finished generations */
     unsigned char *was_on_front; /* (n_known) at the end of the last generation */
     uint64_t front;              /* digest of those on it */
@@ -239,7 +240,8 @@ Status store_flush(RunStore *store, Err *err)
     TRY(database_do(store->db, err, "COMMIT", ""));
     store->in_transaction = 0;
     store->last_commit = clock_seconds();
-    return STATUS_OK;
+    return store->files.evaluations.stream ? csv_files_append(&store->files, store->db, store->n_known, err)
+                                           : STATUS_OK;
 }
 
 static Status insert(RunStore *store, const Evaluation *e, Err *err)
@@ -337,32 +339,43 @@ static Status put_generation(RunStore *store, const SearchView *v, double second
 {
     if (!v->state)
         return fail(err, STATUS_NO_MEMORY, "no memory for the state of the search");
-    TRY(begin(store, err));
     TRY(store_kinds(store, v, err));
     TRY(store_front_changes(store, v, err));
     TRY(store_moment(store, v, seconds, err));
     TRY(store_effort(store, v, session, err));
-    TRY(store_state(store, v, err));
-    return store_flush(store, err);
+    return store_state(store, v, err);
 }
 
-/* All of it or nothing: half a generation beside the state of the one before could not be resumed. */
-static Status commit_generation(RunStore *store, const SearchView *v, double seconds, double session, Err *err)
+/* All of it or nothing: half a generation beside the state of the one before could not be resumed. Simulations that wait
+ * for the next commit are not lost with it. */
+static Status put_whole_generation(RunStore *store, const SearchView *v, double seconds, double session, Err *err)
 {
-    TRY(store_flush(store, err)); /* simulations that wait are not lost with it */
-    TRY(database_check_place(store->db, err));
+    TRY(begin(store, err));
+    TRY(database_do(store->db, err, "SAVEPOINT generation", ""));
     const Status status = put_generation(store, v, seconds, session, err);
-    if (store->in_transaction)
-        database_do(store->db, NULL, "ROLLBACK", "");
-    store->in_transaction = 0;
-    return status;
+    if (status != STATUS_OK)
+        database_do(store->db, NULL, "ROLLBACK TO generation", "");
+    const Status end = database_do(store->db, status == STATUS_OK ? err : NULL, "RELEASE generation", "");
+    return status != STATUS_OK ? status : end;
+}
+
+/* Generations that take a moment are committed together, COMMIT_S after the last commit: a commit waits for the disk. */
+static int is_due(RunStore *store, const SearchView *v)
+{
+    const double now = clock_seconds(), before = store->last_generation;
+    store->last_generation = now;
+    return v->is_last || now >= store->last_commit + COMMIT_S || now >= before + GENERATION_S;
 }
 
 Status store_generation(RunStore *store, const SearchView *v, double seconds, double session, Err *err)
 {
     TRY(front_share_follow(&store->share, v, err));
-    TRY(commit_generation(store, v, seconds, session, err));
-    TRY(csv_files_append(&store->files, store->db, v->n, err));
+    TRY(put_whole_generation(store, v, seconds, session, err));
+    store->files.is_behind = 1;
+    if (!is_due(store, v))
+        return STATUS_OK;
+    TRY(store_flush(store, err));
+    TRY(database_check_place(store->db, err));
     return csv_files_front(&store->files, v, err);
 }
 

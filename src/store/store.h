@@ -9,8 +9,9 @@
  *   lock              which process works on it                                    (store/lock.h)
  *
  * One evaluation is one row, committed when it is done: at once where it took longer than COMMIT_S, else at the latest
- * COMMIT_S after the one before, and at the end of its batch. What a kill can cost is what was under way and COMMIT_S
- * of evaluations. The end of a generation is one transaction: kinds, front, hypervolume, state of the search.
+ * COMMIT_S after the one before, and at the end of its batch. Generations that take less than GENERATION_S are committed
+ * together, likewise. What a kill can cost is what was under way and COMMIT_S of evaluations. The end of a generation is
+ * whole or not there: kinds, front, hypervolume, state of the search.
  *
  *   run          settings (INI), provenance (JSON), planned_evals, n_var, created, tried_to_polish, polished_at, digest
  *   evaluation   id, generation, kind (NULL: its generation is not finished), outcome, reason, seconds,
@@ -45,7 +46,7 @@ typedef struct Settings Settings;
 
 typedef struct RunStore RunStore;
 
-static const double COMMIT_S = 0.2;
+static const double COMMIT_S = 0.2, GENERATION_S = 0.025;
 
 /* Takes the folder, made where it is not there, and its lock. fresh: the first of folder, folder-2, folder-3, ... that
  * holds no run. */

@@ -1,0 +1,215 @@
+#include "base/number.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+__extension__ typedef unsigned __int128 Wide;
+
+/* The largest power of five below 2^64, and the largest power of ten that is a double. */
+enum { FIVES_MAX = 27, TENS_MAX = 22 };
+
+static const uint64_t FIVES[FIVES_MAX + 1] = {1,
+                                              5,
+                                              25,
+                                              125,
+                                              625,
+                                              3125,
+                                              15625,
+                                              78125,
+                                              390625,
+                                              1953125,
+                                              9765625,
+                                              48828125,
+                                              244140625,
+                                              1220703125,
+                                              6103515625,
+                                              30517578125,
+                                              152587890625,
+                                              762939453125,
+                                              3814697265625,
+                                              19073486328125,
+                                              95367431640625,
+                                              476837158203125,
+                                              2384185791015625,
+                                              11920928955078125,
+                                              59604644775390625,
+                                              298023223876953125,
+                                              1490116119384765625,
+                                              7450580596923828125};
+static const double TENS[TENS_MAX + 1] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
+                                          1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+
+static const uint64_t TEN_16 = 10000000000000000;
+
+/* -- to text ------------------------------------------------------------------------------------------------------- */
+
+/* The value m 2^e times 10^q is m 5^q / 2^shift. */
+typedef struct {
+    uint64_t m;
+    int e;
+} Binary;
+
+static Wide scaled(Binary b, int q)
+{
+    return (Wide)b.m * FIVES[q];
+}
+
+/* Rounded to a whole number, half to even. */
+static uint64_t digits_of(Binary b, int q)
+{
+    const Wide all = scaled(b, q);
+    const int shift = -(b.e + q);
+    const uint64_t whole = (uint64_t)(all >> shift);
+    const Wide rest = all - ((Wide)whole << shift), half = (Wide)1 << (shift - 1);
+    return whole + (rest > half || (rest == half && whole % 2 == 1));
+}
+
+/* Whether D / 10^q is nearer to the value than to its neighbours. They are 5^q apart in units of 2^-shift; below a power
+ * of two half of that. */
+static int reads_back(Binary b, int q, uint64_t D)
+{
+    const Wide all = scaled(b, q), found = (Wide)D << -(b.e + q);
+    const int is_below = found < all, is_power = b.m == (uint64_t)1 << 52;
+    const Wide off = is_below ? all - found : found - all;
+    return off * (is_below && is_power ? 4 : 2) < FIVES[q];
+}
+
+/* x with 10^x <= value < 10^(x + 1). */
+static int exponent_of(Binary b)
+{
+    const int x = (int)floor(0.30102999566398120 * (b.e + 52)), q = 16 - x;
+    return x + (q <= FIVES_MAX && scaled(b, q) >> -(b.e + q) >= 10 * TEN_16);
+}
+
+/* D has n digits, the first of 10^x. */
+static size_t put_digits(uint64_t D, int n, int x, char text[])
+{
+    char digit[20], *to = text;
+    int kept = n;
+    if (D == (n == 15 ? TEN_16 / 10 : n == 16 ? TEN_16 : 10 * TEN_16)) { /* rounded up to the next power */
+        D /= 10;
+        x++;
+    }
+    for (int i = n; i-- > 0; D /= 10)
+        digit[i] = (char)('0' + D % 10);
+    while (kept > 1 && digit[kept - 1] == '0')
+        kept--;
+    if (x < -4 || x >= n) {
+        *to++ = digit[0];
+        if (kept > 1)
+            *to++ = '.';
+        memcpy(to, digit + 1, (size_t)kept - 1);
+        to += kept - 1;
+        return (size_t)(to - text) + (size_t)sprintf(to, "e%+03d", x);
+    }
+    if (x < 0) {
+        memcpy(to, "0.0000", 6);
+        to += 1 - x;
+    }
+    for (int i = 0; i < kept || i <= x; i++) {
+        if (x >= 0 && i == x + 1)
+            *to++ = '.';
+        *to++ = i < kept ? digit[i] : '0';
+    }
+    return (size_t)(to - text);
+}
+
+static size_t text_by_printf(double value, char text[NUMBER_TEXT_MAX])
+{
+    int n = 0;
+    for (int digits = 15; digits <= 17; digits++) {
+        n = snprintf(text, NUMBER_TEXT_MAX, "%.*g", digits, value);
+        if (digits < 17 && strtod(text, NULL) == value)
+            break;
+    }
+    return (size_t)n;
+}
+
+size_t number_text(double value, char text[NUMBER_TEXT_MAX])
+{
+    const double size = fabs(value);
+    int e;
+    if (value == 0.0)
+        return (size_t)sprintf(text, "%s", signbit(value) ? "-0" : "0");
+    if (!(size >= 1e-10 && size < 1e15))
+        return text_by_printf(value, text);
+    Binary b = {.m = (uint64_t)ldexp(frexp(size, &e), 53)};
+    b.e = e - 53;
+    const int x = exponent_of(b), sign = value < 0.0;
+    text[0] = '-';
+    for (int n = 15;; n++) {
+        const int q = n - 1 - x;
+        const uint64_t D = digits_of(b, q);
+        if (n == 17 || reads_back(b, q, D)) {
+            const size_t length = put_digits(D, n, x, text + sign) + (size_t)sign;
+            text[length] = 0;
+            return length;
+        }
+    }
+}
+
+/* -- from text ----------------------------------------------------------------------------------------------------- */
+
+static int bits_of(uint64_t value)
+{
+    return 64 - __builtin_clzll(value);
+}
+
+/* D / 10^k, rounded half to even: of the quotient by 5^k 62 bits at least and whether there is a rest. */
+static double quotient(uint64_t D, int k)
+{
+    const int shift = 63 + bits_of(FIVES[k]) - bits_of(D);
+    const Wide all = (Wide)D << shift, found = all / FIVES[k];
+    uint64_t q = (uint64_t)found;
+    const int low = bits_of(q) - 53;
+    const uint64_t rest = q & (((uint64_t)1 << low) - 1), half = (uint64_t)1 << (low - 1);
+    const int is_more = found * FIVES[k] != all;
+    q >>= low;
+    q += rest > half || (rest == half && (is_more || q % 2 == 1));
+    return ldexp((double)q, low - shift - k);
+}
+
+/* The digits from the first that is not 0, the point left out; places: digits behind it. NULL: more than 19, or none. */
+static const char *read_digits(const char *at, uint64_t *D, int *places)
+{
+    int n = 0, known = 0, point = 0;
+    *D = 0;
+    *places = 0;
+    for (;; at++) {
+        if (*at == '.' && !point) {
+            point = 1;
+            continue;
+        }
+        if (*at < '0' || *at > '9')
+            return known ? at : NULL;
+        known = 1;
+        n += *D > 0 || *at != '0';
+        if (n > 19)
+            return NULL;
+        *D = 10 * *D + (uint64_t)(*at - '0');
+        *places += point;
+    }
+}
+
+double number_read(const char *text, const char **end)
+{
+    const int sign = text[0] == '-';
+    char *last;
+    uint64_t D;
+    int k;
+    const char *at = read_digits(text + sign, &D, &k);
+    if (at && (*at == 0 || *at == ',' || *at == ']')) {
+        const int is_small = D < (uint64_t)1 << 53;
+        *end = at;
+        if ((is_small && k <= TENS_MAX) || (D > 0 && k > 0 && k <= FIVES_MAX)) {
+            const double size = is_small && k <= TENS_MAX ? (double)D / TENS[k] : quotient(D, k);
+            return sign ? -size : size;
+        }
+    }
+    const double value = strtod(text, &last);
+    *end = last;
+    return value;
+}
