@@ -142,6 +142,29 @@ static void test_evaluate_compares_with_devices_and_replicates_have_a_named_devi
     expect(65, "needs replicates that differ", "evaluate @/run --design knee --set uncertain.damping=0.1");
 }
 
+static void test_evaluate_and_simulate_estimate_the_same_error_and_a_study_shows_that_of_its_knee(void **state)
+{
+    (void)state;
+    json_t *o = json_of("evaluate @/run --design knee --json"), *one = json_of(SIMULATE "@/run:knee");
+    const json_t *core = json_object_get(json_array_get(json_object_get(o, "records"), 0), "with_core");
+    const json_t *error = json_object_get(core, "estimated_error"), *wanted = json_object_get(one, "estimated_error");
+    assert_true(number(wanted, "j3_g") > 0);
+    assert_true(number(error, "j3_g") == number(wanted, "j3_g"));
+    assert_true(number(error, "ed1_pct") == number(wanted, "ed1_pct"));
+    json_decref(o);
+    json_decref(one);
+    char *said = output_of("evaluate @/run --design knee");
+    assert_non_null(strstr(said, "  estimated error"));
+    free(said);
+    said = output_of("evaluate @/run --design knee --engine cvode --duration 3");
+    assert_null(strstr(said, "estimated error"));
+    free(said);
+    said = output_of("optimize configs/quick.ini --out @/knee --max-evals 8 --set search.initial=8 "
+                     "--set search.population=8 --set search.polish=0 " SHORT);
+    assert_non_null(strstr(said, "  estimated error"));
+    free(said);
+}
+
 static void test_choose_names_the_extremes_and_writes_them(void **state)
 {
     (void)state;
@@ -183,6 +206,7 @@ int main(void)
         cmocka_unit_test(test_evaluate_without_a_record_takes_those_of_the_run),
         cmocka_unit_test(test_evaluate_takes_a_design_from_elsewhere),
         cmocka_unit_test(test_evaluate_compares_with_devices_and_replicates_have_a_named_deviation),
+        cmocka_unit_test(test_evaluate_and_simulate_estimate_the_same_error_and_a_study_shows_that_of_its_knee),
         cmocka_unit_test(test_choose_names_the_extremes_and_writes_them),
         cmocka_unit_test(test_words_that_name_nothing_are_refused_with_what_is_there),
     };

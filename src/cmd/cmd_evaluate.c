@@ -41,6 +41,9 @@ static json_t *describe(const Evaluations *e, const EvaluatedRun *run)
         json_object_set_new(tmd, "tmd_damping", json_number(run->device[EVALUATED_TMD].tmd_damping));
         json_object_set_new(links, "link_ns_m", json_number(run->device[EVALUATED_LINKS].link_ns_m));
     }
+    if (run->error_known)
+        json_object_set_new(json_object_get(o, EVALUATION_CASES[EVALUATED_DESIGN].key), "estimated_error",
+                            json_errors(run->error));
     if (e->replicates > 0)
         json_object_set_new(o, "replicates", json_replicates(&run->replicates));
     return o;
@@ -143,7 +146,8 @@ static void print_named(const Evaluations *e, const Schema *schema)
         fputs(e->run[i].motion, stdout);
         show_result_names("", order);
         for (int c = 0; c < evaluated_cases(e, &e->run[i]); c++) {
-            show_result(EVALUATION_CASES[c].word, order, &e->run[i].result[c], NULL);
+            show_result(EVALUATION_CASES[c].word, order, &e->run[i].result[c],
+                        c == EVALUATED_DESIGN && e->run[i].error_known ? e->run[i].error : NULL);
             if (c == EVALUATED_DESIGN && e->replicates > 0)
                 show_replicates(0, order, &e->run[i].replicates);
         }

@@ -80,6 +80,8 @@ static void print_front(const Run *run, const StudySummary *summary)
         show_objectives(label, run->table.row[best].id, schema, run_f(run, best));
     }
     show_objectives("knee", run->table.row[knee].id, schema, run_f(run, knee));
+    if (summary->error_known)
+        show_objective_errors(schema, summary->error);
     if (summary->has_baselines) {
         show_baselines(schema, run_f(run, knee), summary->baseline);
         explain_objectives(schema, run->settings->search.objectives);

@@ -94,27 +94,14 @@ static Status simulate(const Problem *p, Job *job, Err *err)
     return STATUS_OK;
 }
 
-/* The same designs with twice the steps. */
 static Status estimate(const Settings *s, Job *job, Err *err)
 {
-    Settings finer = *s;
-    Problem p;
-    if (!estimate_options(&s->sim, &finer.sim) || job->kind == SCENE_RIGID)
+    if (s->sim.engine != ENGINE_FAST || job->kind == SCENE_RIGID)
         return STATUS_OK;
     job->error = calloc(job->n, N_MEASURES * sizeof *job->error);
-    SimResult *results = calloc(job->n, sizeof *results);
-    Status status =
-        job->error && results ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for the estimated errors");
-    if (status == STATUS_OK)
-        status = tower_open(&p, &finer, TOWER_SINGLE, job->kind == SCENE_NO_CORE ? 1 : SIZE_MAX, err);
-    if (status == STATUS_OK) {
-        status = tower_simulate(&p, job->n, job->tasks, results, err);
-        problem_close(&p);
-    }
-    for (size_t i = 0; i < job->n && status == STATUS_OK; i++)
-        estimate_errors(&job->results[i], &results[i], job->error + i * N_MEASURES);
-    free(results);
-    return status;
+    if (!job->error)
+        return fail(err, STATUS_NO_MEMORY, "no memory for the estimated errors");
+    return estimate_designs(s, job->n, job->tasks, job->results, job->error, err);
 }
 
 static const double *errors_of(const Job *job, size_t i)

@@ -15,6 +15,7 @@
 #include "scene/motion_source.h"
 #include "settings/settings.h"
 #include "simulator/baselines.h"
+#include "simulator/estimate.h"
 
 const struct EvaluationCase EVALUATION_CASES[N_WITH_DEVICES] = {{SCENE_IMPACT, "with core", "with_core"},
                                                                 {SCENE_RIGID, "rigidly connected", "rigid"},
@@ -196,6 +197,9 @@ static Status run_one(const Evaluations *e, EvaluatedRun *run, const Settings *s
         status = simulate(&p, n_var, x, run->result, err);
     if (status == STATUS_OK && evaluated_cases(e, run) == N_WITH_DEVICES)
         status = simulate_devices(&p, x, run, err);
+    run->error_known = own->sim.engine == ENGINE_FAST && evaluated_cases(e, run) == N_WITH_DEVICES;
+    if (status == STATUS_OK && run->error_known)
+        status = estimate_designs(own, 1, &(SimTask){SCENE_IMPACT, x}, run->result, run->error, err);
     if (status == STATUS_OK && e->replicates > 0)
         status = replicate(own, e->replicates, x, run, err);
     free(own);

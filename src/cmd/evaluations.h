@@ -45,6 +45,8 @@ typedef struct {
     SimResult result[N_WITH_DEVICES];
     LinearDevice device[N_WITH_DEVICES]; /* optimized under this record (simulator/baselines.h) */
     ReplicateSummary replicates;         /* of the design, where there are some */
+    double error[N_MEASURES];            /* of the design, estimated (simulator/estimate.h), where error_known */
+    int error_known;                     /* of records that were named, at one intensity, by the engine fast */
 } EvaluatedRun;
 
 typedef struct {

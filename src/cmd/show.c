@@ -251,6 +251,14 @@ void show_objectives(const char *label, long id, const Schema *schema, const dou
     putchar('\n');
 }
 
+void show_objective_errors(const Schema *schema, const double error[])
+{
+    printf("%-26s", "  estimated error");
+    for (size_t k = 0; k < schema->n_obj; k++)
+        show_digits(error[schema->order.of[k]], 1, schema_objective(schema, k)->name);
+    putchar('\n');
+}
+
 static void show_moments(int indent, const char *word, const ReplicateSummary *r, const MeasureOrder *order,
                          const double values[])
 {

@@ -47,4 +47,7 @@ void show_expected_gain(double gain);
 void show_objective_names(const Schema *schema);
 void show_objectives(const char *label, long id, const Schema *schema, const double natural[]);
 
+/* error (N_MEASURES), of the objectives, below their line. */
+void show_objective_errors(const Schema *schema, const double error[]);
+
 #endif

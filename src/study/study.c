@@ -10,6 +10,7 @@
 #include "base/clock.h"
 #include "settings/settings.h"
 #include "simulator/adapter.h"
+#include "simulator/estimate.h"
 #include "store/provenance.h"
 #include "study/differences.h"
 #include "study/final_polish.h"
@@ -409,13 +410,29 @@ static Status polish(Study *study, Err *err)
     return note_stop(study, final_polish(study->store, &p, &sum->n_tried_to_polish, &sum->n_polished, err), err);
 }
 
-/* What the knee is compared with, and what the front says about its gaps. */
+/* The integration error of the knee. */
+static Status estimate_knee(Study *study, const double x[], Err *err)
+{
+    const Tower *t = adapter_tower(study->adapter);
+    StudySummary *sum = study->summary;
+    SimResult result;
+    const SimTask task = {SCENE_IMPACT, x};
+    sum->error_known =
+        study->used.sim.engine == ENGINE_FAST && tower_n_records(t) == 1 && study->used.sim.replicates <= 1;
+    if (!sum->error_known)
+        return STATUS_OK;
+    TRY(tower_simulate(adapter_problem(study->adapter), 1, &task, &result, err));
+    return estimate_designs(&study->used, 1, &task, &result, sum->error, err);
+}
+
+/* What the knee is compared with, its error, and what the front says about its gaps. */
 static Status find_baselines(Study *study, Err *err)
 {
     const Run *run = study->options->run;
     if (!run || run->n_front == 0 || !adapter_tower(study->adapter))
         return STATUS_OK;
     study->summary->has_baselines = 1;
+    TRY(estimate_knee(study, run_x(run, run_knee(run)), err));
     TRY(front_review_closings(adapter_problem(study->adapter), run, &study->summary->review, err));
     return baselines_find(adapter_problem(study->adapter), run_x(run, run_knee(run)), study->summary->baseline, err);
 }

@@ -21,7 +21,9 @@ typedef struct {
     int surrogate_disabled;
     int has_baselines; /* of a tower whose front has a knee; of its core */
     Baseline baseline[N_BASELINES];
-    FrontReview review; /* of the same */
+    double error[N_MEASURES]; /* of the knee, estimated (simulator/estimate.h), where error_known */
+    int error_known;          /* it is the result of one simulation, by the engine fast */
+    FrontReview review;       /* of the same */
 } StudySummary;
 
 #endif
