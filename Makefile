@@ -30,7 +30,7 @@ CPPFLAGS += -Isrc -MMD -MP -D_GNU_SOURCE
 # Hidden: a function of ours never takes the place of one of the same name inside a shared library.
 CFLAGS   += -std=c17 -fopenmp -ffp-contract=fast -fvisibility=hidden $(CFLAGS.$(MODE))
 LDFLAGS  += -fopenmp $(CFLAGS.$(MODE))
-LDLIBS   += -lsundials_cvode -lsundials_nvecserial -lsundials_sunnonlinsolfixedpoint -lnlopt -llapacke -lopenblas -linih -ljansson -lsqlite3 -larchive -lmseed -lm
+LDLIBS   += -lsundials_cvode -lsundials_nvecserial -lsundials_sunnonlinsolfixedpoint -lnlopt -llapacke -lopenblas -linih -ljansson -lsqlite3 -larchive -lmseed -lmicrohttpd -lm
 
 # Loops over floors, modes and centres are written for the vectorizer; the rest does not gain from -O3. These flags come
 # last; provenance.json quotes them by the same variables.
@@ -54,7 +54,7 @@ FLAGS_TEXT := $(subst $(SPACE);,;,$(FLAGS_LIST))
 
 SRC      := $(filter-out src/sim/fast/kernel.c src/mpi/%,$(wildcard src/*/*.c src/*/*/*.c))
 MATRICES := $(wildcard configs/sac20/guyan/*.csv configs/sac20/appendix/*.csv configs/sac20/frame/*.csv)
-LIB_OBJ  := $(SRC:%.c=$(BUILD)/%.o) $(KERNELS:%=$(BUILD)/src/sim/fast/kernel_%.o) $(MATRICES:%=$(BUILD)/%.o) $(BUILD)/web/page.o
+LIB_OBJ  := $(SRC:%.c=$(BUILD)/%.o) $(KERNELS:%=$(BUILD)/src/sim/fast/kernel_%.o) $(MATRICES:%=$(BUILD)/%.o) $(BUILD)/web/page.o $(BUILD)/web/live.o
 LIB      := $(BUILD)/libimtet.a
 PROGRAM  := $(if $(filter release,$(MODE)),imtet,$(BUILD)/imtet)
 TEST_SRC := $(filter-out tests/test_mpi.c,$(wildcard tests/test_*.c))
@@ -104,12 +104,13 @@ $(BUILD)/%.csv.o: %.csv
 	@mkdir -p $(@D)
 	$(Q)$(LD) -r -b binary -z noexecstack -o $@ $<
 
-# So is the page of the report, its style and scripts inside. web/charts.js is what `make web` bundles from npm.
-build/web/page.html: web/assemble web/page.html web/style.css web/charts.js $(wildcard web/app/*.js)
+# So are the page of the report, its style and scripts inside, and that of `imtet serve`, which has live parts too.
+# web/charts.js is what `make web` bundles from npm.
+build/web/page.html build/web/live.html: web/assemble web/page.html web/style.css web/charts.js $(wildcard web/app/*.js web/live/*)
 	@mkdir -p $(@D)
-	$(Q)web/assemble > $@.part && mv $@.part $@
+	$(Q)web/assemble $(filter live,$(basename $(@F))) > $@.part && mv $@.part $@
 
-$(BUILD)/web/page.o: build/web/page.html
+$(BUILD)/web/%.o: build/web/%.html
 	@mkdir -p $(@D)
 	$(Q)$(LD) -r -b binary -z noexecstack -o $@ $<
 
@@ -153,7 +154,7 @@ jobs = $(foreach name,$(2),$(foreach mode,$(1),$(call job,$(mode),$(name))))
 
 tests: $(PROGRAM) $(TESTS) $(BENCH) ## builds every test without running one
 
-tests-release tests-asan: build/web/page.html
+tests-release tests-asan: build/web/page.html build/web/live.html
 	@+$(MAKE) --no-print-directory MODE=$(@:tests-%=%) tests
 
 ifdef T

@@ -15,6 +15,7 @@
     X(CHOOSE)                                                                                                          \
     X(POLISH)                                                                                                          \
     X(REPORT)                                                                                                          \
+    X(SERVE)                                                                                                           \
     X(PLOT)                                                                                                            \
     X(HORIZON)                                                                                                         \
     X(BUILDING)                                                                                                        \

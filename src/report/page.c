@@ -5,8 +5,9 @@
 #include "report/report_json.h"
 #include "store/output.h"
 
-/* build/web/page.html: the page with a line MARK where the run goes. */
+/* build/web/page.html, live.html: the page with a line MARK where the run goes. */
 extern const char _binary_build_web_page_html_start[], _binary_build_web_page_html_end[];
+extern const char _binary_build_web_live_html_start[], _binary_build_web_live_html_end[];
 static const char MARK[] = "<!-- the run -->\n";
 
 /* JSON in which no text can end the script element or begin a comment: < stands only inside strings. */
@@ -37,9 +38,8 @@ static void write_rows(const Run *run, FILE *out)
     }
 }
 
-static Status write_page(const Report *r, FILE *out, Err *err)
+static Status write_page(const Report *r, const char *start, const char *end, FILE *out, Err *err)
 {
-    const char *start = _binary_build_web_page_html_start, *end = _binary_build_web_page_html_end;
     const char *mark = memmem(start, (size_t)(end - start), MARK, sizeof MARK - 1);
     if (!mark)
         return fail(err, STATUS_INTERNAL, "the page of the report has no place for the run");
@@ -58,10 +58,31 @@ Status report_page(const Report *r, const char *path, Err *err)
 {
     Output o;
     TRY(output_open(&o, path, err));
-    const Status status = write_page(r, o.stream, err);
+    const Status status = write_page(r, _binary_build_web_page_html_start, _binary_build_web_page_html_end, o.stream, err);
     if (status != STATUS_OK) {
         output_abandon(&o);
         return status;
     }
     return output_close(&o, err);
+}
+
+Status report_live(const Run *run, char **text, Err *err)
+{
+    size_t length;
+    Report r = report_brief(run);
+    *text = NULL;
+    if (run->n_front == 0)
+        return run_why_empty(run, err);
+    FILE *out = open_memstream(text, &length);
+    if (!out)
+        return fail(err, STATUS_NO_MEMORY, "no memory for a page");
+    r.knee = r.chosen = run_knee(run);
+    Status status = write_page(&r, _binary_build_web_live_html_start, _binary_build_web_live_html_end, out, err);
+    if (fclose(out) != 0 && status == STATUS_OK)
+        status = fail(err, STATUS_NO_MEMORY, "no memory for a page");
+    if (status != STATUS_OK) {
+        free(*text);
+        *text = NULL;
+    }
+    return status;
 }

@@ -14,11 +14,19 @@ static Status take_detail(Report *r, const DetailOptions *options, Err *err)
                : STATUS_OK;
 }
 
-Status report_open(Report *r, const Run *run, size_t chosen, const DetailOptions *options, Err *err)
+Report report_brief(const Run *run)
 {
     const Settings *s = run->settings;
-    *r = (Report){.run = run, .chosen = chosen, .has_detail = s->problem.kind == PROBLEM_TOWER};
-    r->is_robust = r->has_detail && (s->sim.replicates > 1 || strcmp(s->motion.records, "none") != 0);
+    const int is_tower = s->problem.kind == PROBLEM_TOWER;
+    return (Report){.run = run,
+                    .has_detail = is_tower,
+                    .is_robust = is_tower && (s->sim.replicates > 1 || strcmp(s->motion.records, "none") != 0)};
+}
+
+Status report_open(Report *r, const Run *run, size_t chosen, const DetailOptions *options, Err *err)
+{
+    *r = report_brief(run);
+    r->chosen = chosen;
     if (run->n_front == 0)
         return run_why_empty(run, err);
     r->knee = run_knee(run);

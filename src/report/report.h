@@ -28,6 +28,12 @@ typedef struct {
 Status report_open(Report *r, const Run *run, size_t chosen, const DetailOptions *options, Err *err);
 Status report_page(const Report *r, const char *path, Err *err);
 
+/* A run before anything of it is simulated again: no design in detail. */
+Report report_brief(const Run *run);
+
+/* The page of such a report for `imtet serve`, whose live parts ask for designs in detail; text: to be freed. */
+Status report_live(const Run *run, char **text, Err *err);
+
 /* Pictures FOLDER/NAME.svg and .png, the folder made where it is not there. */
 Status report_pictures(const Report *r, const char *folder, Err *err);
 void report_close(Report *r);

@@ -238,6 +238,6 @@ json_t *report_json(const Report *r)
         json_numbers(run->schema.n_obj, run_f(run, r->chosen)), "evaluated", (json_int_t)n_evaluated(run), "failed",
         (json_int_t)run->n_failed, "schema", json_of_names(r), "beyond_law", json_of_beyond_law(r), "importance",
         json_of_importance(&r->importance, &run->schema), "convergence", json_of_growth(run), "detail",
-        r->has_detail ? detail_json(&r->detail, &run->schema.order) : json_null(), "settings",
+        r->detail.n_floors > 0 ? detail_json(&r->detail, &run->schema.order) : json_null(), "settings",
         json_of_settings(run->settings), "provenance", run->provenance);
 }

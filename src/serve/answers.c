@@ -1,0 +1,134 @@
+#include "serve/answers.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/json.h"
+#include "moga/hypervolume.h"
+
+json_t *answer_status(const Look *look, const char *name)
+{
+    const Run *run = &look->run;
+    const Standing *s = &look->standing;
+    const RunGeneration *last = run->n_generations > 0 ? &run->generation[run->n_generations - 1] : NULL;
+    return json_pack("{s:o, s:s, s:I, s:I, s:I, s:I, s:I, s:s, s:o, s:o, s:o, s:o}", "name", json_words(name), "state",
+                     state_words(s->state), "simulated", (json_int_t)s->progress.simulated, "max_evals",
+                     (json_int_t)s->max_evals, "failed", (json_int_t)s->n_failed, "front", (json_int_t)run->n_front,
+                     "generation", (json_int_t)(last ? last->number : -1), "finished", last ? last->finished : "",
+                     "hypervolume", json_number(s->hypervolume), "per_second", json_number(progress_rate(&s->progress)),
+                     "seconds", json_number(s->seconds), "left_s", json_number(s->left_s));
+}
+
+static json_t *json_of_front(const Run *run)
+{
+    json_t *list = json_array();
+    for (size_t i = 0; i < run->n_front; i++)
+        list = json_append(list, json_numbers(run->schema.n_obj, run_f(run, run->front[i])));
+    return list;
+}
+
+json_t *answer_front(const Look *look)
+{
+    const Run *run = &look->run;
+    json_t *ids = json_array(), *simulated = json_array(), *volume = json_array();
+    for (size_t i = 0; i < run->n_front; i++)
+        ids = json_append(ids, json_integer(run->table.row[run->front[i]].id));
+    for (size_t i = 0; i < run->n_generations; i++) {
+        const RunGeneration *g = &run->generation[i];
+        if (!isfinite(g->hypervolume))
+            continue;
+        simulated = json_append(simulated, json_integer(g->simulated));
+        volume = json_append(volume, json_number(g->hypervolume));
+    }
+    const long generation = run->n_generations > 0 ? run->generation[run->n_generations - 1].number : -1;
+    return json_pack("{s:I, s:o, s:o, s:o, s:o, s:o}", "generation", (json_int_t)generation, "knee",
+                     run->n_front > 0 ? json_integer(run->table.row[run_knee(run)].id) : json_null(), "simulated",
+                     simulated, "volume", volume, "ids", ids, "f", json_of_front(run));
+}
+
+/* -- two runs ------------------------------------------------------------------------------------------------------ */
+
+static void minimised(const Run *run, size_t row, double f[])
+{
+    for (size_t k = 0; k < run->schema.n_obj; k++)
+        f[k] = schema_objective(&run->schema, k)->sense * run_f(run, row)[k];
+}
+
+/* Of both fronts: from a fifth of their range below the best to the worst. */
+static void box_of(const Look *const look[2], double lower[], double reference[])
+{
+    const size_t m = look[0]->run.schema.n_obj;
+    double f[OBJECTIVES_MAX];
+    for (size_t k = 0; k < m; k++) {
+        lower[k] = INFINITY;
+        reference[k] = -INFINITY;
+    }
+    for (int r = 0; r < 2; r++)
+        for (size_t i = 0; i < look[r]->run.n_front; i++) {
+            minimised(&look[r]->run, look[r]->run.front[i], f);
+            for (size_t k = 0; k < m; k++) {
+                lower[k] = fmin(lower[k], f[k]);
+                reference[k] = fmax(reference[k], f[k]);
+            }
+        }
+    for (size_t k = 0; k < m; k++) {
+        const double range = reference[k] > lower[k] ? reference[k] - lower[k] : 1;
+        lower[k] -= 0.2 * range;
+        reference[k] = fmax(reference[k], lower[k] + range);
+    }
+}
+
+/* Volume of the box after every generation: designs join when they come onto the front. */
+static Status growth_in(const Run *run, const double lower[], const double reference[], json_t *out, Err *err)
+{
+    Hypervolume *h;
+    json_t *simulated = json_array(), *volume = json_array();
+    double f[OBJECTIVES_MAX];
+    TRY(hypervolume_create(&h, run->schema.n_obj, lower, reference, 1, err));
+    for (size_t g = 0; g < run->n_generations; g++) {
+        for (size_t i = 0; i < run->table.n; i++)
+            if (run->place[i].ok && run->place[i].entered == run->generation[g].number) {
+                minimised(run, i, f);
+                hypervolume_add(h, f);
+            }
+        simulated = json_append(simulated, json_integer(run->generation[g].simulated));
+        volume = json_append(volume, json_number(hypervolume_share(h)));
+    }
+    hypervolume_free(h);
+    json_object_set_new(out, "simulated", simulated);
+    json_object_set_new(out, "volume", volume);
+    return STATUS_OK;
+}
+
+static Status check_pair(const Look *const look[2], Err *err)
+{
+    const Schema *a = &look[0]->run.schema, *b = &look[1]->run.schema;
+    for (int r = 0; r < 2; r++)
+        if (look[r]->run.n_front == 0)
+            return fail(err, STATUS_MISSING, "%s: has no front yet", look[r]->run.folder);
+    int same = a->n_obj == b->n_obj;
+    for (size_t k = 0; same && k < a->n_obj; k++)
+        same = strcmp(schema_objective(a, k)->name, schema_objective(b, k)->name) == 0 &&
+               schema_objective(a, k)->sense == schema_objective(b, k)->sense;
+    return same ? STATUS_OK
+                : fail(err, STATUS_BAD_DATA, "the two runs have other objectives: their fronts cannot be compared");
+}
+
+Status answer_against(const Look *const look[2], const char *const name[2], json_t **out, Err *err)
+{
+    double lower[OBJECTIVES_MAX], reference[OBJECTIVES_MAX];
+    TRY(check_pair(look, err));
+    box_of(look, lower, reference);
+    json_t *runs = json_array();
+    Status status = STATUS_OK;
+    for (int r = 0; r < 2 && status == STATUS_OK; r++) {
+        json_t *one = json_pack("{s:o, s:o}", "name", json_words(name[r]), "f", json_of_front(&look[r]->run));
+        status = one ? growth_in(&look[r]->run, lower, reference, one, err)
+                     : fail(err, STATUS_NO_MEMORY, "no memory for a front");
+        runs = json_append(runs, one);
+    }
+    *out = status == STATUS_OK ? json_pack("{s:o}", "runs", runs) : NULL;
+    if (status != STATUS_OK)
+        json_decref(runs);
+    return status == STATUS_OK && !*out ? fail(err, STATUS_NO_MEMORY, "no memory for two fronts") : status;
+}

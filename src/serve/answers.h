@@ -1,0 +1,26 @@
+/* serve/answers.h -- what the server says about runs, as JSON.
+ *
+ *   status   {"name", "state", "simulated", "max_evals", "failed", "front", "generation", "finished" (UTC), "hypervolume",
+ *            "per_second", "seconds", "left_s"}; what is not known: null
+ *   front    {"generation", "knee", "simulated": [], "volume": [] (of every generation that has one), "ids": [n_front],
+ *            "f": [n_front][n_obj]} in natural signs and units
+ *   against  {"runs": [{"name", "f", "simulated", "volume"}, the same]}, both volumes in one
+ *            box: from a fifth of the range of both fronts below their best to their worst, by fixed samples
+ *            (moga/hypervolume.h), of the designs that were on a front so far
+ *
+ * Ownership  the caller's reference; NULL: no memory, or a name that is no UTF-8
+ * Threads    pure functions */
+#ifndef IMTET_SERVE_ANSWERS_H
+#define IMTET_SERVE_ANSWERS_H
+
+#include <jansson.h>
+
+#include "serve/watch.h"
+
+json_t *answer_status(const Look *look, const char *name);
+json_t *answer_front(const Look *look);
+
+/* Other objectives: STATUS_BAD_DATA. A front that is empty: STATUS_MISSING. */
+Status answer_against(const Look *const look[2], const char *const name[2], json_t **out, Err *err);
+
+#endif

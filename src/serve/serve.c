@@ -1,0 +1,624 @@
+#include "serve/serve.h"
+
+#include <arpa/inet.h>
+#include <errno.h>
+#include <microhttpd.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+
+#include "base/clock.h"
+#include "base/json.h"
+#include "report/report.h"
+#include "serve/answers.h"
+#include "serve/detail_cache.h"
+#include "serve/guard.h"
+#include "serve/what_if.h"
+
+enum { PEERS_EASE = PEERS_MAX - 32, STALL_S = 15 };
+static const double BEAT_S = 5; /* between events at most */
+
+/* A connection, from its beginning to its end. */
+typedef struct {
+    int socket;
+    double since; /* of the clock: it waits for a request; 0: one is being answered, or there is no connection */
+} Peer;
+
+/* What is kept for a run. */
+typedef struct {
+    pthread_mutex_t mutex;
+    WhatIf *what_if;
+    DetailCache *details;
+} Kept;
+
+struct Server {
+    char token[TOKEN_TEXT], url[TOKEN_TEXT + 48];
+    int port;
+    RecordPaths moved;
+    Watch *watch;
+    struct MHD_Daemon *daemon;
+    pthread_mutex_t mutex; /* of the rest */
+    size_t n_peers, n_streams;
+    Peer peer[PEERS_MAX];
+    pthread_t tender;
+    int has_tender;
+    Kept *kept[1024]; /* by the number of the run; NULL: nothing yet */
+};
+
+/* What came in so far. */
+typedef struct {
+    ServePath path;
+    size_t n;
+    char body[BODY_MAX];
+} Request;
+
+typedef struct {
+    unsigned code;
+    const char *type;
+    char *text;     /* malloc'd */
+    char place[32]; /* of a redirection; empty: none */
+} Answer;
+
+typedef struct {
+    Server *server;
+    const Request *request;
+    Look *look; /* of the run of the path */
+    size_t run;
+} Visit;
+
+/* -- connections --------------------------------------------------------------------------------------------------- */
+
+static Peer *peer_of(struct MHD_Connection *c)
+{
+    const union MHD_ConnectionInfo *info = MHD_get_connection_info(c, MHD_CONNECTION_INFO_SOCKET_CONTEXT);
+    return info ? info->socket_context : NULL;
+}
+
+/* Makes room: of those that wait for a request the longest one goes. */
+static void end_oldest(Server *s)
+{
+    Peer *oldest = NULL;
+    for (size_t i = 0; i < PEERS_MAX; i++)
+        if (s->peer[i].since > 0 && (!oldest || s->peer[i].since < oldest->since))
+            oldest = &s->peer[i];
+    if (oldest)
+        shutdown(oldest->socket, SHUT_RDWR);
+}
+
+static void add_peer(Server *s, struct MHD_Connection *c, void **context)
+{
+    const int fd = MHD_get_connection_info(c, MHD_CONNECTION_INFO_CONNECTION_FD)->connect_fd;
+    for (size_t i = 0; i < PEERS_MAX && !*context; i++)
+        if (s->peer[i].socket < 0) {
+            s->peer[i] = (Peer){fd, clock_seconds()};
+            *context = &s->peer[i];
+        }
+    if (!*context)
+        shutdown(fd, SHUT_RDWR);
+    else if (++s->n_peers > PEERS_EASE)
+        end_oldest(s);
+}
+
+static void note_connection(void *user, struct MHD_Connection *c, void **context,
+                            enum MHD_ConnectionNotificationCode what)
+{
+    Server *s = user;
+    pthread_mutex_lock(&s->mutex);
+    if (what == MHD_CONNECTION_NOTIFY_STARTED)
+        add_peer(s, c, context);
+    else if (*context) {
+        *(Peer *)*context = (Peer){.socket = -1};
+        s->n_peers--;
+    }
+    pthread_mutex_unlock(&s->mutex);
+}
+
+/* since 0: its request is there and is being answered. */
+static void set_waiting(Server *s, struct MHD_Connection *c, double since)
+{
+    pthread_mutex_lock(&s->mutex);
+    Peer *p = peer_of(c);
+    if (p)
+        p->since = since;
+    pthread_mutex_unlock(&s->mutex);
+}
+
+static void note_completed(void *user, struct MHD_Connection *c, void **request, enum MHD_RequestTerminationCode why)
+{
+    (void)why;
+    free(*request);
+    *request = NULL;
+    set_waiting(user, c, clock_seconds());
+}
+
+/* Ends connections whose request does not come. */
+static void *tend(void *user)
+{
+    Server *s = user;
+    while (!watch_is_stopped(s->watch)) {
+        const double now = clock_seconds();
+        pthread_mutex_lock(&s->mutex);
+        for (size_t i = 0; i < PEERS_MAX; i++)
+            if (s->peer[i].since > 0 && now > s->peer[i].since + REQUEST_S)
+                shutdown(s->peer[i].socket, SHUT_RDWR);
+        pthread_mutex_unlock(&s->mutex);
+        nanosleep(&(struct timespec){.tv_nsec = 100000000}, NULL);
+    }
+    return NULL;
+}
+
+/* -- answers ------------------------------------------------------------------------------------------------------- */
+
+static unsigned code_of(Status status)
+{
+    switch (status) {
+    case STATUS_OK:
+        return MHD_HTTP_OK;
+    case STATUS_MISSING:
+        return MHD_HTTP_NOT_FOUND;
+    case STATUS_BAD_DATA:
+        return MHD_HTTP_BAD_REQUEST;
+    case STATUS_STOPPED:
+        return MHD_HTTP_CONFLICT;
+    default:
+        return MHD_HTTP_INTERNAL_SERVER_ERROR;
+    }
+}
+
+static enum MHD_Result send_answer(struct MHD_Connection *c, const Answer *a)
+{
+    static const char *const HEADERS[][2] = {{"Cache-Control", "no-store"},
+                                             {"X-Content-Type-Options", "nosniff"},
+                                             {"Referrer-Policy", "no-referrer"},
+                                             {"Cross-Origin-Resource-Policy", "same-origin"},
+                                             {"Cross-Origin-Opener-Policy", "same-origin"},
+                                             {"X-Frame-Options", "DENY"}};
+    struct MHD_Response *r =
+        MHD_create_response_from_buffer(a->text ? strlen(a->text) : 0, a->text, MHD_RESPMEM_MUST_FREE);
+    if (!r) {
+        free(a->text);
+        return MHD_NO;
+    }
+    for (size_t i = 0; i < sizeof HEADERS / sizeof HEADERS[0]; i++)
+        MHD_add_response_header(r, HEADERS[i][0], HEADERS[i][1]);
+    MHD_add_response_header(r, MHD_HTTP_HEADER_CONTENT_TYPE, a->type);
+    if (a->place[0])
+        MHD_add_response_header(r, MHD_HTTP_HEADER_LOCATION, a->place);
+    if (a->code == MHD_HTTP_METHOD_NOT_ALLOWED)
+        MHD_add_response_header(r, MHD_HTTP_HEADER_ALLOW, "GET, POST");
+    const enum MHD_Result sent = MHD_queue_response(c, a->code, r);
+    MHD_destroy_response(r);
+    return sent;
+}
+
+static enum MHD_Result refuse(struct MHD_Connection *c, unsigned code, const char *words)
+{
+    json_t *o = json_pack("{s:s}", "error", words);
+    Answer a = {.code = code, .type = "application/json", .text = json_dumps(o, JSON_COMPACT)};
+    json_decref(o);
+    return send_answer(c, &a);
+}
+
+/* Takes the reference. */
+static Status answer_json(json_t *all, int precision, Answer *a, Err *err)
+{
+    *a = (Answer){.code = MHD_HTTP_OK,
+                  .type = "application/json",
+                  .text = all ? json_dumps(all, JSON_COMPACT | JSON_REAL_PRECISION(precision)) : NULL};
+    json_decref(all);
+    return a->text ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for an answer, or a name is not UTF-8");
+}
+
+/* -- what is shown ------------------------------------------------------------------------------------------------- */
+
+static const char WAITING[] =
+    "<!DOCTYPE html><html lang=\"en\"><head><meta charset=\"utf-8\"><meta http-equiv=\"refresh\" content=\"1\">"
+    "<title>imtet</title></head><body><h1>No front yet</h1><p>%zu designs simulated, %zu failed. This page comes again "
+    "every second.</p></body></html>\n";
+
+static Status show_page(const Visit *v, Answer *a, Err *err)
+{
+    const Look *look = v->look;
+    *a = (Answer){.code = MHD_HTTP_OK, .type = "text/html; charset=utf-8"};
+    if (look->run.n_front > 0)
+        return report_live(&look->run, &a->text, err);
+    return asprintf(&a->text, WAITING, look->standing.progress.simulated, look->standing.n_failed) > 0
+               ? STATUS_OK
+               : fail(err, STATUS_NO_MEMORY, "no memory for a page");
+}
+
+static Status show_front(const Visit *v, Answer *a, Err *err)
+{
+    return answer_json(answer_front(v->look), 6, a, err);
+}
+
+/* What is kept of the run of a visit, opened when it is first asked for. */
+static Status kept_of(const Visit *v, Kept **out, Err *err)
+{
+    Server *s = v->server;
+    Status status = STATUS_OK;
+    pthread_mutex_lock(&s->mutex);
+    Kept *k = s->kept[v->run];
+    if (!k) {
+        k = calloc(1, sizeof *k);
+        status = k ? detail_cache_open(&k->details, err) : fail(err, STATUS_NO_MEMORY, "no memory for a run");
+        if (status == STATUS_OK) {
+            pthread_mutex_init(&k->mutex, NULL);
+            s->kept[v->run] = k;
+        } else
+            free(k);
+    }
+    pthread_mutex_unlock(&s->mutex);
+    *out = k;
+    return status;
+}
+
+static Status show_design(const Visit *v, Answer *a, Err *err)
+{
+    Kept *k;
+    TRY(kept_of(v, &k, err));
+    *a = (Answer){.code = MHD_HTTP_OK, .type = "application/json"};
+    return detail_cache_ask(k->details, &v->look->run, &v->server->moved, v->request->path.number, &a->text, err);
+}
+
+static Status what_if_of(const Visit *v, WhatIf **out, Err *err)
+{
+    Kept *k;
+    TRY(kept_of(v, &k, err));
+    pthread_mutex_lock(&k->mutex);
+    const Status status = k->what_if ? STATUS_OK : what_if_open(&k->what_if, &v->look->run, &v->server->moved, err);
+    *out = k->what_if;
+    pthread_mutex_unlock(&k->mutex);
+    return status;
+}
+
+static Status show_bounds(const Visit *v, Answer *a, Err *err)
+{
+    WhatIf *w;
+    TRY(what_if_of(v, &w, err));
+    return answer_json(what_if_bounds(w), 17, a, err);
+}
+
+static Status show_what_if(const Visit *v, Answer *a, Err *err)
+{
+    WhatIf *w;
+    json_t *answer;
+    TRY(what_if_of(v, &w, err));
+    TRY(what_if_ask(w, &v->look->run, v->request->body, v->request->n, &answer, err));
+    return answer_json(answer, 17, a, err);
+}
+
+static Status show_against(const Visit *v, Answer *a, Err *err)
+{
+    Watch *w = v->server->watch;
+    const long number = v->request->path.number;
+    Look *other;
+    json_t *both = NULL;
+    if (number >= (long)watch_n(w))
+        return fail(err, STATUS_MISSING, "there is no run %ld", number);
+    TRY(watch_take(w, (size_t)number, &other, err));
+    const Look *const look[2] = {v->look, other};
+    const char *const name[2] = {watch_name(w, v->run), watch_name(w, (size_t)number)};
+    const Status status = answer_against(look, name, &both, err);
+    watch_give(w, other);
+    return status == STATUS_OK ? answer_json(both, 6, a, err) : status;
+}
+
+static const struct {
+    const char *method, *word;
+    int has_number;
+    Status (*show)(const Visit *v, Answer *a, Err *err);
+} ROUTES[] = {
+    {"GET", "", 0, show_page},          {"GET", "front", 0, show_front},      {"GET", "design", 1, show_design},
+    {"GET", "what-if", 0, show_bounds}, {"POST", "what-if", 0, show_what_if}, {"GET", "against", 1, show_against}};
+enum { N_ROUTES = sizeof ROUTES / sizeof ROUTES[0] };
+
+static enum MHD_Result visit_run(const Visit *v, struct MHD_Connection *c, const char *method)
+{
+    const ServePath *path = &v->request->path;
+    for (size_t i = 0; i < N_ROUTES; i++) {
+        Answer a = {0};
+        Err err = {0};
+        if (strcmp(method, ROUTES[i].method) != 0 || strcmp(path->word, ROUTES[i].word) != 0 ||
+            ROUTES[i].has_number != (path->number >= 0))
+            continue;
+        const Status status = ROUTES[i].show(v, &a, &err);
+        return status == STATUS_OK ? send_answer(c, &a) : refuse(c, code_of(status), err.text);
+    }
+    return refuse(c, MHD_HTTP_NOT_FOUND, "there is no such part");
+}
+
+/* -- all runs ------------------------------------------------------------------------------------------------------ */
+
+/* Every run, unreadable ones with the reason. */
+static Status list_runs(Server *s, Answer *a, Err *err)
+{
+    json_t *list = json_array();
+    watch_find(s->watch);
+    for (size_t i = 0; i < watch_n(s->watch); i++) {
+        Look *look;
+        Err why = {0};
+        json_t *one = watch_take(s->watch, i, &look, &why) == STATUS_OK
+                          ? answer_status(look, watch_name(s->watch, i))
+                          : json_pack("{s:o, s:s, s:o}", "name", json_words(watch_name(s->watch, i)), "state",
+                                      "unreadable", "reason", json_words(why.text));
+        watch_give(s->watch, look);
+        json_object_set_new(one, "at", json_integer((json_int_t)i));
+        list = json_append(list, one);
+    }
+    return answer_json(list, 6, a, err);
+}
+
+/* That whose last session began last. */
+static size_t newest_run(Server *s)
+{
+    size_t newest = 0;
+    char latest[24] = "";
+    for (size_t i = 0; i < watch_n(s->watch); i++) {
+        Look *look;
+        Err why = {0};
+        if (watch_take(s->watch, i, &look, &why) != STATUS_OK)
+            continue;
+        const Run *run = &look->run;
+        const char *started = run->n_sessions > 0 ? run->session[run->n_sessions - 1].started : "";
+        if (strcmp(started, latest) >= 0) {
+            snprintf(latest, sizeof latest, "%s", started);
+            newest = i;
+        }
+        watch_give(s->watch, look);
+    }
+    return newest;
+}
+
+static enum MHD_Result visit_all(Server *s, struct MHD_Connection *c, const ServePath *path)
+{
+    Answer a = {0};
+    Err err = {0};
+    if (strcmp(path->word, "runs") == 0 && path->number < 0)
+        return list_runs(s, &a, &err) == STATUS_OK ? send_answer(c, &a) : refuse(c, 500, err.text);
+    if (path->word[0])
+        return refuse(c, MHD_HTTP_NOT_FOUND, "there is no such part");
+    a = (Answer){.code = MHD_HTTP_FOUND, .type = "text/plain"};
+    snprintf(a.place, sizeof a.place, "%zu/", newest_run(s));
+    return send_answer(c, &a);
+}
+
+/* -- events -------------------------------------------------------------------------------------------------------- */
+
+typedef struct {
+    Server *server;
+    size_t run, n, at; /* text (n), sent up to `at` */
+    long seen;         /* version */
+    char text[2048];
+} Stream;
+
+/* The next event, or a comment that keeps the connection alive. 0: the server ends. */
+static int next_event(Stream *e)
+{
+    Watch *w = e->server->watch;
+    Look *look = watch_next(w, e->run, e->seen, BEAT_S);
+    if (!look && watch_is_stopped(w))
+        return 0;
+    json_t *status = look ? answer_status(look, watch_name(w, e->run)) : NULL;
+    char *text = status ? json_dumps(status, JSON_COMPACT | JSON_REAL_PRECISION(6)) : NULL;
+    e->n = (size_t)snprintf(e->text, sizeof e->text, text ? "data: %s\n\n" : ": %s\n\n", text ? text : "");
+    e->n = e->n < sizeof e->text ? e->n : 0;
+    e->at = 0;
+    e->seen = look ? look->version : e->seen;
+    free(text);
+    json_decref(status);
+    watch_give(w, look);
+    return 1;
+}
+
+static ssize_t read_events(void *user, uint64_t position, char *out, size_t room)
+{
+    Stream *e = user;
+    (void)position;
+    if (e->at == e->n && !next_event(e))
+        return MHD_CONTENT_READER_END_OF_STREAM;
+    const size_t left = e->n - e->at, n = left < room ? left : room;
+    memcpy(out, e->text + e->at, n);
+    e->at += n;
+    return (ssize_t)n;
+}
+
+static void end_stream(void *user)
+{
+    Stream *e = user;
+    pthread_mutex_lock(&e->server->mutex);
+    e->server->n_streams--;
+    pthread_mutex_unlock(&e->server->mutex);
+    free(e);
+}
+
+static enum MHD_Result begin_stream(Server *s, struct MHD_Connection *c, size_t run)
+{
+    pthread_mutex_lock(&s->mutex);
+    const int has_room = s->n_streams < STREAMS_MAX;
+    s->n_streams += has_room != 0;
+    pthread_mutex_unlock(&s->mutex);
+    if (!has_room)
+        return refuse(c, MHD_HTTP_SERVICE_UNAVAILABLE, "too many pages follow this run");
+    Stream *e = calloc(1, sizeof *e);
+    if (!e)
+        return MHD_NO;
+    *e = (Stream){.server = s, .run = run};
+    struct MHD_Response *r =
+        MHD_create_response_from_callback(MHD_SIZE_UNKNOWN, sizeof e->text, read_events, e, end_stream);
+    if (!r) {
+        end_stream(e);
+        return MHD_NO;
+    }
+    MHD_add_response_header(r, MHD_HTTP_HEADER_CONTENT_TYPE, "text/event-stream");
+    MHD_add_response_header(r, MHD_HTTP_HEADER_CACHE_CONTROL, "no-store");
+    const enum MHD_Result sent = MHD_queue_response(c, MHD_HTTP_OK, r);
+    MHD_destroy_response(r);
+    return sent;
+}
+
+/* -- requests ------------------------------------------------------------------------------------------------------ */
+
+static enum MHD_Result respond(Server *s, struct MHD_Connection *c, const char *method, const Request *r)
+{
+    const ServePath *path = &r->path;
+    Err err = {0};
+    set_waiting(s, c, 0);
+    if (path->run < 0)
+        return visit_all(s, c, path);
+    if (path->run >= (long)watch_n(s->watch))
+        return refuse(c, MHD_HTTP_NOT_FOUND, "there is no such run");
+    Visit v = {.server = s, .request = r, .run = (size_t)path->run};
+    const Status status = watch_take(s->watch, v.run, &v.look, &err);
+    if (status != STATUS_OK)
+        return refuse(c, code_of(status), err.text);
+    const int is_stream = strcmp(path->word, "events") == 0 && path->number < 0 && strcmp(method, "GET") == 0;
+    const enum MHD_Result sent = is_stream ? begin_stream(s, c, v.run) : visit_run(&v, c, method);
+    watch_give(s->watch, v.look);
+    return sent;
+}
+
+/* Why a request is refused before its body is read; 0: it is not. */
+static unsigned objection(const Server *s, struct MHD_Connection *c, const char *url, const char *method,
+                          ServePath *path, const char **words)
+{
+    const char *host = MHD_lookup_connection_value(c, MHD_HEADER_KIND, MHD_HTTP_HEADER_HOST);
+    const char *origin = MHD_lookup_connection_value(c, MHD_HEADER_KIND, MHD_HTTP_HEADER_ORIGIN);
+    const char *length = MHD_lookup_connection_value(c, MHD_HEADER_KIND, MHD_HTTP_HEADER_CONTENT_LENGTH);
+    const int posts = strcmp(method, "POST") == 0;
+    *words = "refused";
+    if (!guard_host(host) || !guard_origin(origin, host))
+        return MHD_HTTP_FORBIDDEN;
+    const PathVerdict verdict = guard_path(s->token, url, path);
+    if (verdict == PATH_NONE)
+        return MHD_HTTP_FORBIDDEN;
+    if (verdict == PATH_UNKNOWN) {
+        *words = "there is no such part";
+        return MHD_HTTP_NOT_FOUND;
+    }
+    if (!posts && strcmp(method, "GET") != 0) {
+        *words = "only GET and POST";
+        return MHD_HTTP_METHOD_NOT_ALLOWED;
+    }
+    if (length && strtoull(length, NULL, 10) > (posts ? BODY_MAX : 0)) {
+        *words = "too large";
+        return MHD_HTTP_CONTENT_TOO_LARGE;
+    }
+    return 0;
+}
+
+/* Called when the headers are there, for every piece of the body, and at its end. */
+static enum MHD_Result handle(void *user, struct MHD_Connection *c, const char *url, const char *method,
+                              const char *version, const char *piece, size_t *n_piece, void **request)
+{
+    Server *s = user;
+    Request *r = *request;
+    (void)version;
+    if (!r) {
+        const char *words;
+        r = *request = calloc(1, sizeof *r);
+        if (!r)
+            return MHD_NO;
+        const unsigned code = objection(s, c, url, method, &r->path, &words);
+        if (code)
+            return refuse(c, code, words);
+        return MHD_YES;
+    }
+    if (*n_piece == 0)
+        return respond(s, c, method, r);
+    if (*n_piece > sizeof r->body - r->n)
+        return MHD_NO; /* chunks without end */
+    memcpy(r->body + r->n, piece, *n_piece);
+    r->n += *n_piece;
+    *n_piece = 0;
+    return MHD_YES;
+}
+
+/* -- life ---------------------------------------------------------------------------------------------------------- */
+
+__attribute__((format(printf, 2, 0))) static void say_nothing(void *user, const char *format, va_list list)
+{
+    (void)user;
+    (void)format;
+    (void)list;
+}
+
+static Status listen_on(Server *s, int port, Err *err)
+{
+    const struct sockaddr_in here = {
+        .sin_family = AF_INET, .sin_port = htons((uint16_t)port), .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
+    s->daemon = MHD_start_daemon(
+        MHD_USE_INTERNAL_POLLING_THREAD | MHD_USE_THREAD_PER_CONNECTION | MHD_USE_POLL | MHD_USE_ERROR_LOG,
+        (uint16_t)port, NULL, NULL, handle, s, MHD_OPTION_EXTERNAL_LOGGER, say_nothing, NULL, MHD_OPTION_SOCK_ADDR,
+        &here, MHD_OPTION_CONNECTION_LIMIT, (unsigned)PEERS_MAX, MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)STALL_S,
+        MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)HEAD_MAX, MHD_OPTION_NOTIFY_CONNECTION, note_connection, s,
+        MHD_OPTION_NOTIFY_COMPLETED, note_completed, s, MHD_OPTION_END);
+    if (!s->daemon)
+        return fail(err, STATUS_IO, "127.0.0.1:%d: no server: %s", port, strerror(errno));
+    s->port = MHD_get_daemon_info(s->daemon, MHD_DAEMON_INFO_BIND_PORT)->port;
+    snprintf(s->url, sizeof s->url, "http://127.0.0.1:%d/%s/", s->port, s->token);
+    return STATUS_OK;
+}
+
+static Status start(Server *s, const ServeOptions *o, Err *err)
+{
+    TRY(guard_token(s->token, err));
+    TRY(watch_open(&s->watch, o->folder, err));
+    if (pthread_create(&s->tender, NULL, tend, s) != 0)
+        return fail(err, STATUS_NO_MEMORY, "no thread for the server");
+    s->has_tender = 1;
+    return listen_on(s, o->port, err);
+}
+
+Status serve_open(Server **out, const ServeOptions *o, Err *err)
+{
+    Server *s = calloc(1, sizeof *s);
+    *out = NULL;
+    if (!s)
+        return fail(err, STATUS_NO_MEMORY, "no memory for a server");
+    s->moved = o->moved;
+    for (size_t i = 0; i < PEERS_MAX; i++)
+        s->peer[i].socket = -1;
+    pthread_mutex_init(&s->mutex, NULL);
+    const Status status = start(s, o, err);
+    if (status != STATUS_OK)
+        serve_close(s);
+    else
+        *out = s;
+    return status;
+}
+
+const char *serve_url(const Server *s)
+{
+    return s->url;
+}
+
+int serve_port(const Server *s)
+{
+    return s->port;
+}
+
+void serve_close(Server *s)
+{
+    if (!s)
+        return;
+    if (s->watch)
+        watch_stop(s->watch); /* streams end */
+    if (s->daemon)
+        MHD_stop_daemon(s->daemon);
+    if (s->has_tender)
+        pthread_join(s->tender, NULL);
+    for (size_t i = 0; i < sizeof s->kept / sizeof s->kept[0]; i++)
+        if (s->kept[i]) {
+            what_if_close(s->kept[i]->what_if);
+            detail_cache_close(s->kept[i]->details);
+            pthread_mutex_destroy(&s->kept[i]->mutex);
+            free(s->kept[i]);
+        }
+    if (s->watch)
+        watch_close(s->watch);
+    pthread_mutex_destroy(&s->mutex);
+    free(s);
+}

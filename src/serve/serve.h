@@ -1,0 +1,42 @@
+/* serve/serve.h -- a small web server on the loopback that shows runs: the page of the report, and what only a program
+ * behind it can show.
+ *
+ *   GET  /TOKEN/                    to the run that was started last
+ *   GET  /TOKEN/runs                [status of every run] (serve/answers.h), with its number in "at"
+ *   GET  /TOKEN/RUN/                the page (report/report.h); RUN: a number
+ *   GET  /TOKEN/RUN/events          server-sent events: the status, whenever it changes
+ *   GET  /TOKEN/RUN/front           front and growth as they are now
+ *   GET  /TOKEN/RUN/design/ID       a design simulated (serve/detail_cache.h)
+ *   GET  /TOKEN/RUN/what-if         bounds;  POST: a question (serve/what_if.h)
+ *   GET  /TOKEN/RUN/against/OTHER   two runs
+ *
+ * Nothing here writes to a run. A request that is refused gets a status and {"error": words}: 403 token, Host or Origin,
+ * 404, 405, 409 a later question is there, 413, 503.
+ *
+ * Bounds    PEERS_MAX connections, of which the one that has waited longest for its request goes when they run short; a
+ *           request complete within REQUEST_S; HEAD_MAX bytes of headers, BODY_MAX of body; STREAMS_MAX streams of events
+ * Library   libmicrohttpd, a thread for each connection
+ * Life cycle  serve_open -> serve_url ... -> serve_close
+ * Errors    no such run: STATUS_MISSING; the port is taken: STATUS_IO */
+#ifndef IMTET_SERVE_SERVE_H
+#define IMTET_SERVE_SERVE_H
+
+#include "study/record_paths.h"
+
+enum { PEERS_MAX = 128, STREAMS_MAX = 48, HEAD_MAX = 16 << 10, BODY_MAX = 32 << 10 };
+static const double REQUEST_S = 10;
+
+typedef struct Server Server;
+
+typedef struct {
+    const char *folder; /* a run, or a folder of runs */
+    int port;           /* 0: any that is free */
+    RecordPaths moved;
+} ServeOptions;
+
+Status serve_open(Server **out, const ServeOptions *o, Err *err);
+const char *serve_url(const Server *s);
+int serve_port(const Server *s);
+void serve_close(Server *s); /* NULL is fine; answers under way are finished */
+
+#endif

@@ -1,0 +1,310 @@
+#include "serve/watch.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "base/clock.h"
+#include "store/lock.h"
+#include "store/run_read.h"
+
+enum { RUNS_MAX = 500 };
+static const double POLL_S = 0.2, READ_SHARE = 20, AGAIN_S = 2;
+
+/* What changes with a run. */
+typedef struct {
+    struct timespec database, journal;
+    off_t n_database, n_journal;
+    int held;
+} Stamp;
+
+typedef struct {
+    char folder[PATH_MAX], name[NAME_MAX + 1];
+    int is_wanted;
+    Look *look; /* the newest; NULL: none yet */
+    Stamp stamp;
+    double next; /* of the clock, before which it is not read again */
+    Err why;     /* code: of the last reading */
+} Watched;
+
+struct Watch {
+    char folder[PATH_MAX];
+    int is_run, stops;
+    pthread_mutex_t mutex; /* of all below */
+    pthread_cond_t changed, wanted;
+    pthread_t thread;
+    size_t n;
+    Watched *run[RUNS_MAX];
+};
+
+/* -- reading ------------------------------------------------------------------------------------------------------- */
+
+static void stamp_of(const Watched *r, Stamp *s)
+{
+    char path[PATH_MAX + 16];
+    struct stat file;
+    LockHolder holder;
+    memset(s, 0, sizeof *s);
+    snprintf(path, sizeof path, "%s/run.sqlite", r->folder);
+    if (stat(path, &file) == 0) {
+        s->database = file.st_mtim;
+        s->n_database = file.st_size;
+    }
+    snprintf(path, sizeof path, "%s/run.sqlite-wal", r->folder);
+    if (stat(path, &file) == 0) {
+        s->journal = file.st_mtim;
+        s->n_journal = file.st_size;
+    }
+    snprintf(path, sizeof path, "%s/lock", r->folder);
+    s->held = lock_is_held(path, &holder);
+}
+
+static void release(Look *look)
+{
+    if (look && --look->n_users == 0) {
+        run_free(&look->run);
+        free(look);
+    }
+}
+
+/* The mutex is held before and after, not while the run is read. */
+static void read_again(Watch *w, Watched *r, const Stamp *stamp)
+{
+    Err err = {0};
+    const double start = clock_seconds();
+    pthread_mutex_unlock(&w->mutex);
+    Look *fresh = calloc(1, sizeof *fresh);
+    Status status = fresh ? run_read(&fresh->run, r->folder, &err) : fail(&err, STATUS_NO_MEMORY, "no memory");
+    if (status == STATUS_OK)
+        standing_of(&fresh->standing, r->folder, &fresh->run);
+    else
+        free(fresh);
+    pthread_mutex_lock(&w->mutex);
+    const double took = clock_seconds() - start;
+    r->next = start + took + (status == STATUS_OK ? READ_SHARE * took : AGAIN_S);
+    r->why = err;
+    r->why.code = status;
+    if (status == STATUS_OK) {
+        fresh->n_users = 1;
+        fresh->version = r->look ? r->look->version + 1 : 1;
+        release(r->look);
+        r->look = fresh;
+        r->stamp = *stamp;
+    }
+    pthread_cond_broadcast(&w->changed);
+}
+
+static void wait_for(pthread_cond_t *cond, pthread_mutex_t *mutex, double seconds)
+{
+    struct timespec until;
+    clock_gettime(CLOCK_MONOTONIC, &until);
+    const long long ns = until.tv_nsec + (long long)(1e9 * seconds);
+    until.tv_sec += (time_t)(ns / 1000000000);
+    until.tv_nsec = (long)(ns % 1000000000);
+    pthread_cond_timedwait(cond, mutex, &until);
+}
+
+static void *watch(void *user)
+{
+    Watch *w = user;
+    pthread_mutex_lock(&w->mutex);
+    while (!w->stops) {
+        for (size_t i = 0; i < w->n && !w->stops; i++) {
+            Watched *r = w->run[i];
+            Stamp stamp;
+            if (!r->is_wanted || clock_seconds() < r->next)
+                continue;
+            stamp_of(r, &stamp);
+            if (!r->look || memcmp(&stamp, &r->stamp, sizeof stamp) != 0)
+                read_again(w, r, &stamp);
+        }
+        wait_for(&w->wanted, &w->mutex, POLL_S);
+    }
+    pthread_mutex_unlock(&w->mutex);
+    return NULL;
+}
+
+/* -- which runs ---------------------------------------------------------------------------------------------------- */
+
+static void add(Watch *w, const char *folder, const char *name)
+{
+    for (size_t i = 0; i < w->n; i++)
+        if (strcmp(w->run[i]->name, name) == 0)
+            return;
+    Watched *r = w->n < RUNS_MAX ? calloc(1, sizeof *r) : NULL;
+    if (!r)
+        return;
+    snprintf(r->folder, sizeof r->folder, "%s", folder);
+    snprintf(r->name, sizeof r->name, "%s", name);
+    w->run[w->n++] = r;
+}
+
+static void find_in(Watch *w)
+{
+    struct dirent **entries;
+    char path[PATH_MAX + NAME_MAX + 2], database[PATH_MAX + NAME_MAX + 16];
+    const int n = scandir(w->folder, &entries, NULL, versionsort);
+    for (int i = 0; i < n; i++) {
+        snprintf(path, sizeof path, "%s/%s", w->folder, entries[i]->d_name);
+        if (entries[i]->d_name[0] != '.' && strlen(path) < PATH_MAX && run_path(path, database, sizeof database))
+            add(w, path, entries[i]->d_name);
+        free(entries[i]);
+    }
+    if (n >= 0)
+        free(entries);
+}
+
+void watch_find(Watch *w)
+{
+    pthread_mutex_lock(&w->mutex);
+    if (!w->is_run)
+        find_in(w);
+    pthread_mutex_unlock(&w->mutex);
+}
+
+size_t watch_n(Watch *w)
+{
+    pthread_mutex_lock(&w->mutex);
+    const size_t n = w->n;
+    pthread_mutex_unlock(&w->mutex);
+    return n;
+}
+
+const char *watch_name(Watch *w, size_t i)
+{
+    return w->run[i]->name;
+}
+
+const char *watch_folder(Watch *w, size_t i)
+{
+    return w->run[i]->folder;
+}
+
+static Status find_runs(Watch *w, const char *folder, Err *err)
+{
+    char database[PATH_MAX];
+    const char *slash = strrchr(w->folder, '/');
+    w->is_run = run_path(w->folder, database, sizeof database);
+    if (w->is_run)
+        add(w, w->folder, slash && slash[1] ? slash + 1 : w->folder);
+    else
+        find_in(w);
+    return w->n > 0 ? STATUS_OK : fail(err, STATUS_MISSING, "%s: is no run, and holds none", folder);
+}
+
+static Status start(Watch *w, const char *folder, Err *err)
+{
+    struct stat s;
+    pthread_condattr_t monotonic;
+    pthread_condattr_init(&monotonic);
+    pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC);
+    pthread_mutex_init(&w->mutex, NULL);
+    pthread_cond_init(&w->changed, &monotonic);
+    pthread_cond_init(&w->wanted, &monotonic);
+    pthread_condattr_destroy(&monotonic);
+    if (!realpath(folder, w->folder) || stat(w->folder, &s) != 0)
+        return fail(err, STATUS_MISSING, "%s: %s", folder, strerror(errno));
+    TRY(find_runs(w, folder, err));
+    return pthread_create(&w->thread, NULL, watch, w) == 0 ? STATUS_OK
+                                                           : fail(err, STATUS_NO_MEMORY, "no thread to watch a run");
+}
+
+Status watch_open(Watch **out, const char *folder, Err *err)
+{
+    Watch *w = calloc(1, sizeof *w);
+    *out = NULL;
+    if (!w)
+        return fail(err, STATUS_NO_MEMORY, "no memory to watch a run");
+    const Status status = start(w, folder, err);
+    if (status == STATUS_OK) {
+        *out = w;
+        return STATUS_OK;
+    }
+    for (size_t i = 0; i < w->n; i++)
+        free(w->run[i]);
+    free(w);
+    return status;
+}
+
+void watch_stop(Watch *w)
+{
+    pthread_mutex_lock(&w->mutex);
+    w->stops = 1;
+    pthread_cond_broadcast(&w->changed);
+    pthread_cond_broadcast(&w->wanted);
+    pthread_mutex_unlock(&w->mutex);
+}
+
+int watch_is_stopped(Watch *w)
+{
+    pthread_mutex_lock(&w->mutex);
+    const int stops = w->stops;
+    pthread_mutex_unlock(&w->mutex);
+    return stops;
+}
+
+void watch_close(Watch *w)
+{
+    watch_stop(w);
+    pthread_join(w->thread, NULL);
+    for (size_t i = 0; i < w->n; i++) {
+        release(w->run[i]->look);
+        free(w->run[i]);
+    }
+    pthread_cond_destroy(&w->changed);
+    pthread_cond_destroy(&w->wanted);
+    pthread_mutex_destroy(&w->mutex);
+    free(w);
+}
+
+/* -- looking ------------------------------------------------------------------------------------------------------- */
+
+Status watch_take(Watch *w, size_t i, Look **look, Err *err)
+{
+    *look = NULL;
+    pthread_mutex_lock(&w->mutex);
+    Watched *r = w->run[i];
+    r->is_wanted = 1;
+    r->why.code = STATUS_OK;
+    pthread_cond_broadcast(&w->wanted);
+    while (!r->look && r->why.code == STATUS_OK && !w->stops)
+        wait_for(&w->changed, &w->mutex, 1);
+    Status status = STATUS_OK;
+    if (r->look) {
+        *look = r->look;
+        r->look->n_users++;
+    } else {
+        status = w->stops ? STATUS_STOPPED : r->why.code;
+        *err = r->why;
+    }
+    pthread_mutex_unlock(&w->mutex);
+    return status;
+}
+
+void watch_give(Watch *w, Look *look)
+{
+    pthread_mutex_lock(&w->mutex);
+    release(look);
+    pthread_mutex_unlock(&w->mutex);
+}
+
+Look *watch_next(Watch *w, size_t i, long seen, double seconds)
+{
+    Look *found = NULL;
+    const double end = clock_seconds() + seconds;
+    pthread_mutex_lock(&w->mutex);
+    const Watched *r = w->run[i];
+    for (double left = seconds; !w->stops && left > 0 && !(r->look && r->look->version > seen);
+         left = end - clock_seconds())
+        wait_for(&w->changed, &w->mutex, left);
+    if (!w->stops && r->look && r->look->version > seen) {
+        found = r->look;
+        found->n_users++;
+    }
+    pthread_mutex_unlock(&w->mutex);
+    return found;
+}

@@ -1,0 +1,57 @@
+// A run under way: how far it is, hypervolume, failures and the front as it grows.
+
+function progressPart() {
+  const part = livePart("live", "Progress", "front");
+  const said = element("p", { id: "progress-words", role: "status" }), bar = element("progress", { "aria-label": "share of the simulations" });
+  const again = plainButton("", () => location.reload(), { hidden: true, id: "new-front" });
+  part.append(said, bar, again);
+  const grid = part.appendChild(element("div", { class: "grid2" }));
+  const growth = grid.appendChild(element("figure", {}, element("h3", {}, "Hypervolume")));
+  const strip = grid.appendChild(element("figure", {}, element("h3", {}, "The front as it grows"),
+    legend([["now", BLUE], ["of this page", PALE]])));
+  const draw = frontStrip(strip, "The front as it grows");
+  let now = { simulated: run.convergence.simulated, volume: run.convergence.volume, f: [], ids: [] }, generation = -1;
+
+  const drawGrowth = drawn(growth, (width) => chart({
+    width, height: 200, ariaLabel: "Hypervolume over the number of designs",
+    x: { label: "designs simulated", tickFormat: count }, y: { label: "hypervolume [%]", grid: true, zero: true, nice: true },
+    marks: [charts.lineY(now.simulated.map((x, i) => ({ x, y: 100 * now.volume[i] })), { x: "x", y: "y", stroke: BLUE, strokeWidth: 2 })],
+  }));
+
+  async function takeFront() {
+    now = await ask("front");
+    drawGrowth();
+    draw([paleFront(), { rows: now.f, colour: BLUE, width: 0.8, alpha: paleFront(now.f).alpha }]);
+    const fresh = now.ids.filter((id) => !rowOf.has(id)).length;
+    again.hidden = !fresh;
+    again.textContent = `${count(fresh)} new designs on the front: show them in all pictures`;
+    part.dataset.generation = now.generation;
+  }
+
+  function take(status) {
+    const isOn = status.state === "running", left = status.left_s === null ? "" : `, ${show(status.left_s / 60)} min left`;
+    const pace = status.per_second === null ? "" : `, ${show(status.per_second)} per second`;
+    said.textContent = `${status.state[0].toUpperCase()}${status.state.slice(1)}: ${count(status.simulated)} of ${count(status.max_evals)} designs simulated${isOn ? pace + left : ""}; ` +
+      `${count(status.failed)} failed; ${count(status.front)} on the front after generation ${Math.max(0, status.generation)}, hypervolume ${status.hypervolume === null ? "\u2013" : show(100 * status.hypervolume)} %`;
+    bar.max = status.max_evals;
+    bar.value = status.simulated;
+    part.dataset.state = status.state;
+    if (status.generation === generation) return;
+    generation = status.generation;
+    takeFront().catch((error) => (said.textContent = error.message));
+  }
+
+  // One stream for the page in sight: a browser has six connections for all its tabs.
+  let events;
+  function follow_() {
+    events?.close();
+    events = undefined;
+    if (document.hidden) return;
+    events = new EventSource("events");
+    events.onmessage = ({ data }) => take(JSON.parse(data));
+    events.onerror = () => (said.textContent = "The server does not answer (imtet serve has ended?). Asking again.");
+  }
+  document.addEventListener("visibilitychange", follow_);
+  window.addEventListener("pagehide", () => events?.close());
+  follow_();
+}
