@@ -17,7 +17,7 @@
 #include "serve/guard.h"
 #include "serve/what_if.h"
 
-enum { PEERS_EASE = PEERS_MAX - 32, STALL_S = 15 };
+enum { PEERS_EASE = PEERS_MAX / 2, STALL_S = 15 };
 static const double BEAT_S = 5; /* between events at most */
 
 /* A connection, from its beginning to its end. */
@@ -83,8 +83,10 @@ static void end_oldest(Server *s)
     for (size_t i = 0; i < PEERS_MAX; i++)
         if (s->peer[i].since > 0 && (!oldest || s->peer[i].since < oldest->since))
             oldest = &s->peer[i];
-    if (oldest)
+    if (oldest) {
         shutdown(oldest->socket, SHUT_RDWR);
+        oldest->since = 0; /* it is ended; the next time another one goes */
+    }
 }
 
 static void add_peer(Server *s, struct MHD_Connection *c, void **context)
@@ -545,16 +547,25 @@ __attribute__((format(printf, 2, 0))) static void say_nothing(void *user, const 
     (void)list;
 }
 
+/* Nothing of a path is unescaped: none that we know has a %. */
+static size_t leave_escaped(void *user, struct MHD_Connection *c, char *text)
+{
+    (void)user;
+    (void)c;
+    return strlen(text);
+}
+
 static Status listen_on(Server *s, int port, Err *err)
 {
     const struct sockaddr_in here = {
         .sin_family = AF_INET, .sin_port = htons((uint16_t)port), .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
     s->daemon = MHD_start_daemon(
         MHD_USE_INTERNAL_POLLING_THREAD | MHD_USE_THREAD_PER_CONNECTION | MHD_USE_POLL | MHD_USE_ERROR_LOG,
-        (uint16_t)port, NULL, NULL, handle, s, MHD_OPTION_EXTERNAL_LOGGER, say_nothing, NULL, MHD_OPTION_SOCK_ADDR,
-        &here, MHD_OPTION_CONNECTION_LIMIT, (unsigned)PEERS_MAX, MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)STALL_S,
-        MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)HEAD_MAX, MHD_OPTION_NOTIFY_CONNECTION, note_connection, s,
-        MHD_OPTION_NOTIFY_COMPLETED, note_completed, s, MHD_OPTION_END);
+        (uint16_t)port, NULL, NULL, handle, s, MHD_OPTION_EXTERNAL_LOGGER, say_nothing, NULL,
+        MHD_OPTION_UNESCAPE_CALLBACK, leave_escaped, NULL, MHD_OPTION_SOCK_ADDR, &here, MHD_OPTION_CONNECTION_LIMIT,
+        (unsigned)PEERS_MAX, MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)STALL_S, MHD_OPTION_CONNECTION_MEMORY_LIMIT,
+        (size_t)HEAD_MAX, MHD_OPTION_NOTIFY_CONNECTION, note_connection, s, MHD_OPTION_NOTIFY_COMPLETED, note_completed,
+        s, MHD_OPTION_END);
     if (!s->daemon)
         return fail(err, STATUS_IO, "127.0.0.1:%d: no server: %s", port, strerror(errno));
     s->port = MHD_get_daemon_info(s->daemon, MHD_DAEMON_INFO_BIND_PORT)->port;

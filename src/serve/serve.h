@@ -13,8 +13,8 @@
  * Nothing here writes to a run. A request that is refused gets a status and {"error": words}: 403 token, Host or Origin,
  * 404, 405, 409 a later question is there, 413, 503.
  *
- * Bounds    PEERS_MAX connections, of which the one that has waited longest for its request goes when they run short; a
- *           request complete within REQUEST_S; HEAD_MAX bytes of headers, BODY_MAX of body; STREAMS_MAX streams of events
+ * Bounds    PEERS_MAX connections; from half as many on, the one that has waited longest for its request goes for each new
+ *           one; a request complete within REQUEST_S; HEAD_MAX bytes of headers, BODY_MAX of body; STREAMS_MAX streams of events
  * Library   libmicrohttpd, a thread for each connection
  * Life cycle  serve_open -> serve_url ... -> serve_close
  * Errors    no such run: STATUS_MISSING; the port is taken: STATUS_IO */
@@ -23,7 +23,7 @@
 
 #include "study/record_paths.h"
 
-enum { PEERS_MAX = 128, STREAMS_MAX = 48, HEAD_MAX = 16 << 10, BODY_MAX = 32 << 10 };
+enum { PEERS_MAX = 256, STREAMS_MAX = 48, HEAD_MAX = 16 << 10, BODY_MAX = 32 << 10 };
 static const double REQUEST_S = 10;
 
 typedef struct Server Server;

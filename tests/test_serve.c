@@ -1,0 +1,614 @@
+/* imtet serve, asked by raw sockets: whom it answers, what it refuses, that a run does not know of it, how it ends. */
+#include "runs.h"
+
+#include <arpa/inet.h>
+#include <errno.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/time.h>
+
+#include "serve/guard.h"
+#include "serve/serve.h"
+
+enum { ANSWER_MAX = 4 << 20 };
+static const char SMALL[] = "optimize configs/quick.ini --max-evals 60 --set search.population=16 --set "
+                            "search.initial=40 --threads 1";
+
+static struct {
+    pid_t pid;
+    int port;
+    char token[TOKEN_TEXT], said[PATH_MAX];
+} server;
+
+/* -- the server as a process --------------------------------------------------------------------------------------- */
+
+/* `imtet serve FOLDER`, whose address is in `said` as soon as it listens; SIGINT ends it. */
+static void serve(const char *folder)
+{
+    char path[PATH_MAX], *text = NULL, *at = NULL;
+    sigset_t ends;
+    posix_spawn_file_actions_t files;
+    posix_spawnattr_t signals;
+    char *words[] = {getenv("IMTET"), "serve", path_of(folder, path), NULL};
+    posix_spawn_file_actions_init(&files);
+    posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, path_of("served", server.said),
+                                     O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    sigemptyset(&ends);
+    sigaddset(&ends, SIGINT);
+    posix_spawnattr_init(&signals);
+    posix_spawnattr_setsigdefault(&signals, &ends);
+    posix_spawnattr_setflags(&signals, POSIX_SPAWN_SETSIGDEF);
+    assert_int_equal(posix_spawn(&server.pid, words[0], &files, &signals, words, environ), 0);
+    posix_spawn_file_actions_destroy(&files);
+    posix_spawnattr_destroy(&signals);
+    for (int i = 0; i < 600 && !at; i++) {
+        rest(0.1);
+        free(text);
+        text = text_of(server.said);
+        at = strstr(text, "Ctrl-C");
+    }
+    assert_non_null(at);
+    assert_int_equal(sscanf(strstr(text, "http://"), "http://127.0.0.1:%d/%48[0-9a-f]/", &server.port, server.token),
+                     2);
+    free(text);
+}
+
+static int end_server(void)
+{
+    assert_int_equal(kill(server.pid, SIGINT), 0);
+    return wait_end(server.pid);
+}
+
+/* -- requests ------------------------------------------------------------------------------------------------------ */
+
+static int dial(void)
+{
+    const struct sockaddr_in there = {
+        .sin_family = AF_INET, .sin_port = htons((uint16_t)server.port), .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
+    const struct timeval patience = {.tv_sec = 60};
+    const int fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    assert_true(fd >= 0);
+    setsockopt(fd, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+    assert_int_equal(connect(fd, (const struct sockaddr *)&there, sizeof there), 0);
+    return fd;
+}
+
+static void say(int fd, const char *text)
+{
+    for (size_t n = strlen(text); n > 0;) {
+        const ssize_t sent = send(fd, text, n, MSG_NOSIGNAL);
+        if (sent <= 0)
+            return; /* the server has closed: its answer says why */
+        text += sent;
+        n -= (size_t)sent;
+    }
+}
+
+/* Up to the end of the connection. */
+static char *hear(int fd)
+{
+    char *text = calloc(1, ANSWER_MAX);
+    size_t n = 0;
+    assert_non_null(text);
+    for (ssize_t got; n < ANSWER_MAX - 1 && (got = recv(fd, text + n, ANSWER_MAX - 1 - n, 0)) > 0;)
+        n += (size_t)got;
+    close(fd);
+    return text;
+}
+
+static int code_of(const char *answer)
+{
+    int code = 0; /* closed without an answer */
+    sscanf(answer, "HTTP/1.1 %d", &code);
+    return code;
+}
+
+/* One request: %T in `path` is the token; headers end with \r\n each. */
+static char *ask(const char *method, const char *path, const char *headers, const char *body)
+{
+    char request[4096], url[2048] = "";
+    for (const char *p = path; *p; p++)
+        if (p[0] == '%' && p[1] == 'T') {
+            strcat(url, server.token);
+            p++;
+        } else
+            strncat(url, p, 1);
+    snprintf(request, sizeof request, "%s %s HTTP/1.1\r\n%s%sConnection: close\r\n\r\n", method, url,
+             strstr(headers, "Host:") ? "" : "Host: 127.0.0.1\r\n", headers);
+    const int fd = dial();
+    say(fd, request);
+    say(fd, body);
+    return hear(fd);
+}
+
+static void expect_code(int wanted, const char *method, const char *path, const char *headers)
+{
+    char *answer = ask(method, path, headers, "");
+    if (code_of(answer) != wanted)
+        fail_msg("%s %s with %s: %.200s, wanted %d", method, path, headers, answer, wanted);
+    free(answer);
+}
+
+static json_t *json_of_answer(char *answer)
+{
+    json_error_t error;
+    char *body = strstr(answer, "\r\n\r\n");
+    assert_int_equal(code_of(answer), 200);
+    json_t *all = json_loads(body + 4, 0, &error);
+    if (!all)
+        fail_msg("%s: %.200s", error.text, body);
+    free(answer);
+    return all;
+}
+
+static json_t *ask_json(const char *path)
+{
+    return json_of_answer(ask("GET", path, "", ""));
+}
+
+static json_t *post_json(const char *path, json_t *question)
+{
+    char length[64], *body = json_dumps(question, JSON_REAL_PRECISION(17));
+    snprintf(length, sizeof length, "Content-Length: %zu\r\n", strlen(body));
+    json_t *answer = json_of_answer(ask("POST", path, length, body));
+    free(body);
+    json_decref(question);
+    return answer;
+}
+
+/* -- whom it answers ----------------------------------------------------------------------------------------------- */
+
+static void test_a_request_without_the_token_is_refused(void **state)
+{
+    (void)state;
+    char almost[64];
+    expect_code(200, "GET", "/%T/0/", "");
+    expect_code(302, "GET", "/%T/", "");
+    snprintf(almost, sizeof almost, "/%s/0/", server.token);
+    almost[48] = almost[48] == '0' ? '1' : '0';
+    expect_code(403, "GET", almost, "");
+    expect_code(403, "GET", "/", "");
+    expect_code(403, "GET", "/0/", "");
+    expect_code(403, "GET", "/%", "");
+}
+
+static void test_a_foreign_host_or_origin_is_refused(void **state)
+{
+    (void)state;
+    static const char *const REFUSED[] = {"Host: evil.example\r\n",
+                                          "Host: 127.0.0.1.evil.example\r\n",
+                                          "Host: localhost:80x\r\n",
+                                          "Host: 127.0.0.2\r\n",
+                                          "Host: 127.0.0.1\r\nOrigin: http://evil.example\r\n",
+                                          "Host: 127.0.0.1\r\nOrigin: null\r\n",
+                                          "Host: 127.0.0.1\r\nOrigin: https://127.0.0.1\r\n",
+                                          "Host: 127.0.0.1:8000\r\nOrigin: http://127.0.0.1:8001\r\n"};
+    for (size_t i = 0; i < sizeof REFUSED / sizeof REFUSED[0]; i++)
+        expect_code(403, "GET", "/%T/0/front", REFUSED[i]);
+    expect_code(200, "GET", "/%T/0/front", "Host: localhost:1234\r\n");
+    expect_code(200, "GET", "/%T/0/front", "Host: 127.0.0.1:8000\r\nOrigin: http://127.0.0.1:8000\r\n");
+}
+
+static void test_no_request_leads_to_a_file(void **state)
+{
+    (void)state;
+    static const char *const PATHS[] = {"/%T/../../etc/passwd",
+                                        "/%T/0/../../../etc/passwd",
+                                        "/%T/%2e%2e/%2e%2e/etc/passwd",
+                                        "/%T/0/..%2f..%2frun.sqlite",
+                                        "/%T/0/run.sqlite",
+                                        "/%T//etc/passwd",
+                                        "/%T/0/design/1/../2",
+                                        "/%T/0/design/-1",
+                                        "/%T/0/design/99999999999999999999",
+                                        "/%T/99/",
+                                        "/%T/0/front/1",
+                                        "/%T/0",
+                                        "/%T",
+                                        "/%T/0/%00"};
+    for (size_t i = 0; i < sizeof PATHS / sizeof PATHS[0]; i++)
+        expect_code(404, "GET", PATHS[i], "");
+}
+
+static void test_only_get_and_post_are_known(void **state)
+{
+    (void)state;
+    static const char *const METHODS[] = {"PUT", "DELETE", "HEAD", "OPTIONS", "PATCH", "TRACE"};
+    for (size_t i = 0; i < sizeof METHODS / sizeof METHODS[0]; i++)
+        expect_code(405, METHODS[i], "/%T/0/front", "");
+    expect_code(404, "POST", "/%T/0/front", "Content-Length: 0\r\n");
+    expect_code(400, "POST", "/%T/0/what-if", "Content-Length: 0\r\n");
+}
+
+/* -- bounds -------------------------------------------------------------------------------------------------------- */
+
+static void test_what_is_too_large_is_not_read(void **state)
+{
+    (void)state;
+    enum { MUCH = 1 << 20 };
+    char *much = malloc(MUCH + 1), *headers = malloc(MUCH + 64);
+    memset(much, 'x', MUCH);
+    much[MUCH] = 0;
+    expect_code(413, "POST", "/%T/0/what-if", "Content-Length: 1000000000\r\n");
+    expect_code(413, "GET", "/%T/0/front", "Content-Length: 5\r\n");
+    int fd = dial();
+    snprintf(headers, MUCH + 64, "GET /%s/0/ HTTP/1.1\r\nHost: localhost\r\nX: %s\r\n\r\n", server.token, much);
+    say(fd, headers);
+    char *answer = hear(fd);
+    assert_true(code_of(answer) == 0 || code_of(answer) >= 400);
+    free(answer);
+    fd = dial();
+    snprintf(headers, MUCH + 64, "POST /%s/0/what-if HTTP/1.1\r\nHost: localhost\r\nTransfer-Encoding: chunked\r\n\r\n",
+             server.token);
+    say(fd, headers);
+    say(fd, "100000\r\n"); /* one chunk of a megabyte, and it would go on */
+    say(fd, much);
+    answer = hear(fd);
+    assert_true(code_of(answer) == 0 || code_of(answer) >= 400);
+    free(answer);
+    free(headers);
+    free(much);
+    expect_code(200, "GET", "/%T/0/front", "");
+}
+
+/* A byte a second never makes a request. */
+static void test_a_request_that_does_not_come_is_ended(void **state)
+{
+    (void)state;
+    static const char *const BEGUN[] = {
+        "", "GET /", "POST /%T/0/what-if HTTP/1.1\r\nHost: localhost\r\nContent-Length: 90\r\n\r\n{"};
+    const double start = now_s();
+    int fd[3];
+    for (int i = 0; i < 3; i++) {
+        char text[256];
+        fd[i] = dial();
+        snprintf(text, sizeof text,
+                 BEGUN[i][0] == 'P' ? "POST /%s/0/what-if HTTP/1.1\r\nHost: localhost\r\nContent-Length: 90\r\n\r\n{"
+                                    : "%.0s%s",
+                 server.token, BEGUN[i]);
+        say(fd[i], text);
+    }
+    for (int k = 0; k < (int)REQUEST_S + 2; k++) {
+        rest(1);
+        for (int i = 1; i < 3; i++)
+            say(fd[i], "x");
+    }
+    for (int i = 0; i < 3; i++)
+        free(hear(fd[i]));
+    assert_true(now_s() - start < REQUEST_S + 8);
+}
+
+static size_t threads_of_server(void)
+{
+    char path[64], line[256];
+    size_t n = 0;
+    snprintf(path, sizeof path, "/proc/%d/status", (int)server.pid);
+    FILE *f = fopen(path, "r");
+    assert_non_null(f);
+    while (fgets(line, sizeof line, f))
+        sscanf(line, "Threads: %zu", &n);
+    fclose(f);
+    return n;
+}
+
+static void test_a_thousand_connections_leave_room_for_one_that_asks(void **state)
+{
+    (void)state;
+    enum { MANY = 1000 };
+    struct rlimit files;
+    int fd[MANY];
+    getrlimit(RLIMIT_NOFILE, &files);
+    files.rlim_cur = files.rlim_max < 2048 ? files.rlim_max : 2048;
+    setrlimit(RLIMIT_NOFILE, &files);
+    for (int i = 0; i < MANY; i++)
+        fd[i] = dial();
+    rest(SANITIZED ? 5 : 1);
+    const double start = now_s();
+    expect_code(200, "GET", "/%T/0/front", "");
+    assert_true(now_s() - start < (SANITIZED ? 20 : 2));
+    assert_true(threads_of_server() <= PEERS_MAX + 8);
+    for (int i = 0; i < MANY; i++)
+        close(fd[i]);
+    expect_code(200, "GET", "/%T/0/front", "");
+}
+
+static void test_more_streams_than_allowed_are_refused(void **state)
+{
+    (void)state;
+    int fd[STREAMS_MAX];
+    char text[256], byte;
+    snprintf(text, sizeof text, "GET /%s/0/events HTTP/1.1\r\nHost: localhost\r\n\r\n", server.token);
+    for (int i = 0; i < STREAMS_MAX; i++) {
+        fd[i] = dial();
+        say(fd[i], text);
+        assert_int_equal(recv(fd[i], &byte, 1, 0), 1);
+    }
+    expect_code(503, "GET", "/%T/0/events", "");
+    for (int i = 0; i < STREAMS_MAX; i++)
+        close(fd[i]);
+}
+
+/* -- answers ------------------------------------------------------------------------------------------------------- */
+
+static json_t *numbers_of_row(const Table *t, size_t row, size_t first, size_t n)
+{
+    json_t *list = json_array();
+    for (size_t j = 0; j < n; j++)
+        json_array_append_new(list, json_real(t->values[row * t->n_cols + first + j]));
+    return list;
+}
+
+/* The same numbers to the last digit. */
+static void assert_objectives(const json_t *answer, const Table *t, size_t row, size_t first)
+{
+    const json_t *f = json_object_get(answer, "objectives");
+    assert_int_equal(json_array_size(f), 7);
+    for (size_t k = 0; k < 7; k++)
+        assert_true(json_number_value(json_array_get(f, k)) == t->values[row * t->n_cols + first + k]);
+}
+
+static void test_what_if_nothing_changes_is_what_the_run_has(void **state)
+{
+    (void)state;
+    Table front = table_of("runs/a/front.csv");
+    const size_t row = front.n_rows / 2;
+    json_t *answer = post_json(
+        "/%T/0/what-if", json_pack("{s:i, s:i, s:o}", "page", 1, "turn", 1, "x", numbers_of_row(&front, row, 1, 22)));
+    assert_objectives(answer, &front, row, 23);
+    assert_int_equal(json_integer_value(json_object_get(answer, "dominated_by")), 0);
+    assert_int_equal(json_integer_value(json_object_get(answer, "dominates")), 0);
+    assert_true(json_array_size(json_object_get(json_object_get(answer, "peaks"), "drift_m")) == 20);
+    json_decref(answer);
+    table_free(&front);
+}
+
+static void test_what_if_under_another_motion_is_what_simulate_prints(void **state)
+{
+    (void)state;
+    static const char *const NAMES[] = {"j1_m", "j2_m", "j3_g", "ed1_pct", "ed5_10_pct", "edcs_pct", "mcore_kg"};
+    char arguments[300];
+    Table front = table_of("runs/a/front.csv");
+    json_t *answer = post_json("/%T/0/what-if", json_pack("{s:i, s:i, s:o, s:f, s:f, s:f}", "page", 1, "turn", 2, "x",
+                                                          numbers_of_row(&front, 0, 1, 22), "pga_g", 0.41, "stretch",
+                                                          2.5, "restitution", 0.55));
+    snprintf(arguments, sizeof arguments,
+             "simulate @/runs/a/settings.ini --design @/runs/a/front.csv:%.0f --pga 0.41 --stretch 2.5 --set "
+             "contact.restitution=0.55 --json",
+             front.values[0]);
+    json_t *other = json_of(arguments);
+    for (size_t k = 0; k < 7; k++)
+        assert_true(json_number_value(json_array_get(json_object_get(answer, "objectives"), k)) ==
+                    number(other, NAMES[k]));
+    assert_null(json_object_get(answer, "dominated_by")); /* another motion has no place in this front */
+    json_decref(answer);
+    json_decref(other);
+    table_free(&front);
+}
+
+static void test_questions_that_are_none_are_refused(void **state)
+{
+    (void)state;
+    static const char *const QUESTIONS[] = {"",           "[]",       "{}",        "{\"x\": [1, 2]}",
+                                            "{\"x\": 3}", "\xff\xfe", "{\"x\": [", "{\"x\": [], \"x\": []}"};
+    char length[64];
+    for (size_t i = 0; i < sizeof QUESTIONS / sizeof QUESTIONS[0]; i++) {
+        snprintf(length, sizeof length, "Content-Length: %zu\r\n", strlen(QUESTIONS[i]));
+        char *answer = ask("POST", "/%T/0/what-if", length, QUESTIONS[i]);
+        assert_int_equal(code_of(answer), 400);
+        free(answer);
+    }
+}
+
+static void test_an_earlier_question_of_a_page_gives_way(void **state)
+{
+    (void)state;
+    Table front = table_of("runs/a/front.csv");
+    json_t *x = numbers_of_row(&front, 0, 1, 22);
+    json_decref(post_json("/%T/0/what-if", json_pack("{s:i, s:i, s:O}", "page", 7, "turn", 5, "x", x)));
+    json_decref(post_json("/%T/0/what-if", json_pack("{s:i, s:i, s:O}", "page", 8, "turn", 1, "x", x)));
+    json_t *late = json_pack("{s:i, s:i, s:o}", "page", 7, "turn", 4, "x", x);
+    char length[64], *body = json_dumps(late, 0);
+    snprintf(length, sizeof length, "Content-Length: %zu\r\n", strlen(body));
+    char *answer = ask("POST", "/%T/0/what-if", length, body);
+    assert_int_equal(code_of(answer), 409);
+    free(answer);
+    free(body);
+    json_decref(late);
+    table_free(&front);
+}
+
+static void test_two_runs_are_measured_in_one_box(void **state)
+{
+    (void)state;
+    json_t *both = ask_json("/%T/0/against/1"), *again = ask_json("/%T/1/against/0");
+    for (size_t r = 0; r < 2; r++) {
+        const json_t *one = json_array_get(json_object_get(both, "runs"), r);
+        const json_t *v = json_object_get(one, "volume");
+        assert_true(json_array_size(v) > 1);
+        for (size_t g = 1; g < json_array_size(v); g++)
+            assert_true(json_number_value(json_array_get(v, g)) >= json_number_value(json_array_get(v, g - 1)));
+        assert_true(json_equal(one, json_array_get(json_object_get(again, "runs"), 1 - r)));
+    }
+    json_decref(both);
+    json_decref(again);
+    expect_code(400, "GET", "/%T/0/against/2", ""); /* other objectives */
+    expect_code(404, "GET", "/%T/0/against/9", "");
+    expect_code(404, "GET", "/%T/2/what-if", ""); /* no tower */
+    expect_code(404, "GET", "/%T/2/design/1", "");
+}
+
+static void test_the_page_is_the_report_with_live_parts(void **state)
+{
+    (void)state;
+    char *page = ask("GET", "/%T/0/", "", ""), *policy = strstr(page, "Content-Security-Policy\" content=\"");
+    assert_non_null(policy);
+    assert_non_null(strstr(policy, "connect-src 'self'"));
+    *strchr(policy + 40, '"') = 0;
+    assert_null(strstr(policy, "unsafe"));
+    assert_null(strstr(page, server.token));
+    free(page);
+    char *list = output_of("list @/runs --json");
+    assert_non_null(strstr(list, "\"finished\""));
+    free(list);
+}
+
+/* -- the run ------------------------------------------------------------------------------------------------------- */
+
+static void test_a_run_has_the_same_bytes_with_ten_pages_looking_on(void **state)
+{
+    (void)state;
+    char text[256], path[PATH_MAX], begun[PATH_MAX + 16];
+    int fd[10];
+    Said said;
+    run(&said, "%s --out @/alone", SMALL);
+    assert_int_equal(said.code, 0);
+    forget(&said);
+    char *words[] = {"sh", "-c", NULL, NULL};
+    assert_true(
+        asprintf(&words[2], "'%s' %s --out '%s/watched' >/dev/null 2>&1", getenv("IMTET"), SMALL, place.folder) > 0);
+    pid_t pid, first = server.pid;
+    assert_int_equal(posix_spawnp(&pid, "sh", NULL, NULL, words, environ), 0);
+    snprintf(begun, sizeof begun, "%s/settings.ini", path_of("watched", path));
+    for (int i = 0; i < 600 && access(begun, F_OK) != 0; i++)
+        rest(0.05);
+    const int port = server.port;
+    char token[TOKEN_TEXT];
+    memcpy(token, server.token, sizeof token);
+    serve("watched");
+    snprintf(text, sizeof text, "GET /%s/0/events HTTP/1.1\r\nHost: localhost\r\n\r\n", server.token);
+    for (int i = 0; i < 10; i++) {
+        fd[i] = dial();
+        say(fd[i], text);
+    }
+    int status = 0;
+    while (waitpid(pid, &status, WNOHANG) == 0) {
+        free(ask("GET", "/%T/0/", "", ""));
+        free(ask("GET", "/%T/0/front", "", ""));
+    }
+    assert_int_equal(status, 0);
+    assert_true(WIFEXITED(end_server()));
+    for (int i = 0; i < 10; i++) {
+        char *heard = hear(fd[i]);
+        assert_non_null(strstr(heard, "\"state\":\"running\""));
+        free(heard);
+    }
+    assert_same_run("alone", "watched");
+    free(words[2]);
+    server.pid = first;
+    server.port = port;
+    memcpy(server.token, token, sizeof token);
+}
+
+static char *sums(void)
+{
+    char command[512];
+    snprintf(command, sizeof command,
+             "cd '%s/runs' && find . -type f ! -name '*-shm' ! -name '*-wal' | sort | xargs sha256sum > ../sums && ls "
+             "-R > ../names && cat ../names ../sums > ../all",
+             place.folder);
+    assert_int_equal(system(command), 0);
+    return read_in_place("all");
+}
+
+static void test_nothing_of_a_run_is_written(void **state)
+{
+    (void)state;
+    char *before = sums();
+    Table front = table_of("runs/a/front.csv");
+    char path[64];
+    snprintf(path, sizeof path, "/%%T/0/design/%.0f", front.values[0]);
+    json_t *design = ask_json(path);
+    assert_true(json_integer_value(json_object_get(design, "id")) == (json_int_t)front.values[0]);
+    json_decref(design);
+    json_decref(ask_json("/%T/runs"));
+    char *after = sums();
+    assert_string_equal(before, after);
+    free(before);
+    free(after);
+    table_free(&front);
+}
+
+/* -- ends ---------------------------------------------------------------------------------------------------------- */
+
+static void test_what_cannot_be_served_is_said(void **state)
+{
+    (void)state;
+    char arguments[128];
+    expect(66, "no-such-run", "serve no-such-run");
+    expect(66, "is no run, and holds none", "serve docs");
+    expect(2, "--port", "serve @/runs/a --port 0");
+    snprintf(arguments, sizeof arguments, "serve @/runs/a --port %d", server.port);
+    expect(74, "no server", arguments);
+}
+
+static void test_ctrl_c_ends_it_while_pages_look_on(void **state)
+{
+    (void)state;
+    char text[256], byte;
+    int fd[4];
+    snprintf(text, sizeof text, "GET /%s/0/events HTTP/1.1\r\nHost: localhost\r\n\r\n", server.token);
+    for (int i = 0; i < 4; i++) {
+        fd[i] = dial();
+        say(fd[i], i < 3 ? text : "GET /");
+    }
+    assert_int_equal(recv(fd[0], &byte, 1, 0), 1);
+    const double start = now_s();
+    const int status = end_server();
+    assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+    assert_true(now_s() - start < (SANITIZED ? 20 : 3));
+    for (int i = 0; i < 4; i++)
+        close(fd[i]);
+    serve("runs");
+}
+
+static int begin(void **state)
+{
+    Said said;
+    if (prepare(state) != 0)
+        return -1;
+    static const char *const RUNS[] = {
+        "--out @/runs/a", "--out @/runs/b --set search.seed=2",
+        "--out @/runs/c --set problem.kind=dtlz2 --set problem.variables=4 --set problem.objectives=2"};
+    for (size_t i = 0; i < sizeof RUNS / sizeof RUNS[0]; i++) {
+        run(&said, "%s %s", SMALL, RUNS[i]);
+        if (said.code != 0)
+            print_error("%s", said.err);
+        forget(&said);
+        if (said.code != 0)
+            return -1;
+    }
+    serve("runs");
+    return 0;
+}
+
+static int finish(void **state)
+{
+    end_server();
+    return clear_place(state);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_a_request_without_the_token_is_refused),
+        cmocka_unit_test(test_a_foreign_host_or_origin_is_refused),
+        cmocka_unit_test(test_no_request_leads_to_a_file),
+        cmocka_unit_test(test_only_get_and_post_are_known),
+        cmocka_unit_test(test_what_is_too_large_is_not_read),
+        cmocka_unit_test(test_a_request_that_does_not_come_is_ended),
+        cmocka_unit_test(test_a_thousand_connections_leave_room_for_one_that_asks),
+        cmocka_unit_test(test_more_streams_than_allowed_are_refused),
+        cmocka_unit_test(test_what_if_nothing_changes_is_what_the_run_has),
+        cmocka_unit_test(test_what_if_under_another_motion_is_what_simulate_prints),
+        cmocka_unit_test(test_questions_that_are_none_are_refused),
+        cmocka_unit_test(test_an_earlier_question_of_a_page_gives_way),
+        cmocka_unit_test(test_two_runs_are_measured_in_one_box),
+        cmocka_unit_test(test_the_page_is_the_report_with_live_parts),
+        cmocka_unit_test(test_nothing_of_a_run_is_written),
+        cmocka_unit_test(test_a_run_has_the_same_bytes_with_ten_pages_looking_on),
+        cmocka_unit_test(test_what_cannot_be_served_is_said),
+        cmocka_unit_test(test_ctrl_c_ends_it_while_pages_look_on),
+    };
+    return cmocka_run_group_tests(tests, begin, finish);
+}
