@@ -12,6 +12,9 @@
 
 enum { OPTION_TEXT_MAX = 512 }; /* bytes, the final zero included */
 
+/* Value of a number for which a word was given ("auto"); below every number that such a setting allows. */
+#define OPTION_WORD (-1.0)
+
 /* A path from outside; STATUS_MISSING where there is no room for it. */
 Status option_put_path(char option[OPTION_TEXT_MAX], const char *path, Err *err);
 

@@ -24,7 +24,9 @@ typedef struct {
     const char *standard; /* default, as one would type it */
     const char *unit;     /* REAL and WHOLE */
     double min, max;
-    const char *words; /* CHOICE: "a|b|c", in the order of its enum; PATH: names that are no path, or NULL */
+    const char
+        *words; /* CHOICE: "a|b|c", in the order of its enum; PATH: names that are no path, or NULL; REAL: the one
+                          that stands for OPTION_WORD, or NULL */
     const char *help;
     unsigned flags; /* SettingFlags */
 } Option;
@@ -235,7 +237,9 @@ static const Option OPTIONS[] = {
          .flags = SETTING_FREE),
     WHOLE(search.generations, "1000", 1, 1e9, "stop after so many generations", .flags = SETTING_LIMIT),
     WHOLE(search.max_evals, "2000", 4, 1e6, "stop after so many simulations", .flags = SETTING_LIMIT),
-    REAL(search.max_hours, "h", "0", 0, 1e4, "stop after so many hours; 0: no limit", .flags = SETTING_LIMIT),
+    REAL(search.max_hours, "h", "0", 0, 1e4,
+         "stop after so many hours; 0: no limit; auto: two minutes before the Slurm job around it ends",
+         .words = "auto", .flags = SETTING_LIMIT),
     WHOLE(search.stop_after, "0", 0, 1e6,
           "stop after so many simulations without a gain in hypervolume above its standard error; 0: never",
           .flags = SETTING_LIMIT),
@@ -376,7 +380,9 @@ static Status assign(Settings *s, const Option *o, const char *value, Err *err)
     double number;
     switch (o->kind) {
     case KIND_REAL:
-        TRY(parse_number(o, value, &number, err));
+        number = OPTION_WORD;
+        if (!o->words || strcmp(value, o->words) != 0)
+            TRY(parse_number(o, value, &number, err));
         *(double *)field_of(s, o) = number;
         return STATUS_OK;
     case KIND_WHOLE:
@@ -723,7 +729,10 @@ static void format_value(const Settings *s, const Option *o, char text[OPTION_TE
     int word;
     switch (o->kind) {
     case KIND_REAL:
-        format_real(*(const double *)field, text);
+        if (o->words && *(const double *)field == OPTION_WORD)
+            snprintf(text, OPTION_TEXT_MAX, "%s", o->words);
+        else
+            format_real(*(const double *)field, text);
         break;
     case KIND_WHOLE:
         snprintf(text, OPTION_TEXT_MAX, "%ld", *(const long *)field);

@@ -6,7 +6,8 @@
 
 typedef struct {
     long seed, threads, population, initial, generations, max_evals;
-    double max_hours, nondominated_share, trust_error;
+    double max_hours; /* OPTION_WORD: by the Slurm job */
+    double nondominated_share, trust_error;
     double crossover_probability, crossover_eta, mutation_eta, mutation_rate;
     long surrogate_max; /* largest number of centres of the surrogate */
     SurrogateUse surrogate;

@@ -15,6 +15,7 @@
 #include "study/differences.h"
 #include "study/final_polish.h"
 #include "study/initial_designs.h"
+#include "study/job_limit.h"
 #include "study/study_log.h"
 
 typedef struct {
@@ -25,6 +26,7 @@ typedef struct {
     StudySummary *summary;
     FILE *differences;
     double start;            /* [s] of the clock */
+    double max_s;            /* of this session */
     double seconds_before;   /* of earlier sessions */
     size_t generation;       /* that is under way */
     size_t first_generation; /* of this session */
@@ -62,7 +64,6 @@ static int may_go_on(void *user)
 {
     Study *study = user;
     const StudyOptions *o = study->options;
-    const double hours = study->used.search.max_hours;
     if (o->stop && o->stop(o->user)) {
 #pragma omp atomic write
         study->asked = 1;
@@ -73,7 +74,7 @@ static int may_go_on(void *user)
     failing = study->failing;
     if (failing)
         return 0;
-    if (hours > 0.0 && session_seconds(study) >= 3600.0 * hours) {
+    if (session_seconds(study) >= study->max_s) {
 #pragma omp atomic write
         study->late = 1;
         return 0;
@@ -251,8 +252,15 @@ static Status resume(Study *study, Err *err)
     return store_resume(study->store, adapter_schema(study->adapter), &study->used, err);
 }
 
+static Status set_time(Study *study, double hours, Err *err)
+{
+    study->max_s = hours > 0.0 ? 3600.0 * hours : INFINITY;
+    return hours == OPTION_WORD ? job_seconds(&study->max_s, err) : STATUS_OK;
+}
+
 static Status prepare(Study *study, const Settings *s, Err *err)
 {
+    TRY(set_time(study, s->search.max_hours, err));
     TRY(adapter_open(&study->adapter, s, err));
     if (!study->store)
         TRY(store_open(&study->store, s->run.out, study->options->fresh, err));
@@ -276,7 +284,7 @@ SearchConfig study_search_config(const Settings *s)
         .surrogate = s->search.surrogate,
         .selection = s->search.survival,
         .asynchronous = s->search.asynchronous == SWITCH_ON,
-        .max_seconds = 3600 * s->search.max_hours,
+        .max_seconds = 3600 * fmax(s->search.max_hours, 0.0),
         .stop_after = (size_t)s->search.stop_after,
         .nondominated_share = s->search.nondominated_share,
         .trust_error = s->search.trust_error,

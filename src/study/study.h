@@ -12,8 +12,9 @@
  * Settings      must be those of the run (study/differences.h). What the first search.max_evals decides beside the end
  *               (size of the first sample, directions of infill) stays as planned: with 1500 raised to 3000 the first
  *               1500 designs are those of the shorter run
- * Stops         when `stop` says so or after search.max_hours of this session, both asked between simulations: what is
- *               under way is finished, or dropped where an external worker takes seconds, and everything is stored
+ * Stops         when `stop` says so or after search.max_hours of this session (auto: study/job_limit.h), both asked
+ *               between simulations: what is under way is finished, or dropped where an external worker takes seconds,
+ *               and everything is stored
  * Polishes      search.polish spread-out designs of a finished run of the tower (polish/refine.h), with a tenth of its
  *               simulations; not where that is too little to be of use
  * Reproducible  front.csv and evaluations.csv are the same bytes at any thread count; times stand elsewhere. */

@@ -1,0 +1,88 @@
+/* search.max_hours = auto: what a Slurm job has left, from its environment or from scontrol. */
+#include "program.h"
+
+#include <sys/stat.h>
+#include <time.h>
+
+#include "study/job_limit.h"
+
+static void test_the_environment_says_when_the_job_ends(void **state)
+{
+    (void)state;
+    Err err = {0};
+    char end[32];
+    double seconds;
+    snprintf(end, sizeof end, "%ld", (long)time(NULL) + 3600);
+    setenv("SLURM_JOB_END_TIME", end, 1);
+    CHECK_OK(job_seconds(&seconds, &err), &err);
+    assert_true(fabs(seconds - (3600.0 - JOB_MARGIN_S)) < 3.0);
+    unsetenv("SLURM_JOB_END_TIME");
+}
+
+static void test_else_scontrol_does(void **state)
+{
+    (void)state;
+    Err err = {0};
+    double seconds;
+    char path[4096], text[512], day[64], *scontrol = in_place("scontrol");
+    const time_t end = time(NULL) + 1000;
+    struct tm parts;
+    localtime_r(&end, &parts);
+    strftime(day, sizeof day, "%Y-%m-%dT%H:%M:%S", &parts);
+    snprintf(text, sizeof text,
+             "#!/bin/sh\n[ \"$4\" = 17 ] || exit 1\necho 'JobId=17 StartTime=x EndTime=%s Deadline=N/A'\n", day);
+    write_in_place("scontrol", text);
+    assert_int_equal(chmod(scontrol, 0755), 0);
+    free(scontrol);
+    snprintf(path, sizeof path, "%s:%s", place.folder, getenv("PATH"));
+    setenv("PATH", path, 1);
+    setenv("SLURM_JOB_ID", "17", 1);
+    CHECK_OK(job_seconds(&seconds, &err), &err);
+    assert_true(fabs(seconds - (1000.0 - JOB_MARGIN_S)) < 3.0);
+    write_in_place("scontrol", "#!/bin/sh\necho 'JobId=17 StartTime=x EndTime=Unknown Deadline=N/A'\n");
+    CHECK_OK(job_seconds(&seconds, &err), &err);
+    assert_true(isinf(seconds));
+    setenv("SLURM_JOB_ID", "18; true", 1);
+    assert_int_equal(job_seconds(&seconds, &err), STATUS_BAD_DATA);
+    unsetenv("SLURM_JOB_ID");
+}
+
+static void test_without_a_job_or_with_too_short_a_one_it_is_refused(void **state)
+{
+    (void)state;
+    expect(65, "this is no job of Slurm", "optimize configs/quick.ini --out @/none --max-hours auto");
+    char end[32];
+    snprintf(end, sizeof end, "%ld", (long)time(NULL) + 60);
+    setenv("SLURM_JOB_END_TIME", end, 1);
+    expect(65, "give it more time", "optimize configs/quick.ini --out @/none --max-hours auto");
+    unsetenv("SLURM_JOB_END_TIME");
+}
+
+/* 122 s from now, of which 120 are kept back; resumed with the same words, which are no other limit. */
+static void test_a_run_ends_before_its_job_and_goes_on_in_the_next(void **state)
+{
+    (void)state;
+    char end[32];
+    write_in_place("slow.ini", "[problem]\nkind = external\ncommand = sh tests/worker.sh steady\nvariables = 3\n"
+                               "objectives = 2\n[search]\nmax_evals = 4000\nsurrogate = off\nmax_hours = auto\n");
+    for (int i = 0; i < 2; i++) {
+        snprintf(end, sizeof end, "%ld", (long)time(NULL) + 122);
+        setenv("SLURM_JOB_END_TIME", end, 1);
+        expect(75, "Resume it with", i ? "optimize @/slow" : "optimize @/slow.ini --out @/slow");
+    }
+    unsetenv("SLURM_JOB_END_TIME");
+    char *settings = read_in_place("slow/settings.ini");
+    assert_non_null(strstr(settings, "max_hours = auto"));
+    free(settings);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_the_environment_says_when_the_job_ends),
+        cmocka_unit_test(test_else_scontrol_does),
+        cmocka_unit_test(test_without_a_job_or_with_too_short_a_one_it_is_refused),
+        cmocka_unit_test(test_a_run_ends_before_its_job_and_goes_on_in_the_next),
+    };
+    return cmocka_run_group_tests(tests, make_place, clear_place);
+}
