@@ -102,12 +102,14 @@ static void test_units_that_are_wrong_are_refused_or_guessed(void **state)
 {
     (void)state;
     write_building(1e-3, 1, 0);
-    expect_fault("set building.units, kN_m_kg fits", "");
+    expect_fault("set building.units to what the files are in: kN_m_kg (", "");
+    expect_fault("floors of 3e+05 kg), MN_m_t (", "");
+    expect_fault("floors of 3e+08 kg)", "");
     expect_warnings("", "--set building.units=kN_m_kg");
     expect_warnings("building.model", "--set building.units=N_m_kg");
     expect_text("is the stiffness in kN/m?", "--set building.units=N_m_kg");
     write_building(1, 1e-3, 0);
-    expect_fault("set building.units, N_m_t fits", "");
+    expect_fault("set building.units to what the files are in: N_m_t (", "");
     expect_warnings("", "--set building.units=N_m_t");
     expect_warnings("building.model building.model", "--set building.units=N_m_kg");
     expect_text("is the mass in t?", "--set building.units=N_m_kg");

@@ -674,24 +674,36 @@ static void test_columns_without_names_are_asked_about_and_joined_only_where_a_c
     }
 }
 
-static void test_a_first_row_of_number_and_step_is_no_sample(void **state)
+static void test_first_rows_of_number_and_step_are_no_samples(void **state)
 {
     (void)state;
-    for (int width = 1; width <= 2; width++) {
+    static const struct {
+        const char *first;
+        int is_right;
+    } CASES[] = {{"A record of somewhere\n30 0.02\n", 1}, {"30\n0.02\n", 1}, {"30\n", 1}, {"31 0.02\n", 0}};
+    for (size_t i = 0; i < 2 * sizeof CASES / sizeof *CASES; i++) {
+        const int width = (int)(i & 1) + 1, in_two = width == 2 && strcmp(CASES[i / 2].first, "30\n0.02\n") == 0;
         Motion m;
-        Err err;
+        Err err = {0};
         Text t = {NULL, 0};
         FILE *f = open_memstream(&t.text, &t.length);
         assert_non_null(f);
-        fputs("A record of somewhere\n30 0.02\n", f);
+        fputs(in_two ? "30\n" : CASES[i / 2].first, f);
         for (int k = 0; k < 30; k++)
             width == 1 ? fprintf(f, "%.12f\n", sin(k)) : fprintf(f, "%.2f %.12f\n", 0.02 * k, sin(k));
         fclose(f);
-        CHECK_OK(motion_parse(&m, "there", t.text, t.length, &(MotionHow){.unit = UNIT_M_S2}, &err), &err);
-        assert_int_equal(m.n, 30);
-        assert_close(m.dt_s, 0.02, 1e-12);
-        assert_close(m.accel[29], sin(29), 1e-10);
-        assert_true(motion_peak(&m) <= 1);
+        const Status s =
+            motion_parse(&m, "there", t.text, t.length, &(MotionHow){.unit = UNIT_M_S2, .dt_s = 0.02}, &err);
+        if (CASES[i / 2].is_right) {
+            CHECK_OK(s, &err);
+            assert_int_equal(m.n, 30);
+            assert_close(m.dt_s, 0.02, 1e-12);
+            assert_close(m.accel[29], sin(29), 1e-10);
+            assert_true(motion_peak(&m) <= 1);
+        } else if (width == 1) {
+            assert_int_equal(s, STATUS_BAD_DATA);
+            assert_non_null(strstr(err.text, "if that line states the number of samples, 30 lines follow it"));
+        }
         motion_free(&m);
         free(t.text);
     }
@@ -1007,7 +1019,7 @@ int main(void)
         cmocka_unit_test(test_the_offset_of_a_recorder_is_subtracted_and_said),
         cmocka_unit_test(test_a_peak_that_misses_the_header_is_warned_about_above_1_percent_and_refused_above_5),
         cmocka_unit_test(test_columns_without_names_are_asked_about_and_joined_only_where_a_count_fits),
-        cmocka_unit_test(test_a_first_row_of_number_and_step_is_no_sample),
+        cmocka_unit_test(test_first_rows_of_number_and_step_are_no_samples),
         cmocka_unit_test(test_quoted_cells_are_read),
         cmocka_unit_test(test_units_in_other_words_are_taken_or_named),
         cmocka_unit_test(test_a_specimen_of_every_format_is_read_to_its_step_length_and_peak),

@@ -194,6 +194,43 @@ static void test_four_storeys_are_not_searched_for_modes_that_they_do_not_have(v
     json_t *o = json_of(command);
     assert_int_equal(json_array_size(json_object_get(o, "objectives")), 7);
     json_decref(o);
+    snprintf(command, sizeof command, "check @/tower.ini %s --set search.objectives=j1_m,ed5_10_pct", OPTIONS);
+    expect(0, "warning: search.objectives: ed5_10_pct is 0 for every design", command);
+    write_in_place("four.csv", "gap_m,t_base_m,t_top_m\n0.1,0.02,0.01\n");
+    snprintf(command, sizeof command,
+             "simulate @/tower.ini %s --set search.objectives=paper --set design.gap_zones=1 --design @/four.csv",
+             OPTIONS);
+    said = output_of(command);
+    assert_non_null(strstr(said, "ed5_10_pct is 0 for every design"));
+    free(said);
+}
+
+/* The n-th line behind the first that begins with `from`, NULL: none. */
+static char *line_from(char *text, const char *from, int n)
+{
+    char *line = strstr(text, from);
+    for (; line && n > 0; n--)
+        line = strchr(line, '\n') + 1;
+    return line;
+}
+
+static void test_columns_stand_below_their_names_however_long_these_are(void **state)
+{
+    (void)state;
+    write_in_place("tower.ini", TOWER);
+    char *said = output_of("optimize @/tower.ini --out @/long --set "
+                           "search.objectives=j1_m,building_base_shear_n,contact_force_max_n,mcore_kg");
+    char *heads = line_from(said, " design ", 0), *row = line_from(said, "best building_base_shear_n", 0);
+    while (heads > said && heads[-1] != '\n')
+        heads--;
+    assert_non_null(row);
+    for (const char *end = heads; *end != '\n'; end++) /* every name ends where a number does */
+        if (end[0] != ' ' && (end[1] == ' ' || end[1] == '\n')) {
+            const char below = row[end - heads], next = row[end - heads + 1];
+            if (below == ' ' || (next != ' ' && next != '\n'))
+                fail_msg("%.200s", heads);
+        }
+    free(said);
 }
 
 static void test_a_run_with_fewer_measures_is_read_and_goes_on(void **state)
@@ -244,6 +281,10 @@ static void test_the_end_of_a_study_names_gaps_that_never_close(void **state)
     json_t *o = json_of("status @/calm --json"), *review = json_object_get(o, "front_review");
     assert_int_equal(json_integer_value(json_object_get(review, "beyond_contact_law")), 0);
     assert_int_equal(json_array_size(json_object_get(review, "gaps_on_smallest")), 20);
+    const json_t *never = json_object_get(review, "never_closing");
+    assert_int_equal(json_array_size(never), 20);
+    assert_int_equal(json_integer_value(json_array_get(never, 19)), 20);
+    assert_true(number(review, "designs_simulated") > 0);
     json_decref(o);
 }
 
@@ -287,6 +328,7 @@ int main(void)
         cmocka_unit_test(test_a_limit_on_a_further_result_decides_what_is_on_the_front),
         cmocka_unit_test(test_names_that_are_no_results_are_refused_with_the_words_there_are),
         cmocka_unit_test(test_four_storeys_are_not_searched_for_modes_that_they_do_not_have),
+        cmocka_unit_test(test_columns_stand_below_their_names_however_long_these_are),
         cmocka_unit_test(test_a_run_with_fewer_measures_is_read_and_goes_on),
         cmocka_unit_test(test_the_end_of_a_study_names_gaps_that_never_close),
         cmocka_unit_test(test_gaps_on_their_bounds_are_counted_floor_by_floor),

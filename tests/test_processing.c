@@ -309,6 +309,40 @@ static void test_settings_of_a_motion_that_make_no_sense_together_are_refused(vo
            "spectrum builtin:kobe-like --set motion.highpass_hz=5 --set motion.lowpass_hz=2");
 }
 
+#define PADDED "simulate configs/quick.ini --design none --set sim.duration_s=1 --set motion.highpass_hz=0.2 "
+
+static void test_a_scale_beyond_reason_is_warned_about_and_one_beyond_everything_refused(void **state)
+{
+    (void)state;
+    static const char GONE[] = "--set motion.lowpass_hz=0.0001 --set motion.pga_g=0.3";
+    static const char *const COMMANDS[] = {"simulate configs/quick.ini --design none", "check configs/quick.ini",
+                                           "optimize configs/quick.ini --out @/gone", "spectrum builtin:kobe-like"};
+    char arguments[256];
+    for (size_t i = 0; i < sizeof COMMANDS / sizeof COMMANDS[0]; i++) {
+        snprintf(arguments, sizeof arguments, "%s %s", COMMANDS[i], GONE);
+        expect(65, "motion.pga_g = 0.3 would multiply it by ", arguments);
+    }
+    char *text = output_of("simulate configs/quick.ini --design none --set sim.duration_s=1 --pga 12");
+    assert_non_null(strstr(text, "  warning: scaled by 14.4; records are scaled by 0.1 to 10 as a rule\n"));
+    free(text);
+    expect(0, "warning: motion.record: scaled by 14.4", "check configs/quick.ini --pga 12");
+    expect(0, "warning: scaled by 14.4",
+           "simulate configs/quick.ini --design none --set sim.duration_s=1 --pga 12 --json");
+    free(output_of("spectrum builtin:kobe-like --set motion.factor=1e-4")); /* of one's own */
+}
+
+static void test_what_is_done_to_a_record_stands_below_its_line(void **state)
+{
+    (void)state;
+    char *text = output_of(PADDED);
+    assert_non_null(
+        strstr(text, "  high-pass 0.2 Hz (4th order Butterworth, zero phase), 15 s of zeros added at both ends\n"));
+    free(text);
+    json_t *o = json_of(PADDED "--json");
+    assert_non_null(strstr(json_string_value(json_object_get(o, "processed")), "15 s of zeros"));
+    json_decref(o);
+}
+
 /* ---- as printed -------------------------------------------------------------------------------------------------- */
 
 static void test_an_uncorrected_motion_is_called_so_and_a_corrected_one_shows_both_figures(void **state)
@@ -404,6 +438,8 @@ int main(void)
         cmocka_unit_test(test_the_scale_to_a_code_spectrum_makes_the_mean_square_least),
         cmocka_unit_test(test_scalings_that_contradict_each_other_are_refused_and_named),
         cmocka_unit_test(test_settings_of_a_motion_that_make_no_sense_together_are_refused),
+        cmocka_unit_test(test_a_scale_beyond_reason_is_warned_about_and_one_beyond_everything_refused),
+        cmocka_unit_test(test_what_is_done_to_a_record_stands_below_its_line),
         cmocka_unit_test(test_an_uncorrected_motion_is_called_so_and_a_corrected_one_shows_both_figures),
         cmocka_unit_test(test_the_figures_beside_processed_ones_are_those_of_the_record_at_the_same_scale),
         cmocka_unit_test(test_several_motions_are_shown_with_their_mean_and_the_target),

@@ -178,6 +178,10 @@ static void test_other_settings_are_refused_key_by_key_and_limits_can_be_forced(
     s.search.max_evals = 39;
     refused_with(&s, 1, "search.max_evals = 39 is less than the 40 simulations that it holds", "search.max_evals");
     s.search.max_evals = 40;
+    Settings other = s; /* a value too long for the message is marked as cut, and ends it no earlier */
+    snprintf(other.problem.command, OPTION_TEXT_MAX, "no%0200d", 0);
+    refused_with(&other, 0, "problem.command is none there, now no000", "problem.command");
+    refused_with(&other, 0, "000..., and more; choose another --out", "problem.command");
     StudySummary summary;
     Err err = {0};
     CHECK_OK(study_run(&s, &(StudyOptions){.force = 1}, &summary, NULL, &err), &err);

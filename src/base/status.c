@@ -8,16 +8,25 @@
 
 #include "base/visible.h"
 
+/* Of a text that was cut; size: of its array. */
+static void end_with_dots(char text[], size_t size)
+{
+    static const char DOTS[] = "...";
+    memcpy(text + visible_cut(text, size - sizeof DOTS), DOTS, sizeof DOTS);
+}
+
 Status fail(Err *err, Status code, const char *format, ...)
 {
     if (err) {
         va_list args;
         char raw[sizeof err->text]; /* may quote any bytes of a file */
         va_start(args, format);
-        vsnprintf(raw, sizeof raw, format, args);
+        const int is_cut = vsnprintf(raw, sizeof raw, format, args) >= (int)sizeof raw;
         va_end(args);
         err->code = code;
-        visible_text(err->text, sizeof err->text, raw);
+        const int is_whole = visible_text(err->text, sizeof err->text, raw);
+        if (is_cut || !is_whole)
+            end_with_dots(err->text, sizeof err->text);
     }
     return code;
 }

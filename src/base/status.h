@@ -32,7 +32,7 @@ typedef struct {
 } Err;
 
 /* Writes the sentence, without invisible characters (base/visible.h), and returns code, so that
- * `return fail(err, STATUS_IO, "...")` reads as one thought. */
+ * `return fail(err, STATUS_IO, "...")` reads as one thought. One that is too long ends in "...". */
 __attribute__((format(printf, 3, 4))) Status fail(Err *err, Status code, const char *format, ...);
 
 /* What a system call's errno amounts to: STATUS_NO_MEMORY, or else `otherwise`. */

@@ -71,17 +71,20 @@ int visible_cut(const char *text, size_t most)
     return (int)n;
 }
 
-void visible_text(char out[], size_t size, const char *text)
+int visible_text(char out[], size_t size, const char *text)
 {
     char shown[16];
     size_t n = 0;
     while (*text) {
         text += show_one(text, shown);
         const size_t length = strlen(shown);
-        if (n + length >= size)
-            break;
+        if (n + length >= size) {
+            out[n] = 0;
+            return 0;
+        }
         memcpy(out + n, shown, length);
         n += length;
     }
     out[n] = 0;
+    return 1;
 }

@@ -13,7 +13,7 @@
 /* Bytes of the text's first characters, so many that they are at most `most`: none is cut in two (UTF-8). */
 int visible_cut(const char *text, size_t most);
 
-/* At most size - 1 characters and a NUL, no escape cut in two; text and out do not overlap. */
-void visible_text(char out[], size_t size, const char *text);
+/* At most size - 1 characters and a NUL, no escape cut in two; text and out do not overlap. Was all of it shown? */
+int visible_text(char out[], size_t size, const char *text);
 
 #endif

@@ -38,19 +38,35 @@ static const double GOLDEN_RATIO = 0.6180339887498949; /* its multiples modulo 1
 
 /* ---- findings ------------------------------------------------------------------------------------------------- */
 
+/* One that was found before is not said again. */
 static void fault(Check *c, const char *text)
 {
+    for (size_t i = 0; i < json_array_size(c->faults); i++)
+        if (strcmp(json_string_value(json_array_get(c->faults, i)), text) == 0)
+            return;
     json_array_append_new(c->faults, json_string(text));
     if (!c->as_json)
         fprintf(stderr, "%s\n", text);
 }
 
+/* Does the text begin with "section.key:"? */
+static int names_setting(const char *text)
+{
+    const char *key;
+    for (int i = 0; (key = settings_key(i)); i++)
+        if (strncmp(text, key, strlen(key)) == 0 && text[strlen(key)] == ':')
+            return 1;
+    return 0;
+}
+
+/* key: of a message that names no setting. */
 static int note(Check *c, Status status, const char *key, const Err *e)
 {
     char text[sizeof e->text + 64];
     if (status == STATUS_OK)
         return 1;
-    snprintf(text, sizeof text, "%s: %s", key, e->text);
+    const int is_named = names_setting(e->text);
+    snprintf(text, sizeof text, "%s%s%s", is_named ? "" : key, is_named ? "" : ": ", e->text);
     fault(c, text);
     c->fatal = status == STATUS_NO_MEMORY ? status : c->fatal;
     return 0;
@@ -281,7 +297,7 @@ static void describe_study(Check *c, const CheckedScene *p)
 
 static void describe_objectives(Check *c, const Schema *schema, const char *objectives)
 {
-    const char *left_out = measures_left_out(&schema->order, objectives);
+    const char *missing = measures_missing(&schema->order, objectives, schema->design.n_floors);
     json_t *names = json_array();
     for (size_t k = 0; k < schema->n_obj; k++)
         json_array_append_new(names, json_words(schema_objective(schema, k)->name));
@@ -289,7 +305,11 @@ static void describe_objectives(Check *c, const Schema *schema, const char *obje
     for (size_t k = 0; k < schema->n_obj && !c->as_json; k++)
         printf("%s%s", k ? ", " : "objectives ", schema_objective(schema, k)->name);
     if (!c->as_json)
-        printf("\n%s%s", left_out ? left_out : "", left_out ? "\n" : "");
+        putchar('\n');
+    if (missing && strcmp(objectives, "auto") != 0)
+        warn("search.objectives", missing, c);
+    else if (missing && !c->as_json)
+        puts(missing);
 }
 
 /* Limits, further records and whatever else a search opens before it starts. */

@@ -58,14 +58,14 @@ static void tell_motion(const Motion *motion, double duration_s, void *user)
 
 static void explain_objectives(const Schema *schema, const char *objectives)
 {
-    const char *left_out = measures_left_out(&schema->order, objectives);
+    const char *missing = measures_missing(&schema->order, objectives, schema->design.n_floors);
     putchar('\n');
     for (size_t k = 0; k < schema->n_obj; k++) {
         const Measure *m = measure(schema->order.of[k]);
-        printf("%-*s %s [%s], the %s the better\n", 12, m->name, m->what, m->unit, m->sense > 0 ? "less" : "more");
+        printf("%-12s %s [%s], the %s the better\n", m->name, m->what, m->unit, m->sense > 0 ? "less" : "more");
     }
-    if (left_out)
-        puts(left_out);
+    if (missing)
+        puts(missing);
 }
 
 static void print_front(const Run *run, const StudySummary *summary)

@@ -117,6 +117,7 @@ static json_t *describe(const Job *job, size_t i, const Motion *m)
     json_object_set_new(o, "pga_g", json_number(motion_peak(m) / GRAVITY));
     json_object_set_new(o, "scale", json_number(m->scale));
     json_object_set_new(o, "stretch", json_number(m->stretch));
+    json_object_set_new(o, "processed", json_words(m->processed));
     json_object_update_new(o, json_result(job->kind, &job->results[i]));
     if (job->error)
         json_object_set_new(o, "estimated_error", json_errors(errors_of(job, i)));
@@ -158,12 +159,15 @@ static Status write_csv(const Job *job, const char *path, Err *err)
     return output_close(&o, err);
 }
 
-static void print_table(const Job *job, const Tower *t)
+static void print_table(const Job *job, const Settings *s, const Tower *t)
 {
     const MeasureOrder *order = tower_measures(t);
+    const char *missing = measures_missing(order, s->search.objectives, tower_n_floors(t));
     char label[32];
     for (size_t i = 0; i < tower_n_records(t); i++)
         show_motion(stdout, &tower_record(t, i)->motion, tower_record(t, i)->options.sim.duration_s);
+    if (missing && strcmp(s->search.objectives, "auto") != 0)
+        puts(missing);
     putchar('\n');
     show_result_names(job->kind == SCENE_RIGID ? "rigidly connected" : "", order);
     for (size_t i = 0; i < job->n; i++) {
@@ -174,16 +178,28 @@ static void print_table(const Job *job, const Tower *t)
     }
 }
 
-static Status print(const Args *args, const Job *job, const Tower *t, Err *err)
+/* On standard error, where no table says it. */
+static void warn_of_motions(const Tower *t)
+{
+    for (size_t i = 0; i < tower_n_records(t); i++) {
+        const Motion *m = &tower_record(t, i)->motion;
+        if (m->warning[0])
+            fprintf(stderr, "%s: warning: %s\n", m->name, m->warning);
+    }
+}
+
+static Status print(const Args *args, const Job *job, const Settings *s, const Tower *t, Err *err)
 {
     if (args_has(args, "--json") && args_has(args, "--csv") && strcmp(args_value(args, "--csv"), "-") == 0)
         return fail(err, STATUS_USAGE, "--json and --csv - both want standard output; give --csv a file");
+    if (args_has(args, "--csv") || args_has(args, "--json"))
+        warn_of_motions(t);
     if (args_has(args, "--csv"))
         TRY(write_csv(job, args_value(args, "--csv"), err));
     if (args_has(args, "--json"))
         return print_json(job, &tower_record(t, 0)->motion, err);
     if (!args_has(args, "--csv"))
-        print_table(job, t);
+        print_table(job, s, t);
     return STATUS_OK;
 }
 
@@ -239,7 +255,7 @@ static Status run(const Args *args, Err *err)
     if (status == STATUS_OK)
         status = estimate(&s, &job, err);
     if (status == STATUS_OK)
-        status = print(args, &job, tower_of(&p), err);
+        status = print(args, &job, &s, tower_of(&p), err);
     if (status == STATUS_OK)
         status = write_times(args, &job, w, err);
     if (status == STATUS_OK && job.n == 1 && job.results[0].outcome != RUN_OK)

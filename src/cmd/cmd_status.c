@@ -151,6 +151,30 @@ static json_t *json_failures(const Failures *f)
     return o;
 }
 
+/* Floors whose gap closes in none of the designs that were simulated again. */
+static void add_never_closing(json_t *o, const FrontReview *r)
+{
+    json_t *floors = json_array();
+    for (size_t j = 0; j < r->n_floors; j++)
+        if (r->closes[j] == 0)
+            json_array_append_new(floors, json_integer((json_int_t)j + 1));
+    json_object_set_new(o, "designs_simulated", json_integer((json_int_t)r->n_simulated));
+    json_object_set_new(o, "never_closing", floors);
+}
+
+/* Of a finished run: some designs of the front are simulated, which a run under way has no time for. */
+static void review_closings(json_t *o, const Run *run)
+{
+    FrontReview r;
+    Err err = {0};
+    if (front_review_of_run(run, &r, &err) == STATUS_OK) {
+        add_never_closing(o, &r);
+        return;
+    }
+    json_object_set_new(o, "never_closing", json_null());
+    json_object_set_new(o, "never_closing_unknown", json_words(err.text));
+}
+
 /* By floor: designs of the front whose gap is on a bound of the search; and those beyond the contact law. */
 static json_t *json_review(const FrontReview *r)
 {
@@ -180,6 +204,8 @@ static json_t *describe(const char *folder, const Run *run, const Standing *s, c
     json_object_set_new(o, "sessions", json_sessions(run));
     const FrontReview review = front_review(run);
     json_object_set_new(o, "front_review", review.n_gaps > 0 ? json_review(&review) : json_null());
+    if (review.n_gaps > 0 && s->state == RUN_FINISHED)
+        review_closings(json_object_get(o, "front_review"), run);
     return o;
 }
 

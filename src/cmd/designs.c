@@ -85,7 +85,10 @@ static Status take_file(Designs *d, const char *path, const char *choice, const 
 {
     Table t;
     long *ids = NULL;
-    TRY(table_read(&t, path, 1, err));
+    const Status there = table_read(&t, path, 1, err);
+    if (there == STATUS_MISSING && !strchr(path, '/') && !choice)
+        return fail(err, there, "--design %s: there is no such file; a design is " DESIGN_WORDS, path);
+    TRY(there);
     Status status = take_ids(&t, &ids, err);
     if (status == STATUS_OK && ids)
         drop_results(&t);

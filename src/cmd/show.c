@@ -172,6 +172,10 @@ void show_motion(FILE *out, const Motion *m, double duration_s)
     if (duration_s > 0 && duration_s < length)
         fprintf(out, "the first %.4g of ", duration_s);
     fprintf(out, "%.4g s, %s\n", length, peak);
+    if (m->processed[0])
+        fprintf(out, "  %s\n", m->processed);
+    if (m->warning[0])
+        fprintf(out, "  warning: %s\n", m->warning);
 }
 
 /* Digits of a value that an error leaves standing: one to four. */
@@ -231,9 +235,20 @@ void show_result(const char *label, const MeasureOrder *order, const SimResult *
         show_errors(order, error);
 }
 
+/* Of the first column: "best NAME" of every objective fits, and the words of the baselines. */
+static int label_width(const Schema *schema)
+{
+    size_t width = 18;
+    for (size_t k = 0; k < schema->n_obj; k++) {
+        const size_t length = strlen("best ") + strlen(schema_objective(schema, k)->name);
+        width = length > width ? length : width;
+    }
+    return (int)width;
+}
+
 void show_objective_names(const Schema *schema)
 {
-    printf("%-18s %7s", "", "design");
+    printf("%-*s %7s", label_width(schema), "", "design");
     for (size_t k = 0; k < schema->n_obj; k++)
         printf(" %10s", schema_objective(schema, k)->name);
     putchar('\n');
@@ -241,7 +256,7 @@ void show_objective_names(const Schema *schema)
 
 void show_objectives(const char *label, long id, const Schema *schema, const double natural[])
 {
-    printf("%-18s", label);
+    printf("%-*s", label_width(schema), label);
     if (id > 0)
         printf(" %7ld", id);
     else

@@ -17,7 +17,8 @@ json_t *json_replicates(const ReplicateSummary *r);
 /* On standard output, 17 digits; takes the reference. */
 Status show_json(json_t *all, Err *err);
 
-/* The ground motion: name, length (and how much of it was simulated; duration_s 0: all), peak, scaling. */
+/* The ground motion: name, length (and how much of it was simulated; duration_s 0: all), peak, scaling; lines of what
+ * was done to the samples and of what does not fit, where there is any. */
 void show_motion(FILE *out, const Motion *m, double duration_s);
 
 /* One line per simulation: label, objectives, impacts, outcome where it is not ok. error (N_MEASURES) or NULL: a second

@@ -74,6 +74,14 @@ static int is_period(double per_storey)
 /* [s] Beyond it and its inverse the energies of building and core differ by more digits than there are. */
 static const double PERIOD_MIN = 1e-6;
 
+static double mean_floor_mass(const Building *b)
+{
+    double sum = 0;
+    for (int i = 0; i < b->n * b->n; i++)
+        sum += b->M[i];
+    return sum / b->n;
+}
+
 /* Units that are wrong by a factor of a thousand move the period by 32. */
 static Status check_period(const Building *b, const BuildingOptions *o, Err *err)
 {
@@ -84,16 +92,21 @@ static Status check_period(const Building *b, const BuildingOptions *o, Err *err
                     period);
     if (o->units != BUILDING_AUTO || is_period(per_storey))
         return STATUS_OK;
+    char fits[240] = "";
     for (BuildingUnits u = BUILDING_N_M_KG; u <= BUILDING_KIP_IN; u++) {
         const BuildingUnit unit = building_unit(u);
+        const size_t used = strlen(fits);
         if (is_period(per_storey * sqrt(unit.mass / unit.stiffness)))
-            return fail(err, STATUS_BAD_DATA,
-                        "%s: the first period is %.3g s per storey if stiffness is in N/m and mass in kg; set "
-                        "building.units, %s fits",
-                        o->model, per_storey, WORDS[u]);
+            snprintf(fits + used, sizeof fits - used, "%s%s (%.3g s per storey, floors of %.3g kg)", used ? ", " : "",
+                     WORDS[u], per_storey * sqrt(unit.mass / unit.stiffness), unit.mass * mean_floor_mass(b));
     }
-    return fail(err, STATUS_BAD_DATA, "%s: the first period is %.3g s per storey; if that is meant set building.units",
-                o->model, per_storey);
+    return fits[0] ? fail(err, STATUS_BAD_DATA,
+                          "%s: the first period is %.3g s per storey if stiffness is in N/m and mass in kg; set "
+                          "building.units to what the files are in: %s",
+                          o->model, per_storey, fits)
+                   : fail(err, STATUS_BAD_DATA,
+                          "%s: the first period is %.3g s per storey; if that is meant set building.units=N_m_kg",
+                          o->model, per_storey);
 }
 
 /* ---- damping -------------------------------------------------------------------------------------------------- */

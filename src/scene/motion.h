@@ -24,7 +24,7 @@ typedef struct {
     char format[32];  /* what the reader took it for: "csv", "at2", ..., "builtin" */
     char channel[64]; /* its name in the file; empty where it has none */
     char processed[320]; /* what was done to the samples of the file; empty: nothing */
-    char warning[160];   /* what does not fit in the file; empty: nothing */
+    char warning[240];   /* what does not fit in the file; empty: nothing */
     uint64_t file_hash;  /* FNV-1a of the file's bytes, or of the generated samples */
 } Motion;
 

@@ -83,8 +83,33 @@ static double factor_of(const Motion *m, const MotionOptions *o)
     return o->factor;
 }
 
+/* Behind what the reader has to say. */
+static void warn_of_scale(Motion *m)
+{
+    const size_t used = strlen(m->warning);
+    if (m->scale > SCALE_PLAUSIBLE || m->scale < 1 / SCALE_PLAUSIBLE)
+        snprintf(m->warning + used, sizeof m->warning - used,
+                 "%sscaled by %.3g; records are scaled by %g to %g as a rule", used ? "; " : "", m->scale,
+                 1 / SCALE_PLAUSIBLE, SCALE_PLAUSIBLE);
+}
+
+/* A record that must be multiplied by so much is not what it is taken for. A factor of one's own may convert units. */
+static Status check_scale(const Motion *m, const MotionOptions *o, double peak_g, Err *err)
+{
+    char scaling[SCALINGS_TEXT_MAX];
+    if (o->factor != 1 || m->scale <= SCALE_MAX)
+        return STATUS_OK;
+    motion_scalings(o, scaling);
+    return fail(
+        err, STATUS_BAD_DATA,
+        "%s: %s would multiply it by %.3g, for it peaks at %.3g g%s%s; beyond %g its unit is wrong, or nothing is "
+        "left of it",
+        m->name, scaling, m->scale, peak_g, m->processed[0] ? " after this: " : "", m->processed, SCALE_MAX);
+}
+
 Status motion_scale(Motion *m, const MotionOptions *o, Err *err)
 {
+    const double peak_g = motion_peak(m) / GRAVITY;
     TRY(motion_prepare(m, o->pga_g, o->stretch, err));
     const double factor = factor_of(m, o);
     if (!(factor > 0 && isfinite(factor)))
@@ -93,7 +118,8 @@ Status motion_scale(Motion *m, const MotionOptions *o, Err *err)
     for (size_t i = 0; i < m->n && factor != 1; i++)
         m->accel[i] *= factor;
     m->scale *= factor;
-    return STATUS_OK;
+    warn_of_scale(m);
+    return check_scale(m, o, peak_g, err);
 }
 
 int motion_scalings(const MotionOptions *o, char text[SCALINGS_TEXT_MAX])

@@ -13,7 +13,7 @@
  *   eurocode8   EN 1998-1:2004, 3.2.2.2, 5 % damping: ag S [1 + 1.5 T / TB] | 2.5 ag S | 2.5 ag S TC / T | 2.5 ag S TC TD / T^2
  *   asce7       ASCE 7-16, 11.4.6: SDS (0.4 + 0.6 T / T0) | SDS | SD1 / T | SD1 TL / T^2,  TS = SD1 / SDS, T0 = 0.2 TS
  *
- * Errors   STATUS_BAD_DATA: a motion of zeros, or one that does not move an oscillator of that period
+ * Errors   STATUS_BAD_DATA: a motion of zeros, one that does not move an oscillator of that period, an absurd scale
  * Threads  no state */
 #ifndef IMTET_SCENE_MOTION_SCALE_H
 #define IMTET_SCENE_MOTION_SCALE_H
@@ -22,6 +22,9 @@
 #include "scene/options.h"
 
 enum { TARGET_PERIODS = 101 };
+
+/* Beyond the first and its inverse a scale is warned about; one beyond the second that nobody gave is refused. */
+static const double SCALE_PLAUSIBLE = 10, SCALE_MAX = 1000;
 
 /* Stretches and scales; m->scale is the factor of the acceleration. */
 Status motion_scale(Motion *m, const MotionOptions *o, Err *err);

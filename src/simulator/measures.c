@@ -47,10 +47,15 @@ int measure_exists(int k, int n_floors)
     return k != MEASURE_ED5_10 || n_floors == 0 || n_floors >= 5;
 }
 
-const char *measures_left_out(const MeasureOrder *order, const char *objectives)
+const char *measures_missing(const MeasureOrder *order, const char *objectives, int n_floors)
 {
-    const int is_out = strcmp(objectives, "auto") == 0 && !(order->objectives >> MEASURE_ED5_10 & 1);
-    return is_out ? "ed5_10_pct is no objective: the building has no modes 5 to 10 (search.objectives)" : NULL;
+    if (measure_exists(MEASURE_ED5_10, n_floors))
+        return NULL;
+    if (order->objectives >> MEASURE_ED5_10 & 1)
+        return "ed5_10_pct is 0 for every design: the building has no modes 5 to 10 (search.objectives)";
+    return strcmp(objectives, "auto") == 0
+               ? "ed5_10_pct is no objective: the building has no modes 5 to 10 (search.objectives)"
+               : NULL;
 }
 
 void measures_settle(SimResult *r, MeasureSet set)

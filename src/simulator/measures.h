@@ -94,8 +94,9 @@ typedef struct {
  * (n_floors 0: any); paper: all seven. Errors: STATUS_BAD_DATA, a name that is none or stands there twice. */
 Status measures_order(MeasureOrder *out, const char *objectives, int n_floors, Err *err);
 
-/* What `auto` has left out of the paper's objectives, in words; NULL: nothing. */
-const char *measures_left_out(const MeasureOrder *order, const char *objectives);
+/* What a building of n_floors does not have of the objectives, in words: left out by `auto`, or asked for all the same;
+ * NULL: it has all. */
+const char *measures_missing(const MeasureOrder *order, const char *objectives, int n_floors);
 
 /* Whether a building of n_floors can have anything but 0 there. */
 int measure_exists(int k, int n_floors);

@@ -103,7 +103,7 @@ static Status open_record(Tower *t, const Settings *settings, const char *name, 
     MotionOptions motion = settings->motion;
     Record *r = &t->record[t->plan.n_records];
     if (t->plan.n_records == TOWER_RECORDS_MAX)
-        return fail(err, STATUS_BAD_DATA, "motion.records: more than %d records", TOWER_RECORDS_MAX);
+        return fail(err, STATUS_BAD_DATA, "more than %d records", TOWER_RECORDS_MAX);
     snprintf(motion.record, sizeof motion.record, "%s", name);
     const unsigned needs = measures_need(t->judged);
     options.sim.filtered = options.sim.forces == FORCES_YES || (needs & NEEDS_FILTER);
@@ -123,7 +123,10 @@ static Status open_records(Tower *t, const Settings *s, TowerUse use, Err *err)
     for (size_t i = 0; strcmp(list, "none") != 0 && i < list_count(list); i++) {
         if (!list_item(list, i, name, sizeof name))
             return fail(err, STATUS_BAD_DATA, "motion.records: item %zu is empty or too long", i + 1);
-        TRY(open_record(t, s, name, err));
+        Err why = {0};
+        const Status status = open_record(t, s, name, &why);
+        if (status != STATUS_OK)
+            return fail(err, status, "motion.records: %s", why.text);
     }
     return STATUS_OK;
 }

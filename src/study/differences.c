@@ -1,20 +1,42 @@
 #include "study/differences.h"
 
 #include <inttypes.h>
+#include <string.h>
 
+#include "base/visible.h"
 #include "settings/settings.h"
 #include "store/provenance.h"
 
 typedef struct {
     FILE *lines;
     size_t n_limits, n_others;
-    char first[200]; /* of the others, else of the limits */
+    char first[sizeof((Err *)0)->text]; /* of the others, else of the limits */
 } Differences;
+
+enum { SHOWN = 120, BEFORE = 40 }; /* bytes of a long value, and of them before where two differ */
+
+/* The part of a value around that byte. */
+static void show_part(char out[SHOWN + 8], const char *value, size_t at)
+{
+    const size_t length = strlen(value);
+    size_t from = length <= SHOWN || at < BEFORE ? 0 : at - BEFORE;
+    while (from > 0 && ((unsigned char)value[from] & 0xc0) == 0x80)
+        from--;
+    const int n = visible_cut(value + from, SHOWN);
+    snprintf(out, SHOWN + 8, "%s%.*s%s", from > 0 ? "..." : "", n, value + from,
+             from + (size_t)n < length ? "..." : "");
+}
 
 static void add_difference(Differences *d, const char *key, int is_limit, const char *was, const char *is)
 {
+    char before[SHOWN + 8], now[SHOWN + 8];
+    size_t at = 0;
+    while (was[at] && was[at] == is[at])
+        at++;
+    show_part(before, was, at);
+    show_part(now, is, at);
     if (d->n_others == 0 && (!is_limit || d->n_limits == 0))
-        snprintf(d->first, sizeof d->first, "%s is %.60s there, now %.60s", key, was, is);
+        snprintf(d->first, sizeof d->first, "%s is %s there, now %s", key, before, now);
     d->n_limits += is_limit;
     d->n_others += !is_limit;
     if (d->lines)

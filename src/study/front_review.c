@@ -4,8 +4,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/linalg.h"
+#include "evaluate/threads.h"
 #include "settings/settings.h"
 #include "simulator/tower.h"
+#include "study/record_paths.h"
 
 enum { SIMULATED_MAX = 16 };
 
@@ -71,5 +74,17 @@ Status front_review_closings(const Problem *tower, const Run *run, FrontReview *
     out->n_floors = n > 0 ? (size_t)results[0].n_floors : 0;
     out->n_simulated = n;
     free(results);
+    return status;
+}
+
+Status front_review_of_run(const Run *run, FrontReview *out, Err *err)
+{
+    Problem p;
+    Settings s = *run->settings;
+    TRY(linalg_room(threads_wanted(s.search.threads), err));
+    TRY(record_paths_find(&s, run->provenance, &(RecordPaths){NULL, NULL}, err));
+    TRY(tower_open(&p, &s, TOWER_SINGLE, SIMULATED_MAX, err));
+    const Status status = front_review_closings(&p, run, out, err);
+    problem_close(&p);
     return status;
 }

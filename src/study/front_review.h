@@ -24,4 +24,7 @@ FrontReview front_review(const Run *run);
 /* The same, with some spread-out designs simulated again under the first record. */
 Status front_review_closings(const Problem *tower, const Run *run, FrontReview *out, Err *err);
 
+/* ... of a run of the tower alone, whose records are where they were. */
+Status front_review_of_run(const Run *run, FrontReview *out, Err *err);
+
 #endif

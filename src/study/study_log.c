@@ -30,10 +30,10 @@ static Status log_problem(RunStore *store, const Adapter *adapter, const SearchO
     const Schema *schema = adapter_schema(adapter);
     const int threads = adapter_threads(adapter);
     if (adapter_tower(adapter)) {
-        const char *left_out = measures_left_out(&schema->order, used->objectives);
+        const char *missing = measures_missing(&schema->order, used->objectives, schema->design.n_floors);
         TRY(log_motions(store, adapter_tower(adapter), err));
-        if (left_out)
-            TRY(store_log(store, err, "%s", left_out));
+        if (missing)
+            TRY(store_log(store, err, "%s", missing));
         return store_log(store, err, "%s: %d floors, %d threads, seed %ld", program, schema->design.n_floors, threads,
                          used->seed);
     }

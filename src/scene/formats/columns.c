@@ -3,7 +3,8 @@
  *   comments  begin with # % ! or //; they may tell the unit (m/s2, cm/s2, gal, g in the usual spellings), the step
  *             ("dt = 0.01", "sampling rate: 100") and the number of samples ("npts = 4000")
  *   names     lines of words above the numbers; the last of them names the columns, a unit there wins
- *   npts dt   two numbers alone in the first row, where the first is the number of samples or rows that follow
+ *   npts dt   two numbers alone in the first row, or one each in the first two, where the first is the number of samples or
+ *             rows that follow; npts alone in the first row
  *   times     the first column, unless there is only one, or the names or the numbers say that it is none; then the
  *             step must be known
  *   rows      numbers without names are read row by row as one long column where their number is the one that is stated
@@ -58,6 +59,7 @@ Status columns_add(Columns *columns, Record *r, const Lines *l, Err *err)
         columns->width = n;
     if (n != columns->width && !columns->odd_line) {
         columns->odd_line = l->number;
+        columns->odd_row = columns->n_rows - 1;
         columns->odd_width = n;
     }
     return STATUS_OK;
@@ -65,10 +67,17 @@ Status columns_add(Columns *columns, Record *r, const Lines *l, Err *err)
 
 Status columns_check(const Columns *columns, const Lines *l, Err *err)
 {
-    if (columns->odd_line)
-        return fail(err, STATUS_BAD_DATA, "%s:%d: has %zu column%s where the lines above have %zu", l->path,
-                    columns->odd_line, columns->odd_width, columns->odd_width == 1 ? "" : "s", columns->width);
-    return STATUS_OK;
+    const char *s = columns->odd_width == 1 ? "" : "s";
+    if (!columns->odd_line)
+        return STATUS_OK;
+    if (columns->odd_row == 1) /* what stands alone above all others is meant otherwise */
+        return fail(
+            err, STATUS_BAD_DATA,
+            "%s:%d: has %zu column%s where the line of numbers above has %zu; if that line states the number of "
+            "samples, %zu lines follow it; put # before what is no sample",
+            l->path, columns->odd_line, columns->odd_width, s, columns->width, columns->n_rows - 1);
+    return fail(err, STATUS_BAD_DATA, "%s:%d: has %zu column%s where the lines above have %zu", l->path,
+                columns->odd_line, columns->odd_width, s, columns->width);
 }
 
 /* Width, rows and odd line of the rows that r holds. */
@@ -82,6 +91,7 @@ static void recount(Columns *columns, const Record *r)
             columns->width = n;
         if (n != columns->width && !columns->odd_line) {
             columns->odd_line = r->row[i].line;
+            columns->odd_row = columns->n_rows;
             columns->odd_width = n;
         }
     }
@@ -267,20 +277,33 @@ static int looks_like_times(const Record *r, const Columns *columns)
     return 4 * rises >= 3 * steps;
 }
 
-/* The first row is "npts dt" where two numbers stand alone in it and the first counts the samples, or the rows, that
- * follow; its rows are then the others. */
-static void take_counted_pair(Record *r, Columns *columns, Preface *preface)
+/* The samples without the first n numbers. */
+static void drop_first(Record *r, size_t n, Columns *columns)
 {
-    if (columns->width != 2 || r->n < 4)
-        return;
-    const double count = r->row[0].a, dt = r->row[1].a;
-    const size_t n = r->n - 2, rows = columns->n_rows - 1;
-    if (!(dt > 0 && dt <= MOTION_STEP_MAX_S) || (count != (double)n && count != (double)rows))
-        return;
-    memmove(r->row, r->row + 2, n * sizeof *r->row);
-    r->n = n;
+    r->n -= n;
+    memmove(r->row, r->row + n, r->n * sizeof *r->row);
     recount(columns, r);
-    preface->dt = dt;
+}
+
+/* Two numbers before the samples are "npts dt" where they stand alone in their row, or one each in two, and the first
+ * counts the samples, or the rows, that follow; one number is "npts" in the same way. */
+static void take_count(Record *r, Columns *columns, Preface *preface)
+{
+    enum { SAMPLES_MIN = 10 }; /* of fewer a sample might be their number */
+    if (r->n < 4 || columns->width > 2 || (columns->width == 1 && r->n < SAMPLES_MIN))
+        return;
+    const double count = r->row[0].a, dt = r->row[1].a, rows = (double)columns->n_rows;
+    const int is_step = dt > 0 && dt <= MOTION_STEP_MAX_S;
+    const int in_two = columns->width == 1 && r->row[2].line != r->row[1].line && count == (double)r->n - 2;
+    const int is_pair = columns->width == 2 && (count == (double)r->n - 2 || count == rows - 1);
+    if (is_step && (is_pair || in_two)) {
+        drop_first(r, 2, columns);
+        preface->dt = dt;
+    } else if (columns->width == 1 && (count == (double)r->n - 1 || count == rows - 1)) {
+        drop_first(r, 1, columns);
+    } else {
+        return;
+    }
     preface->count = count;
 }
 
@@ -358,7 +381,7 @@ static Status read(Record *r, Lines *l, const ReadHints *hints, Err *err)
     TRY(read_rows(r, l, &preface, &columns, err));
     if (columns.n_rows == 0 && lines_next_filled(&first) && !is_comment(&first))
         return fail_unknown(l, start, err);
-    take_counted_pair(r, &columns, &preface);
+    take_count(r, &columns, &preface);
     if (preface.names.from && count_names(&preface.names) != columns.width)
         take_numbers(&preface.names, &preface);
     if (columns.n_rows < 2 && columns.width < 3)

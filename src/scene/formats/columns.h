@@ -5,9 +5,9 @@
 #include "scene/formats/record.h"
 
 typedef struct {
-    size_t width, n_rows; /* numbers of the first row */
-    int odd_line;         /* the first line that is not as wide, 0: none */
-    size_t odd_width;
+    size_t width, n_rows;      /* numbers of the first row */
+    int odd_line;              /* the first line that is not as wide, 0: none */
+    size_t odd_width, odd_row; /* how wide, and how many rows are above it */
 } Columns;
 
 /* The numbers of the line, one Row each, behind those of the lines before. */
