@@ -438,6 +438,26 @@ static void test_pictures_are_drawn_as_svg_and_png_each(void **state)
     }
 }
 
+static void test_the_picture_of_the_front_has_short_titles_units_for_people_and_every_baseline(void **state)
+{
+    (void)state;
+    static const char *const WORDS[] = {"J1 displacement [m]", "contact force [MN]", "without core",
+                                        "rigidly connected",   "tuned mass damper",  "viscous links"};
+    if (shell("command -v gnuplot >/dev/null") != 0)
+        skip();
+    assert_int_equal(imtet_on("optimize configs/quick.ini --max-evals 40 --set search.population=16 --set "
+                              "search.initial=24 --set sim.duration_s=30 --set "
+                              "search.objectives=j1_m,contact_force_max_n,j3_g --out",
+                              "forces", ""),
+                     0);
+    assert_int_equal(imtet_on("plot", "forces", ""), 0);
+    char *svg = text_of(in_folder("forces/pictures/front.svg"));
+    for (size_t i = 0; i < sizeof WORDS / sizeof WORDS[0]; i++)
+        if (!strstr(svg, WORDS[i]))
+            fail_msg("front.svg lacks %s", WORDS[i]);
+    free(svg);
+}
+
 static void test_names_that_begin_like_a_formula_are_labels_of_pictures(void **state)
 {
     (void)state;
@@ -521,6 +541,7 @@ int main(void)
         cmocka_unit_test(test_a_report_needs_the_database_alone),
         cmocka_unit_test(test_a_command_opens_the_database_of_a_run_once),
         cmocka_unit_test(test_pictures_are_drawn_as_svg_and_png_each),
+        cmocka_unit_test(test_the_picture_of_the_front_has_short_titles_units_for_people_and_every_baseline),
         cmocka_unit_test(test_names_that_begin_like_a_formula_are_labels_of_pictures),
         cmocka_unit_test(test_a_browser_shows_the_tower_brushes_it_and_downloads_the_selection),
         cmocka_unit_test(test_a_browser_shows_another_problem),

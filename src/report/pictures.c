@@ -8,7 +8,8 @@
 #include "moga/hypervolume.h"
 #include "report/gnuplot.h"
 #include "report/report.h"
-#include "simulator/measures.h"
+#include "report/words.h"
+#include "settings/settings.h"
 
 enum { HISTORY_POINTS = 2000 };
 
@@ -44,18 +45,24 @@ static void numbers(FILE *script, size_t n, ...)
     fputc('\n', script);
 }
 
-static const char *file_name(const char *path)
+/* The file's name; of a built-in motion that it is synthetic. */
+static void write_motion_name(FILE *script, const char *record)
 {
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
+    static const char BUILT_IN[] = "builtin:";
+    const char *slash = strrchr(record, '/');
+    char text[160];
+    if (strncmp(record, BUILT_IN, sizeof BUILT_IN - 1) == 0)
+        snprintf(text, sizeof text, "%s (synthetic)", record + sizeof BUILT_IN - 1);
+    else
+        snprintf(text, sizeof text, "%s", slash ? slash + 1 : record);
+    gnuplot_quote(script, text);
 }
 
 /* ---- the front ------------------------------------------------------------------------------------------------- */
 
-/* Of objective k: tonnes of the core's mass, else the unit of the files. */
 static double scale_of(const Report *r, size_t k)
 {
-    return r->has_detail && r->run->schema.order.of[k] == MEASURE_MCORE ? 1e-3 : 1;
+    return words_of_objective(&r->run->schema, k).factor;
 }
 
 static void write_rows(FILE *script, const char *block, const Report *r, size_t n, const size_t rows[])
@@ -69,18 +76,11 @@ static void write_rows(FILE *script, const char *block, const Report *r, size_t 
     fputs("EOD\n", script);
 }
 
-/* What objective k is, with its unit; of another problem its name, without the apostrophe that keeps it from being a
- * formula in a spreadsheet (base/cell.h). */
 static void write_label(FILE *script, const Report *r, size_t k)
 {
-    char text[128];
-    const char *name = schema_objective(&r->run->schema, k)->name;
-    if (r->has_detail) {
-        const Measure *m = measure(r->run->schema.order.of[k]);
-        snprintf(text, sizeof text, "%s [%s]", m->what, scale_of(r, k) < 1 ? "t" : m->unit);
-    } else {
-        snprintf(text, sizeof text, "%s", name + (name[0] == '\'' && name[1] && strchr("=+-@", name[1])));
-    }
+    char text[256];
+    const Words w = words_of_objective(&r->run->schema, k);
+    snprintf(text, sizeof text, w.unit[0] ? "%s [%s]" : "%s", w.title, w.unit);
     gnuplot_quote(script, text);
 }
 
@@ -89,28 +89,70 @@ typedef struct {
     size_t x, y;
 } Panel;
 
-static void write_panel(FILE *script, const Report *r, const Panel *p)
+/* As in the page: colour and symbol of every baseline. */
+static const struct {
+    const char *words, *colour;
+    int symbol;
+} BASELINES[N_BASELINES] = {[BASELINE_NO_CORE] = {"without core", "WITHOUT", 13},
+                            [BASELINE_RIGID] = {"rigidly connected", "RIGID", 9},
+                            [BASELINE_TMD] = {"tuned mass damper", "GREEN", 5},
+                            [BASELINE_LINKS] = {"viscous links", "PURPLE", 15}};
+
+static int has_baseline(const Report *r, int k)
 {
-    const size_t x = p->x + 1, y = p->y + 1;
+    return r->has_detail && r->detail.baseline[k].outcome == OUTCOME_OK;
+}
+
+static void write_baselines(FILE *script, const Report *r)
+{
+    for (int b = 0; b < N_BASELINES; b++) {
+        if (!has_baseline(r, b))
+            continue;
+        fprintf(script, "$B%d << EOD\n", b);
+        for (size_t k = 0; k < r->run->schema.n_obj; k++)
+            gnuplot_number(script, r->detail.baseline[b].value[r->run->schema.order.of[k]] * scale_of(r, k));
+        fputs("\nEOD\n", script);
+    }
+}
+
+/* A symbol on a white one, so that it stands out of the dots. */
+static void write_spot(FILE *script, const char *block, const Panel *p, int symbol, double size, const char *colour)
+{
+    fprintf(script,
+            ", $%s using %zu:%zu with points pt %d ps %g lc rgb 'white' notitle, "
+            "'' using %zu:%zu with points pt %d ps %g lc rgb %s notitle",
+            block, p->x + 1, p->y + 1, symbol, 1.5 * size, p->x + 1, p->y + 1, symbol, size, colour);
+}
+
+static void write_panel(FILE *script, const Report *r, const Panel *p, int has_key)
+{
     fputs("set xlabel ", script);
     write_label(script, r, p->x);
     fputs(" noenhanced\nset ylabel ", script);
     write_label(script, r, p->y);
     fprintf(script,
-            " noenhanced offset 1.2\n"
-            "plot $FRONT using %zu:%zu:%zu with points pt 7 ps DOT lc palette, "
-            "$KNEE using %zu:%zu with points pt 13 ps 2.6 lc rgb 'white', "
-            "'' using %zu:%zu with points pt 13 ps 1.8 lc rgb WITHOUT",
-            x, y, r->run->schema.n_obj, x, y, x, y);
-    if (r->has_detail && !r->is_robust)
-        fprintf(script,
-                ", $ALONE using %zu:%zu with points pt 2 ps 1.7 lw 7 lc rgb 'white', "
-                "'' using %zu:%zu with points pt 2 ps 1.5 lw 3 lc rgb 'black'",
-                x, y, x, y);
-    fputs("\nunset label\n", script);
+            " noenhanced offset 1.2\n%s\nplot $FRONT using %zu:%zu:%zu with points pt 7 ps DOT lc palette notitle",
+            has_key ? "set key at screen 0.5,0.97 center vertical maxrows 1 samplen 1 noenhanced" : "unset key",
+            p->x + 1, p->y + 1, r->run->schema.n_obj);
+    write_spot(script, "KNEE", p, 7, 1.5, "'black'");
+    for (int b = 0; b < N_BASELINES; b++) {
+        char block[8];
+        snprintf(block, sizeof block, "B%d", b);
+        if (has_baseline(r, b))
+            write_spot(script, block, p, BASELINES[b].symbol, 1.7, BASELINES[b].colour);
+    }
+    fprintf(script,
+            ", keyentry with points pt 7 ps 0.9 lc rgb '#21918c' title '%zu designs', keyentry with points pt "
+            "7 ps 1.5 lc rgb 'black' title 'the knee'",
+            r->run->n_front);
+    for (int b = 0; b < N_BASELINES; b++)
+        if (has_baseline(r, b))
+            fprintf(script, ", keyentry with points pt %d ps 1.7 lc rgb %s title '%s'", BASELINES[b].symbol,
+                    BASELINES[b].colour, BASELINES[b].words);
+    fputc('\n', script);
 }
 
-/* Those of the paper that are there, or the first three pairs. Returns how many there are. */
+/* Those of the paper that are there, then the first pairs. Returns how many there are. */
 static size_t choose_panels(const Report *r, Panel panels[3])
 {
     static const int PAPER[3][2] = {{MEASURE_J1, MEASURE_J3}, {MEASURE_J1, MEASURE_J2}, {MEASURE_ED1, MEASURE_ED5_10}};
@@ -122,29 +164,15 @@ static size_t choose_panels(const Report *r, Panel panels[3])
                             schema_find_objective(s, measure(PAPER[i][1])->name)};
         n += panels[n].x < s->n_obj && panels[n].y < s->n_obj;
     }
-    if (n > 0)
-        return n;
-    memcpy(panels, PAIRS, sizeof PAIRS);
-    if (s->n_obj == 1)
-        panels[0].y = 0;
-    return s->n_obj > 2 ? 3 : 1;
-}
-
-static void write_legend(FILE *script, const Report *r)
-{
-    fprintf(script,
-            "set label 1 '%zu designs of the front' at screen 0.06,0.95 point pt 7 ps 1 lc rgb '#21918c' offset 0.8\n"
-            "set label 2 'the knee' at screen 0.28,0.95 point pt 13 ps 1.8 lc rgb WITHOUT offset 1\n",
-            r->run->n_front);
-    if (r->has_detail)
-        fputs("set xrange [0:*]\nset yrange [0:*]\n", script);
-    if (r->has_detail && !r->is_robust)
-        fputs("set label 3 'the building without a core' at screen 0.39,0.95 point pt 2 ps 1.5 lw 3 lc rgb 'black' "
-              "offset 1\n",
-              script);
-    fputs("set cblabel ", script);
-    write_label(script, r, r->run->schema.n_obj - 1);
-    fputs(" noenhanced\n", script);
+    for (int i = 0; i < 3 && n < 3 && PAIRS[i].y < s->n_obj; i++) {
+        int is_there = 0;
+        for (size_t k = 0; k < n; k++)
+            is_there |= (panels[k].x == PAIRS[i].x && panels[k].y == PAIRS[i].y) ||
+                        (panels[k].x == PAIRS[i].y && panels[k].y == PAIRS[i].x);
+        if (!is_there)
+            panels[n++] = PAIRS[i];
+    }
+    return n;
 }
 
 static void write_front(FILE *script, const Report *r)
@@ -153,19 +181,17 @@ static void write_front(FILE *script, const Report *r)
     const size_t n = choose_panels(r, panels);
     write_rows(script, "FRONT", r, r->run->n_front, r->run->front);
     write_rows(script, "KNEE", r, 1, &r->knee);
-    fputs("$ALONE << EOD\n", script);
-    for (size_t k = 0; r->has_detail && k < r->run->schema.n_obj; k++)
-        gnuplot_number(script,
-                       measure_value(&r->detail.result[SCENE_NO_CORE], r->run->schema.order.of[k]) * scale_of(r, k));
+    write_baselines(script, r);
     fprintf(script,
-            "\nEOD\nset multiplot layout 1,%zu margins 0.055,0.905,0.135,0.88 spacing 0.066,0\n"
-            "set offsets graph 0.02, graph 0.04, graph 0.04, graph 0.02\nunset key\nunset colorbox\n",
-            n);
-    write_legend(script, r);
+            "set multiplot layout 1,%zu margins 0.055,0.905,0.135,0.88 spacing 0.066,0\n"
+            "set offsets graph 0.02, graph 0.04, graph 0.04, graph 0.02\nunset colorbox\n%sset cblabel ",
+            n, r->has_detail ? "set xrange [0:*]\nset yrange [0:*]\n" : "");
+    write_label(script, r, r->run->schema.n_obj - 1);
+    fputs(" noenhanced\n", script);
     for (size_t i = 0; i < n; i++) {
         if (i + 1 == n)
             fputs("set colorbox user origin 0.922,0.135 size 0.013,0.745\n", script);
-        write_panel(script, r, &panels[i]);
+        write_panel(script, r, &panels[i], i == 0);
     }
 }
 
@@ -186,19 +212,40 @@ static void write_growth(FILE *script, const Report *r)
 
 /* ---- the chosen design ----------------------------------------------------------------------------------------- */
 
+/* Every floor has a number where they are few. */
+static void write_floor_axis(FILE *script, int n)
+{
+    fprintf(script, "set yrange [0.3:%d.7]\nset ylabel 'floor'\nset ytics 0,%d\nset ytics add ('1' 1)\n", n,
+            n <= 12   ? 1
+            : n <= 24 ? 5
+            : n <= 60 ? 10
+                      : 20);
+}
+
+/* Pale: never closes; dashed: the bounds of the search. */
 static void write_gaps(FILE *script, const Report *r)
 {
     const Detail *d = &r->detail;
+    const DesignOptions *o = &r->run->settings->design;
     fputs("$D << EOD\n", script);
     for (int j = 0; j < d->n_floors; j++)
-        numbers(script, 3, (double)j + 1, 1e3 * d->gap_m[j], 1e3 * d->thickness_m[j]);
+        numbers(script, 4, (double)j + 1, 1e3 * d->gap_m[j], 1e3 * d->thickness_m[j],
+                d->result[SCENE_IMPACT].closings[j] > 0 ? 1.0 : NAN);
     fprintf(script,
-            "EOD\nset multiplot layout 1,2 margins 0.09,0.97,0.13,0.95 spacing 0.12,0\nunset key\n"
-            "set yrange [0.3:%d.7]\nset ylabel 'floor'\nset xrange [0:*]\nset xlabel 'gap [mm]'\n"
-            "plot $D using (0):1:(0):2:($1-0.38):($1+0.38) with boxxyerror lc rgb WITH\n"
-            "set xlabel 'thickness of the core [mm]'\n"
+            "EOD\nset multiplot layout 1,2 margins 0.09,0.97,0.13,0.9 spacing 0.12,0\n"
+            "set key at screen 0.5,0.97 center vertical maxrows 1\n"
+            "set arrow 1 from %.6g, graph 0 to %.6g, graph 1 nohead dt (6,4) lw 1.5 lc rgb WITHOUT\n"
+            "set arrow 2 from %.6g, graph 0 to %.6g, graph 1 nohead dt (6,4) lw 1.5 lc rgb WITHOUT\n",
+            1e3 * o->gap_min_m, 1e3 * o->gap_min_m, 1e3 * o->gap_max_m, 1e3 * o->gap_max_m);
+    write_floor_axis(script, d->n_floors);
+    fprintf(script,
+            "set xrange [0:%.6g]\nset xlabel 'gap [mm]'\n"
+            "plot $D using (0):1:(0):2:($1-0.38):($1+0.38) with boxxyerror lc rgb '#c5d6e2' title 'never closes', "
+            "'' using (0):($4 > 0 ? $1 : NaN):(0):2:($1-0.38):($1+0.38) with boxxyerror lc rgb WITH title 'closes', "
+            "keyentry with lines dt (6,4) lw 1.5 lc rgb WITHOUT title 'bounds of the search'\n"
+            "unset arrow\nunset key\nset xrange [0:*]\nset xlabel 'thickness of the core [mm]'\n"
             "plot $D using 3:1 with linespoints lw 2.5 pt 7 ps 0.7 lc rgb WITH\nunset multiplot\n",
-            d->n_floors);
+            1.03e3 * o->gap_max_m);
 }
 
 static const char SCENE_LINES[] =
@@ -206,7 +253,7 @@ static const char SCENE_LINES[] =
     "'' using (column(4+K)):1 with linespoints lw 2.2 dt (8,4) pt 13 ps 0.8 lc rgb WITHOUT title 'without core', "
     "'' using (column(7+K)):1 with linespoints lw 2.2 dt (3,3) pt 9 ps 0.8 lc rgb RIGID title 'rigidly connected', "
     "'' using (column(10+K)):1 with linespoints lw 1.6 dt (12,4) pt 5 ps 0.6 lc rgb GREEN title 'tuned mass damper', "
-    "'' using (column(13+K)):1 with linespoints lw 1.6 dt (2,4) pt 11 ps 0.7 lc rgb PURPLE title 'viscous links'\n";
+    "'' using (column(13+K)):1 with linespoints lw 1.6 dt (2,4) pt 15 ps 0.7 lc rgb PURPLE title 'viscous links'\n";
 
 static void write_peaks(FILE *script, const Report *r)
 {
@@ -219,14 +266,23 @@ static void write_peaks(FILE *script, const Report *r)
                     d->result[s].peak_acceleration_g[j]);
         fputc('\n', script);
     }
+    fputs("EOD\nset multiplot layout 1,3 margins 0.055,0.985,0.14,0.88 spacing 0.055,0\nset xrange [0:*]\n", script);
+    write_floor_axis(script, d->n_floors);
     fprintf(script,
-            "EOD\nset multiplot layout 1,3 margins 0.055,0.985,0.14,0.88 spacing 0.055,0\nset xrange [0:*]\n"
-            "set yrange [0.5:%d.5]\nset ylabel 'floor'\nset key at screen 0.5,0.95 center vertical maxrows 1\n"
+            "set key at screen 0.5,0.95 center vertical maxrows 1\n"
             "set xlabel 'peak displacement [m]'\nK = 1\n%sunset key\nunset ylabel\n"
             "set xlabel 'peak interstorey drift [m]'\nK = 2\n%s"
             "set xlabel 'peak absolute acceleration [g]'\nK = 3\n%sunset multiplot\n",
-            d->n_floors, SCENE_LINES, SCENE_LINES, SCENE_LINES);
+            SCENE_LINES, SCENE_LINES, SCENE_LINES);
 }
+
+static const double MODE_SHARE_SHOWN = 0.01; /* [%] the least */
+
+#define MODE_LINES(column, style) "using 1:" column " with linespoints lw 1.6 " style
+
+static const char MODE_AXES[] = "set xlabel 'mode of the building'\nset ylabel 'share of the input energy [%]'\n"
+                                "set logscale y\nset yrange [0.01:100]\nset xrange [0.5:10.5]\nset xtics 1\n"
+                                "set key top right\n";
 
 /* Shares of the leading modes of up to three responses side by side. */
 static void write_modes_of(FILE *script, const char *block, size_t n, const SimResult *const results[])
@@ -236,7 +292,7 @@ static void write_modes_of(FILE *script, const char *block, size_t n, const SimR
     for (int i = 0; i < n_modes; i++) {
         fprintf(script, "%d ", i + 1);
         for (size_t s = 0; s < n; s++)
-            fprintf(script, "%.6g ", results[s]->mode_share_pct[i]);
+            fprintf(script, "%.6g ", fmax(results[s]->mode_share_pct[i], MODE_SHARE_SHOWN));
         fputc('\n', script);
     }
     fputs("EOD\n", script);
@@ -247,12 +303,19 @@ static void write_modes(FILE *script, const Report *r)
     const SimResult *const all[] = {&r->detail.result[SCENE_IMPACT], &r->detail.result[SCENE_NO_CORE],
                                     &r->detail.result[SCENE_RIGID]};
     write_modes_of(script, "M", sizeof all / sizeof all[0], all);
-    fputs(
-        "set xlabel 'mode of the building'\nset ylabel 'share of the input energy [%]'\nset yrange [0:*]\n"
-        "set style data histograms\nset style histogram clustered gap 1\nset boxwidth 0.9 relative\nset grid noxtics\n"
-        "plot $M using 2:xtic(1) lc rgb WITH title 'with core', '' using 3 lc rgb WITHOUT title 'without core', "
-        "'' using 4 lc rgb RIGID title 'rigidly connected'\n",
-        script);
+    fprintf(
+        script,
+        "%splot $M " MODE_LINES(
+            "2", "pt 7 ps 1 lc rgb WITH") " title 'with core', "
+                                          "'' " MODE_LINES(
+                                              "3",
+                                              "dt (8,4) pt 13 ps 1.2 lc rgb WITHOUT") " title 'without core', "
+                                                                                      "'' " MODE_LINES(
+                                                                                          "4",
+                                                                                          "dt (3,3) pt 9 ps 1.2 lc rgb "
+                                                                                          "RIGID") " title 'rigidly "
+                                                                                                   "connected'\n",
+        MODE_AXES);
 }
 
 static void write_history(FILE *script, const char *block, const History *h)
@@ -386,20 +449,21 @@ static void write_elsewhere(FILE *script, const Report *r)
                 "EOD\nset tmargin at screen %g\nset bmargin at screen %g\nset lmargin at screen 0.07\n"
                 "set rmargin at screen 0.47\nunset key\nset title ",
                 top, bottom);
-        gnuplot_quote(script, file_name(at->record));
-        fprintf(
-            script,
-            " noenhanced\nset xrange [0:*]\nset yrange [0.5:%d.5]\nset xtics auto\nset xlabel 'peak interstorey drift "
-            "[m]'\n"
-            "set ylabel 'floor'\nset style data lines\n"
-            "plot $P using 2:1 with linespoints lw 2.2 pt 7 ps 0.7 lc rgb WITH title 'with core', "
-            "'' using 3:1 with linespoints lw 2.2 dt (8,4) pt 13 ps 0.8 lc rgb WITHOUT title 'without core'\n"
-            "set lmargin at screen 0.57\nset rmargin at screen 0.98\nset autoscale x\nset yrange [0:*]\n"
-            "set xlabel 'mode of the building'\nset ylabel 'share of the input energy [%%]'\n"
-            "set key top right\nset style data histograms\nset style histogram clustered gap 1\nset boxwidth 0.9 "
-            "relative\n"
-            "plot $M using 2:xtic(1) lc rgb WITH title 'with core', '' using 3 lc rgb WITHOUT title 'without core'\n",
-            d->n_floors);
+        write_motion_name(script, at->record);
+        fputs(
+            " noenhanced\nset xrange [0:*]\nset xtics auto\nunset logscale\nset xlabel 'peak interstorey drift [m]'\n",
+            script);
+        write_floor_axis(script, d->n_floors);
+        fprintf(script,
+                "plot $P using 2:1 with linespoints lw 2.2 pt 7 ps 0.7 lc rgb WITH title 'with core', "
+                "'' using 3:1 with linespoints lw 2.2 dt (8,4) pt 13 ps 0.8 lc rgb WITHOUT title 'without core'\n"
+                "set lmargin at screen 0.57\nset rmargin at screen 0.98\nset ytics auto\n%s"
+                "plot $M " MODE_LINES(
+                    "2", "pt 7 ps 1 lc rgb WITH") " title 'with core', "
+                                                  "'' " MODE_LINES(
+                                                      "3",
+                                                      "dt (8,4) pt 13 ps 1.2 lc rgb WITHOUT") " title 'without core'\n",
+                MODE_AXES);
     }
     fputs("unset multiplot\n", script);
 }

@@ -288,7 +288,7 @@ function parallelCoordinates(host) {
 function wrapped(title, room, most) {
   const rows = [];
   for (const word of title.split(" "))
-    if (rows.length && (rows[rows.length - 1] + word).length < room) rows[rows.length - 1] += ` ${word}`;
+    if (rows.length && (rows[rows.length - 1] + word).length + 1 <= room) rows[rows.length - 1] += ` ${word}`;
     else rows.push(word);
   const cut = (row) => (row.length > room + 1 ? `${row.slice(0, Math.max(3, room - 1))}\u2026` : row);
   return (rows.length > most ? [...rows.slice(0, most - 1), rows.slice(most - 1).join(" ")] : rows).map(cut);

@@ -205,7 +205,7 @@ function scatterMatrix(host) {
   }, (svg, width) => {
     const s = size(width);
     objectives.forEach((c, k) => {
-      const { left, top } = at(s, k, k), rows = [...wrapped(c.title, Math.max(5, s.w / 7), s.h > 70 ? 3 : 2), ...(c.unit ? [`[${c.unit}]`] : [])];
+      const { left, top } = at(s, k, k), rows = [...wrapped(c.title, Math.max(5, s.w / 7.6), s.h > 70 ? 3 : 2), ...(c.unit ? [`[${c.unit}]`] : [])];
       const text = svg.append("text").attr("class", "title").attr("text-anchor", "middle");
       rows.forEach((row, i) => text.append("tspan").attr("x", left + s.w / 2).attr("y", top + s.h / 2 + 15 * (i - (rows.length - 1) / 2) + 4).text(row));
     });

@@ -71,10 +71,11 @@ function importanceFigure(host) {
   const rows = objectives.flatMap((_, k) => variables.map((c, j) => ({ objective: named[k], variable: c.title, what: c.what, known: m.explained[k] >= KNOWN_R2, total: m.total[k][j] })))
     .filter((r) => r.total !== null);
   const largest = Math.max(...rows.filter((r) => r.known).map((r) => r.total), 0.1), isCrowded = variables.length > 26;
+  const below = 16 + 7 * Math.max(...variables.map((c) => c.title.length));
   figure(host, "Which variables matter for which objective",
     `Total Sobol index: the share of an objective\u2019s variance over the box of the search in which the variable has a part, alone or with others. Found on a radial basis interpolant of ${count(m.centres)} of the run\u2019s designs; R\u00b2 is how much of the objective it explains when designs are left out. ` +
     `Rows below R\u00b2 ${KNOWN_R2} are left pale: the interpolant does not know.`, (width) => chart({
-      width, height: 110 + 30 * objectives.length, marginLeft: Math.min(230, 0.4 * width), marginBottom: 90, ariaLabel: "Total Sobol indices of variables for objectives",
+      width, height: 30 * objectives.length + below + 20, marginLeft: Math.min(230, 0.4 * width), marginBottom: below, ariaLabel: "Total Sobol indices of variables for objectives",
       x: { label: null, domain: variables.map((c) => c.title), tickRotate: -90, tickSize: 0 }, y: { label: null, domain: named, tickSize: 0 },
       color: { scheme: "YlGnBu", domain: [0, largest], label: "total Sobol index", legend: true },
       marks: [

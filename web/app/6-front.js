@@ -114,8 +114,8 @@ function frontPart() {
     const pair = grid.appendChild(element("figure", {}, element("h3", {}, "Two columns against each other"), element("div", { class: "bar" }, columnSelect("x", "x", "x"), columnSelect("y", "y", "y"))));
     pairPlot(pair);
   }
-  const families_ = [...families.values()].filter((f) => run.tower && !f[0].sense && f.length > 1);
-  for (const family of families_) heatFigure(grid, family);
+  const maps = grid.appendChild(element("div"));
+  for (const family of families.values()) if (run.tower && !family[0].sense && family.length > 1) heatFigure(maps, family);
   if (objectives.length > 1) {
     const matrix = folded(host, "All pairs of objectives, with their rank correlations");
     matrix.append(element("p", { class: "note" }, "Above the diagonal Spearman\u2019s rank correlation of the selected designs: blue, they grow together; vermillion, one is paid for with the other. Signs are those of the numbers, not of better and worse."));

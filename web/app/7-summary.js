@@ -15,7 +15,7 @@ const peakText = (d) => `peak ${show(d.pga_g)} g` +
 const storeys = (d) => `${d.gap_m.length} storeys, ${show(d.storey_m.reduce((a, b) => a + b, 0))} m`;
 
 function change(value, before) {
-  const pct = Math.round((100 * (value - before)) / before);
+  const exact = (100 * (value - before)) / before, pct = Math.abs(exact) < 1 ? Math.round(10 * exact) / 10 : Math.round(exact);
   if (pct === 0) return "the same";
   return value > 2 * before ? (value > 50 * before ? `from ${show(before)}` : `${show(value / before)} times`) : `${pct > 0 ? "+" : "\u2212"}${Math.abs(pct)} %`;
 }
@@ -54,7 +54,7 @@ function cards(raw) {
     if (!kind) return "";
     return element("div", { class: `change ${kind}`, title: `${kind} than ${o.words}: ${withUnit(c, o.raw[k] * c.factor)}` }, `${sign} ${change(raw[k] * c.factor, o.raw[k] * c.factor)} `, element("small", {}, o.key === "no_core" ? "no core" : "rigid"));
   };
-  return element("div", { class: "cards" }, ...objectives.map((c, k) => element("div", { class: "card", title: c.what },
+  return element("div", { class: objectives.length > 8 ? "cards many" : "cards" }, ...objectives.map((c, k) => element("div", { class: "card", title: c.what },
     element("div", { class: "what" }, c.title, element("span", { title: c.sense > 0 ? "less is better" : "more is better" }, c.sense > 0 ? " \u2193" : " \u2191")),
     element("div", { class: "value" }, raw[k] === null ? "failed" : digits(raw[k] * c.factor), " ", element("small", {}, c.unit)),
     ...overlays.filter((o) => ["no_core", "rigid"].includes(o.key)).map((o) => against(c, k, o)))));
@@ -130,7 +130,7 @@ function growthPart() {
   const figure = host.appendChild(element("figure"));
   drawn(figure, (width) => chart({
     width, height: 200, ariaLabel: "Hypervolume over the number of designs",
-    x: { label: "designs simulated", tickFormat: count }, y: { label: "hypervolume [%]", grid: true, zero: true, nice: true },
+    x: { label: "designs simulated", tickFormat: (v) => (Number.isInteger(v) ? count(v) : "") }, y: { label: "hypervolume [%]", grid: true, zero: true, nice: true },
     marks: [
       charts.areaY(rows, { x: "x", y1: (r) => r.y - r.e, y2: (r) => r.y + r.e, fill: BLUE, fillOpacity: 0.2 }),
       charts.lineY(rows, { x: "x", y: "y", stroke: BLUE, strokeWidth: 2 }),
