@@ -142,6 +142,7 @@ $(BUILD)/tests/test_fuzz_corpus: $(patsubst %,$(BUILD)/tests/fuzz/%.o,targets wo
 WRAPPED := sqlite3_step sqlite3_exec sqlite3_prepare_v2 sqlite3_open_v2 sqlite3_errcode sqlite3_extended_errcode calloc malloc \
            realloc open_memstream fopen fflush rename
 $(BUILD)/tests/test_store_faults: LDFLAGS += $(WRAPPED:%=-Wl,--wrap=%)
+$(BUILD)/tests/test_shared: LDFLAGS += -Wl,--wrap=statfs
 
 # The tests that take longer than a second or two, longest first; they are started first, and `make check` leaves them out.
 LONG := search faults torture store store_faults report stability study disk noise window async polish resume repeats saved problem rbf

@@ -9,14 +9,17 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/vfs.h>
 #include <unistd.h>
 
-enum { BUSY_MS = 3000, KEPT_STATEMENTS = 12 };
+/* Between machines a reader holds the writer up, and the other way round, over a network. */
+enum { BUSY_MS = 3000, SHARED_BUSY_MS = 60000, KEPT_STATEMENTS = 12 };
 
 struct Database {
     sqlite3 *db;
     char path[PATH_MAX];
     int format;
+    int is_shared;                       /* with other machines: no WAL */
     sqlite3_stmt *kept[KEPT_STATEMENTS]; /* prepared, the one used last first */
     dev_t device; /* of the file that was opened for writing, and its number there; 0: none was */
     ino_t file;
@@ -170,6 +173,26 @@ Status database_number(Database *d, const char *sql, double otherwise, double *v
 
 /* -- opening ------------------------------------------------------------------------------------------------------- */
 
+/* File systems of several machines, by the number that each has in Linux (linux/magic.h, and the sources of Lustre, GPFS
+ * and BeeGFS). */
+static int is_shared(const char *path)
+{
+    static const unsigned KINDS[] = {0x6969 /* NFS */,
+                                     0x0bd00bd0 /* Lustre */,
+                                     0x47504653 /* GPFS */,
+                                     0x00c36400 /* CephFS */,
+                                     0x19830326 /* BeeGFS */,
+                                     0xff534d42 /* CIFS */,
+                                     0xfe534d42 /* SMB2 */};
+    struct statfs about;
+    if (statfs(path, &about) != 0)
+        return 0;
+    size_t i = 0;
+    while (i < sizeof KINDS / sizeof KINDS[0] && (unsigned)about.f_type != KINDS[i])
+        i++;
+    return i < sizeof KINDS / sizeof KINDS[0];
+}
+
 static Status open_file(Database **out, const char *path, const char *name, int flags, Err *err)
 {
     Database *d = calloc(1, sizeof *d);
@@ -187,7 +210,8 @@ static Status open_file(Database **out, const char *path, const char *name, int 
         return status;
     }
     sqlite3_extended_result_codes(d->db, 1);
-    sqlite3_busy_timeout(d->db, BUSY_MS);
+    d->is_shared = is_shared(name);
+    sqlite3_busy_timeout(d->db, d->is_shared ? SHARED_BUSY_MS : BUSY_MS);
     sqlite3_db_config(d->db, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, NULL);
     sqlite3_db_config(d->db, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, NULL);
     *out = d;
@@ -275,7 +299,9 @@ void database_grow(Database *d)
 static Status prepare(Database *d, DatabaseMode mode, Err *err)
 {
     if (mode == DATABASE_WRITE)
-        TRY(database_do(d, err, "PRAGMA journal_mode=WAL; PRAGMA synchronous=FULL; PRAGMA foreign_keys=ON", ""));
+        TRY(database_do(d, err, d->is_shared ? "PRAGMA journal_mode=DELETE" : "PRAGMA journal_mode=WAL", ""));
+    if (mode == DATABASE_WRITE)
+        TRY(database_do(d, err, "PRAGMA synchronous=FULL; PRAGMA foreign_keys=ON", ""));
     struct stat there;
     if (mode == DATABASE_WRITE && stat(d->path, &there) == 0) {
         d->device = there.st_dev;
@@ -301,7 +327,7 @@ static Status copy_file(const char *from, const char *to, Err *err)
 
 static void remove_copy(const char *folder)
 {
-    static const char *const NAMES[] = {"copy", "copy-wal", "copy-shm"};
+    static const char *const NAMES[] = {"copy", "copy-wal", "copy-shm", "copy-journal"};
     char path[PATH_MAX + 16];
     for (size_t i = 0; i < sizeof NAMES / sizeof NAMES[0]; i++) {
         snprintf(path, sizeof path, "%s/%s", folder, NAMES[i]);
@@ -314,18 +340,20 @@ static void remove_copy(const char *folder)
  * The copy has no name any more when it is open and ends with the program, however that ends. */
 static Status open_copy(Database **out, const char *path, Err *err)
 {
-    char folder[PATH_MAX], to[PATH_MAX + 16], journal[PATH_MAX + 8];
+    static const char *const PARTS[] = {"-wal", "-journal", ""};
+    char folder[PATH_MAX], to[PATH_MAX + 16], part[PATH_MAX + 16];
     const char *place = getenv("TMPDIR");
+    Status status = STATUS_OK;
     snprintf(folder, sizeof folder, "%s/imtet-XXXXXX", place && *place ? place : "/tmp");
-    snprintf(journal, sizeof journal, "%s-wal", path);
     if (!mkdtemp(folder))
         return fail(err, STATUS_IO, "%s: its folder is read-only, and a copy has no place: %s: %s", path, folder,
                     strerror(errno));
-    snprintf(to, sizeof to, "%s/copy-wal", folder);
-    Status status = access(journal, F_OK) == 0 ? copy_file(journal, to, err) : STATUS_OK;
-    snprintf(to, sizeof to, "%s/copy", folder);
-    if (status == STATUS_OK)
-        status = copy_file(path, to, err);
+    for (size_t i = 0; status == STATUS_OK && i < sizeof PARTS / sizeof PARTS[0]; i++) {
+        snprintf(part, sizeof part, "%s%s", path, PARTS[i]);
+        snprintf(to, sizeof to, "%s/copy%s", folder, PARTS[i]);
+        if (access(part, F_OK) == 0 || !PARTS[i][0])
+            status = copy_file(part, to, err);
+    }
     if (status == STATUS_OK)
         status = open_file(out, path, to, SQLITE_OPEN_READWRITE, err);
     if (status == STATUS_OK) {
@@ -370,7 +398,7 @@ Status database_open(Database **out, const char *path, DatabaseMode mode, Err *e
 
 void database_remove_journal(const char *path)
 {
-    static const char *const ENDS[] = {"-wal", "-shm"};
+    static const char *const ENDS[] = {"-wal", "-shm", "-journal"};
     char journal[PATH_MAX + 8];
     for (size_t i = 0; i < sizeof ENDS / sizeof ENDS[0]; i++) {
         snprintf(journal, sizeof journal, "%s%s", path, ENDS[i]);
@@ -403,7 +431,7 @@ Status database_check_place(Database *d, Err *err)
         return put_back(d, err);
     if (there.st_ino != d->file || there.st_dev != d->device)
         return fail(err, STATUS_IO, "%s: another file took its place while the run went on", d->path);
-    if (access(journal, F_OK) == 0)
+    if (d->is_shared || access(journal, F_OK) == 0)
         return STATUS_OK;
     TRY(database_do(d, err, "PRAGMA wal_checkpoint(TRUNCATE)", "")); /* out of the journal that is still open */
     return fail(err, STATUS_IO,

@@ -1,6 +1,9 @@
 /* store/database.h -- one SQLite file, opened so that what was committed is never lost; its faults in our words.
  *
  *   journal WAL, synchronous FULL   a commit returns when it is on the disk; readers never wait for the writer
+ *   rollback journal                instead on NFS, Lustre, GPFS, CephFS, BeeGFS, SMB: WAL needs memory that all processes
+ *                                   share, which those of several machines have not. Readers and writer wait for each
+ *                                   other, up to a minute
  *   application_id, user_version    the file is ours, and the version of its tables; checked on opening, like its
  *                                   integrity
  *

@@ -130,7 +130,7 @@ Status store_open_run(RunStore **out, const char *folder, Err *err)
 /* The journal goes first: left alone it would be taken for that of the next database. */
 Status store_forget_empty(RunStore *store, Err *err)
 {
-    static const char *const NAMES[] = {"run.sqlite-wal", "run.sqlite-shm", "run.sqlite"};
+    static const char *const NAMES[] = {"run.sqlite-wal", "run.sqlite-shm", "run.sqlite-journal", "run.sqlite"};
     char path[PATH_MAX];
     if (!store->has_run || store->run.table.n > 0 || store->run.n_generations > 0)
         return STATUS_OK;
