@@ -524,13 +524,20 @@ static void test_a_batch_spreads_over_the_directions_instead_of_crowding(void **
     infill_measure(q, 3, rows, front);
     assert_true(infill_distance(q, front) == 0.0);
     assert_true(infill_distance(q, offered + 6) > 0.0);
-    infill_offer(q, 5, offered, violation, uncertainty);
+    infill_offer(q, 5, offered, violation, uncertainty, NULL);
     assert_int_equal(infill_pick(q, allowed), 0);
     assert_int_equal(infill_pick(q, allowed), 2);
     assert_int_equal(infill_pick(q, allowed), 3); /* the least certain of those without gain */
     assert_int_equal(infill_pick(q, allowed), 1);
     assert_int_equal(infill_pick(q, allowed), 4);
     assert_true(infill_pick(q, allowed) == SIZE_MAX);
+    const double chance[] = {0.01, 0.01, 0.9, 1, 1e-6}; /* the smaller gain that is nearly sure comes first */
+    memset(allowed, 1, sizeof allowed);
+    infill_measure(q, 3, rows, front);
+    infill_offer(q, 5, offered, violation, uncertainty, chance);
+    assert_int_equal(infill_pick(q, allowed), 2);
+    assert_int_equal(infill_pick(q, allowed), 0);
+    assert_int_equal(infill_pick(q, allowed), 4); /* infeasible most likely, but the one with a gain */
     infill_free(q);
     directions_free(&d);
 }
@@ -578,7 +585,7 @@ static void test_picks_are_those_of_gains_computed_anew_each_time(void **state)
         CHECK_OK(directions_create(&d, M, 5, 0, &err), &err);
         CHECK_OK(infill_create(&q, (InfillKind)(seed % 2), N, &d, &err), &err);
         infill_measure(q, 5, rows, F);
-        infill_offer(q, N, F, violation, uncertainty);
+        infill_offer(q, N, F, violation, uncertainty, NULL);
         for (int k = 0; k < N; k++) {
             const size_t wanted = pick_by_definition(q, N, M, F, violation, uncertainty, allowed);
             assert_true(infill_pick(q, allowed) == wanted);

@@ -13,6 +13,7 @@
 #include "moga/control.h"
 #include "moga/convergence.h"
 #include "moga/search.h"
+#include "moga/surrogate.h"
 #include "moga/variation.h"
 
 enum { VAR_MAX = 22, OBJ_MAX = 7, ROWS_MAX = 600 };
@@ -521,6 +522,127 @@ static void test_shares_are_areas_in_a_box_about_the_front(void **state)
     assert_close(h[2], (81.0 + 2 * 2.0) / box, 4.0 * hypervolume_error(85.0 / box) / (85.0 / box));
 }
 
+static double volume_of_ok(const Seen *s, size_t m)
+{
+    double F[ROWS_MAX * OBJ_MAX];
+    size_t n = 0;
+    for (size_t i = 0; i < s->n; i++)
+        if (s->ok[i])
+            memcpy(F + m * n++, s->F + m * i, m * sizeof *F);
+    return volume(n, m, F);
+}
+
+/* The best of DTLZ2 is at x_d = 1/2 for d = 2..9: there, and in a third of the box, evaluations fail. */
+static Status fail_in_a_slab(size_t n, const double X[], const size_t draws[], double F[], double G[],
+                             unsigned char ok[], void *user, Err *err)
+{
+    TRY(evaluate(n, X, draws, F, G, ok, user, err));
+    const World *w = user;
+    for (size_t i = 0; i < n; i++)
+        ok[i] = fabs(X[i * w->problem.n_var + 5] - 0.55) > 0.165;
+    return STATUS_OK;
+}
+
+static void test_where_a_third_of_the_box_fails_and_the_best_of_it_the_surrogate_is_never_behind(void **state)
+{
+    (void)state;
+    double sum[2] = {0};
+    for (uint32_t seed = 1; seed <= 3; seed++) {
+        double h[2];
+        for (int plain = 0; plain < 2; plain++) {
+            Seen *s = plain ? &again : &seen;
+            SearchConfig c = config(50, 200);
+            c.seed = seed;
+            c.surrogate = plain ? SURROGATE_OFF : SURROGATE_ON;
+            world(&here, 10, 3);
+            here.problem = function_problem(&here.function, 10, 3, 0, here.lower, here.upper, fail_in_a_slab, &here);
+            memset(s, 0, sizeof *s);
+            run(&here, &c, s);
+            h[plain] = volume_of_ok(s, 3);
+            sum[plain] += h[plain];
+        }
+        if (!(h[0] >= h[1]))
+            fail_msg("seed %u: hypervolume %.4f, plain %.4f", seed, h[0], h[1]);
+    }
+    assert_true(sum[0] > 1.3 * sum[1]);
+}
+
+enum { CHANCE_DESIGNS = 150, CHANCE_ASKED = 2000 };
+
+static int succeeds_there(const double x[])
+{
+    return fabs(x[5] - 0.55) > 0.165;
+}
+
+static double limit_there(const double x[])
+{
+    return 0.5 - x[0] - 0.3 * x[1] * x[1];
+}
+
+static void draw_design(Random *r, double x[8])
+{
+    for (size_t d = 0; d < 8; d++)
+        x[d] = random_uniform(r);
+}
+
+/* CHANCE_DESIGNS of them at random. */
+static void fill_archive(Archive *a, Random *r)
+{
+    Err err = {0};
+    CHECK_OK(pareto_archive_init(a, CHANCE_DESIGNS, 8, 2, 1, &err), &err);
+    for (size_t i = 0; i < CHANCE_DESIGNS; i++) {
+        double x[8];
+        draw_design(r, x);
+        const double f[2] = {x[0], 1.0 - x[0] + x[2]}, g = limit_there(x);
+        const unsigned char ok = (unsigned char)succeeds_there(x);
+        CHECK_OK(pareto_archive_insert(a, 1, x, f, &g, &ok, KIND_SAMPLED, 0, &err), &err);
+    }
+}
+
+/* Of designs with the same chance that share keeps the limit and succeeds. */
+static void test_chances_are_the_shares_of_designs_that_succeed_and_keep_a_limit(void **state)
+{
+    (void)state;
+    Archive a;
+    Surrogate *s;
+    Population p;
+    Directions vectors;
+    Infill *near;
+    Err err = {0};
+    world_with_limits(&here, 8, 2, 1);
+    Random r = random_stream(3, RANDOM_TEST, 2, 0);
+    double x[8], likely = 0.0, likely_good = 0.0, unlikely = 0.0, unlikely_good = 0.0;
+    fill_archive(&a, &r);
+    CHECK_OK(directions_spread(&vectors, 2, 20, &err), &err);
+    CHECK_OK(infill_create(&near, INFILL_PBI, 4, &vectors, &err), &err);
+    infill_measure(near, a.n_front, a.front, a.F);
+    CHECK_OK(surrogate_create(&s, &here.problem, 200, CHANCE_ASKED, &err), &err);
+    CHECK_OK(surrogate_fit(s, &a, near, &err), &err);
+    CHECK_OK(population_create(&p, CHANCE_ASKED, 8, 2, &err), &err);
+    for (size_t i = 0; i < CHANCE_ASKED; i++) {
+        draw_design(&r, x);
+        population_add(&p, x);
+    }
+    surrogate_predict(s, &p, 0, 1);
+    for (size_t i = 0; i < p.n; i++) {
+        const double *at = p.X + 8 * i;
+        const int good = succeeds_there(at) && limit_there(at) <= 0.0;
+        assert_in_range((uintmax_t)(1e6 * p.chance[i]), 0, 1000000);
+        likely += p.chance[i] > 0.7;
+        likely_good += p.chance[i] > 0.7 && good;
+        unlikely += p.chance[i] < 0.1;
+        unlikely_good += p.chance[i] < 0.1 && good;
+    }
+    if (!(likely > 300 && likely_good > 0.9 * likely && unlikely > 300 && unlikely_good < 0.1 * unlikely))
+        fail_msg("good are %.0f of %.0f likely and %.0f of %.0f unlikely designs", likely_good, likely, unlikely_good,
+                 unlikely);
+    population_free(&p);
+    surrogate_free(s);
+    infill_free(near);
+    directions_free(&vectors);
+    pareto_archive_free(&a);
+}
+
 static void test_a_search_that_trusts_everything_still_simulates_a_few(void **state)
 {
     (void)state;
@@ -669,6 +791,9 @@ int main(void)
         cmocka_unit_test_setup(test_a_search_that_improves_does_not_stop, fresh),
         cmocka_unit_test(test_the_gain_of_a_power_law_is_foretold_exactly),
         cmocka_unit_test(test_shares_are_areas_in_a_box_about_the_front),
+        cmocka_unit_test_setup(test_where_a_third_of_the_box_fails_and_the_best_of_it_the_surrogate_is_never_behind,
+                               fresh),
+        cmocka_unit_test_setup(test_chances_are_the_shares_of_designs_that_succeed_and_keep_a_limit, fresh),
         cmocka_unit_test_setup(test_without_a_surrogate_nothing_is_predicted_and_the_front_is_worse, fresh),
         cmocka_unit_test_setup(test_a_start_of_size_zero_follows_the_number_of_variables, fresh),
     };

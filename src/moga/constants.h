@@ -35,6 +35,9 @@ static const double DESCENT_STEP_FIRST = 0.05; /* first step in each variable */
 static const double DESCENT_STEP_MAX = 0.2;    /* longest step */
 static const double DESCENT_GROW = 1.2;        /* factor of the step where the derivative keeps its sign */
 static const double DESCENT_SHRINK = 0.5;      /* ... where it changes */
+static const double SUCCESS_POWER = 2.0;       /* of the predicted success in the weight of a gain */
+static const double SUCCESS_MIN = 0.5;         /* predicted success below which a failure is predicted */
+static const double PENALTY = 10.0;            /* weight of violated limits, in their ranges, and of failures */
 
 /* -- surrogate.c: fit ---------------------------------------------------------------------------------------------- */
 
@@ -67,7 +70,6 @@ enum { VARIATION_SHARE_MIN = 16 };                 /* batch / this + 1 designs f
 enum { INFILL_ALONE = 18 };                        /* evaluations per variable before variation shares a batch */
 static const double VARIATION_CREDIT_FIRST = 0.03; /* share of the gain credited to variation before the first batch */
 static const double VARIATION_CHANCE_FIRST = 0.1;  /* share of the designs attributed to it before the first batch */
-enum { FAILURE_NEIGHBOURS = 3 };                   /* one of so many nearest designs failed: failure is predicted */
 static const double COST_MAX = 4.0; /* surrogate = auto: largest cost of a surrogate per design, in simulations */
 enum { COST_SAMPLE = 60 };          /* surrogate = auto: infill designs before costs are compared */
 

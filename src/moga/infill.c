@@ -12,15 +12,15 @@ struct Infill {
     InfillKind kind;
     size_t n_obj, n_dir, n_max, n;
     Normalisation normalisation;
-    double *unit, *across;                 /* (n_dir, n_obj) vectors of length 1; (n_obj, n_dir) */
-    double *row;                           /* (n_dir) */
-    double *best_value;                    /* (n_dir) of the front, lowered by what is picked */
-    size_t *best;                          /* (n_dir) row of the front that has it */
-    double *value;                         /* (n, n_dir) of the candidates */
-    double *gain;                          /* (n) when it was computed last: what is picked later only lowers it */
-    size_t *computed;                      /* (n) how much had been taken then */
-    size_t n_taken;                        /* since the candidates were offered */
-    const double *violation, *uncertainty; /* (n) */
+    double *unit, *across; /* (n_dir, n_obj) vectors of length 1; (n_obj, n_dir) */
+    double *row;           /* (n_dir) */
+    double *best_value;    /* (n_dir) of the front, lowered by what is picked */
+    size_t *best;          /* (n_dir) row of the front that has it */
+    double *value;         /* (n, n_dir) of the candidates */
+    double *gain;          /* (n) when it was computed last: what is picked later only lowers it */
+    size_t *computed;      /* (n) how much had been taken then */
+    size_t n_taken;        /* since the candidates were offered */
+    const double *violation, *uncertainty, *chance; /* (n) */
     void *store;
 };
 
@@ -201,11 +201,13 @@ double infill_gain(Infill *q, const double f[])
     return gain;
 }
 
-void infill_offer(Infill *q, size_t n, const double F[], const double violation[], const double uncertainty[])
+void infill_offer(Infill *q, size_t n, const double F[], const double violation[], const double uncertainty[],
+                  const double chance[])
 {
     q->n = n;
     q->violation = violation;
     q->uncertainty = uncertainty;
+    q->chance = chance;
     q->n_taken = 0;
     for (size_t i = 0; i < n; i++) {
         values_of(q, F + i * q->n_obj, q->value + i * q->n_dir);
@@ -221,19 +223,21 @@ static double gain_left(const Infill *q, size_t i)
     return gain;
 }
 
-/* Feasible before infeasible, then gain or violation, then uncertainty. */
+/* Feasible before infeasible where there is no chance to weigh gains with, then gain, violation, uncertainty. */
 static int is_better(const Infill *q, size_t a, size_t b)
 {
-    if (q->violation[a] != q->violation[b])
+    if (!q->chance && q->violation[a] != q->violation[b])
         return q->violation[a] < q->violation[b];
     if (q->gain[a] != q->gain[b])
         return q->gain[a] > q->gain[b];
+    if (q->violation[a] != q->violation[b])
+        return q->violation[a] < q->violation[b];
     return q->uncertainty[a] > q->uncertainty[b];
 }
 
 static void compute_gain(Infill *q, size_t i)
 {
-    q->gain[i] = gain_left(q, i);
+    q->gain[i] = gain_left(q, i) * (q->chance ? q->chance[i] : 1.0);
     q->computed[i] = q->n_taken;
 }
 

@@ -12,13 +12,12 @@ static size_t take(Search *s, size_t n, size_t i, EvaluationKind kind)
     return batch_add(s, n, p->X + i * p->n_var, kind);
 }
 
-/* All may be picked but pending designs and, where predicted failures are `avoided`, those. */
-static void exclude(Search *s, int avoided)
+/* All may be picked but pending designs. */
+static void exclude(Search *s)
 {
     const Offspring *o = &s->offspring;
     const Population *p = &o->members;
-    for (size_t i = 0; i < p->n; i++)
-        o->excluded[i] = avoided && search_predicts_failure(s, p->X + i * p->n_var);
+    memset(o->excluded, 0, p->n);
     memset(o->excluded + p->n - o->n_pending, 1, o->n_pending);
 }
 
@@ -27,7 +26,8 @@ static void offer(Search *s)
 {
     const Population *p = &s->offspring.members;
     for (int kind = 0; kind < INFILL_KINDS; kind++)
-        infill_offer(s->criteria.select[kind], p->n, p->F, p->violation, p->uncertainty);
+        infill_offer(s->criteria.select[kind], p->n, p->F, p->violation, p->uncertainty,
+                     s->archive.n_front > 0 ? p->chance : NULL);
     for (size_t i = p->n - s->offspring.n_pending; i < p->n; i++)
         for (int kind = 0; kind < INFILL_KINDS; kind++)
             infill_take(s->criteria.select[kind], i);
@@ -93,7 +93,7 @@ size_t infill_select_batch(Search *s)
     const size_t size = batch_size(s);
     const int with_surrogate = search_uses_surrogate(s);
     size_t n;
-    exclude(s, with_surrogate);
+    exclude(s);
     if (with_surrogate) {
         const BatchShares shares = control_batch_shares(&s->control, size, s->archive.n, s->problem->n_var);
         offer(s);
@@ -103,6 +103,6 @@ size_t infill_select_batch(Search *s)
     if (n >= size || (with_surrogate && n > 0))
         return n;
     offspring_make(s, 1);
-    exclude(s, 0);
+    exclude(s);
     return take_variation(s, size);
 }

@@ -12,6 +12,7 @@ static void layout(void *population, Carve *c)
     p->F = carve(c, p->n_max * p->n_obj, sizeof(double));
     p->violation = carve(c, p->n_max, sizeof(double));
     p->uncertainty = carve(c, p->n_max, sizeof(double));
+    p->chance = carve(c, p->n_max, sizeof(double));
     p->row = carve(c, p->n_max, sizeof(size_t));
     p->age = carve(c, p->n_max, sizeof(size_t));
 }
@@ -35,6 +36,7 @@ size_t population_add(Population *p, const double x[])
     memcpy(p->X + i * p->n_var, x, p->n_var * sizeof *x);
     memset(p->F + i * p->n_obj, 0, p->n_obj * sizeof *p->F);
     p->violation[i] = p->uncertainty[i] = 0.0;
+    p->chance[i] = 1.0;
     p->row[i] = PREDICTED;
     p->age[i] = 0;
     return i;
@@ -46,6 +48,7 @@ static void copy(Population *to, size_t i, const Population *from, size_t j)
     memmove(to->F + i * to->n_obj, from->F + j * from->n_obj, to->n_obj * sizeof *to->F);
     to->violation[i] = from->violation[j];
     to->uncertainty[i] = from->uncertainty[j];
+    to->chance[i] = from->chance[j];
     to->row[i] = from->row[j];
     to->age[i] = from->age[j];
 }
@@ -77,6 +80,7 @@ void population_pack(Population *population, Pack *p, size_t n_rows)
     pack_numbers(p, population->F, n * population->n_obj, -INFINITY, INFINITY);
     pack_numbers(p, population->violation, n, 0.0, INFINITY);
     pack_numbers(p, population->uncertainty, n, 0.0, INFINITY);
+    pack_numbers(p, population->chance, n, 0.0, 1.0);
     for (size_t i = 0; i < n && !p->faulty; i++) {
         size_t code = population->row[i] == PREDICTED ? 0 : population->row[i] + 1;
         pack_size(p, &code, n_rows);

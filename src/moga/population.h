@@ -20,6 +20,7 @@ typedef struct {
     double *X, *F;       /* (n, n_var) (n, n_obj) */
     double *violation;   /* (n) */
     double *uncertainty; /* (n) predicted error, share of the range, of the worst objective; 0: evaluated */
+    double *chance;      /* (n) probability that it succeeds and keeps every limit; 1: evaluated */
     size_t *row, *age;   /* (n); age: generations for which a prediction has been trusted */
     void *store;
 } Population;

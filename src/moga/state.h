@@ -139,7 +139,6 @@ Status generation_last(Search *s, Err *err); /* asynchronous: what is under way 
 void search_measure_front(Search *s);
 int search_uses_surrogate(const Search *s); /* usable, and control agrees */
 int search_trusts(const Search *s, const Population *p, size_t i);
-int search_predicts_failure(const Search *s, const double x[]);
 Status search_fit_surrogate(Search *s, Err *err);
 void search_predict(Search *s, Population *p, size_t first, int with_uncertainty);
 void search_descend(Search *s, InfillKind kind, size_t n, const size_t vectors[], double X[]);

@@ -16,6 +16,8 @@ static const double VALUE_MAX = 1e60;
 struct Surrogate {
     const Problem *problem;
     Rbf *rbf;
+    Rbf *success;       /* 1 where a design succeeded, 0 where it failed */
+    int knows_failures; /* it is fitted */
     size_t n_out, n_max, n_archive_max, predict_max;
     size_t n, n_tuned; /* centres; size of the archive at the last tuning */
     int fitted;
@@ -25,6 +27,7 @@ struct Surrogate {
     double *errors;    /* (n_max) sorted for the median */
     size_t *member;    /* (predict_max) members that are predicted */
     double *descent;   /* (predict_max + RBF_BLOCK, descent_length) */
+    double *chance;    /* (predict_max) predictions of success */
     double *u, *f, *e; /* (predict_max, n_var) (predict_max, n_out) twice */
     void *store;
     size_t *centre;   /* (n_archive_max) rows of the centres; grows with the archive */
@@ -45,6 +48,7 @@ static void layout(void *surrogate, Carve *c)
     s->u = carve(c, s->predict_max * n_var, sizeof(double));
     s->f = carve(c, s->predict_max * s->n_out, sizeof(double));
     s->e = carve(c, s->predict_max * s->n_out, sizeof(double));
+    s->chance = carve(c, s->predict_max, sizeof(double));
     s->member = carve(c, s->predict_max, sizeof(size_t));
     s->descent = carve(c, (s->predict_max + RBF_BLOCK) * descent_length(s), sizeof(double));
 }
@@ -63,6 +67,8 @@ Status surrogate_create(Surrogate **out, const Problem *problem, size_t surrogat
     Status status = s->store ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for %zu predictions", predict_max);
     if (status == STATUS_OK && problem->n_var <= RBF_DIM_MAX)
         status = rbf_create(&s->rbf, surrogate_max, problem->n_var, s->n_out, err);
+    if (status == STATUS_OK && problem->n_var <= RBF_DIM_MAX)
+        status = rbf_create(&s->success, surrogate_max, problem->n_var, 1, err);
     if (status != STATUS_OK) {
         surrogate_free(s);
         *out = NULL;
@@ -74,6 +80,7 @@ void surrogate_free(Surrogate *s)
 {
     if (s) {
         rbf_free(s->rbf);
+        rbf_free(s->success);
         free(s->store);
         free(s->centre);
         free(s->distance);
@@ -155,6 +162,29 @@ static void measure_ranges(Surrogate *s, const Archive *a)
     }
 }
 
+/* Least squares on 1 and 0 (Rasmussen and Williams, 6.5) over all designs, thinned evenly beyond n_max. */
+static Status fit_success(Surrogate *s, const Archive *a, int tuning, Err *err)
+{
+    size_t n = 0, n_designs = 0;
+    for (size_t i = 0; i < a->n; i++)
+        n_designs += a->replicates[i] > 0;
+    const size_t kept = n_designs < s->n_max ? n_designs : s->n_max;
+    s->knows_failures = 0;
+    if (a->n_failed == 0)
+        return STATUS_OK;
+    for (size_t i = 0, k = 0; i < a->n; i++) {
+        if (a->replicates[i] == 0 || (k++) * kept / n_designs < n || n == kept)
+            continue;
+        problem_to_cube(s->problem, a->X + i * a->n_var, s->U + n * a->n_var);
+        s->F[n++] = a->usable[i];
+    }
+    TRY(rbf_fit(s->success, n, s->U, s->F, NULL, err));
+    if (tuning)
+        TRY(rbf_tune(s->success, err));
+    s->knows_failures = rbf_explained(s->success, 0) > 0.0;
+    return STATUS_OK;
+}
+
 Status surrogate_fit(Surrogate *s, const Archive *a, Infill *near, Err *err)
 {
     s->fitted = 0;
@@ -174,12 +204,13 @@ Status surrogate_fit(Surrogate *s, const Archive *a, Infill *near, Err *err)
     }
     measure_ranges(s, a);
     TRY(rbf_fit(s->rbf, s->n, s->U, s->F, a->n_replicates > 0 ? s->noise : NULL, err));
-    if (s->n_tuned == 0 || a->n >= s->n_tuned + (s->n_tuned + RETUNE_SHARE - 1) / RETUNE_SHARE) {
+    const int tuning = s->n_tuned == 0 || a->n >= s->n_tuned + (s->n_tuned + RETUNE_SHARE - 1) / RETUNE_SHARE;
+    if (tuning) {
         TRY(rbf_tune(s->rbf, err));
         s->n_tuned = a->n;
     }
     s->fitted = 1;
-    return STATUS_OK;
+    return fit_success(s, a, tuning, err);
 }
 
 void surrogate_estimate(const Surrogate *s, Archive *a)
@@ -231,14 +262,32 @@ static size_t gather(Surrogate *s, const Population *population, size_t first)
     return n;
 }
 
-static void fill_member(const Surrogate *s, Population *population, size_t i, const double f[], const double e[])
+/* That constraints g (n_con) hold, normal about the predictions with standard deviation e. */
+static double chance_of(const Problem *p, const double g[], const double e[])
+{
+    double chance = 1.0;
+    for (size_t c = 0; c < p->n_con; c++)
+        chance *= e && e[c] > 0.0 ? 0.5 * erfc(g[c] / (e[c] * M_SQRT2)) : g[c] <= 0.0;
+    return chance;
+}
+
+/* A regression on 1 and 0 is drawn towards its mean: its square is the nearer one to the probability where little is
+ * known. */
+static double chance_to_succeed(double prediction)
+{
+    return pow(fmin(fmax(prediction, 0.0), 1.0), SUCCESS_POWER);
+}
+
+static void fill_member(const Surrogate *s, Population *population, size_t i, const double f[], const double e[],
+                        double success)
 {
     const Problem *p = s->problem;
     double worst = 0.0;
+    population->chance[i] = chance_of(p, f + p->n_obj, e ? e + p->n_obj : NULL) * chance_to_succeed(success);
     for (size_t k = 0; e && k < s->n_out; k++)
         worst = fmax(worst, e[k] / s->range[k]);
     memcpy(population->F + i * p->n_obj, f, p->n_obj * sizeof *f);
-    population->violation[i] = violation_of(p->n_con, f + p->n_obj);
+    population->violation[i] = violation_of(p->n_con, f + p->n_obj) + fmax(SUCCESS_MIN - success, 0.0);
     population->uncertainty[i] = worst;
 }
 
@@ -249,43 +298,70 @@ void surrogate_predict(Surrogate *s, Population *population, size_t first, int w
     for (size_t i = 0; i < n; i += RBF_BLOCK)
         rbf_eval(s->rbf, n - i < RBF_BLOCK ? n - i : RBF_BLOCK, s->u + i * n_var, s->f + i * s->n_out,
                  with_uncertainty ? s->e + i * s->n_out : NULL);
+#pragma omp parallel for schedule(dynamic, 1)
+    for (size_t i = 0; i < n; i += RBF_BLOCK)
+        if (s->knows_failures)
+            rbf_eval(s->success, n - i < RBF_BLOCK ? n - i : RBF_BLOCK, s->u + i * n_var, s->chance + i, NULL);
     for (size_t i = 0; i < n; i++)
-        fill_member(s, population, s->member[i], s->f + i * s->n_out, with_uncertainty ? s->e + i * s->n_out : NULL);
+        fill_member(s, population, s->member[i], s->f + i * s->n_out, with_uncertainty ? s->e + i * s->n_out : NULL,
+                    s->knows_failures ? s->chance[i] : 1.0);
 }
 
 /* State of one descent; u, f and J of a block lie together, as rbf_slope takes them. */
 typedef struct {
     double *best, *g, *g_last, *step; /* (n_var) */
     double *slope;                    /* (n_obj) */
-    double min;
+    double min, violation;            /* of the best point */
 } Descent;
 
 static size_t descent_length(const Surrogate *s)
 {
     const size_t d = s->problem->n_var;
-    return d + s->n_out + s->n_out * d + 4 * d + s->problem->n_obj;
+    return d + s->n_out + s->n_out * d + 1 + d + 4 * d + s->problem->n_obj;
 }
 
 static Descent descent_on(const Surrogate *s, double *store)
 {
     const size_t d = s->problem->n_var;
-    return (Descent){store, store + d, store + 2 * d, store + 3 * d, store + 4 * d, INFINITY};
+    return (Descent){store, store + d, store + 2 * d, store + 3 * d, store + 4 * d, INFINITY, INFINITY};
+}
+
+/* What a limit or a predicted failure adds at a point, and to the gradient of its descent. */
+static double penalise(const Surrogate *s, Descent *w, const double f[], const double J[], double success,
+                       const double J_success[])
+{
+    const Problem *p = s->problem;
+    double violation = fmax(SUCCESS_MIN - success, 0.0);
+    for (size_t d = 0; violation > 0.0 && d < p->n_var; d++)
+        w->g[d] -= PENALTY * J_success[d];
+    for (size_t c = p->n_obj; c < s->n_out; c++) {
+        if (!(f[c] > 0.0))
+            continue;
+        violation += f[c] / s->range[c];
+        for (size_t d = 0; d < p->n_var; d++)
+            w->g[d] += PENALTY * J[c * p->n_var + d] / s->range[c];
+    }
+    return violation;
 }
 
 /* One step of resilient back-propagation at u, where the surrogate is f with the derivatives J. */
 static void descent_step(const Surrogate *s, const Infill *near, size_t vector, Descent *w, double u[],
-                         const double f[], const double J[])
+                         const double f[], const double J[], double success, const double J_success[])
 {
     const size_t n_var = s->problem->n_var;
     const double value = infill_slope(near, vector, f, w->slope);
-    if (value < w->min) {
-        w->min = value;
-        memcpy(w->best, u, n_var * sizeof *u);
-    }
     for (size_t d = 0; d < n_var; d++) {
         w->g[d] = 0.0;
         for (size_t k = 0; k < s->problem->n_obj; k++)
             w->g[d] += w->slope[k] * J[k * n_var + d];
+    }
+    const double violation = penalise(s, w, f, J, success, J_success);
+    if (violation < w->violation || (violation == w->violation && value < w->min)) {
+        w->violation = violation;
+        w->min = value;
+        memcpy(w->best, u, n_var * sizeof *u);
+    }
+    for (size_t d = 0; d < n_var; d++) {
         const double same_sign = w->g[d] * w->g_last[d];
         w->step[d] *= same_sign > 0.0 ? DESCENT_GROW : same_sign < 0.0 ? DESCENT_SHRINK : 1.0;
         w->g_last[d] = same_sign < 0.0 ? 0.0 : w->g[d];
@@ -299,7 +375,8 @@ static void descend(const Surrogate *s, const Infill *near, size_t n, const size
 {
     const size_t n_var = s->problem->n_var, own = 4 * n_var + s->problem->n_obj;
     double *U = store, *F = U + RBF_BLOCK * n_var, *J = F + RBF_BLOCK * s->n_out,
-           *rest = J + RBF_BLOCK * s->n_out * n_var;
+           *success = J + RBF_BLOCK * s->n_out * n_var, *J_success = success + RBF_BLOCK,
+           *rest = J_success + RBF_BLOCK * n_var;
     Descent w[RBF_BLOCK];
     for (size_t p = 0; p < n; p++) {
         w[p] = descent_on(s, rest + p * own);
@@ -310,8 +387,11 @@ static void descend(const Surrogate *s, const Infill *near, size_t n, const size
     }
     for (int step = 0; step < DESCENT_STEPS; step++) {
         rbf_slope(s->rbf, n, U, F, J);
+        if (s->knows_failures)
+            rbf_slope(s->success, n, U, success, J_success);
         for (size_t p = 0; p < n; p++)
-            descent_step(s, near, vectors[p], &w[p], U + p * n_var, F + p * s->n_out, J + p * s->n_out * n_var);
+            descent_step(s, near, vectors[p], &w[p], U + p * n_var, F + p * s->n_out, J + p * s->n_out * n_var,
+                         s->knows_failures ? success[p] : 1.0, J_success + p * n_var);
     }
     for (size_t p = 0; p < n; p++)
         memcpy(U + p * n_var, w[p].best, n_var * sizeof *U);
@@ -338,4 +418,6 @@ void surrogate_pack(Surrogate *s, Pack *p)
     pack_size(p, &s->n_tuned, UINT32_MAX);
     if (s->rbf)
         rbf_pack(s->rbf, p);
+    if (s->success)
+        rbf_pack(s->success, p);
 }

@@ -5,6 +5,10 @@
  * with the Latin hypercube. A mean of n replicates has the n-th part of the nugget. Hyperparameters are tuned again
  * when the archive has grown by a tenth.
  *
+ *   chance   probability that a predicted design keeps every limit, each normal about its prediction with the local
+ *            leave-one-out error, times that it succeeds: another Rbf on 1 where designs succeeded and 0 where they
+ *            failed, of all designs (least-squares classification: Rasmussen and Williams, 6.5)
+ *
  * Dimension   more than RBF_DIM_MAX variables: there is no surrogate
  * Life cycle  surrogate_create -> (surrogate_fit -> surrogate_predict ...) ... -> surrogate_free
  * Memory      all in surrogate_create but the selection of centres, which grows with the archive
@@ -40,11 +44,13 @@ size_t surrogate_left_out(const Surrogate *s);
 /* Estimates of the centres among the archive's designs, from their leave-one-out errors (moga/noise.h). */
 void surrogate_estimate(const Surrogate *s, Archive *archive);
 
-/* F and violation of the predicted members first..n-1, and where wanted their uncertainty, which costs a third more. */
+/* F, violation and chance of the predicted members first..n-1, and where wanted their uncertainty, which costs a third
+ * more; without it a limit is kept or not. A predicted failure is a violation. */
 void surrogate_predict(Surrogate *s, Population *population, size_t first, int with_uncertainty);
 
 /* Designs X (n, n_var) that lower the criterion of `near` along its reference vectors by descents on the surrogate,
- * each from the design of the archive that is best for its vector. Resilient back-propagation: Riedmiller and Braun,
+ * each from the design of the archive that is best for its vector; a point that violates no limit is better than one that
+ * does. Resilient back-propagation: Riedmiller and Braun,
  * ICNN 1993, 586-591. */
 void surrogate_descend(Surrogate *s, const Archive *a, const Infill *near, size_t n, const size_t vectors[],
                        double X[]);
