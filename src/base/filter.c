@@ -30,17 +30,6 @@ size_t filter_padding(const Filter *f)
     return (size_t)ceil(1.5 * FILTER_ORDER / f->cutoff_dt);
 }
 
-/* Both sections (transposed direct form II) on one value or vector of values; s: their states. */
-#define FILTER_STEP(f, x, s)                                                                                           \
-    _Pragma("GCC unroll 2") for (int k_ = 0; k_ < FILTER_SECTIONS; k_++)                                               \
-    {                                                                                                                  \
-        const Biquad *const q_ = &(f)->section[k_];                                                                    \
-        const __typeof__(x) in_ = x;                                                                                   \
-        x = q_->b0 * in_ + s[k_][0];                                                                                   \
-        s[k_][0] = q_->b1 * in_ - q_->a1 * x + s[k_][1];                                                               \
-        s[k_][1] = q_->b2 * in_ - q_->a2 * x;                                                                          \
-    }
-
 typedef double v8 __attribute__((vector_size(64), aligned(8)));
 
 /* One pass over VECTORS vectors of eight columns from row `first`, `step` being +1 or -1 rows. */

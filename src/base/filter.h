@@ -40,4 +40,15 @@ size_t filter_padding(const Filter *f);
 /* In place. */
 void filter_zero_phase(const Filter *f, size_t n, size_t width, double x[]);
 
+/* Both sections (transposed direct form II) on one value or vector of values; s: their states. */
+#define FILTER_STEP(f, x, s)                                                                                           \
+    _Pragma("GCC unroll 2") for (int k_ = 0; k_ < FILTER_SECTIONS; k_++)                                               \
+    {                                                                                                                  \
+        const Biquad *const q_ = &(f)->section[k_];                                                                    \
+        const __typeof__(x) in_ = x;                                                                                   \
+        x = q_->b0 * in_ + s[k_][0];                                                                                   \
+        s[k_][0] = q_->b1 * in_ - q_->a1 * x + s[k_][1];                                                               \
+        s[k_][1] = q_->b2 * in_ - q_->a2 * x;                                                                          \
+    }
+
 #endif

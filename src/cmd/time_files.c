@@ -7,7 +7,7 @@
 #include "base/units.h"
 #include "report/history.h"
 #include "scene/spectrum.h"
-#include "sim/floor_filter.h"
+#include "sim/floor_record.h"
 #include "store/output.h"
 
 /* Writes what a worker has of design i. */
@@ -175,15 +175,15 @@ static const double DAMPING = 0.05, SHORTEST_S = 0.02, LONGEST_S = 10, SAMPLES_S
 
 typedef struct {
     const SimWorker *worker;
-    FloorFilter *filter;
+    FloorRecord *record;
 } FloorSamples;
 
 static void take_floors(const SimSample *s, void *user)
 {
     const FloorSamples *floors = user;
     if (s->t == 0)
-        floor_filter_start(floors->filter, s->spacing);
-    double *u = floor_filter_add(floors->filter, s->ground);
+        floor_record_start(floors->record, s->spacing);
+    double *u = floor_record_add(floors->record, s->ground);
     if (u)
         sim_worker_floors(floors->worker, s, u);
 }
@@ -197,12 +197,12 @@ static void write_spectra_header(FILE *out, int n_floors)
 }
 
 /* psa (n_floors + 1, N_PERIODS) of the ground and of the floors, from rows of accelerations. */
-static Status find_spectra(const TimeJob *job, FloorFilter *filter, double h, const double T[], double psa[], Err *err)
+static Status find_spectra(const TimeJob *job, FloorRecord *record, const double T[], double psa[], Err *err)
 {
     const double *rows;
     size_t n, width;
-    TRY(floor_filter_accelerations(filter, &rows, &n, &width, err));
-    Motion floor = {.n = n, .dt_s = h, .accel = malloc((n + 1) * sizeof *floor.accel)};
+    TRY(floor_record_accelerations(record, &rows, &n, &width, err));
+    Motion floor = {.n = n, .dt_s = floor_record_step(record), .accel = malloc((n + 1) * sizeof *floor.accel)};
     if (!floor.accel)
         return fail(err, STATUS_NO_MEMORY, "--floor-spectra: no memory for %zu samples", n);
     spectrum_psa(job->motion, DAMPING, N_PERIODS, T, psa);
@@ -233,7 +233,7 @@ static Status spectra_of(const TimeJob *job, FloorSamples *floors, SimWorker *wo
         T[k] = SHORTEST_S * pow(LONGEST_S / SHORTEST_S, (double)k / (N_PERIODS - 1));
     sim_worker_sample(worker, SAMPLES_S, take_floors, floors);
     TRY(run_again(job, worker, i, err));
-    TRY(find_spectra(job, floors->filter, floor_filter_step(floors->filter), T, psa, err));
+    TRY(find_spectra(job, floors->record, T, psa, err));
     print_spectra(out, job->number[i], scene_n_floors(job->scene), T, psa);
     return STATUS_OK;
 }
@@ -241,9 +241,9 @@ static Status spectra_of(const TimeJob *job, FloorSamples *floors, SimWorker *wo
 static Status write_spectra_of(const TimeJob *job, SimWorker *worker, size_t i, FILE *out, Err *err)
 {
     FloorSamples floors = {.worker = worker};
-    TRY(floor_filter_create(&floors.filter, scene_n_floors(job->scene), 1, err));
+    TRY(floor_record_create(&floors.record, scene_n_floors(job->scene), err));
     const Status status = spectra_of(job, &floors, worker, i, out, err);
-    floor_filter_free(floors.filter);
+    floor_record_free(floors.record);
     return status;
 }
 

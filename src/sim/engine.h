@@ -38,8 +38,8 @@ typedef struct {
     SimSampleFn sample;       /* NULL: not wanted */
     void *sample_user;
     double sample_spacing; /* [s] at most, by halving the motion's samples; 0: every sample of the motion */
-    int sample_floors;     /* displacements of the floors are all that is wanted: the core's modes, force and energies
-                                 may be anything */
+    int sample_peaks;      /* samples are wanted for peaks of the floors: the core's modes, force and energies may be
+                              anything, and samples may end where no peak can rise any more */
     ForceMonitor *forces;  /* set for this design; NULL: not wanted */
     void *work;            /* from EngineEntry.work_create; NULL: the run allocates its own */
 } EngineOptions;

@@ -1,20 +1,41 @@
 #include "sim/floor_filter.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/carve.h"
 #include "base/clones.h"
 #include "base/filter.h"
 #include "scene/building.h"
 
+typedef double v8 __attribute__((vector_size(64)));
+typedef int64_t m8 __attribute__((vector_size(64)));
+
+enum { LANES8 = 8, VECTORS = 3 /* together: each waits for its own last row */, ENTERED = 32 /* rows at once */ };
+
+/* Of a column between two rows: u and a of the last two, then the filter's states. */
+enum { LAST_U, BEFORE_U, LAST_A, BEFORE_A, SECTIONS, STATES = SECTIONS + 2 * FILTER_SECTIONS };
+
 struct FloorFilter {
-    int n;
-    size_t width, rows, room; /* floors padded; samples so far, room for them */
+    int n, out_of_memory;
+    size_t width; /* floors padded */
     double cutoff_hz, h;
-    double *u;      /* (room, width) [m], then accelerations [m/s2] */
-    double *ground; /* (room) [m/s2] */
-    int out_of_memory;
+    Filter filter;
+    double norm;    /* sum |g| */
+    size_t padding; /* rows behind a block */
+    size_t block;   /* rows whose peaks are found at once */
+    size_t entered; /* rows of u that wait */
+    size_t filled;  /* rows of y */
+    double *u;      /* (ENTERED, width) [m] */
+    double *ground; /* (1 + ENTERED) [m/s2], of the row before them first */
+    double *state;  /* (STATES, width) */
+    double *y;      /* (1 + block + padding, width) forward pass; the row before the block first */
+    double *z;      /* (1 + block + 1, width) both passes */
+    double *most;   /* (width) [m/s2] largest magnitude of z so far; infinite behind the last floor */
+    double *peak;   /* (width) [m/s2] of the parabola there */
+    void *store;
 };
 
 static const double SAMPLES_PER_PERIOD = 10; /* of the cutoff frequency */
@@ -30,151 +51,273 @@ Status floor_filter_create(FloorFilter **out, int n_floors, double cutoff_hz, Er
     if (!*out)
         return fail(err, STATUS_NO_MEMORY, "filter: out of memory");
     (*out)->n = n_floors;
-    (*out)->width = ((size_t)n_floors + 7) & ~(size_t)7;
+    (*out)->width = ((size_t)n_floors + LANES8 - 1) & ~(size_t)(LANES8 - 1);
     (*out)->cutoff_hz = cutoff_hz;
     return STATUS_OK;
 }
 
 void floor_filter_free(FloorFilter *f)
 {
-    if (f) {
-        free(f->u);
-        free(f->ground);
-    }
+    if (f)
+        free(f->store);
     free(f);
+}
+
+static void layout(void *object, Carve *c)
+{
+    FloorFilter *f = object;
+    f->u = carve(c, ENTERED * f->width, sizeof(double));
+    f->ground = carve(c, 1 + ENTERED, sizeof(double));
+    f->state = carve(c, STATES * f->width, sizeof(double));
+    f->y = carve(c, (1 + f->block + f->padding) * f->width, sizeof(double));
+    f->z = carve(c, (1 + f->block + 1) * f->width, sizeof(double));
+    f->most = carve(c, f->width, sizeof(double));
+    f->peak = carve(c, f->width, sizeof(double));
+}
+
+/* sum |g| of one pass. */
+static double norm_of(const Filter *filter, size_t rows)
+{
+    double s[FILTER_SECTIONS][2] = {{0}}, sum = 0;
+    for (size_t i = 0; i < rows; i++) {
+        double x = i == 0;
+        FILTER_STEP(filter, x, s);
+        sum += fabs(x);
+    }
+    return sum;
+}
+
+static void set_spacing(FloorFilter *f, double h)
+{
+    Err err = {0};
+    free(f->store);
+    f->store = NULL;
+    f->h = h;
+    f->out_of_memory = 0;
+    if (filter_butterworth(&f->filter, FILTER_LOW_PASS, f->cutoff_hz, h, &err) != STATUS_OK)
+        return;
+    f->padding = filter_padding(&f->filter);
+    f->block = 2 * f->padding;
+    f->norm = norm_of(&f->filter, f->padding);
+    f->store = carve_all(layout, f);
+    f->out_of_memory = !f->store;
 }
 
 void floor_filter_start(FloorFilter *f, double h)
 {
-    f->h = h;
-    f->rows = 0;
-    f->out_of_memory = 0;
+    if (!f->store || h != f->h)
+        set_spacing(f, h);
+    if (!f->store)
+        return;
+    f->entered = 0;
+    f->filled = 1;
+    f->ground[0] = 0;
+    memset(f->state, 0, STATES * f->width * sizeof *f->state);
+    memset(f->y, 0, f->width * sizeof *f->y);
+    for (size_t j = 0; j < f->width; j++) {
+        f->most[j] = j < (size_t)f->n ? 0 : HUGE_VAL;
+        f->peak[j] = 0;
+    }
 }
 
-double floor_filter_step(const FloorFilter *f)
-{
-    return f->h;
-}
+/* -- forward ---------------------------------------------------------------------------------------------------- */
 
-static int make_room(FloorFilter *f, size_t rows)
-{
-    if (rows <= f->room)
-        return 1;
-    const size_t room = rows > 2 * f->room ? rows : 2 * f->room;
-    double *u = realloc(f->u, room * f->width * sizeof *u);
-    f->u = u ? u : f->u;
-    double *ground = u ? realloc(f->ground, room * sizeof *ground) : NULL;
-    f->ground = ground ? ground : f->ground;
-    f->room = ground ? room : f->room;
-    f->out_of_memory |= !ground;
-    return ground != NULL;
-}
+/* Rows of displacements u that enter, ground acceleration of the row before each. */
+typedef struct {
+    size_t n, width;
+    double per_h2; /* [1/s2] */
+    const double *u, *ground;
+} Entry;
 
-double *floor_filter_add(FloorFilter *f, double ground)
+/* With each row of displacements the acceleration of the row before is known, and the filter's input two rows before. */
+static inline __attribute__((always_inline)) void forward_vectors(const int vectors, const Filter *filter,
+                                                                  const Entry *e, size_t at, double state[], double y[])
 {
-    if (!make_room(f, f->rows + 1))
-        return NULL;
-    f->ground[f->rows] = ground;
-    return f->u + f->rows++ * f->width;
-}
-
-/* Rows 1 .. rows-2 become own a_i + bend (a_i-1 - 2 a_i + a_i+1), in place. */
-CLONED static void second_differences(size_t rows, size_t width, double own, double bend, double a[])
-{
-    double before[FLOORS_MAX];
-    memcpy(before, a, width * sizeof *a);
-    for (size_t i = 1; i + 1 < rows; i++) {
-        double *row = a + i * width;
-        for (size_t j = 0; j < width; j++) {
-            const double now = row[j];
-            row[j] = own * now + bend * (before[j] - 2 * now + row[width + j]);
-            before[j] = now;
+    v8 last[VECTORS][SECTIONS], s[VECTORS][FILTER_SECTIONS][2];
+    const size_t width = e->width / LANES8;
+    const v8 *u = (const v8 *)(e->u + at);
+    v8 *own = (v8 *)(state + at), *out = (v8 *)(y + at);
+    for (int j = 0; j < vectors; j++)
+        for (size_t k = 0; k < STATES; k++)
+            *(k < SECTIONS ? &last[j][k] : &s[j][(k - SECTIONS) / 2][k % 2]) = own[k * width + (size_t)j];
+    for (size_t i = 0; i < e->n; i++, u += width, out += width)
+#pragma GCC unroll 3
+        for (int j = 0; j < vectors; j++) {
+            const v8 now = u[j];
+            const v8 a = (last[j][BEFORE_U] - 2 * last[j][LAST_U] + now) * e->per_h2 + e->ground[i];
+            v8 x = last[j][LAST_A] - (last[j][BEFORE_A] - 2 * last[j][LAST_A] + a) * (1.0 / 12);
+            FILTER_STEP(filter, x, s[j]);
+            out[j] = x;
+            last[j][BEFORE_U] = last[j][LAST_U];
+            last[j][LAST_U] = now;
+            last[j][BEFORE_A] = last[j][LAST_A];
+            last[j][LAST_A] = a;
         }
+    for (int j = 0; j < vectors; j++)
+        for (size_t k = 0; k < STATES; k++)
+            own[k * width + (size_t)j] = k < SECTIONS ? last[j][k] : s[j][(k - SECTIONS) / 2][k % 2];
+}
+
+CLONED static void forward(const Filter *filter, const Entry *e, double state[], double y[])
+{
+    size_t at = 0;
+    for (; at + VECTORS * LANES8 <= e->width; at += VECTORS * LANES8)
+        forward_vectors(VECTORS, filter, e, at, state, y);
+    for (; at < e->width; at += LANES8)
+        forward_vectors(1, filter, e, at, state, y);
+}
+
+/* -- backward --------------------------------------------------------------------------------------------------- */
+
+/* Vectors are not passed between functions: not every version of a CLONED one has registers for them. */
+#define V8_WHERE(m, a, b) ((v8)(((m8)(a) & (m)) | ((m8)(b) & ~(m))))
+#define V8_ABS(a)         ((v8)((m8)(a)&INT64_MAX))
+
+/* Can these rows of y raise the largest magnitude of z? */
+CLONED static int may_rise(size_t rows, size_t width, const double y[], double norm, const double most_z[])
+{
+    m8 over = {0};
+    for (size_t at = 0; at < width; at += LANES8) {
+        v8 most = {0};
+        for (size_t i = 0; i < rows; i++) {
+            const v8 now = V8_ABS(*(const v8 *)(y + i * width + at));
+            most = V8_WHERE(now > most, now, most);
+        }
+        over |= most * norm > *(const v8 *)(most_z + at);
+    }
+    int64_t any = 0;
+    for (int i = 0; i < LANES8; i++)
+        any |= over[i];
+    return any != 0;
+}
+
+/* Both passes of rows 0..block + 1 of y from all its rows; the largest magnitude among 1..block of every column, and its
+ * row. */
+static inline __attribute__((always_inline)) void backward_vectors(const int vectors, const Filter *filter, size_t rows,
+                                                                   size_t block, size_t width, const double y[],
+                                                                   double z[], double top[], double top_row[])
+{
+    v8 s[VECTORS][FILTER_SECTIONS][2] = {{{{0}}}}, most[VECTORS] = {{0}}, at[VECTORS] = {{0}};
+    for (size_t i = rows; i-- > 0;)
+#pragma GCC unroll 3
+        for (int j = 0; j < vectors; j++) {
+            v8 x = ((const v8 *)(y + i * width))[j];
+            FILTER_STEP(filter, x, s[j]);
+            if (i > block + 1)
+                continue;
+            ((v8 *)(z + i * width))[j] = x;
+            if (i == 0 || i > block)
+                continue;
+            const v8 now = V8_ABS(x);
+            const m8 more = now > most[j];
+            most[j] = V8_WHERE(more, now, most[j]);
+            at[j] = V8_WHERE(more, (v8){0} + (double)i, at[j]);
+        }
+    for (int j = 0; j < vectors; j++) {
+        ((v8 *)top)[j] = most[j];
+        ((v8 *)top_row)[j] = at[j];
     }
 }
 
-/* Displacements become accelerations; at the ends that of the ground. */
-static void differentiate(FloorFilter *f)
+CLONED static void backward(const Filter *filter, size_t rows, size_t block, size_t width, const double y[], double z[],
+                            double top[], double top_row[])
 {
-    const size_t last = f->rows - 1;
-    second_differences(f->rows, f->width, 0, 1 / (f->h * f->h), f->u);
-    memset(f->u, 0, f->width * sizeof *f->u);
-    memset(f->u + last * f->width, 0, f->width * sizeof *f->u);
-    for (size_t i = 0; i < f->rows; i++)
-        for (size_t j = 0; j < f->width; j++)
-            f->u[i * f->width + j] += f->ground[i];
+    size_t at = 0;
+    for (; at + VECTORS * LANES8 <= width; at += VECTORS * LANES8)
+        backward_vectors(VECTORS, filter, rows, block, width, y + at, z + at, top + at, top_row + at);
+    for (; at < width; at += LANES8)
+        backward_vectors(1, filter, rows, block, width, y + at, z + at, top + at, top_row + at);
 }
 
-/* Block of BLOCK rows with the largest magnitude of every column. */
-enum { BLOCK = 64 };
-
-CLONED static void find_blocks(size_t rows, size_t width, const double a[], double most[], size_t block[])
+/* Largest magnitude of the parabola through a row of a column and its neighbours, where the row's is the largest of
+ * them; else the row's. */
+static double parabola_top(const double *row, size_t width)
 {
-    for (size_t j = 0; j < width; j++)
-        most[j] = 0, block[j] = 0;
-    for (size_t first = 0; first < rows; first += BLOCK) {
-        double top[FLOORS_MAX] = {0};
-        const size_t end = first + BLOCK < rows ? first + BLOCK : rows;
-        for (size_t i = first; i < end; i++)
-            for (size_t j = 0; j < width; j++) {
-                const double y = fabs(a[i * width + j]);
-                top[j] = y > top[j] ? y : top[j];
-            }
-        for (size_t j = 0; j < width; j++)
-            if (top[j] > most[j]) {
-                most[j] = top[j];
-                block[j] = first;
-            }
-    }
-}
-
-/* Largest magnitude of the parabola through row `top` of a column and its neighbours. */
-static double parabola_top(const double a[], size_t top, size_t rows, size_t stride)
-{
-    const double y = a[top * stride];
-    if (top == 0 || top + 1 >= rows)
+    const double left = *(row - width), y = *row, right = row[width];
+    if (fabs(left) > fabs(y) || fabs(right) > fabs(y))
         return fabs(y);
-    const double left = a[(top - 1) * stride], right = a[(top + 1) * stride];
     const double bend = left - 2 * y + right, slope = 0.5 * (right - left);
     return bend != 0 ? fabs(y - 0.5 * slope * slope / bend) : fabs(y);
 }
 
-Status floor_filter_accelerations(FloorFilter *f, const double **rows, size_t *n, size_t *width, Err *err)
+/* Peaks of rows 1..block of y. */
+static void take_block(FloorFilter *f, size_t block)
 {
-    if (f->out_of_memory)
-        return fail(err, STATUS_NO_MEMORY, "filter: no memory for %zu samples", f->rows);
-    if (f->rows > 0)
-        differentiate(f);
-    *rows = f->u;
-    *n = f->rows;
-    *width = f->width;
-    return STATUS_OK;
+    _Alignas(64) double top[FLOORS_MAX], row[FLOORS_MAX];
+    if (!may_rise(f->filled - 1, f->width, f->y + f->width, f->norm, f->most))
+        return;
+    backward(&f->filter, f->filled, block, f->width, f->y, f->z, top, row);
+    for (size_t j = 0; j < (size_t)f->n; j++)
+        if (top[j] > f->most[j]) {
+            f->most[j] = top[j];
+            f->peak[j] = parabola_top(f->z + (size_t)row[j] * f->width + j, f->width);
+        }
+}
+
+/* -- a run ------------------------------------------------------------------------------------------------------ */
+
+/* The rows that wait go through the forward pass, and every block that is complete through the backward one. */
+static void enter(FloorFilter *f)
+{
+    const size_t width = f->width, full = 1 + f->block + f->padding;
+    for (size_t first = 0; first < f->entered;) {
+        const size_t left = f->entered - first, room = full - f->filled, n = left < room ? left : room;
+        forward(&f->filter,
+                &(Entry){.n = n,
+                         .width = width,
+                         .per_h2 = 1 / (f->h * f->h),
+                         .u = f->u + first * width,
+                         .ground = f->ground + first},
+                f->state, f->y + f->filled * width);
+        f->filled += n;
+        first += n;
+        if (f->filled < full)
+            continue;
+        take_block(f, f->block);
+        f->filled -= f->block;
+        memmove(f->y, f->y + f->block * width, f->filled * width * sizeof *f->y);
+    }
+    f->ground[0] = f->ground[f->entered];
+    f->entered = 0;
+}
+
+double *floor_filter_add(FloorFilter *f, double ground)
+{
+    if (!f->store)
+        return NULL;
+    if (f->entered == ENTERED)
+        enter(f);
+    f->ground[1 + f->entered] = ground;
+    return f->u + f->entered++ * f->width;
+}
+
+/* After the last row the floors go on as they went, as long as the filter lags behind, and then the ground stands still. */
+static void run_out(FloorFilter *f)
+{
+    const size_t width = f->width;
+    enter(f);
+    for (int i = 1; i <= 2; i++) {
+        double *u = floor_filter_add(f, f->ground[0]);
+        for (size_t j = 0; j < width; j++)
+            u[j] = f->state[LAST_U * width + j] + i * (f->state[LAST_U * width + j] - f->state[BEFORE_U * width + j]);
+    }
+    enter(f);
+    memset(f->state, 0, SECTIONS * width * sizeof *f->state);
+    f->ground[0] = 0;
+    for (size_t i = 0; i < f->padding; i++)
+        memset(floor_filter_add(f, 0), 0, width * sizeof *f->u);
+    enter(f);
 }
 
 Status floor_filter_peaks(FloorFilter *f, double peaks[], Err *err)
 {
-    Filter filter;
-    const double *rows;
-    double most[FLOORS_MAX];
-    size_t n, width, at[FLOORS_MAX];
-    TRY(filter_butterworth(&filter, FILTER_LOW_PASS, f->cutoff_hz, f->h, err));
-    const size_t samples = f->rows, padding = filter_padding(&filter);
-    for (size_t i = 0; i < padding; i++)
-        floor_filter_add(f, 0);
-    f->rows = samples;
-    TRY(floor_filter_accelerations(f, &rows, &n, &width, err));
-    if (samples == 0) {
-        memset(peaks, 0, (size_t)f->n * sizeof *peaks);
-        return STATUS_OK;
-    }
-    second_differences(samples, width, 1, -1.0 / 12, f->u);
-    memset(f->u + samples * width, 0, padding * width * sizeof *f->u);
-    filter_zero_phase(&filter, samples + padding, width, f->u);
-    find_blocks(samples, width, f->u, most, at);
-    for (int j = 0; j < f->n; j++) {
-        while (at[j] + 1 < samples && fabs(f->u[at[j] * width + (size_t)j]) < most[j])
-            at[j]++;
-        peaks[j] = parabola_top(f->u + j, at[j], samples, width);
-    }
+    if (f->out_of_memory)
+        return fail(err, STATUS_NO_MEMORY, "filter: no memory for %d floors", f->n);
+    if (!f->store)
+        return filter_butterworth(&f->filter, FILTER_LOW_PASS, f->cutoff_hz, f->h, err);
+    run_out(f);
+    if (f->filled > 1 + f->padding)
+        take_block(f, f->filled - 1 - f->padding);
+    memcpy(peaks, f->peak, (size_t)f->n * sizeof *peaks);
     return STATUS_OK;
 }

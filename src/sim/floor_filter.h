@@ -10,13 +10,15 @@
  * magnitude, with a parabola through the largest sample and its neighbours. h <= 1 / (10 fc): at fc the gain is within
  * 0.2 % of that, and a motion at 1/h - fc is seen at fc with 0.6 % of its amplitude.
  *
+ * The backward pass goes block by block, each with filter_padding rows of what follows: all that comes later changes it
+ * by 6e-7 at most. It leaves out a block that cannot raise a peak: |z| <= sum|g| max|y|, y the forward pass, g the
+ * filter's response to an impulse.
+ *
  * Life cycle  floor_filter_create -> (floor_filter_start -> floor_filter_add ... -> floor_filter_peaks) ... -> free
- * Memory      grows with the longest run
+ * Memory      of one block, made by the first start; again where h changes
  * Threads     one filter per simulation under way */
 #ifndef IMTET_SIM_FLOOR_FILTER_H
 #define IMTET_SIM_FLOOR_FILTER_H
-
-#include <stddef.h>
 
 #include "base/status.h"
 
@@ -30,16 +32,11 @@ double floor_filter_spacing(double cutoff_hz); /* [s] most that samples may be a
 /* A run from rest, samples every h [s]. */
 void floor_filter_start(FloorFilter *f, double h);
 
-/* Where the displacements of the next sample go (n_floors padded to 8) [m]; ground acceleration [m/s2] there. NULL: no
- * memory. */
+/* Where the displacements of the next sample go (n_floors padded to 8) [m], until the next call; ground acceleration [m/s2] there.
+ * NULL: no memory. */
 double *floor_filter_add(FloorFilter *f, double ground);
 
-/* Peak of every floor (n_floors) [m/s2]; the samples are gone then. Fails where there was no memory for them. */
+/* Peak of every floor (n_floors) [m/s2]; the run is over then. Fails where there was no memory. */
 Status floor_filter_peaks(FloorFilter *f, double peaks[], Err *err);
-
-double floor_filter_step(const FloorFilter *f); /* [s] h */
-
-/* Before the filter: a_k of every floor, row by row (n, width) [m/s2]. They hold until the next start. */
-Status floor_filter_accelerations(FloorFilter *f, const double **rows, size_t *n, size_t *width, Err *err);
 
 #endif

@@ -1,6 +1,7 @@
 #include "sim/force_monitor.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -8,46 +9,47 @@
 #include "base/clones.h"
 #include "base/units.h"
 
-/* Two groups of outputs, each sampled for itself:
- *   slow    building: V_1..V_n, the overturning moment; velocities of the floors
- *   swift   core, on which impacts act: V_1..V_n, M_1..M_n, displacement of the top; building and core together: base
- *           shear, overturning moment
- * Rows of the tables are padded to vectors of eight. */
+/* Eight outputs, followed together:
+ *   swift   core, on which impacts act: V_1..V_n, M_1..M_n, displacement of the top; building and core together: base shear,
+ *           overturning moment
+ *   slow    building: V_1..V_n, the overturning moment; velocities of the floors */
 typedef double v8 __attribute__((vector_size(64)));
+typedef int64_t m8 __attribute__((vector_size(64)));
 enum { LANES8 = 8 };
 
 /* [s] Slow points that follow sooner are left out; contacts are shorter. */
 static const double SLOW_SPACING = 4e-3;
 
-/* A peak so far may be short of the true one by less than this share: what stays below it is of no interest. */
-static const double NEAR_PEAK = 0.9;
-
 typedef struct {
-    int count;
-    double spacing;             /* [s] */
-    double t[2];                /* [s] of the last point and the one before */
-    long points;                /* in a row */
-    double *now, *last, *first; /* (count) at this point, the last, the one before */
-    double *peak;               /* (count) over continuous time */
-    double *reach_inverse;      /* (count) |output k| <= sqrt(energy) / reach_inverse_k (Cauchy-Schwarz); 0: always 0 */
-    double quiet;               /* [2 J] so much energy raises no peak; < 0: not known */
+    v8 last, first, peak; /* at the last point, the one before; over continuous time */
+    /* |output| is at most the sum of these times ForceReach.by */
+    v8 reach[N_REACHES];
+    double *building, *building_squares; /* (nb, 8) a row per mode, its square over w^2; NULL: none of the building */
+    double *core, *core_squares;         /* (n, 8) */
+    double *force, *ground; /* (n, 8), (8) of a unit force on floor j, of the ground, by the modes left out */
+    int of_velocities;      /* building's */
+    int rose;               /* a peak, at the last point */
+    int stale;              /* peaks rose since its limits were set, */
+    long set;               /* at this look */
+    double spacing, t[2];   /* [s] of the last point and the one before */
+    long points, look;      /* in a row; at which look the last was due */
 } Group;
 
 struct ForceMonitor {
-    int n, nb, n_pad, building_out, core_out, totals_at; /* (core_out): the totals stand in the last eight */
+    int n, nb;
+    int at_both, at_slow, at_velocity, n_groups; /* groups: core from 0, building and core, building, velocities */
     int core_modes, nc, has_residual;
     double z[FLOORS_MAX + 1];
     const CoreBeam *core;
     SceneOptions options;
     double weight_n, thickness[2]; /* [N] of the floors; [m] at base and top */
 
-    double *building_rows; /* (nb, building_out) a row per mode */
-    double *velocity_rows; /* (nb, n_pad) */
-    double *core_rows;     /* (n, core_out) */
-    double *total_rows;    /* (nb, 8) of building modes */
-    double *force_rows;    /* (n, core_out) of a unit force on floor j, by the modes left out */
-    double *ground_row;    /* (core_out) of a unit ground acceleration, by them */
-    Group slow, swift;
+    Group *group; /* (n_groups) */
+    int *due;     /* (n_groups) those whose peaks may rise, n_due of them */
+    int n_due;
+    long looks;
+    double
+        *limit[N_REACHES]; /* (n_groups, padded) where the sum of these times ForceReach.by is below 1, no peak rises */
 
     SimContact open[FLOORS_MAX];
     SimContactFn contact;
@@ -56,31 +58,35 @@ struct ForceMonitor {
     void *store;
 };
 
-static int padded(int n)
+static int eights(int n)
 {
-    return (n + LANES8 - 1) / LANES8 * LANES8;
+    return (n + LANES8 - 1) / LANES8;
 }
 
-static void layout_group(Group *g, Carve *c, int count, double spacing)
+static void layout_group(Group *g, Carve *c, size_t nb, size_t n, int has_building, int has_core)
 {
-    double **const of[] = {&g->now, &g->last, &g->first, &g->peak, &g->reach_inverse};
-    for (size_t i = 0; i < sizeof of / sizeof of[0]; i++)
-        *of[i] = carve(c, (size_t)count, sizeof(double));
-    g->count = count;
-    g->spacing = spacing;
+    const size_t row = LANES8 * sizeof(double);
+    double *const building = has_building ? carve(c, 2 * nb, row) : NULL;
+    double *const core = has_core ? carve(c, 3 * n + 1, row) : NULL;
+    if (!c->base)
+        return;
+    g->building = building;
+    g->building_squares = building ? building + nb * LANES8 : NULL;
+    g->core = core;
+    g->core_squares = core ? core + n * LANES8 : NULL;
+    g->force = core ? core + 2 * n * LANES8 : NULL;
+    g->ground = core ? core + 3 * n * LANES8 : NULL;
 }
 
-static void layout(ForceMonitor *m, Carve *c)
+static void layout(void *object, Carve *c)
 {
-    const size_t n = (size_t)m->n, nb = (size_t)m->nb, core = (size_t)m->core_out;
-    m->building_rows = carve(c, nb * (size_t)m->building_out, sizeof(double));
-    m->velocity_rows = carve(c, nb * (size_t)m->n_pad, sizeof(double));
-    m->core_rows = carve(c, n * core, sizeof(double));
-    m->total_rows = carve(c, nb * LANES8, sizeof(double));
-    m->force_rows = carve(c, n * core, sizeof(double));
-    m->ground_row = carve(c, core, sizeof(double));
-    layout_group(&m->slow, c, m->building_out + m->n_pad, SLOW_SPACING);
-    layout_group(&m->swift, c, m->core_out, 0);
+    ForceMonitor *m = object;
+    m->group = carve(c, (size_t)m->n_groups, sizeof *m->group);
+    m->due = carve(c, (size_t)m->n_groups, sizeof *m->due);
+    for (int i = 0; i < N_REACHES; i++)
+        m->limit[i] = carve(c, (size_t)eights(m->n_groups) * LANES8, sizeof(double));
+    for (int i = 0; i < m->n_groups; i++)
+        layout_group(c->base ? &m->group[i] : NULL, c, (size_t)m->nb, (size_t)m->n, i >= m->at_both, i < m->at_slow);
 }
 
 Status force_monitor_create(ForceMonitor **out, int n_floors, int nb, Err *err)
@@ -91,18 +97,19 @@ Status force_monitor_create(ForceMonitor **out, int n_floors, int nb, Err *err)
         return fail(err, STATUS_NO_MEMORY, "forces: out of memory");
     m->n = n_floors;
     m->nb = nb;
-    m->n_pad = padded(n_floors);
-    m->building_out = padded(n_floors + 1);
-    m->totals_at = padded(2 * n_floors + 1);
-    m->core_out = m->totals_at + LANES8;
-    Carve count = {0};
-    layout(m, &count);
-    m->store = carve_store(&count);
+    m->at_both = eights(2 * n_floors + 1);
+    m->at_slow = m->at_both + 1;
+    m->at_velocity = m->at_slow + eights(n_floors + 1);
+    m->n_groups = m->at_velocity + eights(n_floors);
+    m->store = carve_all(layout, m);
     if (!m->store) {
         free(m);
         return fail(err, STATUS_NO_MEMORY, "forces: no memory for %d floors", n_floors);
     }
-    layout(m, &(Carve){.base = m->store});
+    for (int i = m->at_slow; i < m->n_groups; i++) {
+        m->group[i].spacing = SLOW_SPACING;
+        m->group[i].of_velocities = i >= m->at_velocity;
+    }
     *out = m;
     return STATUS_OK;
 }
@@ -139,60 +146,63 @@ static void storey_forces(const ForceMonitor *m, const double K[], const double 
     }
 }
 
+/* Row i of outputs (count) of groups from `at` on. */
+static void put_row(ForceMonitor *m, int at, int i, int count, const double outputs[], int of_core)
+{
+    for (int k = 0; k < count; k++) {
+        Group *g = &m->group[at + k / LANES8];
+        (of_core ? g->core : g->building)[i * LANES8 + k % LANES8] = outputs[k];
+    }
+}
+
 static void set_building_rows(ForceMonitor *m, const Building *b)
 {
     const int n = m->n;
     const BuildingModel *model = &b->model;
-    double moments[FLOORS_MAX];
+    double outputs[FLOORS_MAX + 1], moments[FLOORS_MAX], velocities[FLOORS_MAX];
     for (int i = 0; i < m->nb; i++) {
-        double *row = m->building_rows + i * m->building_out;
-        storey_forces(m, b->K, model->phi + i, model->n, row, moments);
-        row[n] = moments[0];
-        m->total_rows[i * LANES8] = row[0];
-        m->total_rows[i * LANES8 + 1] = moments[0];
+        storey_forces(m, b->K, model->phi + i, model->n, outputs, moments);
+        outputs[n] = moments[0];
         for (int j = 0; j < n; j++)
-            m->velocity_rows[i * m->n_pad + j] = model->phi[j * model->n + i];
+            velocities[j] = model->phi[j * model->n + i];
+        put_row(m, m->at_both, i, 2, (const double[]){outputs[0], moments[0]}, 0);
+        put_row(m, m->at_slow, i, n + 1, outputs, 0);
+        put_row(m, m->at_velocity, i, n, velocities, 0);
     }
 }
 
 static void set_core_rows(ForceMonitor *m, const CoreBeam *core)
 {
     const int n = m->n;
-    memset(m->core_rows, 0, sizeof(double) * (size_t)(n * m->core_out));
-    for (int i = 0; i < n && core; i++) {
-        double *row = m->core_rows + i * m->core_out;
-        storey_forces(m, core->K, core->phi + i, n, row, row + n);
-        row[2 * n] = core->phi[(n - 1) * n + i];
-        row[m->totals_at] = row[0];
-        row[m->totals_at + 1] = row[n];
-    }
-}
-
-/* Adds to sums (count) the squares of the rows (n, count) over those of omega, NULL: 1. */
-static void add_squares(int n, int count, const double rows[], const double omega[], double sums[])
-{
-    for (int i = 0; i < n; i++)
-        for (int k = 0; k < count; k++) {
-            const double r = rows[i * count + k] / (omega ? omega[i] : 1);
-            sums[k] += r * r;
+    double outputs[2 * FLOORS_MAX + 1] = {0};
+    for (int i = 0; i < n; i++) {
+        if (core) {
+            storey_forces(m, core->K, core->phi + i, n, outputs, outputs + n);
+            outputs[2 * n] = core->phi[(n - 1) * n + i];
         }
+        put_row(m, 0, i, 2 * n + 1, outputs, 1);
+        put_row(m, m->at_both, i, 2, (const double[]){outputs[0], outputs[n]}, 1);
+    }
 }
 
-static void set_reach(ForceMonitor *m, const Building *b, const CoreBeam *core)
+/* Squares of rows (n, 8) over those of omega, NULL: 1. */
+static void set_squares(int n, const double rows[], const double omega[], double squares[])
 {
-    Group *const groups[] = {&m->slow, &m->swift};
-    for (int i = 0; i < 2; i++)
-        memset(groups[i]->reach_inverse, 0, sizeof(double) * (size_t)groups[i]->count);
-    add_squares(m->nb, m->building_out, m->building_rows, b->model.omega, m->slow.reach_inverse);
-    add_squares(m->nb, m->n_pad, m->velocity_rows, NULL, m->slow.reach_inverse + m->building_out);
-    if (core) {
-        add_squares(m->n, m->core_out, m->core_rows, core->omega, m->swift.reach_inverse);
-        add_squares(m->nb, LANES8, m->total_rows, b->model.omega, m->swift.reach_inverse + m->totals_at);
+    for (int i = 0; i < n * LANES8; i++) {
+        const double r = rows[i] / (omega ? omega[i / LANES8] : 1);
+        squares[i] = r * r;
     }
-    for (int i = 0; i < 2; i++)
-        for (int k = 0; k < groups[i]->count; k++)
-            if (groups[i]->reach_inverse[k] > 0)
-                groups[i]->reach_inverse[k] = 1 / sqrt(groups[i]->reach_inverse[k]);
+}
+
+static void set_reaches(ForceMonitor *m, const Building *b, const CoreBeam *core)
+{
+    for (int i = 0; i < m->n_groups; i++) {
+        Group *g = &m->group[i];
+        if (g->building)
+            set_squares(m->nb, g->building, g->of_velocities ? NULL : b->model.omega, g->building_squares);
+        if (g->core && core)
+            set_squares(m->n, g->core, core->omega, g->core_squares);
+    }
 }
 
 void force_monitor_set(ForceMonitor *m, const SceneOptions *o, const Building *b, const CoreBeam *core,
@@ -211,99 +221,79 @@ void force_monitor_set(ForceMonitor *m, const SceneOptions *o, const Building *b
     m->thickness[1] = core ? thickness[1] : 0;
     set_building_rows(m, b);
     set_core_rows(m, core);
-    set_reach(m, b, core);
+    set_reaches(m, b, core);
 }
 
 /* -- points ----------------------------------------------------------------------------------------------------- */
 
 /* What the modes left out add: quasi-static answers to the contacts and to the ground. */
-static void set_residual(ForceMonitor *m)
+static void set_residual(const ForceMonitor *m, Group *g)
 {
-    const int n = m->n, out = m->core_out;
-    m->has_residual = m->core_modes < m->nc;
-    memset(m->force_rows, 0, sizeof(double) * (size_t)(n * out));
-    memset(m->ground_row, 0, sizeof(double) * (size_t)out);
+    memset(g->force, 0, sizeof(double) * (size_t)((m->n + 1) * LANES8)); /* and the ground */
     for (int i = m->core_modes; i < m->nc; i++) {
-        const double *row = m->core_rows + i * out, omega = m->core->omega[i], flexibility = 1 / (omega * omega);
-        for (int k = 0; k < out; k++) {
-            m->ground_row[k] -= m->core->gamma[i] * flexibility * row[k];
-            for (int j = 0; j < n; j++)
-                m->force_rows[j * out + k] -= m->core->phi[j * n + i] * flexibility * row[k];
+        const double *row = g->core + i * LANES8, omega = m->core->omega[i], flexibility = 1 / (omega * omega);
+        for (int k = 0; k < LANES8; k++) {
+            g->ground[k] -= m->core->gamma[i] * flexibility * row[k];
+            for (int j = 0; j < m->n; j++)
+                g->force[j * LANES8 + k] -= m->core->phi[j * m->n + i] * flexibility * row[k];
         }
     }
-}
-
-static void start_group(Group *g)
-{
-    g->points = 0;
-    g->quiet = -1;
-    memset(g->peak, 0, sizeof *g->peak * (size_t)g->count);
+    memset(&g->reach[REACH_FORCE], 0, sizeof g->reach[REACH_FORCE]);
+    for (int k = 0; k < LANES8; k++) {
+        g->reach[REACH_GROUND][k] = fabs(g->ground[k]);
+        for (int j = 0; j < m->n; j++)
+            g->reach[REACH_FORCE][k] = fmax(g->reach[REACH_FORCE][k], fabs(g->force[j * LANES8 + k]));
+    }
 }
 
 void force_monitor_start(ForceMonitor *m, int core_modes)
 {
     m->core_modes = m->nc ? core_modes : 0;
-    set_residual(m);
-    start_group(&m->slow);
-    start_group(&m->swift);
+    m->has_residual = m->core_modes < m->nc;
+    m->n_due = 0;
+    m->looks = 0;
+    for (int q = 0; q < N_REACHES; q++)
+        memset(m->limit[q], 0, sizeof(double) * (size_t)(eights(m->n_groups) * LANES8));
+    for (int i = 0; i < m->n_groups; i++) {
+        Group *g = &m->group[i];
+        g->points = g->look = g->set = 0;
+        g->rose = 0;
+        memset(&g->peak, 0, sizeof g->peak);
+        if (g->core)
+            set_residual(m, g);
+        if (m->nc > 0 || i >= m->at_slow)
+            m->due[m->n_due++] = i;
+    }
     memset(&m->sum, 0, sizeof m->sum);
     memset(m->open, 0, sizeof m->open);
     if (m->contact)
         m->contact(NULL, m->contact_user);
 }
 
-/* out_b += sum_i x_i rows_ib of three vectors b, rows (count, blocks): the sums stay in registers. */
-static inline __attribute__((always_inline)) void add_three(int count, int blocks, const v8 *row, const double x[],
-                                                            v8 *out)
+/* Vectors are not passed between functions: not every version of a CLONED one has registers for them. */
+#define V8_WHERE(m, a, b) ((v8)(((m8)(a) & (m)) | ((m8)(b) & ~(m))))
+#define V8_ABS(a)         ((v8)((m8)(a)&INT64_MAX))
+
+static inline __attribute__((always_inline)) int any(const m8 *mask)
 {
-    v8 s0 = out[0], s1 = out[1], s2 = out[2];
-    for (int i = 0; i < count; i++, row += blocks) {
-        s0 += row[0] * x[i];
-        s1 += row[1] * x[i];
-        s2 += row[2] * x[i];
-    }
-    out[0] = s0;
-    out[1] = s1;
-    out[2] = s2;
+    m8 bits = *mask;
+    bits |= __builtin_shufflevector(bits, bits, 4, 5, 6, 7, 0, 1, 2, 3);
+    bits |= __builtin_shufflevector(bits, bits, 2, 3, 0, 1, 6, 7, 4, 5);
+    return (bits[0] | bits[1]) != 0;
 }
 
-static inline __attribute__((always_inline)) void add_rows(int count, int width, const double rows[], const double x[],
-                                                           double out[])
-{
-    const int blocks = width / LANES8;
-    const v8 *row = (const v8 *)rows;
-    v8 *sum = (v8 *)out;
-    int b = 0;
-    for (; b + 3 <= blocks; b += 3)
-        add_three(count, blocks, row + b, x, sum + b);
-    for (; b < blocks; b++) {
-        v8 s = sum[b];
-        for (int i = 0; i < count; i++)
-            s += row[i * blocks + b] * x[i];
-        sum[b] = s;
-    }
-}
-
-CLONED static void slow_outputs(const ForceMonitor *m, const ForcePoint *p, double out[])
-{
-    memset(out, 0, sizeof *out * (size_t)m->slow.count);
-    add_rows(m->nb, m->building_out, m->building_rows, p->building_q, out);
-    add_rows(m->nb, m->n_pad, m->velocity_rows, p->building_v, out + m->building_out);
-}
-
-CLONED static void swift_outputs(const ForceMonitor *m, const ForcePoint *p, double out[])
-{
-    memset(out, 0, sizeof *out * (size_t)m->swift.count);
-    add_rows(m->core_modes, m->core_out, m->core_rows, p->core_q, out);
-    add_rows(m->nb, LANES8, m->total_rows, p->building_q, out + m->totals_at);
-    if (!m->has_residual)
-        return;
-    add_rows(1, m->core_out, m->ground_row, &p->ground, out);
-    for (FloorSet in = p->in_contact; in; in &= in - 1) {
-        const int j = floor_set_first(in);
-        add_rows(1, m->core_out, m->force_rows + j * m->core_out, p->force + j, out);
-    }
-}
+/* sum += x_i rows_i, of which every second goes to `more`: each sum waits for its own last product. */
+#define ADD_ROWS(count, rows, x, sum, more)                                                                            \
+    do {                                                                                                               \
+        const v8 *row_ = (const v8 *)(rows);                                                                           \
+        int i_ = 0;                                                                                                    \
+        for (; i_ + 2 <= (count); i_ += 2) {                                                                           \
+            sum += row_[i_] * (x)[i_];                                                                                 \
+            more += row_[i_ + 1] * (x)[i_ + 1];                                                                        \
+        }                                                                                                              \
+        if (i_ < (count))                                                                                              \
+            sum += row_[i_] * (x)[i_];                                                                                 \
+    } while (0)
 
 /* Largest magnitude of the parabola through (-h0, y0), (0, y1), (h1, y2), |y1| the largest. */
 static double parabola_top(double h0, double h1, double y0, double y1, double y2)
@@ -313,89 +303,157 @@ static double parabola_top(double h0, double h1, double y0, double y1, double y2
     return curvature == 0 ? fabs(y1) : fabs(y1 - 0.25 * slope * slope / curvature);
 }
 
-/* Returns 1 where a peak rose, 2 or 3 where an output of the last point was a top: the largest of three, and not below
- * the peak so far. */
-CLONED static int raise_to(int count, const double *restrict now, const double *restrict last,
-                           const double *restrict first, double *restrict peak)
-{
-    int64_t tops = 0, higher = 0;
-    for (int k = 0; k < count; k++) {
-        const double y = fabs(now[k]), l = fabs(last[k]), f = fabs(first[k]), p = peak[k];
-        tops |= (int64_t)(l > y) & (int64_t)(l >= f) & (int64_t)(l >= p);
-        higher |= (int64_t)(y > p);
-        peak[k] = y > p ? y : p;
-    }
-    return (int)higher + 2 * (int)tops;
-}
-
-static void raise_tops(Group *g, double t)
+/* Outputs of the last point that are the largest of three, and not below the peak so far. */
+static __attribute__((noinline)) void raise_tops(Group *g, const v8 *now, double t)
 {
     const double h0 = g->t[0] - g->t[1], h1 = t - g->t[0];
-    for (int k = 0; k < g->count; k++) {
-        const double y = fabs(g->last[k]);
-        if (y > fabs(g->now[k]) && y >= fabs(g->first[k]) && y >= g->peak[k])
-            g->peak[k] = parabola_top(h0, h1, g->first[k], g->last[k], g->now[k]);
+    for (int k = 0; k < LANES8; k++) {
+        const double last = fabs(g->last[k]);
+        if (last > fabs((*now)[k]) && last >= fabs(g->first[k]) && last >= g->peak[k])
+            g->peak[k] = parabola_top(h0, h1, g->first[k], g->last[k], (*now)[k]);
     }
 }
 
-/* Takes in g->now at time t. */
-static void add_point(Group *g, double t)
+/* The outputs of a group at a point. */
+static inline __attribute__((always_inline)) void find_outputs(const ForceMonitor *m, const Group *g,
+                                                               const ForcePoint *p, v8 *out)
 {
-    const int rose = raise_to(g->count, g->now, g->last, g->first, g->peak);
-    if (rose > 1 && g->points > 1)
-        raise_tops(g, t);
-    if (rose)
-        g->quiet = -1;
-    double *oldest = g->first;
-    g->first = g->last;
-    g->last = g->now;
-    g->now = oldest;
-    g->t[1] = g->t[0];
-    g->t[0] = t;
-    g->points++;
-}
-
-static int is_due(const Group *g, double t)
-{
-    return g->points == 0 || (t > g->t[0] && t >= g->t[0] + g->spacing);
-}
-
-static void find_quiet(Group *g)
-{
-    double quiet = HUGE_VAL;
-    for (int k = 0; k < g->count; k++) {
-        const double speed = g->reach_inverse[k] > 0 ? g->peak[k] * g->reach_inverse[k] : HUGE_VAL;
-        quiet = speed < quiet ? speed : quiet;
+    v8 now = {0}, more = {0};
+    if (g->building)
+        ADD_ROWS(m->nb, g->building, g->of_velocities ? p->building_v : p->building_q, now, more);
+    if (g->core)
+        ADD_ROWS(m->core_modes, g->core, p->core_q, now, more);
+    if (g->core && m->has_residual) {
+        more += *(const v8 *)g->ground * p->ground;
+        for (FloorSet in = p->in_contact; in; in &= in - 1) {
+            const int j = floor_set_first(in);
+            more += ((const v8 *)g->force)[j] * p->force[j];
+        }
     }
-    g->quiet = NEAR_PEAK * NEAR_PEAK * quiet * quiet;
+    *out = now + more;
 }
 
-static int may_rise(Group *g, double energy)
+CLONED static void follow(const ForceMonitor *m, const ForcePoint *p)
 {
-    if (g->quiet < 0)
-        find_quiet(g);
-    if (energy > g->quiet)
-        return 1;
-    g->points = 0;
-    return 0;
-}
-
-int force_monitor_may_rise(ForceMonitor *m, double building, double core)
-{
-    const int slow = may_rise(&m->slow, building), swift = m->nc > 0 && may_rise(&m->swift, building + core);
-    return slow || swift;
+    for (int i = 0; i < m->n_due; i++) {
+        Group *g = &m->group[m->due[i]];
+        if (m->looks > g->look + 1)
+            g->points = 0;
+        g->look = m->looks;
+        if (g->points > 0 && !(p->t > g->t[0] && p->t >= g->t[0] + g->spacing))
+            continue;
+        v8 now;
+        find_outputs(m, g, p, &now);
+        const v8 y = V8_ABS(now);
+        const m8 higher = y > g->peak;
+        if (g->rose && g->points > 1)
+            raise_tops(g, &now, p->t);
+        g->rose = any(&higher);
+        if (g->rose) {
+            g->peak = V8_WHERE(y > g->peak, y, g->peak);
+            g->stale = 1;
+        }
+        g->first = g->last;
+        g->last = now;
+        g->t[1] = g->t[0];
+        g->t[0] = p->t;
+        g->points++;
+    }
 }
 
 void force_monitor_point(ForceMonitor *m, const ForcePoint *p)
 {
-    if (is_due(&m->slow, p->t)) {
-        slow_outputs(m, p, m->slow.now);
-        add_point(&m->slow, p->t);
+    follow(m, p);
+}
+
+/* -- what may rise ---------------------------------------------------------------------------------------------- */
+
+/* sqrt(squares_0 largest_0), and of the sum of the others. */
+CLONED static void set_reach(int count, const double squares[], const double largest[], v8 reach[2])
+{
+    v8 first = *(const v8 *)squares * largest[0], sum = {0}, more = {0};
+    ADD_ROWS(count - 1, squares + LANES8, largest + 1, sum, more);
+    sum += more;
+    for (int k = 0; k < LANES8; k++) {
+        reach[0][k] = sqrt(first[k]);
+        reach[1][k] = sqrt(sum[k]);
     }
-    if (m->nc > 0 && is_due(&m->swift, p->t)) {
-        swift_outputs(m, p, m->swift.now);
-        add_point(&m->swift, p->t);
+}
+
+/* The largest over the outputs of a group. */
+CLONED static void find_limits(const Group *g, double *const limit[N_REACHES], int i)
+{
+    const v8 least = (v8){0} + 1e-290, scale = 1 / V8_WHERE(g->peak > least, g->peak, least);
+    for (int q = 0; q < N_REACHES; q++) {
+        v8 most = g->reach[q] * scale, turned = __builtin_shufflevector(most, most, 4, 5, 6, 7, 0, 1, 2, 3);
+        most = V8_WHERE(most > turned, most, turned);
+        turned = __builtin_shufflevector(most, most, 2, 3, 0, 1, 6, 7, 4, 5);
+        most = V8_WHERE(most > turned, most, turned);
+        limit[q][i] = most[0] > most[1] ? most[0] : most[1];
     }
+}
+
+static void set_limits(ForceMonitor *m, int i)
+{
+    Group *g = &m->group[i];
+    if (m->nc > 0 || i >= m->at_slow)
+        find_limits(g, m->limit, i);
+    g->stale = 0;
+    g->set = m->looks;
+}
+
+void force_monitor_energies(ForceMonitor *m, const double building[], const double core[])
+{
+    for (int i = 0; i < m->n_groups; i++) {
+        Group *g = &m->group[i];
+        if (g->building)
+            set_reach(m->nb, g->building_squares, building, &g->reach[REACH_BUILDING_1]);
+        if (g->core)
+            set_reach(m->core_modes, g->core_squares, core, &g->reach[REACH_CORE_1]);
+        set_limits(m, i);
+    }
+}
+
+/* Limits that are too strict for a while cost less than to follow every rise of a peak. */
+enum { LOOKS_BETWEEN = 4 };
+
+enum { GROUPS_MAX = 4 * FLOORS_MAX / LANES8 + 8 };
+
+/* Group by group: may it come near a peak? Returns whether any may. */
+CLONED static int find_over(const ForceMonitor *m, const ForceReach *r, m8 over[])
+{
+    m8 all = {0};
+    for (int b = 0; b < eights(m->n_groups); b++) {
+        v8 sum = {0};
+        for (int q = 0; q < N_REACHES; q++)
+            sum += ((const v8 *)m->limit[q])[b] * r->by[q];
+        over[b] = ~(sum <= 1);
+        all |= over[b];
+    }
+    return any(&all);
+}
+
+int force_monitor_may_rise(ForceMonitor *m, const ForceReach *r)
+{
+    m8 over[GROUPS_MAX / LANES8];
+    m->looks++;
+    m->n_due = 0;
+    if (!find_over(m, r, over))
+        return 0;
+    for (int i = 0; i < m->n_groups; i++) {
+        if (!over[i / LANES8][i % LANES8])
+            continue;
+        if (m->group[i].stale && m->looks >= m->group[i].set + LOOKS_BETWEEN) {
+            set_limits(m, i);
+            double sum = 0;
+            for (int q = 0; q < N_REACHES; q++)
+                sum += m->limit[q][i] * r->by[q];
+            if (sum <= 1)
+                continue;
+        }
+        m->due[m->n_due++] = i;
+    }
+    return m->n_due > 0;
 }
 
 /* -- contacts --------------------------------------------------------------------------------------------------- */
@@ -484,26 +542,30 @@ static void report_contacts(const ForceMonitor *m, SimForces *out)
             out->contact_force_max_n = fmax(out->contact_force_max_n, out->contact_force_n[side][j]);
 }
 
+/* Of output k of the groups from `at` on. */
+static double peak_of(const ForceMonitor *m, int at, int k)
+{
+    return m->group[at + k / LANES8].peak[k % LANES8];
+}
+
 void force_monitor_report(ForceMonitor *m, double t, SimForces *out)
 {
     const int n = m->n;
-    const double *building = m->slow.peak, *velocity = building + m->building_out, *core = m->swift.peak;
-    const double *both = core + m->totals_at;
     close_open_contacts(m, t);
     *out = m->sum;
     for (int s = 0; s < n; s++) {
-        out->building_shear_n[s] = building[s];
-        out->peak_velocity_m_s[s] = velocity[s];
-        out->core_shear_n[s] = core[s];
-        out->core_moment_nm[s] = core[n + s];
+        out->building_shear_n[s] = peak_of(m, m->at_slow, s);
+        out->peak_velocity_m_s[s] = peak_of(m, m->at_velocity, s);
+        out->core_shear_n[s] = peak_of(m, 0, s);
+        out->core_moment_nm[s] = peak_of(m, 0, n + s);
     }
-    out->building_base_shear_n = building[0];
-    out->building_overturning_nm = building[n];
-    out->core_base_shear_n = core[0];
-    out->core_overturning_nm = core[n];
-    out->core_top_m = core[2 * n];
-    out->base_shear_n = m->nc > 0 ? both[0] : building[0];
-    out->overturning_nm = m->nc > 0 ? both[1] : building[n];
+    out->building_base_shear_n = out->building_shear_n[0];
+    out->building_overturning_nm = peak_of(m, m->at_slow, n);
+    out->core_base_shear_n = out->core_shear_n[0];
+    out->core_overturning_nm = out->core_moment_nm[0];
+    out->core_top_m = peak_of(m, 0, 2 * n);
+    out->base_shear_n = m->nc > 0 ? peak_of(m, m->at_both, 0) : out->building_base_shear_n;
+    out->overturning_nm = m->nc > 0 ? peak_of(m, m->at_both, 1) : out->building_overturning_nm;
     out->base_shear_ratio = m->weight_n > 0 ? out->base_shear_n / m->weight_n : 0;
     report_contacts(m, out);
     report_stresses(m, out);

@@ -57,9 +57,20 @@ typedef struct {
 } ForcePoint;
 void force_monitor_point(ForceMonitor *m, const ForcePoint *p);
 
-/* May the peaks rise while sum q_i'^2 + w_i^2 q_i^2 of the building and of the core are no more than this [2 J]? If not,
- * points may be left out. */
-int force_monitor_may_rise(ForceMonitor *m, double building, double core);
+/* Points may be left out where no peak can rise, by the energies of the modes e_i = q_i'^2 + w_i^2 q_i^2. With any E_i > 0,
+ *
+ *   |sum_i r_i q_i| <= sqrt(sum_i r_i^2 E_i / w_i^2) sqrt(sum_i e_i / E_i)                       (Cauchy-Schwarz)
+ *
+ * and it is sharp where E_i are the largest e_i of the run; the first mode, which swings longest, apart from the others.
+ * energies: E_i [2 J] of nb building modes and of the core's, when they have risen. may_rise: can any output exceed its
+ * peak by so much? The next points follow those of which it can, up to the next look. */
+enum { REACH_BUILDING_1, REACH_BUILDING, REACH_CORE_1, REACH_CORE, REACH_FORCE, REACH_GROUND, N_REACHES };
+typedef struct {
+    double
+        by[N_REACHES]; /* sqrt(sum e_i / E_i) of modes; for core modes left out [N] sum of |f| on the floors, [m/s2] */
+} ForceReach;
+void force_monitor_energies(ForceMonitor *m, const double building[], const double core[]);
+int force_monitor_may_rise(ForceMonitor *m, const ForceReach *reach);
 
 /* Contacts of a floor with one side of the core: side = sign(u - v). While one is open: impulse [N s], energy lost [J],
  * largest force [N] and indentation [m] of a part of it. */

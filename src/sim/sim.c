@@ -225,7 +225,7 @@ void sim_worker_sample(SimWorker *worker, double spacing, SimSampleFn sample, vo
     run->sample = filters ? take_floors : sample;
     run->sample_user = filters ? worker : user;
     run->sample_spacing = filters ? floor_filter_spacing(worker->scene->options.sim.filter_hz) : spacing;
-    run->sample_floors = filters;
+    run->sample_peaks = filters;
 }
 
 void sim_worker_contacts(SimWorker *worker, SimContactFn contact, void *user)

@@ -61,7 +61,8 @@ static void layout(FastWork *k, Carve *c)
     layout_flight(&k->flight, c, modes, floors);
     layout_contact(&k->contact, c, modes, floors);
     layout_reach(&k->reach, c, modes, floors);
-    CARVE(c, modes, &k->record.q, &k->record.v, &k->record.ground_work, &k->record.contact_work, &k->record.damped);
+    CARVE(c, modes, &k->record.q, &k->record.v, &k->record.ground_work, &k->record.contact_work, &k->record.damped,
+          &k->record.most, &k->record.per_most);
     CARVE(c, floors, &k->record.force);
     for (int i = 0; i < 4; i++) {
         CARVE(c, modes, &k->record.batch_q[i]);

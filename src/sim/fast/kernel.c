@@ -19,6 +19,7 @@
 #include "sim/fast/free_flight.inc"
 #include "sim/fast/free_interval.inc"
 #include "sim/fast/contact_forces.inc"
+#include "sim/fast/record_contact.inc"
 #include "sim/fast/contact_step.inc"
 
 /* The level whose step is the wanted share of the shortest Hertz contact at the present speed (or the finest). */
@@ -182,7 +183,9 @@ static long free_intervals(FastWork *k, const Motion *motion, long first, long e
         if (i > first)
             send_now(k, (double)i * motion->dt_s, a.start);
         k->step_start = (double)i * motion->dt_s;
-        flow_interval(k, l, a.start, a.end);
+        flow_to_next(k, l, a.start, a.end);
+        record_flight(k, l, a.start, a.end);
+        take_flow(k, l, a.start, a.end);
     }
     k->flights += n;
     leave_free_intervals(k);
@@ -208,15 +211,20 @@ static int is_settled(FastWork *k, const Motion *motion, long i)
            left <= PEAK_ENERGY * k->most_energy;
 }
 
-/* The rest of the motion without contacts: linear, so that the energies are exact. */
+/* The rest of the motion without contacts: linear, so that the energies are exact. Nothing in it can raise a peak. */
 static void settle(FastWork *k, const Motion *motion, long from, long end)
 {
     const Level *l = level_ready(k, 0, 0);
+    const int shown = k->options->sample && !k->options->sample_peaks;
     for (long i = from; i < end; i++) {
         const Ramp a = ground(motion, i);
         k->step_start = (double)i * motion->dt_s;
-        flow_interval(k, l, a.start, a.end);
-        send_now(k, (double)(i + 1) * motion->dt_s, ground(motion, i + 1).start);
+        flow_to_next(k, l, a.start, a.end);
+        if (shown)
+            sample_inside(k, l, a.start, a.end, 0);
+        take_flow(k, l, a.start, a.end);
+        if (shown)
+            send_now(k, (double)(i + 1) * motion->dt_s, ground(motion, i + 1).start);
     }
     k->flights += end - from;
     leave_free_intervals(k);

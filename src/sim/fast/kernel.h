@@ -82,7 +82,8 @@ typedef struct {
     vec *q, *v, *force;
     vec *ground_work, *contact_work, *damped; /* [J] on each mode, of it dissipated */
     vec *batch_q[4], *batch_u[4];             /* of four samples: modes, floors */
-    double energy[2]; /* [2 J] kinetic and strain of building and core at the start of the step */
+    vec *most, *per_most; /* [2 J] energy that a mode has reached at most, rounded up, and its inverse */
+    double share[4];      /* energy over `most` at the start of the step: first mode, others, of building and core */
 } RecordScratch;
 
 typedef struct FastWork {
