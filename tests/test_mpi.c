@@ -216,6 +216,21 @@ static void test_other_commands_give_their_tasks_to_the_ranks(void **state)
     assert_string_equal(said, alone);
     free(said);
     free(alone);
+    static const char EVALUATE[] = "evaluate @/alone --design knee --record builtin:kobe-like --record "
+                                   "builtin:elcentro-like --replicates 3 --csv -";
+    static const char IDA[] = "evaluate @/alone --design knee --pga 0.1:0.1:0.3 --csv -";
+    static const char SLOPES[] = "simulate @/tower.ini --design @/alone:knee --replicates 2 --sensitivity --csv -";
+    const char *const commands[] = {EVALUATE, IDA, SLOPES};
+    if (lines_in("alone/front.csv") == 0)
+        free(output_of("optimize @/tower.ini --out @/alone"));
+    for (size_t i = 0; i < sizeof commands / sizeof commands[0]; i++) {
+        alone = output_of(commands[i]);
+        expect_code(launch(3, "%s", commands[i]), 0);
+        said = read_in_place("said");
+        assert_string_equal(said, alone);
+        free(said);
+        free(alone);
+    }
 }
 
 /* -- faults ---------------------------------------------------------------------------------------------------------- */

@@ -10,11 +10,12 @@
 #include "base/clock.h"
 #include "base/units.h"
 #include "cmd/show.h"
+#include "evaluate/queue.h"
 #include "evaluate/threads.h"
 #include "scene/motion_scale.h"
 #include "scene/motion_source.h"
-#include "settings/settings.h"
 #include "simulator/baselines.h"
+#include "simulator/recipe.h"
 #include "simulator/estimate.h"
 
 const struct EvaluationCase EVALUATION_CASES[N_WITH_DEVICES] = {{SCENE_IMPACT, "with core", "with_core"},
@@ -120,12 +121,36 @@ Status evaluations_read(Evaluations *e, const Settings *s, Err *err)
     return STATUS_OK;
 }
 
-/* ---- simulating -------------------------------------------------------------------------------------------------- */
+/* ---- one run, a task of the queue -------------------------------------------------------------------------------- */
+
+typedef struct {
+    char path[OPTION_TEXT_MAX];
+    int from_folder;
+} SweepRecord;
+
+/* All runs, plain bytes for any process: task i is run i. */
+typedef struct {
+    RecipeKind kind; /* RECIPE_EVALUATIONS */
+    Settings settings;
+    long replicates;
+    int has_levels;
+    size_t n_var, n_records, n_levels, size;
+    double bytes[]; /* levels (n_levels), then SweepRecord (n_records) */
+} Sweep;
+
+static const SweepRecord *record_of(const Sweep *s, size_t run)
+{
+    return (const SweepRecord *)(s->bytes + s->n_levels) + run / s->n_levels;
+}
+
+static const double *level_of(const Sweep *s, size_t run)
+{
+    return s->has_levels ? &s->bytes[run % s->n_levels] : NULL;
+}
 
 static Status describe_motion(EvaluatedRun *run, const Scenario *w, Err *err)
 {
-    size_t length;
-    FILE *f = open_memstream(&run->motion, &length);
+    FILE *f = fmemopen(run->motion, sizeof run->motion, "w");
     if (!f)
         return fail(err, STATUS_NO_MEMORY, "no memory for a line");
     show_motion(f, &w->motion, w->options.sim.duration_s);
@@ -147,9 +172,14 @@ static Status simulate(const Problem *p, size_t n_var, const double x[], SimResu
     return tower_simulate(p, N_EVALUATED, tasks, results, err);
 }
 
+static int cases_of(int has_levels, int from_folder)
+{
+    return has_levels || from_folder ? N_EVALUATED : N_WITH_DEVICES;
+}
+
 int evaluated_cases(const Evaluations *e, const EvaluatedRun *run)
 {
-    return e->level || run->record->from_folder ? N_EVALUATED : N_WITH_DEVICES;
+    return cases_of(e->level != NULL, run->record->from_folder);
 }
 
 static Status simulate_devices(const Problem *p, const double x[], EvaluatedRun *run, Err *err)
@@ -166,6 +196,22 @@ static Status simulate_devices(const Problem *p, const double x[], EvaluatedRun 
     return STATUS_OK;
 }
 
+/* The words of a summary where they go with it to another process. */
+static void keep_words(EvaluatedRun *run)
+{
+    const char *const words[] = {run->replicates.rule, run->replicates.spread, run->replicates.reason};
+    for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
+        snprintf(run->words[i], sizeof run->words[i], "%s", words[i] ? words[i] : "");
+}
+
+static void point_at_words(EvaluatedRun *run)
+{
+    run->replicates.rule = run->words[0];
+    run->replicates.spread = run->words[1];
+    run->replicates.reason = run->words[2];
+    run->replicates.shown = NULL;
+}
+
 /* The same record with replicates. */
 static Status replicate(const Settings *s, long n, const double x[], EvaluatedRun *run, Err *err)
 {
@@ -176,36 +222,90 @@ static Status replicate(const Settings *s, long n, const double x[], EvaluatedRu
     snprintf(own.motion.records, sizeof own.motion.records, "none");
     TRY(tower_open(&p, &own, TOWER_AS_SET, 1, err));
     const Status status = tower_replicate(&p, 1, x, &shown, &run->replicates, err);
+    keep_words(run);
     problem_close(&p);
     return status;
 }
 
-static Status run_one(const Evaluations *e, EvaluatedRun *run, const Settings *s, const double *level, size_t n_var,
-                      const double x[], Err *err)
+static Status run_on(const Problem *p, const Sweep *s, const Settings *own, int n_cases, const double x[],
+                     EvaluatedRun *run, Err *err)
 {
+    TRY(describe_motion(run, tower_record(tower_of(p), 0), err));
+    TRY(simulate(p, s->n_var, x, run->result, err));
+    if (n_cases == N_WITH_DEVICES)
+        TRY(simulate_devices(p, x, run, err));
+    run->error_known = own->sim.engine == ENGINE_FAST && n_cases == N_WITH_DEVICES;
+    if (run->error_known)
+        TRY(estimate_designs(own, 1, &(SimTask){SCENE_IMPACT, x}, run->result, run->error, err));
+    return s->replicates > 0 ? replicate(own, s->replicates, x, run, err) : STATUS_OK;
+}
+
+static Status run_one(void *self, size_t worker, const Task *task, Err *err)
+{
+    const Sweep *s = self;
+    const size_t i = (size_t)task->variant;
+    const SweepRecord *record = record_of(s, i);
     Problem p;
     Settings *own;
-    Status status = settings_for(s, run->record->path, level, &own, err);
+    (void)worker;
+    memset(task->result, 0, sizeof(EvaluatedRun));
+    Status status = settings_for(&s->settings, record->path, level_of(s, i), &own, err);
     if (status == STATUS_OK)
         status = tower_open(&p, own, TOWER_SINGLE, 1, err);
-    if (status != STATUS_OK) {
-        free(own);
-        return status;
+    if (status == STATUS_OK) {
+        status = run_on(&p, s, own, cases_of(s->has_levels, record->from_folder), task->x, task->result, err);
+        problem_close(&p);
     }
-    status = describe_motion(run, tower_record(tower_of(&p), 0), err);
-    if (status == STATUS_OK)
-        status = simulate(&p, n_var, x, run->result, err);
-    if (status == STATUS_OK && evaluated_cases(e, run) == N_WITH_DEVICES)
-        status = simulate_devices(&p, x, run, err);
-    run->error_known = own->sim.engine == ENGINE_FAST && evaluated_cases(e, run) == N_WITH_DEVICES;
-    if (status == STATUS_OK && run->error_known)
-        status = estimate_designs(own, 1, &(SimTask){SCENE_IMPACT, x}, run->result, run->error, err);
-    if (status == STATUS_OK && e->replicates > 0)
-        status = replicate(own, e->replicates, x, run, err);
     free(own);
-    problem_close(&p);
     return status;
 }
+
+static const Simulator SWEEP = {run_one, NULL, NULL};
+
+Status evaluations_open(Problem *p, const void *recipe, size_t size, Err *err)
+{
+    const Sweep *s = recipe;
+    if (size < sizeof *s || size != s->size)
+        return fail(err, STATUS_INTERNAL, "runs of %zu bytes instead of %zu", size, s->size);
+    *p = (Problem){.n_var = s->n_var,
+                   .simulator = &SWEEP,
+                   .self = (void *)s,
+                   .n_parts = 1,
+                   .part_size = sizeof(EvaluatedRun),
+                   .n_workers = threads_wanted(s->settings.search.threads),
+                   .recipe = recipe,
+                   .recipe_size = size};
+    executor_choose(p);
+    return STATUS_OK;
+}
+
+/* To be freed. */
+static Status sweep_of(const Evaluations *e, const Settings *settings, size_t n_var, Sweep **out, Err *err)
+{
+    const size_t size = sizeof **out + e->n_levels * sizeof(double) + e->n_records * sizeof(SweepRecord);
+    Sweep *s = calloc(1, size);
+    *out = s;
+    if (!s)
+        return fail(err, STATUS_NO_MEMORY, "no memory for %zu records", e->n_records);
+    s->kind = RECIPE_EVALUATIONS;
+    s->settings = *settings;
+    s->replicates = e->replicates;
+    s->has_levels = e->level != NULL;
+    s->n_var = n_var;
+    s->n_records = e->n_records;
+    s->n_levels = e->n_levels;
+    s->size = size;
+    if (e->level)
+        memcpy(s->bytes, e->level, e->n_levels * sizeof *e->level);
+    SweepRecord *record = (SweepRecord *)(s->bytes + e->n_levels);
+    for (size_t i = 0; i < e->n_records; i++) {
+        record[i].from_folder = e->record[i].from_folder;
+        TRY(option_put_path(record[i].path, e->record[i].path, err));
+    }
+    return STATUS_OK;
+}
+
+/* ---- all runs ---------------------------------------------------------------------------------------------------- */
 
 typedef struct {
     FILE *out;
@@ -228,41 +328,55 @@ static void tell(Progress *p)
     fflush(p->out);
 }
 
-/* Every run whose record can be read; of several faults that of the first run is reported. */
-static Status run_all(Evaluations *e, const Settings *s, size_t n_var, const double x[], Progress *progress, Err *err)
+/* Every run whose record can be read, a few more at a time than there are workers. */
+static Status run_all(Evaluations *e, Queue *q, const double x[], Progress *progress, Err *err)
 {
-    const int threads = (int)threads_wanted(s->search.threads);
-    const long n = (long)(e->n_records * e->n_levels);
-    long first_bad = n;
-#pragma omp parallel for schedule(dynamic) num_threads(threads)
-    for (long i = 0; i < n; i++) {
-        Err why = {0};
+    const size_t n = e->n_records * e->n_levels, pending = 2 * queue_problem(q)->n_workers;
+    Finished done;
+    for (size_t i = 0; i < n || queue_pending(q) > 0;) {
         EvaluatedRun *run = &e->run[i];
-        Status status = STATUS_OK;
-        run->record = &e->record[i / (long)e->n_levels];
-        if (run->record->readable == STATUS_OK)
-            status = run_one(e, run, s, e->level ? &e->level[i % (long)e->n_levels] : NULL, n_var, x, &why);
-#pragma omp critical(evaluations)
-        {
+        if (i < n && queue_pending(q) < pending) {
+            run->record = &e->record[i / e->n_levels];
             if (run->record->readable == STATUS_OK)
-                tell(progress);
-            if (status != STATUS_OK && i < first_bad) {
-                first_bad = i;
-                *err = why;
-            }
+                TRY(queue_ask(q, &(Asked){.x = x, .variant = (int)i, .only_first = 1, .note = &(double){(double)i}},
+                              err));
+            i++;
+            continue;
         }
+        TRY(queue_next(q, &done, err));
+        run = &e->run[(size_t)*done.note];
+        const EvaluatedRecord *record = run->record;
+        memcpy(run, done.parts, sizeof *run);
+        run->record = record;
+        point_at_words(run);
+        tell(progress);
     }
-    return first_bad < n ? err->code : STATUS_OK;
+    return STATUS_OK;
+}
+
+static Status run_sweep(Evaluations *e, const Sweep *s, const double x[], Progress *progress, Err *err)
+{
+    Problem p;
+    Queue *q;
+    TRY(evaluations_open(&p, s, s->size, err));
+    TRY(queue_open(&q, &p, QUEUE_AS_ASKED, 1, 0, err));
+    const Status status = run_all(e, q, x, progress, err);
+    queue_close(q);
+    return status;
 }
 
 Status evaluations_run(Evaluations *e, const Settings *s, size_t n_var, const double x[], FILE *progress, Err *err)
 {
     const double now = clock_seconds();
     Progress p = {.out = progress, .all = e->n_read * e->n_levels, .began_s = now, .told_s = now};
+    Sweep *sweep = NULL;
     e->run = calloc(e->n_records * e->n_levels, sizeof *e->run);
     if (!e->run)
         return fail(err, STATUS_NO_MEMORY, "no memory for %zu simulations", e->n_records * e->n_levels * N_EVALUATED);
-    const Status status = run_all(e, s, n_var, x, &p, err);
+    Status status = sweep_of(e, s, n_var, &sweep, err);
+    if (status == STATUS_OK)
+        status = run_sweep(e, sweep, x, &p, err);
+    free(sweep);
     if (p.has_line)
         fprintf(progress, "\r%60s\r", "");
     return status;
@@ -270,8 +384,6 @@ Status evaluations_run(Evaluations *e, const Settings *s, size_t n_var, const do
 
 void evaluations_free(Evaluations *e)
 {
-    for (size_t i = 0; e->run && i < e->n_records * e->n_levels; i++)
-        free(e->run[i].motion);
     for (size_t i = 0; i < e->n_records; i++)
         free(e->record[i].path);
     free(e->run);

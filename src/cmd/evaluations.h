@@ -3,8 +3,8 @@
  *   record r, intensity l: every case of EVALUATION_CASES, in run[r n_levels + l].result
  *
  * Life cycle  evaluations_add, evaluations_add_folder ... -> evaluations_read -> evaluations_run -> evaluations_free
- * Threads     evaluations_run has as many as search.threads says, each with a simulator of its own; the results do not
- *             depend on their number
+ * Threads     evaluations_run has the workers of a queue (evaluate/queue.h), threads as search.threads says or ranks of a
+ *             cluster; the results do not depend on their number
  * Errors      a record that cannot be read: status and why of it, where it came from a folder; else that of
  *             evaluations_read */
 #ifndef IMTET_CMD_EVALUATIONS_H
@@ -12,6 +12,7 @@
 
 #include <stdio.h>
 
+#include "evaluate/problem.h"
 #include "simulator/replicates.h"
 
 typedef struct Settings Settings;
@@ -38,15 +39,18 @@ typedef struct {
     Err why;
 } EvaluatedRecord;
 
+enum { MOTION_TEXT_MAX = 1024 };
+
 typedef struct {
     const EvaluatedRecord *record;
-    char *motion; /* a line for people: name, length, peak, scaling */
+    char motion[MOTION_TEXT_MAX]; /* for people: name, length, peak, scaling */
     double pga_g, scale, stretch;
     SimResult result[N_WITH_DEVICES];
     LinearDevice device[N_WITH_DEVICES]; /* optimized under this record (simulator/baselines.h) */
-    ReplicateSummary replicates;         /* of the design, where there are some */
-    double error[N_MEASURES];            /* of the design, estimated (simulator/estimate.h), where error_known */
-    int error_known;                     /* of records that were named, at one intensity, by the engine fast */
+    ReplicateSummary replicates;         /* of the design, where there are some; its words stand in the next line */
+    char words[3][160];
+    double error[N_MEASURES]; /* of the design, estimated (simulator/estimate.h), where error_known */
+    int error_known;          /* of records that were named, at one intensity, by the engine fast */
 } EvaluatedRun;
 
 typedef struct {
@@ -72,6 +76,9 @@ Status evaluations_read(Evaluations *e, const Settings *s, Err *err);
 /* x (n_var) of the design; a line of progress on `progress`, NULL: none. */
 Status evaluations_run(Evaluations *e, const Settings *s, size_t n_var, const double x[], FILE *progress, Err *err);
 void evaluations_free(Evaluations *e);
+
+/* The problem whose tasks are those runs, by its recipe, on another rank (evaluate/cluster.h). */
+Status evaluations_open(Problem *p, const void *recipe, size_t size, Err *err);
 
 const char *evaluated_name(const EvaluatedRecord *r); /* the last part of its path */
 

@@ -13,7 +13,7 @@
 
 #include "evaluate/problem.h"
 
-/* The problem that the recipe is of, with workers and executor of this process. */
+/* The problem that the recipe is of, with workers of this process; the recipe stays where it is until it is closed. */
 typedef Status (*ReopenFn)(Problem *p, const void *recipe, size_t size, Err *err);
 
 enum { CLUSTER_VERSION_MAX = 128 };

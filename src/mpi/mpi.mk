@@ -1,6 +1,6 @@
 # imtet_mpi: the same program over the ranks of MPI. What src/mpi defines takes the place of src/evaluate/alone.c.
 
-.PHONY: mpi test-mpi test-mpi-here
+.PHONY: mpi scale scale-ranks test-mpi test-mpi-here slurm-test
 
 MPICC       ?= mpicc
 MPI_PROGRAM := $(if $(filter release,$(MODE)),imtet_mpi,$(BUILD)/imtet_mpi)
@@ -17,6 +17,15 @@ $(MPI_PROGRAM): $(BUILD)/src/main.o $(MPI_OBJ) $(LIB)
 	@echo '  LD  $@'
 	$(Q)$(MPICC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
 
+$(BUILD)/imtet-bench-ranks: $(BUILD)/bench/ranks.o $(MPI_OBJ) $(LIB)
+	@echo '  LD  $@'
+	$(Q)$(MPICC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
+
+scale-ranks: $(MPI_PROGRAM) $(BUILD)/imtet-bench-ranks ## docs/cluster-scale.md: how far ranks scale, measured and modelled
+	@scripts/scale-ranks
+
+scale: scale-cost scale-ranks ## both pages on scale: docs/scale.md, docs/cluster-scale.md
+
 # A program that differs by its revision alone.
 $(BUILD)/other/provenance.o: src/store/provenance.c $(BUILD)/revision
 	@mkdir -p $(@D)
@@ -25,6 +34,10 @@ $(BUILD)/other/provenance.o: src/store/provenance.c $(BUILD)/revision
 $(BUILD)/other/imtet_mpi: $(BUILD)/src/main.o $(BUILD)/other/provenance.o $(MPI_OBJ) $(LIB)
 	@echo '  LD  $@'
 	$(Q)$(MPICC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
+
+slurm-test: $(PROGRAM) ## configs/slurm on a Slurm of its own, two minutes; skipped where Slurm or MPI are not installed
+	@if command -v $(MPICC) >/dev/null; then $(MAKE) --no-print-directory mpi; fi
+	@scripts/slurm-test
 
 RANKS ?= 4
 test-mpi: ## tests of imtet_mpi with RANKS=4 at most; skipped where there is no mpicc

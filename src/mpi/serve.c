@@ -174,9 +174,9 @@ static void close_problem(Service *s)
     free_line(&s->done);
     free(s->worker);
     s->worker = NULL;
-    free(s->recipe);
-    s->recipe = NULL;
     problem_close(&s->problem);
+    free(s->recipe); /* of which the problem may have been made */
+    s->recipe = NULL;
 }
 
 static Status start_workers(Service *s, Err *err)

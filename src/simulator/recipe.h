@@ -1,4 +1,4 @@
-/* simulator/recipe.h -- of what another process opens the same simulator: Problem.recipe is one of these.
+/* simulator/recipe.h -- of what another process opens the same problem: Problem.recipe begins with its kind.
  *
  * Plain bytes without pointers; files are named by their paths, which must lead to the same files there (Problem.inputs).
  * Ownership  belongs to the simulator, or to its adapter */
@@ -8,7 +8,10 @@
 #include "settings/settings.h"
 #include "simulator/tower.h"
 
+typedef enum { RECIPE_SIMULATOR, RECIPE_EVALUATIONS /* cmd/evaluations.h */ } RecipeKind;
+
 typedef struct {
+    RecipeKind kind;   /* RECIPE_SIMULATOR */
     Settings settings; /* problem.kind says which simulator */
     TowerUse use;      /* of the tower */
 } Recipe;

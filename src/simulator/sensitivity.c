@@ -1,7 +1,6 @@
 #include "simulator/sensitivity.h"
 
 #include <math.h>
-#include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,7 +23,6 @@ typedef struct {
     DesignSpace space;
     const double *x;
     SimResult *results; /* (SIDES_OF_TWO_STEPS, n_replicates) of a parameter */
-    Err *why;           /* the same */
 } Job;
 
 static double setting_of(const Settings *s, size_t key)
@@ -34,53 +32,31 @@ static double setting_of(const Settings *s, size_t key)
     return values[key];
 }
 
-/* Replicate k of the design whose variable `variable` is changed by `change`; none where that is beyond them. */
-static Status simulate(const Job *job, const Tower *t, size_t variable, double change, size_t k, SimResult *out,
-                       Err *err)
+/* Sides first .. first + n - 1 of the steps on one tower, whose variable `variable` is changed; none where that is beyond
+ * them. */
+static Status simulate_sides(Job *job, const Problem *p, size_t variable, double step, size_t first, size_t n, Err *err)
 {
-    const uint32_t seed = (uint32_t)job->settings.search.seed;
-    const UncertainOptions *u = &job->settings.uncertain;
-    SimWorker *w = tower_worker(t, 0, (size_t)omp_get_thread_num());
-    const size_t n_var = (size_t)job->space.n_var;
-    double x[DESIGN_VARIABLES_MAX];
-    Design design;
-    memcpy(x, job->x, n_var * sizeof *x);
-    if (variable < n_var)
-        x[variable] += change;
-    design_of(&job->space, x, &design);
-    replicate_design(seed, k, job->settings.sim.gap_tolerance_m, (size_t)job->space.n_floors, design.gap);
-    const AsBuilt built = replicate_as_built(seed, k, u);
-    TRY(sim_worker_as_built(w, k > 0 && is_uncertain(u) ? &built : NULL, err));
-    return sim_run_built(w, SCENE_IMPACT, &design, out, err);
-}
-
-/* Sides first .. first + n - 1 of the steps on one tower. */
-static Status simulate_sides(Job *job, const Tower *t, size_t variable, double step, int first, int n, Err *err)
-{
-    const int n_replicates = (int)job->n_replicates, end = (first + n) * n_replicates;
-    int bad = -1;
-#pragma omp parallel for schedule(dynamic) num_threads((int)tower_n_workers(t))
-    for (int i = first * n_replicates; i < end; i++) {
-        const Status status = simulate(job, t, variable, AT[i / n_replicates] * step, (size_t)(i % n_replicates),
-                                       &job->results[i], &job->why[i]);
-        job->why[i].code = status;
+    double X[SIDES_OF_TWO_STEPS * DESIGN_VARIABLES_MAX];
+    for (size_t i = 0; i < n; i++) {
+        double *x = X + i * p->n_var;
+        memcpy(x, job->x, p->n_var * sizeof *x);
+        if (variable < p->n_var)
+            x[variable] += AT[first + i] * step;
     }
-    for (int i = end; i-- > first * n_replicates;)
-        bad = job->why[i].code != STATUS_OK ? i : bad;
-    return bad < 0 ? STATUS_OK : fail(err, job->why[bad].code, "%s", job->why[bad].text);
+    return tower_parts(p, n, X, job->results + first * job->n_replicates, err);
 }
 
 /* A tower of its own for every side: whatever follows from the setting follows. */
 static Status simulate_setting(Job *job, const char *key, double value, double step, Err *err)
 {
-    for (int side = 0; side < SIDES_OF_TWO_STEPS; side++) {
+    for (size_t side = 0; side < SIDES_OF_TWO_STEPS; side++) {
         Settings s = job->settings;
         Problem p;
         char text[100];
         snprintf(text, sizeof text, "%s=%.17g", key, value + AT[side] * step);
         TRY(settings_set(&s, text, err));
-        TRY(tower_open(&p, &s, TOWER_SINGLE, job->n_replicates, err));
-        const Status status = simulate_sides(job, tower_of(&p), SIZE_MAX, 0, side, 1, err);
+        TRY(tower_open(&p, &s, TOWER_AS_SET, job->n_replicates, err));
+        const Status status = simulate_sides(job, &p, SIZE_MAX, 0, side, 1, err);
         problem_close(&p);
         TRY(status);
     }
@@ -112,7 +88,7 @@ static void conclude(const Job *job, Sensitivity *out)
     }
 }
 
-static Status vary_design(Job *job, const Tower *t, Sensitivity *out, Err *err)
+static Status vary_design(Job *job, const Problem *p, Sensitivity *out, Err *err)
 {
     for (size_t j = 0; j < (size_t)job->space.n_var; j++) {
         design_variable_name(&job->space, (int)j, out[j].name);
@@ -123,7 +99,7 @@ static Status vary_design(Job *job, const Tower *t, Sensitivity *out, Err *err)
                 out[j].slope[k] = out[j].error[k] = NAN;
             continue;
         }
-        TRY(simulate_sides(job, t, j, out[j].step, 0, SIDES_OF_TWO_STEPS, err));
+        TRY(simulate_sides(job, p, j, out[j].step, 0, SIDES_OF_TWO_STEPS, err));
         conclude(job, &out[j]);
     }
     return STATUS_OK;
@@ -145,21 +121,18 @@ static Status vary_settings(Job *job, Sensitivity *out, size_t *n, Err *err)
     return STATUS_OK;
 }
 
-static Status find(Job *job, const Tower *t, Sensitivity **out, size_t *n, Err *err)
+static Status find(Job *job, const Problem *p, Sensitivity **out, size_t *n, Err *err)
 {
     const size_t parts = SIDES_OF_TWO_STEPS * job->n_replicates;
-    job->space = *tower_design(t);
+    job->space = *tower_design(tower_of(p));
     *n = (size_t)job->space.n_var;
     *out = calloc(*n + N_KEYS, sizeof **out);
     job->results = calloc(parts, sizeof *job->results);
-    job->why = calloc(parts, sizeof *job->why);
-    Status status = *out && job->results && job->why
-                        ? vary_design(job, t, *out, err)
-                        : fail(err, STATUS_NO_MEMORY, "no memory for %zu simulations", parts);
+    Status status = *out && job->results ? vary_design(job, p, *out, err)
+                                         : fail(err, STATUS_NO_MEMORY, "no memory for %zu simulations", parts);
     if (status == STATUS_OK)
         status = vary_settings(job, *out, n, err);
     free(job->results);
-    free(job->why);
     return status;
 }
 
@@ -173,9 +146,11 @@ Status sensitivity_find(const Settings *s, const double x[], size_t n_replicates
         return fail(err, STATUS_NO_MEMORY, "no memory for settings");
     *job = (Job){.settings = *s, .n_replicates = n_replicates, .x = x};
     job->settings.sim.forces = FORCES_YES;
-    Status status = tower_open(&p, &job->settings, TOWER_SINGLE, SIZE_MAX, err);
+    job->settings.sim.replicates = (long)n_replicates;
+    snprintf(job->settings.motion.records, sizeof job->settings.motion.records, "none");
+    Status status = tower_open(&p, &job->settings, TOWER_AS_SET, SIZE_MAX, err);
     if (status == STATUS_OK) {
-        status = find(job, tower_of(&p), out, n, err);
+        status = find(job, &p, out, n, err);
         problem_close(&p);
     }
     free(job);

@@ -12,7 +12,7 @@
  * Under the first record; forces are computed.
  *
  * Ownership  sensitivity_find allocates *out for free
- * Threads    as search.threads says; the numbers do not depend on it */
+ * Threads    as search.threads says, or ranks; the numbers do not depend on it */
 #ifndef IMTET_SIMULATOR_SENSITIVITY_H
 #define IMTET_SIMULATOR_SENSITIVITY_H
 

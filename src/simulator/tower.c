@@ -301,6 +301,28 @@ Status tower_simulate(const Problem *p, size_t n, const SimTask tasks[], SimResu
     return status;
 }
 
+static Status all_parts(Queue *q, size_t n, const double X[], SimResult results[], Err *err)
+{
+    const Problem *p = queue_problem(q);
+    Finished done;
+    for (size_t i = 0; i < n; i++)
+        TRY(queue_ask(q, &(Asked){.x = X + i * p->n_var}, err));
+    for (size_t i = 0; i < n; i++) {
+        TRY(queue_next(q, &done, err));
+        memcpy(results + i * p->n_parts, done.parts, p->n_parts * sizeof *results);
+    }
+    return STATUS_OK;
+}
+
+Status tower_parts(const Problem *p, size_t n, const double X[], SimResult results[], Err *err)
+{
+    Queue *q;
+    TRY(queue_open(&q, p, QUEUE_AS_ASKED, 0, 0, err));
+    const Status status = all_parts(q, n, X, results, err);
+    queue_close(q);
+    return status;
+}
+
 static Status replicate_all(Queue *q, size_t n, const double X[], SimResult shown[], ReplicateSummary out[], Err *err)
 {
     const Problem *p = queue_problem(q);

@@ -51,6 +51,9 @@ typedef struct {
 /* n simulations of the first record, without replicates, shared out over the workers. */
 Status tower_simulate(const Problem *p, size_t n, const SimTask tasks[], SimResult results[], Err *err);
 
+/* Every simulation of X (n, n_var): results (n, n_records, n_replicates). */
+Status tower_parts(const Problem *p, size_t n, const double X[], SimResult results[], Err *err);
+
 /* X (n, n_var) with all replicates and records of the tower; out[i].shown = &shown[i]. */
 Status tower_replicate(const Problem *p, size_t n, const double X[], SimResult shown[], ReplicateSummary out[],
                        Err *err);
