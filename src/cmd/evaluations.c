@@ -107,9 +107,8 @@ static Status try_record(const Settings *s, const char *path, const double *leve
 
 Status evaluations_read(Evaluations *e, const Settings *s, Err *err)
 {
-    const int threads = (int)threads_wanted(s->search.threads);
     const long n = (long)e->n_records;
-#pragma omp parallel for schedule(dynamic) num_threads(threads)
+#pragma omp parallel for schedule(dynamic) num_threads((int)threads_wanted(s->search.threads))
     for (long i = 0; i < n; i++)
         e->record[i].readable = try_record(s, e->record[i].path, e->level, &e->record[i].why);
     for (long i = 0; i < n; i++) {

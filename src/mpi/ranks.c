@@ -331,7 +331,7 @@ static Status wait_until_open(Ranks *r, Err *err)
     Status status = STATUS_OK;
     int first_bad = r->n + 1, from, tag;
     for (int n_open = 0; n_open < r->n;) {
-        OpenedMessage m;
+        OpenedMessage m = {0};
         Err why = {0};
         size_t n;
         while ((tag = receive(r, &from, &n)) == 0 && clock_seconds() < give_up_s)

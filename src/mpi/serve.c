@@ -165,7 +165,8 @@ static void free_line(Line *line)
 static void close_problem(Service *s)
 {
     pthread_mutex_lock(&s->lock);
-    s->closing = s->stopped = 1;
+    s->closing = 1;
+    s->stopped = 1;
     pthread_cond_broadcast(&s->work);
     pthread_mutex_unlock(&s->lock);
     for (; s->n_workers > 0; s->n_workers--)
