@@ -123,16 +123,11 @@ const overlaysOf = (detail) => (detail?.baselines ?? []).filter((b) => b.objecti
 const overlays = overlaysOf(run.detail);
 const shownOverlays = () => overlays.filter((o) => o.isShown);
 
-// Least and largest value of the designs that are kept, and of what is shown beside them.
+// Ends of a column's scale: of the designs that are kept (c.low, c.high; of all numbered columns alike together), and of what
+// is shown beside them.
 function extent(c, beside = shownOverlays()) {
-  let low = Infinity, high = -Infinity;
-  const take = (v) => {
-    if (v < low) low = v;
-    if (v > high) high = v;
-  };
-  for (const one of c.sense ? [c] : c.family) for (let i = 0; i < n; i++) if (state.kept[i]) take(one.value[i]);
-  for (const o of beside) take(o.value.get(c) ?? NaN);
-  return [low, high];
+  const all = [...(c.sense ? [c] : c.family).flatMap(({ low, high }) => [low, high]), ...beside.map((o) => o.value.get(c)).filter(Number.isFinite)];
+  return [Math.min(...all), Math.max(...all)];
 }
 
 function scaleOf(c, from, to, pad) {

@@ -95,6 +95,14 @@ function findKept() {
     for (let i = 0; i < n; i++) kept[i] = keep ? hit[i] : kept[i] & ~hit[i];
   }
   state.nKept = kept.reduce((a, b) => a + b, 0);
+  for (const c of columns) {
+    [c.low, c.high] = [Infinity, -Infinity];
+    for (let i = 0; i < n; i++)
+      if (kept[i]) {
+        if (c.value[i] < c.low) c.low = c.value[i];
+        if (c.value[i] > c.high) c.high = c.value[i];
+      }
+  }
   findSelected();
 }
 

@@ -70,7 +70,7 @@ function rangeInputs() {
   views.layout.push(() => {
     for (const { c, axis, low, high } of inputs) {
       axis.checked = state.axes.includes(c);
-      [low.placeholder, high.placeholder] = extent(c, []).map(show);
+      [low.placeholder, high.placeholder] = [c.low, c.high].map(show);
     }
   });
   follow(null, () => {

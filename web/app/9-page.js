@@ -1,5 +1,6 @@
 // In order; what is on the first screen is drawn first.
 
+findKept();
 summaryPart();
 frontPart();
 growthPart();
