@@ -183,14 +183,14 @@ static void write_front(FILE *script, const Report *r)
     write_rows(script, "KNEE", r, 1, &r->knee);
     write_baselines(script, r);
     fprintf(script,
-            "set multiplot layout 1,%zu margins 0.055,0.905,0.135,0.88 spacing 0.066,0\n"
+            "set multiplot layout 1,%zu margins 0.055,0.905,0.16,0.88 spacing 0.066,0\n"
             "set offsets graph 0.02, graph 0.04, graph 0.04, graph 0.02\nunset colorbox\n%sset cblabel ",
             n, r->has_detail ? "set xrange [0:*]\nset yrange [0:*]\n" : "");
     write_label(script, r, r->run->schema.n_obj - 1);
     fputs(" noenhanced\n", script);
     for (size_t i = 0; i < n; i++) {
         if (i + 1 == n)
-            fputs("set colorbox user origin 0.922,0.135 size 0.013,0.745\n", script);
+            fputs("set colorbox user origin 0.922,0.16 size 0.013,0.72\n", script);
         write_panel(script, r, &panels[i], i == 0);
     }
 }
@@ -440,7 +440,7 @@ static void write_elsewhere(FILE *script, const Report *r)
     for (size_t e = 0; e < d->n_elsewhere; e++) {
         const Elsewhere *at = &d->elsewhere[e];
         const SimResult *const pair[] = {&at->with_core, &at->no_core};
-        const double top = 1 - ((double)e + 0.09) / rows, bottom = 1 - ((double)e + 0.86) / rows;
+        const double top = 1 - ((double)e + 0.09) / rows, bottom = 1 - ((double)e + 0.83) / rows;
         write_modes_of(script, "M", 2, pair);
         fputs("$P << EOD\n", script);
         for (int j = 0; j < d->n_floors; j++)
