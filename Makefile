@@ -59,7 +59,9 @@ LIB      := $(BUILD)/libimtet.a
 PROGRAM  := $(if $(filter release,$(MODE)),imtet,$(BUILD)/imtet)
 TEST_SRC := $(filter-out tests/test_mpi.c,$(wildcard tests/test_*.c))
 TESTS    := $(TEST_SRC:%.c=$(BUILD)/%)
-STABILITY.asan := --engine fast
+# The program's engines in its tests; `make stability` has all.
+STABILITY.release := fast cvode
+STABILITY.asan    := fast
 
 .PHONY: all help setup run test tests check format install clean .FORCE
 .SECONDARY:
@@ -149,7 +151,7 @@ LONG := search faults torture store store_faults report stability study disk noi
 NAMES := $(filter $(TEST_SRC:tests/test_%.c=%) stability,$(LONG)) $(filter-out $(LONG),$(TEST_SRC:tests/test_%.c=%))
 
 # One line per job: mode, name, command.
-job = $(if $(filter stability,$(2)),'$(1) stability build/$(1)/imtet-bench stability --quick --seconds 3 $(STABILITY.$(1))' \
+job = $(if $(filter stability,$(2)),$(foreach e,$(STABILITY.$(1)),'$(1) stability_$(e) build/$(1)/imtet-bench stability --quick --seconds 3 --engine $(e)') \
       '$(1) laws build/$(1)/imtet-bench laws','$(1) test_$(2) build/$(1)/tests/test_$(2)')
 jobs = $(foreach name,$(2),$(foreach mode,$(1),$(call job,$(mode),$(name))))
 

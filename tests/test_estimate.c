@@ -99,6 +99,8 @@ static SimResult run_window(const SceneOptions *o, const PromiseCase *c)
 static void test_the_error_is_below_its_estimate_in_nine_of_ten_results(void **state)
 {
     (void)state;
+    if (SANITIZED) /* long, and the code is that of any window */
+        skip();
     static const int RESULTS[] = {MEASURE_J1, MEASURE_J2, MEASURE_J3, MEASURE_ED1, MEASURE_ED5_10, MEASURE_EDCS};
     SceneOptions o = paper_scene(), twice = o, fine = o;
     Motion m;

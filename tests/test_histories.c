@@ -33,13 +33,18 @@ static void write_design(void)
     write_in_place("design.csv", text);
 }
 
+#if SANITIZED /* which reads long tables slowly */
+#define EVERY "2e-3 "
+#else
+#define EVERY "5e-4 "
+#endif
 #define WINDOW "configs/quick.ini --design @/design.csv --set sim.duration_s=22.01 --set sim.accuracy=fine "
 
 static void test_forces_of_a_history_are_those_of_the_contact_law(void **state)
 {
     (void)state;
     write_design();
-    free(output_of("simulate " WINDOW "--history @/fast.csv --every 5e-4 --contacts @/contacts.csv"));
+    free(output_of("simulate " WINDOW "--history @/fast.csv --every " EVERY "--contacts @/contacts.csv"));
     const Table h = table_of("fast.csv"), contacts = table_of("contacts.csv");
     const double nu = 0.3, k = 2 * 2.1e11 * sqrt(0.1) / (3 * (1 - nu * nu)), a = 1.5 * (1 - 0.7);
     size_t compared = 0;
@@ -74,7 +79,7 @@ static void test_forces_of_a_history_are_those_of_the_contact_law(void **state)
 static void test_histories_of_both_engines_agree_before_the_horizon(void **state)
 {
     (void)state;
-    free(output_of("simulate " WINDOW "--engine cvode --history @/cvode.csv --every 5e-4"));
+    free(output_of("simulate " WINDOW "--engine cvode --history @/cvode.csv --every " EVERY));
     const Table a = table_of("fast.csv"), b = table_of("cvode.csv");
     assert_int_equal(a.n_rows, b.n_rows);
     assert_int_equal(a.n_cols, b.n_cols);
@@ -117,7 +122,7 @@ static void test_a_history_reaches_the_peaks_and_its_energies_add_up(void **stat
     }
     assert_close(u, number(o, "j1_m"), 1e-6);
     assert_close(drift, number(o, "j2_m"), 1e-6);
-    assert_close(accel, number(o, "j3_g"), 1e-2);
+    assert_close(accel, number(o, "j3_g"), SANITIZED ? 0.05 : 1e-2);
     assert_true(error < 1e-12 * input);
     assert_true(number(o, "j3_filtered_g") < number(o, "j3_g"));
     json_decref(o);

@@ -7,7 +7,7 @@
 #include "settings/settings.h"
 #include "simulator/sensitivity.h"
 
-enum { N_VAR = 22 };
+enum { N_VAR = 22, REPLICATES = SANITIZED ? 1 : 2 };
 
 static void short_scene(Settings *s, double x[N_VAR], double gap)
 {
@@ -37,6 +37,7 @@ static void test_the_mass_changes_with_the_thickness_as_the_section_says(void **
     size_t n;
     double x[N_VAR], base = 0, top = 0;
     short_scene(&s, x, 5);
+    s.sim.duration_s = 1; /* the mass does not know it */
     CHECK_OK(sensitivity_find(&s, x, 1, &list, &n, &err), &err);
     for (int j = 0; j < 20; j++) {
         const double part = j / 19.0, t = x[20] + (x[21] - x[20]) * part;
@@ -59,7 +60,7 @@ static void test_without_contact_only_the_building_matters_and_its_slope_is_that
     size_t n;
     double x[N_VAR], j1[2];
     short_scene(&s, x, 5);
-    CHECK_OK(sensitivity_find(&s, x, 3, &list, &n, &err), &err);
+    CHECK_OK(sensitivity_find(&s, x, SANITIZED ? 1 : 3, &list, &n, &err), &err);
     for (int j = 0; j < 20; j++)
         assert_true(list[j].slope[MEASURE_J1] == 0 && list[j].error[MEASURE_J1] == 0);
     assert_true(named(list, n, "contact.radius_m")->slope[MEASURE_J3] == 0);
@@ -90,15 +91,17 @@ static void test_with_contact_the_slopes_are_differences_of_simulations_on_any_n
     double x[N_VAR], j1[2];
     short_scene(&s, x, 0.05);
     s.search.threads = 1;
-    CHECK_OK(sensitivity_find(&s, x, 2, &one, &n, &err), &err);
+    CHECK_OK(sensitivity_find(&s, x, REPLICATES, &one, &n, &err), &err);
     s.search.threads = 2;
-    CHECK_OK(sensitivity_find(&s, x, 2, &two, &same, &err), &err);
+    CHECK_OK(sensitivity_find(&s, x, REPLICATES, &two, &same, &err), &err);
     assert_int_equal(n, same);
     for (size_t i = 0; i < n; i++)
         for (int k = 0; k < N_MEASURES; k++)
             assert_true(one[i].slope[k] == two[i].slope[k] || (isnan(one[i].slope[k]) && isnan(two[i].slope[k])));
-    free(two);
-    CHECK_OK(sensitivity_find(&s, x, 1, &two, &n, &err), &err);
+    if (REPLICATES > 1) {
+        free(two);
+        CHECK_OK(sensitivity_find(&s, x, 1, &two, &n, &err), &err);
+    }
     for (int side = 0; side < 2; side++) {
         double changed[N_VAR];
         Problem p;
