@@ -162,6 +162,39 @@ static void test_whatever_takes_a_motion_shows_how_it_is_scaled(void **state)
     shows("evaluate @/scaled --design knee --record builtin:kobe-like");
 }
 
+/* On standard error; the answer stays what it is. */
+static void test_a_setting_that_a_command_does_not_read_is_named(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *arguments, *note;
+    } CASES[] = {
+        {"modes configs/quick.ini --set search.population=30", "--set search.population: imtet modes does not read it"},
+        {"modes configs/quick.ini --set motion.pga_g=0.2", "--set motion.pga_g: imtet modes does not read it"},
+        {"spectrum builtin:kobe-like --set sim.engine=cvode", "--set sim.engine: imtet spectrum does not read it"},
+        {"spectrum builtin:kobe-like --unit g", "--unit has no effect: it is read where a record is a file"},
+        {"building guyan --set core.side_m=9", "--set core.side_m: imtet building does not read it"},
+        {"problem dtlz2 --set problem.kind=wfg4 --max-evals 12 --csv @/dtlz2.csv",
+         "--set problem.kind: imtet problem does not read it"},
+        {"simulate configs/quick.ini --design none --set sim.duration_s=1 --set core.width_m=3",
+         "--set core.width_m has no effect: it is read where core.section = plate"},
+    };
+    for (size_t i = 0; i < sizeof CASES / sizeof CASES[0]; i++)
+        expect(0, CASES[i].note, CASES[i].arguments);
+    Said s;
+    run(&s, "modes configs/quick.ini --spectrum --set motion.pga_g=0.2 --set core.side_m=9");
+    assert_string_equal(s.err, "");
+    forget(&s);
+    expect(0, "warning: building.damping_table: has no effect",
+           "check configs/quick.ini --set building.damping_table=1");
+    expect(65, "problem.kind: is no tower", "simulate configs/quick.ini --design none --set problem.kind=dtlz2");
+    const double gap[2] = {0.01, 0.02}, wall[2] = {0.02, 0.02};
+    write_designs("two.csv", 2, gap, wall, wall);
+    expect(2, "two.csv: holds 2 designs, and one is wanted", "modes configs/quick.ini --design @/two.csv");
+    expect(2, "two.csv:1", "horizon configs/quick.ini --design @/two.csv");
+    expect(2, "holds 2 designs", "simulate configs/quick.ini --sensitivity --design @/two.csv");
+}
+
 static void test_missing_inputs_end_with_66(void **state)
 {
     (void)state;
@@ -544,6 +577,7 @@ int main(void)
         cmocka_unit_test(test_bad_settings_and_data_end_with_65),
         cmocka_unit_test(test_old_names_are_understood_and_the_new_ones_told),
         cmocka_unit_test(test_whatever_takes_a_motion_shows_how_it_is_scaled),
+        cmocka_unit_test(test_a_setting_that_a_command_does_not_read_is_named),
         cmocka_unit_test(test_missing_inputs_end_with_66),
         cmocka_unit_test(test_output_that_cannot_be_written_ends_with_74),
         cmocka_unit_test(test_the_printed_settings_are_the_default_file_and_in_order),

@@ -235,6 +235,31 @@ static void test_a_bit_in_the_text_of_a_table_is_found(void **state)
     expect(74, "1 of its 6 tables", "optimize @/bit --max-evals 50 --force-settings");
 }
 
+static void test_a_damaged_run_says_what_its_tables_still_know_and_another_begins_with_it(void **state)
+{
+    (void)state;
+    char advice[PATH_MAX], words[PATH_MAX];
+    snprintf(advice, sizeof advice, "evaluations.csv beside it has 40 evaluations: --new --set search.start=%s/hurt/",
+             place.folder);
+    shell("cp -r sound hurt");
+    sql("hurt/run.sqlite", "UPDATE evaluation SET f = '[0,0,0]' WHERE id = 2");
+    expect(74, advice, "status @/hurt");
+    expect(74, advice, "optimize @/hurt");
+    shell("rm hurt/run.sqlite* && touch hurt/run.sqlite");
+    expect(74, advice, "export @/hurt --csv -");
+    snprintf(words, sizeof words,
+             "optimize @/textbook.ini --new --out @/hurt --set search.start=%s/hurt/evaluations.csv --max-evals 60",
+             place.folder);
+    free(output_of(words));
+    shell("cut -d, -f6-11 sound/evaluations.csv | head -13 > was; cut -d, -f6-11 hurt-2/evaluations.csv | head -13 | "
+          "diff was -");
+    shell("rm hurt/evaluations.csv");
+    expect(74, "is empty, no database of a run; remove it, and the run begins again", "status @/hurt");
+    shell("rm hurt/run.sqlite");
+    free(output_of("optimize @/textbook.ini --out @/hurt"));
+    assert_same_run("sound", "hurt");
+}
+
 /* -- an earlier format --------------------------------------------------------------------------------------------- */
 
 /* As it was before states and generations had digests, and those of evaluations were without kind and generation. */
@@ -303,6 +328,7 @@ int main(void)
         cmocka_unit_test(test_links_in_a_foreign_folder_are_not_followed),
         cmocka_unit_test(test_a_damaged_state_gives_way_to_the_one_before_with_the_same_end),
         cmocka_unit_test(test_a_bit_in_the_text_of_a_table_is_found),
+        cmocka_unit_test(test_a_damaged_run_says_what_its_tables_still_know_and_another_begins_with_it),
         cmocka_unit_test(test_a_run_of_the_format_before_is_read_and_resumed),
     };
     return cmocka_run_group_tests_name("damage", tests, make_sound, clear_place);

@@ -228,7 +228,7 @@ static void test_damage_is_found_on_opening_whatever_was_hit(void **state)
     overwrite("hurt/run.sqlite", 0, "this is a letter", 16);
     expect(74, "is no database of a run", "status @/hurt");
     assert_int_equal(truncate(path_of("hurt/run.sqlite", path), 0), 0);
-    expect(74, "is empty, no database of a run; remove it", "optimize @/hurt");
+    expect(74, "is empty, no database of a run; evaluations.csv beside it has ", "optimize @/hurt");
     assert_int_equal(unlink(path_of("hurt/run.sqlite", path)), 0);
     assert_int_equal(mkdir(path, 0777), 0);
     expect(74, "hurt/run.sqlite: is no file", "status @/hurt");

@@ -57,6 +57,7 @@ static void test_what_is_wrong_in_one_cell_is_named(void **state)
         {"UPDATE run SET n_var = 20000", "it has 20000 variables", STATUS_IO},
         {"UPDATE run SET settings = '[problem]' || char(10) || 'kind = nonsense'", "problem.kind", STATUS_BAD_DATA},
         {"UPDATE run SET settings = '', n_var = 2", "it has 2 variables", STATUS_IO}, /* of a tower */
+        {"UPDATE evaluation SET f = '[0,0,0]', digest = NULL WHERE id = 2", "evaluation 2 has no digest", STATUS_IO},
         {"ALTER TABLE session DROP COLUMN stopped", "1 of its 6 tables are not those of a run", STATUS_IO},
     };
     char folder[PATH_MAX];
@@ -77,9 +78,9 @@ static void test_values_that_are_not_known_are_nan_and_a_word_that_is_not_known_
     Err err = {0};
     char folder[PATH_MAX];
     CHECK_OK(run_read(&h,
-                      changed("UPDATE evaluation SET f = '[1,null,3]', spread = NULL, seconds = NULL, "
-                              "digest = NULL WHERE id = 1;"
-                              "UPDATE evaluation SET kind = 'guessed', digest = NULL WHERE id = 2;"
+                      changed("UPDATE evaluation SET digest = NULL;"
+                              "UPDATE evaluation SET f = '[1,null,3]', spread = NULL, seconds = NULL WHERE id = 1;"
+                              "UPDATE evaluation SET kind = 'guessed' WHERE id = 2;"
                               "UPDATE state SET bytes = x'';"
                               "UPDATE session SET search = NULL, ended = NULL",
                               folder),
@@ -137,9 +138,9 @@ static void test_polished_designs_compete_with_the_front_and_can_be_dropped(void
 #define ROW(id, outcome, f, violation)                                                                                 \
     "INSERT INTO evaluation(id, generation, kind, outcome, reason, seconds, x, f, violation) VALUES (" #id             \
     ", 1, 'polished', '" outcome "', '', 0.1, '[0,0,0,0,0,0]', '" f "', " #violation ");"
-    static const char POLISHED[] =
-        ROW(1000001, "ok", "[0,0,0.9]", 0) ROW(1000002, "ok", "[0,0,1.5]", 0) ROW(1000003, "error", "[0,0,0]", 0)
-            ROW(1000004, "ok", "[0,0,0.1]", 0.5) ROW(1000005, "ok", "[9,9,9]", 0) ROW(1000006, "ok", "[0,0,0.9]", 0);
+    static const char POLISHED[] = ROW(1000001, "ok", "[0,0,0.9]", 0) ROW(1000002, "ok", "[0,0,1.5]", 0)
+        ROW(1000003, "error", "[0,0,0]", 0) ROW(1000004, "ok", "[0,0,0.1]", 0.5) ROW(1000005, "ok", "[9,9,9]", 0)
+            ROW(1000006, "ok", "[0,0,0.9]", 0) "UPDATE evaluation SET digest = NULL;";
     Run sound, h;
     Err err = {0};
     char folder[PATH_MAX];

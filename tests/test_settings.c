@@ -7,7 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "settings/settings.h"
+#include "settings/idle.h"
 #include "simulator/textbook.h"
 
 enum { KEYS_MAX = 200 };
@@ -173,8 +173,8 @@ typedef struct {
 static void is_the_changed_one(const char *key, unsigned flags, const char *was, const char *is, void *user)
 {
     Changed *c = user;
-    static const char *const LIMITS[] = {"search.max_evals", "search.generations", "search.max_hours",
-                                         "search.nondominated_share", "search.stop_after", "problem.timeout_s"};
+    static const char *const LIMITS[] = {"search.max_evals",          "search.generations", "search.max_hours",
+                                         "search.nondominated_share", "search.stop_after",  "problem.timeout_s"};
     static const char *const FREE[] = {"search.threads", "search.failures_max", "run.out",       "search.start",
                                        "motion.record",  "motion.records",      "building.model"};
     unsigned wanted = 0;
@@ -566,9 +566,67 @@ static void test_what_is_too_large_or_a_device_or_a_left_pipe_is_no_settings_fil
     remove(path);
 }
 
+/* Of each setting that waits for another: idle by default, read once the other is set. */
+static void test_a_setting_that_waits_for_another_is_idle_until_then(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *key, *wakes;
+    } CASES[] = {{"core.width_m", "core.section=plate"},
+                 {"core.area_top_m2", "core.section=effective"},
+                 {"building.damping_table", "building.damping_model=table"},
+                 {"building.rayleigh_modes", "building.damping_model=rayleigh"},
+                 {"contact.bumper_damping", "contact.bumper_stiffness_n_m=1e9"},
+                 {"contact.bumper_strain_max", "design.variables=gaps, thickness, bumper"},
+                 {"design.side_max_m", "design.variables=gaps, thickness, side"},
+                 {"motion.sa_period_s", "motion.sa_g=0.3"},
+                 {"motion.ec8_tb_s", "motion.target=eurocode8"},
+                 {"motion.asce7_tl_s", "motion.target=asce7"},
+                 {"motion.target_to_s", "motion.target=asce7"},
+                 {"motion.unit", "motion.record=mine.csv"},
+                 {"sim.robust", "sim.replicates=4"},
+                 {"sim.robust", "motion.records=builtin:sylmar-like"},
+                 {"problem.lower", "problem.kind=external"},
+                 {"problem.variable_names", "problem.kind=dtlz2"}};
+    static const char *const READ[] = {"core.side_m",       "building.damping", "sim.tolerance",
+                                       "motion.pga_g",      "search.seed",      "building.storey_m",
+                                       "search.objectives", "problem.kind",     "problem.noisy"};
+    for (size_t i = 0; i < sizeof CASES / sizeof CASES[0]; i++) {
+        Settings s;
+        Err err = {0};
+        settings_defaults(&s);
+        assert_non_null(settings_idle(&s, CASES[i].key));
+        CHECK_OK(settings_set(&s, CASES[i].wakes, &err), &err);
+        if (settings_idle(&s, CASES[i].key))
+            fail_msg("%s with %s", CASES[i].key, CASES[i].wakes);
+    }
+    for (size_t i = 0; i < sizeof READ / sizeof READ[0]; i++) {
+        Settings s;
+        settings_defaults(&s);
+        assert_null(settings_idle(&s, READ[i]));
+    }
+    Settings external;
+    settings_defaults(&external);
+    external.problem.kind = PROBLEM_EXTERNAL;
+    assert_non_null(settings_idle(&external, "contact.law"));
+    assert_null(settings_idle(&external, "search.population"));
+}
+
+static void test_patterns_are_keys_sections_and_beginnings(void **state)
+{
+    (void)state;
+    assert_true(settings_match("core motion.pga_g", "core.side_m") &&
+                settings_match("core motion.pga_g", "motion.pga_g"));
+    assert_false(settings_match("core motion.pga_g", "motion.pga") || settings_match("core", "corex.side_m"));
+    assert_true(settings_match("problem.*_names", "problem.variable_names"));
+    assert_false(settings_match("problem.*_names", "problem.variables"));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_a_setting_that_waits_for_another_is_idle_until_then),
+        cmocka_unit_test(test_patterns_are_keys_sections_and_beginnings),
         cmocka_unit_test(test_every_default_is_in_its_range_and_the_rules_hold),
         cmocka_unit_test(test_keys_are_unique),
         cmocka_unit_test(test_the_words_of_problem_kind_are_the_names_of_the_textbook_problems),

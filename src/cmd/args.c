@@ -5,7 +5,7 @@
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
-#include "settings/settings.h"
+#include "settings/idle.h"
 
 enum { OPTIONS_MAX = 32 };
 
@@ -334,6 +334,42 @@ static void tell_old_keys(Settings *s)
     s->old_keys = 0;
 }
 
+/* Is the key among the command's `unread`, with these options? */
+static int is_unread(const Args *args, const char *key)
+{
+    char pattern[128];
+    for (const char *p = args->command->unread; p && *p; p += strspn(p, " ")) {
+        const size_t n = strcspn(p, " ");
+        snprintf(pattern, sizeof pattern, "%.*s", (int)n, p);
+        p += n;
+        char *mark = strpbrk(pattern, "?!");
+        const int wanted = mark && *mark == '?', applies = !mark || args_has(args, mark + 1) == wanted;
+        if (mark)
+            *mark = 0;
+        if (applies && settings_match(pattern, key))
+            return 1;
+    }
+    return 0;
+}
+
+/* A setting that was given and changes nothing is named. */
+static void tell_idle(const Args *args, const Given *g, const Settings *s)
+{
+    const int is_set = strcmp(g->option->name, "--set") == 0;
+    char key[128];
+    if (!is_set && !g->option->setting)
+        return;
+    snprintf(key, sizeof key, "%.*s", is_set ? (int)strcspn(g->value, "=") : 127,
+             is_set ? g->value : g->option->setting);
+    const Command *c = args->command;
+    const char *waits_for = settings_idle(s, key), *word = is_set ? key : "",
+               *option = is_set ? "--set " : g->option->name;
+    if ((c->reads && is_set && !settings_match(c->reads, key)) || is_unread(args, key))
+        fprintf(stderr, "note: %s%s: %s %s does not read it\n", option, word, program_of(c), c->name);
+    else if (waits_for)
+        fprintf(stderr, "note: %s%s has no effect: it is read where %s\n", option, word, waits_for);
+}
+
 Status args_apply(const Args *args, Settings *s, FILE *faults, int *n_faults, Err *err)
 {
     Status first = STATUS_OK;
@@ -349,6 +385,9 @@ Status args_apply(const Args *args, Settings *s, FILE *faults, int *n_faults, Er
             break;
     }
     tell_old_keys(s);
+    for (int i = 0; i < args->n_given && first == STATUS_OK && !faults;
+         i++) /* with faults: a check, which looks at all */
+        tell_idle(args, &args->given[i], s);
     return first;
 }
 

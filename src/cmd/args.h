@@ -31,6 +31,9 @@ typedef struct {
     Status (*run)(const Args *args, Err *err);
     const char *program; /* of which it is a command; NULL: imtet */
     int only_reads;      /* runs and files: no linear algebra */
+    /* Settings that it reads (patterns of settings/idle.h; NULL: all), and of them those that it does not; "KEY?--option":
+     * where that is given, "KEY!--option": where it is not. Whoever sets another one is told. */
+    const char *reads, *unread;
 } Command;
 
 typedef struct {
@@ -80,10 +83,13 @@ Status args_unknown(const char *what, const char *word, const char *const known[
  * every fault is written there and counted, else the first one ends it. */
 Status args_settings(const Args *args, Settings *s, FILE *faults, int *n_faults, Err *err);
 
-/* Only the options, over what s holds. */
+/* Only the options, over what s holds. Without `faults` a setting that changes nothing is named on standard error. */
 Status args_apply(const Args *args, Settings *s, FILE *faults, int *n_faults, Err *err);
 
 /* Options of several commands. */
+#define READS_SCENE                                                                                                    \
+    "building core contact motion sim uncertain design.variables design.gap_zones design.bumper_zones search.seed "    \
+    "search.threads search.objectives search.limits problem.kind"
 /* clang-format off */
 #define OPTION_MOVED {"--set", "motion.record=PATH", NULL, 1, "where the run's record is, if moved; motion.records too"}
 #define OPTION_SET {"--set", "SECTION.KEY=VALUE", NULL, 1, "any setting; may be repeated (`imtet settings` lists them)"}

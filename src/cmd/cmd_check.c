@@ -12,7 +12,7 @@
 #include "scene/motion_scale.h"
 #include "scene/motion_source.h"
 #include "scene/summary.h"
-#include "settings/settings.h"
+#include "settings/idle.h"
 #include "sim/sim.h"
 #include "simulator/adapter.h"
 
@@ -367,6 +367,13 @@ static Status verdict(const Args *args, const Check *c, Err *err)
     return STATUS_OK;
 }
 
+static void warn_of_idle(const char *key, const char *waits_for, void *user)
+{
+    char text[200];
+    snprintf(text, sizeof text, "has no effect: it is read where %s", waits_for);
+    warn(key, text, user);
+}
+
 static Status run(const Args *args, Err *err)
 {
     Check c = {.as_json = args_has(args, "--json"), .out = json_object()};
@@ -377,6 +384,7 @@ static Status run(const Args *args, Err *err)
     json_object_set_new(c.out, "warnings", c.warnings);
     Status status = read_settings(args, &c, &s, err);
     if (status == STATUS_OK) {
+        settings_idle_each(&s, warn_of_idle, &c);
         if (s.problem.kind == PROBLEM_TOWER)
             check_tower(args, &c, &s);
         else if (json_array_size(c.faults) == 0)

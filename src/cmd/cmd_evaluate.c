@@ -344,6 +344,8 @@ static const ArgOption OPTIONS[] = {
 
 const Command CMD_EVALUATE = {
     .name = "evaluate",
+    .reads = READS_SCENE,
+    .unread = "motion.record?--record motion.records?--record motion.record?--records motion.records?--records",
     .operand = "RUN",
     .summary = "one design of a front on other earthquakes",
     .example = "imtet evaluate results/quick --design knee --record builtin:elcentro-like",

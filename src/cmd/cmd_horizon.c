@@ -71,7 +71,7 @@ static Status run(const Args *args, Err *err)
     s.sim.gap_tolerance_m = 0; /* chaos alone */
     s.uncertain = (UncertainOptions){0};
     TRY(tower_open(&p, &s, TOWER_AS_SET, SIZE_MAX, err));
-    Status status = designs_take(&d, path, tower_design(tower_of(&p)), err);
+    Status status = designs_take_one(&d, path, tower_design(tower_of(&p)), err);
     if (status == STATUS_OK) {
         status = answer(args, &p, d.x, err);
         design_free(&d);
@@ -86,6 +86,8 @@ static const ArgOption OPTIONS[] = {
 
 const Command CMD_HORIZON = {
     .name = "horizon",
+    .reads = READS_SCENE,
+    .unread = "sim.replicates sim.gap_tolerance_m uncertain",
     .operand = "CONFIG",
     .summary = "predictability horizon: the time until perturbed runs diverge; standard deviation of every result",
     .example = "imtet horizon configs/quick.ini --design my-design.csv",

@@ -41,7 +41,7 @@ static Status choose_core(const Args *args, const Scenario *w, Modes *m, CoreOpt
     if (space->has_side)
         x[space->n_var - 1] = w->options.core.side_m;
     if (path) {
-        TRY(designs_take(&d, path, space, err));
+        TRY(designs_take_one(&d, path, space, err));
         memcpy(x, d.x, (size_t)space->n_var * sizeof *x);
         design_free(&d);
     }
@@ -229,6 +229,8 @@ static const ArgOption OPTIONS[] = {
 
 const Command CMD_MODES = {
     .name = "modes",
+    .reads = "building core motion design.variables design.gap_zones design.bumper_zones",
+    .unread = "motion!--spectrum",
     .operand = "CONFIG",
     .summary = "natural frequencies and participating masses of building, core and zero-gap assembly",
     .example = "imtet modes configs/quick.ini",

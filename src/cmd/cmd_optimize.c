@@ -311,7 +311,8 @@ static const ArgOption OPTIONS[] = {
     {"--seed", "N", "search.seed", 0, "same seed, same settings: same front"},
     {"--threads", "N", "search.threads", 0, "0: one per processor"},
     {"--max-evals", "N", "search.max_evals", 0, "stop after so many simulations"},
-    {"--max-hours", "H", "search.max_hours", 0, "stop after so long; it can be resumed later; auto: before the Slurm job ends"},
+    {"--max-hours", "H", "search.max_hours", 0,
+     "stop after so long; it can be resumed later; auto: before the Slurm job ends"},
     OPTION_SET,
     OPTION_END,
 };

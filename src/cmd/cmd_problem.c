@@ -96,6 +96,7 @@ static Status run(const Args *args, Err *err)
     snprintf(kind, sizeof kind, "problem.kind=%s", args->operand);
     TRY(settings_set(&s, kind, err));
     TRY(args_apply(args, &s, NULL, NULL, err));
+    TRY(settings_set(&s, kind, err)); /* whatever --set says: the operand is the problem */
     TRY(settings_check(&s, err));
     TRY(adapter_open(&adapter, &s, err));
     const Status status = search(args, &s, adapter, err);
@@ -114,6 +115,8 @@ static const ArgOption OPTIONS[] = {
 
 const Command CMD_PROBLEM = {
     .name = "problem",
+    .reads = "problem search",
+    .unread = "problem.kind search.start",
     .operand = "NAME",
     .summary = "the search on a problem from a textbook: dtlz2, wfg4, ...",
     .example = "imtet problem dtlz2 --max-evals 500 --seed 1 --csv dtlz2.csv",

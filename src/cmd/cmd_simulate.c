@@ -293,6 +293,8 @@ static const ArgOption OPTIONS[] = {
 
 const Command CMD_SIMULATE = {
     .name = "simulate",
+    .reads = READS_SCENE,
+    .unread = "motion.records?--sensitivity sim.robust?--sensitivity sim.quantile?--sensitivity",
     .operand = "CONFIG",
     .summary = "the response of given designs to one ground motion",
     .example = "imtet simulate configs/quick.ini --design none",

@@ -209,6 +209,18 @@ Status designs_take(Designs *d, const char *word, const DesignSpace *space, Err 
     return status;
 }
 
+Status designs_take_one(Designs *d, const char *word, const DesignSpace *space, Err *err)
+{
+    TRY(designs_take(d, word, space, err));
+    const size_t n = d->n;
+    const long first = d->id ? d->id[0] : 1;
+    if (n == 1)
+        return STATUS_OK;
+    design_free(d);
+    return fail(err, STATUS_USAGE, "--design %s: holds %zu designs, and one is wanted; choose it: %s:%ld", word, n,
+                word, first);
+}
+
 /* Row with these variables, or run->table.n; one of the front first. */
 static size_t row_of(const Run *run, const double x[])
 {
@@ -236,7 +248,7 @@ Status design_of_run(const Run *run, const char *word, size_t *row, Designs *els
         *elsewhere = (Designs){0};
     if (is_name(word) || (!strpbrk(word, "/:") && stat(word, &s) != 0))
         return run_pick(run, word, row, err);
-    TRY(designs_take(&d, word, &run->schema.design, err));
+    TRY(designs_take_one(&d, word, &run->schema.design, err));
     *row = row_of(run, d.x);
     if (*row == run->table.n && elsewhere) {
         *elsewhere = d;

@@ -84,7 +84,7 @@ static Status take_design(const Args *args, const Settings *s, Designs *d, Err *
     TRY(tower_open(&p, s, TOWER_SINGLE, 1, err));
     const DesignSpace space = *tower_design(tower_of(&p));
     problem_close(&p);
-    return designs_take(d, word, &space, err);
+    return designs_take_one(d, word, &space, err);
 }
 
 Status show_sensitivities(const Args *args, const Settings *s, size_t n_replicates, Err *err)

@@ -200,6 +200,8 @@ Status tower_open(Problem *p, const Settings *s, TowerUse use, size_t n_tasks, E
 {
     const size_t workers = threads_wanted(s->search.threads);
     MeasureOrder order;
+    if (s->problem.kind != PROBLEM_TOWER)
+        return fail(err, STATUS_BAD_DATA, "problem.kind: is no tower, which alone has a building, a core and a motion");
     TRY(measures_order(&order, s->search.objectives, 0, err));
     Tower *t = calloc(1, sizeof *t);
     if (!t)

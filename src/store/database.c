@@ -374,7 +374,7 @@ Status database_open(Database **out, const char *path, DatabaseMode mode, Err *e
     if (!S_ISREG(there.st_mode))
         return fail(err, STATUS_IO, "%s: is no file", path);
     if (there.st_size == 0)
-        return fail(err, STATUS_IO, "%s: is empty, no database of a run; remove it, and the run begins again", path);
+        return fail(err, STATUS_IO, "%s: is empty, no database of a run", path);
     TRY(open_file(out, path, real_path(path, real),
                   mode == DATABASE_WRITE ? SQLITE_OPEN_READWRITE : SQLITE_OPEN_READONLY, err));
     bound_rows(*out);

@@ -55,6 +55,22 @@ int folder_counts(const Folder *folder, const char *name, size_t n)
     return is_so && count == n;
 }
 
+Status folder_advise(const char *path, Status status, Err *err)
+{
+    Folder f = {.lock = -1};
+    const int is_empty = strstr(err->text, ": is empty") != NULL;
+    if (status != STATUS_IO || (!is_empty && !strstr(err->text, ": is damaged")))
+        return status;
+    snprintf(f.path, sizeof f.path, "%s", path);
+    const size_t n = folder_rows(&f, "evaluations.csv");
+    if (n > 0)
+        return fail(err, status,
+                    "%.250s; evaluations.csv beside it has %zu evaluations: --new --set "
+                    "search.start=%s/evaluations.csv begins another run with these designs",
+                    err->text, n, path);
+    return is_empty ? fail(err, status, "%.250s; remove it, and the run begins again", err->text) : status;
+}
+
 static Status make_folders(const char *folder, Err *err)
 {
     char part[PATH_MAX];

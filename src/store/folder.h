@@ -27,6 +27,10 @@ int folder_counts(const Folder *folder, const char *name,
                   size_t n);                                /* its rows begin with 1, 2, ... n, and are whole */
 size_t folder_rows(const Folder *folder, const char *name); /* of a CSV file, its header left out; no file: 0 */
 
+/* Behind the message of a run.sqlite that is damaged or empty: what to do, by what evaluations.csv beside it still knows.
+ * Returns status. */
+Status folder_advise(const char *path, Status status, Err *err);
+
 /* The file replaced as a whole (store/output.h). */
 typedef void (*WriteFn)(FILE *f, const void *content);
 Status folder_write(const Folder *folder, const char *name, WriteFn write, const void *content, Err *err);

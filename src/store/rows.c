@@ -114,6 +114,8 @@ Status rows_unfinish(Database *db, long id, EvaluationKind kind, long generation
 typedef struct {
     EvaluationTable *table;
     Database *db;
+    long without; /* id of a row without a digest; 0: there is none */
+    int has_with; /* a row with one */
 } Reading;
 
 static Status damaged(const Reading *r, const char *what, long id, Err *err)
@@ -170,7 +172,7 @@ static Status parse_row(const Reading *r, const RowText *t, Evaluation *e, Err *
 
 static Status take_row(sqlite3_stmt *row, void *user, Err *err)
 {
-    const Reading *r = user;
+    Reading *r = user;
     const RowText text = {.outcome = column_text(row, 3),
                           .reason = column_text(row, 4),
                           .x = column_text(row, 6),
@@ -185,9 +187,14 @@ static Status take_row(sqlite3_stmt *row, void *user, Err *err)
     e->seconds = column_number(row, 5);
     e->violation = column_number(row, 9);
     TRY(parse_row(r, &text, e, err));
-    /* a row without a digest was put there by another program; before format 3 kind and generation were not in it */
+    if (sqlite3_column_type(row, 11) == SQLITE_NULL) {
+        r->without = e->id;
+        return STATUS_OK;
+    }
+    r->has_with = 1;
+    /* before format 3 kind and generation were not in it */
     const long plain = database_format(r->db) < 3 ? (long)digest_kind(e->kind, e->generation) : 0;
-    if (sqlite3_column_type(row, 11) == SQLITE_NULL || sqlite3_column_int64(row, 11) == (digest_of(e, &text) ^ plain))
+    if (sqlite3_column_int64(row, 11) == (digest_of(e, &text) ^ plain))
         return STATUS_OK;
     return fail(err, STATUS_IO, "%s: is damaged: evaluation %ld is not what was written", database_path(r->db), e->id);
 }
@@ -195,7 +202,12 @@ static Status take_row(sqlite3_stmt *row, void *user, Err *err)
 Status rows_read(Database *db, EvaluationTable *table, long first, long last, Err *err)
 {
     char sql[sizeof EVALUATIONS + 48];
-    Reading r = {table, db};
+    Reading r = {.table = table, .db = db};
     snprintf(sql, sizeof sql, EVALUATIONS, first, last);
-    return database_each(db, sql, take_row, &r, err);
+    TRY(database_each(db, sql, take_row, &r, err));
+    return !r.without || !r.has_with
+               ? STATUS_OK
+               : fail(err, STATUS_IO,
+                      "%s: is damaged: evaluation %ld has no digest, as if it were not what was written",
+                      database_path(db), r.without);
 }

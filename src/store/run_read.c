@@ -9,6 +9,7 @@
 #include "base/stat.h"
 #include "settings/settings.h"
 #include "simulator/measures.h"
+#include "store/folder.h"
 #include "store/repeats.h"
 #include "store/rows.h"
 #include "store/tables.h"
@@ -288,8 +289,9 @@ Status run_read(Run *run, const char *folder, Err *err)
     memset(run, 0, sizeof *run);
     if (!run_path(folder, path, sizeof path))
         return fail(err, STATUS_MISSING, "%.200s: holds no run: run.sqlite is not there", folder);
-    TRY(database_open(&d, path, DATABASE_READ, err));
-    const Status status = run_load(run, d, folder, err);
+    Status status = database_open(&d, path, DATABASE_READ, err);
+    if (status == STATUS_OK)
+        status = run_load(run, d, folder, err);
     database_close(d);
-    return status;
+    return folder_advise(folder, status, err);
 }

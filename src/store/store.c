@@ -86,10 +86,12 @@ static Status check_nothing_lost(const RunStore *store, Err *err)
 
 static Status load_run(RunStore *store, Err *err)
 {
-    TRY(open_database(store, err));
-    TRY(run_load(&store->run, store->db, store_folder(store), err));
-    database_grow(store->db);
-    return STATUS_OK;
+    Status status = open_database(store, err);
+    if (status == STATUS_OK)
+        status = run_load(&store->run, store->db, store_folder(store), err);
+    if (status == STATUS_OK)
+        database_grow(store->db);
+    return folder_advise(store_folder(store), status, err);
 }
 
 static Status open_folder(RunStore *store, const char *folder, int fresh, Err *err)

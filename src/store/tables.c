@@ -191,25 +191,35 @@ static Status renew_table(Database *db, const char *name, const char *columns, E
     return database_do(db, err, sql, "");
 }
 
-static Status upgrade(Database *db, const EvaluationTable *t, Err *err)
+static Status upgrade(Database *db, Err *err)
 {
     char sql[64];
     snprintf(sql, sizeof sql, "PRAGMA user_version = %d", DATABASE_FORMAT);
     TRY(renew_table(db, "run", "*, NULL", err));
     TRY(renew_table(db, "generation", "*, NULL", err));
     TRY(renew_table(db, "state", "generation, bytes, NULL, NULL", err));
-    for (size_t i = 0; i < t->n; i++)
-        if (t->row[i].kind != KIND_UNFINISHED)
-            TRY(rows_finish(db, t->row[i].id, t->row[i].kind, t->row[i].generation, err));
     return database_do(db, err, sql, "");
+}
+
+/* Of a run whose rows had none, or others: those that are read alone are refused beside those that come. */
+static Status write_digests(Database *db, const EvaluationTable *t, Err *err)
+{
+    for (size_t i = 0; i < t->n; i++)
+        TRY(rows_insert(db, (RowShape){t->n_var, t->n_obj, t->n_extra}, &t->row[i], err));
+    return STATUS_OK;
 }
 
 Status tables_upgrade(Database *db, const EvaluationTable *evaluations, Err *err)
 {
-    if (database_format(db) == DATABASE_FORMAT)
+    double without;
+    const int is_old = database_format(db) < DATABASE_FORMAT;
+    TRY(database_number(db, "SELECT count(*) FROM evaluation WHERE digest IS NULL", 0, &without, err));
+    if (!is_old && without == 0)
         return STATUS_OK;
     TRY(database_do(db, err, "BEGIN IMMEDIATE", ""));
-    Status status = upgrade(db, evaluations, err);
+    Status status = is_old ? upgrade(db, err) : STATUS_OK;
+    if (status == STATUS_OK)
+        status = write_digests(db, evaluations, err);
     if (status == STATUS_OK)
         status = database_do(db, err, "COMMIT", "");
     if (status == STATUS_OK)

@@ -1,34 +1,35 @@
 #include "study/initial_designs.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
-#include "base/table.h"
+#include "base/sheet.h"
 #include "store/run_read.h"
 
-static Status copy_columns(const Table *t, const char *path, const Schema *schema, double *X, Err *err)
+static Status copy_columns(const Sheet *t, const char *path, const Schema *schema, double *X, Err *err)
 {
     for (size_t j = 0; j < schema->n_var; j++) {
-        const int column = table_column(t, schema_variable(schema, j)->name);
-        if (column < 0)
-            return fail(err, STATUS_BAD_DATA, "search.start: %s: has no column %s", path,
-                        schema_variable(schema, j)->name);
+        const char *name = schema_variable(schema, j)->name;
+        if (sheet_column(t, name) < 0)
+            return fail(err, STATUS_BAD_DATA, "search.start: %s: has no column %s", path, name);
         for (size_t i = 0; i < t->n_rows; i++)
-            X[i * schema->n_var + j] = t->values[i * t->n_cols + (size_t)column];
+            TRY(sheet_number(t, i, name, NAN, &X[i * schema->n_var + j], err));
     }
     return STATUS_OK;
 }
 
+/* Columns beside the variables may hold anything, as in evaluations.csv. */
 static Status read_table(const char *path, const Schema *schema, double **X, size_t *n, Err *err)
 {
-    Table t = {0};
-    TRY(table_read(&t, path, 1, err));
+    Sheet t = {0};
+    TRY(sheet_read(&t, path, err));
     *X = calloc(t.n_rows * schema->n_var + 1, sizeof **X);
     *n = t.n_rows;
     const Status status = *X ? copy_columns(&t, path, schema, *X, err)
                              : fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", t.n_rows);
-    table_free(&t);
+    sheet_free(&t);
     return status;
 }
 
