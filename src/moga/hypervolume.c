@@ -8,11 +8,11 @@
 
 /* Samples are bits of words. For each objective and each of so many levels between the bounds of the box: which samples are not
  * below that level. What a design dominates is in all sets of its own levels, which few others are. */
-enum { LEVELS = 64, WORD = 64, WORDS = (HYPERVOLUME_SAMPLES + WORD - 1) / WORD };
+enum { LEVELS = 64, FEW = 2, WORD = 64, WORDS = (HYPERVOLUME_SAMPLES + WORD - 1) / WORD };
 
 struct Hypervolume {
-    size_t n_obj, n_left;
-    uint64_t left[WORDS]; /* samples that are not dominated yet */
+    size_t n_obj, n_left, n_words;
+    uint64_t left[WORDS]; /* (n_words) samples that are not dominated yet */
     uint64_t *above;      /* (n_obj, LEVELS, WORDS) */
     double *lower, *per;  /* (n_obj) levels per unit of the objective */
     double sample[];      /* (HYPERVOLUME_SAMPLES, n_obj), then lower, per, above */
@@ -37,6 +37,16 @@ static void sample_at(const Hypervolume *h, uint32_t seed, size_t i, double u[])
         u[k] = random_uniform(&r);
 }
 
+/* Sample i into the sets. */
+static void note_sample(Hypervolume *h, size_t i)
+{
+    const uint64_t bit = (uint64_t)1 << i % WORD;
+    h->left[i / WORD] |= bit;
+    for (size_t k = 0; k < h->n_obj; k++)
+        for (size_t level = level_of(h, k, h->sample[i * h->n_obj + k]) + 1; level-- > 0;)
+            samples_above(h, k, level)[i / WORD] |= bit;
+}
+
 static void fill(Hypervolume *h, const double lower[], const double reference[], uint32_t seed)
 {
     const size_t m = h->n_obj;
@@ -46,15 +56,27 @@ static void fill(Hypervolume *h, const double lower[], const double reference[],
     }
     for (size_t i = 0; i < HYPERVOLUME_SAMPLES; i++) {
         double *s = h->sample + i * m;
-        const uint64_t bit = (uint64_t)1 << i % WORD;
         sample_at(h, seed, i, s);
-        h->left[i / WORD] |= bit;
-        for (size_t k = 0; k < m; k++) {
+        for (size_t k = 0; k < m; k++)
             s[k] = lower[k] + (reference[k] - lower[k]) * s[k];
-            for (size_t level = 0; level <= level_of(h, k, s[k]); level++)
-                samples_above(h, k, level)[i / WORD] |= bit;
-        }
+        note_sample(h, i);
     }
+}
+
+/* Samples that are left move together, so that fewer words are looked at. */
+static void draw_together(Hypervolume *h)
+{
+    const size_t m = h->n_obj;
+    size_t n = 0;
+    for (size_t w = 0; w < h->n_words; w++)
+        for (uint64_t rest = h->left[w]; rest; rest &= rest - 1, n++)
+            memmove(h->sample + n * m, h->sample + (w * WORD + (size_t)__builtin_ctzll(rest)) * m,
+                    m * sizeof *h->sample);
+    memset(h->left, 0, sizeof h->left);
+    memset(h->above, 0, m * LEVELS * WORDS * sizeof *h->above);
+    for (size_t i = 0; i < n; i++)
+        note_sample(h, i);
+    h->n_words = (n + WORD - 1) / WORD;
 }
 
 Status hypervolume_create(Hypervolume **out, size_t n_obj, const double lower[], const double reference[],
@@ -67,6 +89,7 @@ Status hypervolume_create(Hypervolume **out, size_t n_obj, const double lower[],
         return fail(err, STATUS_NO_MEMORY, "no memory for %d samples of %zu objectives", HYPERVOLUME_SAMPLES, n_obj);
     h->n_obj = n_obj;
     h->n_left = HYPERVOLUME_SAMPLES;
+    h->n_words = WORDS;
     h->lower = h->sample + HYPERVOLUME_SAMPLES * n_obj;
     h->per = h->lower + n_obj;
     h->above = (uint64_t *)(h->per + n_obj);
@@ -86,14 +109,14 @@ void hypervolume_add(Hypervolume *h, const double f[])
 {
     const size_t m = h->n_obj;
     uint64_t near[WORDS];
-    memcpy(near, h->left, sizeof near);
+    memcpy(near, h->left, h->n_words * sizeof *near);
     for (size_t k = 0; k < m; k++) {
         const uint64_t *above = samples_above(h, k, level_of(h, k, f[k]));
 #pragma omp simd
-        for (size_t w = 0; w < WORDS; w++)
+        for (size_t w = 0; w < h->n_words; w++)
             near[w] &= above[w];
     }
-    for (size_t w = 0; w < WORDS; w++)
+    for (size_t w = 0; w < h->n_words; w++)
         for (uint64_t rest = near[w]; rest; rest &= rest - 1) {
             const size_t bit = (size_t)__builtin_ctzll(rest);
             if (!reaches(m, f, h->sample + (w * WORD + bit) * m))
@@ -101,6 +124,8 @@ void hypervolume_add(Hypervolume *h, const double f[])
             h->left[w] ^= (uint64_t)1 << bit;
             h->n_left--;
         }
+    if (FEW * h->n_left < h->n_words * WORD)
+        draw_together(h);
 }
 
 double hypervolume_share(const Hypervolume *h)

@@ -5,7 +5,7 @@
 #include <string.h>
 
 struct Igd {
-    size_t n_obj, n;
+    size_t n_obj, n, n_apart;  /* references; of them those that nothing reaches yet come first */
     double *width, *reference; /* (n_obj) (n_obj, n) in widths */
     double *square, *sum;      /* (n) smallest squared distance so far; (n) of the design that is added */
     double store[];
@@ -33,7 +33,7 @@ Status igd_create(Igd **out, size_t n_obj, size_t n, const size_t rows[], const 
     if (!q)
         return fail(err, STATUS_NO_MEMORY, "no memory for a reference of %zu designs", taken);
     q->n_obj = n_obj;
-    q->n = taken;
+    q->n = q->n_apart = taken;
     q->width = q->store;
     q->reference = q->width + n_obj;
     q->square = q->reference + taken * n_obj;
@@ -47,22 +47,40 @@ Status igd_create(Igd **out, size_t n_obj, size_t n, const size_t rows[], const 
     return STATUS_OK;
 }
 
+/* A reference that is reached stays so: it changes places with the last of the others. */
+static void set_aside(Igd *q, size_t i)
+{
+    const size_t last = --q->n_apart;
+    for (size_t k = 0; k < q->n_obj; k++) {
+        double *reference = q->reference + k * q->n;
+        const double kept = reference[i];
+        reference[i] = reference[last];
+        reference[last] = kept;
+    }
+    q->square[i] = q->square[last];
+    q->square[last] = 0.0;
+}
+
 void igd_add(Igd *q, const double f[])
 {
     double *sum = q->sum, *square = q->square;
-    for (size_t i = 0; i < q->n; i++)
+    const size_t n = q->n_apart;
+    for (size_t i = 0; i < n; i++)
         sum[i] = 0.0;
     for (size_t k = 0; k < q->n_obj; k++) {
         const double value = f[k] / q->width[k], *reference = q->reference + k * q->n;
 #pragma omp simd
-        for (size_t i = 0; i < q->n; i++) {
+        for (size_t i = 0; i < n; i++) {
             const double off = value - reference[i], worse = off > 0.0 ? off : 0.0;
             sum[i] += worse * worse;
         }
     }
-#pragma omp simd
-    for (size_t i = 0; i < q->n; i++)
-        square[i] = sum[i] < square[i] ? sum[i] : square[i];
+    for (size_t i = n; i-- > 0;) {
+        if (sum[i] < square[i])
+            square[i] = sum[i];
+        if (square[i] == 0.0)
+            set_aside(q, i);
+    }
 }
 
 double igd_value(const Igd *q)

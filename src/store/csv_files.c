@@ -68,27 +68,32 @@ Status csv_files_resume(CsvFiles *c, const Folder *folder, const Schema *schema,
     return append_open(&c->evaluations, folder, "evaluations.csv", err);
 }
 
-static Status append_rows(CsvFiles *c, const EvaluationTable *rows, Err *err)
+/* Deviations, as numbers. */
+static Status read_deviations(CsvFiles *c, Database *db, size_t n, Err *err)
 {
-    TRY(keep_deviations(c, rows->n, rows->sd, err));
-    export_evaluations(c->evaluations.stream, rows, 0, 0);
-    c->n_appended += rows->n;
-    return append_flush(&c->evaluations, err);
+    EvaluationTable rows = evaluation_table(c->schema->n_var, c->schema->n_obj, c->schema->n_extra);
+    Status status = rows_read(db, &rows, (long)c->n_appended + 1, (long)n, err);
+    if (status == STATUS_OK)
+        status = keep_deviations(c, rows.n, rows.sd, err);
+    evaluation_table_free(&rows);
+    return status;
 }
 
 Status csv_files_append(CsvFiles *c, Database *db, size_t n, Err *err)
 {
-    EvaluationTable rows = evaluation_table(c->schema->n_var, c->schema->n_obj, c->schema->n_extra);
+    const Schema *s = c->schema;
+    size_t printed;
     if (n == c->n_appended)
         return STATUS_OK;
-    Status status = rows_read(db, &rows, (long)c->n_appended + 1, (long)n, err);
-    if (status == STATUS_OK && rows.n != n - c->n_appended)
-        status = fail(err, STATUS_INTERNAL, "%s: the search knows of %zu simulations, %zu are stored",
-                      database_path(db), n, c->n_appended + rows.n);
-    if (status == STATUS_OK)
-        status = append_rows(c, &rows, err);
-    evaluation_table_free(&rows);
-    return status;
+    TRY(rows_print(db, c->evaluations.stream, (RowShape){s->n_var, s->n_obj, s->n_extra}, (long)c->n_appended + 1,
+                   (long)n, &printed, err));
+    if (printed != n - c->n_appended)
+        return fail(err, STATUS_INTERNAL, "%s: the search knows of %zu simulations, %zu are stored", database_path(db),
+                    n, c->n_appended + printed);
+    if (s->has_spread)
+        TRY(read_deviations(c, db, n, err));
+    c->n_appended = n;
+    return append_flush(&c->evaluations, err);
 }
 
 /* -- front.csv ----------------------------------------------------------------------------------------------------- */

@@ -211,3 +211,49 @@ Status rows_read(Database *db, EvaluationTable *table, long first, long last, Er
                       "%s: is damaged: evaluation %ld has no digest, as if it were not what was written",
                       database_path(db), r.without);
 }
+
+/* -- as lines ------------------------------------------------------------------------------------------------------ */
+
+/* n cells, each behind a comma, of "[1,2.5,null]"; empty ones for what is not there. */
+static void print_list(FILE *f, const char *list, size_t n)
+{
+    const char *at = list[0] ? list + 1 : list;
+    for (size_t i = 0; i < n; i++) {
+        const size_t length = strcspn(at, ",]");
+        fputc(',', f);
+        if (*at != 'n')
+            fwrite(at, 1, length, f);
+        at += length + (at[length] == ',');
+    }
+}
+
+typedef struct {
+    FILE *f;
+    RowShape shape;
+    size_t *n;
+} Printing;
+
+static Status print_row(sqlite3_stmt *row, void *user, Err *err)
+{
+    const Printing *p = user;
+    (void)err;
+    if (sqlite3_column_type(row, 2) == SQLITE_NULL)
+        return STATUS_OK;
+    fprintf(p->f, "%ld,%ld,%s,%s,%s", (long)sqlite3_column_int64(row, 0), (long)sqlite3_column_int64(row, 1),
+            column_text(row, 2), column_text(row, 3), column_text(row, 4));
+    print_list(p->f, column_text(row, 6), p->shape.n_var);
+    print_list(p->f, column_text(row, 7), p->shape.n_obj);
+    print_list(p->f, column_text(row, 10), p->shape.n_extra);
+    fputc('\n', p->f);
+    ++*p->n;
+    return STATUS_OK;
+}
+
+Status rows_print(Database *db, FILE *f, RowShape shape, long first, long last, size_t *n, Err *err)
+{
+    char sql[sizeof EVALUATIONS + 48];
+    Printing p = {f, shape, n};
+    *n = 0;
+    snprintf(sql, sizeof sql, EVALUATIONS, first, last);
+    return database_each(db, sql, print_row, &p, err);
+}

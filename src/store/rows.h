@@ -9,6 +9,8 @@
 #ifndef IMTET_STORE_ROWS_H
 #define IMTET_STORE_ROWS_H
 
+#include <stdio.h>
+
 #include "evaluate/evaluation.h"
 #include "store/database.h"
 
@@ -24,6 +26,10 @@ Status rows_unfinish(Database *db, long id, EvaluationKind kind, long generation
 
 /* The evaluations first..last, in the order of their ids, behind those of the table. */
 Status rows_read(Database *db, EvaluationTable *table, long first, long last, Err *err);
+
+/* The same as lines of evaluations.csv, the texts as this program has written them; n: how many. A row that is not
+ * finished is none. */
+Status rows_print(Database *db, FILE *f, RowShape shape, long first, long last, size_t *n, Err *err);
 
 /* Columns of any query. */
 const char *column_text(sqlite3_stmt *row, int column);           /* NULL: "" */

@@ -27,6 +27,7 @@ struct RunStore {
     Run run; /* that the folder held when it was opened */
     int has_run, has_polished;
 
+    EvaluationTable waiting; /* rows for the next commit or the end of their generation */
     int in_transaction;
     double last_commit;          /* [s] of the clock */
     double last_generation;      /* ... */
@@ -164,10 +165,16 @@ static Status write_origin(const RunStore *store, const Settings *used, const ch
     return folder_write(&store->folder, "provenance.json", put_line, provenance, err);
 }
 
+static void take_schema(RunStore *store, const Schema *schema)
+{
+    store->schema = schema;
+    store->waiting = evaluation_table(schema->n_var, schema->n_obj, schema->n_extra);
+}
+
 Status store_begin(RunStore *store, const Schema *schema, const Settings *used, const char *provenance, Err *err)
 {
     char path[PATH_MAX];
-    store->schema = schema;
+    take_schema(store, schema);
     folder_path(&store->folder, "run.sqlite", path);
     TRY(tables_create(path, schema, used, provenance, err));
     TRY(open_database(store, err));
@@ -195,7 +202,7 @@ static Status take_up(RunStore *store, Err *err)
 
 Status store_resume(RunStore *store, const Schema *schema, const Settings *used, Err *err)
 {
-    store->schema = schema;
+    take_schema(store, schema);
     TRY(take_up(store, err));
     TRY(tables_upgrade(store->db, &store->run.table, err));
     TRY(tables_set_settings(store->db, used, &store->run, err));
@@ -235,27 +242,37 @@ static Status begin(RunStore *store, Err *err)
     return STATUS_OK;
 }
 
-Status store_flush(RunStore *store, Err *err)
-{
-    if (!store->in_transaction)
-        return STATUS_OK;
-    TRY(database_do(store->db, err, "COMMIT", ""));
-    store->in_transaction = 0;
-    store->last_commit = clock_seconds();
-    return store->files.evaluations.stream ? csv_files_append(&store->files, store->db, store->n_known, err)
-                                           : STATUS_OK;
-}
-
 static Status insert(RunStore *store, const Evaluation *e, Err *err)
 {
     const Schema *s = store->schema;
     return rows_insert(store->db, (RowShape){s->n_var, s->n_obj, s->n_extra}, e, err);
 }
 
+static Status insert_waiting(RunStore *store, Err *err)
+{
+    for (size_t i = 0; i < store->waiting.n; i++)
+        TRY(insert(store, &store->waiting.row[i], err));
+    return STATUS_OK;
+}
+
+Status store_flush(RunStore *store, Err *err)
+{
+    if (store->waiting.n > 0)
+        TRY(begin(store, err));
+    if (!store->in_transaction)
+        return STATUS_OK;
+    TRY(insert_waiting(store, err));
+    TRY(database_do(store->db, err, "COMMIT", ""));
+    store->waiting.n = 0;
+    store->in_transaction = 0;
+    store->last_commit = clock_seconds();
+    return store->files.evaluations.stream ? csv_files_append(&store->files, store->db, store->n_known, err)
+                                           : STATUS_OK;
+}
+
 Status store_evaluation(RunStore *store, const Evaluation *e, Err *err)
 {
-    TRY(begin(store, err));
-    TRY(insert(store, e, err));
+    TRY(evaluation_table_append(&store->waiting, e, err));
     if (e->seconds >= COMMIT_S || clock_seconds() >= store->last_commit + COMMIT_S)
         TRY(store_flush(store, err));
     return STATUS_OK;
@@ -263,12 +280,33 @@ Status store_evaluation(RunStore *store, const Evaluation *e, Err *err)
 
 /* -- generations --------------------------------------------------------------------------------------------------- */
 
-static Status store_kinds(RunStore *store, const SearchView *v, Err *err)
+/* Of the rows of the generation those that wait get their kind before they are stored; `waited` (v->n - n_known). */
+static void finish_waiting(RunStore *store, const SearchView *v, unsigned char waited[])
 {
-    for (size_t i = store->n_known; i < v->n; i++)
-        TRY(rows_finish(store->db, (long)i + 1, (EvaluationKind)v->kind[i], (long)v->generation[i], err));
-    if (v->is_asynchronous)
-        return STATUS_OK;
+    for (size_t i = 0; i < store->waiting.n; i++) {
+        Evaluation *e = &store->waiting.row[i];
+        const size_t row = (size_t)e->id - 1;
+        if (row < store->n_known || row >= v->n)
+            continue;
+        e->kind = (EvaluationKind)v->kind[row];
+        e->generation = (long)v->generation[row];
+        waited[row - store->n_known] = 1;
+    }
+}
+
+static Status store_rows(RunStore *store, const SearchView *v, Err *err)
+{
+    unsigned char *waited = calloc(v->n - store->n_known + 1, 1);
+    if (!waited)
+        return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", v->n - store->n_known);
+    finish_waiting(store, v, waited);
+    Status status = insert_waiting(store, err);
+    for (size_t i = store->n_known; i < v->n && status == STATUS_OK; i++)
+        if (!waited[i - store->n_known])
+            status = rows_finish(store->db, (long)i + 1, (EvaluationKind)v->kind[i], (long)v->generation[i], err);
+    free(waited);
+    if (status != STATUS_OK || v->is_asynchronous)
+        return status;
     /* what another program or machine had asked for in this generation before it was cut short */
     return database_do(store->db, err, "DELETE FROM evaluation WHERE kind IS NULL AND id > ?", "i", (long)v->n);
 }
@@ -341,7 +379,7 @@ static Status put_generation(RunStore *store, const SearchView *v, double second
 {
     if (!v->state)
         return fail(err, STATUS_NO_MEMORY, "no memory for the state of the search");
-    TRY(store_kinds(store, v, err));
+    TRY(store_rows(store, v, err));
     TRY(store_front_changes(store, v, err));
     TRY(store_moment(store, v, seconds, err));
     TRY(store_effort(store, v, session, err));
@@ -354,11 +392,17 @@ static Status put_whole_generation(RunStore *store, const SearchView *v, double 
 {
     TRY(begin(store, err));
     TRY(database_do(store->db, err, "SAVEPOINT generation", ""));
-    const Status status = put_generation(store, v, seconds, session, err);
-    if (status != STATUS_OK)
-        database_do(store->db, NULL, "ROLLBACK TO generation", "");
-    const Status end = database_do(store->db, status == STATUS_OK ? err : NULL, "RELEASE generation", "");
-    return status != STATUS_OK ? status : end;
+    Status status = put_generation(store, v, seconds, session, err);
+    if (status == STATUS_OK)
+        status = database_do(store->db, err, "RELEASE generation", "");
+    if (status == STATUS_OK) {
+        store->waiting.n = 0;
+        return STATUS_OK;
+    }
+    database_do(store->db, NULL, "ROLLBACK TO generation; RELEASE generation", "");
+    for (size_t i = 0; i < store->waiting.n; i++)
+        store->waiting.row[i].kind = KIND_UNFINISHED;
+    return status;
 }
 
 /* Generations that take a moment are committed together, COMMIT_S after the last commit: a commit waits for the disk. */
@@ -474,6 +518,7 @@ void store_free(RunStore *store)
     database_close(store->db);
     run_free(&store->run);
     free(store->was_on_front);
+    evaluation_table_free(&store->waiting);
     front_share_free(&store->share);
     folder_release(&store->folder);
     free(store);

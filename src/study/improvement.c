@@ -19,6 +19,18 @@ static double value_of(const Igd *q)
     return isfinite(value) ? value : NAN;
 }
 
+/* The designs of the reference that were known by then come first: nothing is to be measured from them any more. */
+static void add_early(Igd *q, const SearchView *v, size_t n, const size_t front[])
+{
+    const size_t early = v->n - v->n / 10, taken = n < IGD_REFERENCE_MAX ? n : IGD_REFERENCE_MAX;
+    for (size_t i = 0; i < taken; i++)
+        if (front[i * n / taken] < early && keeps_limits(v, front[i * n / taken]))
+            igd_add(q, v->F + front[i * n / taken] * v->n_obj);
+    for (size_t i = 0; i < early; i++)
+        if (keeps_limits(v, i))
+            igd_add(q, v->F + i * v->n_obj);
+}
+
 Status improvement_lately(const SearchView *v, double *igd, Err *err)
 {
     Igd *q;
@@ -32,14 +44,13 @@ Status improvement_lately(const SearchView *v, double *igd, Err *err)
         if (v->on_front[i])
             front[n++] = i;
     const Status status = igd_create(&q, v->n_obj, n, front, v->F, err);
+    if (status == STATUS_OK) {
+        add_early(q, v, n, front);
+        *igd = value_of(q);
+        igd_free(q);
+    }
     free(front);
-    TRY(status);
-    for (size_t i = 0; i < v->n - v->n / 10; i++)
-        if (keeps_limits(v, i))
-            igd_add(q, v->F + i * v->n_obj);
-    *igd = value_of(q);
-    igd_free(q);
-    return STATUS_OK;
+    return status;
 }
 
 /* -- of a stored run ----------------------------------------------------------------------------------------------- */
