@@ -430,6 +430,8 @@ static void make_stream(uint32_t seed, size_t n, size_t m, double F[])
         }
         for (size_t k = 0; k < m && seed % 3 == 0; k++)
             F[i * m + k] = (F[i * m + k] + 1e-3) / sqrt(square) * (seed % 6 ? 1.0 : 1.0 + 0.1 * random_uniform(&r));
+        for (size_t k = 0; k < m && seed % 10 == 8; k++) /* so large that their differences, or squares, are none */
+            F[i * m + k] = seed % 20 == 8 ? (F[i * m + k] - 0.5) * 1.7e308 : F[i * m + k] * 1e300;
         if (i > 0 && random_below(&r, 5) == 0)
             memcpy(F + i * m, F + random_below(&r, i) * m, m * sizeof *F);
     }

@@ -6,41 +6,31 @@
 
 #include "moga/dominance.h"
 
-/* Points of a leaf before it is split; children of a node: as many as objectives and one, but no more than this. Jaszkiewicz
- * and Lust, section V. */
-enum { LEAF_MAX = 20, CHILDREN_MAX = 8 };
+/* Points of a leaf before it is split: 20 in the paper, which costs a tenth more here; children of a node: as many as objectives
+ * and one, but no more than this. Jaszkiewicz and Lust, section V. */
+enum { LEAF_MAX = 40, CHILDREN_MAX = 8 };
 
+/* Bounds of a node stand with its parent, points of a leaf in it: what is looked at lies together. */
 typedef struct Node Node;
 struct Node {
     size_t n_child; /* 0: a leaf */
     Node *child[CHILDREN_MAX];
-    size_t n, n_max, *row; /* (n_max) of a leaf */
-    double *ideal, *nadir; /* (n_obj) */
-    double bounds[];
+    double *bounds; /* (n_child, 2, n_obj) ideal and nadir of the children */
+    size_t n, n_max;
+    size_t *row; /* (n_max) of a leaf */
+    double *f;   /* (n_max, n_obj) of them */
 };
 
 struct NdTree {
     size_t n_obj, n_children;
-    Node *root; /* NULL: no point */
+    Node *root;     /* NULL: no point */
+    double *bounds; /* (2, n_obj) of the root */
+    double *weight; /* (n_obj) 1 / width of all points */
     size_t n_removed, n_removed_max, *removed;
     int lacks_memory;
 };
 
 /* -- memory -------------------------------------------------------------------------------------------------------- */
-
-static Node *node_new(NdTree *t)
-{
-    Node *q = calloc(1, sizeof *q + 2 * t->n_obj * sizeof q->bounds[0]);
-    if (!q)
-        return NULL;
-    q->ideal = q->bounds;
-    q->nadir = q->bounds + t->n_obj;
-    for (size_t k = 0; k < t->n_obj; k++) {
-        q->ideal[k] = INFINITY;
-        q->nadir[k] = -INFINITY;
-    }
-    return q;
-}
 
 static void node_free(Node *q)
 {
@@ -48,30 +38,39 @@ static void node_free(Node *q)
         return;
     for (size_t c = 0; c < q->n_child; c++)
         node_free(q->child[c]);
+    free(q->bounds);
     free(q->row);
+    free(q->f);
     free(q);
 }
 
-static int list_add(size_t **list, size_t *n, size_t *n_max, size_t row)
+static void note_removed(NdTree *t, size_t row)
 {
-    if (*n == *n_max) {
-        const size_t wider = *n_max > 0 ? 2 * *n_max : LEAF_MAX + 4;
-        size_t *more = realloc(*list, wider * sizeof *more);
-        if (!more)
-            return 0;
-        *list = more;
-        *n_max = wider;
+    if (t->n_removed == t->n_removed_max) {
+        const size_t wider = t->n_removed_max > 0 ? 2 * t->n_removed_max : LEAF_MAX + 4;
+        size_t *more = realloc(t->removed, wider * sizeof *more);
+        if (!more) {
+            t->lacks_memory = 1;
+            return;
+        }
+        t->removed = more;
+        t->n_removed_max = wider;
     }
-    (*list)[(*n)++] = row;
-    return 1;
+    t->removed[t->n_removed++] = row;
 }
 
 Status nd_tree_create(NdTree **out, size_t n_obj, Err *err)
 {
     NdTree *t = calloc(1, sizeof *t);
     *out = t;
-    if (!t)
+    if (t)
+        t->bounds = calloc(3 * n_obj, sizeof *t->bounds);
+    if (!t || !t->bounds) {
+        free(t);
+        *out = NULL;
         return fail(err, STATUS_NO_MEMORY, "no memory for the front");
+    }
+    t->weight = t->bounds + 2 * n_obj;
     t->n_obj = n_obj;
     t->n_children = n_obj < CHILDREN_MAX ? n_obj + 1 : CHILDREN_MAX;
     return STATUS_OK;
@@ -82,6 +81,7 @@ void nd_tree_free(NdTree *t)
     if (!t)
         return;
     node_free(t->root);
+    free(t->bounds);
     free(t->removed);
     free(t);
 }
@@ -96,27 +96,28 @@ static int is_no_worse(size_t m, const double a[], const double b[])
     return 1;
 }
 
-/* Whether a point of the node dominates f. There is one at least, and it is no worse than the nadir. */
-static int is_dominated(const NdTree *t, const Node *q, const double F[], const double f[])
+/* Most pairs differ in the first objective: it is looked at here. */
+static int is_dominating(size_t m, const double a[], const double b[])
 {
-    const size_t m = t->n_obj;
-    if (!is_no_worse(m, q->ideal, f))
-        return 0;
-    if (dominates(m, q->nadir, f))
-        return 1;
-    for (size_t i = 0; i < q->n; i++)
-        if (dominates(m, F + q->row[i] * m, f))
-            return 1;
-    for (size_t c = 0; c < q->n_child; c++)
-        if (is_dominated(t, q->child[c], F, f))
-            return 1;
-    return 0;
+    return a[0] <= b[0] && dominates(m, a, b);
 }
 
-static void note_removed(NdTree *t, size_t row)
+/* Whether a point of the node, whose bounds these are, dominates f. There is one at least, and it is no worse than the
+ * nadir. */
+static int is_dominated(const NdTree *t, const Node *q, const double bounds[], const double f[])
 {
-    if (!list_add(&t->removed, &t->n_removed, &t->n_removed_max, row))
-        t->lacks_memory = 1;
+    const size_t m = t->n_obj;
+    if (!is_no_worse(m, bounds, f))
+        return 0;
+    if (is_dominating(m, bounds + m, f))
+        return 1;
+    for (size_t i = 0; i < q->n; i++)
+        if (is_dominating(m, q->f + i * m, f))
+            return 1;
+    for (size_t c = 0; c < q->n_child; c++)
+        if (is_dominated(t, q->child[c], q->bounds + 2 * c * m, f))
+            return 1;
+    return 0;
 }
 
 static void remove_all(NdTree *t, Node *q)
@@ -127,33 +128,59 @@ static void remove_all(NdTree *t, Node *q)
         remove_all(t, q->child[c]);
 }
 
-/* Points that f dominates; the node without them, or NULL: none is left. */
-static Node *remove_dominated(NdTree *t, Node *q, const double F[], const double f[])
+static void remove_points(NdTree *t, Node *q, const double f[])
+{
+    const size_t m = t->n_obj;
+    size_t kept = 0;
+    for (size_t i = 0; i < q->n; i++) {
+        if (is_dominating(m, f, q->f + i * m)) {
+            note_removed(t, q->row[i]);
+            continue;
+        }
+        if (kept < i) {
+            q->row[kept] = q->row[i];
+            memcpy(q->f + kept * m, q->f + i * m, m * sizeof *q->f);
+        }
+        kept++;
+    }
+    q->n = kept;
+}
+
+static Node *remove_dominated(NdTree *t, Node *q, double bounds[], const double f[]);
+
+static void remove_from_children(NdTree *t, Node *q, const double f[])
 {
     const size_t m = t->n_obj, had_children = q->n_child;
-    if (!is_no_worse(m, f, q->nadir))
+    q->n_child = 0;
+    for (size_t c = 0; c < had_children; c++) {
+        double *bounds = q->bounds + 2 * c * m;
+        Node *child = remove_dominated(t, q->child[c], bounds, f);
+        if (!child)
+            continue;
+        if (q->n_child < c)
+            memcpy(q->bounds + 2 * q->n_child * m, bounds, 2 * m * sizeof *bounds);
+        q->child[q->n_child++] = child;
+    }
+}
+
+/* Points that f dominates; the node without them, or NULL: none is left. */
+static Node *remove_dominated(NdTree *t, Node *q, double bounds[], const double f[])
+{
+    const size_t m = t->n_obj;
+    if (!is_no_worse(m, f, bounds + m))
         return q;
-    if (dominates(m, f, q->ideal)) {
+    if (is_dominating(m, f, bounds)) {
         remove_all(t, q);
         node_free(q);
         return NULL;
     }
-    size_t kept = 0;
-    for (size_t i = 0; i < q->n; i++)
-        if (dominates(m, f, F + q->row[i] * m))
-            note_removed(t, q->row[i]);
-        else
-            q->row[kept++] = q->row[i];
-    q->n = kept;
-    q->n_child = 0;
-    for (size_t c = 0; c < had_children; c++) {
-        Node *child = remove_dominated(t, q->child[c], F, f);
-        if (child)
-            q->child[q->n_child++] = child;
-    }
+    remove_points(t, q, f);
+    remove_from_children(t, q, f);
     if (q->n > 0 || q->n_child > 1)
         return q;
     Node *only = q->n_child == 1 ? q->child[0] : NULL;
+    if (only)
+        memcpy(bounds, q->bounds, 2 * m * sizeof *bounds);
     q->n_child = 0;
     node_free(q);
     return only;
@@ -161,11 +188,29 @@ static Node *remove_dominated(NdTree *t, Node *q, const double F[], const double
 
 /* -- insertion ----------------------------------------------------------------------------------------------------- */
 
-static void extend(size_t m, Node *q, const double f[])
+/* Returns whether they were wider than before. */
+static int extend(size_t m, double bounds[], const double f[])
 {
+    int wider = 0;
     for (size_t k = 0; k < m; k++) {
-        q->ideal[k] = fmin(q->ideal[k], f[k]);
-        q->nadir[k] = fmax(q->nadir[k], f[k]);
+        wider |= f[k] < bounds[k] || f[k] > bounds[m + k];
+        bounds[k] = f[k] < bounds[k] ? f[k] : bounds[k];
+        bounds[m + k] = f[k] > bounds[m + k] ? f[k] : bounds[m + k];
+    }
+    return wider;
+}
+
+static void bound_one(size_t m, double bounds[], const double f[])
+{
+    memcpy(bounds, f, m * sizeof *f);
+    memcpy(bounds + m, f, m * sizeof *f);
+}
+
+static void weigh(NdTree *t)
+{
+    for (size_t k = 0; k < t->n_obj; k++) {
+        const double width = t->bounds[t->n_obj + k] - t->bounds[k];
+        t->weight[k] = width > 0.0 ? 1.0 / width : 0.0;
     }
 }
 
@@ -174,51 +219,51 @@ static double square_between(const NdTree *t, const double a[], const double b[]
 {
     double square = 0.0;
     for (size_t k = 0; k < t->n_obj; k++) {
-        const double width = t->root->nadir[k] - t->root->ideal[k], off = a[k] - b[k];
-        square += width > 0.0 ? off * off / (width * width) : 0.0;
+        const double off = (a[k] - b[k]) * t->weight[k];
+        square += off * off;
     }
     return square;
 }
 
 /* ... from the middle of a node's bounds. */
-static double square_from_middle(const NdTree *t, const Node *q, const double f[])
+static double square_from_middle(const NdTree *t, const double bounds[], const double f[])
 {
     double square = 0.0;
     for (size_t k = 0; k < t->n_obj; k++) {
-        const double width = t->root->nadir[k] - t->root->ideal[k], off = f[k] - 0.5 * (q->ideal[k] + q->nadir[k]);
-        square += width > 0.0 ? off * off / (width * width) : 0.0;
+        const double off = (f[k] - 0.5 * (bounds[k] + bounds[t->n_obj + k])) * t->weight[k];
+        square += off * off;
     }
     return square;
 }
 
-static Node *nearest_child(const NdTree *t, const Node *q, const double f[])
+static size_t nearest_child(const NdTree *t, const Node *q, const double f[])
 {
-    Node *nearest = q->child[0];
+    size_t nearest = 0;
     double min = INFINITY;
     for (size_t c = 0; c < q->n_child; c++) {
-        const double square = square_from_middle(t, q->child[c], f);
+        const double square = square_from_middle(t, q->bounds + 2 * c * t->n_obj, f);
         if (square < min) {
             min = square;
-            nearest = q->child[c];
+            nearest = c;
         }
     }
     return nearest;
 }
 
-/* Points that are far from each other, the first row among them; returns how many. Equal ones are not far. */
-static size_t choose_seeds(const NdTree *t, const Node *q, const double F[], size_t seeds[CHILDREN_MAX])
+/* Points of a leaf that are far from each other, the first among them; returns how many. Equal ones are not far. */
+static size_t choose_seeds(const NdTree *t, const Node *q, size_t seeds[CHILDREN_MAX])
 {
     const size_t m = t->n_obj;
     size_t n = 1;
-    for (seeds[0] = q->row[0]; n < t->n_children; n++) {
+    for (seeds[0] = 0; n < t->n_children; n++) {
         double farthest = 0.0;
         for (size_t i = 0; i < q->n; i++) {
             double nearest = INFINITY;
             for (size_t s = 0; s < n; s++)
-                nearest = fmin(nearest, square_between(t, F + q->row[i] * m, F + seeds[s] * m));
+                nearest = fmin(nearest, square_between(t, q->f + i * m, q->f + seeds[s] * m));
             if (nearest > farthest) {
                 farthest = nearest;
-                seeds[n] = q->row[i];
+                seeds[n] = i;
             }
         }
         if (!(farthest > 0.0))
@@ -227,58 +272,98 @@ static size_t choose_seeds(const NdTree *t, const Node *q, const double F[], siz
     return n;
 }
 
-static int leaf_add(const NdTree *t, Node *q, const double F[], size_t row)
+static int leaf_widen(size_t m, Node *q)
 {
-    if (!list_add(&q->row, &q->n, &q->n_max, row))
+    const size_t n_max = q->n_max == 0 ? 4 : q->n_max < LEAF_MAX / 2 ? 2 * q->n_max : q->n_max + LEAF_MAX / 2;
+    size_t *row = realloc(q->row, n_max * sizeof *row);
+    q->row = row ? row : q->row;
+    double *f = row ? realloc(q->f, n_max * m * sizeof *f) : NULL;
+    q->f = f ? f : q->f;
+    q->n_max = f ? n_max : q->n_max;
+    return f != NULL;
+}
+
+static int leaf_add(size_t m, Node *q, const double f[], size_t row)
+{
+    if (q->n == q->n_max && !leaf_widen(m, q))
         return 0;
-    extend(t->n_obj, q, F + row * t->n_obj);
+    memcpy(q->f + q->n * m, f, m * sizeof *f);
+    q->row[q->n++] = row;
     return 1;
 }
 
+/* Point i of the leaf to the child of the nearest seed. */
+static int hand_down(const NdTree *t, const Node *q, size_t i, size_t n, const size_t seeds[], Node *child[],
+                     double bounds[])
+{
+    const size_t m = t->n_obj;
+    const double *f = q->f + i * m;
+    size_t nearest = 0;
+    double min = INFINITY;
+    for (size_t s = 0; s < n; s++) {
+        const double square = square_between(t, f, q->f + seeds[s] * m);
+        if (square < min) {
+            min = square;
+            nearest = s;
+        }
+    }
+    extend(m, bounds + 2 * nearest * m, f);
+    return leaf_add(m, child[nearest], f, q->row[i]);
+}
+
 /* Leaves about the seeds take the points. Without memory, or where all points are equal, the leaf stays as it is. */
-static void split(NdTree *t, Node *q, const double F[])
+static void split(NdTree *t, Node *q)
 {
     const size_t m = t->n_obj;
     size_t seeds[CHILDREN_MAX], made = 0;
-    const size_t n = choose_seeds(t, q, F, seeds);
+    const size_t n = choose_seeds(t, q, seeds);
     Node *child[CHILDREN_MAX];
-    int is_whole = n > 1;
-    for (; is_whole && made < n; made++)
-        if (!(child[made] = node_new(t)))
+    double *bounds = n > 1 ? malloc(2 * n * m * sizeof *bounds) : NULL;
+    int is_whole = bounds != NULL;
+    for (; is_whole && made < n; made++) {
+        if (!(child[made] = calloc(1, sizeof *q)))
             break;
-    is_whole = is_whole && made == n;
-    for (size_t i = 0; is_whole && i < q->n; i++) {
-        size_t nearest = 0;
-        for (size_t s = 1; s < n; s++)
-            if (square_between(t, F + q->row[i] * m, F + seeds[s] * m) <
-                square_between(t, F + q->row[i] * m, F + seeds[nearest] * m))
-                nearest = s;
-        is_whole = leaf_add(t, child[nearest], F, q->row[i]);
+        bound_one(m, bounds + 2 * made * m, q->f + seeds[made] * m);
     }
+    is_whole = is_whole && made == n;
+    for (size_t i = 0; is_whole && i < q->n; i++)
+        is_whole = hand_down(t, q, i, n, seeds, child, bounds);
+    for (size_t s = 0; is_whole && s < n; s++)
+        is_whole = child[s]->n > 0; /* none is, where numbers are so large that distances are not known */
     if (!is_whole) {
         for (size_t s = 0; s < made; s++)
             node_free(child[s]);
+        free(bounds);
         return;
     }
-    memcpy(q->child, child, n * sizeof *child);
-    q->n_child = n;
-    q->n = q->n_max = 0;
     free(q->row);
-    q->row = NULL;
+    free(q->f);
+    *q = (Node){.n_child = n, .bounds = bounds};
+    memcpy(q->child, child, n * sizeof *child);
 }
 
-static int insert(NdTree *t, const double F[], size_t row)
+static int insert(NdTree *t, const double f[], size_t row)
 {
-    const double *f = F + row * t->n_obj;
-    if (!t->root && !(t->root = node_new(t)))
+    const size_t m = t->n_obj;
+    int is_wider = 1;
+    if (t->root)
+        is_wider = extend(m, t->bounds, f);
+    else if ((t->root = calloc(1, sizeof *t->root)))
+        bound_one(m, t->bounds, f);
+    else
         return 0;
+    if (is_wider)
+        weigh(t);
     Node *q = t->root;
-    for (; q->n_child > 0; q = nearest_child(t, q, f))
-        extend(t->n_obj, q, f);
-    if (!leaf_add(t, q, F, row))
+    while (q->n_child > 0) {
+        const size_t c = nearest_child(t, q, f);
+        extend(m, q->bounds + 2 * c * m, f);
+        q = q->child[c];
+    }
+    if (!leaf_add(m, q, f, row))
         return 0;
     if (q->n > LEAF_MAX)
-        split(t, q, F);
+        split(t, q);
     return 1;
 }
 
@@ -286,12 +371,17 @@ Status nd_tree_insert(NdTree *t, const double F[], size_t row, NdChange *change,
 {
     const double *f = F + row * t->n_obj;
     t->n_removed = 0;
-    *change = (NdChange){.is_in = !t->root || !is_dominated(t, t->root, F, f)};
+    *change = (NdChange){.is_in = !t->root || !is_dominated(t, t->root, t->bounds, f)};
     if (change->is_in && t->root)
-        t->root = remove_dominated(t, t->root, F, f);
-    if (change->is_in && (t->lacks_memory || !insert(t, F, row)))
+        t->root = remove_dominated(t, t->root, t->bounds, f);
+    if (change->is_in && (t->lacks_memory || !insert(t, f, row)))
         return fail(err, STATUS_NO_MEMORY, "no memory for the front");
     change->n_removed = t->n_removed;
     change->removed = t->removed;
     return STATUS_OK;
+}
+
+Status nd_tree_take(NdTree *t, const double F[], size_t row, Err *err)
+{
+    return insert(t, F + row * t->n_obj, row) ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for the front");
 }

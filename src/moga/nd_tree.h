@@ -6,7 +6,7 @@
  *
  * Dominance  moga/dominance.h; equal points do not dominate each other, all of them stay
  * Life cycle nd_tree_create -> nd_tree_insert ... -> nd_tree_free
- * Memory     grows with the points that are in, some 60 bytes each
+ * Memory     grows with the points that are in, some 140 bytes each of 7 objectives
  * Threads    one at a time
  * Errors     STATUS_NO_MEMORY
  * Source     Jaszkiewicz and Lust, ND-tree-based update: a fast algorithm for the dynamic nondominance problem,
@@ -31,5 +31,8 @@ typedef struct {
     const size_t *removed;
 } NdChange;
 Status nd_tree_insert(NdTree *t, const double F[], size_t row, NdChange *change, Err *err);
+
+/* A point of which it is known that no other of the tree dominates it, and that it dominates none. */
+Status nd_tree_take(NdTree *t, const double F[], size_t row, Err *err);
 
 #endif
