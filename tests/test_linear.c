@@ -363,7 +363,7 @@ static void test_baselines_are_of_the_records_by_the_rule_of_the_study_on_any_nu
     for (int i = 0; i < 3; i++) {
         both[i] = calloc(N_BASELINES, sizeof **both);
         open_tower(&p, "builtin:sylmar-like", i == 1 ? ROBUST_MEAN : ROBUST_WORST, i == 2 ? 2 : 1);
-        CHECK_OK(baselines_find(&p, x, both[i], &err), &err);
+        CHECK_OK(baselines_find(&p, x, BASELINE_LINKS, both[i], &err), &err);
         for (int k = BASELINE_NO_CORE; k <= BASELINE_RIGID; k++) {
             SimResult each[2];
             for (size_t r = 0; r < 2; r++)
@@ -397,7 +397,7 @@ static void test_devices_are_better_than_none_and_than_their_neighbours(void **s
     Baseline b[N_BASELINES];
     rigid_design(x);
     open_tower(&p, "none", ROBUST_WORST, 1);
-    CHECK_OK(baselines_find(&p, x, b, &err), &err);
+    CHECK_OK(baselines_find(&p, x, BASELINE_LINKS, b, &err), &err);
     for (int k = BASELINE_TMD; k <= BASELINE_LINKS; k++) {
         const double found = goal(&b[k], &b[BASELINE_NO_CORE]);
         assert_true(found < 3);

@@ -1,4 +1,5 @@
-/* imtet serve, asked by raw sockets: whom it answers, what it refuses, that a run does not know of it, how it ends. */
+/* imtet serve, asked by raw sockets: whom it answers, what it refuses, that a run does not know of it, how it ends. And
+ * the page in a browser (tests/serve/drive.mjs). */
 #include "runs.h"
 
 #include <arpa/inet.h>
@@ -562,6 +563,23 @@ static void test_ctrl_c_ends_it_while_pages_look_on(void **state)
     serve("runs");
 }
 
+/* -- a browser ----------------------------------------------------------------------------------------------------- */
+
+static void test_a_browser_follows_a_run_and_asks_what_if(void **state)
+{
+    (void)state;
+    char command[1024];
+    if (system("command -v chromium >/dev/null && command -v node >/dev/null") != 0) {
+        print_message("chromium or node is not installed: the page is not tried in a browser (make setup-browser)\n");
+        skip();
+    }
+    snprintf(
+        command, sizeof command,
+        "node tests/serve/drive.mjs '%s' '%s' >'%s/tried' 2>&1 || { cat '%s/tried'; exit 1; }; grep ' ms' '%s/tried'",
+        getenv("IMTET"), place.folder, place.folder, place.folder, place.folder);
+    assert_int_equal(system(command), 0);
+}
+
 static int begin(void **state)
 {
     Said said;
@@ -609,6 +627,7 @@ int main(void)
         cmocka_unit_test(test_a_run_has_the_same_bytes_with_ten_pages_looking_on),
         cmocka_unit_test(test_what_cannot_be_served_is_said),
         cmocka_unit_test(test_ctrl_c_ends_it_while_pages_look_on),
+        cmocka_unit_test(test_a_browser_follows_a_run_and_asks_what_if),
     };
     return cmocka_run_group_tests(tests, begin, finish);
 }

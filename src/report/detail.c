@@ -12,11 +12,11 @@
 static const double QUIET = 0.02; /* of the peak displacement */
 
 /* Under the first record; the baselines under all of them too. */
-static Status simulate(const Problem *p, const double x[], Detail *d, Err *err)
+static Status simulate(const Problem *p, const double x[], BaselineKind last, Detail *d, Err *err)
 {
     static const SceneKind SCENES[N_BASELINES] = {SCENE_NO_CORE, SCENE_RIGID, SCENE_TMD, SCENE_LINKS};
     TRY(tower_simulate(p, 1, &(SimTask){SCENE_IMPACT, x}, &d->result[SCENE_IMPACT], err));
-    TRY(baselines_find(p, x, d->baseline, err));
+    TRY(baselines_find(p, x, last, d->baseline, err));
     for (int k = 0; k < N_BASELINES; k++)
         d->result[SCENES[k]] = d->baseline[k].first;
     return STATUS_OK;
@@ -108,7 +108,7 @@ static Status take_here(const Problem *p, int n_var, const double x[], const Det
         return fail(err, STATUS_BAD_DATA, "--floor %d: the building has %d", d->floor + 1, d->n_floors);
     describe(w, x, d);
     TRY(scene_frequencies(w->scene, x, d->building_hz, d->core_hz, rigid_hz, &mass, err));
-    TRY(simulate(p, x, d, err));
+    TRY(simulate(p, x, options->without_devices ? BASELINE_RIGID : BASELINE_LINKS, d, err));
     return take_histories(w, x, d, err);
 }
 

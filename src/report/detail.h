@@ -43,8 +43,9 @@ typedef struct {
 
 /* Other earthquakes: `other` is how they are read, scaled and simulated, its motion.record replaced by each name. */
 typedef struct {
-    int floor;         /* from 0; -1: in the middle */
-    RecordPaths moved; /* where the run's own records are now */
+    int floor;           /* from 0; -1: in the middle */
+    RecordPaths moved;   /* where the run's own records are now */
+    int without_devices; /* only no core and rigidly connected beside it: no parameters are searched for */
     const Settings *other;
     size_t n_records;
     const char *const *records;

@@ -11,6 +11,7 @@
 struct DetailCache {
     pthread_mutex_t mutex;
     long id[DETAILS_KEPT];
+    int has_devices[DETAILS_KEPT];
     char *text[DETAILS_KEPT]; /* NULL: none */
     size_t next;
 };
@@ -44,13 +45,13 @@ static Status text_of(const Run *run, size_t row, const Detail *d, char **text, 
     return *text ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for a design");
 }
 
-static Status simulate(const Run *run, const RecordPaths *moved, size_t row, char **text, Err *err)
+static Status simulate(const Run *run, const RecordPaths *moved, size_t row, int with_devices, char **text, Err *err)
 {
     Settings s = *run->settings;
     Detail d;
     s.search.threads = 1;
     TRY(record_paths_find(&s, run->provenance, moved, err));
-    const DetailOptions options = {.floor = -1, .moved = *moved};
+    const DetailOptions options = {.floor = -1, .moved = *moved, .without_devices = !with_devices};
     TRY(detail_make(&s, (int)run->schema.n_var, run_x(run, row), &options, &d, err));
     const Status status = text_of(run, row, &d, text, err);
     detail_free(&d);
@@ -60,18 +61,20 @@ static Status simulate(const Run *run, const RecordPaths *moved, size_t row, cha
 /* The mutex is held. */
 static Status find(DetailCache *c, const Run *run, const RecordPaths *moved, long id, const char **text, Err *err)
 {
+    const size_t row = run_find(run, id), place = c->next;
+    const int with_devices = run->n_front > 0 && row == run_knee(run);
+    char *made = NULL;
     for (size_t i = 0; i < DETAILS_KEPT; i++)
-        if (c->text[i] && c->id[i] == id) {
+        if (c->text[i] && c->id[i] == id && c->has_devices[i] >= with_devices) {
             *text = c->text[i];
             return STATUS_OK;
         }
-    const size_t row = run_find(run, id), place = c->next;
-    char *made = NULL;
     if (run->settings->problem.kind != PROBLEM_TOWER || row == run->table.n)
         return fail(err, STATUS_MISSING, "%s: has no design %ld to be simulated", run->folder, id);
-    TRY(simulate(run, moved, row, &made, err));
+    TRY(simulate(run, moved, row, with_devices, &made, err));
     free(c->text[place]);
     c->id[place] = id;
+    c->has_devices[place] = with_devices;
     *text = c->text[place] = made;
     c->next = (place + 1) % DETAILS_KEPT;
     return STATUS_OK;

@@ -2,7 +2,8 @@
  *
  *   {"id", "objectives": [n_obj] as the run has them, "detail"}
  *
- * The last DETAILS_KEPT are kept. One is simulated at a time, on one thread.
+ * The knee stands beside all baselines; any other design beside no core and rigidly connected, since the devices are searched
+ * for anew for each core. The last DETAILS_KEPT are kept. One is simulated at a time, on one thread.
  *
  * Life cycle  detail_cache_open -> detail_cache_ask ... -> detail_cache_close
  * Threads     any

@@ -258,12 +258,15 @@ static Status tune_all(Job *job, Err *err)
     return STATUS_OK;
 }
 
-static void summarise(const Job *job, Baseline out[N_BASELINES])
+static void summarise(const Job *job, BaselineKind last, Baseline out[N_BASELINES])
 {
     ReplicatePlan plan = tower_plan(job->tower);
     plan.n_replicates = 1;
     ReplicateSummary sum;
-    for (int k = 0; k < N_BASELINES; k++) {
+    for (int k = last + 1; k < N_BASELINES; k++)
+        out[k] = (Baseline){.outcome = OUTCOME_ERROR,
+                            .first = {.outcome = RUN_ENGINE_FAILED, .reason = "it was not asked for"}};
+    for (int k = 0; k <= (int)last; k++) {
         replicates_summarise(&plan, job->results + (size_t)k * job->n_records, &sum);
         out[k].device = job->device[k];
         out[k].outcome = sum.outcome;
@@ -272,7 +275,7 @@ static void summarise(const Job *job, Baseline out[N_BASELINES])
     }
 }
 
-Status baselines_find(const Problem *p, const double x[], Baseline out[N_BASELINES], Err *err)
+Status baselines_find(const Problem *p, const double x[], BaselineKind last, Baseline out[N_BASELINES], Err *err)
 {
     const Tower *t = tower_of(p);
     const size_t n = N_BASELINES * tower_n_records(t);
@@ -284,12 +287,12 @@ Status baselines_find(const Problem *p, const double x[], Baseline out[N_BASELIN
                .why = calloc(n, sizeof *job.why)};
     Status status = job.results && job.status && job.why ? simulate_all(&job, BASELINE_NO_CORE, BASELINE_NO_CORE, err)
                                                          : fail(err, STATUS_NO_MEMORY, "no memory for baselines");
-    if (status == STATUS_OK)
+    if (status == STATUS_OK && last > BASELINE_RIGID)
         status = tune_all(&job, err);
     if (status == STATUS_OK)
-        status = simulate_all(&job, BASELINE_RIGID, BASELINE_LINKS, err);
+        status = simulate_all(&job, BASELINE_RIGID, last, err);
     if (status == STATUS_OK)
-        summarise(&job, out);
+        summarise(&job, last, out);
     free(job.results);
     free(job.status);
     free(job.why);

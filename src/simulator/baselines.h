@@ -36,8 +36,8 @@ const char *baseline_key(BaselineKind kind);   /* "tmd" */
 enum { DEVICE_TEXT_MAX = 64 };
 void baseline_device_text(BaselineKind kind, const LinearDevice *device, char text[DEVICE_TEXT_MAX]);
 
-/* x (n_var): the design, for its core. p: of a tower. */
-Status baselines_find(const Problem *p, const double x[], Baseline out[N_BASELINES], Err *err);
+/* x (n_var): the design, for its core. p: of a tower. Those up to `last`; what is behind it has failed. */
+Status baselines_find(const Problem *p, const double x[], BaselineKind last, Baseline out[N_BASELINES], Err *err);
 
 /* The device alone: kind TMD or LINKS; no_core: J1, J2, J3 of the building alone. */
 Status baseline_tune(const Tower *t, size_t worker, BaselineKind kind, const double x[], const double no_core[3],

@@ -442,7 +442,8 @@ static Status find_baselines(Study *study, Err *err)
     study->summary->has_baselines = 1;
     TRY(estimate_knee(study, run_x(run, run_knee(run)), err));
     TRY(front_review_closings(adapter_problem(study->adapter), run, &study->summary->review, err));
-    return baselines_find(adapter_problem(study->adapter), run_x(run, run_knee(run)), study->summary->baseline, err);
+    return baselines_find(adapter_problem(study->adapter), run_x(run, run_knee(run)), BASELINE_LINKS,
+                          study->summary->baseline, err);
 }
 
 static void tell_motions(const Study *study)

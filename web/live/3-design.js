@@ -3,7 +3,10 @@
 const details = new Map(); // id -> promise
 function detailOf(id) {
   if (!details.has(id)) {
-    const answer = ask(`design/${id}`);
+    const answer = ask(`design/${id}`).then((one) => {
+      one.detail.baselines = one.detail.baselines.filter((b) => b.objectives);
+      return one;
+    });
     details.set(id, answer);
     answer.catch(() => details.delete(id));
   }

@@ -1,0 +1,237 @@
+// The page of imtet serve as a person would try it: drive.mjs IMTET FOLDER      FOLDER/runs holds the finished runs a and b
+//                                                   drive.mjs IMTET --bench RUN  prints how long a slider's update takes
+import assert from "node:assert/strict";
+import { execFileSync, spawn } from "node:child_process";
+import { existsSync, mkdirSync, readFileSync, readdirSync } from "node:fs";
+import { join, resolve } from "node:path";
+import { openBrowser } from "../report/browser.mjs";
+
+const [imtet, folder, benchRun] = process.argv.slice(2);
+const isBench = folder === "--bench", root = resolve(isBench ? benchRun : join(folder, "runs"));
+const pause = (ms) => new Promise((done) => setTimeout(done, ms));
+const children = [];
+
+function start(...words) {
+  const child = spawn(imtet, words, { stdio: ["ignore", "pipe", "ignore"] });
+  children.push(child);
+  child.ended = new Promise((done) => child.once("exit", done));
+  return child;
+}
+
+async function serve() {
+  const child = start("serve", root);
+  let said = "";
+  for await (const piece of child.stdout) {
+    said += piece;
+    if (said.includes("Ctrl-C")) break;
+  }
+  return said.match(/http:\S+/)[0];
+}
+
+const browser = await openBrowser();
+const page = await browser.openPage();
+const url = await serve(), origin = new URL(url).origin;
+const runs = async () => (await fetch(`${url}runs`)).json();
+
+// ---- hands
+
+async function open(name) {
+  const at = (await runs()).find((r) => r.name === name).at;
+  await page.call("Page.navigate", { url: `${url}${at}/` });
+  await page.until("document.documentElement?.dataset.ready === 'yes'");
+}
+const until = (expression, seconds) => page.until(expression, seconds);
+const press = (key, more = {}) => ["keyDown", "keyUp"].reduce((before, type) => before.then(() => page.call("Input.dispatchKeyEvent", { type, key, code: key, ...more })), Promise.resolve());
+const mouse = (type, x, y) => page.call("Input.dispatchMouseEvent", { type, x, y, button: type === "mouseMoved" ? "none" : "left", buttons: type === "mousePressed" ? 1 : 0, clickCount: 1 });
+const boxOf = (selector, nth = 0) => page.evaluate(`(() => { const e = document.querySelectorAll(${JSON.stringify(selector)})[${nth}];
+  e.scrollIntoView({ behavior: "instant", block: "center" }); const r = e.getBoundingClientRect(); return { x: r.x, y: r.y, width: r.width, height: r.height }; })()`);
+async function click(selector, nth = 0) {
+  const { x, y, width, height } = await boxOf(selector, nth);
+  await mouse("mousePressed", x + width / 2, y + height / 2);
+  await mouse("mouseReleased", x + width / 2, y + height / 2);
+}
+const designShown = (id) => until(`document.getElementById("any-design").dataset.id === "${id}"`);
+
+// Drags a slider to and fro; updates that came and how long each took from the movement to the frame with its picture.
+async function dragSlider(nth, moves) {
+  const { x, y, width, height } = await boxOf(".slider input", nth), middle = y + height / 2;
+  await page.evaluate("performance.clearMeasures('what-if')");
+  await mouse("mousePressed", x + width / 2, middle);
+  for (let k = 0; k < moves; k++) {
+    await page.call("Input.dispatchMouseEvent", { type: "mouseMoved", x: x + width * (0.5 + 0.4 * Math.sin(k / 4)), y: middle, button: "left", buttons: 1 });
+    await pause(40);
+  }
+  await mouse("mouseReleased", x + width / 2, middle);
+  await until("!document.getElementById('what-if').dataset.busy");
+  await pause(100);
+  return page.evaluate("performance.getEntriesByName('what-if').map((m) => m.duration)");
+}
+
+function tell(what, times) {
+  const sorted = [...times].sort((a, b) => a - b), ms = (q) => `${Math.round(sorted[Math.min(sorted.length - 1, Math.floor(q * sorted.length))])} ms`;
+  console.log(`${what}: ${times.length} updates, median ${ms(0.5)}, 95 % ${ms(0.95)}, slowest ${ms(1)}`);
+}
+
+// Faults that the browser saw, and requests to anywhere else.
+const complaints = () => page.events.flatMap(({ method, params }) => {
+  if (method === "Log.entryAdded") return [`log: ${params.entry.text} ${params.entry.url}`];
+  if (method === "Runtime.exceptionThrown") return [`exception: ${params.exceptionDetails.exception?.description ?? params.exceptionDetails.text}`];
+  if (method === "Runtime.consoleAPICalled") return [`console: ${JSON.stringify(params.args)}`];
+  if (method === "Audits.issueAdded") return [`issue: ${JSON.stringify(params.issue.details).slice(0, 400)}`];
+  if (method === "Network.requestWillBeSent" && !/^(data|blob):/.test(params.request.url) && !params.request.url.startsWith(origin)) return [`request: ${params.request.url}`];
+  return [];
+});
+
+// ---- what is tried
+
+const tried = {
+  async "a run under way shows in the page within 2 s of a generation's end"() {
+    const live = start("optimize", "configs/quick.ini", "--threads", "1", "--max-evals", "200", "--set", "search.population=16", "--set", "search.initial=40", "--out", join(root, "live"));
+    live.stdout.resume();
+    const log = join(root, "live", "log.jsonl"), ends = new Map(), seen = () => (existsSync(log) ? readFileSync(log, "utf8").split("\n").filter((l) => l.startsWith("{") && l.endsWith("}")).map((l) => JSON.parse(l)).filter((e) => e.event === "generation") : []);
+    while (!seen().length) await pause(50);
+    await open("live");
+    await page.evaluate(`(() => { window.seen = []; const part = document.getElementById("live");
+      new MutationObserver(() => window.seen.push([+part.dataset.generation, Date.now()])).observe(part, { attributeFilter: ["data-generation"] }); })()`);
+    const before = new Set(seen().map((e) => e.number));
+    let over = false;
+    live.ended.then(() => (over = true));
+    while (!over) {
+      for (const { number: generation } of seen()) if (!before.has(generation) && !ends.has(generation)) ends.set(generation, Date.now());
+      await pause(20);
+    }
+    await until("document.getElementById('live').dataset.state === 'finished'", 10);
+    const shown = (await page.evaluate("window.seen")).filter(([g]) => ends.has(g));
+    assert.ok(shown.length >= 2, `${shown.length} generations were seen while the run went on`);
+    for (const [generation, end] of ends) { // one that was passed over shows with a later one
+      const first = shown.find(([g]) => g >= generation);
+      assert.ok(first && first[1] - end < 2000, `generation ${generation} ended at ${end}, shown ${first}`);
+    }
+    tell("from the end of a generation to the page", shown.map(([g, at]) => Math.max(0, at - ends.get(g))));
+    assert.match(await page.evaluate("document.getElementById('progress-words').textContent"), /^Finished: 200 of 200 designs simulated; 0 failed/);
+    await until("!document.getElementById('new-front').hidden");
+    await click("#new-front");
+    await until("document.documentElement?.dataset.ready === 'yes' && document.getElementById('new-front')?.hidden", 20);
+  },
+  async "a click on a row, a line and a dot opens that design"() {
+    await open("a");
+    await until("document.querySelector('#loads')"); // the knee in detail
+    const id = await page.evaluate("document.querySelectorAll('#designs tbody tr')[1].dataset.id");
+    await click("#designs tbody td button", 1);
+    await designShown(id);
+    assert.match(await page.evaluate("document.querySelector('#any-design h2').textContent"), new RegExp(`^Design ${id}\\b`));
+    assert.ok((await page.evaluate("document.querySelectorAll('#any-design svg').length")) >= 7);
+    for (const canvas of ["#front figure:not([hidden]) .layers canvas[role=img]", "#front .grid2 figure .layers canvas[role=img]"]) {
+      const { x, y, width, height } = await boxOf(canvas);
+      let name = "";
+      for (let k = 0; k < 400 && !/^Design/.test(name); k++) {
+        await mouse("mouseMoved", x + width * (0.2 + 0.0015 * k), y + height * (0.3 + 0.4 * ((k * 0.37) % 1)));
+        name = await page.evaluate("(() => { const t = document.getElementById('tip'); return t.hidden ? '' : t.textContent; })()");
+        if (!name) continue;
+        const at = [x + width * (0.2 + 0.0015 * k), y + height * (0.3 + 0.4 * ((k * 0.37) % 1))];
+        await mouse("mousePressed", ...at);
+        await mouse("mouseReleased", ...at);
+      }
+      await designShown(name.match(/^Design (\d+)/)[1]);
+    }
+  },
+  async "a slider changes peaks and place while it is dragged"() {
+    await open("a");
+    await until("document.getElementById('what-if').dataset.turn");
+    const before = await page.evaluate("document.querySelector('#trial tbody').textContent");
+    tell("a gap dragged", await dragSlider(10, 40));
+    tell("a thickness dragged", await dragSlider(3, 30)); // a gap may be one that never closes
+    assert.notEqual(await page.evaluate("document.querySelector('#trial tbody').textContent"), before);
+    assert.match(await page.evaluate("document.getElementById('place').textContent"), /ominated/);
+    tell("the peak of the motion dragged", await dragSlider(0, 30));
+    assert.match(await page.evaluate("document.getElementById('place').textContent"), /another motion/);
+    await click("#back");
+    await until("/Nondominated/.test(document.getElementById('place').textContent)");
+  },
+  async "a slider is moved by the keyboard"() {
+    const turn = await page.evaluate("+document.getElementById('what-if').dataset.turn");
+    await page.evaluate("document.querySelectorAll('.slider input')[12].focus()");
+    await press("ArrowRight", { windowsVirtualKeyCode: 39 });
+    await press("ArrowRight", { windowsVirtualKeyCode: 39 });
+    await until(`+document.getElementById("what-if").dataset.turn > ${turn} && !document.getElementById("what-if").dataset.busy`);
+  },
+  async "what is kept is a design file that simulate reads to the same numbers"() {
+    const downloads = join(folder, "downloads");
+    mkdirSync(downloads, { recursive: true });
+    await browser.send("Browser.setDownloadBehavior", { behavior: "allow", downloadPath: downloads });
+    await click("#keep-trial");
+    await page.evaluate("(() => { const s = document.querySelectorAll('.slider input')[15]; s.value = +s.min + 0.3 * (s.max - s.min); s.dispatchEvent(new Event('input')); })()");
+    await until("!document.getElementById('what-if').dataset.busy");
+    await click("#keep-trial");
+    await click("#save-kept");
+    let name;
+    for (let k = 0; k < 250 && !name; k++, await pause(20)) name = readdirSync(downloads).find((f) => f.endsWith("-kept.csv"));
+    const file = join(downloads, name), words = (await page.evaluate("document.querySelector('#kept + pre').textContent")).trim().split(" ");
+    assert.deepEqual([words[0], words[1], words[4]], ["imtet", "simulate", name]);
+    const said = JSON.parse(execFileSync(imtet, ["simulate", words[2], "--design", file, ...words.slice(5), "--json"]));
+    const shown = await page.evaluate("Array.from(document.querySelectorAll('#kept li'), (li) => li.textContent)");
+    assert.equal(shown.length, 2);
+    said.forEach((o, i) => assert.ok(shown[i].startsWith(`J1 displacement ${+o.j1_m.toPrecision(3)}\u202fm, `), `${shown[i]} is not ${o.j1_m}`));
+  },
+  async "designs stand side by side with their differences"() {
+    await click("#kept li button");
+    await click("#any-design .bar button", 1);
+    await until("document.querySelectorAll('#compared tbody tr').length === 2");
+    const differences = await page.evaluate("Array.from(document.querySelectorAll('#compared .difference'), (e) => e.textContent)");
+    assert.ok(differences.length >= 5 && differences.every((text) => /^[+\u2212][\d.]+ %$/.test(text)), differences.join());
+    assert.ok((await page.evaluate("document.querySelectorAll('#compare figure svg').length")) >= 4);
+  },
+  async "two runs lie over each other"() {
+    const row = await page.evaluate("Array.from(document.querySelectorAll('#all-runs tbody tr')).findIndex((tr) => tr.cells[0].textContent === 'b')");
+    await page.evaluate(`document.querySelectorAll("#all-runs tbody tr")[${row}].querySelector("button").click()`);
+    await until("document.querySelectorAll('#runs figure svg').length >= 1 && document.querySelector('#runs .strip canvas')");
+  },
+  async "everything live is reached by the Tab key"() {
+    const found = new Set();
+    await page.evaluate("document.activeElement.blur()");
+    for (let k = 0; k < 250; k++) {
+      await press("Tab", { windowsVirtualKeyCode: 9 });
+      found.add(await page.evaluate("(() => { const e = document.activeElement; return e.id || e.name || e.textContent.slice(0, 20); })()"));
+    }
+    for (const wanted of ["pga_g", "gap_07_m", "t_top_m", "keep-trial", "save-kept", "Compare"]) assert.ok(found.has(wanted), `${wanted} is never focused: ${[...found]}`);
+  },
+  async "nothing is wider than a window of 800 px, nor than one of 1360"() {
+    for (const width of [800, 1360]) {
+      await page.call("Emulation.setDeviceMetricsOverride", { width, height: 900, deviceScaleFactor: 1, mobile: false });
+      await until(`document.documentElement.scrollWidth <= ${width}`, 5);
+    }
+  },
+  async "the browser complains of nothing and asks no one else"() {
+    assert.deepEqual(complaints(), []);
+  },
+};
+
+setTimeout(() => {
+  console.log("FAILED  it takes longer than five minutes");
+  for (const child of children) child.kill("SIGKILL");
+  process.exit(1);
+}, 300000).unref();
+
+let failed = 0;
+try {
+  if (isBench) {
+    await page.call("Page.navigate", { url });
+    await until("document.getElementById('what-if')?.dataset.turn");
+    await until("document.querySelector('#any-design svg')"); // the knee in detail is done
+    for (const nth of [3, 10, 18]) tell(`variable ${nth - 2} dragged`, await dragSlider(nth, 100));
+    for (const [nth, what] of [[0, "peak"], [1, "stretch"], [2, "restitution"]]) tell(`${what} dragged`, await dragSlider(nth, 60));
+  } else
+    for (const [what, trial] of Object.entries(tried))
+      try {
+        await trial();
+        console.log(`ok      ${what}`);
+      } catch (error) {
+        failed++;
+        console.log(`FAILED  ${what}\n        ${error.message.replaceAll("\n", "\n        ")}`);
+      }
+} finally {
+  await browser.close();
+  for (const child of children) child.kill("SIGINT");
+  await Promise.all(children.map((child) => child.ended));
+}
+process.exit(failed ? 1 : 0);
