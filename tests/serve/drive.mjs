@@ -121,16 +121,16 @@ const tried = {
     await designShown(id);
     assert.match(await page.evaluate("document.querySelector('#any-design h2').textContent"), new RegExp(`^Design ${id}\\b`));
     assert.ok((await page.evaluate("document.querySelectorAll('#any-design svg').length")) >= 7);
-    for (const canvas of ["#front figure:not([hidden]) .layers canvas[role=img]", "#front .grid2 figure .layers canvas[role=img]"]) {
-      const { x, y, width, height } = await boxOf(canvas);
+    for (const picture of ["#front .layers", "#front .grid2 .layers"]) {
+      const { x, y, width, height } = await boxOf(picture), places = Array.from({ length: 200 }, (_, k) => [x + width * (0.2 + 0.003 * k), y + height * (0.3 + 0.4 * ((k * 0.37) % 1))]);
       let name = "";
-      for (let k = 0; k < 400 && !/^Design/.test(name); k++) {
-        await mouse("mouseMoved", x + width * (0.2 + 0.0015 * k), y + height * (0.3 + 0.4 * ((k * 0.37) % 1)));
-        name = await page.evaluate("(() => { const t = document.getElementById('tip'); return t.hidden ? '' : t.textContent; })()");
+      for (const at of places) {
+        await mouse("mouseMoved", ...at);
+        name = await page.evaluate(`document.getElementById("tip").hidden || (${picture === "#front .layers"} && document.elementFromPoint(${at}).closest(".brush")) ? "" : document.querySelector("#tip strong").textContent`);
         if (!name) continue;
-        const at = [x + width * (0.2 + 0.0015 * k), y + height * (0.3 + 0.4 * ((k * 0.37) % 1))];
         await mouse("mousePressed", ...at);
         await mouse("mouseReleased", ...at);
+        break;
       }
       await designShown(name.match(/^Design (\d+)/)[1]);
     }

@@ -10,7 +10,7 @@ async function ask(where, body) {
 // A section of its own before that of the given id, with its link.
 function livePart(id, title, before) {
   const part = element("section", { id, tabindex: "-1" }, element("h2", {}, title));
-  document.getElementById(before).before(part);
+  (document.getElementById(before) ?? document.getElementById("provenance")).before(part);
   const link = element("a", { href: `#${id}`, onclick: (event) => {
     event.preventDefault();
     goTo(part);
