@@ -1,7 +1,7 @@
 /* serve/watch.h -- the runs that are served, each as it is now: read again when its files have changed.
  *
  * One thread reads, as `imtet status` does; it writes nothing and keeps no lock, so that the run does not know of it. It
- * looks every POLL_S for changes and spends a twentieth of its time at most on reading a run.
+ * looks every POLL_S for changes and spends a tenth of a processor at most on reading a run.
  *
  * Life cycle  watch_open -> watch_take, watch_give ... -> watch_stop -> watch_close
  * Ownership   a Look is shared and read-only; it is released by the last watch_give
