@@ -301,6 +301,33 @@ static void test_whoever_gains_more_has_the_greater_share_of_a_batch(void **stat
     assert_int_equal(variation_where(2, 1, 100), 0); /* the surface has the first simulations alone */
 }
 
+/* Agreement after n batches of one result, predicted in the same or in the opposite order. */
+static double agreement_after(size_t n, double sign)
+{
+    SurrogateControl c;
+    double F[4 * 2], predicted[4 * 2];
+    const unsigned char ok = 1, kind = KIND_SAMPLED, criterion = 0, was_predicted = 1; /* gains are not looked at */
+    control_begin(&c);
+    c.F = F;
+    c.predicted = predicted;
+    for (size_t i = 0; i < n; i++) {
+        const double f[2] = {(double)(i * 7 % 11), (double)(i * 5 % 11)}, p[2] = {sign * f[0], sign * f[1]};
+        control_judge(&c, &(BatchResults){1, 2, f, p, &ok, &kind, &criterion, &was_predicted}, NULL);
+    }
+    assert_int_equal(control_agrees(&c), c.agreement > 0.15);
+    return c.agreement;
+}
+
+static void test_predictions_in_the_wrong_order_are_noticed_in_batches_of_one_too(void **state)
+{
+    (void)state;
+    assert_close(agreement_after(3, -1.0), 1.0, 1e-12);
+    assert_close(agreement_after(4, -1.0), 0.5, 1e-12); /* 3/4 of 1 and 1/4 of -1 */
+    assert_close(agreement_after(7, -1.0), 0.5, 1e-12);
+    assert_true(agreement_after(40, -1.0) < 0.0);
+    assert_close(agreement_after(40, 1.0), 1.0, 1e-12);
+}
+
 static void test_the_same_seed_gives_the_same_bytes_at_any_thread_count(void **state)
 {
     (void)state;
@@ -771,6 +798,7 @@ int main(void)
         cmocka_unit_test_setup(test_a_first_sample_of_four_designs_is_enough, fresh),
         cmocka_unit_test_setup(test_seven_objectives_beat_a_latin_hypercube_of_the_same_size, fresh),
         cmocka_unit_test(test_whoever_gains_more_has_the_greater_share_of_a_batch),
+        cmocka_unit_test(test_predictions_in_the_wrong_order_are_noticed_in_batches_of_one_too),
         cmocka_unit_test(test_variation_gets_the_share_of_a_batch_that_infill_loses_to_failures),
         cmocka_unit_test(test_the_criterion_that_gains_more_has_the_greater_share),
         cmocka_unit_test_setup(test_the_same_seed_gives_the_same_bytes_at_any_thread_count, fresh),

@@ -2,10 +2,9 @@
 
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
 #include "moga/constants.h"
-
-enum { AGREEMENT_RESULTS_MIN = 4 }; /* Kendall's tau of fewer says nothing */
 
 void control_begin(SurrogateControl *c)
 {
@@ -15,7 +14,7 @@ void control_begin(SurrogateControl *c)
                             .criteria = {{0.5, 0.5}, {0.5, 0.5}}};
 }
 
-void control_pack(SurrogateControl *c, Pack *p)
+void control_pack(SurrogateControl *c, Pack *p, size_t n_obj)
 {
     pack_numbers(p, &c->agreement, 1, -1.0, 1.0);
     pack_numbers(p, &c->failure_rate, 1, 0.0, 1.0);
@@ -25,6 +24,9 @@ void control_pack(SurrogateControl *c, Pack *p)
         pack_numbers(p, credit->designs, 2, DBL_MIN, 1.0);
     }
     pack_size(p, &c->cost, COST_TOO_HIGH);
+    pack_size(p, &c->n_kept, AGREEMENT_RESULTS_MIN - 1);
+    pack_numbers(p, c->F, c->n_kept * n_obj, -DBL_MAX, DBL_MAX);
+    pack_numbers(p, c->predicted, c->n_kept * n_obj, -INFINITY, INFINITY);
 }
 
 /* -- whether the surrogate is used --------------------------------------------------------------------------------- */
@@ -121,34 +123,43 @@ static void learn_credits(SurrogateControl *c, const BatchResults *r, Infill *co
     learn(&c->criteria, criterion_gain, by_criterion);
 }
 
-/* Objective k of the predicted results that succeeded: pairs in the same order minus pairs in the opposite one, as a
- * share of all pairs; 0 where there is none. Kendall, Biometrika 30 (1938) 81-93. */
-static double kendall_tau(const BatchResults *r, size_t k)
+/* Objective k of the results that are kept: pairs in the same order minus pairs in the opposite one, as a share of all
+ * pairs. Kendall, Biometrika 30 (1938) 81-93. */
+static double kendall_tau(const SurrogateControl *c, size_t n_obj, size_t k)
 {
-    const size_t m = r->n_obj;
     long same = 0, pairs = 0;
-    for (size_t i = 0; i < r->n; i++)
+    for (size_t i = 0; i < c->n_kept; i++)
         for (size_t j = 0; j < i; j++) {
-            if (!r->was_predicted[i] || !r->ok[i] || !r->was_predicted[j] || !r->ok[j])
-                continue;
-            const double product =
-                (r->predicted[i * m + k] - r->predicted[j * m + k]) * (r->F[i * m + k] - r->F[j * m + k]);
+            const double product = (c->predicted[i * n_obj + k] - c->predicted[j * n_obj + k]) *
+                                   (c->F[i * n_obj + k] - c->F[j * n_obj + k]);
             same += (product > 0.0) - (product < 0.0);
             pairs++;
         }
-    return pairs > 0 ? (double)same / (double)pairs : 0.0;
+    return (double)same / (double)pairs;
+}
+
+/* The predicted results that succeeded. */
+static void keep_results(SurrogateControl *c, const BatchResults *r)
+{
+    const size_t m = r->n_obj;
+    for (size_t i = 0; i < r->n; i++) {
+        if (!r->was_predicted[i] || !r->ok[i])
+            continue;
+        memcpy(c->F + c->n_kept * m, r->F + i * m, m * sizeof *c->F);
+        memcpy(c->predicted + c->n_kept * m, r->predicted + i * m, m * sizeof *c->predicted);
+        c->n_kept++;
+    }
 }
 
 void control_judge(SurrogateControl *c, const BatchResults *r, Infill *const gain[INFILL_KINDS])
 {
-    size_t n = 0;
     double tau = 0.0;
     learn_credits(c, r, gain);
-    for (size_t i = 0; i < r->n; i++)
-        n += r->was_predicted[i];
-    if (n < AGREEMENT_RESULTS_MIN)
+    keep_results(c, r);
+    if (c->n_kept < AGREEMENT_RESULTS_MIN)
         return;
     for (size_t k = 0; k < r->n_obj; k++)
-        tau += kendall_tau(r, k) / (double)r->n_obj;
+        tau += kendall_tau(c, r->n_obj, k) / (double)r->n_obj;
     c->agreement += AGREEMENT_WEIGHT * (tau - c->agreement);
+    c->n_kept = 0;
 }

@@ -1,7 +1,8 @@
 /* moga/control.h -- surrogate management: whether the surrogate is used, and how a batch is shared among criteria.
  *
  *   agreement     running mean of Kendall's tau between predicted and evaluated objectives of the batches. The
- *                 surrogate is used while it is above AGREEMENT_MIN
+ *                 surrogate is used while it is above AGREEMENT_MIN. Small batches are taken together until they have
+ *                 AGREEMENT_RESULTS_MIN results
  *   credit        two alternatives share a batch: infill and variation, or the criteria PBI and hypervolume. Running
  *                 means of each one's share of the gain, c_i, and of the designs, n_i, give its part of the next batch:
  *                   (c_i / n_i)^p / sum_j (c_j / n_j)^p         p = GENERATOR_POWER, CRITERION_POWER
@@ -20,6 +21,8 @@
 #include "evaluate/evaluation.h"
 #include "moga/infill.h"
 #include "moga/options.h"
+
+enum { AGREEMENT_RESULTS_MIN = 4 }; /* Kendall's tau of fewer says nothing */
 
 typedef enum { GENERATOR_INFILL, GENERATOR_VARIATION, GENERATORS } Generator;
 
@@ -44,6 +47,8 @@ typedef struct {
     Credit generators, criteria; /* by Generator, by InfillKind */
     size_t cost;                 /* CostState */
     SearchTimes times;           /* not part of the state */
+    size_t n_kept;               /* results since agreement was judged last: */
+    double *F, *predicted;       /* (AGREEMENT_RESULTS_MIN - 1 + results of a batch, n_obj) the caller's memory */
 } SurrogateControl;
 
 /* Results of a batch, and what was known of them when they were asked for. */
@@ -60,7 +65,7 @@ typedef struct {
 } BatchShares;
 
 void control_begin(SurrogateControl *c);
-void control_pack(SurrogateControl *c, Pack *p);
+void control_pack(SurrogateControl *c, Pack *p, size_t n_obj);
 
 void control_weigh_costs(SurrogateControl *c, SurrogateUse use);
 int control_allows(const SurrogateControl *c, SurrogateUse use); /* a surrogate is wanted and worth its time */
@@ -69,7 +74,7 @@ int control_agrees(const SurrogateControl *c);                   /* predictions 
 /* n evaluations so far of n_var variables: before INFILL_ALONE n_var of them variation gets the failure rate alone. */
 BatchShares control_batch_shares(const SurrogateControl *c, size_t size, size_t n, size_t n_var);
 
-/* gain[] has measured the front that the generation began with. Fewer than 4 predicted results leave the agreement. */
+/* gain[] has measured the front that the generation began with. */
 void control_judge(SurrogateControl *c, const BatchResults *r, Infill *const gain[INFILL_KINDS]);
 
 #endif

@@ -33,6 +33,8 @@ static void layout(void *search, Carve *c)
     b->criterion = carve(c, b->n_max + 1, 1);
     b->was_predicted = carve(c, b->n_max, 1);
     b->repeat = carve(c, b->n_max, sizeof(size_t));
+    s->control.F = carve(c, (AGREEMENT_RESULTS_MIN - 1 + b->n_max) * n_obj, sizeof(double));
+    s->control.predicted = carve(c, (AGREEMENT_RESULTS_MIN - 1 + b->n_max) * n_obj, sizeof(double));
     s->offspring.allowed = carve(c, n_pool, 1);
     s->offspring.excluded = carve(c, n_pool, 1);
     w->survivors = carve(c, n_pool, sizeof(size_t));
@@ -127,7 +129,7 @@ Status state_grow_rows(Search *s, Err *err)
 
 /* -- as bytes ------------------------------------------------------------------------------------------------------ */
 
-enum { STATE_VERSION = 8 };
+enum { STATE_VERSION = 9 };
 
 /* Designs that are asked for and not evaluated yet. */
 static void pack_pending(Search *s, Pack *p)
@@ -176,7 +178,7 @@ static void pack_search(Search *s, Pack *p)
     pack_expect(p, s->config->population);
     pack_expect(p, s->archive.n);
     pack_size(p, &s->generation, UINT32_MAX);
-    control_pack(&s->control, p);
+    control_pack(&s->control, p, problem->n_obj);
     population_pack(&s->population, p, s->archive.n);
     surrogate_pack(s->surrogate, p);
     convergence_pack(&s->convergence, p);
