@@ -331,6 +331,64 @@ static void test_what_stands_still_feels_the_ground(void **state)
     assert_true(felt >= 3.7 && felt < 1.2 * 3.7); /* overshoots where it sets in */
 }
 
+/* Displacements of the floors, all of them, for a filter of its own. */
+typedef struct {
+    const SimWorker *worker;
+    FloorFilter *filter;
+    long samples;
+} AllSamples;
+
+static void add_sample(const SimSample *s, void *user)
+{
+    AllSamples *all = user;
+    if (s->t == 0) {
+        floor_filter_start(all->filter, s->spacing);
+        all->samples = 0;
+    }
+    sim_worker_floors(all->worker, s, floor_filter_add(all->filter, s->ground));
+    all->samples++;
+}
+
+static void test_samples_that_are_left_out_change_no_filtered_peak(void **state)
+{
+    (void)state;
+    Err err = {0};
+    Motion motion = {0};
+    Scene *scene;
+    SimWorker *worker;
+    SimResult r;
+    double x[22], peaks[20], worst = 0;
+    SceneOptions o = paper_scene();
+    o.sim.filtered = 1;
+    o.sim.filter_hz = CUTOFF;
+    const MotionOptions m = {.record = "builtin:kobe-like", .pga_g = 0.3, .stretch = 3.1, .peak_error_max = 0.05};
+    CHECK_OK(motion_open(&motion, &m, &err), &err);
+    CHECK_OK(scene_create(&scene, &o, &motion, &err), &err);
+    CHECK_OK(sim_worker_create(&worker, scene, &err), &err);
+    AllSamples all = {.worker = worker};
+    CHECK_OK(floor_filter_create(&all.filter, 20, CUTOFF, &err), &err);
+    for (int design = 0; design < (SANITIZED ? 1 : 4); design++) {
+        for (int j = 0; j < 22; j++)
+            x[j] = j < 20 ? 0.05 + 0.03 * design + 0.01 * j : j == 20 ? 0.012 : 0.0064;
+        sim_worker_sample(worker, 0, NULL, NULL);
+        CHECK_OK(sim_run(worker, SCENE_IMPACT, x, &r, &err), &err);
+        assert_true(r.filtered_known && r.impacts > 20);
+        const SimResult few = r;
+        sim_worker_sample(worker, floor_filter_spacing(CUTOFF), add_sample, &all);
+        CHECK_OK(sim_run(worker, SCENE_IMPACT, x, &r, &err), &err);
+        assert_true((double)all.samples > r.settled_s / floor_filter_spacing(CUTOFF));
+        CHECK_OK(floor_filter_peaks(all.filter, peaks, &err), &err);
+        for (int j = 0; j < 20; j++)
+            worst = fmax(worst, fabs(few.peak_filtered_g[j] * 9.81 / peaks[j] - 1));
+    }
+    if (!(worst < 1e-4))
+        fail_msg("a filtered peak differs by %g", worst);
+    floor_filter_free(all.filter);
+    sim_worker_free(worker);
+    scene_free(scene);
+    motion_free(&motion);
+}
+
 /* ---- floor spectra ----------------------------------------------------------------------------------------------- */
 
 /* On a building that is as stiff as rock the floor does as the ground: a sine of 1 Hz in resonance with an oscillator of 5 %
@@ -375,6 +433,7 @@ int main(void)
         cmocka_unit_test(test_a_sine_keeps_the_gain_of_butterworth),
         cmocka_unit_test(test_an_impact_between_two_samples_is_the_response_to_an_impulse),
         cmocka_unit_test(test_what_stands_still_feels_the_ground),
+        cmocka_unit_test(test_samples_that_are_left_out_change_no_filtered_peak),
         cmocka_unit_test(test_a_sine_has_ten_times_its_acceleration_in_the_floor_spectrum),
     };
     return cmocka_run_group_tests_name("histories", tests, prepare, clear_place);

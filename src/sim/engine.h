@@ -40,6 +40,8 @@ typedef struct {
     double sample_spacing; /* [s] at most, by halving the motion's samples; 0: every sample of the motion */
     int sample_peaks;      /* samples are wanted for peaks of the floors: the core's modes, force and energies may be
                               anything, and samples may end where no peak can rise any more */
+    double sample_memory;  /* [s] samples wanted before and after those that are, where others may be left out */
+    SimSkipFn skip;        /* with sample_peaks: which may be left out; NULL: none; `fast` alone does */
     ForceMonitor *forces;  /* set for this design; NULL: not wanted */
     void *work;            /* from EngineEntry.work_create; NULL: the run allocates its own */
 } EngineOptions;

@@ -19,11 +19,12 @@ enum { LANES8 = 8, VECTORS = 3 /* together: each waits for its own last row */, 
 enum { LAST_U, BEFORE_U, LAST_A, BEFORE_A, SECTIONS, STATES = SECTIONS + 2 * FILTER_SECTIONS };
 
 struct FloorFilter {
-    int n, out_of_memory;
-    size_t width; /* floors padded */
+    int n, out_of_memory, resumes; /* resumes: the next row does not begin at rest */
+    size_t width;                  /* floors padded */
     double cutoff_hz, h;
     Filter filter;
     double norm;    /* sum |g| */
+    double below;   /* so much of max|z| can be missed */
     size_t padding; /* rows behind a block */
     size_t block;   /* rows whose peaks are found at once */
     size_t entered; /* rows of u that wait */
@@ -32,13 +33,18 @@ struct FloorFilter {
     double *ground; /* (1 + ENTERED) [m/s2], of the row before them first */
     double *state;  /* (STATES, width) */
     double *y;      /* (1 + block + padding, width) forward pass; the row before the block first */
-    double *z;      /* (1 + block + 1, width) both passes */
+    double *z;      /* (1 + block + padding, width) both passes */
     double *most;   /* (width) [m/s2] largest magnitude of z so far; infinite behind the last floor */
     double *peak;   /* (width) [m/s2] of the parabola there */
     void *store;
 };
 
 static const double SAMPLES_PER_PERIOD = 10; /* of the cutoff frequency */
+
+double floor_filter_memory(double cutoff_hz)
+{
+    return 3 / cutoff_hz;
+}
 
 double floor_filter_spacing(double cutoff_hz)
 {
@@ -70,7 +76,7 @@ static void layout(void *object, Carve *c)
     f->ground = carve(c, 1 + ENTERED, sizeof(double));
     f->state = carve(c, STATES * f->width, sizeof(double));
     f->y = carve(c, (1 + f->block + f->padding) * f->width, sizeof(double));
-    f->z = carve(c, (1 + f->block + 1) * f->width, sizeof(double));
+    f->z = carve(c, (1 + f->block + f->padding) * f->width, sizeof(double));
     f->most = carve(c, f->width, sizeof(double));
     f->peak = carve(c, f->width, sizeof(double));
 }
@@ -99,8 +105,18 @@ static void set_spacing(FloorFilter *f, double h)
     f->padding = filter_padding(&f->filter);
     f->block = 2 * f->padding;
     f->norm = norm_of(&f->filter, f->padding);
+    f->below = 3 / (4 * f->norm * f->norm);
     f->store = carve_all(layout, f);
     f->out_of_memory = !f->store;
+}
+
+static void begin(FloorFilter *f)
+{
+    f->entered = 0;
+    f->filled = 1;
+    f->ground[0] = 0;
+    memset(f->state, 0, STATES * f->width * sizeof *f->state);
+    memset(f->y, 0, f->width * sizeof *f->y);
 }
 
 void floor_filter_start(FloorFilter *f, double h)
@@ -109,11 +125,8 @@ void floor_filter_start(FloorFilter *f, double h)
         set_spacing(f, h);
     if (!f->store)
         return;
-    f->entered = 0;
-    f->filled = 1;
-    f->ground[0] = 0;
-    memset(f->state, 0, STATES * f->width * sizeof *f->state);
-    memset(f->y, 0, f->width * sizeof *f->y);
+    begin(f);
+    f->resumes = 0;
     for (size_t j = 0; j < f->width; j++) {
         f->most[j] = j < (size_t)f->n ? 0 : HUGE_VAL;
         f->peak[j] = 0;
@@ -240,7 +253,7 @@ static double parabola_top(const double *row, size_t width)
     return bend != 0 ? fabs(y - 0.5 * slope * slope / bend) : fabs(y);
 }
 
-/* Peaks of rows 1..block of y. */
+/* Peaks of rows 1..block of y, the last of which has a neighbour. */
 static void take_block(FloorFilter *f, size_t block)
 {
     _Alignas(64) double top[FLOORS_MAX], row[FLOORS_MAX];
@@ -256,10 +269,24 @@ static void take_block(FloorFilter *f, size_t block)
 
 /* -- a run ------------------------------------------------------------------------------------------------------ */
 
+/* Before the first of the rows that wait the floors went as they go from it to the second. */
+static void resume(FloorFilter *f)
+{
+    const size_t width = f->width;
+    const double *first = f->u, *second = f->entered > 1 ? f->u + width : f->u;
+    for (size_t j = 0; j < width; j++) {
+        f->state[LAST_U * width + j] = 2 * first[j] - second[j];
+        f->state[BEFORE_U * width + j] = 3 * first[j] - 2 * second[j];
+    }
+    f->resumes = 0;
+}
+
 /* The rows that wait go through the forward pass, and every block that is complete through the backward one. */
 static void enter(FloorFilter *f)
 {
     const size_t width = f->width, full = 1 + f->block + f->padding;
+    if (f->resumes && f->entered > 0)
+        resume(f);
     for (size_t first = 0; first < f->entered;) {
         const size_t left = f->entered - first, room = full - f->filled, n = left < room ? left : room;
         forward(&f->filter,
@@ -289,6 +316,27 @@ double *floor_filter_add(FloorFilter *f, double ground)
         enter(f);
     f->ground[1 + f->entered] = ground;
     return f->u + f->entered++ * f->width;
+}
+
+void floor_filter_interrupt(FloorFilter *f)
+{
+    if (!f->store)
+        return;
+    enter(f);
+    if (f->filled > 2) /* the last row has no neighbour, and lies where no peak can be */
+        take_block(f, f->filled - 2);
+    begin(f);
+    f->resumes = 1;
+}
+
+int floor_filter_is_below(const FloorFilter *f, const double acceleration[])
+{
+    int64_t above = 0;
+    if (!f->store)
+        return 0;
+    for (int j = 0; j < f->n; j++)
+        above |= !(acceleration[j] < f->below * f->most[j]);
+    return !above;
 }
 
 /* After the last row the floors go on as they went, as long as the filter lags behind, and then the ground stands still. */

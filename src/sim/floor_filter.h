@@ -14,6 +14,8 @@
  * by 6e-7 at most. It leaves out a block that cannot raise a peak: |z| <= sum|g| max|y|, y the forward pass, g the
  * filter's response to an impulse.
  *
+ * Where accelerations are below max|z| / (4/3 (sum|g|)^2) samples may be left out, 4/3 the sum of the weights before both passes.
+ *
  * Life cycle  floor_filter_create -> (floor_filter_start -> floor_filter_add ... -> floor_filter_peaks) ... -> free
  * Memory      of one block, made by the first start; again where h changes
  * Threads     one filter per simulation under way */
@@ -29,8 +31,17 @@ void floor_filter_free(FloorFilter *f); /* NULL is fine */
 
 double floor_filter_spacing(double cutoff_hz); /* [s] most that samples may be apart */
 
+/* Samples may be left out, but not within so many seconds of others: what the passes have of them is 8e-4 of it by then. */
+double floor_filter_memory(double cutoff_hz);
+
 /* A run from rest, samples every h [s]. */
 void floor_filter_start(FloorFilter *f, double h);
+
+/* Can accelerations (n_floors) [m/s2] of no more than this raise no peak? */
+int floor_filter_is_below(const FloorFilter *f, const double acceleration[]);
+
+/* Samples were left out before the next one. */
+void floor_filter_interrupt(FloorFilter *f);
 
 /* Where the displacements of the next sample go (n_floors padded to 8) [m], until the next call; ground acceleration [m/s2] there.
  * NULL: no memory. */

@@ -120,4 +120,8 @@ typedef struct {
 /* Called at t = 0 and then every `spacing`, again from t = 0 when the run is repeated with shorter steps. */
 typedef void (*SimSampleFn)(const SimSample *sample, void *user);
 
+/* Is a stretch of no interest in which the floors accelerate by no more than this (n_floors) [m/s2], absolute? Then its
+ * samples may be left out. */
+typedef int (*SimSkipFn)(const double acceleration[], void *user);
+
 #endif

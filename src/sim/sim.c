@@ -39,6 +39,7 @@ struct SimWorker {
     LinearDevice device;
     EngineOptions run;
     FloorFilter *filter; /* NULL: not wanted */
+    double filtered_to;  /* [s] */
 };
 
 /* A run whose energy balance does not close is repeated with so many times the steps before it counts as failed. */
@@ -213,9 +214,17 @@ static void take_floors(const SimSample *sample, void *user)
     SimWorker *w = user;
     if (sample->t == 0)
         floor_filter_start(w->filter, sample->spacing);
+    else if (sample->t > w->filtered_to + 1.5 * sample->spacing)
+        floor_filter_interrupt(w->filter);
+    w->filtered_to = sample->t;
     double *u = floor_filter_add(w->filter, sample->ground);
     if (u)
         sim_worker_floors(w, sample, u);
+}
+
+static int is_below(const double acceleration[], void *user)
+{
+    return floor_filter_is_below(((SimWorker *)user)->filter, acceleration);
 }
 
 void sim_worker_sample(SimWorker *worker, double spacing, SimSampleFn sample, void *user)
@@ -226,6 +235,8 @@ void sim_worker_sample(SimWorker *worker, double spacing, SimSampleFn sample, vo
     run->sample_user = filters ? worker : user;
     run->sample_spacing = filters ? floor_filter_spacing(worker->scene->options.sim.filter_hz) : spacing;
     run->sample_peaks = filters;
+    run->sample_memory = filters ? floor_filter_memory(worker->scene->options.sim.filter_hz) : 0;
+    run->skip = filters ? is_below : NULL;
 }
 
 void sim_worker_contacts(SimWorker *worker, SimContactFn contact, void *user)

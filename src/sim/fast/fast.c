@@ -64,6 +64,8 @@ static void layout(FastWork *k, Carve *c)
     CARVE(c, modes, &k->record.q, &k->record.v, &k->record.ground_work, &k->record.contact_work, &k->record.damped,
           &k->record.most, &k->record.per_most);
     CARVE(c, floors, &k->record.force);
+    for (int i = 0; i < HELD_MAX; i++)
+        CARVE(c, modes - floors, &k->record.held[i].q, &k->record.held[i].v); /* of the building */
     for (int i = 0; i < 4; i++) {
         CARVE(c, modes, &k->record.batch_q[i]);
         CARVE(c, floors, &k->record.batch_u[i]);

@@ -184,7 +184,7 @@ static long free_intervals(FastWork *k, const Motion *motion, long first, long e
             send_now(k, (double)i * motion->dt_s, a.start);
         k->step_start = (double)i * motion->dt_s;
         flow_to_next(k, l, a.start, a.end);
-        record_flight(k, l, a.start, a.end);
+        record_flight(k, l, a.start, a.end, k->reach.a);
         take_flow(k, l, a.start, a.end);
     }
     k->flights += n;
@@ -262,6 +262,7 @@ static int integrate(FastWork *k, const Motion *motion, double duration)
         const Ramp a = ground(motion, full);
         set_base(k, rest);
         k->sample_level = 0;
+        stop_holding(k);
         return interval(k, duration - rest, a.start, a.start + (a.end - a.start) * rest / motion->dt_s) &&
                state_is_finite(k);
     }

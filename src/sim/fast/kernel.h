@@ -16,7 +16,8 @@
 enum {
     PAD = 8,
     LEVEL_MAX = 24, /* the shortest step is 2^-24 of a sampling interval */
-    FLOORS_PAD_MAX = FLOORS_MAX
+    FLOORS_PAD_MAX = FLOORS_MAX,
+    HELD_MAX = 128
 };
 
 /* Compliances of w (and w') at the end of a step to a unit ramp x and a unit bubble x (1 - x) of force. */
@@ -77,6 +78,13 @@ typedef struct {
     vec *u, *drift, *a, *core;
 } ReachScratch;
 
+/* A flight whose samples may not be wanted. */
+typedef struct {
+    double t, a0, a1; /* [s] of its start; [m/s2] ground acceleration at both ends */
+    int level;
+    vec *q, *v; /* (nb_pad) at its start */
+} HeldFlight;
+
 /* A point inside a step, for a force monitor or a sample: modes (m_pad), floors (n_pad). */
 typedef struct {
     vec *q, *v, *force;
@@ -84,6 +92,10 @@ typedef struct {
     vec *batch_q[4], *batch_u[4];             /* of four samples: modes, floors */
     vec *most, *per_most; /* [2 J] energy that a mode has reached at most, rounded up, and its inverse */
     double share[4];      /* energy over `most` at the start of the step: first mode, others, of building and core */
+    HeldFlight held[HELD_MAX]; /* n_held of them from first_held on, round the end */
+    int first_held, n_held, samples_held;
+    double spacing;           /* [s] of samples */
+    int memory, samples_sent; /* samples that are wanted beside others, 0: all are; sent since then */
 } RecordScratch;
 
 typedef struct FastWork {
