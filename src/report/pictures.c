@@ -136,7 +136,7 @@ static void write_panel(FILE *script, const Report *r, const Panel *p, int has_k
             p->x + 1, p->y + 1, r->run->schema.n_obj);
     write_spot(script, "KNEE", p, 7, 1.5, "'black'");
     for (int b = 0; b < N_BASELINES; b++) {
-        char block[8];
+        char block[16];
         snprintf(block, sizeof block, "B%d", b);
         if (has_baseline(r, b))
             write_spot(script, block, p, BASELINES[b].symbol, 1.7, BASELINES[b].colour);
