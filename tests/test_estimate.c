@@ -110,7 +110,7 @@ static void test_the_error_is_below_its_estimate_in_nine_of_ten_results(void **s
     CHECK_OK(motion_prepare(&m, 0.3, 3.1, &err), &err);
     assert_true(estimate_options(&o.sim, &twice.sim));
     fine.sim.accuracy = ACCURACY_FINE;
-    const PromisePlan plan = {.options = &o, .records = &m, .n_records = 1, .n_windows = 10};
+    const PromisePlan plan = {.options = &o, .records = &m, .n_records = 1, .n_windows = 24};
     for (long k = 0; k < plan.n_windows; k++) {
         PromiseCase c;
         double error[N_MEASURES];

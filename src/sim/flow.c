@@ -2,31 +2,30 @@
 
 #include <math.h>
 
-/* Power series in h; derivatives of g at 0 obey g_{m+2} = -2 zeta w g_{m+1} - w^2 g_m, g_0 = 0, g_1 = 1. */
+/* The two highest integrals by power series in h, y_k = h^k sum_j G_j / (j + k)!, where G_j = g_{j+1} h^j of the derivatives
+ * of g at 0 obeys G_{j+1} = -2 zeta w h G_j - (w h)^2 G_{j-1}, G_0 = 1; the others by the recursion from above, which
+ * loses no digits here. */
 static void by_series(double omega, double zeta, double h, double y[FLOW_INTEGRALS])
 {
-    enum { TERMS = 48 };
-    const double b = 2 * zeta * omega * h, c = omega * omega * h * h;
-    double g_m = 0, g_next = 1; /* g_m h^(m-1) */
-    for (int k = 0; k < FLOW_INTEGRALS; k++)
-        y[k] = 0;
-    double power[FLOW_INTEGRALS + 1]; /* h^k */
-    power[0] = 1;
-    for (int k = 0; k < FLOW_INTEGRALS; k++)
-        power[k + 1] = power[k] * h;
-    double inverse_factorial = 1; /* 1/(m-1)! */
-    for (int m = 1; m < TERMS; m++) {
-        const double g_new = -b * g_next - c * g_m;
-        g_m = g_next;
-        g_next = g_new;
-        if (m > 1)
-            inverse_factorial /= m - 1;
-        double term = g_m * inverse_factorial; /* of y0; then of y1, ... */
-        for (int k = 0; k < FLOW_INTEGRALS; k++) {
-            y[k] += term * power[k];
-            term /= m + k;
-        }
+    enum { TERMS = 26, HIGH = FLOW_INTEGRALS - 1 };
+    const double b = 2 * zeta * omega, c = omega * omega;
+    double monomial[FLOW_INTEGRALS]; /* h^k/k! */
+    monomial[0] = 1;
+    for (int k = 1; k < FLOW_INTEGRALS; k++)
+        monomial[k] = monomial[k - 1] * h / k;
+    double g = 1, g_before = 0, share = 1, sums[2] = {0}; /* share: (HIGH - 1)! / (j + HIGH - 1)! */
+    for (int j = 0; j < TERMS; j++) {
+        sums[0] += g * share;
+        share /= j + HIGH;
+        sums[1] += g * share;
+        const double g_next = -b * h * g - c * h * h * g_before;
+        g_before = g;
+        g = g_next;
     }
+    y[HIGH - 1] = monomial[HIGH - 1] * sums[0];
+    y[HIGH] = monomial[HIGH - 1] * h * sums[1];
+    for (int k = HIGH - 2; k >= 0; k--)
+        y[k] = monomial[k] - b * y[k + 1] - c * y[k + 2];
 }
 
 /* sin(sqrt(z))/sqrt(z), continued to sinh for z < 0. */

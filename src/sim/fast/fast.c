@@ -30,7 +30,8 @@ static void layout_flight(FlightScratch *f, Carve *c, size_t modes, size_t floor
 
 static void layout_contact(ContactScratch *s, Carve *c, size_t modes, size_t floors)
 {
-    CARVE(c, modes, &s->bubble, &s->middle_q, &s->middle_a, &s->end_a, &s->bound_q, &s->bound_a);
+    CARVE(c, modes, &s->bubble, &s->middle_q, &s->middle_a, &s->end_a, &s->bend_q, &s->bend_a, &s->bound_q,
+          &s->bound_a);
     CARVE(c, floors, &s->missed);
     for (int i = 0; i < 9; i++)
         CARVE(c, floors, &s->sample[i / 3][i % 3]);
@@ -146,9 +147,9 @@ FastTolerances fast_tolerances(Accuracy accuracy)
                              .tail_tolerance = 2e-3},
         [ACCURACY_STANDARD] = {.steps_per_contact = 2,
                                .solver_tolerance = 5e-4,
-                               .energy_tolerance = 3e-7,
+                               .energy_tolerance = 1e-6,
                                .steps_max = 2e7,
-                               .peak_tolerance = 4e-4,
+                               .peak_tolerance = 6e-4,
                                .flexibility_left_out = 0.02,
                                .tail_tolerance = 4e-4},
         [ACCURACY_FINE] = {.steps_per_contact = 80,

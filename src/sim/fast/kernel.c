@@ -297,8 +297,7 @@ static void report_energies(FastWork *k, SimResult *r)
     r->contact_loss_j = k->contact_lost;
     r->clamp_j = k->contact_clamped;
     r->contact_stored_j = still_stored(k);
-    const double energy_error =
-        -contact_work - flexible_energy(k, &k->now) - r->contact_loss_j - r->clamp_j - r->contact_stored_j;
+    const double energy_error = -contact_work - k->now.flexible - r->contact_loss_j - r->clamp_j - r->contact_stored_j;
     const double scale = energy_balance_scale(r->input_energy_j, r->input_energy_j - energy_error);
     r->energy_balance_error = fabs(energy_error) / scale + sqrt(missed / (2 * scale));
     for (int i = 0; i < k->model->nb; i++)

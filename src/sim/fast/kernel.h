@@ -47,6 +47,7 @@ typedef struct {
     vec *defect;                     /* (m_pad) by how much the equation of motion was missed, summed over the steps */
     vec *w, *w_dot;                  /* (n_pad) [m], [m/s] floor minus core; current where state_valid */
     vec *force;                      /* (n_pad) [N] of the contact on the floor */
+    double flexible;                 /* [J] stored in the core modes that are left out */
 } State;
 
 /* A free flight step: modes (m_pad), floors (n_pad). _q and _a are of displacement and of acceleration. */
@@ -60,15 +61,19 @@ typedef struct {
     vec *a0, *a0_dot, *a1, *a1_dot;             /* accelerations of the floors */
     vec *error_u, *error_core, *error_a;        /* bounds of what the cubics miss */
     vec *reach_a;                               /* largest acceleration by the bounds of the modes */
+    int by_floor;                               /* are errors and reach those of each floor, or of all at once? */
 } FlightScratch;
 
 /* A contact step: modes (m_pad), floors (n_pad). */
 typedef struct {
     vec *bubble;                      /* modal load of the forces' bubbles */
     vec *middle_q, *middle_a, *end_a; /* building modes: displacement and acceleration there */
+    vec *bend_q, *bend_a;             /* how far the parabola through start, middle and end may leave its ends */
     vec *bound_q, *bound_a;           /* what the parabola misses of each mode */
     vec *missed;                      /* what it misses of the floors */
     vec *sample[3][3];                /* [start, middle, end][u, drift, acceleration] of the floors */
+    int has_middle[2];                /* [u and drift, acceleration] is the middle known? */
+    double bend[3];                   /* of any floor: that of all modes together */
     int may_rise[3];                  /* [u, drift, acceleration] may this step raise a peak? */
 } ContactScratch;
 

@@ -151,6 +151,21 @@ static inline m22 m22_times(m22 a, m22 b)
            __builtin_shufflevector(a, a, 1, 1, 3, 3) * __builtin_shufflevector(b, b, 2, 3, 2, 3);
 }
 
+/* The same with b in two parts, its upper row twice and its lower row twice. */
+typedef struct {
+    v4 upper, lower;
+} m22_rows;
+
+static inline m22_rows m22_split(m22 b)
+{
+    return (m22_rows){__builtin_shufflevector(b, b, 0, 1, 0, 1), __builtin_shufflevector(b, b, 2, 3, 2, 3)};
+}
+
+static inline m22 m22_times_rows(m22 a, m22_rows b)
+{
+    return __builtin_shufflevector(a, a, 0, 0, 2, 2) * b.upper + __builtin_shufflevector(a, a, 1, 1, 3, 3) * b.lower;
+}
+
 /* Not a number where there is none. */
 static inline m22 m22_inverse(m22 a)
 {
@@ -203,6 +218,7 @@ INLINE void rows_times_blocks(const int n_rhs, const int n_blocks, const vec *A,
                               const double *const X[], vec *const Y[])
 {
     vec sum[4][4] = {{{0}}};
+#pragma GCC unroll 4
     for (int i = 0; i < count; i++, A += blocks)
 #pragma GCC unroll 4
         for (int r = 0; r < n_rhs; r++)
