@@ -37,9 +37,13 @@ scale-cost: $(PROGRAM) ## docs/scale.md: what a study costs beside its simulatio
 pictures: $(PROGRAM) ## docs/pictures, those of a study: RUN=results/kobe RECORDS="elcentro.csv sylmar.csv"
 	@./$(PROGRAM) plot $(RUN) $(RECORDS:%=--record %) --out $(BUILD)/pictures
 	@./$(PROGRAM) report $(RUN) $(RECORDS:%=--record %) --out $(BUILD)/pictures/report.html
-	@cp $(foreach p,front peaks modes energies displacement elsewhere,$(BUILD)/pictures/$p.png) docs/pictures
-	@node tests/report/picture.mjs $(BUILD)/pictures/report.html docs/pictures/report-front.jpg '#front' 1180 'J3 acceleration [g] to=6' 'J1 displacement [m] to=0.8'
-	@node tests/report/picture.mjs $(BUILD)/pictures/report.html docs/pictures/report-design.jpg '#design' 2250
+	@cp $(foreach p,front gaps peaks modes energies displacement elsewhere,$(BUILD)/pictures/$p.png) docs/pictures
+	@$(REPORT_PICTURE)/report-first.jpg '#summary' 880
+	@$(REPORT_PICTURE)/report-front.jpg '#front' 880 'J3 acceleration [g] to=6' 'J1 displacement [m] to=0.8'
+	@$(REPORT_PICTURE)/report-pairs.jpg '#all-pairs-of-objectives-with-their-rank-correlations' 1000
+	@$(REPORT_PICTURE)/report-variables.jpg '#which-variables-matter' 600
+	@$(REPORT_PICTURE)/report-design.jpg '#design' 1130
+REPORT_PICTURE = node tests/report/picture.mjs $(BUILD)/pictures/report.html docs/pictures
 
 DEFEND_EVALS ?= 1500
 defend: $(PROGRAM) ## docs/defend.md: forces, stresses, baselines, deviations, limits of a Kobe study; RECORD=FILE DEFEND_EVALS=N

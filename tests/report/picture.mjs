@@ -1,6 +1,6 @@
 // A picture of a report, JPEG or PNG by its name:
 //   picture.mjs REPORT.html OUT [SELECTOR [HEIGHT [LABEL=VALUE ...]]]
-// What the selector finds, at most HEIGHT high; first the fields of these labels are filled in (J1 displacement [m] to=0.7).
+// What the selector finds, unfolded, at most HEIGHT high; first the fields of these labels are filled in (J1 displacement [m] to=0.7).
 import { writeFileSync } from "node:fs";
 import { resolve } from "node:path";
 import { pathToFileURL } from "node:url";
@@ -16,6 +16,7 @@ try {
     const [label, value] = field.split("=");
     await page.evaluate(`(() => { const e = document.querySelector('input[aria-label="${label}"]'); e.value = "${value}"; e.dispatchEvent(new Event("change")); })()`);
   }
+  await page.evaluate(`(() => { const e = document.querySelector(${JSON.stringify(selector)}); if (e.localName === "details") e.open = true; })()`);
   await new Promise((done) => setTimeout(done, 1000)); // lines come in passes
   const clip = await page.evaluate(`(() => { const r = document.querySelector(${JSON.stringify(selector)}).getBoundingClientRect();
     return { x: r.x + scrollX, y: r.y + scrollY, width: r.width, height: Math.min(r.height, ${height}), scale: 1 }; })()`);

@@ -37,7 +37,7 @@ const sceneLegend = (keys) => legend(keys.map((key) => [SCENES[key].words, SCENE
 
 // A part that is folded until it is wanted; on paper all are open.
 function folded(host, title, isOpen = false) {
-  const part = host.appendChild(element("details", { class: "part", open: isOpen }, element("summary", {}, element("h3", {}, title))));
+  const part = host.appendChild(element("details", { class: "part", id: title.toLowerCase().replace(/[^a-z]+/g, "-"), open: isOpen }, element("summary", {}, element("h3", {}, title))));
   part.addEventListener("toggle", () => part.open && document.documentElement.dataset.ready && (drawAll(), layoutChanged()));
   return part;
 }

@@ -56,7 +56,11 @@ function heatFigure(host, family) {
   });
   f.addEventListener("pointerleave", () => hover(undefined));
   f.addEventListener("click", () => state.hovered !== undefined && mark(state.hovered));
-  follow(f, () => document.documentElement.dataset.ready && f.redraw());
+  let waits;
+  follow(f, () => {
+    drop(waits);
+    if (document.documentElement.dataset.ready) waits = later(f.redraw); // not while a range is dragged
+  });
   return f;
 }
 

@@ -70,7 +70,7 @@ function modeFigure(host, scenes, title, caption) {
   figure(host, title, caption, (width) => chart({
     width, height: 300, ariaLabel: title, color: { type: "identity" }, symbol: { type: "identity" },
     x: { label: "mode of the building", domain: [0.5, modes + 0.5], ticks: Array.from({ length: modes }, (_, i) => i + 1), tickFormat: "d", tickSize: 0 },
-    y: { label: "share of the input energy [%]", grid: true, type: "log", ticks: 4, tickFormat: show },
+    y: { label: "share of the input energy [%]", grid: true, type: "log", ticks: [0.01, 0.1, 1, 10, 100], tickFormat: show },
     marks: [
       charts.line(rows, { x: "mode", y: "v", z: "words", stroke: "colour", strokeWidth: 1.2, strokeOpacity: 0.6 }),
       charts.dot(rows, { x: "mode", y: "v", r: 4, fill: "colour", symbol: "symbol", title: (r) => `mode ${r.mode}, ${r.words}: ${show(r.v)} %` }),
