@@ -233,7 +233,7 @@ const tried = {
     assert.ok(inside > 0 && inside < rows.length);
     await click("#keep");
     assert.equal(await counted(), inside);
-    assert.match(await page.evaluate("document.getElementById('count').textContent"), new RegExp(`${inside} of ${inside} .*${rows.length - inside} put aside`));
+    assert.match(await page.evaluate("document.getElementById('count').textContent"), new RegExp(`${inside.toLocaleString("en-US")} of ${inside.toLocaleString("en-US")} .*${(rows.length - inside).toLocaleString("en-US")} put aside`));
     await click("#restore");
     assert.equal(await counted(), rows.length);
     await drag(await boxOf("g.axis .brush .overlay", 0), [0.5, 0.45], [0.5, 1]);
