@@ -27,7 +27,8 @@ typedef enum {
     RANDOM_DIRECTIONS,
     RANDOM_DESCENT,
     RANDOM_POLISHING,
-    RANDOM_IMPORTANCE
+    RANDOM_IMPORTANCE,
+    RANDOM_CONFIDENCE
 } RandomPurpose;
 
 typedef struct {

@@ -5,6 +5,7 @@
 #include "cmd/commands.h"
 #include "cmd/pairs.h"
 #include "cmd/show.h"
+#include "moga/front_confidence.h"
 #include "store/export.h"
 #include "store/output.h"
 #include "store/run_read.h"
@@ -96,6 +97,7 @@ typedef struct {
         char name[TABLE_NAME_MAX + 8];
         size_t row;
     } pick[PICKS_MAX];
+    double confidence[PICKS_MAX]; /* probability of being nondominated; NAN: without noise */
 } Picks;
 
 /* The cheapest design within the limits; values[0] of best_cost is the objective's number. */
@@ -139,6 +141,64 @@ static Status find_picks(const Args *args, Choice *c, Picks *p, Err *err)
     if (args_has(args, "--reference"))
         add_pick(c, "nearest to reference", reference_cost, reference, p);
     return STATUS_OK;
+}
+
+static int counts(const Run *run, size_t i)
+{
+    const Evaluation *e = &run->table.row[i];
+    return e->id < POLISHED_FIRST && e->kind != KIND_UNFINISHED && e->kind != KIND_REPEAT && run->place[i].ok &&
+           !(e->violation > 0.0);
+}
+
+/* Minimised objectives and standard errors of the designs that keep the limits, and which of them are picked; 0: there is
+ * no noise, or one of them has no known error. */
+static size_t gather_errors(const Run *run, const Picks *p, double F[], double error[], size_t picked[])
+{
+    const size_t m = run->schema.n_obj;
+    size_t n = 0;
+    for (size_t i = 0; i < run->table.n; i++) {
+        const Evaluation *e = &run->table.row[i];
+        if (!counts(run, i))
+            continue;
+        for (size_t k = 0; k < p->n; k++)
+            picked[k] = p->pick[k].row == i ? n : picked[k];
+        for (size_t k = 0; k < m; k++) {
+            F[n * m + k] = schema_objective(&run->schema, k)->sense * run->F[i * m + k];
+            error[n * m + k] = e->sd[k] / sqrt((double)e->replicates);
+            if (!(error[n * m + k] >= 0.0) || e->replicates < 1)
+                return 0;
+        }
+        n++;
+    }
+    return n;
+}
+
+static Status find_confidence(const Run *run, Picks *p, Err *err)
+{
+    const size_t m = run->schema.n_obj;
+    size_t picked[PICKS_MAX] = {0};
+    int of_the_search = schema_is_noisy(run->settings);
+    double *F = calloc(2 * run->table.n * m + 1, sizeof *F), *error = F + run->table.n * m;
+    Status status = F ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", run->table.n);
+    for (size_t k = 0; k < p->n; k++) {
+        p->confidence[k] = NAN;
+        of_the_search = of_the_search && counts(run, p->pick[k].row); /* a polished design has no place among them */
+    }
+    const size_t n = status == STATUS_OK && of_the_search ? gather_errors(run, p, F, error, picked) : 0;
+    if (n > 0)
+        status = front_confidence(n, m, F, error, 1, p->n, picked, p->confidence, err);
+    free(F);
+    return status;
+}
+
+static void show_confidence(const Picks *p)
+{
+    if (p->n == 0 || isnan(p->confidence[0]))
+        return;
+    printf("\nprobability of being nondominated, by the standard errors of the means:\n");
+    for (size_t i = 0; i < p->n; i++)
+        printf("%s%s %.2f", i ? ", " : "", p->pick[i].name, p->confidence[i]);
+    putchar('\n');
 }
 
 static void show_table(const Run *run, const Picks *p)
@@ -191,10 +251,12 @@ static json_t *describe(const Run *run, const Picks *p)
     json_t *picks = json_array();
     for (size_t i = 0; i < p->n; i++) {
         const size_t row = p->pick[i].row;
-        json_array_append_new(
-            picks, json_pack("{s:s, s:I, s:o, s:o}", "name", p->pick[i].name, "id", (json_int_t)run->table.row[row].id,
-                             "objectives", json_values(schema->n_obj, schema->column + schema->n_var, run_f(run, row)),
-                             "variables", json_values(schema->n_var, schema->column, run_x(run, row))));
+        json_array_append_new(picks,
+                              json_pack("{s:s, s:I, s:o, s:o, s:o}", "name", p->pick[i].name, "id",
+                                        (json_int_t)run->table.row[row].id, "objectives",
+                                        json_values(schema->n_obj, schema->column + schema->n_var, run_f(run, row)),
+                                        "variables", json_values(schema->n_var, schema->column, run_x(run, row)),
+                                        "nondominated_probability", json_number(p->confidence[i])));
     }
     return json_pack("{s:s, s:I, s:I, s:o}", "run", run->folder, "front", (json_int_t)run->n_front, "within_limits",
                      (json_int_t)p->n_left, "designs", picks);
@@ -211,6 +273,8 @@ static Status show(const Args *args, const Run *run, const Picks *p, Err *err)
         TRY(show_json(describe(run, p), err));
     else if (!csv)
         show_table(run, p);
+    if (!csv && !args_has(args, "--json"))
+        show_confidence(p);
     if (p->n_left == 0)
         return fail(err, STATUS_UNMET,
                     "no design of the front is within the limits; `imtet optimize` with "
@@ -224,6 +288,7 @@ static Status choose(const Args *args, Choice *c, Err *err)
 {
     Picks picks;
     TRY(find_picks(args, c, &picks, err));
+    TRY(find_confidence(c->run, &picks, err));
     return show(args, c->run, &picks, err);
 }
 
