@@ -10,7 +10,7 @@
 
 static const char TOWER[] = "[motion]\nrecord = builtin:kobe-like\nrecords = builtin:elcentro-like\npga_g = 0.3\n"
                             "[sim]\nduration_s = 6\nreplicates = 2\ngap_tolerance_m = 0.001\n"
-                            "[search]\ninitial = 24\npopulation = 16\nmax_evals = 48\nsurrogate_max = 30\npolish = 1\n"
+                            "[search]\ninitial = 24\npopulation = 16\nmax_evals = 48\nsurrogate_max = 30\n"
                             "threads = 1\n";
 static const char STEADY[] = "[problem]\nkind = external\ncommand = sh tests/worker.sh steady\nvariables = 3\n"
                              "objectives = 2\nnoisy = yes\n[search]\ninitial = 36\npopulation = 12\nmax_evals = 150\n"
@@ -169,6 +169,21 @@ static void test_a_batch_has_the_same_bytes_at_any_number_of_ranks_and_threads(v
             expect_code(launch(RANKS[i], "optimize @/tower.ini --out @/%s --threads %d", run_name, threads), 0);
             assert_same_files("alone", run_name);
         }
+}
+
+static void test_polishing_goes_over_the_ranks(void **state)
+{
+    (void)state;
+    program();
+    write_in_place("polish.ini",
+                   "[motion]\nrecord = builtin:kobe-like\npga_g = 0.3\n[sim]\nduration_s = 6\nreplicates = 4\n"
+                   "[search]\ninitial = 30\npopulation = 16\nmax_evals = 100\nsurrogate = off\n"
+                   "polish = 1\nthreads = 1\n");
+    char *said = output_of("optimize @/polish.ini --out @/polished");
+    assert_non_null(strstr(said, "polished: "));
+    free(said);
+    expect_code(launch(3, "optimize @/polish.ini --out @/polished-on-3"), 0);
+    assert_same_files("polished", "polished-on-3");
 }
 
 static void test_an_external_simulator_runs_beside_every_rank(void **state)
@@ -409,6 +424,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_the_ordinary_program_does_not_link_mpi),
         cmocka_unit_test(test_a_batch_has_the_same_bytes_at_any_number_of_ranks_and_threads),
+        cmocka_unit_test(test_polishing_goes_over_the_ranks),
         cmocka_unit_test(test_an_external_simulator_runs_beside_every_rank),
         cmocka_unit_test(test_asynchronous_with_one_worker_is_the_run_in_batches),
         cmocka_unit_test(test_other_commands_give_their_tasks_to_the_ranks),
