@@ -37,7 +37,7 @@ static void test_the_mass_changes_with_the_thickness_as_the_section_says(void **
     size_t n;
     double x[N_VAR], base = 0, top = 0;
     short_scene(&s, x, 5);
-    s.sim.duration_s = 1; /* the mass does not know it */
+    s.sim.duration_s = 12; /* the mass does not know it */
     CHECK_OK(sensitivity_find(&s, x, 1, &list, &n, &err), &err);
     for (int j = 0; j < 20; j++) {
         const double part = j / 19.0, t = x[20] + (x[21] - x[20]) * part;
