@@ -1,6 +1,6 @@
 # Figures and pictures of README and docs. Those of time want a quiet machine.
 
-.PHONY: setup-figures bench promise paper chart compare ablation pictures defend defend-bumpers web setup-browser report-bench scale-cost
+.PHONY: setup-figures bench promise paper chart compare ablation pictures defend defend-bumpers web setup-browser report-bench serve-bench scale-cost
 
 # A record that is not there is replaced by the built-in motion.
 BENCH_RECORD ?= $(or $(wildcard ../shared/records/kobe_jma_ns.csv),builtin:kobe-like)
@@ -63,3 +63,6 @@ setup-browser: ## packages for the report's tests in a browser, its bundle of ch
 
 report-bench: setup-browser $(PROGRAM) ## how long a report of 10,000 designs takes to be painted and brushed
 	@tests/report/bench $(abspath $(PROGRAM)) build/report-bench
+
+serve-bench: setup-browser $(PROGRAM) ## how long an update takes while a slider of imtet serve is dragged; RUN=results/quick
+	@node tests/serve/drive.mjs $(abspath $(PROGRAM)) --bench $(or $(RUN),results/quick)

@@ -14,11 +14,13 @@ function selectedCsv() {
   return [head, ...lines.filter((_, i) => state.selected[i])].join("\n") + "\n";
 }
 
-function download() {
-  const url = URL.createObjectURL(new Blob([selectedCsv()], { type: "text/csv" }));
-  element("a", { href: url, download: `${run.name}-selection.csv` }).click();
+function saveFile(name, text) {
+  const url = URL.createObjectURL(new Blob([text], { type: "text/csv" }));
+  element("a", { href: url, download: name }).click();
   setTimeout(() => URL.revokeObjectURL(url), 60000);
 }
+
+const download = () => saveFile(`${run.name}-selection.csv`, selectedCsv());
 
 function designTable(host) {
   const shown = [...objectives, ...variables];

@@ -7,15 +7,14 @@ async function ask(where, body) {
   return said;
 }
 
-// A section of its own before that of the given id, with its link.
+// A section of its own before that of the given id, with its link in the same place.
 function livePart(id, title, before) {
-  const part = element("section", { id, tabindex: "-1" }, element("h2", {}, title));
-  (document.getElementById(before) ?? document.getElementById("provenance")).before(part);
-  const link = element("a", { href: `#${id}`, onclick: (event) => {
+  const part = element("section", { id, tabindex: "-1" }, element("h2", {}, title)), next = document.getElementById(before) ?? document.getElementById("provenance");
+  next.before(part);
+  document.querySelector(`#parts a[href="#${next.id}"]`).before(element("a", { href: `#${id}`, onclick: (event) => {
     event.preventDefault();
     goTo(part);
-  } }, title);
-  document.getElementById("parts").append(link);
+  } }, title));
   return part;
 }
 
@@ -25,12 +24,6 @@ function goTo(part) {
 }
 
 const plainButton = (text, act, more = {}) => element("button", { class: "plain", type: "button", onclick: act, ...more }, text);
-
-function saveFile(name, text) {
-  const url = URL.createObjectURL(new Blob([text], { type: "text/csv" }));
-  element("a", { href: url, download: name }).click();
-  setTimeout(() => URL.revokeObjectURL(url), 60000);
-}
 
 // Difference of `value` from `before`.
 function percent(value, before) {
@@ -42,11 +35,11 @@ function percent(value, before) {
 // ---- fronts as parallel coordinates, small and quick enough to follow a slider
 
 // draw([{ rows: [[natural objective, ...]], colour, width, alpha }]), the last on top; better is down.
-function frontStrip(host, label, height = 190) {
+function frontStrip(host, label, height = 208) {
   const layers = host.appendChild(element("div", { class: "layers strip" }));
   const canvas = layers.appendChild(element("canvas", { role: "img", "aria-label": label }));
   const words = layers.appendChild(element("div", { class: "words", "aria-hidden": "true" }));
-  const top = 22, bottom = 40, side = 40;
+  const top = 22, bottom = 58, side = 40;
   let last = [];
 
   function rangesOf(all) {

@@ -8,7 +8,7 @@ function progressPart() {
   const grid = part.appendChild(element("div", { class: "grid2" }));
   const growth = grid.appendChild(element("figure", {}, element("h3", {}, "Hypervolume")));
   const strip = grid.appendChild(element("figure", {}, element("h3", {}, "The front as it grows"),
-    legend([["now", BLUE], ["of this page", PALE]])));
+    legend([["the front", PALE], ["new since this page was loaded", BLUE]])));
   const draw = frontStrip(strip, "The front as it grows");
   let now = { simulated: run.convergence.simulated, volume: run.convergence.volume, f: [], ids: [] }, generation = -1;
 
@@ -21,20 +21,21 @@ function progressPart() {
   async function takeFront() {
     now = await ask("front");
     drawGrowth();
-    draw([paleFront(), { rows: now.f, colour: BLUE, width: 0.8, alpha: paleFront(now.f).alpha }]);
-    const fresh = now.ids.filter((id) => !rowOf.has(id)).length;
+    const isNew = now.ids.map((id) => !rowOf.has(id)), fresh = isNew.filter(Boolean).length;
+    draw([paleFront(now.f), { rows: now.f.filter((_, i) => isNew[i]), colour: BLUE, width: 1, alpha: 0.8 }]);
     again.hidden = !fresh;
     again.textContent = `${count(fresh)} new designs on the front: show them in all pictures`;
     part.dataset.generation = now.generation;
   }
 
   function take(status) {
-    const isOn = status.state === "running", left = status.left_s === null ? "" : `, ${show(status.left_s / 60)} min left`;
+    const isOn = status.state === "running", left = status.left_s === null ? "" : `, ${status.left_s < 90 ? `${Math.round(status.left_s)} s` : `${Math.round(status.left_s / 60)} min`} left`;
     const pace = status.per_second === null ? "" : `, ${show(status.per_second)} per second`;
     said.textContent = `${status.state[0].toUpperCase()}${status.state.slice(1)}: ${count(status.simulated)} of ${count(status.max_evals)} designs simulated${isOn ? pace + left : ""}; ` +
       `${count(status.failed)} failed; ${count(status.front)} on the front after generation ${Math.max(0, status.generation)}, hypervolume ${status.hypervolume === null ? "\u2013" : show(100 * status.hypervolume)} %`;
     bar.max = status.max_evals;
     bar.value = status.simulated;
+    if (!part.dataset.state) grid.hidden = !isOn; // a finished run has both pictures below
     part.dataset.state = status.state;
     if (status.generation === generation) return;
     generation = status.generation;

@@ -25,7 +25,7 @@ function refill(part, fill) {
 
 function designOnDemand() {
   const part = livePart("any-design", "Design", "provenance"), heading_ = part.firstChild, body = part.appendChild(element("div"));
-  const link = document.getElementById("parts").lastChild;
+  const link = document.querySelector("#parts a[href='#any-design']");
   let wanted;
 
   async function open(id, go) {
@@ -88,7 +88,7 @@ function compare(one) {
 }
 
 function compareTable() {
-  const line = (one, i) => element("tr", {}, element("td", {}, `${SIDE_MARKS[i]} ${one.name} `, plainButton("Remove", () => {
+  const line = (one, i) => element("tr", {}, element("td", {}, legend([[one.name, SIDE_COLOURS[i], SIDE_MARKS[i]]]), plainButton("Remove", () => {
     compared.splice(i, 1);
     showCompared();
   }, { "aria-label": `remove ${one.name}` })), ...objectives.map((c, k) => element("td", {}, digits(one.raw[k] * c.factor),
@@ -113,7 +113,7 @@ function showCompared() {
   comparePart ??= livePart("compare", "Side by side", "provenance");
   comparePart.hidden = !compared.length;
   refill(comparePart, (host) => {
-    host.append(element("h2", {}, "Side by side"), compareTable(), legend(compared.map((one, i) => [one.name, SIDE_COLOURS[i], SIDE_MARKS[i]])));
+    host.append(element("h2", {}, "Side by side"), compareTable());
     const grid = host.appendChild(element("div", { class: "grid4" }));
     sideFigure(grid, "Gaps", "gap [mm]", (one) => one.gap_m.map((g) => 1e3 * g));
     sideFigure(grid, "Displacement", "peak displacement [m]", (one) => one.peaks.displacement_m);

@@ -10,7 +10,7 @@ function whatIfPart() {
   const said = element("p", { id: "place", role: "status" }), table = element("div");
   const sliders = element("div", { class: "sliders" }), pictures = element("div", { class: "beside" });
   part.append(element("p", { class: "note" }, "Drag a gap, a thickness, the motion or the restitution: every change is simulated at once, under the first motion of the run."), element("div", { class: "what-if" }, sliders, pictures));
-  const trial = { key: "trial", words: "what if", colour: ORANGE, mark: "\u2605", symbol: "star", path: charts.symbolDiamond2, dash: [], isShown: true, raw: [], value: new Map() };
+  const trial = { key: "trial", words: "what if", colour: ORANGE, mark: "\u25c6", symbol: "diamond2", path: charts.symbolDiamond2, dash: [], isShown: true, raw: [], value: new Map() };
   const x = new Float64Array(variables.length), ground = {};
   let bounds, start, answer, turn = 0, isAsking = false, since, resting_;
 
@@ -108,7 +108,10 @@ function whatIfPart() {
     drawPeaks();
     trial.raw = answer.objectives ?? [];
     trial.value = new Map([...objectives.map((c, k) => [c, (trial.raw[k] ?? NaN) * c.factor]), ...variables.map((c, j) => [c, x[j] * c.factor])]);
-    if (!overlays.includes(trial)) overlays.push(trial);
+    if (!overlays.includes(trial)) {
+      overlays.push(trial);
+      document.getElementById("overlays").replaceWith(overlayLegend());
+    }
     clearTimeout(resting_);
     resting_ = setTimeout(layoutChanged, 400);
   }

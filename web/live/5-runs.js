@@ -19,7 +19,7 @@ async function against(body, other) {
       host.append(legend(runs.map((r, i) => [`${r.name}: ${count(r.f.length)} on the front`, colours[i]])));
       const grid = host.appendChild(element("div", { class: "grid2" }));
       const strip = grid.appendChild(element("figure", {}, element("h3", {}, "Both fronts")));
-      frontStrip(strip, `Fronts of ${runs.map((r) => r.name).join(" and ")}`, 260)(runs.map((r, i) => ({ ...paleFront(r.f), colour: colours[i] })));
+      frontStrip(strip, `Fronts of ${runs.map((r) => r.name).join(" and ")}`, 280)(runs.map((r, i) => ({ ...paleFront(r.f), colour: colours[i], alpha: 0.5 * paleFront(r.f).alpha })));
       const rows = runs.flatMap((r, i) => r.simulated.map((x, k) => ({ x, y: 100 * r.volume[k], colour: colours[i] })));
       figure(grid, "Hypervolume over the number of designs", "In one box for both: from a fifth of their range below the best of both fronts to the worst.", (width) => chart({
         width, height: 260, ariaLabel: "Hypervolume of both runs", x: { label: "designs simulated", tickFormat: count }, y: { label: "hypervolume [%]", grid: true, zero: true, nice: true },
