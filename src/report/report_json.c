@@ -114,6 +114,20 @@ static json_t *json_of_loads(const Detail *d)
     return json_pack("{s:o, s:o}", "columns", columns, "rows", rows);
 }
 
+/* Of the design: the largest force on every floor by side of the core, stress of the core and of buckling by storey; null
+ * where they were not computed. */
+static json_t *json_of_forces(const SimResult *r)
+{
+    const SimForces *f = &r->forces;
+    const size_t n = (size_t)r->n_floors;
+    if (r->outcome != RUN_OK || !r->forces_known)
+        return json_null();
+    return json_pack("{s:[o,o], s:o, s:o}", "contact_n", json_numbers(n, f->contact_force_n[0]),
+                     json_numbers(n, f->contact_force_n[1]), "stress_pa",
+                     f->stress_known ? json_numbers(n, f->core_storey_stress_pa) : json_null(), "buckling_pa",
+                     f->buckling_known ? json_numbers(n, f->core_buckling_pa) : json_null());
+}
+
 json_t *detail_json(const Detail *d, const MeasureOrder *order)
 {
     const size_t n = (size_t)d->n_floors;
@@ -127,7 +141,7 @@ json_t *detail_json(const Detail *d, const MeasureOrder *order)
     }
     return json_pack(
         "{s:i, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:f, s:f, s:f, s:f, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, "
-        "s:o}",
+        "s:o, s:o}",
         "floor", d->floor + 1, "storey_m", json_numbers(n, d->storey_m), "gap_m", json_numbers(n, d->gap_m),
         "thickness_m", json_numbers(n, d->thickness_m), "bumper_n_m", json_numbers(n, d->bumper_n_m), "building_hz",
         json_numbers(n, d->building_hz), "core_hz", json_numbers(n, d->core_hz), "record", json_words(d->record),
@@ -136,7 +150,8 @@ json_t *detail_json(const Detail *d, const MeasureOrder *order)
         "rigid", json_of_result(&d->result[SCENE_RIGID], order), "tmd", json_of_result(&d->result[SCENE_TMD], order),
         "links", json_of_result(&d->result[SCENE_LINKS], order), "loads", json_of_loads(d), "baselines",
         json_of_baselines(d->baseline, order), "history_with_core", json_of_history(&d->history[0], &d->spectrum[0]),
-        "history_no_core", json_of_history(&d->history[1], &d->spectrum[1]), "elsewhere", others);
+        "history_no_core", json_of_history(&d->history[1], &d->spectrum[1]), "forces",
+        json_of_forces(&d->result[SCENE_IMPACT]), "elsewhere", others);
 }
 
 /* ---- the run --------------------------------------------------------------------------------------------------- */

@@ -215,18 +215,21 @@ static Status answer_json(json_t *all, int precision, Answer *a, Err *err)
 
 /* -- what is shown ------------------------------------------------------------------------------------------------- */
 
-static const char WAITING[] =
+static const char NO_FRONT[] =
     "<!DOCTYPE html><html lang=\"en\"><head><meta charset=\"utf-8\"><meta http-equiv=\"refresh\" content=\"1\">"
-    "<title>imtet</title></head><body><h1>No front yet</h1><p>%zu designs simulated, %zu failed. This page comes again "
-    "every second.</p></body></html>\n";
+    "<title>imtet</title></head><body><h1>No front</h1><p>%zu designs simulated, %zu failed: %s.</p>"
+    "<p>This page looks again every second.</p></body></html>\n";
 
 static Status show_page(const Visit *v, Answer *a, Err *err)
 {
     const Look *look = v->look;
+    Err why = {0};
     *a = (Answer){.code = MHD_HTTP_OK, .type = "text/html; charset=utf-8"};
     if (look->run.n_front > 0)
         return report_live(&look->run, &a->text, err);
-    return asprintf(&a->text, WAITING, look->standing.progress.simulated, look->standing.n_failed) > 0
+    const int is_over = look->standing.state == RUN_FINISHED && run_why_empty(&look->run, &why) == STATUS_UNMET;
+    return asprintf(&a->text, NO_FRONT, look->standing.progress.simulated, look->standing.n_failed,
+                    is_over ? "no design meets search.limits" : "no design is on a front yet") > 0
                ? STATUS_OK
                : fail(err, STATUS_NO_MEMORY, "no memory for a page");
 }

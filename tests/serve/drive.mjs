@@ -213,6 +213,12 @@ const tried = {
       await until(`document.documentElement.scrollWidth <= ${width}`, 5);
     }
   },
+  async "a run of another problem has its front, its progress and no sliders"() {
+    if (!(await runs()).some((r) => r.name === "c")) return;
+    await open("c");
+    await until("document.getElementById('live').dataset.state === 'finished'");
+    assert.equal(await page.evaluate("document.querySelectorAll('#what-if, #any-design').length"), 0);
+  },
   async "the browser complains of nothing and asks no one else"() {
     assert.deepEqual(complaints(), []);
   },

@@ -35,6 +35,22 @@ function thicknessFigure(host, d) {
   }));
 }
 
+// The largest force on every floor by side, and what the storeys of the core bear.
+function forceFigures(host, d) {
+  const { contact_n: sides, stress_pa: stress, buckling_pa: buckling } = d.forces, floors = d.gap_m.length;
+  const rows = sides.flatMap((side, s) => side.map((v, j) => ({ v: v / 1e6, floor: j + 1, low: j + (s ? 1 : 0.64), high: j + (s ? 1.36 : 1), colour: s ? SKY : BLUE, side: s ? "other side" : "one side" })));
+  figure(host, "Contact forces", "The largest on every floor, by the side of the core.", (width) => chart({
+    width, height: 340, ariaLabel: "Contact force of every floor", x: { label: "largest contact force [MN]", grid: true, zero: true, nice: true }, y: floorAxis(floors), color: { type: "identity" },
+    marks: [charts.rectX(rows, { x1: 0, x2: "v", y1: "low", y2: "high", fill: "colour", title: (r) => `floor ${r.floor}, ${r.side}: ${show(r.v)} MN` }), charts.ruleX([0])],
+  }), legend([["one side", BLUE], ["other side", SKY]]));
+  if (!stress) return;
+  const lines = [["stress", BLUE, stress], ...(buckling ? [["stress at which the bare wall buckles", VERMILLION, buckling]] : [])];
+  figure(host, "Core stress", "Largest bending stress of every storey.", (width) => chart({
+    width, height: 340, ariaLabel: "Core stress of every storey", x: { label: "stress [MPa]", grid: true, zero: true, nice: true }, y: { ...floorAxis(floors), label: "storey" },
+    marks: [...lines.map(([words, colour, values]) => charts.line(values, { x: (v) => v / 1e6, y: (_, j) => j + 1, stroke: colour, strokeWidth: 2, strokeDasharray: words === "stress" ? null : "5 4" })), charts.ruleX([0])],
+  }), legend(lines.map(([words, colour]) => [words, colour])));
+}
+
 // scenes: [[key, result]]
 function peakFigure(host, scenes, key, title, label, height = 380) {
   const rows = scenes.flatMap(([scene, r]) => r[key].map((v, j) => ({ ...SCENES[scene], v, floor: j + 1 })));
@@ -204,6 +220,7 @@ function detailParts(host, d) {
   const shape = host.appendChild(element("div", { class: "grid21" }));
   gapFigure(shape, d);
   thicknessFigure(shape, d);
+  if (d.forces) forceFigures(host.appendChild(element("div", { class: "grid2" })), d);
   if (scenes.length) {
     host.append(sceneLegend(scenes.slice(0, 3).map(([key]) => key)));
     const energy = host.appendChild(element("div", { class: "grid2" }));
