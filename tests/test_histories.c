@@ -423,6 +423,70 @@ static void test_a_sine_has_ten_times_its_acceleration_in_the_floor_spectrum(voi
     free(path);
 }
 
+/* ---- contacts that begin where a sample is ------------------------------------------------------------------------ */
+
+/* A floor of its own period between walls, shaken so that it swings up slowly. */
+static void write_one_floor(void)
+{
+    char *text = NULL;
+    size_t length;
+    char folder[PATH_MAX];
+    assert_int_equal(mkdir(path_of("one", folder), 0777), 0);
+    write_in_place("one/storeys.csv", "height_m,mass_kg,stiffness_n_m\n4,3e5,2e7\n");
+    FILE *f = open_memstream(&text, &length);
+    fprintf(f, "time_s,accel_m_s2\n");
+    for (int i = 0; i < 400; i++)
+        fprintf(f, "%.2f,%.17g\n", 0.02 * i, 2 * sin(2 * M_PI * 0.024 * i) * pow(sin(M_PI * i / 400), 2));
+    fclose(f);
+    write_in_place("one/record.csv", text);
+    free(text);
+    write_in_place("one/one.ini", "[building]\nmodel = .\n[motion]\nrecord = record.csv\n");
+}
+
+/* Impacts of the floor with that gap, which the list of contacts has as well. */
+static long impacts_with(double gap, const char *law, const char *engine)
+{
+    char text[128], command[256];
+    snprintf(text, sizeof text, "gap_01_m,t_base_m,t_top_m\n%.17g,0.02,0.02\n", gap);
+    write_in_place("one/gap.csv", text);
+    snprintf(command, sizeof command,
+             "simulate @/one/one.ini --design @/one/gap.csv --json --contacts @/one/contacts.csv --engine %s --set "
+             "contact.law=%s",
+             engine, law);
+    json_t *o = json_of(command);
+    const long n = (long)number(o, "impacts");
+    const Table t = table_of("one/contacts.csv");
+    if (t.n_rows != (size_t)n)
+        fail_msg("%s, %s, gap %.17g: %ld impacts, %zu contacts", engine, law, gap, n, t.n_rows);
+    table_free((Table *)&t);
+    json_decref(o);
+    return n;
+}
+
+/* The gap is what lies between the two bodies at a sample, where nothing has touched before. */
+static void test_an_impact_that_begins_at_a_sample_counts_once(void **state)
+{
+    (void)state;
+    static const int SAMPLES[] = {38, 101, 142, 203};
+    static const char *const LAWS[] = {"paper", "jankowski"}, *const ENGINES[] = {"fast", "cvode"};
+    write_one_floor();
+    write_in_place("one/gap.csv", "gap_01_m,t_base_m,t_top_m\n5,0.02,0.02\n");
+    free(output_of("simulate @/one/one.ini --design @/one/gap.csv --csv /dev/null --history @/one/h.csv --every 0.02"));
+    const Table h = table_of("one/h.csv");
+    for (size_t i = 0; i < sizeof SAMPLES / sizeof SAMPLES[0]; i++) {
+        const size_t k = (size_t)SAMPLES[i];
+        const double gap = fabs(cell(&h, k, "floor_01_m") - cell(&h, k, "core_01_m"));
+        for (int law = 0; law < 2; law++)
+            for (int engine = 0; engine < 2; engine++) {
+                const long n = impacts_with(gap, LAWS[law], ENGINES[engine]);
+                assert_true(n > 1);
+                assert_int_equal(impacts_with(gap * (1 - 1e-9), LAWS[law], ENGINES[engine]), n);
+                assert_int_equal(impacts_with(gap * (1 + 1e-9), LAWS[law], ENGINES[engine]), n);
+            }
+    }
+    table_free((Table *)&h);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -435,6 +499,7 @@ int main(void)
         cmocka_unit_test(test_what_stands_still_feels_the_ground),
         cmocka_unit_test(test_samples_that_are_left_out_change_no_filtered_peak),
         cmocka_unit_test(test_a_sine_has_ten_times_its_acceleration_in_the_floor_spectrum),
+        cmocka_unit_test(test_an_impact_that_begins_at_a_sample_counts_once),
     };
     return cmocka_run_group_tests_name("histories", tests, prepare, clear_place);
 }

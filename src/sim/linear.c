@@ -11,8 +11,9 @@
 #include "sim/peak_monitor.h"
 
 /* Stretches (straight loads, one sample of the motion each) are crossed in blocks, so that products of matrices do the
- * work; a block has at most so many numbers of output. */
-enum { BLOCK_NUMBERS = 1 << 16, BLOCK_STRETCHES = 32 };
+ * work; a block has at most so many numbers of output. Of a large system it always has all its stretches: products of few
+ * columns would take twice the time. */
+enum { BLOCK_NUMBERS = 1 << 16, BLOCK_STRETCHES = 32, LARGE = 64 /* coordinates */ };
 
 /* Rows of the outputs of a state. */
 typedef struct {
@@ -337,7 +338,7 @@ static Status prepare(Linear *d, const Motion *motion, Err *err)
     d->size = 2 * s->m + 2;
     d->parts_max = (int)ceil(motion->dt_s / d->run->step) + 1;
     const int fit = BLOCK_NUMBERS / (d->parts_max * all);
-    d->stretches_max = fit < 1 ? 1 : fit > BLOCK_STRETCHES ? BLOCK_STRETCHES : fit;
+    d->stretches_max = d->s->m > LARGE || fit > BLOCK_STRETCHES ? BLOCK_STRETCHES : fit < 1 ? 1 : fit;
     d->store = carve_all(layout, d);
     if (!d->store)
         return fail(err, STATUS_NO_MEMORY, "linear: no memory for %d floors", n);
