@@ -186,10 +186,30 @@ static int is_same_file(const char *path, const char *other)
     return S_ISREG(a.st_mode) && stat(other, &b) == 0 && a.st_dev == b.st_dev && a.st_ino == b.st_ino;
 }
 
+static const char *const WRITTEN[] = {"--csv", "--svg", "--history", "--contacts", "--floor-spectra"};
+
+/* The i-th of the outputs that standard output was asked for, NULL: no more. */
+static const char *standard_output(const Args *args, int i)
+{
+    for (size_t k = 0; k < sizeof WRITTEN / sizeof WRITTEN[0]; k++) {
+        const char *path = args_value(args, WRITTEN[k]);
+        if (path && strcmp(path, "-") == 0 && i-- == 0)
+            return WRITTEN[k];
+    }
+    return args_has(args, "--json") && i == 0 ? "--json" : NULL;
+}
+
+int args_fill_standard_output(const Args *args)
+{
+    return standard_output(args, 0) != NULL;
+}
+
 /* A file that is written is neither one that the command reads nor another that it writes. */
 static Status check_outputs(const Args *args, Err *err)
 {
-    static const char *const WRITTEN[] = {"--csv", "--svg", "--history", "--contacts", "--floor-spectra"};
+    const char *first = standard_output(args, 0), *second = standard_output(args, 1);
+    if (second)
+        return fail(err, STATUS_USAGE, "%s and %s both want standard output; give one of them a file", first, second);
     for (int i = 0; i < args->n_given; i++)
         for (size_t k = 0; k < sizeof WRITTEN / sizeof WRITTEN[0]; k++) {
             const Given *out = &args->given[i];

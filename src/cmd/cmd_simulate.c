@@ -190,15 +190,13 @@ static void warn_of_motions(const Tower *t)
 
 static Status print(const Args *args, const Job *job, const Settings *s, const Tower *t, Err *err)
 {
-    if (args_has(args, "--json") && args_has(args, "--csv") && strcmp(args_value(args, "--csv"), "-") == 0)
-        return fail(err, STATUS_USAGE, "--json and --csv - both want standard output; give --csv a file");
     if (args_has(args, "--csv") || args_has(args, "--json"))
         warn_of_motions(t);
     if (args_has(args, "--csv"))
         TRY(write_csv(job, args_value(args, "--csv"), err));
     if (args_has(args, "--json"))
         return print_json(job, &tower_record(t, 0)->motion, err);
-    if (!args_has(args, "--csv"))
+    if (!args_has(args, "--csv") && !args_fill_standard_output(args))
         print_table(job, s, t);
     return STATUS_OK;
 }
@@ -231,12 +229,26 @@ static Status write_times(const Args *args, const Job *job, const Scenario *w, E
     return status;
 }
 
+/* Options that would be left aside. */
+static Status check_times(const Args *args, Err *err)
+{
+    static const char *const TIMES[] = {"--history", "--contacts", "--floor-spectra"};
+    if (args_has(args, "--every") && !args_has(args, "--history"))
+        return fail(err, STATUS_USAGE, "--every is the spacing of --history FILE, which is not asked for");
+    for (size_t i = 0; i < sizeof TIMES / sizeof TIMES[0]; i++)
+        if (args_has(args, "--sensitivity") && args_has(args, TIMES[i]))
+            return fail(err, STATUS_USAGE, "--sensitivity simulates many designs; %s is of one: leave one of them out",
+                        TIMES[i]);
+    return STATUS_OK;
+}
+
 static Status run(const Args *args, Err *err)
 {
     Settings s;
     Problem p;
     Job job = {0};
     TRY(choose_kind(args, &job, err));
+    TRY(check_times(args, err));
     TRY(args_settings(args, &s, NULL, NULL, err));
     if (args_has(args, "--sensitivity"))
         return show_sensitivities(args, &s, (size_t)s.sim.replicates, err);
