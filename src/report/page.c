@@ -57,8 +57,12 @@ static Status write_page(const Report *r, const char *start, const char *end, FI
 Status report_page(const Report *r, const char *path, Err *err)
 {
     Output o;
+    Report whole = *r;
     TRY(output_open(&o, path, err));
-    const Status status = write_page(r, _binary_build_web_page_html_start, _binary_build_web_page_html_end, o.stream, err);
+    Status status = importance_of(r->run, &whole.importance, err);
+    if (status == STATUS_OK)
+        status = write_page(&whole, _binary_build_web_page_html_start, _binary_build_web_page_html_end, o.stream, err);
+    importance_free(&whole.importance);
     if (status != STATUS_OK) {
         output_abandon(&o);
         return status;

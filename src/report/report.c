@@ -30,9 +30,7 @@ Status report_open(Report *r, const Run *run, size_t chosen, const DetailOptions
     if (run->n_front == 0)
         return run_why_empty(run, err);
     r->knee = run_knee(run);
-    Status status = take_detail(r, options, err);
-    if (status == STATUS_OK)
-        status = importance_of(run, &r->importance, err);
+    const Status status = take_detail(r, options, err);
     if (status != STATUS_OK)
         report_close(r);
     return status;
@@ -41,6 +39,5 @@ Status report_open(Report *r, const Run *run, size_t chosen, const DetailOptions
 void report_close(Report *r)
 {
     detail_free(&r->detail);
-    importance_free(&r->importance);
     memset(r, 0, sizeof *r);
 }

@@ -21,7 +21,7 @@ typedef struct {
     int is_robust;       /* objectives are those of several simulations, not of the one in detail */
     int has_detail;
     Detail detail;
-    Importance importance;
+    Importance importance; /* report_page finds it; elsewhere empty */
 } Report;
 
 /* chosen: row of the run, on its front or not; the front may not be empty (run_why_empty). */

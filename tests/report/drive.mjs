@@ -348,6 +348,8 @@ const tried = {
   async "the parts that this run has are there, and no others"() {
     const parts = await page.evaluate("Array.from(document.querySelectorAll('main > section'), (s) => s.id)");
     assert.equal(parts.includes("design"), run.tower);
+    await page.evaluate("window.scrollTo(0, document.documentElement.scrollHeight)");
+    assert.equal(await page.evaluate("document.getElementById('parts').getBoundingClientRect().top"), 0, "contents stay in view");
     if (!run.tower) return;
     const titles = await page.evaluate("Array.from(document.querySelectorAll('#summary h3, #design h3'), (h) => h.textContent).join('|')");
     for (const title of ["Gaps over the height", "Thickness of the core", "Displacement", "Interstorey drift", "Acceleration", "Energy dissipated by each mode", "Energies, with core", "Energies, without core", "Displacement of floor", "Other earthquakes"])
