@@ -75,9 +75,9 @@ static void widen_box(const Course *c, const Course *other, double lower[], doub
     const size_t m = c->n_obj;
     for (size_t i = 0; i < c->n; i++) {
         int dominated = !c->counts[i];
-        for (size_t j = 0; j < c->n && !dominated; j++)
+        for (size_t j = c->n; j-- > 0 && !dominated;) /* late designs dominate most */
             dominated = c->counts[j] && dominates(m, c->F + j * m, c->F + i * m);
-        for (size_t j = 0; j < other->n && !dominated; j++)
+        for (size_t j = other->n; j-- > 0 && !dominated;)
             dominated = other->counts[j] && dominates(m, other->F + j * m, c->F + i * m);
         for (size_t k = 0; k < m && !dominated; k++) {
             lower[k] = fmin(lower[k], c->F[i * m + k]);
