@@ -385,6 +385,40 @@ static void kill_a_program_with_workers(int kill_guard)
     close(ends[0]);
 }
 
+/* All at once, so that no guard can take the other's place. */
+static void test_workers_end_with_a_program_and_a_guard_that_are_killed_together(void **state)
+{
+    (void)state;
+    const double X[4] = {0};
+    double F[4];
+    unsigned char ok[2];
+    Problem p;
+    Queue *q;
+    const ProblemOptions options = command_of("sh -c 'read -r line; printf ! >&2; exec sleep 60'", 60, 2);
+    Err err = {0};
+    int ends[2];
+    char word;
+    assert_int_equal(pipe(ends), 0);
+    const pid_t pid = fork();
+    if (pid == 0) {
+        dup2(ends[1], STDERR_FILENO);
+        close(ends[1]);
+        if (external_open(&p, &options, 2, &err) == STATUS_OK &&
+            queue_open(&q, &p, QUEUE_AS_ASKED, 0, 0, &err) == STATUS_OK)
+            queue_evaluate(q, 2, X, NULL, F, NULL, ok, &err);
+        _exit(1);
+    }
+    close(ends[1]);
+    for (int n = 0; n < 2; n++)
+        assert_int_equal(read(ends[0], &word, 1), 1);
+    kill(guard_of(pid), SIGKILL);
+    kill(pid, SIGKILL);
+    assert_int_equal(waitpid(pid, NULL, 0), pid);
+    assert_int_equal(poll(&(struct pollfd){ends[0], POLLIN, 0}, 1, 20000), 1);
+    assert_int_equal(read(ends[0], &word, 1), 0);
+    close(ends[0]);
+}
+
 static void test_workers_end_with_a_program_that_is_killed(void **state)
 {
     (void)state;
@@ -567,6 +601,7 @@ int main(void)
         cmocka_unit_test(test_answers_that_are_no_objectives_fail_the_design_alone),
         cmocka_unit_test(test_a_worker_that_never_behaves_fails_every_design_and_nothing_hangs),
         cmocka_unit_test(test_words_of_the_command_may_be_quoted_and_no_shell_reads_them),
+        cmocka_unit_test(test_workers_end_with_a_program_and_a_guard_that_are_killed_together),
         cmocka_unit_test(test_workers_end_with_a_program_that_is_killed),
         cmocka_unit_test(test_a_command_that_does_not_exist_ends_the_search_by_name),
         cmocka_unit_test(test_an_external_problem_has_the_bounds_senses_names_and_limits_of_its_settings),

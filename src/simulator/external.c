@@ -7,7 +7,6 @@
 #include <math.h>
 #include <poll.h>
 #include <signal.h>
-#include <spawn.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,6 +20,7 @@
 #include "base/visible.h"
 #include "evaluate/threads.h"
 #include "simulator/guard.h"
+#include "simulator/spawner.h"
 
 enum { LINE_MAX_BYTES = 1 << 20, READ_BYTES = 1 << 16, WORDS_MAX = 128, GRACE_MS = 1000, LOOK_MS = 200 };
 
@@ -55,6 +55,7 @@ typedef struct {
     double *lower, *upper; /* (n_var) */
     Worker *worker;        /* (n_workers) */
     Guard guard;
+    Spawner spawner;
 } External;
 
 /* -- the command --------------------------------------------------------------------------------------------------- */
@@ -96,26 +97,6 @@ static Status split_command(External *e, const char *command, Err *err)
 
 /* -- one process --------------------------------------------------------------------------------------------------- */
 
-static int spawn(External *e, Worker *w, const int to_child[2], const int from_child[2])
-{
-    posix_spawn_file_actions_t actions;
-    posix_spawnattr_t attributes;
-    sigset_t none;
-    sigemptyset(&none);
-    posix_spawn_file_actions_init(&actions);
-    posix_spawnattr_init(&attributes);
-    posix_spawn_file_actions_adddup2(&actions, to_child[0], STDIN_FILENO);
-    posix_spawn_file_actions_adddup2(&actions, from_child[1], STDOUT_FILENO);
-    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK);
-    posix_spawnattr_setsigmask(&attributes, &none);
-    const int failed = posix_spawnp(&w->pid, e->words[0], &actions, &attributes, e->words, environ);
-    posix_spawn_file_actions_destroy(&actions);
-    posix_spawnattr_destroy(&attributes);
-    if (failed)
-        w->pid = 0;
-    return failed;
-}
-
 static Status worker_start(External *e, Worker *w, Err *err)
 {
     int to_child[2], from_child[2];
@@ -126,7 +107,7 @@ static Status worker_start(External *e, Worker *w, Err *err)
         close(to_child[1]);
         return fail(err, STATUS_INTERNAL, "no pipe for a worker: %s", strerror(errno));
     }
-    const int failed = spawn(e, w, to_child, from_child);
+    const int failed = spawner_run(&e->spawner, e->words, to_child[0], from_child[1], &w->pid);
     close(to_child[0]);
     close(from_child[1]);
     w->in = to_child[1];
@@ -458,6 +439,7 @@ static void external_close(void *self)
         free(e->worker[i].line);
         free(e->worker[i].request);
     }
+    spawner_end(&e->spawner);
     guard_end(&e->guard);
     free(e->worker);
     free(e->lower);
@@ -518,7 +500,8 @@ static Status create(External *e, const ProblemOptions *o, size_t n_workers, Err
     TRY(split_command(e, o->command, err));
     TRY(set_bounds(e, o, err));
     TRY(create_workers(e, n_workers, err));
-    return guard_start(&e->guard, n_workers, err);
+    TRY(guard_start(&e->guard, n_workers, err));
+    return spawner_start(&e->spawner, err);
 }
 
 Status external_open(Problem *p, const ProblemOptions *o, size_t n_workers, Err *err)

@@ -1,6 +1,9 @@
 /* simulator/guard.h -- a process of our own that kills worker processes when we end without doing so: by a signal, out of
  * memory, kill -9.
  *
+ * The workers themselves are killed by the kernel (simulator/spawner.h), whatever becomes of the guard; it is for what they
+ * have started.
+ *
  * It holds one end of a pair of sockets. Their other end closes when we end, however that is; then every process group
  * that it knows of gets SIGKILL. It is in a session of its own, has no other file open, and uses no processor time.
  *
