@@ -42,7 +42,7 @@ pictures: $(PROGRAM) ## docs/pictures, those of a study: RUN=results/kobe RECORD
 	@$(REPORT_PICTURE)/report-front.jpg '#front' 880 'J3 acceleration [g] to=6' 'J1 displacement [m] to=0.8'
 	@$(REPORT_PICTURE)/report-pairs.jpg '#all-pairs-of-objectives-with-their-rank-correlations' 1000
 	@$(REPORT_PICTURE)/report-variables.jpg '#which-variables-matter' 600
-	@$(REPORT_PICTURE)/report-design.jpg '#design' 1130
+	@$(REPORT_PICTURE)/report-design.jpg '#design' 1500
 REPORT_PICTURE = node tests/report/picture.mjs $(BUILD)/pictures/report.html docs/pictures
 
 DEFEND_EVALS ?= 1500
