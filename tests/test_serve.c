@@ -387,6 +387,28 @@ static void test_what_if_under_another_motion_is_what_simulate_prints(void **sta
     table_free(&front);
 }
 
+/* One simulation of it, by the options that the server names for `imtet simulate`. */
+static void test_what_if_of_a_run_of_several_simulations_is_one_of_them(void **state)
+{
+    (void)state;
+    Table front = table_of("runs/d/front.csv");
+    json_t *bounds = ask_json("/%T/3/what-if");
+    json_t *answer = post_json("/%T/3/what-if", json_pack("{s:i, s:i, s:o, s:f}", "page", 1, "turn", 1, "x",
+                                                          numbers_of_row(&front, 0, 1, 22), "pga_g", 0.25));
+    char arguments[700];
+    snprintf(arguments, sizeof arguments,
+             "simulate @/runs/d/settings.ini --design @/runs/d/front.csv:%.0f --json%s%s --pga 0.25", front.values[0],
+             json_string_value(json_object_get(bounds, "options")),
+             json_string_value(json_object_get(bounds, "pga_options")));
+    json_t *other = json_of(arguments);
+    assert_true(json_number_value(json_array_get(json_object_get(answer, "objectives"), 0)) == number(other, "j1_m"));
+    assert_null(json_object_get(answer, "dominated_by"));
+    json_decref(bounds);
+    json_decref(answer);
+    json_decref(other);
+    table_free(&front);
+}
+
 static void test_questions_that_are_none_are_refused(void **state)
 {
     (void)state;
@@ -589,7 +611,11 @@ static int begin(void **state)
         return -1;
     static const char *const RUNS[] = {
         "--out @/runs/a", "--out @/runs/b --set search.seed=2",
-        "--out @/runs/c --set problem.kind=dtlz2 --set problem.variables=4 --set problem.objectives=2"};
+        "--out @/runs/c --set problem.kind=dtlz2 --set problem.variables=4 --set problem.objectives=2",
+        "--out @/runs/d --set search.max_evals=24 --set sim.duration_s=20 --set search.initial=16 --set "
+        "search.population=8 --set sim.replicates=2 --set sim.gap_tolerance_m=0.003 "
+        "--set uncertain.restitution=0.05 --set motion.records=builtin:elcentro-like --set motion.pga_g=0 --set "
+        "motion.factor=0.5"};
     for (size_t i = 0; i < sizeof RUNS / sizeof RUNS[0]; i++) {
         run(&said, "%s %s", SMALL, RUNS[i]);
         if (said.code != 0)
@@ -621,6 +647,7 @@ int main(void)
         cmocka_unit_test(test_more_streams_than_allowed_are_refused),
         cmocka_unit_test(test_what_if_nothing_changes_is_what_the_run_has),
         cmocka_unit_test(test_what_if_under_another_motion_is_what_simulate_prints),
+        cmocka_unit_test(test_what_if_of_a_run_of_several_simulations_is_one_of_them),
         cmocka_unit_test(test_questions_that_are_none_are_refused),
         cmocka_unit_test(test_an_earlier_question_of_a_page_gives_way),
         cmocka_unit_test(test_two_runs_are_measured_in_one_box),

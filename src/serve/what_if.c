@@ -111,14 +111,24 @@ void what_if_close(WhatIf *w)
 /* Shares of the run's own between which motion and restitution may be changed. */
 static const double PGA_SHARE = 4, STRETCH_SHARE = 2, RESTITUTION[2] = {0.05, 1};
 
+/* Of `imtet simulate`, for the one simulation of the design as designed. */
+static const char ONCE[] = " --set sim.replicates=1 --set sim.gap_tolerance_m=0 --set motion.records=none";
+static const char CERTAIN[] = " --set uncertain.restitution=0 --set uncertain.contact_stiffness=0 --set "
+                              "uncertain.core_stiffness=0 --set uncertain.building_stiffness=0 --set "
+                              "uncertain.damping=0";
+
 json_t *what_if_bounds(const WhatIf *w)
 {
     const Ground *g = &w->own;
-    return json_pack("{s:o, s:o, s:[f,f,f], s:[f,f,f], s:[f,f,f], s:b}", "lower", json_numbers(w->n_var, w->lower),
-                     "upper", json_numbers(w->n_var, w->upper), "pga_g", g->pga_g / PGA_SHARE, g->pga_g,
-                     g->pga_g * PGA_SHARE, "stretch", g->stretch / STRETCH_SHARE, g->stretch,
-                     g->stretch * STRETCH_SHARE, "restitution", RESTITUTION[0], g->restitution, RESTITUTION[1],
-                     "is_comparable", w->is_single);
+    char scalings[SCALINGS_TEXT_MAX];
+    const int scales_otherwise = w->settings.motion.pga_g == 0 && motion_scalings(&w->settings.motion, scalings) > 0;
+    return json_pack("{s:o, s:o, s:[f,f,f], s:[f,f,f], s:[f,f,f], s:b, s:s+, s:s}", "lower",
+                     json_numbers(w->n_var, w->lower), "upper", json_numbers(w->n_var, w->upper), "pga_g",
+                     g->pga_g / PGA_SHARE, g->pga_g, g->pga_g * PGA_SHARE, "stretch", g->stretch / STRETCH_SHARE,
+                     g->stretch, g->stretch * STRETCH_SHARE, "restitution", RESTITUTION[0], g->restitution,
+                     RESTITUTION[1], "is_comparable", w->is_single, "options", w->is_single ? "" : ONCE,
+                     is_uncertain(&w->settings.uncertain) ? CERTAIN : "", "pga_options",
+                     scales_otherwise ? " --set motion.factor=1 --set motion.sa_g=0 --set motion.target=none" : "");
 }
 
 /* A number within bounds, rounding apart; `otherwise` where it is left out. */

@@ -28,7 +28,8 @@ typedef struct WhatIf WhatIf;
 Status what_if_open(WhatIf **out, const Run *run, const RecordPaths *moved, Err *err);
 void what_if_close(WhatIf *w); /* NULL is fine */
 
-/* {"lower": [n_var], "upper", "pga_g": [least, as in the run, most], "stretch", "restitution", "is_comparable"} */
+/* {"lower": [n_var], "upper", "pga_g": [least, as in the run, most], "stretch", "restitution", "is_comparable",
+ * "options": of `imtet simulate` that make it the same simulation, "pga_options": those where the peak is changed} */
 json_t *what_if_bounds(const WhatIf *w);
 
 /* run: as it is now, for its front. */
