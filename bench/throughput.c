@@ -152,6 +152,7 @@ static Status open_asked(const Throughput *t, Scene *scenes[], SimWorker *worker
     for (int a = 0; a < N_ASKED; a++) {
         SceneOptions o = *t->settings;
         o.sim.forces = a == WITH_FORCES ? FORCES_YES : FORCES_AUTO;
+        o.sim.measures_only = 1;
         o.sim.filtered = a == FILTERED;
         TRY(scene_create(&scenes[a], &o, t->whole, err));
         TRY(sim_worker_create(&workers[a], scenes[a], err));

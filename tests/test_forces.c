@@ -313,7 +313,7 @@ static void test_impulses_add_up_to_the_change_of_momentum(void **state)
 
 /* ---- the tower ----------------------------------------------------------------------------------------------- */
 
-static SimResult tower_run(Engine engine, Accuracy accuracy, SceneKind kind, int forces, double seconds)
+static SimResult tower_run_of(const SimOptions *sim, SceneKind kind)
 {
     Err err = {0};
     Motion motion;
@@ -321,10 +321,7 @@ static SimResult tower_run(Engine engine, Accuracy accuracy, SceneKind kind, int
     SimWorker *worker;
     SimResult r;
     SceneOptions options = paper_scene();
-    options.sim.engine = engine;
-    options.sim.accuracy = accuracy;
-    options.sim.duration_s = seconds;
-    options.sim.forces = forces;
+    options.sim = *sim;
     double x[N + 2];
     for (int j = 0; j < N; j++)
         x[j] = 0.004 * (j + 1) + 0.002 * (j % 3);
@@ -340,6 +337,25 @@ static SimResult tower_run(Engine engine, Accuracy accuracy, SceneKind kind, int
     motion_free(&motion);
     r.seconds = 0;
     return r;
+}
+
+static SimResult tower_run(Engine engine, Accuracy accuracy, SceneKind kind, int forces, double seconds)
+{
+    SimOptions sim = paper_scene().sim;
+    sim.engine = engine;
+    sim.accuracy = accuracy;
+    sim.duration_s = seconds;
+    sim.forces = forces;
+    return tower_run_of(&sim, kind);
+}
+
+static SimForces tower_forces(int measures_only)
+{
+    SimOptions sim = paper_scene().sim;
+    sim.duration_s = 20;
+    sim.forces = FORCES_YES;
+    sim.measures_only = measures_only;
+    return tower_run_of(&sim, SCENE_IMPACT).forces;
 }
 
 static void same_forces(const SimForces *a, const SimForces *b, double tolerance)
@@ -383,6 +399,95 @@ static void test_standard_accuracy_is_near_fine_in_every_force(void **state)
     same_forces(&standard.forces, &fine.forces, 5e-2);
 }
 
+/* Every sample as a point of a monitor of its own. */
+typedef struct {
+    ForceMonitor *monitor;
+    long points;
+} AllPoints;
+
+static void add_all(const SimSample *s, void *user)
+{
+    AllPoints *all = user;
+    const int kept = s->n_modes - s->n_building;
+    FloorSet in_contact = 0;
+    if (s->t == 0)
+        force_monitor_start(all->monitor, kept < N ? kept : N);
+    for (int j = 0; j < N; j++)
+        in_contact |= (FloorSet)(s->force[j] != 0) << j;
+    force_monitor_point(all->monitor, &(ForcePoint){.t = s->t,
+                                                    .ground = s->ground,
+                                                    .building_q = s->q,
+                                                    .building_v = s->v,
+                                                    .core_q = s->q + s->n_building,
+                                                    .force = s->force,
+                                                    .in_contact = in_contact});
+    all->points++;
+}
+
+static int by_size(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* What lies between the points of a run and what it leaves out, at standard accuracy. */
+static void test_peaks_are_those_of_points_every_quarter_of_a_millisecond(void **state)
+{
+    (void)state;
+    Err err = {0};
+    Motion motion;
+    Scene *scene;
+    SimWorker *worker;
+    SimResult r;
+    SimForces dense;
+    double x[N + 2], apart[4 * N];
+    int n = 0;
+    Frame f;
+    frame_open(&f, CORE_BOX, 0.012, 0.0064);
+    f.options.sim.forces = FORCES_YES;
+    f.options.sim.duration_s = SANITIZED ? 10 : 40;
+    for (int j = 0; j < N + 2; j++)
+        x[j] = j < N ? 0.004 * (j + 1) + 0.002 * (j % 3) : j == N ? 0.012 : 0.0064;
+    CHECK_OK(motion_load(&motion, "builtin:elcentro-like", UNIT_FROM_FILE, &err), &err);
+    CHECK_OK(motion_prepare(&motion, 0.3, 3, &err), &err);
+    CHECK_OK(scene_create(&scene, &f.options, &motion, &err), &err);
+    CHECK_OK(sim_worker_create(&worker, scene, &err), &err);
+    AllPoints all = {.monitor = f.monitor};
+    sim_worker_sample(worker, 2.5e-4, add_all, &all);
+    CHECK_OK(sim_run(worker, SCENE_IMPACT, x, &r, &err), &err);
+    assert_true(r.impacts > 20 && (double)all.points > 0.9 * f.options.sim.duration_s / 2.5e-4);
+    force_monitor_report(f.monitor, f.options.sim.duration_s, &dense);
+    for (int s = 0; s < N; s++) {
+        apart[n++] = fabs(r.forces.core_shear_n[s] / dense.core_shear_n[s] - 1);
+        apart[n++] = fabs(r.forces.core_moment_nm[s] / dense.core_moment_nm[s] - 1);
+        apart[n++] = fabs(r.forces.building_shear_n[s] / dense.building_shear_n[s] - 1);
+        apart[n++] = fabs(r.forces.peak_velocity_m_s[s] / dense.peak_velocity_m_s[s] - 1);
+    }
+    qsort(apart, (size_t)n, sizeof *apart, by_size);
+    if (!(apart[n / 2] < 3e-3 && apart[n * 9 / 10] < 3e-2 && apart[n - 1] < 0.1))
+        fail_msg("apart by %g, %g and %g in the middle, of nine in ten and at most", apart[n / 2], apart[n * 9 / 10],
+                 apart[n - 1]);
+    assert_close(r.forces.core_stress_pa, dense.core_stress_pa, 5e-3);
+    assert_close(r.forces.overturning_nm, dense.overturning_nm, 5e-3);
+    assert_close(r.forces.base_shear_n, dense.base_shear_n, 5e-2);
+    sim_worker_free(worker);
+    scene_free(scene);
+    motion_free(&motion);
+    frame_close(&f);
+}
+
+static void test_what_measures_do_not_need_is_left_out_and_changes_none(void **state)
+{
+    (void)state;
+    const SimForces whole = tower_forces(0), few = tower_forces(1);
+    assert_true(isnan(few.building_shear_n[1]) && isnan(few.peak_velocity_m_s[0]));
+    assert_true(few.building_shear_n[0] == whole.building_shear_n[0] && whole.building_shear_n[1] > 0);
+    assert_true(few.building_overturning_nm == whole.building_overturning_nm);
+    assert_true(few.base_shear_n == whole.base_shear_n && few.core_stress_pa == whole.core_stress_pa);
+    assert_memory_equal(few.core_shear_n, whole.core_shear_n, sizeof few.core_shear_n);
+    assert_memory_equal(few.contact_force_n, whole.contact_force_n, sizeof few.contact_force_n);
+}
+
 static void test_asking_for_forces_changes_no_other_figure(void **state)
 {
     (void)state;
@@ -418,6 +523,8 @@ int main(void)
         cmocka_unit_test(test_impulses_add_up_to_the_change_of_momentum),
         cmocka_unit_test(test_fast_and_cvode_agree_in_every_force_before_the_horizon),
         cmocka_unit_test(test_standard_accuracy_is_near_fine_in_every_force),
+        cmocka_unit_test(test_peaks_are_those_of_points_every_quarter_of_a_millisecond),
+        cmocka_unit_test(test_what_measures_do_not_need_is_left_out_and_changes_none),
         cmocka_unit_test(test_asking_for_forces_changes_no_other_figure),
         cmocka_unit_test(test_the_rigid_pair_has_the_base_shear_of_its_parts),
     };

@@ -12,7 +12,7 @@
 /* Eight outputs, followed together:
  *   swift   core, on which impacts act: V_1..V_n, M_1..M_n, displacement of the top; building and core together: base shear,
  *           overturning moment
- *   slow    building: V_1..V_n, the overturning moment; velocities of the floors */
+ *   slow    building: V_1, the overturning moment, V_2..V_n; velocities of the floors */
 typedef double v8 __attribute__((vector_size(64)));
 typedef int64_t m8 __attribute__((vector_size(64)));
 enum { LANES8 = 8 };
@@ -22,6 +22,7 @@ static const double SLOW_SPACING = 4e-3;
 
 typedef struct {
     v8 last, first, peak; /* at the last point, the one before; over continuous time */
+    int outputs;          /* of the eight */
     /* |output| is at most the sum of these times ForceReach.by */
     v8 reach[N_REACHES];
     double *building, *building_squares; /* (nb, 8) a row per mode, its square over w^2; NULL: none of the building */
@@ -38,15 +39,15 @@ typedef struct {
 struct ForceMonitor {
     int n, nb;
     int at_both, at_slow, at_velocity, n_groups; /* groups: core from 0, building and core, building, velocities */
-    int core_modes, nc, has_residual;
+    int core_modes, nc, has_residual, with_storeys;
     double z[FLOORS_MAX + 1];
     const CoreBeam *core;
     SceneOptions options;
     double weight_n, thickness[2]; /* [N] of the floors; [m] at base and top */
 
-    Group *group; /* (n_groups) */
-    int *due;     /* (n_groups) those whose peaks may rise, n_due of them */
-    int n_due;
+    Group *group;      /* (n_groups) */
+    int *due;          /* (n_groups) those whose peaks may rise, n_due of them */
+    int n_due, rising; /* rising: groups of which a peak rose at the last point */
     long looks;
     double
         *limit[N_REACHES]; /* (n_groups, padded) where the sum of these times ForceReach.by is below 1, no peak rises */
@@ -152,6 +153,7 @@ static void put_row(ForceMonitor *m, int at, int i, int count, const double outp
     for (int k = 0; k < count; k++) {
         Group *g = &m->group[at + k / LANES8];
         (of_core ? g->core : g->building)[i * LANES8 + k % LANES8] = outputs[k];
+        g->outputs = k % LANES8 + 1;
     }
 }
 
@@ -159,13 +161,15 @@ static void set_building_rows(ForceMonitor *m, const Building *b)
 {
     const int n = m->n;
     const BuildingModel *model = &b->model;
-    double outputs[FLOORS_MAX + 1], moments[FLOORS_MAX], velocities[FLOORS_MAX];
+    double outputs[FLOORS_MAX + 1], moments[FLOORS_MAX], velocities[FLOORS_MAX], base;
     for (int i = 0; i < m->nb; i++) {
-        storey_forces(m, b->K, model->phi + i, model->n, outputs, moments);
-        outputs[n] = moments[0];
+        storey_forces(m, b->K, model->phi + i, model->n, outputs + 1, moments);
+        base = outputs[1];
+        outputs[1] = moments[0];
+        outputs[0] = base;
         for (int j = 0; j < n; j++)
             velocities[j] = model->phi[j * model->n + i];
-        put_row(m, m->at_both, i, 2, (const double[]){outputs[0], moments[0]}, 0);
+        put_row(m, m->at_both, i, 2, outputs, 0);
         put_row(m, m->at_slow, i, n + 1, outputs, 0);
         put_row(m, m->at_velocity, i, n, velocities, 0);
     }
@@ -212,6 +216,7 @@ void force_monitor_set(ForceMonitor *m, const SceneOptions *o, const Building *b
     m->options = *o;
     m->core = core;
     m->nc = core ? n : 0;
+    m->with_storeys = !o->sim.measures_only;
     m->weight_n = 0;
     for (int s = 0; s < n; s++)
         m->z[s + 1] = m->z[s] + b->storey_m[s];
@@ -246,11 +251,17 @@ static void set_residual(const ForceMonitor *m, Group *g)
     }
 }
 
+/* Is there a core, are the building's storeys wanted? */
+static int is_followed(const ForceMonitor *m, int group)
+{
+    return group < m->at_slow ? m->nc > 0 : group == m->at_slow || m->with_storeys;
+}
+
 void force_monitor_start(ForceMonitor *m, int core_modes)
 {
     m->core_modes = m->nc ? core_modes : 0;
     m->has_residual = m->core_modes < m->nc;
-    m->n_due = 0;
+    m->n_due = m->rising = 0;
     m->looks = 0;
     for (int q = 0; q < N_REACHES; q++)
         memset(m->limit[q], 0, sizeof(double) * (size_t)(eights(m->n_groups) * LANES8));
@@ -258,10 +269,11 @@ void force_monitor_start(ForceMonitor *m, int core_modes)
         Group *g = &m->group[i];
         g->points = g->look = g->set = 0;
         g->rose = 0;
-        memset(&g->peak, 0, sizeof g->peak);
+        for (int k = 0; k < LANES8; k++)
+            g->peak[k] = k < g->outputs ? 0 : HUGE_VAL;
         if (g->core)
             set_residual(m, g);
-        if (m->nc > 0 || i >= m->at_slow)
+        if (is_followed(m, i))
             m->due[m->n_due++] = i;
     }
     memset(&m->sum, 0, sizeof m->sum);
@@ -303,15 +315,13 @@ static double parabola_top(double h0, double h1, double y0, double y1, double y2
     return curvature == 0 ? fabs(y1) : fabs(y1 - 0.25 * slope * slope / curvature);
 }
 
-/* Outputs of the last point that are the largest of three, and not below the peak so far. */
-static __attribute__((noinline)) void raise_tops(Group *g, const v8 *now, double t)
+/* Raises peaks to the parabola's of those outputs of the last point that are the largest of three. */
+static __attribute__((noinline)) void raise_tops(Group *g, const m8 *tops, const v8 *now, double t)
 {
     const double h0 = g->t[0] - g->t[1], h1 = t - g->t[0];
-    for (int k = 0; k < LANES8; k++) {
-        const double last = fabs(g->last[k]);
-        if (last > fabs((*now)[k]) && last >= fabs(g->first[k]) && last >= g->peak[k])
-            g->peak[k] = parabola_top(h0, h1, g->first[k], g->last[k], (*now)[k]);
-    }
+    for (int k = 0; k < LANES8; k++)
+        if ((*tops)[k])
+            g->peak[k] = fmax(g->peak[k], parabola_top(h0, h1, g->first[k], g->last[k], (*now)[k]));
 }
 
 /* The outputs of a group at a point. */
@@ -333,8 +343,9 @@ static inline __attribute__((always_inline)) void find_outputs(const ForceMonito
     *out = now + more;
 }
 
-CLONED static void follow(const ForceMonitor *m, const ForcePoint *p)
+CLONED static void follow(ForceMonitor *m, const ForcePoint *p)
 {
+    m->rising = 0;
     for (int i = 0; i < m->n_due; i++) {
         Group *g = &m->group[m->due[i]];
         if (m->looks > g->look + 1)
@@ -344,11 +355,16 @@ CLONED static void follow(const ForceMonitor *m, const ForcePoint *p)
             continue;
         v8 now;
         find_outputs(m, g, p, &now);
-        const v8 y = V8_ABS(now);
+        const v8 y = V8_ABS(now), first = V8_ABS(g->first);
         const m8 higher = y > g->peak;
-        if (g->rose && g->points > 1)
-            raise_tops(g, &now, p->t);
+        if (g->rose && g->points > 1) {
+            const v8 beside = V8_WHERE(first > y, first, y);
+            const m8 tops = V8_ABS(g->last) >= V8_WHERE(beside > g->peak, beside, g->peak);
+            if (any(&tops))
+                raise_tops(g, &tops, &now, p->t);
+        }
         g->rose = any(&higher);
+        m->rising += g->rose;
         if (g->rose) {
             g->peak = V8_WHERE(y > g->peak, y, g->peak);
             g->stale = 1;
@@ -396,7 +412,7 @@ CLONED static void find_limits(const Group *g, double *const limit[N_REACHES], i
 static void set_limits(ForceMonitor *m, int i)
 {
     Group *g = &m->group[i];
-    if (m->nc > 0 || i >= m->at_slow)
+    if (is_followed(m, i))
         find_limits(g, m->limit, i);
     g->stale = 0;
     g->set = m->looks;
@@ -406,6 +422,8 @@ void force_monitor_energies(ForceMonitor *m, const double building[], const doub
 {
     for (int i = 0; i < m->n_groups; i++) {
         Group *g = &m->group[i];
+        if (!is_followed(m, i))
+            continue;
         if (g->building)
             set_reach(m->nb, g->building_squares, building, &g->reach[REACH_BUILDING_1]);
         if (g->core)
@@ -433,26 +451,32 @@ CLONED static int find_over(const ForceMonitor *m, const ForceReach *r, m8 over[
     return any(&all);
 }
 
+/* The same of a group whose limits are set anew, if they are out of date. */
+static int is_below_now(ForceMonitor *m, int i, const ForceReach *r)
+{
+    double sum = 0;
+    if (!m->group[i].stale || m->looks < m->group[i].set + LOOKS_BETWEEN)
+        return 0;
+    set_limits(m, i);
+    for (int q = 0; q < N_REACHES; q++)
+        sum += m->limit[q][i] * r->by[q];
+    return sum <= 1;
+}
+
 int force_monitor_may_rise(ForceMonitor *m, const ForceReach *r)
 {
     m8 over[GROUPS_MAX / LANES8];
     m->looks++;
     m->n_due = 0;
-    if (!find_over(m, r, over))
+    if (!find_over(m, r, over) && m->rising == 0)
         return 0;
     for (int i = 0; i < m->n_groups; i++) {
-        if (!over[i / LANES8][i % LANES8])
-            continue;
-        if (m->group[i].stale && m->looks >= m->group[i].set + LOOKS_BETWEEN) {
-            set_limits(m, i);
-            double sum = 0;
-            for (int q = 0; q < N_REACHES; q++)
-                sum += m->limit[q][i] * r->by[q];
-            if (sum <= 1)
-                continue;
-        }
-        m->due[m->n_due++] = i;
+        const Group *g = &m->group[i];
+        const int rises = g->rose && g->look == m->looks - 1; /* its top may lie before the next point */
+        if (rises || (over[i / LANES8][i % LANES8] && !is_below_now(m, i, r)))
+            m->due[m->n_due++] = i;
     }
+    m->rising = 0;
     return m->n_due > 0;
 }
 
@@ -480,6 +504,13 @@ void force_monitor_contact(ForceMonitor *m, int floor, double impulse, double lo
     m->sum.contact_impulse_ns[side][floor] += impulse;
     m->sum.contact_force_n[side][floor] = fmax(m->sum.contact_force_n[side][floor], force);
     m->sum.indentation_m[side][floor] = fmax(m->sum.indentation_m[side][floor], indentation);
+}
+
+void force_monitor_impulse(ForceMonitor *m, int floor, double impulse)
+{
+    SimContact *c = &m->open[floor];
+    c->impulse += impulse;
+    m->sum.contact_impulse_ns[index_of(c->side)][floor] += impulse;
 }
 
 int force_monitor_is_below(const ForceMonitor *m, int floor, int side, double force, double indentation)
@@ -554,13 +585,13 @@ void force_monitor_report(ForceMonitor *m, double t, SimForces *out)
     close_open_contacts(m, t);
     *out = m->sum;
     for (int s = 0; s < n; s++) {
-        out->building_shear_n[s] = peak_of(m, m->at_slow, s);
-        out->peak_velocity_m_s[s] = peak_of(m, m->at_velocity, s);
+        out->building_shear_n[s] = m->with_storeys || s == 0 ? peak_of(m, m->at_slow, s > 0 ? s + 1 : 0) : NAN;
+        out->peak_velocity_m_s[s] = m->with_storeys ? peak_of(m, m->at_velocity, s) : NAN;
         out->core_shear_n[s] = peak_of(m, 0, s);
         out->core_moment_nm[s] = peak_of(m, 0, n + s);
     }
     out->building_base_shear_n = out->building_shear_n[0];
-    out->building_overturning_nm = peak_of(m, m->at_slow, n);
+    out->building_overturning_nm = peak_of(m, m->at_slow, 1);
     out->core_base_shear_n = out->core_shear_n[0];
     out->core_overturning_nm = out->core_moment_nm[0];
     out->core_top_m = peak_of(m, 0, 2 * n);

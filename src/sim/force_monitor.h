@@ -78,8 +78,9 @@ void force_monitor_onset(ForceMonitor *m, int floor, int side, double t, double 
 void force_monitor_contact(ForceMonitor *m, int floor, double impulse, double lost, double force, double indentation);
 
 /* Whether contacts are not wanted one by one and the largest force and indentation of this floor and side are not below
- * these: then force_monitor_contact needs the impulse alone, and no loss. */
+ * these: then the impulse alone is enough. */
 int force_monitor_is_below(const ForceMonitor *m, int floor, int side, double force, double indentation);
+void force_monitor_impulse(ForceMonitor *m, int floor, double impulse);
 void force_monitor_end(ForceMonitor *m, int floor, double t, double speed);
 
 /* --- for who asks --------------------------------------------------------------------------------------------- */

@@ -98,7 +98,9 @@ static void add_recipe(Adapter *a, const Settings *s)
 
 static Status open(Adapter *a, const Settings *s, Err *err)
 {
-    TRY(open_simulator(&a->problem, s, TOWER_AS_SET, err));
+    Settings own = *s;
+    own.sim.measures_only = 1;
+    TRY(open_simulator(&a->problem, s->problem.kind == PROBLEM_TOWER ? &own : s, TOWER_AS_SET, err));
     if (s->problem.kind == PROBLEM_EXTERNAL)
         add_recipe(a, s);
     const Tower *t = adapter_tower(a);
