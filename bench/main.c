@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "bench/distribution.h"
+#include "bench/model_size.h"
 #include "bench/search/factors.h"
 #include "bench/stability/laws.h"
 #include "bench/stability/stability.h"
@@ -41,6 +42,7 @@ typedef struct {
     Bench bench;
     Sweep sweep;
     DistributionTest distribution;
+    ModelSize size;
     SweepPlan plan;
     unsigned kinds; /* bit by benchmark case */
 } Chart;
@@ -82,7 +84,10 @@ static Status run_case(Chart *c, int k, Err *err)
     Status status = bench_case_open(&bench_case, bench_kind(k), &b->options, &b->motion, b->quick, err);
     if (status == STATUS_OK)
         status = sweep_run(&c->sweep, k, &bench_case, &c->plan, stderr, err);
-    if (status == STATUS_OK && !b->quick && strcmp(bench_case.kind->name, "irregular") == 0)
+    const int irregular = strcmp(bench_case.kind->name, "irregular") == 0;
+    if (status == STATUS_OK && !b->quick && irregular)
+        status = model_size_run(&c->size, &bench_case, &b->options, err);
+    if (status == STATUS_OK && !b->quick && irregular)
         status = distribution_test_run(&c->distribution, &c->sweep, &bench_case, &b->options, DISTRIBUTION_LIMIT_S,
                                        stderr, err);
     bench_case_close(&bench_case);
@@ -95,9 +100,11 @@ static Status write_to(const char *path, const Chart *c, int markdown, Err *err)
     TRY(output_open(&o, path, err));
     if (markdown) {
         sweep_write_markdown(&c->sweep, &c->bench.motion, o.stream);
+        model_size_write_markdown(&c->size, o.stream);
         distribution_test_write(&c->distribution, o.stream);
     } else {
         sweep_write_csv(&c->sweep, o.stream);
+        model_size_write_csv(&c->size, o.stream);
     }
     return output_close(&o, err);
 }
