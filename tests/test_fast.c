@@ -108,7 +108,7 @@ static void test_rebound_converges_with_at_least_third_order(void **state)
     double worst[2] = {0};
     for (int fine = 0; fine < 2; fine++)
         for (int i = 0; i < 40; i++) { /* the closing falls anywhere in a step */
-            Ball ball = {1000, 4.865e10, 0.3 * (1 + 0.01 * i), 0.7, {fine ? 32 : 8, 1e-13, 0, 1e7, 1e-6, 0, 0}};
+            Ball ball = {1000, 4.865e10, 0.3 * (1 + 0.01 * i), 0.7, {fine ? 32 : 8, 1e-13, 0, 1e7, 1e-6, 0, 0, 0}};
             Bounce b;
             bounce(&ball, -1, &b);
             worst[fine] = fmax(worst[fine], fabs(sqrt(b.result.kinetic_strain_j / b.result.input_energy_j) - exact));
@@ -165,8 +165,11 @@ static void test_one_step_per_contact_makes_no_energy_in_silence(void **state)
 {
     (void)state;
     for (int i = 0; i < 60; i++) {
-        Ball ball = {
-            1000, 4.865e10, 0.1 * (1 + 0.03 * i), 1 - 0.1 * (i % 5), {0.25 * (1 + i % 8), 1e-6, 1e-5, 1e7, 1e-3, 0, 0}};
+        Ball ball = {1000,
+                     4.865e10,
+                     0.1 * (1 + 0.03 * i),
+                     1 - 0.1 * (i % 5),
+                     {0.25 * (1 + i % 8), 1e-6, 1e-5, 1e7, 1e-3, 0, 0, 0}};
         Bounce b;
         bounce(&ball, -1, &b);
         const double made = b.result.kinetic_strain_j / b.result.input_energy_j - 1;

@@ -9,8 +9,8 @@ typedef struct {
     double steps_max;            /* steps after which a run is given up */
     double peak_tolerance;       /* share of a peak that may be uncertain inside a step */
     double flexibility_left_out; /* static, of the highest core modes, share of a contact's; 0: all are kept */
-    int core_modes;              /* so many of the core's modes are kept; 0: as flexibility_left_out says */
     double tail_tolerance;       /* contacts end where no more than this share of the input is left; 0: never */
+    int core_modes;              /* so many of the core's modes are kept; 0: as flexibility_left_out says */
 } FastTolerances;
 
 #endif
