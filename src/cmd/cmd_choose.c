@@ -150,8 +150,8 @@ static int counts(const Run *run, size_t i)
            !(e->violation > 0.0);
 }
 
-/* Minimised objectives and standard errors of the designs that keep the limits, and which of them are picked; 0: there is
- * no noise, or one of them has no known error. */
+/* Minimised objectives and standard errors of the designs that keep the limits, and which of them are picked; 0: there
+ * is no noise, or one of them has no known error. */
 static size_t gather_errors(const Run *run, const Picks *p, double F[], double error[], size_t picked[])
 {
     const size_t m = run->schema.n_obj;

@@ -4,9 +4,9 @@
  *          ideal + 1.1 (nadir - ideal), by the fixed samples of moga/hypervolume.h
  *   gain   h(now) - h(now - stop_after). A search is over when it is no more than the standard error of h(now)
  *
- * The box follows the front, so that a gain counts wherever the front moves; an objective that hardly differs on the front
- * has a hundredth of its range over all designs. Noisy objectives count with their standard error added: a design that was
- * lucky once is no gain.
+ * The box follows the front, so that a gain counts wherever the front moves; an objective that hardly differs on the
+ * front has a hundredth of its range over all designs. Noisy objectives count with their standard error added: a design
+ * that was lucky once is no gain.
  *
  *   expected gain of as many evaluations again: with the gains d1 of the last half and d2 of the quarter before it
  *          d1 min(d1 / d2, 1), what a power law h = h_inf - c n^-a makes of them

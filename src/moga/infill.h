@@ -5,8 +5,8 @@
  *             INFILL_HYPERVOLUME  minus the length that f dominates of the ray from behind the worst of the front along
  *                                 -w: the lengths of many rays add up to the hypervolume, whatever the front's shape
  *   best_w    smallest value of the front
- *   chance    where there is a front: a gain counts with the probability that the design succeeds and keeps every limit;
- *             the expected improvement under constraints of Schonlau, Welch and Jones, IMS Lecture Notes 34 (1998) 11-25
+ *   chance    where there is a front: a gain counts with the probability that the design succeeds and keeps every
+ *             limit, as in Schonlau, Welch and Jones, IMS Lecture Notes 34 (1998) 11-25
  *
  * Designs are picked one after the other, the greatest gain first; what is picked lowers best_w, so that a batch
  * spreads over the vectors. Where no candidate has a gain the least certain one is picked, where none is feasible the
@@ -45,8 +45,8 @@ double infill_slope(const Infill *q, size_t vector, const double f[], double slo
 
 double infill_gain(Infill *q, const double f[]);
 
-/* n predicted designs: F (n, n_obj), violation (n), predicted error (n), chance (n) or NULL: feasible designs come first;
- * borrowed until the last pick. */
+/* n predicted designs: F (n, n_obj), violation (n), predicted error (n), chance (n) or NULL: feasible designs come
+ * first; borrowed until the last pick. */
 void infill_offer(Infill *q, size_t n, const double F[], const double violation[], const double uncertainty[],
                   const double chance[]);
 

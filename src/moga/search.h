@@ -16,8 +16,8 @@
  *       validation  some trusted predictions, first those that have been trusted for long
  *       variation   from INFILL_ALONE evaluations per variable on a few children of variation with the greatest
  *                   predicted gain, and most of the batch while these gain more
- *       limits      a gain counts with the probability that the design succeeds and keeps every limit; descents turn back
- *                   where a limit is violated or a failure predicted; variation gets the share of the batch that fails
+ *       limits      a gain counts with the probability that the design succeeds and keeps every limit; descents turn
+ *                   back where a limit is violated or a failure predicted; variation gets the share that fails
  *   5 Evaluation (batch.c), with replicates where evaluations are noisy (replication.c)
  *   6 Control (control.h)
  *       Kendall's tau between predicted and evaluated objectives: while it is too low, batches are variation alone;

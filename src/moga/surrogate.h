@@ -49,9 +49,8 @@ void surrogate_estimate(const Surrogate *s, Archive *archive);
 void surrogate_predict(Surrogate *s, Population *population, size_t first, int with_uncertainty);
 
 /* Designs X (n, n_var) that lower the criterion of `near` along its reference vectors by descents on the surrogate,
- * each from the design of the archive that is best for its vector; a point that violates no limit is better than one that
- * does. Resilient back-propagation: Riedmiller and Braun,
- * ICNN 1993, 586-591. */
+ * each from the design of the archive that is best for its vector; a point that violates no limit is better than one
+ * that does. Resilient back-propagation: Riedmiller and Braun, ICNN 1993, 586-591. */
 void surrogate_descend(Surrogate *s, const Archive *a, const Infill *near, size_t n, const size_t vectors[],
                        double X[]);
 
