@@ -17,7 +17,7 @@
 #include "report/importance.h"
 #include "report/report.h"
 #include "report/wavelet.h"
-#include "settings/settings.h"
+#include "settings/options.h"
 
 static char folder[64]; /* of this test program's files */
 

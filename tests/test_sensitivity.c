@@ -4,7 +4,7 @@
 
 #include "check.h"
 #include "scene_options.h"
-#include "settings/settings.h"
+#include "settings/options.h"
 #include "simulator/sensitivity.h"
 
 enum { N_VAR = 22, REPLICATES = SANITIZED ? 1 : 2 };

@@ -14,7 +14,7 @@
 #include <stdio.h>
 
 #include "base/status.h"
-#include "settings/settings.h"
+#include "settings/options.h"
 
 typedef struct {
     const Settings *settings; /* of both searches, but for surrogate, seed and limits */

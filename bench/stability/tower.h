@@ -6,7 +6,7 @@
 #include "bench/stability/need.h"
 #include "scene/motion.h"
 #include "sim/sim.h"
-#include "settings/settings.h"
+#include "settings/options.h"
 
 typedef struct {
     Settings settings;

@@ -7,7 +7,7 @@
 #include "cmd/show.h"
 #include "simulator/horizon.h"
 #include "simulator/tower.h"
-#include "settings/settings.h"
+#include "settings/options.h"
 
 enum { REPLICATES = 16 };
 static const double CHANGE = 1e-12; /* of the gaps, between the two runs that are compared */

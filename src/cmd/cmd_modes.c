@@ -11,7 +11,7 @@
 #include "cmd/show.h"
 #include "report/heights.h"
 #include "simulator/scenario.h"
-#include "settings/settings.h"
+#include "settings/options.h"
 
 /* Where no design is given: the core of the paper's Table 1, linear from 12 mm to 6.4 mm. */
 static const double T_BASE_M = 0.012, T_TOP_M = 0.0064;

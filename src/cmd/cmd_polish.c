@@ -9,7 +9,7 @@
 #include "store/output.h"
 #include "store/store.h"
 #include "polish/refine.h"
-#include "settings/settings.h"
+#include "settings/options.h"
 
 typedef struct {
     RunStore *store; /* open from the first look at the design until the better one is in */

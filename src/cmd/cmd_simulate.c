@@ -13,7 +13,7 @@
 #include "simulator/estimate.h"
 #include "simulator/tower.h"
 #include "store/output.h"
-#include "settings/settings.h"
+#include "settings/options.h"
 
 typedef struct {
     SceneKind kind;

@@ -8,7 +8,7 @@
 
 #include "cmd/designs.h"
 #include "scene/builtin.h"
-#include "settings/settings.h"
+#include "settings/options.h"
 
 #include "store/run_read.h"
 

@@ -92,7 +92,7 @@ Status hypervolume_create(Hypervolume **out, size_t n_obj, const double lower[],
     h->n_words = WORDS;
     h->lower = h->sample + HYPERVOLUME_SAMPLES * n_obj;
     h->per = h->lower + n_obj;
-    h->above = (uint64_t *)(h->per + n_obj);
+    h->above = (void *)(h->per + n_obj);
     fill(h, lower, reference, seed);
     return STATUS_OK;
 }

@@ -8,7 +8,7 @@
 #include "polish/local.h"
 #include "polish/polish.h"
 #include "simulator/adapter.h"
-#include "settings/settings.h"
+#include "settings/options.h"
 
 enum { CENTRES_MAX = 150, LOCAL_MAX = 600 /* designs tried on the surrogate: a fit costs their cube */ };
 

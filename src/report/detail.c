@@ -1,13 +1,14 @@
 #include "report/detail.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/units.h"
 #include "report/wavelet.h"
 #include "simulator/tower.h"
-#include "settings/settings.h"
+#include "settings/options.h"
 
 static const double QUIET = 0.02; /* of the peak displacement */
 

@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "settings/settings.h"
+#include "settings/options.h"
 
 /* The chosen design simulated with the run's own settings, its records where they are now. */
 static Status take_detail(Report *r, const DetailOptions *options, Err *err)

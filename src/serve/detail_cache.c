@@ -6,7 +6,7 @@
 
 #include "base/json.h"
 #include "report/report_json.h"
-#include "settings/settings.h"
+#include "settings/options.h"
 
 struct DetailCache {
     pthread_mutex_t mutex;

@@ -9,7 +9,7 @@
 #include "base/units.h"
 #include "moga/dominance.h"
 #include "scene/motion_scale.h"
-#include "settings/settings.h"
+#include "settings/options.h"
 #include "simulator/tower.h"
 
 enum { PAGES_MAX = 64 };

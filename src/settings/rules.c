@@ -1,6 +1,7 @@
 #include "settings/rules.h"
 
 #include <stdarg.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "scene/design.h"

@@ -6,7 +6,9 @@
 #ifndef IMTET_SETTINGS_RULES_H
 #define IMTET_SETTINGS_RULES_H
 
-#include "settings/settings.h"
+#include "settings/options.h"
+
+#include <stddef.h>
 
 enum { RULE_FIELDS = 3 };
 

@@ -5,9 +5,8 @@
  *   key = value          a setting that is not written keeps its default
  *
  * The reader, the range check, `--set section.key=value`, `imtet settings` and the copy saved with a run are loops
- * over the table: a new setting is one line there and one field in the options of its module. Rules that tie settings
- * together: rules.h. A module takes its own options; only what needs all includes this
- * header, others declare `typedef struct Settings Settings;`.
+ * over the table: a new setting is one line there and one field in the options of its module (options.h has them
+ * together). Rules that tie settings together: rules.h.
  *
  * Ownership  Settings is a plain value: copy it freely.   Threads  no state. */
 #ifndef IMTET_SETTINGS_SETTINGS_H
@@ -17,30 +16,7 @@
 #include <stdio.h>
 
 #include "base/status.h"
-#include "scene/options.h"
-#include "sim/options.h"
-#include "simulator/options.h"
-#include "study/options.h"
-
-typedef struct Settings {
-    BuildingOptions building;
-    CoreOptions core;
-    ContactOptions contact;
-    MotionOptions motion;
-    SimOptions sim;
-    UncertainOptions uncertain;
-    DesignOptions design;
-    ProblemOptions problem;
-    SearchOptions search;
-    RunOptions run;
-    unsigned old_keys; /* bit i: the old key i of settings_renamed was read */
-} Settings;
-
-/* What a scene needs of them. */
-static inline SceneOptions settings_scene(const Settings *s)
-{
-    return (SceneOptions){s->building, s->core, s->contact, s->sim, s->design};
-}
+#include "settings/options.h"
 
 void settings_defaults(Settings *s);
 

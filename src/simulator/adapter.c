@@ -7,7 +7,7 @@
 #include "evaluate/threads.h"
 #include "moga/constants.h"
 #include "moga/search.h"
-#include "settings/settings.h"
+#include "settings/options.h"
 #include "simulator/external.h"
 #include "simulator/recipe.h"
 #include "simulator/textbook.h"

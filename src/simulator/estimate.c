@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "settings/settings.h"
+#include "settings/options.h"
 #include "sim/fast/fast.h"
 #include "sim/tolerance.h"
 

@@ -5,15 +5,14 @@
 #ifndef IMTET_SIMULATOR_RECIPE_H
 #define IMTET_SIMULATOR_RECIPE_H
 
-#include "settings/settings.h"
-#include "simulator/tower.h"
+#include "settings/options.h"
 
 typedef enum { RECIPE_SIMULATOR, RECIPE_EVALUATIONS /* cmd/evaluations.h */ } RecipeKind;
 
 typedef struct {
     RecipeKind kind;   /* RECIPE_SIMULATOR */
     Settings settings; /* problem.kind says which simulator */
-    TowerUse use;      /* of the tower */
+    int use;           /* of the tower: TowerUse */
 } Recipe;
 
 #endif

@@ -1,11 +1,12 @@
 #include "simulator/schema.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/cell.h"
 #include "scene/design.h"
-#include "settings/settings.h"
+#include "settings/options.h"
 
 static Status allocate(Schema *schema, Err *err)
 {

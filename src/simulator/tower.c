@@ -1,6 +1,7 @@
 #include "simulator/tower.h"
 
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

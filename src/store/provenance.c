@@ -16,7 +16,7 @@
 #include "base/hash.h"
 #include "scene/building.h"
 #include "sim/fast/fast.h"
-#include "settings/settings.h"
+#include "settings/options.h"
 
 #ifndef IMTET_VERSION
 #define IMTET_VERSION "unknown"

@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "moga/dominance.h"
-#include "settings/settings.h"
+#include "settings/options.h"
 
 void run_free(Run *run)
 {

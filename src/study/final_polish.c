@@ -1,7 +1,7 @@
 #include "study/final_polish.h"
 
 #include "polish/refine.h"
-#include "settings/settings.h"
+#include "settings/options.h"
 
 /* Replicates that a standard deviation is estimated from; simulations below which polishing a design finds nothing; the
  * share of the search, 1 / SHARE, that all of them take; designs. Chosen by scripts/polish (docs/polish.md). */

@@ -6,7 +6,7 @@
 
 #include "base/linalg.h"
 #include "evaluate/threads.h"
-#include "settings/settings.h"
+#include "settings/options.h"
 #include "simulator/tower.h"
 #include "study/record_paths.h"
 

@@ -6,7 +6,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "settings/settings.h"
+#include "settings/options.h"
 
 double progress_rate(const Progress *p)
 {

@@ -6,7 +6,7 @@
 
 #include "base/list.h"
 #include "scene/motion_source.h"
-#include "settings/settings.h"
+#include "settings/options.h"
 #include "store/provenance.h"
 
 static Status check_is_there(const char *path, const char *key, Err *err)

@@ -419,7 +419,7 @@ static Status polish(Study *study, Err *err)
 }
 
 /* The integration error of the knee. */
-static Status estimate_knee(Study *study, const double x[], Err *err)
+static Status estimate_integration(Study *study, const double x[], Err *err)
 {
     const Tower *t = adapter_tower(study->adapter);
     StudySummary *sum = study->summary;
@@ -440,7 +440,7 @@ static Status find_baselines(Study *study, Err *err)
     if (!run || run->n_front == 0 || !adapter_tower(study->adapter))
         return STATUS_OK;
     study->summary->has_baselines = 1;
-    TRY(estimate_knee(study, run_x(run, run_knee(run)), err));
+    TRY(estimate_integration(study, run_x(run, run_knee(run)), err));
     TRY(front_review_closings(adapter_problem(study->adapter), run, &study->summary->review, err));
     return baselines_find(adapter_problem(study->adapter), run_x(run, run_knee(run)), BASELINE_LINKS,
                           study->summary->baseline, err);
