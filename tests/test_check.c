@@ -124,6 +124,40 @@ static void test_units_that_are_wrong_are_refused_or_guessed(void **state)
     expect_text("floors have 1000 to 1e+07", "");
 }
 
+/* Kilonewtons and tonnes together leave every period as it is: only the files can say so. */
+static void test_units_are_taken_from_the_comments_of_the_files(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *K, *M;
+        double stiffness, mass;
+    } CASES[] = {{"# kN/m\n", "# t\n", 1e3, 1e3},
+                 {"\xef\xbb\xbf# stiffness [MN/m]; floors upwards\n", "#masses (kg)\n", 1e6, 1},
+                 {"# in N/m\n", "", 1, 1}};
+    char path[256], text[200], folder[64];
+    for (int i = 0; i < 3; i++) {
+        snprintf(folder, sizeof folder, "units%d", i);
+        snprintf(path, sizeof path, "%s/%s", place.folder, folder);
+        assert_int_equal(mkdir(path, 0777), 0);
+        snprintf(path, sizeof path, "%s/K.csv", folder);
+        snprintf(text, sizeof text, "%s%.17g,%.17g\n%.17g,%.17g\n", CASES[i].K, 6e8 / CASES[i].stiffness,
+                 -3e8 / CASES[i].stiffness, -3e8 / CASES[i].stiffness, 3e8 / CASES[i].stiffness);
+        write_in_place(path, text);
+        snprintf(path, sizeof path, "%s/M.csv", folder);
+        snprintf(text, sizeof text, "%s%.17g,0\n0,%.17g\n", CASES[i].M, 3e5 / CASES[i].mass, 3e5 / CASES[i].mass);
+        write_in_place(path, text);
+        snprintf(text, sizeof text, "building @/%s --json", folder);
+        json_t *o = json_of(text);
+        assert_close(number(o, "mass_kg"), 6e5, 1e-12);
+        const json_t *mode = json_array_get(json_object_get(o, "modes"), 0);
+        assert_close(number(mode, "hz"), sqrt(1e3) * (sqrt(5) - 1) / (4 * M_PI), 1e-9);
+        json_decref(o);
+    }
+    expect(65, "units0/K.csv: says that it is in kN/m; leave building.units at auto",
+           "building @/units0 --set building.units=N_m_kg");
+    free(output_of("building @/units0 --set building.units=kN_m_t"));
+}
+
 static void test_floors_from_the_top_down_are_noticed(void **state)
 {
     (void)state;
@@ -201,6 +235,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_a_sound_building_is_in_order_with_its_figures),
         cmocka_unit_test(test_units_that_are_wrong_are_refused_or_guessed),
+        cmocka_unit_test(test_units_are_taken_from_the_comments_of_the_files),
         cmocka_unit_test(test_floors_from_the_top_down_are_noticed),
         cmocka_unit_test(test_damping_peak_and_gaps_beyond_reason_are_noticed),
         cmocka_unit_test(test_a_core_beyond_the_motions_samples_is_noticed),

@@ -67,7 +67,7 @@ static Status load_matrix(const char *model, const char *file, double **A, int *
 }
 
 /* 1 kip/in and 1 kip s2/in in N/m and kg: 4448.2216 N and 0.0254 m. */
-static const double KIP_PER_IN = 4448.2216152605 / 0.0254;
+#define KIP_PER_IN (4448.2216152605 / 0.0254)
 
 BuildingUnit building_unit(BuildingUnits units)
 {
@@ -89,17 +89,82 @@ static void multiply(int n, double A[], double factor)
         A[i] *= factor;
 }
 
+/* ---- units of a header ---------------------------------------------------------------------------------------- */
+
+typedef struct {
+    const char *word;
+    double factor;
+} UnitWord;
+
+static const UnitWord STIFFNESS_WORDS[] = {{"N/m", 1}, {"kN/m", 1e3}, {"MN/m", 1e6}, {"kip/in", KIP_PER_IN}, {NULL, 0}};
+static const UnitWord MASS_WORDS[] = {{"kg", 1}, {"t", 1e3}, {"kip", KIP_PER_IN}, {NULL, 0}};
+
+/* The first of the words in a line; NULL: none of them. */
+static const UnitWord *unit_in(const char *line, size_t length, const UnitWord words[])
+{
+    static const char APART[] = " \t\r,;:=()[]\"";
+    for (const char *at = line, *end = line + length; at < end;) {
+        size_t n = 0;
+        while (at + n < end && !strchr(APART, at[n]))
+            n++;
+        for (const UnitWord *w = words; w->word; w++)
+            if (strlen(w->word) == n && strncmp(at, w->word, n) == 0)
+                return w;
+        at += n + 1;
+    }
+    return NULL;
+}
+
+/* The unit that a comment of the file states; NULL: none does. */
+static Status header_unit(const char *path, const UnitWord words[], const UnitWord **unit, Err *err)
+{
+    char *text;
+    size_t length;
+    *unit = NULL;
+    TRY(file_read(path, FILE_LARGEST, &text, &length, err));
+    for (const char *line = text, *stop = text + length; line < stop && !*unit;) {
+        const char *end = memchr(line, '\n', (size_t)(stop - line));
+        end = end ? end : stop;
+        const char *from = line + (stop - line > 3 && memcmp(line, "\xef\xbb\xbf", 3) == 0 ? 3 : 0);
+        while (from < end && (*from == ' ' || *from == '\t'))
+            from++;
+        if (from < end && *from == '#')
+            *unit = unit_in(from + 1, (size_t)(end - from - 1), words);
+        line = end + 1;
+    }
+    free(text);
+    return STATUS_OK;
+}
+
+/* What the entries of a matrix are multiplied by: as the file says, which building.units must not contradict. */
+static Status matrix_factor(const BuildingOptions *o, const char *file, const UnitWord words[], double set,
+                            double *factor, Err *err)
+{
+    char path[600];
+    const UnitWord *unit;
+    snprintf(path, sizeof path, "%s/%s", o->model, file);
+    TRY(header_unit(path, words, &unit, err));
+    *factor = unit ? unit->factor : set;
+    return !unit || o->units == BUILDING_AUTO || unit->factor == set
+               ? STATUS_OK
+               : fail(err, STATUS_BAD_DATA, "%s: says that it is in %s; leave building.units at auto", path,
+                      unit->word);
+}
+
 static Status read_matrices(BuildingFiles *b, const BuildingOptions *o, Err *err)
 {
+    double stiffness = 1, mass = 1;
     int n_mass = 0;
     TRY(load_matrix(o->model, "K.csv", &b->K, &b->n, err));
     TRY(load_matrix(o->model, "M.csv", &b->M, &n_mass, err));
     if (n_mass != b->n)
         return fail(err, STATUS_BAD_DATA, "%s/M.csv: %d floors, but K.csv has %d", o->model, n_mass, b->n);
-    if (!is_compiled_in(o->model)) {
-        multiply(b->n, b->K, building_unit(o->units).stiffness);
-        multiply(b->n, b->M, building_unit(o->units).mass);
-    }
+    if (is_compiled_in(o->model))
+        return STATUS_OK;
+    TRY(matrix_factor(o, "K.csv", STIFFNESS_WORDS, building_unit(o->units).stiffness, &stiffness, err));
+    TRY(matrix_factor(o, "M.csv", MASS_WORDS, building_unit(o->units).mass, &mass, err));
+    multiply(b->n, b->K, stiffness);
+    multiply(b->n, b->M, mass);
     return STATUS_OK;
 }
 
