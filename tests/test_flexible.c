@@ -41,11 +41,13 @@ static void stage_set(Stage *t, const SceneOptions *options, const PromiseCase *
     CHECK_OK(model_set(&t->model, &o, &t->b, &t->core, c->x, &err), &err);
 }
 
-static SimResult run_leaving_out(Stage *t, const PromiseCase *c, double flexibility)
+/* core_modes 0: as many as the flexibility says. */
+static SimResult run_with(Stage *t, const PromiseCase *c, double flexibility, int core_modes)
 {
     SimResult r;
     FastTolerances tolerances = fast_tolerances(ACCURACY_STANDARD);
     tolerances.flexibility_left_out = flexibility;
+    tolerances.core_modes = core_modes;
     fast_run(t->work, &t->model, &c->motion, &(EngineOptions){.duration = c->duration}, &tolerances, &r);
     return r;
 }
@@ -68,7 +70,7 @@ static void test_few_core_modes_and_springs_give_what_all_modes_give(void **stat
         double each[BENCH_OBJECTIVES];
         promise_window(&plan, 20, k, &c);
         stage_set(&t, &o, &c);
-        const SimResult all = run_leaving_out(&t, &c, 0), few = run_leaving_out(&t, &c, 0.1);
+        const SimResult all = run_with(&t, &c, 0, 0), few = run_with(&t, &c, 0.1, 0);
         assert_true(few.outcome == RUN_OK && few.energy_balance_error < 3e-4);
         assert_true(few.steps < 1.1 * (double)all.steps);
         result_errors(&few, &all, each);
@@ -84,10 +86,32 @@ static void test_few_core_modes_and_springs_give_what_all_modes_give(void **stat
     motion_free(&m);
 }
 
+static void test_so_many_core_modes_are_kept_as_are_asked_for(void **state)
+{
+    (void)state;
+    const SceneOptions o = paper_scene();
+    Motion m;
+    Stage t;
+    Err err;
+    PromiseCase c;
+    CHECK_OK(motion_load(&m, "builtin:kobe-like", UNIT_FROM_FILE, &err), &err);
+    CHECK_OK(motion_prepare(&m, 0.3, 3.1, &err), &err);
+    promise_window(&(PromisePlan){.options = &o, .records = &m, .n_records = 1, .n_windows = 1}, 20, 0, &c);
+    stage_open(&t, &o);
+    stage_set(&t, &o, &c);
+    const SimResult all = run_with(&t, &c, 0, 0), twenty = run_with(&t, &c, 0.1, 20), more = run_with(&t, &c, 0.1, 99);
+    const SimResult two = run_with(&t, &c, 0, 2), six = run_with(&t, &c, 0, 6);
+    assert_true(twenty.j3_g == all.j3_g && twenty.steps == all.steps && more.j3_g == all.j3_g);
+    assert_true(fabs(two.edcs_pct / all.edcs_pct - 1) > 2 * fabs(six.edcs_pct / all.edcs_pct - 1));
+    stage_close(&t);
+    motion_free(&m);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_few_core_modes_and_springs_give_what_all_modes_give),
+        cmocka_unit_test(test_so_many_core_modes_are_kept_as_are_asked_for),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
