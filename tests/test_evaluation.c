@@ -51,6 +51,8 @@ static void test_an_appended_row_is_a_copy_and_what_it_lacks_is_not_known(void *
     EvaluationTable t = evaluation_table(2, 2, 0);
     double x[2] = {1.0, 2.0}, f[2] = {3.0, 4.0};
     Evaluation e = {.id = 7, .kind = KIND_REPEAT, .replicates = 3, .violation = 0.25, .x = x, .f = f};
+    char room[REASON_MAX];
+    e.room = room;
     Err err = {0};
     evaluation_set_outcome(&e, OUTCOME_TIMEOUT, "no answer, \"late\"");
     CHECK_OK(evaluation_table_append(&t, &e, &err), &err);

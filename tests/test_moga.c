@@ -509,6 +509,45 @@ static void test_front_flags_equal_a_brute_force_filter_after_every_insertion(vo
     }
 }
 
+/* Some designs fail, some are infeasible; the first half of the rows restored, the rest inserted. */
+static void test_an_archive_that_is_restored_with_its_front_goes_on_as_the_one_it_was(void **state)
+{
+    (void)state;
+    enum { N = 400, M = 4 };
+    static double F[N * M], X[N], G[N];
+    unsigned char ok[N];
+    for (uint32_t seed = 0; seed < 20; seed++) {
+        Archive whole, again;
+        Err err = {0};
+        Random r = random_stream(seed, RANDOM_TEST, 9, 0);
+        make_stream(seed, N, M, F);
+        for (size_t i = 0; i < N; i++) {
+            X[i] = (double)i;
+            ok[i] = random_below(&r, 10) > 0;
+            G[i] = random_below(&r, 10) > 0 ? -1.0 : 1.0;
+        }
+        CHECK_OK(pareto_archive_init(&whole, 1, 1, M, 1, &err), &err);
+        CHECK_OK(pareto_archive_init(&again, 1, 1, M, 1, &err), &err);
+        CHECK_OK(pareto_archive_insert(&whole, N / 2, X, F, G, ok, 0, 0, &err), &err);
+        for (size_t i = 0; i < N / 2; i++)
+            CHECK_OK(pareto_archive_restore(&again, X + i, F + i * M, G + i, ok[i], 0, 0, whole.on_front[i], &err),
+                     &err);
+        for (size_t i = N / 2; i < N; i++) {
+            CHECK_OK(pareto_archive_insert(&whole, 1, X + i, F + i * M, G + i, ok + i, 0, 0, &err), &err);
+            CHECK_OK(pareto_archive_insert(&again, 1, X + i, F + i * M, G + i, ok + i, 0, 0, &err), &err);
+            assert_int_equal(again.n_front, whole.n_front);
+            assert_memory_equal(again.on_front, whole.on_front, i + 1);
+        }
+        pareto_archive_list_front(&whole);
+        pareto_archive_list_front(&again);
+        assert_memory_equal(again.front, whole.front, whole.n_front * sizeof *whole.front);
+        assert_int_equal(again.n_failed, whole.n_failed);
+        assert_int_equal(again.n_usable, whole.n_usable);
+        pareto_archive_free(&whole);
+        pareto_archive_free(&again);
+    }
+}
+
 static void test_a_batch_spreads_over_the_directions_instead_of_crowding(void **state)
 {
     (void)state;
@@ -711,6 +750,7 @@ int main(void)
         cmocka_unit_test(test_feasible_designs_survive_before_infeasible_ones),
         cmocka_unit_test(test_the_tree_of_the_front_equals_brute_force_on_200_streams),
         cmocka_unit_test(test_front_flags_equal_a_brute_force_filter_after_every_insertion),
+        cmocka_unit_test(test_an_archive_that_is_restored_with_its_front_goes_on_as_the_one_it_was),
         cmocka_unit_test(test_a_batch_spreads_over_the_directions_instead_of_crowding),
         cmocka_unit_test(test_picks_are_those_of_gains_computed_anew_each_time),
         cmocka_unit_test(test_spread_directions_have_the_axes_and_keep_apart),

@@ -268,7 +268,7 @@ static void test_messages_are_cut_between_characters_and_shown_whatever_they_are
     (void)state;
     expect_every_third("umlauts", OUTCOME_ERROR, "aääääääääää", 20);
     expect_every_third("latin", OUTCOME_GARBLED, "zu gro", 20);
-    Evaluation e;
+    Evaluation e = {.room = (char[REASON_MAX]){0}};
     char want[160] = "a";
     for (int i = 0; i < 79; i++)
         strcat(want, "ä"); /* 159 bytes */

@@ -193,7 +193,8 @@ static Status simulate(RunStore *store, size_t i, Err *err)
                     .kind = KIND_UNFINISHED,
                     .seconds = i == 3 ? 1.0 : 0.001,
                     .x = (double *)X[i],
-                    .f = (double *)F[i]};
+                    .f = (double *)F[i],
+                    .room = (char[REASON_MAX]){0}};
     evaluation_set_outcome(&e, OK[i] ? OUTCOME_OK : OUTCOME_DEAD, OK[i] ? "" : "it died");
     return store_evaluation(store, &e, err);
 }

@@ -194,6 +194,21 @@ static const char *read_digits(const char *at, uint64_t *D, int *places)
     }
 }
 
+/* Behind "e-05", with the digits that it moves the point; `at` where there is no such thing. */
+static const char *read_exponent(const char *at, int *places)
+{
+    const int sign = at[0] == 'e' && at[1] == '-', begin = 1 + (sign || at[1] == '+');
+    int exponent = 0, n = 0;
+    if (at[0] != 'e')
+        return at;
+    for (; n < 3 && at[begin + n] >= '0' && at[begin + n] <= '9'; n++)
+        exponent = 10 * exponent + at[begin + n] - '0';
+    if (n == 0 || n == 3)
+        return at;
+    *places += sign ? exponent : -exponent;
+    return at + begin + n;
+}
+
 double number_read(const char *text, const char **end)
 {
     const int sign = text[0] == '-';
@@ -201,10 +216,12 @@ double number_read(const char *text, const char **end)
     uint64_t D;
     int k;
     const char *at = read_digits(text + sign, &D, &k);
+    if (at)
+        at = read_exponent(at, &k);
     if (at && (*at == 0 || *at == ',' || *at == ']')) {
         const int is_small = D < (uint64_t)1 << 53;
         *end = at;
-        if ((is_small && k <= TENS_MAX) || (D > 0 && k > 0 && k <= FIVES_MAX)) {
+        if ((is_small && k >= 0 && k <= TENS_MAX) || (D > 0 && k > 0 && k <= FIVES_MAX)) {
             const double size = is_small && k <= TENS_MAX ? (double)D / TENS[k] : quotient(D, k);
             return sign ? -size : size;
         }

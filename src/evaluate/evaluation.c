@@ -1,6 +1,7 @@
 #include "evaluate/evaluation.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -50,10 +51,14 @@ EvaluationKind kind_of_word(const char *word)
 
 void evaluation_set_outcome(Evaluation *e, Outcome outcome, const char *reason)
 {
-    char shown[sizeof e->reason];
+    char shown[REASON_MAX];
     e->outcome = outcome;
+    e->reason = "";
+    if (!reason || !reason[0])
+        return;
     visible_text(shown, sizeof shown, reason);
-    cell_text(e->reason, sizeof e->reason, shown);
+    cell_text(e->room, REASON_MAX, shown);
+    e->reason = e->room;
 }
 
 EvaluationTable evaluation_table(size_t n_var, size_t n_obj, size_t n_extra)
@@ -75,6 +80,12 @@ void evaluation_copy(Evaluation *to, const Evaluation *from, size_t n_var, size_
     to->f = own.f;
     to->sd = own.sd;
     to->extra = own.extra;
+    to->room = own.room;
+    to->reason = "";
+    if (from->reason && from->reason[0]) {
+        snprintf(to->room, REASON_MAX, "%s", from->reason);
+        to->reason = to->room;
+    }
     copy_numbers(to->x, from->x, n_var);
     copy_numbers(to->f, from->f, n_obj);
     copy_numbers(to->sd, from->sd, n_obj);
@@ -84,11 +95,20 @@ void evaluation_copy(Evaluation *to, const Evaluation *from, size_t n_var, size_
 /* The first n rows stay as they are. */
 static void layout(EvaluationTable *t, Carve *c)
 {
-    t->row = carve_wider(c, t->row, t->n, t->n_max, sizeof *t->row);
+    t->row = carve_wider(c, t->row, t->n_used, t->n_max, sizeof *t->row);
     t->x = carve_wider(c, t->x, t->n * t->n_var, t->n_max * t->n_var, sizeof *t->x);
     t->f = carve_wider(c, t->f, t->n * t->n_obj, t->n_max * t->n_obj, sizeof *t->f);
     t->sd = carve_wider(c, t->sd, t->n * t->n_obj, t->n_max * t->n_obj, sizeof *t->sd);
     t->extra = carve_wider(c, t->extra, t->n * t->n_extra, t->n_max * t->n_extra, sizeof *t->extra);
+}
+
+static void point_row(EvaluationTable *t, size_t i)
+{
+    Evaluation *e = &t->row[i];
+    e->x = t->x + i * t->n_var;
+    e->f = t->f + i * t->n_obj;
+    e->sd = t->sd + i * t->n_obj;
+    e->extra = t->extra + i * t->n_extra;
 }
 
 static Status grow(EvaluationTable *t, Err *err)
@@ -98,16 +118,12 @@ static Status grow(EvaluationTable *t, Err *err)
     wider.n_max = t->n_max > 0 ? 2 * t->n_max : 32;
     EvaluationTable counted = wider;
     layout(&counted, &c);
-    wider.store = carve_store(&c);
+    wider.store = malloc(c.used + CARVE_LINE); /* and not touched before there are rows */
     if (!wider.store)
         return fail(err, STATUS_NO_MEMORY, "no memory for %zu evaluations", wider.n_max);
     layout(&wider, &(Carve){.base = wider.store});
-    for (size_t i = 0; i < wider.n_max; i++) {
-        wider.row[i].x = wider.x + i * t->n_var;
-        wider.row[i].f = wider.f + i * t->n_obj;
-        wider.row[i].sd = wider.sd + i * t->n_obj;
-        wider.row[i].extra = wider.extra + i * t->n_extra;
-    }
+    for (size_t i = 0; i < t->n_used; i++)
+        point_row(&wider, i);
     free(t->store);
     *t = wider;
     return STATUS_OK;
@@ -122,6 +138,8 @@ static void set_unknown(double v[], size_t n)
 void evaluation_forget(Evaluation *e, size_t n_obj, size_t n_extra)
 {
     *e = (Evaluation){.kind = KIND_UNFINISHED,
+                      .reason = "",
+                      .room = e->room,
                       .seconds = NAN,
                       .violation = NAN,
                       .x = e->x,
@@ -137,21 +155,37 @@ Status evaluation_table_add(EvaluationTable *t, Evaluation **row, Err *err)
 {
     if (t->n == t->n_max)
         TRY(grow(t, err));
+    if (t->n == t->n_used) {
+        t->row[t->n_used] = (Evaluation){0};
+        point_row(t, t->n_used++);
+    }
     *row = &t->row[t->n++];
+    memset((*row)->x, 0, t->n_var * sizeof *t->x);
     evaluation_forget(*row, t->n_obj, t->n_extra);
     return STATUS_OK;
+}
+
+Status evaluation_table_give_room(Evaluation *row, Err *err)
+{
+    if (!row->room)
+        row->room = malloc(REASON_MAX);
+    return row->room ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for the reason of a failure");
 }
 
 Status evaluation_table_append(EvaluationTable *t, const Evaluation *from, Err *err)
 {
     Evaluation *e;
     TRY(evaluation_table_add(t, &e, err));
+    if (from->reason && from->reason[0])
+        TRY(evaluation_table_give_room(e, err));
     evaluation_copy(e, from, t->n_var, t->n_obj, t->n_extra);
     return STATUS_OK;
 }
 
 void evaluation_table_free(EvaluationTable *t)
 {
+    for (size_t i = 0; i < t->n_used; i++)
+        free(t->row[i].room);
     free(t->store);
     *t = evaluation_table(t->n_var, t->n_obj, t->n_extra);
 }

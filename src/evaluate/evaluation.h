@@ -8,9 +8,9 @@
  *
  * Shapes     of one table, all rows have the same; in its memory rows follow each other: table.x is X (n, n_var)
  *            row-major, likewise f, sd, extra, and row[i].x = table.x + i n_var
- * Ownership  the table owns rows and numbers; pointers into it hold until the next evaluation_table_add. A row outside a
+ * Ownership  the table owns rows, numbers and reasons; pointers into it hold until the next evaluation_table_add. A row outside a
  *            table borrows its arrays
- * Memory     one allocation, doubled when it is full
+ * Memory     one allocation, doubled when it is full; of room that is not used the system has only addresses
  * Threads    no state
  * Errors     STATUS_NO_MEMORY; a design that failed is a row with another outcome than OUTCOME_OK, not an error */
 #ifndef IMTET_EVALUATE_EVALUATION_H
@@ -61,31 +61,34 @@ typedef enum {
 const char *kind_word(EvaluationKind kind);
 EvaluationKind kind_of_word(const char *word); /* KIND_UNFINISHED: no other kind has that word */
 
+enum { REASON_MAX = 160 };
+
 typedef struct {
     long id, generation;
     EvaluationKind kind;
     Outcome outcome;
-    char reason[160]; /* why it failed, fit for a cell of a CSV file; else empty */
-    int replicates;   /* simulations of each record behind f; 0: not known */
-    double seconds;   /* of all its simulations; NAN: not known */
-    double violation; /* of the limits, sum of max(0, g): 0 where they hold; INFINITY: failed; NAN: not known */
+    const char *reason; /* why it failed, fit for a cell of a CSV file; else empty */
+    char *room;         /* (REASON_MAX) for that text; NULL: there is none, for one that did not fail */
+    int replicates;     /* simulations of each record behind f; 0: not known */
+    double seconds;     /* of all its simulations; NAN: not known */
+    double violation;   /* of the limits, sum of max(0, g): 0 where they hold; INFINITY: failed; NAN: not known */
     double *x, *f, *sd, *extra;
 } Evaluation;
 
 /* All numbers that `from` has (NULL arrays: none) into the arrays of `to`, of the same shapes. */
 void evaluation_copy(Evaluation *to, const Evaluation *from, size_t n_var, size_t n_obj, size_t n_extra);
 
-/* Nothing is known: x stays, every other number is NAN; OUTCOME_OK, KIND_UNFINISHED. */
+/* Nothing is known: x and the room stay, every other number is NAN; OUTCOME_OK, KIND_UNFINISHED. */
 void evaluation_forget(Evaluation *e, size_t n_obj, size_t n_extra);
 
-/* Outcome and reason; the text becomes one of visible characters (base/visible.h) and a cell of a CSV file
+/* Outcome and reason, for which there is room where it is not empty; the text becomes one of visible characters (base/visible.h) and a cell of a CSV file
  * (base/cell.h), of valid UTF-8 whatever a worker wrote. */
 void evaluation_set_outcome(Evaluation *e, Outcome outcome, const char *reason);
 
 typedef struct {
-    size_t n, n_max, n_var, n_obj, n_extra;
-    Evaluation *row;            /* (n) */
-    double *x, *f, *sd, *extra; /* (n, n_var) (n, n_obj) (n, n_obj) (n, n_extra) */
+    size_t n, n_max, n_used, n_var, n_obj, n_extra; /* n_used: rows that have had content */
+    Evaluation *row;                                /* (n) */
+    double *x, *f, *sd, *extra;                     /* (n, n_var) (n, n_obj) (n, n_obj) (n, n_extra) */
     void *store;
 } EvaluationTable;
 
@@ -94,6 +97,8 @@ EvaluationTable evaluation_table(size_t n_var, size_t n_obj, size_t n_extra);
 
 /* One more row behind the last: x of zeros, every other number not known, OUTCOME_OK, KIND_UNFINISHED. */
 Status evaluation_table_add(EvaluationTable *t, Evaluation **row, Err *err);
+
+Status evaluation_table_give_room(Evaluation *row, Err *err); /* for its reason */
 
 /* The same filled with a copy of `from`, whose shapes are those of the table; NULL arrays are not known. */
 Status evaluation_table_append(EvaluationTable *t, const Evaluation *from, Err *err);

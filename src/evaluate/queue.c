@@ -75,6 +75,7 @@ static void layout(Slot *s, const Queue *q, Carve *c)
     s->e.f = carve(c, p->n_obj, sizeof *s->e.f);
     s->e.sd = carve(c, p->n_obj, sizeof *s->e.sd);
     s->e.extra = carve(c, p->n_extra, sizeof *s->e.extra);
+    s->e.room = carve(c, REASON_MAX, 1);
     s->f = carve(c, p->n_obj, sizeof *s->f);
     s->g = carve(c, p->n_con, sizeof *s->g);
     s->note = carve(c, q->n_note, sizeof *s->note);

@@ -11,6 +11,9 @@
 /* Grows by doubling up to so many. */
 enum { MANY_ROWS = 100000 };
 
+/* Whether a new design is on the front. */
+typedef enum { TO_BE_FOUND, ON_FRONT, OFF_FRONT } Place;
+
 /* What differs from the rows themselves once there are replicates. */
 static void layout_means(Archive *a, Carve *c)
 {
@@ -158,6 +161,15 @@ static Status follow_tree(Archive *a, size_t row, Err *err)
     return STATUS_OK;
 }
 
+/* A row that is known to stay. */
+static Status join_front(Archive *a, size_t row, Err *err)
+{
+    a->on_front[row] = 1;
+    a->front[a->n_listed++] = row;
+    a->n_front++;
+    return nd_tree_take(a->tree, a->F, row, err);
+}
+
 static void set_errors(Archive *a, size_t row)
 {
     for (size_t k = 0; k < a->n_obj; k++) {
@@ -177,15 +189,17 @@ static void take_as_means(Archive *a, size_t row)
     set_errors(a, row);
 }
 
-static Status add_design(Archive *a, size_t row, Err *err)
+static Status add_design(Archive *a, size_t row, Place place, Err *err)
 {
     a->replicates[row] = 1;
     a->usable[row] = a->ok[row];
     a->violation[row] = a->ok[row] ? violation_of(a->n_con, a->H + row * a->n_con) : INFINITY;
     if (a->has_means)
         take_as_means(a, row);
-    if (!a->usable[row] || a->violation[row] > 0.0)
+    if (!a->usable[row] || a->violation[row] > 0.0 || place == OFF_FRONT)
         return STATUS_OK;
+    if (place == ON_FRONT)
+        return join_front(a, row, err);
     if (a->n_replicates == 0)
         return follow_tree(a, row, err);
     compare_with_front(a, row);
@@ -219,13 +233,13 @@ static Status add_replicate(Archive *a, size_t row, size_t design, Err *err)
     return STATUS_OK;
 }
 
-static Status add_row(Archive *a, size_t row, Err *err)
+static Status add_row(Archive *a, size_t row, Place place, Err *err)
 {
     const size_t design = design_of(a, row), was_usable = a->usable[design];
     a->on_front[row] = 0;
     a->n_failed += !a->ok[row];
     if (design == row)
-        TRY(add_design(a, row, err));
+        TRY(add_design(a, row, place, err));
     else
         TRY(add_replicate(a, row, design, err));
     a->n_usable += a->usable[design];
@@ -233,26 +247,41 @@ static Status add_row(Archive *a, size_t row, Err *err)
     return STATUS_OK;
 }
 
+static Status make_room(Archive *a, size_t n, Err *err)
+{
+    const size_t wider = a->n_max + (a->n_max < MANY_ROWS ? a->n_max : a->n_max / 4);
+    return a->n + n <= a->n_max ? STATUS_OK : resize(a, a->n + n > wider ? a->n + n : wider, a->has_means, err);
+}
+
+static Status append(Archive *a, const double x[], const double f[], const double g[], unsigned char ok,
+                     unsigned char kind, size_t generation, Place place, Err *err)
+{
+    const size_t row = a->n++;
+    memcpy(a->X + row * a->n_var, x, a->n_var * sizeof *x);
+    memcpy(a->Y + row * a->n_obj, f, a->n_obj * sizeof *f);
+    if (a->n_con > 0)
+        memcpy(a->H + row * a->n_con, g, a->n_con * sizeof *g);
+    a->ok[row] = ok && all_finite(a->n_obj, f) && (a->n_con == 0 || all_finite(a->n_con, g));
+    a->kind[row] = kind;
+    a->generation[row] = generation;
+    return add_row(a, row, place, err);
+}
+
 Status pareto_archive_insert(Archive *a, size_t n, const double X[], const double F[], const double G[],
                              const unsigned char ok[], unsigned char kind, size_t generation, Err *err)
 {
-    if (a->n + n > a->n_max) {
-        const size_t wider = a->n_max + (a->n_max < MANY_ROWS ? a->n_max : a->n_max / 4);
-        TRY(resize(a, a->n + n > wider ? a->n + n : wider, a->has_means, err));
-    }
-    for (size_t i = 0; i < n; i++) {
-        const size_t row = a->n++;
-        memcpy(a->X + row * a->n_var, X + i * a->n_var, a->n_var * sizeof *X);
-        memcpy(a->Y + row * a->n_obj, F + i * a->n_obj, a->n_obj * sizeof *F);
-        if (a->n_con > 0)
-            memcpy(a->H + row * a->n_con, G + i * a->n_con, a->n_con * sizeof *G);
-        a->ok[row] = ok[i] && all_finite(a->n_obj, F + i * a->n_obj) &&
-                     (a->n_con == 0 || all_finite(a->n_con, G + i * a->n_con));
-        a->kind[row] = kind;
-        a->generation[row] = generation;
-        TRY(add_row(a, row, err));
-    }
+    TRY(make_room(a, n, err));
+    for (size_t i = 0; i < n; i++)
+        TRY(append(a, X + i * a->n_var, F + i * a->n_obj, a->n_con > 0 ? G + i * a->n_con : NULL, ok[i], kind,
+                   generation, TO_BE_FOUND, err));
     return STATUS_OK;
+}
+
+Status pareto_archive_restore(Archive *a, const double x[], const double f[], const double g[], unsigned char ok,
+                              unsigned char kind, size_t generation, int on_front, Err *err)
+{
+    TRY(make_room(a, 1, err));
+    return append(a, x, f, g, ok, kind, generation, on_front ? ON_FRONT : OFF_FRONT, err);
 }
 
 /* The list of the front holds the designs with several replicates before it is made again. */

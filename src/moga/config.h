@@ -43,6 +43,7 @@ typedef struct {
     const Evaluation *row; /* (n + n_later) */
     const void *state;     /* NULL: n is 0, none was saved */
     size_t n_state;
+    const unsigned char *on_front; /* (n) on the front then, of a problem without noise; NULL: not known */
 } SearchStart;
 
 /* Whether this version of the search wrote the state: another one cannot be resumed. */

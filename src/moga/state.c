@@ -192,17 +192,23 @@ void state_save(Search *s)
     pack_search(s, &s->state);
 }
 
-Status state_restore(Search *s, const SearchStart *start, Err *err)
+static Status restore_row(Search *s, const SearchStart *start, size_t i, Err *err)
 {
     const Problem *p = s->problem;
-    double *f = s->scratch.f, *g = s->scratch.g;
-    for (size_t i = 0; i < start->n; i++) {
-        const Evaluation *e = &start->row[i];
-        const unsigned char ok = e->outcome == OUTCOME_OK;
-        problem_judge(p, e, f, g);
-        TRY(pareto_archive_insert(&s->archive, 1, e->x, f, p->n_con > 0 ? g : NULL, &ok, (unsigned char)e->kind,
-                                  (size_t)e->generation, err));
-    }
+    const Evaluation *e = &start->row[i];
+    const unsigned char ok = e->outcome == OUTCOME_OK, kind = (unsigned char)e->kind;
+    double *f = s->scratch.f, *g = p->n_con > 0 ? s->scratch.g : NULL;
+    problem_judge(p, e, f, s->scratch.g);
+    if (start->on_front && !p->is_noisy)
+        return pareto_archive_restore(&s->archive, e->x, f, g, ok, kind, (size_t)e->generation, start->on_front[i],
+                                      err);
+    return pareto_archive_insert(&s->archive, 1, e->x, f, g, &ok, kind, (size_t)e->generation, err);
+}
+
+Status state_restore(Search *s, const SearchStart *start, Err *err)
+{
+    for (size_t i = 0; i < start->n; i++)
+        TRY(restore_row(s, start, i, err));
     pareto_archive_update_noise(&s->archive);
     if (!start->state)
         return STATUS_OK;

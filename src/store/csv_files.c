@@ -54,16 +54,29 @@ static Status keep_deviations(CsvFiles *c, size_t n, const double sd[], Err *err
     return STATUS_OK;
 }
 
-/* A file that has just the designs of the finished generations, in their order, is left as it is. */
+/* Of a run whose designs keep their numbers. */
+static int front_is_whole(const CsvFiles *c, const Run *run)
+{
+    long *ids = run->schema.is_noisy ? NULL : calloc(run->n_front + 1, sizeof *ids);
+    if (!ids)
+        return 0;
+    for (size_t i = 0; i < run->n_front; i++)
+        ids[i] = run->table.row[run->front[i]].id;
+    const int is = folder_holds(c->folder, "front.csv", run->n_front, ids);
+    free(ids);
+    return is;
+}
+
+/* A file that has just the designs that it should have, in their order, is left as it is. */
 Status csv_files_resume(CsvFiles *c, const Folder *folder, const Schema *schema, const Run *run, Err *err)
 {
     const size_t n = run_n_finished(run);
     *c = (CsvFiles){.folder = folder, .schema = schema, .run = run};
     TRY(keep_deviations(c, n, run->table.sd, err));
     c->n_appended = n;
-    if (run_has_polished(run) || !folder_counts(folder, "evaluations.csv", n))
+    if (run_has_polished(run) || !folder_holds(folder, "evaluations.csv", n, NULL))
         TRY(folder_write(folder, "evaluations.csv", put_evaluations, run, err));
-    if (run->n_generations > 0)
+    if (run->n_generations > 0 && !front_is_whole(c, run))
         TRY(folder_write(folder, "front.csv", put_front, run, err));
     return append_open(&c->evaluations, folder, "evaluations.csv", err);
 }

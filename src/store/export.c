@@ -133,19 +133,25 @@ static json_t *json_generation(const RunGeneration *g)
                      "hypervolume", json_number(g->hypervolume));
 }
 
+/* One value behind its separator; a line each, so that a run of any size needs no memory here. */
+static int put_value(FILE *f, const char *before, json_t *value)
+{
+    fputs(before, f);
+    const int failed = json_dumpf(value, f, JSON_COMPACT | JSON_REAL_PRECISION(17));
+    json_decref(value);
+    return failed;
+}
+
 Status export_json(FILE *f, const Run *run, Err *err)
 {
-    json_t *evaluations = json_array(), *generations = json_array();
+    int failed = put_value(f, "{\"settings\":", json_settings(run->settings));
+    failed |= put_value(f, ",\n\"columns\":", json_columns(&run->schema));
+    fputs(",\n\"evaluations\":[", f);
     for (size_t i = 0; i < run->table.n; i++)
-        json_array_append_new(evaluations, json_evaluation(run, i));
+        failed |= put_value(f, i == 0 ? "\n" : ",\n", json_evaluation(run, i));
+    fputs("],\n\"generations\":[", f);
     for (size_t g = 0; g < run->n_generations; g++)
-        json_array_append_new(generations, json_generation(&run->generation[g]));
-    json_t *all = json_pack("{s:o, s:o, s:o, s:o}", "settings", json_settings(run->settings), "columns",
-                            json_columns(&run->schema), "evaluations", evaluations, "generations", generations);
-    if (!all)
-        return fail(err, STATUS_NO_MEMORY, "no memory for the run as JSON");
-    json_dumpf(all, f, JSON_INDENT(1) | JSON_REAL_PRECISION(17));
-    fputc('\n', f);
-    json_decref(all);
-    return STATUS_OK;
+        failed |= put_value(f, g == 0 ? "\n" : ",\n", json_generation(&run->generation[g]));
+    fputs("]}\n", f);
+    return failed ? fail(err, STATUS_NO_MEMORY, "no memory for the run as JSON") : STATUS_OK;
 }

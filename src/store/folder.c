@@ -39,16 +39,16 @@ size_t folder_rows(const Folder *folder, const char *name)
     return lines > 0 ? lines - 1 : 0;
 }
 
-int folder_counts(const Folder *folder, const char *name, size_t n)
+int folder_holds(const Folder *folder, const char *name, size_t n, const long ids[])
 {
     char path[PATH_MAX], *line = NULL;
     size_t room = 0, count = 0;
     ssize_t length = 0;
     folder_path(folder, name, path);
-    FILE *f = folder_rows(folder, name) == n ? fopen(path, "re") : NULL;
+    FILE *f = n > 0 ? fopen(path, "re") : NULL;
     int is_so = f && getline(&line, &room, f) > 0;
     for (; is_so && (length = getline(&line, &room, f)) > 0; count++)
-        is_so = strtoul(line, NULL, 10) == count + 1 && line[length - 1] == '\n';
+        is_so = count < n && strtol(line, NULL, 10) == (ids ? ids[count] : (long)count + 1) && line[length - 1] == '\n';
     free(line);
     if (f)
         fclose(f);

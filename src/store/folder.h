@@ -23,8 +23,8 @@ void folder_release(Folder *folder);
 
 void folder_path(const Folder *folder, const char *name, char path[PATH_MAX]);
 int folder_has(const Folder *folder, const char *name);
-int folder_counts(const Folder *folder, const char *name,
-                  size_t n);                                /* its rows begin with 1, 2, ... n, and are whole */
+/* Its rows begin with these numbers, all of them whole; NULL: 1, 2, ... n. */
+int folder_holds(const Folder *folder, const char *name, size_t n, const long ids[]);
 size_t folder_rows(const Folder *folder, const char *name); /* of a CSV file, its header left out; no file: 0 */
 
 /* Behind the message of a run.sqlite that is damaged or empty: what to do, by what evaluations.csv beside it still knows.

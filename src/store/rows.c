@@ -84,7 +84,7 @@ Status rows_insert(Database *db, RowShape shape, const Evaluation *e, Err *err)
     char *room = store;
     if (!store)
         return fail(err, STATUS_NO_MEMORY, "no memory for the text of a row");
-    RowText t = {.outcome = outcome_word(e->outcome), .reason = e->reason};
+    RowText t = {.outcome = outcome_word(e->outcome), .reason = e->reason ? e->reason : ""};
     t.x = list_text(shape.n_var, e->x, &room);
     t.f = e->outcome == OUTCOME_OK ? list_text(shape.n_obj, e->f, &room) : NULL;
     t.sd = list_text(shape.n_obj, e->sd, &room);
@@ -157,6 +157,8 @@ static Status parse_row(const Reading *r, const RowText *t, Evaluation *e, Err *
     e->outcome = strcmp(t->outcome, "books_open") == 0 ? OUTCOME_ENERGY_BALANCE : outcome_of_word(t->outcome);
     if (e->outcome == OUTCOME_COUNT)
         return damaged(r, "outcome", e->id, err);
+    if (t->reason[0])
+        TRY(evaluation_table_give_room(e, err));
     evaluation_set_outcome(e, e->outcome, t->reason);
     if (!t->x[0] || !parse_numbers(t->x, table->n_var, table->n_var, e->x))
         return damaged(r, "x", e->id, err);

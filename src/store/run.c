@@ -15,8 +15,9 @@ void run_free(Run *run)
     schema_free(&run->schema);
     free(run->provenance);
     free(run->settings);
+    if (run->F != run->table.f)
+        free(run->F);
     evaluation_table_free(&run->table);
-    free(run->F);
     free(run->place);
     free(run->front);
     free(run->generation);

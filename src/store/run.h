@@ -26,7 +26,7 @@ enum { POLISHED_FIRST = 1000001, NEVER = -1 };
 
 /* Of an evaluation. */
 typedef struct {
-    long entered, left; /* NEVER */
+    int entered, left; /* NEVER */
     int ok, on_front;
 } RunPlace;
 
@@ -54,7 +54,7 @@ typedef struct {
     Schema schema;
     size_t n_front, n_failed, n_repeats, n_generations, n_sessions;
     EvaluationTable table;     /* f: of this very evaluation; sd, replicates: joined (store/repeats.h) */
-    double *F;                 /* (table.n, n_obj) joined */
+    double *F;                 /* (table.n, n_obj) joined; without repeats table.f */
     RunPlace *place;           /* (table.n) */
     size_t *front;             /* (n_front) rows, ascending */
     RunGeneration *generation; /* (n_generations) */

@@ -36,8 +36,8 @@ static Status take_front(sqlite3_stmt *row, void *user, Err *err)
     if (column_whole(row, 2, NEVER) == NEVER)
         l->front ^= digest_member(id);
     if (i < run->table.n) {
-        run->place[i].entered = column_whole(row, 1, NEVER);
-        run->place[i].left = column_whole(row, 2, NEVER);
+        run->place[i].entered = (int)column_whole(row, 1, NEVER);
+        run->place[i].left = (int)column_whole(row, 2, NEVER);
     }
     return STATUS_OK;
 }
@@ -68,10 +68,10 @@ static Status load_evaluations(Loading *l, Err *err)
     run->table = evaluation_table(s->n_var, s->n_obj, s->n_extra);
     TRY(rows_read(l->d, &run->table, 0, LONG_MAX, err));
     run->place = calloc(run->table.n + 1, sizeof *run->place);
-    run->F = calloc(run->table.n * s->n_obj + 1, sizeof *run->F);
-    if (!run->place || !run->F)
+    run->F = s->is_noisy ? calloc(run->table.n * s->n_obj + 1, sizeof *run->F) : run->table.f;
+    if (!run->place || (run->table.n > 0 && !run->F))
         return fail(err, STATUS_NO_MEMORY, "%s: no memory for %zu evaluations", database_path(l->d), run->table.n);
-    if (run->table.n > 0)
+    if (run->table.n > 0 && run->F != run->table.f)
         memcpy(run->F, run->table.f, run->table.n * s->n_obj * sizeof *run->F);
     for (size_t i = 0; i < run->table.n; i++)
         run->place[i] = (RunPlace){.entered = NEVER, .left = NEVER};

@@ -75,12 +75,20 @@ static size_t minimise(const Run *run, double F[], size_t front[])
     return n;
 }
 
+/* Designs that were on no front add nothing to one: where there is no noise they are passed over. */
+static int adds(const Run *run, size_t row)
+{
+    const Evaluation *e = &run->table.row[row];
+    return is_first_answer(e) && run->place[row].ok && !(e->violation > 0.0) &&
+           (run->schema.is_noisy || run->place[row].entered != NEVER);
+}
+
 static void follow(const Run *run, const double F[], Igd *q, double igd[])
 {
     size_t row = 0;
     for (size_t g = 0; g < run->n_generations; g++) {
         for (; row < run->table.n && run->table.row[row].id <= run->generation[g].simulated; row++)
-            if (is_first_answer(&run->table.row[row]) && run->place[row].ok && !(run->table.row[row].violation > 0.0))
+            if (adds(run, row))
                 igd_add(q, F + row * run->schema.n_obj);
         igd[g] = value_of(q);
     }

@@ -319,6 +319,19 @@ static Status find_start(const Study *study, SearchStart *start, Err *err)
     return STATUS_OK;
 }
 
+/* The search's own front, as the run's digest has proved it; NULL: not known. */
+static Status find_front(const Study *study, const SearchStart *start, unsigned char **on_front, Err *err)
+{
+    const Run *run = store_run(study->store);
+    *on_front = NULL;
+    if (!run || run->schema.is_noisy || study->left_generation != 0)
+        return STATUS_OK;
+    *on_front = calloc(start->n + 1, 1);
+    for (size_t i = 0; *on_front && i < start->n; i++)
+        (*on_front)[i] = run->place[i].entered != NEVER && run->place[i].left == NEVER;
+    return *on_front ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", start->n);
+}
+
 /* Of surrogate and search: beside running simulations a quarter. */
 static int search_threads(const Study *study)
 {
@@ -343,6 +356,7 @@ static Status run_search(Study *study, Err *err)
     SearchConfig config = study_search_config(&study->used);
     SearchStart start = {0};
     double *given = NULL;
+    unsigned char *on_front = NULL;
     config.max_seconds = 0.0; /* the study has a clock of its own, which it looks at more often */
     if (run) {
         const long initial = study->used.search.initial;
@@ -355,10 +369,14 @@ static Status run_search(Study *study, Err *err)
     Status status = run ? find_start(study, &start, err) : STATUS_OK;
     adapter_observe(study->adapter, &(Observer){may_go_on, evaluation_done, study});
     if (status == STATUS_OK)
+        status = find_front(study, &start, &on_front, err);
+    start.on_front = on_front;
+    if (status == STATUS_OK)
         status = search_resume(adapter_problem(study->adapter), &config,
                                start.row && start.n + start.n_later > 0 ? &start : NULL, observe, study,
                                &study->summary->stopped, err);
     free(given);
+    free(on_front);
     return note_stop(study, status, err);
 }
 
