@@ -166,7 +166,7 @@ static void print_few_replicates(const Run *run)
     long least = wanted;
     for (size_t i = 0; i < run->n_front && schema_is_noisy(run->settings); i++) {
         const Evaluation *e = &run->table.row[run->front[i]];
-        if (e->id < POLISHED_FIRST && e->replicates < least)
+        if (e->kind != KIND_POLISHED && e->replicates < least)
             least = e->replicates;
     }
     if (least < wanted)

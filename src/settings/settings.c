@@ -236,7 +236,7 @@ static const Option OPTIONS[] = {
          "initial designs: a CSV with a column per variable, or the folder of a run, whose front is taken",
          .flags = SETTING_FREE),
     WHOLE(search.generations, "1000", 1, 1e9, "stop after so many generations", .flags = SETTING_LIMIT),
-    WHOLE(search.max_evals, "2000", 4, 1e6, "stop after so many simulations", .flags = SETTING_LIMIT),
+    WHOLE(search.max_evals, "2000", 4, 1e8, "stop after so many simulations", .flags = SETTING_LIMIT),
     REAL(search.max_hours, "h", "0", 0, 1e4,
          "stop after so many hours; 0: no limit; auto: two minutes before the Slurm job around it ends",
          .words = "auto", .flags = SETTING_LIMIT),

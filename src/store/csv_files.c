@@ -152,7 +152,7 @@ static Status gather_front(const Front *from, Run *front, Err *err)
 {
     EvaluationTable *t = &front->table;
     const Run *run = from->files->run;
-    const size_t polished = run_find(run, POLISHED_FIRST);
+    const size_t polished = run_first_polished(run);
     double means[OBJECTIVES_MAX], sd[OBJECTIVES_MAX];
     for (size_t i = 0; i < from->view->n; i++)
         if (from->view->on_front[i]) {

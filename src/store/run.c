@@ -51,10 +51,18 @@ size_t run_find(const Run *run, long id)
     return low < run->table.n && run->table.row[low].id == id ? low : run->table.n;
 }
 
+size_t run_first_polished(const Run *run)
+{
+    size_t n = run->table.n;
+    while (n > 0 && run->table.row[n - 1].kind == KIND_POLISHED)
+        n--;
+    return n;
+}
+
 size_t run_n_finished(const Run *run)
 {
     size_t n = 0;
-    while (n < run->table.n && run->table.row[n].kind != KIND_UNFINISHED && run->table.row[n].id < POLISHED_FIRST)
+    while (n < run->table.n && run->table.row[n].kind != KIND_UNFINISHED && run->table.row[n].kind != KIND_POLISHED)
         n++;
     return n;
 }
@@ -75,7 +83,7 @@ static void minimise(const Run *run, size_t row, double f[])
 /* Polished designs compete with the front of the search, which was found without them. */
 static void admit_polished(Run *run)
 {
-    const size_t first = run_find(run, POLISHED_FIRST);
+    const size_t first = run_first_polished(run);
     const Evaluation *row = run->table.row;
     RunPlace *place = run->place;
     const size_t m = run->schema.n_obj;
@@ -115,7 +123,7 @@ Status run_settle_front(Run *run, Err *err)
 
 int run_has_polished(const Run *run)
 {
-    return run->table.n > 0 && run->table.row[run->table.n - 1].id >= POLISHED_FIRST;
+    return run->table.n > 0 && run->table.row[run->table.n - 1].kind == KIND_POLISHED;
 }
 
 void run_drop_polished(Run *run)
@@ -202,7 +210,7 @@ size_t run_spread_out(const Run *run, size_t n, int with_polished, size_t rows[]
         double most = chosen == 0 ? -INFINITY : 0.0;
         for (size_t i = 0; i < run->n_front; i++) {
             const size_t row = run->front[i];
-            if (!with_polished && run->table.row[row].id >= POLISHED_FIRST)
+            if (!with_polished && run->table.row[row].kind == KIND_POLISHED)
                 continue;
             const double merit = chosen == 0 ? -run_distance2(run, &box, row) : apart2(run, &box, row, chosen, rows);
             if (merit > most) {

@@ -22,7 +22,8 @@
 
 typedef struct Settings Settings;
 
-enum { POLISHED_FIRST = 1000001, NEVER = -1 };
+/* Of runs planned for more than a million simulations the second. */
+enum { POLISHED_FIRST = 1000001, POLISHED_FIRST_OF_MANY = 100000001, NEVER = -1 };
 
 /* Of an evaluation. */
 typedef struct {
@@ -84,6 +85,7 @@ size_t run_n_finished(const Run *run);
 Status run_settle_front(Run *run, Err *err);
 
 int run_has_polished(const Run *run);
+size_t run_first_polished(const Run *run); /* its row: behind those of the search; none: run->table.n */
 
 /* As if nothing had been polished: the front is that of the search. */
 void run_drop_polished(Run *run);

@@ -435,7 +435,7 @@ static Status step_back(RunStore *store, Err *err)
     const long last = run->state_generation;
     for (size_t i = 0; i < run->table.n; i++) {
         const Evaluation *e = &run->table.row[i];
-        if (e->id < POLISHED_FIRST && e->kind != KIND_UNFINISHED && e->generation > last)
+        if (e->kind != KIND_POLISHED && e->kind != KIND_UNFINISHED && e->generation > last)
             TRY(rows_unfinish(store->db, e->id, e->kind, e->generation, err));
     }
     TRY(database_do(store->db, err, "DELETE FROM front WHERE entered > ?", "i", last));
@@ -529,11 +529,13 @@ void store_free(RunStore *store)
 /* Behind the polished ones that are there, as of the last generation. */
 static Status insert_polished(RunStore *store, const Evaluation *design, long *id, Err *err)
 {
-    double last, generation;
+    double last, generation, planned;
     Evaluation e = *design;
     TRY(database_number(store->db, "SELECT max(id) FROM evaluation", 0, &last, err));
     TRY(database_number(store->db, "SELECT max(number) FROM generation", 0, &generation, err));
-    *id = e.id = last >= POLISHED_FIRST ? (long)last + 1 : POLISHED_FIRST;
+    TRY(database_number(store->db, "SELECT planned_evals FROM run", 0, &planned, err));
+    const long first = planned < POLISHED_FIRST ? POLISHED_FIRST : POLISHED_FIRST_OF_MANY;
+    *id = e.id = last >= (double)first ? (long)last + 1 : first;
     e.generation = (long)generation;
     e.kind = KIND_POLISHED;
     return insert(store, &e, err);

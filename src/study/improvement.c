@@ -57,7 +57,7 @@ Status improvement_lately(const SearchView *v, double *igd, Err *err)
 
 static int is_first_answer(const Evaluation *r)
 {
-    return r->id < POLISHED_FIRST && r->kind != KIND_UNFINISHED && r->kind != KIND_REPEAT;
+    return r->kind != KIND_POLISHED && r->kind != KIND_UNFINISHED && r->kind != KIND_REPEAT;
 }
 
 /* Every objective minimised; rows of the search's own front into front (n); returns how many. */
@@ -114,10 +114,7 @@ Status improvement_of_run(const Run *run, double igd[], Err *err)
 
 static size_t search_rows(const Run *run)
 {
-    size_t n = 0;
-    while (n < run->table.n && run->table.row[n].id < POLISHED_FIRST)
-        n++;
-    return n;
+    return run_first_polished(run);
 }
 
 static Status expected(const Run *run, size_t n, const double F[], const unsigned char on_front[],

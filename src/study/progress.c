@@ -66,7 +66,7 @@ static double seconds_since(const char *utc)
 static void count(Standing *out, const Run *run)
 {
     for (size_t i = 0; i < run->table.n; i++) {
-        const int polished = run->table.row[i].id >= POLISHED_FIRST;
+        const int polished = run->table.row[i].kind == KIND_POLISHED;
         out->n_polished += polished != 0;
         out->progress.simulated += !polished;
         out->n_failed += !polished && !run->place[i].ok;
@@ -77,9 +77,9 @@ static void count(Standing *out, const Run *run)
 static double simulated_seconds(const Run *run, size_t number)
 {
     const long first = run->session[number].simulated_before + 1;
-    const long end = number + 1 < run->n_sessions ? run->session[number + 1].simulated_before + 1 : POLISHED_FIRST;
+    const long end = number + 1 < run->n_sessions ? run->session[number + 1].simulated_before + 1 : LONG_MAX;
     double seconds = 0.0;
-    for (size_t i = 0; i < run->table.n; i++)
+    for (size_t i = 0; i < run_first_polished(run); i++)
         if (run->table.row[i].id >= first && run->table.row[i].id < end && isfinite(run->table.row[i].seconds))
             seconds += run->table.row[i].seconds;
     return seconds;

@@ -178,7 +178,7 @@ static Status begin(Study *study, Err *err)
 static void sum_up(StudySummary *sum, const Run *run)
 {
     for (size_t i = 0; i < run->table.n; i++)
-        if (run->table.row[i].id < POLISHED_FIRST) {
+        if (run->table.row[i].kind != KIND_POLISHED) {
             sum->n_before++;
             sum->n_failed += !run->place[i].ok;
         }
@@ -205,6 +205,13 @@ static Status check_state(const Study *study, const Run *run, Err *err)
 {
     StopReason unused;
     const int goes_on = study->has_new_limits || !came_to_its_end(run, &unused);
+    const size_t polished = run_first_polished(run);
+    if (polished < run->table.n && study->used.search.max_evals >= run->table.row[polished].id)
+        return fail(
+            err, STATUS_BAD_DATA,
+            "%s: search.max_evals = %ld: its polished designs are numbered from %ld; for more simulations begin anew "
+            "from its front: --new --set search.start=%s",
+            study->summary->folder, study->used.search.max_evals, run->table.row[polished].id, study->summary->folder);
     if (goes_on && run->state_is_damaged)
         return fail(err, STATUS_IO,
                     "%s: the state of the search is damaged; its evaluations are whole. Begin anew from its front: "
@@ -306,7 +313,7 @@ static Status find_start(const Study *study, SearchStart *start, Err *err)
 {
     const Run *run = store_run(study->store);
     size_t n = 0;
-    for (; n < run->table.n && run->table.row[n].id < POLISHED_FIRST; n++) {
+    for (; n < run->table.n && run->table.row[n].kind != KIND_POLISHED; n++) {
         start->n += run->state && start->n == n && run->table.row[n].kind != KIND_UNFINISHED;
         if ((start->n > n || study->used.search.asynchronous) && run->table.row[n].id != (long)n + 1)
             return fail(err, STATUS_IO, "%s/run.sqlite: is damaged: evaluation %zu is missing", study->summary->folder,
