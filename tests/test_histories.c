@@ -148,6 +148,24 @@ static void test_a_history_reaches_the_peaks_and_its_energies_add_up(void **stat
     table_free((Table *)&h);
 }
 
+static void test_options_of_time_files_are_checked_before_the_simulation(void **state)
+{
+    static const char *const WRONG[][2] = {
+        {"--history @/x.csv --every nan", "--every"},       {"--history @/x.csv --every 1e-9", "rows"},
+        {"--history @/none/x.csv", "none/x.csv"},           {"--contacts @/none/x.csv", "none/x.csv"},
+        {"--rigid --contacts @/x.csv", "--contacts needs"}, {"--floor-spectra @/none/x.csv", "none/x.csv"},
+    };
+    (void)state;
+    write_design();
+    for (size_t i = 0; i < sizeof WRONG / sizeof WRONG[0]; i++) {
+        Said said;
+        run(&said, "simulate configs/quick.ini --design @/design.csv %s", WRONG[i][0]);
+        if (said.code == 0 || !strstr(said.err, WRONG[i][1]) || said.out[0]) /* nor is a simulation printed */
+            fail_msg("%s: exit %d, said %s", WRONG[i][0], said.code, said.err);
+        forget(&said);
+    }
+}
+
 /* ---- equations of motion --------------------------------------------------------------------------------------- */
 
 /* Sums over nodes of building and core: 1'K u, 1'M u', 1'C u; C = M Phi diag(2 zeta w) Phi' M. */
@@ -493,6 +511,7 @@ int main(void)
         cmocka_unit_test(test_forces_of_a_history_are_those_of_the_contact_law),
         cmocka_unit_test(test_histories_of_both_engines_agree_before_the_horizon),
         cmocka_unit_test(test_a_history_reaches_the_peaks_and_its_energies_add_up),
+        cmocka_unit_test(test_options_of_time_files_are_checked_before_the_simulation),
         cmocka_unit_test(test_the_base_shear_is_what_inertia_and_damping_need),
         cmocka_unit_test(test_a_sine_keeps_the_gain_of_butterworth),
         cmocka_unit_test(test_an_impact_between_two_samples_is_the_response_to_an_impulse),

@@ -2,6 +2,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "base/json.h"
 #include "base/units.h"
@@ -203,6 +204,11 @@ static Status print(const Args *args, const Job *job, const Settings *s, const T
 
 /* -- responses over time ------------------------------------------------------------------------------------------- */
 
+static Status every_of(const Args *args, double *every_s, Err *err)
+{
+    return args_number(args, "--every", 1e-9, 1e6, 0, every_s, err);
+}
+
 static Status write_times(const Args *args, const Job *job, const Scenario *w, Err *err)
 {
     const char *contacts = args_value(args, "--contacts"), *history = args_value(args, "--history");
@@ -211,9 +217,7 @@ static Status write_times(const Args *args, const Job *job, const Scenario *w, E
         .scene = w->scene, .motion = &w->motion, .n = job->n, .tasks = job->tasks, .results = job->results};
     if (!contacts && !history && !spectra)
         return STATUS_OK;
-    if (contacts && job->kind != SCENE_IMPACT)
-        return fail(err, STATUS_USAGE, "--contacts needs a design with gaps, not none or --rigid");
-    TRY(args_number(args, "--every", 1e-9, 1e6, 0, &times.every_s, err));
+    TRY(every_of(args, &times.every_s, err));
     long *number = calloc(job->n, sizeof *number);
     if (!number)
         return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", job->n);
@@ -229,10 +233,15 @@ static Status write_times(const Args *args, const Job *job, const Scenario *w, E
     return status;
 }
 
-/* Options that would be left aside. */
-static Status check_times(const Args *args, Err *err)
+static const char *const TIMES[] = {"--history", "--contacts", "--floor-spectra"};
+
+/* Options that are wrong or would be left aside. */
+static Status check_times(const Args *args, const Job *job, Err *err)
 {
-    static const char *const TIMES[] = {"--history", "--contacts", "--floor-spectra"};
+    double every_s;
+    TRY(every_of(args, &every_s, err));
+    if (args_has(args, "--contacts") && job->kind != SCENE_IMPACT)
+        return fail(err, STATUS_USAGE, "--contacts needs a design with gaps, not none or --rigid");
     if (args_has(args, "--every") && !args_has(args, "--history"))
         return fail(err, STATUS_USAGE, "--every is the spacing of --history FILE, which is not asked for");
     for (size_t i = 0; i < sizeof TIMES / sizeof TIMES[0]; i++)
@@ -242,13 +251,38 @@ static Status check_times(const Args *args, Err *err)
     return STATUS_OK;
 }
 
+/* Rows of a history that are a mistake: some 20 GB for 20 floors. */
+static const double ROWS_MAX = 1e7;
+
+/* Before the first simulation: does the history fit, can the files be written? */
+static Status check_time_files(const Args *args, const Job *job, const Scenario *w, Err *err)
+{
+    double every_s;
+    TRY(every_of(args, &every_s, err));
+    const double own = w->options.sim.duration_s, all = (double)(w->motion.n - 1) * w->motion.dt_s;
+    const double rows = every_s > 0 ? (double)job->n * (own > 0 ? own : all) / every_s : 0;
+    if (rows > ROWS_MAX)
+        return fail(err, STATUS_USAGE, "--every %g: a history of %.3g rows, %g at most; give a longer step", every_s,
+                    rows, ROWS_MAX);
+    for (size_t i = 0; i < sizeof TIMES / sizeof TIMES[0]; i++) {
+        const char *path = args_value(args, TIMES[i]);
+        struct stat is;
+        Output o;
+        if (!path || strcmp(path, "-") == 0 || (stat(path, &is) == 0 && !S_ISREG(is.st_mode) && !S_ISDIR(is.st_mode)))
+            continue;
+        TRY(output_open(&o, path, err));
+        output_abandon(&o);
+    }
+    return STATUS_OK;
+}
+
 static Status run(const Args *args, Err *err)
 {
     Settings s;
     Problem p;
     Job job = {0};
     TRY(choose_kind(args, &job, err));
-    TRY(check_times(args, err));
+    TRY(check_times(args, &job, err));
     TRY(args_settings(args, &s, NULL, NULL, err));
     if (args_has(args, "--sensitivity"))
         return show_sensitivities(args, &s, (size_t)s.sim.replicates, err);
@@ -262,6 +296,8 @@ static Status run(const Args *args, Err *err)
     TRY(tower_open(&p, &s, job.has_parts ? TOWER_AS_SET : TOWER_SINGLE, job.kind == SCENE_NO_CORE ? 1 : SIZE_MAX, err));
     const Scenario *w = tower_record(tower_of(&p), 0);
     Status status = lay_out_job(args, &job, scene_design(w->scene), err);
+    if (status == STATUS_OK)
+        status = check_time_files(args, &job, w, err);
     if (status == STATUS_OK)
         status = simulate(&p, &job, err);
     if (status == STATUS_OK)
