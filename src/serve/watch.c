@@ -63,6 +63,17 @@ static void stamp_of(const Watched *r, Stamp *s)
     s->held = lock_is_held(path, &holder);
 }
 
+static int is_same_time(struct timespec a, struct timespec b)
+{
+    return a.tv_sec == b.tv_sec && a.tv_nsec == b.tv_nsec;
+}
+
+static int is_same(const Stamp *a, const Stamp *b)
+{
+    return is_same_time(a->database, b->database) && is_same_time(a->journal, b->journal) &&
+           a->n_database == b->n_database && a->n_journal == b->n_journal && a->held == b->held;
+}
+
 static void release(Look *look)
 {
     if (look && --look->n_users == 0) {
@@ -126,7 +137,7 @@ static void *watch(void *user)
             if (!r->is_wanted || clock_seconds() < r->next)
                 continue;
             stamp_of(r, &stamp);
-            if (!r->look || memcmp(&stamp, &r->stamp, sizeof stamp) != 0)
+            if (!r->look || !is_same(&stamp, &r->stamp))
                 read_again(w, r, &stamp);
         }
         wait_for(&w->wanted, &w->mutex, POLL_S);

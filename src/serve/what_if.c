@@ -43,9 +43,14 @@ typedef struct {
 
 /* -- the scene ----------------------------------------------------------------------------------------------------- */
 
+static int is_same(const Ground *a, const Ground *b)
+{
+    return a->pga_g == b->pga_g && a->stretch == b->stretch && a->restitution == b->restitution;
+}
+
 static Status open_scene(WhatIf *w, const Ground *g, Err *err)
 {
-    if (w->is_open && memcmp(g, &w->ground, sizeof *g) == 0)
+    if (w->is_open && is_same(g, &w->ground))
         return STATUS_OK;
     Settings s = w->settings;
     if (w->is_open)
