@@ -318,7 +318,7 @@ static void test_a_command_opens_the_database_of_a_run_once(void **state)
                                            "evaluate %s --design knee --record builtin:elcentro-like",
                                            "export %s --csv /dev/null",
                                            "status %s",
-                                           "polish %s --design knee --evals 10",
+                                           "polish %s --design knee --evals 12",
                                            "optimize %s"};
     char arguments[400];
     if (shell("strace -o /dev/null true >/dev/null 2>&1") != 0) {

@@ -56,6 +56,12 @@ static Status take_options(const Args *args, Work *w, Err *err)
     TRY(args_whole(args, "--evals", 1, 1000000, 300, &evals, err));
     TRY(args_whole(args, "--replicates", 1, 1000, 4, &w->config.replicates, err));
     TRY(args_number(args, "--seconds", 0, 1e9, 0, &w->config.max_seconds, err));
+    const long each = w->run->settings->problem.kind == PROBLEM_TOWER ? w->config.replicates : 1;
+    if (evals < 3 * each)
+        return fail(err, STATUS_USAGE,
+                    "--evals %ld: the design at the start, and both designs at the end, take %ld simulations (3 times "
+                    "--replicates of a tower); give more, or fewer --replicates",
+                    evals, 3 * each);
     TRY(args_number(args, "--slack", 0, 1e6, -1, &w->config.slack, err));
     w->config.gain_min = w->run->settings->search.polish_gain_min;
     w->config.algorithm = args_value(args, "--algorithm");
