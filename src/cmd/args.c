@@ -209,7 +209,7 @@ static Status check_outputs(const Args *args, Err *err)
 {
     const char *first = standard_output(args, 0), *second = standard_output(args, 1);
     if (second)
-        return fail(err, STATUS_USAGE, "%s and %s both want standard output; give one of them a file", first, second);
+        return fail(err, STATUS_USAGE, "%s and %s both want standard output; give %s a file", first, second, first);
     for (int i = 0; i < args->n_given; i++)
         for (size_t k = 0; k < sizeof WRITTEN / sizeof WRITTEN[0]; k++) {
             const Given *out = &args->given[i];
