@@ -416,6 +416,29 @@ static void test_polished_designs_join_the_front_but_not_the_search(void **state
     assert_string_equal(all, front);
     free(all);
     free(front);
+    s.search.max_evals = 2000000; /* numbers of simulations would reach those of the polished designs */
+    assert_int_equal(study_run(&s, &(StudyOptions){.force = 1}, &summary, NULL, &err), STATUS_BAD_DATA);
+    assert_non_null(strstr(err.text, "its polished designs are numbered from 1000001"));
+}
+
+static void test_polished_designs_of_a_run_planned_for_more_than_a_million_are_numbered_beyond(void **state)
+{
+    (void)state;
+    char path[PATH_MAX];
+    long first;
+    Err err = {0};
+    StudySummary summary;
+    int left = 20;
+    double x[6] = {0.5, 0.5, 0.5, 0.5, 0.5, 0.5}, f[3] = {-9, -9, -9};
+    Settings s = settings_of(TEXTBOOK, "many");
+    s.search.max_evals = 2000000;
+    assert_int_equal(study_run(&s, &(StudyOptions){.stop = stop_after, .user = &left}, &summary, NULL, &err),
+                     STATUS_STOPPED);
+    const Evaluation design = {.x = x, .f = f, .outcome = OUTCOME_OK};
+    for (long i = 0; i < 2; i++) {
+        CHECK_OK(add_to_run(path_of("many", path), 1, &design, &first, &err), &err);
+        assert_int_equal(first, POLISHED_FIRST_OF_MANY + i);
+    }
 }
 
 static void test_one_failure_in_ten_is_survived_and_never_on_the_front(void **state)
@@ -521,6 +544,7 @@ int main(void)
         cmocka_unit_test(test_more_simulations_go_on_the_same_whenever_they_are_granted),
         cmocka_unit_test(test_the_front_of_every_generation_can_be_told),
         cmocka_unit_test(test_polished_designs_join_the_front_but_not_the_search),
+        cmocka_unit_test(test_polished_designs_of_a_run_planned_for_more_than_a_million_are_numbered_beyond),
         cmocka_unit_test(test_a_search_that_another_version_interrupted_is_refused_before_anything_is_changed),
         cmocka_unit_test(test_other_settings_are_refused_key_by_key_and_limits_can_be_forced),
         cmocka_unit_test(test_a_record_that_has_changed_is_another_setting),

@@ -97,7 +97,7 @@ Status store_close(RunStore *store, const char *stopped, int is_final, double se
 void store_free(RunStore *store); /* NULL is fine */
 
 /* Designs from outside the search, polished ones say, into a run that was opened and neither begun nor resumed: they get
- * ids from POLISHED_FIRST on and the kind `polished`, and front.csv and evaluations.csv are written again. The search does
+ * ids from POLISHED_FIRST (run.h) on and the kind `polished`, and front.csv and evaluations.csv are written again. The search does
  * not see them: a run that is resumed later does what it would have done without them. first_id may be NULL. */
 Status store_add_evaluations(RunStore *store, size_t n, const Evaluation designs[], long *first_id, Err *err);
 
