@@ -907,6 +907,12 @@ static void test_every_format_with_a_peak_in_its_header_is_checked_against_it(vo
         }
 }
 
+static void write_over(char *at, const char *text)
+{
+    while (*text)
+        *at++ = *text++;
+}
+
 /* Real numbers 30 and 32 of an SMC header are the extremes. */
 static void test_the_extremes_in_an_smc_header_are_checked(void **state)
 {
@@ -916,9 +922,9 @@ static void test_the_extremes_in_an_smc_header_are_checked(void **state)
         char *at = t.text;
         for (int i = 0; i < 29; i++) /* real number 2 is the rate */
             at = strstr(at + 1, "1.7000000E+38");
-        memcpy(at - 1, by_8 ? "-1.332720E+02 " : "-1.258680E+02 ", 14);
+        write_over(at - 1, by_8 ? "-1.332720E+02 " : "-1.258680E+02 ");
         at = strstr(strstr(at, "1.7000000E+38") + 1, "1.7000000E+38");
-        memcpy(at, "7.8200000E+01", 13);
+        write_over(at, "7.8200000E+01");
         Motion m;
         Err err = {0};
         const Status status = motion_parse(&m, "one.smc", t.text, t.length, &FIRST, &err);

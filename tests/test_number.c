@@ -1,6 +1,7 @@
 /* Numbers as text and back, against printf and strtod, which are right to the last bit. */
 #include "check.h"
 
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,12 +20,19 @@ static void by_printf(double value, char text[NUMBER_TEXT_MAX])
     }
 }
 
+static uint64_t bits_of(double value)
+{
+    uint64_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    return bits;
+}
+
 static void check_read(const char *text)
 {
     char *end;
     const char *found;
     const double wanted = strtod(text, &end), value = number_read(text, &found);
-    if (found != end || memcmp(&value, &wanted, sizeof value) != 0)
+    if (found != end || bits_of(value) != bits_of(wanted))
         fail_msg("'%s' is read as %.17g up to '%s', wanted %.17g up to '%s'", text, value, found, wanted, end);
 }
 

@@ -101,8 +101,8 @@ static void test_replicates_with_gap_errors_have_mean_and_deviation(void **state
         assert_true(i < DESIGNS - 1 || b.sum[i].sd[0] > 100.0 * a.sum[i].sd[0]);
         assert_true(fabs(b.sum[i].mean[0] - a.sum[i].mean[0]) < 4.0 * b.sum[i].sd[0]);
         assert_true(b.sum[i].sd[6] <= 1e-9 * b.sum[i].mean[6]);
-        assert_true(memcmp(b.sum[i].mean, again.sum[i].mean, sizeof b.sum[i].mean) == 0);
-        assert_true(memcmp(b.sum[i].sd, again.sum[i].sd, sizeof b.sum[i].sd) == 0);
+        assert_memory_equal(b.sum[i].mean, again.sum[i].mean, sizeof b.sum[i].mean);
+        assert_memory_equal(b.sum[i].sd, again.sum[i].sd, sizeof b.sum[i].sd);
     }
 }
 

@@ -106,7 +106,8 @@ static size_t put_digits(uint64_t D, int n, int x, char text[])
         return (size_t)(to - text) + (size_t)sprintf(to, "e%+03d", x);
     }
     if (x < 0) {
-        memcpy(to, "0.0000", 6);
+        static const char ZEROS[] = "0.0000";
+        memcpy(to, ZEROS, (size_t)(1 - x));
         to += 1 - x;
     }
     for (int i = 0; i < kept || i <= x; i++) {

@@ -96,7 +96,7 @@ static void add_recipe(Adapter *a, const Settings *s)
     executor_choose(&a->problem);
 }
 
-static Status open(Adapter *a, const Settings *s, Err *err)
+static Status open_all(Adapter *a, const Settings *s, Err *err)
 {
     Settings own = *s;
     own.sim.measures_only = 1;
@@ -121,7 +121,7 @@ Status adapter_open(Adapter **out, const Settings *s, Err *err)
     if (!a)
         return fail(err, STATUS_NO_MEMORY, "no memory for a problem");
     a->threads = (int)threads_wanted(s->search.threads);
-    const Status status = open(a, s, err);
+    const Status status = open_all(a, s, err);
     if (status == STATUS_OK)
         *out = a;
     else

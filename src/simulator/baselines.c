@@ -246,9 +246,8 @@ static Status tune_all(Job *job, Err *err)
     double J[3];
     Status status[N_BASELINES] = {STATUS_OK};
     Err why[N_BASELINES] = {{0}};
-    const int several = tower_n_workers(job->tower) > 1;
     combine(job->tower, job->results, J);
-#pragma omp parallel for schedule(dynamic, 1) num_threads(several ? 2 : 1)
+#pragma omp parallel for schedule(dynamic, 1) num_threads(tower_n_workers(job->tower) > 1 ? 2 : 1)
     for (int k = BASELINE_TMD; k <= BASELINE_LINKS; k++)
         status[k] = baseline_tune(job->tower, (size_t)omp_get_thread_num(), (BaselineKind)k, job->x, J, &job->device[k],
                                   &why[k]);

@@ -79,7 +79,7 @@ int spawner_run(Spawner *s, char *const words[], int in, int out, pid_t *pid)
     pthread_mutex_lock(&s->lock);
     while (s->job)
         pthread_cond_wait(&s->changed, &s->lock);
-    s->job = &job;
+    s->job = &job; /* until it is done, which is waited for */
     pthread_cond_broadcast(&s->changed);
     while (!job.is_done)
         pthread_cond_wait(&s->changed, &s->lock);
