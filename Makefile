@@ -10,6 +10,7 @@ MODE     ?= release
 BUILD    := build/$(MODE)
 PREFIX   ?= /usr/local
 JOBS     ?= $(shell nproc)
+TEST_JOBS ?= $(shell expr 2 + $(JOBS))# tests at a time: many wait more than they compute
 V        ?= 0
 Q        := $(if $(filter 1,$(V)),,@)
 
@@ -162,16 +163,16 @@ tests-release tests-asan: build/web/page.html build/web/live.html
 
 ifdef T
 test: $(PROGRAM) $(T:%=$(BUILD)/tests/test_%) ## every test, plain and under AddressSanitizer and UBSan; with T=moga that one
-	@printf '%s\n' $(call jobs,$(MODE),$(T)) | scripts/run-tests $(JOBS)
+	@printf '%s\n' $(call jobs,$(MODE),$(T)) | scripts/run-tests $(TEST_JOBS)
 else
 test: setup
 	@$(MAKE) --no-print-directory -j$(JOBS) tests-release tests-asan
-	@printf '%s\n' $(call jobs,asan release,$(NAMES)) | scripts/run-tests $(JOBS)
+	@printf '%s\n' $(call jobs,asan release,$(NAMES)) | scripts/run-tests $(TEST_JOBS)
 endif
 
 check: ## the quick tests alone, below half a minute
 	@$(MAKE) --no-print-directory -j$(JOBS) tests
-	@printf '%s\n' $(call jobs,$(MODE),$(filter-out $(LONG),$(NAMES))) | scripts/run-tests $(JOBS)
+	@printf '%s\n' $(call jobs,$(MODE),$(filter-out $(LONG),$(NAMES))) | scripts/run-tests $(TEST_JOBS)
 
 include mk/checks.mk mk/figures.mk
 

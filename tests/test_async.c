@@ -341,7 +341,7 @@ static void test_every_limit_ends_with_all_that_was_simulated(void **state)
     c.nondominated_share = 0.3;
     search(&c, NULL, &whole);
     assert_int_equal(whole.reason, STOP_SHARE);
-    assert_in_range(whole.n, 20, 199);
+    assert_in_range(whole.n, 15, 199); /* 20 sampled; 3 workers and a quarter of a batch may be under way */
     assert_all_different(&whole);
     forget_it(&whole);
 }

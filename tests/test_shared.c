@@ -112,7 +112,7 @@ static void test_it_is_killed_and_read_at_any_moment(void **state)
         file_system = NFS;
         const pid_t pid = study_in_child("killed");
         file_system = 0;
-        const double until = now_s() + 0.4 + 0.23 * (kills % 7);
+        const double until = now_s() + 0.15 + 0.05 * (kills % 7);
         while (now_s() < until && has_evaluations("killed")) {
             assert_false(is_there("killed/run.sqlite-wal"));
             free(output_of("status @/killed"));

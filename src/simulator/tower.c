@@ -336,7 +336,8 @@ static Status replicate_all(Queue *q, size_t n, const double X[], SimResult show
         TRY(queue_next(q, &done, err));
         replicates_summarise(&tower_of(p)->plan, done.parts, &out[i]);
         shown[i] = *out[i].shown;
-        out[i].shown = &shown[i];
+        out[i].shown = &shown[i]; /* the parts are the queue's */
+        out[i].reason = shown[i].reason;
     }
     return STATUS_OK;
 }
