@@ -220,7 +220,7 @@ static void write_page(FILE *f, const Board *b, const StabilityPlan *a)
 {
     fprintf(f,
             "# Where methods fail\n\n"
-            "Made by `make %s`; a part of it runs in `make test`. Every engine is put through every "
+            "Made by `make %s`; the part of the program's engines runs in `make test`. Every engine is put through every "
             "case, at accuracy `fine` against closed forms and an independent integrator, and at `standard`.\n\n"
             "| word | meaning |\n|---|---|\n"
             "| holds | every figure is within what the case allows; the number is the figure nearest to its bound |\n"
