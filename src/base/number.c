@@ -198,10 +198,10 @@ static const char *read_digits(const char *at, uint64_t *D, int *places)
 /* Behind "e-05", with the digits that it moves the point; `at` where there is no such thing. */
 static const char *read_exponent(const char *at, int *places)
 {
-    const int sign = at[0] == 'e' && at[1] == '-', begin = 1 + (sign || at[1] == '+');
-    int exponent = 0, n = 0;
-    if (at[0] != 'e')
+    if (at[0] != 'e') /* the end of the text, perhaps */
         return at;
+    const int sign = at[1] == '-', begin = 1 + (sign || at[1] == '+');
+    int exponent = 0, n = 0;
     for (; n < 3 && at[begin + n] >= '0' && at[begin + n] <= '9'; n++)
         exponent = 10 * exponent + at[begin + n] - '0';
     if (n == 0 || n == 3)
