@@ -177,6 +177,8 @@ static double kept_share(const Blow *b, const SimResult *r)
 static void test_impacts_are_those_of_an_independent_integration(void **state)
 {
     (void)state;
+    if (SANITIZED) /* long, and the code is that of the tests beside it */
+        skip();
     double worst[3] = {0};
     for (uint32_t i = 0; i < 60; i++) {
         const Blow b = random_blow(i);

@@ -79,6 +79,8 @@ static void test_forces_of_a_history_are_those_of_the_contact_law(void **state)
 static void test_histories_of_both_engines_agree_before_the_horizon(void **state)
 {
     (void)state;
+    if (SANITIZED) /* long; test_forces and test_engines go through cvode */
+        skip();
     free(output_of("simulate " WINDOW "--engine cvode --history @/cvode.csv --every " EVERY));
     const Table a = table_of("fast.csv"), b = table_of("cvode.csv");
     assert_int_equal(a.n_rows, b.n_rows);
