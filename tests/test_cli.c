@@ -185,6 +185,17 @@ static void test_a_setting_that_a_command_does_not_read_is_named(void **state)
     run(&s, "modes configs/quick.ini --spectrum --set motion.pga_g=0.2 --set core.side_m=9");
     assert_string_equal(s.err, "");
     forget(&s);
+    write_in_place("plain.txt", "# g\n0.1\n0.2\n-0.1\n0.05\n");
+    run(&s, "spectrum @/plain.txt --set motion.dt_s=0.01 --unit g");
+    assert_int_equal(s.code, 0);
+    assert_null(strstr(s.err, "has no effect"));
+    forget(&s);
+    char keeps[sizeof place.folder + 8];
+    snprintf(keeps, sizeof keeps, "%s/keeps", place.folder);
+    assert_int_equal(mkdir(keeps, 0755), 0);
+    write_in_place("keeps/run.sqlite", "");
+    expect(2, "which a run needs", "spectrum builtin:kobe-like --csv @/keeps/settings.ini");
+    expect(2, "which a run needs", "report @/keeps --out @/keeps/evaluations.csv");
     expect(0, "warning: building.damping_table: has no effect",
            "check configs/quick.ini --set building.damping_table=1");
     expect(65, "problem.kind: is no tower", "simulate configs/quick.ini --design none --set problem.kind=dtlz2");

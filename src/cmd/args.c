@@ -204,12 +204,33 @@ int args_fill_standard_output(const Args *args)
     return standard_output(args, 0) != NULL;
 }
 
-/* A file that is written is neither one that the command reads nor another that it writes. */
+/* What a run keeps beside its database and never makes again: resuming reads it. */
+static Status check_run_files(const Given *out, Err *err)
+{
+    static const char *const KEPT[] = {"settings.ini", "provenance.json", "log.txt", "lock", "evaluations.csv"};
+    if (!out->value || (strcmp(out->option->name, "--out") != 0 && strcmp(out->option->name, "--csv") != 0))
+        return STATUS_OK;
+    const char *slash = strrchr(out->value, '/'), *name = slash ? slash + 1 : out->value;
+    char *database = NULL;
+    if (asprintf(&database, "%.*srun.sqlite", (int)(name - out->value), out->value) < 0)
+        return fail(err, STATUS_NO_MEMORY, "no memory for a path");
+    const int is_run = access(database, F_OK) == 0;
+    free(database);
+    for (size_t k = 0; is_run && k < sizeof KEPT / sizeof KEPT[0]; k++)
+        if (strcmp(name, KEPT[k]) == 0)
+            return fail(err, STATUS_USAGE, "%s would replace %s, which a run needs; name another file",
+                        out->option->name, out->value);
+    return STATUS_OK;
+}
+
+/* A file that is written is neither one that the command reads nor another that it writes, nor what a run needs. */
 static Status check_outputs(const Args *args, Err *err)
 {
     const char *first = standard_output(args, 0), *second = standard_output(args, 1);
     if (second)
         return fail(err, STATUS_USAGE, "%s and %s both want standard output; give %s a file", first, second, first);
+    for (int i = 0; i < args->n_given; i++)
+        TRY(check_run_files(&args->given[i], err));
     for (int i = 0; i < args->n_given; i++)
         for (size_t k = 0; k < sizeof WRITTEN / sizeof WRITTEN[0]; k++) {
             const Given *out = &args->given[i];
@@ -372,6 +393,15 @@ static int is_unread(const Args *args, const char *key)
     return 0;
 }
 
+/* Are the motions not those of the settings but files that the command line names? */
+static int names_files(const Args *args)
+{
+    int n = 0;
+    for (int i = 0; i < args->n_operands; i++)
+        n += strncmp(args->operands[i], "builtin:", 8) != 0;
+    return n > 0 && is_unread(args, "motion.record");
+}
+
 /* A setting that was given and changes nothing is named. */
 static void tell_idle(const Args *args, const Given *g, const Settings *s)
 {
@@ -386,7 +416,7 @@ static void tell_idle(const Args *args, const Given *g, const Settings *s)
                *option = is_set ? "--set " : g->option->name;
     if ((c->reads && is_set && !settings_match(c->reads, key)) || is_unread(args, key))
         fprintf(stderr, "note: %s%s: %s %s does not read it\n", option, word, program_of(c), c->name);
-    else if (waits_for)
+    else if (waits_for && !(settings_match("motion", key) && names_files(args)))
         fprintf(stderr, "note: %s%s has no effect: it is read where %s\n", option, word, waits_for);
 }
 

@@ -16,6 +16,7 @@
 #include "serve/detail_cache.h"
 #include "serve/guard.h"
 #include "serve/what_if.h"
+#include "settings/settings.h"
 
 enum { PEERS_EASE = PEERS_MAX / 2, STALL_S = 15 };
 static const double BEAT_S = 5; /* between events at most */
@@ -31,6 +32,7 @@ typedef struct {
     pthread_mutex_t mutex;
     WhatIf *what_if;
     DetailCache *details;
+    Settings settings; /* of the run when it was first asked for */
 } Kept;
 
 struct Server {
@@ -239,6 +241,24 @@ static Status show_front(const Visit *v, Answer *a, Err *err)
     return answer_json(answer_front(v->look), 6, a, err);
 }
 
+static void count_difference(const char *key, unsigned flags, const char *was, const char *is, void *user)
+{
+    int *n = user;
+    (void)key;
+    (void)was;
+    (void)is;
+    *n += !(flags & (SETTING_LIMIT | SETTING_FREE));
+}
+
+/* Another run in the place of this one has other designs, bounds and motions. */
+static Status check_run(const Kept *k, const Visit *v, Err *err)
+{
+    int n = 0;
+    settings_compare(&k->settings, v->look->run.settings, count_difference, &n);
+    return n == 0 ? STATUS_OK
+                  : fail(err, STATUS_UNMET, "the run was made anew with other settings; start `imtet serve` again");
+}
+
 /* What is kept of the run of a visit, opened when it is first asked for. */
 static Status kept_of(const Visit *v, Kept **out, Err *err)
 {
@@ -251,13 +271,16 @@ static Status kept_of(const Visit *v, Kept **out, Err *err)
         status = k ? detail_cache_open(&k->details, err) : fail(err, STATUS_NO_MEMORY, "no memory for a run");
         if (status == STATUS_OK) {
             pthread_mutex_init(&k->mutex, NULL);
+            k->settings = *v->look->run.settings;
             s->kept[v->run] = k;
-        } else
+        } else {
             free(k);
+            k = NULL;
+        }
     }
     pthread_mutex_unlock(&s->mutex);
     *out = k;
-    return status;
+    return k ? check_run(k, v, err) : status;
 }
 
 static Status show_design(const Visit *v, Answer *a, Err *err)
