@@ -218,23 +218,24 @@ static void write_notes(FILE *f, const Board *b)
 
 static void write_page(FILE *f, const Board *b, const StabilityPlan *a)
 {
-    fprintf(f,
-            "# Where methods fail\n\n"
-            "Made by `make %s`; the part of the program's engines runs in `make test`. Every engine is put through every "
-            "case, at accuracy `fine` against closed forms and an independent integrator, and at `standard`.\n\n"
-            "| word | meaning |\n|---|---|\n"
-            "| holds | every figure is within what the case allows; the number is the figure nearest to its bound |\n"
-            "| flagged | a figure is off and the result says so: energy-balance error above 1e-3, or indentation "
-            "beyond the "
-            "contact law |\n"
-            "| refused | the engine says that it cannot, or gives no answer in %ld s of processor time |\n"
-            "| **FAILS** | a wrong answer in silence |\n"
-            "| - | the case does not apply |\n\n"
-            "Fixed-step engines are given 400 steps per contact at `fine` and 40 at `standard` where masses are built "
-            "by hand, else their own step. `fast` and `cvode` are held to the bounds of each accuracy, the others, "
-            "which are there "
-            "to be compared with, to those of `standard` and to ten times what it promises of the tower.\n",
-            a->size == SIZE_LONG ? "stability-long" : "stability", a->seconds);
+    fprintf(
+        f,
+        "# Where methods fail\n\n"
+        "Made by `make %s`; the part of the program's engines runs in `make test`. Every engine is put through every "
+        "case, at accuracy `fine` against closed forms and an independent integrator, and at `standard`.\n\n"
+        "| word | meaning |\n|---|---|\n"
+        "| holds | every figure is within what the case allows; the number is the figure nearest to its bound |\n"
+        "| flagged | a figure is off and the result says so: energy-balance error above 1e-3, or indentation "
+        "beyond the "
+        "contact law |\n"
+        "| refused | the engine says that it cannot, or gives no answer in %ld s of processor time |\n"
+        "| **FAILS** | a wrong answer in silence |\n"
+        "| - | the case does not apply |\n\n"
+        "Fixed-step engines are given 400 steps per contact at `fine` and 40 at `standard` where masses are built "
+        "by hand, else their own step. `fast` and `cvode` are held to the bounds of each accuracy, the others, "
+        "which are there "
+        "to be compared with, to those of `standard` and to ten times what it promises of the tower.\n",
+        a->size == SIZE_LONG ? "stability-long" : "stability", a->seconds);
     write_table(f, b);
     write_notes(f, b);
 }
