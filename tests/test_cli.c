@@ -521,6 +521,49 @@ static void test_no_output_replaces_a_file_that_is_read_a_run_or_another_output(
     free(settings);
 }
 
+/* Whoever writes it, and whether the command line, the settings, a folder or a link names it. */
+static void test_no_option_that_writes_replaces_what_a_run_keeps_or_a_setting_names(void **state)
+{
+    (void)state;
+    static const char *const FOLDERS[] = {"held", "records", "tower"};
+    static const char *const OPTIONS[] = {"--csv", "--svg", "--history"};
+    for (size_t i = 0; i < sizeof FOLDERS / sizeof FOLDERS[0]; i++) {
+        char *folder = in_place(FOLDERS[i]);
+        assert_int_equal(mkdir(folder, 0777), 0);
+        free(folder);
+    }
+    write_in_place("held/run.sqlite", "");
+    write_in_place("held/front.csv", "id\n");
+    write_in_place("records/one.csv", "t,a_g\n0,1\n");
+    write_in_place("tower/K.csv", "1e8\n");
+    write_in_place("tower/M.csv", "1e5\n");
+    write_in_place("motion.csv", "t,a_g\n0,0\n0.01,0.1\n0.02,0\n");
+    write_in_place("tower.ini", "[building]\nmodel = tower\n[motion]\nrecord = motion.csv\n");
+    write_in_place("a.csv", "gap_01_m,t_base_m,t_top_m\n0.01,0.01,0.01\n");
+    char *link = in_place("linked.csv");
+    assert_int_equal(symlink("held/front.csv", link), 0);
+    free(link);
+    for (size_t i = 0; i < sizeof OPTIONS / sizeof OPTIONS[0]; i++) {
+        char words[128];
+        snprintf(words, sizeof words, "spectrum builtin:kobe-like %s @/held/log.txt", OPTIONS[i]);
+        expect(2, "held/log.txt, which a run needs; name another file", words);
+    }
+    expect(2, "front.csv, which a run needs", "simulate configs/quick.ini --design none --contacts @/held/front.csv");
+    expect(2, "linked.csv, which a run needs", "spectrum builtin:kobe-like --csv @/linked.csv");
+    expect(2, "held/settings.ini, which a run needs", "report @/nowhere --out @/held/settings.ini");
+    expect(2, "one.csv, which the command reads", "evaluate @/held --records @/records --csv @/records/one.csv");
+    expect(2, "a.csv, which the command reads", "simulate @/tower.ini --design @/a.csv:1 --history @/a.csv");
+    expect(2, "motion.csv, which motion.record names", "simulate @/tower.ini --design none --csv @/motion.csv");
+    expect(2, "K.csv, which building.model names", "modes @/tower.ini --svg @/tower/K.csv");
+    expect(2, "motion.csv, which the command reads",
+           "spectrum builtin:kobe-like --set motion.record=@/motion.csv --csv @/motion.csv");
+    char *kept = read_in_place("held/front.csv");
+    assert_string_equal(kept, "id\n");
+    free(kept);
+    free(output_of("building @/tower --svg @/tower/drawn.svg"));
+    free(output_of("building @/tower --svg @/tower/drawn.svg"));
+}
+
 static void test_the_building_alone_and_the_tied_one_have_no_impacts(void **state)
 {
     (void)state;
@@ -624,6 +667,7 @@ int main(void)
         cmocka_unit_test(test_the_picture_of_a_motion_is_whole_or_not_there),
         cmocka_unit_test(test_simulate_gives_the_same_numbers_as_json_and_as_csv),
         cmocka_unit_test(test_no_output_replaces_a_file_that_is_read_a_run_or_another_output),
+        cmocka_unit_test(test_no_option_that_writes_replaces_what_a_run_keeps_or_a_setting_names),
         cmocka_unit_test(test_the_building_alone_and_the_tied_one_have_no_impacts),
         cmocka_unit_test(test_a_top_heavy_design_is_simulated_with_a_warning),
         cmocka_unit_test(test_a_building_of_five_floors_goes_all_the_way),

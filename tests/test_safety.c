@@ -1,9 +1,12 @@
 /* Files that somebody else wrote do no harm: where a run may go, what a spreadsheet makes of a name, what is run. */
 #include "program.h"
 
+#include <dirent.h>
+#include <fcntl.h>
 #include <sys/stat.h>
 
 #include "base/cell.h"
+#include "store/output.h"
 #include "study/output_place.h"
 
 /* ---- places ---------------------------------------------------------------------------------------------------- */
@@ -157,6 +160,42 @@ static void test_the_command_of_a_worker_sees_no_shell_unless_it_names_one(void 
     }
 }
 
+static int count_files(const char *folder)
+{
+    int n = 0;
+    DIR *d = opendir(folder);
+    assert_non_null(d);
+    for (struct dirent *e; (e = readdir(d));)
+        n += e->d_name[0] != '.';
+    closedir(d);
+    return n;
+}
+
+/* As a process leaves it that is killed before the file is whole. */
+static void test_a_file_half_written_has_no_name(void **state)
+{
+    (void)state;
+    Output o;
+    Err err = {0};
+    char *folder = in_place("half"), *path = in_place("half/out.csv");
+    assert_int_equal(mkdir(folder, 0777), 0);
+    const int fd = open(folder, O_TMPFILE | O_WRONLY, 0600);
+    if (fd < 0)
+        skip(); /* not on this file system */
+    close(fd);
+    CHECK_OK(output_open(&o, path, &err), &err);
+    fputs("1\n", o.stream);
+    assert_int_equal(fflush(o.stream), 0);
+    assert_int_equal(count_files(folder), 0);
+    CHECK_OK(output_close(&o, &err), &err);
+    assert_int_equal(count_files(folder), 1);
+    char *text = read_in_place("half/out.csv");
+    assert_string_equal(text, "1\n");
+    free(text);
+    free(folder);
+    free(path);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -166,6 +205,7 @@ int main(void)
         cmocka_unit_test(test_no_text_begins_a_cell_like_a_formula),
         cmocka_unit_test(test_names_and_reasons_of_users_are_harmless_in_every_table),
         cmocka_unit_test(test_the_command_of_a_worker_sees_no_shell_unless_it_names_one),
+        cmocka_unit_test(test_a_file_half_written_has_no_name),
     };
     return cmocka_run_group_tests(tests, make_place, clear_place);
 }

@@ -3,8 +3,10 @@
 #include <dirent.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
+
+#include "cmd/outputs.h"
+#include "scene/builtin.h"
 #include "settings/idle.h"
 
 enum { OPTIONS_MAX = 32 };
@@ -176,78 +178,6 @@ static Status take_operand(Args *args, const char *word, Err *err)
     return strstr(c->operand, "RUN") ? take_run_folder(args, err) : STATUS_OK;
 }
 
-static int is_same_file(const char *path, const char *other)
-{
-    struct stat a, b;
-    if (strcmp(path, "-") == 0)
-        return 0;
-    if (stat(path, &a) != 0)
-        return strcmp(path, other) == 0;
-    return S_ISREG(a.st_mode) && stat(other, &b) == 0 && a.st_dev == b.st_dev && a.st_ino == b.st_ino;
-}
-
-static const char *const WRITTEN[] = {"--csv", "--svg", "--history", "--contacts", "--floor-spectra"};
-
-/* The i-th of the outputs that standard output was asked for, NULL: no more. */
-static const char *standard_output(const Args *args, int i)
-{
-    for (size_t k = 0; k < sizeof WRITTEN / sizeof WRITTEN[0]; k++) {
-        const char *path = args_value(args, WRITTEN[k]);
-        if (path && strcmp(path, "-") == 0 && i-- == 0)
-            return WRITTEN[k];
-    }
-    return args_has(args, "--json") && i == 0 ? "--json" : NULL;
-}
-
-int args_fill_standard_output(const Args *args)
-{
-    return standard_output(args, 0) != NULL;
-}
-
-/* What a run keeps beside its database and never makes again: resuming reads it. */
-static Status check_run_files(const Given *out, Err *err)
-{
-    static const char *const KEPT[] = {"settings.ini", "provenance.json", "log.txt", "lock", "evaluations.csv"};
-    if (!out->value || (strcmp(out->option->name, "--out") != 0 && strcmp(out->option->name, "--csv") != 0))
-        return STATUS_OK;
-    const char *slash = strrchr(out->value, '/'), *name = slash ? slash + 1 : out->value;
-    char *database = NULL;
-    if (asprintf(&database, "%.*srun.sqlite", (int)(name - out->value), out->value) < 0)
-        return fail(err, STATUS_NO_MEMORY, "no memory for a path");
-    const int is_run = access(database, F_OK) == 0;
-    free(database);
-    for (size_t k = 0; is_run && k < sizeof KEPT / sizeof KEPT[0]; k++)
-        if (strcmp(name, KEPT[k]) == 0)
-            return fail(err, STATUS_USAGE, "%s would replace %s, which a run needs; name another file",
-                        out->option->name, out->value);
-    return STATUS_OK;
-}
-
-/* A file that is written is neither one that the command reads nor another that it writes, nor what a run needs. */
-static Status check_outputs(const Args *args, Err *err)
-{
-    const char *first = standard_output(args, 0), *second = standard_output(args, 1);
-    if (second)
-        return fail(err, STATUS_USAGE, "%s and %s both want standard output; give %s a file", first, second, first);
-    for (int i = 0; i < args->n_given; i++)
-        TRY(check_run_files(&args->given[i], err));
-    for (int i = 0; i < args->n_given; i++)
-        for (size_t k = 0; k < sizeof WRITTEN / sizeof WRITTEN[0]; k++) {
-            const Given *out = &args->given[i];
-            if (strcmp(out->option->name, WRITTEN[k]) != 0)
-                continue;
-            for (int j = 0; j < args->n_operands; j++)
-                if (is_same_file(out->value, args->operands[j]))
-                    return fail(err, STATUS_USAGE, "%s would replace %s, which the command reads; name another file",
-                                out->option->name, out->value);
-            for (int j = 0; j < args->n_given; j++)
-                if (j != i && args->given[j].value && is_same_file(out->value, args->given[j].value))
-                    return fail(err, STATUS_USAGE, "%s and %s are one file, %s; name another file", out->option->name,
-                                args->given[j].option->name, out->value);
-        }
-    return STATUS_OK;
-}
-
 static int asks_for_help(const char *word)
 {
     return strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0;
@@ -271,7 +201,7 @@ Status args_parse(Args *args, const Command *command, int argc, char *const argv
     if (command->operand && command->operand[0] != '[' && !args->operand)
         return fail(err, STATUS_USAGE, "%s %s needs a %s; for example: %s", program_of(command), command->name,
                     command->operand, command->example);
-    return check_outputs(args, err);
+    return outputs_check(args, err);
 }
 
 const char *args_value(const Args *args, const char *name)
@@ -398,7 +328,7 @@ static int names_files(const Args *args)
 {
     int n = 0;
     for (int i = 0; i < args->n_operands; i++)
-        n += strncmp(args->operands[i], "builtin:", 8) != 0;
+        n += !builtin_name(args->operands[i]);
     return n > 0 && is_unread(args, "motion.record");
 }
 
@@ -435,10 +365,11 @@ Status args_apply(const Args *args, Settings *s, FILE *faults, int *n_faults, Er
             break;
     }
     tell_old_keys(s);
-    for (int i = 0; i < args->n_given && first == STATUS_OK && !faults;
-         i++) /* with faults: a check, which looks at all */
+    if (first != STATUS_OK || faults) /* with faults: a check, which looks at all and writes nothing */
+        return first;
+    for (int i = 0; i < args->n_given; i++)
         tell_idle(args, &args->given[i], s);
-    return first;
+    return outputs_spare(args, s, err);
 }
 
 Status args_settings(const Args *args, Settings *s, FILE *faults, int *n_faults, Err *err)

@@ -60,9 +60,6 @@ Status args_parse(Args *args, const Command *command, int argc, char *const argv
 const char *args_value(const Args *args, const char *name); /* NULL when it was not given */
 int args_has(const Args *args, const char *name);
 
-/* Does an option give standard output to JSON or CSV? Then nothing else may be written there. */
-int args_fill_standard_output(const Args *args);
-
 /* The values of an option that may be repeated, one call after the other; i begins at 0, NULL: no more. */
 const char *args_next(const Args *args, const char *name, int *i);
 

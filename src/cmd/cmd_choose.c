@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "cmd/commands.h"
+#include "cmd/outputs.h"
 #include "cmd/pairs.h"
 #include "cmd/show.h"
 #include "moga/front_confidence.h"
@@ -304,7 +305,9 @@ static Status run(const Args *args, Err *err)
 {
     Run r;
     TRY(run_read(&r, args->operand, err));
-    const Status status = choose_of(args, &r, err);
+    Status status = outputs_spare(args, r.settings, err);
+    if (status == STATUS_OK)
+        status = choose_of(args, &r, err);
     run_free(&r);
     return status;
 }

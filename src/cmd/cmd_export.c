@@ -1,6 +1,7 @@
 #include <stdlib.h>
 
 #include "cmd/commands.h"
+#include "cmd/outputs.h"
 #include "store/export.h"
 #include "store/output.h"
 #include "store/run_read.h"
@@ -51,7 +52,9 @@ static Status run(const Args *args, Err *err)
         return fail(err, STATUS_USAGE, "--csv FILE is missing: where the table goes (or --json)");
     Run run;
     TRY(run_read(&run, args->operand, err));
-    const Status status = write_tables(args, &run, err);
+    Status status = outputs_spare(args, run.settings, err);
+    if (status == STATUS_OK)
+        status = write_tables(args, &run, err);
     run_free(&run);
     return status;
 }

@@ -8,6 +8,7 @@
 #include "base/units.h"
 #include "cmd/commands.h"
 #include "cmd/designs.h"
+#include "cmd/outputs.h"
 #include "cmd/sensitivities.h"
 #include "cmd/show.h"
 #include "cmd/time_files.h"
@@ -197,7 +198,7 @@ static Status print(const Args *args, const Job *job, const Settings *s, const T
         TRY(write_csv(job, args_value(args, "--csv"), err));
     if (args_has(args, "--json"))
         return print_json(job, &tower_record(t, 0)->motion, err);
-    if (!args_has(args, "--csv") && !args_fill_standard_output(args))
+    if (!args_has(args, "--csv") && !outputs_standard(args, 0))
         print_table(job, s, t);
     return STATUS_OK;
 }

@@ -9,6 +9,7 @@
 #include "report/gnuplot.h"
 #include "report/report.h"
 #include "report/words.h"
+#include "scene/builtin.h"
 #include "settings/options.h"
 
 enum { HISTORY_POINTS = 2000 };
@@ -48,11 +49,10 @@ static void numbers(FILE *script, size_t n, ...)
 /* The file's name; of a built-in motion that it is synthetic. */
 static void write_motion_name(FILE *script, const char *record)
 {
-    static const char BUILT_IN[] = "builtin:";
     const char *slash = strrchr(record, '/');
     char text[160];
-    if (strncmp(record, BUILT_IN, sizeof BUILT_IN - 1) == 0)
-        snprintf(text, sizeof text, "%s (synthetic)", record + sizeof BUILT_IN - 1);
+    if (builtin_name(record))
+        snprintf(text, sizeof text, "%s (synthetic)", builtin_name(record));
     else
         snprintf(text, sizeof text, "%s", slash ? slash + 1 : record);
     gnuplot_quote(script, text);

@@ -243,6 +243,12 @@ static Status fail_unknown(const char *name, Err *err)
                        "builtin:%.60s: there is no such motion; take kobe-like, elcentro-like or sylmar-like", name);
 }
 
+const char *builtin_name(const char *source)
+{
+    static const char PREFIX[] = "builtin:";
+    return strncmp(source, PREFIX, sizeof PREFIX - 1) == 0 ? source + sizeof PREFIX - 1 : NULL;
+}
+
 Status builtin_motion(Motion *m, const char *name, Err *err)
 {
     const Model *model = find_model(name);

@@ -11,7 +11,9 @@
 #define BUILTIN_MOTION_LIST(X)                                                                                         \
     X(KOBE, "builtin:kobe-like") X(ELCENTRO, "builtin:elcentro-like") X(SYLMAR, "builtin:sylmar-like")
 
-/* name: what follows "builtin:" in the list */
+/* What follows "builtin:"; NULL: the source is a file. */
+const char *builtin_name(const char *source);
+
 Status builtin_motion(Motion *m, const char *name, Err *err);
 
 #endif

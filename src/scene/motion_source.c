@@ -1,17 +1,14 @@
 #include "scene/motion_source.h"
 
-#include <string.h>
-
 #include "scene/builtin.h"
 #include "scene/motion_process.h"
 #include "scene/motion_read.h"
 
 static Status load(Motion *m, const char *source, const MotionHow *how, Err *err)
 {
-    static const char prefix[] = "builtin:";
     static const char *const MOTIONS[] = {BUILTIN_MOTION_LIST(CHOICE_WORD)};
-    if (strncmp(source, prefix, sizeof prefix - 1) == 0)
-        return builtin_motion(m, source + sizeof prefix - 1, err); /* in m/s2, one channel, whatever is said of files */
+    if (builtin_name(source))
+        return builtin_motion(m, builtin_name(source), err); /* in m/s2, one channel, whatever is said of files */
     const Status status = motion_read(m, source, how, err);
     const char *near =
         status == STATUS_MISSING ? nearest_word(source, MOTIONS, sizeof MOTIONS / sizeof MOTIONS[0]) : NULL;

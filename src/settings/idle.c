@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "base/list.h"
+#include "scene/builtin.h"
 #include "scene/compiled_in.h"
 #include "scene/frame.h"
 
@@ -111,15 +112,10 @@ static int has_bumpers(const Settings *s)
     return s->contact.bumper_stiffness_n_m > 0 || designs_bumpers(s);
 }
 
-static int is_of_files(const char *path)
-{
-    return strncmp(path, "builtin:", 8) != 0;
-}
-
 /* Of a list of records one may be a file. */
 static int has_files(const Settings *s)
 {
-    return is_of_files(s->motion.record) || (list_is_given(s->motion.records) && is_of_files(s->motion.records));
+    return !builtin_name(s->motion.record) || (list_is_given(s->motion.records) && !builtin_name(s->motion.records));
 }
 
 static int has_spectral_value(const Settings *s)

@@ -506,7 +506,7 @@ static const char *skip_blanks(const char *text)
 /* Does the value of a path name a file? builtin:NAME and none do not. */
 static int is_file(const char *value)
 {
-    return strncmp(value, "builtin:", 8) != 0 && strcmp(value, "none") != 0;
+    return !builtin_name(value) && strcmp(value, "none") != 0;
 }
 
 /* The paths of one option, handed to `change`; a list's one by one. */
@@ -536,6 +536,26 @@ void settings_make_absolute(Settings *s)
 {
     for (int i = 0; i < N_OPTIONS; i++)
         change_paths(s, &OPTIONS[i], make_absolute, NULL);
+}
+
+typedef struct {
+    const char *key;
+    SettingFn take;
+    void *user;
+} EachPath;
+
+static void take_path(char path[OPTION_TEXT_MAX], void *user)
+{
+    const EachPath *e = user;
+    if (is_file(path))
+        e->take(e->key, path, e->user);
+}
+
+void settings_each_path(const Settings *s, SettingFn take, void *user)
+{
+    Settings copy = *s;
+    for (int i = 0; i < N_OPTIONS; i++)
+        change_paths(&copy, &OPTIONS[i], take_path, &(EachPath){OPTIONS[i].key, take, user});
 }
 
 /* A path that was written in a settings file is meant from that file's folder. */

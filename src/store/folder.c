@@ -55,6 +55,28 @@ int folder_holds(const Folder *folder, const char *name, size_t n, const long id
     return is_so && count == n;
 }
 
+int folder_is_run(const char *path)
+{
+    Folder f = {.lock = -1};
+    snprintf(f.path, sizeof f.path, "%s", path);
+    return folder_has(&f, "run.sqlite") || folder_has(&f, "lock");
+}
+
+int folder_keeps(const char *path)
+{
+    static const char *const NAMES[] = {"settings.ini",    "provenance.json", "log.txt",     "lock",
+                                        "evaluations.csv", "front.csv",       "nearest.csv", "run.sqlite"};
+    char real[PATH_MAX];
+    if (!realpath(path, real))
+        snprintf(real, sizeof real, "%s%s", strchr(path, '/') ? "" : "./", path);
+    char *name = strrchr(real, '/');
+    *name++ = 0;
+    for (size_t k = 0; k < sizeof NAMES / sizeof NAMES[0]; k++)
+        if (strcmp(name, NAMES[k]) == 0 || strncmp(name, "run.sqlite-", 11) == 0)
+            return folder_is_run(real[0] ? real : "/");
+    return 0;
+}
+
 Status folder_advise(const char *path, Status status, Err *err)
 {
     Folder f = {.lock = -1};

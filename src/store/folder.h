@@ -27,6 +27,11 @@ int folder_has(const Folder *folder, const char *name);
 int folder_holds(const Folder *folder, const char *name, size_t n, const long ids[]);
 size_t folder_rows(const Folder *folder, const char *name); /* of a CSV file, its header left out; no file: 0 */
 
+/* Has it held a run? */
+int folder_is_run(const char *path);
+/* Is it a file that a run keeps in its folder? What leads there by a link is. */
+int folder_keeps(const char *path);
+
 /* Behind the message of a run.sqlite that is damaged or empty: what to do, by what evaluations.csv beside it still knows.
  * Returns status. */
 Status folder_advise(const char *path, Status status, Err *err);

@@ -10,11 +10,36 @@
 
 #include "base/number.h"
 
-/* A new file: what lies there under that name, a prepared link say, is removed. */
+static void folder_of(const char *path, char folder[PATH_MAX])
+{
+    const char *slash = strrchr(path, '/');
+    snprintf(folder, PATH_MAX, "%.*s", slash ? (int)(slash - path + 1) : 1, slash ? path : ".");
+}
+
+static const char OWN_FILES[] = "/proc/self/fd";
+
+/* A file without a name, of which a process that is killed leaves nothing. Where the file system has none, a new file: what
+ * lies there under that name, a prepared link say, is removed. */
 static FILE *open_new(const char *path)
 {
+    char folder[PATH_MAX];
+    folder_of(path, folder);
     unlink(path);
-    return fopen(path, "wxe");
+    const int fd = access(OWN_FILES, X_OK) == 0 ? open(folder, O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666) : -1;
+    return fd >= 0 ? fdopen(fd, "w") : fopen(path, "wxe");
+}
+
+/* The temporary file gets its name, if it has none yet. */
+static Status give_name(const Output *o, Err *err)
+{
+    char own[64];
+    struct stat is;
+    snprintf(own, sizeof own, "%s/%d", OWN_FILES, fileno(o->stream));
+    if (!o->temporary[0] || fstat(fileno(o->stream), &is) != 0 || is.st_nlink > 0)
+        return STATUS_OK;
+    return linkat(AT_FDCWD, own, AT_FDCWD, o->temporary, AT_SYMLINK_FOLLOW) == 0
+               ? STATUS_OK
+               : fail(err, status_of_errno(errno, STATUS_IO), "%s: cannot be written: %s", o->path, strerror(errno));
 }
 
 static Status open_at(Output *o, const char *path, int in_place, Err *err)
@@ -74,8 +99,7 @@ Status output_sync(FILE *stream, const char *path, Err *err)
 void output_sync_folder(const char *path)
 {
     char folder[PATH_MAX];
-    const char *slash = strrchr(path, '/');
-    snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - path + 1) : 1, slash ? path : ".");
+    folder_of(path, folder);
     const int fd = open(folder, O_RDONLY | O_DIRECTORY);
     if (fd >= 0) {
         fsync(fd);
@@ -86,6 +110,8 @@ void output_sync_folder(const char *path)
 Status output_close(Output *o, Err *err)
 {
     Status status = output_sync(o->stream, o->path, err);
+    if (status == STATUS_OK)
+        status = give_name(o, err);
     if (fclose(o->stream) != 0 && status == STATUS_OK)
         status = fail(err, status_of_errno(errno, STATUS_IO), "%s: cannot be written: %s", o->path, strerror(errno));
     o->stream = NULL;

@@ -1,7 +1,7 @@
 /* store/output.h -- writing files so that a reader, or a crash, finds either the old content or the new, never a half.
  *
  * Life cycle  output_open -> fprintf(o.stream, ...) -> output_close, or output_abandon to leave things as they were
- * A regular file (or one that is not there yet) is written beside its place and renamed over it after fsync; a device
+ * A regular file (or one that is not there yet) is written without a name and put into its place after fsync; a device
  * or a pipe is written in place; the path "-" is standard output. Errors of every write are seen by output_close:
  * STATUS_IO with file and cause. */
 #ifndef IMTET_STORE_OUTPUT_H

@@ -5,13 +5,14 @@
 #include <unistd.h>
 
 #include "base/list.h"
+#include "scene/builtin.h"
 #include "scene/motion_source.h"
 #include "settings/options.h"
 #include "store/provenance.h"
 
 static Status check_is_there(const char *path, const char *key, Err *err)
 {
-    if (strncmp(path, "builtin:", 8) == 0 || access(path, R_OK) == 0)
+    if (builtin_name(path) || access(path, R_OK) == 0)
         return STATUS_OK;
     return fail(err, STATUS_MISSING,
                 "%s: a record of the run is not there; where it was moved, say so: --set motion.%s", path, key);

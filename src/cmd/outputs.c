@@ -1,0 +1,122 @@
+#include "cmd/outputs.h"
+
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "settings/settings.h"
+#include "store/folder.h"
+
+/* Options whose value is a file that is written. */
+static const char *const WRITTEN[] = {"--csv", "--svg", "--history", "--contacts", "--floor-spectra", "--out"};
+
+static int is_written(const Given *g)
+{
+    for (size_t k = 0; k < sizeof WRITTEN / sizeof WRITTEN[0]; k++)
+        if (strcmp(g->option->name, WRITTEN[k]) == 0)
+            return strcmp(g->value, "-") != 0;
+    return 0;
+}
+
+const char *outputs_standard(const Args *args, int i)
+{
+    for (size_t k = 0; k < sizeof WRITTEN / sizeof WRITTEN[0]; k++) {
+        const char *path = args_value(args, WRITTEN[k]);
+        if (path && strcmp(path, "-") == 0 && i-- == 0)
+            return WRITTEN[k];
+    }
+    return args_has(args, "--json") && i == 0 ? "--json" : NULL;
+}
+
+static int is_same_file(const char *path, const char *other)
+{
+    struct stat a, b;
+    if (stat(path, &a) != 0)
+        return strcmp(path, other) == 0;
+    return S_ISREG(a.st_mode) && stat(other, &b) == 0 && a.st_dev == b.st_dev && a.st_ino == b.st_ino;
+}
+
+/* Is it a file of that folder? A run's has outputs too (folder_keeps), and a picture is read by no one. */
+static int is_file_of(const char *path, const char *folder)
+{
+    struct stat a, b;
+    char real[PATH_MAX];
+    const char *end = strrchr(path, '.');
+    if (!realpath(path, real) || stat(real, &a) != 0 || !S_ISREG(a.st_mode) || (end && strcmp(end, ".svg") == 0))
+        return 0;
+    *strrchr(real, '/') = 0;
+    return folder_is_run(folder) == 0 && stat(real[0] ? real : "/", &a) == 0 && stat(folder, &b) == 0 &&
+           a.st_dev == b.st_dev && a.st_ino == b.st_ino;
+}
+
+/* source: FILE, FILE:N, a folder of files. */
+static int is_read_from(const char *path, const char *source)
+{
+    char file[PATH_MAX];
+    const char *colon = strrchr(source, ':');
+    snprintf(file, sizeof file, "%.*s", colon ? (int)(colon - source) : 0, source);
+    return is_same_file(path, source) || (colon && is_same_file(path, file)) || is_file_of(path, source);
+}
+
+static Status refuse(const Given *out, const char *reader, Err *err)
+{
+    return fail(err, STATUS_USAGE, "%s would replace %s, which %s; name another file", out->option->name, out->value,
+                reader);
+}
+
+static Status check_one(const Args *args, const Given *out, Err *err)
+{
+    if (folder_keeps(out->value))
+        return refuse(out, "a run needs", err);
+    for (int j = 0; j < args->n_operands; j++)
+        if (is_read_from(out->value, args->operands[j]))
+            return refuse(out, "the command reads", err);
+    for (int j = 0; j < args->n_given; j++) {
+        const Given *other = &args->given[j];
+        if (other == out || !other->value)
+            continue;
+        if (is_written(other) && is_same_file(out->value, other->value))
+            return fail(err, STATUS_USAGE, "%s and %s are one file, %s; name another file", out->option->name,
+                        other->option->name, out->value);
+        const char *equals = strcmp(other->option->name, "--set") == 0 ? strchr(other->value, '=') : NULL;
+        if (!is_written(other) && is_read_from(out->value, equals ? equals + 1 : other->value))
+            return refuse(out, "the command reads", err);
+    }
+    return STATUS_OK;
+}
+
+Status outputs_check(const Args *args, Err *err)
+{
+    const char *first = outputs_standard(args, 0), *second = outputs_standard(args, 1);
+    if (second)
+        return fail(err, STATUS_USAGE, "%s and %s both want standard output; give %s a file", first, second, first);
+    for (int i = 0; i < args->n_given; i++)
+        if (is_written(&args->given[i]))
+            TRY(check_one(args, &args->given[i], err));
+    return STATUS_OK;
+}
+
+typedef struct {
+    const Given *out;
+    char key[64]; /* of the setting that names it; empty: none does */
+} Looking;
+
+static void compare(const char *key, const char *path, void *user)
+{
+    Looking *l = user;
+    if (is_read_from(l->out->value, path))
+        snprintf(l->key, sizeof l->key, "%s names", key);
+}
+
+Status outputs_spare(const Args *args, const Settings *s, Err *err)
+{
+    for (int i = 0; i < args->n_given; i++) {
+        Looking l = {.out = &args->given[i]};
+        if (is_written(l.out))
+            settings_each_path(s, compare, &l);
+        if (l.key[0])
+            return refuse(l.out, l.key, err);
+    }
+    return STATUS_OK;
+}
