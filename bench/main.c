@@ -273,24 +273,34 @@ static const ArgOption LAWS_OPTIONS[] = {
 static Status run_factors(const Args *args, Err *err)
 {
     Settings s;
-    FactorPlan plan = {.settings = &s, .problems = args_value(args, "--problem"), .aside = args_has(args, "--aside")};
+    FactorPlan plan = {.settings = &s,
+                       .problems = args_value(args, "--problem"),
+                       .aside = args_has(args, "--aside"),
+                       .keep = args_value(args, "--keep"),
+                       .with_methods = args_has(args, "--methods"),
+                       .curves = args_value(args, "--curves")};
+    const long budgets[] = {300, 500, 1000};
     settings_defaults(&s);
     TRY(args_apply(args, &s, NULL, NULL, err));
     TRY(settings_check(&s, err));
-    TRY(args_whole(args, "--seeds", 1, 16, 3, &plan.n_seeds, err));
+    TRY(args_whole(args, "--seeds", 1, 16, 5, &plan.n_seeds, err));
     TRY(args_whole(args, "--first-seed", 0, 1000000, 101, &plan.first_seed, err));
-    TRY(args_whole(args, "--evals", 100, 100000, 300, &plan.budgets[0], err));
-    TRY(args_whole(args, "--more-evals", 0, 100000, 0, &plan.budgets[1], err));
+    if (args_has(args, "--evals"))
+        TRY(args_whole(args, "--evals", 100, 100000, 300, &plan.budgets[0], err));
+    else
+        memcpy(plan.budgets, budgets, sizeof budgets);
     return factors_run(&plan, stdout, err);
 }
 
 static const ArgOption FACTOR_OPTIONS[] = {
     {"--problem", "LIST", NULL, 0, "some of the problems; all but those kept aside unless given"},
     {"--aside", NULL, NULL, 0, "those kept aside instead"},
-    {"--evals", "N", NULL, 0, "evaluations with the surrogate; 300 unless given"},
-    {"--more-evals", "N", NULL, 0, "another budget beside it"},
-    {"--seeds", "N", NULL, 0, "3 unless given"},
+    {"--evals", "N", NULL, 0, "evaluations; a search of 1000, read after 300, 500 and 1000, unless given"},
+    {"--seeds", "N", NULL, 0, "5 unless given"},
     {"--first-seed", "N", NULL, 0, "101 unless given"},
+    {"--methods", NULL, NULL, 0, "other methods beside it: NSGA-III, RVEA, MOEA/D, ParEGO"},
+    {"--curves", "FILE", NULL, 0, "CSV of the hypervolume against hours, for simulations of 1 ms to 1 min"},
+    {"--keep", "FOLDER", NULL, 0, "of all evaluations: what is there is not run again"},
     OPTION_SET,
     OPTION_END,
 };
@@ -346,10 +356,11 @@ static const Command COMMANDS[] = {
      .program = "imtet-bench"},
     {.name = "search",
      .summary = "evaluations that the surrogate saves, on problems of other families",
-     .example = "imtet-bench search --evals 300 --more-evals 500",
-     .details = "How many evaluations a plain search needs for the hypervolume that the surrogate reaches, as a "
-                "multiple, and\n"
-                "that hypervolume: medians over the seeds, the geometric mean over the problems.",
+     .example = "imtet-bench search --keep results/search",
+     .details =
+         "How many evaluations a plain search needs for the IGD+ and the hypervolume that the surrogate reaches, as\n"
+         "a multiple, 20 at most: medians over the seeds, the geometric mean over the problems. An interrupted\n"
+         "table with --keep goes on where it was; after a change of the search the folder is to be emptied.",
      .options = FACTOR_OPTIONS,
      .run = run_factors,
      .program = "imtet-bench"},

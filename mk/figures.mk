@@ -21,8 +21,8 @@ chart: $(BENCH) ## docs/chart: speed against accuracy of every engine
 	@scripts/plot-chart docs/chart.csv docs/chart
 
 # CELLS and SEEDS choose a part, KEEP names a folder in which runs stay and are not repeated.
-compare: $(PROGRAM) setup-figures ## docs/search.md: the search on textbook problems and the tower, with and without surrogate
-	@scripts/compare --program ./$(PROGRAM) --out docs/search.md $(if $(CELLS),--cells $(CELLS)) $(if $(SEEDS),--seeds $(SEEDS)) $(if $(KEEP),--keep $(KEEP))
+compare: $(PROGRAM) $(BENCH) setup-figures ## docs/search.md: the search on textbook problems, other families and the tower, beside other methods
+	@scripts/compare --program ./$(PROGRAM) --bench $(BENCH) --out docs/search.md $(if $(CELLS),--cells $(CELLS)) $(if $(SEEDS),--seeds $(SEEDS)) $(if $(KEEP),--keep $(KEEP))
 
 paper: $(PROGRAM) ## docs/paper.md: the paper item by item, with its records where they are at hand; ARGS="--evals N"
 	@scripts/paper --program ./$(PROGRAM) $(ARGS)

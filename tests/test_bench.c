@@ -4,9 +4,13 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "bench/distribution.h"
 #include "bench/promise.h"
+#include "bench/search/families.h"
+#include "bench/search/methods.h"
+#include "bench/search/reference.h"
 #include "scene/motion_source.h"
 #include "scene_options.h"
 
@@ -208,6 +212,116 @@ static void test_the_distribution_test_draws_replicates_by_the_tolerance_of_the_
     motion_free(&g.m);
 }
 
+/* -- problems of other families, and methods to compare with -- */
+
+/* No design that any method finds dominates a reference by more than a thousandth of the front's range. */
+static void check_nothing_is_beyond(const Course *reference, const Course *found)
+{
+    const size_t m = found->n_obj;
+    for (size_t i = 0; i < found->n; i++)
+        for (size_t r = 0; found->counts[i] && r < reference->n; r++) {
+            int beyond = 1;
+            for (size_t k = 0; k < m && beyond; k++) {
+                double low = INFINITY, high = -INFINITY;
+                for (size_t j = 0; j < reference->n; j++) {
+                    low = fmin(low, reference->F[j * m + k]);
+                    high = fmax(high, reference->F[j * m + k]);
+                }
+                beyond = found->F[i * m + k] < reference->F[r * m + k] - 1e-3 * (high - low);
+            }
+            if (beyond)
+                fail_msg("design %zu dominates reference %zu of %zu", i, r, reference->n);
+        }
+}
+
+static void test_no_method_gets_beyond_the_references_of_a_problem(void **state)
+{
+    (void)state;
+    Err err;
+    Settings s;
+    settings_defaults(&s);
+    for (size_t i = 0; i < family_count(); i++) {
+        Problem p;
+        Course reference, found;
+        if (!strstr("pieces4 limits4 slab3 ball4",
+                    family(i)->name)) /* fronts that a point of zero distance is not on */
+            continue;
+        CHECK_OK(family_open(&p, i, &err), &err);
+        CHECK_OK(reference_make(&p, &reference, &err), &err);
+        CHECK_OK(course_create(&found, 1000, p.n_obj, &err), &err);
+        CHECK_OK(run_moead(&s, &p, &found, &err), &err);
+        print_message("%s: %zu references\n", family(i)->name, reference.n);
+        assert_true(reference.n >= 20);
+        check_nothing_is_beyond(&reference, &found);
+        course_free(&found);
+        course_free(&reference);
+        problem_close(&p);
+    }
+}
+
+static double sum_of(const Course *c, size_t i)
+{
+    double sum = 0.0;
+    for (size_t k = 0; k < c->n_obj; k++)
+        sum += c->F[i * c->n_obj + k];
+    return sum;
+}
+
+/* Of slab3: the least sum of objectives among the designs that succeed, after 200 evaluations and after the first 52. */
+static void test_every_method_makes_as_many_evaluations_as_it_may_and_betters_its_first_sample(void **state)
+{
+    (void)state;
+    Err err;
+    Settings s;
+    settings_defaults(&s);
+    s.search.population = 40;
+    size_t which = 0;
+    while (strcmp(family(which)->name, "slab3") != 0)
+        which++;
+    for (size_t i = 0; i < method_count(); i++) {
+        double first = INFINITY, last = INFINITY;
+        Problem p;
+        Course c;
+        CHECK_OK(family_open(&p, which, &err), &err);
+        CHECK_OK(course_create(&c, 200, p.n_obj, &err), &err);
+        CHECK_OK(method(i)->run(&s, &p, &c, &err), &err);
+        assert_int_equal(c.n, 200);
+        for (size_t j = 0; j < c.n; j++) {
+            first = c.counts[j] && j < 52 ? fmin(first, sum_of(&c, j)) : first;
+            last = c.counts[j] ? fmin(last, sum_of(&c, j)) : last;
+            assert_true(j == 0 || c.cpu_s[j] >= c.cpu_s[j - 1]);
+        }
+        assert_true(last < first);
+        course_free(&c);
+        problem_close(&p);
+    }
+}
+
+static void test_a_course_is_read_as_it_was_written_and_another_one_is_not(void **state)
+{
+    (void)state;
+    Err err;
+    Course c, back = {0};
+    int found;
+    char path[] = "/tmp/imtet-course-XXXXXX";
+    close(mkstemp(path));
+    CHECK_OK(course_create(&c, 3, 2, &err), &err);
+    for (int i = 0; i < 3; i++)
+        course_add(&c, (double[]){i, -i}, i != 1);
+    CHECK_OK(course_save(&c, path, &err), &err);
+    CHECK_OK(course_load(&back, path, 3, 2, &found, &err), &err);
+    assert_true(found);
+    assert_memory_equal(back.F, c.F, 6 * sizeof *c.F);
+    assert_memory_equal(back.counts, "\1\0\1", 3);
+    course_free(&back);
+    CHECK_OK(course_load(&back, path, 4, 2, &found, &err), &err);
+    assert_false(found);
+    CHECK_OK(course_load(&back, "/nowhere/x.course", 3, 2, &found, &err), &err);
+    assert_false(found);
+    unlink(path);
+    course_free(&c);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -220,6 +334,9 @@ int main(void)
         cmocka_unit_test(test_windows_of_the_promise_lie_in_their_record_and_repeat),
         cmocka_unit_test(test_quantiles_are_the_least_that_a_share_does_not_exceed),
         cmocka_unit_test(test_the_page_of_the_promise_has_a_row_for_every_accuracy),
+        cmocka_unit_test(test_no_method_gets_beyond_the_references_of_a_problem),
+        cmocka_unit_test(test_every_method_makes_as_many_evaluations_as_it_may_and_betters_its_first_sample),
+        cmocka_unit_test(test_a_course_is_read_as_it_was_written_and_another_one_is_not),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,73 +1,82 @@
 #include "bench/search/factors.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "base/stat.h"
 #include "bench/search/families.h"
+#include "bench/search/methods.h"
+#include "bench/search/reference.h"
+#include "moga/dominance.h"
 #include "moga/hypervolume.h"
-#include "moga/search.h"
-#include "study/study.h"
+#include "moga/igd.h"
+#include "store/output.h"
 
 static const double FACTOR_MAX = 20.0;
-enum { BUDGETS_MAX = 4, SEEDS_MAX = 16 };
+enum { BUDGETS_MAX = 4, SEEDS_MAX = 16, METHODS_MAX = 8, PROBLEMS_MAX = 32, COSTS = 4, TIMES = 40 };
+static const double COST_S[COSTS] = {1e-3, 1e-2, 1.0, 60.0}; /* [s] of one simulation */
 
-/* All evaluations of a search in their order. */
+typedef enum { IGD, VOLUME, SCORES } Score;
+
+/* Scores of a course after each evaluation. */
 typedef struct {
-    size_t n, n_max, n_obj;
-    double *F;
-    unsigned char *counts;
-} Course;
+    Course course;
+    double *score[SCORES]; /* (n) */
+} Curve;
 
-static int note(const SearchView *v, void *user)
+typedef struct {
+    const FactorPlan *plan;
+    size_t methods[METHODS_MAX], n_methods; /* the first two are METHOD_IMTET and METHOD_PLAIN */
+    size_t n_problems;
+    const char *name[PROBLEMS_MAX];
+    double factor[PROBLEMS_MAX][BUDGETS_MAX][SCORES];             /* medians over the seeds */
+    double ratio[METHODS_MAX][BUDGETS_MAX][SCORES][PROBLEMS_MAX]; /* likewise */
+    double cpu_s[METHODS_MAX][PROBLEMS_MAX];  /* [s] of the search per evaluation, at the last budget */
+    double volume[COSTS][METHODS_MAX][TIMES]; /* sums of hypervolumes at times */
+    size_t n_volumes;
+} Tables;
+
+static size_t n_budgets(const FactorPlan *plan)
 {
-    Course *c = user;
-    for (; c->n < v->n && c->n < c->n_max; c->n++) {
-        const size_t i = c->n;
-        memcpy(c->F + i * c->n_obj, v->Y + i * c->n_obj, c->n_obj * sizeof *c->F);
-        c->counts[i] = v->ok[i] && violation_of(v->n_con, v->H + i * v->n_con) == 0.0;
-    }
-    return 0;
+    size_t n = 0;
+    while (n < BUDGETS_MAX && plan->budgets[n] > 0)
+        n++;
+    return n;
 }
 
-static Status run_search(const Settings *settings, size_t problem, long seed, long n, int plain, Course *c, Err *err)
+/* -- courses ------------------------------------------------------------------------------------------------------- */
+
+static Status make_course(const FactorPlan *plan, const Problem *p, size_t which, long seed, size_t n, Course *c,
+                          Err *err)
 {
-    Problem p;
-    Settings s = *settings;
-    StopReason reason;
+    Settings s = *plan->settings;
     s.search.seed = seed;
-    s.search.max_evals = n;
-    s.search.generations = 1000000;
-    s.search.surrogate = plain ? SURROGATE_OFF : SURROGATE_ON;
-    const SearchConfig config = study_search_config(&s);
-    TRY(family_open(&p, problem, err));
-    *c = (Course){.n_max = (size_t)n, .n_obj = p.n_obj};
-    c->F = calloc(c->n_max * p.n_obj, sizeof *c->F);
-    c->counts = calloc(c->n_max, 1);
-    const Status status = c->F && c->counts ? search_run(&p, &config, note, c, &reason, err)
-                                            : fail(err, STATUS_NO_MEMORY, "no memory for %ld designs", n);
-    problem_close(&p);
-    return status;
+    TRY(course_create(c, n, p->n_obj, err));
+    return method(which)->run(&s, p, c, err);
 }
 
-static void course_free(Course *c)
+/* From the folder where it is there. */
+static Status get_course(const FactorPlan *plan, const Problem *p, const Family *a, size_t which, long seed, Course *c,
+                         Err *err)
 {
-    free(c->F);
-    free(c->counts);
-    *c = (Course){0};
+    const long last = plan->budgets[n_budgets(plan) - 1];
+    const size_t n = (size_t)(which == METHOD_PLAIN ? (long)FACTOR_MAX * last : last);
+    char path[PATH_MAX];
+    int found = 0;
+    if (!plan->keep)
+        return make_course(plan, p, which, seed, n, c, err);
+    snprintf(path, sizeof path, "%s/%s-%s-%zu-%ld.course", plan->keep, a->name, method(which)->name, n, seed);
+    TRY(course_load(c, path, n, p->n_obj, &found, err));
+    if (found)
+        return STATUS_OK;
+    TRY(make_course(plan, p, which, seed, n, c, err));
+    return course_save(c, path, err);
 }
 
-static int dominates(size_t m, const double a[], const double b[])
-{
-    int better = 0;
-    for (size_t k = 0; k < m; k++) {
-        if (a[k] > b[k])
-            return 0;
-        better |= a[k] < b[k];
-    }
-    return better;
-}
+/* -- scores -------------------------------------------------------------------------------------------------------- */
 
 /* The box about the nondominated designs of both. */
 static void widen_box(const Course *c, const Course *other, double lower[], double upper[])
@@ -86,75 +95,124 @@ static void widen_box(const Course *c, const Course *other, double lower[], doub
     }
 }
 
-/* Adds designs until n, or until the share is `wanted`; returns how many there are then. */
-static size_t advance(const Course *c, size_t from, size_t n, double wanted, Hypervolume *v)
+static void find_box(const Course *a, const Course *b, double lower[], double upper[])
 {
-    size_t i = from;
-    for (; i < n && i < c->n && hypervolume_share(v) < wanted; i++)
-        if (c->counts[i])
-            hypervolume_add(v, c->F + i * c->n_obj);
-    return i;
-}
-
-static Status compare(const FactorPlan *plan, const Course *assisted, const Course *plain, double factor[BUDGETS_MAX],
-                      double share[BUDGETS_MAX], Err *err)
-{
-    double lower[FAMILY_OBJ_MAX], upper[FAMILY_OBJ_MAX];
-    Hypervolume *ours = NULL, *theirs = NULL;
-    const size_t m = plain->n_obj;
-    for (size_t k = 0; k < m; k++) {
+    for (size_t k = 0; k < a->n_obj; k++) {
         lower[k] = INFINITY;
         upper[k] = -INFINITY;
     }
-    widen_box(assisted, plain, lower, upper);
-    widen_box(plain, assisted, lower, upper);
-    for (size_t k = 0; k < m; k++)
+    widen_box(a, b, lower, upper);
+    widen_box(b, a, lower, upper);
+    for (size_t k = 0; k < a->n_obj; k++)
         upper[k] += 0.1 * fmax(upper[k] - lower[k], 1e-12);
-    Status status = hypervolume_create(&ours, m, lower, upper, 1, err);
+}
+
+static Status score_course(Curve *v, const Course *reference, const double lower[], const double upper[], Err *err)
+{
+    const Course *c = &v->course;
+    Hypervolume *volume = NULL;
+    Igd *igd = NULL;
+    size_t rows[REFERENCES];
+    for (size_t i = 0; i < reference->n; i++)
+        rows[i] = i;
+    v->score[IGD] = calloc(2 * c->n, sizeof *v->score[IGD]);
+    v->score[VOLUME] = v->score[IGD] ? v->score[IGD] + c->n : NULL;
+    Status status = v->score[IGD] ? hypervolume_create(&volume, c->n_obj, lower, upper, 1, err)
+                                  : fail(err, STATUS_NO_MEMORY, "no memory for the scores of %zu designs", c->n);
     if (status == STATUS_OK)
-        status = hypervolume_create(&theirs, m, lower, upper, 1, err);
-    size_t done = 0, theirs_done = 0;
-    for (int b = 0; status == STATUS_OK && b < BUDGETS_MAX && plan->budgets[b] > 0; b++) {
-        const double n = (double)plan->budgets[b];
-        done = advance(assisted, done, (size_t)plan->budgets[b], INFINITY, ours);
-        share[b] = hypervolume_share(ours);
-        theirs_done = advance(plain, theirs_done, plain->n, share[b], theirs);
-        const int reached = hypervolume_share(theirs) >= share[b];
-        factor[b] = share[b] <= 0.0 ? 1.0 : reached ? fmin((double)theirs_done / n, FACTOR_MAX) : FACTOR_MAX;
+        status = igd_create(&igd, c->n_obj, reference->n, rows, reference->F, err);
+    for (size_t i = 0; status == STATUS_OK && i < c->n; i++) {
+        if (c->counts[i]) {
+            hypervolume_add(volume, c->F + i * c->n_obj);
+            igd_add(igd, c->F + i * c->n_obj);
+        }
+        v->score[IGD][i] = igd_value(igd);
+        v->score[VOLUME][i] = hypervolume_share(volume);
     }
-    hypervolume_free(ours);
-    hypervolume_free(theirs);
+    hypervolume_free(volume);
+    igd_free(igd);
     return status;
 }
 
-/* A search with each budget is another search; the plain one is one, of the largest. */
-static Status run_seed(const FactorPlan *plan, size_t problem, long seed, double factor[], double share[], Err *err)
+static void curve_free(Curve *v)
 {
-    Course assisted = {0}, plain = {0};
-    long last = 0;
-    for (int b = 0; b < BUDGETS_MAX && plan->budgets[b] > 0; b++)
-        last = plan->budgets[b];
-    Status status = run_search(plan->settings, problem, seed, (long)FACTOR_MAX * last, 1, &plain, err);
-    for (int b = 0; status == STATUS_OK && b < BUDGETS_MAX && plan->budgets[b] > 0; b++) {
-        const FactorPlan one = {.budgets = {plan->budgets[b]}};
-        status = run_search(plan->settings, problem, seed, plan->budgets[b], 0, &assisted, err);
-        if (status == STATUS_OK)
-            status = compare(&one, &assisted, &plain, factor + b, share + b, err);
-        course_free(&assisted);
-    }
-    course_free(&plain);
-    return status;
+    course_free(&v->course);
+    free(v->score[IGD]);
+    *v = (Curve){0};
 }
 
-static int is_wanted(const FactorPlan *plan, const Family *a)
+/* Evaluations of `plain` until its score is as good as `wanted`, as a multiple of n. */
+static double factor_of(const Curve *plain, Score score, double wanted, double n)
 {
-    const size_t n = strlen(a->name);
-    if (!plan->problems)
-        return a->is_aside == plan->aside;
-    for (const char *p = strstr(plan->problems, a->name); p; p = strstr(p + 1, a->name))
-        if ((p == plan->problems || p[-1] == ',') && (p[n] == 0 || p[n] == ','))
-            return 1;
-    return 0;
+    const double *value = plain->score[score];
+    size_t i = 0;
+    while (i < plain->course.n && !(score == IGD ? value[i] <= wanted : value[i] >= wanted))
+        i++;
+    return i < plain->course.n ? fmin((double)(i + 1) / n, FACTOR_MAX) : FACTOR_MAX;
+}
+
+/* -- one problem --------------------------------------------------------------------------------------------------- */
+
+/* Of each seed, for the medians. */
+typedef struct {
+    double factor[BUDGETS_MAX][SCORES][SEEDS_MAX], ratio[METHODS_MAX][BUDGETS_MAX][SCORES][SEEDS_MAX],
+        cpu_s[METHODS_MAX][SEEDS_MAX];
+} Sample;
+
+/* Hours of which curve i takes the hypervolume: from a tenth of the first budget's simulations on, to 20 times the last. */
+static double time_at(const FactorPlan *plan, int cost, int i)
+{
+    const double first = 0.1 * (double)plan->budgets[0], last = FACTOR_MAX * (double)plan->budgets[n_budgets(plan) - 1];
+    return COST_S[cost] * first * pow(last / first, (double)i / (TIMES - 1)) / 3600.0;
+}
+
+static void add_volumes(Tables *t, const Curve curve[])
+{
+    for (int cost = 0; cost < COSTS; cost++)
+        for (size_t v = 0; v < t->n_methods; v++)
+            for (int i = 0, n = 0; i < TIMES; i++) {
+                const Course *c = &curve[v].course;
+                while (n < (int)c->n && c->cpu_s[n] + (n + 1) * COST_S[cost] <= 3600.0 * time_at(t->plan, cost, i))
+                    n++;
+                t->volume[cost][v][i] += n > 0 ? curve[v].score[VOLUME][n - 1] : 0.0;
+            }
+    t->n_volumes++;
+}
+
+static void take_seed(Tables *t, const Curve curve[], size_t seed, Sample *s)
+{
+    for (size_t b = 0; b < n_budgets(t->plan); b++) {
+        const size_t n = (size_t)t->plan->budgets[b];
+        for (int score = 0; score < SCORES; score++) {
+            const double ours = curve[METHOD_IMTET].score[score][n - 1];
+            s->factor[b][score][seed] =
+                score == VOLUME && ours <= 0.0 ? 1.0 : factor_of(&curve[METHOD_PLAIN], (Score)score, ours, (double)n);
+            for (size_t v = 0; v < t->n_methods; v++) {
+                s->ratio[v][b][score][seed] = fmax(curve[v].score[score][n - 1], 1e-9) / fmax(ours, 1e-9);
+                s->cpu_s[v][seed] = curve[v].course.cpu_s[n - 1] / (double)n;
+            }
+        }
+    }
+    add_volumes(t, curve);
+}
+
+static Status run_seed(Tables *t, const Problem *p, const Family *a, const Course *reference, size_t seed, Sample *s,
+                       Err *err)
+{
+    Curve curve[METHODS_MAX] = {0};
+    double lower[FAMILY_OBJ_MAX], upper[FAMILY_OBJ_MAX];
+    Status status = STATUS_OK;
+    for (size_t v = 0; status == STATUS_OK && v < t->n_methods; v++)
+        status = get_course(t->plan, p, a, t->methods[v], t->plan->first_seed + (long)seed, &curve[v].course, err);
+    if (status == STATUS_OK)
+        find_box(&curve[METHOD_IMTET].course, &curve[METHOD_PLAIN].course, lower, upper);
+    for (size_t v = 0; status == STATUS_OK && v < t->n_methods; v++)
+        status = score_course(&curve[v], reference, lower, upper, err);
+    if (status == STATUS_OK)
+        take_seed(t, curve, seed, s);
+    for (size_t v = 0; v < t->n_methods; v++)
+        curve_free(&curve[v]);
+    return status;
 }
 
 static double median(size_t n, double x[])
@@ -163,45 +221,166 @@ static double median(size_t n, double x[])
     return 0.5 * (x[(n - 1) / 2] + x[n / 2]);
 }
 
-typedef struct {
-    double log_sum[BUDGETS_MAX];
-    size_t n;
-} Mean;
-
-static Status run_problem(const FactorPlan *plan, size_t problem, Mean *mean, FILE *out, Err *err)
+static void take_medians(Tables *t, size_t n, Sample *s)
 {
-    const Family *a = family(problem);
-    double factor[SEEDS_MAX][BUDGETS_MAX], share[SEEDS_MAX][BUDGETS_MAX], of[SEEDS_MAX];
-    const size_t n = (size_t)plan->n_seeds < SEEDS_MAX ? (size_t)plan->n_seeds : SEEDS_MAX;
-    for (size_t i = 0; i < n; i++)
-        TRY(run_seed(plan, problem, plan->first_seed + (long)i, factor[i], share[i], err));
-    fprintf(out, "| %s | %s |", a->name, a->what);
-    for (int b = 0; b < BUDGETS_MAX && plan->budgets[b] > 0; b++) {
-        for (size_t i = 0; i < n; i++)
-            of[i] = factor[i][b];
-        const double middle = median(n, of);
-        mean->log_sum[b] += log(middle);
-        for (size_t i = 0; i < n; i++)
-            of[i] = share[i][b];
-        fprintf(out, " %.1f (%.3f) |", middle, median(n, of));
+    const size_t row = t->n_problems;
+    for (size_t b = 0; b < n_budgets(t->plan); b++)
+        for (int score = 0; score < SCORES; score++) {
+            t->factor[row][b][score] = median(n, s->factor[b][score]);
+            for (size_t v = 0; v < t->n_methods; v++)
+                t->ratio[v][b][score][row] = median(n, s->ratio[v][b][score]);
+        }
+    for (size_t v = 0; v < t->n_methods; v++)
+        t->cpu_s[v][row] = median(n, s->cpu_s[v]);
+}
+
+static Status run_problem(Tables *t, size_t which, Err *err)
+{
+    const Family *a = family(which);
+    const size_t n = (size_t)t->plan->n_seeds < SEEDS_MAX ? (size_t)t->plan->n_seeds : SEEDS_MAX;
+    Sample *s = calloc(1, sizeof *s);
+    Course reference = {0};
+    Problem p;
+    if (!s)
+        return fail(err, STATUS_NO_MEMORY, "no memory for a table");
+    Status status = family_open(&p, which, err);
+    if (status == STATUS_OK)
+        status = reference_make(&p, &reference, err);
+    for (size_t i = 0; status == STATUS_OK && i < n; i++)
+        status = run_seed(t, &p, a, &reference, i, s, err);
+    if (status == STATUS_OK) {
+        take_medians(t, n, s);
+        t->name[t->n_problems++] = a->name;
     }
+    course_free(&reference);
+    problem_close(&p);
+    free(s);
+    return status;
+}
+
+/* -- tables -------------------------------------------------------------------------------------------------------- */
+
+static void print_factors(const Tables *t, size_t row, const char *what, FILE *out)
+{
+    fprintf(out, "| %s | %s |", t->name[row], what);
+    for (int score = 0; score < SCORES; score++)
+        for (size_t b = 0; b < n_budgets(t->plan); b++)
+            fprintf(out, " %.1f |", t->factor[row][b][score]);
     fputc('\n', out);
     fflush(out);
-    mean->n++;
-    return STATUS_OK;
+}
+
+static void print_means(const Tables *t, FILE *out)
+{
+    fprintf(out, "| geometric mean | |");
+    for (int score = 0; score < SCORES; score++)
+        for (size_t b = 0; b < n_budgets(t->plan); b++) {
+            double sum = 0.0;
+            for (size_t i = 0; i < t->n_problems; i++)
+                sum += log(t->factor[i][b][score]);
+            fprintf(out, " %.1f |", exp(sum / (double)t->n_problems));
+        }
+    fprintf(out, "\n| worst | |");
+    for (int score = 0; score < SCORES; score++)
+        for (size_t b = 0; b < n_budgets(t->plan); b++) {
+            size_t worst = 0;
+            for (size_t i = 0; i < t->n_problems; i++)
+                worst = t->factor[i][b][score] < t->factor[worst][b][score] ? i : worst;
+            fprintf(out, " %s |", t->name[worst]);
+        }
+    fputc('\n', out);
+}
+
+static void print_quartiles(size_t n, double x[], FILE *out)
+{
+    sort_values(n, x);
+    fprintf(out, " %.2f (%.2f .. %.2f) |", 0.5 * (x[(n - 1) / 2] + x[n / 2]), x[n / 4], x[n - 1 - n / 4]);
+}
+
+static void print_methods(Tables *t, FILE *out)
+{
+    fprintf(out, "\n| method |");
+    for (int score = 0; score < SCORES; score++)
+        for (size_t b = 0; b < n_budgets(t->plan); b++)
+            fprintf(out, " %s, %ld |", score == IGD ? "IGD+" : "hypervolume", t->plan->budgets[b]);
+    fprintf(out, " ms per evaluation |\n|---|");
+    for (size_t b = 0; b < SCORES * n_budgets(t->plan); b++)
+        fprintf(out, "---|");
+    fprintf(out, "---|\n");
+    for (size_t v = 0; v < t->n_methods; v++) {
+        fprintf(out, "| %s |", method(t->methods[v])->name);
+        for (int score = 0; score < SCORES; score++)
+            for (size_t b = 0; b < n_budgets(t->plan); b++)
+                print_quartiles(t->n_problems, t->ratio[v][b][score], out);
+        fprintf(out, " %.3g |\n", 1e3 * median(t->n_problems, t->cpu_s[v]));
+    }
+}
+
+static Status write_curves(const Tables *t, Err *err)
+{
+    Output o;
+    TRY(output_open(&o, t->plan->curves, err));
+    fprintf(o.stream, "simulation_s,method,hours,hypervolume\n");
+    for (int cost = 0; cost < COSTS; cost++)
+        for (size_t v = 0; v < t->n_methods; v++)
+            for (int i = 0; i < TIMES; i++)
+                fprintf(o.stream, "%g,%s,%g,%.4f\n", COST_S[cost], method(t->methods[v])->name,
+                        time_at(t->plan, cost, i), t->volume[cost][v][i] / (double)t->n_volumes);
+    return output_close(&o, err);
+}
+
+/* -- which --------------------------------------------------------------------------------------------------------- */
+
+static int is_listed(const char *list, const char *name)
+{
+    const size_t n = strlen(name);
+    for (const char *p = strstr(list, name); p; p = strstr(p + 1, name))
+        if ((p == list || p[-1] == ',') && (p[n] == 0 || p[n] == ','))
+            return 1;
+    return 0;
+}
+
+static int is_wanted(const FactorPlan *plan, const Family *a)
+{
+    return plan->problems ? is_listed(plan->problems, a->name) : a->is_aside == plan->aside;
+}
+
+static void choose_methods(Tables *t)
+{
+    const FactorPlan *plan = t->plan;
+    for (size_t i = 0; i < method_count(); i++)
+        if (i <= METHOD_PLAIN || plan->with_methods)
+            t->methods[t->n_methods++] = i;
+}
+
+static Status fill(Tables *t, FILE *out, Err *err)
+{
+    const FactorPlan *plan = t->plan;
+    choose_methods(t);
+    if (plan->keep)
+        mkdir(plan->keep, 0777);
+    for (size_t i = 0; i < family_count(); i++) {
+        if (!is_wanted(plan, family(i)))
+            continue;
+        TRY(run_problem(t, i, err));
+        print_factors(t, t->n_problems - 1, family(i)->what, out);
+    }
+    return t->n_problems > 0 ? STATUS_OK : fail(err, STATUS_USAGE, "--problem: no such problem");
 }
 
 Status factors_run(const FactorPlan *plan, FILE *out, Err *err)
 {
-    Mean mean = {0};
-    for (size_t i = 0; i < family_count(); i++)
-        if (is_wanted(plan, family(i)))
-            TRY(run_problem(plan, i, &mean, out, err));
-    if (mean.n == 0)
-        return fail(err, STATUS_USAGE, "--problem: no such problem");
-    fprintf(out, "| geometric mean | |");
-    for (int b = 0; b < BUDGETS_MAX && plan->budgets[b] > 0; b++)
-        fprintf(out, " %.1f |", exp(mean.log_sum[b] / (double)mean.n));
-    fputc('\n', out);
-    return STATUS_OK;
+    Tables *t = calloc(1, sizeof *t);
+    if (!t)
+        return fail(err, STATUS_NO_MEMORY, "no memory for the tables");
+    t->plan = plan;
+    Status status = fill(t, out, err);
+    if (status == STATUS_OK)
+        print_means(t, out);
+    if (status == STATUS_OK && plan->with_methods)
+        print_methods(t, out);
+    if (status == STATUS_OK && plan->curves)
+        status = write_curves(t, err);
+    free(t);
+    return status;
 }

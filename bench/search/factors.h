@@ -1,11 +1,14 @@
-/* bench/search/factors.h -- how many evaluations a plain search needs for what the surrogate reached: the table of
- * `imtet-bench search` on the problems of families.h.
+/* bench/search/factors.h -- the tables of `imtet-bench search` on the problems of families.h: what the search reaches
+ * beside a plain one and beside other methods.
  *
- *   factor   evaluations of the plain search (search.surrogate = off) until its hypervolume is that of the surrogate
- *            after n, divided by n; at most FACTOR_MAX, where it is not reached within so many
+ *   factor   evaluations that the plain search (search.surrogate = off) needs for what this program has after n,
+ *            divided by n; at most FACTOR_MAX, where it is not reached within so many. Of IGD+ and of hypervolume
+ *   ratio    of a method's IGD+ (or hypervolume) after n to this program's
  *
- * Hypervolume in a box about the nondominated designs of both, from the best to the worst and a tenth of the range
- * beyond, of all designs that keep the limits. Medians over the seeds; the geometric mean over the problems.
+ * One search to the last budget is read at all of them. IGD+ to the true front (reference.h), normalised by its ranges.
+ * Hypervolume in a box about the nondominated designs of this program and of the plain search of the same seed, from
+ * the best to the worst and a tenth of the range beyond. Both of all designs that succeeded and keep the limits.
+ * Medians over the seeds; over the problems the geometric mean, or quartiles.
  *
  * Threads  those of the search */
 #ifndef IMTET_BENCH_SEARCH_FACTORS_H
@@ -17,14 +20,17 @@
 #include "settings/options.h"
 
 typedef struct {
-    const Settings *settings; /* of both searches, but for surrogate, seed and limits */
+    const Settings *settings; /* of all searches, but for surrogate, survival, seed and limits */
     const char *problems;     /* comma list; NULL: those not kept aside */
     int aside;                /* those kept aside instead */
     long n_seeds, first_seed;
-    long budgets[4]; /* evaluations, ascending; 0: none further */
+    long budgets[4];    /* evaluations, ascending; 0: none further */
+    const char *keep;   /* folder of the courses, which are not run again; NULL: none */
+    int with_methods;   /* the other methods too */
+    const char *curves; /* path of a CSV: hypervolume against hours; NULL: none */
 } FactorPlan;
 
-/* One line per problem, as they are done, then the means. */
+/* One line per problem, as they are done, then the means; of other methods one line each. */
 Status factors_run(const FactorPlan *plan, FILE *out, Err *err);
 
 #endif

@@ -202,6 +202,36 @@ static void evaluate(const Made *m, const double x[], double f[], double g[])
         g[1] = x[0] + x[1] + x[2] - 1.4;
 }
 
+/* simplex() the other way round. */
+static size_t place_on_simplex(size_t n_obj, const double w[], double x[])
+{
+    double left = 1.0;
+    for (size_t d = 0; d + 1 < n_obj; d++) {
+        x[d] = left > 1e-12 ? fmin(fmax(1.0 - w[n_obj - 1 - d] / left, 0.0), 1.0) : 0.5;
+        left *= x[d];
+    }
+    return n_obj - 1;
+}
+
+size_t family_place(const Problem *p, const double w[], double share, double x[])
+{
+    const Made *m = p->self;
+    memcpy(x, m->shift, p->n_var * sizeof *x);
+    if (m->recipe.front == QUADRATICS)
+        return 0;
+    if (m->recipe.front != CURVE)
+        return place_on_simplex(p->n_obj, w, x);
+    x[0] = share;
+    return 1;
+}
+
+double family_evaluate(const Problem *p, const double x[], double f[])
+{
+    double g[FAMILY_CON_MAX];
+    evaluate(p->self, x, f, g);
+    return fails(p->self, x) ? INFINITY : violation_of(p->n_con, g);
+}
+
 /* -- as a problem -------------------------------------------------------------------------------------------------- */
 
 static Status simulate(void *self, size_t worker, const Task *task, Err *err)

@@ -28,4 +28,12 @@ const Family *family(size_t i);
 /* Released by problem_close. */
 Status family_open(Problem *p, size_t i, Err *err);
 
+/* f (n_obj) of x; returns the violation of the limits, INFINITY where the simulation fails. */
+double family_evaluate(const Problem *p, const double x[], double f[]);
+
+/* x (n_var) where no limit and no failure hinders it at the front, at the direction w (n_obj) of the simplex or at a
+ * share 0..1 of a curve; of quadratics, which have no such variables, in their midst. Returns how many variables say
+ * where on the front; the others hold the distance. */
+size_t family_place(const Problem *p, const double w[], double share, double x[]);
+
 #endif

@@ -1,0 +1,31 @@
+/* bench/search/course.h -- all evaluations of one search in their order, kept in a file so that none is made twice.
+ *
+ * Life cycle  course_create -> (course_evaluate | course_add) ... -> course_save, course_free; or course_load
+ * Shapes      row-major F (n, n_obj), minimised
+ * File        of the machine that wrote it (order of bytes); replaced whole
+ * Threads     one Course per thread */
+#ifndef IMTET_BENCH_SEARCH_COURSE_H
+#define IMTET_BENCH_SEARCH_COURSE_H
+
+#include "evaluate/problem.h"
+
+typedef struct {
+    size_t n, n_max, n_obj;
+    double *F;
+    double *cpu_s;         /* (n) [s] processor time of the search until then, simulations of no cost among it */
+    unsigned char *counts; /* (n) it succeeded and keeps every limit */
+    double start_s;
+} Course;
+
+Status course_create(Course *c, size_t n_max, size_t n_obj, Err *err);
+void course_free(Course *c); /* a Course of zeros is fine */
+void course_add(Course *c, const double f[], int counts);
+
+/* Evaluates x into f and, where it is not NULL, its violation (INFINITY: failed), and adds it; 0: the course is full. */
+int course_evaluate(Course *c, const Problem *p, const double x[], double f[], double *violation);
+
+Status course_save(const Course *c, const char *path, Err *err);
+/* *found is 0 where there is no such file, or not one of so many evaluations. */
+Status course_load(Course *c, const char *path, size_t n, size_t n_obj, int *found, Err *err);
+
+#endif
