@@ -162,7 +162,7 @@ static void convergence(Trial *t)
     const double coarse = rebound_error(t, 1), middle = rebound_error(t, 0.25), fine = rebound_error(t, 0.0625);
     const int by_tolerance = trial_engine(t)->tolerance == TOLERANCE_RELATIVE;
     const double order = log(coarse / fine) / log(16) / (by_tolerance ? 3 : 1);
-    trial_remark(t, "RunErrors %.2g, %.2g, %.2g at %s 1 : 1/%d : 1/%d: order %.2f", coarse, middle, fine,
+    trial_remark(t, "Errors %.2g, %.2g, %.2g at %s 1 : 1/%d : 1/%d: order %.2f", coarse, middle, fine,
                  by_tolerance ? "tolerances" : "steps", by_tolerance ? 64 : 4, by_tolerance ? 4096 : 16, order);
     trial_note(t, NULL, fine, by_tolerance ? 1e-4 : 2e-2, "rebound error at the finest setting; order %.2f", order);
     trial_note(t, NULL, order > (by_tolerance ? 0.3 : 0.8) || fine < 1e-10 ? 0 : 1, 0.5, "order of convergence %.2f",
