@@ -198,7 +198,7 @@ static Status simulate_devices(const Problem *p, const double x[], EvaluatedRun 
 /* The words of a summary where they go with it to another process. */
 static void keep_words(EvaluatedRun *run)
 {
-    const char *const words[] = {run->replicates.rule, run->replicates.spread, run->replicates.reason};
+    const char *const words[] = {run->replicates.rule, run->replicates.spread};
     for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
         snprintf(run->words[i], sizeof run->words[i], "%s", words[i] ? words[i] : "");
 }
@@ -207,7 +207,6 @@ static void point_at_words(EvaluatedRun *run)
 {
     run->replicates.rule = run->words[0];
     run->replicates.spread = run->words[1];
-    run->replicates.reason = run->words[2];
     run->replicates.shown = NULL;
 }
 

@@ -48,7 +48,7 @@ typedef struct {
     SimResult result[N_WITH_DEVICES];
     LinearDevice device[N_WITH_DEVICES]; /* optimized under this record (simulator/baselines.h) */
     ReplicateSummary replicates;         /* of the design, where there are some; its words stand in the next line */
-    char words[3][160];
+    char words[2][40];
     double error[N_MEASURES]; /* of the design, estimated (simulator/estimate.h), where error_known */
     int error_known;          /* of records that were named, at one intensity, by the engine fast */
 } EvaluatedRun;

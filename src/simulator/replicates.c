@@ -125,7 +125,6 @@ void replicates_summarise(const ReplicatePlan *plan, const SimResult results[], 
         }
     }
     out->outcome = measure_outcome(out->shown->outcome);
-    out->reason = out->shown->reason;
     const int has_records = plan->rule == ROBUST_WORST || plan->rule == ROBUST_MEAN;
     for (int k = 0; k < N_MEASURES; k++)
         (has_records ? combine_records : combine_all)(plan, results, k, &out->mean[k], &out->sd[k]);

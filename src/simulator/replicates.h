@@ -44,9 +44,8 @@ typedef struct {
 } ReplicatePlan;
 
 typedef struct {
-    const SimResult *shown; /* the first that failed, else the design itself under the first record */
-    Outcome outcome;
-    const char *reason;
+    const SimResult *shown;                   /* the first that failed, else the design itself under the first record */
+    Outcome outcome;                          /* its reason stands in `shown` */
     const char *rule, *spread;                /* what `mean` is, "mean" or the rule of several records; of the plan */
     size_t n_records, n_replicates, n_failed; /* n_replicates of each record; n_failed of all simulations */
     double mean[N_MEASURES], sd[N_MEASURES];  /* natural; not finite where a simulation failed; sd NAN: one replicate */

@@ -61,7 +61,7 @@ static void combine(const void *self, const void *parts, Evaluation *e)
     const Tower *t = self;
     ReplicateSummary sum;
     replicates_summarise(&t->plan, parts, &sum);
-    evaluation_set_outcome(e, sum.outcome, sum.reason);
+    evaluation_set_outcome(e, sum.outcome, sum.shown->reason);
     for (int i = 0; i < t->order.n_obj; i++) {
         e->f[i] = sum.mean[t->order.of[i]];
         e->sd[i] = sum.sd[t->order.of[i]];
@@ -304,7 +304,9 @@ Status tower_simulate(const Problem *p, size_t n, const SimTask tasks[], SimResu
     return status;
 }
 
-static Status all_parts(Queue *q, size_t n, const double X[], SimResult results[], Err *err)
+typedef void TakeParts(const Problem *p, size_t i, const SimResult parts[], void *to);
+
+static Status ask_all(Queue *q, size_t n, const double X[], TakeParts *take, void *to, Err *err)
 {
     const Problem *p = queue_problem(q);
     Finished done;
@@ -312,42 +314,45 @@ static Status all_parts(Queue *q, size_t n, const double X[], SimResult results[
         TRY(queue_ask(q, &(Asked){.x = X + i * p->n_var}, err));
     for (size_t i = 0; i < n; i++) {
         TRY(queue_next(q, &done, err));
-        memcpy(results + i * p->n_parts, done.parts, p->n_parts * sizeof *results);
+        take(p, i, done.parts, to); /* they are the queue's */
     }
     return STATUS_OK;
 }
 
-Status tower_parts(const Problem *p, size_t n, const double X[], SimResult results[], Err *err)
+static Status each_part(const Problem *p, size_t n, const double X[], TakeParts *take, void *to, Err *err)
 {
     Queue *q;
     TRY(queue_open(&q, p, QUEUE_AS_ASKED, 0, 0, err));
-    const Status status = all_parts(q, n, X, results, err);
+    const Status status = ask_all(q, n, X, take, to, err);
     queue_close(q);
     return status;
 }
 
-static Status replicate_all(Queue *q, size_t n, const double X[], SimResult shown[], ReplicateSummary out[], Err *err)
+static void copy_parts(const Problem *p, size_t i, const SimResult parts[], void *to)
 {
-    const Problem *p = queue_problem(q);
-    Finished done;
-    for (size_t i = 0; i < n; i++)
-        TRY(queue_ask(q, &(Asked){.x = X + i * p->n_var}, err));
-    for (size_t i = 0; i < n; i++) {
-        TRY(queue_next(q, &done, err));
-        replicates_summarise(&tower_of(p)->plan, done.parts, &out[i]);
-        shown[i] = *out[i].shown;
-        out[i].shown = &shown[i]; /* the parts are the queue's */
-        out[i].reason = shown[i].reason;
-    }
-    return STATUS_OK;
+    memcpy((SimResult *)to + i * p->n_parts, parts, p->n_parts * sizeof *parts);
+}
+
+Status tower_parts(const Problem *p, size_t n, const double X[], SimResult results[], Err *err)
+{
+    return each_part(p, n, X, copy_parts, results, err);
+}
+
+typedef struct {
+    SimResult *shown;
+    ReplicateSummary *out;
+} Summaries;
+
+static void summarise_parts(const Problem *p, size_t i, const SimResult parts[], void *to)
+{
+    const Summaries *s = to;
+    replicates_summarise(&tower_of(p)->plan, parts, &s->out[i]);
+    s->shown[i] = *s->out[i].shown;
+    s->out[i].shown = &s->shown[i];
 }
 
 Status tower_replicate(const Problem *p, size_t n, const double X[], SimResult shown[], ReplicateSummary out[],
                        Err *err)
 {
-    Queue *q;
-    TRY(queue_open(&q, p, QUEUE_AS_ASKED, 0, 0, err));
-    const Status status = replicate_all(q, n, X, shown, out, err);
-    queue_close(q);
-    return status;
+    return each_part(p, n, X, summarise_parts, &(Summaries){shown, out}, err);
 }
