@@ -367,7 +367,8 @@ static void test_a_file_of_too_many_channels_is_refused(void **state)
 static void test_words_without_numbers_are_no_known_format_and_their_first_line_is_quoted(void **state)
 {
     (void)state;
-    static const char *const TEXTS[] = {"W. 12 garbage\n", "alpha\nbeta\n", "time acceleration\nabc def\n"};
+    static const char *const TEXTS[] = {"W. 12 garbage\n", "alpha\nbeta\n", "time acceleration\nabc def\n",
+                                        "W. station foo\n what\n1 2 3\n"};
     for (size_t i = 0; i < sizeof TEXTS / sizeof TEXTS[0]; i++) {
         Err err = {0};
         char quoted[40];
@@ -936,9 +937,95 @@ static void test_the_extremes_in_an_smc_header_are_checked(void **state)
     }
 }
 
+/* ---- what spreadsheets and data loggers write --------------------------------------------------------------------- */
+
+static void test_decimal_commas_are_read_whatever_parts_the_columns(void **state)
+{
+    (void)state;
+    static const char *const TEXTS[] = {
+        "time_s;a_m_s2\n0,00;3,1\n0,01;0,5\n0,02;-1\n",
+        "time_s\ta_m_s2\n0,00\t3,1\n0,01\t0,5\n0,02\t-1\n",
+        "# m/s2\n0,00  3,1\n0,01  0,5\n0,02  -1\n",
+        "\"time_s\",\"a_m_s2\"\n\"0,00\",\"3,1\"\n\"0,01\",\"0,5\"\n\"0,02\",\"-1\"\n",
+        "# dt = 0.01\na_m_s2\n3,1\n0,5\n-1,0\n",
+        "# dt = 0,01\nacc [m/s2]\n3,1\n0,5\n-1\n",
+        "# m/s2\n0.00, 3.1\n0.01, 0.5\n0.02, -1\n",
+        "acceleration (in m/s2)\n3 0,01\n3,1\n0,5\n-1,0\n",
+    };
+    for (size_t i = 0; i < sizeof TEXTS / sizeof TEXTS[0]; i++) {
+        Motion m;
+        Err err = {0};
+        CHECK_OK(parse_text(&m, TEXTS[i], &err), &err);
+        if (m.n != 3 || fabs(m.dt_s - 0.01) > 1e-15 || m.accel[0] != 3.1 || m.accel[1] != 0.5 || m.accel[2] != -1)
+            fail_msg("%s: %zu samples every %g s: %g %g", TEXTS[i], m.n, m.dt_s, m.accel[0], m.accel[1]);
+        motion_free(&m);
+    }
+}
+
+static void test_marks_of_thousands_and_commas_of_two_meanings_are_refused(void **state)
+{
+    (void)state;
+    expect_refusal("t;a_cm_s2\n0,00;1.234,5\n0,01;0,5\n", "there:2: '1.234,5' has a point and a comma");
+    expect_refusal("t\ta_cm_s2\n0,00\t1.234,5\n0,01\t0,5\n", "there:2: '1.234,5' has a point and a comma");
+    expect_refusal("t;a_cm_s2\n0.00;1,234.5\n0.01;0.5\n", "there:2: '1,234.5' has a point and a comma");
+    expect_refusal("t;a_cm_s2\n0,00;1,5\n0.01;0.5\n",
+                   "there:3: decimal points (line 3) and decimal commas (line 2) are mixed");
+    expect_refusal(
+        "# dt = 0.01, m/s2\n3,1\n0,5\n1,2\n0,3\n",
+        "there:2: has 4 rows of 2 columns without names: choose one by motion.channel (--channel 1 to 2); if "
+        "they are one motion written row by row, put '# npts = 8' above them; if they are one column with "
+        "decimal commas, put its name above it");
+}
+
+static void test_numbers_of_samples_are_no_seconds(void **state)
+{
+    (void)state;
+    static const char *const TEXTS[] = {"# m/s2\n%s0 1\n1 2\n2 -3\n", "# m/s2\n%s7,1\n8,2\n9,-3\n",
+                                        "%si,a_m_s2\n1,1\n2,2\n3,-3\n", "%sNo.;a [m/s2]\n0;1\n1;2\n2;-3\n"};
+    for (size_t i = 0; i < sizeof TEXTS / sizeof TEXTS[0]; i++) {
+        Motion m;
+        Err err = {0};
+        char text[100];
+        snprintf(text, sizeof text, TEXTS[i], "");
+        expect_refusal(text,
+                       "are these samples? Give their step (--set motion.dt_s=0.01); if they are seconds, name the "
+                       "column time_s");
+        CHECK_OK(motion_parse(&m, "there", text, strlen(text), &(MotionHow){.dt_s = 0.02}, &err), &err);
+        assert_close(m.dt_s, 0.02, 0);
+        assert_close(m.accel[2], -3, 0);
+        motion_free(&m);
+        snprintf(text, sizeof text, TEXTS[i], "# dt = 0.02\n");
+        CHECK_OK(parse_text(&m, text, &err), &err);
+        assert_close(m.dt_s, 0.02, 0);
+        motion_free(&m);
+    }
+    Motion m;
+    Err err = {0};
+    CHECK_OK(parse_text(&m, "time_s,a_m_s2\n0,1\n1,2\n2,-3\n", &err), &err);
+    assert_close(m.dt_s, 1, 0);
+    motion_free(&m);
+}
+
+static void test_the_column_of_times_is_found_by_its_name(void **state)
+{
+    (void)state;
+    static const char *const TEXTS[] = {"acc_g,time_s\n0.1,0\n0.2,0.01\n-.3,0.02\n",
+                                        "acc (g) t [s]\n0.1 0\n0.2 0.01\n-.3 0.02\n",
+                                        "NS_g;Time (sec);EW_g\n.1;0;1\n.2;.01;2\n-.3;.02;3\n"};
+    for (size_t i = 0; i < sizeof TEXTS / sizeof TEXTS[0]; i++) {
+        Motion m;
+        Err err = {0};
+        CHECK_OK(motion_parse(&m, "there", TEXTS[i], strlen(TEXTS[i]), &FIRST, &err), &err);
+        assert_close(m.dt_s, 0.01, 1e-15);
+        assert_close(m.accel[2], -.3 * 9.81, 1e-12);
+        motion_free(&m);
+    }
+    expect_refusal("acc_g,time_ms\n0.1,0\n0.2,10\n", "the column of times is 'time_ms'; times must be in seconds");
+}
+
 /* ---- names and headers that people have --------------------------------------------------------------------------- */
 
-static void test_kiknet_numbers_are_directions_in_the_borehole_and_at_the_surface(void **state)
+static void test_kiknet_numbers_are_directions_and_what_is_no_direction_is_refused(void **state)
 {
     (void)state;
     static const char *const NAMES[] = {"NS1", "EW1", "UD1", "NS2", "EW2", "UD2"};
@@ -953,6 +1040,18 @@ static void test_kiknet_numbers_are_directions_in_the_borehole_and_at_the_surfac
         motion_free(&m);
         free(t.text);
     }
+    for (int k = 0; k < 2; k++) {
+        Err err = {0};
+        Text t =
+            changed(read_specimen("one.kiknet"), "Dir.              5", k ? "Dir.              SW" : "Dir.      7", 0);
+        assert_int_equal(motion_parse(&(Motion){0}, "one.kiknet", t.text, t.length, &(MotionHow){0}, &err),
+                         STATUS_BAD_DATA);
+        if (!strstr(err.text, k ? "one.kiknet:13: the direction 'SW' is none of N-S, E-W, U-D (K-NET), 1 to 6 (KiK-net)"
+                                : "the direction '7' is none"))
+            fail_msg("%s", err.text);
+        free(t.text);
+    }
+    refused("old.v1a", &(MotionHow){0}, "holds 3 channels: 1 (no name), 2 (no name), 3 (no name); choose one");
 }
 
 static void test_five_columns_without_a_step_ask_for_the_step_and_not_for_a_channel(void **state)
@@ -1012,7 +1111,11 @@ int main(void)
         cmocka_unit_test(test_what_is_wrong_in_a_file_of_a_kinemetrics_recorder_is_said),
         cmocka_unit_test(test_every_format_with_a_peak_in_its_header_is_checked_against_it),
         cmocka_unit_test(test_the_extremes_in_an_smc_header_are_checked),
-        cmocka_unit_test(test_kiknet_numbers_are_directions_in_the_borehole_and_at_the_surface),
+        cmocka_unit_test(test_kiknet_numbers_are_directions_and_what_is_no_direction_is_refused),
+        cmocka_unit_test(test_decimal_commas_are_read_whatever_parts_the_columns),
+        cmocka_unit_test(test_marks_of_thousands_and_commas_of_two_meanings_are_refused),
+        cmocka_unit_test(test_numbers_of_samples_are_no_seconds),
+        cmocka_unit_test(test_the_column_of_times_is_found_by_its_name),
         cmocka_unit_test(test_five_columns_without_a_step_ask_for_the_step_and_not_for_a_channel),
         cmocka_unit_test(test_the_body_of_a_file_of_three_components_is_asked_about_and_not_joined),
         cmocka_unit_test(test_a_step_in_the_first_line_above_words_is_found),

@@ -71,7 +71,8 @@ static void list_channels(const Record *r, char list[LIST_MAX])
     for (size_t i = 0; i < n && used + (size_t)shown + 24 < LIST_MAX; i++) {
         char name[CHANNEL_NAME_MAX + 1];
         name_shorten(name, (size_t)shown, r->channel[i].name);
-        used += (size_t)snprintf(list + used, LIST_MAX - used, "%s%zu '%s'", i ? ", " : "", i + 1, name);
+        used += (size_t)snprintf(list + used, LIST_MAX - used, name[0] ? "%s%zu '%s'" : "%s%zu (no name)",
+                                 i ? ", " : "", i + 1, name);
         if (i + 1 < n && used + (size_t)shown + 24 >= LIST_MAX)
             snprintf(list + used, LIST_MAX - used, ", ... %zu", n);
     }

@@ -5,10 +5,11 @@
  *   names     lines of words above the numbers; the last of them names the columns, a unit there wins
  *   npts dt   two numbers alone in the first row, or one each in the first two, where the first is the number of samples or
  *             rows that follow; npts alone in the first row
- *   times     the first column, unless there is only one, or the names or the numbers say that it is none; then the
- *             step must be known
+ *   times     the column that is named so, else the first, unless there is only one, or the names or the numbers say that
+ *             it is none; then the step must be known. 0, 1, 2, ... without such a name are numbers of samples
  *   rows      numbers without names are read row by row as one long column where their number is the one that is stated
- *   1,5;2,5   with semicolons and no points the comma is a decimal one */
+ *   1,5;2,5   a comma is a decimal one where semicolons, tabs or blanks part the columns and every comma stands between
+ *             digits, and where the names name one column and no number has a point */
 #include "scene/formats/columns.h"
 
 #include <ctype.h>
@@ -36,25 +37,50 @@ static int count_decimals(const char *from, const char *to)
     return n;
 }
 
-static int has_decimal_commas(const Lines *l)
+/* Does something else than commas part the columns? */
+static int has_decimal_commas(const Lines *l, int is_one)
+{
+    int parted = is_one;
+    if (memchr(l->from, ';', (size_t)(l->to - l->from)))
+        return 1;
+    for (const char *p = l->from; p < l->to; p++) {
+        if (*p == ',' &&
+            !(p > l->from && isdigit((unsigned char)p[-1]) && p + 1 < l->to && isdigit((unsigned char)p[1])))
+            return 0;
+        parted |= *p == ' ' || *p == '\t';
+    }
+    return parted;
+}
+
+/* Decimal points and decimal commas are not of one file: one of them would be a mark of thousands. */
+static Status note_marks(Columns *columns, const Lines *l, int with_comma, Err *err)
 {
     const size_t n = (size_t)(l->to - l->from);
-    return memchr(l->from, ';', n) && memchr(l->from, ',', n) && !memchr(l->from, '.', n);
+    if (!columns->point_line && memchr(l->from, '.', n))
+        columns->point_line = l->number;
+    if (!columns->comma_line && with_comma && memchr(l->from, ',', n))
+        columns->comma_line = l->number;
+    return !columns->point_line || !columns->comma_line
+               ? STATUS_OK
+               : fail(err, STATUS_BAD_DATA, "%s:%d: decimal points (line %d) and decimal commas (line %d) are mixed",
+                      l->path, l->number, columns->point_line, columns->comma_line);
 }
 
 Status columns_add(Columns *columns, Record *r, const Lines *l, Err *err)
 {
-    const int with_comma = has_decimal_commas(l);
+    const int with_comma = has_decimal_commas(l, columns->is_one);
     size_t n = 0;
     for (const char *p = l->from; p < l->to; n++) {
         const char *from = p, *to = field_next(l, &p, with_comma);
+        const int is_quoted = from < to && *from == '"';
         field_strip(&from, &to);
-        Row row = {.line = l->number, .decimals = n == 0 ? count_decimals(from, to) : 0};
-        TRY(field_number(l, from, to, with_comma, &row.a, err));
+        Row row = {.line = l->number, .decimals = count_decimals(from, to)};
+        TRY(field_number(l, from, to, with_comma || is_quoted, &row.a, err));
         if (n > CHANNELS_MAX)
             return fail(err, STATUS_BAD_DATA, "%s:%d: more than %d channels", l->path, l->number, CHANNELS_MAX);
         TRY(record_add(r, l, row, err));
     }
+    TRY(note_marks(columns, l, with_comma, err));
     if (columns->n_rows++ == 0)
         columns->width = n;
     if (n != columns->width && !columns->odd_line) {
@@ -83,7 +109,8 @@ Status columns_check(const Columns *columns, const Lines *l, Err *err)
 /* Width, rows and odd line of the rows that r holds. */
 static void recount(Columns *columns, const Record *r)
 {
-    *columns = (Columns){0};
+    columns->n_rows = 0;
+    columns->odd_line = 0;
     for (size_t i = 0, n; i < r->n; i += n, columns->n_rows++) {
         for (n = 1; i + n < r->n && r->row[i + n].line == r->row[i].line; n++)
             ;
@@ -97,6 +124,14 @@ static void recount(Columns *columns, const Record *r)
     }
 }
 
+/* Blanks before a unit in brackets, "acc [m/s2]", part no names. */
+static int begins_unit(const char *p, const char *to)
+{
+    while (p < to && *p == ' ')
+        p++;
+    return p < to && (*p == '[' || *p == '(');
+}
+
 int column_name(const Lines *l, const char **p, const char **from, const char **to)
 {
     int marked = 0;
@@ -107,8 +142,12 @@ int column_name(const Lines *l, const char **p, const char **from, const char **
         ++*p;
     if (*p >= l->to)
         return 0;
-    for (*from = *p; *p < l->to && !(strchr(parting, **p) && **p); ++*p)
-        ;
+    int deep = 0;
+    for (*from = *p; *p < l->to; ++*p) {
+        deep += !marked && strchr("([", **p) ? 1 : !marked && strchr(")]", **p) ? -1 : 0;
+        if (strchr(parting, **p) && deep <= 0 && !(!marked && begins_unit(*p, l->to)))
+            break;
+    }
     *to = *p;
     *p += *p < l->to;
     return 1;
@@ -135,7 +174,8 @@ static int is_words(const Lines *l)
     if (!isalpha((unsigned char)*l->from) && !strchr("\"'[(", *l->from))
         return 0;
     const char *p = l->from, *to = field_next(l, &p, 0);
-    return field_number(l, l->from, to, 0, &x, &(Err){0}) != STATUS_OK && !number_behind(l->from, to, "", &x) &&
+    return field_number(l, l->from, to, *l->from == '"', &x, &(Err){0}) != STATUS_OK &&
+           !number_behind(l->from, to, "", &x) &&
            !(to - l->from == 3 && (line_begins(l, "nan") || line_begins(l, "inf")));
 }
 
@@ -228,26 +268,33 @@ static Status read_rows(Record *r, Lines *l, Preface *preface, Columns *columns,
 
 /* ---- which column is what ------------------------------------------------------------------------------------- */
 
-static int names_times(const Lines *names)
+/* Name of column k, from 0; 0: it has none. */
+static int name_of(const Lines *names, size_t k, Channel *c)
+{
+    const char *p = names->from, *from, *to;
+    for (size_t i = 0; i <= k; i++)
+        if (!p || !column_name(names, &p, &from, &to))
+            return 0;
+    channel_name(c, from, to);
+    return 1;
+}
+
+static int names_times(const Lines *names, size_t k)
 {
     Channel c;
-    const char *p = names->from, *from, *to;
-    if (!column_name(names, &p, &from, &to))
+    if (!name_of(names, k, &c))
         return 0;
-    channel_name(&c, from, to);
     return strncasecmp(c.name, "time", 4) == 0 || strncasecmp(c.name, "sec", 3) == 0 ||
            (tolower((unsigned char)c.name[0]) == 't' && !isalnum((unsigned char)c.name[1]));
 }
 
 /* Times are seconds: a name that says otherwise is refused before it shakes a tower a thousand times too slowly. */
-static Status times_are_seconds(const Lines *names, const char *path, Err *err)
+static Status times_are_seconds(const Lines *names, size_t k, const char *path, Err *err)
 {
     static const char *const OTHERS[] = {"ms", "msec", "us", "min", "minutes", "h", "hours"};
     Channel c;
-    const char *p = names->from, *from, *to;
-    if (!names->from || !column_name(names, &p, &from, &to))
+    if (!name_of(names, k, &c))
         return STATUS_OK;
-    channel_name(&c, from, to);
     for (const char *word = c.name; *word;) {
         const size_t length = strcspn(word, "_ ()[],");
         for (size_t i = 0; i < sizeof OTHERS / sizeof OTHERS[0]; i++)
@@ -266,6 +313,15 @@ static int times_increase(const Record *r, const Columns *columns)
         if (!(r->row[i].a > r->row[i - columns->width].a))
             return 0;
     return !columns->odd_line;
+}
+
+/* 0, 1, 2, ... or from another whole number on: these are samples, not seconds. */
+static int counts_samples(const Record *r, const Columns *columns)
+{
+    for (size_t i = 0; i < r->n; i += columns->width)
+        if (r->row[i].decimals != 0 || r->row[i].a != r->row[0].a + (double)(i / columns->width))
+            return 0;
+    return !columns->odd_line && columns->width > 1 && columns->n_rows > 1 && r->row[0].a == floor(r->row[0].a);
 }
 
 /* Rising at three steps of four at least: times, perhaps with a mistake, and no acceleration. */
@@ -293,7 +349,7 @@ static void take_count(Record *r, Columns *columns, Preface *preface)
     if (r->n < 4 || columns->width > 2 || (columns->width == 1 && r->n < SAMPLES_MIN))
         return;
     const double count = r->row[0].a, dt = r->row[1].a, rows = (double)columns->n_rows;
-    const int is_step = dt > 0 && dt <= MOTION_STEP_MAX_S;
+    const int is_step = dt > 0 && dt < MOTION_STEP_MAX_S && (preface->dt == 0 || preface->dt == dt);
     const int in_two = columns->width == 1 && r->row[2].line != r->row[1].line && count == (double)r->n - 2;
     const int is_pair = columns->width == 2 && (count == (double)r->n - 2 || count == rows - 1);
     if (is_step && (is_pair || in_two)) {
@@ -307,11 +363,15 @@ static void take_count(Record *r, Columns *columns, Preface *preface)
     preface->count = count;
 }
 
-static void set_times(Record *r, size_t width)
+/* Column k of each row. */
+static void set_times(Record *r, size_t width, size_t k)
 {
-    for (size_t i = 0; i < r->n; i++) {
-        r->row[i].t = r->row[i - i % width].a;
-        r->row[i].decimals = r->row[i - i % width].decimals;
+    for (size_t i = 0; i + width <= r->n; i += width) {
+        const Row time = r->row[i + k];
+        for (size_t j = i; j < i + width; j++) {
+            r->row[j].t = time.a;
+            r->row[j].decimals = time.decimals;
+        }
     }
 }
 
@@ -323,25 +383,24 @@ static Status one_long_column(Record *r, const Lines *l, const Preface *preface,
     return STATUS_OK;
 }
 
-/* Columns `first` and on become channels. A column that names no unit has that of the line of names as a whole where it
- * is the only one, else that of the comments. */
-static Status name_channels(Record *r, const Lines *l, const Preface *preface, const Columns *columns, size_t first,
-                            Err *err)
+/* All columns but `skipped` become channels, at equal steps unless they are `timed`. A column that names no unit has that of
+ * the line of names as a whole where it is the only one, else that of the comments. */
+static Status name_channels(Record *r, const Lines *l, const Preface *preface, const Columns *columns, size_t skipped,
+                            int timed, Err *err)
 {
     const Lines *names = &preface->names;
-    const int named = count_names(names) == columns->width;
-    const unsigned in_names =
-        names->from && (columns->width - first == 1 || !named) ? units_named(names->from, names->to) : 0;
+    const int named = count_names(names) == columns->width, is_only = columns->width - (skipped < columns->width) == 1;
+    const unsigned in_names = names->from && (is_only || !named) ? units_named(names->from, names->to) : 0;
     const char *p = names->from, *from = NULL, *to = NULL;
     for (size_t k = 0; k < columns->width; k++) {
         Channel *c;
         if (named)
             column_name(names, &p, &from, &to);
-        if (k < first)
+        if (k == skipped)
             continue;
         TRY(record_channel(r, l, &c, err));
         *c = (Channel){
-            .scale = 1, .dt = first ? 0 : preface->dt, .first = k, .stride = columns->width, .n = columns->n_rows};
+            .scale = 1, .dt = timed ? 0 : preface->dt, .first = k, .stride = columns->width, .n = columns->n_rows};
         if (named)
             channel_name(c, from, to);
         c->units = named ? units_named(from, to) : 0;
@@ -368,30 +427,60 @@ static Status fail_unnamed(const Record *r, const Lines *l, const Columns *colum
                     l->path, r->row[0].line, columns->width);
     return fail(err, STATUS_BAD_DATA,
                 "%s:%d: has %zu rows of %zu columns without names: choose one by motion.channel (--channel 1 to %zu); "
-                "if they are one motion written row by row, put '# npts = %zu' above them",
-                l->path, r->row[0].line, columns->n_rows, columns->width, columns->width, r->n);
+                "if they are one motion written row by row, put '# npts = %zu' above them%s",
+                l->path, r->row[0].line, columns->n_rows, columns->width, columns->width, r->n,
+                columns->width == 2 && !columns->point_line
+                    ? "; if they are one column with decimal commas, put its name above it"
+                    : "");
+}
+
+/* Rows, with the comma as decimal mark where the names name one column; then without what stands above the samples. */
+static Status read_table(Record *r, Lines *l, Preface *preface, Columns *columns, Err *err)
+{
+    const Lines start = *l;
+    Lines first = start;
+    TRY(read_rows(r, l, preface, columns, err));
+    if (columns->n_rows < 2 && count_names(&preface->names) != columns->width && lines_next_filled(&first) &&
+        !is_comment(&first) && !(preface->count > 1))
+        return fail_unknown(l, start, err);
+    if (count_names(&preface->names) == 1 && columns->width == 2 && !columns->point_line) {
+        *columns = (Columns){.is_one = 1};
+        *l = start;
+        r->n = 0;
+        TRY(read_rows(r, l, preface, columns, err));
+    }
+    take_count(r, columns, preface);
+    if (preface->names.from && count_names(&preface->names) != columns->width)
+        take_numbers(&preface->names, preface);
+    if (columns->n_rows < 2 && columns->width < 3)
+        return fail(err, STATUS_BAD_DATA, "%s: holds %zu sample%s; at least two are needed", l->path, columns->n_rows,
+                    columns->n_rows == 1 ? "" : "s");
+    return STATUS_OK;
+}
+
+/* The column that is named as times, or the first, where none is. */
+static size_t column_of_times(const Preface *preface, const Columns *columns, int *known)
+{
+    *known = 0;
+    for (size_t k = 0; count_names(&preface->names) == columns->width && k < columns->width; k++) {
+        *known = names_times(&preface->names, k);
+        if (*known)
+            return k;
+    }
+    return 0;
 }
 
 static Status read(Record *r, Lines *l, const ReadHints *hints, Err *err)
 {
     Preface preface = {0};
     Columns columns = {0};
-    const Lines start = *l;
-    Lines first = start;
-    TRY(read_rows(r, l, &preface, &columns, err));
-    if (columns.n_rows == 0 && lines_next_filled(&first) && !is_comment(&first))
-        return fail_unknown(l, start, err);
-    take_count(r, &columns, &preface);
-    if (preface.names.from && count_names(&preface.names) != columns.width)
-        take_numbers(&preface.names, &preface);
-    if (columns.n_rows < 2 && columns.width < 3)
-        return fail(err, STATUS_BAD_DATA, "%s: holds %zu sample%s; at least two are needed", l->path, columns.n_rows,
-                    columns.n_rows == 1 ? "" : "s");
+    int known;
+    TRY(read_table(r, l, &preface, &columns, err));
     preface.dt = preface.dt > 0 ? preface.dt : hints->dt_s;
     const int named = count_names(&preface.names) == columns.width;
     const unsigned units = preface.names.from ? units_named(preface.names.from, preface.names.to) : 0;
-    const int known = named && names_times(&preface.names);
-    int timeless = columns.width == 1 || (named && preface.dt > 0 && !known);
+    const size_t times = column_of_times(&preface, &columns, &known);
+    int timed = columns.width > 1 && !(named && preface.dt > 0 && !known);
     if (columns.width == 1 && !(preface.dt > 0))
         return fail(err, STATUS_BAD_DATA,
                     "%s:%d: has one column and does not say its step; set motion.dt_s, or give times beside it",
@@ -399,17 +488,23 @@ static Status read(Record *r, Lines *l, const ReadHints *hints, Err *err)
     if (columns.width > 1 && !named && preface.dt > 0 && preface.count == (double)r->n)
         return one_long_column(r, l, &preface, units ? units : preface.in_comments, err);
     if (columns.width > 1 && !named && !times_increase(r, &columns)) {
-        timeless = preface.dt > 0 || !looks_like_times(r, &columns);
-        if (columns.odd_line || (timeless && (!(preface.dt > 0) || !hints->channel)))
+        timed = !(preface.dt > 0) && looks_like_times(r, &columns);
+        if (columns.odd_line || (!timed && (!(preface.dt > 0) || !hints->channel)))
             return fail_unnamed(r, l, &columns, &preface, err);
     }
     TRY(columns_check(&columns, l, err));
-    if (!timeless) {
-        if (named)
-            TRY(times_are_seconds(&preface.names, l->path, err));
-        set_times(r, columns.width);
-    }
-    return name_channels(r, l, &preface, &columns, !timeless, err);
+    const int numbered = !known && counts_samples(r, &columns);
+    if (numbered && !(preface.dt > 0))
+        return fail(err, STATUS_BAD_DATA,
+                    "%s:%d: the first column counts %g, %g, ...: are these samples? Give their step (--set "
+                    "motion.dt_s=0.01); if they are seconds, name the column time_s",
+                    l->path, r->row[0].line, r->row[0].a, r->row[columns.width].a);
+    timed = timed && !numbered;
+    if (timed && named)
+        TRY(times_are_seconds(&preface.names, times, l->path, err));
+    if (timed)
+        set_times(r, columns.width, times);
+    return name_channels(r, l, &preface, &columns, timed || numbered ? times : columns.width, timed, err);
 }
 
 const MotionFormat FORMAT_COLUMNS = {"csv", recognise, read};

@@ -5,9 +5,11 @@
 #include "scene/formats/record.h"
 
 typedef struct {
-    size_t width, n_rows;      /* numbers of the first row */
-    int odd_line;              /* the first line that is not as wide, 0: none */
-    size_t odd_width, odd_row; /* how wide, and how many rows are above it */
+    size_t width, n_rows;       /* numbers of the first row */
+    int odd_line;               /* the first line that is not as wide, 0: none */
+    size_t odd_width, odd_row;  /* how wide, and how many rows are above it */
+    int is_one;                 /* one column: no comma parts anything */
+    int point_line, comma_line; /* the first line with a decimal point, with a decimal comma; 0: none */
 } Columns;
 
 /* The numbers of the line, one Row each, behind those of the lines before. */

@@ -48,12 +48,20 @@ static double scale_factor(const Lines *l)
     return ok && find_word(l->from, slash, "gal") ? gal / counts : NAN;
 }
 
-static void name_direction(Channel *c, const Lines *l)
+static Status name_direction(Channel *c, const Lines *l, Err *err)
 {
-    static const char *const KIKNET[] = {"NS1", "EW1", "UD1", "NS2", "EW2", "UD2"};
+    static const char *const KIKNET[] = {"NS1", "EW1", "UD1", "NS2", "EW2", "UD2"}, *const KNET[] = {"N-S", "E-W",
+                                                                                                     "U-D"};
     channel_name(c, l->from + strlen("Dir."), l->to);
-    if (c->name[0] >= '1' && c->name[0] <= '6' && !c->name[1])
-        channel_name(c, KIKNET[c->name[0] - '1'], KIKNET[c->name[0] - '1'] + 3);
+    for (int i = 0; i < 3; i++)
+        if (strcmp(c->name, KNET[i]) == 0)
+            return STATUS_OK;
+    if (c->name[0] < '1' || c->name[0] > '6' || c->name[1])
+        return fail(err, STATUS_BAD_DATA,
+                    "%s:%d: the direction '%s' is none of N-S, E-W, U-D (K-NET), 1 to 6 (KiK-net)", l->path, l->number,
+                    c->name);
+    channel_name(c, KIKNET[c->name[0] - '1'], KIKNET[c->name[0] - '1'] + 3);
+    return STATUS_OK;
 }
 
 static Status read(Record *r, Lines *l, const ReadHints *hints, Err *err)
@@ -72,7 +80,7 @@ static Status read(Record *r, Lines *l, const ReadHints *hints, Err *err)
     number_behind(h.frequency.from, h.frequency.to, "(Hz)", &hertz);
     number_behind(h.duration.from, h.duration.to, "(s)", &seconds);
     TRY(record_channel(r, l, &c, err));
-    name_direction(c, &h.direction);
+    TRY(name_direction(c, &h.direction, err));
     c->subtract_mean = 1;
     if (h.peak.from)
         channel_peak(c, h.peak.from, h.peak.to, "(gal)", 0.01);

@@ -111,6 +111,10 @@ Status field_number(const Lines *l, const char *from, const char *to, int with_c
     const int is_text = tidy(from, to, with_comma, text);
     if (is_text)
         *x = strtod(text, &stop);
+    if (with_comma && memchr(from, '.', (size_t)(to - from)) && memchr(from, ',', (size_t)(to - from)))
+        return fail(err, STATUS_BAD_DATA,
+                    "%s:%d: '%.*s' has a point and a comma; write numbers without marks of thousands", l->path,
+                    l->number, (int)(to - from < 40 ? to - from : 40), from);
     if (!is_text || stop == text || *stop)
         return fail(err, STATUS_BAD_DATA, "%s:%d: '%.*s' is not a number", l->path, l->number,
                     (int)(to - from < 40 ? to - from : 40), from);
@@ -122,7 +126,8 @@ Status field_number(const Lines *l, const char *from, const char *to, int with_c
 const char *field_next(const Lines *l, const char **p, int with_comma)
 {
     const char *parting = with_comma ? ";" : ",;";
-    const char *end = *p;
+    const char *end = *p, *quote = end < l->to && *end == '"' ? memchr(end + 1, '"', (size_t)(l->to - end - 1)) : NULL;
+    end = quote ? quote : end;
     while (end < l->to && !isspace((unsigned char)*end) && !strchr(parting, *end))
         end++;
     const char *next = end;
@@ -145,6 +150,11 @@ int number_behind(const char *from, const char *to, const char *word, double *x)
     memcpy(text, p, n);
     text[n] = 0;
     *x = strtod(text, &stop);
+    if (*stop == ',' && stop > text && isdigit((unsigned char)stop[-1]) && isdigit((unsigned char)stop[1]) &&
+        !memchr(text, '.', strcspn(text, " \t"))) { /* a decimal comma */
+        *stop = '.';
+        *x = strtod(text, &stop);
+    }
     return stop != text && isfinite(*x) && !memchr(text, 'x', (size_t)(stop - text)) &&
            !memchr(text, 'X', (size_t)(stop - text));
 }

@@ -30,7 +30,7 @@ int line_has(const Lines *l, const char *word);
 
 const char *find_word(const char *from, const char *to, const char *word); /* without regard to case; NULL: none */
 
-/* The first number in `from`..`to` behind `word` and any of " =:(": 1, else 0. */
+/* The first number in `from`..`to` behind `word` and any of " =:(", decimal point or comma: 1, else 0. */
 int number_behind(const char *from, const char *to, const char *word, double *x);
 
 /* Drops the blanks around a field, and then a pair of double quotes. */
@@ -39,7 +39,8 @@ void field_strip(const char **from, const char **to);
 /* All of the field is one number, blanks and quotes around it allowed. with_comma: 1,5 is one and a half. */
 Status field_number(const Lines *l, const char *from, const char *to, int with_comma, double *x, Err *err);
 
-/* The field that begins at *p, whose end is returned; *p moves to the next one (to the line's end after the last). */
+/* The field that begins at *p, whose end is returned; *p moves to the next one (to the line's end after the last). What is
+ * in quotes is one. */
 const char *field_next(const Lines *l, const char **p, int with_comma);
 
 /* Numbers of the line, at most max; *n is how many. Fields parted by blanks, unless that gives something that is no
