@@ -84,6 +84,34 @@ static int exponent_of(Binary b)
     return x + (q <= FIVES_MAX && scaled(b, q) >> -(b.e + q) >= 10 * TEN_16);
 }
 
+/* The last n digits of D, 8 at most at a time: those of two halves do not wait for each other. */
+static void spell(uint64_t D, int n, char text[])
+{
+    static const char PAIRS[] =
+        "00010203040506070809101112131415161718192021222324252627282930313233343536373839404142434445464748"
+        "49505152535455565758596061626364656667686970717273747576777879808182838485868788899091929394959697"
+        "9899";
+    for (int end = n; end > 0; end -= 8) {
+        const int begin = end > 8 ? end - 8 : 0;
+        uint32_t eight = (uint32_t)(D % 100000000);
+        int i = end;
+        D /= 100000000;
+        for (; i - 2 >= begin; i -= 2, eight /= 100)
+            memcpy(text + i - 2, PAIRS + 2 * (eight % 100), 2);
+        if (i > begin)
+            text[begin] = (char)('0' + eight % 10);
+    }
+}
+
+/* "e-05"; |x| < 100 */
+static char *put_exponent(int x, char *to)
+{
+    *to++ = 'e';
+    *to++ = x < 0 ? '-' : '+';
+    spell((uint64_t)abs(x), 2, to);
+    return to + 2;
+}
+
 /* D has n digits, the first of 10^x. */
 static size_t put_digits(uint64_t D, int n, int x, char text[])
 {
@@ -93,29 +121,20 @@ static size_t put_digits(uint64_t D, int n, int x, char text[])
         D /= 10;
         x++;
     }
-    for (int i = n; i-- > 0; D /= 10)
-        digit[i] = (char)('0' + D % 10);
+    spell(D, n, digit);
     while (kept > 1 && digit[kept - 1] == '0')
         kept--;
-    if (x < -4 || x >= n) {
-        *to++ = digit[0];
-        if (kept > 1)
-            *to++ = '.';
-        memcpy(to, digit + 1, (size_t)kept - 1);
-        to += kept - 1;
-        return (size_t)(to - text) + (size_t)sprintf(to, "e%+03d", x);
-    }
-    if (x < 0) {
-        static const char ZEROS[] = "0.0000";
-        memcpy(to, ZEROS, (size_t)(1 - x));
-        to += 1 - x;
-    }
-    for (int i = 0; i < kept || i <= x; i++) {
-        if (x >= 0 && i == x + 1)
-            *to++ = '.';
+    const int whole = x < -4 || x >= n ? 1 : x < 0 ? 0 : x + 1; /* digits before the point */
+    if (x < 0 && whole == 0)
+        to = mempcpy(to, "0.0000", (size_t)(1 - x));
+    for (int i = 0; i < whole; i++)
         *to++ = i < kept ? digit[i] : '0';
+    if (kept > whole) {
+        if (whole > 0)
+            *to++ = '.';
+        to = mempcpy(to, digit + whole, (size_t)(kept - whole));
     }
-    return (size_t)(to - text);
+    return (size_t)((x < -4 || x >= n ? put_exponent(x, to) : to) - text);
 }
 
 static size_t text_by_printf(double value, char text[NUMBER_TEXT_MAX])
@@ -132,13 +151,13 @@ static size_t text_by_printf(double value, char text[NUMBER_TEXT_MAX])
 size_t number_text(double value, char text[NUMBER_TEXT_MAX])
 {
     const double size = fabs(value);
-    int e;
+    uint64_t bits;
     if (value == 0.0)
         return (size_t)sprintf(text, "%s", signbit(value) ? "-0" : "0");
     if (!(size >= 1e-10 && size < 1e15))
         return text_by_printf(value, text);
-    Binary b = {.m = (uint64_t)ldexp(frexp(size, &e), 53)};
-    b.e = e - 53;
+    memcpy(&bits, &size, sizeof bits); /* of a normal number: 11 bits of exponent, 52 of the rest */
+    const Binary b = {.m = (bits & (((uint64_t)1 << 52) - 1)) | (uint64_t)1 << 52, .e = (int)(bits >> 52) - 1075};
     const int x = exponent_of(b), sign = value < 0.0;
     text[0] = '-';
     for (int n = 15;; n++) {
@@ -173,26 +192,28 @@ static double quotient(uint64_t D, int k)
     return ldexp((double)q, low - shift - k);
 }
 
-/* The digits from the first that is not 0, the point left out; places: digits behind it. NULL: more than 19, or none. */
+static const char *take_digits(const char *at, uint64_t *D)
+{
+    for (unsigned digit; (digit = (unsigned)(*at - '0')) < 10; at++)
+        *D = 10 * *D + digit;
+    return at;
+}
+
+/* The digits, the point left out; places: digits behind it. NULL: more than 19 from the first that is not 0, or none. */
 static const char *read_digits(const char *at, uint64_t *D, int *places)
 {
-    int n = 0, known = 0, point = 0;
+    const char *const begin = at, *end;
     *D = 0;
-    *places = 0;
-    for (;; at++) {
-        if (*at == '.' && !point) {
-            point = 1;
-            continue;
-        }
-        if (*at < '0' || *at > '9')
-            return known ? at : NULL;
-        known = 1;
-        n += *D > 0 || *at != '0';
-        if (n > 19)
-            return NULL;
-        *D = 10 * *D + (uint64_t)(*at - '0');
-        *places += point;
-    }
+    end = at = take_digits(at, D);
+    if (*at == '.')
+        end = take_digits(at + 1, D);
+    *places = end > at ? (int)(end - at) - 1 : 0;
+    long n = end - begin - (end > at);
+    if (n == 0)
+        return NULL;
+    for (const char *zero = begin; n > 19 && (*zero == '0' || *zero == '.'); zero++)
+        n -= *zero == '0';
+    return n > 19 ? NULL : end;
 }
 
 /* Behind "e-05", with the digits that it moves the point; `at` where there is no such thing. */

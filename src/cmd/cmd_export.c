@@ -6,6 +6,11 @@
 #include "store/output.h"
 #include "store/run_read.h"
 
+typedef struct {
+    const Args *args;
+    Output o;
+} AllOfRun;
+
 /* A well-spread choice of the front: the knee first, then again and again the design farthest from those chosen. */
 static Status write_selected(const Args *args, const Run *run, FILE *f, Err *err)
 {
@@ -46,10 +51,32 @@ static Status write_tables(const Args *args, const Run *run, Err *err)
     return output_close(&o, err);
 }
 
+static Status open_target(const Run *run, FILE **f, void *user, Err *err)
+{
+    AllOfRun *all = user;
+    TRY(outputs_spare(all->args, run->settings, err));
+    TRY(output_open(&all->o, args_value(all->args, "--csv"), err));
+    *f = all->o.stream;
+    return STATUS_OK;
+}
+
+/* As the rows are read: a run of any size needs no memory. */
+static Status write_all(const Args *args, Err *err)
+{
+    AllOfRun all = {.args = args};
+    const Status status = run_print_evaluations(args->operand, open_target, &all, err);
+    if (status == STATUS_OK)
+        return output_close(&all.o, err);
+    output_abandon(&all.o);
+    return status;
+}
+
 static Status run(const Args *args, Err *err)
 {
     if (!args_has(args, "--csv") && !args_has(args, "--json"))
         return fail(err, STATUS_USAGE, "--csv FILE is missing: where the table goes (or --json)");
+    if (args_has(args, "--all") && !args_has(args, "--select") && !args_has(args, "--json"))
+        return write_all(args, err);
     Run run;
     TRY(run_read(&run, args->operand, err));
     Status status = outputs_spare(args, run.settings, err);

@@ -213,7 +213,7 @@ static Status run(const Args *args, Err *err)
 {
     Run run;
     Standing standing;
-    TRY(run_read(&run, args->operand, err));
+    TRY(run_read_part(&run, args->operand, RUN_REVIEWED, err));
     standing_of(&standing, args->operand, &run);
     const Failures failures = failures_of(&run);
     double expected = NAN, *igd = calloc(run.n_generations + 1, sizeof *igd);

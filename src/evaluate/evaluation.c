@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/carve.h"
 #include "base/cell.h"
 #include "base/visible.h"
 
@@ -92,16 +91,6 @@ void evaluation_copy(Evaluation *to, const Evaluation *from, size_t n_var, size_
     copy_numbers(to->extra, from->extra, n_extra);
 }
 
-/* The first n rows stay as they are. */
-static void layout(EvaluationTable *t, Carve *c)
-{
-    t->row = carve_wider(c, t->row, t->n_used, t->n_max, sizeof *t->row);
-    t->x = carve_wider(c, t->x, t->n * t->n_var, t->n_max * t->n_var, sizeof *t->x);
-    t->f = carve_wider(c, t->f, t->n * t->n_obj, t->n_max * t->n_obj, sizeof *t->f);
-    t->sd = carve_wider(c, t->sd, t->n * t->n_obj, t->n_max * t->n_obj, sizeof *t->sd);
-    t->extra = carve_wider(c, t->extra, t->n * t->n_extra, t->n_max * t->n_extra, sizeof *t->extra);
-}
-
 static void point_row(EvaluationTable *t, size_t i)
 {
     Evaluation *e = &t->row[i];
@@ -111,21 +100,29 @@ static void point_row(EvaluationTable *t, size_t i)
     e->extra = t->extra + i * t->n_extra;
 }
 
+/* Room for n of them; the old array, and *lacks, without memory. */
+static void *widen(void *array, size_t n, size_t size, int *lacks)
+{
+    void *wider = realloc(array, n * size + 1);
+    *lacks |= !wider;
+    return wider ? wider : array;
+}
+
+/* Of large arrays the system moves the pages, and copies nothing. */
 static Status grow(EvaluationTable *t, Err *err)
 {
-    EvaluationTable wider = *t;
-    Carve c = {0};
-    wider.n_max = t->n_max > 0 ? 2 * t->n_max : 32;
-    EvaluationTable counted = wider;
-    layout(&counted, &c);
-    wider.store = malloc(c.used + CARVE_LINE); /* and not touched before there are rows */
-    if (!wider.store)
-        return fail(err, STATUS_NO_MEMORY, "no memory for %zu evaluations", wider.n_max);
-    layout(&wider, &(Carve){.base = wider.store});
+    const size_t n_max = t->n_max > 0 ? 2 * t->n_max : 32;
+    int lacks = 0;
+    t->row = widen(t->row, n_max, sizeof *t->row, &lacks);
+    t->x = widen(t->x, n_max * t->n_var, sizeof *t->x, &lacks);
+    t->f = widen(t->f, n_max * t->n_obj, sizeof *t->f, &lacks);
+    t->sd = widen(t->sd, n_max * t->n_obj, sizeof *t->sd, &lacks);
+    t->extra = widen(t->extra, n_max * t->n_extra, sizeof *t->extra, &lacks);
     for (size_t i = 0; i < t->n_used; i++)
-        point_row(&wider, i);
-    free(t->store);
-    *t = wider;
+        point_row(t, i);
+    if (lacks)
+        return fail(err, STATUS_NO_MEMORY, "no memory for %zu evaluations", n_max);
+    t->n_max = n_max;
     return STATUS_OK;
 }
 
@@ -186,6 +183,10 @@ void evaluation_table_free(EvaluationTable *t)
 {
     for (size_t i = 0; i < t->n_used; i++)
         free(t->row[i].room);
-    free(t->store);
+    free(t->row);
+    free(t->x);
+    free(t->f);
+    free(t->sd);
+    free(t->extra);
     *t = evaluation_table(t->n_var, t->n_obj, t->n_extra);
 }

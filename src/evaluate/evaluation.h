@@ -10,7 +10,7 @@
  *            row-major, likewise f, sd, extra, and row[i].x = table.x + i n_var
  * Ownership  the table owns rows, numbers and reasons; pointers into it hold until the next evaluation_table_add. A row outside a
  *            table borrows its arrays
- * Memory     one allocation, doubled when it is full; of room that is not used the system has only addresses
+ * Memory     an allocation for each array, doubled when it is full; of room that is not used the system has only addresses
  * Threads    no state
  * Errors     STATUS_NO_MEMORY; a design that failed is a row with another outcome than OUTCOME_OK, not an error */
 #ifndef IMTET_EVALUATE_EVALUATION_H
@@ -89,7 +89,6 @@ typedef struct {
     size_t n, n_max, n_used, n_var, n_obj, n_extra; /* n_used: rows that have had content */
     Evaluation *row;                                /* (n) */
     double *x, *f, *sd, *extra;                     /* (n, n_var) (n, n_obj) (n, n_obj) (n, n_extra) */
-    void *store;
 } EvaluationTable;
 
 /* Empty; needs no memory. */

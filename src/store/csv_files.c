@@ -99,7 +99,7 @@ Status csv_files_append(CsvFiles *c, Database *db, size_t n, Err *err)
     if (n == c->n_appended)
         return STATUS_OK;
     TRY(rows_print(db, c->evaluations.stream, (RowShape){s->n_var, s->n_obj, s->n_extra}, (long)c->n_appended + 1,
-                   (long)n, &printed, err));
+                   (long)n, 0, &printed, err));
     if (printed != n - c->n_appended)
         return fail(err, STATUS_INTERNAL, "%s: the search knows of %zu simulations, %zu are stored", database_path(db),
                     n, c->n_appended + printed);

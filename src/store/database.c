@@ -202,7 +202,8 @@ static Status open_file(Database **out, const char *path, const char *name, int 
         return fail(err, d ? STATUS_IO : STATUS_NO_MEMORY, "%.200s: cannot be opened: path too long or no memory",
                     path);
     }
-    const int code = sqlite3_open_v2(name, &d->db, flags | SQLITE_OPEN_FULLMUTEX, NULL);
+    const int mutex = flags & SQLITE_OPEN_READONLY ? SQLITE_OPEN_NOMUTEX : SQLITE_OPEN_FULLMUTEX;
+    const int code = sqlite3_open_v2(name, &d->db, flags | mutex, NULL);
     if (code != SQLITE_OK) {
         const Status status = d->db ? complain(d, err) : explain(path, code, sqlite3_errstr(code), err);
         sqlite3_close(d->db);

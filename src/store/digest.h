@@ -21,9 +21,14 @@ static inline uint64_t digest_whole(long value, uint64_t hash)
 }
 
 /* As SQLite gives it back: it keeps no -0, and NULL for what is not finite. */
+static inline double digest_known(double value)
+{
+    return isfinite(value) ? value + 0.0 : -1e308;
+}
+
 static inline uint64_t digest_number(double value, uint64_t hash)
 {
-    const double known = isfinite(value) ? value + 0.0 : -1e308;
+    const double known = digest_known(value);
     return hash_fnv1a(&known, sizeof known, hash);
 }
 

@@ -103,26 +103,56 @@ static json_t *json_columns(const Schema *schema)
     return list;
 }
 
-static json_t *json_evaluation(const Run *run, size_t i)
+/* One value behind its separator; a line each, so that a run of any size needs no memory here. */
+static int put_value(FILE *f, const char *before, json_t *value)
+{
+    fputs(before, f);
+    const int failed = json_dumpf(value, f, JSON_COMPACT | JSON_ENCODE_ANY | JSON_REAL_PRECISION(17));
+    json_decref(value);
+    return failed;
+}
+
+static int is_any_known(size_t n, const double values[])
+{
+    size_t k = 0;
+    while (k < n && !isfinite(values[k]))
+        k++;
+    return k < n;
+}
+
+static void put_list(FILE *f, const char *key, size_t n, const double values[], int known)
+{
+    fprintf(f, ",\"%s\":", key);
+    if (known)
+        print_list(f, n, values);
+    else
+        fputs("null", f);
+}
+
+/* In the fewest digits that read back as the same numbers. */
+static int put_evaluation(FILE *f, const char *before, const Run *run, size_t i)
 {
     const Evaluation *e = &run->table.row[i];
-    const Schema *schema = &run->schema;
-    json_t *o = json_pack("{s:I, s:I, s:s, s:s, s:s, s:o, s:o, s:b}", "id", (json_int_t)e->id, "generation",
-                          (json_int_t)e->generation, "kind", kind_word(e->kind), "outcome", outcome_word(e->outcome),
-                          "reason", e->reason, "x", json_numbers(schema->n_var, e->x), "f",
-                          isfinite(e->f[0]) ? json_numbers(schema->n_obj, e->f) : json_null(), "on_front",
-                          run->place[i].on_front);
-    int known = 0;
-    for (size_t k = 0; k < schema->n_obj; k++)
-        known = known || isfinite(e->sd[k]);
-    json_object_set_new(o, "sd", known ? json_numbers(schema->n_obj, e->sd) : json_null());
+    const Schema *s = &run->schema;
+    int failed = 0;
+    fprintf(f, "%s{\"id\":%ld,\"generation\":%ld,\"kind\":\"%s\",\"outcome\":\"%s\",\"reason\":", before, e->id,
+            e->generation, kind_word(e->kind), outcome_word(e->outcome));
+    if (e->reason[0])
+        failed = put_value(f, "", json_words(e->reason));
+    else
+        fputs("\"\"", f);
+    put_list(f, "x", s->n_var, e->x, 1);
+    put_list(f, "f", s->n_obj, e->f, isfinite(e->f[0]));
+    fprintf(f, ",\"on_front\":%s", run->place[i].on_front ? "true" : "false");
+    put_list(f, "sd", s->n_obj, e->sd, is_any_known(s->n_obj, e->sd));
     if (e->replicates > run->settings->sim.replicates)
-        json_object_set_new(o, "mean", json_numbers(schema->n_obj, run_f(run, i)));
-    if (schema->has_spread)
-        json_object_set_new(o, "replicates", json_integer(e->replicates));
-    if (schema->n_extra > 0)
-        json_object_set_new(o, "measures", json_numbers(schema->n_extra, e->extra));
-    return o;
+        put_list(f, "mean", s->n_obj, run_f(run, i), 1);
+    if (s->has_spread)
+        fprintf(f, ",\"replicates\":%d", e->replicates);
+    if (s->n_extra > 0)
+        put_list(f, "measures", s->n_extra, e->extra, 1);
+    fputc('}', f);
+    return failed;
 }
 
 static json_t *json_generation(const RunGeneration *g)
@@ -133,22 +163,13 @@ static json_t *json_generation(const RunGeneration *g)
                      "hypervolume", json_number(g->hypervolume));
 }
 
-/* One value behind its separator; a line each, so that a run of any size needs no memory here. */
-static int put_value(FILE *f, const char *before, json_t *value)
-{
-    fputs(before, f);
-    const int failed = json_dumpf(value, f, JSON_COMPACT | JSON_REAL_PRECISION(17));
-    json_decref(value);
-    return failed;
-}
-
 Status export_json(FILE *f, const Run *run, Err *err)
 {
     int failed = put_value(f, "{\"settings\":", json_settings(run->settings));
     failed |= put_value(f, ",\n\"columns\":", json_columns(&run->schema));
     fputs(",\n\"evaluations\":[", f);
     for (size_t i = 0; i < run->table.n; i++)
-        failed |= put_value(f, i == 0 ? "\n" : ",\n", json_evaluation(run, i));
+        failed |= put_evaluation(f, i == 0 ? "\n" : ",\n", run, i);
     fputs("],\n\"generations\":[", f);
     for (size_t g = 0; g < run->n_generations; g++)
         failed |= put_value(f, g == 0 ? "\n" : ",\n", json_generation(&run->generation[g]));

@@ -143,10 +143,28 @@ void print_number(FILE *stream, double value)
         fwrite(text, 1, number_text(value, text), stream);
 }
 
+/* `missing` stands for what is not finite; some numbers at a time go to the stream. */
+static void print_each(FILE *stream, size_t n, const double values[], const char *before, const char *missing)
+{
+    enum { SOME = 16 };
+    char text[SOME * (NUMBER_TEXT_MAX + 8)], *to = text;
+    for (size_t j = 0; j < n; j++) {
+        to = stpcpy(to, j == 0 ? before : ",");
+        to = isfinite(values[j]) ? to + number_text(values[j], to) : stpcpy(to, missing);
+        if (j % SOME == SOME - 1 || j == n - 1) {
+            fwrite(text, 1, (size_t)(to - text), stream);
+            to = text;
+        }
+    }
+}
+
 void print_cells(FILE *stream, size_t n, const double values[])
 {
-    for (size_t j = 0; j < n; j++) {
-        fputc(',', stream);
-        print_number(stream, values[j]);
-    }
+    print_each(stream, n, values, ",", "");
+}
+
+void print_list(FILE *stream, size_t n, const double values[])
+{
+    print_each(stream, n, values, "[", "null");
+    fputs(n > 0 ? "]" : "[]", stream);
 }

@@ -31,13 +31,25 @@ typedef struct {
     const char *outcome, *reason, *x, *f, *sd, *extra;
 } RowText;
 
-static long digest_of(const Evaluation *e, const RowText *t)
+/* Room for what it is of. */
+static size_t message_room(const RowText *t)
 {
     const char *const texts[] = {t->outcome, t->reason, t->x, t->f, t->sd, t->extra};
-    uint64_t hash = digest_number(e->violation, digest_number(e->seconds, digest_whole(e->id, HASH_SEED)));
+    size_t n = sizeof(long) + 2 * sizeof(double);
     for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++)
-        hash = digest_text(texts[i], hash);
-    return (long)(hash ^ digest_kind(e->kind, e->generation));
+        n += (texts[i] ? strlen(texts[i]) : 0) + 1;
+    return n;
+}
+
+/* What it is of: all but kind and generation, one behind the other. Returns the length. */
+static size_t put_message(const Evaluation *e, const RowText *t, char *to)
+{
+    const char *const texts[] = {t->outcome, t->reason, t->x, t->f, t->sd, t->extra};
+    const double numbers[] = {digest_known(e->seconds), digest_known(e->violation)};
+    char *at = mempcpy(mempcpy(to, &e->id, sizeof e->id), numbers, sizeof numbers);
+    for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++)
+        at = stpcpy(at, texts[i] ? texts[i] : "") + 1;
+    return (size_t)(at - to);
 }
 
 /* -- writing ------------------------------------------------------------------------------------------------------- */
@@ -68,14 +80,24 @@ static const char *list_text(size_t n, const double values[], char **room)
     return text;
 }
 
-static Status insert_text(Database *db, const Evaluation *e, const RowText *t, Err *err)
+static Status insert_text(Database *db, const Evaluation *e, const RowText *t, long digest, Err *err)
 {
     const char *kind = e->kind == KIND_UNFINISHED ? NULL : kind_word(e->kind);
     return database_do(db, err,
                        "INSERT OR REPLACE INTO evaluation(id, generation, kind, outcome, reason, seconds, x, f, "
                        "spread, violation, extra, digest) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
                        "iitttdtttdti", e->id, e->generation, kind, t->outcome, t->reason, e->seconds, t->x, t->f, t->sd,
-                       e->violation, t->extra, digest_of(e, t));
+                       e->violation, t->extra, digest);
+}
+
+static Status insert_with_digest(Database *db, const Evaluation *e, const RowText *t, Err *err)
+{
+    char *message = malloc(message_room(t));
+    if (!message)
+        return fail(err, STATUS_NO_MEMORY, "no memory for the text of a row");
+    const uint64_t digest = hash_fnv1a(message, put_message(e, t, message), HASH_SEED);
+    free(message);
+    return insert_text(db, e, t, (long)(digest ^ digest_kind(e->kind, e->generation)), err);
 }
 
 Status rows_insert(Database *db, RowShape shape, const Evaluation *e, Err *err)
@@ -89,7 +111,7 @@ Status rows_insert(Database *db, RowShape shape, const Evaluation *e, Err *err)
     t.f = e->outcome == OUTCOME_OK ? list_text(shape.n_obj, e->f, &room) : NULL;
     t.sd = list_text(shape.n_obj, e->sd, &room);
     t.extra = list_text(shape.n_extra, e->extra, &room);
-    const Status status = insert_text(db, e, &t, err);
+    const Status status = insert_with_digest(db, e, &t, err);
     free(store);
     return status;
 }
@@ -111,11 +133,25 @@ Status rows_unfinish(Database *db, long id, EvaluationKind kind, long generation
 
 /* -- reading ------------------------------------------------------------------------------------------------------- */
 
+/* A row whose digest is still to be compared. */
+typedef struct {
+    long id;
+    uint64_t digest; /* that it should have, without kind and generation */
+    size_t n, n_max;
+    char *message; /* (n) */
+} Unchecked;
+
+/* Rows are compared HASH_LANES at a time: every step of a digest waits for the one before, those of several rows do not. */
 typedef struct {
     EvaluationTable *table;
     Database *db;
-    long without; /* id of a row without a digest; 0: there is none */
-    int has_with; /* a row with one */
+    long without;                    /* id of a row without a digest; 0: there is none */
+    int has_with;                    /* a row with one */
+    uint64_t kind_digest;            /* of the kind and the generation of the row before, which most have */
+    EvaluationKind kind;             /* ... */
+    long generation;                 /* ... */
+    Unchecked unchecked[HASH_LANES]; /* (n_unchecked) */
+    size_t n_unchecked;
 } Reading;
 
 static Status damaged(const Reading *r, const char *what, long id, Err *err)
@@ -135,7 +171,7 @@ static int parse_numbers(const char *text, size_t n_least, size_t n, double valu
             break;
         if (*text++ != (i == 0 ? '[' : ','))
             return 0;
-        if (strncmp(text, "null", 4) == 0) {
+        if (*text == 'n' && strncmp(text, "null", 4) == 0) {
             text += 4;
             continue;
         }
@@ -150,9 +186,9 @@ static int parse_numbers(const char *text, size_t n_least, size_t n, double valu
 static const char EVALUATIONS[] = "SELECT id, generation, kind, outcome, reason, seconds, x, f, spread, violation, "
                                   "extra, digest FROM evaluation WHERE id BETWEEN %ld AND %ld ORDER BY id";
 
-static Status parse_row(const Reading *r, const RowText *t, Evaluation *e, Err *err)
+/* Outcome and reason. */
+static Status parse_outcome(const Reading *r, const RowText *t, Evaluation *e, Err *err)
 {
-    const EvaluationTable *table = r->table;
     /* books_open: the word for it before 0.1.0 */
     e->outcome = strcmp(t->outcome, "books_open") == 0 ? OUTCOME_ENERGY_BALANCE : outcome_of_word(t->outcome);
     if (e->outcome == OUTCOME_COUNT)
@@ -160,7 +196,14 @@ static Status parse_row(const Reading *r, const RowText *t, Evaluation *e, Err *
     if (t->reason[0])
         TRY(evaluation_table_give_room(e, err));
     evaluation_set_outcome(e, e->outcome, t->reason);
-    if (!t->x[0] || !parse_numbers(t->x, table->n_var, table->n_var, e->x))
+    return STATUS_OK;
+}
+
+static Status parse_row(const Reading *r, const RowText *t, Evaluation *e, Err *err)
+{
+    const EvaluationTable *table = r->table;
+    TRY(parse_outcome(r, t, e, err));
+    if (table->n_var > 0 && (!t->x[0] || !parse_numbers(t->x, table->n_var, table->n_var, e->x)))
         return damaged(r, "x", e->id, err);
     if (!parse_numbers(t->f, table->n_obj, table->n_obj, e->f))
         return damaged(r, "f", e->id, err);
@@ -172,90 +215,168 @@ static Status parse_row(const Reading *r, const RowText *t, Evaluation *e, Err *
                : damaged(r, "extra", e->id, err);
 }
 
-static Status take_row(sqlite3_stmt *row, void *user, Err *err)
+static Status compare_digests(Reading *r, Err *err)
 {
-    Reading *r = user;
-    const RowText text = {.outcome = column_text(row, 3),
-                          .reason = column_text(row, 4),
-                          .x = column_text(row, 6),
-                          .f = column_text(row, 7),
-                          .sd = column_text(row, 8),
-                          .extra = column_text(row, 10)};
-    Evaluation *e;
-    TRY(evaluation_table_add(r->table, &e, err));
-    e->id = (long)sqlite3_column_int64(row, 0);
-    e->generation = (long)sqlite3_column_int64(row, 1);
-    e->kind = kind_of_word(column_text(row, 2));
-    e->seconds = column_number(row, 5);
-    e->violation = column_number(row, 9);
-    TRY(parse_row(r, &text, e, err));
+    const char *message[HASH_LANES];
+    size_t length[HASH_LANES];
+    uint64_t digest[HASH_LANES];
+    const size_t n = r->n_unchecked;
+    for (size_t i = 0; i < n; i++) {
+        message[i] = r->unchecked[i].message;
+        length[i] = r->unchecked[i].n;
+    }
+    r->n_unchecked = 0;
+    hash_fnv1a_each(n, message, length, digest);
+    for (size_t i = 0; i < n; i++)
+        if (digest[i] != r->unchecked[i].digest)
+            return fail(err, STATUS_IO, "%s: is damaged: evaluation %ld is not what was written", database_path(r->db),
+                        r->unchecked[i].id);
+    return STATUS_OK;
+}
+
+/* Before format 3 kind and generation were not in it. */
+static uint64_t digest_without_kind(Reading *r, const Evaluation *e, uint64_t digest)
+{
+    if (database_format(r->db) < 3)
+        return digest;
+    if (r->kind != e->kind || r->generation != e->generation) {
+        r->kind = e->kind;
+        r->generation = e->generation;
+        r->kind_digest = digest_kind(e->kind, e->generation);
+    }
+    return digest ^ r->kind_digest;
+}
+
+static Status compare_later(Reading *r, const Evaluation *e, const RowText *t, uint64_t digest, Err *err)
+{
+    Unchecked *u = &r->unchecked[r->n_unchecked];
+    const size_t room = message_room(t);
+    if (u->n_max < room) {
+        free(u->message);
+        u->n_max = 2 * room;
+        u->message = malloc(u->n_max);
+    }
+    if (!u->message) {
+        u->n_max = 0;
+        return fail(err, STATUS_NO_MEMORY, "no memory for the text of a row");
+    }
+    u->id = e->id;
+    u->digest = digest_without_kind(r, e, digest);
+    u->n = put_message(e, t, u->message);
+    return ++r->n_unchecked == HASH_LANES ? compare_digests(r, err) : STATUS_OK;
+}
+
+static Status check_row(Reading *r, const Evaluation *e, const RowText *text, sqlite3_stmt *row, Err *err)
+{
     if (sqlite3_column_type(row, 11) == SQLITE_NULL) {
         r->without = e->id;
         return STATUS_OK;
     }
     r->has_with = 1;
-    /* before format 3 kind and generation were not in it */
-    const long plain = database_format(r->db) < 3 ? (long)digest_kind(e->kind, e->generation) : 0;
-    if (sqlite3_column_int64(row, 11) == (digest_of(e, &text) ^ plain))
-        return STATUS_OK;
-    return fail(err, STATUS_IO, "%s: is damaged: evaluation %ld is not what was written", database_path(r->db), e->id);
+    return compare_later(r, e, text, (uint64_t)sqlite3_column_int64(row, 11), err);
+}
+
+/* All but the numbers of the lists. */
+static RowText take_text(sqlite3_stmt *row, Evaluation *e)
+{
+    e->id = (long)sqlite3_column_int64(row, 0);
+    e->generation = (long)sqlite3_column_int64(row, 1);
+    e->kind = kind_of_word(column_text(row, 2));
+    e->seconds = column_number(row, 5);
+    e->violation = column_number(row, 9);
+    return (RowText){.outcome = column_text(row, 3),
+                     .reason = column_text(row, 4),
+                     .x = column_text(row, 6),
+                     .f = column_text(row, 7),
+                     .sd = column_text(row, 8),
+                     .extra = column_text(row, 10)};
+}
+
+static Status take_row(sqlite3_stmt *row, void *user, Err *err)
+{
+    Reading *r = user;
+    Evaluation *e;
+    TRY(evaluation_table_add(r->table, &e, err));
+    const RowText text = take_text(row, e);
+    TRY(parse_row(r, &text, e, err));
+    return check_row(r, e, &text, row, err);
+}
+
+/* Every row of the query through `take`, whose user is the Reading. */
+static Status each_row(Reading *r, DatabaseRowFn take, void *user, long first, long last, Err *err)
+{
+    char sql[sizeof EVALUATIONS + 48];
+    r->kind = KIND_UNFINISHED;
+    snprintf(sql, sizeof sql, EVALUATIONS, first, last);
+    Status status = database_each(r->db, sql, take, user, err);
+    if (status == STATUS_OK)
+        status = compare_digests(r, err);
+    for (size_t i = 0; i < HASH_LANES; i++)
+        free(r->unchecked[i].message);
+    if (status != STATUS_OK || !r->without || !r->has_with)
+        return status;
+    return fail(err, STATUS_IO, "%s: is damaged: evaluation %ld has no digest, as if it were not what was written",
+                database_path(r->db), r->without);
 }
 
 Status rows_read(Database *db, EvaluationTable *table, long first, long last, Err *err)
 {
-    char sql[sizeof EVALUATIONS + 48];
     Reading r = {.table = table, .db = db};
-    snprintf(sql, sizeof sql, EVALUATIONS, first, last);
-    TRY(database_each(db, sql, take_row, &r, err));
-    return !r.without || !r.has_with
-               ? STATUS_OK
-               : fail(err, STATUS_IO,
-                      "%s: is damaged: evaluation %ld has no digest, as if it were not what was written",
-                      database_path(db), r.without);
+    return each_row(&r, take_row, &r, first, last, err);
 }
 
 /* -- as lines ------------------------------------------------------------------------------------------------------ */
 
-/* n cells, each behind a comma, of "[1,2.5,null]"; empty ones for what is not there. */
-static void print_list(FILE *f, const char *list, size_t n)
+/* n cells, each behind a comma, of "[1,2.5,null]"; empty ones for what is not there. Only what may be of a number goes out;
+ * 0: there is something else. */
+static int print_texts(FILE *f, const char *list, size_t n)
 {
+    static const char NUMBER[] = "0123456789.-+e";
     const char *at = list[0] ? list + 1 : list;
     for (size_t i = 0; i < n; i++) {
-        const size_t length = strcspn(at, ",]");
-        fputc(',', f);
-        if (*at != 'n')
-            fwrite(at, 1, length, f);
-        at += length + (at[length] == ',');
+        const size_t length = strspn(at, NUMBER);
+        putc_unlocked(',', f);
+        fwrite_unlocked(at, 1, length, f);
+        at += length == 0 && strncmp(at, "null", 4) == 0 ? 4 : length;
+        if (*at == ',')
+            at++;
+        else if (*at != 0 && *at != ']')
+            return 0;
     }
+    return *at == 0 || *at == ']';
 }
 
 typedef struct {
+    Reading reading;
     FILE *f;
     RowShape shape;
+    int unfinished_too;
     size_t *n;
+    char room[REASON_MAX];
 } Printing;
 
 static Status print_row(sqlite3_stmt *row, void *user, Err *err)
 {
-    const Printing *p = user;
-    (void)err;
-    if (sqlite3_column_type(row, 2) == SQLITE_NULL)
+    Printing *p = user;
+    Evaluation e;
+    const RowText t = take_text(row, &e);
+    const RowShape *s = &p->shape;
+    e.room = p->room;
+    if (e.kind == KIND_UNFINISHED && !p->unfinished_too)
         return STATUS_OK;
-    fprintf(p->f, "%ld,%ld,%s,%s,%s", (long)sqlite3_column_int64(row, 0), (long)sqlite3_column_int64(row, 1),
-            column_text(row, 2), column_text(row, 3), column_text(row, 4));
-    print_list(p->f, column_text(row, 6), p->shape.n_var);
-    print_list(p->f, column_text(row, 7), p->shape.n_obj);
-    print_list(p->f, column_text(row, 10), p->shape.n_extra);
-    fputc('\n', p->f);
+    TRY(parse_outcome(&p->reading, &t, &e, err));
+    fprintf(p->f, "%ld,%ld,%s,%s,%s", e.id, e.generation, kind_word(e.kind), outcome_word(e.outcome), e.reason);
+    if (!print_texts(p->f, t.x, s->n_var) || !print_texts(p->f, t.f, s->n_obj) ||
+        !print_texts(p->f, t.extra, s->n_extra))
+        return damaged(&p->reading, "a number", e.id, err);
+    putc_unlocked('\n', p->f);
     ++*p->n;
-    return STATUS_OK;
+    return check_row(&p->reading, &e, &t, row, err);
 }
 
-Status rows_print(Database *db, FILE *f, RowShape shape, long first, long last, size_t *n, Err *err)
+Status rows_print(Database *db, FILE *f, RowShape shape, long first, long last, int unfinished_too, size_t *n, Err *err)
 {
-    char sql[sizeof EVALUATIONS + 48];
-    Printing p = {f, shape, n};
+    Printing p = {{.db = db}, f, shape, unfinished_too, n, {0}};
     *n = 0;
-    snprintf(sql, sizeof sql, EVALUATIONS, first, last);
-    return database_each(db, sql, print_row, &p, err);
+    return each_row(&p.reading, print_row, &p, first, last, err);
 }

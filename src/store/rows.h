@@ -24,12 +24,13 @@ Status rows_insert(Database *db, RowShape shape, const Evaluation *e, Err *err);
 Status rows_finish(Database *db, long id, EvaluationKind kind, long generation, Err *err);
 Status rows_unfinish(Database *db, long id, EvaluationKind kind, long generation, Err *err);
 
-/* The evaluations first..last, in the order of their ids, behind those of the table. */
+/* The evaluations first..last, in the order of their ids, behind those of the table. A table whose n_var or n_extra is 0
+ * goes without those numbers, which take most of the time. */
 Status rows_read(Database *db, EvaluationTable *table, long first, long last, Err *err);
 
 /* The same as lines of evaluations.csv, the texts as this program has written them; n: how many. A row that is not
- * finished is none. */
-Status rows_print(Database *db, FILE *f, RowShape shape, long first, long last, size_t *n, Err *err);
+ * finished is one where it is wanted. */
+Status rows_print(Database *db, FILE *f, RowShape shape, long first, long last, int unfinished_too, size_t *n, Err *err);
 
 /* Columns of any query. */
 const char *column_text(sqlite3_stmt *row, int column);           /* NULL: "" */

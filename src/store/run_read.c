@@ -9,6 +9,7 @@
 #include "base/stat.h"
 #include "settings/settings.h"
 #include "simulator/measures.h"
+#include "store/export.h"
 #include "store/folder.h"
 #include "store/repeats.h"
 #include "store/rows.h"
@@ -18,6 +19,10 @@
 typedef struct {
     Run *run;
     Database *d;
+    RunPart part;
+    RunOpenFn open; /* for the evaluations, where they are printed */
+    void *user;
+    size_t row;               /* at or before the next design of the front */
     const char *digest;       /* the column of that name; NULL in a database of an earlier format */
     uint64_t front;           /* digest of the designs on the search's front */
     uint64_t front_as_stored; /* ... with the newest state */
@@ -26,18 +31,20 @@ typedef struct {
 
 /* -- evaluations --------------------------------------------------------------------------------------------------- */
 
+/* In the order of the ids, as the evaluations. */
 static Status take_front(sqlite3_stmt *row, void *user, Err *err)
 {
     Loading *l = user;
     Run *run = l->run;
     const long id = (long)sqlite3_column_int64(row, 0);
-    const size_t i = run_find(run, id);
     (void)err;
+    while (l->row < run->table.n && run->table.row[l->row].id < id)
+        l->row++;
     if (column_whole(row, 2, NEVER) == NEVER)
         l->front ^= digest_member(id);
-    if (i < run->table.n) {
-        run->place[i].entered = (int)column_whole(row, 1, NEVER);
-        run->place[i].left = (int)column_whole(row, 2, NEVER);
+    if (l->row < run->table.n && run->table.row[l->row].id == id) {
+        run->place[l->row].entered = (int)column_whole(row, 1, NEVER);
+        run->place[l->row].left = (int)column_whole(row, 2, NEVER);
     }
     return STATUS_OK;
 }
@@ -65,7 +72,9 @@ static Status load_evaluations(Loading *l, Err *err)
 {
     Run *run = l->run;
     const Schema *s = &run->schema;
-    run->table = evaluation_table(s->n_var, s->n_obj, s->n_extra);
+    /* repeats are found by their x, what a tower's front is said about needs it */
+    const int has_all = l->part == RUN_WHOLE || s->is_noisy || (l->part == RUN_REVIEWED && s->order.n_obj > 0);
+    run->table = evaluation_table(has_all ? s->n_var : 0, s->n_obj, has_all ? s->n_extra : 0);
     TRY(rows_read(l->d, &run->table, 0, LONG_MAX, err));
     run->place = calloc(run->table.n + 1, sizeof *run->place);
     run->F = s->is_noisy ? calloc(run->table.n * s->n_obj + 1, sizeof *run->F) : run->table.f;
@@ -75,7 +84,7 @@ static Status load_evaluations(Loading *l, Err *err)
         memcpy(run->F, run->table.f, run->table.n * s->n_obj * sizeof *run->F);
     for (size_t i = 0; i < run->table.n; i++)
         run->place[i] = (RunPlace){.entered = NEVER, .left = NEVER};
-    TRY(database_each(l->d, "SELECT evaluation, entered, left FROM front", take_front, l, err));
+    TRY(database_each(l->d, "SELECT evaluation, entered, left FROM front ORDER BY evaluation", take_front, l, err));
     place_all(run);
     TRY(repeats_join(run, err));
     return run_settle_front(run, err);
@@ -243,15 +252,20 @@ static Status load_states(Loading *l, Err *err)
                : fail(err, STATUS_IO, "%s: is damaged: its front is not what was written", database_path(l->d));
 }
 
-static Status load(Loading *l, Err *err)
+/* Settings, schema and provenance. */
+static Status load_head(Loading *l, Err *err)
 {
-    Run *run = l->run;
-    Database *d = l->d;
-    TRY(tables_check(d, err));
+    TRY(tables_check(l->d, err));
     TRY(each(l, "settings, provenance, planned_evals, n_var, tried_to_polish, polished_at", "run LIMIT 1", take_head,
              err));
-    if (!run->schema.column)
-        return fail(err, STATUS_IO, "%s: is damaged: it has no settings", database_path(d));
+    return l->run->schema.column ? STATUS_OK
+                                 : fail(err, STATUS_IO, "%s: is damaged: it has no settings", database_path(l->d));
+}
+
+static Status load(Loading *l, Err *err)
+{
+    Database *d = l->d;
+    TRY(load_head(l, err));
     TRY(load_evaluations(l, err));
     TRY(each(l, "number, simulated, failed, front, predicted, surrogate_error, hypervolume, seconds, finished",
              "generation ORDER BY number", take_generation, err));
@@ -263,18 +277,32 @@ static Status load(Loading *l, Err *err)
     return load_states(l, err);
 }
 
-Status run_load(Run *run, Database *d, const char *folder, Err *err)
+/* By `load`, as one state of a run that is worked on. */
+static Status load_at_once(Loading *l, Status (*load_it)(Loading *l, Err *err), Err *err)
 {
-    Loading l = {.run = run, .d = d, .digest = database_format(d) < 3 ? "NULL" : "digest"};
+    Run *run = l->run;
+    l->digest = database_format(l->d) < 3 ? "NULL" : "digest";
     memset(run, 0, sizeof *run);
-    snprintf(run->folder, sizeof run->folder, "%s", folder);
-    TRY(database_do(d, err, "BEGIN", "")); /* one state of a run that is worked on */
-    Status status = load(&l, err);
-    const Status end = database_do(d, status == STATUS_OK ? err : NULL, "COMMIT", "");
+    TRY(database_do(l->d, err, "BEGIN", ""));
+    Status status = load_it(l, err);
+    const Status end = database_do(l->d, status == STATUS_OK ? err : NULL, "COMMIT", "");
     status = status == STATUS_OK ? end : status;
     if (status != STATUS_OK)
         run_free(run);
     return status;
+}
+
+Status run_load_part(Run *run, Database *d, const char *folder, RunPart part, Err *err)
+{
+    Loading l = {.run = run, .d = d, .part = part};
+    TRY(load_at_once(&l, load, err));
+    snprintf(run->folder, sizeof run->folder, "%s", folder);
+    return STATUS_OK;
+}
+
+Status run_load(Run *run, Database *d, const char *folder, Err *err)
+{
+    return run_load_part(run, d, folder, RUN_WHOLE, err);
 }
 
 int run_path(const char *folder, char path[], size_t size)
@@ -282,16 +310,50 @@ int run_path(const char *folder, char path[], size_t size)
     return snprintf(path, size, "%s/run.sqlite", folder) < (int)size && access(path, F_OK) == 0;
 }
 
-Status run_read(Run *run, const char *folder, Err *err)
+static Status open_to_read(Database **d, const char *folder, Err *err)
 {
     char path[PATH_MAX];
-    Database *d;
-    memset(run, 0, sizeof *run);
+    *d = NULL;
     if (!run_path(folder, path, sizeof path))
         return fail(err, STATUS_MISSING, "%.200s: holds no run: run.sqlite is not there", folder);
-    Status status = database_open(&d, path, DATABASE_READ, err);
+    return database_open(d, path, DATABASE_READ, err);
+}
+
+Status run_read_part(Run *run, const char *folder, RunPart part, Err *err)
+{
+    Database *d;
+    memset(run, 0, sizeof *run);
+    Status status = open_to_read(&d, folder, err);
     if (status == STATUS_OK)
-        status = run_load(run, d, folder, err);
+        status = run_load_part(run, d, folder, part, err);
     database_close(d);
+    return folder_advise(folder, status, err);
+}
+
+Status run_read(Run *run, const char *folder, Err *err)
+{
+    return run_read_part(run, folder, RUN_WHOLE, err);
+}
+
+static Status print_evaluations(Loading *l, Err *err)
+{
+    size_t n;
+    FILE *out;
+    TRY(load_head(l, err));
+    const Schema *s = &l->run->schema;
+    TRY(l->open(l->run, &out, l->user, err));
+    export_evaluations_header(out, s);
+    return rows_print(l->d, out, (RowShape){s->n_var, s->n_obj, s->n_extra}, 0, LONG_MAX, 1, &n, err);
+}
+
+Status run_print_evaluations(const char *folder, RunOpenFn open, void *user, Err *err)
+{
+    Run head = {0};
+    Loading l = {.run = &head, .open = open, .user = user};
+    Status status = open_to_read(&l.d, folder, err);
+    if (status == STATUS_OK)
+        status = load_at_once(&l, print_evaluations, err);
+    run_free(&head);
+    database_close(l.d);
     return folder_advise(folder, status, err);
 }

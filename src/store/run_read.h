@@ -5,6 +5,8 @@
 #ifndef IMTET_STORE_RUN_READ_H
 #define IMTET_STORE_RUN_READ_H
 
+#include <stdio.h>
+
 #include "store/database.h"
 #include "store/run.h"
 
@@ -13,6 +15,22 @@ int run_path(const char *folder, char path[], size_t size);
 
 Status run_read(Run *run, const char *folder, Err *err);
 Status run_load(Run *run, Database *d, const char *folder, Err *err);
+
+/* What takes half of the time and of the memory may be left out: then the table has neither x nor extra (its n_var and
+ * n_extra are 0), and what looks at the variables of a run may not be called. Noisy runs have all of it in any case. */
+typedef enum {
+    RUN_WHOLE,
+    RUN_RESULTS,  /* no x, no extra */
+    RUN_REVIEWED, /* ... of a tower all: study/front_review.h */
+} RunPart;
+Status run_read_part(Run *run, const char *folder, RunPart part, Err *err);
+Status run_load_part(Run *run, Database *d, const char *folder, RunPart part, Err *err);
+
+/* All evaluations as export_evaluations (store/export.h) writes them, unfinished ones too, with the header, to where `open`
+ * says, which is given the settings and the schema. No more than a row is kept in memory; where it fails, a part may be
+ * written. */
+typedef Status (*RunOpenFn)(const Run *head, FILE **out, void *user, Err *err);
+Status run_print_evaluations(const char *folder, RunOpenFn open, void *user, Err *err);
 
 /* Check values (store/digest.h) of a generation and of the state of the search at its end. */
 long run_generation_digest(const RunGeneration *g);
