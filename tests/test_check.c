@@ -113,9 +113,12 @@ static void test_units_that_are_wrong_are_refused_or_guessed(void **state)
     expect_warnings("", "--set building.units=N_m_t");
     expect_warnings("building.model building.model", "--set building.units=N_m_kg");
     expect_text("is the mass in t?", "--set building.units=N_m_kg");
-    write_building(1e-3, 1e-3, 0);
-    expect_warnings("building.model", "");
-    expect_text("are stiffness and mass in kN/m and t?", "");
+    write_building(1e-3, 1e-3, 0); /* the period stays as it is */
+    expect_fault("floors of 300 kg if stiffness is in N/m and mass in kg (then N_m_kg); set building.units to what the "
+                 "files are in: kN_m_t (",
+                 "");
+    expect_warnings("building.model", "--set building.units=N_m_kg");
+    expect_text("are stiffness and mass in kN/m and t?", "--set building.units=N_m_kg");
     expect_warnings("", "--set building.units=kN_m_t");
     write_building(1 / 175126.8352464764, 1 / 175126.8352464764, 0);
     expect_warnings("", "--set building.units=kip_in");

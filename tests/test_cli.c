@@ -206,12 +206,15 @@ static void test_a_setting_that_a_command_does_not_read_is_named(void **state)
     expect(2, "holds 2 designs", "simulate configs/quick.ini --sensitivity --design @/two.csv");
 }
 
-static void test_standard_output_belongs_to_one(void **state)
+static void test_standard_output_and_every_setting_belong_to_one(void **state)
 {
     (void)state;
     const double gap[1] = {0.01}, wall[1] = {0.02};
     write_designs("one.csv", 1, gap, wall, wall);
 #define ONE "simulate configs/quick.ini --set sim.duration_s=20 --design @/one.csv "
+    expect(2, "--pga 0.3 and --set motion.pga_g=0.2 are one setting; give one of them",
+           "evaluate nowhere --pga 0.3 --set motion.pga_g=0.2");
+    expect(2, "--stretch 2 and --set motion.stretch=3 are one setting", ONE "--set motion.stretch=3 --stretch 2");
     expect(2, "--csv and --json both want standard output", ONE "--csv - --json");
     expect(2, "--csv and --history both want standard output", ONE "--csv - --history -");
     expect(2, "--history and --json both want standard output", "spectrum builtin:kobe-like --history - --json");
@@ -651,7 +654,7 @@ int main(void)
         cmocka_unit_test(test_old_names_are_understood_and_the_new_ones_told),
         cmocka_unit_test(test_whatever_takes_a_motion_shows_how_it_is_scaled),
         cmocka_unit_test(test_a_setting_that_a_command_does_not_read_is_named),
-        cmocka_unit_test(test_standard_output_belongs_to_one),
+        cmocka_unit_test(test_standard_output_and_every_setting_belong_to_one),
         cmocka_unit_test(test_missing_inputs_end_with_66),
         cmocka_unit_test(test_output_that_cannot_be_written_ends_with_74),
         cmocka_unit_test(test_the_printed_settings_are_the_default_file_and_in_order),

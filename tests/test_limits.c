@@ -101,7 +101,14 @@ static void test_limits_that_contradict_each_other_are_refused_before_anything_i
     expect(65, "search.limits: f1<=5 and >=7 contradict each other",
            "check @/both.ini --set 'search.limits=f1>=7,f1<=5'");
     expect(65, "f1<=5 and >=7", "optimize @/both.ini --out @/both --set 'search.limits=f1<=5,f2<=1,f1>=7'");
-    free(output_of("check @/both.ini --set 'search.limits=f1<=5,f1>=5,f2>=7'"));
+    free(output_of("check @/both.ini --set 'search.limits=f1<=5,f1>=5,f2<=7'"));
+    expect(65, "search.limits: f2<= is given twice", "check @/both.ini --set 'search.limits=f2<=5,f1<=7,f2<=6'");
+    expect(
+        65,
+        "search.limits: f1>=7 excludes what is better: of f1 less is better; write <=, or give a limit on both sides",
+        "check @/both.ini --set 'search.limits=f1>=7'");
+    expect(65, "search.limits: edcs_pct<=20 excludes what is better: of edcs_pct more is better; write >=",
+           "check configs/quick.ini --set 'search.limits=edcs_pct<=20'");
     expect(65, "search.limits: j3_g<=5 and >=7", "check configs/quick.ini --set 'search.limits=j3_g<=5,j3_g>=7'");
 }
 

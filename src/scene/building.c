@@ -82,31 +82,41 @@ static double mean_floor_mass(const Building *b)
     return sum / b->n;
 }
 
-/* Units that are wrong by a factor of a thousand move the period by 32. */
-static Status check_period(const Building *b, const BuildingOptions *o, Err *err)
+static int is_floor(double mass_kg)
+{
+    return mass_kg >= 1e3 && mass_kg <= 1e7;
+}
+
+/* Units that are wrong by a factor of a thousand move the period by 32; where both are, the floors are too light. */
+static Status check_units(const Building *b, const BuildingOptions *o, Err *err)
 {
     static const char *const WORDS[] = {BUILDING_UNITS_LIST(CHOICE_WORD)};
-    const double period = 2 * M_PI / b->omega[0], per_storey = period / b->n;
+    const double period = 2 * M_PI / b->omega[0], per_storey = period / b->n, mass = mean_floor_mass(b);
+    const int is_right = is_period(per_storey);
     if (period < PERIOD_MIN || (isfinite(period) && period > 1.0 / PERIOD_MIN))
         return fail(err, STATUS_BAD_DATA, "%s: the first period is %.3g s: is a stiffness or a mass wrong?", o->model,
                     period);
-    if (o->units != BUILDING_AUTO || is_period(per_storey))
+    if (o->units != BUILDING_AUTO || (is_right && mass >= 1e3))
         return STATUS_OK;
     char fits[240] = "";
     for (BuildingUnits u = BUILDING_N_M_KG; u <= BUILDING_KIP_IN; u++) {
         const BuildingUnit unit = building_unit(u);
         const size_t used = strlen(fits);
-        if (is_period(per_storey * sqrt(unit.mass / unit.stiffness)))
+        const double other = per_storey * sqrt(unit.mass / unit.stiffness);
+        if (is_period(other) && (!is_right || is_floor(unit.mass * mass)))
             snprintf(fits + used, sizeof fits - used, "%s%s (%.3g s per storey, floors of %.3g kg)", used ? ", " : "",
-                     WORDS[u], per_storey * sqrt(unit.mass / unit.stiffness), unit.mass * mean_floor_mass(b));
+                     WORDS[u], other, unit.mass * mass);
     }
-    return fits[0] ? fail(err, STATUS_BAD_DATA,
-                          "%s: the first period is %.3g s per storey if stiffness is in N/m and mass in kg; set "
-                          "building.units to what the files are in: %s",
-                          o->model, per_storey, fits)
-                   : fail(err, STATUS_BAD_DATA,
-                          "%s: the first period is %.3g s per storey; if that is meant set building.units=N_m_kg",
-                          o->model, per_storey);
+    if (fits[0])
+        return fail(err, STATUS_BAD_DATA,
+                    "%s: %s %.3g %s if stiffness is in N/m and mass in kg%s; set building.units to what the files are "
+                    "in: %s",
+                    o->model, is_right ? "floors of" : "the first period is", is_right ? mass : per_storey,
+                    is_right ? "kg" : "s per storey", is_right ? " (then N_m_kg)" : "", fits);
+    return is_right ? STATUS_OK
+                    : fail(err, STATUS_BAD_DATA,
+                           "%s: the first period is %.3g s per storey; if that is meant set building.units=N_m_kg",
+                           o->model, per_storey);
 }
 
 /* ---- damping -------------------------------------------------------------------------------------------------- */
@@ -267,7 +277,7 @@ static Status take(Building *b, BuildingFiles *files, const BuildingOptions *o, 
     TRY(find_modes(b, err));
     TRY(make_model(b, &files->full, o, err));
     if (!files->storey_m) /* matrices: their headers say no unit */
-        TRY(check_period(b, o, err));
+        TRY(check_units(b, o, err));
     return building_damp(b, o, err);
 }
 

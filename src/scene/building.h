@@ -25,7 +25,8 @@
  *          the two modes of building.rayleigh_modes; table: building.damping_table, mode by mode, the last one for the rest
  *
  * Checked: square, finite, symmetric to rounding (1e-6 of the largest entry), positive definite. K.csv and M.csv with
- * building.units = auto are read as N/m and kg; a first period beyond 0.01 to 1 s per storey is then refused.
+ * building.units = auto are read as N/m and kg; a first period beyond 0.01 to 1 s per storey is then
+ * refused, and so are floors below 1e3 kg where other units would make them heavier.
  *
  * Ownership  building_load allocates, building_free releases (an empty Building is fine). Threads  read-only after. */
 #ifndef IMTET_SCENE_BUILDING_H

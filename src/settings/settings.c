@@ -64,7 +64,7 @@ static const Option OPTIONS[] = {
          "a building of the program, or a folder with K.csv and M.csv, storeys.csv or a frame (docs/building.md)",
          .flags = SETTING_FREE),
     CHOICE(building.units, BuildingUnits, CHOICE_WORDS(BUILDING_UNITS_LIST), "auto",
-           "of K.csv and M.csv; auto: N/m and kg, refused where no building has such a period"),
+           "of K.csv and M.csv; auto: N/m and kg, refused where no building has such a period or such floors"),
     CHOICE(building.damping_model, DampingModel, CHOICE_WORDS(DAMPING_MODEL_LIST), "modal",
            "modal: building.damping in every mode; rayleigh: in two of them; table: building.damping_table"),
     REAL(building.damping, "-", "0.03", 0, 10, "damping ratio of every mode of the building"),

@@ -33,16 +33,34 @@ static Status read_limit(Limits *limits, const Schema *schema, const char *text,
     return STATUS_OK;
 }
 
-/* No number keeps both of two limits of one result where the greatest allowed is below the smallest. */
+/* The limit of that result on that side; NULL: there is none before limit n. */
+static const Limit *find(const Limits *limits, size_t n, size_t result, double sign)
+{
+    for (size_t i = 0; i < n; i++)
+        if (limits->limit[i].result == result && limits->limit[i].sign == sign)
+            return &limits->limit[i];
+    return NULL;
+}
+
+/* One limit on a side, that of what is better only beside the other, and some number between both. */
 static Status check(const Limits *limits, const Schema *schema, Err *err)
 {
-    for (size_t a = 0; a < limits->n; a++)
-        for (size_t b = 0; b < limits->n; b++) {
-            const Limit *max = &limits->limit[a], *min = &limits->limit[b];
-            if (max->result == min->result && max->sign > 0.0 && min->sign < 0.0 && min->bound > max->bound)
-                return fail(err, STATUS_BAD_DATA, "search.limits: %s<=%g and >=%g contradict each other",
-                            schema_objective(schema, max->result)->name, max->bound, min->bound);
-        }
+    for (size_t i = 0; i < limits->n; i++) {
+        const Limit *l = &limits->limit[i], *other = find(limits, limits->n, l->result, -l->sign);
+        const Column *c = schema_objective(schema, l->result);
+        const char *relation = l->sign > 0 ? "<=" : ">=", *opposite = l->sign > 0 ? ">=" : "<=";
+        if (find(limits, i, l->result, l->sign))
+            return fail(err, STATUS_BAD_DATA, "search.limits: %s%s is given twice", c->name, relation);
+        if (l->sign > 0 && other && other->bound > l->bound)
+            return fail(err, STATUS_BAD_DATA, "search.limits: %s<=%g and >=%g contradict each other", c->name, l->bound,
+                        other->bound);
+        if (!other && l->sign * c->sense < 0)
+            return fail(
+                err, STATUS_BAD_DATA,
+                "search.limits: %s%s%g excludes what is better: of %s %s is better; write %s, or give a limit on "
+                "both sides",
+                c->name, relation, l->bound, c->name, c->sense > 0 ? "less" : "more", opposite);
+    }
     return STATUS_OK;
 }
 
