@@ -15,6 +15,7 @@
 #include "base/random.h"
 #include "store/run_read.h"
 #include "report/importance.h"
+#include "report/thin.h"
 #include "report/report.h"
 #include "report/wavelet.h"
 #include "settings/options.h"
@@ -290,6 +291,47 @@ static void test_growth_is_the_hypervolume_that_status_tells(void **state)
     json_decref(page);
 }
 
+static int is_among(size_t row, size_t n, const size_t rows[])
+{
+    size_t i = 0;
+    while (i < n && rows[i] != row)
+        i++;
+    return i < n;
+}
+
+static double extreme(const Run *run, size_t n, const size_t rows[], size_t column, double sign)
+{
+    const size_t m = run->schema.n_obj;
+    double most = -INFINITY;
+    for (size_t i = 0; i < n; i++)
+        most = fmax(most, sign * (column < m ? run_f(run, rows[i])[column] : run_x(run, rows[i])[column - m]));
+    return most;
+}
+
+static void test_a_thinned_front_keeps_every_range_the_knee_and_what_is_asked_for(void **state)
+{
+    (void)state;
+    Run run;
+    Err err = {0};
+    CHECK_OK(run_read(&run, in_folder("dtlz"), &err), &err);
+    const size_t n_columns = run.schema.n_obj + run.schema.n_var, most = 2 * n_columns + 4;
+    const size_t kept[] = {run_knee(&run), run.front[1]};
+    size_t *rows = calloc(run.n_front, sizeof *rows);
+    assert_true(rows && run.n_front > most + 4);
+    assert_int_equal(thin_front(&run, run.n_front, 2, kept, rows), run.n_front);
+    assert_memory_equal(rows, run.front, run.n_front * sizeof *rows);
+    const size_t n = thin_front(&run, most, 2, kept, rows);
+    assert_true(n > most / 2 && n <= most);
+    assert_true(is_among(kept[0], n, rows) && is_among(kept[1], n, rows));
+    for (size_t i = 0; i < n; i++)
+        assert_true(run.place[rows[i]].on_front && (i == 0 || rows[i] > rows[i - 1]));
+    for (size_t c = 0; c < n_columns; c++)
+        for (int s = -1; s <= 1; s += 2)
+            assert_true(extreme(&run, n, rows, c, s) == extreme(&run, run.n_front, run.front, c, s));
+    free(rows);
+    run_free(&run);
+}
+
 /* How often the command opens the run's database. */
 static void expect_one_opening(const char *arguments)
 {
@@ -537,6 +579,7 @@ int main(void)
         cmocka_unit_test(test_energies_add_up_to_the_input_at_every_instant_and_end_as_the_result_says),
         cmocka_unit_test(test_the_chosen_design_is_simulated_as_the_search_did),
         cmocka_unit_test(test_growth_is_the_hypervolume_that_status_tells),
+        cmocka_unit_test(test_a_thinned_front_keeps_every_range_the_knee_and_what_is_asked_for),
         cmocka_unit_test(test_the_page_holds_the_rows_of_the_front_to_the_last_digit),
         cmocka_unit_test(test_the_policy_allows_nothing_but_hashes),
         cmocka_unit_test(test_a_run_of_another_problem_has_no_tower_in_its_report),

@@ -3,6 +3,7 @@
 
 #include "report/report.h"
 #include "report/report_json.h"
+#include "report/thin.h"
 #include "store/output.h"
 
 /* build/web/page.html, live.html: the page with a line MARK where the run goes. */
@@ -27,10 +28,11 @@ static Status write_json(json_t *all, FILE *out, Err *err)
 }
 
 /* One line per design as in front.csv: id, variables, objectives. */
-static void write_rows(const Run *run, FILE *out)
+static void write_rows(const Report *r, FILE *out)
 {
-    for (size_t i = 0; i < run->n_front; i++) {
-        const size_t row = run->front[i];
+    const Run *run = r->run;
+    for (size_t i = 0; i < r->n_shown; i++) {
+        const size_t row = r->shown[i];
         fprintf(out, "%ld", run->table.row[row].id);
         print_cells(out, run->schema.n_var, run_x(run, row));
         print_cells(out, run->schema.n_obj, run_f(run, row));
@@ -47,27 +49,38 @@ static Status write_page(const Report *r, const char *start, const char *end, FI
     fputs("<script type=\"application/json\" id=\"run\">", out);
     TRY(write_json(report_json(r), out, err));
     fputs("</script>\n<script type=\"text/plain\" id=\"rows\">\n", out);
-    write_rows(r->run, out);
+    write_rows(r, out);
     fputs("</script>\n", out);
     mark += sizeof MARK - 1;
     fwrite(mark, 1, (size_t)(end - mark), out);
     return STATUS_OK;
 }
 
-Status report_page(const Report *r, const char *path, Err *err)
+static Status write_whole(const Report *r, const char *path, Err *err)
 {
     Output o;
-    Report whole = *r;
     TRY(output_open(&o, path, err));
+    const Status status =
+        write_page(r, _binary_build_web_page_html_start, _binary_build_web_page_html_end, o.stream, err);
+    if (status == STATUS_OK)
+        return output_close(&o, err);
+    output_abandon(&o);
+    return status;
+}
+
+Status report_page(const Report *r, const char *path, Err *err)
+{
+    Report whole = *r;
+    whole.shown = calloc(r->run->n_front, sizeof *whole.shown);
+    if (!whole.shown)
+        return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", r->run->n_front);
+    whole.n_shown = thin_front(r->run, REPORT_DESIGNS_MAX, 2, (size_t[]){r->knee, r->chosen}, whole.shown);
     Status status = importance_of(r->run, &whole.importance, err);
     if (status == STATUS_OK)
-        status = write_page(&whole, _binary_build_web_page_html_start, _binary_build_web_page_html_end, o.stream, err);
+        status = write_whole(&whole, path, err);
     importance_free(&whole.importance);
-    if (status != STATUS_OK) {
-        output_abandon(&o);
-        return status;
-    }
-    return output_close(&o, err);
+    free(whole.shown);
+    return status;
 }
 
 Status report_live(const Run *run, char **text, Err *err)
@@ -81,6 +94,8 @@ Status report_live(const Run *run, char **text, Err *err)
     if (!out)
         return fail(err, STATUS_NO_MEMORY, "no memory for a page");
     r.knee = r.chosen = run_knee(run);
+    r.n_shown = run->n_front;
+    r.shown = run->front;
     Status status = write_page(&r, _binary_build_web_live_html_start, _binary_build_web_live_html_end, out, err);
     if (fclose(out) != 0 && status == STATUS_OK)
         status = fail(err, STATUS_NO_MEMORY, "no memory for a page");

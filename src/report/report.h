@@ -21,11 +21,15 @@ typedef struct {
     int is_robust;       /* objectives are those of several simulations, not of the one in detail */
     int has_detail;
     Detail detail;
-    Importance importance; /* report_page finds it; elsewhere empty */
+    Importance importance;  /* report_page finds it; elsewhere empty */
+    size_t n_shown, *shown; /* rows of the designs of the front that the page has (report/thin.h); as the importance */
 } Report;
 
 /* chosen: row of the run, on its front or not; the front may not be empty (run_why_empty). */
 Status report_open(Report *r, const Run *run, size_t chosen, const DetailOptions *options, Err *err);
+
+/* At most REPORT_DESIGNS_MAX designs of the front and what thin_front keeps beyond them: more are too many to be drawn. */
+enum { REPORT_DESIGNS_MAX = 10000 };
 Status report_page(const Report *r, const char *path, Err *err);
 
 /* A run before anything of it is simulated again: no design in detail. */

@@ -185,14 +185,14 @@ static json_t *json_of_names(const Report *r)
     return json_pack("{s:o, s:o, s:o}", "variables", variables, "objectives", objectives, "bounds", json_of_bounds(r));
 }
 
-/* Ids of the designs of the front beyond the contact law. */
+/* Ids of the designs shown that are beyond the contact law. */
 static json_t *json_of_beyond_law(const Report *r)
 {
     const Run *run = r->run;
     json_t *ids = json_array();
     for (size_t e = 0; r->has_detail && e < run->schema.n_extra; e++)
-        for (size_t i = 0; i < run->n_front; i++) {
-            const Evaluation *row = &run->table.row[run->front[i]];
+        for (size_t i = 0; i < r->n_shown; i++) {
+            const Evaluation *row = &run->table.row[r->shown[i]];
             if (run->schema.order.of[run->schema.n_obj + e] == MEASURE_BEYOND_LAW && row->extra[e] > 0)
                 ids = json_append(ids, json_integer(row->id));
         }
@@ -244,15 +244,16 @@ json_t *report_json(const Report *r)
         name[n - 1] = 0;
     const char *slash = strrchr(name, '/');
     return json_pack(
-        "{s:s, s:s, s:o, s:o, s:b, s:b, s:o, s:s, s:I, s:I, s:o, s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:s}",
+        "{s:s, s:s, s:o, s:o, s:b, s:b, s:o, s:s, s:I, s:I, s:o, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:s}",
         "version", program_version(), "revision", program_revision(), "name",
         json_words(slash && slash[1] ? slash + 1 : name), "folder", json_words(name), "tower", r->has_detail, "robust",
         r->is_robust, "building", json_words(run->settings->building.model), "spread",
         spread_word(run->settings->sim.gap_tolerance_m, &run->settings->uncertain), "knee",
         (json_int_t)run->table.row[r->knee].id, "chosen", (json_int_t)run->table.row[r->chosen].id, "chosen_f",
         json_numbers(run->schema.n_obj, run_f(run, r->chosen)), "evaluated", (json_int_t)n_evaluated(run), "failed",
-        (json_int_t)run->n_failed, "schema", json_of_names(r), "beyond_law", json_of_beyond_law(r), "importance",
-        json_of_importance(&r->importance, &run->schema), "convergence", json_of_growth(run), "detail",
+        (json_int_t)run->n_failed, "front", (json_int_t)run->n_front, "schema", json_of_names(r), "beyond_law",
+        json_of_beyond_law(r), "importance", json_of_importance(&r->importance, &run->schema), "convergence",
+        json_of_growth(run), "detail",
         r->detail.n_floors > 0 ? detail_json(&r->detail, &run->schema.order) : json_null(), "settings",
         json_of_settings(run->settings), "provenance", run->provenance);
 }

@@ -105,7 +105,9 @@ function frontPart() {
   const colour = columnSelect("colour", "Colour", "colour");
   host.append(
     element("p", { class: "note" }, "Every line is a nondominated design; on an axis of an objective better is down. Drag along an axis, or over a box of dots, to select; " +
-      "drag a title sideways to move its axis, down to turn it over, up to hide it; click a line or dot to mark its design."),
+      "drag a title sideways to move its axis, down to turn it over, up to hide it; click a line or dot to mark its design." +
+      (run.front > n ? ` Here are ${count(n)} of ${count(run.front)} designs of the front: those with the lowest and the highest value of every objective and variable, ` +
+        "the knee, the chosen design and polished ones, and the others evenly in the order of their evaluation; imtet export has all." : "")),
     selectionBar(), element("div", { class: "bar hide-in-print" }, presetChoice(), colour, colourBar()), overlayLegend());
   parallelCoordinates(host.appendChild(element("figure", { class: "scroll" })));
   host.append(rangeInputs());
