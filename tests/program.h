@@ -36,20 +36,28 @@ __attribute__((noinline)) static char *text_of(const char *path)
     return text;
 }
 
+/* The words of the format in `to`; @ stands for the test's own folder. */
+__attribute__((format(printf, 3, 0))) static inline void spread(char *to, size_t size, const char *format, va_list list)
+{
+    char words[2048];
+    size_t n = 0;
+    vsnprintf(words, sizeof words, format, list);
+    to[0] = 0;
+    for (const char *p = words; *p && n + sizeof place.folder < size; p++)
+        n += (size_t)(*p == '@' ? sprintf(to + n, "%s", place.folder) : sprintf(to + n, "%c", *p));
+}
+
 /* Runs `imtet ARGUMENTS` through the shell; @ in the format stands for the test's own folder. */
 __attribute__((format(printf, 2, 3))) static inline void run(Said *said, const char *format, ...)
 {
-    char arguments[2048], spread[4096], command[8192], out[128], err[128];
+    char arguments[4096], command[8192], out[128], err[128];
     va_list list;
     va_start(list, format);
-    vsnprintf(arguments, sizeof arguments, format, list);
+    spread(arguments, sizeof arguments, format, list);
     va_end(list);
-    size_t n = 0;
-    for (const char *p = arguments; *p && n + sizeof place.folder < sizeof spread; p++)
-        n += (size_t)(*p == '@' ? sprintf(spread + n, "%s", place.folder) : sprintf(spread + n, "%c", *p));
     snprintf(out, sizeof out, "%s/out", place.folder);
     snprintf(err, sizeof err, "%s/err", place.folder);
-    snprintf(command, sizeof command, "exec >%s 2>%s; %s '%s' %s", out, err, place.under, getenv("IMTET"), spread);
+    snprintf(command, sizeof command, "exec >%s 2>%s; %s '%s' %s", out, err, place.under, getenv("IMTET"), arguments);
     const int status = system(command);
     said->code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     said->out = text_of(out);

@@ -50,16 +50,13 @@ static const char *launcher = "mpirun";
  * mpirun. */
 __attribute__((format(printf, 2, 3))) static pid_t launch(int ranks, const char *format, ...)
 {
-    char arguments[1024], spread[2048], command[4096];
+    char arguments[2048], command[4096];
     va_list list;
     va_start(list, format);
-    vsnprintf(arguments, sizeof arguments, format, list);
+    spread(arguments, sizeof arguments, format, list);
     va_end(list);
-    size_t n = 0;
-    for (const char *p = arguments; *p && n + sizeof place.folder < sizeof spread; p++)
-        n += (size_t)(*p == '@' ? sprintf(spread + n, "%s", place.folder) : sprintf(spread + n, "%c", *p));
     snprintf(command, sizeof command, "exec %s -n %d '%s' %s >'%s/said' 2>&1 </dev/null", launcher, ranks, program(),
-             spread, place.folder);
+             arguments, place.folder);
     return spawn(command);
 }
 

@@ -349,52 +349,15 @@ static pid_t guard_of(pid_t pid)
     return guard;
 }
 
-/* Workers and a child of each hold an end of a pipe: it ends when the last of them does. */
-static void kill_a_program_with_workers(int kill_guard)
+/* A program whose two workers, run by that command, hold an end of a pipe and have each said one character into it. */
+static pid_t start_with_workers(const char *command, int *end)
 {
     const double X[4] = {0};
     double F[4];
     unsigned char ok[2];
     Problem p;
     Queue *q;
-    const ProblemOptions options = command_of("sh -c 'read -r line; sleep 60 & printf ! >&2; wait'", 60, 2);
-    Err err = {0};
-    int ends[2];
-    char words[8];
-    assert_int_equal(pipe(ends), 0);
-    const pid_t pid = fork();
-    if (pid == 0) {
-        dup2(ends[1], STDERR_FILENO);
-        close(ends[1]);
-        if (external_open(&p, &options, 2, &err) == STATUS_OK &&
-            queue_open(&q, &p, QUEUE_AS_ASKED, 0, 0, &err) == STATUS_OK)
-            queue_evaluate(q, 2, X, NULL, F, NULL, ok, &err);
-        _exit(1);
-    }
-    close(ends[1]);
-    for (int n = 0; n < 2; n++)
-        assert_int_equal(read(ends[0], words, 1), 1);
-    if (kill_guard) {
-        kill(guard_of(pid), SIGKILL);
-        nanosleep(&(struct timespec){1, 0}, NULL);
-    }
-    kill(pid, SIGKILL);
-    assert_int_equal(waitpid(pid, NULL, 0), pid);
-    assert_int_equal(poll(&(struct pollfd){ends[0], POLLIN, 0}, 1, 20000), 1);
-    assert_int_equal(read(ends[0], words, sizeof words), 0);
-    close(ends[0]);
-}
-
-/* All at once, so that no guard can take the other's place. */
-static void test_workers_end_with_a_program_and_a_guard_that_are_killed_together(void **state)
-{
-    (void)state;
-    const double X[4] = {0};
-    double F[4];
-    unsigned char ok[2];
-    Problem p;
-    Queue *q;
-    const ProblemOptions options = command_of("sh -c 'read -r line; printf ! >&2; exec sleep 60'", 60, 2);
+    const ProblemOptions options = command_of(command, 60, 2);
     Err err = {0};
     int ends[2];
     char word;
@@ -411,24 +374,49 @@ static void test_workers_end_with_a_program_and_a_guard_that_are_killed_together
     close(ends[1]);
     for (int n = 0; n < 2; n++)
         assert_int_equal(read(ends[0], &word, 1), 1);
-    kill(guard_of(pid), SIGKILL);
+    *end = ends[0];
+    return pid;
+}
+
+/* The pipe ends when the last of those does that hold it. */
+static void kill_and_expect_its_workers_to_end(pid_t pid, int end)
+{
+    char word;
     kill(pid, SIGKILL);
     assert_int_equal(waitpid(pid, NULL, 0), pid);
-    assert_int_equal(poll(&(struct pollfd){ends[0], POLLIN, 0}, 1, 20000), 1);
-    assert_int_equal(read(ends[0], &word, 1), 0);
-    close(ends[0]);
+    assert_int_equal(poll(&(struct pollfd){end, POLLIN, 0}, 1, 20000), 1);
+    assert_int_equal(read(end, &word, 1), 0);
+    close(end);
+}
+
+static const char WITH_CHILDREN[] = "sh -c 'read -r line; sleep 60 & printf ! >&2; wait'";
+
+/* All at once, so that no guard can take the other's place. */
+static void test_workers_end_with_a_program_and_a_guard_that_are_killed_together(void **state)
+{
+    (void)state;
+    int end;
+    const pid_t pid = start_with_workers("sh -c 'read -r line; printf ! >&2; exec sleep 60'", &end);
+    kill(guard_of(pid), SIGKILL);
+    kill_and_expect_its_workers_to_end(pid, end);
 }
 
 static void test_workers_end_with_a_program_that_is_killed(void **state)
 {
     (void)state;
-    kill_a_program_with_workers(0);
+    int end;
+    const pid_t pid = start_with_workers(WITH_CHILDREN, &end);
+    kill_and_expect_its_workers_to_end(pid, end);
 }
 
 static void test_workers_end_with_a_program_whose_guard_was_killed_before(void **state)
 {
     (void)state;
-    kill_a_program_with_workers(1);
+    int end;
+    const pid_t pid = start_with_workers(WITH_CHILDREN, &end);
+    kill(guard_of(pid), SIGKILL);
+    nanosleep(&(struct timespec){1, 0}, NULL);
+    kill_and_expect_its_workers_to_end(pid, end);
 }
 
 static void test_a_command_that_does_not_exist_ends_the_search_by_name(void **state)

@@ -287,7 +287,8 @@ static Status choose(const Args *args, Choice *c, Err *err)
 {
     Picks picks;
     TRY(find_picks(args, c, &picks, err));
-    TRY(find_confidence(c->run, &picks, err));
+    if (!args_has(args, "--csv") || args_has(args, "--json")) /* which has no place for it */
+        TRY(find_confidence(c->run, &picks, err));
     return show(args, c->run, &picks, err);
 }
 

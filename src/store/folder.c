@@ -81,7 +81,8 @@ Status folder_advise(const char *path, Status status, Err *err)
 {
     Folder f = {.lock = -1};
     const int is_empty = strstr(err->text, ": is empty") != NULL;
-    if (status != STATUS_IO || (!is_empty && !strstr(err->text, ": is damaged") && !strstr(err->text, ": is no database")))
+    if (status != STATUS_IO ||
+        (!is_empty && !strstr(err->text, ": is damaged") && !strstr(err->text, ": is no database")))
         return status;
     snprintf(f.path, sizeof f.path, "%s", path);
     const size_t n = folder_rows(&f, "evaluations.csv");

@@ -1,0 +1,22 @@
+/* settings/table.h -- the table of the settings, to those that fill it by its lines.
+ *
+ * Threads  no state */
+#ifndef IMTET_SETTINGS_TABLE_H
+#define IMTET_SETTINGS_TABLE_H
+
+#include "base/list.h"
+#include "settings/settings.h"
+
+enum { TABLE_MAX = 256 }; /* lines at most */
+
+/* The line of a key, old ones noted in s; errors: the nearest key. */
+Status table_find(Settings *s, const char *key, int *i, Err *err);
+int table_at(size_t offset); /* the line of a field of Settings, or -1 */
+
+/* A value as one would type it. */
+Status table_assign(Settings *s, int i, const char *value, Err *err);
+
+/* The files that line i reads, handed to `change` one by one. */
+void table_change_files(Settings *s, int i, ListItemFn change, void *user);
+
+#endif
