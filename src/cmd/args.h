@@ -9,48 +9,8 @@
 
 #include <stdio.h>
 
-#include "base/status.h"
+#include "cmd/command.h"
 #include "study/record_paths.h"
-
-typedef struct Settings Settings;
-
-typedef struct {
-    const char *name;    /* "--record" */
-    const char *value;   /* what follows it ("FILE"), NULL for a switch */
-    const char *setting; /* the setting that it writes, NULL: the command reads it */
-    int many;            /* may be given more than once */
-    const char *help;
-} ArgOption;
-
-typedef struct Args Args;
-
-typedef struct {
-    const char *name, *operand; /* operand NULL: takes none, "[NAME]": may be left out, "NAME...": one or more */
-    const char *summary, *example, *details;
-    const ArgOption *options; /* up to the first without a name */
-    Status (*run)(const Args *args, Err *err);
-    const char *program; /* of which it is a command; NULL: imtet */
-    int only_reads;      /* runs and files: no linear algebra */
-    /* Settings that it reads (patterns of settings/idle.h; NULL: all), and of them those that it does not; "KEY?--option":
-     * where that is given, "KEY!--option": where it is not. Whoever sets another one is told. */
-    const char *reads, *unread;
-} Command;
-
-typedef struct {
-    const ArgOption *option;
-    const char *value; /* NULL for a switch */
-} Given;
-
-struct Args {
-    const Command *command;
-    const char *operand;   /* the first; of a RUN its folder, also where run.sqlite in it was named */
-    char *folder;          /* what operand points to then */
-    int n_operands;        /* one at most, unless the command's operand ends with "..." */
-    const char **operands; /* (n_operands) in the order of the command line */
-    int help;              /* --help was asked for: nothing else was checked */
-    int n_given;
-    Given *given; /* (n_given) in the order of the command line */
-};
 
 /* An example, the details and every option. */
 void command_help(const Command *command, FILE *out);

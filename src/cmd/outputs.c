@@ -19,14 +19,22 @@ static int is_written(const Given *g)
     return 0;
 }
 
+static const Given *find(const Args *args, const char *name)
+{
+    for (int i = 0; i < args->n_given; i++)
+        if (strcmp(args->given[i].option->name, name) == 0)
+            return &args->given[i];
+    return NULL;
+}
+
 const char *outputs_standard(const Args *args, int i)
 {
     for (size_t k = 0; k < sizeof WRITTEN / sizeof WRITTEN[0]; k++) {
-        const char *path = args_value(args, WRITTEN[k]);
-        if (path && strcmp(path, "-") == 0 && i-- == 0)
+        const Given *g = find(args, WRITTEN[k]);
+        if (g && strcmp(g->value, "-") == 0 && i-- == 0)
             return WRITTEN[k];
     }
-    return args_has(args, "--json") && i == 0 ? "--json" : NULL;
+    return find(args, "--json") && i == 0 ? "--json" : NULL;
 }
 
 static int is_same_file(const char *path, const char *other)

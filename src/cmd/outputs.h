@@ -5,7 +5,7 @@
 #ifndef IMTET_CMD_OUTPUTS_H
 #define IMTET_CMD_OUTPUTS_H
 
-#include "cmd/args.h"
+#include "cmd/command.h"
 
 /* Option i, from 0, that asked for standard output; NULL: no more. */
 const char *outputs_standard(const Args *args, int i);

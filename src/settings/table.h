@@ -5,7 +5,7 @@
 #define IMTET_SETTINGS_TABLE_H
 
 #include "base/list.h"
-#include "settings/settings.h"
+#include "settings/options.h"
 
 enum { TABLE_MAX = 256 }; /* lines at most */
 
