@@ -7,7 +7,7 @@
 #include "base/random.h"
 #include "evaluate/threads.h"
 
-typedef enum { SPHERE, RASTRIGIN, ACKLEY, ROSENBROCK } Distance;
+typedef enum { SPHERE, RASTRIGIN, ACKLEY, ROSENBROCK, TRAPS } Distance;
 typedef enum { LINEAR, CONVEX, CONCAVE, CURVE, PIECES, QUADRATICS } Front;
 typedef enum { FAIL_NEVER, FAIL_SLAB, FAIL_BALL, FAIL_CHECKER } Failing;
 
@@ -45,6 +45,25 @@ static const Recipe RECIPES[] = {
      0,
      0},
     {{"slab5", "a third of the box fails, aside", 12, 5, 0, 1}, SPHERE, QUADRATICS, FAIL_SLAB, 0, 0, 1, 0},
+    {{"combs2", "Rastrigin, steep, ten waves, two objectives", 10, 2, 0, 0},
+     RASTRIGIN,
+     CONVEX,
+     FAIL_NEVER,
+     10,
+     1,
+     0,
+     0},
+    {{"combs7", "Rastrigin, steep, six waves, seven objectives", 16, 7, 0, 0},
+     RASTRIGIN,
+     CONCAVE,
+     FAIL_NEVER,
+     6,
+     1,
+     0,
+     0},
+    {{"traps3", "deceptive, three objectives", 12, 3, 0, 0}, TRAPS, CONCAVE, FAIL_NEVER, 0, 0, 0, 0},
+    {{"combs3", "Rastrigin, steep, eight waves, aside", 14, 3, 0, 1}, RASTRIGIN, LINEAR, FAIL_NEVER, 8, 1.5, 0, 0},
+    {{"traps5", "deceptive, five objectives, aside", 10, 5, 0, 1}, TRAPS, LINEAR, FAIL_NEVER, 0, 0, 0, 0},
 };
 enum { N_RECIPES = sizeof RECIPES / sizeof *RECIPES };
 
@@ -92,11 +111,24 @@ static double rosenbrock(size_t n, const double y[])
     return sum;
 }
 
+/* Falls towards the bounds but for a narrow valley about the zero. */
+static double traps(size_t n, const double y[])
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < n; i++) {
+        const double off = fabs(y[i]);
+        sum += fmin(off / 0.06, fmax(1.0 - 1.2 * (off - 0.06), 0.2)) / (double)n;
+    }
+    return 4.0 * sum;
+}
+
 static double distance(const Made *m, size_t n, const double y[])
 {
     double square = 0.0, waves = 0.0;
     if (m->recipe.distance == ROSENBROCK)
         return rosenbrock(n, y);
+    if (m->recipe.distance == TRAPS)
+        return traps(n, y);
     for (size_t i = 0; i < n; i++) {
         square += y[i] * y[i];
         waves += 1.0 - cos(2.0 * M_PI * m->recipe.waves * y[i]);

@@ -4,8 +4,8 @@
  *
  * Every objective is built on two kinds of parts, with constants drawn once per problem from a keyed stream:
  *   position   where on the front
- *   distance   >= 0, how far from it: a sphere, Rastrigin, Ackley or Rosenbrock function of shifted, perhaps rotated
- *              variables, 0 at an inner point
+ *   distance   >= 0, how far from it: a sphere, Rastrigin, Ackley, Rosenbrock or deceptive function of shifted, perhaps
+ *              rotated variables, 0 at an inner point
  * or it is a convex quadratic of its own minimum (quadratics).
  *
  * Threads  pure functions of what family_open has made */
