@@ -331,6 +331,22 @@ static void test_designs_are_chosen_by_limits_weights_and_a_reference_point_and_
     expect(2, "no algorithm is called", "polish @/kind --design knee --algorithm magic");
 }
 
+/* The simulator answers until there is a file beside it. */
+static void test_a_design_that_fails_when_it_is_polished_is_named_with_its_reason(void **state)
+{
+    (void)state;
+    write_in_place("tired.sh", "while read -r line; do id=${line#*:}; id=${id%%,*}\n"
+                               "if [ -e \"$0.off\" ]; then echo \"{\\\"id\\\":$id,\\\"error\\\":\\\"no licence\\\"}\"\n"
+                               "else echo \"{\\\"id\\\":$id,\\\"f\\\":[$id,1]}\"; fi; done\n");
+    char *path = in_place("tired.sh"), command[400];
+    snprintf(command, sizeof command,
+             "optimize @/external.ini --out @/tired --max-evals 8 --set 'problem.command=sh %s'", path);
+    free(output_of(command));
+    write_in_place("tired.sh.off", "");
+    expect(65, "simulated again, 1 times (error: no licence)", "polish @/tired --design knee");
+    free(path);
+}
+
 /* The first simulations of the second run are the front of the first one; a choice of three begins with the knee. */
 static void test_a_search_begins_with_given_designs_and_a_front_is_thinned(void **state)
 {
@@ -417,6 +433,7 @@ int main(void)
         cmocka_unit_test(test_a_design_is_evaluated_on_every_motion_of_a_folder),
         cmocka_unit_test(test_an_external_simulator_is_searched_and_every_design_exported),
         cmocka_unit_test(test_designs_are_chosen_by_limits_weights_and_a_reference_point_and_polished),
+        cmocka_unit_test(test_a_design_that_fails_when_it_is_polished_is_named_with_its_reason),
         cmocka_unit_test(test_a_search_begins_with_given_designs_and_a_front_is_thinned),
         cmocka_unit_test(test_a_textbook_problem_is_written_design_by_design),
         cmocka_unit_test(test_a_run_that_is_killed_leaves_its_last_finished_generation),

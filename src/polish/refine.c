@@ -1,6 +1,7 @@
 #include "polish/refine.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -24,6 +25,7 @@ typedef struct {
     double f[2 * OBJECTIVES_MAX], spread[2 * OBJECTIVES_MAX], violation[2]; /* of its first and last answer, natural */
     double extra[2 * N_MEASURES];                                           /* the further measures of both */
     double weight[OBJECTIVES_MAX], slack[OBJECTIVES_MAX], bound[OBJECTIVES_MAX]; /* of minimised objectives */
+    char reason[REASON_MAX];                                                     /* why an evaluation failed */
     long replicates;                                                             /* of a design that is tried */
     double start;                                                                /* [s] of the clock */
 } Refine;
@@ -59,6 +61,9 @@ static Status evaluate(Refine *r, size_t n, const double *const designs[], size_
     for (size_t i = 0; i < n; i++) {
         TRY(queue_next(r->queue, &done, err));
         ok[i] = done.evaluation->outcome == OUTCOME_OK;
+        if (!ok[i])
+            snprintf(r->reason, sizeof r->reason, "%s%s%s", outcome_word(done.evaluation->outcome),
+                     done.evaluation->reason[0] ? ": " : "", done.evaluation->reason);
         r->violation[i] = done.evaluation->violation;
         memcpy(r->f + i * m, done.evaluation->f, m * sizeof *r->f);
         memcpy(r->spread + i * m, done.evaluation->sd, m * sizeof *r->spread);
@@ -99,7 +104,11 @@ static Status begin(Refine *r, double f[], Refined *out, Err *err)
     TRY(evaluate(r, 1, &r->x, 0, f, &ok, err));
     count(1, 0, r->config->replicates, out);
     if (!ok)
-        return fail(err, STATUS_BAD_DATA, "the design to be polished cannot be evaluated");
+        return fail(
+            err, STATUS_BAD_DATA,
+            "the design to be polished fails when it is simulated again, %ld times (%s): choose another one, or "
+            "give --replicates as many as the run made",
+            r->config->replicates, r->reason);
     r->replicates = 1;
     set_goal(r, f);
     return r->replicates == r->config->replicates ? STATUS_OK : open_simulator(r, r->replicates, err);
