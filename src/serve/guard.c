@@ -64,10 +64,11 @@ PathVerdict guard_path(const char *token, const char *url, ServePath *out)
     if (url[0] != '/' || !is_token(token, url + 1))
         return PATH_NONE;
     const char *at = url + TOKEN_TEXT;
-    if (*at++ != '/')
-        return PATH_UNKNOWN;
+    if (*at != '/')
+        return *at ? PATH_UNKNOWN : PATH_UNENDED;
+    at++;
     if (take_number(&at, &out->run) && at[-1] != '/')
-        return PATH_UNKNOWN;
+        return PATH_UNENDED;
     const size_t n = strspn(at, "abcdefghijklmnopqrstuvwxyz-");
     if (n >= WORD_MAX)
         return PATH_UNKNOWN;

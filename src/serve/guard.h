@@ -1,8 +1,8 @@
 /* serve/guard.h -- whom the server answers: who knows the token and asks this machine by its own name.
  *
  *   token    192 random bits (getrandom) in every path, compared in constant time
- *   Host     127.0.0.1 or localhost, at any port (that of an ssh tunnel): a foreign name that resolves to the loopback (DNS
- *            rebinding) is refused
+ *   Host     127.0.0.1 or localhost: a foreign name that resolves to the loopback (DNS rebinding) is refused. At any port: the
+ *            browser at the other end of an ssh tunnel names that of the tunnel, and a page of another port has another Origin
  *   Origin   none, or http://HOST of the same request: other pages of the same browser are refused
  *   path     /TOKEN/WORD, /TOKEN/RUN/WORD or /TOKEN/RUN/WORD/NUMBER, RUN and NUMBER of digits: nothing of a request ever
  *            becomes a path of the disk
@@ -27,8 +27,8 @@ typedef struct {
     char word[WORD_MAX]; /* of a-z and -; empty: none */
 } ServePath;
 
-/* NONE: the token is wrong. */
-typedef enum { PATH_NONE, PATH_UNKNOWN, PATH_OK } PathVerdict;
+/* NONE: the token is wrong; UNENDED: /TOKEN or /TOKEN/RUN, whose pages end with a slash. */
+typedef enum { PATH_NONE, PATH_UNKNOWN, PATH_UNENDED, PATH_OK } PathVerdict;
 PathVerdict guard_path(const char *token, const char *url, ServePath *out);
 
 #endif

@@ -18,8 +18,11 @@
 #include "serve/what_if.h"
 #include "settings/settings.h"
 
-enum { PEERS_EASE = PEERS_MAX / 2, STALL_S = 15 };
+enum { PEERS_EASE = PEERS_MAX / 2, STALL_S = 15, EVENT_MAX = 2048 };
 static const double BEAT_S = 5; /* between events at most */
+
+/* A run is kept in memory after a page asked for it, after all were listed. */
+static const double PAGE_S = 60, GLANCE_S = 2;
 
 /* A connection, from its beginning to its end. */
 typedef struct {
@@ -29,15 +32,18 @@ typedef struct {
 
 /* What is kept for a run. */
 typedef struct {
+    size_t n_users; /* the server is one; of its mutex, the rest but what_if does not change */
+    Settings settings;
+    char *provenance; /* of the run when it was first asked for */
+    DetailCache *details;
     pthread_mutex_t mutex;
     WhatIf *what_if;
-    DetailCache *details;
-    Settings settings; /* of the run when it was first asked for */
 } Kept;
 
 struct Server {
     char token[TOKEN_TEXT], url[TOKEN_TEXT + 48];
     int port;
+    double request_s;
     RecordPaths moved;
     Watch *watch;
     struct MHD_Daemon *daemon;
@@ -49,25 +55,34 @@ struct Server {
     Kept *kept[1024]; /* by the number of the run; NULL: nothing yet */
 };
 
+typedef struct Route Route;
+
 /* What came in so far. */
 typedef struct {
     ServePath path;
+    const Route *route;
+    int is_too_large;
     size_t n;
     char body[BODY_MAX];
 } Request;
 
+typedef struct Stream Stream;
+
 typedef struct {
     unsigned code;
     const char *type;
-    char *text;     /* malloc'd */
-    char place[32]; /* of a redirection; empty: none */
+    char *text;                 /* malloc'd */
+    Stream *stream;             /* in the place of the text */
+    char place[TOKEN_TEXT + 8]; /* of a redirection; empty: none */
+    const char *allow;          /* methods; NULL: not said */
 } Answer;
 
 typedef struct {
     Server *server;
     const Request *request;
-    Look *look; /* of the run of the path */
-    size_t run;
+    size_t run; /* of the path, if it has one; */
+    Look *look; /* as it is now */
+    Kept *kept; /* NULL: not asked for */
 } Visit;
 
 /* -- connections --------------------------------------------------------------------------------------------------- */
@@ -145,7 +160,7 @@ static void *tend(void *user)
         const double now = clock_seconds();
         pthread_mutex_lock(&s->mutex);
         for (size_t i = 0; i < PEERS_MAX; i++)
-            if (s->peer[i].since > 0 && now > s->peer[i].since + REQUEST_S)
+            if (s->peer[i].since > 0 && now > s->peer[i].since + s->request_s)
                 shutdown(s->peer[i].socket, SHUT_RDWR);
         pthread_mutex_unlock(&s->mutex);
         nanosleep(&(struct timespec){.tv_nsec = 100000000}, NULL);
@@ -171,38 +186,56 @@ static unsigned code_of(Status status)
     }
 }
 
+static ssize_t read_events(void *user, uint64_t position, char *out, size_t room);
+static void end_stream(void *user);
+
+static struct MHD_Response *response_of(const Answer *a)
+{
+    struct MHD_Response *r =
+        a->stream ? MHD_create_response_from_callback(MHD_SIZE_UNKNOWN, EVENT_MAX, read_events, a->stream, end_stream)
+                  : MHD_create_response_from_buffer(a->text ? strlen(a->text) : 0, a->text, MHD_RESPMEM_MUST_FREE);
+    if (!r && a->stream)
+        end_stream(a->stream);
+    else if (!r)
+        free(a->text);
+    return r;
+}
+
 static enum MHD_Result send_answer(struct MHD_Connection *c, const Answer *a)
 {
-    static const char *const HEADERS[][2] = {{"Cache-Control", "no-store"},
-                                             {"X-Content-Type-Options", "nosniff"},
-                                             {"Referrer-Policy", "no-referrer"},
-                                             {"Cross-Origin-Resource-Policy", "same-origin"},
-                                             {"Cross-Origin-Opener-Policy", "same-origin"},
-                                             {"X-Frame-Options", "DENY"}};
-    struct MHD_Response *r =
-        MHD_create_response_from_buffer(a->text ? strlen(a->text) : 0, a->text, MHD_RESPMEM_MUST_FREE);
-    if (!r) {
-        free(a->text);
+    const char *const HEADERS[][2] = {{MHD_HTTP_HEADER_CONTENT_TYPE, a->type},
+                                      {MHD_HTTP_HEADER_LOCATION, a->place[0] ? a->place : NULL},
+                                      {MHD_HTTP_HEADER_ALLOW, a->allow},
+                                      {"Cache-Control", "no-store"},
+                                      {"X-Content-Type-Options", "nosniff"},
+                                      {"Referrer-Policy", "no-referrer"},
+                                      {"Cross-Origin-Resource-Policy", "same-origin"},
+                                      {"Cross-Origin-Opener-Policy", "same-origin"},
+                                      {"X-Frame-Options", "DENY"}};
+    struct MHD_Response *r = response_of(a);
+    if (!r)
         return MHD_NO;
-    }
     for (size_t i = 0; i < sizeof HEADERS / sizeof HEADERS[0]; i++)
-        MHD_add_response_header(r, HEADERS[i][0], HEADERS[i][1]);
-    MHD_add_response_header(r, MHD_HTTP_HEADER_CONTENT_TYPE, a->type);
-    if (a->place[0])
-        MHD_add_response_header(r, MHD_HTTP_HEADER_LOCATION, a->place);
-    if (a->code == MHD_HTTP_METHOD_NOT_ALLOWED)
-        MHD_add_response_header(r, MHD_HTTP_HEADER_ALLOW, "GET, POST");
+        if (HEADERS[i][1])
+            MHD_add_response_header(r, HEADERS[i][0], HEADERS[i][1]);
     const enum MHD_Result sent = MHD_queue_response(c, a->code, r);
     MHD_destroy_response(r);
     return sent;
 }
 
-static enum MHD_Result refuse(struct MHD_Connection *c, unsigned code, const char *words)
+static Answer refusal(unsigned code, const char *words)
 {
     json_t *o = json_pack("{s:s}", "error", words);
-    Answer a = {.code = code, .type = "application/json", .text = json_dumps(o, JSON_COMPACT)};
+    const Answer a = {.code = code, .type = "application/json", .text = json_dumps(o, JSON_COMPACT)};
     json_decref(o);
-    return send_answer(c, &a);
+    return a;
+}
+
+static Answer redirection(const char *place)
+{
+    Answer a = {.code = MHD_HTTP_FOUND, .type = "text/plain"};
+    snprintf(a.place, sizeof a.place, "%s/", place);
+    return a;
 }
 
 /* Takes the reference. */
@@ -222,7 +255,7 @@ static const char NO_FRONT[] =
     "<title>imtet</title></head><body><h1>No front</h1><p>%zu designs simulated, %zu failed: %s.</p>"
     "<p>This page looks again every second.</p></body></html>\n";
 
-static Status show_page(const Visit *v, Answer *a, Err *err)
+static Status show_page(Visit *v, Answer *a, Err *err)
 {
     const Look *look = v->look;
     Err why = {0};
@@ -236,7 +269,7 @@ static Status show_page(const Visit *v, Answer *a, Err *err)
                : fail(err, STATUS_NO_MEMORY, "no memory for a page");
 }
 
-static Status show_front(const Visit *v, Answer *a, Err *err)
+static Status show_front(Visit *v, Answer *a, Err *err)
 {
     return answer_json(answer_front(v->look), 6, a, err);
 }
@@ -250,51 +283,83 @@ static void count_difference(const char *key, unsigned flags, const char *was, c
     *n += !(flags & (SETTING_LIMIT | SETTING_FREE));
 }
 
-/* Another run in the place of this one has other designs, bounds and motions. */
-static Status check_run(const Kept *k, const Visit *v, Err *err)
+static int is_run(const Kept *k, const Run *run)
 {
     int n = 0;
-    settings_compare(&k->settings, v->look->run.settings, count_difference, &n);
-    return n == 0 ? STATUS_OK
-                  : fail(err, STATUS_UNMET, "the run was made anew with other settings; start `imtet serve` again");
+    settings_compare(&k->settings, run->settings, count_difference, &n);
+    return n == 0 && strcmp(k->provenance, run->provenance) == 0;
 }
 
-/* What is kept of the run of a visit, opened when it is first asked for. */
-static Status kept_of(const Visit *v, Kept **out, Err *err)
+static void close_kept(Kept *k)
+{
+    what_if_close(k->what_if);
+    detail_cache_close(k->details);
+    pthread_mutex_destroy(&k->mutex);
+    free(k->provenance);
+    free(k);
+}
+
+static Status open_kept(Kept **out, const Run *run, Err *err)
+{
+    Kept *k = *out = calloc(1, sizeof *k);
+    if (!k)
+        return fail(err, STATUS_NO_MEMORY, "no memory for a run");
+    pthread_mutex_init(&k->mutex, NULL);
+    k->n_users = 1;
+    k->settings = *run->settings;
+    k->provenance = strdup(run->provenance);
+    const Status status =
+        k->provenance ? detail_cache_open(&k->details, err) : fail(err, STATUS_NO_MEMORY, "no memory for a run");
+    if (status != STATUS_OK) {
+        close_kept(k);
+        *out = NULL;
+    }
+    return status;
+}
+
+/* NULL is fine. */
+static void give_kept(Server *s, Kept *k)
+{
+    pthread_mutex_lock(&s->mutex);
+    const int is_last = k && --k->n_users == 0;
+    pthread_mutex_unlock(&s->mutex);
+    if (is_last)
+        close_kept(k);
+}
+
+/* What is kept of the run of a visit, opened when it is first asked for. A run that was made anew in the place of another has
+ * other designs, bounds and motions: its own is opened. */
+static Status take_kept(Visit *v, Err *err)
 {
     Server *s = v->server;
+    Kept *other = NULL, **place = &s->kept[v->run];
     Status status = STATUS_OK;
     pthread_mutex_lock(&s->mutex);
-    Kept *k = s->kept[v->run];
-    if (!k) {
-        k = calloc(1, sizeof *k);
-        status = k ? detail_cache_open(&k->details, err) : fail(err, STATUS_NO_MEMORY, "no memory for a run");
-        if (status == STATUS_OK) {
-            pthread_mutex_init(&k->mutex, NULL);
-            k->settings = *v->look->run.settings;
-            s->kept[v->run] = k;
-        } else {
-            free(k);
-            k = NULL;
-        }
+    if (*place && !is_run(*place, &v->look->run)) {
+        other = *place;
+        *place = NULL;
     }
+    if (!*place)
+        status = open_kept(place, &v->look->run, err);
+    v->kept = *place;
+    if (v->kept)
+        v->kept->n_users++;
     pthread_mutex_unlock(&s->mutex);
-    *out = k;
-    return k ? check_run(k, v, err) : status;
+    give_kept(s, other);
+    return status;
 }
 
-static Status show_design(const Visit *v, Answer *a, Err *err)
+static Status show_design(Visit *v, Answer *a, Err *err)
 {
-    Kept *k;
-    TRY(kept_of(v, &k, err));
+    TRY(take_kept(v, err));
     *a = (Answer){.code = MHD_HTTP_OK, .type = "application/json"};
-    return detail_cache_ask(k->details, &v->look->run, &v->server->moved, v->request->path.number, &a->text, err);
+    return detail_cache_ask(v->kept->details, &v->look->run, &v->server->moved, v->request->path.number, &a->text, err);
 }
 
-static Status what_if_of(const Visit *v, WhatIf **out, Err *err)
+static Status what_if_of(Visit *v, WhatIf **out, Err *err)
 {
-    Kept *k;
-    TRY(kept_of(v, &k, err));
+    TRY(take_kept(v, err));
+    Kept *k = v->kept;
     pthread_mutex_lock(&k->mutex);
     const Status status = k->what_if ? STATUS_OK : what_if_open(&k->what_if, &v->look->run, &v->server->moved, err);
     *out = k->what_if;
@@ -302,14 +367,14 @@ static Status what_if_of(const Visit *v, WhatIf **out, Err *err)
     return status;
 }
 
-static Status show_bounds(const Visit *v, Answer *a, Err *err)
+static Status show_bounds(Visit *v, Answer *a, Err *err)
 {
     WhatIf *w;
     TRY(what_if_of(v, &w, err));
     return answer_json(what_if_bounds(w), 17, a, err);
 }
 
-static Status show_what_if(const Visit *v, Answer *a, Err *err)
+static Status show_what_if(Visit *v, Answer *a, Err *err)
 {
     WhatIf *w;
     json_t *answer;
@@ -318,7 +383,7 @@ static Status show_what_if(const Visit *v, Answer *a, Err *err)
     return answer_json(answer, 17, a, err);
 }
 
-static Status show_against(const Visit *v, Answer *a, Err *err)
+static Status show_against(Visit *v, Answer *a, Err *err)
 {
     Watch *w = v->server->watch;
     const long number = v->request->path.number;
@@ -326,7 +391,7 @@ static Status show_against(const Visit *v, Answer *a, Err *err)
     json_t *both = NULL;
     if (number >= (long)watch_n(w))
         return fail(err, STATUS_MISSING, "there is no run %ld", number);
-    TRY(watch_take(w, (size_t)number, &other, err));
+    TRY(watch_take(w, (size_t)number, PAGE_S, &other, err));
     const Look *const look[2] = {v->look, other};
     const char *const name[2] = {watch_name(w, v->run), watch_name(w, (size_t)number)};
     const Status status = answer_against(look, name, &both, err);
@@ -334,45 +399,22 @@ static Status show_against(const Visit *v, Answer *a, Err *err)
     return status == STATUS_OK ? answer_json(both, 6, a, err) : status;
 }
 
-static const struct {
-    const char *method, *word;
-    int has_number;
-    Status (*show)(const Visit *v, Answer *a, Err *err);
-} ROUTES[] = {
-    {"GET", "", 0, show_page},          {"GET", "front", 0, show_front},      {"GET", "design", 1, show_design},
-    {"GET", "what-if", 0, show_bounds}, {"POST", "what-if", 0, show_what_if}, {"GET", "against", 1, show_against}};
-enum { N_ROUTES = sizeof ROUTES / sizeof ROUTES[0] };
-
-static enum MHD_Result visit_run(const Visit *v, struct MHD_Connection *c, const char *method)
-{
-    const ServePath *path = &v->request->path;
-    for (size_t i = 0; i < N_ROUTES; i++) {
-        Answer a = {0};
-        Err err = {0};
-        if (strcmp(method, ROUTES[i].method) != 0 || strcmp(path->word, ROUTES[i].word) != 0 ||
-            ROUTES[i].has_number != (path->number >= 0))
-            continue;
-        const Status status = ROUTES[i].show(v, &a, &err);
-        return status == STATUS_OK ? send_answer(c, &a) : refuse(c, code_of(status), err.text);
-    }
-    return refuse(c, MHD_HTTP_NOT_FOUND, "there is no such part");
-}
-
 /* -- all runs ------------------------------------------------------------------------------------------------------ */
 
 /* Every run, unreadable ones with the reason. */
-static Status list_runs(Server *s, Answer *a, Err *err)
+static Status show_runs(Visit *v, Answer *a, Err *err)
 {
+    Watch *w = v->server->watch;
     json_t *list = json_array();
-    watch_find(s->watch);
-    for (size_t i = 0; i < watch_n(s->watch); i++) {
+    watch_find(w);
+    for (size_t i = 0; i < watch_n(w); i++) {
         Look *look;
         Err why = {0};
-        json_t *one = watch_take(s->watch, i, &look, &why) == STATUS_OK
-                          ? answer_status(look, watch_name(s->watch, i))
-                          : json_pack("{s:o, s:s, s:o}", "name", json_words(watch_name(s->watch, i)), "state",
-                                      "unreadable", "reason", json_words(why.text));
-        watch_give(s->watch, look);
+        json_t *one = watch_take(w, i, GLANCE_S, &look, &why) == STATUS_OK
+                          ? answer_status(look, watch_name(w, i))
+                          : json_pack("{s:o, s:s, s:o}", "name", json_words(watch_name(w, i)), "state", "unreadable",
+                                      "reason", json_words(why.text));
+        watch_give(w, look);
         json_object_set_new(one, "at", json_integer((json_int_t)i));
         list = json_append(list, one);
     }
@@ -387,7 +429,7 @@ static size_t newest_run(Server *s)
     for (size_t i = 0; i < watch_n(s->watch); i++) {
         Look *look;
         Err why = {0};
-        if (watch_take(s->watch, i, &look, &why) != STATUS_OK)
+        if (watch_take(s->watch, i, GLANCE_S, &look, &why) != STATUS_OK)
             continue;
         const Run *run = &look->run;
         const char *started = run->n_sessions > 0 ? run->session[run->n_sessions - 1].started : "";
@@ -400,27 +442,23 @@ static size_t newest_run(Server *s)
     return newest;
 }
 
-static enum MHD_Result visit_all(Server *s, struct MHD_Connection *c, const ServePath *path)
+static Status show_newest(Visit *v, Answer *a, Err *err)
 {
-    Answer a = {0};
-    Err err = {0};
-    if (strcmp(path->word, "runs") == 0 && path->number < 0)
-        return list_runs(s, &a, &err) == STATUS_OK ? send_answer(c, &a) : refuse(c, 500, err.text);
-    if (path->word[0])
-        return refuse(c, MHD_HTTP_NOT_FOUND, "there is no such part");
-    a = (Answer){.code = MHD_HTTP_FOUND, .type = "text/plain"};
-    snprintf(a.place, sizeof a.place, "%zu/", newest_run(s));
-    return send_answer(c, &a);
+    char number[24];
+    (void)err;
+    snprintf(number, sizeof number, "%zu", newest_run(v->server));
+    *a = redirection(number);
+    return STATUS_OK;
 }
 
 /* -- events -------------------------------------------------------------------------------------------------------- */
 
-typedef struct {
+struct Stream {
     Server *server;
     size_t run, n, at; /* text (n), sent up to `at` */
     long seen;         /* version */
-    char text[2048];
-} Stream;
+    char text[EVENT_MAX];
+};
 
 /* The next event, or a comment that keeps the connection alive. 0: the server ends. */
 static int next_event(Stream *e)
@@ -462,79 +500,96 @@ static void end_stream(void *user)
     free(e);
 }
 
-static enum MHD_Result begin_stream(Server *s, struct MHD_Connection *c, size_t run)
+static Status show_events(Visit *v, Answer *a, Err *err)
 {
-    pthread_mutex_lock(&s->mutex);
-    const int has_room = s->n_streams < STREAMS_MAX;
-    s->n_streams += has_room != 0;
-    pthread_mutex_unlock(&s->mutex);
-    if (!has_room)
-        return refuse(c, MHD_HTTP_SERVICE_UNAVAILABLE, "too many pages follow this run");
+    Server *s = v->server;
     Stream *e = calloc(1, sizeof *e);
     if (!e)
-        return MHD_NO;
-    *e = (Stream){.server = s, .run = run};
-    struct MHD_Response *r =
-        MHD_create_response_from_callback(MHD_SIZE_UNKNOWN, sizeof e->text, read_events, e, end_stream);
-    if (!r) {
+        return fail(err, STATUS_NO_MEMORY, "no memory for events");
+    *e = (Stream){.server = s, .run = v->run};
+    *a = (Answer){.code = MHD_HTTP_OK, .type = "text/event-stream", .stream = e};
+    pthread_mutex_lock(&s->mutex);
+    const int has_room = ++s->n_streams <= STREAMS_MAX;
+    pthread_mutex_unlock(&s->mutex);
+    if (!has_room) {
         end_stream(e);
-        return MHD_NO;
+        *a = refusal(MHD_HTTP_SERVICE_UNAVAILABLE, "too many pages follow this run");
     }
-    MHD_add_response_header(r, MHD_HTTP_HEADER_CONTENT_TYPE, "text/event-stream");
-    MHD_add_response_header(r, MHD_HTTP_HEADER_CACHE_CONTROL, "no-store");
-    const enum MHD_Result sent = MHD_queue_response(c, MHD_HTTP_OK, r);
-    MHD_destroy_response(r);
-    return sent;
+    return STATUS_OK;
 }
 
 /* -- requests ------------------------------------------------------------------------------------------------------ */
 
-static enum MHD_Result respond(Server *s, struct MHD_Connection *c, const char *method, const Request *r)
+typedef Status (*ShowFn)(Visit *v, Answer *a, Err *err);
+
+struct Route {
+    const char *word;
+    int has_run, has_number;
+    ShowFn get, post; /* NULL: not known */
+};
+
+static const Route ROUTES[] = {{"", 0, 0, show_newest, NULL},
+                               {"runs", 0, 0, show_runs, NULL},
+                               {"", 1, 0, show_page, NULL},
+                               {"events", 1, 0, show_events, NULL},
+                               {"front", 1, 0, show_front, NULL},
+                               {"design", 1, 1, show_design, NULL},
+                               {"what-if", 1, 0, show_bounds, show_what_if},
+                               {"against", 1, 1, show_against, NULL}};
+
+static const Route *route_of(const ServePath *path)
 {
-    const ServePath *path = &r->path;
-    Err err = {0};
-    set_waiting(s, c, 0);
-    if (path->run < 0)
-        return visit_all(s, c, path);
-    if (path->run >= (long)watch_n(s->watch))
-        return refuse(c, MHD_HTTP_NOT_FOUND, "there is no such run");
-    Visit v = {.server = s, .request = r, .run = (size_t)path->run};
-    const Status status = watch_take(s->watch, v.run, &v.look, &err);
-    if (status != STATUS_OK)
-        return refuse(c, code_of(status), err.text);
-    const int is_stream = strcmp(path->word, "events") == 0 && path->number < 0 && strcmp(method, "GET") == 0;
-    const enum MHD_Result sent = is_stream ? begin_stream(s, c, v.run) : visit_run(&v, c, method);
-    watch_give(s->watch, v.look);
-    return sent;
+    for (const Route *r = ROUTES; r < ROUTES + sizeof ROUTES / sizeof ROUTES[0]; r++)
+        if (strcmp(path->word, r->word) == 0 && r->has_run == (path->run >= 0) && r->has_number == (path->number >= 0))
+            return r;
+    return NULL;
 }
 
-/* Why a request is refused before its body is read; 0: it is not. */
-static unsigned objection(const Server *s, struct MHD_Connection *c, const char *url, const char *method,
-                          ServePath *path, const char **words)
+static enum MHD_Result respond(Server *s, struct MHD_Connection *c, const char *method, const Request *r)
+{
+    const Route *route = r->route;
+    const ShowFn show = strcmp(method, "POST") == 0 ? route->post : route->get;
+    Visit v = {.server = s, .request = r, .run = route->has_run ? (size_t)r->path.run : 0};
+    Answer a = {0};
+    Err err = {0};
+    set_waiting(s, c, 0);
+    Status status = STATUS_OK;
+    if (v.run >= watch_n(s->watch))
+        status = fail(&err, STATUS_MISSING, "there is no such run");
+    else if (route->has_run)
+        status = watch_take(s->watch, v.run, PAGE_S, &v.look, &err);
+    if (status == STATUS_OK)
+        status = show(&v, &a, &err);
+    give_kept(s, v.kept);
+    watch_give(s->watch, v.look);
+    if (status != STATUS_OK)
+        a = refusal(code_of(status), err.text);
+    if (a.stream && strcmp(method, "HEAD") == 0) { /* libmicrohttpd would send the end of its chunks */
+        end_stream(a.stream);
+        a.stream = NULL;
+    }
+    return send_answer(c, &a);
+}
+
+/* Whether a request is refused, or sent elsewhere, before its body is read: a->code. */
+static void judge(const Server *s, struct MHD_Connection *c, const char *url, const char *method, Request *r, Answer *a)
 {
     const char *host = MHD_lookup_connection_value(c, MHD_HEADER_KIND, MHD_HTTP_HEADER_HOST);
     const char *origin = MHD_lookup_connection_value(c, MHD_HEADER_KIND, MHD_HTTP_HEADER_ORIGIN);
     const char *length = MHD_lookup_connection_value(c, MHD_HEADER_KIND, MHD_HTTP_HEADER_CONTENT_LENGTH);
-    const int posts = strcmp(method, "POST") == 0;
-    *words = "refused";
-    if (!guard_host(host) || !guard_origin(origin, host))
-        return MHD_HTTP_FORBIDDEN;
-    const PathVerdict verdict = guard_path(s->token, url, path);
-    if (verdict == PATH_NONE)
-        return MHD_HTTP_FORBIDDEN;
-    if (verdict == PATH_UNKNOWN) {
-        *words = "there is no such part";
-        return MHD_HTTP_NOT_FOUND;
-    }
-    if (!posts && strcmp(method, "GET") != 0) {
-        *words = "only GET and POST";
-        return MHD_HTTP_METHOD_NOT_ALLOWED;
-    }
-    if (length && strtoull(length, NULL, 10) > (posts ? BODY_MAX : 0)) {
-        *words = "too large";
-        return MHD_HTTP_CONTENT_TOO_LARGE;
-    }
-    return 0;
+    const int posts = strcmp(method, "POST") == 0, gets = strcmp(method, "GET") == 0 || strcmp(method, "HEAD") == 0;
+    const PathVerdict verdict = guard_path(s->token, url, &r->path);
+    if (!guard_host(host) || !guard_origin(origin, host) || verdict == PATH_NONE)
+        *a = refusal(MHD_HTTP_FORBIDDEN, "refused");
+    else if (verdict == PATH_UNENDED)
+        *a = redirection(strrchr(url, '/') + 1);
+    else if (verdict == PATH_UNKNOWN || !(r->route = route_of(&r->path)))
+        *a = refusal(MHD_HTTP_NOT_FOUND, "there is no such part");
+    else if (!gets && !(posts && r->route->post)) {
+        *a = refusal(MHD_HTTP_METHOD_NOT_ALLOWED, "this method is not known here");
+        a->allow = r->route->post ? "GET, HEAD, POST" : "GET, HEAD";
+    } else if (length && strtoull(length, NULL, 10) > (posts ? BODY_MAX : 0))
+        *a = refusal(MHD_HTTP_CONTENT_TOO_LARGE, "too large");
 }
 
 /* Called when the headers are there, for every piece of the body, and at its end. */
@@ -544,22 +599,25 @@ static enum MHD_Result handle(void *user, struct MHD_Connection *c, const char *
     Server *s = user;
     Request *r = *request;
     (void)version;
+    Answer a = {0};
     if (!r) {
-        const char *words;
         r = *request = calloc(1, sizeof *r);
         if (!r)
             return MHD_NO;
-        const unsigned code = objection(s, c, url, method, &r->path, &words);
-        if (code)
-            return refuse(c, code, words);
-        return MHD_YES;
+        judge(s, c, url, method, r, &a);
+        return a.code ? send_answer(c, &a) : MHD_YES;
     }
-    if (*n_piece == 0)
+    if (*n_piece == 0 && !r->is_too_large)
         return respond(s, c, method, r);
-    if (*n_piece > sizeof r->body - r->n)
-        return MHD_NO; /* chunks without end */
-    memcpy(r->body + r->n, piece, *n_piece);
-    r->n += *n_piece;
+    if (*n_piece == 0) {
+        a = refusal(MHD_HTTP_CONTENT_TOO_LARGE, "too large");
+        return send_answer(c, &a);
+    }
+    r->is_too_large |= *n_piece > sizeof r->body - r->n; /* chunks: what is too much is dropped, for REQUEST_S */
+    if (!r->is_too_large) {
+        memcpy(r->body + r->n, piece, *n_piece);
+        r->n += *n_piece;
+    }
     *n_piece = 0;
     return MHD_YES;
 }
@@ -616,6 +674,7 @@ Status serve_open(Server **out, const ServeOptions *o, Err *err)
     if (!s)
         return fail(err, STATUS_NO_MEMORY, "no memory for a server");
     s->moved = o->moved;
+    s->request_s = o->request_s > 0 ? o->request_s : REQUEST_S;
     for (size_t i = 0; i < PEERS_MAX; i++)
         s->peer[i].socket = -1;
     pthread_mutex_init(&s->mutex, NULL);
@@ -648,12 +707,8 @@ void serve_close(Server *s)
     if (s->has_tender)
         pthread_join(s->tender, NULL);
     for (size_t i = 0; i < sizeof s->kept / sizeof s->kept[0]; i++)
-        if (s->kept[i]) {
-            what_if_close(s->kept[i]->what_if);
-            detail_cache_close(s->kept[i]->details);
-            pthread_mutex_destroy(&s->kept[i]->mutex);
-            free(s->kept[i]);
-        }
+        if (s->kept[i])
+            close_kept(s->kept[i]);
     if (s->watch)
         watch_close(s->watch);
     pthread_mutex_destroy(&s->mutex);

@@ -10,8 +10,9 @@
  *   GET  /TOKEN/RUN/what-if         bounds;  POST: a question (serve/what_if.h)
  *   GET  /TOKEN/RUN/against/OTHER   two runs
  *
- * Nothing here writes to a run. A request that is refused gets a status and {"error": words}: 403 token, Host or Origin,
- * 404, 405, 409 a later question is there, 413, 503.
+ * HEAD is GET without the body; /TOKEN and /TOKEN/RUN lead to the addresses with a slash. Nothing here writes to a run. A
+ * request that is refused gets a status and {"error": words}: 403 token, Host or Origin, 404, 405, 409 a later question is
+ * there, 413, 503. A run that was made anew in the place of another is served as it is now.
  *
  * Bounds    PEERS_MAX connections; from half as many on, the one that has waited longest for its request goes for each new
  *           one; a request complete within REQUEST_S; HEAD_MAX bytes of headers, BODY_MAX of body; STREAMS_MAX streams of events
@@ -31,6 +32,7 @@ typedef struct Server Server;
 typedef struct {
     const char *folder; /* a run, or a folder of runs */
     int port;           /* 0: any that is free */
+    double request_s;   /* 0: REQUEST_S */
     RecordPaths moved;
 } ServeOptions;
 

@@ -2,6 +2,7 @@
 
 #include <dirent.h>
 #include <errno.h>
+#include <math.h>
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,7 +14,7 @@
 #include "store/run_read.h"
 
 enum { RUNS_MAX = 500 };
-static const double POLL_S = 0.2, READ_SHARE = 10, AGAIN_S = 2;
+static const double POLL_S = 0.2, IDLE_S = 60, READ_SHARE = 10, AGAIN_S = 2;
 
 /* What changes with a run. */
 typedef struct {
@@ -24,11 +25,13 @@ typedef struct {
 
 typedef struct {
     char folder[PATH_MAX], name[NAME_MAX + 1];
-    int is_wanted;
-    Look *look; /* the newest; NULL: none yet */
-    Stamp stamp;
-    double next; /* of the clock, before which it is not read again */
-    Err why;     /* code: of the last reading */
+    Look *look;     /* the newest; NULL: none */
+    long n_read;    /* readings so far */
+    Stamp stamp;    /* of the newest */
+    double next;    /* of the clock, before which it is not read again */
+    double kept_to; /* of the clock, after which it is released unless a reading is waited for */
+    int n_waiting;
+    Err why; /* code: of the last reading */
 } Watched;
 
 struct Watch {
@@ -108,7 +111,7 @@ static void read_again(Watch *w, Watched *r, const Stamp *stamp)
     r->why.code = status;
     if (status == STATUS_OK) {
         fresh->n_users = 1;
-        fresh->version = r->look ? r->look->version + 1 : 1;
+        fresh->version = ++r->n_read;
         release(r->look);
         r->look = fresh;
         r->stamp = *stamp;
@@ -126,21 +129,33 @@ static void wait_for(pthread_cond_t *cond, pthread_mutex_t *mutex, double second
     pthread_cond_timedwait(cond, mutex, &until);
 }
 
+/* The mutex is held. 0: nobody waits for this run. */
+static int look_after(Watch *w, Watched *r)
+{
+    Stamp stamp;
+    const double now = clock_seconds();
+    if (now > r->kept_to && r->n_waiting == 0) {
+        release(r->look);
+        r->look = NULL;
+        return 0;
+    }
+    if (now >= r->next || (!r->look && r->why.code == STATUS_OK)) {
+        stamp_of(r, &stamp);
+        if (!r->look || !is_same(&stamp, &r->stamp))
+            read_again(w, r, &stamp);
+    }
+    return 1;
+}
+
 static void *watch(void *user)
 {
     Watch *w = user;
     pthread_mutex_lock(&w->mutex);
     while (!w->stops) {
-        for (size_t i = 0; i < w->n && !w->stops; i++) {
-            Watched *r = w->run[i];
-            Stamp stamp;
-            if (!r->is_wanted || clock_seconds() < r->next)
-                continue;
-            stamp_of(r, &stamp);
-            if (!r->look || !is_same(&stamp, &r->stamp))
-                read_again(w, r, &stamp);
-        }
-        wait_for(&w->wanted, &w->mutex, POLL_S);
+        int n_kept = 0;
+        for (size_t i = 0; i < w->n && !w->stops; i++)
+            n_kept += look_after(w, w->run[i]);
+        wait_for(&w->wanted, &w->mutex, n_kept > 0 ? POLL_S : IDLE_S);
     }
     pthread_mutex_unlock(&w->mutex);
     return NULL;
@@ -281,17 +296,27 @@ void watch_close(Watch *w)
 
 /* -- looking ------------------------------------------------------------------------------------------------------- */
 
-Status watch_take(Watch *w, size_t i, Look **look, Err *err)
+/* The mutex is held. */
+static void keep(Watch *w, Watched *r, double seconds)
 {
+    r->kept_to = fmax(r->kept_to, clock_seconds() + seconds);
+    pthread_cond_broadcast(&w->wanted);
+}
+
+Status watch_take(Watch *w, size_t i, double seconds, Look **look, Err *err)
+{
+    Status status = STATUS_OK;
     *look = NULL;
     pthread_mutex_lock(&w->mutex);
     Watched *r = w->run[i];
-    r->is_wanted = 1;
-    r->why.code = STATUS_OK;
-    pthread_cond_broadcast(&w->wanted);
+    if (clock_seconds() >= r->next)
+        r->why.code = STATUS_OK;
+    keep(w, r, seconds);
+    r->n_waiting++;
     while (!r->look && r->why.code == STATUS_OK && !w->stops)
         wait_for(&w->changed, &w->mutex, 1);
-    Status status = STATUS_OK;
+    r->n_waiting--;
+    keep(w, r, seconds);
     if (r->look) {
         *look = r->look;
         r->look->n_users++;
@@ -315,7 +340,8 @@ Look *watch_next(Watch *w, size_t i, long seen, double seconds)
     Look *found = NULL;
     const double end = clock_seconds() + seconds;
     pthread_mutex_lock(&w->mutex);
-    const Watched *r = w->run[i];
+    Watched *r = w->run[i];
+    keep(w, r, seconds);
     for (double left = seconds; !w->stops && left > 0 && !(r->look && r->look->version > seen);
          left = end - clock_seconds())
         wait_for(&w->changed, &w->mutex, left);

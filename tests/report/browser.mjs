@@ -4,6 +4,24 @@ import { mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 
+const KEY_CODES = { Tab: 9, Enter: 13, Escape: 27, ArrowLeft: 37, ArrowRight: 39, Delete: 46 };
+
+// Runs { "what is expected": async function }; how many failed.
+export async function tryAll(trials) {
+  let failed = 0;
+  for (const [what, trial] of Object.entries(trials)) {
+    const start = Date.now();
+    try {
+      await trial();
+      console.log(`ok      ${what} (${Date.now() - start} ms)`);
+    } catch (error) {
+      failed++;
+      console.log(`FAILED  ${what}\n        ${error.message.replaceAll("\n", "\n        ")}`);
+    }
+  }
+  return failed;
+}
+
 export async function openBrowser({ program = "chromium", width = 1360, height = 900 } = {}) {
   const profile = mkdtempSync(join(tmpdir(), "imtet-chromium-"));
   const child = spawn(program, ["--headless=new", "--remote-debugging-pipe", "--no-sandbox", "--disable-gpu", "--no-first-run",
@@ -58,7 +76,47 @@ export async function openBrowser({ program = "chromium", width = 1360, height =
         await new Promise((resolve) => setTimeout(resolve, 20));
       }
     }
-    return { call, evaluate, until, events };
+
+    const mouse = (type, x, y, buttons = type === "mouseReleased" ? 0 : 1) => call("Input.dispatchMouseEvent",
+      { type, x, y, button: buttons || type === "mouseReleased" ? "left" : "none", buttons, clickCount: 1 });
+
+    // Of the nth that the selector finds, in the middle of the window.
+    const boxOf = (selector, nth = 0) => evaluate(`(() => { const e = document.querySelectorAll(${JSON.stringify(selector)})[${nth}];
+      e.scrollIntoView({ behavior: "instant", block: "center" });
+      const { x, y, width, height } = e.getBoundingClientRect(); return { x, y, width, height }; })()`);
+
+    async function click(selector, nth) {
+      const { x, y, width, height } = await boxOf(selector, nth);
+      await mouse("mousePressed", x + width / 2, y + height / 2);
+      await mouse("mouseReleased", x + width / 2, y + height / 2);
+    }
+
+    async function press(key) {
+      const windowsVirtualKeyCode = KEY_CODES[key] ?? key.toUpperCase().charCodeAt(0), text = key.length === 1 ? key : key === "Enter" ? "\r" : undefined;
+      await call("Input.dispatchKeyEvent", { type: "keyDown", key, code: key, windowsVirtualKeyCode, text });
+      await call("Input.dispatchKeyEvent", { type: "keyUp", key, code: key, windowsVirtualKeyCode });
+    }
+
+    // What is focused while the Tab key is pressed so often: id, name or words of each, else its tag and the id it stands in.
+    async function focusedByTab(often) {
+      await evaluate(`(() => { document.activeElement.blur(); window.focused = new Set(); document.addEventListener("focusin", ({ target: e }) =>
+        [e.id, e.name, e.textContent.slice(0, 20), e.tagName + " in " + e.parentElement.id].forEach((word) => window.focused.add(word))); })()`);
+      await Promise.all(Array.from({ length: often }, () => press("Tab")));
+      return evaluate("Array.from(window.focused)");
+    }
+
+    // Faults that the browser saw so far: console, exceptions, policy; requests to what is not its own.
+    function complaints(isOwn) {
+      return events.flatMap(({ method, params }) => {
+        if (method === "Log.entryAdded") return [`log: ${params.entry.text} ${params.entry.url ?? ""}`];
+        if (method === "Runtime.exceptionThrown") return [`exception: ${params.exceptionDetails.exception?.description ?? params.exceptionDetails.text}`];
+        if (method === "Runtime.consoleAPICalled") return [`console: ${JSON.stringify(params.args)}`];
+        if (method === "Audits.issueAdded") return [`issue: ${JSON.stringify(params.issue.details).slice(0, 400)}`];
+        if (method === "Network.requestWillBeSent" && !/^(data|blob):/.test(params.request.url) && !isOwn(params.request.url)) return [`request: ${params.request.url.slice(0, 200)}`];
+        return [];
+      });
+    }
+    return { call, evaluate, until, events, mouse, boxOf, click, press, focusedByTab, complaints };
   }
 
   async function close() {

@@ -5,7 +5,7 @@ import { existsSync, mkdtempSync, readFileSync, readdirSync, rmSync } from "node
 import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
-import { openBrowser } from "./browser.mjs";
+import { openBrowser, tryAll } from "./browser.mjs";
 
 const bench = process.argv[2] === "--bench";
 const file = resolve(process.argv[bench ? 3 : 2]);
@@ -33,17 +33,10 @@ async function open(hash = "") {
 
 const frame = () => page.evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done))))");
 async function settle() {
-  await frame();
   await page.until("!document.documentElement.dataset.busy");
   await frame();
 }
-const mouse = (type, x, y, buttons = type === "mouseReleased" ? 0 : 1) => page.call("Input.dispatchMouseEvent", { type, x, y, button: buttons || type === "mouseReleased" ? "left" : "none", buttons, clickCount: 1 });
-
-async function boxOf(selector, nth = 0) {
-  return page.evaluate(`(() => { const e = document.querySelectorAll(${JSON.stringify(selector)})[${nth}];
-    e.scrollIntoView({ behavior: "instant", block: "center" });
-    const r = e.getBoundingClientRect(); return { x: r.x, y: r.y, width: r.width, height: r.height }; })()`);
-}
+const { mouse, boxOf } = page;
 
 async function drag(box, from, to, steps = 6) {
   const at = ([x, y]) => [box.x + x * box.width, box.y + y * box.height];
@@ -56,22 +49,13 @@ async function drag(box, from, to, steps = 6) {
   await settle();
 }
 
-async function click(selector, nth = 0) {
-  const box = await boxOf(selector, nth);
-  await drag(box, [0.5, 0.5], [0.5, 0.5], 0);
-}
+const click = (selector, nth) => page.click(selector, nth).then(settle);
+const press = (key) => page.press(key).then(settle);
 
 async function type(label, text) {
   await page.evaluate(`(() => { const e = document.querySelector('input[aria-label="${label}"]'); e.closest("details").open = true; e.focus(); e.select(); })()`);
   await page.call("Input.insertText", { text });
-  for (const kind of ["keyDown", "keyUp"]) await page.call("Input.dispatchKeyEvent", { type: kind, key: "Enter", code: "Enter", windowsVirtualKeyCode: 13, text: kind === "keyDown" ? "\r" : undefined });
-  await settle();
-}
-
-async function press(key) {
-  const code = { Enter: 13, Escape: 27, Delete: 46, ArrowRight: 39, ArrowLeft: 37 }[key] ?? key.toUpperCase().charCodeAt(0);
-  for (const type of ["keyDown", "keyUp"]) await page.call("Input.dispatchKeyEvent", { type, key, windowsVirtualKeyCode: code, text: type === "keyDown" && key.length === 1 ? key : undefined });
-  await settle();
+  await press("Enter");
 }
 
 const headingOf = (name) => `.heading[data-name="${name}"]`;
@@ -103,19 +87,6 @@ const counted = async () => +(await page.evaluate("document.getElementById('coun
 const tableIds = () => page.evaluate("Array.from(document.querySelectorAll('#designs tbody tr:not([hidden])'), (tr) => +tr.dataset.id)");
 const csvOf = (chosen) => [names.join(","), ...chosen.map((i) => lines[i])].join("\n") + "\n";
 const all = rows.map((_, i) => i);
-
-// Faults that the browser saw so far: console, exceptions, policy, network.
-function complaints() {
-  return page.events.flatMap(({ method, params }) => {
-    if (method === "Log.entryAdded") return [`log: ${params.entry.text}`];
-    if (method === "Runtime.exceptionThrown") return [`exception: ${params.exceptionDetails.exception?.description ?? params.exceptionDetails.text}`];
-    if (method === "Runtime.consoleAPICalled") return [`console: ${JSON.stringify(params.args)}`];
-    if (method === "Audits.issueAdded") return [`issue: ${JSON.stringify(params.issue.details).slice(0, 400)}`];
-    if (method === "Network.requestWillBeSent" && !/^(data|blob):/.test(params.request.url) && params.request.url !== pathToFileURL(file).href)
-      return [`request: ${params.request.url.slice(0, 200)}`];
-    return [];
-  });
-}
 
 // ---- what is tried
 
@@ -307,12 +278,8 @@ const tried = {
     assert.deepEqual(small, []);
   },
   async "everything can be reached by the Tab key"() {
-    const seen = new Set();
-    await page.evaluate("document.activeElement.blur(), document.querySelectorAll('details').forEach((d) => (d.open = false))");
-    for (let k = 0; k < 120; k++) {
-      for (const kind of ["keyDown", "keyUp"]) await page.call("Input.dispatchKeyEvent", { type: kind, key: "Tab", code: "Tab", windowsVirtualKeyCode: 9 });
-      seen.add(await page.evaluate("(() => { const e = document.activeElement; return e.id || e.tagName + (e.parentElement?.id ? ' in ' + e.parentElement.id : ''); })()"));
-    }
+    await page.evaluate("document.querySelectorAll('details').forEach((d) => (d.open = false))");
+    const seen = new Set(await page.focusedByTab(120));
     for (const wanted of ["download", "colour", "x", "y", "SUMMARY in ranges"]) assert.ok(seen.has(wanted), `${wanted} is never focused: ${[...seen]}`);
   },
   async "no heading of an axis lies on another, nothing is wider than the window"() {
@@ -357,7 +324,7 @@ const tried = {
     assert.equal(await page.evaluate("Array.from(document.querySelectorAll('svg')).filter((s) => /NaN/.test(s.innerHTML.replace(/base64,[^\x22]*/g, ''))).length"), 0);
   },
   async "the browser complains of nothing and asks nobody for anything"() {
-    assert.deepEqual(complaints(), []);
+    assert.deepEqual(page.complaints((asked) => asked === pathToFileURL(file).href), []);
   },
   async "the policy lets no other script, style or server in"() {
     const blocked = await page.evaluate(`(async () => {
@@ -404,15 +371,7 @@ let failed = 0;
 try {
   await open();
   if (bench) await measure();
-  else
-    for (const [what, trial] of Object.entries(tried))
-      try {
-        await trial();
-        console.log(`ok      ${what}`);
-      } catch (error) {
-        failed++;
-        console.log(`FAILED  ${what}\n        ${error.message.replaceAll("\n", "\n        ")}`);
-      }
+  else failed = await tryAll(tried);
 } finally {
   await browser.close();
   rmSync(downloads, { recursive: true, force: true });

@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { execFileSync, spawn } from "node:child_process";
 import { existsSync, mkdirSync, readFileSync, readdirSync } from "node:fs";
 import { join, resolve } from "node:path";
-import { openBrowser } from "../report/browser.mjs";
+import { openBrowser, tryAll } from "../report/browser.mjs";
 
 const [imtet, folder, benchRun] = process.argv.slice(2);
 const isBench = folder === "--bench", root = resolve(isBench ? benchRun : join(folder, "runs"));
@@ -40,16 +40,7 @@ async function open(name) {
   await page.call("Page.navigate", { url: `${url}${at}/` });
   await page.until("document.documentElement?.dataset.ready === 'yes'");
 }
-const until = (expression, seconds) => page.until(expression, seconds);
-const press = (key, more = {}) => ["keyDown", "keyUp"].reduce((before, type) => before.then(() => page.call("Input.dispatchKeyEvent", { type, key, code: key, ...more })), Promise.resolve());
-const mouse = (type, x, y) => page.call("Input.dispatchMouseEvent", { type, x, y, button: type === "mouseMoved" ? "none" : "left", buttons: type === "mousePressed" ? 1 : 0, clickCount: 1 });
-const boxOf = (selector, nth = 0) => page.evaluate(`(() => { const e = document.querySelectorAll(${JSON.stringify(selector)})[${nth}];
-  e.scrollIntoView({ behavior: "instant", block: "center" }); const r = e.getBoundingClientRect(); return { x: r.x, y: r.y, width: r.width, height: r.height }; })()`);
-async function click(selector, nth = 0) {
-  const { x, y, width, height } = await boxOf(selector, nth);
-  await mouse("mousePressed", x + width / 2, y + height / 2);
-  await mouse("mouseReleased", x + width / 2, y + height / 2);
-}
+const { until, press, mouse, boxOf, click } = page;
 const designShown = (id) => until(`document.getElementById("any-design").dataset.id === "${id}"`);
 
 // Drags a slider to and fro; updates that came and how long each took from the movement to the frame with its picture.
@@ -58,7 +49,7 @@ async function dragSlider(nth, moves) {
   await page.evaluate("performance.clearMeasures('what-if')");
   await mouse("mousePressed", x + width / 2, middle);
   for (let k = 0; k < moves; k++) {
-    await page.call("Input.dispatchMouseEvent", { type: "mouseMoved", x: x + width * (0.5 + 0.4 * Math.sin(k / 4)), y: middle, button: "left", buttons: 1 });
+    await mouse("mouseMoved", x + width * (0.5 + 0.4 * Math.sin(k / 4)), middle);
     await pause(40);
   }
   await mouse("mouseReleased", x + width / 2, middle);
@@ -85,21 +76,11 @@ async function benchSlider(what, nth, moves) {
   console.log(`  processor time of an update: server ${((after[0] - before[0]) / times.length).toFixed(1)} ms, page ${((after[1] - before[1]) / times.length).toFixed(1)} ms`);
 }
 
-// Faults that the browser saw, and requests to anywhere else.
-const complaints = () => page.events.flatMap(({ method, params }) => {
-  if (method === "Log.entryAdded") return [`log: ${params.entry.text} ${params.entry.url}`];
-  if (method === "Runtime.exceptionThrown") return [`exception: ${params.exceptionDetails.exception?.description ?? params.exceptionDetails.text}`];
-  if (method === "Runtime.consoleAPICalled") return [`console: ${JSON.stringify(params.args)}`];
-  if (method === "Audits.issueAdded") return [`issue: ${JSON.stringify(params.issue.details).slice(0, 400)}`];
-  if (method === "Network.requestWillBeSent" && !/^(data|blob):/.test(params.request.url) && !params.request.url.startsWith(origin)) return [`request: ${params.request.url}`];
-  return [];
-});
-
 // ---- what is tried
 
 const tried = {
   async "a run under way shows in the page within 2 s of a generation's end"() {
-    const live = start("optimize", "configs/quick.ini", "--threads", "1", "--max-evals", "200", "--set", "search.population=16", "--set", "search.initial=40", "--out", join(root, "live"));
+    const live = start("optimize", "configs/quick.ini", "--threads", "1", "--max-evals", "150", "--set", "search.population=16", "--set", "search.initial=40", "--out", join(root, "live"));
     live.stdout.resume();
     const log = join(root, "live", "log.jsonl"), ends = new Map(), seen = () => (existsSync(log) ? readFileSync(log, "utf8").split("\n").filter((l) => l.startsWith("{") && l.endsWith("}")).map((l) => JSON.parse(l)).filter((e) => e.event === "generation") : []);
     while (!seen().length) await pause(50);
@@ -120,7 +101,7 @@ const tried = {
     const late = Array.from(ends, ([generation, end]) => (shown.find(([g]) => g >= generation)?.[1] ?? Infinity) - end).sort((a, b) => a - b);
     assert.ok(late[Math.ceil(0.9 * late.length) - 1] < 2000 && late[late.length - 1] < 6000, `ms after the end of a generation: ${late}`);
     tell("from the end of a generation to the page", shown.map(([g, at]) => Math.max(0, at - ends.get(g))));
-    assert.match(await page.evaluate("document.getElementById('progress-words').textContent"), /^Finished: 200 of 200 designs simulated; 0 failed/);
+    assert.match(await page.evaluate("document.getElementById('progress-words').textContent"), /^Finished: 150 of 150 designs simulated; 0 failed/);
     await until("!document.getElementById('new-front').hidden");
     await click("#new-front");
     await until("document.documentElement?.dataset.ready === 'yes' && document.getElementById('new-front')?.hidden", 20);
@@ -137,7 +118,7 @@ const tried = {
       const { x, y, width, height } = await boxOf(picture), places = Array.from({ length: 200 }, (_, k) => [x + width * (0.2 + 0.003 * k), y + height * (0.3 + 0.4 * ((k * 0.37) % 1))]);
       let name = "";
       for (const at of places) {
-        await mouse("mouseMoved", ...at);
+        await mouse("mouseMoved", ...at, 0);
         name = await page.evaluate(`document.getElementById("tip").hidden || (${picture === "#front .layers"} && document.elementFromPoint(${at}).closest(".brush")) ? "" : document.querySelector("#tip strong").textContent`);
         if (!name) continue;
         await mouse("mousePressed", ...at);
@@ -163,8 +144,8 @@ const tried = {
   async "a slider is moved by the keyboard"() {
     const turn = await page.evaluate("+document.getElementById('what-if').dataset.turn");
     await page.evaluate("document.querySelectorAll('.slider input')[12].focus()");
-    await press("ArrowRight", { windowsVirtualKeyCode: 39 });
-    await press("ArrowRight", { windowsVirtualKeyCode: 39 });
+    await press("ArrowRight");
+    await press("ArrowRight");
     await until(`+document.getElementById("what-if").dataset.turn > ${turn} && !document.getElementById("what-if").dataset.busy`);
   },
   async "what is kept is a design file that simulate reads to the same numbers"() {
@@ -199,12 +180,7 @@ const tried = {
     await until("document.querySelectorAll('#runs figure svg').length >= 1 && document.querySelector('#runs .strip canvas')");
   },
   async "everything live is reached by the Tab key"() {
-    const found = new Set();
-    await page.evaluate("document.activeElement.blur()");
-    for (let k = 0; k < 250; k++) {
-      await press("Tab", { windowsVirtualKeyCode: 9 });
-      found.add(await page.evaluate("(() => { const e = document.activeElement; return e.id || e.name || e.textContent.slice(0, 20); })()"));
-    }
+    const found = new Set(await page.focusedByTab(250));
     for (const wanted of ["pga_g", "gap_07_m", "t_top_m", "keep-trial", "save-kept", "Compare"]) assert.ok(found.has(wanted), `${wanted} is never focused: ${[...found]}`);
   },
   async "nothing is wider than a window of 800 px, nor than one of 1360"() {
@@ -220,7 +196,7 @@ const tried = {
     assert.equal(await page.evaluate("document.querySelectorAll('#what-if, #any-design').length"), 0);
   },
   async "the browser complains of nothing and asks no one else"() {
-    assert.deepEqual(complaints(), []);
+    assert.deepEqual(page.complaints((asked) => asked.startsWith(origin)), []);
   },
 };
 
@@ -241,15 +217,7 @@ try {
     await benchSlider("a gap", 10, 60);
     await benchSlider("the peak of the motion", 0, 40);
     await benchSlider("its stretch", 1, 40);
-  } else
-    for (const [what, trial] of Object.entries(tried))
-      try {
-        await trial();
-        console.log(`ok      ${what}`);
-      } catch (error) {
-        failed++;
-        console.log(`FAILED  ${what}\n        ${error.message.replaceAll("\n", "\n        ")}`);
-      }
+  } else failed = await tryAll(tried);
 } finally {
   await browser.close();
   for (const child of children) child.kill("SIGINT");

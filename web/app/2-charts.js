@@ -1,16 +1,29 @@
 // What all charts by Observable Plot have in common.
 
-// Charts that fit their place: drawn when the page is, when their part is opened and when the window has another width.
-const drawings = [];
-function drawn(host, plot) {
-  const place = host.appendChild(element("div", { class: "chart" }));
-  const draw = () => place.clientWidth && place.replaceChildren(plot(Math.max(240, Math.floor(place.clientWidth))));
-  drawings.push(draw);
-  return draw;
+// What is as wide as its place: drawn when the page is, when its part is opened and when the window has another width.
+let drawings = []; // { place, draw (width), width: as last drawn }
+
+function addDrawing(place, draw) {
+  const drawing = { place, draw, width: 0 };
+  drawings.push(drawing);
+  return () => drawEach([drawing]);
 }
 
-function drawAll() {
-  for (const draw of drawings) draw();
+const widthOf = (place) => (place.closest("details:not([open])") ? 0 : Math.floor(place.clientWidth));
+
+// All places are measured first: what is put into one of them makes the next wait for a layout of the page.
+function drawEach(list) {
+  const widths = list.map(({ place }) => widthOf(place));
+  list.forEach((drawing, k) => {
+    drawing.width = widths[k];
+    if (drawing.width) drawing.draw(drawing.width);
+  });
+}
+const drawAll = () => drawEach(drawings.filter(({ place, width }) => widthOf(place) !== width));
+
+function drawn(host, plot) {
+  const place = host.appendChild(element("div", { class: "chart" }));
+  return addDrawing(place, (width) => place.replaceChildren(plot(Math.max(240, width))));
 }
 
 function figure(host, title, caption, plot, ...above) {
@@ -38,7 +51,7 @@ const sceneLegend = (keys) => legend(keys.map((key) => [SCENES[key].words, SCENE
 // A part that is folded until it is wanted; on paper all are open.
 function folded(host, title, isOpen = false) {
   const part = host.appendChild(element("details", { class: "part", id: title.toLowerCase().replace(/[^a-z]+/g, "-"), open: isOpen }, element("summary", {}, element("h3", {}, title))));
-  part.addEventListener("toggle", () => part.open && document.documentElement.dataset.ready && (drawAll(), layoutChanged()));
+  part.addEventListener("toggle", () => part.open && document.documentElement.dataset.ready && drawAll());
   return part;
 }
 const openedForPaper = [];
@@ -46,7 +59,6 @@ window.addEventListener("beforeprint", () => {
   for (const part of document.querySelectorAll("details.part:not([open])")) openedForPaper.push(part);
   for (const part of openedForPaper) part.open = true;
   drawAll();
-  for (const draw of views.layout) draw();
 });
 window.addEventListener("afterprint", () => {
   for (const part of openedForPaper.splice(0)) part.open = false;

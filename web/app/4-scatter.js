@@ -1,9 +1,9 @@
 // Scatter plots: two columns against each other, chosen freely, and a matrix of all objectives with their rank correlations;
 // a brushed box is two ranges.
 
-// Panels on one picture; `arrange` (width) gives { height, panels: [{ cx, cy, left, top, w, h, hasX, hasY }] } and `decorate`
-// (svg, width) what else is on it. Dots are put into the pixels.
-function scatterPlot(host, label, arrange, decorate = () => {}) {
+// Panels on one picture; `arrange` (width) gives { height, panels: [{ cx, cy, left, top, w, h, hasX, hasY }] }, `decorate`
+// (svg, width, panels) what else is on it, `follows` what of that follows the selection. Dots are put into the pixels.
+function scatterPlot(host, label, arrange, decorate, follows = () => {}) {
   const layers = host.appendChild(element("div", { class: "layers" }));
   const [back, front, over] = [0, 1, 2].map((k) => layers.appendChild(element("canvas", k === 1 ? { role: "img", "aria-label": label } : { "aria-hidden": "true" })));
   const svg = charts.select(layers).append("svg");
@@ -121,10 +121,8 @@ function scatterPlot(host, label, arrange, decorate = () => {}) {
     }
   }
 
-  function layout() {
-    width = layers.clientWidth;
-    panels = [];
-    if (!width) return;
+  function layout(newWidth) {
+    width = newWidth;
     ({ height, panels } = arrange(width));
     layers.style.height = `${height}px`;
     panels.forEach(place);
@@ -140,12 +138,18 @@ function scatterPlot(host, label, arrange, decorate = () => {}) {
     putDots(pens.back, n, byShade, () => pixel("#d3d9df"));
   }
 
-  views.layout.push(layout);
-  views.hover.push(drawOver);
-  follow(host, () => {
+  function draw() {
     drawFront();
     showRanges();
-  });
+    follows();
+  }
+
+  views.layout.push(addDrawing(layers, (newWidth) => {
+    layout(newWidth);
+    draw();
+  }));
+  views.hover.push(drawOver);
+  follow(host, draw);
 }
 
 const pixel = (hex) => (0xff000000 | (parseInt(hex.slice(5, 7), 16) << 16) | (parseInt(hex.slice(3, 5), 16) << 8) | parseInt(hex.slice(1, 3), 16)) >>> 0;
@@ -216,9 +220,7 @@ function scatterMatrix(host) {
         const box = g.append("rect").attr("x", left).attr("y", top).attr("width", s.w).attr("height", s.h);
         cells.push({ a: objectives[row], b: objectives[col], box, text: g.append("text").attr("text-anchor", "middle").attr("x", left + s.w / 2).attr("y", top + s.h / 2 + 5) });
       }
-  });
-  // Sign and strength: blue together, vermillion against each other.
-  follow(host, () => {
+  }, () => { // sign and strength: blue together, vermillion against each other
     for (const { a, b, box, text } of cells) {
       const r = rankCorrelation(a, b);
       box.attr("fill", r < 0 ? VERMILLION : BLUE).attr("fill-opacity", Number.isFinite(r) ? 0.55 * Math.abs(r) : 0);

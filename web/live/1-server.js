@@ -90,7 +90,7 @@ function frontStrip(host, label, height = 208) {
     }));
   }
 
-  drawings.push(() => draw(last));
+  addDrawing(layers, () => draw(last));
   return draw;
 }
 

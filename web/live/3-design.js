@@ -13,14 +13,12 @@ function detailOf(id) {
   return details.get(id);
 }
 
-// Drawings of a part that is filled anew: those of before are dropped.
+// Drawings of before are dropped.
 function refill(part, fill) {
-  drawings.splice(0, drawings.length, ...drawings.filter((draw) => !part.own?.includes(draw)));
-  const first = drawings.length;
   part.replaceChildren();
+  drawings = drawings.filter(({ place }) => place.isConnected);
   fill(part);
-  part.own = drawings.slice(first);
-  for (const draw of part.own) draw();
+  drawAll();
 }
 
 function designOnDemand() {

@@ -165,5 +165,5 @@ function whatIfPart() {
     set(start.x, {});
     if (go) goTo(part);
   };
-  drawings.push(() => answer && drawPeaks());
+  addDrawing(peaks, () => answer && drawPeaks());
 }
