@@ -95,18 +95,22 @@ static Status take_histories(const Scenario *w, const double x[], Detail *d, Err
     return STATUS_OK;
 }
 
-static Status take_here(const Problem *p, int n_var, const double x[], const DetailOptions *options, Detail *d,
-                        Err *err)
+static Status check_here(const Problem *p, int n_var, const DetailOptions *options, Detail *d, Err *err)
 {
-    const Scenario *w = tower_record(tower_of(p), 0);
-    double rigid_hz[FLOORS_MAX], mass;
-    d->n_floors = scene_n_floors(w->scene);
+    d->n_floors = scene_n_floors(tower_record(tower_of(p), 0)->scene);
     d->floor = options->floor < 0 ? (d->n_floors - 1) / 2 : options->floor;
     if ((int)p->n_var != n_var)
         return fail(err, STATUS_BAD_DATA, "the front has designs of %d variables, the building has %zu", n_var,
                     p->n_var);
     if (d->floor >= d->n_floors)
         return fail(err, STATUS_BAD_DATA, "--floor %d: the building has %d", d->floor + 1, d->n_floors);
+    return STATUS_OK;
+}
+
+static Status take_here(const Problem *p, const double x[], const DetailOptions *options, Detail *d, Err *err)
+{
+    const Scenario *w = tower_record(tower_of(p), 0);
+    double rigid_hz[FLOORS_MAX], mass;
     describe(w, x, d);
     TRY(scene_frequencies(w->scene, x, d->building_hz, d->core_hz, rigid_hz, &mass, err));
     TRY(simulate(p, x, options->without_devices ? BASELINE_RIGID : BASELINE_LINKS, d, err));
@@ -141,8 +145,7 @@ Status detail_make(const Settings *s, int n_var, const double x[], const DetailO
     once.sim.forces = FORCES_YES; /* what the design has to bear */
     memset(out, 0, sizeof *out);
     TRY(tower_open(&p, &once, TOWER_AS_SET, N_SCENES, err));
-    Status status = take_here(&p, n_var, x, options, out, err);
-    problem_close(&p);
+    Status status = check_here(&p, n_var, options, out, err);
     if (status == STATUS_OK && options->n_records > 0) {
         out->elsewhere = calloc(options->n_records, sizeof *out->elsewhere);
         if (!out->elsewhere)
@@ -151,6 +154,9 @@ Status detail_make(const Settings *s, int n_var, const double x[], const DetailO
     for (; status == STATUS_OK && out->n_elsewhere < options->n_records; out->n_elsewhere++)
         status = take_elsewhere(options->other, options->records[out->n_elsewhere], x,
                                 &out->elsewhere[out->n_elsewhere], err);
+    if (status == STATUS_OK) /* last, as it takes longest */
+        status = take_here(&p, x, options, out, err);
+    problem_close(&p);
     if (status != STATUS_OK)
         detail_free(out);
     return status;

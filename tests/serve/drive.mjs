@@ -132,11 +132,11 @@ const tried = {
     await open("a");
     await until("document.getElementById('what-if').dataset.turn");
     const before = await page.evaluate("document.querySelector('#trial tbody').textContent");
-    tell("a gap dragged", await dragSlider(10, 40));
-    tell("a thickness dragged", await dragSlider(3, 30)); // a gap may be one that never closes
+    tell("a gap dragged", await dragSlider(10, 16));
+    tell("a thickness dragged", await dragSlider(3, 12)); // a gap may be one that never closes
     assert.notEqual(await page.evaluate("document.querySelector('#trial tbody').textContent"), before);
     assert.match(await page.evaluate("document.getElementById('place').textContent"), /ominated/);
-    tell("the peak of the motion dragged", await dragSlider(0, 30));
+    tell("the peak of the motion dragged", await dragSlider(0, 12));
     assert.match(await page.evaluate("document.getElementById('place').textContent"), /another motion/);
     await click("#back");
     await until("/Nondominated/.test(document.getElementById('place').textContent)");
