@@ -14,7 +14,7 @@
 #include "serve/watch.h"
 
 enum { ANSWER_MAX = 4 << 20 };
-static const char SMALL[] = "optimize configs/quick.ini --max-evals 60 --set search.population=16 --set "
+static const char SMALL[] = "optimize configs/quick.ini --set search.max_evals=60 --set search.population=16 --set "
                             "search.initial=40 --threads 1";
 
 typedef struct {

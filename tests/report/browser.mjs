@@ -25,7 +25,7 @@ export async function tryAll(trials) {
 export async function openBrowser({ program = "chromium", width = 1360, height = 900 } = {}) {
   const profile = mkdtempSync(join(tmpdir(), "imtet-chromium-"));
   const child = spawn(program, ["--headless=new", "--remote-debugging-pipe", "--no-sandbox", "--disable-gpu", "--no-first-run",
-    "--disable-background-networking", "--disable-component-update", "--disable-dev-shm-usage", "--hide-scrollbars",
+    "--disable-background-networking", "--disable-component-update", "--disable-dev-shm-usage", "--hide-scrollbars", "--force-prefers-reduced-motion",
     `--user-data-dir=${profile}`, `--window-size=${width},${height}`, "about:blank"],
   { stdio: ["ignore", "ignore", "ignore", "pipe", "pipe"] });
   const waiting = new Map(), listeners = [];
