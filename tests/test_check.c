@@ -69,6 +69,26 @@ static void expect_text(const char *wanted, const char *arguments)
     forget(&s);
 }
 
+static void expect_fault(const char *wanted, const char *arguments)
+{
+    char command[512];
+    snprintf(command, sizeof command, "check %s/six.ini %s", place.folder, arguments);
+    expect(65, wanted, command);
+}
+
+static void test_deviations_and_objectives_that_make_no_sense_are_noticed(void **state)
+{
+    (void)state;
+    write_building(1, 1, 0);
+    expect_warnings("uncertain.damping sim.gap_tolerance_m",
+                    "--set uncertain.damping=3 --set sim.gap_tolerance_m=0.8 --set sim.replicates=2");
+    expect_warnings("search.objectives", "--set search.objectives=j1_m,bumper_strain");
+    expect_warnings("", "--set search.objectives=j1_m,bumper_strain --set contact.bumper_stiffness_n_m=1e8");
+    expect_fault("design.variables: gaps stands there twice", "--set design.variables=gaps,gaps,thickness");
+    expect_fault("search.limits: j3_g<=-1: no design has less than 0", "--set 'search.limits=j3_g<=-1'");
+    expect_fault("search.limits: '<=5' is not NAME<=NUMBER", "--set 'search.limits=<=5'");
+}
+
 static void test_a_sound_building_is_in_order_with_its_figures(void **state)
 {
     (void)state;
@@ -89,13 +109,6 @@ static void test_a_sound_building_is_in_order_with_its_figures(void **state)
     assert_int_equal((int)number(json_object_get(o, "study"), "variables"), 8);
     assert_true(number(json_object_get(o, "study"), "simulation_s") > 0);
     json_decref(o);
-}
-
-static void expect_fault(const char *wanted, const char *arguments)
-{
-    char command[512];
-    snprintf(command, sizeof command, "check %s/six.ini %s", place.folder, arguments);
-    expect(65, wanted, command);
 }
 
 static void test_units_that_are_wrong_are_refused_or_guessed(void **state)
@@ -236,6 +249,7 @@ static void test_the_base_shear_of_one_mass_is_its_spectral_acceleration(void **
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_deviations_and_objectives_that_make_no_sense_are_noticed),
         cmocka_unit_test(test_a_sound_building_is_in_order_with_its_figures),
         cmocka_unit_test(test_units_that_are_wrong_are_refused_or_guessed),
         cmocka_unit_test(test_units_are_taken_from_the_comments_of_the_files),

@@ -950,6 +950,9 @@ static void test_decimal_commas_are_read_whatever_parts_the_columns(void **state
         "# dt = 0.01\na_m_s2\n3,1\n0,5\n-1,0\n",
         "# dt = 0,01\nacc [m/s2]\n3,1\n0,5\n-1\n",
         "# m/s2\n0.00, 3.1\n0.01, 0.5\n0.02, -1\n",
+        "time_s;a_m_s2\n0,00;3,1\n;\n0,01;0,5\n0,02;-1\n;\n;\n",
+        "# dt = 10 ms, m/s2\n3.1\n0.5\n-1\n",
+        "# fs: 100, m/s2\n3.1\n0.5\n-1\n",
         "acceleration (in m/s2)\n3 0,01\n3,1\n0,5\n-1,0\n",
     };
     for (size_t i = 0; i < sizeof TEXTS / sizeof TEXTS[0]; i++) {
@@ -967,6 +970,10 @@ static void test_marks_of_thousands_and_commas_of_two_meanings_are_refused(void 
     (void)state;
     expect_refusal("t;a_cm_s2\n0,00;1.234,5\n0,01;0,5\n", "there:2: '1.234,5' has a point and a comma");
     expect_refusal("t\ta_cm_s2\n0,00\t1.234,5\n0,01\t0,5\n", "there:2: '1.234,5' has a point and a comma");
+    expect_refusal("# dt = 0.01\na_m_s2\n0.1\n#N/A\n0.2\n", "there:4: '#N/A' is not a number");
+    expect_refusal("time_s;a_g\n0,00;0,1\xc2\xa0\n", "there:2: '0,1<U+00A0>' is not a number");
+    expect_refusal("time,a_g\n00:00:00.00,0.1\n", "there:2: '00:00:00.00' is not a number");
+    expect_refusal("\xff\xfet\n", "is written in UTF-16; save it as UTF-8");
     expect_refusal("t;a_cm_s2\n0.00;1,234.5\n0.01;0.5\n", "there:2: '1,234.5' has a point and a comma");
     expect_refusal("t;a_cm_s2\n0,00;1,5\n0.01;0.5\n",
                    "there:3: decimal points (line 3) and decimal commas (line 2) are mixed");

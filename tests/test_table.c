@@ -85,6 +85,9 @@ static void test_each_fault_names_file_line_and_column(void **state)
     expect_refusal("1,2m\n", 0, "there.csv:1: ");
     expect_refusal("1,nan\n", 0, "there.csv:1: column 2 is nan");
     expect_refusal("1,-inf\n", 0, "there.csv:1: column 2 is -inf");
+    expect_refusal("1,2\n#VALUE!,3\n# a comment\n4,5\n", 0, "there.csv:2: column 1 of 2 is missing or not a number");
+    expect_refusal("1\n#DIV/0!\n", 0, "there.csv:2: column 1");
+    expect_refusal("1;2\n#NV;3\n", 0, "there.csv:2: column 1");
     expect_refusal("1,1e999\n", 0, "there.csv:1: column 2 is inf");
     expect_refusal("", 0, "holds no numbers");
     expect_refusal("# nothing\n", 0, "holds no numbers");
@@ -117,6 +120,7 @@ static void test_the_forms_of_spreadsheets_hold_the_same_numbers(void **state)
     (void)state;
     static const char *const FORMS[] = {
         "1.5,-2.25,3e-7\n0.1,4,5\n",
+        "\xef\xbb\xbfsep=;\r\n1,5;-2,25;3e-7\r\n0,1;4;5\r\n",
         "\xef\xbb\xbf"
         "1.5,-2.25,3e-7\r\n0.1,4,5\r\n",
         "1.5;-2.25;3e-7\n0.1;4;5\n",

@@ -58,13 +58,28 @@ static int is_blank(CsvReader r)
     return 1;
 }
 
+int csv_is_error(const char *line, const char *end)
+{
+    const char *p = line;
+    for (p += p < end && *p == '#'; p < end && (isupper((unsigned char)*p) || *p == '/' || *p == '0');)
+        p++;
+    const size_t n = (size_t)(p - line);
+    const int is_not_there = (n == 4 && memcmp(line, "#N/A", 4) == 0) || (n == 3 && memcmp(line, "#NV", 3) == 0);
+    p += p < end && n > 3 && (*p == '!' || *p == '?');
+    return (is_not_there || (size_t)(p - line) > n) && (p == end || memchr(",;\t\r", *p, 4));
+}
+
 /* Is there anything in the line from..to? Then it is made the one at hand. */
 static int take_line(CsvReader *r, const char *from, const char *to)
 {
     CsvCell body = {from, to};
     strip_blanks(&body);
-    if (body.from == body.to || *body.from == '#')
+    if (body.from == body.to || (*body.from == '#' && !csv_is_error(body.from, body.to)))
         return 0;
+    if (!r->separator && body.to - body.from == 5 && strncmp(body.from, "sep=", 4) == 0) { /* for Excel */
+        r->separator = body.from[4];
+        return 0;
+    }
     if (!r->separator)
         r->separator = find_separator(body.from, body.to);
     const int blanks_separate = r->separator == '\t';

@@ -2,7 +2,7 @@
  *
  *   # comment and blank lines are skipped, and so are lines of empty cells
  *   a UTF-8 byte order mark, lines that end in LF, CRLF or CR, cells in double quotes, blanks around cells
- *   cells are separated by commas, semicolons or tabs: the first line that is no comment decides
+ *   cells are separated by commas, semicolons or tabs: the first line that is no comment decides, or "sep=;" above it
  *
  * A comma inside a cell is a decimal one; decimal points and decimal commas in one file are refused.
  *
@@ -26,6 +26,9 @@ typedef struct {
     char separator, line_end;   /* separator 0: not yet known */
     int point_line, comma_line; /* the first number with a decimal point, with a decimal comma; 0: none */
 } CsvReader;
+
+/* Does the line begin with the error of a spreadsheet, "#VALUE!" or "#N/A", which is a cell and no comment? */
+int csv_is_error(const char *line, const char *end);
 
 /* Refuses text in UTF-16 and text with NUL bytes. */
 Status csv_open(CsvReader *r, const char *path, const char *text, size_t length, Err *err);

@@ -295,7 +295,7 @@ static void describe_study(Check *c, const CheckedScene *p)
            seconds < 120 ? "s" : "min");
 }
 
-static void describe_objectives(Check *c, const Schema *schema, const char *objectives)
+static void describe_objectives(Check *c, const Schema *schema, const char *objectives, int has_bumpers)
 {
     const char *missing = measures_missing(&schema->order, objectives, schema->design.n_floors);
     json_t *names = json_array();
@@ -306,6 +306,8 @@ static void describe_objectives(Check *c, const Schema *schema, const char *obje
         printf("%s%s", k ? ", " : "objectives ", schema_objective(schema, k)->name);
     if (!c->as_json)
         putchar('\n');
+    if (schema->order.objectives >> MEASURE_BUMPER_STRAIN & 1 && !has_bumpers)
+        warn("search.objectives", "bumper_strain is 0 for every design: there is no bumper", c);
     if (missing && strcmp(objectives, "auto") != 0)
         warn("search.objectives", missing, c);
     else if (missing && !c->as_json)
@@ -321,7 +323,8 @@ static void open_study(Check *c, const Settings *s)
         return;
     const Schema *schema = adapter_schema(adapter);
     if (s->problem.kind == PROBLEM_TOWER) {
-        describe_objectives(c, schema, s->search.objectives);
+        describe_objectives(c, schema, s->search.objectives,
+                            schema->design.n_bumpers > 0 || s->contact.bumper_stiffness_n_m > 0);
     } else {
         json_object_set_new(
             c->out, "problem",
@@ -374,6 +377,30 @@ static void warn_of_idle(const char *key, const char *waits_for, void *user)
     warn(key, text, user);
 }
 
+/* Deviations are shares, 0.03 for 3 %, and those of gaps smaller than gaps. */
+static void warn_of_deviations(Check *c, const Settings *s)
+{
+    const struct {
+        const char *key;
+        double value;
+    } SHARES[] = {{"uncertain.contact_stiffness", s->uncertain.contact_stiffness},
+                  {"uncertain.core_stiffness", s->uncertain.core_stiffness},
+                  {"uncertain.building_stiffness", s->uncertain.building_stiffness},
+                  {"uncertain.damping", s->uncertain.damping}};
+    char text[160];
+    for (size_t i = 0; i < sizeof SHARES / sizeof SHARES[0]; i++)
+        if (SHARES[i].value >= 1) {
+            snprintf(text, sizeof text, "a standard deviation of %g %% of the value; a share is meant, 0.05 for 5 %%",
+                     100 * SHARES[i].value);
+            warn(SHARES[i].key, text, c);
+        }
+    if (s->sim.gap_tolerance_m > s->design.gap_max_m) {
+        snprintf(text, sizeof text, "%g m is more than the largest gap of %g m", s->sim.gap_tolerance_m,
+                 s->design.gap_max_m);
+        warn("sim.gap_tolerance_m", text, c);
+    }
+}
+
 static Status run(const Args *args, Err *err)
 {
     Check c = {.as_json = args_has(args, "--json"), .out = json_object()};
@@ -385,6 +412,7 @@ static Status run(const Args *args, Err *err)
     Status status = read_settings(args, &c, &s, err);
     if (status == STATUS_OK) {
         settings_idle_each(&s, warn_of_idle, &c);
+        warn_of_deviations(&c, &s);
         if (s.problem.kind == PROBLEM_TOWER)
             check_tower(args, &c, &s);
         else if (json_array_size(c.faults) == 0)

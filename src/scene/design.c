@@ -30,6 +30,8 @@ static Status take_words(const char *list, unsigned *set, Err *err)
             k++;
         if (k == N)
             return fail_no_word(err, STATUS_BAD_DATA, "design.variables", word, "variable", WORDS, N);
+        if (*set >> k & 1)
+            return fail(err, STATUS_BAD_DATA, "design.variables: %s stands there twice", word);
         *set |= 1U << k;
     }
     return *set & HAS_GAPS && *set & HAS_THICKNESS

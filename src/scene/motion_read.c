@@ -409,6 +409,8 @@ static Status read_text(Record *r, const char *path, const char *text, size_t le
 {
     while (length && strchr("\x1a\t\r\n ", text[length - 1])) /* Ctrl-Z and NUL end the texts of old programs */
         length--;
+    if (length >= 2 && (memcmp(text, "\xff\xfe", 2) == 0 || memcmp(text, "\xfe\xff", 2) == 0))
+        return fail(err, STATUS_BAD_DATA, "%s: is written in UTF-16; save it as UTF-8", path);
     const int binary = binary_line(text, length);
     if (length == 0)
         return fail(err, STATUS_BAD_DATA, "%s: is empty", path);

@@ -10,7 +10,7 @@
 static const char *take_name(const char *text, char name[])
 {
     const char *relation = strpbrk(text, "<>");
-    if (!relation || relation[1] != '=' || relation - text >= TABLE_NAME_MAX)
+    if (!relation || relation == text || relation[1] != '=' || relation - text >= TABLE_NAME_MAX)
         return NULL;
     snprintf(name, TABLE_NAME_MAX, "%.*s", (int)(relation - text), text);
     for (char *last = name + strlen(name); last > name && isspace((unsigned char)last[-1]);)
@@ -54,6 +54,8 @@ static Status check(const Limits *limits, const Schema *schema, Err *err)
         if (l->sign > 0 && other && other->bound > l->bound)
             return fail(err, STATUS_BAD_DATA, "search.limits: %s<=%g and >=%g contradict each other", c->name, l->bound,
                         other->bound);
+        if (l->sign > 0 && l->bound < 0 && schema->order.n_obj > 0)
+            return fail(err, STATUS_BAD_DATA, "search.limits: %s<=%g: no design has less than 0", c->name, l->bound);
         if (!other && l->sign * c->sense < 0)
             return fail(
                 err, STATUS_BAD_DATA,

@@ -18,6 +18,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/csv.h"
+
 /* Digits behind the decimal point of a number as printed, less its exponent. */
 static int count_decimals(const char *from, const char *to)
 {
@@ -124,6 +126,14 @@ static void recount(Columns *columns, const Record *r)
     }
 }
 
+static int has_marks(const Lines *l)
+{
+    int n = 0;
+    for (const char *p = l->from; p < l->to; p++)
+        n += strchr(",;\t", *p) != NULL;
+    return n > 0;
+}
+
 /* Blanks before a unit in brackets, "acc [m/s2]", part no names. */
 static int begins_unit(const char *p, const char *to)
 {
@@ -134,9 +144,7 @@ static int begins_unit(const char *p, const char *to)
 
 int column_name(const Lines *l, const char **p, const char **from, const char **to)
 {
-    int marked = 0;
-    for (const char *q = l->from; q < l->to; q++)
-        marked |= strchr(",;\t", *q) && *q;
+    const int marked = has_marks(l);
     const char *parting = marked ? ",;\t" : " ";
     while (!marked && *p < l->to && **p == ' ')
         ++*p;
@@ -164,7 +172,7 @@ typedef struct {
 
 static int is_comment(const Lines *l)
 {
-    return strchr("#%!", *l->from) || line_begins(l, "//");
+    return (strchr("#%!", *l->from) && !csv_is_error(l->from, l->to)) || line_begins(l, "//");
 }
 
 /* A line of words begins like a word and is no number (nan and inf are numbers). */
@@ -179,6 +187,18 @@ static int is_words(const Lines *l)
            !(to - l->from == 3 && (line_begins(l, "nan") || line_begins(l, "inf")));
 }
 
+/* "= 5 ms" */
+static int is_in_milliseconds(const char *mark, const char *to)
+{
+    while (mark < to && strchr("=: \t", *mark))
+        mark++;
+    while (mark < to && strchr("0123456789.,eE+-", *mark))
+        mark++;
+    while (mark < to && *mark == ' ')
+        mark++;
+    return to - mark >= 2 && memcmp(mark, "ms", 2) == 0 && (to - mark == 2 || !isalnum((unsigned char)mark[2]));
+}
+
 /* x of "word ... = x" or "word ... : x" */
 static int stated(const Lines *l, const char *word, double *x)
 {
@@ -188,8 +208,10 @@ static int stated(const Lines *l, const char *word, double *x)
         const char *mark = at + strlen(word);
         while (mark < l->to && *mark != '=' && *mark != ':')
             mark++;
-        if (mark < l->to && number_behind(mark, l->to, "", x) && *x > 0 && *x <= 1e6)
+        if (mark < l->to && number_behind(mark, l->to, "", x) && *x > 0 && *x <= 1e6) {
+            *x *= is_in_milliseconds(mark, l->to) ? 1e-3 : 1;
             return 1;
+        }
     }
     return 0;
 }
@@ -198,7 +220,7 @@ static int stated(const Lines *l, const char *word, double *x)
 static void take_numbers(const Lines *l, Preface *preface)
 {
     static const char *const steps[] = {"dt", "time step", "step"};
-    static const char *const rates[] = {"sampling rate", "sampling frequency", "samples per second"};
+    static const char *const rates[] = {"sampling rate", "sampling frequency", "samples per second", "fs"};
     static const char *const counts[] = {"npts", "number of points", "number of samples", "number of data"};
     double x;
     for (size_t i = 0; i < sizeof steps / sizeof *steps; i++)
@@ -227,13 +249,31 @@ static size_t count_names(const Lines *names)
     return n;
 }
 
-/* Do the rows so far make a table: below comments, below names that fit them, or three of one width? */
-static int is_table(const Columns *columns, const Preface *preface, Lines start)
+static size_t count_fields(const Lines *l)
 {
+    size_t n = 0;
+    for (const char *p = l->from; p < l->to; n++)
+        field_next(l, &p, has_decimal_commas(l, 0));
+    return n;
+}
+
+/* Do the rows so far make a table: below comments, below names that fit them or the line at hand, or three of one width? */
+static int is_table(const Columns *columns, const Preface *preface, Lines start, const Lines *l)
+{
+    const size_t n_names = count_names(&preface->names);
     if (!lines_next_filled(&start) || columns->odd_line)
         return 0;
-    return is_comment(&start) || columns->n_rows >= 3 ||
-           (preface->names.from && columns->n_rows > 0 && count_names(&preface->names) == columns->width);
+    return is_comment(&start) || columns->n_rows >= 3 || (n_names > 0 && n_names == columns->width) ||
+           (columns->n_rows == 0 && n_names == count_fields(l) && has_marks(&preface->names) && has_marks(l));
+}
+
+/* Spreadsheets write rows of empty cells. */
+static int is_empty_row(const Lines *l)
+{
+    const char *p = l->from;
+    while (p < l->to && strchr(",; \t", *p))
+        p++;
+    return p == l->to;
 }
 
 static Status fail_unknown(const Lines *l, Lines start, Err *err)
@@ -249,6 +289,8 @@ static Status read_rows(Record *r, Lines *l, Preface *preface, Columns *columns,
 {
     const Lines start = *l;
     while (lines_next_filled(l)) {
+        if (is_empty_row(l))
+            continue;
         if (is_comment(l)) {
             take_comment(l, preface);
         } else if (r->n == 0 && is_words(l)) {
@@ -258,7 +300,7 @@ static Status read_rows(Record *r, Lines *l, Preface *preface, Columns *columns,
         } else {
             const Status s = columns_add(columns, r, l, err);
             if (s != STATUS_OK)
-                return is_table(columns, preface, start) || !strstr(err->text, "is not a number")
+                return is_table(columns, preface, start, l) || !strstr(err->text, "is not a number")
                            ? s
                            : fail_unknown(l, start, err);
         }
