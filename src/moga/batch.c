@@ -1,11 +1,16 @@
 #include "moga/state.h"
 
+static size_t largest_batch(const SearchConfig *c)
+{
+    return c->surrogate == SURROGATE_OFF ? c->population / 2 : c->population;
+}
+
 /* Designs between two fits of the surrogate: more as evaluations accumulate, so that fitting never dominates. */
 size_t batch_size(const Search *s)
 {
     const size_t population = s->config->population, min = population / BATCH_POPULATION_SHARE + 1,
-                 grown = s->archive.n / BATCH_ARCHIVE_SHARE;
-    return grown < min ? min : grown < population / 2 ? grown : population / 2;
+                 max = largest_batch(s->config), grown = s->archive.n / BATCH_ARCHIVE_SHARE;
+    return grown < min ? min : grown < max ? grown : max;
 }
 
 static int in_batch(const Search *s, size_t n, const double x[])
@@ -88,7 +93,7 @@ static Status take_results(Search *s, size_t pending, Err *err)
 
 size_t batch_pending_max(const SearchConfig *c, size_t n_workers)
 {
-    return c->asynchronous && n_workers > 1 ? n_workers + c->population / 2 / LOOK_AHEAD_SHARE + 1 : 0;
+    return c->asynchronous && n_workers > 1 ? n_workers + largest_batch(c) / LOOK_AHEAD_SHARE + 1 : 0;
 }
 
 /* Designs that may be pending when the next batch is selected: none in batches; asynchronous, so many that no worker

@@ -3,6 +3,7 @@
 #include <float.h>
 #include <math.h>
 #include <stdint.h>
+#include <string.h>
 
 #include "base/carve.h"
 #include "moga/constants.h"
@@ -84,7 +85,7 @@ static void ray_values(const Infill *q, const double f[], double value[])
         }
     }
     for (size_t r = 0; r < q->n_dir; r++)
-        value[r] = fmin(value[r], 0.0);
+        value[r] = value[r] < 0.0 ? value[r] : 0.0;
 }
 
 /* With |w| = 1, off^2 = |z|^2 - along^2. */
@@ -128,6 +129,14 @@ void infill_measure(Infill *q, size_t n, const size_t front[], const double F[])
                 q->best[r] = front[i];
             }
     }
+}
+
+void infill_copy(Infill *q, const Infill *measured)
+{
+    memcpy(q->normalisation.ideal, measured->normalisation.ideal, q->n_obj * sizeof *q->normalisation.ideal);
+    memcpy(q->normalisation.width, measured->normalisation.width, q->n_obj * sizeof *q->normalisation.width);
+    memcpy(q->best_value, measured->best_value, q->n_dir * sizeof *q->best_value);
+    memcpy(q->best, measured->best, q->n_dir * sizeof *q->best);
 }
 
 size_t infill_best(const Infill *q, size_t vector)
@@ -187,8 +196,11 @@ double infill_distance(Infill *q, const double f[])
 {
     double nearest = DBL_MAX;
     values_of(q, f, q->row);
-    for (size_t r = 0; r < q->n_dir; r++)
-        nearest = fmin(nearest, q->row[r] - q->best_value[r]);
+#pragma omp simd reduction(min : nearest)
+    for (size_t r = 0; r < q->n_dir; r++) {
+        const double off = q->row[r] - q->best_value[r];
+        nearest = off < nearest ? off : nearest;
+    }
     return nearest;
 }
 

@@ -32,6 +32,7 @@ void infill_free(Infill *q); /* NULL is fine */
 
 /* Normalises by the rows front[0..n) of F and takes their values as best_w. */
 void infill_measure(Infill *q, size_t n, const size_t front[], const double F[]);
+void infill_copy(Infill *q, const Infill *measured); /* what that found, of the same kind and vectors */
 
 /* Distance of f from the ideal, in widths of the front. */
 double infill_length(const Infill *q, const double f[]);

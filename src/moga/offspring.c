@@ -78,11 +78,13 @@ static void add_evolved(Search *s)
             population_append(&s->offspring.members, &s->pool, i);
 }
 
-/* Descents along reference vectors that are drawn anew in each generation; the criteria share them. */
+/* Descents along reference vectors that are drawn anew in each generation, as many as the population at most; the criteria
+ * share them. */
 static void add_descended(Search *s, double hypervolume)
 {
     const Problem *p = s->problem;
-    const size_t n_vectors = s->criteria.vectors.n, wanted = DESCENTS_PER_DESIGN * batch_size(s),
+    const size_t n_vectors = s->criteria.vectors.n, two_each = DESCENTS_PER_DESIGN * batch_size(s),
+                 wanted = two_each < s->config->population ? two_each : s->config->population,
                  n = wanted < n_vectors ? wanted : n_vectors, first = (size_t)(hypervolume * (double)n);
     size_t *vector = s->scratch.descent_vector;
     double *X = s->scratch.descent_X;

@@ -13,12 +13,12 @@ void search_measure_front(Search *s)
     pareto_archive_list_front(a);
     for (size_t i = 0; i < p->n; i++)
         s->scratch.members[i] = i;
-    for (int k = 0; k < 2 * INFILL_KINDS; k++) {
-        Infill *q = k < INFILL_KINDS ? s->criteria.select[k] : s->criteria.gain[k - INFILL_KINDS];
+    for (int k = 0; k < INFILL_KINDS; k++) {
         if (a->n_front > 0)
-            infill_measure(q, a->n_front, a->front, a->estimate);
+            infill_measure(s->criteria.select[k], a->n_front, a->front, a->estimate);
         else
-            infill_measure(q, p->n, s->scratch.members, p->F);
+            infill_measure(s->criteria.select[k], p->n, s->scratch.members, p->F);
+        infill_copy(s->criteria.gain[k], s->criteria.select[k]);
     }
 }
 

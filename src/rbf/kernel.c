@@ -9,7 +9,7 @@
 /* Four numbers, wherever they lie. */
 typedef double Four __attribute__((vector_size(32), aligned(8), may_alias));
 
-/* exp(x) for x <= 0 within 2e-16 relative, without a branch or a call: x = k log 2 + r, |r| <= log(2) / 2, Taylor
+/* exp(x) for x <= 700 within 2e-16 relative, without a branch or a call: x = k log 2 + r, |r| <= log(2) / 2, Taylor
  * series of r; k sits in the low bits of x / log 2 + 1.5 2^52. Below -700 as at -700. */
 static inline double exp_down(double x)
 {
@@ -59,6 +59,15 @@ CLONED_V3 void kernel_warp_slopes(size_t n, const double log_u[], const double l
     }
 }
 
+CLONED_V3 void kernel_warp_by_u(size_t n, const double log_u[], const double log_v[], double theta,
+                                const double warp[2], double by_u[])
+{
+    const double half = 0.5 * sqrt(theta), a = warp[0], b = warp[1];
+#pragma omp simd
+    for (size_t i = 0; i < n; i++)
+        by_u[i] = half * (a * exp_down((a - 1.0) * log_u[i]) + b * exp_down((b - 1.0) * log_v[i]));
+}
+
 /* Eight centres and all points of a block at a time: every number that is loaded is used four times at least. */
 CLONED_V3 void kernel_distances(size_t n_dim, size_t stride, const double S[], const double x[], size_t first,
                                 size_t count, double r2[RBF_BLOCK][KERNEL_CHUNK])
@@ -97,24 +106,49 @@ CLONED_V3 void kernel_values(RbfKernel kernel, size_t n, const double r2[], doub
     }
 }
 
-CLONED_V3 double kernel_slopes(RbfKernel kernel, size_t n, const double r2[], const double w[], double q[])
+CLONED_V3 double kernel_dot(size_t n, const double a[], const double b[])
 {
-    double value = 0.0;
+    double dot = 0.0;
+#pragma omp simd reduction(+ : dot)
+    for (size_t i = 0; i < n; i++)
+        dot += a[i] * b[i];
+    return dot;
+}
+
+CLONED_V3 void kernel_errors(size_t n, const double r2[], const double e[], double *square, double *weights)
+{
+    double squares = 0.0, sum = 0.0;
+#pragma omp simd reduction(+ : squares, sum)
+    for (size_t i = 0; i < n; i++) {
+        const double near = 1.0 / (r2[i] * r2[i] + 1e-12);
+        squares += near * e[i] * e[i];
+        sum += near;
+    }
+    *square += squares;
+    *weights += sum;
+}
+
+CLONED_V3 double kernel_slopes(RbfKernel kernel, size_t n, const double r2[], const double w[], double q[], double *sum)
+{
+    double value = 0.0, slopes = 0.0;
     if (kernel == RBF_GAUSS) {
-#pragma omp simd reduction(+ : value)
+#pragma omp simd reduction(+ : value, slopes)
         for (size_t i = 0; i < n; i++) {
             const double e = exp_down(-r2[i]);
             value += w[i] * e;
             q[i] = -w[i] * e;
+            slopes += q[i];
         }
-        return value;
+    } else {
+#pragma omp simd reduction(+ : value, slopes)
+        for (size_t i = 0; i < n; i++) {
+            const double a = sqrt(5.0 * r2[i]), e = exp_down(-a);
+            value += w[i] * (1.0 + a + a * a / 3.0) * e;
+            q[i] = w[i] * (-5.0 / 6.0) * (1.0 + a) * e;
+            slopes += q[i];
+        }
     }
-#pragma omp simd reduction(+ : value)
-    for (size_t i = 0; i < n; i++) {
-        const double a = sqrt(5.0 * r2[i]), e = exp_down(-a);
-        value += w[i] * (1.0 + a + a * a / 3.0) * e;
-        q[i] = w[i] * (-5.0 / 6.0) * (1.0 + a) * e;
-    }
+    *sum += slopes;
     return value;
 }
 

@@ -22,6 +22,10 @@ void kernel_warp(size_t n, const double log_u[], const double log_v[], double th
 void kernel_warp_slopes(size_t n, const double log_u[], const double log_v[], double theta, const double warp[2],
                         double by_a[], double by_b[]);
 
+/* ds/du = root(theta) (a u^(a-1) + b v^(b-1)) / 2 */
+void kernel_warp_by_u(size_t n, const double log_u[], const double log_v[], double theta, const double warp[2],
+                      double by_u[]);
+
 /* r2[p][i] = squared distance of point p to centre first + i, count <= KERNEL_CHUNK; x (n_dim, RBF_BLOCK) warped
  * and scaled like the centres. Numbers behind count, up to a multiple of KERNEL_LANES, are spoilt. */
 void kernel_distances(size_t n_dim, size_t stride, const double S[], const double x[], size_t first, size_t count,
@@ -30,8 +34,13 @@ void kernel_distances(size_t n_dim, size_t stride, const double S[], const doubl
 /* phi[i] of r2[i]; may be the same array. */
 void kernel_values(RbfKernel kernel, size_t n, const double r2[], double phi[]);
 
-/* q[i] = w[i] d phi / d (r^2) at r2[i]; returns the sum of w phi. */
-double kernel_slopes(RbfKernel kernel, size_t n, const double r2[], const double w[], double q[]);
+double kernel_dot(size_t n, const double a[], const double b[]);
+
+/* Adds to the local average of squared errors e: near_i = 1 / r^4, *square += sum near e^2, *weights += sum near. */
+void kernel_errors(size_t n, const double r2[], const double e[], double *square, double *weights);
+
+/* q[i] = w[i] d phi / d (r^2) at r2[i], whose sum is added to *sum; returns the sum of w phi. */
+double kernel_slopes(RbfKernel kernel, size_t n, const double r2[], const double w[], double q[], double *sum);
 
 /* G[p][d] += sum_i q[p][i] S[d][first + i], count <= KERNEL_CHUNK; q is 0 behind count up to a multiple of
  * KERNEL_LANES. */
