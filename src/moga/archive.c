@@ -277,6 +277,11 @@ Status pareto_archive_insert(Archive *a, size_t n, const double X[], const doubl
     return STATUS_OK;
 }
 
+Status pareto_archive_reserve(Archive *a, size_t n, Err *err)
+{
+    return n <= a->n_max ? STATUS_OK : resize(a, n, a->has_means, err);
+}
+
 Status pareto_archive_restore(Archive *a, const double x[], const double f[], const double g[], unsigned char ok,
                               unsigned char kind, size_t generation, int on_front, Err *err)
 {

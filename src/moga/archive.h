@@ -60,6 +60,9 @@ void pareto_archive_free(Archive *a);
 Status pareto_archive_insert(Archive *a, size_t n, const double X[], const double F[], const double G[],
                              const unsigned char ok[], unsigned char kind, size_t generation, Err *err);
 
+/* Room for n rows in all, for what is known to come. */
+Status pareto_archive_reserve(Archive *a, size_t n, Err *err);
+
 /* One row that was in an archive, as it was put there, of which it is known whether it is on the front in the end. */
 Status pareto_archive_restore(Archive *a, const double x[], const double f[], const double g[], unsigned char ok,
                               unsigned char kind, size_t generation, int on_front, Err *err);

@@ -207,6 +207,7 @@ static Status restore_row(Search *s, const SearchStart *start, size_t i, Err *er
 
 Status state_restore(Search *s, const SearchStart *start, Err *err)
 {
+    TRY(pareto_archive_reserve(&s->archive, start->n + start->n / 8, err));
     for (size_t i = 0; i < start->n; i++)
         TRY(restore_row(s, start, i, err));
     pareto_archive_update_noise(&s->archive);

@@ -486,10 +486,18 @@ static Status end_session(RunStore *store, const char *stopped, int is_final, do
                        ended, stopped, (long)is_final, session, store->session);
 }
 
+/* What the files are written from, or what is said of a run, in the place of the run as it was before. Of one without a
+ * front the designs that come nearest are written too. */
 static Status read_at_the_end(RunStore *store, Run *run, Err *err)
 {
-    TRY(run_load(run, store->db, store_folder(store), err));
-    return store->has_polished || store->files.is_behind ? csv_files_replace(&store->folder, run, err) : STATUS_OK;
+    const int is_written = store->has_polished || store->files.is_behind;
+    run_free(&store->run);
+    TRY(run_load_part(run, store->db, store_folder(store), is_written ? RUN_WHOLE : RUN_REVIEWED, err));
+    if (run->n_front == 0 && run->table.n_var == 0) {
+        run_free(run);
+        TRY(run_load(run, store->db, store_folder(store), err));
+    }
+    return is_written ? csv_files_replace(&store->folder, run, err) : STATUS_OK;
 }
 
 Status store_close(RunStore *store, const char *stopped, int is_final, double session, Run *run, Err *err)

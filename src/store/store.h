@@ -91,8 +91,8 @@ Status store_read(RunStore *store, Run *run, Err *err);
  * run as in store_add_evaluations. */
 Status store_polished(RunStore *store, const Evaluation *better, size_t n_tried, size_t n_simulated, Err *err);
 
-/* Why the session ends. is_final: there is nothing to be resumed. run (NULL: not wanted) becomes the run as it is then,
- * for run_free. The store is released in any case. */
+/* Why the session ends. is_final: there is nothing to be resumed. run (NULL: not wanted) becomes the run as it is then
+ * (at least RUN_REVIEWED, store/run_read.h), for run_free. The store is released in any case. */
 Status store_close(RunStore *store, const char *stopped, int is_final, double session, Run *run, Err *err);
 void store_free(RunStore *store); /* NULL is fine */
 
