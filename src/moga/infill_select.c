@@ -21,14 +21,19 @@ static void exclude(Search *s)
     memset(o->excluded + p->n - o->n_pending, 1, o->n_pending);
 }
 
-/* Candidates are offered to both criteria; pending designs lower the values to beat. */
+/* Candidates are offered to both criteria with lower confidence bounds of their objectives; pending designs lower the
+ * values to beat, by their predictions. */
 static void offer(Search *s)
 {
     const Population *p = &s->offspring.members;
+    const size_t first_pending = p->n - s->offspring.n_pending;
+    double *bound = s->scratch.bound;
+    for (size_t i = 0; i < p->n * p->n_obj; i++)
+        bound[i] = p->F[i] - (i < first_pending * p->n_obj ? OPTIMISM * p->error[i] : 0.0);
     for (int kind = 0; kind < INFILL_KINDS; kind++)
-        infill_offer(s->criteria.select[kind], p->n, p->F, p->violation, p->uncertainty,
+        infill_offer(s->criteria.select[kind], p->n, bound, p->violation, p->uncertainty,
                      s->archive.n_front > 0 ? p->chance : NULL);
-    for (size_t i = p->n - s->offspring.n_pending; i < p->n; i++)
+    for (size_t i = first_pending; i < p->n; i++)
         for (int kind = 0; kind < INFILL_KINDS; kind++)
             infill_take(s->criteria.select[kind], i);
 }

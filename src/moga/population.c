@@ -10,6 +10,7 @@ static void layout(void *population, Carve *c)
     Population *p = population;
     p->X = carve(c, p->n_max * p->n_var, sizeof(double));
     p->F = carve(c, p->n_max * p->n_obj, sizeof(double));
+    p->error = carve(c, p->n_max * p->n_obj, sizeof(double));
     p->violation = carve(c, p->n_max, sizeof(double));
     p->uncertainty = carve(c, p->n_max, sizeof(double));
     p->chance = carve(c, p->n_max, sizeof(double));
@@ -35,6 +36,7 @@ size_t population_add(Population *p, const double x[])
     const size_t i = p->n++;
     memcpy(p->X + i * p->n_var, x, p->n_var * sizeof *x);
     memset(p->F + i * p->n_obj, 0, p->n_obj * sizeof *p->F);
+    memset(p->error + i * p->n_obj, 0, p->n_obj * sizeof *p->error);
     p->violation[i] = p->uncertainty[i] = 0.0;
     p->chance[i] = 1.0;
     p->row[i] = PREDICTED;
@@ -46,6 +48,7 @@ static void copy(Population *to, size_t i, const Population *from, size_t j)
 {
     memmove(to->X + i * to->n_var, from->X + j * from->n_var, to->n_var * sizeof *to->X);
     memmove(to->F + i * to->n_obj, from->F + j * from->n_obj, to->n_obj * sizeof *to->F);
+    memmove(to->error + i * to->n_obj, from->error + j * from->n_obj, to->n_obj * sizeof *to->error);
     to->violation[i] = from->violation[j];
     to->uncertainty[i] = from->uncertainty[j];
     to->chance[i] = from->chance[j];

@@ -18,6 +18,7 @@ static const size_t PREDICTED = SIZE_MAX;
 typedef struct {
     size_t n, n_max, n_var, n_obj;
     double *X, *F;       /* (n, n_var) (n, n_obj) */
+    double *error;       /* (n, n_obj) predicted error, 0: evaluated; of offspring until they are selected */
     double *violation;   /* (n) */
     double *uncertainty; /* (n) predicted error, share of the range, of the worst objective; 0: evaluated */
     double *chance;      /* (n) probability that it succeeds and keeps every limit; 1: evaluated */

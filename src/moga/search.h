@@ -12,7 +12,8 @@
  *       trusted     predictions whose leave-one-out based error is below trust_error in every objective stand for
  *                   evaluations, for PREDICTION_AGE_MAX generations
  *       infill      of the others those with the greatest gain by two criteria, PBI and hypervolume (infill.h), which
- *                   share the batch by what they gained
+ *                   share the batch by what they gained; a gain is that of lower confidence bounds, prediction minus
+ *                   OPTIMISM times its error in every objective: where the surrogate errs more there is more to find
  *       validation  some trusted predictions, first those that have been trusted for long
  *       variation   from INFILL_ALONE evaluations per variable on a few children of variation with the greatest
  *                   predicted gain, and most of the batch while these gain more
@@ -55,6 +56,8 @@
  * Ownership     search_run owns all it allocates; a SearchView is valid inside the callback only
  * Sources       Deb and Jain, IEEE Trans. Evol. Comput. 18 (2014) 577-601 (NSGA-III)
  *               Deb and Agrawal, Complex Systems 9 (1995) 115-148 (SBX)
+ *               Cox and John, SDO: a statistical method for global optimization, SIAM 1997, 315-329 (lower confidence
+ *               bounds)
  *               Rippa, Adv. Comput. Math. 11 (1999) 193-210 (leave-one-out)
  * Constants     moga/constants.h; what each is worth: docs/search.md */
 #ifndef IMTET_MOGA_SEARCH_H

@@ -39,6 +39,7 @@ static void layout(void *search, Carve *c)
     s->offspring.excluded = carve(c, n_pool, 1);
     w->survivors = carve(c, n_pool, sizeof(size_t));
     w->members = carve(c, n_pool, sizeof(size_t));
+    w->bound = carve(c, n_pool * n_obj, sizeof(double));
     w->slices = carve(c, b->size_max, sizeof(size_t));
     w->samples = carve(c, b->size_max * n_var, sizeof(double));
     w->given = carve(c, n_var, sizeof(double));

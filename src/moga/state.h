@@ -69,6 +69,7 @@ typedef struct {
 typedef struct {
     size_t *survivors;      /* (pool) of the environmental selection */
     size_t *members;        /* (pool) 0, 1, ... */
+    double *bound;          /* (pool, n_obj) lower confidence bounds of the offspring's objectives */
     size_t *slices;         /* (batch.size_max) of the Latin hypercube */
     double *samples;        /* (batch.size_max, n_var) of it */
     double *given;          /* (n_var) */

@@ -287,6 +287,8 @@ static void fill_member(const Surrogate *s, Population *population, size_t i, co
     for (size_t k = 0; e && k < s->n_out; k++)
         worst = fmax(worst, e[k] / s->range[k]);
     memcpy(population->F + i * p->n_obj, f, p->n_obj * sizeof *f);
+    for (size_t k = 0; k < p->n_obj; k++)
+        population->error[i * p->n_obj + k] = e ? e[k] : 0.0;
     population->violation[i] = violation_of(p->n_con, f + p->n_obj) + fmax(SUCCESS_MIN - success, 0.0);
     population->uncertainty[i] = worst;
 }
