@@ -118,7 +118,7 @@ static Rebound integrate(const Blow *b)
 {
     const double m = b->core > 0 ? 1 / (1 / b->mass + 1 / b->core) : b->mass;
     const double slow = hypot(contact_hertz_duration(b->contact.k, m, b->v), contact_bumper_duration(&b->contact, m));
-    enum { STEPS = 20000 };
+    enum { STEPS = 4000 };
     const double h = sqrt(6 * slow) / STEPS, share[4] = {0, 0.5, 0.5, 1};
     Rebound r = {0};
     double p = 0, v = b->v;
