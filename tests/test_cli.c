@@ -553,6 +553,7 @@ static void test_no_option_that_writes_replaces_what_a_run_keeps_or_a_setting_na
     }
     expect(2, "front.csv, which a run needs", "simulate configs/quick.ini --design none --contacts @/held/front.csv");
     expect(2, "linked.csv, which a run needs", "spectrum builtin:kobe-like --csv @/linked.csv");
+    expect(2, "held/log.jsonl, which a run needs", "building guyan --svg @/held/log.jsonl");
     expect(2, "held/settings.ini, which a run needs", "report @/nowhere --out @/held/settings.ini");
     expect(2, "one.csv, which the command reads", "evaluate @/held --records @/records --csv @/records/one.csv");
     expect(2, "a.csv, which the command reads", "simulate @/tower.ini --design @/a.csv:1 --history @/a.csv");

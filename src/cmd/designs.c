@@ -246,7 +246,7 @@ Status design_of_run(const Run *run, const char *word, size_t *row, Designs *els
     Designs d;
     if (elsewhere)
         *elsewhere = (Designs){0};
-    if (is_name(word) || (!strpbrk(word, "/:") && stat(word, &s) != 0))
+    if (is_name(word) || (!strpbrk(word, "/:.") && stat(word, &s) != 0))
         return run_pick(run, word, row, err);
     TRY(designs_take_one(&d, word, &run->schema.design, err));
     *row = row_of(run, d.x);

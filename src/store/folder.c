@@ -64,7 +64,7 @@ int folder_is_run(const char *path)
 
 int folder_keeps(const char *path)
 {
-    static const char *const NAMES[] = {"settings.ini",    "provenance.json", "log.txt",     "lock",
+    static const char *const NAMES[] = {"settings.ini",    "provenance.json", "log.txt",     "log.jsonl", "lock",
                                         "evaluations.csv", "front.csv",       "nearest.csv", "run.sqlite"};
     char real[PATH_MAX];
     if (!realpath(path, real))
