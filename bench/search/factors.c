@@ -34,9 +34,11 @@ typedef struct {
     const char *name[PROBLEMS_MAX];
     double factor[PROBLEMS_MAX][BUDGETS_MAX][SCORES];             /* medians over the seeds */
     double ratio[METHODS_MAX][BUDGETS_MAX][SCORES][PROBLEMS_MAX]; /* likewise */
-    double cpu_s[METHODS_MAX][PROBLEMS_MAX];  /* [s] of the search per evaluation, at the last budget */
-    double volume[COSTS][METHODS_MAX][TIMES]; /* sums of hypervolumes at times */
+    double cpu_s[METHODS_MAX][PROBLEMS_MAX];   /* [s] of the search per evaluation, at the last budget */
+    double volume[COSTS][METHODS_MAX][TIMES];  /* sums of hypervolumes at times */
+    size_t running[COSTS][METHODS_MAX][TIMES]; /* searches that are not at their end by then */
     size_t n_volumes;
+    double total_s; /* [s] processor time of all searches */
 } Tables;
 
 static size_t n_budgets(const FactorPlan *plan)
@@ -174,6 +176,7 @@ static void add_volumes(Tables *t, const Curve curve[])
                 const Course *c = &curve[v].course;
                 while (n < (int)c->n && c->cpu_s[n] + (n + 1) * COST_S[cost] <= 3600.0 * time_at(t->plan, cost, i))
                     n++;
+                t->running[cost][v][i] += n < (int)c->n;
                 t->volume[cost][v][i] += n > 0 ? curve[v].score[VOLUME][n - 1] : 0.0;
             }
     t->n_volumes++;
@@ -186,9 +189,9 @@ static void take_seed(Tables *t, const Curve curve[], size_t seed, Sample *s)
         for (int score = 0; score < SCORES; score++) {
             const double ours = curve[METHOD_IMTET].score[score][n - 1];
             s->factor[b][score][seed] =
-                score == VOLUME && ours <= 0.0 ? 1.0 : factor_of(&curve[METHOD_PLAIN], (Score)score, ours, (double)n);
+                score == VOLUME && ours <= 0.0 ? NAN : factor_of(&curve[METHOD_PLAIN], (Score)score, ours, (double)n);
             for (size_t v = 0; v < t->n_methods; v++) {
-                s->ratio[v][b][score][seed] = fmax(curve[v].score[score][n - 1], 1e-9) / fmax(ours, 1e-9);
+                s->ratio[v][b][score][seed] = ours > 0.0 ? curve[v].score[score][n - 1] / ours : NAN;
                 s->cpu_s[v][seed] = curve[v].course.cpu_s[n - 1] / (double)n;
             }
         }
@@ -210,15 +213,29 @@ static Status run_seed(Tables *t, const Problem *p, const Family *a, const Cours
         status = score_course(&curve[v], reference, lower, upper, err);
     if (status == STATUS_OK)
         take_seed(t, curve, seed, s);
-    for (size_t v = 0; v < t->n_methods; v++)
+    for (size_t v = 0; v < t->n_methods; v++) {
+        t->total_s += curve[v].course.n > 0 ? curve[v].course.cpu_s[curve[v].course.n - 1] : 0.0;
         curve_free(&curve[v]);
+    }
     return status;
 }
 
+/* Those that are known, ascending; returns how many. */
+static size_t sort_known(size_t n, double x[])
+{
+    size_t known = 0;
+    for (size_t i = 0; i < n; i++)
+        if (!isnan(x[i]))
+            x[known++] = x[i];
+    sort_values(known, x);
+    return known;
+}
+
+/* NAN: none is known. */
 static double median(size_t n, double x[])
 {
-    sort_values(n, x);
-    return 0.5 * (x[(n - 1) / 2] + x[n / 2]);
+    const size_t known = sort_known(n, x);
+    return known > 0 ? 0.5 * (x[(known - 1) / 2] + x[known / 2]) : NAN;
 }
 
 static void take_medians(Tables *t, size_t n, Sample *s)
@@ -260,12 +277,20 @@ static Status run_problem(Tables *t, size_t which, Err *err)
 
 /* -- tables -------------------------------------------------------------------------------------------------------- */
 
+static void print_factor(double factor, FILE *out)
+{
+    if (isnan(factor))
+        fprintf(out, " - |");
+    else
+        fprintf(out, " %.1f |", factor);
+}
+
 static void print_factors(const Tables *t, size_t row, const char *what, FILE *out)
 {
     fprintf(out, "| %s | %s |", t->name[row], what);
     for (int score = 0; score < SCORES; score++)
         for (size_t b = 0; b < n_budgets(t->plan); b++)
-            fprintf(out, " %.1f |", t->factor[row][b][score]);
+            print_factor(t->factor[row][b][score], out);
     fputc('\n', out);
     fflush(out);
 }
@@ -275,10 +300,13 @@ static void print_means(const Tables *t, FILE *out)
     fprintf(out, "| geometric mean | |");
     for (int score = 0; score < SCORES; score++)
         for (size_t b = 0; b < n_budgets(t->plan); b++) {
-            double sum = 0.0;
+            double sum = 0.0, n = 0.0;
             for (size_t i = 0; i < t->n_problems; i++)
-                sum += log(t->factor[i][b][score]);
-            fprintf(out, " %.1f |", exp(sum / (double)t->n_problems));
+                if (!isnan(t->factor[i][b][score])) {
+                    sum += log(t->factor[i][b][score]);
+                    n += 1.0;
+                }
+            print_factor(exp(sum / n), out);
         }
     fprintf(out, "\n| worst | |");
     for (int score = 0; score < SCORES; score++)
@@ -288,13 +316,19 @@ static void print_means(const Tables *t, FILE *out)
                 worst = t->factor[i][b][score] < t->factor[worst][b][score] ? i : worst;
             fprintf(out, " %s |", t->name[worst]);
         }
+    fprintf(out, "\n| processor time | %.0f min |", t->total_s / 60.0);
+    for (size_t b = 0; b < SCORES * n_budgets(t->plan); b++)
+        fputs(" |", out);
     fputc('\n', out);
 }
 
 static void print_quartiles(size_t n, double x[], FILE *out)
 {
-    sort_values(n, x);
-    fprintf(out, " %.2f (%.2f .. %.2f) |", 0.5 * (x[(n - 1) / 2] + x[n / 2]), x[n / 4], x[n - 1 - n / 4]);
+    const size_t known = sort_known(n, x);
+    if (known == 0)
+        fprintf(out, " - |");
+    else
+        fprintf(out, " %.2f (%.2f .. %.2f) |", median(known, x), x[known / 4], x[known - 1 - known / 4]);
 }
 
 static void print_methods(Tables *t, FILE *out)
@@ -323,7 +357,7 @@ static Status write_curves(const Tables *t, Err *err)
     fprintf(o.stream, "simulation_s,method,hours,hypervolume\n");
     for (int cost = 0; cost < COSTS; cost++)
         for (size_t v = 0; v < t->n_methods; v++)
-            for (int i = 0; i < TIMES; i++)
+            for (int i = 0; i < TIMES && (i == 0 || t->running[cost][v][i - 1] > 0); i++)
                 fprintf(o.stream, "%g,%s,%g,%.4f\n", COST_S[cost], method(t->methods[v])->name,
                         time_at(t->plan, cost, i), t->volume[cost][v][i] / (double)t->n_volumes);
     return output_close(&o, err);

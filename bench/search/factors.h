@@ -7,8 +7,8 @@
  *
  * One search to the last budget is read at all of them. IGD+ to the true front (reference.h), normalised by its ranges.
  * Hypervolume in a box about the nondominated designs of this program and of the plain search of the same seed, from
- * the best to the worst and a tenth of the range beyond. Both of all designs that succeeded and keep the limits.
- * Medians over the seeds; over the problems the geometric mean, or quartiles.
+ * the best to the worst and a tenth of the range beyond; nothing is said where this program has none. Both of all
+ * designs that succeeded and keep the limits. Medians over the seeds; over the problems the geometric mean, or quartiles.
  *
  * Threads  those of the search */
 #ifndef IMTET_BENCH_SEARCH_FACTORS_H

@@ -56,8 +56,8 @@ static const double RAY_SOFTNESS = 0.05; /* of the soft maximum in a ray's deriv
 /* -- infill_select.c: infill selection ----------------------------------------------------------------------------- */
 
 static const double OPTIMISM = 1.0; /* errors by which a prediction is lowered where its gain is measured */
-enum { VALIDATION_SHARE = 4 };   /* batch / this + 1 designs of a batch validate trusted predictions */
-enum { PREDICTION_AGE_MAX = 3 }; /* generations for which a prediction is trusted before it is validated first */
+enum { VALIDATION_SHARE = 4 };      /* batch / this + 1 designs of a batch validate trusted predictions */
+enum { PREDICTION_AGE_MAX = 3 };    /* generations for which a prediction is trusted before it is validated first */
 
 /* -- control.c, surrogate_use.c ------------------------------------------------------------------------------------ */
 
