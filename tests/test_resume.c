@@ -337,13 +337,14 @@ static void test_a_search_that_converges_stops_at_the_same_place_wherever_it_was
     forget(&whole);
 }
 
-/* Every eight bytes of it in turn. */
-static void test_a_state_with_a_nan_anywhere_is_refused(void **state)
+/* Every eight bytes of it in turn; of an asynchronous search also what is known of the designs that it waits for. */
+static void check_every_nan_is_refused(int asynchronous)
 {
-    (void)state;
     const double nan = NAN;
     world(&here, 6, 3, 0);
-    const SearchConfig c = config(20, 60);
+    SearchConfig c = config(20, 60);
+    here.problem.n_workers = asynchronous ? 3 : here.problem.n_workers;
+    c.asynchronous = asynchronous;
     run(&here, &c, NULL, &whole);
     memset(&rest, 0, sizeof rest);
     SearchStart start = moment(&whole, 3);
@@ -358,6 +359,13 @@ static void test_a_state_with_a_nan_anywhere_is_refused(void **state)
     }
     free(forged);
     forget(&whole);
+}
+
+static void test_a_state_with_a_nan_anywhere_is_refused(void **state)
+{
+    (void)state;
+    check_every_nan_is_refused(0);
+    check_every_nan_is_refused(1);
 }
 
 /* What a Pack reads is what it wrote; a fault stops it before anything is changed. */
