@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/carve.h"
+#include "base/clones.h"
 #include "moga/constants.h"
 #include "moga/normalisation.h"
 
@@ -14,6 +15,7 @@ struct Infill {
     size_t n_obj, n_dir, n_max, n;
     Normalisation normalisation;
     double *unit, *across; /* (n_dir, n_obj) vectors of length 1; (n_obj, n_dir) */
+    double *over;          /* (n_obj, n_dir) 1 / component, at most 1 / WEIGHT_MIN */
     double *row;           /* (n_dir) */
     double *best_value;    /* (n_dir) of the front, lowered by what is picked */
     size_t *best;          /* (n_dir) row of the front that has it */
@@ -33,6 +35,7 @@ static void layout(void *infill, Carve *c)
     q->normalisation.width = carve(c, m, sizeof(double));
     q->unit = carve(c, q->n_dir * m, sizeof(double));
     q->across = carve(c, q->n_dir * m, sizeof(double));
+    q->over = carve(c, q->n_dir * m, sizeof(double));
     q->row = carve(c, q->n_dir, sizeof(double));
     q->best_value = carve(c, q->n_dir, sizeof(double));
     q->best = carve(c, q->n_dir, sizeof(size_t));
@@ -59,8 +62,10 @@ Status infill_create(Infill **out, InfillKind kind, size_t candidates_max, const
     }
     directions_unit(vectors, q->unit);
     for (size_t r = 0; r < q->n_dir; r++)
-        for (size_t k = 0; k < q->n_obj; k++)
+        for (size_t k = 0; k < q->n_obj; k++) {
             q->across[k * q->n_dir + r] = q->unit[r * q->n_obj + k];
+            q->over[k * q->n_dir + r] = 1.0 / fmax(q->unit[r * q->n_obj + k], WEIGHT_MIN);
+        }
     return STATUS_OK;
 }
 
@@ -72,24 +77,25 @@ void infill_free(Infill *q)
 }
 
 /* Minus the length of every ray that f dominates. */
-static void ray_values(const Infill *q, const double f[], double value[])
+CLONED_V3 static void ray_values(const Infill *q, const double f[], double value[])
 {
     for (size_t r = 0; r < q->n_dir; r++)
         value[r] = -DBL_MAX;
     for (size_t k = 0; k < q->n_obj; k++) {
-        const double over = normalised(&q->normalisation, k, f[k]) - RAY_START, *w = q->across + k * q->n_dir;
+        const double off = normalised(&q->normalisation, k, f[k]) - RAY_START, *over = q->over + k * q->n_dir;
 #pragma omp simd
         for (size_t r = 0; r < q->n_dir; r++) {
-            const double end = over / (w[r] > WEIGHT_MIN ? w[r] : WEIGHT_MIN);
+            const double end = off * over[r];
             value[r] = end > value[r] ? end : value[r];
         }
     }
+#pragma omp simd
     for (size_t r = 0; r < q->n_dir; r++)
         value[r] = value[r] < 0.0 ? value[r] : 0.0;
 }
 
 /* With |w| = 1, off^2 = |z|^2 - along^2. */
-static void pbi_values(const Infill *q, const double f[], double pbi[])
+CLONED_V3 static void pbi_values(const Infill *q, const double f[], double pbi[])
 {
     double square = 0.0;
     for (size_t r = 0; r < q->n_dir; r++)
