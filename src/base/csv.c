@@ -66,7 +66,7 @@ int csv_is_error(const char *line, const char *end)
     const size_t n = (size_t)(p - line);
     const int is_not_there = (n == 4 && memcmp(line, "#N/A", 4) == 0) || (n == 3 && memcmp(line, "#NV", 3) == 0);
     p += p < end && n > 3 && (*p == '!' || *p == '?');
-    return (is_not_there || (size_t)(p - line) > n) && (p == end || memchr(",;\t\r", *p, 4));
+    return (is_not_there || (size_t)(p - line) > n) && (p == end || strchr(",;\t\r", *p));
 }
 
 /* Is there anything in the line from..to? Then it is made the one at hand. */

@@ -360,10 +360,14 @@ static int times_increase(const Record *r, const Columns *columns)
 /* 0, 1, 2, ... or from another whole number on: these are samples, not seconds. */
 static int counts_samples(const Record *r, const Columns *columns)
 {
-    for (size_t i = 0; i < r->n; i += columns->width)
-        if (r->row[i].decimals != 0 || r->row[i].a != r->row[0].a + (double)(i / columns->width))
+    if (columns->odd_line || columns->width < 2 || columns->n_rows < 2)
+        return 0;
+    for (size_t k = 0; k < columns->n_rows; k++) {
+        const Row *row = &r->row[k * columns->width];
+        if (row->decimals != 0 || row->a != r->row[0].a + (double)k)
             return 0;
-    return !columns->odd_line && columns->width > 1 && columns->n_rows > 1 && r->row[0].a == floor(r->row[0].a);
+    }
+    return r->row[0].a == floor(r->row[0].a);
 }
 
 /* Rising at three steps of four at least: times, perhaps with a mistake, and no acceleration. */
