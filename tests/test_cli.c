@@ -558,6 +558,15 @@ static void test_no_option_that_writes_replaces_what_a_run_keeps_or_a_setting_na
     expect(2, "one.csv, which the command reads", "evaluate @/held --records @/records --csv @/records/one.csv");
     expect(2, "a.csv, which the command reads", "simulate @/tower.ini --design @/a.csv:1 --history @/a.csv");
     expect(2, "motion.csv, which motion.record names", "simulate @/tower.ini --design none --csv @/motion.csv");
+    char *locked = in_place("locked.csv");
+    write_in_place("locked.csv", "1\n");
+    assert_int_equal(chmod(locked, 0444), 0);
+    expect(2, "locked.csv, which is write-protected", "spectrum builtin:kobe-like --csv @/locked.csv");
+    free(locked);
+    write_in_place("held/settings.ini", "[motion]\nrecord = ../motion.csv\n");
+    expect(2, "motion.csv, which the command reads", "choose @/held --csv @/motion.csv");
+    expect(2, "motion.csv, which the command reads",
+           "simulate configs/quick.ini --design @/held:knee --csv @/motion.csv");
     expect(2, "K.csv, which building.model names", "modes @/tower.ini --svg @/tower/K.csv");
     expect(2, "motion.csv, which the command reads",
            "spectrum builtin:kobe-like --set motion.record=@/motion.csv --csv @/motion.csv");

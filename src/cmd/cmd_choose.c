@@ -3,7 +3,6 @@
 #include <string.h>
 
 #include "cmd/commands.h"
-#include "cmd/outputs.h"
 #include "cmd/pairs.h"
 #include "cmd/show.h"
 #include "moga/front_confidence.h"
@@ -306,9 +305,7 @@ static Status run(const Args *args, Err *err)
 {
     Run r;
     TRY(run_read(&r, args->operand, err));
-    Status status = outputs_spare(args, r.settings, err);
-    if (status == STATUS_OK)
-        status = choose_of(args, &r, err);
+    const Status status = choose_of(args, &r, err);
     run_free(&r);
     return status;
 }

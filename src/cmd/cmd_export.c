@@ -1,7 +1,6 @@
 #include <stdlib.h>
 
 #include "cmd/commands.h"
-#include "cmd/outputs.h"
 #include "store/export.h"
 #include "store/output.h"
 #include "store/run_read.h"
@@ -54,7 +53,7 @@ static Status write_tables(const Args *args, const Run *run, Err *err)
 static Status open_target(const Run *run, FILE **f, void *user, Err *err)
 {
     AllOfRun *all = user;
-    TRY(outputs_spare(all->args, run->settings, err));
+    (void)run;
     TRY(output_open(&all->o, args_value(all->args, "--csv"), err));
     *f = all->o.stream;
     return STATUS_OK;
@@ -79,9 +78,7 @@ static Status run(const Args *args, Err *err)
         return write_all(args, err);
     Run run;
     TRY(run_read(&run, args->operand, err));
-    Status status = outputs_spare(args, run.settings, err);
-    if (status == STATUS_OK)
-        status = write_tables(args, &run, err);
+    const Status status = write_tables(args, &run, err);
     run_free(&run);
     return status;
 }

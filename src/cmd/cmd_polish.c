@@ -4,7 +4,6 @@
 
 #include "cmd/commands.h"
 #include "cmd/designs.h"
-#include "cmd/outputs.h"
 #include "cmd/pairs.h"
 #include "cmd/show.h"
 #include "store/output.h"
@@ -84,7 +83,6 @@ static Status open_run(const Args *args, Work *w, Err *err)
     RecordPaths moved;
     TRY(store_open_run(&w->store, args->operand, err));
     w->run = store_run(w->store);
-    TRY(outputs_spare(args, w->run->settings, err));
     TRY(take_design(args, w, err));
     TRY(take_options(args, w, err));
     TRY(args_moved(args, &moved, err));

@@ -58,13 +58,45 @@ static int is_file_of(const char *path, const char *folder)
            a.st_dev == b.st_dev && a.st_ino == b.st_ino;
 }
 
-/* source: FILE, FILE:N, a folder of files. */
+typedef struct {
+    const char *out;
+    char key[64]; /* of the setting that names it; empty: none does */
+} Looking;
+
+static void compare(const char *key, const char *path, void *user)
+{
+    Looking *l = user;
+    if (is_same_file(l->out, path) || is_file_of(l->out, path))
+        snprintf(l->key, sizeof l->key, "%s names", key);
+}
+
+/* What a run reads when it is simulated again, by the settings in its folder. */
+static int is_read_by_run(const char *path, const char *folder)
+{
+    Settings s;
+    char file[PATH_MAX];
+    Looking l = {.out = path};
+    if (!folder_is_run(folder) || snprintf(file, sizeof file, "%s/settings.ini", folder) >= PATH_MAX)
+        return 0;
+    settings_defaults(&s);
+    if (settings_read(&s, file, NULL, NULL, &(Err){0}) == STATUS_OK)
+        settings_each_path(&s, compare, &l);
+    return l.key[0] != 0;
+}
+
+/* A file, a folder of files, a run. */
+static int is_read_at(const char *path, const char *place)
+{
+    return is_same_file(path, place) || is_file_of(path, place) || is_read_by_run(path, place);
+}
+
+/* source: the same, or one of its designs, FILE:N, RUN:ID. */
 static int is_read_from(const char *path, const char *source)
 {
-    char file[PATH_MAX];
+    char place[PATH_MAX];
     const char *colon = strrchr(source, ':');
-    snprintf(file, sizeof file, "%.*s", colon ? (int)(colon - source) : 0, source);
-    return is_same_file(path, source) || (colon && is_same_file(path, file)) || is_file_of(path, source);
+    snprintf(place, sizeof place, "%.*s", colon ? (int)(colon - source) : 0, source);
+    return is_read_at(path, source) || (colon && is_read_at(path, place));
 }
 
 static Status refuse(const Given *out, const char *reader, Err *err)
@@ -75,8 +107,11 @@ static Status refuse(const Given *out, const char *reader, Err *err)
 
 static Status check_one(const Args *args, const Given *out, Err *err)
 {
+    struct stat is;
     if (folder_keeps(out->value))
         return refuse(out, "a run needs", err);
+    if (stat(out->value, &is) == 0 && S_ISREG(is.st_mode) && !(is.st_mode & (S_IWUSR | S_IWGRP | S_IWOTH)))
+        return refuse(out, "is write-protected", err);
     for (int j = 0; j < args->n_operands; j++)
         if (is_read_from(out->value, args->operands[j]))
             return refuse(out, "the command reads", err);
@@ -105,26 +140,14 @@ Status outputs_check(const Args *args, Err *err)
     return STATUS_OK;
 }
 
-typedef struct {
-    const Given *out;
-    char key[64]; /* of the setting that names it; empty: none does */
-} Looking;
-
-static void compare(const char *key, const char *path, void *user)
-{
-    Looking *l = user;
-    if (is_read_from(l->out->value, path))
-        snprintf(l->key, sizeof l->key, "%s names", key);
-}
-
 Status outputs_spare(const Args *args, const Settings *s, Err *err)
 {
     for (int i = 0; i < args->n_given; i++) {
-        Looking l = {.out = &args->given[i]};
-        if (is_written(l.out))
+        Looking l = {.out = args->given[i].value};
+        if (is_written(&args->given[i]))
             settings_each_path(s, compare, &l);
         if (l.key[0])
-            return refuse(l.out, l.key, err);
+            return refuse(&args->given[i], l.key, err);
     }
     return STATUS_OK;
 }
