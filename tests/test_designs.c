@@ -197,6 +197,42 @@ static void test_words_that_name_nothing_are_refused_with_what_is_there(void **s
     expect(65, "has no design of id 999", SIMULATE "@/run/front.csv:999");
 }
 
+static double probability_of(const json_t *list, json_int_t id)
+{
+    const json_t *one;
+    size_t i;
+    json_array_foreach(list, i, one) if (json_integer_value(json_object_get(one, "id")) ==
+                                         id) return json_number_value(json_object_get(one, "nondominated_probability"));
+    return NAN;
+}
+
+/* All of a noisy front by --confidence 0.01, and those of it that are at 0.8 or above by --confidence 0.8. */
+static void test_the_sure_designs_of_a_noisy_front_are_those_with_that_probability(void **state)
+{
+    (void)state;
+    write_in_place("noisy.ini", "[problem]\nkind = dtlz2\nvariables = 4\nobjectives = 3\nnoise = 0.05\n[search]\n"
+                                "max_evals = 140\ninitial = 30\npopulation = 20\n");
+    free(output_of("optimize @/noisy.ini --out @/noisy"));
+    json_t *many = json_of("choose @/noisy --json --confidence 0.01"), *all = json_object_get(many, "confident"), *one;
+    json_t *few = json_of("choose @/noisy --json --confidence 0.8"), *sure = json_object_get(few, "confident");
+    size_t i, n = 0;
+    json_array_foreach(all, i, one) n += json_number_value(json_object_get(one, "nondominated_probability")) >= 0.8;
+    assert_int_equal(json_array_size(sure), n);
+    assert_true(n > 0 && n < json_array_size(all));
+    json_array_foreach(sure, i, one)
+        assert_true(probability_of(all, json_integer_value(json_object_get(one, "id"))) >= 0.8);
+    json_array_foreach(json_object_get(many, "designs"), i, one)
+    {
+        const double p = json_number_value(json_object_get(one, "nondominated_probability"));
+        const double listed = probability_of(all, json_integer_value(json_object_get(one, "id")));
+        assert_true(p == listed || (p < 0.01 && isnan(listed)));
+    }
+    json_decref(many);
+    json_decref(few);
+    expect(2, "have no known errors", "choose @/run --confidence 0.9");
+    expect(2, "--confidence: '2' is no number", "choose @/noisy --confidence 2");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -209,6 +245,7 @@ int main(void)
         cmocka_unit_test(test_evaluate_and_simulate_estimate_the_same_error_and_a_study_shows_that_of_its_knee),
         cmocka_unit_test(test_choose_names_the_extremes_and_writes_them),
         cmocka_unit_test(test_words_that_name_nothing_are_refused_with_what_is_there),
+        cmocka_unit_test(test_the_sure_designs_of_a_noisy_front_are_those_with_that_probability),
     };
     return cmocka_run_group_tests_name("designs", tests, make_run, clear_place);
 }

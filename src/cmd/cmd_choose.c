@@ -150,45 +150,123 @@ static int counts(const Run *run, size_t i)
            !(e->violation > 0.0);
 }
 
-/* Minimised objectives and standard errors of the designs that keep the limits, and which of them are picked; 0: there
- * is no noise, or one of them has no known error. */
-static size_t gather_errors(const Run *run, const Picks *p, double F[], double error[], size_t picked[])
+/* Designs that keep the limits, with minimised objectives and their standard errors. */
+typedef struct {
+    size_t n;
+    double *F, *error; /* (n, n_obj) */
+    size_t *place;     /* (table.n) of a row among the n */
+} Known;
+
+/* n is 0: there is no noise, or one of them has no known error. */
+static void gather_errors(const Run *run, Known *known)
 {
     const size_t m = run->schema.n_obj;
     size_t n = 0;
-    for (size_t i = 0; i < run->table.n; i++) {
+    for (size_t i = 0; schema_is_noisy(run->settings) && i < run->table.n; i++) {
         const Evaluation *e = &run->table.row[i];
         if (!counts(run, i))
             continue;
-        for (size_t k = 0; k < p->n; k++)
-            picked[k] = p->pick[k].row == i ? n : picked[k];
+        known->place[i] = n;
         for (size_t k = 0; k < m; k++) {
-            F[n * m + k] = schema_objective(&run->schema, k)->sense * run->F[i * m + k];
-            error[n * m + k] = e->sd[k] / sqrt((double)e->replicates);
-            if (!(error[n * m + k] >= 0.0) || e->replicates < 1)
-                return 0;
+            known->F[n * m + k] = schema_objective(&run->schema, k)->sense * run->F[i * m + k];
+            known->error[n * m + k] = e->sd[k] / sqrt((double)e->replicates);
+            if (!(known->error[n * m + k] >= 0.0) || e->replicates < 1)
+                return;
         }
         n++;
     }
-    return n;
+    known->n = n;
 }
 
-static Status find_confidence(const Run *run, Picks *p, Err *err)
+static Status know(const Run *run, Known *known, Err *err)
 {
-    const size_t m = run->schema.n_obj;
+    const size_t m = run->schema.n_obj, n = run->table.n;
+    known->F = calloc(2 * n * m + 1, sizeof *known->F);
+    known->place = calloc(n + 1, sizeof *known->place);
+    if (!known->F || !known->place)
+        return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", n);
+    known->error = known->F + n * m;
+    gather_errors(run, known);
+    return STATUS_OK;
+}
+
+static void forget(Known *known)
+{
+    free(known->F);
+    free(known->place);
+}
+
+static Status find_confidence(const Run *run, const Known *known, Picks *p, Err *err)
+{
     size_t picked[PICKS_MAX] = {0};
-    int of_the_search = schema_is_noisy(run->settings);
-    double *F = calloc(2 * run->table.n * m + 1, sizeof *F), *error = F + run->table.n * m;
-    Status status = F ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", run->table.n);
+    int of_the_search = known->n > 0;
     for (size_t k = 0; k < p->n; k++) {
         p->confidence[k] = NAN;
+        picked[k] = known->place[p->pick[k].row];
         of_the_search = of_the_search && counts(run, p->pick[k].row); /* a polished design has no place among them */
     }
-    const size_t n = status == STATUS_OK && of_the_search ? gather_errors(run, p, F, error, picked) : 0;
-    if (n > 0)
-        status = front_confidence(n, m, F, error, 1, p->n, picked, p->confidence, err);
-    free(F);
+    return of_the_search ? front_confidence(known->n, run->schema.n_obj, known->F, known->error, 1, p->n, picked,
+                                            p->confidence, err)
+                         : STATUS_OK;
+}
+
+/* -- the part of the front that is sure ---------------------------------------------------------------------------- */
+
+/* Designs of the front within the limits that are nondominated with a probability of `wanted` or more. */
+typedef struct {
+    double wanted; /* 0: not asked for */
+    size_t n, n_asked;
+    size_t *row; /* (n) */
+    double *p;   /* (n) */
+} Sure;
+
+static Status find_sure(const Choice *c, const Known *known, Sure *sure, Err *err)
+{
+    const Run *run = c->run;
+    if (known->n == 0)
+        return fail(
+            err, STATUS_USAGE,
+            "--confidence: the objectives of this run have no known errors: its evaluations are not noisy, or one "
+            "design has a single replicate");
+    size_t *asked = calloc(run->n_front + 1, sizeof *asked);
+    sure->row = calloc(run->n_front + 1, sizeof *sure->row);
+    sure->p = calloc(run->n_front + 1, sizeof *sure->p);
+    Status status = asked && sure->row && sure->p ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for a front");
+    for (size_t i = 0; status == STATUS_OK && i < run->n_front; i++)
+        if (c->allowed[run->front[i]] && counts(run, run->front[i])) {
+            sure->row[sure->n_asked] = run->front[i];
+            asked[sure->n_asked++] = known->place[run->front[i]];
+        }
+    if (status == STATUS_OK)
+        status = front_confidence(known->n, run->schema.n_obj, known->F, known->error, 1, sure->n_asked, asked, sure->p,
+                                  err);
+    for (size_t i = 0; status == STATUS_OK && i < sure->n_asked; i++)
+        if (sure->p[i] >= sure->wanted) {
+            sure->row[sure->n] = sure->row[i];
+            sure->p[sure->n++] = sure->p[i];
+        }
+    free(asked);
     return status;
+}
+
+static void show_sure(const Run *run, const Sure *sure)
+{
+    if (sure->wanted == 0.0)
+        return;
+    printf("\n%zu of %zu designs are nondominated with a probability of %g or more:\n", sure->n, sure->n_asked,
+           sure->wanted);
+    for (size_t i = 0; i < sure->n; i++)
+        printf("%s%ld (%.2f)", i ? ", " : "", run->table.row[sure->row[i]].id, sure->p[i]);
+    putchar('\n');
+}
+
+static json_t *describe_sure(const Run *run, const Sure *sure)
+{
+    json_t *list = json_array();
+    for (size_t i = 0; i < sure->n; i++)
+        json_array_append_new(list, json_pack("{s:I, s:f}", "id", (json_int_t)run->table.row[sure->row[i]].id,
+                                              "nondominated_probability", sure->p[i]));
+    return list;
 }
 
 static void show_confidence(const Picks *p)
@@ -245,7 +323,7 @@ static json_t *json_values(size_t n, const Column columns[], const double values
     return o;
 }
 
-static json_t *describe(const Run *run, const Picks *p)
+static json_t *describe(const Run *run, const Picks *p, const Sure *sure)
 {
     const Schema *schema = &run->schema;
     json_t *picks = json_array();
@@ -258,21 +336,26 @@ static json_t *describe(const Run *run, const Picks *p)
                                         "variables", json_values(schema->n_var, schema->column, run_x(run, row)),
                                         "nondominated_probability", json_number(p->confidence[i])));
     }
-    return json_pack("{s:s, s:I, s:I, s:o}", "run", run->folder, "front", (json_int_t)run->n_front, "within_limits",
-                     (json_int_t)p->n_left, "designs", picks);
+    json_t *o = json_pack("{s:s, s:I, s:I, s:o}", "run", run->folder, "front", (json_int_t)run->n_front,
+                          "within_limits", (json_int_t)p->n_left, "designs", picks);
+    if (sure->wanted > 0.0)
+        json_object_set_new(o, "confident", describe_sure(run, sure));
+    return o;
 }
 
-static Status show(const Args *args, const Run *run, const Picks *p, Err *err)
+static Status show(const Args *args, const Run *run, const Picks *p, const Sure *sure, Err *err)
 {
     const char *csv = args_value(args, "--csv");
     if (csv)
         TRY(write_csv(run, p, csv, err));
     if (args_has(args, "--json"))
-        TRY(show_json(describe(run, p), err));
+        TRY(show_json(describe(run, p, sure), err));
     else if (!csv)
         show_table(run, p);
-    if (!csv && !args_has(args, "--json"))
+    if (!csv && !args_has(args, "--json")) {
         show_confidence(p);
+        show_sure(run, sure);
+    }
     if (p->n_left == 0)
         return fail(err, STATUS_UNMET,
                     "no design of the front is within the limits; `imtet optimize` with "
@@ -282,13 +365,18 @@ static Status show(const Args *args, const Run *run, const Picks *p, Err *err)
     return STATUS_OK;
 }
 
-static Status choose(const Args *args, Choice *c, Err *err)
+static Status choose(const Args *args, Choice *c, Known *known, Sure *sure, Err *err)
 {
     Picks picks;
     TRY(find_picks(args, c, &picks, err));
-    if (!args_has(args, "--csv") || args_has(args, "--json")) /* which has no place for it */
-        TRY(find_confidence(c->run, &picks, err));
-    return show(args, c->run, &picks, err);
+    TRY(args_number(args, "--confidence", 0.01, 1, 0, &sure->wanted, err));
+    if (!args_has(args, "--csv") || args_has(args, "--json")) { /* which has no place for it */
+        TRY(know(c->run, known, err));
+        TRY(find_confidence(c->run, known, &picks, err));
+        if (sure->wanted > 0.0)
+            TRY(find_sure(c, known, sure, err));
+    }
+    return show(args, c->run, &picks, sure, err);
 }
 
 static Status choose_of(const Args *args, const Run *run, Err *err)
@@ -296,7 +384,13 @@ static Status choose_of(const Args *args, const Run *run, Err *err)
     if (run->n_front == 0)
         return run_why_empty(run, err);
     Choice c = {.run = run, .box = run_box(run), .allowed = calloc(run->table.n, 1)};
-    const Status status = c.allowed ? choose(args, &c, err) : fail(err, STATUS_NO_MEMORY, "no memory for a choice");
+    Known known = {0};
+    Sure sure = {0};
+    const Status status =
+        c.allowed ? choose(args, &c, &known, &sure, err) : fail(err, STATUS_NO_MEMORY, "no memory for a choice");
+    forget(&known);
+    free(sure.row);
+    free(sure.p);
     free(c.allowed);
     return status;
 }
@@ -315,6 +409,8 @@ static const ArgOption OPTIONS[] = {
     {"--min", "NAME=VALUE", NULL, 1, "only designs whose objective is no smaller; may be repeated"},
     {"--weights", "NAME=W,...", NULL, 0, "the least weighted sum of objectives scaled to 0 (best) .. 1 (worst)"},
     {"--reference", "NAME=VALUE,...", NULL, 0, "reference point: the design nearest to these values"},
+    {"--confidence", "P", NULL, 0,
+     "noisy runs: list the designs of the front that are nondominated with this probability"},
     {"--csv", "FILE", NULL, 0, "the designs chosen, as rows of front.csv, into FILE; -: standard output"},
     {"--json", NULL, NULL, 0, "the designs chosen with their names, objectives and variables, on standard output"},
     OPTION_END,
