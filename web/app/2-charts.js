@@ -48,6 +48,14 @@ function legend(entries) {
 }
 const sceneLegend = (keys) => legend(keys.map((key) => [SCENES[key].words, SCENES[key].colour, SCENES[key].mark]));
 
+// Heads: words or columns; rows: of line().
+const table = (id, heads, rows) => element("div", { class: "scroll" }, element("table", { id },
+  element("thead", {}, element("tr", {}, ...heads.map((h) => (typeof h === "string" ? element("th", { scope: "col" }, h) : element("th", { scope: "col", title: h.what }, ...heading(h)))))),
+  element("tbody", {}, ...rows)));
+
+// Cells: words, or a list of what is in one.
+const line = (cells, attributes = {}) => element("tr", attributes, ...cells.map((inside) => element("td", {}, ...[inside].flat())));
+
 // A part that is folded until it is wanted; on paper all are open.
 function folded(host, title, isOpen = false) {
   const part = host.appendChild(element("details", { class: "part", id: title.toLowerCase().replace(/[^a-z]+/g, "-"), open: isOpen }, element("summary", {}, element("h3", {}, title))));
@@ -62,6 +70,30 @@ window.addEventListener("beforeprint", () => {
 });
 window.addEventListener("afterprint", () => {
   for (const part of openedForPaper.splice(0)) part.open = false;
+});
+
+// Lines over the height: { name, values from the first floor up, colour, symbol: of a dot on every floor, dash, thick }.
+function heightChart(width, height, label, lines, floor = "floor") {
+  const rows = lines.flatMap(({ values, ...one }) => values.map((v, j) => ({ ...one, v, floor: j + 1 })));
+  return chart({
+    width, height, ariaLabel: label, x: { label, grid: true, zero: true, nice: true, ticks: 4 }, y: { ...floorAxis(lines[0].values.length), label: floor },
+    color: { type: "identity" }, symbol: { type: "identity" },
+    marks: [
+      ...lines.map(({ name, dash, thick = 1.8 }) => charts.line(rows.filter((r) => r.name === name), { x: "v", y: "floor", stroke: "colour", strokeWidth: thick, strokeDasharray: dash })),
+      charts.dot(rows.filter((r) => r.symbol), { x: "v", y: "floor", r: 3, fill: "colour", symbol: "symbol", title: (r) => `${r.name}, ${floor} ${r.floor}: ${show(r.v)}` }),
+      charts.ruleX([0]),
+    ],
+  });
+}
+
+// The hypervolume over the number of designs: rows { x, y [%], colour }; e: half of a band.
+const growthChart = (width, height, rows) => chart({
+  width, height, ariaLabel: "Hypervolume over the number of designs", color: { type: "identity" },
+  x: { label: "designs simulated", tickFormat: (v) => (Number.isInteger(v) ? count(v) : "") }, y: { label: "hypervolume [%]", grid: true, zero: true, nice: true },
+  marks: [
+    rows.some((r) => r.e) ? charts.areaY(rows, { x: "x", y1: (r) => r.y - r.e, y2: (r) => r.y + r.e, z: "colour", fill: "colour", fillOpacity: 0.2 }) : null,
+    charts.lineY(rows, { x: "x", y: "y", z: "colour", stroke: "colour", strokeWidth: 2 }),
+  ],
 });
 
 // Floors: every one where they are few.

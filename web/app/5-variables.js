@@ -156,15 +156,14 @@ function typesPart(host) {
   if (!types.length) return;
   const gaps = variables.filter((c) => c.name.startsWith("gap_"));
   const part = folded(host, `Typical designs: ${types.length} kinds on this front`, true);
-  const line = (t, k) => {
+  const rowOfType = (t, k) => {
     const name = element("button", { type: "button", title: "mark its typical design", onclick: () => mark(t.typical) }, t.name);
     const key = element("span", { class: "key" }, String(k + 1));
     key.style.background = TYPE_COLOURS[k];
-    return element("tr", {}, element("td", {}, key, name), element("td", {}, count(t.rows.length)), element("td", {}, String(ids[t.typical])), ...objectives.map((c) => element("td", {}, digits(c.value[t.typical]))));
+    return line([[key, name], count(t.rows.length), String(ids[t.typical]), ...objectives.map((c) => digits(c.value[t.typical]))]);
   };
   part.append(element("p", { class: "note" }, "Clusters of the front (k-means, objectives over their ranges), each named by what sets it apart and shown by the design nearest to its middle."),
-    element("div", { class: "scroll" }, element("table", { id: "types" }, element("thead", {}, element("tr", {}, ...["type", "designs", "typical"].map((w) => element("th", { scope: "col" }, w)), ...objectives.map((c) => element("th", { scope: "col", title: c.what }, ...heading(c))))),
-      element("tbody", {}, ...types.map(line)))));
+    table("types", ["type", "designs", "typical", ...objectives], types.map(rowOfType)));
   if (!run.tower || gaps.length < 2) return;
   const rows = types.flatMap((t, k) => gaps.map((c, j) => ({ type: `${k + 1}`, place: j + 1, gap: c.value[t.typical], colour: TYPE_COLOURS[k] })));
   figure(part, "Gaps of the typical designs", null, (width) => chart({

@@ -89,26 +89,19 @@ function warnings(d) {
 }
 
 // What the design has to bear, beside its baselines.
-function loadTable(loads) {
-  return element("div", { class: "scroll" }, element("table", { id: "loads" },
-    element("thead", {}, element("tr", {}, element("th", { scope: "col" }, "has to bear"),
-      ...loads.columns.map((c) => element("th", { scope: "col" }, c.title, element("small", {}, ` ${c.unit}`))))),
-    element("tbody", {}, ...loads.rows.map((r) => element("tr", {}, element("td", {}, SCENES[r.key].words),
-      ...r.values.map((v) => element("td", {}, v === null ? "" : digits(v))))))));
-}
+const loadTable = (loads) => table("loads", ["has to bear", ...loads.columns],
+  loads.rows.map((r) => line([SCENES[r.key].words, ...r.values.map((v) => (v === null ? "" : digits(v)))])));
 
 function standoutTable() {
-  const rows = objectives.map((c) => [`best ${c.title}`, bestRow(c), c]);
-  const knee = rowOf.get(run.knee);
-  const line = (label, id, values, best, kind) => element("tr", { class: kind }, element("td", {}, label), element("td", {}, id),
-    ...values.map((v, k) => element("td", { class: objectives[k] === best ? "best" : false }, digits(v))));
-  return element("div", { class: "scroll" }, element("table", { id: "standouts" },
-    element("thead", {}, element("tr", {}, element("th", { scope: "col" }, "stands out by"), element("th", { scope: "col" }, "design"),
-      ...objectives.map((c) => element("th", { scope: "col", title: c.what }, ...heading(c))))),
-    element("tbody", {},
-      line("knee", String(run.knee), objectives.map((c) => c.value[knee]), null, "knee"),
-      ...rows.map(([label, i, best]) => line(label, String(ids[i]), objectives.map((c) => c.value[i]), best, "")),
-      ...overlays.map((o) => line(o.device ? `${o.words} (${o.device})` : o.words, "", objectives.map((c) => o.value.get(c)), null, "")))));
+  const knee = rowOf.get(run.knee), valuesOf = (i) => objectives.map((c) => digits(c.value[i]));
+  const best = (c, k) => {
+    const row = bestRow(c), tr = line([`best ${c.title}`, String(ids[row]), ...valuesOf(row)]);
+    tr.children[2 + k].className = "best";
+    return tr;
+  };
+  return table("standouts", ["stands out by", "design", ...objectives], [
+    line(["knee", String(run.knee), ...valuesOf(knee)], { class: "knee" }), ...objectives.map(best),
+    ...overlays.map((o) => line([o.device ? `${o.words} (${o.device})` : o.words, "", ...objectives.map((c) => digits(o.value.get(c)))]))]);
 }
 
 function summaryPart() {
@@ -126,17 +119,9 @@ function summaryPart() {
 function growthPart() {
   const host = document.getElementById("growth"), c = run.convergence;
   if (c.simulated.length < 2) return host.remove();
-  const rows = c.simulated.map((x, i) => ({ x, y: 100 * c.volume[i], e: 200 * c.error[i] }));
+  const rows = c.simulated.map((x, i) => ({ x, y: 100 * c.volume[i], e: 200 * c.error[i], colour: BLUE }));
   const figure = host.appendChild(element("figure"));
-  drawn(figure, (width) => chart({
-    width, height: 200, ariaLabel: "Hypervolume over the number of designs",
-    x: { label: "designs simulated", tickFormat: (v) => (Number.isInteger(v) ? count(v) : "") }, y: { label: "hypervolume [%]", grid: true, zero: true, nice: true },
-    marks: [
-      charts.areaY(rows, { x: "x", y1: (r) => r.y - r.e, y2: (r) => r.y + r.e, fill: BLUE, fillOpacity: 0.2 }),
-      charts.lineY(rows, { x: "x", y: "y", stroke: BLUE, strokeWidth: 2 }),
-      charts.dot([rows[rows.length - 1]], { x: "x", y: "y", fill: BLUE, r: 4 }),
-    ],
-  }));
+  drawn(figure, (width) => growthChart(width, 200, rows));
   const last = rows[rows.length - 1];
   figure.append(element("figcaption", {}, "Share of a box that the designs so far dominate, in every objective from the worst of the first sample to a fifth of its range beyond the best " +
     `(imtet status shows the same); at the end ${show(last.y)} \u00b1 ${show(last.e / 2)} % (standard error of the estimate; band: twice that). ` +
@@ -159,11 +144,17 @@ function provenancePart() {
 // Links to the parts that this run has; the address keeps the state of the pictures.
 function contents() {
   const names = [["summary", `Study ${run.name}`], ["front", "Front"], ["growth", "Growth"], ["design", `Design ${run.chosen}`], ["provenance", "Provenance"]];
-  document.getElementById("parts").append(...names.filter(([id]) => document.getElementById(id)).map(([id, text]) => element("a", { href: `#${id}`, onclick: (event) => {
-    event.preventDefault();
-    const part = document.getElementById(id);
-    part.setAttribute("tabindex", "-1");
-    part.focus({ preventScroll: true });
-    part.scrollIntoView();
-  } }, text)));
+  document.getElementById("parts").append(...names.filter(([id]) => document.getElementById(id)).map(([id, text]) => linkTo(document.getElementById(id), text)));
 }
+
+// The focus goes along.
+function goTo(part) {
+  part.setAttribute("tabindex", "-1");
+  part.focus({ preventScroll: true });
+  part.scrollIntoView({ behavior: matchMedia("(prefers-reduced-motion: reduce)").matches ? "instant" : "smooth" });
+}
+
+const linkTo = (part, text) => element("a", { href: `#${part.id}`, onclick: (event) => {
+  event.preventDefault();
+  goTo(part);
+} }, text);

@@ -28,11 +28,9 @@ function gapFigure(host, d) {
 }
 
 function thicknessFigure(host, d) {
-  const rows = d.thickness_m.map((t, j) => ({ floor: j + 1, t: 1e3 * t }));
-  figure(host, "Thickness of the core", `From ${show(rows[0].t)} mm in the first storey to ${show(rows[rows.length - 1].t)} mm in the last.`, (width) => chart({
-    width, height: 380, ariaLabel: "Thickness of the core", x: { label: "thickness [mm]", grid: true, zero: true, nice: true, ticks: 5 }, y: floorAxis(rows.length),
-    marks: [charts.line(rows, { x: "t", y: "floor", stroke: BLUE, strokeWidth: 2.5 }), charts.dot(rows, { x: "t", y: "floor", fill: BLUE, r: 3 }), charts.ruleX([0])],
-  }));
+  const values = d.thickness_m.map((t) => 1e3 * t);
+  figure(host, "Thickness of the core", `From ${show(values[0])} mm in the first storey to ${show(values[values.length - 1])} mm in the last.`,
+    (width) => heightChart(width, 380, "thickness [mm]", [{ name: "thickness", values, colour: BLUE, symbol: "circle", thick: 2.5 }]));
 }
 
 // The largest force on every floor by side, and what the storeys of the core bear.
@@ -44,25 +42,15 @@ function forceFigures(host, d) {
     marks: [charts.rectX(rows, { x1: 0, x2: "v", y1: "low", y2: "high", fill: "colour", title: (r) => `floor ${r.floor}, ${r.side}: ${show(r.v)} MN` }), charts.ruleX([0])],
   }), legend([["one side", BLUE], ["other side", SKY]]));
   if (!stress) return;
-  const lines = [["stress", BLUE, stress], ...(buckling ? [["stress at which the bare wall buckles", VERMILLION, buckling]] : [])];
-  figure(host, "Core stress", "Largest bending stress of every storey.", (width) => chart({
-    width, height: 340, ariaLabel: "Core stress of every storey", x: { label: "stress [MPa]", grid: true, zero: true, nice: true }, y: { ...floorAxis(floors), label: "storey" },
-    marks: [...lines.map(([words, colour, values]) => charts.line(values, { x: (v) => v / 1e6, y: (_, j) => j + 1, stroke: colour, strokeWidth: 2, strokeDasharray: words === "stress" ? null : "5 4" })), charts.ruleX([0])],
-  }), legend(lines.map(([words, colour]) => [words, colour])));
+  const mega = (values) => values.map((v) => v / 1e6), lines = [{ name: "stress", values: mega(stress), colour: BLUE, thick: 2 }];
+  if (buckling) lines.push({ name: "stress at which the bare wall buckles", values: mega(buckling), colour: VERMILLION, thick: 2, dash: "5 4" });
+  figure(host, "Core stress", "Largest bending stress of every storey.", (width) => heightChart(width, 340, "stress [MPa]", lines, "storey"), legend(lines.map(({ name, colour }) => [name, colour])));
 }
 
 // scenes: [[key, result]]
-function peakFigure(host, scenes, key, title, label, height = 380) {
-  const rows = scenes.flatMap(([scene, r]) => r[key].map((v, j) => ({ ...SCENES[scene], v, floor: j + 1 })));
-  figure(host, title, null, (width) => chart({
-    width, height, ariaLabel: title, x: { label, grid: true, zero: true, nice: true, ticks: 5 }, y: floorAxis(scenes[0][1][key].length),
-    marks: [
-      charts.line(rows, { x: "v", y: "floor", z: "words", stroke: "colour", strokeWidth: 1.8 }),
-      charts.dot(rows, { x: "v", y: "floor", r: 3, fill: "colour", symbol: "symbol", title: (r) => `${r.words}, floor ${r.floor}: ${show(r.v)}` }),
-      charts.ruleX([0]),
-    ],
-    color: { type: "identity" }, symbol: { type: "identity" },
-  }));
+function peakFigure(host, scenes, key, title, label, height) {
+  const lines = scenes.map(([scene, r]) => ({ name: SCENES[scene].words, colour: SCENES[scene].colour, symbol: SCENES[scene].symbol, values: r[key] }));
+  figure(host, title, null, (width) => heightChart(width, height, label, lines));
 }
 
 const scenesOf = (d) => [["impacts", d.with_core], ["no_core", d.no_core], ["rigid", d.rigid], ["tmd", d.tmd], ["links", d.links]].filter(([, s]) => s?.objectives);
@@ -185,12 +173,14 @@ function spectrumPair(host, d) {
 function otherTable(d) {
   const all = [{ record: d.record, pga_g: d.pga_g, scale: d.scale, stretch: d.stretch, with_core: d.with_core, no_core: d.no_core }, ...d.elsewhere];
   const kept = objectives.map((c, k) => [c, k]).filter(([c]) => c.name !== "mcore_kg");
-  const line = (label, words, r) => element("tr", {}, element("td", {}, label), element("td", {}, words),
-    ...(r.objectives ? [...kept.map(([c, k]) => element("td", {}, digits((r.objectives[k] ?? NaN) * c.factor))), element("td", {}, r.impacts ? count(r.impacts) : "")]
-      : [element("td", { colspan: kept.length + 1 }, `not simulated: ${r.reason}`)]));
-  return element("div", { class: "scroll" }, element("table", {},
-    element("thead", {}, element("tr", {}, element("th", { scope: "col" }, "earthquake"), element("th", {}, ""), ...kept.map(([c]) => element("th", { scope: "col", title: c.what }, ...heading(c))), element("th", { scope: "col" }, "impacts"))),
-    element("tbody", {}, ...all.flatMap((e) => [line(`${shortName(e.record)}, ${peakText(e)}`, "with core", e.with_core), line("", "without core", e.no_core)]))));
+  const row = (label, words, r) => {
+    if (r.objectives) return line([label, words, ...kept.map(([c, k]) => digits((r.objectives[k] ?? NaN) * c.factor)), r.impacts ? count(r.impacts) : ""]);
+    const tr = line([label, words, `not simulated: ${r.reason}`]);
+    tr.lastChild.colSpan = kept.length + 1;
+    return tr;
+  };
+  return table(null, ["earthquake", "", ...kept.map(([c]) => c), "impacts"],
+    all.flatMap((e) => [row(`${shortName(e.record)}, ${peakText(e)}`, "with core", e.with_core), row("", "without core", e.no_core)]));
 }
 
 const shortName = (record) => record.replace(/^builtin:(.*)/, "$1 (synthetic)").replace(/.*\//, "");

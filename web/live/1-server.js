@@ -9,38 +9,30 @@ async function ask(where, body) {
 
 // A section of its own before that of the given id, with its link in the same place.
 function livePart(id, title, before) {
-  const part = element("section", { id, tabindex: "-1" }, element("h2", {}, title)), next = document.getElementById(before) ?? document.getElementById("provenance");
+  const part = element("section", { id }, element("h2", {}, title)), next = document.getElementById(before) ?? document.getElementById("provenance");
   next.before(part);
-  document.querySelector(`#parts a[href="#${next.id}"]`).before(element("a", { href: `#${id}`, onclick: (event) => {
-    event.preventDefault();
-    goTo(part);
-  } }, title));
+  document.querySelector(`#parts a[href="#${next.id}"]`).before(linkTo(part, title));
   return part;
-}
-
-function goTo(part) {
-  part.focus({ preventScroll: true });
-  part.scrollIntoView({ behavior: matchMedia("(prefers-reduced-motion: reduce)").matches ? "instant" : "smooth" });
 }
 
 const plainButton = (text, act, more = {}) => element("button", { class: "plain", type: "button", onclick: act, ...more }, text);
 
-// Difference of `value` from `before`.
-function percent(value, before) {
-  if (!(Math.abs(before) > 0) || !Number.isFinite(value)) return "";
+function difference(value, before) {
   const pct = (100 * (value - before)) / Math.abs(before);
-  return `${pct < 0 ? "\u2212" : "+"}${Math.abs(pct).toFixed(Math.abs(pct) < 10 ? 1 : 0)} %`;
+  return element("small", { class: "difference" }, Number.isFinite(pct) ? `${pct < 0 ? "\u2212" : "+"}${Math.abs(pct).toFixed(Math.abs(pct) < 10 ? 1 : 0)} %` : "");
 }
 
 // ---- fronts as parallel coordinates, small and quick enough to follow a slider
 
-// draw([{ rows: [[natural objective, ...]], colour, width, alpha }]), the last on top; better is down.
+// draw([{ rows: [[natural objective, ...]], colour, thick, alpha }]), the last on top; better is down. The first is drawn anew
+// only where it, a range or the width has changed.
 function frontStrip(host, label, height = 208) {
   const layers = host.appendChild(element("div", { class: "layers strip" }));
-  const canvas = layers.appendChild(element("canvas", { role: "img", "aria-label": label }));
+  const [back, over] = [0, 1].map((k) => layers.appendChild(element("canvas", k ? { role: "img", "aria-label": label } : { "aria-hidden": "true" })));
   const words = layers.appendChild(element("div", { class: "words", "aria-hidden": "true" }));
-  const top = 22, bottom = 58, side = 40;
-  let last = [];
+  const top = 22, bottom = 58, side = 40, down = height - bottom, span = down - top;
+  let last = [], width = 0, ranges, drawnBack;
+  layers.style.height = `${height}px`;
 
   function rangesOf(all) {
     return objectives.map((c, k) => {
@@ -54,30 +46,27 @@ function frontStrip(host, label, height = 208) {
     });
   }
 
-  function draw(all) {
-    last = all;
-    const width = layers.clientWidth;
-    if (!width) return;
-    layers.style.height = `${height}px`;
-    const pen = prepare(canvas, width, height), ranges = rangesOf(all);
-    const at = (k) => (objectives.length > 1 ? side + (k * (width - 2 * side)) / (objectives.length - 1) : width / 2);
-    const down = height - bottom, span = down - top;
-    const y = (k, v) => {
-      const t = (v - ranges[k][0]) / (ranges[k][1] - ranges[k][0]);
-      return down - span * (objectives[k].sense < 0 ? 1 - t : t);
-    };
-    pen.strokeStyle = "#7a8694";
-    for (let k = 0; k < objectives.length; k++) pen.strokeRect(at(k), top, 0, span);
-    for (const { rows, colour, width: line = 1, alpha = 1 } of all) {
-      pen.strokeStyle = colour;
-      pen.lineWidth = line;
-      pen.globalAlpha = alpha;
-      for (const f of rows) {
-        pen.beginPath();
-        f.forEach((v, k) => (k ? pen.lineTo(at(k), y(k, v)) : pen.moveTo(at(k), y(k, v))));
-        pen.stroke();
-      }
+  const at = (k) => (objectives.length > 1 ? side + (k * (width - 2 * side)) / (objectives.length - 1) : width / 2);
+  function drawLines(pen, { rows, colour, thick = 1, alpha = 1 }) {
+    pen.strokeStyle = colour;
+    pen.lineWidth = thick;
+    pen.globalAlpha = alpha;
+    for (const f of rows) {
+      pen.beginPath();
+      f.forEach((v, k) => {
+        const t = (v - ranges[k][0]) / (ranges[k][1] - ranges[k][0]);
+        pen.lineTo(at(k), down - span * (objectives[k].sense < 0 ? 1 - t : t));
+      });
+      pen.stroke();
     }
+  }
+
+  function drawBack(first) {
+    const pen = prepare(back, width, height);
+    pen.strokeStyle = "#7a8694";
+    objectives.forEach((_, k) => pen.strokeRect(at(k), top, 0, span));
+    drawLines(pen, first);
+    prepare(over, width, height);
     words.replaceChildren(...objectives.flatMap((c, k) => {
       const [worse, better] = c.sense < 0 ? ranges[k] : [ranges[k][1], ranges[k][0]];
       return [[worse * c.factor, 2], [better * c.factor, down + 1], [null, down + 18]].map(([v, where]) => {
@@ -90,7 +79,25 @@ function frontStrip(host, label, height = 208) {
     }));
   }
 
-  addDrawing(layers, () => draw(last));
+  function draw(all) {
+    last = all;
+    width ||= layers.clientWidth;
+    if (!width || !all.length) return;
+    const now = rangesOf(all);
+    if (drawnBack !== all[0].rows || now.join() !== ranges.join()) {
+      ranges = now;
+      drawnBack = all[0].rows;
+      drawBack(all[0]);
+    }
+    const pen = over.getContext("2d");
+    pen.clearRect(0, 0, width, height);
+    for (const one of all.slice(1)) drawLines(pen, one);
+  }
+
+  addDrawing(layers, (newWidth) => {
+    [width, drawnBack] = [newWidth, null];
+    draw(last);
+  });
   return draw;
 }
 
@@ -99,4 +106,4 @@ const frontRows = (() => {
   return () => (rows ??= Array.from({ length: n }, (_, i) => objectives.map((c) => c.raw[i])));
 })();
 const PALE = "#c3cad2";
-const paleFront = (rows = frontRows()) => ({ rows, colour: PALE, width: 0.7, alpha: Math.max(0.2, Math.min(0.8, 12 / Math.sqrt(rows.length + 1))) });
+const paleFront = (rows = frontRows()) => ({ rows, colour: PALE, thick: 0.7, alpha: Math.max(0.2, Math.min(0.8, 12 / Math.sqrt(rows.length + 1))) });

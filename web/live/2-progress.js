@@ -12,17 +12,13 @@ function progressPart() {
   const draw = frontStrip(strip, "The front as it grows");
   let now = { simulated: run.convergence.simulated, volume: run.convergence.volume, f: [], ids: [] }, generation = -1;
 
-  const drawGrowth = drawn(growth, (width) => chart({
-    width, height: 200, ariaLabel: "Hypervolume over the number of designs",
-    x: { label: "designs simulated", tickFormat: count }, y: { label: "hypervolume [%]", grid: true, zero: true, nice: true },
-    marks: [charts.lineY(now.simulated.map((x, i) => ({ x, y: 100 * now.volume[i] })), { x: "x", y: "y", stroke: BLUE, strokeWidth: 2 })],
-  }));
+  const drawGrowth = drawn(growth, (width) => growthChart(width, 200, now.simulated.map((x, i) => ({ x, y: 100 * now.volume[i], colour: BLUE }))));
 
   async function takeFront() {
     now = await ask("front");
     drawGrowth();
     const isNew = now.ids.map((id) => !rowOf.has(id)), fresh = isNew.filter(Boolean).length;
-    draw([paleFront(now.f), { rows: now.f.filter((_, i) => isNew[i]), colour: BLUE, width: 1, alpha: 0.8 }]);
+    draw([paleFront(now.f), { rows: now.f.filter((_, i) => isNew[i]), colour: BLUE, alpha: 0.8 }]);
     again.hidden = !fresh;
     again.textContent = `${count(fresh)} new designs on the front: show them in all pictures`;
     part.dataset.generation = now.generation;

@@ -86,25 +86,17 @@ function compare(one) {
 }
 
 function compareTable() {
-  const line = (one, i) => element("tr", {}, element("td", {}, legend([[one.name, SIDE_COLOURS[i], SIDE_MARKS[i]]]), plainButton("Remove", () => {
+  const row = (one, i) => line([[legend([[one.name, SIDE_COLOURS[i], SIDE_MARKS[i]]]), plainButton("Remove", () => {
     compared.splice(i, 1);
     showCompared();
-  }, { "aria-label": `remove ${one.name}` })), ...objectives.map((c, k) => element("td", {}, digits(one.raw[k] * c.factor),
-    i ? element("small", { class: "difference" }, percent(one.raw[k], compared[0].raw[k])) : "")));
-  return element("div", { class: "scroll" }, element("table", { id: "compared" },
-    element("thead", {}, element("tr", {}, element("th", { scope: "col" }, "differences from the first"), ...objectives.map((c) => element("th", { scope: "col", title: c.what }, ...heading(c))))),
-    element("tbody", {}, ...compared.map(line))));
+  }, { "aria-label": `remove ${one.name}` })], ...objectives.map((c, k) => [digits(one.raw[k] * c.factor), i ? difference(one.raw[k], compared[0].raw[k]) : ""])]);
+  return table("compared", ["differences from the first", ...objectives], compared.map(row));
 }
 
 // A line per design over the height.
 function sideFigure(host, title, label, valuesOf) {
-  const rows = compared.flatMap((one, i) => valuesOf(one).map((v, j) => ({ v, floor: j + 1, colour: SIDE_COLOURS[i], symbol: SIDE_SYMBOLS[i], name: one.name })));
-  figure(host, title, null, (width) => chart({
-    width, height: 300, ariaLabel: title, x: { label, grid: true, zero: true, nice: true, ticks: 4 }, y: floorAxis(compared[0].gap_m.length),
-    color: { type: "identity" }, symbol: { type: "identity" },
-    marks: [charts.line(rows, { x: "v", y: "floor", z: "name", stroke: "colour", strokeWidth: 1.8 }),
-      charts.dot(rows, { x: "v", y: "floor", r: 3, fill: "colour", symbol: "symbol", title: (r) => `${r.name}, floor ${r.floor}: ${show(r.v)}` }), charts.ruleX([0])],
-  }));
+  const lines = compared.map((one, i) => ({ name: one.name, values: valuesOf(one), colour: SIDE_COLOURS[i], symbol: SIDE_SYMBOLS[i] }));
+  figure(host, title, null, (width) => heightChart(width, 300, label, lines));
 }
 
 function showCompared() {

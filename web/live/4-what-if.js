@@ -7,7 +7,7 @@ let startWhatIf = () => {};
 
 function whatIfPart() {
   const part = livePart("what-if", "What if", "growth");
-  const said = element("p", { id: "place", role: "status" }), table = element("div");
+  const said = element("p", { id: "place", role: "status" }), board = element("div");
   const sliders = element("div", { class: "sliders" }), pictures = element("div", { class: "beside" });
   part.append(element("p", { class: "note" }, "Drag a gap, a thickness, the motion or the restitution: every change is simulated at once, under the first motion of the run."), element("div", { class: "what-if" }, sliders, pictures));
   const trial = { key: "trial", words: "what if", colour: ORANGE, mark: "\u25c6", symbol: "diamond2", path: charts.symbolDiamond2, dash: [], isShown: true, raw: [], value: new Map() };
@@ -47,22 +47,23 @@ function whatIfPart() {
     if (!isAsking) next();
   }
 
+  // What was moved while a question was under way is asked before the answer is drawn: the server works meanwhile.
   async function next() {
-    const began = since;
+    const began = since, asked = { ...ground }, design = Array.from(x);
     since = undefined;
     isAsking = true;
     part.dataset.busy = "yes";
-    try {
-      const asked = { ...ground }, design = Array.from(x);
-      answer = { ...(await ask("what-if", { page: PAGE_NUMBER, turn: ++turn, x: design, ...asked })), x: design, ground: asked };
-      showAnswer();
-      requestAnimationFrame(() => setTimeout(() => performance.measure("what-if", { start: began, end: performance.now() }))); // painted
-    } catch (error) {
-      if (error.code !== 409) said.textContent = `Not simulated: ${error.message}`;
-    }
+    const said_ = await ask("what-if", { page: PAGE_NUMBER, turn: ++turn, x: design, ...asked }).catch((error) => error);
     isAsking = false;
     if (since !== undefined) next();
-    else delete part.dataset.busy;
+    if (said_ instanceof Error) {
+      if (said_.code !== 409) said.textContent = `Not simulated: ${said_.message}`;
+    } else {
+      answer = { ...said_, x: design, ground: asked };
+      showAnswer();
+      requestAnimationFrame(() => setTimeout(() => performance.measure("what-if", { start: began, end: performance.now() }))); // painted
+    }
+    if (!isAsking) delete part.dataset.busy;
   }
 
   // ---- what came of it
@@ -77,25 +78,26 @@ function whatIfPart() {
 
   const draw = frontStrip(pictures, "The design in the front");
   pictures.prepend(said);
-  pictures.append(legend([["what if", ORANGE], ["where it began", INK], ["front", PALE], ["without core", VERMILLION]]), table);
+  pictures.append(legend([["what if", ORANGE], ["where it began", INK], ["front", PALE], ["without core", VERMILLION]]), board);
   const peaks = pictures.appendChild(element("div", { class: "grid3" }));
-  const places = ["displacement_m", "drift_m", "acceleration_g"].map((key) => [key, peaks.appendChild(element("div", { class: "chart" }))]);
+  const places = [["displacement_m", "displacement [m]"], ["drift_m", "drift [m]"], ["acceleration_g", "acceleration [g]"]].map(([key, title]) => [key, title, peaks.appendChild(element("div", { class: "chart" }))]);
 
-  function drawPeaks() {
-    const titles = { displacement_m: "displacement [m]", drift_m: "drift [m]", acceleration_g: "acceleration [g]" };
-    for (const [key, host] of places) {
-      const lines = [["without core", VERMILLION, answer.no_core?.[key]], ["where it began", INK, start.peaks?.[key]], ["what if", ORANGE, answer.peaks?.[key]]].filter(([, , v]) => v);
-      if (!lines.length || !host.clientWidth) continue;
-      host.replaceChildren(chart({ width: host.clientWidth, height: 260, ariaLabel: `Peak ${titles[key]}`, x: { label: `peak ${titles[key]}`, grid: true, zero: true, ticks: 4 }, y: floorAxis(lines[0][2].length),
-        marks: [...lines.map(([, colour, v]) => charts.line(v, { x: (d) => d, y: (_, j) => j + 1, stroke: colour, strokeWidth: colour === ORANGE ? 2.6 : 1.4 })), charts.ruleX([0])] }));
+  // Within a picture its lines move, as long as they fit its axis: a picture takes ten times as long to make.
+  function drawPeaks(isNew) {
+    for (const [key, title, host] of places) {
+      const lines = [["without core", VERMILLION, answer.no_core], ["where it began", INK, start.peaks], ["what if", ORANGE, answer.peaks]].filter(([, , peaks]) => peaks)
+        .map(([name, colour, peaks]) => ({ name, colour, values: peaks[key], thick: colour === ORANGE ? 2.6 : 1.4 }));
+      const svg = host.firstChild, paths = host.querySelectorAll("[aria-label=line] path"), most = Math.max(...lines.flatMap(({ values }) => values));
+      if (!isNew && lines.length && paths.length === lines.length && most <= svg.scale("x").domain[1] && most > 0.5 * svg.scale("x").domain[1]) {
+        const [toX, toY] = ["x", "y"].map((axis) => svg.scale(axis).apply);
+        lines.forEach(({ values }, k) => paths[k].setAttribute("d", `M${values.map((v, j) => [toX(v), toY(j + 1)]).join("L")}`));
+      } else if (lines.length && host.clientWidth) host.replaceChildren(heightChart(host.clientWidth, 260, `peak ${title}`, lines));
     }
   }
 
   function drawTable() {
-    const row = (label, raw, before) => element("tr", {}, element("td", {}, label), ...objectives.map((c, k) => element("td", {}, raw ? digits(raw[k] * c.factor) : "\u2013", before && raw ? element("small", { class: "difference" }, percent(raw[k], before[k])) : "")));
-    table.replaceChildren(element("div", { class: "scroll" }, element("table", { id: "trial" },
-      element("thead", {}, element("tr", {}, element("th", {}, ""), ...objectives.map((c) => element("th", { scope: "col", title: c.what }, ...heading(c))))),
-      element("tbody", {}, row(start.name, start.raw), row("what if", answer.objectives, start.raw)))));
+    const row = (label, raw, before) => line([label, ...objectives.map((c, k) => (raw ? [digits(raw[k] * c.factor), before ? difference(raw[k], before[k]) : ""] : "\u2013"))]);
+    board.replaceChildren(table("trial", ["", ...objectives], [row(start.name, start.raw), row("what if", answer.objectives, start.raw)]));
   }
 
   // The pictures of the whole front follow when the sliders rest.
@@ -103,7 +105,7 @@ function whatIfPart() {
     start.peaks ??= answer.peaks;
     said.textContent = place();
     part.dataset.turn = answer.turn;
-    draw([paleFront(), { rows: [start.raw], colour: INK, width: 2 }, ...(answer.objectives ? [{ rows: [answer.objectives], colour: ORANGE, width: 3 }] : [])]);
+    draw([paleFront(), { rows: [start.raw], colour: INK, thick: 2 }, ...(answer.objectives ? [{ rows: [answer.objectives], colour: ORANGE, thick: 3 }] : [])]);
     drawTable();
     drawPeaks();
     trial.raw = answer.objectives ?? [];
@@ -165,5 +167,5 @@ function whatIfPart() {
     set(start.x, {});
     if (go) goTo(part);
   };
-  addDrawing(peaks, () => answer && drawPeaks());
+  addDrawing(peaks, () => answer && drawPeaks(true));
 }
