@@ -38,6 +38,8 @@ static Status run_command(int argc, char *argv[], Err *err)
     Args args;
     TRY(command_find(argv[1], &command, err));
     TRY(check_limits(command, err));
+    if (command->only_reads || command->is_alone)
+        cluster_disband();
     Status status = args_parse(&args, command, argc - 2, argv + 2, err);
     if (status == STATUS_OK && args.help)
         command_help(command, stdout);

@@ -8,6 +8,8 @@
 #include <spawn.h>
 #include <time.h>
 
+#include "mpi/message.h"
+
 static const char TOWER[] = "[motion]\nrecord = builtin:kobe-like\nrecords = builtin:elcentro-like\npga_g = 0.3\n"
                             "[sim]\nduration_s = 6\nreplicates = 2\ngap_tolerance_m = 0.001\n"
                             "[search]\ninitial = 24\npopulation = 16\nmax_evals = 48\nsurrogate_max = 30\n"
@@ -99,11 +101,10 @@ static void assert_same_files(const char *a, const char *b)
     }
 }
 
-/* Process of that rank; the ranks are mpirun's children, in their order. */
-static pid_t process_of(pid_t mpirun, int rank)
+/* The ranks are mpirun's children, in their order; how many there are. */
+static int ranks_of(pid_t mpirun, long pid[16])
 {
     char path[64];
-    long pid[16];
     int n = 0;
     snprintf(path, sizeof path, "/proc/%d/task/%d/children", (int)mpirun, (int)mpirun);
     FILE *f = fopen(path, "r");
@@ -111,7 +112,13 @@ static pid_t process_of(pid_t mpirun, int rank)
     while (n < 16 && fscanf(f, "%ld", &pid[n]) == 1)
         n++;
     fclose(f);
-    assert_true(rank < n);
+    return n;
+}
+
+static pid_t process_of(pid_t mpirun, int rank)
+{
+    long pid[16];
+    assert_true(rank < ranks_of(mpirun, pid));
     return (pid_t)pid[rank];
 }
 
@@ -407,6 +414,89 @@ static void test_another_program_or_record_on_a_rank_is_refused_by_name(void **s
     expect_said("reads other files than rank 0");
 }
 
+/* Rank 1 reads millions of samples, of which rank 0 knows nothing; without the stop it is refused for them. */
+static void test_a_stop_while_ranks_open_the_problem_ends_at_once(void **state)
+{
+    (void)state;
+    char command[2048], *said;
+    int reads = 0;
+    program();
+    write_in_place("tower.ini", TOWER);
+    write_in_place("said", "");
+    snprintf(
+        command, sizeof command,
+        "cd '%s' && mkdir -p long short && seq 1 2000000 | awk '{ print 0.01 * $1 \",\" sin($1 / 9) }' > long/r.csv && "
+        "head -400 long/r.csv > short/r.csv",
+        place.folder);
+    assert_int_equal(system(command), 0);
+    snprintf(command, sizeof command,
+             "exec mpirun -n 1 -wdir '%s/short' '%s' optimize '%s/tower.ini' --set motion.records=none --set "
+             "motion.record=r.csv --set motion.unit=m_s2 --out '%s/y' : -n 1 -wdir '%s/long' '%s' x >'%s/said' 2>&1",
+             place.folder, program(), place.folder, place.folder, place.folder, program(), place.folder);
+    const pid_t mpirun = spawn(command);
+    for (int i = 0; i < 1000 && !reads; i++) {
+        rest(0.02);
+        said = read_in_place("said");
+        reads = strstr(said, "r.csv: ") != NULL;
+        free(said);
+    }
+    kill(mpirun, SIGUSR1);
+    expect_code(mpirun, 75);
+}
+
+/* A server for hours keeps no processor of a cluster. */
+static void test_of_a_command_without_evaluations_only_rank_0_goes_on(void **state)
+{
+    (void)state;
+    long pid[16];
+    program();
+    write_in_place("small.ini", "[problem]\nkind = dtlz2\nvariables = 4\nobjectives = 2\n[search]\ninitial = 12\n"
+                                "population = 12\nmax_evals = 24\nsurrogate = off\nthreads = 1\n");
+    free(output_of("optimize @/small.ini --out @/small"));
+    write_in_place("said", "");
+    const pid_t mpirun = launch(3, "serve @/small");
+    int n = 0;
+    for (int i = 0; i < 200; i++) {
+        char *said = read_in_place("said");
+        const int serves = strstr(said, "Ctrl-C") != NULL;
+        free(said);
+        if ((n = ranks_of(mpirun, pid)) == 1 && serves)
+            break;
+        rest(0.1);
+    }
+    assert_int_equal(n, 1);
+    assert_int_equal(kill((pid_t)pid[0], SIGINT), 0);
+    expect_code(mpirun, 0);
+}
+
+static void test_a_message_that_is_cut_or_of_no_ticket_is_none(void **state)
+{
+    (void)state;
+    enum { PART = 24, TICKETS = 4 };
+    char bytes[4096];
+    const size_t whole = sizeof(DoneMessage) + PART;
+    const DoneMessage right = {.ticket = 3, .status = STATUS_OK}, bad = {.ticket = 1, .status = STATUS_BAD_DATA};
+    Buffer b = {.bytes = bytes, .n_max = sizeof bytes};
+    DoneMessage m;
+    const char *part;
+    memset(bytes, 0, sizeof bytes);
+    buffer_put(&b, &right, sizeof right);
+    b.n = 0;
+    assert_int_equal(buffer_get_done(&b, whole, PART, TICKETS, &m, &part), 1);
+    assert_true(m.ticket == 3 && part == bytes + sizeof m);
+    assert_int_equal(buffer_get_done(&b, whole, PART, TICKETS, &m, &part), 0);
+    for (size_t n = 1; n < whole; n++) {
+        b.n = 0;
+        assert_int_equal(buffer_get_done(&b, n, PART, TICKETS, &m, &part), -1);
+    }
+    b.n = 0;
+    assert_int_equal(buffer_get_done(&b, whole, PART, 3, &m, &part), -1);
+    b.n = 0;
+    buffer_put(&b, &bad, sizeof bad); /* its reason is longer than a part */
+    b.n = 0;
+    assert_int_equal(buffer_get_done(&b, whole, PART, TICKETS, &m, &part), -1);
+}
+
 static int prepare(void **state)
 {
     if (geteuid() == 0) {
@@ -435,6 +525,9 @@ int main(void)
         cmocka_unit_test(test_a_stop_passed_on_by_mpirun_ends_with_75_and_goes_on),
         cmocka_unit_test(test_under_imtet_mpirun_a_signal_and_a_killed_rank_end_with_75),
         cmocka_unit_test(test_another_program_or_record_on_a_rank_is_refused_by_name),
+        cmocka_unit_test(test_a_stop_while_ranks_open_the_problem_ends_at_once),
+        cmocka_unit_test(test_of_a_command_without_evaluations_only_rank_0_goes_on),
+        cmocka_unit_test(test_a_message_that_is_cut_or_of_no_ticket_is_none),
     };
     if (getenv("MPI_TEST"))
         cmocka_set_test_filter(getenv("MPI_TEST"));

@@ -131,5 +131,6 @@ const Command CMD_BUILDING = {
         "guyan or appendix. Floors with height and mass, modes with period, participating mass and damping.\n"
         "Settings of [building] are given by --set, as in --set building.units=kN_m_t.",
     .options = OPTIONS,
+    .is_alone = 1,
     .run = run,
 };

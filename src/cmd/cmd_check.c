@@ -442,5 +442,6 @@ const Command CMD_CHECK = {
         "damping above 20 %, a peak above 3 g, gaps above a metre, a core whose first mode is beyond the motion's\n"
         "samples. --json: the same as an object, faults and warnings as arrays.",
     .options = OPTIONS,
+    .is_alone = 1,
     .run = run,
 };

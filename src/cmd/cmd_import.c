@@ -66,5 +66,6 @@ const Command CMD_IMPORT = {
         "+ - * / and parentheses. Every other command is refused with its line: remove loads, recorders and\n"
         "analysis first. The folder is what building.model takes (docs/building.md).",
     .options = OPTIONS,
+    .is_alone = 1,
     .run = run,
 };

@@ -241,5 +241,6 @@ const Command CMD_MODES = {
         "does not depend on it. With building.modes the lowest modes of the fuller model are listed, vertical ones "
         "included.",
     .options = OPTIONS,
+    .is_alone = 1,
     .run = run,
 };

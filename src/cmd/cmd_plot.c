@@ -22,5 +22,6 @@ const Command CMD_PLOT = {
         "again, its\n"
         "gaps, peaks, modal energies, energies and displacement over time, and other earthquakes. Wants gnuplot.",
     .options = OPTIONS,
+    .is_alone = 1,
     .run = run,
 };

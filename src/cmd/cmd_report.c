@@ -25,5 +25,6 @@ const Command CMD_REPORT = {
         "--channel are\n"
         "for those; else they are scaled as the run's own.",
     .options = OPTIONS,
+    .is_alone = 1,
     .run = run,
 };

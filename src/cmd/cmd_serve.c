@@ -89,5 +89,6 @@ const Command CMD_SERVE = {
         "thickness, motion and restitution of a design and show its response at once. RUN may be a folder of runs:\n"
         "they are listed, and two are compared. Nothing is written. Ctrl-C ends it.",
     .options = OPTIONS,
+    .is_alone = 1,
     .run = run,
 };

@@ -307,5 +307,6 @@ const Command CMD_SPECTRUM = {
                "recorded figures stand beside. Several motions: their spectra, the mean, and the code spectrum of\n"
                "--set motion.target=eurocode8.",
     .options = OPTIONS,
+    .is_alone = 1,
     .run = run,
 };

@@ -22,7 +22,8 @@ typedef struct {
     const ArgOption *options; /* up to the first without a name */
     Status (*run)(const Args *args, Err *err);
     const char *program; /* of which it is a command; NULL: imtet */
-    int only_reads;      /* runs and files: no linear algebra */
+    int only_reads;      /* runs and files: no linear algebra, nothing to evaluate */
+    int is_alone;        /* nothing to evaluate: all ranks of imtet_mpi but the first end */
     /* Settings that it reads (patterns of settings/idle.h; NULL: all), and of them those that it does not; "KEY?--option":
      * where that is given, "KEY!--option": where it is not. Whoever sets another one is told. */
     const char *reads, *unread;

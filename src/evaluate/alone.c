@@ -17,6 +17,10 @@ void cluster_leave(int exit_code)
     (void)exit_code;
 }
 
+void cluster_disband(void)
+{
+}
+
 const Executor *cluster_executor(size_t *n_ranks)
 {
     *n_ranks = 0;

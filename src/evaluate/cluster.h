@@ -5,7 +5,7 @@
  *   every other  opens the problems of rank 0 again, each from its recipe (evaluate/problem.h), and does their tasks on
  *                threads of its own
  *
- * Life cycle  cluster_join, first thing in main -> executors -> cluster_leave, last thing
+ * Life cycle  cluster_join, first thing in main -> executors, or cluster_disband -> cluster_leave, last thing
  * Threads     one executor of the cluster at a time
  * Errors      another version of the program on a rank is refused, host and rank named */
 #ifndef IMTET_EVALUATE_CLUSTER_H
@@ -23,6 +23,9 @@ enum { CLUSTER_VERSION_MAX = 128 };
 Status cluster_join(int *argc, char ***argv, const char version[CLUSTER_VERSION_MAX], ReopenFn reopen, int *serves,
                     Err *err);
 void cluster_leave(int exit_code);
+
+/* Rank 0 has nothing to evaluate: all others end, this process goes on alone. */
+void cluster_disband(void);
 
 /* NULL: this process is alone, or no rank 0. n_ranks: those that evaluate. */
 const Executor *cluster_executor(size_t *n_ranks);

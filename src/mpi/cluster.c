@@ -134,8 +134,15 @@ void cluster_leave(int exit_code)
     MPI_Finalize();
 }
 
+void cluster_disband(void)
+{
+    cluster_leave(status_exit_code(STATUS_INTERNAL)); /* of ranks that do not end */
+}
+
 const Executor *cluster_executor(size_t *n)
 {
-    *n = rank_of_this() == 0 ? (size_t)n_ranks() - 1 : 0;
+    int is_over;
+    MPI_Finalized(&is_over);
+    *n = !is_over && rank_of_this() == 0 ? (size_t)n_ranks() - 1 : 0;
     return *n > 0 ? &EXECUTOR_RANKS : NULL;
 }

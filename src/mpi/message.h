@@ -97,6 +97,23 @@ static inline size_t at_least(size_t bytes, size_t one)
     return sizeof(int64_t) + (bytes > one ? bytes : one);
 }
 
+/* The next result of a message of n bytes, its part or reason at *part: 1; 0: there is none more; -1: what follows is none. */
+static inline int buffer_get_done(Buffer *b, size_t n, size_t part_size, size_t n_tickets, DoneMessage *m,
+                                  const char **part)
+{
+    if (b->n == n)
+        return 0;
+    if (n - b->n < sizeof *m)
+        return -1;
+    buffer_get(b, m, sizeof *m);
+    const size_t size = m->status == STATUS_OK ? part_size : sizeof((Err *)0)->text;
+    if (m->ticket >= n_tickets || m->status < 0 || m->status >= STATUS_COUNT || n - b->n < size)
+        return -1;
+    *part = b->bytes + b->n;
+    b->n += size;
+    return 1;
+}
+
 /* Pauses between looks at MPI, which has no way to wait without using a processor: longer ones the longer nothing comes. */
 static inline double longer_pause(double pause, double longest)
 {

@@ -75,29 +75,53 @@ static void give(Ranks *r, Ticket *t, Status status, const Err *why)
     r->idle[r->n_idle++] = (size_t)(t - r->ticket);
 }
 
-static void take_results(Ranks *r, size_t n)
+/* Tasks of that rank, 0: of all, count as never begun where the status is STATUS_STOPPED. */
+static void give_up(Ranks *r, int rank, Status status, const char *words)
 {
-    int64_t epoch;
+    Err why;
+    fail(&why, status, "%s", words);
+    for (size_t i = 0; i < r->n_tickets; i++)
+        if (r->ticket[i].rank > 0 && (rank == 0 || r->ticket[i].rank == rank))
+            give(r, &r->ticket[i], status, &why);
+}
+
+static void take_result(Ranks *r, const DoneMessage *m, const char *part)
+{
+    Ticket *t = &r->ticket[m->ticket];
+    Err why = {0};
+    if (m->status == STATUS_OK)
+        memcpy(t->task.result, part, r->problem->part_size);
+    else
+        memcpy(why.text, part, sizeof why.text);
+    t->task.taken = clock_seconds() - m->seconds;
+    r->task_s = r->task_s > 0.0 ? 0.95 * r->task_s + 0.05 * m->seconds : m->seconds;
+    give(r, t, (Status)m->status, &why);
+}
+
+static void take_results(Ranks *r, int from, size_t n)
+{
+    int64_t epoch = 0;
+    DoneMessage m;
+    const char *part;
+    char words[HOST_MAX + 120];
+    int kind = n < sizeof epoch ? -1 : 1;
     r->in.n = 0;
-    buffer_get(&r->in, &epoch, sizeof epoch);
-    while (epoch == r->epoch && r->in.n < n) {
-        DoneMessage m;
-        Err why = {0};
-        buffer_get(&r->in, &m, sizeof m);
-        Ticket *t = &r->ticket[m.ticket];
-        const char *part = r->in.bytes + r->in.n;
-        r->in.n += m.status == STATUS_OK ? r->problem->part_size : sizeof why.text;
-        if (t->rank == 0) /* given up meanwhile */
-            continue;
-        if (m.status == STATUS_OK)
-            memcpy(t->task.result, part, r->problem->part_size);
-        else
-            memcpy(why.text, part, sizeof why.text);
-        t->task.taken = clock_seconds() - m.seconds;
-        r->task_s = r->task_s > 0.0 ? 0.95 * r->task_s + 0.05 * m.seconds : m.seconds;
-        give(r, t, (Status)m.status, &why);
-    }
     r->came_s = clock_seconds();
+    if (kind > 0)
+        buffer_get(&r->in, &epoch, sizeof epoch);
+    if (kind > 0 && epoch != r->epoch)
+        return;
+    while (kind > 0 && (kind = buffer_get_done(&r->in, n, r->problem->part_size, r->n_tickets, &m, &part)) > 0) {
+        const int rank = r->ticket[m.ticket].rank; /* 0: given up meanwhile */
+        if (rank == from)
+            take_result(r, &m, part);
+        kind = rank == from || rank == 0 ? 1 : -1;
+    }
+    if (kind == 0)
+        return;
+    snprintf(words, sizeof words, "rank %d on %s sends results of tasks that it does not have", from,
+             r->rank[from].host);
+    give_up(r, from, STATUS_INTERNAL, words);
 }
 
 static void widen(Buffer *b, size_t n)
@@ -134,7 +158,7 @@ static int receive_all(Ranks *r)
     while (moved < MESSAGES_AT_ONCE && (tag = receive(r, &from, &n)) != 0) {
         moved++;
         if (tag == TAG_DONE)
-            take_results(r, n);
+            take_results(r, from, n);
     }
     return moved;
 }
@@ -231,16 +255,6 @@ static int send_all(Ranks *r)
 
 /* -- ranks that do not answer, and the end --------------------------------------------------------------------------- */
 
-/* Tasks of that rank, 0: of all, count as never begun. */
-static void give_up(Ranks *r, int rank, const char *words)
-{
-    Err why;
-    fail(&why, STATUS_STOPPED, "%s", words);
-    for (size_t i = 0; i < r->n_tickets; i++)
-        if (r->ticket[i].rank > 0 && (rank == 0 || r->ticket[i].rank == rank))
-            give(r, &r->ticket[i], STATUS_STOPPED, &why);
-}
-
 static void tell_stop(Ranks *r)
 {
     r->has_stopped = 1;
@@ -262,7 +276,7 @@ static void count_silence(Ranks *r, double seconds)
         if (rank->silent_s < SILENT_S)
             continue;
         snprintf(words, sizeof words, "rank %d on %s was taken for dead (silent for %g s)", i, rank->host, SILENT_S);
-        give_up(r, i, words);
+        give_up(r, i, STATUS_STOPPED, words);
     }
 }
 
@@ -289,7 +303,7 @@ static void look_after(Ranks *r)
         if (r->ending || !task->may_go_on(task->user))
             tell_stop(r);
     } else if (now > r->came_s + LAST_ANSWERS_S) {
-        give_up(r, 0, "stopped");
+        give_up(r, 0, STATUS_STOPPED, "stopped");
     }
 }
 
@@ -324,21 +338,34 @@ static Status check_opened(Ranks *r, int from, const OpenedMessage *m, Err *err)
     return STATUS_OK;
 }
 
+/* A stop that is asked for meanwhile does not wait for the ranks. */
+static Status receive_opened(Ranks *r, double until, int n_open, int *from, int *tag, Err *err)
+{
+    const Observer *o = &r->problem->observer;
+    size_t n;
+    while ((*tag = receive(r, from, &n)) == 0) {
+        if (o->go_on && !o->go_on(o->user))
+            return fail(err, STATUS_STOPPED, "stopped while the ranks open the problem");
+        if (clock_seconds() > until)
+            return fail(err, STATUS_INTERNAL, "only %d of %d ranks have opened the problem within %g s", n_open, r->n,
+                        OPEN_S);
+        rest(PAUSE_MAX_S);
+    }
+    return *tag != TAG_OPENED || n == sizeof(OpenedMessage)
+               ? STATUS_OK
+               : fail(err, STATUS_INTERNAL, "rank %d says in %zu bytes that it has opened the problem", *from, n);
+}
+
 /* Of several faults the one of the first rank. */
 static Status wait_until_open(Ranks *r, Err *err)
 {
-    const double give_up_s = clock_seconds() + OPEN_S;
+    const double until = clock_seconds() + OPEN_S;
     Status status = STATUS_OK;
     int first_bad = r->n + 1, from, tag;
     for (int n_open = 0; n_open < r->n;) {
         OpenedMessage m = {0};
         Err why = {0};
-        size_t n;
-        while ((tag = receive(r, &from, &n)) == 0 && clock_seconds() < give_up_s)
-            rest(PAUSE_MAX_S);
-        if (tag == 0)
-            return fail(err, STATUS_INTERNAL, "only %d of %d ranks have opened the problem within %g s", n_open, r->n,
-                        OPEN_S);
+        TRY(receive_opened(r, until, n_open, &from, &tag, err));
         if (tag == TAG_OPENED)
             memcpy(&m, r->in.bytes, sizeof m);
         if (tag != TAG_OPENED || m.epoch != r->epoch)
