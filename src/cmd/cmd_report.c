@@ -17,13 +17,17 @@ const Command CMD_REPORT = {
     .operand = "RUN",
     .summary = "one HTML page to look at a run: its front, and one design in detail",
     .example = "imtet report results/quick --design knee",
-    .details =
-        "Writes one file that needs no network: the front in parallel coordinates and a scatter matrix, designs "
-        "chosen\n"
-        "by ranges as a table and as CSV, the growth of the hypervolume; of one design, simulated again, its gaps,\n"
-        "peaks, energies and the displacement of a floor, with other earthquakes. --pga, --stretch, --unit and "
-        "--channel are\n"
-        "for those; else they are scaled as the run's own.",
+    .details = "Writes one file that needs no network. First what was studied and found, with warnings; then the "
+               "front: parallel\n"
+               "coordinates whose axes are moved, turned over and hidden, any two columns, gaps as a heat map, all "
+               "pairs with\n"
+               "their correlations, typical designs, which variables matter (Sobol indices), designs chosen by ranges "
+               "as a table\n"
+               "and as CSV; the growth of the hypervolume; of one design, simulated again, its gaps, peaks, forces, "
+               "energies,\n"
+               "the displacement of a floor, and other earthquakes. --pga, --stretch, --unit and --channel are for "
+               "those; else\n"
+               "they are scaled as the run's own. `imtet serve` shows the same page live.",
     .options = OPTIONS,
     .is_alone = 1,
     .run = run,
