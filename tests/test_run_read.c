@@ -22,6 +22,17 @@ static const char *changed(const char *sql, char folder[PATH_MAX])
     return path_of("other", folder);
 }
 
+static Status to_nowhere(const Run *head, FILE **out, void *user, Err *err)
+{
+    static FILE *nowhere;
+    (void)user;
+    if (!nowhere)
+        nowhere = fopen("/dev/null", "we");
+    assert_true(nowhere && head->schema.n_var > 0 && head->table.n == 0);
+    *out = nowhere;
+    return err ? STATUS_OK : STATUS_INTERNAL;
+}
+
 static void test_what_is_wrong_in_one_cell_is_named(void **state)
 {
     (void)state;
@@ -68,7 +79,32 @@ static void test_what_is_wrong_in_one_cell_is_named(void **state)
         if (status != CASES[i].status || !strstr(err.text, CASES[i].words))
             fail_msg("%s: %d, %s", CASES[i].sql, status, err.text);
         assert_true(h.table.n == 0 && !h.table.row && !h.state);
+        const char *which = strstr(CASES[i].words, "evaluation ");
+        if (which && run_print_evaluations(folder, to_nowhere, NULL, &err) != STATUS_IO)
+            fail_msg("%s: is exported", CASES[i].sql);
+        if (which && !strncmp(which, "evaluation 2", 12) && !strstr(err.text, "evaluation 2"))
+            fail_msg("%s: exported: %s", CASES[i].sql, err.text);
     }
+}
+
+static void test_a_run_read_without_its_variables_has_the_same_results(void **state)
+{
+    (void)state;
+    Run whole, part;
+    Err err = {0};
+    char folder[PATH_MAX];
+    free(output_of("optimize @/textbook.ini --set problem.noise=0 --out @/silent"));
+    CHECK_OK(run_read(&whole, path_of("silent", folder), &err), &err);
+    CHECK_OK(run_read_part(&part, folder, RUN_RESULTS, &err), &err);
+    const size_t n = whole.table.n, m = whole.schema.n_obj;
+    assert_true(part.table.n_var == 0 && part.schema.n_var == whole.schema.n_var);
+    assert_true(n > 10 && part.table.n == n);
+    assert_memory_equal(part.F, whole.F, n * m * sizeof *whole.F);
+    assert_memory_equal(part.place, whole.place, n * sizeof *whole.place);
+    assert_true(part.n_front == whole.n_front && part.n_failed == whole.n_failed);
+    assert_memory_equal(part.front, whole.front, whole.n_front * sizeof *whole.front);
+    run_free(&whole);
+    run_free(&part);
 }
 
 static void test_values_that_are_not_known_are_nan_and_a_word_that_is_not_known_is_unfinished(void **state)
@@ -264,6 +300,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_what_is_wrong_in_one_cell_is_named),
+        cmocka_unit_test(test_a_run_read_without_its_variables_has_the_same_results),
         cmocka_unit_test(test_values_that_are_not_known_are_nan_and_a_word_that_is_not_known_is_unfinished),
         cmocka_unit_test(test_a_run_from_before_the_choice_of_core_theory_keeps_the_only_one_there_was),
         cmocka_unit_test(test_polished_designs_compete_with_the_front_and_can_be_dropped),
