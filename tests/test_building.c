@@ -320,6 +320,10 @@ static void test_faults_of_storeys_are_named(void **state)
     expect_refusal_of(&o, "has no column mass_kg or mass_t");
     write_file(&o, "storeys.csv", "height_m,mass_kg,stiffness_n_m\n3,1e5,1e8\n3,1e5,-1\n");
     expect_refusal_of(&o, "storeys.csv:3: stiffness_n_m is -1");
+    write_file(&o, "storeys.csv", "height_m,mass_kg,mass_t,stiffness_n_m\n3,1e5,100,1e8\n");
+    expect_refusal_of(&o, "has both mass_kg and mass_t");
+    write_file(&o, "storeys.csv", "height_m;mass_t;stiffness_kn_m\n3,5;100;200.000\n"); /* a mark of thousands */
+    expect_refusal_of(&o, "storeys.csv:2: decimal points and decimal commas are mixed");
     write_file(&o, "storeys.csv", "height_m,mass_kg,stiffness_n_m\n3,1e5,1e8\n");
     snprintf(o.heights_m, sizeof o.heights_m, "3");
     expect_refusal_of(&o, "has heights of its own");

@@ -150,9 +150,17 @@ static Status note_decimal_mark(CsvReader *r, char *number, Err *err)
     return STATUS_OK;
 }
 
+enum { LONGEST = 400 }; /* characters of a number; printf's longest double has some 325 */
+
+Status csv_note_mark(CsvReader *r, CsvCell c, Err *err)
+{
+    char number[LONGEST + 1];
+    snprintf(number, sizeof number, "%.*s", (int)(c.to - c.from), c.from);
+    return number[strspn(number, "0123456789+-.,eE")] ? STATUS_OK : note_decimal_mark(r, number, err);
+}
+
 Status csv_number(CsvReader *r, CsvCell c, size_t column, size_t n_columns, double *value, Err *err)
 {
-    enum { LONGEST = 400 }; /* characters of a number; printf's longest double has some 325 */
     char number[LONGEST + 1], *stop;
     const size_t length = (size_t)(c.to - c.from) < LONGEST ? (size_t)(c.to - c.from) : LONGEST;
     memcpy(number, c.from, length);

@@ -42,6 +42,9 @@ CsvCell csv_cell(CsvReader *r);
 /* Cells that are left of the line. */
 size_t csv_count(const CsvReader *r);
 
+/* Notes the decimal mark of a cell that looks like a number; decimal points and decimal commas in one file are refused. */
+Status csv_note_mark(CsvReader *r, CsvCell c, Err *err);
+
 /* The finite number in a cell; column of n_columns (from 1) is for the message. */
 Status csv_number(CsvReader *r, CsvCell c, size_t column, size_t n_columns, double *value, Err *err);
 

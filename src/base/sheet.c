@@ -55,6 +55,7 @@ static Status read_row(Sheet *s, Room *room, CsvReader *r, Err *err)
     for (size_t j = 0; j < n; j++) {
         const CsvCell c = csv_cell(r);
         const size_t length = (size_t)(c.to - c.from);
+        TRY(csv_note_mark(r, c, err));
         memcpy(s->text + room->used, c.from, length);
         s->text[room->used + length] = 0;
         s->cell[s->n_rows * n + j] = room->used;

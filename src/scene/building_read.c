@@ -192,6 +192,8 @@ static Status read_quantity(const Sheet *s, size_t row, const char *plain, const
     const int in_thousands = sheet_column(s, plain) < 0;
     const char *column = in_thousands ? thousands : plain;
     *value = 0;
+    if (strcmp(plain, thousands) != 0 && !in_thousands && sheet_column(s, thousands) >= 0)
+        return fail(err, STATUS_BAD_DATA, "%s: has both %s and %s; leave one of them out", s->path, plain, thousands);
     if (sheet_column(s, column) < 0)
         return STATUS_OK;
     TRY(sheet_number(s, row, column, NAN, value, err));
