@@ -518,6 +518,7 @@ static void test_no_output_replaces_a_file_that_is_read_a_run_or_another_output(
     write_in_place("own.sqlite", "SQLite format 3");
     expect(2, "which the command reads", "simulate @/own.ini --design none --history @/own.ini");
     expect(2, "are one file", "simulate @/own.ini --design none --history @/a.csv --floor-spectra @/a.csv");
+    expect(2, "are one file", "simulate @/own.ini --design none --csv @/b.csv --history @/./b.csv");
     expect(2, "is a database", "simulate @/own.ini --design none --history @/own.sqlite");
     char *settings = read_in_place("own.ini");
     assert_string_equal(settings, "[sim]\nduration_s = 5\n");

@@ -468,7 +468,7 @@ static void test_an_equal_step_is_left_alone_by_a_request_to_resample(void **sta
     motion_free(&m);
 }
 
-static void test_the_step_of_a_bare_column_can_be_given(void **state)
+static void test_the_step_of_a_bare_column_can_be_given_and_of_no_other(void **state)
 {
     (void)state;
     static const char text[] = "1\n2\n-3\n0\n";
@@ -478,6 +478,12 @@ static void test_the_step_of_a_bare_column_can_be_given(void **state)
     CHECK_OK(motion_parse(&m, "text", text, strlen(text), &how, &err), &err);
     assert_int_equal(m.n, 4);
     assert_close(m.dt_s, 0.02, 0);
+    assert_string_equal(m.warning, "");
+    motion_free(&m);
+    static const char timed[] = "t,a_g\n0,1\n0.01,2\n";
+    CHECK_OK(motion_parse(&m, "timed", timed, strlen(timed), &(MotionHow){.dt_s = 0.02}, &err), &err);
+    assert_close(m.dt_s, 0.01, 0);
+    assert_string_equal(m.warning, "motion.dt_s = 0.02 is not used: the file says 0.01 s");
     motion_free(&m);
 }
 
@@ -1148,7 +1154,7 @@ int main(void)
         cmocka_unit_test(test_a_column_of_velocities_is_not_taken_for_an_acceleration),
         cmocka_unit_test(test_unequal_steps_are_resampled_by_straight_lines_only_when_asked),
         cmocka_unit_test(test_an_equal_step_is_left_alone_by_a_request_to_resample),
-        cmocka_unit_test(test_the_step_of_a_bare_column_can_be_given),
+        cmocka_unit_test(test_the_step_of_a_bare_column_can_be_given_and_of_no_other),
         cmocka_unit_test(test_a_setting_may_not_contradict_the_unit_of_any_format),
         cmocka_unit_test(test_five_thousand_mutants_are_read_or_refused),
     };

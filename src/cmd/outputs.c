@@ -37,11 +37,21 @@ const char *outputs_standard(const Args *args, int i)
     return find(args, "--json") && i == 0 ? "--json" : NULL;
 }
 
+/* The place of a file that is not there yet. */
+static const char *place_of(const char *path, char place[PATH_MAX])
+{
+    char folder[PATH_MAX], real[PATH_MAX];
+    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+    snprintf(folder, sizeof folder, "%.*s", slash ? (int)(name - path) : 1, slash ? path : ".");
+    return realpath(folder, real) && snprintf(place, PATH_MAX, "%s/%s", real, name) < PATH_MAX ? place : path;
+}
+
 static int is_same_file(const char *path, const char *other)
 {
     struct stat a, b;
+    char first[PATH_MAX], second[PATH_MAX];
     if (stat(path, &a) != 0)
-        return strcmp(path, other) == 0;
+        return strcmp(place_of(path, first), place_of(other, second)) == 0;
     return S_ISREG(a.st_mode) && stat(other, &b) == 0 && a.st_dev == b.st_dev && a.st_ino == b.st_ino;
 }
 

@@ -498,6 +498,9 @@ static Status read_motion(Motion *m, Record *r, const char *path, const char *by
     TRY(read_content(r, path, bytes, n, &hints, 0, err));
     TRY(choose_channel(r, path, how->channel, &c, err));
     TRY(take_samples(m, path, r, c, how, err));
+    if (!m->warning[0] && how->dt_s > 0 && how->resample_dt_s == 0 && fabs(how->dt_s - m->dt_s) > 1e-6 * m->dt_s)
+        snprintf(m->warning, sizeof m->warning, "motion.dt_s = %g is not used: the file says %.6g s", how->dt_s,
+                 m->dt_s);
     snprintf(m->name, sizeof m->name, "%s", path);
     snprintf(m->format, sizeof m->format, "%s", c->format);
     snprintf(m->channel, sizeof m->channel, "%s", c->name);
