@@ -2,6 +2,8 @@
  * after the published descriptions. All hold the same three components, whose 16th sample is their peak. */
 #include "check.h"
 
+#include <archive.h>
+#include <archive_entry.h>
 #include <ctype.h>
 #include <dirent.h>
 #include <stdio.h>
@@ -288,6 +290,11 @@ static const struct {
     {"isesd.cor", "samples:             43", "samples:             44", ": ends after 43 samples"},
     {"isesd.cor", "sampling period", "sampling", "an ISESD record without equal steps"},
     {"isesd.cor", "-> corrected acceleration", "-> corrected velocity", ": not an acceleration"},
+    {"isesd.cor", " m/s*s,", " mm/s*s,", "the unit 'mm/s*s' of its acceleration is not known"},
+    {"equals.at2", "OF G", "OF G/10", "the unit 'G/10' of its acceleration is not known"},
+    {"one.tspair", "m/s**2", "mm/s**2", "the unit 'mm/s**2' of its acceleration is not known"},
+    {"simcenter.json", ": 43", ": 50", "'SYN-1' has 43 samples, but numSteps announces 50"},
+    {"simcenter.json", "\"type\"", "\"factor\": 9.81, \"type\"", "\"factor\" is not 1; multiply the samples by it"},
     {"three.slist", "43 samples", "44 samples", ": ends after 43 samples"},
     {"three.slist", "FLOAT, cm/s**2", "INTEGER, Counts", "set motion.counts_per_m_s2 to the gain"},
     {"one.tspair", "43 samples", "44 samples", ": ends after 43 samples"},
@@ -416,6 +423,72 @@ static void test_counts_are_refused_without_a_gain_and_what_is_no_record_by_its_
     assert_int_equal(motion_parse(&m, "cut.tar.gz", t.text, t.length / 2, &(MotionHow){0}, &err), STATUS_BAD_DATA);
     assert_non_null(strstr(err.text, "cut.tar.gz: a damaged archive"));
     free(t.text);
+}
+
+/* Integers of little.sac [place] written over. */
+static void test_a_sac_header_of_velocities_or_of_fewer_samples_is_refused(void **state)
+{
+    (void)state;
+    static const struct {
+        int place;
+        char value;
+        const char *says;
+    } CASES[] = {{16, 7, "not an acceleration: IDEP in its SAC header says velocity"},
+                 {16, 6, "says displacement"},
+                 {9, 30, "holds 43 samples, more than the 30 that its header announces"}};
+    for (size_t i = 0; i < sizeof CASES / sizeof CASES[0]; i++) {
+        Text t = read_specimen("little.sac");
+        Err err = {0};
+        memcpy(t.text + (size_t)4 * (size_t)(70 + CASES[i].place), (char[4]){CASES[i].value}, 4);
+        assert_int_equal(
+            motion_parse(&(Motion){0}, "little.sac", t.text, t.length, &(MotionHow){.unit = UNIT_M_S2}, &err),
+            STATUS_BAD_DATA);
+        if (!strstr(err.text, CASES[i].says))
+            fail_msg("%s", err.text);
+        free(t.text);
+    }
+}
+
+/* A tar of two members; the second one cut to `length`. */
+static Text two_members(const char *first, const char *second, const Text *content, size_t length)
+{
+    Text out = {calloc(1, 1 << 16), 0};
+    struct archive *a = archive_write_new();
+    struct archive_entry *entry = archive_entry_new();
+    assert_true(out.text && a && entry);
+    archive_write_set_format_ustar(a);
+    assert_int_equal(archive_write_open_memory(a, out.text, 1 << 16, &out.length), ARCHIVE_OK);
+    for (int i = 0; i < 2; i++) {
+        archive_entry_clear(entry);
+        archive_entry_set_pathname(entry, i ? second : first);
+        archive_entry_set_filetype(entry, AE_IFREG);
+        archive_entry_set_size(entry, (la_int64_t)(i ? length : content->length));
+        assert_int_equal(archive_write_header(a, entry), ARCHIVE_OK);
+        archive_write_data(a, content->text, i ? length : content->length);
+    }
+    archive_entry_free(entry);
+    archive_write_free(a);
+    return out;
+}
+
+static void test_a_damaged_member_of_an_archive_is_named_and_files_of_one_name_have_their_folders(void **state)
+{
+    (void)state;
+    Text one = read_specimen("one.knet");
+    Text broken = two_members("a.NS", "b.NS", &one, one.length - 60);
+    Text twins = two_members("x/a.NS", "y/a.NS", &one, one.length);
+    Err err = {0};
+    assert_int_equal(motion_parse(&(Motion){0}, "two.tar", broken.text, broken.length, &(MotionHow){0}, &err),
+                     STATUS_BAD_DATA);
+    if (!strstr(err.text, "two.tar: a member of this archive is damaged: b.NS:"))
+        fail_msg("%s", err.text);
+    assert_int_equal(motion_parse(&(Motion){0}, "two.tar", twins.text, twins.length, &(MotionHow){0}, &err),
+                     STATUS_BAD_DATA);
+    if (!strstr(err.text, "1 'N-S, x/a.NS', 2 'N-S, y/a.NS'"))
+        fail_msg("%s", err.text);
+    free(one.text);
+    free(broken.text);
+    free(twins.text);
 }
 
 static void test_a_channel_must_be_chosen_where_there_are_several(void **state)
@@ -794,6 +867,14 @@ static void test_units_in_other_words_are_taken_or_named(void **state)
     assert_int_equal(parse_text(&m, "A\nB\nACCELERATION IN G\nNPTS= 2, DT= .01 SEC\n1. 2.\n", &err), STATUS_OK);
     assert_close(m.accel[1], 2 * 9.80665, 1e-3);
     motion_free(&m);
+    for (int i = 0; i < 2; i++) {
+        Text t = i ? changed(read_specimen("one.csn"), "m/seg/seg", "cm/seg/seg", 0)
+                   : changed(read_specimen("isesd.cor"), " m/s*s,", "cm/s*s,", 0);
+        CHECK_OK(motion_parse(&m, "in cm", t.text, t.length, &(MotionHow){0}, &err), &err);
+        assert_close(m.accel[PEAK_AT], 1e-4 * PEAK_GAL[0], 1e-8);
+        motion_free(&m);
+        free(t.text);
+    }
     assert_int_equal(parse_text(&m, "time_s,accel_mg\n0,1\n0.01,2\n", &err), STATUS_BAD_DATA);
     assert_non_null(strstr(err.text, "unit 'mg' is not known"));
 }
@@ -1150,6 +1231,8 @@ int main(void)
         cmocka_unit_test(test_a_file_of_too_many_channels_is_refused),
         cmocka_unit_test(test_words_without_numbers_are_no_known_format_and_their_first_line_is_quoted),
         cmocka_unit_test(test_a_file_of_nothing_but_a_byte_order_mark_is_refused),
+        cmocka_unit_test(test_a_sac_header_of_velocities_or_of_fewer_samples_is_refused),
+        cmocka_unit_test(test_a_damaged_member_of_an_archive_is_named_and_files_of_one_name_have_their_folders),
         cmocka_unit_test(test_a_channel_must_be_chosen_where_there_are_several),
         cmocka_unit_test(test_a_column_of_velocities_is_not_taken_for_an_acceleration),
         cmocka_unit_test(test_unequal_steps_are_resampled_by_straight_lines_only_when_asked),

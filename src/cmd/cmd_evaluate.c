@@ -179,12 +179,12 @@ static void print_folder(const Evaluations *e, const MeasureOrder *order)
         }
 }
 
-static void print_refused(const Evaluations *e)
+static void print_refused(FILE *out, const Evaluations *e)
 {
     size_t n = 0;
     for (size_t i = 0; i < e->n_records; i++)
         if (e->record[i].readable != STATUS_OK)
-            printf("%snot read: %s\n", n++ ? "" : "\n", e->record[i].why.text);
+            fprintf(out, "%snot read: %s\n", n++ ? "" : "\n", e->record[i].why.text);
 }
 
 static void print_all(const Args *args, const Chosen *c, const Evaluations *e)
@@ -200,7 +200,7 @@ static void print_all(const Args *args, const Chosen *c, const Evaluations *e)
         print_named(e, &c->run->schema);
         print_folder(e, order);
     }
-    print_refused(e);
+    print_refused(stdout, e);
 }
 
 /* All that is asked for; the tables where nothing is. */
@@ -272,8 +272,10 @@ static Status run_and_give(const Args *args, Settings *s, const Chosen *c, Evalu
 {
     TRY(add_records(args, e, s, err));
     TRY(evaluations_read(e, s, err));
-    if (e->n_read == 0)
+    if (e->n_read == 0) {
+        print_refused(stderr, e);
         return fail(err, STATUS_BAD_DATA, "%s: holds no ground motion that can be read", args_value(args, "--records"));
+    }
     TRY(evaluations_run(e, s, c->run->schema.n_var, c->x, isatty(STDERR_FILENO) ? stderr : NULL, err));
     return give(args, c, e, err);
 }

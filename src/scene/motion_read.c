@@ -25,19 +25,25 @@ static const MotionFormat *const FORMATS[] = {
     &FORMAT_TSPAIR, &FORMAT_REFUSED, &FORMAT_AT2,   &FORMAT_COLUMNS};
 
 static const BinaryFormat *const BINARY_FORMATS[] = {&FORMAT_MSEED, &FORMAT_SAC, &FORMAT_EVT};
-enum { N_BINARY_FORMATS = sizeof BINARY_FORMATS / sizeof BINARY_FORMATS[0], ARCHIVES_DEEP = 2 };
+enum { N_BINARY_FORMATS = sizeof BINARY_FORMATS / sizeof BINARY_FORMATS[0], ARCHIVES_DEEP = 2, TABLE_MIN = 20 };
 
 /* ---- which unit ----------------------------------------------------------------------------------------------- */
 
 /* The one unit that file and setting agree on. */
-static Status settle_unit(const char *path, unsigned named, MotionUnit *unit, Err *err)
+static Status settle_unit(const char *path, const Channel *c, MotionUnit *unit, Err *err)
 {
+    const unsigned named = c->units;
     MotionUnit first = UNIT_FROM_FILE, second = UNIT_FROM_FILE;
     for (MotionUnit u = UNIT_M_S2; u <= UNIT_G; u++)
         if (named & 1u << u) {
             second = first ? u : second;
             first = first ? first : u;
         }
+    if (*unit == UNIT_FROM_FILE && first == UNIT_FROM_FILE && c->unit[0])
+        return fail(err, STATUS_BAD_DATA,
+                    "%s: the unit '%s' of its acceleration is not known; convert it to m/s2, cm/s2 or g and set "
+                    "motion.unit",
+                    path, c->unit);
     if (*unit == UNIT_FROM_FILE && first == UNIT_FROM_FILE)
         return fail(err, STATUS_BAD_DATA,
                     "%s: does not say the unit of its acceleration; set motion.unit to m_s2, cm_s2 or g", path);
@@ -363,7 +369,7 @@ static Status take_samples(Motion *m, const char *path, const Record *r, const C
     if (c->counts && how->counts_per_m_s2 > 0)
         unit = UNIT_M_S2;
     else
-        TRY(settle_unit(path, c->units, &unit, err));
+        TRY(settle_unit(path, c, &unit, err));
     const double gain = c->counts && how->counts_per_m_s2 > 0 ? how->counts_per_m_s2 : 1;
     const double to_m_s2 = c->scale / gain * (unit == UNIT_M_S2 ? 1.0 : unit == UNIT_CM_S2 ? 0.01 : GRAVITY);
     TRY(check_peak(&s, to_m_s2, unit, c->scale, err));
@@ -421,7 +427,11 @@ static Status read_text(Record *r, const char *path, const char *text, size_t le
     const char line_end = memchr(text, '\n', length) ? '\n' : '\r';
     Lines l = {.path = path, .next = text + mark, .end = text + length, .mark = line_end};
     const MotionFormat *format = recognise(l);
-    TRY(format->read(r, &l, hints, err));
+    /* JSON may be anything; a table is told from a text by its numbers */
+    r->is_known = format != &FORMAT_SIMCENTER && format != &FORMAT_REFUSED && format != &FORMAT_COLUMNS;
+    const Status status = format->read(r, &l, hints, err);
+    r->is_known |= format == &FORMAT_COLUMNS && r->n >= TABLE_MIN && strstr(err->text, "where the lines above have");
+    TRY(status);
     for (size_t k = 0; k < r->n_channels; k++)
         r->channel[k].format = format->name;
     return STATUS_OK;
@@ -438,7 +448,7 @@ typedef struct {
 static Status read_content(Record *r, const char *path, const char *bytes, size_t n, const ReadHints *hints, int deep,
                            Err *err);
 
-/* A member that is no record (a picture, a readme) is passed over. */
+/* A member that is no record of an acceleration (a picture, a readme, a velocity) is passed over, a broken one is not. */
 static Status take_member(const char *name, const char *bytes, size_t n, void *user, Err *err)
 {
     Members *members = user;
@@ -451,7 +461,10 @@ static Status take_member(const char *name, const char *bytes, size_t n, void *u
         status = record_append(members->r, one, members->path, name, err);
     else if (status == STATUS_NO_MEMORY)
         status = fail(err, status, "%s", why.text);
-    else {
+    else if (one->is_broken || (one->is_known && !strstr(why.text, "not an acceleration"))) {
+        members->r->is_broken = 1;
+        status = fail(err, status, "%s: a member of this archive is damaged: %.360s", members->path, why.text);
+    } else {
         if (!members->first.text[0])
             members->first = why;
         status = STATUS_OK;
@@ -461,6 +474,18 @@ static Status take_member(const char *name, const char *bytes, size_t n, void *u
     return status;
 }
 
+/* Files of one name in several folders. */
+static void tell_folders_apart(Record *r)
+{
+    int twin[CHANNELS_MAX] = {0};
+    for (size_t i = 0; i < r->n_channels; i++)
+        for (size_t k = 0; k < r->n_channels; k++)
+            twin[i] |= k != i && strcmp(r->channel[i].name, r->channel[k].name) == 0;
+    for (size_t i = 0; i < r->n_channels; i++)
+        if (twin[i])
+            memcpy(r->channel[i].name, r->channel[i].full, sizeof r->channel[i].name);
+}
+
 static Status read_archive(Record *r, const char *path, const char *bytes, size_t n, const ReadHints *hints, int deep,
                            Err *err)
 {
@@ -468,6 +493,7 @@ static Status read_archive(Record *r, const char *path, const char *bytes, size_
     if (deep == ARCHIVES_DEEP)
         return fail(err, STATUS_BAD_DATA, "%s: an archive in an archive in an archive", path);
     TRY(archive_each(path, bytes, n, take_member, &members, err));
+    tell_folders_apart(r);
     return r->n_channels > 0 ? STATUS_OK
                              : fail(err, STATUS_BAD_DATA, "%s: no member of this archive is a record: %.300s", path,
                                     members.first.text[0] ? members.first.text : "it is empty");
@@ -481,6 +507,7 @@ static Status read_content(Record *r, const char *path, const char *bytes, size_
         return read_archive(r, path, bytes, n, hints, deep, err);
     for (int i = 0; i < N_BINARY_FORMATS; i++)
         if (BINARY_FORMATS[i]->recognise(raw, n)) {
+            r->is_known = 1;
             TRY(BINARY_FORMATS[i]->read(r, path, bytes, n, err));
             for (size_t k = 0; k < r->n_channels; k++)
                 r->channel[k].format = BINARY_FORMATS[i]->name;

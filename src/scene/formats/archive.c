@@ -69,9 +69,8 @@ static Status each_member(struct archive *a, const char *path, ArchiveFn take, v
         if (archive_entry_filetype(entry) && archive_entry_filetype(entry) != AE_IFREG)
             continue;
         Status status = read_member(a, path, &bytes, &n, &total, err);
-        const char *slash = name ? strrchr(name, '/') : NULL;
         if (status == STATUS_OK && n > 0)
-            status = take(slash ? slash + 1 : name ? name : "", bytes, n, user, err);
+            status = take(name ? name : "", bytes, n, user, err);
         free(bytes);
         TRY(status);
     }

@@ -13,7 +13,7 @@
 
 int archive_is(const unsigned char bytes[], size_t n);
 
-/* Calls take for every file in the order of the archive; name: without folders. */
+/* Calls take for every file in the order of the archive; name: with folders. */
 typedef Status (*ArchiveFn)(const char *name, const char *bytes, size_t n, void *user, Err *err);
 Status archive_each(const char *path, const char *bytes, size_t n, ArchiveFn take, void *user, Err *err);
 

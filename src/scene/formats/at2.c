@@ -46,10 +46,19 @@ static BlockForm read_npts_line(const Lines *l)
     return form;
 }
 
+/* "UNITS OF G": the words before the unit are no part of what a message names. */
+static void take_unit(Channel *c, const char *from, const char *to)
+{
+    const unsigned before = c->units;
+    const char *of = find_word(from, to, " OF ");
+    channel_unit(c, of && !units_named(from, to) ? of + 4 : from, to);
+    c->units |= before;
+}
+
 static Status read(Record *r, Lines *l, const ReadHints *hints, Err *err)
 {
     Channel *c;
-    unsigned units = 0;
+    Channel unit = {0};
     int has_title = 0;
     (void)hints;
     while (lines_next(l) && !is_npts_line(l, has_title)) {
@@ -58,13 +67,14 @@ static Status read(Record *r, Lines *l, const ReadHints *hints, Err *err)
             return fail(err, STATUS_BAD_DATA, "%s:%d: not an acceleration: '%.*s'", l->path, l->number, line_shown(l),
                         l->from);
         if (line_has(l, "UNIT"))
-            units |= units_named(l->from, l->to);
+            take_unit(&unit, find_word(l->from, l->to, "UNIT"), l->to);
         else if (line_has(l, "ACCELERATION") && find_word(l->from, l->to, " IN "))
-            units |= units_named(find_word(l->from, l->to, " IN "), l->to);
+            take_unit(&unit, find_word(l->from, l->to, " IN "), l->to);
     }
     const BlockForm form = read_npts_line(l);
     TRY(record_channel(r, l, &c, err));
-    c->units = units;
+    c->units = unit.units;
+    memcpy(c->unit, unit.unit, sizeof c->unit);
     TRY(record_block(r, l, &form, err));
     return record_block_ends(l, form.count, err);
 }

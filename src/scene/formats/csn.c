@@ -12,8 +12,7 @@
 
 typedef struct {
     double count, hertz;
-    unsigned units;
-    Lines station;
+    Lines station, unit;
 } Header;
 
 static int recognise(Lines l)
@@ -36,7 +35,7 @@ static void take(const Lines *l, Header *h)
     else if (line_begins(l, "# Numero"))
         number_behind(from, l->to, "", &h->count);
     else if (line_begins(l, "# Unidades"))
-        h->units = units_named(from, l->to);
+        h->unit = *l;
     else if (line_begins(l, "# Estacion"))
         h->station = *l;
 }
@@ -53,6 +52,7 @@ static void name_channel(Channel *c, const Lines *station)
 static Status read(Record *r, Lines *l, const ReadHints *hints, Err *err)
 {
     Channel *c;
+    const char *unit;
     Header h = {.count = NAN, .hertz = NAN};
     (void)hints;
     for (Lines ahead = lines_ahead(l); ahead.from && *ahead.from == '#'; ahead = lines_ahead(l)) {
@@ -62,7 +62,8 @@ static Status read(Record *r, Lines *l, const ReadHints *hints, Err *err)
     TRY(record_channel(r, l, &c, err));
     if (h.station.from)
         name_channel(c, &h.station);
-    c->units = h.units;
+    if (h.unit.from && value_behind_colon(&h.unit, &unit))
+        channel_unit(c, unit, h.unit.to);
     TRY(record_block(r, l, &(BlockForm){.count = h.count, .dt = 1.0 / h.hertz}, err));
     return record_block_ends(l, h.count, err);
 }

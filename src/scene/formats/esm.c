@@ -63,7 +63,8 @@ static Status read(Record *r, Lines *l, const ReadHints *hints, Err *err)
         channel_name(c, h.stream.from, h.stream.to);
     if (h.peak.from)
         channel_peak(c, h.peak.from, h.peak.to, "", 0.01);
-    c->units = h.units.from ? units_named(h.units.from, h.units.to) : 0;
+    if (h.units.from)
+        channel_unit(c, h.units.from, h.units.to);
     Lines at = *l;
     at.number = h.count.line;
     TRY(field_number(&at, h.count.from, h.count.to, 0, &form.count, err));

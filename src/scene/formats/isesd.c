@@ -35,8 +35,10 @@ static Status read_header(Lines *l, Channel *c, BlockForm *form, Err *err)
             number_behind(from, l->to, "", &form->dt);
         else if (key(l, "number of samples", &from))
             number_behind(from, l->to, "", &form->count);
-        else if (key(l, "units", &from) && find_word(from, l->to, "m/s*s"))
-            c->units |= 1u << UNIT_M_S2;
+        else if (key(l, "units", &from)) { /* of acceleration, velocity and displacement */
+            const char *comma = memchr(from, ',', (size_t)(l->to - from));
+            channel_unit(c, from, comma ? comma : l->to);
+        }
     }
     return line_begins(l, "->") ? STATUS_OK : fail_too_short(l, "line '-> ... acceleration time histories'", err);
 }

@@ -45,13 +45,18 @@ Status record_append(Record *r, const Record *from, const char *path, const char
     for (size_t k = 0; k < from->n_channels; k++) {
         Channel *c;
         char name[2 * CHANNEL_NAME_MAX], own[CHANNEL_NAME_MAX / 2 + 1], of[CHANNEL_NAME_MAX];
+        const char *slash = strrchr(member, '/');
         TRY(record_channel(r, &l, &c, err));
         *c = from->channel[k];
         c->first += offset;
         name_shorten(own, sizeof own - 1, c->name);
-        name_shorten(of, sizeof of - 4 - strlen(own), member);
-        snprintf(name, sizeof name, "%s%s%s", own, own[0] ? ", " : "", of);
-        channel_name(c, name, name + strlen(name));
+        for (int with_folder = 1; with_folder >= 0; with_folder--) {
+            name_shorten(of, sizeof of - 4 - strlen(own), with_folder || !slash ? member : slash + 1);
+            snprintf(name, sizeof name, "%s%s%s", own, own[0] ? ", " : "", of);
+            channel_name(c, name, name + strlen(name));
+            if (with_folder)
+                memcpy(c->full, c->name, sizeof c->full);
+        }
     }
     return STATUS_OK;
 }
@@ -67,6 +72,16 @@ void channel_name(Channel *c, const char *from, const char *to)
         if (!isspace((unsigned char)*from) || !isspace((unsigned char)from[1])) /* one blank for several */
             c->name[n++] = isspace((unsigned char)*from) ? ' ' : isprint((unsigned char)*from) ? *from : '?';
     c->name[n] = 0;
+}
+
+void channel_unit(Channel *c, const char *from, const char *to)
+{
+    size_t n = 0;
+    field_strip(&from, &to);
+    c->units = units_named(from, to);
+    for (; !c->units && from < to && n + 1 < sizeof c->unit; from++)
+        c->unit[n++] = isprint((unsigned char)*from) ? *from : '?';
+    c->unit[n] = 0;
 }
 
 Status record_channel(Record *r, const Lines *l, Channel **out, Err *err)

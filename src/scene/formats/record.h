@@ -10,7 +10,7 @@
 
 #define MOTION_STEP_MAX_S 1.0 /* accelerographs take 50 samples a second or more: a longer step is a mistake */
 
-enum { CHANNELS_MAX = 128, CHANNEL_NAME_MAX = 64 };
+enum { CHANNELS_MAX = 128, CHANNEL_NAME_MAX = 64, CHANNEL_UNIT_MAX = 32 };
 
 typedef struct {
     double t, a;  /* [s] where the file has times, [unit of the file] */
@@ -20,7 +20,9 @@ typedef struct {
 
 typedef struct {
     char name[CHANNEL_NAME_MAX]; /* as in the file; may be empty */
+    char full[CHANNEL_NAME_MAX]; /* in an archive: the name with the folder of its file; else empty */
     unsigned units;              /* that the file names, one bit (1 << MotionUnit) each */
+    char unit[CHANNEL_UNIT_MAX]; /* as stated, where units does not know it; else empty */
     double scale;
     double dt;           /* [s] 0: the rows have times */
     double peak;         /* [m/s2] largest |acceleration| that the header states; 0: it states none */
@@ -38,6 +40,8 @@ typedef struct {
     size_t n, capacity;
     Channel channel[CHANNELS_MAX];
     size_t n_channels;
+    int is_known;  /* what could not be read is a record of a known format */
+    int is_broken; /* a member of this archive is such a one */
 } Record;
 
 typedef struct {
@@ -72,7 +76,8 @@ extern const MotionFormat FORMAT_SAC_TEXT, FORMAT_SIMCENTER;
 /* The name in `room` bytes and a NUL: what is too long loses its middle, for beginning and end tell names apart. */
 void name_shorten(char *out, size_t room, const char *name);
 
-/* Channels and rows of `from` behind those of r; ", MEMBER" is added to their names, the member shortened to fit. */
+/* Channels and rows of `from` behind those of r; ", MEMBER" is added to their names, without folders in name and with
+ * them in full, the member shortened to fit. */
 Status record_append(Record *r, const Record *from, const char *path, const char *member, Err *err);
 
 Status record_add(Record *r, const Lines *l, Row row, Err *err);
@@ -81,6 +86,9 @@ void record_free(Record *r);
 /* A channel without a name that begins with the next row. */
 Status record_channel(Record *r, const Lines *l, Channel **out, Err *err);
 void channel_name(Channel *c, const char *from, const char *to); /* blanks and quotes around it dropped, ASCII only */
+
+/* The unit that a header states. */
+void channel_unit(Channel *c, const char *from, const char *to);
 
 /* The value behind the first colon of a line "key : value"; 0: no colon. */
 int value_behind_colon(const Lines *l, const char **from);

@@ -4,7 +4,8 @@
  *   real 0 DELTA [s]       real 1, 2 DEPMIN, DEPMAX                 integer 6 NVHDR (6 or 7)   integer 9 NPTS
  *   integer 15 IFTYPE (1: time series)   integer 35 LEVEN (1: equal steps)   word 20 KCMPNM   word 21 KNETWK
  *
- * IDEP (integer 16) should say nm/s2, and hardly any file keeps to it: the unit is asked for. */
+ * Integer 16, IDEP, may say displacement (6) or velocity (7), which are refused. That it says nm/s2 (8) hardly any file
+ * keeps to: the unit is asked for. */
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
@@ -16,12 +17,14 @@ enum {
     N_INTEGERS = 40,
     WORDS_AT = 4 * (N_REALS + N_INTEGERS),
     HEADER = WORDS_AT + 24 * 8,
+    FOOTER = 22 * 8, /* of version 7: some of the reals once more, as doubles */
     DELTA = 0,
     DEPMIN = 1,
     DEPMAX = 2,
     NVHDR = 6,
     NPTS = 9,
     IFTYPE = 15,
+    IDEP = 16,
     LEVEN = 35,
     COMPONENT_AT = WORDS_AT + 20 * 8
 };
@@ -72,8 +75,12 @@ static void check_range(Channel *c, const Record *r, double low, double high)
         c->warning = "its largest sample is not the one that its header states (DEPMIN, DEPMAX)";
 }
 
-static Status check_header(const char *path, double delta, double npts, double type, double even, Err *err)
+static Status check_header(const char *path, double delta, double npts, double type, double even, double quantity,
+                           Err *err)
 {
+    if (quantity == 6 || quantity == 7)
+        return fail(err, STATUS_BAD_DATA, "%s: not an acceleration: IDEP in its SAC header says %s", path,
+                    quantity == 6 ? "displacement" : "velocity");
     if (type != 1 || even != 1)
         return fail(err, STATUS_BAD_DATA, "%s: a SAC file of type %g that is no time series in equal steps", path,
                     type);
@@ -91,9 +98,13 @@ static Status read_binary(Record *r, const char *path, const char *bytes, size_t
     const int32_t npts = integer_at(bytes, NPTS, swapped);
     const double delta = real_at(bytes, DELTA, swapped);
     Channel *c;
-    TRY(check_header(path, delta, npts, integer_at(bytes, IFTYPE, swapped), integer_at(bytes, LEVEN, swapped), err));
+    TRY(check_header(path, delta, npts, integer_at(bytes, IFTYPE, swapped), integer_at(bytes, LEVEN, swapped),
+                     integer_at(bytes, IDEP, swapped), err));
     if (n < HEADER + 4 * (size_t)npts)
         return fail(err, STATUS_BAD_DATA, "%s: ends after %zu samples, but its header announces %d", path,
+                    (n - HEADER) / 4, npts);
+    if (n >= HEADER + 4 * ((size_t)npts + 1) && n != HEADER + 4 * (size_t)npts + FOOTER)
+        return fail(err, STATUS_BAD_DATA, "%s: holds %zu samples, more than the %d that its header announces", path,
                     (n - HEADER) / 4, npts);
     TRY(record_channel(r, &l, &c, err));
     *c = (Channel){.scale = 1, .counts = 1, .stride = 1, .first = r->n, .n = (size_t)npts};
@@ -131,7 +142,7 @@ static Status read_text(Record *r, Lines *l, const ReadHints *hints, Err *err)
     (void)hints;
     TRY(header_numbers(l, 15, N_REALS, reals, err));
     TRY(header_numbers(l, 10, N_INTEGERS, integers, err));
-    TRY(check_header(l->path, reals[DELTA], integers[NPTS], integers[IFTYPE], integers[LEVEN], err));
+    TRY(check_header(l->path, reals[DELTA], integers[NPTS], integers[IFTYPE], integers[LEVEN], integers[IDEP], err));
     TRY(record_channel(r, l, &c, err));
     c->counts = 1;
     for (int i = 0; i < WORD_LINES; i++) {

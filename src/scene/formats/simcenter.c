@@ -15,6 +15,7 @@ typedef struct {
     const Lines *l;
     unsigned units;
     const char *name;
+    double count; /* "numSteps"; 0: none is stated */
 } Place;
 
 static int recognise(Lines l)
@@ -29,6 +30,9 @@ static Status take_list(const Place *place, const json_t *list, double dt, const
     const size_t n = json_array_size(list);
     if (!(dt > 0 && dt <= MOTION_STEP_MAX_S))
         return fail(err, STATUS_BAD_DATA, "%s: SimCenter: no usable step: dT is %g", place->l->path, dt);
+    if (place->count > 0 && place->count != (double)n)
+        return fail(err, STATUS_BAD_DATA, "%s: SimCenter: '%s' has %zu samples, but numSteps announces %g",
+                    place->l->path, place->name, n, place->count);
     TRY(record_channel(place->r, place->l, &c, err));
     snprintf(name, sizeof name, "%s%s%s", place->name, *place->name && *axis ? " " : "", axis);
     channel_name(c, name, name + strlen(name));
@@ -52,6 +56,21 @@ static unsigned units_of(const json_t *o, unsigned otherwise)
     return unit && units_named(unit, unit + strlen(unit)) ? units_named(unit, unit + strlen(unit)) : otherwise;
 }
 
+/* Which of the factors of event, series and pattern multiply the samples differs from program to program. */
+static Status check_factor(const Lines *l, const json_t *o, Err *err)
+{
+    static const char *const FACTORS[] = {"factor", "scale_factor", "scaleFactor", "scale"};
+    for (size_t k = 0; k < sizeof FACTORS / sizeof FACTORS[0]; k++) {
+        const json_t *x = json_object_get(o, FACTORS[k]);
+        if (x && !(json_is_number(x) && json_number_value(x) == 1))
+            return fail(err, STATUS_BAD_DATA,
+                        "%s: SimCenter: \"%s\" is not 1; multiply the samples by it, or leave it out and set "
+                        "motion.factor",
+                        l->path, FACTORS[k]);
+    }
+    return STATUS_OK;
+}
+
 static Status search(Place place, const json_t *node, int depth, Err *err)
 {
     static const char *const LISTS[] = {"data", "data_x", "data_y", "data_z"};
@@ -70,6 +89,8 @@ static Status search(Place place, const json_t *node, int depth, Err *err)
     const json_t *name = json_object_get(node, "name"), *dt = json_object_get(node, "dT");
     place.name = json_is_string(name) ? json_string_value(name) : place.name;
     place.units = units_of(node, place.units);
+    place.count = json_number_value(json_object_get(node, "numSteps"));
+    TRY(check_factor(place.l, node, err));
     for (size_t k = 0; k < sizeof LISTS / sizeof LISTS[0] && json_is_number(dt); k++)
         if (json_is_array(json_object_get(node, LISTS[k])))
             TRY(take_list(&place, json_object_get(node, LISTS[k]), json_number_value(dt), AXES[k], err));

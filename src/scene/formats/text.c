@@ -217,13 +217,14 @@ static const struct {
     const char *word;
     MotionUnit unit;
 } UNIT_WORDS[] = {
-    {"m/s2", UNIT_M_S2},        {"m/s^2", UNIT_M_S2},       {"m/s**2", UNIT_M_S2},    {"m/s/s", UNIT_M_S2},
-    {"m_s2", UNIT_M_S2},        {"m/s\xc2\xb2", UNIT_M_S2}, {"m/s\xb2", UNIT_M_S2},   {"m/sec2", UNIT_M_S2},
-    {"m/sec^2", UNIT_M_S2},     {"m/sec**2", UNIT_M_S2},    {"m/sec/sec", UNIT_M_S2}, {"m s-2", UNIT_M_S2},
-    {"m/seg/seg", UNIT_M_S2},   {"cm/s2", UNIT_CM_S2},      {"cm/s^2", UNIT_CM_S2},   {"cm/s**2", UNIT_CM_S2},
-    {"cm/s/s", UNIT_CM_S2},     {"cm_s2", UNIT_CM_S2},      {"cm/sec2", UNIT_CM_S2},  {"cm/s\xc2\xb2", UNIT_CM_S2},
-    {"cm/s\xb2", UNIT_CM_S2},   {"gals", UNIT_CM_S2},       {"cm/sec^2", UNIT_CM_S2}, {"cm/sec**2", UNIT_CM_S2},
-    {"cm/sec/sec", UNIT_CM_S2}, {"gal", UNIT_CM_S2},        {"cm s-2", UNIT_CM_S2},   {"g", UNIT_G},
+    {"m/s2", UNIT_M_S2},        {"m/s^2", UNIT_M_S2},       {"m/s**2", UNIT_M_S2},      {"m/s/s", UNIT_M_S2},
+    {"m_s2", UNIT_M_S2},        {"m/s\xc2\xb2", UNIT_M_S2}, {"m/s\xb2", UNIT_M_S2},     {"m/sec2", UNIT_M_S2},
+    {"m/sec^2", UNIT_M_S2},     {"m/sec**2", UNIT_M_S2},    {"m/sec/sec", UNIT_M_S2},   {"m s-2", UNIT_M_S2},
+    {"m/seg/seg", UNIT_M_S2},   {"cm/s2", UNIT_CM_S2},      {"cm/s^2", UNIT_CM_S2},     {"cm/s**2", UNIT_CM_S2},
+    {"cm/s/s", UNIT_CM_S2},     {"cm_s2", UNIT_CM_S2},      {"cm/sec2", UNIT_CM_S2},    {"cm/s\xc2\xb2", UNIT_CM_S2},
+    {"cm/s\xb2", UNIT_CM_S2},   {"gals", UNIT_CM_S2},       {"cm/sec^2", UNIT_CM_S2},   {"cm/sec**2", UNIT_CM_S2},
+    {"cm/sec/sec", UNIT_CM_S2}, {"gal", UNIT_CM_S2},        {"cm s-2", UNIT_CM_S2},     {"g", UNIT_G},
+    {"m/s*s", UNIT_M_S2},       {"cm/s*s", UNIT_CM_S2},     {"cm/seg/seg", UNIT_CM_S2},
 };
 
 const char *const UNIT_NAMES[] = {MOTION_UNIT_LIST(CHOICE_WORD)};

@@ -59,7 +59,7 @@ static Status read_header(Record *r, Lines *l, Channel **c, BlockForm *form, Err
     if (!field(l, 6, &from, &to))
         return STATUS_OK;
     (*c)->counts = find_word(from, to, "count") != NULL;
-    (*c)->units = units_named(from, to);
+    channel_unit(*c, from, to);
     return STATUS_OK;
 }
 
