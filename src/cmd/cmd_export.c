@@ -5,11 +5,6 @@
 #include "store/output.h"
 #include "store/run_read.h"
 
-typedef struct {
-    const Args *args;
-    Output o;
-} AllOfRun;
-
 /* A well-spread choice of the front: the knee first, then again and again the design farthest from those chosen. */
 static Status write_selected(const Args *args, const Run *run, FILE *f, Err *err)
 {
@@ -26,59 +21,41 @@ static Status write_selected(const Args *args, const Run *run, FILE *f, Err *err
     return STATUS_OK;
 }
 
-static Status write_tables(const Args *args, const Run *run, Err *err)
+static int is_of_all(const Args *args)
+{
+    return args_has(args, "--all") && !args_has(args, "--select");
+}
+
+static Status write_table(const Args *args, const Run *run, Err *err)
 {
     Output o;
-    if (args_has(args, "--json")) {
-        TRY(export_json(stdout, run, err));
-        if (!args_has(args, "--csv"))
-            return STATUS_OK;
-    }
+    Status status = STATUS_OK;
     TRY(output_open(&o, args_value(args, "--csv"), err));
-    if (args_has(args, "--select")) {
-        Status status = write_selected(args, run, o.stream, err);
-        if (status != STATUS_OK) {
-            output_abandon(&o);
-            return status;
-        }
-    } else if (args_has(args, "--all")) {
-        export_evaluations_header(o.stream, &run->schema);
-        export_evaluations(o.stream, &run->table, 0, 1);
-    } else {
+    if (is_of_all(args))
+        status = run_print_evaluations(args->operand, o.stream, err);
+    else if (args_has(args, "--select"))
+        status = write_selected(args, run, o.stream, err);
+    else
         export_front(o.stream, run);
-    }
-    return output_close(&o, err);
-}
-
-static Status open_target(const Run *run, FILE **f, void *user, Err *err)
-{
-    AllOfRun *all = user;
-    (void)run;
-    TRY(output_open(&all->o, args_value(all->args, "--csv"), err));
-    *f = all->o.stream;
-    return STATUS_OK;
-}
-
-/* As the rows are read: a run of any size needs no memory. */
-static Status write_all(const Args *args, Err *err)
-{
-    AllOfRun all = {.args = args};
-    const Status status = run_print_evaluations(args->operand, open_target, &all, err);
     if (status == STATUS_OK)
-        return output_close(&all.o, err);
-    output_abandon(&all.o);
+        return output_close(&o, err);
+    output_abandon(&o);
     return status;
 }
 
+/* The table of all evaluations is written as they are read: it needs no run in memory. */
 static Status run(const Args *args, Err *err)
 {
+    Run run = {0};
+    Status status = STATUS_OK;
     if (!args_has(args, "--csv") && !args_has(args, "--json"))
         return fail(err, STATUS_USAGE, "--csv FILE is missing: where the table goes (or --json)");
-    if (args_has(args, "--all") && !args_has(args, "--select") && !args_has(args, "--json"))
-        return write_all(args, err);
-    Run run;
-    TRY(run_read(&run, args->operand, err));
-    const Status status = write_tables(args, &run, err);
+    if (args_has(args, "--json") || !is_of_all(args))
+        TRY(run_read(&run, args->operand, err));
+    if (args_has(args, "--json"))
+        status = export_json(stdout, &run, err);
+    if (status == STATUS_OK && args_has(args, "--csv"))
+        status = write_table(args, &run, err);
     run_free(&run);
     return status;
 }

@@ -18,7 +18,7 @@ static void put_evaluations(FILE *f, const void *run)
 {
     const Run *r = run;
     export_evaluations_header(f, &r->schema);
-    export_evaluations(f, &r->table, 0, 0);
+    export_evaluations(f, &r->table);
 }
 
 static void put_front(FILE *f, const void *run)

@@ -58,11 +58,11 @@ void export_evaluations_header(FILE *f, const Schema *schema)
     write_names(f, "id,generation,kind,outcome,reason", schema, schema->n_extra, 0);
 }
 
-void export_evaluations(FILE *f, const EvaluationTable *t, size_t first, int unfinished_too)
+void export_evaluations(FILE *f, const EvaluationTable *t)
 {
-    for (size_t i = first; i < t->n; i++) {
+    for (size_t i = 0; i < t->n; i++) {
         const Evaluation *e = &t->row[i];
-        if (e->kind == KIND_UNFINISHED && !unfinished_too)
+        if (e->kind == KIND_UNFINISHED)
             continue;
         fprintf(f, "%ld,%ld,%s,%s,%s", e->id, e->generation, kind_word(e->kind), outcome_word(e->outcome), e->reason);
         print_cells(f, t->n_var, e->x);

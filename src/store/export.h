@@ -16,10 +16,9 @@ void export_design(FILE *f, const Run *run, size_t row);
 void export_design_as(FILE *f, const Schema *schema, const Evaluation *e, const double means[]); /* means (n_obj) */
 void export_front(FILE *f, const Run *run);
 
-/* Rows from `first` on, of finished generations and polished designs: evaluations.csv. With unfinished_too also what is
- * stored of the generation that is under way or was cut short, kind `unfinished`. Rows come without the header. */
+/* evaluations.csv: rows of finished generations and polished designs, without the header. */
 void export_evaluations_header(FILE *f, const Schema *schema);
-void export_evaluations(FILE *f, const EvaluationTable *table, size_t first, int unfinished_too);
+void export_evaluations(FILE *f, const EvaluationTable *table);
 
 /* Settings, columns, evaluations (unfinished ones too), front and generations as one object. */
 Status export_json(FILE *f, const Run *run, Err *err);

@@ -20,8 +20,7 @@ typedef struct {
     Run *run;
     Database *d;
     RunPart part;
-    RunOpenFn open; /* for the evaluations, where they are printed */
-    void *user;
+    FILE *out;                /* of the evaluations, where they are printed */
     size_t row;               /* at or before the next design of the front */
     const char *digest;       /* the column of that name; NULL in a database of an earlier format */
     uint64_t front;           /* digest of the designs on the search's front */
@@ -338,18 +337,16 @@ Status run_read(Run *run, const char *folder, Err *err)
 static Status print_evaluations(Loading *l, Err *err)
 {
     size_t n;
-    FILE *out;
     TRY(load_head(l, err));
     const Schema *s = &l->run->schema;
-    TRY(l->open(l->run, &out, l->user, err));
-    export_evaluations_header(out, s);
-    return rows_print(l->d, out, (RowShape){s->n_var, s->n_obj, s->n_extra}, 0, LONG_MAX, 1, &n, err);
+    export_evaluations_header(l->out, s);
+    return rows_print(l->d, l->out, (RowShape){s->n_var, s->n_obj, s->n_extra}, 0, LONG_MAX, 1, &n, err);
 }
 
-Status run_print_evaluations(const char *folder, RunOpenFn open, void *user, Err *err)
+Status run_print_evaluations(const char *folder, FILE *f, Err *err)
 {
     Run head = {0};
-    Loading l = {.run = &head, .open = open, .user = user};
+    Loading l = {.run = &head, .out = f};
     Status status = open_to_read(&l.d, folder, err);
     if (status == STATUS_OK)
         status = load_at_once(&l, print_evaluations, err);

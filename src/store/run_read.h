@@ -26,11 +26,9 @@ typedef enum {
 Status run_read_part(Run *run, const char *folder, RunPart part, Err *err);
 Status run_load_part(Run *run, Database *d, const char *folder, RunPart part, Err *err);
 
-/* All evaluations as export_evaluations (store/export.h) writes them, unfinished ones too, with the header, to where `open`
- * says, which is given the settings and the schema. No more than a row is kept in memory; where it fails, a part may be
- * written. */
-typedef Status (*RunOpenFn)(const Run *head, FILE **out, void *user, Err *err);
-Status run_print_evaluations(const char *folder, RunOpenFn open, void *user, Err *err);
+/* All evaluations as lines of evaluations.csv, unfinished ones too, with the header. No more than a row is kept in memory; where
+ * it fails, a part may be written. */
+Status run_print_evaluations(const char *folder, FILE *f, Err *err);
 
 /* Check values (store/digest.h) of a generation and of the state of the search at its end. */
 long run_generation_digest(const RunGeneration *g);
