@@ -21,43 +21,36 @@ static Status write_selected(const Args *args, const Run *run, FILE *f, Err *err
     return STATUS_OK;
 }
 
-static int is_of_all(const Args *args)
+static Status select_designs(const Args *args, FILE *f, Err *err)
 {
-    return args_has(args, "--all") && !args_has(args, "--select");
+    Run run;
+    TRY(run_read(&run, args->operand, err));
+    const Status status = write_selected(args, &run, f, err);
+    run_free(&run);
+    return status;
 }
 
-static Status write_table(const Args *args, const Run *run, Err *err)
+/* Variables go from the database to the table as they are stored: they need no memory. */
+static Status write_table(const Args *args, Err *err)
 {
     Output o;
-    Status status = STATUS_OK;
     TRY(output_open(&o, args_value(args, "--csv"), err));
-    if (is_of_all(args))
-        status = run_print_evaluations(args->operand, o.stream, err);
-    else if (args_has(args, "--select"))
-        status = write_selected(args, run, o.stream, err);
-    else
-        export_front(o.stream, run);
+    const Status status = args_has(args, "--select") ? select_designs(args, o.stream, err)
+                          : args_has(args, "--all")  ? run_print_evaluations(args->operand, o.stream, err)
+                                                     : export_front_of(o.stream, args->operand, err);
     if (status == STATUS_OK)
         return output_close(&o, err);
     output_abandon(&o);
     return status;
 }
 
-/* The table of all evaluations is written as they are read: it needs no run in memory. */
 static Status run(const Args *args, Err *err)
 {
-    Run run = {0};
-    Status status = STATUS_OK;
     if (!args_has(args, "--csv") && !args_has(args, "--json"))
         return fail(err, STATUS_USAGE, "--csv FILE is missing: where the table goes (or --json)");
-    if (args_has(args, "--json") || !is_of_all(args))
-        TRY(run_read(&run, args->operand, err));
     if (args_has(args, "--json"))
-        status = export_json(stdout, &run, err);
-    if (status == STATUS_OK && args_has(args, "--csv"))
-        status = write_table(args, &run, err);
-    run_free(&run);
-    return status;
+        TRY(export_json_of(stdout, args->operand, err));
+    return args_has(args, "--csv") ? write_table(args, err) : STATUS_OK;
 }
 
 static const ArgOption OPTIONS[] = {

@@ -4,6 +4,8 @@
 
 #include "base/json.h"
 #include "store/output.h"
+#include "store/rows.h"
+#include "store/run_read.h"
 #include "settings/settings.h"
 
 static void write_names(FILE *f, const char *before, const Schema *schema, size_t n_extra, int with_sd)
@@ -27,10 +29,8 @@ void export_front_header(FILE *f, const Schema *schema)
     write_names(f, "id", schema, 0, schema->has_spread);
 }
 
-void export_design_as(FILE *f, const Schema *schema, const Evaluation *e, const double means[])
+static void put_results(FILE *f, const Schema *schema, const Evaluation *e, const double means[])
 {
-    fprintf(f, "%ld", e->id);
-    print_cells(f, schema->n_var, e->x);
     print_cells(f, schema->n_obj, means);
     if (schema->has_spread) {
         print_cells(f, schema->n_obj, e->sd);
@@ -39,6 +39,13 @@ void export_design_as(FILE *f, const Schema *schema, const Evaluation *e, const 
             fprintf(f, "%d", e->replicates);
     }
     fputc('\n', f);
+}
+
+void export_design_as(FILE *f, const Schema *schema, const Evaluation *e, const double means[])
+{
+    fprintf(f, "%ld", e->id);
+    print_cells(f, schema->n_var, e->x);
+    put_results(f, schema, e, means);
 }
 
 void export_design(FILE *f, const Run *run, size_t row)
@@ -51,6 +58,38 @@ void export_front(FILE *f, const Run *run)
     export_front_header(f, &run->schema);
     for (size_t i = 0; i < run->n_front; i++)
         export_design(f, run, run->front[i]);
+}
+
+static Status no_number(const Run *run, size_t row, Err *err)
+{
+    return fail(err, STATUS_IO, "%s: is damaged: a number of evaluation %ld cannot be read", run->folder,
+                run->table.row[row].id);
+}
+
+static Status begin_front(const Run *run, void *f, Err *err)
+{
+    (void)err;
+    export_front_header(f, &run->schema);
+    return STATUS_OK;
+}
+
+static Status visit_front(const Run *run, size_t row, const char *x, const char *extra, void *f, Err *err)
+{
+    const Evaluation *e = &run->table.row[row];
+    (void)extra;
+    if (!run->place[row].on_front)
+        return STATUS_OK;
+    fprintf(f, "%ld", e->id);
+    if (x[0] != '[' || !rows_put_texts(f, x, run->schema.n_var, ",", ""))
+        return no_number(run, row, err);
+    put_results(f, &run->schema, e, run_f(run, row));
+    return STATUS_OK;
+}
+
+Status export_front_of(FILE *f, const char *folder, Err *err)
+{
+    static const RunVisitor VISITOR = {begin_front, visit_front, NULL};
+    return run_visit(folder, &VISITOR, f, err);
 }
 
 void export_evaluations_header(FILE *f, const Schema *schema)
@@ -129,19 +168,22 @@ static void put_list(FILE *f, const char *key, size_t n, const double values[], 
         fputs("null", f);
 }
 
-/* In the fewest digits that read back as the same numbers. */
-static int put_evaluation(FILE *f, const char *before, const Run *run, size_t i)
+/* Numbers in the fewest digits that read back as the same. */
+static Status visit_evaluation(const Run *run, size_t i, const char *x, const char *extra, void *user, Err *err)
 {
+    FILE *f = user;
     const Evaluation *e = &run->table.row[i];
     const Schema *s = &run->schema;
     int failed = 0;
-    fprintf(f, "%s{\"id\":%ld,\"generation\":%ld,\"kind\":\"%s\",\"outcome\":\"%s\",\"reason\":", before, e->id,
-            e->generation, kind_word(e->kind), outcome_word(e->outcome));
+    fprintf(f, "%s{\"id\":%ld,\"generation\":%ld,\"kind\":\"%s\",\"outcome\":\"%s\",\"reason\":", i == 0 ? "\n" : ",\n",
+            e->id, e->generation, kind_word(e->kind), outcome_word(e->outcome));
     if (e->reason[0])
         failed = put_value(f, "", json_words(e->reason));
     else
         fputs("\"\"", f);
-    put_list(f, "x", s->n_var, e->x, 1);
+    fputs(",\"x\":", f);
+    int known = x[0] == '[' && rows_put_texts(f, x, s->n_var, "[", "null");
+    fputc(']', f);
     put_list(f, "f", s->n_obj, e->f, isfinite(e->f[0]));
     fprintf(f, ",\"on_front\":%s", run->place[i].on_front ? "true" : "false");
     put_list(f, "sd", s->n_obj, e->sd, is_any_known(s->n_obj, e->sd));
@@ -149,10 +191,15 @@ static int put_evaluation(FILE *f, const char *before, const Run *run, size_t i)
         put_list(f, "mean", s->n_obj, run_f(run, i), 1);
     if (s->has_spread)
         fprintf(f, ",\"replicates\":%d", e->replicates);
-    if (s->n_extra > 0)
-        put_list(f, "measures", s->n_extra, e->extra, 1);
+    if (s->n_extra > 0) {
+        fputs(",\"measures\":", f);
+        known = rows_put_texts(f, extra, s->n_extra, "[", "null") && known;
+        fputc(']', f);
+    }
     fputc('}', f);
-    return failed;
+    if (!known)
+        return no_number(run, i, err);
+    return failed ? fail(err, STATUS_NO_MEMORY, "no memory for the run as JSON") : STATUS_OK;
 }
 
 static json_t *json_generation(const RunGeneration *g)
@@ -163,16 +210,28 @@ static json_t *json_generation(const RunGeneration *g)
                      "hypervolume", json_number(g->hypervolume));
 }
 
-Status export_json(FILE *f, const Run *run, Err *err)
+static Status begin_json(const Run *run, void *user, Err *err)
 {
+    FILE *f = user;
     int failed = put_value(f, "{\"settings\":", json_settings(run->settings));
     failed |= put_value(f, ",\n\"columns\":", json_columns(&run->schema));
     fputs(",\n\"evaluations\":[", f);
-    for (size_t i = 0; i < run->table.n; i++)
-        failed |= put_evaluation(f, i == 0 ? "\n" : ",\n", run, i);
+    return failed ? fail(err, STATUS_NO_MEMORY, "no memory for the run as JSON") : STATUS_OK;
+}
+
+static Status end_json(const Run *run, void *user, Err *err)
+{
+    FILE *f = user;
+    int failed = 0;
     fputs("],\n\"generations\":[", f);
     for (size_t g = 0; g < run->n_generations; g++)
         failed |= put_value(f, g == 0 ? "\n" : ",\n", json_generation(&run->generation[g]));
     fputs("]}\n", f);
     return failed ? fail(err, STATUS_NO_MEMORY, "no memory for the run as JSON") : STATUS_OK;
+}
+
+Status export_json_of(FILE *f, const char *folder, Err *err)
+{
+    static const RunVisitor VISITOR = {begin_json, visit_evaluation, end_json};
+    return run_visit(folder, &VISITOR, f, err);
 }

@@ -20,7 +20,9 @@ void export_front(FILE *f, const Run *run);
 void export_evaluations_header(FILE *f, const Schema *schema);
 void export_evaluations(FILE *f, const EvaluationTable *table);
 
-/* Settings, columns, evaluations (unfinished ones too), front and generations as one object. */
-Status export_json(FILE *f, const Run *run, Err *err);
+/* The same of a run whose variables pass by; settings, columns, evaluations (unfinished ones too), front and generations as one
+ * object of JSON. */
+Status export_front_of(FILE *f, const char *folder, Err *err);
+Status export_json_of(FILE *f, const char *folder, Err *err);
 
 #endif

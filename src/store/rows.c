@@ -327,16 +327,16 @@ Status rows_read(Database *db, EvaluationTable *table, long first, long last, Er
 
 /* -- as lines ------------------------------------------------------------------------------------------------------ */
 
-/* n cells, each behind a comma, of "[1,2.5,null]"; empty ones for what is not there. Only what may be of a number goes out;
- * 0: there is something else. */
-static int print_texts(FILE *f, const char *list, size_t n)
+int rows_put_texts(FILE *f, const char *list, size_t n, const char *before, const char *missing)
 {
     static const char NUMBER[] = "0123456789.-+e";
     const char *at = list[0] ? list + 1 : list;
     for (size_t i = 0; i < n; i++) {
         const size_t length = strspn(at, NUMBER);
-        putc_unlocked(',', f);
+        fputs_unlocked(i == 0 ? before : ",", f);
         fwrite_unlocked(at, 1, length, f);
+        if (length == 0)
+            fputs_unlocked(missing, f);
         at += length == 0 && strncmp(at, "null", 4) == 0 ? 4 : length;
         if (*at == ',')
             at++;
@@ -344,6 +344,11 @@ static int print_texts(FILE *f, const char *list, size_t n)
             return 0;
     }
     return *at == 0 || *at == ']';
+}
+
+static int put_cells(FILE *f, const char *list, size_t n)
+{
+    return rows_put_texts(f, list, n, ",", "");
 }
 
 typedef struct {
@@ -366,8 +371,7 @@ static Status print_row(sqlite3_stmt *row, void *user, Err *err)
         return STATUS_OK;
     TRY(parse_outcome(&p->reading, &t, &e, err));
     fprintf(p->f, "%ld,%ld,%s,%s,%s", e.id, e.generation, kind_word(e.kind), outcome_word(e.outcome), e.reason);
-    if (!print_texts(p->f, t.x, s->n_var) || !print_texts(p->f, t.f, s->n_obj) ||
-        !print_texts(p->f, t.extra, s->n_extra))
+    if (!put_cells(p->f, t.x, s->n_var) || !put_cells(p->f, t.f, s->n_obj) || !put_cells(p->f, t.extra, s->n_extra))
         return damaged(&p->reading, "a number", e.id, err);
     putc_unlocked('\n', p->f);
     ++*p->n;
@@ -379,4 +383,20 @@ Status rows_print(Database *db, FILE *f, RowShape shape, long first, long last, 
     Printing p = {{.db = db}, f, shape, unfinished_too, n, {0}};
     *n = 0;
     return each_row(&p.reading, print_row, &p, first, last, err);
+}
+
+typedef struct {
+    RowTextFn take;
+    void *user;
+} Texts;
+
+static Status take_texts(sqlite3_stmt *row, void *user, Err *err)
+{
+    const Texts *t = user;
+    return t->take((long)sqlite3_column_int64(row, 0), column_text(row, 1), column_text(row, 2), t->user, err);
+}
+
+Status rows_each_text(Database *db, RowTextFn take, void *user, Err *err)
+{
+    return database_each(db, "SELECT id, x, extra FROM evaluation ORDER BY id", take_texts, &(Texts){take, user}, err);
 }

@@ -30,7 +30,16 @@ Status rows_read(Database *db, EvaluationTable *table, long first, long last, Er
 
 /* The same as lines of evaluations.csv, the texts as this program has written them; n: how many. A row that is not
  * finished is one where it is wanted. */
-Status rows_print(Database *db, FILE *f, RowShape shape, long first, long last, int unfinished_too, size_t *n, Err *err);
+Status rows_print(Database *db, FILE *f, RowShape shape, long first, long last, int unfinished_too, size_t *n,
+                  Err *err);
+
+/* Variables and further measures of every row, in the order of their ids, as they are stored; unchecked. */
+typedef Status (*RowTextFn)(long id, const char *x, const char *extra, void *user, Err *err);
+Status rows_each_text(Database *db, RowTextFn take, void *user, Err *err);
+
+/* n numbers of such a list, `before` the first and a comma before every other one; `missing`: for one that is not known. Only
+ * what may be of a number goes out; 0: there is something else. */
+int rows_put_texts(FILE *f, const char *list, size_t n, const char *before, const char *missing);
 
 /* Columns of any query. */
 const char *column_text(sqlite3_stmt *row, int column);           /* NULL: "" */

@@ -20,7 +20,9 @@ typedef struct {
     Run *run;
     Database *d;
     RunPart part;
-    FILE *out;                /* of the evaluations, where they are printed */
+    FILE *out; /* of the evaluations, where they are printed */
+    const RunVisitor *visitor;
+    void *user;               /* of the visitor */
     size_t row;               /* at or before the next design of the front */
     const char *digest;       /* the column of that name; NULL in a database of an earlier format */
     uint64_t front;           /* digest of the designs on the search's front */
@@ -334,6 +336,45 @@ Status run_read(Run *run, const char *folder, Err *err)
     return run_read_part(run, folder, RUN_WHOLE, err);
 }
 
+static Status visit_row(long id, const char *x, const char *extra, void *loading, Err *err)
+{
+    Loading *l = loading;
+    const size_t row = l->row++;
+    if (row >= l->run->table.n || l->run->table.row[row].id != id)
+        return fail(err, STATUS_IO, "%s: is damaged: evaluation %ld is not where it was", database_path(l->d), id);
+    return l->visitor->row(l->run, row, x, extra, l->user, err);
+}
+
+static Status visit(Loading *l, Err *err)
+{
+    const RunVisitor *v = l->visitor;
+    TRY(load(l, err));
+    if (v->begin)
+        TRY(v->begin(l->run, l->user, err));
+    l->row = 0;
+    TRY(rows_each_text(l->d, visit_row, l, err));
+    return v->end ? v->end(l->run, l->user, err) : STATUS_OK;
+}
+
+/* As load_at_once does it, from the folder; nothing stays. */
+static Status look_at_once(Loading *l, const char *folder, Status (*look)(Loading *l, Err *err), Err *err)
+{
+    Run run = {0};
+    l->run = &run;
+    Status status = open_to_read(&l->d, folder, err);
+    if (status == STATUS_OK)
+        status = load_at_once(l, look, err);
+    run_free(&run);
+    database_close(l->d);
+    return folder_advise(folder, status, err);
+}
+
+Status run_visit(const char *folder, const RunVisitor *visitor, void *user, Err *err)
+{
+    Loading l = {.part = RUN_RESULTS, .visitor = visitor, .user = user};
+    return look_at_once(&l, folder, visit, err);
+}
+
 static Status print_evaluations(Loading *l, Err *err)
 {
     size_t n;
@@ -345,12 +386,6 @@ static Status print_evaluations(Loading *l, Err *err)
 
 Status run_print_evaluations(const char *folder, FILE *f, Err *err)
 {
-    Run head = {0};
-    Loading l = {.run = &head, .out = f};
-    Status status = open_to_read(&l.d, folder, err);
-    if (status == STATUS_OK)
-        status = load_at_once(&l, print_evaluations, err);
-    run_free(&head);
-    database_close(l.d);
-    return folder_advise(folder, status, err);
+    Loading l = {.out = f};
+    return look_at_once(&l, folder, print_evaluations, err);
 }

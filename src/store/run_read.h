@@ -26,6 +26,15 @@ typedef enum {
 Status run_read_part(Run *run, const char *folder, RunPart part, Err *err);
 Status run_load_part(Run *run, Database *d, const char *folder, RunPart part, Err *err);
 
+/* A run whose results are read (RUN_RESULTS) and whose variables pass by, row for row, as they are stored (store/rows.h), all in
+ * one state. A null function is not called. */
+typedef struct {
+    Status (*begin)(const Run *run, void *user, Err *err);
+    Status (*row)(const Run *run, size_t row, const char *x, const char *extra, void *user, Err *err);
+    Status (*end)(const Run *run, void *user, Err *err);
+} RunVisitor;
+Status run_visit(const char *folder, const RunVisitor *visitor, void *user, Err *err);
+
 /* All evaluations as lines of evaluations.csv, unfinished ones too, with the header. No more than a row is kept in memory; where
  * it fails, a part may be written. */
 Status run_print_evaluations(const char *folder, FILE *f, Err *err);
