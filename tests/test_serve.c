@@ -14,8 +14,11 @@
 #include "serve/watch.h"
 
 enum { ANSWER_MAX = 4 << 20 };
-static const char SMALL[] = "optimize configs/quick.ini --set search.max_evals=60 --set sim.duration_s=15 --set "
-                            "search.population=16 --set search.initial=40 --threads 1";
+/* Without a browser a shorter motion does. */
+#define SMALL_RUN                                                                                                      \
+    "optimize configs/quick.ini --set search.max_evals=60 --set search.population=16 --set search.initial=40 "         \
+    "--threads 1"
+static const char *const SMALL = SANITIZED ? SMALL_RUN " --set sim.duration_s=15" : SMALL_RUN;
 
 typedef struct {
     pid_t pid; /* 0: this process */
@@ -761,7 +764,7 @@ static int begin(void **state)
     static const char *const RUNS[] = {
         "--out @/runs/a", "--out @/runs/b --set search.seed=2",
         "--out @/runs/c --set problem.kind=dtlz2 --set problem.variables=4 --set problem.objectives=2",
-        "--out @/runs/d --set search.max_evals=24 --set search.initial=16 --set "
+        "--out @/runs/d --set search.max_evals=24 --set sim.duration_s=12 --set search.initial=16 --set "
         "search.population=8 --set sim.replicates=2 --set sim.gap_tolerance_m=0.003 "
         "--set uncertain.restitution=0.05 --set motion.records=builtin:elcentro-like --set motion.pga_g=0 --set "
         "motion.factor=0.5"};
