@@ -26,9 +26,10 @@ static const char PORTAL[] = "# a portal in kip and inches\n"
                              "model BasicBuilder -ndm 2 -ndf 3\n"
                              "set E 29000.; set H [expr 12.*13] ;# storey\n"
                              "set L 240\n"
-                             "node 1 0 0\nnode 2 $L 0.0\nnode 3 0 $H -mass 0.2 0.2 0\nnode 4 $L $H\n"
+                             "node 1 0 0\nnode 2 $L 0.0\nnode 3 0 $H -mass 0.7 0.2 0\nnode 4 $L $H\n"
                              "fix 1 1 1 1\nfix 2 1 1 1\n"
                              "mass 4 [expr {(0.1+0.3)/2}] 0.0 0.\n"
+                             "mass 3 0.2 0.2 0; # replaces that of the node\n"
                              "equalDOF 3 4 1\n"
                              "geomTransf Linear 1\n"
                              "element elasticBeamColumn 1 1 3 1e6 $E 1000. 1\n"
@@ -124,15 +125,52 @@ static void test_every_command_outside_the_subset_is_refused_with_its_line(void 
         {"node 1 0 [expr 1/0]\n", "is no number"},
         {"fix 7 1 1 1\n", "model.tcl:1: fix: there is no node 7 above"},
         {"node 1 0 0\nnode 2 0 1\nequalDOF 1 2 4\n", "model.tcl:3: equalDOF: '4' is no degree of freedom"},
-        {"node 1 0 0 -mass 1 1\n", "model.tcl:1: node: '-mass' is not supported"},
+        {"node 1 0 0 -mass 1 1\n", "model.tcl:1: node: '' is no number"},
         {"node 1 0 0\nnode 2 0 1\nelement elasticBeamColumn 1 1 2 1 1 1 1 -foo\n", "'-foo' is not supported"},
-        {"node 1 0 0\nnode 2 0 1\nelement elasticBeamColumn 1 1 2 0 1 1 1\n", "A, E and I must be above 0"},
-        {"node 1 0 0\n", "holds no element"},
+        {"node 1 0 0\nnode 2 0 1\ngeomTransf Linear 1\nelement elasticBeamColumn 1 1 2 0 1 1 1\n",
+         "A, E and I must be above 0"},
+        {"model BasicBuilder -ndm 2 -ndf 3\nnode 1 0 0\n", "holds no element"},
+        {"node 1 0 0\n", "model.tcl:1: node: 'model BasicBuilder -ndm 2 -ndf 3' must stand above"},
+        {"node 1 0 0\nnode 1 0 1\n", "model.tcl:2: node: 1 is there twice"},
+        {"node 1 0 0\nwipe\n", "model.tcl:2: wipe: only above the nodes"},
+        {"node 1 0 0\nmass 1 1 1 -0.1\n", "model.tcl:2: mass: a mass of -0.1; it must not be negative"},
+        {"node 1 0 0\nmass 1 1 1 1 5\n", "model.tcl:2: mass: '5' is not supported"},
+        {"node 1 0 0\nfix 1 1 1 1 0\n", "model.tcl:2: fix: '0' is not supported"},
+        {"node 1 0 0\nnode 2 0 1\nelement elasticBeamColumn 1 1 2 1 1 1 7\n", "no geomTransf 7 above"},
+        {"geomTransf Linear 1\nnode 1 0 0\nnode 2 0 1\nelement elasticBeamColumn 4 1 2 1 1 1 1\n"
+         "element elasticBeamColumn 4 1 2 1 1 1 1\n",
+         "model.tcl:5: element 4: is there twice"},
+        {"node 1 0 0\nnode 2 0 1\nelement elasticBeamColumn 1 1 2 1 1 1 1 -release 4\n", "-release 4 is none of 0"},
+        {"node 1 0 0\nnode 2 0 1\nelement elasticBeamColumn 1 1 2 1 1 1 1 -mass -1\n", "mass of -1; it must not"},
         {"pattern\x1b(0 Plain\n", "'pattern\\x1B(0'"},
     };
     for (size_t i = 0; i < sizeof BAD / sizeof BAD[0]; i++)
         expect_import(65, BAD[i][1], BAD[i][0]);
     expect_import(65, "2 commands are outside", "recorder a\npattern b\n");
+}
+
+static const char CANTILEVER[] = "model BasicBuilder -ndm 2 -ndf 3\ngeomTransf Linear 1\n"
+                                 "set H [expr 7/2*1000] ;# 3000, as in Tcl\nset B [expr -7/2*-1000.] ;# 4000\n"
+                                 "node 1 0 0\nnode 2 $B 0\nnode 3 0 $H -mass 1e7 1e7 0\nnode 4 $B $H\n"
+                                 "fix 1 1 1 1\nfix 2 1 1 1\n"
+                                 "element elasticBeamColumn 1 1 3 1e3 2e8 1e6 1\n"
+                                 "element elasticBeamColumn 2 2 4 1e3 2e8 1e6 1\n";
+
+static void test_integers_divide_as_integers_and_a_failed_import_leaves_no_folder(void **state)
+{
+    (void)state;
+    char model[1200];
+    snprintf(model, sizeof model, "%selement elasticBeamColumn 3 3 4 1e3 2e8 1e6 1\n", CANTILEVER);
+    Building b = import("whole", "N_m", model);
+    assert_true(b.storey_m[0] == 3000);
+    building_free(&b);
+    char *text = read_in_place("whole/nodes.csv");
+    assert_non_null(strstr(text, "4,4000,3000"));
+    free(text);
+    expect_import(65, "no floors", CANTILEVER);
+    char *folder = in_place("refused");
+    assert_int_not_equal(access(folder, F_OK), 0);
+    free(folder);
 }
 
 static void test_an_import_wants_units_and_an_empty_place(void **state)
@@ -154,6 +192,7 @@ int main(void)
         cmocka_unit_test(test_a_portal_in_kip_and_inches_has_its_textbook_stiffness_in_newtons),
         cmocka_unit_test(test_the_20_storey_frame_as_a_model_gives_the_same_matrices),
         cmocka_unit_test(test_every_command_outside_the_subset_is_refused_with_its_line),
+        cmocka_unit_test(test_integers_divide_as_integers_and_a_failed_import_leaves_no_folder),
         cmocka_unit_test(test_an_import_wants_units_and_an_empty_place),
     };
     return cmocka_run_group_tests(tests, make_place, clear_place);

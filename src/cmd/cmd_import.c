@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "cmd/commands.h"
 #include "scene/building.h"
@@ -9,28 +10,50 @@
 #include "settings/settings.h"
 
 /* What was written, read back as a study reads it. */
-static Status sum_up(const char *folder, Err *err)
+static Status sum_up(const Frame *f, const char *folder, Err *err)
 {
     Settings s;
     Building b;
     settings_defaults(&s);
     snprintf(s.building.model, sizeof s.building.model, "%s", folder);
     TRY(building_load(&b, &s.building, err));
-    printf("%d floors, first period %.4g s; `imtet building %s` has more\n", b.n, 2 * M_PI / b.omega[0], folder);
+    printf("%s: %d nodes, %d elements, %d sections, %d ties\n", folder, f->n_nodes, f->n_elements, f->n_sections,
+           f->n_ties);
+    printf("%d floor%s, first period %.4g s; `imtet building %s` has more\n", b.n, b.n == 1 ? "" : "s",
+           2 * M_PI / b.omega[0], folder);
     building_free(&b);
     return STATUS_OK;
+}
+
+/* Of what an import that failed has made. */
+static void remove_folder(const char *folder)
+{
+    static const char *const SHEETS[] = {"nodes.csv", "sections.csv", "elements.csv", "masses.csv", "ties.csv"};
+    for (size_t i = 0; i < sizeof SHEETS / sizeof SHEETS[0]; i++) {
+        char path[OPTION_TEXT_MAX + 16];
+        snprintf(path, sizeof path, "%s/%s", folder, SHEETS[i]);
+        unlink(path);
+    }
+    rmdir(folder);
+}
+
+static Status fill_folder(const Frame *f, const char *folder, Err *err)
+{
+    TRY(frame_write(f, folder, err));
+    return sum_up(f, folder, err);
 }
 
 static Status write_folder(const Frame *f, const char *folder, Err *err)
 {
     if (strlen(folder) >= OPTION_TEXT_MAX)
         return fail(err, STATUS_USAGE, "%.60s...: the path is too long", folder);
-    if (mkdir(folder, 0777) != 0 && errno != EEXIST)
+    const int is_new = mkdir(folder, 0777) == 0;
+    if (!is_new && errno != EEXIST)
         return fail(err, STATUS_IO, "%s: %s", folder, strerror(errno));
-    TRY(frame_write(f, folder, err));
-    printf("%s: %d nodes, %d elements, %d sections, %d ties\n", folder, f->n_nodes, f->n_elements, f->n_sections,
-           f->n_ties);
-    return sum_up(folder, err);
+    const Status status = fill_folder(f, folder, err);
+    if (status != STATUS_OK && is_new)
+        remove_folder(folder);
+    return status;
 }
 
 static Status run(const Args *args, Err *err)

@@ -24,11 +24,17 @@ const ModelUnits *model_units(const char *word)
 
 /* ---- words ---------------------------------------------------------------------------------------------------- */
 
-enum { WORDS_MAX = 40, WORD_MAX = 200, VARIABLES_MAX = 400 };
+enum { WORDS_MAX = 40, WORD_MAX = 200, VARIABLES_MAX = 400, TRANSFORMATIONS_MAX = 100 };
+
+/* As in Tcl integers divide as integers. */
+typedef struct {
+    double value;
+    int whole;
+} Number;
 
 typedef struct {
     char name[SHEET_NAME_MAX];
-    double value;
+    Number number;
 } Variable;
 
 typedef struct {
@@ -36,8 +42,9 @@ typedef struct {
     int line, next_line;   /* of the command at hand; of `at` */
     int n;
     char word[WORDS_MAX][WORD_MAX]; /* (n) of the command */
-    int n_variables;
+    int n_variables, n_transformations, has_model;
     Variable variable[VARIABLES_MAX];
+    double transformation[TRANSFORMATIONS_MAX]; /* (n_transformations) tags */
     ModelUnits units;
     Frame *frame;
     int node_room, section_room, element_room, tie_room;
@@ -126,7 +133,7 @@ typedef struct {
     int depth, wrong;
 } Expression;
 
-static double sum(Expression *e);
+static Number sum(Expression *e);
 
 static void pass_blanks(Expression *e)
 {
@@ -134,7 +141,7 @@ static void pass_blanks(Expression *e)
         e->at++;
 }
 
-static double variable(Expression *e)
+static Number variable(Expression *e)
 {
     size_t n = 0;
     while (isalnum((unsigned char)e->at[n]) || e->at[n] == '_')
@@ -142,32 +149,44 @@ static double variable(Expression *e)
     for (int i = 0; i < e->r->n_variables; i++)
         if (strlen(e->r->variable[i].name) == n && strncmp(e->r->variable[i].name, e->at, n) == 0) {
             e->at += n;
-            return e->r->variable[i].value;
+            return e->r->variable[i].number;
         }
     e->wrong = 1;
-    return 0;
+    return (Number){0, 0};
 }
 
-static double inside(Expression *e, char closing)
+static Number inside(Expression *e, char closing)
 {
-    const double value = ++e->depth < 50 ? sum(e) : 0;
+    const Number a = ++e->depth < 50 ? sum(e) : (Number){0, 0};
     pass_blanks(e);
     e->wrong |= *e->at != closing || e->depth >= 50;
     e->at += *e->at == closing;
     e->depth--;
-    return value;
+    return a;
 }
 
-static double atom(Expression *e)
+static Number literal(Expression *e)
+{
+    char *end;
+    const double value = strtod(e->at, &end);
+    const size_t length = (size_t)(end - e->at);
+    const Number a = {value, strspn(e->at, "0123456789") == length};
+    e->wrong |= length == 0;
+    e->at = end;
+    return a;
+}
+
+static Number atom(Expression *e)
 {
     pass_blanks(e);
-    char *end;
     const char c = *e->at;
     e->at += c && strchr("-+($[{", c) != NULL;
     if (e->wrong)
-        return 0;
-    if (c == '-' || c == '+')
-        return c == '-' ? -atom(e) : atom(e);
+        return (Number){0, 0};
+    if (c == '-' || c == '+') {
+        const Number a = atom(e);
+        return (Number){c == '-' ? -a.value : a.value, a.whole};
+    }
     if (c == '$')
         return variable(e);
     if (c == '(' || c == '{')
@@ -176,44 +195,59 @@ static double atom(Expression *e)
         e->at += 4;
         return inside(e, ']');
     }
-    const double value = strtod(e->at, &end);
-    e->wrong |= end == e->at;
-    e->at = end;
-    return value;
+    return literal(e);
 }
 
-static double product(Expression *e)
+static Number product(Expression *e)
 {
-    double value = atom(e);
+    Number a = atom(e);
     for (pass_blanks(e); !e->wrong && (*e->at == '*' || *e->at == '/'); pass_blanks(e)) {
         const char sign = *e->at++;
-        const double other = atom(e);
-        value = sign == '*' ? value * other : value / other;
+        const Number b = atom(e);
+        a.whole &= b.whole;
+        a.value = sign == '*' ? a.value * b.value : a.value / b.value;
+        a.value = a.whole ? floor(a.value) : a.value;
     }
-    return value;
+    return a;
 }
 
-static double sum(Expression *e)
+static Number sum(Expression *e)
 {
-    double value = product(e);
+    Number a = product(e);
     for (pass_blanks(e); !e->wrong && (*e->at == '+' || *e->at == '-'); pass_blanks(e)) {
         const char sign = *e->at++;
-        const double other = product(e);
-        value = sign == '+' ? value + other : value - other;
+        const Number b = product(e);
+        a.whole &= b.whole;
+        a.value = sign == '+' ? a.value + b.value : a.value - b.value;
     }
-    return value;
+    return a;
 }
 
 /* Word i as a number; refuses the command where it is none. */
-static int number(Reader *r, int i, double *value)
+static int evaluate(Reader *r, int i, Number *result)
 {
     Expression e = {.r = r, .at = i < r->n ? r->word[i] : ""};
-    *value = sum(&e);
-    if (!e.wrong && !*e.at && isfinite(*value))
+    *result = sum(&e);
+    if (!e.wrong && !*e.at && isfinite(result->value))
         return 1;
     refuse(r, "%s: '%s' is no number that can be read here", r->word[0], i < r->n ? r->word[i] : "");
-    *value = 0;
     return 0;
+}
+
+static int number(Reader *r, int i, double *value)
+{
+    Number a;
+    const int ok = evaluate(r, i, &a);
+    *value = ok ? a.value : 0;
+    return ok;
+}
+
+/* The command has at most n words. */
+static int ends_at(Reader *r, int n)
+{
+    if (r->n > n)
+        refuse(r, "%s: '%s' is not supported", r->word[0], r->word[n]);
+    return r->n <= n;
 }
 
 static int numbers(Reader *r, int first, int n, double values[])
@@ -247,6 +281,15 @@ static void *room(void *list, int n, int *capacity, size_t size)
         memset(entry, 0, sizeof *(entry));                                                                             \
     } while (0)
 
+/* -1: there is none. */
+static int node_of_name(const Frame *f, const char *name)
+{
+    int i = f->n_nodes - 1;
+    while (i >= 0 && strcmp(f->node[i].name, name) != 0)
+        i--;
+    return i;
+}
+
 static int find_node(Reader *r, int word)
 {
     double tag;
@@ -254,21 +297,26 @@ static int find_node(Reader *r, int word)
     if (!number(r, word, &tag))
         return -1;
     snprintf(name, sizeof name, "%.0f", tag);
-    for (int i = r->frame->n_nodes - 1; i >= 0; i--)
-        if (strcmp(r->frame->node[i].name, name) == 0)
-            return i;
-    refuse(r, "%s: there is no node %s above", r->word[0], name);
-    return -1;
+    const int node = node_of_name(r->frame, name);
+    if (node < 0)
+        refuse(r, "%s: there is no node %s above", r->word[0], name);
+    return node;
 }
 
-static void add_mass(Reader *r, FrameNode *node, int first)
+/* A later mass of a node replaces the earlier one (OpenSees: Node::setMass); that of elements adds to it at the end. */
+static void set_mass(Reader *r, FrameNode *node, int first)
 {
     double m[FRAME_DOFS];
     const double unit = r->units.force_n / r->units.length_m;
-    if (!numbers(r, first, FRAME_DOFS, m))
+    if (!ends_at(r, first + FRAME_DOFS) || !numbers(r, first, FRAME_DOFS, m))
         return;
-    for (int d = 0; d < FRAME_DOFS; d++)
-        node->mass[d] += m[d] * unit * (d == FRAME_ROT ? r->units.length_m * r->units.length_m : 1);
+    for (int d = 0; d < FRAME_DOFS; d++) {
+        if (m[d] < 0) {
+            refuse(r, "%s: a mass of %g; it must not be negative", r->word[0], m[d]);
+            return;
+        }
+        node->mass[d] = m[d] * unit * (d == FRAME_ROT ? r->units.length_m * r->units.length_m : 1);
+    }
 }
 
 static Status take_node(Reader *r, Err *err)
@@ -277,13 +325,22 @@ static Status take_node(Reader *r, Err *err)
     double tag, xy[2];
     if (!number(r, 1, &tag) || !numbers(r, 2, 2, xy))
         return STATUS_OK;
+    if (!r->has_model)
+        refuse(r, "node: 'model BasicBuilder -ndm 2 -ndf 3' must stand above");
+    r->has_model = 1; /* said once */
     FrameNode *node;
+    char name[SHEET_NAME_MAX];
+    snprintf(name, sizeof name, "%.0f", tag);
+    if (node_of_name(f, name) >= 0) {
+        refuse(r, "node: %s is there twice", name);
+        return STATUS_OK;
+    }
     APPEND(node, f->node, f->n_nodes, r->node_room);
-    snprintf(node->name, sizeof node->name, "%.0f", tag);
+    memcpy(node->name, name, sizeof name);
     node->x = xy[0] * r->units.length_m;
     node->z = xy[1] * r->units.length_m;
-    if (r->n > 4 && strcmp(r->word[4], "-mass") == 0 && r->n == 8)
-        add_mass(r, node, 5);
+    if (r->n > 4 && strcmp(r->word[4], "-mass") == 0)
+        set_mass(r, node, 5);
     else if (r->n > 4)
         refuse(r, "node: '%s' is not supported", r->word[4]);
     return STATUS_OK;
@@ -294,7 +351,7 @@ static Status take_fix(Reader *r, Err *err)
     (void)err;
     const int node = find_node(r, 1);
     double fixed[FRAME_DOFS];
-    if (node < 0 || !numbers(r, 2, FRAME_DOFS, fixed))
+    if (node < 0 || !ends_at(r, 2 + FRAME_DOFS) || !numbers(r, 2, FRAME_DOFS, fixed))
         return STATUS_OK;
     for (int d = 0; d < FRAME_DOFS; d++)
         r->frame->node[node].fixed[d] |= fixed[d] != 0;
@@ -306,7 +363,7 @@ static Status take_mass(Reader *r, Err *err)
     (void)err;
     const int node = find_node(r, 1);
     if (node >= 0)
-        add_mass(r, &r->frame->node[node], 2);
+        set_mass(r, &r->frame->node[node], 2);
     return STATUS_OK;
 }
 
@@ -361,10 +418,18 @@ static int element_options(Reader *r, ElementOptions *o)
         } else if (strcmp(r->word[i], "-mass") == 0) {
             if (!number(r, ++i, &o->mass))
                 return 0;
+            if (o->mass < 0) {
+                refuse(r, "element: a mass of %g; it must not be negative", o->mass);
+                return 0;
+            }
         } else if (strcmp(r->word[i], "-release") == 0) {
             if (!number(r, ++i, &value))
                 return 0;
-            o->release = (int)value;
+            o->release = value >= 0 && value <= 3 ? (int)value : -1;
+            if (o->release != value) {
+                refuse(r, "element: -release %g is none of 0 (none), 1 (end i), 2 (end j), 3 (both)", value);
+                return 0;
+            }
         } else {
             refuse(r, "element elasticBeamColumn: '%s' is not supported", r->word[i]);
             return 0;
@@ -381,26 +446,52 @@ static Status add_element(Reader *r, const int node[2], const double a[3], const
                                   .E = a[1] * F / (L * L),
                                   .inertia = a[2] * L * L * L * L,
                                   .mass_per_m = o->consistent ? per_m : 0};
-    FrameNode *end[2] = {&f->node[node[0]], &f->node[node[1]]};
+    const FrameNode *end[2] = {&f->node[node[0]], &f->node[node[1]]};
     FrameElement *e;
     int index;
     TRY(find_section(r, &section, &index, err));
     APPEND(e, f->element, f->n_elements, r->element_room);
     snprintf(e->name, sizeof e->name, "%.47s", r->word[2]);
     e->section = index;
+    e->added_mass = o->consistent ? 0 : per_m * hypot(end[1]->x - end[0]->x, end[1]->z - end[0]->z);
     for (int k = 0; k < 2; k++) {
-        const double half = 0.5 * per_m * hypot(end[1]->x - end[0]->x, end[1]->z - end[0]->z);
         e->node[k] = node[k];
         e->pinned[k] = (o->release >> k) & 1;
-        for (int d = FRAME_X; d <= FRAME_Z && !o->consistent; d++)
-            end[k]->mass[d] += half;
     }
     return STATUS_OK;
 }
 
+/* The mass of an element goes to its ends in halves, as OpenSees lumps it. */
+static void lump_masses(Frame *f)
+{
+    for (int e = 0; e < f->n_elements; e++) {
+        FrameElement *element = &f->element[e];
+        for (int k = 0; k < 2; k++)
+            for (int d = FRAME_X; d <= FRAME_Z; d++)
+                f->node[element->node[k]].mass[d] += 0.5 * element->added_mass;
+        element->added_mass = 0;
+    }
+}
+
+/* Is the tag of the element at hand new, and has its transformation been defined? */
+static int tags_are_right(Reader *r, double transformation)
+{
+    int known = 0;
+    for (int i = 0; i < r->n_transformations; i++)
+        known |= r->transformation[i] == transformation;
+    if (!known)
+        refuse(r, "element %s: there is no geomTransf %g above", r->word[2], transformation);
+    for (int i = 0; i < r->frame->n_elements; i++)
+        if (strcmp(r->frame->element[i].name, r->word[2]) == 0) {
+            refuse(r, "element %s: is there twice", r->word[2]);
+            known = 0;
+        }
+    return known;
+}
+
 static Status take_element(Reader *r, Err *err)
 {
-    double tag, a[3];
+    double tag, a[3], transformation;
     ElementOptions o;
     if (r->n < 9 || strcmp(r->word[1], "elasticBeamColumn") != 0) {
         refuse(r, "element %s: only elasticBeamColumn TAG i j A E I TRANSF is read", r->n > 1 ? r->word[1] : "");
@@ -410,35 +501,45 @@ static Status take_element(Reader *r, Err *err)
         return STATUS_OK;
     snprintf(r->word[2], WORD_MAX, "%.0f", tag);
     const int node[2] = {find_node(r, 3), find_node(r, 4)};
-    if (node[0] < 0 || node[1] < 0 || !numbers(r, 5, 3, a) || !element_options(r, &o))
+    if (node[0] < 0 || node[1] < 0 || !numbers(r, 5, 3, a) || !number(r, 8, &transformation) ||
+        !element_options(r, &o) || !tags_are_right(r, transformation))
         return STATUS_OK;
-    if (a[0] > 0 && a[1] > 0 && a[2] > 0 && node[0] != node[1])
+    const FrameNode *i = &r->frame->node[node[0]], *j = &r->frame->node[node[1]];
+    if (a[0] > 0 && a[1] > 0 && a[2] > 0 && hypot(j->x - i->x, j->z - i->z) > 0)
         return add_element(r, node, a, &o, err);
-    refuse(r, "element %s: A, E and I must be above 0, its nodes two", r->word[2]);
+    refuse(r, "element %s: A, E and I must be above 0, its nodes at two places", r->word[2]);
     return STATUS_OK;
 }
 
 static Status take_variable(Reader *r, Err *err)
 {
-    double value;
+    Number value;
     int i = 0;
-    if (r->n != 3 || strlen(r->word[1]) >= SHEET_NAME_MAX || !number(r, 2, &value))
+    if (r->n != 3 || strlen(r->word[1]) >= SHEET_NAME_MAX) {
+        refuse(r, "set: only NAME VALUE is read, the name of at most %d characters", SHEET_NAME_MAX - 1);
+        return STATUS_OK;
+    }
+    if (!evaluate(r, 2, &value))
         return STATUS_OK;
     while (i < r->n_variables && strcmp(r->variable[i].name, r->word[1]) != 0)
         i++;
     if (i == VARIABLES_MAX)
         return fail(err, STATUS_BAD_DATA, "%s:%d: more than %d variables", r->path, r->line, VARIABLES_MAX);
     snprintf(r->variable[i].name, sizeof r->variable[i].name, "%.47s", r->word[1]);
-    r->variable[i].value = value;
+    r->variable[i].number = value;
     r->n_variables += i == r->n_variables;
     return STATUS_OK;
 }
 
 static Status take_transformation(Reader *r, Err *err)
 {
-    (void)err;
+    double tag;
     if (r->n != 3 || strcmp(r->word[1], "Linear") != 0)
         refuse(r, "geomTransf: only Linear TAG is read; for P-delta set building.p_delta = on");
+    else if (r->n_transformations == TRANSFORMATIONS_MAX)
+        return fail(err, STATUS_BAD_DATA, "%s:%d: more than %d geomTransf", r->path, r->line, TRANSFORMATIONS_MAX);
+    else if (number(r, 2, &tag))
+        r->transformation[r->n_transformations++] = tag;
     return STATUS_OK;
 }
 
@@ -454,13 +555,16 @@ static Status take_model(Reader *r, Err *err)
     }
     if (dimensions != 2 || unknowns != 3)
         refuse(r, "model: only -ndm 2 -ndf 3 is read");
+    r->has_model = 1;
     return STATUS_OK;
 }
 
-static Status pass_over(Reader *r, Err *err)
+/* OpenSees forgets what was before. */
+static Status take_wipe(Reader *r, Err *err)
 {
-    (void)r;
     (void)err;
+    if (r->frame->n_nodes > 0)
+        refuse(r, "wipe: only above the nodes; remove the model that it deletes");
     return STATUS_OK;
 }
 
@@ -473,7 +577,7 @@ static Status take_command(Reader *r, Err *err)
         Status (*take)(Reader *r, Err *err);
     } COMMANDS[] = {{"node", take_node},      {"fix", take_fix},         {"mass", take_mass},
                     {"equalDOF", take_equal}, {"element", take_element}, {"geomTransf", take_transformation},
-                    {"set", take_variable},   {"model", take_model},     {"wipe", pass_over}};
+                    {"set", take_variable},   {"model", take_model},     {"wipe", take_wipe}};
     for (size_t i = 0; i < sizeof COMMANDS / sizeof COMMANDS[0]; i++)
         if (strcmp(r->word[0], COMMANDS[i].word) == 0)
             return COMMANDS[i].take(r, err);
@@ -493,6 +597,7 @@ static Status read_text(Reader *r, const char *text, Err *err)
                       r->n_refused == 1 ? " is" : "s are");
     if (status == STATUS_OK && r->frame->n_elements == 0)
         status = fail(err, STATUS_BAD_DATA, "%s: holds no element", r->path);
+    lump_masses(r->frame);
     return status;
 }
 

@@ -5,8 +5,9 @@
  *   geomTransf Linear TAG                                   set NAME VALUE, $NAME, [expr ...] with + - * / ( )
  *   element elasticBeamColumn TAG i j A E I TRANSF [-mass m] [-cMass] [-release 0|1|2|3]
  *
- * as in the OpenSees command manual (opensees.berkeley.edu). wipe is passed over. An element's mass is lumped at its ends
- * unless -cMass is given, as there. Whatever else stands in the file is refused, line by line.
+ * as in the OpenSees command manual (opensees.berkeley.edu). As there integers divide as
+ * integers, a later mass of a node replaces an earlier one, and an element's mass is lumped at its ends unless -cMass is
+ * given. wipe may stand above the nodes. Whatever else stands in the file is refused, line by line.
  *
  * Units  an OpenSees model says none: the caller does
  * Ownership  opensees_read allocates the Frame, frame_free releases it. Threads  no state */
