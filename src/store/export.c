@@ -161,7 +161,7 @@ static int is_any_known(size_t n, const double values[])
 
 static void put_list(FILE *f, const char *key, size_t n, const double values[], int known)
 {
-    fprintf(f, ",\"%s\":", key);
+    fputs(key, f);
     if (known)
         print_list(f, n, values);
     else
@@ -184,11 +184,11 @@ static Status visit_evaluation(const Run *run, size_t i, const char *x, const ch
     fputs(",\"x\":", f);
     int known = x[0] == '[' && rows_put_texts(f, x, s->n_var, "[", "null");
     fputc(']', f);
-    put_list(f, "f", s->n_obj, e->f, isfinite(e->f[0]));
-    fprintf(f, ",\"on_front\":%s", run->place[i].on_front ? "true" : "false");
-    put_list(f, "sd", s->n_obj, e->sd, is_any_known(s->n_obj, e->sd));
+    put_list(f, ",\"f\":", s->n_obj, e->f, isfinite(e->f[0]));
+    fputs(run->place[i].on_front ? ",\"on_front\":true" : ",\"on_front\":false", f);
+    put_list(f, ",\"sd\":", s->n_obj, e->sd, is_any_known(s->n_obj, e->sd));
     if (e->replicates > run->settings->sim.replicates)
-        put_list(f, "mean", s->n_obj, run_f(run, i), 1);
+        put_list(f, ",\"mean\":", s->n_obj, run_f(run, i), 1);
     if (s->has_spread)
         fprintf(f, ",\"replicates\":%d", e->replicates);
     if (s->n_extra > 0) {
