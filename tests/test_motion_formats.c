@@ -295,6 +295,11 @@ static const struct {
     {"one.tspair", "m/s**2", "mm/s**2", "the unit 'mm/s**2' of its acceleration is not known"},
     {"simcenter.json", ": 43", ": 50", "'SYN-1' has 43 samples, but numSteps announces 50"},
     {"simcenter.json", "\"type\"", "\"factor\": 9.81, \"type\"", "\"factor\" is not 1; multiply the samples by it"},
+    {"equals.at2", "SEC", "MIN", ":4: no usable time step"},
+    {"one.tspair", "100 sps", "200 sps", "its header says a step of 0.005 s, its times one of 0.01 s"},
+    {"cwb.dat", "(Hz): 100", "(Hz): 200", "its header says a step of 0.005 s, its times one of 0.01 s"},
+    {"three.v2a", "0.010 sec", "0.020 sec", "a step of 0.01 s in the numbers of the header, 0.02 s in its words"},
+    {"one.esm", "INTERVAL_S: 0.01", "INTERVAL_S: 0.02", ":13: DURATION_S is 0.42 s, but 43 samples every 0.02 s"},
     {"three.slist", "43 samples", "44 samples", ": ends after 43 samples"},
     {"three.slist", "FLOAT, cm/s**2", "INTEGER, Counts", "set motion.counts_per_m_s2 to the gain"},
     {"one.tspair", "43 samples", "44 samples", ": ends after 43 samples"},
@@ -1071,6 +1076,83 @@ static void test_marks_of_thousands_and_commas_of_two_meanings_are_refused(void 
         "decimal commas, put its name above it");
 }
 
+static void test_a_unit_in_a_sentence_counts_only_where_it_is_stated_as_one(void **state)
+{
+    (void)state;
+    static const char *const IN_G[] = {
+        "# units: g",   "# acc [g]",         "# (G)",          "# in g",     "# acceleration g", "# g", "# 2001, g",
+        "# units of G", "Acceleration in g", "# accel (g); x", "# Units = g"};
+    static const char *const IN_NONE[] = {"# by G. Smith", "# Record G",     "# ground type G", "# Gal station",
+                                          "# scaled by g", "St. G, a title", "# station: G",    "# peak 0.35 g"};
+    static const char *const UNKNOWN[][2] = {{"# acceleration (milli-g)", "'milli-g'"},
+                                             {"# (m g)", "'m g'"},
+                                             {"# acc in m/s2 x 1000", "'acc in m/s2 x 1000'"},
+                                             {"A (% g)", "'% g'"},
+                                             {"acc (% of g)", "'% of g'"},
+                                             {"acc [1/g]", "'1/g'"},
+                                             {"acc [g/10]", "'g/10'"},
+                                             {"acc [0.01 g]", "'0.01 g'"},
+                                             {"acc_x1000_m_s2", "'acc_x1000_m_s2'"}};
+    char text[200];
+    Motion m;
+    Err err = {0};
+    for (size_t i = 0; i < sizeof IN_G / sizeof IN_G[0]; i++) {
+        snprintf(text, sizeof text, "%s\n# dt=0.01 s\n1\n2\n-3\n", IN_G[i]);
+        CHECK_OK(parse_text(&m, text, &err), &err);
+        assert_close(m.accel[2], -3 * 9.81, 1e-12);
+        motion_free(&m);
+    }
+    for (size_t i = 0; i < sizeof IN_NONE / sizeof IN_NONE[0]; i++) {
+        snprintf(text, sizeof text, "%s\n# dt=0.01 s\n1\n2\n-3\n", IN_NONE[i]);
+        expect_refusal(text, "does not say the unit");
+    }
+    for (size_t i = 0; i < sizeof UNKNOWN / sizeof UNKNOWN[0]; i++) {
+        snprintf(text, sizeof text, "%s\n# dt=0.01 s\n1\n2\n-3\n", UNKNOWN[i][0]);
+        expect_refusal(text, UNKNOWN[i][1]);
+    }
+}
+
+static void test_steps_are_read_in_their_unit_and_contradictions_are_refused(void **state)
+{
+    (void)state;
+    static const char *const STEPS[] = {"dt = 1/200 s",
+                                        "dt=.5D-2",
+                                        "dt = 5 ms",
+                                        "dt=5000 us",
+                                        "dt = 0,005 s",
+                                        "fs: 0.2 kHz",
+                                        "sampling rate: 200 samples/s",
+                                        "npts = 3; dt = 0.005",
+                                        "dt=0.005 s; sampling rate: 200 Hz"};
+    char text[200];
+    Motion m;
+    Err err = {0};
+    for (size_t i = 0; i < sizeof STEPS / sizeof STEPS[0]; i++) {
+        snprintf(text, sizeof text, "# %s\n# cm/s2\n1\n2\n-3\n", STEPS[i]);
+        CHECK_OK(parse_text(&m, text, &err), &err);
+        assert_close(m.dt_s, 0.005, 1e-15);
+        motion_free(&m);
+    }
+    Text t = changed(read_specimen("equals.at2"), "SEC", "MSEC", 0);
+    CHECK_OK(motion_parse(&m, "at2", t.text, t.length, &(MotionHow){0}, &err), &err);
+    assert_close(m.dt_s, 1e-5, 1e-15);
+    motion_free(&m);
+    free(t.text);
+    expect_refusal("# dt = 0.005 min; cm/s2\n1\n2\n",
+                   "there:1: the step in '# dt = 0.005 min; cm/s2' is not in seconds");
+    expect_refusal("# m/s2\n# dt=0.01\n# dt=0.02\n1\n2\n",
+                   "there:3: states a step of 0.02, elsewhere in the file it is 0.01");
+    expect_refusal("# dt=0.02\n# m/s2\n3 0.01\n1\n2\n-3\n",
+                   "there:3: states a step of 0.01, elsewhere in the file it is 0.02");
+    expect_refusal("# npts=4; m/s2\n3 0.01\n1\n2\n-3\n",
+                   "states a number of samples of 3, elsewhere in the file it is 4");
+    expect_refusal("# npts=30, dt=0.01; m/s2\n1\n2\n-3\n", "announces 30 samples, but has 3 rows");
+    expect_refusal("# dt = 0.02\nt,a_m_s2\n0,1\n.01,2\n.02,-3\n",
+                   "its header says a step of 0.02 s, its times one of 0.01 s");
+    expect_refusal("t,a_m_s2\n0,00,1,5\n0,01,-2,5\n",
+                   "2 columns are named, but the rows have 4 numbers: are its commas");
+}
+
 static void test_numbers_of_samples_are_no_seconds(void **state)
 {
     (void)state;
@@ -1208,6 +1290,8 @@ int main(void)
         cmocka_unit_test(test_kiknet_numbers_are_directions_and_what_is_no_direction_is_refused),
         cmocka_unit_test(test_decimal_commas_are_read_whatever_parts_the_columns),
         cmocka_unit_test(test_marks_of_thousands_and_commas_of_two_meanings_are_refused),
+        cmocka_unit_test(test_a_unit_in_a_sentence_counts_only_where_it_is_stated_as_one),
+        cmocka_unit_test(test_steps_are_read_in_their_unit_and_contradictions_are_refused),
         cmocka_unit_test(test_numbers_of_samples_are_no_seconds),
         cmocka_unit_test(test_the_column_of_times_is_found_by_its_name),
         cmocka_unit_test(test_five_columns_without_a_step_ask_for_the_step_and_not_for_a_channel),

@@ -338,6 +338,16 @@ static Status resample(Motion *m, const Series *s, double dt, double to_m_s2, do
     return STATUS_OK;
 }
 
+/* The header's step against that of the printed times: within 1 %, and half a step in all. */
+static Status check_steps(const char *path, const Channel *c, double dt, Err *err)
+{
+    const double intervals = (double)(c->n - 1);
+    if (c->other_dt == 0 || fabs(dt - c->other_dt) * intervals <= dt * (0.6 + 0.01 * intervals))
+        return STATUS_OK;
+    return fail(err, STATUS_BAD_DATA, "%s: its header says a step of %.6g s, its times one of %.6g s", path,
+                c->dt > 0 ? dt : c->other_dt, c->dt > 0 ? c->other_dt : dt);
+}
+
 /* The samples in m/s2 become the motion's. */
 static Status take_samples(Motion *m, const char *path, const Record *r, const Channel *c, const MotionHow *how,
                            Err *err)
@@ -356,8 +366,10 @@ static Status take_samples(Motion *m, const char *path, const Record *r, const C
                     row_at(&s, 0)->line, dt, MOTION_STEP_MAX_S);
     if (status != STATUS_OK && how->resample_dt_s == 0)
         return c->digitized ? fail_digitized(&s, err) : fail(err, status, "%s", uneven.text);
-    const char *unknown = unit_unknown(c->name, c->name + strlen(c->name));
-    if (unit == UNIT_FROM_FILE && unknown)
+    if (status == STATUS_OK)
+        TRY(check_steps(path, c, dt, err));
+    char unknown[UNIT_SHOWN];
+    if (unit == UNIT_FROM_FILE && unit_unknown(c->name, c->name + strlen(c->name), unknown))
         return fail(err, STATUS_BAD_DATA,
                     "%s: its channel '%s': unit '%s' is not known; convert it to m/s2, cm/s2 or g", path, c->name,
                     unknown);

@@ -38,7 +38,8 @@ static BlockForm read_npts_line(const Lines *l)
     Err ignored = {0};
     if (memchr(l->from, '=', (size_t)(l->to - l->from))) {
         number_behind(l->from, l->to, "NPTS", &form.count);
-        number_behind(l->from, l->to, "DT", &form.dt);
+        if (quantity_behind(l->from, l->to, "DT", 0, &form.dt) < 0)
+            form.dt = NAN;
     } else if (line_numbers(l, 0, 2, x, &n, &ignored) == STATUS_OK && n == 2) {
         form.count = x[0];
         form.dt = x[1];

@@ -164,10 +164,14 @@ int column_name(const Lines *l, const char **p, const char **from, const char **
 /* ---- what stands above the numbers ---------------------------------------------------------------------------- */
 
 typedef struct {
-    unsigned in_comments; /* units */
-    double dt;            /* [s] 0: not stated */
-    double count;         /* of samples; 0: not stated */
-    Lines names;          /* from == NULL: no such line */
+    unsigned in_comments;  /* units */
+    double dt;             /* [s] 0: not stated */
+    double count;          /* of samples; 0: not stated */
+    char unit[UNIT_SHOWN]; /* in them that is not known */
+    char odd[160];         /* what is contradicted or not understood, and where */
+    int odd_line;          /* 0: nothing */
+    double stated_dt;      /* [s] of the file alone */
+    Lines names;           /* from == NULL: no such line */
 } Preface;
 
 static int is_comment(const Lines *l)
@@ -187,56 +191,65 @@ static int is_words(const Lines *l)
            !(to - l->from == 3 && (line_begins(l, "nan") || line_begins(l, "inf")));
 }
 
-/* "= 5 ms" */
-static int is_in_milliseconds(const char *mark, const char *to)
+/* A step or a count that is stated twice must be the same. */
+static void take_number(Preface *preface, double *have, double x, const char *what, const Lines *l)
 {
-    while (mark < to && strchr("=: \t", *mark))
-        mark++;
-    while (mark < to && strchr("0123456789.,eE+-", *mark))
-        mark++;
-    while (mark < to && *mark == ' ')
-        mark++;
-    return to - mark >= 2 && memcmp(mark, "ms", 2) == 0 && (to - mark == 2 || !isalnum((unsigned char)mark[2]));
+    if (*have == 0)
+        *have = x;
+    else if (fabs(x - *have) > 0.01 * *have && !preface->odd_line) {
+        preface->odd_line = l->number;
+        snprintf(preface->odd, sizeof preface->odd, "states a %s of %.6g, elsewhere in the file it is %.6g", what, x,
+                 *have);
+    }
 }
 
-/* x of "word ... = x" or "word ... : x" */
-static int stated(const Lines *l, const char *word, double *x)
+enum { STEP, RATE, COUNT };
+
+/* Every x of "word ... = x" or "word ... : x" */
+static void take_stated(const Lines *l, const char *word, int kind, Preface *preface)
 {
+    double x;
     for (const char *at = l->from; (at = find_word(at, l->to, word)); at++) {
         if (at > l->from && isalnum((unsigned char)at[-1]))
             continue;
         const char *mark = at + strlen(word);
-        while (mark < l->to && *mark != '=' && *mark != ':')
+        while (mark < l->to && !strchr("=:;", *mark))
             mark++;
-        if (mark < l->to && number_behind(mark, l->to, "", x) && *x > 0 && *x <= 1e6) {
-            *x *= is_in_milliseconds(mark, l->to) ? 1e-3 : 1;
-            return 1;
+        if (mark == l->to || *mark == ';' || find_word(at + strlen(word), mark, " per "))
+            continue;
+        const int got =
+            kind == COUNT ? number_behind(mark, l->to, "", &x) : quantity_behind(mark, l->to, "", kind == RATE, &x);
+        if (got < 0 && !preface->odd_line) {
+            preface->odd_line = l->number;
+            snprintf(preface->odd, sizeof preface->odd, "the step in '%.*s' is not in seconds", line_shown(l), l->from);
+        } else if (got > 0 && x > 0 && x <= 1e6) {
+            take_number(preface, kind == COUNT ? &preface->count : &preface->dt, kind == RATE ? 1 / x : x,
+                        kind == COUNT ? "number of samples" : "step", l);
         }
     }
-    return 0;
 }
 
 /* Step and number of samples. */
 static void take_numbers(const Lines *l, Preface *preface)
 {
-    static const char *const steps[] = {"dt", "time step", "step"};
+    static const char *const steps[] = {"dt", "time step"};
     static const char *const rates[] = {"sampling rate", "sampling frequency", "samples per second", "fs"};
     static const char *const counts[] = {"npts", "number of points", "number of samples", "number of data"};
-    double x;
     for (size_t i = 0; i < sizeof steps / sizeof *steps; i++)
-        if (preface->dt == 0 && stated(l, steps[i], &x))
-            preface->dt = x;
+        take_stated(l, steps[i], STEP, preface);
     for (size_t i = 0; i < sizeof rates / sizeof *rates; i++)
-        if (preface->dt == 0 && stated(l, rates[i], &x))
-            preface->dt = 1 / x;
+        take_stated(l, rates[i], RATE, preface);
     for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
-        if (preface->count == 0 && stated(l, counts[i], &x))
-            preface->count = x;
+        take_stated(l, counts[i], COUNT, preface);
+    if (preface->dt == 0) /* "step 2: filtered" may follow */
+        take_stated(l, "step", STEP, preface);
 }
 
 static void take_comment(const Lines *l, Preface *preface)
 {
-    preface->in_comments |= units_named(l->from, l->to);
+    preface->in_comments |= units_stated(l->from, l->to);
+    if (!preface->unit[0])
+        unit_unknown(l->from, l->to, preface->unit);
     take_numbers(l, preface);
 }
 
@@ -395,18 +408,19 @@ static void take_count(Record *r, Columns *columns, Preface *preface)
     if (r->n < 4 || columns->width > 2 || (columns->width == 1 && r->n < SAMPLES_MIN))
         return;
     const double count = r->row[0].a, dt = r->row[1].a, rows = (double)columns->n_rows;
-    const int is_step = dt > 0 && dt < MOTION_STEP_MAX_S && (preface->dt == 0 || preface->dt == dt);
+    const int is_step = dt > 0 && dt < MOTION_STEP_MAX_S;
     const int in_two = columns->width == 1 && r->row[2].line != r->row[1].line && count == (double)r->n - 2;
     const int is_pair = columns->width == 2 && (count == (double)r->n - 2 || count == rows - 1);
+    const Lines l = {.number = r->row[0].line};
     if (is_step && (is_pair || in_two)) {
         drop_first(r, 2, columns);
-        preface->dt = dt;
+        take_number(preface, &preface->dt, dt, "step", &l);
     } else if (columns->width == 1 && (count == (double)r->n - 1 || count == rows - 1)) {
         drop_first(r, 1, columns);
     } else {
         return;
     }
-    preface->count = count;
+    take_number(preface, &preface->count, count, "number of samples", &l);
 }
 
 /* Column k of each row. */
@@ -426,6 +440,7 @@ static Status one_long_column(Record *r, const Lines *l, const Preface *preface,
     Channel *c;
     TRY(record_channel(r, l, &c, err));
     *c = (Channel){.scale = 1, .units = units, .dt = preface->dt, .stride = 1, .n = r->n};
+    memcpy(c->unit, preface->unit, sizeof c->unit);
     return STATUS_OK;
 }
 
@@ -436,7 +451,7 @@ static Status name_channels(Record *r, const Lines *l, const Preface *preface, c
 {
     const Lines *names = &preface->names;
     const int named = count_names(names) == columns->width, is_only = columns->width - (skipped < columns->width) == 1;
-    const unsigned in_names = names->from && (is_only || !named) ? units_named(names->from, names->to) : 0;
+    const unsigned in_names = names->from && (is_only || !named) ? units_stated(names->from, names->to) : 0;
     const char *p = names->from, *from = NULL, *to = NULL;
     for (size_t k = 0; k < columns->width; k++) {
         Channel *c;
@@ -445,12 +460,17 @@ static Status name_channels(Record *r, const Lines *l, const Preface *preface, c
         if (k == skipped)
             continue;
         TRY(record_channel(r, l, &c, err));
-        *c = (Channel){
-            .scale = 1, .dt = timed ? 0 : preface->dt, .first = k, .stride = columns->width, .n = columns->n_rows};
+        *c = (Channel){.scale = 1,
+                       .other_dt = timed ? preface->stated_dt : 0,
+                       .dt = timed ? 0 : preface->dt,
+                       .first = k,
+                       .stride = columns->width,
+                       .n = columns->n_rows};
         if (named)
             channel_name(c, from, to);
         c->units = named ? units_named(from, to) : 0;
         c->units = c->units ? c->units : in_names ? in_names : preface->in_comments;
+        memcpy(c->unit, preface->unit, sizeof c->unit);
     }
     return STATUS_OK;
 }
@@ -466,6 +486,13 @@ static Status fail_unnamed(const Record *r, const Lines *l, const Columns *colum
 {
     if (columns->odd_line)
         return columns_check(columns, l, err);
+    const size_t n_names = count_names(&preface->names);
+    if (n_names > 1 && 2 * n_names == columns->width && !columns->point_line)
+        return fail(
+            err, STATUS_BAD_DATA,
+            "%s:%d: %zu columns are named, but the rows have %zu numbers: are its commas decimal ones too? Write "
+            "decimal points, or semicolons between the columns",
+            l->path, r->row[0].line, n_names, columns->width);
     if (!(preface->dt > 0))
         return fail(err, STATUS_BAD_DATA,
                     "%s:%d: has %zu columns without names, and the first holds no times; set motion.dt_s (--set "
@@ -497,7 +524,9 @@ static Status read_table(Record *r, Lines *l, Preface *preface, Columns *columns
     }
     take_count(r, columns, preface);
     if (preface->names.from && count_names(&preface->names) != columns->width)
-        take_numbers(&preface->names, preface);
+        take_comment(&preface->names, preface);
+    if (preface->odd_line)
+        return fail(err, STATUS_BAD_DATA, "%s:%d: %s", l->path, preface->odd_line, preface->odd);
     if (columns->n_rows < 2 && columns->width < 3)
         return fail(err, STATUS_BAD_DATA, "%s: holds %zu sample%s; at least two are needed", l->path, columns->n_rows,
                     columns->n_rows == 1 ? "" : "s");
@@ -522,9 +551,10 @@ static Status read(Record *r, Lines *l, const ReadHints *hints, Err *err)
     Columns columns = {0};
     int known;
     TRY(read_table(r, l, &preface, &columns, err));
+    preface.stated_dt = preface.dt;
     preface.dt = preface.dt > 0 ? preface.dt : hints->dt_s;
     const int named = count_names(&preface.names) == columns.width;
-    const unsigned units = preface.names.from ? units_named(preface.names.from, preface.names.to) : 0;
+    const unsigned units = preface.names.from ? units_stated(preface.names.from, preface.names.to) : 0;
     const size_t times = column_of_times(&preface, &columns, &known);
     int timed = columns.width > 1 && !(named && preface.dt > 0 && !known);
     if (columns.width == 1 && !(preface.dt > 0))
@@ -539,6 +569,9 @@ static Status read(Record *r, Lines *l, const ReadHints *hints, Err *err)
             return fail_unnamed(r, l, &columns, &preface, err);
     }
     TRY(columns_check(&columns, l, err));
+    if (preface.count > 1 && preface.count != (double)columns.n_rows && preface.count != (double)r->n)
+        return fail(err, STATUS_BAD_DATA, "%s: announces %g samples, but has %zu rows", l->path, preface.count,
+                    columns.n_rows);
     const int numbered = !known && counts_samples(r, &columns);
     if (numbered && !(preface.dt > 0))
         return fail(err, STATUS_BAD_DATA,

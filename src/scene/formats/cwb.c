@@ -55,6 +55,13 @@ static void take_peak(Channel *c, const Header *h)
     }
 }
 
+/* Of the first column, the times [s]; 0: there are none. */
+static double mean_step(const Record *r, const Columns *columns)
+{
+    const size_t last = columns->n_rows - 1;
+    return columns->n_rows > 1 ? (r->row[last * columns->width].a - r->row[0].a) / (double)last : 0;
+}
+
 /* "Time U(+); N(+); E(+)": a channel for each word but the first. */
 static Status name_channels(Record *r, const Header *h, const Columns *columns, Err *err)
 {
@@ -72,6 +79,7 @@ static Status name_channels(Record *r, const Header *h, const Columns *columns, 
         *c = (Channel){.scale = 1,
                        .units = h->units,
                        .dt = 1 / h->hertz,
+                       .other_dt = mean_step(r, columns),
                        .first = k,
                        .stride = columns->width,
                        .n = columns->n_rows};

@@ -13,7 +13,7 @@ typedef struct {
 } Value;
 
 typedef struct {
-    Value count, step, units, type, stream, peak;
+    Value count, step, units, type, stream, peak, duration;
 } Header;
 
 static int recognise(Lines l)
@@ -41,6 +41,7 @@ static Header read_header(Lines *l)
         take(l, "UNITS", &h.units);
         take(l, "DATA_TYPE", &h.type);
         take(l, "STREAM", &h.stream);
+        take(l, "DURATION_S", &h.duration);
         take(l, "PGA_CM/S^2", &h.peak);
     }
     return h;
@@ -71,6 +72,12 @@ static Status read(Record *r, Lines *l, const ReadHints *hints, Err *err)
     at.number = h.step.line;
     TRY(field_number(&at, h.step.from, h.step.to, 0, &form.dt, err));
     TRY(record_block(r, l, &form, err));
+    double duration = 0;
+    const double by_steps = form.count * form.dt;
+    if (h.duration.from && number_behind(h.duration.from, h.duration.to, "", &duration) && duration > 0 &&
+        fabs(duration - by_steps) > 2 * form.dt + 0.01 * duration)
+        return fail(err, STATUS_BAD_DATA, "%s:%d: DURATION_S is %g s, but %g samples every %g s are %g s", l->path,
+                    h.duration.line, duration, form.count, form.dt, by_steps);
     return record_block_ends(l, form.count, err);
 }
 

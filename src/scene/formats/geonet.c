@@ -6,6 +6,7 @@
  *   [3][0] samples of V1      [3][3] [3][4] [3][5] accelerations, velocities, displacements of V2      [6][5] step [s]
  */
 #include <ctype.h>
+#include <math.h>
 #include <string.h>
 
 #include "scene/formats/record.h"
@@ -34,13 +35,14 @@ static void name_component(const Lines *l, Channel *c)
 }
 
 /* V1 tells the unit of its readings; V2 only that of their peak. */
-static Status read_text(Record *r, Lines *l, Channel **c, Err *err)
+static Status read_text(Record *r, Lines *l, Channel **c, double *step_in_words, Err *err)
 {
     int in_mm = 0, told = 0;
     TRY(record_channel(r, l, c, err));
     for (int i = 2; i <= TEXT_LINES; i++) {
         if (!lines_next(l))
             return fail_too_short(l, "header", err);
+        number_behind(l->from, l->to, "data at", step_in_words);
         if (line_has(l, "units of") || (!told && line_begins(l, "Acceleration"))) {
             in_mm = line_has(l, "mm/s/s");
             told = 1;
@@ -86,7 +88,8 @@ static Status read_component(Record *r, Lines *l, Err *err)
     Channel *c;
     Lines at_count;
     const int is_v2 = line_begins(l, "Corrected");
-    TRY(read_text(r, l, &c, err));
+    double in_words = 0;
+    TRY(read_text(r, l, &c, &in_words, err));
     TRY(read_numbers(l, h, &at_count, err));
     const double count = h[3][is_v2 ? 3 : 0];
     if (!(count >= 2))
@@ -95,6 +98,9 @@ static Status read_component(Record *r, Lines *l, Err *err)
     if (!(h[6][5] > 0))
         return fail(err, STATUS_BAD_DATA, "%s:%d: no usable time step: the header above says %g", l->path, l->number,
                     h[6][5]);
+    if (in_words > 0 && fabs(in_words - h[6][5]) > 0.0006) /* three decimals */
+        return fail(err, STATUS_BAD_DATA, "%s:%d: a step of %g s in the numbers of the header, %g s in its words",
+                    l->path, l->number, h[6][5], in_words);
     const BlockForm form = {.count = count, .dt = h[6][5], .width = WIDTH};
     TRY(record_block(r, l, &form, err));
     if (is_v2 && !lines_skip(l, lines_for(h[3][4]) + lines_for(h[3][5])))

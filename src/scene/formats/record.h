@@ -10,7 +10,7 @@
 
 #define MOTION_STEP_MAX_S 1.0 /* accelerographs take 50 samples a second or more: a longer step is a mistake */
 
-enum { CHANNELS_MAX = 128, CHANNEL_NAME_MAX = 64, CHANNEL_UNIT_MAX = 32 };
+enum { CHANNELS_MAX = 128, CHANNEL_NAME_MAX = 64 };
 
 typedef struct {
     double t, a;  /* [s] where the file has times, [unit of the file] */
@@ -22,9 +22,10 @@ typedef struct {
     char name[CHANNEL_NAME_MAX]; /* as in the file; may be empty */
     char full[CHANNEL_NAME_MAX]; /* in an archive: the name with the folder of its file; else empty */
     unsigned units;              /* that the file names, one bit (1 << MotionUnit) each */
-    char unit[CHANNEL_UNIT_MAX]; /* as stated, where units does not know it; else empty */
+    char unit[UNIT_SHOWN];       /* as stated, where units does not know it; else empty */
     double scale;
     double dt;           /* [s] 0: the rows have times */
+    double other_dt;     /* [s] of printed times beside dt, or of the header beside times; 0: there is only one */
     double peak;         /* [m/s2] largest |acceleration| that the header states; 0: it states none */
     double peak_slack;   /* [m/s2] half a unit of its last digit */
     int subtract_mean;   /* the agency's own peak is that of the record without its mean */

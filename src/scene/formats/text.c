@@ -149,6 +149,9 @@ int number_behind(const char *from, const char *to, const char *word, double *x)
     const size_t n = (size_t)(to - p) < sizeof text - 1 ? (size_t)(to - p) : sizeof text - 1;
     memcpy(text, p, n);
     text[n] = 0;
+    for (size_t i = 1; i + 1 < n; i++) /* Fortran's exponent */
+        if (strchr("dD", text[i]) && strchr("0123456789.", text[i - 1]) && strchr("+-0123456789", text[i + 1]))
+            text[i] = 'E';
     *x = strtod(text, &stop);
     if (*stop == ',' && stop > text && isdigit((unsigned char)stop[-1]) && isdigit((unsigned char)stop[1]) &&
         !memchr(text, '.', strcspn(text, " \t"))) { /* a decimal comma */
@@ -157,6 +160,45 @@ int number_behind(const char *from, const char *to, const char *word, double *x)
     }
     return stop != text && isfinite(*x) && !memchr(text, 'x', (size_t)(stop - text)) &&
            !memchr(text, 'X', (size_t)(stop - text));
+}
+
+static const char *skip(const char *p, const char *to, const char *set)
+{
+    while (p < to && *p && strchr(set, *p))
+        p++;
+    return p;
+}
+
+int quantity_behind(const char *from, const char *to, const char *word, int is_rate, double *x)
+{
+    static const struct {
+        const char *word;
+        double seconds, hertz; /* 0: none of this quantity */
+    } WORDS[] = {{"s", 1, 0},     {"sec", 1, 0},     {"secs", 1, 0},  {"second", 1, 0},  {"seconds", 1, 0},
+                 {"ms", 1e-3, 0}, {"msec", 1e-3, 0}, {"us", 1e-6, 0}, {"usec", 1e-6, 0}, {"milliseconds", 1e-3, 0},
+                 {"min", 0, 0},   {"minutes", 0, 0}, {"ns", 0, 0},    {"hours", 0, 0},   {"hz", 0, 1},
+                 {"sps", 0, 1},   {"khz", 0, 1e3}};
+    double below;
+    if (!number_behind(from, to, word, x))
+        return 0;
+    const char *p = skip(find_word(from, to, word) + strlen(word), to, " \t=:(");
+    p = skip(skip(p, to, "0123456789.,+-eEdD"), to, " \t");
+    if (p < to && *p == '/' && number_behind(p + 1, to, "", &below) && below > 0) { /* "1/200 s" */
+        *x /= below;
+        p = skip(skip(p + 1, to, " \t0123456789.,+-eEdD"), to, " \t");
+    }
+    const char *end = p;
+    while (end < to && isalpha((unsigned char)*end))
+        end++;
+    if (end < to && strchr("-^/", *end)) /* s-1, m/s2 */
+        return 1;
+    for (size_t i = 0; i < sizeof WORDS / sizeof WORDS[0]; i++)
+        if ((size_t)(end - p) == strlen(WORDS[i].word) && strncasecmp(p, WORDS[i].word, (size_t)(end - p)) == 0) {
+            const double unit = is_rate ? WORDS[i].hertz : WORDS[i].seconds;
+            *x *= unit;
+            return unit > 0 ? 1 : -1;
+        }
+    return 1;
 }
 
 static Status parted_numbers(const Lines *l, int width, size_t max, double x[], size_t *n, Err *err)
@@ -229,47 +271,144 @@ static const struct {
 
 const char *const UNIT_NAMES[] = {MOTION_UNIT_LIST(CHOICE_WORD)};
 
+typedef enum { NO_UNIT, PLAIN_UNIT, SCALED_UNIT } UnitUse;
+
+static const char *before_blanks(const char *from, const char *at)
+{
+    while (at > from && isspace((unsigned char)at[-1]))
+        at--;
+    return at;
+}
+
+/* Does from..at end in the word, which begins there? */
+static int ends_in(const char *from, const char *at, const char *word)
+{
+    const size_t n = strlen(word);
+    return (size_t)(at - from) >= n && strncasecmp(at - n, word, n) == 0 &&
+           (at - n == from || !isalnum((unsigned char)at[-(ptrdiff_t)n - 1]));
+}
+
+/* Multiples: "% g", "% of g", "m g", "milli-g", "1/g", "[0.01 g]", "x1000_m_s2" */
+static int is_scaled_before(const char *from, const char *at)
+{
+    const char *p = before_blanks(from, at), *q;
+    if (ends_in(from, p, "of"))
+        p = before_blanks(from, p - 2);
+    if (p > from && (p[-1] == '%' || ends_in(from, p, "percent") || ends_in(from, p, "milli") ||
+                     ends_in(from, p, "milli-") || (p < at && ends_in(from, p, "m"))))
+        return 1;
+    for (q = p; q > from && strchr("0123456789.eE+-_*/ ", q[-1]); q--)
+        ;
+    if (q == p || !memchr(q, '1', (size_t)(p - q)))
+        return 0;
+    return q > from && (strchr("[(", q[-1]) || ends_in(from, q, "x"));
+}
+
+/* "m/s2 x 1000", "g / 10", "g*100" */
+static int is_scaled_behind(const char *behind, const char *to)
+{
+    const char *p = skip(behind, to, " \t");
+    if (p >= to || !strchr("xX*/", *p))
+        return 0;
+    p = skip(p + 1, to, " \t");
+    return p < to && isdigit((unsigned char)*p);
+}
+
 /* Does the word at `at` of the line from..to stand for a unit? Not inside a longer word, not the g of "e.g." or
  * "g = 9.81", and not behind a number: "peak 0.3 g" is a quantity that someone mentions. */
-static int is_unit(const char *from, const char *to, const char *at, size_t length)
+static UnitUse use_of(const char *from, const char *to, const char *at, size_t length)
 {
-    const char *before = at, *behind = at + length;
-    if (at > from && (isalnum((unsigned char)at[-1]) || strchr(".%\\", at[-1])))
-        return 0;
-    if (behind < to && (isalnum((unsigned char)*behind) || strchr("^*/", *behind)))
-        return 0;
-    while (behind < to && isspace((unsigned char)*behind))
-        behind++;
+    const char *behind = at + length, *before = before_blanks(from, at);
+    if (at > from && (isalnum((unsigned char)at[-1]) || strchr(".\\", at[-1])))
+        return NO_UNIT;
+    if (behind < to && isalnum((unsigned char)*behind))
+        return NO_UNIT;
+    if (is_scaled_before(from, at) || is_scaled_behind(behind, to))
+        return SCALED_UNIT;
+    if (behind < to && strchr("^*/", *behind))
+        return NO_UNIT;
+    behind = skip(behind, to, " \t");
     if (behind < to && *behind == '=')
-        return 0;
-    while (before > from && isspace((unsigned char)before[-1]))
-        before--;
-    return before == from || !isdigit((unsigned char)before[-1]);
+        return NO_UNIT;
+    return before == from || !isdigit((unsigned char)before[-1]) ? PLAIN_UNIT : NO_UNIT;
 }
 
-static int names_unit(const char *from, const char *to, const char *word)
+/* A letter g and the word gal of a sentence are a unit where they stand alone, in brackets, or behind a word that says so. */
+static int is_stated(const char *from, const char *to, const char *at, const char *behind)
 {
-    for (const char *at = from; (at = find_word(at, to, word)); at++)
-        if (is_unit(from, to, at, strlen(word)))
+    static const char *const SAYING[] = {"in",    "unit", "units",    "acceleration", "accelerations",
+                                         "accel", "acc",  "amplitude"};
+    const char *start = skip(from, to, "#%!/ \t"), *p = before_blanks(from, at);
+    behind = skip(behind, to, " \t");
+    if ((p <= start || strchr(",;[(", p[-1])) && (behind == to || strchr(",;])", *behind)))
+        return 1;
+    if (p > from && p[-1] == '/')
+        return 1;
+    while (p > start && strchr(" \t:=[]()_", p[-1]))
+        p--;
+    for (size_t i = 0; i < sizeof SAYING / sizeof SAYING[0]; i++)
+        if (ends_in(from, p, SAYING[i]))
             return 1;
-    return 0;
+    return ends_in(from, p, "of") && (find_word(from, p, "unit") || find_word(from, p, "fraction"));
 }
 
-unsigned units_named(const char *from, const char *to)
+static const char *find_unit(const char *from, const char *to, const char *word, UnitUse use, int strictly)
+{
+    const size_t n = strlen(word);
+    for (const char *at = from; (at = find_word(at, to, word)); at++)
+        if (use_of(from, to, at, n) == use && (!strictly || is_stated(from, to, at, at + n)))
+            return at;
+    return NULL;
+}
+
+static unsigned find_units(const char *from, const char *to, int is_sentence)
 {
     unsigned set = 0;
     for (size_t i = 0; i < sizeof UNIT_WORDS / sizeof *UNIT_WORDS; i++)
-        if (names_unit(from, to, UNIT_WORDS[i].word))
+        if (find_unit(from, to, UNIT_WORDS[i].word, PLAIN_UNIT, is_sentence && *UNIT_WORDS[i].word == 'g'))
             set |= 1u << UNIT_WORDS[i].unit;
     return set;
 }
 
-const char *unit_unknown(const char *from, const char *to)
+unsigned units_named(const char *from, const char *to)
+{
+    return find_units(from, to, 0);
+}
+
+unsigned units_stated(const char *from, const char *to)
+{
+    return find_units(from, to, 1);
+}
+
+/* What stands around `at`, between brackets, commas or semicolons. */
+static void show_unit(const char *from, const char *to, const char *at, char shown[UNIT_SHOWN])
+{
+    const char *a = at, *b = at;
+    size_t n = 0;
+    while (a > from && at - a < UNIT_SHOWN / 2 && !strchr("[(,;:#", a[-1]))
+        a--;
+    while (b < to && b - a < UNIT_SHOWN - 1 && !strchr("]),;", *b))
+        b++;
+    for (field_strip(&a, &b); a < b; a++)
+        shown[n++] = isprint((unsigned char)*a) ? *a : '?';
+    shown[n] = 0;
+}
+
+int unit_unknown(const char *from, const char *to, char shown[UNIT_SHOWN])
 {
     static const char *const WORDS[] = {"mg",     "milli-g", "mgal",    "mm/s2", "mm/s^2", "mm_s2", "in/s2",
                                         "in/s^2", "in_s2",   "in/sec2", "ft/s2", "ft/s^2", "ft_s2", "ft/sec2"};
+    const char *at = NULL;
+    for (size_t i = 0; !at && i < sizeof UNIT_WORDS / sizeof *UNIT_WORDS; i++)
+        at = find_unit(from, to, UNIT_WORDS[i].word, SCALED_UNIT, 0);
+    if (at) {
+        show_unit(from, to, at, shown);
+        return 1;
+    }
     for (size_t i = 0; i < sizeof WORDS / sizeof *WORDS; i++)
-        if (names_unit(from, to, WORDS[i]))
-            return WORDS[i];
-    return NULL;
+        if (find_unit(from, to, WORDS[i], PLAIN_UNIT, 0)) {
+            memcpy(shown, WORDS[i], strlen(WORDS[i]) + 1);
+            return 1;
+        }
+    return 0;
 }

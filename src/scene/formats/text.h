@@ -33,6 +33,9 @@ const char *find_word(const char *from, const char *to, const char *word); /* wi
 /* The first number in `from`..`to` behind `word` and any of " =:(", decimal point or comma: 1, else 0. */
 int number_behind(const char *from, const char *to, const char *word, double *x);
 
+/* A step [s] or, is_rate, a rate [1/s] in the same place: "0.005", "1/200 s", "5 ms", "0.1 kHz"; -1: in another unit. */
+int quantity_behind(const char *from, const char *to, const char *word, int is_rate, double *x);
+
 /* Drops the blanks around a field, and then a pair of double quotes. */
 void field_strip(const char **from, const char **to);
 
@@ -53,8 +56,12 @@ int format_width(const Lines *l);
 /* One bit (1 << MotionUnit) for each unit of acceleration that the text names. */
 unsigned units_named(const char *from, const char *to);
 
-/* A unit of acceleration that the text names and nothing here converts; NULL: none. */
-const char *unit_unknown(const char *from, const char *to);
+/* The same of a sentence, in which a letter g may be somebody's name: only where it is stated as a unit. */
+unsigned units_stated(const char *from, const char *to);
+
+/* 1: the text names a unit of acceleration, or a multiple of one, that nothing here converts. */
+enum { UNIT_SHOWN = 32 };
+int unit_unknown(const char *from, const char *to, char shown[UNIT_SHOWN]);
 
 extern const char *const UNIT_NAMES[]; /* by MotionUnit */
 

@@ -76,12 +76,24 @@ static Status read_slist(Record *r, Lines *l, const ReadHints *hints, Err *err)
     return STATUS_OK;
 }
 
+/* Seconds of the day of "2001-01-01T00:00:00.010000"; NAN: written otherwise. */
+static double time_of_day(const char *from, const char *to)
+{
+    double h, m, s;
+    const char *t = memchr(from, 'T', (size_t)(to - from));
+    return t && to - t > 8 && t[3] == ':' && t[6] == ':' && number_behind(t + 1, t + 3, "", &h) &&
+                   number_behind(t + 4, t + 6, "", &m) && number_behind(t + 7, to, "", &s)
+               ? 3600 * h + 60 * m + s
+               : NAN;
+}
+
 static Status read_tspair(Record *r, Lines *l, const ReadHints *hints, Err *err)
 {
     (void)hints;
     while (lines_next_filled(l)) {
         Channel *c;
         BlockForm form;
+        double first = NAN, last = NAN;
         TRY(read_header(r, l, &c, &form, err));
         if (!(form.count >= 2 && form.dt > 0 && form.dt <= MOTION_STEP_MAX_S))
             return fail(err, STATUS_BAD_DATA, "%s:%d: no usable number of samples or rate in '%.*s'", l->path,
@@ -92,11 +104,15 @@ static Status read_tspair(Record *r, Lines *l, const ReadHints *hints, Err *err)
                 return fail(err, STATUS_BAD_DATA, "%s:%d: ends after %zu samples, but its header announces %.0f",
                             l->path, l->number, c->n, form.count);
             const char *p = l->from;
-            field_next(l, &p, 0); /* the time */
+            const char *stop = field_next(l, &p, 0);
+            last = time_of_day(l->from, stop);
+            first = c->n == 0 ? last : first;
             row.line = l->number;
             TRY(field_number(l, p, l->to, 0, &row.a, err));
             TRY(record_add(r, l, row, err));
         }
+        last += last < first ? 24 * 3600 : 0; /* past midnight */
+        c->other_dt = isfinite(first) && isfinite(last) ? (last - first) / (double)(c->n - 1) : 0;
     }
     return STATUS_OK;
 }
