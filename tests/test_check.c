@@ -246,9 +246,29 @@ static void test_the_base_shear_of_one_mass_is_its_spectral_acceleration(void **
     motion_free(&m);
 }
 
+static void test_a_study_of_the_most_floors_ends_with_its_baselines(void **state)
+{
+    (void)state;
+    char storeys[64 * (FLOORS_MAX + 1)] = "height_m,mass_kg,stiffness_n_m\n";
+    for (int s = 0; s < FLOORS_MAX; s++)
+        strcat(storeys, "3.5,1e5,2e8\n");
+    char *folder = in_place("tall");
+    mkdir(folder, 0777);
+    free(folder);
+    write_in_place("tall/storeys.csv", storeys);
+    write_in_place("tall.ini", "[building]\nmodel = tall\n[motion]\npga_g = 0.3\n[sim]\nduration_s = 6\n"
+                               "[search]\npopulation = 4\ninitial = 4\npolish = 0\nthreads = 1\n");
+    Said said;
+    run(&said, "optimize @/tall.ini --max-evals 4 --out @/tall-run");
+    assert_int_equal(said.code, 0);
+    assert_non_null(strstr(said.out, "viscous links"));
+    forget(&said);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_a_study_of_the_most_floors_ends_with_its_baselines),
         cmocka_unit_test(test_deviations_and_objectives_that_make_no_sense_are_noticed),
         cmocka_unit_test(test_a_sound_building_is_in_order_with_its_figures),
         cmocka_unit_test(test_units_that_are_wrong_are_refused_or_guessed),

@@ -39,7 +39,7 @@ typedef struct {
     double *Y_slope;                       /* (n_loss + 1, stretches) */
     double *damped, *rate_max, *apart_max; /* (n_loss) [J], [m/s]; (n_apart) [m] */
     double input;                          /* [J] */
-    double *work;                          /* (3 size size) */
+    double *work;                          /* (3 size, n or n_loss, size): the largest */
     PeakMonitor peaks;
     long steps;
     void *store;
@@ -54,7 +54,8 @@ static void layout(void *linear, Carve *c)
 {
     Linear *d = linear;
     const size_t m = (size_t)d->s->m, size = (size_t)d->size, out = (size_t)d->rows.n, real = sizeof(double);
-    const size_t stretches = (size_t)d->stretches_max, losses = (size_t)d->s->n_loss;
+    const size_t stretches = (size_t)d->stretches_max, losses = (size_t)d->s->n_loss, n = (size_t)d->s->n;
+    const size_t widest = n > losses ? n : losses, work = 3 * size > widest ? 3 * size : widest;
     const size_t coordinates = d->run->forces ? (size_t)n_coordinates(d) : 0;
     d->D = carve(c, m * m, real);
     d->Y_ddot = carve(c, m * size, real);
@@ -72,7 +73,7 @@ static void layout(void *linear, Carve *c)
     d->damped = carve(c, losses, real);
     d->rate_max = carve(c, losses, real);
     d->apart_max = carve(c, (size_t)d->s->n_apart, real);
-    d->work = carve(c, 3 * size * size, real);
+    d->work = carve(c, work * size, real);
 }
 
 /* -- matrices ------------------------------------------------------------------------------------------------------ */
