@@ -254,6 +254,17 @@ static void test_faults_of_a_frame_name_file_line_and_what_to_do(void **state)
         {"elements.csv", "element,node_i,node_j,section\n1,A,C,column\n", "no floors"},
         {"masses.csv", "node,mass_kg\nC,-1\n", "masses.csv:2: mass_kg is -1"},
         {"ties.csv", "node,same_as,x\nC,Q,1\n", "ties.csv:2: same_as 'Q'"},
+        {"masses.csv", "node,mass_kg\nC,\n", "masses.csv:2: column 2"},
+        {"masses.csv", "node,mass_kg\nA,5\n", "floor 1 (node C) has no mass"},
+        {"elements.csv", "element,node_i,node_j,section\n1,A,C,column\n2,B,D,column\n1,C,D,beam\n",
+         "elements.csv:4: element 1 is there twice"},
+        {"sections.csv", "section,A_m2,I_m4,E_pa,poisson\ncolumn,1,1,1,0.51\n", "sections.csv:2: poisson is 0.51"},
+        {"ties.csv", "node,same_as,x\nC,C,1\n", "ties.csv:2: node C and node C are one"},
+        {"ties.csv", "node,same_as,x\nC,D,0\n", "ties.csv:2: ties nothing"},
+        {"ties.csv", "node,same_as,z\nC,D,1\nD,C,1\n", "ties.csv:3: node D and node C are one, or tied already"},
+        {"elements.csv",
+         "element,node_i,node_j,section,pin_i,pin_j\n1,A,C,column,1,0\n2,B,D,column,1,0\n3,C,D,beam,1,1\n",
+         "node C (x 0 m, z 4 m) moves along x"},
         {"ties.csv", "node,same_as,x\nC,A,1\n", "floor 1 cannot move by itself"},
     };
     for (size_t i = 0; i < sizeof BAD / sizeof BAD[0]; i++) {

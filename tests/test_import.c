@@ -135,6 +135,8 @@ static void test_every_command_outside_the_subset_is_refused_with_its_line(void 
         {"node 1 0 0\nwipe\n", "model.tcl:2: wipe: only above the nodes"},
         {"node 1 0 0\nmass 1 1 1 -0.1\n", "model.tcl:2: mass: a mass of -0.1; it must not be negative"},
         {"node 1 0 0\nmass 1 1 1 1 5\n", "model.tcl:2: mass: '5' is not supported"},
+        {"node 1 0 010\n", "'010' is no number"},
+        {"node 1 0 0\nnode 2 0 1\nequalDOF 1 2\n", "model.tcl:3: equalDOF: wants two nodes"},
         {"node 1 0 0\nfix 1 1 1 1 0\n", "model.tcl:2: fix: '0' is not supported"},
         {"node 1 0 0\nnode 2 0 1\nelement elasticBeamColumn 1 1 2 1 1 1 7\n", "no geomTransf 7 above"},
         {"geomTransf Linear 1\nnode 1 0 0\nnode 2 0 1\nelement elasticBeamColumn 4 1 2 1 1 1 1\n"

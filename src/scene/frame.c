@@ -297,17 +297,21 @@ static Status numbering_make(Numbering *u, const Frame *f, int rigid_floors, int
 
 /* ---- condensation --------------------------------------------------------------------------------------------- */
 
-/* The node and the direction of a slave, "node 12 cannot be held from turning". */
-static Status fail_mechanism(const Numbering *u, int slave, Err *err)
+/* The displacement that has an unknown. */
+static int displacement_of(const Numbering *u, int unknown)
 {
-    static const char *const WORDS[] = {"move along x", "move along z", "turn"};
-    const Frame *f = u->frame;
     int i = 0;
-    while (u->unknown[i] != slave)
+    while (u->unknown[i] != unknown)
         i++;
-    const FrameNode *node = &f->node[i / FRAME_DOFS];
+    return i;
+}
+
+static Status fail_mechanism(const Numbering *u, int i, Err *err)
+{
+    static const char *const WORDS[] = {"moves along x", "moves along z", "turns"};
+    const FrameNode *node = &u->frame->node[i / FRAME_DOFS];
     return fail(err, STATUS_BAD_DATA,
-                "frame: a mechanism: nothing resists when node %s (x %g m, z %g m) %ss; fix it, or connect it",
+                "frame: a mechanism: nothing resists when node %s (x %g m, z %g m) %s; fix it, or connect it",
                 node->name, node->x, node->z, WORDS[i % FRAME_DOFS]);
 }
 
@@ -315,6 +319,8 @@ typedef struct {
     double *Kss;  /* (n_slaves, band + 1) lower band, column by column */
     double *T;    /* (n_masters, n_slaves) displacements of the slaves per unit of a master, row by row */
     double *diag; /* (n_slaves) of Kss before it is factored */
+    double *size; /* (n_masters) sum of the magnitudes of the terms of a diagonal entry of K; what rounding leaves of a
+                   * mechanism is a part of it */
 } Slaves;
 
 static void assemble_slaves(const Numbering *u, const Slaves *s)
@@ -340,7 +346,7 @@ static void assemble_slaves(const Numbering *u, const Slaves *s)
 }
 
 /* A pivot that has lost so many digits is zero but for rounding. */
-static const double PIVOT_LOST = 1e-11;
+static const double PIVOT_LOST = 1e-11, SWAY_LOST = 1e-12;
 
 static Status solve_slaves(const Numbering *u, Slaves *s, Err *err)
 {
@@ -351,10 +357,10 @@ static Status solve_slaves(const Numbering *u, Slaves *s, Err *err)
     if (info < 0)
         return fail(err, STATUS_NO_MEMORY, "frame: no memory to factor %d unknowns", n);
     if (info > 0)
-        return fail_mechanism(u, info - 1, err);
+        return fail_mechanism(u, displacement_of(u, info - 1), err);
     for (int i = 0; i < n; i++)
         if (pow(s->Kss[(size_t)i * (size_t)height], 2) < PIVOT_LOST * s->diag[i])
-            return fail_mechanism(u, i, err);
+            return fail_mechanism(u, displacement_of(u, i), err);
     linalg_solve_band(n, u->band, s->Kss, u->n_masters, s->T);
     return STATUS_OK;
 }
@@ -418,6 +424,18 @@ static void add_node(const Numbering *u, const Slaves *s, int i, double M[])
         }
 }
 
+static void add_size(const Numbering *u, const Slaves *s, const int at[LOCAL], const double k[LOCAL][LOCAL])
+{
+    for (int p = 0; p < u->n_masters; p++) {
+        double t[LOCAL];
+        for (int i = 0; i < LOCAL; i++)
+            t[i] = displacement(u, s, at[i], p);
+        for (int i = 0; i < LOCAL; i++)
+            for (int j = 0; j < LOCAL; j++)
+                s->size[p] += fabs(k[i][j] * t[i] * t[j]);
+    }
+}
+
 static void sum_up(const Numbering *u, const Slaves *s, double K[], double M[])
 {
     const Frame *f = u->frame;
@@ -426,6 +444,7 @@ static void sum_up(const Numbering *u, const Slaves *s, double K[], double M[])
         double k[LOCAL][LOCAL], m[LOCAL][LOCAL];
         element_unknowns(u, &f->element[e], at);
         element_matrices(f, &f->element[e], k, m);
+        add_size(u, s, at, k);
         add_element(u, s, at, k, K);
         add_element(u, s, at, m, M);
     }
@@ -433,20 +452,90 @@ static void sum_up(const Numbering *u, const Slaves *s, double K[], double M[])
         add_node(u, s, i, M);
 }
 
+/* The displacement with the largest part in the motion v (n_masters) of the masters. */
+static int moves_most(const Numbering *u, const Slaves *s, const double v[])
+{
+    double most = 0;
+    int best = 0;
+    for (int i = 0; i < u->frame->n_nodes * FRAME_DOFS; i++) {
+        double part = 0;
+        for (int m = 0; m < u->n_masters; m++)
+            part += v[m] * displacement(u, s, u->unknown[i], m);
+        if (i % FRAME_DOFS != FRAME_ROT && fabs(part) > most * (1 + 1e-9)) {
+            most = fabs(part);
+            best = i;
+        }
+    }
+    return best;
+}
+
+/* Master p follows those before it without resistance: v = [-K11^-1 k1p; 1; 0] is in the null space of K. */
+static Status fail_sway(const Numbering *u, const Slaves *s, int p, const double K[], Err *err)
+{
+    const int n = u->n_masters;
+    double *A = calloc((size_t)(p * p + n + 1), sizeof *A), *v = A + p * p;
+    if (!A)
+        return fail(err, STATUS_NO_MEMORY, "frame: no memory to factor %d x %d", p, p);
+    for (int i = 0; i < p; i++) {
+        memcpy(&A[i * p], &K[i * n], (size_t)p * sizeof *A);
+        v[i] = -K[i * n + p];
+    }
+    v[p] = 1;
+    Status status = p > 0 ? linalg_solve_spd(p, 1, A, v, err) : STATUS_OK;
+    if (status == STATUS_OK)
+        status = fail_mechanism(u, moves_most(u, s, v), err);
+    free(A);
+    return status;
+}
+
+static Status check_sway(const Numbering *u, const Slaves *s, const double K[], Err *err)
+{
+    const int n = u->n_masters;
+    double *L = malloc((size_t)(n * n) * sizeof *L);
+    int p = 0, info = -1;
+    for (int j = 0; L && j < n; j++)
+        for (int i = j; i < n; i++)
+            L[j * n + i - j] = K[i * n + j];
+    if (L)
+        info = linalg_factor_band(n, n - 1, L);
+    const int factored = info > 0 ? info - 1 : n;
+    while (L && p < factored && L[p * n] * L[p * n] > SWAY_LOST * s->size[p])
+        p++;
+    free(L);
+    if (info < 0)
+        return fail(err, STATUS_NO_MEMORY, "frame: no memory to factor %d x %d", n, n);
+    return p < n ? fail_sway(u, s, p, K, err) : STATUS_OK;
+}
+
+static Status check_mass(const Numbering *u, const double M[], Err *err)
+{
+    for (int k = 0; k < u->frame->n_floors; k++)
+        if (!(M[k * u->n_masters + k] > 0))
+            return fail(err, STATUS_BAD_DATA,
+                        "frame: floor %d (node %s) has no mass: give masses.csv, mass_kg_per_m or added_mass_kg", k + 1,
+                        u->frame->node[displacement_of(u, u->n_slaves + k) / FRAME_DOFS].name);
+    return STATUS_OK;
+}
+
 static Status condense(const Numbering *u, double K[], double M[], Err *err)
 {
     const size_t n = (size_t)u->n_slaves, masters = (size_t)u->n_masters, band = (size_t)u->band + 1;
-    Slaves s = {.Kss = calloc(n * band + masters * n + n + 1, sizeof *s.Kss)};
+    Slaves s = {.Kss = calloc(n * band + masters * n + n + masters, sizeof *s.Kss)};
     if (!s.Kss)
         return fail(err, STATUS_NO_MEMORY, "frame: no memory for %zu unknowns, band %zu", n, band);
     s.T = s.Kss + n * band;
     s.diag = s.T + masters * n;
+    s.size = s.diag + n;
     assemble_slaves(u, &s);
-    const Status status = solve_slaves(u, &s, err);
+    Status status = solve_slaves(u, &s, err);
     memset(K, 0, masters * masters * sizeof *K);
     memset(M, 0, masters * masters * sizeof *M);
     if (status == STATUS_OK)
         sum_up(u, &s, K, M);
+    if (status == STATUS_OK)
+        status = check_sway(u, &s, K, err);
+    if (status == STATUS_OK)
+        status = check_mass(u, M, err);
     free(s.Kss);
     return status;
 }

@@ -90,25 +90,48 @@ static int by_name(const void *a, const void *b)
     return strcmp(((const Entry *)a)->name, ((const Entry *)b)->name);
 }
 
-/* Nodes by name, for the sheets that refer to them. */
+/* Nodes by name, for the sheets that refer to them, and what is tied to what. */
 typedef struct {
     int n;
     Entry *entry; /* (n) sorted */
+    int *root;    /* (n * FRAME_DOFS) another displacement that is equal, or itself */
 } Index;
 
-static Status index_nodes(Index *x, const Frame *f, const Sheet *s, Err *err)
+/* The rows of a sheet by name: its first column, of which none may be there twice. */
+static Status sort_names(Entry entry[], const Sheet *s, const char *column, Err *err)
+{
+    for (size_t i = 0; i < s->n_rows; i++)
+        entry[i] = (Entry){sheet_text(s, i, column), (int)i};
+    qsort(entry, s->n_rows, sizeof *entry, by_name);
+    for (size_t i = 1; i < s->n_rows; i++)
+        if (strcmp(entry[i].name, entry[i - 1].name) == 0)
+            return fail(err, STATUS_BAD_DATA, "%s:%d: %s %s is there twice", s->path,
+                        s->line[entry[entry[i].index > entry[i - 1].index ? i : i - 1].index], column, entry[i].name);
+    return STATUS_OK;
+}
+
+static Status check_names(const Sheet *s, const char *column, Err *err)
+{
+    Entry *entry = malloc(s->n_rows * sizeof *entry);
+    if (!entry)
+        return fail(err, STATUS_NO_MEMORY, "%s: no memory for %zu rows", s->path, s->n_rows);
+    const Status status = sort_names(entry, s, column, err);
+    free(entry);
+    return status;
+}
+
+static Status index_nodes(Index *x, const Frame *f, Err *err)
 {
     x->n = f->n_nodes;
     x->entry = malloc((size_t)x->n * sizeof *x->entry);
-    if (!x->entry)
+    x->root = malloc((size_t)x->n * FRAME_DOFS * sizeof *x->root);
+    if (!x->entry || !x->root)
         return fail(err, STATUS_NO_MEMORY, "frame: no memory for %d nodes", x->n);
     for (int i = 0; i < x->n; i++)
         x->entry[i] = (Entry){f->node[i].name, i};
+    for (int i = 0; i < x->n * FRAME_DOFS; i++)
+        x->root[i] = i;
     qsort(x->entry, (size_t)x->n, sizeof *x->entry, by_name);
-    for (int i = 1; i < x->n; i++)
-        if (strcmp(x->entry[i].name, x->entry[i - 1].name) == 0)
-            return fail(err, STATUS_BAD_DATA, "%s:%d: node %s is there twice", s->path, s->line[x->entry[i].index],
-                        x->entry[i].name);
     return STATUS_OK;
 }
 
@@ -157,6 +180,9 @@ static Status take_section(Frame *f, const Index *x, const Sheet *s, size_t row,
     TRY(read_share(s, row, "shear_area_m2", &area, err));
     TRY(sheet_number(s, row, "poisson", 0.3, &poisson, err));
     TRY(read_share(s, row, "mass_kg_per_m", &section->mass_per_m, err));
+    if (!(poisson > -1 && poisson <= 0.5))
+        return fail(err, STATUS_BAD_DATA, "%s:%d: poisson is %g; it must be above -1 and at most 0.5", s->path,
+                    s->line[row], poisson);
     section->kGA = section->E / (2 * (1 + poisson)) * area;
     return STATUS_OK;
 }
@@ -192,15 +218,33 @@ static Status take_mass(Frame *f, const Index *x, const Sheet *s, size_t row, Er
     double along_x, along_z, rotary;
     int node;
     TRY(look_up(x, s, row, "node", &node, err));
-    TRY(read_share(s, row, "mass_kg", &along_x, err));
+    TRY(sheet_number(s, row, "mass_kg", NAN, &along_x, err));
     TRY(sheet_number(s, row, "mass_z_kg", along_x, &along_z, err));
     TRY(read_share(s, row, "rotary_kg_m2", &rotary, err));
-    if (along_z < 0)
-        return fail(err, STATUS_BAD_DATA, "%s:%d: mass_z_kg is %g; it must not be negative", s->path, s->line[row],
-                    along_z);
+    if (along_x < 0 || along_z < 0)
+        return fail(err, STATUS_BAD_DATA, "%s:%d: %s is %g; it must not be negative", s->path, s->line[row],
+                    along_x < 0 ? "mass_kg" : "mass_z_kg", along_x < 0 ? along_x : along_z);
     f->node[node].mass[FRAME_X] += along_x;
     f->node[node].mass[FRAME_Z] += along_z;
     f->node[node].mass[FRAME_ROT] += rotary;
+    return STATUS_OK;
+}
+
+static int find_root(const Index *x, int i)
+{
+    while (x->root[i] != i)
+        i = x->root[i];
+    return i;
+}
+
+/* Two displacements become one; they are not yet. */
+static Status unite(const Index *x, const FrameTie *tie, int dof, const Sheet *s, size_t row, Err *err)
+{
+    const int a = find_root(x, tie->node * FRAME_DOFS + dof), b = find_root(x, tie->same_as * FRAME_DOFS + dof);
+    if (a == b)
+        return fail(err, STATUS_BAD_DATA, "%s:%d: node %s and node %s are one, or tied already: a circle of ties",
+                    s->path, s->line[row], sheet_text(s, row, "node"), sheet_text(s, row, "same_as"));
+    x->root[a] = b;
     return STATUS_OK;
 }
 
@@ -210,14 +254,19 @@ static Status take_tie(Frame *f, const Index *x, const Sheet *s, size_t row, Err
     static const char *const DOF[] = {"x", "z", "rot"};
     TRY(look_up(x, s, row, "node", &tie->node, err));
     TRY(look_up(x, s, row, "same_as", &tie->same_as, err));
-    for (int d = 0; d < FRAME_DOFS; d++)
+    for (int d = 0; d < FRAME_DOFS; d++) {
         TRY(read_switch(s, row, DOF[d], &tie->dof[d], err));
-    return STATUS_OK;
+        if (tie->dof[d])
+            TRY(unite(x, tie, d, s, row, err));
+    }
+    return tie->dof[FRAME_X] || tie->dof[FRAME_Z] || tie->dof[FRAME_ROT]
+               ? STATUS_OK
+               : fail(err, STATUS_BAD_DATA, "%s:%d: ties nothing: none of x, z, rot is 1", s->path, s->line[row]);
 }
 
 /* A file of the folder; its rows are a list of the frame, or add to what is there (size 0). */
 typedef struct {
-    const char *name, *required, *optional;
+    const char *name, *required, *optional, *named; /* named: the column of names; NULL: none */
     int may_be_missing;
     Status (*take)(Frame *f, const Index *x, const Sheet *s, size_t row, Err *err);
     size_t size, list, count; /* of an entry; where list and number are in a Frame */
@@ -225,11 +274,13 @@ typedef struct {
 
 #define LIST(name) sizeof *((Frame *)0)->name, offsetof(Frame, name), offsetof(Frame, n_##name##s)
 static const Part PARTS[] = {
-    {"nodes.csv", "node x_m z_m", "fix_x fix_z fix_rot floor keep_x keep_z keep_rot", 0, take_node, LIST(node)},
-    {"sections.csv", "section A_m2 I_m4 E_pa", "shear_area_m2 poisson mass_kg_per_m", 0, take_section, LIST(section)},
-    {"elements.csv", "element node_i node_j section", "pin_i pin_j added_mass_kg", 0, take_element, LIST(element)},
-    {"masses.csv", "node mass_kg", "mass_z_kg rotary_kg_m2", 1, take_mass, 0, 0, 0},
-    {"ties.csv", "node same_as", "x z rot", 1, take_tie, LIST(tie)},
+    {"nodes.csv", "node x_m z_m", "fix_x fix_z fix_rot floor keep_x keep_z keep_rot", "node", 0, take_node, LIST(node)},
+    {"sections.csv", "section A_m2 I_m4 E_pa", "shear_area_m2 poisson mass_kg_per_m", "section", 0, take_section,
+     LIST(section)},
+    {"elements.csv", "element node_i node_j section", "pin_i pin_j added_mass_kg", "element", 0, take_element,
+     LIST(element)},
+    {"masses.csv", "node mass_kg", "mass_z_kg rotary_kg_m2", NULL, 1, take_mass, 0, 0, 0},
+    {"ties.csv", "node same_as", "x z rot", NULL, 1, take_tie, LIST(tie)},
 };
 
 static Status make_list(Frame *f, const Part *part, size_t n, Err *err)
@@ -251,8 +302,10 @@ static Status read_part(Frame *f, Index *x, const char *folder, const Part *part
     Status status = part->size > 0 ? make_list(f, part, s.n_rows, err) : STATUS_OK;
     for (size_t i = 0; i < s.n_rows && status == STATUS_OK; i++)
         status = part->take(f, x, &s, i, err);
+    if (status == STATUS_OK && part->named)
+        status = check_names(&s, part->named, err);
     if (status == STATUS_OK && !x->entry)
-        status = index_nodes(x, f, &s, err);
+        status = index_nodes(x, f, err);
     sheet_free(&s);
     return status;
 }
@@ -374,6 +427,7 @@ Status frame_read(Frame *f, const char *folder, int floors_max, Err *err)
     for (size_t i = 0; i < sizeof PARTS / sizeof PARTS[0] && status == STATUS_OK; i++)
         status = read_part(f, &x, folder, &PARTS[i], err);
     free(x.entry);
+    free(x.root);
     if (status == STATUS_OK)
         status = find_floors(f, folder, floors_max, err);
     if (status != STATUS_OK)

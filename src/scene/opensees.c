@@ -171,7 +171,7 @@ static Number literal(Expression *e)
     const double value = strtod(e->at, &end);
     const size_t length = (size_t)(end - e->at);
     const Number a = {value, strspn(e->at, "0123456789") == length};
-    e->wrong |= length == 0;
+    e->wrong |= length == 0 || (a.whole && length > 1 && *e->at == '0'); /* octal, as some versions of Tcl have it */
     e->at = end;
     return a;
 }
@@ -374,6 +374,8 @@ static Status take_equal(Reader *r, Err *err)
     FrameTie *tie;
     if (node < 0 || same_as < 0)
         return STATUS_OK;
+    if (node == same_as || r->n == 3)
+        refuse(r, "equalDOF: wants two nodes and at least one degree of freedom 1 to 3");
     APPEND(tie, f->tie, f->n_ties, r->tie_room);
     tie->node = node;
     tie->same_as = same_as;
