@@ -270,7 +270,9 @@ static const struct {
     {"three.v1a", "1.00 mm/s/s", "1.00 counts", "set motion.unit"},
     {"three.v2a", "      43      43      43", "      43      43      53", "begin a component"},
     {"jma.csv", "100Hz", "none", ":7: no usable SAMPLING RATE"},
-    {"jma.csv", "gal(cm/s/s)", "counts", "set motion.unit"},
+    {"jma.csv", "gal(cm/s/s)", "counts",
+     "the unit 'counts' of its acceleration is not known; convert it to m/s2, cm/s2"},
+    {"cwb.dat", "gal. DCoffset(corr)", "volts", "the unit 'volts' of its acceleration is not known"},
     {"jma.csv", "NS,EW,UD", "NS,EW", ":7: names 2 columns, but 3 follow"},
     {"jma.csv", "  -123.400,", "", ":23: has 2 columns where the lines above have 3"},
     {"jma.csv", "-123.400", "-123.4.0", ":23: '-123.4.0' is not a number"},
@@ -1079,9 +1081,11 @@ static void test_marks_of_thousands_and_commas_of_two_meanings_are_refused(void 
 static void test_a_unit_in_a_sentence_counts_only_where_it_is_stated_as_one(void **state)
 {
     (void)state;
-    static const char *const IN_G[] = {
-        "# units: g",   "# acc [g]",         "# (G)",          "# in g",     "# acceleration g", "# g", "# 2001, g",
-        "# units of G", "Acceleration in g", "# accel (g); x", "# Units = g"};
+    static const char *const IN_G[] = {"# units: g",     "# acc [g]",        "# (G)",
+                                       "# in g",         "# acceleration g", "# g",
+                                       "# 2001, g",      "# units of G",     "Acceleration in g",
+                                       "# accel (g); x", "# Units = g",      "% g",
+                                       "acc_x1_g"};
     static const char *const IN_NONE[] = {"# by G. Smith", "# Record G",     "# ground type G", "# Gal station",
                                           "# scaled by g", "St. G, a title", "# station: G",    "# peak 0.35 g"};
     static const char *const UNKNOWN[][2] = {{"# acceleration (milli-g)", "'milli-g'"},
@@ -1091,7 +1095,8 @@ static void test_a_unit_in_a_sentence_counts_only_where_it_is_stated_as_one(void
                                              {"acc (% of g)", "'% of g'"},
                                              {"acc [1/g]", "'1/g'"},
                                              {"acc [g/10]", "'g/10'"},
-                                             {"acc [0.01 g]", "'0.01 g'"},
+                                             {"acc [0.2 g]", "'0.2 g'"},
+                                             {"# acceleration in 0.1 g", "0.1 g'"},
                                              {"acc_x1000_m_s2", "'acc_x1000_m_s2'"}};
     char text[200];
     Motion m;

@@ -247,9 +247,12 @@ static void take_numbers(const Lines *l, Preface *preface)
 
 static void take_comment(const Lines *l, Preface *preface)
 {
-    preface->in_comments |= units_stated(l->from, l->to);
+    const char *from = l->from;
+    while (from < l->to && strchr("#%!/ \t", *from))
+        from++;
+    preface->in_comments |= units_stated(from, l->to);
     if (!preface->unit[0])
-        unit_unknown(l->from, l->to, preface->unit);
+        unit_unknown(from, l->to, preface->unit);
     take_numbers(l, preface);
 }
 

@@ -13,7 +13,7 @@ enum { COMPONENTS_MAX = 8 };
 
 typedef struct {
     double hertz;
-    unsigned units;
+    Channel unit; /* units and unit of every channel */
     Lines sequence, peak[COMPONENTS_MAX];
     int n_peaks;
 } Header;
@@ -28,7 +28,7 @@ static void take(const Lines *l, Header *h)
     if (line_begins(l, "#SampleRate(Hz)"))
         number_behind(l->from, l->to, "(Hz)", &h->hertz);
     else if (line_begins(l, "#AmplitudeUnit"))
-        h->units = units_named(l->from, l->to);
+        channel_unit(&h->unit, l->from + strlen("#AmplitudeUnit"), l->to);
     else if (line_begins(l, "#AmplitudeMAX.") && h->n_peaks < COMPONENTS_MAX)
         h->peak[h->n_peaks++] = *l;
     else if (line_begins(l, "#DataSequence:"))
@@ -77,12 +77,13 @@ static Status name_channels(Record *r, const Header *h, const Columns *columns, 
         Channel *c;
         TRY(record_channel(r, &h->sequence, &c, err));
         *c = (Channel){.scale = 1,
-                       .units = h->units,
+                       .units = h->unit.units,
                        .dt = 1 / h->hertz,
                        .other_dt = mean_step(r, columns),
                        .first = k,
                        .stride = columns->width,
                        .n = columns->n_rows};
+        memcpy(c->unit, h->unit.unit, sizeof c->unit);
         const char *sign = memchr(from, '(', (size_t)(p - from));
         channel_name(c, from, sign ? sign : p);
         take_peak(c, h);

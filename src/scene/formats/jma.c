@@ -10,7 +10,7 @@
 
 typedef struct {
     double hertz;
-    unsigned units;
+    Channel unit; /* units and unit of every channel */
     Lines names;
 } Header;
 
@@ -26,7 +26,7 @@ static Status read_header(Lines *l, Header *h, Err *err)
         if (line_begins(l, "SAMPLING RATE"))
             number_behind(l->from, l->to, "RATE", &h->hertz);
         else if (line_begins(l, "UNIT"))
-            h->units = units_named(l->from, l->to);
+            channel_unit(&h->unit, l->from + strlen("UNIT"), l->to);
         if (!lines_next_filled(l))
             return fail_too_short(l, "names of the columns", err);
     } while (memchr(l->from, '=', (size_t)(l->to - l->from)));
@@ -43,11 +43,12 @@ static Status name_channels(Record *r, const Header *h, const Columns *columns, 
         Channel *c;
         TRY(record_channel(r, &h->names, &c, err));
         *c = (Channel){.scale = 1,
-                       .units = h->units,
+                       .units = h->unit.units,
                        .dt = 1 / h->hertz,
                        .first = r->n_channels - 1,
                        .stride = columns->width,
                        .n = columns->n_rows};
+        memcpy(c->unit, h->unit.unit, sizeof c->unit);
         channel_name(c, from, to);
     }
     if (r->n_channels != columns->width)

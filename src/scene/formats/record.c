@@ -77,6 +77,8 @@ void channel_name(Channel *c, const char *from, const char *to)
 void channel_unit(Channel *c, const char *from, const char *to)
 {
     size_t n = 0;
+    while (from < to && *from && strchr(" \t=:", *from))
+        from++;
     field_strip(&from, &to);
     c->units = units_named(from, to);
     for (; !c->units && from < to && n + 1 < sizeof c->unit; from++)

@@ -88,7 +88,7 @@ void record_free(Record *r);
 Status record_channel(Record *r, const Lines *l, Channel **out, Err *err);
 void channel_name(Channel *c, const char *from, const char *to); /* blanks and quotes around it dropped, ASCII only */
 
-/* The unit that a header states. */
+/* The unit that a header states, colon or equals sign before it dropped. */
 void channel_unit(Channel *c, const char *from, const char *to);
 
 /* The value behind the first colon of a line "key : value"; 0: no colon. */

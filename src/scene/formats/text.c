@@ -299,9 +299,10 @@ static int is_scaled_before(const char *from, const char *at)
         return 1;
     for (q = p; q > from && strchr("0123456789.eE+-_*/ ", q[-1]); q--)
         ;
-    if (q == p || !memchr(q, '1', (size_t)(p - q)))
+    if (q == p || q == from || !isdigit((unsigned char)*skip(q, p, " .+-")))
         return 0;
-    return q > from && (strchr("[(", q[-1]) || ends_in(from, q, "x"));
+    const int tens = memcmp(q, "10", 2) == 0; /* x1 is a channel, x1000 a factor */
+    return strchr("[(", q[-1]) || (p < at && ends_in(from, q, "in")) || (tens && ends_in(from, q, "x"));
 }
 
 /* "m/s2 x 1000", "g / 10", "g*100" */
@@ -338,13 +339,13 @@ static int is_stated(const char *from, const char *to, const char *at, const cha
 {
     static const char *const SAYING[] = {"in",    "unit", "units",    "acceleration", "accelerations",
                                          "accel", "acc",  "amplitude"};
-    const char *start = skip(from, to, "#%!/ \t"), *p = before_blanks(from, at);
+    const char *p = before_blanks(from, at);
     behind = skip(behind, to, " \t");
-    if ((p <= start || strchr(",;[(", p[-1])) && (behind == to || strchr(",;])", *behind)))
+    if ((p == from || strchr(",;[(", p[-1])) && (behind == to || strchr(",;])", *behind)))
         return 1;
     if (p > from && p[-1] == '/')
         return 1;
-    while (p > start && strchr(" \t:=[]()_", p[-1]))
+    while (p > from && strchr(" \t:=[]()_", p[-1]))
         p--;
     for (size_t i = 0; i < sizeof SAYING / sizeof SAYING[0]; i++)
         if (ends_in(from, p, SAYING[i]))
