@@ -340,6 +340,18 @@ static void test_faults_of_storeys_are_named(void **state)
     expect_refusal_of(&o, "has heights of its own");
 }
 
+static void test_a_folder_holds_one_kind_of_model(void **state)
+{
+    (void)state;
+    BuildingOptions o = folder_of("kinds");
+    expect_refusal_of(&o, "holds no building: K.csv and M.csv, or storeys.csv, or nodes.csv");
+    write_file(&o, "M.csv", "1\n");
+    write_file(&o, "storeys.csv", "height_m,mass_kg\n3,1e5\n");
+    expect_refusal_of(&o, "holds storeys.csv and M.csv, two kinds of model");
+    write_file(&o, "nodes.csv", "node,x_m,z_m\nA,0,0\n");
+    expect_refusal_of(&o, "holds nodes.csv and storeys.csv, two kinds of model");
+}
+
 static void test_heights_may_be_listed_storey_by_storey(void **state)
 {
     (void)state;
@@ -443,6 +455,8 @@ static void test_rayleigh_damping_goes_through_its_two_modes(void **state)
     expect_refusal_of(&o, "are not two modes");
     snprintf(o.rayleigh_modes, sizeof o.rayleigh_modes, "1, 21");
     expect_refusal_of(&o, "21 is none of the 20 modes");
+    snprintf(o.rayleigh_modes, sizeof o.rayleigh_modes, "1, 2, 3");
+    expect_refusal_of(&o, "'1, 2, 3' has 3 modes; Rayleigh damping takes two");
 }
 
 static void test_a_damping_table_gives_each_mode_its_ratio(void **state)
@@ -455,6 +469,9 @@ static void test_a_damping_table_gives_each_mode_its_ratio(void **state)
     Building b = load(&o);
     assert_true(b.zeta[0] == 0.01 && b.zeta[1] == 0.02 && b.zeta[2] == 0.05 && b.zeta[19] == 0.05);
     building_free(&b);
+    for (size_t i = 0; i < 20; i++)
+        snprintf(o.damping_table + 2 * i, sizeof o.damping_table - 2 * i, "1,1");
+    expect_refusal_of(&o, "has 21 ratios; the building has 20 modes");
 }
 
 /* As many floors as there may be, with impacts: sets of floors, pads and designs have room for all of them. */
@@ -785,6 +802,7 @@ int main(void)
         cmocka_unit_test(test_storeys_that_shear_have_the_frequencies_of_a_chain),
         cmocka_unit_test(test_storeys_that_bend_and_shear_deflect_as_timoshenkos_cantilever),
         cmocka_unit_test(test_faults_of_storeys_are_named),
+        cmocka_unit_test(test_a_folder_holds_one_kind_of_model),
         cmocka_unit_test(test_heights_may_be_listed_storey_by_storey),
         cmocka_unit_test(test_p_delta_softens_the_tower_to_its_known_frequency),
         cmocka_unit_test(test_p_delta_of_one_storey_is_the_inverted_pendulum),

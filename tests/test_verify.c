@@ -92,7 +92,7 @@ static void test_what_has_no_full_model_is_refused(void **state)
     (void)state;
     write_design("d.csv");
     expect(2, "--design is missing", "verify configs/quick.ini");
-    expect(65, "building.modes: appendix has no more than its floors",
+    expect(65, "building.model: appendix has nothing fuller than its floors to verify with",
            "verify configs/quick.ini --design none --set building.model=appendix");
     expect(66, "nowhere", "verify nowhere --design none");
 }

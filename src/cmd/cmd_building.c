@@ -56,7 +56,7 @@ static void print_text(const Model *m)
 {
     const Building *b = &m->building;
     double z = 0;
-    printf("%s: %d floors, %.5g kg, %.4g MN\n", m->s->building.model, b->n, total_mass(b),
+    printf("%s: %d floor%s, %.5g kg, %.4g MN\n", m->s->building.model, b->n, b->n == 1 ? "" : "s", total_mass(b),
            1e-6 * GRAVITY * total_mass(b));
     if (m->frame.n_nodes)
         printf("plane frame of %d nodes, %d elements, %d sections, %d ties\n", m->frame.n_nodes, m->frame.n_elements,

@@ -190,8 +190,8 @@ static void print_scene(const CheckedScene *p)
 {
     const SceneSummary *f = &p->summary;
     const Settings *s = p->s;
-    printf("building  %s: %d floors, %.4g m, %.4g kg (floors of %.4g to %.4g kg)\n", s->building.model, f->n_floors,
-           f->height_m, f->mass_kg, f->floor_mass_min_kg, f->floor_mass_max_kg);
+    printf("building  %s: %d floor%s, %.4g m, %.4g kg (floors of %.4g to %.4g kg)\n", s->building.model, f->n_floors,
+           f->n_floors == 1 ? "" : "s", f->height_m, f->mass_kg, f->floor_mass_min_kg, f->floor_mass_max_kg);
     printf("          periods");
     for (int i = 0; i < 3 && f->period_s[i] > 0; i++)
         printf("%s %.4g s (damping %.3g %%)", i ? "," : "", f->period_s[i], 100 * f->damping[i]);

@@ -157,7 +157,7 @@ static Status print_json(const Modes *m, const Settings *s, Err *err)
 
 static void print_table(const Modes *m, const Settings *s)
 {
-    printf("building %s, %d floors; core of %.4g kg", s->building.model, m->n, m->core_mass_kg);
+    printf("building %s, %d floor%s; core of %.4g kg", s->building.model, m->n, m->n == 1 ? "" : "s", m->core_mass_kg);
     if (s->core.section == CORE_EFFECTIVE)
         printf(" (effective section), %s\n", core_theory_word(s->core.theory));
     else

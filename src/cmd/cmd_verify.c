@@ -8,6 +8,7 @@
 #include "cmd/designs.h"
 #include "cmd/show.h"
 #include "report/heights.h"
+#include "scene/frame.h"
 #include "settings/settings.h"
 #include "simulator/tower.h"
 #include "store/run_read.h"
@@ -254,6 +255,11 @@ static Status verify_by(const Args *args, Settings *s, const char *folder, Err *
     TRY(building_load(&b, &s->building, err));
     job.n_floors = b.n;
     building_free(&b);
+    if (!frame_is(s->building.model))
+        return fail(err, STATUS_BAD_DATA,
+                    "building.model: %s has nothing fuller than its floors to verify with; only a plane frame "
+                    "(nodes.csv) and guyan have",
+                    s->building.model);
     TRY(design_space_make(&job.space, &s->design, job.n_floors, err));
     TRY(measures_order(&job.order, s->search.objectives, job.n_floors, err));
     Status status = take_designs(args, folder, &job, err);

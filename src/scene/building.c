@@ -18,8 +18,8 @@ static Status find_heights(Building *b, const BuildingFiles *files, const Buildi
 {
     const int listed = list_is_given(o->heights_m);
     if (listed && list_count(o->heights_m) != (size_t)b->n)
-        return fail(err, STATUS_BAD_DATA, "building.heights_m: has %zu heights; the building has %d storeys",
-                    list_count(o->heights_m), b->n);
+        return fail(err, STATUS_BAD_DATA, "building.heights_m: has %zu heights; the building has %d storey%s",
+                    list_count(o->heights_m), b->n, b->n == 1 ? "" : "s");
     if (listed && files->storey_m)
         return fail(err, STATUS_BAD_DATA, "building.heights_m: %s has heights of its own; leave it at none", o->model);
     for (int j = 0; j < b->n; j++) {
@@ -125,6 +125,9 @@ static Status check_units(const Building *b, const BuildingOptions *o, Err *err)
 static Status rayleigh(Building *b, const BuildingOptions *o, Err *err)
 {
     double mode[2];
+    if (list_count(o->rayleigh_modes) > 2)
+        return fail(err, STATUS_BAD_DATA, "building.rayleigh_modes: '%s' has %zu modes; Rayleigh damping takes two",
+                    o->rayleigh_modes, list_count(o->rayleigh_modes));
     for (size_t i = 0; i < 2; i++) {
         TRY(list_positive(o->rayleigh_modes, i, "building.rayleigh_modes", &mode[i], err));
         if (mode[i] != floor(mode[i]) || mode[i] > b->n)
@@ -147,6 +150,9 @@ static Status damping_table(Building *b, const BuildingOptions *o, Err *err)
     if (n == 0)
         return fail(err, STATUS_BAD_DATA,
                     "building.damping_table: is none; building.damping_model = table wants a list");
+    if (n > (size_t)b->n)
+        return fail(err, STATUS_BAD_DATA, "building.damping_table: has %zu ratios; the building has %d mode%s", n, b->n,
+                    b->n == 1 ? "" : "s");
     for (int i = 0; i < b->n; i++)
         TRY(list_positive(o->damping_table, (size_t)i < n ? (size_t)i : n - 1, "building.damping_table", &b->zeta[i],
                           err));

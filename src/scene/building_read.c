@@ -299,17 +299,43 @@ static Status read_frame(BuildingFiles *b, const BuildingOptions *o, Err *err)
 
 /* ---- the folder ----------------------------------------------------------------------------------------------- */
 
+/* The sheets that say which kind of model a folder holds. */
+enum { KIND_FRAME, KIND_STOREYS, KIND_K, KIND_M, KINDS };
+static const char *const SHEETS[KINDS] = {"nodes.csv", "storeys.csv", "K.csv", "M.csv"};
+
+/* Is there one kind of model? */
+static Status check_kind(const char *folder, int has[KINDS], Err *err)
+{
+    for (int k = 0; k < KINDS; k++) {
+        char path[600];
+        snprintf(path, sizeof path, "%s/%s", folder, SHEETS[k]);
+        has[k] = access(path, F_OK) == 0;
+    }
+    const int matrices = has[KIND_K] || has[KIND_M];
+    const char *matrix = has[KIND_K] ? SHEETS[KIND_K] : SHEETS[KIND_M];
+    if (has[KIND_FRAME] + has[KIND_STOREYS] + matrices > 1)
+        return fail(err, STATUS_BAD_DATA, "%s: holds %s and %s, two kinds of model; leave one of them there", folder,
+                    SHEETS[has[KIND_FRAME] ? KIND_FRAME : KIND_STOREYS],
+                    has[KIND_FRAME] && has[KIND_STOREYS] ? SHEETS[KIND_STOREYS] : matrix);
+    if (!has[KIND_FRAME] && !has[KIND_STOREYS] && !matrices && access(folder, F_OK) == 0)
+        return fail(
+            err, STATUS_MISSING,
+            "%s: holds no building: K.csv and M.csv, or storeys.csv, or nodes.csv, sections.csv and elements.csv",
+            folder);
+    return STATUS_OK;
+}
+
 static Status read_folder(BuildingFiles *b, const BuildingOptions *o, Err *err)
 {
+    int has[KINDS];
     char storeys[600];
     if (is_compiled_in(o->model))
         return read_matrices(b, o, err);
-    if (frame_is(o->model))
-        return read_frame(b, o, err);
+    TRY(check_kind(o->model, has, err));
     snprintf(storeys, sizeof storeys, "%s/storeys.csv", o->model);
-    if (access(storeys, F_OK) == 0)
-        return read_storeys(b, storeys, err);
-    return read_matrices(b, o, err);
+    if (has[KIND_FRAME])
+        return read_frame(b, o, err);
+    return has[KIND_STOREYS] ? read_storeys(b, storeys, err) : read_matrices(b, o, err);
 }
 
 Status building_read(BuildingFiles *b, const BuildingOptions *o, Err *err)
