@@ -199,6 +199,8 @@ static void test_a_design_is_evaluated_on_every_motion_of_a_folder(void **state)
     assert_non_null(strstr(table, "not read: tests/motion/irregular.csv:26"));
     free(table);
     expect(65, "holds no ground motion that can be read", "evaluate @/threads-1 --design knee --records configs/sac20");
+    expect(65, "not read: tests/motion/one.knet: motion.channel '99' is not exactly one of its channels",
+           "evaluate @/threads-1 --design knee --records tests/motion --channel 99");
     char *empty = in_place("empty");
     assert_int_equal(mkdir(empty, 0777), 0);
     free(empty);
