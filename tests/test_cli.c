@@ -98,6 +98,7 @@ static void test_a_misunderstood_command_line_ends_with_2_and_a_suggestion(void 
     expect(2, "--rigid needs a core", "simulate configs/quick.ini --design none --rigid");
     expect(2, "--set nonsense: write --set section.key=value", "modes configs/quick.ini --set nonsense");
     expect(2, "--csv FILE is missing", "export results");
+    expect(2, "choose one", "export results --all --select 5 --csv -");
     expect(66, "holds no run", "evaluate results --design 1");
 }
 

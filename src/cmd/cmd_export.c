@@ -48,6 +48,8 @@ static Status run(const Args *args, Err *err)
 {
     if (!args_has(args, "--csv") && !args_has(args, "--json"))
         return fail(err, STATUS_USAGE, "--csv FILE is missing: where the table goes (or --json)");
+    if (args_has(args, "--all") && args_has(args, "--select"))
+        return fail(err, STATUS_USAGE, "--all and --select: every design, or some of the front; choose one");
     if (args_has(args, "--json"))
         TRY(export_json_of(stdout, args->operand, err));
     return args_has(args, "--csv") ? write_table(args, err) : STATUS_OK;

@@ -80,6 +80,19 @@ static void add_forces(json_t *o, SceneKind kind, int n, const SimForces *f)
         add_contact_forces(o, n, f);
 }
 
+static void add_peaks(json_t *o, const SimResult *r)
+{
+    const size_t n_floors = (size_t)r->n_floors, n_modes = (size_t)r->n_modes;
+    json_object_set_new(o, "peak_displacement_m", json_numbers(n_floors, r->peak_displacement_m));
+    json_object_set_new(o, "peak_drift_m", json_numbers(n_floors, r->peak_drift_m));
+    json_object_set_new(o, "peak_acceleration_g", json_numbers(n_floors, r->peak_acceleration_g));
+    json_object_set_new(o, "peak_filtered_g",
+                        r->filtered_known ? json_numbers(n_floors, r->peak_filtered_g) : json_null());
+    json_object_set_new(o, "drift_ratio_storey", json_integer(r->drift_ratio_storey + 1));
+    json_object_set_new(o, "peak_drift_ratio", json_numbers(n_floors, r->drift_ratio));
+    json_object_set_new(o, "mode_share_pct", json_numbers(n_modes, r->mode_share_pct));
+}
+
 json_t *json_result(SceneKind kind, const SimResult *r)
 {
     json_t *o = json_object();
@@ -97,16 +110,7 @@ json_t *json_result(SceneKind kind, const SimResult *r)
     json_object_set_new(o, "v0_limited", json_integer(r->v0_limited));
     json_object_set_new(o, "settled_s", json_number(r->settled_s));
     json_object_set_new(o, "repeated", json_integer(r->repeated));
-
-    const size_t n_floors = (size_t)r->n_floors, n_modes = (size_t)r->n_modes;
-    json_object_set_new(o, "peak_displacement_m", json_numbers(n_floors, r->peak_displacement_m));
-    json_object_set_new(o, "peak_drift_m", json_numbers(n_floors, r->peak_drift_m));
-    json_object_set_new(o, "peak_acceleration_g", json_numbers(n_floors, r->peak_acceleration_g));
-    json_object_set_new(o, "peak_filtered_g",
-                        r->filtered_known ? json_numbers(n_floors, r->peak_filtered_g) : json_null());
-    json_object_set_new(o, "drift_ratio_storey", json_integer(r->drift_ratio_storey + 1));
-    json_object_set_new(o, "peak_drift_ratio", json_numbers(n_floors, r->drift_ratio));
-    json_object_set_new(o, "mode_share_pct", json_numbers(n_modes, r->mode_share_pct));
+    add_peaks(o, r);
     if (r->forces_known)
         add_forces(o, kind, r->n_floors, &r->forces);
 
