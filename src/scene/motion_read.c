@@ -338,13 +338,16 @@ static Status resample(Motion *m, const Series *s, double dt, double to_m_s2, do
     return STATUS_OK;
 }
 
-/* The header's step against that of the printed times: within 1 %, and half a step in all. */
-static Status check_steps(const char *path, const Channel *c, double dt, Err *err)
+/* Where it is even, the header's step against that of the printed times: within 1 %, and half a step in all. */
+static Status check_step(const Series *s, const Channel *c, double dt, int even, Err *err)
 {
     const double intervals = (double)(c->n - 1);
-    if (c->other_dt == 0 || fabs(dt - c->other_dt) * intervals <= dt * (0.6 + 0.01 * intervals))
+    if (dt > MOTION_STEP_MAX_S)
+        return fail(err, STATUS_BAD_DATA, "%s:%d: a step of %g s; more than %g s is no record of an earthquake",
+                    s->path, row_at(s, 0)->line, dt, MOTION_STEP_MAX_S);
+    if (!even || c->other_dt == 0 || fabs(dt - c->other_dt) * intervals <= dt * (0.6 + 0.01 * intervals))
         return STATUS_OK;
-    return fail(err, STATUS_BAD_DATA, "%s: its header says a step of %.6g s, its times one of %.6g s", path,
+    return fail(err, STATUS_BAD_DATA, "%s: its header says a step of %.6g s, its times one of %.6g s", s->path,
                 c->dt > 0 ? dt : c->other_dt, c->dt > 0 ? c->other_dt : dt);
 }
 
@@ -361,13 +364,9 @@ static Status take_samples(Motion *m, const char *path, const Record *r, const C
         TRY(times_increase(&s, c->digitized, err));
         status = uniform_step(&s, &dt, &uneven);
     }
-    if (dt > MOTION_STEP_MAX_S)
-        return fail(err, STATUS_BAD_DATA, "%s:%d: a step of %g s; more than %g s is no record of an earthquake", path,
-                    row_at(&s, 0)->line, dt, MOTION_STEP_MAX_S);
+    TRY(check_step(&s, c, dt, status == STATUS_OK, err));
     if (status != STATUS_OK && how->resample_dt_s == 0)
         return c->digitized ? fail_digitized(&s, err) : fail(err, status, "%s", uneven.text);
-    if (status == STATUS_OK)
-        TRY(check_steps(path, c, dt, err));
     char unknown[UNIT_SHOWN];
     if (unit == UNIT_FROM_FILE && unit_unknown(c->name, c->name + strlen(c->name), unknown))
         return fail(err, STATUS_BAD_DATA,
@@ -460,7 +459,7 @@ typedef struct {
 static Status read_content(Record *r, const char *path, const char *bytes, size_t n, const ReadHints *hints, int deep,
                            Err *err);
 
-/* A member that is no record of an acceleration (a picture, a readme, a velocity) is passed over, a broken one is not. */
+/* A member that is no record of an acceleration (a picture, a readme, a velocity) is passed over, a damaged one not. */
 static Status take_member(const char *name, const char *bytes, size_t n, void *user, Err *err)
 {
     Members *members = user;

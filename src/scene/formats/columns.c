@@ -1,7 +1,8 @@
 /* Plain text: one, two or many columns of numbers, parted by blanks, tabs, commas or semicolons.
  *
- *   comments  begin with # % ! or //; they may tell the unit (m/s2, cm/s2, gal, g in the usual spellings), the step
- *             ("dt = 0.01", "sampling rate: 100") and the number of samples ("npts = 4000")
+ *   comments  begin with # % ! or //; they may state the unit (m/s2, cm/s2; gal and g as in "units: g", "[g]", "in g"), the
+ *             step ("dt = 1/200 s", "sampling rate: 100") and the number of samples ("npts = 4000"); what is stated twice
+ *             must agree
  *   names     lines of words above the numbers; the last of them names the columns, a unit there wins
  *   npts dt   two numbers alone in the first row, or one each in the first two, where the first is the number of samples or
  *             rows that follow; npts alone in the first row

@@ -334,7 +334,7 @@ static UnitUse use_of(const char *from, const char *to, const char *at, size_t l
     return before == from || !isdigit((unsigned char)before[-1]) ? PLAIN_UNIT : NO_UNIT;
 }
 
-/* A letter g and the word gal of a sentence are a unit where they stand alone, in brackets, or behind a word that says so. */
+/* A letter g and the word gal of a sentence are a unit where they stand alone, in brackets, or behind a word like "in". */
 static int is_stated(const char *from, const char *to, const char *at, const char *behind)
 {
     static const char *const SAYING[] = {"in",    "unit", "units",    "acceleration", "accelerations",
