@@ -136,6 +136,8 @@ static void test_every_command_outside_the_subset_is_refused_with_its_line(void 
         {"node 1 0 0\nmass 1 1 1 -0.1\n", "model.tcl:2: mass: a mass of -0.1; it must not be negative"},
         {"node 1 0 0\nmass 1 1 1 1 5\n", "model.tcl:2: mass: '5' is not supported"},
         {"node 1 0 010\n", "'010' is no number"},
+        {"node 1 0 0\nnode 2 0 1\nequalDOF 1 2 1\nequalDOF 2 1 3 1\n",
+         "model.tcl:4: equalDOF: nodes 2 and 1 are tied in 1"},
         {"node 1 0 0\nnode 2 0 1\nequalDOF 1 2\n", "model.tcl:3: equalDOF: wants two nodes"},
         {"node 1 0 0\nfix 1 1 1 1 0\n", "model.tcl:2: fix: '0' is not supported"},
         {"node 1 0 0\nnode 2 0 1\nelement elasticBeamColumn 1 1 2 1 1 1 7\n", "no geomTransf 7 above"},
@@ -170,6 +172,8 @@ static void test_integers_divide_as_integers_and_a_failed_import_leaves_no_folde
     assert_non_null(strstr(text, "4,4000,3000"));
     free(text);
     expect_import(65, "no floors", CANTILEVER);
+    snprintf(model, sizeof model, "%selement elasticBeamColumn 3 3 4 1e3 2e8 1e6 1\nmass 4 1e40 0 0\n", CANTILEVER);
+    expect_import(65, "is a stiffness or a mass wrong?", model);
     char *folder = in_place("refused");
     assert_int_not_equal(access(folder, F_OK), 0);
     free(folder);

@@ -87,15 +87,21 @@ static int is_floor(double mass_kg)
     return mass_kg >= 1e3 && mass_kg <= 1e7;
 }
 
+static Status check_period(const Building *b, const BuildingOptions *o, Err *err)
+{
+    const double period = 2 * M_PI / b->omega[0];
+    return period < PERIOD_MIN || (isfinite(period) && period > 1.0 / PERIOD_MIN)
+               ? fail(err, STATUS_BAD_DATA, "%s: the first period is %.3g s: is a stiffness or a mass wrong?", o->model,
+                      period)
+               : STATUS_OK;
+}
+
 /* Units that are wrong by a factor of a thousand move the period by 32; where both are, the floors are too light. */
 static Status check_units(const Building *b, const BuildingOptions *o, Err *err)
 {
     static const char *const WORDS[] = {BUILDING_UNITS_LIST(CHOICE_WORD)};
-    const double period = 2 * M_PI / b->omega[0], per_storey = period / b->n, mass = mean_floor_mass(b);
+    const double per_storey = 2 * M_PI / b->omega[0] / b->n, mass = mean_floor_mass(b);
     const int is_right = is_period(per_storey);
-    if (period < PERIOD_MIN || (isfinite(period) && period > 1.0 / PERIOD_MIN))
-        return fail(err, STATUS_BAD_DATA, "%s: the first period is %.3g s: is a stiffness or a mass wrong?", o->model,
-                    period);
     if (o->units != BUILDING_AUTO || (is_right && mass >= 1e3))
         return STATUS_OK;
     char fits[240] = "";
@@ -282,6 +288,7 @@ static Status take(Building *b, BuildingFiles *files, const BuildingOptions *o, 
         TRY(add_p_delta(b, o, b->n, b->K, err));
     TRY(find_modes(b, err));
     TRY(make_model(b, &files->full, o, err));
+    TRY(check_period(b, o, err));
     if (!files->storey_m) /* matrices: their headers say no unit */
         TRY(check_units(b, o, err));
     return building_damp(b, o, err);

@@ -367,6 +367,17 @@ static Status take_mass(Reader *r, Err *err)
     return STATUS_OK;
 }
 
+/* Is one of these nodes tied to the other already? */
+static int is_tied(const Frame *f, int a, int b, int dof)
+{
+    for (int i = 0; i < f->n_ties; i++) {
+        const FrameTie *t = &f->tie[i];
+        if (t->dof[dof] && ((t->node == a && t->same_as == b) || (t->node == b && t->same_as == a)))
+            return 1;
+    }
+    return 0;
+}
+
 static Status take_equal(Reader *r, Err *err)
 {
     Frame *f = r->frame;
@@ -381,10 +392,13 @@ static Status take_equal(Reader *r, Err *err)
     tie->same_as = same_as;
     for (int i = 3; i < r->n; i++) {
         double dof;
-        if (number(r, i, &dof) && (dof == 1 || dof == 2 || dof == 3))
-            tie->dof[(int)dof - 1] = 1;
-        else
+        if (!number(r, i, &dof) || (dof != 1 && dof != 2 && dof != 3))
             refuse(r, "equalDOF: '%s' is no degree of freedom 1 to 3", r->word[i]);
+        else if (is_tied(f, node, same_as, (int)dof - 1))
+            refuse(r, "equalDOF: nodes %s and %s are tied in %g already", f->node[same_as].name, f->node[node].name,
+                   dof);
+        else
+            tie->dof[(int)dof - 1] = 1;
     }
     return STATUS_OK;
 }
