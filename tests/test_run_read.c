@@ -71,7 +71,7 @@ static void test_what_is_wrong_in_one_cell_is_named(void **state)
             fail_msg("%s: %d, %s", CASES[i].sql, status, err.text);
         assert_true(h.table.n == 0 && !h.table.row && !h.state);
         const char *which = strstr(CASES[i].words, "evaluation ");
-        if (which && run_print_evaluations(folder, nowhere, &err) != STATUS_IO)
+        if (which && run_print_evaluations(folder, export_evaluations_header, nowhere, &err) != STATUS_IO)
             fail_msg("%s: is exported", CASES[i].sql);
         if (which && !strncmp(which, "evaluation 2", 12) && !strstr(err.text, "evaluation 2"))
             fail_msg("%s: exported: %s", CASES[i].sql, err.text);

@@ -36,8 +36,9 @@ static Status write_table(const Args *args, Err *err)
     Output o;
     TRY(output_open(&o, args_value(args, "--csv"), err));
     const Status status = args_has(args, "--select") ? select_designs(args, o.stream, err)
-                          : args_has(args, "--all")  ? run_print_evaluations(args->operand, o.stream, err)
-                                                     : export_front_of(o.stream, args->operand, err);
+                          : args_has(args, "--all")
+                              ? run_print_evaluations(args->operand, export_evaluations_header, o.stream, err)
+                              : export_front_of(o.stream, args->operand, err);
     if (status == STATUS_OK)
         return output_close(&o, err);
     output_abandon(&o);

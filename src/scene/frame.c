@@ -473,9 +473,10 @@ static int moves_most(const Numbering *u, const Slaves *s, const double v[])
 static Status fail_sway(const Numbering *u, const Slaves *s, int p, const double K[], Err *err)
 {
     const int n = u->n_masters;
-    double *A = calloc((size_t)(p * p + n + 1), sizeof *A), *v = A + p * p;
+    double *A = calloc((size_t)(p * p + n + 1), sizeof *A);
     if (!A)
         return fail(err, STATUS_NO_MEMORY, "frame: no memory to factor %d x %d", p, p);
+    double *v = A + p * p;
     for (int i = 0; i < p; i++) {
         memcpy(&A[i * p], &K[i * n], (size_t)p * sizeof *A);
         v[i] = -K[i * n + p];

@@ -9,7 +9,6 @@
 #include "base/stat.h"
 #include "settings/settings.h"
 #include "simulator/measures.h"
-#include "store/export.h"
 #include "store/folder.h"
 #include "store/repeats.h"
 #include "store/rows.h"
@@ -20,7 +19,8 @@ typedef struct {
     Run *run;
     Database *d;
     RunPart part;
-    FILE *out; /* of the evaluations, where they are printed */
+    FILE *out; /* of the evaluations, where they are printed, with their header */
+    RunHeader *header;
     const RunVisitor *visitor;
     void *user;               /* of the visitor */
     size_t row;               /* at or before the next design of the front */
@@ -359,19 +359,18 @@ static Status visit(Loading *l, Err *err)
 /* As load_at_once does it, from the folder; nothing stays. */
 static Status look_at_once(Loading *l, const char *folder, Status (*look)(Loading *l, Err *err), Err *err)
 {
-    Run run = {0};
-    l->run = &run;
     Status status = open_to_read(&l->d, folder, err);
     if (status == STATUS_OK)
         status = load_at_once(l, look, err);
-    run_free(&run);
+    run_free(l->run);
     database_close(l->d);
     return folder_advise(folder, status, err);
 }
 
 Status run_visit(const char *folder, const RunVisitor *visitor, void *user, Err *err)
 {
-    Loading l = {.part = RUN_RESULTS, .visitor = visitor, .user = user};
+    Run run = {0};
+    Loading l = {.run = &run, .part = RUN_RESULTS, .visitor = visitor, .user = user};
     return look_at_once(&l, folder, visit, err);
 }
 
@@ -380,12 +379,13 @@ static Status print_evaluations(Loading *l, Err *err)
     size_t n;
     TRY(load_head(l, err));
     const Schema *s = &l->run->schema;
-    export_evaluations_header(l->out, s);
+    l->header(l->out, s);
     return rows_print(l->d, l->out, (RowShape){s->n_var, s->n_obj, s->n_extra}, 0, LONG_MAX, 1, &n, err);
 }
 
-Status run_print_evaluations(const char *folder, FILE *f, Err *err)
+Status run_print_evaluations(const char *folder, RunHeader *header, FILE *f, Err *err)
 {
-    Loading l = {.out = f};
+    Run run = {0};
+    Loading l = {.run = &run, .out = f, .header = header};
     return look_at_once(&l, folder, print_evaluations, err);
 }

@@ -35,9 +35,10 @@ typedef struct {
 } RunVisitor;
 Status run_visit(const char *folder, const RunVisitor *visitor, void *user, Err *err);
 
-/* All evaluations as lines of evaluations.csv, unfinished ones too, with the header. No more than a row is kept in memory; where
+/* All evaluations as lines of evaluations.csv, unfinished ones too, behind a header (export_evaluations_header). No more than a row is kept in memory; where
  * it fails, a part may be written. */
-Status run_print_evaluations(const char *folder, FILE *f, Err *err);
+typedef void RunHeader(FILE *f, const Schema *schema);
+Status run_print_evaluations(const char *folder, RunHeader *header, FILE *f, Err *err);
 
 /* Check values (store/digest.h) of a generation and of the state of the search at its end. */
 long run_generation_digest(const RunGeneration *g);
