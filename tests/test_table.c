@@ -121,8 +121,7 @@ static void test_the_forms_of_spreadsheets_hold_the_same_numbers(void **state)
     static const char *const FORMS[] = {
         "1.5,-2.25,3e-7\n0.1,4,5\n",
         "\xef\xbb\xbfsep=;\r\n1,5;-2,25;3e-7\r\n0,1;4;5\r\n",
-        "\xef\xbb\xbf"
-        "1.5,-2.25,3e-7\r\n0.1,4,5\r\n",
+        "\357\273\2771.5,-2.25,3e-7\r\n0.1,4,5\r\n",
         "1.5;-2.25;3e-7\n0.1;4;5\n",
         "1,5;-2,25;3e-7\n0,1;4;5\n",
         "1.5\t-2.25\t3e-7\n0.1\t4\t5\n",

@@ -521,7 +521,7 @@ static Status check_mass(const Numbering *u, const double M[], Err *err)
 static Status condense(const Numbering *u, double K[], double M[], Err *err)
 {
     const size_t n = (size_t)u->n_slaves, masters = (size_t)u->n_masters, band = (size_t)u->band + 1;
-    Slaves s = {.Kss = calloc(n * band + masters * n + n + masters, sizeof *s.Kss)};
+    Slaves s = {.Kss = calloc(n * band + masters * n + n + masters + 1, sizeof *s.Kss)};
     if (!s.Kss)
         return fail(err, STATUS_NO_MEMORY, "frame: no memory for %zu unknowns, band %zu", n, band);
     s.T = s.Kss + n * band;
