@@ -5,6 +5,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "scene/building.h"
 #include "settings/settings.h"
 #include "store/folder.h"
 
@@ -37,12 +38,18 @@ const char *outputs_standard(const Args *args, int i)
     return find(args, "--json") && i == 0 ? "--json" : NULL;
 }
 
+static const char *name_of(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
 /* The place of a file that is not there yet. */
 static const char *place_of(const char *path, char place[PATH_MAX])
 {
     char folder[PATH_MAX], real[PATH_MAX];
-    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
-    snprintf(folder, sizeof folder, "%.*s", slash ? (int)(name - path) : 1, slash ? path : ".");
+    const char *name = name_of(path);
+    snprintf(folder, sizeof folder, "%.*s", name > path ? (int)(name - path) : 1, name > path ? path : ".");
     return realpath(folder, real) && snprintf(place, PATH_MAX, "%s/%s", real, name) < PATH_MAX ? place : path;
 }
 
@@ -76,7 +83,7 @@ typedef struct {
 static void compare(const char *key, const char *path, void *user)
 {
     Looking *l = user;
-    if (is_same_file(l->out, path) || is_file_of(l->out, path))
+    if (is_same_file(l->out, path) || (is_file_of(l->out, path) && building_reads(name_of(l->out))))
         snprintf(l->key, sizeof l->key, "%s names", key);
 }
 

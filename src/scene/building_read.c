@@ -10,6 +10,7 @@
 #include "base/sheet.h"
 #include "base/table.h"
 #include "scene/beam.h"
+#include "scene/building.h"
 #include "scene/compiled_in.h"
 
 /* ---- matrices ------------------------------------------------------------------------------------------------- */
@@ -302,6 +303,17 @@ static Status read_frame(BuildingFiles *b, const BuildingOptions *o, Err *err)
 /* The sheets that say which kind of model a folder holds. */
 enum { KIND_FRAME, KIND_STOREYS, KIND_K, KIND_M, KINDS };
 static const char *const SHEETS[KINDS] = {"nodes.csv", "storeys.csv", "K.csv", "M.csv"};
+
+int building_reads(const char *name)
+{
+    static const char *const OTHERS[] = {"sections.csv", "elements.csv", "masses.csv", "ties.csv"};
+    int found = 0;
+    for (int k = 0; k < KINDS; k++)
+        found |= strcmp(name, SHEETS[k]) == 0;
+    for (size_t k = 0; k < sizeof OTHERS / sizeof OTHERS[0]; k++)
+        found |= strcmp(name, OTHERS[k]) == 0;
+    return found;
+}
 
 /* Is there one kind of model? */
 static Status check_kind(const char *folder, int has[KINDS], Err *err)
