@@ -5,7 +5,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "scene/building.h"
+#include "scene/building_read.h"
 #include "settings/settings.h"
 #include "store/folder.h"
 

@@ -62,9 +62,6 @@ typedef struct {
 
 Status building_load(Building *b, const BuildingOptions *o, Err *err);
 
-/* Is a file of this name read from the folder of a building? */
-int building_reads(const char *name);
-
 /* The damping ratios once more, by these options. */
 Status building_damp(Building *b, const BuildingOptions *o, Err *err);
 void building_free(Building *b);

@@ -10,7 +10,6 @@
 #include "base/sheet.h"
 #include "base/table.h"
 #include "scene/beam.h"
-#include "scene/building.h"
 #include "scene/compiled_in.h"
 
 /* ---- matrices ------------------------------------------------------------------------------------------------- */
