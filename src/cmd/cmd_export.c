@@ -39,10 +39,7 @@ static Status write_table(const Args *args, Err *err)
                           : args_has(args, "--all")
                               ? run_print_evaluations(args->operand, export_evaluations_header, o.stream, err)
                               : export_front_of(o.stream, args->operand, err);
-    if (status == STATUS_OK)
-        return output_close(&o, err);
-    output_abandon(&o);
-    return status;
+    return output_end(&o, status, err);
 }
 
 static Status run(const Args *args, Err *err)

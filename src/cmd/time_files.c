@@ -26,10 +26,7 @@ static Status write_all(const TimeJob *job, const char *path, void (*write_heade
             status = write(job, worker, i, o.stream, err);
         sim_worker_free(worker);
     }
-    if (status == STATUS_OK)
-        return output_close(&o, err);
-    output_abandon(&o);
-    return status;
+    return output_end(&o, status, err);
 }
 
 static Status run_again(const TimeJob *job, SimWorker *worker, size_t i, Err *err)

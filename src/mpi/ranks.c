@@ -98,27 +98,33 @@ static void take_result(Ranks *r, const DoneMessage *m, const char *part)
     give(r, t, (Status)m->status, &why);
 }
 
-static void take_results(Ranks *r, int from, size_t n)
+/* Results of this rank's tasks, and of those that were given up meanwhile; 0: the message holds something else. */
+static int take_each(Ranks *r, int from, size_t n)
 {
-    int64_t epoch = 0;
     DoneMessage m;
     const char *part;
-    char words[HOST_MAX + 120];
-    int kind = n < sizeof epoch ? -1 : 1;
-    r->in.n = 0;
-    r->came_s = clock_seconds();
-    if (kind > 0)
-        buffer_get(&r->in, &epoch, sizeof epoch);
-    if (kind > 0 && epoch != r->epoch)
-        return;
-    while (kind > 0 && (kind = buffer_get_done(&r->in, n, r->problem->part_size, r->n_tickets, &m, &part)) > 0) {
-        const int rank = r->ticket[m.ticket].rank; /* 0: given up meanwhile */
+    int kind;
+    while ((kind = buffer_get_done(&r->in, n, r->problem->part_size, r->n_tickets, &m, &part)) > 0) {
+        const int rank = r->ticket[m.ticket].rank;
+        if (rank != from && rank != 0)
+            return 0;
         if (rank == from)
             take_result(r, &m, part);
-        kind = rank == from || rank == 0 ? 1 : -1;
     }
-    if (kind == 0)
-        return;
+    return kind == 0;
+}
+
+static void take_results(Ranks *r, int from, size_t n)
+{
+    int64_t epoch;
+    char words[HOST_MAX + 120];
+    r->in.n = 0;
+    r->came_s = clock_seconds();
+    if (n >= sizeof epoch) {
+        buffer_get(&r->in, &epoch, sizeof epoch);
+        if (epoch != r->epoch || take_each(r, from, n))
+            return;
+    }
     snprintf(words, sizeof words, "rank %d on %s sends results of tasks that it does not have", from,
              r->rank[from].host);
     give_up(r, from, STATUS_INTERNAL, words);

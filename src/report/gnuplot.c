@@ -95,9 +95,5 @@ Status gnuplot_draw(const char *path, GnuplotScript write, const void *user, Err
         fclose(faults);
     if (script)
         fclose(script);
-    if (status != STATUS_OK) {
-        output_abandon(&o);
-        return status;
-    }
-    return output_close(&o, err);
+    return output_end(&o, status, err);
 }

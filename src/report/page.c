@@ -62,10 +62,7 @@ static Status write_whole(const Report *r, const char *path, Err *err)
     TRY(output_open(&o, path, err));
     const Status status =
         write_page(r, _binary_build_web_page_html_start, _binary_build_web_page_html_end, o.stream, err);
-    if (status == STATUS_OK)
-        return output_close(&o, err);
-    output_abandon(&o);
-    return status;
+    return output_end(&o, status, err);
 }
 
 Status report_page(const Report *r, const char *path, Err *err)

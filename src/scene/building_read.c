@@ -305,13 +305,10 @@ static const char *const SHEETS[KINDS] = {"nodes.csv", "storeys.csv", "K.csv", "
 
 int building_reads(const char *name)
 {
-    static const char *const OTHERS[] = {"sections.csv", "elements.csv", "masses.csv", "ties.csv"};
-    int found = 0;
     for (int k = 0; k < KINDS; k++)
-        found |= strcmp(name, SHEETS[k]) == 0;
-    for (size_t k = 0; k < sizeof OTHERS / sizeof OTHERS[0]; k++)
-        found |= strcmp(name, OTHERS[k]) == 0;
-    return found;
+        if (strcmp(name, SHEETS[k]) == 0)
+            return 1;
+    return frame_reads(name);
 }
 
 /* Is there one kind of model? */

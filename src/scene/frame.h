@@ -72,6 +72,7 @@ typedef struct {
 
 /* Is the model a frame: is it a folder that holds nodes.csv, or guyan? */
 int frame_is(const char *folder);
+int frame_reads(const char *name); /* from its folder */
 Status frame_read(Frame *f, const char *folder, int floors_max, Err *err);
 
 /* nodes.csv, sections.csv, elements.csv and, where there are any, masses.csv and ties.csv; floors are not written. */

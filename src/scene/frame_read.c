@@ -283,6 +283,14 @@ static const Part PARTS[] = {
     {"ties.csv", "node same_as", "x z rot", NULL, 1, take_tie, LIST(tie)},
 };
 
+int frame_reads(const char *name)
+{
+    for (size_t i = 0; i < sizeof PARTS / sizeof PARTS[0]; i++)
+        if (strcmp(name, PARTS[i].name) == 0)
+            return 1;
+    return 0;
+}
+
 static Status make_list(Frame *f, const Part *part, size_t n, Err *err)
 {
     void *list = calloc(n, part->size);

@@ -38,7 +38,8 @@ const char *watch_folder(Watch *w, size_t i);
 Status watch_take(Watch *w, size_t i, double seconds, Look **look, Err *err);
 void watch_give(Watch *w, Look *look); /* NULL is fine */
 
-/* A reading later than version `seen`, within so many seconds, for which the run is kept too; NULL: there is none, or the watch is stopped. */
+/* A reading later than version `seen`, within so many seconds, for which the run is kept too; NULL: there is none, or the
+ * watch is stopped. */
 Look *watch_next(Watch *w, size_t i, long seen, double seconds);
 int watch_is_stopped(Watch *w);
 

@@ -136,6 +136,14 @@ void output_abandon(Output *o)
     o->stream = NULL;
 }
 
+Status output_end(Output *o, Status status, Err *err)
+{
+    if (status == STATUS_OK)
+        return output_close(o, err);
+    output_abandon(o);
+    return status;
+}
+
 void print_number(FILE *stream, double value)
 {
     char text[NUMBER_TEXT_MAX];

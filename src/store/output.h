@@ -25,6 +25,9 @@ Status output_open_inside(Output *o, const char *path, Err *err);
 Status output_close(Output *o, Err *err);
 void output_abandon(Output *o); /* a closed Output is fine */
 
+/* Closed; where status says that writing failed, abandoned and the status returned. */
+Status output_end(Output *o, Status status, Err *err);
+
 /* Flushed to the disk, or STATUS_IO. */
 Status output_sync(FILE *stream, const char *path, Err *err);
 

@@ -35,8 +35,8 @@ typedef struct {
 } RunVisitor;
 Status run_visit(const char *folder, const RunVisitor *visitor, void *user, Err *err);
 
-/* All evaluations as lines of evaluations.csv, unfinished ones too, behind a header (export_evaluations_header). No more than a row is kept in memory; where
- * it fails, a part may be written. */
+/* All evaluations as lines of evaluations.csv, unfinished ones too, behind a header (export_evaluations_header). No more
+ * than a row is kept in memory; where it fails, a part may be written. */
 typedef void RunHeader(FILE *f, const Schema *schema);
 Status run_print_evaluations(const char *folder, RunHeader *header, FILE *f, Err *err);
 
