@@ -298,7 +298,7 @@ static const ArgOption FACTOR_OPTIONS[] = {
     {"--evals", "N", NULL, 0, "evaluations; a search of 1000, read after 300, 500 and 1000, unless given"},
     {"--seeds", "N", NULL, 0, "5 unless given"},
     {"--first-seed", "N", NULL, 0, "101 unless given"},
-    {"--methods", NULL, NULL, 0, "other methods beside it: NSGA-III, RVEA, MOEA/D, ParEGO"},
+    {"--methods", NULL, NULL, 0, "other methods beside it: NSGA-III, RVEA, MOEA/D, ParEGO, K-RVEA"},
     {"--curves", "FILE", NULL, 0, "CSV of the hypervolume against hours, for simulations of 1 ms to 1 min"},
     {"--keep", "FOLDER", NULL, 0, "of all evaluations: what is there is not run again"},
     OPTION_SET,

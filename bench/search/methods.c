@@ -41,8 +41,8 @@ static Status run_rvea(const Settings *s, const Problem *p, Course *c, Err *err)
     return run_search(s, SURROGATE_OFF, SELECTION_RVEA, p, c, err);
 }
 
-static const Method METHODS[] = {
-    {"imtet", run_imtet}, {"plain", run_plain}, {"rvea", run_rvea}, {"moead", run_moead}, {"parego", run_parego}};
+static const Method METHODS[] = {{"imtet", run_imtet}, {"plain", run_plain},   {"rvea", run_rvea},
+                                 {"moead", run_moead}, {"parego", run_parego}, {"krvea", run_krvea}};
 
 size_t method_count(void)
 {

@@ -4,6 +4,7 @@
  *   plain    without: NSGA-III (Deb and Jain 2014, moga/selection.h); simulated binary crossover, polynomial mutation
  *   rvea     the same with RVEA (Cheng, Jin, Olhofer and Sendhoff 2016)
  *   moead    MOEA/D with Tchebycheff values: moead.c
+ *   krvea    RVEA on one interpolant per objective, five designs at a time: krvea.c
  *   parego   one interpolant of a scalarisation with random weights, expected improvement: parego.c
  *
  * Population, crossover and mutation are those of the settings for all. Infeasible and failed designs are worse than any
@@ -27,5 +28,6 @@ const Method *method(size_t i);
 
 Status run_moead(const Settings *s, const Problem *p, Course *c, Err *err);
 Status run_parego(const Settings *s, const Problem *p, Course *c, Err *err);
+Status run_krvea(const Settings *s, const Problem *p, Course *c, Err *err);
 
 #endif
