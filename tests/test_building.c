@@ -623,6 +623,69 @@ static void test_whatever_is_kept_the_ground_moves_every_floor_as_one(void **sta
     }
 }
 
+/* r is in the span of the floors and the shape that they miss, so that r' M r is the full model's. */
+static void test_the_ground_moves_mass_between_the_floors_as_it_does_in_the_full_model(void **state)
+{
+    (void)state;
+    BuildingOptions o = write_column("heavy", 4, "0");
+    double mass[2] = {0}, swing[2];
+    for (int i = 0; i < 2; i++) {
+        o.modes = i ? ALL_MODES : 0;
+        Building b = load(&o);
+        const BuildingModel *m = &b.model;
+        assert_true(i || m->n == N + 1);
+        for (int k = 0; k < m->n; k++)
+            mass[i] += m->gamma[k] * m->gamma[k];
+        swing[i] = m->phi[(N - 1) * m->n] * m->gamma[0];
+        building_free(&b);
+    }
+    assert_close(mass[0], mass[1], 1e-9);
+    assert_close(swing[0], swing[1], 1e-3);
+}
+
+/* Columns that weigh five times the beam: floors that move by M 1 miss a fifth of J1. */
+static void test_a_portal_of_heavy_columns_responds_as_its_full_model_in_two_engines(void **state)
+{
+    (void)state;
+    enum { PARTS = 8 };
+    const BuildingOptions o = folder_of("columns");
+    char nodes[1024] = "node,x_m,z_m,fix_x,fix_z,fix_rot,floor\n", elements[1024] = "element,node_i,node_j,section\n";
+    size_t used = strlen(nodes), written = strlen(elements);
+    for (int k = 0; k <= 2 * PARTS + 1; k++) {
+        const int left = k <= PARTS, up = left ? k : k - PARTS - 1;
+        used += (size_t)snprintf(nodes + used, sizeof nodes - used, "%d,%d,%g,%d,%d,%d,%d\n", k, left ? 0 : 6, 0.5 * up,
+                                 up == 0, up == 0, up == 0, up == PARTS);
+        if (up > 0)
+            written += (size_t)snprintf(elements + written, sizeof elements - written, "%d,%d,%d,c\n", k, k - 1, k);
+    }
+    write_file(&o, "nodes.csv", "%s", nodes);
+    write_file(&o, "elements.csv", "%sb,%d,%d,b\n", elements, PARTS, 2 * PARTS + 1);
+    write_file(&o, "sections.csv",
+               "section,A_m2,I_m4,E_pa,mass_kg_per_m\nc,0.05,1e-4,2e11,6250\nb,0.05,1e-3,2e11,1666.7\n");
+    write_file(&o, "far.csv", "gap_01_m,t_base_m,t_top_m\n1,0.01,0.01\n");
+    write_file(&o, "near.csv", "gap_01_m,t_base_m,t_top_m\n0.003,0.01,0.01\n");
+    static const char *const CASES[] = {"far.csv --engine fast --set building.modes=0",
+                                        "far.csv --engine fast --set building.modes=100000", "near.csv --engine fast",
+                                        "near.csv --engine cvode"};
+    static const char *const SAME[] = {"j1_m", "j3_g", "input_energy_j", "ed1_pct", "base_shear_n"};
+    json_t *r[4];
+    for (int i = 0; i < 4; i++) {
+        char command[512];
+        snprintf(
+            command, sizeof command,
+            "simulate configs/quick.ini --set building.model=@/columns --duration 20 --set sim.accuracy=fine --json "
+            "--design @/columns/%s",
+            CASES[i]);
+        r[i] = json_of(command);
+    }
+    assert_close(number(r[0], "j1_m"), number(r[1], "j1_m"), 0.02);
+    assert_true(number(r[2], "impacts") >= 2);
+    for (size_t k = 0; k < sizeof SAME / sizeof SAME[0]; k++)
+        assert_close(number(r[2], SAME[k]), number(r[3], SAME[k]), 1e-4);
+    for (int i = 0; i < 4; i++)
+        json_decref(r[i]);
+}
+
 static void test_vertical_modes_of_the_full_model_resemble_none_of_the_floors(void **state)
 {
     (void)state;
@@ -814,6 +877,8 @@ int main(void)
         cmocka_unit_test(test_a_frame_of_which_no_displacement_is_named_keeps_all_that_have_mass),
         cmocka_unit_test(test_craig_bampton_converges_to_the_full_model_from_above),
         cmocka_unit_test(test_whatever_is_kept_the_ground_moves_every_floor_as_one),
+        cmocka_unit_test(test_the_ground_moves_mass_between_the_floors_as_it_does_in_the_full_model),
+        cmocka_unit_test(test_a_portal_of_heavy_columns_responds_as_its_full_model_in_two_engines),
         cmocka_unit_test(test_vertical_modes_of_the_full_model_resemble_none_of_the_floors),
         cmocka_unit_test(test_p_delta_and_damping_reach_the_full_model),
         cmocka_unit_test(test_only_a_frame_has_more_than_its_floors),

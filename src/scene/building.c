@@ -244,7 +244,7 @@ static Status make_model(Building *b, const FrameFull *full, const BuildingOptio
         use_the_floors(b);
         return STATUS_OK;
     }
-    if (o->modes >= full->n - b->n)
+    if (o->modes == 0 || o->modes >= full->n - b->n)
         return use_more(b, full, o, err);
     TRY(reduction_craig_bampton(full, b->n, o->modes, &reduced, err));
     const Status status = use_more(b, &reduced, o, err);

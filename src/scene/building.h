@@ -13,8 +13,9 @@
  *                   rotations condensed
  *   nodes.csv ...   a plane frame, condensed to its floors (scene/frame.h)
  *
- * The model that is integrated has the floors alone (Guyan), or with building.modes = N of a frame also N fixed-interface
- * modes (Craig-Bampton, scene/reduction.h), and with as many as there are the full model. K, M, phi, omega, gamma and
+ * The model that is integrated has the floors alone (Guyan), of a frame with mass between the floors one shape more by
+ * which the ground moves that too (scene/frame.h), or with building.modes = N of a frame also N fixed-interface modes
+ * (Craig-Bampton, scene/reduction.h), and with as many as there are the full model. K, M, phi, omega, gamma and
  * zeta are always those of the floors alone; shares by mode are booked under the mode of these that a mode resembles.
  *
  * Storey heights: of the folder where it has them; else building.heights_m, or first_storey_m and storey_m.
@@ -56,7 +57,7 @@ typedef struct {
     double *storey_m; /* (n) heights */
     uint64_t hash;    /* FNV-1a of the numbers in the files */
 
-    BuildingModel model; /* what is integrated; without building.modes the above */
+    BuildingModel model; /* what is integrated; the above, or more */
     double *model_store; /* NULL: the model is the above */
 } Building;
 

@@ -269,20 +269,27 @@ static Status read_storeys(BuildingFiles *b, const char *path, Err *err)
 
 /* ---- frame ---------------------------------------------------------------------------------------------------- */
 
+static Status reduce_frame(BuildingFiles *b, const Frame *f, const BuildingOptions *o, FrameKept kept, Err *err)
+{
+    frame_full_free(&b->full);
+    TRY(frame_reduce(f, o->rigid_floors, kept, &b->full, err));
+    TRY(check_symmetric(b->full.n, b->full.K, o->model, err));
+    return check_symmetric(b->full.n, b->full.M, o->model, err);
+}
+
+/* The floors alone are the first rows; what they do not miss is no model of its own. */
 static Status condense_frame(BuildingFiles *b, const Frame *f, const BuildingOptions *o, Err *err)
 {
     TRY(allocate(b, f->n_floors, err));
     memcpy(b->storey_m, f->storey_m, (size_t)b->n * sizeof *b->storey_m);
-    TRY(frame_condense(f, o->rigid_floors, b->K, b->M, err));
-    TRY(check_symmetric(b->n, b->K, o->model, err));
-    return check_symmetric(b->n, b->M, o->model, err);
-}
-
-static Status read_full(BuildingFiles *b, const Frame *f, const BuildingOptions *o, Err *err)
-{
-    TRY(frame_full(f, o->rigid_floors, &b->full, err));
-    TRY(check_symmetric(b->full.n, b->full.K, o->model, err));
-    return check_symmetric(b->full.n, b->full.M, o->model, err);
+    TRY(reduce_frame(b, f, o, FRAME_FLOORS, err));
+    for (int j = 0; j < b->n; j++) {
+        memcpy(b->K + j * b->n, b->full.K + j * b->full.n, (size_t)b->n * sizeof *b->K);
+        memcpy(b->M + j * b->n, b->full.M + j * b->full.n, (size_t)b->n * sizeof *b->M);
+    }
+    if (b->full.n == b->n)
+        frame_full_free(&b->full);
+    return STATUS_OK;
 }
 
 /* Condensed unless that is there already, and in full where it is asked for. */
@@ -292,7 +299,7 @@ static Status read_frame(BuildingFiles *b, const BuildingOptions *o, Err *err)
     TRY(frame_read(&f, o->model, FLOORS_MAX, err));
     Status status = b->K ? STATUS_OK : condense_frame(b, &f, o, err);
     if (status == STATUS_OK && o->modes > 0)
-        status = read_full(b, &f, o, err);
+        status = reduce_frame(b, &f, o, FRAME_FULL, err);
     frame_free(&f);
     return status;
 }

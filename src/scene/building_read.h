@@ -13,7 +13,9 @@ typedef struct {
     int n;
     double *K, *M;    /* (n, n) [N/m], [kg], symmetric and positive definite */
     double *storey_m; /* (n); NULL: the files have no heights */
-    FrameFull full;   /* of a frame, with building.modes; else n = 0 */
+    FrameFull
+        full; /* of a frame: with building.modes the full model, else the floors with what they miss of the ground's
+                       * motion (scene/frame.h); n = 0: the floors are all */
 } BuildingFiles;
 
 typedef struct {

@@ -17,6 +17,7 @@ enum { HELD = -1, ENDS = 2, LOCAL = ENDS * FRAME_DOFS };
 typedef struct {
     const Frame *frame;
     int n_slaves, n_masters, band; /* band: largest distance of two coupled slaves */
+    int n_shapes;                  /* n_masters, or one more: what is missed of the ground's motion */
     int *root;                     /* (n_nodes * FRAME_DOFS) the displacement that this one equals */
     int *unknown;                  /* (n_nodes * FRAME_DOFS) its number, or HELD */
 } Numbering;
@@ -290,6 +291,7 @@ static Status numbering_make(Numbering *u, const Frame *f, int rigid_floors, int
     if (status == STATUS_OK)
         status = number_unknowns(u, kept, err);
     free(kept);
+    u->n_shapes = u->n_masters + !full;
     if (status == STATUS_OK)
         find_band(u);
     return status;
@@ -317,9 +319,9 @@ static Status fail_mechanism(const Numbering *u, int i, Err *err)
 
 typedef struct {
     double *Kss;  /* (n_slaves, band + 1) lower band, column by column */
-    double *T;    /* (n_masters, n_slaves) displacements of the slaves per unit of a master, row by row */
+    double *T;    /* (n_shapes, n_slaves) displacements of the slaves per unit of a master, row by row */
     double *diag; /* (n_slaves) of Kss before it is factored */
-    double *size; /* (n_masters) sum of the magnitudes of the terms of a diagonal entry of K; what rounding leaves of a
+    double *size; /* (n_shapes) sum of the magnitudes of the terms of a diagonal entry of K; what rounding leaves of a
                    * mechanism is a part of it */
 } Slaves;
 
@@ -365,6 +367,21 @@ static Status solve_slaves(const Numbering *u, Slaves *s, Err *err)
     return STATUS_OK;
 }
 
+/* The shape behind the masters': r, 1 of every slave along x, less what all masters together move of it. */
+static void find_missed(const Numbering *u, const Slaves *s)
+{
+    const size_t n = (size_t)u->n_slaves, masters = (size_t)u->n_masters;
+    if (u->n_shapes == u->n_masters)
+        return;
+    double *missed = s->T + masters * n;
+    for (int i = FRAME_X; i < u->frame->n_nodes * FRAME_DOFS; i += FRAME_DOFS)
+        if (u->unknown[i] >= 0 && u->unknown[i] < u->n_slaves)
+            missed[u->unknown[i]] = 1;
+    for (size_t m = 0; m < masters; m++)
+        for (size_t i = 0; i < n; i++)
+            missed[i] -= s->T[m * n + i];
+}
+
 /* Displacement of an unknown when master m alone moves by one. */
 static double displacement(const Numbering *u, const Slaves *s, int unknown, int m)
 {
@@ -381,7 +398,7 @@ static void add_masters(const Numbering *u, const int at[LOCAL], const double a[
     for (int i = 0; i < LOCAL; i++)
         for (int j = 0; j < LOCAL; j++)
             if (at[i] >= 0 && at[j] >= 0)
-                A[(at[i] - u->n_slaves) * u->n_masters + at[j] - u->n_slaves] += a[i][j];
+                A[(at[i] - u->n_slaves) * u->n_shapes + at[j] - u->n_slaves] += a[i][j];
 }
 
 static int has_slave(const Numbering *u, const int at[LOCAL])
@@ -396,7 +413,7 @@ static int has_slave(const Numbering *u, const int at[LOCAL])
 static void add_element(const Numbering *u, const Slaves *s, const int at[LOCAL], const double a[LOCAL][LOCAL],
                         double A[])
 {
-    const int n = u->n_masters;
+    const int n = u->n_shapes;
     if (!has_slave(u, at)) {
         add_masters(u, at, a, A);
         return;
@@ -415,7 +432,7 @@ static void add_element(const Numbering *u, const Slaves *s, const int at[LOCAL]
 static void add_node(const Numbering *u, const Slaves *s, int i, double M[])
 {
     const double *mass = u->frame->node[i].mass;
-    const int n = u->n_masters;
+    const int n = u->n_shapes;
     for (int d = 0; d < FRAME_DOFS; d++)
         for (int p = 0; p < n && mass[d] > 0; p++) {
             const int unknown = u->unknown[i * FRAME_DOFS + d];
@@ -426,7 +443,7 @@ static void add_node(const Numbering *u, const Slaves *s, int i, double M[])
 
 static void add_size(const Numbering *u, const Slaves *s, const int at[LOCAL], const double k[LOCAL][LOCAL])
 {
-    for (int p = 0; p < u->n_masters; p++) {
+    for (int p = 0; p < u->n_shapes; p++) {
         double t[LOCAL];
         for (int i = 0; i < LOCAL; i++)
             t[i] = displacement(u, s, at[i], p);
@@ -472,7 +489,7 @@ static int moves_most(const Numbering *u, const Slaves *s, const double v[])
 /* Master p follows those before it without resistance: v = [-K11^-1 k1p; 1; 0] is in the null space of K. */
 static Status fail_sway(const Numbering *u, const Slaves *s, int p, const double K[], Err *err)
 {
-    const int n = u->n_masters;
+    const int n = u->n_shapes;
     double *A = calloc((size_t)(p * p + n + 1), sizeof *A);
     if (!A)
         return fail(err, STATUS_NO_MEMORY, "frame: no memory to factor %d x %d", p, p);
@@ -496,7 +513,7 @@ static Status check_sway(const Numbering *u, const Slaves *s, const double K[], 
     int p = 0, info = -1;
     for (int j = 0; L && j < n; j++)
         for (int i = j; i < n; i++)
-            L[j * n + i - j] = K[i * n + j];
+            L[j * n + i - j] = K[i * u->n_shapes + j];
     if (L)
         info = linalg_factor_band(n, n - 1, L);
     const int factored = info > 0 ? info - 1 : n;
@@ -511,7 +528,7 @@ static Status check_sway(const Numbering *u, const Slaves *s, const double K[], 
 static Status check_mass(const Numbering *u, const double M[], Err *err)
 {
     for (int k = 0; k < u->frame->n_floors; k++)
-        if (!(M[k * u->n_masters + k] > 0))
+        if (!(M[k * u->n_shapes + k] > 0))
             return fail(err, STATUS_BAD_DATA,
                         "frame: floor %d (node %s) has no mass: give masses.csv, mass_kg_per_m or added_mass_kg", k + 1,
                         u->frame->node[displacement_of(u, u->n_slaves + k) / FRAME_DOFS].name);
@@ -520,19 +537,19 @@ static Status check_mass(const Numbering *u, const double M[], Err *err)
 
 static Status condense(const Numbering *u, double K[], double M[], Err *err)
 {
-    const size_t n = (size_t)u->n_slaves, masters = (size_t)u->n_masters, band = (size_t)u->band + 1;
-    Slaves s = {.Kss = calloc(n * band + masters * n + n + masters + 1, sizeof *s.Kss)};
+    const size_t n = (size_t)u->n_slaves, shapes = (size_t)u->n_shapes, band = (size_t)u->band + 1;
+    Slaves s = {.Kss = calloc(n * band + shapes * n + n + shapes + 1, sizeof *s.Kss)};
     if (!s.Kss)
         return fail(err, STATUS_NO_MEMORY, "frame: no memory for %zu unknowns, band %zu", n, band);
     s.T = s.Kss + n * band;
-    s.diag = s.T + masters * n;
+    s.diag = s.T + shapes * n;
     s.size = s.diag + n;
     assemble_slaves(u, &s);
     Status status = solve_slaves(u, &s, err);
-    memset(K, 0, masters * masters * sizeof *K);
-    memset(M, 0, masters * masters * sizeof *M);
-    if (status == STATUS_OK)
+    if (status == STATUS_OK) {
+        find_missed(u, &s);
         sum_up(u, &s, K, M);
+    }
     if (status == STATUS_OK)
         status = check_sway(u, &s, K, err);
     if (status == STATUS_OK)
@@ -541,44 +558,64 @@ static Status condense(const Numbering *u, double K[], double M[], Err *err)
     return status;
 }
 
-Status frame_condense(const Frame *f, int rigid_floors, double K[], double M[], Err *err)
+/* Of the ground's load: the missed shape's part of it below which that shape is left out. */
+static const double MISSED_MIN = 1e-3;
+
+static int is_missed(int n, const double M[])
 {
-    Numbering u;
-    Status status = numbering_make(&u, f, rigid_floors, 0, err);
-    if (status == STATUS_OK)
-        status = condense(&u, K, M, err);
-    free(u.root);
-    return status;
+    double load = 0, missed = 0;
+    for (int p = 0; p < n; p++) {
+        for (int q = 0; q < n; q++)
+            load += M[p * n + q];
+        missed += fabs(M[p * n + n - 1]);
+    }
+    return missed > MISSED_MIN * load;
 }
 
-/* Masters that move along x follow the ground. */
+/* Without the last shape: rows of one number fewer. */
+static void drop_last(FrameFull *out)
+{
+    const size_t n = (size_t)out->n, fewer = n - 1;
+    for (size_t p = 1; p < fewer; p++) {
+        memmove(out->K + p * fewer, out->K + p * n, fewer * sizeof *out->K);
+        memmove(out->M + p * fewer, out->M + p * n, fewer * sizeof *out->M);
+    }
+    out->n--;
+}
+
+/* Masters that move along x follow the ground, and so does what they miss of it. */
 static void find_influence(const Numbering *u, double influence[])
 {
     for (int i = FRAME_X; i < u->frame->n_nodes * FRAME_DOFS; i += FRAME_DOFS)
         if (u->unknown[i] >= u->n_slaves)
             influence[u->unknown[i] - u->n_slaves] = 1;
+    if (u->n_shapes > u->n_masters)
+        influence[u->n_masters] = 1;
 }
 
-static Status make_full(const Numbering *u, FrameFull *out, Err *err)
+static Status reduce(const Numbering *u, FrameFull *out, Err *err)
 {
-    const size_t n = (size_t)u->n_masters, nn = n * n;
-    out->n = u->n_masters;
+    const size_t n = (size_t)u->n_shapes, nn = n * n;
+    out->n = u->n_shapes;
     out->K = calloc(2 * nn + n, sizeof *out->K);
     if (!out->K)
         return fail(err, STATUS_NO_MEMORY, "frame: no memory for %zu degrees of freedom", n);
     out->M = out->K + nn;
     out->influence = out->M + nn;
     find_influence(u, out->influence);
-    return condense(u, out->K, out->M, err);
+    TRY(condense(u, out->K, out->M, err));
+    if (u->n_shapes > u->n_masters && !is_missed(out->n, out->M))
+        drop_last(out);
+    return STATUS_OK;
 }
 
-Status frame_full(const Frame *f, int rigid_floors, FrameFull *out, Err *err)
+Status frame_reduce(const Frame *f, int rigid_floors, FrameKept kept, FrameFull *out, Err *err)
 {
     Numbering u;
     *out = (FrameFull){0};
-    Status status = numbering_make(&u, f, rigid_floors, 1, err);
+    Status status = numbering_make(&u, f, rigid_floors, kept == FRAME_FULL, err);
     if (status == STATUS_OK)
-        status = make_full(&u, out, err);
+        status = reduce(&u, out, err);
     free(u.root);
     if (status != STATUS_OK)
         frame_full_free(out);

@@ -19,6 +19,10 @@
  *
  * summed element by element, Kss factored as a band. A mechanism is refused with the node that moves.
  *
+ * Ground: the load is -M r a, r the motion with the ground, of which T 1 misses r - T 1 where columns bend at their feet.
+ * Mass that moves in this shape (heavy columns, splices) is not moved by the ground as M 1 of the condensed M, so that
+ * the shape is one more degree of freedom, K-orthogonal to T, unless T' M (r - T 1) is below 0.1 % of the load.
+ *
  * Full model: the floors, then every other displacement that has mass; where nodes.csv names some (keep_x..), these
  * alone. What is removed is condensed as above, which is exact where it has no mass.
  *
@@ -78,17 +82,17 @@ Status frame_read(Frame *f, const char *folder, int floors_max, Err *err);
 /* nodes.csv, sections.csv, elements.csv and, where there are any, masses.csv and ties.csv; floors are not written. */
 Status frame_write(const Frame *f, const char *folder, Err *err);
 
-/* K [N/m] and M [kg] (n_floors, n_floors) row-major. */
-Status frame_condense(const Frame *f, int rigid_floors, double K[], double M[], Err *err);
-
 typedef struct {
     int n;             /* degrees of freedom; the first are the floors */
     double *K, *M;     /* (n, n) row-major [N/m], [kg]; rotations in rad */
-    double *influence; /* (n) of the ground's motion: 1 along x, else 0 */
+    double *influence; /* (n) of the ground's motion: 1 along x and of the missed shape, else 0 */
 } FrameFull;
 
+/* The floors and, where it matters, what they miss of the ground's motion; or the full model. */
+typedef enum { FRAME_FLOORS, FRAME_FULL } FrameKept;
+
 /* Allocates; frame_full_free releases (an empty one is fine). */
-Status frame_full(const Frame *f, int rigid_floors, FrameFull *out, Err *err);
+Status frame_reduce(const Frame *f, int rigid_floors, FrameKept kept, FrameFull *out, Err *err);
 void frame_full_free(FrameFull *full);
 void frame_free(Frame *f);
 
