@@ -33,9 +33,7 @@ static Rbf *fitted(size_t n, const double X[], const double F[], int tune)
     Err err = {0};
     Rbf *m;
     CHECK_OK(rbf_create(&m, N, D, OUT, &err), &err);
-    CHECK_OK(rbf_fit(m, n, X, F, NULL, &err), &err);
-    if (tune)
-        CHECK_OK(rbf_tune(m, &err), &err);
+    CHECK_OK((tune ? rbf_tune : rbf_fit)(m, n, X, F, NULL, &err), &err);
     return m;
 }
 
@@ -196,8 +194,7 @@ static void test_tuning_finds_the_nugget_of_answers_of_different_variance(void *
         Err err = {0};
         Rbf *m;
         CHECK_OK(rbf_create(&m, MANY, D, OUT, &err), &err);
-        CHECK_OK(rbf_fit(m, MANY, X, F, told ? V : NULL, &err), &err);
-        CHECK_OK(rbf_tune(m, &err), &err);
+        CHECK_OK(rbf_tune(m, MANY, X, F, told ? V : NULL, &err), &err);
         for (size_t i = 0; i < MANY; i++) {
             rbf_eval(m, 1, Y + i * D, f, NULL);
             square[told] += (f[0] - wanted[i * OUT]) * (f[0] - wanted[i * OUT]) / MANY;
@@ -265,6 +262,7 @@ static void test_a_value_that_is_not_finite_is_refused(void **state)
     Rbf *m;
     CHECK_OK(rbf_create(&m, N, D, OUT, &err), &err);
     assert_int_equal(rbf_fit(m, N, X, F, NULL, &err), STATUS_BAD_DATA);
+    assert_int_equal(rbf_tune(m, N, X, F, NULL, &err), STATUS_BAD_DATA);
     rbf_free(m);
 }
 

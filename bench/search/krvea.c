@@ -172,8 +172,8 @@ static Status fit(Krvea *q, Err *err)
 {
     const size_t before = q->c->n > UPDATES ? q->c->n - UPDATES : 0;
     gather(q);
-    TRY(rbf_fit(q->rbf, q->n_train, q->U, q->F, NULL, err));
-    return q->c->n / TUNE_EVERY != before / TUNE_EVERY ? rbf_tune(q->rbf, err) : STATUS_OK;
+    const int tuning = q->c->n / TUNE_EVERY != before / TUNE_EVERY;
+    return (tuning ? rbf_tune : rbf_fit)(q->rbf, q->n_train, q->U, q->F, NULL, err);
 }
 
 /* -- RVEA on the predictions --------------------------------------------------------------------------------------- */

@@ -66,8 +66,7 @@ static Status fit(Parego *q, Random *r, Err *err)
         problem_to_cube(q->p, q->X + q->order[i] * n_var, q->U + i * n_var);
         q->F[i] = q->value[q->order[i]];
     }
-    TRY(rbf_fit(q->rbf, n, q->U, q->F, NULL, err));
-    return q->c->n % TUNE_EVERY == 0 ? rbf_tune(q->rbf, err) : STATUS_OK;
+    return (q->c->n % TUNE_EVERY == 0 ? rbf_tune : rbf_fit)(q->rbf, n, q->U, q->F, NULL, err);
 }
 
 static double improvement(const Parego *q, const double u[])

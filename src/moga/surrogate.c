@@ -178,9 +178,7 @@ static Status fit_success(Surrogate *s, const Archive *a, int tuning, Err *err)
         problem_to_cube(s->problem, a->X + i * a->n_var, s->U + n * a->n_var);
         s->F[n++] = a->usable[i];
     }
-    TRY(rbf_fit(s->success, n, s->U, s->F, NULL, err));
-    if (tuning)
-        TRY(rbf_tune(s->success, err));
+    TRY((tuning ? rbf_tune : rbf_fit)(s->success, n, s->U, s->F, NULL, err));
     s->knows_failures = rbf_explained(s->success, 0) > 0.0;
     return STATUS_OK;
 }
@@ -203,12 +201,9 @@ Status surrogate_fit(Surrogate *s, const Archive *a, Infill *near, Err *err)
             s->noise[i * s->n_out + k] = 1.0 / (double)a->replicates[row];
     }
     measure_ranges(s, a);
-    TRY(rbf_fit(s->rbf, s->n, s->U, s->F, a->n_replicates > 0 ? s->noise : NULL, err));
     const int tuning = s->n_tuned == 0 || a->n >= s->n_tuned + (s->n_tuned + RETUNE_SHARE - 1) / RETUNE_SHARE;
-    if (tuning) {
-        TRY(rbf_tune(s->rbf, err));
-        s->n_tuned = a->n;
-    }
+    TRY((tuning ? rbf_tune : rbf_fit)(s->rbf, s->n, s->U, s->F, a->n_replicates > 0 ? s->noise : NULL, err));
+    s->n_tuned = tuning ? a->n : s->n_tuned;
     s->fitted = 1;
     return fit_success(s, a, tuning, err);
 }

@@ -94,11 +94,9 @@ static void add(Local *l, const double x[], const double f[], double noise)
 
 static Status fit(Local *l, Err *err)
 {
-    TRY(rbf_fit(l->rbf, l->n, l->U, l->F, l->N, err));
-    if (l->n_tuned == 0 || l->n > l->n_tuned + l->n_tuned / LOCAL_RETUNE_SHARE) {
-        TRY(rbf_tune(l->rbf, err));
-        l->n_tuned = l->n;
-    }
+    const int tuning = l->n_tuned == 0 || l->n > l->n_tuned + l->n_tuned / LOCAL_RETUNE_SHARE;
+    TRY((tuning ? rbf_tune : rbf_fit)(l->rbf, l->n, l->U, l->F, l->N, err));
+    l->n_tuned = tuning ? l->n : l->n_tuned;
     problem_to_cube(l->problem, l->result->x, l->u_best);
     rbf_eval(l->rbf, 1, l->u_best, l->f, l->error);
     for (size_t k = 0; k < l->problem->n_obj; k++) {

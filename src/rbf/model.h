@@ -65,7 +65,6 @@ struct Rbf {
     double *noise;  /* (n_out, n_max) variance of each value, in nuggets */
     Output *output;
     Worker *worker;
-    Status *status;
     void *store;
 };
 
@@ -99,7 +98,10 @@ void model_invert(int n, double L[], int ld);
 /* Leave-one-out errors after model_weights, into k->q; spoils A and P. */
 void model_leave_one_out(Worker *k, size_t n, size_t n_tail);
 
-/* Fits every output with its form and scales. */
-Status model_fit(Rbf *m, Err *err);
+/* Centres and values; mean and scale of every output. */
+Status model_take(Rbf *m, size_t n, const double X[], const double F[], const double noise[], Err *err);
+
+/* Fits every output with its form and scales to what was taken. */
+void model_fit(Rbf *m);
 
 #endif

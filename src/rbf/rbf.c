@@ -20,7 +20,6 @@ static void layout(void *interpolant, Carve *c)
     m->C = carve(c, 3 * spread, sizeof(double));
     m->F = carve(c, m->n_out * n, sizeof(double));
     m->noise = carve(c, m->n_out * n, sizeof(double));
-    m->status = carve(c, m->n_out, sizeof(Status));
     m->output = carve(c, m->n_out, sizeof(Output));
     m->worker = carve(c, m->n_workers, sizeof(Worker));
     for (size_t k = 0; k < m->n_out; k++) {
@@ -267,35 +266,22 @@ static void leave_out(const Rbf *m, Output *o, const double f[])
     o->explained = 0.0;
 }
 
-/* 0: a value is not finite. */
-static int fit_output(const Rbf *m, Worker *k, Output *o, const double f[], const double noise[])
+static void fit_output(const Rbf *m, Worker *k, Output *o, const double f[], const double noise[])
 {
     memcpy(k->noise, noise, m->n * sizeof *noise);
-    standardise(m, o, f);
-    if (!isfinite(o->mean) || !isfinite(o->scale))
-        return 0;
     for (size_t i = 0; i < m->n; i++)
         k->y[i] = (f[i] - o->mean) / o->scale;
     o->is_left_out = 0;
     model_scale(m, m->n, m->C, &o->shape, o->S);
     if (!fit_with_tail(m, k, o, o->form.tail) && !fit_with_tail(m, k, o, RBF_CONSTANT))
         leave_out(m, o, f);
-    return 1;
 }
 
-Status model_fit(Rbf *m, Err *err)
+void model_fit(Rbf *m)
 {
 #pragma omp parallel for schedule(dynamic, 1) num_threads((int)m->n_workers)
     for (size_t k = 0; k < m->n_out; k++)
-        m->status[k] =
-            fit_output(m, &m->worker[omp_get_thread_num()], &m->output[k], m->F + k * m->n_max, m->noise + k * m->n_max)
-                ? STATUS_OK
-                : STATUS_BAD_DATA;
-    for (size_t k = 0; k < m->n_out; k++)
-        if (m->status[k] != STATUS_OK)
-            return fail(err, STATUS_BAD_DATA, "interpolant: a value of output %zu of %zu designs is not finite", k + 1,
-                        m->n);
-    return STATUS_OK;
+        fit_output(m, &m->worker[omp_get_thread_num()], &m->output[k], m->F + k * m->n_max, m->noise + k * m->n_max);
 }
 
 size_t rbf_left_out(const Rbf *m)
@@ -319,7 +305,7 @@ static void place(Rbf *m, size_t i, size_t d, double u)
     c[2 * m->n_dim * m->stride] = log_away(1.0 - u);
 }
 
-Status rbf_fit(Rbf *m, size_t n, const double X[], const double F[], const double noise[], Err *err)
+Status model_take(Rbf *m, size_t n, const double X[], const double F[], const double noise[], Err *err)
 {
     if (n < 2 || n > m->n_max)
         return fail(err, STATUS_INTERNAL, "interpolant: %zu centres, wanted 2 to %zu", n, m->n_max);
@@ -332,7 +318,20 @@ Status rbf_fit(Rbf *m, size_t n, const double X[], const double F[], const doubl
             m->noise[k * m->n_max + i] = noise ? noise[i * m->n_out + k] : 1.0;
         }
     }
-    return model_fit(m, err);
+    for (size_t k = 0; k < m->n_out; k++) {
+        standardise(m, &m->output[k], m->F + k * m->n_max);
+        if (!isfinite(m->output[k].mean) || !isfinite(m->output[k].scale))
+            return fail(err, STATUS_BAD_DATA, "interpolant: a value of output %zu of %zu designs is not finite", k + 1,
+                        m->n);
+    }
+    return STATUS_OK;
+}
+
+Status rbf_fit(Rbf *m, size_t n, const double X[], const double F[], const double noise[], Err *err)
+{
+    TRY(model_take(m, n, X, F, noise, err));
+    model_fit(m);
+    return STATUS_OK;
 }
 
 /* -- prediction ---------------------------------------------------------------------------------------------------- */

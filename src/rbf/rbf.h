@@ -13,7 +13,7 @@
  * over scales, warp and nugget and takes the kernel and tail with the smallest leave-one-out error; rbf_fit keeps them.
  *
  * Error       of a prediction: root mean square of the leave-one-out errors weighted with 1/r^4, a local average
- * Life cycle  rbf_create -> (rbf_fit -> (rbf_tune) -> rbf_eval ...) ... -> rbf_free; call rbf_tune now and then
+ * Life cycle  rbf_create -> (rbf_fit or rbf_tune -> rbf_eval ...) ... -> rbf_free; rbf_tune now and then
  * Memory      all of it in rbf_create, for at most n_max centres
  * Threads     rbf_fit and rbf_tune share the outputs out over OpenMP threads (set BLAS to one); rbf_eval only reads
  * Shapes      row-major X (n, n_dim), F (n, n_out); x scaled to the unit cube; n_dim <= RBF_DIM_MAX
@@ -44,9 +44,8 @@ void rbf_free(Rbf *m); /* NULL is fine */
 /* Fits F at X with the present forms and scales; variances are nugget times noise (n, n_out), NULL: 1; rbf_create starts with Matern, linear tail, theta = 1 / n_dim, no warp. */
 Status rbf_fit(Rbf *m, size_t n, const double X[], const double F[], const double noise[], Err *err);
 
-/* Tunes forms and scales, starting from the present ones, on the data of the last rbf_fit (at most 250 of them, evenly
- * spread), and fits again. */
-Status rbf_tune(Rbf *m, Err *err);
+/* The same with forms and scales tuned first, starting from the present ones, on at most 250 of the centres, evenly spread. */
+Status rbf_tune(Rbf *m, size_t n, const double X[], const double F[], const double noise[], Err *err);
 
 /* F (n, n_out) at X (n, n_dim), and the errors E (n, n_out), which may be NULL. RBF_BLOCK points cost little more than
  * one. */

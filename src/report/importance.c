@@ -119,19 +119,13 @@ static void find_indices(Sobol *s, const Rbf *m, double *total)
     }
 }
 
-static Status fit(const Sobol *s, Rbf *m, Err *err)
-{
-    TRY(rbf_fit(m, s->n, s->U, s->F, NULL, err));
-    return rbf_tune(m, err);
-}
-
 static Status find(Sobol *s, size_t known, Importance *out, Err *err)
 {
     Rbf *m;
     TRY(rbf_create(&m, s->n, s->n_var, s->n_obj, err));
     take_designs(s, known);
     scale_designs(s);
-    const Status status = fit(s, m, err);
+    const Status status = rbf_tune(m, s->n, s->U, s->F, NULL, err);
     if (status == STATUS_OK) {
         find_indices(s, m, out->total);
         for (size_t k = 0; k < s->n_obj; k++)
