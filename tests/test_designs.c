@@ -90,7 +90,7 @@ static void test_designs_off_the_front_stay_addressable(void **state)
     json_decref(o);
     snprintf(word, sizeof word, "report @/run --design %ld --record builtin:sylmar-like --out @/off.html", known.off);
     free(output_of(word));
-    snprintf(word, sizeof word, "polish @/run --design %ld --evals 12", known.off);
+    snprintf(word, sizeof word, "polish @/run --design %ld --evals 24", known.off);
     free(output_of(word));
 }
 

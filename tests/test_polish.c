@@ -236,15 +236,24 @@ static void test_too_few_designs_make_no_surface_and_a_fault_ends_it(void **stat
 static void test_a_gain_counts_beyond_twice_its_error_where_the_rest_is_kept(void **state)
 {
     (void)state;
-    assert_true(refined_counts(&(Refined){.has_changed = 1, .keeps = 1, .gain = 0.21, .gain_error = 0.1}));
-    assert_false(refined_counts(&(Refined){.has_changed = 1, .keeps = 1, .gain = 0.19, .gain_error = 0.1}));
-    assert_false(refined_counts(&(Refined){.has_changed = 1, .keeps = 0, .gain = 0.21, .gain_error = 0.1}));
-    assert_false(refined_counts(&(Refined){.has_changed = 0, .keeps = 1, .gain = 0.21, .gain_error = 0.1}));
-    assert_true(refined_counts(&(Refined){.has_changed = 1, .keeps = 1, .gain = 0.01, .gain_error = NAN}));
-    assert_true(refined_counts(&(Refined){.has_changed = 1, .keeps = 1, .gain = 0.002, .gain_min = 0.001}));
-    assert_false(refined_counts(&(Refined){.has_changed = 1, .keeps = 1, .gain = 5e-4, .gain_min = 0.001}));
+    assert_true(
+        refined_counts(&(Refined){.has_changed = 1, .keeps = 1, .gain_finer = NAN, .gain = 0.21, .gain_error = 0.1}));
     assert_false(
-        refined_counts(&(Refined){.has_changed = 1, .keeps = 1, .gain = 5e-4, .gain_min = 0.001, .gain_error = NAN}));
+        refined_counts(&(Refined){.has_changed = 1, .keeps = 1, .gain_finer = NAN, .gain = 0.19, .gain_error = 0.1}));
+    assert_false(
+        refined_counts(&(Refined){.has_changed = 1, .keeps = 0, .gain_finer = NAN, .gain = 0.21, .gain_error = 0.1}));
+    assert_false(
+        refined_counts(&(Refined){.has_changed = 0, .keeps = 1, .gain_finer = NAN, .gain = 0.21, .gain_error = 0.1}));
+    assert_true(
+        refined_counts(&(Refined){.has_changed = 1, .keeps = 1, .gain_finer = NAN, .gain = 0.01, .gain_error = NAN}));
+    assert_true(
+        refined_counts(&(Refined){.has_changed = 1, .keeps = 1, .gain_finer = NAN, .gain = 0.002, .gain_min = 0.001}));
+    assert_false(
+        refined_counts(&(Refined){.has_changed = 1, .keeps = 1, .gain_finer = NAN, .gain = 5e-4, .gain_min = 0.001}));
+    assert_false(refined_counts(&(Refined){
+        .has_changed = 1, .keeps = 1, .gain_finer = NAN, .gain = 5e-4, .gain_min = 0.001, .gain_error = NAN}));
+    assert_false(
+        refined_counts(&(Refined){.has_changed = 1, .keeps = 1, .gain = 0.21, .gain_error = 0.1, .gain_finer = 0.19}));
 }
 
 int main(void)

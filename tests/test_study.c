@@ -327,7 +327,7 @@ static void test_designs_are_chosen_by_limits_weights_and_a_reference_point_and_
     free(path);
     expect(65, "has no design 999999", "polish @/kind --design 999999");
     expect(2, "--evals: '0' is no whole number from 1", "polish @/kind --design knee --evals 0");
-    expect(2, "at the end, take 3 simulations", "polish @/kind --design knee --evals 2");
+    expect(2, "both designs at the end take 4 simulations", "polish @/kind --design knee --evals 3");
     expect(2, "--replicates: '2.5' is no whole number", "polish @/kind --design knee --replicates 2.5");
     expect(2, "--slack: '-1' is no number from 0", "polish @/kind --design knee --slack -1");
     expect(2, "no algorithm is called", "polish @/kind --design knee --algorithm magic");

@@ -284,7 +284,8 @@ static void show_table(const Run *run, const Picks *p)
     printf("%zu of %zu designs are within the limits\n\n", p->n_left, run->n_front);
     show_objective_names(&run->schema);
     for (size_t i = 0; i < p->n; i++)
-        show_objectives(p->pick[i].name, run->table.row[p->pick[i].row].id, &run->schema, run_f(run, p->pick[i].row));
+        show_objectives(p->pick[i].name, run->table.row[p->pick[i].row].id, &run->schema, run_f(run, p->pick[i].row),
+                        NULL);
 }
 
 static void show_variables(const Run *run, const Picks *p)

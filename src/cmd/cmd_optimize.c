@@ -73,15 +73,18 @@ static void print_front(const Run *run, const StudySummary *summary)
     const Schema *schema = &run->schema;
     const size_t knee = run_knee(run);
     char label[TABLE_NAME_MAX + 8];
+    double of_knee[OBJECTIVES_MAX], *error = summary->error_known ? of_knee : NULL;
     show_objective_names(schema);
+    for (size_t k = 0; k < schema->n_obj && error; k++)
+        error[k] = summary->error[schema->order.of[k]];
     for (size_t k = 0; k < schema->n_obj; k++) {
         const size_t best = run_best(run, k);
         snprintf(label, sizeof label, "best %s", schema_objective(schema, k)->name);
-        show_objectives(label, run->table.row[best].id, schema, run_f(run, best));
+        show_objectives(label, run->table.row[best].id, schema, run_f(run, best), error);
     }
-    show_objectives("knee", run->table.row[knee].id, schema, run_f(run, knee));
-    if (summary->error_known)
-        show_objective_errors(schema, summary->error);
+    show_objectives("knee", run->table.row[knee].id, schema, run_f(run, knee), error);
+    if (error)
+        show_objective_errors(schema, error);
     if (summary->has_baselines) {
         show_baselines(schema, run_f(run, knee), summary->baseline);
         explain_objectives(schema, run->settings->search.objectives);
@@ -134,7 +137,7 @@ static void print_nearest(const Run *run, size_t n, const size_t rows[])
     show_objective_names(&run->schema);
     for (size_t i = 0; i < n; i++) {
         snprintf(label, sizeof label, "misses by %.3g", run->table.row[rows[i]].violation);
-        show_objectives(label, run->table.row[rows[i]].id, &run->schema, run_f(run, rows[i]));
+        show_objectives(label, run->table.row[rows[i]].id, &run->schema, run_f(run, rows[i]), NULL);
     }
     printf("\nmisses by: sum over search.limits of what exceeds them, as a share of the limit.\n");
 }

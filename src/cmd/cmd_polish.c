@@ -56,12 +56,13 @@ static Status take_options(const Args *args, Work *w, Err *err)
     TRY(args_whole(args, "--evals", 1, 1000000, 300, &evals, err));
     TRY(args_whole(args, "--replicates", 1, 1000, 4, &w->config.replicates, err));
     TRY(args_number(args, "--seconds", 0, 1e9, 0, &w->config.max_seconds, err));
-    const long each = w->run->settings->problem.kind == PROBLEM_TOWER ? w->config.replicates : 1;
-    if (evals < 3 * each)
+    const size_t needed = refine_evals_min(w->run->settings, w->config.replicates);
+    if ((size_t)evals < needed)
         return fail(err, STATUS_USAGE,
-                    "--evals %ld: the design at the start, and both designs at the end, take %ld simulations (3 times "
-                    "--replicates of a tower); give more, or fewer --replicates",
-                    evals, 3 * each);
+                    "--evals %ld: the design at the start, one that is tried, and both designs at the end take %zu "
+                    "simulations (6 times --replicates of a tower: at the end also at twice the steps); give more, or "
+                    "fewer --replicates",
+                    evals, needed);
     TRY(args_number(args, "--slack", 0, 1e6, -1, &w->config.slack, err));
     w->config.gain_min = w->run->settings->search.polish_gain_min;
     w->config.algorithm = args_value(args, "--algorithm");
@@ -121,10 +122,12 @@ static void show_gain(const Work *w, size_t k)
 
 static const char *verdict_of(const Refined *r)
 {
-    return !r->has_changed          ? "No improvement was found that keeps the others."
-           : !r->keeps              ? "Simulated again, what was to be kept is not."
-           : isnan(r->gain_error)   ? "One simulation each: nothing is known of the spread."
-           : refined_counts(r)      ? "Simulated again on both designs this is more than the standard deviation."
+    return !r->has_changed        ? "No improvement was found that keeps the others."
+           : !r->keeps            ? "Simulated again, what was to be kept is not."
+           : isnan(r->gain_error) ? "One simulation each: nothing is known of the spread."
+           : refined_counts(r)    ? "Simulated again on both designs this is more than the standard deviation."
+           : r->gain > fmax(r->gain_min, 2.0 * r->gain_error)
+               ? "Simulated at twice the steps on both designs it is not."
            : r->gain <= r->gain_min ? "Simulated again on both designs this is less than search.polish_gain_min."
                                     : "Simulated again on both designs this is not more than the standard deviation.";
 }
@@ -135,12 +138,14 @@ static void show(const Work *w, long id)
     const Refined *r = &w->result;
     char label[32];
     show_objective_names(schema);
-    show_objectives("before", w->run->table.row[w->row].id, schema, r->f_start);
+    show_objectives("before", w->run->table.row[w->row].id, schema, r->f_start, NULL);
     snprintf(label, sizeof label, "sd %s",
              spread_word(w->run->settings->sim.gap_tolerance_m, &w->run->settings->uncertain));
-    show_objectives("polished", id, schema, r->f);
+    show_objectives("polished", id, schema, r->f, NULL);
     if (isfinite(r->spread_start[0]))
-        show_objectives(label, 0, schema, r->spread_start);
+        show_objectives(label, 0, schema, r->spread_start, NULL);
+    if (isfinite(r->error[0]))
+        show_objective_errors(schema, r->error);
     printf("\n%zu designs tried in %zu simulations, %zu failed, %.1f s\n", r->n_evaluated, r->n_simulated, r->n_failed,
            r->seconds);
     for (size_t k = 0; r->has_changed && k < schema->n_obj; k++)

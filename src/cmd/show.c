@@ -258,7 +258,7 @@ void show_objective_names(const Schema *schema)
     putchar('\n');
 }
 
-void show_objectives(const char *label, long id, const Schema *schema, const double natural[])
+void show_objectives(const char *label, long id, const Schema *schema, const double natural[], const double error[])
 {
     printf("%-*s", label_width(schema), label);
     if (id > 0)
@@ -266,7 +266,7 @@ void show_objectives(const char *label, long id, const Schema *schema, const dou
     else
         printf(" %7s", "-");
     for (size_t k = 0; k < schema->n_obj; k++)
-        show_number(natural[k], schema_objective(schema, k)->name);
+        show_digits(natural[k], error ? digits_known(natural[k], error[k]) : 4, schema_objective(schema, k)->name);
     putchar('\n');
 }
 
@@ -274,7 +274,7 @@ void show_objective_errors(const Schema *schema, const double error[])
 {
     printf("%-26s", "  estimated error");
     for (size_t k = 0; k < schema->n_obj; k++)
-        show_digits(error[schema->order.of[k]], 1, schema_objective(schema, k)->name);
+        show_digits(error[k], 1, schema_objective(schema, k)->name);
     putchar('\n');
 }
 
@@ -355,7 +355,7 @@ void show_baselines(const Schema *schema, const double natural[], const Baseline
     for (int k = 0; k < N_BASELINES; k++) {
         for (size_t i = 0; i < schema->n_obj; i++)
             values[i] = baseline[k].value[schema->order.of[i]];
-        show_objectives(baseline_words((BaselineKind)k), 0, schema, values);
+        show_objectives(baseline_words((BaselineKind)k), 0, schema, values, NULL);
     }
     putchar('\n');
     for (int k = 0; k < N_BASELINES; k++)

@@ -44,11 +44,12 @@ void show_baselines(const Schema *schema, const double natural[], const Baseline
 /* One line: the hypervolume that as many simulations again are expected to gain (study/improvement.h); NAN: nothing. */
 void show_expected_gain(double gain);
 
-/* One line of objectives: label, a design's number (0: none), a dash for what is not known. */
+/* One line of objectives: label, a design's number (0: none), a dash for what is not known. error (n_obj) or NULL: of a
+ * value no digit is shown that it leaves open. */
 void show_objective_names(const Schema *schema);
-void show_objectives(const char *label, long id, const Schema *schema, const double natural[]);
+void show_objectives(const char *label, long id, const Schema *schema, const double natural[], const double error[]);
 
-/* error (N_MEASURES), of the objectives, below their line. */
+/* error (n_obj), below the line of the objectives. */
 void show_objective_errors(const Schema *schema, const double error[]);
 
 #endif

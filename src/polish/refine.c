@@ -9,6 +9,7 @@
 #include "polish/local.h"
 #include "polish/polish.h"
 #include "simulator/adapter.h"
+#include "simulator/estimate.h"
 #include "settings/options.h"
 
 enum { CENTRES_MAX = 150, LOCAL_MAX = 600 /* designs tried on the surrogate: a fit costs their cube */ };
@@ -40,9 +41,10 @@ static void close_simulator(Refine *r)
     r->adapter = NULL;
 }
 
-static Status open_simulator(Refine *r, long replicates, Err *err)
+static Status open_simulator(Refine *r, const SimOptions *sim, long replicates, Err *err)
 {
     Settings s = *r->run->settings;
+    s.sim = *sim;
     s.sim.replicates = replicates;
     close_simulator(r);
     TRY(adapter_open(&r->adapter, &s, err));
@@ -100,7 +102,7 @@ static void set_goal(Refine *r, const double f[])
 static Status begin(Refine *r, double f[], Refined *out, Err *err)
 {
     unsigned char ok = 0;
-    TRY(open_simulator(r, r->config->replicates, err));
+    TRY(open_simulator(r, &r->run->settings->sim, r->config->replicates, err));
     TRY(evaluate(r, 1, &r->x, 0, f, &ok, err));
     count(1, 0, r->config->replicates, out);
     if (!ok)
@@ -111,13 +113,27 @@ static Status begin(Refine *r, double f[], Refined *out, Err *err)
             r->config->replicates, r->reason);
     r->replicates = 1;
     set_goal(r, f);
-    return r->replicates == r->config->replicates ? STATUS_OK : open_simulator(r, r->replicates, err);
+    return r->replicates == r->config->replicates ? STATUS_OK
+                                                  : open_simulator(r, &r->run->settings->sim, r->replicates, err);
+}
+
+static int has_finer(const Settings *s)
+{
+    SimOptions unused;
+    return s->problem.kind == PROBLEM_TOWER && estimate_options(&s->sim, &unused);
+}
+
+size_t refine_evals_min(const Settings *s, long replicates)
+{
+    const long each = s->problem.kind == PROBLEM_TOWER ? replicates : 1;
+    return (size_t)(each * (has_finer(s) ? 6 : 4));
 }
 
 /* Designs that may still be tried, so that both can be compared at the end. */
 static size_t evals_left(const Refine *r, const Refined *out)
 {
-    const size_t spent = out->n_simulated + 2 * (size_t)r->config->replicates;
+    const long finer = has_finer(r->run->settings) ? r->replicates : 0;
+    const size_t spent = out->n_simulated + 2 * (size_t)(r->config->replicates + finer);
     return r->config->max_evals > spent ? (r->config->max_evals - spent) / (size_t)r->replicates : 0;
 }
 
@@ -246,13 +262,32 @@ static void judge_gain(const Refine *r, const double F[], Refined *out)
     }
 }
 
+/* Both designs at twice the steps; F (2, n_obj) as in judge_gain. */
+static Status compare_finer(Refine *r, const double F[], Refined *out, Err *err)
+{
+    const size_t m = r->run->schema.n_obj;
+    double G[2 * OBJECTIVES_MAX];
+    unsigned char ok[2] = {0};
+    SimOptions finer;
+    estimate_options(&r->run->settings->sim, &finer);
+    TRY(open_simulator(r, &finer, r->replicates, err));
+    TRY(evaluate(r, 2, (const double *const[]){r->x, out->x}, 1, G, ok, err));
+    count(2, 0, r->replicates, out);
+    out->gain_finer = ok[0] && ok[1] ? 0.0 : -INFINITY;
+    for (size_t k = 0; k < m && ok[0] && ok[1]; k++) {
+        out->gain_finer += r->weight[k] * (G[k] - G[m + k]);
+        out->error[k] = ESTIMATE_FACTOR * fmax(fabs(G[k] - F[k]), fabs(G[m + k] - F[m + k]));
+    }
+    return STATUS_OK;
+}
+
 /* Both designs with replicates that no step has used: the selection of the best of noisy values would bias them. */
 static Status compare(Refine *r, Refined *out, Err *err)
 {
     const size_t n_var = r->run->schema.n_var, m = r->run->schema.n_obj, n_extra = r->run->schema.n_extra;
     double F[2 * OBJECTIVES_MAX];
     unsigned char ok[2] = {0};
-    TRY(open_simulator(r, r->config->replicates, err));
+    TRY(open_simulator(r, &r->run->settings->sim, r->config->replicates, err));
     TRY(evaluate(r, 2, (const double *const[]){r->x, out->x}, 1, F, ok, err));
     count(2, 0, r->config->replicates, out);
     memcpy(out->f_start, r->f, m * sizeof *r->f);
@@ -263,9 +298,10 @@ static Status compare(Refine *r, Refined *out, Err *err)
         out->extra[k] = r->extra[n_extra + k];
     out->violation = r->violation[1];
     out->has_changed = ok[0] && ok[1] && memcmp(r->x, out->x, n_var * sizeof *r->x) != 0;
-    if (out->has_changed)
-        judge_gain(r, F, out);
-    return STATUS_OK;
+    if (!out->has_changed)
+        return STATUS_OK;
+    judge_gain(r, F, out);
+    return has_finer(r->run->settings) ? compare_finer(r, F, out, err) : STATUS_OK;
 }
 
 static Status refine(Refine *r, Refined *out, Err *err)
@@ -273,13 +309,16 @@ static Status refine(Refine *r, Refined *out, Err *err)
     const size_t n_var = r->run->schema.n_var, m = r->run->schema.n_obj;
     double f[OBJECTIVES_MAX];
     out->x = calloc(n_var, sizeof *out->x);
-    out->f_start = calloc(4 * m + r->run->schema.n_extra, sizeof *out->f_start);
+    out->f_start = calloc(5 * m + r->run->schema.n_extra, sizeof *out->f_start);
     if (!out->x || !out->f_start)
         return fail(err, STATUS_NO_MEMORY, "no memory for a design");
     out->f = out->f_start + m;
     out->spread_start = out->f_start + 2 * m;
     out->spread = out->f_start + 3 * m;
-    out->extra = out->f_start + 4 * m;
+    out->error = out->f_start + 4 * m;
+    out->extra = out->f_start + 5 * m;
+    for (size_t k = 0; k < m; k++)
+        out->error[k] = NAN;
     memcpy(out->x, r->x, n_var * sizeof *out->x);
     TRY(begin(r, f, out, err));
     TRY(improve_on_surrogate(r, f, out, err));
@@ -290,7 +329,7 @@ static Status refine(Refine *r, Refined *out, Err *err)
 Status refine_design(const Run *h, size_t row, const RefineConfig *config, Refined *out, Err *err)
 {
     RefineConfig used = *config;
-    *out = (Refined){.gain_min = config->gain_min};
+    *out = (Refined){.gain_min = config->gain_min, .gain_finer = NAN};
     if (schema_is_noisy(h->settings) && h->settings->problem.kind != PROBLEM_TOWER)
         return fail(
             err, STATUS_BAD_DATA,
@@ -316,8 +355,8 @@ void refined_free(Refined *r)
 
 int refined_counts(const Refined *r)
 {
-    return r->has_changed && r->keeps &&
-           r->gain > fmax(r->gain_min, isfinite(r->gain_error) ? 2.0 * r->gain_error : 0.0);
+    const double least = fmax(r->gain_min, isfinite(r->gain_error) ? 2.0 * r->gain_error : 0.0);
+    return r->has_changed && r->keeps && r->gain > least && !(r->gain_finer <= least);
 }
 
 Evaluation refined_evaluation(const Refined *r)

@@ -9,6 +9,7 @@
  *     it was asked for by name, else COBYLA with what step 2 leaves
  *   4 design and result once more, with replicates that no step has used:
  *         error_k = root((sd_start_k^2 + sd_end_k^2) / replicates)
+ *   5 both at twice the steps of the engine (simulator/estimate.h), where it has such: the same gain must be there
  *
  * A gain counts where it is more than gain_min (a practical threshold) and more than twice sum_k weight_k error_k / range_k
  * (as if all errors went together), and no kept objective lost more than it may and twice its error. With a single replicate the standard deviation is not known,
@@ -37,11 +38,13 @@ typedef struct {
 
 typedef struct {
     double *x, *f_start, *f, *spread_start, *spread; /* (n_var), (n_obj) natural; of step 4 */
-    double *extra;                                   /* (n_extra) of the end */
-    double gain, gain_error;                         /* of the value, > 0 is better; error NAN: not known */
-    double gain_min;                                 /* of the config */
-    double violation;                                /* of the user's limits */
-    size_t n_evaluated, n_failed, n_simulated;       /* designs, of them failed; simulations */
+    double *error;           /* (n_obj) estimated integration error of both, the greater one; NAN: not known */
+    double *extra;           /* (n_extra) of the end */
+    double gain, gain_error; /* of the value, > 0 is better; error NAN: not known */
+    double gain_finer;       /* of step 5; NAN: there is none */
+    double gain_min;         /* of the config */
+    double violation;        /* of the user's limits */
+    size_t n_evaluated, n_failed, n_simulated; /* designs, of them failed; simulations */
     double seconds;
     int has_changed; /* 0: nothing better was found, x is the design itself */
     int keeps;       /* what was to be kept is */
@@ -50,6 +53,9 @@ typedef struct {
 /* The design in row `row` of the run, with the settings that it was made with. */
 Status refine_design(const Run *h, size_t row, const RefineConfig *config, Refined *out, Err *err);
 void refined_free(Refined *r);
+
+/* Simulations that it takes to try one design: steps 1, 4 and 5 and that one. */
+size_t refine_evals_min(const Settings *s, long replicates);
 
 /* A gain above gain_min that is significant, or of which no standard deviation is known; and all else kept. */
 int refined_counts(const Refined *r);

@@ -12,12 +12,19 @@ static size_t n_designs(const Settings *s)
     return (size_t)(s->search.polish < DESIGNS_MAX ? s->search.polish : DESIGNS_MAX);
 }
 
+static long replicates(const Settings *s)
+{
+    return s->sim.replicates > REPLICATES_MIN ? s->sim.replicates : REPLICATES_MIN;
+}
+
 /* Simulations for each design; 0: not worth it. */
 static size_t evals_each(const Settings *s)
 {
     const long n = (long)n_designs(s);
     const long each = n > 0 ? s->search.max_evals * s->sim.replicates / (SHARE * n) : 0;
-    return s->problem.kind == PROBLEM_TOWER && each >= EVALS_MIN ? (size_t)each : 0;
+    return s->problem.kind == PROBLEM_TOWER && each >= EVALS_MIN && (size_t)each >= refine_evals_min(s, replicates(s))
+               ? (size_t)each
+               : 0;
 }
 
 static Status refine(const FinalPolish *p, const Run *run, size_t row, Refined *refined, Err *err)
@@ -29,17 +36,16 @@ static Status refine(const FinalPolish *p, const Run *run, size_t row, Refined *
         keep[k] = 1;
         weight[k] = 1.0;
     }
-    return refine_design(
-        run, row,
-        &(RefineConfig){.weight = weight,
-                        .keep = keep,
-                        .slack = -1.0,
-                        .gain_min = s->search.polish_gain_min,
-                        .replicates = s->sim.replicates > REPLICATES_MIN ? s->sim.replicates : REPLICATES_MIN,
-                        .max_evals = evals_each(s),
-                        .go_on = p->go_on,
-                        .user = p->user},
-        refined, err);
+    return refine_design(run, row,
+                         &(RefineConfig){.weight = weight,
+                                         .keep = keep,
+                                         .slack = -1.0,
+                                         .gain_min = s->search.polish_gain_min,
+                                         .replicates = replicates(s),
+                                         .max_evals = evals_each(s),
+                                         .go_on = p->go_on,
+                                         .user = p->user},
+                         refined, err);
 }
 
 /* n_tried: designs tried so far, this one included. */
