@@ -282,7 +282,7 @@ static Status write_front(Promise *p, FILE *out, Err *err)
 {
     Designs d = {0};
     DesignSpace space;
-    TRY(design_space_make(&space, &p->plan->options->design, p->n_floors, err));
+    TRY(design_space_make(&space, &p->plan->options->design, p->plan->options->core.section, p->n_floors, err));
     TRY(design_read(&d, p->plan->front, &space, err));
     const Status status = write_designs(p, &d, out, err);
     design_free(&d);

@@ -216,7 +216,7 @@ static const DesignSpace *paper_space(int n_floors)
 {
     static DesignSpace space;
     Err err;
-    CHECK_OK(design_space_make(&space, &(DesignOptions){0}, n_floors, &err), &err);
+    CHECK_OK(design_space_make(&space, &(DesignOptions){0}, CORE_BOX, n_floors, &err), &err);
     return &space;
 }
 

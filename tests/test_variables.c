@@ -14,9 +14,9 @@ static DesignSpace space_of(const char *variables, long gap_zones, long bumper_z
     snprintf(o.variables, sizeof o.variables, "%s", variables);
     o.gap_zones = gap_zones;
     o.bumper_zones = bumper_zones;
-    CHECK_OK(design_space_make(&space, &o, n_floors, &err), &err);
+    CHECK_OK(design_space_make(&space, &o, CORE_BOX, n_floors, &err), &err);
     const int by_floor = gap_zones == 0 || (space.n_bumpers > 0 && bumper_zones == 0);
-    assert_int_equal(design_space_floors(&o, space.n_var), by_floor ? n_floors : 0);
+    assert_int_equal(design_space_floors(&o, CORE_BOX, space.n_var), by_floor ? n_floors : 0);
     return space;
 }
 
@@ -40,6 +40,26 @@ static void test_the_default_is_a_gap_per_floor_and_two_thicknesses(void **state
     expect_names(&s, WANT, 5);
     design_bounds(&s, &o, lower, upper);
     assert_true(lower[2] == 0.001 && upper[2] == 0.5 && lower[3] == 0.004 && upper[4] == 0.04);
+}
+
+static void test_a_core_of_given_areas_has_no_thickness_to_search(void **state)
+{
+    (void)state;
+    static const char *const WANT[] = {"gap_01_m", "gap_02_m", "bumper_log10_n_m"};
+    DesignOptions o = scene_defaults().design;
+    DesignSpace s;
+    Design d;
+    Err err = {0};
+    double lower[3], upper[3];
+    snprintf(o.variables, sizeof o.variables, "gaps, thickness, bumper");
+    CHECK_OK(design_space_make(&s, &o, CORE_EFFECTIVE, 2, &err), &err);
+    expect_names(&s, WANT, 3);
+    assert_int_equal(design_space_floors(&o, CORE_EFFECTIVE, 3), 2);
+    design_bounds(&s, &o, lower, upper);
+    assert_true(upper[1] == o.gap_max_m && lower[2] == log10(o.bumper_min_n_m));
+    design_of(&s, (double[]){0.1, 0.2, 8}, &d);
+    assert_true(d.gap[1] == 0.2 && d.t_base == 0 && d.t_top == 0);
+    assert_close(d.bumper[1], 1e8, 1e-12);
 }
 
 static void test_zones_bumpers_and_side_are_columns_after_the_papers(void **state)
@@ -98,7 +118,7 @@ static void test_wrong_variables_are_refused_with_their_key(void **state)
     Err err = {0};
     DesignOptions o = scene_defaults().design;
     o.gap_zones = 5;
-    assert_int_equal(design_space_make(&space, &o, 4, &err), STATUS_BAD_DATA);
+    assert_int_equal(design_space_make(&space, &o, CORE_BOX, 4, &err), STATUS_BAD_DATA);
     assert_non_null(strstr(err.text, "design.gap_zones"));
 }
 
@@ -214,6 +234,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_the_default_is_a_gap_per_floor_and_two_thicknesses),
+        cmocka_unit_test(test_a_core_of_given_areas_has_no_thickness_to_search),
         cmocka_unit_test(test_zones_bumpers_and_side_are_columns_after_the_papers),
         cmocka_unit_test(test_every_floor_has_the_gap_and_the_bumper_of_its_zone),
         cmocka_unit_test(test_wrong_variables_are_refused_with_their_key),

@@ -138,7 +138,7 @@ static int choose_design(Check *c, CheckedScene *p, const char *path)
     const int n = p->building.n;
     double lower[DESIGN_VARIABLES_MAX], upper[DESIGN_VARIABLES_MAX];
     Err e = {0};
-    if (!note(c, design_space_make(&p->space, box, n, &e), "design", &e))
+    if (!note(c, design_space_make(&p->space, box, p->s->core.section, n, &e), "design", &e))
         return 0;
     const DesignSpace *s = &p->space;
     design_bounds(s, box, lower, upper);
@@ -197,8 +197,12 @@ static void print_scene(const CheckedScene *p)
         printf("%s %.4g s (damping %.3g %%)", i ? "," : "", f->period_s[i], 100 * f->damping[i]);
     printf("\n          %.3g s per storey; the first mode moves %.3g %% of the mass\n", f->period_s[0] / f->n_floors,
            100 * f->first_mode_mass);
-    printf("core      %.4g kg at %g to %g mm, damping %g %%, %s\n", f->core_mass_kg, 1e3 * p->design.t_base,
-           1e3 * p->design.t_top, 100 * s->core.damping, core_theory_word(s->core.theory));
+    printf("core      %.4g kg ", f->core_mass_kg);
+    if (p->space.n_walls > 0)
+        printf("at %g to %g mm", 1e3 * p->design.t_base, 1e3 * p->design.t_top);
+    else
+        printf("(effective section)");
+    printf(", damping %g %%, %s\n", 100 * s->core.damping, core_theory_word(s->core.theory));
     printf("          first mode %.4g Hz bending alone, %.4g Hz (%+.2g %%) with shear and rotary inertia\n",
            f->euler_bernoulli_hz, f->timoshenko_hz, 100 * (f->timoshenko_hz / f->euler_bernoulli_hz - 1));
     printf("motion    %s: %zu samples, %.4g s, peak %.4g g (recorded %.4g g x %.4g, time x %g)\n", s->motion.record,
@@ -282,9 +286,12 @@ static void describe_study(Check *c, const CheckedScene *p)
                                   "impacts", (json_int_t)r.impacts, "seconds", seconds));
     if (c->as_json)
         return;
-    printf("search    %d variables: %d gaps of %g to %g mm, core thickness %g to %g mm at base and top\n",
-           p->space.n_var, p->space.n_gaps, 1e3 * s->design.gap_min_m, 1e3 * s->design.gap_max_m,
-           1e3 * s->design.thickness_min_m, 1e3 * s->design.thickness_max_m);
+    printf("search    %d variables: %d gaps of %g to %g mm", p->space.n_var, p->space.n_gaps, 1e3 * s->design.gap_min_m,
+           1e3 * s->design.gap_max_m);
+    if (p->space.n_walls > 0)
+        printf(", core thickness %g to %g mm at base and top", 1e3 * s->design.thickness_min_m,
+               1e3 * s->design.thickness_max_m);
+    putchar('\n');
     if (p->space.n_bumpers > 0)
         printf("          %d bumper%s of %.3g to %.3g N/m\n", p->space.n_bumpers, p->space.n_bumpers == 1 ? "" : "s",
                s->design.bumper_min_n_m, s->design.bumper_max_n_m);

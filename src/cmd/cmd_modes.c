@@ -36,8 +36,10 @@ static Status choose_core(const Args *args, const Scenario *w, Modes *m, CoreOpt
     const DesignSpace *space = scene_design(w->scene);
     Designs d;
     Design design;
-    x[space->n_gaps] = T_BASE_M;
-    x[space->n_gaps + 1] = T_TOP_M;
+    if (space->n_walls > 0) {
+        x[space->n_gaps] = T_BASE_M;
+        x[space->n_gaps + 1] = T_TOP_M;
+    }
     if (space->has_side)
         x[space->n_var - 1] = w->options.core.side_m;
     if (path) {

@@ -53,7 +53,7 @@ static Status choose_kind(const Args *args, Job *job, Err *err)
 static void warn_top_heavy(const Designs *d, const char *path)
 {
     const size_t n_var = (size_t)d->space.n_var;
-    for (size_t i = 0; i < d->n; i++) {
+    for (size_t i = 0; i < d->n && d->space.n_walls > 0; i++) {
         const double *wall = &d->x[i * n_var + (size_t)d->space.n_gaps];
         if (wall[1] > wall[0])
             fprintf(stderr, "%s:%d: t_top_m %g is thicker than t_base_m %g; the search would not propose this\n", path,

@@ -260,7 +260,7 @@ static Status verify_by(const Args *args, Settings *s, const char *folder, Err *
                     "building.model: %s has nothing fuller than its floors to verify with; only a plane frame "
                     "(nodes.csv) and guyan have",
                     s->building.model);
-    TRY(design_space_make(&job.space, &s->design, job.n_floors, err));
+    TRY(design_space_make(&job.space, &s->design, s->core.section, job.n_floors, err));
     TRY(measures_order(&job.order, s->search.objectives, job.n_floors, err));
     Status status = take_designs(args, folder, &job, err);
     for (int m = 0; m < MODELS && status == STATUS_OK; m++) {

@@ -46,7 +46,7 @@ static Status check_zones(const char *key, long zones, int n_floors, Err *err)
                : fail(err, STATUS_BAD_DATA, "%s: %ld zones, but only %d floors", key, zones, n_floors);
 }
 
-Status design_space_make(DesignSpace *space, const DesignOptions *o, int n_floors, Err *err)
+Status design_space_make(DesignSpace *space, const DesignOptions *o, CoreSection section, int n_floors, Err *err)
 {
     unsigned set = HAS_GAPS | HAS_THICKNESS;
     if (o->variables[0])
@@ -56,21 +56,22 @@ Status design_space_make(DesignSpace *space, const DesignOptions *o, int n_floor
     if (has_bumper)
         TRY(check_zones("design.bumper_zones", o->bumper_zones, n_floors, err));
     *space = (DesignSpace){.n_floors = n_floors,
+                           .n_walls = section == CORE_EFFECTIVE ? 0 : 2,
                            .gap_zones = (int)o->gap_zones,
                            .bumper_zones = (int)o->bumper_zones,
                            .has_side = (set & HAS_SIDE) != 0};
     space->n_gaps = space->gap_zones ? space->gap_zones : n_floors;
     space->n_bumpers = !has_bumper ? 0 : space->bumper_zones ? space->bumper_zones : n_floors;
-    space->n_var = space->n_gaps + 2 + space->n_bumpers + space->has_side;
+    space->n_var = space->n_gaps + space->n_walls + space->n_bumpers + space->has_side;
     return STATUS_OK;
 }
 
-int design_space_floors(const DesignOptions *o, int n_var)
+int design_space_floors(const DesignOptions *o, CoreSection section, int n_var)
 {
     DesignSpace s;
     Err unused;
     for (int n = 1; n <= FLOORS_MAX; n++)
-        if (design_space_make(&s, o, n, &unused) == STATUS_OK && s.n_var == n_var)
+        if (design_space_make(&s, o, section, n, &unused) == STATUS_OK && s.n_var == n_var)
             return s.gap_zones && (s.n_bumpers == 0 || s.bumper_zones) ? 0 : n;
     return 0;
 }
@@ -89,17 +90,17 @@ void design_variable_name(const DesignSpace *s, int j, char name[TABLE_NAME_MAX]
 {
     if (j < s->n_gaps)
         zoned_name(name, "gap", "m", s->gap_zones, j);
-    else if (j < s->n_gaps + 2)
+    else if (j < s->n_gaps + s->n_walls)
         snprintf(name, TABLE_NAME_MAX, "%s", j == s->n_gaps ? "t_base_m" : "t_top_m");
-    else if (j < s->n_gaps + 2 + s->n_bumpers)
-        zoned_name(name, "bumper", "log10_n_m", s->bumper_zones, j - s->n_gaps - 2);
+    else if (j < s->n_gaps + s->n_walls + s->n_bumpers)
+        zoned_name(name, "bumper", "log10_n_m", s->bumper_zones, j - s->n_gaps - s->n_walls);
     else
         snprintf(name, TABLE_NAME_MAX, "side_m");
 }
 
 void design_bounds(const DesignSpace *s, const DesignOptions *o, double lower[], double upper[])
 {
-    const int wall = s->n_gaps, bumper = wall + 2, side = bumper + s->n_bumpers;
+    const int wall = s->n_gaps, bumper = wall + s->n_walls, side = bumper + s->n_bumpers;
     for (int j = 0; j < s->n_var; j++) {
         lower[j] = j < wall     ? o->gap_min_m
                    : j < bumper ? o->thickness_min_m
@@ -120,13 +121,13 @@ static int zone_of(int count, int n_floors, int j)
 
 void design_of(const DesignSpace *s, const double x[], Design *d)
 {
-    const double *bumper = x + s->n_gaps + 2;
+    const double *bumper = x + s->n_gaps + s->n_walls;
     for (int j = 0; j < s->n_floors; j++) {
         d->gap[j] = x[zone_of(s->n_gaps, s->n_floors, j)];
         d->bumper[j] = s->n_bumpers ? pow(10, bumper[zone_of(s->n_bumpers, s->n_floors, j)]) : -1;
     }
-    d->t_base = x[s->n_gaps];
-    d->t_top = x[s->n_gaps + 1];
+    d->t_base = s->n_walls ? x[s->n_gaps] : 0;
+    d->t_top = s->n_walls ? x[s->n_gaps + 1] : 0;
     d->side = s->has_side ? bumper[s->n_bumpers] : 0;
 }
 
@@ -151,9 +152,10 @@ static Status check_names(const Table *t, const char *path, const DesignSpace *s
     design_variable_name(s, 0, first);
     design_variable_name(s, s->n_var - 1, last);
     if (t->n_cols != n_var)
-        return fail(err, STATUS_BAD_DATA,
-                    "%s: the header has %zu columns; a design of %d floors has %zu: %s..%s (design.variables)", path,
-                    t->n_cols, s->n_floors, n_var, first, last);
+        return fail(
+            err, STATUS_BAD_DATA,
+            "%s: the header has %zu columns; a design of %d floors has %zu: %s..%s (design.variables, core.section)",
+            path, t->n_cols, s->n_floors, n_var, first, last);
     return STATUS_OK;
 }
 
@@ -164,7 +166,7 @@ static Status check_values(const Designs *d, const char *path, Err *err)
     for (size_t i = 0; i < d->n; i++)
         for (int j = 0; j < s->n_var; j++) {
             const double value = d->x[i * (size_t)s->n_var + (size_t)j];
-            const int is_log = j >= s->n_gaps + 2 && j < s->n_gaps + 2 + s->n_bumpers;
+            const int walls_end = s->n_gaps + s->n_walls, is_log = j >= walls_end && j < walls_end + s->n_bumpers;
             design_variable_name(s, j, name);
             if (j < s->n_gaps && value < 0)
                 return fail(err, STATUS_BAD_DATA, "%s:%d: %s is %g; a gap is not negative", path, d->line[i], name,
@@ -175,7 +177,7 @@ static Status check_values(const Designs *d, const char *path, Err *err)
                             d->line[i], name, value);
             if (j >= s->n_gaps && value <= 0)
                 return fail(err, STATUS_BAD_DATA, "%s:%d: %s is %g; %s must be above 0", path, d->line[i], name, value,
-                            j < s->n_gaps + 2 ? "a thickness" : "it");
+                            j < walls_end ? "a thickness" : "it");
         }
     return STATUS_OK;
 }

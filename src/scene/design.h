@@ -4,6 +4,7 @@
  *   design.gap_zones = 5                              gap_zone_1_m..gap_zone_5_m in place of a gap per floor
  *   ..., bumper    design.bumper_zones = 1 | 0 | 3    bumper_log10_n_m | bumper_01_log10_n_m.. | bumper_zone_1_log10_n_m..
  *   ..., side                                         side_m of the core's box
+ *   core.section = effective                          no t_base_m, t_top_m: its areas are given, thickness does nothing
  *
  * x is in the order of these columns. A stiffness is its decimal logarithm in N/m: x is what the search scales linearly.
  * Zone z of Z has the floors from z n/Z to (z + 1) n/Z. A gap is the same on both sides of the core.
@@ -26,17 +27,17 @@
 
 enum { DESIGN_VARIABLES_MAX = 2 * FLOORS_MAX + 3 };
 
-/* x: n_gaps gaps, t_base, t_top, n_bumpers stiffnesses, has_side sides. */
+/* x: n_gaps gaps, t_base and t_top (n_walls = 2) or neither (0), n_bumpers stiffnesses, has_side sides. */
 typedef struct {
-    int n_floors, n_var, n_gaps, n_bumpers, has_side;
+    int n_floors, n_var, n_gaps, n_walls, n_bumpers, has_side;
     int gap_zones, bumper_zones; /* 0: a variable per floor */
 } DesignSpace;
 
 /* n_floors 0: not known; then gaps and bumpers that are one per floor are none. */
-Status design_space_make(DesignSpace *space, const DesignOptions *o, int n_floors, Err *err);
+Status design_space_make(DesignSpace *space, const DesignOptions *o, CoreSection section, int n_floors, Err *err);
 
 /* Floors of designs of n_var variables; 0: any number of floors has so many, or none. */
-int design_space_floors(const DesignOptions *o, int n_var);
+int design_space_floors(const DesignOptions *o, CoreSection section, int n_var);
 
 /* Name of variable j = 0..n_var-1. */
 void design_variable_name(const DesignSpace *space, int j, char name[TABLE_NAME_MAX]);
@@ -48,7 +49,7 @@ void design_bounds(const DesignSpace *space, const DesignOptions *o, double lowe
 typedef struct {
     double gap[FLOORS_MAX];    /* [m] */
     double bumper[FLOORS_MAX]; /* [N/m]; < 0: as contact.bumper_stiffness_n_m says */
-    double t_base, t_top;      /* [m] */
+    double t_base, t_top;      /* [m]; 0: there are none */
     double side;               /* [m]; 0: as core.side_m says */
 } Design;
 void design_of(const DesignSpace *space, const double x[], Design *d);

@@ -102,6 +102,11 @@ static int is_effective(const Settings *s)
     return s->core.section == CORE_EFFECTIVE;
 }
 
+static int has_thickness(const Settings *s)
+{
+    return !is_effective(s);
+}
+
 static int is_effective_of_two(const Settings *s)
 {
     return is_effective(s) && !list_is_given(s->core.areas_m2);
@@ -183,6 +188,7 @@ static const struct {
     {"building.damping_table", is_damped_by_table, "building.damping_model = table"},
     {"core.side_m", is_box, "core.section = box"},
     {"core.width_m", is_plate, "core.section = plate"},
+    {"design.thickness_*", has_thickness, "core.section = box or plate"},
     {"core.area_* core.inertia_*", is_effective_of_two, "core.section = effective, without core.areas_m2"},
     {"core.shear_area_* core.areas_m2 core.inertias_m4 core.masses_kg", is_effective, "core.section = effective"},
     {"contact.bumper_damping contact.bumper_thickness_m contact.bumper_strain_max", has_bumpers,

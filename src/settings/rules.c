@@ -84,7 +84,7 @@ static void check_variables(const Settings *s, const Rules *r)
     const DesignOptions *d = &s->design;
     DesignSpace space;
     Err err;
-    if (design_space_make(&space, d, 0, &err) != STATUS_OK) {
+    if (design_space_make(&space, d, s->core.section, 0, &err) != STATUS_OK) {
         break_rule(r, PAIR(design.variables, design.variables), "%s", err.text);
         return;
     }

@@ -92,7 +92,7 @@ Status scene_create(Scene **out, const SceneOptions *o, const Motion *motion, Er
         scene->run.duration = (double)(motion->n - 1) * motion->dt_s;
     Status status = building_load(&scene->building, &o->building, err);
     if (status == STATUS_OK)
-        status = design_space_make(&scene->design, &o->design, scene->building.n, err);
+        status = design_space_make(&scene->design, &o->design, o->core.section, scene->building.n, err);
     if (status == STATUS_OK && motion)
         status = set_tail_input(scene, err);
     if (status == STATUS_OK)

@@ -138,7 +138,7 @@ static void swap_if_top_heavy(double x[], const void *self)
 {
     const Tower *t = self;
     double *t_base = &x[tower_design(t)->n_gaps], *t_top = t_base + 1;
-    if (*t_top > *t_base) {
+    if (tower_design(t)->n_walls > 0 && *t_top > *t_base) {
         const double thicker = *t_top;
         *t_top = *t_base;
         *t_base = thicker;

@@ -192,7 +192,7 @@ static Status take_state(sqlite3_stmt *row, void *user, Err *err)
 /* Of the building of a tower: by the variables that are one per floor, else as the provenance says. */
 static int floors_of(const Run *run, int n_var)
 {
-    int n = design_space_floors(&run->settings->design, n_var);
+    int n = design_space_floors(&run->settings->design, run->settings->core.section, n_var);
     if (n > 0)
         return n;
     json_t *all = json_loads(run->provenance, 0, NULL);

@@ -160,7 +160,7 @@ void fuzz_table(const uint8_t *data, size_t size)
     const int fd = file_of(data, size, path);
     Err err = {0};
     DesignSpace space;
-    demand(design_space_make(&space, &(DesignOptions){0}, 2, &err) == STATUS_OK, "the paper's variables");
+    demand(design_space_make(&space, &(DesignOptions){0}, CORE_BOX, 2, &err) == STATUS_OK, "the paper's variables");
     const Status status = design_read(&d, path, &space, &err);
     demand_reason(status, &err);
     for (size_t i = 0; status == STATUS_OK && i < d.n * 4; i++)
