@@ -84,6 +84,12 @@ static void test_deviations_and_objectives_that_make_no_sense_are_noticed(void *
                     "--set uncertain.damping=3 --set sim.gap_tolerance_m=0.8 --set sim.replicates=2");
     expect_warnings("search.objectives", "--set search.objectives=j1_m,bumper_strain");
     expect_warnings("", "--set search.objectives=j1_m,bumper_strain --set contact.bumper_stiffness_n_m=1e8");
+    expect_warnings("sim.tolerance", "--set sim.tolerance=auto");
+    expect_warnings("", "--set sim.tolerance=auto --set sim.gap_tolerance_m=0.002 --set sim.replicates=2");
+    expect_warnings("motion.records",
+                    "--record builtin:kobe-like --set motion.records=builtin:sylmar-like,builtin:kobe-like");
+    expect_warnings("motion.records", "--set motion.records=builtin:sylmar-like,builtin:sylmar-like");
+    expect_warnings("", "--set motion.records=builtin:sylmar-like,builtin:elcentro-like");
     expect_fault("design.variables: gaps stands there twice", "--set design.variables=gaps,gaps,thickness");
     expect_fault("search.limits: j3_g<=-1: no design has less than 0", "--set 'search.limits=j3_g<=-1'");
     expect_fault("search.limits: '<=5' is not NAME<=NUMBER", "--set 'search.limits=<=5'");
@@ -109,6 +115,44 @@ static void test_a_sound_building_is_in_order_with_its_figures(void **state)
     assert_int_equal((int)number(json_object_get(o, "study"), "variables"), 8);
     assert_true(number(json_object_get(o, "study"), "simulation_s") > 0);
     json_decref(o);
+}
+
+static int times(const char *text, const char *word)
+{
+    int n = 0;
+    for (; (text = strstr(text, word)); text += strlen(word))
+        n++;
+    return n;
+}
+
+/* On standard error, each once; standard output is the JSON alone. */
+static void test_simulate_and_optimize_say_what_check_finds_implausible(void **state)
+{
+    (void)state;
+    static const char *const COMMANDS[] = {"simulate @/six.ini --design @/mm.csv --json",
+                                           "optimize @/six.ini --max-evals 8 --set search.initial=8 --out @/six-run"};
+    write_building(1e-3, 1, 0);
+    write_in_place("mm.csv", "gap_01_m,gap_02_m,gap_03_m,gap_04_m,gap_05_m,gap_06_m,t_base_m,t_top_m\n"
+                             "0.1,0.1,0.1,0.1,50,50,0.01,0.02\n0.1,0.1,0.1,0.1,50,50,0.01,0.02\n");
+    for (int i = 0; i < 2; i++) {
+        Said s;
+        json_error_t why;
+        run(&s,
+            "%s --set sim.duration_s=20 --set building.units=N_m_kg --set "
+            "motion.records=builtin:sylmar-like,builtin:sylmar-like",
+            COMMANDS[i]);
+        assert_int_equal(s.code, 0);
+        assert_int_equal(times(s.err, "warning: building.model: the first period"), 1);
+        assert_int_equal(times(s.err, "warning: motion.records: builtin:sylmar-like is there twice"), 1);
+        if (i == 0) {
+            assert_int_equal(times(s.err, "mm.csv:2: gap_05_m is 50 m and does not close; gaps are in metres"), 1);
+            assert_int_equal(times(s.err, "t_top_m 0.02 is thicker than"), 1);
+            json_t *o = json_loads(s.out, 0, &why);
+            assert_int_equal(json_array_size(o), 2);
+            json_decref(o);
+        }
+        forget(&s);
+    }
 }
 
 static void test_units_that_are_wrong_are_refused_or_guessed(void **state)
@@ -271,6 +315,7 @@ int main(void)
         cmocka_unit_test(test_a_study_of_the_most_floors_ends_with_its_baselines),
         cmocka_unit_test(test_deviations_and_objectives_that_make_no_sense_are_noticed),
         cmocka_unit_test(test_a_sound_building_is_in_order_with_its_figures),
+        cmocka_unit_test(test_simulate_and_optimize_say_what_check_finds_implausible),
         cmocka_unit_test(test_units_that_are_wrong_are_refused_or_guessed),
         cmocka_unit_test(test_units_are_taken_from_the_comments_of_the_files),
         cmocka_unit_test(test_floors_from_the_top_down_are_noticed),

@@ -9,9 +9,9 @@
 #include "cmd/commands.h"
 #include "cmd/designs.h"
 #include "cmd/show.h"
+#include "cmd/warnings.h"
 #include "scene/motion_scale.h"
 #include "scene/motion_source.h"
-#include "scene/summary.h"
 #include "settings/idle.h"
 #include "sim/sim.h"
 #include "simulator/adapter.h"
@@ -150,15 +150,7 @@ static int choose_design(Check *c, CheckedScene *p, const char *path)
     if (!note(c, designs_take(&d, path, s, &e), "--design", &e))
         return 0;
     memcpy(p->x, d.x, (size_t)s->n_var * sizeof *p->x);
-    for (size_t i = 0; i < d.n; i++)
-        for (int j = 0; j < s->n_gaps; j++)
-            if (d.x[i * (size_t)s->n_var + (size_t)j] > GAP_MAX_M) {
-                char text[100];
-                snprintf(text, sizeof text, "line %d: the gap of %s %d is %g m and does not close", d.line[i],
-                         s->gap_zones ? "zone" : "floor", j + 1, d.x[i * (size_t)s->n_var + (size_t)j]);
-                warn("--design", text, c);
-                j = s->n_gaps;
-            }
+    warn_of_designs(&d, path, warn, c);
     design_free(&d);
     return 1;
 }
@@ -384,30 +376,6 @@ static void warn_of_idle(const char *key, const char *waits_for, void *user)
     warn(key, text, user);
 }
 
-/* Deviations are shares, 0.03 for 3 %, and those of gaps smaller than gaps. */
-static void warn_of_deviations(Check *c, const Settings *s)
-{
-    const struct {
-        const char *key;
-        double value;
-    } SHARES[] = {{"uncertain.contact_stiffness", s->uncertain.contact_stiffness},
-                  {"uncertain.core_stiffness", s->uncertain.core_stiffness},
-                  {"uncertain.building_stiffness", s->uncertain.building_stiffness},
-                  {"uncertain.damping", s->uncertain.damping}};
-    char text[160];
-    for (size_t i = 0; i < sizeof SHARES / sizeof SHARES[0]; i++)
-        if (SHARES[i].value >= 1) {
-            snprintf(text, sizeof text, "a standard deviation of %g %% of the value; a share is meant, 0.05 for 5 %%",
-                     100 * SHARES[i].value);
-            warn(SHARES[i].key, text, c);
-        }
-    if (s->sim.gap_tolerance_m > s->design.gap_max_m) {
-        snprintf(text, sizeof text, "%g m is more than the largest gap of %g m", s->sim.gap_tolerance_m,
-                 s->design.gap_max_m);
-        warn("sim.gap_tolerance_m", text, c);
-    }
-}
-
 static Status run(const Args *args, Err *err)
 {
     Check c = {.as_json = args_has(args, "--json"), .out = json_object()};
@@ -419,10 +387,10 @@ static Status run(const Args *args, Err *err)
     Status status = read_settings(args, &c, &s, err);
     if (status == STATUS_OK) {
         settings_idle_each(&s, warn_of_idle, &c);
-        warn_of_deviations(&c, &s);
-        if (s.problem.kind == PROBLEM_TOWER)
+        if (s.problem.kind == PROBLEM_TOWER) {
+            warn_of_settings(&s, warn, &c);
             check_tower(args, &c, &s);
-        else if (json_array_size(c.faults) == 0)
+        } else if (json_array_size(c.faults) == 0)
             open_study(&c, &s);
         status = verdict(args, &c, err);
     }

@@ -9,6 +9,7 @@
 #include "cmd/commands.h"
 #include "cmd/show.h"
 #include "cmd/signals.h"
+#include "cmd/warnings.h"
 #include "store/nearest.h"
 #include "store/run_read.h"
 #include "study/improvement.h"
@@ -17,7 +18,7 @@
 #include "settings/settings.h"
 
 typedef struct {
-    int terminal, has_line;
+    int terminal, has_line, has_warned;
 } Telling;
 
 /* Of standard error's terminal, less one: a line that fills the last column would wrap. */
@@ -50,10 +51,13 @@ static void tell_start(const char *folder, size_t n_simulated, void *user)
         fprintf(stderr, "%s: resumed after %zu simulations\n", folder, n_simulated);
 }
 
-static void tell_motion(const Motion *motion, double duration_s, void *user)
+static void tell_record(const Scenario *w, void *user)
 {
-    (void)user;
-    show_motion(stderr, motion, duration_s);
+    Telling *t = user;
+    if (!t->has_warned)
+        building_warnings(scene_building(w->scene), warn_on_stderr, NULL);
+    t->has_warned = 1;
+    show_motion(stderr, &w->motion, w->options.sim.duration_s);
 }
 
 static void explain_objectives(const Schema *schema, const char *objectives)
@@ -272,12 +276,12 @@ static Status optimize(const Args *args, Run *finished, Err *err)
 {
     Settings s;
     StudySummary summary;
-    Telling telling = {isatty(STDERR_FILENO), 0};
+    Telling telling = {.terminal = isatty(STDERR_FILENO)};
     StudyOptions options = {.fresh = args_has(args, "--new"),
                             .force = args_has(args, "--force-settings"),
                             .stop = signals_asked,
                             .started = tell_start,
-                            .motion = tell_motion,
+                            .record = tell_record,
                             .progress = tell,
                             .user = &telling,
                             .run = finished};
@@ -288,6 +292,8 @@ static Status optimize(const Args *args, Run *finished, Err *err)
         store_free(options.store);
         return status;
     }
+    if (s.problem.kind == PROBLEM_TOWER)
+        warn_of_settings(&s, warn_on_stderr, NULL);
     signals_catch();
     status = study_run(&s, &options, &summary, stderr, err);
     if (telling.has_line)

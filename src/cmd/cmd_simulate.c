@@ -12,6 +12,7 @@
 #include "cmd/sensitivities.h"
 #include "cmd/show.h"
 #include "cmd/time_files.h"
+#include "cmd/warnings.h"
 #include "simulator/estimate.h"
 #include "simulator/tower.h"
 #include "store/output.h"
@@ -50,24 +51,13 @@ static Status choose_kind(const Args *args, Job *job, Err *err)
     return STATUS_OK;
 }
 
-static void warn_top_heavy(const Designs *d, const char *path)
-{
-    const size_t n_var = (size_t)d->space.n_var;
-    for (size_t i = 0; i < d->n && d->space.n_walls > 0; i++) {
-        const double *wall = &d->x[i * n_var + (size_t)d->space.n_gaps];
-        if (wall[1] > wall[0])
-            fprintf(stderr, "%s:%d: t_top_m %g is thicker than t_base_m %g; the search would not propose this\n", path,
-                    d->line[i], wall[1], wall[0]);
-    }
-}
-
 static Status lay_out_job(const Args *args, Job *job, const DesignSpace *space, Err *err)
 {
     const char *path = args_value(args, "--design");
     job->n = 1;
     if (job->kind != SCENE_NO_CORE) {
         TRY(designs_take(&job->designs, path, space, err));
-        warn_top_heavy(&job->designs, path);
+        warn_of_designs(&job->designs, path, warn_on_stderr, NULL);
         job->n = job->designs.n;
     }
     job->tasks = calloc(job->n, sizeof *job->tasks);
@@ -296,6 +286,8 @@ static Status run(const Args *args, Err *err)
     TRY(choose_parts(args, &s, &job, err));
     TRY(tower_open(&p, &s, job.has_parts ? TOWER_AS_SET : TOWER_SINGLE, job.kind == SCENE_NO_CORE ? 1 : SIZE_MAX, err));
     const Scenario *w = tower_record(tower_of(&p), 0);
+    warn_of_settings(&s, warn_on_stderr, NULL);
+    building_warnings(scene_building(w->scene), warn_on_stderr, NULL);
     Status status = lay_out_job(args, &job, scene_design(w->scene), err);
     if (status == STATUS_OK)
         status = check_time_files(args, &job, w, err);

@@ -70,10 +70,9 @@ static Status summarise_core(SceneSummary *s, const CoreOptions *core, const dou
     return status;
 }
 
-Status scene_summarise(SceneSummary *s, const Building *b, const CoreOptions *core, const Motion *motion,
-                       double t_base_m, double t_top_m, Err *err)
+static void summarise_building(SceneSummary *s, const Building *b)
 {
-    *s = (SceneSummary){.n_floors = b->n, .content_hz = 0.5 / motion->dt_s, .top_first = falls_from_row_to_row(b)};
+    *s = (SceneSummary){.n_floors = b->n, .top_first = falls_from_row_to_row(b)};
     summarise_mass(s, b);
     for (int j = 0; j < b->n; j++)
         s->height_m += b->storey_m[j];
@@ -82,6 +81,13 @@ Status scene_summarise(SceneSummary *s, const Building *b, const CoreOptions *co
         s->damping[i] = b->zeta[i];
     }
     s->first_mode_mass = b->gamma[0] * b->gamma[0] / s->mass_kg;
+}
+
+Status scene_summarise(SceneSummary *s, const Building *b, const CoreOptions *core, const Motion *motion,
+                       double t_base_m, double t_top_m, Err *err)
+{
+    summarise_building(s, b);
+    s->content_hz = 0.5 / motion->dt_s;
     s->base_shear = base_shear(b, motion, s->mass_kg);
     return summarise_core(s, core, b->storey_m, t_base_m, t_top_m, err);
 }
@@ -154,6 +160,13 @@ static void warn_of_core(const SceneSummary *s, const CoreOptions *o, const Warn
     if (o->theory == CORE_EULER_BERNOULLI && s->euler_bernoulli_hz > 1.1 * s->timoshenko_hz)
         say(w, "core.theory", "shear lowers the core's first mode from %.4g to %.4g Hz; take timoshenko",
             s->euler_bernoulli_hz, s->timoshenko_hz);
+}
+
+void building_warnings(const Building *b, WarnFn warn, void *user)
+{
+    SceneSummary s;
+    summarise_building(&s, b);
+    warn_of_building(&s, &(Warner){warn, user});
 }
 
 void scene_warnings(const SceneSummary *s, const CoreOptions *core, const DesignOptions *design, const Motion *motion,

@@ -37,6 +37,9 @@ static const double FLOOR_MASS_MIN_KG = 1e3, FLOOR_MASS_MAX_KG = 1e7;
 static const double DAMPING_MAX = 0.2, PEAK_MAX_G = 3, GAP_MAX_M = 1;
 
 typedef void (*WarnFn)(const char *key, const char *text, void *user);
+
+/* What the building alone has of them. */
+void building_warnings(const Building *b, WarnFn warn, void *user);
 void scene_warnings(const SceneSummary *s, const CoreOptions *core, const DesignOptions *design, const Motion *motion,
                     WarnFn warn, void *user);
 

@@ -114,7 +114,8 @@ static const Option OPTIONS[] = {
     REAL(contact.bumper_stiffness_n_m, "N/m", "0", 0, 1e14,
          "stiffness of a bumper in series with the steel, at every floor and side; 0: none, steel on steel"),
     REAL(contact.bumper_damping, "-", "0.1", 0, 0.9, "damping ratio of the bumper (docs/theory.md)"),
-    REAL(contact.bumper_thickness_m, "m", "0.2", 1e-4, 10, "thickness of the bumper, within the gap"),
+    REAL(contact.bumper_thickness_m, "m", "0.2", 1e-4, 10,
+         "thickness of the bumper; the gap is the clearance in front of it"),
     REAL(contact.bumper_strain_max, "-", "0.5", 1e-3, 1,
          "a bumper compressed by more of its thickness bottoms out: the result says so"),
 

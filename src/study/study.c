@@ -471,12 +471,12 @@ static Status find_baselines(Study *study, Err *err)
                           study->summary->baseline, err);
 }
 
-static void tell_motions(const Study *study)
+static void tell_records(const Study *study)
 {
     const StudyOptions *o = study->options;
     const Tower *t = adapter_tower(study->adapter);
-    for (size_t i = 0; o->motion && t && i < tower_n_records(t); i++)
-        o->motion(&tower_record(t, i)->motion, study->used.sim.duration_s, o->user);
+    for (size_t i = 0; o->record && t && i < tower_n_records(t); i++)
+        o->record(tower_record(t, i), o->user);
 }
 
 static Status tell_left_generation(const Study *study, Err *err)
@@ -497,7 +497,7 @@ static Status work(Study *study, Err *err)
 {
     if (study->options->started)
         study->options->started(study->summary->folder, study->summary->n_before, study->options->user);
-    tell_motions(study);
+    tell_records(study);
     TRY(study_log_start(study->store, study->adapter, &study->used.search, study->summary->n_before, err));
     TRY(tell_left_generation(study, err));
     TRY(run_search(study, err));

@@ -24,7 +24,7 @@
 #include <limits.h>
 
 #include "moga/search.h"
-#include "sim/sim.h"
+#include "simulator/scenario.h"
 #include "store/store.h"
 #include "study/progress.h"
 #include "study/summary.h"
@@ -45,7 +45,7 @@ typedef struct {
     int force;               /* changed limits are taken over */
     int (*stop)(void *user); /* asked from any thread, often; NULL: never */
     void (*started)(const char *folder, size_t n_simulated, void *user);
-    void (*motion)(const Motion *motion, double duration_s, void *user); /* for every record, then */
+    void (*record)(const Scenario *w, void *user); /* for every record, then */
     void (*progress)(const StudyProgress *p, void *user);
     void *user;
     Run *run; /* becomes the finished run, for run_free, where the study returns STATUS_OK; NULL: not wanted */
