@@ -212,7 +212,7 @@ static void test_the_sure_designs_of_a_noisy_front_are_those_with_that_probabili
     (void)state;
     write_in_place("noisy.ini", "[problem]\nkind = dtlz2\nvariables = 4\nobjectives = 3\nnoise = 0.05\n[search]\n"
                                 "max_evals = 140\ninitial = 30\npopulation = 20\n");
-    free(output_of("optimize @/noisy.ini --out @/noisy"));
+    char *said = output_of("optimize @/noisy.ini --out @/noisy");
     json_t *many = json_of("choose @/noisy --json --confidence 0.01"), *all = json_object_get(many, "confident"), *one;
     json_t *few = json_of("choose @/noisy --json --confidence 0.8"), *sure = json_object_get(few, "confident");
     size_t i, n = 0;
@@ -227,6 +227,13 @@ static void test_the_sure_designs_of_a_noisy_front_are_those_with_that_probabili
         const double listed = probability_of(all, json_integer_value(json_object_get(one, "id")));
         assert_true(p == listed || (p < 0.01 && isnan(listed)));
     }
+    n = 0;
+    json_array_foreach(all, i, one) n += json_number_value(json_object_get(one, "nondominated_probability")) >= 0.9;
+    char words[80];
+    snprintf(words, sizeof words, "\n%zu of %zu designs of the front are nondominated with a probability of 0.9", n,
+             (size_t)json_integer_value(json_object_get(many, "front")));
+    assert_non_null(strstr(said, words));
+    free(said);
     json_decref(many);
     json_decref(few);
     expect(2, "have no known errors", "choose @/run --confidence 0.9");

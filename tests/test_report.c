@@ -359,7 +359,7 @@ static void test_a_command_opens_the_database_of_a_run_once(void **state)
     expect_one_opening("evaluate", "tower", "--design knee --record builtin:elcentro-like");
     expect_one_opening("export", "tower", "--csv /dev/null");
     expect_one_opening("status", "tower", "");
-    expect_one_opening("polish", "tower", "--design knee --evals 12");
+    expect_one_opening("polish", "tower", "--design knee --evals 24");
     expect_one_opening("optimize", "tower", "");
 }
 

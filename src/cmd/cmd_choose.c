@@ -5,10 +5,10 @@
 #include "cmd/commands.h"
 #include "cmd/pairs.h"
 #include "cmd/show.h"
-#include "moga/front_confidence.h"
 #include "store/export.h"
 #include "store/output.h"
 #include "store/run_read.h"
+#include "study/confidence.h"
 
 typedef struct {
     const Run *run;
@@ -143,73 +143,6 @@ static Status find_picks(const Args *args, Choice *c, Picks *p, Err *err)
     return STATUS_OK;
 }
 
-static int counts(const Run *run, size_t i)
-{
-    const Evaluation *e = &run->table.row[i];
-    return e->id < POLISHED_FIRST && e->kind != KIND_UNFINISHED && e->kind != KIND_REPEAT && run->place[i].ok &&
-           !(e->violation > 0.0);
-}
-
-/* Designs that keep the limits, with minimised objectives and their standard errors. */
-typedef struct {
-    size_t n;
-    double *F, *error; /* (n, n_obj) */
-    size_t *place;     /* (table.n) of a row among the n */
-} Known;
-
-/* n is 0: there is no noise, or one of them has no known error. */
-static void gather_errors(const Run *run, Known *known)
-{
-    const size_t m = run->schema.n_obj;
-    size_t n = 0;
-    for (size_t i = 0; schema_is_noisy(run->settings) && i < run->table.n; i++) {
-        const Evaluation *e = &run->table.row[i];
-        if (!counts(run, i))
-            continue;
-        known->place[i] = n;
-        for (size_t k = 0; k < m; k++) {
-            known->F[n * m + k] = schema_objective(&run->schema, k)->sense * run->F[i * m + k];
-            known->error[n * m + k] = e->sd[k] / sqrt((double)e->replicates);
-            if (!(known->error[n * m + k] >= 0.0) || e->replicates < 1)
-                return;
-        }
-        n++;
-    }
-    known->n = n;
-}
-
-static Status know(const Run *run, Known *known, Err *err)
-{
-    const size_t m = run->schema.n_obj, n = run->table.n;
-    known->F = calloc(2 * n * m + 1, sizeof *known->F);
-    known->place = calloc(n + 1, sizeof *known->place);
-    if (!known->F || !known->place)
-        return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", n);
-    known->error = known->F + n * m;
-    gather_errors(run, known);
-    return STATUS_OK;
-}
-
-static void forget(Known *known)
-{
-    free(known->F);
-    free(known->place);
-}
-
-static Status find_confidence(const Run *run, const Known *known, Picks *p, Err *err)
-{
-    size_t picked[PICKS_MAX] = {0};
-    int of_the_search = known->n > 0;
-    for (size_t k = 0; k < p->n; k++) {
-        p->confidence[k] = NAN;
-        picked[k] = known->place[p->pick[k].row];
-        of_the_search = of_the_search && counts(run, p->pick[k].row); /* a polished design has no place among them */
-    }
-    return of_the_search ? front_confidence(known->n, run->schema.n_obj, known->F, known->error, 1, p->n, picked,
-                                            p->confidence, err)
-                         : STATUS_OK;
-}
-
 /* -- the part of the front that is sure ---------------------------------------------------------------------------- */
 
 /* Designs of the front within the limits that are nondominated with a probability of `wanted` or more. */
@@ -220,33 +153,35 @@ typedef struct {
     double *p;   /* (n) */
 } Sure;
 
-static Status find_sure(const Choice *c, const Known *known, Sure *sure, Err *err)
+/* One set of draws for the picks and, where it is asked for, the front within the limits. */
+static Status find_confidence(const Choice *c, Picks *p, Sure *sure, Err *err)
 {
     const Run *run = c->run;
-    if (known->n == 0)
-        return fail(
-            err, STATUS_USAGE,
-            "--confidence: the objectives of this run have no known errors: its evaluations are not noisy, or one "
-            "design has a single replicate");
-    size_t *asked = calloc(run->n_front + 1, sizeof *asked);
-    sure->row = calloc(run->n_front + 1, sizeof *sure->row);
-    sure->p = calloc(run->n_front + 1, sizeof *sure->p);
-    Status status = asked && sure->row && sure->p ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for a front");
-    for (size_t i = 0; status == STATUS_OK && i < run->n_front; i++)
-        if (c->allowed[run->front[i]] && counts(run, run->front[i])) {
-            sure->row[sure->n_asked] = run->front[i];
-            asked[sure->n_asked++] = known->place[run->front[i]];
-        }
-    if (status == STATUS_OK)
-        status = front_confidence(known->n, run->schema.n_obj, known->F, known->error, 1, sure->n_asked, asked, sure->p,
-                                  err);
-    for (size_t i = 0; status == STATUS_OK && i < sure->n_asked; i++)
+    sure->row = calloc(p->n + run->n_front + 1, sizeof *sure->row);
+    sure->p = calloc(p->n + run->n_front + 1, sizeof *sure->p);
+    if (!sure->row || !sure->p)
+        return fail(err, STATUS_NO_MEMORY, "no memory for a front");
+    size_t n = 0;
+    for (size_t k = 0; k < p->n; k++)
+        sure->row[n++] = p->pick[k].row;
+    for (size_t i = 0; i < run->n_front && sure->wanted > 0.0; i++)
+        if (c->allowed[run->front[i]])
+            sure->row[n++] = run->front[i];
+    TRY(confidence_of_designs(run, n, sure->row, sure->p, err));
+    memcpy(p->confidence, sure->p, p->n * sizeof *p->confidence);
+    for (size_t i = p->n; i < n; i++) {
+        sure->n_asked += !isnan(sure->p[i]);
         if (sure->p[i] >= sure->wanted) {
             sure->row[sure->n] = sure->row[i];
             sure->p[sure->n++] = sure->p[i];
         }
-    free(asked);
-    return status;
+    }
+    if (sure->n_asked == 0 && n > p->n)
+        return fail(
+            err, STATUS_USAGE,
+            "--confidence: the objectives of this run have no known errors: its evaluations are not noisy, or one "
+            "design has a single replicate");
+    return STATUS_OK;
 }
 
 static void show_sure(const Run *run, const Sure *sure)
@@ -271,12 +206,13 @@ static json_t *describe_sure(const Run *run, const Sure *sure)
 
 static void show_confidence(const Picks *p)
 {
-    if (p->n == 0 || isnan(p->confidence[0]))
-        return;
-    printf("\nprobability of being nondominated, by the standard errors of the means:\n");
+    static const char HEAD[] = "\nprobability of being nondominated, by the standard errors of the means:\n";
+    size_t n = 0;
     for (size_t i = 0; i < p->n; i++)
-        printf("%s%s %.2f", i ? ", " : "", p->pick[i].name, p->confidence[i]);
-    putchar('\n');
+        if (!isnan(p->confidence[i]))
+            printf("%s%s %.2f", n++ ? ", " : HEAD, p->pick[i].name, p->confidence[i]);
+    if (n > 0)
+        putchar('\n');
 }
 
 static void show_table(const Run *run, const Picks *p)
@@ -366,17 +302,13 @@ static Status show(const Args *args, const Run *run, const Picks *p, const Sure 
     return STATUS_OK;
 }
 
-static Status choose(const Args *args, Choice *c, Known *known, Sure *sure, Err *err)
+static Status choose(const Args *args, Choice *c, Sure *sure, Err *err)
 {
     Picks picks;
     TRY(find_picks(args, c, &picks, err));
     TRY(args_number(args, "--confidence", 0.01, 1, 0, &sure->wanted, err));
-    if (!args_has(args, "--csv") || args_has(args, "--json")) { /* which has no place for it */
-        TRY(know(c->run, known, err));
-        TRY(find_confidence(c->run, known, &picks, err));
-        if (sure->wanted > 0.0)
-            TRY(find_sure(c, known, sure, err));
-    }
+    if (!args_has(args, "--csv") || args_has(args, "--json")) /* which has no place for it */
+        TRY(find_confidence(c, &picks, sure, err));
     return show(args, c->run, &picks, sure, err);
 }
 
@@ -385,11 +317,9 @@ static Status choose_of(const Args *args, const Run *run, Err *err)
     if (run->n_front == 0)
         return run_why_empty(run, err);
     Choice c = {.run = run, .box = run_box(run), .allowed = calloc(run->table.n, 1)};
-    Known known = {0};
     Sure sure = {0};
     const Status status =
-        c.allowed ? choose(args, &c, &known, &sure, err) : fail(err, STATUS_NO_MEMORY, "no memory for a choice");
-    forget(&known);
+        c.allowed ? choose(args, &c, &sure, err) : fail(err, STATUS_NO_MEMORY, "no memory for a choice");
     free(sure.row);
     free(sure.p);
     free(c.allowed);

@@ -2,7 +2,8 @@
  *
  *   p_i = P(no other design dominates design i)     objectives independent and normal: mean F, standard error `error`
  *
- * by FRONT_DRAWS draws of all designs at once: standard error root(p (1 - p) / FRONT_DRAWS), 0.016 at most. A design
+ * by FRONT_DRAWS draws of all designs at once: standard error root(p (1 - p) / FRONT_DRAWS), 0.016 at most. Designs that
+ * are worse in an objective by six standard deviations are not asked whether they dominate. A design
  * may be on the front of the means and have a small p, and the other way round. Without errors p is 0 or 1.
  *
  * Threads  no state */
