@@ -329,7 +329,7 @@ static void test_readers_need_the_database_alone_and_the_files_come_back(void **
     free(output_of("choose @/alone --max f1=1"));
     snprintf(command, sizeof command, "cp -r '%s/alone' '%s/another'", place.folder, place.folder);
     assert_int_equal(system(command), 0);
-    free(output_of("polish @/another --design knee --evals 12"));
+    free(output_of("polish @/another --design knee --evals 24"));
     free(output_of("optimize @/alone"));
     char *again[] = {read_in_place("alone/front.csv"), read_in_place("alone/evaluations.csv"),
                      read_in_place("alone/settings.ini"), read_in_place("alone/provenance.json")};
