@@ -10,6 +10,7 @@
 #include "searches.h"
 #include "moga/dominance.h"
 #include "moga/hypervolume.h"
+#include "moga/constants.h"
 #include "moga/control.h"
 #include "moga/convergence.h"
 #include "moga/search.h"
@@ -23,7 +24,7 @@ typedef struct {
     Problem problem;
     Function function;
     double lower[VAR_MAX], upper[VAR_MAX];
-    int fail_share_percent, all_alike_noise;
+    int fail_share_percent, all_alike_noise, waves;
     size_t n_rows, n_repeated;
     double seen[ROWS_MAX][VAR_MAX];
 } World;
@@ -247,7 +248,8 @@ static void test_seven_objectives_beat_a_latin_hypercube_of_the_same_size(void *
         assert_true(i == 0 || seen.generation[i] >= seen.generation[i - 1]);
     }
     assert_int_equal(count[KIND_SAMPLED], 120);
-    assert_int_equal(count[KIND_INFILL], 120);
+    assert_int_equal(count[KIND_INFILL] + count[KIND_OFFSPRING], 120); /* before INFILL_ALONE all variation is probes */
+    assert_true((double)count[KIND_OFFSPRING] <= PROBE_SHARE * 120.0);
     assert_true(seen.error > 0.0 && seen.error < 0.05);
 }
 
@@ -752,6 +754,56 @@ static Status evaluate_agreeing(size_t n, const double X[], const size_t draws[]
     return STATUS_OK;
 }
 
+/* f = x_0 + g, 1 - x_0 + g with Rastrigin's function g of the other variables. */
+static Status evaluate_waves(size_t n, const double X[], const size_t draws[], double F[], double G[],
+                             unsigned char ok[], void *user, Err *err)
+{
+    (void)draws;
+    World *w = user;
+    (void)G;
+    (void)err;
+    for (size_t i = 0; i < n; i++) {
+        const double *x = X + i * w->problem.n_var;
+        double g = 0.0;
+        for (size_t d = 1; d < w->problem.n_var; d++)
+            g += 4.0 * (x[d] - 0.37) * (x[d] - 0.37) + 0.3 * (1.0 - cos(2.0 * M_PI * w->waves * (x[d] - 0.37)));
+        F[2 * i] = x[0] + g;
+        F[2 * i + 1] = 1.0 - x[0] + g;
+        ok[i] = 1;
+    }
+    w->n_rows += n;
+    return STATUS_OK;
+}
+
+/* Nearest to the front, where the sum is 1, and how many designs are neither samples nor infill. */
+static double best_of_waves(int waves, size_t *n_variation)
+{
+    double best = INFINITY;
+    const SearchConfig c = config(36, 108); /* variation alone begins with INFILL_ALONE 6 = 108 */
+    world(&here, 6, 2);
+    here.function.evaluate = evaluate_waves;
+    here.waves = waves;
+    run(&here, &c, &seen);
+    *n_variation = 0;
+    for (size_t i = 0; i < seen.n; i++) {
+        *n_variation += seen.kind[i] == KIND_OFFSPRING;
+        best = fmin(best, seen.F[2 * i] + seen.F[2 * i + 1]);
+    }
+    return best;
+}
+
+/* The valleys next to the lowest one are at 1 + 2 0.16 at least. */
+static void test_single_variables_are_probed_where_there_are_waves_along_them_and_nowhere_else(void **state)
+{
+    (void)state;
+    size_t n;
+    assert_true(best_of_waves(0, &n) < 1.001);
+    assert_int_equal(n, 0);
+    const double best = best_of_waves(5, &n);
+    assert_true(n > 5 && n < 24);
+    assert_true(best < 1.32);
+}
+
 /* The corner is found at once; after that the surface proposes what is known already. */
 static void test_a_front_of_a_single_design_still_spends_the_budget(void **state)
 {
@@ -816,6 +868,8 @@ int main(void)
         cmocka_unit_test_setup(test_answers_without_any_pattern_fall_back_to_plain_offspring, fresh),
         cmocka_unit_test_setup(test_an_archive_beyond_the_surface_s_size_is_thinned, fresh),
         cmocka_unit_test_setup(test_settings_that_make_no_sense_are_refused_by_name, fresh),
+        cmocka_unit_test_setup(test_single_variables_are_probed_where_there_are_waves_along_them_and_nowhere_else,
+                               fresh),
         cmocka_unit_test_setup(test_a_front_of_a_single_design_still_spends_the_budget, fresh),
         cmocka_unit_test_setup(test_a_converged_search_stops_and_has_lost_no_more_than_the_noise_of_hypervolume, fresh),
         cmocka_unit_test_setup(test_a_search_that_improves_does_not_stop, fresh),

@@ -28,7 +28,8 @@ typedef enum {
     RANDOM_DESCENT,
     RANDOM_POLISHING,
     RANDOM_IMPORTANCE,
-    RANDOM_CONFIDENCE
+    RANDOM_CONFIDENCE,
+    RANDOM_PROBES
 } RandomPurpose;
 
 typedef struct {

@@ -25,8 +25,9 @@ enum { VECTORS_MAX = 400 }; /* most vectors */
 
 /* -- offspring.c --------------------------------------------------------------------------------------------------- */
 
-enum { INNER_GENERATIONS = 10 };  /* of variation and selection on the surrogate between two batches */
-enum { DESCENTS_PER_DESIGN = 2 }; /* descents on the surrogate for each design of a batch */
+enum { INNER_GENERATIONS = 10 };        /* of variation and selection on the surrogate between two batches */
+enum { DESCENTS_PER_DESIGN = 2 };       /* descents on the surrogate for each design of a batch */
+static const double PROBE_SHARE = 0.25; /* of a batch, for probes along single variables where there are waves */
 
 /* -- surrogate.c: descents, Rprop in the unit cube ----------------------------------------------------------------- */
 

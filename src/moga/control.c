@@ -105,7 +105,7 @@ static void learn_credits(SurrogateControl *c, const BatchResults *r, Infill *co
     double by_generator[2] = {0}, by_criterion[2] = {0}, failed = 0.0;
     for (size_t i = 0; i < r->n; i++) {
         const int is_infill = r->kind[i] == KIND_INFILL;
-        if (!is_infill && r->kind[i] != KIND_OFFSPRING)
+        if ((!is_infill && r->kind[i] != KIND_OFFSPRING) || r->criterion[i] == CRITERION_NONE)
             continue;
         const Generator generator = is_infill ? GENERATOR_INFILL : GENERATOR_VARIATION;
         by_generator[generator] += 1.0;

@@ -24,6 +24,8 @@
 
 enum { AGREEMENT_RESULTS_MIN = 4 }; /* Kendall's tau of fewer says nothing */
 
+enum { CRITERION_NONE = INFILL_KINDS }; /* of a probe, which no generator is credited with */
+
 typedef enum { GENERATOR_INFILL, GENERATOR_VARIATION, GENERATORS } Generator;
 
 /* Two alternatives: running means of their shares. */

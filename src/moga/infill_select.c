@@ -60,7 +60,7 @@ static size_t pick_infill(Search *s, size_t size, double hypervolume)
 {
     const Offspring *o = &s->offspring;
     const Population *p = &o->members;
-    const size_t end = p->n - o->n_pending - o->n_variation, n_validated = size / VALIDATION_SHARE + 1;
+    const size_t end = p->n - o->n_pending - o->n_variation - o->n_probes, n_validated = size / VALIDATION_SHARE + 1;
     size_t n = 0;
     for (int validating = 0; validating < 2; validating++) {
         const size_t limit = validating ? n + n_validated : size > n_validated ? size - n_validated : 0;
@@ -82,6 +82,18 @@ static size_t pick_variation(Search *s, size_t n, size_t size)
     return pick_in_turn(s, n, size, 0.5, KIND_OFFSPRING);
 }
 
+/* As many as fit in. */
+static size_t take_probes(Search *s, size_t n, size_t size)
+{
+    const Offspring *o = &s->offspring;
+    const size_t end = o->members.n - o->n_pending - o->n_variation;
+    for (size_t i = end - o->n_probes; i < end && n < size; i++) {
+        s->batch.criterion[n] = CRITERION_NONE;
+        n = take(s, n, i, KIND_OFFSPRING);
+    }
+    return n;
+}
+
 /* Without a surrogate: children of variation in their order. */
 static size_t take_variation(Search *s, size_t size)
 {
@@ -101,8 +113,11 @@ size_t infill_select_batch(Search *s)
     exclude(s);
     if (with_surrogate) {
         const BatchShares shares = control_batch_shares(&s->control, size, s->archive.n, s->problem->n_var);
+        const size_t probes = s->offspring.n_probes, room = size > probes ? size - probes : 0,
+                     variation = shares.n_variation < room ? shares.n_variation : room;
         offer(s);
-        n = pick_variation(s, pick_infill(s, size - shares.n_variation, shares.hypervolume), size);
+        n = pick_variation(s, pick_infill(s, room - variation, shares.hypervolume), room);
+        n = take_probes(s, n, size);
     } else
         n = take_variation(s, size);
     if (n >= size || (with_surrogate && n > 0))

@@ -24,8 +24,9 @@ static const double *tournament(const Population *p, Random *random)
     return p->X + (b_wins ? b : a) * p->n_var;
 }
 
-/* Appends n children of the present members. Pair j of step has its own streams. */
-static void breed(Search *s, Population *population, size_t n, uint32_t step)
+/* Appends n children of the present members; a share of the pairs is mutated over the whole box. Pair j of step has its own
+ * streams. */
+static void breed(Search *s, Population *population, size_t n, uint32_t step, double far)
 {
     const Problem *p = s->problem;
     const SearchConfig *c = s->config;
@@ -36,12 +37,12 @@ static void breed(Search *s, Population *population, size_t n, uint32_t step)
         Random choice = random_stream(c->seed, RANDOM_PARENTS, (uint32_t)s->generation, name);
         Random change = random_stream(c->seed, RANDOM_VARIATION, (uint32_t)s->generation, name);
         const double *mother = tournament(&parents, &choice), *father = tournament(&parents, &choice);
+        const double eta = (double)j + 0.5 < far * (double)n / 2.0 ? 0.0 : c->mutation_eta;
         crossover_sbx(&change, p->n_var, p->lower, p->upper, c->crossover_probability, c->crossover_eta, mother, father,
                       children, children + p->n_var);
         for (size_t i = 0; i < 2 && 2 * j + i < n; i++) {
             double *x = children + i * p->n_var;
-            mutate_polynomial(&change, p->n_var, p->lower, p->upper, c->mutation_rate / (double)p->n_var,
-                              c->mutation_eta, x);
+            mutate_polynomial(&change, p->n_var, p->lower, p->upper, c->mutation_rate / (double)p->n_var, eta, x);
             problem_repair(p, x);
             population_add(population, x);
         }
@@ -54,7 +55,7 @@ static void add_variation(Search *s, size_t n)
     Population *offspring = &s->offspring.members;
     const size_t n_parents = s->population.n, first = offspring->n;
     population_copy(&s->pool, &s->population);
-    breed(s, &s->pool, n, 0);
+    breed(s, &s->pool, n, 0, 0.0);
     for (size_t i = n_parents; i < s->pool.n; i++)
         population_append(offspring, &s->pool, i);
     s->offspring.n_variation = n;
@@ -69,7 +70,7 @@ static void add_evolved(Search *s)
     population_copy(&s->pool, &s->population);
     for (uint32_t step = 0; step < INNER_GENERATIONS; step++) {
         const size_t n_parents = s->pool.n;
-        breed(s, &s->pool, s->config->population, step);
+        breed(s, &s->pool, s->config->population, step, surrogate_waves(s->surrogate));
         search_predict(s, &s->pool, n_parents, 0);
         offspring_survive(s, &s->pool, 1 + step);
     }
@@ -100,6 +101,30 @@ static void add_descended(Search *s, double hypervolume)
     }
 }
 
+/* Designs of the front with one variable elsewhere. Variable by variable the values are spread over the box by the golden
+ * section: n of them leave no gap longer than 2.2 / n, wherever the search has gathered. */
+static void add_probes(Search *s)
+{
+    const Problem *p = s->problem;
+    Offspring *o = &s->offspring;
+    static const double GOLDEN = 0.61803398874989485;
+    const double share = s->archive.n_front > 0 ? PROBE_SHARE * surrogate_waves(s->surrogate) : 0.0;
+    const size_t first = o->members.n, n = (size_t)(share * (double)batch_size(s) + 0.5);
+    Random random = random_stream(s->config->seed, RANDOM_PROBES, (uint32_t)s->generation, 0);
+    for (size_t i = 0; i < n; i++, s->n_probed++) {
+        const size_t d = s->n_probed % p->n_var, vector = random_below(&random, s->criteria.vectors.n);
+        const Infill *near = s->criteria.select[i % INFILL_KINDS];
+        const double place = GOLDEN * (double)(s->n_probed / p->n_var) + M_SQRT2 * (double)d;
+        double *x = s->scratch.children;
+        memcpy(x, s->archive.X + infill_best(near, vector) * p->n_var, p->n_var * sizeof *x);
+        x[d] = p->lower[d] + (place - floor(place)) * (p->upper[d] - p->lower[d]);
+        problem_repair(p, x);
+        population_add(&o->members, x);
+    }
+    o->n_probes = n;
+    search_predict(s, &o->members, first, 1);
+}
+
 /* Designs that are asked for already, predicted. */
 static void add_pending(Search *s)
 {
@@ -116,12 +141,13 @@ void offspring_make(Search *s, int variation_alone)
     Offspring *o = &s->offspring;
     const int with_surrogate = search_uses_surrogate(s) && !variation_alone;
     const BatchShares shares = control_batch_shares(&s->control, batch_size(s), s->archive.n, s->problem->n_var);
-    o->members.n = 0;
+    o->members.n = o->n_probes = 0;
     if (with_surrogate) {
         add_evolved(s);
         if (s->archive.n_front > 0)
             add_descended(s, shares.hypervolume);
         search_predict(s, &o->members, 0, 1);
+        add_probes(s);
     }
     const size_t all = s->config->population, few = batch_size(s) < all ? batch_size(s) : all;
     add_variation(s, variation_alone ? all : !with_surrogate ? few : shares.n_variation == 0 ? 0 : all);

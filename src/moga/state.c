@@ -130,7 +130,7 @@ Status state_grow_rows(Search *s, Err *err)
 
 /* -- as bytes ------------------------------------------------------------------------------------------------------ */
 
-enum { STATE_VERSION = 9 };
+enum { STATE_VERSION = 10 };
 
 /* Designs that are asked for and not evaluated yet. */
 static void pack_pending(Search *s, Pack *p)
@@ -179,6 +179,7 @@ static void pack_search(Search *s, Pack *p)
     pack_expect(p, s->config->population);
     pack_expect(p, s->archive.n);
     pack_size(p, &s->generation, UINT32_MAX);
+    pack_size(p, &s->n_probed, UINT32_MAX);
     control_pack(&s->control, p, problem->n_obj);
     population_pack(&s->population, p, s->archive.n);
     surrogate_pack(s->surrogate, p);

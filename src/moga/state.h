@@ -36,10 +36,10 @@ typedef struct {
     Infill *gain[INFILL_KINDS];   /* gain of the results */
 } Criteria;
 
-/* Members in this order: proposed by the surrogate, by variation, pending. */
+/* Members in this order: proposed by the surrogate, probes, by variation, pending. */
 typedef struct {
     Population members;
-    size_t n_variation, n_pending;
+    size_t n_probes, n_variation, n_pending;
     unsigned char *allowed;  /* (pool) may be picked now */
     unsigned char *excluded; /* (pool) is not picked in this generation any more */
 } Offspring;
@@ -97,6 +97,7 @@ typedef struct {
     Scratch scratch;
     Convergence convergence;
     size_t generation;
+    size_t n_probed;    /* probes so far */
     size_t n_predicted; /* predictions trusted for the first time in this generation */
     size_t reserved;    /* evaluations kept for the last replicates */
     Pack state;         /* as of the last report */

@@ -227,6 +227,14 @@ int surrogate_is_usable(const Surrogate *s)
     return s->fitted && explained > R2_MIN + R2_CHANCE / sqrt((double)s->n);
 }
 
+double surrogate_waves(const Surrogate *s)
+{
+    double n = 0.0;
+    for (size_t k = 0; s->fitted && k < s->problem->n_obj; k++)
+        n += rbf_is_additive(s->rbf, k);
+    return n / (double)s->problem->n_obj;
+}
+
 size_t surrogate_left_out(const Surrogate *s)
 {
     return s->fitted ? rbf_left_out(s->rbf) : 0;

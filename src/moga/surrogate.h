@@ -35,6 +35,9 @@ void surrogate_drop(Surrogate *s); /* as if it had never been fitted */
 /* It is fitted, and its mean leave-one-out R2 over the objectives exceeds R2_MIN + R2_CHANCE / root(n). */
 int surrogate_is_usable(const Surrogate *s);
 
+/* Share of the objectives with waves along single variables: their kernels have an additive part (rbf/rbf.h). */
+double surrogate_waves(const Surrogate *s);
+
 /* Median leave-one-out error as a share of the objective's range, of the worst objective; NAN: not fitted. */
 double surrogate_error(const Surrogate *s);
 

@@ -21,6 +21,14 @@ static const double NUGGET_MIN = 1e-8;      /* bounds of the nugget */
 static const double NUGGET_MAX = 1.0;       /* ... */
 static const double NUGGET_START = 1e-4;    /* smallest nugget that tuning starts from */
 
+/* -- tune.c: the additive part of a kernel ------------------------------------------------------------------------- */
+
+static const double ADDITIVE_SHARE = 0.5;       /* of the kernel, the rest is as without it */
+static const double ADDITIVE_REACH_SHORT = 0.1; /* of the unit cube; tried in turn */
+static const double ADDITIVE_REACH_LONG = 0.25; /* ... */
+static const double ADDITIVE_GAIN = 0.8;        /* of the mean square leave-one-out error, to take it */
+static const double ADDITIVE_ERROR = 1e-3;      /* mean square error, in variances, below which none is tried */
+
 /* -- rbf.c --------------------------------------------------------------------------------------------------------- */
 
 static const double NEAREST = 1e-4;   /* a variable nearer to its bounds is warped as if it were so far away */

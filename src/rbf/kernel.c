@@ -191,3 +191,49 @@ CLONED_V3 void kernel_weigh(RbfKernel kernel, size_t n, const double r2[], const
         v[i] = (w[i] * w_j / s2 - v[i]) * slope;
     }
 }
+
+CLONED_V3 void kernel_additive(size_t n_dim, size_t stride, const double U[], const double x[], size_t first,
+                               size_t count, double share, double reach, double factor[RBF_BLOCK][KERNEL_CHUNK])
+{
+    const double each = share / (double)n_dim, by_reach = 1.0 / reach;
+    for (size_t p = 0; p < RBF_BLOCK; p++) {
+        double *f = factor[p];
+        for (size_t i = 0; i < count; i++)
+            f[i] = 1.0 - share;
+        for (size_t d = 0; d < n_dim; d++) {
+            const double *u = U + d * stride + first;
+            const double at = x[d * RBF_BLOCK + p];
+#pragma omp simd
+            for (size_t i = 0; i < count; i++) {
+                const double t = fabs(u[i] - at) * by_reach, left = t < 1.0 ? 1.0 - t : 0.0;
+                f[i] += each * left * left * left * (1.0 + 3.0 * t);
+            }
+        }
+    }
+}
+
+/* psi' = -12 t (1 - t)^2 */
+CLONED_V3 void kernel_additive_slopes(size_t n_dim, size_t stride, const double U[], const double x[], size_t p,
+                                      size_t first, size_t count, double share, double reach, const double w[],
+                                      double g[])
+{
+    const double each = -12.0 * share / ((double)n_dim * reach), by_reach = 1.0 / reach;
+    for (size_t d = 0; d < n_dim; d++) {
+        const double *u = U + d * stride + first;
+        const double at = x[d * RBF_BLOCK + p];
+        double sum = 0.0;
+#pragma omp simd reduction(+ : sum)
+        for (size_t i = 0; i < count; i++) {
+            const double t = (at - u[i]) * by_reach, off = fabs(t), left = off < 1.0 ? 1.0 - off : 0.0;
+            sum += w[i] * t * left * left;
+        }
+        g[d] += each * sum;
+    }
+}
+
+CLONED_V3 void kernel_multiply(size_t n, const double factor[], double values[])
+{
+#pragma omp simd
+    for (size_t i = 0; i < n; i++)
+        values[i] *= factor[i];
+}

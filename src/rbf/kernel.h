@@ -47,6 +47,17 @@ double kernel_slopes(RbfKernel kernel, size_t n, const double r2[], const double
 void kernel_project(size_t n_dim, size_t stride, const double S[], size_t first, size_t count,
                     double q[RBF_BLOCK][KERNEL_CHUNK], double *G);
 
+/* factor[p][i] = 1 - share + share / n_dim sum_d psi(|x_d - u_d| / reach) of point p and centre first + i, neither warped
+ * nor scaled; psi(t) = (1 - t)^3 (1 + 3 t), 0 beyond t = 1. count and x as above. */
+void kernel_additive(size_t n_dim, size_t stride, const double U[], const double x[], size_t first, size_t count,
+                     double share, double reach, double factor[RBF_BLOCK][KERNEL_CHUNK]);
+
+/* Adds sum_i w[i] d factor[p][i] / dx to g (n_dim). */
+void kernel_additive_slopes(size_t n_dim, size_t stride, const double U[], const double x[], size_t p, size_t first,
+                            size_t count, double share, double reach, const double w[], double g[]);
+
+void kernel_multiply(size_t n, const double factor[], double values[]);
+
 /* v[i] = (w[i] w_j / s2 - v[i]) d phi / d (r^2) at r2[i]: the terms of the likelihood's gradient of one column. */
 void kernel_weigh(RbfKernel kernel, size_t n, const double r2[], const double w[], double w_j, double s2, double v[]);
 

@@ -16,6 +16,7 @@ typedef struct {
     RbfKernel kernel;
     RbfTail tail;
     double nugget; /* [-] share of the output's variance */
+    double reach;  /* [-] of the kernel's additive part in each variable, of the unit cube; 0: there is none */
 } RbfForm;
 
 /* How one output sees the variables. */
@@ -76,12 +77,13 @@ void model_copy_shape(const Rbf *m, Shape *to, const Shape *from);
 /* Points first..first+RBF_BLOCK-1, of n: x (n_dim, RBF_BLOCK); the last one again where there are fewer. */
 void model_gather(const Rbf *m, const double S[], size_t first, size_t n, double x[]);
 
-/* Lower triangle of the kernel matrix A (n, n) of scaled centres, nugget times noise (n) on the diagonal. */
-void model_matrix(const Rbf *m, size_t n, const double S[], RbfForm form, const double noise[], double A[]);
+/* Lower triangle of the kernel matrix A (n, n) of centres C, scaled S, nugget times noise (n) on the diagonal. */
+void model_matrix(const Rbf *m, size_t n, const double C[], const double S[], RbfForm form, const double noise[],
+                  double A[]);
 
 /* Factors the kernel matrix, with k->noise, into k->A, raising the nugget by tens where centres are too near each other
  * to tell apart; 0 where that does not help. */
-int model_factor(const Rbf *m, Worker *k, size_t n, const double S[], RbfForm *form);
+int model_factor(const Rbf *m, Worker *k, size_t n, const double C[], const double S[], RbfForm *form);
 
 /* Twice as many centres as coefficients at least, else a simpler tail. */
 size_t model_tail(RbfTail tail, size_t n, size_t n_dim);

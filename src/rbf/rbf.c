@@ -79,7 +79,7 @@ Status rbf_create(Rbf **out, size_t n_max, size_t n_dim, size_t n_out, Err *err)
         return fail(err, STATUS_NO_MEMORY, "no memory for an interpolant on %zu designs", n_max);
     }
     for (size_t k = 0; k < n_out; k++) {
-        m->output[k].form = (RbfForm){RBF_MATERN, RBF_LINEAR, NUGGET_MIN};
+        m->output[k].form = (RbfForm){RBF_MATERN, RBF_LINEAR, NUGGET_MIN, 0.0};
         for (size_t d = 0; d < n_dim; d++)
             m->output[k].shape.theta[d] = 1.0 / (double)n_dim;
         m->output[k].shape.warp[0] = m->output[k].shape.warp[1] = 1.0;
@@ -117,16 +117,25 @@ void model_gather(const Rbf *m, const double S[], size_t first, size_t n, double
 }
 
 /* A block of columns at a time, from its first row on, chunk by chunk. */
-void model_matrix(const Rbf *m, size_t n, const double S[], RbfForm form, const double noise[], double A[])
+void model_matrix(const Rbf *m, size_t n, const double C[], const double S[], RbfForm form, const double noise[],
+                  double A[])
 {
-    double r2[RBF_BLOCK][KERNEL_CHUNK], x[RBF_BLOCK * RBF_DIM_MAX];
+    double r2[RBF_BLOCK][KERNEL_CHUNK], x[RBF_BLOCK * RBF_DIM_MAX], u[RBF_BLOCK * RBF_DIM_MAX];
+    double factor[RBF_BLOCK][KERNEL_CHUNK];
     for (size_t j = 0; j < n; j += RBF_BLOCK) {
         model_gather(m, S, j, n, x);
+        if (form.reach > 0.0)
+            model_gather(m, C, j, n, u);
         for (size_t i = j; i < n; i += KERNEL_CHUNK) {
             const size_t count = n - i < KERNEL_CHUNK ? n - i : KERNEL_CHUNK;
             kernel_distances(m->n_dim, m->stride, S, x, i, count, r2);
-            for (size_t p = 0; p < RBF_BLOCK && j + p < n; p++)
+            if (form.reach > 0.0)
+                kernel_additive(m->n_dim, m->stride, C, u, i, count, ADDITIVE_SHARE, form.reach, factor);
+            for (size_t p = 0; p < RBF_BLOCK && j + p < n; p++) {
                 kernel_values(form.kernel, count, r2[p], A + (j + p) * n + i);
+                if (form.reach > 0.0)
+                    kernel_multiply(count, factor[p], A + (j + p) * n + i);
+            }
         }
         for (size_t p = 0; p < RBF_BLOCK && j + p < n; p++)
             A[(j + p) * n + j + p] += form.nugget * noise[j + p];
@@ -151,10 +160,10 @@ size_t model_tail(RbfTail tail, size_t n, size_t n_dim)
     return tail != RBF_CONSTANT && n > 1 + n_dim ? 1 + n_dim : 1;
 }
 
-int model_factor(const Rbf *m, Worker *k, size_t n, const double S[], RbfForm *form)
+int model_factor(const Rbf *m, Worker *k, size_t n, const double C[], const double S[], RbfForm *form)
 {
     for (;; form->nugget *= 10.0) {
-        model_matrix(m, n, S, *form, k->noise, k->A);
+        model_matrix(m, n, C, S, *form, k->noise, k->A);
         if (LAPACKE_dpotrf_work(LAPACK_COL_MAJOR, 'L', (int)n, k->A, (int)n) == 0)
             return 1;
         if (form->nugget >= NUGGET_MAX)
@@ -237,7 +246,7 @@ static int fit_with_tail(const Rbf *m, Worker *k, Output *o, RbfTail tail)
 {
     const size_t n = m->n;
     RbfForm form = o->form;
-    if (!model_factor(m, k, n, o->S, &form))
+    if (!model_factor(m, k, n, m->C, o->S, &form))
         return 0;
     o->n_tail = model_weights(m, k, n, m->C, model_tail(tail, n, m->n_dim));
     memcpy(o->tail, k->b, o->n_tail * sizeof *o->tail);
@@ -282,6 +291,11 @@ void model_fit(Rbf *m)
 #pragma omp parallel for schedule(dynamic, 1) num_threads((int)m->n_workers)
     for (size_t k = 0; k < m->n_out; k++)
         fit_output(m, &m->worker[omp_get_thread_num()], &m->output[k], m->F + k * m->n_max, m->noise + k * m->n_max);
+}
+
+int rbf_is_additive(const Rbf *m, size_t output)
+{
+    return m->output[output].form.reach > 0.0;
 }
 
 size_t rbf_left_out(const Rbf *m)
@@ -363,18 +377,33 @@ static double tail_sum(const Rbf *m, const Output *o, const double x[])
     return value;
 }
 
+/* n <= RBF_BLOCK points as they are: x (n_dim, RBF_BLOCK), the last one again where there are fewer. */
+static void place_points(size_t n_dim, size_t n, const double X[], double x[])
+{
+    for (size_t d = 0; d < n_dim; d++)
+        for (size_t p = 0; p < RBF_BLOCK; p++)
+            x[d * RBF_BLOCK + p] = X[(p < n ? p : n - 1) * n_dim + d];
+}
+
 /* f and error of point p go to f[p n_out]. */
 static void eval_output(const Rbf *m, const Output *o, size_t n, const double X[], const double L[], double f[],
                         double error[])
 {
     double r2[RBF_BLOCK][KERNEL_CHUNK], phi[KERNEL_CHUNK], x[RBF_BLOCK * RBF_DIM_MAX];
     double value[RBF_BLOCK] = {0}, square[RBF_BLOCK] = {0}, weights[RBF_BLOCK] = {0};
+    double u[RBF_BLOCK * RBF_DIM_MAX], factor[RBF_BLOCK][KERNEL_CHUNK];
     scale_points(m, o, L, x);
+    if (o->form.reach > 0.0)
+        place_points(m->n_dim, n, X, u);
     for (size_t first = 0; first < m->n; first += KERNEL_CHUNK) {
         const size_t count = m->n - first < KERNEL_CHUNK ? m->n - first : KERNEL_CHUNK;
         kernel_distances(m->n_dim, m->stride, o->S, x, first, count, r2);
+        if (o->form.reach > 0.0)
+            kernel_additive(m->n_dim, m->stride, m->C, u, first, count, ADDITIVE_SHARE, o->form.reach, factor);
         for (size_t p = 0; p < n; p++) {
             kernel_values(o->form.kernel, count, r2[p], phi);
+            if (o->form.reach > 0.0)
+                kernel_multiply(count, factor[p], phi);
             value[p] += kernel_dot(count, o->weight + first, phi);
             if (error)
                 kernel_errors(count, r2[p], o->leave_one_out + first, &square[p], &weights[p]);
@@ -405,35 +434,69 @@ static double tail_slope(size_t n_dim, const Output *o, size_t d, double x)
            (o->n_tail > 1 + n_dim ? 4.0 * (2.0 * x - 1.0) * o->tail[1 + n_dim + d] : 0.0);
 }
 
-/* With q = w d phi / d (r^2) and warped x, c:  df/dx_d = 2 (x_d sum q - sum q c_d), then the chain rule; and the tail.
- * J of point p goes to J[p n_out n_dim]. */
+/* Sums over the centres; of variables first. */
+typedef struct {
+    double x[RBF_BLOCK * RBF_DIM_MAX], u[RBF_BLOCK * RBF_DIM_MAX],
+        by_u[RBF_BLOCK * RBF_DIM_MAX];                                    /* (n_dim, RBF_BLOCK) */
+    double G[RBF_BLOCK * RBF_DIM_MAX], additive[RBF_BLOCK * RBF_DIM_MAX]; /* (RBF_BLOCK, n_dim) */
+    double value[RBF_BLOCK], sum[RBF_BLOCK];
+} Slopes;
+
+/* Weights times the additive factor in w; the slope of that factor, weights times phi. */
+static void slope_additive(const Rbf *m, const Output *o, size_t p, size_t first, size_t count, const double r2[],
+                           const double factor[], double w[], Slopes *s)
+{
+    double phi[KERNEL_CHUNK];
+    memcpy(w, o->weight + first, count * sizeof *w);
+    kernel_multiply(count, factor, w);
+    kernel_values(o->form.kernel, count, r2, phi);
+    kernel_multiply(count, o->weight + first, phi);
+    kernel_additive_slopes(m->n_dim, m->stride, m->C, s->u, p, first, count, ADDITIVE_SHARE, o->form.reach, phi,
+                           s->additive + p * m->n_dim);
+}
+
+static void slope_chunk(const Rbf *m, const Output *o, size_t n, size_t first, size_t count, Slopes *s)
+{
+    double r2[RBF_BLOCK][KERNEL_CHUNK], q[RBF_BLOCK][KERNEL_CHUNK] = {{0}}, factor[RBF_BLOCK][KERNEL_CHUNK],
+                                        weighted[KERNEL_CHUNK];
+    kernel_distances(m->n_dim, m->stride, o->S, s->x, first, count, r2);
+    if (o->form.reach > 0.0)
+        kernel_additive(m->n_dim, m->stride, m->C, s->u, first, count, ADDITIVE_SHARE, o->form.reach, factor);
+    for (size_t p = 0; p < n; p++) {
+        const double *w = o->weight + first;
+        if (o->form.reach > 0.0) {
+            slope_additive(m, o, p, first, count, r2[p], factor[p], weighted, s);
+            w = weighted;
+        }
+        s->value[p] += kernel_slopes(o->form.kernel, count, r2[p], w, q[p], &s->sum[p]);
+    }
+    kernel_project(m->n_dim, m->stride, o->S, first, count, q, s->G);
+}
+
+/* With q = w d phi / d (r^2) and warped x, c:  df/dx_d = 2 (x_d sum q - sum q c_d), then the chain rule; the additive part
+ * and the tail. J of point p goes to J[p n_out n_dim]. */
 static void slope_output(const Rbf *m, const Output *o, size_t n, const double X[], const double L[], double f[],
                          double J[])
 {
     const size_t n_dim = m->n_dim;
-    double r2[RBF_BLOCK][KERNEL_CHUNK], q[RBF_BLOCK][KERNEL_CHUNK] = {{0}}, x[RBF_BLOCK * RBF_DIM_MAX];
-    double by_u[RBF_BLOCK * RBF_DIM_MAX];
-    double value[RBF_BLOCK] = {0}, sum[RBF_BLOCK] = {0}, G[RBF_BLOCK * RBF_DIM_MAX];
-    memset(G, 0, RBF_BLOCK * n_dim * sizeof *G);
-    scale_points(m, o, L, x);
+    Slopes s;
+    memset(s.G, 0, RBF_BLOCK * n_dim * sizeof *s.G);
+    memset(s.additive, 0, RBF_BLOCK * n_dim * sizeof *s.additive);
+    memset(s.value, 0, sizeof s.value);
+    memset(s.sum, 0, sizeof s.sum);
+    scale_points(m, o, L, s.x);
+    place_points(n_dim, n, X, s.u);
     for (size_t d = 0; d < n_dim; d++)
         kernel_warp_by_u(RBF_BLOCK, L + d * RBF_BLOCK, L + (n_dim + d) * RBF_BLOCK, o->shape.theta[d], o->shape.warp,
-                         by_u + d * RBF_BLOCK);
-    for (size_t first = 0; first < m->n; first += KERNEL_CHUNK) {
-        const size_t count = m->n - first < KERNEL_CHUNK ? m->n - first : KERNEL_CHUNK;
-        kernel_distances(n_dim, m->stride, o->S, x, first, count, r2);
-        for (size_t p = 0; p < n; p++) {
-            memset(q[p], 0, sizeof q[p]);
-            value[p] += kernel_slopes(o->form.kernel, count, r2[p], o->weight + first, q[p], &sum[p]);
-        }
-        kernel_project(n_dim, m->stride, o->S, first, count, q, G);
-    }
+                         s.by_u + d * RBF_BLOCK);
+    for (size_t first = 0; first < m->n; first += KERNEL_CHUNK)
+        slope_chunk(m, o, n, first, m->n - first < KERNEL_CHUNK ? m->n - first : KERNEL_CHUNK, &s);
     for (size_t p = 0; p < n; p++) {
-        f[p * m->n_out] = o->mean + o->scale * (value[p] + tail_sum(m, o, X + p * n_dim));
+        f[p * m->n_out] = o->mean + o->scale * (s.value[p] + tail_sum(m, o, X + p * n_dim));
         for (size_t d = 0; d < n_dim; d++)
             J[p * m->n_out * n_dim + d] =
-                o->scale * (2.0 * (x[d * RBF_BLOCK + p] * sum[p] - G[p * n_dim + d]) * by_u[d * RBF_BLOCK + p] +
-                            tail_slope(n_dim, o, d, X[p * n_dim + d]));
+                o->scale * (2.0 * (s.x[d * RBF_BLOCK + p] * s.sum[p] - s.G[p * n_dim + d]) * s.by_u[d * RBF_BLOCK + p] +
+                            s.additive[p * n_dim + d] + tail_slope(n_dim, o, d, X[p * n_dim + d]));
     }
 }
 
@@ -473,6 +536,7 @@ void rbf_pack(Rbf *m, Pack *p)
         pack(p, &form.kernel, sizeof form.kernel);
         pack(p, &form.tail, sizeof form.tail);
         pack_numbers(p, &form.nugget, 1, 0.0, DBL_MAX);
+        pack_numbers(p, &form.reach, 1, 0.0, 1.0);
         pack_numbers(p, o->shape.theta, m->n_dim, DBL_MIN, DBL_MAX);
         pack_numbers(p, o->shape.warp, 2, DBL_MIN, DBL_MAX);
         p->faulty = p->faulty || !form_is_known(form);

@@ -4,7 +4,10 @@
  *   v(u) = (u^a + 1 - (1 - u)^b) / 2               stretches the neighbourhood of a bound where a, b < 1: a gap of some
  *                                                  millimetres differs more from the next than one of half a metre
  *
- *   phi     Gaussian or Matern 5/2, positive definite
+ *   phi     Gaussian or Matern 5/2, positive definite; where leave-one-out errors are smaller, times an additive part
+ *             1/2 + 1/2 mean_d psi(|x_d - c_jd| / reach),  psi(t) = (1 - t)^3 (1 + 3 t), 0 beyond t = 1 (Wendland)
+ *           functions of single variables, waves say, whose height the rest modulates: as many data as waves along one
+ *           variable times variables tell them, where a product alone needs as many as waves to the power of variables
  *   p       constant, linear or diagonal quadratic tail
  *   nugget  on the diagonal of the kernel matrix: 1e-8 for smooth data, more where data are noisy or centres nearly
  *           equal; times noise_i where some centres are known better than others: 1/n for a mean of n replicates
@@ -23,6 +26,8 @@
  * Sources     Rippa, Adv. Comput. Math. 11 (1999) 193-210 (leave-one-out)
  *             Rasmussen and Williams, Gaussian Processes for Machine Learning (2006) ch. 2 and 5 (kernels, tail,
  *             likelihood)
+ *             Duvenaud, Nickisch and Rasmussen, Additive Gaussian processes, NIPS 2011
+ *             Wendland, Adv. Comput. Math. 4 (1995) 389-396 (psi)
  *             Snoek, Swersky, Zemel and Adams, Input warping for Bayesian optimization of non-stationary functions,
  *             ICML 2014 (the idea of v) */
 #ifndef IMTET_RBF_RBF_H
@@ -56,6 +61,8 @@ void rbf_slope(const Rbf *m, size_t n, const double X[], double F[], double J[])
 
 const double *rbf_leave_one_out(const Rbf *m, size_t output); /* (n) f_i minus the prediction made without i */
 double rbf_explained(const Rbf *m, size_t output);            /* 1 - leave-one-out variance / variance; 1: perfect */
+
+int rbf_is_additive(const Rbf *m, size_t output); /* its kernel has an additive part */
 
 size_t rbf_left_out(const Rbf *m); /* outputs that the last fit left out */
 

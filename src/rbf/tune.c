@@ -54,18 +54,26 @@ static double prior(const Rbf *m, size_t n, const double p[], double gradient[])
 
 /* Turns the inverse in A into v_ij = (w_i w_j / s2 - inv(A)_ij) d phi_ij / d (r^2), i > j, with 0 on the diagonal, and
  * its row sums into q; returns sum_i noise_i (w_i^2 / s2 - inv(A)_ii). */
-static double weigh_pairs(const Rbf *m, Worker *k, size_t n, RbfKernel kernel, double s2)
+static double weigh_pairs(const Rbf *m, Worker *k, size_t n, RbfForm form, double s2)
 {
     double trace = 0.0, r2[RBF_BLOCK][KERNEL_CHUNK], x[RBF_BLOCK * RBF_DIM_MAX];
+    double factor[RBF_BLOCK][KERNEL_CHUNK], u[RBF_BLOCK * RBF_DIM_MAX];
     for (size_t j = 0; j < n; j++)
         trace += k->noise[j] * (k->w[j] * k->w[j] / s2 - k->A[j * n + j]);
     for (size_t j = 0; j < n; j += RBF_BLOCK) {
         model_gather(m, k->S, j, n, x);
+        if (form.reach > 0.0)
+            model_gather(m, k->C, j, n, u);
         for (size_t i = j; i < n; i += KERNEL_CHUNK) {
             const size_t count = n - i < KERNEL_CHUNK ? n - i : KERNEL_CHUNK;
             kernel_distances(m->n_dim, m->stride, k->S, x, i, count, r2);
-            for (size_t p = 0; p < RBF_BLOCK && j + p < n; p++)
-                kernel_weigh(kernel, count, r2[p], k->w + i, k->w[j + p], s2, k->A + (j + p) * n + i);
+            if (form.reach > 0.0)
+                kernel_additive(m->n_dim, m->stride, k->C, u, i, count, ADDITIVE_SHARE, form.reach, factor);
+            for (size_t p = 0; p < RBF_BLOCK && j + p < n; p++) {
+                kernel_weigh(form.kernel, count, r2[p], k->w + i, k->w[j + p], s2, k->A + (j + p) * n + i);
+                if (form.reach > 0.0)
+                    kernel_multiply(count, factor[p], k->A + (j + p) * n + i);
+            }
         }
     }
     memset(k->q, 0, n * sizeof *k->q);
@@ -110,7 +118,7 @@ static double likelihood(const Rbf *m, Worker *k, size_t n, RbfForm form, const 
     Shape shape = {.theta = k->theta};
     read_parameters(m, p, &shape, &form.nugget);
     model_scale(m, n, k->C, &shape, k->S);
-    model_matrix(m, n, k->S, form, k->noise, k->A);
+    model_matrix(m, n, k->C, k->S, form, k->noise, k->A);
     if (LAPACKE_dpotrf_work(LAPACK_COL_MAJOR, 'L', (int)n, k->A, (int)n) != 0)
         return INFINITY;
     model_weights(m, k, n, k->C, model_tail(form.tail, n, m->n_dim));
@@ -120,7 +128,7 @@ static double likelihood(const Rbf *m, Worker *k, size_t n, RbfForm form, const 
         l += log(k->A[i * n + i]);
     model_invert((int)n, k->A, (int)n);
     LAPACKE_dlauum_work(LAPACK_COL_MAJOR, 'L', (int)n, k->A, (int)n);
-    gradient[m->n_dim + 2] -= 0.5 * form.nugget * weigh_pairs(m, k, n, form.kernel, s2);
+    gradient[m->n_dim + 2] -= 0.5 * form.nugget * weigh_pairs(m, k, n, form, s2);
     pull_back(m, k, n, &shape, gradient);
     return l;
 }
@@ -161,7 +169,7 @@ static void climb(const Rbf *m, Worker *k, size_t n, RbfForm *form, Shape *shape
 static double trial_error(const Rbf *m, Worker *k, size_t n, RbfForm *form, const Shape *shape)
 {
     model_scale(m, n, k->C, shape, k->S);
-    if (!model_factor(m, k, n, k->S, form))
+    if (!model_factor(m, k, n, k->C, k->S, form))
         return INFINITY;
     model_leave_one_out(k, n, model_weights(m, k, n, k->C, model_tail(form->tail, n, m->n_dim)));
     return cblas_ddot((int)n, k->q, 1, k->q, 1) / (double)n;
@@ -194,21 +202,43 @@ static void try_form(const Rbf *m, Worker *k, size_t n, const Output *o, RbfForm
     }
 }
 
-/* The first time every form is tried; later the present one and, in turn, one challenger. */
+/* The best form so far with an additive part, which must be worth it where there is none yet. */
+static void try_additive(const Rbf *m, Worker *k, size_t n, const Output *o, double reach, int steps)
+{
+    const double best = k->min_error, wanted = best * (k->best_form.reach > 0.0 ? 1.0 : ADDITIVE_GAIN);
+    RbfForm form = k->best_form;
+    form.reach = reach;
+    form.nugget = fmax(form.nugget, NUGGET_START);
+    k->min_error = wanted;
+    try_form(m, k, n, o, form, steps);
+    if (!(k->min_error < wanted))
+        k->min_error = best;
+}
+
+/* The first time every form is tried; later the present one and, in turn, one challenger without an additive part and one
+ * with it. */
 static void tune_output(const Rbf *m, Worker *k, Output *o, const double f[], const double noise[])
 {
     const size_t n = choose_tuning_set(m, k, o, f, noise), n_forms = RBF_N_KERNELS * RBF_N_TAILS;
     const size_t challenger = m->n_tuned % n_forms;
+    const int is_first = m->n_tuned == 0, steps = is_first ? TUNE_STEPS_FIRST : TUNE_STEPS;
     k->min_error = INFINITY;
     for (size_t i = 0; i < n_forms; i++) {
         const RbfForm form = {(RbfKernel)(i / RBF_N_TAILS), (RbfTail)(i % RBF_N_TAILS),
-                              fmax(o->form.nugget, NUGGET_START)};
-        const int present = form.kernel == o->form.kernel && form.tail == o->form.tail;
-        if (m->n_tuned == 0)
-            try_form(m, k, n, o, form, TUNE_STEPS_FIRST);
-        else if (present || i == challenger)
-            try_form(m, k, n, o, form, TUNE_STEPS);
+                              fmax(o->form.nugget, NUGGET_START), 0.0};
+        const int present = o->form.reach == 0.0 && form.kernel == o->form.kernel && form.tail == o->form.tail;
+        if (is_first || present || i == challenger)
+            try_form(m, k, n, o, form, steps);
     }
+    if (o->form.reach > 0.0) {
+        RbfForm form = o->form;
+        form.nugget = fmax(form.nugget, NUGGET_START);
+        try_form(m, k, n, o, form, steps);
+    }
+    const double reach[] = {ADDITIVE_REACH_SHORT, ADDITIVE_REACH_LONG};
+    for (size_t r = 0; k->min_error > ADDITIVE_ERROR && k->min_error < INFINITY && r < 2; r++)
+        if ((is_first || m->n_tuned % 2 == r) && reach[r] != o->form.reach)
+            try_additive(m, k, n, o, reach[r], steps);
     if (k->min_error < INFINITY) {
         o->form = k->best_form;
         model_copy_shape(m, &o->shape, &k->best_shape);
