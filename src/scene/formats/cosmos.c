@@ -114,7 +114,7 @@ static Status read_channel(Record *r, Lines *l, Err *err)
                     line_shown(l), l->from);
     BlockForm form = {.count = NAN, .dt = reals[STEP_AT] * S_PER_MS, .width = format_width(l)};
     number_behind(l->from, l->to, "", &form.count);
-    c->units = units_named(l->from, l->to);
+    channel_unit_in(c, l, "units=");
     if (!(form.dt > 0))
         return fail(err, STATUS_BAD_DATA, "%s:%d: no usable time step: real 62 of the header above is %g", l->path,
                     l->number, reals[STEP_AT]);

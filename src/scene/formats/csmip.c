@@ -86,7 +86,9 @@ static void take_text(const Lines *l, Text *t, Channel *c)
     if (max && find_word(max, l->to, " g"))
         channel_peak(c, max, l->to, "Max", GRAVITY);
     const int tenths = line_has(l, "g/10");
-    c->units = tenths ? 1u << UNIT_G : units_named(l->from, l->to);
+    channel_unit_in(c, l, " and ");
+    if (tenths)
+        c->units = 1u << UNIT_G;
     c->scale = tenths ? 0.1 : 1;
 }
 
@@ -149,15 +151,17 @@ static Status read_block(Record *r, Lines *l, const Text *t, Channel *c, Err *er
     BlockForm form = {.count = NAN, .dt = announced_step(l, t->dt), .width = format_width(l)};
     form.width = form.width ? form.width : 10; /* 8F10.x where the line does not say it */
     number_behind(l->from, l->to, "", &form.count);
-    const unsigned units = units_named(l->from, l->to);
+    Channel stated = {0};
+    channel_unit_in(&stated, l, " in units of ");
     if (line_has(l, "veloc") || line_has(l, "displ"))
         return fail(err, STATUS_BAD_DATA, "%s:%d: not an acceleration: '%.*s'", l->path, l->number, line_shown(l),
                     l->from);
     if (line_has(l, "g/10")) {
         c->units = 1u << UNIT_G;
         c->scale = 0.1;
-    } else if (units) {
-        c->units = units;
+    } else if (stated.units || stated.unit[0]) {
+        c->units = stated.units;
+        memcpy(c->unit, stated.unit, sizeof c->unit);
         c->scale = 1;
     }
     TRY(record_block(r, l, &form, err));

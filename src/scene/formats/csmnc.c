@@ -51,7 +51,7 @@ static Status read(Record *r, Lines *l, const ReadHints *hints, Err *err)
     if (direction.from)
         channel_name(c, direction.from + strlen("COMP."), direction.to);
     if (unit.from)
-        c->units = units_named(find_word(unit.from, unit.to, "UNIT:"), unit.to);
+        channel_unit_in(c, &unit, "UNIT:");
     if (peak.from)
         channel_peak(c, peak.from, peak.to, "PEAK VALUE", 0.01);
     TRY(record_block(r, l, &form, err));

@@ -86,6 +86,21 @@ void channel_unit(Channel *c, const char *from, const char *to)
     c->unit[n] = 0;
 }
 
+void channel_unit_in(Channel *c, const Lines *l, const char *word)
+{
+    const char *from = find_word(l->from, l->to, word), *to;
+    c->units = units_named(l->from, l->to);
+    if (!from || c->units)
+        return;
+    for (from += strlen(word); from < l->to && *from == ' ';)
+        from++;
+    for (to = from; to < l->to && !strchr(",;([", *to) && strncmp(to, "  ", (size_t)(l->to - to < 2 ? 1 : 2)) != 0;)
+        to++;
+    while (to > from && strchr(" .", to[-1]))
+        to--;
+    channel_unit(c, from, to);
+}
+
 Status record_channel(Record *r, const Lines *l, Channel **out, Err *err)
 {
     if (r->n_channels == CHANNELS_MAX)

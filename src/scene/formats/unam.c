@@ -74,11 +74,12 @@ static Status name_channels(Record *r, const Lines *l, const Header *h, const Co
         const char *from, *to;
         TRY(record_channel(r, l, &c, err));
         *c = (Channel){.scale = 1,
-                       .units = h->units.from ? units_named(h->units.from, h->units.to) : 0,
                        .dt = item_number(&h->step, (int)k),
                        .first = k,
                        .stride = columns->width,
                        .n = columns->n_rows};
+        if (h->units.from)
+            channel_unit_in(c, &h->units, ":");
         if (item(&h->orientation, (int)k, &from, &to))
             channel_name(c, from, to);
         if (item(&h->peak, (int)k, &from, &to))

@@ -58,7 +58,9 @@ static void take_text(const Lines *l, Text *t, Channel *c)
     if (!line_begins(l, "UNITS ARE"))
         return;
     const int tenths = line_has(l, "G/10");
-    c->units = tenths ? 1u << UNIT_G : units_named(l->from, l->to);
+    channel_unit_in(c, l, " and ");
+    if (tenths)
+        c->units = 1u << UNIT_G;
     c->scale = tenths ? 0.1 : 1;
 }
 
