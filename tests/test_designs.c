@@ -186,6 +186,32 @@ static void test_choose_names_the_extremes_and_writes_them(void **state)
     expect(2, "give --csv a file", "choose @/run --json --csv -");
 }
 
+/* Half of the front by a result that is no objective; the ids chosen are those within. */
+static void test_choose_limits_any_result_of_a_run(void **state)
+{
+    (void)state;
+    Run h;
+    Err err = {0};
+    char path[PATH_MAX], words[100];
+    size_t k, i;
+    CHECK_OK(run_read(&h, path_of("run", path), &err), &err);
+    CHECK_OK(schema_pick_result(&h.schema, "", "drift_ratio", STATUS_USAGE, &k, &err), &err);
+    const double bound = h.table.row[run_knee(&h)].extra[k - h.schema.n_obj];
+    snprintf(words, sizeof words, "choose @/run --json --max drift_ratio=%.17g", bound);
+    json_t *o = json_of(words), *pick;
+    assert_true(json_array_size(json_object_get(o, "designs")) > 0);
+    json_array_foreach(json_object_get(o, "designs"), i, pick)
+    {
+        const size_t row = run_find(&h, (long)number(pick, "id"));
+        assert_true(h.table.row[row].extra[k - h.schema.n_obj] <= bound);
+    }
+    assert_true(number(o, "within_limits") < (double)h.n_front);
+    json_decref(o);
+    run_free(&h);
+    expect(2, "did you mean drift_ratio?", "choose @/run --max drift_rato=1");
+    expect(69, "this run has no base_shear_n of its designs", "choose @/run --max base_shear_n=1");
+}
+
 static void test_words_that_name_nothing_are_refused_with_what_is_there(void **state)
 {
     (void)state;
@@ -251,6 +277,7 @@ int main(void)
         cmocka_unit_test(test_evaluate_compares_with_devices_and_replicates_have_a_named_deviation),
         cmocka_unit_test(test_evaluate_and_simulate_estimate_the_same_error_and_a_study_shows_that_of_its_knee),
         cmocka_unit_test(test_choose_names_the_extremes_and_writes_them),
+        cmocka_unit_test(test_choose_limits_any_result_of_a_run),
         cmocka_unit_test(test_words_that_name_nothing_are_refused_with_what_is_there),
         cmocka_unit_test(test_the_sure_designs_of_a_noisy_front_are_those_with_that_probability),
     };

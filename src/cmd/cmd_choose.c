@@ -16,17 +16,28 @@ typedef struct {
     unsigned char *allowed; /* (run->table.n) */
 } Choice;
 
+/* Objective k, or from n_obj on a further measure; NAN: not known. */
+static double result_of(const Run *run, size_t row, size_t k)
+{
+    const size_t n_obj = run->schema.n_obj;
+    return k < n_obj ? run_f(run, row)[k] : run->table.row[row].extra[k - n_obj];
+}
+
 static Status apply_limit(Choice *c, const char *option, int is_max, const char *text, Err *err)
 {
-    size_t k;
+    size_t k, n_known = 0;
     double limit;
-    TRY(pair_take(&c->run->schema, option, text, NAN, &k, &limit, err));
+    TRY(pair_take(&c->run->schema, option, text, &k, &limit, err));
     for (size_t i = 0; i < c->run->n_front; i++) {
-        const double f = run_f(c->run, c->run->front[i])[k];
-        if (is_max ? f > limit : f < limit)
+        const double f = result_of(c->run, c->run->front[i], k);
+        n_known += !isnan(f);
+        if (!(is_max ? f <= limit : f >= limit))
             c->allowed[c->run->front[i]] = 0;
     }
-    return STATUS_OK;
+    return n_known > 0
+               ? STATUS_OK
+               : fail(err, STATUS_UNMET, "%s: this run has no %s of its designs: make it an objective or a limit",
+                      option, schema_objective(&c->run->schema, k)->name);
 }
 
 /* Only designs within every --max and --min stay allowed. */
@@ -336,8 +347,9 @@ static Status run(const Args *args, Err *err)
 }
 
 static const ArgOption OPTIONS[] = {
-    {"--max", "NAME=VALUE", NULL, 1, "only designs whose objective is no larger; may be repeated"},
-    {"--min", "NAME=VALUE", NULL, 1, "only designs whose objective is no smaller; may be repeated"},
+    {"--max", "NAME=VALUE", NULL, 1,
+     "only designs whose NAME, an objective or another result, is no larger; may be repeated"},
+    {"--min", "NAME=VALUE", NULL, 1, "the same, no smaller"},
     {"--weights", "NAME=W,...", NULL, 0, "the least weighted sum of objectives scaled to 0 (best) .. 1 (worst)"},
     {"--reference", "NAME=VALUE,...", NULL, 0, "reference point: the design nearest to these values"},
     {"--confidence", "P", NULL, 0,

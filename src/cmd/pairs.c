@@ -5,30 +5,38 @@
 #include <stdlib.h>
 #include <string.h>
 
-Status pair_take(const Schema *schema, const char *option, const char *text, double otherwise, size_t *k, double *value,
-                 Err *err)
+static Status split(const char *option, const char *text, double otherwise, char name[TABLE_NAME_MAX], double *value,
+                    Err *err)
 {
-    char name[TABLE_NAME_MAX], *end;
+    char *end;
     const size_t length = strcspn(text, "=");
-    if (length >= sizeof name || (!text[length] && isnan(otherwise)))
+    if (length >= TABLE_NAME_MAX || (!text[length] && isnan(otherwise)))
         return fail(err, STATUS_USAGE, "%s: '%.60s' is not NAME=NUMBER", option, text);
-    snprintf(name, sizeof name, "%.*s", (int)length, text);
+    snprintf(name, TABLE_NAME_MAX, "%.*s", (int)length, text);
     *value = text[length] ? strtod(text + length + 1, &end) : otherwise;
     if (text[length] && (end == text + length + 1 || *end || !isfinite(*value)))
         return fail(err, STATUS_USAGE, "%s: '%.60s' has no number behind =", option, text);
-    return schema_pick_objective(schema, option, name, STATUS_USAGE, k, err);
+    return STATUS_OK;
+}
+
+Status pair_take(const Schema *schema, const char *option, const char *text, size_t *k, double *value, Err *err)
+{
+    char name[TABLE_NAME_MAX];
+    TRY(split(option, text, NAN, name, value, err));
+    return schema_pick_result(schema, option, name, STATUS_USAGE, k, err);
 }
 
 Status pairs_take(const Schema *schema, const char *option, const char *list, double otherwise, double values[],
                   Err *err)
 {
-    char item[TABLE_NAME_MAX + 40];
+    char item[TABLE_NAME_MAX + 40], name[TABLE_NAME_MAX];
     for (size_t j = 0; j < list_count(list); j++) {
         size_t k;
         double value;
         if (!list_item(list, j, item, sizeof item))
             return fail(err, STATUS_USAGE, "%s: item %zu is empty or too long", option, j + 1);
-        TRY(pair_take(schema, option, item, otherwise, &k, &value, err));
+        TRY(split(option, item, otherwise, name, &value, err));
+        TRY(schema_pick_objective(schema, option, name, STATUS_USAGE, &k, err));
         values[k] = value;
     }
     return STATUS_OK;
