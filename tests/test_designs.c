@@ -137,6 +137,7 @@ static void test_evaluate_compares_with_devices_and_replicates_have_a_named_devi
     json_decref(o);
     char *said = output_of("evaluate @/run --design knee --replicates 3");
     assert_non_null(strstr(said, "sd predictability of 3"));
+    assert_non_null(strstr(said, "the other lines, and what they are compared by, are as designed"));
     assert_non_null(strstr(said, "against viscous links ("));
     free(said);
     expect(65, "needs replicates that differ", "evaluate @/run --design knee --set uncertain.damping=0.1");

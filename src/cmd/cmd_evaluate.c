@@ -151,6 +151,9 @@ static void print_named(const Evaluations *e, const Schema *schema)
             if (c == EVALUATED_DESIGN && e->replicates > 0)
                 show_replicates(0, order, &e->run[i].replicates);
         }
+        if (e->replicates > 0)
+            puts("replicates are of the design with impacts; the other lines, and what they are compared by, are as "
+                 "designed");
         show_verdicts(e, schema, &e->run[i]);
         putchar('\n');
     }

@@ -92,6 +92,8 @@ static void print_front(const Run *run, const StudySummary *summary)
         show_objective_errors(schema, error);
     if (summary->has_baselines) {
         show_baselines(schema, run_f(run, knee), summary->baseline);
+        if (run->settings->sim.replicates > 1)
+            puts("replicates are of designs with impacts; the others are as designed");
         explain_objectives(schema, run->settings->search.objectives);
     }
     printf("\nknee: nearest to the ideal point when every objective is scaled to 0..1 over the front.\n");
