@@ -333,6 +333,20 @@ static void test_designs_are_chosen_by_limits_weights_and_a_reference_point_and_
     expect(2, "no algorithm is called", "polish @/kind --design knee --algorithm magic");
 }
 
+/* A plain search of 400 is far from the front; with noise nothing is polished. */
+static void test_a_study_of_another_problem_than_the_tower_is_polished_at_its_end_unless_noisy(void **state)
+{
+    (void)state;
+    write_in_place("textbook.ini", "[problem]\nkind = dtlz2\nvariables = 5\nobjectives = 2\n[search]\nmax_evals = 400\n"
+                                   "population = 40\nsurrogate = off\npolish = 1\n");
+    char *said = output_of("optimize @/textbook.ini --out @/exact"),
+         *noisy = output_of("optimize @/textbook.ini --out @/noisy-end --set problem.noise=0.01");
+    assert_non_null(strstr(said, "polished: 1 of 1 designs became better"));
+    assert_null(strstr(noisy, "polished: "));
+    free(said);
+    free(noisy);
+}
+
 /* The simulator answers until there is a file beside it. */
 static void test_a_design_that_fails_when_it_is_polished_is_named_with_its_reason(void **state)
 {
@@ -435,6 +449,7 @@ int main(void)
         cmocka_unit_test(test_a_design_is_evaluated_on_every_motion_of_a_folder),
         cmocka_unit_test(test_an_external_simulator_is_searched_and_every_design_exported),
         cmocka_unit_test(test_designs_are_chosen_by_limits_weights_and_a_reference_point_and_polished),
+        cmocka_unit_test(test_a_study_of_another_problem_than_the_tower_is_polished_at_its_end_unless_noisy),
         cmocka_unit_test(test_a_design_that_fails_when_it_is_polished_is_named_with_its_reason),
         cmocka_unit_test(test_a_search_begins_with_given_designs_and_a_front_is_thinned),
         cmocka_unit_test(test_a_textbook_problem_is_written_design_by_design),

@@ -165,7 +165,7 @@ static int has_surrogate(const Settings *s)
 
 static int is_polished(const Settings *s)
 {
-    return is_tower(s) && s->search.polish > 0;
+    return s->search.polish > 0;
 }
 
 static const struct {
@@ -174,7 +174,7 @@ static const struct {
     const char *where;
 } WAITING[] = {
     {"building core contact motion sim uncertain design", is_tower, "problem.kind = tower"},
-    {"search.objectives search.polish*", is_tower, "problem.kind = tower"},
+    {"search.objectives", is_tower, "problem.kind = tower"},
     {"problem.command problem.timeout_s problem.lower problem.upper problem.senses", is_external,
      "problem.kind = external"},
     {"problem.variables problem.objectives problem.*_names", is_no_tower, "problem.kind is no tower"},

@@ -266,7 +266,8 @@ static const Option OPTIONS[] = {
     WHOLE(search.replicates_max, "4", 1, 1000,
           "noisy evaluations: largest number of simulations of a design; 1: no replicates"),
     WHOLE(search.polish, "3", 0, 32,
-          "tower: designs polished at the end, with a tenth more simulations; none where these are too few"),
+          "designs polished at the end, with a tenth more simulations; none where these are too few or the problem is "
+          "noisy"),
     REAL(search.polish_gain_min, "-", "0.001", 0, 1,
          "polishing: a gain counts from this share of the range of the objectives on the front on"),
     TEXT(search.objectives, "auto",

@@ -12,6 +12,7 @@ static size_t n_designs(const Settings *s)
     return (size_t)(s->search.polish < DESIGNS_MAX ? s->search.polish : DESIGNS_MAX);
 }
 
+/* Of a tower; other problems are simulated once. */
 static long replicates(const Settings *s)
 {
     return s->sim.replicates > REPLICATES_MIN ? s->sim.replicates : REPLICATES_MIN;
@@ -22,9 +23,8 @@ static size_t evals_each(const Settings *s)
 {
     const long n = (long)n_designs(s);
     const long each = n > 0 ? s->search.max_evals * s->sim.replicates / (SHARE * n) : 0;
-    return s->problem.kind == PROBLEM_TOWER && each >= EVALS_MIN && (size_t)each >= refine_evals_min(s, replicates(s))
-               ? (size_t)each
-               : 0;
+    const int is_possible = s->problem.kind == PROBLEM_TOWER || !schema_is_noisy(s);
+    return is_possible && each >= EVALS_MIN && (size_t)each >= refine_evals_min(s, replicates(s)) ? (size_t)each : 0;
 }
 
 static Status refine(const FinalPolish *p, const Run *run, size_t row, Refined *refined, Err *err)

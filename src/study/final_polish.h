@@ -1,4 +1,5 @@
-/* study/final_polish.h -- some designs of a finished run of the tower polished at its end (search.polish).
+/* study/final_polish.h -- some designs of a finished run polished at its end (search.polish); of other problems
+ * than the tower where they are not noisy.
  *
  * Designs that are spread over the front, the knee first (run_spread_out), each in all objectives at once, none of which
  * may get worse (polish/refine.h). Together they take a tenth of the simulations of the search; where that leaves too
