@@ -243,7 +243,8 @@ static void test_results_after_the_last_state_are_taken_up_in_their_order(void *
     for (size_t k = 0; k + 1 < whole.moments.n; k += 2)
         for (size_t later = 0; whole.moments.rows[k] + later <= whole.n; later += 1 + whole.n / 6) {
             const size_t n = whole.moments.rows[k];
-            const SearchStart start = {n, later, before.row, whole.moments.state[k], whole.moments.n_state[k], NULL};
+            const SearchStart start = {n,    later, before.row, whole.moments.state[k], whole.moments.n_state[k],
+                                       NULL, NULL,  NULL};
             search(&c, &start, &rest_of_it);
             assert_int_equal(rest_of_it.n, whole.n);
             assert_int_equal(here.n_taken, whole.n - n - later);
@@ -252,7 +253,7 @@ static void test_results_after_the_last_state_are_taken_up_in_their_order(void *
             assert_all_different(&rest_of_it);
             forget_it(&rest_of_it);
         }
-    const SearchStart start = {0, whole.n, before.row, NULL, 0, NULL};
+    const SearchStart start = {0, whole.n, before.row, NULL, 0, NULL, NULL, NULL};
     search(&c, &start, &rest_of_it);
     assert_same(&whole, &rest_of_it);
     assert_int_equal(here.n_taken, 0);
@@ -274,7 +275,7 @@ static void test_results_that_nobody_asked_for_join_the_archive(void **state)
     textbook_dtlz2(6, 3, X + 6, F + 3);
     const SearchConfig c = config(20, 60);
     EvaluationTable before = evaluations_of(&here.problem, 1, 2, X, F, NULL, ok, kind, NULL);
-    const SearchStart start = {0, 2, before.row, NULL, 0, NULL};
+    const SearchStart start = {0, 2, before.row, NULL, 0, NULL, NULL, NULL};
     search(&c, &start, &whole);
     assert_int_equal(whole.n, 60);
     assert_memory_equal(whole.X, X, sizeof X);

@@ -523,7 +523,8 @@ static void test_a_noisy_search_goes_on_from_any_generation_to_the_same_bytes(vo
     for (size_t k = 0; k + 1 < seen.moments.n; k += 2 + k / 2) {
         EvaluationTable before = evaluations_of(&w.problem, 1, seen.moments.rows[k], seen.X, seen.Y, NULL, seen.ok,
                                                 seen.kind, seen.generation);
-        const SearchStart start = {before.n, 0, before.row, seen.moments.state[k], seen.moments.n_state[k], NULL};
+        const SearchStart start = {before.n, 0,    before.row, seen.moments.state[k], seen.moments.n_state[k],
+                                   NULL,     NULL, NULL};
         run(&w, &c, &start, &again);
         assert_int_equal(again.n, seen.n);
         assert_memory_equal(again.X, seen.X, seen.n * VAR * sizeof *seen.X);

@@ -85,6 +85,8 @@ void evaluation_forget(Evaluation *e, size_t n_obj, size_t n_extra);
  * (base/cell.h), of valid UTF-8 whatever a worker wrote. */
 void evaluation_set_outcome(Evaluation *e, Outcome outcome, const char *reason);
 
+typedef Status (*EvaluationFn)(const Evaluation *e, void *user, Err *err); /* the row holds until it returns */
+
 typedef struct {
     size_t n, n_max, n_used, n_var, n_obj, n_extra; /* n_used: rows that have had content */
     Evaluation *row;                                /* (n) */

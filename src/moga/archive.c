@@ -87,10 +87,15 @@ static Status resize(Archive *a, size_t n_max, int has_means, Err *err)
         counted.n_slots *= 2;
     Archive wider = counted;
     layout(&counted, &c);
-    wider.store = carve_store(&c);
+    wider.store = aligned_alloc(CARVE_LINE, c.used);
     if (!wider.store)
         return fail(err, STATUS_NO_MEMORY, "no memory for an archive of %zu designs", n_max);
+    if (has_means) /* else every row is set as it comes, and room to spare is none that the system has to give */
+        memset(wider.store, 0, c.used);
     layout(&wider, &(Carve){.base = wider.store});
+    memset(wider.slot, 0, wider.n_slots * sizeof *wider.slot);
+    if (a->n == 0)
+        memset(wider.noise, 0, a->n_obj * sizeof *wider.noise);
     free(a->store);
     *a = wider;
     for (size_t row = 0; row < a->n; row++)

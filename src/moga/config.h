@@ -40,10 +40,13 @@ double search_replicates(size_t n, double share, size_t n_var);
  * read. */
 typedef struct {
     size_t n, n_later; /* n_later: rows behind the n that came after the state was saved (evaluate/queue.h: known) */
-    const Evaluation *row; /* (n + n_later) */
+    const Evaluation *row; /* (n + n_later); with `each` the last n_later alone */
     const void *state;     /* NULL: n is 0, none was saved */
     size_t n_state;
     const unsigned char *on_front; /* (n) on the front then, of a problem without noise; NULL: not known */
+    Status (*each)(EvaluationFn take, void *search, void *user,
+                   Err *err); /* passes the first n; NULL: they are in `row` */
+    void *user;               /* of `each` */
 } SearchStart;
 
 /* Whether this version of the search wrote the state: another one cannot be resumed. */

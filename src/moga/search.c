@@ -207,7 +207,7 @@ static Status open_queue(Search *s, const SearchStart *start, Err *err)
     TRY(queue_open(&s->queue, s->problem, asynchronous ? QUEUE_AS_ARRIVED : QUEUE_AS_ASKED,
                    NOTE_PREDICTED + s->problem->n_obj, (long)n_before, err));
     if (start)
-        queue_know(s->queue, start->n_later, start->row + start->n);
+        queue_know(s->queue, start->n_later, start->row + (start->each ? 0 : start->n));
     return STATUS_OK;
 }
 

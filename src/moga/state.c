@@ -194,15 +194,23 @@ void state_save(Search *s)
     pack_search(s, &s->state);
 }
 
-static Status restore_row(Search *s, const SearchStart *start, size_t i, Err *err)
+typedef struct {
+    Search *s;
+    const SearchStart *start;
+    size_t n;
+} Restoring;
+
+static Status restore_row(const Evaluation *e, void *restoring, Err *err)
 {
+    Restoring *r = restoring;
+    Search *s = r->s;
     const Problem *p = s->problem;
-    const Evaluation *e = &start->row[i];
+    const size_t i = r->n++;
     const unsigned char ok = e->outcome == OUTCOME_OK, kind = (unsigned char)e->kind;
     double *f = s->scratch.f, *g = p->n_con > 0 ? s->scratch.g : NULL;
     problem_judge(p, e, f, s->scratch.g);
-    if (start->on_front && !p->is_noisy)
-        return pareto_archive_restore(&s->archive, e->x, f, g, ok, kind, (size_t)e->generation, start->on_front[i],
+    if (r->start->on_front && !p->is_noisy)
+        return pareto_archive_restore(&s->archive, e->x, f, g, ok, kind, (size_t)e->generation, r->start->on_front[i],
                                       err);
     return pareto_archive_insert(&s->archive, 1, e->x, f, g, &ok, kind, (size_t)e->generation, err);
 }
@@ -210,8 +218,11 @@ static Status restore_row(Search *s, const SearchStart *start, size_t i, Err *er
 Status state_restore(Search *s, const SearchStart *start, Err *err)
 {
     TRY(pareto_archive_reserve(&s->archive, start->n + start->n / 8, err));
-    for (size_t i = 0; i < start->n; i++)
-        TRY(restore_row(s, start, i, err));
+    Restoring restoring = {s, start, 0};
+    if (start->each)
+        TRY(start->each(restore_row, &restoring, start->user, err));
+    while (restoring.n < start->n)
+        TRY(restore_row(&start->row[restoring.n], &restoring, err));
     pareto_archive_update_noise(&s->archive);
     if (!start->state)
         return STATUS_OK;

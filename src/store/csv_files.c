@@ -55,28 +55,38 @@ static Status keep_deviations(CsvFiles *c, size_t n, const double sd[], Err *err
 }
 
 /* Of a run whose designs keep their numbers. */
-static int front_is_whole(const CsvFiles *c, const Run *run)
+static int front_is_whole(const Folder *folder, const Run *run)
 {
+    size_t n = 0;
     long *ids = run->schema.is_noisy ? NULL : calloc(run->n_front + 1, sizeof *ids);
     if (!ids)
         return 0;
-    for (size_t i = 0; i < run->n_front; i++)
-        ids[i] = run->table.row[run->front[i]].id;
-    const int is = folder_holds(c->folder, "front.csv", run->n_front, ids);
+    for (size_t i = 0; i < run->n_ahead; i++)
+        if (run->place[i].on_front)
+            ids[n++] = (long)i + 1;
+    for (; n < run->n_front; n++)
+        ids[n] = run->table.row[run->front[n]].id;
+    const int is = folder_holds(folder, "front.csv", n, ids);
     free(ids);
     return is;
 }
 
-/* A file that has just the designs that it should have, in their order, is left as it is. */
-Status csv_files_resume(CsvFiles *c, const Folder *folder, const Schema *schema, const Run *run, Err *err)
+int csv_files_are_whole(const Folder *folder, const Run *run)
+{
+    return !run_has_polished(run) && folder_holds(folder, "evaluations.csv", run_n_finished(run), NULL) &&
+           (run->n_generations == 0 || front_is_whole(folder, run));
+}
+
+Status csv_files_resume(CsvFiles *c, const Folder *folder, const Schema *schema, const Run *run, int are_whole,
+                        Err *err)
 {
     const size_t n = run_n_finished(run);
     *c = (CsvFiles){.folder = folder, .schema = schema, .run = run};
     TRY(keep_deviations(c, n, run->table.sd, err));
     c->n_appended = n;
-    if (run_has_polished(run) || !folder_holds(folder, "evaluations.csv", n, NULL))
+    if (!are_whole)
         TRY(folder_write(folder, "evaluations.csv", put_evaluations, run, err));
-    if (run->n_generations > 0 && !front_is_whole(c, run))
+    if (run->n_generations > 0 && !are_whole)
         TRY(folder_write(folder, "front.csv", put_front, run, err));
     return append_open(&c->evaluations, folder, "evaluations.csv", err);
 }

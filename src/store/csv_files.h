@@ -29,7 +29,11 @@ typedef struct {
 enum { FRONT_ALWAYS = 4000 };
 
 Status csv_files_begin(CsvFiles *c, const Folder *folder, const Schema *schema, Err *err);
-Status csv_files_resume(CsvFiles *c, const Folder *folder, const Schema *schema, const Run *run, Err *err);
+
+/* Whether they have just the designs that they should have, in their order; else all of the run has to be there. */
+int csv_files_are_whole(const Folder *folder, const Run *run);
+Status csv_files_resume(CsvFiles *c, const Folder *folder, const Schema *schema, const Run *run, int are_whole,
+                        Err *err);
 
 /* Up to evaluation n, as the database has them now. */
 Status csv_files_append(CsvFiles *c, Database *db, size_t n, Err *err);

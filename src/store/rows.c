@@ -325,6 +325,26 @@ Status rows_read(Database *db, EvaluationTable *table, long first, long last, Er
     return each_row(&r, take_row, &r, first, last, err);
 }
 
+typedef struct {
+    Reading reading;
+    EvaluationFn take;
+    void *user;
+} Passing;
+
+static Status pass_row(sqlite3_stmt *row, void *user, Err *err)
+{
+    Passing *p = user;
+    p->reading.table->n = 0;
+    TRY(take_row(row, &p->reading, err));
+    return p->take(p->reading.table->row, p->user, err);
+}
+
+Status rows_each(Database *db, EvaluationTable *room, long first, long last, EvaluationFn take, void *user, Err *err)
+{
+    Passing p = {{.table = room, .db = db}, take, user};
+    return each_row(&p.reading, pass_row, &p, first, last, err);
+}
+
 /* -- as lines ------------------------------------------------------------------------------------------------------ */
 
 int rows_put_texts(FILE *f, const char *list, size_t n, const char *before, const char *missing)

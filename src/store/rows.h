@@ -28,6 +28,10 @@ Status rows_unfinish(Database *db, long id, EvaluationKind kind, long generation
  * goes without those numbers, which take most of the time. */
 Status rows_read(Database *db, EvaluationTable *table, long first, long last, Err *err);
 
+/* The same one after the other, in the one row of the table `room`; a row that is not what was written is found a few rows
+ * later, or at the end. */
+Status rows_each(Database *db, EvaluationTable *room, long first, long last, EvaluationFn take, void *user, Err *err);
+
 /* The same as lines of evaluations.csv, the texts as this program has written them; n: how many. A row that is not
  * finished is one where it is wanted. */
 Status rows_print(Database *db, FILE *f, RowShape shape, long first, long last, int unfinished_too, size_t *n,

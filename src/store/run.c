@@ -64,7 +64,7 @@ size_t run_n_finished(const Run *run)
     size_t n = 0;
     while (n < run->table.n && run->table.row[n].kind != KIND_UNFINISHED && run->table.row[n].kind != KIND_POLISHED)
         n++;
-    return n;
+    return run->n_ahead + n;
 }
 
 static double minimised(const Run *run, size_t row, size_t k)

@@ -54,9 +54,10 @@ typedef struct {
     Settings *settings;
     Schema schema;
     size_t n_front, n_failed, n_repeats, n_generations, n_sessions;
+    size_t n_ahead;            /* evaluations before those of the table, left out: number i has id i + 1 (RUN_ENDED) */
     EvaluationTable table;     /* f: of this very evaluation; sd, replicates: joined (store/repeats.h) */
     double *F;                 /* (table.n, n_obj) joined; without repeats table.f */
-    RunPlace *place;           /* (table.n) */
+    RunPlace *place;           /* (n_ahead + table.n) */
     size_t *front;             /* (n_front) rows, ascending */
     RunGeneration *generation; /* (n_generations) */
     RunSession *session;       /* (n_sessions) */

@@ -32,18 +32,24 @@ typedef struct {
 
 /* -- evaluations --------------------------------------------------------------------------------------------------- */
 
+static long id_of(const Run *run, size_t row)
+{
+    return row < run->n_ahead ? (long)row + 1 : run->table.row[row - run->n_ahead].id;
+}
+
 /* In the order of the ids, as the evaluations. */
 static Status take_front(sqlite3_stmt *row, void *user, Err *err)
 {
     Loading *l = user;
     Run *run = l->run;
     const long id = (long)sqlite3_column_int64(row, 0);
+    const size_t n = run->n_ahead + run->table.n;
     (void)err;
-    while (l->row < run->table.n && run->table.row[l->row].id < id)
+    while (l->row < n && id_of(run, l->row) < id)
         l->row++;
     if (column_whole(row, 2, NEVER) == NEVER)
         l->front ^= digest_member(id);
-    if (l->row < run->table.n && run->table.row[l->row].id == id) {
+    if (l->row < n && id_of(run, l->row) == id) {
         run->place[l->row].entered = (int)column_whole(row, 1, NEVER);
         run->place[l->row].left = (int)column_whole(row, 2, NEVER);
     }
@@ -69,23 +75,51 @@ static void place_all(Run *run)
     }
 }
 
+static Status make_places(Loading *l, Err *err)
+{
+    Run *run = l->run;
+    const size_t n = run->n_ahead + run->table.n;
+    run->place = calloc(n + 1, sizeof *run->place);
+    if (!run->place)
+        return fail(err, STATUS_NO_MEMORY, "%s: no memory for %zu evaluations", database_path(l->d), n);
+    for (size_t i = 0; i < n; i++)
+        run->place[i] = (RunPlace){.entered = NEVER, .left = NEVER};
+    return database_each(l->d, "SELECT evaluation, entered, left FROM front ORDER BY evaluation", take_front, l, err);
+}
+
+/* The table has what is behind the finished generations; what is on the front is there, and usable. */
+static Status load_end(Loading *l, Err *err)
+{
+    Run *run = l->run;
+    const Schema *s = &run->schema;
+    run->n_ahead = (size_t)run->generation[run->n_generations - 1].simulated;
+    run->table = evaluation_table(s->n_var, s->n_obj, s->n_extra);
+    TRY(rows_read(l->d, &run->table, (long)run->n_ahead + 1, LONG_MAX, err));
+    TRY(make_places(l, err));
+    for (size_t i = 0; i < run->n_ahead; i++) {
+        run->place[i].on_front = run->place[i].entered != NEVER && run->place[i].left == NEVER;
+        run->n_front += run->place[i].on_front != 0;
+    }
+    for (size_t i = 0; i < run->table.n; i++)
+        run->place[run->n_ahead + i].ok = is_ok(run, &run->table.row[i]);
+    return STATUS_OK;
+}
+
 static Status load_evaluations(Loading *l, Err *err)
 {
     Run *run = l->run;
     const Schema *s = &run->schema;
     /* repeats are found by their x, what a tower's front is said about needs it */
-    const int has_all = l->part == RUN_WHOLE || s->is_noisy || (l->part == RUN_REVIEWED && s->order.n_obj > 0);
+    const int has_all =
+        l->part == RUN_WHOLE || l->part == RUN_ENDED || s->is_noisy || (l->part == RUN_REVIEWED && s->order.n_obj > 0);
     run->table = evaluation_table(has_all ? s->n_var : 0, s->n_obj, has_all ? s->n_extra : 0);
     TRY(rows_read(l->d, &run->table, 0, LONG_MAX, err));
-    run->place = calloc(run->table.n + 1, sizeof *run->place);
     run->F = s->is_noisy ? calloc(run->table.n * s->n_obj + 1, sizeof *run->F) : run->table.f;
-    if (!run->place || (run->table.n > 0 && !run->F))
+    if (run->table.n > 0 && !run->F)
         return fail(err, STATUS_NO_MEMORY, "%s: no memory for %zu evaluations", database_path(l->d), run->table.n);
     if (run->table.n > 0 && run->F != run->table.f)
         memcpy(run->F, run->table.f, run->table.n * s->n_obj * sizeof *run->F);
-    for (size_t i = 0; i < run->table.n; i++)
-        run->place[i] = (RunPlace){.entered = NEVER, .left = NEVER};
-    TRY(database_each(l->d, "SELECT evaluation, entered, left FROM front ORDER BY evaluation", take_front, l, err));
+    TRY(make_places(l, err));
     place_all(run);
     TRY(repeats_join(run, err));
     return run_settle_front(run, err);
@@ -263,13 +297,39 @@ static Status load_head(Loading *l, Err *err)
                                  : fail(err, STATUS_IO, "%s: is damaged: it has no settings", database_path(l->d));
 }
 
+/* What the end of a plain search is resumed from is all there. */
+static int is_plain_end(const Run *run)
+{
+    return run->state && !run->state_is_damaged &&
+           run->state_generation == run->generation[run->n_generations - 1].number && !run_has_polished(run) &&
+           (run->table.n == 0 || run->table.row[0].kind == KIND_UNFINISHED);
+}
+
+/* A row without a digest beside others is refused where rows are read together: here they are not. */
+static int has_digests(const Loading *l, long n_ahead)
+{
+    char sql[100];
+    double without;
+    snprintf(sql, sizeof sql, "SELECT count(*) FROM evaluation WHERE digest IS NULL AND (id = 1 OR id > %ld)", n_ahead);
+    return database_number(l->d, sql, 1, &without, &(Err){0}) == STATUS_OK && without == 0;
+}
+
+static int may_stay(const Loading *l)
+{
+    const Run *run = l->run;
+    return l->part == RUN_ENDED && database_format(l->d) == DATABASE_FORMAT && run->n_generations > 0 &&
+           run->generation[run->n_generations - 1].simulated > 0 && !run->schema.is_noisy && !run->schema.has_spread &&
+           run->settings->search.asynchronous == SWITCH_OFF &&
+           has_digests(l, run->generation[run->n_generations - 1].simulated);
+}
+
 static Status load(Loading *l, Err *err)
 {
     Database *d = l->d;
     TRY(load_head(l, err));
-    TRY(load_evaluations(l, err));
     TRY(each(l, "number, simulated, failed, front, predicted, surrogate_error, hypervolume, seconds, finished",
              "generation ORDER BY number", take_generation, err));
+    TRY(may_stay(l) ? load_end(l, err) : load_evaluations(l, err));
     TRY(database_each(
         d,
         "SELECT started, ended, host, pid, threads, simulated_before, seconds, stopped, is_final, search, "
@@ -297,6 +357,10 @@ Status run_load_part(Run *run, Database *d, const char *folder, RunPart part, Er
 {
     Loading l = {.run = run, .d = d, .part = part};
     TRY(load_at_once(&l, load, err));
+    if (run->n_ahead > 0 && !is_plain_end(run)) {
+        run_free(run);
+        return run_load(run, d, folder, err);
+    }
     snprintf(run->folder, sizeof run->folder, "%s", folder);
     return STATUS_OK;
 }

@@ -22,6 +22,8 @@ typedef enum {
     RUN_WHOLE,
     RUN_RESULTS,  /* no x, no extra */
     RUN_REVIEWED, /* ... of a tower all: study/front_review.h */
+    RUN_ENDED, /* to be resumed: of a plain search of which nothing is damaged or polished the finished evaluations stay
+                     where they are (n_ahead, unchecked, n_front of them on the front without a list); else all of it */
 } RunPart;
 Status run_read_part(Run *run, const char *folder, RunPart part, Err *err);
 Status run_load_part(Run *run, Database *d, const char *folder, RunPart part, Err *err);

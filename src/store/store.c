@@ -50,14 +50,6 @@ const Run *store_run(const RunStore *store)
     return store->has_run ? &store->run : NULL;
 }
 
-Run store_give_run(RunStore *store)
-{
-    const Run run = store->run;
-    store->run = (Run){0};
-    store->has_run = 0;
-    return run;
-}
-
 double store_hypervolume(const RunStore *store)
 {
     return front_share_value(&store->share);
@@ -75,7 +67,8 @@ static Status open_database(RunStore *store, Err *err)
 /* evaluations.csv follows the database. Where it has more, the journal was lost, as by a copy of run.sqlite alone. */
 static Status check_nothing_lost(const RunStore *store, Err *err)
 {
-    const size_t n = store->run.table.n, n_exported = folder_rows(&store->folder, "evaluations.csv");
+    const size_t n = store->run.n_ahead + store->run.table.n,
+                 n_exported = folder_rows(&store->folder, "evaluations.csv");
     if (n_exported <= n)
         return STATUS_OK;
     return fail(err, STATUS_IO,
@@ -85,40 +78,63 @@ static Status check_nothing_lost(const RunStore *store, Err *err)
                 store->has_run ? "its journal run.sqlite-wal, or part of it," : "the database");
 }
 
-static Status load_run(RunStore *store, Err *err)
+static Status load_run(RunStore *store, RunPart part, Err *err)
 {
     Status status = open_database(store, err);
     if (status == STATUS_OK)
-        status = run_load(&store->run, store->db, store_folder(store), err);
+        status = run_load_part(&store->run, store->db, store_folder(store), part, err);
     if (status == STATUS_OK)
         database_grow(store->db);
     return folder_advise(store_folder(store), status, err);
 }
 
-static Status open_folder(RunStore *store, const char *folder, int fresh, Err *err)
+/* What was left out too. */
+static Status load_whole(RunStore *store, Err *err)
+{
+    if (store->run.n_ahead == 0)
+        return STATUS_OK;
+    run_free(&store->run);
+    return run_load(&store->run, store->db, store_folder(store), err);
+}
+
+Status store_give_run(RunStore *store, Run *run, Err *err)
+{
+    TRY(load_whole(store, err));
+    *run = store->run;
+    store->run = (Run){0};
+    store->has_run = 0;
+    return STATUS_OK;
+}
+
+static Status open_folder(RunStore *store, const char *folder, int fresh, RunPart part, Err *err)
 {
     TRY(folder_take(&store->folder, folder, fresh, err));
     if (!folder_has(&store->folder, "run.sqlite"))
         return check_nothing_lost(store, err);
-    TRY(load_run(store, err));
+    TRY(load_run(store, part, err));
     store->has_run = 1;
     store->has_polished = run_has_polished(&store->run);
     return check_nothing_lost(store, err);
 }
 
-Status store_open(RunStore **out, const char *folder, int fresh, Err *err)
+static Status open_part(RunStore **out, const char *folder, int fresh, RunPart part, Err *err)
 {
     *out = NULL;
     RunStore *store = calloc(1, sizeof *store);
     if (!store)
         return fail(err, STATUS_NO_MEMORY, "no memory for a run");
     store->folder.lock = -1;
-    const Status status = open_folder(store, folder, fresh, err);
+    const Status status = open_folder(store, folder, fresh, part, err);
     if (status == STATUS_OK)
         *out = store;
     else
         store_free(store);
     return status;
+}
+
+Status store_open(RunStore **out, const char *folder, int fresh, Err *err)
+{
+    return open_part(out, folder, fresh, RUN_ENDED, err);
 }
 
 Status store_open_run(RunStore **out, const char *folder, Err *err)
@@ -127,7 +143,7 @@ Status store_open_run(RunStore **out, const char *folder, Err *err)
     *out = NULL;
     if (!run_path(folder, path, sizeof path))
         return fail(err, STATUS_MISSING, "%.200s: holds no run: run.sqlite is not there", folder);
-    return store_open(out, folder, 0, err);
+    return open_part(out, folder, 0, RUN_WHOLE, err);
 }
 
 /* The journal goes first: left alone it would be taken for that of the next database. */
@@ -195,7 +211,7 @@ static Status take_up(RunStore *store, Err *err)
     for (size_t i = 0; i < store->n_known; i++) {
         store->was_on_front[i] = run->place[i].entered != NEVER && run->place[i].left == NEVER;
         if (store->was_on_front[i])
-            store->front ^= digest_member(run->table.row[i].id);
+            store->front ^= digest_member(i < run->n_ahead ? (long)i + 1 : run->table.row[i - run->n_ahead].id);
     }
     return STATUS_OK;
 }
@@ -203,11 +219,15 @@ static Status take_up(RunStore *store, Err *err)
 Status store_resume(RunStore *store, const Schema *schema, const Settings *used, Err *err)
 {
     take_schema(store, schema);
+    const int are_whole = csv_files_are_whole(&store->folder, &store->run);
+    if (!are_whole)
+        TRY(load_whole(store, err));
     TRY(take_up(store, err));
-    TRY(tables_upgrade(store->db, &store->run.table, err));
+    if (store->run.n_ahead == 0)
+        TRY(tables_upgrade(store->db, &store->run.table, err));
     TRY(tables_set_settings(store->db, used, &store->run, err));
     TRY(write_origin(store, used, store->run.provenance, err));
-    TRY(csv_files_resume(&store->files, &store->folder, schema, &store->run, err));
+    TRY(csv_files_resume(&store->files, &store->folder, schema, &store->run, are_whole, err));
     return logs_open(&store->logs, &store->folder, err);
 }
 
@@ -229,6 +249,35 @@ Status store_session(RunStore *store, const char *program, int threads, size_t n
                     "ttitii", started, host, (long)getpid(), program, (long)threads, (long)n_simulated));
     store->last_commit = clock_seconds();
     return database_each(store->db, "SELECT last_insert_rowid()", take_long, &store->session, err);
+}
+
+typedef struct {
+    const RunStore *store;
+    EvaluationFn take;
+    void *user;
+    size_t n;
+} Each;
+
+static Status take_finished(const Evaluation *e, void *user, Err *err)
+{
+    Each *each = user;
+    if (e->id != (long)++each->n || e->kind == KIND_UNFINISHED)
+        return fail(err, STATUS_IO, "%s: is damaged: evaluation %zu is missing", database_path(each->store->db),
+                    each->n);
+    return each->take(e, each->user, err);
+}
+
+Status store_each_finished(const RunStore *store, EvaluationFn take, void *user, Err *err)
+{
+    const size_t n = store->run.n_ahead;
+    EvaluationTable room = store->waiting;
+    Each each = {store, take, user, 0};
+    room = evaluation_table(room.n_var, room.n_obj, room.n_extra);
+    Status status = rows_each(store->db, &room, 1, (long)n, take_finished, &each, err);
+    if (status == STATUS_OK && each.n < n)
+        status = fail(err, STATUS_IO, "%s: is damaged: evaluation %zu is missing", database_path(store->db), n);
+    evaluation_table_free(&room);
+    return status;
 }
 
 /* -- simulations --------------------------------------------------------------------------------------------------- */

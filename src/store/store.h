@@ -54,9 +54,12 @@ Status store_open(RunStore **out, const char *folder, int fresh, Err *err);
 Status store_open_run(RunStore **out, const char *folder, Err *err); /* one that is there */
 const char *store_folder(const RunStore *store);
 
-/* The run that the folder held when it was opened; NULL: none. */
+/* The run that the folder held when it was opened, with fresh = 0 as RUN_ENDED says (store/run_read.h); NULL: none. */
 const Run *store_run(const RunStore *store);
-Run store_give_run(RunStore *store); /* it passes to the caller, for run_free */
+Status store_give_run(RunStore *store, Run *run, Err *err); /* all of it passes to the caller, for run_free */
+
+/* The finished evaluations in their order, one after the other (store/rows.h). */
+Status store_each_finished(const RunStore *store, EvaluationFn take, void *user, Err *err);
 
 /* A run in which nothing was simulated is removed: the next one begins with whatever settings. */
 Status store_forget_empty(RunStore *store, Err *err);

@@ -177,10 +177,13 @@ static Status begin(Study *study, Err *err)
 
 static void sum_up(StudySummary *sum, const Run *run)
 {
+    const size_t n_ahead = run->n_ahead;
+    sum->n_before = n_ahead;
+    sum->n_failed = n_ahead > 0 ? (size_t)run->generation[run->n_generations - 1].failed : 0;
     for (size_t i = 0; i < run->table.n; i++)
         if (run->table.row[i].kind != KIND_POLISHED) {
             sum->n_before++;
-            sum->n_failed += !run->place[i].ok;
+            sum->n_failed += !run->place[n_ahead + i].ok;
         }
     sum->n_simulated = sum->n_before;
     sum->n_front = run->n_front;
@@ -309,13 +312,20 @@ SearchConfig study_search_config(const Settings *s)
 
 /* What the run has of the search, as the search takes it up: the finished generations, then the evaluations of the one
  * that was cut short. */
+static Status each_finished(EvaluationFn take, void *search, void *store, Err *err)
+{
+    return store_each_finished(store, take, search, err);
+}
+
 static Status find_start(const Study *study, SearchStart *start, Err *err)
 {
     const Run *run = store_run(study->store);
-    size_t n = 0;
-    for (; n < run->table.n && run->table.row[n].kind != KIND_POLISHED; n++) {
-        start->n += run->state && start->n == n && run->table.row[n].kind != KIND_UNFINISHED;
-        if ((start->n > n || study->used.search.asynchronous) && run->table.row[n].id != (long)n + 1)
+    size_t n = run->n_ahead;
+    if (n > 0)
+        *start = (SearchStart){.n = n, .each = each_finished, .user = study->store};
+    for (const Evaluation *e = run->table.row; n < run->n_ahead + run->table.n && e->kind != KIND_POLISHED; n++, e++) {
+        start->n += run->state && start->n == n && e->kind != KIND_UNFINISHED;
+        if ((start->n > n || study->used.search.asynchronous) && e->id != (long)n + 1)
             return fail(err, STATUS_IO, "%s/run.sqlite: is damaged: evaluation %zu is missing", study->summary->folder,
                         n + 1);
     }
@@ -379,9 +389,8 @@ static Status run_search(Study *study, Err *err)
         status = find_front(study, &start, &on_front, err);
     start.on_front = on_front;
     if (status == STATUS_OK)
-        status = search_resume(adapter_problem(study->adapter), &config,
-                               start.row && start.n + start.n_later > 0 ? &start : NULL, observe, study,
-                               &study->summary->stopped, err);
+        status = search_resume(adapter_problem(study->adapter), &config, start.n + start.n_later > 0 ? &start : NULL,
+                               observe, study, &study->summary->stopped, err);
     free(given);
     free(on_front);
     return note_stop(study, status, err);
@@ -425,7 +434,8 @@ int study_finished(RunStore *store, StudySummary *summary, Run *run)
     *summary = (StudySummary){0};
     if (!store_run(store) || !came_to_its_end(store_run(store), &summary->stopped))
         return 0;
-    *run = store_give_run(store);
+    if (store_give_run(store, run, &(Err){0}) != STATUS_OK)
+        return 0;
     snprintf(summary->folder, sizeof summary->folder, "%s", store_folder(store));
     summary->max_evals = run->settings->search.max_evals;
     sum_up(summary, run);
@@ -517,7 +527,7 @@ Status study_run(const Settings *s, const StudyOptions *options, StudySummary *s
     if (status == STATUS_OK && !is_over(&study))
         status = work(&study, err);
     else if (status == STATUS_OK && options->run)
-        *options->run = store_give_run(study.store);
+        status = store_give_run(study.store, options->run, err);
     if (status == STATUS_OK)
         status = find_baselines(&study, err);
     if (status != STATUS_OK && study.store) {
