@@ -146,8 +146,10 @@ static void print_named(const Evaluations *e, const Schema *schema)
         fputs(e->run[i].motion, stdout);
         show_result_names("", order);
         for (int c = 0; c < evaluated_cases(e, &e->run[i]); c++) {
-            show_result(EVALUATION_CASES[c].word, order, &e->run[i].result[c],
-                        c == EVALUATED_DESIGN && e->run[i].error_known ? e->run[i].error : NULL);
+            const double *error = c == EVALUATED_DESIGN && e->run[i].error_known ? e->run[i].error : NULL;
+            show_result(EVALUATION_CASES[c].word, order, &e->run[i].result[c], error);
+            if (error)
+                show_result_errors(order, error);
             if (c == EVALUATED_DESIGN && e->replicates > 0)
                 show_replicates(0, order, &e->run[i].replicates);
         }

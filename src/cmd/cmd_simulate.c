@@ -165,6 +165,8 @@ static void print_table(const Job *job, const Settings *s, const Tower *t)
     for (size_t i = 0; i < job->n; i++) {
         snprintf(label, sizeof label, "design %ld", number_of(job, i));
         show_result(job->kind == SCENE_NO_CORE ? "no core" : label, order, &job->results[i], errors_of(job, i));
+        if (job->error)
+            show_result_errors(order, errors_of(job, i));
         if (job->has_parts)
             show_replicates(0, order, &job->summary[i]);
     }

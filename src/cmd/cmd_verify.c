@@ -10,6 +10,7 @@
 #include "report/heights.h"
 #include "scene/frame.h"
 #include "settings/settings.h"
+#include "simulator/estimate.h"
 #include "simulator/tower.h"
 #include "store/run_read.h"
 #include "study/record_paths.h"
@@ -29,6 +30,7 @@ typedef struct {
     int n_floors, dofs[MODELS]; /* degrees of freedom of the building */
     double z[FLOORS_MAX];       /* [m] of the floors */
     SimResult *results[MODELS]; /* (n) under the record at hand */
+    double *error;              /* (n, N_MEASURES) estimated integration errors of the reduced model; NULL: not known */
     char motion[sizeof((Motion){0}).name];
     double pga_g, scale, stretch;
     json_t *list; /* NULL: a table */
@@ -51,14 +53,16 @@ static void note_scene(Job *job, const Scenario *w, int model)
     job->stretch = w->motion.stretch;
 }
 
-static Status simulate(Job *job, const Problem *p, int model, Err *err)
+static Status simulate(Job *job, const Settings *s, const Problem *p, int model, Err *err)
 {
     SimTask *tasks = calloc(job->n, sizeof *tasks);
     if (!tasks)
         return fail(err, STATUS_NO_MEMORY, "no memory for %zu simulations", job->n);
     for (size_t i = 0; i < job->n; i++)
         tasks[i] = (SimTask){job->kind, job->designs.x ? job->designs.x + i * (size_t)job->space.n_var : NULL};
-    const Status status = tower_simulate(p, job->n, tasks, job->results[model], err);
+    Status status = tower_simulate(p, job->n, tasks, job->results[model], err);
+    if (status == STATUS_OK && model == REDUCED && job->error)
+        status = estimate_designs(s, job->n, tasks, job->results[model], job->error, err);
     free(tasks);
     for (size_t i = 0; i < job->n && status == STATUS_OK; i++)
         if (job->results[model][i].outcome != RUN_OK)
@@ -74,7 +78,7 @@ static Status simulate_model(Job *job, const Settings *s, int model, Err *err)
         own.building.modes = ALL_MODES;
     TRY(tower_open(&p, &own, TOWER_SINGLE, job->n, err));
     note_scene(job, tower_record(tower_of(&p), 0), model);
-    const Status status = simulate(job, &p, model, err);
+    const Status status = simulate(job, &own, &p, model, err);
     problem_close(&p);
     return status;
 }
@@ -131,14 +135,17 @@ static void print_peaks(const Job *job, size_t i)
 static void print_design(const Job *job, size_t i)
 {
     char label[64];
+    const double *known = job->error ? job->error + i * N_MEASURES : NULL;
     for (int m = 0; m < MODELS; m++) {
         if (job->designs.x)
             snprintf(label, sizeof label, "design %ld, %s (%d)", job->designs.id ? job->designs.id[i] : (long)i + 1,
                      WORDS[m], job->dofs[m]);
         else
             snprintf(label, sizeof label, "no core, %s (%d)", WORDS[m], job->dofs[m]);
-        show_result(label, &job->order, &job->results[m][i], NULL);
+        show_result(label, &job->order, &job->results[m][i], known);
     }
+    if (known)
+        show_result_errors(&job->order, known);
     printf("%-28s", "  error of the reduced [%]");
     for (int o = 0; o < job->order.n_obj; o++) {
         const int k = job->order.of[o];
@@ -267,8 +274,13 @@ static Status verify_by(const Args *args, Settings *s, const char *folder, Err *
         job.results[m] = calloc(job.n, sizeof *job.results[m]);
         status = job.results[m] ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for %zu results", job.n);
     }
+    if (status == STATUS_OK && s->sim.engine == ENGINE_FAST && !args_has(args, "--json")) {
+        job.error = calloc(job.n, N_MEASURES * sizeof *job.error);
+        status = job.error ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for %zu results", job.n);
+    }
     if (status == STATUS_OK)
         status = show(args, &job, err);
+    free(job.error);
     for (int m = 0; m < MODELS; m++)
         free(job.results[m]);
     design_free(&job.designs);

@@ -212,7 +212,7 @@ void show_result_names(const char *label, const MeasureOrder *order)
     printf(" %8s %9s %11s\n", "impacts", "balance", "indentation");
 }
 
-static void show_errors(const MeasureOrder *order, const double error[])
+void show_result_errors(const MeasureOrder *order, const double error[])
 {
     printf("%-28s", "  estimated error");
     for (int i = 0; i < order->n_obj; i++)
@@ -235,8 +235,6 @@ void show_result(const char *label, const MeasureOrder *order, const SimResult *
     if (r->bumper_bottoms_out)
         printf("  a bumper is compressed by %.3g of its thickness: it bottoms out", r->bumper_strain);
     putchar('\n');
-    if (error)
-        show_errors(order, error);
 }
 
 /* Of the first column: "best NAME" of every objective fits, and the words of the baselines. */

@@ -21,10 +21,11 @@ Status show_json(json_t *all, Err *err);
  * was done to the samples and of what does not fit, where there is any. */
 void show_motion(FILE *out, const Motion *m, double duration_s);
 
-/* One line per simulation: label, objectives, impacts, outcome where it is not ok. error (N_MEASURES) or NULL: a second
- * line has those of the objectives, and of a value no digit is shown that they leave open. */
+/* One line per simulation: label, objectives, impacts, outcome where it is not ok. error (N_MEASURES) or NULL: of a value
+ * no digit is shown that it leaves open; a line of its own has those of the objectives. */
 void show_result_names(const char *label, const MeasureOrder *order);
 void show_result(const char *label, const MeasureOrder *order, const SimResult *r, const double error[]);
+void show_result_errors(const MeasureOrder *order, const double error[]);
 
 /* Lines of mean and standard deviation of the objectives; one line where a replicate failed. indent: blanks before. */
 void show_replicates(int indent, const MeasureOrder *order, const ReplicateSummary *r);
