@@ -171,9 +171,11 @@ static void test_integers_divide_as_integers_and_a_failed_import_leaves_no_folde
     char *text = read_in_place("whole/nodes.csv");
     assert_non_null(strstr(text, "4,4000,3000"));
     free(text);
-    expect_import(65, "no floors", CANTILEVER);
+    expect_import(65, "model.tcl: no floors: no level", CANTILEVER);
     snprintf(model, sizeof model, "%selement elasticBeamColumn 3 3 4 1e3 2e8 1e6 1\nmass 4 1e40 0 0\n", CANTILEVER);
-    expect_import(65, "is a stiffness or a mass wrong?", model);
+    expect_import(65, "model.tcl: the first period is ", model);
+    snprintf(model, sizeof model, "%snode 5 9 9\nelement elasticBeamColumn 3 3 4 1e3 2e8 1e6 1\n", CANTILEVER);
+    expect_import(65, "model.tcl: a mechanism: nothing resists when node 5 ", model);
     char *folder = in_place("refused");
     assert_int_not_equal(access(folder, F_OK), 0);
     free(folder);

@@ -9,14 +9,25 @@
 #include "scene/opensees.h"
 #include "settings/settings.h"
 
+/* A fault of the sheets is one of the model, whose tags they have as names: "FOLDER/SHEET:LINE: " becomes "MODEL: ". */
+static Status blame(const char *model, const char *folder, const Err *found, Err *err)
+{
+    const int of_frame = strncmp(found->text, "frame: ", strlen("frame: ")) == 0;
+    const int of_sheets = strncmp(found->text, folder, strlen(folder)) == 0;
+    const char *text = of_frame || of_sheets ? strstr(found->text + (of_sheets ? strlen(folder) : 0), ": ") : NULL;
+    return fail(err, found->code, "%s: %s", model, text ? text + strlen(": ") : found->text);
+}
+
 /* What was written, read back as a study reads it. */
-static Status sum_up(const Frame *f, const char *folder, Err *err)
+static Status sum_up(const char *model, const Frame *f, const char *folder, Err *err)
 {
     Settings s;
     Building b;
+    Err found = {0};
     settings_defaults(&s);
     snprintf(s.building.model, sizeof s.building.model, "%s", folder);
-    TRY(building_load(&b, &s.building, err));
+    if (building_load(&b, &s.building, &found) != STATUS_OK)
+        return blame(model, folder, &found, err);
     printf("%s: %d nodes, %d elements, %d sections, %d ties\n", folder, f->n_nodes, f->n_elements, f->n_sections,
            f->n_ties);
     printf("%d floor%s, first period %.4g s; `imtet building %s` has more\n", b.n, b.n == 1 ? "" : "s",
@@ -37,20 +48,20 @@ static void remove_folder(const char *folder)
     rmdir(folder);
 }
 
-static Status fill_folder(const Frame *f, const char *folder, Err *err)
+static Status fill_folder(const char *model, const Frame *f, const char *folder, Err *err)
 {
     TRY(frame_write(f, folder, err));
-    return sum_up(f, folder, err);
+    return sum_up(model, f, folder, err);
 }
 
-static Status write_folder(const Frame *f, const char *folder, Err *err)
+static Status write_folder(const char *model, const Frame *f, const char *folder, Err *err)
 {
     if (strlen(folder) >= OPTION_TEXT_MAX)
         return fail(err, STATUS_USAGE, "%.60s...: the path is too long", folder);
     const int is_new = mkdir(folder, 0777) == 0;
     if (!is_new && errno != EEXIST)
         return fail(err, STATUS_IO, "%s: %s", folder, strerror(errno));
-    const Status status = fill_folder(f, folder, err);
+    const Status status = fill_folder(model, f, folder, err);
     if (status != STATUS_OK && is_new)
         remove_folder(folder);
     return status;
@@ -67,7 +78,7 @@ static Status run(const Args *args, Err *err)
         return fail(err, STATUS_USAGE, "--units %s: an OpenSees model says none; give %s", word ? word : "is missing",
                     MODEL_UNITS_WORDS);
     TRY(opensees_read(&f, args->operand, units, stderr, err));
-    const Status status = write_folder(&f, out, err);
+    const Status status = write_folder(args->operand, &f, out, err);
     frame_free(&f);
     return status;
 }
