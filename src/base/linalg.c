@@ -63,6 +63,15 @@ static int lacked_memory(int info)
     return info == LAPACK_WORK_MEMORY_ERROR || info == LAPACK_TRANSPOSE_MEMORY_ERROR;
 }
 
+/* From so many modes on by divide and conquer: faster, with another rounding, in twice the memory. */
+enum { MODES_OF_MANY = 257 };
+
+static int eigen(int n, double A[], double B[], double values[])
+{
+    return n < MODES_OF_MANY ? LAPACKE_dsygv(LAPACK_COL_MAJOR, 1, 'V', 'L', n, A, n, B, n, values)
+                             : LAPACKE_dsygvd(LAPACK_COL_MAJOR, 1, 'V', 'L', n, A, n, B, n, values);
+}
+
 Status linalg_modes(int n, const double K[], const double M[], double omega[], double phi[], Err *err)
 {
     const size_t nn = (size_t)n * (size_t)n;
@@ -72,7 +81,7 @@ Status linalg_modes(int n, const double K[], const double M[], double omega[], d
     double *B = A + nn;
     memcpy(A, K, nn * sizeof *A);
     memcpy(B, M, nn * sizeof *B);
-    const int info = LAPACKE_dsygv(LAPACK_COL_MAJOR, 1, 'V', 'L', n, A, n, B, n, omega);
+    const int info = eigen(n, A, B, omega);
     if (info == 0) {
         const double rounding = 1e-12 * fabs(omega[n - 1]);
         for (int i = 0; i < n && omega[0] >= -rounding; i++)
@@ -89,7 +98,7 @@ Status linalg_modes(int n, const double K[], const double M[], double omega[], d
     if (info > n)
         return fail(err, STATUS_BAD_DATA, "modes: the mass matrix is not positive definite (pivot %d)", info - n);
     if (info != 0)
-        return fail(err, STATUS_INTERNAL, "modes: LAPACK dsygv did not converge (info %d)", info);
+        return fail(err, STATUS_INTERNAL, "modes: LAPACK did not converge (info %d)", info);
     if (omega[0] < 0)
         return fail(err, STATUS_BAD_DATA, "modes: the stiffness matrix is not positive: lowest w^2 = %g", omega[0]);
     return STATUS_OK;

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/linalg.h"
+#include "scene/options.h"
 
 /* ---- Craig-Bampton -------------------------------------------------------------------------------------------- */
 
@@ -168,14 +169,19 @@ Status reduction_craig_bampton(const FrameFull *full, int n_floors, long modes, 
 
 void reduction_alike(int n, const double phi[], const double M[], int m, const double psi[], int like[])
 {
+    double M_psi[FLOORS_MAX];
     for (int k = 0; k < m; k++) {
         double most = 0, sum = 0;
         like[k] = -1;
+        for (int a = 0; a < n; a++) {
+            M_psi[a] = 0;
+            for (int b = 0; b < n; b++)
+                M_psi[a] += M[a * n + b] * psi[b * m + k];
+        }
         for (int i = 0; i < n; i++) {
             double share = 0;
             for (int a = 0; a < n; a++)
-                for (int b = 0; b < n; b++)
-                    share += phi[a * n + i] * M[a * n + b] * psi[b * m + k];
+                share += phi[a * n + i] * M_psi[a];
             share *= share;
             sum += share;
             if (share > most) {
