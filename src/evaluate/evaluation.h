@@ -49,6 +49,8 @@ Outcome outcome_of_word(const char *word); /* OUTCOME_COUNT: no outcome has that
     X(OFFSPRING, "offspring")   /* of variation, without the surrogate */                                              \
     X(POLISHED, "polished")     /* from outside the search */                                                          \
     X(REPEAT, "repeat")         /* further replicates of a design that is there */                                     \
+    X(SCREENED, "screened")     /* the cheap level alone (evaluate/problem.h): never on the front */                   \
+    X(FINISHED, "finished")     /* screened before: now all of its simulations */                                      \
     X(UNFINISHED, "unfinished") /* its generation is not finished: not known yet */
 
 typedef enum {

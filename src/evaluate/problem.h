@@ -6,6 +6,8 @@
  *
  *   task -> Simulator.simulate -> part (part_size bytes)      all parts of a design -> Simulator.combine -> Evaluation
  *
+ * The first n_cheap parts may be a cheap level of the problem: an approximation of f and g from fewer simulations.
+ *
  * A part is a plain record of fixed size, without pointers: it could come from another machine. What the simulator
  * answers is natural (units and signs of the files); `judge` makes the minimised f and the g of it.
  *
@@ -73,8 +75,10 @@ typedef struct {
     const Simulator *simulator;
     void *self; /* of simulator and repair */
     size_t n_parts, part_size, n_workers;
-    const Executor *executor; /* evaluate/threads.h */
-    const void *recipe;       /* (recipe_size) bytes without pointers, of which another process opens the same problem;
+    size_t n_cheap; /* the first parts, which are a cheap level of the same problem; 0: there is none */
+    void (*combine_cheap)(const void *self, const void *parts, Evaluation *e); /* Simulator.combine of these */
+    const Executor *executor;                                                  /* evaluate/threads.h */
+    const void *recipe; /* (recipe_size) bytes without pointers, of which another process opens the same problem;
                                  NULL: there are none */
     size_t recipe_size;
     uint64_t inputs; /* hash of the files that it was opened from; 0: none, or not known */

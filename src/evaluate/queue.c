@@ -16,7 +16,7 @@ typedef struct {
     size_t index; /* of Queue.pool */
     size_t repeat, sequence, arrival;
     size_t n_parts, n_taken, n_given;
-    int only_first;
+    int only_first, is_cheap, was_known;
     long request;
     int variant;
     double *f, *g; /* (n_obj) (n_con) minimised */
@@ -213,11 +213,17 @@ static void fill(Queue *q, Slot *s, const Asked *asked)
     s->repeat = asked->repeat;
     s->variant = asked->variant;
     s->only_first = asked->only_first;
-    s->n_parts = asked->only_first ? 1 : q->problem->n_parts;
+    s->is_cheap = asked->is_cheap;
+    s->was_known = is_known;
+    s->n_parts = asked->only_first ? 1 : asked->is_cheap ? q->problem->n_cheap : q->problem->n_parts;
     s->sequence = q->n_asked++;
     s->place = PENDING;
     if (!is_known || q->order == QUEUE_AS_ASKED)
         s->request = s->e.id = ++q->last_request;
+    if (!is_known && asked->cheap_parts) {
+        memcpy(s->parts, asked->cheap_parts, q->problem->n_cheap * q->problem->part_size);
+        s->n_taken = s->n_given = q->problem->n_cheap;
+    }
     if (!is_known)
         return;
     s->n_taken = s->n_given = s->n_parts;
@@ -267,13 +273,13 @@ int queue_has(const Queue *q, const double x[])
 Asked queue_design(const Queue *q, size_t i)
 {
     const Slot *s = in_line(q, i);
-    return (Asked){s->e.x, s->repeat, s->e.kind, s->variant, s->only_first, s->note};
+    return (Asked){s->e.x, s->repeat, s->e.kind, s->variant, s->only_first, s->note, s->is_cheap, NULL};
 }
 
 static void give_out(Queue *q, Slot *s, Finished *out)
 {
     q->given = s;
-    *out = (Finished){&s->e, s->f, s->g, s->note, s->parts};
+    *out = (Finished){&s->e, s->f, s->g, s->note, s->was_known ? NULL : s->parts};
 }
 
 /* The next of before, whether asked for or not. */
@@ -287,6 +293,7 @@ static Status next_known(Queue *q, Finished *out, Err *err)
         s = remove_at(q, i);
     else
         TRY(slot_get(q, &s, err));
+    s->was_known = 1;
     take_known(q, s, row, was_asked ? s->e.kind : row->kind == KIND_UNFINISHED ? KIND_INFILL : row->kind);
     give_out(q, s, out);
     out->note = was_asked ? s->note : NULL;
@@ -443,7 +450,7 @@ static void complete(const Queue *q, Slot *s)
 {
     const Problem *p = q->problem;
     Evaluation *e = &s->e;
-    p->simulator->combine(p->self, s->parts, e);
+    (s->is_cheap ? p->combine_cheap : p->simulator->combine)(p->self, s->parts, e);
     for (size_t k = 0; e->outcome != OUTCOME_OK && k < p->n_obj; k++)
         e->f[k] = NAN;
     problem_judge(p, e, s->f, s->g);

@@ -40,6 +40,8 @@ typedef struct {
     int variant;        /* as in Task */
     int only_first;     /* 1: part 0 alone, for its own sake: no evaluation is made, and the observer does not hear */
     const double *note; /* (n_note), copied */
+    int is_cheap;       /* 1: the cheap level alone, combine_cheap */
+    const void *cheap_parts; /* (n_cheap) parts of this design that are there, copied; NULL: none */
 } Asked;
 
 Status queue_ask(Queue *q, const Asked *asked, Err *err);
@@ -48,7 +50,7 @@ typedef struct {
     const Evaluation *evaluation; /* kind: as asked; KIND_INFILL where it was not asked for */
     const double *f, *g;          /* (n_obj) (n_con) minimised, as the problem judges it */
     const double *note;           /* NULL: known, and not asked for */
-    const void *parts;            /* (n_parts) of part_size; not set where the evaluation was known */
+    const void *parts;            /* (n_parts) of part_size; NULL where the evaluation was known */
 } Finished;
 
 /* Waits for the next finished design of those pending; what `out` points to holds until the next call or queue_ask. */

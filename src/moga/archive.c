@@ -99,7 +99,8 @@ static Status resize(Archive *a, size_t n_max, int has_means, Err *err)
     free(a->store);
     *a = wider;
     for (size_t row = 0; row < a->n; row++)
-        design_of(a, row);
+        if (a->kind[row] != KIND_SCREENED || a->replicates[row] > 0)
+            design_of(a, row);
     return STATUS_OK;
 }
 
@@ -201,7 +202,7 @@ static Status add_design(Archive *a, size_t row, Place place, Err *err)
     a->violation[row] = a->ok[row] ? violation_of(a->n_con, a->H + row * a->n_con) : INFINITY;
     if (a->has_means)
         take_as_means(a, row);
-    if (!a->usable[row] || a->violation[row] > 0.0 || place == OFF_FRONT)
+    if (!a->usable[row] || a->violation[row] > 0.0 || place == OFF_FRONT || a->kind[row] == KIND_SCREENED)
         return STATUS_OK;
     if (place == ON_FRONT)
         return join_front(a, row, err);
@@ -238,9 +239,22 @@ static Status add_replicate(Archive *a, size_t row, size_t design, Err *err)
     return STATUS_OK;
 }
 
+/* The row of a screened design that is evaluated in full now. */
+static size_t replace_screened(Archive *a, size_t design, size_t row)
+{
+    pareto_archive_drop(a, design);
+    a->replicates[design] = 0;
+    a->violation[design] = INFINITY;
+    a->slot[slot_of(a, a->X + row * a->n_var)] = row + 1;
+    return row;
+}
+
 static Status add_row(Archive *a, size_t row, Place place, Err *err)
 {
-    const size_t design = design_of(a, row), was_usable = a->usable[design];
+    size_t design = design_of(a, row);
+    if (design != row && a->kind[design] == KIND_SCREENED)
+        design = replace_screened(a, design, row);
+    const size_t was_usable = a->usable[design];
     a->on_front[row] = 0;
     a->n_failed += !a->ok[row];
     if (design == row)
@@ -292,6 +306,17 @@ Status pareto_archive_restore(Archive *a, const double x[], const double f[], co
 {
     TRY(make_room(a, 1, err));
     return append(a, x, f, g, ok, kind, generation, on_front ? ON_FRONT : OFF_FRONT, err);
+}
+
+void pareto_archive_predicted(Archive *a, size_t row)
+{
+    a->violation[row] = violation_of(a->n_con, a->H + row * a->n_con);
+}
+
+void pareto_archive_drop(Archive *a, size_t row)
+{
+    a->n_usable -= a->usable[row];
+    a->usable[row] = 0;
 }
 
 /* The list of the front holds the designs with several replicates before it is made again. */

@@ -4,6 +4,9 @@
  *   design    the row of its first evaluation, which has the mean of all its replicates (F, G, violation), the standard
  *             error of F (moga/noise.h; 0 without replicates), and an estimate: F, or what the surrogate corrects it to
  *             (surrogate_estimate)
+ *   screened  a design of which only the cheap level is known (KIND_SCREENED): never on the front; F is what the whole
+ *             evaluation is predicted to be (pareto_archive_predicted). Evaluated in full, its new row is the design, and
+ *             the row before is none any more (replicates 0)
  *   usable    a design all of whose evaluations succeeded with finite numbers
  *   on_front  usable, every constraint holds, no design of the archive dominates it surely (moga/dominance.h)
  *
@@ -66,6 +69,12 @@ Status pareto_archive_reserve(Archive *a, size_t n, Err *err);
 /* One row that was in an archive, as it was put there, of which it is known whether it is on the front in the end. */
 Status pareto_archive_restore(Archive *a, const double x[], const double f[], const double g[], unsigned char ok,
                               unsigned char kind, size_t generation, int on_front, Err *err);
+
+/* Y and H of a design that is screened are now what is expected of the whole evaluation. */
+void pareto_archive_predicted(Archive *a, size_t row);
+
+/* The design is not used any more. */
+void pareto_archive_drop(Archive *a, size_t row);
 
 /* After replicates: noise models, standard errors and the front. */
 void pareto_archive_update_noise(Archive *a);

@@ -24,8 +24,8 @@ static int in_batch(const Search *s, size_t n, const double x[])
 size_t batch_add(Search *s, size_t n, const double x[], EvaluationKind kind)
 {
     Batch *b = &s->batch;
-    if (n >= b->size_max || s->archive.n + queue_pending(s->queue) + n + s->reserved >= search_evals(s) ||
-        in_batch(s, n, x) || pareto_archive_find(&s->archive, x) < s->archive.n || queue_has(s->queue, x))
+    if (n >= b->size_max || !screening_has_room(s, n) || in_batch(s, n, x) ||
+        pareto_archive_find(&s->archive, x) < s->archive.n || queue_has(s->queue, x))
         return n;
     memcpy(b->X + n * s->problem->n_var, x, s->problem->n_var * sizeof *x);
     b->repeat[n] = 0;
@@ -39,7 +39,7 @@ size_t batch_add(Search *s, size_t n, const double x[], EvaluationKind kind)
 static unsigned char is_predicted(const Search *s, size_t i)
 {
     const unsigned char kind = s->batch.kind[i];
-    return kind != KIND_SAMPLED && kind != KIND_REPEAT && surrogate_is_usable(s->surrogate);
+    return kind != KIND_SAMPLED && kind != KIND_REPEAT && kind != KIND_FINISHED && surrogate_is_usable(s->surrogate);
 }
 
 static Status ask(Search *s, size_t n, Err *err)
@@ -48,8 +48,15 @@ static Status ask(Search *s, size_t n, Err *err)
     const Batch *b = &s->batch;
     double *note = s->scratch.note;
     for (size_t i = 0; i < n; i++) {
-        const Asked asked = {
+        Asked asked = {
             .x = b->X + i * p->n_var, .repeat = b->repeat[i], .kind = (EvaluationKind)b->kind[i], .note = note};
+        if (asked.kind == KIND_FINISHED)
+            asked.cheap_parts = screening_parts(s, asked.x);
+        else if (s->screening.is_on) {
+            asked.is_cheap = 1;
+            asked.kind = KIND_SCREENED;
+        }
+        note[NOTE_KIND] = b->kind[i];
         note[NOTE_WAS_PREDICTED] = is_predicted(s, i);
         note[NOTE_CRITERION] = b->criterion[i];
         memcpy(note + NOTE_PREDICTED, b->predicted + i * p->n_obj, p->n_obj * sizeof *note);
@@ -69,13 +76,14 @@ static Status take_result(Search *s, size_t i, const Finished *done, Err *err)
     memcpy(b->X + i * p->n_var, e->x, p->n_var * sizeof *e->x);
     memcpy(b->F + i * p->n_obj, done->f, p->n_obj * sizeof *done->f);
     b->ok[i] = e->outcome == OUTCOME_OK;
-    b->kind[i] = (unsigned char)e->kind;
+    b->kind[i] = done->note ? (unsigned char)done->note[NOTE_KIND] : (unsigned char)e->kind;
     b->was_predicted[i] = done->note && done->note[NOTE_WAS_PREDICTED] != 0.0;
     b->criterion[i] = done->note ? (unsigned char)done->note[NOTE_CRITERION] : 0;
     if (b->was_predicted[i])
         memcpy(b->predicted + i * p->n_obj, done->note + NOTE_PREDICTED, p->n_obj * sizeof *b->predicted);
-    return pareto_archive_insert(&s->archive, 1, e->x, done->f, p->n_con > 0 ? done->g : NULL, &b->ok[i], b->kind[i],
-                                 s->generation, err);
+    TRY(screening_take(s, done, err));
+    return pareto_archive_insert(&s->archive, 1, e->x, done->f, p->n_con > 0 ? done->g : NULL, &b->ok[i],
+                                 (unsigned char)e->kind, s->generation, err);
 }
 
 /* All but the last `pending` of what is asked for. */
@@ -88,7 +96,7 @@ static Status take_results(Search *s, size_t pending, Err *err)
         TRY(take_result(s, b->n, &done, err));
     }
     pareto_archive_update_noise(&s->archive);
-    return STATUS_OK;
+    return screening_update(s, err);
 }
 
 size_t batch_pending_max(const SearchConfig *c, size_t n_workers)
@@ -111,7 +119,7 @@ Status batch_evaluate(Search *s, size_t n_new, size_t n, Err *err)
 {
     SearchTimes *t = &s->control.times;
     const double before = search_seconds(s);
-    memset(s->batch.kind + n_new, KIND_REPEAT, n - n_new);
+    memset(s->batch.kind + n_new, s->screening.full > 1 ? KIND_FINISHED : KIND_REPEAT, n - n_new);
     TRY(ask(s, n, err));
     const Status status = take_results(s, pending_wanted(s, n), err);
     t->waiting += search_seconds(s) - before;

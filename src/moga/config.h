@@ -21,6 +21,7 @@ typedef struct {
     size_t n_given;
     SurrogateUse surrogate;
     SelectionKind selection;
+    Fidelity fidelity;
     int asynchronous;
     double replicate_share;    /* noisy: share of max_evals for further replicates */
     size_t replicates_min;     /* ... of each design that is reported to be on the front */

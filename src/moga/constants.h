@@ -75,6 +75,12 @@ static const double VARIATION_CHANCE_FIRST = 0.1;  /* share of the designs attri
 static const double COST_MAX = 4.0; /* surrogate = auto: largest cost of a surrogate per design, in simulations */
 enum { COST_SAMPLE = 60 };          /* surrogate = auto: infill designs before costs are compared */
 
+/* -- screening.c --------------------------------------------------------------------------------------------------- */
+
+enum { SCREENED_PER_FINISHED = 5 }; /* designs screened for each that is finished */
+enum { LEVEL_PAIRS = 8 };           /* finished first: with fewer the cheap level stands for the whole evaluation */
+static const double LEVEL_TAU_MIN = 0.5; /* mean of Kendall's tau between the levels below which nothing is screened */
+
 /* -- replication.c: replication of noisy designs ------------------------------------------------------------------- */
 
 enum { REPLICATE_AFTER = 18 };               /* evaluations per variable before the first replicate */

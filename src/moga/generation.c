@@ -9,8 +9,7 @@
 /* Enough for a first surrogate of this many variables, and no more than half of the budget. */
 static size_t initial_size(const Search *s)
 {
-    const size_t wanted = INITIAL_PER_VARIABLE * s->problem->n_var + INITIAL_OFFSET,
-                 half = (search_planned(s->config) + 1) / 2;
+    const size_t wanted = INITIAL_PER_VARIABLE * s->problem->n_var + INITIAL_OFFSET, half = (search_planned(s) + 1) / 2;
     if (s->config->initial > 0)
         return s->config->initial;
     return wanted < half ? wanted : half > 4 ? half : 4;
@@ -178,7 +177,8 @@ Status generation_next(Search *s, Err *err)
     pareto_archive_reset_estimates(&s->archive);
     control_weigh_costs(&s->control, s->config->surrogate);
     search_measure_front(s);
-    const size_t n_last = replication_last(s);
+    size_t n_last = replication_last(s);
+    TRY(screening_last(s, &n_last, err));
     if (n_last > 0)
         return replicate_generation(s, n_last, err);
     TRY(fit_surrogate(s, err));              /* 2 */
@@ -186,9 +186,11 @@ Status generation_next(Search *s, Err *err)
     const size_t n = infill_select_batch(s); /* 4 */
     if (n == 0 && queue_pending(s->queue) == 0)
         return sample_again(s, err);
-    TRY(batch_evaluate(s, n, replication_add(s, n), err)); /* 5 */
-    judge_batch(s);                                        /* 6 */
-    renew_population(s, first_new);                        /* 7 */
+    size_t n_all = replication_add(s, n);
+    TRY(screening_finish(s, &n_all, err));
+    TRY(batch_evaluate(s, n, n_all, err)); /* 5 */
+    judge_batch(s);                        /* 6 */
+    renew_population(s, first_new);        /* 7 */
     count_time(s, start, waiting);
     return STATUS_OK;
 }

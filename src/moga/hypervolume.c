@@ -105,10 +105,11 @@ static int reaches(size_t m, const double f[], const double s[])
     return 1;
 }
 
-void hypervolume_add(Hypervolume *h, const double f[])
+/* Samples that are left and that f dominates; returns how many. */
+static size_t find_dominated(const Hypervolume *h, const double f[], uint64_t near[WORDS])
 {
     const size_t m = h->n_obj;
-    uint64_t near[WORDS];
+    size_t n = 0;
     memcpy(near, h->left, h->n_words * sizeof *near);
     for (size_t k = 0; k < m; k++) {
         const uint64_t *above = samples_above(h, k, level_of(h, k, f[k]));
@@ -119,11 +120,25 @@ void hypervolume_add(Hypervolume *h, const double f[])
     for (size_t w = 0; w < h->n_words; w++)
         for (uint64_t rest = near[w]; rest; rest &= rest - 1) {
             const size_t bit = (size_t)__builtin_ctzll(rest);
-            if (!reaches(m, f, h->sample + (w * WORD + bit) * m))
-                continue;
-            h->left[w] ^= (uint64_t)1 << bit;
-            h->n_left--;
+            const int is_dominated = reaches(m, f, h->sample + (w * WORD + bit) * m);
+            near[w] ^= (uint64_t)!is_dominated << bit;
+            n += (size_t)is_dominated;
         }
+    return n;
+}
+
+double hypervolume_gain(const Hypervolume *h, const double f[])
+{
+    uint64_t dominated[WORDS];
+    return (double)find_dominated(h, f, dominated) / HYPERVOLUME_SAMPLES;
+}
+
+void hypervolume_add(Hypervolume *h, const double f[])
+{
+    uint64_t dominated[WORDS];
+    h->n_left -= find_dominated(h, f, dominated);
+    for (size_t w = 0; w < h->n_words; w++)
+        h->left[w] ^= dominated[w];
     if (FEW * h->n_left < h->n_words * WORD)
         draw_together(h);
 }

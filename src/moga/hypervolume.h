@@ -21,9 +21,10 @@ typedef struct Hypervolume Hypervolume;
 
 Status hypervolume_create(Hypervolume **out, size_t n_obj, const double lower[], const double reference[],
                           uint32_t seed, Err *err);
-void hypervolume_add(Hypervolume *h, const double f[]); /* (n_obj) minimised */
-double hypervolume_share(const Hypervolume *h);         /* of the box */
-double hypervolume_error(double share);                 /* standard error of a share */
-void hypervolume_free(Hypervolume *h);                  /* NULL is fine */
+void hypervolume_add(Hypervolume *h, const double f[]);          /* (n_obj) minimised */
+double hypervolume_gain(const Hypervolume *h, const double f[]); /* by which it would add to the share */
+double hypervolume_share(const Hypervolume *h);                  /* of the box */
+double hypervolume_error(double share);                          /* standard error of a share */
+void hypervolume_free(Hypervolume *h);                           /* NULL is fine */
 
 #endif

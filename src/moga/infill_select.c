@@ -32,7 +32,7 @@ static void offer(Search *s)
         bound[i] = p->F[i] - (i < first_pending * p->n_obj ? OPTIMISM * p->error[i] : 0.0);
     for (int kind = 0; kind < INFILL_KINDS; kind++)
         infill_offer(s->criteria.select[kind], p->n, bound, p->violation, p->uncertainty,
-                     s->archive.n_front > 0 ? p->chance : NULL);
+                     search_has_front(s) ? p->chance : NULL);
     for (size_t i = first_pending; i < p->n; i++)
         for (int kind = 0; kind < INFILL_KINDS; kind++)
             infill_take(s->criteria.select[kind], i);

@@ -8,7 +8,7 @@
 void offspring_survive(Search *s, Population *p, uint32_t step)
 {
     Random random = random_stream(s->config->seed, RANDOM_NICHING, (uint32_t)s->generation, step);
-    const double progress = fmin((double)s->archive.n / (double)search_planned(s->config), 1.0);
+    const double progress = fmin((double)s->archive.n / (double)search_planned(s), 1.0);
     size_t *survivors = s->scratch.survivors;
     const size_t n =
         selection_select(s->selection, p->n, p->F, p->violation, s->config->population, progress, &random, survivors);
@@ -144,7 +144,7 @@ void offspring_make(Search *s, int variation_alone)
     o->members.n = o->n_probes = 0;
     if (with_surrogate) {
         add_evolved(s);
-        if (s->archive.n_front > 0)
+        if (search_has_front(s))
             add_descended(s, shares.hypervolume);
         search_predict(s, &o->members, 0, 1);
         add_probes(s);

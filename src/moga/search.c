@@ -24,8 +24,8 @@ static StopReason reason_to_stop(const Search *s)
 {
     const SearchConfig *c = s->config;
     const Archive *a = &s->archive;
-    if (a->n >= search_evals(s))
-        return a->n < c->max_evals ? STOP_CONVERGED : STOP_EVALUATIONS;
+    if (search_is_spent(s))
+        return s->screening.full == 1 && a->n < c->max_evals ? STOP_CONVERGED : STOP_EVALUATIONS;
     if (s->generation >= c->generations)
         return STOP_GENERATIONS;
     if (c->nondominated_share < 1.0 && (double)a->n_front >= c->nondominated_share * (double)a->n)
@@ -131,6 +131,7 @@ static int report(Search *s, int is_last, ObserveFn observe, void *user)
         .n_front = n_reported,
         .n_failed = a->n_failed,
         .n_replicates = a->n_replicates,
+        .n_evaluations = search_evaluations(s),
         .generation_now = s->generation,
         .n_predicted = s->n_predicted,
         .n_left_out = surrogate_left_out(s->surrogate),

@@ -9,9 +9,10 @@
 
 /* Reference vectors of infill: one for VECTOR_EVALS evaluations of the budget; of small budgets twice as many, up to
  * VECTORS_FEW. */
-static size_t n_vectors(size_t n_obj, const SearchConfig *c)
+static size_t n_vectors(const Search *s)
 {
-    const size_t one_each = search_planned(c) / VECTOR_EVALS,
+    const SearchConfig *c = s->config;
+    const size_t n_obj = s->problem->n_obj, one_each = search_planned(s) / VECTOR_EVALS,
                  few = 2 * one_each < VECTORS_FEW ? 2 * one_each : VECTORS_FEW,
                  wanted = one_each > few ? one_each : few, min = n_obj > c->population ? n_obj : c->population;
     if (n_obj < 2)
@@ -50,11 +51,13 @@ static void layout(void *search, Carve *c)
     w->f = carve(c, n_obj, sizeof(double));
     w->g = carve(c, s->problem->n_con, sizeof(double));
     w->x = carve(c, n_var, sizeof(double));
+    w->reference = carve(c, n_obj, sizeof(double));
 }
 
-static Status create_criteria(Criteria *q, const Problem *p, const SearchConfig *c, size_t n_pool, Err *err)
+static Status create_criteria(Search *s, size_t n_pool, Err *err)
 {
-    TRY(directions_spread(&q->vectors, p->n_obj, n_vectors(p->n_obj, c), err));
+    Criteria *q = &s->criteria;
+    TRY(directions_spread(&q->vectors, s->problem->n_obj, n_vectors(s), err));
     for (int kind = 0; kind < INFILL_KINDS; kind++) {
         TRY(infill_create(&q->select[kind], (InfillKind)kind, n_pool, &q->vectors, err));
         TRY(infill_create(&q->gain[kind], (InfillKind)kind, 1, &q->vectors, err));
@@ -74,6 +77,7 @@ static Status create_selection(Search *s, size_t n_pool, Err *err)
 Status state_create(Search *s, Err *err)
 {
     const Problem *p = s->problem;
+    screening_begin(s);
     const size_t population = s->config->population, initial = s->config->n_given + generation_samples(s);
     const size_t pending = batch_pending_max(s->config, p->n_workers);
     const size_t n_pool = (initial > 5 * population ? initial : 5 * population) + 2 * pending;
@@ -82,7 +86,7 @@ Status state_create(Search *s, Err *err)
     s->batch.size_max = initial > population ? initial : population;
     s->batch.n_max = s->batch.size_max + pending;
     TRY(create_selection(s, n_pool, err));
-    TRY(create_criteria(&s->criteria, p, s->config, n_pool, err));
+    TRY(create_criteria(s, n_pool, err));
     TRY(pareto_archive_init(&s->archive, 2 * initial, p->n_var, p->n_obj, p->n_con, err));
     TRY(surrogate_create(&s->surrogate, p, centres, n_pool, err));
     TRY(population_create(&s->population, 2 * population + pending, p->n_var, p->n_obj, err));
@@ -103,6 +107,7 @@ void state_free(Search *s)
         infill_free(s->criteria.gain[kind]);
     }
     surrogate_free(s->surrogate);
+    screening_free(s);
     population_free(&s->population);
     population_free(&s->offspring.members);
     population_free(&s->pool);
@@ -130,7 +135,7 @@ Status state_grow_rows(Search *s, Err *err)
 
 /* -- as bytes ------------------------------------------------------------------------------------------------------ */
 
-enum { STATE_VERSION = 10 };
+enum { STATE_VERSION = 11 };
 
 /* Designs that are asked for and not evaluated yet. */
 static void pack_pending(Search *s, Pack *p)
@@ -184,6 +189,7 @@ static void pack_search(Search *s, Pack *p)
     population_pack(&s->population, p, s->archive.n);
     surrogate_pack(s->surrogate, p);
     convergence_pack(&s->convergence, p);
+    pack_size(p, &s->screening.is_on, 1);
     pack_pending(s, p);
 }
 
@@ -209,6 +215,7 @@ static Status restore_row(const Evaluation *e, void *restoring, Err *err)
     const unsigned char ok = e->outcome == OUTCOME_OK, kind = (unsigned char)e->kind;
     double *f = s->scratch.f, *g = p->n_con > 0 ? s->scratch.g : NULL;
     problem_judge(p, e, f, s->scratch.g);
+    TRY(screening_take(s, &(Finished){.evaluation = e, .f = f, .g = g}, err));
     if (r->start->on_front && !p->is_noisy)
         return pareto_archive_restore(&s->archive, e->x, f, g, ok, kind, (size_t)e->generation, r->start->on_front[i],
                                       err);
@@ -233,5 +240,5 @@ Status state_restore(Search *s, const SearchStart *start, Err *err)
                     "the state of the search (%zu bytes after %zu simulations) does not fit this search: written by "
                     "another version, or with other settings",
                     start->n_state, start->n);
-    return STATUS_OK;
+    return screening_update(s, err);
 }

@@ -7,6 +7,7 @@
  *   offspring.c      candidates: variation, inner generations and descents on the surrogate
  *   infill_select.c  which candidates are evaluated
  *   replication.c    which noisy designs are evaluated again
+ *   screening.c      which designs are evaluated by the cheap level first, which of them are finished
  *   batch.c          evaluation, the only way into the archive
  *
  * Threads  one; the simulator and predictions of the surrogate use several */
@@ -55,8 +56,28 @@ typedef struct {
     size_t *repeat;               /* (n_max) replicates that the design has already */
 } Batch;
 
-/* What a design carries through the queue: was_predicted, criterion, predicted (n_obj). */
-enum { NOTE_WAS_PREDICTED, NOTE_CRITERION, NOTE_PREDICTED };
+/* What a design carries through the queue: was_predicted, criterion, its kind before it was screened, predicted (n_obj). */
+enum { NOTE_WAS_PREDICTED, NOTE_CRITERION, NOTE_KIND, NOTE_PREDICTED };
+
+/* A design of which the cheap level was evaluated first. */
+typedef struct {
+    size_t row, finished; /* of the archive; of its evaluation in full, SIZE_MAX: there is none */
+    void *parts;          /* (n_cheap) of part_size; NULL: not kept */
+} Screened;
+
+/* screening.c */
+typedef struct {
+    size_t cheap, full; /* simulations of either level; full 1 and cheap 0: nothing is screened in this search */
+    size_t is_on;       /* 0: the levels do not agree, or nothing is screened */
+    size_t n, n_max, n_finished;
+    size_t n_open;                     /* on that front, not finished */
+    Screened *design;                  /* (n) by row */
+    double *y;                         /* (n, n_obj + n_con) objectives and constraints of the cheap level */
+    double agreement;                  /* Kendall's tau of the two levels; NAN: not known yet */
+    size_t n_front, front_max, *front; /* rows of the front of results and predictions */
+    unsigned char *is_chosen;          /* (front_max) rows that are finished in this generation */
+    size_t *rows, n_rows;              /* (n_max) designs that have both levels */
+} Screening;
 
 /* Grows with the archive. */
 typedef struct {
@@ -78,6 +99,7 @@ typedef struct {
     double *descent_X;      /* (pool, n_var) */
     double *note;           /* (NOTE_PREDICTED + n_obj) */
     double *f, *g, *x;      /* (n_obj) (n_con) (n_var) of a design restored */
+    double *reference;      /* (n_obj) */
 } Scratch;
 
 typedef struct {
@@ -96,6 +118,7 @@ typedef struct {
     PerRow rows;
     Scratch scratch;
     Convergence convergence;
+    Screening screening;
     size_t generation;
     size_t n_probed;    /* probes so far */
     size_t n_predicted; /* predictions trusted for the first time in this generation */
@@ -111,10 +134,13 @@ static inline double search_seconds(const Search *s)
     return clock_seconds() - s->start;
 }
 
-/* Evaluations that the search was planned for. */
-static inline size_t search_planned(const SearchConfig *c)
+/* Designs that the search was planned for: where they are screened, more than evaluations. */
+static inline size_t search_planned(const Search *s)
 {
-    return c->planned_evals > 0 ? c->planned_evals : c->max_evals;
+    const SearchConfig *c = s->config;
+    const Screening *q = &s->screening;
+    const size_t evals = c->planned_evals > 0 ? c->planned_evals : c->max_evals, n = SCREENED_PER_FINISHED;
+    return q->full == 1 ? evals : evals * n * q->full / (n * q->cheap + q->full - q->cheap);
 }
 
 /* Evaluations with which the search ends. */
@@ -122,6 +148,12 @@ static inline size_t search_evals(const Search *s)
 {
     const size_t end = s->convergence.end, max = s->config->max_evals;
     return end > 0 && end < max ? end : max;
+}
+
+/* A design is known, or predicted from its cheap level, that is feasible. */
+static inline int search_has_front(const Search *s)
+{
+    return s->archive.n_front > 0 || s->screening.n_front > 0;
 }
 
 /* state.c */
@@ -160,6 +192,20 @@ size_t replication_last(Search *s);
 size_t
 replication_due(const Search *s); /* replicates that the evaluations so far bring with them and that are not made yet */
 int replication_noise_is_significant(const Search *s); /* estimates are to be compared instead of means */
+
+/* screening.c */
+void screening_begin(Search *s);
+void screening_free(Search *s);
+size_t search_evaluations(const Search *s); /* of max_evals; a simulation of a screened design is a part of one */
+int search_is_spent(const Search *s);
+/* Room for a batch of n new designs, beside what the screened ones are finished with. */
+int screening_has_room(const Search *s, size_t n);
+Status screening_take(Search *s, const Finished *done, Err *err); /* before it enters the archive */
+Status screening_update(Search *s, Err *err);                     /* after results: predictions, agreement, front */
+const void *screening_parts(const Search *s, const double x[]);   /* of the cheap level of x; NULL: not kept */
+/* Screened designs to be finished, after n designs of a batch; when the rest is kept for them, a batch of them. */
+Status screening_finish(Search *s, size_t *n, Err *err);
+Status screening_last(Search *s, size_t *n, Err *err);
 
 /* batch.c */
 size_t batch_size(const Search *s);

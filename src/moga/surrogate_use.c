@@ -14,7 +14,9 @@ void search_measure_front(Search *s)
     for (size_t i = 0; i < p->n; i++)
         s->scratch.members[i] = i;
     for (int k = 0; k < INFILL_KINDS; k++) {
-        if (a->n_front > 0)
+        if (s->screening.n_front > 0)
+            infill_measure(s->criteria.select[k], s->screening.n_front, s->screening.front, a->estimate);
+        else if (a->n_front > 0)
             infill_measure(s->criteria.select[k], a->n_front, a->front, a->estimate);
         else
             infill_measure(s->criteria.select[k], p->n, s->scratch.members, p->F);

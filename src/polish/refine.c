@@ -165,7 +165,7 @@ static size_t nearest_rows(const Refine *r, Near near[])
     const Problem *p = adapter_problem(r->adapter);
     size_t n = 0;
     for (size_t i = 0; i < h->table.n; i++) {
-        if (!h->place[i].ok || h->table.row[i].kind == KIND_REPEAT)
+        if (!h->place[i].ok || h->table.row[i].kind == KIND_REPEAT || h->table.row[i].kind == KIND_SCREENED)
             continue;
         near[n] = (Near){0.0, i};
         for (size_t d = 0; d < p->n_var; d++) {

@@ -41,7 +41,8 @@ static void layout(void *sobol, Carve *c)
 static int is_known(const Run *run, size_t row)
 {
     const Evaluation *e = &run->table.row[row];
-    int known = e->outcome == OUTCOME_OK && e->kind != KIND_UNFINISHED && e->kind != KIND_REPEAT;
+    int known =
+        e->outcome == OUTCOME_OK && e->kind != KIND_UNFINISHED && e->kind != KIND_REPEAT && e->kind != KIND_SCREENED;
     for (size_t k = 0; k < run->schema.n_obj; k++)
         known = known && isfinite(run_f(run, row)[k]);
     return known;

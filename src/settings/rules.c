@@ -121,6 +121,19 @@ static void check_replicates(const Settings *s, const Rules *r)
                    s->search.replicates_min);
 }
 
+static void check_fidelity(const SearchOptions *s, const Rules *r)
+{
+    if (s->fidelity == FIDELITY_OFF)
+        return;
+    if (s->asynchronous == SWITCH_ON)
+        break_rule(r, PAIR(search.fidelity, search.asynchronous),
+                   "search.fidelity: screens batches: set search.asynchronous = off");
+    if (s->stop_after > 0)
+        break_rule(r, PAIR(search.fidelity, search.stop_after),
+                   "search.fidelity: finishes most designs at the end, so that what was gained lately is not known "
+                   "before: set search.stop_after = 0");
+}
+
 void rules_check(const Settings *s, BrokenRuleFn broken, void *user)
 {
     const Rules rules = {broken, user}, *r = &rules;
@@ -130,6 +143,7 @@ void rules_check(const Settings *s, BrokenRuleFn broken, void *user)
     check_motion(&s->motion, r);
     check_variables(s, r);
     check_replicates(s, r);
+    check_fidelity(&s->search, r);
     if (tolerance_steps(&s->sim, &steps, &err) != STATUS_OK)
         break_rule(r, PAIR(sim.tolerance, sim.steps_per_contact), "%s", err.text);
     if (s->problem.kind == PROBLEM_EXTERNAL && strcmp(s->problem.command, "none") == 0)

@@ -257,6 +257,10 @@ static const Option OPTIONS[] = {
            "than four simulations"),
     CHOICE(search.asynchronous, Switch, CHOICE_WORDS(SWITCH_LIST), "off",
            "on: no thread waits for the slowest design of a batch; the run then depends on the order of the results"),
+    CHOICE(
+        search.fidelity, Fidelity, CHOICE_WORDS(FIDELITY_LIST), "off",
+        "tower, sim.replicates >= 2; replicates: of most designs only the first replicate is simulated, and the rest "
+        "where it promises most"),
     CHOICE(search.survival, SelectionKind, CHOICE_WORDS(SELECTION_KIND_LIST), "nsga3",
            "environmental selection: NSGA-III, or RVEA, which is better without a surrogate (docs/search.md)"),
     REAL(search.replicate_share, "-", "0.1", 0, 0.9,

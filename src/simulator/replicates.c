@@ -50,15 +50,23 @@ AsBuilt replicate_as_built(uint32_t seed, size_t k, const UncertainOptions *u)
     return b;
 }
 
+/* Simulation i in the order of the records, then of their replicates. */
+static const SimResult *result_of(const ReplicatePlan *plan, const SimResult results[], size_t i)
+{
+    return &results[i % plan->n_replicates * plan->n_records + i / plan->n_replicates];
+}
+
 typedef struct {
-    const SimResult *results; /* of one record */
+    const ReplicatePlan *plan;
+    const SimResult *results;
+    size_t first; /* simulation of the record */
     int measure;
 } Sample;
 
 static double value_of(size_t i, const void *user)
 {
     const Sample *s = user;
-    return measure_value(&s->results[i], s->measure);
+    return measure_value(result_of(s->plan, s->results, s->first + i), s->measure);
 }
 
 static int by_value(const void *a, const void *b)
@@ -85,7 +93,7 @@ static void combine_all(const ReplicatePlan *plan, const SimResult results[], in
     double v[PARTS_MAX];
     const size_t n = plan->n_records * plan->n_replicates;
     for (size_t i = 0; i < n; i++)
-        v[i] = measure_value(&results[i], k);
+        v[i] = measure_value(result_of(plan, results, i), k);
     *value = robust_pooled(plan, measure(k)->sense, n, v, sd);
 }
 
@@ -96,7 +104,8 @@ static void combine_records(const ReplicatePlan *plan, const SimResult results[]
     *value = *sd = 0.0;
     for (size_t r = 0; r < plan->n_records; r++) {
         double mean, deviation;
-        mean_and_sd(plan->n_replicates, value_of, &(Sample){results + r * plan->n_replicates, k}, &mean, &deviation);
+        const Sample sample = {plan, results, r * plan->n_replicates, k};
+        mean_and_sd(plan->n_replicates, value_of, &sample, &mean, &deviation);
         if (plan->rule == ROBUST_MEAN) {
             *value += mean / n;
             *sd += deviation * deviation / n;
@@ -118,9 +127,10 @@ void replicates_summarise(const ReplicatePlan *plan, const SimResult results[], 
                               .n_records = plan->n_records,
                               .n_replicates = plan->n_replicates};
     for (size_t i = plan->n_records * plan->n_replicates; i-- > 0;) {
-        out->seconds += results[i].seconds;
-        if (results[i].outcome != RUN_OK) {
-            out->shown = &results[i];
+        const SimResult *r = result_of(plan, results, i);
+        out->seconds += r->seconds;
+        if (r->outcome != RUN_OK) {
+            out->shown = r;
             out->n_failed++;
         }
     }

@@ -52,7 +52,7 @@ typedef struct {
     double seconds;                           /* of all simulations */
 } ReplicateSummary;
 
-/* results (n_records, n_replicates); the summary points into them. */
+/* results (n_replicates, n_records); the summary points into them. */
 void replicates_summarise(const ReplicatePlan *plan, const SimResult results[], ReplicateSummary *out);
 
 /* v (n), sorted by this call: mean_plus_sd or quantile, sense +1: large values are bad. sd NAN: one value. */

@@ -38,9 +38,9 @@ const DesignSpace *tower_design(const Tower *t)
 static Status simulate(void *self, size_t worker, const Task *task, Err *err)
 {
     const Tower *t = self;
-    const size_t n = t->plan.n_replicates, k = task->repeat * n + task->part % n;
+    const size_t n = t->plan.n_records, k = task->repeat * t->plan.n_replicates + task->part / n;
     const SceneKind kind = (SceneKind)task->variant;
-    SimWorker *w = t->record[task->part / n].worker[worker];
+    SimWorker *w = t->record[task->part % n].worker[worker];
     Design design = {0};
     if (kind != SCENE_NO_CORE)
         design_of(tower_design(t), task->x, &design);
@@ -56,11 +56,10 @@ static Status simulate(void *self, size_t worker, const Task *task, Err *err)
     return STATUS_OK;
 }
 
-static void combine(const void *self, const void *parts, Evaluation *e)
+static void combine_as(const Tower *t, const ReplicatePlan *plan, const void *parts, Evaluation *e)
 {
-    const Tower *t = self;
     ReplicateSummary sum;
-    replicates_summarise(&t->plan, parts, &sum);
+    replicates_summarise(plan, parts, &sum);
     evaluation_set_outcome(e, sum.outcome, sum.shown->reason);
     for (int i = 0; i < t->order.n_obj; i++) {
         e->f[i] = sum.mean[t->order.of[i]];
@@ -70,6 +69,21 @@ static void combine(const void *self, const void *parts, Evaluation *e)
         e->extra[i - t->order.n_obj] = sum.mean[t->order.of[i]];
     e->seconds = sum.seconds;
     e->replicates = (int)sum.n_replicates;
+}
+
+static void combine(const void *self, const void *parts, Evaluation *e)
+{
+    const Tower *t = self;
+    combine_as(t, &t->plan, parts, e);
+}
+
+/* The first replicate of every record. */
+static void combine_cheap(const void *self, const void *parts, Evaluation *e)
+{
+    const Tower *t = self;
+    ReplicatePlan plan = t->plan;
+    plan.n_replicates = 1;
+    combine_as(t, &plan, parts, e);
 }
 
 static void tower_close(void *self)
@@ -156,6 +170,8 @@ static Problem problem_on(Tower *t)
                      .simulator = &TOWER,
                      .self = t,
                      .n_parts = t->plan.n_records * t->plan.n_replicates,
+                     .combine_cheap = combine_cheap,
+                     .n_cheap = t->plan.n_replicates > 1 ? t->plan.n_records : 0,
                      .part_size = sizeof(SimResult),
                      .n_workers = t->n_workers,
                      .executor = executor_for(t->n_workers)};

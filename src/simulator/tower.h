@@ -2,8 +2,9 @@
  *
  *   design     by design.variables (scene/design.h); t_top > t_base is repaired by swapping the two
  *   objectives those of search.objectives, extra the other measures (simulator/measures.h)
- *   parts      n_records x n_replicates (simulator/replicates.h), each a SimResult; replicate k of repeat r is the
+ *   parts      n_replicates x n_records (simulator/replicates.h), each a SimResult; replicate k of repeat r is the
  *              replicate r n_replicates + k of the design
+ *   cheap      where there are several replicates: the first one of every record
  *   variant    SceneKind: SCENE_IMPACT is the design, the others are baselines of which only the first part counts
  *
  * Life cycle tower_open -> tower_simulate, or a search on the problem ... -> problem_close
@@ -51,7 +52,7 @@ typedef struct {
 /* n simulations of the first record, without replicates, shared out over the workers. */
 Status tower_simulate(const Problem *p, size_t n, const SimTask tasks[], SimResult results[], Err *err);
 
-/* Every simulation of X (n, n_var): results (n, n_records, n_replicates). */
+/* Every simulation of X (n, n_var): results (n, n_replicates, n_records). */
 Status tower_parts(const Problem *p, size_t n, const double X[], SimResult results[], Err *err);
 
 /* X (n, n_var) with all replicates and records of the tower; out[i].shown = &shown[i]. */

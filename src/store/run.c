@@ -121,6 +121,17 @@ Status run_settle_front(Run *run, Err *err)
     return STATUS_OK;
 }
 
+size_t run_evaluations(const Run *run)
+{
+    const size_t whole = (size_t)run->settings->sim.replicates;
+    size_t replicates = 0;
+    for (size_t i = 0; i < run->table.n; i++) {
+        const EvaluationKind kind = run->table.row[i].kind;
+        replicates += kind == KIND_SCREENED ? 1 : kind == KIND_FINISHED ? whole - 1 : kind == KIND_POLISHED ? 0 : whole;
+    }
+    return replicates / whole;
+}
+
 int run_has_polished(const Run *run)
 {
     return run->table.n > 0 && run->table.row[run->table.n - 1].kind == KIND_POLISHED;

@@ -71,7 +71,7 @@ static void place_all(Run *run)
         run->n_failed += !place->ok;
         run->n_repeats += e->kind == KIND_REPEAT;
         if (e->kind != KIND_REPEAT && e->kind != KIND_POLISHED)
-            e->replicates = (int)run->settings->sim.replicates;
+            e->replicates = e->kind == KIND_SCREENED ? 1 : (int)run->settings->sim.replicates;
     }
 }
 

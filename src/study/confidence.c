@@ -9,8 +9,8 @@
 static int counts(const Run *run, size_t i)
 {
     const Evaluation *e = &run->table.row[i];
-    return e->id < POLISHED_FIRST && e->kind != KIND_UNFINISHED && e->kind != KIND_REPEAT && run->place[i].ok &&
-           !(e->violation > 0.0);
+    return e->id < POLISHED_FIRST && e->kind != KIND_UNFINISHED && e->kind != KIND_REPEAT && e->kind != KIND_SCREENED &&
+           run->place[i].ok && !(e->violation > 0.0);
 }
 
 /* Designs that keep the limits, with minimised objectives and their standard errors. */

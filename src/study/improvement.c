@@ -10,7 +10,7 @@ static int keeps_limits(const SearchView *v, size_t row)
     for (size_t c = 0; c < v->n_con; c++)
         if (v->H[row * v->n_con + c] > 0.0)
             return 0;
-    return v->ok[row] && v->replicates[row] > 0;
+    return v->ok[row] && v->replicates[row] > 0 && v->kind[row] != KIND_SCREENED;
 }
 
 static double value_of(const Igd *q)

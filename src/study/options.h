@@ -12,6 +12,7 @@ typedef struct {
     long surrogate_max; /* largest number of centres of the surrogate */
     SurrogateUse surrogate;
     Switch asynchronous;
+    Fidelity fidelity;
     SelectionKind survival;
     double replicate_share;              /* share of max_evals */
     long replicates_min, replicates_max; /* of a design */

@@ -68,9 +68,9 @@ static void count(Standing *out, const Run *run)
     for (size_t i = 0; i < run->table.n; i++) {
         const int polished = run->table.row[i].kind == KIND_POLISHED;
         out->n_polished += polished != 0;
-        out->progress.simulated += !polished;
         out->n_failed += !polished && !run->place[i].ok;
     }
+    out->progress.simulated = run_evaluations(run);
 }
 
 /* Thread-seconds of a session's simulations. */

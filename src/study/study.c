@@ -25,19 +25,20 @@ typedef struct {
     RunStore *store;
     StudySummary *summary;
     FILE *differences;
-    double start;            /* [s] of the clock */
-    double max_s;            /* of this session */
-    double seconds_before;   /* of earlier sessions */
-    size_t generation;       /* that is under way */
-    size_t first_generation; /* of this session */
-    long left_generation;    /* whose state was damaged, so that the one before is resumed; 0: none */
-    int asked, late;         /* why it stopped */
-    size_t n_improvement;    /* evaluations at which the improvement of the front is logged next */
-    long failures;           /* simulations in a row that failed, up to now */
-    int failing;             /* search.failures_max of them */
-    char failure[200];       /* why the last one failed */
-    char lost[200];          /* what ended the session beside a request: a rank that died, say */
-    pthread_mutex_t lock;    /* of an asynchronous search: results come while a generation is written */
+    double start;              /* [s] of the clock */
+    double max_s;              /* of this session */
+    double seconds_before;     /* of earlier sessions */
+    size_t evaluations_before; /* of search.max_evals */
+    size_t generation;         /* that is under way */
+    size_t first_generation;   /* of this session */
+    long left_generation;      /* whose state was damaged, so that the one before is resumed; 0: none */
+    int asked, late;           /* why it stopped */
+    size_t n_improvement;      /* evaluations at which the improvement of the front is logged next */
+    long failures;             /* simulations in a row that failed, up to now */
+    int failing;               /* search.failures_max of them */
+    char failure[200];         /* why the last one failed */
+    char lost[200];            /* what ended the session beside a request: a rank that died, say */
+    pthread_mutex_t lock;      /* of an asynchronous search: results come while a generation is written */
     int has_new_limits;
     Status status; /* of writing; ends the search */
     Err *err;
@@ -133,12 +134,12 @@ static void take_view(StudySummary *sum, const SearchView *view)
 
 static void show_progress(const Study *study, const SearchView *view)
 {
-    const size_t n_before = study->summary->n_before;
+    const size_t before = study->evaluations_before, now = view->n_evaluations;
     const StudyProgress p = {.view = view,
                              .hypervolume = store_hypervolume(study->store),
-                             .progress = {.simulated = view->n,
+                             .progress = {.simulated = now,
                                           .generations = study->generation,
-                                          .session_simulated = view->n > n_before ? view->n - n_before : 0,
+                                          .session_simulated = now > before ? now - before : 0,
                                           .session_generations = study->generation - study->first_generation,
                                           .session_s = session_seconds(study),
                                           .all_s = study->seconds_before + session_seconds(study)},
@@ -247,12 +248,13 @@ static Status resume(Study *study, Err *err)
     const Run *run = store_run(study->store);
     StudySummary *sum = study->summary;
     sum_up(sum, run);
+    study->evaluations_before = run_evaluations(run);
     TRY(differences_check(&(Comparison){.run = run,
                                         .used = &study->used,
                                         .adapter = study->adapter,
                                         .force = study->options->force,
                                         .lines = study->differences},
-                          sum->n_before, &study->has_new_limits, err));
+                          study->evaluations_before, &study->has_new_limits, err));
     TRY(check_state(study, run, err));
     TRY(leave_damaged_state(study, err));
     study->seconds_before = sum->seconds;
@@ -293,6 +295,7 @@ SearchConfig study_search_config(const Settings *s)
         .surrogate_max = (size_t)s->search.surrogate_max,
         .surrogate = s->search.surrogate,
         .selection = s->search.survival,
+        .fidelity = s->search.fidelity,
         .asynchronous = s->search.asynchronous == SWITCH_ON,
         .max_seconds = 3600 * fmax(s->search.max_hours, 0.0),
         .stop_after = (size_t)s->search.stop_after,

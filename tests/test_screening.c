@@ -1,0 +1,314 @@
+/* Screening: which designs are evaluated by the cheap level alone, and what becomes of them. */
+#include <stdlib.h>
+#include <string.h>
+
+#include <cblas.h>
+
+#include "base/hash.h"
+#include "check.h"
+#include "evaluate/threads.h"
+#include "moga/dominance.h"
+#include "moga/search.h"
+#include "searches.h"
+
+enum { VAR = 5, OBJ = 3, PARTS = 4, CHEAP = 1, EVALS = 60, ROWS_MAX = 400 };
+
+/* Four replicates of a function, of which the first is the cheap level. */
+typedef struct {
+    Problem problem;
+    double lower[VAR], upper[VAR];
+    double noise;     /* of a replicate */
+    int is_unrelated; /* the first replicate is noise alone and not in the mean */
+    size_t n_tasks;
+    EvaluationTable done; /* in the order of the numbers */
+} World;
+
+typedef struct {
+    double f[OBJ];
+} Part;
+
+/* In -1..1, of x, part and objective. */
+static double noise_of(const double x[], size_t part, size_t k)
+{
+    const uint64_t keys[] = {hash_fnv1a(x, VAR * sizeof *x, HASH_SEED), part, k};
+    const uint64_t h = hash_fnv1a(keys, sizeof keys, HASH_SEED) * 0x9E3779B97F4A7C15u;
+    return (double)(h >> 11) * 0x1p-52 - 1.0;
+}
+
+static Part part_of(const World *w, const double x[], size_t part)
+{
+    Part p;
+    for (size_t k = 0; k < OBJ; k++) {
+        p.f[k] = 0.0;
+        for (size_t d = 0; d < VAR; d++) /* distance from a corner of the first objectives */
+            p.f[k] += pow(x[d] - (d == k ? 1.0 : 0.2 * (double)k), 2.0);
+        p.f[k] = (w->is_unrelated && part == 0 ? 0.0 : p.f[k]) + w->noise * noise_of(x, part, k);
+    }
+    return p;
+}
+
+static Status simulate(void *self, size_t worker, const Task *task, Err *err)
+{
+    World *w = self;
+    (void)worker;
+    (void)err;
+#pragma omp atomic
+    w->n_tasks++;
+    *(Part *)task->result = part_of(w, task->x, task->part);
+    return STATUS_OK;
+}
+
+static void mean_of(const World *w, size_t first, size_t n, const Part parts[], double f[])
+{
+    (void)w;
+    for (size_t k = 0; k < OBJ; k++) {
+        f[k] = 0.0;
+        for (size_t i = first; i < n; i++)
+            f[k] += parts[i].f[k] / (double)(n - first);
+    }
+}
+
+static void combine(const void *self, const void *parts, Evaluation *e)
+{
+    const World *w = self;
+    mean_of(w, w->is_unrelated ? 1 : 0, PARTS, parts, e->f);
+}
+
+static void combine_cheap(const void *self, const void *parts, Evaluation *e)
+{
+    mean_of(self, 0, CHEAP, parts, e->f);
+}
+
+static const Simulator SIMULATOR = {simulate, combine, NULL};
+
+static Status note_done(const Evaluation *e, void *user, Err *err)
+{
+    World *w = user;
+    return evaluation_table_append(&w->done, e, err);
+}
+
+static void open_world(World *w, size_t n_workers)
+{
+    *w = (World){.noise = 0.05, .done = evaluation_table(VAR, OBJ, 0)};
+    for (size_t d = 0; d < VAR; d++)
+        w->upper[d] = 1.0;
+    w->problem = (Problem){.n_var = VAR,
+                           .n_obj = OBJ,
+                           .lower = w->lower,
+                           .upper = w->upper,
+                           .simulator = &SIMULATOR,
+                           .self = w,
+                           .n_parts = PARTS,
+                           .n_cheap = CHEAP,
+                           .combine_cheap = combine_cheap,
+                           .part_size = sizeof(Part),
+                           .n_workers = n_workers,
+                           .executor = executor_for(n_workers),
+                           .observer = {.done = note_done, .user = w}};
+}
+
+static SearchConfig config_of(void)
+{
+    SearchConfig c = search_config(7, 12, 600, 0.05);
+    c.generations = 1000;
+    c.max_evals = EVALS;
+    c.fidelity = FIDELITY_REPLICATES;
+    return c;
+}
+
+typedef struct {
+    World *world;
+    Moments moments;
+    size_t n, n_evaluations, n_screened, n_finished, views;
+    unsigned char kind[ROWS_MAX], on_front[ROWS_MAX];
+    size_t generation[ROWS_MAX];
+    double Y[ROWS_MAX * OBJ];
+} Seen;
+
+/* No view shows a screened design on the front, and the front is what is nondominated among the other rows. */
+static void check_front(const SearchView *v)
+{
+    for (size_t i = 0; i < v->n; i++) {
+        int is_dominated = 0;
+        for (size_t j = 0; j < v->n; j++)
+            is_dominated |= v->kind[j] != KIND_SCREENED && dominates(OBJ, v->Y + j * OBJ, v->Y + i * OBJ);
+        assert_int_equal(v->on_front[i], v->kind[i] != KIND_SCREENED && !is_dominated);
+    }
+}
+
+static int observe(const SearchView *v, void *user)
+{
+    Seen *s = user;
+    assert_true(v->n <= ROWS_MAX);
+    check_front(v);
+    s->views++;
+    s->n = v->n;
+    s->n_evaluations = v->n_evaluations;
+    s->n_screened = s->n_finished = 0;
+    for (size_t i = 0; i < v->n; i++) {
+        s->n_screened += v->kind[i] == KIND_SCREENED;
+        s->n_finished += v->kind[i] == KIND_FINISHED;
+    }
+    memcpy(s->kind, v->kind, v->n);
+    memcpy(s->on_front, v->on_front, v->n);
+    memcpy(s->generation, v->generation, v->n * sizeof *v->generation);
+    memcpy(s->Y, v->Y, v->n * OBJ * sizeof *v->Y);
+    moments_note(&s->moments, v);
+    return 0;
+}
+
+static void run(World *w, Seen *s, const SearchStart *start)
+{
+    const SearchConfig config = config_of();
+    StopReason reason;
+    Err err = {0};
+    s->world = w;
+    CHECK_OK(search_resume(&w->problem, &config, start, observe, s, &reason, &err), &err);
+    assert_int_equal(reason, STOP_EVALUATIONS);
+}
+
+static World world, other_world;
+static Seen seen, other;
+
+static void forget(World *w, Seen *s)
+{
+    moments_free(&s->moments);
+    evaluation_table_free(&w->done);
+}
+
+static int set_up(void **state)
+{
+    (void)state;
+    open_world(&world, 1);
+    run(&world, &seen, NULL);
+    return 0;
+}
+
+static int tear_down(void **state)
+{
+    (void)state;
+    forget(&world, &seen);
+    return 0;
+}
+
+static void assert_same_search(void)
+{
+    assert_int_equal(other.n, seen.n);
+    assert_memory_equal(other.kind, seen.kind, seen.n);
+    assert_memory_equal(other.on_front, seen.on_front, seen.n);
+    assert_memory_equal(other.Y, seen.Y, seen.n * OBJ * sizeof *seen.Y);
+    assert_int_equal(other.moments.n_state[other.moments.n - 1], seen.moments.n_state[seen.moments.n - 1]);
+    assert_memory_equal(other.moments.state[other.moments.n - 1], seen.moments.state[seen.moments.n - 1],
+                        seen.moments.n_state[seen.moments.n - 1]);
+}
+
+/* observe has looked at every view. */
+static void test_no_screened_design_is_on_the_front(void **state)
+{
+    (void)state;
+    assert_true(seen.views > 5 && seen.n_screened > 100 && seen.n_finished > 20);
+    assert_int_equal(seen.n, seen.n_screened + seen.n_finished);
+}
+
+static void test_every_simulation_is_made_once_and_counts_as_its_part_of_an_evaluation(void **state)
+{
+    (void)state;
+    assert_int_equal(world.n_tasks, seen.n_screened * CHEAP + seen.n_finished * (PARTS - CHEAP));
+    assert_int_equal(seen.n_evaluations, world.n_tasks / PARTS);
+    assert_true(world.n_tasks <= EVALS * PARTS && world.n_tasks + PARTS > EVALS * PARTS);
+}
+
+static void test_a_finished_design_has_the_bytes_of_one_evaluated_at_once(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < seen.n; i++) {
+        const Evaluation *e = &world.done.row[i];
+        Part parts[PARTS];
+        double f[OBJ];
+        for (size_t k = 0; k < PARTS; k++)
+            parts[k] = part_of(&world, e->x, k);
+        mean_of(&world, 0, seen.kind[i] == KIND_SCREENED ? CHEAP : PARTS, parts, f);
+        assert_memory_equal(e->f, f, sizeof f);
+        if (seen.kind[i] == KIND_FINISHED)
+            assert_memory_equal(seen.Y + i * OBJ, f, sizeof f);
+    }
+}
+
+static void test_four_workers_make_the_bytes_of_one(void **state)
+{
+    (void)state;
+    memset(&other, 0, sizeof other);
+    open_world(&other_world, 4);
+    run(&other_world, &other, NULL);
+    assert_same_search();
+    forget(&other_world, &other);
+}
+
+/* At the end of a generation, and in the middle of the next one: what was screened is known, its simulations are not. */
+static void test_resumed_anywhere_it_makes_the_same_bytes(void **state)
+{
+    (void)state;
+    const Moments *m = &seen.moments;
+    for (size_t i = 0; i < seen.n; i++) {
+        world.done.row[i].kind = (EvaluationKind)seen.kind[i];
+        world.done.row[i].generation = (long)seen.generation[i];
+    }
+    for (size_t k = 0; k + 1 < m->n; k += 1 + m->n / 6) {
+        const size_t later = (m->rows[k + 1] - m->rows[k]) * (k % 2) / 2;
+        const SearchStart start = {
+            .n = m->rows[k], .n_later = later, .row = world.done.row, .state = m->state[k], .n_state = m->n_state[k]};
+        memset(&other, 0, sizeof other);
+        open_world(&other_world, 1);
+        run(&other_world, &other, &start);
+        assert_same_search();
+        forget(&other_world, &other);
+    }
+}
+
+static void test_levels_that_do_not_agree_turn_it_off(void **state)
+{
+    (void)state;
+    size_t sampled = 0, later = 0, finished = 0;
+    memset(&other, 0, sizeof other);
+    open_world(&other_world, 1);
+    other_world.is_unrelated = 1;
+    other_world.noise = 1.0;
+    run(&other_world, &other, NULL);
+    for (size_t i = 0; i < other.n; i++) {
+        sampled += other.generation[i] == 0;
+        finished += other.kind[i] == KIND_FINISHED;
+        later += other.kind[i] == KIND_SCREENED && other.generation[i] > 1;
+    }
+    assert_int_equal(later, 0);                    /* the first pairs come with the second generation */
+    assert_int_equal(finished, sampled);           /* nothing of the sample is lost */
+    assert_true(other.n_evaluations + 1 >= EVALS); /* what was screened in vain may leave a part of one */
+    forget(&other_world, &other);
+}
+
+static void test_without_a_cheap_level_nothing_is_screened(void **state)
+{
+    (void)state;
+    memset(&other, 0, sizeof other);
+    open_world(&other_world, 1);
+    other_world.problem.n_cheap = 0;
+    run(&other_world, &other, NULL);
+    assert_int_equal(other.n, EVALS);
+    assert_int_equal(other.n_screened + other.n_finished, 0);
+    assert_int_equal(other_world.n_tasks, EVALS * PARTS);
+    forget(&other_world, &other);
+}
+
+int main(void)
+{
+    openblas_set_num_threads(1);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_no_screened_design_is_on_the_front),
+        cmocka_unit_test(test_every_simulation_is_made_once_and_counts_as_its_part_of_an_evaluation),
+        cmocka_unit_test(test_a_finished_design_has_the_bytes_of_one_evaluated_at_once),
+        cmocka_unit_test(test_four_workers_make_the_bytes_of_one),
+        cmocka_unit_test(test_resumed_anywhere_it_makes_the_same_bytes),
+        cmocka_unit_test(test_levels_that_do_not_agree_turn_it_off),
+        cmocka_unit_test(test_without_a_cheap_level_nothing_is_screened),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}
