@@ -45,6 +45,7 @@ static const double PENALTY = 10.0;            /* weight of violated limits, in 
 static const double R2_MIN = 0.2;    /* mean leave-one-out R2 of the objectives below which no surrogate is used */
 static const double R2_CHANCE = 2.0; /* this / root(n) more: what tuning explains in n values without any pattern */
 enum { RETUNE_SHARE = 10 };          /* tuned again when n has grown by n / this */
+enum { RETUNE_SHARE_MANY = 5 };      /* ... beyond surrogate_max, where no centre is more than before */
 enum { SPREAD_CENTRES_SHARE = 4 };   /* beyond surrogate_max: centres / this are spread over all evaluations */
 
 /* -- infill.c: criteria -------------------------------------------------------------------------------------------- */

@@ -68,27 +68,48 @@ CLONED_V3 void kernel_warp_by_u(size_t n, const double log_u[], const double log
         by_u[i] = half * (a * exp_down((a - 1.0) * log_u[i]) + b * exp_down((b - 1.0) * log_v[i]));
 }
 
-/* Eight centres and all points of a block at a time: every number that is loaded is used four times at least. */
+CLONED_V3 void kernel_squares(size_t n, size_t n_dim, size_t stride, double S[])
+{
+    double *square = S + n_dim * stride;
+    memset(square, 0, n * sizeof *square);
+    for (size_t d = 0; d < n_dim; d++) {
+        const double *s = S + d * stride;
+#pragma omp simd
+        for (size_t i = 0; i < n; i++)
+            square[i] += s[i] * s[i];
+    }
+}
+
+/* Eight centres and all points of a block at a time: every number that is loaded is used four times at least, and one
+ * operation makes a term. */
 CLONED_V3 void kernel_distances(size_t n_dim, size_t stride, const double S[], const double x[], size_t first,
                                 size_t count, double r2[RBF_BLOCK][KERNEL_CHUNK])
 {
+    double square[RBF_BLOCK] = {0};
+    for (size_t d = 0; d < n_dim; d++)
+        for (size_t p = 0; p < RBF_BLOCK; p++)
+            square[p] += x[d * RBF_BLOCK + p] * x[d * RBF_BLOCK + p];
     for (size_t i = 0; i < count; i += KERNEL_LANES) {
         Four low[RBF_BLOCK] = {0}, high[RBF_BLOCK] = {0};
         for (size_t d = 0; d < n_dim; d++) {
             const Four *c = (const Four *)(S + d * stride + first + i);
 #pragma GCC unroll 4
             for (size_t p = 0; p < RBF_BLOCK; p++) {
-                const Four a = c[0] - x[d * RBF_BLOCK + p], b = c[1] - x[d * RBF_BLOCK + p];
-                low[p] += a * a;
-                high[p] += b * b;
+                low[p] += c[0] * x[d * RBF_BLOCK + p];
+                high[p] += c[1] * x[d * RBF_BLOCK + p];
             }
         }
+        const Four *c = (const Four *)(S + n_dim * stride + first + i);
 #pragma GCC unroll 4
         for (size_t p = 0; p < RBF_BLOCK; p++) {
-            *(Four *)(r2[p] + i) = low[p];
-            *(Four *)(r2[p] + i + 4) = high[p];
+            *(Four *)(r2[p] + i) = c[0] + square[p] - 2.0 * low[p];
+            *(Four *)(r2[p] + i + 4) = c[1] + square[p] - 2.0 * high[p];
         }
     }
+    for (size_t p = 0; p < RBF_BLOCK; p++)
+#pragma omp simd
+        for (size_t i = 0; i < count; i++)
+            r2[p][i] = r2[p][i] < 0.0 ? 0.0 : r2[p][i];
 }
 
 CLONED_V3 void kernel_values(RbfKernel kernel, size_t n, const double r2[], double phi[])
@@ -102,7 +123,7 @@ CLONED_V3 void kernel_values(RbfKernel kernel, size_t n, const double r2[], doub
 #pragma omp simd
     for (size_t i = 0; i < n; i++) {
         const double a = sqrt(5.0 * r2[i]);
-        phi[i] = (1.0 + a + a * a / 3.0) * exp_down(-a);
+        phi[i] = (1.0 + a + 5.0 / 3.0 * r2[i]) * exp_down(-a);
     }
 }
 
@@ -143,7 +164,7 @@ CLONED_V3 double kernel_slopes(RbfKernel kernel, size_t n, const double r2[], co
 #pragma omp simd reduction(+ : value, slopes)
         for (size_t i = 0; i < n; i++) {
             const double a = sqrt(5.0 * r2[i]), e = exp_down(-a);
-            value += w[i] * (1.0 + a + a * a / 3.0) * e;
+            value += w[i] * (1.0 + a + 5.0 / 3.0 * r2[i]) * e;
             q[i] = w[i] * (-5.0 / 6.0) * (1.0 + a) * e;
             slopes += q[i];
         }

@@ -1,8 +1,8 @@
 /* rbf/kernel.h -- the inner loops of the interpolant: distances, kernel values, their derivatives and sums.
  *
  * Compiled once for any machine and once for wide vectors, chosen when the program starts; on one machine the same
- * numbers always give the same bits. Centres lie variable by variable, S (n_dim, stride), warped and scaled;
- * stride is a multiple of KERNEL_LANES and S has KERNEL_LANES numbers to spare behind it.
+ * numbers always give the same bits. Centres lie variable by variable, S (n_dim + 1, stride), warped and scaled, |s|^2 in
+ * the last row; stride is a multiple of KERNEL_LANES and S has KERNEL_LANES numbers to spare behind it.
  *
  * Threads  pure functions. */
 #ifndef IMTET_RBF_KERNEL_H
@@ -26,7 +26,10 @@ void kernel_warp_slopes(size_t n, const double log_u[], const double log_v[], do
 void kernel_warp_by_u(size_t n, const double log_u[], const double log_v[], double theta, const double warp[2],
                       double by_u[]);
 
-/* r2[p][i] = squared distance of point p to centre first + i, count <= KERNEL_CHUNK; x (n_dim, RBF_BLOCK) warped
+/* The last row of S, for n centres. */
+void kernel_squares(size_t n, size_t n_dim, size_t stride, double S[]);
+
+/* r2[p][i] = |s|^2 + |x|^2 - 2 s.x, squared distance of point p to centre first + i, count <= KERNEL_CHUNK; x (n_dim, RBF_BLOCK) warped
  * and scaled like the centres. Numbers behind count, up to a multiple of KERNEL_LANES, are spoilt. */
 void kernel_distances(size_t n_dim, size_t stride, const double S[], const double x[], size_t first, size_t count,
                       double r2[RBF_BLOCK][KERNEL_CHUNK]);

@@ -33,7 +33,7 @@ typedef struct {
     double explained;
     int is_left_out; /* it cannot be fitted: its mean stands for it */
     Shape shape;
-    double *S;             /* (n_dim, stride) centres, warped and scaled */
+    double *S;             /* (n_dim + 1, stride) centres, warped and scaled, and their squares (rbf/kernel.h) */
     double *tail;          /* (1 + 2 n_dim) coefficients b */
     double *weight;        /* (n_max) w */
     double *leave_one_out; /* (n_max) [unit of f] */
@@ -69,7 +69,7 @@ struct Rbf {
     void *store;
 };
 
-/* S: n centres C (3, n_dim, stride) warped and scaled. */
+/* S (n_dim + 1, stride): n centres C (3, n_dim, stride) warped and scaled, and their squares. */
 void model_scale(const Rbf *m, size_t n, const double C[], const Shape *shape, double S[]);
 
 void model_copy_shape(const Rbf *m, Shape *to, const Shape *from);

@@ -16,7 +16,8 @@
 static void layout(void *interpolant, Carve *c)
 {
     Rbf *m = interpolant;
-    const size_t n = m->n_max, d = m->n_dim, t = m->n_tail_max, spread = d * m->stride + KERNEL_LANES;
+    const size_t n = m->n_max, d = m->n_dim, t = m->n_tail_max, spread = d * m->stride + KERNEL_LANES,
+                 with_squares = spread + m->stride;
     m->C = carve(c, 3 * spread, sizeof(double));
     m->F = carve(c, m->n_out * n, sizeof(double));
     m->noise = carve(c, m->n_out * n, sizeof(double));
@@ -25,7 +26,7 @@ static void layout(void *interpolant, Carve *c)
     for (size_t k = 0; k < m->n_out; k++) {
         Output counted, *o = c->base ? &m->output[k] : &counted;
         o->shape.theta = carve(c, d, sizeof(double));
-        o->S = carve(c, spread, sizeof(double));
+        o->S = carve(c, with_squares, sizeof(double));
         o->tail = carve(c, t, sizeof(double));
         o->weight = carve(c, n, sizeof(double));
         o->leave_one_out = carve(c, n, sizeof(double));
@@ -33,7 +34,7 @@ static void layout(void *interpolant, Carve *c)
     for (size_t k = 0; k < m->n_workers; k++) {
         Worker counted, *w = c->base ? &m->worker[k] : &counted;
         w->C = carve(c, 3 * spread, sizeof(double));
-        w->S = carve(c, spread, sizeof(double));
+        w->S = carve(c, with_squares, sizeof(double));
         w->Z = carve(c, spread, sizeof(double));
         w->by_a = carve(c, n, sizeof(double));
         w->by_b = carve(c, n, sizeof(double));
@@ -101,6 +102,7 @@ void model_scale(const Rbf *m, size_t n, const double C[], const Shape *shape, d
         const double *log_u = C + plane + d * m->stride;
         kernel_warp(n, log_u, log_u + plane, shape->theta[d], shape->warp, S + d * m->stride);
     }
+    kernel_squares(n, m->n_dim, m->stride, S);
 }
 
 void model_copy_shape(const Rbf *m, Shape *to, const Shape *from)
@@ -269,7 +271,7 @@ static void leave_out(const Rbf *m, Output *o, const double f[])
     o->n_tail = 1;
     o->tail[0] = 0.0;
     memset(o->weight, 0, m->n * sizeof *o->weight);
-    memset(o->S, 0, m->n_dim * m->stride * sizeof *o->S); /* whatever they are: the distances count for nothing */
+    memset(o->S, 0, (m->n_dim + 1) * m->stride * sizeof *o->S); /* whatever they are: the distances count for nothing */
     for (size_t i = 0; i < m->n; i++)
         o->leave_one_out[i] = (f[i] - o->mean) * n / (n - 1.0);
     o->explained = 0.0;

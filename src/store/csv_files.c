@@ -203,7 +203,7 @@ Status csv_files_front(CsvFiles *c, const SearchView *v, Err *err)
         return STATUS_OK;
     TRY(c->run && run_has_polished(c->run) ? replace_joined_front(&front, err)
                                            : folder_write(c->folder, "front.csv", put_front_of_search, &front, err));
-    c->next_front = clock_seconds() + 10.0 * (clock_seconds() - begun);
+    c->next_front = clock_seconds() + 20.0 * (clock_seconds() - begun);
     return STATUS_OK;
 }
 

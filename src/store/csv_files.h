@@ -1,8 +1,8 @@
 /* store/csv_files.h -- evaluations.csv and front.csv beside the database, in step with its finished generations.
  *
  * evaluations.csv grows by the rows that are committed. front.csv, the front of the search joined by the polished designs
- * of earlier sessions, is replaced as a whole, in a large run (FRONT_ALWAYS evaluations) seldom enough that it takes a tenth of
- * the time at most, and at the end (is_behind).
+ * of earlier sessions, is replaced as a whole, in a large run (FRONT_ALWAYS evaluations) seldom enough that it takes a
+ * twentieth of the time at most, and at the end (is_behind).
  *
  * Life cycle  {0} -> csv_files_begin or csv_files_resume -> csv_files_append, ... -> csv_files_close, or csv_files_free
  * Memory      a batch of rows; with deviations those of all designs

@@ -277,7 +277,7 @@ Status store_each_finished(const RunStore *store, EvaluationFn take, void *user,
     if (status == STATUS_OK && each.n < n)
         status = fail(err, STATUS_IO, "%s: is damaged: evaluation %zu is missing", database_path(store->db), n);
     evaluation_table_free(&room);
-    return status;
+    return folder_advise(store_folder(store), status, err);
 }
 
 /* -- simulations --------------------------------------------------------------------------------------------------- */
