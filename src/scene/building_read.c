@@ -179,6 +179,16 @@ static Status allocate(BuildingFiles *b, int n, Err *err)
                                        : fail(err, STATUS_NO_MEMORY, "building: no memory for %d floors", n);
 }
 
+/* The sheets that say which kind of model a folder holds. */
+enum { KIND_FRAME, KIND_STOREYS, KIND_K, KIND_M, KINDS };
+static const char *const SHEETS[KINDS] = {"nodes.csv", "storeys.csv", "K.csv", "M.csv"};
+
+enum { PATH_SIZE = 600 };
+static void sheet_path(const char *folder, int kind, char path[PATH_SIZE])
+{
+    snprintf(path, PATH_SIZE, "%s/%s", folder, SHEETS[kind]);
+}
+
 /* ---- storeys -------------------------------------------------------------------------------------------------- */
 
 typedef struct {
@@ -258,9 +268,11 @@ static Status take_storeys(BuildingFiles *b, const Sheet *s, Err *err)
     return STATUS_OK;
 }
 
-static Status read_storeys(BuildingFiles *b, const char *path, Err *err)
+static Status read_storeys(BuildingFiles *b, const char *folder, Err *err)
 {
     Sheet s;
+    char path[PATH_SIZE];
+    sheet_path(folder, KIND_STOREYS, path);
     TRY(sheet_read(&s, path, err));
     const Status status = take_storeys(b, &s, err);
     sheet_free(&s);
@@ -306,10 +318,6 @@ static Status read_frame(BuildingFiles *b, const BuildingOptions *o, Err *err)
 
 /* ---- the folder ----------------------------------------------------------------------------------------------- */
 
-/* The sheets that say which kind of model a folder holds. */
-enum { KIND_FRAME, KIND_STOREYS, KIND_K, KIND_M, KINDS };
-static const char *const SHEETS[KINDS] = {"nodes.csv", "storeys.csv", "K.csv", "M.csv"};
-
 int building_reads(const char *name)
 {
     for (int k = 0; k < KINDS; k++)
@@ -322,8 +330,8 @@ int building_reads(const char *name)
 static Status check_kind(const char *folder, int has[KINDS], Err *err)
 {
     for (int k = 0; k < KINDS; k++) {
-        char path[600];
-        snprintf(path, sizeof path, "%s/%s", folder, SHEETS[k]);
+        char path[PATH_SIZE];
+        sheet_path(folder, k, path);
         has[k] = access(path, F_OK) == 0;
     }
     const int matrices = has[KIND_K] || has[KIND_M];
@@ -343,14 +351,12 @@ static Status check_kind(const char *folder, int has[KINDS], Err *err)
 static Status read_folder(BuildingFiles *b, const BuildingOptions *o, Err *err)
 {
     int has[KINDS];
-    char storeys[600];
     if (is_compiled_in(o->model))
         return read_matrices(b, o, err);
     TRY(check_kind(o->model, has, err));
-    snprintf(storeys, sizeof storeys, "%s/storeys.csv", o->model);
     if (has[KIND_FRAME])
         return read_frame(b, o, err);
-    return has[KIND_STOREYS] ? read_storeys(b, storeys, err) : read_matrices(b, o, err);
+    return has[KIND_STOREYS] ? read_storeys(b, o->model, err) : read_matrices(b, o, err);
 }
 
 Status building_read(BuildingFiles *b, const BuildingOptions *o, Err *err)

@@ -13,10 +13,8 @@
 #include "base/json.h"
 #include "report/report.h"
 #include "serve/answers.h"
-#include "serve/detail_cache.h"
 #include "serve/guard.h"
-#include "serve/what_if.h"
-#include "settings/settings.h"
+#include "serve/kept.h"
 
 enum { PEERS_EASE = PEERS_MAX / 2, STALL_S = 15, EVENT_MAX = 2048 };
 static const double BEAT_S = 5; /* between events at most */
@@ -30,29 +28,19 @@ typedef struct {
     double since; /* of the clock: it waits for a request; 0: one is being answered, or there is no connection */
 } Peer;
 
-/* What is kept for a run. */
-typedef struct {
-    size_t n_users; /* the server is one; of its mutex, the rest but what_if does not change */
-    Settings settings;
-    char *provenance; /* of the run when it was first asked for */
-    DetailCache *details;
-    pthread_mutex_t mutex;
-    WhatIf *what_if;
-} Kept;
-
 struct Server {
     char token[TOKEN_TEXT], url[TOKEN_TEXT + 48];
     int port;
     double request_s;
     RecordPaths moved;
     Watch *watch;
+    Kept *kept;
     struct MHD_Daemon *daemon;
     pthread_mutex_t mutex; /* of the rest */
     size_t n_peers, n_streams;
     Peer peer[PEERS_MAX];
     pthread_t tender;
     int has_tender;
-    Kept *kept[1024]; /* by the number of the run; NULL: nothing yet */
 };
 
 typedef struct Route Route;
@@ -80,9 +68,9 @@ typedef struct {
 typedef struct {
     Server *server;
     const Request *request;
-    size_t run; /* of the path, if it has one; */
-    Look *look; /* as it is now */
-    Kept *kept; /* NULL: not asked for */
+    size_t run;    /* of the path, if it has one; */
+    Look *look;    /* as it is now */
+    KeptRun *kept; /* NULL: not asked for */
 } Visit;
 
 /* -- connections --------------------------------------------------------------------------------------------------- */
@@ -274,97 +262,23 @@ static Status show_front(Visit *v, Answer *a, Err *err)
     return answer_json(answer_front(v->look), 6, a, err);
 }
 
-static void count_difference(const char *key, unsigned flags, const char *was, const char *is, void *user)
-{
-    int *n = user;
-    (void)key;
-    (void)was;
-    (void)is;
-    *n += !(flags & (SETTING_LIMIT | SETTING_FREE));
-}
-
-static int is_run(const Kept *k, const Run *run)
-{
-    int n = 0;
-    settings_compare(&k->settings, run->settings, count_difference, &n);
-    return n == 0 && strcmp(k->provenance, run->provenance) == 0;
-}
-
-static void close_kept(Kept *k)
-{
-    what_if_close(k->what_if);
-    detail_cache_close(k->details);
-    pthread_mutex_destroy(&k->mutex);
-    free(k->provenance);
-    free(k);
-}
-
-static Status open_kept(Kept **out, const Run *run, Err *err)
-{
-    Kept *k = *out = calloc(1, sizeof *k);
-    if (!k)
-        return fail(err, STATUS_NO_MEMORY, "no memory for a run");
-    pthread_mutex_init(&k->mutex, NULL);
-    k->n_users = 1;
-    k->settings = *run->settings;
-    k->provenance = strdup(run->provenance);
-    const Status status =
-        k->provenance ? detail_cache_open(&k->details, err) : fail(err, STATUS_NO_MEMORY, "no memory for a run");
-    if (status != STATUS_OK) {
-        close_kept(k);
-        *out = NULL;
-    }
-    return status;
-}
-
-/* NULL is fine. */
-static void give_kept(Server *s, Kept *k)
-{
-    pthread_mutex_lock(&s->mutex);
-    const int is_last = k && --k->n_users == 0;
-    pthread_mutex_unlock(&s->mutex);
-    if (is_last)
-        close_kept(k);
-}
-
-/* What is kept of the run of a visit, opened when it is first asked for. A run that was made anew in the place of another has
- * other designs, bounds and motions: its own is opened. */
 static Status take_kept(Visit *v, Err *err)
 {
-    Server *s = v->server;
-    Kept *other = NULL, **place = &s->kept[v->run];
-    Status status = STATUS_OK;
-    pthread_mutex_lock(&s->mutex);
-    if (*place && !is_run(*place, &v->look->run)) {
-        other = *place;
-        *place = NULL;
-    }
-    if (!*place)
-        status = open_kept(place, &v->look->run, err);
-    v->kept = *place;
-    if (v->kept)
-        v->kept->n_users++;
-    pthread_mutex_unlock(&s->mutex);
-    give_kept(s, other);
-    return status;
+    return kept_take(v->server->kept, v->run, &v->look->run, &v->kept, err);
 }
 
 static Status show_design(Visit *v, Answer *a, Err *err)
 {
     TRY(take_kept(v, err));
     *a = (Answer){.code = MHD_HTTP_OK, .type = "application/json"};
-    return detail_cache_ask(v->kept->details, &v->look->run, &v->server->moved, v->request->path.number, &a->text, err);
+    return detail_cache_ask(kept_details(v->kept), &v->look->run, &v->server->moved, v->request->path.number, &a->text,
+                            err);
 }
 
 static Status what_if_of(Visit *v, WhatIf **out, Err *err)
 {
     TRY(take_kept(v, err));
-    Kept *k = v->kept;
-    pthread_mutex_lock(&k->mutex);
-    const Status status = k->what_if ? STATUS_OK : what_if_open(&k->what_if, &v->look->run, &v->server->moved, err);
-    *out = k->what_if;
-    pthread_mutex_unlock(&k->mutex);
-    return status;
+    return kept_what_if(v->kept, &v->look->run, &v->server->moved, out, err);
 }
 
 static Status show_bounds(Visit *v, Answer *a, Err *err)
@@ -560,7 +474,7 @@ static enum MHD_Result respond(Server *s, struct MHD_Connection *c, const char *
         status = watch_take(s->watch, v.run, PAGE_S, &v.look, &err);
     if (status == STATUS_OK)
         status = show(&v, &a, &err);
-    give_kept(s, v.kept);
+    kept_give(s->kept, v.kept);
     watch_give(s->watch, v.look);
     if (status != STATUS_OK)
         a = refusal(code_of(status), err.text);
@@ -660,6 +574,7 @@ static Status listen_on(Server *s, int port, Err *err)
 static Status start(Server *s, const ServeOptions *o, Err *err)
 {
     TRY(guard_token(s->token, err));
+    TRY(kept_open(&s->kept, err));
     TRY(watch_open(&s->watch, o->folder, err));
     if (pthread_create(&s->tender, NULL, tend, s) != 0)
         return fail(err, STATUS_NO_MEMORY, "no thread for the server");
@@ -706,9 +621,7 @@ void serve_close(Server *s)
         MHD_stop_daemon(s->daemon);
     if (s->has_tender)
         pthread_join(s->tender, NULL);
-    for (size_t i = 0; i < sizeof s->kept / sizeof s->kept[0]; i++)
-        if (s->kept[i])
-            close_kept(s->kept[i]);
+    kept_close(s->kept);
     if (s->watch)
         watch_close(s->watch);
     pthread_mutex_destroy(&s->mutex);
