@@ -16,6 +16,7 @@
 #include "study/improvement.h"
 #include "study/output_place.h"
 #include "study/study.h"
+#include "study/study_log.h"
 #include "settings/settings.h"
 
 typedef struct {
@@ -207,6 +208,11 @@ static Status report(const Run *run, const StudySummary *summary, Err *err)
     if (summary->n_repeats > 0)
         printf("%zu of the simulations repeat a design, to average the noise (search.replicate_share)\n\n",
                summary->n_repeats);
+    if (summary->n_screened > 0) {
+        char text[240];
+        screening_words(summary, text);
+        printf("%s\n\n", text);
+    }
     print_front(run, summary);
     if (summary->has_baselines)
         print_review(&run->schema, &summary->review);

@@ -96,8 +96,11 @@ typedef struct {
     const unsigned char *on_front; /* (n) feasible, nondominated, with replicates_min replicates at least; at the end,
                                       where none has: with the most replicates */
     size_t n_front, n_failed;
-    size_t n_replicates;  /* rows that are further replicates */
-    size_t n_evaluations; /* of max_evals: n, less what screened designs are not simulated */
+    size_t n_replicates;    /* rows that are further replicates */
+    size_t n_evaluations;   /* of max_evals: n, less what screened designs are not simulated */
+    size_t n_screened;      /* designs evaluated by the cheap level first */
+    double level_agreement; /* Kendall's tau of the levels, mean over the objectives; NAN: not known */
+    int has_left_screening; /* it is too low: nothing is screened any more */
     size_t generation_now;
     size_t n_predicted;     /* predictions trusted for the first time in this generation */
     size_t n_left_out;      /* objectives and constraints that the surrogate leaves out: their mean stands for them */

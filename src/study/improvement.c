@@ -132,12 +132,14 @@ static Status expected(const Run *run, size_t n, const double F[], const unsigne
 Status improvement_expected(const Run *run, double *gain, Err *err)
 {
     const size_t n = search_rows(run);
+    *gain = NAN;
+    if (run->settings->search.fidelity != FIDELITY_OFF)
+        return STATUS_OK;
     double *F = calloc(run->table.n * run->schema.n_obj + 1, sizeof *F);
     size_t *front = calloc(run->table.n + 1, sizeof *front);
     unsigned char *flags = calloc(2, n + 1);
     Status status =
         F && front && flags ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", run->table.n);
-    *gain = NAN;
     if (status == STATUS_OK) {
         const size_t n_front = minimise(run, F, front);
         for (size_t i = 0; i < n_front; i++)

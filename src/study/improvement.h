@@ -17,7 +17,8 @@ Status improvement_lately(const SearchView *v, double *igd, Err *err);
  * there is no front. */
 Status improvement_of_run(const Run *run, double igd[], Err *err);
 
-/* Hypervolume that as many simulations again would gain (moga/convergence.h), NAN: nothing is known. */
+/* Hypervolume that as many simulations again would gain (moga/convergence.h), NAN: nothing is known, or designs are finished at the end
+ * (search.fidelity). */
 Status improvement_expected(const Run *run, double *gain, Err *err);
 
 #endif

@@ -130,6 +130,9 @@ static void take_view(StudySummary *sum, const SearchView *view)
     sum->waited_s = view->waited_s;
     sum->surrogate_s = view->surrogate_s;
     sum->surrogate_disabled = view->is_disabled;
+    sum->n_screened = view->n_screened;
+    sum->level_agreement = view->level_agreement;
+    sum->has_left_screening = view->has_left_screening;
 }
 
 static void show_progress(const Study *study, const SearchView *view)

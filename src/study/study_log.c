@@ -115,12 +115,27 @@ static Status log_costs(RunStore *store, const StudySummary *sum, int threads, E
                                 : "the surrogate was used");
 }
 
+void screening_words(const StudySummary *sum, char text[240])
+{
+    char agreement[32];
+    number_words(sum->level_agreement, 2, agreement);
+    snprintf(text, 240,
+             "%zu designs were screened by their first replicate (search.fidelity), which ranks designs as all do by "
+             "a Kendall's tau of %s%s",
+             sum->n_screened, agreement, sum->has_left_screening ? ": too little, so that screening ended" : "");
+}
+
 Status study_log_end(RunStore *store, const StudySummary *sum, int threads, int is_final, Err *err)
 {
     const char *why = stop_reason_words(sum->stopped);
     TRY(store_log(store, err, "stopped: %s; %zu simulated, %zu failed, %zu on the front, %.1f s", why, sum->n_simulated,
                   sum->n_failed, sum->n_front, sum->seconds));
     TRY(log_costs(store, sum, threads, err));
+    if (sum->n_screened > 0) {
+        char text[240];
+        screening_words(sum, text);
+        TRY(store_log(store, err, "%s", text));
+    }
     return store_event(store,
                        json_pack("{s:s, s:s, s:b, s:I, s:f}", "event", "stops", "why", why, "final", is_final,
                                  "simulated", (json_int_t)sum->n_simulated, "seconds", sum->seconds),

@@ -19,6 +19,9 @@ typedef struct {
     double simulation_s, own_s;                     /* as in SearchView */
     double search_s, waited_s, surrogate_s, busy_s; /* of this session; busy_s: in simulations, all threads added */
     int surrogate_disabled;
+    size_t n_screened; /* as in SearchView, of this session's last generation; 0: none, or not known */
+    double level_agreement;
+    int has_left_screening;
     int has_baselines; /* of a tower whose front has a knee; of its core */
     Baseline baseline[N_BASELINES];
     double error[N_MEASURES]; /* of the knee, estimated (simulator/estimate.h), where error_known */
