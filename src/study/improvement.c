@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "moga/convergence.h"
+#include "settings/options.h"
 
 static int keeps_limits(const SearchView *v, size_t row)
 {
