@@ -73,16 +73,21 @@ static Status begin_front(const Run *run, void *f, Err *err)
     return STATUS_OK;
 }
 
-static Status visit_front(const Run *run, size_t row, const char *x, const char *extra, void *f, Err *err)
+static Status visit_front(const Run *run, size_t row, const RowNumbers *stored, void *f, Err *err)
 {
     const Evaluation *e = &run->table.row[row];
-    (void)extra;
+    const Schema *s = &run->schema;
+    const int as_stored = !s->has_spread && run->F == run->table.f; /* else means and deviations are wanted */
     if (!run->place[row].on_front)
         return STATUS_OK;
     fprintf(f, "%ld", e->id);
-    if (x[0] != '[' || !rows_put_texts(f, x, run->schema.n_var, ",", ""))
+    if (stored->x[0] != '[' || !rows_put_texts(f, stored->x, s->n_var, ",", "") ||
+        (as_stored && !rows_put_texts(f, stored->f, s->n_obj, ",", "")))
         return no_number(run, row, err);
-    put_results(f, &run->schema, e, run_f(run, row));
+    if (as_stored)
+        fputc('\n', f);
+    else
+        put_results(f, s, e, run_f(run, row));
     return STATUS_OK;
 }
 
@@ -168,8 +173,8 @@ static void put_list(FILE *f, const char *key, size_t n, const double values[], 
         fputs("null", f);
 }
 
-/* Numbers in the fewest digits that read back as the same. */
-static Status visit_evaluation(const Run *run, size_t i, const char *x, const char *extra, void *user, Err *err)
+/* Numbers in the fewest digits that read back as the same, as they are stored. */
+static Status visit_evaluation(const Run *run, size_t i, const RowNumbers *stored, void *user, Err *err)
 {
     FILE *f = user;
     const Evaluation *e = &run->table.row[i];
@@ -182,9 +187,11 @@ static Status visit_evaluation(const Run *run, size_t i, const char *x, const ch
     else
         fputs("\"\"", f);
     fputs(",\"x\":", f);
-    int known = x[0] == '[' && rows_put_texts(f, x, s->n_var, "[", "null");
-    fputc(']', f);
-    put_list(f, ",\"f\":", s->n_obj, e->f, isfinite(e->f[0]));
+    int known = stored->x[0] == '[' && rows_put_texts(f, stored->x, s->n_var, "[", "null");
+    fputs("],\"f\":", f);
+    if (isfinite(e->f[0]))
+        known = rows_put_texts(f, stored->f, s->n_obj, "[", "null") && known;
+    fputs(isfinite(e->f[0]) ? "]" : "null", f);
     fputs(run->place[i].on_front ? ",\"on_front\":true" : ",\"on_front\":false", f);
     put_list(f, ",\"sd\":", s->n_obj, e->sd, is_any_known(s->n_obj, e->sd));
     if (e->replicates > run->settings->sim.replicates)
@@ -193,7 +200,7 @@ static Status visit_evaluation(const Run *run, size_t i, const char *x, const ch
         fprintf(f, ",\"replicates\":%d", e->replicates);
     if (s->n_extra > 0) {
         fputs(",\"measures\":", f);
-        known = rows_put_texts(f, extra, s->n_extra, "[", "null") && known;
+        known = rows_put_texts(f, stored->extra, s->n_extra, "[", "null") && known;
         fputc(']', f);
     }
     fputc('}', f);

@@ -413,10 +413,13 @@ typedef struct {
 static Status take_texts(sqlite3_stmt *row, void *user, Err *err)
 {
     const Texts *t = user;
-    return t->take((long)sqlite3_column_int64(row, 0), column_text(row, 1), column_text(row, 2), t->user, err);
+    const RowNumbers numbers = {(long)sqlite3_column_int64(row, 0), column_text(row, 1), column_text(row, 2),
+                                column_text(row, 3)};
+    return t->take(&numbers, t->user, err);
 }
 
 Status rows_each_text(Database *db, RowTextFn take, void *user, Err *err)
 {
-    return database_each(db, "SELECT id, x, extra FROM evaluation ORDER BY id", take_texts, &(Texts){take, user}, err);
+    return database_each(db, "SELECT id, x, f, extra FROM evaluation ORDER BY id", take_texts, &(Texts){take, user},
+                         err);
 }

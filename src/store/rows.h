@@ -37,8 +37,12 @@ Status rows_each(Database *db, EvaluationTable *room, long first, long last, Eva
 Status rows_print(Database *db, FILE *f, RowShape shape, long first, long last, int unfinished_too, size_t *n,
                   Err *err);
 
-/* Variables and further measures of every row, in the order of their ids, as they are stored; unchecked. */
-typedef Status (*RowTextFn)(long id, const char *x, const char *extra, void *user, Err *err);
+/* Numbers of every row, in the order of their ids, as they are stored; unchecked. */
+typedef struct {
+    long id;
+    const char *x, *f, *extra; /* "": none */
+} RowNumbers;
+typedef Status (*RowTextFn)(const RowNumbers *row, void *user, Err *err);
 Status rows_each_text(Database *db, RowTextFn take, void *user, Err *err);
 
 /* n numbers of such a list, `before` the first and a comma before every other one; `missing`: for one that is not known. Only

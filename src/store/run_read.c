@@ -400,13 +400,14 @@ Status run_read(Run *run, const char *folder, Err *err)
     return run_read_part(run, folder, RUN_WHOLE, err);
 }
 
-static Status visit_row(long id, const char *x, const char *extra, void *loading, Err *err)
+static Status visit_row(const RowNumbers *stored, void *loading, Err *err)
 {
     Loading *l = loading;
     const size_t row = l->row++;
-    if (row >= l->run->table.n || l->run->table.row[row].id != id)
-        return fail(err, STATUS_IO, "%s: is damaged: evaluation %ld is not where it was", database_path(l->d), id);
-    return l->visitor->row(l->run, row, x, extra, l->user, err);
+    if (row >= l->run->table.n || l->run->table.row[row].id != stored->id)
+        return fail(err, STATUS_IO, "%s: is damaged: evaluation %ld is not where it was", database_path(l->d),
+                    stored->id);
+    return l->visitor->row(l->run, row, stored, l->user, err);
 }
 
 static Status visit(Loading *l, Err *err)

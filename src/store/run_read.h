@@ -8,6 +8,7 @@
 #include <stdio.h>
 
 #include "store/database.h"
+#include "store/rows.h"
 #include "store/run.h"
 
 /* The database of a run's folder; 1 where there is one. */
@@ -28,11 +29,11 @@ typedef enum {
 Status run_read_part(Run *run, const char *folder, RunPart part, Err *err);
 Status run_load_part(Run *run, Database *d, const char *folder, RunPart part, Err *err);
 
-/* A run whose results are read (RUN_RESULTS) and whose variables pass by, row for row, as they are stored (store/rows.h), all in
+/* A run whose results are read (RUN_RESULTS) and whose numbers pass by, row for row, as they are stored (store/rows.h), all in
  * one state. A null function is not called. */
 typedef struct {
     Status (*begin)(const Run *run, void *user, Err *err);
-    Status (*row)(const Run *run, size_t row, const char *x, const char *extra, void *user, Err *err);
+    Status (*row)(const Run *run, size_t row, const RowNumbers *stored, void *user, Err *err);
     Status (*end)(const Run *run, void *user, Err *err);
 } RunVisitor;
 Status run_visit(const char *folder, const RunVisitor *visitor, void *user, Err *err);
