@@ -212,11 +212,6 @@ const char *watch_name(Watch *w, size_t i)
     return w->run[i]->name;
 }
 
-const char *watch_folder(Watch *w, size_t i)
-{
-    return w->run[i]->folder;
-}
-
 static Status find_runs(Watch *w, const char *folder, Err *err)
 {
     char database[PATH_MAX];

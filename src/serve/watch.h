@@ -31,7 +31,6 @@ void watch_close(Watch *w);
 void watch_find(Watch *w);
 size_t watch_n(Watch *w);
 const char *watch_name(Watch *w, size_t i);
-const char *watch_folder(Watch *w, size_t i);
 
 /* Waits for the first reading; the run is kept for so many seconds more. One that could not be read is tried again after
  * AGAIN_S; until then the reason is the answer. */

@@ -46,27 +46,13 @@ static double value_of(const Lines *l)
     return l->from && value_behind_colon(l, &from) && number_behind(from, l->to, "", &x) ? x : NAN;
 }
 
-static Status name_channels(Record *r, const Header *h, const Columns *columns, Err *err)
+static void take_peaks(Record *r, const Lines *peaks)
 {
-    const char *p = h->names.from, *from, *to;
-    while (column_name(&h->names, &p, &from, &to)) {
-        Channel *c;
+    for (size_t k = 0; k < r->n_channels && peaks->from && line_has(peaks, "gal"); k++) {
         char word[CHANNEL_NAME_MAX + 2];
-        TRY(record_channel(r, &h->names, &c, err));
-        *c = (Channel){.scale = 1,
-                       .units = 1u << UNIT_CM_S2,
-                       .dt = value_of(&h->step),
-                       .first = r->n_channels - 1,
-                       .stride = columns->width,
-                       .n = columns->n_rows};
-        channel_name(c, from, to);
-        snprintf(word, sizeof word, "(%s)", c->name);
-        if (h->peaks.from && line_has(&h->peaks, "gal"))
-            channel_peak(c, h->peaks.from, h->peaks.to, word, 0.01);
+        snprintf(word, sizeof word, "(%s)", r->channel[k].name);
+        channel_peak(&r->channel[k], peaks->from, peaks->to, word, 0.01);
     }
-    return r->n_channels == columns->width ? STATUS_OK
-                                           : fail(err, STATUS_BAD_DATA, "%s:%d: names %zu columns, but %zu follow",
-                                                  h->names.path, h->names.number, r->n_channels, columns->width);
 }
 
 static Status read(Record *r, Lines *l, const ReadHints *hints, Err *err)
@@ -84,7 +70,9 @@ static Status read(Record *r, Lines *l, const ReadHints *hints, Err *err)
     if (count != (double)columns.n_rows)
         return fail(err, STATUS_BAD_DATA, "%s:%d: %zu rows, but its header announces %.0f", l->path, l->number,
                     columns.n_rows, count);
-    return name_channels(r, &h, &columns, err);
+    TRY(columns_name(&columns, r, &h.names, &(Channel){.units = 1u << UNIT_CM_S2, .dt = step}, err));
+    take_peaks(r, &h.peaks);
+    return STATUS_OK;
 }
 
 const MotionFormat FORMAT_AFAD = {"afad", recognise, read};

@@ -162,6 +162,24 @@ int column_name(const Lines *l, const char **p, const char **from, const char **
     return 1;
 }
 
+Status columns_name(const Columns *columns, Record *r, const Lines *names, const Channel *all, Err *err)
+{
+    const char *p = names->from, *from, *to;
+    while (column_name(names, &p, &from, &to)) {
+        Channel *c;
+        TRY(record_channel(r, names, &c, err));
+        *c = *all;
+        c->scale = 1;
+        c->first = r->n_channels - 1;
+        c->stride = columns->width;
+        c->n = columns->n_rows;
+        channel_name(c, from, to);
+    }
+    return r->n_channels == columns->width ? STATUS_OK
+                                           : fail(err, STATUS_BAD_DATA, "%s:%d: names %zu columns, but %zu follow",
+                                                  names->path, names->number, r->n_channels, columns->width);
+}
+
 /* ---- what stands above the numbers ---------------------------------------------------------------------------- */
 
 typedef struct {

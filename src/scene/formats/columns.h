@@ -22,4 +22,7 @@ Status columns_check(const Columns *columns, const Lines *l, Err *err);
  */
 int column_name(const Lines *l, const char **p, const char **from, const char **to);
 
+/* A channel for each column, named by that line, the rest as `all` has it; scale 1. */
+Status columns_name(const Columns *columns, Record *r, const Lines *names, const Channel *all, Err *err);
+
 #endif

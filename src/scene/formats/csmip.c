@@ -85,11 +85,7 @@ static void take_text(const Lines *l, Text *t, Channel *c)
     const char *max = find_word(l->from, l->to, "Max");
     if (max && find_word(max, l->to, " g"))
         channel_peak(c, max, l->to, "Max", GRAVITY);
-    const int tenths = line_has(l, "g/10");
     channel_unit_in(c, l, " and ");
-    if (tenths)
-        c->units = 1u << UNIT_G;
-    c->scale = tenths ? 0.1 : 1;
 }
 
 /* Up to the last line of the integer header. */
@@ -156,13 +152,10 @@ static Status read_block(Record *r, Lines *l, const Text *t, Channel *c, Err *er
     if (line_has(l, "veloc") || line_has(l, "displ"))
         return fail(err, STATUS_BAD_DATA, "%s:%d: not an acceleration: '%.*s'", l->path, l->number, line_shown(l),
                     l->from);
-    if (line_has(l, "g/10")) {
-        c->units = 1u << UNIT_G;
-        c->scale = 0.1;
-    } else if (stated.units || stated.unit[0]) {
+    if (stated.units || stated.unit[0]) {
         c->units = stated.units;
         memcpy(c->unit, stated.unit, sizeof c->unit);
-        c->scale = 1;
+        c->scale = stated.scale;
     }
     TRY(record_block(r, l, &form, err));
     const Lines ahead = lines_ahead(l);

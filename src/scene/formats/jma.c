@@ -10,7 +10,7 @@
 
 typedef struct {
     double hertz;
-    Channel unit; /* units and unit of every channel */
+    Channel unit; /* units, unit and dt of every channel */
     Lines names;
 } Header;
 
@@ -36,27 +36,6 @@ static Status read_header(Lines *l, Header *h, Err *err)
     return STATUS_OK;
 }
 
-static Status name_channels(Record *r, const Header *h, const Columns *columns, Err *err)
-{
-    const char *p = h->names.from, *from, *to;
-    while (column_name(&h->names, &p, &from, &to)) {
-        Channel *c;
-        TRY(record_channel(r, &h->names, &c, err));
-        *c = (Channel){.scale = 1,
-                       .units = h->unit.units,
-                       .dt = 1 / h->hertz,
-                       .first = r->n_channels - 1,
-                       .stride = columns->width,
-                       .n = columns->n_rows};
-        memcpy(c->unit, h->unit.unit, sizeof c->unit);
-        channel_name(c, from, to);
-    }
-    if (r->n_channels != columns->width)
-        return fail(err, STATUS_BAD_DATA, "%s:%d: names %zu columns, but %zu follow", h->names.path, h->names.number,
-                    r->n_channels, columns->width);
-    return STATUS_OK;
-}
-
 static Status read(Record *r, Lines *l, const ReadHints *hints, Err *err)
 {
     Header h;
@@ -67,7 +46,8 @@ static Status read(Record *r, Lines *l, const ReadHints *hints, Err *err)
     while (lines_next_filled(l))
         TRY(columns_add(&columns, r, l, err));
     TRY(columns_check(&columns, l, err));
-    return name_channels(r, &h, &columns, err);
+    h.unit.dt = 1 / h.hertz;
+    return columns_name(&columns, r, &h.names, &h.unit, err);
 }
 
 const MotionFormat FORMAT_JMA = {"jma", recognise, read};

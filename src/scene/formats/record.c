@@ -89,7 +89,9 @@ void channel_unit(Channel *c, const char *from, const char *to)
 void channel_unit_in(Channel *c, const Lines *l, const char *word)
 {
     const char *from = find_word(l->from, l->to, word), *to;
-    c->units = units_named(l->from, l->to);
+    const int tenths = line_has(l, "g/10");
+    c->units = tenths ? 1u << UNIT_G : units_named(l->from, l->to);
+    c->scale = tenths ? 0.1 : 1;
     if (!from || c->units)
         return;
     for (from += strlen(word); from < l->to && *from == ' ';)

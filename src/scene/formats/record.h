@@ -91,7 +91,7 @@ void channel_name(Channel *c, const char *from, const char *to); /* blanks and q
 /* The unit that a header states, colon or equals sign before it dropped. */
 void channel_unit(Channel *c, const char *from, const char *to);
 
-/* The units that a line names; where it names none, what it states as one behind `word`, up to a comma, a bracket or two
+/* The units that a line names, or tenths of g (g/10) by the channel's scale; where it names none, what it states as one behind `word`, up to a comma, a bracket or two
  * blanks. */
 void channel_unit_in(Channel *c, const Lines *l, const char *word);
 

@@ -55,13 +55,8 @@ static void take_text(const Lines *l, Text *t, Channel *c)
         t->at_count = *l;
         number_behind(l->from, l->to, "DURATION", &t->duration);
     }
-    if (!line_begins(l, "UNITS ARE"))
-        return;
-    const int tenths = line_has(l, "G/10");
-    channel_unit_in(c, l, " and ");
-    if (tenths)
-        c->units = 1u << UNIT_G;
-    c->scale = tenths ? 0.1 : 1;
+    if (line_begins(l, "UNITS ARE"))
+        channel_unit_in(c, l, " and ");
 }
 
 /* Up to the last line of the numeric header. */
