@@ -265,6 +265,22 @@ static void test_resumed_anywhere_it_makes_the_same_bytes(void **state)
     }
 }
 
+static void test_a_search_that_ends_by_its_generations_finishes_designs_too(void **state)
+{
+    (void)state;
+    SearchConfig config = config_of();
+    StopReason reason;
+    Err err = {0};
+    memset(&other, 0, sizeof other);
+    open_world(&other_world, 1);
+    config.generations = 5;
+    CHECK_OK(search_run(&other_world.problem, &config, observe, &other, &reason, &err), &err);
+    assert_int_equal(reason, STOP_GENERATIONS);
+    assert_true(other.n_evaluations < EVALS / 2 + EVALS / 4);
+    assert_int_equal(other.n_finished, other.n_screened / 5);
+    forget(&other_world, &other);
+}
+
 static void test_levels_that_do_not_agree_turn_it_off(void **state)
 {
     (void)state;
@@ -307,6 +323,7 @@ int main(void)
         cmocka_unit_test(test_a_finished_design_has_the_bytes_of_one_evaluated_at_once),
         cmocka_unit_test(test_four_workers_make_the_bytes_of_one),
         cmocka_unit_test(test_resumed_anywhere_it_makes_the_same_bytes),
+        cmocka_unit_test(test_a_search_that_ends_by_its_generations_finishes_designs_too),
         cmocka_unit_test(test_levels_that_do_not_agree_turn_it_off),
         cmocka_unit_test(test_without_a_cheap_level_nothing_is_screened),
     };

@@ -416,10 +416,17 @@ Status screening_finish(Search *s, size_t *n, Err *err)
     return STATUS_OK;
 }
 
+int screening_is_due(const Search *s)
+{
+    const Screening *q = &s->screening;
+    return q->is_on && q->n_open > 0 && finish_due(s, 0) > 0 && left(s) >= q->full - q->cheap;
+}
+
 Status screening_last(Search *s, size_t *n, Err *err)
 {
     const Screening *q = &s->screening;
-    if (*n > 0 || q->n == 0 || !q->is_on || screening_has_room(s, 0))
+    const int is_last = s->generation > s->config->generations || !screening_has_room(s, 0);
+    if (*n > 0 || q->n == 0 || !q->is_on || !is_last)
         return STATUS_OK;
     return append_best(s, n, size_with(s, 0, batch_size(s)), err);
 }

@@ -206,6 +206,7 @@ const void *screening_parts(const Search *s, const double x[]);   /* of the chea
 /* Screened designs to be finished, after n designs of a batch; when the rest is kept for them, a batch of them. */
 Status screening_finish(Search *s, size_t *n, Err *err);
 Status screening_last(Search *s, size_t *n, Err *err);
+int screening_is_due(const Search *s); /* designs are to be finished, and there is room */
 
 /* batch.c */
 size_t batch_size(const Search *s);
