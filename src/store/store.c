@@ -94,7 +94,7 @@ static Status load_whole(RunStore *store, Err *err)
     if (store->run.n_ahead == 0)
         return STATUS_OK;
     run_free(&store->run);
-    return run_load(&store->run, store->db, store_folder(store), err);
+    return folder_advise(store_folder(store), run_load(&store->run, store->db, store_folder(store), err), err);
 }
 
 Status store_give_run(RunStore *store, Run *run, Err *err)
