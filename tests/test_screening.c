@@ -11,7 +11,7 @@
 #include "moga/search.h"
 #include "searches.h"
 
-enum { VAR = 5, OBJ = 3, PARTS = 4, CHEAP = 1, EVALS = 60, ROWS_MAX = 400 };
+enum { VAR = 5, OBJ = 3, PARTS = 4, CHEAP = 1, EVALS = 40, ROWS_MAX = 400 };
 
 /* Four replicates of a function, of which the first is the cheap level. */
 typedef struct {
@@ -206,7 +206,7 @@ static void assert_same_search(void)
 static void test_no_screened_design_is_on_the_front(void **state)
 {
     (void)state;
-    assert_true(seen.views > 5 && seen.n_screened > 100 && seen.n_finished > 20);
+    assert_true(seen.views > 5 && seen.n_screened > 90 && seen.n_finished > 15);
     assert_int_equal(seen.n, seen.n_screened + seen.n_finished);
 }
 
@@ -229,8 +229,7 @@ static void test_a_finished_design_has_the_bytes_of_one_evaluated_at_once(void *
             parts[k] = part_of(&world, e->x, k);
         mean_of(&world, 0, seen.kind[i] == KIND_SCREENED ? CHEAP : PARTS, parts, f);
         assert_memory_equal(e->f, f, sizeof f);
-        if (seen.kind[i] == KIND_FINISHED)
-            assert_memory_equal(seen.Y + i * OBJ, f, sizeof f);
+        assert_memory_equal(seen.Y + i * OBJ, f, sizeof f); /* what was evaluated, not what is predicted */
     }
 }
 

@@ -161,6 +161,27 @@ Status screening_take(Search *s, const Finished *done, Err *err)
     return STATUS_OK;
 }
 
+static void exchange(size_t n, double a[], double b[])
+{
+    for (size_t k = 0; k < n; k++) {
+        const double value = a[k];
+        a[k] = b[k];
+        b[k] = value;
+    }
+}
+
+void screening_exchange(Search *s)
+{
+    Archive *a = &s->archive;
+    const size_t m = a->n_obj, c = a->n_con;
+    for (size_t i = 0; i < s->screening.n; i++) {
+        const size_t row = s->screening.design[i].row;
+        double *y = s->screening.y + i * (m + c);
+        exchange(m, a->Y + row * m, y);
+        exchange(c, a->H + row * c, y + m);
+    }
+}
+
 const void *screening_parts(const Search *s, const double x[])
 {
     const size_t i = find(s, x);

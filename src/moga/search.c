@@ -150,7 +150,10 @@ static int report(Search *s, int is_last, ObserveFn observe, void *user)
         .state = pack_finished(&s->state) ? s->state.bytes : NULL,
         .n_state = s->state.n,
     };
-    return observe && observe(&view, user) ? 1 : 0;
+    screening_exchange(s);
+    const int stop = observe && observe(&view, user);
+    screening_exchange(s);
+    return stop;
 }
 
 /* -- the loop over generations ------------------------------------------------------------------------------------- */

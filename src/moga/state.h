@@ -202,7 +202,8 @@ int search_is_spent(const Search *s);
 int screening_has_room(const Search *s, size_t n);
 Status screening_take(Search *s, const Finished *done, Err *err); /* before it enters the archive */
 Status screening_update(Search *s, Err *err);                     /* after results: predictions, agreement, front */
-const void *screening_parts(const Search *s, const double x[]);   /* of the cheap level of x; NULL: not kept */
+void screening_exchange(Search *s); /* predictions in the archive for what was evaluated, and back */
+const void *screening_parts(const Search *s, const double x[]); /* of the cheap level of x; NULL: not kept */
 /* Screened designs to be finished, after n designs of a batch; when the rest is kept for them, a batch of them. */
 Status screening_finish(Search *s, size_t *n, Err *err);
 Status screening_last(Search *s, size_t *n, Err *err);
