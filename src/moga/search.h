@@ -24,7 +24,8 @@
  *                   valley says nothing of the others, and what is gained at once is no measure of it
  *       limits      a gain counts with the probability that the design succeeds and keeps every limit; descents turn
  *                   back where a limit is violated or a failure predicted; variation gets the share that fails
- *   5 Evaluation (batch.c), with replicates where evaluations are noisy (replication.c)
+ *   5 Evaluation (batch.c), with replicates where evaluations are noisy (replication.c); with FIDELITY_REPLICATES by the
+ *     cheap level, and in full for those that promise most (screening.c)
  *   6 Control (control.h)
  *       Kendall's tau between predicted and evaluated objectives: while it is too low, batches are variation alone;
  *       credits of generators and criteria
