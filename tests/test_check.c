@@ -131,7 +131,13 @@ static void test_simulate_and_optimize_say_what_check_finds_implausible(void **s
     (void)state;
     static const char *const COMMANDS[] = {"simulate @/six.ini --design @/mm.csv --json",
                                            "optimize @/six.ini --max-evals 8 --set search.initial=8 --out @/six-run"};
+    char path[512];
     write_building(1e-3, 1, 0);
+    snprintf(path, sizeof path, "%s/six.ini", place.folder);
+    FILE *ini = fopen(path, "ae");
+    assert_non_null(ini);
+    fputs("[search]\nfidelity = replicates\n", ini); /* with one replicate */
+    fclose(ini);
     write_in_place("mm.csv", "gap_01_m,gap_02_m,gap_03_m,gap_04_m,gap_05_m,gap_06_m,t_base_m,t_top_m\n"
                              "0.1,0.1,0.1,0.1,50,50,0.01,0.02\n0.1,0.1,0.1,0.1,50,50,0.01,0.02\n");
     for (int i = 0; i < 2; i++) {
@@ -142,6 +148,7 @@ static void test_simulate_and_optimize_say_what_check_finds_implausible(void **s
             "motion.records=builtin:sylmar-like,builtin:sylmar-like",
             COMMANDS[i]);
         assert_int_equal(s.code, 0);
+        assert_int_equal(times(s.err, "warning: search.fidelity: has no effect: it is read where problem.kind"), i);
         assert_int_equal(times(s.err, "warning: building.model: the first period"), 1);
         assert_int_equal(times(s.err, "warning: motion.records: builtin:sylmar-like is there twice"), 1);
         if (i == 0) {

@@ -212,8 +212,9 @@ static void test_a_good_worker_answers_every_design(void **state)
     expect_every_third("good", OUTCOME_OK, "", 20);
     expect_every_third("spaced", OUTCOME_OK, "", 20);
     expect_every_third("slowly", OUTCOME_OK, "", 20);
-    expect_every_third("calm", OUTCOME_OK, "", 20); /* with an error that is null */
-    expect_every_third("real", OUTCOME_OK, "", 20); /* id 17.0 */
+    expect_every_third("calm", OUTCOME_OK, "", 20);    /* with an error that is null */
+    expect_every_third("real", OUTCOME_OK, "", 20);    /* id 17.0 */
+    expect_every_third("largest", OUTCOME_OK, "", 20); /* a number that is finite, but not from its 2nd digit on */
 }
 
 static void test_a_reported_error_fails_that_design_with_its_reason(void **state)

@@ -122,6 +122,36 @@ static void test_values_that_are_not_known_are_nan_and_a_word_that_is_not_known_
     run_free(&h);
 }
 
+/* With three replicates; of the last generation, which is not finished, one row is whole but for its cheap part. */
+static void test_rows_of_a_generation_that_is_not_finished_count_as_what_is_simulated_of_them(void **state)
+{
+    (void)state;
+    Run h;
+    Err err = {0};
+    char folder[PATH_MAX];
+    CHECK_OK(run_read(&h,
+                      changed("UPDATE evaluation SET digest = NULL, kind = 'screened', spread = NULL;"
+                              "UPDATE evaluation SET kind = 'finished' WHERE id = 7;"
+                              "UPDATE evaluation SET kind = NULL WHERE id > 9",
+                              folder),
+                      &err),
+             &err);
+    const size_t n = run_first_polished(&h), open = n - 9;
+    assert_true(n > 11);
+    h.table.row[10].sd[0] = 1.0;
+    h.settings->problem.kind = PROBLEM_TOWER;
+    h.settings->problem.noisy = NOISY_NO;
+    h.settings->search.fidelity = FIDELITY_REPLICATES;
+    h.settings->sim.replicates = 3;
+    assert_true(run_is_screened(&h));
+    assert_int_equal(run_evaluations(&h, 0), (8 + 2 + open + 1) / 3);
+    assert_int_equal(run_evaluations(&h, 9), (open + 1) / 3);
+    h.settings->search.fidelity = FIDELITY_OFF;
+    assert_false(run_is_screened(&h));
+    assert_int_equal(run_evaluations(&h, 9), open);
+    run_free(&h);
+}
+
 static void test_a_run_from_before_the_choice_of_core_theory_keeps_the_only_one_there_was(void **state)
 {
     (void)state;
@@ -294,6 +324,7 @@ int main(void)
         cmocka_unit_test(test_what_is_wrong_in_one_cell_is_named),
         cmocka_unit_test(test_a_run_read_without_its_variables_has_the_same_results),
         cmocka_unit_test(test_values_that_are_not_known_are_nan_and_a_word_that_is_not_known_is_unfinished),
+        cmocka_unit_test(test_rows_of_a_generation_that_is_not_finished_count_as_what_is_simulated_of_them),
         cmocka_unit_test(test_a_run_from_before_the_choice_of_core_theory_keeps_the_only_one_there_was),
         cmocka_unit_test(test_polished_designs_compete_with_the_front_and_can_be_dropped),
         cmocka_unit_test(test_a_folder_without_a_run_or_with_too_long_a_name_is_told),

@@ -10,6 +10,7 @@
 #include "moga/dominance.h"
 #include "moga/search.h"
 #include "searches.h"
+#include "study/study_log.h"
 
 enum { VAR = 5, OBJ = 3, PARTS = 4, CHEAP = 1, EVALS = 40, ROWS_MAX = 400 };
 
@@ -300,6 +301,22 @@ static void test_levels_that_do_not_agree_turn_it_off(void **state)
     forget(&other_world, &other);
 }
 
+static void test_an_agreement_that_is_not_known_is_said_to_be_so(void **state)
+{
+    (void)state;
+    char text[SCREENING_WORDS];
+    StudySummary sum = {.n_simulated = 154, .n_screened = 129, .n_evaluations = 59, .max_evals = 60};
+    sum.level_agreement = NAN;
+    screening_words(&sum, text);
+    assert_non_null(strstr(text, "129 designs"));
+    assert_non_null(strstr(text, " 25 finished"));
+    assert_non_null(strstr(text, "59 of 60 evaluations; too few"));
+    assert_null(strstr(text, "tau"));
+    sum.level_agreement = 0.947;
+    screening_words(&sum, text);
+    assert_non_null(strstr(text, "a Kendall's tau of 0.95"));
+}
+
 static void test_without_a_cheap_level_nothing_is_screened(void **state)
 {
     (void)state;
@@ -324,6 +341,7 @@ int main(void)
         cmocka_unit_test(test_resumed_anywhere_it_makes_the_same_bytes),
         cmocka_unit_test(test_a_search_that_ends_by_its_generations_finishes_designs_too),
         cmocka_unit_test(test_levels_that_do_not_agree_turn_it_off),
+        cmocka_unit_test(test_an_agreement_that_is_not_known_is_said_to_be_so),
         cmocka_unit_test(test_without_a_cheap_level_nothing_is_screened),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);

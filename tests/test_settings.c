@@ -585,6 +585,7 @@ static void test_a_setting_that_waits_for_another_is_idle_until_then(void **stat
                  {"motion.target_to_s", "motion.target=asce7"},
                  {"motion.unit", "motion.record=mine.csv"},
                  {"sim.robust", "sim.replicates=4"},
+                 {"search.fidelity", "sim.replicates=4"},
                  {"sim.robust", "motion.records=builtin:sylmar-like"},
                  {"problem.lower", "problem.kind=external"},
                  {"problem.variable_names", "problem.kind=dtlz2"}};
@@ -605,7 +606,13 @@ static void test_a_setting_that_waits_for_another_is_idle_until_then(void **stat
         settings_defaults(&s);
         assert_null(settings_idle(&s, READ[i]));
     }
-    Settings external;
+    Settings external, noisy;
+    settings_defaults(&noisy);
+    noisy.sim.replicates = 4;
+    noisy.problem.noisy = NOISY_YES;
+    assert_non_null(settings_idle(&noisy, "search.fidelity"));
+    noisy.search.replicate_share = 0.0;
+    assert_null(settings_idle(&noisy, "search.fidelity"));
     settings_defaults(&external);
     external.problem.kind = PROBLEM_EXTERNAL;
     assert_non_null(settings_idle(&external, "contact.law"));

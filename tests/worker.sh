@@ -22,6 +22,7 @@ while read -r line; do
     calm) echo "{\"id\":$id,\"error\":null,\"f\":[$x1,$x2]}" ;;
     real) echo "{\"id\":$id.0,\"f\":[$x1,$x2]}" ;;
     overflow) echo "{\"id\":$id,\"f\":[1,-1e999]}" ;;
+    largest) echo "{\"note\":-1.7976931348623157e+308,\"id\":$id,\"f\":[$x1,$x2]}" ;;
     blanks) yes '' | head -c 5000000; echo "$good" ;;
     child) sleep 60 & exit 3 ;;
     dies) exit 3 ;;

@@ -10,6 +10,7 @@
 #include "cmd/show.h"
 #include "cmd/signals.h"
 #include "cmd/warnings.h"
+#include "settings/idle.h"
 #include "store/nearest.h"
 #include "store/run_read.h"
 #include "study/confidence.h"
@@ -17,7 +18,6 @@
 #include "study/output_place.h"
 #include "study/study.h"
 #include "study/study_log.h"
-#include "settings/settings.h"
 
 typedef struct {
     int terminal, has_line, has_warned;
@@ -209,7 +209,7 @@ static Status report(const Run *run, const StudySummary *summary, Err *err)
         printf("%zu of the simulations repeat a design, to average the noise (search.replicate_share)\n\n",
                summary->n_repeats);
     if (summary->n_screened > 0) {
-        char text[240];
+        char text[SCREENING_WORDS];
         screening_words(summary, text);
         printf("%s\n\n", text);
     }
@@ -288,6 +288,14 @@ static Status show_finished(const Args *args, RunStore *store, Run *finished, Er
     return report(finished, &summary, err);
 }
 
+/* Also where a file gives it: what is not screened costs more than was meant. */
+static void warn_of_fidelity(const Args *args, const Settings *s)
+{
+    const char *waits_for = settings_idle(s, "search.fidelity");
+    if (waits_for && s->search.fidelity != FIDELITY_OFF && !args_gives(args, "search.fidelity"))
+        fprintf(stderr, "warning: search.fidelity: has no effect: it is read where %s\n", waits_for);
+}
+
 static Status optimize(const Args *args, Run *finished, Err *err)
 {
     Settings s;
@@ -310,6 +318,7 @@ static Status optimize(const Args *args, Run *finished, Err *err)
     }
     if (s.problem.kind == PROBLEM_TOWER)
         warn_of_settings(&s, warn_on_stderr, NULL);
+    warn_of_fidelity(args, &s);
     signals_catch();
     status = study_run(&s, &options, &summary, stderr, err);
     if (telling.has_line)

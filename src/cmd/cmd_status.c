@@ -54,14 +54,17 @@ static void print_head(const char *folder, const Run *run, const Standing *s)
         printf(" (process %ld on %s)", s->holder.pid, s->holder.host);
     else if (last && last->stopped[0])
         printf(" (%s)", last->stopped);
-    printf("\n%zu of %ld simulated, ", s->progress.simulated, s->max_evals);
+    puts("");
+    if (run_is_screened(run))
+        printf("%zu designs screened or finished, as much as ", run_first_polished(run));
+    printf("%zu of %ld %s, ", s->progress.simulated, s->max_evals, run_is_screened(run) ? "evaluations" : "simulated");
     if (run->n_repeats > 0)
         printf("%zu of them repeats, ", run->n_repeats);
     printf("%zu failed, %zu on the front", s->n_failed, run->n_front);
     if (s->n_polished > 0)
         printf(", %zu polished designs", s->n_polished);
-    printf("\n%zu generations in %s, %zu %s; %s simulations/s", run->n_generations, worked, run->n_sessions,
-           run->n_sessions == 1 ? "session" : "sessions", pace);
+    printf("\n%zu generations in %s, %zu %s; %s %s/s", run->n_generations, worked, run->n_sessions,
+           run->n_sessions == 1 ? "session" : "sessions", pace, run_is_screened(run) ? "evaluations" : "simulations");
     if (s->state != RUN_FINISHED)
         printf(", %s left", left);
     if (last)
@@ -97,6 +100,8 @@ static void print_generations(const Run *run, const double igd[], double expecte
     }
     printf("hypervolume: standard error %.4f at most; IGD+: against the last front, normalised by its ranges\n",
            hypervolume_error(0.5));
+    if (run_is_screened(run))
+        puts("simulated: designs screened or finished, each a part of an evaluation (search.fidelity)");
     show_expected_gain(expected);
 }
 

@@ -143,9 +143,12 @@ static int is_asce7(const Settings *s)
     return s->motion.target == TARGET_ASCE7;
 }
 
-static int has_replicates(const Settings *s)
+/* What is replicated for its noise is not screened. */
+static int is_screened(const Settings *s)
 {
-    return is_tower(s) && s->sim.replicates > 1;
+    const int repeats =
+        s->problem.noisy == NOISY_YES && s->search.replicates_max > 1 && s->search.replicate_share > 0.0;
+    return is_tower(s) && s->sim.replicates > 1 && !repeats;
 }
 
 static int is_fast(const Settings *s)
@@ -207,7 +210,7 @@ static const struct {
     {"motion.ec8_*", is_eurocode8, "motion.target = eurocode8"},
     {"motion.asce7_*", is_asce7, "motion.target = asce7"},
     {"sim.steps_per_contact sim.tolerance", is_fast, "sim.engine = fast"},
-    {"search.fidelity", has_replicates, "problem.kind = tower and sim.replicates is 2 or more"},
+    {"search.fidelity", is_screened, "problem.kind = tower, sim.replicates is 2 or more and problem.noisy is not yes"},
     {"sim.robust", has_parts, "there are replicates or further records (sim.replicates, motion.records)"},
     {"sim.quantile", is_quantile, "sim.robust = quantile, with replicates or further records"},
     {"search.trust_error search.surrogate_max", has_surrogate, "search.surrogate is not off"},

@@ -240,11 +240,13 @@ static int take_objectives(const External *e, const json_t *list, double f[])
     return 1;
 }
 
-/* A number that is too large to be one, 1e999 say. Its length, or 0. */
-static size_t overflow_length(const char *text)
+/* A number that begins at `text` in `line` and is too large to be one, 1e999 say. Its length, or 0. The end of a number is
+ * none: 1.7976931348623157e+308 is finite, its last digits with the exponent are not. */
+static size_t overflow_length(const char *line, const char *text)
 {
     char *end;
-    if (*text != '-' && !isdigit((unsigned char)*text))
+    if ((*text != '-' && !isdigit((unsigned char)*text)) ||
+        (text > line && (isalnum((unsigned char)text[-1]) || strchr(".+-", text[-1]))))
         return 0;
     return isinf(strtod(text, &end)) && end > text + 2 ? (size_t)(end - text) : 0;
 }
@@ -259,7 +261,7 @@ static void blank_non_numbers(char *line)
             c++;
         else if (*c == '"')
             in_string = !in_string;
-        const size_t too_large = in_string ? 0 : overflow_length(c);
+        const size_t too_large = in_string ? 0 : overflow_length(line, c);
         if (too_large > 0) {
             memset(c, ' ', too_large);
             memset(c, '"', 2);

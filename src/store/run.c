@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "moga/dominance.h"
+#include "settings/idle.h"
 #include "settings/options.h"
 
 void run_free(Run *run)
@@ -121,15 +122,27 @@ Status run_settle_front(Run *run, Err *err)
     return STATUS_OK;
 }
 
-size_t run_evaluations(const Run *run)
+int run_is_screened(const Run *run)
+{
+    return run->settings->search.fidelity != FIDELITY_OFF && !settings_idle(run->settings, "search.fidelity");
+}
+
+/* In replicates; the cheap level has no spread. */
+static size_t cost_of(const Run *run, size_t row)
 {
     const size_t whole = (size_t)run->settings->sim.replicates;
+    EvaluationKind kind = run->table.row[row].kind;
+    if (kind == KIND_UNFINISHED && run_is_screened(run))
+        kind = isfinite(run->table.row[row].sd[0]) ? KIND_FINISHED : KIND_SCREENED;
+    return kind == KIND_SCREENED ? 1 : kind == KIND_FINISHED ? whole - 1 : kind == KIND_POLISHED ? 0 : whole;
+}
+
+size_t run_evaluations(const Run *run, size_t first)
+{
     size_t replicates = 0;
-    for (size_t i = 0; i < run->table.n; i++) {
-        const EvaluationKind kind = run->table.row[i].kind;
-        replicates += kind == KIND_SCREENED ? 1 : kind == KIND_FINISHED ? whole - 1 : kind == KIND_POLISHED ? 0 : whole;
-    }
-    return replicates / whole;
+    for (size_t i = first; i < run->table.n; i++)
+        replicates += cost_of(run, i);
+    return replicates / (size_t)run->settings->sim.replicates;
 }
 
 int run_has_polished(const Run *run)

@@ -85,8 +85,12 @@ size_t run_n_finished(const Run *run);
 /* The front of the search joined by the polished designs, and `front`; the table, F and place are all that has to be there. */
 Status run_settle_front(Run *run, Err *err);
 
-/* Of search.max_evals: a screened design is one of sim.replicates parts of an evaluation, finished it is the rest. */
-size_t run_evaluations(const Run *run);
+int run_is_screened(const Run *run); /* search.fidelity acts */
+
+/* Of search.max_evals, those of the rows from `first` on: a screened design is one of sim.replicates parts of an evaluation,
+ * finished it is the rest. Of a generation that is not finished no more than it will be: rows without spreads are
+ * taken as screened. */
+size_t run_evaluations(const Run *run, size_t first);
 
 int run_has_polished(const Run *run);
 size_t run_first_polished(const Run *run); /* its row: behind those of the search; none: run->table.n */

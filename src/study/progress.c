@@ -70,7 +70,7 @@ static void count(Standing *out, const Run *run)
         out->n_polished += polished != 0;
         out->n_failed += !polished && !run->place[i].ok;
     }
-    out->progress.simulated = run_evaluations(run);
+    out->progress.simulated = run_evaluations(run, 0);
 }
 
 /* Thread-seconds of a session's simulations. */
@@ -122,8 +122,7 @@ static void take_session(Standing *out, const Run *run, const RunSession *last)
     p->session_s = is_running ? seconds_since(last->started) : stored;
     out->seconds += is_running ? fmax(p->session_s - stored, 0.0) : 0.0;
     p->all_s = out->seconds;
-    if (p->simulated > (size_t)last->simulated_before)
-        p->session_simulated = p->simulated - (size_t)last->simulated_before;
+    p->session_simulated = run_evaluations(run, (size_t)last->simulated_before);
     for (size_t g = 0; g < run->n_generations; g++)
         p->session_generations += strcmp(run->generation[g].finished, last->started) >= 0;
 }

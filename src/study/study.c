@@ -131,6 +131,7 @@ static void take_view(StudySummary *sum, const SearchView *view)
     sum->surrogate_s = view->surrogate_s;
     sum->surrogate_disabled = view->is_disabled;
     sum->n_screened = view->n_screened;
+    sum->n_evaluations = view->n_evaluations;
     sum->level_agreement = view->level_agreement;
     sum->has_left_screening = view->has_left_screening;
 }
@@ -251,7 +252,7 @@ static Status resume(Study *study, Err *err)
     const Run *run = store_run(study->store);
     StudySummary *sum = study->summary;
     sum_up(sum, run);
-    study->evaluations_before = run_evaluations(run);
+    study->evaluations_before = run_evaluations(run, 0);
     TRY(differences_check(&(Comparison){.run = run,
                                         .used = &study->used,
                                         .adapter = study->adapter,

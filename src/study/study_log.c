@@ -115,14 +115,19 @@ static Status log_costs(RunStore *store, const StudySummary *sum, int threads, E
                                 : "the surrogate was used");
 }
 
-void screening_words(const StudySummary *sum, char text[240])
+void screening_words(const StudySummary *sum, char text[SCREENING_WORDS])
 {
-    char agreement[32];
-    number_words(sum->level_agreement, 2, agreement);
-    snprintf(text, 240,
-             "%zu designs were screened by their first replicate (search.fidelity), which ranks designs as all do by "
-             "a Kendall's tau of %s%s",
-             sum->n_screened, agreement, sum->has_left_screening ? ": too little, so that screening ended" : "");
+    const int n = snprintf(text, SCREENING_WORDS,
+                           "%zu designs were screened by their first replicate (search.fidelity), and %zu finished or "
+                           "simulated at once, as much as %zu of %ld evaluations; ",
+                           sum->n_screened, sum->n_simulated - sum->n_screened, sum->n_evaluations, sum->max_evals);
+    if (isnan(sum->level_agreement))
+        snprintf(text + n, SCREENING_WORDS - (size_t)n,
+                 "too few were simulated at both levels to know how well the first replicate ranks designs");
+    else
+        snprintf(text + n, SCREENING_WORDS - (size_t)n,
+                 "the first replicate ranks designs as all do by a Kendall's tau of %.2f%s", sum->level_agreement,
+                 sum->has_left_screening ? ": too little, so that screening ended" : "");
 }
 
 Status study_log_end(RunStore *store, const StudySummary *sum, int threads, int is_final, Err *err)
@@ -132,7 +137,7 @@ Status study_log_end(RunStore *store, const StudySummary *sum, int threads, int 
                   sum->n_failed, sum->n_front, sum->seconds));
     TRY(log_costs(store, sum, threads, err));
     if (sum->n_screened > 0) {
-        char text[240];
+        char text[SCREENING_WORDS];
         screening_words(sum, text);
         TRY(store_log(store, err, "%s", text));
     }

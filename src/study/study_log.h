@@ -20,7 +20,8 @@ Status study_log_generation(RunStore *store, const SearchView *view, double seco
 /* threads: of the simulations. */
 Status study_log_end(RunStore *store, const StudySummary *sum, int threads, int is_final, Err *err);
 
-/* Of a study with screened designs: how many, and how far the cheap level agrees, as a sentence. */
-void screening_words(const StudySummary *sum, char text[240]);
+/* Of a study with screened designs: how many, what they cost, and how far the cheap level agrees, as a sentence. */
+enum { SCREENING_WORDS = 320 };
+void screening_words(const StudySummary *sum, char text[SCREENING_WORDS]);
 
 #endif

@@ -19,7 +19,8 @@ typedef struct {
     double simulation_s, own_s;                     /* as in SearchView */
     double search_s, waited_s, surrogate_s, busy_s; /* of this session; busy_s: in simulations, all threads added */
     int surrogate_disabled;
-    size_t n_screened; /* as in SearchView, of this session's last generation; 0: none, or not known */
+    size_t n_screened;    /* as in SearchView, of this session's last generation; 0: none, or not known */
+    size_t n_evaluations; /* with n_screened: of max_evals */
     double level_agreement;
     int has_left_screening;
     int has_baselines; /* of a tower whose front has a knee; of its core */
