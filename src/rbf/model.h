@@ -41,15 +41,16 @@ typedef struct {
 
 /* What one thread needs to fit one output; matrices column-major as LAPACK likes them, lower triangles. */
 typedef struct {
-    double *C, *S, *Z;                                        /* centres of the tuning set; scaled; for gradients */
-    double *by_a, *by_b;                                      /* (n) derivatives by the warp */
-    double *A;                                                /* (n, n) kernel matrix, its factor, its inverse */
-    double *P;                                                /* (n, n_tail + 1) tail basis and data */
-    double *M;                                                /* (n_tail, n_tail) normal matrix of the tail, factored */
-    double *b;                                                /* (n_tail) */
-    double *y, *w;                                            /* (n) data, weights */
-    double *noise;                                            /* (n) variance of each value, in nuggets */
-    double *q;                                                /* (n) diagonal of the projected inverse */
+    double *C, *S, *Z;   /* centres of the tuning set; scaled; for gradients */
+    double *by_a, *by_b; /* (n) derivatives by the warp */
+    double *A;           /* (n, n) kernel matrix, its factor, its inverse */
+    double *K;           /* (n, n) of the tuning set: factors of an additive part, which no scale changes */
+    double *P;           /* (n, n_tail + 1) tail basis and data */
+    double *M;           /* (n_tail, n_tail) normal matrix of the tail, factored */
+    double *b;           /* (n_tail) */
+    double *y, *w;       /* (n) data, weights */
+    double *noise;       /* (n) variance of each value, in nuggets */
+    double *q;           /* (n) diagonal of the projected inverse */
     double *log_p, *best_p, *gradient, *last_gradient, *step; /* (n_dim + 3) log of theta, warp, nugget */
     double *theta;                                            /* (n_dim) of the step under way */
     Shape shape, best_shape;
@@ -77,13 +78,18 @@ void model_copy_shape(const Rbf *m, Shape *to, const Shape *from);
 /* Points first..first+RBF_BLOCK-1, of n: x (n_dim, RBF_BLOCK); the last one again where there are fewer. */
 void model_gather(const Rbf *m, const double S[], size_t first, size_t n, double x[]);
 
-/* Lower triangle of the kernel matrix A (n, n) of centres C, scaled S, nugget times noise (n) on the diagonal. */
+/* Factors of the additive part of n centres C, laid out as the kernel matrix: K (n, n). */
+void model_additive(const Rbf *m, size_t n, const double C[], double reach, double K[]);
+
+/* Lower triangle of the kernel matrix A (n, n) of centres C, scaled S, nugget times noise (n) on the diagonal; K as by
+ * model_additive, NULL: computed. */
 void model_matrix(const Rbf *m, size_t n, const double C[], const double S[], RbfForm form, const double noise[],
-                  double A[]);
+                  const double K[], double A[]);
 
 /* Factors the kernel matrix, with k->noise, into k->A, raising the nugget by tens where centres are too near each other
  * to tell apart; 0 where that does not help. */
-int model_factor(const Rbf *m, Worker *k, size_t n, const double C[], const double S[], RbfForm *form);
+int model_factor(const Rbf *m, Worker *k, size_t n, const double C[], const double S[], const double K[],
+                 RbfForm *form);
 
 /* Twice as many centres as coefficients at least, else a simpler tail. */
 size_t model_tail(RbfTail tail, size_t n, size_t n_dim);

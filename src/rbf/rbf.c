@@ -17,7 +17,7 @@ static void layout(void *interpolant, Carve *c)
 {
     Rbf *m = interpolant;
     const size_t n = m->n_max, d = m->n_dim, t = m->n_tail_max, spread = d * m->stride + KERNEL_LANES,
-                 with_squares = spread + m->stride;
+                 with_squares = spread + m->stride, tuned = n < TUNE_CENTRES_MAX ? n : TUNE_CENTRES_MAX;
     m->C = carve(c, 3 * spread, sizeof(double));
     m->F = carve(c, m->n_out * n, sizeof(double));
     m->noise = carve(c, m->n_out * n, sizeof(double));
@@ -39,6 +39,7 @@ static void layout(void *interpolant, Carve *c)
         w->by_a = carve(c, n, sizeof(double));
         w->by_b = carve(c, n, sizeof(double));
         w->A = carve(c, n * n, sizeof(double));
+        w->K = carve(c, tuned * tuned, sizeof(double));
         w->P = carve(c, n * (t + 1), sizeof(double));
         w->M = carve(c, t * t, sizeof(double));
         w->b = carve(c, t, sizeof(double));
@@ -118,25 +119,40 @@ void model_gather(const Rbf *m, const double S[], size_t first, size_t n, double
             x[d * RBF_BLOCK + p] = S[d * m->stride + (first + p < n ? first + p : n - 1)];
 }
 
-/* A block of columns at a time, from its first row on, chunk by chunk. */
+/* Both a block of columns at a time, from its first row on, chunk by chunk. */
+void model_additive(const Rbf *m, size_t n, const double C[], double reach, double K[])
+{
+    double factor[RBF_BLOCK][KERNEL_CHUNK], u[RBF_BLOCK * RBF_DIM_MAX];
+    for (size_t j = 0; j < n; j += RBF_BLOCK) {
+        model_gather(m, C, j, n, u);
+        for (size_t i = j; i < n; i += KERNEL_CHUNK) {
+            const size_t count = n - i < KERNEL_CHUNK ? n - i : KERNEL_CHUNK;
+            kernel_additive(m->n_dim, m->stride, C, u, i, count, ADDITIVE_SHARE, reach, factor);
+            for (size_t p = 0; p < RBF_BLOCK && j + p < n; p++)
+                memcpy(K + (j + p) * n + i, factor[p], count * sizeof *K);
+        }
+    }
+}
+
 void model_matrix(const Rbf *m, size_t n, const double C[], const double S[], RbfForm form, const double noise[],
-                  double A[])
+                  const double K[], double A[])
 {
     double r2[RBF_BLOCK][KERNEL_CHUNK], x[RBF_BLOCK * RBF_DIM_MAX], u[RBF_BLOCK * RBF_DIM_MAX];
     double factor[RBF_BLOCK][KERNEL_CHUNK];
+    const int is_made = K || form.reach == 0.0;
     for (size_t j = 0; j < n; j += RBF_BLOCK) {
         model_gather(m, S, j, n, x);
-        if (form.reach > 0.0)
+        if (!is_made)
             model_gather(m, C, j, n, u);
         for (size_t i = j; i < n; i += KERNEL_CHUNK) {
             const size_t count = n - i < KERNEL_CHUNK ? n - i : KERNEL_CHUNK;
             kernel_distances(m->n_dim, m->stride, S, x, i, count, r2);
-            if (form.reach > 0.0)
+            if (!is_made)
                 kernel_additive(m->n_dim, m->stride, C, u, i, count, ADDITIVE_SHARE, form.reach, factor);
             for (size_t p = 0; p < RBF_BLOCK && j + p < n; p++) {
                 kernel_values(form.kernel, count, r2[p], A + (j + p) * n + i);
                 if (form.reach > 0.0)
-                    kernel_multiply(count, factor[p], A + (j + p) * n + i);
+                    kernel_multiply(count, K ? K + (j + p) * n + i : factor[p], A + (j + p) * n + i);
             }
         }
         for (size_t p = 0; p < RBF_BLOCK && j + p < n; p++)
@@ -162,10 +178,10 @@ size_t model_tail(RbfTail tail, size_t n, size_t n_dim)
     return tail != RBF_CONSTANT && n > 1 + n_dim ? 1 + n_dim : 1;
 }
 
-int model_factor(const Rbf *m, Worker *k, size_t n, const double C[], const double S[], RbfForm *form)
+int model_factor(const Rbf *m, Worker *k, size_t n, const double C[], const double S[], const double K[], RbfForm *form)
 {
     for (;; form->nugget *= 10.0) {
-        model_matrix(m, n, C, S, *form, k->noise, k->A);
+        model_matrix(m, n, C, S, *form, k->noise, K, k->A);
         if (LAPACKE_dpotrf_work(LAPACK_COL_MAJOR, 'L', (int)n, k->A, (int)n) == 0)
             return 1;
         if (form->nugget >= NUGGET_MAX)
@@ -248,7 +264,7 @@ static int fit_with_tail(const Rbf *m, Worker *k, Output *o, RbfTail tail)
 {
     const size_t n = m->n;
     RbfForm form = o->form;
-    if (!model_factor(m, k, n, m->C, o->S, &form))
+    if (!model_factor(m, k, n, m->C, o->S, NULL, &form))
         return 0;
     o->n_tail = model_weights(m, k, n, m->C, model_tail(tail, n, m->n_dim));
     memcpy(o->tail, k->b, o->n_tail * sizeof *o->tail);

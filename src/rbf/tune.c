@@ -57,22 +57,17 @@ static double prior(const Rbf *m, size_t n, const double p[], double gradient[])
 static double weigh_pairs(const Rbf *m, Worker *k, size_t n, RbfForm form, double s2)
 {
     double trace = 0.0, r2[RBF_BLOCK][KERNEL_CHUNK], x[RBF_BLOCK * RBF_DIM_MAX];
-    double factor[RBF_BLOCK][KERNEL_CHUNK], u[RBF_BLOCK * RBF_DIM_MAX];
     for (size_t j = 0; j < n; j++)
         trace += k->noise[j] * (k->w[j] * k->w[j] / s2 - k->A[j * n + j]);
     for (size_t j = 0; j < n; j += RBF_BLOCK) {
         model_gather(m, k->S, j, n, x);
-        if (form.reach > 0.0)
-            model_gather(m, k->C, j, n, u);
         for (size_t i = j; i < n; i += KERNEL_CHUNK) {
             const size_t count = n - i < KERNEL_CHUNK ? n - i : KERNEL_CHUNK;
             kernel_distances(m->n_dim, m->stride, k->S, x, i, count, r2);
-            if (form.reach > 0.0)
-                kernel_additive(m->n_dim, m->stride, k->C, u, i, count, ADDITIVE_SHARE, form.reach, factor);
             for (size_t p = 0; p < RBF_BLOCK && j + p < n; p++) {
                 kernel_weigh(form.kernel, count, r2[p], k->w + i, k->w[j + p], s2, k->A + (j + p) * n + i);
                 if (form.reach > 0.0)
-                    kernel_multiply(count, factor[p], k->A + (j + p) * n + i);
+                    kernel_multiply(count, k->K + (j + p) * n + i, k->A + (j + p) * n + i);
             }
         }
     }
@@ -118,7 +113,7 @@ static double likelihood(const Rbf *m, Worker *k, size_t n, RbfForm form, const 
     Shape shape = {.theta = k->theta};
     read_parameters(m, p, &shape, &form.nugget);
     model_scale(m, n, k->C, &shape, k->S);
-    model_matrix(m, n, k->C, k->S, form, k->noise, k->A);
+    model_matrix(m, n, k->C, k->S, form, k->noise, k->K, k->A);
     if (LAPACKE_dpotrf_work(LAPACK_COL_MAJOR, 'L', (int)n, k->A, (int)n) != 0)
         return INFINITY;
     model_weights(m, k, n, k->C, model_tail(form.tail, n, m->n_dim));
@@ -169,7 +164,7 @@ static void climb(const Rbf *m, Worker *k, size_t n, RbfForm *form, Shape *shape
 static double trial_error(const Rbf *m, Worker *k, size_t n, RbfForm *form, const Shape *shape)
 {
     model_scale(m, n, k->C, shape, k->S);
-    if (!model_factor(m, k, n, k->C, k->S, form))
+    if (!model_factor(m, k, n, k->C, k->S, k->K, form))
         return INFINITY;
     model_leave_one_out(k, n, model_weights(m, k, n, k->C, model_tail(form->tail, n, m->n_dim)));
     return cblas_ddot((int)n, k->q, 1, k->q, 1) / (double)n;
@@ -193,6 +188,8 @@ static size_t choose_tuning_set(const Rbf *m, Worker *k, const Output *o, const 
 static void try_form(const Rbf *m, Worker *k, size_t n, const Output *o, RbfForm form, int steps)
 {
     model_copy_shape(m, &k->shape, &o->shape);
+    if (form.reach > 0.0)
+        model_additive(m, n, k->C, form.reach, k->K);
     climb(m, k, n, &form, &k->shape, steps);
     const double e = trial_error(m, k, n, &form, &k->shape);
     if (e < k->min_error) {
