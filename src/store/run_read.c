@@ -28,6 +28,8 @@ typedef struct {
     uint64_t front;           /* digest of the designs on the search's front */
     uint64_t front_as_stored; /* ... with the newest state */
     int has_front_as_stored;
+    int has_generation_digest; /* from here on; a run that was made with an earlier format has none before */
+    int has_state_digest;      /* the state that is taken: with it its generation was written */
 } Loading;
 
 /* -- evaluations --------------------------------------------------------------------------------------------------- */
@@ -151,7 +153,7 @@ static void *one_more(void *list, size_t n, size_t size)
 
 static Status take_generation(sqlite3_stmt *row, void *user, Err *err)
 {
-    const Loading *l = user;
+    Loading *l = user;
     Run *run = l->run;
     RunGeneration *wider = one_more(run->generation, run->n_generations, sizeof *wider);
     if (!wider)
@@ -167,7 +169,8 @@ static Status take_generation(sqlite3_stmt *row, void *user, Err *err)
                          .hypervolume = column_number(row, 6),
                          .seconds = column_number(row, 7)};
     snprintf(g->finished, sizeof g->finished, "%s", column_text(row, 8));
-    if (column_whole(row, 9, run_generation_digest(g)) != run_generation_digest(g))
+    l->has_generation_digest |= sqlite3_column_type(row, 9) != SQLITE_NULL;
+    if (l->has_generation_digest && (long)sqlite3_column_int64(row, 9) != run_generation_digest(g))
         return fail(err, STATUS_IO, "%s: is damaged: generation %ld is not what was written", database_path(l->d),
                     g->number);
     return STATUS_OK;
@@ -196,15 +199,18 @@ static Status take_session(sqlite3_stmt *row, void *user, Err *err)
     return STATUS_OK;
 }
 
-/* The newest first; one that is not what was written gives way to the one before. */
+/* The newest first; one that is not what was written gives way to the one before. Of an earlier format, it has neither
+ * digest nor front. */
 static Status take_state(sqlite3_stmt *row, void *user, Err *err)
 {
     Loading *l = user;
     Run *run = l->run;
-    const long generation = (long)sqlite3_column_int64(row, 0), digest = column_whole(row, 2, 0);
+    const long generation = (long)sqlite3_column_int64(row, 0);
     const size_t n = (size_t)sqlite3_column_bytes(row, 1);
     const void *bytes = sqlite3_column_blob(row, 1);
-    const int is_whole = digest == 0 || digest == run_state_digest(generation, bytes, n);
+    const int is_whole = sqlite3_column_type(row, 2) == SQLITE_NULL
+                             ? sqlite3_column_type(row, 3) == SQLITE_NULL
+                             : (long)sqlite3_column_int64(row, 2) == run_state_digest(generation, bytes, n);
     if (!run->state && sqlite3_column_type(row, 3) != SQLITE_NULL) {
         l->has_front_as_stored = 1;
         l->front_as_stored = (uint64_t)sqlite3_column_int64(row, 3);
@@ -214,6 +220,7 @@ static Status take_state(sqlite3_stmt *row, void *user, Err *err)
     free(run->state);
     run->state_generation = generation;
     run->state_is_damaged = !is_whole;
+    l->has_state_digest = is_whole && sqlite3_column_type(row, 2) != SQLITE_NULL;
     run->n_state = n;
     run->state = malloc(n + 1);
     if (!run->state)
@@ -282,6 +289,10 @@ static Status load_states(Loading *l, Err *err)
                             ? "SELECT generation, bytes, NULL, NULL FROM state LIMIT 1"
                             : "SELECT generation, bytes, digest, front FROM state ORDER BY generation DESC LIMIT 2";
     TRY(database_each(l->d, query, take_state, l, err));
+    if (l->has_state_digest && !l->has_generation_digest)
+        return fail(err, STATUS_IO,
+                    "%s: is damaged: its generations have no digest, as if they were not what was written",
+                    database_path(l->d));
     return !l->has_front_as_stored || l->front == l->front_as_stored
                ? STATUS_OK
                : fail(err, STATUS_IO, "%s: is damaged: its front is not what was written", database_path(l->d));
