@@ -51,6 +51,7 @@ static Status take_improved(const Args *args, Work *w, Err *err)
 static Status take_options(const Args *args, Work *w, Err *err)
 {
     long evals;
+    TRY(refine_allows(w->run->settings, err));
     TRY(take_improved(args, w, err));
     TRY(take_kept(args, w, err));
     TRY(args_whole(args, "--evals", 1, 1000000, 300, &evals, err));

@@ -326,15 +326,20 @@ static Status refine(Refine *r, Refined *out, Err *err)
     return compare(r, out, err);
 }
 
+Status refine_allows(const Settings *s, Err *err)
+{
+    if (s->problem.kind == PROBLEM_TOWER || !schema_is_noisy(s))
+        return STATUS_OK;
+    return fail(err, STATUS_BAD_DATA,
+                "the answers of this run are noisy, and polishing simulates a design once: a gain could not be told "
+                "from noise; continue the search instead (search.max_evals, search.replicate_share)");
+}
+
 Status refine_design(const Run *h, size_t row, const RefineConfig *config, Refined *out, Err *err)
 {
     RefineConfig used = *config;
     *out = (Refined){.gain_min = config->gain_min, .gain_finer = NAN};
-    if (schema_is_noisy(h->settings) && h->settings->problem.kind != PROBLEM_TOWER)
-        return fail(
-            err, STATUS_BAD_DATA,
-            "the answers of this run are noisy, and polishing simulates a design once: a gain could not be told "
-            "from noise; continue the search instead (search.max_evals, search.replicate_share)");
+    TRY(refine_allows(h->settings, err));
     if (h->settings->problem.kind != PROBLEM_TOWER)
         used.replicates = 1;
     if (used.algorithm)

@@ -50,6 +50,9 @@ typedef struct {
     int keeps;       /* what was to be kept is */
 } Refined;
 
+/* Refused: noisy answers of others than the tower, which is simulated with replicates. */
+Status refine_allows(const Settings *s, Err *err);
+
 /* The design in row `row` of the run, with the settings that it was made with. */
 Status refine_design(const Run *h, size_t row, const RefineConfig *config, Refined *out, Err *err);
 void refined_free(Refined *r);

@@ -23,7 +23,7 @@ static size_t evals_each(const Settings *s)
 {
     const long n = (long)n_designs(s);
     const long each = n > 0 ? s->search.max_evals * s->sim.replicates / (SHARE * n) : 0;
-    const int is_possible = s->problem.kind == PROBLEM_TOWER || !schema_is_noisy(s);
+    const int is_possible = refine_allows(s, &(Err){0}) == STATUS_OK;
     return is_possible && each >= EVALS_MIN && (size_t)each >= refine_evals_min(s, replicates(s)) ? (size_t)each : 0;
 }
 
