@@ -264,7 +264,43 @@ static void test_the_sure_designs_of_a_noisy_front_are_those_with_that_probabili
     json_decref(many);
     json_decref(few);
     expect(2, "have no known errors", "choose @/run --confidence 0.9");
+    expect(2, "name no noise", "choose @/run --confidence 0.9");
     expect(2, "--confidence: '2' is no number", "choose @/noisy --confidence 2");
+    expect(65, "the answers of this run are noisy", "polish @/noisy --design knee --improve f1 --evals 1");
+}
+
+/* f = (x1, x1), the first to be small, the second large, and cut after a digit every second time: all are on the front. */
+static void test_a_repeat_that_fails_leaves_the_rest_of_the_front_its_confidence(void **state)
+{
+    (void)state;
+    Run h;
+    Err err = {0};
+    char path[PATH_MAX];
+    write_in_place("unlucky.sh",
+                   "while read -r line; do id=${line#*:}; id=${id%%,*}; x=${line#*[}; x=${x%]*}\n"
+                   "[ $((id % 2)) -eq 0 ] && short=$x || short=${x%\"${x#???}\"}\n"
+                   "[ $((id % 5)) -eq 0 ] && echo \"{\\\"id\\\":$id,\\\"error\\\":\\\"bad luck\\\"}\" ||\n"
+                   "echo \"{\\\"id\\\":$id,\\\"f\\\":[$short,$x]}\"\ndone\n");
+    char *worker = in_place("unlucky.sh"), text[PATH_MAX + 300];
+    snprintf(text, sizeof text,
+             "[problem]\nkind = external\ncommand = sh %s\nvariables = 1\nobjectives = 2\nsenses = min, max\n"
+             "lower = 0.1\nupper = 0.9\nnoisy = yes\n[search]\nmax_evals = 60\nthreads = 1\ninitial = 20\n"
+             "failures_max = 0\n",
+             worker);
+    write_in_place("unlucky.ini", text);
+    char *said = output_of("optimize @/unlucky.ini --out @/unlucky");
+    size_t n_unlucky = 0;
+    CHECK_OK(run_read(&h, path_of("unlucky", path), &err), &err);
+    for (size_t i = 0; i < h.table.n; i++)
+        n_unlucky += h.place[i].ok && h.table.row[i].replicates > 1 && isnan(h.table.row[i].sd[0]);
+    assert_true(n_unlucky > 0);
+    assert_non_null(strstr(said, "designs of the front are nondominated with a probability of 0.9"));
+    json_t *many = json_of("choose @/unlucky --json --confidence 0.01");
+    assert_true(json_array_size(json_object_get(many, "confident")) > 1);
+    json_decref(many);
+    run_free(&h);
+    free(said);
+    free(worker);
 }
 
 int main(void)
@@ -281,6 +317,7 @@ int main(void)
         cmocka_unit_test(test_choose_limits_any_result_of_a_run),
         cmocka_unit_test(test_words_that_name_nothing_are_refused_with_what_is_there),
         cmocka_unit_test(test_the_sure_designs_of_a_noisy_front_are_those_with_that_probability),
+        cmocka_unit_test(test_a_repeat_that_fails_leaves_the_rest_of_the_front_its_confidence),
     };
     return cmocka_run_group_tests_name("designs", tests, make_run, clear_place);
 }

@@ -164,6 +164,18 @@ typedef struct {
     double *p;   /* (n) */
 } Sure;
 
+/* Why no design of the front has a probability. */
+static const char *why_unknown(const Run *run)
+{
+    if (schema_is_noisy(run->settings))
+        return "no design of the front has a known error: the search has repeated none so far, or all are polished";
+    if (run->schema.has_spread)
+        return "the replicates of a tower (sim.replicates) err alike in every design, so that their errors are not "
+               "independent, as this probability takes them; NAME_sd of front.csv shows how large they are";
+    return "the objectives of this run have no known errors: its settings name no noise (problem.noise, "
+           "problem.noisy), or no repeats (search.replicate_share, search.replicates_max)";
+}
+
 /* One set of draws for the picks and, where it is asked for, the front within the limits. */
 static Status find_confidence(const Choice *c, Picks *p, Sure *sure, Err *err)
 {
@@ -187,12 +199,7 @@ static Status find_confidence(const Choice *c, Picks *p, Sure *sure, Err *err)
             sure->p[sure->n++] = sure->p[i];
         }
     }
-    if (sure->n_asked == 0 && n > p->n)
-        return fail(
-            err, STATUS_USAGE,
-            "--confidence: the objectives of this run have no known errors: its evaluations are not noisy, or one "
-            "design has a single replicate");
-    return STATUS_OK;
+    return sure->n_asked > 0 || n == p->n ? STATUS_OK : fail(err, STATUS_USAGE, "--confidence: %s", why_unknown(run));
 }
 
 static void show_sure(const Run *run, const Sure *sure)

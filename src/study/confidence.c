@@ -13,32 +13,32 @@ static int counts(const Run *run, size_t i)
            run->place[i].ok && !(e->violation > 0.0);
 }
 
-/* Designs that keep the limits, with minimised objectives and their standard errors. */
+/* Designs that keep the limits, with minimised objectives and their standard errors. Left out are those whose error is not
+ * known: one simulation of theirs failed, and the search has taken them off the front; or none was repeated at all. */
 typedef struct {
     size_t n;
     double *F, *error; /* (n, n_obj) */
-    size_t *place;     /* (table.n) of a row among the n */
+    size_t *place;     /* (table.n) of a row among the n, from 1; 0: left out */
 } Known;
 
-/* n is 0: there is no noise, or one of them has no known error. */
+static int gather_one(const Run *run, size_t i, Known *known)
+{
+    const size_t m = run->schema.n_obj, at = known->n * m;
+    const Evaluation *e = &run->table.row[i];
+    int is_known = counts(run, i) && e->replicates > 0;
+    for (size_t k = 0; k < m && is_known; k++) {
+        known->F[at + k] = schema_objective(&run->schema, k)->sense * run->F[i * m + k];
+        known->error[at + k] = e->sd[k] / sqrt((double)e->replicates);
+        is_known = known->error[at + k] >= 0.0;
+    }
+    return is_known;
+}
+
 static void gather_errors(const Run *run, Known *known)
 {
-    const size_t m = run->schema.n_obj;
-    size_t n = 0;
-    for (size_t i = 0; schema_is_noisy(run->settings) && i < run->table.n; i++) {
-        const Evaluation *e = &run->table.row[i];
-        if (!counts(run, i))
-            continue;
-        known->place[i] = n;
-        for (size_t k = 0; k < m; k++) {
-            known->F[n * m + k] = schema_objective(&run->schema, k)->sense * run->F[i * m + k];
-            known->error[n * m + k] = e->sd[k] / sqrt((double)e->replicates);
-            if (!(known->error[n * m + k] >= 0.0) || e->replicates < 1)
-                return;
-        }
-        n++;
-    }
-    known->n = n;
+    for (size_t i = 0; schema_is_noisy(run->settings) && i < run->table.n; i++)
+        if (gather_one(run, i, known))
+            known->place[i] = ++known->n;
 }
 
 static Status know(const Run *run, Known *known, Err *err)
@@ -64,11 +64,11 @@ static Status draw(const Run *run, const Known *known, size_t n, const size_t ro
 {
     size_t n_asked = 0;
     for (size_t i = 0; i < n; i++)
-        if (known->n > 0 && counts(run, rows[i]))
-            asked[n_asked++] = known->place[rows[i]];
+        if (known->place[rows[i]] > 0)
+            asked[n_asked++] = known->place[rows[i]] - 1;
     TRY(front_confidence(known->n, run->schema.n_obj, known->F, known->error, 1, n_asked, asked, p, err));
     for (size_t i = n; i-- > 0;) /* those asked for stand first */
-        p[i] = known->n > 0 && counts(run, rows[i]) ? p[--n_asked] : NAN;
+        p[i] = known->place[rows[i]] > 0 ? p[--n_asked] : NAN;
     return STATUS_OK;
 }
 

@@ -9,8 +9,8 @@
 
 static const double CONFIDENT = 0.9; /* a design counts as confident from this probability on */
 
-/* Of n rows of the run: p (n). NAN: the run is not noisy, the error of one of its designs is not known, or the row is none
- * that was searched with (polished, infeasible). */
+/* Of n rows of the run: p (n). NAN: the run is not noisy, the design's error is not known (one of its simulations failed, or
+ * none of the run was repeated), or the row is none that was searched with (polished, infeasible). */
 Status confidence_of_designs(const Run *run, size_t n, const size_t rows[], double p[], Err *err);
 
 /* How many designs of the front are nondominated with the probability CONFIDENT or more, of *n_known whose probability
