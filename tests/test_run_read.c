@@ -7,18 +7,24 @@
 #include "store/run.h"
 #include "store/lock.h"
 
-/* The sound run, copied, with that change. */
-static const char *changed(const char *sql, char folder[PATH_MAX])
+static void change(const char *database, const char *sql)
 {
-    char command[512], path[PATH_MAX], *why = NULL;
+    char path[PATH_MAX], *why = NULL;
     sqlite3 *db;
-    snprintf(command, sizeof command, "rm -rf '%s/other'; cp -r '%s/sound' '%s/other'", place.folder, place.folder,
-             place.folder);
-    assert_int_equal(system(command), 0);
-    assert_int_equal(sqlite3_open(path_of("other/run.sqlite", path), &db), SQLITE_OK);
+    assert_int_equal(sqlite3_open(path_of(database, path), &db), SQLITE_OK);
     if (sqlite3_exec(db, sql, NULL, NULL, &why) != SQLITE_OK)
         fail_msg("%s: %s", sql, why);
     sqlite3_close(db);
+}
+
+/* The sound run, copied, with that change. */
+static const char *changed(const char *sql, char folder[PATH_MAX])
+{
+    char command[512];
+    snprintf(command, sizeof command, "rm -rf '%s/other'; cp -r '%s/sound' '%s/other'", place.folder, place.folder,
+             place.folder);
+    assert_int_equal(system(command), 0);
+    change("other/run.sqlite", sql);
     return path_of("other", folder);
 }
 
@@ -61,6 +67,9 @@ static void test_what_is_wrong_in_one_cell_is_named(void **state)
         {"UPDATE run SET settings = '[problem]' || char(10) || 'kind = nonsense'", "problem.kind", STATUS_BAD_DATA},
         {"UPDATE run SET settings = '', n_var = 2", "it has 2 variables", STATUS_IO}, /* of a tower */
         {"UPDATE evaluation SET f = '[0,0,0]', digest = NULL WHERE id = 2", "evaluation 2 has no digest", STATUS_IO},
+        {"DELETE FROM evaluation WHERE id = 2", "evaluation 2 is missing", STATUS_IO},
+        {"DELETE FROM evaluation WHERE id = 40", "evaluation 40 is missing", STATUS_IO},
+        {"DELETE FROM evaluation", "evaluation 1 is missing", STATUS_IO},
         {"ALTER TABLE session DROP COLUMN stopped", "1 of its 6 tables are not those of a run", STATUS_IO},
     };
     char folder[PATH_MAX];
@@ -100,6 +109,42 @@ static void test_a_run_read_without_its_variables_has_the_same_results(void **st
     assert_memory_equal(part.front, whole.front, whole.n_front * sizeof *whole.front);
     run_free(&whole);
     run_free(&part);
+}
+
+static void test_a_run_that_lost_an_evaluation_is_not_resumed_and_its_files_keep_it(void **state)
+{
+    (void)state;
+    Said s;
+    Run end;
+    Err err = {0};
+    char folder[PATH_MAX];
+    free(output_of("optimize @/textbook.ini --set problem.noise=0 --out @/sound --new"));
+    char *before = read_in_place("sound-2/evaluations.csv");
+    change("sound-2/run.sqlite", "DELETE FROM evaluation WHERE id = 20");
+    assert_int_equal(run_read_part(&end, path_of("sound-2", folder), RUN_ENDED, &err), STATUS_IO);
+    assert_non_null(strstr(err.text, "evaluation 20 is missing"));
+    assert_int_equal(unlink(path_of("sound-2/front.csv", folder)), 0);
+    run(&s, "optimize @/textbook.ini --set problem.noise=0 --out @/sound-2 --max-evals 50 --force-settings");
+    assert_int_equal(s.code, 74);
+    assert_non_null(strstr(s.err, "evaluation 20 is missing; evaluations.csv beside it has 40 evaluations: --new"));
+    char *after = read_in_place("sound-2/evaluations.csv");
+    assert_string_equal(before, after);
+    forget(&s);
+    free(before);
+    free(after);
+}
+
+static void test_json_for_which_there_is_no_room_is_an_output_that_cannot_be_written(void **state)
+{
+    (void)state;
+    Err err = {0};
+    char folder[PATH_MAX];
+    FILE *full = fopen("/dev/full", "we");
+    assert_non_null(full);
+    setvbuf(full, NULL, _IONBF, 0);
+    assert_int_equal(export_json_of(full, path_of("sound", folder), &err), STATUS_IO);
+    assert_string_equal(err.text, "standard output: cannot be written");
+    fclose(full);
 }
 
 static void test_values_that_are_not_known_are_nan_and_a_word_that_is_not_known_is_unfinished(void **state)
@@ -326,6 +371,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_what_is_wrong_in_one_cell_is_named),
         cmocka_unit_test(test_a_run_read_without_its_variables_has_the_same_results),
+        cmocka_unit_test(test_a_run_that_lost_an_evaluation_is_not_resumed_and_its_files_keep_it),
+        cmocka_unit_test(test_json_for_which_there_is_no_room_is_an_output_that_cannot_be_written),
         cmocka_unit_test(test_values_that_are_not_known_are_nan_and_a_word_that_is_not_known_is_unfinished),
         cmocka_unit_test(test_rows_of_a_generation_that_is_not_finished_count_as_what_is_simulated_of_them),
         cmocka_unit_test(test_a_run_from_before_the_choice_of_core_theory_keeps_the_only_one_there_was),

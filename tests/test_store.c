@@ -97,6 +97,18 @@ static void test_a_run_stopped_while_it_polishes_ends_with_the_same_designs(void
 }
 
 /* Another number of threads, and a search that learns it has more simulations: the same in one piece or in many. */
+/* As a process that is killed once the new limit is stored. */
+static void grant_and_die(Settings *s, long max_evals)
+{
+    RunStore *store;
+    Err err = {0};
+    CHECK_OK(store_open(&store, s->run.out, 0, &err), &err);
+    Settings granted = *store_run(store)->settings;
+    granted.search.max_evals = s->search.max_evals = max_evals;
+    CHECK_OK(store_resume(store, &store_run(store)->schema, &granted, 1, &err), &err);
+    store_free(store);
+}
+
 static void test_more_simulations_go_on_the_same_whenever_they_are_granted(void **state)
 {
     (void)state;
@@ -115,6 +127,9 @@ static void test_more_simulations_go_on_the_same_whenever_they_are_granted(void 
     early.search.threads = 2;
     CHECK_OK(study_run(&early, &forced, &summary, NULL, &err), &err);
     assert_int_equal(summary.n_simulated, 60);
+    grant_and_die(&late, 62);
+    CHECK_OK(study_run(&late, &(StudyOptions){0}, &summary, NULL, &err), &err);
+    assert_int_equal(summary.n_simulated, 62);
     char *a = read_in_place("late/evaluations.csv"), *b = read_in_place("early/evaluations.csv");
     const char *end = a;
     for (int i = 0; i <= 40; i++)

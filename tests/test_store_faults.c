@@ -217,7 +217,7 @@ static Status work(RunStore *store, const Settings *s, const Schema *schema, siz
 {
     const Run *h = store_run(store);
     Run now;
-    TRY(h ? store_resume(store, schema, s, err) : store_begin(store, schema, s, "{}", err));
+    TRY(h ? store_resume(store, schema, s, 1, err) : store_begin(store, schema, s, "{}", err));
     TRY(store_session(store, "a test", 1, 0, err));
     for (size_t g = h ? h->n_generations : 0; g < n_generations; g++)
         TRY(generation(store, g, err));
@@ -441,7 +441,7 @@ static void test_a_generation_that_was_not_simulated_is_refused(void **state)
     remove_in_place("early");
     CHECK_OK(session(folder, &schema, 0, &err), &err);
     CHECK_OK(store_open(&store, folder, 0, &err), &err);
-    CHECK_OK(store_resume(store, &schema, &s, &err), &err);
+    CHECK_OK(store_resume(store, &schema, &s, 0, &err), &err);
     SearchView v = view_of(0);
     assert_int_equal(store_generation(store, &v, 0, 0, &err), STATUS_INTERNAL);
     assert_non_null(strstr(err.text, "the search knows of 2 simulations, 0 are stored"));

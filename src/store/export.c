@@ -147,6 +147,12 @@ static json_t *json_columns(const Schema *schema)
     return list;
 }
 
+static Status not_put(FILE *f, Err *err)
+{
+    return ferror(f) ? fail(err, STATUS_IO, "standard output: cannot be written")
+                     : fail(err, STATUS_NO_MEMORY, "no memory for the run as JSON");
+}
+
 /* One value behind its separator; a line each, so that a run of any size needs no memory here. */
 static int put_value(FILE *f, const char *before, json_t *value)
 {
@@ -206,7 +212,7 @@ static Status visit_evaluation(const Run *run, size_t i, const RowNumbers *store
     fputc('}', f);
     if (!known)
         return no_number(run, i, err);
-    return failed ? fail(err, STATUS_NO_MEMORY, "no memory for the run as JSON") : STATUS_OK;
+    return failed ? not_put(f, err) : STATUS_OK;
 }
 
 static json_t *json_generation(const RunGeneration *g)
@@ -223,7 +229,7 @@ static Status begin_json(const Run *run, void *user, Err *err)
     int failed = put_value(f, "{\"settings\":", json_settings(run->settings));
     failed |= put_value(f, ",\n\"columns\":", json_columns(&run->schema));
     fputs(",\n\"evaluations\":[", f);
-    return failed ? fail(err, STATUS_NO_MEMORY, "no memory for the run as JSON") : STATUS_OK;
+    return failed ? not_put(f, err) : STATUS_OK;
 }
 
 static Status end_json(const Run *run, void *user, Err *err)
@@ -234,7 +240,7 @@ static Status end_json(const Run *run, void *user, Err *err)
     for (size_t g = 0; g < run->n_generations; g++)
         failed |= put_value(f, g == 0 ? "\n" : ",\n", json_generation(&run->generation[g]));
     fputs("]}\n", f);
-    return failed ? fail(err, STATUS_NO_MEMORY, "no memory for the run as JSON") : STATUS_OK;
+    return failed ? not_put(f, err) : STATUS_OK;
 }
 
 Status export_json_of(FILE *f, const char *folder, Err *err)

@@ -107,6 +107,17 @@ static Status load_end(Loading *l, Err *err)
     return STATUS_OK;
 }
 
+/* The evaluations of finished generations have the ids 1, 2, ... without a gap: the first one that is not there. */
+static Status tell_missing(const Loading *l, Err *err)
+{
+    double id;
+    TRY(database_number(l->d,
+                        "SELECT 1 + coalesce(max(id), 0) FROM (SELECT id, row_number() OVER (ORDER BY id) AS place "
+                        "FROM evaluation) WHERE id = place",
+                        0, &id, err));
+    return fail(err, STATUS_IO, "%s: is damaged: evaluation %.0f is missing", database_path(l->d), id);
+}
+
 static Status load_evaluations(Loading *l, Err *err)
 {
     Run *run = l->run;
@@ -116,6 +127,9 @@ static Status load_evaluations(Loading *l, Err *err)
         l->part == RUN_WHOLE || l->part == RUN_ENDED || s->is_noisy || (l->part == RUN_REVIEWED && s->order.n_obj > 0);
     run->table = evaluation_table(has_all ? s->n_var : 0, s->n_obj, has_all ? s->n_extra : 0);
     TRY(rows_read(l->d, &run->table, 0, LONG_MAX, err));
+    const size_t n = run->n_generations > 0 ? (size_t)run->generation[run->n_generations - 1].simulated : 0;
+    if (n > 0 && (run->table.n < n || run->table.row[n - 1].id != (long)n))
+        return tell_missing(l, err);
     run->F = s->is_noisy ? calloc(run->table.n * s->n_obj + 1, sizeof *run->F) : run->table.f;
     if (run->table.n > 0 && !run->F)
         return fail(err, STATUS_NO_MEMORY, "%s: no memory for %zu evaluations", database_path(l->d), run->table.n);
@@ -316,13 +330,19 @@ static int is_plain_end(const Run *run)
            (run->table.n == 0 || run->table.row[0].kind == KIND_UNFINISHED);
 }
 
-/* A row without a digest beside others is refused where rows are read together: here they are not. */
-static int has_digests(const Loading *l, long n_ahead)
+static int counts(const Loading *l, long n, const char *where, long id)
 {
-    char sql[100];
-    double without;
-    snprintf(sql, sizeof sql, "SELECT count(*) FROM evaluation WHERE digest IS NULL AND (id = 1 OR id > %ld)", n_ahead);
-    return database_number(l->d, sql, 1, &without, &(Err){0}) == STATUS_OK && without == 0;
+    char sql[120];
+    double count;
+    snprintf(sql, sizeof sql, "SELECT count(*) FROM evaluation WHERE %s %ld", where, id);
+    return database_number(l->d, sql, -1, &count, &(Err){0}) == STATUS_OK && count == (double)n;
+}
+
+/* None is missing, and none without a digest beside others, which is refused where rows are read together: here they are
+ * not. */
+static int can_be_left(const Loading *l, long n)
+{
+    return counts(l, n, "id <=", n) && counts(l, 0, "digest IS NULL AND id = 1 OR digest IS NULL AND id >", n);
 }
 
 static int may_stay(const Loading *l)
@@ -331,7 +351,7 @@ static int may_stay(const Loading *l)
     return l->part == RUN_ENDED && database_format(l->d) == DATABASE_FORMAT && run->n_generations > 0 &&
            run->generation[run->n_generations - 1].simulated > 0 && !run->schema.is_noisy && !run->schema.has_spread &&
            run->settings->search.asynchronous == SWITCH_OFF &&
-           has_digests(l, run->generation[run->n_generations - 1].simulated);
+           can_be_left(l, run->generation[run->n_generations - 1].simulated);
 }
 
 static Status load(Loading *l, Err *err)
@@ -453,10 +473,13 @@ Status run_visit(const char *folder, const RunVisitor *visitor, void *user, Err 
 static Status print_evaluations(Loading *l, Err *err)
 {
     size_t n;
+    double finished;
     TRY(load_head(l, err));
     const Schema *s = &l->run->schema;
     l->header(l->out, s);
-    return rows_print(l->d, l->out, (RowShape){s->n_var, s->n_obj, s->n_extra}, 0, LONG_MAX, 1, &n, err);
+    TRY(rows_print(l->d, l->out, (RowShape){s->n_var, s->n_obj, s->n_extra}, 0, LONG_MAX, 1, &n, err));
+    TRY(database_number(l->d, "SELECT simulated FROM generation ORDER BY number DESC LIMIT 1", 0, &finished, err));
+    return counts(l, (long)n - (long)finished, "id >", (long)finished) ? STATUS_OK : tell_missing(l, err);
 }
 
 Status run_print_evaluations(const char *folder, RunHeader *header, FILE *f, Err *err)

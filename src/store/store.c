@@ -216,7 +216,31 @@ static Status take_up(RunStore *store, Err *err)
     return STATUS_OK;
 }
 
-Status store_resume(RunStore *store, const Schema *schema, const Settings *used, Err *err)
+static Status begin(RunStore *store, Err *err)
+{
+    if (store->in_transaction)
+        return STATUS_OK;
+    TRY(database_do(store->db, err, "BEGIN IMMEDIATE", ""));
+    store->in_transaction = 1;
+    return STATUS_OK;
+}
+
+/* At once: with the new limits alone a run that is killed before its next session would be finished for good. */
+static Status set_settings(RunStore *store, const Settings *used, int goes_on, Err *err)
+{
+    TRY(begin(store, err));
+    Status status = tables_set_settings(store->db, used, &store->run, err);
+    if (status == STATUS_OK && goes_on)
+        status = database_do(store->db, err, "UPDATE session SET is_final = 0 WHERE is_final", "");
+    if (status == STATUS_OK)
+        status = database_do(store->db, err, "COMMIT", "");
+    if (status != STATUS_OK)
+        database_do(store->db, NULL, "ROLLBACK", "");
+    store->in_transaction = 0;
+    return status;
+}
+
+Status store_resume(RunStore *store, const Schema *schema, const Settings *used, int goes_on, Err *err)
 {
     take_schema(store, schema);
     const int are_whole = csv_files_are_whole(&store->folder, &store->run);
@@ -225,7 +249,7 @@ Status store_resume(RunStore *store, const Schema *schema, const Settings *used,
     TRY(take_up(store, err));
     if (store->run.n_ahead == 0)
         TRY(tables_upgrade(store->db, &store->run.table, err));
-    TRY(tables_set_settings(store->db, used, &store->run, err));
+    TRY(set_settings(store, used, goes_on, err));
     TRY(write_origin(store, used, store->run.provenance, err));
     TRY(csv_files_resume(&store->files, &store->folder, schema, &store->run, are_whole, err));
     return logs_open(&store->logs, &store->folder, err);
@@ -281,15 +305,6 @@ Status store_each_finished(const RunStore *store, EvaluationFn take, void *user,
 }
 
 /* -- simulations --------------------------------------------------------------------------------------------------- */
-
-static Status begin(RunStore *store, Err *err)
-{
-    if (store->in_transaction)
-        return STATUS_OK;
-    TRY(database_do(store->db, err, "BEGIN IMMEDIATE", ""));
-    store->in_transaction = 1;
-    return STATUS_OK;
-}
 
 static Status insert(RunStore *store, const Evaluation *e, Err *err)
 {

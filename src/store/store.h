@@ -64,9 +64,10 @@ Status store_each_finished(const RunStore *store, EvaluationFn take, void *user,
 /* A run in which nothing was simulated is removed: the next one begins with whatever settings. */
 Status store_forget_empty(RunStore *store, Err *err);
 
-/* A new run, or the one that is there, with other limits or threads. Borrow the schema. */
+/* A new run, or the one that is there, with other limits or threads. goes_on: a session follows, and a run that was finished
+ * is not any more. Borrow the schema. */
 Status store_begin(RunStore *store, const Schema *schema, const Settings *used, const char *provenance, Err *err);
-Status store_resume(RunStore *store, const Schema *schema, const Settings *used, Err *err);
+Status store_resume(RunStore *store, const Schema *schema, const Settings *used, int goes_on, Err *err);
 
 /* Where store_run's state is not that of the last generation, which is damaged: as if that generation were not finished. Its
  * evaluations stay. Before store_resume; store_run is read again. */

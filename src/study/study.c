@@ -265,7 +265,7 @@ static Status resume(Study *study, Err *err)
     study->generation = run->n_generations > 0 ? (size_t)run->generation[run->n_generations - 1].number + 1 : 0;
     study->first_generation = study->generation;
     snprintf(study->used.run.out, OPTION_TEXT_MAX, "%s", run->settings->run.out);
-    return store_resume(study->store, adapter_schema(study->adapter), &study->used, err);
+    return store_resume(study->store, adapter_schema(study->adapter), &study->used, study->has_new_limits, err);
 }
 
 static Status set_time(Study *study, double hours, Err *err)
