@@ -146,6 +146,7 @@ static void test_the_late_advance_leaves_out_the_last_tenth(void **state)
     double F[ROWS * M], H[ROWS], igd;
     unsigned char ok[ROWS], on_front[ROWS] = {0}, counts[ROWS] = {0};
     size_t answers[ROWS];
+    unsigned char kind[ROWS];
     Err err = {0};
     Random r = random_stream(4, RANDOM_TEST, 0, 0);
     for (size_t i = 0; i < ROWS * M; i++)
@@ -154,7 +155,8 @@ static void test_the_late_advance_leaves_out_the_last_tenth(void **state)
         ok[i] = i != 3;
         H[i] = i == 4 ? 0.1 : -0.1;
         answers[i] = i != 5;
-        counts[i] = i != 3 && i != 4 && i != 5;
+        kind[i] = i == 6 ? KIND_SCREENED : KIND_INFILL;
+        counts[i] = i < 3 || i > 6;
     }
     const size_t front[] = {1, 17, 18, 19};
     for (size_t i = 0; i < 4; i++)
@@ -166,6 +168,7 @@ static void test_the_late_advance_leaves_out_the_last_tenth(void **state)
                           .H = H,
                           .ok = ok,
                           .replicates = answers,
+                          .kind = kind,
                           .on_front = on_front,
                           .n_front = 4};
     CHECK_OK(improvement_lately(&v, &igd, &err), &err);
