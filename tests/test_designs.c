@@ -261,6 +261,12 @@ static void test_the_sure_designs_of_a_noisy_front_are_those_with_that_probabili
              (size_t)json_integer_value(json_object_get(many, "front")));
     assert_non_null(strstr(said, words));
     free(said);
+    said = output_of("status @/noisy");
+    assert_non_null(strstr(said, words));
+    free(said);
+    json_t *status = json_of("status @/noisy --json");
+    assert_true(number(status, "confident") == (double)n);
+    json_decref(status);
     json_decref(many);
     json_decref(few);
     expect(2, "have no known errors", "choose @/run --confidence 0.9");

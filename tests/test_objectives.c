@@ -151,6 +151,43 @@ static void test_a_limit_on_a_further_result_decides_what_is_on_the_front(void *
     run_free(&run);
 }
 
+static void expect_limited_in(const char *name)
+{
+    Run run;
+    Table front = table_of(name);
+    read_run("limited", &run);
+    const size_t at = 1 + run.schema.n_var + run.schema.n_obj;
+    assert_int_equal(front.n_cols, at + 2);
+    assert_int_equal(front.n_rows, run.n_front);
+    for (size_t i = 0; i < front.n_rows; i++)
+        for (size_t c = at; c < at + 2; c++)
+            assert_true(front.values[i * front.n_cols + c] == extra_of(&run, run.front[i], front.names[c]));
+    assert_true(strcmp(front.names[at], "drift_ratio") == 0 && strcmp(front.names[at + 1], "contact_force_max_n") == 0);
+    table_free(&front);
+    run_free(&run);
+}
+
+static void test_limited_results_stand_beside_the_objectives(void **state)
+{
+    (void)state;
+    expect_limited_in("limited/front.csv");
+    free(output_of("optimize @/limited --max-evals 40 --force-settings"));
+    expect_limited_in("limited/front.csv");
+    free(output_of("export @/limited --csv @/exported.csv"));
+    expect_limited_in("exported.csv");
+    json_t *o = json_of("choose @/limited --json");
+    const json_t *knee = json_array_get(json_object_get(o, "designs"), 0);
+    Run run;
+    read_run("limited", &run);
+    assert_true(number(json_object_get(knee, "limited"), "contact_force_max_n") ==
+                extra_of(&run, run_knee(&run), "contact_force_max_n"));
+    run_free(&run);
+    json_decref(o);
+    char *said = output_of("choose @/limited");
+    assert_non_null(strstr(said, "design drift_ratio contact_force_max_n\n"));
+    free(said);
+}
+
 static void test_names_that_are_no_results_are_refused_with_the_words_there_are(void **state)
 {
     (void)state;
@@ -326,6 +363,7 @@ int main(void)
         cmocka_unit_test(test_every_result_of_a_study_is_that_of_a_simulation_of_the_same_design),
         cmocka_unit_test(test_every_file_and_command_follows_the_objectives_by_name),
         cmocka_unit_test(test_a_limit_on_a_further_result_decides_what_is_on_the_front),
+        cmocka_unit_test(test_limited_results_stand_beside_the_objectives),
         cmocka_unit_test(test_names_that_are_no_results_are_refused_with_the_words_there_are),
         cmocka_unit_test(test_four_storeys_are_not_searched_for_modes_that_they_do_not_have),
         cmocka_unit_test(test_columns_stand_below_their_names_however_long_these_are),

@@ -74,7 +74,8 @@ static int set_up(void **state)
         return 1;
     if (imtet_on("optimize configs/quick.ini --max-evals 60 --set sim.duration_s=45 --set search.population=16 --set "
                  "search.initial=40 --set "
-                 "search.objectives=j1_m,contact_force_max_n,j3_g,ed1_pct,edcs_pct,drift_ratio,mcore_kg --out",
+                 "search.objectives=j1_m,contact_force_max_n,j3_g,ed1_pct,edcs_pct,drift_ratio,mcore_kg --set "
+                 "'search.limits=core_stress_pa<=1e10' --out",
                  "tower", "") != 0 ||
         imtet_on("optimize configs/quick.ini --set problem.kind=dtlz2 --set problem.variables=5 --set "
                  "problem.objectives=3 --max-evals 60 --set search.population=16 --set search.initial=40 --out",

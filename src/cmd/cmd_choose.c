@@ -240,6 +240,13 @@ static void show_table(const Run *run, const Picks *p)
     for (size_t i = 0; i < p->n; i++)
         show_objectives(p->pick[i].name, run->table.row[p->pick[i].row].id, &run->schema, run_f(run, p->pick[i].row),
                         NULL);
+    if (run->schema.n_limited == 0)
+        return;
+    putchar('\n');
+    show_limited_names(&run->schema);
+    for (size_t i = 0; i < p->n; i++)
+        show_limited(p->pick[i].name, run->table.row[p->pick[i].row].id, &run->schema,
+                     run->table.row[p->pick[i].row].extra);
 }
 
 static void show_variables(const Run *run, const Picks *p)
@@ -278,6 +285,16 @@ static json_t *json_values(size_t n, const Column columns[], const double values
     return o;
 }
 
+static json_t *json_limited(const Run *run, size_t row)
+{
+    const Schema *s = &run->schema;
+    json_t *o = json_object();
+    for (size_t k = 0; k < s->n_limited; k++)
+        json_object_set_new(o, schema_extra(s, s->limited[k])->name,
+                            json_number(run->table.row[row].extra[s->limited[k]]));
+    return o;
+}
+
 static json_t *describe(const Run *run, const Picks *p, const Sure *sure)
 {
     const Schema *schema = &run->schema;
@@ -285,10 +302,11 @@ static json_t *describe(const Run *run, const Picks *p, const Sure *sure)
     for (size_t i = 0; i < p->n; i++) {
         const size_t row = p->pick[i].row;
         json_array_append_new(picks,
-                              json_pack("{s:s, s:I, s:o, s:o, s:o}", "name", p->pick[i].name, "id",
+                              json_pack("{s:s, s:I, s:o, s:o, s:o, s:o}", "name", p->pick[i].name, "id",
                                         (json_int_t)run->table.row[row].id, "objectives",
                                         json_values(schema->n_obj, schema->column + schema->n_var, run_f(run, row)),
-                                        "variables", json_values(schema->n_var, schema->column, run_x(run, row)),
+                                        "limited", json_limited(run, row), "variables",
+                                        json_values(schema->n_var, schema->column, run_x(run, row)),
                                         "nondominated_probability", json_number(p->confidence[i])));
     }
     json_t *o = json_pack("{s:s, s:I, s:I, s:o}", "run", run->folder, "front", (json_int_t)run->n_front,

@@ -92,6 +92,12 @@ static void print_front(const Run *run, const StudySummary *summary)
     show_objectives("knee", run->table.row[knee].id, schema, run_f(run, knee), error);
     if (error)
         show_objective_errors(schema, error);
+    if (schema->n_limited > 0) {
+        putchar('\n');
+        show_limited_names(schema);
+        show_limited("knee", run->table.row[knee].id, schema, run->table.row[knee].extra);
+        putchar('\n');
+    }
     if (summary->has_baselines) {
         show_baselines(schema, run_f(run, knee), summary->baseline);
         if (run->settings->sim.replicates > 1)
@@ -148,6 +154,10 @@ static void print_nearest(const Run *run, size_t n, const size_t rows[])
         snprintf(label, sizeof label, "misses by %.3g", run->table.row[rows[i]].violation);
         show_objectives(label, run->table.row[rows[i]].id, &run->schema, run_f(run, rows[i]), NULL);
     }
+    if (run->schema.n_limited > 0)
+        show_limited_names(&run->schema);
+    for (size_t i = 0; i < n && run->schema.n_limited > 0; i++)
+        show_limited("", run->table.row[rows[i]].id, &run->schema, run->table.row[rows[i]].extra);
     printf("\nmisses by: sum over search.limits of what exceeds them, as a share of the limit.\n");
 }
 
@@ -200,10 +210,7 @@ static Status report(const Run *run, const StudySummary *summary, Err *err)
     TRY(improvement_expected(run, &expected, err));
     show_expected_gain(expected);
     TRY(confidence_of_front(run, &n_confident, &n_known, err));
-    if (n_known > 0)
-        printf("%zu of %zu designs of the front are nondominated with a probability of %g or more (imtet choose %s "
-               "--confidence %g)\n",
-               n_confident, n_known, CONFIDENT, summary->folder, CONFIDENT);
+    show_confident(summary->folder, n_confident, n_known);
     putchar('\n');
     if (summary->n_repeats > 0)
         printf("%zu of the simulations repeat a design, to average the noise (search.replicate_share)\n\n",

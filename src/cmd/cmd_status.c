@@ -7,6 +7,7 @@
 #include "cmd/show.h"
 #include "moga/hypervolume.h"
 #include "store/run_read.h"
+#include "study/confidence.h"
 #include "study/front_review.h"
 #include "study/improvement.h"
 #include "study/progress.h"
@@ -221,17 +222,22 @@ static Status run(const Args *args, Err *err)
     TRY(run_read_part(&run, args->operand, RUN_REVIEWED, err));
     standing_of(&standing, args->operand, &run);
     const Failures failures = failures_of(&run);
+    size_t n_confident = 0, n_known = 0;
     double expected = NAN, *igd = calloc(run.n_generations + 1, sizeof *igd);
     Status status = igd ? improvement_of_run(&run, igd, err) : fail(err, STATUS_NO_MEMORY, "no memory for generations");
     if (status == STATUS_OK)
         status = improvement_expected(&run, &expected, err);
+    if (status == STATUS_OK)
+        status = confidence_of_front(&run, &n_confident, &n_known, err);
     if (status == STATUS_OK && args_has(args, "--json")) {
         json_t *o = describe(args->operand, &run, &standing, &failures, igd);
         json_object_set_new(o, "expected_gain", json_number(expected));
+        json_object_set_new(o, "confident", n_known > 0 ? json_integer((json_int_t)n_confident) : json_null());
         status = show_json(o, err);
     } else if (status == STATUS_OK) {
         print_head(args->operand, &run, &standing);
         print_generations(&run, igd, expected);
+        show_confident(args->operand, n_confident, n_known);
         print_failures(&failures);
     }
     free(igd);

@@ -7,6 +7,7 @@
 
 #include "base/units.h"
 #include "moga/hypervolume.h"
+#include "study/confidence.h"
 #include "store/output.h"
 
 static const char *scene_word(SceneKind kind)
@@ -248,9 +249,38 @@ static int label_width(const Schema *schema)
     return (int)width;
 }
 
+static void show_label(const char *label, const char *id, const Schema *schema)
+{
+    printf("%-*s %7s", label_width(schema), label, id);
+}
+
+static void show_design(const char *label, long id, const Schema *schema)
+{
+    char text[24] = "-";
+    if (id > 0)
+        snprintf(text, sizeof text, "%ld", id);
+    show_label(label, text, schema);
+}
+
+void show_limited_names(const Schema *schema)
+{
+    show_label("limited", "design", schema);
+    for (size_t k = 0; k < schema->n_limited; k++)
+        printf(" %10s", schema_extra(schema, schema->limited[k])->name);
+    putchar('\n');
+}
+
+void show_limited(const char *label, long id, const Schema *schema, const double extra[])
+{
+    show_design(label, id, schema);
+    for (size_t k = 0; k < schema->n_limited; k++)
+        show_number(extra[schema->limited[k]], schema_extra(schema, schema->limited[k])->name);
+    putchar('\n');
+}
+
 void show_objective_names(const Schema *schema)
 {
-    printf("%-*s %7s", label_width(schema), "", "design");
+    show_label("", "design", schema);
     for (size_t k = 0; k < schema->n_obj; k++)
         printf(" %10s", schema_objective(schema, k)->name);
     putchar('\n');
@@ -258,11 +288,7 @@ void show_objective_names(const Schema *schema)
 
 void show_objectives(const char *label, long id, const Schema *schema, const double natural[], const double error[])
 {
-    printf("%-*s", label_width(schema), label);
-    if (id > 0)
-        printf(" %7ld", id);
-    else
-        printf(" %7s", "-");
+    show_design(label, id, schema);
     for (size_t k = 0; k < schema->n_obj; k++)
         show_digits(natural[k], error ? digits_known(natural[k], error[k]) : 4, schema_objective(schema, k)->name);
     putchar('\n');
@@ -358,6 +384,14 @@ void show_baselines(const Schema *schema, const double natural[], const Baseline
     putchar('\n');
     for (int k = 0; k < N_BASELINES; k++)
         show_verdict((BaselineKind)k, schema, natural, &baseline[k]);
+}
+
+void show_confident(const char *folder, size_t n_confident, size_t n_known)
+{
+    if (n_known > 0)
+        printf("%zu of %zu designs of the front are nondominated with a probability of %g or more (imtet choose %s "
+               "--confidence %g)\n",
+               n_confident, n_known, CONFIDENT, folder, CONFIDENT);
 }
 
 void show_expected_gain(double gain)

@@ -42,6 +42,9 @@ void show_verdict(BaselineKind kind, const Schema *schema, const double natural[
  * against it, and in which they lose. */
 void show_baselines(const Schema *schema, const double natural[], const Baseline baseline[N_BASELINES]);
 
+/* One line: how many designs of a noisy front are confident (study/confidence.h); n_known 0: nothing. */
+void show_confident(const char *folder, size_t n_confident, size_t n_known);
+
 /* One line: the hypervolume that as many simulations again are expected to gain (study/improvement.h); NAN: nothing. */
 void show_expected_gain(double gain);
 
@@ -49,6 +52,10 @@ void show_expected_gain(double gain);
  * value no digit is shown that it leaves open. */
 void show_objective_names(const Schema *schema);
 void show_objectives(const char *label, long id, const Schema *schema, const double natural[], const double error[]);
+
+/* The same of the further results (n_extra) that are limited. */
+void show_limited_names(const Schema *schema);
+void show_limited(const char *label, long id, const Schema *schema, const double extra[]);
 
 /* error (n_obj), below the line of the objectives. */
 void show_objective_errors(const Schema *schema, const double error[]);

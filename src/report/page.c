@@ -4,6 +4,7 @@
 #include "report/report.h"
 #include "report/report_json.h"
 #include "report/thin.h"
+#include "store/export.h"
 #include "store/output.h"
 
 /* build/web/page.html, live.html: the page with a line MARK where the run goes. */
@@ -27,15 +28,14 @@ static Status write_json(json_t *all, FILE *out, Err *err)
     return STATUS_OK;
 }
 
-/* One line per design as in front.csv: id, variables, objectives. */
+/* One line per design as in front.csv: id, variables, objectives, limited results. */
 static void write_rows(const Report *r, FILE *out)
 {
     const Run *run = r->run;
     for (size_t i = 0; i < r->n_shown; i++) {
         const size_t row = r->shown[i];
         fprintf(out, "%ld", run->table.row[row].id);
-        print_cells(out, run->schema.n_var, run_x(run, row));
-        print_cells(out, run->schema.n_obj, run_f(run, row));
+        export_numbers(out, run, row);
         fputc('\n', out);
     }
 }

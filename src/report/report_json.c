@@ -168,21 +168,28 @@ static json_t *json_of_bounds(const Report *r)
                      json_numbers(schema->n_var, upper));
 }
 
+/* Of objective k, or of measure k - n_obj. */
+static json_t *json_of_result_column(const Schema *schema, size_t k)
+{
+    const Column *c = schema_objective(schema, k);
+    const Words w = words_of_objective(schema, k);
+    return json_pack("{s:o, s:o, s:s, s:f, s:f, s:o}", "name", json_words(c->name), "title", json_words(w.title),
+                     "unit", w.unit, "factor", w.factor, "sense", c->sense, "what",
+                     json_words(schema->order.n_obj > 0 ? measure(schema->order.of[k])->what : w.title));
+}
+
 static json_t *json_of_names(const Report *r)
 {
     const Schema *schema = &r->run->schema;
-    json_t *variables = json_array(), *objectives = json_array();
+    json_t *variables = json_array(), *objectives = json_array(), *limited = json_array();
     for (size_t j = 0; j < schema->n_var; j++)
         variables = json_append(variables, json_words(schema_variable(schema, j)->name));
-    for (size_t k = 0; k < schema->n_obj; k++) {
-        const Column *c = schema_objective(schema, k);
-        const Words w = words_of_objective(schema, k);
-        objectives = json_append(
-            objectives, json_pack("{s:o, s:o, s:s, s:f, s:f, s:o}", "name", json_words(c->name), "title",
-                                  json_words(w.title), "unit", w.unit, "factor", w.factor, "sense", c->sense, "what",
-                                  json_words(schema->order.n_obj > 0 ? measure(schema->order.of[k])->what : w.title)));
-    }
-    return json_pack("{s:o, s:o, s:o}", "variables", variables, "objectives", objectives, "bounds", json_of_bounds(r));
+    for (size_t k = 0; k < schema->n_obj; k++)
+        objectives = json_append(objectives, json_of_result_column(schema, k));
+    for (size_t k = 0; k < schema->n_limited; k++)
+        limited = json_append(limited, json_of_result_column(schema, schema->n_obj + schema->limited[k]));
+    return json_pack("{s:o, s:o, s:o, s:o}", "variables", variables, "objectives", objectives, "limited", limited,
+                     "bounds", json_of_bounds(r));
 }
 
 /* Ids of the designs shown that are beyond the contact law. */

@@ -15,7 +15,7 @@ typedef struct {
 
 Words words_of_measure(int measure);
 
-/* Of objective k; one of another problem than the tower has its name and no unit. */
+/* Of objective k, or of measure k - n_obj; one of another problem than the tower has its name and no unit. */
 Words words_of_objective(const Schema *schema, size_t k);
 
 #endif

@@ -7,6 +7,7 @@
 #include "base/cell.h"
 #include "scene/design.h"
 #include "settings/options.h"
+#include "simulator/limits.h"
 
 static Status allocate(Schema *schema, Err *err)
 {
@@ -33,6 +34,10 @@ static Status schema_of_tower(Schema *schema, const Settings *s, int n_floors, E
         snprintf(c->name, sizeof c->name, "%s", measure(order.of[k])->name);
         c->sense = measure(order.of[k])->sense;
     }
+    const MeasureSet limited = limits_measures(s->search.limits);
+    for (int k = order.n_obj; k < N_MEASURES; k++)
+        if (limited >> order.of[k] & 1)
+            schema->limited[schema->n_limited++] = (size_t)(k - order.n_obj);
     return STATUS_OK;
 }
 
@@ -121,6 +126,12 @@ const Column *schema_objective(const Schema *schema, size_t k)
 const Column *schema_extra(const Schema *schema, size_t k)
 {
     return &schema->column[schema->n_var + schema->n_obj + k];
+}
+
+void schema_limited(const Schema *schema, const double extra[], double values[])
+{
+    for (size_t i = 0; i < schema->n_limited; i++)
+        values[i] = extra[schema->limited[i]];
 }
 
 size_t schema_find_objective(const Schema *schema, const char *name)

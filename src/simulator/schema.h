@@ -29,6 +29,7 @@ typedef struct {
     long replicates;    /* simulations of each record behind one evaluation: sim.replicates */
     int is_noisy;       /* schema_is_noisy */
     int has_spread; /* front.csv ends with NAME_sd of every objective and replicates: designs are several simulations */
+    size_t n_limited, limited[N_MEASURES]; /* measures among the n_extra that search.limits limits, ascending */
 } Schema;
 
 /* Whether designs are simulated again because they answer differently each time. */
@@ -39,6 +40,9 @@ Status schema_of(Schema *schema, const Settings *s, int n_floors, Err *err);
 const Column *schema_variable(const Schema *schema, size_t j);
 const Column *schema_objective(const Schema *schema, size_t k);
 const Column *schema_extra(const Schema *schema, size_t k);
+
+/* Of the further results (n_extra) of a design those that are limited: values (n_limited). */
+void schema_limited(const Schema *schema, const double extra[], double values[]);
 
 /* Objective of that name, or n_obj. */
 size_t schema_find_objective(const Schema *schema, const char *name);

@@ -33,24 +33,33 @@ Status csv_files_replace(const Folder *folder, const Run *run, Err *err)
     return folder_write(folder, "front.csv", put_front, run, err);
 }
 
+static size_t n_kept(const Schema *schema)
+{
+    return (schema->has_spread ? schema->n_obj : 0) + schema->n_limited;
+}
+
 Status csv_files_begin(CsvFiles *c, const Folder *folder, const Schema *schema, Err *err)
 {
-    *c = (CsvFiles){.folder = folder, .schema = schema};
+    *c = (CsvFiles){.folder = folder, .schema = schema, .n_kept = n_kept(schema)};
     TRY(folder_write(folder, "evaluations.csv", put_header, schema, err));
     return append_open(&c->evaluations, folder, "evaluations.csv", err);
 }
 
-/* Of the rows behind those that are known. */
-static Status keep_deviations(CsvFiles *c, size_t n, const double sd[], Err *err)
+/* Of the first n rows of the table, behind those that are known. */
+static Status keep(CsvFiles *c, size_t n, const EvaluationTable *t, Err *err)
 {
-    const size_t m = c->schema->n_obj;
-    if (!c->schema->has_spread || n == 0)
+    const Schema *s = c->schema;
+    if (c->n_kept == 0 || n == 0)
         return STATUS_OK;
-    double *wider = realloc(c->sd, (c->n_appended + n) * m * sizeof *wider);
+    double *wider = realloc(c->kept, (c->n_appended + n) * c->n_kept * sizeof *wider);
     if (!wider)
         return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", c->n_appended + n);
-    memcpy(wider + c->n_appended * m, sd, n * m * sizeof *sd);
-    c->sd = wider;
+    c->kept = wider;
+    wider += c->n_appended * c->n_kept;
+    for (size_t i = 0; i < n; i++, wider += c->n_kept) {
+        memcpy(wider, t->row[i].sd, (c->n_kept - s->n_limited) * sizeof *wider);
+        schema_limited(s, t->row[i].extra, wider + c->n_kept - s->n_limited);
+    }
     return STATUS_OK;
 }
 
@@ -81,8 +90,8 @@ Status csv_files_resume(CsvFiles *c, const Folder *folder, const Schema *schema,
                         Err *err)
 {
     const size_t n = run_n_finished(run);
-    *c = (CsvFiles){.folder = folder, .schema = schema, .run = run};
-    TRY(keep_deviations(c, n, run->table.sd, err));
+    *c = (CsvFiles){.folder = folder, .schema = schema, .run = run, .n_kept = n_kept(schema)};
+    TRY(keep(c, n, &run->table, err));
     c->n_appended = n;
     if (!are_whole)
         TRY(folder_write(folder, "evaluations.csv", put_evaluations, run, err));
@@ -91,13 +100,12 @@ Status csv_files_resume(CsvFiles *c, const Folder *folder, const Schema *schema,
     return append_open(&c->evaluations, folder, "evaluations.csv", err);
 }
 
-/* Deviations, as numbers. */
-static Status read_deviations(CsvFiles *c, Database *db, size_t n, Err *err)
+static Status read_kept(CsvFiles *c, Database *db, size_t n, Err *err)
 {
     EvaluationTable rows = evaluation_table(c->schema->n_var, c->schema->n_obj, c->schema->n_extra);
     Status status = rows_read(db, &rows, (long)c->n_appended + 1, (long)n, err);
     if (status == STATUS_OK)
-        status = keep_deviations(c, rows.n, rows.sd, err);
+        status = keep(c, rows.n, &rows, err);
     evaluation_table_free(&rows);
     return status;
 }
@@ -113,8 +121,8 @@ Status csv_files_append(CsvFiles *c, Database *db, size_t n, Err *err)
     if (printed != n - c->n_appended)
         return fail(err, STATUS_INTERNAL, "%s: the search knows of %zu simulations, %zu are stored", database_path(db),
                     n, c->n_appended + printed);
-    if (s->has_spread)
-        TRY(read_deviations(c, db, n, err));
+    if (c->n_kept > 0)
+        TRY(read_kept(c, db, n, err));
     c->n_appended = n;
     return append_flush(&c->evaluations, err);
 }
@@ -126,34 +134,45 @@ typedef struct {
     const SearchView *view;
 } Front;
 
+typedef struct {
+    double f[OBJECTIVES_MAX], sd[OBJECTIVES_MAX], extra[N_MEASURES];
+} Numbers;
+
 /* The design in that row as the search sees it now: with the means and deviations of its replicates. Borrows x. */
-static Evaluation design_at(const Front *front, size_t row, double f[], double sd[])
+static Evaluation design_at(const Front *front, size_t row, Numbers *to)
 {
     const SearchView *v = front->view;
     const CsvFiles *c = front->files;
+    const Schema *s = c->schema;
+    const double *kept = c->kept ? c->kept + row * c->n_kept : NULL;
     for (size_t k = 0; k < v->n_obj; k++) {
-        f[k] = schema_objective(c->schema, k)->sense * v->F[row * v->n_obj + k];
-        sd[k] = v->n_replicates > 0 ? v->sd[row * v->n_obj + k] * sqrt((double)c->schema->replicates)
-                : c->sd             ? c->sd[row * v->n_obj + k]
-                                    : NAN;
+        to->f[k] = schema_objective(s, k)->sense * v->F[row * v->n_obj + k];
+        to->sd[k] = v->n_replicates > 0     ? v->sd[row * v->n_obj + k] * sqrt((double)s->replicates)
+                    : kept && s->has_spread ? kept[k]
+                                            : NAN;
     }
+    for (size_t k = 0; k < s->n_extra; k++)
+        to->extra[k] = NAN;
+    for (size_t k = 0; kept && k < s->n_limited; k++)
+        to->extra[s->limited[k]] = kept[c->n_kept - s->n_limited + k];
     return (Evaluation){.id = (long)row + 1,
                         .kind = (EvaluationKind)v->kind[row],
-                        .replicates = (int)((long)v->replicates[row] * c->schema->replicates),
+                        .replicates = (int)((long)v->replicates[row] * s->replicates),
                         .x = (double *)(uintptr_t)(v->X + row * v->n_var),
-                        .f = f,
-                        .sd = sd};
+                        .f = to->f,
+                        .sd = to->sd,
+                        .extra = to->extra};
 }
 
 static void put_front_of_search(FILE *f, const void *user)
 {
     const Front *front = user;
-    double means[OBJECTIVES_MAX], sd[OBJECTIVES_MAX];
+    Numbers numbers;
     export_front_header(f, front->files->schema);
     for (size_t i = 0; i < front->view->n; i++)
         if (front->view->on_front[i]) {
-            const Evaluation e = design_at(front, i, means, sd);
-            export_design_as(f, front->files->schema, &e, means);
+            const Evaluation e = design_at(front, i, &numbers);
+            export_design_as(f, front->files->schema, &e, numbers.f);
         }
 }
 
@@ -163,10 +182,10 @@ static Status gather_front(const Front *from, Run *front, Err *err)
     EvaluationTable *t = &front->table;
     const Run *run = from->files->run;
     const size_t polished = run_first_polished(run);
-    double means[OBJECTIVES_MAX], sd[OBJECTIVES_MAX];
+    Numbers numbers;
     for (size_t i = 0; i < from->view->n; i++)
         if (from->view->on_front[i]) {
-            const Evaluation e = design_at(from, i, means, sd);
+            const Evaluation e = design_at(from, i, &numbers);
             TRY(evaluation_table_append(t, &e, err));
         }
     const size_t n = t->n;
@@ -215,6 +234,6 @@ Status csv_files_close(CsvFiles *c, Err *err)
 void csv_files_free(CsvFiles *c)
 {
     append_free(&c->evaluations);
-    free(c->sd);
+    free(c->kept);
     *c = (CsvFiles){0};
 }

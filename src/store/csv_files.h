@@ -5,7 +5,7 @@
  * twentieth of the time at most, and at the end (is_behind).
  *
  * Life cycle  {0} -> csv_files_begin or csv_files_resume -> csv_files_append, ... -> csv_files_close, or csv_files_free
- * Memory      a batch of rows; with deviations those of all designs
+ * Memory      a batch of rows; with deviations or limits on further results those of all designs
  * Threads     one at a time */
 #ifndef IMTET_STORE_CSV_FILES_H
 #define IMTET_STORE_CSV_FILES_H
@@ -21,7 +21,8 @@ typedef struct {
     const Run *run; /* as it was when the session began; NULL: a new one */
     Append evaluations;
     size_t n_appended; /* designs of the search that evaluations.csv has */
-    double *sd;        /* (n_appended, n_obj) of each as stored; NULL: no deviations are known */
+    double *kept;      /* (n_appended, n_kept) what front.csv has of each as stored: deviations, limited results */
+    size_t n_kept;
     double next_front; /* [s] of the clock, before which front.csv is not replaced again */
     int is_behind;     /* front.csv is of an earlier generation */
 } CsvFiles;

@@ -8,30 +8,47 @@
 #include "store/run_read.h"
 #include "settings/settings.h"
 
-static void write_names(FILE *f, const char *before, const Schema *schema, size_t n_extra, int with_sd)
+/* Variables and the first n results. */
+static void put_names(FILE *f, const char *before, const Schema *schema, size_t n)
 {
     fputs(before, f);
-    for (size_t j = 0; j < schema->n_var; j++)
-        fprintf(f, ",%s", schema_variable(schema, j)->name);
-    for (size_t k = 0; k < schema->n_obj; k++)
-        fprintf(f, ",%s", schema_objective(schema, k)->name);
-    for (size_t k = 0; k < n_extra; k++)
-        fprintf(f, ",%s", schema_extra(schema, k)->name);
-    for (size_t k = 0; with_sd && k < schema->n_obj; k++)
-        fprintf(f, ",%s_sd", schema_objective(schema, k)->name);
-    if (with_sd)
-        fputs(",replicates", f);
-    fputc('\n', f);
+    for (size_t c = 0; c < schema->n_var + n; c++)
+        fprintf(f, ",%s", schema->column[c].name);
+}
+
+void export_names(FILE *f, const char *before, const Schema *schema)
+{
+    put_names(f, before, schema, schema->n_obj);
+    for (size_t k = 0; k < schema->n_limited; k++)
+        fprintf(f, ",%s", schema_extra(schema, schema->limited[k])->name);
 }
 
 void export_front_header(FILE *f, const Schema *schema)
 {
-    write_names(f, "id", schema, 0, schema->has_spread);
+    export_names(f, "id", schema);
+    for (size_t k = 0; schema->has_spread && k < schema->n_obj; k++)
+        fprintf(f, ",%s_sd", schema_objective(schema, k)->name);
+    fputs(schema->has_spread ? ",replicates\n" : "\n", f);
+}
+
+static void put_limited(FILE *f, const Schema *schema, const double extra[])
+{
+    double values[N_MEASURES];
+    schema_limited(schema, extra, values);
+    print_cells(f, schema->n_limited, values);
+}
+
+void export_numbers(FILE *f, const Run *run, size_t row)
+{
+    print_cells(f, run->schema.n_var, run_x(run, row));
+    print_cells(f, run->schema.n_obj, run_f(run, row));
+    put_limited(f, &run->schema, run->table.row[row].extra);
 }
 
 static void put_results(FILE *f, const Schema *schema, const Evaluation *e, const double means[])
 {
     print_cells(f, schema->n_obj, means);
+    put_limited(f, schema, e->extra);
     if (schema->has_spread) {
         print_cells(f, schema->n_obj, e->sd);
         fputc(',', f);
@@ -75,19 +92,22 @@ static Status begin_front(const Run *run, void *f, Err *err)
 
 static Status visit_front(const Run *run, size_t row, const RowNumbers *stored, void *f, Err *err)
 {
-    const Evaluation *e = &run->table.row[row];
+    Evaluation e = run->table.row[row];
+    double extra[N_MEASURES];
     const Schema *s = &run->schema;
-    const int as_stored = !s->has_spread && run->F == run->table.f; /* else means and deviations are wanted */
+    /* else means, deviations or some of the further results are wanted */
+    const int as_stored = !s->has_spread && s->n_limited == 0 && run->F == run->table.f;
     if (!run->place[row].on_front)
         return STATUS_OK;
-    fprintf(f, "%ld", e->id);
+    fprintf(f, "%ld", e.id);
     if (stored->x[0] != '[' || !rows_put_texts(f, stored->x, s->n_var, ",", "") ||
-        (as_stored && !rows_put_texts(f, stored->f, s->n_obj, ",", "")))
+        !(as_stored ? rows_put_texts(f, stored->f, s->n_obj, ",", "")
+                    : rows_numbers(stored->extra, 0, s->n_extra, e.extra = extra)))
         return no_number(run, row, err);
     if (as_stored)
         fputc('\n', f);
     else
-        put_results(f, s, e, run_f(run, row));
+        put_results(f, s, &e, run_f(run, row));
     return STATUS_OK;
 }
 
@@ -99,7 +119,8 @@ Status export_front_of(FILE *f, const char *folder, Err *err)
 
 void export_evaluations_header(FILE *f, const Schema *schema)
 {
-    write_names(f, "id,generation,kind,outcome,reason", schema, schema->n_extra, 0);
+    put_names(f, "id,generation,kind,outcome,reason", schema, schema->n_obj + schema->n_extra);
+    fputc('\n', f);
 }
 
 void export_evaluations(FILE *f, const EvaluationTable *t)

@@ -9,8 +9,12 @@
 
 #include "store/run.h"
 
-/* front.csv. A row: id, x (n_var), f (n_obj, natural); where the schema has them sd (n_obj) and replicates, empty where
- * they are not known. */
+/* Of variables (n_var), objectives (n_obj, natural, means over repeats) and the further results that are limited (n_limited, of
+ * its first simulation): the names, and a design's numbers; each behind a comma, without an end of the line. */
+void export_names(FILE *f, const char *before, const Schema *schema);
+void export_numbers(FILE *f, const Run *run, size_t row);
+
+/* front.csv. A row: id and these; where the schema has them sd (n_obj) and replicates, empty where they are not known. */
 void export_front_header(FILE *f, const Schema *schema);
 void export_design(FILE *f, const Run *run, size_t row);
 void export_design_as(FILE *f, const Schema *schema, const Evaluation *e, const double means[]); /* means (n_obj) */

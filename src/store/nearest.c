@@ -4,6 +4,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "store/export.h"
 #include "store/output.h"
 
 size_t nearest_rows(const Run *run, size_t rows[NEAREST_MAX])
@@ -28,8 +29,7 @@ static void write_row(FILE *f, const Run *run, size_t row)
 {
     fprintf(f, "%ld", run->table.row[row].id);
     print_cells(f, 1, &run->table.row[row].violation);
-    print_cells(f, run->schema.n_var, run_x(run, row));
-    print_cells(f, run->schema.n_obj, run_f(run, row));
+    export_numbers(f, run, row);
     fputc('\n', f);
 }
 
@@ -43,11 +43,7 @@ Status nearest_write(const char *folder, const Run *run, size_t n, const size_t 
         return STATUS_OK;
     }
     TRY(output_open_inside(&o, path, err));
-    fputs("id,violation", o.stream);
-    for (size_t j = 0; j < run->schema.n_var; j++)
-        fprintf(o.stream, ",%s", schema_variable(&run->schema, j)->name);
-    for (size_t k = 0; k < run->schema.n_obj; k++)
-        fprintf(o.stream, ",%s", schema_objective(&run->schema, k)->name);
+    export_names(o.stream, "id,violation", &run->schema);
     fputc('\n', o.stream);
     for (size_t i = 0; i < n; i++)
         write_row(o.stream, run, rows[i]);

@@ -159,8 +159,7 @@ static Status damaged(const Reading *r, const char *what, long id, Err *err)
     return fail(err, STATUS_IO, "%s: is damaged: %s of evaluation %ld cannot be read", database_path(r->db), what, id);
 }
 
-/* "[1,2.5,null]"; no text at all: n times NAN. A list may have n_least numbers alone: the others are not known. */
-static int parse_numbers(const char *text, size_t n_least, size_t n, double values[])
+int rows_numbers(const char *text, size_t n_least, size_t n, double values[])
 {
     const int known = text[0] != 0;
     for (size_t i = 0; i < n; i++)
@@ -203,16 +202,15 @@ static Status parse_row(const Reading *r, const RowText *t, Evaluation *e, Err *
 {
     const EvaluationTable *table = r->table;
     TRY(parse_outcome(r, t, e, err));
-    if (table->n_var > 0 && (!t->x[0] || !parse_numbers(t->x, table->n_var, table->n_var, e->x)))
+    if (table->n_var > 0 && (!t->x[0] || !rows_numbers(t->x, table->n_var, table->n_var, e->x)))
         return damaged(r, "x", e->id, err);
-    if (!parse_numbers(t->f, table->n_obj, table->n_obj, e->f))
+    if (!rows_numbers(t->f, table->n_obj, table->n_obj, e->f))
         return damaged(r, "f", e->id, err);
-    if (!parse_numbers(t->sd, table->n_obj, table->n_obj, e->sd))
+    if (!rows_numbers(t->sd, table->n_obj, table->n_obj, e->sd))
         return damaged(r, "spread", e->id, err);
     /* an earlier version had fewer measures: the first of them */
-    return table->n_extra == 0 || parse_numbers(t->extra, 0, table->n_extra, e->extra)
-               ? STATUS_OK
-               : damaged(r, "extra", e->id, err);
+    return table->n_extra == 0 || rows_numbers(t->extra, 0, table->n_extra, e->extra) ? STATUS_OK
+                                                                                      : damaged(r, "extra", e->id, err);
 }
 
 static Status compare_digests(Reading *r, Err *err)

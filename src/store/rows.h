@@ -45,7 +45,10 @@ typedef struct {
 typedef Status (*RowTextFn)(const RowNumbers *row, void *user, Err *err);
 Status rows_each_text(Database *db, RowTextFn take, void *user, Err *err);
 
-/* n numbers of such a list, `before` the first and a comma before every other one; `missing`: for one that is not known. Only
+/* n numbers of such a list; no text at all: n times NAN. It may have n_least alone, the others are not known. 0: it is none. */
+int rows_numbers(const char *list, size_t n_least, size_t n, double values[]);
+
+/* The same as text, `before` the first and a comma before every other one; `missing`: for one that is not known. Only
  * what may be of a number goes out; 0: there is something else. */
 int rows_put_texts(FILE *f, const char *list, size_t n, const char *before, const char *missing);
 

@@ -350,7 +350,7 @@ static int may_stay(const Loading *l)
     const Run *run = l->run;
     return l->part == RUN_ENDED && database_format(l->d) == DATABASE_FORMAT && run->n_generations > 0 &&
            run->generation[run->n_generations - 1].simulated > 0 && !run->schema.is_noisy && !run->schema.has_spread &&
-           run->settings->search.asynchronous == SWITCH_OFF &&
+           run->schema.n_limited == 0 && run->settings->search.asynchronous == SWITCH_OFF &&
            can_be_left(l, run->generation[run->n_generations - 1].simulated);
 }
 

@@ -15,14 +15,15 @@ const pause = (ms) => new Promise((done) => setTimeout(done, ms));
 
 // ---- what the file says, read without the page's own script
 
-let file, html, run, lines, names, rows, all;
+let file, html, run, results, lines, names, rows, all;
 function read(path) {
   file = resolve(path);
   html = readFileSync(file, "utf8");
   const between = (open) => html.slice(html.indexOf(open) + open.length, html.indexOf("</script>", html.indexOf(open)));
   run = JSON.parse(between('<script type="application/json" id="run">'));
   lines = between('<script type="text/plain" id="rows">').trim().split("\n");
-  names = ["id", ...run.schema.variables, ...run.schema.objectives.map((o) => o.name)];
+  results = [...run.schema.objectives, ...run.schema.limited].map((o) => o.name);
+  names = ["id", ...run.schema.variables, ...results];
   rows = lines.map((line) => line.split(",").map(Number));
   all = rows.map((_, i) => i);
 }
@@ -142,13 +143,13 @@ const tried = {
     assert.ok(shown.includes(Math.min(...byId.values())) || shown.includes(Math.max(...byId.values())));
   },
   async "axes can be switched to the variables and to both"() {
-    for (const [value, count] of [["variables", run.schema.variables.length], ["all", names.length - 1], ["objectives", run.schema.objectives.length]]) {
+    for (const [value, count] of [["variables", run.schema.variables.length], ["all", names.length - 1], ["objectives", results.length]]) {
       await click(`input[name=axes][value=${value}]`);
       assert.equal(await page.evaluate("Array.from(document.querySelectorAll('g.axis')).filter((g) => g.getClientRects().length).length"), count);
     }
   },
   async "a title dragged sideways moves its axis, down turns it over, up hides it"() {
-    const names = run.schema.objectives.map((o) => o.name);
+    const names = results;
     if (names.length < 3) return;
     await dragTitle(names[0], 1.2, 0);
     assert.deepEqual(await shownAxes(), [names[1], names[0], ...names.slice(2)]);
@@ -162,7 +163,7 @@ const tried = {
     assert.deepEqual(await shownAxes(), names);
   },
   async "keys move, turn over and hide an axis, and open its menu"() {
-    const names = run.schema.objectives.map((o) => o.name), focus = (name) => page.evaluate(`document.querySelector(${JSON.stringify(headingOf(name))}).focus()`);
+    const names = results, focus = (name) => page.evaluate(`document.querySelector(${JSON.stringify(headingOf(name))}).focus()`);
     if (names.length < 3) return;
     await focus(names[0]);
     await press("ArrowRight");
@@ -219,7 +220,7 @@ const tried = {
     assert.equal(await counted(), rows.length);
   },
   async "the address carries axes, ranges, steps and colours to another window"() {
-    const names = run.schema.objectives.map((o) => o.name);
+    const names = results;
     const value = (q) => rows.map((r) => r[1 + run.schema.variables.length] * run.schema.objectives[0].factor).sort((a, b) => a - b)[Math.floor(q * (rows.length - 1))];
     const [low, high] = [value(0.2), value(0.7)].map((v) => +v.toPrecision(5));
     const hash = `axes=-${names[1]},${names[0]}&in=${names[0]}:${low}:${high}&x=${names[1]}&y=${names[0]}&colour=${names[0]}&steps=%2B${names[0]}:${value(0.1).toPrecision(5)}:`;
@@ -233,7 +234,7 @@ const tried = {
     assert.equal(await counted(), rows.length);
   },
   async "any two columns are plotted against each other, a box there selects"() {
-    await page.evaluate(`(() => { for (const [id, k] of [["x", ${run.schema.objectives.length}], ["y", 0]]) { const e = document.getElementById(id); e.selectedIndex = k; e.dispatchEvent(new Event("change")); } })()`);
+    await page.evaluate(`(() => { for (const [id, k] of [["x", ${results.length}], ["y", 0]]) { const e = document.getElementById(id); e.selectedIndex = k; e.dispatchEvent(new Event("change")); } })()`);
     await settle();
     await drag(await boxOf("g.panel .brush .overlay", 0), [0.02, 0.98], [0.6, 0.3]);
     const text = await downloaded(), chosen = all.filter((i) => text.includes(`\n${lines[i]}\n`)), ranges = new URLSearchParams((await page.evaluate("location.hash")).slice(1)).get("in") ?? "";

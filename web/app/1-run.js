@@ -30,8 +30,9 @@ function columnOf(name, place, sense, [title, unit, factor, what]) {
 
 const nVar = run.schema.variables.length;
 const variables = run.schema.variables.map((name, j) => columnOf(name, 1 + j, 0, variableWords(name)));
-const objectives = run.schema.objectives.map((o, k) => columnOf(o.name, 1 + nVar + k, o.sense, [o.title, o.unit, o.factor, o.what]));
-const columns = [...objectives, ...variables];
+const results = [...run.schema.objectives, ...run.schema.limited].map((o, k) => columnOf(o.name, 1 + nVar + k, o.sense, [o.title, o.unit, o.factor, o.what]));
+const objectives = results.slice(0, run.schema.objectives.length); // behind them what search.limits limits beside them
+const columns = [...results, ...variables];
 const ids = new Float64Array(n);
 
 for (let i = 0; i < n; i++) {

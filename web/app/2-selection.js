@@ -1,7 +1,7 @@
 // Which designs are looked at and how: one state for all pictures, in the page's address too; one frame for every change.
 
 const state = {
-  axes: [...objectives], // of the parallel coordinates, from left to right
+  axes: [...results], // of the parallel coordinates, from left to right
   inverted: new Set(), // columns with their better, or larger, side up
   log: new Set(),
   x: objectives[0],
@@ -247,7 +247,7 @@ function showTip(row, event) {
   if (tip.hidden) return;
   if (+tip.dataset.row !== row) {
     tip.dataset.row = row;
-    tip.replaceChildren(element("strong", {}, designName(row)), element("dl", {}, ...objectives.flatMap((c) => [element("dt", {}, c.title), element("dd", {}, withUnit(c, c.value[row]))])));
+    tip.replaceChildren(element("strong", {}, designName(row)), element("dl", {}, ...results.flatMap((c) => [element("dt", {}, c.title), element("dd", {}, withUnit(c, c.value[row]))])));
   }
   tip.style.left = `${Math.min(event.clientX + 16, window.innerWidth - tip.offsetWidth - 8)}px`;
   tip.style.top = `${Math.max(4, Math.min(event.clientY + 16, window.innerHeight - tip.offsetHeight - 8))}px`;

@@ -10,7 +10,7 @@ function cell(text) {
 
 // The very rows of front.csv, in its order and units.
 function selectedCsv() {
-  const head = ["id", ...run.schema.variables, ...run.schema.objectives.map((o) => o.name)].map(cell).join(",");
+  const head = ["id", ...run.schema.variables, ...results.map((c) => c.name)].map(cell).join(",");
   return [head, ...lines.filter((_, i) => state.selected[i])].join("\n") + "\n";
 }
 
@@ -23,7 +23,7 @@ function saveFile(name, text) {
 const download = () => saveFile(`${run.name}-selection.csv`, selectedCsv());
 
 function designTable(host) {
-  const shown = [...objectives, ...variables];
+  const shown = [...results, ...variables];
   const sort = { column: objectives[0], down: objectives[0].sense < 0 };
   let page = 0, order;
 

@@ -1,9 +1,9 @@
 // The part on the front: what is shown, ranges by hand, all pictures of it, the table.
 
-const PRESETS = { objectives: () => [...objectives], variables: () => [...variables], all: () => [...objectives, ...variables] };
+const PRESETS = { objectives: () => [...results], variables: () => [...variables], all: () => [...results, ...variables] };
 
 function presetChoice() {
-  const inputs = [["objectives", "objectives"], ["variables", "variables"], ["all", "both"]].map(([value, label]) => [value, label, element("input", { type: "radio", name: "axes", value, onchange: () => {
+  const inputs = [["objectives", run.schema.limited.length ? "objectives and limited results" : "objectives"], ["variables", "variables"], ["all", "both"]].map(([value, label]) => [value, label, element("input", { type: "radio", name: "axes", value, onchange: () => {
     state.axes = PRESETS[value]();
     layoutChanged();
   } })]);
