@@ -305,6 +305,44 @@ static void test_whichever_call_of_a_run_fails_it_goes_on_to_the_same_tables(voi
     schema_free(&schema);
 }
 
+/* Designs 3, 4 and 6 in turn on the front of one run, whose file something else writes to before the last change. */
+static void test_lines_of_the_front_are_kept_unless_something_else_wrote_them(void **state)
+{
+    (void)state;
+    static const char FRONT_OF[4][N_DESIGNS + 1] = {"001100", "000100", "001101", "000101"};
+    Err err = {0};
+    char folder[PATH_MAX];
+    RunStore *store;
+    Schema schema;
+    const Settings s = settings_of(PLAIN, "lines");
+    CHECK_OK(schema_of(&schema, &s, 0, &err), &err);
+    CHECK_OK(store_open(&store, path_of("lines", folder), 0, &err), &err);
+    CHECK_OK(store_begin(store, &schema, &s, "{}", &err), &err);
+    CHECK_OK(store_session(store, "a test", 1, 0, &err), &err);
+    for (size_t i = 0; i < N_DESIGNS; i++)
+        CHECK_OK(simulate(store, i, &err), &err);
+    for (size_t g = 0; g < 4; g++) {
+        unsigned char on_front[N_DESIGNS];
+        SearchView v = view_of(N_GENERATIONS - 1);
+        for (size_t i = 0; i < N_DESIGNS; i++)
+            on_front[i] = FRONT_OF[g][i] == '1';
+        v.on_front = on_front;
+        v.generation_now = g;
+        v.is_last = 1; /* else it may wait */
+        if (g == 3)
+            write_in_place("lines/front.csv", "id,x1,x2,x3,f1,f2\n4,something,else\n");
+        CHECK_OK(store_generation(store, &v, 1.0, 1.0, &err), &err);
+        char *front = read_in_place("lines/front.csv"), wanted[120] = "id,x1,x2,x3,f1,f2\n";
+        for (size_t i = 0; i < N_DESIGNS; i++)
+            if (on_front[i])
+                sprintf(wanted + strlen(wanted), "%zu,%g,0,0,%g,%g\n", i + 1, X[i][0], F[i][0], F[i][1]);
+        assert_string_equal(front, wanted);
+        free(front);
+    }
+    CHECK_OK(store_close(store, "the end", 0, 1.0, NULL, &err), &err);
+    schema_free(&schema);
+}
+
 static void refused_copy(const char *folder, const char *copies, rlim_t longest, const char *words)
 {
     Run h;
@@ -468,6 +506,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_whichever_call_of_a_run_fails_it_goes_on_to_the_same_tables),
+        cmocka_unit_test(test_lines_of_the_front_are_kept_unless_something_else_wrote_them),
         cmocka_unit_test(test_every_fault_of_the_database_is_said_in_our_words),
         cmocka_unit_test(test_a_folder_that_cannot_hold_the_run_is_named_and_a_fresh_run_takes_the_next),
         cmocka_unit_test(test_a_generation_that_was_not_simulated_is_refused),

@@ -52,9 +52,14 @@ static void layout(void *archive, Carve *c)
     a->slot = carve(c, a->n_slots, sizeof *a->slot);
 }
 
+/* FNV-1a of whole words. */
 static uint64_t hash(size_t n_var, const double x[])
 {
-    const uint64_t h = hash_fnv1a(x, n_var * sizeof *x, HASH_SEED);
+    uint64_t h = HASH_SEED, word;
+    for (size_t j = 0; j < n_var; j++) {
+        memcpy(&word, &x[j], sizeof word);
+        h = (h ^ word ^ word >> 32) * HASH_PRIME;
+    }
     return h ^ h >> 32;
 }
 
@@ -156,6 +161,9 @@ static void compare_with_front(Archive *a, size_t row)
 static Status follow_tree(Archive *a, size_t row, Err *err)
 {
     NdChange change;
+    if (a->has_restored)
+        TRY(nd_tree_fill(a->tree, a->F, a->n_front, a->front, err));
+    a->has_restored = 0;
     TRY(nd_tree_insert(a->tree, a->F, row, &change, err));
     if (!change.is_in)
         return STATUS_OK;
@@ -167,13 +175,13 @@ static Status follow_tree(Archive *a, size_t row, Err *err)
     return STATUS_OK;
 }
 
-/* A row that is known to stay. */
-static Status join_front(Archive *a, size_t row, Err *err)
+/* A row that is known to stay; the tree is filled when the next one comes that is not. */
+static void join_front(Archive *a, size_t row)
 {
     a->on_front[row] = 1;
     a->front[a->n_listed++] = row;
     a->n_front++;
-    return nd_tree_take(a->tree, a->F, row, err);
+    a->has_restored = 1;
 }
 
 static void set_errors(Archive *a, size_t row)
@@ -205,10 +213,11 @@ static Status add_design(Archive *a, size_t row, Place place, Err *err)
     if (!a->usable[row] || a->violation[row] > 0.0 || place == OFF_FRONT || a->kind[row] == KIND_SCREENED)
         return STATUS_OK;
     if (place == ON_FRONT)
-        return join_front(a, row, err);
-    if (a->n_replicates == 0)
+        join_front(a, row);
+    else if (a->n_replicates == 0)
         return follow_tree(a, row, err);
-    compare_with_front(a, row);
+    else
+        compare_with_front(a, row);
     return STATUS_OK;
 }
 

@@ -49,7 +49,8 @@ typedef struct {
 
     size_t *front;         /* (n_front) rows of the front, ascending, since pareto_archive_list_front */
     size_t n_listed;       /* rows of `front` until then: those that have left are among them */
-    NdTree *tree;          /* of the front, while there are no replicates */
+    NdTree *tree;          /* of the front, while there are no replicates; of a restored one when it is asked */
+    int has_restored;      /* it is still to be filled */
     size_t n_slots, *slot; /* hash table of the designs */
     NoiseModel *noise;     /* (n_obj) */
     int is_stale;          /* pareto_archive_update_noise is due */
@@ -66,7 +67,8 @@ Status pareto_archive_insert(Archive *a, size_t n, const double X[], const doubl
 /* Room for n rows in all, for what is known to come. */
 Status pareto_archive_reserve(Archive *a, size_t n, Err *err);
 
-/* One row that was in an archive, as it was put there, of which it is known whether it is on the front in the end. */
+/* One row that was in an archive, as it was put there, of which it is known whether it is on the front in the end; before
+ * any other. */
 Status pareto_archive_restore(Archive *a, const double x[], const double f[], const double g[], unsigned char ok,
                               unsigned char kind, size_t generation, int on_front, Err *err);
 

@@ -250,14 +250,16 @@ static size_t nearest_child(const NdTree *t, const Node *q, const double f[])
     return nearest;
 }
 
-/* Points of a leaf that are far from each other, the first among them; returns how many. Equal ones are not far. */
+/* Points of a leaf that are far from each other, the first among them, of no more than it has when it grows; returns how
+ * many. Equal ones are not far. */
 static size_t choose_seeds(const NdTree *t, const Node *q, size_t seeds[CHILDREN_MAX])
 {
     const size_t m = t->n_obj;
+    const size_t step = 1 + (q->n - 1) / (LEAF_MAX + 1);
     size_t n = 1;
     for (seeds[0] = 0; n < t->n_children; n++) {
         double farthest = 0.0;
-        for (size_t i = 0; i < q->n; i++) {
+        for (size_t i = 0; i < q->n; i += step) {
             double nearest = INFINITY;
             for (size_t s = 0; s < n; s++)
                 nearest = fmin(nearest, square_between(t, q->f + i * m, q->f + seeds[s] * m));
@@ -274,7 +276,8 @@ static size_t choose_seeds(const NdTree *t, const Node *q, size_t seeds[CHILDREN
 
 static int leaf_widen(size_t m, Node *q)
 {
-    const size_t n_max = q->n_max == 0 ? 4 : q->n_max < LEAF_MAX / 2 ? 2 * q->n_max : q->n_max + LEAF_MAX / 2;
+    const size_t wide = q->n_max < LEAF_MAX / 2 || q->n_max > LEAF_MAX ? q->n_max : LEAF_MAX / 2,
+                 n_max = q->n_max == 0 ? 4 : q->n_max + wide;
     size_t *row = realloc(q->row, n_max * sizeof *row);
     q->row = row ? row : q->row;
     double *f = row ? realloc(q->f, n_max * m * sizeof *f) : NULL;
@@ -381,7 +384,30 @@ Status nd_tree_insert(NdTree *t, const double F[], size_t row, NdChange *change,
     return STATUS_OK;
 }
 
-Status nd_tree_take(NdTree *t, const double F[], size_t row, Err *err)
+/* What stays larger has points that are all equal. */
+static void split_deeply(NdTree *t, Node *q)
 {
-    return insert(t, F + row * t->n_obj, row) ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for the front");
+    if (q->n > LEAF_MAX)
+        split(t, q);
+    for (size_t c = 0; c < q->n_child; c++)
+        split_deeply(t, q->child[c]);
+}
+
+Status nd_tree_fill(NdTree *t, const double F[], size_t n, const size_t rows[], Err *err)
+{
+    const size_t m = t->n_obj;
+    int is_whole = n == 0 || (t->root = calloc(1, sizeof *t->root)) != NULL;
+    for (size_t i = 0; is_whole && i < n; i++) {
+        const double *f = F + rows[i] * m;
+        if (i == 0)
+            bound_one(m, t->bounds, f);
+        extend(m, t->bounds, f);
+        is_whole = leaf_add(m, t->root, f, rows[i]);
+    }
+    if (!is_whole)
+        return fail(err, STATUS_NO_MEMORY, "no memory for the front");
+    weigh(t);
+    if (t->root)
+        split_deeply(t, t->root);
+    return STATUS_OK;
 }

@@ -5,7 +5,7 @@
  * Bounds are not drawn in when points leave. Which points are nondominated does not depend on how they lie in the tree.
  *
  * Dominance  moga/dominance.h; equal points do not dominate each other, all of them stay
- * Life cycle nd_tree_create -> nd_tree_insert ... -> nd_tree_free
+ * Life cycle nd_tree_create -> (nd_tree_fill) -> nd_tree_insert ... -> nd_tree_free
  * Memory     grows with the points that are in, some 140 bytes each of 7 objectives
  * Threads    one at a time
  * Errors     STATUS_NO_MEMORY
@@ -32,7 +32,7 @@ typedef struct {
 } NdChange;
 Status nd_tree_insert(NdTree *t, const double F[], size_t row, NdChange *change, Err *err);
 
-/* A point of which it is known that no other of the tree dominates it, and that it dominates none. */
-Status nd_tree_take(NdTree *t, const double F[], size_t row, Err *err);
+/* An empty tree gets n points of which it is known that none dominates another: several times as fast as one by one. */
+Status nd_tree_fill(NdTree *t, const double F[], size_t n, const size_t rows[], Err *err);
 
 #endif

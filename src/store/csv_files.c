@@ -75,15 +75,29 @@ static int front_is_whole(const Folder *folder, const Run *run)
             ids[n++] = (long)i + 1;
     for (; n < run->n_front; n++)
         ids[n] = run->table.row[run->front[n]].id;
-    const int is = folder_holds(folder, "front.csv", n, ids);
+    char *header = NULL;
+    FILE *f = open_memstream(&header, &(size_t){0});
+    if (f)
+        export_front_header(f, &run->schema);
+    const int is = f && fclose(f) == 0 && folder_holds(folder, "front.csv", header, n, ids);
+    free(header);
     free(ids);
     return is;
 }
 
-int csv_files_are_whole(const Folder *folder, const Run *run)
+int csv_files_are_whole(const Folder *folder, const Run *run, size_t n)
 {
-    return !run_has_polished(run) && folder_holds(folder, "evaluations.csv", run_n_finished(run), NULL) &&
+    return !run_has_polished(run) && n > 0 && n == run_n_finished(run) &&
            (run->n_generations == 0 || front_is_whole(folder, run));
+}
+
+/* front.csv has the lines of a front of this run. */
+static void know_front(CsvFiles *c)
+{
+    char path[PATH_MAX];
+    folder_path(c->folder, "front.csv", path);
+    if (lstat(path, &c->front) != 0)
+        c->front.st_ino = 0;
 }
 
 Status csv_files_resume(CsvFiles *c, const Folder *folder, const Schema *schema, const Run *run, int are_whole,
@@ -97,6 +111,8 @@ Status csv_files_resume(CsvFiles *c, const Folder *folder, const Schema *schema,
         TRY(folder_write(folder, "evaluations.csv", put_evaluations, run, err));
     if (run->n_generations > 0 && !are_whole)
         TRY(folder_write(folder, "front.csv", put_front, run, err));
+    if (run->n_generations > 0)
+        know_front(c);
     return append_open(&c->evaluations, folder, "evaluations.csv", err);
 }
 
@@ -132,6 +148,7 @@ Status csv_files_append(CsvFiles *c, Database *db, size_t n, Err *err)
 typedef struct {
     const CsvFiles *files;
     const SearchView *view;
+    FILE *before; /* front.csv as it is; NULL: its lines are of no use */
 } Front;
 
 typedef struct {
@@ -164,16 +181,41 @@ static Evaluation design_at(const Front *front, size_t row, Numbers *to)
                         .extra = to->extra};
 }
 
+/* A line of the file before and the number that it begins with; 0: there is none any more. */
+typedef struct {
+    FILE *file;
+    char *text;
+    size_t room;
+    ssize_t length;
+    long id;
+} Line;
+
+static void next_line(Line *l)
+{
+    l->length = l->file ? getline(&l->text, &l->room, l->file) : 0;
+    l->id = l->length > 0 && l->text[l->length - 1] == '\n' ? strtol(l->text, NULL, 10) : 0;
+}
+
 static void put_front_of_search(FILE *f, const void *user)
 {
     const Front *front = user;
     Numbers numbers;
+    Line line = {.file = front->before};
     export_front_header(f, front->files->schema);
-    for (size_t i = 0; i < front->view->n; i++)
-        if (front->view->on_front[i]) {
-            const Evaluation e = design_at(front, i, &numbers);
-            export_design_as(f, front->files->schema, &e, numbers.f);
+    next_line(&line);
+    for (size_t i = 0; i < front->view->n; i++) {
+        if (!front->view->on_front[i])
+            continue;
+        while (line.id > 0 && line.id < (long)i + 1)
+            next_line(&line);
+        if (line.id == (long)i + 1) {
+            fwrite(line.text, 1, (size_t)line.length, f);
+            continue;
         }
+        const Evaluation e = design_at(front, i, &numbers);
+        export_design_as(f, front->files->schema, &e, numbers.f);
+    }
+    free(line.text);
 }
 
 /* The front of the search and the polished designs, as a run without anything else. */
@@ -213,15 +255,40 @@ static Status replace_joined_front(const Front *from, Err *err)
     return status;
 }
 
+/* Without replicates, and if nothing else has touched it. */
+static FILE *front_before(const CsvFiles *c, const SearchView *v)
+{
+    char path[PATH_MAX];
+    struct stat now;
+    folder_path(c->folder, "front.csv", path);
+    FILE *f = c->front.st_ino != 0 && v->n_replicates == 0 ? fopen(path, "re") : NULL;
+    if (!f || (fstat(fileno(f), &now) == 0 && now.st_ino == c->front.st_ino && now.st_size == c->front.st_size &&
+               now.st_mtim.tv_sec == c->front.st_mtim.tv_sec && now.st_mtim.tv_nsec == c->front.st_mtim.tv_nsec))
+        return f;
+    fclose(f);
+    return NULL;
+}
+
+static Status replace_front(const CsvFiles *c, const SearchView *v, Err *err)
+{
+    Front front = {c, v, NULL};
+    if (c->run && run_has_polished(c->run))
+        return replace_joined_front(&front, err);
+    front.before = front_before(c, v);
+    const Status status = folder_write(c->folder, "front.csv", put_front_of_search, &front, err);
+    if (front.before)
+        fclose(front.before);
+    return status;
+}
+
 Status csv_files_front(CsvFiles *c, const SearchView *v, Err *err)
 {
-    const Front front = {c, v};
     const double begun = clock_seconds();
     c->is_behind = v->n > FRONT_ALWAYS && begun < c->next_front && !v->is_last;
     if (c->is_behind)
         return STATUS_OK;
-    TRY(c->run && run_has_polished(c->run) ? replace_joined_front(&front, err)
-                                           : folder_write(c->folder, "front.csv", put_front_of_search, &front, err));
+    TRY(replace_front(c, v, err));
+    know_front(c);
     c->next_front = clock_seconds() + 20.0 * (clock_seconds() - begun);
     return STATUS_OK;
 }

@@ -2,13 +2,16 @@
  *
  * evaluations.csv grows by the rows that are committed. front.csv, the front of the search joined by the polished designs
  * of earlier sessions, is replaced as a whole, in a large run (FRONT_ALWAYS evaluations) seldom enough that it takes a
- * twentieth of the time at most, and at the end (is_behind).
+ * twentieth of the time at most, and at the end (is_behind). Without replicates a design keeps its line: those of the file
+ * before are copied, if it is still the one that was written or looked at.
  *
  * Life cycle  {0} -> csv_files_begin or csv_files_resume -> csv_files_append, ... -> csv_files_close, or csv_files_free
  * Memory      a batch of rows; with deviations or limits on further results those of all designs
  * Threads     one at a time */
 #ifndef IMTET_STORE_CSV_FILES_H
 #define IMTET_STORE_CSV_FILES_H
+
+#include <sys/stat.h>
 
 #include "moga/search.h"
 #include "store/database.h"
@@ -25,14 +28,16 @@ typedef struct {
     size_t n_kept;
     double next_front; /* [s] of the clock, before which front.csv is not replaced again */
     int is_behind;     /* front.csv is of an earlier generation */
+    struct stat front; /* of front.csv, whose lines are known; st_ino 0: they are not */
 } CsvFiles;
 
 enum { FRONT_ALWAYS = 4000 };
 
 Status csv_files_begin(CsvFiles *c, const Folder *folder, const Schema *schema, Err *err);
 
-/* Whether they have just the designs that they should have, in their order; else all of the run has to be there. */
-int csv_files_are_whole(const Folder *folder, const Run *run);
+/* Whether they have just the designs that they should have, in their order; else all of the run has to be there. n: rows of
+ * evaluations.csv, numbered 1, 2, ... */
+int csv_files_are_whole(const Folder *folder, const Run *run, size_t n);
 Status csv_files_resume(CsvFiles *c, const Folder *folder, const Schema *schema, const Run *run, int are_whole,
                         Err *err);
 

@@ -37,7 +37,7 @@ Status front_share_follow(FrontShare *share, const SearchView *v, Err *err)
         TRY(create_cover(share, v, err));
     if (!share->hypervolume)
         return STATUS_OK;
-    for (size_t i = share->n; i < v->n; i++)
+    for (size_t i = v->n; i-- > share->n;) /* later designs dominate more: fewer samples are left for the others */
         if (v->on_front[i])
             hypervolume_add(share->hypervolume, v->F + i * v->n_obj);
     share->n = v->n;

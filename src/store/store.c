@@ -26,6 +26,7 @@ struct RunStore {
     Database *db;
     Run run; /* that the folder held when it was opened */
     int has_run, has_polished;
+    size_t n_numbered; /* rows of evaluations.csv when it was opened, if they are numbered 1, 2, ...; else 0 */
 
     EvaluationTable waiting; /* rows for the next commit or the end of their generation */
     int in_transaction;
@@ -65,10 +66,12 @@ static Status open_database(RunStore *store, Err *err)
 }
 
 /* evaluations.csv follows the database. Where it has more, the journal was lost, as by a copy of run.sqlite alone. */
-static Status check_nothing_lost(const RunStore *store, Err *err)
+static Status check_nothing_lost(RunStore *store, Err *err)
 {
+    int is_numbered;
     const size_t n = store->run.n_ahead + store->run.table.n,
-                 n_exported = folder_rows(&store->folder, "evaluations.csv");
+                 n_exported = folder_rows(&store->folder, "evaluations.csv", &is_numbered);
+    store->n_numbered = is_numbered ? n_exported : 0;
     if (n_exported <= n)
         return STATUS_OK;
     return fail(err, STATUS_IO,
@@ -243,7 +246,7 @@ static Status set_settings(RunStore *store, const Settings *used, int goes_on, E
 Status store_resume(RunStore *store, const Schema *schema, const Settings *used, int goes_on, Err *err)
 {
     take_schema(store, schema);
-    const int are_whole = csv_files_are_whole(&store->folder, &store->run);
+    const int are_whole = csv_files_are_whole(&store->folder, &store->run, store->n_numbered);
     if (!are_whole)
         TRY(load_whole(store, err));
     TRY(take_up(store, err));
