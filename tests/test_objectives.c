@@ -118,7 +118,14 @@ static void test_every_file_and_command_follows_the_objectives_by_name(void **st
     assert_int_equal(objectives, 3);
     json_decref(o);
     free(output_of("report @/other"));
-    free(output_of("polish @/other --design knee --improve core_stress_pa --evals 30"));
+    free(output_of("polish @/other --design knee --improve core_stress_pa --evals 30 --csv @/polished.csv"));
+    Table polished = table_of("polished.csv");
+    assert_int_equal(polished.n_cols, 1 + 22 + 5 * 3);
+    assert_string_equal(polished.names[26], "core_stress_pa_before");
+    assert_string_equal(polished.names[35], "core_stress_pa_error");
+    assert_close(polished.values[26], polished.values[23], 0.5);
+    assert_true(polished.values[35] > 0.0 && polished.values[35] < 0.1 * polished.values[26]);
+    table_free(&polished);
     free(output_of("optimize @/other"));
     char *said = output_of("optimize @/other --max-evals 34 --force-settings");
     assert_non_null(strstr(said, "largest bending stress of the core [Pa], the less the better"));

@@ -91,20 +91,30 @@ static Status open_run(const Args *args, Work *w, Err *err)
     return record_paths_find(w->run->settings, w->run->provenance, &moved, err);
 }
 
-/* One row in natural signs, as in front.csv but for the id of the design that it came from. */
+/* One row in natural signs: the polished design as in front.csv but for the id of the design that it came from; then of every
+ * objective how it was before, the standard deviations of both and the estimated error. */
 static Status write_csv(const Work *w, const char *path, Err *err)
 {
     const Schema *schema = &w->run->schema;
+    const Refined *r = &w->result;
+    const struct {
+        const char *suffix;
+        const double *values;
+    } more[] = {{"before", r->f_start}, {"before_sd", r->spread_start}, {"sd", r->spread}, {"error", r->error}};
+    enum { N_MORE = sizeof more / sizeof more[0] };
     Output o;
     TRY(output_open(&o, path, err));
     fputs("polished_from", o.stream);
     for (size_t j = 0; j < schema->n_var + schema->n_obj; j++)
         fprintf(o.stream, ",%s", schema->column[j].name);
+    for (size_t i = 0; i < N_MORE; i++)
+        for (size_t k = 0; k < schema->n_obj; k++)
+            fprintf(o.stream, ",%s_%s", schema_objective(schema, k)->name, more[i].suffix);
     fprintf(o.stream, "\n%ld", w->run->table.row[w->row].id);
-    for (size_t j = 0; j < schema->n_var + schema->n_obj; j++) {
-        fputc(',', o.stream);
-        print_number(o.stream, j < schema->n_var ? w->result.x[j] : w->result.f[j - schema->n_var]);
-    }
+    print_cells(o.stream, schema->n_var, r->x);
+    print_cells(o.stream, schema->n_obj, r->f);
+    for (size_t i = 0; i < N_MORE; i++)
+        print_cells(o.stream, schema->n_obj, more[i].values);
     fputc('\n', o.stream);
     return output_close(&o, err);
 }
@@ -139,10 +149,10 @@ static void show(const Work *w, long id)
     const Refined *r = &w->result;
     char label[32];
     show_objective_names(schema);
-    show_objectives("before", w->run->table.row[w->row].id, schema, r->f_start, NULL);
+    show_objectives("before", w->run->table.row[w->row].id, schema, r->f_start, r->error);
     snprintf(label, sizeof label, "sd %s",
              spread_word(w->run->settings->sim.gap_tolerance_m, &w->run->settings->uncertain));
-    show_objectives("polished", id, schema, r->f, NULL);
+    show_objectives("polished", id, schema, r->f, r->error);
     if (isfinite(r->spread_start[0]))
         show_objectives(label, 0, schema, r->spread_start, NULL);
     if (isfinite(r->error[0]))
@@ -188,7 +198,8 @@ static const ArgOption OPTIONS[] = {
     {"--evals", "N", NULL, 0, "simulate at most so often; 300 if not given"},
     {"--replicates", "N", NULL, 0, "simulations of a noisy design (the tower's), whose mean counts; 4"},
     {"--seconds", "T", NULL, 0, "stop after so long; 0: no limit"},
-    {"--csv", "FILE", NULL, 0, "the polished design and its objectives into FILE; -: standard output"},
+    {"--csv", "FILE", NULL, 0,
+     "the polished design, its objectives and those before, their deviations and errors into FILE; -: standard output"},
     OPTION_MOVED,
     OPTION_END,
 };
