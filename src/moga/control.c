@@ -26,7 +26,7 @@ void control_pack(SurrogateControl *c, Pack *p, size_t n_obj)
     pack_size(p, &c->cost, COST_TOO_HIGH);
     pack_size(p, &c->n_kept, AGREEMENT_RESULTS_MIN - 1);
     pack_numbers(p, c->F, c->n_kept * n_obj, -DBL_MAX, DBL_MAX);
-    pack_numbers(p, c->predicted, c->n_kept * n_obj, -INFINITY, INFINITY);
+    pack_numbers(p, c->predicted, c->n_kept * n_obj, -DBL_MAX, DBL_MAX);
 }
 
 /* -- whether the surrogate is used --------------------------------------------------------------------------------- */

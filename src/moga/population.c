@@ -1,7 +1,6 @@
 #include "moga/population.h"
 
 #include <float.h>
-#include <math.h>
 
 #include "base/carve.h"
 
@@ -80,9 +79,9 @@ void population_pack(Population *population, Pack *p, size_t n_rows)
     size_t n = population->n;
     pack_size(p, &n, population->n_max);
     pack_numbers(p, population->X, n * population->n_var, -DBL_MAX, DBL_MAX);
-    pack_numbers(p, population->F, n * population->n_obj, -INFINITY, INFINITY);
-    pack_numbers(p, population->violation, n, 0.0, INFINITY);
-    pack_numbers(p, population->uncertainty, n, 0.0, INFINITY);
+    pack_numbers(p, population->F, n * population->n_obj, -DBL_MAX, DBL_MAX);
+    pack_numbers(p, population->violation, n, 0.0, DBL_MAX);
+    pack_numbers(p, population->uncertainty, n, 0.0, DBL_MAX);
     pack_numbers(p, population->chance, n, 0.0, 1.0);
     for (size_t i = 0; i < n && !p->faulty; i++) {
         size_t code = population->row[i] == PREDICTED ? 0 : population->row[i] + 1;

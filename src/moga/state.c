@@ -154,7 +154,7 @@ static void pack_pending(Search *s, Pack *p)
         }
         kind = asked.kind;
         pack_numbers(p, x, n_var, -DBL_MAX, DBL_MAX);
-        pack_numbers(p, note, n_note, -INFINITY, INFINITY);
+        pack_numbers(p, note, n_note, -DBL_MAX, DBL_MAX);
         pack_size(p, &asked.repeat, UINT32_MAX);
         pack_size(p, &kind, KIND_COUNT - 1);
         asked.kind = (EvaluationKind)kind;
