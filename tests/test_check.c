@@ -283,8 +283,15 @@ static void test_the_base_shear_of_one_mass_is_its_spectral_acceleration(void **
     const double period = 2 * M_PI / omega;
     const SceneOptions s = scene_defaults();
     double phi = 1 / sqrt(M), gamma = sqrt(M);
-    const Building b = {
-        .n = 1, .K = &K, .M = &M, .phi = &phi, .omega = &omega, .gamma = &gamma, .zeta = &zeta, .storey_m = &storey};
+    const Building b = {.n = 1,
+                        .K = &K,
+                        .M = &M,
+                        .phi = &phi,
+                        .omega = &omega,
+                        .gamma = &gamma,
+                        .zeta = &zeta,
+                        .storey_m = &storey,
+                        .model = {.n = 1, .phi = &phi, .omega = &omega, .gamma = &gamma, .zeta = &zeta}};
     Motion m;
     SceneSummary f;
     Err err = {0};

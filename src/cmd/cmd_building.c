@@ -39,25 +39,31 @@ static double row_mass(const Building *b, int j)
     return sum;
 }
 
-static double total_mass(const Building *b)
+/* Share of it that is not on the floors, below which nothing is said of it. */
+static const double BETWEEN_MIN = 1e-3;
+
+static void print_mass(const Building *b)
 {
-    double sum = 0;
+    const double mass = building_mass(b);
+    double between = mass;
     for (int j = 0; j < b->n; j++)
-        sum += row_mass(b, j);
-    return sum;
+        between -= row_mass(b, j);
+    printf("%.5g kg, %.4g MN\n", mass, 1e-6 * GRAVITY * mass);
+    if (between > BETWEEN_MIN * mass)
+        printf("of it %.4g kg are between the floors\n", between);
 }
 
 static double mass_share(const Building *b, int mode)
 {
-    return b->gamma[mode] * b->gamma[mode] / total_mass(b);
+    return b->gamma[mode] * b->gamma[mode] / building_mass(b);
 }
 
 static void print_text(const Model *m)
 {
     const Building *b = &m->building;
     double z = 0;
-    printf("%s: %d floor%s, %.5g kg, %.4g MN\n", m->s->building.model, b->n, b->n == 1 ? "" : "s", total_mass(b),
-           1e-6 * GRAVITY * total_mass(b));
+    printf("%s: %d floor%s, ", m->s->building.model, b->n, b->n == 1 ? "" : "s");
+    print_mass(b);
     if (m->frame.n_nodes)
         printf("plane frame of %d nodes, %d elements, %d sections, %d ties\n", m->frame.n_nodes, m->frame.n_elements,
                m->frame.n_sections, m->frame.n_ties);
@@ -82,7 +88,7 @@ static Status print_json(const Model *m, Err *err)
                                                "mass_share", mass_share(b, j), "damping", b->zeta[j]));
     }
     return show_json(json_pack("{s:s, s:f, s:i, s:i, s:o, s:o}", "model", m->s->building.model, "mass_kg",
-                               total_mass(b), "nodes", m->frame.n_nodes, "elements", m->frame.n_elements, "floors",
+                               building_mass(b), "nodes", m->frame.n_nodes, "elements", m->frame.n_elements, "floors",
                                floors, "modes", modes),
                      err);
 }

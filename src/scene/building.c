@@ -307,6 +307,14 @@ Status building_load(Building *b, const BuildingOptions *o, Err *err)
     return s;
 }
 
+double building_mass(const Building *b)
+{
+    double sum = 0;
+    for (int i = 0; i < b->model.n; i++)
+        sum += b->model.gamma[i] * b->model.gamma[i];
+    return sum;
+}
+
 void building_free(Building *b)
 {
     free(b->K);

@@ -63,6 +63,9 @@ typedef struct {
 
 Status building_load(Building *b, const BuildingOptions *o, Err *err);
 
+/* [kg] that the ground moves, r' M r: the floors, of a frame also what is between them. */
+double building_mass(const Building *b);
+
 /* The damping ratios once more, by these options. */
 Status building_damp(Building *b, const BuildingOptions *o, Err *err);
 void building_free(Building *b);

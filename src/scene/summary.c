@@ -14,11 +14,11 @@ static void summarise_mass(SceneSummary *s, const Building *b)
 {
     s->floor_mass_min_kg = HUGE_VAL;
     s->floor_mass_max_kg = -HUGE_VAL;
+    s->mass_kg = building_mass(b);
     for (int j = 0; j < b->n; j++) {
         double row = 0;
         for (int k = 0; k < b->n; k++)
             row += b->M[j * b->n + k];
-        s->mass_kg += row;
         if (row < s->floor_mass_min_kg) {
             s->floor_mass_min_kg = row;
             s->lightest = j + 1;
@@ -38,14 +38,14 @@ static int falls_from_row_to_row(const Building *b)
     return falls;
 }
 
-static double base_shear(const Building *b, const Motion *motion, double mass)
+static double base_shear(const BuildingModel *m, const Motion *motion, double mass)
 {
-    double period[FLOORS_MAX], psa[FLOORS_MAX], squares = 0;
-    for (int i = 0; i < b->n; i++)
-        period[i] = b->omega[i] > 0 ? 2 * M_PI / b->omega[i] : 0;
-    for (int i = 0; i < b->n; i++) {
-        spectrum_psa(motion, fmin(b->zeta[i], 0.99), 1, &period[i], &psa[i]);
-        squares += pow(b->gamma[i] * b->gamma[i] * psa[i], 2);
+    double squares = 0;
+    for (int i = 0; i < m->n; i++) {
+        const double period = m->omega[i] > 0 ? 2 * M_PI / m->omega[i] : 0;
+        double psa;
+        spectrum_psa(motion, fmin(m->zeta[i], 0.99), 1, &period, &psa);
+        squares += pow(m->gamma[i] * m->gamma[i] * psa, 2);
     }
     return sqrt(squares) / (mass * GRAVITY);
 }
@@ -88,7 +88,7 @@ Status scene_summarise(SceneSummary *s, const Building *b, const CoreOptions *co
 {
     summarise_building(s, b);
     s->content_hz = 0.5 / motion->dt_s;
-    s->base_shear = base_shear(b, motion, s->mass_kg);
+    s->base_shear = base_shear(&b->model, motion, s->mass_kg);
     return summarise_core(s, core, b->storey_m, t_base_m, t_top_m, err);
 }
 
