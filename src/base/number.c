@@ -1,5 +1,6 @@
 #include "base/number.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -192,6 +193,26 @@ static double quotient(uint64_t D, int k)
     return ldexp((double)q, low - shift - k);
 }
 
+/* D / 10^k, k <= 2 FIVES_MAX, by quotients of 64 bits; 0: not so exact that it is known to which double it is rounded. A
+ * quotient is half a unit in the last place of those bits off, 2^-11 of one of a double's; the second one as much again. */
+static int quick_quotient(uint64_t D, int k, double *value)
+{
+#if LDBL_MANT_DIG == 64
+    const int first = k < FIVES_MAX ? k : FIVES_MAX;
+    const long double tens = (long double)FIVES[first] * (long double)((uint64_t)1 << first);
+    long double q = (long double)D / tens;
+    if (k > first)
+        q /= (long double)FIVES[k - first] * (long double)((uint64_t)1 << (k - first));
+    uint64_t bits;
+    memcpy(&bits, &q, sizeof bits);
+    *value = (double)q;
+    return (bits & 2047) < 1024 - 2 || (bits & 2047) > 1024 + 2;
+#else
+    (void)D, (void)k, (void)value;
+    return 0;
+#endif
+}
+
 static const char *take_digits(const char *at, uint64_t *D)
 {
     for (unsigned digit; (digit = (unsigned)(*at - '0')) < 10; at++)
@@ -243,10 +264,18 @@ double number_read(const char *text, const char **end)
     if (at && (*at == 0 || *at == ',' || *at == ']')) {
         const int is_small = D < (uint64_t)1 << 53;
         *end = at;
-        if ((is_small && k >= 0 && k <= TENS_MAX) || (D > 0 && k > 0 && k <= FIVES_MAX)) {
-            const double size = is_small && k <= TENS_MAX ? (double)D / TENS[k] : quotient(D, k);
-            return sign ? -size : size;
+        double size;
+        int is_known = is_small && k >= 0 && k <= TENS_MAX;
+        if (is_known)
+            size = (double)D / TENS[k];
+        else if (D > 0 && k > 0 && k <= 2 * FIVES_MAX)
+            is_known = quick_quotient(D, k, &size);
+        if (!is_known && D > 0 && k > 0 && k <= FIVES_MAX) {
+            size = quotient(D, k);
+            is_known = 1;
         }
+        if (is_known)
+            return sign ? -size : size;
     }
     const double value = strtod(text, &last);
     *end = last;

@@ -4,18 +4,25 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/clones.h"
 #include "base/random.h"
 
 /* Samples are bits of words. For each objective and each of so many levels between the bounds of the box: which samples are not
  * below that level. What a design dominates is in all sets of its own levels, which few others are. */
-enum { LEVELS = 64, FEW = 2, WORD = 64, WORDS = (HYPERVOLUME_SAMPLES + WORD - 1) / WORD };
+enum {
+    LEVELS = 128,
+    FEW = 2,
+    WORD = 64,
+    SOME = 8, /* words, and sets, that are looked at together */
+    WORDS = (HYPERVOLUME_SAMPLES + WORD * SOME - 1) / (WORD * SOME) * SOME
+};
 
 struct Hypervolume {
-    size_t n_obj, n_left, n_words;
-    uint64_t left[WORDS]; /* (n_words) samples that are not dominated yet */
-    uint64_t *above;      /* (n_obj, LEVELS, WORDS) */
-    double *lower, *per;  /* (n_obj) levels per unit of the objective */
-    double sample[];      /* (HYPERVOLUME_SAMPLES, n_obj), then lower, per, above */
+    size_t n_obj, n_left, n_words; /* a multiple of SOME */
+    uint64_t left[WORDS];          /* (n_words) samples that are not dominated yet */
+    uint64_t *above;               /* (n_obj, LEVELS, WORDS) */
+    double *lower, *per;           /* (n_obj) levels per unit of the objective */
+    double sample[];               /* (HYPERVOLUME_SAMPLES, n_obj), then lower, per, above */
 };
 
 /* Never falls while the value grows. */
@@ -37,14 +44,22 @@ static void sample_at(const Hypervolume *h, uint32_t seed, size_t i, double u[])
         u[k] = random_uniform(&r);
 }
 
-/* Sample i into the sets. */
+/* Sample i into the sets of its own levels. */
 static void note_sample(Hypervolume *h, size_t i)
 {
     const uint64_t bit = (uint64_t)1 << i % WORD;
     h->left[i / WORD] |= bit;
     for (size_t k = 0; k < h->n_obj; k++)
-        for (size_t level = level_of(h, k, h->sample[i * h->n_obj + k]) + 1; level-- > 0;)
-            samples_above(h, k, level)[i / WORD] |= bit;
+        samples_above(h, k, level_of(h, k, h->sample[i * h->n_obj + k]))[i / WORD] |= bit;
+}
+
+/* ... and from there into those of the lower ones. */
+static void join_levels(Hypervolume *h)
+{
+    for (size_t k = 0; k < h->n_obj; k++)
+        for (size_t level = LEVELS - 1; level-- > 0;)
+            for (size_t w = 0; w < h->n_words; w++)
+                samples_above(h, k, level)[w] |= samples_above(h, k, level + 1)[w];
 }
 
 static void fill(Hypervolume *h, const double lower[], const double reference[], uint32_t seed)
@@ -61,6 +76,7 @@ static void fill(Hypervolume *h, const double lower[], const double reference[],
             s[k] = lower[k] + (reference[k] - lower[k]) * s[k];
         note_sample(h, i);
     }
+    join_levels(h);
 }
 
 /* Samples that are left move together, so that fewer words are looked at. */
@@ -76,7 +92,8 @@ static void draw_together(Hypervolume *h)
     memset(h->above, 0, m * LEVELS * WORDS * sizeof *h->above);
     for (size_t i = 0; i < n; i++)
         note_sample(h, i);
-    h->n_words = (n + WORD - 1) / WORD;
+    h->n_words = (n + WORD * SOME - 1) / (WORD * SOME) * SOME;
+    join_levels(h);
 }
 
 Status hypervolume_create(Hypervolume **out, size_t n_obj, const double lower[], const double reference[],
@@ -105,18 +122,41 @@ static int reaches(size_t m, const double f[], const double s[])
     return 1;
 }
 
+/* Of those samples the ones that are in n <= SOME more sets. */
+CLONED_V3 static void keep_common(size_t n_words, uint64_t near[], size_t n, const uint64_t *const above[])
+{
+    for (size_t w = 0; w < n_words; w += SOME) {
+        uint64_t some[SOME];
+        memcpy(some, near + w, sizeof some);
+        for (size_t k = 0; k < n; k++)
+#pragma omp simd
+            for (size_t i = 0; i < SOME; i++)
+                some[i] &= above[k][w + i];
+        memcpy(near + w, some, sizeof some);
+    }
+}
+
+/* Samples that are left and not below the level of f in any objective. */
+static void find_near(const Hypervolume *h, const double f[], uint64_t near[WORDS])
+{
+    const uint64_t *above[SOME];
+    size_t n = 0;
+    memcpy(near, h->left, h->n_words * sizeof *near);
+    for (size_t k = 0; k < h->n_obj; k++) {
+        above[n++] = samples_above(h, k, level_of(h, k, f[k]));
+        if (n < SOME && k < h->n_obj - 1)
+            continue;
+        keep_common(h->n_words, near, n, above);
+        n = 0;
+    }
+}
+
 /* Samples that are left and that f dominates; returns how many. */
 static size_t find_dominated(const Hypervolume *h, const double f[], uint64_t near[WORDS])
 {
     const size_t m = h->n_obj;
     size_t n = 0;
-    memcpy(near, h->left, h->n_words * sizeof *near);
-    for (size_t k = 0; k < m; k++) {
-        const uint64_t *above = samples_above(h, k, level_of(h, k, f[k]));
-#pragma omp simd
-        for (size_t w = 0; w < h->n_words; w++)
-            near[w] &= above[w];
-    }
+    find_near(h, f, near);
     for (size_t w = 0; w < h->n_words; w++)
         for (uint64_t rest = near[w]; rest; rest &= rest - 1) {
             const size_t bit = (size_t)__builtin_ctzll(rest);

@@ -202,6 +202,7 @@ static void put_front_of_search(FILE *f, const void *user)
     Numbers numbers;
     Line line = {.file = front->before};
     export_front_header(f, front->files->schema);
+    next_line(&line); /* the header */
     next_line(&line);
     for (size_t i = 0; i < front->view->n; i++) {
         if (!front->view->on_front[i])

@@ -19,7 +19,8 @@ typedef struct {
     Run *run;
     Database *d;
     RunPart part;
-    FILE *out; /* of the evaluations, where they are printed, with their header */
+    long known; /* evaluations 1..known are what was written */
+    FILE *out;  /* of the evaluations, where they are printed, with their header */
     RunHeader *header;
     const RunVisitor *visitor;
     void *user;               /* of the visitor */
@@ -126,7 +127,9 @@ static Status load_evaluations(Loading *l, Err *err)
     const int has_all =
         l->part == RUN_WHOLE || l->part == RUN_ENDED || s->is_noisy || (l->part == RUN_REVIEWED && s->order.n_obj > 0);
     run->table = evaluation_table(has_all ? s->n_var : 0, s->n_obj, has_all ? s->n_extra : 0);
-    TRY(rows_read(l->d, &run->table, 0, LONG_MAX, err));
+    if (!has_all && l->known > 0)
+        TRY(rows_read_known(l->d, &run->table, l->known, err));
+    TRY(rows_read(l->d, &run->table, run->table.n > 0 ? l->known + 1 : 0, LONG_MAX, err));
     const size_t n = run->n_generations > 0 ? (size_t)run->generation[run->n_generations - 1].simulated : 0;
     if (n > 0 && (run->table.n < n || run->table.row[n - 1].id != (long)n))
         return tell_missing(l, err);
@@ -384,16 +387,25 @@ static Status load_at_once(Loading *l, Status (*load_it)(Loading *l, Err *err), 
     return status;
 }
 
+static Status load_from(Loading *l, const char *folder, Err *err)
+{
+    TRY(load_at_once(l, load, err));
+    if (l->run->n_ahead > 0 && !is_plain_end(l->run)) {
+        run_free(l->run);
+        return run_load(l->run, l->d, folder, err);
+    }
+    snprintf(l->run->folder, sizeof l->run->folder, "%s", folder);
+    return STATUS_OK;
+}
+
 Status run_load_part(Run *run, Database *d, const char *folder, RunPart part, Err *err)
 {
-    Loading l = {.run = run, .d = d, .part = part};
-    TRY(load_at_once(&l, load, err));
-    if (run->n_ahead > 0 && !is_plain_end(run)) {
-        run_free(run);
-        return run_load(run, d, folder, err);
-    }
-    snprintf(run->folder, sizeof run->folder, "%s", folder);
-    return STATUS_OK;
+    return load_from(&(Loading){.run = run, .d = d, .part = part}, folder, err);
+}
+
+Status run_review(Run *run, Database *d, const char *folder, long known, Err *err)
+{
+    return load_from(&(Loading){.run = run, .d = d, .part = RUN_REVIEWED, .known = known}, folder, err);
 }
 
 Status run_load(Run *run, Database *d, const char *folder, Err *err)

@@ -29,6 +29,10 @@ typedef enum {
 Status run_read_part(Run *run, const char *folder, RunPart part, Err *err);
 Status run_load_part(Run *run, Database *d, const char *folder, RunPart part, Err *err);
 
+/* RUN_REVIEWED of a run whose evaluations 1..known were read from this database before: if no more than results are wanted of
+ * them, they are not compared with their digests again. */
+Status run_review(Run *run, Database *d, const char *folder, long known, Err *err);
+
 /* A run whose results are read (RUN_RESULTS) and whose numbers pass by, row for row, as they are stored (store/rows.h), all in
  * one state. A null function is not called. */
 typedef struct {

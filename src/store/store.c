@@ -33,6 +33,7 @@ struct RunStore {
     double last_commit;          /* [s] of the clock */
     double last_generation;      /* ... */
     size_t n_known;              /* designs of finished generations */
+    size_t n_compared;           /* ... whose digests were compared in this session */
     unsigned char *was_on_front; /* (n_known) at the end of the last generation */
     uint64_t front;              /* digest of those on it */
     FrontShare share;
@@ -294,7 +295,7 @@ static Status take_finished(const Evaluation *e, void *user, Err *err)
     return each->take(e, each->user, err);
 }
 
-Status store_each_finished(const RunStore *store, EvaluationFn take, void *user, Err *err)
+Status store_each_finished(RunStore *store, EvaluationFn take, void *user, Err *err)
 {
     const size_t n = store->run.n_ahead;
     EvaluationTable room = store->waiting;
@@ -304,6 +305,7 @@ Status store_each_finished(const RunStore *store, EvaluationFn take, void *user,
     if (status == STATUS_OK && each.n < n)
         status = fail(err, STATUS_IO, "%s: is damaged: evaluation %zu is missing", database_path(store->db), n);
     evaluation_table_free(&room);
+    store->n_compared = status == STATUS_OK ? n : 0;
     return folder_advise(store_folder(store), status, err);
 }
 
@@ -559,7 +561,8 @@ static Status read_at_the_end(RunStore *store, Run *run, Err *err)
 {
     const int is_written = store->has_polished || store->files.is_behind;
     run_free(&store->run);
-    TRY(run_load_part(run, store->db, store_folder(store), is_written ? RUN_WHOLE : RUN_REVIEWED, err));
+    TRY(is_written ? run_load(run, store->db, store_folder(store), err)
+                   : run_review(run, store->db, store_folder(store), (long)store->n_compared, err));
     if (run->n_front == 0 && run->table.n_var == 0) {
         run_free(run);
         TRY(run_load(run, store->db, store_folder(store), err));

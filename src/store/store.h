@@ -59,7 +59,7 @@ const Run *store_run(const RunStore *store);
 Status store_give_run(RunStore *store, Run *run, Err *err); /* all of it passes to the caller, for run_free */
 
 /* The finished evaluations in their order, one after the other (store/rows.h). */
-Status store_each_finished(const RunStore *store, EvaluationFn take, void *user, Err *err);
+Status store_each_finished(RunStore *store, EvaluationFn take, void *user, Err *err);
 
 /* A run in which nothing was simulated is removed: the next one begins with whatever settings. */
 Status store_forget_empty(RunStore *store, Err *err);
