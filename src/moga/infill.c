@@ -122,6 +122,16 @@ static void values_of(const Infill *q, const double f[], double value[])
         pbi_values(q, f, value);
 }
 
+CLONED_V3 static void keep_least(size_t n, const double value[], size_t row, double best_value[], size_t best[])
+{
+#pragma omp simd
+    for (size_t r = 0; r < n; r++) {
+        const int is_less = value[r] < best_value[r];
+        best[r] = is_less ? row : best[r];
+        best_value[r] = is_less ? value[r] : best_value[r];
+    }
+}
+
 void infill_measure(Infill *q, size_t n, const size_t front[], const double F[])
 {
     normalisation_fit_range(&q->normalisation, n, front, F);
@@ -129,11 +139,7 @@ void infill_measure(Infill *q, size_t n, const size_t front[], const double F[])
         q->best_value[r] = DBL_MAX;
     for (size_t i = 0; i < n; i++) {
         values_of(q, F + front[i] * q->n_obj, q->row);
-        for (size_t r = 0; r < q->n_dir; r++)
-            if (q->row[r] < q->best_value[r]) {
-                q->best_value[r] = q->row[r];
-                q->best[r] = front[i];
-            }
+        keep_least(q->n_dir, q->row, front[i], q->best_value, q->best);
     }
 }
 
