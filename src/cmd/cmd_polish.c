@@ -92,7 +92,7 @@ static Status open_run(const Args *args, Work *w, Err *err)
 }
 
 /* One row in natural signs: the polished design as in front.csv but for the id of the design that it came from; then of every
- * objective how it was before, the standard deviations of both and the estimated error. */
+ * objective how it was before, and where they are known the standard deviations of both and the estimated error. */
 static Status write_csv(const Work *w, const char *path, Err *err)
 {
     const Schema *schema = &w->run->schema;
@@ -108,13 +108,13 @@ static Status write_csv(const Work *w, const char *path, Err *err)
     for (size_t j = 0; j < schema->n_var + schema->n_obj; j++)
         fprintf(o.stream, ",%s", schema->column[j].name);
     for (size_t i = 0; i < N_MORE; i++)
-        for (size_t k = 0; k < schema->n_obj; k++)
+        for (size_t k = 0; k < schema->n_obj && isfinite(more[i].values[0]); k++)
             fprintf(o.stream, ",%s_%s", schema_objective(schema, k)->name, more[i].suffix);
     fprintf(o.stream, "\n%ld", w->run->table.row[w->row].id);
     print_cells(o.stream, schema->n_var, r->x);
     print_cells(o.stream, schema->n_obj, r->f);
     for (size_t i = 0; i < N_MORE; i++)
-        print_cells(o.stream, schema->n_obj, more[i].values);
+        print_cells(o.stream, isfinite(more[i].values[0]) ? schema->n_obj : 0, more[i].values);
     fputc('\n', o.stream);
     return output_close(&o, err);
 }
