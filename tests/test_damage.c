@@ -187,6 +187,29 @@ static void test_links_in_a_foreign_folder_are_not_followed(void **state)
     shell("test -L link && cmp victim sound/front.csv");
 }
 
+/* -- hands --------------------------------------------------------------------------------------------------------- */
+
+static void test_what_was_edited_in_the_exports_does_not_survive_a_resume(void **state)
+{
+    (void)state;
+    static const char *const EDITS[] = {
+        "sed -i '5s/[0-9]$/7/' evaluations.csv && sed -i '3s/[0-9]$/7/' front.csv", /* last digits */
+        "sed -i '1s/f1/g1/' evaluations.csv front.csv",
+        "sed -i '/^7,/d' evaluations.csv && sed -i 2d front.csv",
+        "rm evaluations.csv front.csv",
+    };
+    shell("cp -r sound longer");
+    free(output_of("optimize @/longer --max-evals 44 --force-settings"));
+    for (size_t i = 0; i < sizeof EDITS / sizeof EDITS[0]; i++) {
+        shell("rm -rf edited && cp -r sound edited && cd edited && %s", EDITS[i]);
+        free(output_of("optimize @/edited")); /* it is over */
+        shell("cmp sound/front.csv edited/front.csv && cmp sound/evaluations.csv edited/evaluations.csv");
+        shell("cd edited && %s", EDITS[i]);
+        free(output_of("optimize @/edited --max-evals 44 --force-settings"));
+        shell("cmp longer/front.csv edited/front.csv && cmp longer/evaluations.csv edited/evaluations.csv");
+    }
+}
+
 /* -- bits ---------------------------------------------------------------------------------------------------------- */
 
 static const char DAMAGE_LAST[] = "UPDATE state SET bytes = zeroblob(length(bytes)) "
@@ -330,6 +353,7 @@ int main(void)
         cmocka_unit_test(test_a_database_that_is_removed_in_flight_is_put_back),
         cmocka_unit_test(test_another_database_in_the_place_of_a_run_ends_it),
         cmocka_unit_test(test_links_in_a_foreign_folder_are_not_followed),
+        cmocka_unit_test(test_what_was_edited_in_the_exports_does_not_survive_a_resume),
         cmocka_unit_test(test_a_damaged_state_gives_way_to_the_one_before_with_the_same_end),
         cmocka_unit_test(test_a_bit_in_the_text_of_a_table_is_found),
         cmocka_unit_test(test_a_damaged_run_says_what_its_tables_still_know_and_another_begins_with_it),

@@ -63,34 +63,6 @@ static Status keep(CsvFiles *c, size_t n, const EvaluationTable *t, Err *err)
     return STATUS_OK;
 }
 
-/* Of a run whose designs keep their numbers. */
-static int front_is_whole(const Folder *folder, const Run *run)
-{
-    size_t n = 0;
-    long *ids = run->schema.is_noisy ? NULL : calloc(run->n_front + 1, sizeof *ids);
-    if (!ids)
-        return 0;
-    for (size_t i = 0; i < run->n_ahead; i++)
-        if (run->place[i].on_front)
-            ids[n++] = (long)i + 1;
-    for (; n < run->n_front; n++)
-        ids[n] = run->table.row[run->front[n]].id;
-    char *header = NULL;
-    FILE *f = open_memstream(&header, &(size_t){0});
-    if (f)
-        export_front_header(f, &run->schema);
-    const int is = f && fclose(f) == 0 && folder_holds(folder, "front.csv", header, n, ids);
-    free(header);
-    free(ids);
-    return is;
-}
-
-int csv_files_are_whole(const Folder *folder, const Run *run, size_t n)
-{
-    return !run_has_polished(run) && n > 0 && n == run_n_finished(run) &&
-           (run->n_generations == 0 || front_is_whole(folder, run));
-}
-
 /* front.csv has the lines of a front of this run. */
 static void know_front(CsvFiles *c)
 {
@@ -100,20 +72,74 @@ static void know_front(CsvFiles *c)
         c->front.st_ino = 0;
 }
 
-Status csv_files_resume(CsvFiles *c, const Folder *folder, const Schema *schema, const Run *run, int are_whole,
-                        Err *err)
+Status csv_files_resume(CsvFiles *c, const Folder *folder, const Schema *schema, const Run *run, Err *err)
 {
     const size_t n = run_n_finished(run);
     *c = (CsvFiles){.folder = folder, .schema = schema, .run = run, .n_kept = n_kept(schema)};
     TRY(keep(c, n, &run->table, err));
     c->n_appended = n;
-    if (!are_whole)
+    if (run->n_ahead == 0)
         TRY(folder_write(folder, "evaluations.csv", put_evaluations, run, err));
-    if (run->n_generations > 0 && !are_whole)
+    if (run->n_ahead == 0 && run->n_generations > 0) {
         TRY(folder_write(folder, "front.csv", put_front, run, err));
-    if (run->n_generations > 0)
         know_front(c);
+    }
     return append_open(&c->evaluations, folder, "evaluations.csv", err);
+}
+
+static int has_header(RowLines *l, const Schema *schema)
+{
+    char *header = NULL;
+    size_t length;
+    FILE *f = open_memstream(&header, &length);
+    if (f)
+        export_evaluations_header(f, schema);
+    const int has = f && fclose(f) == 0 && getline(&l->line, &l->room, l->f) > 0 && strcmp(l->line, header) == 0;
+    free(header);
+    return has;
+}
+
+Status csv_files_pass(CsvFiles *c, CsvPassing *p, Err *err)
+{
+    char path[PATH_MAX];
+    *p = (CsvPassing){0};
+    folder_path(c->folder, "front.csv", path);
+    TRY(output_open_inside(&p->front, path, err));
+    export_front_header(p->front.stream, c->schema);
+    p->lines.f = fopen(c->evaluations.path, "re");
+    p->lines.are_same = p->lines.f && has_header(&p->lines, c->schema);
+    return STATUS_OK;
+}
+
+void csv_files_pass_design(const CsvFiles *c, const CsvPassing *p, const Evaluation *e)
+{
+    if (c->run->place[e->id - 1].on_front)
+        export_design_as(p->front.stream, c->schema, e, e->f);
+}
+
+static Status reprint_evaluations(CsvFiles *c, Database *db, Err *err)
+{
+    const Schema *s = c->schema;
+    Output o;
+    size_t printed;
+    append_free(&c->evaluations);
+    TRY(output_open_inside(&o, c->evaluations.path, err));
+    export_evaluations_header(o.stream, s);
+    const Status status =
+        rows_print(db, o.stream, (RowShape){s->n_var, s->n_obj, s->n_extra}, 1, (long)c->n_appended, 0, &printed, err);
+    TRY(output_end(&o, status, err));
+    return append_open(&c->evaluations, c->folder, "evaluations.csv", err);
+}
+
+Status csv_files_passed(CsvFiles *c, CsvPassing *p, Database *db, Status passed, Err *err)
+{
+    const int are_same = p->lines.are_same && getc(p->lines.f) == EOF;
+    if (p->lines.f)
+        fclose(p->lines.f);
+    free(p->lines.line);
+    TRY(output_end(&p->front, passed, err));
+    know_front(c);
+    return are_same ? STATUS_OK : reprint_evaluations(c, db, err);
 }
 
 static Status read_kept(CsvFiles *c, Database *db, size_t n, Err *err)

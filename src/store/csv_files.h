@@ -16,6 +16,8 @@
 #include "moga/search.h"
 #include "store/database.h"
 #include "store/folder.h"
+#include "store/output.h"
+#include "store/rows.h"
 #include "store/run.h"
 
 typedef struct {
@@ -35,11 +37,20 @@ enum { FRONT_ALWAYS = 4000 };
 
 Status csv_files_begin(CsvFiles *c, const Folder *folder, const Schema *schema, Err *err);
 
-/* Whether they have just the designs that they should have, in their order; else all of the run has to be there. n: rows of
- * evaluations.csv, numbered 1, 2, ... */
-int csv_files_are_whole(const Folder *folder, const Run *run, size_t n);
-Status csv_files_resume(CsvFiles *c, const Folder *folder, const Schema *schema, const Run *run, int are_whole,
-                        Err *err);
+/* Both are exports, whatever was done to them meanwhile: regenerated if all of the run is there. If its finished evaluations
+ * are not (n_ahead), they pass by, before anything else: evaluations.csv is compared with them line by line and
+ * regenerated if it differs, front.csv in any case. */
+Status csv_files_resume(CsvFiles *c, const Folder *folder, const Schema *schema, const Run *run, Err *err);
+
+typedef struct {
+    RowLines lines;
+    Output front;
+} CsvPassing;
+
+Status csv_files_pass(CsvFiles *c, CsvPassing *p, Err *err);
+void csv_files_pass_design(const CsvFiles *c, const CsvPassing *p, const Evaluation *e); /* of a finished generation */
+/* passed: whether all of them did; else nothing is changed. */
+Status csv_files_passed(CsvFiles *c, CsvPassing *p, Database *db, Status passed, Err *err);
 
 /* Up to evaluation n, as the database has them now. */
 Status csv_files_append(CsvFiles *c, Database *db, size_t n, Err *err);

@@ -22,63 +22,21 @@ int folder_has(const Folder *folder, const char *name)
     return access(path, F_OK) == 0;
 }
 
-typedef struct {
-    size_t n, number;           /* lines that have ended; digits that the one under way begins with */
-    int is_behind, is_numbered; /* ... behind those digits; line i begins with i, line 0 with anything */
-} Lines;
-
-static void count_lines(Lines *l, const char *at, const char *end)
+size_t folder_rows(const Folder *folder, const char *name)
 {
-    while (at < end) {
-        for (; !l->is_behind && at < end && *at >= '0' && *at <= '9'; at++)
-            l->number = 10 * l->number + (size_t)(*at - '0');
-        if (at == end)
-            return;
-        l->is_numbered = l->is_numbered && (l->n == 0 || l->number == l->n);
-        at = memchr(at, '\n', (size_t)(end - at));
-        l->is_behind = at == NULL;
-        if (!at)
-            return;
-        l->n++;
-        l->number = 0;
-        at++;
-    }
-}
-
-size_t folder_rows(const Folder *folder, const char *name, int *is_numbered)
-{
-    char path[PATH_MAX], bytes[1 << 16], last = 0;
-    Lines l = {.is_numbered = 1};
+    char path[PATH_MAX], bytes[1 << 16];
+    size_t lines = 0;
     ssize_t n;
     folder_path(folder, name, path);
     const int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     struct stat about;
-    const int is_file = fd >= 0 && fstat(fd, &about) == 0 && S_ISREG(about.st_mode);
-    while (is_file && (n = read(fd, bytes, sizeof bytes)) > 0) {
-        count_lines(&l, bytes, bytes + n);
-        last = bytes[n - 1];
-    }
-    if (fd >= 0)
-        close(fd);
-    if (is_numbered)
-        *is_numbered = l.is_numbered && last == '\n';
-    return l.n > 0 ? l.n - 1 : 0;
-}
-
-int folder_holds(const Folder *folder, const char *name, const char *header, size_t n, const long ids[])
-{
-    char path[PATH_MAX], *line = NULL;
-    size_t room = 0, count = 0;
-    ssize_t length = 0;
-    folder_path(folder, name, path);
-    FILE *f = n > 0 ? fopen(path, "re") : NULL;
-    int is_so = f && getline(&line, &room, f) > 0 && strcmp(line, header) == 0;
-    for (; is_so && (length = getline(&line, &room, f)) > 0; count++)
-        is_so = count < n && strtol(line, NULL, 10) == ids[count] && line[length - 1] == '\n';
-    free(line);
-    if (f)
-        fclose(f);
-    return is_so && count == n;
+    if (fd < 0)
+        return 0;
+    while (fstat(fd, &about) == 0 && S_ISREG(about.st_mode) && (n = read(fd, bytes, sizeof bytes)) > 0)
+        for (const char *at = bytes; (at = memchr(at, '\n', (size_t)(bytes + n - at))); at++)
+            lines++;
+    close(fd);
+    return lines > 0 ? lines - 1 : 0;
 }
 
 int folder_is_run(const char *path)
@@ -111,7 +69,7 @@ Status folder_advise(const char *path, Status status, Err *err)
         (!is_empty && !strstr(err->text, ": is damaged") && !strstr(err->text, ": is no database")))
         return status;
     snprintf(f.path, sizeof f.path, "%s", path);
-    const size_t n = folder_rows(&f, "evaluations.csv", NULL);
+    const size_t n = folder_rows(&f, "evaluations.csv");
     if (n > 0)
         return fail(err, status,
                     "%.250s; evaluations.csv beside it has %zu evaluations: --new --set "
@@ -144,7 +102,7 @@ static Status take_lock(Folder *folder, Err *err)
 
 static int holds_run(const Folder *folder)
 {
-    return folder_has(folder, "run.sqlite") || folder_rows(folder, "evaluations.csv", NULL) > 0;
+    return folder_has(folder, "run.sqlite") || folder_rows(folder, "evaluations.csv") > 0;
 }
 
 /* It is looked at again once the lock is held: another process may have had a whole run meanwhile. */

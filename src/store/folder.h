@@ -23,10 +23,7 @@ void folder_release(Folder *folder);
 
 void folder_path(const Folder *folder, const char *name, char path[PATH_MAX]);
 int folder_has(const Folder *folder, const char *name);
-/* Its rows begin with these numbers, all of them whole, behind this line. */
-int folder_holds(const Folder *folder, const char *name, const char *header, size_t n, const long ids[]);
-/* Rows of a CSV file, its header left out; no file: 0. is_numbered (may be NULL): they begin with 1, 2, ..., all whole. */
-size_t folder_rows(const Folder *folder, const char *name, int *is_numbered);
+size_t folder_rows(const Folder *folder, const char *name); /* of a CSV file, its header left out; no file: 0 */
 
 /* Has it held a run? */
 int folder_is_run(const char *path);

@@ -145,6 +145,7 @@ typedef struct {
 typedef struct {
     EvaluationTable *table;
     Database *db;
+    RowLines *lines;                 /* NULL: none are compared */
     long without;                    /* id of a row without a digest; 0: there is none */
     int has_with;                    /* a row with one */
     uint64_t kind_digest;            /* of the kind and the generation of the row before, which most have */
@@ -290,6 +291,36 @@ static RowText take_text(sqlite3_stmt *row, Evaluation *e)
                      .extra = column_text(row, 10)};
 }
 
+/* The list as n cells of a line, each behind a comma; where they end, NULL: they are others. */
+static const char *skip_cells(const char *cells, const char *list, size_t n)
+{
+    const char *at = list[0] ? list + 1 : list;
+    for (size_t i = 0; i < n && cells; i++) {
+        if (*cells++ != ',')
+            return NULL;
+        if (*at == 'n')
+            at += strlen("null");
+        for (; *at && *at != ',' && *at != ']'; at++)
+            if (*cells++ != *at)
+                return NULL;
+        at += *at == ',';
+    }
+    return cells;
+}
+
+static int is_next_line(RowLines *l, const EvaluationTable *shape, const Evaluation *e, const RowText *t)
+{
+    char head[REASON_MAX + 128];
+    const int n = snprintf(head, sizeof head, "%ld,%ld,%s,%s,%s", e->id, e->generation, kind_word(e->kind),
+                           outcome_word(e->outcome), e->reason);
+    if (getline(&l->line, &l->room, l->f) <= 0 || strncmp(l->line, head, (size_t)n) != 0)
+        return 0;
+    const char *at = skip_cells(l->line + n, t->x, shape->n_var);
+    at = at ? skip_cells(at, t->f, shape->n_obj) : NULL;
+    at = at ? skip_cells(at, t->extra, shape->n_extra) : NULL;
+    return at && strcmp(at, "\n") == 0;
+}
+
 static Status take_row(sqlite3_stmt *row, void *user, Err *err)
 {
     Reading *r = user;
@@ -297,6 +328,8 @@ static Status take_row(sqlite3_stmt *row, void *user, Err *err)
     TRY(evaluation_table_add(r->table, &e, err));
     const RowText text = take_text(row, e);
     TRY(parse_row(r, &text, e, err));
+    if (r->lines && r->lines->are_same)
+        r->lines->are_same = is_next_line(r->lines, r->table, e, &text);
     return check_row(r, e, &text, row, err);
 }
 
@@ -349,9 +382,10 @@ static Status pass_row(sqlite3_stmt *row, void *user, Err *err)
     return p->take(p->reading.table->row, p->user, err);
 }
 
-Status rows_each(Database *db, EvaluationTable *room, long first, long last, EvaluationFn take, void *user, Err *err)
+Status rows_each(Database *db, EvaluationTable *room, long first, long last, RowLines *lines, EvaluationFn take,
+                 void *user, Err *err)
 {
-    Passing p = {{.table = room, .db = db}, take, user};
+    Passing p = {{.table = room, .db = db, .lines = lines}, take, user};
     return each_row(&p.reading, pass_row, &p, first, last, err);
 }
 

@@ -28,9 +28,18 @@ Status rows_unfinish(Database *db, long id, EvaluationKind kind, long generation
  * goes without those numbers, which take most of the time. */
 Status rows_read(Database *db, EvaluationTable *table, long first, long last, Err *err);
 
-/* The same one after the other, in the one row of the table `room`; a row that is not what was written is found a few rows
- * later, or at the end. */
-Status rows_each(Database *db, EvaluationTable *room, long first, long last, EvaluationFn take, void *user, Err *err);
+/* evaluations.csv behind its header, which is read on. */
+typedef struct {
+    FILE *f;
+    char *line; /* getline's, of its `room` */
+    size_t room;
+    int are_same; /* all lines so far are those of the rows */
+} RowLines;
+
+/* The same one after the other, in the one row of the table `room`, and compared with lines; a row that is not what was
+ * written is found a few rows later, or at the end. */
+Status rows_each(Database *db, EvaluationTable *room, long first, long last, RowLines *lines, EvaluationFn take,
+                 void *user, Err *err);
 
 /* Evaluations 1..last, whose digests were compared before, into a table whose n_var and n_extra are 0. */
 Status rows_read_known(Database *db, EvaluationTable *table, long last, Err *err);

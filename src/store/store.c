@@ -26,7 +26,6 @@ struct RunStore {
     Database *db;
     Run run; /* that the folder held when it was opened */
     int has_run, has_polished;
-    size_t n_numbered; /* rows of evaluations.csv when it was opened, if they are numbered 1, 2, ...; else 0 */
 
     EvaluationTable waiting; /* rows for the next commit or the end of their generation */
     int in_transaction;
@@ -67,12 +66,10 @@ static Status open_database(RunStore *store, Err *err)
 }
 
 /* evaluations.csv follows the database. Where it has more, the journal was lost, as by a copy of run.sqlite alone. */
-static Status check_nothing_lost(RunStore *store, Err *err)
+static Status check_nothing_lost(const RunStore *store, Err *err)
 {
-    int is_numbered;
     const size_t n = store->run.n_ahead + store->run.table.n,
-                 n_exported = folder_rows(&store->folder, "evaluations.csv", &is_numbered);
-    store->n_numbered = is_numbered ? n_exported : 0;
+                 n_exported = folder_rows(&store->folder, "evaluations.csv");
     if (n_exported <= n)
         return STATUS_OK;
     return fail(err, STATUS_IO,
@@ -92,18 +89,14 @@ static Status load_run(RunStore *store, RunPart part, Err *err)
     return folder_advise(store_folder(store), status, err);
 }
 
-/* What was left out too. */
-static Status load_whole(RunStore *store, Err *err)
-{
-    if (store->run.n_ahead == 0)
-        return STATUS_OK;
-    run_free(&store->run);
-    return folder_advise(store_folder(store), run_load(&store->run, store->db, store_folder(store), err), err);
-}
-
+/* All of it, also what was left out; the files are regenerated, whatever was done to them. */
 Status store_give_run(RunStore *store, Run *run, Err *err)
 {
-    TRY(load_whole(store, err));
+    if (store->run.n_ahead > 0) {
+        run_free(&store->run);
+        TRY(folder_advise(store_folder(store), run_load(&store->run, store->db, store_folder(store), err), err));
+    }
+    TRY(csv_files_replace(&store->folder, &store->run, err));
     *run = store->run;
     store->run = (Run){0};
     store->has_run = 0;
@@ -247,15 +240,12 @@ static Status set_settings(RunStore *store, const Settings *used, int goes_on, E
 Status store_resume(RunStore *store, const Schema *schema, const Settings *used, int goes_on, Err *err)
 {
     take_schema(store, schema);
-    const int are_whole = csv_files_are_whole(&store->folder, &store->run, store->n_numbered);
-    if (!are_whole)
-        TRY(load_whole(store, err));
     TRY(take_up(store, err));
     if (store->run.n_ahead == 0)
         TRY(tables_upgrade(store->db, &store->run.table, err));
     TRY(set_settings(store, used, goes_on, err));
     TRY(write_origin(store, used, store->run.provenance, err));
-    TRY(csv_files_resume(&store->files, &store->folder, schema, &store->run, are_whole, err));
+    TRY(csv_files_resume(&store->files, &store->folder, schema, &store->run, err));
     return logs_open(&store->logs, &store->folder, err);
 }
 
@@ -280,10 +270,11 @@ Status store_session(RunStore *store, const char *program, int threads, size_t n
 }
 
 typedef struct {
-    const RunStore *store;
+    RunStore *store;
     EvaluationFn take;
     void *user;
     size_t n;
+    CsvPassing files;
 } Each;
 
 static Status take_finished(const Evaluation *e, void *user, Err *err)
@@ -292,6 +283,7 @@ static Status take_finished(const Evaluation *e, void *user, Err *err)
     if (e->id != (long)++each->n || e->kind == KIND_UNFINISHED)
         return fail(err, STATUS_IO, "%s: is damaged: evaluation %zu is missing", database_path(each->store->db),
                     each->n);
+    csv_files_pass_design(&each->store->files, &each->files, e);
     return each->take(e, each->user, err);
 }
 
@@ -299,12 +291,14 @@ Status store_each_finished(RunStore *store, EvaluationFn take, void *user, Err *
 {
     const size_t n = store->run.n_ahead;
     EvaluationTable room = store->waiting;
-    Each each = {store, take, user, 0};
+    Each each = {.store = store, .take = take, .user = user};
+    TRY(csv_files_pass(&store->files, &each.files, err));
     room = evaluation_table(room.n_var, room.n_obj, room.n_extra);
-    Status status = rows_each(store->db, &room, 1, (long)n, take_finished, &each, err);
+    Status status = rows_each(store->db, &room, 1, (long)n, &each.files.lines, take_finished, &each, err);
     if (status == STATUS_OK && each.n < n)
         status = fail(err, STATUS_IO, "%s: is damaged: evaluation %zu is missing", database_path(store->db), n);
     evaluation_table_free(&room);
+    status = csv_files_passed(&store->files, &each.files, store->db, status, err);
     store->n_compared = status == STATUS_OK ? n : 0;
     return folder_advise(store_folder(store), status, err);
 }

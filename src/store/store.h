@@ -56,9 +56,11 @@ const char *store_folder(const RunStore *store);
 
 /* The run that the folder held when it was opened, with fresh = 0 as RUN_ENDED says (store/run_read.h); NULL: none. */
 const Run *store_run(const RunStore *store);
-Status store_give_run(RunStore *store, Run *run, Err *err); /* all of it passes to the caller, for run_free */
+/* All of it passes to the caller, for run_free; evaluations.csv and front.csv are regenerated. */
+Status store_give_run(RunStore *store, Run *run, Err *err);
 
-/* The finished evaluations in their order, one after the other (store/rows.h). */
+/* The finished evaluations of a run that was resumed, in their order, one after the other (store/rows.h); evaluations.csv and
+ * front.csv are mended meanwhile (store/csv_files.h). */
 Status store_each_finished(RunStore *store, EvaluationFn take, void *user, Err *err);
 
 /* A run in which nothing was simulated is removed: the next one begins with whatever settings. */
