@@ -249,7 +249,7 @@ static void test_seven_objectives_beat_a_latin_hypercube_of_the_same_size(void *
     }
     assert_int_equal(count[KIND_SAMPLED], 120);
     assert_int_equal(count[KIND_INFILL] + count[KIND_OFFSPRING], 120); /* before INFILL_ALONE all variation is probes */
-    assert_true((double)count[KIND_OFFSPRING] <= PROBE_SHARE * 120.0);
+    assert_true((double)count[KIND_OFFSPRING] <= PROBE_SHARE_MAX * 120.0);
     assert_true(seen.error > 0.0 && seen.error < 0.05);
 }
 
@@ -314,7 +314,7 @@ static double agreement_after(size_t n, double sign)
     c.predicted = predicted;
     for (size_t i = 0; i < n; i++) {
         const double f[2] = {(double)(i * 7 % 11), (double)(i * 5 % 11)}, p[2] = {sign * f[0], sign * f[1]};
-        control_judge(&c, &(BatchResults){1, 2, f, p, &ok, &kind, &criterion, &was_predicted}, NULL);
+        control_judge(&c, &(BatchResults){1, 2, f, p, NULL, &ok, &kind, &criterion, &was_predicted}, NULL);
     }
     assert_int_equal(control_agrees(&c), c.agreement > 0.15);
     return c.agreement;
@@ -328,6 +328,31 @@ static void test_predictions_in_the_wrong_order_are_noticed_in_batches_of_one_to
     assert_close(agreement_after(7, -1.0), 0.5, 1e-12);
     assert_true(agreement_after(40, -1.0) < 0.0);
     assert_close(agreement_after(40, 1.0), 1.0, 1e-12);
+}
+
+/* Share of a batch for probes after n of them, each better than predicted by so much of the range in the mean. */
+static double probe_share_after(int n, double better)
+{
+    SurrogateControl c;
+    double F[4 * 2], predicted[4 * 2];
+    const double f[2] = {5.0, -1.0}, p[2] = {5.0 + 20.0 * better, -1.0}, range[2] = {10.0, 1.0};
+    const unsigned char ok = 1, kind = KIND_OFFSPRING, criterion = CRITERION_NONE, was_predicted = 1;
+    control_begin(&c);
+    c.F = F;
+    c.predicted = predicted;
+    for (int i = 0; i < n; i++)
+        control_judge(&c, &(BatchResults){1, 2, f, p, range, &ok, &kind, &criterion, &was_predicted}, NULL);
+    return control_probe_share(&c);
+}
+
+static void test_probes_get_more_of_a_batch_while_they_are_better_than_predicted(void **state)
+{
+    (void)state;
+    assert_close(probe_share_after(0, 0.0), PROBE_SHARE, 1e-12);
+    assert_close(probe_share_after(1, 0.02), PROBE_SHARE + PROBE_WEIGHT * (PROBE_PAY - PROBE_SHARE), 1e-12);
+    assert_close(probe_share_after(1, 0.009), PROBE_SHARE * (1.0 - PROBE_WEIGHT), 1e-12);
+    assert_close(probe_share_after(200, 0.02), PROBE_SHARE_MAX, 1e-12);
+    assert_close(probe_share_after(200, -0.02), PROBE_SHARE_MIN, 1e-12); /* never none: a find would be missed */
 }
 
 static void test_the_same_seed_gives_the_same_bytes_at_any_thread_count(void **state)
@@ -853,6 +878,7 @@ int main(void)
         cmocka_unit_test_setup(test_seven_objectives_beat_a_latin_hypercube_of_the_same_size, fresh),
         cmocka_unit_test(test_whoever_gains_more_has_the_greater_share_of_a_batch),
         cmocka_unit_test(test_predictions_in_the_wrong_order_are_noticed_in_batches_of_one_too),
+        cmocka_unit_test(test_probes_get_more_of_a_batch_while_they_are_better_than_predicted),
         cmocka_unit_test(test_variation_gets_the_share_of_a_batch_that_infill_loses_to_failures),
         cmocka_unit_test(test_the_criterion_that_gains_more_has_the_greater_share),
         cmocka_unit_test_setup(test_the_same_seed_gives_the_same_bytes_at_any_thread_count, fresh),

@@ -64,6 +64,8 @@ static const Recipe RECIPES[] = {
     {{"traps3", "deceptive, three objectives", 12, 3, 0, 0}, TRAPS, CONCAVE, FAIL_NEVER, 0, 0, 0, 0},
     {{"combs3", "Rastrigin, steep, eight waves, aside", 14, 3, 0, 1}, RASTRIGIN, LINEAR, FAIL_NEVER, 8, 1.5, 0, 0},
     {{"traps5", "deceptive, five objectives, aside", 10, 5, 0, 1}, TRAPS, LINEAR, FAIL_NEVER, 0, 0, 0, 0},
+    {{"traps4", "deceptive, four objectives, by name", 9, 4, 0, 2}, TRAPS, CONVEX, FAIL_NEVER, 0, 0, 0, 0},
+    {{"traps6", "deceptive, six objectives, by name", 12, 6, 0, 2}, TRAPS, CONCAVE, FAIL_NEVER, 0, 0, 0, 0},
 };
 enum { N_RECIPES = sizeof RECIPES / sizeof *RECIPES };
 

@@ -1,6 +1,7 @@
 /* bench/search/families.h -- problems to develop the search on, of other families than those in the program: shifted,
  * rotated, multimodal, degenerate, disconnected, constrained, failing, of mixed scales; 2 to 10 objectives, 6 to 40
- * variables in the unit cube. A third of them is kept aside: looked at when a development is over.
+ * variables in the unit cube. A third of them is kept aside: looked at when a development is over. Two
+ * more of the deceptive kind are in no table: they were written to develop on where only one kept aside failed.
  *
  * Every objective is built on two kinds of parts, with constants drawn once per problem from a keyed stream:
  *   position   where on the front
@@ -19,7 +20,7 @@ enum { FAMILY_VAR_MAX = 40, FAMILY_OBJ_MAX = 10, FAMILY_CON_MAX = 2 };
 typedef struct {
     const char *name, *what;
     size_t n_var, n_obj, n_con;
-    int is_aside;
+    int is_aside; /* 2: in neither table, only where it is named (--problem) */
 } Family;
 
 size_t family_count(void);

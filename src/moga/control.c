@@ -9,6 +9,7 @@
 void control_begin(SurrogateControl *c)
 {
     *c = (SurrogateControl){.agreement = 1.0,
+                            .probe_share = PROBE_SHARE,
                             .generators = {{1.0 - VARIATION_CREDIT_FIRST, VARIATION_CREDIT_FIRST},
                                            {1.0 - VARIATION_CHANCE_FIRST, VARIATION_CHANCE_FIRST}},
                             .criteria = {{0.5, 0.5}, {0.5, 0.5}}};
@@ -18,6 +19,7 @@ void control_pack(SurrogateControl *c, Pack *p, size_t n_obj)
 {
     pack_numbers(p, &c->agreement, 1, -1.0, 1.0);
     pack_numbers(p, &c->failure_rate, 1, 0.0, 1.0);
+    pack_numbers(p, &c->probe_share, 1, 0.0, fmax(PROBE_SHARE, PROBE_PAY));
     for (int i = 0; i < 2; i++) {
         Credit *credit = i == 0 ? &c->generators : &c->criteria;
         pack_numbers(p, credit->gain, 2, 0.0, 1.0);
@@ -78,6 +80,11 @@ BatchShares control_batch_shares(const SurrogateControl *c, size_t size, size_t 
                          fmin(fmax(second_share(&c->criteria, CRITERION_POWER, 1.0), one), 1.0 - one)};
 }
 
+double control_probe_share(const SurrogateControl *c)
+{
+    return fmin(fmax(c->probe_share, PROBE_SHARE_MIN), PROBE_SHARE_MAX);
+}
+
 /* -- results of a batch -------------------------------------------------------------------------------------------- */
 
 /* gain[measure][alternative] of number[alternative] results: shares, in the mean over the measures. Nothing is learnt
@@ -123,6 +130,18 @@ static void learn_credits(SurrogateControl *c, const BatchResults *r, Infill *co
     learn(&c->criteria, criterion_gain, by_criterion);
 }
 
+static void learn_probes(SurrogateControl *c, const BatchResults *r)
+{
+    for (size_t i = 0; i < r->n; i++) {
+        double better = 0.0;
+        if (r->kind[i] != KIND_OFFSPRING || r->criterion[i] != CRITERION_NONE || !r->was_predicted[i] || !r->ok[i])
+            continue;
+        for (size_t k = 0; k < r->n_obj; k++)
+            better += (r->predicted[i * r->n_obj + k] - r->F[i * r->n_obj + k]) / r->range[k] / (double)r->n_obj;
+        c->probe_share += PROBE_WEIGHT * ((better > PROBE_FIND ? PROBE_PAY : 0.0) - c->probe_share);
+    }
+}
+
 /* Objective k of the results that are kept: pairs in the same order minus pairs in the opposite one, as a share of all
  * pairs. Kendall, Biometrika 30 (1938) 81-93. */
 static double kendall_tau(const SurrogateControl *c, size_t n_obj, size_t k)
@@ -155,6 +174,7 @@ void control_judge(SurrogateControl *c, const BatchResults *r, Infill *const gai
 {
     double tau = 0.0;
     learn_credits(c, r, gain);
+    learn_probes(c, r);
     keep_results(c, r);
     if (c->n_kept < AGREEMENT_RESULTS_MIN)
         return;

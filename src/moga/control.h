@@ -8,6 +8,9 @@
  *                   (c_i / n_i)^p / sum_j (c_j / n_j)^p         p = GENERATOR_POWER, CRITERION_POWER
  *                 The gain of a result is what it adds to the front that the generation began with, by both criteria
  *                 (infill_gain). Probability matching with a power: Thierens, GECCO 2005, 1539-1546
+ *   probes        a find is a probe whose objectives, in their ranges, are better than predicted by PROBE_FIND in the
+ *                 mean. The share of a batch is a running mean of PROBE_PAY for a find and 0 for any other probe: where
+ *                 the surrogate is right along every variable there is little to probe
  *   failure rate  running mean of the share of infill designs that failed; variation gets that part at least
  *   cost          SURROGATE_AUTO: the surrogate is disabled when its wall time per design exceeds that of COST_MAX
  *                 simulations. Decided once, after COST_SAMPLE infill designs; part of the state, so that a resumed
@@ -46,6 +49,7 @@ typedef struct {
 
 typedef struct {
     double agreement, failure_rate;
+    double probe_share;          /* of a batch, before it is kept within its bounds */
     Credit generators, criteria; /* by Generator, by InfillKind */
     size_t cost;                 /* CostState */
     SearchTimes times;           /* not part of the state */
@@ -57,6 +61,7 @@ typedef struct {
 typedef struct {
     size_t n, n_obj;
     const double *F, *predicted;                                /* (n, n_obj) */
+    const double *range;                                        /* (n_obj) of the objectives in the archive */
     const unsigned char *ok, *kind, *criterion, *was_predicted; /* (n) EvaluationKind; InfillKind of infill designs */
 } BatchResults;
 
@@ -75,6 +80,8 @@ int control_agrees(const SurrogateControl *c);                   /* predictions 
 
 /* n evaluations so far of n_var variables: before INFILL_ALONE n_var of them variation gets the failure rate alone. */
 BatchShares control_batch_shares(const SurrogateControl *c, size_t size, size_t n, size_t n_var);
+
+double control_probe_share(const SurrogateControl *c);
 
 /* gain[] has measured the front that the generation began with. */
 void control_judge(SurrogateControl *c, const BatchResults *r, Infill *const gain[INFILL_KINDS]);

@@ -106,6 +106,7 @@ static void judge_batch(Search *s)
                                   .n_obj = s->problem->n_obj,
                                   .F = b->F,
                                   .predicted = b->predicted,
+                                  .range = surrogate_ranges(s->surrogate),
                                   .ok = b->ok,
                                   .kind = b->kind,
                                   .criterion = b->criterion,

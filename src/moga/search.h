@@ -9,7 +9,8 @@
  *       evolved     INNER_GENERATIONS generations of variation and selection on the surrogate; a share of the pairs, as
  *                   many as objectives have waves, is mutated over the whole box
  *       descended   descents on the surrogate along reference vectors, from the best design of each
- *       probes      designs of the front with one variable elsewhere, where objectives have waves
+ *       probes      designs of the front with one variable elsewhere, where objectives have waves or the search is late
+ *                   and the surrogate right about all that it has seen
  *       variation   children of the population; the only offspring where the surrogate is not used
  *   4 Infill selection of a batch (infill_select.c)
  *       trusted     predictions whose leave-one-out based error is below trust_error in every objective stand for
@@ -20,8 +21,10 @@
  *       validation  some trusted predictions, first those that have been trusted for long
  *       variation   from INFILL_ALONE evaluations per variable on a few children of variation with the greatest
  *                   predicted gain, and most of the batch while these gain more
- *       probes      PROBE_SHARE of the batch times the share of objectives with waves: what a surrogate knows of one
- *                   valley says nothing of the others, and what is gained at once is no measure of it
+ *       probes      times the share of objectives with waves, or whole after INFILL_ALONE evaluations per variable where
+ *                   every objective has an R2 above PROBE_R2: a share that grows while probes are better than predicted and
+ *                   falls where they are not (control.h). What a surrogate knows of one valley says nothing of the others,
+ *                   and what is gained at once is no measure of it
  *       limits      a gain counts with the probability that the design succeeds and keeps every limit; descents turn
  *                   back where a limit is violated or a failure predicted; variation gets the share that fails
  *   5 Evaluation (batch.c), with replicates where evaluations are noisy (replication.c); with FIDELITY_REPLICATES by the

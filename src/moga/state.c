@@ -135,7 +135,7 @@ Status state_grow_rows(Search *s, Err *err)
 
 /* -- as bytes ------------------------------------------------------------------------------------------------------ */
 
-enum { STATE_VERSION = 11 };
+enum { STATE_VERSION = 12 };
 
 /* Designs that are asked for and not evaluated yet. */
 static void pack_pending(Search *s, Pack *p)
@@ -158,7 +158,7 @@ static void pack_pending(Search *s, Pack *p)
         pack_size(p, &asked.repeat, UINT32_MAX);
         pack_size(p, &kind, KIND_COUNT - 1);
         asked.kind = (EvaluationKind)kind;
-        p->faulty = p->faulty || !(note[NOTE_CRITERION] >= 0.0 && note[NOTE_CRITERION] < INFILL_KINDS);
+        p->faulty = p->faulty || !(note[NOTE_CRITERION] >= 0.0 && note[NOTE_CRITERION] <= CRITERION_NONE);
         if (p->reading && !p->faulty)
             p->faulty = queue_ask(s->queue, &asked, &(Err){0}) != STATUS_OK;
     }

@@ -236,6 +236,19 @@ double surrogate_waves(const Surrogate *s)
     return n / (double)s->problem->n_obj;
 }
 
+double surrogate_explained(const Surrogate *s)
+{
+    double least = s->fitted ? 1.0 : 0.0;
+    for (size_t k = 0; s->fitted && k < s->problem->n_obj; k++)
+        least = fmin(least, rbf_explained(s->rbf, k));
+    return least;
+}
+
+const double *surrogate_ranges(const Surrogate *s)
+{
+    return s->range;
+}
+
 size_t surrogate_left_out(const Surrogate *s)
 {
     return s->fitted ? rbf_left_out(s->rbf) : 0;
