@@ -86,6 +86,14 @@ static void expect_said(const char *words)
     free(said);
 }
 
+static void expect_not_said(const char *words)
+{
+    char *said = read_in_place("said");
+    if (strstr(said, words))
+        fail_msg("said: %s", said);
+    free(said);
+}
+
 static void assert_same_files(const char *a, const char *b)
 {
     static const char *const FILES[] = {"front.csv", "evaluations.csv"};
@@ -272,6 +280,7 @@ static void kill_and_resume(const char *study, int rank, int code)
     assert_true(lines_in("killed/evaluations.csv") >= before);
     if (rank > 0)
         expect_said("process rank 2");
+    expect_not_said("stopped on request");
     expect_code(launch(3, "optimize @/killed"), 0);
     free(output_of("optimize @/killed.ini --out @/whole --threads 3"));
     assert_same_files("whole", "killed");

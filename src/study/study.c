@@ -2,12 +2,14 @@
 
 #include <math.h>
 #include <pthread.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include <omp.h>
 
 #include "base/clock.h"
+#include "evaluate/cluster.h"
 #include "settings/settings.h"
 #include "simulator/adapter.h"
 #include "simulator/estimate.h"
@@ -32,7 +34,7 @@ typedef struct {
     size_t generation;         /* that is under way */
     size_t first_generation;   /* of this session */
     long left_generation;      /* whose state was damaged, so that the one before is resumed; 0: none */
-    int asked, late;           /* why it stopped */
+    int asked, late;           /* why it stopped: the signal, the time */
     size_t n_improvement;      /* evaluations at which the improvement of the front is logged next */
     long failures;             /* simulations in a row that failed, up to now */
     int failing;               /* search.failures_max of them */
@@ -65,9 +67,10 @@ static int may_go_on(void *user)
 {
     Study *study = user;
     const StudyOptions *o = study->options;
-    if (o->stop && o->stop(o->user)) {
+    const int asked = o->stop ? o->stop(o->user) : 0;
+    if (asked) {
 #pragma omp atomic write
-        study->asked = 1;
+        study->asked = asked;
         return 0;
     }
     int failing;
@@ -403,6 +406,16 @@ static Status run_search(Study *study, Err *err)
     return note_stop(study, status, err);
 }
 
+static const char *why_stopped(const Study *study)
+{
+    size_t n_ranks;
+    if (study->lost[0])
+        return study->lost;
+    if (study->summary->stopped == STOP_ASKED && study->asked == SIGTERM && cluster_executor(&n_ranks))
+        return "stopped by SIGTERM (mpirun: a rank has died, or it was asked to end)";
+    return stop_reason_words(study->summary->stopped);
+}
+
 static Status finish(Study *study, Err *err)
 {
     StudySummary *sum = study->summary;
@@ -412,7 +425,7 @@ static Status finish(Study *study, Err *err)
         sum->stopped = STOP_TIME;
     if (!is_final && study->failing)
         sum->stopped = STOP_FAILURES;
-    const char *why = study->lost[0] ? study->lost : stop_reason_words(sum->stopped);
+    const char *why = why_stopped(study);
     sum->seconds = study->seconds_before + session;
     TRY(study_log_end(study->store, sum, adapter_threads(study->adapter), is_final, err));
     RunStore *store = study->store;

@@ -43,7 +43,7 @@ typedef struct {
     RunStore *store;         /* the run to be resumed, passes over to the study; NULL: run.out is opened */
     int fresh;               /* never resume a run: a number is added to run.out where it holds one */
     int force;               /* changed limits are taken over */
-    int (*stop)(void *user); /* asked from any thread, often; NULL: never */
+    int (*stop)(void *user); /* a signal's number, 0: goes on; asked from any thread, often; NULL: never */
     void (*started)(const char *folder, size_t n_simulated, void *user);
     void (*record)(const Scenario *w, void *user); /* for every record, then */
     void (*progress)(const StudyProgress *p, void *user);
