@@ -31,8 +31,8 @@ ablation: setup-figures ## what each tuned constant of the search earns: every o
 	@scripts/ablation $(ARGS)
 
 # SIZES chooses some; PLACE=FOLDER has the room for a run of 10^6 (2.5 GB).
-scale-cost: $(PROGRAM) ## docs/scale.md: what a study costs beside its simulations, from 10^3 to 10^6 of them
-	@scripts/scale-cost --program ./$(PROGRAM) --out docs/scale.md $(if $(SIZES),--sizes $(SIZES)) $(if $(PLACE),--place $(PLACE))
+scale-cost: $(PROGRAM) ## docs/scale.md: what a study costs beside its simulations, from 10^3 to 10^6 of them; PART=plain or surrogate
+	@scripts/scale-cost --program ./$(PROGRAM) --out docs/scale.md $(if $(PART),--part $(PART)) $(if $(SIZES),--sizes $(SIZES)) $(if $(PLACE),--place $(PLACE))
 
 pictures: $(PROGRAM) ## docs/pictures, those of a study: RUN=results/kobe RECORDS="elcentro.csv sylmar.csv"
 	@./$(PROGRAM) plot $(RUN) $(RECORDS:%=--record %) --out $(BUILD)/pictures

@@ -21,8 +21,9 @@ $(BUILD)/imtet-bench-ranks: $(BUILD)/bench/ranks.o $(MPI_OBJ) $(LIB)
 	@echo '  LD  $@'
 	$(Q)$(MPICC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
 
-scale-ranks: $(MPI_PROGRAM) $(BUILD)/imtet-bench-ranks ## docs/cluster-scale.md: how far ranks scale, measured and modelled
-	@scripts/scale-ranks
+# Measurements of one revision are kept: what was interrupted, or ended by LIMIT, goes on.
+scale-ranks: $(MPI_PROGRAM) $(BUILD)/imtet-bench-ranks ## docs/cluster-scale.md: how far ranks scale, measured and modelled; LIMIT=500 [s], then again
+	@scripts/scale-ranks --kept $(BUILD)/scale-ranks-$$(git rev-parse --short HEAD).jsonl $(if $(LIMIT),--seconds $(LIMIT))
 
 scale: scale-cost scale-ranks ## both pages on scale: docs/scale.md, docs/cluster-scale.md
 
