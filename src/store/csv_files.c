@@ -7,7 +7,8 @@
 
 #include "base/clock.h"
 #include "store/export.h"
-#include "store/rows.h"
+#include "store/output.h"
+#include "store/run_read.h"
 
 static void put_header(FILE *f, const void *schema)
 {
@@ -87,59 +88,78 @@ Status csv_files_resume(CsvFiles *c, const Folder *folder, const Schema *schema,
     return append_open(&c->evaluations, folder, "evaluations.csv", err);
 }
 
-static int has_header(RowLines *l, const Schema *schema)
+/* Opened behind its header, if it has that. */
+static RowLines open_lines(const CsvFiles *c, const char *name, RunHeader *header)
 {
-    char *header = NULL;
+    char path[PATH_MAX], *wanted = NULL;
     size_t length;
-    FILE *f = open_memstream(&header, &length);
+    folder_path(c->folder, name, path);
+    RowLines l = {.f = fopen(path, "re")};
+    FILE *f = open_memstream(&wanted, &length);
     if (f)
-        export_evaluations_header(f, schema);
-    const int has = f && fclose(f) == 0 && getline(&l->line, &l->room, l->f) > 0 && strcmp(l->line, header) == 0;
-    free(header);
-    return has;
+        header(f, c->schema);
+    l.are_same = f && fclose(f) == 0 && l.f && getline(&l.line, &l.room, l.f) > 0 && strcmp(l.line, wanted) == 0;
+    free(wanted);
+    return l;
 }
 
-Status csv_files_pass(CsvFiles *c, CsvPassing *p, Err *err)
+/* Whether all was the same, to its end. */
+static int close_lines(RowLines *l)
 {
-    char path[PATH_MAX];
-    *p = (CsvPassing){0};
-    folder_path(c->folder, "front.csv", path);
-    TRY(output_open_inside(&p->front, path, err));
-    export_front_header(p->front.stream, c->schema);
-    p->lines.f = fopen(c->evaluations.path, "re");
-    p->lines.are_same = p->lines.f && has_header(&p->lines, c->schema);
-    return STATUS_OK;
+    const int are_same = l->are_same && getc(l->f) == EOF;
+    if (l->f)
+        fclose(l->f);
+    free(l->line);
+    return are_same;
 }
 
-void csv_files_pass_design(const CsvFiles *c, const CsvPassing *p, const Evaluation *e)
+void csv_files_pass(const CsvFiles *c, CsvPassing *p)
 {
-    if (c->run->place[e->id - 1].on_front)
-        export_design_as(p->front.stream, c->schema, e, e->f);
+    *p = (CsvPassing){open_lines(c, "evaluations.csv", export_evaluations_header),
+                      open_lines(c, "front.csv", export_front_header)};
 }
 
-static Status reprint_evaluations(CsvFiles *c, Database *db, Err *err)
+/* Without replicates a line of front.csv is the number and the cells of that of evaluations.csv. */
+void csv_files_pass_design(const CsvFiles *c, CsvPassing *p, long id)
+{
+    RowLines *l = &p->front;
+    const size_t n = p->lines.n_cells;
+    char *at;
+    if (!c->run->place[id - 1].on_front || !l->are_same)
+        return;
+    l->are_same = p->lines.are_same && getline(&l->line, &l->room, l->f) > 0 && strtol(l->line, &at, 10) == id &&
+                  strncmp(at, p->lines.cells, n) == 0 && strcmp(at + n, "\n") == 0;
+}
+
+static Status reprint(const CsvFiles *c, Database *db, const char *name, Err *err)
 {
     const Schema *s = c->schema;
+    char path[PATH_MAX];
     Output o;
     size_t printed;
-    append_free(&c->evaluations);
-    TRY(output_open_inside(&o, c->evaluations.path, err));
+    folder_path(c->folder, name, path);
+    TRY(output_open_inside(&o, path, err));
+    if (strcmp(name, "front.csv") == 0)
+        return output_end(&o, export_front_of(o.stream, c->folder->path, err), err);
     export_evaluations_header(o.stream, s);
-    const Status status =
-        rows_print(db, o.stream, (RowShape){s->n_var, s->n_obj, s->n_extra}, 1, (long)c->n_appended, 0, &printed, err);
-    TRY(output_end(&o, status, err));
-    return append_open(&c->evaluations, c->folder, "evaluations.csv", err);
+    return output_end(
+        &o,
+        rows_print(db, o.stream, (RowShape){s->n_var, s->n_obj, s->n_extra}, 1, (long)c->n_appended, 0, &printed, err),
+        err);
 }
 
 Status csv_files_passed(CsvFiles *c, CsvPassing *p, Database *db, Status passed, Err *err)
 {
-    const int are_same = p->lines.are_same && getc(p->lines.f) == EOF;
-    if (p->lines.f)
-        fclose(p->lines.f);
-    free(p->lines.line);
-    TRY(output_end(&p->front, passed, err));
+    const int are_same = close_lines(&p->lines), front_is_same = close_lines(&p->front);
+    TRY(passed);
+    if (!front_is_same)
+        TRY(reprint(c, db, "front.csv", err));
     know_front(c);
-    return are_same ? STATUS_OK : reprint_evaluations(c, db, err);
+    if (are_same)
+        return STATUS_OK;
+    append_free(&c->evaluations);
+    TRY(reprint(c, db, "evaluations.csv", err));
+    return append_open(&c->evaluations, c->folder, "evaluations.csv", err);
 }
 
 static Status read_kept(CsvFiles *c, Database *db, size_t n, Err *err)

@@ -16,7 +16,6 @@
 #include "moga/search.h"
 #include "store/database.h"
 #include "store/folder.h"
-#include "store/output.h"
 #include "store/rows.h"
 #include "store/run.h"
 
@@ -38,17 +37,16 @@ enum { FRONT_ALWAYS = 4000 };
 Status csv_files_begin(CsvFiles *c, const Folder *folder, const Schema *schema, Err *err);
 
 /* Both are exports, whatever was done to them meanwhile: regenerated if all of the run is there. If its finished evaluations
- * are not (n_ahead), they pass by, before anything else: evaluations.csv is compared with them line by line and
- * regenerated if it differs, front.csv in any case. */
+ * are not (n_ahead), they pass by, before anything else, are compared with both files line by line, and what differs is
+ * regenerated. */
 Status csv_files_resume(CsvFiles *c, const Folder *folder, const Schema *schema, const Run *run, Err *err);
 
 typedef struct {
-    RowLines lines;
-    Output front;
+    RowLines lines, front; /* of evaluations.csv and of front.csv */
 } CsvPassing;
 
-Status csv_files_pass(CsvFiles *c, CsvPassing *p, Err *err);
-void csv_files_pass_design(const CsvFiles *c, const CsvPassing *p, const Evaluation *e); /* of a finished generation */
+void csv_files_pass(const CsvFiles *c, CsvPassing *p);
+void csv_files_pass_design(const CsvFiles *c, CsvPassing *p, long id); /* of a finished generation */
 /* passed: whether all of them did; else nothing is changed. */
 Status csv_files_passed(CsvFiles *c, CsvPassing *p, Database *db, Status passed, Err *err);
 

@@ -291,33 +291,41 @@ static RowText take_text(sqlite3_stmt *row, Evaluation *e)
                      .extra = column_text(row, 10)};
 }
 
-/* The list as n cells of a line, each behind a comma; where they end, NULL: they are others. */
-static const char *skip_cells(const char *cells, const char *list, size_t n)
+/* Behind a comma and the word; NULL: something else is there. */
+static const char *skip_cell(const char *at, const char *word, size_t length)
 {
-    const char *at = list[0] ? list + 1 : list;
-    for (size_t i = 0; i < n && cells; i++) {
-        if (*cells++ != ',')
-            return NULL;
-        if (*at == 'n')
-            at += strlen("null");
-        for (; *at && *at != ',' && *at != ']'; at++)
-            if (*cells++ != *at)
-                return NULL;
-        at += *at == ',';
+    return at && *at == ',' && strncmp(at + 1, word, length) == 0 ? at + 1 + length : NULL;
+}
+
+/* Behind the n cells of the list. */
+static const char *skip_cells(const char *at, const char *list, size_t n)
+{
+    const size_t length = strlen(list);
+    if (length > 2 && !strchr(list, 'n')) /* all of them are known: the same text */
+        return skip_cell(at, list + 1, length - 2);
+    for (size_t i = 0; i < n; i++) {
+        list += *list == '[' || *list == ',';
+        const size_t digits = *list == 'n' ? 0 : strcspn(list, ",]");
+        at = skip_cell(at, list, digits);
+        list += *list == 'n' ? strlen("null") : digits;
     }
-    return cells;
+    return at;
 }
 
 static int is_next_line(RowLines *l, const EvaluationTable *shape, const Evaluation *e, const RowText *t)
 {
-    char head[REASON_MAX + 128];
-    const int n = snprintf(head, sizeof head, "%ld,%ld,%s,%s,%s", e->id, e->generation, kind_word(e->kind),
-                           outcome_word(e->outcome), e->reason);
-    if (getline(&l->line, &l->room, l->f) <= 0 || strncmp(l->line, head, (size_t)n) != 0)
+    const char *const words[] = {kind_word(e->kind), outcome_word(e->outcome), e->reason};
+    char *end;
+    if (getline(&l->line, &l->room, l->f) <= 0 || strtol(l->line, &end, 10) != e->id || *end != ',' ||
+        strtol(end + 1, &end, 10) != e->generation)
         return 0;
-    const char *at = skip_cells(l->line + n, t->x, shape->n_var);
-    at = at ? skip_cells(at, t->f, shape->n_obj) : NULL;
-    at = at ? skip_cells(at, t->extra, shape->n_extra) : NULL;
+    const char *at = end;
+    for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
+        at = skip_cell(at, words[i], strlen(words[i]));
+    l->cells = at;
+    at = skip_cells(skip_cells(at, t->x, shape->n_var), t->f, shape->n_obj);
+    l->n_cells = at ? (size_t)(at - l->cells) : 0;
+    at = skip_cells(at, t->extra, shape->n_extra);
     return at && strcmp(at, "\n") == 0;
 }
 

@@ -33,7 +33,9 @@ typedef struct {
     FILE *f;
     char *line; /* getline's, of its `room` */
     size_t room;
-    int are_same; /* all lines so far are those of the rows */
+    int are_same;      /* all lines so far are those of the rows */
+    const char *cells; /* of the last line, if so: ",x,...,f,..." of n_cells characters */
+    size_t n_cells;
 } RowLines;
 
 /* The same one after the other, in the one row of the table `room`, and compared with lines; a row that is not what was

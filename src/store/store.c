@@ -283,7 +283,7 @@ static Status take_finished(const Evaluation *e, void *user, Err *err)
     if (e->id != (long)++each->n || e->kind == KIND_UNFINISHED)
         return fail(err, STATUS_IO, "%s: is damaged: evaluation %zu is missing", database_path(each->store->db),
                     each->n);
-    csv_files_pass_design(&each->store->files, &each->files, e);
+    csv_files_pass_design(&each->store->files, &each->files, e->id);
     return each->take(e, each->user, err);
 }
 
@@ -292,7 +292,7 @@ Status store_each_finished(RunStore *store, EvaluationFn take, void *user, Err *
     const size_t n = store->run.n_ahead;
     EvaluationTable room = store->waiting;
     Each each = {.store = store, .take = take, .user = user};
-    TRY(csv_files_pass(&store->files, &each.files, err));
+    csv_files_pass(&store->files, &each.files);
     room = evaluation_table(room.n_var, room.n_obj, room.n_extra);
     Status status = rows_each(store->db, &room, 1, (long)n, &each.files.lines, take_finished, &each, err);
     if (status == STATUS_OK && each.n < n)
