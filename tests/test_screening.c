@@ -7,6 +7,7 @@
 #include "base/hash.h"
 #include "check.h"
 #include "evaluate/threads.h"
+#include "moga/constants.h"
 #include "moga/dominance.h"
 #include "moga/search.h"
 #include "searches.h"
@@ -14,13 +15,17 @@
 
 enum { VAR = 5, OBJ = 3, PARTS = 4, CHEAP = 1, EVALS = 40, ROWS_MAX = 400 };
 
-/* Four replicates of a function, of which the first is the cheap level. */
+static const double BIAS = 10.0;
+
+/* Four replicates of a function, of which the first is the cheap level; or a cheap level apart, by whose bias any answer of
+ * it dominates any whole one, and the function. */
 typedef struct {
     Problem problem;
     double lower[VAR], upper[VAR];
     double noise;     /* of a replicate */
     int is_unrelated; /* the first replicate is noise alone and not in the mean */
-    size_t n_tasks;
+    int is_apart;
+    size_t n_tasks, n_cheap_tasks;
     EvaluationTable done; /* in the order of the numbers */
 } World;
 
@@ -44,6 +49,7 @@ static Part part_of(const World *w, const double x[], size_t part)
         for (size_t d = 0; d < VAR; d++) /* distance from a corner of the first objectives */
             p.f[k] += pow(x[d] - (d == k ? 1.0 : 0.2 * (double)k), 2.0);
         p.f[k] = (w->is_unrelated && part == 0 ? 0.0 : p.f[k]) + w->noise * noise_of(x, part, k);
+        p.f[k] = w->is_apart && part == 0 ? 0.8 * p.f[k] - BIAS : p.f[k];
     }
     return p;
 }
@@ -55,6 +61,10 @@ static Status simulate(void *self, size_t worker, const Task *task, Err *err)
     (void)err;
 #pragma omp atomic
     w->n_tasks++;
+    if (task->part == 0) {
+#pragma omp atomic
+        w->n_cheap_tasks++;
+    }
     *(Part *)task->result = part_of(w, task->x, task->part);
     return STATUS_OK;
 }
@@ -72,7 +82,7 @@ static void mean_of(const World *w, size_t first, size_t n, const Part parts[], 
 static void combine(const void *self, const void *parts, Evaluation *e)
 {
     const World *w = self;
-    mean_of(w, w->is_unrelated ? 1 : 0, PARTS, parts, e->f);
+    mean_of(w, w->is_unrelated || w->is_apart ? 1 : 0, w->is_apart ? 2 : PARTS, parts, e->f);
 }
 
 static void combine_cheap(const void *self, const void *parts, Evaluation *e)
@@ -106,6 +116,16 @@ static void open_world(World *w, size_t n_workers)
                            .n_workers = n_workers,
                            .executor = executor_for(n_workers),
                            .observer = {.done = note_done, .user = w}};
+}
+
+/* A tenth of a whole evaluation. */
+static void open_apart(World *w, size_t n_workers)
+{
+    open_world(w, n_workers);
+    w->is_apart = 1;
+    w->noise = 0.0;
+    w->problem.n_parts = 2;
+    w->problem.cheap_cost = 0.1;
 }
 
 static SearchConfig config_of(void)
@@ -301,6 +321,77 @@ static void test_levels_that_do_not_agree_turn_it_off(void **state)
     forget(&other_world, &other);
 }
 
+/* observe has looked at every view: of the cheap level all are below zero, of the whole none is. */
+static void test_a_cheap_level_of_great_bias_is_never_on_the_front_and_counts_as_what_it_costs(void **state)
+{
+    (void)state;
+    memset(&other, 0, sizeof other);
+    open_apart(&other_world, 4);
+    run(&other_world, &other, NULL);
+    const size_t n_whole = other.n - other.n_screened, spent = 100 * other.n_screened + 1000 * n_whole;
+    assert_int_equal(other_world.n_cheap_tasks, other.n_screened);
+    assert_int_equal(other_world.n_tasks, other.n);
+    assert_int_equal(other.n_evaluations, spent / 1000);
+    assert_true(spent <= 1000 * EVALS && spent + 1100 > 1000 * EVALS);
+    assert_true(other.n_screened >= 3 * (other.n_finished - APART_PAIRS) && other.n_finished > APART_PAIRS + 4);
+    for (size_t i = 0; i < other.n; i++)
+        assert_true((other.Y[i * OBJ] < 0.0) == (other.kind[i] == KIND_SCREENED));
+    forget(&other_world, &other);
+}
+
+static void test_a_search_with_a_level_apart_is_resumed_to_the_same_bytes(void **state)
+{
+    (void)state;
+    Moments whole;
+    memset(&other, 0, sizeof other);
+    open_apart(&other_world, 1);
+    run(&other_world, &other, NULL);
+    whole = other.moments;
+    const size_t n = other.n, k = whole.n / 2;
+    double *Y = malloc(n * OBJ * sizeof *Y);
+    Evaluation *rows = other_world.done.row;
+    memcpy(Y, other.Y, n * OBJ * sizeof *Y);
+    for (size_t i = 0; i < n; i++) {
+        rows[i].kind = (EvaluationKind)other.kind[i];
+        rows[i].generation = (long)other.generation[i];
+    }
+    for (size_t at = 0; at <= k; at += k) {
+        World again;
+        const SearchStart start = {.n = at > 0 ? whole.rows[at] : 0,
+                                   .n_later = at > 0 ? 3 : APART_PAIRS + 3, /* or in the midst of the first pairs */
+                                   .row = rows,
+                                   .state = at > 0 ? whole.state[at] : NULL,
+                                   .n_state = at > 0 ? whole.n_state[at] : 0};
+        memset(&other, 0, sizeof other);
+        open_apart(&again, 1);
+        run(&again, &other, &start);
+        assert_int_equal(other.n, n);
+        assert_memory_equal(other.Y, Y, n * OBJ * sizeof *Y);
+        assert_int_equal(again.n_tasks, n - start.n - start.n_later);
+        forget(&again, &other);
+    }
+    free(Y);
+    moments_free(&whole);
+    evaluation_table_free(&other_world.done);
+}
+
+/* As many whole evaluations as without it, but for what the comparison costs: 16 tenths. */
+static void test_a_level_apart_that_ranks_badly_costs_the_comparison_alone(void **state)
+{
+    (void)state;
+    memset(&other, 0, sizeof other);
+    open_apart(&other_world, 1);
+    other_world.is_unrelated = 1;
+    other_world.noise = 1.0;
+    run(&other_world, &other, NULL);
+    assert_int_equal(other.n_screened, APART_PAIRS);
+    assert_int_equal(other.n - other.n_screened, EVALS - (APART_PAIRS + 9) / 10);
+    assert_int_equal(other_world.n_tasks, other.n);
+    for (size_t i = 0; i < other.n; i++)
+        assert_true(other.kind[i] != KIND_SCREENED || (i < APART_PAIRS && !other.on_front[i]));
+    forget(&other_world, &other);
+}
+
 static void test_an_agreement_that_is_not_known_is_said_to_be_so(void **state)
 {
     (void)state;
@@ -341,6 +432,9 @@ int main(void)
         cmocka_unit_test(test_resumed_anywhere_it_makes_the_same_bytes),
         cmocka_unit_test(test_a_search_that_ends_by_its_generations_finishes_designs_too),
         cmocka_unit_test(test_levels_that_do_not_agree_turn_it_off),
+        cmocka_unit_test(test_a_cheap_level_of_great_bias_is_never_on_the_front_and_counts_as_what_it_costs),
+        cmocka_unit_test(test_a_search_with_a_level_apart_is_resumed_to_the_same_bytes),
+        cmocka_unit_test(test_a_level_apart_that_ranks_badly_costs_the_comparison_alone),
         cmocka_unit_test(test_an_agreement_that_is_not_known_is_said_to_be_so),
         cmocka_unit_test(test_without_a_cheap_level_nothing_is_screened),
     };

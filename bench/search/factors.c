@@ -15,8 +15,10 @@
 #include "moga/igd.h"
 #include "store/output.h"
 
-static const double FACTOR_MAX = 20.0;
+static const double FACTOR_MAX = 20.0, LEVELS_FACTOR_MAX = 4.0;
 enum { BUDGETS_MAX = 4, SEEDS_MAX = 16, METHODS_MAX = 8, PROBLEMS_MAX = 32, COSTS = 4, TIMES = 40 };
+enum { WITH_LEVELS = METHODS_MAX };                          /* behind the methods: this program with a cheap level */
+enum { OURS, OTHER };                                        /* the curves that a factor is made of */
 static const double COST_S[COSTS] = {1e-3, 1e-2, 1.0, 60.0}; /* [s] of one simulation */
 
 typedef enum { IGD, VOLUME, SCORES } Score;
@@ -29,7 +31,8 @@ typedef struct {
 
 typedef struct {
     const FactorPlan *plan;
-    size_t methods[METHODS_MAX], n_methods; /* the first two are METHOD_IMTET and METHOD_PLAIN */
+    size_t methods[METHODS_MAX], n_methods; /* the first is compared with the second */
+    double tau[PROBLEMS_MAX];               /* between the levels */
     size_t n_problems;
     const char *name[PROBLEMS_MAX];
     double factor[PROBLEMS_MAX][BUDGETS_MAX][SCORES];             /* medians over the seeds */
@@ -49,6 +52,11 @@ static size_t n_budgets(const FactorPlan *plan)
     return n;
 }
 
+static int has_levels(const FactorPlan *plan)
+{
+    return plan->levels.cost > 0.0;
+}
+
 /* -- courses ------------------------------------------------------------------------------------------------------- */
 
 static Status make_course(const FactorPlan *plan, const Problem *p, size_t which, long seed, size_t n, Course *c,
@@ -57,18 +65,25 @@ static Status make_course(const FactorPlan *plan, const Problem *p, size_t which
     Settings s = *plan->settings;
     s.search.seed = seed;
     TRY(course_create(c, n, p->n_obj, err));
-    return method(which)->run(&s, p, c, err);
+    return which == WITH_LEVELS ? run_levels(&s, p, &plan->levels, c, err) : method(which)->run(&s, p, c, err);
+}
+
+/* Evaluations of a search: of the one that is compared with as many as the largest factor takes. */
+static size_t n_evals(const FactorPlan *plan, size_t which)
+{
+    const long last = plan->budgets[n_budgets(plan) - 1];
+    const double most = has_levels(plan) ? LEVELS_FACTOR_MAX : FACTOR_MAX;
+    return (size_t)(which == (has_levels(plan) ? METHOD_IMTET : METHOD_PLAIN) ? (long)most * last : last);
 }
 
 /* From the folder where it is there. */
 static Status get_course(const FactorPlan *plan, const Problem *p, const Family *a, size_t which, long seed, Course *c,
                          Err *err)
 {
-    const long last = plan->budgets[n_budgets(plan) - 1];
-    const size_t n = (size_t)(which == METHOD_PLAIN ? (long)FACTOR_MAX * last : last);
+    const size_t n = n_evals(plan, which);
     char path[PATH_MAX];
     int found = 0;
-    if (!plan->keep)
+    if (!plan->keep || which == WITH_LEVELS)
         return make_course(plan, p, which, seed, n, c, err);
     snprintf(path, sizeof path, "%s/%s-%s-%zu-%ld.course", plan->keep, a->name, method(which)->name, n, seed);
     TRY(course_load(c, path, n, p->n_obj, &found, err));
@@ -187,9 +202,9 @@ static void take_seed(Tables *t, const Curve curve[], size_t seed, Sample *s)
     for (size_t b = 0; b < n_budgets(t->plan); b++) {
         const size_t n = (size_t)t->plan->budgets[b];
         for (int score = 0; score < SCORES; score++) {
-            const double ours = curve[METHOD_IMTET].score[score][n - 1];
+            const double ours = curve[OURS].score[score][n - 1];
             s->factor[b][score][seed] =
-                score == VOLUME && ours <= 0.0 ? NAN : factor_of(&curve[METHOD_PLAIN], (Score)score, ours, (double)n);
+                score == VOLUME && ours <= 0.0 ? NAN : factor_of(&curve[OTHER], (Score)score, ours, (double)n);
             for (size_t v = 0; v < t->n_methods; v++) {
                 s->ratio[v][b][score][seed] = ours > 0.0 ? curve[v].score[score][n - 1] / ours : NAN;
                 s->cpu_s[v][seed] = curve[v].course.cpu_s[n - 1] / (double)n;
@@ -208,7 +223,7 @@ static Status run_seed(Tables *t, const Problem *p, const Family *a, const Cours
     for (size_t v = 0; status == STATUS_OK && v < t->n_methods; v++)
         status = get_course(t->plan, p, a, t->methods[v], t->plan->first_seed + (long)seed, &curve[v].course, err);
     if (status == STATUS_OK)
-        find_box(&curve[METHOD_IMTET].course, &curve[METHOD_PLAIN].course, lower, upper);
+        find_box(&curve[OURS].course, &curve[OTHER].course, lower, upper);
     for (size_t v = 0; status == STATUS_OK && v < t->n_methods; v++)
         status = score_course(&curve[v], reference, lower, upper, err);
     if (status == STATUS_OK)
@@ -263,6 +278,8 @@ static Status run_problem(Tables *t, size_t which, Err *err)
     Status status = family_open(&p, which, err);
     if (status == STATUS_OK)
         status = reference_make(&p, &reference, err);
+    if (status == STATUS_OK && has_levels(t->plan))
+        status = levels_agreement(&p, &t->plan->levels, &t->tau[t->n_problems], err);
     for (size_t i = 0; status == STATUS_OK && i < n; i++)
         status = run_seed(t, &p, a, &reference, i, s, err);
     if (status == STATUS_OK) {
@@ -382,14 +399,17 @@ static int is_wanted(const FactorPlan *plan, const Family *a)
 static void choose_methods(Tables *t)
 {
     const FactorPlan *plan = t->plan;
+    if (has_levels(plan))
+        t->methods[t->n_methods++] = WITH_LEVELS;
     for (size_t i = 0; i < method_count(); i++)
-        if (i <= METHOD_PLAIN || plan->with_methods)
+        if (i <= (has_levels(plan) ? METHOD_IMTET : METHOD_PLAIN) || plan->with_methods)
             t->methods[t->n_methods++] = i;
 }
 
 static Status fill(Tables *t, FILE *out, Err *err)
 {
     const FactorPlan *plan = t->plan;
+    char tau[16];
     choose_methods(t);
     if (plan->keep)
         mkdir(plan->keep, 0777);
@@ -397,7 +417,8 @@ static Status fill(Tables *t, FILE *out, Err *err)
         if (!is_wanted(plan, family(i)))
             continue;
         TRY(run_problem(t, i, err));
-        print_factors(t, t->n_problems - 1, family(i)->what, out);
+        snprintf(tau, sizeof tau, "tau %.2f", t->tau[t->n_problems - 1]);
+        print_factors(t, t->n_problems - 1, has_levels(plan) ? tau : family(i)->what, out);
     }
     return t->n_problems > 0 ? STATUS_OK : fail(err, STATUS_USAGE, "--problem: no such problem");
 }

@@ -220,10 +220,10 @@ static void fill(Queue *q, Slot *s, const Asked *asked)
     s->place = PENDING;
     if (!is_known || q->order == QUEUE_AS_ASKED)
         s->request = s->e.id = ++q->last_request;
-    if (!is_known && asked->cheap_parts) {
+    if (!is_known && asked->cheap_parts)
         memcpy(s->parts, asked->cheap_parts, q->problem->n_cheap * q->problem->part_size);
+    if (asked->cheap_parts || (q->problem->cheap_cost > 0.0 && s->n_parts == q->problem->n_parts))
         s->n_taken = s->n_given = q->problem->n_cheap;
-    }
     if (!is_known)
         return;
     s->n_taken = s->n_given = s->n_parts;

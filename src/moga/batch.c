@@ -119,7 +119,7 @@ Status batch_evaluate(Search *s, size_t n_new, size_t n, Err *err)
 {
     SearchTimes *t = &s->control.times;
     const double before = search_seconds(s);
-    memset(s->batch.kind + n_new, s->screening.full > 1 ? KIND_FINISHED : KIND_REPEAT, n - n_new);
+    memset(s->batch.kind + n_new, s->screening.cost.whole > 1 ? KIND_FINISHED : KIND_REPEAT, n - n_new);
     TRY(ask(s, n, err));
     const Status status = take_results(s, pending_wanted(s, n), err);
     t->waiting += search_seconds(s) - before;

@@ -10,8 +10,8 @@
 #define SURROGATE_USE_LIST(X) X(SURROGATE_ON, "on") X(SURROGATE_OFF, "off") X(SURROGATE_AUTO, "auto")
 typedef enum { SURROGATE_USE_LIST(CHOICE_NAME) } SurrogateUse;
 
-/* Replicates: of most designs the first replicate of every record is simulated alone (moga/screening.c). */
-#define FIDELITY_LIST(X) X(FIDELITY_OFF, "off") X(FIDELITY_REPLICATES, "replicates")
+/* What of most designs is evaluated alone (moga/fidelity.h): the first replicate of every record, or a cheap level. */
+#define FIDELITY_LIST(X) X(FIDELITY_OFF, "off") X(FIDELITY_REPLICATES, "replicates") X(FIDELITY_LEVELS, "levels")
 typedef enum { FIDELITY_LIST(CHOICE_NAME) } Fidelity;
 
 #define SELECTION_KIND_LIST(X) X(SELECTION_NSGA3, "nsga3") X(SELECTION_RVEA, "rvea")

@@ -5,26 +5,20 @@
 
 #include "moga/hypervolume.h"
 
-/* Screening: most designs are evaluated by the cheap level of the problem alone, and the whole evaluation is predicted
- * from it, output by output, by least squares over the designs that have both,
- *
- *   y = a + b y_cheap
- *
- * (autoregression of Kennedy and O'Hagan, Biometrika 87 (2000) 1-13, with a constant difference). Those that add most
- * to the front of the whole evaluations are finished: their other simulations are made, to the same bytes as if they had
- * been asked for at once. One for SCREENED_PER_FINISHED: LEVEL_PAIRS after the initial sample, the rest at the end of the
- * search, when most is known. A row of the cheap level is never on the front of the archive. */
-
 void screening_begin(Search *s)
 {
     const Problem *p = s->problem;
     Screening *q = &s->screening;
-    *q = (Screening){.full = 1, .agreement = NAN};
+    *q = (Screening){.cost = {.whole = 1}, .agreement = NAN};
     if (s->config->fidelity == FIDELITY_OFF || p->n_cheap == 0 || p->is_noisy)
         return;
-    q->full = p->n_parts;
-    q->cheap = p->n_cheap;
+    const LevelCosts parts = {p->n_cheap, p->n_parts - p->n_cheap, p->n_parts};
     q->is_on = 1;
+    q->is_apart = p->cheap_cost > 0.0;
+    q->cost = q->is_apart ? level_costs(p->cheap_cost) : parts;
+    q->per_finished = q->is_apart ? APART_PER_FINISHED : SCREENED_PER_FINISHED;
+    q->n_pairs = q->is_apart ? APART_PAIRS : LEVEL_PAIRS;
+    q->tau_min = q->is_apart ? APART_TAU_MIN : LEVEL_TAU_MIN;
 }
 
 void screening_free(Search *s)
@@ -41,32 +35,32 @@ void screening_free(Search *s)
 
 /* -- what it costs ------------------------------------------------------------------------------------------------- */
 
-/* Simulations so far. */
+/* So far. */
 static size_t spent(const Search *s)
 {
     const Screening *q = &s->screening;
-    return s->archive.n * q->full - q->n * (q->full - q->cheap) - q->n_finished * q->cheap;
+    return (s->archive.n - q->n - q->n_finished) * q->cost.whole + q->n * q->cost.cheap + q->n_finished * q->cost.rest;
 }
 
 size_t search_evaluations(const Search *s)
 {
-    return spent(s) / s->screening.full;
+    return spent(s) / s->screening.cost.whole;
 }
 
-/* Simulations that are left. */
 static size_t left(const Search *s)
 {
-    const size_t all = search_evals(s) * s->screening.full, now = spent(s) + queue_pending(s->queue);
+    const size_t all = search_evals(s) * s->screening.cost.whole, now = spent(s) + queue_pending(s->queue);
     return all > now ? all - now : 0;
 }
 
 int search_is_spent(const Search *s)
 {
     const Screening *q = &s->screening;
-    return spent(s) + q->full - (q->n_open > 0 ? q->cheap : 0) > search_evals(s) * q->full;
+    const size_t next = q->n_open > 0 ? q->cost.rest : q->is_on ? q->cost.cheap + q->cost.rest : q->cost.whole;
+    return spent(s) + next > search_evals(s) * q->cost.whole;
 }
 
-static int is_open(const Search *s, size_t i)
+int screening_is_open(const Search *s, size_t i)
 {
     const Screened *d = &s->screening.design[i];
     return d->finished == SIZE_MAX && s->archive.usable[d->row];
@@ -81,16 +75,17 @@ static size_t min_size(size_t a, size_t b)
 static size_t finish_due(const Search *s, size_t n)
 {
     const Screening *q = &s->screening;
-    const size_t due = (q->n + n) / SCREENED_PER_FINISHED;
+    const size_t due = (q->n + n) / q->per_finished;
     return due > q->n_finished ? min_size(due - q->n_finished, q->n_open + n) : 0;
 }
 
 int screening_has_room(const Search *s, size_t n)
 {
     const Screening *q = &s->screening;
-    if (q->full == 1)
+    if (q->cost.whole == 1)
         return s->archive.n + queue_pending(s->queue) + n + s->reserved < search_evals(s);
-    const size_t one = q->is_on ? q->cheap : q->full, kept = q->is_on ? finish_due(s, n + 1) * (q->full - q->cheap) : 0;
+    const size_t one = q->is_on ? q->cost.cheap : q->cost.whole,
+                 kept = q->is_on ? finish_due(s, n + 1) * q->cost.rest : 0;
     return (n + 1) * one + kept <= left(s);
 }
 
@@ -136,7 +131,7 @@ static Status keep(Search *s, const Finished *done, Err *err)
     const size_t n_out = p->n_obj + p->n_con, size = p->n_cheap * p->part_size;
     TRY(grow(q, n_out, err));
     Screened *d = &q->design[q->n];
-    *d = (Screened){s->archive.n, SIZE_MAX, done->parts ? malloc(size) : NULL};
+    *d = (Screened){s->archive.n, SIZE_MAX, done->parts && !q->is_apart ? malloc(size) : NULL};
     if (d->parts)
         memcpy(d->parts, done->parts, size);
     memcpy(q->y + q->n * n_out, done->f, p->n_obj * sizeof *q->y);
@@ -188,110 +183,7 @@ const void *screening_parts(const Search *s, const double x[])
     return i < s->screening.n ? s->screening.design[i].parts : NULL;
 }
 
-/* -- the levels ---------------------------------------------------------------------------------------------------- */
-
-/* Output k of design i by the cheap level, and of its row in the archive. */
-static double cheap_value(const Search *s, size_t i, size_t k)
-{
-    return s->screening.y[i * (s->problem->n_obj + s->problem->n_con) + k];
-}
-
-static double value_of(const Search *s, size_t row, size_t k)
-{
-    const Archive *a = &s->archive;
-    return k < a->n_obj ? a->Y[row * a->n_obj + k] : a->H[row * a->n_con + k - a->n_obj];
-}
-
-/* Designs that have both levels, in screening.rows. */
-static size_t find_pairs(Search *s)
-{
-    Screening *q = &s->screening;
-    q->n_rows = 0;
-    for (size_t i = 0; i < q->n; i++)
-        if (q->design[i].finished != SIZE_MAX && s->archive.usable[q->design[i].finished])
-            q->rows[q->n_rows++] = i;
-    return q->n_rows;
-}
-
-typedef struct {
-    double from, to, slope; /* means, slope between them */
-} Line;
-
-static Line fit_line(const Search *s, size_t k)
-{
-    const Screening *q = &s->screening;
-    const double n = (double)q->n_rows;
-    Line line = {0.0, 0.0, 1.0};
-    double xx = 0.0, xy = 0.0;
-    for (size_t j = 0; j < q->n_rows; j++) {
-        line.from += cheap_value(s, q->rows[j], k) / n;
-        line.to += value_of(s, q->design[q->rows[j]].finished, k) / n;
-    }
-    for (size_t j = 0; j < q->n_rows; j++) {
-        const double x = cheap_value(s, q->rows[j], k) - line.from;
-        xx += x * x;
-        xy += x * (value_of(s, q->design[q->rows[j]].finished, k) - line.to);
-    }
-    line.slope = xx > 0.0 ? xy / xx : 1.0;
-    return line;
-}
-
-/* Kendall's tau of objective k. */
-static double agreement_of(const Search *s, size_t k)
-{
-    const Screening *q = &s->screening;
-    double same = 0.0, pairs = 0.0;
-    for (size_t i = 0; i < q->n_rows; i++)
-        for (size_t j = 0; j < i; j++) {
-            const double product =
-                (cheap_value(s, q->rows[i], k) - cheap_value(s, q->rows[j], k)) *
-                (value_of(s, q->design[q->rows[i]].finished, k) - value_of(s, q->design[q->rows[j]].finished, k));
-            same += (product > 0.0) - (product < 0.0);
-            pairs += product != 0.0;
-        }
-    return pairs > 0.0 ? same / pairs : 1.0;
-}
-
-/* Nothing is screened any more, and what is predicted from the cheap level is not used, but for the initial sample, which
- * is finished. */
-static void turn_off(Search *s)
-{
-    Screening *q = &s->screening;
-    q->is_on = 0;
-    for (size_t i = 0; i < q->n; i++)
-        if (q->design[i].finished == SIZE_MAX && s->archive.generation[q->design[i].row] > 0)
-            pareto_archive_drop(&s->archive, q->design[i].row);
-}
-
-static void look_at_agreement(Search *s)
-{
-    Screening *q = &s->screening;
-    q->agreement = 0.0;
-    for (size_t k = 0; k < s->problem->n_obj; k++)
-        q->agreement += agreement_of(s, k) / (double)s->problem->n_obj;
-    if (q->agreement < LEVEL_TAU_MIN || !q->is_on)
-        turn_off(s);
-}
-
-static void predict(Search *s, int has_line)
-{
-    const Problem *p = s->problem;
-    const Screening *q = &s->screening;
-    const size_t n_out = p->n_obj + p->n_con;
-    for (size_t k = 0; k < n_out; k++) {
-        const Line line = has_line ? fit_line(s, k) : (Line){0.0, 0.0, 1.0};
-        for (size_t i = 0; i < q->n; i++)
-            if (is_open(s, i)) {
-                const size_t row = q->design[i].row;
-                double *to =
-                    k < p->n_obj ? s->archive.Y + row * p->n_obj + k : s->archive.H + row * p->n_con + k - p->n_obj;
-                *to = line.to + line.slope * (cheap_value(s, i, k) - line.from);
-            }
-    }
-    for (size_t i = 0; i < q->n; i++)
-        if (is_open(s, i))
-            pareto_archive_predicted(&s->archive, q->design[i].row);
-}
+/* -- the front ------------------------------------------------------------------------------------------------------ */
 
 /* Of whole evaluations and predictions together. */
 static Status find_front(Search *s, Err *err)
@@ -334,13 +226,9 @@ static Status find_front(Search *s, Err *err)
 
 Status screening_update(Search *s, Err *err)
 {
-    Screening *q = &s->screening;
-    if (q->n == 0)
+    if (s->screening.n == 0)
         return STATUS_OK;
-    const int has_line = find_pairs(s) >= LEVEL_PAIRS;
-    if (has_line)
-        look_at_agreement(s);
-    predict(s, has_line);
+    TRY(levels_compare(s, err));
     return find_front(s, err);
 }
 
@@ -411,7 +299,7 @@ static void append_open(Search *s, size_t *n, size_t limit)
 {
     const Screening *q = &s->screening;
     for (size_t i = 0; i < q->n && *n < limit; i++)
-        if (is_open(s, i) && !q->is_chosen[q->design[i].row])
+        if (screening_is_open(s, i) && !q->is_chosen[q->design[i].row])
             *n = append(s, *n, q->design[i].row);
 }
 
@@ -419,28 +307,44 @@ static void append_open(Search *s, size_t *n, size_t limit)
 static size_t size_with(const Search *s, size_t n, size_t wanted)
 {
     const Screening *q = &s->screening;
-    const size_t asked = n * (q->is_on ? q->cheap : q->full), all = left(s), room = all > asked ? all - asked : 0;
-    return min_size(s->batch.size_max, n + min_size(wanted, room / (q->full - q->cheap)));
+    const size_t asked = n * (q->is_on ? q->cost.cheap : q->cost.whole), all = left(s),
+                 room = all > asked ? all - asked : 0;
+    return min_size(s->batch.size_max, n + min_size(wanted, room / q->cost.rest));
 }
 
-/* Pairs for the line, or the initial sample where nothing is screened any more. */
+static size_t pairs_missing(const Screening *q)
+{
+    const size_t n = q->is_apart ? q->n_rows : q->n_finished;
+    return n < q->n_pairs ? q->n_pairs - n : 0;
+}
+
+/* Pairs to compare the levels by, then some of every batch, or the initial sample where nothing is screened any more. */
+static size_t wanted_now(const Search *s, size_t n)
+{
+    const Screening *q = &s->screening;
+    if (q->is_on && pairs_missing(q) > 0)
+        return pairs_missing(q);
+    return q->is_apart ? finish_due(s, n) : q->is_on ? 0 : q->n;
+}
+
 Status screening_finish(Search *s, size_t *n, Err *err)
 {
     const Screening *q = &s->screening;
-    const size_t wanted = !q->is_on ? q->n : q->n_finished < LEVEL_PAIRS ? LEVEL_PAIRS - q->n_finished : 0;
-    if (q->n == 0 || wanted == 0)
+    const int has_pairs = pairs_missing(q) == 0;
+    const size_t size = size_with(s, *n, wanted_now(s, *n));
+    if (q->n == 0 || size <= *n)
         return STATUS_OK;
-    const size_t size = size_with(s, *n, wanted);
-    if (q->is_on)
+    if (q->is_on && (has_pairs || !q->is_apart))
         TRY(append_best(s, n, size, err));
-    append_open(s, n, size);
+    if (!has_pairs || !q->is_on)
+        append_open(s, n, size);
     return STATUS_OK;
 }
 
 int screening_is_due(const Search *s)
 {
     const Screening *q = &s->screening;
-    return q->is_on && q->n_open > 0 && finish_due(s, 0) > 0 && left(s) >= q->full - q->cheap;
+    return q->is_on && q->n_open > 0 && finish_due(s, 0) > 0 && left(s) >= q->cost.rest;
 }
 
 Status screening_last(Search *s, size_t *n, Err *err)

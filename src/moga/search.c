@@ -25,7 +25,7 @@ static StopReason reason_to_stop(const Search *s)
     const SearchConfig *c = s->config;
     const Archive *a = &s->archive;
     if (search_is_spent(s))
-        return s->screening.full == 1 && a->n < c->max_evals ? STOP_CONVERGED : STOP_EVALUATIONS;
+        return s->screening.cost.whole == 1 && a->n < c->max_evals ? STOP_CONVERGED : STOP_EVALUATIONS;
     if (s->generation >= c->generations && !screening_is_due(s))
         return STOP_GENERATIONS;
     if (c->nondominated_share < 1.0 && (double)a->n_front >= c->nondominated_share * (double)a->n)

@@ -7,7 +7,8 @@
  *   offspring.c      candidates: variation, inner generations and descents on the surrogate
  *   infill_select.c  which candidates are evaluated
  *   replication.c    which noisy designs are evaluated again
- *   screening.c      which designs are evaluated by the cheap level first, which of them are finished
+ *   screening.c      which designs are evaluated by the cheap level first, which of them are finished (fidelity.h)
+ *   levels.c         what the cheap level says of the whole evaluation
  *   batch.c          evaluation, the only way into the archive
  *
  * Threads  one; the simulator and predictions of the surrogate use several */
@@ -25,6 +26,7 @@
 #include "moga/control.h"
 #include "moga/convergence.h"
 #include "moga/directions.h"
+#include "moga/fidelity.h"
 #include "moga/infill.h"
 #include "moga/population.h"
 #include "moga/selection.h"
@@ -59,26 +61,6 @@ typedef struct {
 /* What a design carries through the queue: was_predicted, criterion, its kind before it was screened, predicted (n_obj). */
 enum { NOTE_WAS_PREDICTED, NOTE_CRITERION, NOTE_KIND, NOTE_PREDICTED };
 
-/* A design of which the cheap level was evaluated first. */
-typedef struct {
-    size_t row, finished; /* of the archive; of its evaluation in full, SIZE_MAX: there is none */
-    void *parts;          /* (n_cheap) of part_size; NULL: not kept */
-} Screened;
-
-/* screening.c */
-typedef struct {
-    size_t cheap, full; /* simulations of either level; full 1 and cheap 0: nothing is screened in this search */
-    size_t is_on;       /* 0: the levels do not agree, or nothing is screened */
-    size_t n, n_max, n_finished;
-    size_t n_open;                     /* on that front, not finished */
-    Screened *design;                  /* (n) by row */
-    double *y;                         /* (n, n_obj + n_con) objectives and constraints of the cheap level */
-    double agreement;                  /* Kendall's tau of the two levels; NAN: not known yet */
-    size_t n_front, front_max, *front; /* rows of the front of results and predictions */
-    unsigned char *is_chosen;          /* (front_max) rows that are finished in this generation */
-    size_t *rows, n_rows;              /* (n_max) designs that have both levels */
-} Screening;
-
 /* Grows with the archive. */
 typedef struct {
     size_t n_max;
@@ -102,7 +84,7 @@ typedef struct {
     double *reference;      /* (n_obj) */
 } Scratch;
 
-typedef struct {
+struct Search {
     const Problem *problem;
     const SearchConfig *config;
     Queue *queue;
@@ -126,7 +108,7 @@ typedef struct {
     Pack state;         /* as of the last report */
     double start;       /* [s] of the clock */
     void *store;
-} Search;
+};
 
 /* [s] wall time since the search began. */
 static inline double search_seconds(const Search *s)
@@ -139,8 +121,8 @@ static inline size_t search_planned(const Search *s)
 {
     const SearchConfig *c = s->config;
     const Screening *q = &s->screening;
-    const size_t evals = c->planned_evals > 0 ? c->planned_evals : c->max_evals, n = SCREENED_PER_FINISHED;
-    return q->full == 1 ? evals : evals * n * q->full / (n * q->cheap + q->full - q->cheap);
+    const size_t evals = c->planned_evals > 0 ? c->planned_evals : c->max_evals, n = q->per_finished;
+    return q->cost.whole == 1 || q->is_apart ? evals : evals * n * q->cost.whole / (n * q->cost.cheap + q->cost.rest);
 }
 
 /* Evaluations with which the search ends. */
@@ -192,22 +174,6 @@ size_t replication_last(Search *s);
 size_t
 replication_due(const Search *s); /* replicates that the evaluations so far bring with them and that are not made yet */
 int replication_noise_is_significant(const Search *s); /* estimates are to be compared instead of means */
-
-/* screening.c */
-void screening_begin(Search *s);
-void screening_free(Search *s);
-size_t search_evaluations(const Search *s); /* of max_evals; a simulation of a screened design is a part of one */
-int search_is_spent(const Search *s);
-/* Room for a batch of n new designs, beside what the screened ones are finished with. */
-int screening_has_room(const Search *s, size_t n);
-Status screening_take(Search *s, const Finished *done, Err *err); /* before it enters the archive */
-Status screening_update(Search *s, Err *err);                     /* after results: predictions, agreement, front */
-void screening_exchange(Search *s); /* predictions in the archive for what was evaluated, and back */
-const void *screening_parts(const Search *s, const double x[]); /* of the cheap level of x; NULL: not kept */
-/* Screened designs to be finished, after n designs of a batch; when the rest is kept for them, a batch of them. */
-Status screening_finish(Search *s, size_t *n, Err *err);
-Status screening_last(Search *s, size_t *n, Err *err);
-int screening_is_due(const Search *s); /* designs are to be finished, and there is room */
 
 /* batch.c */
 size_t batch_size(const Search *s);

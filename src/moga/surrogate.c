@@ -176,7 +176,7 @@ static Status fit_success(Surrogate *s, const Archive *a, int tuning, Err *err)
         if (a->replicates[i] == 0 || (k++) * kept / n_designs < n || n == kept)
             continue;
         problem_to_cube(s->problem, a->X + i * a->n_var, s->U + n * a->n_var);
-        s->F[n++] = a->usable[i];
+        s->F[n++] = a->usable[i] || (a->kind[i] == KIND_SCREENED && a->ok[i]); /* which may have been dropped */
     }
     TRY((tuning ? rbf_tune : rbf_fit)(s->success, n, s->U, s->F, NULL, err));
     s->knows_failures = rbf_explained(s->success, 0) > 0.0;

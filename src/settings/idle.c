@@ -148,7 +148,10 @@ static int is_screened(const Settings *s)
 {
     const int repeats =
         s->problem.noisy == NOISY_YES && s->search.replicates_max > 1 && s->search.replicate_share > 0.0;
-    return is_tower(s) && s->sim.replicates > 1 && !repeats;
+    const int by_replicates = is_tower(s) && s->sim.replicates > 1 && s->search.fidelity != FIDELITY_LEVELS,
+              by_levels =
+                  is_external(s) && list_is_given(s->problem.costs) && s->search.fidelity != FIDELITY_REPLICATES;
+    return (by_replicates || by_levels) && !repeats;
 }
 
 static int is_fast(const Settings *s)
@@ -183,7 +186,7 @@ static const struct {
 } WAITING[] = {
     {"building core contact motion sim uncertain design", is_tower, "problem.kind = tower"},
     {"search.objectives", is_tower, "problem.kind = tower"},
-    {"problem.command problem.timeout_s problem.lower problem.upper problem.senses", is_external,
+    {"problem.command problem.timeout_s problem.lower problem.upper problem.senses problem.costs", is_external,
      "problem.kind = external"},
     {"problem.variables problem.objectives problem.*_names", is_no_tower, "problem.kind is no tower"},
     {"problem.noise", is_textbook, "problem.kind is a test problem"},
@@ -210,7 +213,9 @@ static const struct {
     {"motion.ec8_*", is_eurocode8, "motion.target = eurocode8"},
     {"motion.asce7_*", is_asce7, "motion.target = asce7"},
     {"sim.steps_per_contact sim.tolerance", is_fast, "sim.engine = fast"},
-    {"search.fidelity", is_screened, "problem.kind = tower, sim.replicates is 2 or more and problem.noisy is not yes"},
+    {"search.fidelity", is_screened,
+     "problem.kind = tower and sim.replicates is 2 or more (replicates), or problem.costs is given (levels), and "
+     "problem.noisy is not yes"},
     {"sim.robust", has_parts, "there are replicates or further records (sim.replicates, motion.records)"},
     {"sim.quantile", is_quantile, "sim.robust = quantile, with replicates or further records"},
     {"search.trust_error search.surrogate_max", has_surrogate, "search.surrogate is not off"},

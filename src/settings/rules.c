@@ -4,9 +4,11 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/list.h"
 #include "scene/design.h"
 #include "scene/motion_scale.h"
 #include "sim/tolerance.h"
+#include "simulator/external.h"
 
 typedef struct {
     BrokenRuleFn broken;
@@ -138,12 +140,14 @@ void rules_check(const Settings *s, BrokenRuleFn broken, void *user)
 {
     const Rules rules = {broken, user}, *r = &rules;
     Err err = {0};
-    double steps;
+    double steps, cost;
     check_bounds(s, r);
     check_motion(&s->motion, r);
     check_variables(s, r);
     check_replicates(s, r);
     check_fidelity(&s->search, r);
+    if (list_is_given(s->problem.costs) && external_cheap_cost(s->problem.costs, &cost, &err) != STATUS_OK)
+        break_rule(r, PAIR(problem.costs, problem.kind), "%s", err.text);
     if (tolerance_steps(&s->sim, &steps, &err) != STATUS_OK)
         break_rule(r, PAIR(sim.tolerance, sim.steps_per_contact), "%s", err.text);
     if (s->problem.kind == PROBLEM_EXTERNAL && strcmp(s->problem.command, "none") == 0)

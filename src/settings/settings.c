@@ -220,6 +220,10 @@ static const Option OPTIONS[] = {
     TEXT(problem.senses, "min", "external: min or max, one for all objectives or a comma list"),
     TEXT(problem.variable_names, "auto", "comma list; auto: x1, x2, ..."),
     TEXT(problem.objective_names, "auto", "comma list; auto: f1, f2, ..."),
+    TEXT(
+        problem.costs, "none",
+        "external: cost of a cheap level of the program and of the dearest, which is 1, as 0.1,1; requests then have a "
+        "level, 0 or 1 (docs/external.md)"),
     CHOICE(problem.noisy, Noisy, CHOICE_WORDS(NOISY_LIST), "auto",
            "whether evaluations of one design differ; auto: only with problem.noise"),
     REAL(problem.noise, "-", "0", 0, 1, "test problems: standard deviation of an objective, as a share of its value"),
@@ -259,8 +263,8 @@ static const Option OPTIONS[] = {
            "on: no thread waits for the slowest design of a batch; the run then depends on the order of the results"),
     CHOICE(
         search.fidelity, Fidelity, CHOICE_WORDS(FIDELITY_LIST), "off",
-        "tower, sim.replicates >= 2; replicates: of most designs only the first replicate is simulated, and the rest "
-        "where it promises most"),
+        "replicates (tower, sim.replicates >= 2): of most designs only the first replicate is simulated, and the rest "
+        "where it promises most; levels (external, problem.costs): likewise the cheap level first"),
     CHOICE(search.survival, SelectionKind, CHOICE_WORDS(SELECTION_KIND_LIST), "nsga3",
            "environmental selection: NSGA-III, or RVEA, which is better without a surrogate (docs/search.md)"),
     REAL(search.replicate_share, "-", "0.1", 0, 0.9,

@@ -50,7 +50,8 @@ typedef struct {
 
 typedef struct {
     char *words[WORDS_MAX + 1], *text; /* the command, NULL at its end */
-    size_t n_var, n_obj, n_workers;
+    size_t n_var, n_obj, n_workers, part_size;
+    int has_levels;
     double timeout_s;
     double *lower, *upper; /* (n_var) */
     Worker *worker;        /* (n_workers) */
@@ -183,7 +184,7 @@ __attribute__((format(printf, 4, 5))) static void settle(Worker *w, Outcome outc
         worker_kill(w);
 }
 
-static Status write_request(External *e, Worker *w, const double x[], Err *err)
+static Status write_request(External *e, Worker *w, const Task *task, Err *err)
 {
     size_t size;
     free(w->request);
@@ -191,9 +192,12 @@ static Status write_request(External *e, Worker *w, const double x[], Err *err)
     FILE *f = open_memstream(&w->request, &size);
     if (!f)
         return fail(err, STATUS_NO_MEMORY, "no memory for a request");
-    fprintf(f, "{\"id\":%ld,\"x\":[", w->id);
+    fprintf(f, "{\"id\":%ld,", w->id);
+    if (e->has_levels)
+        fprintf(f, "\"level\":%zu,", task->part);
+    fputs("\"x\":[", f);
     for (size_t d = 0; d < e->n_var; d++)
-        fprintf(f, "%s%.17g", d ? "," : "", x[d]);
+        fprintf(f, "%s%.17g", d ? "," : "", task->x[d]);
     fputs("]}\n", f);
     if (fclose(f) != 0)
         return fail(err, STATUS_NO_MEMORY, "no memory for a request");
@@ -209,7 +213,7 @@ static Status send_request(External *e, Worker *w, const Task *task, Err *err)
     if (w->pid == 0)
         TRY(worker_start(e, w, err));
     w->id = task->id;
-    TRY(write_request(e, w, task->x, err));
+    TRY(write_request(e, w, task, err));
     w->answer = task->result;
     w->again = w->is_second = 0;
     w->asked = clock_seconds();
@@ -399,14 +403,25 @@ static Status simulate(void *self, size_t worker, const Task *task, Err *err)
     return STATUS_OK;
 }
 
-static void combine(const void *self, const void *parts, Evaluation *evaluation)
+static void take_level(const External *e, const ExternalAnswer *a, Evaluation *evaluation)
 {
-    const External *e = self;
-    const ExternalAnswer *a = parts;
     evaluation_set_outcome(evaluation, a->outcome, a->reason);
     memcpy(evaluation->f, a->f, e->n_obj * sizeof *a->f);
     evaluation->seconds = a->seconds;
     evaluation->replicates = 1;
+}
+
+static void combine_cheap(const void *self, const void *parts, Evaluation *evaluation)
+{
+    take_level(self, parts, evaluation);
+}
+
+/* By the last part. */
+static void combine(const void *self, const void *parts, Evaluation *evaluation)
+{
+    const External *e = self;
+    const char *last = (const char *)parts + (e->has_levels ? e->part_size : 0);
+    take_level(e, (const ExternalAnswer *)(const void *)last, evaluation);
 }
 
 /* Input closed, a moment to end by itself. */
@@ -485,6 +500,22 @@ static Status set_bounds(External *e, const ProblemOptions *o, Err *err)
     return STATUS_OK;
 }
 
+Status external_cheap_cost(const char *costs, double *cost, Err *err)
+{
+    double whole = 1.0;
+    *cost = 0.0;
+    if (list_count(costs) != 2)
+        return fail(err, STATUS_BAD_DATA, "problem.costs: %zu numbers; give the cost of a cheap level and 1, as 0.1,1",
+                    list_count(costs));
+    TRY(list_positive(costs, 0, "problem.costs", cost, err));
+    TRY(list_positive(costs, 1, "problem.costs", &whole, err));
+    if (whole != 1.0 || *cost >= 1.0)
+        return fail(err, STATUS_BAD_DATA,
+                    "problem.costs: %g, %g; the dearest level is the last and costs 1, the other one costs less", *cost,
+                    whole);
+    return STATUS_OK;
+}
+
 static Status create_workers(External *e, size_t n, Err *err)
 {
     e->worker = calloc(n, sizeof *e->worker);
@@ -506,13 +537,26 @@ static Status create(External *e, const ProblemOptions *o, size_t n_workers, Err
     return spawner_start(&e->spawner, err);
 }
 
+static void add_levels(Problem *p, double cheap_cost)
+{
+    p->n_parts = 2;
+    p->n_cheap = 1;
+    p->cheap_cost = cheap_cost;
+    p->combine_cheap = combine_cheap;
+}
+
 Status external_open(Problem *p, const ProblemOptions *o, size_t n_workers, Err *err)
 {
+    double cheap_cost = 0.0;
+    if (list_is_given(o->costs))
+        TRY(external_cheap_cost(o->costs, &cheap_cost, err));
     External *e = calloc(1, sizeof *e);
     if (!e)
         return fail(err, STATUS_NO_MEMORY, "no memory for workers");
     e->n_var = (size_t)o->variables;
     e->n_obj = (size_t)o->objectives;
+    e->part_size = sizeof(ExternalAnswer) + e->n_obj * sizeof(double);
+    e->has_levels = cheap_cost > 0.0;
     e->timeout_s = o->timeout_s;
     const Status status = create(e, o, n_workers, err);
     if (status != STATUS_OK) {
@@ -526,8 +570,10 @@ Status external_open(Problem *p, const ProblemOptions *o, size_t n_workers, Err 
                    .simulator = &EXTERNAL,
                    .self = e,
                    .n_parts = 1,
-                   .part_size = sizeof(ExternalAnswer) + e->n_obj * sizeof(double),
+                   .part_size = e->part_size,
                    .n_workers = e->n_workers,
                    .executor = executor_for(e->n_workers)};
+    if (e->has_levels)
+        add_levels(p, cheap_cost);
     return STATUS_OK;
 }

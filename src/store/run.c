@@ -10,6 +10,7 @@
 #include "moga/dominance.h"
 #include "settings/idle.h"
 #include "settings/options.h"
+#include "simulator/external.h"
 
 void run_free(Run *run)
 {
@@ -127,22 +128,37 @@ int run_is_screened(const Run *run)
     return run->settings->search.fidelity != FIDELITY_OFF && !settings_idle(run->settings, "search.fidelity");
 }
 
-/* In replicates; the cheap level has no spread. */
-static size_t cost_of(const Run *run, size_t row)
+/* As in the search, whose simulations of one replicate are one here. */
+static LevelCosts costs_of(const Run *run)
 {
     const size_t whole = (size_t)run->settings->sim.replicates;
+    double cheap;
+    Err err;
+    if (run->settings->problem.kind == PROBLEM_EXTERNAL && run_is_screened(run) &&
+        external_cheap_cost(run->settings->problem.costs, &cheap, &err) == STATUS_OK)
+        return level_costs(cheap);
+    return (LevelCosts){1, whole - 1, whole};
+}
+
+/* The cheap level has no spread. */
+static size_t cost_of(const Run *run, const LevelCosts *cost, size_t row)
+{
     EvaluationKind kind = run->table.row[row].kind;
     if (kind == KIND_UNFINISHED && run_is_screened(run))
         kind = isfinite(run->table.row[row].sd[0]) ? KIND_FINISHED : KIND_SCREENED;
-    return kind == KIND_SCREENED ? 1 : kind == KIND_FINISHED ? whole - 1 : kind == KIND_POLISHED ? 0 : whole;
+    return kind == KIND_SCREENED   ? cost->cheap
+           : kind == KIND_FINISHED ? cost->rest
+           : kind == KIND_POLISHED ? 0
+                                   : cost->whole;
 }
 
 size_t run_evaluations(const Run *run, size_t first)
 {
-    size_t replicates = 0;
+    const LevelCosts cost = costs_of(run);
+    size_t sum = 0;
     for (size_t i = first; i < run->table.n; i++)
-        replicates += cost_of(run, i);
-    return replicates / (size_t)run->settings->sim.replicates;
+        sum += cost_of(run, &cost, i);
+    return sum / cost.whole;
 }
 
 int run_has_polished(const Run *run)

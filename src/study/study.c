@@ -10,6 +10,7 @@
 
 #include "base/clock.h"
 #include "evaluate/cluster.h"
+#include "settings/idle.h"
 #include "settings/settings.h"
 #include "simulator/adapter.h"
 #include "simulator/estimate.h"
@@ -286,6 +287,7 @@ static Status prepare(Study *study, const Settings *s, Err *err)
     TRY(store_forget_empty(study->store, err));
     snprintf(study->summary->folder, sizeof study->summary->folder, "%s", store_folder(study->store));
     study->summary->max_evals = s->search.max_evals;
+    study->summary->is_by_levels = s->search.fidelity == FIDELITY_LEVELS;
     study->used = settings_as_used(s, study->summary->folder);
     return store_run(study->store) ? resume(study, err) : begin(study, err);
 }
@@ -302,7 +304,7 @@ SearchConfig study_search_config(const Settings *s)
         .surrogate_max = (size_t)s->search.surrogate_max,
         .surrogate = s->search.surrogate,
         .selection = s->search.survival,
-        .fidelity = s->search.fidelity,
+        .fidelity = settings_idle(s, "search.fidelity") ? FIDELITY_OFF : s->search.fidelity,
         .asynchronous = s->search.asynchronous == SWITCH_ON,
         .max_seconds = 3600 * fmax(s->search.max_hours, 0.0),
         .stop_after = (size_t)s->search.stop_after,

@@ -117,16 +117,18 @@ static Status log_costs(RunStore *store, const StudySummary *sum, int threads, E
 
 void screening_words(const StudySummary *sum, char text[SCREENING_WORDS])
 {
-    const int n = snprintf(text, SCREENING_WORDS,
-                           "%zu designs were screened by their first replicate (search.fidelity), and %zu finished or "
-                           "simulated at once, as much as %zu of %ld evaluations; ",
-                           sum->n_screened, sum->n_simulated - sum->n_screened, sum->n_evaluations, sum->max_evals);
+    const char *level = sum->is_by_levels ? "cheap level" : "first replicate";
+    const int n =
+        snprintf(text, SCREENING_WORDS,
+                 "%zu designs were screened by their %s (search.fidelity), and %zu finished or "
+                 "simulated at once, as much as %zu of %ld evaluations; ",
+                 sum->n_screened, level, sum->n_simulated - sum->n_screened, sum->n_evaluations, sum->max_evals);
     if (isnan(sum->level_agreement))
         snprintf(text + n, SCREENING_WORDS - (size_t)n,
-                 "too few were simulated at both levels to know how well the first replicate ranks designs");
+                 "too few were simulated at both levels to know how well the %s ranks designs", level);
     else
-        snprintf(text + n, SCREENING_WORDS - (size_t)n,
-                 "the first replicate ranks designs as all do by a Kendall's tau of %.2f%s", sum->level_agreement,
+        snprintf(text + n, SCREENING_WORDS - (size_t)n, "the %s ranks designs as %s by a Kendall's tau of %.2f%s",
+                 level, sum->is_by_levels ? "the whole evaluation does" : "all do", sum->level_agreement,
                  sum->has_left_screening ? ": too little, so that screening ended" : "");
 }
 
