@@ -149,7 +149,8 @@ static ProblemOptions command_of(const char *command, double timeout_s, long n_v
                         .variables = n_var,
                         .objectives = 2,
                         .lower = "-1",
-                        .upper = "1"};
+                        .upper = "1",
+                        .costs = "none"};
     snprintf(o.command, sizeof o.command, "%s", command);
     return o;
 }
