@@ -119,6 +119,15 @@ static int stop_after(void *user)
     return (*left)-- <= 0;
 }
 
+static size_t simulated_shown;
+
+static void see_progress(const StudyProgress *p, void *user)
+{
+    (void)user;
+    assert_null(p->view);
+    simulated_shown = p->progress.simulated;
+}
+
 static void test_a_run_without_a_front_says_why_there_is_none(void **state)
 {
     (void)state;
@@ -126,9 +135,11 @@ static void test_a_run_without_a_front_says_why_there_is_none(void **state)
     StudySummary summary;
     Err err = {0};
     long left = 5;
-    assert_int_equal(study_run(&s, &(StudyOptions){.stop = stop_after, .user = &left}, &summary, NULL, &err),
+    assert_int_equal(study_run(&s, &(StudyOptions){.stop = stop_after, .progress = see_progress, .user = &left},
+                               &summary, NULL, &err),
                      STATUS_STOPPED);
     assert_true(summary.n_simulated > 0 && summary.n_simulated < 12);
+    assert_in_range(simulated_shown, 1, summary.n_simulated);
     char wanted[96];
     snprintf(wanted, sizeof wanted, "before the initial sample is complete; %zu designs", summary.n_simulated);
     expect(65, wanted, "choose @/begun");

@@ -40,9 +40,14 @@ static void tell(const StudyProgress *p, void *user)
         return;
     duration_words(progress_left(&p->progress, &p->settings->search), left);
     number_words(p->hypervolume, 4, hypervolume);
-    snprintf(line, sizeof line, "generation %zu: %zu of %ld simulated, %zu failed, front %zu, hypervolume %s, %s left",
-             v->generation_now, p->progress.simulated, p->settings->search.max_evals, v->n_failed, v->n_front,
-             hypervolume, left);
+    if (!v)
+        snprintf(line, sizeof line, "%zu of %ld simulated, %s left", p->progress.simulated,
+                 p->settings->search.max_evals, left);
+    else
+        snprintf(line, sizeof line,
+                 "generation %zu: %zu of %ld simulated, %zu failed, front %zu, hypervolume %s, %s left",
+                 v->generation_now, p->progress.simulated, p->settings->search.max_evals, v->n_failed, v->n_front,
+                 hypervolume, left);
     fprintf(stderr, "\r%.*s\033[K", line_width(), line); /* the rest of the line before is erased */
     t->has_line = 1;
 }

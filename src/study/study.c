@@ -34,6 +34,7 @@ typedef struct {
     size_t evaluations_before; /* of search.max_evals */
     size_t generation;         /* that is under way */
     size_t first_generation;   /* of this session */
+    double next_shown;         /* [s] of the clock, of the progress within it */
     long left_generation;      /* whose state was damaged, so that the one before is resumed; 0: none */
     int asked, late;           /* why it stopped: the signal, the time */
     size_t n_improvement;      /* evaluations at which the improvement of the front is logged next */
@@ -100,6 +101,34 @@ static void count_failures(Study *study, const Evaluation *e)
     }
 }
 
+/* After `now` evaluations; view NULL: within the first generation of the session. */
+static void show_progress(const Study *study, const SearchView *view, size_t now)
+{
+    const size_t before = study->evaluations_before;
+    const StudyProgress p = {.view = view,
+                             .hypervolume = store_hypervolume(study->store),
+                             .progress = {.simulated = now,
+                                          .generations = study->generation,
+                                          .session_simulated = now > before ? now - before : 0,
+                                          .session_generations = study->generation - study->first_generation,
+                                          .session_s = session_seconds(study),
+                                          .all_s = study->seconds_before + session_seconds(study)},
+                             .settings = &study->used};
+    if (study->options->progress)
+        study->options->progress(&p, study->options->user);
+}
+
+/* Simulations may take minutes, and the first generation is the largest. */
+static void show_beginning(Study *study)
+{
+    static const double EVERY_S = 0.5;
+    const double now = clock_seconds();
+    if (study->generation > study->first_generation || now < study->next_shown)
+        return;
+    study->next_shown = now + EVERY_S;
+    show_progress(study, NULL, study->summary->n_simulated);
+}
+
 static Status evaluation_done(const Evaluation *e, void *user, Err *err)
 {
     Study *study = user;
@@ -113,6 +142,7 @@ static Status evaluation_done(const Evaluation *e, void *user, Err *err)
     row.generation = (long)study->generation;
     row.kind = KIND_UNFINISHED;
     const Status status = store_evaluation(study->store, &row, err);
+    show_beginning(study);
     pthread_mutex_unlock(&study->lock);
     return status;
 }
@@ -140,22 +170,6 @@ static void take_view(StudySummary *sum, const SearchView *view)
     sum->has_left_screening = view->has_left_screening;
 }
 
-static void show_progress(const Study *study, const SearchView *view)
-{
-    const size_t before = study->evaluations_before, now = view->n_evaluations;
-    const StudyProgress p = {.view = view,
-                             .hypervolume = store_hypervolume(study->store),
-                             .progress = {.simulated = now,
-                                          .generations = study->generation,
-                                          .session_simulated = now > before ? now - before : 0,
-                                          .session_generations = study->generation - study->first_generation,
-                                          .session_s = session_seconds(study),
-                                          .all_s = study->seconds_before + session_seconds(study)},
-                             .settings = &study->used};
-    if (study->options->progress)
-        study->options->progress(&p, study->options->user);
-}
-
 static int observe(const SearchView *view, void *user)
 {
     Study *study = user;
@@ -169,7 +183,7 @@ static int observe(const SearchView *view, void *user)
     }
     pthread_mutex_unlock(&study->lock);
     take_view(sum, view);
-    show_progress(study, view);
+    show_progress(study, view, view->n_evaluations);
     return study->status != STATUS_OK || !may_go_on(study);
 }
 

@@ -31,10 +31,10 @@
 
 typedef struct Settings Settings;
 
-/* The search at the end of a generation, and what the study adds. */
+/* The search at the end of a generation, and what the study adds; one at a time, by any thread. */
 typedef struct {
-    const SearchView *view;
-    double hypervolume; /* share of a box about the first sample; NAN: no design has succeeded yet */
+    const SearchView *view; /* NULL: within the first generation of the session, of simulations alone */
+    double hypervolume;     /* share of a box about the first sample; NAN: no design has succeeded yet */
     Progress progress;
     const Settings *settings;
 } StudyProgress;
