@@ -82,17 +82,6 @@ Status limits_read(Limits *limits, const Schema *schema, const char *list, Err *
     return check(limits, schema, err);
 }
 
-MeasureSet limits_measures(const char *list)
-{
-    MeasureSet set = 0;
-    char text[128], name[TABLE_NAME_MAX];
-    for (size_t i = 0; i < list_count(list); i++)
-        for (int k = 0; list_item(list, i, text, sizeof text) && take_name(text, name) && k < N_MEASURES; k++)
-            if (strcmp(measure(k)->name, name) == 0)
-                set |= (MeasureSet)1 << k;
-    return set;
-}
-
 void limits_apply(const Limits *limits, size_t n_obj, const Evaluation *e, double g[])
 {
     for (size_t c = 0; c < limits->n; c++) {

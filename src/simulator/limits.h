@@ -25,9 +25,6 @@ typedef struct {
 /* list: as in the settings, "none" for none. */
 Status limits_read(Limits *l, const Schema *schema, const char *list, Err *err);
 
-/* The measures of a tower that such a list limits; words that are none are passed over. */
-MeasureSet limits_measures(const char *list);
-
 /* g (n) of an evaluation with so many objectives. */
 void limits_apply(const Limits *l, size_t n_obj, const Evaluation *e, double g[]);
 

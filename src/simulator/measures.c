@@ -58,6 +58,19 @@ const char *measures_missing(const MeasureOrder *order, const char *objectives, 
                : NULL;
 }
 
+MeasureSet measures_limited(const char *limits)
+{
+    MeasureSet set = 0;
+    char text[128];
+    for (size_t i = 0; i < list_count(limits); i++)
+        for (int k = 0; list_item(limits, i, text, sizeof text) && k < N_MEASURES; k++) {
+            const size_t n = strcspn(text, "<> \t");
+            if (strncmp(text, MEASURES[k].name, n) == 0 && MEASURES[k].name[n] == 0)
+                set |= (MeasureSet)1 << k;
+        }
+    return set;
+}
+
 void measures_settle(SimResult *r, MeasureSet set)
 {
     for (int k = 0; k < N_MEASURES && r->outcome == RUN_OK; k++) {

@@ -98,6 +98,9 @@ Status measures_order(MeasureOrder *out, const char *objectives, int n_floors, E
  * NULL: it has all. */
 const char *measures_missing(const MeasureOrder *order, const char *objectives, int n_floors);
 
+/* Those that search.limits limits; words that are no measures are passed over. */
+MeasureSet measures_limited(const char *limits);
+
 /* Whether a building of n_floors can have anything but 0 there. */
 int measure_exists(int k, int n_floors);
 

@@ -7,7 +7,6 @@
 #include "base/cell.h"
 #include "scene/design.h"
 #include "settings/options.h"
-#include "simulator/limits.h"
 
 static Status allocate(Schema *schema, Err *err)
 {
@@ -34,7 +33,7 @@ static Status schema_of_tower(Schema *schema, const Settings *s, int n_floors, E
         snprintf(c->name, sizeof c->name, "%s", measure(order.of[k])->name);
         c->sense = measure(order.of[k])->sense;
     }
-    const MeasureSet limited = limits_measures(s->search.limits);
+    const MeasureSet limited = measures_limited(s->search.limits);
     for (int k = order.n_obj; k < N_MEASURES; k++)
         if (limited >> order.of[k] & 1)
             schema->limited[schema->n_limited++] = (size_t)(k - order.n_obj);

@@ -8,7 +8,6 @@
 #include "base/hash.h"
 #include "base/list.h"
 #include "evaluate/threads.h"
-#include "simulator/limits.h"
 #include "simulator/recipe.h"
 
 typedef struct {
@@ -231,7 +230,7 @@ Status tower_open(Problem *p, const Settings *s, TowerUse use, size_t n_tasks, E
                               .rule = s->sim.robust,
                               .quantile = s->sim.quantile,
                               .spread = spread_word(s->sim.gap_tolerance_m, &s->uncertain)};
-    t->judged = order.objectives | limits_measures(s->search.limits);
+    t->judged = order.objectives | measures_limited(s->search.limits);
     TRY(finish_opening(p, t, s->search.objectives, open_records(t, s, use, err), err));
     design_bounds(tower_design(t), &s->design, t->lower, t->upper);
     if (n_tasks > 1)

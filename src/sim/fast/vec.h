@@ -74,11 +74,6 @@ static inline v4 v4_larger(v4 a, v4 b)
     return v4_where((a >= b) | (a != a), a, b);
 }
 
-static inline double v4_sum(v4 a)
-{
-    return (a[0] + a[1]) + (a[2] + a[3]);
-}
-
 /* LANES_TURN: every lane gets the one `by` lanes further, round the end. LANES_BEFORE: b's lanes one to the right, the
  * last of a before them. */
 #if FAST_LANES == 8
