@@ -24,7 +24,7 @@
 
 #include "polish/goal.h"
 
-enum { LOCAL_BATCH = 4 };
+enum { LOCAL_BATCH = 4 }; /* designs asked for at once, so that threads have work; the same at any number of them */
 
 /* Designs that were evaluated before. */
 typedef struct {

@@ -23,7 +23,11 @@ static const Method METHODS[] = {
 };
 enum { N_METHODS = sizeof METHODS / sizeof METHODS[0] };
 
-static const double WALL = 1e3, PENALTY = 1e2, MARGIN = 5e-3, FIRST_STEP = 0.02;
+/* Values are changes of the goal in its unit, excesses those of a constraint in units of its scale. */
+static const double WALL = 1e3;        /* of a design that fails: finite, since models of it are fitted */
+static const double PENALTY = 1e2;     /* weight of a squared excess: 0.1 of it costs a unit */
+static const double MARGIN = 5e-3;     /* of every constraint, by which a square gives way at an optimum */
+static const double FIRST_STEP = 0.02; /* in the unit cube: a design that is polished lies on a front */
 
 typedef struct {
     Queue *queue;

@@ -12,7 +12,8 @@
 #include "simulator/estimate.h"
 #include "settings/options.h"
 
-enum { CENTRES_MAX = 150, LOCAL_MAX = 600 /* designs tried on the surrogate: a fit costs their cube */ };
+/* Designs of the run nearest to the one that is polished, and designs tried on the surrogate: a fit costs their cube. */
+enum { CENTRES_MAX = 150, LOCAL_MAX = 600 };
 
 /* Where the standard deviation of every objective is below this share of its value one simulation tells all. */
 static const double PREDICTABLE = 1e-3;
