@@ -331,8 +331,10 @@ Status screening_finish(Search *s, size_t *n, Err *err)
 {
     const Screening *q = &s->screening;
     const int has_pairs = pairs_missing(q) == 0;
+    if (q->n == 0)
+        return STATUS_OK;
     const size_t size = size_with(s, *n, wanted_now(s, *n));
-    if (q->n == 0 || size <= *n)
+    if (size <= *n)
         return STATUS_OK;
     if (q->is_on && (has_pairs || !q->is_apart))
         TRY(append_best(s, n, size, err));
