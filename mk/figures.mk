@@ -1,6 +1,6 @@
 # Figures and pictures of README and docs. Those of time want a quiet machine.
 
-.PHONY: setup-figures bench promise paper chart compare ablation pictures defend defend-bumpers web setup-browser report-bench serve-bench scale-cost
+.PHONY: setup-figures bench promise paper chart compare ablation fidelity pictures defend defend-bumpers web setup-browser report-bench serve-bench scale-cost
 
 # A record that is not there is replaced by the built-in motion.
 BENCH_RECORD ?= $(or $(wildcard ../shared/records/kobe_jma_ns.csv),builtin:kobe-like)
@@ -29,6 +29,9 @@ paper: $(PROGRAM) ## docs/paper.md: the paper item by item, with its records whe
 
 ablation: setup-figures ## what each tuned constant of the search earns: every one turned off; ARGS="--only NAME,..."
 	@scripts/ablation $(ARGS)
+
+fidelity: $(PROGRAM) setup-figures ## what search.fidelity = replicates saves on the tower under three records; ARGS="--seeds 1,2" or --short
+	@scripts/fidelity --program ./$(PROGRAM) $(ARGS)
 
 # SIZES chooses some; PLACE=FOLDER has the room for a run of 10^6 (2.5 GB).
 scale-cost: $(PROGRAM) ## docs/scale.md: what a study costs beside its simulations, from 10^3 to 10^6 of them; PART=plain or surrogate

@@ -392,6 +392,29 @@ static void test_a_level_apart_that_ranks_badly_costs_the_comparison_alone(void 
     forget(&other_world, &other);
 }
 
+/* Also where it is less than the pairs cost, or nearly nothing is left at the end. */
+static void test_a_search_with_a_level_apart_ends_within_any_budget(void **state)
+{
+    (void)state;
+    static const double COSTS[] = {0.001, 0.03, 0.35, 0.9};
+    for (size_t i = 0; i < 12; i++) {
+        SearchConfig config = config_of();
+        StopReason reason;
+        Err err = {0};
+        memset(&other, 0, sizeof other);
+        open_apart(&other_world, 1);
+        other_world.problem.cheap_cost = COSTS[i % 4];
+        config.surrogate = SURROGATE_OFF;
+        config.max_evals = 5 + 7 * (i / 4) * (i / 4) + i;
+        CHECK_OK(search_run(&other_world.problem, &config, observe, &other, &reason, &err), &err);
+        assert_int_equal(reason, STOP_EVALUATIONS);
+        assert_true((double)other.n_screened * COSTS[i % 4] + (double)(other.n - other.n_screened) <=
+                    (double)config.max_evals + 1e-9);
+        assert_true(other.n_finished > 0);
+        forget(&other_world, &other);
+    }
+}
+
 static void test_an_agreement_that_is_not_known_is_said_to_be_so(void **state)
 {
     (void)state;
@@ -435,6 +458,7 @@ int main(void)
         cmocka_unit_test(test_a_cheap_level_of_great_bias_is_never_on_the_front_and_counts_as_what_it_costs),
         cmocka_unit_test(test_a_search_with_a_level_apart_is_resumed_to_the_same_bytes),
         cmocka_unit_test(test_a_level_apart_that_ranks_badly_costs_the_comparison_alone),
+        cmocka_unit_test(test_a_search_with_a_level_apart_ends_within_any_budget),
         cmocka_unit_test(test_an_agreement_that_is_not_known_is_said_to_be_so),
         cmocka_unit_test(test_without_a_cheap_level_nothing_is_screened),
     };
