@@ -75,9 +75,9 @@ static size_t slot_of(const Archive *a, const double x[])
 /* Row of the first simulation of the row's design: its own, where it is the first. */
 static size_t design_of(Archive *a, size_t row)
 {
-    size_t *slot = &a->slot[slot_of(a, a->X + row * a->n_var)];
+    uint32_t *slot = &a->slot[slot_of(a, a->X + row * a->n_var)];
     if (!*slot)
-        *slot = row + 1;
+        *slot = (uint32_t)(row + 1);
     return *slot - 1;
 }
 
@@ -92,7 +92,7 @@ static Status resize(Archive *a, size_t n_max, int has_means, Err *err)
         counted.n_slots *= 2;
     Archive wider = counted;
     layout(&counted, &c);
-    wider.store = aligned_alloc(CARVE_LINE, c.used);
+    wider.store = n_max < UINT32_MAX ? aligned_alloc(CARVE_LINE, c.used) : NULL; /* slots */
     if (!wider.store)
         return fail(err, STATUS_NO_MEMORY, "no memory for an archive of %zu designs", n_max);
     if (has_means) /* else every row is set as it comes, and room to spare is none that the system has to give */
@@ -254,7 +254,7 @@ static size_t replace_screened(Archive *a, size_t design, size_t row)
     pareto_archive_drop(a, design);
     a->replicates[design] = 0;
     a->violation[design] = INFINITY;
-    a->slot[slot_of(a, a->X + row * a->n_var)] = row + 1;
+    a->slot[slot_of(a, a->X + row * a->n_var)] = (uint32_t)(row + 1);
     return row;
 }
 

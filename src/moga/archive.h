@@ -23,6 +23,7 @@
 #define IMTET_MOGA_ARCHIVE_H
 
 #include <stddef.h>
+#include <stdint.h>
 
 #include "base/status.h"
 #include "moga/nd_tree.h"
@@ -47,13 +48,14 @@ typedef struct {
     double *error;           /* (n, n_obj) standard error of the mean */
     double *estimate;        /* (n, n_obj) what the search compares */
 
-    size_t *front;         /* (n_front) rows of the front, ascending, since pareto_archive_list_front */
-    size_t n_listed;       /* rows of `front` until then: those that have left are among them */
-    NdTree *tree;          /* of the front, while there are no replicates; of a restored one when it is asked */
-    int has_restored;      /* it is still to be filled */
-    size_t n_slots, *slot; /* hash table of the designs */
-    NoiseModel *noise;     /* (n_obj) */
-    int is_stale;          /* pareto_archive_update_noise is due */
+    size_t *front;    /* (n_front) rows of the front, ascending, since pareto_archive_list_front */
+    size_t n_listed;  /* rows of `front` until then: those that have left are among them */
+    NdTree *tree;     /* of the front, while there are no replicates; of a restored one when it is asked */
+    int has_restored; /* it is still to be filled */
+    size_t n_slots;
+    uint32_t *slot;    /* (n_slots) hash table of the designs */
+    NoiseModel *noise; /* (n_obj) */
+    int is_stale;      /* pareto_archive_update_noise is due */
     void *store;
 } Archive;
 

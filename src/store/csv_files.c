@@ -89,18 +89,19 @@ Status csv_files_resume(CsvFiles *c, const Folder *folder, const Schema *schema,
 }
 
 /* Opened behind its header, if it has that. */
-static RowLines open_lines(const CsvFiles *c, const char *name, RunHeader *header)
+static void open_lines(const CsvFiles *c, const char *name, RunHeader *header, RowLines *l)
 {
     char path[PATH_MAX], *wanted = NULL;
     size_t length;
     folder_path(c->folder, name, path);
-    RowLines l = {.f = fopen(path, "re")};
+    *l = (RowLines){.f = fopen(path, "re")};
+    if (l->f)
+        setvbuf(l->f, l->buffer, _IOFBF, sizeof l->buffer);
     FILE *f = open_memstream(&wanted, &length);
     if (f)
         header(f, c->schema);
-    l.are_same = f && fclose(f) == 0 && l.f && getline(&l.line, &l.room, l.f) > 0 && strcmp(l.line, wanted) == 0;
+    l->are_same = f && fclose(f) == 0 && l->f && getline(&l->line, &l->room, l->f) > 0 && strcmp(l->line, wanted) == 0;
     free(wanted);
-    return l;
 }
 
 /* Whether all was the same, to its end. */
@@ -115,8 +116,8 @@ static int close_lines(RowLines *l)
 
 void csv_files_pass(const CsvFiles *c, CsvPassing *p)
 {
-    *p = (CsvPassing){open_lines(c, "evaluations.csv", export_evaluations_header),
-                      open_lines(c, "front.csv", export_front_header)};
+    open_lines(c, "evaluations.csv", export_evaluations_header, &p->lines);
+    open_lines(c, "front.csv", export_front_header, &p->front);
 }
 
 /* Without replicates a line of front.csv is the number and the cells of that of evaluations.csv. */
@@ -318,10 +319,13 @@ static FILE *front_before(const CsvFiles *c, const SearchView *v)
 
 static Status replace_front(const CsvFiles *c, const SearchView *v, Err *err)
 {
+    char buffer[1 << 16];
     Front front = {c, v, NULL};
     if (c->run && run_has_polished(c->run))
         return replace_joined_front(&front, err);
     front.before = front_before(c, v);
+    if (front.before)
+        setvbuf(front.before, buffer, _IOFBF, sizeof buffer);
     const Status status = folder_write(c->folder, "front.csv", put_front_of_search, &front, err);
     if (front.before)
         fclose(front.before);

@@ -36,6 +36,7 @@ typedef struct {
     int are_same;      /* all lines so far are those of the rows */
     const char *cells; /* of the last line, if so: ",x,...,f,..." of n_cells characters */
     size_t n_cells;
+    char buffer[1 << 16]; /* of f */
 } RowLines;
 
 /* The same one after the other, in the one row of the table `room`, and compared with lines; a row that is not what was
