@@ -364,18 +364,6 @@ Status rows_read(Database *db, EvaluationTable *table, long first, long last, Er
     return each_row(&r, take_row, &r, first, last, err);
 }
 
-Status rows_read_known(Database *db, EvaluationTable *table, long last, Err *err)
-{
-    Reading r = {.table = table, .db = db};
-    char sql[240];
-    snprintf(
-        sql, sizeof sql,
-        "SELECT id, generation, kind, outcome, reason, seconds, NULL, f, spread, violation, NULL, NULL FROM evaluation "
-        "WHERE id BETWEEN 1 AND %ld ORDER BY id",
-        last);
-    return database_each(db, sql, take_row, &r, err);
-}
-
 typedef struct {
     Reading reading;
     EvaluationFn take;

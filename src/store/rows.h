@@ -44,9 +44,6 @@ typedef struct {
 Status rows_each(Database *db, EvaluationTable *room, long first, long last, RowLines *lines, EvaluationFn take,
                  void *user, Err *err);
 
-/* Evaluations 1..last, whose digests were compared before, into a table whose n_var and n_extra are 0. */
-Status rows_read_known(Database *db, EvaluationTable *table, long last, Err *err);
-
 /* The same as lines of evaluations.csv, the texts as this program has written them; n: how many. A row that is not
  * finished is one where it is wanted. */
 Status rows_print(Database *db, FILE *f, RowShape shape, long first, long last, int unfinished_too, size_t *n,

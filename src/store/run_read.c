@@ -19,8 +19,8 @@ typedef struct {
     Run *run;
     Database *d;
     RunPart part;
-    long known; /* evaluations 1..known are what was written */
-    FILE *out;  /* of the evaluations, where they are printed, with their header */
+    const Results *known; /* NULL: none */
+    FILE *out;            /* of the evaluations, where they are printed, with their header */
     RunHeader *header;
     const RunVisitor *visitor;
     void *user;               /* of the visitor */
@@ -127,9 +127,9 @@ static Status load_evaluations(Loading *l, Err *err)
     const int has_all =
         l->part == RUN_WHOLE || l->part == RUN_ENDED || s->is_noisy || (l->part == RUN_REVIEWED && s->order.n_obj > 0);
     run->table = evaluation_table(has_all ? s->n_var : 0, s->n_obj, has_all ? s->n_extra : 0);
-    if (!has_all && l->known > 0)
-        TRY(rows_read_known(l->d, &run->table, l->known, err));
-    TRY(rows_read(l->d, &run->table, run->table.n > 0 ? l->known + 1 : 0, LONG_MAX, err));
+    if (!has_all && l->known)
+        TRY(results_table(l->known, &run->table, err));
+    TRY(rows_read(l->d, &run->table, run->table.n > 0 ? (long)run->table.n + 1 : 0, LONG_MAX, err));
     const size_t n = run->n_generations > 0 ? (size_t)run->generation[run->n_generations - 1].simulated : 0;
     if (n > 0 && (run->table.n < n || run->table.row[n - 1].id != (long)n))
         return tell_missing(l, err);
@@ -403,7 +403,7 @@ Status run_load_part(Run *run, Database *d, const char *folder, RunPart part, Er
     return load_from(&(Loading){.run = run, .d = d, .part = part}, folder, err);
 }
 
-Status run_review(Run *run, Database *d, const char *folder, long known, Err *err)
+Status run_review(Run *run, Database *d, const char *folder, const Results *known, Err *err)
 {
     return load_from(&(Loading){.run = run, .d = d, .part = RUN_REVIEWED, .known = known}, folder, err);
 }

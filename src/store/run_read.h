@@ -8,6 +8,7 @@
 #include <stdio.h>
 
 #include "store/database.h"
+#include "store/results.h"
 #include "store/rows.h"
 #include "store/run.h"
 
@@ -29,9 +30,8 @@ typedef enum {
 Status run_read_part(Run *run, const char *folder, RunPart part, Err *err);
 Status run_load_part(Run *run, Database *d, const char *folder, RunPart part, Err *err);
 
-/* RUN_REVIEWED of a run whose evaluations 1..known were read from this database before: if no more than results are wanted of
- * them, they are not compared with their digests again. */
-Status run_review(Run *run, Database *d, const char *folder, long known, Err *err);
+/* RUN_REVIEWED of a run some of whose results are known: if no more is wanted of them they are not read. */
+Status run_review(Run *run, Database *d, const char *folder, const Results *known, Err *err);
 
 /* A run whose results are read (RUN_RESULTS) and whose numbers pass by, row for row, as they are stored (store/rows.h), all in
  * one state. A null function is not called. */

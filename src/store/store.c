@@ -16,6 +16,7 @@
 #include "store/digest.h"
 #include "store/front_share.h"
 #include "store/logs.h"
+#include "store/results.h"
 #include "store/rows.h"
 #include "store/run_read.h"
 #include "store/tables.h"
@@ -32,7 +33,7 @@ struct RunStore {
     double last_commit;          /* [s] of the clock */
     double last_generation;      /* ... */
     size_t n_known;              /* designs of finished generations */
-    size_t n_compared;           /* ... whose digests were compared in this session */
+    Results passed;              /* ... that were read in this session, for its end */
     unsigned char *was_on_front; /* (n_known) at the end of the last generation */
     uint64_t front;              /* digest of those on it */
     FrontShare share;
@@ -284,6 +285,7 @@ static Status take_finished(const Evaluation *e, void *user, Err *err)
         return fail(err, STATUS_IO, "%s: is damaged: evaluation %zu is missing", database_path(each->store->db),
                     each->n);
     csv_files_pass_design(&each->store->files, &each->files, e->id);
+    results_take(&each->store->passed, e);
     return each->take(e, each->user, err);
 }
 
@@ -293,13 +295,15 @@ Status store_each_finished(RunStore *store, EvaluationFn take, void *user, Err *
     EvaluationTable room = store->waiting;
     Each each = {.store = store, .take = take, .user = user};
     csv_files_pass(&store->files, &each.files);
+    results_begin(&store->passed, n, room.n_obj);
     room = evaluation_table(room.n_var, room.n_obj, room.n_extra);
     Status status = rows_each(store->db, &room, 1, (long)n, &each.files.lines, take_finished, &each, err);
     if (status == STATUS_OK && each.n < n)
         status = fail(err, STATUS_IO, "%s: is damaged: evaluation %zu is missing", database_path(store->db), n);
     evaluation_table_free(&room);
     status = csv_files_passed(&store->files, &each.files, store->db, status, err);
-    store->n_compared = status == STATUS_OK ? n : 0;
+    if (status != STATUS_OK)
+        results_free(&store->passed);
     return folder_advise(store_folder(store), status, err);
 }
 
@@ -556,7 +560,8 @@ static Status read_at_the_end(RunStore *store, Run *run, Err *err)
     const int is_written = store->has_polished || store->files.is_behind;
     run_free(&store->run);
     TRY(is_written ? run_load(run, store->db, store_folder(store), err)
-                   : run_review(run, store->db, store_folder(store), (long)store->n_compared, err));
+                   : run_review(run, store->db, store_folder(store), &store->passed, err));
+    results_free(&store->passed);
     if (run->n_front == 0 && run->table.n_var == 0) {
         run_free(run);
         TRY(run_load(run, store->db, store_folder(store), err));
@@ -592,6 +597,7 @@ void store_free(RunStore *store)
     free(store->was_on_front);
     evaluation_table_free(&store->waiting);
     front_share_free(&store->share);
+    results_free(&store->passed);
     folder_release(&store->folder);
     free(store);
 }
