@@ -111,6 +111,47 @@ static void test_a_run_read_without_its_variables_has_the_same_results(void **st
     run_free(&part);
 }
 
+/* The first number is changed, so that it shows where it comes from. */
+static void test_a_run_of_which_results_are_known_is_the_one_that_is_read(void **state)
+{
+    (void)state;
+    Run read, known;
+    Database *d;
+    Results passed;
+    Err err = {0};
+    char folder[PATH_MAX], path[PATH_MAX + 16];
+    CHECK_OK(run_read_part(&read, path_of("silent", folder), RUN_RESULTS, &err), &err);
+    snprintf(path, sizeof path, "%s/run.sqlite", folder);
+    CHECK_OK(database_open(&d, path, DATABASE_READ, &err), &err);
+    const size_t n = read.table.n, m = read.schema.n_obj;
+    results_begin(&passed, n - 5, m);
+    for (size_t i = 0; i < n; i++)
+        results_take(&passed, &read.table.row[i]);
+    assert_int_equal(passed.n, n - 5);
+    passed.f[0] += 1.0;
+    CHECK_OK(run_review(&known, d, folder, &passed, &err), &err);
+    assert_close(known.F[0], read.F[0] + 1.0, 0.0);
+    assert_int_equal(known.table.n, n);
+    assert_memory_equal(known.F + 1, read.F + 1, (n * m - 1) * sizeof *read.F);
+    assert_memory_equal(known.place, read.place, n * sizeof *read.place);
+    for (size_t i = 0; i < n; i++) {
+        const Evaluation *a = &known.table.row[i], *b = &read.table.row[i];
+        assert_true(a->id == b->id && a->generation == b->generation && a->kind == b->kind && a->outcome == b->outcome);
+        assert_true(a->seconds == b->seconds && a->violation == b->violation && strcmp(a->reason, b->reason) == 0);
+        assert_memory_equal(a->sd, b->sd, m * sizeof *a->sd);
+    }
+    run_free(&known);
+    results_begin(&passed, n, m);
+    results_take(&passed, &read.table.row[0]);
+    read.table.row[1].outcome = OUTCOME_DEAD;
+    for (size_t i = 1; i < n; i++)
+        results_take(&passed, &read.table.row[i]);
+    assert_int_equal(passed.n, 0);
+    results_free(&passed);
+    database_close(d);
+    run_free(&read);
+}
+
 static void test_a_run_that_lost_an_evaluation_is_not_resumed_and_its_files_keep_it(void **state)
 {
     (void)state;
@@ -371,6 +412,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_what_is_wrong_in_one_cell_is_named),
         cmocka_unit_test(test_a_run_read_without_its_variables_has_the_same_results),
+        cmocka_unit_test(test_a_run_of_which_results_are_known_is_the_one_that_is_read),
         cmocka_unit_test(test_a_run_that_lost_an_evaluation_is_not_resumed_and_its_files_keep_it),
         cmocka_unit_test(test_json_for_which_there_is_no_room_is_an_output_that_cannot_be_written),
         cmocka_unit_test(test_values_that_are_not_known_are_nan_and_a_word_that_is_not_known_is_unfinished),
