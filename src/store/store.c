@@ -66,7 +66,8 @@ static Status open_database(RunStore *store, Err *err)
     return database_open(&store->db, path, DATABASE_WRITE, err);
 }
 
-/* evaluations.csv follows the database. Where it has more, the journal was lost, as by a copy of run.sqlite alone. */
+/* evaluations.csv follows the database. Where it has more, the journal was lost, as by a copy of run.sqlite
+ * alone, or it was edited: nothing tells the two apart. */
 static Status check_nothing_lost(const RunStore *store, Err *err)
 {
     const size_t n = store->run.n_ahead + store->run.table.n,
@@ -74,10 +75,11 @@ static Status check_nothing_lost(const RunStore *store, Err *err)
     if (n_exported <= n)
         return STATUS_OK;
     return fail(err, STATUS_IO,
-                "%s: evaluations.csv has %zu evaluations, run.sqlite %s%zu: %s is missing. Put it back; to resume "
+                "%s: evaluations.csv has %zu evaluations, run.sqlite %s%zu: %s is missing%s. Put it back; to resume "
                 "without those evaluations rename evaluations.csv; for another run: --new",
                 store_folder(store), n_exported, store->has_run ? "" : "is not there, ", n,
-                store->has_run ? "its journal run.sqlite-wal, or part of it," : "the database");
+                store->has_run ? "its journal run.sqlite-wal, or part of it," : "the database",
+                store->has_run ? ", or lines were added to evaluations.csv" : "");
 }
 
 static Status load_run(RunStore *store, RunPart part, Err *err)
