@@ -1,4 +1,5 @@
 /* Screening: which designs are evaluated by the cheap level alone, and what becomes of them. */
+#include <float.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -25,6 +26,9 @@ typedef struct {
     double noise;     /* of a replicate */
     int is_unrelated; /* the first replicate is noise alone and not in the mean */
     int is_apart;
+    double step;    /* of the cheap level, which is rounded down to multiples of it; 0: it is not */
+    double penalty; /* at both levels where x1 is above 0.7; 0: none */
+    int is_flat;    /* the last objective of the whole evaluation is 1 */
     size_t n_tasks, n_cheap_tasks;
     EvaluationTable done; /* in the order of the numbers */
 } World;
@@ -50,6 +54,9 @@ static Part part_of(const World *w, const double x[], size_t part)
             p.f[k] += pow(x[d] - (d == k ? 1.0 : 0.2 * (double)k), 2.0);
         p.f[k] = (w->is_unrelated && part == 0 ? 0.0 : p.f[k]) + w->noise * noise_of(x, part, k);
         p.f[k] = w->is_apart && part == 0 ? 0.8 * p.f[k] - BIAS : p.f[k];
+        p.f[k] = w->step > 0.0 && part == 0 ? w->step * floor(p.f[k] / w->step) : p.f[k];
+        p.f[k] = w->is_flat && part > 0 && k == OBJ - 1 ? 1.0 : p.f[k];
+        p.f[k] = w->penalty > 0.0 && x[0] > 0.7 ? w->penalty : p.f[k];
     }
     return p;
 }
@@ -141,6 +148,7 @@ typedef struct {
     World *world;
     Moments moments;
     size_t n, n_evaluations, n_screened, n_finished, views;
+    double agreement;
     unsigned char kind[ROWS_MAX], on_front[ROWS_MAX];
     size_t generation[ROWS_MAX];
     double Y[ROWS_MAX * OBJ];
@@ -165,6 +173,7 @@ static int observe(const SearchView *v, void *user)
     s->views++;
     s->n = v->n;
     s->n_evaluations = v->n_evaluations;
+    s->agreement = v->level_agreement;
     s->n_screened = s->n_finished = 0;
     for (size_t i = 0; i < v->n; i++) {
         s->n_screened += v->kind[i] == KIND_SCREENED;
@@ -392,6 +401,46 @@ static void test_a_level_apart_that_ranks_badly_costs_the_comparison_alone(void 
     forget(&other_world, &other);
 }
 
+static void test_designs_that_a_level_apart_does_not_tell_apart_speak_for_no_agreement(void **state)
+{
+    (void)state;
+    static const double STEPS[] = {1.0, 1e3}; /* of values about 1.5 apart; of a constant */
+    for (size_t i = 0; i < 2; i++) {
+        memset(&other, 0, sizeof other);
+        open_apart(&other_world, 1);
+        other_world.step = STEPS[i];
+        run(&other_world, &other, NULL);
+        assert_int_equal(other.n_screened, APART_PAIRS);
+        assert_true(i == 0 ? other.agreement < APART_TAU_MIN : other.agreement == 0.0);
+        forget(&other_world, &other);
+    }
+}
+
+static void test_an_objective_that_is_the_same_for_all_designs_does_not_speak_against_the_cheap_level(void **state)
+{
+    (void)state;
+    memset(&other, 0, sizeof other);
+    open_apart(&other_world, 1);
+    other_world.is_flat = 1;
+    run(&other_world, &other, NULL);
+    assert_true(other.n_screened > 3 * APART_PAIRS && other.agreement > 0.999);
+    forget(&other_world, &other);
+}
+
+static void test_penalties_whose_squares_overflow_do_not_end_a_search_with_levels(void **state)
+{
+    (void)state;
+    static const double PENALTIES[] = {1e160, 1e300, DBL_MAX};
+    for (size_t i = 0; i < 3; i++) {
+        memset(&other, 0, sizeof other);
+        open_apart(&other_world, 1);
+        other_world.penalty = PENALTIES[i];
+        run(&other_world, &other, NULL);
+        assert_true(other.n_screened > 3 * APART_PAIRS);
+        forget(&other_world, &other);
+    }
+}
+
 /* Also where it is less than the pairs cost, or nearly nothing is left at the end. */
 static void test_a_search_with_a_level_apart_ends_within_any_budget(void **state)
 {
@@ -458,6 +507,9 @@ int main(void)
         cmocka_unit_test(test_a_cheap_level_of_great_bias_is_never_on_the_front_and_counts_as_what_it_costs),
         cmocka_unit_test(test_a_search_with_a_level_apart_is_resumed_to_the_same_bytes),
         cmocka_unit_test(test_a_level_apart_that_ranks_badly_costs_the_comparison_alone),
+        cmocka_unit_test(test_designs_that_a_level_apart_does_not_tell_apart_speak_for_no_agreement),
+        cmocka_unit_test(test_an_objective_that_is_the_same_for_all_designs_does_not_speak_against_the_cheap_level),
+        cmocka_unit_test(test_penalties_whose_squares_overflow_do_not_end_a_search_with_levels),
         cmocka_unit_test(test_a_search_with_a_level_apart_ends_within_any_budget),
         cmocka_unit_test(test_an_agreement_that_is_not_known_is_said_to_be_so),
         cmocka_unit_test(test_without_a_cheap_level_nothing_is_screened),

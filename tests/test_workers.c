@@ -100,6 +100,35 @@ static void test_a_program_with_levels_is_screened_by_the_cheap_one_and_the_fron
     expect(65, "problem.costs", "check @/levels.ini --set problem.costs=0.1,0.5,1");
 }
 
+static void
+test_a_worker_that_answers_the_same_at_both_levels_is_said_to_do_so_and_a_cheap_level_that_is_dear_too(void **state)
+{
+    (void)state;
+    Said said;
+    write_external("same.ini", "sh tests/worker.sh good",
+                   "max_evals = 40\nfidelity = levels\n[problem]\ncosts = 0.6, 1\n");
+    run(&said, "optimize @/same.ini --out @/same");
+    assert_int_equal(said.code, 0);
+    assert_non_null(strstr(said.err, "warning: problem.costs: level 0 costs 0.6 of an evaluation"));
+    assert_non_null(strstr(said.out, "the worker may ignore `level`"));
+    forget(&said);
+    run(&said, "optimize @/same.ini --out @/less --set problem.costs=0.5,1 --max-evals 4");
+    assert_null(strstr(said.err, "problem.costs"));
+    assert_null(strstr(said.out, "may ignore"));
+    forget(&said);
+}
+
+/* No success of the cheap level makes up for it. */
+static void test_a_run_whose_whole_evaluations_all_fail_stops_after_some_or_says_so_at_its_end(void **state)
+{
+    (void)state;
+    write_external("rough.ini", "sh tests/worker.sh rough",
+                   "max_evals = 60\nfailures_max = 20\nfidelity = levels\n[problem]\ncosts = 0.1, 1\n");
+    expect(70, "the last 20 whole evaluations of ", "optimize @/rough.ini --threads 1 --out @/rough");
+    expect(70, "no evaluation of a design as a whole succeeded",
+           "optimize @/rough.ini --set search.failures_max=0 --max-evals 10 --out @/end");
+}
+
 /* A folder named in Latin-1. */
 static void test_names_that_are_no_utf_8_are_shown(void **state)
 {
@@ -239,6 +268,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_a_program_with_levels_is_screened_by_the_cheap_one_and_the_front_is_of_the_dear_one),
+        cmocka_unit_test(
+            test_a_worker_that_answers_the_same_at_both_levels_is_said_to_do_so_and_a_cheap_level_that_is_dear_too),
+        cmocka_unit_test(test_a_run_whose_whole_evaluations_all_fail_stops_after_some_or_says_so_at_its_end),
         cmocka_unit_test(test_no_design_is_left_out_whatever_its_message),
         cmocka_unit_test(test_names_that_are_no_utf_8_are_shown),
         cmocka_unit_test(test_a_run_whose_workers_all_fail_stops_after_some_with_the_reason),

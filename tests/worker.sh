@@ -21,6 +21,7 @@ while read -r line; do
         [ "$level" = 0 ] || [ "$level" = 1 ] || good="{\"id\":$id,\"error\":\"no level\"}"
         mode=good
     fi
+    [ "$1" = rough ] && case $line in *'"level":1'*) mode=error ;; *) mode=good ;; esac # level 1 always fails
     case $mode in
     error) echo "{\"id\":$id,\"error\":\"no, \\\"never\\\" this one\"}" ;;
     formula) echo "{\"id\":$id,\"error\":\"=1+1,=2\"}" ;;

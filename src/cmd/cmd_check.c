@@ -387,10 +387,10 @@ static Status run(const Args *args, Err *err)
     Status status = read_settings(args, &c, &s, err);
     if (status == STATUS_OK) {
         settings_idle_each(&s, warn_of_idle, &c);
-        if (s.problem.kind == PROBLEM_TOWER) {
-            warn_of_settings(&s, warn, &c);
+        warn_of_settings(&s, warn, &c);
+        if (s.problem.kind == PROBLEM_TOWER)
             check_tower(args, &c, &s);
-        } else if (json_array_size(c.faults) == 0)
+        else if (json_array_size(c.faults) == 0)
             open_study(&c, &s);
         status = verdict(args, &c, err);
     }

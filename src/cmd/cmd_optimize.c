@@ -177,7 +177,9 @@ static Status report_no_front(const Run *run, const StudySummary *summary, Err *
                     "none of %zu simulations succeeded; the first: %s; %s/evaluations.csv has all",
                     summary->n_simulated, run->table.row[0].reason, summary->folder);
     if (strcmp(run->settings->search.limits, "none") == 0)
-        return fail(err, STATUS_INTERNAL, "every design failed at least once; %s/evaluations.csv says why",
+        return fail(err, STATUS_INTERNAL, "%s; %s/evaluations.csv says why",
+                    run->settings->search.fidelity == FIDELITY_OFF ? "every design failed at least once"
+                                                                   : "no evaluation of a design as a whole succeeded",
                     summary->folder);
     printf("nearest: %s/nearest.csv\n%zu simulated designs, %zu simulations failed, %.1f s (%s)\n\n", summary->folder,
            summary->n_simulated, summary->n_failed, summary->seconds, stop_reason_words(summary->stopped));
@@ -328,8 +330,7 @@ static Status optimize(const Args *args, Run *finished, Err *err)
         store_free(options.store);
         return status;
     }
-    if (s.problem.kind == PROBLEM_TOWER)
-        warn_of_settings(&s, warn_on_stderr, NULL);
+    warn_of_settings(&s, warn_on_stderr, NULL);
     warn_of_fidelity(args, &s);
     signals_catch();
     status = study_run(&s, &options, &summary, stderr, err);

@@ -4,7 +4,9 @@
 #include <string.h>
 
 #include "base/list.h"
+#include "moga/constants.h"
 #include "settings/options.h"
+#include "simulator/external.h"
 
 void warn_on_stderr(const char *key, const char *text, void *user)
 {
@@ -53,8 +55,28 @@ static void warn_of_twins(const Settings *s, WarnFn warn, void *user)
     }
 }
 
+static void warn_of_costs(const Settings *s, WarnFn warn, void *user)
+{
+    static const double MOST = 0.5;
+    char text[160];
+    Err err = {0};
+    double cost;
+    if (s->problem.kind != PROBLEM_EXTERNAL || s->search.fidelity != FIDELITY_LEVELS ||
+        !list_is_given(s->problem.costs) || external_cheap_cost(s->problem.costs, &cost, &err) != STATUS_OK ||
+        cost <= MOST)
+        return;
+    snprintf(text, sizeof text,
+             "level 0 costs %g of an evaluation: one design at level 1 and the %d screened for it take %g; "
+             "search.fidelity = off may do better",
+             cost, APART_PER_FINISHED, 1.0 + APART_PER_FINISHED * cost);
+    warn("problem.costs", text, user);
+}
+
 void warn_of_settings(const Settings *s, WarnFn warn, void *user)
 {
+    warn_of_costs(s, warn, user);
+    if (s->problem.kind != PROBLEM_TOWER)
+        return;
     warn_of_deviations(s, warn, user);
     warn_of_twins(s, warn, user);
     if (strcmp(s->sim.tolerance, "auto") == 0 && !(s->sim.gap_tolerance_m > 0))

@@ -18,7 +18,8 @@
  *   agree           Kendall's tau, mean over the objectives, at least
  *                   LEVEL_TAU_MIN                             APART_TAU_MIN, later APART_TAU_LATER
  *
- * Where they do not agree nothing is screened any more.
+ * Tau is of the pairs of designs that the whole evaluation tells apart; those that the cheap level does not tell apart
+ * speak neither for it nor against it, so that tau of a constant is 0. Where they do not agree nothing is screened any more.
  *
  * Sources  Kennedy and O'Hagan, Biometrika 87 (2000) 1-13 (autoregression between levels)
  * Threads  one */
@@ -47,6 +48,7 @@ typedef struct {
     Screened *design;                  /* (n) by row */
     double *y;                         /* (n, n_obj + n_con) objectives and constraints of the cheap level */
     double agreement;                  /* Kendall's tau of the two levels; NAN: not known yet */
+    int is_same;                       /* a level apart has answered as the whole evaluation does, bit by bit */
     size_t n_front, front_max, *front; /* rows of the front of results and predictions */
     unsigned char *is_chosen;          /* (front_max) rows that are finished in this generation */
     size_t *rows, n_rows;              /* (n_max) designs that have both levels */

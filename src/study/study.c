@@ -38,8 +38,8 @@ typedef struct {
     long left_generation;      /* whose state was damaged, so that the one before is resumed; 0: none */
     int asked, late;           /* why it stopped: the signal, the time */
     size_t n_improvement;      /* evaluations at which the improvement of the front is logged next */
-    long failures;             /* simulations in a row that failed, up to now */
-    int failing;               /* search.failures_max of them */
+    long failures[2];          /* in a row up to now: of whole evaluations, of those of the cheap level alone */
+    int failing;               /* search.failures_max of them; 2: of the cheap level */
     char failure[200];         /* why the last one failed */
     char lost[200];            /* what ended the session beside a request: a rank that died, say */
     pthread_mutex_t lock;      /* of an asynchronous search: results come while a generation is written */
@@ -91,13 +91,15 @@ static int may_go_on(void *user)
 static void count_failures(Study *study, const Evaluation *e)
 {
     const long most = study->used.search.failures_max;
-    study->failures = e->outcome == OUTCOME_OK ? 0 : study->failures + 1;
-    if (study->failures == 0 || study->failing)
+    const int is_cheap = e->kind == KIND_SCREENED;
+    long *n = &study->failures[is_cheap];
+    *n = e->outcome == OUTCOME_OK ? 0 : *n + 1;
+    if (*n == 0 || study->failing)
         return;
     snprintf(study->failure, sizeof study->failure, "%s: %s", outcome_word(e->outcome), e->reason);
-    if (most > 0 && study->failures >= most) {
+    if (most > 0 && *n >= most) {
 #pragma omp atomic write
-        study->failing = 1;
+        study->failing = 1 + is_cheap;
     }
 }
 
@@ -167,6 +169,7 @@ static void take_view(StudySummary *sum, const SearchView *view)
     sum->n_screened = view->n_screened;
     sum->n_evaluations = view->n_evaluations;
     sum->level_agreement = view->level_agreement;
+    sum->levels_are_same = view->levels_are_same;
     sum->has_left_screening = view->has_left_screening;
 }
 
@@ -450,9 +453,13 @@ static Status finish(Study *study, Err *err)
     if (sum->stopped == STOP_FAILURES)
         return fail(
             err, STATUS_INTERNAL,
-            "%.200s: the last %ld of %zu simulations failed (search.failures_max), the last one as %s; mend what "
+            "%.200s: the last %ld%s of %zu simulations failed (search.failures_max), the last one as %s; mend what "
             "is wrong, then the same command resumes the run",
-            sum->folder, study->failures, sum->n_simulated, study->failure);
+            sum->folder, study->failures[study->failing - 1],
+            study->used.search.fidelity == FIDELITY_OFF ? ""
+            : study->failing == 1                       ? " whole evaluations"
+                                                        : " cheap evaluations",
+            sum->n_simulated, study->failure);
     return is_final ? STATUS_OK
                     : fail(err, STATUS_STOPPED, "%.200s: %s after %zu of %ld simulations", sum->folder, why,
                            sum->n_simulated, sum->max_evals);

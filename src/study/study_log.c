@@ -126,6 +126,9 @@ void screening_words(const StudySummary *sum, char text[SCREENING_WORDS])
     if (isnan(sum->level_agreement))
         snprintf(text + n, SCREENING_WORDS - (size_t)n,
                  "too few were simulated at both levels to know how well the %s ranks designs", level);
+    else if (sum->levels_are_same)
+        snprintf(text + n, SCREENING_WORDS - (size_t)n,
+                 "every answer at level 0 was that at level 1: the worker may ignore `level`");
     else
         snprintf(text + n, SCREENING_WORDS - (size_t)n, "the %s ranks designs as %s by a Kendall's tau of %.2f%s",
                  level, sum->is_by_levels ? "the whole evaluation does" : "all do", sum->level_agreement,
