@@ -141,6 +141,7 @@ static void test_a_run_of_which_results_are_known_is_the_one_that_is_read(void *
         assert_memory_equal(a->sd, b->sd, m * sizeof *a->sd);
     }
     run_free(&known);
+    results_free(&passed);
     results_begin(&passed, n, m);
     results_take(&passed, &read.table.row[0]);
     read.table.row[1].outcome = OUTCOME_DEAD;
