@@ -23,7 +23,6 @@ static const double NUGGET_START = 1e-4;    /* smallest nugget that tuning start
 
 /* -- tune.c: the additive part of a kernel ------------------------------------------------------------------------- */
 
-static const double ADDITIVE_SHARE = 0.5;       /* of the kernel, the rest is as without it */
 static const double ADDITIVE_REACH_SHORT = 0.1; /* of the unit cube; tried in turn */
 static const double ADDITIVE_REACH_LONG = 0.25; /* ... */
 static const double ADDITIVE_GAIN = 0.8;        /* of the mean square leave-one-out error, to take it */
@@ -31,7 +30,8 @@ static const double ADDITIVE_ERROR = 1e-3;      /* mean square error, in varianc
 
 /* -- rbf.c --------------------------------------------------------------------------------------------------------- */
 
-static const double NEAREST = 1e-4;   /* a variable nearer to its bounds is warped as if it were so far away */
-enum { CENTRES_PER_COEFFICIENT = 2 }; /* a quadratic tail takes so many centres for each coefficient */
+static const double ADDITIVE_SHARE = 0.5; /* of the kernel is its additive part, the rest is as without it */
+static const double NEAREST = 1e-4;       /* a variable nearer to its bounds is warped as if it were so far away */
+enum { CENTRES_PER_COEFFICIENT = 2 };     /* a quadratic tail takes so many centres for each coefficient */
 
 #endif
