@@ -72,17 +72,18 @@ static void test_a_run_that_keeps_its_limits_has_no_nearest_designs(void **state
     free(path);
 }
 
-static void test_the_nearest_are_in_the_order_of_what_they_miss_and_failed_ones_are_not_among_them(void **state)
+static void test_the_nearest_are_in_the_order_of_what_they_miss_without_failed_and_screened_ones(void **state)
 {
     (void)state;
     static const double VIOLATION[] = {5, 3, 9, 3, 1, 8, 2, 7, 6, 4, 0.5, 11, 10, 2.5};
-    static const size_t WANTED[] = {10, 4, 13, 1, 3, 9, 0, 8, 7, 5};
+    static const size_t WANTED[] = {10, 4, 1, 3, 9, 0, 8, 7, 5, 2};
     enum { N = sizeof VIOLATION / sizeof VIOLATION[0] };
     Evaluation row[N];
     RunPlace at[N];
     size_t rows[NEAREST_MAX];
     for (size_t i = 0; i < N; i++) {
-        row[i] = (Evaluation){.id = (long)i + 1, .violation = VIOLATION[i]};
+        row[i] =
+            (Evaluation){.id = (long)i + 1, .violation = VIOLATION[i], .kind = i == 13 ? KIND_SCREENED : KIND_SAMPLED};
         at[i] = (RunPlace){.ok = i != 6};
     }
     const Run h = {.table = {.n = N, .row = row}, .place = at};
@@ -156,7 +157,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_limits_that_nothing_keeps_end_with_the_nearest_designs),
         cmocka_unit_test(test_a_run_that_keeps_its_limits_has_no_nearest_designs),
-        cmocka_unit_test(test_the_nearest_are_in_the_order_of_what_they_miss_and_failed_ones_are_not_among_them),
+        cmocka_unit_test(test_the_nearest_are_in_the_order_of_what_they_miss_without_failed_and_screened_ones),
         cmocka_unit_test(test_limits_that_contradict_each_other_are_refused_before_anything_is_simulated),
         cmocka_unit_test(test_a_run_without_a_front_says_why_there_is_none),
     };

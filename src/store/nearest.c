@@ -12,7 +12,7 @@ size_t nearest_rows(const Run *run, size_t rows[NEAREST_MAX])
     size_t n = 0;
     for (size_t i = 0; i < run->table.n; i++) {
         size_t at = n;
-        if (!run->place[i].ok)
+        if (!run->place[i].ok || run->table.row[i].kind == KIND_SCREENED)
             continue;
         while (at > 0 && run->table.row[i].violation < run->table.row[rows[at - 1]].violation)
             at--;
