@@ -10,7 +10,8 @@
 
 enum { NEAREST_MAX = 10 };
 
-/* Rows of the run with the least violation, the least first, ties by number; not screened ones. Returns how many, 0: all failed. */
+/* Rows of the run with the least violation, the least first, ties by number; none that is screened only. Returns how
+ * many; 0: all failed. */
 size_t nearest_rows(const Run *run, size_t rows[NEAREST_MAX]);
 
 /* folder/nearest.csv; with n = 0 it is removed: a run that was resumed may have a front now. */
