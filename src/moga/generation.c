@@ -192,8 +192,9 @@ Status generation_next(Search *s, Err *err)
 {
     const size_t first_new = s->archive.n;
     const double start = search_seconds(s), waiting = s->control.times.waiting;
+    const int has_parents = s->population.n >= 2;
     s->n_predicted = 0;
-    if (s->population.n < 2)
+    if (!has_parents && !search_has_front(s))
         return sample_again(s, err);
     pareto_archive_reset_estimates(&s->archive);
     control_weigh_costs(&s->control, s->config->surrogate);
@@ -202,6 +203,8 @@ Status generation_next(Search *s, Err *err)
     TRY(screening_last(s, &n_last, err));
     if (n_last > 0)
         return replicate_generation(s, n_last, err);
+    if (!has_parents) /* all were predictions, which a generation of replicates drops */
+        return sample_again(s, err);
     TRY(fit_surrogate(s, err));              /* 2 */
     offspring_make(s, 0);                    /* 3 */
     const size_t n = infill_select_batch(s); /* 4 */
