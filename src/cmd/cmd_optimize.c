@@ -171,15 +171,15 @@ static Status report_no_front(const Run *run, const StudySummary *summary, Err *
 {
     size_t rows[NEAREST_MAX];
     const size_t n = nearest_rows(run, rows);
+    const int is_whole = run->settings->search.fidelity == FIDELITY_OFF, none_succeeded = n == 0 && run->table.n > 0;
     TRY(nearest_write(summary->folder, run, n, rows, err));
-    if (n == 0 && run->table.n > 0)
+    if (none_succeeded && is_whole)
         return fail(err, STATUS_INTERNAL,
                     "none of %zu simulations succeeded; the first: %s; %s/evaluations.csv has all",
                     summary->n_simulated, run->table.row[0].reason, summary->folder);
-    if (strcmp(run->settings->search.limits, "none") == 0)
+    if (none_succeeded || strcmp(run->settings->search.limits, "none") == 0)
         return fail(err, STATUS_INTERNAL, "%s; %s/evaluations.csv says why",
-                    run->settings->search.fidelity == FIDELITY_OFF ? "every design failed at least once"
-                                                                   : "no evaluation of a design as a whole succeeded",
+                    is_whole ? "every design failed at least once" : "no evaluation of a design as a whole succeeded",
                     summary->folder);
     printf("nearest: %s/nearest.csv\n%zu simulated designs, %zu simulations failed, %.1f s (%s)\n\n", summary->folder,
            summary->n_simulated, summary->n_failed, summary->seconds, stop_reason_words(summary->stopped));

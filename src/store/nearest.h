@@ -11,7 +11,7 @@
 enum { NEAREST_MAX = 10 };
 
 /* Rows of the run with the least violation, the least first, ties by number; none that is screened only. Returns how
- * many; 0: all failed. */
+ * many; 0: all of those failed. */
 size_t nearest_rows(const Run *run, size_t rows[NEAREST_MAX]);
 
 /* folder/nearest.csv; with n = 0 it is removed: a run that was resumed may have a front now. */
