@@ -66,7 +66,7 @@ static void test_a_run_ends_before_its_job_and_goes_on_in_the_next(void **state)
     write_in_place("slow.ini", "[problem]\nkind = external\ncommand = sh tests/worker.sh steady\nvariables = 3\n"
                                "objectives = 2\n[search]\nmax_evals = 4000\nsurrogate = off\nmax_hours = auto\n");
     for (int i = 0; i < 2; i++) {
-        snprintf(end, sizeof end, "%ld", (long)time(NULL) + 122);
+        snprintf(end, sizeof end, "%ld", (long)time(NULL) + 124);
         setenv("SLURM_JOB_END_TIME", end, 1);
         expect(75, "Resume it with", i ? "optimize @/slow" : "optimize @/slow.ini --out @/slow");
     }
