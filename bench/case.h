@@ -13,7 +13,7 @@
 #define IMTET_BENCH_CASE_H
 
 #include "base/random.h"
-#include "scene/motion.h"
+#include "motion/motion.h"
 #include "bench/engines/engines.h"
 
 typedef struct {

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/stat.h"
-#include "simulator/replicates.h"
+#include "evaluate/replicates.h"
 
 static const double WINDOW_S = 60, ENOUGH = 5e-3, REFERENCE_STEPS = 10;
 

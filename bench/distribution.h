@@ -1,6 +1,6 @@
 /* bench/distribution.h -- past the predictability horizon single runs differ: do engines agree in distribution?
  *
- * Each engine runs DISTRIBUTION_RUNS replicates of one design (simulator/replicates.h) over a window longer than the
+ * Each engine runs DISTRIBUTION_RUNS replicates of one design (evaluate/replicates.h) over a window longer than the
  * horizon. Its results are compared with those of the reference (fast, fine) by the two-sample distance of Kolmogorov
  * and Smirnov, sup |F_a(x) - F_b(x)|. Two samples of one distribution exceed ks_critical() in one comparison of twenty.
  *

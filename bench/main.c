@@ -13,7 +13,7 @@
 #include "bench/promise.h"
 #include "bench/paper.h"
 #include "cmd/args.h"
-#include "scene/motion_source.h"
+#include "motion/motion_source.h"
 #include "store/output.h"
 
 static const double DISTRIBUTION_LIMIT_S = 0.4; /* for one run; there are 64 */

@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "bench/sweep.h"
-#include "simulator/tower.h"
+#include "evaluate/tower.h"
 
 enum { REPLICATES = 16, DESIGNS = 9 };
 

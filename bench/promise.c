@@ -7,7 +7,7 @@
 #include "base/random.h"
 #include "scene/design.h"
 #include "sim/sim.h"
-#include "simulator/estimate.h"
+#include "analysis/estimate.h"
 
 static const double GAP_MIN = 1e-3, GAP_MAX = 0.2, CORE_MIN = 4e-3, CORE_MAX = 0.04; /* [m] */
 static const double WINDOW_MIN_S = 8, WINDOW_MAX_S = 15, STRONG = 0.3;               /* of the peak */

@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "bench/sweep.h"
-#include "simulator/measures.h"
+#include "evaluate/measures.h"
 #include "store/output.h"
 
 /* An energy-balance error above BALANCE_OPEN is a failure that the engine itself shows; an error above WRONG with a

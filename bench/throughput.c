@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 #include "base/clock.h"
-#include "simulator/tower.h"
+#include "evaluate/tower.h"
 
 enum { DESIGNS = 24, DESIGNS_QUICK = 4, JUDGED = 6, REPLICATES = 8 };
 

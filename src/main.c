@@ -16,8 +16,8 @@
 #include "cmd/manual.h"
 #include "cmd/show.h"
 #include "evaluate/cluster.h"
-#include "simulator/adapter.h"
-#include "simulator/recipe.h"
+#include "evaluate/adapter.h"
+#include "evaluate/recipe.h"
 #include "store/provenance.h"
 
 /* Below this the first deep call would end the program by a fault of its own. */

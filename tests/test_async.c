@@ -6,7 +6,7 @@
 
 #include "base/random.h"
 #include "moga/hypervolume.h"
-#include "simulator/textbook.h"
+#include "evaluate/textbook.h"
 
 enum { VAR_MAX = 22, OBJ_MAX = 7, ROWS_MAX = 400, GENERATIONS_MAX = 120, WORKERS_MAX = 8 };
 

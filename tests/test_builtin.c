@@ -8,8 +8,8 @@
 #include <lapacke.h>
 
 #include "base/table.h"
-#include "scene/motion_source.h"
-#include "scene/spectrum.h"
+#include "motion/motion_source.h"
+#include "motion/spectrum.h"
 
 static const double G = 9.81;
 

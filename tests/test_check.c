@@ -3,8 +3,8 @@
 
 #include <sys/stat.h>
 
-#include "scene/motion_source.h"
-#include "scene/spectrum.h"
+#include "motion/motion_source.h"
+#include "motion/spectrum.h"
 #include "scene/summary.h"
 #include "scene_options.h"
 

@@ -13,8 +13,8 @@
 
 #include "program.h"
 
-#include "scene/motion_source.h"
-#include "scene/spectrum.h"
+#include "motion/motion_source.h"
+#include "motion/spectrum.h"
 
 /* A design file of 20 floors: gap_j = gap * j. */
 static void write_designs(const char *name, int n, const double gap[], const double t_base[], const double t_top[])

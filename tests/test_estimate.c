@@ -4,11 +4,11 @@
 #include <string.h>
 
 #include "bench/promise.h"
-#include "scene/motion_source.h"
+#include "motion/motion_source.h"
 #include "scene_options.h"
 #include "sim/sim.h"
 #include "sim/tolerance.h"
-#include "simulator/estimate.h"
+#include "analysis/estimate.h"
 
 static void test_a_second_run_has_twice_the_steps_of_the_first(void **state)
 {

@@ -10,7 +10,7 @@
 #include "base/table.h"
 #include "sim/fast/fast.h"
 #include "sim/sim.h"
-#include "scene/motion_source.h"
+#include "motion/motion_source.h"
 #include "scene_options.h"
 
 /* ---- one ball and a wall ------------------------------------------------------------------------------------ */

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "simulator/horizon.h"
+#include "analysis/horizon.h"
 #include "scene_options.h"
 
 static void open_scenario(Scenario *w, double x[22], double gap_m)

@@ -7,7 +7,7 @@
 #include "check.h"
 #include "scene_options.h"
 #include "sim/linear.h"
-#include "simulator/baselines.h"
+#include "analysis/baselines.h"
 #include "settings/settings.h"
 
 enum { N = 3 };

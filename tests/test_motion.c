@@ -6,9 +6,9 @@
 #include <time.h>
 #include <string.h>
 
-#include "scene/motion_source.h"
-#include "scene/motion_read.h"
-#include "scene/spectrum.h"
+#include "motion/motion_source.h"
+#include "motion/motion_read.h"
+#include "motion/spectrum.h"
 
 static const double PI = 3.14159265358979323846;
 static const double G = 9.81;

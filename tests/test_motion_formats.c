@@ -11,8 +11,8 @@
 #include <string.h>
 
 #include "base/table.h"
-#include "scene/formats/record.h"
-#include "scene/motion_read.h"
+#include "motion/formats/record.h"
+#include "motion/motion_read.h"
 
 enum { N_SAMPLES = 43, PEAK_AT = 15 };
 static const double PEAK_GAL[] = {-123.4, 98.7, 85.6}, DT = 0.01;

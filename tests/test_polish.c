@@ -3,9 +3,9 @@
 
 #include "functions.h"
 #include "base/random.h"
-#include "polish/local.h"
-#include "polish/polish.h"
-#include "polish/refine.h"
+#include "study/local.h"
+#include "study/polish.h"
+#include "study/refine.h"
 
 enum { VAR = 3, OBJ = 2 };
 

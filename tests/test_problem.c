@@ -11,10 +11,10 @@
 
 #include "base/random.h"
 #include "check.h"
-#include "simulator/external.h"
-#include "simulator/textbook.h"
-#include "simulator/schema.h"
-#include "simulator/adapter.h"
+#include "evaluate/external.h"
+#include "evaluate/textbook.h"
+#include "evaluate/schema.h"
+#include "evaluate/adapter.h"
 #include "settings/settings.h"
 
 enum { VAR = 22, OBJ = 7 };

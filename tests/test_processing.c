@@ -2,10 +2,10 @@
 #include "program.h"
 
 #include "base/units.h"
-#include "scene/motion_process.h"
-#include "scene/motion_scale.h"
-#include "scene/motion_source.h"
-#include "scene/spectrum.h"
+#include "motion/motion_process.h"
+#include "motion/motion_scale.h"
+#include "motion/motion_source.h"
+#include "motion/spectrum.h"
 #include "settings/settings.h"
 
 static MotionOptions options(void)

@@ -6,7 +6,7 @@
 #include "scene_options.h"
 #include "base/stat.h"
 #include "sim/as_built.h"
-#include "simulator/adapter.h"
+#include "evaluate/adapter.h"
 #include "settings/settings.h"
 
 enum { DESIGNS = 3, N_VAR = 22 };

@@ -9,7 +9,7 @@
 #include "base/pack.h"
 #include "check.h"
 #include "moga/search.h"
-#include "simulator/textbook.h"
+#include "evaluate/textbook.h"
 #include "functions.h"
 #include "searches.h"
 

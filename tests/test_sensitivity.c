@@ -5,7 +5,7 @@
 #include "check.h"
 #include "scene_options.h"
 #include "settings/options.h"
-#include "simulator/sensitivity.h"
+#include "analysis/sensitivity.h"
 
 enum { N_VAR = 22, REPLICATES = SANITIZED ? 1 : 2 };
 

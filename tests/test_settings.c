@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "settings/idle.h"
-#include "simulator/textbook.h"
+#include "evaluate/textbook.h"
 
 enum { KEYS_MAX = 200 };
 

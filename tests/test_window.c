@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "bench/timed_run.h"
-#include "scene/motion_read.h"
-#include "scene/motion_source.h"
+#include "motion/motion_read.h"
+#include "motion/motion_source.h"
 #include "scene_options.h"
 
 typedef struct {

@@ -10,7 +10,7 @@
 
 #include "bench/stability/bob.h"
 
-#include "scene/motion.h"
+#include "motion/motion.h"
 
 typedef struct {
     double q, v;                                               /* at the end [m] [m/s] */

@@ -4,7 +4,7 @@
 
 #include "bench/engines/engines.h"
 #include "bench/stability/need.h"
-#include "scene/motion.h"
+#include "motion/motion.h"
 #include "sim/sim.h"
 #include "settings/options.h"
 

@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 #include "cmd/outputs.h"
-#include "scene/builtin.h"
+#include "motion/builtin.h"
 #include "settings/idle.h"
 
 enum { OPTIONS_MAX = 32 };

@@ -10,11 +10,11 @@
 #include "cmd/designs.h"
 #include "cmd/show.h"
 #include "cmd/warnings.h"
-#include "scene/motion_scale.h"
-#include "scene/motion_source.h"
+#include "motion/motion_scale.h"
+#include "motion/motion_source.h"
 #include "settings/idle.h"
 #include "sim/sim.h"
-#include "simulator/adapter.h"
+#include "evaluate/adapter.h"
 
 typedef struct {
     int as_json;

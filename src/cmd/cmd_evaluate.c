@@ -11,7 +11,7 @@
 #include "cmd/evaluations.h"
 #include "cmd/ida.h"
 #include "cmd/show.h"
-#include "scene/motion_scale.h"
+#include "motion/motion_scale.h"
 #include "settings/settings.h"
 #include "store/output.h"
 #include "store/run_read.h"

@@ -5,8 +5,8 @@
 #include "cmd/commands.h"
 #include "cmd/designs.h"
 #include "cmd/show.h"
-#include "simulator/horizon.h"
-#include "simulator/tower.h"
+#include "analysis/horizon.h"
+#include "evaluate/tower.h"
 #include "settings/options.h"
 
 enum { REPLICATES = 16 };

@@ -5,12 +5,12 @@
 #include "base/json.h"
 #include "base/units.h"
 #include "scene/core_beam.h"
-#include "scene/spectrum.h"
+#include "motion/spectrum.h"
 #include "cmd/commands.h"
 #include "cmd/designs.h"
 #include "cmd/show.h"
 #include "report/heights.h"
-#include "simulator/scenario.h"
+#include "evaluate/scenario.h"
 #include "settings/options.h"
 
 /* Where no design is given: the core of the paper's Table 1, linear from 12 mm to 6.4 mm. */

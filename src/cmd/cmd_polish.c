@@ -8,7 +8,7 @@
 #include "cmd/show.h"
 #include "store/output.h"
 #include "store/store.h"
-#include "polish/refine.h"
+#include "study/refine.h"
 #include "settings/options.h"
 
 typedef struct {

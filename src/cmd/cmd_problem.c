@@ -3,10 +3,10 @@
 #include <string.h>
 
 #include "cmd/commands.h"
-#include "simulator/textbook.h"
+#include "evaluate/textbook.h"
 #include "store/output.h"
 #include "study/study.h"
-#include "simulator/adapter.h"
+#include "evaluate/adapter.h"
 #include "settings/settings.h"
 
 /* The table under way. */

@@ -12,8 +12,8 @@
 #include "settings/settings.h"
 #include "sim/engine.h"
 #include "sim/fast/fast.h"
-#include "simulator/measures.h"
-#include "simulator/adapter.h"
+#include "evaluate/measures.h"
+#include "evaluate/adapter.h"
 #include "study/study.h"
 
 enum { N_CHECKS_MAX = 96 };

@@ -13,8 +13,8 @@
 #include "cmd/show.h"
 #include "cmd/time_files.h"
 #include "cmd/warnings.h"
-#include "simulator/estimate.h"
-#include "simulator/tower.h"
+#include "analysis/estimate.h"
+#include "evaluate/tower.h"
 #include "store/output.h"
 #include "settings/options.h"
 

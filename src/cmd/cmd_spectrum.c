@@ -8,8 +8,8 @@
 #include "cmd/commands.h"
 #include "cmd/show.h"
 #include "cmd/spectrum.h"
-#include "scene/motion_process.h"
-#include "scene/motion_scale.h"
+#include "motion/motion_process.h"
+#include "motion/motion_scale.h"
 #include "settings/settings.h"
 #include "store/output.h"
 

@@ -10,8 +10,8 @@
 #include "report/heights.h"
 #include "scene/frame.h"
 #include "settings/settings.h"
-#include "simulator/estimate.h"
-#include "simulator/tower.h"
+#include "analysis/estimate.h"
+#include "evaluate/tower.h"
 #include "store/run_read.h"
 #include "study/record_paths.h"
 

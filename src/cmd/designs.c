@@ -5,7 +5,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "simulator/measures.h"
+#include "evaluate/measures.h"
 #include "store/run_read.h"
 
 /* -- tables -------------------------------------------------------------------------------------------------------- */

@@ -12,11 +12,11 @@
 #include "cmd/show.h"
 #include "evaluate/queue.h"
 #include "evaluate/threads.h"
-#include "scene/motion_scale.h"
-#include "scene/motion_source.h"
-#include "simulator/baselines.h"
-#include "simulator/recipe.h"
-#include "simulator/estimate.h"
+#include "motion/motion_scale.h"
+#include "motion/motion_source.h"
+#include "analysis/baselines.h"
+#include "evaluate/recipe.h"
+#include "analysis/estimate.h"
 
 const struct EvaluationCase EVALUATION_CASES[N_WITH_DEVICES] = {{SCENE_IMPACT, "with core", "with_core"},
                                                                 {SCENE_RIGID, "rigidly connected", "rigid"},

@@ -13,7 +13,7 @@
 #include <stdio.h>
 
 #include "evaluate/problem.h"
-#include "simulator/replicates.h"
+#include "evaluate/replicates.h"
 
 typedef struct Settings Settings;
 
@@ -46,10 +46,10 @@ typedef struct {
     char motion[MOTION_TEXT_MAX]; /* for people: name, length, peak, scaling */
     double pga_g, scale, stretch;
     SimResult result[N_WITH_DEVICES];
-    LinearDevice device[N_WITH_DEVICES]; /* optimized under this record (simulator/baselines.h) */
+    LinearDevice device[N_WITH_DEVICES]; /* optimized under this record (analysis/baselines.h) */
     ReplicateSummary replicates;         /* of the design, where there are some; its words stand in the next line */
     char words[2][40];
-    double error[N_MEASURES]; /* of the design, estimated (simulator/estimate.h), where error_known */
+    double error[N_MEASURES]; /* of the design, estimated (analysis/estimate.h), where error_known */
     int error_known;          /* of records that were named, at one intensity, by the engine fast */
 } EvaluatedRun;
 

@@ -11,7 +11,7 @@
 
 #include "base/json.h"
 #include "cmd/evaluations.h"
-#include "simulator/measures.h"
+#include "evaluate/measures.h"
 
 enum { IDA_LEVELS_MAX = 1000, IDA_FRACTILES = 3, IDA_SHOWN = 3 };
 extern const double IDA_FRACTILE[IDA_FRACTILES];           /* 0.16, 0.5, 0.84 */

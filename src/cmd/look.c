@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "cmd/designs.h"
-#include "scene/builtin.h"
+#include "motion/builtin.h"
 #include "settings/options.h"
 
 #include "store/run_read.h"

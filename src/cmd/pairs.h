@@ -2,7 +2,7 @@
 #ifndef IMTET_CMD_PAIRS_H
 #define IMTET_CMD_PAIRS_H
 
-#include "simulator/schema.h"
+#include "evaluate/schema.h"
 
 /* "NAME=NUMBER" of any result: *k counts on behind n_obj. */
 Status pair_take(const Schema *schema, const char *option, const char *text, size_t *k, double *value, Err *err);

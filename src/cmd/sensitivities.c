@@ -6,7 +6,7 @@
 
 #include "cmd/designs.h"
 #include "cmd/show.h"
-#include "simulator/sensitivity.h"
+#include "analysis/sensitivity.h"
 #include "store/output.h"
 
 static json_t *describe(const Sensitivity *s)

@@ -3,8 +3,8 @@
 #define IMTET_CMD_SHOW_H
 
 #include "base/json.h"
-#include "simulator/baselines.h"
-#include "simulator/schema.h"
+#include "analysis/baselines.h"
+#include "evaluate/schema.h"
 
 json_t *json_result(SceneKind kind, const SimResult *r);
 

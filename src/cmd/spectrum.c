@@ -7,9 +7,9 @@
 #include "base/stat.h"
 #include "base/units.h"
 #include "report/gnuplot.h"
-#include "scene/motion_process.h"
-#include "scene/motion_scale.h"
-#include "scene/motion_source.h"
+#include "motion/motion_process.h"
+#include "motion/motion_scale.h"
+#include "motion/motion_source.h"
 
 static const double DAMPING = 0.05, SHORTEST_S = 0.02, LONGEST_S = 20, TWO_PI = 6.283185307179586;
 

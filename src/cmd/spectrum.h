@@ -7,9 +7,9 @@
 
 #include <stdio.h>
 
-#include "scene/motion.h"
-#include "scene/options.h"
-#include "scene/spectrum.h"
+#include "motion/motion.h"
+#include "motion/options.h"
+#include "motion/spectrum.h"
 
 enum { N_PERIODS = 121 }; /* 0.02 to 20 s, equally spaced in their logarithm */
 

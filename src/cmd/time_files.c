@@ -6,7 +6,7 @@
 
 #include "base/units.h"
 #include "report/history.h"
-#include "scene/spectrum.h"
+#include "motion/spectrum.h"
 #include "sim/floor_record.h"
 #include "store/output.h"
 

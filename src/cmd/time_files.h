@@ -7,7 +7,7 @@
 #ifndef IMTET_CMD_TIME_FILES_H
 #define IMTET_CMD_TIME_FILES_H
 
-#include "simulator/tower.h"
+#include "evaluate/tower.h"
 
 /* The designs, with their numbers and the results that they had. */
 typedef struct {

@@ -6,7 +6,7 @@
 #include "base/list.h"
 #include "moga/constants.h"
 #include "settings/options.h"
-#include "simulator/external.h"
+#include "evaluate/external.h"
 
 void warn_on_stderr(const char *key, const char *text, void *user)
 {

@@ -7,7 +7,7 @@
 
 #include "base/units.h"
 #include "report/wavelet.h"
-#include "simulator/tower.h"
+#include "evaluate/tower.h"
 #include "settings/options.h"
 
 static const double QUIET = 0.02; /* of the peak displacement */

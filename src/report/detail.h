@@ -1,12 +1,12 @@
 /* report/detail.h -- one design of the tower looked at closely: simulated again as the run did it, beside its baselines
- * (simulator/baselines.h), then on other earthquakes.
+ * (analysis/baselines.h), then on other earthquakes.
  *
  * Ownership  detail_make allocates, detail_free releases (a zeroed Detail is fine) */
 #ifndef IMTET_REPORT_DETAIL_H
 #define IMTET_REPORT_DETAIL_H
 
 #include "report/history.h"
-#include "simulator/baselines.h"
+#include "analysis/baselines.h"
 #include "study/record_paths.h"
 
 typedef struct Settings Settings;

@@ -9,7 +9,7 @@
 #ifndef IMTET_REPORT_HISTORY_H
 #define IMTET_REPORT_HISTORY_H
 
-#include "simulator/scenario.h"
+#include "evaluate/scenario.h"
 
 typedef enum {
     ENERGY_KINETIC,

@@ -9,7 +9,7 @@
 #include "report/gnuplot.h"
 #include "report/report.h"
 #include "report/words.h"
-#include "scene/builtin.h"
+#include "motion/builtin.h"
 #include "settings/options.h"
 
 enum { HISTORY_POINTS = 2000 };

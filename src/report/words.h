@@ -1,12 +1,12 @@
 /* report/words.h -- how pages and pictures call an objective or another measure: short title, unit, factor to that unit.
  *
- *   shown = factor * natural value                    files keep their own names and units (simulator/measures.h)
+ *   shown = factor * natural value                    files keep their own names and units (evaluate/measures.h)
  *
  * Threads  pure functions; texts live as long as the program, or as the schema */
 #ifndef IMTET_REPORT_WORDS_H
 #define IMTET_REPORT_WORDS_H
 
-#include "simulator/schema.h"
+#include "evaluate/schema.h"
 
 typedef struct {
     const char *title, *unit; /* unit "": a number */

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 
 #include "base/units.h"
-#include "scene/spectrum.h"
+#include "motion/spectrum.h"
 
 /* ---- figures -------------------------------------------------------------------------------------------------- */
 

@@ -9,7 +9,7 @@
 #define IMTET_SCENE_SUMMARY_H
 
 #include "scene/core_beam.h"
-#include "scene/motion.h"
+#include "motion/motion.h"
 
 typedef struct {
     int n_floors;

@@ -8,9 +8,9 @@
 #include "base/json.h"
 #include "base/units.h"
 #include "moga/dominance.h"
-#include "scene/motion_scale.h"
+#include "motion/motion_scale.h"
 #include "settings/options.h"
-#include "simulator/tower.h"
+#include "evaluate/tower.h"
 
 enum { PAGES_MAX = 64 };
 

@@ -5,7 +5,7 @@
 #include <unistd.h>
 
 #include "base/list.h"
-#include "scene/builtin.h"
+#include "motion/builtin.h"
 #include "scene/compiled_in.h"
 #include "scene/frame.h"
 

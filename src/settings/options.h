@@ -5,10 +5,68 @@
 #ifndef IMTET_SETTINGS_OPTIONS_H
 #define IMTET_SETTINGS_OPTIONS_H
 
+#include "moga/options.h"
+#include "motion/options.h"
 #include "scene/options.h"
 #include "sim/options.h"
-#include "simulator/options.h"
-#include "study/options.h"
+
+/* -- [problem]: all but the kind only where it is not the tower -- */
+
+/* In the order of evaluate/textbook.h. */
+#define TEXTBOOK_LIST(X)                                                                                               \
+    X(PROBLEM_DTLZ2, "dtlz2")                                                                                          \
+    X(PROBLEM_WFG4, "wfg4")                                                                                            \
+    X(PROBLEM_DTLZ1_INVERTED, "dtlz1_inverted")                                                                        \
+    X(PROBLEM_DTLZ5, "dtlz5")                                                                                          \
+    X(PROBLEM_DTLZ7, "dtlz7")                                                                                          \
+    X(PROBLEM_WFG5, "wfg5")
+#define PROBLEM_KIND_LIST(X) X(PROBLEM_TOWER, "tower") X(PROBLEM_EXTERNAL, "external") TEXTBOOK_LIST(X)
+typedef enum {
+    PROBLEM_KIND_LIST(CHOICE_NAME) PROBLEM_KIND_COUNT,
+    PROBLEM_TEXTBOOK = PROBLEM_EXTERNAL + 1 /* and whatever follows it */
+} ProblemKind;
+
+#define NOISY_LIST(X) X(NOISY_AUTO, "auto") X(NOISY_NO, "no") X(NOISY_YES, "yes")
+typedef enum { NOISY_LIST(CHOICE_NAME) } Noisy;
+
+typedef struct {
+    ProblemKind kind;
+    char command[OPTION_TEXT_MAX];
+    double timeout_s;
+    long variables, objectives;
+    char lower[OPTION_TEXT_MAX], upper[OPTION_TEXT_MAX]; /* one number or a comma list */
+    char senses[OPTION_TEXT_MAX];                        /* min or max, one word or a list */
+    char variable_names[OPTION_TEXT_MAX], objective_names[OPTION_TEXT_MAX];
+    char costs[OPTION_TEXT_MAX]; /* of the levels that the program answers at, or none */
+    Noisy noisy;
+    double noise; /* [-] of a textbook problem's answers */
+} ProblemOptions;
+
+/* -- [search], [run] -- */
+
+typedef struct {
+    long seed, threads, population, initial, generations, max_evals;
+    double max_hours; /* OPTION_WORD: by the Slurm job */
+    double nondominated_share, trust_error;
+    double crossover_probability, crossover_eta, mutation_eta, mutation_rate;
+    long surrogate_max; /* largest number of centres of the surrogate */
+    SurrogateUse surrogate;
+    Switch asynchronous;
+    Fidelity fidelity;
+    SelectionKind survival;
+    double replicate_share;              /* share of max_evals */
+    long replicates_min, replicates_max; /* of a design */
+    long stop_after;                     /* evaluations without gain; 0: any number */
+    long failures_max;                   /* evaluations in a row that fail; 0: any number */
+    long polish;                         /* designs at the end */
+    double polish_gain_min;              /* [-] of the range of an objective on the front */
+    char objectives[OPTION_TEXT_MAX], limits[OPTION_TEXT_MAX];
+    char start[OPTION_TEXT_MAX]; /* a CSV of designs or a run's folder, or none */
+} SearchOptions;
+
+typedef struct {
+    char out[OPTION_TEXT_MAX]; /* the run's folder */
+} RunOptions;
 
 typedef struct Settings {
     BuildingOptions building;

@@ -6,9 +6,9 @@
 
 #include "base/list.h"
 #include "scene/design.h"
-#include "scene/motion_scale.h"
+#include "motion/motion_scale.h"
 #include "sim/tolerance.h"
-#include "simulator/external.h"
+#include "evaluate/external.h"
 
 typedef struct {
     BrokenRuleFn broken;

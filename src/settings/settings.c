@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "base/list.h"
-#include "scene/builtin.h"
+#include "motion/builtin.h"
 #include "settings/rules.h"
 #include "settings/table.h"
 

@@ -10,7 +10,7 @@
 #ifndef IMTET_SIM_ENGINE_H
 #define IMTET_SIM_ENGINE_H
 
-#include "scene/motion.h"
+#include "motion/motion.h"
 #include "sim/force_monitor.h"
 #include "sim/model.h"
 #include "sim/result.h"

@@ -22,7 +22,7 @@
 #ifndef IMTET_SIM_LINEAR_H
 #define IMTET_SIM_LINEAR_H
 
-#include "scene/motion.h"
+#include "motion/motion.h"
 #include "sim/engine.h"
 
 typedef enum { LINEAR_RIGID, LINEAR_TMD, LINEAR_LINKS } LinearKind;

@@ -15,7 +15,7 @@
 #define IMTET_SIM_SIM_H
 
 #include "scene/design.h"
-#include "scene/motion.h"
+#include "motion/motion.h"
 #include "sim/options.h"
 #include "sim/result.h"
 

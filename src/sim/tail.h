@@ -12,7 +12,7 @@
 #define IMTET_SIM_TAIL_H
 
 #include "scene/building.h"
-#include "scene/motion.h"
+#include "motion/motion.h"
 
 /* input (motion->n) [J]: the largest W(s), s from sample k on. */
 Status tail_input(const BuildingModel *b, const Motion *motion, double input[], Err *err);

@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-#include "simulator/schema.h"
+#include "evaluate/schema.h"
 
 /* A box about the first designs that succeeded: from a fifth of their range below the best to the worst. */
 static Status create_cover(FrontShare *share, const SearchView *v, Err *err)

@@ -5,7 +5,7 @@
 
 #include <jansson.h>
 
-#include "simulator/adapter.h"
+#include "evaluate/adapter.h"
 
 typedef struct Settings Settings;
 

@@ -10,7 +10,7 @@
 #include "moga/dominance.h"
 #include "settings/idle.h"
 #include "settings/options.h"
-#include "simulator/external.h"
+#include "evaluate/external.h"
 
 void run_free(Run *run)
 {

@@ -18,7 +18,7 @@
 #include <limits.h>
 
 #include "evaluate/evaluation.h"
-#include "simulator/schema.h"
+#include "evaluate/schema.h"
 
 typedef struct Settings Settings;
 

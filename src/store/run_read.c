@@ -8,7 +8,7 @@
 
 #include "base/stat.h"
 #include "settings/settings.h"
-#include "simulator/measures.h"
+#include "evaluate/measures.h"
 #include "store/folder.h"
 #include "store/repeats.h"
 #include "store/rows.h"

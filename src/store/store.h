@@ -40,7 +40,7 @@
 #include "moga/search.h"
 #include "store/run.h"
 #include "store/tables.h"
-#include "simulator/adapter.h"
+#include "evaluate/adapter.h"
 
 typedef struct Settings Settings;
 

@@ -10,7 +10,7 @@
 
 #include <stdio.h>
 
-#include "simulator/adapter.h"
+#include "evaluate/adapter.h"
 #include "store/run.h"
 
 typedef struct {

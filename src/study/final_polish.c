@@ -1,6 +1,6 @@
 #include "study/final_polish.h"
 
-#include "polish/refine.h"
+#include "study/refine.h"
 #include "settings/options.h"
 
 /* Replicates that a standard deviation is estimated from; simulations below which polishing a design finds nothing; the

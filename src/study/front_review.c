@@ -7,7 +7,7 @@
 #include "base/linalg.h"
 #include "evaluate/threads.h"
 #include "settings/options.h"
-#include "simulator/tower.h"
+#include "evaluate/tower.h"
 #include "study/record_paths.h"
 
 enum { SIMULATED_MAX = 16 };

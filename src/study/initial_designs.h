@@ -8,7 +8,7 @@
 #ifndef IMTET_STUDY_INITIAL_DESIGNS_H
 #define IMTET_STUDY_INITIAL_DESIGNS_H
 
-#include "simulator/schema.h"
+#include "evaluate/schema.h"
 
 Status initial_designs_read(const char *start, const Schema *schema, double **X, size_t *n, Err *err);
 

@@ -4,7 +4,7 @@
 
 #include "store/lock.h"
 #include "store/run.h"
-#include "study/options.h"
+#include "settings/options.h"
 
 /* Of the search and of this start of it. */
 typedef struct {

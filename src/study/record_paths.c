@@ -5,8 +5,8 @@
 #include <unistd.h>
 
 #include "base/list.h"
-#include "scene/builtin.h"
-#include "scene/motion_source.h"
+#include "motion/builtin.h"
+#include "motion/motion_source.h"
 #include "settings/options.h"
 #include "store/provenance.h"
 

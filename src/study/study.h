@@ -1,7 +1,7 @@
 /* study/study.h -- the whole study: settings -> problem -> search over simulated designs -> run folder.
  *
  *   of the tower, f = (j1, j2, j3, ed1, -ed5_10, -edcs, mcore) or what search.objectives says, all minimised; other
- *   problems: simulator/adapter.h
+ *   problems: evaluate/adapter.h
  *
  * A simulation that does not finish, or whose numbers are not finite, is a failed design: kept with its reason, never
  * on the front.
@@ -24,7 +24,7 @@
 #include <limits.h>
 
 #include "moga/search.h"
-#include "simulator/scenario.h"
+#include "evaluate/scenario.h"
 #include "store/store.h"
 #include "study/progress.h"
 #include "study/summary.h"

@@ -5,9 +5,9 @@
 #ifndef IMTET_STUDY_STUDY_LOG_H
 #define IMTET_STUDY_STUDY_LOG_H
 
-#include "simulator/adapter.h"
+#include "evaluate/adapter.h"
 #include "store/store.h"
-#include "study/options.h"
+#include "settings/options.h"
 #include "study/summary.h"
 
 /* n: evaluations that the run holds already. */

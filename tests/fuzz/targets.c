@@ -10,9 +10,9 @@
 #include "scene/design.h"
 #include "settings/settings.h"
 #include "base/table.h"
-#include "scene/motion_process.h"
-#include "scene/motion_read.h"
-#include "scene/motion_scale.h"
+#include "motion/motion_process.h"
+#include "motion/motion_read.h"
+#include "motion/motion_scale.h"
 
 /* What must hold whatever the bytes are; a fuzzer and a test both notice an abort. */
 static void demand(int holds, const char *what)

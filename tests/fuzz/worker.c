@@ -1,7 +1,7 @@
 /* The protocol of external workers without the processes: the bytes come as a pipe would bring them, in pieces. */
 #include "targets.h"
 
-#include "simulator/external.c"
+#include "evaluate/external.c"
 
 enum { N_VAR = 2, N_OBJ = 2, N_DESIGNS = 4 };
 

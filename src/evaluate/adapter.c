@@ -1,0 +1,139 @@
+#include "evaluate/adapter.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include "evaluate/threads.h"
+#include "moga/constants.h"
+#include "moga/search.h"
+#include "settings/options.h"
+#include "evaluate/external.h"
+#include "evaluate/recipe.h"
+#include "evaluate/textbook.h"
+
+struct Adapter {
+    Schema schema;
+    Limits limits;
+    Problem problem;
+    Recipe recipe; /* of an external simulator */
+    int threads;
+};
+
+const Problem *adapter_problem(const Adapter *a)
+{
+    return &a->problem;
+}
+
+const Schema *adapter_schema(const Adapter *a)
+{
+    return &a->schema;
+}
+
+const Tower *adapter_tower(const Adapter *a)
+{
+    return tower_of(&a->problem);
+}
+
+int adapter_threads(const Adapter *a)
+{
+    return a->threads;
+}
+
+void adapter_observe(Adapter *a, const Observer *observer)
+{
+    a->problem.observer = *observer;
+}
+
+static void judge(const Evaluation *e, double f[], double g[], const void *user)
+{
+    const Adapter *a = user;
+    limits_apply(&a->limits, a->schema.n_obj, e, g);
+    for (size_t k = 0; k < a->schema.n_obj; k++)
+        f[k] = schema_objective(&a->schema, k)->sense * e->f[k];
+}
+
+/* Where a front asks for repeats, there must be simulations enough to bring them. */
+static Status check_repeats(const Adapter *a, const Settings *s, Err *err)
+{
+    const double share = s->search.replicate_share, wanted = (double)(s->search.replicates_min - 1);
+    const size_t n_var = a->schema.n_var;
+    if (!schema_is_noisy(s) || floor(search_replicates((size_t)s->search.max_evals, share, n_var)) >= wanted)
+        return STATUS_OK;
+    return fail(
+        err, STATUS_BAD_DATA,
+        "search.replicates_min: %ld simulations of a design are not to be had, repeats begin behind the first %zu; "
+        "search.max_evals must be %.0f at least",
+        s->search.replicates_min, REPLICATE_AFTER * n_var, ceil(wanted / share) + (double)(REPLICATE_AFTER * n_var));
+}
+
+/* The one place that picks a simulator. */
+static Status open_simulator(Problem *p, const Settings *s, TowerUse use, Err *err)
+{
+    switch (s->problem.kind) {
+    case PROBLEM_TOWER:
+        return tower_open(p, s, use, SIZE_MAX, err);
+    case PROBLEM_EXTERNAL:
+        return external_open(p, &s->problem, threads_wanted(s->search.threads), err);
+    default:
+        return textbook_open(p, &s->problem, (uint32_t)s->search.seed, err);
+    }
+}
+
+Status simulator_open(Problem *p, const void *recipe, size_t size, Err *err)
+{
+    const Recipe *r = recipe;
+    return size == sizeof *r ? open_simulator(p, &r->settings, r->use, err)
+                             : fail(err, STATUS_INTERNAL, "a problem of %zu bytes instead of %zu", size, sizeof *r);
+}
+
+/* Of a simulator whose problem has no recipe yet. */
+static void add_recipe(Adapter *a, const Settings *s)
+{
+    a->recipe.settings = *s;
+    a->problem.recipe = &a->recipe;
+    a->problem.recipe_size = sizeof a->recipe;
+    executor_choose(&a->problem);
+}
+
+static Status open_all(Adapter *a, const Settings *s, Err *err)
+{
+    Settings own = *s;
+    own.sim.measures_only = 1;
+    TRY(open_simulator(&a->problem, s->problem.kind == PROBLEM_TOWER ? &own : s, TOWER_AS_SET, err));
+    if (s->problem.kind == PROBLEM_EXTERNAL)
+        add_recipe(a, s);
+    const Tower *t = adapter_tower(a);
+    TRY(schema_of(&a->schema, s, t ? tower_n_floors(t) : 0, err));
+    TRY(limits_read(&a->limits, &a->schema, s->search.limits, err));
+    TRY(check_repeats(a, s, err));
+    a->problem.n_con = a->limits.n;
+    a->problem.judge = judge;
+    a->problem.user = a;
+    a->problem.is_noisy = schema_is_noisy(s);
+    return STATUS_OK;
+}
+
+Status adapter_open(Adapter **out, const Settings *s, Err *err)
+{
+    Adapter *a = calloc(1, sizeof *a);
+    *out = NULL;
+    if (!a)
+        return fail(err, STATUS_NO_MEMORY, "no memory for a problem");
+    a->threads = (int)threads_wanted(s->search.threads);
+    const Status status = open_all(a, s, err);
+    if (status == STATUS_OK)
+        *out = a;
+    else
+        adapter_close(a);
+    return status;
+}
+
+void adapter_close(Adapter *a)
+{
+    if (!a)
+        return;
+    problem_close(&a->problem);
+    schema_free(&a->schema);
+    free(a);
+}

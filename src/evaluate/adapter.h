@@ -1,0 +1,31 @@
+/* evaluate/adapter.h -- the problem that the settings pose: which simulator, which columns, which limits.
+ *
+ *   problem.kind = tower      gaps and thicknesses (evaluate/tower.h)
+ *                  external   processes that speak JSON lines (evaluate/external.h)
+ *                  dtlz2 ...  evaluate/textbook.h, with problem.noise where that is set
+ *
+ * Life cycle  adapter_open -> search on adapter_problem -> adapter_close
+ * Threads     as evaluate/problem.h */
+#ifndef IMTET_EVALUATE_ADAPTER_H
+#define IMTET_EVALUATE_ADAPTER_H
+
+#include "evaluate/limits.h"
+#include "evaluate/tower.h"
+
+typedef struct Adapter Adapter;
+
+Status adapter_open(Adapter **out, const Settings *s, Err *err);
+
+/* The simulator alone, as another process opens it: a ReopenFn (evaluate/cluster.h). recipe: evaluate/recipe.h. */
+Status simulator_open(Problem *p, const void *recipe, size_t size, Err *err);
+void adapter_close(Adapter *a); /* NULL is fine */
+
+const Problem *adapter_problem(const Adapter *a);
+const Schema *adapter_schema(const Adapter *a);
+const Tower *adapter_tower(const Adapter *a); /* NULL: it is another problem */
+int adapter_threads(const Adapter *a);
+
+/* Copied; at first there is none. */
+void adapter_observe(Adapter *a, const Observer *observer);
+
+#endif

@@ -1,0 +1,579 @@
+#include "evaluate/external.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <jansson.h>
+#include <math.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/pidfd.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "base/clock.h"
+#include "base/list.h"
+#include "base/visible.h"
+#include "evaluate/threads.h"
+#include "evaluate/guard.h"
+#include "evaluate/spawner.h"
+
+enum { LINE_MAX_BYTES = 1 << 20, READ_BYTES = 1 << 16, WORDS_MAX = 128, GRACE_MS = 1000, LOOK_MS = 200 };
+
+/* A process that ends so soon after a request had ended after its answer before. */
+static const double LEFT_BEFORE_S = 1.0;
+
+/* How long requests under way may still take when no more are wanted. */
+static const double LAST_ANSWERS_S = 5.0;
+
+typedef struct {
+    pid_t pid;   /* 0: not running */
+    int its_end; /* readable when the process has ended (pidfd); -1: the system has none */
+    Guard *guard;
+    size_t slot; /* the guard's for its process group */
+    int in, out;
+    char *line; /* (LINE_MAX_BYTES) what has come of an answer */
+    size_t n_line;
+    char *request;
+    size_t n_request, n_sent;
+    ExternalAnswer *answer; /* to be filled; NULL: idle */
+    long id;
+    double asked, deadline;
+    size_t n_answered; /* by this process */
+    int again;         /* the request goes to a fresh process */
+    int is_second;     /* ... it did */
+} Worker;
+
+typedef struct {
+    char *words[WORDS_MAX + 1], *text; /* the command, NULL at its end */
+    size_t n_var, n_obj, n_workers, part_size;
+    int has_levels;
+    double timeout_s;
+    double *lower, *upper; /* (n_var) */
+    Worker *worker;        /* (n_workers) */
+    Guard guard;
+    Spawner spawner;
+} External;
+
+/* -- the command --------------------------------------------------------------------------------------------------- */
+
+/* One word of *from, unquoted in place at `to`; *from moves behind it. 0: a quote is left open. */
+static int take_word(const char **from, char **to)
+{
+    char quote = 0;
+    for (; **from && (quote || (**from != ' ' && **from != '\t')); ++*from) {
+        const char c = **from;
+        if (quote ? c == quote : c == '\'' || c == '"')
+            quote = quote ? 0 : c;
+        else if (c == '\\' && quote != '\'' && (*from)[1])
+            *(*to)++ = *++*from;
+        else
+            *(*to)++ = c;
+    }
+    *(*to)++ = 0;
+    return !quote;
+}
+
+static Status split_command(External *e, const char *command, Err *err)
+{
+    e->text = calloc(strlen(command) + 2, 1);
+    if (!e->text)
+        return fail(err, STATUS_NO_MEMORY, "no memory for the command");
+    char *to = e->text;
+    for (size_t n = 0;;) {
+        command += strspn(command, " \t");
+        if (!*command)
+            return n > 0 ? STATUS_OK : fail(err, STATUS_BAD_DATA, "problem.command: is empty; what is to be run?");
+        if (n == WORDS_MAX)
+            return fail(err, STATUS_BAD_DATA, "problem.command: has more than %d words", WORDS_MAX);
+        e->words[n++] = to;
+        if (!take_word(&command, &to))
+            return fail(err, STATUS_BAD_DATA, "problem.command: a quote is left open");
+    }
+}
+
+/* -- one process --------------------------------------------------------------------------------------------------- */
+
+static Status worker_start(External *e, Worker *w, Err *err)
+{
+    int to_child[2], from_child[2];
+    if (pipe2(to_child, O_CLOEXEC) != 0)
+        return fail(err, STATUS_INTERNAL, "no pipe for a worker: %s", strerror(errno));
+    if (pipe2(from_child, O_CLOEXEC) != 0) {
+        close(to_child[0]);
+        close(to_child[1]);
+        return fail(err, STATUS_INTERNAL, "no pipe for a worker: %s", strerror(errno));
+    }
+    const int failed = spawner_run(&e->spawner, e->words, to_child[0], from_child[1], &w->pid);
+    close(to_child[0]);
+    close(from_child[1]);
+    w->in = to_child[1];
+    w->out = from_child[0];
+    w->n_line = 0;
+    if (failed) {
+        close(w->in);
+        close(w->out);
+        return fail(err, STATUS_BAD_DATA, "problem.command: %s cannot be started: %s", e->words[0], strerror(failed));
+    }
+    guard_tell(w->guard, w->slot, w->pid);
+    w->its_end = pidfd_open(w->pid, 0);
+    w->n_answered = 0;
+    fcntl(w->in, F_SETFL, O_NONBLOCK);
+    fcntl(w->out, F_SETFL, O_NONBLOCK);
+    return STATUS_OK;
+}
+
+static void worker_forget(Worker *w)
+{
+    guard_tell(w->guard, w->slot, 0);
+    close(w->in);
+    close(w->out);
+    if (w->its_end >= 0)
+        close(w->its_end);
+    w->its_end = -1;
+    w->pid = 0;
+}
+
+static void worker_kill(Worker *w)
+{
+    if (w->pid == 0)
+        return;
+    kill(-w->pid, SIGKILL);
+    while (waitpid(w->pid, NULL, 0) < 0 && errno == EINTR)
+        ;
+    worker_forget(w);
+}
+
+/* write() without SIGPIPE: a worker that has gone is an answer, not a signal for the program. */
+static ssize_t write_quietly(int fd, const char *text, size_t n)
+{
+    sigset_t pipe_signal, before, pending;
+    sigemptyset(&pipe_signal);
+    sigaddset(&pipe_signal, SIGPIPE);
+    sigpending(&pending);
+    const int was_pending = sigismember(&pending, SIGPIPE);
+    pthread_sigmask(SIG_BLOCK, &pipe_signal, &before);
+    const ssize_t written = write(fd, text, n);
+    const int cause = errno;
+    if (written < 0 && cause == EPIPE && !was_pending)
+        while (sigtimedwait(&pipe_signal, NULL, &(struct timespec){0}) < 0 && errno == EINTR)
+            ;
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    errno = cause;
+    return written;
+}
+
+/* -- one request --------------------------------------------------------------------------------------------------- */
+
+__attribute__((format(printf, 4, 5))) static void settle(Worker *w, Outcome outcome, int kill_it, const char *format,
+                                                         ...)
+{
+    ExternalAnswer *a = w->answer;
+    va_list list;
+    va_start(list, format);
+    vsnprintf(a->reason, sizeof a->reason, format, list);
+    va_end(list);
+    a->outcome = outcome;
+    a->seconds = clock_seconds() - w->asked;
+    w->answer = NULL;
+    if (kill_it)
+        worker_kill(w);
+}
+
+static Status write_request(External *e, Worker *w, const Task *task, Err *err)
+{
+    size_t size;
+    free(w->request);
+    w->request = NULL;
+    FILE *f = open_memstream(&w->request, &size);
+    if (!f)
+        return fail(err, STATUS_NO_MEMORY, "no memory for a request");
+    fprintf(f, "{\"id\":%ld,", w->id);
+    if (e->has_levels)
+        fprintf(f, "\"level\":%zu,", task->part);
+    fputs("\"x\":[", f);
+    for (size_t d = 0; d < e->n_var; d++)
+        fprintf(f, "%s%.17g", d ? "," : "", task->x[d]);
+    fputs("]}\n", f);
+    if (fclose(f) != 0)
+        return fail(err, STATUS_NO_MEMORY, "no memory for a request");
+    w->n_request = size;
+    w->n_sent = 0;
+    return STATUS_OK;
+}
+
+static Status send_request(External *e, Worker *w, const Task *task, Err *err)
+{
+    if (w->pid && waitpid(w->pid, NULL, WNOHANG) == w->pid)
+        worker_forget(w); /* it ended after its last answer: no fault of any design */
+    if (w->pid == 0)
+        TRY(worker_start(e, w, err));
+    w->id = task->id;
+    TRY(write_request(e, w, task, err));
+    w->answer = task->result;
+    w->again = w->is_second = 0;
+    w->asked = clock_seconds();
+    w->deadline = w->asked + e->timeout_s;
+    return STATUS_OK;
+}
+
+static void send_more(Worker *w)
+{
+    const ssize_t n = write_quietly(w->in, w->request + w->n_sent, w->n_request - w->n_sent);
+    if (n > 0)
+        w->n_sent += (size_t)n;
+    else if (n < 0 && errno != EAGAIN && errno != EINTR)
+        w->n_sent = w->n_request; /* nobody reads: the end of its output tells */
+}
+
+/* f of an answer into F; 0 where it is not n_obj finite numbers. */
+static int take_objectives(const External *e, const json_t *list, double f[])
+{
+    if (json_array_size(list) != e->n_obj)
+        return 0;
+    for (size_t k = 0; k < e->n_obj; k++) {
+        const json_t *value = json_array_get(list, k);
+        f[k] = json_is_number(value) ? json_number_value(value) : NAN;
+        if (!isfinite(f[k]))
+            return 0;
+    }
+    return 1;
+}
+
+/* A number that begins at `text` in `line` and is too large to be one, 1e999 say. Its length, or 0. The end of a number is
+ * none: 1.7976931348623157e+308 is finite, its last digits with the exponent are not. */
+static size_t overflow_length(const char *line, const char *text)
+{
+    char *end;
+    if ((*text != '-' && !isdigit((unsigned char)*text)) ||
+        (text > line && (isalnum((unsigned char)text[-1]) || strchr(".+-", text[-1]))))
+        return 0;
+    return isinf(strtod(text, &end)) && end > text + 2 ? (size_t)(end - text) : 0;
+}
+
+/* What Python, C and others print for numbers that are none is no JSON: outside strings it becomes "". */
+static void blank_non_numbers(char *line)
+{
+    static const char *const WORDS[] = {"NaN", "-NaN", "nan", "-nan", "Infinity", "-Infinity", "inf", "-inf"};
+    int in_string = 0;
+    for (char *c = line; *c; c++) {
+        if (in_string && *c == '\\' && c[1])
+            c++;
+        else if (*c == '"')
+            in_string = !in_string;
+        const size_t too_large = in_string ? 0 : overflow_length(line, c);
+        if (too_large > 0) {
+            memset(c, ' ', too_large);
+            memset(c, '"', 2);
+            c += too_large - 1;
+            continue;
+        }
+        for (size_t k = 0; !in_string && k < sizeof WORDS / sizeof WORDS[0]; k++) {
+            const size_t length = strlen(WORDS[k]);
+            if (strncmp(c, WORDS[k], length) != 0 || isalnum((unsigned char)c[length]))
+                continue;
+            memset(c, ' ', length);
+            memset(c, '"', 2);
+            c += length - 1;
+            break;
+        }
+    }
+}
+
+static void take_answer(const External *e, Worker *w, char *line, size_t length)
+{
+    json_error_t error;
+    blank_non_numbers(line);
+    json_t *o = json_loadb(line, length, 0, &error);
+    const json_t *f = json_object_get(o, "f"), *why = json_object_get(o, "error"), *id = json_object_get(o, "id");
+    const char *reason = json_is_string(why) ? json_string_value(why) : "error";
+    w->n_answered++;
+    if (!json_is_object(o) || !json_is_number(id))
+        settle(w, OUTCOME_GARBLED, 1, "wrote what is no answer: %.*s", visible_cut(line, 60), line);
+    else if (json_number_value(id) != (double)w->id)
+        settle(w, OUTCOME_GARBLED, 1, "answered id %.15g instead of %ld", json_number_value(id), w->id);
+    else if (why && !json_is_null(why))
+        settle(w, OUTCOME_ERROR, 0, "%.*s", visible_cut(reason, 120), reason);
+    else if (!json_is_array(f))
+        settle(w, OUTCOME_GARBLED, 1, "neither f nor error in the answer: %.*s", visible_cut(line, 60), line);
+    else if (!take_objectives(e, f, w->answer->f))
+        settle(w, OUTCOME_NOT_FINITE, 0, "f is not %zu finite numbers", e->n_obj);
+    else
+        settle(w, OUTCOME_OK, 0, "%s", "");
+    json_decref(o);
+}
+
+/* The first whole line in the buffer that is not blank is the answer; what follows it waits for the next request, which it
+ * spoils. */
+static void look_for_answer(const External *e, Worker *w)
+{
+    size_t used = 0;
+    for (char *end; w->answer && (end = memchr(w->line + used, '\n', w->n_line - used)) != NULL;) {
+        char *line = w->line + used;
+        const size_t length = (size_t)(end - line);
+        *end = 0;
+        used += length + 1;
+        if (strspn(line, " \t\r") < length)
+            take_answer(e, w, line, length);
+    }
+    memmove(w->line, w->line + used, w->n_line - used);
+    w->n_line -= used;
+    if (w->answer && w->n_line == LINE_MAX_BYTES)
+        settle(w, OUTCOME_GARBLED, 1, "wrote a line of more than %d bytes", LINE_MAX_BYTES);
+}
+
+/* A process that ends after its answers, as one that starts itself anew now and then, may be asked once more before it is
+ * gone: no fault of the design, which another process gets. */
+static void take_end(Worker *w)
+{
+    const int was_leaving =
+        w->n_answered > 0 && w->n_line == 0 && !w->is_second && clock_seconds() < w->asked + LEFT_BEFORE_S;
+    if (was_leaving)
+        w->again = 1;
+    else
+        settle(w, OUTCOME_DEAD, 1, "the worker ended without an answer");
+}
+
+static void read_more(const External *e, Worker *w)
+{
+    const size_t room = LINE_MAX_BYTES - w->n_line;
+    const ssize_t n = read(w->out, w->line + w->n_line, room < READ_BYTES ? room : READ_BYTES);
+    if (n > 0) {
+        w->n_line += (size_t)n;
+        look_for_answer(e, w);
+    } else if (n == 0 || (errno != EAGAIN && errno != EINTR)) {
+        take_end(w);
+    }
+}
+
+static Status ask_again(External *e, Worker *w, Err *err)
+{
+    worker_kill(w);
+    TRY(worker_start(e, w, err));
+    w->n_sent = 0;
+    w->again = 0;
+    w->is_second = 1;
+    return STATUS_OK;
+}
+
+/* -- as a simulator ------------------------------------------------------------------------------------------------ */
+
+/* The end of a process counts where it left nothing to be read: a child of it may hold its output open. */
+static void wait_for(const External *e, Worker *w)
+{
+    struct pollfd ends[3] = {
+        {w->n_sent < w->n_request ? w->in : -1, POLLOUT, 0}, {w->out, POLLIN, 0}, {w->its_end, POLLIN, 0}};
+    const double left_ms = 1e3 * (w->deadline - clock_seconds());
+    const int came = poll(ends, 3, left_ms > 0.0 ? (int)fmin(ceil(left_ms), LOOK_MS) : 0) > 0;
+    if (came && ends[1].revents)
+        read_more(e, w);
+    else if (came && ends[2].revents)
+        take_end(w);
+    else if (came && ends[0].revents)
+        send_more(w);
+    else
+        guard_look(w->guard);
+    if (w->answer && clock_seconds() >= w->deadline)
+        settle(w, OUTCOME_TIMEOUT, 1, "no answer within %g s", e->timeout_s);
+}
+
+static Status simulate(void *self, size_t worker, const Task *task, Err *err)
+{
+    External *e = self;
+    Worker *w = &e->worker[worker];
+    double ending = 0.0; /* since when no more is wanted */
+    TRY(send_request(e, w, task, err));
+    look_for_answer(e, w); /* a worker that wrote without being asked */
+    while (w->answer) {
+        if (ending == 0.0 && !task->may_go_on(task->user))
+            ending = clock_seconds();
+        if (ending > 0.0 && clock_seconds() > ending + LAST_ANSWERS_S) {
+            w->answer = NULL;
+            worker_kill(w);
+            return fail(err, STATUS_STOPPED, "stopped");
+        }
+        wait_for(e, w);
+        if (w->answer && w->again)
+            TRY(ask_again(e, w, err));
+    }
+    return STATUS_OK;
+}
+
+static void take_level(const External *e, const ExternalAnswer *a, Evaluation *evaluation)
+{
+    evaluation_set_outcome(evaluation, a->outcome, a->reason);
+    memcpy(evaluation->f, a->f, e->n_obj * sizeof *a->f);
+    evaluation->seconds = a->seconds;
+    evaluation->replicates = 1;
+}
+
+static void combine_cheap(const void *self, const void *parts, Evaluation *evaluation)
+{
+    take_level(self, parts, evaluation);
+}
+
+/* By the last part. */
+static void combine(const void *self, const void *parts, Evaluation *evaluation)
+{
+    const External *e = self;
+    const char *last = (const char *)parts + (e->has_levels ? e->part_size : 0);
+    take_level(e, (const ExternalAnswer *)(const void *)last, evaluation);
+}
+
+/* Input closed, a moment to end by itself. */
+static void farewell(External *e)
+{
+    size_t left = 0;
+    for (size_t i = 0; i < e->n_workers; i++)
+        if (e->worker[i].pid) {
+            close(e->worker[i].in);
+            e->worker[i].in = -1;
+            left++;
+        }
+    for (int ms = 0; left > 0 && ms < GRACE_MS; ms += 5) {
+        for (size_t i = 0; i < e->n_workers; i++) {
+            Worker *w = &e->worker[i];
+            if (w->pid && waitpid(w->pid, NULL, WNOHANG) == w->pid) {
+                worker_forget(w);
+                left--;
+            }
+        }
+        if (left > 0)
+            nanosleep(&(struct timespec){.tv_nsec = 5000000}, NULL);
+    }
+}
+
+static void external_close(void *self)
+{
+    External *e = self;
+    farewell(e);
+    for (size_t i = 0; i < e->n_workers; i++) {
+        worker_kill(&e->worker[i]);
+        free(e->worker[i].line);
+        free(e->worker[i].request);
+    }
+    spawner_end(&e->spawner);
+    guard_end(&e->guard);
+    free(e->worker);
+    free(e->lower);
+    free(e->text);
+    free(e);
+}
+
+static const Simulator EXTERNAL = {simulate, combine, external_close};
+
+/* -- opening ------------------------------------------------------------------------------------------------------- */
+
+/* Number of each of n variables: one for all, or a list. */
+static Status read_bounds(const char *key, const char *list, size_t n, double bounds[], Err *err)
+{
+    const size_t count = list_count(list);
+    char word[64], *end;
+    if (count != 1 && count != n)
+        return fail(err, STATUS_BAD_DATA, "%s: %zu numbers for %zu variables", key, count, n);
+    for (size_t j = 0; j < n; j++) {
+        if (!list_item(list, count == 1 ? 0 : j, word, sizeof word))
+            return fail(err, STATUS_BAD_DATA, "%s: number %zu is missing", key, j + 1);
+        bounds[j] = strtod(word, &end);
+        if (end == word || *end || !isfinite(bounds[j]))
+            return fail(err, STATUS_BAD_DATA, "%s: '%s' is not a number", key, word);
+    }
+    return STATUS_OK;
+}
+
+static Status set_bounds(External *e, const ProblemOptions *o, Err *err)
+{
+    e->lower = calloc(2 * e->n_var, sizeof *e->lower);
+    if (!e->lower)
+        return fail(err, STATUS_NO_MEMORY, "no memory for %zu variables", e->n_var);
+    e->upper = e->lower + e->n_var;
+    TRY(read_bounds("problem.lower", o->lower, e->n_var, e->lower, err));
+    TRY(read_bounds("problem.upper", o->upper, e->n_var, e->upper, err));
+    for (size_t j = 0; j < e->n_var; j++)
+        if (e->lower[j] > e->upper[j])
+            return fail(err, STATUS_BAD_DATA, "problem.lower: %g is above problem.upper = %g (variable %zu)",
+                        e->lower[j], e->upper[j], j + 1);
+    return STATUS_OK;
+}
+
+Status external_cheap_cost(const char *costs, double *cost, Err *err)
+{
+    double whole = 1.0;
+    *cost = 0.0;
+    if (list_count(costs) != 2)
+        return fail(err, STATUS_BAD_DATA, "problem.costs: %zu numbers; give the cost of a cheap level and 1, as 0.1,1",
+                    list_count(costs));
+    TRY(list_positive(costs, 0, "problem.costs", cost, err));
+    TRY(list_positive(costs, 1, "problem.costs", &whole, err));
+    if (whole != 1.0 || *cost >= 1.0)
+        return fail(err, STATUS_BAD_DATA,
+                    "problem.costs: %g, %g; the dearest level is the last and costs 1, the other one costs less", *cost,
+                    whole);
+    return STATUS_OK;
+}
+
+static Status create_workers(External *e, size_t n, Err *err)
+{
+    e->worker = calloc(n, sizeof *e->worker);
+    for (; e->worker && e->n_workers < n; e->n_workers++) {
+        Worker *w = &e->worker[e->n_workers];
+        *w = (Worker){.guard = &e->guard, .its_end = -1, .slot = e->n_workers, .line = malloc(LINE_MAX_BYTES)};
+        if (!w->line)
+            break;
+    }
+    return e->n_workers == n ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for %zu workers", n);
+}
+
+static Status create(External *e, const ProblemOptions *o, size_t n_workers, Err *err)
+{
+    TRY(split_command(e, o->command, err));
+    TRY(set_bounds(e, o, err));
+    TRY(create_workers(e, n_workers, err));
+    TRY(guard_start(&e->guard, n_workers, err));
+    return spawner_start(&e->spawner, err);
+}
+
+static void add_levels(Problem *p, double cheap_cost)
+{
+    p->n_parts = 2;
+    p->n_cheap = 1;
+    p->cheap_cost = cheap_cost;
+    p->combine_cheap = combine_cheap;
+}
+
+Status external_open(Problem *p, const ProblemOptions *o, size_t n_workers, Err *err)
+{
+    double cheap_cost = 0.0;
+    if (list_is_given(o->costs))
+        TRY(external_cheap_cost(o->costs, &cheap_cost, err));
+    External *e = calloc(1, sizeof *e);
+    if (!e)
+        return fail(err, STATUS_NO_MEMORY, "no memory for workers");
+    e->n_var = (size_t)o->variables;
+    e->n_obj = (size_t)o->objectives;
+    e->part_size = sizeof(ExternalAnswer) + e->n_obj * sizeof(double);
+    e->has_levels = cheap_cost > 0.0;
+    e->timeout_s = o->timeout_s;
+    const Status status = create(e, o, n_workers, err);
+    if (status != STATUS_OK) {
+        external_close(e);
+        return status;
+    }
+    *p = (Problem){.n_var = e->n_var,
+                   .n_obj = e->n_obj,
+                   .lower = e->lower,
+                   .upper = e->upper,
+                   .simulator = &EXTERNAL,
+                   .self = e,
+                   .n_parts = 1,
+                   .part_size = e->part_size,
+                   .n_workers = e->n_workers,
+                   .executor = executor_for(e->n_workers)};
+    if (e->has_levels)
+        add_levels(p, cheap_cost);
+    return STATUS_OK;
+}

@@ -1,0 +1,92 @@
+#include "evaluate/limits.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* What stands before <= or >= into name (TABLE_NAME_MAX); returns where that is, NULL: nowhere. */
+static const char *take_name(const char *text, char name[])
+{
+    const char *relation = strpbrk(text, "<>");
+    if (!relation || relation == text || relation[1] != '=' || relation - text >= TABLE_NAME_MAX)
+        return NULL;
+    snprintf(name, TABLE_NAME_MAX, "%.*s", (int)(relation - text), text);
+    for (char *last = name + strlen(name); last > name && isspace((unsigned char)last[-1]);)
+        *--last = 0;
+    return relation;
+}
+
+static Status read_limit(Limits *limits, const Schema *schema, const char *text, Err *err)
+{
+    char name[TABLE_NAME_MAX], *end;
+    const char *relation = take_name(text, name);
+    if (!relation)
+        return fail(err, STATUS_BAD_DATA, "search.limits: '%.60s' is not NAME<=NUMBER or NAME>=NUMBER", text);
+    Limit *l = &limits->limit[limits->n++];
+    TRY(schema_pick_result(schema, "search.limits", name, STATUS_BAD_DATA, &l->result, err));
+    l->sign = *relation == '<' ? 1.0 : -1.0;
+    l->bound = strtod(relation + 2, &end);
+    if (end == relation + 2 || *end || !isfinite(l->bound))
+        return fail(err, STATUS_BAD_DATA, "search.limits: '%.60s': no number behind %c=", text, *relation);
+    return STATUS_OK;
+}
+
+/* The limit of that result on that side; NULL: there is none before limit n. */
+static const Limit *find(const Limits *limits, size_t n, size_t result, double sign)
+{
+    for (size_t i = 0; i < n; i++)
+        if (limits->limit[i].result == result && limits->limit[i].sign == sign)
+            return &limits->limit[i];
+    return NULL;
+}
+
+/* One limit on a side, that of what is better only beside the other, and some number between both. */
+static Status check(const Limits *limits, const Schema *schema, Err *err)
+{
+    for (size_t i = 0; i < limits->n; i++) {
+        const Limit *l = &limits->limit[i], *other = find(limits, limits->n, l->result, -l->sign);
+        const Column *c = schema_objective(schema, l->result);
+        const char *relation = l->sign > 0 ? "<=" : ">=", *opposite = l->sign > 0 ? ">=" : "<=";
+        if (find(limits, i, l->result, l->sign))
+            return fail(err, STATUS_BAD_DATA, "search.limits: %s%s is given twice", c->name, relation);
+        if (l->sign > 0 && other && other->bound > l->bound)
+            return fail(err, STATUS_BAD_DATA, "search.limits: %s<=%g and >=%g contradict each other", c->name, l->bound,
+                        other->bound);
+        if (l->sign > 0 && l->bound < 0 && schema->order.n_obj > 0)
+            return fail(err, STATUS_BAD_DATA, "search.limits: %s<=%g: no design has less than 0", c->name, l->bound);
+        if (!other && l->sign * c->sense < 0)
+            return fail(
+                err, STATUS_BAD_DATA,
+                "search.limits: %s%s%g excludes what is better: of %s %s is better; write %s, or give a limit on "
+                "both sides",
+                c->name, relation, l->bound, c->name, c->sense > 0 ? "less" : "more", opposite);
+    }
+    return STATUS_OK;
+}
+
+Status limits_read(Limits *limits, const Schema *schema, const char *list, Err *err)
+{
+    char text[128];
+    limits->n = 0;
+    if (strcmp(list, "none") == 0)
+        return STATUS_OK;
+    if (list_count(list) > LIMITS_MAX)
+        return fail(err, STATUS_BAD_DATA, "search.limits: more than %d", LIMITS_MAX);
+    for (size_t i = 0; i < list_count(list); i++) {
+        if (!list_item(list, i, text, sizeof text))
+            return fail(err, STATUS_BAD_DATA, "search.limits: item %zu is empty or too long", i + 1);
+        TRY(read_limit(limits, schema, text, err));
+    }
+    return check(limits, schema, err);
+}
+
+void limits_apply(const Limits *limits, size_t n_obj, const Evaluation *e, double g[])
+{
+    for (size_t c = 0; c < limits->n; c++) {
+        const Limit *l = &limits->limit[c];
+        const double value = l->result < n_obj ? e->f[l->result] : e->extra[l->result - n_obj];
+        g[c] = l->sign * (value - l->bound) / (l->bound != 0.0 ? fabs(l->bound) : 1.0);
+    }
+}

@@ -1,0 +1,149 @@
+#include "evaluate/measures.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/list.h"
+
+static const Measure MEASURES[N_MEASURES] = {
+#define X(id, name, unit, sense, needs, value, what) {name, unit, sense, needs, what},
+    MEASURE_LIST(X)
+#undef X
+};
+
+const Measure *measure(int k)
+{
+    return &MEASURES[k];
+}
+
+double measure_value(const SimResult *r, int k)
+{
+    const unsigned needs = MEASURES[k].needs;
+    if (((needs & NEEDS_FORCES) && !r->forces_known) || ((needs & NEEDS_FILTER) && !r->filtered_known))
+        return NAN;
+    switch ((MeasureId)k) {
+#define X(id, name, unit, sense, needs, value, what)                                                                   \
+    case MEASURE_##id:                                                                                                 \
+        return value;
+        MEASURE_LIST(X)
+#undef X
+    case N_MEASURES:
+        break;
+    }
+    return NAN;
+}
+
+unsigned measures_need(MeasureSet set)
+{
+    unsigned needs = NEEDS_NOTHING;
+    for (int k = 0; k < N_MEASURES; k++)
+        needs |= set >> k & 1 ? MEASURES[k].needs : NEEDS_NOTHING;
+    return needs;
+}
+
+int measure_exists(int k, int n_floors)
+{
+    return k != MEASURE_ED5_10 || n_floors == 0 || n_floors >= 5;
+}
+
+const char *measures_missing(const MeasureOrder *order, const char *objectives, int n_floors)
+{
+    if (measure_exists(MEASURE_ED5_10, n_floors))
+        return NULL;
+    if (order->objectives >> MEASURE_ED5_10 & 1)
+        return "ed5_10_pct is 0 for every design: the building has no modes 5 to 10 (search.objectives)";
+    return strcmp(objectives, "auto") == 0
+               ? "ed5_10_pct is no objective: the building has no modes 5 to 10 (search.objectives)"
+               : NULL;
+}
+
+MeasureSet measures_limited(const char *limits)
+{
+    MeasureSet set = 0;
+    char text[128];
+    for (size_t i = 0; i < list_count(limits); i++)
+        for (int k = 0; list_item(limits, i, text, sizeof text) && k < N_MEASURES; k++) {
+            const size_t n = strcspn(text, "<> \t");
+            if (strncmp(text, MEASURES[k].name, n) == 0 && MEASURES[k].name[n] == 0)
+                set |= (MeasureSet)1 << k;
+        }
+    return set;
+}
+
+void measures_settle(SimResult *r, MeasureSet set)
+{
+    for (int k = 0; k < N_MEASURES && r->outcome == RUN_OK; k++) {
+        if (!(set >> k & 1) || isfinite(measure_value(r, k)))
+            continue;
+        r->outcome = RUN_NOT_FINITE;
+        if (r->input_energy_j > 0)
+            snprintf(r->reason, sizeof r->reason, "%s is not finite", MEASURES[k].name);
+        else
+            snprintf(r->reason, sizeof r->reason,
+                     "the motion puts in no net energy, so shares of it are undefined: use more of the motion "
+                     "(sim.duration_s) or other objectives (search.objectives)");
+    }
+}
+
+/* -- objectives ---------------------------------------------------------------------------------------------------- */
+
+static void add_objective(MeasureOrder *o, int k)
+{
+    o->of[o->n_obj++] = k;
+    o->objectives |= (MeasureSet)1 << k;
+}
+
+static Status take_objective(MeasureOrder *o, const char *name, Err *err)
+{
+    const char *names[N_MEASURES];
+    int k = 0;
+    while (k < N_MEASURES && strcmp(MEASURES[k].name, name) != 0)
+        k++;
+    for (int i = 0; i < N_MEASURES; i++)
+        names[i] = MEASURES[i].name;
+    if (k == N_MEASURES)
+        return fail_no_word(err, STATUS_BAD_DATA, "search.objectives", name, "result", names, N_MEASURES);
+    if (o->objectives >> k & 1)
+        return fail(err, STATUS_BAD_DATA, "search.objectives: %s stands there twice", name);
+    add_objective(o, k);
+    return STATUS_OK;
+}
+
+static Status take_list(MeasureOrder *o, const char *list, Err *err)
+{
+    char name[64];
+    for (size_t i = 0; i < list_count(list); i++) {
+        if (!list_item(list, i, name, sizeof name))
+            return fail(err, STATUS_BAD_DATA, "search.objectives: name %zu is empty or too long", i + 1);
+        TRY(take_objective(o, name, err));
+    }
+    return STATUS_OK;
+}
+
+Status measures_order(MeasureOrder *out, const char *objectives, int n_floors, Err *err)
+{
+    const int is_auto = strcmp(objectives, "auto") == 0, is_paper = strcmp(objectives, "paper") == 0;
+    *out = (MeasureOrder){0};
+    for (int k = 0; k < PAPER_OBJECTIVES && (is_auto || is_paper); k++)
+        if (is_paper || measure_exists(k, n_floors))
+            add_objective(out, k);
+    if (!is_auto && !is_paper)
+        TRY(take_list(out, objectives, err));
+    for (int k = 0, n = out->n_obj; k < N_MEASURES; k++)
+        if (!(out->objectives >> k & 1))
+            out->of[n++] = k;
+    return STATUS_OK;
+}
+
+Outcome measure_outcome(RunOutcome outcome)
+{
+    static const Outcome OUTCOMES[] = {
+        [RUN_OK] = OUTCOME_OK,
+        [RUN_NOT_FINITE] = OUTCOME_NOT_FINITE,
+        [RUN_OUT_OF_STEPS] = OUTCOME_OUT_OF_STEPS,
+        [RUN_ENERGY_BALANCE] = OUTCOME_ENERGY_BALANCE,
+        [RUN_ENGINE_FAILED] = OUTCOME_ENGINE_FAILED,
+    };
+    return OUTCOMES[outcome];
+}

@@ -1,0 +1,114 @@
+/* evaluate/measures.h -- the numbers by which a design is judged: names, units, senses and where they come from, in one
+ * table. Any of them may be an objective (search.objectives) or be limited (search.limits).
+ *
+ * Internally every objective is minimised, f = sense * value, while every file and every table shows the natural value.
+ * What needs forces or the filter is computed where it is asked for (sim.forces, or because it is searched for or limited);
+ * elsewhere, and where a scene does not have it, the value is NAN: an empty cell, never 0. Formulas: docs/theory.md.
+ *
+ * A new one goes to the end, so that runs from before it can be read.
+ *
+ * Threads  pure functions */
+#ifndef IMTET_EVALUATE_MEASURES_H
+#define IMTET_EVALUATE_MEASURES_H
+
+#include <stdint.h>
+
+#include "evaluate/evaluation.h"
+#include "sim/sim.h"
+
+/* What a measure needs beside a simulation; a set of bits. */
+enum { NEEDS_NOTHING = 0, NEEDS_FORCES = 1, NEEDS_FILTER = 2 };
+
+/* id, name, unit, sense (+1: less is better, -1: more is better), needs, value of a SimResult *r, what it is. The first
+ * PAPER_OBJECTIVES are those of the paper. */
+#define MEASURE_LIST(X)                                                                                                \
+    X(J1, "j1_m", "m", 1, NEEDS_NOTHING, r->j1_m, "largest floor displacement")                                        \
+    X(J2, "j2_m", "m", 1, NEEDS_NOTHING, r->j2_m, "largest interstorey drift")                                         \
+    X(J3, "j3_g", "g", 1, NEEDS_NOTHING, r->j3_g, "largest floor acceleration")                                        \
+    X(ED1, "ed1_pct", "%", 1, NEEDS_NOTHING, r->ed1_pct, "share of the input dissipated by the first building mode")   \
+    X(ED5_10, "ed5_10_pct", "%", -1, NEEDS_NOTHING, r->ed5_10_pct, "share dissipated by building modes 5 to 10")       \
+    X(EDCS, "edcs_pct", "%", -1, NEEDS_NOTHING, r->edcs_pct, "share dissipated by the core")                           \
+    X(MCORE, "mcore_kg", "kg", 1, NEEDS_NOTHING, r->mcore_kg, "mass of the core")                                      \
+    X(INPUT, "input_energy_j", "J", 1, NEEDS_NOTHING, r->input_energy_j, "energy that the ground put in")              \
+    X(BALANCE, "energy_balance_error", "-", 1, NEEDS_NOTHING, r->energy_balance_error,                                 \
+      "of the energy balance, as a share of the input")                                                                \
+    X(IMPACTS, "impacts", "-", 1, NEEDS_NOTHING, (double)r->impacts, "closings of any gap")                            \
+    X(DRIFT_RATIO, "drift_ratio", "-", 1, NEEDS_NOTHING, r->drift_ratio_max,                                           \
+      "largest interstorey drift over the height of its storey")                                                       \
+    X(INDENTATION, "indentation_ratio", "-", 1, NEEDS_NOTHING, r->indentation_ratio,                                   \
+      "largest indentation over contact.radius_m")                                                                     \
+    X(BEYOND_LAW, "beyond_contact_law", "-", 1, NEEDS_NOTHING, (double)beyond_contact_law(r),                          \
+      "1: it is above 0.1, where Hertz's law no longer holds")                                                         \
+    X(PRESSURE, "contact_pressure_pa", "Pa", 1, NEEDS_NOTHING, r->contact_pressure_pa,                                 \
+      "largest pressure in the middle of a contact, by Hertz")                                                         \
+    X(BUMPER_STRAIN, "bumper_strain", "-", 1, NEEDS_NOTHING, r->bumper_strain,                                         \
+      "largest compression of a bumper over its thickness; 0: steel on steel")                                         \
+    X(CONTACT_FORCE, "contact_force_max_n", "N", 1, NEEDS_FORCES, r->forces.contact_force_max_n,                       \
+      "largest contact force of a floor")                                                                              \
+    X(CORE_SHEAR, "core_base_shear_n", "N", 1, NEEDS_FORCES, r->forces.core_base_shear_n, "base shear of the core")    \
+    X(CORE_OVERTURNING, "core_overturning_nm", "N m", 1, NEEDS_FORCES, r->forces.core_overturning_nm,                  \
+      "overturning moment of the core about its base")                                                                 \
+    X(CORE_STRESS, "core_stress_pa", "Pa", 1, NEEDS_FORCES, r->forces.core_stress_pa,                                  \
+      "largest bending stress of the core")                                                                            \
+    X(CORE_BUCKLING, "core_buckling_ratio", "-", 1, NEEDS_FORCES, r->forces.core_buckling_ratio,                       \
+      "largest bending stress over the buckling stress of the bare wall")                                              \
+    X(BUILDING_SHEAR, "building_base_shear_n", "N", 1, NEEDS_FORCES, r->forces.building_base_shear_n,                  \
+      "base shear of the building")                                                                                    \
+    X(BASE_SHEAR, "base_shear_n", "N", 1, NEEDS_FORCES, r->forces.base_shear_n, "base shear of building and core")     \
+    X(J3_FILTERED, "j3_filtered_g", "g", 1, NEEDS_FILTER, r->j3_filtered_g,                                            \
+      "largest floor acceleration behind a low-pass of sim.filter_hz")
+
+typedef enum {
+#define X(id, name, unit, sense, needs, value, what) MEASURE_##id,
+    MEASURE_LIST(X)
+#undef X
+        N_MEASURES
+} MeasureId;
+
+enum { PAPER_OBJECTIVES = MEASURE_MCORE + 1 };
+
+typedef struct {
+    const char *name; /* column and key */
+    const char *unit;
+    double sense;
+    unsigned needs;
+    const char *what;
+} Measure;
+
+const Measure *measure(int k);                   /* k = 0..N_MEASURES-1 */
+double measure_value(const SimResult *r, int k); /* natural sign and unit; NAN: not known */
+
+/* Sets of measures: bit k is measure k. */
+typedef uint64_t MeasureSet;
+_Static_assert(N_MEASURES <= 64, "a set of measures has 64 bits");
+
+unsigned measures_need(MeasureSet set);
+
+/* The objectives in the order in which they are searched for, then all the others in the order of the table. */
+typedef struct {
+    int n_obj, of[N_MEASURES];
+    MeasureSet objectives;
+} MeasureOrder;
+
+/* objectives, of search.objectives: a comma list of names; auto: those of the paper that a building of n_floors has
+ * (n_floors 0: any); paper: all seven. Errors: STATUS_BAD_DATA, a name that is none or stands there twice. */
+Status measures_order(MeasureOrder *out, const char *objectives, int n_floors, Err *err);
+
+/* What a building of n_floors does not have of the objectives, in words: left out by `auto`, or asked for all the same;
+ * NULL: it has all. */
+const char *measures_missing(const MeasureOrder *order, const char *objectives, int n_floors);
+
+/* Those that search.limits limits; words that are no measures are passed over. */
+MeasureSet measures_limited(const char *limits);
+
+/* Whether a building of n_floors can have anything but 0 there. */
+int measure_exists(int k, int n_floors);
+
+/* The one rule of whether a simulation succeeded: it finished, and every measure of the set is finite; one that has none
+ * fails with its reason. */
+void measures_settle(SimResult *r, MeasureSet set);
+
+/* What a run comes to as an evaluation. */
+Outcome measure_outcome(RunOutcome outcome);
+
+#endif

@@ -1,0 +1,61 @@
+/* evaluate/replicates.h -- one design simulated several times, changed a little: the only rule for it.
+ *
+ *   replicate 0 is the design, replicate k has every gap changed: max(gap (1 + REPLICATE_CHANGE z) + tolerance z', 0),
+ *   z and z' standard normal from the stream (seed, k): the same errors for every design, so that differences between
+ *   designs are theirs. With [uncertain] it is also built otherwise (AsBuilt): restitution r + sd z, a factor exp(s z - s^2/2),
+ *   s^2 = log(1 + sd^2), of mean 1 and standard deviation sd, for stiffnesses and damping ratios; a stream of their own
+ *
+ *   of one record   mean and standard deviation (n - 1) over the replicates (base/stat.h)
+ *   worst           of several records: the mean of the record that is worst in that result, with its deviation
+ *   mean            mean over the records, with the root mean square of their deviations
+ *   mean_plus_sd    all replicates of all records: mean and standard deviation on the bad side of it
+ *   quantile        of all replicates of all records, on the bad side, linear between ranks
+ *
+ * Two standard deviations that differ by orders of magnitude have two names. Predictability: no tolerance, nothing uncertain;
+ * replicates differ by chaos alone (after some hundreds of impacts even the smallest change may have made another run of it).
+ * As built: gap tolerance or [uncertain]. A design with a replicate that failed has failed.
+ *
+ * Threads  pure functions */
+#ifndef IMTET_EVALUATE_REPLICATES_H
+#define IMTET_EVALUATE_REPLICATES_H
+
+#include <stdint.h>
+
+#include "evaluate/measures.h"
+
+/* Small against anything that could be built. */
+static const double REPLICATE_CHANGE = 1e-8;
+
+/* x becomes replicate k; its first n_gaps numbers are gaps [m], of which none gets negative. */
+void replicate_design(uint32_t seed, size_t k, double tolerance_m, size_t n_gaps, double x[]);
+
+/* What replicate k is built like; 0: as designed. */
+AsBuilt replicate_as_built(uint32_t seed, size_t k, const UncertainOptions *u);
+int is_uncertain(const UncertainOptions *u);
+
+/* "as built", or "predictability": what the deviation of replicates is. */
+const char *spread_word(double tolerance_m, const UncertainOptions *u);
+
+typedef struct {
+    size_t n_records, n_replicates;
+    Robust rule;
+    double quantile;    /* of ROBUST_QUANTILE */
+    const char *spread; /* spread_word of the replicates; NULL: not known */
+} ReplicatePlan;
+
+typedef struct {
+    const SimResult *shown;                   /* the first that failed, else the design itself under the first record */
+    Outcome outcome;                          /* its reason stands in `shown` */
+    const char *rule, *spread;                /* what `mean` is, "mean" or the rule of several records; of the plan */
+    size_t n_records, n_replicates, n_failed; /* n_replicates of each record; n_failed of all simulations */
+    double mean[N_MEASURES], sd[N_MEASURES];  /* natural; not finite where a simulation failed; sd NAN: one replicate */
+    double seconds;                           /* of all simulations */
+} ReplicateSummary;
+
+/* results (n_replicates, n_records); the summary points into them. */
+void replicates_summarise(const ReplicatePlan *plan, const SimResult results[], ReplicateSummary *out);
+
+/* v (n), sorted by this call: mean_plus_sd or quantile, sense +1: large values are bad. sd NAN: one value. */
+double robust_pooled(const ReplicatePlan *plan, double sense, size_t n, double v[], double *sd);
+
+#endif

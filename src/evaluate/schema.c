@@ -1,0 +1,173 @@
+#include "evaluate/schema.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/cell.h"
+#include "scene/design.h"
+#include "settings/options.h"
+
+static Status allocate(Schema *schema, Err *err)
+{
+    schema->column = calloc(schema->n_var + schema->n_obj + schema->n_extra, sizeof *schema->column);
+    return schema->column ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for %zu columns", schema->n_var);
+}
+
+static Status schema_of_tower(Schema *schema, const Settings *s, int n_floors, Err *err)
+{
+    MeasureOrder order;
+    DesignSpace design;
+    TRY(design_space_make(&design, &s->design, s->core.section, n_floors, err));
+    TRY(measures_order(&order, s->search.objectives, n_floors, err));
+    *schema = (Schema){.n_var = (size_t)design.n_var,
+                       .design = design,
+                       .n_obj = (size_t)order.n_obj,
+                       .n_extra = (size_t)(N_MEASURES - order.n_obj),
+                       .order = order};
+    TRY(allocate(schema, err));
+    for (int j = 0; j < design.n_var; j++)
+        design_variable_name(&design, j, schema->column[j].name);
+    for (int k = 0; k < N_MEASURES; k++) {
+        Column *c = &schema->column[design.n_var + k];
+        snprintf(c->name, sizeof c->name, "%s", measure(order.of[k])->name);
+        c->sense = measure(order.of[k])->sense;
+    }
+    const MeasureSet limited = measures_limited(s->search.limits);
+    for (int k = order.n_obj; k < N_MEASURES; k++)
+        if (limited >> order.of[k] & 1)
+            schema->limited[schema->n_limited++] = (size_t)(k - order.n_obj);
+    return STATUS_OK;
+}
+
+/* Names of n columns: those of the list, or "x1", "x2", ... where the list is "auto". */
+static Status take_names(const char *key, const char *list, const char *letter, size_t n, Column columns[], Err *err)
+{
+    const int given = strcmp(list, "auto") != 0;
+    if (given && list_count(list) != n)
+        return fail(err, STATUS_BAD_DATA, "%s: %zu names for %zu", key, list_count(list), n);
+    for (size_t i = 0; i < n; i++) {
+        char *name = columns[i].name, item[TABLE_NAME_MAX - 1];
+        if (!given)
+            snprintf(name, TABLE_NAME_MAX, "%s%zu", letter, i + 1);
+        else if (!list_item(list, i, item, sizeof item) || strpbrk(item, "\"\r\n"))
+            return fail(err, STATUS_BAD_DATA, "%s: name %zu is empty, too long or holds a quote", key, i + 1);
+        else
+            cell_text(name, TABLE_NAME_MAX, item);
+        for (size_t j = 0; given && j < i; j++)
+            if (strcmp(columns[j].name, name) == 0)
+                return fail(err, STATUS_BAD_DATA, "%s: %s stands there twice", key, name);
+    }
+    return STATUS_OK;
+}
+
+static Status take_senses(const char *list, size_t n, Column columns[], Err *err)
+{
+    const size_t count = list_count(list);
+    char word[16];
+    if (count != 1 && count != n)
+        return fail(err, STATUS_BAD_DATA, "problem.senses: %zu words for %zu objectives", count, n);
+    for (size_t k = 0; k < n; k++) {
+        const int fits = list_item(list, count == 1 ? 0 : k, word, sizeof word);
+        if (!fits || (strcmp(word, "min") != 0 && strcmp(word, "max") != 0))
+            return fail(err, STATUS_BAD_DATA, "problem.senses: item %zu is neither min nor max", k + 1);
+        columns[k].sense = word[1] == 'i' ? 1.0 : -1.0;
+    }
+    return STATUS_OK;
+}
+
+static Status fill_from_settings(Schema *schema, const Settings *s, Err *err)
+{
+    Column *objectives = schema->column + schema->n_var;
+    TRY(take_names("problem.variable_names", s->problem.variable_names, "x", schema->n_var, schema->column, err));
+    TRY(take_names("problem.objective_names", s->problem.objective_names, "f", schema->n_obj, objectives, err));
+    return take_senses(s->problem.kind == PROBLEM_EXTERNAL ? s->problem.senses : "min", schema->n_obj, objectives, err);
+}
+
+int schema_is_noisy(const Settings *s)
+{
+    const int has_noise = s->problem.kind >= PROBLEM_TEXTBOOK && s->problem.noise > 0.0;
+    const int is_noisy = s->problem.noisy == NOISY_AUTO ? has_noise : s->problem.noisy == NOISY_YES;
+    return is_noisy && s->search.replicates_max > 1 && s->search.replicate_share > 0.0;
+}
+
+Status schema_of(Schema *schema, const Settings *s, int n_floors, Err *err)
+{
+    if (s->problem.kind == PROBLEM_TOWER) {
+        TRY(schema_of_tower(schema, s, n_floors, err));
+        schema->replicates = s->sim.replicates;
+        schema->is_noisy = schema_is_noisy(s);
+        schema->has_spread = s->sim.replicates > 1 || schema->is_noisy;
+        return STATUS_OK;
+    }
+    *schema = (Schema){.n_var = (size_t)s->problem.variables,
+                       .n_obj = (size_t)s->problem.objectives,
+                       .replicates = s->sim.replicates,
+                       .is_noisy = schema_is_noisy(s),
+                       .has_spread = schema_is_noisy(s)};
+    TRY(allocate(schema, err));
+    const Status status = fill_from_settings(schema, s, err);
+    if (status != STATUS_OK)
+        schema_free(schema);
+    return status;
+}
+
+const Column *schema_variable(const Schema *schema, size_t j)
+{
+    return &schema->column[j];
+}
+
+const Column *schema_objective(const Schema *schema, size_t k)
+{
+    return &schema->column[schema->n_var + k];
+}
+
+const Column *schema_extra(const Schema *schema, size_t k)
+{
+    return &schema->column[schema->n_var + schema->n_obj + k];
+}
+
+void schema_limited(const Schema *schema, const double extra[], double values[])
+{
+    for (size_t i = 0; i < schema->n_limited; i++)
+        values[i] = extra[schema->limited[i]];
+}
+
+size_t schema_find_objective(const Schema *schema, const char *name)
+{
+    size_t k = 0;
+    while (k < schema->n_obj && strcmp(schema_objective(schema, k)->name, name) != 0)
+        k++;
+    return k;
+}
+
+/* Of n columns behind the variables; noun: what a name is meant to be. */
+static Status pick(const Schema *schema, size_t n, const char *noun, const char *where, const char *name, Status status,
+                   size_t *k, Err *err)
+{
+    const char *names[OBJECTIVES_MAX + N_MEASURES];
+    for (*k = 0; *k < n; ++*k)
+        if (strcmp(schema_objective(schema, *k)->name, name) == 0)
+            return STATUS_OK;
+    for (size_t i = 0; i < n; i++)
+        names[i] = schema_objective(schema, i)->name;
+    return fail_no_word(err, status, where, name, noun, names, (int)n);
+}
+
+Status schema_pick_objective(const Schema *schema, const char *where, const char *name, Status status, size_t *k,
+                             Err *err)
+{
+    return pick(schema, schema->n_obj, "objective", where, name, status, k, err);
+}
+
+Status schema_pick_result(const Schema *schema, const char *where, const char *name, Status status, size_t *k, Err *err)
+{
+    return pick(schema, schema->n_obj + schema->n_extra, schema->n_extra > 0 ? "result" : "objective", where, name,
+                status, k, err);
+}
+
+void schema_free(Schema *schema)
+{
+    free(schema->column);
+    memset(schema, 0, sizeof *schema);
+}

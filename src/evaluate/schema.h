@@ -1,0 +1,58 @@
+/* evaluate/schema.h -- the columns of a run: variables, objectives, and further results.
+ *
+ *   column 0..n_var-1, then n_obj objectives, then n_extra measures that are only written down
+ *
+ * Internally every objective is minimised, f = sense * value; every file shows the natural value.
+ * Ownership  schema_of allocates, schema_free releases (an empty Schema is fine) */
+#ifndef IMTET_EVALUATE_SCHEMA_H
+#define IMTET_EVALUATE_SCHEMA_H
+
+#include "base/list.h"
+#include "base/table.h"
+#include "scene/design.h"
+#include "evaluate/measures.h"
+
+typedef struct Settings Settings;
+
+enum { OBJECTIVES_MAX = 100 };
+
+typedef struct {
+    char name[TABLE_NAME_MAX];
+    double sense; /* of an objective or measure: +1 less is better, -1 more is better */
+} Column;
+
+typedef struct {
+    size_t n_var, n_obj, n_extra;
+    DesignSpace design; /* of a tower */
+    Column *column;
+    MeasureOrder order; /* of the tower: measures behind the columns; else empty */
+    long replicates;    /* simulations of each record behind one evaluation: sim.replicates */
+    int is_noisy;       /* schema_is_noisy */
+    int has_spread; /* front.csv ends with NAME_sd of every objective and replicates: designs are several simulations */
+    size_t n_limited, limited[N_MEASURES]; /* measures among the n_extra that search.limits limits, ascending */
+} Schema;
+
+/* Whether designs are simulated again because they answer differently each time. */
+int schema_is_noisy(const Settings *s);
+
+/* n_floors: of a tower, else not read. */
+Status schema_of(Schema *schema, const Settings *s, int n_floors, Err *err);
+const Column *schema_variable(const Schema *schema, size_t j);
+const Column *schema_objective(const Schema *schema, size_t k);
+const Column *schema_extra(const Schema *schema, size_t k);
+
+/* Of the further results (n_extra) of a design those that are limited: values (n_limited). */
+void schema_limited(const Schema *schema, const double extra[], double values[]);
+
+/* Objective of that name, or n_obj. */
+size_t schema_find_objective(const Schema *schema, const char *name);
+
+/* The same for a name from the command line or a settings file: "WHERE: NAME is no objective; did you mean ...?" with that status. */
+Status schema_pick_objective(const Schema *schema, const char *where, const char *name, Status status, size_t *k,
+                             Err *err);
+/* The same among objectives and further measures: *k counts on behind n_obj. */
+Status schema_pick_result(const Schema *schema, const char *where, const char *name, Status status, size_t *k,
+                          Err *err);
+void schema_free(Schema *schema);
+
+#endif

@@ -1,0 +1,227 @@
+#include "evaluate/textbook.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/random.h"
+#include "evaluate/threads.h"
+
+static double square_off_middle(size_t n_var, size_t n_obj, const double x[])
+{
+    double g = 0.0;
+    for (size_t d = n_obj - 1; d < n_var; d++)
+        g += (x[d] - 0.5) * (x[d] - 0.5);
+    return g;
+}
+
+/* Point of the sphere of that radius with the angles pi/2 p. */
+static void on_sphere(size_t n_obj, double radius, const double p[], double f[])
+{
+    for (size_t k = 0; k < n_obj; k++) {
+        f[k] = radius;
+        for (size_t d = 0; d + k + 1 < n_obj; d++)
+            f[k] *= cos(p[d] * M_PI_2);
+        if (k > 0)
+            f[k] *= sin(p[n_obj - 1 - k] * M_PI_2);
+    }
+}
+
+void textbook_dtlz2(size_t n_var, size_t n_obj, const double x[], double f[])
+{
+    on_sphere(n_obj, 1.0 + square_off_middle(n_var, n_obj, x), x, f);
+}
+
+static void dtlz5(size_t n_var, size_t n_obj, const double x[], double f[])
+{
+    const double g = square_off_middle(n_var, n_obj, x);
+    double p[TEXTBOOK_OBJ_MAX];
+    for (size_t d = 0; d + 1 < n_obj; d++)
+        p[d] = d == 0 ? x[0] : (1.0 + 2.0 * g * x[d]) / (2.0 * (1.0 + g));
+    on_sphere(n_obj, 1.0 + g, p, f);
+}
+
+static void dtlz1_inverted(size_t n_var, size_t n_obj, const double x[], double f[])
+{
+    double g = 100.0 * (double)(n_var - n_obj + 1);
+    for (size_t d = n_obj - 1; d < n_var; d++)
+        g += 100.0 * ((x[d] - 0.5) * (x[d] - 0.5) - cos(20.0 * M_PI * (x[d] - 0.5)));
+    for (size_t k = 0; k < n_obj; k++) {
+        double h = 1.0;
+        for (size_t d = 0; d + k + 1 < n_obj; d++)
+            h *= x[d];
+        if (k > 0)
+            h *= 1.0 - x[n_obj - 1 - k];
+        f[k] = 0.5 * (1.0 + g) * (1.0 - h);
+    }
+}
+
+static void dtlz7(size_t n_var, size_t n_obj, const double x[], double f[])
+{
+    double g = 1.0, h = (double)n_obj;
+    for (size_t d = n_obj - 1; d < n_var; d++)
+        g += 9.0 * x[d] / (double)(n_var - n_obj + 1);
+    for (size_t k = 0; k + 1 < n_obj; k++) {
+        f[k] = x[k];
+        h -= x[k] / (1.0 + g) * (1.0 + sin(3.0 * M_PI * x[k]));
+    }
+    f[n_obj - 1] = (1.0 + g) * h;
+}
+
+/* Huband et al., table XI: A minima, hill size B, global minimum at C. */
+static double s_multi(double y)
+{
+    static const double A = 30.0, B = 10.0, C = 0.35;
+    const double off = fabs(y - C) / (2.0 * (floor(C - y) + C));
+    const double t = (1.0 + cos((4.0 * A + 2.0) * M_PI * (0.5 - off)) + 4.0 * B * off * off) / (B + 2.0);
+    return fmin(fmax(t, 0.0), 1.0);
+}
+
+/* Huband et al., table XI: global minimum at A with aperture B, deceptive minima of value C at both ends. */
+static double s_decept(double y)
+{
+    static const double A = 0.35, B = 0.001, C = 0.05;
+    const double left = floor(y - A + B) * (1.0 - C + (A - B) / B) / (A - B);
+    const double right = floor(A + B - y) * (1.0 - C + (1.0 - A - B) / B) / (1.0 - A - B);
+    return fmin(fmax(1.0 + (fabs(y - A) - B) * (left + right + 1.0 / B), 0.0), 1.0);
+}
+
+static double mean_of(size_t first, size_t end, const double t[])
+{
+    double sum = 0.0;
+    for (size_t i = first; i < end; i++)
+        sum += t[i] / (double)(end - first);
+    return sum;
+}
+
+/* 2 (n_obj - 1) position variables, or as much of that as leaves a variable for the distance. */
+static size_t n_position_of(size_t n_var, size_t n_obj)
+{
+    const size_t once = n_obj - 1;
+    return 2 * once < n_var ? 2 * once : once;
+}
+
+/* The concave front of WFG4 to WFG9, from the variables after their first transformation. */
+static void concave(size_t n_var, size_t n_obj, size_t n_position, const double t[], double f[])
+{
+    const size_t group = n_position / (n_obj - 1);
+    double p[TEXTBOOK_OBJ_MAX];
+    for (size_t k = 0; k + 1 < n_obj; k++)
+        p[k] = mean_of(k * group, (k + 1) * group, t);
+    const double far = mean_of(n_position, n_var, t);
+    for (size_t k = 0; k < n_obj; k++) {
+        double h = 1.0;
+        for (size_t d = 0; d + k + 1 < n_obj; d++)
+            h *= sin(p[d] * M_PI_2);
+        if (k > 0)
+            h *= cos(p[n_obj - 1 - k] * M_PI_2);
+        f[k] = far + 2.0 * (double)(k + 1) * h;
+    }
+}
+
+void textbook_wfg4(size_t n_var, size_t n_obj, size_t n_position, const double z[], double f[])
+{
+    double t[TEXTBOOK_VAR_MAX];
+    for (size_t i = 0; i < n_var; i++)
+        t[i] = s_multi(z[i] / (2.0 * (double)(i + 1)));
+    concave(n_var, n_obj, n_position, t, f);
+}
+
+static void wfg4(size_t n_var, size_t n_obj, const double z[], double f[])
+{
+    textbook_wfg4(n_var, n_obj, n_position_of(n_var, n_obj), z, f);
+}
+
+static void wfg5(size_t n_var, size_t n_obj, const double z[], double f[])
+{
+    double t[TEXTBOOK_VAR_MAX];
+    for (size_t i = 0; i < n_var; i++)
+        t[i] = s_decept(z[i] / (2.0 * (double)(i + 1)));
+    concave(n_var, n_obj, n_position_of(n_var, n_obj), t, f);
+}
+
+static const Textbook PROBLEMS[] = {
+    {"dtlz2", 0, textbook_dtlz2}, {"wfg4", 1, wfg4},   {"dtlz1_inverted", 0, dtlz1_inverted},
+    {"dtlz5", 0, dtlz5},          {"dtlz7", 0, dtlz7}, {"wfg5", 1, wfg5},
+};
+
+const Textbook *textbook(size_t i)
+{
+    return i < sizeof PROBLEMS / sizeof *PROBLEMS ? &PROBLEMS[i] : NULL;
+}
+
+static double textbook_upper(const Textbook *t, size_t j)
+{
+    return t->widening ? 2.0 * (double)(j + 1) : 1.0;
+}
+
+/* -- as a simulator ------------------------------------------------------------------------------------------------ */
+
+typedef struct {
+    const Textbook *function;
+    size_t n_var, n_obj;
+    double noise;
+    uint32_t seed;
+    double lower[TEXTBOOK_VAR_MAX], upper[TEXTBOOK_VAR_MAX];
+} Exercise;
+
+static Status simulate(void *self, size_t worker, const Task *task, Err *err)
+{
+    const Exercise *e = self;
+    double *f = task->result;
+    (void)worker;
+    (void)err;
+    Random noise = random_stream(e->seed, RANDOM_NOISE, 0, (uint32_t)(task->id - 1));
+    e->function->evaluate(e->n_var, e->n_obj, task->x, f);
+    for (size_t k = 0; e->noise > 0.0 && k < e->n_obj; k++)
+        f[k] *= 1.0 + e->noise * random_normal(&noise);
+    return STATUS_OK;
+}
+
+static void combine(const void *self, const void *parts, Evaluation *e)
+{
+    const Exercise *exercise = self;
+    memcpy(e->f, parts, exercise->n_obj * sizeof *e->f);
+    e->seconds = 0.0;
+    e->replicates = 1;
+}
+
+static const Simulator TEXTBOOK = {simulate, combine, free};
+
+Status textbook_open(Problem *p, const ProblemOptions *o, uint32_t seed, Err *err)
+{
+    const long n_var = o->variables, m = o->objectives;
+    if (n_var > TEXTBOOK_VAR_MAX || m > TEXTBOOK_OBJ_MAX)
+        return fail(err, STATUS_BAD_DATA, "problem.variables: a textbook problem has at most %d, and %d objectives",
+                    TEXTBOOK_VAR_MAX, TEXTBOOK_OBJ_MAX);
+    if (m < 2 || n_var < m)
+        return fail(err, STATUS_BAD_DATA,
+                    "problem.objectives: a textbook problem wants 2 at least and no more than %ld", n_var);
+    Exercise *e = calloc(1, sizeof *e);
+    if (!e)
+        return fail(err, STATUS_NO_MEMORY, "no memory for a problem");
+    e->function = textbook((size_t)(o->kind - PROBLEM_TEXTBOOK));
+    e->n_var = (size_t)n_var;
+    e->n_obj = (size_t)m;
+    e->noise = o->noise;
+    e->seed = seed;
+    for (size_t j = 0; j < e->n_var; j++)
+        e->upper[j] = textbook_upper(e->function, j);
+    *p = (Problem){.n_var = e->n_var,
+                   .n_obj = e->n_obj,
+                   .lower = e->lower,
+                   .upper = e->upper,
+                   .simulator = &TEXTBOOK,
+                   .self = e,
+                   .n_parts = 1,
+                   .part_size = e->n_obj * sizeof(double),
+                   .n_workers = 1,
+                   .executor = &EXECUTOR_CLIENT};
+    return STATUS_OK;
+}
+
+void textbook_exact(const Problem *p, const double x[], double f[])
+{
+    const Exercise *e = p->self;
+    e->function->evaluate(e->n_var, e->n_obj, x, f);
+}

@@ -1,0 +1,49 @@
+/* evaluate/textbook.h -- test problems whose front is known, for trying the search without a simulator.
+ *
+ *   DTLZ2  x in [0,1]^n; sum f^2 = (1 + g)^2 with g = sum over the last n - m + 1 variables of (x - 1/2)^2;
+ *          the front is the positive part of the unit sphere
+ *   WFG4   z_i in [0, 2 i]; 30 local optima per variable (shift s_multi(30, 10, 0.35)), weights equal, concave front:
+ *          the positive part of the ellipsoid with half axes 2, 4, ..., 2 m; the first n_position variables say where
+ *          on the front, the others how far from it
+ *
+ *   and without a form as simple:  dtlz1_inverted (front upside down, 11^16 local ones), dtlz5 (a curve, below it
+ *          degenerate pieces), dtlz7 (2^(m-1) pieces), wfg5 (deceptive: the wide basins lead away from the optimum)
+ *
+ * As a simulator  one part, the objectives f (n_obj), each times 1 + problem.noise z, z standard normal from the stream
+ *                 (search.seed, id of the request); one worker, since it takes no time
+ * Threads  pure functions
+ * Sources  Deb, Thiele, Laumanns and Zitzler, CEC 2002, 825-830 (DTLZ2); Huband, Hingston, Barone and While, IEEE
+ *          Trans. Evol. Comput. 10 (2006) 477-506 (WFG4, WFG5); Jain and Deb, IEEE Trans. Evol. Comput. 18 (2014)
+ *          602-622 (the inversion). */
+#ifndef IMTET_EVALUATE_TEXTBOOK_H
+#define IMTET_EVALUATE_TEXTBOOK_H
+
+#include <stdint.h>
+
+#include "evaluate/problem.h"
+#include "settings/options.h"
+
+enum { TEXTBOOK_VAR_MAX = 256, TEXTBOOK_OBJ_MAX = 32 };
+
+typedef struct {
+    const char *name;
+    int widening; /* variable j = 0.. goes to 2 (j + 1) instead of 1 */
+    void (*evaluate)(size_t n_var, size_t n_obj, const double x[], double f[]);
+} Textbook;
+
+/* Problem i = 0, 1, ... in the order of the setting problem.kind; NULL behind the last. */
+const Textbook *textbook(size_t i);
+
+/* Released by problem_close. */
+Status textbook_open(Problem *p, const ProblemOptions *options, uint32_t seed, Err *err);
+
+/* Of such a problem: the objectives without noise. */
+void textbook_exact(const Problem *p, const double x[], double f[]);
+
+/* n_obj <= n_var */
+void textbook_dtlz2(size_t n_var, size_t n_obj, const double x[], double f[]);
+
+/* n_position: a multiple of n_obj - 1 below n_var; n_var <= TEXTBOOK_VAR_MAX, n_obj <= TEXTBOOK_OBJ_MAX */
+void textbook_wfg4(size_t n_var, size_t n_obj, size_t n_position, const double z[], double f[]);
+
+#endif

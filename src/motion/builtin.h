@@ -1,0 +1,19 @@
+/* motion/builtin.h -- ground motions that the program generates, so that a study can start without a record.
+ *
+ * Ownership  m->accel is allocated; motion_free releases it (after a failure there is nothing to free)
+ * Threads    no state; the same samples every time */
+#ifndef IMTET_MOTION_BUILTIN_H
+#define IMTET_MOTION_BUILTIN_H
+
+#include "base/option.h"
+#include "motion/motion.h"
+
+#define BUILTIN_MOTION_LIST(X)                                                                                         \
+    X(KOBE, "builtin:kobe-like") X(ELCENTRO, "builtin:elcentro-like") X(SYLMAR, "builtin:sylmar-like")
+
+/* What follows "builtin:"; NULL: the source is a file. */
+const char *builtin_name(const char *source);
+
+Status builtin_motion(Motion *m, const char *name, Err *err);
+
+#endif

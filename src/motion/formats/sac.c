@@ -1,0 +1,161 @@
+/* SAC, binary of both byte orders and alphanumeric (SAC User's Manual, "SAC Data File Format"): 70 reals, 40 integers,
+ * 24 words of 8 characters (the second and third are one), then NPTS samples. Places from 0:
+ *
+ *   real 0 DELTA [s]       real 1, 2 DEPMIN, DEPMAX                 integer 6 NVHDR (6 or 7)   integer 9 NPTS
+ *   integer 15 IFTYPE (1: time series)   integer 35 LEVEN (1: equal steps)   word 20 KCMPNM   word 21 KNETWK
+ *
+ * Integer 16, IDEP, may say displacement (6) or velocity (7), which are refused. That it says nm/s2 (8) hardly any file
+ * keeps to: the unit is asked for. */
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+#include "motion/formats/record.h"
+
+enum {
+    N_REALS = 70,
+    N_INTEGERS = 40,
+    WORDS_AT = 4 * (N_REALS + N_INTEGERS),
+    HEADER = WORDS_AT + 24 * 8,
+    FOOTER = 22 * 8, /* of version 7: some of the reals once more, as doubles */
+    DELTA = 0,
+    DEPMIN = 1,
+    DEPMAX = 2,
+    NVHDR = 6,
+    NPTS = 9,
+    IFTYPE = 15,
+    IDEP = 16,
+    LEVEN = 35,
+    COMPONENT_AT = WORDS_AT + 20 * 8
+};
+static const double UNDEFINED = -12345;
+
+/* Word k of 4 bytes; the other byte order: swapped. */
+static uint32_t word_at(const char *bytes, size_t k, int swapped)
+{
+    uint32_t w;
+    memcpy(&w, bytes + 4 * k, sizeof w);
+    return swapped ? __builtin_bswap32(w) : w;
+}
+
+static double real_at(const char *bytes, size_t k, int swapped)
+{
+    const uint32_t w = word_at(bytes, k, swapped);
+    float x;
+    memcpy(&x, &w, sizeof x);
+    return (double)x;
+}
+
+static int32_t integer_at(const char *bytes, int k, int swapped)
+{
+    return (int32_t)word_at(bytes, (size_t)(N_REALS + k), swapped);
+}
+
+static int is_version(int32_t v)
+{
+    return v == 6 || v == 7;
+}
+
+static int recognise(const unsigned char bytes[], size_t n)
+{
+    const char *b = (const char *)bytes;
+    return n >= HEADER && (is_version(integer_at(b, NVHDR, 0)) || is_version(integer_at(b, NVHDR, 1)));
+}
+
+/* The largest magnitude that the header states, where both ends are known; in the unit of the samples. */
+static void check_range(Channel *c, const Record *r, double low, double high)
+{
+    double most = 0;
+    const double stated = fmax(fabs(low), fabs(high));
+    if (low == UNDEFINED || high == UNDEFINED || !(stated > 0))
+        return;
+    for (size_t i = 0; i < c->n; i++)
+        most = fmax(most, fabs(r->row[c->first + i].a));
+    if (fabs(most - stated) > 0.01 * stated)
+        c->warning = "its largest sample is not the one that its header states (DEPMIN, DEPMAX)";
+}
+
+static Status check_header(const char *path, double delta, double npts, double type, double even, double quantity,
+                           Err *err)
+{
+    if (quantity == 6 || quantity == 7)
+        return fail(err, STATUS_BAD_DATA, "%s: not an acceleration: IDEP in its SAC header says %s", path,
+                    quantity == 6 ? "displacement" : "velocity");
+    if (type != 1 || even != 1)
+        return fail(err, STATUS_BAD_DATA, "%s: a SAC file of type %g that is no time series in equal steps", path,
+                    type);
+    if (!(delta > 0 && delta <= MOTION_STEP_MAX_S))
+        return fail(err, STATUS_BAD_DATA, "%s: no usable step in its SAC header: DELTA is %g", path, delta);
+    if (!(npts >= 2 && npts <= 1e8))
+        return fail(err, STATUS_BAD_DATA, "%s: no usable number of points in its SAC header: NPTS is %g", path, npts);
+    return STATUS_OK;
+}
+
+static Status read_binary(Record *r, const char *path, const char *bytes, size_t n, Err *err)
+{
+    const Lines l = {.path = path, .number = 1};
+    const int swapped = !is_version(integer_at(bytes, NVHDR, 0));
+    const int32_t npts = integer_at(bytes, NPTS, swapped);
+    const double delta = real_at(bytes, DELTA, swapped);
+    Channel *c;
+    TRY(check_header(path, delta, npts, integer_at(bytes, IFTYPE, swapped), integer_at(bytes, LEVEN, swapped),
+                     integer_at(bytes, IDEP, swapped), err));
+    if (n < HEADER + 4 * (size_t)npts)
+        return fail(err, STATUS_BAD_DATA, "%s: ends after %zu samples, but its header announces %d", path,
+                    (n - HEADER) / 4, npts);
+    if (n >= HEADER + 4 * ((size_t)npts + 1) && n != HEADER + 4 * (size_t)npts + FOOTER)
+        return fail(err, STATUS_BAD_DATA, "%s: holds %zu samples, more than the %d that its header announces", path,
+                    (n - HEADER) / 4, npts);
+    TRY(record_channel(r, &l, &c, err));
+    *c = (Channel){.scale = 1, .counts = 1, .stride = 1, .first = r->n, .n = (size_t)npts};
+    c->dt = round(delta * 1e7) / 1e7; /* a float of 0.01 is 0.0099999998 */
+    if (strnlen(bytes + COMPONENT_AT, 8) > 0 && strncmp(bytes + COMPONENT_AT, "-12345", 6) != 0)
+        channel_name(c, bytes + COMPONENT_AT, bytes + COMPONENT_AT + strnlen(bytes + COMPONENT_AT, 8));
+    for (size_t i = 0; i < c->n; i++) {
+        const double x = real_at(bytes + HEADER, i, swapped);
+        if (!isfinite(x))
+            return fail(err, STATUS_BAD_DATA, "%s: sample %zu is %g; only finite numbers are accepted", path, i, x);
+        TRY(record_add(r, &l, (Row){.a = x, .line = 1}, err));
+    }
+    check_range(c, r, real_at(bytes, DEPMIN, swapped), real_at(bytes, DEPMAX, swapped));
+    return STATUS_OK;
+}
+
+/* ---- alphanumeric: 14 lines 5G15.7, 8 lines 5I10, 8 lines of words, 5G15.7 --------------------------------------- */
+
+enum { REAL_LINES = N_REALS / 5, WORD_LINES = 8 };
+
+static int recognise_text(Lines l)
+{
+    double x[5];
+    size_t n;
+    Err ignored = {0};
+    if (!lines_skip(&l, REAL_LINES + 2) || line_numbers(&l, 10, 5, x, &n, &ignored) != STATUS_OK)
+        return 0;
+    return n == 5 && is_version((int32_t)fmax(fmin(x[1], 100), -100)) && x[1] == floor(x[1]);
+}
+
+static Status read_text(Record *r, Lines *l, const ReadHints *hints, Err *err)
+{
+    double reals[N_REALS], integers[N_INTEGERS];
+    Channel *c;
+    (void)hints;
+    TRY(header_numbers(l, 15, N_REALS, reals, err));
+    TRY(header_numbers(l, 10, N_INTEGERS, integers, err));
+    TRY(check_header(l->path, reals[DELTA], integers[NPTS], integers[IFTYPE], integers[LEVEN], integers[IDEP], err));
+    TRY(record_channel(r, l, &c, err));
+    c->counts = 1;
+    for (int i = 0; i < WORD_LINES; i++) {
+        if (!lines_next(l))
+            return fail_too_short(l, "header", err);
+        if (i == 6 && l->to - l->raw > 16 && strncmp(l->raw + 16, "-12345", 6) != 0) /* words 18 to 20 */
+            channel_name(c, l->raw + 16, l->to);
+    }
+    TRY(record_block(r, l, &(BlockForm){.count = integers[NPTS], .dt = reals[DELTA], .width = 15}, err));
+    TRY(record_block_ends(l, integers[NPTS], err));
+    check_range(c, r, reals[DEPMIN], reals[DEPMAX]);
+    return STATUS_OK;
+}
+
+const BinaryFormat FORMAT_SAC = {"sac", recognise, read_binary};
+const MotionFormat FORMAT_SAC_TEXT = {"sac", recognise_text, read_text};

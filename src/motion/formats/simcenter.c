@@ -1,0 +1,115 @@
+/* SimCenter events and ground-motion records (NHERI, EE-UQ, s3hark), JSON: wherever an object has a step "dT" and
+ * samples "data", or "data_x", "data_y", "data_z", each list is a channel, named by "name". The unit is that of
+ * "unit" or "units" beside them or above, else it is asked for. */
+#include <jansson.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "motion/formats/record.h"
+
+enum { DEPTH_MAX = 32 };
+
+typedef struct {
+    Record *r;
+    const Lines *l;
+    unsigned units;
+    const char *name;
+    double count; /* "numSteps"; 0: none is stated */
+} Place;
+
+static int recognise(Lines l)
+{
+    return lines_next_filled(&l) && *l.from == '{';
+}
+
+static Status take_list(const Place *place, const json_t *list, double dt, const char *axis, Err *err)
+{
+    Channel *c;
+    char name[CHANNEL_NAME_MAX];
+    const size_t n = json_array_size(list);
+    if (!(dt > 0 && dt <= MOTION_STEP_MAX_S))
+        return fail(err, STATUS_BAD_DATA, "%s: SimCenter: no usable step: dT is %g", place->l->path, dt);
+    if (place->count > 0 && place->count != (double)n)
+        return fail(err, STATUS_BAD_DATA, "%s: SimCenter: '%s' has %zu samples, but numSteps announces %g",
+                    place->l->path, place->name, n, place->count);
+    TRY(record_channel(place->r, place->l, &c, err));
+    snprintf(name, sizeof name, "%s%s%s", place->name, *place->name && *axis ? " " : "", axis);
+    channel_name(c, name, name + strlen(name));
+    c->units = place->units;
+    c->dt = dt;
+    c->n = n;
+    for (size_t i = 0; i < n; i++) {
+        const json_t *x = json_array_get(list, i);
+        if (!json_is_number(x) || !isfinite(json_number_value(x)))
+            return fail(err, STATUS_BAD_DATA, "%s: SimCenter: sample %zu of '%s' is no number", place->l->path, i,
+                        name);
+        TRY(record_add(place->r, place->l, (Row){.a = json_number_value(x), .line = 1}, err));
+    }
+    return STATUS_OK;
+}
+
+static unsigned units_of(const json_t *o, unsigned otherwise)
+{
+    const char *unit = json_string_value(json_object_get(o, "unit"));
+    unit = unit ? unit : json_string_value(json_object_get(o, "units"));
+    return unit && units_named(unit, unit + strlen(unit)) ? units_named(unit, unit + strlen(unit)) : otherwise;
+}
+
+/* Which of the factors of event, series and pattern multiply the samples differs from program to program. */
+static Status check_factor(const Lines *l, const json_t *o, Err *err)
+{
+    static const char *const FACTORS[] = {"factor", "scale_factor", "scaleFactor", "scale"};
+    for (size_t k = 0; k < sizeof FACTORS / sizeof FACTORS[0]; k++) {
+        const json_t *x = json_object_get(o, FACTORS[k]);
+        if (x && !(json_is_number(x) && json_number_value(x) == 1))
+            return fail(err, STATUS_BAD_DATA,
+                        "%s: SimCenter: \"%s\" is not 1; multiply the samples by it, or leave it out and set "
+                        "motion.factor",
+                        l->path, FACTORS[k]);
+    }
+    return STATUS_OK;
+}
+
+static Status search(Place place, const json_t *node, int depth, Err *err)
+{
+    static const char *const LISTS[] = {"data", "data_x", "data_y", "data_z"};
+    static const char *const AXES[] = {"", "x", "y", "z"};
+    const char *key;
+    json_t *value;
+    size_t i;
+    if (depth > DEPTH_MAX)
+        return STATUS_OK;
+    if (json_is_array(node)) {
+        json_array_foreach((json_t *)node, i, value) TRY(search(place, value, depth + 1, err));
+        return STATUS_OK;
+    }
+    if (!json_is_object(node))
+        return STATUS_OK;
+    const json_t *name = json_object_get(node, "name"), *dt = json_object_get(node, "dT");
+    place.name = json_is_string(name) ? json_string_value(name) : place.name;
+    place.units = units_of(node, place.units);
+    place.count = json_number_value(json_object_get(node, "numSteps"));
+    TRY(check_factor(place.l, node, err));
+    for (size_t k = 0; k < sizeof LISTS / sizeof LISTS[0] && json_is_number(dt); k++)
+        if (json_is_array(json_object_get(node, LISTS[k])))
+            TRY(take_list(&place, json_object_get(node, LISTS[k]), json_number_value(dt), AXES[k], err));
+    json_object_foreach((json_t *)node, key, value) TRY(search(place, value, depth + 1, err));
+    return STATUS_OK;
+}
+
+static Status read(Record *r, Lines *l, const ReadHints *hints, Err *err)
+{
+    json_error_t why;
+    (void)hints;
+    json_t *root = json_loadb(l->next, (size_t)(l->end - l->next), 0, &why);
+    if (!root)
+        return fail(err, STATUS_BAD_DATA, "%s:%d: no JSON: %s", l->path, why.line, why.text);
+    Status status = search((Place){.r = r, .l = l, .name = ""}, root, 0, err);
+    json_decref(root);
+    if (status == STATUS_OK && r->n_channels == 0)
+        status = fail(err, STATUS_BAD_DATA, "%s: JSON without a step dT and samples data (SimCenter)", l->path);
+    return status;
+}
+
+const MotionFormat FORMAT_SIMCENTER = {"simcenter", recognise, read};

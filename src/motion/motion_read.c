@@ -1,0 +1,570 @@
+#include "motion/motion_read.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "base/hash.h"
+#include "base/table.h"
+#include "base/units.h"
+#include "motion/formats/archive.h"
+#include "motion/formats/record.h"
+
+/* The strongest ground acceleration ever recorded is near 4 g; far beyond that a unit is wrong (El Centro in cm/s2
+ * taken for m/s2 shows 35 g). */
+static const double LARGEST_PEAK_G = 20.0;
+
+/* Asked in this order; the last one takes what no other did. */
+static const MotionFormat *const FORMATS[] = {
+    &FORMAT_KNET,   &FORMAT_ESM,     &FORMAT_JMA,   &FORMAT_CWB,      &FORMAT_AFAD,      &FORMAT_UNAM,
+    &FORMAT_CSMNC,  &FORMAT_CSN,     &FORMAT_ISESD, &FORMAT_GEONET,   &FORMAT_SMC,       &FORMAT_COSMOS,
+    &FORMAT_CSMIP,  &FORMAT_BHRC,    &FORMAT_USC,   &FORMAT_SAC_TEXT, &FORMAT_SIMCENTER, &FORMAT_SLIST,
+    &FORMAT_TSPAIR, &FORMAT_REFUSED, &FORMAT_AT2,   &FORMAT_COLUMNS};
+
+static const BinaryFormat *const BINARY_FORMATS[] = {&FORMAT_MSEED, &FORMAT_SAC, &FORMAT_EVT};
+enum { N_BINARY_FORMATS = sizeof BINARY_FORMATS / sizeof BINARY_FORMATS[0], ARCHIVES_DEEP = 2, TABLE_MIN = 20 };
+
+/* ---- which unit ----------------------------------------------------------------------------------------------- */
+
+/* The one unit that file and setting agree on. */
+static Status settle_unit(const char *path, const Channel *c, MotionUnit *unit, Err *err)
+{
+    const unsigned named = c->units;
+    MotionUnit first = UNIT_FROM_FILE, second = UNIT_FROM_FILE;
+    for (MotionUnit u = UNIT_M_S2; u <= UNIT_G; u++)
+        if (named & 1u << u) {
+            second = first ? u : second;
+            first = first ? first : u;
+        }
+    if (*unit == UNIT_FROM_FILE && first == UNIT_FROM_FILE && c->unit[0])
+        return fail(err, STATUS_BAD_DATA,
+                    "%s: the unit '%s' of its acceleration is not known; convert it to m/s2, cm/s2 or g and set "
+                    "motion.unit",
+                    path, c->unit);
+    if (*unit == UNIT_FROM_FILE && first == UNIT_FROM_FILE)
+        return fail(err, STATUS_BAD_DATA,
+                    "%s: does not say the unit of its acceleration; set motion.unit to m_s2, cm_s2 or g", path);
+    if (*unit == UNIT_FROM_FILE && second != UNIT_FROM_FILE)
+        return fail(err, STATUS_BAD_DATA,
+                    "%s: names two units of acceleration, %s and %s; set motion.unit to the right one", path,
+                    UNIT_NAMES[first], UNIT_NAMES[second]);
+    if (*unit != UNIT_FROM_FILE && named && !(named & 1u << *unit))
+        return fail(err, STATUS_BAD_DATA, "%s: motion.unit is %s, but the file says %s; leave motion.unit at from_file",
+                    path, UNIT_NAMES[*unit], UNIT_NAMES[first]);
+    *unit = *unit == UNIT_FROM_FILE ? first : *unit;
+    return STATUS_OK;
+}
+
+/* ---- which channel -------------------------------------------------------------------------------------------- */
+
+static int is_acceleration(const Channel *c)
+{
+    return strncasecmp(c->name, "vel", 3) != 0 && strncasecmp(c->name, "dis", 3) != 0;
+}
+
+enum { LIST_MAX = 360 }; /* of the 480 bytes of Err */
+
+/* "1 'NS', 2 'EW'"; names are shortened where there are too many for a message. */
+static void list_channels(const Record *r, char list[LIST_MAX])
+{
+    const size_t n = r->n_channels, each = n ? (LIST_MAX - 16) / n : 0;
+    const int shown = each > 8 + CHANNEL_NAME_MAX ? CHANNEL_NAME_MAX : each > 14 ? (int)each - 8 : 6;
+    size_t used = 0;
+    list[0] = 0;
+    for (size_t i = 0; i < n && used + (size_t)shown + 24 < LIST_MAX; i++) {
+        char name[CHANNEL_NAME_MAX + 1];
+        name_shorten(name, (size_t)shown, r->channel[i].name);
+        used += (size_t)snprintf(list + used, LIST_MAX - used, name[0] ? "%s%zu '%s'" : "%s%zu (no name)",
+                                 i ? ", " : "", i + 1, name);
+        if (i + 1 < n && used + (size_t)shown + 24 >= LIST_MAX)
+            snprintf(list + used, LIST_MAX - used, ", ... %zu", n);
+    }
+}
+
+/* Letters and digits only, in small letters, so that N-S is NS and "360 Deg" is 360deg. */
+static void plain_name(const char *name, char plain[64])
+{
+    size_t n = 0;
+    for (; *name && n < 63; name++)
+        if (isalnum((unsigned char)*name))
+            plain[n++] = (char)tolower((unsigned char)*name);
+    plain[n] = 0;
+}
+
+/* How many channels have a name that is the wanted one (exactly) or begins with it; *found is the last of them. */
+static int count_named(const Record *r, const char *wanted, int exactly, const Channel **found)
+{
+    char want[64], have[64];
+    int n = 0;
+    plain_name(wanted, want);
+    for (size_t i = 0; i < r->n_channels; i++) {
+        plain_name(r->channel[i].name, have);
+        if (!want[0] || (exactly ? strcmp(want, have) != 0 : strncmp(want, have, strlen(want)) != 0))
+            continue;
+        *found = &r->channel[i];
+        n++;
+    }
+    return n;
+}
+
+static int any_acceleration(const Record *r)
+{
+    size_t i = 0;
+    while (i < r->n_channels && !is_acceleration(&r->channel[i]))
+        i++;
+    return i < r->n_channels;
+}
+
+static const Channel *only_acceleration(const Record *r)
+{
+    const Channel *only = NULL;
+    for (size_t i = 0; i < r->n_channels; i++) {
+        if (!is_acceleration(&r->channel[i]))
+            continue;
+        if (only)
+            return NULL;
+        only = &r->channel[i];
+    }
+    return only;
+}
+
+/* A name comes before a number, for azimuths are names. */
+static const Channel *named_or_numbered(const Record *r, const char *wanted)
+{
+    const Channel *c = NULL;
+    char *end;
+    if (count_named(r, wanted, 1, &c) == 1)
+        return c;
+    const long number = strtol(wanted, &end, 10);
+    if (end != wanted && !*end && number >= 1 && number <= (long)r->n_channels)
+        return &r->channel[number - 1];
+    return count_named(r, wanted, 0, &c) == 1 ? c : NULL;
+}
+
+static Status choose_channel(const Record *r, const char *path, const char *wanted, const Channel **out, Err *err)
+{
+    char list[LIST_MAX];
+    const int automatic = !wanted || strcmp(wanted, "auto") == 0;
+    *out = automatic ? only_acceleration(r) : named_or_numbered(r, wanted);
+    list_channels(r, list);
+    if (automatic && !any_acceleration(r))
+        return fail(err, STATUS_BAD_DATA, "%s: none of its channels is an acceleration: %s", path, list);
+    if (!*out && automatic)
+        return fail(err, STATUS_BAD_DATA, "%s: holds %zu channels: %s; choose one by motion.channel (--channel)", path,
+                    r->n_channels, list);
+    if (!*out)
+        return fail(err, STATUS_BAD_DATA, "%s: motion.channel '%.40s' is not exactly one of its channels: %s", path,
+                    wanted, list);
+    if (!is_acceleration(*out))
+        return fail(err, STATUS_BAD_DATA, "%s: its channel '%s' is not an acceleration", path, (*out)->name);
+    if ((*out)->n < 2)
+        return fail(err, STATUS_BAD_DATA, "%s: holds %zu sample%s; at least two are needed", path, (*out)->n,
+                    (*out)->n == 1 ? "" : "s");
+    return STATUS_OK;
+}
+
+/* ---- the step ------------------------------------------------------------------------------------------------- */
+
+/* The rows of one channel. */
+typedef struct {
+    const char *path;
+    const Row *base;
+    size_t stride, n;
+} Series;
+
+static const Row *row_at(const Series *s, size_t i)
+{
+    return &s->base[i * s->stride];
+}
+
+/* The shortest decimal number within `slack` of x: times printed with few digits say 0.02, not 0.0200003. */
+static double shortest_near(double x, double slack)
+{
+    for (int digits = 1; digits < 17; digits++) {
+        char text[40];
+        snprintf(text, sizeof text, "%.*g", digits, x);
+        const double y = strtod(text, NULL);
+        if (fabs(y - x) <= slack)
+            return y;
+    }
+    return x;
+}
+
+static double step_before(const Series *s, size_t i)
+{
+    return row_at(s, i)->t - row_at(s, i - 1)->t;
+}
+
+/* Names the step that is least like the others: there the sample is missing, while the drift that it causes is noticed
+ * elsewhere. The step of the others is what it breaks. */
+static Status fail_at_oddest_step(const Series *s, double dt, double digit, Err *err)
+{
+    size_t odd = 1;
+    for (size_t i = 2; i < s->n; i++)
+        if (fabs(step_before(s, i) - dt) > fabs(step_before(s, odd) - dt))
+            odd = i;
+    const double step = step_before(s, odd), others = fmax((double)s->n - 2, 1);
+    const double span = row_at(s, s->n - 1)->t - row_at(s, 0)->t;
+    return fail(
+        err, STATUS_BAD_DATA,
+        "%s:%d: time %.10g s breaks the uniform step of %.6g s: it comes %.6g s after the line before; a sample "
+        "is missing, or the file must be resampled: set motion.resample_dt_s",
+        s->path, row_at(s, odd)->line, row_at(s, odd)->t, shortest_near((span - step) / others, digit / others), step);
+}
+
+/* Film is digitized where its trace bends. */
+static Status fail_digitized(const Series *s, Err *err)
+{
+    double shortest = HUGE_VAL, longest = 0;
+    for (size_t i = 1; i < s->n; i++) {
+        shortest = fmin(shortest, step_before(s, i));
+        longest = fmax(longest, step_before(s, i));
+    }
+    return fail(err, STATUS_BAD_DATA,
+                "%s:%d: digitized from film in steps of %.3g to %.3g s; have it resampled by straight lines: --set "
+                "motion.resample_dt_s=0.005",
+                s->path, row_at(s, 0)->line, shortest, longest);
+}
+
+/* Times on film may coincide in the digits that are printed. */
+static Status times_increase(const Series *s, int digitized, Err *err)
+{
+    for (size_t i = 1; i < s->n; i++)
+        if (!(step_before(s, i) > 0) && !(digitized && step_before(s, i) == 0))
+            return fail(err, STATUS_BAD_DATA, "%s:%d: time %.10g s does not come after %.10g s", s->path,
+                        row_at(s, i)->line, row_at(s, i)->t, row_at(s, i - 1)->t);
+    return STATUS_OK;
+}
+
+/* The common step. A printed time is off by half a unit of its last digit at most, and so are the first and the last
+ * one, which give the step: one unit in all, or 1e-5 of the time where six significant digits were printed, or 1e-3 of
+ * a step in any case. A missing or doubled sample is off by half a step or more wherever it stands; hence the cap. */
+static Status uniform_step(const Series *s, double *dt, Err *err)
+{
+    const double begin = row_at(s, 0)->t, span = row_at(s, s->n - 1)->t - begin, intervals = (double)(s->n - 1);
+    int decimals = row_at(s, 0)->decimals;
+    for (size_t i = 1; i < s->n; i++)
+        decimals = row_at(s, i)->decimals > decimals ? row_at(s, i)->decimals : decimals;
+    const double digit = pow(10.0, -decimals);
+    *dt = shortest_near(span / intervals, digit / intervals);
+    if (!(*dt > 0) || !isfinite(span))
+        return fail(err, STATUS_BAD_DATA, "%s: %zu samples from %g s to %g s have no usable step", s->path, s->n, begin,
+                    row_at(s, s->n - 1)->t);
+    for (size_t i = 0; i < s->n; i++) {
+        const double t = row_at(s, i)->t, printed = fmax(digit, 1e-5 * fabs(t));
+        if (fabs(t - begin - (double)i * *dt) > fmin(fmax(printed, 1e-3 * *dt), 0.3 * *dt))
+            return fail_at_oddest_step(s, *dt, digit, err);
+    }
+    return STATUS_OK;
+}
+
+/* ---- samples -------------------------------------------------------------------------------------------------- */
+
+static Status check_peak(const Series *s, double to_m_s2, MotionUnit unit, double scale, Err *err)
+{
+    const Row *peak = row_at(s, 0);
+    for (size_t i = 0; i < s->n; i++) {
+        if (!isfinite(row_at(s, i)->a))
+            return fail(err, STATUS_BAD_DATA, "%s: sample %zu of the channel is not a finite number", s->path, i + 1);
+        peak = fabs(row_at(s, i)->a) > fabs(peak->a) ? row_at(s, i) : peak;
+    }
+    if (!(fabs(peak->a) * to_m_s2 <= LARGEST_PEAK_G * GRAVITY))
+        return fail(err, STATUS_BAD_DATA, "%s:%d: an acceleration of %g %s is beyond %g g; is the unit right?", s->path,
+                    peak->line, scale * peak->a, UNIT_NAMES[unit], LARGEST_PEAK_G);
+    return STATUS_OK;
+}
+
+/* The mean of the samples [unit of the file]; 0 where the channel keeps its own. */
+static double offset_of(const Channel *c, const Series *s)
+{
+    double sum = 0;
+    for (size_t i = 0; c->subtract_mean && i < s->n; i++)
+        sum += row_at(s, i)->a;
+    return sum / (double)s->n;
+}
+
+/* The peak of the samples against the one that the header states, both in the unit of the file. */
+static Status check_stated_peak(Motion *m, const Channel *c, const Series *s, double offset, double to_m_s2,
+                                MotionUnit unit, const MotionHow *how, Err *err)
+{
+    const double allowed = how->peak_error_max > 0 ? how->peak_error_max : PEAK_ERROR_MAX;
+    double peak = 0;
+    if (!(c->peak > 0))
+        return STATUS_OK;
+    for (size_t i = 0; i < s->n; i++)
+        peak = fmax(peak, to_m_s2 * fabs(row_at(s, i)->a - offset));
+    const double error = fmax(fabs(peak - c->peak) - c->peak_slack, 0) / c->peak, to_file = c->scale / to_m_s2;
+    if (error > allowed)
+        return fail(err, STATUS_BAD_DATA,
+                    "%s: its samples peak at %.5g %s, its header says %.5g; motion.peak_error_max = %.2g would accept "
+                    "it (now %g)",
+                    s->path, peak * to_file, UNIT_NAMES[unit], c->peak * to_file, 1.1 * error, allowed);
+    if (error > 0.2 * PEAK_ERROR_MAX)
+        snprintf(m->warning, sizeof m->warning, "its samples peak at %.5g %s, its header says %.5g", peak * to_file,
+                 UNIT_NAMES[unit], c->peak * to_file);
+    return STATUS_OK;
+}
+
+static Status allocate(Motion *m, const char *path, size_t n, double dt, Err *err)
+{
+    m->accel = malloc(n * sizeof *m->accel);
+    if (!m->accel)
+        return fail(err, STATUS_NO_MEMORY, "%s: no memory for %zu samples", path, n);
+    m->n = n;
+    m->dt_s = dt;
+    return STATUS_OK;
+}
+
+/* Straight lines between the samples, at begin + k dt up to the end. A step so short that it would multiply the file
+ * many times is a mistake. */
+static Status resample(Motion *m, const Series *s, double dt, double to_m_s2, double offset, Err *err)
+{
+    const double begin = row_at(s, 0)->t, span = row_at(s, s->n - 1)->t - begin, most = 1e6 + 16 * (double)s->n;
+    const double n = floor(span / dt * (1 + 1e-12)) + 1;
+    if (!(n >= 2 && n <= most))
+        return fail(err, STATUS_BAD_DATA, "%s: motion.resample_dt_s = %g would make %.0f samples of %zu in %g s",
+                    s->path, dt, n, s->n, span);
+    TRY(allocate(m, s->path, (size_t)n, dt, err));
+    for (size_t k = 0, i = 0; k < m->n; k++) {
+        const double t = begin + (double)k * dt;
+        while (i + 2 < s->n && row_at(s, i + 1)->t <= t)
+            i++;
+        const Row *a = row_at(s, i), *b = row_at(s, i + 1);
+        m->accel[k] = to_m_s2 * (a->a - offset + (b->a - a->a) * fmin((t - a->t) / (b->t - a->t), 1));
+    }
+    return STATUS_OK;
+}
+
+/* Where it is even, the header's step against that of the printed times: within 1 %, and half a step in all. */
+static Status check_step(const Series *s, const Channel *c, double dt, int even, Err *err)
+{
+    const double intervals = (double)(c->n - 1);
+    if (dt > MOTION_STEP_MAX_S)
+        return fail(err, STATUS_BAD_DATA, "%s:%d: a step of %g s; more than %g s is no record of an earthquake",
+                    s->path, row_at(s, 0)->line, dt, MOTION_STEP_MAX_S);
+    if (!even || c->other_dt == 0 || fabs(dt - c->other_dt) * intervals <= dt * (0.6 + 0.01 * intervals))
+        return STATUS_OK;
+    return fail(err, STATUS_BAD_DATA, "%s: its header says a step of %.6g s, its times one of %.6g s", s->path,
+                c->dt > 0 ? dt : c->other_dt, c->dt > 0 ? c->other_dt : dt);
+}
+
+/* The samples in m/s2 become the motion's. */
+static Status take_samples(Motion *m, const char *path, const Record *r, const Channel *c, const MotionHow *how,
+                           Err *err)
+{
+    MotionUnit unit = how->unit;
+    double dt = c->dt;
+    const Series s = {.path = path, .base = r->row + c->first, .stride = c->stride, .n = c->n};
+    Err uneven = {0};
+    Status status = STATUS_OK;
+    if (dt == 0) {
+        TRY(times_increase(&s, c->digitized, err));
+        status = uniform_step(&s, &dt, &uneven);
+    }
+    TRY(check_step(&s, c, dt, status == STATUS_OK, err));
+    if (status != STATUS_OK && how->resample_dt_s == 0)
+        return c->digitized ? fail_digitized(&s, err) : fail(err, status, "%s", uneven.text);
+    char unknown[UNIT_SHOWN];
+    if (unit == UNIT_FROM_FILE && unit_unknown(c->name, c->name + strlen(c->name), unknown))
+        return fail(err, STATUS_BAD_DATA,
+                    "%s: its channel '%s': unit '%s' is not known; convert it to m/s2, cm/s2 or g", path, c->name,
+                    unknown);
+    if (c->counts && unit == UNIT_FROM_FILE && how->counts_per_m_s2 == 0)
+        return fail(err, STATUS_BAD_DATA,
+                    "%s: holds numbers without a unit, as a rule counts: set motion.counts_per_m_s2 to the gain of the "
+                    "instrument, or motion.unit to m_s2, cm_s2 or g",
+                    path);
+    if (c->counts && how->counts_per_m_s2 > 0)
+        unit = UNIT_M_S2;
+    else
+        TRY(settle_unit(path, c, &unit, err));
+    const double gain = c->counts && how->counts_per_m_s2 > 0 ? how->counts_per_m_s2 : 1;
+    const double to_m_s2 = c->scale / gain * (unit == UNIT_M_S2 ? 1.0 : unit == UNIT_CM_S2 ? 0.01 : GRAVITY);
+    TRY(check_peak(&s, to_m_s2, unit, c->scale, err));
+    const double offset = offset_of(c, &s);
+    if (c->warning)
+        snprintf(m->warning, sizeof m->warning, "%s", c->warning);
+    TRY(check_stated_peak(m, c, &s, offset, to_m_s2, unit, how, err));
+    if (c->subtract_mean)
+        snprintf(m->processed, sizeof m->processed, "mean of %.4g %s subtracted", c->scale * offset, UNIT_NAMES[unit]);
+    if (status != STATUS_OK)
+        return resample(m, &s, how->resample_dt_s, to_m_s2, offset, err);
+    TRY(allocate(m, path, c->n, dt, err));
+    for (size_t i = 0; i < m->n; i++)
+        m->accel[i] = to_m_s2 * (row_at(&s, i)->a - offset);
+    return STATUS_OK;
+}
+
+/* ---- the file ------------------------------------------------------------------------------------------------- */
+
+/* Line of the first byte that no text file holds, 0 if there is none. */
+static int binary_line(const char *text, size_t length)
+{
+    int line = 1;
+    for (size_t i = 0; i < length; i++) {
+        const unsigned char c = (unsigned char)text[i];
+        if (c < ' ' && !isspace(c))
+            return line;
+        line += c == '\n';
+    }
+    return 0;
+}
+
+static const MotionFormat *recognise(Lines l)
+{
+    size_t i = 0;
+    while (!FORMATS[i]->recognise(l))
+        i++;
+    return FORMATS[i];
+}
+
+/* Text: without its byte order mark and what old programs put behind it. */
+static Status read_text(Record *r, const char *path, const char *text, size_t length, const ReadHints *hints, Err *err)
+{
+    while (length && strchr("\x1a\t\r\n ", text[length - 1])) /* Ctrl-Z and NUL end the texts of old programs */
+        length--;
+    if (length >= 2 && (memcmp(text, "\xff\xfe", 2) == 0 || memcmp(text, "\xfe\xff", 2) == 0))
+        return fail(err, STATUS_BAD_DATA, "%s: is written in UTF-16; save it as UTF-8", path);
+    const int binary = binary_line(text, length);
+    if (length == 0)
+        return fail(err, STATUS_BAD_DATA, "%s: is empty", path);
+    if (binary)
+        return fail(err, STATUS_BAD_DATA, "%s:%d: holds bytes that no text has; a binary file of this kind is not read",
+                    path, binary);
+    const size_t mark = length >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0 ? 3 : 0; /* UTF-8 byte order mark */
+    const char line_end = memchr(text, '\n', length) ? '\n' : '\r';
+    Lines l = {.path = path, .next = text + mark, .end = text + length, .mark = line_end};
+    const MotionFormat *format = recognise(l);
+    /* JSON may be anything; a table is told from a text by its numbers */
+    r->is_known = format != &FORMAT_SIMCENTER && format != &FORMAT_REFUSED && format != &FORMAT_COLUMNS;
+    const Status status = format->read(r, &l, hints, err);
+    r->is_known |= format == &FORMAT_COLUMNS && r->n >= TABLE_MIN && strstr(err->text, "where the lines above have");
+    TRY(status);
+    for (size_t k = 0; k < r->n_channels; k++)
+        r->channel[k].format = format->name;
+    return STATUS_OK;
+}
+
+typedef struct {
+    Record *r;
+    const char *path;
+    const ReadHints *hints;
+    int deep;
+    Err first; /* why the first member could not be read */
+} Members;
+
+static Status read_content(Record *r, const char *path, const char *bytes, size_t n, const ReadHints *hints, int deep,
+                           Err *err);
+
+/* A member that is no record of an acceleration (a picture, a readme, a velocity) is passed over, a damaged one not. */
+static Status take_member(const char *name, const char *bytes, size_t n, void *user, Err *err)
+{
+    Members *members = user;
+    Err why = {0};
+    Record *one = calloc(1, sizeof *one);
+    if (!one)
+        return fail(err, STATUS_NO_MEMORY, "%s: no memory for its channels", members->path);
+    Status status = read_content(one, name, bytes, n, members->hints, members->deep + 1, &why);
+    if (status == STATUS_OK)
+        status = record_append(members->r, one, members->path, name, err);
+    else if (status == STATUS_NO_MEMORY)
+        status = fail(err, status, "%s", why.text);
+    else if (one->is_broken || (one->is_known && !strstr(why.text, "not an acceleration"))) {
+        members->r->is_broken = 1;
+        status = fail(err, status, "%s: a member of this archive is damaged: %.360s", members->path, why.text);
+    } else {
+        if (!members->first.text[0])
+            members->first = why;
+        status = STATUS_OK;
+    }
+    record_free(one);
+    free(one);
+    return status;
+}
+
+/* Files of one name in several folders. */
+static void tell_folders_apart(Record *r)
+{
+    int twin[CHANNELS_MAX] = {0};
+    for (size_t i = 0; i < r->n_channels; i++)
+        for (size_t k = 0; k < r->n_channels; k++)
+            twin[i] |= k != i && strcmp(r->channel[i].name, r->channel[k].name) == 0;
+    for (size_t i = 0; i < r->n_channels; i++)
+        if (twin[i])
+            memcpy(r->channel[i].name, r->channel[i].full, sizeof r->channel[i].name);
+}
+
+static Status read_archive(Record *r, const char *path, const char *bytes, size_t n, const ReadHints *hints, int deep,
+                           Err *err)
+{
+    Members members = {.r = r, .path = path, .hints = hints, .deep = deep};
+    if (deep == ARCHIVES_DEEP)
+        return fail(err, STATUS_BAD_DATA, "%s: an archive in an archive in an archive", path);
+    TRY(archive_each(path, bytes, n, take_member, &members, err));
+    tell_folders_apart(r);
+    return r->n_channels > 0 ? STATUS_OK
+                             : fail(err, STATUS_BAD_DATA, "%s: no member of this archive is a record: %.300s", path,
+                                    members.first.text[0] ? members.first.text : "it is empty");
+}
+
+static Status read_content(Record *r, const char *path, const char *bytes, size_t n, const ReadHints *hints, int deep,
+                           Err *err)
+{
+    const unsigned char *raw = (const unsigned char *)bytes;
+    if (archive_is(raw, n))
+        return read_archive(r, path, bytes, n, hints, deep, err);
+    for (int i = 0; i < N_BINARY_FORMATS; i++)
+        if (BINARY_FORMATS[i]->recognise(raw, n)) {
+            r->is_known = 1;
+            TRY(BINARY_FORMATS[i]->read(r, path, bytes, n, err));
+            for (size_t k = 0; k < r->n_channels; k++)
+                r->channel[k].format = BINARY_FORMATS[i]->name;
+            return STATUS_OK;
+        }
+    return read_text(r, path, bytes, n, hints, err);
+}
+
+static Status read_motion(Motion *m, Record *r, const char *path, const char *bytes, size_t n, const MotionHow *how,
+                          Err *err)
+{
+    const int chosen = how->channel && strcmp(how->channel, "auto") != 0;
+    const ReadHints hints = {.dt_s = how->dt_s, .channel = chosen ? how->channel : NULL};
+    const Channel *c = NULL;
+    TRY(read_content(r, path, bytes, n, &hints, 0, err));
+    TRY(choose_channel(r, path, how->channel, &c, err));
+    TRY(take_samples(m, path, r, c, how, err));
+    if (!m->warning[0] && how->dt_s > 0 && how->resample_dt_s == 0 && fabs(how->dt_s - m->dt_s) > 1e-6 * m->dt_s)
+        snprintf(m->warning, sizeof m->warning, "motion.dt_s = %g is not used: the file says %.6g s", how->dt_s,
+                 m->dt_s);
+    snprintf(m->name, sizeof m->name, "%s", path);
+    snprintf(m->format, sizeof m->format, "%s", c->format);
+    snprintf(m->channel, sizeof m->channel, "%s", c->name);
+    m->file_hash = hash_fnv1a(bytes, n, HASH_SEED);
+    return STATUS_OK;
+}
+
+Status motion_parse(Motion *m, const char *path, const char *text, size_t length, const MotionHow *how, Err *err)
+{
+    memset(m, 0, sizeof *m);
+    Record *r = calloc(1, sizeof *r);
+    if (!r)
+        return fail(err, STATUS_NO_MEMORY, "%s: no memory for its channels", path);
+    const Status s = read_motion(m, r, path, text, length, how, err);
+    record_free(r);
+    free(r);
+    return s;
+}
+
+Status motion_read(Motion *m, const char *path, const MotionHow *how, Err *err)
+{
+    char *text;
+    size_t length;
+    memset(m, 0, sizeof *m);
+    TRY(file_read(path, FILE_LARGEST, &text, &length, err));
+    const Status s = motion_parse(m, path, text, length, how, err);
+    free(text);
+    return s;
+}

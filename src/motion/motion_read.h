@@ -1,0 +1,45 @@
+/* motion/motion_read.h -- files that hold a ground acceleration, in the forms that people have them.
+ *
+ *   at2      PEER                              cosmos   COSMOS 1.20 V1, V2
+ *   csmip    CSMIP (CDMG, CGS), USGS V1, V2    smc      USGS SMC, volumes 1 and 2
+ *   knet     K-NET, KiK-net                    esm      Engineering Strong Motion data base, ASCII
+ *   geonet   GeoNet V1A, V2A                   jma      JMA, CSV
+ *   cwb      CWB, CWA (Taiwan)                 afad     AFAD (Turkey)
+ *   unam     UNAM (Mexico), ASA 2.0            bhrc     BHRC (Iran), volume 1
+ *   usc      USC, volume 1                     isesd    ISESD and its CD-ROM, corrected
+ *   slist    IRIS ASCII, and tspair            mseed    miniSEED 2
+ *   sac      SAC, binary and alphanumeric      simcenter  SimCenter JSON
+ *   csmnc    CSMNC (China)                     csn      CSN (Chile), text
+ *   evt      Kinemetrics EVT
+ *   csv      plain text: one, two or many columns
+ *
+ * and archives of them (zip, tar, gzip, bzip2, xz).
+ *
+ * The kind of file is told by its content, not by its name. Lines end in LF or CRLF; bytes beyond ASCII are let pass in
+ * words. docs/motions.md says what is read from each; motion/formats has one file per form.
+ *
+ * Ownership  m->accel is allocated; motion_free releases it (after a failure there is nothing to free)
+ * Threads    no state */
+#ifndef IMTET_MOTION_MOTION_READ_H
+#define IMTET_MOTION_MOTION_READ_H
+
+#include "motion/motion.h"
+#include "motion/options.h"
+
+typedef struct {
+    MotionUnit unit;     /* of the acceleration; must not contradict the file */
+    const char *channel; /* name or number (from 1) of the one that is wanted; NULL or "auto": there must be only one */
+    double dt_s;         /* step of a file that has neither step nor times; 0: such a file is refused */
+    double resample_dt_s;   /* unequal times are resampled to this step by straight lines; 0: they are refused */
+    double counts_per_m_s2; /* gain of the instrument of a file of counts; 0: such a file is refused */
+    double peak_error_max;  /* share by which the samples' peak may miss the header's; 0: PEAK_ERROR_MAX */
+} MotionHow;
+
+#define PEAK_ERROR_MAX 0.05 /* above: the file is refused; above a fifth of it: Motion.warning */
+
+Status motion_read(Motion *m, const char *path, const MotionHow *how, Err *err);
+
+/* The same from bytes in memory; `path` only names it in messages. */
+Status motion_parse(Motion *m, const char *path, const char *text, size_t length, const MotionHow *how, Err *err);
+
+#endif

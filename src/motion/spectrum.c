@@ -1,0 +1,389 @@
+#include "motion/spectrum.h"
+
+#include <math.h>
+#include <stdint.h>
+
+#include "base/units.h"
+
+/* ---- oscillator ----------------------------------------------------------------------------------------------- */
+
+typedef struct {
+    double w, zeta, wd, per_ww; /* [rad/s], [-], damped [rad/s], 1 / w^2 */
+} Oscillator;
+
+/* What one interval of length tau does:   h impulse response, its slope h1, I1 = int h, I2 = int I1   (all at tau) */
+typedef struct {
+    double h, h1, I1, I2;
+} Flow;
+
+/* While w tau is small the closed forms below lose their digits to cancellation; I1 is then summed as the power
+ * series of y'' + 2 zeta y' + y = 1, y(0) = y'(0) = 0 in x = w tau, and I2, h, h1 are its integral and derivatives. */
+static Flow flow_series(const Oscillator *o, double tau)
+{
+    const double x = o->w * tau;
+    double c = 0.5, c_before = 0, power = x; /* c_k, c_{k-1}, x^{k-1} */
+    double y = 0, y1 = 0, y_int = 0;
+    for (int k = 2; k < 30; k++) {
+        y1 += k * c * power;
+        y += c * power * x;
+        y_int += c * power * x * x / (k + 1);
+        const double c_next = -(2 * o->zeta * k * c + c_before) / ((k + 1.0) * k);
+        c_before = c;
+        c = c_next;
+        power *= x;
+    }
+    const double w = o->w;
+    return (Flow){.h = y1 / w, .h1 = 1 - 2 * o->zeta * y1 - y, .I1 = y / (w * w), .I2 = y_int / (w * w * w)};
+}
+
+static Flow flow(const Oscillator *o, double tau)
+{
+    if (o->w * tau < 1)
+        return flow_series(o, tau);
+    const double decay = exp(-o->zeta * o->w * tau), ww = o->w * o->w;
+    const double c = cos(o->wd * tau) * decay, s = sin(o->wd * tau) * decay / o->wd;
+    Flow f = {.h = s, .h1 = c - o->zeta * o->w * s};
+    f.I1 = (1 - c - o->zeta * o->w * s) / ww;
+    f.I2 = (tau - s - 2 * o->zeta * o->w * f.I1) / ww;
+    return f;
+}
+
+typedef struct {
+    double u, v; /* [m], [m/s] */
+} State;
+
+/* Ground acceleration a + slope tau. The response to unit initial displacement is h1 + 2 zeta w h. */
+static State advance(const Oscillator *o, const Flow *f, State y, double a, double slope)
+{
+    const double g = f->h1 + 2 * o->zeta * o->w * f->h;
+    return (State){.u = g * y.u + f->h * y.v - a * f->I1 - slope * f->I2,
+                   .v = -o->w * o->w * f->h * y.u + f->h1 * y.v - a * f->h - slope * f->I1};
+}
+
+/* ---- largest displacement inside an interval ------------------------------------------------------------------- */
+
+typedef struct {
+    const Oscillator *o;
+    State y;         /* at its beginning */
+    double a, slope; /* [m/s2], [m/s3] */
+} Interval;
+
+static State state_at(const Interval *in, double tau)
+{
+    const Flow f = flow(in->o, tau);
+    return advance(in->o, &f, in->y, in->a, in->slope);
+}
+
+/* The velocity is monotone in lo..hi and changes sign: Newton, kept inside by bisection. |u| at its zero. */
+static double extremum(const Interval *in, double lo, double hi, double v_lo)
+{
+    const Oscillator *o = in->o;
+    double tau = 0.5 * (lo + hi), u = 0;
+    for (int i = 0; i < 60; i++) {
+        const State y = state_at(in, tau);
+        u = y.u;
+        if ((y.v > 0) == (v_lo > 0))
+            lo = tau;
+        else
+            hi = tau;
+        const double accel = -in->a - in->slope * tau - 2 * o->zeta * o->w * y.v - o->w * o->w * y.u;
+        double next = tau - y.v / accel;
+        if (!(next > lo && next < hi))
+            next = 0.5 * (lo + hi);
+        if (fabs(next - tau) <= 1e-12 * hi)
+            break;
+        tau = next;
+    }
+    return fabs(u);
+}
+
+/* Largest |u| between the ends of an interval of length dt.
+ *
+ * The relative acceleration obeys the homogeneous equation, so its zeros lie pi / wd apart at known places, and the
+ * velocity is monotone between them. Of the many half cycles that a stiff oscillator makes in one interval only the
+ * first and the last few can hold the maximum: its peaks, one period apart, are a line plus a geometric sequence, which
+ * is convex. */
+static double largest_inside(const Interval *in, double dt, double v_end)
+{
+    const Oscillator *o = in->o;
+    const double r = -in->a - 2 * o->zeta * o->w * in->y.v - o->w * o->w * in->y.u; /* u''(0)  */
+    const double j = -in->slope - 2 * o->zeta * o->w * r - o->w * o->w * in->y.v;   /* u'''(0) */
+    double phase = atan2(-r * o->wd, r * o->zeta * o->w + j);                       /* wd tau of a zero, modulo pi */
+    phase -= M_PI * floor(phase / M_PI);
+    const double half_cycles = ceil(fmax(o->wd * dt - phase, 0) / M_PI);
+    double lo = 0, v_lo = in->y.v, largest = 0;
+    for (double k = 0; k <= half_cycles; k++) {
+        if (k == 4 && half_cycles > 9) {
+            k = half_cycles - 4;
+            lo = (phase + (k - 1) * M_PI) / o->wd;
+            v_lo = state_at(in, lo).v;
+        }
+        const int last = k == half_cycles;
+        const double hi = last ? dt : (phase + k * M_PI) / o->wd;
+        const double v_hi = last ? v_end : state_at(in, hi).v;
+        if (v_lo * v_hi < 0)
+            largest = fmax(largest, extremum(in, lo, hi, v_lo));
+        lo = hi;
+        v_lo = v_hi;
+    }
+    return largest;
+}
+
+/* ---- four oscillators at once ------------------------------------------------------------------------------------ */
+
+typedef double v2 __attribute__((vector_size(16))); /* what every x86-64 and every ARM64 computes at once */
+typedef int64_t m2 __attribute__((vector_size(16)));
+enum { PAIRS = 2, LANES = 2 * PAIRS };
+
+/* What an interval of length dt does to four oscillators, and what the bound on |u| needs. */
+typedef struct {
+    v2 uu[PAIRS], uv[PAIRS], vu[PAIRS], vv[PAIRS]; /* u' = uu u + uv v - ua a - us slope, v' likewise */
+    v2 ua[PAIRS], us[PAIRS], va[PAIRS], vs[PAIRS];
+    v2 per_ww[PAIRS], lag[PAIRS], per_w[PAIRS], ww[PAIRS],
+        damping[PAIRS]; /* 1 / w^2, 2 zeta / w^3, 1 / w, w^2, 2 zeta w */
+    double dt, chord;   /* dt^4 / 64 */
+} Flow4;
+
+static Flow4 flow4(const Oscillator o[LANES], double dt)
+{
+    Flow4 g = {.dt = dt, .chord = pow(dt, 4) / 64};
+    for (int k = 0; k < LANES; k++) {
+        const Flow f = flow(&o[k], dt);
+        const int h = k / 2, j = k % 2;
+        g.uu[h][j] = f.h1 + 2 * o[k].zeta * o[k].w * f.h;
+        g.uv[h][j] = f.h;
+        g.ua[h][j] = f.I1;
+        g.us[h][j] = f.I2;
+        g.vu[h][j] = -o[k].w * o[k].w * f.h;
+        g.vv[h][j] = f.h1;
+        g.va[h][j] = f.h;
+        g.vs[h][j] = f.I1;
+        g.per_ww[h][j] = o[k].per_ww;
+        g.lag[h][j] = 2 * o[k].zeta * o[k].w * o[k].per_ww;
+        g.per_w[h][j] = o[k].w * o[k].per_ww;
+        g.ww[h][j] = o[k].w * o[k].w;
+        g.damping[h][j] = 2 * o[k].zeta * o[k].w;
+    }
+    return g;
+}
+
+typedef struct {
+    v2 u[PAIRS], v[PAIRS], largest[PAIRS];
+} State4;
+
+/* Can |u| of pair h be larger than so far in the interval? It is a line p (what the ground's line leads to in the end)
+ * and a free vibration e about it, whose energy never grows: |u| <= max |p| + root(e(0)^2 + (e'(0) / w)^2). All bits
+ * where it can. */
+static inline m2 may_exceed(const Flow4 *g, const State4 *y, int h, double a, double slope)
+{
+    const m2 magnitude = {INT64_MAX, INT64_MAX}; /* all but the sign */
+    const v2 rise = -slope * g->per_ww[h], p = -a * g->per_ww[h] - g->lag[h] * rise;
+    const v2 e = y->u[h] - p, de = (y->v[h] - rise) * g->per_w[h], square = e * e + de * de;
+    const v2 room0 = y->largest[h] - (v2)((m2)p & magnitude);
+    const v2 room1 = y->largest[h] - (v2)((m2)(p + rise * g->dt) & magnitude);
+    return ~((room0 >= 0) & (room1 >= 0) & (square <= room0 * room0) & (square <= room1 * room1));
+}
+
+/* Can |u| be larger than so far, which is no less than at both ends? Where |u''| <= c, u lies less than dt^2 / 8 c above
+ * its chord; u'' = r at the beginning, r' = j there, is a free vibration: c^2 = r^2 + (j / w)^2. The better bound for
+ * periods much longer than dt. */
+static inline m2 may_exceed_chord(const Flow4 *g, const State4 *y, const State4 *end, int h, double a, double slope)
+{
+    const m2 magnitude = {INT64_MAX, INT64_MAX};
+    const v2 r = -a - g->damping[h] * y->v[h] - g->ww[h] * y->u[h];
+    const v2 j = -slope - g->damping[h] * r - g->ww[h] * y->v[h];
+    const v2 above = g->chord * (r * r + j * j * g->per_ww[h]);
+    const v2 room0 = end->largest[h] - (v2)((m2)y->u[h] & magnitude);
+    const v2 room1 = end->largest[h] - (v2)((m2)end->u[h] & magnitude);
+    return ~((above <= room0 * room0) & (above <= room1 * room1));
+}
+
+static __attribute__((noinline)) void look_inside(const Oscillator o[LANES], const State4 *y, State4 *end, double a,
+                                                  double slope, double dt, const m2 where[PAIRS])
+{
+    for (int k = 0; k < LANES; k++) {
+        const int h = k / 2, j = k % 2;
+        const Interval in = {.o = &o[k], .y = {y->u[h][j], y->v[h][j]}, .a = a, .slope = slope};
+        if (where[h][j])
+            end->largest[h][j] = fmax(end->largest[h][j], largest_inside(&in, dt, end->v[h][j]));
+    }
+}
+
+/* Advances y over an interval and raises the largest |u| to what is in it. */
+static inline void cross(const Oscillator o[LANES], const Flow4 *g, State4 *y, double a, double slope)
+{
+    const m2 magnitude = {INT64_MAX, INT64_MAX};
+    m2 where[PAIRS], any = {0, 0};
+    State4 end;
+#pragma GCC unroll 2
+    for (int h = 0; h < PAIRS; h++) {
+        where[h] = may_exceed(g, y, h, a, slope);
+        any |= where[h];
+        end.u[h] = g->uu[h] * y->u[h] + g->uv[h] * y->v[h] - a * g->ua[h] - slope * g->us[h];
+        end.v[h] = g->vu[h] * y->u[h] + g->vv[h] * y->v[h] - a * g->va[h] - slope * g->vs[h];
+        const v2 reached = (v2)((m2)end.u[h] & magnitude);
+        const m2 higher = reached > y->largest[h];
+        end.largest[h] = (v2)(((m2)reached & higher) | ((m2)y->largest[h] & ~higher));
+    }
+    if (any[0] | any[1]) {
+        any = (m2){0, 0};
+#pragma GCC unroll 2
+        for (int h = 0; h < PAIRS; h++) {
+            where[h] &= may_exceed_chord(g, y, &end, h, a, slope);
+            any |= where[h];
+        }
+        if (any[0] | any[1])
+            look_inside(o, y, &end, a, slope, g->dt, where);
+    }
+    *y = end;
+}
+
+/* Over the motion and then half a period of each of them at rest. */
+static void largest_displacements(const Motion *m, const Oscillator o[LANES], double largest[LANES])
+{
+    State4 y = {0};
+    const Flow4 g = flow4(o, m->dt_s);
+    for (size_t i = 0; i + 1 < m->n; i++)
+        cross(o, &g, &y, m->accel[i], (m->accel[i + 1] - m->accel[i]) / m->dt_s);
+    for (int k = 0; k < LANES; k++) {
+        const double half_period = M_PI / o[k].wd;
+        const Flow rest = flow(&o[k], half_period);
+        const Interval in = {.o = &o[k], .y = {y.u[k / 2][k % 2], y.v[k / 2][k % 2]}};
+        const State end = advance(&o[k], &rest, in.y, 0, 0);
+        largest[k] = fmax(y.largest[k / 2][k % 2], fmax(fabs(end.u), largest_inside(&in, half_period, end.v)));
+    }
+}
+
+void spectrum_psa(const Motion *m, double zeta, size_t n, const double T[], double psa[])
+{
+    const size_t groups = (n + LANES - 1) / LANES;
+#pragma omp parallel for schedule(dynamic)
+    for (size_t i = 0; i < groups; i++) {
+        Oscillator o[LANES];
+        double largest[LANES];
+        const size_t here = n - i * LANES < LANES ? n - i * LANES : LANES;
+        for (size_t k = 0; k < LANES; k++) { /* idle lanes repeat the last one */
+            const double period = T[i * LANES + (k < here ? k : here - 1)], w = 2 * M_PI / (period > 0 ? period : 1);
+            o[k] = (Oscillator){.w = w, .zeta = zeta, .wd = w * sqrt(1 - zeta * zeta), .per_ww = 1 / (w * w)};
+        }
+        largest_displacements(m, o, largest);
+        for (size_t k = 0; k < here; k++) /* a rigid one moves with the ground */
+            psa[i * LANES + k] = T[i * LANES + k] > 0 ? o[k].w * o[k].w * largest[k] : motion_peak(m);
+    }
+}
+
+/* ---- figures -------------------------------------------------------------------------------------------------- */
+
+typedef struct {
+    double a, slope, dt; /* one interval of the ground acceleration */
+    double v, d;         /* [m/s], [m] at its beginning */
+} Ground;
+
+static double velocity(const Ground *g, double tau)
+{
+    return g->v + tau * (g->a + tau * g->slope / 2);
+}
+
+static double displacement(const Ground *g, double tau)
+{
+    return g->d + tau * (g->v + tau * (g->a / 2 + tau * g->slope / 6));
+}
+
+/* The velocity peaks where the acceleration is zero. */
+static double largest_velocity(const Ground *g)
+{
+    const double tau = -g->a / g->slope;
+    const double inside = tau > 0 && tau < g->dt ? fabs(velocity(g, tau)) : 0;
+    return fmax(inside, fabs(velocity(g, g->dt)));
+}
+
+/* The displacement peaks where the velocity v + a tau + slope tau^2 / 2 is zero; roots without cancellation. */
+static double largest_ground_displacement(const Ground *g)
+{
+    double largest = fabs(displacement(g, g->dt));
+    const double root = sqrt(g->a * g->a - 2 * g->slope * g->v); /* NaN: none */
+    const double q = -(g->a + copysign(root, g->a));
+    const double zeros[2] = {q / g->slope, 2 * g->v / q};
+    for (int i = 0; i < 2; i++)
+        if (zeros[i] > 0 && zeros[i] < g->dt) /* false for NaN and infinity */
+            largest = fmax(largest, fabs(displacement(g, zeros[i])));
+    return largest;
+}
+
+/* int a^2 from the beginning of the interval to tau */
+static double square_integral(const Ground *g, double tau)
+{
+    const double b = g->a + g->slope * tau;
+    return tau * (g->a * g->a + g->a * b + b * b) / 3;
+}
+
+static double absolute_integral(const Ground *g)
+{
+    const double b = g->a + g->slope * g->dt;
+    if (g->a * b >= 0)
+        return g->dt * fabs(g->a + b) / 2;
+    return g->dt * (g->a * g->a + b * b) / (2 * fabs(b - g->a));
+}
+
+static Ground ground_at(const Motion *m, size_t i)
+{
+    return (Ground){.a = m->accel[i], .slope = (m->accel[i + 1] - m->accel[i]) / m->dt_s, .dt = m->dt_s};
+}
+
+/* When int a^2 has reached `level`; by bisection inside the interval where it does. */
+static double time_of_level(const Motion *m, double level)
+{
+    double sum = 0;
+    for (size_t i = 0; i + 1 < m->n; i++) {
+        const Ground g = ground_at(m, i);
+        const double more = square_integral(&g, g.dt);
+        if (sum + more >= level) {
+            double lo = 0, hi = g.dt;
+            for (int k = 0; k < 52; k++) {
+                const double middle = 0.5 * (lo + hi);
+                if (sum + square_integral(&g, middle) < level)
+                    lo = middle;
+                else
+                    hi = middle;
+            }
+            return (double)i * m->dt_s + hi;
+        }
+        sum += more;
+    }
+    return (double)(m->n - 1) * m->dt_s;
+}
+
+void motion_figures(const Motion *m, MotionFigures *out)
+{
+    double v = 0, d = 0, squares = 0;
+    *out = (MotionFigures){.pga_m_s2 = motion_peak(m), .duration_s = (double)(m->n - 1) * m->dt_s};
+    for (size_t i = 0; i + 1 < m->n; i++) {
+        Ground g = ground_at(m, i);
+        g.v = v;
+        g.d = d;
+        out->pgv_m_s = fmax(out->pgv_m_s, largest_velocity(&g));
+        out->pgd_m = fmax(out->pgd_m, largest_ground_displacement(&g));
+        out->cav_m_s += absolute_integral(&g);
+        squares += square_integral(&g, g.dt);
+        v = velocity(&g, g.dt);
+        d = displacement(&g, g.dt);
+    }
+    out->arias_m_s = M_PI / (2 * GRAVITY) * squares;
+    out->d5_95_s = squares > 0 ? time_of_level(m, 0.95 * squares) - time_of_level(m, 0.05 * squares) : 0;
+}
+
+void motion_histories(const Motion *m, double v[], double d[], double husid[])
+{
+    v[0] = d[0] = husid[0] = 0;
+    for (size_t i = 0; i + 1 < m->n; i++) {
+        Ground g = ground_at(m, i);
+        g.v = v[i];
+        g.d = d[i];
+        v[i + 1] = velocity(&g, g.dt);
+        d[i + 1] = displacement(&g, g.dt);
+        husid[i + 1] = husid[i] + square_integral(&g, g.dt);
+    }
+    const double all = husid[m->n - 1];
+    for (size_t i = 0; i < m->n && all > 0; i++)
+        husid[i] /= all;
+}
