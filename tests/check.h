@@ -31,6 +31,21 @@ static inline void check_close(double actual, double wanted, double tolerance, c
 #define assert_close(actual, wanted, relative_tolerance)                                                               \
     check_close(actual, wanted, relative_tolerance, #actual, __FILE__, __LINE__)
 
+/* Comparisons of any two numbers, whose values are printed where they fail; the operands are then evaluated again. */
+static inline void comparison_failed(const char *what, double left, double right, const char *file, int line)
+{
+    print_error("%s is not true: %.17g and %.17g\n", what, left, right);
+    _fail(file, line);
+}
+#define CHECK_COMPARISON(left, operator, right)                                                                        \
+    do {                                                                                                               \
+        if (!((left) operator(right)))                                                                                 \
+            comparison_failed(#left " " #operator" " #right, (double)(left), (double)(right), __FILE__, __LINE__);     \
+    } while (0)
+#define assert_less(left, right)        CHECK_COMPARISON(left, <, right)
+#define assert_at_most(left, right)     CHECK_COMPARISON(left, <=, right)
+#define assert_same_number(left, right) CHECK_COMPARISON(left, ==, right)
+
 static inline void check_ok(Status status, const Err *err, const char *what, const char *file, int line)
 {
     if (status != STATUS_OK) {

@@ -34,7 +34,7 @@ typedef struct {
 
 static inline void moments_note(Moments *m, const SearchView *v)
 {
-    assert_true(m->n < MOMENTS_MAX);
+    assert_less(m->n, MOMENTS_MAX);
     assert_non_null(v->state);
     const size_t k = m->n++;
     m->rows[k] = v->n;

@@ -322,8 +322,8 @@ static void test_the_search_is_nearly_as_good_as_one_in_batches(void **state)
     search(&c, NULL, &whole);
     const double plain = volume(&whole);
     forget_it(&whole);
-    assert_true(without_waiting > 0.97 * in_batches);
-    assert_true(without_waiting > plain + 0.5 * (in_batches - plain));
+    assert_less(0.97 * in_batches, without_waiting);
+    assert_less(plain + 0.5 * (in_batches - plain), without_waiting);
 }
 
 /* What is under way when the search ends is taken in, what only waits is not simulated. */
@@ -395,7 +395,7 @@ static void test_workers_of_uneven_speed_do_not_wait_for_each_other(void **state
     write_in_place("uneven.ini", UNEVEN("120"));
     optimize("batches", "");
     optimize("turns", "--set search.asynchronous=on");
-    assert_true(seconds_of("turns") < 0.7 * seconds_of("batches"));
+    assert_less(seconds_of("turns"), 0.7 * seconds_of("batches"));
 }
 
 /* Long enough that it does not end between two commits. */

@@ -116,8 +116,8 @@ static void test_a_sweep_has_a_row_for_every_setting_and_a_known_floor(void **st
     assert_non_null(quiet);
     CHECK_OK(sweep_run(&sweep, 0, &bench_case, &plan, quiet, &err), &err);
     fclose(quiet);
-    assert_true(sweep.n >= 6);
-    assert_true(sweep_floor(&sweep, 0) < 1e-5);
+    assert_at_most(6, sweep.n);
+    assert_less(sweep_floor(&sweep, 0), 1e-5);
     FILE *f = open_memstream(&csv, &size);
     assert_non_null(f);
     sweep_write_csv(&sweep, f);
@@ -126,7 +126,7 @@ static void test_a_sweep_has_a_row_for_every_setting_and_a_known_floor(void **st
     for (const char *c = csv; *c; c++)
         lines += *c == '\n';
     assert_int_equal(lines, sweep.n + 1);
-    assert_true(strncmp(csv, "case,engine,tolerance,seconds,error_objectives", 45) == 0);
+    assert_same_number(strncmp(csv, "case,engine,tolerance,seconds,error_objectives", 45), 0);
     free(csv);
     sweep_free(&sweep);
     bench_case_close(&bench_case);
@@ -210,7 +210,7 @@ static void test_the_distribution_test_draws_replicates_by_the_tolerance_of_the_
         bench_case_close(&bench_case);
     }
     print_message("spread of j1: %g, %g with errors of 5 mm\n", spread[0], spread[1]);
-    assert_true(spread[1] > 2 * spread[0]);
+    assert_less(2 * spread[0], spread[1]);
     motion_free(&g.m);
 }
 
@@ -255,7 +255,7 @@ static void test_no_method_gets_beyond_the_references_of_a_problem(void **state)
         CHECK_OK(course_create(&found, 1000, p.n_obj, &err), &err);
         CHECK_OK(run_moead(&s, &p, &found, &err), &err);
         print_message("%s: %zu references\n", family(i)->name, reference.n);
-        assert_true(reference.n >= 20);
+        assert_at_most(20, reference.n);
         check_nothing_is_beyond(&reference, &found);
         course_free(&found);
         course_free(&reference);
@@ -295,7 +295,7 @@ static void test_every_method_makes_as_many_evaluations_as_it_may_and_betters_it
             last = c.counts[j] ? fmin(last, sum_of(&c, j)) : last;
             assert_true(j == 0 || c.cpu_s[j] >= c.cpu_s[j - 1]);
         }
-        assert_true(last < first);
+        assert_less(last, first);
         course_free(&c);
         problem_close(&p);
     }

@@ -185,8 +185,8 @@ static void test_generated_motions_leave_the_ground_at_rest(void **state)
         for (size_t i = 0; i + 1 < m.n; i++)
             v += m.dt_s * (m.accel[i] + m.accel[i + 1]) / 2;
         assert_true(m.accel[0] == 0 && m.accel[m.n - 1] == 0);
-        assert_true(fabs(v) < 0.01 * f.pgv_m_s);
-        assert_true(f.pgd_m < 0.6);
+        assert_less(fabs(v), 0.01 * f.pgv_m_s);
+        assert_less(f.pgd_m, 0.6);
         motion_free(&m);
     }
 }
@@ -201,7 +201,7 @@ static void test_a_generated_motion_is_the_same_every_time(void **state)
         for (int i = 0; i < 2; i++)
             CHECK_OK(motion_load(&m[i], MOTIONS[k].source, UNIT_FROM_FILE, &err), &err);
         assert_memory_equal(m[0].accel, m[1].accel, m[0].n * sizeof(double));
-        assert_true(m[0].file_hash == m[1].file_hash);
+        assert_same_number(m[0].file_hash, m[1].file_hash);
         hash[k] = m[0].file_hash;
         motion_free(&m[0]);
         motion_free(&m[1]);
@@ -282,7 +282,7 @@ static void test_spectra_are_near_those_of_the_records(void **state)
         }
         print_message("%-21s spectrum off by %.2f %% on average, %.1f %% at most\n", MOTIONS[k].source, 100 * mean,
                       100 * worst);
-        assert_true(mean < 0.03);
+        assert_less(mean, 0.03);
         motion_free(&m);
         motion_free(&record);
     }

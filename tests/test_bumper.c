@@ -75,8 +75,8 @@ static void test_the_force_is_that_of_steel_and_spring_in_series_with_its_slopes
         const double by_v = (contact_force(&b.contact, b.mass, p, p_dot + dv, b.v).raw -
                              contact_force(&b.contact, b.mass, p, p_dot - dv, b.v).raw) /
                             (2 * dv);
-        assert_true(fabs(by_p - f.dp) <= 1e-6 * fabs(f.raw) / p);
-        assert_true(fabs(by_v - f.dv) <= 1e-6 * (fabs(f.dv) + f.elastic / b.v));
+        assert_at_most(fabs(by_p - f.dp), 1e-6 * fabs(f.raw) / p);
+        assert_at_most(fabs(by_v - f.dv), 1e-6 * (fabs(f.dv) + f.elastic / b.v));
     }
 }
 
@@ -186,8 +186,8 @@ static void test_impacts_are_those_of_an_independent_integration(void **state)
         const SimResult fast = strike(&b, ENGINE_FAST, ACCURACY_FINE);
         const SimResult standard = strike(&b, ENGINE_FAST, ACCURACY_STANDARD);
         /* Jankowski's force grows like t^0.25, for which the quadrature is not made */
-        assert_true(fabs(kept_share(&b, &fast) - want.kept) < (b.contact.xi > 0 ? 1e-3 : 4e-6));
-        assert_true(fabs(kept_share(&b, &standard) - want.kept) < 6e-3);
+        assert_less(fabs(kept_share(&b, &fast) - want.kept), (b.contact.xi > 0 ? 1e-3 : 4e-6));
+        assert_less(fabs(kept_share(&b, &standard) - want.kept), 6e-3);
         assert_close(fast.indentation_max_m + fast.bumper_compression_m, want.depth, 3e-4);
         assert_close(fast.j3_g * 9.81 * b.mass, want.force, 1e-4);
         assert_true(fast.energy_balance_error < 1e-5 && fast.contact_stored_j == 0);
@@ -195,7 +195,7 @@ static void test_impacts_are_those_of_an_independent_integration(void **state)
         worst[2] = fmax(worst[2], fabs(kept_share(&b, &standard) - want.kept));
         if (i % 6 == 0) {
             const SimResult cvode = strike(&b, ENGINE_CVODE, ACCURACY_FINE);
-            assert_true(fabs(kept_share(&b, &cvode) - want.kept) < 1e-5);
+            assert_less(fabs(kept_share(&b, &cvode) - want.kept), 1e-5);
             assert_close(cvode.bumper_compression_m, fast.bumper_compression_m, 1e-3);
         }
     }
@@ -227,7 +227,7 @@ static void test_a_soft_bumper_rebounds_by_its_own_damping_ratio(void **state)
         CHECK_OK(contact_make(&b.contact, &s.contact, &err), &err);
         const SimResult r = strike(&b, ENGINE_FAST, ACCURACY_FINE);
         assert_close(sqrt(kept_share(&b, &r)), exp(-M_PI * zeta / sqrt(1 - zeta * zeta)), 1e-3);
-        assert_true(r.clamp_j == 0);
+        assert_same_number(r.clamp_j, 0);
     }
 }
 
@@ -280,7 +280,7 @@ static void test_softer_bumpers_press_less_and_a_thin_one_bottoms_out(void **sta
         s.contact.bumper_stiffness_n_m = bumper;
         run_tower(&s, &r);
         assert_true(r.impacts > 10 && r.forces.contact_force_max_n < force);
-        assert_true(r.energy_balance_error < 1e-3);
+        assert_less(r.energy_balance_error, 1e-3);
         force = r.forces.contact_force_max_n;
         assert_close(r.bumper_strain, r.bumper_compression_m / s.contact.bumper_thickness_m, 1e-12);
     }

@@ -55,7 +55,7 @@ static void test_a_design_is_the_same_by_every_name(void **state)
                                         "@/run:%ld"};
     for (size_t i = 0; i < sizeof NAMES / sizeof NAMES[0]; i++) {
         snprintf(word, sizeof word, NAMES[i], known.knee);
-        assert_true(j1_of(word) == knee);
+        assert_same_number(j1_of(word), knee);
     }
 }
 
@@ -71,7 +71,7 @@ static void test_a_row_of_a_design_file_is_taken_by_its_number(void **state)
     snprintf(text, sizeof text, "%st_base_m,t_top_m\n%s0.02,0.01\n%s0.03,0.02\n", header, row[0], row[1]);
     write_in_place("two.csv", text);
     json_t *both = json_of(SIMULATE "@/two.csv");
-    assert_true(number(json_array_get(both, 1), "j1_m") == j1_of("@/two.csv:2"));
+    assert_same_number(number(json_array_get(both, 1), "j1_m"), j1_of("@/two.csv:2"));
     assert_true(number(json_array_get(both, 0), "j1_m") != j1_of("@/two.csv:2"));
     json_decref(both);
     expect(65, "has no design 3; it holds 2", SIMULATE "@/two.csv:3");
@@ -83,10 +83,10 @@ static void test_designs_off_the_front_stay_addressable(void **state)
     (void)state;
     char word[400];
     snprintf(word, sizeof word, "@/run:%ld", known.off);
-    assert_true(j1_of(word) == known.off_j1);
+    assert_same_number(j1_of(word), known.off_j1);
     snprintf(word, sizeof word, "evaluate @/run --design %ld --json", known.off);
     json_t *o = json_of(word), *first = json_array_get(json_object_get(o, "records"), 0);
-    assert_true(number(json_object_get(first, "with_core"), "j1_m") == known.off_j1);
+    assert_same_number(number(json_object_get(first, "with_core"), "j1_m"), known.off_j1);
     json_decref(o);
     snprintf(word, sizeof word, "report @/run --design %ld --record builtin:sylmar-like --out @/off.html", known.off);
     free(output_of(word));
@@ -117,8 +117,8 @@ static void test_evaluate_takes_a_design_from_elsewhere(void **state)
     const json_t *there = json_array_get(json_object_get(o, "records"), 0);
     const json_t *here = json_array_get(json_object_get(own, "records"), 0);
     assert_non_null(strstr(json_string_value(json_object_get(o, "design")), "/run:knee"));
-    assert_true(number(json_object_get(there, "with_core"), "j1_m") ==
-                number(json_object_get(here, "with_core"), "j1_m"));
+    assert_same_number(number(json_object_get(there, "with_core"), "j1_m"),
+                       number(json_object_get(here, "with_core"), "j1_m"));
     json_decref(o);
     json_decref(own);
     expect(65, "is no design of", "polish @/both --design @/run:knee");
@@ -129,11 +129,11 @@ static void test_evaluate_compares_with_devices_and_replicates_have_a_named_devi
     (void)state;
     json_t *o = json_of("evaluate @/run --design knee --json --replicates 3 --set uncertain.contact_stiffness=0.2");
     const json_t *record = json_array_get(json_object_get(o, "records"), 0);
-    assert_true(number(json_object_get(record, "links"), "link_ns_m") > 0);
-    assert_true(number(json_object_get(record, "tmd"), "stroke_m") > 0);
+    assert_less(0, number(json_object_get(record, "links"), "link_ns_m"));
+    assert_less(0, number(json_object_get(record, "tmd"), "stroke_m"));
     const json_t *replicates = json_object_get(record, "replicates");
     assert_string_equal(json_string_value(json_object_get(replicates, "spread")), "as built");
-    assert_true(number(replicates, "n") == 3);
+    assert_same_number(number(replicates, "n"), 3);
     json_decref(o);
     char *said = output_of("evaluate @/run --design knee --replicates 3");
     assert_non_null(strstr(said, "sd predictability of 3"));
@@ -149,9 +149,9 @@ static void test_evaluate_and_simulate_estimate_the_same_error_and_a_study_shows
     json_t *o = json_of("evaluate @/run --design knee --json"), *one = json_of(SIMULATE "@/run:knee");
     const json_t *core = json_object_get(json_array_get(json_object_get(o, "records"), 0), "with_core");
     const json_t *error = json_object_get(core, "estimated_error"), *wanted = json_object_get(one, "estimated_error");
-    assert_true(number(wanted, "j3_g") > 0);
-    assert_true(number(error, "j3_g") == number(wanted, "j3_g"));
-    assert_true(number(error, "ed1_pct") == number(wanted, "ed1_pct"));
+    assert_less(0, number(wanted, "j3_g"));
+    assert_same_number(number(error, "j3_g"), number(wanted, "j3_g"));
+    assert_same_number(number(error, "ed1_pct"), number(wanted, "ed1_pct"));
     json_decref(o);
     json_decref(one);
     char *said = output_of("evaluate @/run --design knee");
@@ -181,7 +181,7 @@ static void test_choose_names_the_extremes_and_writes_them(void **state)
         if (strcmp(name, "weighted") == 0)
             continue;
         snprintf(word, sizeof word, "@/run:%s", name);
-        assert_true(j1_of(word) == wanted);
+        assert_same_number(j1_of(word), wanted);
     }
     json_decref(o);
     expect(2, "give --csv a file", "choose @/run --json --csv -");
@@ -200,13 +200,13 @@ static void test_choose_limits_any_result_of_a_run(void **state)
     const double bound = h.table.row[run_knee(&h)].extra[k - h.schema.n_obj];
     snprintf(words, sizeof words, "choose @/run --json --max drift_ratio=%.17g", bound);
     json_t *o = json_of(words), *pick;
-    assert_true(json_array_size(json_object_get(o, "designs")) > 0);
+    assert_less(0, json_array_size(json_object_get(o, "designs")));
     json_array_foreach(json_object_get(o, "designs"), i, pick)
     {
         const size_t row = run_find(&h, (long)number(pick, "id"));
-        assert_true(h.table.row[row].extra[k - h.schema.n_obj] <= bound);
+        assert_at_most(h.table.row[row].extra[k - h.schema.n_obj], bound);
     }
-    assert_true(number(o, "within_limits") < (double)h.n_front);
+    assert_less(number(o, "within_limits"), (double)h.n_front);
     json_decref(o);
     run_free(&h);
     expect(2, "did you mean drift_ratio?", "choose @/run --max drift_rato=1");
@@ -247,7 +247,7 @@ static void test_the_sure_designs_of_a_noisy_front_are_those_with_that_probabili
     assert_int_equal(json_array_size(sure), n);
     assert_true(n > 0 && n < json_array_size(all));
     json_array_foreach(sure, i, one)
-        assert_true(probability_of(all, json_integer_value(json_object_get(one, "id"))) >= 0.8);
+        assert_at_most(0.8, probability_of(all, json_integer_value(json_object_get(one, "id"))));
     json_array_foreach(json_object_get(many, "designs"), i, one)
     {
         const double p = json_number_value(json_object_get(one, "nondominated_probability"));
@@ -265,7 +265,7 @@ static void test_the_sure_designs_of_a_noisy_front_are_those_with_that_probabili
     assert_non_null(strstr(said, words));
     free(said);
     json_t *status = json_of("status @/noisy --json");
-    assert_true(number(status, "confident") == (double)n);
+    assert_same_number(number(status, "confident"), (double)n);
     json_decref(status);
     json_decref(many);
     json_decref(few);
@@ -299,10 +299,10 @@ static void test_a_repeat_that_fails_leaves_the_rest_of_the_front_its_confidence
     CHECK_OK(run_read(&h, path_of("unlucky", path), &err), &err);
     for (size_t i = 0; i < h.table.n; i++)
         n_unlucky += h.place[i].ok && h.table.row[i].replicates > 1 && isnan(h.table.row[i].sd[0]);
-    assert_true(n_unlucky > 0);
+    assert_less(0, n_unlucky);
     assert_non_null(strstr(said, "designs of the front are nondominated with a probability of 0.9"));
     json_t *many = json_of("choose @/unlucky --json --confidence 0.01");
-    assert_true(json_array_size(json_object_get(many, "confident")) > 1);
+    assert_less(1, json_array_size(json_object_get(many, "confident")));
     json_decref(many);
     run_free(&h);
     free(said);

@@ -39,7 +39,7 @@ static void test_rows_keep_their_numbers_while_the_table_grows(void **state)
     for (int i = 0; i < N; i++) {
         assert_true(t.row[i].id == i + 1 && t.row[i].x == t.x + 3 * i && t.row[i].f == t.f + 2 * i);
         assert_true(t.x[3 * i + 2] == 10.0 * i + 2.0 && t.f[2 * i] == -i && isnan(t.f[2 * i + 1]));
-        assert_true(t.row[i].extra[0] == 0.5 * i);
+        assert_same_number(t.row[i].extra[0], 0.5 * i);
     }
     evaluation_table_free(&t);
     assert_true(t.n == 0 && t.n_var == 3);

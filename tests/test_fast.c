@@ -82,9 +82,9 @@ static void test_hertz_impact_has_its_penetration_force_and_duration(void **stat
     assert_close(b.result.indentation_max_m, b.penetration, 1e-4);
     assert_close(b.result.j3_g * 9.81 * ball.m, ball.k * pow(b.penetration, 1.5), 1e-4);
     bounce(&ball, 1 - 1e-4, &b);
-    assert_true(b.result.contact_stored_j > 0);
+    assert_less(0, b.result.contact_stored_j);
     bounce(&ball, 1 + 1e-4, &b);
-    assert_true(b.result.contact_stored_j == 0);
+    assert_same_number(b.result.contact_stored_j, 0);
 }
 
 static void test_damped_impact_has_its_known_penetration_force_and_duration(void **state)
@@ -96,9 +96,9 @@ static void test_damped_impact_has_its_known_penetration_force_and_duration(void
     assert_close(b.result.indentation_max_m, 0.902920 * b.penetration, 1e-4);
     assert_close(b.result.j3_g * 9.81 * ball.m, 0.911023 * ball.k * pow(b.penetration, 1.5), 1e-4);
     bounce(&ball, 1.03332 - 1e-4, &b);
-    assert_true(b.result.contact_stored_j > 0);
+    assert_less(0, b.result.contact_stored_j);
     bounce(&ball, 1.03332 + 1e-4, &b);
-    assert_true(b.result.contact_stored_j == 0);
+    assert_same_number(b.result.contact_stored_j, 0);
 }
 
 static void test_rebound_converges_with_at_least_third_order(void **state)
@@ -131,7 +131,7 @@ static void test_at_every_accuracy_an_impact_rebounds_right_wherever_it_falls_in
             Bounce b;
             bounce(&ball, -1, &b);
             const double rebound = sqrt(b.result.kinetic_strain_j / b.result.input_energy_j);
-            assert_true(fabs(rebound - contact_rebound(1.5 * (1 - r))) < allowed[accuracy]);
+            assert_less(fabs(rebound - contact_rebound(1.5 * (1 - r))), allowed[accuracy]);
         }
 }
 
@@ -173,8 +173,8 @@ static void test_one_step_per_contact_makes_no_energy_in_silence(void **state)
         Bounce b;
         bounce(&ball, -1, &b);
         const double made = b.result.kinetic_strain_j / b.result.input_energy_j - 1;
-        assert_true(b.result.outcome == RUN_OK);
-        assert_true(made < 1e-3 + 2 * b.result.energy_balance_error);
+        assert_same_number(b.result.outcome, RUN_OK);
+        assert_less(made, 1e-3 + 2 * b.result.energy_balance_error);
     }
 }
 
@@ -246,7 +246,7 @@ static void test_early_window_has_the_digits_that_independent_integrators_share(
     assert_close(fine.ed5_10_pct, 1.574, 4e-4);
     assert_close(fine.edcs_pct, 1.634, 4e-4);
     assert_close(fine.input_energy_j, 1.3096e6, 5e-5);
-    assert_true(fine.energy_balance_error < 1e-4);
+    assert_less(fine.energy_balance_error, 1e-4);
     tower_close(&t);
     t.settings.sim.accuracy = ACCURACY_STANDARD;
     tower_open(&t);
@@ -308,10 +308,10 @@ static void test_energy_energy_balance_close_and_damping_never_gives(void **stat
     Tower t;
     builtin_tower(&t);
     const SimResult r = tower_run(&t, SCENE_IMPACT);
-    assert_true(r.impacts > 20);
-    assert_true(r.energy_balance_error < 1e-3);
+    assert_less(20, r.impacts);
+    assert_less(r.energy_balance_error, 1e-3);
     for (int i = 0; i < r.n_modes; i++)
-        assert_true(r.mode_share_pct[i] > 0);
+        assert_less(0, r.mode_share_pct[i]);
     assert_true(r.contact_loss_j > 0 && r.damped_core_j > 0);
     const double spent =
         r.kinetic_strain_j + r.damped_building_j + r.damped_core_j + r.contact_loss_j + r.clamp_j + r.contact_stored_j;
@@ -423,7 +423,7 @@ static void test_standard_accuracy_agrees_with_cvode_on_another_building_core_an
         t.x[j] = 0.004 * (j + 1) + 0.002 * (j % 3);
     const SimResult cvode = tower_run(&t, SCENE_IMPACT);
     tower_close(&t);
-    assert_true(cvode.impacts > 5);
+    assert_less(5, cvode.impacts);
     assert_close(fast.j1_m, cvode.j1_m, 1e-3);
     assert_close(fast.j2_m, cvode.j2_m, 3e-3);
     assert_close(fast.j3_g, cvode.j3_g, 2e-2);

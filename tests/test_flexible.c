@@ -72,7 +72,7 @@ static void test_few_core_modes_and_springs_give_what_all_modes_give(void **stat
         stage_set(&t, &o, &c);
         const SimResult all = run_with(&t, &c, 0, 0), few = run_with(&t, &c, 0.1, 0);
         assert_true(few.outcome == RUN_OK && few.energy_balance_error < 3e-4);
-        assert_true(few.steps < 1.1 * (double)all.steps);
+        assert_less(few.steps, 1.1 * (double)all.steps);
         result_errors(&few, &all, each);
         for (int i = 0; i < RESULTS; i++)
             error[i][k] = each[i];
@@ -80,7 +80,7 @@ static void test_few_core_modes_and_springs_give_what_all_modes_give(void **stat
     for (int i = 0; i < RESULTS; i++) {
         const double median = bench_median(WINDOWS, error[i]);
         print_message("%s: median %.1e\n", BENCH_OBJECTIVE_NAMES[i], median);
-        assert_true(median <= ALLOWED[i]);
+        assert_at_most(median, ALLOWED[i]);
     }
     stage_close(&t);
     motion_free(&m);
@@ -102,7 +102,7 @@ static void test_so_many_core_modes_are_kept_as_are_asked_for(void **state)
     const SimResult all = run_with(&t, &c, 0, 0), twenty = run_with(&t, &c, 0.1, 20), more = run_with(&t, &c, 0.1, 99);
     const SimResult two = run_with(&t, &c, 0, 2), six = run_with(&t, &c, 0, 6);
     assert_true(twenty.j3_g == all.j3_g && twenty.steps == all.steps && more.j3_g == all.j3_g);
-    assert_true(fabs(two.edcs_pct / all.edcs_pct - 1) > 2 * fabs(six.edcs_pct / all.edcs_pct - 1));
+    assert_less(2 * fabs(six.edcs_pct / all.edcs_pct - 1), fabs(two.edcs_pct / all.edcs_pct - 1));
     stage_close(&t);
     motion_free(&m);
 }

@@ -48,7 +48,7 @@ static void test_forces_of_a_history_are_those_of_the_contact_law(void **state)
     const Table h = table_of("fast.csv"), contacts = table_of("contacts.csv");
     const double nu = 0.3, k = 2 * 2.1e11 * sqrt(0.1) / (3 * (1 - nu * nu)), a = 1.5 * (1 - 0.7);
     size_t compared = 0;
-    assert_true(contacts.n_rows > 5);
+    assert_less(5, contacts.n_rows);
     for (size_t i = 0; i < contacts.n_rows; i++) {
         const int floor = (int)cell(&contacts, i, "floor"), side = (int)cell(&contacts, i, "side");
         const double from = cell(&contacts, i, "t_s"), to = from + cell(&contacts, i, "duration_s");
@@ -71,7 +71,7 @@ static void test_forces_of_a_history_are_those_of_the_contact_law(void **state)
             compared++;
         }
     }
-    assert_true(compared > 10);
+    assert_less(10, compared);
     table_free((Table *)&h);
     table_free((Table *)&contacts);
 }
@@ -125,8 +125,8 @@ static void test_a_history_reaches_the_peaks_and_its_energies_add_up(void **stat
     assert_close(u, number(o, "j1_m"), 1e-6);
     assert_close(drift, number(o, "j2_m"), 1e-6);
     assert_close(accel, number(o, "j3_g"), SANITIZED ? 0.05 : 1e-2);
-    assert_true(error < 1e-12 * input);
-    assert_true(number(o, "j3_filtered_g") < number(o, "j3_g"));
+    assert_less(error, 1e-12 * input);
+    assert_less(number(o, "j3_filtered_g"), number(o, "j3_g"));
     json_decref(o);
     free(output_of("simulate configs/quick.ini --design none --set sim.duration_s=15 --history @/none.csv"));
     free(output_of(
@@ -143,7 +143,7 @@ static void test_a_history_reaches_the_peaks_and_its_energies_add_up(void **stat
         for (size_t c = 0; c < sizeof of / sizeof of[0]; c++)
             of[c] = strtod(strsep(&line, ","), NULL);
         assert_close(of[1], 0.062 / 3 * r, 1e-9); /* at most 0.031 s, and 0.062 s divided evenly */
-        assert_true(of[3 + 19] == of[3 + 4 * 20 + 19]);
+        assert_same_number(of[3 + 19], of[3 + 4 * 20 + 19]);
         assert_int_equal(strspn(line, ","), strlen(line));
     }
     free(rigid);
@@ -215,7 +215,7 @@ static void add_sums(const SimSample *s, void *user)
     const int n = b->n;
     if (s->t == 0)
         sums->n = 0;
-    assert_true(sums->n < sums->room);
+    assert_less(sums->n, sums->room);
     sim_worker_motion(sums->worker, s, &f);
     double *at = sums->at[sums->n++];
     at[0] = s->t;
@@ -317,8 +317,8 @@ static void test_a_sine_keeps_the_gain_of_butterworth(void **state)
         assert_close(filtered_peak(h, sine, shares[i] * CUTOFF, 0), gain, shares[i] > 0.8 ? 0.02 : 5e-3);
         assert_close(filtered_peak(h / 4, sine, shares[i] * CUTOFF, 0), gain, 4e-3);
     }
-    assert_true(filtered_peak(h, sine, 4 * CUTOFF, 0) < 1e-3);
-    assert_true(filtered_peak(h, sine, 9 * CUTOFF, 0) < 0.01); /* 225 Hz, near the sampling rate of 250 Hz */
+    assert_less(filtered_peak(h, sine, 4 * CUTOFF, 0), 1e-3);
+    assert_less(filtered_peak(h, sine, 9 * CUTOFF, 0), 0.01); /* 225 Hz, near the sampling rate of 250 Hz */
 }
 
 /* A speed of 1 m/s, gained at t0. */
@@ -396,7 +396,7 @@ static void test_samples_that_are_left_out_change_no_filtered_peak(void **state)
         const SimResult few = r;
         sim_worker_sample(worker, floor_filter_spacing(CUTOFF), add_sample, &all);
         CHECK_OK(sim_run(worker, SCENE_IMPACT, x, &r, &err), &err);
-        assert_true((double)all.samples > r.settled_s / floor_filter_spacing(CUTOFF));
+        assert_less(r.settled_s / floor_filter_spacing(CUTOFF), (double)all.samples);
         CHECK_OK(floor_filter_peaks(all.filter, peaks, &err), &err);
         for (int j = 0; j < 20; j++)
             worst = fmax(worst, fabs(few.peak_filtered_g[j] * 9.81 / peaks[j] - 1));
@@ -499,7 +499,7 @@ static void test_an_impact_that_begins_at_a_sample_counts_once(void **state)
         for (int law = 0; law < 2; law++)
             for (int engine = 0; engine < 2; engine++) {
                 const long n = impacts_with(gap, LAWS[law], ENGINES[engine]);
-                assert_true(n > 1);
+                assert_less(1, n);
                 assert_int_equal(impacts_with(gap * (1 - 1e-9), LAWS[law], ENGINES[engine]), n);
                 assert_int_equal(impacts_with(gap * (1 + 1e-9), LAWS[law], ENGINES[engine]), n);
             }

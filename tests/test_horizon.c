@@ -33,8 +33,8 @@ static void test_the_horizon_is_never_reached_without_contact(void **state)
     CHECK_OK(horizon_find(&w, x, 1e-3, &h, &err), &err);
     for (int i = 0; i < HORIZON_LEVELS; i++)
         assert_true(isnan(h.reached_s[i]));
-    assert_true(h.distance_at_end == 0);
-    assert_true(h.end_s > 15.9);
+    assert_same_number(h.distance_at_end, 0);
+    assert_less(15.9, h.end_s);
     scenario_close(&w);
 }
 
@@ -48,7 +48,7 @@ static void test_larger_changes_part_sooner_and_levels_are_reached_in_order(void
     open_scenario(&w, x, 0.008);
     CHECK_OK(horizon_find(&w, x, 1e-3, &early, &err), &err);
     CHECK_OK(horizon_find(&w, x, 1e-9, &late, &err), &err);
-    assert_true(early.reached_s[0] > 0);
+    assert_less(0, early.reached_s[0]);
     for (int i = 0; i < HORIZON_LEVELS; i++) {
         assert_true(!(late.reached_s[i] < early.reached_s[i]));
         assert_true(i == 0 || !(early.reached_s[i] < early.reached_s[i - 1]));

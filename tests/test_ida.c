@@ -14,7 +14,7 @@ static void test_a_range_of_intensities_ends_at_its_end_in_round_numbers(void **
     for (size_t i = 0; i < n; i++) {
         char text[16];
         snprintf(text, sizeof text, "%.2f", 0.05 * (double)(i + 1));
-        assert_true(levels[i] == strtod(text, NULL));
+        assert_same_number(levels[i], strtod(text, NULL));
     }
     CHECK_OK(ida_levels("0.1:0.25:0.7", levels, &n, &err), &err);
     assert_int_equal(n, 3); /* 0.1, 0.35, 0.6 */
@@ -101,7 +101,7 @@ static void test_every_record_is_simulated_at_every_intensity(void **state)
         assert_close(number(record_at(all, i), "pga_g"), 0.1 * (double)(i % 3 + 1), 1e-12);
         static const char *const SCENES[] = {"with_core", "rigid", "no_core"};
         for (int c = 0; c < 3; c++)
-            assert_true(value_at(all, i, SCENES[c], "j3_g") == value_at(one, 0, SCENES[c], "j3_g"));
+            assert_same_number(value_at(all, i, SCENES[c], "j3_g"), value_at(one, 0, SCENES[c], "j3_g"));
         json_decref(one);
     }
     json_decref(all);
@@ -209,7 +209,7 @@ static void test_the_csv_has_mean_and_deviation_of_the_replicates_as_the_json_ha
         n += json_is_number(wanted);
         assert_true(json_is_number(wanted) ? strtod(cell, NULL) == json_number_value(wanted) : !*cell);
     }
-    assert_true(n > 20);
+    assert_less(20, n);
     free(text);
     json_decref(o);
     char *table = output_of(REPLICATED "--replicates 3 --records @/many");

@@ -41,11 +41,11 @@ static void test_limits_that_nothing_keeps_end_with_the_nearest_designs(void **s
         const double *row = nearest.values + i * nearest.n_cols;
         size_t nearer = 0;
         assert_close(row[1], missed(row + 8), 1e-9);
-        assert_true(row[1] >= last);
+        assert_at_most(last, row[1]);
         last = row[1];
         for (size_t j = 0; j < all.table.n; j++)
             nearer += missed(all.F + j * 3) < row[1] - 1e-9;
-        assert_true(nearer <= i);
+        assert_at_most(nearer, i);
     }
     table_free(&nearest);
     run_free(&all);

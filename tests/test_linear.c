@@ -93,7 +93,7 @@ static void test_a_tuned_mass_answers_a_harmonic_as_its_transfer_function(void *
         const Motion m = {.dt_s = dt, .n = SAMPLES, .accel = accel};
         const SimResult r = run_system(LINEAR_TMD, &o, &f, core, d, &m, 0.005);
         assert_close(r.j1_m, amplitude(w1, 0.05, d, w), 2e-3);
-        assert_true(r.energy_balance_error < 1e-6);
+        assert_less(r.energy_balance_error, 1e-6);
     }
     free(accel);
     free(core);
@@ -120,7 +120,7 @@ static void test_warburtons_device_has_the_least_variance_under_white_noise(void
             LinearDevice other = best;
             other.tmd_hz *= k == 0 ? 1.02 : k == 1 ? 0.98 : 1;
             other.tmd_damping *= k == 2 ? 1.1 : k == 3 ? 0.9 : 1;
-            assert_true(variance(mu, other) > least);
+            assert_less(least, variance(mu, other));
         }
     }
 }
@@ -296,7 +296,7 @@ static void test_tuned_mass_and_links_agree_with_runge_and_kutta_in_the_displace
         assert_close(r.j1_m, J[0], 1e-6);
         assert_close(r.j2_m, J[1], 1e-6);
         assert_close(r.j3_g, J[2], 1e-5);
-        assert_true(r.energy_balance_error < 1e-7);
+        assert_less(r.energy_balance_error, 1e-7);
         assert_true(r.stroke_m > 0 && r.dashpot_n > 0);
     }
     free(core);
@@ -326,7 +326,7 @@ static void test_links_without_damping_are_no_links_and_with_much_of_it_the_rigi
         assert_true(off < 0.3 * before || off < 1e-5);
         before = off;
     }
-    assert_true(before < 2e-3);
+    assert_less(before, 2e-3);
     free(core);
 }
 
@@ -400,7 +400,7 @@ static void test_devices_are_better_than_none_and_than_their_neighbours(void **s
     CHECK_OK(baselines_find(&p, x, BASELINE_LINKS, b, &err), &err);
     for (int k = BASELINE_TMD; k <= BASELINE_LINKS; k++) {
         const double found = goal(&b[k], &b[BASELINE_NO_CORE]);
-        assert_true(found < 3);
+        assert_less(found, 3);
         for (int i = 0; i < 6; i++) {
             LinearDevice d = b[k].device;
             Baseline other = b[k];
@@ -414,7 +414,7 @@ static void test_devices_are_better_than_none_and_than_their_neighbours(void **s
             other.value[1] = other.first.j2_m;
             other.value[2] = other.first.j3_g;
             /* the sketch that was searched on is not the whole scene */
-            assert_true(goal(&other, &b[BASELINE_NO_CORE]) > found - 0.02);
+            assert_less(found - 0.02, goal(&other, &b[BASELINE_NO_CORE]));
         }
     }
     problem_close(&p);

@@ -43,7 +43,7 @@ static void test_nondominated_sort_equals_peeling_by_definition(void **state)
             int by_layer_above = rank[i] == 0;
             for (size_t j = 0; j < N; j++)
                 if (dominates_constrained(m, F + j * m, violation[j], F + i * m, violation[i])) {
-                    assert_true(rank[j] < rank[i]);
+                    assert_less(rank[j], rank[i]);
                     by_layer_above |= rank[j] + 1 == rank[i];
                 }
             assert_true(by_layer_above);
@@ -73,8 +73,8 @@ static void test_hypervolume_of_boxes_and_of_a_known_union(void **state)
     const double slabs[] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     assert_close(exact(3, 3, slabs, 2.0), 12.0 - 6.0 + 1.0, 1e-14);
     const double outside[] = {0.5, 3.0};
-    assert_true(exact(1, 2, outside, 2.0) == 0.0);
-    assert_true(exact(0, 2, outside, 2.0) == 0.0);
+    assert_same_number(exact(1, 2, outside, 2.0), 0.0);
+    assert_same_number(exact(0, 2, outside, 2.0), 0.0);
 }
 
 /* On integer coordinates the volume is the number of unit cells that some point covers. */
@@ -124,7 +124,7 @@ static void test_hypervolume_ignores_order_and_never_shrinks_when_a_point_is_add
         double last = 0.0;
         for (size_t n = 1; n <= N; n++) {
             const double now = exact(n, M, F, 1.1);
-            assert_true(now >= last * (1 - 1e-12));
+            assert_at_most(last * (1 - 1e-12), now);
             last = now;
         }
     }
@@ -145,8 +145,8 @@ static void test_the_estimate_is_within_four_standard_errors_of_the_exact_hyperv
         for (size_t i = 0; i < N; i++)
             hypervolume_add(estimate, F + i * M);
         const double share = hypervolume_share(estimate), error = hypervolume_error(share);
-        assert_true(error > 0.0);
-        assert_true(fabs(share - exact(N, M, F, 1.1) / pow(1.1, M)) < 4 * error);
+        assert_less(0.0, error);
+        assert_less(fabs(share - exact(N, M, F, 1.1) / pow(1.1, M)), 4 * error);
         hypervolume_free(estimate);
     }
 }
@@ -168,7 +168,7 @@ static void test_reference_directions_are_as_many_as_binomials_say_and_lie_on_th
         for (size_t i = 0; i < d.n; i++) {
             double sum = 0.0;
             for (size_t k = 0; k < m; k++) {
-                assert_true(d.W[i * m + k] >= 0.0);
+                assert_at_most(0.0, d.W[i * m + k]);
                 sum += d.W[i * m + k];
             }
             assert_close(sum, 1.0, 1e-14);
@@ -197,7 +197,7 @@ static void test_directions_fill_the_population_asked_for(void **state)
             size_t outer, inner;
             directions_choose(objectives[i], populations[j], &outer, &inner);
             const size_t n = n_directions(objectives[i], outer, inner);
-            assert_true(n <= populations[j]);
+            assert_at_most(n, populations[j]);
             assert_true(n >= objectives[i] && n_directions(objectives[i], outer + 1, 0) > populations[j]);
         }
 }
@@ -224,8 +224,8 @@ static void test_crossover_stays_in_bounds_and_keeps_the_mean_of_the_parents(voi
         sum += 0.5 * (a[0] + b[0]) / PAIRS;
         moved += a[0] != mother[0];
     }
-    assert_true(fabs(sum - 1.0) < 0.01);
-    assert_true(fabs((double)moved / PAIRS - 0.45) < 0.02);
+    assert_less(fabs(sum - 1.0), 0.01);
+    assert_less(fabs((double)moved / PAIRS - 0.45), 0.02);
 }
 
 static void test_mutation_stays_in_bounds_and_touches_the_wanted_share_of_variables(void **state)
@@ -244,8 +244,8 @@ static void test_mutation_stays_in_bounds_and_touches_the_wanted_share_of_variab
         touched += x[0] != 1.0;
         shift += (x[0] - 1.0) / 12.0 / TRIES;
     }
-    assert_true(fabs((double)touched / TRIES - 0.25) < 0.02);
-    assert_true(fabs(shift) < 1e-3);
+    assert_less(fabs((double)touched / TRIES - 0.25), 0.02);
+    assert_less(fabs(shift), 1e-3);
 }
 
 static void test_a_latin_hypercube_has_one_sample_in_every_slice_of_every_variable(void **state)
@@ -317,7 +317,7 @@ static void test_selection_keeps_the_wanted_number_the_best_layers_and_the_corne
             if (!kept && rank[i] < best_left)
                 best_left = rank[i];
         }
-        assert_true(worst_kept <= best_left);
+        assert_at_most(worst_kept, best_left);
     }
     assert_int_equal(selection_select(s, 5, F, NULL, KEEP, 0.5, &(Random){0}, chosen), 5);
     selection_free(s);
@@ -582,15 +582,15 @@ static void test_a_batch_spreads_over_the_directions_instead_of_crowding(void **
     CHECK_OK(directions_create(&d, 2, 10, 0, &err), &err);
     CHECK_OK(infill_create(&q, INFILL_PBI, 5, &d, &err), &err);
     infill_measure(q, 3, rows, front);
-    assert_true(infill_distance(q, front) == 0.0);
-    assert_true(infill_distance(q, offered + 6) > 0.0);
+    assert_same_number(infill_distance(q, front), 0.0);
+    assert_less(0.0, infill_distance(q, offered + 6));
     infill_offer(q, 5, offered, violation, uncertainty, NULL);
     assert_int_equal(infill_pick(q, allowed), 0);
     assert_int_equal(infill_pick(q, allowed), 2);
     assert_int_equal(infill_pick(q, allowed), 3); /* the least certain of those without gain */
     assert_int_equal(infill_pick(q, allowed), 1);
     assert_int_equal(infill_pick(q, allowed), 4);
-    assert_true(infill_pick(q, allowed) == SIZE_MAX);
+    assert_same_number(infill_pick(q, allowed), SIZE_MAX);
     const double chance[] = {0.01, 0.01, 0.9, 1, 1e-6}; /* the smaller gain that is nearly sure comes first */
     memset(allowed, 1, sizeof allowed);
     infill_measure(q, 3, rows, front);
@@ -648,7 +648,7 @@ static void test_picks_are_those_of_gains_computed_anew_each_time(void **state)
         infill_offer(q, N, F, violation, uncertainty, NULL);
         for (int k = 0; k < N; k++) {
             const size_t wanted = pick_by_definition(q, N, M, F, violation, uncertainty, allowed);
-            assert_true(infill_pick(q, allowed) == wanted);
+            assert_same_number(infill_pick(q, allowed), wanted);
             if (k % 4 == 0) /* the other criterion's */
                 infill_take(q, random_below(&r, N));
         }
@@ -669,7 +669,7 @@ static void test_spread_directions_have_the_axes_and_keep_apart(void **state)
         for (size_t i = 0; i < n; i++) {
             double sum = 0.0;
             for (size_t k = 0; k < m; k++) {
-                assert_true(d.W[i * m + k] >= 0.0);
+                assert_at_most(0.0, d.W[i * m + k]);
                 assert_true(i >= m || d.W[i * m + k] == (i == k));
                 sum += d.W[i * m + k];
             }
@@ -682,7 +682,7 @@ static void test_spread_directions_have_the_axes_and_keep_apart(void **state)
             }
         }
         /* in two objectives 40 on a line of length sqrt(2); in more there is more room */
-        assert_true(least > (m == 2 ? 0.35 * sqrt(2.0) / 39 : 0.05));
+        assert_less((m == 2 ? 0.35 * sqrt(2.0) / 39 : 0.05), least);
         directions_free(&d);
     }
 }
@@ -731,7 +731,7 @@ static void test_the_slope_of_pbi_equals_differences(void **state)
     infill_measure(q, ROWS, rows, F);
     for (size_t direction = 0; direction < d.n; direction++) {
         double f[M], unused[M];
-        assert_true(infill_best(q, direction) < ROWS);
+        assert_less(infill_best(q, direction), ROWS);
         for (size_t k = 0; k < M; k++)
             f[k] = 0.3 + random_uniform(&r);
         infill_slope(q, direction, f, slope);
@@ -742,7 +742,7 @@ static void test_the_slope_of_pbi_equals_differences(void **state)
             f[k] = at - h;
             const double down = infill_slope(q, direction, f, unused);
             f[k] = at;
-            assert_true(fabs(slope[k] - (up - down) / (2 * h)) < 1e-6);
+            assert_less(fabs(slope[k] - (up - down) / (2 * h)), 1e-6);
         }
     }
     infill_free(q);

@@ -126,7 +126,7 @@ static int ranks_of(pid_t mpirun, long pid[16])
 static pid_t process_of(pid_t mpirun, int rank)
 {
     long pid[16];
-    assert_true(rank < ranks_of(mpirun, pid));
+    assert_less(rank, ranks_of(mpirun, pid));
     return (pid_t)pid[rank];
 }
 
@@ -151,7 +151,7 @@ static void wait_for_evaluations(const char *run)
     snprintf(name, sizeof name, "%s/evaluations.csv", run);
     while (lines_in(name) < 10 && now_s() < until)
         rest(0.02);
-    assert_true(lines_in(name) >= 10);
+    assert_at_most(10, lines_in(name));
     rest(0.3); /* into the next generation */
 }
 
@@ -277,7 +277,7 @@ static void kill_and_resume(const char *study, int rank, int code)
     kill(rank == MPIRUN ? mpirun : process_of(mpirun, rank), SIGKILL);
     assert_int_equal(code_of(mpirun), code);
     rest(rank == MPIRUN ? 2.0 : 0.0);
-    assert_true(lines_in("killed/evaluations.csv") >= before);
+    assert_at_most(before, lines_in("killed/evaluations.csv"));
     if (rank > 0)
         expect_said("process rank 2");
     expect_not_said("stopped on request");

@@ -69,7 +69,7 @@ static void test_surely_is_a_strict_partial_order_whatever_the_errors(void **sta
         for (size_t a = 0; a < POINTS; a++)
             assert_false(surely(&c, a, a));
     }
-    assert_true(pairs > 100);
+    assert_less(100, pairs);
 }
 
 /* -- spread -------------------------------------------------------------------------------------------------------- */
@@ -110,8 +110,8 @@ static void test_the_confidence_of_one_design_against_another_is_a_product_of_no
     for (size_t k = 0; k < 3; k++)
         beaten *= 0.5 * erfc((F[3 + k] - F[k]) / sqrt(2.0 * (error[k] * error[k] + error[3 + k] * error[3 + k])));
     CHECK_OK(front_confidence(2, 3, F, error, 1, 2, (size_t[]){0, 1}, p, &err), &err);
-    assert_true(fabs(p[0] - (1.0 - beaten)) < 4.0 * share_error(beaten));
-    assert_true(p[1] > 0.8);
+    assert_less(fabs(p[0] - (1.0 - beaten)), 4.0 * share_error(beaten));
+    assert_less(0.8, p[1]);
 }
 
 /* All objectives drawn 20,000 times from another stream, every pair of designs compared. */
@@ -157,8 +157,8 @@ static void test_a_constant_deviation_and_a_share_of_the_value_are_told_apart(vo
     assert_close(constant.sd, 0.1, 0.12);
     assert_true(share.is_relative);
     assert_close(share.sd, 0.03, 0.12);
-    assert_true(none.sd == 0.0);
-    assert_true(noise_fit(0, NULL, NULL, 1, 0, NULL, NULL).sd == 0.0);
+    assert_same_number(none.sd, 0.0);
+    assert_same_number(noise_fit(0, NULL, NULL, 1, 0, NULL, NULL).sd, 0.0);
     assert_close(noise_variance(&share, 2.0, 0.0, 1), pow(2.0 * share.sd, 2), 1e-12);
     assert_close(noise_variance(&(NoiseModel){0.2, 0}, 7.0, 0.06, 2), (0.04 + 0.06) / 2, 1e-12);
 }
@@ -185,7 +185,7 @@ static void test_estimates_are_as_near_as_answer_and_prediction_allow(void **sta
         noise_estimate(MANY, rows, e, 1, 0, answer, error, estimate);
         for (size_t i = 0; i < MANY; i++) {
             square += estimate[i] * estimate[i] / MANY;
-            assert_true(fabs(estimate[i] - answer[i]) <= 1.0 + 1e-12);
+            assert_at_most(fabs(estimate[i] - answer[i]), 1.0 + 1e-12);
         }
         if (!(square > least - 0.05 && square < least + 0.2 && square < 0.98))
             fail_msg("mean square %g where %g can be had", square, least);
@@ -245,7 +245,7 @@ static void test_a_design_has_the_mean_and_the_deviation_of_its_answers(void **s
                     S += pow(a.Y[i * M + k] - mean, 2.0);
             assert_int_equal(a.replicates[row], (size_t)n);
             assert_close(a.F[row * M + k], mean, 1e-12);
-            assert_true(fabs(a.S[row * M + k] - S) < 1e-10);
+            assert_less(fabs(a.S[row * M + k] - S), 1e-10);
             const double variance = noise_variance(&a.noise[k], a.F[row * M + k], a.S[row * M + k], a.replicates[row]);
             assert_close(a.error[row * M + k], sqrt(variance / n), 1e-12);
         }
@@ -457,7 +457,7 @@ static void test_what_answers_the_same_each_time_is_soon_left_alone(void **state
     run(&plain, &c, NULL, &seen);
     assert_int_equal(plain.n_repeated, 0);
     for (size_t i = 0; i < seen.n * OBJ; i++)
-        assert_true(seen.F[i] == seen.Y[i]);
+        assert_same_number(seen.F[i], seen.Y[i]);
     forget(&seen);
 }
 
@@ -583,7 +583,7 @@ static void test_estimates_of_a_surface_are_nearer_to_the_truth_than_means(void 
     pareto_archive_update_noise(&a);
     CHECK_OK(surrogate_fit(surrogate, &a, near, &err), &err);
     surrogate_estimate(surrogate, &a);
-    assert_true(square_off(&a, a.estimate) < 0.6 * square_off(&a, a.F));
+    assert_less(square_off(&a, a.estimate), 0.6 * square_off(&a, a.F));
     pareto_archive_reset_estimates(&a);
     assert_memory_equal(a.estimate, a.F, a.n * OBJ * sizeof *a.F);
     pareto_archive_free(&a);

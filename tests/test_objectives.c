@@ -46,8 +46,9 @@ static void test_what_is_not_asked_for_is_not_computed_and_left_empty(void **sta
     for (size_t i = 0; i < run.table.n; i++) {
         assert_true(isnan(extra_of(&run, i, "contact_force_max_n")) && isnan(extra_of(&run, i, "core_stress_pa")));
         assert_true(isnan(extra_of(&run, i, "base_shear_n")));
-        assert_true(extra_of(&run, i, "drift_ratio") > 0.0);
-        assert_true((extra_of(&run, i, "indentation_ratio") > 0.1) == (extra_of(&run, i, "beyond_contact_law") == 1.0));
+        assert_less(0.0, extra_of(&run, i, "drift_ratio"));
+        assert_same_number((extra_of(&run, i, "indentation_ratio") > 0.1),
+                           (extra_of(&run, i, "beyond_contact_law") == 1.0));
     }
     run_free(&run);
     optimize("forces", "--set sim.forces=yes");
@@ -77,16 +78,16 @@ static void test_every_result_of_a_study_is_that_of_a_simulation_of_the_same_des
         fprintf(f, "%s%.17g", j ? "," : "\n", run_x(&run, row)[j]);
     fclose(f);
     json_t *o = json_of("simulate @/tower.ini --design @/one.csv --json");
-    assert_true(number(o, "core_stress_pa") == run_f(&run, row)[0]);
-    assert_true(number(o, "impacts") == run_f(&run, row)[1]);
-    assert_true(number(o, "j1_m") == run_f(&run, row)[2]);
+    assert_same_number(number(o, "core_stress_pa"), run_f(&run, row)[0]);
+    assert_same_number(number(o, "impacts"), run_f(&run, row)[1]);
+    assert_same_number(number(o, "j1_m"), run_f(&run, row)[2]);
     for (size_t k = 0; k < run.schema.n_extra; k++) {
         const json_t *value = json_object_get(o, schema_extra(&run.schema, k)->name);
         const double stored = run.table.row[row].extra[k];
         if (strcmp(schema_extra(&run.schema, k)->name, "j3_filtered_g") == 0)
             assert_true(isnan(stored) && json_is_real(value)); /* forces do not bring the filter with them */
         else if (json_is_number(value))
-            assert_true(json_number_value(value) == stored);
+            assert_same_number(json_number_value(value), stored);
         else
             assert_true(json_is_null(value) ? isnan(stored) : json_is_true(value) == (stored == 1.0));
     }
@@ -168,7 +169,7 @@ static void expect_limited_in(const char *name)
     assert_int_equal(front.n_rows, run.n_front);
     for (size_t i = 0; i < front.n_rows; i++)
         for (size_t c = at; c < at + 2; c++)
-            assert_true(front.values[i * front.n_cols + c] == extra_of(&run, run.front[i], front.names[c]));
+            assert_same_number(front.values[i * front.n_cols + c], extra_of(&run, run.front[i], front.names[c]));
     assert_true(strcmp(front.names[at], "drift_ratio") == 0 && strcmp(front.names[at + 1], "contact_force_max_n") == 0);
     table_free(&front);
     run_free(&run);
@@ -186,8 +187,8 @@ static void test_limited_results_stand_beside_the_objectives(void **state)
     const json_t *knee = json_array_get(json_object_get(o, "designs"), 0);
     Run run;
     read_run("limited", &run);
-    assert_true(number(json_object_get(knee, "limited"), "contact_force_max_n") ==
-                extra_of(&run, run_knee(&run), "contact_force_max_n"));
+    assert_same_number(number(json_object_get(knee, "limited"), "contact_force_max_n"),
+                       extra_of(&run, run_knee(&run), "contact_force_max_n"));
     run_free(&run);
     json_decref(o);
     char *said = output_of("choose @/limited");
@@ -305,7 +306,7 @@ static void test_a_run_with_fewer_measures_is_read_and_goes_on(void **state)
     free(output_of("optimize @/plain --max-evals 34 --force-settings"));
     read_run("plain", &run);
     assert_int_equal(run.table.n, 34);
-    assert_true(extra_of(&run, 33, "drift_ratio") > 0.0);
+    assert_less(0.0, extra_of(&run, 33, "drift_ratio"));
     run_free(&run);
 }
 
@@ -328,7 +329,7 @@ static void test_the_end_of_a_study_names_gaps_that_never_close(void **state)
     const json_t *never = json_object_get(review, "never_closing");
     assert_int_equal(json_array_size(never), 20);
     assert_int_equal(json_integer_value(json_array_get(never, 19)), 20);
-    assert_true(number(review, "designs_simulated") > 0);
+    assert_less(0, number(review, "designs_simulated"));
     json_decref(o);
 }
 

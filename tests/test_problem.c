@@ -70,7 +70,7 @@ static void check_vector(const char *problem, const double x[], const double f[]
     else
         textbook_wfg4(VAR, OBJ, 2 * (OBJ - 1), x, got);
     for (size_t k = 0; k < OBJ; k++)
-        assert_true(fabs(got[k] - f[k]) < 1e-9);
+        assert_less(fabs(got[k] - f[k]), 1e-9);
 }
 
 static void test_textbook_problems_give_the_numbers_of_an_independent_program(void **state)
@@ -197,13 +197,13 @@ static void expect_every_third(const char *mode, Outcome third, const char *reas
                 fail_msg("%s, design %zu: %s (%s)", mode, i + 1, outcome_word(a.answers[i].outcome),
                          a.answers[i].reason);
             if (want == OUTCOME_OK) {
-                assert_true(a.F[2 * i] == a.X[3 * i]); /* 17 digits there and back */
-                assert_true(a.F[2 * i + 1] == a.X[3 * i + 1]);
+                assert_same_number(a.F[2 * i], a.X[3 * i]); /* 17 digits there and back */
+                assert_same_number(a.F[2 * i + 1], a.X[3 * i + 1]);
             } else if (!strstr(a.answers[i].reason, reason)) {
                 fail_msg("%s: '%s' does not say '%s'", mode, a.answers[i].reason, reason);
             }
         }
-        assert_true(a.seconds < 30);
+        assert_less(a.seconds, 30);
     }
 }
 
@@ -262,7 +262,7 @@ static void test_millions_of_blank_lines_are_passed_over_quickly(void **state)
     getrusage(RUSAGE_SELF, &after);
     for (size_t i = 0; i < N; i++)
         assert_int_equal(a.answers[i].outcome, OUTCOME_OK);
-    assert_true(after.ru_utime.tv_sec - before.ru_utime.tv_sec < 3);
+    assert_less(after.ru_utime.tv_sec - before.ru_utime.tv_sec, 3);
 }
 
 static void test_messages_are_cut_between_characters_and_shown_whatever_they_are(void **state)
@@ -568,7 +568,7 @@ static void test_noise_has_the_spread_asked_for_and_the_same_seed_the_same_noise
         queue_close(q);
         adapter_close(adapter);
     }
-    assert_true(fabs(sum) < 0.003);
+    assert_less(fabs(sum), 0.003);
     assert_close(sqrt(square), 0.03, 0.06);
 }
 

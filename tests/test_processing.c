@@ -63,12 +63,12 @@ static void test_a_base_line_of_its_degree_leaves_no_trace(void **state)
         CHECK_OK(motion_process(&a, &o, &err), &err);
         CHECK_OK(motion_process(&b, &o, &err), &err);
         for (size_t i = 0; i < a.n; i++) {
-            assert_true(fabs(a.accel[i] - b.accel[i]) < 1e-12);
+            assert_less(fabs(a.accel[i] - b.accel[i]), 1e-12);
             for (int k = 0; k <= degree; k++)
                 sums[k] += a.accel[i] * pow((double)i / 1500, k);
         }
         for (int k = 0; k <= degree; k++)
-            assert_true(fabs(sums[k]) < 1e-9); /* nothing of that degree is left */
+            assert_less(fabs(sums[k]), 1e-9); /* nothing of that degree is left */
         assert_non_null(strstr(b.processed, (const char *[]){"mean", "straight line", "parabola"}[degree]));
         motion_free(&a);
         motion_free(&b);
@@ -84,7 +84,7 @@ static void test_a_motion_is_as_recorded_unless_it_is_asked_to_be_processed(void
     CHECK_OK(motion_process(&m, &o, &err), &err);
     assert_int_equal(m.n, 200);
     for (size_t i = 0; i < m.n; i++)
-        assert_true(m.accel[i] == parabola((double)i * 0.01));
+        assert_same_number(m.accel[i], parabola((double)i * 0.01));
     assert_string_equal(m.processed, "");
     assert_false(motion_is_corrected(&o));
     motion_free(&m);
@@ -126,10 +126,10 @@ static void test_a_high_pass_brings_the_ground_to_rest_where_it_was(void **state
         motion_histories(&m, v, d, husid);
         const size_t pad = (size_t)ceil(3 / hz / 0.01);
         assert_int_equal(m.n, 3001 + 2 * pad);
-        assert_true(before.pgd_m > 8);
-        assert_true(after.pgd_m < 0.6);
-        assert_true(fabs(v[m.n - 1]) < 1e-3 * after.pgv_m_s);
-        assert_true(fabs(d[m.n - 1]) < 3e-4 * before.pgd_m);
+        assert_less(8, before.pgd_m);
+        assert_less(after.pgd_m, 0.6);
+        assert_less(fabs(v[m.n - 1]), 1e-3 * after.pgv_m_s);
+        assert_less(fabs(d[m.n - 1]), 3e-4 * before.pgd_m);
         assert_close(after.pga_m_s2, before.pga_m_s2, 0.02); /* 2 Hz is let pass */
         assert_non_null(strstr(m.processed, "zeros added at both ends"));
         free(v);
@@ -157,7 +157,7 @@ static void test_a_low_pass_takes_the_high_tone_and_leaves_the_low_one_in_place(
     CHECK_OK(motion_process(&m, &o, &err), &err);
     assert_int_equal(m.n, 6001);
     for (size_t i = 0; i < m.n; i++)
-        assert_true(fabs(m.accel[i] - slow_tone((double)i * 0.005)) < 1.5e-3); /* (8/20)^8 = 7e-4 is left of it */
+        assert_less(fabs(m.accel[i] - slow_tone((double)i * 0.005)), 1.5e-3); /* (8/20)^8 = 7e-4 is left of it */
     motion_free(&m);
 }
 
@@ -201,7 +201,7 @@ static void test_a_factor_multiplies_what_was_recorded(void **state)
     o.factor = 1.75;
     Motion m = scaled(&o);
     for (size_t i = 0; i < m.n; i++)
-        assert_true(m.accel[i] == 1.75 * offset_quake((double)i * 0.01));
+        assert_same_number(m.accel[i], 1.75 * offset_quake((double)i * 0.01));
     assert_close(m.scale, 1.75, 0);
     motion_free(&m);
 }
@@ -227,7 +227,7 @@ static void test_code_spectra_are_those_of_their_formulas(void **state)
 {
     (void)state;
     MotionOptions o = options();
-    assert_true(target_psa(&o, 1) == 0);
+    assert_same_number(target_psa(&o, 1), 0);
     o.target = TARGET_EUROCODE8;
     o.ec8_ag_g = 0.2;
     o.ec8_s = 1.15;
@@ -392,7 +392,7 @@ static void test_several_motions_are_shown_with_their_mean_and_the_target(void *
     for (size_t i = 0; i < t.n_rows; i++) {
         const double *row = t.values + i * t.n_cols;
         assert_close(row[1], (row[3] + row[4] + row[5]) / 3, 1e-12);
-        assert_true(row[2] > 0);
+        assert_less(0, row[2]);
     }
     table_free(&t);
     free(path);

@@ -302,7 +302,7 @@ static void test_known_evaluations_are_not_simulated_again(void **state)
         assert_int_equal(done.evaluation->id, 101 + i);
         assert_int_equal(done.evaluation->kind, KIND_INFILL);
         if (i != 6)
-            assert_true(done.evaluation->f[0] == (is_known ? -i : f_of(i)));
+            assert_same_number(done.evaluation->f[0], (is_known ? -i : f_of(i)));
     }
     queue_close(q);
     assert_int_equal(bench.n_tasks, 7 * PARTS);
@@ -357,13 +357,13 @@ static void test_what_nobody_has_taken_can_be_withdrawn(void **state)
     queue_withdraw(q);
     assert_int_equal(queue_pending(q), 1);
     assert_true(queue_has(q, (double[]){0, 1}) && !queue_has(q, (double[]){1, 1}));
-    assert_true(queue_design(q, 0).x[0] == 0.0);
+    assert_same_number(queue_design(q, 0).x[0], 0.0);
     for (int k = PARTS; k-- > 0;) { /* the last part first */
         CHECK_OK(simulate(&bench, 0, &task[k], &err), &err);
         queue_give(q, &task[k], STATUS_OK, &err);
     }
     CHECK_OK(queue_next(q, &done, &err), &err);
-    assert_true(done.evaluation->f[0] == f_of(0));
+    assert_same_number(done.evaluation->f[0], f_of(0));
     assert_int_equal(queue_take(q, 0, &task[0]), 0);
     assert_int_not_equal(queue_next(q, &done, &err), STATUS_OK);
     queue_close(q);

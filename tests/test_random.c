@@ -24,7 +24,7 @@ static void test_the_same_name_gives_the_same_numbers_and_another_name_others(vo
                        random_stream(7, RANDOM_TEST, 4, 11), random_stream(7, RANDOM_TEST, 3, 12)};
     for (int i = 0; i < 1000; i++) {
         const double u = random_uniform(&a);
-        assert_true(u == random_uniform(&b));
+        assert_same_number(u, random_uniform(&b));
         for (size_t k = 0; k < sizeof others / sizeof others[0]; k++)
             assert_true(u != random_uniform(&others[k]));
     }
@@ -44,9 +44,9 @@ static void test_uniform_numbers_have_their_mean_and_variance_and_neighbouring_s
         square += u * u;
         product += u * v;
     }
-    assert_true(fabs(sum / N) < 5 * sqrt(1.0 / 12 / N));
-    assert_true(fabs(square / N - 1.0 / 12) < 5 * sqrt(1.0 / 180 / N));
-    assert_true(fabs(product / N) < 5 / (12 * sqrt(N)));
+    assert_less(fabs(sum / N), 5 * sqrt(1.0 / 12 / N));
+    assert_less(fabs(square / N - 1.0 / 12), 5 * sqrt(1.0 / 180 / N));
+    assert_less(fabs(product / N), 5 / (12 * sqrt(N)));
 }
 
 /* Chi squared of 6 classes has 5 degrees of freedom: above 25 once in 7,000 seeds. */
@@ -61,7 +61,7 @@ static void test_integers_below_n_are_equally_likely(void **state)
     double chi2 = 0;
     for (int k = 0; k < 6; k++)
         chi2 += ((double)count[k] - N / 6.0) * ((double)count[k] - N / 6.0) / (N / 6.0);
-    assert_true(chi2 < 25);
+    assert_less(chi2, 25);
     for (int i = 0; i < 100; i++)
         assert_int_equal(random_below(&r, 1), 0);
 }
@@ -77,10 +77,10 @@ static void test_normal_numbers_have_the_moments_of_a_normal(void **state)
         for (int k = 1; k < 5; k++)
             moment[k] += pow(z, k) / N;
     }
-    assert_true(fabs(moment[1]) < 5 * sqrt(1.0 / N));
-    assert_true(fabs(moment[2] - 1) < 5 * sqrt(2.0 / N));
-    assert_true(fabs(moment[3]) < 5 * sqrt(15.0 / N));
-    assert_true(fabs(moment[4] - 3) < 5 * sqrt(96.0 / N));
+    assert_less(fabs(moment[1]), 5 * sqrt(1.0 / N));
+    assert_less(fabs(moment[2] - 1), 5 * sqrt(2.0 / N));
+    assert_less(fabs(moment[3]), 5 * sqrt(15.0 / N));
+    assert_less(fabs(moment[4] - 3), 5 * sqrt(96.0 / N));
 }
 
 static void test_a_shuffle_keeps_every_item(void **state)
@@ -97,7 +97,7 @@ static void test_a_shuffle_keeps_every_item(void **state)
     }
     for (size_t i = 0; i < 50; i++)
         assert_int_equal(seen[i], 1);
-    assert_true(moved > 30);
+    assert_less(30, moved);
 }
 
 int main(void)

@@ -46,7 +46,7 @@ static void test_the_surface_goes_through_its_data(void **state)
         Rbf *m = fitted(N, X, F, tune);
         for (int i = 0; i < N; i++) {
             rbf_eval(m, 1, X + i * D, f, NULL);
-            assert_true(fabs(f[0] - F[i * OUT]) < 1e-4);
+            assert_less(fabs(f[0] - F[i * OUT]), 1e-4);
         }
         rbf_free(m);
     }
@@ -63,7 +63,7 @@ static void test_linear_functions_are_reproduced_everywhere(void **state)
         rbf_eval(m, 1, Y + i * D, f, NULL);
         assert_close(f[1], wanted[i * OUT + 1], 1e-9);
     }
-    assert_true(rbf_explained(m, 1) > 1 - 1e-12);
+    assert_less(1 - 1e-12, rbf_explained(m, 1));
     rbf_free(m);
 }
 
@@ -81,8 +81,8 @@ static void test_tuning_lowers_the_error_at_unseen_points(void **state)
         }
         rbf_free(m);
     }
-    assert_true(square[1] < square[0]);
-    assert_true(sqrt(square[1]) < 5e-3);
+    assert_less(square[1], square[0]);
+    assert_less(sqrt(square[1]), 5e-3);
 }
 
 static void set_shape(Rbf *m, size_t output, RbfForm form)
@@ -124,7 +124,7 @@ static void test_closed_form_leave_one_out_errors_equal_refits(void **state)
                     }
                     CHECK_OK(rbf_fit(without, FEW - 1, X1, F1, noisy == 2 ? V1 : NULL, &err), &err);
                     rbf_eval(without, 1, X + out * D, f, NULL);
-                    assert_true(fabs(rbf_leave_one_out(all, 0)[out] - (F[out * OUT] - f[0])) < 2e-6);
+                    assert_less(fabs(rbf_leave_one_out(all, 0)[out] - (F[out * OUT] - f[0])), 2e-6);
                 }
             }
     rbf_free(all);
@@ -155,7 +155,7 @@ static void test_a_mean_of_answers_with_its_part_of_the_variance_is_worth_all_of
             }
         memcpy(F + i * OUT, mean, sizeof mean);
     }
-    assert_true(n == 50);
+    assert_same_number(n, 50);
     Err err = {0};
     Rbf *means, *all;
     CHECK_OK(rbf_create(&means, N, D, OUT, &err), &err);
@@ -215,7 +215,7 @@ static void test_equal_designs_with_different_answers_are_averaged(void **state)
     F[OUT] = F[0] + 0.2;
     Rbf *m = fitted(N, X, F, 1);
     rbf_eval(m, 1, X, f, NULL);
-    assert_true(fabs(f[0] - (F[0] + 0.1)) < 0.08);
+    assert_less(fabs(f[0] - (F[0] + 0.1)), 0.08);
     rbf_free(m);
 }
 
@@ -248,7 +248,7 @@ static void test_a_constant_output_is_predicted_without_error(void **state)
     Rbf *m = fitted(N, X, F, 1);
     rbf_eval(m, 1, (const double[D]){0.1, 0.9, 0.4, 0.2}, f, e);
     assert_close(f[0], 4.0, 1e-12);
-    assert_true(e[0] < 1e-12);
+    assert_less(e[0], 1e-12);
     rbf_free(m);
 }
 
@@ -333,8 +333,8 @@ static void test_the_slope_of_the_surface_equals_differences_for_every_form(void
             x[d] = at - h;
             rbf_eval(m, 1, x, down, NULL);
             x[d] = at;
-            assert_true(fabs(J[d] - (up[0] - down[0]) / (2 * h)) < 1e-4);
-            assert_true(fabs(J[D + d] - (up[1] - down[1]) / (2 * h)) < 10.0); /* of 1e5 */
+            assert_less(fabs(J[d] - (up[0] - down[0]) / (2 * h)), 1e-4);
+            assert_less(fabs(J[D + d] - (up[1] - down[1]) / (2 * h)), 10.0); /* of 1e5 */
         }
         rbf_free(m);
     }
@@ -362,7 +362,7 @@ static void test_waves_along_single_variables_are_found_from_few_designs_and_onl
     CHECK_OK(rbf_create(&m, DESIGNS, MANY, 2, &err), &err);
     CHECK_OK(rbf_tune(m, DESIGNS, X, F, NULL, &err), &err);
     assert_true(rbf_is_additive(m, 0) && !rbf_is_additive(m, 1));
-    assert_true(rbf_explained(m, 0) > 0.9);
+    assert_less(0.9, rbf_explained(m, 0));
     double square = 0.0, spread = 0.0, f[2];
     for (size_t i = 0; i < DESIGNS; i++) {
         double x[MANY], answer = 0.0;
@@ -374,7 +374,7 @@ static void test_waves_along_single_variables_are_found_from_few_designs_and_onl
         square += (f[0] - answer) * (f[0] - answer);
         spread += (answer - 5.0) * (answer - 5.0);
     }
-    assert_true(square < 0.1 * spread);
+    assert_less(square, 0.1 * spread);
     rbf_free(m);
 }
 

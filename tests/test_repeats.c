@@ -74,7 +74,7 @@ static void test_the_front_has_means_spreads_and_members_of_what_was_simulated(v
     }
     assert_int_equal(repeats, REPEATS);
     assert_int_equal(h.n_repeats, REPEATS);
-    assert_true(confirmed >= 2);
+    assert_at_most(2, confirmed);
     run_free(&h);
 }
 
@@ -106,7 +106,7 @@ static void test_replicates_min_keeps_what_was_answered_once_out_of_the_front(vo
     Run h = saved_of("strict");
     for (size_t i = 0; i < h.table.n; i++)
         assert_true(!h.place[i].on_front || h.table.row[i].replicates >= 2);
-    assert_true(h.n_front >= 2);
+    assert_at_most(2, h.n_front);
     run_free(&h);
 }
 

@@ -62,7 +62,7 @@ static void test_one_replicate_under_one_record_is_the_simulation_itself(void **
     run_designs(&s, 1, &out);
     for (int i = 0; i < DESIGNS; i++)
         for (int k = 0; k < N_MEASURES; k++) {
-            assert_true(out.sum[i].mean[k] == measure_value(&out.shown[i], k));
+            assert_same_number(out.sum[i].mean[k], measure_value(&out.shown[i], k));
             assert_true(isnan(out.sum[i].sd[k]));
         }
 }
@@ -81,7 +81,7 @@ static void test_of_several_records_the_worst_or_the_mean_counts(void **state)
     for (int i = 0; i < DESIGNS; i++)
         for (int k = 0; k < PAPER_OBJECTIVES; k++) {
             const double x = a.sum[i].mean[k], y = b.sum[i].mean[k];
-            assert_true(worst.sum[i].mean[k] == (measure(k)->sense > 0.0 ? fmax(x, y) : fmin(x, y)));
+            assert_same_number(worst.sum[i].mean[k], (measure(k)->sense > 0.0 ? fmax(x, y) : fmin(x, y)));
             assert_close(mean.sum[i].mean[k], 0.5 * (x + y), 1e-12);
         }
 }
@@ -99,8 +99,8 @@ static void test_replicates_with_gap_errors_have_mean_and_deviation(void **state
     for (int i = 0; i < DESIGNS; i++) {
         assert_true(a.sum[i].sd[0] >= 0.0 && b.sum[i].sd[0] > 0.0);
         assert_true(i < DESIGNS - 1 || b.sum[i].sd[0] > 100.0 * a.sum[i].sd[0]);
-        assert_true(fabs(b.sum[i].mean[0] - a.sum[i].mean[0]) < 4.0 * b.sum[i].sd[0]);
-        assert_true(b.sum[i].sd[6] <= 1e-9 * b.sum[i].mean[6]);
+        assert_less(fabs(b.sum[i].mean[0] - a.sum[i].mean[0]), 4.0 * b.sum[i].sd[0]);
+        assert_at_most(b.sum[i].sd[6], 1e-9 * b.sum[i].mean[6]);
         assert_memory_equal(b.sum[i].mean, again.sum[i].mean, sizeof b.sum[i].mean);
         assert_memory_equal(b.sum[i].sd, again.sum[i].sd, sizeof b.sum[i].sd);
     }
@@ -122,7 +122,7 @@ static void test_without_contact_there_is_no_spread(void **state)
     problem_close(&p);
     assert_int_equal(sum.n_failed, 0);
     for (int k = 0; k < N_MEASURES; k++)
-        assert_true(sum.sd[k] <= 1e-12 * fabs(sum.mean[k]));
+        assert_at_most(sum.sd[k], 1e-12 * fabs(sum.mean[k]));
 }
 
 /* Replicates 0..3 and, asked for again, 4..7 are other ones; the rule of each is a function of seed and number alone. */
@@ -154,7 +154,7 @@ static void test_a_design_asked_for_again_gets_further_replicates(void **state)
     Problem other;
     CHECK_OK(tower_open(&other, &single, TOWER_SINGLE, 1, &err), &err);
     CHECK_OK(tower_simulate(&other, 1, &(SimTask){SCENE_IMPACT, fifth}, &alone, &err), &err);
-    assert_true(alone.j1_m == ((const SimResult *)done.parts)[0].j1_m);
+    assert_same_number(alone.j1_m, ((const SimResult *)done.parts)[0].j1_m);
     problem_close(&other);
     queue_close(q);
     problem_close(&p);
@@ -207,7 +207,7 @@ static void test_a_structure_as_built_is_the_scene_whose_settings_say_so(void **
         const SimResult built = run_scene(&s, &b), wanted = run_scene(&other, NULL);
         assert_close(built.j1_m, wanted.j1_m, 1e-9);
         assert_close(built.j3_g, wanted.j3_g, 1e-6);
-        assert_true(fabs(built.j3_g / designed.j3_g - 1) > 1e-4);
+        assert_less(1e-4, fabs(built.j3_g / designed.j3_g - 1));
     }
 }
 
@@ -237,7 +237,7 @@ static void test_what_is_uncertain_has_its_mean_and_deviation_and_the_rest_is_as
     enum { DRAWS = 20000 };
     const UncertainOptions u = {.restitution = 0.1, .core_stiffness = 0.3, .damping = 0.5};
     double sum[3] = {0}, squares[3] = {0};
-    assert_true(replicate_as_built(1, 0, &u).core_stiffness == 1);
+    assert_same_number(replicate_as_built(1, 0, &u).core_stiffness, 1);
     for (size_t k = 1; k <= DRAWS; k++) {
         const AsBuilt b = replicate_as_built(1, k, &u);
         const double of[3] = {b.restitution, b.core_stiffness - 1, b.building_damping - 1};
@@ -249,7 +249,7 @@ static void test_what_is_uncertain_has_its_mean_and_deviation_and_the_rest_is_as
     }
     const double wanted[3] = {0.1, 0.3, 0.5};
     for (int i = 0; i < 3; i++) {
-        assert_true(fabs(sum[i]) < 5 * wanted[i] / sqrt(DRAWS));
+        assert_less(fabs(sum[i]), 5 * wanted[i] / sqrt(DRAWS));
         assert_close(sqrt(squares[i]), wanted[i], 0.05);
     }
 }
@@ -355,7 +355,7 @@ static void test_simulate_draws_the_replicates_of_a_study_and_knows_the_toleranc
     simulated(TOLERANCE, mean[2], sd[2]);
     for (int k = 0; k < 6; k++)
         assert_true(sd[0][k] != sd[1][k] && mean[0][k] != mean[1][k]);
-    assert_true(sd[1][0] > 2.0 * sd[0][0]);
+    assert_less(2.0 * sd[0][0], sd[1][0]);
     snprintf(words, sizeof words,
              "optimize configs/quick.ini --out @/study --threads 2 --set search.start=%s/design.csv --max-evals 4 "
              "--set search.initial=4 --set search.population=4 --set sim.replicates=6 " SHORT "%s",

@@ -143,7 +143,7 @@ static SearchStart moment(const Seen *s, size_t k)
 static void check_every_moment(const SearchConfig *c, size_t step)
 {
     run(&here, c, NULL, &whole);
-    assert_true(whole.moments.n > step + 1);
+    assert_less(step + 1, whole.moments.n);
     for (size_t k = 0; k + 1 < whole.moments.n; k += step) {
         const SearchStart start = moment(&whole, k);
         run(&here, c, &start, &rest);
@@ -386,14 +386,14 @@ static void test_a_pack_reads_what_it_wrote_and_keeps_the_first_fault(void **sta
     pack(&in, &back, sizeof back);
     assert_true(pack_finished(&in));
     assert_int_equal(counted, 12);
-    assert_true(back == value);
+    assert_same_number(back, value);
     in = (Pack){.bytes = out.bytes, .n = out.n, .reading = 1};
     back = 0.0;
     pack_expect(&in, 3);
     pack_size(&in, &counted, 11);
     pack(&in, &back, sizeof back);
     assert_false(pack_finished(&in));
-    assert_true(back == 0.0);
+    assert_same_number(back, 0.0);
     free(out.bytes);
 }
 

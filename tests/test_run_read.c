@@ -227,7 +227,7 @@ static void test_rows_of_a_generation_that_is_not_finished_count_as_what_is_simu
                       &err),
              &err);
     const size_t n = run_first_polished(&h), open = n - 9;
-    assert_true(n > 11);
+    assert_less(11, n);
     h.table.row[10].sd[0] = 1.0;
     h.settings->problem.kind = PROBLEM_TOWER;
     h.settings->problem.noisy = NOISY_NO;

@@ -19,9 +19,9 @@ static void go_to_a_place_of_its_own(char before[], size_t size)
     mkdir("results", 0777);
     mkdir("results/inside", 0777);
     mkdir("elsewhere", 0777);
-    assert_true(symlink("/tmp", "results/out") == 0);
-    assert_true(symlink("inside", "results/in") == 0);
-    assert_true(symlink("elsewhere", "resultsx") == 0);
+    assert_same_number(symlink("/tmp", "results/out"), 0);
+    assert_same_number(symlink("inside", "results/in"), 0);
+    assert_same_number(symlink("elsewhere", "resultsx"), 0);
 }
 
 static void test_a_settings_file_writes_below_results_only(void **state)
@@ -102,9 +102,9 @@ static void test_no_text_begins_a_cell_like_a_formula(void **state)
     }
     char small[4];
     cell_text(small, sizeof small, "==========");
-    assert_true(strlen(small) < sizeof small);
+    assert_less(strlen(small), sizeof small);
     cell_text(small, sizeof small, "\u3000\u3000=");
-    assert_true(strlen(small) < sizeof small);
+    assert_less(strlen(small), sizeof small);
 }
 
 /* No cell of the file begins like a formula; numbers may have a sign. */

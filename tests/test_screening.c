@@ -168,7 +168,7 @@ static void check_front(const SearchView *v)
 static int observe(const SearchView *v, void *user)
 {
     Seen *s = user;
-    assert_true(v->n <= ROWS_MAX);
+    assert_at_most(v->n, ROWS_MAX);
     check_front(v);
     s->views++;
     s->n = v->n;
@@ -305,7 +305,7 @@ static void test_a_search_that_ends_by_its_generations_finishes_designs_too(void
     config.generations = 5;
     CHECK_OK(search_run(&other_world.problem, &config, observe, &other, &reason, &err), &err);
     assert_int_equal(reason, STOP_GENERATIONS);
-    assert_true(other.n_evaluations < EVALS / 2 + EVALS / 4);
+    assert_less(other.n_evaluations, EVALS / 2 + EVALS / 4);
     assert_int_equal(other.n_finished, other.n_screened / 5);
     forget(&other_world, &other);
 }
@@ -324,9 +324,9 @@ static void test_levels_that_do_not_agree_turn_it_off(void **state)
         finished += other.kind[i] == KIND_FINISHED;
         later += other.kind[i] == KIND_SCREENED && other.generation[i] > 1;
     }
-    assert_int_equal(later, 0);                    /* the first pairs come with the second generation */
-    assert_int_equal(finished, sampled);           /* nothing of the sample is lost */
-    assert_true(other.n_evaluations + 1 >= EVALS); /* what was screened in vain may leave a part of one */
+    assert_int_equal(later, 0);                     /* the first pairs come with the second generation */
+    assert_int_equal(finished, sampled);            /* nothing of the sample is lost */
+    assert_at_most(EVALS, other.n_evaluations + 1); /* what was screened in vain may leave a part of one */
     forget(&other_world, &other);
 }
 
@@ -344,7 +344,7 @@ static void test_a_cheap_level_of_great_bias_is_never_on_the_front_and_counts_as
     assert_true(spent <= 1000 * EVALS && spent + 1100 > 1000 * EVALS);
     assert_true(other.n_screened >= 3 * (other.n_finished - APART_PAIRS) && other.n_finished > APART_PAIRS + 4);
     for (size_t i = 0; i < other.n; i++)
-        assert_true((other.Y[i * OBJ] < 0.0) == (other.kind[i] == KIND_SCREENED));
+        assert_same_number((other.Y[i * OBJ] < 0.0), (other.kind[i] == KIND_SCREENED));
     forget(&other_world, &other);
 }
 
@@ -436,7 +436,7 @@ static void test_penalties_whose_squares_overflow_do_not_end_a_search_with_level
         open_apart(&other_world, 1);
         other_world.penalty = PENALTIES[i];
         run(&other_world, &other, NULL);
-        assert_true(other.n_screened > 3 * APART_PAIRS);
+        assert_less(3 * APART_PAIRS, other.n_screened);
         forget(&other_world, &other);
     }
 }
@@ -457,9 +457,9 @@ static void test_a_search_with_a_level_apart_ends_within_any_budget(void **state
         config.max_evals = 5 + 7 * (i / 4) * (i / 4) + i;
         CHECK_OK(search_run(&other_world.problem, &config, observe, &other, &reason, &err), &err);
         assert_int_equal(reason, STOP_EVALUATIONS);
-        assert_true((double)other.n_screened * COSTS[i % 4] + (double)(other.n - other.n_screened) <=
-                    (double)config.max_evals + 1e-9);
-        assert_true(other.n_finished > 0);
+        assert_at_most((double)other.n_screened * COSTS[i % 4] + (double)(other.n - other.n_screened),
+                       (double)config.max_evals + 1e-9);
+        assert_less(0, other.n_finished);
         forget(&other_world, &other);
     }
 }

@@ -134,7 +134,7 @@ static StopReason run(World *w, const SearchConfig *c, Seen *seen)
     CHECK_OK(search_run(&w->problem, c, observe, seen, &reason, &err), &err);
     assert_int_equal(seen->n, w->n_rows);
     assert_int_equal(w->n_repeated, 0);
-    assert_true(seen->n <= c->max_evals);
+    assert_at_most(seen->n, c->max_evals);
     return reason;
 }
 
@@ -184,8 +184,8 @@ static void test_three_objectives_beat_a_latin_hypercube_of_the_same_size(void *
     assert_int_equal(run(&here, &c, &seen), STOP_EVALUATIONS);
     assert_int_equal(seen.n, 120);
     /* the whole front would give 1.5^3 - pi/6; the sample reaches half of what the search does */
-    assert_true(volume(seen.n, 3, seen.F) > 0.9 * (3.375 - M_PI / 6));
-    assert_true(volume(seen.n, 3, seen.F) > 1.3 * volume_of_hypercube(&here, 120));
+    assert_less(0.9 * (3.375 - M_PI / 6), volume(seen.n, 3, seen.F));
+    assert_less(1.3 * volume_of_hypercube(&here, 120), volume(seen.n, 3, seen.F));
 }
 
 /* f = (sum x, 2 sum x): every search ends in the corner, and the designs nearest to the front become the same ones. */
@@ -241,7 +241,7 @@ static void test_seven_objectives_beat_a_latin_hypercube_of_the_same_size(void *
     world(&here, 22, 7);
     const SearchConfig c = config(120, 240);
     assert_int_equal(run(&here, &c, &seen), STOP_EVALUATIONS);
-    assert_true(volume(seen.n, 7, seen.F) > 3 * volume_of_hypercube(&here, 240));
+    assert_less(3 * volume_of_hypercube(&here, 240), volume(seen.n, 7, seen.F));
     size_t count[KIND_COUNT] = {0};
     for (size_t i = 0; i < seen.n; i++) {
         count[seen.kind[i]]++;
@@ -249,7 +249,7 @@ static void test_seven_objectives_beat_a_latin_hypercube_of_the_same_size(void *
     }
     assert_int_equal(count[KIND_SAMPLED], 120);
     assert_int_equal(count[KIND_INFILL] + count[KIND_OFFSPRING], 120); /* before INFILL_ALONE all variation is probes */
-    assert_true((double)count[KIND_OFFSPRING] <= PROBE_SHARE_MAX * 120.0);
+    assert_at_most((double)count[KIND_OFFSPRING], PROBE_SHARE_MAX * 120.0);
     assert_true(seen.error > 0.0 && seen.error < 0.05);
 }
 
@@ -326,7 +326,7 @@ static void test_predictions_in_the_wrong_order_are_noticed_in_batches_of_one_to
     assert_close(agreement_after(3, -1.0), 1.0, 1e-12);
     assert_close(agreement_after(4, -1.0), 0.5, 1e-12); /* 3/4 of 1 and 1/4 of -1 */
     assert_close(agreement_after(7, -1.0), 0.5, 1e-12);
-    assert_true(agreement_after(40, -1.0) < 0.0);
+    assert_less(agreement_after(40, -1.0), 0.0);
     assert_close(agreement_after(40, 1.0), 1.0, 1e-12);
 }
 
@@ -405,7 +405,7 @@ static void test_failed_simulations_never_reach_the_front(void **state)
     }
     assert_int_equal(failed, seen.n_failed);
     assert_true(failed > 4 && failed < 40);
-    assert_true(seen.n_front > 20);
+    assert_less(20, seen.n_front);
 }
 
 static void test_a_world_where_everything_fails_ends_with_an_empty_front(void **state)
@@ -431,7 +431,7 @@ static void test_constraints_hold_on_the_front(void **state)
         assert_true(!seen.on_front[i] || seen.G[i] <= 0.0);
         feasible += i >= 40 && seen.G[i] <= 0.0;
     }
-    assert_true(feasible > 60); /* of 80: the search knows where not to look */
+    assert_less(60, feasible); /* of 80: the search knows where not to look */
 }
 
 static void test_a_start_without_a_feasible_design_finds_the_feasible_region(void **state)
@@ -441,7 +441,7 @@ static void test_a_start_without_a_feasible_design_finds_the_feasible_region(voi
     here.upper[0] = 0.31; /* feasible: x0 >= 0.3, one thirtieth of the box */
     const SearchConfig c = config(10, 60);
     run(&here, &c, &seen);
-    assert_true(seen.n_front > 5);
+    assert_less(5, seen.n_front);
 }
 
 static void first_not_below_second(double x[], const void *self)
@@ -460,8 +460,8 @@ static void test_repaired_and_frozen_variables_are_respected(void **state)
     const SearchConfig c = config(30, 90);
     run(&here, &c, &seen);
     for (size_t i = 0; i < seen.n; i++) {
-        assert_true(seen.X[i * 8] >= seen.X[i * 8 + 1]);
-        assert_true(seen.X[i * 8 + 5] == 0.25);
+        assert_at_most(seen.X[i * 8 + 1], seen.X[i * 8]);
+        assert_same_number(seen.X[i * 8 + 5], 0.25);
     }
 }
 
@@ -502,7 +502,7 @@ static void test_every_way_to_stop_is_named(void **state)
     world(&here, 6, 2);
     assert_int_equal(run(&here, &c, &seen), STOP_TIME);
     for (int reason = STOP_NONE; reason <= STOP_ASKED; reason++)
-        assert_true(strlen(stop_reason_words((StopReason)reason)) > 5);
+        assert_less(5, strlen(stop_reason_words((StopReason)reason)));
 }
 
 /* With an error limit that nothing exceeds all predictions stand, and still a few are checked in each generation. */
@@ -557,7 +557,7 @@ static void test_the_gain_of_a_power_law_is_foretold_exactly(void **state)
     assert_close(convergence_expected((double[]){0.1, 0.2, 0.4}), 0.2,
                  1e-12); /* still faster: no more than as much again */
     assert_close(convergence_expected((double[]){0.1, 0.2, 0.2}), 0.0, 1e-12);
-    assert_true(isnan(convergence_expected((double[]){NAN, 0.1, 0.2})) == 0);
+    assert_same_number(isnan(convergence_expected((double[]){NAN, 0.1, 0.2})), 0);
     assert_true(isnan(convergence_expected((double[]){NAN, NAN, NAN})));
 }
 
@@ -620,7 +620,7 @@ static void test_where_a_third_of_the_box_fails_and_the_best_of_it_the_surrogate
         if (!(h[0] >= h[1]))
             fail_msg("seed %u: hypervolume %.4f, plain %.4f", seed, h[0], h[1]);
     }
-    assert_true(sum[0] > 1.3 * sum[1]);
+    assert_less(1.3 * sum[1], sum[0]);
 }
 
 enum { CHANCE_DESIGNS = 150, CHANCE_ASKED = 2000 };
@@ -707,12 +707,12 @@ static void test_a_search_that_trusts_everything_still_simulates_a_few(void **st
     c.trust_error = 10;
     c.generations = 12;
     assert_int_equal(run(&here, &c, &seen), STOP_GENERATIONS);
-    assert_true(seen.predicted > 12 * 5);
+    assert_less(12 * 5, seen.predicted);
     for (size_t g = 1; g <= 12; g++) {
         size_t simulated = 0;
         for (size_t i = 0; i < seen.n; i++)
             simulated += seen.generation[i] == g;
-        assert_true(simulated >= 1);
+        assert_at_most(1, simulated);
     }
     const size_t all = seen.n;
     c.trust_error = 0;
@@ -720,7 +720,7 @@ static void test_a_search_that_trusts_everything_still_simulates_a_few(void **st
     fresh(NULL);
     run(&here, &c, &seen);
     assert_int_equal(seen.predicted, 0);
-    assert_true(seen.n >= all);
+    assert_at_most(all, seen.n);
 }
 
 static void test_answers_without_any_pattern_fall_back_to_plain_offspring(void **state)
@@ -731,7 +731,7 @@ static void test_answers_without_any_pattern_fall_back_to_plain_offspring(void *
     const SearchConfig c = config(60, 150);
     assert_int_equal(run(&here, &c, &seen), STOP_EVALUATIONS);
     assert_int_equal(seen.predicted, 0);
-    assert_true(seen.error > 0.05);
+    assert_less(0.05, seen.error);
 }
 
 static void test_an_archive_beyond_the_surface_s_size_is_thinned(void **state)
@@ -741,7 +741,7 @@ static void test_an_archive_beyond_the_surface_s_size_is_thinned(void **state)
     SearchConfig c = config(40, 200);
     c.surrogate_max = 60;
     assert_int_equal(run(&here, &c, &seen), STOP_EVALUATIONS);
-    assert_true(volume(seen.n, 3, seen.F) > 0.9 * (3.375 - M_PI / 6));
+    assert_less(0.9 * (3.375 - M_PI / 6), volume(seen.n, 3, seen.F));
 }
 
 static void test_settings_that_make_no_sense_are_refused_by_name(void **state)
@@ -822,11 +822,11 @@ static void test_single_variables_are_probed_where_there_are_waves_along_them_an
 {
     (void)state;
     size_t n;
-    assert_true(best_of_waves(0, &n) < 1.001);
+    assert_less(best_of_waves(0, &n), 1.001);
     assert_int_equal(n, 0);
     const double best = best_of_waves(5, &n);
     assert_true(n > 5 && n < 24);
-    assert_true(best < 1.32);
+    assert_less(best, 1.32);
 }
 
 /* The corner is found at once; after that the surface proposes what is known already. */
@@ -854,7 +854,7 @@ static void test_without_a_surrogate_nothing_is_predicted_and_the_front_is_worse
     run(&here, &c, &seen);
     assert_int_equal(seen.predicted, 0);
     assert_true(isnan(seen.error));
-    assert_true(volume(seen.n, 3, seen.F) < with);
+    assert_less(volume(seen.n, 3, seen.F), with);
 }
 
 static void test_a_start_of_size_zero_follows_the_number_of_variables(void **state)

@@ -98,7 +98,7 @@ static int dial(void)
         .sin_family = AF_INET, .sin_port = htons((uint16_t)server.port), .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
     const struct timeval patience = {.tv_sec = 60};
     const int fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-    assert_true(fd >= 0);
+    assert_at_most(0, fd);
     setsockopt(fd, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
     assert_int_equal(connect(fd, (const struct sockaddr *)&there, sizeof there), 0);
     return fd;
@@ -352,7 +352,7 @@ static void test_a_request_that_does_not_come_is_ended(void **state)
         assert_int_equal(code_of(answer), 0);
         free(answer);
     }
-    assert_true(now_s() - start < (SANITIZED ? 20 : 5));
+    assert_less(now_s() - start, (SANITIZED ? 20 : 5));
     expect_code(200, "GET", "/%T/0/front", "");
     end_here(before);
 }
@@ -383,8 +383,8 @@ static void test_a_thousand_connections_leave_room_for_one_that_asks(void **stat
         fd[i] = dial();
     const double start = now_s();
     expect_code(200, "GET", "/%T/0/front", "");
-    assert_true(now_s() - start < (SANITIZED ? 20 : 3));
-    assert_true(threads_of_server() <= PEERS_MAX + 8);
+    assert_less(now_s() - start, (SANITIZED ? 20 : 3));
+    assert_at_most(threads_of_server(), PEERS_MAX + 8);
     for (int i = 0; i < MANY; i++)
         close(fd[i]);
     expect_code(200, "GET", "/%T/0/front", "");
@@ -422,7 +422,7 @@ static void assert_objectives(const json_t *answer, const Table *t, size_t row, 
     const json_t *f = json_object_get(answer, "objectives");
     assert_int_equal(json_array_size(f), 7);
     for (size_t k = 0; k < 7; k++)
-        assert_true(json_number_value(json_array_get(f, k)) == t->values[row * t->n_cols + first + k]);
+        assert_same_number(json_number_value(json_array_get(f, k)), t->values[row * t->n_cols + first + k]);
 }
 
 static void test_what_if_nothing_changes_is_what_the_run_has(void **state)
@@ -435,7 +435,7 @@ static void test_what_if_nothing_changes_is_what_the_run_has(void **state)
     assert_objectives(answer, &front, row, 23);
     assert_int_equal(json_integer_value(json_object_get(answer, "dominated_by")), 0);
     assert_int_equal(json_integer_value(json_object_get(answer, "dominates")), 0);
-    assert_true(json_array_size(json_object_get(json_object_get(answer, "peaks"), "drift_m")) == 20);
+    assert_same_number(json_array_size(json_object_get(json_object_get(answer, "peaks"), "drift_m")), 20);
     json_decref(answer);
     table_free(&front);
 }
@@ -455,8 +455,8 @@ static void test_what_if_under_another_motion_is_what_simulate_prints(void **sta
              front.values[0]);
     json_t *other = json_of(arguments);
     for (size_t k = 0; k < 7; k++)
-        assert_true(json_number_value(json_array_get(json_object_get(answer, "objectives"), k)) ==
-                    number(other, NAMES[k]));
+        assert_same_number(json_number_value(json_array_get(json_object_get(answer, "objectives"), k)),
+                           number(other, NAMES[k]));
     assert_null(json_object_get(answer, "dominated_by")); /* another motion has no place in this front */
     json_decref(answer);
     json_decref(other);
@@ -477,7 +477,8 @@ static void test_what_if_of_a_run_of_several_simulations_is_one_of_them(void **s
              json_string_value(json_object_get(bounds, "options")),
              json_string_value(json_object_get(bounds, "pga_options")));
     json_t *other = json_of(arguments);
-    assert_true(json_number_value(json_array_get(json_object_get(answer, "objectives"), 0)) == number(other, "j1_m"));
+    assert_same_number(json_number_value(json_array_get(json_object_get(answer, "objectives"), 0)),
+                       number(other, "j1_m"));
     assert_null(json_object_get(answer, "dominated_by"));
     json_decref(bounds);
     json_decref(answer);
@@ -524,9 +525,9 @@ static void test_two_runs_are_measured_in_one_box(void **state)
     for (size_t r = 0; r < 2; r++) {
         const json_t *one = json_array_get(json_object_get(both, "runs"), r);
         const json_t *v = json_object_get(one, "volume");
-        assert_true(json_array_size(v) > 1);
+        assert_less(1, json_array_size(v));
         for (size_t g = 1; g < json_array_size(v); g++)
-            assert_true(json_number_value(json_array_get(v, g)) >= json_number_value(json_array_get(v, g - 1)));
+            assert_at_most(json_number_value(json_array_get(v, g - 1)), json_number_value(json_array_get(v, g)));
         assert_true(json_equal(one, json_array_get(json_object_get(again, "runs"), 1 - r)));
     }
     json_decref(both);
@@ -560,8 +561,8 @@ static void test_a_run_has_the_same_bytes_with_ten_pages_looking_on(void **state
     char text[256], path[PATH_MAX], begun[PATH_MAX + 16];
     int fd[10];
     char *words[] = {"sh", "-c", NULL, NULL};
-    assert_true(
-        asprintf(&words[2], "'%s' %s --out '%s/watched' >/dev/null 2>&1", getenv("IMTET"), SMALL, place.folder) > 0);
+    assert_less(
+        0, asprintf(&words[2], "'%s' %s --out '%s/watched' >/dev/null 2>&1", getenv("IMTET"), SMALL, place.folder));
     const Served before = server;
     pid_t pid;
     assert_int_equal(posix_spawnp(&pid, "sh", NULL, NULL, words, environ), 0);
@@ -611,7 +612,7 @@ static void test_nothing_of_a_run_is_written(void **state)
     char path[64];
     snprintf(path, sizeof path, "/%%T/0/design/%.0f", front.values[0]);
     json_t *design = ask_json(path);
-    assert_true(json_integer_value(json_object_get(design, "id")) == (json_int_t)front.values[0]);
+    assert_same_number(json_integer_value(json_object_get(design, "id")), (json_int_t)front.values[0]);
     json_decref(design);
     json_decref(ask_json("/%T/runs"));
     char *after = sums();
@@ -640,10 +641,10 @@ static void test_a_run_that_cannot_be_read_holds_up_no_listing(void **state)
     json_decref(ask_json("/%T/runs"));
     const double start = now_s();
     json_t *runs = ask_json("/%T/runs");
-    assert_true(now_s() - start < 1);
+    assert_less(now_s() - start, 1);
     assert_int_equal(json_array_size(runs), 2);
     assert_string_equal(json_string_value(json_object_get(json_array_get(runs, 1), "state")), "unreadable");
-    assert_true(strlen(json_string_value(json_object_get(json_array_get(runs, 1), "reason"))) > 20);
+    assert_less(20, strlen(json_string_value(json_object_get(json_array_get(runs, 1), "reason"))));
     json_decref(runs);
     end_here(before);
 }
@@ -692,8 +693,8 @@ static void test_a_run_that_is_not_asked_for_any_more_is_released(void **state)
     watch_give(w, again);
     rest(0.7);
     CHECK_OK(watch_take(w, 0, 60, &again, &err), &err);
-    assert_true(again->version > first->version);
-    assert_true(first->run.n_front == again->run.n_front); /* whoever holds it has it */
+    assert_less(first->version, again->version);
+    assert_same_number(first->run.n_front, again->run.n_front); /* whoever holds it has it */
     watch_give(w, first);
     watch_give(w, again);
     rest(0.7);
@@ -730,7 +731,7 @@ static void test_ctrl_c_ends_it_while_pages_look_on(void **state)
     const double start = now_s();
     const int status = end_server();
     assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 0);
-    assert_true(now_s() - start < (SANITIZED ? 20 : 3));
+    assert_less(now_s() - start, (SANITIZED ? 20 : 3));
     for (int i = 0; i < 4; i++)
         close(fd[i]);
     serve("runs");

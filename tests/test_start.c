@@ -64,7 +64,7 @@ static void test_a_design_of_the_tower_has_the_same_objectives_in_either_mode(vo
         size_t j = 0;
         while (j < 12 && memcmp(batches.table.x + i * n_var, turns.table.x + j * n_var, n_var * sizeof(double)) != 0)
             j++;
-        assert_true(j < 12);
+        assert_less(j, 12);
         assert_memory_equal(batches.F + i * m, turns.F + j * m, m * sizeof(double));
         assert_memory_equal(batches.table.sd + i * m, turns.table.sd + j * m, m * sizeof(double));
     }

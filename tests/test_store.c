@@ -42,7 +42,7 @@ static int run_by_pieces(const Settings *s, int k, StudySummary *summary)
         const Status status = study_run(s, &options, summary, NULL, &err);
         if (status == STATUS_OK)
             return sessions;
-        assert_true(sessions < 200);
+        assert_less(sessions, 200);
         if (status != STATUS_STOPPED)
             fail_msg("session %d of %d simulations: %s", sessions, k, err.text);
     }
@@ -60,7 +60,7 @@ static void check_pieces(const char *text, const char *name, int n_k, const int 
     for (int i = 0; i < n_k; i++) {
         snprintf(pieces, sizeof pieces, "%s-by-%d", name, k[i]);
         s = settings_of(text, pieces);
-        assert_true(run_by_pieces(&s, k[i], &again) > 1);
+        assert_less(1, run_by_pieces(&s, k[i], &again));
         assert_int_equal(again.n_simulated, summary.n_simulated);
         assert_int_equal(again.n_failed, summary.n_failed);
         assert_int_equal(again.n_front, summary.n_front);
@@ -91,7 +91,7 @@ static void test_a_run_stopped_while_it_polishes_ends_with_the_same_designs(void
     assert_int_equal(run_by_pieces(&s, INT_MAX, &summary), 1);
     assert_int_equal(summary.n_tried_to_polish, 1);
     s = settings_of(POLISHED, "polish-pieces");
-    assert_true(run_by_pieces(&s, 230, &summary) == 3);
+    assert_same_number(run_by_pieces(&s, 230, &summary), 3);
     assert_int_equal(summary.n_tried_to_polish, 1);
     assert_same_run("polish-whole", "polish-pieces");
 }
@@ -256,7 +256,7 @@ static void check_unfinished_is_exported(const char *out)
     assert_true((double)n == simulated && n_unfinished > 0);
     snprintf(command, sizeof command, "export @/%s --json", out);
     o = json_of(command);
-    assert_true((double)json_array_size(json_object_get(o, "evaluations")) == simulated);
+    assert_same_number((double)json_array_size(json_object_get(o, "evaluations")), simulated);
     json_decref(o);
 }
 
@@ -329,7 +329,7 @@ static void test_progress_is_one_line_on_a_terminal_and_none_in_a_pipe(void **st
     char *seen = read_in_place("seen");
     for (const char *line = seen; (line = strchr(line, '\r')) != NULL;) {
         const size_t shown = strcspn(++line, "\r\n\033");
-        assert_true(shown <= 79); /* `script` in a pipe tells no width */
+        assert_at_most(shown, 79); /* `script` in a pipe tells no width */
     }
     assert_non_null(strstr(seen, "\rgeneration 1: "));
     assert_non_null(strstr(seen, " of 40 simulated, 0 failed, front "));
@@ -356,7 +356,7 @@ static void test_a_second_signal_ends_at_once(void **state)
     kill(pid, SIGTERM);
     const int status = wait_end(pid);
     assert_true(WIFSIGNALED(status) && WTERMSIG(status) == SIGTERM);
-    assert_true(now_s() < begun + 30);
+    assert_less(now_s(), begun + 30);
 }
 
 /* 0.2 s of a batch that takes 0.7 s. */
@@ -470,7 +470,7 @@ static void test_one_failure_in_ten_is_survived_and_never_on_the_front(void **st
     CHECK_OK(run_read(&saved, path_of("tenth", path), &err), &err);
     assert_int_equal(saved.table.n, 100);
     assert_int_equal(saved.n_failed, 10);
-    assert_true(saved.n_front > 0);
+    assert_less(0, saved.n_front);
     for (size_t i = 0; i < saved.table.n; i++) {
         assert_int_equal(saved.place[i].ok, saved.table.row[i].id % 10 != 0);
         assert_true(saved.place[i].ok || (!saved.place[i].on_front && saved.place[i].entered == NEVER));
@@ -542,11 +542,11 @@ static void test_the_share_that_is_covered_is_the_hypervolume_of_the_box(void **
     double before = 0;
     for (size_t i = 0; i < 4; i++) {
         hypervolume_add(h, F + 3 * i);
-        assert_true(hypervolume_share(h) >= before);
+        assert_at_most(before, hypervolume_share(h));
         before = hypervolume_share(h);
         const double share = wfg_hypervolume(i + 1, 3, F, reference) / 8,
                      error = sqrt(share * (1 - share) / HYPERVOLUME_SAMPLES);
-        assert_true(fabs(hypervolume_share(h) - share) < 4 * error);
+        assert_less(fabs(hypervolume_share(h) - share), 4 * error);
     }
     hypervolume_free(h);
 }

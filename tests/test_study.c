@@ -52,7 +52,7 @@ static void test_a_run_is_repeated_from_its_own_folder(void **state)
     char *path = in_place("again/provenance.json");
     json_t *o = json_load_file(path, 0, NULL);
     assert_non_null(o);
-    assert_true(json_integer_value(json_object_get(o, "seed")) == 1);
+    assert_same_number(json_integer_value(json_object_get(o, "seed")), 1);
     assert_non_null(json_object_get(json_object_get(o, "libraries"), "sundials"));
     assert_int_equal(json_string_length(json_object_get(json_object_get(o, "inputs"), "record_fnv1a")), 16);
     json_decref(o);
@@ -143,8 +143,8 @@ static void test_a_design_of_the_front_is_evaluated_on_other_motions(void **stat
     for (int i = 0; i < 23; i++)
         row = strchr(row, ',') + 1;
     const json_t *own = json_array_get(records, 0);
-    assert_true(number(json_object_get(own, "with_core"), "j1_m") == strtod(row, NULL));
-    assert_true(number(json_object_get(own, "no_core"), "impacts") == 0);
+    assert_same_number(number(json_object_get(own, "with_core"), "j1_m"), strtod(row, NULL));
+    assert_same_number(number(json_object_get(own, "no_core"), "impacts"), 0);
     json_decref(o);
     free(front);
     expect(65, "has no design 123456", "evaluate @/threads-1 --design 123456 --record builtin:kobe-like");
@@ -186,7 +186,7 @@ static void test_a_design_is_evaluated_on_every_motion_of_a_folder(void **state)
     const json_t *records = json_object_get(o, "records"), *unreadable = json_object_get(o, "unreadable");
     assert_int_equal(json_array_size(records) + json_array_size(unreadable), n_files("tests/motion"));
     for (size_t i = 0; i + 1 < json_array_size(records); i++)
-        assert_true(strcmp(record_of(records, i), record_of(records, i + 1)) < 0);
+        assert_less(strcmp(record_of(records, i), record_of(records, i + 1)), 0);
     size_t at = 0; /* others lack a gain, or ask which channel */
     while (at < json_array_size(unreadable) && strcmp(record_of(unreadable, at), "tests/motion/irregular.csv") != 0)
         at++;
@@ -386,7 +386,7 @@ static void test_a_search_begins_with_given_designs_and_a_front_is_thinned(void 
     for (size_t i = 0; i < front.n_rows; i++, line = strchr(line, '\n') + 1) {
         double x = 0.0;
         assert_int_equal(sscanf(line, "%*d,%*d,%*[a-z],ok,,%lf", &x), 1);
-        assert_true(x == front.values[i * front.n_cols + 1]);
+        assert_same_number(x, front.values[i * front.n_cols + 1]);
     }
     assert_int_equal(three.n_rows, 3);
     char *said = output_of("choose @/earlier"), knee[40];
