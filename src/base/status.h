@@ -26,14 +26,29 @@ typedef enum {
         STATUS_COUNT
 } Status;
 
+/* What a caller may decide by beside the code; never by the words. */
+typedef enum {
+    SUB_NONE,
+    SUB_DAMAGED,   /* a run's database that is not what was written */
+    SUB_NO_RUN,    /* ... that is empty, or none of a run */
+    SUB_RAGGED,    /* a line of a table with another number of cells than those above */
+    SUB_NO_NUMBER, /* a cell that is no number */
+    SUB_NO_RECORD, /* a file that holds no acceleration */
+    SUB_SUGGESTS   /* the sentence says already what may have been meant */
+} ErrSub;
+
 typedef struct {
     Status code;
+    ErrSub sub;
     char text[480];
 } Err;
 
 /* Writes the sentence, without invisible characters (base/visible.h), and returns code, so that
  * `return fail(err, STATUS_IO, "...")` reads as one thought. One that is too long ends in "...". */
 __attribute__((format(printf, 3, 4))) Status fail(Err *err, Status code, const char *format, ...);
+
+/* The same with a sub-code. */
+__attribute__((format(printf, 4, 5))) Status fail_sub(Err *err, Status code, ErrSub sub, const char *format, ...);
 
 /* What a system call's errno amounts to: STATUS_NO_MEMORY, or else `otherwise`. */
 Status status_of_errno(int why, Status otherwise);

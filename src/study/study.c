@@ -385,13 +385,13 @@ static int search_threads(const Study *study)
     return study->used.search.asynchronous ? (threads + 3) / 4 : threads;
 }
 
-/* A stop is no error: the session ends as others do. */
+/* A stop is no error: the session ends as others do. One that nobody here asked for is a loss: of a rank, say. */
 static Status note_stop(Study *study, Status status, const Err *err)
 {
     if (status != STATUS_STOPPED)
         return status;
     study->summary->stopped = STOP_ASKED;
-    if (strcmp(err->text, "stopped") != 0)
+    if (!study->asked && !study->late && !study->failing)
         snprintf(study->lost, sizeof study->lost, "%.199s", err->text);
     return STATUS_OK;
 }
