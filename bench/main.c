@@ -32,7 +32,7 @@ static Status prepare(const Args *args, Bench *b, Err *err)
     TRY(args_apply(args, &s, NULL, NULL, err));
     TRY(settings_check(&s, err));
     b->options = settings_scene(&s);
-    TRY(motion_load(&b->motion, s.motion.record, s.motion.unit, err));
+    TRY(motion_load(&b->motion, s.motion.record, UNIT_FROM_FILE, err));
     return motion_prepare(&b->motion, s.motion.pga_g, s.motion.stretch, err);
 }
 
@@ -182,7 +182,7 @@ static Status load_records(const Args *args, const Settings *s, Motion records[R
         const char *name = builtin ? BUILTIN[*n] : args_next(args, "--record", &at);
         if (!name)
             break;
-        TRY(motion_load(&records[*n], name, s->motion.unit, err));
+        TRY(motion_load(&records[*n], name, UNIT_FROM_FILE, err));
         ++*n;
         TRY(motion_prepare(&records[*n - 1], s->motion.pga_g, s->motion.stretch, err));
     }

@@ -240,7 +240,7 @@ static void test_the_base_shear_is_what_inertia_and_damping_need(void **state)
     o.sim.duration_s = 6;
     o.sim.accuracy = ACCURACY_FINE;
     o.sim.forces = FORCES_YES;
-    MotionOptions m = {.record = "builtin:elcentro-like", .stretch = 1, .peak_error_max = 0.05};
+    MotionOptions m = {.record = "builtin:elcentro-like", .stretch = 1};
     CHECK_OK(motion_open(&motion, &m, &err), &err);
     CHECK_OK(scene_create(&scene, &o, &motion, &err), &err);
     CHECK_OK(sim_worker_create(&worker, scene, &err), &err);
@@ -381,7 +381,7 @@ static void test_samples_that_are_left_out_change_no_filtered_peak(void **state)
     SceneOptions o = paper_scene();
     o.sim.filtered = 1;
     o.sim.filter_hz = CUTOFF;
-    const MotionOptions m = {.record = "builtin:kobe-like", .pga_g = 0.3, .stretch = 3.1, .peak_error_max = 0.05};
+    const MotionOptions m = {.record = "builtin:kobe-like", .pga_g = 0.3, .stretch = 3.1};
     CHECK_OK(motion_open(&motion, &m, &err), &err);
     CHECK_OK(scene_create(&scene, &o, &motion, &err), &err);
     CHECK_OK(sim_worker_create(&worker, scene, &err), &err);

@@ -111,10 +111,15 @@ static const struct {
     const char *name;
     double tolerance;
 } BINARY[] = {
-    {"three.mseed", "mseed", {.channel = "1", .counts_per_m_s2 = 1e5}, 0, "XX.SYN.00.HNN", 1e-6},
-    {"three.mseed", "mseed", {.channel = "XX.SYN.00.HNZ", .counts_per_m_s2 = 1e5}, 2, "XX.SYN.00.HNZ", 1e-6},
+    {"three.mseed", "mseed", {.channel = "1", .unit = UNIT_COUNTS, .counts_per_m_s2 = 1e5}, 0, "XX.SYN.00.HNN", 1e-6},
+    {"three.mseed",
+     "mseed",
+     {.channel = "XX.SYN.00.HNZ", .unit = UNIT_COUNTS, .counts_per_m_s2 = 1e5},
+     2,
+     "XX.SYN.00.HNZ",
+     1e-6},
     {"little.sac", "sac", {.unit = UNIT_CM_S2}, 0, "HNN", 1e-6},
-    {"little.sac", "sac", {.counts_per_m_s2 = 100}, 0, "HNN", 1e-6},
+    {"little.sac", "sac", {.unit = UNIT_COUNTS, .counts_per_m_s2 = 100}, 0, "HNN", 1e-6},
     {"big.sac", "sac", {.unit = UNIT_G}, 1, "HNE", 1e-6},
     {"text.sac", "sac", {.unit = UNIT_M_S2}, 0, "HNN", 1e-6},
     {"simcenter.json", "simcenter", {.channel = "1"}, 0, "SYN-1 x", 1e-9},
@@ -310,7 +315,7 @@ static const struct {
     {"three.v2a", "0.010 sec", "0.020 sec", "a step of 0.01 s in the numbers of the header, 0.02 s in its words"},
     {"one.esm", "INTERVAL_S: 0.01", "INTERVAL_S: 0.02", ":13: DURATION_S is 0.42 s, but 43 samples every 0.02 s"},
     {"three.slist", "43 samples", "44 samples", ": ends after 43 samples"},
-    {"three.slist", "FLOAT, cm/s**2", "INTEGER, Counts", "set motion.counts_per_m_s2 to the gain"},
+    {"three.slist", "FLOAT, cm/s**2", "INTEGER, Counts", "set motion.unit (--unit) to counts=VALUE"},
     {"one.tspair", "43 samples", "44 samples", ": ends after 43 samples"},
     {"one.tspair", "100 sps", "0 sps", ":1: no usable number of samples or rate"},
     {"film.smc", "        86", "        96", ": ends after 43 samples, but its header announces 48"},
@@ -427,8 +432,8 @@ static void test_counts_are_refused_without_a_gain_and_what_is_no_record_by_its_
     static const char EVT[] = "K\1\1\11 the tags of a recorder";
     Motion m;
     Err err = {0};
-    refused("three.mseed", &(MotionHow){.channel = "1"}, "set motion.counts_per_m_s2 to the gain of the instrument");
-    refused("little.sac", &(MotionHow){0}, "set motion.counts_per_m_s2 to the gain of the instrument");
+    refused("three.mseed", &(MotionHow){.channel = "1"}, "set motion.unit (--unit) to counts=VALUE");
+    refused("little.sac", &(MotionHow){0}, "set motion.unit (--unit) to counts=VALUE");
     refused("three.mseed", &(MotionHow){0}, "holds 3 channels: 1 'XX.SYN.00.HNN', 2 'XX.SYN.00.HNE'");
     refused("knet.tar.gz", &(MotionHow){0}, "holds 3 channels: 1 'N-S, SYN0010101010000.NS'");
     assert_int_equal(motion_parse(&m, "a.evt", EVT, sizeof EVT, &(MotionHow){0}, &err), STATUS_BAD_DATA);
@@ -531,12 +536,13 @@ static void test_unequal_steps_are_resampled_by_straight_lines_only_when_asked(v
 {
     (void)state;
     refused("irregular.csv", &(MotionHow){0}, "breaks the uniform step");
-    refused("irregular.csv", &(MotionHow){.resample_dt_s = 1e-9}, "would make");
+    refused("irregular.csv", &(MotionHow){.dt_s = 1e-9}, "would make");
     static const char text[] = "t,a_m_s2\n0,0\n0.1,1\n0.3,3\n0.4,0\n1.0,6\n";
     Motion m;
     Err err;
-    CHECK_OK(motion_parse(&m, "text", text, strlen(text), &(MotionHow){.resample_dt_s = 0.05}, &err), &err);
+    CHECK_OK(motion_parse(&m, "text", text, strlen(text), &(MotionHow){.dt_s = 0.05}, &err), &err);
     assert_int_equal(m.n, 21);
+    assert_string_equal(m.processed, "resampled every 0.05 s by straight lines");
     for (size_t i = 0; i < m.n; i++) {
         const double t = 0.05 * (double)i;
         const double want = t < 0.3 ? 10 * t : t < 0.4 ? 3 - 30 * (t - 0.3) : 10 * (t - 0.4);
@@ -550,8 +556,9 @@ static void test_an_equal_step_is_left_alone_by_a_request_to_resample(void **sta
     (void)state;
     Motion m;
     Err err;
-    CHECK_OK(motion_read(&m, "tests/motion/two_columns.txt", &(MotionHow){.resample_dt_s = 0.5}, &err), &err);
+    CHECK_OK(motion_read(&m, "tests/motion/two_columns.txt", &(MotionHow){.dt_s = 0.5}, &err), &err);
     assert_close(m.dt_s, DT, 0);
+    assert_string_equal(m.processed, "");
     motion_free(&m);
 }
 
@@ -643,8 +650,7 @@ static void test_five_thousand_mutants_are_read_or_refused(void **state)
     for (int i = 0; i < N_SPECIMENS; i++) {
         const Text t = read_specimen(SPECIMENS[i].file);
         for (int k = 0; k < EACH; k++) {
-            const MotionHow how = {
-                .channel = k % 3 ? "1" : "auto", .dt_s = k % 2 * 0.01, .resample_dt_s = k % 5 * 0.01};
+            const MotionHow how = {.channel = k % 3 ? "1" : "auto", .dt_s = k % 2 * 0.01};
             Text one = mutated(&t, &random);
             for (int more = k % 4; more > 0 && one.length; more--) {
                 const Text next = mutated(&one, &random);
@@ -689,10 +695,10 @@ static void test_the_offset_of_a_recorder_is_subtracted_and_said(void **state)
 }
 
 /* The header's 123.4 gal written as another. */
-static Status read_with_peak(const char *stated, double error_max, Motion *m, Err *err)
+static Status read_with_peak(const char *stated, Motion *m, Err *err)
 {
     Text t = changed(read_specimen("one.knet"), "123.400", stated, 0);
-    const Status status = motion_parse(m, "one.knet", t.text, t.length, &(MotionHow){.peak_error_max = error_max}, err);
+    const Status status = motion_parse(m, "one.knet", t.text, t.length, &(MotionHow){0}, err);
     free(t.text);
     return status;
 }
@@ -702,17 +708,14 @@ static void test_a_peak_that_misses_the_header_is_warned_about_above_1_percent_a
     (void)state;
     Motion m;
     Err err;
-    CHECK_OK(read_with_peak("124.400", 0, &m, &err), &err); /* 0.8 % */
+    CHECK_OK(read_with_peak("124.400", &m, &err), &err); /* 0.8 % */
     assert_string_equal(m.warning, "");
     motion_free(&m);
-    CHECK_OK(read_with_peak("126.000", 0, &m, &err), &err); /* 2 % */
+    CHECK_OK(read_with_peak("126.000", &m, &err), &err); /* 2 % */
     assert_string_equal(m.warning, "its samples peak at 123.4 cm_s2, its header says 126");
     motion_free(&m);
-    assert_int_equal(read_with_peak("132.000", 0, &m, &err), STATUS_BAD_DATA); /* 6.5 % */
-    assert_non_null(strstr(err.text, "peak at 123.4 cm_s2, its header says 132; motion.peak_error_max"));
-    CHECK_OK(read_with_peak("132.000", 0.07, &m, &err), &err);
-    assert_string_equal(m.warning, "its samples peak at 123.4 cm_s2, its header says 132");
-    motion_free(&m);
+    assert_int_equal(read_with_peak("132.000", &m, &err), STATUS_BAD_DATA); /* 6.5 % */
+    assert_non_null(strstr(err.text, "peak at 123.4 cm_s2, its header says 132; more than 5 % apart"));
 }
 
 static Status parse_text(Motion *m, const char *text, Err *err)
@@ -950,7 +953,7 @@ static void test_a_sample_of_a_binary_file_that_is_no_number_is_refused(void **s
     memcpy(t.text + 64 + 4 * 40, NOT_A_NUMBER, 4);
     Motion m;
     Err err = {0};
-    const MotionHow how = {.channel = "1", .counts_per_m_s2 = 1e5};
+    const MotionHow how = {.channel = "1", .unit = UNIT_COUNTS, .counts_per_m_s2 = 1e5};
     assert_int_equal(motion_parse(&m, "a.mseed", t.text, t.length, &how, &err), STATUS_BAD_DATA);
     assert_non_null(strstr(err.text, "a.mseed: sample 41 of the channel is not a finite number"));
     free(t.text);
@@ -964,7 +967,7 @@ static void test_a_miniseed_record_that_announces_more_samples_than_it_has_room_
         t.text[30 + (second ? 512 : 0)] = 0x7f; /* the number of samples, first byte */
         Motion m;
         Err err = {0};
-        const MotionHow how = {.channel = "1", .counts_per_m_s2 = 1e5};
+        const MotionHow how = {.channel = "1", .unit = UNIT_COUNTS, .counts_per_m_s2 = 1e5};
         assert_int_equal(motion_parse(&m, "a.mseed", t.text, t.length, &how, &err), STATUS_BAD_DATA);
         assert_non_null(strstr(err.text, second ? "no usable record at byte 512" : "no usable record at byte 0"));
         free(t.text);
@@ -1001,7 +1004,7 @@ static void test_every_format_with_a_peak_in_its_header_is_checked_against_it(vo
             const Status status = motion_parse(&m, PEAKS[i].file, t.text, t.length, &FIRST, &err);
             if (status != (refused_ ? STATUS_BAD_DATA : STATUS_OK) ||
                 (!refused_ && !strstr(m.warning, "its header says")) ||
-                (refused_ && !strstr(err.text, "motion.peak_error_max")))
+                (refused_ && !strstr(err.text, "more than 5 % apart")))
                 fail_msg("%s, %d %%: status %d, '%s'", PEAKS[i].file, refused_ ? 8 : 2, status,
                          refused_ ? err.text : m.warning);
             motion_free(&m);

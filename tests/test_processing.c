@@ -222,49 +222,54 @@ static void test_a_spectral_value_is_reached_at_its_period_after_stretching(void
         }
 }
 
-/* Of EN 1998-1 and ASCE 7 at corners and in between, by hand. */
+static CodeSpectrum target_of(const char *text)
+{
+    CodeSpectrum c;
+    Err err = {0};
+    CHECK_OK(target_parse(text, &c, &err), &err);
+    return c;
+}
+
+/* Of EN 1998-1 and ASCE 7 at corners and in between, by hand; ground type C has S = 1.15, TB = 0.2, TC = 0.6, TD = 2 s. */
 static void test_code_spectra_are_those_of_their_formulas(void **state)
 {
     (void)state;
-    MotionOptions o = options();
-    assert_same_number(target_psa(&o, 1), 0);
-    o.target = TARGET_EUROCODE8;
-    o.ec8_ag_g = 0.2;
-    o.ec8_s = 1.15;
-    o.ec8_tb_s = 0.2;
-    o.ec8_tc_s = 0.6;
-    o.ec8_td_s = 2;
-    assert_close(target_psa(&o, 0) / GRAVITY, 0.2 * 1.15, 1e-14);
-    assert_close(target_psa(&o, 0.1) / GRAVITY, 0.2 * 1.15 * 1.75, 1e-14);
-    assert_close(target_psa(&o, 0.4) / GRAVITY, 0.2 * 1.15 * 2.5, 1e-14);
-    assert_close(target_psa(&o, 1.2) / GRAVITY, 0.2 * 1.15 * 2.5 / 2, 1e-14);
-    assert_close(target_psa(&o, 4) / GRAVITY, 0.2 * 1.15 * 2.5 * 1.2 / 16, 1e-14);
-    o.target = TARGET_ASCE7;
-    o.asce7_sds_g = 1.2;
-    o.asce7_sd1_g = 0.6;
-    o.asce7_tl_s = 6;
-    assert_close(target_psa(&o, 0) / GRAVITY, 0.48, 1e-14);
-    assert_close(target_psa(&o, 0.05) / GRAVITY, 1.2 * 0.7, 1e-14);
-    assert_close(target_psa(&o, 0.3) / GRAVITY, 1.2, 1e-14);
-    assert_close(target_psa(&o, 3) / GRAVITY, 0.2, 1e-14);
-    assert_close(target_psa(&o, 12) / GRAVITY, 0.6 * 6 / 144, 1e-14);
+    CodeSpectrum c = target_of("none");
+    assert_same_number(target_psa(&c, 1), 0);
+    for (int in_numbers = 0; in_numbers < 2; in_numbers++) {
+        c = target_of(in_numbers ? "eurocode8 s=1.15 tb=0.2 tc=0.6 td=2 ag=0.2" : "eurocode8 ag=0.2 soil=C");
+        assert_close(target_psa(&c, 0) / GRAVITY, 0.2 * 1.15, 1e-14);
+        assert_close(target_psa(&c, 0.1) / GRAVITY, 0.2 * 1.15 * 1.75, 1e-14);
+        assert_close(target_psa(&c, 0.4) / GRAVITY, 0.2 * 1.15 * 2.5, 1e-14);
+        assert_close(target_psa(&c, 1.2) / GRAVITY, 0.2 * 1.15 * 2.5 / 2, 1e-14);
+        assert_close(target_psa(&c, 4) / GRAVITY, 0.2 * 1.15 * 2.5 * 1.2 / 16, 1e-14);
+    }
+    c = target_of("asce7 sds=1.2 sd1=0.6 tl=6  from=0.3 to=3");
+    assert_close(target_psa(&c, 0) / GRAVITY, 0.48, 1e-14);
+    assert_close(target_psa(&c, 0.05) / GRAVITY, 1.2 * 0.7, 1e-14);
+    assert_close(target_psa(&c, 0.3) / GRAVITY, 1.2, 1e-14);
+    assert_close(target_psa(&c, 3) / GRAVITY, 0.2, 1e-14);
+    assert_close(target_psa(&c, 12) / GRAVITY, 0.6 * 6 / 144, 1e-14);
+    assert_same_number(c.from_s, 0.3);
+    assert_same_number(c.to_s, 3);
 }
 
 static void test_the_scale_to_a_code_spectrum_makes_the_mean_square_least(void **state)
 {
     (void)state;
-    for (int target = TARGET_EUROCODE8; target <= TARGET_ASCE7; target++) {
+    for (int k = 0; k < 2; k++) {
         MotionOptions o = options();
-        o.target = (MotionTarget)target;
+        strcpy(o.target, k ? "asce7 sds=1 sd1=0.6" : "eurocode8 ag=0.3 soil=B");
+        const CodeSpectrum target = target_of(o.target);
         Motion m = scaled(&o);
-        const double least = target_misfit(&m, &o);
+        const double least = target_misfit(&m, &target);
         for (int side = 0; side < 2; side++) {
             Err err = {0};
             MotionOptions other = options();
             other.factor = m.scale * (side ? 1.05 : 0.95);
             Motion off = motion_of(3001, 0.01, offset_quake);
             CHECK_OK(motion_scale(&off, &other, &err), &err);
-            const double misfit = target_misfit(&off, &o), shift = log(side ? 1.05 : 0.95);
+            const double misfit = target_misfit(&off, &target), shift = log(side ? 1.05 : 0.95);
             assert_close(misfit * misfit, least * least + shift * shift, 1e-9);
             motion_free(&off);
         }
@@ -276,7 +281,8 @@ static void test_scalings_that_contradict_each_other_are_refused_and_named(void 
 {
     (void)state;
     static const char *const KEYS[] = {"motion.pga_g", "motion.factor", "motion.sa_g", "motion.target"};
-    static const char *const SET[] = {"motion.pga_g=0.3", "motion.factor=2", "motion.sa_g=0.5", "motion.target=asce7"};
+    static const char *const SET[] = {"motion.pga_g=0.3", "motion.factor=2", "motion.sa_g=0.5",
+                                      "motion.target=asce7 sds=1 sd1=0.6"};
     for (int i = 0; i < 4; i++)
         for (int k = 0; k < 4; k++) {
             Err err = {0};
@@ -296,8 +302,22 @@ static void test_scalings_that_contradict_each_other_are_refused_and_named(void 
 static void test_settings_of_a_motion_that_make_no_sense_together_are_refused(void **state)
 {
     (void)state;
-    static const char *const SET[] = {"motion.target_from_s=3", "motion.ec8_tb_s=1", "motion.ec8_td_s=0.3",
-                                      "motion.asce7_sd1_g=50"};
+    static const char *const SET[] = {"motion.target=eurocode8 ag=0.3 soil=A from=3",
+                                      "motion.target=eurocode8 ag=0.3 soil=A tb=1",
+                                      "motion.target=eurocode8 ag=0.3 soil=A td=0.3",
+                                      "motion.target=asce7 sds=1 sd1=50",
+                                      "motion.target=eurocode8 ag=0.3",
+                                      "motion.target=eurocode8 soil=A",
+                                      "motion.target=eurocode8 ag=0.3 soil=F",
+                                      "motion.target=eurocode8 ag=0.3 soil=A sds=1",
+                                      "motion.target=asce7 sds=1",
+                                      "motion.target=eurocode9 ag=1",
+                                      "motion.target=asce7 sds=1x sd1=1",
+                                      "motion.target=none ag=1",
+                                      "motion.unit=counts",
+                                      "motion.unit=counts=0",
+                                      "motion.unit=g=2",
+                                      "motion.unit=feet"};
     for (size_t i = 0; i < sizeof SET / sizeof SET[0]; i++) {
         Err err = {0};
         Settings s;
@@ -382,7 +402,8 @@ static void test_several_motions_are_shown_with_their_mean_and_the_target(void *
     (void)state;
     static const char ALL[] = "builtin:kobe-like builtin:elcentro-like builtin:sylmar-like";
     char arguments[256];
-    snprintf(arguments, sizeof arguments, "spectrum %s --set motion.target=eurocode8 --csv @/all.csv", ALL);
+    snprintf(arguments, sizeof arguments, "spectrum %s --set 'motion.target=eurocode8 ag=0.3 soil=B' --csv @/all.csv",
+             ALL);
     free(output_of(arguments));
     Err err = {0};
     Table t;
@@ -397,7 +418,8 @@ static void test_several_motions_are_shown_with_their_mean_and_the_target(void *
     table_free(&t);
     free(path);
     if (system("command -v gnuplot >/dev/null") == 0) {
-        snprintf(arguments, sizeof arguments, "spectrum %s --set motion.target=eurocode8 --svg @/all.svg", ALL);
+        snprintf(arguments, sizeof arguments,
+                 "spectrum %s --set 'motion.target=eurocode8 ag=0.3 soil=B' --svg @/all.svg", ALL);
         free(output_of(arguments));
         char *svg = read_in_place("all.svg");
         static const char *const WORDS[] = {"kobe-like", "elcentro-like", "sylmar-like", "mean", "target", "</svg>"};

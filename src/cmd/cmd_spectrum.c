@@ -57,9 +57,9 @@ static json_t *describe(const Spectrum *s)
     json_object_set_new(o, "husid", json_numbers(m->n, s->husid));
     if (s->is_processed)
         json_object_set_new(o, "recorded", describe_recorded(s));
-    if (s->options.target != TARGET_NONE) {
+    if (s->code.kind != TARGET_NONE) {
         json_object_set_new(o, "target_psa_m_s2", json_numbers(N_PERIODS, s->target));
-        json_object_set_new(o, "target_misfit", json_number(target_misfit(m, &s->options)));
+        json_object_set_new(o, "target_misfit", json_number(target_misfit(m, &s->code)));
     }
     return o;
 }
@@ -69,14 +69,14 @@ static Status write_csv(const Spectrum *s, const char *path, Err *err)
     Output o;
     TRY(output_open(&o, path, err));
     fprintf(o.stream, "period_s,psa_m_s2,psv_m_s,sd_m%s%s\n", s->is_processed ? ",recorded_psa_m_s2" : "",
-            s->options.target != TARGET_NONE ? ",target_psa_m_s2" : "");
+            s->code.kind != TARGET_NONE ? ",target_psa_m_s2" : "");
     for (int i = 0; i < N_PERIODS; i++) {
         const double row[] = {s->psa[i], s->psv[i], s->sd[i]};
         print_number(o.stream, s->T[i]);
         print_cells(o.stream, 3, row);
         if (s->is_processed)
             print_cells(o.stream, 1, &s->recorded_psa[i]);
-        if (s->options.target != TARGET_NONE)
+        if (s->code.kind != TARGET_NONE)
             print_cells(o.stream, 1, &s->target[i]);
         fputc('\n', o.stream);
     }
@@ -109,9 +109,9 @@ static void print_head(const Spectrum *s)
         printf("processed %s\n", m->processed);
     if (motion_scalings(&s->options, scaling))
         printf("scaled    x %.5g: %s\n", m->scale, scaling);
-    if (s->options.target != TARGET_NONE)
-        printf("target    %g to %g s; ln(spectrum / target) is %.3g in the root mean square\n",
-               s->options.target_from_s, s->options.target_to_s, target_misfit(m, &s->options));
+    if (s->code.kind != TARGET_NONE)
+        printf("target    %g to %g s; ln(spectrum / target) is %.3g in the root mean square\n", s->code.from_s,
+               s->code.to_s, target_misfit(m, &s->code));
     if (m->warning[0])
         printf("warning   %s\n", m->warning);
 }
@@ -136,7 +136,7 @@ static void print_figures(const Spectrum *s)
 
 static void print_table(const Spectrum *s)
 {
-    const int has_target = s->options.target != TARGET_NONE;
+    const int has_target = s->code.kind != TARGET_NONE;
     print_head(s);
     putchar('\n');
     print_figures(s);
@@ -176,7 +176,7 @@ static Status write_csv_of_all(size_t n, const Spectrum s[], const char *path, E
     double mean[N_PERIODS];
     spectra_average(n, s, mean);
     TRY(output_open(&o, path, err));
-    fprintf(o.stream, "period_s,mean_psa_m_s2%s", s->options.target != TARGET_NONE ? ",target_psa_m_s2" : "");
+    fprintf(o.stream, "period_s,mean_psa_m_s2%s", s->code.kind != TARGET_NONE ? ",target_psa_m_s2" : "");
     for (size_t k = 0; k < n; k++) {
         char name[128];
         cell_text(name, sizeof name, spectrum_name(&s[k]));
@@ -186,7 +186,7 @@ static Status write_csv_of_all(size_t n, const Spectrum s[], const char *path, E
     for (int i = 0; i < N_PERIODS; i++) {
         print_number(o.stream, s->T[i]);
         print_cells(o.stream, 1, &mean[i]);
-        if (s->options.target != TARGET_NONE)
+        if (s->code.kind != TARGET_NONE)
             print_cells(o.stream, 1, &s->target[i]);
         for (size_t k = 0; k < n; k++)
             print_cells(o.stream, 1, &s[k].psa[i]);
@@ -205,14 +205,14 @@ static json_t *describe_all(size_t n, const Spectrum s[])
     json_object_set_new(o, "motions", list);
     json_object_set_new(o, "period_s", json_numbers(N_PERIODS, s->T));
     json_object_set_new(o, "mean_psa_m_s2", json_numbers(N_PERIODS, mean));
-    if (s->options.target != TARGET_NONE)
+    if (s->code.kind != TARGET_NONE)
         json_object_set_new(o, "target_psa_m_s2", json_numbers(N_PERIODS, s->target));
     return o;
 }
 
 static void print_all(size_t n, const Spectrum s[])
 {
-    const int has_target = s->options.target != TARGET_NONE;
+    const int has_target = s->code.kind != TARGET_NONE;
     double mean[N_PERIODS];
     spectra_average(n, s, mean);
     for (size_t k = 0; k < n; k++) {
@@ -305,7 +305,7 @@ const Command CMD_SPECTRUM = {
                "scales it, stretches it, or processes it (--set motion.baseline=linear, motion.highpass_hz=0.1): then "
                "the\n"
                "recorded figures stand beside. Several motions: their spectra, the mean, and the code spectrum of\n"
-               "--set motion.target=eurocode8.",
+               "--set 'motion.target=eurocode8 ag=0.3 soil=C'.",
     .options = OPTIONS,
     .is_alone = 1,
     .run = run,

@@ -50,7 +50,7 @@ static Status compute(Spectrum *s, Err *err)
         const double w = TWO_PI / s->T[i];
         s->psv[i] = s->psa[i] / w;
         s->sd[i] = s->psa[i] / (w * w);
-        s->target[i] = target_psa(&s->options, s->T[i]);
+        s->target[i] = target_psa(&s->code, s->T[i]);
     }
     motion_figures(m, &s->figures);
     s->is_processed = motion_is_corrected(&s->options) || s->options.lowpass_hz > 0;
@@ -60,6 +60,7 @@ static Status compute(Spectrum *s, Err *err)
 Status spectrum_open(Spectrum *s, const MotionOptions *o, Err *err)
 {
     *s = (Spectrum){.options = *o};
+    TRY(target_parse(o->target, &s->code, err));
     TRY(motion_open(&s->motion, o, err));
     TRY(motion_scale(&s->motion, o, err));
     return compute(s, err);
@@ -171,7 +172,7 @@ typedef struct {
 static void write_several(FILE *script, const void *user)
 {
     const Several *all = user;
-    const int has_target = all->s->options.target != TARGET_NONE;
+    const int has_target = all->s->code.kind != TARGET_NONE;
     double mean[N_PERIODS];
     spectra_average(all->n, all->s, mean);
     fprintf(script, "$S << EOD\n");

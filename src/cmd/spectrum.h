@@ -8,6 +8,7 @@
 #include <stdio.h>
 
 #include "motion/motion.h"
+#include "motion/motion_scale.h"
 #include "motion/options.h"
 #include "motion/spectrum.h"
 
@@ -16,6 +17,7 @@ enum { N_PERIODS = 121 }; /* 0.02 to 20 s, equally spaced in their logarithm */
 typedef struct {
     Motion motion;
     MotionOptions options;
+    CodeSpectrum code; /* motion.target */
     MotionFigures figures;
     double *velocity, *displacement, *husid; /* (n of the motion) */
     double T[N_PERIODS], psa[N_PERIODS], psv[N_PERIODS], sd[N_PERIODS];

@@ -27,7 +27,27 @@ static const MotionFormat *const FORMATS[] = {
 static const BinaryFormat *const BINARY_FORMATS[] = {&FORMAT_MSEED, &FORMAT_SAC, &FORMAT_EVT};
 enum { N_BINARY_FORMATS = sizeof BINARY_FORMATS / sizeof BINARY_FORMATS[0], ARCHIVES_DEEP = 2, TABLE_MIN = 20 };
 
+/* A peak that misses the header's by more belongs to other samples; by a fifth of it: rounded, or filtered once more. */
+static const double PEAK_ERROR_MAX = 0.05;
+
 /* ---- which unit ----------------------------------------------------------------------------------------------- */
+
+Status motion_unit_parse(const char *text, MotionUnit *unit, double *counts_per_m_s2, Err *err)
+{
+    const size_t length = strcspn(text, "=");
+    char *end = NULL;
+    *counts_per_m_s2 = text[length] ? strtod(text + length + 1, &end) : 0;
+    for (*unit = UNIT_FROM_FILE; *text && *unit <= UNIT_COUNTS; ++*unit)
+        if (strlen(UNIT_NAMES[*unit]) == length && strncmp(text, UNIT_NAMES[*unit], length) == 0)
+            break;
+    if (*unit == UNIT_COUNTS && text[length] && !*end && *counts_per_m_s2 > 0 && *counts_per_m_s2 <= 1e15)
+        return STATUS_OK;
+    if (*unit < UNIT_COUNTS && !text[length])
+        return STATUS_OK;
+    const char *near = nearest_word(text, UNIT_NAMES, UNIT_COUNTS);
+    return fail(err, STATUS_BAD_DATA, "motion.unit: '%.40s' is none of from_file, m_s2, cm_s2, g, counts=VALUE%s%s%s",
+                text, near ? "; did you mean " : "", near ? near : "", near ? "?" : "");
+}
 
 /* The one unit that file and setting agree on. */
 static Status settle_unit(const char *path, const Channel *c, MotionUnit *unit, Err *err)
@@ -46,7 +66,8 @@ static Status settle_unit(const char *path, const Channel *c, MotionUnit *unit, 
                     path, c->unit);
     if (*unit == UNIT_FROM_FILE && first == UNIT_FROM_FILE)
         return fail(err, STATUS_BAD_DATA,
-                    "%s: does not say the unit of its acceleration; set motion.unit to m_s2, cm_s2 or g", path);
+                    "%s: does not say the unit of its acceleration; set motion.unit (--unit) to m_s2, cm_s2 or g",
+                    path);
     if (*unit == UNIT_FROM_FILE && second != UNIT_FROM_FILE)
         return fail(err, STATUS_BAD_DATA,
                     "%s: names two units of acceleration, %s and %s; set motion.unit to the right one", path,
@@ -211,7 +232,7 @@ static Status fail_at_oddest_step(const Series *s, double dt, double digit, Err 
     return fail(
         err, STATUS_BAD_DATA,
         "%s:%d: time %.10g s breaks the uniform step of %.6g s: it comes %.6g s after the line before; a sample "
-        "is missing, or the file must be resampled: set motion.resample_dt_s",
+        "is missing, or the file must be resampled: set motion.dt_s",
         s->path, row_at(s, odd)->line, row_at(s, odd)->t, shortest_near((span - step) / others, digit / others), step);
 }
 
@@ -225,7 +246,7 @@ static Status fail_digitized(const Series *s, Err *err)
     }
     return fail(err, STATUS_BAD_DATA,
                 "%s:%d: digitized from film in steps of %.3g to %.3g s; have it resampled by straight lines: --set "
-                "motion.resample_dt_s=0.005",
+                "motion.dt_s=0.005",
                 s->path, row_at(s, 0)->line, shortest, longest);
 }
 
@@ -288,20 +309,18 @@ static double offset_of(const Channel *c, const Series *s)
 
 /* The peak of the samples against the one that the header states, both in the unit of the file. */
 static Status check_stated_peak(Motion *m, const Channel *c, const Series *s, double offset, double to_m_s2,
-                                MotionUnit unit, const MotionHow *how, Err *err)
+                                MotionUnit unit, Err *err)
 {
-    const double allowed = how->peak_error_max > 0 ? how->peak_error_max : PEAK_ERROR_MAX;
     double peak = 0;
     if (!(c->peak > 0))
         return STATUS_OK;
     for (size_t i = 0; i < s->n; i++)
         peak = fmax(peak, to_m_s2 * fabs(row_at(s, i)->a - offset));
     const double error = fmax(fabs(peak - c->peak) - c->peak_slack, 0) / c->peak, to_file = c->scale / to_m_s2;
-    if (error > allowed)
+    if (error > PEAK_ERROR_MAX)
         return fail(err, STATUS_BAD_DATA,
-                    "%s: its samples peak at %.5g %s, its header says %.5g; motion.peak_error_max = %.2g would accept "
-                    "it (now %g)",
-                    s->path, peak * to_file, UNIT_NAMES[unit], c->peak * to_file, 1.1 * error, allowed);
+                    "%s: its samples peak at %.5g %s, its header says %.5g; more than %g %% apart", s->path,
+                    peak * to_file, UNIT_NAMES[unit], c->peak * to_file, 100 * PEAK_ERROR_MAX);
     if (error > 0.2 * PEAK_ERROR_MAX)
         snprintf(m->warning, sizeof m->warning, "its samples peak at %.5g %s, its header says %.5g", peak * to_file,
                  UNIT_NAMES[unit], c->peak * to_file);
@@ -325,9 +344,11 @@ static Status resample(Motion *m, const Series *s, double dt, double to_m_s2, do
     const double begin = row_at(s, 0)->t, span = row_at(s, s->n - 1)->t - begin, most = 1e6 + 16 * (double)s->n;
     const double n = floor(span / dt * (1 + 1e-12)) + 1;
     if (!(n >= 2 && n <= most))
-        return fail(err, STATUS_BAD_DATA, "%s: motion.resample_dt_s = %g would make %.0f samples of %zu in %g s",
-                    s->path, dt, n, s->n, span);
+        return fail(err, STATUS_BAD_DATA, "%s: motion.dt_s = %g would make %.0f samples of %zu in %g s", s->path, dt, n,
+                    s->n, span);
     TRY(allocate(m, s->path, (size_t)n, dt, err));
+    snprintf(m->processed + strlen(m->processed), sizeof m->processed - strlen(m->processed),
+             "%sresampled every %g s by straight lines", m->processed[0] ? "; " : "", dt);
     for (size_t k = 0, i = 0; k < m->n; k++) {
         const double t = begin + (double)k * dt;
         while (i + 2 < s->n && row_at(s, i + 1)->t <= t)
@@ -365,33 +386,34 @@ static Status take_samples(Motion *m, const char *path, const Record *r, const C
         status = uniform_step(&s, &dt, &uneven);
     }
     TRY(check_step(&s, c, dt, status == STATUS_OK, err));
-    if (status != STATUS_OK && how->resample_dt_s == 0)
+    if (status != STATUS_OK && how->dt_s == 0)
         return c->digitized ? fail_digitized(&s, err) : fail(err, status, "%s", uneven.text);
     char unknown[UNIT_SHOWN];
     if (unit == UNIT_FROM_FILE && unit_unknown(c->name, c->name + strlen(c->name), unknown))
         return fail(err, STATUS_BAD_DATA,
                     "%s: its channel '%s': unit '%s' is not known; convert it to m/s2, cm/s2 or g", path, c->name,
                     unknown);
-    if (c->counts && unit == UNIT_FROM_FILE && how->counts_per_m_s2 == 0)
-        return fail(err, STATUS_BAD_DATA,
-                    "%s: holds numbers without a unit, as a rule counts: set motion.counts_per_m_s2 to the gain of the "
-                    "instrument, or motion.unit to m_s2, cm_s2 or g",
-                    path);
-    if (c->counts && how->counts_per_m_s2 > 0)
+    if (c->counts && unit == UNIT_FROM_FILE)
+        return fail(
+            err, STATUS_BAD_DATA,
+            "%s: holds numbers without a unit, as a rule counts: set motion.unit (--unit) to counts=VALUE, the counts "
+            "per m/s2 of the instrument, or to m_s2, cm_s2 or g",
+            path);
+    const double gain = unit == UNIT_COUNTS ? how->counts_per_m_s2 : 1;
+    if (unit == UNIT_COUNTS && !c->units)
         unit = UNIT_M_S2;
     else
         TRY(settle_unit(path, c, &unit, err));
-    const double gain = c->counts && how->counts_per_m_s2 > 0 ? how->counts_per_m_s2 : 1;
     const double to_m_s2 = c->scale / gain * (unit == UNIT_M_S2 ? 1.0 : unit == UNIT_CM_S2 ? 0.01 : GRAVITY);
     TRY(check_peak(&s, to_m_s2, unit, c->scale, err));
     const double offset = offset_of(c, &s);
     if (c->warning)
         snprintf(m->warning, sizeof m->warning, "%s", c->warning);
-    TRY(check_stated_peak(m, c, &s, offset, to_m_s2, unit, how, err));
+    TRY(check_stated_peak(m, c, &s, offset, to_m_s2, unit, err));
     if (c->subtract_mean)
         snprintf(m->processed, sizeof m->processed, "mean of %.4g %s subtracted", c->scale * offset, UNIT_NAMES[unit]);
     if (status != STATUS_OK)
-        return resample(m, &s, how->resample_dt_s, to_m_s2, offset, err);
+        return resample(m, &s, how->dt_s, to_m_s2, offset, err);
     TRY(allocate(m, path, c->n, dt, err));
     for (size_t i = 0; i < m->n; i++)
         m->accel[i] = to_m_s2 * (row_at(&s, i)->a - offset);
@@ -536,7 +558,7 @@ static Status read_motion(Motion *m, Record *r, const char *path, const char *by
     TRY(read_content(r, path, bytes, n, &hints, 0, err));
     TRY(choose_channel(r, path, how->channel, &c, err));
     TRY(take_samples(m, path, r, c, how, err));
-    if (!m->warning[0] && how->dt_s > 0 && how->resample_dt_s == 0 && fabs(how->dt_s - m->dt_s) > 1e-6 * m->dt_s)
+    if (!m->warning[0] && how->dt_s > 0 && fabs(how->dt_s - m->dt_s) > 1e-6 * m->dt_s)
         snprintf(m->warning, sizeof m->warning, "motion.dt_s = %g is not used: the file says %.6g s", how->dt_s,
                  m->dt_s);
     snprintf(m->name, sizeof m->name, "%s", path);

@@ -29,13 +29,13 @@
 typedef struct {
     MotionUnit unit;     /* of the acceleration; must not contradict the file */
     const char *channel; /* name or number (from 1) of the one that is wanted; NULL or "auto": there must be only one */
-    double dt_s;         /* step of a file that has neither step nor times; 0: such a file is refused */
-    double resample_dt_s;   /* unequal times are resampled to this step by straight lines; 0: they are refused */
-    double counts_per_m_s2; /* gain of the instrument of a file of counts; 0: such a file is refused */
-    double peak_error_max;  /* share by which the samples' peak may miss the header's; 0: PEAK_ERROR_MAX */
+    double dt_s;         /* step of a file that has neither step nor times, or of unequal times, which are
+                               resampled to it by straight lines; 0: such files are refused */
+    double counts_per_m_s2; /* UNIT_COUNTS: gain of the instrument */
 } MotionHow;
 
-#define PEAK_ERROR_MAX 0.05 /* above: the file is refused; above a fifth of it: Motion.warning */
+/* motion.unit: a word of MOTION_UNIT_LIST, counts with "=" and their number per m/s2. */
+Status motion_unit_parse(const char *text, MotionUnit *unit, double *counts_per_m_s2, Err *err);
 
 Status motion_read(Motion *m, const char *path, const MotionHow *how, Err *err);
 

@@ -1,7 +1,9 @@
 #include "motion/motion_scale.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/units.h"
@@ -11,73 +13,154 @@ static const double DAMPING = 0.05;
 
 /* ---- code spectra ------------------------------------------------------------------------------------------------ */
 
-static double eurocode8(const MotionOptions *o, double T)
-{
-    const double plateau = 2.5 * o->ec8_ag_g * o->ec8_s;
-    if (T < o->ec8_tb_s)
-        return plateau / 2.5 * (1 + 1.5 * T / o->ec8_tb_s);
-    if (T <= o->ec8_tc_s)
-        return plateau;
-    return T <= o->ec8_td_s ? plateau * o->ec8_tc_s / T : plateau * o->ec8_tc_s * o->ec8_td_s / (T * T);
-}
+enum { EUROCODE8 = 1u << TARGET_EUROCODE8, ASCE7 = 1u << TARGET_ASCE7 };
 
-static double asce7(const MotionOptions *o, double T)
-{
-    const double ts = o->asce7_sd1_g / o->asce7_sds_g, t0 = 0.2 * ts;
-    if (T < t0)
-        return o->asce7_sds_g * (0.4 + 0.6 * T / t0);
-    if (T <= ts)
-        return o->asce7_sds_g;
-    return T <= o->asce7_tl_s ? o->asce7_sd1_g / T : o->asce7_sd1_g * o->asce7_tl_s / (T * T);
-}
+/* The numbers of motion.target: what a target must be given begins as 0. */
+static const struct {
+    const char *key;
+    size_t at;
+    double least, most;
+    unsigned of; /* the codes that have it */
+} NUMBERS[] = {
+    {"from", offsetof(CodeSpectrum, from_s), 1e-3, 1e3, EUROCODE8 | ASCE7},
+    {"to", offsetof(CodeSpectrum, to_s), 1e-3, 1e3, EUROCODE8 | ASCE7},
+    {"ag", offsetof(CodeSpectrum, ag_g), 1e-6, 1e6, EUROCODE8},
+    {"s", offsetof(CodeSpectrum, s), 0.1, 10, EUROCODE8},
+    {"tb", offsetof(CodeSpectrum, tb_s), 1e-3, 100, EUROCODE8},
+    {"tc", offsetof(CodeSpectrum, tc_s), 1e-3, 100, EUROCODE8},
+    {"td", offsetof(CodeSpectrum, td_s), 1e-3, 100, EUROCODE8},
+    {"sds", offsetof(CodeSpectrum, sds_g), 1e-6, 1e6, ASCE7},
+    {"sd1", offsetof(CodeSpectrum, sd1_g), 1e-6, 1e6, ASCE7},
+    {"tl", offsetof(CodeSpectrum, tl_s), 1e-3, 100, ASCE7},
+};
 
-double target_psa(const MotionOptions *o, double T)
+/* EN 1998-1, Table 3.2: ground types A to E, spectrum of type 1. */
+static const struct {
+    double s, tb_s, tc_s, td_s;
+} SOILS[] = {{1, 0.15, 0.4, 2}, {1.2, 0.15, 0.5, 2}, {1.15, 0.2, 0.6, 2}, {1.35, 0.2, 0.8, 2}, {1.4, 0.15, 0.5, 2}};
+
+/* One "key=value". */
+static Status take_number(CodeSpectrum *c, const char *word, Err *err)
 {
-    switch (o->target) {
-    case TARGET_EUROCODE8:
-        return GRAVITY * eurocode8(o, T);
-    case TARGET_ASCE7:
-        return GRAVITY * asce7(o, T);
-    case TARGET_NONE:
-        break;
+    const size_t length = strcspn(word, "=");
+    char *end;
+    if (c->kind == TARGET_EUROCODE8 && strncmp(word, "soil=", 5) == 0 && word[5] >= 'A' && word[5] <= 'E' && !word[6]) {
+        const int k = word[5] - 'A';
+        c->s = SOILS[k].s;
+        c->tb_s = SOILS[k].tb_s;
+        c->tc_s = SOILS[k].tc_s;
+        c->td_s = SOILS[k].td_s;
+        return STATUS_OK;
     }
-    return 0;
+    for (size_t i = 0; i < sizeof NUMBERS / sizeof NUMBERS[0]; i++) {
+        if (!(NUMBERS[i].of >> c->kind & 1) || strlen(NUMBERS[i].key) != length ||
+            strncmp(word, NUMBERS[i].key, length) != 0 || word[length] != '=')
+            continue;
+        const double x = strtod(word + length + 1, &end);
+        if (end == word + length + 1 || *end || !(x >= NUMBERS[i].least && x <= NUMBERS[i].most))
+            return fail(err, STATUS_BAD_DATA, "motion.target: '%s' is no number from %g to %g", word, NUMBERS[i].least,
+                        NUMBERS[i].most);
+        memcpy((char *)c + NUMBERS[i].at, &x, sizeof x);
+        return STATUS_OK;
+    }
+    return fail(err, STATUS_BAD_DATA, "motion.target: '%s' is none of %s", word,
+                c->kind == TARGET_ASCE7 ? "sds= sd1= tl= from= to=" : "ag= soil=A..E s= tb= tc= td= from= to=");
+}
+
+static Status check_target(const CodeSpectrum *c, Err *err)
+{
+    if (!(c->from_s < c->to_s))
+        return fail(err, STATUS_BAD_DATA, "motion.target: from=%g must be below to=%g", c->from_s, c->to_s);
+    if (c->kind == TARGET_EUROCODE8 && !(c->ag_g > 0 && c->s > 0 && c->tb_s > 0 && c->tc_s > 0 && c->td_s > 0))
+        return fail(err, STATUS_BAD_DATA,
+                    "motion.target: eurocode8 needs ag= [g] and soil=A..E, or s=, tb=, tc= and td= in its place");
+    if (c->kind == TARGET_EUROCODE8 && !(c->tb_s <= c->tc_s && c->tc_s <= c->td_s))
+        return fail(err, STATUS_BAD_DATA, "motion.target: tb=%g, tc=%g and td=%g must rise", c->tb_s, c->tc_s, c->td_s);
+    if (c->kind == TARGET_ASCE7 && !(c->sds_g > 0 && c->sd1_g > 0))
+        return fail(err, STATUS_BAD_DATA, "motion.target: asce7 needs sds= and sd1= [g]");
+    if (c->kind == TARGET_ASCE7 && !(c->sd1_g / c->sds_g <= c->tl_s))
+        return fail(err, STATUS_BAD_DATA, "motion.target: tl=%g must not be below TS = sd1 / sds = %g", c->tl_s,
+                    c->sd1_g / c->sds_g);
+    return STATUS_OK;
+}
+
+Status target_parse(const char *text, CodeSpectrum *out, Err *err)
+{
+    static const char *const KINDS[] = {"none", "eurocode8", "asce7"};
+    char copy[OPTION_TEXT_MAX], *rest = copy;
+    *out = (CodeSpectrum){.from_s = 0.2, .to_s = 2, .tl_s = 8};
+    snprintf(copy, sizeof copy, "%s", *text ? text : KINDS[TARGET_NONE]);
+    const char *word = strsep(&rest, " ");
+    while (out->kind <= TARGET_ASCE7 && strcmp(word, KINDS[out->kind]) != 0)
+        out->kind++;
+    if (out->kind > TARGET_ASCE7 || (out->kind == TARGET_NONE && rest))
+        return fail(err, STATUS_BAD_DATA, "motion.target: '%s' is none of none, eurocode8 ag=... , asce7 sds=...",
+                    text);
+    while ((word = strsep(&rest, " ")))
+        if (*word)
+            TRY(take_number(out, word, err));
+    return out->kind == TARGET_NONE ? STATUS_OK : check_target(out, err);
+}
+
+static double eurocode8(const CodeSpectrum *c, double T)
+{
+    const double plateau = 2.5 * c->ag_g * c->s;
+    if (T < c->tb_s)
+        return plateau / 2.5 * (1 + 1.5 * T / c->tb_s);
+    if (T <= c->tc_s)
+        return plateau;
+    return T <= c->td_s ? plateau * c->tc_s / T : plateau * c->tc_s * c->td_s / (T * T);
+}
+
+static double asce7(const CodeSpectrum *c, double T)
+{
+    const double ts = c->sd1_g / c->sds_g, t0 = 0.2 * ts;
+    if (T < t0)
+        return c->sds_g * (0.4 + 0.6 * T / t0);
+    if (T <= ts)
+        return c->sds_g;
+    return T <= c->tl_s ? c->sd1_g / T : c->sd1_g * c->tl_s / (T * T);
+}
+
+double target_psa(const CodeSpectrum *c, double T)
+{
+    return c->kind == TARGET_NONE ? 0 : GRAVITY * (c->kind == TARGET_EUROCODE8 ? eurocode8(c, T) : asce7(c, T));
 }
 
 /* ln(target / PSa) over the range: its mean, and the root of its mean square. */
-static void compare(const Motion *m, const MotionOptions *o, double *mean, double *rms)
+static void compare(const Motion *m, const CodeSpectrum *c, double *mean, double *rms)
 {
     double T[TARGET_PERIODS], psa[TARGET_PERIODS];
     *mean = *rms = 0;
     for (int i = 0; i < TARGET_PERIODS; i++)
-        T[i] = o->target_from_s * pow(o->target_to_s / o->target_from_s, (double)i / (TARGET_PERIODS - 1));
+        T[i] = c->from_s * pow(c->to_s / c->from_s, (double)i / (TARGET_PERIODS - 1));
     spectrum_psa(m, DAMPING, TARGET_PERIODS, T, psa);
     for (int i = 0; i < TARGET_PERIODS; i++) {
-        const double ratio = log(target_psa(o, T[i]) / psa[i]);
+        const double ratio = log(target_psa(c, T[i]) / psa[i]);
         *mean += ratio / TARGET_PERIODS;
         *rms += ratio * ratio / TARGET_PERIODS;
     }
     *rms = sqrt(*rms);
 }
 
-double target_misfit(const Motion *m, const MotionOptions *o)
+double target_misfit(const Motion *m, const CodeSpectrum *c)
 {
     double mean, rms;
-    compare(m, o, &mean, &rms);
+    compare(m, c, &mean, &rms);
     return rms;
 }
 
 /* ---- scaling ----------------------------------------------------------------------------------------------------- */
 
-static double factor_of(const Motion *m, const MotionOptions *o)
+static double factor_of(const Motion *m, const MotionOptions *o, const CodeSpectrum *c)
 {
     double psa, mean, rms;
     if (o->sa_g > 0) {
         spectrum_psa(m, DAMPING, 1, &o->sa_period_s, &psa);
         return o->sa_g * GRAVITY / psa;
     }
-    if (o->target != TARGET_NONE) {
-        compare(m, o, &mean, &rms);
+    if (c->kind != TARGET_NONE) {
+        compare(m, c, &mean, &rms);
         return exp(mean);
     }
     return o->factor;
@@ -110,8 +193,10 @@ static Status check_scale(const Motion *m, const MotionOptions *o, double peak_g
 Status motion_scale(Motion *m, const MotionOptions *o, Err *err)
 {
     const double peak_g = motion_peak(m) / GRAVITY;
+    CodeSpectrum target;
+    TRY(target_parse(o->target, &target, err));
     TRY(motion_prepare(m, o->pga_g, o->stretch, err));
-    const double factor = factor_of(m, o);
+    const double factor = factor_of(m, o, &target);
     if (!(factor > 0 && isfinite(factor)))
         return fail(err, STATUS_BAD_DATA, "%s: cannot be scaled to a response spectrum: it moves no such oscillator",
                     m->name);
@@ -132,8 +217,8 @@ int motion_scalings(const MotionOptions *o, char text[SCALINGS_TEXT_MAX])
         snprintf(each[n++], sizeof each[0], "motion.factor = %g", o->factor);
     if (o->sa_g > 0)
         snprintf(each[n++], sizeof each[0], "motion.sa_g = %g", o->sa_g);
-    if (o->target != TARGET_NONE)
-        snprintf(each[n++], sizeof each[0], "motion.target = %s", o->target == TARGET_ASCE7 ? "asce7" : "eurocode8");
+    if (o->target[0] && strcmp(o->target, "none") != 0)
+        snprintf(each[n++], sizeof each[0], "motion.target = %.40s", o->target);
     text[0] = 0;
     for (int i = 0; i < n; i++)
         snprintf(text + strlen(text), SCALINGS_TEXT_MAX - strlen(text), "%s%s", i ? ", " : "", each[i]);
@@ -144,5 +229,5 @@ void motion_unscale(MotionOptions *o)
 {
     o->pga_g = o->sa_g = 0;
     o->factor = 1;
-    o->target = TARGET_NONE;
+    o->target[0] = 0;
 }

@@ -22,12 +22,8 @@ Status motion_load(Motion *m, const char *source, MotionUnit unit, Err *err)
 
 Status motion_open(Motion *m, const MotionOptions *o, Err *err)
 {
-    const MotionHow how = {.unit = o->unit,
-                           .channel = o->channel,
-                           .dt_s = o->dt_s,
-                           .resample_dt_s = o->resample_dt_s,
-                           .counts_per_m_s2 = o->counts_per_m_s2,
-                           .peak_error_max = o->peak_error_max};
+    MotionHow how = {.channel = o->channel, .dt_s = o->dt_s};
+    TRY(motion_unit_parse(o->unit, &how.unit, &how.counts_per_m_s2, err));
     TRY(load(m, o->record, &how, err));
     const Status status = motion_process(m, o, err);
     if (status != STATUS_OK)

@@ -128,21 +128,6 @@ static int has_spectral_value(const Settings *s)
     return s->motion.sa_g > 0;
 }
 
-static int has_target(const Settings *s)
-{
-    return s->motion.target != TARGET_NONE;
-}
-
-static int is_eurocode8(const Settings *s)
-{
-    return s->motion.target == TARGET_EUROCODE8;
-}
-
-static int is_asce7(const Settings *s)
-{
-    return s->motion.target == TARGET_ASCE7;
-}
-
 /* What is replicated for its noise is not screened. */
 static int is_screened(const Settings *s)
 {
@@ -206,12 +191,8 @@ static const struct {
      "there is a bumper (contact.bumper_stiffness_n_m, or bumper in design.variables)"},
     {"design.bumper_*", designs_bumpers, "design.variables has bumper"},
     {"design.side_*", designs_side, "design.variables has side"},
-    {"motion.unit motion.channel motion.dt_s motion.resample_dt_s motion.counts_per_m_s2 motion.peak_error_max",
-     has_files, "a record is a file"},
+    {"motion.unit motion.channel motion.dt_s", has_files, "a record is a file"},
     {"motion.sa_period_s", has_spectral_value, "motion.sa_g is above 0"},
-    {"motion.target_from_s motion.target_to_s", has_target, "motion.target is not none"},
-    {"motion.ec8_*", is_eurocode8, "motion.target = eurocode8"},
-    {"motion.asce7_*", is_asce7, "motion.target = asce7"},
     {"sim.steps_per_contact sim.tolerance", is_fast, "sim.engine = fast"},
     {"search.fidelity", is_screened,
      "problem.kind = tower and sim.replicates is 2 or more (replicates), or problem.costs is given (levels), and "

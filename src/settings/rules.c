@@ -6,6 +6,7 @@
 
 #include "base/list.h"
 #include "scene/design.h"
+#include "motion/motion_read.h"
 #include "motion/motion_scale.h"
 #include "sim/tolerance.h"
 #include "evaluate/external.h"
@@ -41,9 +42,10 @@ static const struct {
     size_t low, high;
     const char *low_key, *high_key;
 } BELOW_EACH_OTHER[] = {
-    BELOW(design.gap_min_m, design.gap_max_m),           BELOW(design.thickness_min_m, design.thickness_max_m),
-    BELOW(design.bumper_min_n_m, design.bumper_max_n_m), BELOW(design.side_min_m, design.side_max_m),
-    BELOW(motion.target_from_s, motion.target_to_s),
+    BELOW(design.gap_min_m, design.gap_max_m),
+    BELOW(design.thickness_min_m, design.thickness_max_m),
+    BELOW(design.bumper_min_n_m, design.bumper_max_n_m),
+    BELOW(design.side_min_m, design.side_max_m),
 };
 
 static double real_at(const Settings *s, size_t field)
@@ -66,16 +68,14 @@ static void check_bounds(const Settings *s, const Rules *r)
 static void check_motion(const MotionOptions *m, const Rules *r)
 {
     char scalings[SCALINGS_TEXT_MAX];
+    Err err;
     if (motion_scalings(m, scalings) > 1)
         break_rule(r, TIED(motion.target, motion.sa_g, motion.factor),
                    "motion: a record is scaled in one way, not in several: %s", scalings);
-    if (!(m->ec8_tb_s <= m->ec8_tc_s && m->ec8_tc_s <= m->ec8_td_s))
-        break_rule(r, TIED(motion.ec8_tb_s, motion.ec8_tc_s, motion.ec8_td_s),
-                   "motion.ec8_tb_s: TB = %g, TC = %g and TD = %g must rise", m->ec8_tb_s, m->ec8_tc_s, m->ec8_td_s);
-    if (!(m->asce7_sd1_g / m->asce7_sds_g <= m->asce7_tl_s))
-        break_rule(r, TIED(motion.asce7_tl_s, motion.asce7_sd1_g, motion.asce7_sds_g),
-                   "motion.asce7_tl_s: TL = %g must not be below TS = SD1 / SDS = %g", m->asce7_tl_s,
-                   m->asce7_sd1_g / m->asce7_sds_g);
+    if (target_parse(m->target, &(CodeSpectrum){0}, &err) != STATUS_OK)
+        break_rule(r, PAIR(motion.target, motion.target), "%s", err.text);
+    if (motion_unit_parse(m->unit, &(MotionUnit){0}, &(double){0}, &err) != STATUS_OK)
+        break_rule(r, PAIR(motion.unit, motion.unit), "%s", err.text);
     if (m->highpass_hz > 0 && m->lowpass_hz > 0 && m->highpass_hz >= m->lowpass_hz)
         break_rule(r, PAIR(motion.highpass_hz, motion.lowpass_hz),
                    "motion.highpass_hz: %g must be below motion.lowpass_hz = %g", m->highpass_hz, m->lowpass_hz);

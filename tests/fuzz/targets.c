@@ -97,7 +97,7 @@ static void process(Motion *m)
     s.motion.baseline = BASELINE_QUADRATIC;
     s.motion.highpass_hz = 0.5;
     s.motion.lowpass_hz = 5;
-    s.motion.target = TARGET_ASCE7;
+    strcpy(s.motion.target, "asce7 sds=1 sd1=0.6");
     Status status = motion_process(m, &s.motion, &err);
     if (status == STATUS_OK)
         status = motion_scale(m, &s.motion, &err);
@@ -123,18 +123,18 @@ void fuzz_motion(const uint8_t *data, size_t size)
 {
     read_motion(data, size, &(MotionHow){0}, 0);
     read_motion(data, size, &(MotionHow){.unit = UNIT_G, .channel = "1", .dt_s = 0.01}, 0);
-    read_motion(data, size, &(MotionHow){.channel = "2", .resample_dt_s = 0.5}, 0);
+    read_motion(data, size, &(MotionHow){.channel = "2", .dt_s = 0.5}, 0);
 }
 
 void fuzz_instrument(const uint8_t *data, size_t size)
 {
-    read_motion(data, size, &(MotionHow){.channel = "1", .counts_per_m_s2 = 1e5}, 1);
+    read_motion(data, size, &(MotionHow){.channel = "1", .unit = UNIT_COUNTS, .counts_per_m_s2 = 1e5}, 1);
     read_motion(data, size, &(MotionHow){.channel = "3", .unit = UNIT_CM_S2}, 0);
 }
 
 void fuzz_archive(const uint8_t *data, size_t size)
 {
-    read_motion(data, size, &(MotionHow){.channel = "2", .counts_per_m_s2 = 1e5}, 0);
+    read_motion(data, size, &(MotionHow){.channel = "2", .unit = UNIT_COUNTS, .counts_per_m_s2 = 1e5}, 0);
 }
 
 static void demand_table(const Table *t)
