@@ -5,6 +5,7 @@
 #include <cblas.h>
 #include <fcntl.h>
 #include <jansson.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -35,12 +36,16 @@ static Status check_limits(const Command *command, Err *err)
 static Status run_command(int argc, char *argv[], Err *err)
 {
     const Command *command;
+    const char *option;
     Args args;
-    TRY(command_find(argv[1], &command, err));
+    TRY(command_find(argv[1], &command, &option, err));
+    const int n_before = option ? 1 : 2; /* the option of an old name stands in the place of that name */
+    if (option)
+        argv[1] = (char *)(uintptr_t)option;
     TRY(check_limits(command, err));
     if (command->only_reads || command->is_alone)
         cluster_disband();
-    Status status = args_parse(&args, command, argc - 2, argv + 2, err);
+    Status status = args_parse(&args, command, argc - n_before, argv + n_before, err);
     if (status == STATUS_OK && args.help)
         command_help(command, stdout);
     else if (status == STATUS_OK)
@@ -59,12 +64,13 @@ static int is_help(const char *word)
 /* A second word may name a command; more are too many. */
 static Status second_word(int argc, char *argv[], const Command **command, Err *err)
 {
+    const char *option;
     *command = NULL;
     if (argc == 3 && is_help(argv[2]))
         return STATUS_OK;
     if (argc > 3)
         return fail(err, STATUS_USAGE, "imtet %s takes one command at most, found '%.60s'", argv[1], argv[3]);
-    return argc == 3 ? command_find(argv[2], command, err) : STATUS_OK;
+    return argc == 3 ? command_find(argv[2], command, &option, err) : STATUS_OK;
 }
 
 static Status help(int argc, char *argv[], Err *err)

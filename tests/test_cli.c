@@ -83,7 +83,6 @@ static void test_a_misunderstood_command_line_ends_with_2_and_a_suggestion(void 
     (void)state;
     expect(2, "no command", "");
     expect(2, "did you mean optimize?", "optimise configs/quick.ini");
-    expect(2, "imtet-bench", "bench");
     expect(2, "did you mean --design?", "simulate configs/quick.ini --desing none");
     expect(2, "did you mean --json?", "modes configs/quick.ini --jsno");
     expect(2, "--help", "modes configs/quick.ini --qqqqqqqqqqqqqqqqqqqqqqqq");
@@ -118,29 +117,23 @@ static void test_bad_settings_and_data_end_with_65(void **state)
            "simulate configs/quick.ini --design tests/bad/design/negative_gap.csv");
 }
 
-/* Said once for each, on standard error; the answer is that of the present name. */
-static void test_old_names_are_understood_and_the_new_ones_told(void **state)
+/* One note on standard error; the answer is that of the present name. */
+static void test_old_commands_run_under_their_new_names(void **state)
 {
     (void)state;
-    static const char SHORT_RUN[] = "simulate configs/quick.ini --design none --json --set sim.duration_s=1";
+    const double gap[1] = {0.01}, wall[1] = {0.02};
+    write_designs("one.csv", 1, gap, wall, wall);
+    static const char ARGUMENTS[] = "configs/quick.ini --design @/one.csv --json --set sim.duration_s=2";
     Said old, now;
-    write_in_place("old.ini", "[sim]\nensemble = 3\n");
-    run(&old, "check @/old.ini --set sim.ensemble=2 --set search.repeats=0.2");
-    assert_int_equal(old.code, 0);
-    const char *first = strstr(old.err, "sim.ensemble is now sim.replicates\n");
-    assert_non_null(first);
-    assert_null(strstr(first + 1, "sim.ensemble"));
-    assert_non_null(strstr(old.err, "search.repeats is now search.replicate_share\n"));
-    forget(&old);
-    run(&old, "%s --set sim.residual_max=1e-9", SHORT_RUN);
-    run(&now, "%s --set sim.energy_balance_max=1e-9", SHORT_RUN);
-    assert_int_equal(old.code, now.code);
-    assert_string_equal(now.err + strlen(now.err) - strlen(strstr(old.err, "\n") + 1), strstr(old.err, "\n") + 1);
+    run(&old, "horizon %s", ARGUMENTS);
+    run(&now, "simulate --horizon %s", ARGUMENTS);
+    assert_int_equal(now.code, 0);
+    assert_string_equal(now.err, "");
+    assert_string_equal(old.out, now.out);
+    assert_string_equal(old.err, "note: imtet horizon is now: imtet simulate --horizon\n");
     forget(&old);
     forget(&now);
-    expect(2, "--ensemble is now --replicates", "simulate configs/quick.ini --design none --ensemble 3");
-    expect(2, "--tied is now --rigid", "simulate configs/quick.ini --design none --tied");
-    expect(2, "unknown option '--tied'", "modes configs/quick.ini --tied");
+    expect(0, "now: imtet simulate", "help horizon");
 }
 
 static void shows(const char *arguments)
@@ -164,33 +157,11 @@ static void test_whatever_takes_a_motion_shows_how_it_is_scaled(void **state)
 }
 
 /* On standard error; the answer stays what it is. */
-static void test_a_setting_that_a_command_does_not_read_is_named(void **state)
+static void test_a_setting_without_effect_is_named(void **state)
 {
     (void)state;
-    static const struct {
-        const char *arguments, *note;
-    } CASES[] = {
-        {"modes configs/quick.ini --set search.population=30", "--set search.population: imtet modes does not read it"},
-        {"modes configs/quick.ini --set motion.pga_g=0.2", "--set motion.pga_g: imtet modes does not read it"},
-        {"spectrum builtin:kobe-like --set sim.engine=cvode", "--set sim.engine: imtet spectrum does not read it"},
-        {"spectrum builtin:kobe-like --unit g", "--unit has no effect: it is read where a record is a file"},
-        {"building guyan --set core.side_m=9", "--set core.side_m: imtet building does not read it"},
-        {"problem dtlz2 --set problem.kind=wfg4 --max-evals 12 --csv @/dtlz2.csv",
-         "--set problem.kind: imtet problem does not read it"},
-        {"simulate configs/quick.ini --design none --set sim.duration_s=1 --set core.width_m=3",
-         "--set core.width_m has no effect: it is read where core.section = plate"},
-    };
-    for (size_t i = 0; i < sizeof CASES / sizeof CASES[0]; i++)
-        expect(0, CASES[i].note, CASES[i].arguments);
-    Said s;
-    run(&s, "modes configs/quick.ini --spectrum --set motion.pga_g=0.2 --set core.side_m=9");
-    assert_string_equal(s.err, "");
-    forget(&s);
-    write_in_place("plain.txt", "# g\n0.1\n0.2\n-0.1\n0.05\n");
-    run(&s, "spectrum @/plain.txt --set motion.dt_s=0.01 --unit g");
-    assert_int_equal(s.code, 0);
-    assert_null(strstr(s.err, "has no effect"));
-    forget(&s);
+    expect(0, "note: core.width_m has no effect: it is read where core.section = plate",
+           "simulate configs/quick.ini --design none --set sim.duration_s=1 --set core.width_m=3");
     char keeps[sizeof place.folder + 8];
     snprintf(keeps, sizeof keeps, "%s/keeps", place.folder);
     assert_int_equal(mkdir(keeps, 0755), 0);
@@ -203,7 +174,7 @@ static void test_a_setting_that_a_command_does_not_read_is_named(void **state)
     const double gap[2] = {0.01, 0.02}, wall[2] = {0.02, 0.02};
     write_designs("two.csv", 2, gap, wall, wall);
     expect(2, "two.csv: holds 2 designs, and one is wanted", "modes configs/quick.ini --design @/two.csv");
-    expect(2, "two.csv:1", "horizon configs/quick.ini --design @/two.csv");
+    expect(2, "two.csv:1", "simulate configs/quick.ini --horizon --design @/two.csv");
     expect(2, "holds 2 designs", "simulate configs/quick.ini --sensitivity --design @/two.csv");
 }
 
@@ -663,9 +634,9 @@ int main(void)
         cmocka_unit_test(test_this_build_gives_the_stored_answers),
         cmocka_unit_test(test_a_misunderstood_command_line_ends_with_2_and_a_suggestion),
         cmocka_unit_test(test_bad_settings_and_data_end_with_65),
-        cmocka_unit_test(test_old_names_are_understood_and_the_new_ones_told),
+        cmocka_unit_test(test_old_commands_run_under_their_new_names),
         cmocka_unit_test(test_whatever_takes_a_motion_shows_how_it_is_scaled),
-        cmocka_unit_test(test_a_setting_that_a_command_does_not_read_is_named),
+        cmocka_unit_test(test_a_setting_without_effect_is_named),
         cmocka_unit_test(test_standard_output_and_every_setting_belong_to_one),
         cmocka_unit_test(test_missing_inputs_end_with_66),
         cmocka_unit_test(test_output_that_cannot_be_written_ends_with_74),

@@ -36,7 +36,7 @@ static void test_help_of_a_command_is_the_same_both_ways(void **state)
     assert_string_equal(first, second);
     assert_int_equal(strncmp(all, "example: imtet ", 15), 0);
     for (int i = 0; command_at(i); i++)
-        assert_non_null(strstr(all, command_at(i)->summary));
+        assert_int_equal(strstr(all, command_at(i)->summary) != NULL, command_at(i)->group != GROUP_NONE);
     free(first);
     free(second);
     free(all);

@@ -7,8 +7,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "settings/idle.h"
 #include "evaluate/textbook.h"
+#include "settings/settings.h"
 
 enum { KEYS_MAX = 200 };
 
@@ -119,50 +119,6 @@ static void test_the_words_of_problem_kind_are_the_names_of_the_textbook_problem
     }
     assert_int_equal(PROBLEM_TEXTBOOK + n, PROBLEM_KIND_COUNT);
     assert_string_equal(settings_words(kind), words);
-}
-
-static void test_old_keys_are_no_keys_and_lead_to_keys(void **state)
-{
-    (void)state;
-    const char *old, *now;
-    for (int i = 0; (old = settings_renamed(i, &now)); i++) {
-        int n_now = 0;
-        for (int k = 0; settings_key(k); k++) {
-            assert_string_not_equal(settings_key(k), old);
-            n_now += strcmp(settings_key(k), now) == 0;
-        }
-        assert_int_equal(n_now, 1);
-        const char *other, *unused;
-        for (int j = 0; j < i && (other = settings_renamed(j, &unused)); j++)
-            assert_string_not_equal(old, other);
-    }
-}
-
-static void test_old_keys_are_read_and_noted(void **state)
-{
-    (void)state;
-    Err err = {0};
-    Settings s, now;
-    CHECK_OK(read_text(&s,
-                       "[sim]\nensemble = 5\nresidual_max = 0.01\n[search]\nmembers_min = 2\nmembers_max = 3\n"
-                       "repeats = 0.2\n[contact]\nv0_floor_m_s = 0.01\n",
-                       &err),
-             &err);
-    assert_int_equal(s.old_keys, 63);
-    CHECK_OK(read_text(&now,
-                       "[sim]\nreplicates = 5\nenergy_balance_max = 0.01\n[search]\nreplicates_min = 2\n"
-                       "replicates_max = 3\nreplicate_share = 0.2\n[contact]\nv0_min_m_s = 0.01\n",
-                       &err),
-             &err);
-    assert_int_equal(now.old_keys, 0);
-    s.old_keys = 0;
-    assert_memory_equal(&s, &now, sizeof s);
-    CHECK_OK(settings_parse(&s, "run.sqlite", "[sim]\nensemble = 7\n", &err), &err); /* a saved run: no note */
-    assert_int_equal(s.sim.replicates, 7);
-    assert_int_equal(s.old_keys, 0);
-    CHECK_OK(settings_set(&s, "sim.ensemble=8", &err), &err);
-    assert_int_equal(s.sim.replicates, 8);
-    assert_int_equal(s.old_keys, 2);
 }
 
 typedef struct {
@@ -566,76 +522,61 @@ static void test_what_is_too_large_or_a_device_or_a_left_pipe_is_no_settings_fil
     remove(path);
 }
 
-/* Of each setting that waits for another: idle by default, read once the other is set. */
-static void test_a_setting_that_waits_for_another_is_idle_until_then(void **state)
+static void note_key(const char *key, const char *text, void *user)
+{
+    snprintf(user, 200, "%s %s", key, text);
+}
+
+static void test_a_setting_that_does_nothing_because_of_another_is_named(void **state)
 {
     (void)state;
     static const struct {
-        const char *key, *wakes;
-    } CASES[] = {{"core.width_m", "core.section=plate"},
-                 {"core.area_top_m2", "core.section=effective"},
-                 {"building.damping_table", "building.damping_model=table"},
-                 {"building.rayleigh_modes", "building.damping_model=rayleigh"},
-                 {"contact.bumper_damping", "contact.bumper_stiffness_n_m=1e9"},
-                 {"contact.bumper_strain_max", "design.variables=gaps, thickness, bumper"},
-                 {"design.side_max_m", "design.variables=gaps, thickness, side"},
-                 {"motion.sa_period_s", "motion.sa_g=0.3"},
-                 {"motion.unit", "motion.record=mine.csv"},
-                 {"sim.robust", "sim.replicates=4"},
-                 {"search.fidelity", "sim.replicates=4"},
-                 {"sim.robust", "motion.records=builtin:sylmar-like"},
-                 {"problem.lower", "problem.kind=external"},
-                 {"problem.variable_names", "problem.kind=dtlz2"}};
-    static const char *const READ[] = {"core.side_m",       "building.damping", "sim.tolerance",
-                                       "motion.pga_g",      "search.seed",      "building.storey_m",
-                                       "search.objectives", "problem.kind",     "problem.noisy"};
+        const char *idle, *said, *wakes;
+    } CASES[] = {
+        {"core.width_m=3", "core.width_m has no effect: it is read where core.section = plate", "core.section=plate"},
+        {"core.area_top_m2=1", "core.section = effective", "core.section=effective"},
+        {"motion.sa_period_s=2", "motion.sa_g is not 0", "motion.sa_g=0.3"},
+        {"problem.lower=1", "problem.kind = external", "problem.kind=external"},
+        {"problem.variables=3", "problem.kind is not tower", "problem.kind=dtlz2"}};
     for (size_t i = 0; i < sizeof CASES / sizeof CASES[0]; i++) {
-        Settings s;
+        Settings before, s;
         Err err = {0};
+        char said[200] = "";
         settings_defaults(&s);
-        assert_non_null(settings_idle(&s, CASES[i].key));
+        before = s;
+        CHECK_OK(settings_set(&s, CASES[i].idle, &err), &err);
+        settings_idle(&before, &s, note_key, said);
+        assert_non_null(strstr(said, CASES[i].said));
         CHECK_OK(settings_set(&s, CASES[i].wakes, &err), &err);
-        if (settings_idle(&s, CASES[i].key))
-            fail_msg("%s with %s", CASES[i].key, CASES[i].wakes);
+        said[0] = 0;
+        settings_idle(&before, &s, note_key, said);
+        assert_string_equal(said, "");
     }
-    for (size_t i = 0; i < sizeof READ / sizeof READ[0]; i++) {
-        Settings s;
-        settings_defaults(&s);
-        assert_null(settings_idle(&s, READ[i]));
-    }
-    Settings external, noisy;
-    settings_defaults(&noisy);
-    noisy.sim.replicates = 4;
-    noisy.problem.noisy = NOISY_YES;
-    assert_non_null(settings_idle(&noisy, "search.fidelity"));
-    noisy.search.replicate_share = 0.0;
-    assert_null(settings_idle(&noisy, "search.fidelity"));
-    settings_defaults(&external);
-    external.problem.kind = PROBLEM_EXTERNAL;
-    assert_non_null(settings_idle(&external, "contact.law"));
-    assert_null(settings_idle(&external, "search.population"));
 }
 
-static void test_patterns_are_keys_sections_and_beginnings(void **state)
+static void test_fidelity_needs_replicates_that_average_no_noise(void **state)
 {
     (void)state;
-    assert_true(settings_match("core motion.pga_g", "core.side_m") &&
-                settings_match("core motion.pga_g", "motion.pga_g"));
-    assert_false(settings_match("core motion.pga_g", "motion.pga") || settings_match("core", "corex.side_m"));
-    assert_true(settings_match("problem.*_names", "problem.variable_names"));
-    assert_false(settings_match("problem.*_names", "problem.variables"));
+    Settings s;
+    settings_defaults(&s);
+    s.search.fidelity = FIDELITY_REPLICATES;
+    assert_false(settings_screens(&s));
+    s.sim.replicates = 4;
+    assert_true(settings_screens(&s));
+    s.problem.noisy = NOISY_YES;
+    assert_false(settings_screens(&s));
+    s.search.replicate_share = 0;
+    assert_true(settings_screens(&s));
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a_setting_that_waits_for_another_is_idle_until_then),
-        cmocka_unit_test(test_patterns_are_keys_sections_and_beginnings),
+        cmocka_unit_test(test_a_setting_that_does_nothing_because_of_another_is_named),
+        cmocka_unit_test(test_fidelity_needs_replicates_that_average_no_noise),
         cmocka_unit_test(test_every_default_is_in_its_range_and_the_rules_hold),
         cmocka_unit_test(test_keys_are_unique),
         cmocka_unit_test(test_the_words_of_problem_kind_are_the_names_of_the_textbook_problems),
-        cmocka_unit_test(test_old_keys_are_no_keys_and_lead_to_keys),
-        cmocka_unit_test(test_old_keys_are_read_and_noted),
         cmocka_unit_test(test_a_change_is_reported_for_its_key_with_the_flags_of_the_table),
         cmocka_unit_test(test_paths_become_absolute_where_they_lead_somewhere),
         cmocka_unit_test(test_columns_count_characters_and_not_the_mark_of_utf_8),

@@ -6,8 +6,7 @@
 #include <unistd.h>
 
 #include "cmd/outputs.h"
-#include "motion/builtin.h"
-#include "settings/idle.h"
+#include "settings/settings.h"
 
 enum { OPTIONS_MAX = 32 };
 
@@ -90,30 +89,12 @@ void args_suggest(const Args *args, Err *err)
         free(entries);
 }
 
-/* Names of the version before this one. */
-static const struct {
-    const char *old, *now;
-} RENAMED[] = {
-    {"--tied", "--rigid"}, {"--ensemble", "--replicates"}, {"--members", "--replicates"}, {"--wish", "--reference"}};
-
-static void replace_old_name(const Command *c, char name[64])
-{
-    for (size_t i = 0; i < sizeof RENAMED / sizeof RENAMED[0]; i++)
-        for (const ArgOption *o = c->options; o->name; o++)
-            if (strcmp(name, RENAMED[i].old) == 0 && strcmp(o->name, RENAMED[i].now) == 0) {
-                fprintf(stderr, "%s is now %s\n", name, o->name);
-                snprintf(name, 64, "%s", o->name);
-                return;
-            }
-}
-
 static Status find_option(const Command *c, const char *word, size_t length, const ArgOption **found, Err *err)
 {
     const char *names[OPTIONS_MAX];
     char name[64], where[80];
     int n = 0;
     snprintf(name, sizeof name, "%.*s", (int)length, word);
-    replace_old_name(c, name);
     for (const ArgOption *o = c->options; o->name && n < OPTIONS_MAX - 1; o++) {
         names[n++] = o->name;
         *found = o;
@@ -316,63 +297,15 @@ static void count_fault(FILE *faults, int *n_faults, const char *text)
         ++*n_faults;
 }
 
-/* Once for each key. */
-static void tell_old_keys(Settings *s)
+static void tell_idle(const char *key, const char *text, void *user)
 {
-    const char *old, *now;
-    for (int i = 0; (old = settings_renamed(i, &now)); i++)
-        if (s->old_keys >> i & 1u)
-            fprintf(stderr, "%s is now %s\n", old, now);
-    s->old_keys = 0;
-}
-
-/* Is the key among the command's `unread`, with these options? */
-static int is_unread(const Args *args, const char *key)
-{
-    char pattern[128];
-    for (const char *p = args->command->unread; p && *p; p += strspn(p, " ")) {
-        const size_t n = strcspn(p, " ");
-        snprintf(pattern, sizeof pattern, "%.*s", (int)n, p);
-        p += n;
-        char *mark = strpbrk(pattern, "?!");
-        const int wanted = mark && *mark == '?', applies = !mark || args_has(args, mark + 1) == wanted;
-        if (mark)
-            *mark = 0;
-        if (applies && settings_match(pattern, key))
-            return 1;
-    }
-    return 0;
-}
-
-/* Are the motions not those of the settings but files that the command line names? */
-static int names_files(const Args *args)
-{
-    int n = 0;
-    for (int i = 0; i < args->n_operands; i++)
-        n += !builtin_name(args->operands[i]);
-    return n > 0 && is_unread(args, "motion.record");
-}
-
-/* A setting that was given and changes nothing is named. */
-static void tell_idle(const Args *args, const Given *g, const Settings *s)
-{
-    const int is_set = strcmp(g->option->name, "--set") == 0;
-    char key[128];
-    if (!is_set && !g->option->setting)
-        return;
-    snprintf(key, sizeof key, "%.*s", is_set ? (int)strcspn(g->value, "=") : 127,
-             is_set ? g->value : g->option->setting);
-    const Command *c = args->command;
-    const char *waits_for = settings_idle(s, key), *word = is_set ? key : "",
-               *option = is_set ? "--set " : g->option->name;
-    if ((c->reads && is_set && !settings_match(c->reads, key)) || is_unread(args, key))
-        fprintf(stderr, "note: %s%s: %s %s does not read it\n", option, word, program_of(c), c->name);
-    else if (waits_for && !(settings_match("motion", key) && names_files(args)))
-        fprintf(stderr, "note: %s%s has no effect: it is read where %s\n", option, word, waits_for);
+    (void)user;
+    fprintf(stderr, "note: %s %s\n", key, text);
 }
 
 Status args_apply(const Args *args, Settings *s, FILE *faults, int *n_faults, Err *err)
 {
+    const Settings before = *s;
     Status first = STATUS_OK;
     for (int i = 0; i < args->n_given; i++) {
         Err e = {0};
@@ -385,11 +318,9 @@ Status args_apply(const Args *args, Settings *s, FILE *faults, int *n_faults, Er
         if (!faults)
             break;
     }
-    tell_old_keys(s);
     if (first != STATUS_OK || faults) /* with faults: a check, which looks at all and writes nothing */
         return first;
-    for (int i = 0; i < args->n_given; i++)
-        tell_idle(args, &args->given[i], s);
+    settings_idle(&before, s, tell_idle, NULL);
     return outputs_spare(args, s, err);
 }
 

@@ -47,9 +47,6 @@ Status args_settings(const Args *args, Settings *s, FILE *faults, int *n_faults,
 Status args_apply(const Args *args, Settings *s, FILE *faults, int *n_faults, Err *err);
 
 /* Options of several commands. */
-#define READS_SCENE                                                                                                    \
-    "building core contact motion sim uncertain design.variables design.gap_zones design.bumper_zones search.seed "    \
-    "search.threads search.objectives search.limits problem.kind"
 /* clang-format off */
 #define OPTION_MOVED {"--set", "motion.record=PATH", NULL, 1, "where the run's record is, if moved; motion.records too"}
 #define OPTION_SET {"--set", "SECTION.KEY=VALUE", NULL, 1, "any setting; may be repeated (`imtet settings` lists them)"}

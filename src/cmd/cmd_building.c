@@ -128,7 +128,7 @@ static const ArgOption OPTIONS[] = {
 
 const Command CMD_BUILDING = {
     .name = "building",
-    .reads = "building",
+    .group = GROUP_PREPARE,
     .operand = "FOLDER",
     .summary = "a building's floors, masses, modes and a drawing of it",
     .example = "imtet building my-tower --svg my-tower.svg",

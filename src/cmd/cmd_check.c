@@ -12,7 +12,7 @@
 #include "cmd/warnings.h"
 #include "motion/motion_scale.h"
 #include "motion/motion_source.h"
-#include "settings/idle.h"
+#include "settings/settings.h"
 #include "sim/sim.h"
 #include "evaluate/adapter.h"
 
@@ -369,24 +369,18 @@ static Status verdict(const Args *args, const Check *c, Err *err)
     return STATUS_OK;
 }
 
-static void warn_of_idle(const char *key, const char *waits_for, void *user)
-{
-    char text[200];
-    snprintf(text, sizeof text, "has no effect: it is read where %s", waits_for);
-    warn(key, text, user);
-}
-
 static Status run(const Args *args, Err *err)
 {
     Check c = {.as_json = args_has(args, "--json"), .out = json_object()};
-    Settings s;
+    Settings s, defaults;
     c.faults = json_array();
     c.warnings = json_array();
     json_object_set_new(c.out, "faults", c.faults);
     json_object_set_new(c.out, "warnings", c.warnings);
     Status status = read_settings(args, &c, &s, err);
     if (status == STATUS_OK) {
-        settings_idle_each(&s, warn_of_idle, &c);
+        settings_defaults(&defaults);
+        settings_idle(&defaults, &s, warn, &c);
         warn_of_settings(&s, warn, &c);
         if (s.problem.kind == PROBLEM_TOWER)
             check_tower(args, &c, &s);
@@ -406,6 +400,7 @@ static const ArgOption OPTIONS[] = {
 
 const Command CMD_CHECK = {
     .name = "check",
+    .group = GROUP_PREPARE,
     .operand = "CONFIG",
     .summary = "what a configuration describes, what is wrong with it and what is implausible",
     .example = "imtet check configs/quick.ini",

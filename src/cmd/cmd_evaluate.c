@@ -351,8 +351,7 @@ static const ArgOption OPTIONS[] = {
 
 const Command CMD_EVALUATE = {
     .name = "evaluate",
-    .reads = READS_SCENE,
-    .unread = "motion.record?--record motion.records?--record motion.record?--records motion.records?--records",
+    .group = GROUP_DECIDE,
     .operand = "RUN",
     .summary = "one design of a front on other earthquakes",
     .example = "imtet evaluate results/quick --design knee --record builtin:elcentro-like",

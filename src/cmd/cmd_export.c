@@ -63,6 +63,7 @@ static const ArgOption OPTIONS[] = {
 
 const Command CMD_EXPORT = {
     .name = "export",
+    .group = GROUP_DECIDE,
     .operand = "RUN",
     .summary = "the front of a run, or all of it, as CSV or JSON",
     .example = "imtet export results/quick --csv front.csv",

@@ -231,8 +231,6 @@ static const ArgOption OPTIONS[] = {
 
 const Command CMD_MODES = {
     .name = "modes",
-    .reads = "building core motion design.variables design.gap_zones design.bumper_zones",
-    .unread = "motion!--spectrum",
     .operand = "CONFIG",
     .summary = "natural frequencies and participating masses of building, core and zero-gap assembly",
     .example = "imtet modes configs/quick.ini",

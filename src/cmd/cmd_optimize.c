@@ -10,7 +10,7 @@
 #include "cmd/show.h"
 #include "cmd/signals.h"
 #include "cmd/warnings.h"
-#include "settings/idle.h"
+#include "settings/settings.h"
 #include "store/nearest.h"
 #include "store/run_read.h"
 #include "study/confidence.h"
@@ -302,14 +302,6 @@ static Status show_finished(const Args *args, RunStore *store, Run *finished, Er
     return report(finished, &summary, err);
 }
 
-/* Also where a file gives it: what is not screened costs more than was meant. */
-static void warn_of_fidelity(const Args *args, const Settings *s)
-{
-    const char *waits_for = settings_idle(s, "search.fidelity");
-    if (waits_for && s->search.fidelity != FIDELITY_OFF && !args_gives(args, "search.fidelity"))
-        fprintf(stderr, "warning: search.fidelity: has no effect: it is read where %s\n", waits_for);
-}
-
 static Status optimize(const Args *args, Run *finished, Err *err)
 {
     Settings s;
@@ -331,7 +323,6 @@ static Status optimize(const Args *args, Run *finished, Err *err)
         return status;
     }
     warn_of_settings(&s, warn_on_stderr, NULL);
-    warn_of_fidelity(args, &s);
     signals_catch();
     status = study_run(&s, &options, &summary, stderr, err);
     if (telling.has_line)
@@ -366,6 +357,7 @@ static const ArgOption OPTIONS[] = {
 
 const Command CMD_OPTIMIZE = {
     .name = "optimize",
+    .group = GROUP_STUDY,
     .operand = "CONFIG|RUN",
     .summary = "search for the Pareto front of designs",
     .example = "imtet optimize configs/quick.ini",

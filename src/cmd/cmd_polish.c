@@ -206,6 +206,7 @@ static const ArgOption OPTIONS[] = {
 
 const Command CMD_POLISH = {
     .name = "polish",
+    .group = GROUP_STUDY,
     .operand = "RUN",
     .summary = "improve objectives of a design, the others kept",
     .example = "imtet polish results/quick --design knee --improve j2_m",

@@ -115,8 +115,6 @@ static const ArgOption OPTIONS[] = {
 
 const Command CMD_PROBLEM = {
     .name = "problem",
-    .reads = "problem search",
-    .unread = "problem.kind search.start",
     .operand = "NAME",
     .summary = "the search on a problem from a textbook: dtlz2, wfg4, ...",
     .example = "imtet problem dtlz2 --max-evals 500 --seed 1 --csv dtlz2.csv",

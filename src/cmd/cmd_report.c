@@ -14,6 +14,7 @@ static const ArgOption OPTIONS[] = {
 
 const Command CMD_REPORT = {
     .name = "report",
+    .group = GROUP_DECIDE,
     .operand = "RUN",
     .summary = "one HTML page to look at a run: its front, and one design in detail",
     .example = "imtet report results/quick --design knee",

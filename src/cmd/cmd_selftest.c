@@ -364,6 +364,7 @@ static const ArgOption OPTIONS[] = {
 
 const Command CMD_SELFTEST = {
     .name = "selftest",
+    .group = GROUP_DECIDE,
     .summary = "whether this build gives the stored answers",
     .example = "imtet selftest",
     .details = "Five simulations of the built-in buildings, one impact with a closed form and a search on a textbook "

@@ -80,6 +80,7 @@ static const ArgOption OPTIONS[] = {
 
 const Command CMD_SERVE = {
     .name = "serve",
+    .group = GROUP_STUDY,
     .operand = "RUN",
     .summary = "a run as a page in the browser, live: progress, any design, what-if",
     .example = "imtet serve results/quick --open",

@@ -16,6 +16,7 @@ static const ArgOption OPTIONS[] = {OPTION_END};
 
 const Command CMD_SETTINGS = {
     .name = "settings",
+    .group = GROUP_PREPARE,
     .summary = "every setting with default, range, unit and meaning",
     .example = "imtet settings > mine.ini",
     .details = "Prints every setting with its default, preceded by its meaning, unit and range: a valid configuration.",

@@ -14,6 +14,7 @@
 #include "cmd/time_files.h"
 #include "cmd/warnings.h"
 #include "analysis/estimate.h"
+#include "analysis/horizon.h"
 #include "evaluate/tower.h"
 #include "store/output.h"
 #include "settings/options.h"
@@ -237,9 +238,14 @@ static Status check_times(const Args *args, const Job *job, Err *err)
         return fail(err, STATUS_USAGE, "--contacts needs a design with gaps, not none or --rigid");
     if (args_has(args, "--every") && !args_has(args, "--history"))
         return fail(err, STATUS_USAGE, "--every is the spacing of --history FILE, which is not asked for");
+    if (args_has(args, "--horizon") && job->kind != SCENE_IMPACT)
+        return fail(err, STATUS_USAGE, "--horizon needs a design with gaps, not none or --rigid");
+    if (args_has(args, "--horizon") && (args_has(args, "--csv") || args_has(args, "--sensitivity")))
+        return fail(err, STATUS_USAGE, "--horizon gives a table or --json; leave --csv and --sensitivity out");
+    const char *many = args_has(args, "--horizon") ? "--horizon" : "--sensitivity";
     for (size_t i = 0; i < sizeof TIMES / sizeof TIMES[0]; i++)
-        if (args_has(args, "--sensitivity") && args_has(args, TIMES[i]))
-            return fail(err, STATUS_USAGE, "--sensitivity simulates many designs; %s is of one: leave one of them out",
+        if (args_has(args, many) && args_has(args, TIMES[i]))
+            return fail(err, STATUS_USAGE, "%s makes many simulations; %s is of one: leave one of them out", many,
                         TIMES[i]);
     return STATUS_OK;
 }
@@ -269,6 +275,71 @@ static Status check_time_files(const Args *args, const Job *job, const Scenario 
     return STATUS_OK;
 }
 
+/* -- the predictability horizon ------------------------------------------------------------------------------------ */
+
+enum { HORIZON_REPLICATES = 16 };
+static const double HORIZON_CHANGE = 1e-12; /* of the gaps, between the two runs that are compared */
+
+static Status print_horizon_json(const Horizon *h, const ReplicateSummary *r, Err *err)
+{
+    return show_json(json_pack("{s:o, s:o, s:o, s:o, s:o}", "end_s", json_number(h->end_s), "distance",
+                               json_numbers(HORIZON_LEVELS, HORIZON_LEVEL), "reached_s",
+                               json_numbers(HORIZON_LEVELS, h->reached_s), "distance_at_end",
+                               json_number(h->distance_at_end), "replicates", json_replicates(r)),
+                     err);
+}
+
+static void print_horizon(const Scenario *w, const MeasureOrder *order, const Horizon *h, const ReplicateSummary *r)
+{
+    show_motion(stdout, &w->motion, w->options.sim.duration_s);
+    printf("\ntwo runs whose gaps differ by %g of themselves are apart by\n", HORIZON_CHANGE);
+    for (int i = 0; i < HORIZON_LEVELS; i++)
+        if (isnan(h->reached_s[i]))
+            printf("  %-8g never (the run ends at %.4g s)\n", HORIZON_LEVEL[i], h->end_s);
+        else
+            printf("  %-8g after %.4g s\n", HORIZON_LEVEL[i], h->reached_s[i]);
+    printf("distance: root of energy of the difference over largest energy so far; at the end %.2g\n\n",
+           h->distance_at_end);
+    show_result_names("", order);
+    show_replicates(0, order, r);
+}
+
+static Status find_horizon(const Args *args, const Problem *p, Err *err)
+{
+    const Scenario *w = tower_record(tower_of(p), 0);
+    Designs d;
+    Horizon h;
+    ReplicateSummary r;
+    SimResult as_designed;
+    TRY(designs_take_one(&d, args_value(args, "--design"), tower_design(tower_of(p)), err));
+    Status status = horizon_find(w, d.x, HORIZON_CHANGE, &h, err);
+    if (status == STATUS_OK)
+        status = tower_replicate(p, 1, d.x, &as_designed, &r, err);
+    design_free(&d);
+    TRY(status);
+    if (args_has(args, "--json"))
+        return print_horizon_json(&h, &r, err);
+    print_horizon(w, tower_measures(tower_of(p)), &h, &r);
+    return STATUS_OK;
+}
+
+/* Impacts alone make the replicates differ: no gap and nothing else is built with a tolerance. */
+static Status show_horizon(const Args *args, Settings *s, Err *err)
+{
+    Problem p;
+    if (s->sim.engine != ENGINE_FAST)
+        return fail(err, STATUS_USAGE, "--horizon: only the engine fast shows its states; leave sim.engine as it is");
+    s->sim.replicates = HORIZON_REPLICATES;
+    s->sim.gap_tolerance_m = 0;
+    s->uncertain = (UncertainOptions){0};
+    TRY(tower_open(&p, s, TOWER_AS_SET, SIZE_MAX, err));
+    const Status status = find_horizon(args, &p, err);
+    problem_close(&p);
+    return status;
+}
+
+/* ------------------------------------------------------------------------------------------------------------------ */
+
 static Status run(const Args *args, Err *err)
 {
     Settings s;
@@ -277,6 +348,8 @@ static Status run(const Args *args, Err *err)
     TRY(choose_kind(args, &job, err));
     TRY(check_times(args, &job, err));
     TRY(args_settings(args, &s, NULL, NULL, err));
+    if (args_has(args, "--horizon"))
+        return show_horizon(args, &s, err);
     if (args_has(args, "--sensitivity"))
         return show_sensitivities(args, &s, (size_t)s.sim.replicates, err);
     if (job.kind == SCENE_RIGID && s.sim.engine != ENGINE_FAST)
@@ -320,6 +393,8 @@ static const ArgOption OPTIONS[] = {
     {"--sensitivity", NULL, NULL, 0,
      "how each result changes with gaps, thickness, contact and damping, with its error; --replicates makes it "
      "smaller"},
+    {"--horizon", NULL, NULL, 0,
+     "predictability horizon: the time until two runs that hardly differ diverge; standard deviation of every result"},
     OPTIONS_MOTION,
     OPTION_DURATION,
     OPTION_ENGINE,
@@ -336,8 +411,7 @@ static const ArgOption OPTIONS[] = {
 
 const Command CMD_SIMULATE = {
     .name = "simulate",
-    .reads = READS_SCENE,
-    .unread = "motion.records?--sensitivity sim.robust?--sensitivity sim.quantile?--sensitivity",
+    .group = GROUP_STUDY,
     .operand = "CONFIG",
     .summary = "the response of given designs to one ground motion",
     .example = "imtet simulate configs/quick.ini --design none",
@@ -349,7 +423,10 @@ const Command CMD_SIMULATE = {
         "With sim.replicates above 1, or with motion.records, the line of the design, as designed and under\n"
         "motion.record, is followed by what a study makes of all of them (sim.robust) and their standard deviation.\n"
         "--json gives one object for one design and a list of them for several. The estimated error is that of the\n"
-        "integration, by a second run with twice the steps (docs/promise.md); digits it leaves open are not shown.",
+        "integration, by a second run with twice the steps (docs/promise.md); digits it leaves open are not shown.\n"
+        "--horizon: impacts magnify differences: two runs that differ in the last digit part ways after some hundreds\n"
+        "of them. Before the predictability horizon results can be compared digit by digit, after it only by their\n"
+        "mean and standard deviation.",
     .options = OPTIONS,
     .run = run,
 };

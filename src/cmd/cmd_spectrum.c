@@ -294,8 +294,7 @@ static const ArgOption OPTIONS[] = {
 
 const Command CMD_SPECTRUM = {
     .name = "spectrum",
-    .reads = "motion",
-    .unread = "motion.record motion.records",
+    .group = GROUP_PREPARE,
     .operand = "MOTION...",
     .summary = "response spectrum, peak, duration and Arias intensity of ground motions",
     .example = "imtet spectrum builtin:kobe-like --pga 0.3 --stretch 3.1",

@@ -249,6 +249,7 @@ static const ArgOption OPTIONS[] = {OPTION_JSON, OPTION_END};
 
 const Command CMD_STATUS = {
     .name = "status",
+    .group = GROUP_STUDY,
     .operand = "RUN",
     .summary = "progress of a run, also while it is worked on",
     .example = "imtet status results/quick",

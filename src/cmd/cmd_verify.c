@@ -324,9 +324,6 @@ static const ArgOption OPTIONS[] = {
 
 const Command CMD_VERIFY = {
     .name = "verify",
-    .reads = READS_SCENE,
-    .unread =
-        "motion.records motion.record?--record sim.replicates sim.gap_tolerance_m sim.robust sim.quantile uncertain",
     .operand = "CONFIG|RUN",
     .summary = "designs on the full model of the building, beside the reduced one",
     .example = "imtet verify results/quick --design knee",

@@ -16,7 +16,11 @@ typedef struct {
 
 typedef struct Args Args;
 
+/* Of the help; what has none is not shown there. */
+typedef enum { GROUP_NONE, GROUP_PREPARE, GROUP_STUDY, GROUP_DECIDE, N_GROUPS } CommandGroup;
+
 typedef struct {
+    CommandGroup group;
     const char *name, *operand; /* operand NULL: takes none, "[NAME]": may be left out, "NAME...": one or more */
     const char *summary, *example, *details;
     const ArgOption *options; /* up to the first without a name */
@@ -24,9 +28,6 @@ typedef struct {
     const char *program; /* of which it is a command; NULL: imtet */
     int only_reads;      /* runs and files: no linear algebra, nothing to evaluate */
     int is_alone;        /* nothing to evaluate: all ranks of imtet_mpi but the first end */
-    /* Settings that it reads (patterns of settings/idle.h; NULL: all), and of them those that it does not; "KEY?--option":
-     * where that is given, "KEY!--option": where it is not. Whoever sets another one is told. */
-    const char *reads, *unread;
 } Command;
 
 typedef struct {

@@ -17,7 +17,6 @@
     X(REPORT)                                                                                                          \
     X(SERVE)                                                                                                           \
     X(PLOT)                                                                                                            \
-    X(HORIZON)                                                                                                         \
     X(BUILDING)                                                                                                        \
     X(IMPORT)                                                                                                          \
     X(MODES)                                                                                                           \

@@ -10,6 +10,8 @@
 #define X(name) &CMD_##name,
 static const Command *const COMMANDS[] = {COMMAND_LIST(X)};
 #undef X
+static const char *const GROUPS[N_GROUPS] = {
+    [GROUP_PREPARE] = "prepare", [GROUP_STUDY] = "study", [GROUP_DECIDE] = "decide"};
 enum { N_COMMANDS = sizeof COMMANDS / sizeof COMMANDS[0], FIRST_EXAMPLES = 4 };
 
 const Command *command_at(int i)
@@ -17,18 +19,44 @@ const Command *command_at(int i)
     return i >= 0 && i < N_COMMANDS ? COMMANDS[i] : NULL;
 }
 
-Status command_find(const char *word, const Command **found, Err *err)
+/* Names of the release before this one: each is a command of now, with an option where there is one. A command of that
+ * name, where there is one still, goes before. */
+static const struct {
+    const char *old, *now, *option;
+} OLD_NAMES[] = {
+    {"list", "status", NULL},
+    {"modes", "building", NULL},
+    {"import", "building", NULL},
+    {"horizon", "simulate", "--horizon"},
+    {"verify", "evaluate", "--full-model"},
+    {"plot", "report", "--pictures=pictures"},
+};
+
+static const Command *command_of(const char *name)
 {
-    const char *names[N_COMMANDS];
-    for (int i = 0; i < N_COMMANDS; i++) {
-        names[i] = COMMANDS[i]->name;
-        *found = COMMANDS[i];
-        if (strcmp(word, names[i]) == 0)
-            return STATUS_OK;
-    }
-    if (strcmp(word, "bench") == 0)
-        return fail(err, STATUS_USAGE, "unknown command 'bench'; engines are compared by the program imtet-bench");
+    for (int i = 0; i < N_COMMANDS; i++)
+        if (strcmp(name, COMMANDS[i]->name) == 0)
+            return COMMANDS[i];
+    return NULL;
+}
+
+Status command_find(const char *word, const Command **found, const char **option, Err *err)
+{
     static const char *const OPTIONS[] = {"--help", "--version"};
+    const char *names[N_COMMANDS];
+    *option = NULL;
+    if ((*found = command_of(word)))
+        return STATUS_OK;
+    for (size_t i = 0; i < sizeof OLD_NAMES / sizeof OLD_NAMES[0]; i++)
+        if (strcmp(word, OLD_NAMES[i].old) == 0) {
+            *option = OLD_NAMES[i].option;
+            fprintf(stderr, "note: imtet %s is now: imtet %s%s%s\n", word, OLD_NAMES[i].now, *option ? " " : "",
+                    *option ? *option : "");
+            *found = command_of(OLD_NAMES[i].now);
+            return STATUS_OK;
+        }
+    for (int i = 0; i < N_COMMANDS; i++)
+        names[i] = COMMANDS[i]->name;
     return word[0] == '-' ? args_unknown("option", word, OPTIONS, 2, "`imtet --help`", err)
                           : args_unknown("command", word, names, N_COMMANDS, "`imtet --help`", err);
 }
@@ -46,8 +74,12 @@ void usage_write(FILE *out)
         fprintf(out, "%s%s\n", i == 0 ? "example: " : "         ", COMMANDS[i]->example);
     fprintf(out,
             "\nEarthquake protection by impacts between a tower and an inner core.\n\nusage: imtet COMMAND ...\n\n");
-    for (int i = 0; i < N_COMMANDS; i++)
-        fprintf(out, "  %-9s %-10s %s\n", COMMANDS[i]->name, operand_of(COMMANDS[i]), COMMANDS[i]->summary);
+    for (int group = 1; group < N_GROUPS; group++) {
+        fprintf(out, "%s%s\n", group > 1 ? "\n" : "", GROUPS[group]);
+        for (int i = 0; i < N_COMMANDS; i++)
+            if ((int)COMMANDS[i]->group == group)
+                fprintf(out, "  %-9s %-10s %s\n", COMMANDS[i]->name, operand_of(COMMANDS[i]), COMMANDS[i]->summary);
+    }
     fprintf(out,
             "\n`imtet help COMMAND` shows an example and every option, `imtet --version --json` what this program\n"
             "was built from.\n\nexit status\n");

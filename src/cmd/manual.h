@@ -9,9 +9,12 @@
 
 #include "cmd/args.h"
 
-const Command *command_at(int i);                                       /* NULL behind the last */
-Status command_find(const char *word, const Command **found, Err *err); /* of that name, or the nearest suggested */
-void usage_write(FILE *out);                                            /* `imtet --help` */
-void manual_write(const Command *command, FILE *out);                   /* a page for man; NULL: imtet(1) */
+const Command *command_at(int i);                     /* NULL behind the last */
+void usage_write(FILE *out);                          /* `imtet --help` */
+void manual_write(const Command *command, FILE *out); /* a page for man; NULL: imtet(1) */
+
+/* Of that name; else the nearest is suggested. An old name is told on standard error, and `option` is then the option that
+ * it stands for, or NULL. */
+Status command_find(const char *word, const Command **found, const char **option, Err *err);
 
 #endif

@@ -5,7 +5,7 @@
 
 #include "base/list.h"
 #include "moga/constants.h"
-#include "settings/options.h"
+#include "settings/settings.h"
 #include "evaluate/external.h"
 
 void warn_on_stderr(const char *key, const char *text, void *user)
@@ -75,6 +75,10 @@ static void warn_of_costs(const Settings *s, WarnFn warn, void *user)
 void warn_of_settings(const Settings *s, WarnFn warn, void *user)
 {
     warn_of_costs(s, warn, user);
+    if (s->search.fidelity != FIDELITY_OFF && !settings_screens(s))
+        warn("search.fidelity",
+             "has no effect: it screens sim.replicates of a tower, or levels (problem.costs), unless problem.noisy",
+             user);
     if (s->problem.kind != PROBLEM_TOWER)
         return;
     warn_of_deviations(s, warn, user);

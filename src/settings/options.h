@@ -79,7 +79,6 @@ typedef struct Settings {
     ProblemOptions problem;
     SearchOptions search;
     RunOptions run;
-    unsigned old_keys; /* bit i: the old key i of settings_renamed was read */
 } Settings;
 
 /* What a scene needs of them. */

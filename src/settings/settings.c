@@ -282,23 +282,6 @@ _Static_assert(sizeof(CoreSection) == sizeof(int), "a choice is stored as an int
 _Static_assert((int)N_OPTIONS <= (int)TABLE_MAX, "a reader has a place for every setting");
 _Static_assert((int)OPTION_TEXT_MAX == (int)LIST_MAX, "a list of the settings can be changed");
 
-/* Keys of the version before this one. */
-static const struct {
-    const char *old, *now;
-} RENAMED[] = {
-    {"contact.v0_floor_m_s", "contact.v0_min_m_s"},  {"sim.ensemble", "sim.replicates"},
-    {"sim.residual_max", "sim.energy_balance_max"},  {"search.repeats", "search.replicate_share"},
-    {"search.members_min", "search.replicates_min"}, {"search.members_max", "search.replicates_max"},
-};
-
-enum { N_RENAMED = sizeof RENAMED / sizeof RENAMED[0] };
-
-const char *settings_renamed(int i, const char **now)
-{
-    *now = i < N_RENAMED ? RENAMED[i].now : NULL;
-    return i < N_RENAMED ? RENAMED[i].old : NULL;
-}
-
 const char *settings_key(int i)
 {
     return i < N_OPTIONS ? OPTIONS[i].key : NULL;
@@ -419,21 +402,9 @@ void settings_defaults(Settings *s)
         table_assign(s, i, OPTIONS[i].standard, NULL);
 }
 
-/* The key that an old one has now, which is noted in s; any other key as it is. */
-static const char *key_now(Settings *s, const char *key)
-{
-    for (int i = 0; i < N_RENAMED; i++)
-        if (strcmp(key, RENAMED[i].old) == 0) {
-            s->old_keys |= 1u << i;
-            return RENAMED[i].now;
-        }
-    return key;
-}
-
-Status table_find(Settings *s, const char *key, int *found, Err *err)
+Status table_find(const char *key, int *found, Err *err)
 {
     const char *keys[N_OPTIONS];
-    key = key_now(s, key);
     for (int i = 0; i < N_OPTIONS; i++) {
         keys[i] = OPTIONS[i].key;
         if (strcmp(key, keys[i]) == 0) {
@@ -521,7 +492,7 @@ Status settings_set(Settings *s, const char *assignment, Err *err)
         return fail(err, STATUS_USAGE, "--set %s: write --set section.key=value", assignment);
     snprintf(key, sizeof key, "%.*s", (int)(equals - assignment), assignment);
     int i = 0;
-    TRY(table_find(s, key, &i, err));
+    TRY(table_find(key, &i, err));
     return table_assign(s, i, equals + 1, err);
 }
 
@@ -574,6 +545,13 @@ static void format_value(const Settings *s, const Option *o, char text[OPTION_TE
         snprintf(text, OPTION_TEXT_MAX, "%s", (const char *)field);
         break;
     }
+}
+
+void table_text(const Settings *s, const char *key, char text[OPTION_TEXT_MAX])
+{
+    int i;
+    if (table_find(key, &i, NULL) == STATUS_OK)
+        format_value(s, &OPTIONS[i], text);
 }
 
 void settings_each(const Settings *s, SettingFn take, void *user)

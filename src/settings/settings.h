@@ -26,7 +26,7 @@ void settings_defaults(Settings *s);
  * A file has 1 MiB at most. faults may be NULL. */
 Status settings_read(Settings *s, const char *path, FILE *faults, int *n_faults, Err *err);
 
-/* The same from text in memory, of a run that was saved: old keys are not noted. `path` names it in messages and is
+/* The same from text in memory, of a run that was saved. `path` names it in messages and is
  * where relative paths begin. */
 Status settings_parse(Settings *s, const char *path, const char *text, Err *err);
 
@@ -51,15 +51,19 @@ Status settings_set(Settings *s, const char *assignment, Err *err);
 /* Every setting that names a file that is there: as its absolute path, so that it can be looked up from anywhere. */
 void settings_make_absolute(Settings *s);
 
+/* Calls `idle` for every setting that is not the same in both and does nothing in `is` because of another one's value; the
+ * text says which. */
+void settings_idle(const Settings *was, const Settings *is, SettingFn idle, void *user);
+
+/* search.fidelity is not off, and there is what it can screen: replicates that are none of noisy evaluations, or levels. */
+int settings_screens(const Settings *s);
+
 /* The rules that tie settings together. */
 Status settings_check(const Settings *s, Err *err);
 
 /* The table itself, line by line. */
 const char *settings_key(int i);   /* "section.key"; NULL behind the last */
 const char *settings_words(int i); /* "a|b|c": of a choice its words, of a path the names that are no file; or NULL */
-
-/* Old key i and what it is called now; both NULL behind the last. Old keys are read for one release. */
-const char *settings_renamed(int i, const char **now);
 
 /* A valid INI file: with `described`, preceded key by key by its meaning, unit and range. */
 void settings_write(const Settings *s, FILE *out, int described);

@@ -132,7 +132,7 @@ static int take_pair(void *user, const char *section, const char *name, const ch
         value = r->long_value;
     snprintf(key, sizeof key, "%s%s%s", section, section[0] ? "." : "", name);
     const char *begin = skip_blanks(line_text(r));
-    if (table_find(r->s, key, &i, &err) != STATUS_OK) {
+    if (table_find(key, &i, &err) != STATUS_OK) {
         report_fault(r, place_of(r, begin), err.text);
         return 1;
     }
@@ -202,9 +202,6 @@ Status settings_read(Settings *s, const char *path, FILE *faults, int *n_faults,
 
 Status settings_parse(Settings *s, const char *path, const char *text, Err *err)
 {
-    const unsigned old_keys = s->old_keys;
     Reading r = {.s = s, .path = path};
-    const Status status = read_text(&r, text, strlen(text), NULL, err);
-    s->old_keys = old_keys;
-    return status;
+    return read_text(&r, text, strlen(text), NULL, err);
 }

@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "moga/dominance.h"
-#include "settings/idle.h"
+#include "settings/settings.h"
 #include "settings/options.h"
 #include "evaluate/external.h"
 
@@ -125,7 +125,7 @@ Status run_settle_front(Run *run, Err *err)
 
 int run_is_screened(const Run *run)
 {
-    return run->settings->search.fidelity != FIDELITY_OFF && !settings_idle(run->settings, "search.fidelity");
+    return settings_screens(run->settings);
 }
 
 /* As in the search, whose simulations of one replicate are one here. */

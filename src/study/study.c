@@ -10,7 +10,6 @@
 
 #include "base/clock.h"
 #include "evaluate/cluster.h"
-#include "settings/idle.h"
 #include "settings/settings.h"
 #include "evaluate/adapter.h"
 #include "analysis/estimate.h"
@@ -321,7 +320,7 @@ SearchConfig study_search_config(const Settings *s)
         .surrogate_max = (size_t)s->search.surrogate_max,
         .surrogate = s->search.surrogate,
         .selection = s->search.survival,
-        .fidelity = settings_idle(s, "search.fidelity") ? FIDELITY_OFF : s->search.fidelity,
+        .fidelity = settings_screens(s) ? s->search.fidelity : FIDELITY_OFF,
         .asynchronous = s->search.asynchronous == SWITCH_ON,
         .max_seconds = 3600 * fmax(s->search.max_hours, 0.0),
         .stop_after = (size_t)s->search.stop_after,
