@@ -17,7 +17,7 @@
 #include "bench/engines/engines.h"
 
 typedef struct {
-    const char *name, *what;
+    const char *name;
     double window_s;
 } BenchKind;
 

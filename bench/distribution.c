@@ -139,39 +139,24 @@ Status distribution_test_run(DistributionTest *test, const Sweep *sweep, const B
 
 static void write_row(const char *name, const EngineDistribution *e, FILE *out)
 {
-    fprintf(out, "| %s | %s | %.3g | %d |", name, e->tolerance, 1e3 * e->seconds, e->finished);
+    fprintf(out, "%s,%s,%.3g,%d", name, e->tolerance, 1e3 * e->seconds, e->finished);
     for (int k = 0; k < BENCH_OBJECTIVES; k++)
-        fprintf(out, " %.2f |", e->distance[k]);
+        fprintf(out, ",%.2f", e->distance[k]);
     fputc('\n', out);
 }
 
 void distribution_test_write(const DistributionTest *p, FILE *out)
 {
-    if (!(p->duration > 0))
-        return;
-    fprintf(
-        out,
-        "\n## After the horizon\n\n"
-        "%d runs of every engine over %.3g s, gaps of %g mm times the number of the floor, changed by %g of "
-        "themselves, sim.gap_tolerance_m = %g:\n"
-        "distance of the distributions (Kolmogorov and Smirnov) from those of `fast` at %g steps per contact. Two\n"
-        "samples of one distribution are further apart than %.2f in one of twenty comparisons; the first row is the\n"
-        "reference once more. Each engine at its fastest tolerance with an error of %g before the horizon; those that\n"
-        "are too slow for so many runs are left out. Peaks that fall before the horizon have hardly any spread: "
-        "there\n"
-        "a distance near 1 shows the error before the horizon.\n\n"
-        "| engine | tolerance | ms per run | finished |",
-        DISTRIBUTION_RUNS, p->duration, 1e3 * GAP_M, REPLICATE_CHANGE, p->tolerance_m, REFERENCE_STEPS,
-        ks_critical(DISTRIBUTION_RUNS), ENOUGH);
+    fprintf(out, "engine,tolerance,ms,finished");
     for (int k = 0; k < BENCH_OBJECTIVES; k++)
-        fprintf(out, " %s |", BENCH_OBJECTIVE_NAMES[k]);
-    fprintf(out, "\n|---|---|---|---|---|---|---|---|---|---|\n");
+        fprintf(out, ",%s", BENCH_OBJECTIVE_NAMES[k]);
+    fputc('\n', out);
     write_row("reference", &p->again, out);
     for (int e = 0; e < BENCH_ENGINES; e++)
         if (p->engine[e].known)
             write_row(bench_engine(e)->name, &p->engine[e], out);
-    fprintf(out, "\nSpread of the reference, standard deviation over mean:");
+    fprintf(out, "sd over mean,,,");
     for (int k = 0; k < BENCH_OBJECTIVES; k++)
-        fprintf(out, "%s %s %.2g", k ? "," : "", BENCH_OBJECTIVE_NAMES[k], p->spread[k]);
-    fprintf(out, ".\n");
+        fprintf(out, ",%.2g", p->spread[k]);
+    fputc('\n', out);
 }

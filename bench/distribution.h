@@ -38,6 +38,7 @@ double ks_critical(int n);
 /* sup |F_a - F_b| of two samples; sorts them. */
 double ks_distance(int n_a, double a[], int n_b, double b[]);
 
+/* As CSV; the row `reference` is a second sample of the reference. */
 void distribution_test_write(const DistributionTest *test, FILE *out);
 
 #endif

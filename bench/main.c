@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "bench/distribution.h"
-#include "bench/model_size.h"
 #include "bench/search/factors.h"
 #include "bench/stability/laws.h"
 #include "bench/stability/stability.h"
@@ -42,7 +41,6 @@ typedef struct {
     Bench bench;
     Sweep sweep;
     DistributionTest distribution;
-    ModelSize size;
     SweepPlan plan;
     unsigned kinds; /* bit by benchmark case */
 } Chart;
@@ -86,27 +84,10 @@ static Status run_case(Chart *c, int k, Err *err)
         status = sweep_run(&c->sweep, k, &bench_case, &c->plan, stderr, err);
     const int irregular = strcmp(bench_case.kind->name, "irregular") == 0;
     if (status == STATUS_OK && !b->quick && irregular)
-        status = model_size_run(&c->size, &bench_case, &b->options, err);
-    if (status == STATUS_OK && !b->quick && irregular)
         status = distribution_test_run(&c->distribution, &c->sweep, &bench_case, &b->options, DISTRIBUTION_LIMIT_S,
                                        stderr, err);
     bench_case_close(&bench_case);
     return status;
-}
-
-static Status write_to(const char *path, const Chart *c, int markdown, Err *err)
-{
-    Output o;
-    TRY(output_open(&o, path, err));
-    if (markdown) {
-        sweep_write_markdown(&c->sweep, &c->bench.motion, o.stream);
-        model_size_write_markdown(&c->size, o.stream);
-        distribution_test_write(&c->distribution, o.stream);
-    } else {
-        sweep_write_csv(&c->sweep, o.stream);
-        model_size_write_csv(&c->size, o.stream);
-    }
-    return output_close(&o, err);
 }
 
 static Status make_chart(const Args *args, Chart *c, Err *err)
@@ -119,13 +100,15 @@ static Status make_chart(const Args *args, Chart *c, Err *err)
             TRY(run_case(c, k, err));
     if (!c->bench.quick)
         TRY(sweep_find_noise(&c->sweep, &c->bench.options, &c->bench.motion, err));
-    if (args_has(args, "--markdown"))
-        TRY(write_to(args_value(args, "--markdown"), c, 1, err));
-    if (args_has(args, "--csv"))
-        return write_to(args_value(args, "--csv"), c, 0, err);
-    if (!args_has(args, "--markdown"))
-        sweep_write_csv(&c->sweep, stdout);
-    return STATUS_OK;
+    Output o;
+    TRY(output_open(&o, args_has(args, "--csv") ? args_value(args, "--csv") : "-", err));
+    sweep_write(&c->sweep, o.stream);
+    TRY(output_close(&o, err));
+    if (!(c->distribution.duration > 0) || !args_has(args, "--distribution"))
+        return STATUS_OK;
+    TRY(output_open(&o, args_value(args, "--distribution"), err));
+    distribution_test_write(&c->distribution, o.stream);
+    return output_close(&o, err);
 }
 
 static Status run_sweep(const Args *args, Err *err)
@@ -141,7 +124,7 @@ static const ArgOption SWEEP_OPTIONS[] = {
     {"--case", "NAME,...", NULL, 0, "linear, one-impact, irregular, tiny, zero; all unless given"},
     {"--engine", "NAME,...", NULL, 0, "all unless given"},
     {"--quick", NULL, NULL, 0, "half the time, no distribution test"},
-    {"--markdown", "FILE", NULL, 0, "tables of what each engine needs for a given error, and of what failed"},
+    {"--distribution", "FILE", NULL, 0, "CSV of the distances of distributions after the predictability horizon"},
     OPTION_CSV,
     OPTIONS_MOTION,
     OPTION_SET,
@@ -223,7 +206,7 @@ static const ArgOption PROMISE_OPTIONS[] = {
     {"--record", "FILE", NULL, 1, "a ground motion; may be repeated; the built-in ones unless given"},
     {"--windows", "N", NULL, 0, "random windows of the records; 200 unless given"},
     {"--front", "FILE", NULL, 0, "designs to simulate under all of the first record, as `imtet export` writes them"},
-    {"--out", "FILE", NULL, 0, "the page, in Markdown"},
+    {"--out", "FILE", NULL, 0, "the table, as CSV"},
     OPTION_PGA,
     OPTION_STRETCH,
     OPTION_UNIT,
@@ -251,20 +234,18 @@ static const ArgOption STABILITY_OPTIONS[] = {
     {"--engine", "NAME", NULL, 0, "one engine; all unless given"},
     {"--case", "NAME", NULL, 0, "one case; all unless given"},
     {"--seconds", "N", NULL, 0, "processor time of one cell [s]; 20 unless given"},
-    {"--out", "FILE", NULL, 0, "the page, in Markdown"},
+    {"--out", "FILE", NULL, 0, "the table, as CSV"},
     OPTION_END,
 };
 
 static Status run_laws(const Args *args, Err *err)
 {
-    return laws(args_value(args, "--out"), args_value(args, "--csv")) == 0
-               ? STATUS_OK
-               : fail(err, STATUS_INTERNAL, "a contact law is not what it should be");
+    return laws(args_value(args, "--csv"), args_value(args, "--tower"), err);
 }
 
 static const ArgOption LAWS_OPTIONS[] = {
-    {"--out", "FILE", NULL, 0, "the page, in Markdown"},
     {"--csv", "FILE", NULL, 0, "the rebound curves"},
+    {"--tower", "FILE", NULL, 0, "what law and smallest approach speed change in the tower, as CSV"},
     OPTION_END,
 };
 
@@ -354,7 +335,7 @@ static const Command COMMANDS[] = {
      .program = "imtet-bench"},
     {.name = "laws",
      .summary = "rebound of the contact laws, measured",
-     .example = "imtet-bench laws --out laws.md",
+     .example = "imtet-bench laws --csv laws.csv",
      .details =
          "Rebound against restitution by the engine fast and by an independent integrator, and what the limit of\n"
          "v0 changes. Fails where a law does not return what it is known to.",

@@ -193,57 +193,50 @@ static Status clear(Promise *p, long n_max, Err *err)
     return STATUS_OK;
 }
 
-/* ---- the page ---------------------------------------------------------------------------------------------------- */
+/* ---- the table --------------------------------------------------------------------------------------------------- */
 
-static void write_quantiles(FILE *out, long n, double error[])
+static const char *const QUANTITIES[N_ERRORS] = {"j1", "j2", "j3", "worst_share", "share_points"};
+
+/* n values, which are sorted: median, quantiles of 90 and 95 %. */
+static void write_quantiles(FILE *out, const char *part, const char *accuracy, const char *quantity, long n, double x[])
 {
-    fprintf(out, " %.0e / %.0e / %.0e |", bench_quantile((int)n, error, 0.5), bench_quantile((int)n, error, 0.9),
-            bench_quantile((int)n, error, 0.95));
+    fprintf(out, "%s,\"%s\",%s,%ld", part, accuracy, quantity, n);
+    for (int k = 0; k < 3; k++)
+        fprintf(out, ",%.1e", bench_quantile((int)n, x, (double[]){0.5, 0.9, 0.95}[k]));
 }
 
-static const char HEADER[] = "J1 | J2 | J3 | worst share | share, points |";
-
-static void write_table(Promise *p, FILE *out)
+static void write_errors(Promise *p, const char *part, const char *accuracy, const Missed *m, FILE *out)
 {
-    const double n = (double)p->n, standard = p->missed[STANDARD].seconds;
-    fprintf(out,
-            "| `sim.accuracy` | ms per design | over `standard` | run again | %s held |\n"
-            "|---|---|---|---|---|---|---|---|---|---|\n",
-            HEADER);
-    for (int k = 0; k < N_PRESETS; k++) {
-        Missed *m = &p->missed[k];
-        fprintf(out, "| %s | %.2f | %.2f | %.0f %% |", PRESETS[k].name, 1e3 * m->seconds / n, m->seconds / standard,
+    const double n = (double)p->n;
+    for (int e = 0; e < N_ERRORS; e++) {
+        write_quantiles(out, part, accuracy, QUANTITIES[e], p->n, m->error + e * p->n_max);
+        fprintf(out, ",%.0f,%.2f,%.0f\n", 100 * (double)m->held / n, 1e3 * m->seconds / n,
                 100 * (double)m->repeated / n);
-        for (int e = 0; e < N_ERRORS; e++)
-            write_quantiles(out, p->n, m->error + e * p->n_max);
-        fprintf(out, " %.0f %% |\n", 100 * (double)m->held / n);
     }
-    fprintf(out, "\n%ld cases", p->n);
-    if (p->left_out)
-        fprintf(out, ", %ld left out: `fine` fails there or nothing moves", p->left_out);
-    fprintf(out, ".\n\n");
 }
 
-/* How the estimate of the error does: share of the cases in which it is not too small; how much too large it is. */
-static void write_estimates(Promise *p, FILE *out)
+/* Estimated over true error: quantiles, and the share of the cases in which the estimate is not too small. */
+static void write_estimates(Promise *p, const char *part, FILE *out)
 {
-    fprintf(out, "Estimated error at `standard` (%g times the difference to twice the steps):\n\n| |", ESTIMATE_FACTOR);
-    for (int i = 0; i < N_ESTIMATED; i++)
-        fprintf(out, " %s |", measure(ESTIMATED[i])->name);
-    fprintf(out, "\n|---|---|---|---|---|---|---|\n| the error is below it |");
     for (int i = 0; i < N_ESTIMATED; i++) {
         long above = 0;
         for (long k = 0; k < p->n; k++)
             above += p->ratio[i][k] >= 1;
-        fprintf(out, " %.1f %% |", 100 * (double)above / (double)p->n);
+        write_quantiles(out, part, "estimated / true error", measure(ESTIMATED[i])->name, p->n, p->ratio[i]);
+        fprintf(out, ",%.1f,,\n", 100 * (double)above / (double)p->n);
     }
-    fprintf(out, "\n| times the error, median |");
-    for (int i = 0; i < N_ESTIMATED; i++)
-        fprintf(out, " %.1f |", bench_median((int)p->n, p->ratio[i]));
-    fprintf(out, "\n\n");
 }
 
-static Status write_windows(Promise *p, FILE *out, Err *err)
+static void write_part(Promise *p, const char *part, FILE *out, FILE *progress)
+{
+    for (int k = 0; k < N_PRESETS; k++)
+        write_errors(p, part, PRESETS[k].name, &p->missed[k], out);
+    write_estimates(p, part, out);
+    fprintf(progress, "promise: %s: %ld cases, %ld left out: `fine` fails there or nothing moves\n", part, p->n,
+            p->left_out);
+}
+
+static Status write_windows(Promise *p, FILE *out, FILE *progress, Err *err)
 {
     const PromisePlan *plan = p->plan;
     TRY(clear(p, plan->n_windows, err));
@@ -252,16 +245,11 @@ static Status write_windows(Promise *p, FILE *out, Err *err)
         promise_window(plan, p->n_floors, k, &c);
         TRY(measure_case(p, &c, 3, err));
     }
-    fprintf(out, "## Windows\n\n8 to 15 s of strong shaking from rest, a random design each, under");
-    for (int k = 0; k < plan->n_records; k++)
-        fprintf(out, "%s `%s`", k ? "," : "", plan->records[k].name);
-    fprintf(out, ". Errors against `fine`: median / 90 %% / 95 %%.\n\n");
-    write_table(p, out);
-    write_estimates(p, out);
+    write_part(p, "windows", out, progress);
     return STATUS_OK;
 }
 
-static Status write_designs(Promise *p, const Designs *d, FILE *out, Err *err)
+static Status write_designs(Promise *p, const Designs *d, FILE *out, FILE *progress, Err *err)
 {
     const Motion *record = &p->plan->records[0];
     PromiseCase c = {
@@ -272,19 +260,17 @@ static Status write_designs(Promise *p, const Designs *d, FILE *out, Err *err)
         memcpy(c.x, d->x + (size_t)k * d->n / (size_t)n * (size_t)d->space.n_var, (size_t)d->space.n_var * sizeof *c.x);
         TRY(measure_case(p, &c, 1, err));
     }
-    fprintf(out, "## Designs of a front\n\nAll of `%s`, %.0f s.\n\n", record->name, c.duration);
-    write_table(p, out);
-    write_estimates(p, out);
+    write_part(p, "front", out, progress);
     return STATUS_OK;
 }
 
-static Status write_front(Promise *p, FILE *out, Err *err)
+static Status write_front(Promise *p, FILE *out, FILE *progress, Err *err)
 {
     Designs d = {0};
     DesignSpace space;
     TRY(design_space_make(&space, &p->plan->options->design, p->plan->options->core.section, p->n_floors, err));
     TRY(design_read(&d, p->plan->front, &space, err));
-    const Status status = write_designs(p, &d, out, err);
+    const Status status = write_designs(p, &d, out, progress, err);
     design_free(&d);
     return status;
 }
@@ -302,37 +288,21 @@ static Status write_reference(Promise *p, FILE *out, Err *err)
         promise_window(p->plan, p->n_floors, k, &c);
         TRY(simulate(p, &c, ENGINE_CVODE, &FINE, 1, &wanted, &seconds, err));
         TRY(simulate(p, &c, ENGINE_FAST, &FINE, 1, &found, &seconds, err));
-        if (wanted.outcome != RUN_OK || !(wanted.j1_m > 0)) {
-            p->left_out++;
+        if (wanted.outcome != RUN_OK || !(wanted.j1_m > 0))
             continue;
-        }
         note(p, m, &found, &wanted, seconds);
         p->n++;
     }
-    fprintf(out,
-            "## `fine` against CVODE\n\n%ld of these windows, %ld left out. CVODE shares no code with `fast`.\n\n"
-            "| | %s\n|---|---|---|---|---|---|\n| `fine` |",
-            p->n, p->left_out, HEADER);
-    for (int e = 0; e < N_ERRORS; e++)
-        write_quantiles(out, p->n, m->error + e * p->n_max);
-    fprintf(out, "\n");
+    write_errors(p, "cvode", "fine", m, out);
     return STATUS_OK;
 }
 
-static Status write_page(Promise *p, FILE *out, FILE *progress, Err *err)
+static Status write_table(Promise *p, FILE *out, FILE *progress, Err *err)
 {
-    fprintf(out,
-            "# What the accuracies hold\n\n"
-            "Made by `make promise`. The promise: J1 within %g, J2 within %g, J3 within %g, every share within %g of\n"
-            "itself, each in %.0f %% of the windows; held: all of them at once. `fine` is the reference. Times are of "
-            "one thread on a machine that ran\n"
-            "other things as well: compare the ratios, which were taken in turn.\n\n",
-            PROMISE[0], PROMISE[1], PROMISE[2], PROMISE[3], 100 * PROMISE_SHARE);
-    TRY(write_windows(p, out, err));
-    fprintf(progress, "promise: windows are done\n");
+    fprintf(out, "part,accuracy,quantity,cases,median,q90,q95,share_pct,ms,repeated_pct\n");
+    TRY(write_windows(p, out, progress, err));
     if (p->plan->front)
-        TRY(write_front(p, out, err));
-    fprintf(progress, "promise: designs of a front are done\n");
+        TRY(write_front(p, out, progress, err));
     return write_reference(p, out, err);
 }
 
@@ -343,7 +313,7 @@ Status promise_write(const PromisePlan *plan, FILE *out, FILE *progress, Err *er
     TRY(building_load(&b, &plan->options->building, err));
     p.n_floors = b.n;
     building_free(&b);
-    const Status status = write_page(&p, out, progress, err);
+    const Status status = write_table(&p, out, progress, err);
     for (int k = 0; k < N_PRESETS; k++)
         free(p.missed[k].error);
     for (int i = 0; i < N_ESTIMATED; i++)

@@ -37,7 +37,8 @@ typedef struct {
 /* Window k of the plan, with its design. */
 void promise_window(const PromisePlan *plan, int n_floors, long k, PromiseCase *out);
 
-/* Writes the page, in Markdown; a line of progress per table to `progress`. */
+/* Writes the table as CSV; a line of progress per part to `progress`. share_pct: of the cases that hold the promise, or
+ * whose error is below the estimate. */
 Status promise_write(const PromisePlan *plan, FILE *out, FILE *progress, Err *err);
 
 #endif

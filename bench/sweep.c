@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "evaluate/measures.h"
+
 static const double REFERENCE_RTOL = 1e-12;
 
 typedef struct {
@@ -103,8 +105,6 @@ static Status find_reference(Sweep *s, int kind, const BenchCase *bench_case, Ti
                 e.objectives, e.state);
     }
     fputc('\n', progress);
-    s->impacts[kind] = reference->result.impacts;
-    s->duration[kind] = bench_case->duration;
     return STATUS_OK;
 }
 
@@ -134,4 +134,48 @@ void sweep_free(Sweep *s)
 double sweep_floor(const Sweep *s, int kind)
 {
     return 10 * s->agreement[kind];
+}
+
+/* ---- the table --------------------------------------------------------------------------------------------------- */
+
+int sweep_row_failed(const SweepRow *row)
+{
+    return row->seen.result.outcome != RUN_OK || !isfinite(row->error.objectives);
+}
+
+static void put(FILE *out, double value)
+{
+    fputc(',', out);
+    if (isfinite(value))
+        fprintf(out, "%.6g", value);
+}
+
+static void write_row(const Sweep *s, const SweepRow *row, FILE *out)
+{
+    const SimResult *r = &row->seen.result;
+    const int ok = !sweep_row_failed(row);
+    fprintf(out, "%s,%s,%s", row->kind->name, bench_engine(row->engine)->name, row->tolerance);
+    put(out, row->seen.seconds);
+    put(out, ok ? row->error.objectives : NAN);
+    for (int k = 0; k < BENCH_OBJECTIVES; k++)
+        put(out, ok ? row->error.each[k] : NAN);
+    put(out, ok ? row->error.state : NAN);
+    put(out, ok ? row->error.first_s : NAN);
+    put(out, ok ? row->error.first_speed : NAN);
+    put(out, ok ? r->energy_balance_error : NAN);
+    put(out, sweep_floor(s, (int)(row->kind - bench_kind(0))));
+    put(out, s->noise > 0 ? s->noise : NAN);
+    fprintf(out, ",%ld,%ld,%ld,%s,\"%s\"\n", r->impacts, r->steps, r->force_evaluations,
+            outcome_word(measure_outcome(r->outcome)), r->reason);
+}
+
+void sweep_write(const Sweep *s, FILE *out)
+{
+    fprintf(out, "case,engine,tolerance,seconds,error_objectives");
+    for (int k = 0; k < BENCH_OBJECTIVES; k++)
+        fprintf(out, ",error_%s", BENCH_OBJECTIVE_NAMES[k]);
+    fprintf(out, ",error_state,error_first_s,error_first_speed,residual,floor,noise,impacts,steps,force_evaluations,"
+                 "outcome,reason\n");
+    for (size_t i = 0; i < s->n; i++)
+        write_row(s, &s->rows[i], out);
 }

@@ -27,8 +27,6 @@ typedef struct {
     size_t n, n_max;
     SweepRow *rows;
     double agreement[N_BENCH_KINDS]; /* of the two references; 0: the case was not run */
-    long impacts[N_BENCH_KINDS];
-    double duration[N_BENCH_KINDS];
     double noise; /* largest _sd over mean of an objective, replicates, whole motion, irregular gaps; 0: unknown */
 } Sweep;
 
@@ -46,11 +44,8 @@ Status sweep_find_noise(Sweep *s, const SceneOptions *settings, const Motion *mo
 
 double sweep_floor(const Sweep *s, int kind);
 
-/* A run that ends, its energy balance closed, far from the reference. */
-int sweep_silently_wrong(const SweepRow *row);
 int sweep_row_failed(const SweepRow *row);
 
-void sweep_write_csv(const Sweep *s, FILE *out);
-void sweep_write_markdown(const Sweep *s, const Motion *motion, FILE *out);
+void sweep_write(const Sweep *s, FILE *out); /* as CSV */
 
 #endif

@@ -1,7 +1,7 @@
 # Checks beyond the tests.
 
 .PHONY: lint deb fuzz fuzz-here coverage coverage-here torture faults tsan tsan-here asan asan-here valgrind stability \
-        stability-long laws fresh-debian
+        laws fresh-debian
 
 lint: ## format, versions, structure, headers, static analysis; LINT_BASE=all: clang-tidy on all files, not the changed ones
 	@scripts/setup packages-lint.txt
@@ -66,15 +66,14 @@ VALGRIND := valgrind -q --error-exitcode=99 --leak-check=full --errors-for-leak-
 valgrind: $(PROGRAM) ## the same under valgrind
 	@scripts/short-run ./$(PROGRAM) $(VALGRIND)
 
-stability: $(BENCH) ## docs/stability.md: every engine through every case
-	@$(BENCH) stability --out docs/stability.md
+# docs/measured has the tables of measurements; scripts/tables puts the short ones into their pages.
+stability: $(BENCH) ## every engine through every case; ARGS="--long --seconds 600": also those of 1e6 and 1e7 steps
+	@$(BENCH) stability $(ARGS) --out docs/measured/stability.csv
+	@scripts/tables stability
 
-stability-long: $(BENCH) ## the same with cases of 1e6 and 1e7 steps
-	@$(BENCH) stability --long --seconds 600 --out docs/stability.md
-
-laws: $(BENCH) ## docs/contact-laws.md: rebound of the contact laws
-	@$(BENCH) laws --out docs/contact-laws.md --csv $(BUILD)/contact-laws.csv
-	@scripts/plot-laws $(BUILD)/contact-laws.csv docs/contact-laws
+laws: $(BENCH) ## rebound of the contact laws
+	@$(BENCH) laws --csv docs/measured/contact-laws.csv --tower docs/measured/contact-laws-tower.csv
+	@scripts/plot-laws docs/measured/contact-laws.csv docs/contact-laws
 
 fresh-debian: ## the steps of the README in a Debian that has nothing but make (root, debootstrap, network)
 	@scripts/fresh-debian build/fresh-debian

@@ -10,15 +10,17 @@ bench: $(BENCH) ## simulations per second, and whether they became more work
 
 # Errors of the accuracies, on as many WINDOWS; the front is that of a short study.
 PROMISE_RECORDS = $(wildcard $(patsubst %,../shared/records/%.csv,kobe_jma_ns elcentro_ns northridge_sylmar_ns hachinohe_ns))
-promise: $(BENCH) $(PROGRAM) ## docs/promise.md: how often every accuracy holds what it promises
+promise: $(BENCH) $(PROGRAM) ## how often every accuracy holds what it promises
 	@rm -rf build/promise
 	@./$(PROGRAM) optimize configs/kobe.ini --record $(BENCH_RECORD) --max-evals 1000 --out build/promise
 	@./$(PROGRAM) export build/promise --select 60 --csv - | cut -d, -f2-23 > build/promise.csv
-	@$(BENCH) promise $(PROMISE_RECORDS:%=--record %) $(if $(WINDOWS),--windows $(WINDOWS)) --front build/promise.csv --out docs/promise.md
+	@$(BENCH) promise $(PROMISE_RECORDS:%=--record %) $(if $(WINDOWS),--windows $(WINDOWS)) --front build/promise.csv --out docs/measured/promise.csv
+	@scripts/tables promise
 
-chart: $(BENCH) ## docs/chart: speed against accuracy of every engine
-	@$(BENCH) sweep --record $(BENCH_RECORD) --csv docs/chart.csv --markdown docs/chart.md
-	@scripts/plot-chart docs/chart.csv docs/chart
+chart: $(BENCH) ## speed against accuracy of every engine
+	@$(BENCH) sweep --record $(BENCH_RECORD) --csv docs/measured/chart.csv --distribution docs/measured/distribution.csv
+	@scripts/tables chart
+	@scripts/plot-chart docs/measured/chart.csv docs/chart
 
 # CELLS and SEEDS choose a part, KEEP names a folder in which runs stay and are not repeated.
 compare: $(PROGRAM) $(BENCH) setup-figures ## docs/search.md: the search on textbook problems, other families and the tower, beside other methods

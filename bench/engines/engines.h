@@ -1,35 +1,30 @@
-/* bench/engines/engines.h -- every engine that is compared: those of the program, then those that serve comparison.
+/* bench/engines/engines.h -- every engine that is compared: those of the program, then the fastest of each family of
+ * methods beside it.
  *
- * A further engine is a function of type EngineFn, a line in REFERENCE_ENGINES and one in engines.c. */
+ * A further engine is a function of type EngineFn and a line of REFERENCE_ENGINES: name, kind of its tolerance. */
 #ifndef IMTET_BENCH_ENGINES_H
 #define IMTET_BENCH_ENGINES_H
 
 #include "sim/engine.h"
 
 #define REFERENCE_ENGINES(X)                                                                                           \
-    X(CVODE_BDF, cvode_bdf)                                                                                            \
-    X(CVODE_BDF_TUNED, cvode_bdf_tuned)                                                                                \
-    X(ARKODE_ERK, arkode_erk)                                                                                          \
-    X(ARKODE_ERK_NOEVENTS, arkode_erk_noevents)                                                                        \
-    X(ARKODE_DIRK, arkode_dirk)                                                                                        \
-    X(ARKODE_IMEX, arkode_imex)                                                                                        \
-    X(ETDRK4, etdrk4)                                                                                                  \
-    X(LAGGED, lagged)                                                                                                  \
-    X(NEWMARK, newmark)                                                                                                \
-    X(HHT, hht)                                                                                                        \
-    X(CENTRAL, central)                                                                                                \
-    X(RADAU, radau)
+    X(CVODE_BDF, cvode_bdf, TOLERANCE_RELATIVE)                                                                        \
+    X(ARKODE_IMEX, arkode_imex, TOLERANCE_RELATIVE)                                                                    \
+    X(ETDRK4, etdrk4, TOLERANCE_STEP)                                                                                  \
+    X(NEWMARK, newmark, TOLERANCE_STEP)                                                                                \
+    X(CENTRAL, central, TOLERANCE_STEP)                                                                                \
+    X(RADAU, radau, TOLERANCE_STEP)
 
 /* Continues Engine. */
 enum {
     BEFORE_REFERENCE_ENGINES = ENGINE_COUNT - 1,
-#define X(upper, lower) ENGINE_##upper,
+#define X(upper, lower, tolerance) ENGINE_##upper,
     REFERENCE_ENGINES(X)
 #undef X
         BENCH_ENGINES
 };
 
-#define X(upper, lower)                                                                                                \
+#define X(upper, lower, tolerance)                                                                                     \
     Status engine_##lower(const SimModel *model, const Motion *motion, const EngineOptions *options,                   \
                           SimResult *result, Err *err);
 REFERENCE_ENGINES(X)
@@ -37,5 +32,8 @@ REFERENCE_ENGINES(X)
 
 /* 0 <= engine < BENCH_ENGINES */
 const EngineEntry *bench_engine(int engine);
+
+/* The engine of this name; BENCH_ENGINES: there is none. */
+int bench_engine_named(const char *name);
 
 #endif

@@ -1,9 +1,8 @@
-/* Fixed-step exponential integrators: the linear part of every mode flows exactly, its load is a polynomial in time.
+/* The exponential Runge-Kutta method of order 4 with fixed steps: the linear part of every mode flows exactly, its load
+ * is a polynomial in time; all modes, no free intervals.
  *
- *   etdrk4   Runge-Kutta of order 4, all modes, no flights: what most people would write first.
- *            S. M. Cox and P. C. Matthews, J. Comput. Phys. 176 (2002) 430-455; stages of S. Krogstad, J. Comput. Phys.
- *            203 (2005) 72-88.
- *   lagged   the contact forces of the start of the step are held over it: order 1.
+ * S. M. Cox and P. C. Matthews, J. Comput. Phys. 176 (2002) 430-455; stages of S. Krogstad, J. Comput. Phys. 203 (2005)
+ * 72-88.
  *
  * With x = t/h, a load P x^k / k! on a mode moves (q, q') by h phi_{k+1} (0, P) = (y_{k+2}, y_{k+1}) P / h^k, y_k the
  * flow integrals of sim/flow.h, which do not cancel at small w h. */
@@ -75,7 +74,7 @@ static ContactPower set_load(FixedStep *m, const double q[], const double v[], d
     return power;
 }
 
-static int advance_etdrk4(FixedStep *m, double a0, double a1, void *work)
+static int advance(FixedStep *m, double a0, double a1, void *work)
 {
     static const double NONE[4] = {0}, SECOND[4] = {-2, 2, 0, 0}, THIRD[4] = {-2, 0, 2, 0};
     static const double LINEAR[4] = {-3, 2, 2, -1}, SQUARE[4] = {4, -4, -4, 4};
@@ -95,32 +94,10 @@ static int advance_etdrk4(FixedStep *m, double a0, double a1, void *work)
     return 1;
 }
 
-static int advance_lagged(FixedStep *m, double a0, double a1, void *work)
-{
-    static const double NONE[4] = {0}, RAMP[4] = {0, 1, 0, 0};
-    Etdrk4 *e = work;
-    const int n = m->model->m;
-    for (int i = 0; i < n; i++) {
-        e->load[0][i] = m->contact[i] - m->model->gamma[i] * a0;
-        e->load[1][i] = -m->model->gamma[i] * (a1 - a0);
-    }
-    flow(&e->whole, n, m->q, m->v, e->load, RAMP, NONE, m->q, m->v);
-    return 1;
-}
-
 Status engine_etdrk4(const SimModel *model, const Motion *motion, const EngineOptions *options, SimResult *result,
                      Err *err)
 {
-    static const FixedStepMethod METHOD = {{1e-3, 2e-4, 2e-5}, 1 / 6.0, 1 / 6.0, prepare, advance_etdrk4};
-    Etdrk4 work = {0};
-    (void)err;
-    return fixed_step_run(&METHOD, &work, model, motion, options, result);
-}
-
-Status engine_lagged(const SimModel *model, const Motion *motion, const EngineOptions *options, SimResult *result,
-                     Err *err)
-{
-    static const FixedStepMethod METHOD = {{2e-4, 5e-5, 1e-5}, 0.5, 0.5, prepare, advance_lagged};
+    static const FixedStepMethod METHOD = {{1e-3, 2e-4, 2e-5}, 1 / 6.0, 1 / 6.0, prepare, advance};
     Etdrk4 work = {0};
     (void)err;
     return fixed_step_run(&METHOD, &work, model, motion, options, result);

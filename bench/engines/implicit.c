@@ -1,5 +1,6 @@
 #include "bench/engines/implicit.h"
 
+#include <lapacke.h>
 #include <math.h>
 #include <string.h>
 
@@ -25,6 +26,7 @@ static void layout(void *implicit, Carve *c)
     x->wd = carve(c, N, real);
     x->rhs = carve(c, N, real);
     x->in_contact = carve(c, N, sizeof(int));
+    x->pivot = carve(c, N, sizeof *x->pivot);
 }
 
 Status implicit_create(Implicit *x, int n, int stages, Err *err)
@@ -40,38 +42,6 @@ void implicit_free(Implicit *x)
 {
     free(x->store);
     memset(x, 0, sizeof *x);
-}
-
-int dense_solve(int n, double J[], double b[])
-{
-    for (int k = 0; k < n; k++) {
-        int pivot = k;
-        for (int i = k + 1; i < n; i++)
-            if (fabs(J[i * n + k]) > fabs(J[pivot * n + k]))
-                pivot = i;
-        if (!(fabs(J[pivot * n + k]) > 0))
-            return 0;
-        for (int j = 0; j < n && pivot != k; j++) {
-            const double t = J[k * n + j];
-            J[k * n + j] = J[pivot * n + j];
-            J[pivot * n + j] = t;
-        }
-        const double t = b[k];
-        b[k] = b[pivot];
-        b[pivot] = t;
-        for (int i = k + 1; i < n; i++) {
-            const double factor = J[i * n + k] / J[k * n + k];
-            for (int j = k + 1; j < n; j++)
-                J[i * n + j] -= factor * J[k * n + j];
-            b[i] -= factor * b[k];
-        }
-    }
-    for (int k = n - 1; k >= 0; k--) {
-        for (int j = k + 1; j < n; j++)
-            b[k] -= J[k * n + j] * b[j];
-        b[k] /= J[k * n + k];
-    }
-    return 1;
 }
 
 CLONED static void motion_under_forces(Implicit *x)
@@ -129,7 +99,7 @@ int implicit_solve(Implicit *x, const Contacts *c)
             return 0;
         if (worst <= FORCE_TOLERANCE * largest)
             return 1;
-        if (!dense_solve(n, x->jacobian, x->rhs))
+        if (LAPACKE_dgesv(LAPACK_ROW_MAJOR, n, 1, x->jacobian, n, x->pivot, x->rhs, 1) != 0)
             return 0;
         for (int a = 0; a < n; a++)
             x->f[x->in_contact[a]] += x->rhs[a];

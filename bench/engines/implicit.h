@@ -12,23 +12,20 @@
 #include "sim/cvode/contacts.h"
 
 typedef struct {
-    int n, N;               /* floors, points */
-    double *A, *B;          /* (N, N) [m/N], [m/(N s)] by columns: entry (k, l) at [l N + k] */
-    double *w_free;         /* (N) [m] */
-    double *wd_free;        /* (N) [m/s] */
-    double *f;              /* (N) [N] in: where Newton starts; out: the forces */
-    double *w, *wd;         /* (N) */
-    double *jacobian, *rhs; /* (N, N), (N) of the points that are in contact */
-    int *in_contact;        /* (N) */
+    int n, N;                /* floors, points */
+    double *A, *B;           /* (N, N) [m/N], [m/(N s)] by columns: entry (k, l) at [l N + k] */
+    double *w_free;          /* (N) [m] */
+    double *wd_free;         /* (N) [m/s] */
+    double *f;               /* (N) [N] in: where Newton starts; out: the forces */
+    double *w, *wd;          /* (N) */
+    double *jacobian, *rhs;  /* (N, N), (N) of the points that are in contact */
+    int *in_contact, *pivot; /* (N) */
     long evaluations;
     void *store;
 } Implicit;
 
 Status implicit_create(Implicit *x, int n, int stages, Err *err);
 void implicit_free(Implicit *x);
-
-/* x of J x = b, in b; J (n, n) row-major is overwritten. 0: singular. */
-int dense_solve(int n, double J[], double b[]);
 
 /* 0: Newton did not converge. */
 int implicit_solve(Implicit *x, const Contacts *c);

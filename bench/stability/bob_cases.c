@@ -676,4 +676,4 @@ static const Case CASES[] = {
     {"time-reversal", "with r = 1 and no damping a mirrored record brings the mass back to rest", time_reversal},
 };
 
-const CaseGroup BOB_CASES = {"A mass and a wall", CASES, sizeof CASES / sizeof CASES[0]};
+const CaseGroup BOB_CASES = {CASES, sizeof CASES / sizeof CASES[0]};

@@ -8,6 +8,7 @@
 #include "sim/engine.h"
 #include "bench/stability/tower.h"
 #include "motion/motion_source.h"
+#include "store/output.h"
 
 enum { LAWS = LAW_JANKOWSKI + 1, N_R = 20 };
 static const char *const NAMES[LAWS] = {"paper", "exact", "lankarani-nikravesh", "flores", "jankowski"};
@@ -91,52 +92,15 @@ static int check_law(ContactLaw law, double r, const Measured *m)
     return wrong;
 }
 
-static void write_csv(const char *path, Measured m[LAWS][N_R])
-{
-    FILE *f = fopen(path, "w");
-    if (!f) {
-        perror(path);
-        return;
-    }
-    fprintf(f, "r");
-    for (int l = 0; l < LAWS; l++)
-        fprintf(f, ",%s,%s_fast", NAMES[l], NAMES[l]);
-    fprintf(f, "\n");
-    for (int i = 0; i < N_R; i++) {
-        fprintf(f, "%.2f", r_of(i));
-        for (int l = 0; l < LAWS; l++)
-            fprintf(f, ",%.8f,%.8f", m[l][i].oracle, m[l][i].fast);
-        fprintf(f, "\n");
-    }
-    fclose(f);
-}
-
 static void write_curves(FILE *f, Measured m[LAWS][N_R])
 {
-    fprintf(f, "| r |");
+    fprintf(f, "r,law,rebound,rebound_fast,duration_over_hertz,indentation_over_hertz,lost_pct,no_tension_pct\n");
     for (int l = 0; l < LAWS; l++)
-        fprintf(f, " %s |", NAMES[l]);
-    fprintf(f, "\n|---|---|---|---|---|---|\n");
-    double apart = 0;
-    for (int i = 0; i < N_R; i++) {
-        fprintf(f, "| %.2f |", r_of(i));
-        for (int l = 0; l < LAWS; l++) {
-            fprintf(f, " %.5f |", m[l][i].oracle);
-            apart = fmax(apart, fabs(m[l][i].oracle - m[l][i].fast));
+        for (int i = 0; i < N_R; i++) {
+            const Measured *x = &m[l][i];
+            fprintf(f, "%.2f,%s,%.6f,%.6f,%.5f,%.5f,%.2f,%.2g\n", r_of(i), NAMES[l], x->oracle, x->fast, x->duration,
+                    x->penetration, 100 * x->lost, 100 * x->clamp);
         }
-        fprintf(f, "\n");
-    }
-    fprintf(f,
-            "\nLargest difference between the independent integration and the engine `fast` (accuracy `fine`): %.1e.\n",
-            apart);
-    fprintf(f,
-            "\n| law at r = 0.7 | rebound | duration / Hertz's | indentation / Hertz's | lost in contact | removed by "
-            "the no-tension condition |\n|---|---|---|---|---|---|\n");
-    for (int l = 0; l < LAWS; l++) {
-        const Measured *x = &m[l][13];
-        fprintf(f, "| %s | %.5f | %.5f | %.5f | %.2f %% | %.2g %% |\n", NAMES[l], x->oracle, x->duration,
-                x->penetration, 100 * x->lost, 100 * x->clamp);
-    }
 }
 
 /* The early window: `builtin:sylmar-like`, 0.3 g, stretched by 3, 11 s, the core of Table 1, gaps of 8 mm times the
@@ -162,78 +126,46 @@ static SimResult early_window(ContactLaw law, double floor)
     return r;
 }
 
-static void write_scene_row(FILE *f, const char *label, const SimResult *r, const SimResult *base)
+static void write_tower_row(FILE *f, const char *varied, const char *law, double floor, const SimResult *r)
 {
-    fprintf(f, "| %s | %.6f | %+.1e | %.6f | %+.1e | %.4f | %+.1e | %ld | %ld | %.2g %% | %.2g %% |\n", label, r->j1_m,
-            r->j1_m / base->j1_m - 1, r->j2_m, r->j2_m / base->j2_m - 1, r->j3_g, r->j3_g / base->j3_g - 1, r->impacts,
+    fprintf(f, "%s,%s,%g,%.6f,%.6f,%.4f,%ld,%ld,%.2g,%.2g\n", varied, law, floor, r->j1_m, r->j2_m, r->j3_g, r->impacts,
             r->v0_limited, 100 * r->contact_loss_j / r->input_energy_j, 100 * r->clamp_j / r->input_energy_j);
 }
 
-static void write_scene_head(FILE *f, const char *what)
-{
-    fprintf(f,
-            "\n| %s | J1 [m] | change | J2 [m] | change | J3 [g] | change | contact onsets | with v0 limited | lost in "
-            "contact / input | no-tension / input |\n|---|---|---|---|---|---|---|---|---|---|---|\n",
-            what);
-}
-
-static void write_scene(FILE *f)
+static void write_tower(FILE *f)
 {
     static const double FLOORS[] = {1e-2, 1e-3, 1e-4, 1e-6};
-    const SimResult base = early_window(LAW_PAPER, 1e-3);
-    char label[40];
-    write_scene_head(f, "v0 floor [m/s]");
+    fprintf(f, "varied,law,v0_min_m_s,j1_m,j2_m,j3_g,impacts,v0_limited,contact_loss_pct,no_tension_pct\n");
     for (int i = 0; i < 4; i++) {
         const SimResult r = early_window(LAW_PAPER, FLOORS[i]);
-        snprintf(label, sizeof label, "%g", FLOORS[i]);
-        write_scene_row(f, label, &r, &base);
+        write_tower_row(f, "v0_min_m_s", NAMES[LAW_PAPER], FLOORS[i], &r);
     }
-    write_scene_head(f, "law, floor 1e-3");
     for (int l = 0; l < LAWS; l++) {
         const SimResult r = early_window((ContactLaw)l, 1e-3);
-        write_scene_row(f, NAMES[l], &r, &base);
+        write_tower_row(f, "law", NAMES[l], 1e-3, &r);
     }
 }
 
-static void write_page(const char *path, Measured m[LAWS][N_R])
-{
-    FILE *f = fopen(path, "w");
-    if (!f) {
-        perror(path);
-        return;
-    }
-    fprintf(f,
-            "# The contact laws, measured\n\n"
-            "Made by `make laws`. `contact.law` and `contact.restitution` r name a force; what an isolated impact then "
-            "returns is the rebound ratio e, here by an independent integration (Runge-Kutta, 4000 steps per contact, "
-            "the first in t = tc + s^2, 2000 kg at 0.4 m/s against a wall). Only `exact` returns r. `paper`, "
-            "`lankarani-nikravesh` and `flores` depend on nothing but r; `jankowski` is fitted to r by its author.\n\n"
-            "![rebound over r](contact-laws.svg)\n\n");
-    write_curves(f, m);
-    fprintf(f,
-            "\n## What the limit of v0 and the law change in the tower\n\n"
-            "`builtin:sylmar-like` at 0.3 g, stretched by 3, the first 11 s; core section `effective`, gaps of 8 mm "
-            "times the storey's number; accuracy `fine`. Changes are against the paper's law with the default floor. "
-            "The energy removed by the no-tension condition is negative: what the law would have taken by pulling, and "
-            "counted as lost, is given "
-            "back.\n");
-    write_scene(f);
-    fclose(f);
-}
-
-int laws(const char *page, const char *csv)
+Status laws(const char *curves, const char *tower, Err *err)
 {
     static Measured m[LAWS][N_R];
+    Output o;
     int wrong = 0;
     for (int l = 0; l < LAWS; l++)
         for (int i = 0; i < N_R; i++) {
             m[l][i] = measure_impact((ContactLaw)l, r_of(i));
             wrong += check_law((ContactLaw)l, r_of(i), &m[l][i]);
         }
-    if (csv)
-        write_csv(csv, m);
-    if (page)
-        write_page(page, m);
+    if (curves) {
+        TRY(output_open(&o, curves, err));
+        write_curves(o.stream, m);
+        TRY(output_close(&o, err));
+    }
+    if (tower) {
+        TRY(output_open(&o, tower, err));
+        write_tower(o.stream);
+        TRY(output_close(&o, err));
+    }
     printf("contact laws: %d of %d rebound ratios are not what they should be\n", wrong, LAWS * N_R);
-    return wrong ? 1 : 0;
+    return wrong ? fail(err, STATUS_INTERNAL, "a contact law is not what it should be") : STATUS_OK;
 }

@@ -1,9 +1,11 @@
-/* bench/stability/laws.h -- the contact laws measured: rebound against r, what the clamp removes, what the floor under
- * v0 changes. */
+/* bench/stability/laws.h -- the contact laws measured: rebound against r, what the no-tension condition removes, what law
+ * and smallest approach speed change in the tower. */
 #ifndef IMTET_BENCH_LAWS_H
 #define IMTET_BENCH_LAWS_H
 
-/* Writes the page and the curves (either may be NULL) and prints the checks; 1 when a law is not what it should be. */
-int laws(const char *page, const char *csv);
+#include "base/status.h"
+
+/* Prints the checks and writes two tables as CSV (either path may be NULL). Errors  a law is not what it should be */
+Status laws(const char *curves, const char *tower, Err *err);
 
 #endif

@@ -16,12 +16,11 @@ enum { CASES_MAX = 64 };
 typedef struct {
     Trial trial[CASES_MAX][BENCH_ENGINES];
     const Case *cases[CASES_MAX];
-    const char *group[CASES_MAX]; /* of the first case of a group, else NULL */
     int n;
 } Board;
 
 static const char *const WORDS[VERDICTS] = {
-    [HOLDS] = "holds", [FLAGGED] = "flagged", [REFUSED] = "refused", [FAILED] = "**FAILS**"};
+    [HOLDS] = "holds", [FLAGGED] = "flagged", [REFUSED] = "refused", [FAILED] = "fails"};
 
 static double seconds_now(void)
 {
@@ -98,15 +97,9 @@ static void finish_cell(const Worker *w, int state, Trial *t, unsigned seconds)
 
 static void gather(Board *b, const CaseGroup *group, const StabilityPlan *a)
 {
-    int first = 1;
-    for (int i = 0; i < group->n && b->n < CASES_MAX; i++) {
-        const Case *c = &group->cases[i];
-        if (a->one_case && strcmp(a->one_case, c->name) != 0)
-            continue;
-        b->cases[b->n] = c;
-        b->group[b->n++] = first ? group->title : NULL;
-        first = 0;
-    }
+    for (int i = 0; i < group->n && b->n < CASES_MAX; i++)
+        if (!a->one_case || strcmp(a->one_case, group->cases[i].name) == 0)
+            b->cases[b->n++] = &group->cases[i];
 }
 
 static int is_wrong(const Trial *t)
@@ -172,93 +165,30 @@ static int run_board(Board *b, const StabilityPlan *a)
     return wrong;
 }
 
-static void write_cell(FILE *f, const Trial *t)
+static void write_cell(FILE *f, const Case *c, const Trial *t)
 {
-    if (!t->any)
-        fprintf(f, " - |");
-    else if (isnan(t->figure))
-        fprintf(f, " %s |", WORDS[t->verdict]);
-    else
-        fprintf(f, " %s %.1e |", WORDS[t->verdict], t->figure);
+    fprintf(f, "%s,%s,%s,", c->name, trial_engine(t)->name, WORDS[t->verdict]);
+    if (isfinite(t->figure))
+        fprintf(f, "%.1e", t->figure);
+    fprintf(f, ",\"%s\",\"%s\"\n", t->how, t->remark);
 }
 
-static void write_table(FILE *f, const Board *b)
-{
-    for (int i = 0; i < b->n; i++) {
-        if (b->group[i]) {
-            fprintf(f, "\n## %s\n\n| case |", b->group[i]);
-            for (int e = 0; e < BENCH_ENGINES; e++)
-                fprintf(f, " %s |", bench_engine(e)->name);
-            fprintf(f, "\n|---|");
-            for (int e = 0; e < BENCH_ENGINES; e++)
-                fprintf(f, "---|");
-            fprintf(f, "\n");
-        }
-        fprintf(f, "| %s |", b->cases[i]->name);
-        for (int e = 0; e < BENCH_ENGINES; e++)
-            write_cell(f, &b->trial[i][e]);
-        fprintf(f, "\n");
-    }
-}
-
-static void write_notes(FILE *f, const Board *b)
-{
-    fprintf(f, "\n## What each case asks, and the figure in its cells\n");
-    for (int i = 0; i < b->n; i++) {
-        fprintf(f, "\n**%s**: %s\n\n", b->cases[i]->name, b->cases[i]->sentence);
-        for (int e = 0; e < BENCH_ENGINES; e++) {
-            const Trial *t = &b->trial[i][e];
-            if (!t->any)
-                continue;
-            fprintf(f, "- %s: %s: %s", trial_engine(t)->name, WORDS[t->verdict], t->how);
-            fprintf(f, t->remark[0] ? ". %s\n" : "\n", t->remark);
-        }
-    }
-}
-
-static void write_page(FILE *f, const Board *b, const StabilityPlan *a)
-{
-    fprintf(
-        f,
-        "# Where methods fail\n\n"
-        "Made by `make %s`; the part of the program's engines runs in `make test`. Every engine is put through every "
-        "case, at accuracy `fine` against closed forms and an independent integrator, and at `standard`.\n\n"
-        "| word | meaning |\n|---|---|\n"
-        "| holds | every figure is within what the case allows; the number is the figure nearest to its bound |\n"
-        "| flagged | a figure is off and the result says so: energy-balance error above 1e-3, or indentation "
-        "beyond the "
-        "contact law |\n"
-        "| refused | the engine says that it cannot, or gives no answer in %ld s of processor time |\n"
-        "| **FAILS** | a wrong answer in silence |\n"
-        "| - | the case does not apply |\n\n"
-        "Fixed-step engines are given 400 steps per contact at `fine` and 40 at `standard` where masses are built "
-        "by hand, else their own step. `fast` and `cvode` are held to the bounds of each accuracy, the others, "
-        "which are there "
-        "to be compared with, to those of `standard` and to ten times what it promises of the tower.\n",
-        a->size == SIZE_LONG ? "stability-long" : "stability", a->seconds);
-    write_table(f, b);
-    write_notes(f, b);
-}
-
-static Status write_to(const char *path, const Board *b, const StabilityPlan *plan, Err *err)
+static Status write_csv(const char *path, const Board *b, Err *err)
 {
     Output o;
     TRY(output_open(&o, path, err));
-    write_page(o.stream, b, plan);
+    fprintf(o.stream, "case,engine,verdict,figure,what,remark\n");
+    for (int i = 0; i < b->n; i++)
+        for (int e = 0; e < BENCH_ENGINES; e++)
+            if (b->trial[i][e].any)
+                write_cell(o.stream, b->cases[i], &b->trial[i][e]);
     return output_close(&o, err);
-}
-
-static Status check_engine(const char *name, Err *err)
-{
-    for (int k = 0; name && k < BENCH_ENGINES; k++)
-        if (strcmp(name, bench_engine(k)->name) == 0)
-            return STATUS_OK;
-    return name ? fail(err, STATUS_USAGE, "unknown engine '%.60s'; docs/chart.md lists them", name) : STATUS_OK;
 }
 
 Status stability(const StabilityPlan *plan, Err *err)
 {
-    TRY(check_engine(plan->engine, err));
+    if (plan->engine && bench_engine_named(plan->engine) == BENCH_ENGINES)
+        return fail(err, STATUS_USAGE, "unknown engine '%.60s'; docs/chart.md lists them", plan->engine);
     Board *board = calloc(1, sizeof *board);
     if (!board)
         return fail(err, STATUS_NO_MEMORY, "stability: out of memory");
@@ -266,10 +196,10 @@ Status stability(const StabilityPlan *plan, Err *err)
     gather(board, &TOWER_CASES, plan);
     if (board->n == 0) {
         free(board);
-        return fail(err, STATUS_USAGE, "unknown case '%.60s'; docs/stability.md lists them", plan->one_case);
+        return fail(err, STATUS_USAGE, "unknown case '%.60s'; docs/measured/stability.csv lists them", plan->one_case);
     }
     const int n = board->n, wrong = run_board(board, plan);
-    Status status = plan->out ? write_to(plan->out, board, plan, err) : STATUS_OK;
+    Status status = plan->out ? write_csv(plan->out, board, err) : STATUS_OK;
     free(board);
     TRY(status);
     printf("%d cases, %d engines: %d wrong answers in silence or cases that `fast` does not hold\n", n,

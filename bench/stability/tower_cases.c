@@ -115,20 +115,6 @@ static void huge_gap(Trial *t)
     }
 }
 
-static void negative_gap(Trial *t)
-{
-    static const double BAD[] = {-1e-3, -1e-300, NAN, INFINITY, -INFINITY};
-    t->accuracy = ACCURACY_STANDARD;
-    for (int i = 0; i < 5; i++) {
-        Tower tower;
-        open_tower(t, &tower, 1);
-        tower.x[4] = BAD[i];
-        const SimResult r = bench_tower_run(&tower, SCENE_IMPACT);
-        trial_refusal_is_right(t, r.outcome != RUN_OK && strstr(r.reason, "gap_05_m"), "a status that names the gap");
-        bench_tower_close(&tower);
-    }
-}
-
 /* ---- the core --------------------------------------------------------------------------------------------------- */
 
 static void stiff_and_soft_core(Trial *t)
@@ -150,67 +136,6 @@ static void stiff_and_soft_core(Trial *t)
                       what);
         bench_tower_close(&tower);
     }
-}
-
-/* The model with its first core modes only. */
-static void truncate_core(SimModel *model, int nc)
-{
-    const int before = model->m;
-    model->nc = nc;
-    model->m = model->nb + nc;
-    model->m_pad = (model->m + 7) & ~7;
-    for (int i = model->m; i < before; i++) {
-        memset(model->R + i * model->n_pad, 0, sizeof(double) * (size_t)model->n_pad);
-        model->omega[i] = 1;
-        model->zeta[i] = 0.5;
-        model->gamma[i] = 0;
-    }
-    for (int j = 0; j < model->n_pad; j++) {
-        double sum = 0;
-        for (int i = 0; i < model->m_pad; i++) {
-            model->RT[j * model->m_pad + i] = model->R[i * model->n_pad + j];
-            sum += model->R[i * model->n_pad + j] * model->R[i * model->n_pad + j];
-        }
-        model->mass_eff[j] = sum > 0 ? 1 / sum : 1e300;
-    }
-}
-
-static SimResult run_truncated(Trial *t, const Tower *tower, int nc)
-{
-    Building b;
-    CoreBeam core;
-    SimModel model;
-    Err err = {0};
-    const SceneOptions options = settings_scene(&tower->settings);
-    need(building_load(&b, &tower->settings.building, &err), &err);
-    need(core_beam_make(&core, &tower->settings.core, b.n, b.storey_m, tower->x[20], tower->x[21], &err), &err);
-    need(model_create(&model, b.n, b.n, &err), &err);
-    need(model_set(&model, &options, &b, &core, tower->x, &err), &err);
-    truncate_core(&model, nc);
-    const double duration = (double)(tower->motion.n - 1) * tower->motion.dt_s;
-    const SimResult r = trial_run(t, &model, &tower->motion, duration, 0);
-    model_free(&model);
-    building_free(&b);
-    return r;
-}
-
-static void core_modes(Trial *t)
-{
-    t->accuracy = t->engine == ENGINE_FAST ? ACCURACY_FINE : ACCURACY_STANDARD;
-    Tower tower;
-    open_tower(t, &tower, seconds_for(t, 6));
-    const SimResult all = run_truncated(t, &tower, 20);
-    for (int nc = 10; nc >= 5; nc -= 5) {
-        const SimResult r = run_truncated(t, &tower, nc);
-        const double factor = (nc == 10 ? 1 : 10) * trial_slack(t);
-        trial_remark(t, "%d modes: J1 %.1e, J2 %.1e, J3 %.1e, core's energy %.1e; ", nc, fabs(r.j1_m / all.j1_m - 1),
-                     fabs(r.j2_m / all.j2_m - 1), fabs(r.j3_g / all.j3_g - 1),
-                     fabs(r.damped_core_j / all.damped_core_j - 1));
-        trial_compare(t, &r, r.j1_m, all.j1_m, all.j1_m, 1e-3 * factor, "%d core modes: J1", nc);
-        trial_compare(t, &r, r.j2_m, all.j2_m, all.j2_m, 3e-3 * factor, "%d core modes: J2", nc);
-        trial_compare(t, &r, r.j3_g, all.j3_g, all.j3_g, 2e-2 * factor, "%d core modes: J3", nc);
-    }
-    bench_tower_close(&tower);
 }
 
 /* ---- the record -------------------------------------------------------------------------------------------------- */
@@ -260,30 +185,6 @@ static void padded(Trial *t)
     bench_tower_close(&tower);
 }
 
-static void not_a_record(Trial *t)
-{
-    static const double BAD[] = {NAN, INFINITY, -INFINITY, 1e308};
-    t->accuracy = ACCURACY_STANDARD;
-    for (int i = 0; i < 4; i++) {
-        Tower tower;
-        char what[60];
-        open_tower(t, &tower, t->size == SIZE_QUICK ? 1 : 2);
-        tower.motion.accel[15] = BAD[i];
-        const SimResult r = bench_tower_run(&tower, SCENE_IMPACT);
-        snprintf(what, sizeof what, "a sample of %g is refused", BAD[i]);
-        trial_refusal_is_right(t, r.outcome != RUN_OK && r.reason[0], what);
-        bench_tower_close(&tower);
-    }
-    for (size_t n = 0; n < 2; n++) {
-        Tower tower;
-        open_tower(t, &tower, 2);
-        tower.motion.n = n;
-        const SimResult r = bench_tower_run(&tower, SCENE_IMPACT);
-        trial_refusal_is_right(t, r.outcome != RUN_OK && r.reason[0], "an empty record is refused");
-        bench_tower_close(&tower);
-    }
-}
-
 static void strength(Trial *t)
 {
     static const double SCALE[] = {1e-12, 1e-6, 1e-3, 10, 100, 1000};
@@ -318,25 +219,6 @@ static void strength(Trial *t)
 }
 
 /* ---- machines ---------------------------------------------------------------------------------------------------- */
-
-static void threads(Trial *t)
-{
-    enum { RUNS = 4 };
-    Tower tower;
-    t->accuracy = ACCURACY_STANDARD;
-    open_tower(t, &tower, seconds_for(t, 3));
-    const int n = t->size == SIZE_QUICK ? 2 : RUNS;
-    SimResult alone = bench_tower_run(&tower, SCENE_IMPACT), together[RUNS];
-    alone.seconds = 0;
-#pragma omp parallel for num_threads(n)
-    for (int i = 0; i < n; i++) {
-        together[i] = bench_tower_run(&tower, SCENE_IMPACT);
-        together[i].seconds = 0;
-    }
-    for (int i = 0; i < n; i++)
-        trial_note(t, &alone, memcmp(&alone, &together[i], sizeof alone) != 0, 0.5, "bytes that differ among threads");
-    bench_tower_close(&tower);
-}
 
 static int processor_has(FastKernel *kernel)
 {
@@ -401,16 +283,11 @@ static void vector_width(Trial *t)
 static const Case CASES[] = {
     {"zero-gap", "no gap on any floor tends to the rigidly connected building, without a storm of events", zero_gap},
     {"huge-gap", "a gap that never closes gives the closed form of the building alone", huge_gap},
-    {"negative-gap", "a gap that is negative or no number is refused by name", negative_gap},
     {"core-stiffness", "a core 1e-6 to 1e6 times as stiff, against `fast` at fine", stiff_and_soft_core},
-    {"core-modes", "10 and 5 core modes instead of 20, without residual flexibility: what truncation costs",
-     core_modes},
     {"mirrored-record", "a mirrored record gives the mirrored response", mirrored},
     {"zero-padded-record", "zeros before or behind the record change no objective", padded},
-    {"not-a-record", "NaN, Inf, 1e308 or no samples are refused", not_a_record},
     {"strength", "strength x 1e-12 to 1e3: linear until the first contact, flagged when too deep", strength},
-    {"threads", "several runs at once give the bytes of one alone", threads},
     {"vector-width", "the kernels for SSE2, AVX2 and AVX-512 agree", vector_width},
 };
 
-const CaseGroup TOWER_CASES = {"The tower and its core", CASES, sizeof CASES / sizeof CASES[0]};
+const CaseGroup TOWER_CASES = {CASES, sizeof CASES / sizeof CASES[0]};

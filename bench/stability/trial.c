@@ -109,11 +109,6 @@ void trial_compare(Trial *t, const SimResult *r, double actual, double wanted, d
     note(t, r, fabs(actual - wanted) / scale, allowed, text);
 }
 
-void trial_refusal_is_right(Trial *t, int refused, const char *what)
-{
-    settle(t, refused ? HOLDS : FAILED, refused ? 0 : 1, refused ? 0 : HUGE_VAL, what);
-}
-
 void trial_remark(Trial *t, const char *text, ...)
 {
     const size_t used = strlen(t->remark);

@@ -26,7 +26,7 @@ typedef struct {
     int any;                  /* a figure was noted */
     double figure, closeness; /* measured; over what is allowed */
     char how[240];            /* what the figure is, or why it was refused */
-    char remark[400];         /* more measured figures, for the notes below the table */
+    char remark[400];         /* more measured figures */
 } Trial;
 
 typedef struct {
@@ -35,7 +35,6 @@ typedef struct {
 } Case;
 
 typedef struct {
-    const char *title;
     const Case *cases;
     int n;
 } CaseGroup;
@@ -65,9 +64,6 @@ __attribute__((format(printf, 5, 6))) void trial_note(Trial *t, const SimResult 
 /* |actual - wanted| / scale */
 __attribute__((format(printf, 7, 8))) void trial_compare(Trial *t, const SimResult *r, double actual, double wanted,
                                                          double scale, double allowed, const char *what, ...);
-
-/* A refusal is what the property asks for. */
-void trial_refusal_is_right(Trial *t, int refused, const char *what);
 
 __attribute__((format(printf, 2, 3))) void trial_remark(Trial *t, const char *text, ...);
 
