@@ -13,7 +13,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "base/table.h"
+#include "base/csv.h"
 
 typedef struct {
     int code; /* exit status */

@@ -7,7 +7,7 @@
 
 #include <lapacke.h>
 
-#include "base/table.h"
+#include "base/csv.h"
 #include "motion/motion_source.h"
 #include "motion/spectrum.h"
 

@@ -7,7 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "base/table.h"
+#include "base/csv.h"
 #include "sim/fast/fast.h"
 #include "sim/sim.h"
 #include "motion/motion_source.h"

@@ -10,7 +10,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "base/table.h"
+#include "base/csv.h"
 #include "fuzz/targets.h"
 
 enum { LONGEST_S = 10 };

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/table.h"
+#include "base/csv.h"
 #include "motion/formats/record.h"
 #include "motion/motion_read.h"
 

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "base/linalg.h"
-#include "base/table.h"
+#include "base/csv.h"
 #include "sim/engine.h"
 #include "sim/linear.h"
 #include "scene_options.h"

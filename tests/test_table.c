@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "scene/design.h"
-#include "base/table.h"
+#include "base/csv.h"
 
 static Status parse(Table *t, const char *text, int has_header, Err *err)
 {
@@ -85,7 +85,7 @@ static void test_each_fault_names_file_line_and_column(void **state)
     expect_refusal("1,2m\n", 0, "there.csv:1: ");
     expect_refusal("1,nan\n", 0, "there.csv:1: column 2 is nan");
     expect_refusal("1,-inf\n", 0, "there.csv:1: column 2 is -inf");
-    expect_refusal("1,2\n#VALUE!,3\n# a comment\n4,5\n", 0, "there.csv:2: column 1 of 2 is missing or not a number");
+    expect_refusal("1,2\n#VALUE!,3\n# a comment\n4,5\n", 0, "there.csv:2: column 1 is not a number: '#VALUE!'");
     expect_refusal("1\n#DIV/0!\n", 0, "there.csv:2: column 1");
     expect_refusal("1;2\n#NV;3\n", 0, "there.csv:2: column 1");
     expect_refusal("1,1e999\n", 0, "there.csv:1: column 2 is inf");

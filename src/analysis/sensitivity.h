@@ -16,7 +16,7 @@
 #ifndef IMTET_ANALYSIS_SENSITIVITY_H
 #define IMTET_ANALYSIS_SENSITIVITY_H
 
-#include "base/table.h"
+#include "base/csv.h"
 #include "evaluate/tower.h"
 
 typedef struct {

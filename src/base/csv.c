@@ -1,15 +1,166 @@
 #include "base/csv.h"
 
 #include <ctype.h>
+#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
-/* ---- lines ---------------------------------------------------------------------------------------------------- */
+/* ---- files -------------------------------------------------------------------------------------------------------- */
 
-/* Does every comma stand between digits? Beside tabs these are decimal commas. */
-static int all_commas_are_decimal(const char *line, const char *end)
+/* A named pipe in a folder may have no writer, and reading it would block for ever; /dev/stdin and the pipes of a
+ * shell's <(...) have a writer. */
+static int is_left_pipe(const char *path)
+{
+    struct stat about;
+    return strncmp(path, "/dev/", 5) != 0 && stat(path, &about) == 0 && S_ISFIFO(about.st_mode);
+}
+
+static Status read_stream(FILE *f, const char *path, size_t largest, char **text, size_t *length, Err *err)
+{
+    for (size_t capacity = 1 << 16; *length <= largest; capacity *= 2) {
+        char *wider = realloc(*text, capacity + 1);
+        if (!wider)
+            return fail(err, STATUS_NO_MEMORY, "%s: no memory for %zu bytes", path, capacity);
+        *text = wider;
+        *length += fread(*text + *length, 1, capacity - *length, f);
+        (*text)[*length] = 0;
+        if (ferror(f))
+            return fail(err, STATUS_MISSING, "%s: cannot be read: %s", path, strerror(errno));
+        if (*length < capacity)
+            return STATUS_OK;
+    }
+    return fail(err, STATUS_BAD_DATA, "%s: larger than %zu MiB; is it the right file?", path, largest >> 20);
+}
+
+Status file_read(const char *path, size_t largest, char **text, size_t *length, Err *err)
+{
+    *text = NULL;
+    *length = 0;
+    if (is_left_pipe(path))
+        return fail(err, STATUS_MISSING, "%s: is a named pipe, not a file; to read from a pipe name /dev/stdin", path);
+    FILE *f = fopen(path, "rb");
+    if (!f)
+        return fail(err, status_of_errno(errno, STATUS_MISSING), "%s: %s", path, strerror(errno));
+    const Status status = read_stream(f, path, largest, text, length, err);
+    fclose(f);
+    if (status != STATUS_OK) {
+        free(*text);
+        *text = NULL;
+    }
+    return status;
+}
+
+/* ---- lines and cells --------------------------------------------------------------------------------------------- */
+
+Status lines_open(Lines *l, const char *path, const char *text, size_t length, Err *err)
+{
+    *l = (Lines){.path = path, .next = text, .end = text + length};
+    if (length >= 2 && (memcmp(text, "\xff\xfe", 2) == 0 || memcmp(text, "\xfe\xff", 2) == 0))
+        return fail(err, STATUS_BAD_DATA, "%s: is written in UTF-16; save it as UTF-8", path);
+    if (memchr(text, 0, length))
+        return fail(err, STATUS_BAD_DATA, "%s: holds a NUL byte; this is not a text file", path);
+    if (length >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0) /* UTF-8 byte order mark */
+        l->next += 3;
+    l->mark = memchr(text, '\n', length) ? '\n' : '\r';
+    return STATUS_OK;
+}
+
+static void strip(const char **from, const char **to)
+{
+    while (*to > *from && isspace((unsigned char)(*to)[-1]))
+        --*to;
+    while (*from < *to && isspace((unsigned char)**from))
+        ++*from;
+}
+
+int lines_next(Lines *l)
+{
+    if (l->next >= l->end)
+        return 0;
+    const char *stop = memchr(l->next, l->mark, (size_t)(l->end - l->next));
+    l->raw = l->from = l->next;
+    l->to = stop ? stop : l->end;
+    l->next = stop ? stop + 1 : l->end;
+    l->number++;
+    strip(&l->from, &l->to);
+    return 1;
+}
+
+/* Behind a cell that ends at p: at most one comma or semicolon, any blanks; beyond the end where nothing is left. */
+static const char *skip_blanks(const char *p, const char *end)
+{
+    for (int marks = 0; p < end && (isspace((unsigned char)*p) || (strchr(",;", *p) && !marks)); p++)
+        marks |= !isspace((unsigned char)*p);
+    return p < end ? p : end + 1;
+}
+
+Cell cell_next(const char **p, const char *end, char separator)
+{
+    Cell c = {.from = *p, .to = *p};
+    if (*p >= end) {
+        *p = end + 1;
+        return (Cell){.from = end, .to = end};
+    }
+    for (int opens = *c.from == '"', quoted = 0; c.to < end; c.to++) {
+        quoted ^= opens && *c.to == '"';
+        if (!quoted && (separator == ' ' ? isspace((unsigned char)*c.to) || strchr(",;", *c.to) : *c.to == separator))
+            break;
+    }
+    *p = separator == ' ' ? skip_blanks(c.to, end) : c.to + 1;
+    strip(&c.from, &c.to);
+    c.is_quoted = c.to - c.from >= 2 && *c.from == '"' && c.to[-1] == '"';
+    if (c.is_quoted) {
+        c.from++;
+        c.to--;
+        strip(&c.from, &c.to);
+    }
+    return c;
+}
+
+CellKind cell_number(Cell c, int with_comma, double *x)
+{
+    enum { LONGEST = 400 }; /* printf's longest double has some 325 characters */
+    char text[LONGEST + 1], *stop;
+    const size_t n = (size_t)(c.to - c.from);
+    if (n == 0 || n > LONGEST || memchr(c.from, 'x', n) || memchr(c.from, 'X', n))
+        return NO_NUMBER;
+    for (size_t i = 0; i < n; i++) { /* Fortran's exponent letter D is E */
+        const int is_exponent = (c.from[i] == 'D' || c.from[i] == 'd') && i && strchr("0123456789.", c.from[i - 1]);
+        text[i] = is_exponent ? 'E' : with_comma && c.from[i] == ',' ? '.' : c.from[i];
+    }
+    text[n] = 0;
+    *x = strtod(text, &stop);
+    return *stop ? NO_NUMBER : isfinite(*x) ? NUMBER : NOT_FINITE;
+}
+
+Status lines_note_mark(Lines *l, Cell c, Err *err)
+{
+    const size_t n = (size_t)(c.to - c.from);
+    if (!l->point_line && memchr(c.from, '.', n))
+        l->point_line = l->number;
+    if (!l->comma_line && memchr(c.from, ',', n))
+        l->comma_line = l->number;
+    if (!l->point_line || !l->comma_line)
+        return STATUS_OK;
+    return fail(err, STATUS_BAD_DATA, "%s:%d: decimal points and decimal commas are mixed; line %d has the other",
+                l->path, l->number, l->point_line < l->comma_line ? l->point_line : l->comma_line);
+}
+
+int csv_is_error(const char *line, const char *end)
+{
+    static const char *const ERRORS[] = {"#N/A", "#NV", "#VALUE!", "#DIV/0!", "#REF!", "#NUM!", "#NAME?", "#NULL!"};
+    for (size_t i = 0; i < sizeof ERRORS / sizeof ERRORS[0]; i++) {
+        const char *behind = line + strlen(ERRORS[i]);
+        if (behind <= end && strncmp(line, ERRORS[i], strlen(ERRORS[i])) == 0)
+            return behind == end || strchr(",;\t\r", *behind);
+    }
+    return 0;
+}
+
+int csv_has_decimal_commas(const char *line, const char *end)
 {
     for (const char *p = line; p < end; p++)
         if (*p == ',' && (p == line || p + 1 == end || !isdigit((unsigned char)p[-1]) || !isdigit((unsigned char)p[1])))
@@ -17,164 +168,249 @@ static int all_commas_are_decimal(const char *line, const char *end)
     return 1;
 }
 
-/* By the first line that is no comment. */
-static char find_separator(const char *line, const char *end)
-{
-    const size_t n = (size_t)(end - line);
-    if (memchr(line, ';', n))
-        return ';';
-    return memchr(line, '\t', n) && all_commas_are_decimal(line, end) ? '\t' : ',';
-}
+/* ---- tables ------------------------------------------------------------------------------------------------------ */
 
-Status csv_open(CsvReader *r, const char *path, const char *text, size_t length, Err *err)
-{
-    *r = (CsvReader){.path = path, .next = text, .stop = text + length};
-    if (length >= 2 && (memcmp(text, "\xff\xfe", 2) == 0 || memcmp(text, "\xfe\xff", 2) == 0))
-        return fail(err, STATUS_BAD_DATA, "%s: is written in UTF-16; save it as CSV UTF-8", path);
-    if (memchr(text, 0, length))
-        return fail(err, STATUS_BAD_DATA, "%s: holds a NUL byte; this is not a text file", path);
-    if (length >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0) /* UTF-8 byte order mark */
-        r->next += 3;
-    r->line_end = memchr(r->next, '\n', (size_t)(r->stop - r->next)) ? '\n' : '\r';
-    return STATUS_OK;
-}
+typedef struct {
+    Table *t;
+    Lines l;
+    char separator;
+    int has_header, of_words;
+    size_t rows, used; /* room for rows; bytes of text so far */
+} Reading;
 
-static void strip_blanks(CsvCell *c)
+/* The next line with something in it, from..to; 0: there is none. */
+static int next_row(Reading *r, const char **from, const char **to)
 {
-    while (c->from < c->to && isspace((unsigned char)*c->from))
-        c->from++;
-    while (c->to > c->from && isspace((unsigned char)c->to[-1]))
-        c->to--;
-}
-
-/* Spreadsheets write lines of empty cells where rows were emptied. */
-static int is_blank(CsvReader r)
-{
-    while (r.at <= r.end) {
-        const CsvCell c = csv_cell(&r);
-        if (c.from < c.to)
-            return 0;
-    }
-    return 1;
-}
-
-int csv_is_error(const char *line, const char *end)
-{
-    const char *p = line;
-    for (p += p < end && *p == '#'; p < end && (isupper((unsigned char)*p) || *p == '/' || *p == '0');)
-        p++;
-    const size_t n = (size_t)(p - line);
-    const int is_not_there = (n == 4 && memcmp(line, "#N/A", 4) == 0) || (n == 3 && memcmp(line, "#NV", 3) == 0);
-    p += p < end && n > 3 && (*p == '!' || *p == '?');
-    return (is_not_there || (size_t)(p - line) > n) && (p == end || strchr(",;\t\r", *p));
-}
-
-/* Is there anything in the line from..to? Then it is made the one at hand. */
-static int take_line(CsvReader *r, const char *from, const char *to)
-{
-    CsvCell body = {from, to};
-    strip_blanks(&body);
-    if (body.from == body.to || (*body.from == '#' && !csv_is_error(body.from, body.to)))
-        return 0;
-    if (!r->separator && body.to - body.from == 5 && strncmp(body.from, "sep=", 4) == 0) { /* for Excel */
-        r->separator = body.from[4];
-        return 0;
-    }
-    if (!r->separator)
-        r->separator = find_separator(body.from, body.to);
-    const int blanks_separate = r->separator == '\t';
-    r->at = blanks_separate ? from : body.from;
-    r->end = blanks_separate ? to : body.to;
-    return !is_blank(*r);
-}
-
-int csv_line(CsvReader *r)
-{
-    while (r->next < r->stop) {
-        const char *from = r->next, *end = memchr(from, r->line_end, (size_t)(r->stop - from));
-        r->next = end ? end + 1 : r->stop;
-        r->line++;
-        if (take_line(r, from, end ? end : r->stop))
-            return 1;
+    Lines *l = &r->l;
+    while (lines_next(l)) {
+        const size_t n = (size_t)(l->to - l->from);
+        if (n == 0 || (*l->from == '#' && !csv_is_error(l->from, l->to)))
+            continue;
+        if (!r->separator && n == 5 && strncmp(l->from, "sep=", 4) == 0) { /* for Excel */
+            r->separator = l->from[4];
+            continue;
+        }
+        if (!r->separator)
+            r->separator = memchr(l->from, ';', n)                                              ? ';'
+                           : memchr(l->from, '\t', n) && csv_has_decimal_commas(l->from, l->to) ? '\t'
+                                                                                                : ',';
+        *from = r->separator == '\t' ? l->raw : l->from; /* a tab is a blank, too */
+        *to = r->separator == '\t' && l->next[-1] == l->mark ? l->next - 1 : r->separator == '\t' ? l->next : l->to;
+        for (const char *p = *from; p <= *to;) { /* spreadsheets write lines of empty cells where rows were emptied */
+            const Cell c = cell_next(&p, *to, r->separator);
+            if (c.from < c.to)
+                return 1;
+        }
     }
     return 0;
 }
 
-/* ---- cells ---------------------------------------------------------------------------------------------------- */
-
-CsvCell csv_cell(CsvReader *r)
+static Status read_names(Reading *r, const char *from, const char *to, Err *err)
 {
-    CsvCell c = {r->at, r->at};
-    if (r->at > r->end)
-        return (CsvCell){r->end, r->end};
-    for (int quoted = 0; c.to < r->end && (quoted || *c.to != r->separator); c.to++)
-        quoted ^= *c.to == '"';
-    r->at = c.to + 1;
-    strip_blanks(&c);
-    if (c.to - c.from >= 2 && *c.from == '"' && c.to[-1] == '"') {
-        c.from++;
-        c.to--;
-        strip_blanks(&c);
-    }
-    return c;
-}
-
-size_t csv_count(const CsvReader *r)
-{
-    CsvReader rest = *r;
+    Table *t = r->t;
     size_t n = 0;
-    for (; rest.at <= rest.end; n++)
-        csv_cell(&rest);
-    return n;
-}
-
-/* Length of a cell in a message. */
-static int shown(CsvCell c)
-{
-    return c.to - c.from < 20 ? (int)(c.to - c.from) : 20;
-}
-
-/* A comma in a cell is a decimal one: it separates nothing there. */
-static Status note_decimal_mark(CsvReader *r, char *number, Err *err)
-{
-    char *comma = strchr(number, ',');
-    if (strchr(number, '.') && !r->point_line)
-        r->point_line = r->line;
-    if (comma && !r->comma_line)
-        r->comma_line = r->line;
-    if (comma)
-        *comma = '.';
-    if (r->point_line && r->comma_line)
-        return fail(err, STATUS_BAD_DATA, "%s:%d: decimal points and decimal commas are mixed; line %d has the other",
-                    r->path, r->line, r->point_line < r->comma_line ? r->point_line : r->comma_line);
+    t->names = calloc(t->n_cols, sizeof *t->names);
+    if (!t->names)
+        return fail(err, STATUS_NO_MEMORY, "%s: no memory for %zu column names", t->path, t->n_cols);
+    for (const char *p = from; p <= to; n++) {
+        const Cell c = cell_next(&p, to, r->separator);
+        if (c.from == c.to || c.to - c.from >= TABLE_NAME_MAX)
+            return fail(err, STATUS_BAD_DATA, "%s:%d: column %zu has no usable name", t->path, r->l.number, n + 1);
+        memcpy(t->names[n], c.from, (size_t)(c.to - c.from));
+    }
     return STATUS_OK;
 }
 
-enum { LONGEST = 400 }; /* characters of a number; printf's longest double has some 325 */
-
-Status csv_note_mark(CsvReader *r, CsvCell c, Err *err)
+static Status room_for_row(Reading *r, Err *err)
 {
-    char number[LONGEST + 1];
-    snprintf(number, sizeof number, "%.*s", (int)(c.to - c.from), c.from);
-    return number[strspn(number, "0123456789+-.,eE")] ? STATUS_OK : note_decimal_mark(r, number, err);
+    Table *t = r->t;
+    if (t->n_rows < r->rows)
+        return STATUS_OK;
+    const size_t rows = 2 * t->n_rows + 64, cells = rows * t->n_cols;
+    void *wider =
+        r->of_words ? realloc(t->cell, cells * sizeof *t->cell) : realloc(t->values, cells * sizeof *t->values);
+    if (wider && r->of_words)
+        t->cell = wider;
+    else if (wider)
+        t->values = wider;
+    int *line = wider ? realloc(t->line, rows * sizeof *line) : NULL;
+    if (!line)
+        return fail(err, STATUS_NO_MEMORY, "%s: no memory for %zu rows", t->path, rows);
+    t->line = line;
+    r->rows = rows;
+    return STATUS_OK;
 }
 
-Status csv_number(CsvReader *r, CsvCell c, size_t column, size_t n_columns, double *value, Err *err)
+static Status fail_number(const Table *t, int line, size_t column, Cell c, CellKind kind, double x, Err *err)
 {
-    char number[LONGEST + 1], *stop;
-    const size_t length = (size_t)(c.to - c.from) < LONGEST ? (size_t)(c.to - c.from) : LONGEST;
-    memcpy(number, c.from, length);
-    number[length] = 0;
-    const Status mark = note_decimal_mark(r, number, err);
-    *value = strtod(number, &stop);
-    if (stop == number)
-        return fail(err, STATUS_BAD_DATA, "%s:%d: column %zu of %zu is missing or not a number: '%.*s'", r->path,
-                    r->line, column, n_columns, shown(c), c.from);
-    if (*stop || length < (size_t)(c.to - c.from))
-        return fail(err, STATUS_BAD_DATA, "%s:%d: column %zu is not a number: '%.*s'", r->path, r->line, column,
-                    shown(c), c.from);
-    if (!isfinite(*value))
-        return fail(err, STATUS_BAD_DATA, "%s:%d: column %zu is %g; only finite numbers are accepted", r->path, r->line,
-                    column, *value);
-    return mark;
+    if (kind == NOT_FINITE)
+        return fail(err, STATUS_BAD_DATA, "%s:%d: column %zu is %g; only finite numbers are accepted", t->path, line,
+                    column + 1, x);
+    if (c.from == c.to)
+        return fail(err, STATUS_BAD_DATA, "%s:%d: column %zu of %zu is missing", t->path, line, column + 1, t->n_cols);
+    return fail(err, STATUS_BAD_DATA, "%s:%d: column %zu is not a number: '%.*s'", t->path, line, column + 1,
+                (int)(c.to - c.from < 20 ? c.to - c.from : 20), c.from);
+}
+
+static Status take_cell(Reading *r, size_t column, Cell c, Err *err)
+{
+    Table *t = r->t;
+    const size_t at = t->n_rows * t->n_cols + column, length = (size_t)(c.to - c.from);
+    double x = 0;
+    const CellKind kind = cell_number(c, 1, &x);
+    if (!r->of_words && kind != NUMBER)
+        return fail_number(t, r->l.number, column, c, kind, x, err);
+    if (kind == NUMBER)
+        TRY(lines_note_mark(&r->l, c, err));
+    if (!r->of_words) {
+        t->values[at] = x;
+        return STATUS_OK;
+    }
+    memcpy(t->text + r->used, c.from, length);
+    t->text[r->used + length] = 0;
+    t->cell[at] = r->used;
+    r->used += length + 1;
+    return STATUS_OK;
+}
+
+/* Numbers that are missing at a row's end are named one by one. */
+static Status read_row(Reading *r, const char *from, const char *to, Err *err)
+{
+    Table *t = r->t;
+    const char *p = from;
+    TRY(room_for_row(r, err));
+    for (size_t n = 0; n < t->n_cols; n++) {
+        if (r->of_words && p > to)
+            return fail(err, STATUS_BAD_DATA, "%s:%d: %zu columns; the header has %zu", t->path, r->l.number, n,
+                        t->n_cols);
+        TRY(take_cell(r, n, cell_next(&p, to, r->separator), err));
+    }
+    t->line[t->n_rows++] = r->l.number;
+    return p > to ? STATUS_OK
+                  : fail(err, STATUS_BAD_DATA, "%s:%d: more than %zu columns", t->path, r->l.number, t->n_cols);
+}
+
+static Status read_rows(Reading *r, size_t length, Err *err)
+{
+    Table *t = r->t;
+    const char *from, *to;
+    if (r->of_words)
+        t->text = malloc(2 * length + 1); /* a cell is closed by a zero instead of its separator */
+    if (r->of_words && !t->text)
+        return fail(err, STATUS_NO_MEMORY, "%s: no memory for %zu bytes", t->path, 2 * length);
+    while (next_row(r, &from, &to)) {
+        for (const char *p = from; t->n_cols == 0 || (p > from && p <= to); t->n_cols++)
+            cell_next(&p, to, r->separator);
+        TRY(r->has_header && !t->names ? read_names(r, from, to, err) : read_row(r, from, to, err));
+    }
+    if (t->n_rows > 0 || (t->names && !r->of_words))
+        return STATUS_OK;
+    return fail(err, STATUS_BAD_DATA, "%s: holds no %s", t->path, r->of_words ? "rows" : "numbers");
+}
+
+static Status parse(Table *t, const char *path, const char *text, size_t length, Reading r, Err *err)
+{
+    memset(t, 0, sizeof *t);
+    snprintf(t->path, sizeof t->path, "%s", path);
+    r.t = t;
+    Status status = lines_open(&r.l, t->path, text, length, err);
+    if (status == STATUS_OK)
+        status = read_rows(&r, length, err);
+    if (status != STATUS_OK)
+        table_free(t);
+    return status;
+}
+
+static Status read_file(Table *t, const char *path, Reading r, Err *err)
+{
+    char *text;
+    size_t length;
+    memset(t, 0, sizeof *t);
+    TRY(file_read(path, FILE_LARGEST, &text, &length, err));
+    const Status status = parse(t, path, text, length, r, err);
+    free(text);
+    return status;
+}
+
+Status table_parse(Table *t, const char *path, const char *text, size_t length, int has_header, Err *err)
+{
+    return parse(t, path, text, length, (Reading){.has_header = has_header}, err);
+}
+
+Status table_read(Table *t, const char *path, int has_header, Err *err)
+{
+    return read_file(t, path, (Reading){.has_header = has_header}, err);
+}
+
+Status sheet_parse(Sheet *s, const char *path, const char *text, size_t length, Err *err)
+{
+    return parse(s, path, text, length, (Reading){.has_header = 1, .of_words = 1}, err);
+}
+
+Status sheet_read(Sheet *s, const char *path, Err *err)
+{
+    return read_file(s, path, (Reading){.has_header = 1, .of_words = 1}, err);
+}
+
+void table_free(Table *t)
+{
+    free(t->names);
+    free(t->line);
+    free(t->values);
+    free(t->text);
+    free(t->cell);
+    memset(t, 0, sizeof *t);
+}
+
+/* ---- columns and cells ---------------------------------------------------------------------------------------- */
+
+int table_column(const Table *t, const char *name)
+{
+    for (size_t j = 0; t->names && j < t->n_cols; j++)
+        if (strcmp(t->names[j], name) == 0)
+            return (int)j;
+    return -1;
+}
+
+/* Is the word one of those in the list, which are separated by blanks? */
+static int is_listed(const char *list, const char *word)
+{
+    const size_t n = strlen(word);
+    for (const char *p = list; (p = strstr(p, word)); p += n)
+        if ((p == list || p[-1] == ' ') && (p[n] == ' ' || !p[n]))
+            return 1;
+    return 0;
+}
+
+Status sheet_expect(const Sheet *s, const char *required, const char *optional, Err *err)
+{
+    char list[256], *rest = list;
+    snprintf(list, sizeof list, "%s", required);
+    for (const char *word; (word = strsep(&rest, " "));)
+        if (*word && table_column(s, word) < 0)
+            return fail(err, STATUS_BAD_DATA, "%s: has no column %s; it needs %s, and may have %s", s->path, word,
+                        required, optional);
+    for (size_t j = 0; j < s->n_cols; j++)
+        if (!is_listed(required, s->names[j]) && !is_listed(optional, s->names[j]))
+            return fail(err, STATUS_BAD_DATA, "%s: column '%s' is not known; there are %s %s", s->path, s->names[j],
+                        required, optional);
+    return STATUS_OK;
+}
+
+const char *sheet_text(const Sheet *s, size_t row, const char *column)
+{
+    const int j = table_column(s, column);
+    return j < 0 ? "" : s->text + s->cell[row * s->n_cols + (size_t)j];
+}
+
+Status sheet_number(const Sheet *s, size_t row, const char *column, double otherwise, double *value, Err *err)
+{
+    const char *text = sheet_text(s, row, column);
+    const Cell c = {.from = text, .to = text + strlen(text)};
+    *value = otherwise;
+    if (!*text && !isnan(otherwise))
+        return STATUS_OK;
+    const CellKind kind = cell_number(c, 1, value);
+    return kind == NUMBER ? STATUS_OK
+                          : fail_number(s, s->line[row], (size_t)table_column(s, column), c, kind, *value, err);
 }

@@ -1,12 +1,14 @@
-/* base/csv.h -- lines and cells of CSV text as people and spreadsheets write it.
+/* base/csv.h -- text files of lines and cells, as people, spreadsheets, data loggers and Fortran programs write them.
  *
- *   # comment and blank lines are skipped, and so are lines of empty cells
- *   a UTF-8 byte order mark, lines that end in LF, CRLF or CR, cells in double quotes, blanks around cells
- *   cells are separated by commas, semicolons or tabs: the first line that is no comment decides, or "sep=;" above it
+ *   lines     end in LF, CRLF or CR; a UTF-8 byte order mark is passed over, UTF-16 and NUL bytes are refused
+ *   cells     parted by one character (comma, semicolon, tab), or by blanks with at most one comma or semicolon; quotes
+ *             and blanks around them are dropped
+ *   numbers   1.5, 1,5, 1.5E+3, 1.5D+3; finite ones only, decimal points or decimal commas, not both in one file
+ *   tables    rows of equally many cells; lines that are blank, of empty cells, or begin with # are passed over. Cells are
+ *             parted by commas, semicolons or tabs: the first line decides, or "sep=;" above it
  *
- * A comma inside a cell is a decimal one; decimal points and decimal commas in one file are refused.
- *
- * Ownership  borrows path and text. Threads  no state */
+ * Ownership  Lines borrow path and text; table_read and sheet_read allocate, table_free releases (an empty Table is fine)
+ * Threads    no state.   Errors  "PATH:LINE: what was found" */
 #ifndef IMTET_BASE_CSV_H
 #define IMTET_BASE_CSV_H
 
@@ -14,38 +16,81 @@
 
 #include "base/status.h"
 
-typedef struct {
-    const char *from, *to; /* without the blanks and the quotes around it */
-} CsvCell;
+/* A whole file as a NUL-terminated string, to be freed by the caller. `largest` [bytes]: where a device or a wrong file
+ * is given up. */
+enum { FILE_LARGEST = 1 << 28 }; /* far above any record */
+Status file_read(const char *path, size_t largest, char **text, size_t *length, Err *err);
+
+/* ---- lines and cells --------------------------------------------------------------------------------------------- */
 
 typedef struct {
-    const char *path;           /* names the text in messages */
-    int line;                   /* the one at hand, from 1 */
-    const char *at, *end;       /* what is left of it; at > end: nothing, not even an empty cell */
-    const char *next, *stop;    /* the lines below */
-    char separator, line_end;   /* separator 0: not yet known */
-    int point_line, comma_line; /* the first number with a decimal point, with a decimal comma; 0: none */
-} CsvReader;
+    const char *path, *next, *end; /* of the text that is left */
+    char mark;                     /* that ends a line: LF, or CR in a text that has no LF */
+    int number;                    /* of the line below, from 1 */
+    const char *raw;               /* where the line begins */
+    const char *from, *to;         /* the line without blanks at its ends */
+    int point_line, comma_line;    /* the first number with a decimal point, with a decimal comma; 0: none */
+} Lines;
+
+Status lines_open(Lines *l, const char *path, const char *text, size_t length, Err *err);
+int lines_next(Lines *l); /* 0: no further line */
+
+typedef struct {
+    const char *from, *to; /* without the blanks and the quotes around it */
+    int is_quoted;
+} Cell;
+
+/* The cell at *p, which moves on; beyond `end` after the last one. A blank as separator: see above. */
+Cell cell_next(const char **p, const char *end, char separator);
+
+/* All of the cell is one number? Hexadecimal ones, which strtod would take, are none. */
+typedef enum { NUMBER, NO_NUMBER, NOT_FINITE } CellKind;
+CellKind cell_number(Cell c, int with_comma, double *x);
+
+/* Notes the decimal mark of a number of the line; both marks in one file are refused. */
+Status lines_note_mark(Lines *l, Cell c, Err *err);
 
 /* Does the line begin with the error of a spreadsheet, "#VALUE!" or "#N/A", which is a cell and no comment? */
 int csv_is_error(const char *line, const char *end);
 
-/* Refuses text in UTF-16 and text with NUL bytes. */
-Status csv_open(CsvReader *r, const char *path, const char *text, size_t length, Err *err);
+/* Does every comma of the line stand between digits? Beside another separator these are decimal commas. */
+int csv_has_decimal_commas(const char *line, const char *end);
 
-/* The next line with something in it; 0: there is none. */
-int csv_line(CsvReader *r);
+/* ---- tables ------------------------------------------------------------------------------------------------------ */
 
-/* The next cell of the line; where none is left an empty one. */
-CsvCell csv_cell(CsvReader *r);
+enum { TABLE_NAME_MAX = 48 };
 
-/* Cells that are left of the line. */
-size_t csv_count(const CsvReader *r);
+typedef struct {
+    char path[600];
+    size_t n_rows, n_cols;
+    char (*names)[TABLE_NAME_MAX]; /* (n_cols), NULL without a header */
+    int *line;                     /* (n_rows) of the file, from 1 */
+    double *values;                /* (n_rows, n_cols) row-major; NULL: cells of words and numbers */
+    char *text;                    /* such cells, each closed by a zero */
+    size_t *cell;                  /* (n_rows, n_cols) where each begins in text */
+} Table, Sheet;
 
-/* Notes the decimal mark of a cell that looks like a number; decimal points and decimal commas in one file are refused. */
-Status csv_note_mark(CsvReader *r, CsvCell c, Err *err);
+/* Numbers, every one finite. Below a header there may be no row at all; without one that is refused. */
+Status table_read(Table *t, const char *path, int has_header, Err *err);
 
-/* The finite number in a cell; column of n_columns (from 1) is for the message. */
-Status csv_number(CsvReader *r, CsvCell c, size_t column, size_t n_columns, double *value, Err *err);
+/* The same from text in memory; `path` only names it in messages. */
+Status table_parse(Table *t, const char *path, const char *text, size_t length, int has_header, Err *err);
+
+/* Column of that name, or -1. */
+int table_column(const Table *t, const char *name);
+void table_free(Table *t);
+
+/* Words and numbers below a header, at least one row. */
+Status sheet_read(Sheet *s, const char *path, Err *err);
+Status sheet_parse(Sheet *s, const char *path, const char *text, size_t length, Err *err);
+
+/* Columns by name, separated by blanks: all of `required` must be there, and no other than those of `optional`. */
+Status sheet_expect(const Sheet *s, const char *required, const char *optional, Err *err);
+
+/* The text of a cell; empty where there is no such column. */
+const char *sheet_text(const Sheet *s, size_t row, const char *column);
+
+/* The number of a cell; `otherwise` where column or content are missing. NAN as `otherwise`: it must be there. */
+Status sheet_number(const Sheet *s, size_t row, const char *column, double otherwise, double *value, Err *err);
 
 #endif

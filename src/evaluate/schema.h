@@ -8,7 +8,7 @@
 #define IMTET_EVALUATE_SCHEMA_H
 
 #include "base/list.h"
-#include "base/table.h"
+#include "base/csv.h"
 #include "scene/design.h"
 #include "evaluate/measures.h"
 

@@ -8,7 +8,7 @@
 #include <strings.h>
 
 #include "base/hash.h"
-#include "base/table.h"
+#include "base/csv.h"
 #include "base/units.h"
 #include "motion/formats/archive.h"
 #include "motion/formats/record.h"

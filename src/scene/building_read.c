@@ -7,8 +7,7 @@
 #include <unistd.h>
 
 #include "base/linalg.h"
-#include "base/sheet.h"
-#include "base/table.h"
+#include "base/csv.h"
 #include "scene/beam.h"
 #include "scene/compiled_in.h"
 
@@ -199,12 +198,12 @@ typedef struct {
 static Status read_quantity(const Sheet *s, size_t row, const char *plain, const char *thousands, double *value,
                             Err *err)
 {
-    const int in_thousands = sheet_column(s, plain) < 0;
+    const int in_thousands = table_column(s, plain) < 0;
     const char *column = in_thousands ? thousands : plain;
     *value = 0;
-    if (strcmp(plain, thousands) != 0 && !in_thousands && sheet_column(s, thousands) >= 0)
+    if (strcmp(plain, thousands) != 0 && !in_thousands && table_column(s, thousands) >= 0)
         return fail(err, STATUS_BAD_DATA, "%s: has both %s and %s; leave one of them out", s->path, plain, thousands);
-    if (sheet_column(s, column) < 0)
+    if (table_column(s, column) < 0)
         return STATUS_OK;
     TRY(sheet_number(s, row, column, NAN, value, err));
     if (!(*value > 0))
@@ -275,7 +274,7 @@ static Status read_storeys(BuildingFiles *b, const char *folder, Err *err)
     sheet_path(folder, KIND_STOREYS, path);
     TRY(sheet_read(&s, path, err));
     const Status status = take_storeys(b, &s, err);
-    sheet_free(&s);
+    table_free(&s);
     return status;
 }
 

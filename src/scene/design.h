@@ -22,7 +22,7 @@
 #include <stddef.h>
 
 #include "base/status.h"
-#include "base/table.h"
+#include "base/csv.h"
 #include "scene/options.h"
 
 enum { DESIGN_VARIABLES_MAX = 2 * FLOORS_MAX + 3 };

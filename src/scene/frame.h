@@ -32,13 +32,13 @@
 #ifndef IMTET_SCENE_FRAME_H
 #define IMTET_SCENE_FRAME_H
 
-#include "base/sheet.h"
+#include "base/csv.h"
 #include "base/status.h"
 
 enum { FRAME_X, FRAME_Z, FRAME_ROT, FRAME_DOFS };
 
 typedef struct {
-    char name[SHEET_NAME_MAX];
+    char name[TABLE_NAME_MAX];
     double x, z;             /* [m] */
     int fixed[FRAME_DOFS];   /* held by the ground */
     double mass[FRAME_DOFS]; /* [kg] along x, along z, [kg m2] */
@@ -47,14 +47,14 @@ typedef struct {
 } FrameNode;
 
 typedef struct {
-    char name[SHEET_NAME_MAX];
+    char name[TABLE_NAME_MAX];
     double area, inertia, E; /* [m2], [m4], [Pa] */
     double kGA;              /* [N] 0: no shear deformation */
     double mass_per_m;       /* [kg/m] */
 } FrameSection;
 
 typedef struct {
-    char name[SHEET_NAME_MAX];
+    char name[TABLE_NAME_MAX];
     int node[2], section;
     int pinned[2];
     double added_mass; /* [kg] */

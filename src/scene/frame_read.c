@@ -37,7 +37,7 @@ static Status open_sheet(Sheet *s, const char *folder, const char *name, const c
     TRY(own.text ? sheet_parse(s, path, own.text, own.length, err) : sheet_read(s, path, err));
     const Status status = sheet_expect(s, required, optional, err);
     if (status != STATUS_OK)
-        sheet_free(s);
+        table_free(s);
     return status;
 }
 
@@ -68,13 +68,13 @@ static Status read_share(const Sheet *s, size_t row, const char *column, double 
                               column, *value);
 }
 
-static Status read_name(const Sheet *s, size_t row, const char *column, char name[SHEET_NAME_MAX], Err *err)
+static Status read_name(const Sheet *s, size_t row, const char *column, char name[TABLE_NAME_MAX], Err *err)
 {
     const char *text = sheet_text(s, row, column);
-    if (!*text || strlen(text) >= SHEET_NAME_MAX)
+    if (!*text || strlen(text) >= TABLE_NAME_MAX)
         return fail(err, STATUS_BAD_DATA, "%s:%d: %s '%.60s' is no name of 1 to %d characters", s->path, s->line[row],
-                    column, text, SHEET_NAME_MAX - 1);
-    snprintf(name, SHEET_NAME_MAX, "%s", text);
+                    column, text, TABLE_NAME_MAX - 1);
+    snprintf(name, TABLE_NAME_MAX, "%s", text);
     return STATUS_OK;
 }
 
@@ -314,7 +314,7 @@ static Status read_part(Frame *f, Index *x, const char *folder, const Part *part
         status = check_names(&s, part->named, err);
     if (status == STATUS_OK && !x->entry)
         status = index_nodes(x, f, err);
-    sheet_free(&s);
+    table_free(&s);
     return status;
 }
 

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/table.h"
+#include "base/csv.h"
 #include "base/visible.h"
 
 const char MODEL_UNITS_WORDS[] = "N_m, kN_m, N_mm, kip_in or kip_ft";
@@ -33,7 +33,7 @@ typedef struct {
 } Number;
 
 typedef struct {
-    char name[SHEET_NAME_MAX];
+    char name[TABLE_NAME_MAX];
     Number number;
 } Variable;
 
@@ -293,7 +293,7 @@ static int node_of_name(const Frame *f, const char *name)
 static int find_node(Reader *r, int word)
 {
     double tag;
-    char name[SHEET_NAME_MAX];
+    char name[TABLE_NAME_MAX];
     if (!number(r, word, &tag))
         return -1;
     snprintf(name, sizeof name, "%.0f", tag);
@@ -329,7 +329,7 @@ static Status take_node(Reader *r, Err *err)
         refuse(r, "node: 'model BasicBuilder -ndm 2 -ndf 3' must stand above");
     r->has_model = 1; /* said once */
     FrameNode *node;
-    char name[SHEET_NAME_MAX];
+    char name[TABLE_NAME_MAX];
     snprintf(name, sizeof name, "%.0f", tag);
     if (node_of_name(f, name) >= 0) {
         refuse(r, "node: %s is there twice", name);
@@ -531,8 +531,8 @@ static Status take_variable(Reader *r, Err *err)
 {
     Number value;
     int i = 0;
-    if (r->n != 3 || strlen(r->word[1]) >= SHEET_NAME_MAX) {
-        refuse(r, "set: only NAME VALUE is read, the name of at most %d characters", SHEET_NAME_MAX - 1);
+    if (r->n != 3 || strlen(r->word[1]) >= TABLE_NAME_MAX) {
+        refuse(r, "set: only NAME VALUE is read, the name of at most %d characters", TABLE_NAME_MAX - 1);
         return STATUS_OK;
     }
     if (!evaluate(r, 2, &value))

@@ -7,7 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "base/table.h"
+#include "base/csv.h"
 #include "settings/rules.h"
 #include "settings/table.h"
 

@@ -5,14 +5,14 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "base/sheet.h"
+#include "base/csv.h"
 #include "store/run_read.h"
 
 static Status copy_columns(const Sheet *t, const char *path, const Schema *schema, double *X, Err *err)
 {
     for (size_t j = 0; j < schema->n_var; j++) {
         const char *name = schema_variable(schema, j)->name;
-        if (sheet_column(t, name) < 0)
+        if (table_column(t, name) < 0)
             return fail(err, STATUS_BAD_DATA, "search.start: %s: has no column %s", path, name);
         for (size_t i = 0; i < t->n_rows; i++)
             TRY(sheet_number(t, i, name, NAN, &X[i * schema->n_var + j], err));
@@ -29,7 +29,7 @@ static Status read_table(const char *path, const Schema *schema, double **X, siz
     *n = t.n_rows;
     const Status status = *X ? copy_columns(&t, path, schema, *X, err)
                              : fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", t.n_rows);
-    sheet_free(&t);
+    table_free(&t);
     return status;
 }
 

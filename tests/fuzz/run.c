@@ -7,7 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "base/table.h"
+#include "base/csv.h"
 #include "store/run_read.h"
 
 static void demand_run(Run *h)

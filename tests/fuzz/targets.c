@@ -9,7 +9,7 @@
 
 #include "scene/design.h"
 #include "settings/settings.h"
-#include "base/table.h"
+#include "base/csv.h"
 #include "motion/motion_process.h"
 #include "motion/motion_read.h"
 #include "motion/motion_scale.h"

@@ -8,22 +8,6 @@
 
 /* ---- lines ---------------------------------------------------------------------------------------------------- */
 
-int lines_next(Lines *l)
-{
-    if (l->next >= l->end)
-        return 0;
-    const char *stop = memchr(l->next, l->mark, (size_t)(l->end - l->next));
-    l->raw = l->from = l->next;
-    l->to = stop ? stop : l->end;
-    l->next = stop ? stop + 1 : l->end;
-    l->number++;
-    while (l->to > l->from && isspace((unsigned char)l->to[-1]))
-        l->to--;
-    while (l->from < l->to && isspace((unsigned char)*l->from))
-        l->from++;
-    return 1;
-}
-
 int lines_skip(Lines *l, int n)
 {
     for (int i = 0; i < n; i++)

@@ -9,18 +9,9 @@
 
 #include <stddef.h>
 
-#include "base/status.h"
+#include "base/csv.h"
 #include "motion/options.h"
 
-typedef struct {
-    const char *path, *next, *end; /* of the text that is left */
-    char mark;                     /* that ends a line: LF, or CR in a text that has no LF */
-    int number;                    /* of the line below, from 1 */
-    const char *raw;               /* where the line begins */
-    const char *from, *to;         /* the line without blanks at its ends */
-} Lines;
-
-int lines_next(Lines *l);                          /* 0: no further line */
 int lines_skip(Lines *l, int n);                   /* n lines on; 0: the text is too short */
 int lines_next_filled(Lines *l);                   /* the next line that is not blank */
 Lines lines_ahead(const Lines *l);                 /* the next line that is not blank, l stays; from == NULL: none */
