@@ -257,19 +257,13 @@ static Status run_factors(const Args *args, Err *err)
     FactorPlan plan = {.settings = &s,
                        .problems = args_value(args, "--problem"),
                        .aside = args_has(args, "--aside"),
-                       .keep = args_value(args, "--keep"),
-                       .with_methods = args_has(args, "--methods"),
-                       .curves = args_value(args, "--curves")};
+                       .keep = args_value(args, "--keep")};
     const long budgets[] = {300, 500, 1000};
     settings_defaults(&s);
     TRY(args_apply(args, &s, NULL, NULL, err));
     TRY(settings_check(&s, err));
     TRY(args_whole(args, "--seeds", 1, 16, 5, &plan.n_seeds, err));
     TRY(args_whole(args, "--first-seed", 0, 1000000, 101, &plan.first_seed, err));
-    TRY(args_number(args, "--cheap", 0, 0.999, 0, &plan.levels.cost, err));
-    TRY(args_number(args, "--off", 0, 100, 0.05, &plan.levels.off, err));
-    if (plan.levels.cost > 0.0 && (plan.with_methods || plan.curves))
-        return fail(err, STATUS_USAGE, "--cheap: other methods have no cheap level: leave out --methods and --curves");
     if (args_has(args, "--evals"))
         TRY(args_whole(args, "--evals", 100, 100000, 300, &plan.budgets[0], err));
     else
@@ -283,11 +277,6 @@ static const ArgOption FACTOR_OPTIONS[] = {
     {"--evals", "N", NULL, 0, "evaluations; a search of 1000, read after 300, 500 and 1000, unless given"},
     {"--seeds", "N", NULL, 0, "5 unless given"},
     {"--first-seed", "N", NULL, 0, "101 unless given"},
-    {"--methods", NULL, NULL, 0, "other methods beside it: NSGA-III, RVEA, MOEA/D, ParEGO, K-RVEA"},
-    {"--curves", "FILE", NULL, 0, "CSV of the hypervolume against hours, for simulations of 1 ms to 1 min"},
-    {"--cheap", "COST", NULL, 0,
-     "a cheap level of so much of an evaluation: the search with it beside the one without"},
-    {"--off", "SHARE", NULL, 0, "... off by so many standard deviations of an objective; 0.05 unless given"},
     {"--keep", "FOLDER", NULL, 0, "of all evaluations: what is there is not run again"},
     OPTION_SET,
     OPTION_END,

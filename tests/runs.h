@@ -16,7 +16,7 @@
 #include "store/store.h"
 
 static const char TEXTBOOK[] = "[problem]\nkind = dtlz2\nvariables = 6\nobjectives = 3\nnoise = 0.05\n"
-                               "[search]\ninitial = 12\npopulation = 12\nmax_evals = 40\nsurrogate_max = 30\n"
+                               "[search]\ninitial = 12\npopulation = 12\nmax_evals = 40\n"
                                "limits = f1<=1.2\n";
 /* A worker that never answers. */
 static const char DEAF[] = "[problem]\nkind = external\ncommand = sh tests/worker.sh deaf\nvariables = 3\n"

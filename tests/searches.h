@@ -17,11 +17,7 @@ static inline SearchConfig search_config(uint32_t seed, size_t population, size_
                           .population = population,
                           .surrogate_max = surrogate_max,
                           .trust_error = trust_error,
-                          .nondominated_share = 1,
-                          .crossover_probability = 1,
-                          .crossover_eta = 20,
-                          .mutation_eta = 20,
-                          .mutation_rate = 1};
+                          .nondominated_share = 1};
 }
 
 enum { MOMENTS_MAX = 200 };

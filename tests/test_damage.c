@@ -12,7 +12,7 @@
 /* Generations of some ten designs, which take 10 ms each. */
 static const char SLOW[] = "[problem]\nkind = external\ncommand = sh tests/worker.sh steady\nvariables = 3\n"
                            "objectives = 2\n[search]\ninitial = 16\npopulation = 12\nmax_evals = 60\n"
-                           "surrogate_max = 30\nthreads = 2\n";
+                           "threads = 2\n";
 
 __attribute__((format(printf, 1, 2))) static void shell(const char *format, ...)
 {

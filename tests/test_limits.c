@@ -6,7 +6,7 @@
 
 /* f1 + f2 + f3 of dtlz2 is 1 at least on and above its front, the unit sphere: these limits cannot be kept. */
 static const char UNMET[] = "[problem]\nkind = dtlz2\nvariables = 6\nobjectives = 3\n"
-                            "[search]\ninitial = 12\npopulation = 12\nmax_evals = 40\nsurrogate_max = 30\nthreads = 1\n"
+                            "[search]\ninitial = 12\npopulation = 12\nmax_evals = 40\nthreads = 1\n"
                             "limits = f1<=0.2,f2<=0.2,f3<=0.2\n";
 
 static double missed(const double f[])

@@ -24,7 +24,7 @@ static void test_every_command_has_a_page_with_all_its_options(void **state)
     }
     char *all = output_of("--man"), *settings = output_of("--man settings");
     assert_non_null(strstr(all, "imtet\\-optimize"));
-    assert_non_null(strstr(settings, "\nmutation_rate = 1\n"));
+    assert_non_null(strstr(settings, "\npolish = 3\n"));
     free(all);
     free(settings);
 }

@@ -12,7 +12,7 @@
 
 static const char TOWER[] = "[motion]\nrecord = builtin:kobe-like\nrecords = builtin:elcentro-like\npga_g = 0.3\n"
                             "[sim]\nduration_s = 6\nreplicates = 2\ngap_tolerance_m = 0.001\n"
-                            "[search]\ninitial = 24\npopulation = 16\nmax_evals = 48\nsurrogate_max = 30\n"
+                            "[search]\ninitial = 24\npopulation = 16\nmax_evals = 48\n"
                             "threads = 1\n";
 static const char STEADY[] = "[problem]\nkind = external\ncommand = sh tests/worker.sh steady\nvariables = 3\n"
                              "objectives = 2\nnoisy = yes\n[search]\ninitial = 36\npopulation = 12\nmax_evals = 150\n"

@@ -368,7 +368,7 @@ static void settle(World *w)
     w->problem.is_noisy = is_noisy;
 }
 
-static SearchConfig config(uint32_t seed, double repeats, size_t replicates_min)
+static SearchConfig config(uint32_t seed, double repeats)
 {
     SearchConfig c = search_config(seed, 16, 24, 0.05);
     c.initial = 20;
@@ -376,7 +376,6 @@ static SearchConfig config(uint32_t seed, double repeats, size_t replicates_min)
     c.max_evals = 200;
     c.surrogate = SURROGATE_OFF;
     c.replicate_share = repeats;
-    c.replicates_min = replicates_min;
     c.replicates_max = 4;
     return c;
 }
@@ -430,7 +429,7 @@ static void test_repeats_are_simulations_of_the_budget_and_no_more_than_their_sh
 {
     (void)state;
     World w = world(0.05, 1);
-    const SearchConfig c = config(1, 0.4, 1);
+    const SearchConfig c = config(1, 0.4);
     size_t repeats = 0, most = 0;
     run(&w, &c, NULL, &seen);
     assert_int_equal(seen.n, 200);
@@ -450,7 +449,7 @@ static void test_what_answers_the_same_each_time_is_soon_left_alone(void **state
 {
     (void)state;
     World w = world(0.0, 1), plain = world(0.0, 0);
-    const SearchConfig c = config(1, 0.4, 1);
+    const SearchConfig c = config(1, 0.4);
     run(&w, &c, NULL, &seen);
     assert_true(seen.n_repeats >= 8 && seen.n_repeats <= 12 && seen.n == 200);
     forget(&seen);
@@ -458,21 +457,6 @@ static void test_what_answers_the_same_each_time_is_soon_left_alone(void **state
     assert_int_equal(plain.n_repeated, 0);
     for (size_t i = 0; i < seen.n * OBJ; i++)
         assert_same_number(seen.F[i], seen.Y[i]);
-    forget(&seen);
-}
-
-static void test_what_is_reported_has_answers_enough(void **state)
-{
-    (void)state;
-    World w = world(0.05, 1);
-    const SearchConfig c = config(2, 0.4, 2);
-    size_t n = 0;
-    run(&w, &c, NULL, &seen);
-    for (size_t i = 0; i < seen.n; i++) {
-        assert_true(!seen.on_front[i] || seen.replicates[i] >= 2);
-        n += seen.on_front[i];
-    }
-    assert_true(n == seen.n_front && n >= 3);
     forget(&seen);
 }
 
@@ -498,7 +482,7 @@ static void test_repeats_take_most_of_the_optimism_out_of_the_front(void **state
     double believed = 0.0, tried = 0.0;
     for (uint32_t seed = 1; seed <= 4; seed++) {
         World w = world(0.1, 1);
-        const SearchConfig once = config(seed, 0.0, 1), more = config(seed, 0.4, 2);
+        const SearchConfig once = config(seed, 0.0), more = config(seed, 0.4);
         run(&w, &once, NULL, &seen);
         believed += optimism(&seen, w.noise) / 4;
         forget(&seen);
@@ -516,7 +500,7 @@ static void test_a_noisy_search_goes_on_from_any_generation_to_the_same_bytes(vo
 {
     (void)state;
     World w = world(0.3, 1);
-    SearchConfig c = config(3, 0.6, 1);
+    SearchConfig c = config(3, 0.6);
     c.surrogate = SURROGATE_ON;
     c.max_evals = 120;
     run(&w, &c, NULL, &seen);
@@ -608,7 +592,6 @@ int main(void)
         cmocka_unit_test(test_a_design_with_an_answer_that_failed_is_no_longer_used),
         cmocka_unit_test(test_repeats_are_simulations_of_the_budget_and_no_more_than_their_share),
         cmocka_unit_test(test_what_answers_the_same_each_time_is_soon_left_alone),
-        cmocka_unit_test(test_what_is_reported_has_answers_enough),
         cmocka_unit_test(test_repeats_take_most_of_the_optimism_out_of_the_front),
         cmocka_unit_test(test_estimates_of_a_surface_are_nearer_to_the_truth_than_means),
         cmocka_unit_test(test_a_noisy_search_goes_on_from_any_generation_to_the_same_bytes),

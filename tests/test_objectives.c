@@ -8,7 +8,7 @@
 
 /* A short, cheap study of the tower. */
 static const char TOWER[] = "[sim]\nduration_s = 24\naccuracy = coarse\n[motion]\npga_g = 0.3\nstretch = 3.1\n"
-                            "[search]\ninitial = 16\npopulation = 8\nmax_evals = 30\nsurrogate_max = 30\nthreads = 1\n"
+                            "[search]\ninitial = 16\npopulation = 8\nmax_evals = 30\nthreads = 1\n"
                             "polish = 0\n";
 
 static void optimize(const char *name, const char *more)

@@ -6,7 +6,7 @@
 /* 60 simulations, of which (60 - 18 * 2) / 2 are repeats. */
 static const char NOISY[] =
     "[problem]\nkind = dtlz2\nvariables = 2\nobjectives = 2\nnoise = 0.05\n[search]\ninitial = 8\n"
-    "population = 8\nmax_evals = 60\nsurrogate_max = 20\nreplicate_share = 0.5\nreplicates_max = 3\n";
+    "population = 8\nmax_evals = 60\nreplicate_share = 0.5\nreplicates_max = 3\n";
 enum { SIMULATIONS = 60, REPEATS = 12 };
 
 /* Lets `left` questions pass, then stops. */
@@ -97,51 +97,6 @@ static void test_the_exports_and_status_tell_of_repeats(void **state)
     free(said);
 }
 
-static void test_replicates_min_keeps_what_was_answered_once_out_of_the_front(void **state)
-{
-    (void)state;
-    char text[sizeof NOISY + 32];
-    snprintf(text, sizeof text, "%sreplicates_min = 2\n", NOISY);
-    study(text, "strict", 0);
-    Run h = saved_of("strict");
-    for (size_t i = 0; i < h.table.n; i++)
-        assert_true(!h.place[i].on_front || h.table.row[i].replicates >= 2);
-    assert_at_most(2, h.n_front);
-    run_free(&h);
-}
-
-/* Answers without any scatter are asked for no more than about ten times, too few for every design of the front. */
-static void test_where_nothing_has_replicates_min_answers_the_front_is_of_those_with_the_most(void **state)
-{
-    (void)state;
-    write_in_place("noisy.ini", NOISY);
-    char *said = output_of("optimize @/noisy.ini --out @/scarce --threads 1 --set problem.noise=0 "
-                           "--set problem.noisy=yes --set search.replicates_min=3");
-    Run h = saved_of("scarce");
-    long most = 0;
-    for (size_t i = 0; i < h.table.n; i++)
-        most = h.table.row[i].replicates > most ? h.table.row[i].replicates : most;
-    assert_true(most < 3 && h.n_front > 0);
-    for (size_t i = 0; i < h.table.n; i++)
-        assert_true(!h.place[i].on_front || h.table.row[i].replicates == most);
-    assert_non_null(strstr(said, "no design was simulated 3 times (search.replicates_min)"));
-    run_free(&h);
-    free(said);
-}
-
-/* 2 variables: repeats begin behind the first 36 simulations, and half of what follows is for them. */
-static void test_a_budget_that_brings_no_repeats_is_refused_before_anything_is_simulated(void **state)
-{
-    (void)state;
-    static const char *const WANTED = "search.max_evals must be 38 at least";
-    write_in_place("noisy.ini", NOISY);
-    expect(65, WANTED, "check @/noisy.ini --set search.replicates_min=2 --set search.max_evals=37");
-    expect(65, WANTED, "optimize @/noisy.ini --set search.replicates_min=2 --max-evals 37 --out @/poor");
-    free(output_of("check @/noisy.ini --set search.replicates_min=2 --set search.max_evals=38"));
-    expect(65, "search.replicates_min: 4 is above search.replicates_max = 3",
-           "check @/noisy.ini --set search.replicates_min=4");
-}
-
 static void test_without_noise_nothing_is_repeated_and_the_tables_are_as_ever(void **state)
 {
     (void)state;
@@ -162,9 +117,6 @@ int main(void)
         cmocka_unit_test(test_a_noisy_run_stopped_after_every_kth_simulation_is_the_run_that_never_stopped),
         cmocka_unit_test(test_the_front_has_means_spreads_and_members_of_what_was_simulated),
         cmocka_unit_test(test_the_exports_and_status_tell_of_repeats),
-        cmocka_unit_test(test_replicates_min_keeps_what_was_answered_once_out_of_the_front),
-        cmocka_unit_test(test_where_nothing_has_replicates_min_answers_the_front_is_of_those_with_the_most),
-        cmocka_unit_test(test_a_budget_that_brings_no_repeats_is_refused_before_anything_is_simulated),
         cmocka_unit_test(test_without_noise_nothing_is_repeated_and_the_tables_are_as_ever),
     };
     return cmocka_run_group_tests_name("repeats", tests, prepare, clear_place);

@@ -200,38 +200,6 @@ static void test_plain_children_and_a_world_where_everything_fails_go_on_the_sam
     check_every_moment(&c, 1);
 }
 
-/* Answers that cost nothing: the surface cannot pay. What was decided by the clock is kept by a search that goes on,
- * even where answers have become slow. */
-static void test_costs_are_weighed_once_and_the_decision_is_kept(void **state)
-{
-    (void)state;
-    SearchConfig c = config(20, 300);
-    c.surrogate = SURROGATE_AUTO;
-    world(&here, 6, 3, 0);
-    run(&here, &c, NULL, &whole);
-    size_t plain = 0, k = whole.moments.n / 2 + 2;
-    for (size_t i = whole.moments.rows[k]; i < whole.n; i++)
-        plain += whole.kind[i] == KIND_OFFSPRING;
-    assert_true(plain == whole.n - whole.moments.rows[k] && plain > 50);
-    const SearchStart start = moment(&whole, k);
-    here.pause_s = 0.005;
-    run(&here, &c, &start, &rest);
-    assert_same_search(&here, &whole, &rest);
-    forget(&rest);
-    forget(&whole);
-
-    here.pause_s = 0.02;
-    c = config(20, 110); /* slow from the beginning: it pays, and the search is that with the surface on */
-    c.surrogate = SURROGATE_AUTO;
-    run(&here, &c, NULL, &whole);
-    c.surrogate = SURROGATE_ON;
-    run(&here, &c, NULL, &rest);
-    assert_int_equal(whole.n, rest.n);
-    assert_memory_equal(whole.X, rest.X, rest.n * here.problem.n_var * sizeof *rest.X);
-    forget(&rest);
-    forget(&whole);
-}
-
 static void test_the_number_of_threads_may_change_in_between(void **state)
 {
     (void)state;
@@ -413,7 +381,6 @@ int main(void)
         cmocka_unit_test(test_failed_and_infeasible_designs_do_not_change_that),
         cmocka_unit_test(test_a_surface_that_is_half_believed_goes_on_the_same),
         cmocka_unit_test(test_plain_children_and_a_world_where_everything_fails_go_on_the_same),
-        cmocka_unit_test(test_costs_are_weighed_once_and_the_decision_is_kept),
         cmocka_unit_test(test_the_number_of_threads_may_change_in_between),
         cmocka_unit_test(test_more_simulations_than_planned_go_on_where_the_plan_ended),
         cmocka_unit_test(test_a_search_at_its_limit_simulates_nothing_more),

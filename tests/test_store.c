@@ -9,7 +9,7 @@
 #include "study/study.h"
 
 static const char TOWER[] = "[motion]\nrecord = builtin:kobe-like\npga_g = 0.3\n[sim]\nduration_s = 6\n"
-                            "[search]\ninitial = 12\npopulation = 8\nmax_evals = 20\nsurrogate_max = 20\n";
+                            "[search]\ninitial = 12\npopulation = 8\nmax_evals = 20\n";
 
 /* Cheap: as many simulations as polishing wants, half a second of each. */
 static const char POLISHED[] = "[motion]\nrecord = builtin:kobe-like\npga_g = 0.3\n[sim]\nduration_s = 6\n"
@@ -19,7 +19,7 @@ static const char POLISHED[] = "[motion]\nrecord = builtin:kobe-like\npga_g = 0.
 /* An answer takes 40 ms. */
 static const char STEADY[] = "[problem]\nkind = external\ncommand = sh tests/worker.sh steady\nvariables = 3\n"
                              "objectives = 2\n[search]\ninitial = 36\npopulation = 12\nmax_evals = 40\n"
-                             "surrogate_max = 20\nthreads = 2\n";
+                             "threads = 2\n";
 
 /* -- interrupted and gone on with ---------------------------------------------------------------------------------- */
 
@@ -462,7 +462,7 @@ static void test_one_failure_in_ten_is_survived_and_never_on_the_front(void **st
     (void)state;
     write_in_place("tenth.ini", "[problem]\nkind = external\ncommand = sh tests/worker.sh tenth\nvariables = 3\n"
                                 "objectives = 2\n[search]\ninitial = 40\npopulation = 12\nmax_evals = 100\n"
-                                "surrogate_max = 40\nthreads = 2\n");
+                                "threads = 2\n");
     free(output_of("optimize @/tenth.ini --out @/tenth"));
     Run saved;
     Err err = {0};

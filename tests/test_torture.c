@@ -15,12 +15,12 @@ typedef struct {
 
 static const Prey PREYS[] = {
     {"textbook", "[problem]\nkind = dtlz2\nvariables = 8\nobjectives = 3\nnoise = 0.02\n"
-                 "[search]\ninitial = 24\npopulation = 16\nmax_evals = 120\nsurrogate_max = 40\nthreads = 1\n"},
+                 "[search]\ninitial = 24\npopulation = 16\nmax_evals = 120\nthreads = 1\n"},
     {"tower", "[motion]\nrecord = builtin:kobe-like\npga_g = 0.3\n[sim]\nduration_s = 8\n"
-              "[search]\ninitial = 24\npopulation = 16\nmax_evals = 50\nsurrogate_max = 30\nthreads = 2\n"},
+              "[search]\ninitial = 24\npopulation = 16\nmax_evals = 50\nthreads = 2\n"},
     /* an answer takes 40 ms: kills come in the middle of a batch */
     {"worker", "[problem]\nkind = external\ncommand = sh tests/worker.sh steady\nvariables = 3\nobjectives = 2\n"
-               "[search]\ninitial = 36\npopulation = 12\nmax_evals = 46\nsurrogate_max = 30\nthreads = 2\n"},
+               "[search]\ninitial = 36\npopulation = 12\nmax_evals = 46\nthreads = 2\n"},
 };
 enum { N_PREYS = sizeof PREYS / sizeof PREYS[0] };
 

@@ -169,7 +169,7 @@ static void test_a_run_whose_workers_all_fail_stops_after_some_with_the_reason(v
 static void test_a_motion_that_is_still_at_rest_ends_with_a_front_or_with_the_reason(void **state)
 {
     (void)state;
-    static const char AT_REST[] = "optimize configs/quick.ini --set sim.duration_s=6 --set search.surrogate_max=40 "
+    static const char AT_REST[] = "optimize configs/quick.ini --set sim.duration_s=6 "
                                   "--set search.population=24 --set search.polish=0 --max-evals 240 --threads 1";
     char command[512];
     for (int seed = 1; seed <= 2; seed++) {

@@ -5,7 +5,6 @@
 #include <string.h>
 #include <time.h>
 
-#include "bench/search/families.h"
 #include "store/output.h"
 
 static double processor_s(void)
@@ -42,17 +41,6 @@ void course_add(Course *c, const double f[], int counts)
     memcpy(c->F + c->n * c->n_obj, f, c->n_obj * sizeof *f);
     c->cpu_s[c->n] = processor_s() - c->start_s;
     c->counts[c->n++] = counts != 0;
-}
-
-int course_evaluate(Course *c, const Problem *p, const double x[], double f[], double *violation)
-{
-    if (c->n == c->n_max)
-        return 0;
-    const double violated = family_evaluate(p, x, f);
-    course_add(c, f, violated == 0.0);
-    if (violation)
-        *violation = violated;
-    return 1;
 }
 
 /* -- file ---------------------------------------------------------------------------------------------------------- */

@@ -1,6 +1,6 @@
 /* bench/search/course.h -- all evaluations of one search in their order, kept in a file so that none is made twice.
  *
- * Life cycle  course_create -> (course_evaluate | course_add) ... -> course_save, course_free; or course_load
+ * Life cycle  course_create -> course_add ... -> course_save, course_free; or course_load
  * Shapes      row-major F (n, n_obj), minimised
  * File        of the machine that wrote it (order of bytes); replaced whole
  * Threads     one Course per thread */
@@ -20,9 +20,6 @@ typedef struct {
 Status course_create(Course *c, size_t n_max, size_t n_obj, Err *err);
 void course_free(Course *c); /* a Course of zeros is fine */
 void course_add(Course *c, const double f[], int counts);
-
-/* Evaluates x into f and, where it is not NULL, its violation (INFINITY: failed), and adds it; 0: the course is full. */
-int course_evaluate(Course *c, const Problem *p, const double x[], double f[], double *violation);
 
 Status course_save(const Course *c, const char *path, Err *err);
 /* *found is 0 where there is no such file, or not one of so many evaluations. */

@@ -8,19 +8,15 @@
 
 #include "base/stat.h"
 #include "bench/search/families.h"
-#include "bench/search/methods.h"
 #include "bench/search/reference.h"
 #include "moga/dominance.h"
 #include "moga/hypervolume.h"
-#include "moga/igd.h"
-#include "store/output.h"
+#include "study/study.h"
 
-static const double FACTOR_MAX = 20.0, LEVELS_FACTOR_MAX = 4.0;
-enum { BUDGETS_MAX = 4, SEEDS_MAX = 16, METHODS_MAX = 8, PROBLEMS_MAX = 32, COSTS = 4, TIMES = 40 };
-enum { WITH_LEVELS = METHODS_MAX };                          /* behind the methods: this program with a cheap level */
-enum { OURS, OTHER };                                        /* the curves that a factor is made of */
-static const double COST_S[COSTS] = {1e-3, 1e-2, 1.0, 60.0}; /* [s] of one simulation */
+static const double FACTOR_MAX = 20.0;
+enum { BUDGETS_MAX = 4, SEEDS_MAX = 16, PROBLEMS_MAX = 32 };
 
+typedef enum { OURS, PLAIN, SEARCHES } Which;
 typedef enum { IGD, VOLUME, SCORES } Score;
 
 /* Scores of a course after each evaluation. */
@@ -31,17 +27,10 @@ typedef struct {
 
 typedef struct {
     const FactorPlan *plan;
-    size_t methods[METHODS_MAX], n_methods; /* the first is compared with the second */
-    double tau[PROBLEMS_MAX];               /* between the levels */
     size_t n_problems;
     const char *name[PROBLEMS_MAX];
-    double factor[PROBLEMS_MAX][BUDGETS_MAX][SCORES];             /* medians over the seeds */
-    double ratio[METHODS_MAX][BUDGETS_MAX][SCORES][PROBLEMS_MAX]; /* likewise */
-    double cpu_s[METHODS_MAX][PROBLEMS_MAX];   /* [s] of the search per evaluation, at the last budget */
-    double volume[COSTS][METHODS_MAX][TIMES];  /* sums of hypervolumes at times */
-    size_t running[COSTS][METHODS_MAX][TIMES]; /* searches that are not at their end by then */
-    size_t n_volumes;
-    double total_s; /* [s] processor time of all searches */
+    double factor[PROBLEMS_MAX][BUDGETS_MAX][SCORES]; /* medians over the seeds */
+    double total_s;                                   /* [s] processor time of all searches */
 } Tables;
 
 static size_t n_budgets(const FactorPlan *plan)
@@ -52,40 +41,48 @@ static size_t n_budgets(const FactorPlan *plan)
     return n;
 }
 
-static int has_levels(const FactorPlan *plan)
-{
-    return plan->levels.cost > 0.0;
-}
-
 /* -- courses ------------------------------------------------------------------------------------------------------- */
 
-static Status make_course(const FactorPlan *plan, const Problem *p, size_t which, long seed, size_t n, Course *c,
+static int note(const SearchView *v, void *user)
+{
+    Course *c = user;
+    for (size_t i = c->n; i < v->n && c->n < c->n_max; i++)
+        course_add(c, v->Y + i * c->n_obj, v->ok[i] && violation_of(v->n_con, v->H + i * v->n_con) == 0.0);
+    return 0;
+}
+
+Status search_course(const Settings *settings, const Problem *p, SurrogateUse surrogate, Course *c, Err *err)
+{
+    Settings s = *settings;
+    StopReason reason;
+    s.search.max_evals = (long)c->n_max;
+    s.search.generations = 1000000;
+    s.search.surrogate = surrogate;
+    const SearchConfig config = study_search_config(&s);
+    return search_run(p, &config, note, c, &reason, err);
+}
+
+static Status make_course(const FactorPlan *plan, const Problem *p, Which which, long seed, size_t n, Course *c,
                           Err *err)
 {
     Settings s = *plan->settings;
     s.search.seed = seed;
     TRY(course_create(c, n, p->n_obj, err));
-    return which == WITH_LEVELS ? run_levels(&s, p, &plan->levels, c, err) : method(which)->run(&s, p, c, err);
+    return search_course(&s, p, which == OURS ? SURROGATE_ON : SURROGATE_OFF, c, err);
 }
 
-/* Evaluations of a search: of the one that is compared with as many as the largest factor takes. */
-static size_t n_evals(const FactorPlan *plan, size_t which)
-{
-    const long last = plan->budgets[n_budgets(plan) - 1];
-    const double most = has_levels(plan) ? LEVELS_FACTOR_MAX : FACTOR_MAX;
-    return (size_t)(which == (has_levels(plan) ? METHOD_IMTET : METHOD_PLAIN) ? (long)most * last : last);
-}
-
-/* From the folder where it is there. */
-static Status get_course(const FactorPlan *plan, const Problem *p, const Family *a, size_t which, long seed, Course *c,
+/* From the folder where it is there. The plain search has as many evaluations as the largest factor takes. */
+static Status get_course(const FactorPlan *plan, const Problem *p, const Family *a, Which which, long seed, Course *c,
                          Err *err)
 {
-    const size_t n = n_evals(plan, which);
+    const double most = which == PLAIN ? FACTOR_MAX : 1.0;
+    const size_t n = (size_t)(most * (double)plan->budgets[n_budgets(plan) - 1]);
     char path[PATH_MAX];
     int found = 0;
-    if (!plan->keep || which == WITH_LEVELS)
+    if (!plan->keep)
         return make_course(plan, p, which, seed, n, c, err);
-    snprintf(path, sizeof path, "%s/%s-%s-%zu-%ld.course", plan->keep, a->name, method(which)->name, n, seed);
+    snprintf(path, sizeof path, "%s/%s-%s-%zu-%ld.course", plan->keep, a->name, which == OURS ? "imtet" : "plain", n,
+             seed);
     TRY(course_load(c, path, n, p->n_obj, &found, err));
     if (found)
         return STATUS_OK;
@@ -124,31 +121,58 @@ static void find_box(const Course *a, const Course *b, double lower[], double up
         upper[k] += 0.1 * fmax(upper[k] - lower[k], 1e-12);
 }
 
+/* Squared distance of f from each reference, in what is worse, of the nearest design so far: IGD+ is the mean of the roots
+ * (Ishibuchi, Masuda, Tanigaki and Nojima, EMO 2015). */
+static double draw_near(const Course *reference, const double width[], const double f[], double square[])
+{
+    const size_t m = reference->n_obj;
+    double sum = 0.0;
+    for (size_t i = 0; i < reference->n; i++) {
+        double worse = 0.0;
+        for (size_t k = 0; f && k < m; k++) {
+            const double off = fmax(f[k] - reference->F[i * m + k], 0.0) / width[k];
+            worse += off * off;
+        }
+        square[i] = f ? fmin(square[i], worse) : square[i];
+        sum += sqrt(square[i]);
+    }
+    return sum / (double)reference->n;
+}
+
+static void range_of(const Course *c, double width[])
+{
+    for (size_t k = 0; k < c->n_obj; k++) {
+        double min = INFINITY, max = -INFINITY;
+        for (size_t i = 0; i < c->n; i++) {
+            min = fmin(min, c->F[i * c->n_obj + k]);
+            max = fmax(max, c->F[i * c->n_obj + k]);
+        }
+        width[k] = max > min ? max - min : 1.0;
+    }
+}
+
 static Status score_course(Curve *v, const Course *reference, const double lower[], const double upper[], Err *err)
 {
     const Course *c = &v->course;
     Hypervolume *volume = NULL;
-    Igd *igd = NULL;
-    size_t rows[REFERENCES];
+    double width[FAMILY_OBJ_MAX], square[REFERENCES];
+    range_of(reference, width);
     for (size_t i = 0; i < reference->n; i++)
-        rows[i] = i;
+        square[i] = INFINITY;
     v->score[IGD] = calloc(2 * c->n, sizeof *v->score[IGD]);
     v->score[VOLUME] = v->score[IGD] ? v->score[IGD] + c->n : NULL;
-    Status status = v->score[IGD] ? hypervolume_create(&volume, c->n_obj, lower, upper, 1, err)
-                                  : fail(err, STATUS_NO_MEMORY, "no memory for the scores of %zu designs", c->n);
-    if (status == STATUS_OK)
-        status = igd_create(&igd, c->n_obj, reference->n, rows, reference->F, err);
-    for (size_t i = 0; status == STATUS_OK && i < c->n; i++) {
-        if (c->counts[i]) {
-            hypervolume_add(volume, c->F + i * c->n_obj);
-            igd_add(igd, c->F + i * c->n_obj);
-        }
-        v->score[IGD][i] = igd_value(igd);
+    if (!v->score[IGD])
+        return fail(err, STATUS_NO_MEMORY, "no memory for the scores of %zu designs", c->n);
+    TRY(hypervolume_create(&volume, c->n_obj, lower, upper, 1, err));
+    for (size_t i = 0; i < c->n; i++) {
+        const double *f = c->counts[i] ? c->F + i * c->n_obj : NULL;
+        if (f)
+            hypervolume_add(volume, f);
+        v->score[IGD][i] = draw_near(reference, width, f, square);
         v->score[VOLUME][i] = hypervolume_share(volume);
     }
     hypervolume_free(volume);
-    igd_free(igd);
-    return status;
+    return STATUS_OK;
 }
 
 static void curve_free(Curve *v)
@@ -171,124 +195,70 @@ static double factor_of(const Curve *plain, Score score, double wanted, double n
 /* -- one problem --------------------------------------------------------------------------------------------------- */
 
 /* Of each seed, for the medians. */
-typedef struct {
-    double factor[BUDGETS_MAX][SCORES][SEEDS_MAX], ratio[METHODS_MAX][BUDGETS_MAX][SCORES][SEEDS_MAX],
-        cpu_s[METHODS_MAX][SEEDS_MAX];
-} Sample;
+typedef double Sample[BUDGETS_MAX][SCORES][SEEDS_MAX];
 
-/* Hours of which curve i takes the hypervolume: from a tenth of the first budget's simulations on, to 20 times the last. */
-static double time_at(const FactorPlan *plan, int cost, int i)
+static void take_seed(const Tables *t, const Curve curve[], size_t seed, Sample factor)
 {
-    const double first = 0.1 * (double)plan->budgets[0], last = FACTOR_MAX * (double)plan->budgets[n_budgets(plan) - 1];
-    return COST_S[cost] * first * pow(last / first, (double)i / (TIMES - 1)) / 3600.0;
-}
-
-static void add_volumes(Tables *t, const Curve curve[])
-{
-    for (int cost = 0; cost < COSTS; cost++)
-        for (size_t v = 0; v < t->n_methods; v++)
-            for (int i = 0, n = 0; i < TIMES; i++) {
-                const Course *c = &curve[v].course;
-                while (n < (int)c->n && c->cpu_s[n] + (n + 1) * COST_S[cost] <= 3600.0 * time_at(t->plan, cost, i))
-                    n++;
-                t->running[cost][v][i] += n < (int)c->n;
-                t->volume[cost][v][i] += n > 0 ? curve[v].score[VOLUME][n - 1] : 0.0;
-            }
-    t->n_volumes++;
-}
-
-static void take_seed(Tables *t, const Curve curve[], size_t seed, Sample *s)
-{
-    for (size_t b = 0; b < n_budgets(t->plan); b++) {
-        const size_t n = (size_t)t->plan->budgets[b];
+    for (size_t b = 0; b < n_budgets(t->plan); b++)
         for (int score = 0; score < SCORES; score++) {
+            const size_t n = (size_t)t->plan->budgets[b];
             const double ours = curve[OURS].score[score][n - 1];
-            s->factor[b][score][seed] =
-                score == VOLUME && ours <= 0.0 ? NAN : factor_of(&curve[OTHER], (Score)score, ours, (double)n);
-            for (size_t v = 0; v < t->n_methods; v++) {
-                s->ratio[v][b][score][seed] = ours > 0.0 ? curve[v].score[score][n - 1] / ours : NAN;
-                s->cpu_s[v][seed] = curve[v].course.cpu_s[n - 1] / (double)n;
-            }
+            factor[b][score][seed] =
+                score == VOLUME && ours <= 0.0 ? NAN : factor_of(&curve[PLAIN], (Score)score, ours, (double)n);
         }
-    }
-    add_volumes(t, curve);
 }
 
-static Status run_seed(Tables *t, const Problem *p, const Family *a, const Course *reference, size_t seed, Sample *s,
-                       Err *err)
+static Status run_seed(Tables *t, const Problem *p, const Family *a, const Course *reference, size_t seed,
+                       Sample factor, Err *err)
 {
-    Curve curve[METHODS_MAX] = {0};
+    Curve curve[SEARCHES] = {0};
     double lower[FAMILY_OBJ_MAX], upper[FAMILY_OBJ_MAX];
     Status status = STATUS_OK;
-    for (size_t v = 0; status == STATUS_OK && v < t->n_methods; v++)
-        status = get_course(t->plan, p, a, t->methods[v], t->plan->first_seed + (long)seed, &curve[v].course, err);
+    for (int v = 0; status == STATUS_OK && v < SEARCHES; v++)
+        status = get_course(t->plan, p, a, (Which)v, t->plan->first_seed + (long)seed, &curve[v].course, err);
     if (status == STATUS_OK)
-        find_box(&curve[OURS].course, &curve[OTHER].course, lower, upper);
-    for (size_t v = 0; status == STATUS_OK && v < t->n_methods; v++)
+        find_box(&curve[OURS].course, &curve[PLAIN].course, lower, upper);
+    for (int v = 0; status == STATUS_OK && v < SEARCHES; v++)
         status = score_course(&curve[v], reference, lower, upper, err);
     if (status == STATUS_OK)
-        take_seed(t, curve, seed, s);
-    for (size_t v = 0; v < t->n_methods; v++) {
+        take_seed(t, curve, seed, factor);
+    for (int v = 0; v < SEARCHES; v++) {
         t->total_s += curve[v].course.n > 0 ? curve[v].course.cpu_s[curve[v].course.n - 1] : 0.0;
         curve_free(&curve[v]);
     }
     return status;
 }
 
-/* Those that are known, ascending; returns how many. */
-static size_t sort_known(size_t n, double x[])
+/* Of those that are known; NAN: none is. */
+static double median(size_t n, double x[])
 {
     size_t known = 0;
     for (size_t i = 0; i < n; i++)
         if (!isnan(x[i]))
             x[known++] = x[i];
     sort_values(known, x);
-    return known;
-}
-
-/* NAN: none is known. */
-static double median(size_t n, double x[])
-{
-    const size_t known = sort_known(n, x);
     return known > 0 ? 0.5 * (x[(known - 1) / 2] + x[known / 2]) : NAN;
-}
-
-static void take_medians(Tables *t, size_t n, Sample *s)
-{
-    const size_t row = t->n_problems;
-    for (size_t b = 0; b < n_budgets(t->plan); b++)
-        for (int score = 0; score < SCORES; score++) {
-            t->factor[row][b][score] = median(n, s->factor[b][score]);
-            for (size_t v = 0; v < t->n_methods; v++)
-                t->ratio[v][b][score][row] = median(n, s->ratio[v][b][score]);
-        }
-    for (size_t v = 0; v < t->n_methods; v++)
-        t->cpu_s[v][row] = median(n, s->cpu_s[v]);
 }
 
 static Status run_problem(Tables *t, size_t which, Err *err)
 {
     const Family *a = family(which);
     const size_t n = (size_t)t->plan->n_seeds < SEEDS_MAX ? (size_t)t->plan->n_seeds : SEEDS_MAX;
-    Sample *s = calloc(1, sizeof *s);
+    Sample factor;
     Course reference = {0};
     Problem p;
-    if (!s)
-        return fail(err, STATUS_NO_MEMORY, "no memory for a table");
     Status status = family_open(&p, which, err);
     if (status == STATUS_OK)
         status = reference_make(&p, &reference, err);
-    if (status == STATUS_OK && has_levels(t->plan))
-        status = levels_agreement(&p, &t->plan->levels, &t->tau[t->n_problems], err);
     for (size_t i = 0; status == STATUS_OK && i < n; i++)
-        status = run_seed(t, &p, a, &reference, i, s, err);
-    if (status == STATUS_OK) {
-        take_medians(t, n, s);
+        status = run_seed(t, &p, a, &reference, i, factor, err);
+    for (size_t b = 0; status == STATUS_OK && b < n_budgets(t->plan); b++)
+        for (int score = 0; score < SCORES; score++)
+            t->factor[t->n_problems][b][score] = median(n, factor[b][score]);
+    if (status == STATUS_OK)
         t->name[t->n_problems++] = a->name;
-    }
     course_free(&reference);
     problem_close(&p);
-    free(s);
     return status;
 }
 
@@ -339,47 +309,6 @@ static void print_means(const Tables *t, FILE *out)
     fputc('\n', out);
 }
 
-static void print_quartiles(size_t n, double x[], FILE *out)
-{
-    const size_t known = sort_known(n, x);
-    if (known == 0)
-        fprintf(out, " - |");
-    else
-        fprintf(out, " %.2f (%.2f .. %.2f) |", median(known, x), x[known / 4], x[known - 1 - known / 4]);
-}
-
-static void print_methods(Tables *t, FILE *out)
-{
-    fprintf(out, "\n| method |");
-    for (int score = 0; score < SCORES; score++)
-        for (size_t b = 0; b < n_budgets(t->plan); b++)
-            fprintf(out, " %s, %ld |", score == IGD ? "IGD+" : "hypervolume", t->plan->budgets[b]);
-    fprintf(out, " ms per evaluation |\n|---|");
-    for (size_t b = 0; b < SCORES * n_budgets(t->plan); b++)
-        fprintf(out, "---|");
-    fprintf(out, "---|\n");
-    for (size_t v = 0; v < t->n_methods; v++) {
-        fprintf(out, "| %s |", method(t->methods[v])->name);
-        for (int score = 0; score < SCORES; score++)
-            for (size_t b = 0; b < n_budgets(t->plan); b++)
-                print_quartiles(t->n_problems, t->ratio[v][b][score], out);
-        fprintf(out, " %.3g |\n", 1e3 * median(t->n_problems, t->cpu_s[v]));
-    }
-}
-
-static Status write_curves(const Tables *t, Err *err)
-{
-    Output o;
-    TRY(output_open(&o, t->plan->curves, err));
-    fprintf(o.stream, "simulation_s,method,hours,hypervolume\n");
-    for (int cost = 0; cost < COSTS; cost++)
-        for (size_t v = 0; v < t->n_methods; v++)
-            for (int i = 0; i < TIMES && (i == 0 || t->running[cost][v][i - 1] > 0); i++)
-                fprintf(o.stream, "%g,%s,%g,%.4f\n", COST_S[cost], method(t->methods[v])->name,
-                        time_at(t->plan, cost, i), t->volume[cost][v][i] / (double)t->n_volumes);
-    return output_close(&o, err);
-}
-
 /* -- which --------------------------------------------------------------------------------------------------------- */
 
 static int is_listed(const char *list, const char *name)
@@ -396,46 +325,19 @@ static int is_wanted(const FactorPlan *plan, const Family *a)
     return plan->problems ? is_listed(plan->problems, a->name) : a->is_aside == plan->aside;
 }
 
-static void choose_methods(Tables *t)
+Status factors_run(const FactorPlan *plan, FILE *out, Err *err)
 {
-    const FactorPlan *plan = t->plan;
-    if (has_levels(plan))
-        t->methods[t->n_methods++] = WITH_LEVELS;
-    for (size_t i = 0; i < method_count(); i++)
-        if (i <= (has_levels(plan) ? METHOD_IMTET : METHOD_PLAIN) || plan->with_methods)
-            t->methods[t->n_methods++] = i;
-}
-
-static Status fill(Tables *t, FILE *out, Err *err)
-{
-    const FactorPlan *plan = t->plan;
-    char tau[16];
-    choose_methods(t);
+    Tables t = {.plan = plan};
     if (plan->keep)
         mkdir(plan->keep, 0777);
     for (size_t i = 0; i < family_count(); i++) {
         if (!is_wanted(plan, family(i)))
             continue;
-        TRY(run_problem(t, i, err));
-        snprintf(tau, sizeof tau, "tau %.2f", t->tau[t->n_problems - 1]);
-        print_factors(t, t->n_problems - 1, has_levels(plan) ? tau : family(i)->what, out);
+        TRY(run_problem(&t, i, err));
+        print_factors(&t, t.n_problems - 1, family(i)->what, out);
     }
-    return t->n_problems > 0 ? STATUS_OK : fail(err, STATUS_USAGE, "--problem: no such problem");
-}
-
-Status factors_run(const FactorPlan *plan, FILE *out, Err *err)
-{
-    Tables *t = calloc(1, sizeof *t);
-    if (!t)
-        return fail(err, STATUS_NO_MEMORY, "no memory for the tables");
-    t->plan = plan;
-    Status status = fill(t, out, err);
-    if (status == STATUS_OK)
-        print_means(t, out);
-    if (status == STATUS_OK && plan->with_methods)
-        print_methods(t, out);
-    if (status == STATUS_OK && plan->curves)
-        status = write_curves(t, err);
-    free(t);
-    return status;
+    if (t.n_problems == 0)
+        return fail(err, STATUS_USAGE, "--problem: no such problem");
+    print_means(&t, out);
+    return STATUS_OK;
 }

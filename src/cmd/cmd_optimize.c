@@ -188,27 +188,11 @@ static Status report_no_front(const Run *run, const StudySummary *summary, Err *
                 summary->n_simulated - summary->n_failed, run->settings->search.limits);
 }
 
-/* Where nothing was simulated as often as search.replicates_min asks for. */
-static void print_few_replicates(const Run *run)
-{
-    const long wanted = run->settings->search.replicates_min * run->settings->sim.replicates;
-    long least = wanted;
-    for (size_t i = 0; i < run->n_front && schema_is_noisy(run->settings); i++) {
-        const Evaluation *e = &run->table.row[run->front[i]];
-        if (e->kind != KIND_POLISHED && e->replicates < least)
-            least = e->replicates;
-    }
-    if (least < wanted)
-        printf("no design was simulated %ld times (search.replicates_min); the front has those with the most, %ld\n\n",
-               wanted, least);
-}
-
 static Status report(const Run *run, const StudySummary *summary, Err *err)
 {
     if (summary->n_front == 0)
         return report_no_front(run, summary, err);
     TRY(nearest_write(summary->folder, NULL, 0, NULL, err));
-    print_few_replicates(run);
     printf("front: %s/front.csv\n%zu nondominated of %zu simulated designs, %zu simulations failed, %.1f s (%s)\n",
            summary->folder, run->n_front, summary->n_simulated, summary->n_failed, summary->seconds,
            stop_reason_words(summary->stopped));

@@ -5,8 +5,6 @@
 #include <stdlib.h>
 
 #include "evaluate/threads.h"
-#include "moga/constants.h"
-#include "moga/search.h"
 #include "settings/options.h"
 #include "evaluate/external.h"
 #include "evaluate/recipe.h"
@@ -53,20 +51,6 @@ static void judge(const Evaluation *e, double f[], double g[], const void *user)
         f[k] = schema_objective(&a->schema, k)->sense * e->f[k];
 }
 
-/* Where a front asks for repeats, there must be simulations enough to bring them. */
-static Status check_repeats(const Adapter *a, const Settings *s, Err *err)
-{
-    const double share = s->search.replicate_share, wanted = (double)(s->search.replicates_min - 1);
-    const size_t n_var = a->schema.n_var;
-    if (!schema_is_noisy(s) || floor(search_replicates((size_t)s->search.max_evals, share, n_var)) >= wanted)
-        return STATUS_OK;
-    return fail(
-        err, STATUS_BAD_DATA,
-        "search.replicates_min: %ld simulations of a design are not to be had, repeats begin behind the first %zu; "
-        "search.max_evals must be %.0f at least",
-        s->search.replicates_min, REPLICATE_AFTER * n_var, ceil(wanted / share) + (double)(REPLICATE_AFTER * n_var));
-}
-
 /* The one place that picks a simulator. */
 static Status open_simulator(Problem *p, const Settings *s, TowerUse use, Err *err)
 {
@@ -106,7 +90,6 @@ static Status open_all(Adapter *a, const Settings *s, Err *err)
     const Tower *t = adapter_tower(a);
     TRY(schema_of(&a->schema, s, t ? tower_n_floors(t) : 0, err));
     TRY(limits_read(&a->limits, &a->schema, s->search.limits, err));
-    TRY(check_repeats(a, s, err));
     a->problem.n_con = a->limits.n;
     a->problem.judge = judge;
     a->problem.user = a;

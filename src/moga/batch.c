@@ -123,10 +123,6 @@ Status batch_evaluate(Search *s, size_t n_new, size_t n, Err *err)
     TRY(ask(s, n, err));
     const Status status = take_results(s, pending_wanted(s, n), err);
     t->waiting += search_seconds(s) - before;
-    t->n_simulated += s->batch.n;
-    t->simulating = t->waiting;
-    if (s->config->asynchronous)
-        t->simulating = queue_busy(s->queue, &t->n_simulated) / (double)s->problem->n_workers;
     return status;
 }
 

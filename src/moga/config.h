@@ -10,6 +10,9 @@
 #include "evaluate/evaluation.h"
 #include "moga/options.h"
 
+enum { SEARCH_CENTRES = 600 };                 /* of the surrogate at most */
+static const double SEARCH_TRUST_ERROR = 0.05; /* of a prediction that stands for an evaluation */
+
 typedef struct {
     uint32_t seed;
     size_t population, generations, max_evals, surrogate_max;
@@ -20,22 +23,15 @@ typedef struct {
                                   half at most */
     size_t n_given;
     SurrogateUse surrogate;
-    SelectionKind selection;
     Fidelity fidelity;
     int asynchronous;
     double replicate_share;    /* noisy: share of max_evals for further replicates */
-    size_t replicates_min;     /* ... of each design that is reported to be on the front */
     size_t replicates_max;     /* ... of each design */
     double max_seconds;        /* 0: no limit */
     size_t stop_after;         /* evaluations that gain nothing above the noise of hypervolume end it; 0: never */
     double nondominated_share; /* stop when this share of the archive is nondominated; 1: never */
     double trust_error;        /* share of an objective's range in the archive */
-    double crossover_probability, crossover_eta, mutation_eta, mutation_rate;
 } SearchConfig;
-
-/* Further replicates among n evaluations of a noisy problem at most: share * max(0, n - REPLICATE_AFTER n_var). Before
- * that, new designs are worth more. */
-double search_replicates(size_t n, double share, size_t n_var);
 
 /* Where a search is resumed: the evaluations at the end of a generation, in the order of the view, and its state. Only
  * read. */

@@ -79,8 +79,6 @@ static const double PROBE_SHARE_MAX = 0.3;         /* greatest share of a batch 
 static const double PROBE_FIND = 0.01;   /* a find is better than predicted by this, in ranges of the archive */
 static const double PROBE_PAY = 2.5;     /* share of a batch for probes of which all are finds */
 static const double PROBE_WEIGHT = 0.05; /* of one probe in the running mean that is the share */
-static const double COST_MAX = 4.0;      /* surrogate = auto: largest cost of a surrogate per design, in simulations */
-enum { COST_SAMPLE = 60 };               /* surrogate = auto: infill designs before costs are compared */
 
 /* -- screening.c --------------------------------------------------------------------------------------------------- */
 

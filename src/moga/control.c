@@ -25,27 +25,12 @@ void control_pack(SurrogateControl *c, Pack *p, size_t n_obj)
         pack_numbers(p, credit->gain, 2, 0.0, 1.0);
         pack_numbers(p, credit->designs, 2, DBL_MIN, 1.0);
     }
-    pack_size(p, &c->cost, COST_TOO_HIGH);
     pack_size(p, &c->n_kept, AGREEMENT_RESULTS_MIN - 1);
     pack_numbers(p, c->F, c->n_kept * n_obj, -DBL_MAX, DBL_MAX);
     pack_numbers(p, c->predicted, c->n_kept * n_obj, -DBL_MAX, DBL_MAX);
 }
 
 /* -- whether the surrogate is used --------------------------------------------------------------------------------- */
-
-void control_weigh_costs(SurrogateControl *c, SurrogateUse use)
-{
-    const SearchTimes *t = &c->times;
-    if (use != SURROGATE_AUTO || c->cost != COST_NOT_KNOWN || t->n_assisted < COST_SAMPLE)
-        return;
-    const double simulation = t->simulating / (double)t->n_simulated, own = t->assisted / (double)t->n_assisted;
-    c->cost = own > COST_MAX * simulation ? COST_TOO_HIGH : COST_ACCEPTED;
-}
-
-int control_allows(const SurrogateControl *c, SurrogateUse use)
-{
-    return use != SURROGATE_OFF && c->cost != COST_TOO_HIGH;
-}
 
 int control_agrees(const SurrogateControl *c)
 {

@@ -12,9 +12,6 @@
  *                 mean. The share of a batch is a running mean of PROBE_PAY for a find and 0 for any other probe: where
  *                 the surrogate is right along every variable there is little to probe
  *   failure rate  running mean of the share of infill designs that failed; variation gets that part at least
- *   cost          SURROGATE_AUTO: the surrogate is disabled when its wall time per design exceeds that of COST_MAX
- *                 simulations. Decided once, after COST_SAMPLE infill designs; part of the state, so that a resumed
- *                 search does not decide again
  *
  * Threads  pure functions of their arguments */
 #ifndef IMTET_MOGA_CONTROL_H
@@ -23,7 +20,6 @@
 #include "base/pack.h"
 #include "evaluate/evaluation.h"
 #include "moga/infill.h"
-#include "moga/options.h"
 
 enum { AGREEMENT_RESULTS_MIN = 4 }; /* Kendall's tau of fewer says nothing */
 
@@ -36,22 +32,16 @@ typedef struct {
     double gain[2], designs[2];
 } Credit;
 
-typedef enum { COST_NOT_KNOWN, COST_ACCEPTED, COST_TOO_HIGH } CostState;
-
 /* Wall time of this session [s]. */
 typedef struct {
-    double waiting;                 /* for simulations */
-    double surrogate;               /* fits, predictions, descents */
-    double simulating;              /* in the simulator, all workers together */
-    double assisted;                /* all of our own while the surrogate was in use */
-    size_t n_simulated, n_assisted; /* designs in the last two */
+    double waiting;   /* for simulations */
+    double surrogate; /* fits, predictions, descents */
 } SearchTimes;
 
 typedef struct {
     double agreement, failure_rate;
     double probe_share;          /* of a batch, before it is kept within its bounds */
     Credit generators, criteria; /* by Generator, by InfillKind */
-    size_t cost;                 /* CostState */
     SearchTimes times;           /* not part of the state */
     size_t n_kept;               /* results since agreement was judged last: */
     double *F, *predicted;       /* (AGREEMENT_RESULTS_MIN - 1 + results of a batch, n_obj) the caller's memory */
@@ -74,9 +64,7 @@ typedef struct {
 void control_begin(SurrogateControl *c);
 void control_pack(SurrogateControl *c, Pack *p, size_t n_obj);
 
-void control_weigh_costs(SurrogateControl *c, SurrogateUse use);
-int control_allows(const SurrogateControl *c, SurrogateUse use); /* a surrogate is wanted and worth its time */
-int control_agrees(const SurrogateControl *c);                   /* predictions have come true in their order */
+int control_agrees(const SurrogateControl *c); /* predictions have come true in their order */
 
 /* n evaluations so far of n_var variables: before INFILL_ALONE n_var of them variation gets the failure rate alone. */
 BatchShares control_batch_shares(const SurrogateControl *c, size_t size, size_t n, size_t n_var);

@@ -106,7 +106,7 @@ static void take_estimates(Search *s)
 
 static Status fit_surrogate(Search *s, Err *err)
 {
-    if (control_allows(&s->control, s->config->surrogate))
+    if (s->config->surrogate == SURROGATE_ON)
         TRY(search_fit_surrogate(s, err));
     else
         surrogate_drop(s->surrogate);
@@ -119,7 +119,7 @@ static Status fit_surrogate(Search *s, Err *err)
 
 static void judge_batch(Search *s)
 {
-    if (!control_allows(&s->control, s->config->surrogate))
+    if (s->config->surrogate == SURROGATE_OFF)
         return;
     const Batch *b = &s->batch;
     const BatchResults results = {.n = b->n,
@@ -179,25 +179,14 @@ static Status replicate_generation(Search *s, size_t n, Err *err)
     return STATUS_OK;
 }
 
-static void count_time(Search *s, double start, double waiting)
-{
-    SearchTimes *t = &s->control.times;
-    if (!control_allows(&s->control, s->config->surrogate))
-        return;
-    t->assisted += search_seconds(s) - start - (t->waiting - waiting);
-    t->n_assisted += s->batch.n;
-}
-
 Status generation_next(Search *s, Err *err)
 {
     const size_t first_new = s->archive.n;
-    const double start = search_seconds(s), waiting = s->control.times.waiting;
     const int has_parents = s->population.n >= 2;
     s->n_predicted = 0;
     if (!has_parents && !search_has_front(s))
         return sample_again(s, err);
     pareto_archive_reset_estimates(&s->archive);
-    control_weigh_costs(&s->control, s->config->surrogate);
     search_measure_front(s);
     size_t n_last = replication_last(s);
     TRY(screening_last(s, &n_last, err));
@@ -215,7 +204,6 @@ Status generation_next(Search *s, Err *err)
     TRY(batch_evaluate(s, n, n_all, err)); /* 5 */
     judge_batch(s);                        /* 6 */
     renew_population(s, first_new);        /* 7 */
-    count_time(s, start, waiting);
     return STATUS_OK;
 }
 

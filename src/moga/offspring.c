@@ -5,13 +5,15 @@
 #include "moga/dominance.h"
 #include "moga/variation.h"
 
+/* Distribution indices: Deb and Jain 2014. */
+static const double SBX_ETA = 20.0, MUTATION_ETA = 20.0;
+
 void offspring_survive(Search *s, Population *p, uint32_t step)
 {
     Random random = random_stream(s->config->seed, RANDOM_NICHING, (uint32_t)s->generation, step);
-    const double progress = fmin((double)s->archive.n / (double)search_planned(s), 1.0);
     size_t *survivors = s->scratch.survivors;
     const size_t n =
-        selection_select(s->selection, p->n, p->F, p->violation, s->config->population, progress, &random, survivors);
+        selection_select(s->selection, p->n, p->F, p->violation, s->config->population, &random, survivors);
     population_keep(p, n, survivors);
 }
 
@@ -37,12 +39,11 @@ static void breed(Search *s, Population *population, size_t n, uint32_t step, do
         Random choice = random_stream(c->seed, RANDOM_PARENTS, (uint32_t)s->generation, name);
         Random change = random_stream(c->seed, RANDOM_VARIATION, (uint32_t)s->generation, name);
         const double *mother = tournament(&parents, &choice), *father = tournament(&parents, &choice);
-        const double eta = (double)j + 0.5 < far * (double)n / 2.0 ? 0.0 : c->mutation_eta;
-        crossover_sbx(&change, p->n_var, p->lower, p->upper, c->crossover_probability, c->crossover_eta, mother, father,
-                      children, children + p->n_var);
+        const double eta = (double)j + 0.5 < far * (double)n / 2.0 ? 0.0 : MUTATION_ETA;
+        crossover_sbx(&change, p->n_var, p->lower, p->upper, SBX_ETA, mother, father, children, children + p->n_var);
         for (size_t i = 0; i < 2 && 2 * j + i < n; i++) {
             double *x = children + i * p->n_var;
-            mutate_polynomial(&change, p->n_var, p->lower, p->upper, c->mutation_rate / (double)p->n_var, eta, x);
+            mutate_polynomial(&change, p->n_var, p->lower, p->upper, 1.0 / (double)p->n_var, eta, x);
             problem_repair(p, x);
             population_add(population, x);
         }

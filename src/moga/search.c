@@ -46,11 +46,10 @@ static int is_due(const Search *s)
     return wanted > 0 && s->convergence.end == 0 && a->n > wanted && a->n / step > before / step;
 }
 
-/* GrowingFront that count into s->rows.reported, which the next view sets anew. */
 static Status look_for_convergence(Search *s, Err *err)
 {
     const Archive *a = &s->archive;
-    unsigned char *counts = s->rows.reported;
+    unsigned char *counts = s->rows.counts;
     const size_t cuts[] = {a->n - s->config->stop_after, a->n};
     double h[2];
     if (!is_due(s))
@@ -75,43 +74,10 @@ static void reconsider_convergence(Search *s)
 
 /* -- the view of the observer -------------------------------------------------------------------------------------- */
 
-/* Replicates of a design that is reported to be on the front; at the end no more than one of them has. */
-static size_t replicates_wanted(Search *s, int is_last)
-{
-    Archive *a = &s->archive;
-    size_t max = 0;
-    if (!s->problem->is_noisy)
-        return 0;
-    pareto_archive_list_front(a);
-    for (size_t i = 0; i < a->n_front; i++)
-        max = a->replicates[a->front[i]] > max ? a->replicates[a->front[i]] : max;
-    return is_last && max < s->config->replicates_min ? max : s->config->replicates_min;
-}
-
-/* n_reported; which: on_front of the archive, or with replicates enough. */
-static size_t mark_reported(Search *s, int is_last, const unsigned char **which)
-{
-    const Archive *a = &s->archive;
-    const size_t wanted = replicates_wanted(s, is_last);
-    unsigned char *reported = s->rows.reported;
-    size_t n = 0;
-    *which = wanted <= 1 ? a->on_front : reported;
-    if (wanted <= 1)
-        return a->n_front;
-    memcpy(reported, a->on_front, a->n);
-    for (size_t i = 0; i < a->n_front; i++) {
-        reported[a->front[i]] = a->replicates[a->front[i]] >= wanted;
-        n += reported[a->front[i]];
-    }
-    return n;
-}
-
 static int report(Search *s, int is_last, ObserveFn observe, void *user)
 {
     const Archive *a = &s->archive;
     const SearchTimes *t = &s->control.times;
-    const unsigned char *reported;
-    const size_t n_reported = mark_reported(s, is_last, &reported);
     state_save(s);
     const SearchView view = {
         .n = a->n,
@@ -127,8 +93,8 @@ static int report(Search *s, int is_last, ObserveFn observe, void *user)
         .ok = a->ok,
         .kind = a->kind,
         .generation = a->generation,
-        .on_front = reported,
-        .n_front = n_reported,
+        .on_front = a->on_front,
+        .n_front = a->n_front,
         .n_failed = a->n_failed,
         .n_replicates = a->n_replicates,
         .n_evaluations = search_evaluations(s),
@@ -141,9 +107,6 @@ static int report(Search *s, int is_last, ObserveFn observe, void *user)
         .n_left_out = surrogate_left_out(s->surrogate),
         .surrogate_error = surrogate_error(s->surrogate),
         .seconds = search_seconds(s),
-        .simulation_s = t->n_simulated > 0 ? t->simulating / (double)t->n_simulated : NAN,
-        .own_s = t->n_assisted > 0 ? t->assisted / (double)t->n_assisted : NAN,
-        .is_disabled = s->control.cost == COST_TOO_HIGH,
         .waited_s = t->waiting,
         .surrogate_s = t->surrogate,
         .is_last = is_last,

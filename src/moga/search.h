@@ -33,13 +33,13 @@
  *       Kendall's tau between predicted and evaluated objectives: while it is too low, batches are variation alone;
  *       credits of generators and criteria
  *   7 Environmental selection (selection.h)
- *       NSGA-III or RVEA among evaluated members, results and trusted predictions; other designs are dropped. Back to 2
+ *       NSGA-III among evaluated members, results and trusted predictions; other designs are dropped. Back to 2
  *
  * Predicted designs may be members of the population; only evaluated ones enter the archive, and the front is made of
  * the archive alone.
  *
  * Reproducible  random streams are keyed by (seed, generation, individual): the same bytes at any thread count; no
- *               clock is read but for SURROGATE_AUTO and max_seconds
+ *               clock is read but for max_seconds
  * Never twice   a design that is in the archive, failed ones too, is not evaluated again, except as a replicate
  * Noise         a share replicate_share of the evaluations, beyond the first REPLICATE_AFTER for each variable, goes to
  *               replicates of the front: the best in each objective and the knee, then the best for most reference
@@ -97,8 +97,7 @@ typedef struct {
     const unsigned char *ok;       /* (n) 0: failed */
     const unsigned char *kind;     /* (n) EvaluationKind */
     const size_t *generation;      /* (n) */
-    const unsigned char *on_front; /* (n) feasible, nondominated, with replicates_min replicates at least; at the end,
-                                      where none has: with the most replicates */
+    const unsigned char *on_front; /* (n) feasible, nondominated */
     size_t n_front, n_failed;
     size_t n_replicates;    /* rows that are further replicates */
     size_t n_evaluations;   /* of max_evals: n, less what screened designs are not simulated */
@@ -111,13 +110,10 @@ typedef struct {
     size_t n_left_out;      /* objectives and constraints that the surrogate leaves out: their mean stands for them */
     double surrogate_error; /* median leave-one-out error, share of range, worst objective; NAN: no surrogate yet */
     double seconds;
-    double simulation_s; /* wall time per evaluation of this session, all workers together; NAN: none yet */
-    double own_s;        /* ... of surrogate and search, while the surrogate is in use */
-    double waited_s;     /* of `seconds`: waiting for evaluations */
-    double surrogate_s;  /* ... fits, predictions, descents; the rest is search */
+    double waited_s;    /* of `seconds`: waiting for evaluations */
+    double surrogate_s; /* ... fits, predictions, descents; the rest is search */
     int is_asynchronous;
     int is_last;       /* the search ends by itself; none follows */
-    int is_disabled;   /* SURROGATE_AUTO: the surrogate costs more than it saves */
     const void *state; /* (n_state bytes) of the search at this moment; NULL: no memory for it */
     size_t n_state;
 } SearchView;

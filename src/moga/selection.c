@@ -8,17 +8,14 @@
 #include "moga/normalisation.h"
 
 struct Selection {
-    SelectionKind kind;
     size_t n_max, n_obj, n_dir;
     double *unit; /* (n_dir, n_obj) directions of length 1 */
-    double *gap;  /* (n_dir) angle to the next direction [rad] */
     Normalisation normalisation;
     size_t *rank;       /* (n_max) */
     size_t *scratch;    /* (3 n_max) */
     size_t *list;       /* (n_max) rows of one layer */
     size_t *niche;      /* (n_max) direction of each row */
     double *distance;   /* (n_max) from it */
-    double *penalised;  /* (n_max) distance of RVEA */
     double *z;          /* (n_obj) normalised objectives of a design */
     size_t *members;    /* (n_dir) taken so far */
     size_t *candidates; /* (n_dir) that are left in the layer which does not fit */
@@ -40,8 +37,6 @@ static void layout(void *selection, Carve *c)
     s->list = carve(c, n, sizeof(size_t));
     s->niche = carve(c, n, sizeof(size_t));
     s->distance = carve(c, n, sizeof(double));
-    s->penalised = carve(c, n, sizeof(double));
-    s->gap = carve(c, r, sizeof(double));
     s->z = carve(c, m, sizeof(double));
     s->members = carve(c, r, sizeof(size_t));
     s->candidates = carve(c, r, sizeof(size_t));
@@ -49,27 +44,12 @@ static void layout(void *selection, Carve *c)
     s->taken = carve(c, n, 1);
 }
 
-static void measure_gaps(Selection *s)
-{
-    for (size_t r = 0; r < s->n_dir; r++) {
-        double nearest = 0.0;
-        for (size_t q = 0; q < s->n_dir; q++) {
-            double cosine = 0.0;
-            for (size_t k = 0; k < s->n_obj; k++)
-                cosine += s->unit[r * s->n_obj + k] * s->unit[q * s->n_obj + k];
-            nearest = q != r ? fmax(nearest, cosine) : nearest;
-        }
-        s->gap[r] = fmax(acos(fmin(nearest, 1.0)), 1e-6);
-    }
-}
-
-Status selection_create(Selection **out, SelectionKind kind, size_t n_max, const Directions *directions, Err *err)
+Status selection_create(Selection **out, size_t n_max, const Directions *directions, Err *err)
 {
     Selection *s = calloc(1, sizeof *s);
     *out = s;
     if (!s)
         return fail(err, STATUS_NO_MEMORY, "no memory for the environmental selection");
-    s->kind = kind;
     s->n_max = n_max;
     s->n_obj = s->normalisation.n_obj = directions->n_obj;
     s->n_dir = directions->n;
@@ -80,7 +60,6 @@ Status selection_create(Selection **out, SelectionKind kind, size_t n_max, const
         return fail(err, STATUS_NO_MEMORY, "no memory for the environmental selection of %zu designs", n_max);
     }
     directions_unit(directions, s->unit);
-    measure_gaps(s);
     return STATUS_OK;
 }
 
@@ -162,7 +141,7 @@ static void fill_niches(Selection *s, size_t n_list, size_t wanted, Random *rand
     }
 }
 
-/* NSGA-III: takes whole layers, then fills the niches from the one that does not fit. */
+/* Takes whole layers, then fills the niches from the one that does not fit. */
 static void take_layers(Selection *s, size_t n, const double F[], const double violation[], size_t keep, Random *random)
 {
     const size_t n_layers = nondominated_sort(n, s->n_obj, F, violation, s->rank, s->scratch);
@@ -186,83 +165,12 @@ static void take_layers(Selection *s, size_t n, const double F[], const double v
         fill_niches(s, n_list, keep - n_taken, random);
 }
 
-/* RVEA's angle-penalised distance in the design's own direction: |z| (1 + m progress^2 angle / gap). */
-static double penalised_distance(const Selection *s, size_t i, const double f[], double progress)
-{
-    const size_t r = s->niche[i];
-    double square = 0.0, along = 0.0;
-    for (size_t k = 0; k < s->n_obj; k++) {
-        const double z = normalised(&s->normalisation, k, f[k]);
-        along += z * s->unit[r * s->n_obj + k];
-        square += z * z;
-    }
-    const double off = sqrt(fmax(square - along * along, 0.0)), angle = atan2(off, along);
-    return hypot(along, off) * (1.0 + (double)s->n_obj * progress * progress * angle / s->gap[r]);
-}
-
-/* Of the designs associated with direction r and not yet taken, the one with the smallest penalised distance. */
-static size_t best_of_niche(const Selection *s, size_t r, size_t n_list)
-{
-    size_t best = SIZE_MAX;
-    for (size_t j = 0; j < n_list; j++) {
-        const size_t i = s->list[j];
-        if (!s->taken[i] && s->niche[i] == r && s->penalised[i] < (best == SIZE_MAX ? INFINITY : s->penalised[best]))
-            best = i;
-    }
-    return best;
-}
-
-static size_t min_violating(const Selection *s, size_t n, const double violation[])
-{
-    size_t best = SIZE_MAX;
-    for (size_t i = 0; i < n; i++)
-        if (!s->taken[i] && (best == SIZE_MAX || violation[i] < violation[best]))
-            best = i;
-    return best;
-}
-
-/* RVEA: round after round every direction takes its best feasible design; then the least violating fill up. */
-static void take_in_rounds(Selection *s, size_t n, const double F[], const double violation[], size_t keep,
-                           double progress)
-{
-    size_t n_list = 0, n_taken = 0, before;
-    for (size_t i = 0; i < n; i++)
-        if (!violation || !(violation[i] > 0.0))
-            s->list[n_list++] = i;
-    if (n_list > 0)
-        normalisation_fit_range(&s->normalisation, n_list, s->list, F);
-    for (size_t j = 0; j < n_list; j++) {
-        const size_t i = s->list[j];
-        associate(s, i, F + i * s->n_obj);
-        s->penalised[i] = penalised_distance(s, i, F + i * s->n_obj, progress);
-    }
-    do {
-        before = n_taken;
-        for (size_t r = 0; r < s->n_dir && n_taken < keep; r++) {
-            const size_t i = best_of_niche(s, r, n_list);
-            if (i != SIZE_MAX) {
-                s->taken[i] = 1;
-                n_taken++;
-            }
-        }
-    } while (n_taken < keep && n_taken > before);
-    for (; n_taken < keep && n_taken < n; n_taken++)
-        s->taken[min_violating(s, n, violation)] = 1;
-}
-
-size_t selection_select(Selection *s, size_t n, const double F[], const double violation[], size_t keep,
-                        double progress, Random *random, size_t selected[])
+size_t selection_select(Selection *s, size_t n, const double F[], const double violation[], size_t keep, Random *random,
+                        size_t selected[])
 {
     size_t n_selected = 0;
     memset(s->taken, 0, n);
-    switch (s->kind) {
-    case SELECTION_NSGA3:
-        take_layers(s, n, F, violation, keep, random);
-        break;
-    case SELECTION_RVEA:
-        take_in_rounds(s, n, F, violation, keep, progress);
-        break;
-    }
+    take_layers(s, n, F, violation, keep, random);
     for (size_t i = 0; i < n; i++)
         if (s->taken[i])
             selected[n_selected++] = i;

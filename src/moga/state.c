@@ -71,7 +71,7 @@ static Status create_selection(Search *s, size_t n_pool, Err *err)
     size_t outer, inner;
     directions_choose(n_obj, s->config->population, &outer, &inner);
     TRY(directions_create(&s->directions, n_obj, outer, inner, err));
-    return selection_create(&s->selection, s->config->selection, n_pool, &s->directions, err);
+    return selection_create(&s->selection, n_pool, &s->directions, err);
 }
 
 Status state_create(Search *s, Err *err)
@@ -113,7 +113,7 @@ void state_free(Search *s)
     population_free(&s->pool);
     free(s->state.bytes);
     free(s->rows.importance);
-    free(s->rows.reported);
+    free(s->rows.counts);
     free(s->store);
 }
 
@@ -123,11 +123,11 @@ Status state_grow_rows(Search *s, Err *err)
     if (s->archive.n <= rows->n_max)
         return STATUS_OK;
     free(rows->importance);
-    free(rows->reported);
+    free(rows->counts);
     rows->n_max = 2 * s->archive.n;
     rows->importance = calloc(rows->n_max, sizeof *rows->importance);
-    rows->reported = calloc(rows->n_max, 1);
-    if (rows->importance && rows->reported)
+    rows->counts = calloc(rows->n_max, 1);
+    if (rows->importance && rows->counts)
         return STATUS_OK;
     rows->n_max = 0;
     return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", s->archive.n);

@@ -64,8 +64,8 @@ enum { NOTE_WAS_PREDICTED, NOTE_CRITERION, NOTE_KIND, NOTE_PREDICTED };
 /* Grows with the archive. */
 typedef struct {
     size_t n_max;
-    size_t *importance;      /* (n_max) of designs, for replication */
-    unsigned char *reported; /* (n_max) on the front, with replicates enough */
+    size_t *importance;    /* (n_max) of designs, for replication */
+    unsigned char *counts; /* (n_max) of designs, for convergence */
 } PerRow;
 
 /* Each array has one use. */

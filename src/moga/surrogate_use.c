@@ -6,7 +6,7 @@
  * choice of designs to be replicated. */
 void search_measure_front(Search *s)
 {
-    if (!control_allows(&s->control, s->config->surrogate) && !s->problem->is_noisy)
+    if (s->config->surrogate == SURROGATE_OFF && !s->problem->is_noisy)
         return;
     Archive *a = &s->archive;
     const Population *p = &s->population;
@@ -26,8 +26,7 @@ void search_measure_front(Search *s)
 
 int search_uses_surrogate(const Search *s)
 {
-    return control_allows(&s->control, s->config->surrogate) && surrogate_is_usable(s->surrogate) &&
-           control_agrees(&s->control);
+    return s->config->surrogate == SURROGATE_ON && surrogate_is_usable(s->surrogate) && control_agrees(&s->control);
 }
 
 int search_trusts(const Search *s, const Population *p, size_t i)

@@ -16,10 +16,10 @@ static double spread_factor(double u, double eta, double room, double apart)
     return pow(base, 1.0 / (eta + 1.0));
 }
 
-void crossover_sbx(Random *r, size_t n_var, const double lower[], const double upper[], double probability, double eta,
+void crossover_sbx(Random *r, size_t n_var, const double lower[], const double upper[], double eta,
                    const double mother[], const double father[], double child1[], double child2[])
 {
-    const int crossed = random_uniform(r) < probability;
+    random_uniform(r); /* every pair is crossed */
     for (size_t d = 0; d < n_var; d++) {
         const double a = fmin(mother[d], father[d]), b = fmax(mother[d], father[d]), apart = b - a;
         const int here = random_uniform(r) < 0.5;
@@ -27,7 +27,7 @@ void crossover_sbx(Random *r, size_t n_var, const double lower[], const double u
         const int swapped = random_uniform(r) < 0.5;
         child1[d] = mother[d];
         child2[d] = father[d];
-        if (!crossed || !here || !(apart > 1e-14 * (upper[d] - lower[d])))
+        if (!here || !(apart > 1e-14 * (upper[d] - lower[d])))
             continue;
         const double middle = 0.5 * (a + b);
         const double low = middle - 0.5 * apart * spread_factor(u, eta, a - lower[d], apart);

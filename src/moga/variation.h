@@ -16,9 +16,8 @@
 
 #include "base/random.h"
 
-/* Two children of two parents. With the given probability the pair is crossed, else copied; of a crossed pair each
- * variable is recombined with probability 1/2. */
-void crossover_sbx(Random *r, size_t n_var, const double lower[], const double upper[], double probability, double eta,
+/* Two children of two parents; each variable is recombined with probability 1/2. */
+void crossover_sbx(Random *r, size_t n_var, const double lower[], const double upper[], double eta,
                    const double mother[], const double father[], double child1[], double child2[]);
 
 /* Each variable of x is mutated with the given probability. */

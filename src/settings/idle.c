@@ -22,7 +22,6 @@ static const struct {
      "effective"},
     {"design.thickness_", "core.section", "!effective"},
     {"motion.sa_period_s", "motion.sa_g", "!0"},
-    {"search.trust_error search.surrogate_max", "search.surrogate", "!off"},
 };
 
 static int names_key(const char *keys, const char *key)

@@ -47,19 +47,16 @@ typedef struct {
 typedef struct {
     long seed, threads, population, initial, generations, max_evals;
     double max_hours; /* OPTION_WORD: by the Slurm job */
-    double nondominated_share, trust_error;
-    double crossover_probability, crossover_eta, mutation_eta, mutation_rate;
-    long surrogate_max; /* largest number of centres of the surrogate */
+    double nondominated_share;
     SurrogateUse surrogate;
     Switch asynchronous;
     Fidelity fidelity;
-    SelectionKind survival;
-    double replicate_share;              /* share of max_evals */
-    long replicates_min, replicates_max; /* of a design */
-    long stop_after;                     /* evaluations without gain; 0: any number */
-    long failures_max;                   /* evaluations in a row that fail; 0: any number */
-    long polish;                         /* designs at the end */
-    double polish_gain_min;              /* [-] of the range of an objective on the front */
+    double replicate_share; /* share of max_evals */
+    long replicates_max;    /* of a design */
+    long stop_after;        /* evaluations without gain; 0: any number */
+    long failures_max;      /* evaluations in a row that fail; 0: any number */
+    long polish;            /* designs at the end */
+    double polish_gain_min; /* [-] of the range of an objective on the front */
     char objectives[OPTION_TEXT_MAX], limits[OPTION_TEXT_MAX];
     char start[OPTION_TEXT_MAX]; /* a CSV of designs or a run's folder, or none */
 } SearchOptions;

@@ -113,14 +113,6 @@ static void check_replicates(const Settings *s, const Rules *r)
     if (varies && s->sim.replicates < 2)
         break_rule(r, PAIR(uncertain.restitution, sim.replicates),
                    "[uncertain]: needs replicates that differ: set sim.replicates to 2 or more");
-    if (s->search.replicates_min > s->search.replicates_max)
-        break_rule(r, PAIR(search.replicates_min, search.replicates_max),
-                   "search.replicates_min: %ld is above search.replicates_max = %ld", s->search.replicates_min,
-                   s->search.replicates_max);
-    if (s->search.replicates_min > 1 && !(s->search.replicate_share > 0))
-        break_rule(r, PAIR(search.replicates_min, search.replicate_share),
-                   "search.replicates_min: %ld simulations of a design need search.replicate_share above 0",
-                   s->search.replicates_min);
 }
 
 static void check_fidelity(const SearchOptions *s, const Rules *r)

@@ -284,9 +284,6 @@ Status run_why_empty(const Run *run, Err *err)
         return fail(err, STATUS_UNMET, "%s: search.limits: none of %zu designs keeps %.120s%s%s", run->folder, n_ok,
                     s->search.limits, access(nearest, F_OK) == 0 ? "; those that come nearest: " : "",
                     access(nearest, F_OK) == 0 ? nearest : "");
-    if (schema_is_noisy(s) && s->search.replicates_min > 1)
-        return fail(err, STATUS_BAD_DATA, "%s: no design was simulated %ld times yet (search.replicates_min)",
-                    run->folder, s->search.replicates_min);
     return fail(err, STATUS_BAD_DATA, "%s: the front is empty", run->folder);
 }
 

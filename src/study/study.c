@@ -159,12 +159,9 @@ static void take_view(StudySummary *sum, const SearchView *view)
 {
     sum->n_front = view->n_front;
     sum->n_repeats = view->n_replicates;
-    sum->simulation_s = view->simulation_s;
-    sum->own_s = view->own_s;
     sum->search_s = view->seconds;
     sum->waited_s = view->waited_s;
     sum->surrogate_s = view->surrogate_s;
-    sum->surrogate_disabled = view->is_disabled;
     sum->n_screened = view->n_screened;
     sum->n_evaluations = view->n_evaluations;
     sum->level_agreement = view->level_agreement;
@@ -317,22 +314,16 @@ SearchConfig study_search_config(const Settings *s)
         .initial = (size_t)initial,
         .generations = (size_t)s->search.generations,
         .max_evals = (size_t)s->search.max_evals,
-        .surrogate_max = (size_t)s->search.surrogate_max,
+        .surrogate_max = SEARCH_CENTRES,
         .surrogate = s->search.surrogate,
-        .selection = s->search.survival,
         .fidelity = settings_screens(s) ? s->search.fidelity : FIDELITY_OFF,
         .asynchronous = s->search.asynchronous == SWITCH_ON,
         .max_seconds = 3600 * fmax(s->search.max_hours, 0.0),
         .stop_after = (size_t)s->search.stop_after,
         .nondominated_share = s->search.nondominated_share,
-        .trust_error = s->search.trust_error,
+        .trust_error = SEARCH_TRUST_ERROR,
         .replicate_share = s->search.replicate_share,
-        .replicates_min = (size_t)s->search.replicates_min,
         .replicates_max = (size_t)s->search.replicates_max,
-        .crossover_probability = s->search.crossover_probability,
-        .crossover_eta = s->search.crossover_eta,
-        .mutation_eta = s->search.mutation_eta,
-        .mutation_rate = s->search.mutation_rate,
     };
 }
 

@@ -106,13 +106,7 @@ static Status log_costs(RunStore *store, const StudySummary *sum, int threads, E
         effort_words(&e, text);
         TRY(store_log(store, err, "%s", text));
     }
-    if (!(sum->own_s + sum->simulation_s > 0.0))
-        return STATUS_OK;
-    return store_log(
-        store, err, "wall time per simulation: %.3g ms in the simulator, %.3g ms of surrogate and search (%.0f %%); %s",
-        1e3 * sum->simulation_s, 1e3 * sum->own_s, 100.0 * sum->own_s / (sum->own_s + sum->simulation_s),
-        sum->surrogate_disabled ? "the surrogate cost more than it saved and was no longer used"
-                                : "the surrogate was used");
+    return STATUS_OK;
 }
 
 void screening_words(const StudySummary *sum, char text[SCREENING_WORDS])
