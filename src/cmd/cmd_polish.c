@@ -15,48 +15,43 @@ typedef struct {
     RunStore *store; /* open from the first look at the design until the better one is in */
     const Run *run;
     size_t row; /* of the design */
-    double weight[OBJECTIVES_MAX];
-    unsigned char keep[OBJECTIVES_MAX];
     RefineConfig config;
     Refined result;
 } Work;
 
-static Status take_kept(const Args *args, Work *w, Err *err)
+/* Of a list of names all that stand in it, with their numbers; "all": every objective. */
+static Status take_list(const Args *args, const char *option, const Schema *schema, double otherwise, double values[],
+                        Err *err)
 {
-    const Schema *schema = &w->run->schema;
-    const char *list = args_value(args, "--keep");
-    char name[TABLE_NAME_MAX];
-    size_t k;
-    memset(w->keep, !list || strcmp(list, "all") == 0, schema->n_obj);
-    for (size_t i = 0; list && strcmp(list, "all") != 0 && i < list_count(list); i++) {
-        if (!list_item(list, i, name, sizeof name))
-            return fail(err, STATUS_USAGE, "--keep: name %zu is empty or too long", i + 1);
-        TRY(schema_pick_objective(schema, "--keep", name, STATUS_USAGE, &k, err));
-        w->keep[k] = 1;
-    }
+    const char *list = args_value(args, option);
+    if (strcmp(list, "all") != 0)
+        return pairs_take(schema, option, list, otherwise, values, err);
+    for (size_t k = 0; k < schema->n_obj; k++)
+        values[k] = otherwise;
     return STATUS_OK;
 }
 
-static Status take_improved(const Args *args, Work *w, Err *err)
+static Status take_goal(const Args *args, Work *w, Err *err)
 {
     const Schema *schema = &w->run->schema;
-    const char *list = args_value(args, "--improve");
+    const char *kept = args_value(args, "--keep");
+    w->config.weight[0] = args_has(args, "--improve") ? 0.0 : 1.0;
     for (size_t k = 0; k < schema->n_obj; k++)
-        w->weight[k] = list ? strcmp(list, "all") == 0 : k == 0;
-    if (list && strcmp(list, "all") != 0)
-        TRY(pairs_take(schema, "--improve", list, 1.0, w->weight, err));
-    return weights_check(schema, "--improve", w->weight, err);
+        w->config.slack[k] = kept ? INFINITY : -1.0;
+    if (args_has(args, "--improve"))
+        TRY(take_list(args, "--improve", schema, 1.0, w->config.weight, err));
+    if (kept)
+        TRY(take_list(args, "--keep", schema, -1.0, w->config.slack, err));
+    return weights_check(schema, "--improve", w->config.weight, err);
 }
 
 static Status take_options(const Args *args, Work *w, Err *err)
 {
     long evals;
     TRY(refine_allows(w->run->settings, err));
-    TRY(take_improved(args, w, err));
-    TRY(take_kept(args, w, err));
+    TRY(take_goal(args, w, err));
     TRY(args_whole(args, "--evals", 1, 1000000, 300, &evals, err));
     TRY(args_whole(args, "--replicates", 1, 1000, 4, &w->config.replicates, err));
-    TRY(args_number(args, "--seconds", 0, 1e9, 0, &w->config.max_seconds, err));
     const size_t needed = refine_evals_min(w->run->settings, w->config.replicates);
     if ((size_t)evals < needed)
         return fail(err, STATUS_USAGE,
@@ -64,11 +59,6 @@ static Status take_options(const Args *args, Work *w, Err *err)
                     "simulations (6 times --replicates of a tower: at the end also at twice the steps); give more, or "
                     "fewer --replicates",
                     evals, needed);
-    TRY(args_number(args, "--slack", 0, 1e6, -1, &w->config.slack, err));
-    w->config.gain_min = w->run->settings->search.polish_gain_min;
-    w->config.algorithm = args_value(args, "--algorithm");
-    w->config.weight = w->weight;
-    w->config.keep = w->keep;
     w->config.max_evals = (size_t)evals;
     return STATUS_OK;
 }
@@ -91,16 +81,17 @@ static Status open_run(const Args *args, Work *w, Err *err)
     return record_paths_find(w->run->settings, w->run->provenance, &moved, err);
 }
 
-/* One row in natural signs: the polished design as in front.csv but for the id of the design that it came from; then of every
- * objective how it was before, and where they are known the standard deviations of both and the estimated error. */
+/* One row in natural signs: the polished design as in front.csv but for the id of the design that it came from; then of
+ * every objective how it was before, and where they are known the standard deviations of both and the estimated error. */
 static Status write_csv(const Work *w, const char *path, Err *err)
 {
     const Schema *schema = &w->run->schema;
     const Refined *r = &w->result;
+    const Evaluation *start = &r->designs.row[0], *end = &r->designs.row[1];
     const struct {
         const char *suffix;
         const double *values;
-    } more[] = {{"before", r->f_start}, {"before_sd", r->spread_start}, {"sd", r->spread}, {"error", r->error}};
+    } more[] = {{"before", start->f}, {"before_sd", start->sd}, {"sd", end->sd}, {"error", r->error}};
     enum { N_MORE = sizeof more / sizeof more[0] };
     Output o;
     TRY(output_open(&o, path, err));
@@ -111,8 +102,8 @@ static Status write_csv(const Work *w, const char *path, Err *err)
         for (size_t k = 0; k < schema->n_obj && isfinite(more[i].values[0]); k++)
             fprintf(o.stream, ",%s_%s", schema_objective(schema, k)->name, more[i].suffix);
     fprintf(o.stream, "\n%ld", w->run->table.row[w->row].id);
-    print_cells(o.stream, schema->n_var, r->x);
-    print_cells(o.stream, schema->n_obj, r->f);
+    print_cells(o.stream, schema->n_var, end->x);
+    print_cells(o.stream, schema->n_obj, end->f);
     for (size_t i = 0; i < N_MORE; i++)
         print_cells(o.stream, isfinite(more[i].values[0]) ? schema->n_obj : 0, more[i].values);
     fputc('\n', o.stream);
@@ -122,9 +113,9 @@ static Status write_csv(const Work *w, const char *path, Err *err)
 static void show_gain(const Work *w, size_t k)
 {
     const Column *c = schema_objective(&w->run->schema, k);
-    const Refined *r = &w->result;
-    const double gain = c->sense * (r->f_start[k] - r->f[k]);
-    const double error = hypot(r->spread_start[k], r->spread[k]) / sqrt((double)w->config.replicates);
+    const Evaluation *start = &w->result.designs.row[0], *end = &w->result.designs.row[1];
+    const double gain = c->sense * (start->f[k] - end->f[k]);
+    const double error = hypot(start->sd[k], end->sd[k]) / sqrt((double)w->config.replicates);
     printf("%s is %s by %.3g", c->name, gain < 0.0 ? "worse" : "better", fabs(gain));
     if (isfinite(error))
         printf(" with a standard error of %.2g", error);
@@ -137,30 +128,32 @@ static const char *verdict_of(const Refined *r)
            : !r->keeps            ? "Simulated again, what was to be kept is not."
            : isnan(r->gain_error) ? "One simulation each: nothing is known of the spread."
            : refined_counts(r)    ? "Simulated again on both designs this is more than the standard deviation."
-           : r->gain > fmax(r->gain_min, 2.0 * r->gain_error)
+           : r->gain > fmax(REFINE_GAIN_MIN, 2.0 * r->gain_error)
                ? "Simulated at twice the steps on both designs it is not."
-           : r->gain <= r->gain_min ? "Simulated again on both designs this is less than search.polish_gain_min."
-                                    : "Simulated again on both designs this is not more than the standard deviation.";
+           : r->gain <= REFINE_GAIN_MIN
+               ? "Simulated again on both designs this is less than 0.1 % of the range of the front."
+               : "Simulated again on both designs this is not more than the standard deviation.";
 }
 
 static void show(const Work *w, long id)
 {
     const Schema *schema = &w->run->schema;
     const Refined *r = &w->result;
+    const Evaluation *start = &r->designs.row[0], *end = &r->designs.row[1];
     char label[32];
     show_objective_names(schema);
-    show_objectives("before", w->run->table.row[w->row].id, schema, r->f_start, r->error);
+    show_objectives("before", w->run->table.row[w->row].id, schema, start->f, r->error);
     snprintf(label, sizeof label, "sd %s",
              spread_word(w->run->settings->sim.gap_tolerance_m, &w->run->settings->uncertain));
-    show_objectives("polished", id, schema, r->f, r->error);
-    if (isfinite(r->spread_start[0]))
-        show_objectives(label, 0, schema, r->spread_start, NULL);
+    show_objectives("polished", id, schema, end->f, r->error);
+    if (isfinite(start->sd[0]))
+        show_objectives(label, 0, schema, start->sd, NULL);
     if (isfinite(r->error[0]))
         show_objective_errors(schema, r->error);
     printf("\n%zu designs tried in %zu simulations, %zu failed, %.1f s\n", r->n_evaluated, r->n_simulated, r->n_failed,
            r->seconds);
     for (size_t k = 0; r->has_changed && k < schema->n_obj; k++)
-        if (w->weight[k] > 0.0)
+        if (w->config.weight[k] > 0.0)
             show_gain(w, k);
     puts(verdict_of(r));
     if (id)
@@ -172,9 +165,8 @@ static Status polish(const Args *args, Work *w, Err *err)
     long id = 0;
     TRY(open_run(args, w, err));
     TRY(refine_design(w->run, w->row, &w->config, &w->result, err));
-    const Evaluation better = refined_evaluation(&w->result);
     if (refined_counts(&w->result))
-        TRY(store_add_evaluations(w->store, 1, &better, &id, err));
+        TRY(store_add_evaluations(w->store, 1, &w->result.designs.row[1], &id, err));
     show(w, id);
     return args_has(args, "--csv") ? write_csv(w, args_value(args, "--csv"), err) : STATUS_OK;
 }
@@ -192,12 +184,10 @@ static const ArgOption OPTIONS[] = {
     {"--design", "ID", NULL, 0, DESIGN_OF_RUN},
     {"--improve", "NAME[=W],...", NULL, 0,
      "objectives to improve, with weights in ranges of the front, or all; the first"},
-    {"--keep", "NAMES", NULL, 0, "all, or a comma list: these may not get worse"},
-    {"--slack", "S", NULL, 0, "but by this share of their value; their spread if not given"},
-    {"--algorithm", "NAME", NULL, 0, "cobyla | bobyqa | sbplx | isres: half of the simulations go to it"},
+    {"--keep", "NAME[=S],...", NULL, 0,
+     "these may lose no more than their deviation, or the share S of their value; all if not given"},
     {"--evals", "N", NULL, 0, "simulate at most so often; 300 if not given"},
     {"--replicates", "N", NULL, 0, "simulations of a noisy design (the tower's), whose mean counts; 4"},
-    {"--seconds", "T", NULL, 0, "stop after so long; 0: no limit"},
     {"--csv", "FILE", NULL, 0,
      "the polished design, its objectives and those before, their deviations and errors into FILE; -: standard output"},
     OPTION_MOVED,
@@ -211,11 +201,10 @@ const Command CMD_POLISH = {
     .summary = "improve objectives of a design, the others kept",
     .example = "imtet polish results/quick --design knee --improve j2_m",
     .details =
-        "Improves objectives of a design of RUN while the others get no worse than their spread: a surrogate "
-        "of\n"
-        "the nearest simulations, on which NLopt looks for better designs, and the simulator in turn. At the end both\n"
-        "designs are simulated again; a gain beyond the standard deviation goes into the run as a design of the kind "
-        "polished.",
+        "Improves objectives of a design of RUN while the others get no worse than their spread, by NLopt on the\n"
+        "simulator. At the end both designs are simulated again; a gain beyond the standard deviation goes into the "
+        "run\n"
+        "as a design of the kind polished.",
     .options = OPTIONS,
     .run = run,
 };

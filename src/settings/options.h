@@ -56,7 +56,6 @@ typedef struct {
     long stop_after;        /* evaluations without gain; 0: any number */
     long failures_max;      /* evaluations in a row that fail; 0: any number */
     long polish;            /* designs at the end */
-    double polish_gain_min; /* [-] of the range of an objective on the front */
     char objectives[OPTION_TEXT_MAX], limits[OPTION_TEXT_MAX];
     char start[OPTION_TEXT_MAX]; /* a CSV of designs or a run's folder, or none */
 } SearchOptions;

@@ -254,8 +254,6 @@ static const Option OPTIONS[] = {
     WHOLE(search.polish, "3", 0, 32,
           "designs polished at the end, with a tenth more simulations; none where these are too few or the problem is "
           "noisy"),
-    REAL(search.polish_gain_min, "-", "0.001", 0, 1,
-         "polishing: a gain counts from this share of the range of the objectives on the front on"),
     TEXT(search.objectives, "auto",
          "tower: results that are searched for, a comma list of columns (results/README.md); paper: its seven; auto: "
          "those of them that the building has"),

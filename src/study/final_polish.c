@@ -1,7 +1,7 @@
 #include "study/final_polish.h"
 
-#include "study/refine.h"
 #include "settings/options.h"
+#include "study/refine.h"
 
 /* Replicates that a standard deviation is estimated from; simulations below which polishing a design finds nothing; the
  * share of the search, 1 / SHARE, that all of them take; designs. Chosen by scripts/polish (docs/polish.md). */
@@ -27,32 +27,23 @@ static size_t evals_each(const Settings *s)
     return is_possible && each >= EVALS_MIN && (size_t)each >= refine_evals_min(s, replicates(s)) ? (size_t)each : 0;
 }
 
+/* In all objectives at once, each of which may lose one deviation. */
 static Status refine(const FinalPolish *p, const Run *run, size_t row, Refined *refined, Err *err)
 {
-    const Settings *s = p->used;
-    unsigned char keep[OBJECTIVES_MAX];
-    double weight[OBJECTIVES_MAX];
+    RefineConfig config = {
+        .replicates = replicates(p->used), .max_evals = evals_each(p->used), .go_on = p->go_on, .user = p->user};
     for (size_t k = 0; k < OBJECTIVES_MAX; k++) {
-        keep[k] = 1;
-        weight[k] = 1.0;
+        config.weight[k] = 1.0;
+        config.slack[k] = -1.0;
     }
-    return refine_design(run, row,
-                         &(RefineConfig){.weight = weight,
-                                         .keep = keep,
-                                         .slack = -1.0,
-                                         .gain_min = s->search.polish_gain_min,
-                                         .replicates = replicates(s),
-                                         .max_evals = evals_each(s),
-                                         .go_on = p->go_on,
-                                         .user = p->user},
-                         refined, err);
+    return refine_design(run, row, &config, refined, err);
 }
 
 /* n_tried: designs tried so far, this one included. */
 static Status store_refined(RunStore *store, const FinalPolish *p, const Refined *refined, size_t n_tried, Err *err)
 {
-    const Evaluation better = refined_evaluation(refined);
-    return store_polished(store, refined_counts(refined) ? &better : NULL, n_tried, p->n_simulated, err);
+    const Evaluation *better = refined_counts(refined) ? &refined->designs.row[1] : NULL;
+    return store_polished(store, better, n_tried, p->n_simulated, err);
 }
 
 /* A design that cannot be polished, one that fails with more replicates say, is logged and left out. */

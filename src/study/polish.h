@@ -1,34 +1,29 @@
-/* study/polish.h -- the goal of study/goal.h pursued with NLopt on the true evaluation.
+/* study/polish.h -- a weighted sum of objectives lowered from a given design on, by NLopt on the simulator itself.
  *
- * Algorithms  cobyla, isres: bounds handed over; bobyqa, sbplx: bounds as a penalty
- * Guards      a failed evaluation is a finite wall, never NaN or Inf; the answer is the best allowed design that was
- *             seen, whatever NLopt returns; evaluations and seconds are counted here, not by NLopt
- * Start       its own evaluation counts as the first; it is always allowed, so the answer is never worse than it
- * Threads     asks the queue for one design at a time */
+ *   minimise   value(x) = sum_k weight_k f_k(x) / scale_k      while  f_k(x) <= bound_k,  g(x) <= 0,  lower <= x <= upper
+ *
+ * Method    in the unit cube of the box; COBYLA (Powell 1994: linear models of every function), where nothing is bounded
+ *           BOBYQA (Powell 2009: a quadratic model). One that has converged begins again at its best design
+ * Guards    a failed simulation is a finite wall, never NaN; the answer is the best allowed design that was seen, whatever
+ *           NLopt returns, the start at worst; simulations are counted here
+ * Repeats   both methods are deterministic
+ * Threads   asks the queue for one design at a time */
 #ifndef IMTET_STUDY_POLISH_H
 #define IMTET_STUDY_POLISH_H
 
-#include <stdint.h>
-
-#include "study/goal.h"
+#include "evaluate/queue.h"
 
 typedef struct {
-    const char *algorithm;
-    Goal goal;
+    const double *weight, *scale; /* (n_obj) */
+    const double *bound;          /* (n_obj) INFINITY: free */
     size_t max_evals;
-    double max_seconds; /* 0: no limit */
-    uint32_t seed;
-} PolishConfig;
+} PolishGoal;
 
 typedef struct {
+    double *x, *f; /* (n_var) (n_obj) minimised: the start, which is allowed whatever it is, then the best */
     size_t n_evaluated, n_failed;
-    double *x, *f; /* (n_var) (n_obj): the caller's, filled */
-} PolishResult;
+} Polished;
 
-/* Whether there is an algorithm of that name. */
-Status polish_knows(const char *algorithm, Err *err);
-
-/* Fails where the start itself cannot be evaluated. */
-Status polish_run(Queue *queue, const PolishConfig *config, const double start[], PolishResult *result, Err *err);
+Status polish_run(Queue *queue, const PolishGoal *goal, Polished *p, Err *err);
 
 #endif
