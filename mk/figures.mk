@@ -1,6 +1,6 @@
 # Figures and pictures of README and docs. Those of time want a quiet machine.
 
-.PHONY: setup-figures bench promise paper chart compare ablation fidelity pictures defend defend-bumpers web setup-browser report-bench serve-bench scale-cost
+.PHONY: setup-figures bench promise paper chart compare ablation fidelity pictures study web setup-browser report-bench serve-bench scale-cost
 
 # A record that is not there is replaced by the built-in motion.
 BENCH_RECORD ?= $(or $(wildcard ../shared/records/kobe_jma_ns.csv),builtin:kobe-like)
@@ -50,15 +50,12 @@ pictures: $(PROGRAM) ## docs/pictures, those of a study: RUN=results/kobe RECORD
 	@$(REPORT_PICTURE)/report-design.jpg '#design' 1500
 REPORT_PICTURE = node tests/report/picture.mjs $(BUILD)/pictures/report.html docs/pictures
 
-DEFEND_EVALS ?= 1500
-defend: $(PROGRAM) ## docs/defend.md: forces, stresses, baselines, deviations, limits of a Kobe study; RECORD=FILE DEFEND_EVALS=N
-	@scripts/defend --program ./$(PROGRAM) --evals $(DEFEND_EVALS) --record $(or $(RECORD),../shared/records/kobe_jma_ns.csv)
+study: $(PROGRAM) setup-figures ## docs/study.md: the studies of the paper, what has to be defended, bumpers; ARGS="--evals N front ida"
+	@scripts/study --program ./$(PROGRAM) $(ARGS)
+	@scripts/tables study
 
 web: setup-browser ## web/charts.js bundled anew from npm
 	@cd web && npm ci --ignore-scripts --no-audit --no-fund --silent && node bundle.mjs
-
-defend-bumpers: $(PROGRAM) setup-figures ## docs/defend-bumpers.md: a study with bumpers beside one without; RECORD=FILE
-	@scripts/defend-bumpers --program ./$(PROGRAM) --record $(or $(RECORD),$(BENCH_RECORD)) $(ARGS)
 
 setup-figures: ## packages for the tables of the search
 	@scripts/setup packages-figures.txt

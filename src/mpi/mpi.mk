@@ -22,10 +22,10 @@ $(BUILD)/imtet-bench-ranks: $(BUILD)/bench/ranks.o $(MPI_OBJ) $(LIB)
 	$(Q)$(MPICC) $(LDFLAGS) -o $@ $^ $(LDLIBS)
 
 # Measurements of one revision are kept: what was interrupted, or ended by LIMIT, goes on.
-scale-ranks: $(MPI_PROGRAM) $(BUILD)/imtet-bench-ranks ## docs/cluster-scale.md: how far ranks scale, measured and modelled; LIMIT=500 [s], then again
+scale-ranks: $(MPI_PROGRAM) $(BUILD)/imtet-bench-ranks ## how far ranks scale, measured and modelled; LIMIT=500 [s], then again
 	@scripts/scale-ranks --kept $(BUILD)/scale-ranks-$$(git rev-parse --short HEAD).jsonl $(if $(LIMIT),--seconds $(LIMIT))
 
-scale: scale-cost scale-ranks ## both pages on scale: docs/scale.md, docs/cluster-scale.md
+scale: scale-cost scale-ranks ## what a study costs, how far ranks scale
 
 # A program that differs by its revision alone.
 $(BUILD)/other/provenance.o: src/store/provenance.c $(BUILD)/revision
