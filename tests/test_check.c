@@ -80,12 +80,9 @@ static void test_deviations_and_objectives_that_make_no_sense_are_noticed(void *
 {
     (void)state;
     write_building(1, 1, 0);
-    expect_warnings("uncertain.damping sim.gap_tolerance_m",
-                    "--set uncertain.damping=3 --set sim.gap_tolerance_m=0.8 --set sim.replicates=2");
+    expect_warnings("sim.gap_tolerance_m", "--set sim.gap_tolerance_m=0.8 --set sim.replicates=2");
     expect_warnings("search.objectives", "--set search.objectives=j1_m,bumper_strain");
     expect_warnings("", "--set search.objectives=j1_m,bumper_strain --set contact.bumper_stiffness_n_m=1e8");
-    expect_warnings("sim.tolerance", "--set sim.tolerance=auto");
-    expect_warnings("", "--set sim.tolerance=auto --set sim.gap_tolerance_m=0.002 --set sim.replicates=2");
     expect_warnings("motion.records",
                     "--record builtin:kobe-like --set motion.records=builtin:sylmar-like,builtin:kobe-like");
     expect_warnings("motion.records", "--set motion.records=builtin:sylmar-like,builtin:sylmar-like");

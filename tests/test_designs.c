@@ -127,7 +127,7 @@ static void test_evaluate_takes_a_design_from_elsewhere(void **state)
 static void test_evaluate_compares_with_devices_and_replicates_have_a_named_deviation(void **state)
 {
     (void)state;
-    json_t *o = json_of("evaluate @/run --design knee --json --replicates 3 --set uncertain.contact_stiffness=0.2");
+    json_t *o = json_of("evaluate @/run --design knee --json --replicates 3 --set sim.uncertain=contact_stiffness=0.2");
     const json_t *record = json_array_get(json_object_get(o, "records"), 0);
     assert_less(0, number(json_object_get(record, "links"), "link_ns_m"));
     assert_less(0, number(json_object_get(record, "tmd"), "stroke_m"));
@@ -140,7 +140,7 @@ static void test_evaluate_compares_with_devices_and_replicates_have_a_named_devi
     assert_non_null(strstr(said, "the other lines, and what they are compared by, are as designed"));
     assert_non_null(strstr(said, "against viscous links ("));
     free(said);
-    expect(65, "needs replicates that differ", "evaluate @/run --design knee --set uncertain.damping=0.1");
+    expect(65, "needs replicates that differ", "evaluate @/run --design knee --set sim.uncertain=damping=0.1");
 }
 
 static void test_evaluate_and_simulate_estimate_the_same_error_and_a_study_shows_that_of_its_knee(void **state)

@@ -7,7 +7,6 @@
 #include "motion/motion_source.h"
 #include "scene_options.h"
 #include "sim/sim.h"
-#include "sim/tolerance.h"
 #include "analysis/estimate.h"
 
 static void test_a_second_run_has_twice_the_steps_of_the_first(void **state)
@@ -23,43 +22,17 @@ static void test_a_second_run_has_twice_the_steps_of_the_first(void **state)
     assert_false(estimate_options(&o.sim, &finer));
 }
 
-static double steps_of(const char *tolerance, double gap_tolerance_m)
-{
-    SimOptions o = paper_scene().sim;
-    double steps = -1;
-    Err err;
-    snprintf(o.tolerance, sizeof o.tolerance, "%s", tolerance);
-    o.gap_tolerance_m = gap_tolerance_m;
-    return tolerance_steps(&o, &steps, &err) == STATUS_OK ? steps : -1;
-}
-
 static void test_a_tolerance_chooses_the_steps(void **state)
 {
     (void)state;
-    SceneOptions o = paper_scene();
-    SimOptions finer;
-    assert_true(steps_of("none", 0.001) == 0 && steps_of("auto", 0) == 0);
-    assert_close(steps_of("0.01", 0), 2, 1e-12);
-    assert_close(steps_of("0.00125", 0), 8, 1e-12);
-    assert_true(steps_of("small", 0) < 0 && steps_of("1e-9", 0) < 0 && steps_of("0.5", 0) < 0 && steps_of("-1", 0) < 0);
-    assert_close(tolerance_as_built(0.001), 0.0056, 1e-12);
-    assert_close(tolerance_as_built(0.005), 0.01, 1e-12);
-    assert_close(steps_of("auto", 0.005), 2, 1e-12);
-    double before = 0;
-    for (double gap = 1e-7; gap < 1; gap *= 1.3) {
-        assert_true(tolerance_as_built(gap) >= before && tolerance_as_built(gap) <= 0.2);
-        before = tolerance_as_built(gap);
-    }
-    snprintf(o.sim.tolerance, sizeof o.sim.tolerance, "0.00125");
-    o.sim.accuracy = ACCURACY_COARSE;
-    assert_true(estimate_options(&o.sim, &finer));
-    assert_close(finer.steps_per_contact, 16, 1e-12);
-    assert_int_equal(finer.accuracy, ACCURACY_STANDARD);
-    o.sim.steps_per_contact = 3;
-    Err err;
-    Scene *scene;
-    assert_int_equal(scene_create(&scene, &o, NULL, &err), STATUS_BAD_DATA);
-    assert_non_null(strstr(err.text, "sim.tolerance"));
+    SimOptions o = paper_scene().sim, finer;
+    assert_same_number(sim_steps_per_contact(&o), 0);
+    o.tolerance = 0.01;
+    assert_close(sim_steps_per_contact(&o), 2, 1e-12);
+    o.tolerance = 0.00125;
+    assert_close(sim_steps_per_contact(&o), 8, 1e-12);
+    assert_true(estimate_options(&o, &finer));
+    assert_close(sim_steps_per_contact(&finer), 16, 1e-12);
 }
 
 static void test_equal_results_have_no_error_and_failed_ones_an_unknown_one(void **state)

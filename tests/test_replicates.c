@@ -284,7 +284,7 @@ static void test_mean_plus_sd_is_that_of_the_single_simulations(void **state)
     Settings s = short_scene("none", REPLICATES, "0.01");
     Replicated out;
     double X[DESIGNS * N_VAR], v[REPLICATES], mean, sd;
-    s.uncertain.contact_stiffness = 0.5;
+    s.sim.uncertain.contact_stiffness = 0.5;
     s.sim.robust = ROBUST_MEAN_PLUS_SD;
     run_designs(&s, 2, &out);
     designs(X);
@@ -294,7 +294,7 @@ static void test_mean_plus_sd_is_that_of_the_single_simulations(void **state)
         Problem p;
         Err err = {0};
         SimResult r;
-        const AsBuilt b = replicate_as_built((uint32_t)s.search.seed, k, &s.uncertain);
+        const AsBuilt b = replicate_as_built((uint32_t)s.search.seed, k, &s.sim.uncertain);
         memcpy(x, X, sizeof x);
         replicate_design((uint32_t)s.search.seed, k, 0.01, 20, x);
         CHECK_OK(tower_open(&p, &single, TOWER_SINGLE, 1, &err), &err);

@@ -148,7 +148,7 @@ static void is_the_changed_one(const char *key, unsigned flags, const char *was,
 /* Another value: the next word, a text or a number in range. */
 static void change_one(Settings *s, int i, const char *was)
 {
-    static const char *const VALUES[] = {"0.0123", "0.31", "2", "7", "90", "1000"};
+    static const char *const VALUES[] = {"0.0123", "0.31", "2", "7", "90", "1000", "damping=0.3"};
     const char *words = settings_words(i), *bar = words ? strchr(words, '|') : NULL;
     char assignment[2 * OPTION_TEXT_MAX];
     Err err = {0};
@@ -157,7 +157,7 @@ static void change_one(Settings *s, int i, const char *was)
                  strncmp(was, words, strlen(was)) == 0 ? (int)strcspn(bar + 1, "|") : (int)(bar - words),
                  strncmp(was, words, strlen(was)) == 0 ? bar + 1 : words);
     for (size_t k = 0; k < sizeof VALUES / sizeof *VALUES; k++) {
-        if (!bar)
+        if (!bar || k > 0)
             snprintf(assignment, sizeof assignment, "%s=%s", settings_key(i), VALUES[k]);
         if (settings_set(s, assignment, &err) == STATUS_OK)
             return;

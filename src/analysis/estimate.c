@@ -6,19 +6,13 @@
 
 #include "settings/options.h"
 #include "sim/fast/fast.h"
-#include "sim/tolerance.h"
+#include "sim/sim.h"
 
 int estimate_options(const SimOptions *o, SimOptions *finer)
 {
-    Err unused;
-    double steps = 0;
+    const double steps = sim_steps_per_contact(o);
     *finer = *o;
-    if (tolerance_steps(o, &steps, &unused) == STATUS_OK && steps > 0)
-        finer->accuracy = ACCURACY_STANDARD;
-    else
-        steps = o->steps_per_contact > 0 ? o->steps_per_contact : fast_tolerances(o->accuracy).steps_per_contact;
-    snprintf(finer->tolerance, sizeof finer->tolerance, "none");
-    finer->steps_per_contact = 2 * steps;
+    finer->steps_per_contact = 2 * (steps > 0 ? steps : fast_tolerances(o->accuracy).steps_per_contact);
     return o->engine == ENGINE_FAST;
 }
 

@@ -144,7 +144,7 @@ static void show(const Work *w, long id)
     show_objective_names(schema);
     show_objectives("before", w->run->table.row[w->row].id, schema, start->f, r->error);
     snprintf(label, sizeof label, "sd %s",
-             spread_word(w->run->settings->sim.gap_tolerance_m, &w->run->settings->uncertain));
+             spread_word(w->run->settings->sim.gap_tolerance_m, &w->run->settings->sim.uncertain));
     show_objectives("polished", id, schema, end->f, r->error);
     if (isfinite(start->sd[0]))
         show_objectives(label, 0, schema, start->sd, NULL);

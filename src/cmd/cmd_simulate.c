@@ -331,7 +331,7 @@ static Status show_horizon(const Args *args, Settings *s, Err *err)
         return fail(err, STATUS_USAGE, "--horizon: only the engine fast shows its states; leave sim.engine as it is");
     s->sim.replicates = HORIZON_REPLICATES;
     s->sim.gap_tolerance_m = 0;
-    s->uncertain = (UncertainOptions){0};
+    s->sim.uncertain = (UncertainOptions){0};
     TRY(tower_open(&p, s, TOWER_AS_SET, SIZE_MAX, err));
     const Status status = find_horizon(args, &p, err);
     problem_close(&p);

@@ -14,30 +14,6 @@ void warn_on_stderr(const char *key, const char *text, void *user)
     fprintf(stderr, "warning: %s: %s\n", key, text);
 }
 
-/* Deviations are shares, 0.03 for 3 %, and those of gaps smaller than gaps. */
-static void warn_of_deviations(const Settings *s, WarnFn warn, void *user)
-{
-    const struct {
-        const char *key;
-        double value;
-    } SHARES[] = {{"uncertain.contact_stiffness", s->uncertain.contact_stiffness},
-                  {"uncertain.core_stiffness", s->uncertain.core_stiffness},
-                  {"uncertain.building_stiffness", s->uncertain.building_stiffness},
-                  {"uncertain.damping", s->uncertain.damping}};
-    char text[160];
-    for (size_t i = 0; i < sizeof SHARES / sizeof SHARES[0]; i++)
-        if (SHARES[i].value >= 1) {
-            snprintf(text, sizeof text, "a standard deviation of %g %% of the value; a share is meant, 0.05 for 5 %%",
-                     100 * SHARES[i].value);
-            warn(SHARES[i].key, text, user);
-        }
-    if (s->sim.gap_tolerance_m > s->design.gap_max_m) {
-        snprintf(text, sizeof text, "%g m is more than the largest gap of %g m", s->sim.gap_tolerance_m,
-                 s->design.gap_max_m);
-        warn("sim.gap_tolerance_m", text, user);
-    }
-}
-
 /* Every record counts as often as it is listed. */
 static void warn_of_twins(const Settings *s, WarnFn warn, void *user)
 {
@@ -81,11 +57,13 @@ void warn_of_settings(const Settings *s, WarnFn warn, void *user)
              user);
     if (s->problem.kind != PROBLEM_TOWER)
         return;
-    warn_of_deviations(s, warn, user);
+    if (s->sim.gap_tolerance_m > s->design.gap_max_m) {
+        char text[100];
+        snprintf(text, sizeof text, "%g m is more than the largest gap of %g m", s->sim.gap_tolerance_m,
+                 s->design.gap_max_m);
+        warn("sim.gap_tolerance_m", text, user);
+    }
     warn_of_twins(s, warn, user);
-    if (strcmp(s->sim.tolerance, "auto") == 0 && !(s->sim.gap_tolerance_m > 0))
-        warn("sim.tolerance", "auto goes by sim.gap_tolerance_m, which is 0: the steps are those of sim.accuracy",
-             user);
 }
 
 /* "FILE:LINE" of a design file, else the word. */

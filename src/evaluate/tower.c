@@ -224,12 +224,12 @@ Status tower_open(Problem *p, const Settings *s, TowerUse use, size_t n_tasks, E
         return fail(err, STATUS_NO_MEMORY, "no memory for a scene");
     t->seed = (uint32_t)s->search.seed;
     t->tolerance_m = s->sim.gap_tolerance_m;
-    t->uncertain = s->uncertain;
+    t->uncertain = s->sim.uncertain;
     t->n_workers = workers < n_tasks ? workers : n_tasks;
     t->plan = (ReplicatePlan){.n_replicates = use == TOWER_SINGLE ? 1 : (size_t)s->sim.replicates,
                               .rule = s->sim.robust,
                               .quantile = s->sim.quantile,
-                              .spread = spread_word(s->sim.gap_tolerance_m, &s->uncertain)};
+                              .spread = spread_word(s->sim.gap_tolerance_m, &s->sim.uncertain)};
     t->judged = order.objectives | measures_limited(s->search.limits);
     TRY(finish_opening(p, t, s->search.objectives, open_records(t, s, use, err), err));
     design_bounds(tower_design(t), &s->design, t->lower, t->upper);

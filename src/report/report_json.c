@@ -255,7 +255,7 @@ json_t *report_json(const Report *r)
                      "version", program_version(), "revision", program_revision(), "name",
                      json_words(slash && slash[1] ? slash + 1 : name), "folder", json_words(name), "tower",
                      r->has_detail, "robust", r->is_robust, "building", json_words(run->settings->building.model),
-                     "spread", spread_word(run->settings->sim.gap_tolerance_m, &run->settings->uncertain), "knee",
+                     "spread", spread_word(run->settings->sim.gap_tolerance_m, &run->settings->sim.uncertain), "knee",
                      (json_int_t)run->table.row[r->knee].id, "chosen", (json_int_t)run->table.row[r->chosen].id,
                      "chosen_f", json_numbers(run->schema.n_obj, run_f(run, r->chosen)), "evaluated",
                      (json_int_t)n_evaluated(run), "failed", (json_int_t)run->n_failed, "front",

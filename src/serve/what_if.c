@@ -118,9 +118,7 @@ static const double PGA_SHARE = 4, STRETCH_SHARE = 2, RESTITUTION[2] = {0.05, 1}
 
 /* Of `imtet simulate`, for the one simulation of the design as designed. */
 static const char ONCE[] = " --set sim.replicates=1 --set sim.gap_tolerance_m=0 --set motion.records=none";
-static const char CERTAIN[] = " --set uncertain.restitution=0 --set uncertain.contact_stiffness=0 --set "
-                              "uncertain.core_stiffness=0 --set uncertain.building_stiffness=0 --set "
-                              "uncertain.damping=0";
+static const char CERTAIN[] = " --set sim.uncertain=none";
 
 json_t *what_if_bounds(const WhatIf *w)
 {
@@ -132,7 +130,7 @@ json_t *what_if_bounds(const WhatIf *w)
                      g->pga_g / PGA_SHARE, g->pga_g, g->pga_g * PGA_SHARE, "stretch", g->stretch / STRETCH_SHARE,
                      g->stretch, g->stretch * STRETCH_SHARE, "restitution", RESTITUTION[0], g->restitution,
                      RESTITUTION[1], "is_comparable", w->is_single, "options", w->is_single ? "" : ONCE,
-                     is_uncertain(&w->settings.uncertain) ? CERTAIN : "", "pga_options",
+                     is_uncertain(&w->settings.sim.uncertain) ? CERTAIN : "", "pga_options",
                      scales_otherwise ? " --set motion.factor=1 --set motion.sa_g=0 --set motion.target=none" : "");
 }
 

@@ -11,7 +11,7 @@
 static const struct {
     const char *keys, *other, *value;
 } WAITING[] = {
-    {"building. core. contact. motion. sim. uncertain. design. search.objectives", "problem.kind", "tower"},
+    {"building. core. contact. motion. sim. design. search.objectives", "problem.kind", "tower"},
     {"problem.command problem.timeout_s problem.lower problem.upper problem.senses", "problem.kind", "external"},
     {"problem.variables problem.objectives problem.variable_names problem.objective_names", "problem.kind", "!tower"},
     {"building.rayleigh_modes", "building.damping_model", "rayleigh"},

@@ -70,7 +70,6 @@ typedef struct Settings {
     ContactOptions contact;
     MotionOptions motion;
     SimOptions sim;
-    UncertainOptions uncertain;
     DesignOptions design;
     ProblemOptions problem;
     SearchOptions search;

@@ -8,7 +8,6 @@
 #include "scene/design.h"
 #include "motion/motion_read.h"
 #include "motion/motion_scale.h"
-#include "sim/tolerance.h"
 #include "evaluate/external.h"
 
 typedef struct {
@@ -104,15 +103,15 @@ static void check_variables(const Settings *s, const Rules *r)
 
 static void check_replicates(const Settings *s, const Rules *r)
 {
-    const UncertainOptions *u = &s->uncertain;
+    const UncertainOptions *u = &s->sim.uncertain;
     const int varies =
         u->restitution + u->contact_stiffness + u->core_stiffness + u->building_stiffness + u->damping > 0;
     if (s->sim.gap_tolerance_m > 0 && s->sim.replicates < 2)
         break_rule(r, PAIR(sim.gap_tolerance_m, sim.replicates),
                    "sim.gap_tolerance_m: needs replicates that differ: set sim.replicates to 2 or more");
     if (varies && s->sim.replicates < 2)
-        break_rule(r, PAIR(uncertain.restitution, sim.replicates),
-                   "[uncertain]: needs replicates that differ: set sim.replicates to 2 or more");
+        break_rule(r, PAIR(sim.uncertain, sim.replicates),
+                   "sim.uncertain: needs replicates that differ: set sim.replicates to 2 or more");
 }
 
 static void check_fidelity(const SearchOptions *s, const Rules *r)
@@ -132,7 +131,7 @@ void rules_check(const Settings *s, BrokenRuleFn broken, void *user)
 {
     const Rules rules = {broken, user}, *r = &rules;
     Err err = {0};
-    double steps, cost;
+    double cost;
     check_bounds(s, r);
     check_motion(&s->motion, r);
     check_variables(s, r);
@@ -140,8 +139,6 @@ void rules_check(const Settings *s, BrokenRuleFn broken, void *user)
     check_fidelity(&s->search, r);
     if (list_is_given(s->problem.costs) && external_cheap_cost(s->problem.costs, &cost, &err) != STATUS_OK)
         break_rule(r, PAIR(problem.costs, problem.kind), "%s", err.text);
-    if (tolerance_steps(&s->sim, &steps, &err) != STATUS_OK)
-        break_rule(r, PAIR(sim.tolerance, sim.steps_per_contact), "%s", err.text);
     if (s->problem.kind == PROBLEM_EXTERNAL && strcmp(s->problem.command, "none") == 0)
         break_rule(r, PAIR(problem.command, problem.kind),
                    "problem.command: is none; problem.kind = external needs the command of the simulator");

@@ -11,7 +11,7 @@
 #include "settings/rules.h"
 #include "settings/table.h"
 
-typedef enum { KIND_REAL, KIND_WHOLE, KIND_CHOICE, KIND_TEXT, KIND_PATH, KIND_PATH_LIST } Kind;
+typedef enum { KIND_REAL, KIND_WHOLE, KIND_CHOICE, KIND_SHARES, KIND_TEXT, KIND_PATH, KIND_PATH_LIST } Kind;
 
 typedef struct {
     const char *key;
@@ -21,8 +21,9 @@ typedef struct {
     const char *unit;     /* REAL and WHOLE */
     double min, max;
     const char
-        *words; /* CHOICE: "a|b|c", in the order of its enum; PATH: names that are no path, or NULL; REAL: the one
-                          that stands for OPTION_WORD, or NULL */
+        *words;    /* CHOICE: "a|b|c", in the order of its enum; SHARES: the names of its numbers, likewise; PATH: names
+                          that are no path, or NULL; REAL: the one that stands for OPTION_WORD, or NULL */
+    size_t number; /* CHOICE: the field of a number that is taken in the place of a word, as the default is; 0: none */
     const char *help;
     unsigned flags; /* SettingFlags */
 } Option;
@@ -42,7 +43,9 @@ typedef char OptionText[OPTION_TEXT_MAX];
 #define WHOLE(field, standard_, min_, max_, ...) \
     OPTION(KIND_WHOLE, field, long, standard_, __VA_ARGS__, .unit = "-", .min = min_, .max = max_)
 #define CHOICE(field, type, words_, standard_, ...) \
-    OPTION(KIND_CHOICE, field, type, standard_, __VA_ARGS__, .words = words_)
+    OPTION(KIND_CHOICE, field, type, standard_, __VA_ARGS__, .words = words_, .unit = "-")
+#define SHARES(field, type, words_, standard_, ...) \
+    OPTION(KIND_SHARES, field, type, standard_, __VA_ARGS__, .words = words_, .unit = "-", .max = 1)
 #define PATH(field, standard_, words_, ...) \
     OPTION(KIND_PATH, field, OptionText, standard_, __VA_ARGS__, .words = words_)
 #define PATH_LIST(field, standard_, ...) OPTION(KIND_PATH_LIST, field, OptionText, standard_, __VA_ARGS__)
@@ -54,6 +57,9 @@ typedef char OptionText[OPTION_TEXT_MAX];
 static const char ENGINE_BARS[] = ENGINE_LIST(X);
 #undef X
 #define ENGINE_WORDS (ENGINE_BARS + 1)
+
+/* In the order of UncertainOptions. */
+static const char UNCERTAIN_WORDS[] = "restitution|contact_stiffness|core_stiffness|building_stiffness|damping";
 
 static const Option OPTIONS[] = {
     PATH(building.model, "guyan", "guyan|appendix",
@@ -151,17 +157,10 @@ static const Option OPTIONS[] = {
     CHOICE(sim.engine, Engine, ENGINE_WORDS, "fast",
            "integrator: fast, or cvode (SUNDIALS, another method, slower) for a cross-check"),
     CHOICE(sim.accuracy, Accuracy, CHOICE_WORDS(ACCURACY_LIST), "standard",
-           "preset of step and tolerances: time of a simulation against its error (docs/chart.md)"),
-    TEXT(sim.tolerance, "none",
-         "engine fast: relative error of J3 and the shares, in 95 % of windows of strong shaking, that steps, core "
-         "modes and "
-         "the end of the contacts are chosen for; auto: a tenth of what sim.gap_tolerance_m makes; none: sim.accuracy"),
-    REAL(sim.steps_per_contact, "-", "0", 0, 1000,
-         "engine fast: steps per contact, finer than sim.accuracy, with tolerances to match; 0: by sim.accuracy"),
+           "preset of step and tolerances, or the relative error of J3 and the shares that is allowed: time of a "
+           "simulation against its error (docs/trust.md)",
+           .number = AT_TYPED(sim.tolerance, double), .min = 1e-6, .max = 0.2),
     REAL(sim.duration_s, "s", "0", 0, 1e6, "end of the simulation; 0: end of the motion"),
-    REAL(sim.energy_balance_max, "-", "0", 0, 1,
-         "a simulation whose energy-balance error exceeds this share of the input energy is repeated with smaller "
-         "steps, then rejected; 0: by sim.accuracy, 0.03 at coarse, else 0.001"),
     WHOLE(sim.replicates, "1", 1, 1000,
           "simulations of a design under each record, with perturbed gaps: the objectives are their means"),
     REAL(sim.gap_tolerance_m, "m", "0", 0, 1, "standard deviation of a gap as built; needs sim.replicates >= 2"),
@@ -175,12 +174,11 @@ static const Option OPTIONS[] = {
            "all records"),
     REAL(sim.quantile, "-", "0.9", 0, 1, "sim.robust = quantile: this share of the simulations is better"),
 
-    REAL(uncertain.restitution, "-", "0", 0, 1,
-         "standard deviation of contact.restitution as built; all of these need sim.replicates >= 2"),
-    REAL(uncertain.contact_stiffness, "-", "0", 0, 10, "of the contact's stiffness, bumper included, as a share of it"),
-    REAL(uncertain.core_stiffness, "-", "0", 0, 10, "of the core's stiffness, as a share of it"),
-    REAL(uncertain.building_stiffness, "-", "0", 0, 10, "of the building's stiffness, as a share of it"),
-    REAL(uncertain.damping, "-", "0", 0, 10, "of the damping ratios of building and core, each as a share of it"),
+    SHARES(
+        sim.uncertain, UncertainOptions, UNCERTAIN_WORDS, "none",
+        "standard deviations of what is built, as restitution=0.05 damping=0.3: of contact.restitution, and as shares "
+        "of the contact's (bumper included), core's and building's stiffness and of the damping ratios; needs "
+        "sim.replicates >= 2"),
 
     TEXT(design.variables, "gaps, thickness",
          "what is designed: gaps, thickness, and further bumper (stiffness, by its logarithm), side (of the box)"),
@@ -264,6 +262,7 @@ static const Option OPTIONS[] = {
 
 enum { N_OPTIONS = sizeof OPTIONS / sizeof OPTIONS[0] };
 
+_Static_assert(sizeof(UncertainOptions) == 5 * sizeof(double), "a share for each of UNCERTAIN_WORDS");
 _Static_assert(sizeof(CoreSection) == sizeof(int), "a choice is stored as an int");
 _Static_assert((int)N_OPTIONS <= (int)TABLE_MAX, "a reader has a place for every setting");
 _Static_assert((int)OPTION_TEXT_MAX == (int)LIST_MAX, "a list of the settings can be changed");
@@ -341,6 +340,61 @@ static Status parse_number(const Option *o, const char *value, double *number, E
     return STATUS_OK;
 }
 
+/* A word, or the number that may stand in its place. */
+static Status assign_choice(Settings *s, const Option *o, const char *value, Err *err)
+{
+    double number = 0;
+    int i = word_index(o->words, value);
+    if (i < 0 && !(o->number && strchr("0123456789.", value[0])))
+        return unknown_word(o, value, err);
+    if (i < 0) {
+        TRY(parse_number(o, value, &number, err));
+        i = word_index(o->words, o->standard);
+    }
+    memcpy(field_of(s, o), &i, sizeof i); /* an enumeration */
+    if (o->number)
+        memcpy((char *)s + o->number, &number, sizeof number);
+    return STATUS_OK;
+}
+
+/* "NAME=NUMBER NAME=NUMBER ..."; none and what is not named are 0. */
+static Status assign_shares(Settings *s, const Option *o, const char *value, Err *err)
+{
+    char copy[OPTION_TEXT_MAX], *rest = copy;
+    UncertainOptions shares = {0};
+    snprintf(copy, sizeof copy, "%s", strcmp(value, "none") == 0 ? "" : value);
+    for (char *item; (item = strsep(&rest, " ,"));) {
+        char *equals = strchr(item, '=');
+        if (!*item)
+            continue;
+        if (equals)
+            *equals = 0;
+        const int i = equals ? word_index(o->words, item) : -1;
+        double number;
+        if (i < 0)
+            return fail(err, STATUS_BAD_DATA, "%s: '%.60s' is no NAME=NUMBER with a name of %s", o->key, item,
+                        o->words);
+        TRY(parse_number(o, equals + 1, &number, err));
+        memcpy((char *)&shares + (size_t)i * sizeof number, &number, sizeof number);
+    }
+    memcpy(field_of(s, o), &shares, sizeof shares);
+    return STATUS_OK;
+}
+
+static Status assign_text(Settings *s, const Option *o, const char *value, Err *err)
+{
+    if (!value[0])
+        return fail(err, STATUS_BAD_DATA, "%s: is empty", o->key);
+    if (strlen(value) >= OPTION_TEXT_MAX)
+        return fail(err, STATUS_BAD_DATA, "%s: is longer than %d characters", o->key, OPTION_TEXT_MAX - 1);
+    if (strpbrk(value, "\r\n") || strstr(value, " ;") || isspace((unsigned char)value[0]) ||
+        isspace((unsigned char)value[strlen(value) - 1]))
+        return fail(err, STATUS_BAD_DATA,
+                    "%s: '%.60s' cannot be kept in a settings file (line ends, ' ;', blanks around it)", o->key, value);
+    snprintf(field_of(s, o), OPTION_TEXT_MAX, "%s", value);
+    return STATUS_OK;
+}
+
 Status table_assign(Settings *s, int at, const char *value, Err *err)
 {
     const Option *o = &OPTIONS[at];
@@ -356,27 +410,14 @@ Status table_assign(Settings *s, int at, const char *value, Err *err)
         TRY(parse_number(o, value, &number, err));
         *(long *)field_of(s, o) = (long)number;
         return STATUS_OK;
-    case KIND_CHOICE: {
-        const int i = word_index(o->words, value);
-        if (i < 0)
-            return unknown_word(o, value, err);
-        memcpy(field_of(s, o), &i, sizeof i); /* an enumeration */
-        return STATUS_OK;
-    }
+    case KIND_CHOICE:
+        return assign_choice(s, o, value, err);
+    case KIND_SHARES:
+        return assign_shares(s, o, value, err);
     case KIND_TEXT:
     case KIND_PATH:
     case KIND_PATH_LIST:
-        if (!value[0])
-            return fail(err, STATUS_BAD_DATA, "%s: is empty", o->key);
-        if (strlen(value) >= OPTION_TEXT_MAX)
-            return fail(err, STATUS_BAD_DATA, "%s: is longer than %d characters", o->key, OPTION_TEXT_MAX - 1);
-        if (strpbrk(value, "\r\n") || strstr(value, " ;") || isspace((unsigned char)value[0]) ||
-            isspace((unsigned char)value[strlen(value) - 1]))
-            return fail(err, STATUS_BAD_DATA,
-                        "%s: '%.60s' cannot be kept in a settings file (line ends, ' ;', blanks around it)", o->key,
-                        value);
-        snprintf(field_of(s, o), OPTION_TEXT_MAX, "%s", value);
-        return STATUS_OK;
+        return assign_text(s, o, value, err);
     }
     return STATUS_INTERNAL;
 }
@@ -507,9 +548,25 @@ static void format_real(double value, char text[OPTION_TEXT_MAX])
     }
 }
 
+static void format_shares(const Settings *s, const Option *o, char text[OPTION_TEXT_MAX])
+{
+    const double *share = field_of_const(s, o);
+    char name[OPTION_TEXT_MAX], number[OPTION_TEXT_MAX];
+    size_t n = 0;
+    snprintf(text, OPTION_TEXT_MAX, "none");
+    for (size_t i = 0; i < sizeof s->sim.uncertain / sizeof *share; i++) {
+        if (share[i] == 0)
+            continue;
+        format_word(name, o->words, (int)i);
+        format_real(share[i], number);
+        n += (size_t)snprintf(text + n, OPTION_TEXT_MAX - n, "%s%s=%s", n ? " " : "", name, number);
+    }
+}
+
 static void format_value(const Settings *s, const Option *o, char text[OPTION_TEXT_MAX])
 {
     const void *field = field_of_const(s, o);
+    double number = 0;
     int word;
     switch (o->kind) {
     case KIND_REAL:
@@ -523,7 +580,15 @@ static void format_value(const Settings *s, const Option *o, char text[OPTION_TE
         break;
     case KIND_CHOICE:
         memcpy(&word, field, sizeof word);
-        format_word(text, o->words, word);
+        if (o->number)
+            memcpy(&number, (const char *)s + o->number, sizeof number);
+        if (number > 0)
+            format_real(number, text);
+        else
+            format_word(text, o->words, word);
+        break;
+    case KIND_SHARES:
+        format_shares(s, o, text);
         break;
     case KIND_TEXT:
     case KIND_PATH:
@@ -565,8 +630,12 @@ static void describe(const Option *o, FILE *out)
     fprintf(out, "; %s", o->help);
     if (o->kind == KIND_REAL || o->kind == KIND_WHOLE)
         fprintf(out, " [%s, %.10g..%.10g]", o->unit, o->min, o->max);
-    if (o->kind == KIND_CHOICE)
+    if (o->kind == KIND_CHOICE && o->number)
+        fprintf(out, " (%s|%g..%g)", o->words, o->min, o->max);
+    else if (o->kind == KIND_CHOICE)
         fprintf(out, " (%s)", o->words);
+    if (o->kind == KIND_SHARES)
+        fprintf(out, " (none or %s, each =%g..%g)", o->words, o->min, o->max);
     if (o->kind == KIND_PATH)
         fprintf(out, " (%s%sFILE)", o->words ? o->words : "", o->words ? "|" : "");
     if (o->kind == KIND_PATH_LIST)

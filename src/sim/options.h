@@ -46,28 +46,28 @@ typedef enum { ROBUST_LIST(CHOICE_NAME) } Robust;
 #define FORCES_LIST(X) X(FORCES_AUTO, "auto") X(FORCES_YES, "yes")
 typedef enum { FORCES_LIST(CHOICE_NAME) } Forces;
 
-typedef struct {
-    Engine engine;
-    Accuracy accuracy;
-    char tolerance[OPTION_TEXT_MAX]; /* none, auto or a number (sim/tolerance.h) */
-    double steps_per_contact;
-    double duration_s;         /* 0: the whole motion */
-    double energy_balance_max; /* 0: by accuracy, sim_energy_balance_max */
-    long replicates;           /* simulations of a design under each record */
-    Robust robust;             /* how a design's results under several records become one */
-    double quantile;           /* of ROBUST_QUANTILE, on the bad side */
-    double gap_tolerance_m;    /* standard deviation of a gap as built */
-    double filter_hz;          /* cutoff frequency of SimResult.j3_filtered_g */
-    int filtered;              /* no setting: who wants it says so */
-    int measures_only;         /* no setting: of SimForces what measures are made of, no storeys of the building */
-    Forces forces;             /* auto: only where an objective or a limit needs SimResult.forces */
-} SimOptions;
-
-/* Standard deviations of what is built about what was designed, section [uncertain]: of the coefficient of restitution [-],
+/* Standard deviations of what is built about what was designed, setting sim.uncertain: of the coefficient of restitution [-],
  * and as shares of the stiffnesses and of the damping ratios. 0: as designed. */
 typedef struct {
     double restitution, contact_stiffness, core_stiffness, building_stiffness, damping;
 } UncertainOptions;
+
+typedef struct {
+    Engine engine;
+    Accuracy accuracy;
+    double tolerance;         /* a number as sim.accuracy (sim_steps_per_contact); 0: accuracy is one of the presets */
+    double steps_per_contact; /* no setting: of a second, finer run; 0: as accuracy and tolerance say */
+    double duration_s;        /* 0: the whole motion */
+    long replicates;          /* simulations of a design under each record */
+    Robust robust;            /* how a design's results under several records become one */
+    double quantile;          /* of ROBUST_QUANTILE, on the bad side */
+    UncertainOptions uncertain;
+    double gap_tolerance_m; /* standard deviation of a gap as built */
+    double filter_hz;       /* cutoff frequency of SimResult.j3_filtered_g */
+    int filtered;           /* no setting: who wants it says so */
+    int measures_only;      /* no setting: of SimForces what measures are made of, no storeys of the building */
+    Forces forces;          /* auto: only where an objective or a limit needs SimResult.forces */
+} SimOptions;
 
 /* One structure as built: restitution is added (and stays within 0.05 to 1), the others are factors. */
 typedef struct {

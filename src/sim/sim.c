@@ -15,7 +15,6 @@
 #include "sim/linear.h"
 #include "sim/model.h"
 #include "sim/tail.h"
-#include "sim/tolerance.h"
 
 struct Scene {
     SceneOptions options;
@@ -59,7 +58,14 @@ const char *run_outcome_words(RunOutcome outcome)
 /* At coarse three times what nine designs in ten of a front have (docs/promise.md). */
 double sim_energy_balance_max(const SimOptions *o)
 {
-    return o->energy_balance_max > 0 ? o->energy_balance_max : o->accuracy == ACCURACY_COARSE ? 0.03 : 1e-3;
+    return o->accuracy == ACCURACY_COARSE ? 0.03 : 1e-3;
+}
+
+double sim_steps_per_contact(const SimOptions *o)
+{
+    return o->steps_per_contact > 0 ? o->steps_per_contact
+           : o->tolerance > 0       ? 2 * pow(0.01 / o->tolerance, 2.0 / 3)
+                                    : 0;
 }
 
 static Status set_tail_input(Scene *scene, Err *err)
@@ -77,16 +83,14 @@ Status scene_create(Scene **out, const SceneOptions *o, const Motion *motion, Er
     if (motion && (motion->n < 2 || !(motion->dt_s > 0 && isfinite(motion->dt_s))))
         return fail(err, STATUS_BAD_DATA, "%s: %zu samples, %g s apart, are no motion; two or more are needed",
                     motion->name, motion->n, motion->dt_s);
-    double steps;
-    TRY(tolerance_steps(&o->sim, &steps, err));
     Scene *scene = calloc(1, sizeof *scene);
     if (!scene)
         return fail(err, STATUS_NO_MEMORY, "scene: out of memory");
     scene->options = *o;
     scene->motion = motion;
     scene->engine = engine_entry(o->sim.engine);
-    scene->run.accuracy = steps > 0 ? ACCURACY_STANDARD : o->sim.accuracy;
-    scene->run.steps_per_contact = steps > 0 ? steps : o->sim.steps_per_contact;
+    scene->run.accuracy = o->sim.accuracy;
+    scene->run.steps_per_contact = sim_steps_per_contact(&o->sim);
     scene->run.duration = o->sim.duration_s;
     if (scene->run.duration == 0 && motion)
         scene->run.duration = (double)(motion->n - 1) * motion->dt_s;
