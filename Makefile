@@ -26,12 +26,12 @@ CFLAGS.coverage := -O1 -g --coverage -fprofile-update=atomic
 
 CC       ?= cc
 WARNINGS := -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion -Wstrict-prototypes -Wmissing-prototypes -Wvla -Werror
-CPPFLAGS += -Isrc -MMD -MP -D_GNU_SOURCE
+CPPFLAGS += -Isrc -isystem /usr/include/tcl8.6 -MMD -MP -D_GNU_SOURCE
 # Contraction to fused multiply-add rounds once instead of twice; NaN and Inf stay what they are.
 # Hidden: a function of ours never takes the place of one of the same name inside a shared library.
 CFLAGS   += -std=c17 -fopenmp -ffp-contract=fast -fvisibility=hidden $(CFLAGS.$(MODE))
 LDFLAGS  += -fopenmp $(CFLAGS.$(MODE))
-LDLIBS   += -lsundials_cvode -lsundials_nvecserial -lsundials_sunnonlinsolfixedpoint -lnlopt -llapacke -lopenblas -linih -ljansson -lsqlite3 -larchive -lmseed -lmicrohttpd -lm
+LDLIBS   += -lsundials_cvode -lsundials_nvecserial -lsundials_sunnonlinsolfixedpoint -lnlopt -llapacke -lopenblas -linih -ljansson -lsqlite3 -larchive -lmseed -lmicrohttpd -ltcl8.6 -lm
 
 # Loops over floors, modes and centres are written for the vectorizer; the rest does not gain from -O3. Sanitized, the
 # simulator takes 0.55 of its time at -O2. These flags come last; provenance.json quotes them by the same variables.

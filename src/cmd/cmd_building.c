@@ -1,35 +1,29 @@
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "base/units.h"
 #include "cmd/commands.h"
+#include "cmd/designs.h"
 #include "cmd/show.h"
 #include "scene/building_svg.h"
+#include "scene/core_beam.h"
 #include "settings/settings.h"
 #include "store/output.h"
 
+/* Where no design is given: the core of the paper's Table 1, linear from 12 mm to 6.4 mm. */
+static const double T_BASE_M = 0.012, T_TOP_M = 0.0064;
+
 typedef struct {
-    const Settings *s;
-    Building building;
+    Settings s;
+    int has_core; /* the operand is a CONFIG */
+    Building b;
     Frame frame; /* without nodes where the building is none */
+    Design design;
+    CoreBeam core;
+    double by_theory[2], zero_gap[FLOORS_MAX]; /* [Hz] first mode of the core by CoreTheory; modes of both as one */
 } Model;
-
-static Status open_model(Model *m, const Settings *s, Err *err)
-{
-    *m = (Model){.s = s};
-    TRY(building_load(&m->building, &s->building, err));
-    const Status status =
-        frame_is(s->building.model) ? frame_read(&m->frame, s->building.model, FLOORS_MAX, err) : STATUS_OK;
-    if (status != STATUS_OK)
-        building_free(&m->building);
-    return status;
-}
-
-static void close_model(Model *m)
-{
-    building_free(&m->building);
-    frame_free(&m->frame);
-}
 
 static double row_mass(const Building *b, int j)
 {
@@ -39,87 +33,217 @@ static double row_mass(const Building *b, int j)
     return sum;
 }
 
-/* Share of it that is not on the floors, below which nothing is said of it. */
+static double share(double gamma, double mass)
+{
+    return gamma * gamma / mass;
+}
+
+/* Of the core, that the ground moves: all but half of its first storey's. */
+static double moved_mass(const Model *m)
+{
+    double sum = 0;
+    for (int i = 0; i < m->b.n; i++)
+        sum += m->core.gamma[i] * m->core.gamma[i];
+    return sum;
+}
+
+/* ---- what is asked for ---------------------------------------------------------------------------------------- */
+
+static Status make_core(const Args *args, Model *m, Err *err)
+{
+    const char *word = args_value(args, "--design");
+    CoreOptions *core = &m->s.core;
+    DesignSpace space;
+    Designs d;
+    m->design = (Design){.t_base = T_BASE_M, .t_top = T_TOP_M};
+    TRY(design_space_make(&space, &m->s.design, core->section, m->b.n, err));
+    if (word) {
+        TRY(designs_take_one(&d, word, &space, err));
+        design_of(&space, d.x, &m->design);
+        design_free(&d);
+    }
+    if (m->design.side > 0)
+        core->side_m = m->design.side;
+    for (CoreTheory k = CORE_TIMOSHENKO; k <= CORE_EULER_BERNOULLI; k++)
+        TRY(core_beam_first_hz(core, k, m->b.n, m->b.storey_m, m->design.t_base, m->design.t_top, &m->by_theory[k],
+                               err));
+    TRY(core_beam_make(&m->core, core, m->b.n, m->b.storey_m, m->design.t_base, m->design.t_top, err));
+    return core_beam_joined_hz(&m->core, &m->b, m->zero_gap, err);
+}
+
+static Status open_model(const Args *args, Model *m, Err *err)
+{
+    struct stat st;
+    const size_t n = strlen(args->operand);
+    const char *end = args->operand + (n > 4 ? n - 4 : 0);
+    m->has_core =
+        strcmp(end, ".ini") == 0 || (strcmp(end, ".tcl") != 0 && stat(args->operand, &st) == 0 && S_ISREG(st.st_mode));
+    settings_defaults(&m->s);
+    if (!m->has_core)
+        TRY(option_put_path(m->s.building.model, args->operand, err));
+    TRY(m->has_core ? args_settings(args, &m->s, NULL, NULL, err) : args_apply(args, &m->s, NULL, NULL, err));
+    if (args_has(args, "--design") && !m->has_core)
+        return fail(err, STATUS_USAGE, "--design is of a CONFIG, which has a core");
+    TRY(building_load(&m->b, &m->s.building, err));
+    if (frame_is(m->s.building.model))
+        TRY(frame_read(&m->frame, &m->s.building, err));
+    return m->has_core ? make_core(args, m, err) : STATUS_OK;
+}
+
+/* ---- answers -------------------------------------------------------------------------------------------------- */
+
+/* Share of the mass that is not on the floors, below which nothing is said of it. */
 static const double BETWEEN_MIN = 1e-3;
 
-static void print_mass(const Building *b)
+static void print_building(const Model *m)
 {
-    const double mass = building_mass(b);
+    const double mass = building_mass(&m->b);
     double between = mass;
-    for (int j = 0; j < b->n; j++)
-        between -= row_mass(b, j);
-    printf("%.5g kg, %.4g MN\n", mass, 1e-6 * GRAVITY * mass);
+    for (int j = 0; j < m->b.n; j++)
+        between -= row_mass(&m->b, j);
+    printf("%s: %d floor%s, %.5g kg, %.4g MN\n", m->s.building.model, m->b.n, m->b.n == 1 ? "" : "s", mass,
+           1e-6 * GRAVITY * mass);
     if (between > BETWEEN_MIN * mass)
         printf("of it %.4g kg are between the floors\n", between);
-}
-
-static double mass_share(const Building *b, int mode)
-{
-    return b->gamma[mode] * b->gamma[mode] / building_mass(b);
-}
-
-static void print_text(const Model *m)
-{
-    const Building *b = &m->building;
-    double z = 0;
-    printf("%s: %d floor%s, ", m->s->building.model, b->n, b->n == 1 ? "" : "s");
-    print_mass(b);
     if (m->frame.n_nodes)
         printf("plane frame of %d nodes, %d elements, %d sections, %d ties\n", m->frame.n_nodes, m->frame.n_elements,
                m->frame.n_sections, m->frame.n_ties);
-    printf("\nfloor    z [m]  storey [m]    mass [kg]     mode  period [s]  freq [Hz]  mass [%%]  damping [%%]\n");
+}
+
+static void print_core(const Model *m)
+{
+    const double bending = m->by_theory[CORE_EULER_BERNOULLI], shearing = m->by_theory[CORE_TIMOSHENKO];
+    printf("core of %.4g kg", m->core.mass_kg);
+    if (m->s.core.section == CORE_EFFECTIVE)
+        printf(" (effective section)");
+    else
+        printf(", thickness %g to %g mm", 1e3 * m->design.t_base, 1e3 * m->design.t_top);
+    printf(", %s; first mode: %.4g Hz bending alone, %.4g Hz (%+.2g %%) with shear and rotary inertia\n",
+           core_theory_word(m->s.core.theory), bending, shearing, 100 * (shearing / bending - 1));
+}
+
+static void print_table(const Model *m)
+{
+    const Building *b = &m->b;
+    const BuildingModel *all = &b->model;
+    double z = 0;
+    printf("\nfloor    z [m]  storey [m]    mass [kg]     mode  period [s]  freq [Hz]  mass [%%]  damping [%%]%s\n",
+           m->has_core ? "  core [Hz]  mass [%]  zero gap [Hz]" : "");
     for (int j = 0; j < b->n; j++) {
         z += b->storey_m[j];
-        printf("%5d %8.3f %11.3f %12.5g    %5d %11.4g %10.4g %9.3g %12.3g\n", j + 1, z, b->storey_m[j], row_mass(b, j),
-               j + 1, 2 * M_PI / b->omega[j], b->omega[j] / (2 * M_PI), 100 * mass_share(b, j), 100 * b->zeta[j]);
+        printf("%5d %8.3f %11.3f %12.5g    %5d %11.4g %10.4g %9.3g %12.3g", j + 1, z, b->storey_m[j], row_mass(b, j),
+               j + 1, 2 * M_PI / all->omega[j], all->omega[j] / (2 * M_PI),
+               100 * share(all->gamma[j], building_mass(b)), 100 * all->zeta[j]);
+        if (m->has_core)
+            printf(" %10.4g %9.3g %14.4g", m->core.omega[j] / (2 * M_PI), 100 * share(m->core.gamma[j], moved_mass(m)),
+                   m->zero_gap[j]);
+        putchar('\n');
+    }
+}
+
+/* Shape of a mode on the floors, its largest 1. */
+static json_t *json_shape(const BuildingModel *b, int n, int mode)
+{
+    double largest = 0, shape[FLOORS_MAX];
+    for (int j = 0; j < n; j++)
+        if (fabs(b->phi[j * b->n + mode]) > fabs(largest))
+            largest = b->phi[j * b->n + mode];
+    for (int j = 0; j < n; j++)
+        shape[j] = b->phi[j * b->n + mode] / largest;
+    return json_numbers((size_t)n, shape);
+}
+
+static void put_number(json_t *o, const char *list, double x)
+{
+    json_array_append_new(json_object_get(o, list), json_number(x));
+}
+
+static void put_core(json_t *o, const Model *m)
+{
+    static const char *const LISTS[] = {"building_hz",     "building_mass_share", "building_damping",
+                                        "building_shapes", "building_horizontal", "core_hz",
+                                        "core_mass_share", "zero_gap_hz"};
+    const BuildingModel *b = &m->b.model;
+    json_object_update_new(o, json_pack("{s:f, s:f, s:f, s:s, s:f, s:f}", "t_base_m", m->design.t_base, "t_top_m",
+                                        m->design.t_top, "core_mass_kg", m->core.mass_kg, "core_theory",
+                                        core_theory_word(m->s.core.theory), "core_timoshenko_hz",
+                                        m->by_theory[CORE_TIMOSHENKO], "core_euler_bernoulli_hz",
+                                        m->by_theory[CORE_EULER_BERNOULLI]));
+    for (size_t i = 0; i < sizeof LISTS / sizeof LISTS[0]; i++)
+        json_object_set_new(o, LISTS[i], json_array());
+    for (int i = 0; i < m->b.n; i++) {
+        put_number(o, "building_hz", b->omega[i] / (2 * M_PI));
+        put_number(o, "building_mass_share", share(b->gamma[i], building_mass(&m->b)));
+        put_number(o, "building_damping", b->zeta[i]);
+        json_array_append_new(json_object_get(o, "building_shapes"), json_shape(b, m->b.n, i));
+        json_array_append_new(json_object_get(o, "building_horizontal"), json_boolean(b->like[i] >= 0));
+        put_number(o, "core_hz", m->core.omega[i] / (2 * M_PI));
+        put_number(o, "core_mass_share", share(m->core.gamma[i], moved_mass(m)));
+        put_number(o, "zero_gap_hz", m->zero_gap[i]);
     }
 }
 
 static Status print_json(const Model *m, Err *err)
 {
-    const Building *b = &m->building;
+    const Building *b = &m->b;
+    const BuildingModel *all = &b->model;
     json_t *floors = json_array(), *modes = json_array();
     double z = 0;
     for (int j = 0; j < b->n; j++) {
         z += b->storey_m[j];
         json_array_append_new(floors, json_pack("{s:i, s:f, s:f, s:f}", "floor", j + 1, "z_m", z, "storey_m",
                                                 b->storey_m[j], "mass_kg", row_mass(b, j)));
-        json_array_append_new(modes, json_pack("{s:i, s:f, s:f, s:f}", "mode", j + 1, "hz", b->omega[j] / (2 * M_PI),
-                                               "mass_share", mass_share(b, j), "damping", b->zeta[j]));
+        json_array_append_new(modes,
+                              json_pack("{s:i, s:f, s:f, s:f}", "mode", j + 1, "hz", all->omega[j] / (2 * M_PI),
+                                        "mass_share", share(all->gamma[j], building_mass(b)), "damping", all->zeta[j]));
     }
-    return show_json(json_pack("{s:s, s:f, s:i, s:i, s:o, s:o}", "model", m->s->building.model, "mass_kg",
-                               building_mass(b), "nodes", m->frame.n_nodes, "elements", m->frame.n_elements, "floors",
-                               floors, "modes", modes),
-                     err);
+    json_t *o = json_pack("{s:o, s:f, s:i, s:i, s:o, s:o}", "model", json_words(m->s.building.model), "mass_kg",
+                          building_mass(b), "nodes", m->frame.n_nodes, "elements", m->frame.n_elements, "floors",
+                          floors, "modes", modes);
+    if (m->has_core)
+        put_core(o, m);
+    return show_json(o, err);
 }
 
 static Status write_svg(const Model *m, const char *path, Err *err)
 {
     Output o;
     TRY(output_open(&o, path, err));
-    building_svg(o.stream, &m->building, m->frame.n_nodes ? &m->frame : NULL);
+    building_svg(o.stream, &m->b, m->frame.n_nodes ? &m->frame : NULL);
     return output_close(&o, err);
+}
+
+static Status show(const Args *args, const Model *m, Err *err)
+{
+    if (m->frame.note[0])
+        fprintf(stderr, "note: %s: skipped:%s and nothing else\n", m->s.building.model, m->frame.note);
+    if (args_value(args, "--svg"))
+        TRY(write_svg(m, args_value(args, "--svg"), err));
+    if (args_has(args, "--json"))
+        return print_json(m, err);
+    print_building(m);
+    if (m->has_core)
+        print_core(m);
+    print_table(m);
+    return STATUS_OK;
 }
 
 static Status run(const Args *args, Err *err)
 {
-    Settings s;
-    Model m;
-    const char *svg = args_value(args, "--svg");
-    settings_defaults(&s);
-    TRY(option_put_path(s.building.model, args->operand, err));
-    TRY(args_apply(args, &s, NULL, NULL, err));
-    TRY(open_model(&m, &s, err));
-    Status status = svg ? write_svg(&m, svg, err) : STATUS_OK;
-    if (status == STATUS_OK && args_has(args, "--json"))
-        status = print_json(&m, err);
-    else if (status == STATUS_OK)
-        print_text(&m);
-    close_model(&m);
+    Model *m = calloc(1, sizeof *m);
+    if (!m)
+        return fail(err, STATUS_NO_MEMORY, "building: out of memory");
+    Status status = open_model(args, m, err);
+    if (status == STATUS_OK)
+        status = show(args, m, err);
+    building_free(&m->b);
+    frame_free(&m->frame);
+    free(m);
     return status;
 }
 
 static const ArgOption OPTIONS[] = {
+    {"--design", "FILE", NULL, 0, "of a CONFIG: take the core's thickness from it: " DESIGN_WORDS},
     {"--svg", "FILE", NULL, 0, "draw it: frame or storeys to scale, first three mode shapes"},
     OPTION_JSON,
     OPTION_SET,
@@ -129,13 +253,16 @@ static const ArgOption OPTIONS[] = {
 const Command CMD_BUILDING = {
     .name = "building",
     .group = GROUP_PREPARE,
-    .operand = "FOLDER",
-    .summary = "a building's floors, masses, modes and a drawing of it",
+    .operand = "CONFIG|MODEL",
+    .summary = "floors, masses and modes of a building, a drawing; of a CONFIG also of its core and both as one",
     .example = "imtet building my-tower --svg my-tower.svg",
     .details =
-        "FOLDER holds K.csv and M.csv, storeys.csv or a plane frame (nodes.csv, sections.csv, elements.csv), or is\n"
-        "guyan or appendix. Floors with height and mass, modes with period, participating mass and damping.\n"
-        "Settings of [building] are given by --set, as in --set building.units=kN_m_t.",
+        "MODEL is a folder with K.csv and M.csv, storeys.csv or a plane frame (nodes.csv, sections.csv,\n"
+        "elements.csv), an OpenSees model (FILE.tcl, units by --set building.units=kN_m_t), guyan or appendix. Floors\n"
+        "with height and mass, modes with period, participating mass and damping. Of a CONFIG also the modes of the\n"
+        "core, 12 mm thick in the first storey to 6.4 mm in the last without --design, and of the two rigidly\n"
+        "connected (zero gap). With building.modes the lowest modes of the fuller model are listed, vertical ones\n"
+        "included.",
     .options = OPTIONS,
     .is_alone = 1,
     .run = run,

@@ -18,8 +18,6 @@
     X(SERVE)                                                                                                           \
     X(PLOT)                                                                                                            \
     X(BUILDING)                                                                                                        \
-    X(IMPORT)                                                                                                          \
-    X(MODES)                                                                                                           \
     X(SPECTRUM)                                                                                                        \
     X(PROBLEM)                                                                                                         \
     X(SELFTEST)                                                                                                        \

@@ -275,6 +275,7 @@ static Status take(Building *b, BuildingFiles *files, const BuildingOptions *o, 
     b->K = files->K;
     b->M = files->M;
     files->K = files->M = NULL;
+    memcpy(b->note, files->note, sizeof b->note);
     const size_t bytes = (size_t)(b->n * b->n) * sizeof *b->K;
     b->hash = hash_fnv1a(b->M, bytes, hash_fnv1a(b->K, bytes, HASH_SEED));
     const size_t full_bytes = (size_t)(files->full.n * files->full.n) * sizeof *b->K;

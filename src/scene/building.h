@@ -56,6 +56,7 @@ typedef struct {
     double *zeta;     /* (n) [-] damping ratios of the modes */
     double *storey_m; /* (n) heights */
     uint64_t hash;    /* FNV-1a of the numbers in the files */
+    char note[400];   /* what of an OpenSees model was skipped; empty: nothing */
 
     BuildingModel model; /* what is integrated; the above, or more */
     double *model_store; /* NULL: the model is the above */

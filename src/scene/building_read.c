@@ -65,19 +65,21 @@ static Status load_matrix(const char *model, const char *file, double **A, int *
     return s;
 }
 
-/* 1 kip/in and 1 kip s2/in in N/m and kg: 4448.2216 N and 0.0254 m. */
-#define KIP_PER_IN (4448.2216152605 / 0.0254)
+#define INCH       0.0254                   /* m */
+#define KIP_PER_IN (4448.2216152605 / INCH) /* N/m; and kip s2/in in kg */
 
 BuildingUnit building_unit(BuildingUnits units)
 {
     const BuildingUnit list[] = {
-        [BUILDING_AUTO] = {1, 1},
-        [BUILDING_N_M_KG] = {1, 1},
-        [BUILDING_KN_M_T] = {1e3, 1e3},
-        [BUILDING_KN_M_KG] = {1e3, 1},
-        [BUILDING_N_M_T] = {1, 1e3},
-        [BUILDING_MN_M_T] = {1e6, 1e3},
-        [BUILDING_KIP_IN] = {KIP_PER_IN, KIP_PER_IN},
+        [BUILDING_AUTO] = {1, 1, 1},
+        [BUILDING_N_M_KG] = {1, 1, 1},
+        [BUILDING_KN_M_T] = {1e3, 1e3, 1},
+        [BUILDING_KN_M_KG] = {1e3, 1, 1},
+        [BUILDING_N_M_T] = {1, 1e3, 1},
+        [BUILDING_MN_M_T] = {1e6, 1e3, 1},
+        [BUILDING_KIP_IN] = {KIP_PER_IN, KIP_PER_IN, INCH},
+        [BUILDING_N_MM_T] = {1e3, 1e3, 1e-3},
+        [BUILDING_KIP_FT] = {KIP_PER_IN / 12, KIP_PER_IN / 12, 12 * INCH},
     };
     return list[units];
 }
@@ -307,7 +309,8 @@ static Status condense_frame(BuildingFiles *b, const Frame *f, const BuildingOpt
 static Status read_frame(BuildingFiles *b, const BuildingOptions *o, Err *err)
 {
     Frame f;
-    TRY(frame_read(&f, o->model, FLOORS_MAX, err));
+    TRY(frame_read(&f, o, err));
+    snprintf(b->note, sizeof b->note, "%s", f.note);
     Status status = b->K ? STATUS_OK : condense_frame(b, &f, o, err);
     if (status == STATUS_OK && o->modes > 0)
         status = reduce_frame(b, &f, o, FRAME_FULL, err);
@@ -331,7 +334,7 @@ static Status check_kind(const char *folder, int has[KINDS], Err *err)
     for (int k = 0; k < KINDS; k++) {
         char path[PATH_SIZE];
         sheet_path(folder, k, path);
-        has[k] = access(path, F_OK) == 0;
+        has[k] = k == KIND_FRAME ? frame_is(folder) : access(path, F_OK) == 0;
     }
     const int matrices = has[KIND_K] || has[KIND_M];
     const char *matrix = has[KIND_K] ? SHEETS[KIND_K] : SHEETS[KIND_M];

@@ -11,6 +11,7 @@
 
 typedef struct {
     int n;
+    char note[400];   /* Frame.note */
     double *K, *M;    /* (n, n) [N/m], [kg], symmetric and positive definite */
     double *storey_m; /* (n); NULL: the files have no heights */
     FrameFull
@@ -19,7 +20,7 @@ typedef struct {
 } BuildingFiles;
 
 typedef struct {
-    double stiffness, mass; /* what a unit of K.csv is in N/m, and one of M.csv in kg */
+    double stiffness, mass, length; /* what a unit of K.csv is in N/m, one of M.csv in kg, one of length in m */
 } BuildingUnit;
 
 BuildingUnit building_unit(BuildingUnits units);

@@ -150,3 +150,18 @@ void core_beam_join(const CoreBeam *c, const BuildingModel *building, double K[]
             M[i * m + j] += c->M[i * c->n + j];
         }
 }
+
+Status core_beam_joined_hz(const CoreBeam *c, const Building *b, double hz[], Err *err)
+{
+    const int m = b->model.n, mm = m * m;
+    double *K = malloc((3 * (size_t)mm + (size_t)m) * sizeof *K);
+    if (!K)
+        return fail(err, STATUS_NO_MEMORY, "modes: no memory for %d degrees of freedom", m);
+    double *M = K + mm, *phi = M + mm, *omega = phi + mm;
+    core_beam_join(c, &b->model, K, M);
+    const Status status = linalg_modes(m, K, M, omega, phi, err);
+    for (int i = 0; i < b->n && status == STATUS_OK; i++)
+        hz[i] = omega[i] / (2 * M_PI);
+    free(K);
+    return status;
+}

@@ -34,6 +34,9 @@ Status core_beam_make(CoreBeam *c, const CoreOptions *o, int n, const double sto
 /* K and M (m, m) of the building's model with the core rigidly connected to its floors. */
 void core_beam_join(const CoreBeam *c, const BuildingModel *building, double K[], double M[]);
 
+/* [Hz] of the lowest n modes of that. */
+Status core_beam_joined_hz(const CoreBeam *c, const Building *b, double hz[], Err *err);
+
 /* The section in storey 0..n-1. */
 typedef struct {
     double thickness, depth;   /* [m] of the wall; outer, in the direction of bending */

@@ -34,6 +34,7 @@
 
 #include "base/csv.h"
 #include "base/status.h"
+#include "scene/options.h"
 
 enum { FRAME_X, FRAME_Z, FRAME_ROT, FRAME_DOFS };
 
@@ -71,16 +72,14 @@ typedef struct {
     FrameSection *section;
     FrameElement *element;
     FrameTie *tie;
+    char note[400];   /* what of an OpenSees model was skipped; empty: nothing */
     double *storey_m; /* (n_floors) heights; the first above the highest node that is held sideways below floor 1 */
 } Frame;
 
-/* Is the model a frame: is it a folder that holds nodes.csv, or guyan? */
-int frame_is(const char *folder);
+/* Is the model a frame: a folder that holds nodes.csv, guyan, or an OpenSees model, a file that ends in .tcl? */
+int frame_is(const char *model);
 int frame_reads(const char *name); /* from its folder */
-Status frame_read(Frame *f, const char *folder, int floors_max, Err *err);
-
-/* nodes.csv, sections.csv, elements.csv and, where there are any, masses.csv and ties.csv; floors are not written. */
-Status frame_write(const Frame *f, const char *folder, Err *err);
+Status frame_read(Frame *f, const BuildingOptions *o, Err *err);
 
 typedef struct {
     int n;             /* degrees of freedom; the first are the floors */

@@ -7,7 +7,8 @@
 
 #include "base/stat.h"
 #include "scene/compiled_in.h"
-#include "scene/frame.h"
+#include "scene/building_read.h"
+#include "scene/opensees.h"
 
 /* ---- sheets --------------------------------------------------------------------------------------------------- */
 
@@ -23,9 +24,15 @@ static int is_there(const char *folder, const char *name)
     return is_compiled_in(folder) ? compiled_in(folder, name).text != NULL : access(path, F_OK) == 0;
 }
 
-int frame_is(const char *folder)
+static int is_tcl(const char *model)
 {
-    return is_there(folder, "nodes.csv");
+    const size_t n = strlen(model);
+    return n > 4 && strcmp(model + n - 4, ".tcl") == 0;
+}
+
+int frame_is(const char *model)
+{
+    return is_tcl(model) || is_there(model, "nodes.csv");
 }
 
 static Status open_sheet(Sheet *s, const char *folder, const char *name, const char *required, const char *optional,
@@ -392,21 +399,19 @@ static Status measure_storeys(Frame *f, const char *folder, Err *err)
         int count;
         const double z = floor_height(f, k, &count);
         if (count == 0)
-            return fail(err, STATUS_BAD_DATA, "%s/nodes.csv: there is no floor %d, but a floor %d", folder, k,
-                        f->n_floors);
+            return fail(err, STATUS_BAD_DATA, "%s: there is no floor %d, but a floor %d", folder, k, f->n_floors);
         if (k == 1 && !ground_below(f, z, &below))
-            return fail(err, STATUS_BAD_DATA, "%s/nodes.csv: no node below the first floor (z %g m) has fix_x 1",
-                        folder, z);
+            return fail(err, STATUS_BAD_DATA, "%s: no node below the first floor (z %g m) is held along x", folder, z);
         if (!(z > below))
-            return fail(err, STATUS_BAD_DATA, "%s/nodes.csv: floor %d at %g m is not above %g m; bottom floor first",
-                        folder, k, z, below);
+            return fail(err, STATUS_BAD_DATA, "%s: floor %d at %g m is not above %g m; bottom floor first", folder, k,
+                        z, below);
         f->storey_m[k - 1] = z - below;
         below = z;
     }
     return STATUS_OK;
 }
 
-static Status find_floors(Frame *f, const char *folder, int floors_max, Err *err)
+static Status find_floors(Frame *f, const char *folder, Err *err)
 {
     int named = 0;
     for (int i = 0; i < f->n_nodes; i++)
@@ -417,8 +422,8 @@ static Status find_floors(Frame *f, const char *folder, int floors_max, Err *err
         f->n_floors = f->node[i].floor > f->n_floors ? f->node[i].floor : f->n_floors;
     if (f->n_floors == 0)
         return fail(err, STATUS_BAD_DATA, "%s: no floors: no level element has ends that may move sideways", folder);
-    if (f->n_floors > floors_max)
-        return fail(err, STATUS_BAD_DATA, "%s: %d floors; at most %d are supported", folder, f->n_floors, floors_max);
+    if (f->n_floors > FLOORS_MAX)
+        return fail(err, STATUS_BAD_DATA, "%s: %d floors; at most %d are supported", folder, f->n_floors, FLOORS_MAX);
     f->storey_m = calloc((size_t)f->n_floors, sizeof *f->storey_m);
     if (!f->storey_m)
         return fail(err, STATUS_NO_MEMORY, "frame: no memory for %d floors", f->n_floors);
@@ -427,17 +432,34 @@ static Status find_floors(Frame *f, const char *folder, int floors_max, Err *err
 
 /* ---- the folder ----------------------------------------------------------------------------------------------- */
 
-Status frame_read(Frame *f, const char *folder, int floors_max, Err *err)
+static Status read_sheets(Frame *f, const char *folder, Err *err)
 {
     Index x = {0};
-    memset(f, 0, sizeof *f);
     Status status = STATUS_OK;
     for (size_t i = 0; i < sizeof PARTS / sizeof PARTS[0] && status == STATUS_OK; i++)
         status = read_part(f, &x, folder, &PARTS[i], err);
     free(x.entry);
     free(x.root);
+    return status;
+}
+
+static Status read_tcl(Frame *f, const BuildingOptions *o, Err *err)
+{
+    const BuildingUnit u = building_unit(o->units);
+    if (o->units == BUILDING_AUTO || u.stiffness != u.mass)
+        return fail(err, STATUS_BAD_DATA,
+                    "building.units: an OpenSees model says none; set it to N_m_kg, kN_m_t, N_mm_t, kip_in or kip_ft "
+                    "for %s",
+                    o->model);
+    return opensees_read(f, o->model, u.length, u.stiffness * u.length, err);
+}
+
+Status frame_read(Frame *f, const BuildingOptions *o, Err *err)
+{
+    memset(f, 0, sizeof *f);
+    Status status = is_tcl(o->model) ? read_tcl(f, o, err) : read_sheets(f, o->model, err);
     if (status == STATUS_OK)
-        status = find_floors(f, folder, floors_max, err);
+        status = find_floors(f, o->model, err);
     if (status != STATUS_OK)
         frame_free(f);
     return status;

@@ -1,483 +1,320 @@
 #include "scene/opensees.h"
 
-#include <ctype.h>
+#include <errno.h>
+#include <limits.h>
+#include <locale.h>
 #include <math.h>
+#include <signal.h>
 #include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <tcl.h>
+#include <time.h>
 
-#include "base/csv.h"
-#include "base/visible.h"
+/* ---- what is being read --------------------------------------------------------------------------------------- */
 
-const char MODEL_UNITS_WORDS[] = "N_m, kN_m, N_mm, kip_in or kip_ft";
+/* No model needs as many; one that does runs in a circle. */
+enum { COMMANDS_MAX = 5000000, SECONDS_MAX = 10 };
 
-const ModelUnits *model_units(const char *word)
-{
-    static const double KIP = 4448.2216152605, INCH = 0.0254;
-    static const ModelUnits LIST[] = {
-        {"N_m", 1, 1}, {"kN_m", 1, 1e3}, {"N_mm", 1e-3, 1}, {"kip_in", INCH, KIP}, {"kip_ft", 12 * INCH, KIP}};
-    for (size_t i = 0; i < sizeof LIST / sizeof LIST[0]; i++)
-        if (strcmp(word, LIST[i].word) == 0)
-            return &LIST[i];
-    return NULL;
-}
-
-/* ---- words ---------------------------------------------------------------------------------------------------- */
-
-enum { WORDS_MAX = 40, WORD_MAX = 200, VARIABLES_MAX = 400, TRANSFORMATIONS_MAX = 100 };
-
-/* As in Tcl integers divide as integers. */
-typedef struct {
-    double value;
-    int whole;
-} Number;
+/* What has a tag, which stands for an index into the list of its kind. */
+typedef enum { NODES, ELEMENTS, SECTIONS, MATERIALS, TRANSFORMATIONS, TAGGED } Tagged;
+static const char *const KIND[TAGGED] = {"node", "element", "section", "uniaxialMaterial", "geomTransf"};
 
 typedef struct {
-    char name[TABLE_NAME_MAX];
-    Number number;
-} Variable;
-
-typedef struct {
-    const char *path, *at; /* at: what is still to be read */
-    int line, next_line;   /* of the command at hand; of `at` */
-    int n;
-    char word[WORDS_MAX][WORD_MAX]; /* (n) of the command */
-    int n_variables, n_transformations, has_model;
-    Variable variable[VARIABLES_MAX];
-    double transformation[TRANSFORMATIONS_MAX]; /* (n_transformations) tags */
-    ModelUnits units;
+    const char *path;
+    char folder[PATH_MAX]; /* of the model, without links */
+    Tcl_Interp *tcl;
+    Tcl_HashTable tag[TAGGED];
+    double length, force; /* units in m, in N */
     Frame *frame;
-    int node_room, section_room, element_room, tie_room;
-    FILE *refused;
-    int n_refused;
+    FrameSection
+        *elastic; /* (n_elastic) of section Elastic and, modulus alone, uniaxialMaterial Elastic; units as there */
+    int n_elastic, has_model, is_wiped, has_analysed, has_ended;
+    Err refused; /* of the first command that is not read; code STATUS_OK: none yet */
 } Reader;
 
-__attribute__((format(printf, 2, 3))) static void refuse(Reader *r, const char *format, ...)
+typedef Tcl_Obj *const Words[];
+
+/* The functions that take words return whether all is well; if not the model is refused, whether the script catches it or
+ * not. */
+__attribute__((format(printf, 2, 3))) static int refuse(Reader *r, const char *format, ...)
 {
-    char text[400], shown[480];
+    static const char WHERE[] =
+        "set frame [info frame -1]; return -level 0 [dict get $frame file]:[dict get $frame line]";
+    char text[300];
     va_list args;
     va_start(args, format);
     vsnprintf(text, sizeof text, format, args);
     va_end(args);
-    visible_text(shown, sizeof shown, text);
-    fprintf(r->refused, "%s:%d: %s\n", r->path, r->line, shown);
-    r->n_refused++;
-}
-
-static int ends_command(char c)
-{
-    return c == 0 || c == '\n' || c == ';';
-}
-
-/* Blanks inside a line; a backslash before its end continues it. */
-static void skip_blanks(Reader *r)
-{
-    for (;;) {
-        const char *after = r->at + 1 + (*r->at == '\\' && r->at[1] == '\r');
-        if (*r->at == '\\' && *after == '\n') {
-            r->at = after + 1;
-            r->next_line++;
-        } else if (*r->at && strchr(" \t\r\v\f", *r->at)) {
-            r->at++;
-        } else {
-            return;
-        }
+    if (r->refused.code == STATUS_OK) {
+        const int known = Tcl_Eval(r->tcl, WHERE) == TCL_OK;
+        fail(&r->refused, STATUS_BAD_DATA, "%s: %s", known ? Tcl_GetStringResult(r->tcl) : r->path, text);
     }
-}
-
-/* A word goes to the next blank outside brackets and braces. */
-static void take_word(Reader *r)
-{
-    int depth = 0;
-    size_t n = 0;
-    char *word = r->word[r->n < WORDS_MAX ? r->n : WORDS_MAX - 1];
-    while (*r->at && (depth > 0 ? *r->at != '\n' : !ends_command(*r->at) && !isspace((unsigned char)*r->at))) {
-        if (*r->at == '\\' && (r->at[1] == '\n' || r->at[1] == '\r'))
-            break;
-        depth += (*r->at == '[' || *r->at == '{') - (*r->at == ']' || *r->at == '}');
-        if (n + 1 < WORD_MAX)
-            word[n++] = *r->at;
-        r->at++;
-    }
-    word[n] = 0;
-    if (n + 1 == WORD_MAX || r->n == WORDS_MAX)
-        refuse(r, "the command is too long");
-    r->n += r->n < WORDS_MAX;
-}
-
-/* The next command; 0: the text has ended. */
-static int next_command(Reader *r)
-{
-    r->n = 0;
-    while (*r->at && r->n == 0) {
-        r->line = r->next_line;
-        skip_blanks(r);
-        if (*r->at == '#')
-            while (*r->at && *r->at != '\n')
-                r->at++;
-        while (!ends_command(*r->at)) {
-            take_word(r);
-            skip_blanks(r);
-        }
-        r->next_line += *r->at == '\n';
-        r->at += *r->at != 0;
-    }
-    return r->n > 0;
-}
-
-/* ---- numbers -------------------------------------------------------------------------------------------------- */
-
-typedef struct {
-    const Reader *r;
-    const char *at;
-    int depth, wrong;
-} Expression;
-
-static Number sum(Expression *e);
-
-static void pass_blanks(Expression *e)
-{
-    while (isspace((unsigned char)*e->at))
-        e->at++;
-}
-
-static Number variable(Expression *e)
-{
-    size_t n = 0;
-    while (isalnum((unsigned char)e->at[n]) || e->at[n] == '_')
-        n++;
-    for (int i = 0; i < e->r->n_variables; i++)
-        if (strlen(e->r->variable[i].name) == n && strncmp(e->r->variable[i].name, e->at, n) == 0) {
-            e->at += n;
-            return e->r->variable[i].number;
-        }
-    e->wrong = 1;
-    return (Number){0, 0};
-}
-
-static Number inside(Expression *e, char closing)
-{
-    const Number a = ++e->depth < 50 ? sum(e) : (Number){0, 0};
-    pass_blanks(e);
-    e->wrong |= *e->at != closing || e->depth >= 50;
-    e->at += *e->at == closing;
-    e->depth--;
-    return a;
-}
-
-static Number literal(Expression *e)
-{
-    char *end;
-    const double value = strtod(e->at, &end);
-    const size_t length = (size_t)(end - e->at);
-    const Number a = {value, strspn(e->at, "0123456789") == length};
-    e->wrong |= length == 0 || (a.whole && length > 1 && *e->at == '0'); /* octal, as some versions of Tcl have it */
-    e->at = end;
-    return a;
-}
-
-static Number atom(Expression *e)
-{
-    pass_blanks(e);
-    const char c = *e->at;
-    e->at += c && strchr("-+($[{", c) != NULL;
-    if (e->wrong)
-        return (Number){0, 0};
-    if (c == '-' || c == '+') {
-        const Number a = atom(e);
-        return (Number){c == '-' ? -a.value : a.value, a.whole};
-    }
-    if (c == '$')
-        return variable(e);
-    if (c == '(' || c == '{')
-        return inside(e, c == '(' ? ')' : '}');
-    if (c == '[' && strncmp(e->at, "expr", 4) == 0) {
-        e->at += 4;
-        return inside(e, ']');
-    }
-    return literal(e);
-}
-
-static Number product(Expression *e)
-{
-    Number a = atom(e);
-    for (pass_blanks(e); !e->wrong && (*e->at == '*' || *e->at == '/'); pass_blanks(e)) {
-        const char sign = *e->at++;
-        const Number b = atom(e);
-        a.whole &= b.whole;
-        a.value = sign == '*' ? a.value * b.value : a.value / b.value;
-        a.value = a.whole ? floor(a.value) : a.value;
-    }
-    return a;
-}
-
-static Number sum(Expression *e)
-{
-    Number a = product(e);
-    for (pass_blanks(e); !e->wrong && (*e->at == '+' || *e->at == '-'); pass_blanks(e)) {
-        const char sign = *e->at++;
-        const Number b = product(e);
-        a.whole &= b.whole;
-        a.value = sign == '+' ? a.value + b.value : a.value - b.value;
-    }
-    return a;
-}
-
-/* Word i as a number; refuses the command where it is none. */
-static int evaluate(Reader *r, int i, Number *result)
-{
-    Expression e = {.r = r, .at = i < r->n ? r->word[i] : ""};
-    *result = sum(&e);
-    if (!e.wrong && !*e.at && isfinite(result->value))
-        return 1;
-    refuse(r, "%s: '%s' is no number that can be read here", r->word[0], i < r->n ? r->word[i] : "");
     return 0;
 }
 
-static int number(Reader *r, int i, double *value)
+/* A new entry of a list of the frame, zeroed; NULL: no memory, which is noted. */
+static void *append(Reader *r, void *list, int *n, size_t size)
 {
-    Number a;
-    const int ok = evaluate(r, i, &a);
-    *value = ok ? a.value : 0;
-    return ok;
+    void *old;
+    memcpy(&old, list, sizeof old);
+    char *wider = realloc(old, (size_t)(*n + 1) * size);
+    if (!wider) {
+        fail(&r->refused, STATUS_NO_MEMORY, "%s: no memory for its model", r->path);
+        return NULL;
+    }
+    memcpy(list, &wider, sizeof wider);
+    return memset(wider + (size_t)(*n)++ * size, 0, size);
 }
 
-/* The command has at most n words. */
-static int ends_at(Reader *r, int n)
+/* ---- words of a command --------------------------------------------------------------------------------------- */
+
+static int is_word(Tcl_Obj *word, const char *text)
 {
-    if (r->n > n)
-        refuse(r, "%s: '%s' is not supported", r->word[0], r->word[n]);
-    return r->n <= n;
+    return strcmp(Tcl_GetString(word), text) == 0;
 }
 
-static int numbers(Reader *r, int first, int n, double values[])
+static int take_numbers(Reader *r, Words w, int first, int n, double values[])
 {
     for (int i = 0; i < n; i++)
-        if (!number(r, first + i, &values[i]))
-            return 0;
+        if (Tcl_GetDoubleFromObj(NULL, w[first + i], &values[i]) != TCL_OK || !isfinite(values[i]))
+            return refuse(r, "%s: '%.60s' is no number", Tcl_GetString(w[0]), Tcl_GetString(w[first + i]));
     return 1;
 }
 
-/* ---- the parts of the frame ----------------------------------------------------------------------------------- */
-
-static void *room(void *list, int n, int *capacity, size_t size)
+static int take_tag(Reader *r, Words w, int at, int *tag)
 {
-    if (n < *capacity)
-        return list;
-    void *wider = realloc(list, (size_t)(2 * n + 64) * size);
-    if (wider)
-        *capacity = 2 * n + 64;
-    return wider;
+    return Tcl_GetIntFromObj(NULL, w[at], tag) == TCL_OK ||
+           refuse(r, "%s: '%.60s' is no tag, a whole number", Tcl_GetString(w[0]), Tcl_GetString(w[at]));
 }
 
-/* A new entry of a list of the frame, zeroed; fails the function around it where there is no memory. */
-#define APPEND(entry, list, count, capacity)                                                                           \
-    do {                                                                                                               \
-        void *wider_ = room(list, count, &(capacity), sizeof *(list));                                                 \
-        if (!wider_)                                                                                                   \
-            return fail(err, STATUS_NO_MEMORY, "%s: no memory for its model", r->path);                                \
-        (list) = wider_;                                                                                               \
-        (entry) = &(list)[(count)++];                                                                                  \
-        memset(entry, 0, sizeof *(entry));                                                                             \
-    } while (0)
-
-/* -1: there is none. */
-static int node_of_name(const Frame *f, const char *name)
+/* What word `at`, a tag of that kind, stands for. */
+static int find(Reader *r, Words w, int at, Tagged kind, int *index)
 {
-    int i = f->n_nodes - 1;
-    while (i >= 0 && strcmp(f->node[i].name, name) != 0)
-        i--;
-    return i;
+    int tag;
+    if (!take_tag(r, w, at, &tag))
+        return 0;
+    const Tcl_HashEntry *entry = Tcl_FindHashEntry(&r->tag[kind], (void *)(intptr_t)tag);
+    if (!entry)
+        return refuse(r, "%s: there is no %s %d above", Tcl_GetString(w[0]), KIND[kind], tag);
+    *index = (int)(intptr_t)Tcl_GetHashValue(entry);
+    return 1;
 }
 
-static int find_node(Reader *r, int word)
+/* From now on the tag stands for this index. */
+static int define(Reader *r, Words w, int at, Tagged kind, int index)
 {
-    double tag;
-    char name[TABLE_NAME_MAX];
-    if (!number(r, word, &tag))
-        return -1;
-    snprintf(name, sizeof name, "%.0f", tag);
-    const int node = node_of_name(r->frame, name);
-    if (node < 0)
-        refuse(r, "%s: there is no node %s above", r->word[0], name);
-    return node;
+    int tag, is_new;
+    if (!take_tag(r, w, at, &tag))
+        return 0;
+    Tcl_HashEntry *entry = Tcl_CreateHashEntry(&r->tag[kind], (void *)(intptr_t)tag, &is_new);
+    Tcl_SetHashValue(entry, (void *)(intptr_t)index);
+    return is_new || refuse(r, "%s: %s %d is there twice", Tcl_GetString(w[0]), KIND[kind], tag);
+}
+
+/* ---- nodes and what they are given ---------------------------------------------------------------------------- */
+
+static int take_model(Reader *r, int n, Words w)
+{
+    int dimensions = 0, unknowns = FRAME_DOFS;
+    for (int i = 1; i + 1 < n; i++)
+        if (is_word(w[i], "-ndm") || is_word(w[i], "-ndf"))
+            Tcl_GetIntFromObj(NULL, w[i + 1], is_word(w[i], "-ndm") ? &dimensions : &unknowns);
+    r->has_model = 1;
+    return (dimensions == 2 && unknowns == FRAME_DOFS) || refuse(r, "model: only -ndm 2 -ndf 3 is read");
 }
 
 /* A later mass of a node replaces the earlier one (OpenSees: Node::setMass); that of elements adds to it at the end. */
-static void set_mass(Reader *r, FrameNode *node, int first)
+static int set_mass(Reader *r, FrameNode *node, Words w, int first)
 {
     double m[FRAME_DOFS];
-    const double unit = r->units.force_n / r->units.length_m;
-    if (!ends_at(r, first + FRAME_DOFS) || !numbers(r, first, FRAME_DOFS, m))
-        return;
+    const double unit = r->force / r->length;
+    if (!take_numbers(r, w, first, FRAME_DOFS, m))
+        return 0;
     for (int d = 0; d < FRAME_DOFS; d++) {
-        if (m[d] < 0) {
-            refuse(r, "%s: a mass of %g; it must not be negative", r->word[0], m[d]);
-            return;
-        }
-        node->mass[d] = m[d] * unit * (d == FRAME_ROT ? r->units.length_m * r->units.length_m : 1);
-    }
-}
-
-static Status take_node(Reader *r, Err *err)
-{
-    Frame *f = r->frame;
-    double tag, xy[2];
-    if (!number(r, 1, &tag) || !numbers(r, 2, 2, xy))
-        return STATUS_OK;
-    if (!r->has_model)
-        refuse(r, "node: 'model BasicBuilder -ndm 2 -ndf 3' must stand above");
-    r->has_model = 1; /* said once */
-    FrameNode *node;
-    char name[TABLE_NAME_MAX];
-    snprintf(name, sizeof name, "%.0f", tag);
-    if (node_of_name(f, name) >= 0) {
-        refuse(r, "node: %s is there twice", name);
-        return STATUS_OK;
-    }
-    APPEND(node, f->node, f->n_nodes, r->node_room);
-    memcpy(node->name, name, sizeof name);
-    node->x = xy[0] * r->units.length_m;
-    node->z = xy[1] * r->units.length_m;
-    if (r->n > 4 && strcmp(r->word[4], "-mass") == 0)
-        set_mass(r, node, 5);
-    else if (r->n > 4)
-        refuse(r, "node: '%s' is not supported", r->word[4]);
-    return STATUS_OK;
-}
-
-static Status take_fix(Reader *r, Err *err)
-{
-    (void)err;
-    const int node = find_node(r, 1);
-    double fixed[FRAME_DOFS];
-    if (node < 0 || !ends_at(r, 2 + FRAME_DOFS) || !numbers(r, 2, FRAME_DOFS, fixed))
-        return STATUS_OK;
-    for (int d = 0; d < FRAME_DOFS; d++)
-        r->frame->node[node].fixed[d] |= fixed[d] != 0;
-    return STATUS_OK;
-}
-
-static Status take_mass(Reader *r, Err *err)
-{
-    (void)err;
-    const int node = find_node(r, 1);
-    if (node >= 0)
-        set_mass(r, &r->frame->node[node], 2);
-    return STATUS_OK;
-}
-
-/* Is one of these nodes tied to the other already? */
-static int is_tied(const Frame *f, int a, int b, int dof)
-{
-    for (int i = 0; i < f->n_ties; i++) {
-        const FrameTie *t = &f->tie[i];
-        if (t->dof[dof] && ((t->node == a && t->same_as == b) || (t->node == b && t->same_as == a)))
-            return 1;
-    }
-    return 0;
-}
-
-static Status take_equal(Reader *r, Err *err)
-{
-    Frame *f = r->frame;
-    const int same_as = find_node(r, 1), node = find_node(r, 2);
-    FrameTie *tie;
-    if (node < 0 || same_as < 0)
-        return STATUS_OK;
-    if (node == same_as || r->n == 3)
-        refuse(r, "equalDOF: wants two nodes and at least one degree of freedom 1 to 3");
-    APPEND(tie, f->tie, f->n_ties, r->tie_room);
-    tie->node = node;
-    tie->same_as = same_as;
-    for (int i = 3; i < r->n; i++) {
-        double dof;
-        if (!number(r, i, &dof) || (dof != 1 && dof != 2 && dof != 3))
-            refuse(r, "equalDOF: '%s' is no degree of freedom 1 to 3", r->word[i]);
-        else if (is_tied(f, node, same_as, (int)dof - 1))
-            refuse(r, "equalDOF: nodes %s and %s are tied in %g already", f->node[same_as].name, f->node[node].name,
-                   dof);
-        else
-            tie->dof[(int)dof - 1] = 1;
-    }
-    return STATUS_OK;
-}
-
-static Status find_section(Reader *r, const FrameSection *wanted, int *section, Err *err)
-{
-    Frame *f = r->frame;
-    FrameSection *s;
-    for (*section = 0; *section < f->n_sections; ++*section) {
-        s = &f->section[*section];
-        if (s->area == wanted->area && s->inertia == wanted->inertia && s->E == wanted->E &&
-            s->mass_per_m == wanted->mass_per_m)
-            return STATUS_OK;
-    }
-    APPEND(s, f->section, f->n_sections, r->section_room);
-    *s = *wanted;
-    snprintf(s->name, sizeof s->name, "s%d", f->n_sections);
-    return STATUS_OK;
-}
-
-typedef struct {
-    double mass; /* per length */
-    int consistent, release;
-} ElementOptions;
-
-static int element_options(Reader *r, ElementOptions *o)
-{
-    *o = (ElementOptions){0};
-    for (int i = 9; i < r->n; i++) {
-        double value = 0;
-        if (strcmp(r->word[i], "-cMass") == 0) {
-            o->consistent = 1;
-        } else if (strcmp(r->word[i], "-mass") == 0) {
-            if (!number(r, ++i, &o->mass))
-                return 0;
-            if (o->mass < 0) {
-                refuse(r, "element: a mass of %g; it must not be negative", o->mass);
-                return 0;
-            }
-        } else if (strcmp(r->word[i], "-release") == 0) {
-            if (!number(r, ++i, &value))
-                return 0;
-            o->release = value >= 0 && value <= 3 ? (int)value : -1;
-            if (o->release != value) {
-                refuse(r, "element: -release %g is none of 0 (none), 1 (end i), 2 (end j), 3 (both)", value);
-                return 0;
-            }
-        } else {
-            refuse(r, "element elasticBeamColumn: '%s' is not supported", r->word[i]);
-            return 0;
-        }
+        if (m[d] < 0)
+            return refuse(r, "%s: a mass of %g; it must not be negative", Tcl_GetString(w[0]), m[d]);
+        node->mass[d] = m[d] * unit * (d == FRAME_ROT ? r->length * r->length : 1);
     }
     return 1;
 }
 
-static Status add_element(Reader *r, const int node[2], const double a[3], const ElementOptions *o, Err *err)
+static int take_node(Reader *r, int n, Words w)
 {
-    Frame *f = r->frame;
-    const double L = r->units.length_m, F = r->units.force_n, per_m = o->mass * F / (L * L);
-    const FrameSection section = {.area = a[0] * L * L,
-                                  .E = a[1] * F / (L * L),
-                                  .inertia = a[2] * L * L * L * L,
-                                  .mass_per_m = o->consistent ? per_m : 0};
-    const FrameNode *end[2] = {&f->node[node[0]], &f->node[node[1]]};
-    FrameElement *e;
-    int index;
-    TRY(find_section(r, &section, &index, err));
-    APPEND(e, f->element, f->n_elements, r->element_room);
-    snprintf(e->name, sizeof e->name, "%.47s", r->word[2]);
-    e->section = index;
-    e->added_mass = o->consistent ? 0 : per_m * hypot(end[1]->x - end[0]->x, end[1]->z - end[0]->z);
-    for (int k = 0; k < 2; k++) {
-        e->node[k] = node[k];
-        e->pinned[k] = (o->release >> k) & 1;
-    }
-    return STATUS_OK;
+    double xy[2];
+    if (!r->has_model || r->is_wiped)
+        return refuse(r, r->is_wiped ? "node: the model above was wiped; keep one of the two"
+                                     : "node: 'model BasicBuilder -ndm 2 -ndf 3' must stand above");
+    if (!take_numbers(r, w, 2, 2, xy) || !define(r, w, 1, NODES, r->frame->n_nodes))
+        return 0;
+    FrameNode *node = append(r, &r->frame->node, &r->frame->n_nodes, sizeof *node);
+    if (!node)
+        return 0;
+    snprintf(node->name, sizeof node->name, "%.40s", Tcl_GetString(w[1]));
+    node->x = xy[0] * r->length;
+    node->z = xy[1] * r->length;
+    if (n == 4)
+        return 1;
+    return n == 5 + FRAME_DOFS && is_word(w[4], "-mass")
+               ? set_mass(r, node, w, 5)
+               : refuse(r, "node: behind TAG x y only -mass mx my mr is read");
 }
 
-/* The mass of an element goes to its ends in halves, as OpenSees lumps it. */
+static int take_fix(Reader *r, int n, Words w)
+{
+    double fixed[FRAME_DOFS];
+    int node;
+    (void)n;
+    if (!find(r, w, 1, NODES, &node) || !take_numbers(r, w, 2, FRAME_DOFS, fixed))
+        return 0;
+    for (int d = 0; d < FRAME_DOFS; d++)
+        r->frame->node[node].fixed[d] |= fixed[d] != 0;
+    return 1;
+}
+
+static int take_mass(Reader *r, int n, Words w)
+{
+    int node;
+    (void)n;
+    return find(r, w, 1, NODES, &node) && set_mass(r, &r->frame->node[node], w, 2);
+}
+
+static int take_equal(Reader *r, int n, Words w)
+{
+    int node, same_as, dof;
+    if (!find(r, w, 1, NODES, &same_as) || !find(r, w, 2, NODES, &node))
+        return 0;
+    FrameTie *tie = append(r, &r->frame->tie, &r->frame->n_ties, sizeof *tie);
+    if (!tie)
+        return 0;
+    tie->node = node;
+    tie->same_as = same_as;
+    for (int i = 3; i < n; i++) {
+        if (Tcl_GetIntFromObj(NULL, w[i], &dof) != TCL_OK || dof < 1 || dof > FRAME_DOFS)
+            return refuse(r, "equalDOF: '%.60s' is no degree of freedom 1 to 3", Tcl_GetString(w[i]));
+        tie->dof[dof - 1] = 1;
+    }
+    return 1;
+}
+
+/* ---- elements ------------------------------------------------------------------------------------------------- */
+
+static int take_transformation(Reader *r, int n, Words w)
+{
+    return n == 3 && (is_word(w[1], "Linear") || is_word(w[1], "PDelta"))
+               ? define(r, w, 2, TRANSFORMATIONS, 0)
+               : refuse(r, "geomTransf: only Linear and PDelta TAG are read; building.p_delta decides between them");
+}
+
+/* section Elastic TAG E A I, uniaxialMaterial Elastic TAG E */
+static int take_elastic(Reader *r, int n, Words w)
+{
+    const Tagged kind = is_word(w[0], KIND[SECTIONS]) ? SECTIONS : MATERIALS;
+    const int numbers = kind == SECTIONS ? 3 : 1;
+    double value[3] = {0};
+    if (!is_word(w[1], "Elastic") || n < 3 + numbers)
+        return refuse(r, "%s %.60s: only Elastic TAG E%s is read", KIND[kind], Tcl_GetString(w[1]),
+                      kind == SECTIONS ? " A I" : "");
+    if (!take_numbers(r, w, 3, numbers, value) || !define(r, w, 2, kind, r->n_elastic))
+        return 0;
+    FrameSection *s = append(r, &r->elastic, &r->n_elastic, sizeof *s);
+    if (!s)
+        return 0;
+    *s = (FrameSection){.E = value[0], .area = value[1], .inertia = value[2]};
+    return 1;
+}
+
+/* The elements that are read, and what stands behind their nodes: numbers A, E, I; tags of a Section, a Material, a
+ * Transformation; a number that does nothing. */
+static const struct {
+    const char *type, *words;
+} MEMBERS[] = {{"elasticBeamColumn", "AEIT"},  {"elasticBeamColumn", "ST"}, {"forceBeamColumn", "-ST"},
+               {"nonlinearBeamColumn", "-ST"}, {"dispBeamColumn", "-ST"},   {"truss", "AM"}};
+enum { N_MEMBERS = sizeof MEMBERS / sizeof MEMBERS[0] };
+
+/* *options: where they begin. Section s in the units of the model. */
+static int take_member(Reader *r, int n, Words w, FrameSection *s, int *options)
+{
+    int form = 0, index;
+    for (*options = 5; *options < n && Tcl_GetString(w[*options])[0] != '-';)
+        ++*options;
+    while (form < N_MEMBERS &&
+           (!is_word(w[1], MEMBERS[form].type) || strlen(MEMBERS[form].words) != (size_t)(*options - 5)))
+        form++;
+    if (form == N_MEMBERS)
+        return refuse(r,
+                      "element %.60s: read are elasticBeamColumn TAG i j A E I TRANSF (or SECTION TRANSF), truss TAG i "
+                      "j A MATERIAL, forceBeamColumn and dispBeamColumn TAG i j POINTS SECTION TRANSF",
+                      Tcl_GetString(w[1]));
+    *s = (FrameSection){.inertia = 1}; /* of a bar, whose ends are pinned, it does nothing */
+    for (int i = 5; i < *options; i++) {
+        const char word = MEMBERS[form].words[i - 5];
+        const Tagged kind = word == 'S' ? SECTIONS : word == 'M' ? MATERIALS : TRANSFORMATIONS;
+        const int is_number = word == 'A' || word == 'E' || word == 'I';
+        double *const number = word == 'A' ? &s->area : word == 'E' ? &s->E : &s->inertia;
+        if (is_number ? !take_numbers(r, w, i, 1, number) : word != '-' && !find(r, w, i, kind, &index))
+            return 0;
+        if (word == 'S')
+            *s = r->elastic[index];
+        if (word == 'M')
+            s->E = r->elastic[index].E;
+    }
+    return 1;
+}
+
+/* mass: per length, in the units of the model. */
+static int take_options(Reader *r, int n, Words w, int at, double *mass, int *is_consistent, double *release)
+{
+    *mass = *release = *is_consistent = 0;
+    for (int i = at; i < n; i++) {
+        const int is_mass = is_word(w[i], "-mass") || is_word(w[i], "-rho");
+        if (is_word(w[i], "-cMass") || is_word(w[i], "-lMass"))
+            *is_consistent = is_word(w[i], "-cMass");
+        else if ((!is_mass && !is_word(w[i], "-release")) || i + 1 == n)
+            return refuse(r, "element %s: '%.60s' is not read", Tcl_GetString(w[1]), Tcl_GetString(w[i]));
+        else if (!take_numbers(r, w, ++i, 1, is_mass ? mass : release))
+            return 0;
+    }
+    if (*mass < 0)
+        return refuse(r, "element: a mass of %g; it must not be negative", *mass);
+    return *release == 0 || *release == 1 || *release == 2 || *release == 3 ||
+           refuse(r, "element: -release %g is none of 0 (none), 1 (end i), 2 (end j), 3 (both)", *release);
+}
+
+/* A mass that is not consistent goes to both ends in halves, as OpenSees lumps it: added_mass until all is read. */
+static int take_element(Reader *r, int n, Words w)
+{
+    Frame *f = r->frame;
+    const double L = r->length, F = r->force;
+    FrameSection s;
+    int end[2], options, is_consistent;
+    double mass, release;
+    if (!find(r, w, 3, NODES, &end[0]) || !find(r, w, 4, NODES, &end[1]) || !take_member(r, n, w, &s, &options) ||
+        !take_options(r, n, w, options, &mass, &is_consistent, &release) || !define(r, w, 2, ELEMENTS, f->n_elements))
+        return 0;
+    const double length = hypot(f->node[end[1]].x - f->node[end[0]].x, f->node[end[1]].z - f->node[end[0]].z);
+    if (!(s.area > 0 && s.E > 0 && s.inertia > 0 && length > 0))
+        return refuse(r, "element %s: A, E and I must be above 0, its nodes at two places", Tcl_GetString(w[2]));
+    FrameSection *section = append(r, &f->section, &f->n_sections, sizeof *section);
+    FrameElement *e = append(r, &f->element, &f->n_elements, sizeof *e);
+    if (!section || !e)
+        return 0;
+    mass *= F / (L * L);
+    *section = (FrameSection){.area = s.area * L * L,
+                              .E = s.E * F / (L * L),
+                              .inertia = s.inertia * L * L * L * L,
+                              .mass_per_m = is_consistent ? mass : 0};
+    *e = (FrameElement){.node = {end[0], end[1]},
+                        .section = f->n_sections - 1,
+                        .pinned = {is_word(w[1], "truss") || (int)release & 1, is_word(w[1], "truss") || release >= 2},
+                        .added_mass = is_consistent ? 0 : mass * length};
+    snprintf(e->name, sizeof e->name, "%.40s", Tcl_GetString(w[2]));
+    snprintf(section->name, sizeof section->name, "of %.40s", e->name);
+    return 1;
+}
+
 static void lump_masses(Frame *f)
 {
     for (int e = 0; e < f->n_elements; e++) {
@@ -489,152 +326,204 @@ static void lump_masses(Frame *f)
     }
 }
 
-/* Is the tag of the element at hand new, and has its transformation been defined? */
-static int tags_are_right(Reader *r, double transformation)
+/* ---- what is skipped, and the rest of a script ---------------------------------------------------------------- */
+
+/* Loads, damping, analysis, output: no part of the structure. */
+static const char SKIPPED[] =
+    "algorithm analysis analyze close constraints display eigen eleLoad eleResponse file flush "
+    "getTime groundMotion imposedMotion initialize integrator load loadConst logFile "
+    "modalDamping modalProperties nodeAccel nodeDisp nodeEigenvector nodeReaction nodeVel "
+    "numberer open parameter pattern print printA puts rayleigh reactions record recorder "
+    "region remove reset setTime sp system test timeSeries wipeAnalysis";
+
+/* Each command once; puts is none worth a word. */
+static void note(Frame *f, const char *word)
 {
-    int known = 0;
-    for (int i = 0; i < r->n_transformations; i++)
-        known |= r->transformation[i] == transformation;
-    if (!known)
-        refuse(r, "element %s: there is no geomTransf %g above", r->word[2], transformation);
-    for (int i = 0; i < r->frame->n_elements; i++)
-        if (strcmp(r->frame->element[i].name, r->word[2]) == 0) {
-            refuse(r, "element %s: is there twice", r->word[2]);
-            known = 0;
-        }
-    return known;
+    char listed[64];
+    const size_t used = strlen(f->note);
+    snprintf(listed, sizeof listed, " %s,", word);
+    if (!strstr(f->note, listed) && strcmp(word, "puts") != 0)
+        snprintf(f->note + used, sizeof f->note - used, "%s", listed);
 }
 
-static Status take_element(Reader *r, Err *err)
+/* A result of an analysis is 0; eigen has as many eigenvalues of 1 as it was asked for. */
+static int skip(Reader *r, int n, Words w)
 {
-    double tag, a[3], transformation;
-    ElementOptions o;
-    if (r->n < 9 || strcmp(r->word[1], "elasticBeamColumn") != 0) {
-        refuse(r, "element %s: only elasticBeamColumn TAG i j A E I TRANSF is read", r->n > 1 ? r->word[1] : "");
-        return STATUS_OK;
-    }
-    if (!number(r, 2, &tag))
-        return STATUS_OK;
-    snprintf(r->word[2], WORD_MAX, "%.0f", tag);
-    const int node[2] = {find_node(r, 3), find_node(r, 4)};
-    if (node[0] < 0 || node[1] < 0 || !numbers(r, 5, 3, a) || !number(r, 8, &transformation) ||
-        !element_options(r, &o) || !tags_are_right(r, transformation))
-        return STATUS_OK;
-    const FrameNode *i = &r->frame->node[node[0]], *j = &r->frame->node[node[1]];
-    if (a[0] > 0 && a[1] > 0 && a[2] > 0 && hypot(j->x - i->x, j->z - i->z) > 0)
-        return add_element(r, node, a, &o, err);
-    refuse(r, "element %s: A, E and I must be above 0, its nodes at two places", r->word[2]);
-    return STATUS_OK;
+    int count = 0;
+    const int is_eigen = is_word(w[0], "eigen");
+    note(r->frame, Tcl_GetString(w[0]));
+    r->has_analysed |= is_eigen || is_word(w[0], "analyze");
+    if (is_eigen)
+        Tcl_GetIntFromObj(NULL, w[n - 1], &count);
+    Tcl_Obj *result = Tcl_NewStringObj(is_eigen ? "" : "0", -1);
+    for (int i = 0; i < count && i < 1000; i++)
+        Tcl_ListObjAppendElement(NULL, result, Tcl_NewIntObj(1));
+    Tcl_SetObjResult(r->tcl, result);
+    return 1;
 }
 
-static Status take_variable(Reader *r, Err *err)
+/* A script often ends so, and OpenSees forgets the model. */
+static int take_wipe(Reader *r, int n, Words w)
 {
-    Number value;
-    int i = 0;
-    if (r->n != 3 || strlen(r->word[1]) >= TABLE_NAME_MAX) {
-        refuse(r, "set: only NAME VALUE is read, the name of at most %d characters", TABLE_NAME_MAX - 1);
-        return STATUS_OK;
-    }
-    if (!evaluate(r, 2, &value))
-        return STATUS_OK;
-    while (i < r->n_variables && strcmp(r->variable[i].name, r->word[1]) != 0)
-        i++;
-    if (i == VARIABLES_MAX)
-        return fail(err, STATUS_BAD_DATA, "%s:%d: more than %d variables", r->path, r->line, VARIABLES_MAX);
-    snprintf(r->variable[i].name, sizeof r->variable[i].name, "%.47s", r->word[1]);
-    r->variable[i].number = value;
-    r->n_variables += i == r->n_variables;
-    return STATUS_OK;
+    (void)n, (void)w;
+    r->is_wiped = r->frame->n_nodes > 0;
+    return 1;
 }
 
-static Status take_transformation(Reader *r, Err *err)
+static int take_exit(Reader *r, int n, Words w)
 {
-    double tag;
-    if (r->n != 3 || strcmp(r->word[1], "Linear") != 0)
-        refuse(r, "geomTransf: only Linear TAG is read; for P-delta set building.p_delta = on");
-    else if (r->n_transformations == TRANSFORMATIONS_MAX)
-        return fail(err, STATUS_BAD_DATA, "%s:%d: more than %d geomTransf", r->path, r->line, TRANSFORMATIONS_MAX);
-    else if (number(r, 2, &tag))
-        r->transformation[r->n_transformations++] = tag;
-    return STATUS_OK;
+    (void)n, (void)w;
+    r->has_ended = 1;
+    return 0;
 }
 
-static Status take_model(Reader *r, Err *err)
+static int take_unknown(Reader *r, int n, Words w)
 {
-    (void)err;
-    int dimensions = 0, unknowns = 0;
-    for (int i = 1; i + 1 < r->n; i++) {
-        if (strcmp(r->word[i], "-ndm") == 0)
-            dimensions = atoi(r->word[i + 1]);
-        if (strcmp(r->word[i], "-ndf") == 0)
-            unknowns = atoi(r->word[i + 1]);
-    }
-    if (dimensions != 2 || unknowns != 3)
-        refuse(r, "model: only -ndm 2 -ndf 3 is read");
-    r->has_model = 1;
-    return STATUS_OK;
+    return refuse(r, "'%.60s' is not among the commands that are read (docs/building.md)", Tcl_GetString(w[n > 1]));
 }
 
-/* OpenSees forgets what was before. */
-static Status take_wipe(Reader *r, Err *err)
+/* A fault of Tcl's own is one of the script; where that has asked for an analysis, whose results are not there, the model
+ * is complete and the script ends there. */
+static int run_file(Reader *r, const char *path)
 {
-    (void)err;
-    if (r->frame->n_nodes > 0)
-        refuse(r, "wipe: only above the nodes; remove the model that it deletes");
-    return STATUS_OK;
+    Tcl_Obj *name = Tcl_NewStringObj(path, -1);
+    Tcl_IncrRefCount(name);
+    const int result = Tcl_FSEvalFileEx(r->tcl, name, "utf-8");
+    Tcl_DecrRefCount(name);
+    const int line = Tcl_GetErrorLine(r->tcl);
+    if (result == TCL_OK || r->refused.code != STATUS_OK || r->has_ended || Tcl_LimitExceeded(r->tcl))
+        return result == TCL_OK;
+    const size_t used = strlen(r->frame->note);
+    r->has_ended = r->has_analysed;
+    if (r->has_analysed)
+        snprintf(r->frame->note + used, sizeof r->frame->note - used, " all from %.100s:%d on,", path, line);
+    else
+        fail(&r->refused, STATUS_BAD_DATA, "%s:%d: %.300s", path, line, Tcl_GetStringResult(r->tcl));
+    return 0;
 }
 
-/* ---- the model ------------------------------------------------------------------------------------------------ */
-
-static Status take_command(Reader *r, Err *err)
+static int take_source(Reader *r, int n, Words w)
 {
-    static const struct {
-        const char *word;
-        Status (*take)(Reader *r, Err *err);
-    } COMMANDS[] = {{"node", take_node},      {"fix", take_fix},         {"mass", take_mass},
-                    {"equalDOF", take_equal}, {"element", take_element}, {"geomTransf", take_transformation},
-                    {"set", take_variable},   {"model", take_model},     {"wipe", take_wipe}};
-    for (size_t i = 0; i < sizeof COMMANDS / sizeof COMMANDS[0]; i++)
-        if (strcmp(r->word[0], COMMANDS[i].word) == 0)
-            return COMMANDS[i].take(r, err);
-    refuse(r, "'%s' is outside the elastic subset that is read", r->word[0]);
-    return STATUS_OK;
+    char path[PATH_MAX], whole[PATH_MAX];
+    const size_t length = strlen(r->folder);
+    const char *name = Tcl_GetString(w[n - 1]);
+    snprintf(path, sizeof path, "%s%s%s", *name == '/' ? "" : r->folder, *name == '/' ? "" : "/", name);
+    if (!realpath(path, whole))
+        return refuse(r, "source: %.200s: %s", name, strerror(errno));
+    if (strncmp(whole, r->folder, length) != 0 || whole[length] != '/')
+        return refuse(r, "source: %.200s is not below the folder of the model", name);
+    return run_file(r, whole);
 }
 
-static Status read_text(Reader *r, const char *text, Err *err)
+/* ---- the interpreter ------------------------------------------------------------------------------------------ */
+
+typedef struct {
+    const char *word;
+    int least; /* words, the command's own among them */
+    int (*take)(Reader *r, int n, Words w);
+    const char *usage;
+} TclCommand;
+
+static const TclCommand COMMANDS[] = {
+    {"model", 2, take_model, "BasicBuilder -ndm 2 -ndf 3"},
+    {"node", 4, take_node, "TAG x y"},
+    {"fix", 2 + FRAME_DOFS, take_fix, "TAG x y rot"},
+    {"mass", 2 + FRAME_DOFS, take_mass, "TAG mx my mr"},
+    {"equalDOF", 4, take_equal, "NODE NODE DOF ..."},
+    {"geomTransf", 3, take_transformation, "Linear TAG"},
+    {"section", 4, take_elastic, "Elastic TAG E A I"},
+    {"uniaxialMaterial", 4, take_elastic, "Elastic TAG E"},
+    {"element", 7, take_element, "TYPE TAG i j ..."},
+    {"wipe", 1, take_wipe, ""},
+    {"source", 2, take_source, "FILE"},
+    {"exit", 1, take_exit, ""},
+    {"unknown", 1, take_unknown, ""},
+    {"", 1, skip, ""}, /* those of SKIPPED */
+};
+enum { N_COMMANDS = sizeof COMMANDS / sizeof COMMANDS[0] };
+
+static int run_command(ClientData command, Tcl_Interp *tcl, int n, Words w)
 {
-    Status status = STATUS_OK;
-    r->at = text;
-    r->next_line = 1;
-    while (status == STATUS_OK && next_command(r))
-        status = take_command(r, err);
-    if (status == STATUS_OK && r->n_refused)
-        status = fail(err, STATUS_BAD_DATA, "%s: %d command%s outside the elastic subset", r->path, r->n_refused,
-                      r->n_refused == 1 ? " is" : "s are");
-    if (status == STATUS_OK && r->frame->n_elements == 0)
-        status = fail(err, STATUS_BAD_DATA, "%s: holds no element", r->path);
+    const TclCommand *c = command;
+    Reader *r = Tcl_GetAssocData(tcl, "reader", NULL);
+    const int ok = n < c->least ? refuse(r, "%s: wants %s", c->word, c->usage) : c->take(r, n, w);
+    return ok ? TCL_OK : TCL_ERROR;
+}
+
+static void add_commands(Tcl_Interp *tcl)
+{
+    /* by which a script could wait for ever, or run outside the limits */
+    static const char *const REMOVED[] = {"interp", "after", "vwait", "update"};
+    char words[sizeof SKIPPED], *rest = words;
+    memcpy(words, SKIPPED, sizeof words);
+    for (char *word; (word = strsep(&rest, " "));)
+        Tcl_CreateObjCommand(tcl, word, run_command, (ClientData)&COMMANDS[N_COMMANDS - 1], NULL);
+    for (int i = 0; i < N_COMMANDS - 1; i++)
+        Tcl_CreateObjCommand(tcl, COMMANDS[i].word, run_command, (ClientData)&COMMANDS[i], NULL);
+    for (size_t i = 0; i < sizeof REMOVED / sizeof REMOVED[0]; i++)
+        Tcl_DeleteCommand(tcl, REMOVED[i]);
+    Tcl_CreateAlias(tcl, "pset", tcl, "set", 0, NULL); /* a parameter of OpenSees */
+}
+
+static Status run_model(Reader *r, Err *err)
+{
+    Tcl_SetAssocData(r->tcl, "reader", NULL, r);
+    if (Tcl_MakeSafe(r->tcl) != TCL_OK)
+        return fail(err, STATUS_INTERNAL, "%s: Tcl has no safe interpreter", r->path);
+    add_commands(r->tcl);
+    Tcl_LimitSetCommands(r->tcl, COMMANDS_MAX);
+    Tcl_LimitTypeSet(r->tcl, TCL_LIMIT_COMMANDS);
+    Tcl_LimitSetTime(r->tcl, &(Tcl_Time){.sec = (long)time(NULL) + SECONDS_MAX});
+    Tcl_LimitTypeSet(r->tcl, TCL_LIMIT_TIME);
+    run_file(r, r->path);
+    if (Tcl_LimitExceeded(r->tcl))
+        return fail(err, STATUS_BAD_DATA, "%s: takes more than %d s or %d commands", r->path, SECONDS_MAX,
+                    COMMANDS_MAX);
+    if (r->refused.code != STATUS_OK)
+        return fail(err, r->refused.code, "%s", r->refused.text);
+    if (r->frame->n_elements == 0)
+        return fail(err, STATUS_BAD_DATA, "%s: holds no element", r->path);
     lump_masses(r->frame);
-    return status;
+    return STATUS_OK;
 }
 
-Status opensees_read(Frame *f, const char *path, const ModelUnits *units, FILE *refused, Err *err)
+/* Tcl changes the locale of its process and what SIGPIPE does. */
+static Tcl_Interp *create_tcl(void)
 {
-    char *text;
-    size_t length;
+    struct sigaction pipe;
+    char locale[200];
+    snprintf(locale, sizeof locale, "%s", setlocale(LC_ALL, NULL));
+    sigaction(SIGPIPE, NULL, &pipe);
+    Tcl_FindExecutable(NULL);
+    Tcl_Interp *tcl = Tcl_CreateInterp();
+    sigaction(SIGPIPE, &pipe, NULL);
+    setlocale(LC_ALL, locale);
+    return tcl;
+}
+
+Status opensees_read(Frame *f, const char *path, double length_m, double force_n, Err *err)
+{
     memset(f, 0, sizeof *f);
-    TRY(file_read(path, FILE_LARGEST, &text, &length, err));
     Reader *r = calloc(1, sizeof *r);
-    Status status = r ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "%s: no memory to read it", path);
-    if (status == STATUS_OK) {
-        r->path = path;
-        r->units = *units;
-        r->frame = f;
-        r->refused = refused;
-        status = read_text(r, text, err);
+    if (!r)
+        return fail(err, STATUS_NO_MEMORY, "%s: no memory to read it", path);
+    r->path = path;
+    r->length = length_m;
+    r->force = force_n;
+    r->frame = f;
+    char *last = realpath(path, r->folder) ? strrchr(r->folder, '/') : NULL;
+    Status status = last ? STATUS_OK : fail(err, STATUS_MISSING, "%s: %s", path, strerror(errno));
+    if (last) {
+        *last = 0;
+        r->tcl = create_tcl();
+        for (int k = 0; k < TAGGED; k++)
+            Tcl_InitHashTable(&r->tag[k], TCL_ONE_WORD_KEYS);
+        status = run_model(r, err);
+        for (int k = 0; k < TAGGED; k++)
+            Tcl_DeleteHashTable(&r->tag[k]);
+        Tcl_DeleteInterp(r->tcl);
     }
+    free(r->elastic);
     free(r);
-    free(text);
-    if (status != STATUS_OK)
-        frame_free(f);
     return status;
 }

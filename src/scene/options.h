@@ -8,7 +8,7 @@
 
 enum { FLOORS_MAX = 128 }; /* of a building */
 
-/* What the entries of K.csv and M.csv are in; kip_in: kip/in and kip s2/in. */
+/* What the entries of K.csv and M.csv are in, kip_in: kip/in and kip s2/in; or an OpenSees model. */
 #define BUILDING_UNITS_LIST(X)                                                                                         \
     X(BUILDING_AUTO, "auto")                                                                                           \
     X(BUILDING_N_M_KG, "N_m_kg")                                                                                       \
@@ -16,7 +16,9 @@ enum { FLOORS_MAX = 128 }; /* of a building */
     X(BUILDING_KN_M_KG, "kN_m_kg")                                                                                     \
     X(BUILDING_N_M_T, "N_m_t")                                                                                         \
     X(BUILDING_MN_M_T, "MN_m_t")                                                                                       \
-    X(BUILDING_KIP_IN, "kip_in")
+    X(BUILDING_KIP_IN, "kip_in")                                                                                       \
+    X(BUILDING_N_MM_T, "N_mm_t")                                                                                       \
+    X(BUILDING_KIP_FT, "kip_ft")
 typedef enum { BUILDING_UNITS_LIST(CHOICE_NAME) } BuildingUnits;
 
 #define DAMPING_MODEL_LIST(X) X(DAMPING_MODAL, "modal") X(DAMPING_RAYLEIGH, "rayleigh") X(DAMPING_TABLE, "table")

@@ -135,21 +135,6 @@ const DesignSpace *scene_design(const Scene *scene)
     return &scene->design;
 }
 
-static Status zero_gap_modes(const Building *b, const CoreBeam *c, double hz[], Err *err)
-{
-    const int n = b->model.n, nn = n * n;
-    double *K = malloc((3 * (size_t)nn + (size_t)n) * sizeof *K);
-    if (!K)
-        return fail(err, STATUS_NO_MEMORY, "modes: no memory for %d degrees of freedom", n);
-    double *M = K + nn, *phi = M + nn, *omega = phi + nn;
-    core_beam_join(c, &b->model, K, M);
-    const Status status = linalg_modes(n, K, M, omega, phi, err);
-    for (int i = 0; i < b->n && status == STATUS_OK; i++)
-        hz[i] = omega[i] / (2 * M_PI);
-    free(K);
-    return status;
-}
-
 Status scene_frequencies(const Scene *scene, const double x[], double building_hz[], double core_hz[],
                          double zero_gap_hz[], double *core_mass_kg, Err *err)
 {
@@ -164,7 +149,7 @@ Status scene_frequencies(const Scene *scene, const double x[], double building_h
         options.side_m = d.side;
     Status status = core_beam_make(core, &options, n, scene->building.storey_m, d.t_base, d.t_top, err);
     if (status == STATUS_OK)
-        status = zero_gap_modes(&scene->building, core, zero_gap_hz, err);
+        status = core_beam_joined_hz(core, &scene->building, zero_gap_hz, err);
     for (int i = 0; i < n && status == STATUS_OK; i++) {
         building_hz[i] = scene->building.model.omega[i] / (2 * M_PI);
         core_hz[i] = core->omega[i] / (2 * M_PI);
