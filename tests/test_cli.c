@@ -40,8 +40,8 @@ static void write_designs(const char *name, int n, const double gap[], const dou
 static void test_every_command_explains_itself_with_an_example_first(void **state)
 {
     (void)state;
-    static const char *const COMMANDS[] = {"",      "optimize", "simulate", "evaluate", "export",
-                                           "modes", "spectrum", "selftest", "check",    "settings"};
+    static const char *const COMMANDS[] = {"",         "optimize", "simulate", "evaluate", "export",
+                                           "building", "spectrum", "selftest", "check",    "settings"};
     for (size_t i = 0; i < sizeof COMMANDS / sizeof COMMANDS[0]; i++) {
         char arguments[64];
         snprintf(arguments, sizeof arguments, "%s --help", COMMANDS[i]);
@@ -84,18 +84,18 @@ static void test_a_misunderstood_command_line_ends_with_2_and_a_suggestion(void 
     expect(2, "no command", "");
     expect(2, "did you mean optimize?", "optimise configs/quick.ini");
     expect(2, "did you mean --design?", "simulate configs/quick.ini --desing none");
-    expect(2, "did you mean --json?", "modes configs/quick.ini --jsno");
-    expect(2, "--help", "modes configs/quick.ini --qqqqqqqqqqqqqqqqqqqqqqqq");
-    expect(2, "needs a CONFIG", "modes");
-    expect(2, "takes one CONFIG", "modes configs/quick.ini configs/kobe.ini");
+    expect(2, "did you mean --json?", "building configs/quick.ini --jsno");
+    expect(2, "--help", "building configs/quick.ini --qqqqqqqqqqqqqqqqqqqqqqqq");
+    expect(2, "needs a CONFIG|MODEL", "building");
+    expect(2, "takes one CONFIG|MODEL", "building configs/quick.ini configs/kobe.ini");
     expect(2, "takes no operand", "settings configs/quick.ini");
     expect(2, "--record needs a value", "simulate configs/quick.ini --record");
     expect(2, "--record needs a value", "simulate configs/quick.ini --record --json");
-    expect(2, "--json takes no value", "modes configs/quick.ini --json=yes");
+    expect(2, "--json takes no value", "building configs/quick.ini --json=yes");
     expect(2, "given twice", "simulate configs/quick.ini --pga 1 --pga 2");
     expect(2, "--design FILE is missing", "simulate configs/quick.ini");
     expect(2, "--rigid needs a core", "simulate configs/quick.ini --design none --rigid");
-    expect(2, "--set nonsense: write --set section.key=value", "modes configs/quick.ini --set nonsense");
+    expect(2, "--set nonsense: write --set section.key=value", "building configs/quick.ini --set nonsense");
     expect(2, "--csv FILE is missing", "export results");
     expect(2, "choose one", "export results --all --select 5 --csv -");
     expect(66, "holds no run", "evaluate results --design 1");
@@ -104,10 +104,10 @@ static void test_a_misunderstood_command_line_ends_with_2_and_a_suggestion(void 
 static void test_bad_settings_and_data_end_with_65(void **state)
 {
     (void)state;
-    expect(65, "did you mean motion.stretch?", "modes configs/quick.ini --set motion.strech=2");
+    expect(65, "did you mean motion.stretch?", "building configs/quick.ini --set motion.strech=2");
     expect(65, "--pga: motion.pga_g: -1 is outside", "simulate configs/quick.ini --design none --pga -1");
     expect(65, "not one of fast|cvode", "simulate configs/quick.ini --design none --engine magic");
-    expect(65, "tests/bad/config/nan.ini:3:11: building.damping", "modes tests/bad/config/nan.ini");
+    expect(65, "tests/bad/config/nan.ini:3:11: building.damping", "building tests/bad/config/nan.ini");
     expect(65, "/dev/zero: larger than 1 MiB", "check /dev/zero");
     expect(65, "/dev/zero: larger than 1 MiB", "optimize /dev/zero");
     expect(65, "tests/bad/motion/nan.csv",
@@ -173,7 +173,7 @@ static void test_a_setting_without_effect_is_named(void **state)
     expect(65, "problem.kind: is no tower", "simulate configs/quick.ini --design none --set problem.kind=dtlz2");
     const double gap[2] = {0.01, 0.02}, wall[2] = {0.02, 0.02};
     write_designs("two.csv", 2, gap, wall, wall);
-    expect(2, "two.csv: holds 2 designs, and one is wanted", "modes configs/quick.ini --design @/two.csv");
+    expect(2, "two.csv: holds 2 designs, and one is wanted", "building configs/quick.ini --design @/two.csv");
     expect(2, "two.csv:1", "simulate configs/quick.ini --horizon --design @/two.csv");
     expect(2, "holds 2 designs", "simulate configs/quick.ini --sensitivity --design @/two.csv");
 }
@@ -203,7 +203,7 @@ static void test_standard_output_and_every_setting_belong_to_one(void **state)
 static void test_missing_inputs_end_with_66(void **state)
 {
     (void)state;
-    expect(66, "nowhere.ini", "modes nowhere.ini");
+    expect(66, "nowhere.ini", "building nowhere.ini");
     expect(66, "nowhere.csv", "simulate configs/quick.ini --design nowhere.csv");
     expect(66, "nowhere.csv", "simulate configs/quick.ini --design none --record nowhere.csv");
     expect(66, "nowhere.csv", "spectrum nowhere.csv");
@@ -273,7 +273,7 @@ static void check_hz(const json_t *o, const char *key, size_t n, const double wa
 static void test_modes_of_tower_and_box_core_are_known(void **state)
 {
     (void)state;
-    json_t *o = json_of("modes configs/default.ini --set core.theory=euler_bernoulli --json");
+    json_t *o = json_of("building configs/default.ini --set core.theory=euler_bernoulli --json");
     check_hz(o, "building_hz", 5, (const double[]){0.2643, 0.7599, 1.3113, 1.8448, 2.4209}, 1e-3);
     check_hz(o, "core_hz", 5, (const double[]){2.492, 13.64, 36.69, 71.11, 117.0}, 1e-3);
     assert_close(number(o, "core_mass_kg"), 2.650e5, 1e-3);
@@ -287,28 +287,13 @@ static void test_modes_of_tower_and_box_core_are_known(void **state)
     json_decref(o);
 }
 
-static void test_modes_read_the_spectrum_at_their_periods(void **state)
-{
-    (void)state;
-    Motion m;
-    Err err = {0};
-    double psa;
-    json_t *o = json_of("modes configs/quick.ini --spectrum --json");
-    const double period = 1 / json_real_value(json_array_get(json_object_get(o, "zero_gap_hz"), 1));
-    CHECK_OK(motion_load(&m, "builtin:kobe-like", UNIT_FROM_FILE, &err), &err);
-    CHECK_OK(motion_prepare(&m, 0.3, 3.1, &err), &err);
-    spectrum_psa(&m, 0.03, 1, &period, &psa);
-    assert_close(json_real_value(json_array_get(json_object_get(o, "zero_gap_psa_g"), 1)), psa / 9.81, 1e-9);
-    motion_free(&m);
-    json_decref(o);
-}
-
 /* Table 1 of the paper, printed to 0.01 Hz. */
 static void test_modes_of_the_effective_core_are_those_of_the_paper(void **state)
 {
     (void)state;
-    json_t *o = json_of("modes configs/default.ini --json --set building.model=appendix --set core.section=effective "
-                        "--set core.theory=euler_bernoulli");
+    json_t *o =
+        json_of("building configs/default.ini --json --set building.model=appendix --set core.section=effective "
+                "--set core.theory=euler_bernoulli");
     const json_t *core = json_object_get(o, "core_hz"), *tied = json_object_get(o, "zero_gap_hz");
     static const double CORE[] = {2.29, 13.22, 36.19, 70.49, 116.25}, TIED[] = {0.75, 4.29, 11.82, 23.08, 38.12};
     for (size_t i = 0; i < 5; i++) {
@@ -322,8 +307,8 @@ static void test_modes_take_the_wall_from_a_design(void **state)
 {
     (void)state;
     write_designs("wall.csv", 1, (double[]){0.01}, (double[]){0.012}, (double[]){0.0064});
-    char *plain = output_of("modes configs/quick.ini"),
-         *given = output_of("modes configs/quick.ini --design @/wall.csv");
+    char *plain = output_of("building configs/quick.ini"),
+         *given = output_of("building configs/quick.ini --design @/wall.csv");
     assert_string_equal(plain, given);
     free(plain);
     free(given);
@@ -540,7 +525,7 @@ static void test_no_option_that_writes_replaces_what_a_run_keeps_or_a_setting_na
     expect(2, "motion.csv, which the command reads", "choose @/held --csv @/motion.csv");
     expect(2, "motion.csv, which the command reads",
            "simulate configs/quick.ini --design @/held:knee --csv @/motion.csv");
-    expect(2, "K.csv, which building.model names", "modes @/tower.ini --svg @/tower/K.csv");
+    expect(2, "K.csv, which building.model names", "building @/tower.ini --svg @/tower/K.csv");
     expect(2, "motion.csv, which the command reads",
            "spectrum builtin:kobe-like --set motion.record=@/motion.csv --csv @/motion.csv");
     char *kept = read_in_place("held/front.csv");
@@ -605,7 +590,7 @@ static void test_a_building_of_five_floors_goes_all_the_way(void **state)
     const double k = 4e8, m = 6e5;
     write_five_floors(k, m);
     free(output_of("check @/five.ini"));
-    json_t *o = json_of("modes @/five.ini --json");
+    json_t *o = json_of("building @/five.ini --json");
     for (int i = 0; i < 5; i++)
         assert_close(json_real_value(json_array_get(json_object_get(o, "building_hz"), (size_t)i)),
                      sqrt(k / m) * sin((2 * i + 1) * M_PI / 22) / M_PI, 1e-9);
@@ -643,7 +628,6 @@ int main(void)
         cmocka_unit_test(test_the_printed_settings_are_the_default_file_and_in_order),
         cmocka_unit_test(test_check_names_every_fault_at_once),
         cmocka_unit_test(test_modes_of_tower_and_box_core_are_known),
-        cmocka_unit_test(test_modes_read_the_spectrum_at_their_periods),
         cmocka_unit_test(test_modes_of_the_effective_core_are_those_of_the_paper),
         cmocka_unit_test(test_modes_take_the_wall_from_a_design),
         cmocka_unit_test(test_every_contact_has_a_row),

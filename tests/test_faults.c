@@ -19,7 +19,7 @@ typedef struct {
 static const Deed DEEDS[] = {
     {"settings", NULL},
     {"check configs/quick.ini", NULL},
-    {"modes configs/quick.ini", NULL},
+    {"building configs/quick.ini", NULL},
     {"simulate configs/quick.ini --design none --duration 20 --csv -", NULL},
     {"simulate configs/quick.ini --design none --duration 20 --engine cvode --csv -", NULL},
     {"spectrum tests/motion/three.cosmos.v2 --channel 1 --json", NULL},

@@ -42,7 +42,7 @@ static void test_help_of_a_command_is_the_same_both_ways(void **state)
     free(all);
     expect(2, "did you mean simulate?", "help simulat");
     expect(2, "did you mean optimize?", "--man optimise");
-    expect(2, "one command at most", "help simulate modes");
+    expect(2, "one command at most", "help simulate building");
 }
 
 static void test_the_version_says_what_the_program_was_built_from(void **state)
@@ -71,8 +71,8 @@ static void test_the_nearest_is_suggested_everywhere(void **state)
     expect(65, "did you mean builtin:kobe-like?", "spectrum builtin:koobe-like");
     expect(66, "did you mean builtin:kobe-like?", "spectrum bulitin:kobe-like");
     expect(66, "did you mean configs/quick.ini?", "check configs/quik.ini");
-    expect(65, "did you mean cvode?", "modes configs/quick.ini --set sim.engine=cvodee");
-    expect(65, "did you mean search.limits?", "modes configs/quick.ini --set search.limit=none");
+    expect(65, "did you mean cvode?", "building configs/quick.ini --set sim.engine=cvodee");
+    expect(65, "did you mean search.limits?", "building configs/quick.ini --set search.limit=none");
     expect(65, "did you mean f1?", "optimize @/two.ini --out @/no --set 'search.limits=f11<=3'");
     expect(65, "there are f1, f2", "optimize @/two.ini --out @/no --set 'search.limits=displacement<=3'");
     free(output_of("optimize @/two.ini --out @/two"));

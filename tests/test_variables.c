@@ -196,7 +196,7 @@ static void test_every_command_follows_the_variables_of_a_run(void **state)
         "simulate configs/quick.ini " SHORT WIDE "--replicates 2 --design @/run:knee",
         "evaluate @/run --design knee",
         "polish @/run --design knee --evals 24",
-        "modes configs/quick.ini " WIDE "--design @/run:knee",
+        "building configs/quick.ini " WIDE "--design @/run:knee",
         "check configs/quick.ini " WIDE SHORT,
         "plot @/run --out @/pictures",
         "optimize configs/quick.ini --out @/again --max-evals 20 --set search.polish=0 --set search.start=@/run " WIDE

@@ -193,7 +193,7 @@ static void test_too_little_address_space_or_stack_is_said_at_once(void **state)
     static const struct {
         const char *limit, *command, *words;
     } CASES[] = {
-        {"ulimit -v 300000; timeout 60", "modes configs/quick.ini", "address space is limited to 292 MiB"},
+        {"ulimit -v 300000; timeout 60", "building configs/quick.ini", "address space is limited to 292 MiB"},
         {"ulimit -s 64; timeout 60", "optimize @/textbook.ini --out @/narrow", "the stack is limited to 64 kB"},
     };
     for (size_t i = 0; i < sizeof CASES / sizeof CASES[0]; i++) {

@@ -216,7 +216,7 @@ static Status write_svg(const Model *m, const char *path, Err *err)
 static Status show(const Args *args, const Model *m, Err *err)
 {
     if (m->frame.note[0])
-        fprintf(stderr, "note: %s: skipped:%s and nothing else\n", m->s.building.model, m->frame.note);
+        fprintf(stderr, "note: %s: skipped:%s\n", m->s.building.model, m->frame.note);
     if (args_value(args, "--svg"))
         TRY(write_svg(m, args_value(args, "--svg"), err));
     if (args_has(args, "--json"))
@@ -244,7 +244,7 @@ static Status run(const Args *args, Err *err)
 
 static const ArgOption OPTIONS[] = {
     {"--design", "FILE", NULL, 0, "of a CONFIG: take the core's thickness from it: " DESIGN_WORDS},
-    {"--svg", "FILE", NULL, 0, "draw it: frame or storeys to scale, first three mode shapes"},
+    {"--svg", "FILE", NULL, 0, "draw it: frame or storeys to scale, first ten mode shapes"},
     OPTION_JSON,
     OPTION_SET,
     OPTION_END,

@@ -4,8 +4,8 @@
 #include <string.h>
 
 /* Sizes in px. */
-static const double TOP = 40, LEFT = 60, HEIGHT = 640, WIDTH_MAX = 520, MODE_WIDTH = 110, LABELS = 95;
-enum { MODES_SHOWN = 3 };
+static const double TOP = 40, LEFT = 60, HEIGHT = 640, WIDTH_MAX = 520, MODE_WIDTH = 64, LABELS = 95;
+enum { MODES_SHOWN = 10 };
 
 typedef struct {
     FILE *out;
@@ -127,8 +127,11 @@ static void draw_mode(const Drawing *d, const Building *b, double ground, int mo
     for (int j = 0; j < b->n; j++)
         fprintf(d->out, " %.2f,%.2f", middle + 0.42 * MODE_WIDTH * b->phi[j * b->n + mode] / largest,
                 py(d, floor_z(b, ground, j + 1)));
-    fprintf(d->out, "\"/>\n<text class=\"c\" x=\"%.2f\" y=\"%.2f\">%.4g s, %.3g %%</text>\n", middle, TOP - 14,
-            2 * M_PI / b->omega[mode], 100 * b->gamma[mode] * b->gamma[mode] / mass);
+    fprintf(d->out,
+            "\"/>\n<text class=\"c\" x=\"%.2f\" y=\"%.2f\">%.4g s</text><text class=\"c\" x=\"%.2f\" "
+            "y=\"%.2f\">%.3g %%</text>\n",
+            middle, TOP - 26, 2 * M_PI / b->omega[mode], middle, TOP - 12,
+            100 * b->gamma[mode] * b->gamma[mode] / mass);
 }
 
 /* ---- the page ------------------------------------------------------------------------------------------------- */

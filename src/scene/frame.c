@@ -258,7 +258,11 @@ static void add_up_mass(const Numbering *u, double mass[])
         mass[find_root(u, i)] += f->node[i / FRAME_DOFS].mass[i % FRAME_DOFS];
 }
 
-/* kept[i]: displacement i is one of the full model's, that it has mass and is named in the frame, or none is named.
+/* Of the largest mass (a rotary one counts as at 1 m): what has less is condensed as if it had none. Such masses keep a
+ * solver of other programs going; they would put frequencies in the model whose rounding drowns the lowest. */
+static const double NEGLIGIBLE_MASS = 1e-8;
+
+/* kept[i]: displacement i is one of the full model's: it has mass and is named in the frame, or none is named.
  * Without mass static condensation is exact. */
 static Status find_kept(const Numbering *u, char kept[], Err *err)
 {
@@ -267,10 +271,13 @@ static Status find_kept(const Numbering *u, char kept[], Err *err)
     double *mass = calloc((size_t)f->n_nodes, FRAME_DOFS * sizeof *mass);
     if (!mass)
         return fail(err, STATUS_NO_MEMORY, "frame: no memory for the masses of %d nodes", f->n_nodes);
+    double largest = 0;
     add_up_mass(u, mass);
     for (int i = 0; i < f->n_nodes * FRAME_DOFS; i++)
+        largest = fmax(largest, mass[i]);
+    for (int i = 0; i < f->n_nodes * FRAME_DOFS; i++)
         if (!named || f->node[i / FRAME_DOFS].keep[i % FRAME_DOFS])
-            kept[find_root(u, i)] = mass[find_root(u, i)] > 0;
+            kept[find_root(u, i)] = mass[find_root(u, i)] > NEGLIGIBLE_MASS * largest;
     free(mass);
     return STATUS_OK;
 }

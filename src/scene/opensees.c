@@ -16,7 +16,7 @@
 /* ---- what is being read --------------------------------------------------------------------------------------- */
 
 /* No model needs as many; one that does runs in a circle. */
-enum { COMMANDS_MAX = 5000000, SECONDS_MAX = 10 };
+enum { COMMANDS_MAX = 1000000, SECONDS_MAX = 10 };
 
 /* What has a tag, which stands for an index into the list of its kind. */
 typedef enum { NODES, ELEMENTS, SECTIONS, MATERIALS, TRANSFORMATIONS, TAGGED } Tagged;

@@ -72,7 +72,7 @@ static Status summarise_core(SceneSummary *s, const CoreOptions *core, const dou
 
 static void summarise_building(SceneSummary *s, const Building *b)
 {
-    *s = (SceneSummary){.n_floors = b->n, .top_first = falls_from_row_to_row(b)};
+    *s = (SceneSummary){.n_floors = b->n, .note = b->note, .top_first = falls_from_row_to_row(b)};
     summarise_mass(s, b);
     for (int j = 0; j < b->n; j++)
         s->height_m += b->storey_m[j];
@@ -131,6 +131,8 @@ static void warn_of_building(const SceneSummary *s, const Warner *w)
     const double per_storey = s->period_s[0] / s->n_floors;
     const int light = s->floor_mass_min_kg < FLOOR_MASS_MIN_KG;
     const char *guess = unit_guess(per_storey, light);
+    if (s->note[0])
+        say(w, "building.model", "skipped:%s", s->note);
     if (!is_period(per_storey))
         say(w, "building.model", "the first period of %.4g s is %.3g s per storey; buildings have %g to %g%s",
             s->period_s[0], per_storey, PERIOD_PER_STOREY_MIN_S, PERIOD_PER_STOREY_MAX_S, guess);

@@ -19,6 +19,7 @@ typedef struct {
     double period_s[3];     /* the first; 0 where there are fewer */
     double damping[3];      /* [-] of these modes */
     double first_mode_mass; /* [-] share of the mass */
+    const char *note;       /* what of an OpenSees model was skipped; empty: nothing */
     int top_first;          /* the first mode is largest at the first row and falls from row to row */
     double base_shear;      /* [-] share of the weight */
     double core_mass_kg;

@@ -63,10 +63,13 @@ static const char UNCERTAIN_WORDS[] = "restitution|contact_stiffness|core_stiffn
 
 static const Option OPTIONS[] = {
     PATH(building.model, "guyan", "guyan|appendix",
-         "a building of the program, or a folder with K.csv and M.csv, storeys.csv or a frame (docs/building.md)",
+         "a building of the program, an OpenSees model (FILE.tcl), or a folder with K.csv and M.csv, storeys.csv or a "
+         "frame "
+         "(docs/building.md)",
          .flags = SETTING_FREE),
     CHOICE(building.units, BuildingUnits, CHOICE_WORDS(BUILDING_UNITS_LIST), "auto",
-           "of K.csv and M.csv; auto: N/m and kg, refused where no building has such a period or such floors"),
+           "of K.csv and M.csv, or an OpenSees model; auto: N/m and kg, refused where no building has such a period or "
+           "such floors"),
     CHOICE(building.damping_model, DampingModel, CHOICE_WORDS(DAMPING_MODEL_LIST), "modal",
            "modal: building.damping in every mode; rayleigh: in two of them; table: building.damping_table"),
     REAL(building.damping, "-", "0.03", 0, 10, "damping ratio of every mode of the building"),
