@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "bench/sweep.h"
-#include "evaluate/tower.h"
+#include "evaluate/replicates.h"
 
 enum { REPLICATES = 16, DESIGNS = 9 };
 
@@ -16,15 +16,22 @@ static double largest_spread(const ReplicateSummary *e)
     return largest;
 }
 
-static Status spread_of(const Problem *p, int n, uint32_t design, double *spread, Err *err)
+static Status spread_of(SimWorker *worker, int n, uint32_t design, double *spread, Err *err)
 {
-    double x[FLOORS_MAX + 2];
+    const ReplicatePlan plan = {.n_records = 1, .n_replicates = REPLICATES};
+    Measured parts[REPLICATES];
     ReplicateSummary e;
-    SimResult shown;
-    bench_irregular_gaps(design, n, x);
-    x[n] = BENCH_WALL_BASE;
-    x[n + 1] = BENCH_WALL_TOP;
-    TRY(tower_replicate(p, 1, x, &shown, &e, err));
+    SimResult result;
+    for (size_t k = 0; k < REPLICATES; k++) {
+        double x[FLOORS_MAX + 2];
+        bench_irregular_gaps(design, n, x);
+        replicate_design(1, k, 0, (size_t)n, x);
+        x[n] = BENCH_WALL_BASE;
+        x[n + 1] = BENCH_WALL_TOP;
+        TRY(sim_run(worker, SCENE_IMPACT, x, &result, err));
+        parts[k] = measured(&result);
+    }
+    replicates_summarise(&plan, parts, sizeof *parts, &e);
     *spread = largest_spread(&e);
     return STATUS_OK;
 }
@@ -33,14 +40,14 @@ Status sweep_find_noise(Sweep *s, const SceneOptions *settings, const Motion *mo
 {
     double spread = 0;
     Scene *scene;
-    Problem p = {0};
+    SimWorker *worker = NULL;
     TRY(scene_create(&scene, settings, motion, err));
-    Status status = tower_open_scene(&p, scene, REPLICATES, 1, 1, err);
+    Status status = sim_worker_create(&worker, scene, err);
     for (int k = 0; k < DESIGNS && status == STATUS_OK; k++) {
-        status = spread_of(&p, scene_n_floors(scene), (uint32_t)k, &spread, err);
+        status = spread_of(worker, scene_n_floors(scene), (uint32_t)k, &spread, err);
         s->noise = fmax(s->noise, spread);
     }
-    problem_close(&p);
+    sim_worker_free(worker);
     scene_free(scene);
     return status;
 }

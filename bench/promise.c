@@ -147,7 +147,8 @@ static void note(Promise *p, Missed *m, const SimResult *found, const SimResult 
 static void note_estimates(Promise *p, const SimResult *standard, const SimResult *finer, const SimResult *wanted)
 {
     double error[N_MEASURES];
-    estimate_errors(standard, finer, error);
+    const Measured as_set = measured(standard), again = measured(finer);
+    estimate_errors(&as_set, &again, error);
     for (int i = 0; i < N_ESTIMATED; i++) {
         const double value = measure_value(wanted, ESTIMATED[i]), least = SMALLEST_ERROR * fabs(value);
         const double missed = fmax(fabs(measure_value(standard, ESTIMATED[i]) - value), least);

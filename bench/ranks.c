@@ -33,9 +33,10 @@ static Status simulate(void *self, size_t worker, const Task *task, Err *err)
     return STATUS_OK;
 }
 
-static void combine(const void *self, const void *parts, Evaluation *e)
+static void combine(const Problem *p, size_t n, const void *parts, Evaluation *e)
 {
-    (void)self;
+    (void)p;
+    (void)n;
     e->f[0] = *(const double *)parts;
     e->seconds = 0.0;
     e->replicates = 1;

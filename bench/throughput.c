@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 #include "base/clock.h"
-#include "evaluate/tower.h"
+#include "evaluate/replicates.h"
 
 enum { DESIGNS = 24, DESIGNS_QUICK = 4, JUDGED = 6, REPLICATES = 8 };
 
@@ -61,36 +61,44 @@ static Status run_fast(Throughput *t, Err *err)
     return STATUS_OK;
 }
 
-/* Wall time [s] of all designs over the workers, and of the replicates of design 0. */
+/* Design k; replicate r of it. */
+static Status run_one(Throughput *t, SimWorker *worker, int k, int r, Err *err)
+{
+    const int n = t->bench_case.building.n;
+    double x[FLOORS_MAX + 2];
+    SimResult result;
+    bench_irregular_gaps((uint32_t)k, n, x);
+    replicate_design(1, (size_t)r, 0, (size_t)n, x);
+    x[n] = BENCH_WALL_BASE;
+    x[n + 1] = BENCH_WALL_TOP;
+    return sim_run(worker, SCENE_IMPACT, x, &result, err);
+}
+
+/* Wall time [s] of n designs, or of n replicates of design 0, over the workers. */
+static double time_runs(Throughput *t, SimWorker *const worker[], int threads, int n, int are_replicates)
+{
+    const double start = clock_seconds();
+#pragma omp parallel for schedule(dynamic) num_threads(threads)
+    for (int k = 0; k < n; k++) {
+        Err err;
+        run_one(t, worker[omp_get_thread_num()], are_replicates ? 0 : k, are_replicates ? k : 0, &err);
+    }
+    return clock_seconds() - start;
+}
+
 static Status time_workers(Throughput *t, const Scene *scene, int threads, double *all, double *replicated, Err *err)
 {
-    enum { STRIDE = FLOORS_MAX + 2 };
-    const int n = t->bench_case.building.n;
-    double X[DESIGNS * STRIDE];
-    SimTask tasks[DESIGNS];
-    Problem p = {0};
-    ReplicateSummary e;
-    SimResult *results = calloc(DESIGNS, sizeof *results);
-    if (!results)
-        return fail(err, STATUS_NO_MEMORY, "bench: out of memory");
-    for (int k = 0; k < t->n; k++) {
-        double *x = X + k * STRIDE;
-        bench_irregular_gaps((uint32_t)k, n, x);
-        x[n] = BENCH_WALL_BASE;
-        x[n + 1] = BENCH_WALL_TOP;
-        tasks[k] = (SimTask){SCENE_IMPACT, x};
+    SimWorker **worker = calloc((size_t)threads, sizeof(SimWorker *));
+    Status status = worker ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "bench: out of memory");
+    for (int i = 0; i < threads && status == STATUS_OK; i++)
+        status = sim_worker_create(&worker[i], scene, err);
+    if (status == STATUS_OK) {
+        *all = time_runs(t, worker, threads, t->n, 0);
+        *replicated = time_runs(t, worker, threads, REPLICATES, 1);
     }
-    Status status = tower_open_scene(&p, scene, REPLICATES, 1, (size_t)threads, err);
-    const double start = clock_seconds();
-    if (status == STATUS_OK)
-        status = tower_simulate(&p, (size_t)t->n, tasks, results, err);
-    const double middle = clock_seconds();
-    if (status == STATUS_OK)
-        status = tower_replicate(&p, 1, X, results, &e, err);
-    *all = middle - start;
-    *replicated = clock_seconds() - middle;
-    problem_close(&p);
-    free(results);
+    for (int i = 0; worker && i < threads; i++)
+        sim_worker_free(worker[i]);
+    free(worker);
     return status;
 }
 

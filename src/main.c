@@ -13,12 +13,10 @@
 #include <unistd.h>
 
 #include "base/linalg.h"
-#include "cmd/evaluations.h"
 #include "cmd/manual.h"
 #include "cmd/show.h"
 #include "evaluate/cluster.h"
 #include "evaluate/adapter.h"
-#include "evaluate/recipe.h"
 #include "store/provenance.h"
 
 /* Below this the first deep call would end the program by a fault of its own. */
@@ -144,20 +142,13 @@ static void hold_standard_streams(void)
             return;
 }
 
-static Status reopen(Problem *p, const void *recipe, size_t size, Err *err)
-{
-    RecipeKind kind;
-    memcpy(&kind, recipe, sizeof kind);
-    return kind == RECIPE_SIMULATOR ? simulator_open(p, recipe, size, err) : evaluations_open(p, recipe, size, err);
-}
-
 /* A rank of a cluster other than the first evaluates for that one and runs no command. */
 static Status run_here(int argc, char *argv[], Err *err)
 {
     char version[CLUSTER_VERSION_MAX] = "";
     int serves;
     program_identity(sizeof version, version);
-    TRY(cluster_join(&argc, &argv, version, reopen, &serves, err));
+    TRY(cluster_join(&argc, &argv, version, simulator_open, &serves, err));
     return serves ? STATUS_OK : run(argc, argv, err);
 }
 

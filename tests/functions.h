@@ -31,9 +31,10 @@ static inline Status function_simulate(void *self, size_t worker, const Task *ta
     return status;
 }
 
-static inline void function_combine(const void *self, const void *parts, Evaluation *e)
+static inline void function_combine(const Problem *p, size_t n, const void *parts, Evaluation *e)
 {
-    const Function *function = self;
+    (void)n;
+    const Function *function = p->self;
     const double *f = parts, *g = f + function->n_obj;
     memcpy(e->f, f, function->n_obj * sizeof *f);
     if (function->n_con > 0)

@@ -35,6 +35,12 @@ static void test_a_tolerance_chooses_the_steps(void **state)
     assert_close(sim_steps_per_contact(&finer), 16, 1e-12);
 }
 
+static void errors_of(const SimResult *result, const SimResult *finer, double error[])
+{
+    const Measured as_set = measured(result), again = measured(finer);
+    estimate_errors(&as_set, &again, error);
+}
+
 static void test_equal_results_have_no_error_and_failed_ones_an_unknown_one(void **state)
 {
     (void)state;
@@ -43,11 +49,11 @@ static void test_equal_results_have_no_error_and_failed_ones_an_unknown_one(void
     a.j1_m = b.j1_m = 0.7;
     a.j3_g = 2;
     b.j3_g = 2.001;
-    estimate_errors(&a, &b, error);
+    errors_of(&a, &b, error);
     assert_same_number(error[MEASURE_J1], 0);
     assert_close(error[MEASURE_J3], 0.001 * ESTIMATE_FACTOR, 1e-9);
     b.outcome = RUN_OUT_OF_STEPS;
-    estimate_errors(&a, &b, error);
+    errors_of(&a, &b, error);
     for (int k = 0; k < N_MEASURES; k++)
         assert_true(isnan(error[k]));
 }
@@ -89,7 +95,7 @@ static void test_the_error_is_below_its_estimate_in_nine_of_ten_results(void **s
         double error[N_MEASURES];
         promise_window(&plan, 20, k, &c);
         const SimResult r = run_window(&o, &c), t = run_window(&twice, &c), f = run_window(&fine, &c);
-        estimate_errors(&r, &t, error);
+        errors_of(&r, &t, error);
         for (size_t i = 0; i < sizeof RESULTS / sizeof RESULTS[0]; i++, all++)
             below += fabs(measure_value(&r, RESULTS[i]) - measure_value(&f, RESULTS[i])) <= error[RESULTS[i]];
     }

@@ -1,7 +1,7 @@
 /* Incremental dynamic analysis: intensities, fractiles, and `imtet evaluate` over a range of peaks. */
 #include "program.h"
 
-#include "cmd/ida.h"
+#include "analysis/evaluations.h"
 
 static void test_a_range_of_intensities_ends_at_its_end_in_round_numbers(void **state)
 {

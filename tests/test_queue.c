@@ -40,7 +40,7 @@ static Status simulate(void *self, size_t worker, const Task *t, Err *err)
         b->most_under_way = n;
     if (b->rests)
         rest(2e-3 * random_uniform(&r));
-    *part = (Part){t->x[0] + (double)t->part, (double)t->repeat, t->variant};
+    *part = (Part){t->x[0] + (double)t->part, (double)t->repeat, t->variant.kind};
     b->n_tasks++;
     b->n_under_way--;
     if (worker >= b->problem.n_workers)
@@ -52,9 +52,10 @@ static Status simulate(void *self, size_t worker, const Task *t, Err *err)
 }
 
 /* Failed where x[1] is negative. */
-static void combine(const void *self, const void *parts, Evaluation *e)
+static void combine(const Problem *p, size_t n, const void *parts, Evaluation *e)
 {
-    (void)self;
+    (void)p;
+    (void)n;
     const Part *part = parts;
     e->f[0] = e->seconds = 0.0;
     for (int k = 0; k < PARTS; k++)

@@ -147,14 +147,14 @@ static void test_a_design_asked_for_again_gets_further_replicates(void **state)
     replicate_design((uint32_t)s.search.seed, 4, 0.01, 20, fifth);
     assert_memory_equal(first, X, sizeof first);
     assert_memory_not_equal(fifth, X, sizeof fifth);
-    CHECK_OK(tower_simulate(&p, 1, &(SimTask){SCENE_RIGID, fifth}, &alone, &err), &err);
+    CHECK_OK(tower_simulate(&p, 1, &(SimTask){.kind = SCENE_RIGID, .x = fifth}, &alone, &err), &err);
     assert_int_equal(alone.impacts, 0);
     Settings single = s;
     single.sim.gap_tolerance_m = 0.0;
     Problem other;
     CHECK_OK(tower_open(&other, &single, TOWER_SINGLE, 1, &err), &err);
-    CHECK_OK(tower_simulate(&other, 1, &(SimTask){SCENE_IMPACT, fifth}, &alone, &err), &err);
-    assert_same_number(alone.j1_m, ((const SimResult *)done.parts)[0].j1_m);
+    CHECK_OK(tower_simulate(&other, 1, &(SimTask){.kind = SCENE_IMPACT, .x = fifth}, &alone, &err), &err);
+    assert_same_number(alone.j1_m, ((const Measured *)done.parts)[0].value[MEASURE_J1]);
     problem_close(&other);
     queue_close(q);
     problem_close(&p);

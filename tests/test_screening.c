@@ -86,15 +86,13 @@ static void mean_of(const World *w, size_t first, size_t n, const Part parts[], 
     }
 }
 
-static void combine(const void *self, const void *parts, Evaluation *e)
+static void combine(const Problem *p, size_t n, const void *parts, Evaluation *e)
 {
-    const World *w = self;
-    mean_of(w, w->is_unrelated || w->is_apart ? 1 : 0, w->is_apart ? 2 : PARTS, parts, e->f);
-}
-
-static void combine_cheap(const void *self, const void *parts, Evaluation *e)
-{
-    mean_of(self, 0, CHEAP, parts, e->f);
+    const World *w = p->self;
+    if (n == CHEAP)
+        mean_of(w, 0, CHEAP, parts, e->f);
+    else
+        mean_of(w, w->is_unrelated || w->is_apart ? 1 : 0, w->is_apart ? 2 : PARTS, parts, e->f);
 }
 
 static const Simulator SIMULATOR = {simulate, combine, NULL};
@@ -118,7 +116,6 @@ static void open_world(World *w, size_t n_workers)
                            .self = w,
                            .n_parts = PARTS,
                            .n_cheap = CHEAP,
-                           .combine_cheap = combine_cheap,
                            .part_size = sizeof(Part),
                            .n_workers = n_workers,
                            .executor = executor_for(n_workers),

@@ -71,7 +71,7 @@ static void test_without_contact_only_the_building_matters_and_its_slope_is_that
         SimResult r;
         other.building.damping += (side ? 0.5 : -0.5) * damping->step;
         CHECK_OK(tower_open(&p, &other, TOWER_SINGLE, 1, &err), &err);
-        CHECK_OK(tower_simulate(&p, 1, &(SimTask){SCENE_NO_CORE, NULL}, &r, &err), &err);
+        CHECK_OK(tower_simulate(&p, 1, &(SimTask){.kind = SCENE_NO_CORE, .x = NULL}, &r, &err), &err);
         j1[side] = r.j1_m;
         problem_close(&p);
     }
@@ -109,7 +109,7 @@ static void test_with_contact_the_slopes_are_differences_of_simulations_on_any_n
         memcpy(changed, x, sizeof x);
         changed[19] += (side ? 0.5e-3 : -0.5e-3);
         CHECK_OK(tower_open(&p, &s, TOWER_SINGLE, 1, &err), &err);
-        CHECK_OK(tower_simulate(&p, 1, &(SimTask){SCENE_IMPACT, changed}, &r, &err), &err);
+        CHECK_OK(tower_simulate(&p, 1, &(SimTask){.kind = SCENE_IMPACT, .x = changed}, &r, &err), &err);
         j1[side] = r.j1_m;
         problem_close(&p);
     }

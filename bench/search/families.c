@@ -280,9 +280,10 @@ static Status simulate(void *self, size_t worker, const Task *task, Err *err)
     return STATUS_OK;
 }
 
-static void combine(const void *self, const void *parts, Evaluation *e)
+static void combine(const Problem *p, size_t n, const void *parts, Evaluation *e)
 {
-    const Made *m = self;
+    (void)n;
+    const Made *m = p->self;
     const Family *a = &m->recipe.family;
     const double *f = parts, *g = f + a->n_obj;
     memcpy(e->f, f, a->n_obj * sizeof *f);

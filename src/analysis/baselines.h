@@ -5,19 +5,14 @@
  *   tuned mass damper  no core, but its mass on a spring and a dashpot at the roof; frequency and damping optimized
  *   viscous links      the core, and a dashpot between it and every floor; one constant, optimized
  *
- * under the records of the study and by its rule (sim.robust): worst or mean, without replicates. The devices minimise
+ * under the records of the study and by its rule (sim.robust): worst or mean, without replicates. Devices are found on a
+ * sketch (evaluate/device.h); the results are those of all modes and the whole motion.
  *
- *   goal = J1 / J1_0 + J2 / J2_0 + J3 / J3_0          _0: the building alone, every J over the records by the same rule
- *
- * on a sketch (sim_sketch): the lowest MODES modes, steps of STEP, the motion until ARIAS of its intensity and three
- * periods more. First a grid, for the tuned mass with Warburton's optimum for white noise in it, then Nelder and Mead from
- * its best point. The results are those of all modes and the whole motion.
- *
- * Source   G. B. Warburton, Earthquake Eng. Struct. Dyn. 10 (1982) 381-401
- * Threads  shared out over the workers of the tower; the numbers do not depend on how many */
+ * Threads  tasks of the queue; the numbers do not depend on how many workers there are */
 #ifndef IMTET_ANALYSIS_BASELINES_H
 #define IMTET_ANALYSIS_BASELINES_H
 
+#include "evaluate/device.h"
 #include "evaluate/tower.h"
 
 typedef enum { BASELINE_NO_CORE, BASELINE_RIGID, BASELINE_TMD, BASELINE_LINKS, N_BASELINES } BaselineKind;
@@ -26,7 +21,7 @@ typedef struct {
     LinearDevice device;      /* as it was found */
     Outcome outcome;          /* of all records together */
     double value[N_MEASURES]; /* over the records; natural */
-    SimResult first;          /* under the first record */
+    SimResult first;          /* under the first record, or the one under which it failed */
 } Baseline;
 
 const char *baseline_words(BaselineKind kind); /* "tuned mass damper" */
@@ -38,13 +33,5 @@ void baseline_device_text(BaselineKind kind, const LinearDevice *device, char te
 
 /* x (n_var): the design, for its core. p: of a tower. Those up to `last`; what is behind it has failed. */
 Status baselines_find(const Problem *p, const double x[], BaselineKind last, Baseline out[N_BASELINES], Err *err);
-
-/* The device alone: kind TMD or LINKS; no_core: J1, J2, J3 of the building alone. */
-Status baseline_tune(const Tower *t, size_t worker, BaselineKind kind, const double x[], const double no_core[3],
-                     LinearDevice *device, Err *err);
-
-/* f1 and damping of a tuned mass on an undamped structure of frequency hz under white noise at the base; mu: ratio of
- * masses. */
-LinearDevice warburton_device(double hz, double mu);
 
 #endif

@@ -1,44 +1,31 @@
 #include "analysis/estimate.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 
-#include "settings/options.h"
-#include "sim/fast/fast.h"
-#include "sim/sim.h"
-
-int estimate_options(const SimOptions *o, SimOptions *finer)
-{
-    const double steps = sim_steps_per_contact(o);
-    *finer = *o;
-    finer->steps_per_contact = 2 * (steps > 0 ? steps : fast_tolerances(o->accuracy).steps_per_contact);
-    return o->engine == ENGINE_FAST;
-}
-
-void estimate_errors(const SimResult *result, const SimResult *finer, double error[])
+void estimate_errors(const Measured *result, const Measured *finer, double error[])
 {
     const int known = result->outcome == RUN_OK && finer->outcome == RUN_OK;
     for (int k = 0; k < N_MEASURES; k++)
-        error[k] = known ? ESTIMATE_FACTOR * fabs(measure_value(result, k) - measure_value(finer, k)) : NAN;
+        error[k] = known ? ESTIMATE_FACTOR * fabs(result->value[k] - finer->value[k]) : NAN;
 }
 
-Status estimate_designs(const Settings *s, size_t n, const SimTask tasks[], const SimResult results[], double error[],
+Status estimate_designs(const Problem *p, size_t n, const SimTask tasks[], const SimResult results[], double error[],
                         Err *err)
 {
-    Settings finer = *s;
-    Problem p;
-    SimResult *again = calloc(n, sizeof *again);
-    if (!again)
-        return fail(err, STATUS_NO_MEMORY, "no memory for the estimated errors of %zu simulations", n);
-    estimate_options(&s->sim, &finer.sim);
-    Status status = tower_open(&p, &finer, TOWER_SINGLE, n, err);
-    if (status == STATUS_OK) {
-        status = tower_simulate(&p, n, tasks, again, err);
-        problem_close(&p);
+    Measured *again = calloc(n, sizeof *again);
+    SimTask *finer = calloc(n, sizeof *finer);
+    for (size_t i = 0; finer && i < n; i++)
+        finer[i] = (SimTask){
+            .kind = tasks[i].kind, .x = tasks[i].x, .scene = tasks[i].scene, .is_finer = 1, .parts = &again[i]};
+    const Status status = again && finer
+                              ? tower_run(p, n, finer, NULL, NULL, err)
+                              : fail(err, STATUS_NO_MEMORY, "no memory for the estimated errors of %zu simulations", n);
+    for (size_t i = 0; i < n && status == STATUS_OK; i++) {
+        const Measured as_set = measured(&results[i]);
+        estimate_errors(&as_set, &again[i], error + i * N_MEASURES);
     }
-    for (size_t i = 0; i < n && status == STATUS_OK; i++)
-        estimate_errors(&results[i], &again[i], error + i * N_MEASURES);
     free(again);
+    free(finer);
     return status;
 }

@@ -5,7 +5,7 @@
  * The factor is calibrated: the error against `fine` is below the estimate in 95 % of the windows of docs/promise.md
  * (`make promise` prints the share and how much too large the estimate is). Of the engine `fast` alone.
  *
- * Threads  pure functions; estimate_designs simulates on workers of its own */
+ * Threads  estimate_errors is pure; estimate_designs has the workers of the problem */
 #ifndef IMTET_ANALYSIS_ESTIMATE_H
 #define IMTET_ANALYSIS_ESTIMATE_H
 
@@ -13,15 +13,11 @@
 
 static const double ESTIMATE_FACTOR = 9;
 
-/* The options of the second run; 0: there is none by this engine. */
-int estimate_options(const SimOptions *o, SimOptions *finer);
-
 /* error (N_MEASURES), in the unit of each; not numbers where one of the two runs failed. */
-void estimate_errors(const SimResult *result, const SimResult *finer, double error[]);
+void estimate_errors(const Measured *result, const Measured *finer, double error[]);
 
-/* The same for n results of the tower under motion.record alone, by simulating the tasks once more: error (n, N_MEASURES).
- * s: of the results, sim.engine = fast. */
-Status estimate_designs(const Settings *s, size_t n, const SimTask tasks[], const SimResult results[], double error[],
+/* The same for n results of single simulations, by simulating the tasks once more: error (n, N_MEASURES). The engine is fast. */
+Status estimate_designs(const Problem *p, size_t n, const SimTask tasks[], const SimResult results[], double error[],
                         Err *err);
 
 #endif

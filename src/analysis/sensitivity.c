@@ -18,11 +18,14 @@ static const char *const KEYS[] = {"contact.radius_m", "contact.restitution", "b
 enum { N_KEYS = sizeof KEYS / sizeof KEYS[0] };
 
 typedef struct {
-    Settings settings;
-    size_t n_replicates;
-    DesignSpace space;
+    size_t n_replicates, n_parameters, n_var;
     const double *x;
-    SimResult *results; /* (SIDES_OF_TWO_STEPS, n_replicates) of a parameter */
+    DesignSpace space;
+    Sensitivity *out;
+    double *X;       /* (n_var, SIDES_OF_TWO_STEPS, n_var) designs of which one variable is changed */
+    Measured *parts; /* (n_parameters, SIDES_OF_TWO_STEPS, n_replicates) */
+    size_t n_scenes;
+    SceneChange scene[1 + SIDES_OF_TWO_STEPS * N_KEYS]; /* as set, then the sides of every setting */
 } Job;
 
 static double setting_of(const Settings *s, size_t key)
@@ -32,131 +35,124 @@ static double setting_of(const Settings *s, size_t key)
     return values[key];
 }
 
-/* Sides first .. first + n - 1 of the steps on one tower, whose variable `variable` is changed; none where that is beyond
- * them. */
-static Status simulate_sides(Job *job, const Problem *p, size_t variable, double step, size_t first, size_t n, Err *err)
-{
-    double X[SIDES_OF_TWO_STEPS * DESIGN_VARIABLES_MAX];
-    for (size_t i = 0; i < n; i++) {
-        double *x = X + i * p->n_var;
-        memcpy(x, job->x, p->n_var * sizeof *x);
-        if (variable < p->n_var)
-            x[variable] += AT[first + i] * step;
-    }
-    return tower_parts(p, n, X, job->results + first * job->n_replicates, err);
-}
-
-/* A tower of its own for every side: whatever follows from the setting follows. */
-static Status simulate_setting(Job *job, const char *key, double value, double step, Err *err)
-{
-    for (size_t side = 0; side < SIDES_OF_TWO_STEPS; side++) {
-        Settings s = job->settings;
-        Problem p;
-        char text[100];
-        snprintf(text, sizeof text, "%s=%.17g", key, value + AT[side] * step);
-        TRY(settings_set(&s, text, err));
-        TRY(tower_open(&p, &s, TOWER_AS_SET, job->n_replicates, err));
-        const Status status = simulate_sides(job, &p, SIZE_MAX, 0, side, 1, err);
-        problem_close(&p);
-        TRY(status);
-    }
-    return STATUS_OK;
-}
-
 /* Mean, and standard error (NAN: one replicate), of the differences over 2h of measure k between two sides. */
-static void difference(const Job *job, int minus, double h, int k, double *mean, double *error)
+static void difference(const Job *job, size_t parameter, int minus, double h, int k, double *mean, double *error)
 {
     const size_t n = job->n_replicates;
+    const Measured *side = job->parts + (parameter * SIDES_OF_TWO_STEPS + (size_t)minus) * n;
     double v[1000] = {0};
     for (size_t i = 0; i < n; i++) {
-        const SimResult *below = &job->results[(size_t)minus * n + i], *above = below + n;
+        const Measured *below = &side[i], *above = below + n;
         const int ok = below->outcome == RUN_OK && above->outcome == RUN_OK;
-        v[i] = ok ? (measure_value(above, k) - measure_value(below, k)) / (2 * h) : NAN;
+        v[i] = ok ? (above->value[k] - below->value[k]) / (2 * h) : NAN;
     }
     mean_and_sd_of(n, v, mean, error);
     *error /= sqrt((double)n);
 }
 
-static void conclude(const Job *job, Sensitivity *out)
+static void conclude(const Job *job, size_t parameter, Sensitivity *out)
 {
     for (int k = 0; k < N_MEASURES; k++) {
         double coarse, fine, unused, error;
-        difference(job, 0, out->step, k, &coarse, &unused);
-        difference(job, 2, 0.5 * out->step, k, &fine, &error);
-        out->slope[k] = fine;
-        out->error[k] = hypot(isnan(error) && !isnan(fine) ? 0 : error, coarse - fine);
+        difference(job, parameter, 0, out->step, k, &coarse, &unused);
+        difference(job, parameter, 2, 0.5 * out->step, k, &fine, &error);
+        out->slope[k] = out->step > 0 ? fine : NAN;
+        out->error[k] = out->step > 0 ? hypot(isnan(error) && !isnan(fine) ? 0 : error, coarse - fine) : NAN;
     }
 }
 
-static Status vary_design(Job *job, const Problem *p, Sensitivity *out, Err *err)
+/* Names, values and steps; a variable that is 0 has no step. */
+static void list_variables(Job *job)
 {
-    for (size_t j = 0; j < (size_t)job->space.n_var; j++) {
-        design_variable_name(&job->space, (int)j, out[j].name);
-        out[j].value = job->x[j];
-        out[j].step = j < (size_t)job->space.n_gaps ? fmin(GAP_STEP, 0.5 * job->x[j]) : SHARE * job->x[j];
-        if (out[j].step <= 0) {
-            for (int k = 0; k < N_MEASURES; k++)
-                out[j].slope[k] = out[j].error[k] = NAN;
-            continue;
+    for (size_t j = 0; j < job->n_var; j++) {
+        Sensitivity *o = &job->out[j];
+        design_variable_name(&job->space, (int)j, o->name);
+        o->value = job->x[j];
+        o->step = j < (size_t)job->space.n_gaps ? fmin(GAP_STEP, 0.5 * o->value) : SHARE * o->value;
+        for (size_t side = 0; side < SIDES_OF_TWO_STEPS; side++) {
+            double *x = job->X + (j * SIDES_OF_TWO_STEPS + side) * job->n_var;
+            memcpy(x, job->x, job->n_var * sizeof *x);
+            x[j] += AT[side] * o->step;
         }
-        TRY(simulate_sides(job, p, j, out[j].step, 0, SIDES_OF_TWO_STEPS, err));
-        conclude(job, &out[j]);
     }
-    return STATUS_OK;
 }
 
-static Status vary_settings(Job *job, Sensitivity *out, size_t *n, Err *err)
+/* A scene of its own for every side: whatever follows from the setting follows. */
+static void list_settings(Job *job, const Settings *s)
 {
+    job->n_scenes = 1;
     for (size_t i = 0; i < N_KEYS; i++) {
-        const double value = setting_of(&job->settings, i);
+        const double value = setting_of(s, i);
         if (!(value > 0) || (i == 1 && value * (1 + SHARE) > 1))
             continue;
-        Sensitivity *o = &out[(*n)++];
+        Sensitivity *o = &job->out[job->n_parameters++];
         snprintf(o->name, sizeof o->name, "%s", KEYS[i]);
         o->value = value;
         o->step = SHARE * value;
-        TRY(simulate_setting(job, KEYS[i], value, o->step, err));
-        conclude(job, o);
+        for (size_t side = 0; side < SIDES_OF_TWO_STEPS; side++) {
+            char *setting = job->scene[job->n_scenes++].setting;
+            snprintf(setting, sizeof job->scene->setting, "%s=%.17g", KEYS[i], value + AT[side] * o->step);
+        }
     }
-    return STATUS_OK;
 }
 
-static Status find(Job *job, const Problem *p, Sensitivity **out, size_t *n, Err *err)
+/* One task for every side of every parameter, all of them at once. */
+static Status simulate(Job *job, const Settings *s, Err *err)
 {
-    const size_t parts = SIDES_OF_TWO_STEPS * job->n_replicates;
-    job->space = *tower_design(tower_of(p));
-    *n = (size_t)job->space.n_var;
-    *out = calloc(*n + N_KEYS, sizeof **out);
-    job->results = calloc(parts, sizeof *job->results);
-    Status status = *out && job->results ? vary_design(job, p, *out, err)
-                                         : fail(err, STATUS_NO_MEMORY, "no memory for %zu simulations", parts);
-    if (status == STATUS_OK)
-        status = vary_settings(job, *out, n, err);
-    free(job->results);
+    const size_t n = job->n_parameters * SIDES_OF_TWO_STEPS;
+    size_t n_tasks = 0;
+    Problem p;
+    SimTask *tasks = calloc(n, sizeof *tasks);
+    job->parts = calloc(n * job->n_replicates, sizeof *job->parts);
+    for (size_t i = 0; tasks && i < n; i++) {
+        const size_t j = i / SIDES_OF_TWO_STEPS;
+        const int is_setting = j >= job->n_var;
+        tasks[n_tasks] = (SimTask){.x = is_setting ? job->x : job->X + i * job->n_var,
+                                   .scene = is_setting ? 1 + i - job->n_var * SIDES_OF_TWO_STEPS : 0,
+                                   .n_parts = job->n_replicates,
+                                   .parts = job->parts + i * job->n_replicates};
+        n_tasks += job->out[j].step > 0;
+    }
+    const char *const record = s->motion.record;
+    Status status = job->parts && tasks ? tower_open_scenes(&p, s, 1, &record, job->n_scenes, job->scene, err)
+                                        : fail(err, STATUS_NO_MEMORY, "no memory for %zu simulations", n);
+    if (status == STATUS_OK) {
+        status = tower_run(&p, n_tasks, tasks, NULL, NULL, err);
+        problem_close(&p);
+    }
+    free(tasks);
     return status;
 }
 
-Status sensitivity_find(const Settings *s, const double x[], size_t n_replicates, Sensitivity **out, size_t *n,
+static Status find(Job *job, const Settings *s, Err *err)
+{
+    TRY(tower_space(s, &job->space, err));
+    job->n_parameters = job->n_var = (size_t)job->space.n_var;
+    job->out = calloc(job->n_var + N_KEYS, sizeof *job->out);
+    job->X = calloc(job->n_var * SIDES_OF_TWO_STEPS * job->n_var, sizeof *job->X);
+    if (!job->out || !job->X)
+        return fail(err, STATUS_NO_MEMORY, "no memory for %zu parameters", job->n_var + N_KEYS);
+    list_variables(job);
+    list_settings(job, s);
+    TRY(simulate(job, s, err));
+    for (size_t i = 0; i < job->n_parameters; i++)
+        conclude(job, i, &job->out[i]);
+    return STATUS_OK;
+}
+
+Status sensitivity_find(const Settings *settings, const double x[], size_t n_replicates, Sensitivity **out, size_t *n,
                         Err *err)
 {
-    Problem p;
-    Job *job = calloc(1, sizeof *job);
-    *out = NULL;
-    if (!job)
-        return fail(err, STATUS_NO_MEMORY, "no memory for settings");
-    *job = (Job){.settings = *s, .n_replicates = n_replicates, .x = x};
-    job->settings.sim.forces = FORCES_YES;
-    job->settings.sim.replicates = (long)n_replicates;
-    snprintf(job->settings.motion.records, sizeof job->settings.motion.records, "none");
-    Status status = tower_open(&p, &job->settings, TOWER_AS_SET, SIZE_MAX, err);
-    if (status == STATUS_OK) {
-        status = find(job, &p, out, n, err);
-        problem_close(&p);
-    }
-    free(job);
-    if (status != STATUS_OK) {
-        free(*out);
-        *out = NULL;
-    }
+    Settings s = *settings;
+    Job job = {.n_replicates = n_replicates, .x = x};
+    s.sim.forces = FORCES_YES;
+    s.sim.replicates = (long)n_replicates;
+    const Status status = find(&job, &s, err);
+    *n = job.n_parameters;
+    *out = status == STATUS_OK ? job.out : NULL;
+    if (status != STATUS_OK)
+        free(job.out);
+    free(job.X);
+    free(job.parts);
     return status;
 }

@@ -1,14 +1,16 @@
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
+#include "base/clock.h"
 #include "base/json.h"
 #include "base/cell.h"
 #include "base/list.h"
 #include "cmd/commands.h"
 #include "cmd/designs.h"
-#include "cmd/evaluations.h"
+#include "cmd/full_model.h"
 #include "cmd/ida.h"
 #include "cmd/show.h"
 #include "motion/motion_scale.h"
@@ -16,9 +18,9 @@
 #include "store/output.h"
 #include "store/run_read.h"
 
-/* A design of the run, or one from elsewhere under the run's settings. */
+/* A design of a run, or one from elsewhere, under the settings of the run or of a settings file. */
 typedef struct {
-    const Run *run;
+    const Schema *schema;
     long id; /* in the run; 0: none */
     const double *x;
     const char *word; /* as it was asked for */
@@ -33,13 +35,13 @@ static json_t *describe(const Evaluations *e, const EvaluatedRun *run)
     json_object_set_new(o, "pga_g", json_number(run->pga_g));
     json_object_set_new(o, "scale", json_number(run->scale));
     json_object_set_new(o, "stretch", json_number(run->stretch));
-    for (int c = 0; c < evaluated_cases(e, run); c++)
+    for (size_t c = 0; c < evaluated_cases(e, run); c++)
         json_object_set_new(o, EVALUATION_CASES[c].key, json_result(EVALUATION_CASES[c].kind, &run->result[c]));
     if (evaluated_cases(e, run) == N_WITH_DEVICES) {
         json_t *tmd = json_object_get(o, "tmd"), *links = json_object_get(o, "links");
-        json_object_set_new(tmd, "tmd_hz", json_number(run->device[EVALUATED_TMD].tmd_hz));
-        json_object_set_new(tmd, "tmd_damping", json_number(run->device[EVALUATED_TMD].tmd_damping));
-        json_object_set_new(links, "link_ns_m", json_number(run->device[EVALUATED_LINKS].link_ns_m));
+        json_object_set_new(tmd, "tmd_hz", json_number(run->device[EVALUATED_TMD].device.tmd_hz));
+        json_object_set_new(tmd, "tmd_damping", json_number(run->device[EVALUATED_TMD].device.tmd_damping));
+        json_object_set_new(links, "link_ns_m", json_number(run->device[EVALUATED_LINKS].device.link_ns_m));
     }
     if (run->error_known)
         json_object_set_new(json_object_get(o, EVALUATION_CASES[EVALUATED_DESIGN].key), "estimated_error",
@@ -61,7 +63,7 @@ static Status show_as_json(const Args *args, const Chosen *c, const Evaluations 
                 unreadable, json_pack("{s:s, s:s}", "record", e->record[i].path, "reason", e->record[i].why.text));
     json_object_set_new(all, "run", json_words(args->operand));
     json_object_set_new(all, "design", c->id > 0 ? json_integer(c->id) : json_words(c->word));
-    json_object_set_new(all, "variables_m", json_numbers(c->run->schema.n_var, c->x));
+    json_object_set_new(all, "variables_m", json_numbers(c->schema->n_var, c->x));
     json_object_set_new(all, "records", records);
     json_object_set_new(all, "unreadable", unreadable);
     if (e->level)
@@ -107,7 +109,7 @@ static Status write_csv(const Evaluations *e, const char *path, Err *err)
         write_replicates_names(o.stream);
     fputc('\n', o.stream);
     for (size_t i = 0; i < e->n_records * e->n_levels; i++)
-        for (int c = 0; e->run[i].record->readable == STATUS_OK && c < evaluated_cases(e, &e->run[i]); c++)
+        for (size_t c = 0; e->run[i].record->readable == STATUS_OK && c < evaluated_cases(e, &e->run[i]); c++)
             write_row(o.stream, e, i, (EvaluatedCase)c);
     for (size_t l = 0; e->level && l < e->n_levels; l++)
         for (int c = 0; c < N_EVALUATED; c++)
@@ -131,8 +133,17 @@ static void show_verdicts(const Evaluations *e, const Schema *schema, const Eval
     for (int k = 0; k < N_BASELINES; k++) {
         for (int m = 0; m < N_MEASURES; m++)
             b.value[m] = measure_value(&run->result[CASES[k]], m);
-        b.device = run->device[CASES[k]];
+        b.device = run->device[CASES[k]].device;
         show_verdict((BaselineKind)k, schema, values, &b);
+    }
+}
+
+static void print_motion(const Evaluations *e, size_t i)
+{
+    Motion m;
+    if (tower_motion(&e->tower, i, &m, &(Err){0}) == STATUS_OK) {
+        show_motion(stdout, &m, e->duration_s);
+        motion_free(&m);
     }
 }
 
@@ -143,9 +154,9 @@ static void print_named(const Evaluations *e, const Schema *schema)
     for (size_t i = 0; i < e->n_records; i++) {
         if (e->record[i].from_folder)
             continue;
-        fputs(e->run[i].motion, stdout);
+        print_motion(e, i);
         show_result_names("", order);
-        for (int c = 0; c < evaluated_cases(e, &e->run[i]); c++) {
+        for (size_t c = 0; c < evaluated_cases(e, &e->run[i]); c++) {
             const double *error = c == EVALUATED_DESIGN && e->run[i].error_known ? e->run[i].error : NULL;
             show_result(EVALUATION_CASES[c].word, order, &e->run[i].result[c], error);
             if (error)
@@ -194,7 +205,7 @@ static void print_refused(FILE *out, const Evaluations *e)
 
 static void print_all(const Args *args, const Chosen *c, const Evaluations *e)
 {
-    const MeasureOrder *order = &c->run->schema.order;
+    const MeasureOrder *order = &c->schema->order;
     if (c->id > 0)
         printf("design %ld of %s\n\n", c->id, args->operand);
     else
@@ -202,7 +213,7 @@ static void print_all(const Args *args, const Chosen *c, const Evaluations *e)
     if (e->level)
         ida_print(e, order);
     else {
-        print_named(e, &c->run->schema);
+        print_named(e, c->schema);
         print_folder(e, order);
     }
     print_refused(stdout, e);
@@ -214,7 +225,7 @@ static Status give(const Args *args, const Chosen *c, const Evaluations *e, Err 
     if (args_has(args, "--csv"))
         TRY(write_csv(e, args_value(args, "--csv"), err));
     if (args_has(args, "--svg"))
-        TRY(ida_draw(e, &c->run->schema.order, args_value(args, "--svg"), err));
+        TRY(ida_draw(e, &c->schema->order, args_value(args, "--svg"), err));
     if (args_has(args, "--json"))
         return show_as_json(args, c, e, err);
     if (!args_has(args, "--csv") && !args_has(args, "--svg"))
@@ -273,63 +284,111 @@ static Status take_intensities(const Args *args, Settings *s, double levels[], E
     return settings_set(s, assignment, err);
 }
 
+typedef struct {
+    EvaluationsTold told; /* first: what tell gets */
+    double began_s, told_s;
+} Progress;
+
+/* A line in place of the one before, four times a second. */
+static void tell(size_t n_done, void *user)
+{
+    Progress *p = user;
+    const double now = clock_seconds(), n = (double)n_done, all = (double)p->told.n_all;
+    if (n_done <= 1 || p->began_s == 0)
+        p->began_s = now;
+    if (n_done == p->told.n_all && p->told_s > 0)
+        fprintf(stderr, "\r%60s\r", "");
+    else if (now - p->began_s > 1 && now - p->told_s > 0.25) {
+        fprintf(stderr, "\r%zu of %.0f simulations, %.0f s left ", n_done, all, (now - p->began_s) * (all - n) / n);
+        fflush(stderr);
+        p->told_s = now;
+    }
+}
+
 static Status run_and_give(const Args *args, Settings *s, const Chosen *c, Evaluations *e, Err *err)
 {
+    Progress p = {.told.tell = isatty(STDERR_FILENO) ? tell : NULL};
     TRY(add_records(args, e, s, err));
     TRY(evaluations_read(e, s, err));
     if (e->n_read == 0) {
         print_refused(stderr, e);
         return fail(err, STATUS_BAD_DATA, "%s: holds no ground motion that can be read", args_value(args, "--records"));
     }
-    TRY(evaluations_run(e, s, c->run->schema.n_var, c->x, isatty(STDERR_FILENO) ? stderr : NULL, err));
+    TRY(evaluations_run(e, c->schema->n_var, c->x, &p.told, err));
     return give(args, c, e, err);
 }
 
-static Status evaluate_design(const Args *args, const Run *run, const Chosen *c, Err *err)
+static Status evaluate(const Args *args, Settings *s, const Chosen *c, Err *err)
 {
-    Settings s = *run->settings;
     double levels[IDA_LEVELS_MAX];
-    Evaluations e = {0};
-    TRY(args_apply(args, &s, NULL, NULL, err));
-    TRY(take_intensities(args, &s, levels, &e, err));
-    TRY(settings_check(&s, err));
-    if (e.level && s.sim.replicates > 1 && args_gives(args, "sim.replicates"))
+    Evaluations e = {.duration_s = s->sim.duration_s};
+    TRY(take_intensities(args, s, levels, &e, err));
+    TRY(settings_check(s, err));
+    if (e.level && s->sim.replicates > 1 && args_gives(args, "sim.replicates"))
         return fail(err, STATUS_USAGE, "sim.replicates = %ld: --pga %s shows every intensity once, without replicates",
-                    s.sim.replicates, args_value(args, "--pga"));
-    e.replicates = !e.level && s.sim.replicates > 1 ? s.sim.replicates : 0;
-    if (s.problem.kind != PROBLEM_TOWER)
-        return fail(err, STATUS_BAD_DATA, "this run searched another problem than the tower: no ground motion applies");
-    const Status status = run_and_give(args, &s, c, &e, err);
+                    s->sim.replicates, args_value(args, "--pga"));
+    e.replicates = !e.level && s->sim.replicates > 1 ? s->sim.replicates : 0;
+    const Status status = run_and_give(args, s, c, &e, err);
     evaluations_free(&e);
     return status;
 }
 
-static Status evaluate(const Args *args, const Run *run, Err *err)
+static Status evaluate_of_run(const Args *args, const Run *run, const char *word, Err *err)
 {
-    const char *word = args_value(args, "--design");
+    Settings s = *run->settings;
     size_t row;
     Designs other;
-    if (!word)
-        return fail(err, STATUS_USAGE, "--design ID is missing: an id of %s, knee or best_NAME", args->operand);
+    TRY(args_apply(args, &s, NULL, NULL, err));
     TRY(design_of_run(run, word, &row, &other, err));
     const int is_own = row < run->table.n;
-    const Chosen c = {run, is_own ? run->table.row[row].id : 0, is_own ? run_x(run, row) : other.x, word};
-    const Status status = evaluate_design(args, run, &c, err);
+    const Chosen c = {&run->schema, is_own ? run->table.row[row].id : 0, is_own ? run_x(run, row) : other.x, word};
+    const Status status =
+        s.problem.kind == PROBLEM_TOWER
+            ? evaluate(args, &s, &c, err)
+            : fail(err, STATUS_BAD_DATA, "this run searched another problem than the tower: no ground motion applies");
     design_free(&other);
+    return status;
+}
+
+static Status evaluate_by_config(const Args *args, const char *word, Err *err)
+{
+    Settings s;
+    DesignSpace space;
+    Schema schema;
+    Designs d;
+    TRY(args_settings(args, &s, NULL, NULL, err));
+    if (s.problem.kind != PROBLEM_TOWER)
+        return fail(err, STATUS_BAD_DATA, "problem.kind: is no tower: no ground motion applies");
+    TRY(tower_space(&s, &space, err));
+    TRY(designs_take_one(&d, word, &space, err));
+    Status status = schema_of(&schema, &s, space.n_floors, err);
+    if (status == STATUS_OK) {
+        status = evaluate(args, &s, &(Chosen){&schema, 0, d.x, word}, err);
+        schema_free(&schema);
+    }
+    design_free(&d);
     return status;
 }
 
 static Status run(const Args *args, Err *err)
 {
+    const char *word = args_value(args, "--design");
+    char database[PATH_MAX];
     Run r;
+    if (args_has(args, "--full-model"))
+        return show_full_model(args, err);
+    if (!word)
+        return fail(err, STATUS_USAGE, "--design ID is missing: an id of %s, knee or best_NAME", args->operand);
+    if (!run_path(args->operand, database, sizeof database))
+        return evaluate_by_config(args, word, err);
     TRY(run_read(&r, args->operand, err));
-    const Status status = evaluate(args, &r, err);
+    const Status status = evaluate_of_run(args, &r, word, err);
     run_free(&r);
     return status;
 }
 
 static const ArgOption OPTIONS[] = {
-    {"--design", "ID", NULL, 0, DESIGN_OF_RUN},
+    {"--design", "ID", NULL, 0, DESIGN_OF_RUN "; with --full-model also none: the building alone"},
     {"--record", "FILE", NULL, 1, "ground motion; may be repeated"},
     {"--records", "FOLDER", NULL, 0, "every ground motion in it, sorted, in one table"},
     OPTION_CHANNEL,
@@ -345,22 +404,30 @@ static const ArgOption OPTIONS[] = {
      "N replicates of the design under each record: mean and standard deviation, named; as the run's if not given"},
     OPTION_JSON,
     {"--csv", "FILE", NULL, 0, "a row per record, intensity and scene as CSV into FILE; -: standard output"},
-    {"--svg", "FILE", NULL, 0, "response against intensity with 16 %, median and 84 %, drawn by gnuplot"},
+    {"--svg", "FILE", NULL, 0,
+     "drawn by gnuplot: response against intensity with 16 %, median and 84 %; with --full-model peaks over the "
+     "height"},
+    {"--full-model", NULL, NULL, 0, "on all degrees of freedom of the building's frame, beside the reduced model"},
     OPTION_END,
 };
 
 const Command CMD_EVALUATE = {
     .name = "evaluate",
     .group = GROUP_DECIDE,
-    .operand = "RUN",
-    .summary = "one design of a front on other earthquakes",
+    .operand = "CONFIG|RUN",
+    .summary = "one design on other earthquakes, or on the full model of the building",
     .example = "imtet evaluate results/quick --design knee --record builtin:elcentro-like",
     .details =
         "Simulates one design under each record, by default the run's own, with the same core rigidly connected and "
         "the\n"
         "building without a core beside it. Files of a folder that cannot be read are listed with the reason. Peak,\n"
         "stretch, replicates and all else are the run's unless an option says otherwise; each record stands alone.\n"
-        "--pga 0.05:0.05:0.6 makes it an incremental dynamic analysis, without replicates.",
+        "--pga 0.05:0.05:0.6 makes it an incremental dynamic analysis, without replicates.\n"
+        "--full-model simulates designs on the building as the settings reduce it (building.modes, by default the "
+        "floors\n"
+        "alone) and on all degrees of freedom of its frame, with the contacts at the floors and all modes: 106 of the\n"
+        "built-in tower. Shares by mode are booked by shape. --json: objects reduced and full with the keys of\n"
+        "`simulate --json`, error: reduced / full - 1; one object, or a list of them for several designs or records.",
     .options = OPTIONS,
     .run = run,
 };

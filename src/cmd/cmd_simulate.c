@@ -67,7 +67,8 @@ static Status lay_out_job(const Args *args, Job *job, const DesignSpace *space, 
     if (!job->tasks || !job->results || !job->summary)
         return fail(err, STATUS_NO_MEMORY, "no memory for %zu simulations", job->n);
     for (size_t i = 0; i < job->n; i++)
-        job->tasks[i] = (SimTask){job->kind, job->designs.x ? &job->designs.x[i * (size_t)space->n_var] : NULL};
+        job->tasks[i] =
+            (SimTask){.kind = job->kind, .x = job->designs.x ? &job->designs.x[i * (size_t)space->n_var] : NULL};
     return STATUS_OK;
 }
 
@@ -87,14 +88,14 @@ static Status simulate(const Problem *p, Job *job, Err *err)
     return STATUS_OK;
 }
 
-static Status estimate(const Settings *s, Job *job, Err *err)
+static Status estimate(const Problem *p, const Settings *s, Job *job, Err *err)
 {
     if (s->sim.engine != ENGINE_FAST || job->kind == SCENE_RIGID)
         return STATUS_OK;
     job->error = calloc(job->n, N_MEASURES * sizeof *job->error);
     if (!job->error)
         return fail(err, STATUS_NO_MEMORY, "no memory for the estimated errors");
-    return estimate_designs(s, job->n, job->tasks, job->results, job->error, err);
+    return estimate_designs(p, job->n, job->tasks, job->results, job->error, err);
 }
 
 static const double *errors_of(const Job *job, size_t i)
@@ -369,7 +370,7 @@ static Status run(const Args *args, Err *err)
     if (status == STATUS_OK)
         status = simulate(&p, &job, err);
     if (status == STATUS_OK)
-        status = estimate(&s, &job, err);
+        status = estimate(&p, &s, &job, err);
     if (status == STATUS_OK)
         status = print(args, &job, &s, tower_of(&p), err);
     if (status == STATUS_OK)

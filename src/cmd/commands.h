@@ -8,7 +8,6 @@
     X(OPTIMIZE)                                                                                                        \
     X(SIMULATE)                                                                                                        \
     X(EVALUATE)                                                                                                        \
-    X(VERIFY)                                                                                                          \
     X(EXPORT)                                                                                                          \
     X(STATUS)                                                                                                          \
     X(LIST)                                                                                                            \

@@ -4,59 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/stat.h"
 #include "report/gnuplot.h"
 
 const double IDA_FRACTILE[IDA_FRACTILES] = {0.16, 0.5, 0.84};
 const char *const IDA_FRACTILE_WORD[IDA_FRACTILES] = {"16 %", "median", "84 %"};
-
-Status ida_levels(const char *text, double levels[IDA_LEVELS_MAX], size_t *n, Err *err)
-{
-    double from, step, to;
-    char more;
-    if (sscanf(text, "%lf:%lf:%lf%c", &from, &step, &to, &more) != 3 || !(from > 0 && step > 0 && to >= from) ||
-        !isfinite(to) || !(step >= 1e-9 * to))
-        return fail(err, STATUS_USAGE, "--pga %.60s: a range is FROM:STEP:TO in g, all above 0, as 0.05:0.05:0.6",
-                    text);
-    const double steps = floor((to - from) / step + 1e-6);
-    if (!(steps < IDA_LEVELS_MAX))
-        return fail(err, STATUS_USAGE, "--pga %.60s: more than %d intensities", text, IDA_LEVELS_MAX);
-    *n = (size_t)steps + 1;
-    for (size_t i = 0; i < *n; i++) {
-        char digits[32]; /* 0.15, not 0.15000000000000002 */
-        snprintf(digits, sizeof digits, "%.9g", from + (double)i * step);
-        levels[i] = strtod(digits, NULL);
-    }
-    return STATUS_OK;
-}
-
-/* ---- fractiles --------------------------------------------------------------------------------------------------- */
-
-static double value_of(const EvaluatedRun *run, EvaluatedCase which, int k)
-{
-    const SimResult *r = &run->result[which];
-    const double value = measure_value(r, k);
-    return r->outcome == RUN_OK && isfinite(value) ? value : INFINITY;
-}
-
-double ida_fractile(const Evaluations *e, size_t l, EvaluatedCase which, int k, double p)
-{
-    double *sorted = malloc(e->n_records * sizeof *sorted), value = NAN;
-    size_t n = 0;
-    for (size_t r = 0; sorted && r < e->n_records; r++)
-        if (e->record[r].readable == STATUS_OK)
-            sorted[n++] = value_of(&e->run[r * e->n_levels + l], which, k);
-    if (n > 0) {
-        sort_values(n, sorted);
-        const double place = p * (double)(n - 1), low = floor(place), share = place - low;
-        const size_t i = (size_t)low;
-        value = share > 0 ? sorted[i] + share * (sorted[i + 1] - sorted[i]) : sorted[i];
-        if (share > 0 && !isfinite(sorted[i + 1]))
-            value = INFINITY;
-    }
-    free(sorted);
-    return value;
-}
 
 /* ---- for people and programs ------------------------------------------------------------------------------------- */
 
@@ -129,7 +80,7 @@ static void write_blocks(FILE *script, const Evaluations *e, const MeasureOrder 
         for (size_t l = 0; l < e->n_levels; l++) {
             fprintf(script, "%.6g ", e->level[l]);
             for (int k = 0; k < n_shown(order); k++)
-                gnuplot_number(script, value_of(&e->run[r * e->n_levels + l], EVALUATED_DESIGN, order->of[k]));
+                gnuplot_number(script, ida_value(&e->run[r * e->n_levels + l], EVALUATED_DESIGN, order->of[k]));
             fputc('\n', script);
         }
         fputs("EOD\n", script);

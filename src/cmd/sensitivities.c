@@ -77,13 +77,11 @@ static Status show(const Args *args, size_t n, const Sensitivity list[], Err *er
 /* For design_free. */
 static Status take_design(const Args *args, const Settings *s, Designs *d, Err *err)
 {
-    Problem p;
+    DesignSpace space;
     const char *word = args_value(args, "--design");
     if (!word || strcmp(word, "none") == 0 || args_has(args, "--rigid"))
         return fail(err, STATUS_USAGE, "--sensitivity needs --design with gaps, neither none nor --rigid");
-    TRY(tower_open(&p, s, TOWER_SINGLE, 1, err));
-    const DesignSpace space = *tower_design(tower_of(&p));
-    problem_close(&p);
+    TRY(tower_space(s, &space, err));
     return designs_take_one(d, word, &space, err);
 }
 

@@ -1,14 +1,11 @@
 #include "evaluate/adapter.h"
 
-#include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
 
-#include "evaluate/threads.h"
-#include "settings/options.h"
 #include "evaluate/external.h"
-#include "evaluate/recipe.h"
 #include "evaluate/textbook.h"
+#include "evaluate/threads.h"
 
 struct Adapter {
     Schema schema;
@@ -51,42 +48,36 @@ static void judge(const Evaluation *e, double f[], double g[], const void *user)
         f[k] = schema_objective(&a->schema, k)->sense * e->f[k];
 }
 
-/* The one place that picks a simulator. */
-static Status open_simulator(Problem *p, const Settings *s, TowerUse use, Err *err)
-{
-    switch (s->problem.kind) {
-    case PROBLEM_TOWER:
-        return tower_open(p, s, use, SIZE_MAX, err);
-    case PROBLEM_EXTERNAL:
-        return external_open(p, &s->problem, threads_wanted(s->search.threads), err);
-    default:
-        return textbook_open(p, &s->problem, (uint32_t)s->search.seed, err);
-    }
-}
-
 Status simulator_open(Problem *p, const void *recipe, size_t size, Err *err)
 {
     const Recipe *r = recipe;
-    return size == sizeof *r ? open_simulator(p, &r->settings, r->use, err)
-                             : fail(err, STATUS_INTERNAL, "a problem of %zu bytes instead of %zu", size, sizeof *r);
+    if (size < sizeof *r || size != recipe_size(r->n_records, r->n_scenes))
+        return fail(err, STATUS_INTERNAL, "a problem of %zu bytes", size);
+    return r->settings.problem.kind == PROBLEM_TOWER
+               ? tower_reopen(p, r, err)
+               : external_open(p, &r->settings.problem, threads_wanted(r->settings.search.threads), err);
 }
 
-/* Of a simulator whose problem has no recipe yet. */
-static void add_recipe(Adapter *a, const Settings *s)
+/* The one place that picks a simulator. */
+static Status open_simulator(Adapter *a, const Settings *s, Err *err)
 {
+    Settings own = *s;
+    own.sim.measures_only = 1;
+    if (s->problem.kind == PROBLEM_TOWER)
+        return tower_open(&a->problem, &own, TOWER_AS_SET, SIZE_MAX, err);
+    if (s->problem.kind != PROBLEM_EXTERNAL)
+        return textbook_open(&a->problem, &s->problem, (uint32_t)s->search.seed, err);
+    TRY(external_open(&a->problem, &s->problem, (size_t)a->threads, err));
     a->recipe.settings = *s;
     a->problem.recipe = &a->recipe;
     a->problem.recipe_size = sizeof a->recipe;
     executor_choose(&a->problem);
+    return STATUS_OK;
 }
 
 static Status open_all(Adapter *a, const Settings *s, Err *err)
 {
-    Settings own = *s;
-    own.sim.measures_only = 1;
-    TRY(open_simulator(&a->problem, s->problem.kind == PROBLEM_TOWER ? &own : s, TOWER_AS_SET, err));
-    if (s->problem.kind == PROBLEM_EXTERNAL)
-        add_recipe(a, s);
+    TRY(open_simulator(a, s, err));
     const Tower *t = adapter_tower(a);
     TRY(schema_of(&a->schema, s, t ? tower_n_floors(t) : 0, err));
     TRY(limits_read(&a->limits, &a->schema, s->search.limits, err));

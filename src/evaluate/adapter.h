@@ -16,7 +16,7 @@ typedef struct Adapter Adapter;
 
 Status adapter_open(Adapter **out, const Settings *s, Err *err);
 
-/* The simulator alone, as another process opens it: a ReopenFn (evaluate/cluster.h). recipe: evaluate/recipe.h. */
+/* The simulator alone of a Recipe (evaluate/recipe.h), as another process opens it: a ReopenFn (evaluate/cluster.h). */
 Status simulator_open(Problem *p, const void *recipe, size_t size, Err *err);
 void adapter_close(Adapter *a); /* NULL is fine */
 

@@ -403,25 +403,14 @@ static Status simulate(void *self, size_t worker, const Task *task, Err *err)
     return STATUS_OK;
 }
 
-static void take_level(const External *e, const ExternalAnswer *a, Evaluation *evaluation)
+/* By the last part. */
+static void combine(const Problem *p, size_t n, const void *parts, Evaluation *evaluation)
 {
+    const ExternalAnswer *a = (const void *)((const char *)parts + (n - 1) * p->part_size);
     evaluation_set_outcome(evaluation, a->outcome, a->reason);
-    memcpy(evaluation->f, a->f, e->n_obj * sizeof *a->f);
+    memcpy(evaluation->f, a->f, p->n_obj * sizeof *a->f);
     evaluation->seconds = a->seconds;
     evaluation->replicates = 1;
-}
-
-static void combine_cheap(const void *self, const void *parts, Evaluation *evaluation)
-{
-    take_level(self, parts, evaluation);
-}
-
-/* By the last part. */
-static void combine(const void *self, const void *parts, Evaluation *evaluation)
-{
-    const External *e = self;
-    const char *last = (const char *)parts + (e->has_levels ? e->part_size : 0);
-    take_level(e, (const ExternalAnswer *)(const void *)last, evaluation);
 }
 
 /* Input closed, a moment to end by itself. */
@@ -542,7 +531,6 @@ static void add_levels(Problem *p, double cheap_cost)
     p->n_parts = 2;
     p->n_cheap = 1;
     p->cheap_cost = cheap_cost;
-    p->combine_cheap = combine_cheap;
 }
 
 Status external_open(Problem *p, const ProblemOptions *o, size_t n_workers, Err *err)

@@ -34,6 +34,15 @@ double measure_value(const SimResult *r, int k)
     return NAN;
 }
 
+Measured measured(const SimResult *r)
+{
+    Measured m = {.seconds = r->seconds, .outcome = r->outcome};
+    for (int k = 0; k < N_MEASURES; k++)
+        m.value[k] = measure_value(r, k);
+    snprintf(m.reason, sizeof m.reason, "%s", r->reason);
+    return m;
+}
+
 unsigned measures_need(MeasureSet set)
 {
     unsigned needs = NEEDS_NOTHING;

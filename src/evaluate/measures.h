@@ -78,6 +78,18 @@ typedef struct {
 const Measure *measure(int k);                   /* k = 0..N_MEASURES-1 */
 double measure_value(const SimResult *r, int k); /* natural sign and unit; NAN: not known */
 
+/* What is kept of a simulation: a part of a design in the queue, also between machines. */
+typedef struct {
+    double value[N_MEASURES]; /* natural; NAN: not known */
+    double seconds;
+    LinearDevice device; /* that was simulated, or was found (evaluate/device.h) */
+    RunOutcome outcome;
+    char reason[REASON_MAX];
+} Measured;
+_Static_assert(sizeof(Measured) <= 512, "a part stays small: searches of thousands of replicates hold many");
+
+Measured measured(const SimResult *r);
+
 /* Sets of measures: bit k is measure k. */
 typedef uint64_t MeasureSet;
 _Static_assert(N_MEASURES <= 64, "a set of measures has 64 bits");

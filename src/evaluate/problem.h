@@ -25,14 +25,23 @@
 #include "evaluate/evaluation.h"
 
 typedef struct Queue Queue;
+typedef struct Problem Problem;
+
+/* What is simulated instead of a design as the problem has it; its simulator knows the meaning. {0}: the design. */
+typedef struct {
+    int kind;
+    size_t scene;
+    double device[3];
+} Variant;
 
 typedef struct {
-    long id;         /* of the request, counted in the order of asking: keys random streams */
-    size_t part;     /* 0 .. n_parts-1 */
-    size_t repeat;   /* evaluations of the same design that there are already: its replicates go on behind theirs */
-    int variant;     /* what is simulated instead of the design (a baseline); 0: the design */
-    const double *x; /* (n_var) */
-    void *result;    /* where the part goes */
+    long id;       /* of the request, counted in the order of asking: keys random streams */
+    size_t part;   /* 0 .. n_parts-1 */
+    size_t repeat; /* evaluations of the same design that there are already: its replicates go on behind theirs */
+    Variant variant;
+    const double *x;              /* (n_var) */
+    void *result;                 /* where the part goes, Problem.part_size bytes */
+    size_t size;                  /* so many */
     int (*may_go_on)(void *user); /* asked by simulations that take seconds; 0: end soon, with STATUS_STOPPED */
     void *user;                   /* of may_go_on */
     size_t slot;                  /* the queue's, as are those below */
@@ -41,8 +50,8 @@ typedef struct {
 
 typedef struct {
     Status (*simulate)(void *self, size_t worker, const Task *task, Err *err);
-    /* From the parts in the order of their numbers: outcome, f, sd, extra, seconds, replicates of e; x is there. */
-    void (*combine)(const void *self, const void *parts, Evaluation *e);
+    /* From the first n parts, in the order of their numbers: outcome, f, sd, extra, seconds, replicates of e; x is there. */
+    void (*combine)(const Problem *p, size_t n, const void *parts, Evaluation *e);
     void (*close)(void *self); /* NULL is fine */
 } Simulator;
 
@@ -66,7 +75,7 @@ typedef void (*JudgeFn)(const Evaluation *e, double f[], double g[], const void 
 /* Moves x into the set of designs that can be built at all (t_top <= t_base, say). */
 typedef void (*RepairFn)(double x[], const void *self);
 
-typedef struct {
+struct Problem {
     size_t n_var, n_obj, n_con, n_extra;
     const double *lower, *upper; /* (n_var) */
     RepairFn repair;             /* NULL: the box is all */
@@ -76,16 +85,15 @@ typedef struct {
     const Simulator *simulator;
     void *self; /* of simulator and repair */
     size_t n_parts, part_size, n_workers;
-    size_t n_cheap;    /* the first parts, which are a cheap level of the same problem; 0: there is none */
-    double cheap_cost; /* of the cheap level, a whole evaluation is 1; 0: its parts are parts of the whole */
-    void (*combine_cheap)(const void *self, const void *parts, Evaluation *e); /* Simulator.combine of these */
-    const Executor *executor;                                                  /* evaluate/threads.h */
-    const void *recipe; /* (recipe_size) bytes without pointers, of which another process opens the same problem;
-                                 NULL: there are none */
+    size_t n_cheap;           /* the first parts, which are a cheap level of the same problem; 0: there is none */
+    double cheap_cost;        /* of the cheap level, a whole evaluation is 1; 0: its parts are parts of the whole */
+    const Executor *executor; /* evaluate/threads.h */
+    const void
+        *recipe; /* (recipe_size) bytes without pointers, of which another process opens the same problem; NULL: none */
     size_t recipe_size;
     uint64_t inputs; /* hash of the files that it was opened from; 0: none, or not known */
     Observer observer;
-} Problem;
+};
 
 /* What evaluations cost, in integers, so that sums are exact. */
 typedef struct {

@@ -16,9 +16,9 @@ typedef struct {
     size_t index; /* of Queue.pool */
     size_t repeat, sequence, arrival;
     size_t n_parts, n_taken, n_given;
-    int only_first, is_cheap, was_known;
+    int was_known;
     long request;
-    int variant;
+    Variant variant;
     double *f, *g; /* (n_obj) (n_con) minimised */
     double *note;
     char *parts;
@@ -212,10 +212,8 @@ static void fill(Queue *q, Slot *s, const Asked *asked)
     s->e.kind = asked->kind;
     s->repeat = asked->repeat;
     s->variant = asked->variant;
-    s->only_first = asked->only_first;
-    s->is_cheap = asked->is_cheap;
     s->was_known = is_known;
-    s->n_parts = asked->only_first ? 1 : asked->is_cheap ? q->problem->n_cheap : q->problem->n_parts;
+    s->n_parts = asked->n_parts > 0 ? asked->n_parts : q->problem->n_parts;
     s->sequence = q->n_asked++;
     s->place = PENDING;
     if (!is_known || q->order == QUEUE_AS_ASKED)
@@ -273,7 +271,7 @@ int queue_has(const Queue *q, const double x[])
 Asked queue_design(const Queue *q, size_t i)
 {
     const Slot *s = in_line(q, i);
-    return (Asked){s->e.x, s->repeat, s->e.kind, s->variant, s->only_first, s->note, s->is_cheap, NULL};
+    return (Asked){s->e.x, s->repeat, s->e.kind, s->note, s->n_parts, s->variant, NULL};
 }
 
 static void give_out(Queue *q, Slot *s, Finished *out)
@@ -421,6 +419,7 @@ static void hand_out(Queue *q, Slot *s, Task *task)
                    .variant = s->variant,
                    .x = s->e.x,
                    .result = s->parts + part * q->problem->part_size,
+                   .size = q->problem->part_size,
                    .may_go_on = may_go_on,
                    .user = q,
                    .slot = s->index,
@@ -450,7 +449,7 @@ static void complete(const Queue *q, Slot *s)
 {
     const Problem *p = q->problem;
     Evaluation *e = &s->e;
-    (s->is_cheap ? p->combine_cheap : p->simulator->combine)(p->self, s->parts, e);
+    p->simulator->combine(p, s->n_parts, s->parts, e);
     for (size_t k = 0; e->outcome != OUTCOME_OK && k < p->n_obj; k++)
         e->f[k] = NAN;
     problem_judge(p, e, s->f, s->g);
@@ -462,12 +461,11 @@ static void finish(Queue *q, Slot *s)
 {
     const Observer *o = &q->problem->observer;
     Err why = {0};
-    if (!s->only_first)
-        complete(q, s);
+    complete(q, s);
     pthread_mutex_lock(&q->finishing);
     if (q->order == QUEUE_AS_ARRIVED)
         s->e.id = ++q->last_id;
-    const Status status = o->done && !s->only_first ? o->done(&s->e, o->user, &why) : STATUS_OK;
+    const Status status = o->done ? o->done(&s->e, o->user, &why) : STATUS_OK;
     pthread_mutex_lock(&q->lock);
     s->place = FINISHED;
     s->arrival = q->n_arrived++;

@@ -37,10 +37,9 @@ typedef struct {
     const double *x; /* (n_var), copied */
     size_t repeat;   /* evaluations of this design that there are already */
     EvaluationKind kind;
-    int variant;        /* as in Task */
-    int only_first;     /* 1: part 0 alone, for its own sake: no evaluation is made, and the observer does not hear */
     const double *note; /* (n_note), copied */
-    int is_cheap;       /* 1: the cheap level alone, combine_cheap */
+    size_t n_parts;     /* the first parts alone; 0: all */
+    Variant variant;
     const void *cheap_parts; /* (n_cheap) parts of this design that are there, copied; NULL: none */
 } Asked;
 

@@ -7,7 +7,7 @@
 #include "base/stat.h"
 #include "sim/as_built.h"
 
-enum { PARTS_MAX = 16 * 1000 }; /* records and replicates that the settings allow */
+enum { PARTS_MAX = TOWER_RECORDS_MAX * 1000 }; /* records and replicates that the settings allow */
 
 void replicate_design(uint32_t seed, size_t k, double tolerance_m, size_t n_gaps, double x[])
 {
@@ -50,23 +50,29 @@ AsBuilt replicate_as_built(uint32_t seed, size_t k, const UncertainOptions *u)
     return b;
 }
 
-/* Simulation i in the order of the records, then of their replicates. */
-static const SimResult *result_of(const ReplicatePlan *plan, const SimResult results[], size_t i)
-{
-    return &results[i % plan->n_replicates * plan->n_records + i / plan->n_replicates];
-}
-
 typedef struct {
     const ReplicatePlan *plan;
-    const SimResult *results;
-    size_t first; /* simulation of the record */
+    const char *parts;
+    size_t size;
     int measure;
+    size_t first; /* simulation of the record */
 } Sample;
+
+static size_t part_of(const ReplicatePlan *plan, size_t i)
+{
+    return i % plan->n_replicates * plan->n_records + i / plan->n_replicates;
+}
+
+/* Simulation i in the order of the records, then of their replicates. */
+static const Measured *simulation(const Sample *s, size_t i)
+{
+    return (const Measured *)(const void *)(s->parts + part_of(s->plan, i) * s->size);
+}
 
 static double value_of(size_t i, const void *user)
 {
     const Sample *s = user;
-    return measure_value(result_of(s->plan, s->results, s->first + i), s->measure);
+    return simulation(s, s->first + i)->value[s->measure];
 }
 
 static int by_value(const void *a, const void *b)
@@ -87,26 +93,26 @@ double robust_pooled(const ReplicatePlan *plan, double sense, size_t n, double v
     return v[below] + (place - (double)below) * (v[above] - v[below]);
 }
 
-/* Measure k over all simulations, by a rule that knows no records. */
-static void combine_all(const ReplicatePlan *plan, const SimResult results[], int k, double *value, double *sd)
+/* Measure over all simulations, by a rule that knows no records. */
+static void combine_all(Sample *s, double *value, double *sd)
 {
     double v[PARTS_MAX];
-    const size_t n = plan->n_records * plan->n_replicates;
+    const size_t n = s->plan->n_records * s->plan->n_replicates;
     for (size_t i = 0; i < n; i++)
-        v[i] = measure_value(result_of(plan, results, i), k);
-    *value = robust_pooled(plan, measure(k)->sense, n, v, sd);
+        v[i] = value_of(i, s);
+    *value = robust_pooled(s->plan, measure(s->measure)->sense, n, v, sd);
 }
 
-/* Measure k over the records. */
-static void combine_records(const ReplicatePlan *plan, const SimResult results[], int k, double *value, double *sd)
+/* Measure over the records. */
+static void combine_records(Sample *s, double *value, double *sd)
 {
-    const double sense = measure(k)->sense, n = (double)plan->n_records;
+    const double sense = measure(s->measure)->sense, n = (double)s->plan->n_records;
     *value = *sd = 0.0;
-    for (size_t r = 0; r < plan->n_records; r++) {
+    for (size_t r = 0; r < s->plan->n_records; r++) {
         double mean, deviation;
-        const Sample sample = {plan, results, r * plan->n_replicates, k};
-        mean_and_sd(plan->n_replicates, value_of, &sample, &mean, &deviation);
-        if (plan->rule == ROBUST_MEAN) {
+        s->first = r * s->plan->n_replicates;
+        mean_and_sd(s->plan->n_replicates, value_of, s, &mean, &deviation);
+        if (s->plan->rule == ROBUST_MEAN) {
             *value += mean / n;
             *sd += deviation * deviation / n;
         } else if (r == 0 || sense * mean > sense * *value) {
@@ -115,27 +121,28 @@ static void combine_records(const ReplicatePlan *plan, const SimResult results[]
         }
     }
     *sd = sqrt(*sd);
+    s->first = 0;
 }
 
-void replicates_summarise(const ReplicatePlan *plan, const SimResult results[], ReplicateSummary *out)
+void replicates_summarise(const ReplicatePlan *plan, const void *parts, size_t size, ReplicateSummary *out)
 {
     static const char *const RULES[] = {"worst", "mean", "mean + sd", "quantile"};
     const int is_mean = plan->rule == ROBUST_WORST && plan->n_records == 1;
-    *out = (ReplicateSummary){.shown = results,
-                              .rule = RULES[is_mean ? ROBUST_MEAN : plan->rule],
+    Sample sample = {.plan = plan, .parts = parts, .size = size};
+    *out = (ReplicateSummary){.rule = RULES[is_mean ? ROBUST_MEAN : plan->rule],
                               .spread = plan->spread,
                               .n_records = plan->n_records,
                               .n_replicates = plan->n_replicates};
     for (size_t i = plan->n_records * plan->n_replicates; i-- > 0;) {
-        const SimResult *r = result_of(plan, results, i);
-        out->seconds += r->seconds;
-        if (r->outcome != RUN_OK) {
-            out->shown = r;
+        const Measured *m = simulation(&sample, i);
+        out->seconds += m->seconds;
+        if (m->outcome != RUN_OK) {
+            out->shown = part_of(plan, i);
+            out->outcome = measure_outcome(m->outcome);
             out->n_failed++;
         }
     }
-    out->outcome = measure_outcome(out->shown->outcome);
     const int has_records = plan->rule == ROBUST_WORST || plan->rule == ROBUST_MEAN;
-    for (int k = 0; k < N_MEASURES; k++)
-        (has_records ? combine_records : combine_all)(plan, results, k, &out->mean[k], &out->sd[k]);
+    for (sample.measure = 0; sample.measure < N_MEASURES; sample.measure++)
+        (has_records ? combine_records : combine_all)(&sample, &out->mean[sample.measure], &out->sd[sample.measure]);
 }

@@ -23,6 +23,8 @@
 
 #include "evaluate/measures.h"
 
+enum { TOWER_RECORDS_MAX = 16 }; /* of one design */
+
 /* Small against anything that could be built. */
 static const double REPLICATE_CHANGE = 1e-8;
 
@@ -44,16 +46,16 @@ typedef struct {
 } ReplicatePlan;
 
 typedef struct {
-    const SimResult *shown;                   /* the first that failed, else the design itself under the first record */
-    Outcome outcome;                          /* its reason stands in `shown` */
-    const char *rule, *spread;                /* what `mean` is, "mean" or the rule of several records; of the plan */
+    size_t shown;              /* the part that failed first, else 0: the design under the first record */
+    Outcome outcome;           /* of that part */
+    const char *rule, *spread; /* what `mean` is, "mean" or the rule of several records; of the plan */
     size_t n_records, n_replicates, n_failed; /* n_replicates of each record; n_failed of all simulations */
     double mean[N_MEASURES], sd[N_MEASURES];  /* natural; not finite where a simulation failed; sd NAN: one replicate */
     double seconds;                           /* of all simulations */
 } ReplicateSummary;
 
-/* results (n_replicates, n_records); the summary points into them. */
-void replicates_summarise(const ReplicatePlan *plan, const SimResult results[], ReplicateSummary *out);
+/* parts (n_replicates, n_records), each of `size` bytes that begin with its Measured numbers. */
+void replicates_summarise(const ReplicatePlan *plan, const void *parts, size_t size, ReplicateSummary *out);
 
 /* v (n), sorted by this call: mean_plus_sd or quantile, sense +1: large values are bad. sd NAN: one value. */
 double robust_pooled(const ReplicatePlan *plan, double sense, size_t n, double v[], double *sd);

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "sim/fast/fast.h"
+
 static Status build(Scenario *w, Err *err)
 {
     const Status status = scene_create(&w->scene, &w->options, &w->motion, err);
@@ -13,18 +15,35 @@ static Status build(Scenario *w, Err *err)
     return status;
 }
 
-Status scenario_open(Scenario *w, const SceneOptions *o, const MotionOptions *record, Err *err)
+Status motion_scale_copy(Motion *out, const Motion *read, const MotionOptions *record, Err *err)
+{
+    *out = *read;
+    out->accel = malloc(read->n * sizeof *out->accel);
+    if (!out->accel)
+        return fail(err, STATUS_NO_MEMORY, "no memory for a motion of %zu samples", read->n);
+    memcpy(out->accel, read->accel, read->n * sizeof *out->accel);
+    const Status status = motion_scale(out, record, err);
+    if (status != STATUS_OK)
+        motion_free(out);
+    return status;
+}
+
+Status scenario_open_read(Scenario *w, const SceneOptions *o, const MotionOptions *record, const Motion *read, Err *err)
 {
     memset(w, 0, sizeof *w);
     w->options = *o;
     w->record = *record;
-    TRY(motion_open(&w->motion, record, err));
-    const Status status = motion_scale(&w->motion, record, err);
-    if (status != STATUS_OK) {
-        scenario_close(w);
-        return status;
-    }
+    TRY(motion_scale_copy(&w->motion, read, record, err));
     return build(w, err);
+}
+
+Status scenario_open(Scenario *w, const SceneOptions *o, const MotionOptions *record, Err *err)
+{
+    Motion read;
+    TRY(motion_open(&read, record, err));
+    const Status status = scenario_open_read(w, o, record, &read, err);
+    motion_free(&read);
+    return status;
 }
 
 Status scenario_open_still(Scenario *w, const SceneOptions *o, Err *err)
@@ -43,4 +62,12 @@ void scenario_close(Scenario *w)
     scene_free(w->scene);
     w->scene = NULL;
     motion_free(&w->motion);
+}
+
+int estimate_options(const SimOptions *o, SimOptions *finer)
+{
+    const double steps = sim_steps_per_contact(o);
+    *finer = *o;
+    finer->steps_per_contact = 2 * (steps > 0 ? steps : fast_tolerances(o->accuracy).steps_per_contact);
+    return o->engine == ENGINE_FAST;
 }

@@ -18,8 +18,19 @@ typedef struct {
 
 Status scenario_open(Scenario *w, const SceneOptions *o, const MotionOptions *record, Err *err);
 
+/* The same with a copy of the record as motion_open read it. */
+Status scenario_open_read(Scenario *w, const SceneOptions *o, const MotionOptions *record, const Motion *read,
+                          Err *err);
+
+/* motion_scale of a copy. */
+Status motion_scale_copy(Motion *out, const Motion *read, const MotionOptions *record, Err *err);
+
 /* The same at rest, for questions that no ground motion answers (frequencies). */
 Status scenario_open_still(Scenario *w, const SceneOptions *o, Err *err);
 void scenario_close(Scenario *w);
+
+/* The options of a run with twice the steps, by which the error of another one is estimated (analysis/estimate.h); 0: this
+ * engine has none. */
+int estimate_options(const SimOptions *o, SimOptions *finer);
 
 #endif

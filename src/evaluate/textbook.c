@@ -178,10 +178,10 @@ static Status simulate(void *self, size_t worker, const Task *task, Err *err)
     return STATUS_OK;
 }
 
-static void combine(const void *self, const void *parts, Evaluation *e)
+static void combine(const Problem *p, size_t n, const void *parts, Evaluation *e)
 {
-    const Exercise *exercise = self;
-    memcpy(e->f, parts, exercise->n_obj * sizeof *e->f);
+    (void)n;
+    memcpy(e->f, parts, p->n_obj * sizeof *e->f);
     e->seconds = 0.0;
     e->replicates = 1;
 }

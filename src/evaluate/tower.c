@@ -1,5 +1,6 @@
 #include "evaluate/tower.h"
 
+#include <pthread.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -7,59 +8,238 @@
 
 #include "base/hash.h"
 #include "base/list.h"
+#include "evaluate/device.h"
 #include "evaluate/threads.h"
-#include "evaluate/recipe.h"
+#include "motion/motion_source.h"
+#include "settings/settings.h"
+
+/* A part of a task whose whole result is wanted. */
+typedef struct {
+    Measured measured;
+    SimResult result;
+} Whole;
 
 typedef struct {
-    Scenario scenario;  /* zeroed where the scene is borrowed */
-    const Scene *scene; /* its own, or borrowed */
-    SimWorker **worker; /* (n_workers) */
+    pthread_mutex_t lock;
+    int is_read;
+    Status status;
+    Err why;
+    Motion motion; /* as read, not scaled */
 } Record;
 
+/* A scene, opened by the first worker that comes and closed by the last one that leaves. */
+typedef struct {
+    pthread_mutex_t lock;
+    size_t n_users;
+    Scenario *scenario; /* NULL: it is not open */
+} Place;
+
 struct Tower {
-    uint32_t seed;
-    double tolerance_m; /* standard deviation of a gap as built */
-    UncertainOptions uncertain;
     MeasureSet judged; /* what is not finite there has failed */
     size_t n_workers, n_floors;
-    ReplicatePlan plan; /* n_records of which are open */
+    ReplicatePlan plan; /* of a design: n_records of the scenes */
+    DesignSpace design;
     MeasureOrder order;
-    Record record[TOWER_RECORDS_MAX];
     double lower[DESIGN_VARIABLES_MAX], upper[DESIGN_VARIABLES_MAX];
-    Recipe recipe; /* of more tasks than one */
+    Record *record;     /* (n_records) */
+    size_t n_places;    /* twice the scenes: the second half are the same with twice the steps */
+    Place *place;       /* (n_places) */
+    SimWorker **worker; /* (n_places, n_workers) NULL: it is not there */
+    size_t *at;         /* (n_workers) of a sweep: one more than the place where the worker is; 0: nowhere */
+    size_t recipe_size;
+    Recipe *recipe;
 };
 
-const DesignSpace *tower_design(const Tower *t)
+/* -- scenes -------------------------------------------------------------------------------------------------------- */
+
+/* The settings of a place, for free. */
+static Status settings_of(const Tower *t, size_t place, Settings **out, Err *err)
 {
-    return scene_design(t->record[0].scene);
+    const Recipe *r = t->recipe;
+    const SceneChange *c = &r->scene[place % r->n_scenes];
+    Settings *s = malloc(sizeof *s);
+    *out = s;
+    if (!s)
+        return fail(err, STATUS_NO_MEMORY, "no memory for settings");
+    *s = r->settings;
+    memcpy(s->motion.record, recipe_record(r, c->record), sizeof s->motion.record);
+    if (place >= r->n_scenes)
+        estimate_options(&r->settings.sim, &s->sim);
+    const unsigned needs = measures_need(t->judged);
+    s->sim.filtered = s->sim.forces == FORCES_YES || (needs & NEEDS_FILTER);
+    if (needs & NEEDS_FORCES)
+        s->sim.forces = FORCES_YES;
+    return c->setting[0] ? settings_set(s, c->setting, err) : STATUS_OK;
+}
+
+static Status read_record(Record *r, const MotionOptions *o, Err *err)
+{
+    pthread_mutex_lock(&r->lock);
+    if (!r->is_read)
+        r->status = motion_open(&r->motion, o, &r->why);
+    r->is_read = 1;
+    pthread_mutex_unlock(&r->lock);
+    if (r->status != STATUS_OK)
+        *err = r->why;
+    return r->status;
+}
+
+Status tower_motion(const Problem *p, size_t scene, Motion *out, Err *err)
+{
+    const Tower *t = p->self;
+    Record *r = &t->record[t->recipe->scene[scene].record];
+    Settings *s;
+    Status status = settings_of(t, scene, &s, err);
+    if (status == STATUS_OK)
+        status = read_record(r, &s->motion, err);
+    if (status == STATUS_OK)
+        status = motion_scale_copy(out, &r->motion, &s->motion, err);
+    free(s);
+    return status;
+}
+
+static Status open_scenario(Tower *t, size_t place, Scenario *w, Err *err)
+{
+    Record *r = &t->record[t->recipe->scene[place % t->recipe->n_scenes].record];
+    Settings *s;
+    Status status = settings_of(t, place, &s, err);
+    if (status == STATUS_OK)
+        status = read_record(r, &s->motion, err);
+    if (status == STATUS_OK) {
+        const SceneOptions options = settings_scene(s);
+        status = scenario_open_read(w, &options, &s->motion, &r->motion, err);
+    }
+    free(s);
+    return status;
+}
+
+static void let_go(Tower *t, size_t place)
+{
+    Place *p = &t->place[place];
+    pthread_mutex_lock(&p->lock);
+    if (--p->n_users == 0) {
+        scenario_close(p->scenario);
+        free(p->scenario);
+        p->scenario = NULL;
+    }
+    pthread_mutex_unlock(&p->lock);
+}
+
+static Status take_hold(Tower *t, size_t place, Err *err)
+{
+    Place *p = &t->place[place];
+    Status status = STATUS_OK;
+    pthread_mutex_lock(&p->lock);
+    if (!p->scenario) {
+        p->scenario = calloc(1, sizeof *p->scenario);
+        status = p->scenario ? open_scenario(t, place, p->scenario, err)
+                             : fail(err, STATUS_NO_MEMORY, "no memory for a scene");
+    }
+    if (status == STATUS_OK) {
+        p->n_users++;
+    } else {
+        free(p->scenario);
+        p->scenario = NULL;
+    }
+    pthread_mutex_unlock(&p->lock);
+    return status;
+}
+
+static void leave(Tower *t, size_t place, size_t worker)
+{
+    SimWorker **w = &t->worker[place * t->n_workers + worker];
+    if (*w) {
+        sim_worker_free(*w);
+        *w = NULL;
+        let_go(t, place);
+    }
+}
+
+/* The integrator of that worker, which leaves the scene that it was at where it is one of a sweep. */
+static Status go_to(Tower *t, size_t place, size_t worker, SimWorker **out, Err *err)
+{
+    SimWorker **w = &t->worker[place * t->n_workers + worker];
+    if (!*w) {
+        if (t->recipe->is_sweep && t->at[worker] > 0)
+            leave(t, t->at[worker] - 1, worker);
+        t->at[worker] = place + 1;
+        TRY(take_hold(t, place, err));
+        const Status status = sim_worker_create(w, t->place[place].scenario->scene, err);
+        if (status != STATUS_OK) {
+            *w = NULL;
+            let_go(t, place);
+            return status;
+        }
+    }
+    *out = *w;
+    return STATUS_OK;
+}
+
+/* -- the simulator ------------------------------------------------------------------------------------------------- */
+
+enum { FIND = N_SCENES }; /* Variant.kind - FIND: whose device is looked for */
+
+static Status find_device(Tower *t, size_t worker, const Task *task, Err *err)
+{
+    Shaken at[TOWER_RECORDS_MAX];
+    Measured *m = task->result;
+    const size_t n = t->plan.n_records;
+    for (size_t r = 0; r < n; r++) {
+        TRY(go_to(t, task->variant.scene + r, worker, &at[r].worker, err));
+        TRY(sim_worker_as_built(at[r].worker, NULL, err));
+        at[r].scenario = t->place[task->variant.scene + r].scenario;
+    }
+    *m = (Measured){.outcome = RUN_OK};
+    return device_find(&t->plan, n, at, (SceneKind)(task->variant.kind - FIND), task->x, &m->device, err);
 }
 
 static Status simulate(void *self, size_t worker, const Task *task, Err *err)
 {
-    const Tower *t = self;
+    Tower *t = self;
+    const Settings *s = &t->recipe->settings;
     const size_t n = t->plan.n_records, k = task->repeat * t->plan.n_replicates + task->part / n;
-    const SceneKind kind = (SceneKind)task->variant;
-    SimWorker *w = t->record[task->part % n].worker[worker];
+    const SceneKind kind = (SceneKind)task->variant.kind;
+    const LinearDevice device = {task->variant.device[0], task->variant.device[1], task->variant.device[2]};
+    SimResult own, *result = task->size < sizeof(Whole) ? &own : &((Whole *)task->result)->result;
     Design design = {0};
+    SimWorker *w;
+    if (task->variant.kind >= FIND)
+        return find_device(t, worker, task, err);
+    TRY(go_to(t, task->variant.scene + task->part % n, worker, &w, err));
     if (kind != SCENE_NO_CORE)
-        design_of(tower_design(t), task->x, &design);
+        design_of(&t->design, task->x, &design);
     if (kind == SCENE_IMPACT)
-        replicate_design(t->seed, k, t->tolerance_m, t->n_floors, design.gap);
-    if (is_uncertain(&t->uncertain)) {
-        const AsBuilt built = replicate_as_built(t->seed, k, &t->uncertain);
+        replicate_design((uint32_t)s->search.seed, k, s->sim.gap_tolerance_m, t->n_floors, design.gap);
+    if (is_uncertain(&s->sim.uncertain)) {
+        const AsBuilt built = replicate_as_built((uint32_t)s->search.seed, k, &s->sim.uncertain);
         TRY(sim_worker_as_built(w, kind == SCENE_IMPACT && k > 0 ? &built : NULL, err));
     }
-    TRY(sim_run_built(w, kind, &design, task->result, err));
+    sim_worker_device(w, &device);
+    TRY(sim_run_built(w, kind, &design, result, err));
     if (kind == SCENE_IMPACT)
-        measures_settle(task->result, t->judged);
+        measures_settle(result, t->judged);
+    *(Measured *)task->result = measured(result);
+    ((Measured *)task->result)->device = device;
     return STATUS_OK;
 }
 
-static void combine_as(const Tower *t, const ReplicatePlan *plan, const void *parts, Evaluation *e)
+/* Of a design that has n parts: all, the first replicate of every record, or one alone. */
+static ReplicatePlan plan_of(const Tower *t, size_t n)
 {
+    ReplicatePlan plan = t->plan;
+    plan.n_records = n < plan.n_records ? n : plan.n_records;
+    plan.n_replicates = n / plan.n_records;
+    return plan;
+}
+
+static void combine(const Problem *p, size_t n, const void *parts, Evaluation *e)
+{
+    const Tower *t = p->self;
+    const ReplicatePlan plan = plan_of(t, n);
     ReplicateSummary sum;
-    replicates_summarise(plan, parts, &sum);
-    evaluation_set_outcome(e, sum.outcome, sum.shown->reason);
+    replicates_summarise(&plan, parts, p->part_size, &sum);
+    evaluation_set_outcome(e, sum.outcome,
+                           ((const Measured *)(const void *)((const char *)parts + sum.shown * p->part_size))->reason);
     for (int i = 0; i < t->order.n_obj; i++) {
         e->f[i] = sum.mean[t->order.of[i]];
         e->sd[i] = sum.sd[t->order.of[i]];
@@ -70,30 +250,22 @@ static void combine_as(const Tower *t, const ReplicatePlan *plan, const void *pa
     e->replicates = (int)sum.n_replicates;
 }
 
-static void combine(const void *self, const void *parts, Evaluation *e)
-{
-    const Tower *t = self;
-    combine_as(t, &t->plan, parts, e);
-}
-
-/* The first replicate of every record. */
-static void combine_cheap(const void *self, const void *parts, Evaluation *e)
-{
-    const Tower *t = self;
-    ReplicatePlan plan = t->plan;
-    plan.n_replicates = 1;
-    combine_as(t, &plan, parts, e);
-}
-
 static void tower_close(void *self)
 {
     Tower *t = self;
-    for (size_t r = 0; t && r < t->plan.n_records; r++) {
-        for (size_t i = 0; t->record[r].worker && i < t->n_workers; i++)
-            sim_worker_free(t->record[r].worker[i]);
-        free(t->record[r].worker);
-        scenario_close(&t->record[r].scenario);
+    for (size_t i = 0; t->worker && i < t->n_places * t->n_workers; i++)
+        leave(t, i / t->n_workers, i % t->n_workers);
+    for (size_t i = 0; t->place && i < t->n_places; i++)
+        pthread_mutex_destroy(&t->place[i].lock);
+    for (size_t i = 0; t->record && i < t->recipe->n_records; i++) {
+        motion_free(&t->record[i].motion);
+        pthread_mutex_destroy(&t->record[i].lock);
     }
+    free(t->worker);
+    free(t->at);
+    free(t->place);
+    free(t->record);
+    free(t->recipe);
     free(t);
 }
 
@@ -101,47 +273,58 @@ static const Simulator TOWER = {simulate, combine, tower_close};
 
 /* -- opening ------------------------------------------------------------------------------------------------------- */
 
-static Status open_workers(Tower *t, Record *r, Err *err)
+/* The records of a search: motion.record, then motion.records where they are wanted. */
+static Status list_records(const Settings *s, TowerUse use, char (*names)[OPTION_TEXT_MAX], size_t *n, Err *err)
 {
-    r->worker = calloc(t->n_workers, sizeof *r->worker);
-    if (!r->worker)
-        return fail(err, STATUS_NO_MEMORY, "no memory for %zu workers", t->n_workers);
-    for (size_t i = 0; i < t->n_workers; i++)
-        TRY(sim_worker_create(&r->worker[i], r->scene, err));
+    const char *list = use == TOWER_SINGLE ? "none" : s->motion.records;
+    memcpy(names[0], s->motion.record, sizeof names[0]);
+    *n = 1;
+    for (size_t i = 0; strcmp(list, "none") != 0 && i < list_count(list); i++, ++*n) {
+        if (*n == TOWER_RECORDS_MAX)
+            return fail(err, STATUS_BAD_DATA, "more than %d records", TOWER_RECORDS_MAX);
+        if (!list_item(list, i, names[*n], sizeof names[0]))
+            return fail(err, STATUS_BAD_DATA, "motion.records: item %zu is empty or too long", i + 1);
+    }
     return STATUS_OK;
 }
 
-static Status open_record(Tower *t, const Settings *settings, const char *name, Err *err)
+static Status open_all(Tower *t, Err *err)
 {
-    SceneOptions options = settings_scene(settings);
-    MotionOptions motion = settings->motion;
-    Record *r = &t->record[t->plan.n_records];
-    if (t->plan.n_records == TOWER_RECORDS_MAX)
-        return fail(err, STATUS_BAD_DATA, "more than %d records", TOWER_RECORDS_MAX);
-    snprintf(motion.record, sizeof motion.record, "%s", name);
-    const unsigned needs = measures_need(t->judged);
-    options.sim.filtered = options.sim.forces == FORCES_YES || (needs & NEEDS_FILTER);
-    if (needs & NEEDS_FORCES)
-        options.sim.forces = FORCES_YES;
-    TRY(scenario_open(&r->scenario, &options, &motion, err));
-    r->scene = r->scenario.scene;
-    t->plan.n_records++;
-    return open_workers(t, r, err);
+    SimWorker *unused;
+    for (size_t i = 0; i < t->recipe->n_scenes; i++)
+        for (size_t w = 0; w < t->n_workers; w++) {
+            Err why = {0};
+            const Status status = go_to(t, i, w, &unused, &why);
+            if (status != STATUS_OK)
+                return fail(err, status, "%s%s", i > 0 ? "motion.records: " : "", why.text);
+        }
+    t->design = *scene_design(t->place[0].scenario->scene);
+    return STATUS_OK;
 }
 
-static Status open_records(Tower *t, const Settings *s, TowerUse use, Err *err)
+Status tower_space(const Settings *s, DesignSpace *out, Err *err)
 {
-    const char *list = use == TOWER_SINGLE ? "none" : s->motion.records;
-    char name[OPTION_TEXT_MAX];
-    TRY(open_record(t, s, s->motion.record, err));
-    for (size_t i = 0; strcmp(list, "none") != 0 && i < list_count(list); i++) {
-        if (!list_item(list, i, name, sizeof name))
-            return fail(err, STATUS_BAD_DATA, "motion.records: item %zu is empty or too long", i + 1);
-        Err why = {0};
-        const Status status = open_record(t, s, name, &why);
-        if (status != STATUS_OK)
-            return fail(err, status, "motion.records: %s", why.text);
-    }
+    Building b;
+    TRY(building_load(&b, &s->building, err));
+    const int n_floors = b.n;
+    building_free(&b);
+    return design_space_make(out, &s->design, s->core.section, n_floors, err);
+}
+
+static Status make_room(Tower *t, Err *err)
+{
+    const Recipe *r = t->recipe;
+    t->n_places = 2 * r->n_scenes;
+    t->record = calloc(r->n_records, sizeof *t->record);
+    t->place = calloc(t->n_places, sizeof *t->place);
+    t->worker = calloc(t->n_places * t->n_workers, sizeof(SimWorker *));
+    t->at = calloc(t->n_workers, sizeof *t->at);
+    if (!t->record || !t->place || !t->worker || !t->at)
+        return fail(err, STATUS_NO_MEMORY, "no memory for %zu scenes", r->n_scenes);
+    for (size_t i = 0; i < r->n_records; i++)
+        pthread_mutex_init(&t->record[i].lock, NULL);
+    for (size_t i = 0; i < t->n_places; i++)
+        pthread_mutex_init(&t->place[i].lock, NULL);
     return STATUS_OK;
 }
 
@@ -150,8 +333,8 @@ static Status open_records(Tower *t, const Settings *s, TowerUse use, Err *err)
 static void swap_if_top_heavy(double x[], const void *self)
 {
     const Tower *t = self;
-    double *t_base = &x[tower_design(t)->n_gaps], *t_top = t_base + 1;
-    if (tower_design(t)->n_walls > 0 && *t_top > *t_base) {
+    double *t_base = &x[t->design.n_gaps], *t_top = t_base + 1;
+    if (t->design.n_walls > 0 && *t_top > *t_base) {
         const double thicker = *t_top;
         *t_top = *t_base;
         *t_base = thicker;
@@ -160,7 +343,7 @@ static void swap_if_top_heavy(double x[], const void *self)
 
 static Problem problem_on(Tower *t)
 {
-    return (Problem){.n_var = (size_t)tower_design(t)->n_var,
+    return (Problem){.n_var = (size_t)t->design.n_var,
                      .n_obj = (size_t)t->order.n_obj,
                      .n_extra = (size_t)(N_MEASURES - t->order.n_obj),
                      .lower = t->lower,
@@ -169,90 +352,133 @@ static Problem problem_on(Tower *t)
                      .simulator = &TOWER,
                      .self = t,
                      .n_parts = t->plan.n_records * t->plan.n_replicates,
-                     .combine_cheap = combine_cheap,
                      .n_cheap = t->plan.n_replicates > 1 ? t->plan.n_records : 0,
-                     .part_size = sizeof(SimResult),
+                     .part_size = sizeof(Measured),
                      .n_workers = t->n_workers,
                      .executor = executor_for(t->n_workers)};
 }
 
-/* The problem, or what is there of the tower released. */
-static Status finish_opening(Problem *p, Tower *t, const char *objectives, Status status, Err *err)
+static Status prepare(Tower *t, Err *err)
 {
-    if (status == STATUS_OK) {
-        t->n_floors = (size_t)scene_n_floors(t->record[0].scene);
-        status = measures_order(&t->order, objectives, (int)t->n_floors, err);
-        t->judged |= t->order.objectives;
+    const Settings *s = &t->recipe->settings;
+    TRY(make_room(t, err));
+    TRY(t->recipe->is_sweep ? tower_space(&t->recipe->settings, &t->design, err) : open_all(t, err));
+    t->n_floors = (size_t)t->design.n_floors;
+    TRY(measures_order(&t->order, s->search.objectives, (int)t->n_floors, err));
+    t->judged |= t->order.objectives;
+    design_bounds(&t->design, &s->design, t->lower, t->upper);
+    return STATUS_OK;
+}
+
+/* Hash of the building and of the records that were read. */
+static uint64_t hash_of_files(const Tower *t)
+{
+    uint64_t hash = t->recipe->is_sweep ? 0 : scene_building(t->place[0].scenario->scene)->hash;
+    for (size_t r = 0; r < t->recipe->n_records; r++)
+        hash = (hash ^ t->record[r].motion.file_hash) * HASH_PRIME;
+    return hash;
+}
+
+/* Takes the recipe, for free. */
+static Status open_recipe(Problem *p, Recipe *recipe, size_t n_tasks, Err *err)
+{
+    const Settings *s = &recipe->settings;
+    const size_t workers = threads_wanted(s->search.threads);
+    MeasureOrder order;
+    Tower *t = calloc(1, sizeof *t);
+    if (!t) {
+        free(recipe);
+        return fail(err, STATUS_NO_MEMORY, "no memory for a scene");
     }
+    t->recipe = recipe;
+    t->n_workers = workers < n_tasks ? workers : n_tasks;
+    t->plan = (ReplicatePlan){.n_records = recipe->is_sweep ? 1 : recipe->n_records,
+                              .n_replicates = (size_t)s->sim.replicates,
+                              .rule = s->sim.robust,
+                              .quantile = s->sim.quantile,
+                              .spread = spread_word(s->sim.gap_tolerance_m, &s->sim.uncertain)};
+    Status status = measures_order(&order, s->search.objectives, 0, err);
+    t->judged = status == STATUS_OK ? order.objectives | measures_limited(s->search.limits) : 0;
+    if (status == STATUS_OK)
+        status = prepare(t, err);
     if (status != STATUS_OK) {
         tower_close(t);
         return status;
     }
     *p = problem_on(t);
+    if (n_tasks > 1) { /* with the ranks of a cluster, where this process has some */
+        p->recipe = recipe;
+        p->recipe_size = recipe_size(recipe->n_records, recipe->n_scenes);
+        p->inputs = recipe->is_sweep ? 0 : hash_of_files(t);
+        executor_choose(p);
+    }
     return STATUS_OK;
 }
 
-static uint64_t hash_of_files(const Tower *t)
+static Status make_recipe(Recipe **out, const Settings *s, size_t n_records, size_t n_scenes, Err *err)
 {
-    uint64_t hash = scene_building(t->record[0].scene)->hash;
-    for (size_t r = 0; r < t->plan.n_records; r++)
-        hash = (hash ^ t->record[r].scenario.motion.file_hash) * HASH_PRIME;
-    return hash;
-}
-
-/* With the ranks of a cluster, where this process has some. */
-static void share(Problem *p, Tower *t, const Settings *s, TowerUse use)
-{
-    t->recipe.settings = *s;
-    t->recipe.settings.problem.kind = PROBLEM_TOWER;
-    t->recipe.use = use;
-    p->recipe = &t->recipe;
-    p->recipe_size = sizeof t->recipe;
-    p->inputs = hash_of_files(t);
-    executor_choose(p);
+    *out = calloc(1, recipe_size(n_records, n_scenes));
+    if (s->problem.kind != PROBLEM_TOWER || !*out) {
+        free(*out);
+        return *out ? fail(err, STATUS_BAD_DATA,
+                           "problem.kind: is no tower, which alone has a building, a core and a motion")
+                    : fail(err, STATUS_NO_MEMORY, "no memory for %zu scenes", n_scenes);
+    }
+    (*out)->settings = *s;
+    (*out)->n_records = n_records;
+    (*out)->n_scenes = n_scenes;
+    return STATUS_OK;
 }
 
 Status tower_open(Problem *p, const Settings *s, TowerUse use, size_t n_tasks, Err *err)
 {
-    const size_t workers = threads_wanted(s->search.threads);
-    MeasureOrder order;
-    if (s->problem.kind != PROBLEM_TOWER)
-        return fail(err, STATUS_BAD_DATA, "problem.kind: is no tower, which alone has a building, a core and a motion");
-    TRY(measures_order(&order, s->search.objectives, 0, err));
-    Tower *t = calloc(1, sizeof *t);
-    if (!t)
-        return fail(err, STATUS_NO_MEMORY, "no memory for a scene");
-    t->seed = (uint32_t)s->search.seed;
-    t->tolerance_m = s->sim.gap_tolerance_m;
-    t->uncertain = s->sim.uncertain;
-    t->n_workers = workers < n_tasks ? workers : n_tasks;
-    t->plan = (ReplicatePlan){.n_replicates = use == TOWER_SINGLE ? 1 : (size_t)s->sim.replicates,
-                              .rule = s->sim.robust,
-                              .quantile = s->sim.quantile,
-                              .spread = spread_word(s->sim.gap_tolerance_m, &s->sim.uncertain)};
-    t->judged = order.objectives | measures_limited(s->search.limits);
-    TRY(finish_opening(p, t, s->search.objectives, open_records(t, s, use, err), err));
-    design_bounds(tower_design(t), &s->design, t->lower, t->upper);
-    if (n_tasks > 1)
-        share(p, t, s, use);
-    return STATUS_OK;
+    char names[TOWER_RECORDS_MAX][OPTION_TEXT_MAX];
+    size_t n;
+    Recipe *r;
+    TRY(list_records(s, use, names, &n, err));
+    TRY(make_recipe(&r, s, n, n, err));
+    memcpy(recipe_record(r, 0), names, n * sizeof names[0]);
+    for (size_t i = 0; i < n; i++)
+        r->scene[i].record = i;
+    if (use == TOWER_SINGLE)
+        r->settings.sim.replicates = 1;
+    return open_recipe(p, r, n_tasks, err);
 }
 
-Status tower_open_scene(Problem *p, const Scene *scene, size_t n_replicates, uint32_t seed, size_t n_workers, Err *err)
+Status tower_open_scenes(Problem *p, const Settings *s, size_t n_records, const char *const records[], size_t n_scenes,
+                         const SceneChange scenes[], Err *err)
 {
-    Tower *t = calloc(1, sizeof *t);
-    if (!t)
-        return fail(err, STATUS_NO_MEMORY, "no memory for a scene");
-    *t = (Tower){.seed = seed,
-                 .n_workers = n_workers,
-                 .plan = {.n_records = 1, .n_replicates = n_replicates, .spread = "predictability"},
-                 .record[0].scene = scene};
-    return finish_opening(p, t, "auto", open_workers(t, &t->record[0], err), err);
+    Recipe *r;
+    TRY(make_recipe(&r, s, n_records, n_scenes, err));
+    r->is_sweep = 1;
+    memcpy(r->scene, scenes, n_scenes * sizeof *scenes);
+    Status status = STATUS_OK;
+    for (size_t i = 0; i < n_records && status == STATUS_OK; i++)
+        status = option_put_path(recipe_record(r, i), records[i], err);
+    if (status == STATUS_OK)
+        return open_recipe(p, r, SIZE_MAX, err);
+    free(r);
+    return status;
+}
+
+Status tower_reopen(Problem *p, const Recipe *recipe, Err *err)
+{
+    const size_t size = recipe_size(recipe->n_records, recipe->n_scenes);
+    Recipe *own = malloc(size);
+    if (!own)
+        return fail(err, STATUS_NO_MEMORY, "no memory for %zu scenes", recipe->n_scenes);
+    memcpy(own, recipe, size);
+    return open_recipe(p, own, SIZE_MAX, err);
 }
 
 const Tower *tower_of(const Problem *p)
 {
     return p->simulator == &TOWER ? p->self : NULL;
+}
+
+const DesignSpace *tower_design(const Tower *t)
+{
+    return &t->design;
 }
 
 int tower_n_floors(const Tower *t)
@@ -272,17 +498,12 @@ const MeasureOrder *tower_measures(const Tower *t)
 
 const Scenario *tower_record(const Tower *t, size_t i)
 {
-    return &t->record[i].scenario;
-}
-
-size_t tower_n_workers(const Tower *t)
-{
-    return t->n_workers;
+    return t->place[i].scenario;
 }
 
 SimWorker *tower_worker(const Tower *t, size_t record, size_t worker)
 {
-    return t->record[record].worker[worker];
+    return t->worker[record * t->n_workers + worker];
 }
 
 ReplicatePlan tower_plan(const Tower *t)
@@ -292,82 +513,90 @@ ReplicatePlan tower_plan(const Tower *t)
 
 /* -- simulations outside a search ---------------------------------------------------------------------------------- */
 
-static Status run_all(Queue *q, size_t n, const SimTask tasks[], SimResult results[], Err *err)
+static Status ask(Queue *q, const Tower *t, const SimTask *task, Err *err)
 {
+    const LinearDevice *d = &task->device;
+    const Variant variant = {task->kind + (task->finds_device ? FIND : 0),
+                             task->scene + (task->is_finer ? t->recipe->n_scenes : 0),
+                             {d->tmd_hz, d->tmd_damping, d->link_ns_m}};
+    return queue_ask(q, &(Asked){.x = task->x, .variant = variant, .n_parts = task->n_parts ? task->n_parts : 1}, err);
+}
+
+static void take(const Problem *p, const SimTask *task, SimResult *result, const char *parts)
+{
+    const size_t n = task->n_parts ? task->n_parts : 1;
+    const ReplicatePlan plan = plan_of(p->self, n);
+    ReplicateSummary sum;
+    replicates_summarise(&plan, parts, p->part_size, &sum);
+    if (task->summary)
+        *task->summary = sum;
+    if (result)
+        *result = ((const Whole *)(const void *)(parts + sum.shown * p->part_size))->result;
+    for (size_t i = 0; task->parts && i < n; i++)
+        memcpy(&task->parts[i], parts + i * p->part_size, sizeof *task->parts);
+}
+
+/* Some more are asked for than there are workers: parts of all at once would need memory. */
+static Status run_all(Queue *q, size_t n, const SimTask tasks[], SimResult results[], SimTell *tell, void *user,
+                      Err *err)
+{
+    const Problem *p = queue_problem(q);
     Finished done;
-    for (size_t i = 0; i < n; i++) {
-        const Asked asked = {.x = tasks[i].x, .variant = (int)tasks[i].kind, .only_first = 1};
-        TRY(queue_ask(q, &asked, err));
-    }
-    for (size_t i = 0; i < n; i++) {
+    for (size_t asked = 0, i = 0; i < n;) {
+        if (asked < n && queue_pending(q) < 4 * p->n_workers) {
+            TRY(ask(q, p->self, &tasks[asked++], err));
+            continue;
+        }
         TRY(queue_next(q, &done, err));
-        memcpy(&results[i], done.parts, sizeof results[i]);
+        take(p, &tasks[i], results ? &results[i] : tasks[i].result, done.parts);
+        i++;
+        if (tell)
+            tell(i, user);
     }
     return STATUS_OK;
+}
+
+static Status run(const Problem *p, size_t n, const SimTask tasks[], SimResult results[], SimTell *tell, void *user,
+                  Err *err)
+{
+    Queue *q;
+    Problem own = *p;
+    size_t n_simulations = 0;
+    own.observer.done = NULL;
+    own.n_parts = 1;
+    for (size_t i = 0; i < n; i++) {
+        n_simulations += tasks[i].n_parts ? tasks[i].n_parts : 1;
+        own.n_parts = tasks[i].n_parts > own.n_parts ? tasks[i].n_parts : own.n_parts;
+        own.part_size = results || tasks[i].result ? sizeof(Whole) : own.part_size;
+    }
+    own.n_workers = n_simulations < own.n_workers ? n_simulations : own.n_workers;
+    if (own.n_workers < 2)
+        own.executor = executor_for(1);
+    TRY(queue_open(&q, &own, QUEUE_AS_ASKED, 0, 0, err));
+    const Status status = run_all(q, n, tasks, results, tell, user, err);
+    queue_close(q);
+    return status;
+}
+
+Status tower_run(const Problem *p, size_t n, const SimTask tasks[], SimTell *tell, void *user, Err *err)
+{
+    return run(p, n, tasks, NULL, tell, user, err);
 }
 
 Status tower_simulate(const Problem *p, size_t n, const SimTask tasks[], SimResult results[], Err *err)
 {
-    Queue *q;
-    Problem few = *p;
-    few.n_workers = n < few.n_workers ? n : few.n_workers;
-    if (few.n_workers < 2)
-        few.executor = executor_for(1);
-    TRY(queue_open(&q, &few, QUEUE_AS_ASKED, 0, 0, err));
-    const Status status = run_all(q, n, tasks, results, err);
-    queue_close(q);
-    return status;
-}
-
-typedef void TakeParts(const Problem *p, size_t i, const SimResult parts[], void *to);
-
-static Status ask_all(Queue *q, size_t n, const double X[], TakeParts *take, void *to, Err *err)
-{
-    const Problem *p = queue_problem(q);
-    Finished done;
-    for (size_t i = 0; i < n; i++)
-        TRY(queue_ask(q, &(Asked){.x = X + i * p->n_var}, err));
-    for (size_t i = 0; i < n; i++) {
-        TRY(queue_next(q, &done, err));
-        take(p, i, done.parts, to); /* they are the queue's */
-    }
-    return STATUS_OK;
-}
-
-static Status each_part(const Problem *p, size_t n, const double X[], TakeParts *take, void *to, Err *err)
-{
-    Queue *q;
-    TRY(queue_open(&q, p, QUEUE_AS_ASKED, 0, 0, err));
-    const Status status = ask_all(q, n, X, take, to, err);
-    queue_close(q);
-    return status;
-}
-
-static void copy_parts(const Problem *p, size_t i, const SimResult parts[], void *to)
-{
-    memcpy((SimResult *)to + i * p->n_parts, parts, p->n_parts * sizeof *parts);
-}
-
-Status tower_parts(const Problem *p, size_t n, const double X[], SimResult results[], Err *err)
-{
-    return each_part(p, n, X, copy_parts, results, err);
-}
-
-typedef struct {
-    SimResult *shown;
-    ReplicateSummary *out;
-} Summaries;
-
-static void summarise_parts(const Problem *p, size_t i, const SimResult parts[], void *to)
-{
-    const Summaries *s = to;
-    replicates_summarise(&tower_of(p)->plan, parts, &s->out[i]);
-    s->shown[i] = *s->out[i].shown;
-    s->out[i].shown = &s->shown[i];
+    return run(p, n, tasks, results, NULL, NULL, err);
 }
 
 Status tower_replicate(const Problem *p, size_t n, const double X[], SimResult shown[], ReplicateSummary out[],
                        Err *err)
 {
-    return each_part(p, n, X, summarise_parts, &(Summaries){shown, out}, err);
+    SimTask *tasks = calloc(n, sizeof *tasks);
+    if (!tasks)
+        return fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", n);
+    for (size_t i = 0; i < n; i++)
+        tasks[i] = (SimTask){.x = X + i * p->n_var, .n_parts = p->n_parts, .summary = &out[i]};
+    const Status status = run(p, n, tasks, shown, NULL, NULL, err);
+    free(tasks);
+    return status;
 }

@@ -2,24 +2,24 @@
  *
  *   design     by design.variables (scene/design.h); t_top > t_base is repaired by swapping the two
  *   objectives those of search.objectives, extra the other measures (evaluate/measures.h)
- *   parts      n_replicates x n_records (evaluate/replicates.h), each a SimResult; replicate k of repeat r is the
+ *   parts      n_replicates x n_records (evaluate/replicates.h), each its Measured numbers; replicate k of repeat r is the
  *              replicate r n_replicates + k of the design
  *   cheap      where there are several replicates: the first one of every record
- *   variant    SceneKind: SCENE_IMPACT is the design, the others are baselines of which only the first part counts
+ *   variant    any other simulation that is asked for: SimTask
+ *   scenes     a search has one for each record, all of them open. A sweep (tower_open_scenes) may have thousands, and a
+ *              design is judged under one of them: a worker has the one at hand open. Every record is read once
  *
  * Life cycle tower_open -> tower_simulate, or a search on the problem ... -> problem_close
- * Threads    every worker has an integrator of its own for every record */
+ * Threads    every worker has an integrator of its own for every scene that it has open */
 #ifndef IMTET_EVALUATE_TOWER_H
 #define IMTET_EVALUATE_TOWER_H
 
 #include "evaluate/queue.h"
+#include "evaluate/recipe.h"
 #include "evaluate/replicates.h"
 #include "evaluate/scenario.h"
 
-typedef struct Settings Settings;
 typedef struct Tower Tower;
-
-enum { TOWER_RECORDS_MAX = 16 };
 
 typedef enum {
     TOWER_AS_SET, /* motion.record and motion.records, sim.replicates, sim.gap_tolerance_m, sim.robust */
@@ -29,8 +29,15 @@ typedef enum {
 /* Workers as search.threads has them, but no more than n_tasks. */
 Status tower_open(Problem *p, const Settings *s, TowerUse use, size_t n_tasks, Err *err);
 
-/* On a scene that is there already (borrowed), without bounds: n_replicates, gaps changed by REPLICATE_CHANGE alone. */
-Status tower_open_scene(Problem *p, const Scene *scene, size_t n_replicates, uint32_t seed, size_t n_workers, Err *err);
+/* A sweep over scenes of n_records records; nothing is read yet. */
+Status tower_open_scenes(Problem *p, const Settings *s, size_t n_records, const char *const records[], size_t n_scenes,
+                         const SceneChange scenes[], Err *err);
+
+/* The same in another process. */
+Status tower_reopen(Problem *p, const Recipe *recipe, Err *err);
+
+/* The design variables of the settings, whose building is read for it. */
+Status tower_space(const Settings *s, DesignSpace *out, Err *err);
 
 /* The tower of such a problem; NULL: it has another simulator. */
 const Tower *tower_of(const Problem *p);
@@ -39,23 +46,37 @@ int tower_n_floors(const Tower *t);
 const DesignSpace *tower_design(const Tower *t);
 size_t tower_n_records(const Tower *t);
 const MeasureOrder *tower_measures(const Tower *t);
-const Scenario *tower_record(const Tower *t, size_t i); /* 0: motion.record */
-size_t tower_n_workers(const Tower *t);
-SimWorker *tower_worker(const Tower *t, size_t record, size_t worker); /* while no queue uses it */
+const Scenario *tower_record(const Tower *t, size_t i);                /* of a search; 0: motion.record */
+SimWorker *tower_worker(const Tower *t, size_t record, size_t worker); /* likewise, while no queue uses it */
 ReplicatePlan tower_plan(const Tower *t);
+
+/* The ground motion of a scene, for motion_free. */
+Status tower_motion(const Problem *p, size_t scene, Motion *out, Err *err);
+
+/* -- simulations outside a search: tasks of the queue, which no observer hears of -- */
 
 typedef struct {
     SceneKind kind;
-    const double *x; /* (n_var); NULL for SCENE_NO_CORE */
+    const double *x;     /* (n_var); NULL for SCENE_NO_CORE */
+    size_t scene;        /* of the tower, 0: the first */
+    int is_finer;        /* with twice the steps: estimate_options */
+    int finds_device;    /* the device of SCENE_TMD or SCENE_LINKS is looked for, result of Measured.device; else ... */
+    LinearDevice device; /* ... this one is simulated */
+    size_t
+        n_parts; /* tower_n_records: under each of them; as the problem has them: with replicates. 0: one simulation */
+    Measured *parts;           /* (n_parts) to be filled; NULL: not wanted */
+    SimResult *result;         /* of the part that failed first, else of the first; NULL: not wanted */
+    ReplicateSummary *summary; /* NULL: not wanted */
 } SimTask;
 
-/* n simulations of the first record, without replicates, shared out over the workers. */
+/* All n tasks, shared out over the workers. tell: how many are done, NULL: nobody asks. */
+typedef void SimTell(size_t n_done, void *user);
+Status tower_run(const Problem *p, size_t n, const SimTask tasks[], SimTell *tell, void *user, Err *err);
+
+/* results (n) of n single simulations. */
 Status tower_simulate(const Problem *p, size_t n, const SimTask tasks[], SimResult results[], Err *err);
 
-/* Every simulation of X (n, n_var): results (n, n_replicates, n_records). */
-Status tower_parts(const Problem *p, size_t n, const double X[], SimResult results[], Err *err);
-
-/* X (n, n_var) with all replicates and records of the tower; out[i].shown = &shown[i]. */
+/* X (n, n_var) with all replicates and records of the tower. */
 Status tower_replicate(const Problem *p, size_t n, const double X[], SimResult shown[], ReplicateSummary out[],
                        Err *err);
 

@@ -53,7 +53,7 @@ static Status ask(Search *s, size_t n, Err *err)
         if (asked.kind == KIND_FINISHED)
             asked.cheap_parts = screening_parts(s, asked.x);
         else if (s->screening.is_on) {
-            asked.is_cheap = 1;
+            asked.n_parts = p->n_cheap;
             asked.kind = KIND_SCREENED;
         }
         note[NOTE_KIND] = b->kind[i];

@@ -36,7 +36,7 @@ static const double ALIVE_S = 2.0, SILENT_S = 20.0;
 
 typedef struct {
     int64_t epoch;
-    uint64_t recipe_size;
+    uint64_t recipe_size, part_size;
 } OpenMessage;
 
 typedef struct {
@@ -52,7 +52,7 @@ typedef struct {
     uint64_t ticket; /* rank 0's */
     int64_t id;
     uint64_t part, repeat;
-    int64_t variant;
+    Variant variant;
 } TaskMessage;
 
 typedef struct {

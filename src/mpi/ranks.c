@@ -388,7 +388,7 @@ static Status wait_until_open(Ranks *r, Err *err)
 
 static Status open_problem(Ranks *r, Err *err)
 {
-    const OpenMessage m = {r->epoch, r->problem->recipe_size};
+    const OpenMessage m = {r->epoch, r->problem->recipe_size, r->problem->part_size};
     for (int i = 1; i <= r->n; i++)
         MPI_Send(&m, sizeof m, MPI_BYTE, i, TAG_OPEN, MPI_COMM_WORLD);
     MPI_Bcast((void *)r->problem->recipe, (int)m.recipe_size, MPI_BYTE, 0, MPI_COMM_WORLD);

@@ -141,7 +141,8 @@ static Status take_tasks(Service *s, size_t n, Err *err)
         job->task = (Task){.id = m.id,
                            .part = m.part,
                            .repeat = m.repeat,
-                           .variant = (int)m.variant,
+                           .variant = m.variant,
+                           .size = s->problem.part_size,
                            .x = job->numbers,
                            .result = job->numbers + n_var,
                            .may_go_on = may_go_on,
@@ -222,6 +223,7 @@ static Status answer_open(Service *s, Err *err)
     s->epoch = m.epoch;
     OpenedMessage answer = {.epoch = m.epoch};
     answer.status = (int32_t)open_problem(s, recipe, m.recipe_size, &why);
+    s->problem.part_size = m.part_size; /* parts may be wanted whole (evaluate/tower.h) */
     s->stopped = 0;
     answer.inputs = s->problem.inputs;
     answer.n_workers = s->n_workers;

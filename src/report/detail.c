@@ -16,7 +16,7 @@ static const double QUIET = 0.02; /* of the peak displacement */
 static Status simulate(const Problem *p, const double x[], BaselineKind last, Detail *d, Err *err)
 {
     static const SceneKind SCENES[N_BASELINES] = {SCENE_NO_CORE, SCENE_RIGID, SCENE_TMD, SCENE_LINKS};
-    TRY(tower_simulate(p, 1, &(SimTask){SCENE_IMPACT, x}, &d->result[SCENE_IMPACT], err));
+    TRY(tower_simulate(p, 1, &(SimTask){.kind = SCENE_IMPACT, .x = x}, &d->result[SCENE_IMPACT], err));
     TRY(baselines_find(p, x, last, d->baseline, err));
     for (int k = 0; k < N_BASELINES; k++)
         d->result[SCENES[k]] = d->baseline[k].first;
@@ -122,7 +122,7 @@ static Status take_elsewhere(const Settings *other, const char *record, const do
     Settings s = *other;
     Problem p;
     SimResult results[2];
-    const SimTask tasks[2] = {{SCENE_IMPACT, x}, {SCENE_NO_CORE, x}};
+    const SimTask tasks[2] = {{.kind = SCENE_IMPACT, .x = x}, {.kind = SCENE_NO_CORE, .x = x}};
     TRY(option_put_path(s.motion.record, record, err));
     TRY(tower_open(&p, &s, TOWER_SINGLE, 2, err));
     const Motion *m = &tower_record(tower_of(&p), 0)->motion;

@@ -65,7 +65,7 @@ static Status open_scene(WhatIf *w, const Ground *g, Err *err)
     TRY(tower_open(&w->problem, &s, TOWER_SINGLE, 1, err));
     w->is_open = 1;
     w->ground = *g;
-    return tower_simulate(&w->problem, 1, &(SimTask){SCENE_NO_CORE, NULL}, &w->no_core, err);
+    return tower_simulate(&w->problem, 1, &(SimTask){.kind = SCENE_NO_CORE, .x = NULL}, &w->no_core, err);
 }
 
 Status what_if_open(WhatIf **out, const Run *run, const RecordPaths *moved, Err *err)
@@ -273,7 +273,7 @@ Status what_if_ask(WhatIf *w, const Run *run, const char *question, size_t n, js
     if (status == STATUS_OK)
         status = open_scene(w, &q.ground, err);
     if (status == STATUS_OK)
-        status = tower_simulate(&w->problem, 1, &(SimTask){SCENE_IMPACT, q.x}, &w->result, err);
+        status = tower_simulate(&w->problem, 1, &(SimTask){.kind = SCENE_IMPACT, .x = q.x}, &w->result, err);
     if (status == STATUS_OK)
         *answer = json_of_answer(w, run, &q);
     pthread_mutex_unlock(&w->one);

@@ -492,13 +492,13 @@ static Status estimate_integration(Study *study, const double x[], Err *err)
     const Tower *t = adapter_tower(study->adapter);
     StudySummary *sum = study->summary;
     SimResult result;
-    const SimTask task = {SCENE_IMPACT, x};
+    const SimTask task = {.kind = SCENE_IMPACT, .x = x};
     sum->error_known =
         study->used.sim.engine == ENGINE_FAST && tower_n_records(t) == 1 && study->used.sim.replicates <= 1;
     if (!sum->error_known)
         return STATUS_OK;
     TRY(tower_simulate(adapter_problem(study->adapter), 1, &task, &result, err));
-    return estimate_designs(&study->used, 1, &task, &result, sum->error, err);
+    return estimate_designs(adapter_problem(study->adapter), 1, &task, &result, sum->error, err);
 }
 
 /* What the knee is compared with, its error, and what the front says about its gaps. */

@@ -1,0 +1,267 @@
+#include "analysis/evaluations.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "analysis/estimate.h"
+#include "base/stat.h"
+#include "base/units.h"
+#include "motion/motion_scale.h"
+#include "settings/settings.h"
+
+const struct EvaluationCase EVALUATION_CASES[N_WITH_DEVICES] = {{SCENE_IMPACT, "with core", "with_core"},
+                                                                {SCENE_RIGID, "rigidly connected", "rigid"},
+                                                                {SCENE_NO_CORE, "no core", "no_core"},
+                                                                {SCENE_TMD, "tuned mass damper", "tmd"},
+                                                                {SCENE_LINKS, "viscous links", "links"}};
+
+const char *evaluated_name(const EvaluatedRecord *r)
+{
+    const char *slash = strrchr(r->path, '/');
+    return slash ? slash + 1 : r->path;
+}
+
+/* ---- which records ----------------------------------------------------------------------------------------------- */
+
+Status evaluations_add(Evaluations *e, const char *path, int from_folder, Err *err)
+{
+    EvaluatedRecord *more = realloc(e->record, (e->n_records + 1) * sizeof *more);
+    if (!more)
+        return fail(err, STATUS_NO_MEMORY, "no memory for %zu records", e->n_records + 1);
+    e->record = more;
+    more[e->n_records] = (EvaluatedRecord){.path = strdup(path), .from_folder = from_folder};
+    if (!more[e->n_records].path)
+        return fail(err, STATUS_NO_MEMORY, "no memory for a path");
+    e->n_records++;
+    return STATUS_OK;
+}
+
+static int is_visible(const struct dirent *e)
+{
+    return e->d_name[0] != '.';
+}
+
+static int by_name(const struct dirent **a, const struct dirent **b)
+{
+    return strcmp((*a)->d_name, (*b)->d_name); /* the same order in every language */
+}
+
+Status evaluations_add_folder(Evaluations *e, const char *folder, Err *err)
+{
+    struct dirent **names = NULL;
+    Status status = STATUS_OK;
+    const int n = scandir(folder, &names, is_visible, by_name);
+    if (n < 0)
+        return fail(err, status_of_errno(errno, STATUS_MISSING), "--records %s: %s", folder, strerror(errno));
+    for (int i = 0; i < n; i++) {
+        char path[PATH_MAX];
+        struct stat there;
+        const int length = snprintf(path, sizeof path, "%s/%s", folder, names[i]->d_name);
+        if (status == STATUS_OK && length < PATH_MAX && (stat(path, &there) != 0 || !S_ISDIR(there.st_mode)))
+            status = evaluations_add(e, path, 1, err);
+        free(names[i]);
+    }
+    free(names);
+    return n > 0 ? status : fail(err, STATUS_BAD_DATA, "--records %s: is empty", folder);
+}
+
+/* ---- reading ----------------------------------------------------------------------------------------------------- */
+
+static Status open_tower(Evaluations *e, const Settings *settings, Err *err)
+{
+    const size_t n = e->n_records * e->n_levels;
+    Settings s = *settings;
+    const char **paths = calloc(e->n_records, sizeof *paths);
+    SceneChange *scenes = calloc(n, sizeof *scenes);
+    for (size_t i = 0; paths && i < e->n_records; i++)
+        paths[i] = e->record[i].path;
+    for (size_t i = 0; scenes && i < n; i++) {
+        scenes[i].record = i / e->n_levels;
+        if (e->level)
+            snprintf(scenes[i].setting, sizeof scenes[i].setting, "motion.pga_g=%.17g", e->level[i % e->n_levels]);
+    }
+    if (e->level)
+        motion_unscale(&s.motion);
+    s.sim.replicates = e->replicates > 0 ? e->replicates : 1;
+    const Status status = paths && scenes
+                              ? tower_open_scenes(&e->tower, &s, e->n_records, paths, n, scenes, err)
+                              : fail(err, STATUS_NO_MEMORY, "no memory for %zu simulations", n * N_EVALUATED);
+    free(paths);
+    free(scenes);
+    return status;
+}
+
+static Status describe_run(Evaluations *e, size_t i, Err *err)
+{
+    EvaluatedRun *run = &e->run[i];
+    Motion m;
+    run->record = &e->record[i / e->n_levels];
+    TRY(tower_motion(&e->tower, i, &m, err));
+    run->pga_g = motion_peak(&m) / GRAVITY;
+    run->scale = m.scale;
+    run->stretch = m.stretch;
+    motion_free(&m);
+    return STATUS_OK;
+}
+
+Status evaluations_read(Evaluations *e, const Settings *s, Err *err)
+{
+    TRY(open_tower(e, s, err));
+    e->is_estimated = s->sim.engine == ENGINE_FAST;
+    e->run = calloc(e->n_records * e->n_levels, sizeof *e->run);
+    if (!e->run)
+        return fail(err, STATUS_NO_MEMORY, "no memory for %zu records", e->n_records);
+    for (size_t i = 0; i < e->n_records; i++) {
+        EvaluatedRecord *r = &e->record[i];
+        for (size_t l = 0; l < e->n_levels && r->readable == STATUS_OK; l++)
+            r->readable = describe_run(e, i * e->n_levels + l, &r->why);
+        e->n_read += r->readable == STATUS_OK;
+        if (r->readable != STATUS_OK && (!r->from_folder || r->readable == STATUS_NO_MEMORY))
+            return fail(err, r->readable, "%s", r->why.text);
+    }
+    return STATUS_OK;
+}
+
+/* ---- all runs ---------------------------------------------------------------------------------------------------- */
+
+size_t evaluated_cases(const Evaluations *e, const EvaluatedRun *run)
+{
+    return e->level || run->record->from_folder ? N_EVALUATED : N_WITH_DEVICES;
+}
+
+/* Tasks of a run in one round: its cases, and the design with twice the steps. */
+enum { TASKS_MAX = N_WITH_DEVICES + 1 };
+
+/* What does not wait for anything: devices are found, and simulated in the second round. */
+static size_t first_tasks(Evaluations *e, size_t i, const double x[], SimTask task[TASKS_MAX])
+{
+    EvaluatedRun *run = &e->run[i];
+    size_t n = evaluated_cases(e, run);
+    for (size_t c = 0; c < n; c++)
+        if (c < N_EVALUATED)
+            task[c] = (SimTask){.kind = EVALUATION_CASES[c].kind, .x = x, .scene = i, .result = &run->result[c]};
+        else
+            task[c] = (SimTask){
+                .kind = EVALUATION_CASES[c].kind, .x = x, .scene = i, .finds_device = 1, .parts = &run->device[c]};
+    run->error_known = e->is_estimated && n == N_WITH_DEVICES;
+    if (run->error_known)
+        task[n++] = (SimTask){.x = x, .scene = i, .is_finer = 1, .parts = &run->finer};
+    return n;
+}
+
+static size_t device_tasks(Evaluations *e, size_t i, const double x[], SimTask task[TASKS_MAX])
+{
+    EvaluatedRun *run = &e->run[i];
+    size_t n = 0;
+    for (size_t c = N_EVALUATED; c < evaluated_cases(e, run); c++)
+        task[n++] = (SimTask){.kind = EVALUATION_CASES[c].kind,
+                              .x = x,
+                              .scene = i,
+                              .device = run->device[c].device,
+                              .result = &run->result[c]};
+    return n;
+}
+
+static size_t replicate_tasks(Evaluations *e, size_t i, const double x[], SimTask task[TASKS_MAX])
+{
+    task[0] = (SimTask){.x = x, .scene = i, .n_parts = e->tower.n_parts, .summary = &e->run[i].replicates};
+    return e->replicates > 0;
+}
+
+typedef size_t MakeTasks(Evaluations *e, size_t i, const double x[], SimTask task[TASKS_MAX]);
+
+static Status run_round(Evaluations *e, MakeTasks *make, const double x[], EvaluationsTold *told, Err *err)
+{
+    const size_t n = e->n_records * e->n_levels;
+    SimTask *tasks = calloc(n * TASKS_MAX, sizeof *tasks);
+    size_t n_tasks = 0;
+    if (!tasks)
+        return fail(err, STATUS_NO_MEMORY, "no memory for %zu simulations", n * TASKS_MAX);
+    for (size_t i = 0; i < n; i++)
+        if (e->record[i / e->n_levels].readable == STATUS_OK)
+            n_tasks += make(e, i, x, tasks + n_tasks);
+    if (told)
+        told->n_all = n_tasks;
+    const Status status =
+        n_tasks > 0 ? tower_run(&e->tower, n_tasks, tasks, told ? told->tell : NULL, told, err) : STATUS_OK;
+    free(tasks);
+    return status;
+}
+
+Status evaluations_run(Evaluations *e, size_t n_var, const double x[], EvaluationsTold *told, Err *err)
+{
+    if (e->tower.n_var != n_var)
+        return fail(err, STATUS_BAD_DATA, "the front has designs of %zu variables, this building has %zu", n_var,
+                    e->tower.n_var);
+    TRY(run_round(e, first_tasks, x, told, err));
+    TRY(run_round(e, device_tasks, x, NULL, err));
+    TRY(run_round(e, replicate_tasks, x, told, err));
+    for (size_t i = 0; i < e->n_records * e->n_levels; i++)
+        if (e->run[i].error_known) {
+            const Measured as_set = measured(e->run[i].result);
+            estimate_errors(&as_set, &e->run[i].finer, e->run[i].error);
+        }
+    return STATUS_OK;
+}
+
+void evaluations_free(Evaluations *e)
+{
+    for (size_t i = 0; i < e->n_records; i++)
+        free(e->record[i].path);
+    problem_close(&e->tower);
+    free(e->run);
+    free(e->record);
+}
+
+/* ---- incremental dynamic analysis -------------------------------------------------------------------------------- */
+
+Status ida_levels(const char *text, double levels[IDA_LEVELS_MAX], size_t *n, Err *err)
+{
+    double from, step, to;
+    char more;
+    if (sscanf(text, "%lf:%lf:%lf%c", &from, &step, &to, &more) != 3 || !(from > 0 && step > 0 && to >= from) ||
+        !isfinite(to) || !(step >= 1e-9 * to))
+        return fail(err, STATUS_USAGE, "--pga %.60s: a range is FROM:STEP:TO in g, all above 0, as 0.05:0.05:0.6",
+                    text);
+    const double steps = floor((to - from) / step + 1e-6);
+    if (!(steps < IDA_LEVELS_MAX))
+        return fail(err, STATUS_USAGE, "--pga %.60s: more than %d intensities", text, IDA_LEVELS_MAX);
+    *n = (size_t)steps + 1;
+    for (size_t i = 0; i < *n; i++) {
+        char digits[32]; /* 0.15, not 0.15000000000000002 */
+        snprintf(digits, sizeof digits, "%.9g", from + (double)i * step);
+        levels[i] = strtod(digits, NULL);
+    }
+    return STATUS_OK;
+}
+
+double ida_value(const EvaluatedRun *run, EvaluatedCase which, int k)
+{
+    const SimResult *r = &run->result[which];
+    const double value = measure_value(r, k);
+    return r->outcome == RUN_OK && isfinite(value) ? value : INFINITY;
+}
+
+double ida_fractile(const Evaluations *e, size_t l, EvaluatedCase which, int k, double p)
+{
+    double *sorted = malloc(e->n_records * sizeof *sorted), value = NAN;
+    size_t n = 0;
+    for (size_t r = 0; sorted && r < e->n_records; r++)
+        if (e->record[r].readable == STATUS_OK)
+            sorted[n++] = ida_value(&e->run[r * e->n_levels + l], which, k);
+    if (n > 0) {
+        sort_values(n, sorted);
+        const double place = p * (double)(n - 1), low = floor(place), share = place - low;
+        const size_t i = (size_t)low;
+        value = share > 0 ? sorted[i] + share * (sorted[i + 1] - sorted[i]) : sorted[i];
+        if (share > 0 && !isfinite(sorted[i + 1]))
+            value = INFINITY;
+    }
+    free(sorted);
+    return value;
+}

@@ -1,0 +1,99 @@
+/* analysis/evaluations.h -- one design under many ground motions, at one or several intensities each.
+ *
+ *   record r, intensity l: every case of EVALUATION_CASES, in run[r n_levels + l].result
+ *
+ * Life cycle  evaluations_add, evaluations_add_folder ... -> evaluations_read -> evaluations_run -> evaluations_free
+ * Threads     tasks of a queue (evaluate/queue.h), threads as search.threads says or ranks of a cluster; the results do not
+ *             depend on their number
+ * Errors      a record that cannot be read: status and why of it, where it came from a folder; else that of
+ *             evaluations_read
+ * Fractiles   fractile p of the n records at one intensity: straight lines between the order statistics, the i-th at
+ *             p = (i - 1) / (n - 1); a simulation that failed counts as infinite, so that a fractile above it has no value
+ * Source      Vamvatsikos and Cornell, Earthquake Eng. Struct. Dyn. 31 (2002) 491-514; Hyndman and Fan, Am. Statistician 50
+ *             (1996) 361-365, type 7 */
+#ifndef IMTET_ANALYSIS_EVALUATIONS_H
+#define IMTET_ANALYSIS_EVALUATIONS_H
+
+#include "evaluate/tower.h"
+
+typedef enum {
+    EVALUATED_DESIGN,
+    EVALUATED_RIGID,
+    EVALUATED_NO_CORE,
+    N_EVALUATED, /* everywhere */
+    EVALUATED_TMD = N_EVALUATED,
+    EVALUATED_LINKS,
+    N_WITH_DEVICES /* of records that were named, at one intensity */
+} EvaluatedCase;
+
+extern const struct EvaluationCase {
+    SceneKind kind;
+    const char *word, *key; /* for people; in JSON and CSV */
+} EVALUATION_CASES[N_WITH_DEVICES];
+
+typedef struct {
+    char *path;
+    int from_folder; /* where it cannot be read it is left out with the reason */
+    Status readable;
+    Err why;
+} EvaluatedRecord;
+
+typedef struct {
+    const EvaluatedRecord *record;
+    double pga_g, scale, stretch;
+    SimResult result[N_WITH_DEVICES];
+    Measured device[N_WITH_DEVICES]; /* found under this record (evaluate/device.h) */
+    ReplicateSummary replicates;     /* of the design, where there are some */
+    Measured finer;                  /* the design with twice the steps, where error_known */
+    double error[N_MEASURES];        /* of the design, estimated (analysis/estimate.h), where error_known */
+    int error_known;                 /* of records that were named, at one intensity, by the engine fast */
+} EvaluatedRun;
+
+typedef struct {
+    size_t n_records, n_levels;
+    EvaluatedRecord *record; /* (n_records) */
+    const double *level;     /* [g] (n_levels) peaks that the records are scaled to; NULL: as the settings say, once */
+    EvaluatedRun *run;       /* (n_records, n_levels) of those that can be read, zeroed for the others */
+    size_t n_read;
+    long replicates; /* of the design under each record; 0: itself alone */
+    int is_estimated;
+    double duration_s; /* that is simulated of each, 0: all */
+    Problem tower;     /* a scene for every run */
+} Evaluations;
+
+/* Cases of a run: N_EVALUATED, or N_WITH_DEVICES. */
+size_t evaluated_cases(const Evaluations *e, const EvaluatedRun *run);
+
+Status evaluations_add(Evaluations *e, const char *path, int from_folder, Err *err);
+
+/* Every file of it, sorted by name; folders inside and hidden files are left out. */
+Status evaluations_add_folder(Evaluations *e, const char *folder, Err *err);
+
+/* Reads every record before anything is simulated. */
+Status evaluations_read(Evaluations *e, const Settings *s, Err *err);
+
+/* x (n_var) of the design. tell: as in tower_run, of n_all tasks. */
+typedef struct {
+    SimTell *tell;
+    void *user;
+    size_t n_all;
+} EvaluationsTold;
+Status evaluations_run(Evaluations *e, size_t n_var, const double x[], EvaluationsTold *told, Err *err);
+void evaluations_free(Evaluations *e);
+
+const char *evaluated_name(const EvaluatedRecord *r); /* the last part of its path */
+
+/* -- incremental dynamic analysis ---------------------------------------------------------------------------------- */
+
+enum { IDA_LEVELS_MAX = 1000 };
+
+/* "0.05:0.05:0.6", from, step and to [g], as levels (IDA_LEVELS_MAX at most); a range ends at `to` or just below. */
+Status ida_levels(const char *text, double levels[IDA_LEVELS_MAX], size_t *n, Err *err);
+
+/* Measure k of a run; INFINITY: it failed. */
+double ida_value(const EvaluatedRun *run, EvaluatedCase which, int k);
+
+/* Of measure k over the records at intensity l; INFINITY: too many failed. */
+double ida_fractile(const Evaluations *e, size_t l, EvaluatedCase which, int k, double p);
+
+#endif

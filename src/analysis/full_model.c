@@ -1,0 +1,77 @@
+#include "analysis/full_model.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "analysis/estimate.h"
+
+/* Above the degrees of freedom of any frame. */
+enum { ALL_MODES = 100000 };
+
+static Status describe(const Settings *settings, FullModel *m, Err *err)
+{
+    Settings s = *settings;
+    for (int model = 0; model < MODELS; model++) {
+        Building b;
+        double z = 0;
+        TRY(building_load(&b, &s.building, err));
+        m->dofs[model] = b.model.n;
+        m->n_floors = b.n;
+        for (int j = 0; j < b.n; j++)
+            m->z[j] = z += b.storey_m[j];
+        building_free(&b);
+        s.building.modes = ALL_MODES;
+    }
+    return STATUS_OK;
+}
+
+static Status simulate(const Problem *p, size_t n, const SimTask tasks[], FullModel *m, Err *err)
+{
+    TRY(tower_motion(p, REDUCED, &m->motion, err));
+    TRY(tower_run(p, MODELS * n, tasks, NULL, NULL, err));
+    return m->error ? estimate_designs(p, n, tasks, m->result[REDUCED], m->error, err) : STATUS_OK;
+}
+
+static Status find(const Settings *s, SceneKind kind, size_t n, const double X[], SimTask *tasks, FullModel *m,
+                   Err *err)
+{
+    SceneChange scene[MODELS] = {{0}, {0}};
+    const char *const record = s->motion.record;
+    Problem p;
+    snprintf(scene[FULL].setting, sizeof scene->setting, "building.modes=%d", ALL_MODES);
+    TRY(describe(s, m, err));
+    TRY(tower_open_scenes(&p, s, 1, &record, MODELS, scene, err));
+    for (size_t i = 0; i < MODELS * n; i++)
+        tasks[i] = (SimTask){
+            .kind = kind, .x = X ? X + i % n * p.n_var : NULL, .scene = i / n, .result = &m->result[i / n][i % n]};
+    const Status status = simulate(&p, n, tasks, m, err);
+    problem_close(&p);
+    return status;
+}
+
+Status full_model_find(const Settings *settings, SceneKind kind, size_t n, const double X[], int estimates,
+                       FullModel *out, Err *err)
+{
+    Settings s = *settings;
+    SimTask *tasks = calloc(MODELS * n, sizeof *tasks);
+    s.sim.replicates = 1;
+    *out = (FullModel){.result = {calloc(n, sizeof(SimResult)), calloc(n, sizeof(SimResult))}};
+    if (estimates)
+        out->error = calloc(n, N_MEASURES * sizeof *out->error);
+    const int is_there = tasks && out->result[REDUCED] && out->result[FULL] && (out->error || !estimates);
+    const Status status = is_there ? find(&s, kind, n, X, tasks, out, err)
+                                   : fail(err, STATUS_NO_MEMORY, "no memory for %zu simulations", n);
+    free(tasks);
+    if (status != STATUS_OK)
+        full_model_free(out);
+    return status;
+}
+
+void full_model_free(FullModel *m)
+{
+    motion_free(&m->motion);
+    for (int i = 0; i < MODELS; i++)
+        free(m->result[i]);
+    free(m->error);
+    *m = (FullModel){0};
+}

@@ -1,0 +1,9 @@
+/* cmd/full_model.h -- evaluate --full-model: designs on all degrees of freedom of the building, beside the reduced model. */
+#ifndef IMTET_CMD_FULL_MODEL_H
+#define IMTET_CMD_FULL_MODEL_H
+
+#include "cmd/args.h"
+
+Status show_full_model(const Args *args, Err *err);
+
+#endif
