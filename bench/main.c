@@ -298,9 +298,8 @@ static const Command COMMANDS[] = {
     {.name = "throughput",
      .summary = "designs per second over the whole motion, and ratios of engines",
      .example = "imtet-bench throughput --quick",
-     .details =
-         "Runs 24 designs with irregular gaps by the engine fast, on one thread and on all, and compares its time\n"
-         "with that of other engines at equal error. Timings want the machine to themselves.",
+     .details = "Runs 24 designs with irregular gaps by the engine fast on one thread and compares its time\n"
+                "with that of other engines at equal error. Timings want the machine to themselves.",
      .options = THROUGHPUT_OPTIONS,
      .run = run_throughput,
      .program = "imtet-bench"},

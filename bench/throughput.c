@@ -1,13 +1,11 @@
 #include "bench/throughput.h"
 
 #include <math.h>
-#include <omp.h>
 #include <stdlib.h>
 
-#include "base/clock.h"
-#include "evaluate/replicates.h"
+#include "sim/sim.h"
 
-enum { DESIGNS = 24, DESIGNS_QUICK = 4, JUDGED = 6, REPLICATES = 8 };
+enum { DESIGNS = 24, DESIGNS_QUICK = 4, JUDGED = 6 };
 
 static const double WINDOW_S = 8, PLAIN_STEP = 2e-4, BDF_RTOL = 1e-6, REFERENCE_STEPS = 320;
 
@@ -58,132 +56,6 @@ static Status run_fast(Throughput *t, Err *err)
     fprintf(t->out, "  counted         %.0f steps, %.0f force evaluations, %.0f impacts per design; %ld failed\n",
             (double)steps / t->n, (double)forces / t->n, (double)impacts / t->n, failed);
     fprintf(t->out, "  work            steps %ld force_evaluations %ld\n", steps, forces);
-    return STATUS_OK;
-}
-
-/* Design k; replicate r of it. */
-static Status run_one(Throughput *t, SimWorker *worker, int k, int r, Err *err)
-{
-    const int n = t->bench_case.building.n;
-    double x[FLOORS_MAX + 2];
-    SimResult result;
-    bench_irregular_gaps((uint32_t)k, n, x);
-    replicate_design(1, (size_t)r, 0, (size_t)n, x);
-    x[n] = BENCH_WALL_BASE;
-    x[n + 1] = BENCH_WALL_TOP;
-    return sim_run(worker, SCENE_IMPACT, x, &result, err);
-}
-
-/* Wall time [s] of n designs, or of n replicates of design 0, over the workers. */
-static double time_runs(Throughput *t, SimWorker *const worker[], int threads, int n, int are_replicates)
-{
-    const double start = clock_seconds();
-#pragma omp parallel for schedule(dynamic) num_threads(threads)
-    for (int k = 0; k < n; k++) {
-        Err err;
-        run_one(t, worker[omp_get_thread_num()], are_replicates ? 0 : k, are_replicates ? k : 0, &err);
-    }
-    return clock_seconds() - start;
-}
-
-static Status time_workers(Throughput *t, const Scene *scene, int threads, double *all, double *replicated, Err *err)
-{
-    SimWorker **worker = calloc((size_t)threads, sizeof(SimWorker *));
-    Status status = worker ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "bench: out of memory");
-    for (int i = 0; i < threads && status == STATUS_OK; i++)
-        status = sim_worker_create(&worker[i], scene, err);
-    if (status == STATUS_OK) {
-        *all = time_runs(t, worker, threads, t->n, 0);
-        *replicated = time_runs(t, worker, threads, REPLICATES, 1);
-    }
-    for (int i = 0; worker && i < threads; i++)
-        sim_worker_free(worker[i]);
-    free(worker);
-    return status;
-}
-
-/* What threads gain, and what the replicates of one design cost. */
-static Status run_workers(Throughput *t, Err *err)
-{
-    const int threads = omp_get_num_procs();
-    double one, many, replicated_one, replicated_many;
-    Scene *scene;
-    TRY(scene_create(&scene, t->settings, t->whole, err));
-    Status status = time_workers(t, scene, 1, &one, &replicated_one, err);
-    if (status == STATUS_OK)
-        status = time_workers(t, scene, threads, &many, &replicated_many, err);
-    scene_free(scene);
-    TRY(status);
-    fprintf(t->out, "  threads         %.4g designs a second on 1, %.4g on %d: %.2f times\n", t->n / one, t->n / many,
-            threads, one / many);
-    fprintf(t->out, "  replicates, %d   %.3g ms on 1 thread, %.3g ms on %d: %.2f and %.2f times one design\n",
-            REPLICATES, 1e3 * replicated_one, 1e3 * replicated_many, threads, replicated_one * t->n / one,
-            replicated_many * t->n / one);
-    return STATUS_OK;
-}
-
-/* -- what is asked for beside the objectives ----------------------------------------------------------------------- */
-
-enum { PLAIN, WITH_FORCES, FILTERED, N_ASKED, ASKED_ROUNDS = 5 };
-
-/* Processor time [s] of all designs one after the other. */
-static Status time_designs(const Throughput *t, SimWorker *worker, double *seconds, Err *err)
-{
-    const int n = t->bench_case.building.n;
-    double x[FLOORS_MAX + 2];
-    SimResult r;
-    const double start = processor_seconds();
-    for (int k = 0; k < t->n; k++) {
-        bench_irregular_gaps((uint32_t)k, n, x);
-        x[n] = BENCH_WALL_BASE;
-        x[n + 1] = BENCH_WALL_TOP;
-        TRY(sim_run(worker, SCENE_IMPACT, x, &r, err));
-    }
-    *seconds = processor_seconds() - start;
-    return STATUS_OK;
-}
-
-static Status time_asked(const Throughput *t, SimWorker *const workers[], double ratio[N_ASKED][ASKED_ROUNDS], Err *err)
-{
-    for (int round = 0; round < ASKED_ROUNDS; round++) {
-        double seconds[N_ASKED];
-        for (int a = 0; a < N_ASKED; a++)
-            TRY(time_designs(t, workers[a], &seconds[a], err));
-        for (int a = 0; a < N_ASKED; a++)
-            ratio[a][round] = seconds[a] / seconds[PLAIN];
-    }
-    return STATUS_OK;
-}
-
-static Status open_asked(const Throughput *t, Scene *scenes[], SimWorker *workers[], Err *err)
-{
-    for (int a = 0; a < N_ASKED; a++) {
-        SceneOptions o = *t->settings;
-        o.sim.forces = a == WITH_FORCES ? FORCES_YES : FORCES_AUTO;
-        o.sim.measures_only = 1;
-        o.sim.filtered = a == FILTERED;
-        TRY(scene_create(&scenes[a], &o, t->whole, err));
-        TRY(sim_worker_create(&workers[a], scenes[a], err));
-    }
-    return STATUS_OK;
-}
-
-/* Forces and the filter, each in turn with neither: medians of ratios of processor time, which other load leaves alone. */
-static Status run_asked(const Throughput *t, Err *err)
-{
-    Scene *scenes[N_ASKED] = {NULL};
-    SimWorker *workers[N_ASKED] = {NULL};
-    double ratio[N_ASKED][ASKED_ROUNDS];
-    Status status = open_asked(t, scenes, workers, err);
-    if (status == STATUS_OK)
-        status = time_asked(t, workers, ratio, err);
-    for (int a = 0; a < N_ASKED; a++) {
-        sim_worker_free(workers[a]);
-        scene_free(scenes[a]);
-    }
-    TRY(status);
-    fprintf(t->out, "  asked for       forces %.3f, filtered acceleration %.3f times the processor time without\n",
-            bench_median(ASKED_ROUNDS, ratio[WITH_FORCES]), bench_median(ASKED_ROUNDS, ratio[FILTERED]));
     return STATUS_OK;
 }
 
@@ -274,10 +146,6 @@ Status throughput_print(const SceneOptions *s, const Motion *motion, int quick, 
     Status status = bench_case_open(&t.bench_case, bench_kind(2), s, motion, quick, err);
     if (status == STATUS_OK)
         status = run_fast(&t, err);
-    if (status == STATUS_OK && !count)
-        status = run_workers(&t, err);
-    if (status == STATUS_OK && !count)
-        status = run_asked(&t, err);
     if (status == STATUS_OK && !count)
         status = compare_all(&t, quick, err);
     bench_case_close(&t.bench_case);
