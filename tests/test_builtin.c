@@ -5,15 +5,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <lapacke.h>
-
-#include "base/csv.h"
 #include "motion/motion_source.h"
 #include "motion/spectrum.h"
+#include "scene_options.h"
+#include "sim/sim.h"
 
-static const double G = 9.81;
-
-enum { N_MOTIONS = 3, N_FLOORS = 20, N_BUILDINGS = 2, N_PERIODS = 60 };
+enum { N_MOTIONS = 3, N_BUILDINGS = 2, N_PERIODS = 60 };
 
 static const struct {
     const char *source, *record;
@@ -30,102 +27,27 @@ static const struct {
      {{1.749, 0.1589, 0.815}, {1.615, 0.1660, 0.809}}},
 };
 
-static const char *const BUILDINGS[N_BUILDINGS] = {"configs/sac20/guyan", "configs/sac20/appendix"};
+static const char *const BUILDINGS[N_BUILDINGS] = {"guyan", "appendix"};
 
-/* ---- the building alone: M u'' + C u' + K u = -M 1 a, 3 % in every mode ------------------------------------------ */
-
-typedef struct {
-    double w[N_FLOORS];             /* [rad/s] */
-    double phi[N_FLOORS][N_FLOORS]; /* (floor, mode), mass-normalised */
-    double gamma[N_FLOORS];         /* phi' M 1 */
-} Modes;
-
-static void read_matrix(const char *folder, const char *name, double A[N_FLOORS * N_FLOORS])
+/* J1 [m], J2 [m], J3 [g] of the building without a core. */
+static void building_alone(const Motion *m, const char *model, double J[3])
 {
-    char path[128];
-    Table t;
-    Err err;
-    snprintf(path, sizeof path, "%s/%s.csv", folder, name);
-    CHECK_OK(table_read(&t, path, 0, &err), &err);
-    assert_int_equal(t.n_rows * t.n_cols, N_FLOORS * N_FLOORS);
-    memcpy(A, t.values, N_FLOORS * N_FLOORS * sizeof *A);
-    table_free(&t);
-}
-
-static void modes_of(const char *folder, Modes *b)
-{
-    double K[N_FLOORS * N_FLOORS], M[N_FLOORS * N_FLOORS], factor[N_FLOORS * N_FLOORS], w2[N_FLOORS];
-    read_matrix(folder, "K", K);
-    read_matrix(folder, "M", M);
-    memcpy(factor, M, sizeof M);
-    assert_int_equal(LAPACKE_dsygv(LAPACK_ROW_MAJOR, 1, 'V', 'U', N_FLOORS, K, N_FLOORS, factor, N_FLOORS, w2), 0);
-    for (int i = 0; i < N_FLOORS; i++) {
-        b->w[i] = sqrt(w2[i]);
-        b->gamma[i] = 0;
-        for (int f = 0; f < N_FLOORS; f++) {
-            b->phi[f][i] = K[f * N_FLOORS + i];
-            for (int k = 0; k < N_FLOORS; k++)
-                b->gamma[i] += K[f * N_FLOORS + i] * M[f * N_FLOORS + k];
-        }
-    }
-}
-
-typedef struct {
-    double q[N_FLOORS], v[N_FLOORS];
-} Modal;
-
-/* Over h under a + s tau: the particular solution p0 + p1 tau, and the free vibration that makes up the rest. */
-static void modal_step(const Modes *b, const double e[3][N_FLOORS], double a, double s, double h, Modal *y)
-{
-    for (int i = 0; i < N_FLOORS; i++) {
-        const double w = b->w[i], zeta = 0.03, wd = w * sqrt(1 - zeta * zeta);
-        const double p1 = -b->gamma[i] * s / (w * w), p0 = (-b->gamma[i] * a - 2 * zeta * w * p1) / (w * w);
-        const double A = y->q[i] - p0, B = (y->v[i] - p1 + zeta * w * A) / wd;
-        const double x = e[2][i] * (A * e[0][i] + B * e[1][i]);
-        y->q[i] = p0 + p1 * h + x;
-        y->v[i] = p1 - zeta * w * x + e[2][i] * wd * (B * e[0][i] - A * e[1][i]);
-    }
-}
-
-/* u'' + a 1 = -sum phi (2 zeta w q' + w^2 q) */
-static void take_peaks(const Modes *b, const Modal *y, double J[3])
-{
-    double below = 0;
-    for (int f = 0; f < N_FLOORS; f++) {
-        double u = 0, accel = 0;
-        for (int i = 0; i < N_FLOORS; i++) {
-            u += b->phi[f][i] * y->q[i];
-            accel += b->phi[f][i] * b->w[i] * (0.06 * y->v[i] + b->w[i] * y->q[i]);
-        }
-        J[0] = fmax(J[0], fabs(u));
-        J[1] = fmax(J[1], fabs(u - below));
-        J[2] = fmax(J[2], fabs(accel) / G);
-        below = u;
-    }
-}
-
-/* J1 [m], J2 [m], J3 [g], sampled every dt / 6, about a hundredth of a second. */
-static void building_alone(const Motion *m, const char *folder, double J[3])
-{
-    enum { SUB = 6 };
-    Modes b;
-    Modal y = {0};
-    double e[3][N_FLOORS];
-    const double h = m->dt_s / SUB;
-    modes_of(folder, &b);
-    for (int i = 0; i < N_FLOORS; i++) {
-        e[0][i] = cos(b.w[i] * sqrt(1 - 0.03 * 0.03) * h);
-        e[1][i] = sin(b.w[i] * sqrt(1 - 0.03 * 0.03) * h);
-        e[2][i] = exp(-0.03 * b.w[i] * h);
-    }
-    J[0] = J[1] = J[2] = 0;
-    for (size_t k = 0; k + 1 < m->n; k++) {
-        const double s = (m->accel[k + 1] - m->accel[k]) / m->dt_s;
-        for (int j = 0; j < SUB; j++) {
-            modal_step(&b, e, m->accel[k] + s * j * h, s, h, &y);
-            take_peaks(&b, &y, J);
-        }
-    }
+    Scene *scene;
+    SimWorker *worker;
+    SimResult r;
+    Err err = {0};
+    const double none[FLOORS_MAX + 2] = {0};
+    SceneOptions s = paper_scene();
+    snprintf(s.building.model, sizeof s.building.model, "%s", model);
+    CHECK_OK(scene_create(&scene, &s, m, &err), &err);
+    CHECK_OK(sim_worker_create(&worker, scene, &err), &err);
+    CHECK_OK(sim_run(worker, SCENE_NO_CORE, none, &r, &err), &err);
+    assert_int_equal(r.outcome, RUN_OK);
+    J[0] = r.j1_m;
+    J[1] = r.j2_m;
+    J[2] = r.j3_g;
+    sim_worker_free(worker);
+    scene_free(scene);
 }
 
 static Motion prepared(int k)

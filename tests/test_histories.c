@@ -44,15 +44,18 @@ static void test_forces_of_a_history_are_those_of_the_contact_law(void **state)
 {
     (void)state;
     write_design();
-    free(output_of("simulate " WINDOW "--history @/fast.csv --every " EVERY "--contacts @/contacts.csv"));
+    json_t *o = json_of("simulate " WINDOW "--json --history @/fast.csv --every " EVERY "--contacts @/contacts.csv");
     const Table h = table_of("fast.csv"), contacts = table_of("contacts.csv");
+    double largest = 0;
     const double nu = 0.3, k = 2 * 2.1e11 * sqrt(0.1) / (3 * (1 - nu * nu)), a = 1.5 * (1 - 0.7);
     size_t compared = 0;
     assert_less(5, contacts.n_rows);
+    assert_int_equal(contacts.n_rows, (size_t)number(o, "impacts"));
     for (size_t i = 0; i < contacts.n_rows; i++) {
         const int floor = (int)cell(&contacts, i, "floor"), side = (int)cell(&contacts, i, "side");
         const double from = cell(&contacts, i, "t_s"), to = from + cell(&contacts, i, "duration_s");
         const double v0 = fmax(cell(&contacts, i, "approach_m_s"), 1e-3), peak = cell(&contacts, i, "force_n");
+        largest = fmax(largest, peak);
         char name[5][32];
         static const char *const PATTERN[5] = {"floor_%02d_m", "core_%02d_m", "floor_%02d_m_s", "core_%02d_m_s",
                                                "contact_%02d_n"};
@@ -72,6 +75,8 @@ static void test_forces_of_a_history_are_those_of_the_contact_law(void **state)
         }
     }
     assert_less(10, compared);
+    assert_close(largest, number(o, "contact_force_max_n"), 1e-12);
+    json_decref(o);
     table_free((Table *)&h);
     table_free((Table *)&contacts);
 }
