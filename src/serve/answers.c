@@ -1,12 +1,13 @@
 #include "serve/answers.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/json.h"
 #include "moga/hypervolume.h"
 
-json_t *answer_status(const Look *look, const char *name)
+static json_t *json_of_numbers(const Look *look, const char *name)
 {
     const Run *run = &look->run;
     const Standing *s = &look->standing;
@@ -17,6 +18,16 @@ json_t *answer_status(const Look *look, const char *name)
                      "generation", (json_int_t)(last ? last->number : -1), "finished", last ? last->finished : "",
                      "hypervolume", json_number(s->hypervolume), "per_second", json_number(progress_rate(&s->progress)),
                      "seconds", json_number(s->seconds), "left_s", json_number(s->left_s));
+}
+
+json_t *answer_status(const View *view, const char *name)
+{
+    json_t *o = view->look ? json_of_numbers(view->look, name) : json_pack("{s:o}", "name", json_words(name));
+    if (view->why.code != STATUS_OK) {
+        json_object_set_new(o, "state", json_string("unreadable"));
+        json_object_set_new(o, "reason", json_words(view->why.text));
+    }
+    return o;
 }
 
 static json_t *json_of_front(const Run *run)
@@ -78,25 +89,46 @@ static void box_of(const Look *const look[2], double lower[], double reference[]
     }
 }
 
+/* Rows by the generation in which they came onto the front: the first of each number (n), and the one after each row. */
+static size_t *rows_by_generation(const Run *run, size_t n)
+{
+    const size_t none = run->table.n;
+    size_t *first = malloc((n + none) * sizeof *first);
+    for (size_t g = 0; first && g < n; g++)
+        first[g] = none;
+    for (size_t i = none; first && i-- > 0;) {
+        const long at = run->place[i].ok ? run->place[i].entered : NEVER;
+        if (at >= 0 && (size_t)at < n) {
+            first[n + i] = first[at];
+            first[at] = i;
+        }
+    }
+    return first;
+}
+
 /* Volume of the box after every generation: designs join when they come onto the front. */
 static Status growth_in(const Run *run, const double lower[], const double reference[], json_t *out, Err *err)
 {
+    const size_t n = run->n_generations > 0 ? (size_t)run->generation[run->n_generations - 1].number + 1 : 0;
     Hypervolume *h;
     json_t *simulated = json_array(), *volume = json_array();
     double f[OBJECTIVES_MAX];
     TRY(hypervolume_create(&h, run->schema.n_obj, lower, reference, 1, err));
-    for (size_t g = 0; g < run->n_generations; g++) {
-        for (size_t i = 0; i < run->table.n; i++)
-            if (run->place[i].ok && run->place[i].entered == run->generation[g].number) {
-                minimised(run, i, f);
-                hypervolume_add(h, f);
-            }
+    size_t *first = rows_by_generation(run, n);
+    for (size_t g = 0; g < run->n_generations && first; g++) {
+        for (size_t i = first[run->generation[g].number]; i < run->table.n; i = first[n + i]) {
+            minimised(run, i, f);
+            hypervolume_add(h, f);
+        }
         simulated = json_append(simulated, json_integer(run->generation[g].simulated));
         volume = json_append(volume, json_number(hypervolume_share(h)));
     }
     hypervolume_free(h);
     json_object_set_new(out, "simulated", simulated);
     json_object_set_new(out, "volume", volume);
+    if (!first)
+        return fail(err, STATUS_NO_MEMORY, "no memory for %zu generations", n);
+    free(first);
     return STATUS_OK;
 }
 

@@ -1,7 +1,8 @@
 /* serve/answers.h -- what the server says about runs, as JSON.
  *
  *   status   {"name", "state", "simulated", "max_evals", "failed", "front", "generation", "finished" (UTC), "hypervolume",
- *            "per_second", "seconds", "left_s"}; what is not known: null
+ *            "per_second", "seconds", "left_s"}; what is not known: null. A run that can no longer be read has the state
+ *            "unreadable", the "reason", and its last numbers if there are any
  *   front    {"generation", "knee", "simulated": [], "volume": [] (of every generation that has one), "ids": [n_front],
  *            "f": [n_front][n_obj]} in natural signs and units
  *   against  {"runs": [{"name", "f", "simulated", "volume"}, the same]}, both volumes in one
@@ -17,7 +18,7 @@
 
 #include "serve/watch.h"
 
-json_t *answer_status(const Look *look, const char *name);
+json_t *answer_status(const View *view, const char *name);
 json_t *answer_front(const Look *look);
 
 /* Other objectives: STATUS_BAD_DATA. A front that is empty: STATUS_MISSING. */

@@ -7,40 +7,31 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 
-#include "base/clock.h"
 #include "base/json.h"
 #include "report/report.h"
 #include "serve/answers.h"
 #include "serve/guard.h"
-#include "serve/kept.h"
 
-enum { PEERS_EASE = PEERS_MAX / 2, STALL_S = 15, EVENT_MAX = 2048 };
+/* FILES_OWN: of the process beside its connections. */
+enum { STALL_S = 15, EVENT_MAX = 2048, FILES_OWN = 40 };
 static const double BEAT_S = 5; /* between events at most */
 
 /* A run is kept in memory after a page asked for it, after all were listed. */
 static const double PAGE_S = 60, GLANCE_S = 2;
 
-/* A connection, from its beginning to its end. */
-typedef struct {
-    int socket;
-    double since; /* of the clock: it waits for a request; 0: one is being answered, or there is no connection */
-} Peer;
-
 struct Server {
     char token[TOKEN_TEXT], url[TOKEN_TEXT + 48];
     int port;
-    double request_s;
     RecordPaths moved;
     Watch *watch;
-    Kept *kept;
     struct MHD_Daemon *daemon;
     pthread_mutex_t mutex; /* of the rest */
-    size_t n_peers, n_streams;
-    Peer peer[PEERS_MAX];
-    pthread_t tender;
-    int has_tender;
+    int waiting[PEERS_MAX /
+                2];         /* (n_waiting) sockets, in the order in which they began to wait for a request; -1: none */
+    size_t n_waiting, next; /* next: the place of the one that comes */
 };
 
 typedef struct Route Route;
@@ -68,68 +59,45 @@ typedef struct {
 typedef struct {
     Server *server;
     const Request *request;
-    size_t run;    /* of the path, if it has one; */
-    Look *look;    /* as it is now */
-    KeptRun *kept; /* NULL: not asked for */
+    size_t run; /* of the path, if it has one; */
+    View view;  /* as it is now */
 } Visit;
 
 /* -- connections --------------------------------------------------------------------------------------------------- */
 
-static Peer *peer_of(struct MHD_Connection *c)
+static int socket_of(struct MHD_Connection *c)
 {
-    const union MHD_ConnectionInfo *info = MHD_get_connection_info(c, MHD_CONNECTION_INFO_SOCKET_CONTEXT);
-    return info ? info->socket_context : NULL;
+    return MHD_get_connection_info(c, MHD_CONNECTION_INFO_CONNECTION_FD)->connect_fd;
 }
 
-/* Makes room: of those that wait for a request the longest one goes. */
-static void end_oldest(Server *s)
+/* The mutex is held. */
+static void wait_no_more(Server *s, int fd)
 {
-    Peer *oldest = NULL;
-    for (size_t i = 0; i < PEERS_MAX; i++)
-        if (s->peer[i].since > 0 && (!oldest || s->peer[i].since < oldest->since))
-            oldest = &s->peer[i];
-    if (oldest) {
-        shutdown(oldest->socket, SHUT_RDWR);
-        oldest->since = 0; /* it is ended; the next time another one goes */
+    for (size_t i = 0; i < s->n_waiting; i++)
+        if (s->waiting[i] == fd)
+            s->waiting[i] = -1;
+}
+
+/* A request that does not come, or comes byte by byte, holds a connection: where as many wait as there is room for, the
+ * one that has waited longest is ended. */
+static void set_waiting(Server *s, int fd, int waits)
+{
+    pthread_mutex_lock(&s->mutex);
+    wait_no_more(s, fd);
+    if (waits) {
+        int *place = &s->waiting[s->next++ % s->n_waiting];
+        if (*place >= 0)
+            shutdown(*place, SHUT_RDWR);
+        *place = fd;
     }
-}
-
-static void add_peer(Server *s, struct MHD_Connection *c, void **context)
-{
-    const int fd = MHD_get_connection_info(c, MHD_CONNECTION_INFO_CONNECTION_FD)->connect_fd;
-    for (size_t i = 0; i < PEERS_MAX && !*context; i++)
-        if (s->peer[i].socket < 0) {
-            s->peer[i] = (Peer){fd, clock_seconds()};
-            *context = &s->peer[i];
-        }
-    if (!*context)
-        shutdown(fd, SHUT_RDWR);
-    else if (++s->n_peers > PEERS_EASE)
-        end_oldest(s);
+    pthread_mutex_unlock(&s->mutex);
 }
 
 static void note_connection(void *user, struct MHD_Connection *c, void **context,
                             enum MHD_ConnectionNotificationCode what)
 {
-    Server *s = user;
-    pthread_mutex_lock(&s->mutex);
-    if (what == MHD_CONNECTION_NOTIFY_STARTED)
-        add_peer(s, c, context);
-    else if (*context) {
-        *(Peer *)*context = (Peer){.socket = -1};
-        s->n_peers--;
-    }
-    pthread_mutex_unlock(&s->mutex);
-}
-
-/* since 0: its request is there and is being answered. */
-static void set_waiting(Server *s, struct MHD_Connection *c, double since)
-{
-    pthread_mutex_lock(&s->mutex);
-    Peer *p = peer_of(c);
-    if (p)
-        p->since = since;
-    pthread_mutex_unlock(&s->mutex);
+    (void)context;
+    set_waiting(user, socket_of(c), what == MHD_CONNECTION_NOTIFY_STARTED);
 }
 
 static void note_completed(void *user, struct MHD_Connection *c, void **request, enum MHD_RequestTerminationCode why)
@@ -137,23 +105,7 @@ static void note_completed(void *user, struct MHD_Connection *c, void **request,
     (void)why;
     free(*request);
     *request = NULL;
-    set_waiting(user, c, clock_seconds());
-}
-
-/* Ends connections whose request does not come. */
-static void *tend(void *user)
-{
-    Server *s = user;
-    while (!watch_is_stopped(s->watch)) {
-        const double now = clock_seconds();
-        pthread_mutex_lock(&s->mutex);
-        for (size_t i = 0; i < PEERS_MAX; i++)
-            if (s->peer[i].since > 0 && now > s->peer[i].since + s->request_s)
-                shutdown(s->peer[i].socket, SHUT_RDWR);
-        pthread_mutex_unlock(&s->mutex);
-        nanosleep(&(struct timespec){.tv_nsec = 100000000}, NULL);
-    }
-    return NULL;
+    set_waiting(user, socket_of(c), 1);
 }
 
 /* -- answers ------------------------------------------------------------------------------------------------------- */
@@ -175,15 +127,14 @@ static unsigned code_of(Status status)
 }
 
 static ssize_t read_events(void *user, uint64_t position, char *out, size_t room);
-static void end_stream(void *user);
 
 static struct MHD_Response *response_of(const Answer *a)
 {
     struct MHD_Response *r =
-        a->stream ? MHD_create_response_from_callback(MHD_SIZE_UNKNOWN, EVENT_MAX, read_events, a->stream, end_stream)
+        a->stream ? MHD_create_response_from_callback(MHD_SIZE_UNKNOWN, EVENT_MAX, read_events, a->stream, free)
                   : MHD_create_response_from_buffer(a->text ? strlen(a->text) : 0, a->text, MHD_RESPMEM_MUST_FREE);
     if (!r && a->stream)
-        end_stream(a->stream);
+        free(a->stream);
     else if (!r)
         free(a->text);
     return r;
@@ -245,7 +196,7 @@ static const char NO_FRONT[] =
 
 static Status show_page(Visit *v, Answer *a, Err *err)
 {
-    const Look *look = v->look;
+    const Look *look = v->view.look;
     Err why = {0};
     *a = (Answer){.code = MHD_HTTP_OK, .type = "text/html; charset=utf-8"};
     if (look->run.n_front > 0)
@@ -259,41 +210,27 @@ static Status show_page(Visit *v, Answer *a, Err *err)
 
 static Status show_front(Visit *v, Answer *a, Err *err)
 {
-    return answer_json(answer_front(v->look), 6, a, err);
-}
-
-static Status take_kept(Visit *v, Err *err)
-{
-    return kept_take(v->server->kept, v->run, &v->look->run, &v->kept, err);
+    return answer_json(answer_front(v->view.look), 6, a, err);
 }
 
 static Status show_design(Visit *v, Answer *a, Err *err)
 {
-    TRY(take_kept(v, err));
     *a = (Answer){.code = MHD_HTTP_OK, .type = "application/json"};
-    return detail_cache_ask(kept_details(v->kept), &v->look->run, &v->server->moved, v->request->path.number, &a->text,
-                            err);
-}
-
-static Status what_if_of(Visit *v, WhatIf **out, Err *err)
-{
-    TRY(take_kept(v, err));
-    return kept_what_if(v->kept, &v->look->run, &v->server->moved, out, err);
+    return on_demand_design(v->view.look->on_demand, &v->view.look->run, v->request->path.number, &a->text, err);
 }
 
 static Status show_bounds(Visit *v, Answer *a, Err *err)
 {
-    WhatIf *w;
-    TRY(what_if_of(v, &w, err));
-    return answer_json(what_if_bounds(w), 17, a, err);
+    json_t *bounds;
+    TRY(on_demand_bounds(v->view.look->on_demand, &v->view.look->run, &bounds, err));
+    return answer_json(bounds, 17, a, err);
 }
 
 static Status show_what_if(Visit *v, Answer *a, Err *err)
 {
-    WhatIf *w;
+    const Look *look = v->view.look;
     json_t *answer;
-    TRY(what_if_of(v, &w, err));
-    TRY(what_if_ask(w, &v->look->run, v->request->body, v->request->n, &answer, err));
+    TRY(on_demand_what_if(look->on_demand, &look->run, v->request->body, v->request->n, &answer, err));
     return answer_json(answer, 17, a, err);
 }
 
@@ -301,15 +238,15 @@ static Status show_against(Visit *v, Answer *a, Err *err)
 {
     Watch *w = v->server->watch;
     const long number = v->request->path.number;
-    Look *other;
+    View other;
     json_t *both = NULL;
     if (number >= (long)watch_n(w))
         return fail(err, STATUS_MISSING, "there is no run %ld", number);
     TRY(watch_take(w, (size_t)number, PAGE_S, &other, err));
-    const Look *const look[2] = {v->look, other};
+    const Look *const look[2] = {v->view.look, other.look};
     const char *const name[2] = {watch_name(w, v->run), watch_name(w, (size_t)number)};
     const Status status = answer_against(look, name, &both, err);
-    watch_give(w, other);
+    watch_give(w, &other);
     return status == STATUS_OK ? answer_json(both, 6, a, err) : status;
 }
 
@@ -322,13 +259,12 @@ static Status show_runs(Visit *v, Answer *a, Err *err)
     json_t *list = json_array();
     watch_find(w);
     for (size_t i = 0; i < watch_n(w); i++) {
-        Look *look;
+        View view;
         Err why = {0};
-        json_t *one = watch_take(w, i, GLANCE_S, &look, &why) == STATUS_OK
-                          ? answer_status(look, watch_name(w, i))
-                          : json_pack("{s:o, s:s, s:o}", "name", json_words(watch_name(w, i)), "state", "unreadable",
-                                      "reason", json_words(why.text));
-        watch_give(w, look);
+        if (watch_take(w, i, GLANCE_S, &view, &why) != STATUS_OK)
+            view.why = why;
+        json_t *one = answer_status(&view, watch_name(w, i));
+        watch_give(w, &view);
         json_object_set_new(one, "at", json_integer((json_int_t)i));
         list = json_append(list, one);
     }
@@ -341,17 +277,17 @@ static size_t newest_run(Server *s)
     size_t newest = 0;
     char latest[24] = "";
     for (size_t i = 0; i < watch_n(s->watch); i++) {
-        Look *look;
+        View view;
         Err why = {0};
-        if (watch_take(s->watch, i, GLANCE_S, &look, &why) != STATUS_OK)
+        if (watch_take(s->watch, i, GLANCE_S, &view, &why) != STATUS_OK)
             continue;
-        const Run *run = &look->run;
+        const Run *run = &view.look->run;
         const char *started = run->n_sessions > 0 ? run->session[run->n_sessions - 1].started : "";
         if (strcmp(started, latest) >= 0) {
             snprintf(latest, sizeof latest, "%s", started);
             newest = i;
         }
-        watch_give(s->watch, look);
+        watch_give(s->watch, &view);
     }
     return newest;
 }
@@ -378,18 +314,18 @@ struct Stream {
 static int next_event(Stream *e)
 {
     Watch *w = e->server->watch;
-    Look *look = watch_next(w, e->run, e->seen, BEAT_S);
-    if (!look && watch_is_stopped(w))
+    View view = watch_next(w, e->run, e->seen, BEAT_S);
+    if (!view.look && watch_is_stopped(w))
         return 0;
-    json_t *status = look ? answer_status(look, watch_name(w, e->run)) : NULL;
+    json_t *status = view.look ? answer_status(&view, watch_name(w, e->run)) : NULL;
     char *text = status ? json_dumps(status, JSON_COMPACT | JSON_REAL_PRECISION(6)) : NULL;
     e->n = (size_t)snprintf(e->text, sizeof e->text, text ? "data: %s\n\n" : ": %s\n\n", text ? text : "");
     e->n = e->n < sizeof e->text ? e->n : 0;
     e->at = 0;
-    e->seen = look ? look->version : e->seen;
+    e->seen = view.version;
     free(text);
     json_decref(status);
-    watch_give(w, look);
+    watch_give(w, &view);
     return 1;
 }
 
@@ -405,30 +341,13 @@ static ssize_t read_events(void *user, uint64_t position, char *out, size_t room
     return (ssize_t)n;
 }
 
-static void end_stream(void *user)
-{
-    Stream *e = user;
-    pthread_mutex_lock(&e->server->mutex);
-    e->server->n_streams--;
-    pthread_mutex_unlock(&e->server->mutex);
-    free(e);
-}
-
 static Status show_events(Visit *v, Answer *a, Err *err)
 {
-    Server *s = v->server;
     Stream *e = calloc(1, sizeof *e);
     if (!e)
         return fail(err, STATUS_NO_MEMORY, "no memory for events");
-    *e = (Stream){.server = s, .run = v->run};
+    *e = (Stream){.server = v->server, .run = v->run};
     *a = (Answer){.code = MHD_HTTP_OK, .type = "text/event-stream", .stream = e};
-    pthread_mutex_lock(&s->mutex);
-    const int has_room = ++s->n_streams <= STREAMS_MAX;
-    pthread_mutex_unlock(&s->mutex);
-    if (!has_room) {
-        end_stream(e);
-        *a = refusal(MHD_HTTP_SERVICE_UNAVAILABLE, "too many pages follow this run");
-    }
     return STATUS_OK;
 }
 
@@ -466,20 +385,19 @@ static enum MHD_Result respond(Server *s, struct MHD_Connection *c, const char *
     Visit v = {.server = s, .request = r, .run = route->has_run ? (size_t)r->path.run : 0};
     Answer a = {0};
     Err err = {0};
-    set_waiting(s, c, 0);
+    set_waiting(s, socket_of(c), 0);
     Status status = STATUS_OK;
     if (v.run >= watch_n(s->watch))
         status = fail(&err, STATUS_MISSING, "there is no such run");
     else if (route->has_run)
-        status = watch_take(s->watch, v.run, PAGE_S, &v.look, &err);
+        status = watch_take(s->watch, v.run, PAGE_S, &v.view, &err);
     if (status == STATUS_OK)
         status = show(&v, &a, &err);
-    kept_give(s->kept, v.kept);
-    watch_give(s->watch, v.look);
+    watch_give(s->watch, &v.view);
     if (status != STATUS_OK)
         a = refusal(code_of(status), err.text);
     if (a.stream && strcmp(method, "HEAD") == 0) { /* libmicrohttpd would send the end of its chunks */
-        end_stream(a.stream);
+        free(a.stream);
         a.stream = NULL;
     }
     return send_answer(c, &a);
@@ -527,7 +445,7 @@ static enum MHD_Result handle(void *user, struct MHD_Connection *c, const char *
         a = refusal(MHD_HTTP_CONTENT_TOO_LARGE, "too large");
         return send_answer(c, &a);
     }
-    r->is_too_large |= *n_piece > sizeof r->body - r->n; /* chunks: what is too much is dropped, for REQUEST_S */
+    r->is_too_large |= *n_piece > sizeof r->body - r->n; /* chunks: what is too much is dropped, until it is ended */
     if (!r->is_too_large) {
         memcpy(r->body + r->n, piece, *n_piece);
         r->n += *n_piece;
@@ -553,33 +471,33 @@ static size_t leave_escaped(void *user, struct MHD_Connection *c, char *text)
     return strlen(text);
 }
 
+/* Where few files may be open (ulimit -n) there are fewer connections: at the limit of files nothing could be accepted. */
+static unsigned n_connections(void)
+{
+    struct rlimit files;
+    if (getrlimit(RLIMIT_NOFILE, &files) != 0 || files.rlim_cur > FILES_OWN + PEERS_MAX)
+        return PEERS_MAX;
+    return files.rlim_cur > FILES_OWN + 2 ? (unsigned)files.rlim_cur - FILES_OWN : 2;
+}
+
 static Status listen_on(Server *s, int port, Err *err)
 {
     const struct sockaddr_in here = {
         .sin_family = AF_INET, .sin_port = htons((uint16_t)port), .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
-    s->daemon = MHD_start_daemon(
-        MHD_USE_INTERNAL_POLLING_THREAD | MHD_USE_THREAD_PER_CONNECTION | MHD_USE_POLL | MHD_USE_ERROR_LOG,
-        (uint16_t)port, NULL, NULL, handle, s, MHD_OPTION_EXTERNAL_LOGGER, say_nothing, NULL,
-        MHD_OPTION_UNESCAPE_CALLBACK, leave_escaped, NULL, MHD_OPTION_SOCK_ADDR, &here, MHD_OPTION_CONNECTION_LIMIT,
-        (unsigned)PEERS_MAX, MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)STALL_S, MHD_OPTION_CONNECTION_MEMORY_LIMIT,
-        (size_t)HEAD_MAX, MHD_OPTION_NOTIFY_CONNECTION, note_connection, s, MHD_OPTION_NOTIFY_COMPLETED, note_completed,
-        s, MHD_OPTION_END);
+    const unsigned n = n_connections();
+    s->n_waiting = n / 2;
+    s->daemon = MHD_start_daemon(MHD_USE_INTERNAL_POLLING_THREAD | MHD_USE_THREAD_PER_CONNECTION | MHD_USE_POLL |
+                                     MHD_USE_ERROR_LOG,
+                                 (uint16_t)port, NULL, NULL, handle, s, MHD_OPTION_EXTERNAL_LOGGER, say_nothing, NULL,
+                                 MHD_OPTION_UNESCAPE_CALLBACK, leave_escaped, NULL, MHD_OPTION_SOCK_ADDR, &here,
+                                 MHD_OPTION_CONNECTION_LIMIT, n, MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)STALL_S,
+                                 MHD_OPTION_CONNECTION_MEMORY_LIMIT, (size_t)HEAD_MAX, MHD_OPTION_NOTIFY_CONNECTION,
+                                 note_connection, s, MHD_OPTION_NOTIFY_COMPLETED, note_completed, s, MHD_OPTION_END);
     if (!s->daemon)
         return fail(err, STATUS_IO, "127.0.0.1:%d: no server: %s", port, strerror(errno));
     s->port = MHD_get_daemon_info(s->daemon, MHD_DAEMON_INFO_BIND_PORT)->port;
     snprintf(s->url, sizeof s->url, "http://127.0.0.1:%d/%s/", s->port, s->token);
     return STATUS_OK;
-}
-
-static Status start(Server *s, const ServeOptions *o, Err *err)
-{
-    TRY(guard_token(s->token, err));
-    TRY(kept_open(&s->kept, err));
-    TRY(watch_open(&s->watch, o->folder, err));
-    if (pthread_create(&s->tender, NULL, tend, s) != 0)
-        return fail(err, STATUS_NO_MEMORY, "no thread for the server");
-    s->has_tender = 1;
-    return listen_on(s, o->port, err);
 }
 
 Status serve_open(Server **out, const ServeOptions *o, Err *err)
@@ -589,11 +507,13 @@ Status serve_open(Server **out, const ServeOptions *o, Err *err)
     if (!s)
         return fail(err, STATUS_NO_MEMORY, "no memory for a server");
     s->moved = o->moved;
-    s->request_s = o->request_s > 0 ? o->request_s : REQUEST_S;
-    for (size_t i = 0; i < PEERS_MAX; i++)
-        s->peer[i].socket = -1;
+    memset(s->waiting, -1, sizeof s->waiting);
     pthread_mutex_init(&s->mutex, NULL);
-    const Status status = start(s, o, err);
+    Status status = guard_token(s->token, err);
+    if (status == STATUS_OK)
+        status = watch_open(&s->watch, o->folder, &s->moved, err);
+    if (status == STATUS_OK)
+        status = listen_on(s, o->port, err);
     if (status != STATUS_OK)
         serve_close(s);
     else
@@ -619,9 +539,6 @@ void serve_close(Server *s)
         watch_stop(s->watch); /* streams end */
     if (s->daemon)
         MHD_stop_daemon(s->daemon);
-    if (s->has_tender)
-        pthread_join(s->tender, NULL);
-    kept_close(s->kept);
     if (s->watch)
         watch_close(s->watch);
     pthread_mutex_destroy(&s->mutex);

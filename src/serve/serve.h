@@ -6,16 +6,16 @@
  *   GET  /TOKEN/RUN/                the page (report/report.h); RUN: a number
  *   GET  /TOKEN/RUN/events          server-sent events: the status, whenever it changes
  *   GET  /TOKEN/RUN/front           front and growth as they are now
- *   GET  /TOKEN/RUN/design/ID       a design simulated (serve/detail_cache.h)
- *   GET  /TOKEN/RUN/what-if         bounds;  POST: a question (serve/what_if.h)
+ *   GET  /TOKEN/RUN/design/ID       a design simulated (serve/on_demand.h)
+ *   GET  /TOKEN/RUN/what-if         bounds;  POST: a question (serve/on_demand.h)
  *   GET  /TOKEN/RUN/against/OTHER   two runs
  *
  * HEAD is GET without the body; /TOKEN and /TOKEN/RUN lead to the addresses with a slash. Nothing here writes to a run. A
  * request that is refused gets a status and {"error": words}: 403 token, Host or Origin, 404, 405, 409 a later question is
  * there, 413, 503. A run that was made anew in the place of another is served as it is now.
  *
- * Bounds    PEERS_MAX connections; from half as many on, the one that has waited longest for its request goes for each new
- *           one; a request complete within REQUEST_S; HEAD_MAX bytes of headers, BODY_MAX of body; STREAMS_MAX streams of events
+ * Bounds    PEERS_MAX connections, fewer where few files may be open; of those that wait for a request half as many, for
+ *           each further one the one that has waited longest goes; HEAD_MAX bytes of headers, BODY_MAX of body
  * Library   libmicrohttpd, a thread for each connection
  * Life cycle  serve_open -> serve_url ... -> serve_close
  * Errors    no such run: STATUS_MISSING; the port is taken: STATUS_IO */
@@ -24,15 +24,13 @@
 
 #include "study/record_paths.h"
 
-enum { PEERS_MAX = 256, STREAMS_MAX = 48, HEAD_MAX = 16 << 10, BODY_MAX = 32 << 10 };
-static const double REQUEST_S = 10;
+enum { PEERS_MAX = 256, HEAD_MAX = 16 << 10, BODY_MAX = 32 << 10 };
 
 typedef struct Server Server;
 
 typedef struct {
     const char *folder; /* a run, or a folder of runs */
     int port;           /* 0: any that is free */
-    double request_s;   /* 0: REQUEST_S */
     RecordPaths moved;
 } ServeOptions;
 

@@ -16,26 +16,25 @@
 enum { RUNS_MAX = 500 };
 static const double POLL_S = 0.2, IDLE_S = 60, READ_SHARE = 10, AGAIN_S = 2;
 
-/* What changes with a run. */
+/* What changes with a run; all of its bytes are compared. */
 typedef struct {
-    struct timespec database, journal;
-    off_t n_database, n_journal;
-    int held;
+    struct timespec time[2];
+    off_t size[2];
+    long held;
 } Stamp;
 
 typedef struct {
     char folder[PATH_MAX], name[NAME_MAX + 1];
-    Look *look;     /* the newest; NULL: none */
-    long n_read;    /* readings so far */
-    Stamp stamp;    /* of the newest */
+    View view;      /* the newest; its look NULL: none */
+    Stamp stamp;    /* of that look */
     double next;    /* of the clock, before which it is not read again */
     double kept_to; /* of the clock, after which it is released unless a reading is waited for */
     int n_waiting;
-    Err why; /* code: of the last reading */
 } Watched;
 
 struct Watch {
     char folder[PATH_MAX];
+    const RecordPaths *moved;
     int is_run, stops;
     pthread_mutex_t mutex; /* of all below */
     pthread_cond_t changed, wanted;
@@ -48,38 +47,26 @@ struct Watch {
 
 static void stamp_of(const Watched *r, Stamp *s)
 {
+    static const char *const FILES[] = {"run.sqlite", "run.sqlite-wal"};
     char path[PATH_MAX + 16];
     struct stat file;
     LockHolder holder;
     memset(s, 0, sizeof *s);
-    snprintf(path, sizeof path, "%s/run.sqlite", r->folder);
-    if (stat(path, &file) == 0) {
-        s->database = file.st_mtim;
-        s->n_database = file.st_size;
-    }
-    snprintf(path, sizeof path, "%s/run.sqlite-wal", r->folder);
-    if (stat(path, &file) == 0) {
-        s->journal = file.st_mtim;
-        s->n_journal = file.st_size;
+    for (int i = 0; i < 2; i++) {
+        snprintf(path, sizeof path, "%s/%s", r->folder, FILES[i]);
+        if (stat(path, &file) == 0) {
+            s->time[i] = file.st_mtim;
+            s->size[i] = file.st_size;
+        }
     }
     snprintf(path, sizeof path, "%s/lock", r->folder);
     s->held = lock_is_held(path, &holder);
 }
 
-static int is_same_time(struct timespec a, struct timespec b)
-{
-    return a.tv_sec == b.tv_sec && a.tv_nsec == b.tv_nsec;
-}
-
-static int is_same(const Stamp *a, const Stamp *b)
-{
-    return is_same_time(a->database, b->database) && is_same_time(a->journal, b->journal) &&
-           a->n_database == b->n_database && a->n_journal == b->n_journal && a->held == b->held;
-}
-
 static void release(Look *look)
 {
     if (look && --look->n_users == 0) {
+        on_demand_close(look->on_demand);
         run_free(&look->run);
         free(look);
     }
@@ -93,27 +80,46 @@ static double worked_s(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* The mutex is held before and after, not while the run is read. */
+/* before: the look before, NULL: none. What was simulated stays while no other run is made in the place of this one. */
+static Status look_at(const Watch *w, const char *folder, const Look *before, Look **out, Err *err)
+{
+    Look *look = *out = calloc(1, sizeof *look);
+    if (!look)
+        return fail(err, STATUS_NO_MEMORY, "no memory for a run");
+    Status status = run_read(&look->run, folder, err);
+    if (status == STATUS_OK) {
+        look->n_users = 1;
+        standing_of(&look->standing, folder, &look->run);
+        if (before && on_demand_is_of(before->on_demand, &look->run))
+            look->on_demand = on_demand_share(before->on_demand);
+        else
+            status = on_demand_open(&look->on_demand, &look->run, w->moved, err);
+    }
+    if (status != STATUS_OK) {
+        run_free(&look->run);
+        free(look);
+        *out = NULL;
+    }
+    return status;
+}
+
+/* The mutex is held before and after, not while the run is read; this thread alone replaces a look. */
 static void read_again(Watch *w, Watched *r, const Stamp *stamp)
 {
+    View *v = &r->view;
     Err err = {0};
+    Look *fresh;
     const double start = worked_s();
     pthread_mutex_unlock(&w->mutex);
-    Look *fresh = calloc(1, sizeof *fresh);
-    Status status = fresh ? run_read(&fresh->run, r->folder, &err) : fail(&err, STATUS_NO_MEMORY, "no memory");
-    if (status == STATUS_OK)
-        standing_of(&fresh->standing, r->folder, &fresh->run);
-    else
-        free(fresh);
+    const Status status = look_at(w, r->folder, v->look, &fresh, &err);
     pthread_mutex_lock(&w->mutex);
     r->next = clock_seconds() + (status == STATUS_OK ? READ_SHARE * (worked_s() - start) : AGAIN_S);
-    r->why = err;
-    r->why.code = status;
-    if (status == STATUS_OK) {
-        fresh->n_users = 1;
-        fresh->version = ++r->n_read;
-        release(r->look);
-        r->look = fresh;
+    err.code = status;
+    v->version += status == STATUS_OK || v->why.code == STATUS_OK;
+    v->why = err;
+    if (fresh) {
+        release(v->look);
+        v->look = fresh;
         r->stamp = *stamp;
     }
     pthread_cond_broadcast(&w->changed);
@@ -135,13 +141,13 @@ static int look_after(Watch *w, Watched *r)
     Stamp stamp;
     const double now = clock_seconds();
     if (now > r->kept_to && r->n_waiting == 0) {
-        release(r->look);
-        r->look = NULL;
+        release(r->view.look);
+        r->view.look = NULL;
         return 0;
     }
-    if (now >= r->next || (!r->look && r->why.code == STATUS_OK)) {
+    if (now >= r->next || (!r->view.look && r->view.why.code == STATUS_OK)) {
         stamp_of(r, &stamp);
-        if (!r->look || !is_same(&stamp, &r->stamp))
+        if (!r->view.look || r->view.why.code != STATUS_OK || memcmp(&stamp, &r->stamp, sizeof stamp) != 0)
             read_again(w, r, &stamp);
     }
     return 1;
@@ -241,12 +247,13 @@ static Status start(Watch *w, const char *folder, Err *err)
                                                            : fail(err, STATUS_NO_MEMORY, "no thread to watch a run");
 }
 
-Status watch_open(Watch **out, const char *folder, Err *err)
+Status watch_open(Watch **out, const char *folder, const RecordPaths *moved, Err *err)
 {
     Watch *w = calloc(1, sizeof *w);
     *out = NULL;
     if (!w)
         return fail(err, STATUS_NO_MEMORY, "no memory to watch a run");
+    w->moved = moved;
     const Status status = start(w, folder, err);
     if (status == STATUS_OK) {
         *out = w;
@@ -262,6 +269,9 @@ void watch_stop(Watch *w)
 {
     pthread_mutex_lock(&w->mutex);
     w->stops = 1;
+    for (size_t i = 0; i < w->n; i++)
+        if (w->run[i]->view.look)
+            on_demand_stop(w->run[i]->view.look->on_demand);
     pthread_cond_broadcast(&w->changed);
     pthread_cond_broadcast(&w->wanted);
     pthread_mutex_unlock(&w->mutex);
@@ -280,7 +290,7 @@ void watch_close(Watch *w)
     watch_stop(w);
     pthread_join(w->thread, NULL);
     for (size_t i = 0; i < w->n; i++) {
-        release(w->run[i]->look);
+        release(w->run[i]->view.look);
         free(w->run[i]);
     }
     pthread_cond_destroy(&w->changed);
@@ -298,52 +308,57 @@ static void keep(Watch *w, Watched *r, double seconds)
     pthread_cond_broadcast(&w->wanted);
 }
 
-Status watch_take(Watch *w, size_t i, double seconds, Look **look, Err *err)
+/* The mutex is held. */
+static void take(Watched *r, View *view)
+{
+    *view = r->view;
+    view->look->n_users++;
+}
+
+Status watch_take(Watch *w, size_t i, double seconds, View *view, Err *err)
 {
     Status status = STATUS_OK;
-    *look = NULL;
+    *view = (View){0};
     pthread_mutex_lock(&w->mutex);
     Watched *r = w->run[i];
-    if (clock_seconds() >= r->next)
-        r->why.code = STATUS_OK;
+    if (!r->view.look && clock_seconds() >= r->next)
+        r->view.why.code = STATUS_OK;
     keep(w, r, seconds);
     r->n_waiting++;
-    while (!r->look && r->why.code == STATUS_OK && !w->stops)
+    while (!r->view.look && r->view.why.code == STATUS_OK && !w->stops)
         wait_for(&w->changed, &w->mutex, 1);
     r->n_waiting--;
     keep(w, r, seconds);
-    if (r->look) {
-        *look = r->look;
-        r->look->n_users++;
+    if (r->view.look) {
+        take(r, view);
     } else {
-        status = w->stops ? STATUS_STOPPED : r->why.code;
-        *err = r->why;
+        *err = r->view.why;
+        status = w->stops ? STATUS_STOPPED : r->view.why.code;
     }
     pthread_mutex_unlock(&w->mutex);
     return status;
 }
 
-void watch_give(Watch *w, Look *look)
+void watch_give(Watch *w, View *view)
 {
     pthread_mutex_lock(&w->mutex);
-    release(look);
+    release(view->look);
+    view->look = NULL;
     pthread_mutex_unlock(&w->mutex);
 }
 
-Look *watch_next(Watch *w, size_t i, long seen, double seconds)
+View watch_next(Watch *w, size_t i, long seen, double seconds)
 {
-    Look *found = NULL;
+    View view = {.version = seen};
     const double end = clock_seconds() + seconds;
     pthread_mutex_lock(&w->mutex);
     Watched *r = w->run[i];
     keep(w, r, seconds);
-    for (double left = seconds; !w->stops && left > 0 && !(r->look && r->look->version > seen);
+    for (double left = seconds; !w->stops && left > 0 && !(r->view.look && r->view.version > seen);
          left = end - clock_seconds())
         wait_for(&w->changed, &w->mutex, left);
-    if (!w->stops && r->look && r->look->version > seen) {
-        found = r->look;
-        found->n_users++;
-    }
+    if (!w->stops && r->view.look && r->view.version > seen)
+        take(r, &view);
     pthread_mutex_unlock(&w->mutex);
-    return found;
+    return view;
 }

@@ -27,7 +27,7 @@ function progressPart() {
   function take(status) {
     const isOn = status.state === "running", left = status.left_s === null ? "" : `, ${status.left_s < 90 ? `${Math.round(status.left_s)} s` : `${Math.round(status.left_s / 60)} min`} left`;
     const pace = status.per_second === null ? "" : `, ${show(status.per_second)} per second`;
-    said.textContent = `${status.state[0].toUpperCase()}${status.state.slice(1)}: ${count(status.simulated)} of ${count(status.max_evals)} designs simulated${isOn ? pace + left : ""}; ` +
+    said.textContent = `${status.reason ? `${status.reason}. ` : ""}${status.state[0].toUpperCase()}${status.state.slice(1)}: ${count(status.simulated)} of ${count(status.max_evals)} designs simulated${isOn ? pace + left : ""}; ` +
       `${count(status.failed)} failed; ${count(status.front)} on the front after generation ${Math.max(0, status.generation)}, hypervolume ${status.hypervolume === null ? "\u2013" : show(100 * status.hypervolume)} %`;
     bar.max = status.max_evals;
     bar.value = status.simulated;

@@ -1,0 +1,417 @@
+#include "serve/on_demand.h"
+
+#include <math.h>
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/json.h"
+#include "base/units.h"
+#include "evaluate/tower.h"
+#include "moga/dominance.h"
+#include "motion/motion_scale.h"
+#include "report/report_json.h"
+#include "settings/settings.h"
+
+enum { PAGES_MAX = 64 };
+
+/* What a scene is opened with. */
+typedef struct {
+    double pga_g, stretch, restitution; /* pga_g 0: scaled as the run's */
+} Ground;
+
+typedef struct {
+    long id;
+    int has_devices;
+    char *text; /* NULL: none */
+} KnownDesign;
+
+struct OnDemand {
+    Settings settings; /* of the run, as is the provenance; neither changes */
+    char *provenance;
+    const RecordPaths *moved;
+    atomic_int stops;
+    pthread_mutex_t pages; /* of the next four */
+    int n_users;
+    long page[PAGES_MAX], turn[PAGES_MAX];
+    size_t next_page;
+    pthread_mutex_t designs; /* of the next two */
+    KnownDesign design[DESIGNS_KEPT];
+    size_t next_design;
+    pthread_mutex_t scene; /* of the rest */
+    Settings used;         /* those of the run, its records where they are now */
+    int is_single;         /* the run judges designs by one simulation */
+    Ground own, ground;    /* of the run, pga_g as its motion has it; of the scene that is open */
+    atomic_size_t n_var;   /* 0: none was opened yet; once it is set the settings, the run's ground and bounds stay */
+    double lower[DESIGN_VARIABLES_MAX], upper[DESIGN_VARIABLES_MAX];
+    Problem problem; /* on that ground */
+    int is_open;
+    SimResult no_core, result;
+};
+
+typedef struct {
+    long page, turn;
+    Ground ground;
+    double x[DESIGN_VARIABLES_MAX];
+} Question;
+
+/* -- life ---------------------------------------------------------------------------------------------------------- */
+
+Status on_demand_open(OnDemand **out, const Run *run, const RecordPaths *moved, Err *err)
+{
+    OnDemand *o = *out = calloc(1, sizeof *o);
+    char *provenance = strdup(run->provenance);
+    if (!o || !provenance) {
+        free(o);
+        free(provenance);
+        *out = NULL;
+        return fail(err, STATUS_NO_MEMORY, "no memory for a run");
+    }
+    pthread_mutex_init(&o->pages, NULL);
+    pthread_mutex_init(&o->designs, NULL);
+    pthread_mutex_init(&o->scene, NULL);
+    o->n_users = 1;
+    o->settings = *run->settings;
+    o->provenance = provenance;
+    o->moved = moved;
+    return STATUS_OK;
+}
+
+OnDemand *on_demand_share(OnDemand *o)
+{
+    pthread_mutex_lock(&o->pages);
+    o->n_users++;
+    pthread_mutex_unlock(&o->pages);
+    return o;
+}
+
+void on_demand_stop(OnDemand *o)
+{
+    if (o)
+        o->stops = 1;
+}
+
+void on_demand_close(OnDemand *o)
+{
+    if (!o)
+        return;
+    pthread_mutex_lock(&o->pages);
+    const int n_users = --o->n_users;
+    pthread_mutex_unlock(&o->pages);
+    if (n_users > 0)
+        return;
+    if (o->is_open)
+        problem_close(&o->problem);
+    for (size_t i = 0; i < DESIGNS_KEPT; i++)
+        free(o->design[i].text);
+    pthread_mutex_destroy(&o->pages);
+    pthread_mutex_destroy(&o->designs);
+    pthread_mutex_destroy(&o->scene);
+    free(o->provenance);
+    free(o);
+}
+
+static void count_difference(const char *key, unsigned flags, const char *was, const char *is, void *user)
+{
+    int *n = user;
+    (void)key;
+    (void)was;
+    (void)is;
+    *n += !(flags & (SETTING_LIMIT | SETTING_FREE));
+}
+
+int on_demand_is_of(const OnDemand *o, const Run *run)
+{
+    int n = 0;
+    settings_compare(&o->settings, run->settings, count_difference, &n);
+    return n == 0 && strcmp(o->provenance, run->provenance) == 0;
+}
+
+/* -- a design of the run ------------------------------------------------------------------------------------------- */
+
+static Status text_of(const Run *run, size_t row, const Detail *d, char **text, Err *err)
+{
+    json_t *all =
+        json_pack("{s:I, s:o, s:o}", "id", (json_int_t)run->table.row[row].id, "objectives",
+                  json_numbers(run->schema.n_obj, run_f(run, row)), "detail", detail_json(d, &run->schema.order));
+    *text = all ? json_dumps(all, JSON_COMPACT | JSON_REAL_PRECISION(6)) : NULL;
+    json_decref(all);
+    return *text ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for a design");
+}
+
+static Status simulate(const OnDemand *o, const Run *run, size_t row, int with_devices, char **text, Err *err)
+{
+    Settings s = *run->settings;
+    Detail d;
+    s.search.threads = 1;
+    TRY(record_paths_find(&s, run->provenance, o->moved, err));
+    const DetailOptions options = {.floor = -1, .moved = *o->moved, .without_devices = !with_devices};
+    TRY(detail_make(&s, (int)run->schema.n_var, run_x(run, row), &options, &d, err));
+    const Status status = text_of(run, row, &d, text, err);
+    detail_free(&d);
+    return status;
+}
+
+/* The mutex is held. */
+static Status find_design(OnDemand *o, const Run *run, long id, char **text, Err *err)
+{
+    const size_t row = run_find(run, id);
+    const int with_devices = run->n_front > 0 && row == run_knee(run);
+    KnownDesign *place = &o->design[o->next_design];
+    *text = NULL;
+    for (KnownDesign *d = o->design; d < o->design + DESIGNS_KEPT && !*text; d++)
+        if (d->text && d->id == id && d->has_devices >= with_devices)
+            *text = strdup(d->text);
+    if (*text)
+        return STATUS_OK;
+    if (run->settings->problem.kind != PROBLEM_TOWER || row == run->table.n)
+        return fail(err, STATUS_MISSING, "%s: has no design %ld to be simulated", run->folder, id);
+    if (o->stops)
+        return fail(err, STATUS_STOPPED, "the server ends");
+    TRY(simulate(o, run, row, with_devices, text, err));
+    free(place->text);
+    *place = (KnownDesign){id, with_devices, strdup(*text)};
+    o->next_design = (o->next_design + 1) % DESIGNS_KEPT;
+    return STATUS_OK;
+}
+
+Status on_demand_design(OnDemand *o, const Run *run, long id, char **text, Err *err)
+{
+    pthread_mutex_lock(&o->designs);
+    const Status status = find_design(o, run, id, text, err);
+    pthread_mutex_unlock(&o->designs);
+    return status;
+}
+
+/* -- the scene of a what-if ---------------------------------------------------------------------------------------- */
+
+static int is_same(const Ground *a, const Ground *b)
+{
+    return a->pga_g == b->pga_g && a->stretch == b->stretch && a->restitution == b->restitution;
+}
+
+static Status open_scene(OnDemand *o, const Ground *g, Err *err)
+{
+    if (o->is_open && is_same(g, &o->ground))
+        return STATUS_OK;
+    Settings s = o->used;
+    if (o->is_open)
+        problem_close(&o->problem);
+    o->is_open = 0;
+    if (g->pga_g > 0) {
+        motion_unscale(&s.motion);
+        s.motion.pga_g = g->pga_g;
+    }
+    s.motion.stretch = g->stretch;
+    s.contact.restitution = g->restitution;
+    TRY(tower_open(&o->problem, &s, TOWER_SINGLE, 1, err));
+    o->is_open = 1;
+    o->ground = *g;
+    return tower_simulate(&o->problem, 1, &(SimTask){.kind = SCENE_NO_CORE}, &o->no_core, err);
+}
+
+/* The scene of the run itself. The mutex is held. */
+static Status open_first(OnDemand *o, const Run *run, Err *err)
+{
+    if (o->n_var > 0)
+        return STATUS_OK;
+    if (run->settings->problem.kind != PROBLEM_TOWER)
+        return fail(err, STATUS_MISSING, "%s: is no run of the tower: nothing to change", run->folder);
+    o->used = o->settings;
+    o->used.search.threads = 1;
+    o->is_single = o->used.sim.replicates == 1 && strcmp(o->used.motion.records, "none") == 0;
+    o->own = (Ground){0, o->used.motion.stretch, o->used.contact.restitution};
+    TRY(record_paths_find(&o->used, o->provenance, o->moved, err));
+    TRY(open_scene(o, &o->own, err));
+    if (o->problem.n_var != run->schema.n_var)
+        return fail(err, STATUS_BAD_DATA, "%s: its building has other variables now", run->folder);
+    o->own.pga_g = motion_peak(&tower_record(tower_of(&o->problem), 0)->motion) / GRAVITY;
+    memcpy(o->lower, o->problem.lower, o->problem.n_var * sizeof *o->lower);
+    memcpy(o->upper, o->problem.upper, o->problem.n_var * sizeof *o->upper);
+    o->n_var = o->problem.n_var;
+    return STATUS_OK;
+}
+
+static Status prepare(OnDemand *o, const Run *run, Err *err)
+{
+    if (o->n_var > 0)
+        return STATUS_OK;
+    pthread_mutex_lock(&o->scene);
+    const Status status = open_first(o, run, err);
+    pthread_mutex_unlock(&o->scene);
+    return status;
+}
+
+/* -- the question -------------------------------------------------------------------------------------------------- */
+
+/* Shares of the run's own between which motion and restitution may be changed. */
+static const double PGA_SHARE = 4, STRETCH_SHARE = 2, RESTITUTION[2] = {0.05, 1};
+
+/* Of `imtet simulate`, for the one simulation of the design as designed. */
+static const char ONCE[] = " --set sim.replicates=1 --set sim.gap_tolerance_m=0 --set motion.records=none";
+static const char CERTAIN[] = " --set sim.uncertain=none";
+static const char SCALED_OTHERWISE[] = " --set motion.factor=1 --set motion.sa_g=0 --set motion.target=none";
+
+Status on_demand_bounds(OnDemand *o, const Run *run, json_t **bounds, Err *err)
+{
+    const Ground *g = &o->own;
+    char scalings[SCALINGS_TEXT_MAX];
+    TRY(prepare(o, run, err));
+    const int scales_otherwise = o->used.motion.pga_g == 0 && motion_scalings(&o->used.motion, scalings) > 0;
+    *bounds = json_pack(
+        "{s:o, s:o, s:[f,f,f], s:[f,f,f], s:[f,f,f], s:b, s:s+, s:s}", "lower", json_numbers(o->n_var, o->lower),
+        "upper", json_numbers(o->n_var, o->upper), "pga_g", g->pga_g / PGA_SHARE, g->pga_g, g->pga_g * PGA_SHARE,
+        "stretch", g->stretch / STRETCH_SHARE, g->stretch, g->stretch * STRETCH_SHARE, "restitution", RESTITUTION[0],
+        g->restitution, RESTITUTION[1], "is_comparable", o->is_single, "options", o->is_single ? "" : ONCE,
+        is_uncertain(&o->used.sim.uncertain) ? CERTAIN : "", "pga_options", scales_otherwise ? SCALED_OTHERWISE : "");
+    return STATUS_OK;
+}
+
+/* A number within bounds, rounding apart; `otherwise` where it is left out. */
+static Status take_number(const json_t *o, const char *key, double least, double most, double otherwise, double *value,
+                          Err *err)
+{
+    const json_t *given = json_object_get(o, key);
+    const double slack = 1e-9 * fabs(most);
+    *value = otherwise;
+    if (!given || json_is_null(given))
+        return STATUS_OK;
+    *value = json_number_value(given);
+    return json_is_number(given) && *value >= least - slack && *value <= most + slack
+               ? STATUS_OK
+               : fail(err, STATUS_BAD_DATA, "%s: a number from %g to %g is wanted", key, least, most);
+}
+
+static Status take_design(const OnDemand *o, const json_t *question, double x[], Err *err)
+{
+    const json_t *given = json_object_get(question, "x");
+    if (json_array_size(given) != o->n_var)
+        return fail(err, STATUS_BAD_DATA, "x: %zu numbers are wanted", o->n_var);
+    for (size_t j = 0; j < o->n_var; j++) {
+        const json_t *value = json_array_get(given, j);
+        const double slack = 1e-9 * (o->upper[j] - o->lower[j]);
+        x[j] = json_number_value(value);
+        if (!json_is_number(value) || !(x[j] >= o->lower[j] - slack && x[j] <= o->upper[j] + slack))
+            return fail(err, STATUS_BAD_DATA, "x: variable %zu is not within %g and %g", j + 1, o->lower[j],
+                        o->upper[j]);
+    }
+    return STATUS_OK;
+}
+
+static Status take_question(const OnDemand *o, const char *text, size_t n, Question *q, Err *err)
+{
+    json_error_t error;
+    json_t *given = json_loadb(text, n, JSON_REJECT_DUPLICATES, &error);
+    const Ground *own = &o->own;
+    const struct {
+        const char *key;
+        double least, most, otherwise, *value;
+    } numbers[] = {
+        {"pga_g", own->pga_g / PGA_SHARE, own->pga_g * PGA_SHARE, 0, &q->ground.pga_g},
+        {"stretch", own->stretch / STRETCH_SHARE, own->stretch * STRETCH_SHARE, own->stretch, &q->ground.stretch},
+        {"restitution", RESTITUTION[0], RESTITUTION[1], own->restitution, &q->ground.restitution}};
+    *q = (Question){.page = (long)json_integer_value(json_object_get(given, "page")),
+                    .turn = (long)json_integer_value(json_object_get(given, "turn"))};
+    Status status = json_is_object(given) ? take_design(o, given, q->x, err)
+                                          : fail(err, STATUS_BAD_DATA, "the question is no JSON object");
+    for (size_t i = 0; status == STATUS_OK && i < sizeof numbers / sizeof numbers[0]; i++)
+        status = take_number(given, numbers[i].key, numbers[i].least, numbers[i].most, numbers[i].otherwise,
+                             numbers[i].value, err);
+    json_decref(given);
+    return status;
+}
+
+/* Notes the turn; 0: a later one of the same page is there. The oldest page gives its place to a new one. */
+static int is_latest(OnDemand *o, const Question *q)
+{
+    pthread_mutex_lock(&o->pages);
+    size_t i = 0;
+    while (i < PAGES_MAX && o->page[i] != q->page)
+        i++;
+    if (i == PAGES_MAX) {
+        i = o->next_page++ % PAGES_MAX;
+        o->page[i] = q->page;
+        o->turn[i] = q->turn;
+    }
+    const int latest = q->turn >= o->turn[i];
+    if (latest)
+        o->turn[i] = q->turn;
+    pthread_mutex_unlock(&o->pages);
+    return latest;
+}
+
+/* -- the answer ---------------------------------------------------------------------------------------------------- */
+
+static json_t *json_of_peaks(const SimResult *r)
+{
+    const size_t n = (size_t)r->n_floors;
+    if (r->outcome != RUN_OK)
+        return json_null();
+    return json_pack("{s:o, s:o, s:o}", "displacement_m", json_numbers(n, r->peak_displacement_m), "drift_m",
+                     json_numbers(n, r->peak_drift_m), "acceleration_g", json_numbers(n, r->peak_acceleration_g));
+}
+
+/* Designs of the front that dominate f, and that it dominates. */
+static void set_place(const Run *run, const double natural[], json_t *answer)
+{
+    const size_t m = run->schema.n_obj;
+    double f[OBJECTIVES_MAX], other[OBJECTIVES_MAX];
+    json_int_t by = 0, of = 0;
+    for (size_t k = 0; k < m; k++)
+        f[k] = schema_objective(&run->schema, k)->sense * natural[k];
+    for (size_t i = 0; i < run->n_front; i++) {
+        for (size_t k = 0; k < m; k++)
+            other[k] = schema_objective(&run->schema, k)->sense * run_f(run, run->front[i])[k];
+        by += dominates(m, other, f) != 0;
+        of += dominates(m, f, other) != 0;
+    }
+    json_object_set_new(answer, "dominated_by", json_integer(by));
+    json_object_set_new(answer, "dominates", json_integer(of));
+}
+
+static json_t *json_of_answer(const OnDemand *o, const Run *run, const Question *q)
+{
+    const SimResult *r = &o->result;
+    const MeasureOrder *order = tower_measures(tower_of(&o->problem));
+    double natural[OBJECTIVES_MAX];
+    Design design;
+    json_t *closings = json_array();
+    design_of(tower_design(tower_of(&o->problem)), q->x, &design);
+    for (int k = 0; k < order->n_obj; k++)
+        natural[k] = measure_value(r, order->of[k]);
+    for (int j = 0; j < r->n_floors; j++)
+        closings = json_append(closings, json_integer(r->closings[j]));
+    const int ok = r->outcome == RUN_OK;
+    json_t *answer = json_pack("{s:I, s:s, s:s, s:o, s:o, s:o, s:o, s:o, s:I, s:b, s:f}", "turn", (json_int_t)q->turn,
+                               "outcome", outcome_word(measure_outcome(r->outcome)), "reason", r->reason, "objectives",
+                               ok ? json_numbers((size_t)order->n_obj, natural) : json_null(), "gap_m",
+                               json_numbers((size_t)tower_n_floors(tower_of(&o->problem)), design.gap), "peaks",
+                               json_of_peaks(r), "no_core", json_of_peaks(&o->no_core), "closings", closings, "impacts",
+                               (json_int_t)r->impacts, "beyond_law", beyond_contact_law(r), "seconds", r->seconds);
+    const int same_ground =
+        q->ground.pga_g == 0 && q->ground.stretch == o->own.stretch && q->ground.restitution == o->own.restitution;
+    if (ok && o->is_single && same_ground)
+        set_place(run, natural, answer);
+    return answer;
+}
+
+Status on_demand_what_if(OnDemand *o, const Run *run, const char *question, size_t n, json_t **answer, Err *err)
+{
+    Question q;
+    Status status = STATUS_OK;
+    TRY(prepare(o, run, err));
+    TRY(take_question(o, question, n, &q, err));
+    is_latest(o, &q);
+    pthread_mutex_lock(&o->scene);
+    if (o->stops || !is_latest(o, &q))
+        status = fail(err, STATUS_STOPPED, "a later question of this page is there, or the server ends");
+    if (status == STATUS_OK)
+        status = open_scene(o, &q.ground, err);
+    if (status == STATUS_OK)
+        status = tower_simulate(&o->problem, 1, &(SimTask){.kind = SCENE_IMPACT, .x = q.x}, &o->result, err);
+    if (status == STATUS_OK)
+        *answer = json_of_answer(o, run, &q);
+    pthread_mutex_unlock(&o->scene);
+    return status;
+}
