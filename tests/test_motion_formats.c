@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "base/csv.h"
 #include "motion/formats/record.h"
@@ -225,9 +226,10 @@ static const struct {
     {"run_together.at2", "-1.29459735E-02", "***************", "-3.37410805' is not a number"},
     {"three.cosmos.v2", "(8F10.5)", "(8F10.5)\n 1.0", ":53: more samples than the 43 that its header announces"},
     {"three.cosmos.v2", "43 acceleration pts", "44 acceleration pts", ":52: ends after 43 samples"},
-    {"three.cosmos.v2", "  10.000000", "9999.000000", ":46: 43 points every 9.999 s are 429.957 s"},
-    {"one.cosmos.v1", "approx    0 secs", "approx   50 secs", ":46: 43 points every 0.01 s are 0.43 s, but"},
-    {"one.cosmos.v1", "units=cm/sec2(04)", "units=counts (50)", ":46: raw counts, not an acceleration"},
+    {"three.cosmos.v2", "  10.000000", "9999.000000", ":46: no usable time step"},
+    {"one.cosmos.v1", "approx    0 secs", "approx   50 secs",
+     ":46: a length of 50 s, but 43 samples every 0.01 s are 0.43 s"},
+    {"one.cosmos.v1", "units=cm/sec2(04)", "units=counts (50)", "set motion.unit (--unit) to counts=VALUE"},
     {"one.cosmos.v1", "units=cm/sec2(04)", "units=inches (99)",
      "the unit 'inches' of its acceleration is not known; convert it"},
     {"one.cosmos.v1", "ed acceleration", "ed velocity", ":1: not an acceleration"},
@@ -239,7 +241,8 @@ static const struct {
     {"one.cosmos.v1", "17 lines", "7e9 lines", "Real-header values"},
     {"three.csmip.v1", "43 Accelerogram", "48 Accelerogram", ":34: ends after 43 samples, but its header announces 48"},
     {"three.csmip.v1", "43 Accelerogram", "40 Accelerogram", ":34: more samples than the 40"},
-    {"three.csmip.v1", "at 100 pts", "at 000 pts", ":28: no usable time step"},
+    {"three.csmip.v1", "at 100 pts", "at 000 pts",
+     ":28: no usable time step (above 0, at most 1 s) above this line (spaced intervals of)"},
     {"three.csmip.v2", "43 points of accel", "xx points of accel", ":46: no usable number of points"},
     {"three.csmip.v2", "of accel data", "of veloc data", ":46: not an acceleration"},
     {"film.csmip.v1", "=     43 ", "=     44 ", ": ends after 43 samples, but its header announces 44"},
@@ -254,58 +257,61 @@ static const struct {
     {"one.csmnc", "CM/SEC/SEC", "INCHES", "the unit 'INCHES' of its acceleration is not known"},
     {"film.csmip.v1", "=     43 ", "=      1 ", "no usable number of points"},
     {"film.csmip.v1", "=     43 ", "=    9e9 ", "no usable number of points"},
-    {"one.smc", "  1.0000000E+02", "  1.0000000E+09", "no usable sampling rate"},
+    {"one.smc", "  1.0000000E+02", "  1.0000000E+09", ":30: no usable time step"},
     {"one.smc", "2 CORRECTED ACCELEROGRAM", "3 VELOCITY", ":1: not an acceleration"},
-    {"one.smc", "        43", "    -32768", "no usable number of points: the header above says -32768"},
+    {"one.smc", "        43", "    -32768", ":30: no usable number of points"},
     {"one.smc", "        43", "        44", ":36: ends after 43 samples, but its header announces 44"},
-    {"one.smc", "  1.0000000E+02", "  0.0000000E+00", "no usable sampling rate"},
+    {"one.smc", "  1.0000000E+02", "  0.0000000E+00", ":30: no usable time step"},
     {"one.smc", "         3", "         2", ":29: ends after 0 samples"},
-    {"one.knet", "3920(gal)/6182761", "3920(gal)", ":14: no usable scale factor"},
-    {"one.knet", "3920(gal)/6182761", "3920(gal)/0", ":14: no usable scale factor"},
-    {"one.knet", "100Hz", "9e9Hz", ":11: no usable sampling frequency"},
-    {"one.knet", "100Hz", "Hz", ":11: no usable sampling frequency"},
+    {"one.knet", "3920(gal)/6182761", "3920(gal)", ":14: no usable Scale Factor, as 3920(gal)/6182761"},
+    {"one.knet", "3920(gal)/6182761", "3920(gal)/0", ":14: no usable Scale Factor, as 3920(gal)/6182761"},
+    {"one.knet", "100Hz", "9e9Hz",
+     ":17: no usable time step (above 0, at most 1 s) above this line (Sampling Freq(Hz))"},
+    {"one.knet", "100Hz", "Hz", ":17: no usable time step (above 0, at most 1 s) above this line (Sampling Freq(Hz))"},
     {"one.knet", "0.43", "0.44", ":23: ends after 43 samples, but its header announces 44"},
     {"one.knet", "0.43", "0.42", ":23: more samples than the 42"},
-    {"one.knet", "Scale Factor", "Scale", ":17: no line 'Scale Factor' before"},
+    {"one.knet", "Scale Factor", "Scale", ":17: no usable Scale Factor"},
     {"one.knet", "Memo.", "", "the file ends before its line 'Memo.'"},
-    {"one.esm", "NDATA: 43", "NDATA: 45", ":68: ends after 43 samples, but its header announces 45"},
-    {"one.esm", "NDATA: 43", "NDATA: many", ":12: 'many' is not a number"},
-    {"one.esm", "NDATA: 43", "NDAT: 43", ": no NDATA in the header"},
+    {"one.esm", "NDATA: 43", "NDATA: 44", ":68: ends after 43 samples, but its header announces 44"},
+    {"one.esm", "NDATA: 43", "NDATA: many", ":25: no usable number of points above this line (NDATA:)"},
+    {"one.esm", "NDATA: 43", "NDAT: 43", ":25: no usable number of points above this line (NDATA:)"},
     {"one.esm", "DATA_TYPE: ACC", "DATA_TYPE: DISPL", ":19: not an acceleration"},
     {"one.esm", "UNITS: cm/s^2", "UNITS: furlongs", "the unit 'furlongs' of its acceleration is not known"},
-    {"three.v1a", "Component", "Direction", ":13: 'Direction N28W' does not name a component"},
     {"three.v1a", "      43       0       0      43", "      44       0       0      43",
      ":31: ends after 43 samples, but its header announces 44"},
     {"three.v1a", "      43       0       0      43", "       0       0       0      43",
-     ":20: no usable number of points"},
-    {"three.v1a", "0.0100  0.0100", "0.0100  0.0000", ":26: no usable time step"},
+     ":26: no usable number of points"},
+    {"three.v1a", "0.0100  0.0100", "0.0100  0.0000", ":26: a step of 0 s in the numbers of the header, 0.01 s"},
     {"three.v1a", "1.00 mm/s/s", "1.00 counts", "set motion.unit"},
-    {"three.v2a", "      43      43      43", "      43      43      53", "begin a component"},
-    {"jma.csv", "100Hz", "none", ":7: no usable SAMPLING RATE"},
-    {"jma.csv", "gal(cm/s/s)", "counts",
-     "the unit 'counts' of its acceleration is not known; convert it to m/s2, cm/s2"},
+    {"three.v2a", "      43      43      43", "      43      43      53",
+     ":42: velocities and displacements end before"},
+    {"jma.csv", "100Hz", "none", ": no usable time step (above 0, at most 1 s) above this line (SAMPLING RATE)"},
+    {"jma.csv", "gal(cm/s/s)", "counts", "set motion.unit (--unit) to counts=VALUE"},
     {"cwb.dat", "gal. DCoffset(corr)", "volts", "the unit 'volts' of its acceleration is not known"},
     {"jma.csv", "NS,EW,UD", "NS,EW", ":7: names 2 columns, but 3 follow"},
     {"jma.csv", "  -123.400,", "", ":23: has 2 columns where the lines above have 3"},
     {"jma.csv", "-123.400", "-123.4.0", ":23: '-123.4.0' is not a number"},
     {"afad.txt", ": 43", ": 44", ": 43 rows, but its header announces 44"},
-    {"afad.txt", "(sec) : 0.01", "(sec) : none", "no usable SAMPLING INTERVAL"},
+    {"afad.txt", "(sec) : 0.01", "(sec) : none",
+     "no usable time step (above 0, at most 1 s) above this line (SAMPLING INTERVAL:)"},
     {"afad.txt", "(N-S) 123.4", "(N-S) 12.34", "its samples peak at 123.4 cm_s2, its header says 12.34"},
     {"asa.unam", "/43/43/43", "/44/43/43", ": 43 rows, but its header announces 44 for channel 1"},
-    {"asa.unam", "/0.01/0.01/0.01", "/x/0.01/0.01", ": no usable step of channel 1"},
+    {"asa.unam", "/0.01/0.01/0.01", "/x/0.01/0.01",
+     ": no usable time step (above 0, at most 1 s) above this line (INTERVALO DE MUESTREO, C1:)"},
     {"asa.unam", "/-123.40", "/-223.40", "its samples peak at 123.4 cm_s2, its header says 223.4"},
     {"asa.unam", "DATOS DE ACELERACION:", "DATOS:", "ends before its line 'DATOS DE ACELERACION:'"},
-    {"cwb.dat", "Time U(+)", "Time", ":12: names 2 columns beside the time, but 3 follow"},
-    {"cwb.dat", "(Hz): 100", "(Hz): ", "no usable #SampleRate(Hz)"},
+    {"cwb.dat", "Time U(+)", "Time", ":12: names 3 columns, but 4 follow"},
+    {"cwb.dat", "(Hz): 100", "(Hz): ", "no usable time step (above 0, at most 1 s) above this line (#SampleRate(Hz))"},
     {"cwb.dat", "85.600~", "185.60~", "its samples peak at 85.6 cm_s2, its header says 185.6"},
     {"three.bhrc", "=     43 ", "=     44 ", ": ends after 43 samples, but its header announces 44"},
     {"three.bhrc", "=     43 ", "=     42 ", ": more samples than the 42"},
     {"two.usc", "=     43 ", "=     49 ", ": ends after 43 samples, but its header announces 49"},
     {"isesd.cor", "samples:             43", "samples:             44", ": ends after 43 samples"},
-    {"isesd.cor", "sampling period", "sampling", "an ISESD record without equal steps"},
+    {"isesd.cor", "sampling period", "sampling",
+     ":16: no usable time step (above 0, at most 1 s) above this line (sampling period:)"},
     {"isesd.cor", "-> corrected acceleration", "-> corrected velocity", ": not an acceleration"},
     {"isesd.cor", " m/s*s,", " mm/s*s,", "the unit 'mm/s*s' of its acceleration is not known"},
-    {"equals.at2", "OF G", "OF G/10", "the unit 'G/10' of its acceleration is not known"},
+    {"equals.at2", "OF G", "OF FEET", "the unit 'FEET' of its acceleration is not known"},
     {"one.tspair", "m/s**2", "mm/s**2", "the unit 'mm/s**2' of its acceleration is not known"},
     {"simcenter.json", ": 43", ": 50", "'SYN-1' has 43 samples, but numSteps announces 50"},
     {"simcenter.json", "\"type\"", "\"factor\": 9.81, \"type\"", "\"factor\" is not 1; multiply the samples by it"},
@@ -313,7 +319,8 @@ static const struct {
     {"one.tspair", "100 sps", "200 sps", "its header says a step of 0.005 s, its times one of 0.01 s"},
     {"cwb.dat", "(Hz): 100", "(Hz): 200", "its header says a step of 0.005 s, its times one of 0.01 s"},
     {"three.v2a", "0.010 sec", "0.020 sec", "a step of 0.01 s in the numbers of the header, 0.02 s in its words"},
-    {"one.esm", "INTERVAL_S: 0.01", "INTERVAL_S: 0.02", ":13: DURATION_S is 0.42 s, but 43 samples every 0.02 s"},
+    {"one.esm", "INTERVAL_S: 0.01", "INTERVAL_S: 0.02",
+     ":13: a length of 0.42 s, but 43 samples every 0.02 s are 0.86 s"},
     {"three.slist", "43 samples", "44 samples", ": ends after 43 samples"},
     {"three.slist", "FLOAT, cm/s**2", "INTEGER, Counts", "set motion.unit (--unit) to counts=VALUE"},
     {"one.tspair", "43 samples", "44 samples", ": ends after 43 samples"},
@@ -326,10 +333,12 @@ static const struct {
     {"one.csmnc", "-123.400", "-223.400", "its samples peak at 123.4 cm_s2, its header says 223.4"},
     {"one.csmnc", "UNCORRECTED ACCELERATION", "CORRECTED VELOCITY", ":11: not an acceleration"},
     {"one.csn", "muestras: 43", "muestras: 44", ": ends after 43 samples, but its header announces 44"},
-    {"one.csn", "muestreo: 100.0", "muestreo: 0.0", ":6: no usable time step"},
+    {"one.csn", "muestreo: 100.0", "muestreo: 0.0",
+     ":6: no usable time step (above 0, at most 1 s) above this line (# Tasa de muestreo:)"},
     {"one.csn", "m/seg/seg", "cuentas", "set motion.unit"},
     {"one_column.txt", "dt = 0.01 s", "", ":2: has one column and does not say its step; set motion.dt_s"},
     {"many_columns.csv", "0.15,-123.4", "0.15", ":18: has 4 columns where the lines above have 5"},
+    {"cwb.dat", "     0.150 ", "     0.140 ", "time 0.14 s does not come after 0.14 s"},
     {"many_columns.csv", "0.15,", "0.14,", ":18: time 0.14 s does not come after 0.14 s"},
     {"decimal_comma.csv", "-123,4", "-123,,4", ":17: '-123,,4' is not a number"},
     {"wrapped.txt", "dt:", "at:", ":7: has 3 columns where the lines above have 8"},
@@ -744,12 +753,13 @@ static void test_columns_without_names_are_asked_about_and_joined_only_where_a_c
         size_t n;
         double second; /* sample 1 */
     } CASES[] = {
-        {"# m/s2, dt=0.01\n", NULL, ":2: has 20 rows of 4 columns without names: choose one", 0, 0},
-        {"# m/s2, dt=0.01\n", "3", NULL, 20, 6},
-        {"# m/s2, dt=0.01, npts=80\n", NULL, NULL, 80, 1},
-        {"# m/s2, dt=0.01, npts=79\n", NULL, "columns without names", 0, 0},
-        {"# m/s2\n", NULL, ":2: has 4 columns without names, and the first holds no times; set motion.dt_s", 0, 0},
-        {"! m/s2\n80 0.01\n", NULL, NULL, 80, 1},
+        {"# units: m/s2, dt=0.01\n", NULL, ":2: has 20 rows of 4 columns without names: choose one", 0, 0},
+        {"# units: m/s2, dt=0.01\n", "3", NULL, 20, 6},
+        {"# units: m/s2, dt=0.01, npts=80\n", NULL, NULL, 80, 1},
+        {"# units: m/s2, dt=0.01, npts=79\n", NULL, "columns without names", 0, 0},
+        {"# units: m/s2\n", NULL, ":2: has 4 columns without names, and the first holds no times; set motion.dt_s", 0,
+         0},
+        {"! units: m/s2\n80 0.01\n", NULL, NULL, 80, 1},
     };
     for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
         Motion m;
@@ -892,8 +902,8 @@ static void test_units_in_other_words_are_taken_or_named(void **state)
         motion_free(&m);
         free(t.text);
     }
-    assert_int_equal(parse_text(&m, "time_s,accel_mg\n0,1\n0.01,2\n", &err), STATUS_BAD_DATA);
-    assert_non_null(strstr(err.text, "unit 'mg' is not known"));
+    assert_int_equal(parse_text(&m, "time_s,accel [mg]\n0,1\n0.01,2\n", &err), STATUS_BAD_DATA);
+    assert_non_null(strstr(err.text, "unit 'mg' of its acceleration is not known"));
 }
 
 /* Recorders of Kinemetrics: five tenths of a second at 100 Hz, 24 bits; the 43 samples and seven zeros. */
@@ -1049,14 +1059,14 @@ static void test_decimal_commas_are_read_whatever_parts_the_columns(void **state
     static const char *const TEXTS[] = {
         "time_s;a_m_s2\n0,00;3,1\n0,01;0,5\n0,02;-1\n",
         "time_s\ta_m_s2\n0,00\t3,1\n0,01\t0,5\n0,02\t-1\n",
-        "# m/s2\n0,00  3,1\n0,01  0,5\n0,02  -1\n",
+        "# units: m/s2\n0,00  3,1\n0,01  0,5\n0,02  -1\n",
         "\"time_s\",\"a_m_s2\"\n\"0,00\",\"3,1\"\n\"0,01\",\"0,5\"\n\"0,02\",\"-1\"\n",
         "# dt = 0.01\na_m_s2\n3,1\n0,5\n-1,0\n",
         "# dt = 0,01\nacc [m/s2]\n3,1\n0,5\n-1\n",
-        "# m/s2\n0.00, 3.1\n0.01, 0.5\n0.02, -1\n",
+        "# units: m/s2\n0.00, 3.1\n0.01, 0.5\n0.02, -1\n",
         "time_s;a_m_s2\n0,00;3,1\n;\n0,01;0,5\n0,02;-1\n;\n;\n",
-        "# dt = 10 ms, m/s2\n3.1\n0.5\n-1\n",
-        "# fs: 100, m/s2\n3.1\n0.5\n-1\n",
+        "# dt = 10 ms, units: m/s2\n3.1\n0.5\n-1\n",
+        "# fs: 100, units: m/s2\n3.1\n0.5\n-1\n",
         "acceleration (in m/s2)\n3 0,01\n3,1\n0,5\n-1,0\n",
     };
     for (size_t i = 0; i < sizeof TEXTS / sizeof TEXTS[0]; i++) {
@@ -1080,51 +1090,80 @@ static void test_marks_of_thousands_and_commas_of_two_meanings_are_refused(void 
     expect_refusal("\xff\xfet\n", "is written in UTF-16; save it as UTF-8");
     expect_refusal("t;a_cm_s2\n0.00;1,234.5\n0.01;0.5\n", "there:2: '1,234.5' has a point and a comma");
     expect_refusal("t;a_cm_s2\n0,00;1,5\n0.01;0.5\n",
-                   "there:3: decimal points (line 3) and decimal commas (line 2) are mixed");
+                   "there:3: decimal points and decimal commas are mixed; line 2 has the other");
     expect_refusal(
-        "# dt = 0.01, m/s2\n3,1\n0,5\n1,2\n0,3\n",
+        "# dt = 0.01, units: m/s2\n3,1\n0,5\n1,2\n0,3\n",
         "there:2: has 4 rows of 2 columns without names: choose one by motion.channel (--channel 1 to 2); if "
         "they are one motion written row by row, put '# npts = 8' above them; if they are one column with "
         "decimal commas, put its name above it");
 }
 
-static void test_a_unit_in_a_sentence_counts_only_where_it_is_stated_as_one(void **state)
+/* Nothing is taken from prose: a unit stands in a column's name or behind the key "unit" or "units". */
+static void test_a_unit_counts_where_it_is_stated_and_is_asked_for_elsewhere(void **state)
 {
     (void)state;
-    static const char *const IN_G[] = {"# units: g",     "# acc [g]",        "# (G)",
-                                       "# in g",         "# acceleration g", "# g",
-                                       "# 2001, g",      "# units of G",     "Acceleration in g",
-                                       "# accel (g); x", "# Units = g",      "% g",
-                                       "acc_x1_g"};
-    static const char *const IN_NONE[] = {"# by G. Smith", "# Record G",     "# ground type G", "# Gal station",
-                                          "# scaled by g", "St. G, a title", "# station: G",    "# peak 0.35 g"};
-    static const char *const UNKNOWN[][2] = {{"# acceleration (milli-g)", "'milli-g'"},
-                                             {"# (m g)", "'m g'"},
-                                             {"# acc in m/s2 x 1000", "'acc in m/s2 x 1000'"},
+    static const char *const IN_G[] = {"# units: g",       "# acc [g]\nacc [g]",
+                                       "units=g",          "# unit = g; x",
+                                       "Acceleration (g)", "acceleration (in g)",
+                                       "acc_x1_g",         "# Units = G",
+                                       "npts=3 units=g",   "% acceleration units: g, filtered"};
+    static const char *const IN_NONE[] = {"# by G. Smith", "# Record G",    "# ground type G",
+                                          "# in g",        "# scaled by g", "St. G, a title",
+                                          "# station: G",  "# peak 0.35 g", "# (G)",
+                                          "# acc [g]",     "a G",           "Acceleration in g of St. 5"};
+    static const char *const UNKNOWN[][2] = {{"acceleration (milli-g)", "'milli-g'"},
+                                             {"# units: mg", "'mg'"},
+                                             {"# units: 0.1 g", "'0.1 g'"},
+                                             {"a [m/s2 x 1000]", "'m/s2 x 1000'"},
                                              {"A (% g)", "'% g'"},
                                              {"acc (% of g)", "'% of g'"},
                                              {"acc [1/g]", "'1/g'"},
                                              {"acc [g/10]", "'g/10'"},
                                              {"acc [0.2 g]", "'0.2 g'"},
-                                             {"# acceleration in 0.1 g", "0.1 g'"},
-                                             {"acc_x1000_m_s2", "'acc_x1000_m_s2'"}};
+                                             {"acc_x1000_m_s2", "does not say the unit"}};
     char text[200];
     Motion m;
     Err err = {0};
     for (size_t i = 0; i < sizeof IN_G / sizeof IN_G[0]; i++) {
-        snprintf(text, sizeof text, "%s\n# dt=0.01 s\n1\n2\n-3\n", IN_G[i]);
+        snprintf(text, sizeof text, "# dt=0.01 s\n%s\n1\n2\n-3\n", IN_G[i]);
         CHECK_OK(parse_text(&m, text, &err), &err);
         assert_close(m.accel[2], -3 * 9.81, 1e-12);
         motion_free(&m);
     }
     for (size_t i = 0; i < sizeof IN_NONE / sizeof IN_NONE[0]; i++) {
-        snprintf(text, sizeof text, "%s\n# dt=0.01 s\n1\n2\n-3\n", IN_NONE[i]);
-        expect_refusal(text, "does not say the unit");
+        snprintf(text, sizeof text, "# dt=0.01 s\n%s\n1\n2\n-3\n", IN_NONE[i]);
+        expect_refusal(text, "does not say the unit of its acceleration; set motion.unit (--unit)");
     }
     for (size_t i = 0; i < sizeof UNKNOWN / sizeof UNKNOWN[0]; i++) {
-        snprintf(text, sizeof text, "%s\n# dt=0.01 s\n1\n2\n-3\n", UNKNOWN[i][0]);
+        snprintf(text, sizeof text, "# dt=0.01 s\n%s\n1\n2\n-3\n", UNKNOWN[i][0]);
         expect_refusal(text, UNKNOWN[i][1]);
     }
+    expect_refusal("npts=4 dt=0.01 units=g\n1\n2\n-3\n", "there:4: ends after 3 samples, but its header announces 4");
+}
+
+/* 2^20 columns are refused, and repeated records told apart, in a time that grows with their length. */
+static void test_a_long_line_and_many_records_take_no_square_of_their_length(void **state)
+{
+    (void)state;
+    enum { COLUMNS = 1 << 20 };
+    char *row = malloc(2 * COLUMNS + 16);
+    const clock_t began = clock();
+    assert_non_null(row);
+    for (int with_names = 0; with_names < 2; with_names++) {
+        char *p = row;
+        for (int i = 0; i < COLUMNS; i++, p += 2)
+            memcpy(p, with_names ? "a," : "0 ", 2);
+        memcpy(p, with_names ? "a\n1,2,\n" : "0\n1 2\n", 7);
+        Err err = {0};
+        assert_int_equal(motion_parse(&(Motion){0}, "row", row, strlen(row), &FIRST, &err), STATUS_BAD_DATA);
+    }
+    free(row);
+    Text t = repeated(read_specimen("three.mseed"), 4096);
+    Err err = {0};
+    assert_int_equal(motion_parse(&(Motion){0}, "six.mseed", t.text, t.length, &FIRST, &err), STATUS_BAD_DATA);
+    assert_non_null(strstr(err.text, "more than 128 channels"));
+    free(t.text);
+    assert_less((double)(clock() - began) / CLOCKS_PER_SEC, 2); /* 0.1 s; by the square minutes */
 }
 
 static void test_steps_are_read_in_their_unit_and_contradictions_are_refused(void **state)
@@ -1143,7 +1182,7 @@ static void test_steps_are_read_in_their_unit_and_contradictions_are_refused(voi
     Motion m;
     Err err = {0};
     for (size_t i = 0; i < sizeof STEPS / sizeof STEPS[0]; i++) {
-        snprintf(text, sizeof text, "# %s\n# cm/s2\n1\n2\n-3\n", STEPS[i]);
+        snprintf(text, sizeof text, "# %s\n# units: cm/s2\n1\n2\n-3\n", STEPS[i]);
         CHECK_OK(parse_text(&m, text, &err), &err);
         assert_close(m.dt_s, 0.005, 1e-15);
         motion_free(&m);
@@ -1153,15 +1192,15 @@ static void test_steps_are_read_in_their_unit_and_contradictions_are_refused(voi
     assert_close(m.dt_s, 1e-5, 1e-15);
     motion_free(&m);
     free(t.text);
-    expect_refusal("# dt = 0.005 min; cm/s2\n1\n2\n",
-                   "there:1: the step in '# dt = 0.005 min; cm/s2' is not in seconds");
-    expect_refusal("# m/s2\n# dt=0.01\n# dt=0.02\n1\n2\n",
+    expect_refusal("# dt = 0.005 min; units: cm/s2\n1\n2\n",
+                   "there:1: the step in '# dt = 0.005 min; units: cm/s2' is not in seconds");
+    expect_refusal("# units: m/s2\n# dt=0.01\n# dt=0.02\n1\n2\n",
                    "there:3: states a step of 0.02, elsewhere in the file it is 0.01");
-    expect_refusal("# dt=0.02\n# m/s2\n3 0.01\n1\n2\n-3\n",
+    expect_refusal("# dt=0.02\n# units: m/s2\n3 0.01\n1\n2\n-3\n",
                    "there:3: states a step of 0.01, elsewhere in the file it is 0.02");
-    expect_refusal("# npts=4; m/s2\n3 0.01\n1\n2\n-3\n",
+    expect_refusal("# npts=4; units: m/s2\n3 0.01\n1\n2\n-3\n",
                    "states a number of samples of 3, elsewhere in the file it is 4");
-    expect_refusal("# npts=30, dt=0.01; m/s2\n1\n2\n-3\n", "announces 30 samples, but has 3 rows");
+    expect_refusal("# npts=30, dt=0.01; units: m/s2\n1\n2\n-3\n", "announces 30 samples, but has 3 rows");
     expect_refusal("# dt = 0.02\nt,a_m_s2\n0,1\n.01,2\n.02,-3\n",
                    "its header says a step of 0.02 s, its times one of 0.01 s");
     expect_refusal("t,a_m_s2\n0,00,1,5\n0,01,-2,5\n",
@@ -1171,7 +1210,7 @@ static void test_steps_are_read_in_their_unit_and_contradictions_are_refused(voi
 static void test_numbers_of_samples_are_no_seconds(void **state)
 {
     (void)state;
-    static const char *const TEXTS[] = {"# m/s2\n%s0 1\n1 2\n2 -3\n", "# m/s2\n%s7,1\n8,2\n9,-3\n",
+    static const char *const TEXTS[] = {"# units: m/s2\n%s0 1\n1 2\n2 -3\n", "# units: m/s2\n%s7,1\n8,2\n9,-3\n",
                                         "%si,a_m_s2\n1,1\n2,2\n3,-3\n", "%sNo.;a [m/s2]\n0;1\n1;2\n2;-3\n"};
     for (size_t i = 0; i < sizeof TEXTS / sizeof TEXTS[0]; i++) {
         Motion m;
@@ -1264,7 +1303,7 @@ static void test_the_body_of_a_file_of_three_components_is_asked_about_and_not_j
     Motion m;
     Err err = {0};
     for (int width = 2; width <= 4; width++) {
-        Text t = rows_of("# m/s2, dt=0.01\n", 40, width);
+        Text t = rows_of("# units: m/s2, dt=0.01\n", 40, width);
         assert_int_equal(motion_parse(&m, "body", t.text, t.length, &(MotionHow){0}, &err), STATUS_BAD_DATA);
         assert_non_null(strstr(err.text, "columns without names"));
         free(t.text);
@@ -1305,7 +1344,8 @@ int main(void)
         cmocka_unit_test(test_kiknet_numbers_are_directions_and_what_is_no_direction_is_refused),
         cmocka_unit_test(test_decimal_commas_are_read_whatever_parts_the_columns),
         cmocka_unit_test(test_marks_of_thousands_and_commas_of_two_meanings_are_refused),
-        cmocka_unit_test(test_a_unit_in_a_sentence_counts_only_where_it_is_stated_as_one),
+        cmocka_unit_test(test_a_unit_counts_where_it_is_stated_and_is_asked_for_elsewhere),
+        cmocka_unit_test(test_a_long_line_and_many_records_take_no_square_of_their_length),
         cmocka_unit_test(test_steps_are_read_in_their_unit_and_contradictions_are_refused),
         cmocka_unit_test(test_numbers_of_samples_are_no_seconds),
         cmocka_unit_test(test_the_column_of_times_is_found_by_its_name),

@@ -89,16 +89,19 @@ int lines_next(Lines *l)
     return 1;
 }
 
-/* Behind a cell that ends at p: at most one comma or semicolon, any blanks; beyond the end where nothing is left. */
-static const char *skip_blanks(const char *p, const char *end)
+/* Behind a cell that ends at p: any blanks and at most one of the other marks; beyond the end where nothing is left. */
+static const char *skip_blanks(const char *p, const char *end, const char *marks)
 {
-    for (int marks = 0; p < end && (isspace((unsigned char)*p) || (strchr(",;", *p) && !marks)); p++)
-        marks |= !isspace((unsigned char)*p);
+    for (int n = 0; p < end && (isspace((unsigned char)*p) || (strchr(marks, *p) && !n)); p++)
+        n += !isspace((unsigned char)*p);
     return p < end ? p : end + 1;
 }
 
-Cell cell_next(const char **p, const char *end, char separator)
+Cell cell_next(const char **p, const char *end, const char *marks)
 {
+    const int blanks = *marks == ' ';
+    while (blanks && *p < end && isspace((unsigned char)**p))
+        ++*p;
     Cell c = {.from = *p, .to = *p};
     if (*p >= end) {
         *p = end + 1;
@@ -106,10 +109,10 @@ Cell cell_next(const char **p, const char *end, char separator)
     }
     for (int opens = *c.from == '"', quoted = 0; c.to < end; c.to++) {
         quoted ^= opens && *c.to == '"';
-        if (!quoted && (separator == ' ' ? isspace((unsigned char)*c.to) || strchr(",;", *c.to) : *c.to == separator))
+        if (!quoted && (strchr(marks, *c.to) || (blanks && isspace((unsigned char)*c.to))))
             break;
     }
-    *p = separator == ' ' ? skip_blanks(c.to, end) : c.to + 1;
+    *p = blanks ? skip_blanks(c.to, end, marks) : c.to + 1;
     strip(&c.from, &c.to);
     c.is_quoted = c.to - c.from >= 2 && *c.from == '"' && c.to[-1] == '"';
     if (c.is_quoted) {
@@ -173,7 +176,7 @@ int csv_has_decimal_commas(const char *line, const char *end)
 typedef struct {
     Table *t;
     Lines l;
-    char separator;
+    char separator[2]; /* empty: not yet known */
     int has_header, of_words;
     size_t rows, used; /* room for rows; bytes of text so far */
 } Reading;
@@ -186,16 +189,16 @@ static int next_row(Reading *r, const char **from, const char **to)
         const size_t n = (size_t)(l->to - l->from);
         if (n == 0 || (*l->from == '#' && !csv_is_error(l->from, l->to)))
             continue;
-        if (!r->separator && n == 5 && strncmp(l->from, "sep=", 4) == 0) { /* for Excel */
-            r->separator = l->from[4];
+        if (!*r->separator && n == 5 && strncmp(l->from, "sep=", 4) == 0) { /* for Excel */
+            *r->separator = l->from[4];
             continue;
         }
-        if (!r->separator)
-            r->separator = memchr(l->from, ';', n)                                              ? ';'
-                           : memchr(l->from, '\t', n) && csv_has_decimal_commas(l->from, l->to) ? '\t'
-                                                                                                : ',';
-        *from = r->separator == '\t' ? l->raw : l->from; /* a tab is a blank, too */
-        *to = r->separator == '\t' && l->next[-1] == l->mark ? l->next - 1 : r->separator == '\t' ? l->next : l->to;
+        if (!*r->separator)
+            *r->separator = memchr(l->from, ';', n)                                              ? ';'
+                            : memchr(l->from, '\t', n) && csv_has_decimal_commas(l->from, l->to) ? '\t'
+                                                                                                 : ',';
+        *from = *r->separator == '\t' ? l->raw : l->from; /* a tab is a blank, too */
+        *to = *r->separator == '\t' && l->next[-1] == l->mark ? l->next - 1 : *r->separator == '\t' ? l->next : l->to;
         for (const char *p = *from; p <= *to;) { /* spreadsheets write lines of empty cells where rows were emptied */
             const Cell c = cell_next(&p, *to, r->separator);
             if (c.from < c.to)

@@ -40,8 +40,9 @@ typedef struct {
     int is_quoted;
 } Cell;
 
-/* The cell at *p, which moves on; beyond `end` after the last one. A blank as separator: see above. */
-Cell cell_next(const char **p, const char *end, char separator);
+/* The cell at *p, which moves on; beyond `end` after the last one. It ends at any of the marks; where the first of them is
+ * a blank, at blanks too, of which any number stand between cells, with at most one of the other marks. */
+Cell cell_next(const char **p, const char *end, const char *marks);
 
 /* All of the cell is one number? Hexadecimal ones, which strtod would take, are none. */
 typedef enum { NUMBER, NO_NUMBER, NOT_FINITE } CellKind;

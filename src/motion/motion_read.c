@@ -17,15 +17,10 @@
  * taken for m/s2 shows 35 g). */
 static const double LARGEST_PEAK_G = 20.0;
 
-/* Asked in this order; the last one takes what no other did. */
-static const MotionFormat *const FORMATS[] = {
-    &FORMAT_KNET,   &FORMAT_ESM,     &FORMAT_JMA,   &FORMAT_CWB,      &FORMAT_AFAD,      &FORMAT_UNAM,
-    &FORMAT_CSMNC,  &FORMAT_CSN,     &FORMAT_ISESD, &FORMAT_GEONET,   &FORMAT_SMC,       &FORMAT_COSMOS,
-    &FORMAT_CSMIP,  &FORMAT_BHRC,    &FORMAT_USC,   &FORMAT_SAC_TEXT, &FORMAT_SIMCENTER, &FORMAT_SLIST,
-    &FORMAT_TSPAIR, &FORMAT_REFUSED, &FORMAT_AT2,   &FORMAT_COLUMNS};
+static const BinaryFormat *const BINARY_FORMATS[] = {&FORMAT_MSEED, &FORMAT_SAC, &FORMAT_EVT, &FORMAT_SIMCENTER};
+enum { N_BINARY_FORMATS = sizeof BINARY_FORMATS / sizeof BINARY_FORMATS[0], ARCHIVES_DEEP = 2 };
 
-static const BinaryFormat *const BINARY_FORMATS[] = {&FORMAT_MSEED, &FORMAT_SAC, &FORMAT_EVT};
-enum { N_BINARY_FORMATS = sizeof BINARY_FORMATS / sizeof BINARY_FORMATS[0], ARCHIVES_DEEP = 2, TABLE_MIN = 20 };
+static const char *const UNIT_NAMES[] = {MOTION_UNIT_LIST(CHOICE_WORD)};
 
 /* A peak that misses the header's by more belongs to other samples; by a fifth of it: rounded, or filtered once more. */
 static const double PEAK_ERROR_MAX = 0.05;
@@ -49,33 +44,31 @@ Status motion_unit_parse(const char *text, MotionUnit *unit, double *counts_per_
                 text, near ? "; did you mean " : "", near ? near : "", near ? "?" : "");
 }
 
-/* The one unit that file and setting agree on. */
-static Status settle_unit(const char *path, const Channel *c, MotionUnit *unit, Err *err)
+/* The one unit that file and setting agree on, and what a sample of the file is times to be in m/s2. */
+static Status settle_unit(const char *path, const Channel *c, const MotionHow *how, MotionUnit *unit, double *to_m_s2,
+                          Err *err)
 {
-    const unsigned named = c->units;
-    MotionUnit first = UNIT_FROM_FILE, second = UNIT_FROM_FILE;
-    for (MotionUnit u = UNIT_M_S2; u <= UNIT_G; u++)
-        if (named & 1u << u) {
-            second = first ? u : second;
-            first = first ? first : u;
-        }
-    if (*unit == UNIT_FROM_FILE && first == UNIT_FROM_FILE && c->unit[0])
+    static const double M_S2[] = {0, 1, 0.01, GRAVITY, 1};
+    *unit = how->unit ? how->unit : c->unit;
+    if (!*unit && c->counts)
+        return fail(
+            err, STATUS_BAD_DATA,
+            "%s: holds numbers without a unit, as a rule counts: set motion.unit (--unit) to counts=VALUE, the counts "
+            "per m/s2 of the instrument, or to m_s2, cm_s2 or g",
+            path);
+    if (!*unit && c->stated[0])
         return fail(err, STATUS_BAD_DATA,
                     "%s: the unit '%s' of its acceleration is not known; convert it to m/s2, cm/s2 or g and set "
-                    "motion.unit",
-                    path, c->unit);
-    if (*unit == UNIT_FROM_FILE && first == UNIT_FROM_FILE)
+                    "motion.unit (--unit)",
+                    path, c->stated);
+    if (!*unit)
         return fail(err, STATUS_BAD_DATA,
                     "%s: does not say the unit of its acceleration; set motion.unit (--unit) to m_s2, cm_s2 or g",
                     path);
-    if (*unit == UNIT_FROM_FILE && second != UNIT_FROM_FILE)
-        return fail(err, STATUS_BAD_DATA,
-                    "%s: names two units of acceleration, %s and %s; set motion.unit to the right one", path,
-                    UNIT_NAMES[first], UNIT_NAMES[second]);
-    if (*unit != UNIT_FROM_FILE && named && !(named & 1u << *unit))
+    if (c->unit && *unit != c->unit)
         return fail(err, STATUS_BAD_DATA, "%s: motion.unit is %s, but the file says %s; leave motion.unit at from_file",
-                    path, UNIT_NAMES[*unit], UNIT_NAMES[first]);
-    *unit = *unit == UNIT_FROM_FILE ? first : *unit;
+                    path, UNIT_NAMES[*unit], UNIT_NAMES[c->unit]);
+    *to_m_s2 = c->scale * M_S2[*unit] / (*unit == UNIT_COUNTS ? how->counts_per_m_s2 : 1);
     return STATUS_OK;
 }
 
@@ -376,8 +369,8 @@ static Status check_step(const Series *s, const Channel *c, double dt, int even,
 static Status take_samples(Motion *m, const char *path, const Record *r, const Channel *c, const MotionHow *how,
                            Err *err)
 {
-    MotionUnit unit = how->unit;
-    double dt = c->dt;
+    MotionUnit unit;
+    double dt = c->dt, to_m_s2 = 1;
     const Series s = {.path = path, .base = r->row + c->first, .stride = c->stride, .n = c->n};
     Err uneven = {0};
     Status status = STATUS_OK;
@@ -388,23 +381,7 @@ static Status take_samples(Motion *m, const char *path, const Record *r, const C
     TRY(check_step(&s, c, dt, status == STATUS_OK, err));
     if (status != STATUS_OK && how->dt_s == 0)
         return c->digitized ? fail_digitized(&s, err) : fail(err, status, "%s", uneven.text);
-    char unknown[UNIT_SHOWN];
-    if (unit == UNIT_FROM_FILE && unit_unknown(c->name, c->name + strlen(c->name), unknown))
-        return fail(err, STATUS_BAD_DATA,
-                    "%s: its channel '%s': unit '%s' is not known; convert it to m/s2, cm/s2 or g", path, c->name,
-                    unknown);
-    if (c->counts && unit == UNIT_FROM_FILE)
-        return fail(
-            err, STATUS_BAD_DATA,
-            "%s: holds numbers without a unit, as a rule counts: set motion.unit (--unit) to counts=VALUE, the counts "
-            "per m/s2 of the instrument, or to m_s2, cm_s2 or g",
-            path);
-    const double gain = unit == UNIT_COUNTS ? how->counts_per_m_s2 : 1;
-    if (unit == UNIT_COUNTS && !c->units)
-        unit = UNIT_M_S2;
-    else
-        TRY(settle_unit(path, c, &unit, err));
-    const double to_m_s2 = c->scale / gain * (unit == UNIT_M_S2 ? 1.0 : unit == UNIT_CM_S2 ? 0.01 : GRAVITY);
+    TRY(settle_unit(path, c, how, &unit, &to_m_s2, err));
     TRY(check_peak(&s, to_m_s2, unit, c->scale, err));
     const double offset = offset_of(c, &s);
     if (c->warning)
@@ -435,39 +412,21 @@ static int binary_line(const char *text, size_t length)
     return 0;
 }
 
-static const MotionFormat *recognise(Lines l)
-{
-    size_t i = 0;
-    while (!FORMATS[i]->recognise(l))
-        i++;
-    return FORMATS[i];
-}
-
 /* Text: without its byte order mark and what old programs put behind it. */
 static Status read_text(Record *r, const char *path, const char *text, size_t length, const ReadHints *hints, Err *err)
 {
+    Lines l;
     while (length && strchr("\x1a\t\r\n ", text[length - 1])) /* Ctrl-Z and NUL end the texts of old programs */
         length--;
-    if (length >= 2 && (memcmp(text, "\xff\xfe", 2) == 0 || memcmp(text, "\xfe\xff", 2) == 0))
-        return fail(err, STATUS_BAD_DATA, "%s: is written in UTF-16; save it as UTF-8", path);
-    const int binary = binary_line(text, length);
     if (length == 0)
         return fail(err, STATUS_BAD_DATA, "%s: is empty", path);
+    const int is_wide = length >= 2 && (memcmp(text, "\xff\xfe", 2) == 0 || memcmp(text, "\xfe\xff", 2) == 0);
+    const int binary = is_wide ? 0 : binary_line(text, length);
     if (binary)
         return fail(err, STATUS_BAD_DATA, "%s:%d: holds bytes that no text has; a binary file of this kind is not read",
                     path, binary);
-    const size_t mark = length >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0 ? 3 : 0; /* UTF-8 byte order mark */
-    const char line_end = memchr(text, '\n', length) ? '\n' : '\r';
-    Lines l = {.path = path, .next = text + mark, .end = text + length, .mark = line_end};
-    const MotionFormat *format = recognise(l);
-    /* JSON may be anything; a table is told from a text by its numbers */
-    r->is_known = format != &FORMAT_SIMCENTER && format != &FORMAT_REFUSED && format != &FORMAT_COLUMNS;
-    const Status status = format->read(r, &l, hints, err);
-    r->is_known |= format == &FORMAT_COLUMNS && r->n >= TABLE_MIN && strstr(err->text, "where the lines above have");
-    TRY(status);
-    for (size_t k = 0; k < r->n_channels; k++)
-        r->channel[k].format = format->name;
-    return STATUS_OK;
+    TRY(lines_open(&l, path, text, length, err));
+    return text_read(r, &l, hints, err);
 }
 
 typedef struct {
@@ -494,7 +453,7 @@ static Status take_member(const char *name, const char *bytes, size_t n, void *u
         status = record_append(members->r, one, members->path, name, err);
     else if (status == STATUS_NO_MEMORY)
         status = fail(err, status, "%s", why.text);
-    else if (one->is_broken || (one->is_known && !strstr(why.text, "not an acceleration"))) {
+    else if (one->is_broken || (one->is_known && why.sub != SUB_NO_RECORD)) {
         members->r->is_broken = 1;
         status = fail(err, status, "%s: a member of this archive is damaged: %.360s", members->path, why.text);
     } else {
@@ -540,7 +499,7 @@ static Status read_content(Record *r, const char *path, const char *bytes, size_
         return read_archive(r, path, bytes, n, hints, deep, err);
     for (int i = 0; i < N_BINARY_FORMATS; i++)
         if (BINARY_FORMATS[i]->recognise(raw, n)) {
-            r->is_known = 1;
+            r->is_known = BINARY_FORMATS[i] != &FORMAT_SIMCENTER; /* JSON may be anything */
             TRY(BINARY_FORMATS[i]->read(r, path, bytes, n, err));
             for (size_t k = 0; k < r->n_channels; k++)
                 r->channel[k].format = BINARY_FORMATS[i]->name;

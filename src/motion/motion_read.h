@@ -16,7 +16,7 @@
  * and archives of them (zip, tar, gzip, bzip2, xz).
  *
  * The kind of file is told by its content, not by its name. Lines end in LF or CRLF; bytes beyond ASCII are let pass in
- * words. docs/motions.md says what is read from each; motion/formats has one file per form.
+ * words. docs/motions.md says what is read from each.
  *
  * Ownership  m->accel is allocated; motion_free releases it (after a failure there is nothing to free)
  * Threads    no state */

@@ -85,7 +85,7 @@ static Status add_channels(Record *r, const Lines *l, const unsigned char *heade
         c->stride = stride;
         c->dt = 1.0 / f->rate;
         if (full_scale > 0 && sensitivity > 0 && full_scale < 1e6 && sensitivity < 1e6) {
-            c->units = 1u << UNIT_G;
+            c->unit = UNIT_G;
             c->scale = full_scale / 8388608 / sensitivity;
         } else
             c->counts = 1;

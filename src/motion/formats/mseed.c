@@ -90,6 +90,8 @@ static int parse_record(const char *bytes, size_t n, MSRecord **record)
     return msr_parse((char *)bytes, left, record, (*record)->reclen, 1, 0);
 }
 
+enum { TRACES_MAX = 8 * CHANNELS_MAX }; /* logs and the state of health are no channels */
+
 static Status collect(MSTraceGroup *group, const char *path, const char *bytes, size_t n, Err *err)
 {
     MSRecord *record = NULL;
@@ -100,7 +102,9 @@ static Status collect(MSTraceGroup *group, const char *path, const char *bytes, 
                 status = fail(err, STATUS_BAD_DATA, "%s: miniSEED: no usable record at byte %zu", path, at);
             break;
         }
-        if (!mst_addmsrtogroup(group, record, 0, -1, -1))
+        if (group->numtraces > TRACES_MAX) /* each record is compared with all of them */
+            status = fail(err, STATUS_BAD_DATA, "%s: miniSEED: more than %d channels", path, CHANNELS_MAX);
+        else if (!mst_addmsrtogroup(group, record, 0, -1, -1))
             status = fail(err, STATUS_BAD_DATA, "%s: miniSEED: the record at byte %zu fits no trace", path, at);
         at += (size_t)record->reclen;
     }

@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* ---- rows --------------------------------------------------------------------------------------------------------- */
+
 Status record_add(Record *r, const Lines *l, Row row, Err *err)
 {
     if (r->n == r->capacity) {
@@ -26,6 +28,52 @@ void record_free(Record *r)
     r->row = NULL;
     r->n = r->capacity = r->n_channels = 0;
 }
+
+/* Digits behind the decimal point of a number as printed, less its exponent. */
+static int count_decimals(Cell c)
+{
+    int n = 0, behind_point = 0;
+    for (const char *p = c.from; p < c.to; p++) {
+        double exponent = 0;
+        if (*p == '.' || *p == ',') {
+            behind_point = 1;
+        } else if (isdigit((unsigned char)*p)) {
+            n += behind_point;
+        } else if (*p != '+' && *p != '-') {
+            if (number_behind(p + 1, c.to, "", &exponent))
+                n -= (int)fmax(fmin(exponent, 400), -400);
+            break;
+        }
+    }
+    return n;
+}
+
+Status record_add_cells(Record *r, Lines *l, int with_comma, size_t *n, Err *err)
+{
+    *n = 0;
+    for (const char *p = l->from; p < l->to; ++*n) {
+        const Cell c = cell_next(&p, l->to, with_comma ? " ;" : " ,;");
+        Row row = {.line = l->number, .decimals = count_decimals(c)};
+        TRY(line_number(l, c, with_comma || c.is_quoted, &row.a, err));
+        if (with_comma || !memchr(c.from, ',', (size_t)(c.to - c.from)))
+            TRY(lines_note_mark(l, c, err));
+        if (*n > CHANNELS_MAX)
+            return fail(err, STATUS_BAD_DATA, "%s:%d: more than %d channels", l->path, l->number, CHANNELS_MAX);
+        TRY(record_add(r, l, row, err));
+    }
+    return STATUS_OK;
+}
+
+void record_set_times(Record *r, size_t width, size_t k)
+{
+    for (size_t i = 0; i + width <= r->n; i += width)
+        for (size_t j = i; j < i + width; j++) {
+            r->row[j].t = r->row[i + k].a;
+            r->row[j].decimals = r->row[i + k].decimals;
+        }
+}
+
+/* ---- channels ----------------------------------------------------------------------------------------------------- */
 
 void name_shorten(char *out, size_t room, const char *name)
 {
@@ -61,48 +109,6 @@ Status record_append(Record *r, const Record *from, const char *path, const char
     return STATUS_OK;
 }
 
-void channel_name(Channel *c, const char *from, const char *to)
-{
-    size_t n = 0;
-    while (from < to && (isspace((unsigned char)*from) || strchr("\"'", *from)))
-        from++;
-    while (to > from && (isspace((unsigned char)to[-1]) || strchr("\"'", to[-1])))
-        to--;
-    for (; from < to && n + 1 < sizeof c->name; from++)
-        if (!isspace((unsigned char)*from) || !isspace((unsigned char)from[1])) /* one blank for several */
-            c->name[n++] = isspace((unsigned char)*from) ? ' ' : isprint((unsigned char)*from) ? *from : '?';
-    c->name[n] = 0;
-}
-
-void channel_unit(Channel *c, const char *from, const char *to)
-{
-    size_t n = 0;
-    while (from < to && *from && strchr(" \t=:", *from))
-        from++;
-    field_strip(&from, &to);
-    c->units = units_named(from, to);
-    for (; !c->units && from < to && n + 1 < sizeof c->unit; from++)
-        c->unit[n++] = isprint((unsigned char)*from) ? *from : '?';
-    c->unit[n] = 0;
-}
-
-void channel_unit_in(Channel *c, const Lines *l, const char *word)
-{
-    const char *from = find_word(l->from, l->to, word), *to;
-    const int tenths = line_has(l, "g/10");
-    c->units = tenths ? 1u << UNIT_G : units_named(l->from, l->to);
-    c->scale = tenths ? 0.1 : 1;
-    if (!from || c->units)
-        return;
-    for (from += strlen(word); from < l->to && *from == ' ';)
-        from++;
-    for (to = from; to < l->to && !strchr(",;([", *to) && strncmp(to, "  ", (size_t)(l->to - to < 2 ? 1 : 2)) != 0;)
-        to++;
-    while (to > from && strchr(" .", to[-1]))
-        to--;
-    channel_unit(c, from, to);
-}
-
 Status record_channel(Record *r, const Lines *l, Channel **out, Err *err)
 {
     if (r->n_channels == CHANNELS_MAX)
@@ -112,24 +118,53 @@ Status record_channel(Record *r, const Lines *l, Channel **out, Err *err)
     return STATUS_OK;
 }
 
-void channel_peak(Channel *c, const char *from, const char *to, const char *word, double m_s2)
+/* from..to in at most `room` bytes with the NUL: one blank for several, ? for what is no ASCII. */
+static void copy_plain(char *out, size_t room, const char *from, const char *to)
 {
-    double x;
-    const char *p = find_word(from, to, word);
-    if (!p || !number_behind(p, to, word, &x) || x == 0)
-        return;
-    p += strlen(word);
-    while (p < to && strchr(" \t=:(", *p))
-        p++;
-    double digit = 1;
-    int behind_point = 0;
-    for (; p < to && strchr("+-.0123456789", *p) && *p; p++) {
-        digit /= behind_point ? 10 : 1;
-        behind_point |= *p == '.';
-    }
-    c->peak = fabs(x) * m_s2;
-    c->peak_slack = 0.5 * digit * m_s2;
+    size_t n = 0;
+    for (; from < to && n + 1 < room; from++)
+        if (!isspace((unsigned char)*from))
+            out[n++] = isprint((unsigned char)*from) ? *from : '?';
+        else if (n && from + 1 < to && !isspace((unsigned char)from[1]))
+            out[n++] = ' ';
+    out[n] = 0;
 }
+
+void channel_name(Channel *c, const char *from, const char *to)
+{
+    while (from < to && (isspace((unsigned char)*from) || strchr("\"'", *from)))
+        from++;
+    while (to > from && (isspace((unsigned char)to[-1]) || strchr("\"'", to[-1])))
+        to--;
+    copy_plain(c->name, sizeof c->name, from, to);
+}
+
+void channel_unit(Channel *c, const char *from, const char *to)
+{
+    while (from < to && strchr(" \t=:", *from) && *from)
+        from++;
+    const char *word = from, *all;
+    while (word < to && !strchr(" \t,;([", *word))
+        word++;
+    for (all = from; all < to && !strchr(",;([", *all) && strncmp(all, "  ", (size_t)(to - all < 2 ? 1 : 2)) != 0;)
+        all++;
+    for (int i = 0; i < 2; i++) {
+        const char **end = i ? &all : &word;
+        while (*end > from && strchr(" .", (*end)[-1]))
+            --*end;
+        const size_t n = (size_t)(*end - from);
+        const int tenths = n == 4 && find_word(from, *end, "g/10"), mm = n == 6 && find_word(from, *end, "mm/s/s");
+        c->unit = tenths ? UNIT_G : mm ? UNIT_CM_S2 : unit_of(from, *end);
+        if (tenths || mm)
+            c->scale *= 0.1;
+        if (c->unit)
+            return;
+    }
+    c->counts = find_word(from, all, "count") != NULL;
+    copy_plain(c->stated, sizeof c->stated, from, all);
+}
+
+/* ---- samples ------------------------------------------------------------------------------------------------------ */
 
 int line_is_marker(const Lines *l)
 {
@@ -140,92 +175,51 @@ int line_is_marker(const Lines *l)
     return isalpha((unsigned char)*l->from) || strchr("/|#&", *l->from) || line_begins(l, "->");
 }
 
-int value_behind_colon(const Lines *l, const char **from)
+int line_has_letters(const Lines *l)
 {
-    const char *colon = memchr(l->from, ':', (size_t)(l->to - l->from));
-    *from = colon ? colon + 1 : NULL;
-    return colon != NULL;
+    for (const char *p = l->from; p < l->to; p++)
+        if (isalpha((unsigned char)*p) && !strchr("eEdD", *p))
+            return 1;
+    return 0;
 }
 
-static Status check_form(const Lines *l, const BlockForm *form, Err *err)
-{
-    if (!(form->count >= 2 && form->count <= 1e8 && form->count == floor(form->count)))
-        return fail(err, STATUS_BAD_DATA, "%s:%d: no usable number of points (2 or more) in '%.*s'", l->path, l->number,
-                    line_shown(l), l->from);
-    if (!(form->dt > 0 && form->dt <= MOTION_STEP_MAX_S))
-        return fail(err, STATUS_BAD_DATA, "%s:%d: no usable time step (above 0, at most %g s) in '%.*s'", l->path,
-                    l->number, MOTION_STEP_MAX_S, line_shown(l), l->from);
-    return STATUS_OK;
-}
-
-Status record_block(Record *r, Lines *l, const BlockForm *form, Err *err)
+Status record_block(Record *r, Lines *l, double count, double dt, int width, size_t lines_behind, Err *err)
 {
     enum { PER_LINE_MAX = 64 };
     double x[PER_LINE_MAX];
     Channel *c = &r->channel[r->n_channels - 1];
-    TRY(check_form(l, form, err));
-    const size_t wanted = (size_t)form->count;
+    const size_t each = c->digitized ? 2 : 1;
+    if (!(count >= 2 && count <= 1e8 && count == floor(count)))
+        return fail(err, STATUS_BAD_DATA, "%s:%d: no usable number of points (2 or more) above this line", l->path,
+                    l->number);
+    if (!c->digitized && !(dt > 0 && dt <= MOTION_STEP_MAX_S))
+        return fail(err, STATUS_BAD_DATA, "%s:%d: no usable time step (above 0, at most %g s) above this line", l->path,
+                    l->number, MOTION_STEP_MAX_S);
+    const size_t wanted = (size_t)count;
+    c->dt = c->digitized ? 0 : dt;
     Lines ahead = lines_ahead(l);
-    for (c->dt = form->dt; c->n < wanted && ahead.from && !line_is_marker(&ahead); ahead = lines_ahead(l)) {
+    for (; c->n < wanted && ahead.from && !line_is_marker(&ahead); ahead = lines_ahead(l)) {
         size_t n;
-        *l = ahead;
-        TRY(line_numbers(l, form->width, PER_LINE_MAX, x, &n, err));
-        if (n > wanted - c->n)
-            return fail(err, STATUS_BAD_DATA, "%s:%d: more samples than the %zu that its header announces", l->path,
-                        l->number, wanted);
-        for (size_t i = 0; i < n; i++)
-            TRY(record_add(r, l, (Row){.a = x[i], .line = l->number}, err));
-        c->n += n;
-    }
-    if (c->n != wanted)
-        return fail(err, STATUS_BAD_DATA, "%s:%d: ends after %zu samples, but its header announces %zu", l->path,
-                    l->number, c->n, wanted);
-    return STATUS_OK;
-}
-
-Status record_block_ends(const Lines *l, double count, Err *err)
-{
-    const Lines ahead = lines_ahead(l);
-    if (ahead.from && !line_is_marker(&ahead))
-        return fail(err, STATUS_BAD_DATA, "%s:%d: more samples than the %.0f that its header announces", ahead.path,
-                    ahead.number, count);
-    return STATUS_OK;
-}
-
-/* n numbers of a line. */
-static Status add_pairs(Record *r, const Lines *l, size_t n, const double x[], Err *err)
-{
-    Channel *c = &r->channel[r->n_channels - 1];
-    if (n % 2)
-        return fail(err, STATUS_BAD_DATA, "%s:%d: %zu numbers are not pairs of time and acceleration", l->path,
-                    l->number, n);
-    for (size_t i = 0; i < n; i += 2)
-        TRY(record_add(r, l, (Row){.t = x[i], .a = x[i + 1], .line = l->number, .decimals = 3}, err));
-    c->n += n / 2;
-    c->digitized = 1;
-    return STATUS_OK;
-}
-
-Status record_pairs(Record *r, Lines *l, double count, int width, Err *err)
-{
-    enum { PER_LINE_MAX = 64 };
-    double x[PER_LINE_MAX];
-    Channel *c = &r->channel[r->n_channels - 1];
-    while ((double)c->n < count) {
-        size_t n;
-        const Lines ahead = lines_ahead(l);
-        if (!ahead.from || line_is_marker(&ahead))
-            return fail(err, STATUS_BAD_DATA, "%s:%d: ends after %zu samples, but its header announces %.0f", l->path,
-                        l->number, c->n, count);
         *l = ahead;
         TRY(line_numbers(l, width, PER_LINE_MAX, x, &n, err));
-        if ((double)(c->n + n / 2) > count)
-            return fail(err, STATUS_BAD_DATA,
-                        "%s:%d: %zu numbers are not pairs of time and acceleration up to the %.0f that its header "
-                        "announces",
-                        l->path, l->number, n, count);
-        TRY(add_pairs(r, l, n, x, err));
+        if (n % each)
+            return fail(err, STATUS_BAD_DATA, "%s:%d: %zu numbers are not pairs of time and acceleration", l->path,
+                        l->number, n);
+        for (size_t i = 0; i < n; i += each)
+            TRY(record_add(r, l, (Row){.t = x[i], .a = x[i + each - 1], .line = l->number, .decimals = 3}, err));
+        c->n += n / each;
     }
+    if (c->n < wanted)
+        return fail(err, STATUS_BAD_DATA, "%s:%d: ends after %zu samples, but its header announces %zu", l->path,
+                    l->number, c->n, wanted);
+    for (; lines_behind > 0; lines_behind--)
+        if (!lines_next(l) || line_has_letters(l))
+            return fail(err, STATUS_BAD_DATA, "%s:%d: velocities and displacements end before the number of the header",
+                        l->path, l->number);
+    ahead = lines_ahead(l);
+    if (c->n > wanted || (!c->digitized && ahead.from && !line_is_marker(&ahead) && !line_has_letters(&ahead)))
+        return fail(err, STATUS_BAD_DATA, "%s:%d: more samples than the %zu that its header announces", l->path,
+                    c->n > wanted ? l->number : ahead.number, wanted);
     return STATUS_OK;
 }
 

@@ -10,7 +10,7 @@
 
 #define MOTION_STEP_MAX_S 1.0 /* accelerographs take 50 samples a second or more: a longer step is a mistake */
 
-enum { CHANNELS_MAX = 128, CHANNEL_NAME_MAX = 64 };
+enum { CHANNELS_MAX = 128, CHANNEL_NAME_MAX = 64, UNIT_SHOWN = 32 };
 
 typedef struct {
     double t, a;  /* [s] where the file has times, [unit of the file] */
@@ -21,17 +21,17 @@ typedef struct {
 typedef struct {
     char name[CHANNEL_NAME_MAX]; /* as in the file; may be empty */
     char full[CHANNEL_NAME_MAX]; /* in an archive: the name with the folder of its file; else empty */
-    unsigned units;              /* that the file names, one bit (1 << MotionUnit) each */
-    char unit[UNIT_SHOWN];       /* as stated, where units does not know it; else empty */
+    MotionUnit unit;             /* UNIT_FROM_FILE: none that is known */
+    char stated[UNIT_SHOWN];     /* a unit that is not known; else empty */
+    int counts;                  /* numbers of a recorder: motion.unit must say what they are */
     double scale;
     double dt;           /* [s] 0: the rows have times */
     double other_dt;     /* [s] of printed times beside dt, or of the header beside times; 0: there is only one */
     double peak;         /* [m/s2] largest |acceleration| that the header states; 0: it states none */
     double peak_slack;   /* [m/s2] half a unit of its last digit */
     int subtract_mean;   /* the agency's own peak is that of the record without its mean */
-    int counts;          /* numbers without a unit: motion.counts_per_m_s2 or motion.unit must say what they are */
-    const char *format;  /* static; of the file, or of the member of an archive, that holds it */
     int digitized;       /* from film, its steps are not equal */
+    const char *format;  /* static; of the file, or of the member of an archive, that holds it */
     const char *warning; /* static; NULL: none */
     size_t first, stride, n;
 } Channel;
@@ -50,29 +50,38 @@ typedef struct {
     const char *channel; /* the one that is wanted; NULL: none was named */
 } ReadHints;
 
-/* One way in which people have ground motions. */
-typedef struct {
-    const char *name;
-    int (*recognise)(Lines l); /* by what the first lines hold */
-    Status (*read)(Record *r, Lines *l, const ReadHints *hints, Err *err);
-} MotionFormat;
+/* Text: r->is_known where it is of a format that says what it is; else a table of numbers. */
+Status text_read(Record *r, Lines *l, const ReadHints *hints, Err *err);
 
-/* Pairs of time and acceleration in columns of `width`, `count` of them, into the last channel. */
-Status record_pairs(Record *r, Lines *l, double count, int width, Err *err);
+/* The last resort of it: plain columns. */
+Status columns_read(Record *r, Lines *l, const ReadHints *hints, Err *err);
 
-extern const MotionFormat FORMAT_AT2, FORMAT_COSMOS, FORMAT_CSMIP, FORMAT_SMC, FORMAT_KNET, FORMAT_ESM, FORMAT_GEONET,
-    FORMAT_JMA, FORMAT_CWB, FORMAT_AFAD, FORMAT_UNAM, FORMAT_CSMNC, FORMAT_CSN, FORMAT_ISESD, FORMAT_BHRC, FORMAT_USC,
-    FORMAT_SLIST, FORMAT_TSPAIR, FORMAT_REFUSED, FORMAT_COLUMNS;
-
-/* Files that are no text. */
+/* Files that are no text, and JSON; the first that recognises the bytes reads them. */
 typedef struct {
     const char *name;
     int (*recognise)(const unsigned char bytes[], size_t n);
     Status (*read)(Record *r, const char *path, const char *bytes, size_t n, Err *err);
 } BinaryFormat;
+extern const BinaryFormat FORMAT_MSEED, FORMAT_SAC, FORMAT_EVT, FORMAT_SIMCENTER;
 
-extern const BinaryFormat FORMAT_MSEED, FORMAT_SAC, FORMAT_EVT;
-extern const MotionFormat FORMAT_SAC_TEXT, FORMAT_SIMCENTER;
+/* Alphanumeric SAC. */
+int sac_text_is(Lines l);
+Status sac_text_read(Record *r, Lines *l, Err *err);
+
+/* ---- rows and channels ------------------------------------------------------------------------------------------- */
+
+Status record_add(Record *r, const Lines *l, Row row, Err *err);
+void record_free(Record *r);
+
+/* Numbers of a line, one Row each; *n is how many. with_comma: 1,5 is one and a half. */
+Status record_add_cells(Record *r, Lines *l, int with_comma, size_t *n, Err *err);
+
+/* The times of column k of `width` go into every row. */
+void record_set_times(Record *r, size_t width, size_t k);
+
+/* A channel without a name that begins with the next row. */
+Status record_channel(Record *r, const Lines *l, Channel **out, Err *err);
+void channel_name(Channel *c, const char *from, const char *to); /* blanks and quotes around it dropped, ASCII only */
 
 /* The name in `room` bytes and a NUL: what is too long loses its middle, for beginning and end tell names apart. */
 void name_shorten(char *out, size_t room, const char *name);
@@ -81,39 +90,21 @@ void name_shorten(char *out, size_t room, const char *name);
  * them in full, the member shortened to fit. */
 Status record_append(Record *r, const Record *from, const char *path, const char *member, Err *err);
 
-Status record_add(Record *r, const Lines *l, Row row, Err *err);
-void record_free(Record *r);
-
-/* A channel without a name that begins with the next row. */
-Status record_channel(Record *r, const Lines *l, Channel **out, Err *err);
-void channel_name(Channel *c, const char *from, const char *to); /* blanks and quotes around it dropped, ASCII only */
-
-/* The unit that a header states, colon or equals sign before it dropped. */
+/* The unit that from..to begins with, as "g/10." or "gal. DCoffset"; one that is not known, up to a comma, a bracket or two
+ * blanks, becomes `stated`; numbers of a recorder become counts. */
 void channel_unit(Channel *c, const char *from, const char *to);
 
-/* The units that a line names, or tenths of g (g/10) by the channel's scale; where it names none, what it states as one behind `word`, up to a comma, a bracket or two
- * blanks. */
-void channel_unit_in(Channel *c, const Lines *l, const char *word);
+/* ---- samples ----------------------------------------------------------------------------------------------------- */
 
-/* The value behind the first colon of a line "key : value"; 0: no colon. */
-int value_behind_colon(const Lines *l, const char **from);
+/* `count` samples into the last channel, at equal steps dt, or, digitized, pairs of time and acceleration, from the line
+ * after l's; width: of columns of numbers that run together, 0: none. A line of words ends them early; a further number
+ * is an error, behind `lines_behind` lines that are skipped. */
+Status record_block(Record *r, Lines *l, double count, double dt, int width, size_t lines_behind, Err *err);
 
-typedef struct {
-    double count, dt; /* as read: whole and positive ones are accepted */
-    int width;        /* columns of numbers that run together; 0: none */
-} BlockForm;
-
-/* Takes the number behind `word` in from..to, if it is there, as the peak that the header states. */
-void channel_peak(Channel *c, const char *from, const char *to, const char *word, double m_s2);
-
-/* Exactly `count` samples into the last channel, from the line after l's; a line of words ends them early. */
-Status record_block(Record *r, Lines *l, const BlockForm *form, Err *err);
+int line_has_letters(const Lines *l); /* beside those of exponents */
 
 /* Begins like a word, a comment or an end marker ("*** End Data ***"), and not like nan, inf or Fortran's stars. */
 int line_is_marker(const Lines *l);
-
-/* No further number may stand behind a block. */
-Status record_block_ends(const Lines *l, double count, Err *err);
 
 /* n numbers in columns of `width`, on as many lines as they need. */
 Status header_numbers(Lines *l, int width, size_t n, double x[], Err *err);

@@ -79,8 +79,8 @@ static Status check_header(const char *path, double delta, double npts, double t
                            Err *err)
 {
     if (quantity == 6 || quantity == 7)
-        return fail(err, STATUS_BAD_DATA, "%s: not an acceleration: IDEP in its SAC header says %s", path,
-                    quantity == 6 ? "displacement" : "velocity");
+        return fail_sub(err, STATUS_BAD_DATA, SUB_NO_RECORD, "%s: not an acceleration: IDEP in its SAC header says %s",
+                        path, quantity == 6 ? "displacement" : "velocity");
     if (type != 1 || even != 1)
         return fail(err, STATUS_BAD_DATA, "%s: a SAC file of type %g that is no time series in equal steps", path,
                     type);
@@ -125,7 +125,7 @@ static Status read_binary(Record *r, const char *path, const char *bytes, size_t
 
 enum { REAL_LINES = N_REALS / 5, WORD_LINES = 8 };
 
-static int recognise_text(Lines l)
+int sac_text_is(Lines l)
 {
     double x[5];
     size_t n;
@@ -135,11 +135,10 @@ static int recognise_text(Lines l)
     return n == 5 && is_version((int32_t)fmax(fmin(x[1], 100), -100)) && x[1] == floor(x[1]);
 }
 
-static Status read_text(Record *r, Lines *l, const ReadHints *hints, Err *err)
+Status sac_text_read(Record *r, Lines *l, Err *err)
 {
     double reals[N_REALS], integers[N_INTEGERS];
     Channel *c;
-    (void)hints;
     TRY(header_numbers(l, 15, N_REALS, reals, err));
     TRY(header_numbers(l, 10, N_INTEGERS, integers, err));
     TRY(check_header(l->path, reals[DELTA], integers[NPTS], integers[IFTYPE], integers[LEVEN], integers[IDEP], err));
@@ -151,11 +150,9 @@ static Status read_text(Record *r, Lines *l, const ReadHints *hints, Err *err)
         if (i == 6 && l->to - l->raw > 16 && strncmp(l->raw + 16, "-12345", 6) != 0) /* words 18 to 20 */
             channel_name(c, l->raw + 16, l->to);
     }
-    TRY(record_block(r, l, &(BlockForm){.count = integers[NPTS], .dt = reals[DELTA], .width = 15}, err));
-    TRY(record_block_ends(l, integers[NPTS], err));
+    TRY(record_block(r, l, integers[NPTS], reals[DELTA], 15, 0, err));
     check_range(c, r, reals[DEPMIN], reals[DEPMAX]);
     return STATUS_OK;
 }
 
 const BinaryFormat FORMAT_SAC = {"sac", recognise, read_binary};
-const MotionFormat FORMAT_SAC_TEXT = {"sac", recognise_text, read_text};

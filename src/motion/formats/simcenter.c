@@ -13,14 +13,23 @@ enum { DEPTH_MAX = 32 };
 typedef struct {
     Record *r;
     const Lines *l;
-    unsigned units;
+    MotionUnit unit;
     const char *name;
     double count; /* "numSteps"; 0: none is stated */
 } Place;
 
-static int recognise(Lines l)
+static size_t blanks_before(const unsigned char bytes[], size_t n)
 {
-    return lines_next_filled(&l) && *l.from == '{';
+    size_t i = n > 3 && memcmp(bytes, "\xef\xbb\xbf", 3) == 0 ? 3 : 0; /* UTF-8 byte order mark */
+    while (i < n && bytes[i] && strchr(" \t\r\n", bytes[i]))
+        i++;
+    return i;
+}
+
+static int recognise(const unsigned char bytes[], size_t n)
+{
+    const size_t i = blanks_before(bytes, n);
+    return i < n && bytes[i] == '{';
 }
 
 static Status take_list(const Place *place, const json_t *list, double dt, const char *axis, Err *err)
@@ -36,7 +45,7 @@ static Status take_list(const Place *place, const json_t *list, double dt, const
     TRY(record_channel(place->r, place->l, &c, err));
     snprintf(name, sizeof name, "%s%s%s", place->name, *place->name && *axis ? " " : "", axis);
     channel_name(c, name, name + strlen(name));
-    c->units = place->units;
+    c->unit = place->unit;
     c->dt = dt;
     c->n = n;
     for (size_t i = 0; i < n; i++) {
@@ -49,11 +58,12 @@ static Status take_list(const Place *place, const json_t *list, double dt, const
     return STATUS_OK;
 }
 
-static unsigned units_of(const json_t *o, unsigned otherwise)
+static MotionUnit unit_beside(const json_t *o, MotionUnit otherwise)
 {
-    const char *unit = json_string_value(json_object_get(o, "unit"));
-    unit = unit ? unit : json_string_value(json_object_get(o, "units"));
-    return unit && units_named(unit, unit + strlen(unit)) ? units_named(unit, unit + strlen(unit)) : otherwise;
+    const char *text = json_string_value(json_object_get(o, "unit"));
+    text = text ? text : json_string_value(json_object_get(o, "units"));
+    const MotionUnit unit = text ? unit_of(text, text + strlen(text)) : UNIT_FROM_FILE;
+    return unit ? unit : otherwise;
 }
 
 /* Which of the factors of event, series and pattern multiply the samples differs from program to program. */
@@ -88,7 +98,7 @@ static Status search(Place place, const json_t *node, int depth, Err *err)
         return STATUS_OK;
     const json_t *name = json_object_get(node, "name"), *dt = json_object_get(node, "dT");
     place.name = json_is_string(name) ? json_string_value(name) : place.name;
-    place.units = units_of(node, place.units);
+    place.unit = unit_beside(node, place.unit);
     place.count = json_number_value(json_object_get(node, "numSteps"));
     TRY(check_factor(place.l, node, err));
     for (size_t k = 0; k < sizeof LISTS / sizeof LISTS[0] && json_is_number(dt); k++)
@@ -98,18 +108,21 @@ static Status search(Place place, const json_t *node, int depth, Err *err)
     return STATUS_OK;
 }
 
-static Status read(Record *r, Lines *l, const ReadHints *hints, Err *err)
+static Status read(Record *r, const char *path, const char *bytes, size_t n, Err *err)
 {
     json_error_t why;
-    (void)hints;
-    json_t *root = json_loadb(l->next, (size_t)(l->end - l->next), 0, &why);
+    const Lines l = {.path = path, .number = 1};
+    const size_t begin = blanks_before((const unsigned char *)bytes, n);
+    while (n > begin && strchr("\x1a", bytes[n - 1])) /* Ctrl-Z or NUL at the end */
+        n--;
+    json_t *root = json_loadb(bytes + begin, n - begin, 0, &why);
     if (!root)
-        return fail(err, STATUS_BAD_DATA, "%s:%d: no JSON: %s", l->path, why.line, why.text);
-    Status status = search((Place){.r = r, .l = l, .name = ""}, root, 0, err);
+        return fail(err, STATUS_BAD_DATA, "%s:%d: no JSON: %s", path, why.line, why.text);
+    Status status = search((Place){.r = r, .l = &l, .name = ""}, root, 0, err);
     json_decref(root);
     if (status == STATUS_OK && r->n_channels == 0)
-        status = fail(err, STATUS_BAD_DATA, "%s: JSON without a step dT and samples data (SimCenter)", l->path);
+        status = fail(err, STATUS_BAD_DATA, "%s: JSON without a step dT and samples data (SimCenter)", path);
     return status;
 }
 
-const MotionFormat FORMAT_SIMCENTER = {"simcenter", recognise, read};
+const BinaryFormat FORMAT_SIMCENTER = {"simcenter", recognise, read};

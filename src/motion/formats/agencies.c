@@ -1,0 +1,792 @@
+/* The text formats of agencies: one reader, and a row of FORMATS for each, by the words of its header. What a row cannot
+ * say has a function above it. The layouts are those of the agencies' descriptions and of their files (docs/motions.md).
+ *
+ * A header ends where a line `ends` was seen and a line of numbers follows; or behind `text_lines` lines. Its words give
+ *
+ *   COUNT, or RATE times DURATION     number of samples         STEP, or 1 / RATE, or DURATION / COUNT    [s]
+ *   UNIT, PEAK, NAME, TYPE            of the motion; what is twice in a header counts where it stands first
+ *
+ * Samples stand row by row, in columns of `width` where they run together; or in one column per channel, whose NAMES are
+ * in the header, else in its last line; "/a/b/c" is one value for each. A column of times is checked row by row. */
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+
+#include "base/units.h"
+#include "motion/formats/record.h"
+
+typedef enum { NAME, COUNT, STEP, RATE, DURATION, UNIT, PEAK, FACTOR, TYPE, NAMES, N_FIELDS } Field;
+
+typedef struct {
+    Lines at[N_FIELDS]; /* the line, from its value on; from == NULL: none */
+    Lines last;         /* the last line that is not blank */
+    const char *from;   /* where the header begins */
+    double count, dt;   /* NAN: not known yet */
+    int width;
+    size_t lines_behind; /* the samples, of velocities and displacements */
+} Header;
+
+typedef struct {
+    Field field;
+    const char *line;   /* how the line begins; "=LTV": it is one of these letters */
+    const char *behind; /* the value stands behind this word of it */
+} HeaderWord;
+
+typedef struct Format {
+    const char *name, *begins, *has; /* a line begins and has, of words parted by |, */
+    int within;                      /* among the first so many; 1: it begins a channel, and another may follow */
+    int (*is)(Lines l);              /* in the place of them */
+    const char *ends;                /* of the header; NULL: the first line of numbers */
+    int text_lines, number_lines;    /* of the header; -1: "with N text lines" */
+    int integers;                    /* it ends before a line of integers */
+    int width, pairs;                /* pairs: of time and acceleration, digitized from film */
+    const char *parting;             /* of names; NULL: samples stand row by row */
+    const char *peak_of;             /* what stands before the peak of the channel %s */
+    int one_word;                    /* the name is the first word of its value */
+    MotionUnit unit;                 /* by definition */
+    const char *refused;             /* why it is not read */
+    /* What else the header holds; l is at its last line. */
+    Status (*more)(Lines *l, Header *h, Channel *c, Err *err);
+    Status (*read)(Record *r, Lines *l, Err *err); /* in the place of all this */
+    HeaderWord words[12];
+} Format;
+
+/* ---- headers ------------------------------------------------------------------------------------------------------ */
+
+/* Does the line begin with one of the words parted by |, or, anywhere, hold one? */
+static int is_any(const Lines *l, const char *words, int anywhere)
+{
+    char word[64];
+    for (size_t n; *words; words += n + (words[n] == '|')) {
+        n = strcspn(words, "|");
+        snprintf(word, sizeof word, "%.*s", (int)n, words);
+        if (anywhere ? line_has(l, word) : line_begins(l, word))
+            return 1;
+    }
+    return 0;
+}
+
+static int begins_channel(const Format *f, const Lines *l)
+{
+    return (!f->begins || is_any(l, f->begins, 0)) && (!f->has || is_any(l, f->has, 1));
+}
+
+static int recognise(const Format *f, Lines l)
+{
+    if (f->is)
+        return f->is(l);
+    while (l.number < f->within && lines_next(&l))
+        if (begins_channel(f, &l))
+            return 1;
+    return 0;
+}
+
+static void take_words(const Format *f, const Lines *l, Header *h)
+{
+    for (const HeaderWord *w = f->words; w->line; w++) {
+        const char *p = line_begins(l, w->line) ? find_word(l->from + strlen(w->line), l->to, w->behind) : NULL;
+        if (*w->line == '=')
+            p = l->to - l->from == 1 && strchr(w->line + 1, *l->from) ? l->from : NULL;
+        if (!p || h->at[w->field].from)
+            continue;
+        h->at[w->field] = *l;
+        h->at[w->field].from = p + strlen(w->behind);
+    }
+}
+
+/* 16I5: nothing but digits, signs and blanks. */
+static int is_integers(const Lines *l)
+{
+    int digits = 0;
+    for (const char *p = l->from; p && p < l->to; p++) {
+        if (!isdigit((unsigned char)*p) && *p != ' ' && *p != '-')
+            return 0;
+        digits += isdigit((unsigned char)*p) != 0;
+    }
+    return digits >= 16;
+}
+
+/* Up to the header's last line. */
+static Status read_header(const Format *f, Lines *l, Header *h, Err *err)
+{
+    double n_lines = f->text_lines;
+    int ended = !f->ends;
+    *h = (Header){.count = NAN, .dt = NAN, .width = f->width, .from = l->from};
+    if (f->text_lines < 0 && !(number_behind(l->from, l->to, "with", &n_lines) && n_lines > 0 && n_lines <= 1000))
+        return fail(err, STATUS_BAD_DATA, "%s:%d: no usable number of text lines in '%.*s'", l->path, l->number,
+                    line_shown(l), l->from);
+    for (int i = 1;; i++) {
+        take_words(f, l, h);
+        h->last = l->from < l->to ? *l : h->last;
+        ended |= f->ends && line_has(l, f->ends);
+        const Lines ahead = lines_ahead(l);
+        if (f->integers   ? is_integers(&ahead)
+            : n_lines > 0 ? i == (int)n_lines
+                          : ended && ahead.from && !line_is_marker(&ahead) && !line_begins(&ahead, "--"))
+            return lines_skip(l, f->number_lines) ? STATUS_OK : fail_too_short(l, "header", err);
+        if (!lines_next(l))
+            return ended ? fail_too_short(l, f->integers ? "integer header" : "samples", err)
+                         : fail(err, STATUS_BAD_DATA, "%s:%d: the file ends before its line '%s'", l->path, l->number,
+                                f->ends);
+    }
+}
+
+/* Item k of "/a/b/c", or the value for all of them. */
+static Cell item_of(const Lines *at, int k)
+{
+    const char *p = at->from;
+    if (!p)
+        return (Cell){0};
+    while (p < at->to && strchr(" :", *p))
+        p++;
+    if (p == at->to || *p != '/')
+        return (Cell){.from = at->from, .to = at->to};
+    Cell c = cell_next(&p, at->to, "/");
+    for (int i = 0; i <= k; i++)
+        c = cell_next(&p, at->to, "/");
+    return c;
+}
+
+static double number_of(const Header *h, Field field, int k)
+{
+    double x;
+    const Cell c = item_of(&h->at[field], k);
+    return c.from && number_behind(c.from, c.to, "", &x) ? x : NAN;
+}
+
+static Status fail_word(const Format *f, const Lines *l, Field first, Field second, Err *err)
+{
+    const HeaderWord *w = f->words;
+    while (w->line && w->field != first && w->field != second)
+        w++;
+    return fail(err, STATUS_BAD_DATA,
+                w->line ? "%s:%d: no usable %s above this line (%s%s)" : "%s:%d: no usable %s above this line", l->path,
+                l->number, first == COUNT ? "number of points" : "time step (above 0, at most 1 s)", w->line,
+                w->behind);
+}
+
+/* Number and step of channel k; where a length is stated too it must be theirs. */
+static Status settle_steps(const Format *f, const Lines *l, Header *h, int k, Err *err)
+{
+    const double rate = number_of(h, RATE, k), duration = number_of(h, DURATION, k);
+    double count = isnan(h->count) ? number_of(h, COUNT, k) : h->count,
+           dt = isnan(h->dt) ? number_of(h, STEP, k) : h->dt;
+    count = isnan(count) ? round(rate * duration) : count;
+    dt = isnan(dt) ? (rate > 1e5 ? INFINITY : 1 / rate) : dt;
+    dt = isnan(dt) ? duration / count : dt;
+    if (!(dt > 0 && dt <= MOTION_STEP_MAX_S))
+        return fail_word(f, l, STEP, RATE, err);
+    if (!f->parting && !(count >= 2 && count <= 1e8))
+        return fail_word(f, l, COUNT, DURATION, err);
+    const double rounded = duration == floor(duration); /* "approx   70 secs" */
+    if (duration > 0 && fabs(duration - count * dt) > 2 * dt + 0.02 * duration + rounded)
+        return fail(err, STATUS_BAD_DATA, "%s:%d: a length of %g s, but %g samples every %g s are %g s", l->path,
+                    h->at[DURATION].number, duration, count, dt, count * dt);
+    h->count = count;
+    h->dt = dt;
+    return STATUS_OK;
+}
+
+/* The first unit among the words of the text. */
+static MotionUnit unit_within(const char *from, const char *to)
+{
+    MotionUnit unit = UNIT_FROM_FILE;
+    while (from < to && !unit) {
+        const char *word = from;
+        while (from < to && !strchr(" \t,;:()[]_=", *from))
+            from++;
+        unit = unit_of(word, from);
+        from++;
+    }
+    return unit;
+}
+
+/* The number at `from`, in the unit of its line, or else in the channel's. */
+static void take_peak(Channel *c, const char *line, const char *from, const char *to)
+{
+    static const double M_S2[] = {0, 1, 0.01, GRAVITY};
+    double x, digit = 1;
+    int behind_point = 0;
+    if (!number_behind(from, to, "", &x) || x == 0)
+        return;
+    while (from < to && strchr(" \t=:(", *from))
+        from++;
+    for (const char *p = from; p < to && strchr("+-.0123456789", *p); p++) {
+        digit /= behind_point ? 10 : 1;
+        behind_point |= *p == '.';
+    }
+    MotionUnit unit = unit_within(from, to);
+    unit = unit ? unit : unit_within(line, from);
+    const double scale = unit ? M_S2[unit] : M_S2[c->unit] * c->scale;
+    if (fabs(x) * scale <= c->peak)
+        return;
+    c->peak = fabs(x) * scale;
+    c->peak_slack = 0.5 * digit * scale;
+}
+
+/* What the header says of channel k. */
+static void settle_channel(const Format *f, const Header *h, Channel *c, int k)
+{
+    const Lines *unit = &h->at[UNIT], *peak = &h->at[PEAK];
+    if (unit->from)
+        channel_unit(c, unit->from, unit->to);
+    else if (!c->unit)
+        c->unit = f->unit;
+    const Cell item = item_of(peak, k);
+    if (item.from && !f->peak_of)
+        take_peak(c, peak->raw, item.from, item.to);
+}
+
+static Status check_type(const Lines *type, Err *err)
+{
+    const Lines whole = {.from = type->raw, .to = type->to};
+    if (!type->from || line_has(&whole, "accel") || !is_any(&whole, "veloc|displ", 1))
+        return STATUS_OK;
+    return fail_sub(err, STATUS_BAD_DATA, SUB_NO_RECORD, "%s:%d: not an acceleration: '%.*s'", type->path, type->number,
+                    line_shown(&whole), whole.from);
+}
+
+/* ---- samples ------------------------------------------------------------------------------------------------------ */
+
+/* Behind `peak_of` with the channel's name: one number or two, "0.658~ -0.837", of which the larger counts. */
+static void take_named_peak(const Format *f, const Header *h, Channel *c, const char *end)
+{
+    char word[CHANNEL_NAME_MAX + 32];
+    snprintf(word, sizeof word, f->peak_of, c->name);
+    const char *at = find_word(h->from, end, word), *stop = at ? memchr(at, '\n', (size_t)(end - at)) : NULL;
+    if (!at)
+        return;
+    stop = stop ? stop : end;
+    take_peak(c, at, at + strlen(word), stop);
+    const char *wave = memchr(at, '~', (size_t)(stop - at));
+    if (wave)
+        take_peak(c, at, wave + 1, stop);
+}
+
+static Status column_channel(const Format *f, Record *r, const Lines *l, Header *h, Cell name, Channel shape, Err *err)
+{
+    Channel *c;
+    const int k = (int)r->n_channels;
+    const char *sign = memchr(name.from, '(', (size_t)(name.to - name.from));
+    TRY(record_channel(r, l, &c, err));
+    *c = shape;
+    channel_name(c, name.from, sign ? sign : name.to);
+    h->count = h->dt = NAN;
+    TRY(settle_steps(f, l, h, k, err));
+    *(shape.dt == 0 ? &c->other_dt : &c->dt) = h->dt;
+    settle_channel(f, h, c, k);
+    if (f->peak_of)
+        take_named_peak(f, h, c, h->last.to);
+    if (h->at[COUNT].from && h->count < (double)c->n && (double)c->n <= h->count + 16 && h->count >= 2 &&
+        memchr(h->at[COUNT].from, '/', 4)) { /* as UNAM's files have them */
+        c->n = (size_t)h->count;
+        c->warning = "it has some rows more than its header announces; they are left out";
+    } else if (h->at[COUNT].from && h->count != (double)c->n) {
+        return fail(err, STATUS_BAD_DATA, "%s:%d: %zu rows, but its header announces %g for channel %d", l->path,
+                    l->number, c->n, h->count, k + 1);
+    }
+    return STATUS_OK;
+}
+
+static Status read_columns(const Format *f, Record *r, Lines *l, Header *h, Err *err)
+{
+    const Lines *names = h->at[NAMES].from ? &h->at[NAMES] : &h->last;
+    size_t width = 0, n, k = 0, timed = 0;
+    while (lines_next_filled(l)) {
+        TRY(record_add_cells(r, l, 0, &n, err));
+        width = width ? width : n;
+        if (n != width)
+            return fail_sub(err, STATUS_BAD_DATA, SUB_RAGGED, "%s:%d: has %zu columns where the lines above have %zu",
+                            l->path, l->number, n, width);
+    }
+    for (const char *p = names->from; p <= names->to;) {
+        const Cell name = cell_next(&p, names->to, f->parting);
+        if (name.from == name.to)
+            continue;
+        timed |= k == 0 && find_word(name.from, name.to, "time") == name.from;
+        if (k >= timed && k < width)
+            TRY(column_channel(f, r, l, h, name,
+                               (Channel){.scale = 1, .dt = !timed, .first = k, .stride = width, .n = r->n / width},
+                               err));
+        k++;
+    }
+    if (k != width)
+        return fail(err, STATUS_BAD_DATA, "%s:%d: names %zu columns, but %zu follow", l->path, names->number, k, width);
+    if (timed)
+        record_set_times(r, width, 0);
+    return STATUS_OK;
+}
+
+static Status read_channel(const Format *f, Record *r, Lines *l, Err *err)
+{
+    Header h;
+    Channel *c;
+    TRY(read_header(f, l, &h, err));
+    TRY(check_type(&h.at[TYPE], err));
+    if (f->parting)
+        return read_columns(f, r, l, &h, err);
+    TRY(record_channel(r, l, &c, err));
+    if (h.at[NAME].from)
+        channel_name(c, h.at[NAME].from, h.at[NAME].to);
+    if (f->one_word)
+        c->name[strcspn(c->name, " ")] = 0;
+    c->digitized = f->pairs;
+    if (f->more)
+        TRY(f->more(l, &h, c, err));
+    TRY(check_type(&h.at[TYPE], err));
+    if (c->digitized)
+        h.count = isnan(h.count) ? number_of(&h, COUNT, 0) : h.count;
+    else
+        TRY(settle_steps(f, l, &h, 0, err));
+    settle_channel(f, &h, c, 0);
+    return record_block(r, l, h.count, h.dt, h.width, h.lines_behind, err);
+}
+
+/* ---- what no row can say ------------------------------------------------------------------------------------------- */
+
+/* CSMIP (report OSMS 85-03): 7 lines 16I5, 50 (V1) or 100 (V2) reals 8F10, then a line such as
+ *
+ *   13200 Accelerogram points at 200 pts/sec in units of g .      Format: (8f9.6)               V1, digital
+ *   12000 points of accel data equally spaced at  .005 sec, in cm/sec2. (8f10.6)                V2
+ *
+ * V1 of a film recorder has no such line: pairs of time and acceleration, 10F7.3. A name is what stands behind "Chan  1:",
+ * with the location where the text has one, for that tells the channels of a building apart. */
+static Status csmip_more(Lines *l, Header *h, Channel *c, Err *err)
+{
+    enum { REAL_LINES_V1 = 7, REAL_LINES_MAX = 20 };
+    const Lines name = h->at[NAME];
+    const char *place = name.from ? find_word(name.from, name.to, "Location") : NULL;
+    const char *bracket = name.from ? memchr(name.from, '(', (size_t)(name.to - name.from)) : NULL;
+    double x;
+    if (name.from) {
+        char text[2 * CHANNEL_NAME_MAX];
+        channel_name(c, name.from, bracket && (!place || bracket < place) ? bracket : place ? place : name.to);
+        place = place ? place + strcspn(place, " :=") : NULL;
+        while (place && place < name.to && strchr(" :=", *place))
+            place++;
+        const int n = snprintf(text, sizeof text, "%s%s%.*s", c->name, place ? ", " : "",
+                               place ? (int)(name.to - place < 64 ? name.to - place : 64) : 0, place ? place : "");
+        channel_name(c, text, text + n);
+    }
+    const int is_v2 = strncasecmp(h->from, "corrected", 9) == 0;
+    for (int i = 0; i < REAL_LINES_MAX; i++) {
+        const Lines ahead = lines_ahead(l);
+        if (!ahead.from)
+            return fail_too_short(l, "samples", err);
+        c->digitized = !is_v2 && i == REAL_LINES_V1 && !line_has_letters(&ahead);
+        h->width = 7;
+        if (c->digitized)
+            return STATUS_OK;
+        *l = ahead;
+        if (line_has_letters(l))
+            break;
+    }
+    if (!line_has_letters(l))
+        return fail(err, STATUS_BAD_DATA, "%s:%d: no line that announces the samples above this one", l->path,
+                    l->number);
+    h->width = format_width(l) ? format_width(l) : 10;
+    h->at[COUNT] = h->at[TYPE] = *l;
+    if (number_behind(l->from, l->to, " at ", &x)) /* "at 200 pts/sec" or "spaced at .005 sec" */
+        h->dt = is_any(l, "pts/s|points/s|samples/s", 1) ? 1 / x : x;
+    const char *unit = find_word(l->from, l->to, " in units of ");
+    unit = unit ? unit + strlen(" in units of") : find_word(l->from, l->to, " in ");
+    if (unit) {
+        h->at[UNIT] = *l;
+        h->at[UNIT].from = unit + (strncasecmp(unit, " in ", 4) == 0 ? 3 : 0);
+    }
+    return STATUS_OK;
+}
+
+/* The line above a part of COSMOS' header: "100 Integer-header values follow on  10 lines, Format= (10I8)". */
+static Status part_begins(Lines *l, const char *word, double *n_lines, Err *err)
+{
+    if (!lines_next(l))
+        return fail_too_short(l, "header", err);
+    const int counted = number_behind(l->from, l->to, "follow on", n_lines);
+    if (!line_has(l, word) || !counted || !(*n_lines >= 0 && *n_lines <= 1000))
+        return fail(err, STATUS_BAD_DATA, "%s:%d: '%.*s' does not announce the %s", l->path, l->number, line_shown(l),
+                    l->from, word);
+    return STATUS_OK;
+}
+
+/* COSMOS 1.20: an integer and a real header and comments, each under a line that says how many lines follow, then
+ *
+ *   7000  acceleration pts, approx   70 secs, units=cm/sec2(04),Format=(8F10.5)
+ *
+ * and the samples. Real 62 is the step in ms. Comments begin with '|', whatever their announced number is. */
+static Status cosmos_more(Lines *l, Header *h, Channel *c, Err *err)
+{
+    enum { N_REALS = 100, STEP_AT = 61 };
+    double n_lines = 0, reals[N_REALS];
+    const Lines name = h->at[NAME];
+    if (name.from) { /* "Sta Chan  1: 340 deg (Rcrdr Chan  1)" or "Sta Cha 1: 340 deg: Up (" */
+        const char *from = name.from, *stop = memchr(from, '(', (size_t)(name.to - from));
+        const char *deg = find_word(from, name.to, "deg"), *colon = memchr(from, ':', (size_t)(name.to - from));
+        channel_name(c, colon && deg && colon < deg ? colon + 1 : from, stop && stop > from ? stop : name.to);
+    }
+    TRY(part_begins(l, "Integer-header", &n_lines, err));
+    if (!lines_skip(l, (int)n_lines))
+        return fail_too_short(l, "header", err);
+    TRY(part_begins(l, "Real-header", &n_lines, err));
+    TRY(header_numbers(l, format_width(l), N_REALS, reals, err));
+    do {
+        if (!lines_next(l))
+            return fail_too_short(l, "samples", err);
+    } while (line_begins(l, "|") || line_has(l, "comment line"));
+    h->dt = reals[STEP_AT] * 1e-3;
+    h->width = format_width(l);
+    h->at[COUNT] = h->at[DURATION] = h->at[UNIT] = *l;
+    h->at[DURATION].from = find_word(l->from, l->to, "approx");
+    h->at[UNIT].from = find_word(l->from, l->to, "units=");
+    if (h->at[DURATION].from)
+        h->at[DURATION].from += strlen("approx");
+    if (h->at[UNIT].from)
+        h->at[UNIT].from += strlen("units=");
+    return STATUS_OK;
+}
+
+/* USGS SMC (Open-File Report 2005-1438, appendix): 11 lines of text, of which the first says what is held; 6 lines 8I10,
+ * 10 lines 5E15.7; comments that begin with '|'; numbers in cm/s2, 8E10.4 or in wider columns (5E14.7).
+ *
+ *   integer 16   comment lines                 real 1         stands for "undefined" (1.7E38)
+ *   integer 17   numbers that follow           real 2         samples per second; undefined: pairs of time and
+ *   real 30, 32  largest and smallest value                   acceleration, digitized from film */
+enum { SMC_TEXT_LINES = 11 };
+
+static int smc_is(Lines l)
+{
+    return lines_next(&l) && (line_begins(&l, "*") || is_any(&l, "ACCELEROGRAM|VELOCITY|DISPLACEMENT|UNKNOWN", 1)) &&
+           lines_skip(&l, 1) && line_begins(&l, "*") && lines_skip(&l, SMC_TEXT_LINES - 2) && line_begins(&l, "*");
+}
+
+/* The first number of a block stands at the right end of its column. */
+static int smc_width(const Lines *l)
+{
+    const Lines ahead = lines_ahead(l);
+    const char *p = ahead.from;
+    while (p && p < ahead.to && !strchr("EeDd ", *p))
+        p++;
+    for (p += p && p < ahead.to; p && p < ahead.to;)
+        if (isdigit((unsigned char)*p) || (strchr("+-", *p) && !isdigit((unsigned char)p[-1])))
+            p++;
+        else
+            break;
+    const long width = p ? p - ahead.raw : 0;
+    return width >= 10 && width <= 20 ? (int)width : 10;
+}
+
+static Status smc_more(Lines *l, Header *h, Channel *c, Err *err)
+{
+    enum {
+        N_INTEGERS = 48,
+        N_REALS = 50,
+        COMMENTS = 15,
+        NUMBERS = 16,
+        UNDEFINED = 0,
+        RATE_AT = 1,
+        LARGEST = 29,
+        SMALLEST = 31
+    };
+    double integers[N_INTEGERS], reals[N_REALS];
+    Lines first = {.path = l->path, .next = h->from, .end = l->to, .mark = l->mark};
+    lines_next(&first);
+    h->at[TYPE] = first;
+    if (line_has(&first, "UNKNOWN"))
+        c->warning = "its first line, UNKNOWN, does not say what it holds; taken as an acceleration";
+    TRY(header_numbers(l, 10, N_INTEGERS, integers, err));
+    TRY(header_numbers(l, 15, N_REALS, reals, err));
+    for (double i = 0; i < integers[COMMENTS]; i++) {
+        if (!lines_next(l))
+            return fail_too_short(l, "samples", err);
+        if (!line_begins(l, "|"))
+            return fail(err, STATUS_BAD_DATA, "%s:%d: comment %g of %g does not begin with '|': '%.*s'", l->path,
+                        l->number, i + 1, integers[COMMENTS], line_shown(l), l->from);
+    }
+    h->count = integers[NUMBERS];
+    h->dt = reals[RATE_AT] <= 1e5 ? 1 / reals[RATE_AT] : INFINITY;
+    h->width = smc_width(l);
+    if (reals[RATE_AT] == reals[UNDEFINED] && reals[UNDEFINED] > 1e30) {
+        c->digitized = 1;
+        h->count = floor(h->count / 2); /* a line more may follow, of another record */
+    }
+    const double a = reals[LARGEST], b = reals[SMALLEST];
+    if (a != reals[UNDEFINED] && b != reals[UNDEFINED] && fabs(a) < 1e6 && fabs(b) < 1e6)
+        c->peak = 0.01 * fmax(fabs(a), fabs(b));
+    c->peak_slack = 1e-4 * c->peak;
+    return STATUS_OK;
+}
+
+/* K-NET, KiK-net (NIED): a count times the factor 3920(gal)/6182761 is in gal; its zero is the recorder's, so the mean is
+ * subtracted, as NIED does for its Max. Acc. KiK-net numbers its directions: 1 to 3 are NS, EW, UD in the borehole, 4 to 6
+ * the same at the surface. */
+static Status knet_more(Lines *l, Header *h, Channel *c, Err *err)
+{
+    static const char *const DIRECTIONS[] = {"NS1", "EW1", "UD1", "NS2", "EW2", "UD2", "N-S", "E-W", "U-D"};
+    const Lines *factor = &h->at[FACTOR];
+    double gal = NAN, counts = NAN;
+    const char *slash = factor->from ? memchr(factor->from, '/', (size_t)(factor->to - factor->from)) : NULL;
+    if (!slash || !find_word(factor->from, slash, "gal") || !number_behind(factor->from, slash, "", &gal) ||
+        !number_behind(slash, factor->to, "/", &counts) || !(gal / counts > 0) || isinf(gal / counts))
+        return fail(err, STATUS_BAD_DATA, "%s:%d: no usable Scale Factor, as 3920(gal)/6182761", l->path,
+                    factor->from ? factor->number : l->number);
+    c->scale = gal / counts;
+    c->subtract_mean = 1;
+    int k = 6;
+    if (c->name[0] >= '1' && c->name[0] <= '6' && !c->name[1])
+        k = c->name[0] - '1';
+    while (k >= 6 && k < 9 && strcmp(c->name, DIRECTIONS[k]) != 0)
+        k++;
+    if (k == 9)
+        return fail(err, STATUS_BAD_DATA,
+                    "%s:%d: the direction '%s' is none of N-S, E-W, U-D (K-NET), 1 to 6 (KiK-net)", l->path,
+                    h->at[NAME].from ? h->at[NAME].number : l->number, c->name);
+    channel_name(c, DIRECTIONS[k], DIRECTIONS[k] + 3);
+    return STATUS_OK;
+}
+
+/* GeoNet: 10 lines of 10 numbers behind the text, counted from 0 the samples of V1 at 30, those of V2 (accelerations,
+ * velocities, displacements) at 33, 34, 35, the step [s] at 65; samples 10F8.1 in mm/s2. */
+static Status geonet_more(Lines *l, Header *h, Channel *c, Err *err)
+{
+    double x[100], in_words = 0;
+    TRY(header_numbers(l, 8, 100, x, err));
+    const int is_v2 = strncasecmp(h->from, "corrected", 9) == 0;
+    h->count = x[is_v2 ? 33 : 30];
+    h->dt = x[65];
+    for (int k = 34; k <= 35 && is_v2; k++)
+        h->lines_behind += x[k] > 0 && x[k] <= 1e8 ? (size_t)ceil(x[k] / 10) : 0;
+    if (!h->at[UNIT].from && h->at[PEAK].from && find_word(h->at[PEAK].from, h->at[PEAK].to, "mm/s/s")) {
+        c->unit = UNIT_CM_S2;
+        c->scale = 0.1;
+    }
+    const int said = number_behind(h->from, h->last.to, "intervals of", &in_words) ||
+                     number_behind(h->from, h->last.to, "data at", &in_words);
+    if (said && fabs(in_words - h->dt) > 0.0006) /* three decimals */
+        return fail(err, STATUS_BAD_DATA, "%s:%d: a step of %g s in the numbers of the header, %g s in its words",
+                    l->path, l->number, h->dt, in_words);
+    return STATUS_OK;
+}
+
+/* PEER: "NPTS=  3930, DT=   .0050 SEC" or "3930    0.0050    NPTS, DT"; not in the comments of plain text. Below a title the
+ * step may be missing: that is a fault of this format, not another format. */
+static int at2_is(Lines l)
+{
+    int has_title = 0;
+    while (l.number < 8 && lines_next(&l)) {
+        if (l.from < l.to && !strchr("#%!/", *l.from) && line_has(&l, "NPTS") && (has_title || line_has(&l, "DT")))
+            return 1;
+        has_title |= is_any(&l, "TIME SERIES|TIME HISTORY", 1);
+    }
+    return 0;
+}
+
+static Status at2_more(Lines *l, Header *h, Channel *c, Err *err)
+{
+    const Lines *npts = &h->at[COUNT];
+    double x[2];
+    size_t n;
+    (void)l, (void)c, (void)err;
+    if (!npts->from)
+        return STATUS_OK;
+    const Lines whole = {.path = l->path, .number = npts->number, .raw = npts->raw, .from = npts->raw, .to = npts->to};
+    if (!memchr(whole.from, '=', (size_t)(whole.to - whole.from)) &&
+        line_numbers(&whole, 0, 2, x, &n, &(Err){0}) == STATUS_OK && n == 2) {
+        h->count = x[0];
+        h->dt = x[1];
+    } else if (quantity_behind(whole.from, whole.to, "DT", 0, &h->dt) <= 0) {
+        h->dt = INFINITY; /* stated in no unit that is known, or not at all */
+    }
+    return STATUS_OK;
+}
+
+/* ---- TIMESERIES of IRIS (ascii2mseed, ObsPy) ------------------------------------------------------------------------
+ *
+ *   TIMESERIES NET_STA_LOC_CHA_Q, 6001 samples, 200 sps, 2009-08-24T00:20:03.000000, SLIST, INTEGER, Counts
+ *
+ * then samples row by row (SLIST), or "time  sample" (TSPAIR). A segment is a channel; a gap makes two. */
+
+static Status series_more(Lines *l, Header *h, Channel *c, Err *err)
+{
+    const char *p = l->from;
+    (void)err;
+    for (int k = 0; p <= l->to; k++) {
+        const Cell field = cell_next(&p, l->to, ",");
+        double x = NAN;
+        if (k == 0)
+            channel_name(c, field.from + strlen("TIMESERIES "), field.to);
+        else if (k <= 2 && number_behind(field.from, field.to, "", &x))
+            *(k == 1 ? &h->count : &h->dt) = k == 1 ? x : 1 / x;
+        else if (k == 6)
+            channel_unit(c, field.from, field.to);
+    }
+    return STATUS_OK;
+}
+
+/* Seconds of the day of "2001-01-01T00:00:00.010000"; NAN: written otherwise. */
+static double time_of_day(const char *from, const char *to)
+{
+    double h, m, s;
+    const char *t = memchr(from, 'T', (size_t)(to - from));
+    return t && to - t > 8 && t[3] == ':' && t[6] == ':' && number_behind(t + 1, t + 3, "", &h) &&
+                   number_behind(t + 4, t + 6, "", &m) && number_behind(t + 7, to, "", &s)
+               ? 3600 * h + 60 * m + s
+               : NAN;
+}
+
+static Status tspair_read(Record *r, Lines *l, Err *err)
+{
+    while (lines_next_filled(l)) {
+        Channel *c;
+        Header h = {.count = NAN, .dt = NAN};
+        double first = NAN, last = NAN;
+        if (!line_begins(l, "TIMESERIES "))
+            return fail(err, STATUS_BAD_DATA, "%s:%d: '%.*s' does not begin a segment", l->path, l->number,
+                        line_shown(l), l->from);
+        TRY(record_channel(r, l, &c, err));
+        TRY(series_more(l, &h, c, err));
+        if (!(h.count >= 2 && h.dt > 0 && h.dt <= MOTION_STEP_MAX_S))
+            return fail(err, STATUS_BAD_DATA, "%s:%d: no usable number of samples or rate in '%.*s'", l->path,
+                        l->number, line_shown(l), l->from);
+        for (c->dt = h.dt; (double)c->n < h.count; c->n++) {
+            Row row = {0};
+            if (!lines_next_filled(l) || line_begins(l, "TIMESERIES "))
+                return fail(err, STATUS_BAD_DATA, "%s:%d: ends after %zu samples, but its header announces %.0f",
+                            l->path, l->number, c->n, h.count);
+            const char *p = l->from;
+            const Cell time = cell_next(&p, l->to, " ,;");
+            last = time_of_day(time.from, time.to);
+            first = c->n == 0 ? last : first;
+            row.line = l->number;
+            TRY(line_number(l, cell_next(&p, l->to, "\n"), 0, &row.a, err));
+            TRY(record_add(r, l, row, err));
+        }
+        last += last < first ? 24 * 3600 : 0; /* past midnight */
+        c->other_dt = isfinite(first) && isfinite(last) ? (last - first) / (double)(c->n - 1) : 0;
+    }
+    return STATUS_OK;
+}
+
+/* ---- the table ------------------------------------------------------------------------------------------------------ */
+
+static const Format FORMATS[] = {
+    {"knet", .begins = "Origin Time", .within = 1, .ends = "Memo.", .unit = UNIT_CM_S2, .more = knet_more,
+     .words = {{RATE, "Sampling Freq(Hz)", ""},
+               {DURATION, "Duration Time(s)", ""},
+               {NAME, "Dir.", ""},
+               {FACTOR, "Scale Factor", ""},
+               {PEAK, "Max. Acc. (gal)", ""}}},
+    {"esm", .begins = "EVENT_NAME:", .within = 1,
+     .words = {{COUNT, "NDATA:", ""},
+               {STEP, "SAMPLING_INTERVAL_S:", ""},
+               {DURATION, "DURATION_S:", ""},
+               {NAME, "STREAM:", ""},
+               {UNIT, "UNITS:", ""},
+               {PEAK, "PGA_CM/S^2:", ""},
+               {TYPE, "DATA_TYPE:", ""}}},
+    {"jma", .begins = "SITE CODE", .within = 1, .parting = ",",
+     .words = {{RATE, "SAMPLING RATE", ""}, {UNIT, "UNIT", ""}}},
+    {"cwb", .begins = "#Earthquake Information", .within = 1, .parting = " ;", .peak_of = "#AmplitudeMAX. %s:",
+     .words = {{RATE, "#SampleRate(Hz)", ""}, {UNIT, "#AmplitudeUnit", ""}, {NAMES, "#DataSequence:", ""}}},
+    {"afad", .begins = "STRONG GROUND MOTION RECORDS OF T", .within = 1, .parting = " ", .peak_of = "(%s)",
+     .unit = UNIT_CM_S2, .words = {{COUNT, "NUMBER OF DATA", ":"}, {STEP, "SAMPLING INTERVAL", ":"}}},
+    {"unam", .begins = "ARCHIVO ESTANDAR DE ACELERACION", .within = 12, .ends = "DATOS DE ACELERACION:", .parting = "/",
+     .words = {{NAMES, "ORIENTACION C1", ":"},
+               {STEP, "INTERVALO DE MUESTREO, C1", ":"},
+               {UNIT, "UNIDADES DE LOS DATOS", ":"},
+               {COUNT, "NUM. TOTAL DE MUESTRAS, C1", ":"},
+               {PEAK, "ACEL. MAX.(Gal), C1", ":"}}},
+    {"csmnc", .begins = "NO. OF POINTS", .has = "EQUALLY SPACED INTERVALS OF", .within = 20, .ends = "NO. OF POINTS",
+     .width = 14,
+     .words = {{NAME, "COMP.", ""},
+               {UNIT, "", "UNIT:"},
+               {TYPE, "", "UNIT:"},
+               {PEAK, "PEAK VALUE", ""},
+               {COUNT, "NO. OF POINTS", ""},
+               {STEP, "NO. OF POINTS", "INTERVALS OF"}}},
+    {"csn", .begins = "# Tasa de muestreo", .within = 8,
+     .words = {{RATE, "# Tasa de muestreo:", ""},
+               {COUNT, "# Numero total de muestras:", ""},
+               {UNIT, "# Unidades:", ""},
+               {NAME, "# Estacion", "Componente:"}}},
+    {"isesd", .begins = "earthquake code:|waveform code:", .within = 7, .ends = "->",
+     .words = {{NAME, "orientation of transducer:", ""},
+               {STEP, "sampling period:", ""},
+               {UNIT, "units:", ""},
+               {COUNT, "number of samples:", ""},
+               {TYPE, "->", ""}}},
+    {"geonet", .begins = "Uncorrected accelerogram|Corrected accelerogram", .has = "GNS|Nuclear Sci", .within = 1,
+     .text_lines = 16, .width = 8, .one_word = 1, .more = geonet_more,
+     .words = {{NAME, "Component", ""}, {UNIT, "", "units of 1.00"}, {PEAK, "Acceleration", "Peak"}}},
+    {"smc", .is = smc_is, .within = 1, .text_lines = SMC_TEXT_LINES, .unit = UNIT_CM_S2, .more = smc_more,
+     .words = {{NAME, "", "component="}}},
+    {"cosmos", .has = "(Format v", .within = 1, .text_lines = -1, .more = cosmos_more,
+     .words = {{TYPE, "", "(Format v"}, {PEAK, "Processed", "Max"}, {NAME, "Sta Cha", ":"}}},
+    {"csmip", .begins = "Uncorrected accelerogram|Corrected accelerogram", .within = 1, .integers = 1,
+     .number_lines = 7, .more = csmip_more,
+     .words = {{NAME, "Chan", ":"},
+               {COUNT, "", "of points"},
+               {STEP, "", "spaced intervals of"},
+               {UNIT, "Units of", " and "},
+               {PEAK, "Units of", "Max"},
+               {PEAK, "Peak acceleration", ""}}},
+    {"bhrc", .begins = "* VOL1", .within = 1, .text_lines = 13, .number_lines = 14, .width = 13, .one_word = 1,
+     .words = {{NAME, "=LTV", ""},
+               {NAME, "COMP", ""},
+               {COUNT, "", "NO. OF POINTS"},
+               {DURATION, "", "DURATION"},
+               {UNIT, "UNITS ARE", " and "}}},
+    {"usc", .begins = "FILE", .has = "OF UNCORRECTED ACCELEROGRAM DATA", .within = 1, .text_lines = 13,
+     .number_lines = 14, .width = 7, .pairs = 1, .one_word = 1,
+     .words = {{NAME, "COMP", ""}, {COUNT, "", "NO. OF POINTS"}, {UNIT, "UNITS ARE", " and "}}},
+    {"sac", .is = sac_text_is, .read = sac_text_read},
+    {"slist", .begins = "TIMESERIES ", .has = "SLIST", .within = 1, .text_lines = 1, .more = series_more},
+    {"tspair", .begins = "TIMESERIES ", .has = "TSPAIR", .within = 1, .read = tspair_read},
+    {"", .begins = "Response and Fourier amplitude spectra", .within = 1,
+     .refused = "response and Fourier spectra of CSMIP (V3); take its V2 or V1"},
+    {"", .begins = "RESPONSE", .has = "FOURIER", .within = 1,
+     .refused = "response and Fourier spectra (volume 3); take the accelerogram"},
+    {"", .begins = "<?xml", .within = 1, .refused = "XML (StationXML, QuakeML or the like)"},
+    {"", .begins = "<!DOCTYPE html|<html", .within = 1,
+     .refused = "a web page, perhaps of a log-in, in the place of the record"},
+    {"", .begins = "WID2|BEGIN GSE2", .within = 1, .refused = "GSE2; export it as miniSEED, SAC or text"},
+    {"", .begins = "version https://git-lfs", .within = 1,
+     .refused = "a pointer of git-lfs in the place of the record"},
+    {"at2", .is = at2_is, .ends = "NPTS", .width = 15, .more = at2_more,
+     .words = {{COUNT, "", "NPTS"},
+               {UNIT, "", "UNITS OF"},
+               {UNIT, "", "UNITS"},
+               {UNIT, "", "UNIT"},
+               {UNIT, "ACCELERATION", " IN "},
+               {TYPE, "", "TIME SERIES"},
+               {TYPE, "", "TIME HISTORY"}}},
+};
+
+/* Channels lie one after the other, velocities, displacements and end marks between them. */
+static Status read_all(const Format *f, Record *r, Lines *l, Err *err)
+{
+    if (f->refused)
+        return fail(err, STATUS_BAD_DATA, "%s: is not read: %s", l->path, f->refused);
+    if (f->read)
+        return f->read(r, l, err);
+    while (lines_next_filled(l)) {
+        if (r->n_channels > 0 && (f->within != 1 || f->is || !begins_channel(f, l)))
+            continue;
+        TRY(read_channel(f, r, l, err));
+    }
+    return STATUS_OK;
+}
+
+Status text_read(Record *r, Lines *l, const ReadHints *hints, Err *err)
+{
+    for (size_t i = 0; i < sizeof FORMATS / sizeof FORMATS[0]; i++)
+        if (recognise(&FORMATS[i], *l)) {
+            r->is_known = !FORMATS[i].refused;
+            TRY(read_all(&FORMATS[i], r, l, err));
+            for (size_t k = 0; k < r->n_channels; k++)
+                r->channel[k].format = FORMATS[i].name;
+            return STATUS_OK;
+        }
+    return columns_read(r, l, hints, err);
+}
