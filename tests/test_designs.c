@@ -224,89 +224,13 @@ static void test_words_that_name_nothing_are_refused_with_what_is_there(void **s
     expect(65, "has no design of id 999", SIMULATE "@/run/front.csv:999");
 }
 
-static double probability_of(const json_t *list, json_int_t id)
-{
-    const json_t *one;
-    size_t i;
-    json_array_foreach(list, i, one) if (json_integer_value(json_object_get(one, "id")) ==
-                                         id) return json_number_value(json_object_get(one, "nondominated_probability"));
-    return NAN;
-}
-
-/* All of a noisy front by --confidence 0.01, and those of it that are at 0.8 or above by --confidence 0.8. */
-static void test_the_sure_designs_of_a_noisy_front_are_those_with_that_probability(void **state)
+static void test_a_noisy_run_is_not_polished(void **state)
 {
     (void)state;
     write_in_place("noisy.ini", "[problem]\nkind = dtlz2\nvariables = 4\nobjectives = 3\nnoise = 0.05\n[search]\n"
-                                "max_evals = 140\ninitial = 30\npopulation = 20\n");
-    char *said = output_of("optimize @/noisy.ini --out @/noisy");
-    json_t *many = json_of("choose @/noisy --json --confidence 0.01"), *all = json_object_get(many, "confident"), *one;
-    json_t *few = json_of("choose @/noisy --json --confidence 0.8"), *sure = json_object_get(few, "confident");
-    size_t i, n = 0;
-    json_array_foreach(all, i, one) n += json_number_value(json_object_get(one, "nondominated_probability")) >= 0.8;
-    assert_int_equal(json_array_size(sure), n);
-    assert_true(n > 0 && n < json_array_size(all));
-    json_array_foreach(sure, i, one)
-        assert_at_most(0.8, probability_of(all, json_integer_value(json_object_get(one, "id"))));
-    json_array_foreach(json_object_get(many, "designs"), i, one)
-    {
-        const double p = json_number_value(json_object_get(one, "nondominated_probability"));
-        const double listed = probability_of(all, json_integer_value(json_object_get(one, "id")));
-        assert_true(p == listed || (p < 0.01 && isnan(listed)));
-    }
-    n = 0;
-    json_array_foreach(all, i, one) n += json_number_value(json_object_get(one, "nondominated_probability")) >= 0.9;
-    char words[80];
-    snprintf(words, sizeof words, "\n%zu of %zu designs of the front are nondominated with a probability of 0.9", n,
-             (size_t)json_integer_value(json_object_get(many, "front")));
-    assert_non_null(strstr(said, words));
-    free(said);
-    said = output_of("status @/noisy");
-    assert_non_null(strstr(said, words));
-    free(said);
-    json_t *status = json_of("status @/noisy --json");
-    assert_same_number(number(status, "confident"), (double)n);
-    json_decref(status);
-    json_decref(many);
-    json_decref(few);
-    expect(2, "have no known errors", "choose @/run --confidence 0.9");
-    expect(2, "name no noise", "choose @/run --confidence 0.9");
-    expect(2, "--confidence: '2' is no number", "choose @/noisy --confidence 2");
+                                "max_evals = 60\ninitial = 30\npopulation = 20\n");
+    free(output_of("optimize @/noisy.ini --out @/noisy"));
     expect(65, "the answers of this run are noisy", "polish @/noisy --design knee --improve f1 --evals 1");
-}
-
-/* f = (x1, x1), the first to be small, the second large, and cut after a digit every second time: all are on the front. */
-static void test_a_repeat_that_fails_leaves_the_rest_of_the_front_its_confidence(void **state)
-{
-    (void)state;
-    Run h;
-    Err err = {0};
-    char path[PATH_MAX];
-    write_in_place("unlucky.sh",
-                   "while read -r line; do id=${line#*:}; id=${id%%,*}; x=${line#*[}; x=${x%]*}\n"
-                   "[ $((id % 2)) -eq 0 ] && short=$x || short=${x%\"${x#???}\"}\n"
-                   "[ $((id % 5)) -eq 0 ] && echo \"{\\\"id\\\":$id,\\\"error\\\":\\\"bad luck\\\"}\" ||\n"
-                   "echo \"{\\\"id\\\":$id,\\\"f\\\":[$short,$x]}\"\ndone\n");
-    char *worker = in_place("unlucky.sh"), text[PATH_MAX + 300];
-    snprintf(text, sizeof text,
-             "[problem]\nkind = external\ncommand = sh %s\nvariables = 1\nobjectives = 2\nsenses = min, max\n"
-             "lower = 0.1\nupper = 0.9\nnoisy = yes\n[search]\nmax_evals = 60\nthreads = 1\ninitial = 20\n"
-             "failures_max = 0\n",
-             worker);
-    write_in_place("unlucky.ini", text);
-    char *said = output_of("optimize @/unlucky.ini --out @/unlucky");
-    size_t n_unlucky = 0;
-    CHECK_OK(run_read(&h, path_of("unlucky", path), &err), &err);
-    for (size_t i = 0; i < h.table.n; i++)
-        n_unlucky += h.place[i].ok && h.table.row[i].replicates > 1 && isnan(h.table.row[i].sd[0]);
-    assert_less(0, n_unlucky);
-    assert_non_null(strstr(said, "designs of the front are nondominated with a probability of 0.9"));
-    json_t *many = json_of("choose @/unlucky --json --confidence 0.01");
-    assert_less(1, json_array_size(json_object_get(many, "confident")));
-    json_decref(many);
-    run_free(&h);
-    free(said);
-    free(worker);
 }
 
 int main(void)
@@ -322,8 +246,7 @@ int main(void)
         cmocka_unit_test(test_choose_names_the_extremes_and_writes_them),
         cmocka_unit_test(test_choose_limits_any_result_of_a_run),
         cmocka_unit_test(test_words_that_name_nothing_are_refused_with_what_is_there),
-        cmocka_unit_test(test_the_sure_designs_of_a_noisy_front_are_those_with_that_probability),
-        cmocka_unit_test(test_a_repeat_that_fails_leaves_the_rest_of_the_front_its_confidence),
+        cmocka_unit_test(test_a_noisy_run_is_not_polished),
     };
     return cmocka_run_group_tests_name("designs", tests, make_run, clear_place);
 }

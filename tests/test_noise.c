@@ -6,7 +6,6 @@
 
 #include "moga/archive.h"
 #include "moga/dominance.h"
-#include "moga/front_confidence.h"
 #include "moga/search.h"
 #include "functions.h"
 #include "searches.h"
@@ -94,61 +93,6 @@ static NoiseModel fit_of(double deviation, double share)
 }
 
 /* The estimate of a deviation from 400 repeats has a standard error of 1 / root(800) of it. */
-/* Standard error of a share of FRONT_DRAWS, 0 replaced by that of one draw in a hundred. */
-static double share_error(double p)
-{
-    return sqrt(fmax(p * (1.0 - p), 0.01) / FRONT_DRAWS);
-}
-
-/* Of two designs: P(1 dominates 0) = prod_k Phi((f_0k - f_1k) / root(e_0k^2 + e_1k^2)). */
-static void test_the_confidence_of_one_design_against_another_is_a_product_of_normal_probabilities(void **state)
-{
-    (void)state;
-    const double F[] = {1.0, 2.0, 3.0, 0.7, 2.1, 2.4}, error[] = {0.5, 0.2, 1.0, 0.1, 0.3, 0.6};
-    double beaten = 1.0, p[2];
-    Err err = {0};
-    for (size_t k = 0; k < 3; k++)
-        beaten *= 0.5 * erfc((F[3 + k] - F[k]) / sqrt(2.0 * (error[k] * error[k] + error[3 + k] * error[3 + k])));
-    CHECK_OK(front_confidence(2, 3, F, error, 1, 2, (size_t[]){0, 1}, p, &err), &err);
-    assert_less(fabs(p[0] - (1.0 - beaten)), 4.0 * share_error(beaten));
-    assert_less(0.8, p[1]);
-}
-
-/* All objectives drawn 20,000 times from another stream, every pair of designs compared. */
-static void test_the_confidence_of_a_front_equals_brute_force(void **state)
-{
-    (void)state;
-    enum { BRUTE_DRAWS = SANITIZED ? 2000 : 20000 };
-    Cloud c, drawn;
-    Err err = {0};
-    size_t all[POINTS];
-    double p[POINTS], q[POINTS] = {0};
-    cloud(5, 1, &c);
-    for (size_t i = 0; i < POINTS; i++)
-        all[i] = i;
-    CHECK_OK(front_confidence(POINTS, M, c.F, c.error, 7, POINTS, all, p, &err), &err);
-    Random r = random_stream(8, RANDOM_TEST, 1, 0);
-    for (int draw = 0; draw < BRUTE_DRAWS; draw++) {
-        for (size_t i = 0; i < POINTS * M; i++)
-            drawn.F[i] = c.F[i] + c.error[i] * random_normal(&r);
-        for (size_t i = 0; i < POINTS; i++) {
-            int beaten = 0;
-            for (size_t j = 0; j < POINTS; j++) {
-                int no_worse = 1, better = 0;
-                for (size_t k = 0; k < M; k++) {
-                    no_worse &= drawn.F[j * M + k] <= drawn.F[i * M + k];
-                    better |= drawn.F[j * M + k] < drawn.F[i * M + k];
-                }
-                beaten |= no_worse && better;
-            }
-            q[i] += !beaten / (double)BRUTE_DRAWS;
-        }
-    }
-    for (size_t i = 0; i < POINTS; i++)
-        if (!(fabs(p[i] - q[i]) < 5.0 * share_error(q[i])))
-            fail_msg("design %zu: %.3f, by brute force %.3f", i, p[i], q[i]);
-}
-
 static void test_a_constant_deviation_and_a_share_of_the_value_are_told_apart(void **state)
 {
     (void)state;
@@ -581,8 +525,6 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_without_errors_surely_is_plainly),
         cmocka_unit_test(test_surely_is_a_strict_partial_order_whatever_the_errors),
-        cmocka_unit_test(test_the_confidence_of_one_design_against_another_is_a_product_of_normal_probabilities),
-        cmocka_unit_test(test_the_confidence_of_a_front_equals_brute_force),
         cmocka_unit_test(test_a_constant_deviation_and_a_share_of_the_value_are_told_apart),
         cmocka_unit_test(test_estimates_are_as_near_as_answer_and_prediction_allow),
         cmocka_unit_test(test_what_has_no_error_is_taken_as_it_is),

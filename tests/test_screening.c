@@ -16,8 +16,6 @@
 
 enum { VAR = 5, OBJ = 3, PARTS = 4, CHEAP = 1, EVALS = 40, ROWS_MAX = 400 };
 
-static const double BIAS = 10.0;
-
 /* Four replicates of a function, of which the first is the cheap level; or a cheap level apart, by whose bias any answer of
  * it dominates any whole one, and the function. */
 typedef struct {
@@ -25,10 +23,8 @@ typedef struct {
     double lower[VAR], upper[VAR];
     double noise;     /* of a replicate */
     int is_unrelated; /* the first replicate is noise alone and not in the mean */
-    int is_apart;
-    double step;    /* of the cheap level, which is rounded down to multiples of it; 0: it is not */
-    double penalty; /* at both levels where x1 is above 0.7; 0: none */
-    int is_flat;    /* the last objective of the whole evaluation is 1 */
+    double penalty;   /* at both levels where x1 is above 0.7; 0: none */
+    int is_flat;      /* the last objective of the whole evaluation is 1 */
     size_t n_tasks, n_cheap_tasks;
     EvaluationTable done; /* in the order of the numbers */
 } World;
@@ -53,8 +49,6 @@ static Part part_of(const World *w, const double x[], size_t part)
         for (size_t d = 0; d < VAR; d++) /* distance from a corner of the first objectives */
             p.f[k] += pow(x[d] - (d == k ? 1.0 : 0.2 * (double)k), 2.0);
         p.f[k] = (w->is_unrelated && part == 0 ? 0.0 : p.f[k]) + w->noise * noise_of(x, part, k);
-        p.f[k] = w->is_apart && part == 0 ? 0.8 * p.f[k] - BIAS : p.f[k];
-        p.f[k] = w->step > 0.0 && part == 0 ? w->step * floor(p.f[k] / w->step) : p.f[k];
         p.f[k] = w->is_flat && part > 0 && k == OBJ - 1 ? 1.0 : p.f[k];
         p.f[k] = w->penalty > 0.0 && x[0] > 0.7 ? w->penalty : p.f[k];
     }
@@ -89,10 +83,7 @@ static void mean_of(const World *w, size_t first, size_t n, const Part parts[], 
 static void combine(const Problem *p, size_t n, const void *parts, Evaluation *e)
 {
     const World *w = p->self;
-    if (n == CHEAP)
-        mean_of(w, 0, CHEAP, parts, e->f);
-    else
-        mean_of(w, w->is_unrelated || w->is_apart ? 1 : 0, w->is_apart ? 2 : PARTS, parts, e->f);
+    mean_of(w, n > CHEAP && (w->is_unrelated || w->is_flat) ? 1 : 0, n, parts, e->f);
 }
 
 static const Simulator SIMULATOR = {simulate, combine, NULL};
@@ -120,16 +111,6 @@ static void open_world(World *w, size_t n_workers)
                            .n_workers = n_workers,
                            .executor = executor_for(n_workers),
                            .observer = {.done = note_done, .user = w}};
-}
-
-/* A tenth of a whole evaluation. */
-static void open_apart(World *w, size_t n_workers)
-{
-    open_world(w, n_workers);
-    w->is_apart = 1;
-    w->noise = 0.0;
-    w->problem.n_parts = 2;
-    w->problem.cheap_cost = 0.1;
 }
 
 static SearchConfig config_of(void)
@@ -327,100 +308,15 @@ static void test_levels_that_do_not_agree_turn_it_off(void **state)
     forget(&other_world, &other);
 }
 
-/* observe has looked at every view: of the cheap level all are below zero, of the whole none is. */
-static void test_a_cheap_level_of_great_bias_is_never_on_the_front_and_counts_as_what_it_costs(void **state)
-{
-    (void)state;
-    memset(&other, 0, sizeof other);
-    open_apart(&other_world, 4);
-    run(&other_world, &other, NULL);
-    const size_t n_whole = other.n - other.n_screened, spent = 100 * other.n_screened + 1000 * n_whole;
-    assert_int_equal(other_world.n_cheap_tasks, other.n_screened);
-    assert_int_equal(other_world.n_tasks, other.n);
-    assert_int_equal(other.n_evaluations, spent / 1000);
-    assert_true(spent <= 1000 * EVALS && spent + 1100 > 1000 * EVALS);
-    assert_true(other.n_screened >= 3 * (other.n_finished - APART_PAIRS) && other.n_finished > APART_PAIRS + 4);
-    for (size_t i = 0; i < other.n; i++)
-        assert_same_number((other.Y[i * OBJ] < 0.0), (other.kind[i] == KIND_SCREENED));
-    forget(&other_world, &other);
-}
-
-static void test_a_search_with_a_level_apart_is_resumed_to_the_same_bytes(void **state)
-{
-    (void)state;
-    Moments whole;
-    memset(&other, 0, sizeof other);
-    open_apart(&other_world, 1);
-    run(&other_world, &other, NULL);
-    whole = other.moments;
-    const size_t n = other.n, k = whole.n / 2;
-    double *Y = malloc(n * OBJ * sizeof *Y);
-    Evaluation *rows = other_world.done.row;
-    memcpy(Y, other.Y, n * OBJ * sizeof *Y);
-    for (size_t i = 0; i < n; i++) {
-        rows[i].kind = (EvaluationKind)other.kind[i];
-        rows[i].generation = (long)other.generation[i];
-    }
-    for (size_t at = 0; at <= k; at += k) {
-        World again;
-        const SearchStart start = {.n = at > 0 ? whole.rows[at] : 0,
-                                   .n_later = at > 0 ? 3 : APART_PAIRS + 3, /* or in the midst of the first pairs */
-                                   .row = rows,
-                                   .state = at > 0 ? whole.state[at] : NULL,
-                                   .n_state = at > 0 ? whole.n_state[at] : 0};
-        memset(&other, 0, sizeof other);
-        open_apart(&again, 1);
-        run(&again, &other, &start);
-        assert_int_equal(other.n, n);
-        assert_memory_equal(other.Y, Y, n * OBJ * sizeof *Y);
-        assert_int_equal(again.n_tasks, n - start.n - start.n_later);
-        forget(&again, &other);
-    }
-    free(Y);
-    moments_free(&whole);
-    evaluation_table_free(&other_world.done);
-}
-
-/* As many whole evaluations as without it, but for what the comparison costs: 16 tenths. */
-static void test_a_level_apart_that_ranks_badly_costs_the_comparison_alone(void **state)
-{
-    (void)state;
-    memset(&other, 0, sizeof other);
-    open_apart(&other_world, 1);
-    other_world.is_unrelated = 1;
-    other_world.noise = 1.0;
-    run(&other_world, &other, NULL);
-    assert_int_equal(other.n_screened, APART_PAIRS);
-    assert_int_equal(other.n - other.n_screened, EVALS - (APART_PAIRS + 9) / 10);
-    assert_int_equal(other_world.n_tasks, other.n);
-    for (size_t i = 0; i < other.n; i++)
-        assert_true(other.kind[i] != KIND_SCREENED || (i < APART_PAIRS && !other.on_front[i]));
-    forget(&other_world, &other);
-}
-
-static void test_designs_that_a_level_apart_does_not_tell_apart_speak_for_no_agreement(void **state)
-{
-    (void)state;
-    static const double STEPS[] = {1.0, 1e3}; /* of values about 1.5 apart; of a constant */
-    for (size_t i = 0; i < 2; i++) {
-        memset(&other, 0, sizeof other);
-        open_apart(&other_world, 1);
-        other_world.step = STEPS[i];
-        run(&other_world, &other, NULL);
-        assert_int_equal(other.n_screened, APART_PAIRS);
-        assert_true(i == 0 ? other.agreement < APART_TAU_MIN : other.agreement == 0.0);
-        forget(&other_world, &other);
-    }
-}
-
 static void test_an_objective_that_is_the_same_for_all_designs_does_not_speak_against_the_cheap_level(void **state)
 {
     (void)state;
     memset(&other, 0, sizeof other);
-    open_apart(&other_world, 1);
+    open_world(&other_world, 1);
     other_world.is_flat = 1;
+    other_world.noise = 0.0;
     run(&other_world, &other, NULL);
-    assert_true(other.n_screened > 3 * APART_PAIRS && other.agreement > 0.999);
+    assert_true(other.n_screened > 3 * LEVEL_PAIRS && other.agreement > 0.999);
     forget(&other_world, &other);
 }
 
@@ -430,33 +326,11 @@ static void test_penalties_whose_squares_overflow_do_not_end_a_search_with_level
     static const double PENALTIES[] = {1e160, 1e300, DBL_MAX};
     for (size_t i = 0; i < 3; i++) {
         memset(&other, 0, sizeof other);
-        open_apart(&other_world, 1);
+        open_world(&other_world, 1);
         other_world.penalty = PENALTIES[i];
+        other_world.noise = 0.0;
         run(&other_world, &other, NULL);
-        assert_less(3 * APART_PAIRS, other.n_screened);
-        forget(&other_world, &other);
-    }
-}
-
-/* Also where it is less than the pairs cost, or nearly nothing is left at the end. */
-static void test_a_search_with_a_level_apart_ends_within_any_budget(void **state)
-{
-    (void)state;
-    static const double COSTS[] = {0.001, 0.03, 0.35, 0.9};
-    for (size_t i = 0; i < 12; i++) {
-        SearchConfig config = config_of();
-        StopReason reason;
-        Err err = {0};
-        memset(&other, 0, sizeof other);
-        open_apart(&other_world, 1);
-        other_world.problem.cheap_cost = COSTS[i % 4];
-        config.surrogate = SURROGATE_OFF;
-        config.max_evals = 5 + 7 * (i / 4) * (i / 4) + i;
-        CHECK_OK(search_run(&other_world.problem, &config, observe, &other, &reason, &err), &err);
-        assert_int_equal(reason, STOP_EVALUATIONS);
-        assert_at_most((double)other.n_screened * COSTS[i % 4] + (double)(other.n - other.n_screened),
-                       (double)config.max_evals + 1e-9);
-        assert_less(0, other.n_finished);
+        assert_less(3 * LEVEL_PAIRS, other.n_screened);
         forget(&other_world, &other);
     }
 }
@@ -501,13 +375,8 @@ int main(void)
         cmocka_unit_test(test_resumed_anywhere_it_makes_the_same_bytes),
         cmocka_unit_test(test_a_search_that_ends_by_its_generations_finishes_designs_too),
         cmocka_unit_test(test_levels_that_do_not_agree_turn_it_off),
-        cmocka_unit_test(test_a_cheap_level_of_great_bias_is_never_on_the_front_and_counts_as_what_it_costs),
-        cmocka_unit_test(test_a_search_with_a_level_apart_is_resumed_to_the_same_bytes),
-        cmocka_unit_test(test_a_level_apart_that_ranks_badly_costs_the_comparison_alone),
-        cmocka_unit_test(test_designs_that_a_level_apart_does_not_tell_apart_speak_for_no_agreement),
         cmocka_unit_test(test_an_objective_that_is_the_same_for_all_designs_does_not_speak_against_the_cheap_level),
         cmocka_unit_test(test_penalties_whose_squares_overflow_do_not_end_a_search_with_levels),
-        cmocka_unit_test(test_a_search_with_a_level_apart_ends_within_any_budget),
         cmocka_unit_test(test_an_agreement_that_is_not_known_is_said_to_be_so),
         cmocka_unit_test(test_without_a_cheap_level_nothing_is_screened),
     };

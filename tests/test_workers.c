@@ -48,88 +48,6 @@ static void test_no_design_is_left_out_whatever_its_message(void **state)
     }
 }
 
-/* Rows of a kind, and the least and largest f1 among them. */
-static size_t range_of(const json_t *evaluations, const char *kind, double *min, double *max)
-{
-    size_t n = 0, i;
-    json_t *e;
-    *min = INFINITY;
-    *max = -INFINITY;
-    json_array_foreach(evaluations, i, e) if (strcmp(json_string_value(json_object_get(e, "kind")), kind) == 0)
-    {
-        const double f = json_number_value(json_array_get(json_object_get(e, "f"), 0));
-        *min = fmin(*min, f);
-        *max = fmax(*max, f);
-        n++;
-    }
-    return n;
-}
-
-/* Level 0 dominates whatever level 1 answers. */
-static void test_a_program_with_levels_is_screened_by_the_cheap_one_and_the_front_is_of_the_dear_one(void **state)
-{
-    (void)state;
-    double min, max;
-    write_external("levels.ini", "sh tests/worker.sh levels",
-                   "max_evals = 40\nfidelity = levels\n[problem]\nlower = 1\nupper = 2\ncosts = 0.1, 1\n");
-    char *said = output_of("optimize @/levels.ini --out @/levels");
-    assert_non_null(strstr(said, "by their cheap level"));
-    free(said);
-    json_t *all = json_of("export @/levels --json"), *status = json_of("status @/levels --json"),
-           *evaluations = json_object_get(all, "evaluations");
-    const size_t n_cheap = range_of(evaluations, "screened", &min, &max);
-    assert_true(n_cheap > 40 && max < 0.01);
-    const size_t n_whole = range_of(evaluations, "finished", &min, &max);
-    assert_true(n_whole > 16 && min >= 1.0 && max <= 2.0);
-    assert_int_equal(n_cheap + n_whole, json_array_size(evaluations));
-    assert_int_equal(number(status, "simulated"), (100 * n_cheap + 1000 * n_whole) / 1000);
-    assert_int_equal(count_failures(status), 0);
-    size_t i;
-    json_t *e;
-    json_array_foreach(evaluations, i, e) if (json_is_true(json_object_get(e, "on_front")))
-        assert_string_equal(json_string_value(json_object_get(e, "kind")), "finished");
-    json_decref(all);
-    json_decref(status);
-    /* declared, but not asked for: level 1 alone */
-    free(output_of("optimize @/levels.ini --out @/whole --set search.fidelity=off --max-evals 16"));
-    status = json_of("status @/whole --json");
-    assert_int_equal(count_failures(status), 0);
-    assert_int_equal(number(status, "simulated"), 16);
-    json_decref(status);
-    expect(65, "problem.costs", "optimize @/levels.ini --out @/none --set problem.costs=1,0.1");
-    expect(65, "problem.costs", "check @/levels.ini --set problem.costs=0.1,0.5,1");
-}
-
-static void
-test_a_worker_that_answers_the_same_at_both_levels_is_said_to_do_so_and_a_cheap_level_that_is_dear_too(void **state)
-{
-    (void)state;
-    Said said;
-    write_external("same.ini", "sh tests/worker.sh good",
-                   "max_evals = 40\nfidelity = levels\n[problem]\ncosts = 0.6, 1\n");
-    run(&said, "optimize @/same.ini --out @/same");
-    assert_int_equal(said.code, 0);
-    assert_non_null(strstr(said.err, "warning: problem.costs: level 0 costs 0.6 of an evaluation"));
-    assert_non_null(strstr(said.out, "the worker may ignore `level`"));
-    forget(&said);
-    run(&said, "optimize @/same.ini --out @/less --set problem.costs=0.5,1 --max-evals 4");
-    assert_null(strstr(said.err, "problem.costs"));
-    assert_null(strstr(said.out, "may ignore"));
-    forget(&said);
-}
-
-/* No success of the cheap level makes up for it. */
-static void test_a_run_whose_whole_evaluations_all_fail_stops_after_some_or_says_so_at_its_end(void **state)
-{
-    (void)state;
-    write_external("rough.ini", "sh tests/worker.sh rough",
-                   "max_evals = 60\nfailures_max = 20\nfidelity = levels\n[problem]\ncosts = 0.1, 1\n");
-    expect(70, "the last 20 whole evaluations of ", "optimize @/rough.ini --threads 1 --out @/rough");
-    expect(70, "no evaluation of a design as a whole succeeded",
-           "optimize @/rough.ini --set search.failures_max=0 --max-evals 10 --out @/end");
-}
-
-/* A folder named in Latin-1. */
 static void test_names_that_are_no_utf_8_are_shown(void **state)
 {
     (void)state;
@@ -260,10 +178,6 @@ static void test_a_design_without_input_fails_in_a_search_and_in_a_simulation_al
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a_program_with_levels_is_screened_by_the_cheap_one_and_the_front_is_of_the_dear_one),
-        cmocka_unit_test(
-            test_a_worker_that_answers_the_same_at_both_levels_is_said_to_do_so_and_a_cheap_level_that_is_dear_too),
-        cmocka_unit_test(test_a_run_whose_whole_evaluations_all_fail_stops_after_some_or_says_so_at_its_end),
         cmocka_unit_test(test_no_design_is_left_out_whatever_its_message),
         cmocka_unit_test(test_names_that_are_no_utf_8_are_shown),
         cmocka_unit_test(test_a_run_whose_workers_all_fail_stops_after_some_with_the_reason),

@@ -14,14 +14,6 @@ while read -r line; do
     [ "$1" = uneven ] && if [ $((id % 10)) -eq 0 ]; then sleep 0.1; else sleep 0.005; fi
     [ "$1" = tenth ] && [ $((id % 10)) -eq 0 ] && good="{\"id\":$id,\"error\":\"every tenth\"}"
     [ $((id % 3)) -ne 0 ] && mode=good || mode=$1
-    if [ "$1" = levels ]; then # level 0 is a thousand times too good; x in 1..2 is printed without an exponent
-        level=${line#*level\":}
-        level=${level%%,*}
-        [ "$level" = 0 ] && good="{\"id\":$id,\"f\":[${x1}e-3,${x2}e-3]}"
-        [ "$level" = 0 ] || [ "$level" = 1 ] || good="{\"id\":$id,\"error\":\"no level\"}"
-        mode=good
-    fi
-    [ "$1" = rough ] && case $line in *'"level":1'*) mode=error ;; *) mode=good ;; esac # level 1 always fails
     case $mode in
     error) echo "{\"id\":$id,\"error\":\"no, \\\"never\\\" this one\"}" ;;
     formula) echo "{\"id\":$id,\"error\":\"=1+1,=2\"}" ;;

@@ -28,8 +28,7 @@ typedef enum {
     RANDOM_DESCENT,
     RANDOM_POLISHING,
     RANDOM_IMPORTANCE,
-    RANDOM_CONFIDENCE,
-    RANDOM_PROBES
+    RANDOM_PROBES = 14
 } RandomPurpose;
 
 typedef struct {

@@ -8,7 +8,6 @@
 #include "store/export.h"
 #include "store/output.h"
 #include "store/run_read.h"
-#include "study/confidence.h"
 
 typedef struct {
     const Run *run;
@@ -108,7 +107,6 @@ typedef struct {
         char name[TABLE_NAME_MAX + 8];
         size_t row;
     } pick[PICKS_MAX];
-    double confidence[PICKS_MAX]; /* probability of being nondominated; NAN: without noise */
 } Picks;
 
 /* The cheapest design within the limits; values[0] of best_cost is the objective's number. */
@@ -152,85 +150,6 @@ static Status find_picks(const Args *args, Choice *c, Picks *p, Err *err)
     if (args_has(args, "--reference"))
         add_pick(c, "nearest to reference", reference_cost, reference, p);
     return STATUS_OK;
-}
-
-/* -- the part of the front that is sure ---------------------------------------------------------------------------- */
-
-/* Designs of the front within the limits that are nondominated with a probability of `wanted` or more. */
-typedef struct {
-    double wanted; /* 0: not asked for */
-    size_t n, n_asked;
-    size_t *row; /* (n) */
-    double *p;   /* (n) */
-} Sure;
-
-/* Why no design of the front has a probability. */
-static const char *why_unknown(const Run *run)
-{
-    if (schema_is_noisy(run->settings))
-        return "no design of the front has a known error: the search has repeated none so far, or all are polished";
-    if (run->schema.has_spread)
-        return "the replicates of a tower (sim.replicates) err alike in every design, so that their errors are not "
-               "independent, as this probability takes them; NAME_sd of front.csv shows how large they are";
-    return "the objectives of this run have no known errors: its settings name no noise (problem.noise, "
-           "problem.noisy), or no repeats (search.replicate_share, search.replicates_max)";
-}
-
-/* One set of draws for the picks and, where it is asked for, the front within the limits. */
-static Status find_confidence(const Choice *c, Picks *p, Sure *sure, Err *err)
-{
-    const Run *run = c->run;
-    sure->row = calloc(p->n + run->n_front + 1, sizeof *sure->row);
-    sure->p = calloc(p->n + run->n_front + 1, sizeof *sure->p);
-    if (!sure->row || !sure->p)
-        return fail(err, STATUS_NO_MEMORY, "no memory for a front");
-    size_t n = 0;
-    for (size_t k = 0; k < p->n; k++)
-        sure->row[n++] = p->pick[k].row;
-    for (size_t i = 0; i < run->n_front && sure->wanted > 0.0; i++)
-        if (c->allowed[run->front[i]])
-            sure->row[n++] = run->front[i];
-    TRY(confidence_of_designs(run, n, sure->row, sure->p, err));
-    memcpy(p->confidence, sure->p, p->n * sizeof *p->confidence);
-    for (size_t i = p->n; i < n; i++) {
-        sure->n_asked += !isnan(sure->p[i]);
-        if (sure->p[i] >= sure->wanted) {
-            sure->row[sure->n] = sure->row[i];
-            sure->p[sure->n++] = sure->p[i];
-        }
-    }
-    return sure->n_asked > 0 || n == p->n ? STATUS_OK : fail(err, STATUS_USAGE, "--confidence: %s", why_unknown(run));
-}
-
-static void show_sure(const Run *run, const Sure *sure)
-{
-    if (sure->wanted == 0.0)
-        return;
-    printf("\n%zu of %zu designs are nondominated with a probability of %g or more:\n", sure->n, sure->n_asked,
-           sure->wanted);
-    for (size_t i = 0; i < sure->n; i++)
-        printf("%s%ld (%.2f)", i ? ", " : "", run->table.row[sure->row[i]].id, sure->p[i]);
-    putchar('\n');
-}
-
-static json_t *describe_sure(const Run *run, const Sure *sure)
-{
-    json_t *list = json_array();
-    for (size_t i = 0; i < sure->n; i++)
-        json_array_append_new(list, json_pack("{s:I, s:f}", "id", (json_int_t)run->table.row[sure->row[i]].id,
-                                              "nondominated_probability", sure->p[i]));
-    return list;
-}
-
-static void show_confidence(const Picks *p)
-{
-    static const char HEAD[] = "\nprobability of being nondominated, by the standard errors of the means:\n";
-    size_t n = 0;
-    for (size_t i = 0; i < p->n; i++)
-        if (!isnan(p->confidence[i]))
-            printf("%s%s %.2f", n++ ? ", " : HEAD, p->pick[i].name, p->confidence[i]);
-    if (n > 0)
-        putchar('\n');
 }
 
 static void show_table(const Run *run, const Picks *p)
@@ -295,40 +214,32 @@ static json_t *json_limited(const Run *run, size_t row)
     return o;
 }
 
-static json_t *describe(const Run *run, const Picks *p, const Sure *sure)
+static json_t *describe(const Run *run, const Picks *p)
 {
     const Schema *schema = &run->schema;
     json_t *picks = json_array();
     for (size_t i = 0; i < p->n; i++) {
         const size_t row = p->pick[i].row;
         json_array_append_new(picks,
-                              json_pack("{s:s, s:I, s:o, s:o, s:o, s:o}", "name", p->pick[i].name, "id",
+                              json_pack("{s:s, s:I, s:o, s:o, s:o}", "name", p->pick[i].name, "id",
                                         (json_int_t)run->table.row[row].id, "objectives",
                                         json_values(schema->n_obj, schema->column + schema->n_var, run_f(run, row)),
                                         "limited", json_limited(run, row), "variables",
-                                        json_values(schema->n_var, schema->column, run_x(run, row)),
-                                        "nondominated_probability", json_number(p->confidence[i])));
+                                        json_values(schema->n_var, schema->column, run_x(run, row))));
     }
-    json_t *o = json_pack("{s:s, s:I, s:I, s:o}", "run", run->folder, "front", (json_int_t)run->n_front,
-                          "within_limits", (json_int_t)p->n_left, "designs", picks);
-    if (sure->wanted > 0.0)
-        json_object_set_new(o, "confident", describe_sure(run, sure));
-    return o;
+    return json_pack("{s:s, s:I, s:I, s:o}", "run", run->folder, "front", (json_int_t)run->n_front, "within_limits",
+                     (json_int_t)p->n_left, "designs", picks);
 }
 
-static Status show(const Args *args, const Run *run, const Picks *p, const Sure *sure, Err *err)
+static Status show(const Args *args, const Run *run, const Picks *p, Err *err)
 {
     const char *csv = args_value(args, "--csv");
     if (csv)
         TRY(write_csv(run, p, csv, err));
     if (args_has(args, "--json"))
-        TRY(show_json(describe(run, p, sure), err));
+        TRY(show_json(describe(run, p), err));
     else if (!csv)
         show_table(run, p);
-    if (!csv && !args_has(args, "--json")) {
-        show_confidence(p);
-        show_sure(run, sure);
-    }
     if (p->n_left == 0)
         return fail(err, STATUS_UNMET,
                     "no design of the front is within the limits; `imtet optimize` with "
@@ -338,14 +249,11 @@ static Status show(const Args *args, const Run *run, const Picks *p, const Sure 
     return STATUS_OK;
 }
 
-static Status choose(const Args *args, Choice *c, Sure *sure, Err *err)
+static Status choose(const Args *args, Choice *c, Err *err)
 {
     Picks picks;
     TRY(find_picks(args, c, &picks, err));
-    TRY(args_number(args, "--confidence", 0.01, 1, 0, &sure->wanted, err));
-    if (!args_has(args, "--csv") || args_has(args, "--json")) /* which has no place for it */
-        TRY(find_confidence(c, &picks, sure, err));
-    return show(args, c->run, &picks, sure, err);
+    return show(args, c->run, &picks, err);
 }
 
 static Status choose_of(const Args *args, const Run *run, Err *err)
@@ -353,11 +261,7 @@ static Status choose_of(const Args *args, const Run *run, Err *err)
     if (run->n_front == 0)
         return run_why_empty(run, err);
     Choice c = {.run = run, .box = run_box(run), .allowed = calloc(run->table.n, 1)};
-    Sure sure = {0};
-    const Status status =
-        c.allowed ? choose(args, &c, &sure, err) : fail(err, STATUS_NO_MEMORY, "no memory for a choice");
-    free(sure.row);
-    free(sure.p);
+    const Status status = c.allowed ? choose(args, &c, err) : fail(err, STATUS_NO_MEMORY, "no memory for a choice");
     free(c.allowed);
     return status;
 }
@@ -377,8 +281,6 @@ static const ArgOption OPTIONS[] = {
     {"--min", "NAME=VALUE", NULL, 1, "the same, no smaller"},
     {"--weights", "NAME=W,...", NULL, 0, "the least weighted sum of objectives scaled to 0 (best) .. 1 (worst)"},
     {"--reference", "NAME=VALUE,...", NULL, 0, "reference point: the design nearest to these values"},
-    {"--confidence", "P", NULL, 0,
-     "noisy runs: list the designs of the front that are nondominated with this probability"},
     {"--csv", "FILE", NULL, 0, "the designs chosen, as rows of front.csv, into FILE; -: standard output"},
     {"--json", NULL, NULL, 0, "the designs chosen with their names, objectives and variables, on standard output"},
     OPTION_END,

@@ -13,7 +13,6 @@
 #include "settings/settings.h"
 #include "store/nearest.h"
 #include "store/run_read.h"
-#include "study/confidence.h"
 #include "study/improvement.h"
 #include "study/output_place.h"
 #include "study/study.h"
@@ -197,11 +196,8 @@ static Status report(const Run *run, const StudySummary *summary, Err *err)
            summary->folder, run->n_front, summary->n_simulated, summary->n_failed, summary->seconds,
            stop_reason_words(summary->stopped));
     double expected;
-    size_t n_confident, n_known;
     TRY(improvement_expected(run, &expected, err));
     show_expected_gain(expected);
-    TRY(confidence_of_front(run, &n_confident, &n_known, err));
-    show_confident(summary->folder, n_confident, n_known);
     putchar('\n');
     if (summary->n_repeats > 0)
         printf("%zu of the simulations repeat a design, to average the noise (search.replicate_share)\n\n",

@@ -7,7 +7,6 @@
 #include "cmd/show.h"
 #include "moga/hypervolume.h"
 #include "store/run_read.h"
-#include "study/confidence.h"
 #include "study/front_review.h"
 #include "study/improvement.h"
 #include "study/progress.h"
@@ -82,25 +81,21 @@ static void print_head(const char *folder, const Run *run, const Standing *s)
 }
 
 /* The first, the last, and some evenly between. */
-static void print_generations(const Run *run, const double igd[], double expected)
+static void print_generations(const Run *run, double expected)
 {
     const size_t n = run->n_generations, rows = n < ROWS_MAX ? n : ROWS_MAX;
-    char worked[32], hypervolume[32], advance[32];
+    char worked[32], hypervolume[32];
     if (n == 0)
         return;
-    printf("\n%12s %10s %8s %8s %12s %12s %12s\n", "generation", "simulated", "failed", "front", "hypervolume",
-           "IGD+ to last", "after");
+    printf("\n%12s %10s %8s %8s %12s %12s\n", "generation", "simulated", "failed", "front", "hypervolume", "after");
     for (size_t r = 0; r < rows; r++) {
         const size_t i = rows > 1 ? r * (n - 1) / (rows - 1) : 0;
         const RunGeneration *g = &run->generation[i];
-        number_words(igd[i], 4, advance);
         duration_words(g->seconds, worked);
         number_words(g->hypervolume, 4, hypervolume);
-        printf("%12ld %10ld %8ld %8ld %12s %12s %12s\n", g->number, g->simulated, g->failed, g->front, hypervolume,
-               advance, worked);
+        printf("%12ld %10ld %8ld %8ld %12s %12s\n", g->number, g->simulated, g->failed, g->front, hypervolume, worked);
     }
-    printf("hypervolume: standard error %.4f at most; IGD+: against the last front, normalised by its ranges\n",
-           hypervolume_error(0.5));
+    printf("hypervolume: standard error %.4f at most\n", hypervolume_error(0.5));
     if (run_is_screened(run))
         puts("simulated: designs screened or finished, each a part of an evaluation (search.fidelity)");
     show_expected_gain(expected);
@@ -115,18 +110,18 @@ static void print_failures(const Failures *f)
 
 /* -- for programs -------------------------------------------------------------------------------------------------- */
 
-static json_t *json_generations(const Run *run, const double igd[])
+static json_t *json_generations(const Run *run)
 {
     json_t *list = json_array();
     for (size_t i = 0; i < run->n_generations; i++) {
         const RunGeneration *g = &run->generation[i];
-        json_array_append_new(list, json_pack("{s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:s}", "number",
+        json_array_append_new(list, json_pack("{s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:s}", "number",
                                               (json_int_t)g->number, "simulated", (json_int_t)g->simulated, "failed",
                                               (json_int_t)g->failed, "front", (json_int_t)g->front, "hypervolume",
                                               json_number(g->hypervolume), "hypervolume_error",
-                                              json_number(hypervolume_error(g->hypervolume)), "igd_plus",
-                                              json_number(igd[i]), "surrogate_error", json_number(g->surrogate_error),
-                                              "seconds", json_number(g->seconds), "finished", g->finished));
+                                              json_number(hypervolume_error(g->hypervolume)), "surrogate_error",
+                                              json_number(g->surrogate_error), "seconds", json_number(g->seconds),
+                                              "finished", g->finished));
     }
     return list;
 }
@@ -193,7 +188,7 @@ static json_t *json_review(const FrontReview *r)
                      "gaps_on_largest", largest);
 }
 
-static json_t *describe(const char *folder, const Run *run, const Standing *s, const Failures *f, const double igd[])
+static json_t *describe(const char *folder, const Run *run, const Standing *s, const Failures *f)
 {
     json_t *o = json_pack(
         "{s:o, s:s, s:I, s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:o}", "run", json_words(folder), "state",
@@ -205,7 +200,7 @@ static json_t *describe(const char *folder, const Run *run, const Standing *s, c
         json_object_set_new(o, "process",
                             json_pack("{s:I, s:s}", "pid", (json_int_t)s->holder.pid, "host", s->holder.host));
     json_object_set_new(o, "repeats", json_integer((json_int_t)run->n_repeats));
-    json_object_set_new(o, "generations", json_generations(run, igd));
+    json_object_set_new(o, "generations", json_generations(run));
     json_object_set_new(o, "failures", json_failures(f));
     json_object_set_new(o, "sessions", json_sessions(run));
     const FrontReview review = front_review(run);
@@ -222,25 +217,17 @@ static Status run(const Args *args, Err *err)
     TRY(run_read_part(&run, args->operand, RUN_REVIEWED, err));
     standing_of(&standing, args->operand, &run);
     const Failures failures = failures_of(&run);
-    size_t n_confident = 0, n_known = 0;
-    double expected = NAN, *igd = calloc(run.n_generations + 1, sizeof *igd);
-    Status status = igd ? improvement_of_run(&run, igd, err) : fail(err, STATUS_NO_MEMORY, "no memory for generations");
-    if (status == STATUS_OK)
-        status = improvement_expected(&run, &expected, err);
-    if (status == STATUS_OK)
-        status = confidence_of_front(&run, &n_confident, &n_known, err);
+    double expected = NAN;
+    Status status = improvement_expected(&run, &expected, err);
     if (status == STATUS_OK && args_has(args, "--json")) {
-        json_t *o = describe(args->operand, &run, &standing, &failures, igd);
+        json_t *o = describe(args->operand, &run, &standing, &failures);
         json_object_set_new(o, "expected_gain", json_number(expected));
-        json_object_set_new(o, "confident", n_known > 0 ? json_integer((json_int_t)n_confident) : json_null());
         status = show_json(o, err);
     } else if (status == STATUS_OK) {
         print_head(args->operand, &run, &standing);
-        print_generations(&run, igd, expected);
-        show_confident(args->operand, n_confident, n_known);
+        print_generations(&run, expected);
         print_failures(&failures);
     }
-    free(igd);
     run_free(&run);
     return status;
 }

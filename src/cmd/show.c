@@ -7,7 +7,6 @@
 
 #include "base/units.h"
 #include "moga/hypervolume.h"
-#include "study/confidence.h"
 #include "store/output.h"
 
 static const char *scene_word(SceneKind kind)
@@ -384,14 +383,6 @@ void show_baselines(const Schema *schema, const double natural[], const Baseline
     putchar('\n');
     for (int k = 0; k < N_BASELINES; k++)
         show_verdict((BaselineKind)k, schema, natural, &baseline[k]);
-}
-
-void show_confident(const char *folder, size_t n_confident, size_t n_known)
-{
-    if (n_known > 0)
-        printf("%zu of %zu designs of the front are nondominated with a probability of %g or more (imtet choose %s "
-               "--confidence %g)\n",
-               n_confident, n_known, CONFIDENT, folder, CONFIDENT);
 }
 
 void show_expected_gain(double gain)

@@ -42,9 +42,6 @@ void show_verdict(BaselineKind kind, const Schema *schema, const double natural[
  * against it, and in which they lose. */
 void show_baselines(const Schema *schema, const double natural[], const Baseline baseline[N_BASELINES]);
 
-/* One line: how many designs of a noisy front are confident (study/confidence.h); n_known 0: nothing. */
-void show_confident(const char *folder, size_t n_confident, size_t n_known);
-
 /* One line: the hypervolume that as many simulations again are expected to gain (study/improvement.h); NAN: nothing. */
 void show_expected_gain(double gain);
 

@@ -6,7 +6,6 @@
 #include "base/list.h"
 #include "moga/constants.h"
 #include "settings/settings.h"
-#include "evaluate/external.h"
 
 void warn_on_stderr(const char *key, const char *text, void *user)
 {
@@ -31,30 +30,10 @@ static void warn_of_twins(const Settings *s, WarnFn warn, void *user)
     }
 }
 
-static void warn_of_costs(const Settings *s, WarnFn warn, void *user)
-{
-    static const double MOST = 0.5;
-    char text[160];
-    Err err = {0};
-    double cost;
-    if (s->problem.kind != PROBLEM_EXTERNAL || s->search.fidelity != FIDELITY_LEVELS ||
-        !list_is_given(s->problem.costs) || external_cheap_cost(s->problem.costs, &cost, &err) != STATUS_OK ||
-        cost <= MOST)
-        return;
-    snprintf(text, sizeof text,
-             "level 0 costs %g of an evaluation: one design at level 1 and the %d screened for it take %g; "
-             "search.fidelity = off may do better",
-             cost, APART_PER_FINISHED, 1.0 + APART_PER_FINISHED * cost);
-    warn("problem.costs", text, user);
-}
-
 void warn_of_settings(const Settings *s, WarnFn warn, void *user)
 {
-    warn_of_costs(s, warn, user);
     if (s->search.fidelity != FIDELITY_OFF && !settings_screens(s))
-        warn("search.fidelity",
-             "has no effect: it screens sim.replicates of a tower, or levels (problem.costs), unless problem.noisy",
-             user);
+        warn("search.fidelity", "has no effect: it screens sim.replicates of a tower, unless problem.noisy", user);
     if (s->problem.kind != PROBLEM_TOWER)
         return;
     if (s->sim.gap_tolerance_m > s->design.gap_max_m) {

@@ -85,10 +85,6 @@ static const double PROBE_WEIGHT = 0.05; /* of one probe in the running mean tha
 enum { SCREENED_PER_FINISHED = 5 }; /* designs screened for each that is finished */
 enum { LEVEL_PAIRS = 8 };           /* finished first: with fewer the cheap level stands for the whole evaluation */
 static const double LEVEL_TAU_MIN = 0.5; /* mean of Kendall's tau between the levels below which nothing is screened */
-enum { APART_PER_FINISHED = 3 };         /* with problem.costs: designs screened for each that is finished */
-enum { APART_PAIRS = 16 }; /* with problem.costs: designs of the initial sample that are evaluated at both levels */
-static const double APART_TAU_MIN = 0.92;   /* with problem.costs: mean tau of these below which nothing is screened */
-static const double APART_TAU_LATER = 0.82; /* with problem.costs: the same later; designs near the front differ less */
 
 /* -- replication.c: replication of noisy designs ------------------------------------------------------------------- */
 

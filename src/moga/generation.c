@@ -9,8 +9,7 @@
 /* Enough for a first surrogate of this many variables, and no more than half of the budget. */
 static size_t initial_size(const Search *s)
 {
-    const size_t planned = s->screening.is_apart ? search_evals(s) : search_planned(s);
-    const size_t wanted = INITIAL_PER_VARIABLE * s->problem->n_var + INITIAL_OFFSET, half = (planned + 1) / 2;
+    const size_t wanted = INITIAL_PER_VARIABLE * s->problem->n_var + INITIAL_OFFSET, half = (search_planned(s) + 1) / 2;
     if (s->config->initial > 0)
         return s->config->initial;
     return wanted < half ? wanted : half > 4 ? half : 4;
@@ -50,27 +49,8 @@ static size_t add_given(Search *s)
     return n;
 }
 
-/* A cheap level that is no part of the whole is compared with it before the rest of the sample is screened; where designs
- * fail, by further ones. */
-static Status compare_levels(Search *s, Err *err)
-{
-    const Screening *q = &s->screening;
-    while (q->is_on && q->is_apart && q->n_rows < q->n_pairs) {
-        const size_t left = q->n_pairs - q->n_rows, all = add_samples(s, add_given(s), generation_samples(s)),
-                     n = all < left ? all : left;
-        size_t n_finished = 0;
-        if (n == 0)
-            return STATUS_OK;
-        TRY(batch_evaluate(s, n, n, err));
-        TRY(screening_finish(s, &n_finished, err));
-        TRY(batch_evaluate(s, 0, n_finished, err));
-    }
-    return STATUS_OK;
-}
-
 Status generation_first(Search *s, Err *err)
 {
-    TRY(compare_levels(s, err));
     const size_t n = add_samples(s, add_given(s), generation_samples(s));
     TRY(batch_evaluate(s, n, n, err));
     batch_join(s, &s->pool, 0);

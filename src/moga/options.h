@@ -8,8 +8,8 @@
 #define SURROGATE_USE_LIST(X) X(SURROGATE_ON, "on") X(SURROGATE_OFF, "off")
 typedef enum { SURROGATE_USE_LIST(CHOICE_NAME) } SurrogateUse;
 
-/* What of most designs is evaluated alone (moga/fidelity.h): the first replicate of every record, or a cheap level. */
-#define FIDELITY_LIST(X) X(FIDELITY_OFF, "off") X(FIDELITY_REPLICATES, "replicates") X(FIDELITY_LEVELS, "levels")
+/* What of most designs is evaluated alone (moga/screening.h): the first replicate of every record. */
+#define FIDELITY_LIST(X) X(FIDELITY_OFF, "off") X(FIDELITY_REPLICATES, "replicates")
 typedef enum { FIDELITY_LIST(CHOICE_NAME) } Fidelity;
 
 #endif

@@ -1,5 +1,6 @@
 #include "moga/state.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -12,13 +13,8 @@ void screening_begin(Search *s)
     *q = (Screening){.cost = {.whole = 1}, .agreement = NAN};
     if (s->config->fidelity == FIDELITY_OFF || p->n_cheap == 0 || p->is_noisy)
         return;
-    const LevelCosts parts = {p->n_cheap, p->n_parts - p->n_cheap, p->n_parts};
     q->is_on = 1;
-    q->is_apart = p->cheap_cost > 0.0;
-    q->cost = q->is_apart ? level_costs(p->cheap_cost) : parts;
-    q->per_finished = q->is_apart ? APART_PER_FINISHED : SCREENED_PER_FINISHED;
-    q->n_pairs = q->is_apart ? APART_PAIRS : LEVEL_PAIRS;
-    q->tau_min = q->is_apart ? APART_TAU_MIN : LEVEL_TAU_MIN;
+    q->cost = (LevelCosts){p->n_cheap, p->n_parts - p->n_cheap, p->n_parts};
 }
 
 void screening_free(Search *s)
@@ -60,7 +56,7 @@ int search_is_spent(const Search *s)
     return spent(s) + next > search_evals(s) * q->cost.whole;
 }
 
-int screening_is_open(const Search *s, size_t i)
+static int is_open(const Search *s, size_t i)
 {
     const Screened *d = &s->screening.design[i];
     return d->finished == SIZE_MAX && s->archive.usable[d->row];
@@ -75,7 +71,7 @@ static size_t min_size(size_t a, size_t b)
 static size_t finish_due(const Search *s, size_t n)
 {
     const Screening *q = &s->screening;
-    const size_t due = (q->n + n) / q->per_finished;
+    const size_t due = (q->n + n) / SCREENED_PER_FINISHED;
     return due > q->n_finished ? min_size(due - q->n_finished, q->n_open + n) : 0;
 }
 
@@ -131,7 +127,7 @@ static Status keep(Search *s, const Finished *done, Err *err)
     const size_t n_out = p->n_obj + p->n_con, size = p->n_cheap * p->part_size;
     TRY(grow(q, n_out, err));
     Screened *d = &q->design[q->n];
-    *d = (Screened){s->archive.n, SIZE_MAX, done->parts && !q->is_apart ? malloc(size) : NULL};
+    *d = (Screened){s->archive.n, SIZE_MAX, done->parts ? malloc(size) : NULL};
     if (d->parts)
         memcpy(d->parts, done->parts, size);
     memcpy(q->y + q->n * n_out, done->f, p->n_obj * sizeof *q->y);
@@ -183,6 +179,169 @@ const void *screening_parts(const Search *s, const double x[])
     return i < s->screening.n ? s->screening.design[i].parts : NULL;
 }
 
+/* -- what the cheap level says of the whole evaluation ---------------------------------------------------------------- */
+
+/* Output k of design i by the cheap level, and of its row in the archive. */
+static double cheap_value(const Search *s, size_t i, size_t k)
+{
+    return s->screening.y[i * (s->problem->n_obj + s->problem->n_con) + k];
+}
+
+static double value_of(const Search *s, size_t row, size_t k)
+{
+    const Archive *a = &s->archive;
+    return k < a->n_obj ? a->Y[row * a->n_obj + k] : a->H[row * a->n_con + k - a->n_obj];
+}
+
+/* Output k of screened design i by the whole evaluation, which it has. */
+static double whole_value(const Search *s, size_t i, size_t k)
+{
+    return value_of(s, s->screening.design[i].finished, k);
+}
+
+/* Sums over designs and lines through them stay finite. */
+static int is_far_from_overflow(const Search *s, size_t i)
+{
+    static const double MOST = DBL_MAX * 0x1p-32;
+    for (size_t k = 0; k < s->problem->n_obj + s->problem->n_con; k++)
+        if (!(fabs(cheap_value(s, i, k)) < MOST && fabs(whole_value(s, i, k)) < MOST))
+            return 0;
+    return 1;
+}
+
+/* Designs that have both levels, in screening.rows. */
+static size_t find_pairs(Search *s)
+{
+    Screening *q = &s->screening;
+    q->n_rows = 0;
+    for (size_t i = 0; i < q->n; i++)
+        if (q->design[i].finished != SIZE_MAX && s->archive.usable[q->design[i].finished] && is_far_from_overflow(s, i))
+            q->rows[q->n_rows++] = i;
+    return q->n_rows;
+}
+
+/* The power of two of `most`: what is divided by it keeps its digits. */
+static double scale_of(double most)
+{
+    return most > 0.0 ? ldexp(1.0, ilogb(most)) : 1.0;
+}
+
+typedef struct {
+    double from, to, slope; /* means, slope between them */
+} Line;
+
+static Line fit_line(const Search *s, size_t k)
+{
+    const Screening *q = &s->screening;
+    const double n = (double)q->n_rows;
+    Line line = {0.0, 0.0, 1.0};
+    double xx = 0.0, xy = 0.0, x_most = 0.0, y_most = 0.0;
+    for (size_t j = 0; j < q->n_rows; j++) {
+        line.from += cheap_value(s, q->rows[j], k) / n;
+        line.to += whole_value(s, q->rows[j], k) / n;
+    }
+    for (size_t j = 0; j < q->n_rows; j++) {
+        x_most = fmax(x_most, fabs(cheap_value(s, q->rows[j], k) - line.from));
+        y_most = fmax(y_most, fabs(whole_value(s, q->rows[j], k) - line.to));
+    }
+    const double x_scale = scale_of(x_most), y_scale = scale_of(y_most);
+    for (size_t j = 0; j < q->n_rows; j++) {
+        const double x = (cheap_value(s, q->rows[j], k) - line.from) / x_scale;
+        xx += x * x;
+        xy += x * ((whole_value(s, q->rows[j], k) - line.to) / y_scale);
+    }
+    line.slope = xx > 0.0 ? xy / xx * (y_scale / x_scale) : 1.0;
+    if (!isfinite(line.slope)) /* beside what the whole evaluation says, the cheap level is constant */
+        line.slope = 0.0;
+    return line;
+}
+
+static int order_of(double a, double b)
+{
+    return (a > b) - (a < b);
+}
+
+/* Kendall's tau of objective k, of the pairs that the whole evaluation tells apart: one that the cheap level does not tell
+ * apart counts as half of an agreement and half of its contrary. NAN: there is no such pair. */
+static double agreement_of(const Search *s, size_t k)
+{
+    const Screening *q = &s->screening;
+    double same = 0.0, pairs = 0.0;
+    for (size_t i = 0; i < q->n_rows; i++)
+        for (size_t j = 0; j < i; j++) {
+            const size_t a = q->rows[i], b = q->rows[j];
+            const int whole = order_of(whole_value(s, a, k), whole_value(s, b, k));
+            same += whole * order_of(cheap_value(s, a, k), cheap_value(s, b, k));
+            pairs += whole != 0;
+        }
+    return pairs > 0.0 ? same / pairs : NAN;
+}
+
+/* An objective that the whole evaluation does not tell apart says nothing. */
+static double mean_agreement(const Search *s)
+{
+    const size_t m = s->problem->n_obj;
+    double sum = 0.0, n = 0.0, *tau = s->scratch.f;
+    for (size_t k = 0; k < m; k++) {
+        tau[k] = agreement_of(s, k);
+        n += !isnan(tau[k]);
+    }
+    for (size_t k = 0; k < m; k++)
+        sum += isnan(tau[k]) ? 0.0 : tau[k] / n;
+    return n > 0.0 ? sum : 1.0;
+}
+
+/* What is predicted from the cheap level is not used any more, but for an initial sample that is to be finished. */
+static void turn_off(Search *s)
+{
+    Screening *q = &s->screening;
+    q->is_on = 0;
+    for (size_t i = 0; i < q->n; i++)
+        if (q->design[i].finished == SIZE_MAX && s->archive.generation[q->design[i].row] > 0)
+            pareto_archive_drop(&s->archive, q->design[i].row);
+}
+
+static void look_at_agreement(Search *s)
+{
+    Screening *q = &s->screening;
+    q->agreement = mean_agreement(s);
+    if (q->agreement < LEVEL_TAU_MIN || !q->is_on)
+        turn_off(s);
+}
+
+/* -- predictions --------------------------------------------------------------------------------------------------- */
+
+static double *output_of(Search *s, size_t row, size_t k)
+{
+    Archive *a = &s->archive;
+    return k < a->n_obj ? a->Y + row * a->n_obj + k : a->H + row * a->n_con + k - a->n_obj;
+}
+
+static int is_finite_prediction(const Search *s, size_t row)
+{
+    int is_finite = 1;
+    for (size_t k = 0; k < s->problem->n_obj + s->problem->n_con; k++)
+        is_finite &= isfinite(value_of(s, row, k)) != 0;
+    return is_finite;
+}
+
+static void predict(Search *s)
+{
+    const Problem *p = s->problem;
+    const Screening *q = &s->screening;
+    for (size_t k = 0; k < p->n_obj + p->n_con; k++) {
+        const Line line = q->n_rows >= LEVEL_PAIRS ? fit_line(s, k) : (Line){0.0, 0.0, 1.0};
+        for (size_t i = 0; i < q->n; i++)
+            if (is_open(s, i))
+                *output_of(s, q->design[i].row, k) = line.to + line.slope * (cheap_value(s, i, k) - line.from);
+    }
+    for (size_t i = 0; i < q->n; i++)
+        if (is_open(s, i) && !is_finite_prediction(s, q->design[i].row))
+            pareto_archive_drop(&s->archive, q->design[i].row);
+        else if (is_open(s, i))
+            pareto_archive_predicted(&s->archive, q->design[i].row);
+}
+
 /* -- the front ------------------------------------------------------------------------------------------------------ */
 
 /* Of whole evaluations and predictions together. */
@@ -228,7 +387,9 @@ Status screening_update(Search *s, Err *err)
 {
     if (s->screening.n == 0)
         return STATUS_OK;
-    TRY(levels_compare(s, err));
+    if (find_pairs(s) >= LEVEL_PAIRS)
+        look_at_agreement(s);
+    predict(s);
     return find_front(s, err);
 }
 
@@ -299,7 +460,7 @@ static void append_open(Search *s, size_t *n, size_t limit)
 {
     const Screening *q = &s->screening;
     for (size_t i = 0; i < q->n && *n < limit; i++)
-        if (screening_is_open(s, i) && !q->is_chosen[q->design[i].row])
+        if (is_open(s, i) && !q->is_chosen[q->design[i].row])
             *n = append(s, *n, q->design[i].row);
 }
 
@@ -312,34 +473,23 @@ static size_t size_with(const Search *s, size_t n, size_t wanted)
     return min_size(s->batch.size_max, n + min_size(wanted, room / q->cost.rest));
 }
 
-static size_t pairs_missing(const Screening *q)
+/* Pairs to compare the levels by, or the initial sample where nothing is screened any more. */
+static size_t wanted_now(const Screening *q)
 {
-    const size_t n = q->is_apart ? q->n_rows : q->n_finished;
-    return n < q->n_pairs ? q->n_pairs - n : 0;
-}
-
-/* Pairs to compare the levels by, then some of every batch, or the initial sample where nothing is screened any more. */
-static size_t wanted_now(const Search *s, size_t n)
-{
-    const Screening *q = &s->screening;
-    if (q->is_on && pairs_missing(q) > 0)
-        return pairs_missing(q);
-    return q->is_apart ? finish_due(s, n) : q->is_on ? 0 : q->n;
+    return !q->is_on ? q->n : q->n_finished < LEVEL_PAIRS ? LEVEL_PAIRS - q->n_finished : 0;
 }
 
 Status screening_finish(Search *s, size_t *n, Err *err)
 {
     const Screening *q = &s->screening;
-    const int has_pairs = pairs_missing(q) == 0;
     if (q->n == 0)
         return STATUS_OK;
-    const size_t size = size_with(s, *n, wanted_now(s, *n));
+    const size_t size = size_with(s, *n, wanted_now(q));
     if (size <= *n)
         return STATUS_OK;
-    if (q->is_on && (has_pairs || !q->is_apart))
+    if (q->is_on)
         TRY(append_best(s, n, size, err));
-    if (!has_pairs || !q->is_on)
-        append_open(s, n, size);
+    append_open(s, n, size);
     return STATUS_OK;
 }
 

@@ -100,7 +100,6 @@ static int report(Search *s, int is_last, ObserveFn observe, void *user)
         .n_evaluations = search_evaluations(s),
         .n_screened = s->screening.n,
         .level_agreement = s->screening.agreement,
-        .levels_are_same = s->screening.is_same,
         .has_left_screening = s->screening.n > 0 && !s->screening.is_on,
         .generation_now = s->generation,
         .n_predicted = s->n_predicted,

@@ -103,7 +103,6 @@ typedef struct {
     size_t n_evaluations;   /* of max_evals: n, less what screened designs are not simulated */
     size_t n_screened;      /* designs evaluated by the cheap level first */
     double level_agreement; /* Kendall's tau of the levels, mean over the objectives; NAN: not known */
-    int levels_are_same;    /* of a level apart: every answer was that of the whole evaluation */
     int has_left_screening; /* it is too low: nothing is screened any more */
     size_t generation_now;
     size_t n_predicted;     /* predictions trusted for the first time in this generation */

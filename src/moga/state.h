@@ -7,8 +7,7 @@
  *   offspring.c      candidates: variation, inner generations and descents on the surrogate
  *   infill_select.c  which candidates are evaluated
  *   replication.c    which noisy designs are evaluated again
- *   screening.c      which designs are evaluated by the cheap level first, which of them are finished (fidelity.h)
- *   levels.c         what the cheap level says of the whole evaluation
+ *   screening.c      which designs are evaluated by the cheap level first, which of them are finished (screening.h)
  *   batch.c          evaluation, the only way into the archive
  *
  * Threads  one; the simulator and predictions of the surrogate use several */
@@ -26,7 +25,7 @@
 #include "moga/control.h"
 #include "moga/convergence.h"
 #include "moga/directions.h"
-#include "moga/fidelity.h"
+#include "moga/screening.h"
 #include "moga/infill.h"
 #include "moga/population.h"
 #include "moga/selection.h"
@@ -121,8 +120,8 @@ static inline size_t search_planned(const Search *s)
 {
     const SearchConfig *c = s->config;
     const Screening *q = &s->screening;
-    const size_t evals = c->planned_evals > 0 ? c->planned_evals : c->max_evals, n = q->per_finished;
-    return q->cost.whole == 1 || q->is_apart ? evals : evals * n * q->cost.whole / (n * q->cost.cheap + q->cost.rest);
+    const size_t evals = c->planned_evals > 0 ? c->planned_evals : c->max_evals, n = SCREENED_PER_FINISHED;
+    return q->cost.whole == 1 ? evals : evals * n * q->cost.whole / (n * q->cost.cheap + q->cost.rest);
 }
 
 /* Evaluations with which the search ends. */

@@ -3,7 +3,6 @@
 #include <string.h>
 
 #include "settings/options.h"
-#include "study/confidence.h"
 
 /* The chosen design simulated with the run's own settings, its records where they are now. */
 static Status take_detail(Report *r, const DetailOptions *options, Err *err)
@@ -31,7 +30,6 @@ Status report_open(Report *r, const Run *run, size_t chosen, const DetailOptions
     if (run->n_front == 0)
         return run_why_empty(run, err);
     r->knee = run_knee(run);
-    TRY(confidence_of_front(run, &r->n_confident, &r->n_known, err));
     const Status status = take_detail(r, options, err);
     if (status != STATUS_OK)
         report_close(r);

@@ -20,7 +20,6 @@ typedef struct {
     size_t knee, chosen; /* rows of the run */
     int is_robust;       /* objectives are those of several simulations, not of the one in detail */
     int has_detail;
-    size_t n_confident, n_known; /* of a noisy front: as confidence_of_front counts them; else 0 */
     Detail detail;
     Importance importance;  /* report_page finds it; elsewhere empty */
     size_t n_shown, *shown; /* rows of the designs of the front that the page has (report/thin.h); as the importance */

@@ -250,7 +250,7 @@ json_t *report_json(const Report *r)
     for (size_t n = strlen(name); n > 1 && name[n - 1] == '/'; n--)
         name[n - 1] = 0;
     const char *slash = strrchr(name, '/');
-    return json_pack("{s:s, s:s, s:o, s:o, s:b, s:b, s:o, s:s, s:I, s:I, s:o, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:o, "
+    return json_pack("{s:s, s:s, s:o, s:o, s:b, s:b, s:o, s:s, s:I, s:I, s:o, s:I, s:I, s:I, s:o, s:o, s:o, s:o, "
                      "s:o, s:o, s:s}",
                      "version", program_version(), "revision", program_revision(), "name",
                      json_words(slash && slash[1] ? slash + 1 : name), "folder", json_words(name), "tower",
@@ -259,10 +259,8 @@ json_t *report_json(const Report *r)
                      (json_int_t)run->table.row[r->knee].id, "chosen", (json_int_t)run->table.row[r->chosen].id,
                      "chosen_f", json_numbers(run->schema.n_obj, run_f(run, r->chosen)), "evaluated",
                      (json_int_t)n_evaluated(run), "failed", (json_int_t)run->n_failed, "front",
-                     (json_int_t)run->n_front, "confident",
-                     r->n_known > 0 ? json_integer((json_int_t)r->n_confident) : json_null(), "schema",
-                     json_of_names(r), "beyond_law", json_of_beyond_law(r), "importance",
-                     json_of_importance(&r->importance, &run->schema), "convergence", json_of_growth(run), "detail",
-                     r->detail.n_floors > 0 ? detail_json(&r->detail, &run->schema.order) : json_null(), "settings",
-                     json_of_settings(run->settings), "provenance", run->provenance);
+                     (json_int_t)run->n_front, "schema", json_of_names(r), "beyond_law", json_of_beyond_law(r),
+                     "importance", json_of_importance(&r->importance, &run->schema), "convergence", json_of_growth(run),
+                     "detail", r->detail.n_floors > 0 ? detail_json(&r->detail, &run->schema.order) : json_null(),
+                     "settings", json_of_settings(run->settings), "provenance", run->provenance);
 }

@@ -2,7 +2,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "base/list.h"
 #include "settings/settings.h"
 #include "settings/table.h"
 
@@ -70,9 +69,5 @@ int settings_screens(const Settings *s)
 {
     const SearchOptions *search = &s->search;
     const int repeats = s->problem.noisy == NOISY_YES && search->replicates_max > 1 && search->replicate_share > 0;
-    const int has_replicates = s->problem.kind == PROBLEM_TOWER && s->sim.replicates > 1,
-              has_levels = s->problem.kind == PROBLEM_EXTERNAL && list_is_given(s->problem.costs);
-    return search->fidelity != FIDELITY_OFF && !repeats &&
-           ((has_replicates && search->fidelity != FIDELITY_LEVELS) ||
-            (has_levels && search->fidelity != FIDELITY_REPLICATES));
+    return search->fidelity != FIDELITY_OFF && !repeats && s->problem.kind == PROBLEM_TOWER && s->sim.replicates > 1;
 }

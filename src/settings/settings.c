@@ -247,7 +247,7 @@ static const Option OPTIONS[] = {
     CHOICE(
         search.fidelity, Fidelity, CHOICE_WORDS(FIDELITY_LIST), "off",
         "replicates (tower, sim.replicates >= 2): of most designs only the first replicate is simulated, and the rest "
-        "where it promises most; levels (external, problem.costs): likewise the cheap level first"),
+        "where it promises most"),
     REAL(search.replicate_share, "-", "0.1", 0, 0.9,
          "noisy evaluations: share of the simulations that replicate designs of the front (docs/noise.md)"),
     WHOLE(search.replicates_max, "4", 1, 1000,

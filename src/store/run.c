@@ -7,10 +7,10 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "evaluate/problem.h"
 #include "moga/dominance.h"
 #include "settings/settings.h"
 #include "settings/options.h"
-#include "evaluate/external.h"
 
 void run_free(Run *run)
 {
@@ -132,11 +132,6 @@ int run_is_screened(const Run *run)
 static LevelCosts costs_of(const Run *run)
 {
     const size_t whole = (size_t)run->settings->sim.replicates;
-    double cheap;
-    Err err;
-    if (run->settings->problem.kind == PROBLEM_EXTERNAL && run_is_screened(run) &&
-        external_cheap_cost(run->settings->problem.costs, &cheap, &err) == STATUS_OK)
-        return level_costs(cheap);
     return (LevelCosts){1, whole - 1, whole};
 }
 

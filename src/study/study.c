@@ -36,7 +36,6 @@ typedef struct {
     double next_shown;         /* [s] of the clock, of the progress within it */
     long left_generation;      /* whose state was damaged, so that the one before is resumed; 0: none */
     int asked, late;           /* why it stopped: the signal, the time */
-    size_t n_improvement;      /* evaluations at which the improvement of the front is logged next */
     long failures[2];          /* in a row up to now: of whole evaluations, of those of the cheap level alone */
     int failing;               /* search.failures_max of them; 2: of the cheap level */
     char failure[200];         /* why the last one failed */
@@ -152,7 +151,7 @@ static Status write_generation(Study *study, const SearchView *view, Err *err)
 {
     const double session = session_seconds(study), seconds = study->seconds_before + session;
     TRY(store_generation(study->store, view, seconds, session, err));
-    return study_log_generation(study->store, view, seconds, &study->n_improvement, err);
+    return study_log_generation(study->store, view, seconds, err);
 }
 
 static void take_view(StudySummary *sum, const SearchView *view)
@@ -165,7 +164,6 @@ static void take_view(StudySummary *sum, const SearchView *view)
     sum->n_screened = view->n_screened;
     sum->n_evaluations = view->n_evaluations;
     sum->level_agreement = view->level_agreement;
-    sum->levels_are_same = view->levels_are_same;
     sum->has_left_screening = view->has_left_screening;
 }
 
@@ -300,7 +298,6 @@ static Status prepare(Study *study, const Settings *s, Err *err)
     TRY(store_forget_empty(study->store, err));
     snprintf(study->summary->folder, sizeof study->summary->folder, "%s", store_folder(study->store));
     study->summary->max_evals = s->search.max_evals;
-    study->summary->is_by_levels = s->search.fidelity == FIDELITY_LEVELS;
     study->used = settings_as_used(s, study->summary->folder);
     return store_run(study->store) ? resume(study, err) : begin(study, err);
 }

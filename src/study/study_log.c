@@ -7,11 +7,7 @@
 #include "base/json.h"
 #include "moga/hypervolume.h"
 #include "store/provenance.h"
-#include "study/improvement.h"
 #include "study/progress.h"
-
-/* Evaluations up to which the improvement is logged with every generation: it costs a pass over all of them. */
-enum { IMPROVEMENT_ALWAYS = 1000 };
 
 static Status log_motions(RunStore *store, const Tower *t, Err *err)
 {
@@ -56,28 +52,21 @@ Status study_log_start(RunStore *store, const Adapter *adapter, const SearchOpti
     return log_problem(store, adapter, used, program, err);
 }
 
-static json_t *generation_event(const SearchView *v, double hypervolume, double igd, double seconds)
+static json_t *generation_event(const SearchView *v, double hypervolume, double seconds)
 {
-    return json_pack("{s:s, s:I, s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:f, s:f, s:f, s:f}", "event", "generation",
+    return json_pack("{s:s, s:I, s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:f, s:f, s:f, s:f}", "event", "generation",
                      "number", (json_int_t)v->generation_now, "simulated", (json_int_t)v->n, "repeats",
                      (json_int_t)v->n_replicates, "failed", (json_int_t)v->n_failed, "front", (json_int_t)v->n_front,
                      "surrogate_error", json_number(v->surrogate_error), "hypervolume", json_number(hypervolume),
-                     "hypervolume_error", json_number(hypervolume_error(hypervolume)), "igd_plus", json_number(igd),
-                     "seconds", seconds, "search_s", v->seconds, "waited_s", v->waited_s, "surrogate_s",
-                     v->surrogate_s);
+                     "hypervolume_error", json_number(hypervolume_error(hypervolume)), "seconds", seconds, "search_s",
+                     v->seconds, "waited_s", v->waited_s, "surrogate_s", v->surrogate_s);
 }
 
-Status study_log_generation(RunStore *store, const SearchView *view, double seconds, size_t *n_improvement, Err *err)
+Status study_log_generation(RunStore *store, const SearchView *view, double seconds, Err *err)
 {
     const double hypervolume = store_hypervolume(store);
-    char improvement[32], surrogate[64] = "-", repeats[40] = "";
-    double igd = NAN;
-    if (view->n >= *n_improvement) {
-        TRY(improvement_lately(view, &igd, err));
-        *n_improvement = view->n > IMPROVEMENT_ALWAYS ? view->n + view->n / 10 : 0;
-    }
-    TRY(store_event(store, generation_event(view, hypervolume, igd, seconds), err));
-    number_words(igd, 4, improvement);
+    char surrogate[64] = "-", repeats[40] = "";
+    TRY(store_event(store, generation_event(view, hypervolume, seconds), err));
     if (view->n_replicates > 0)
         snprintf(repeats, sizeof repeats, " (%zu repeats)", view->n_replicates);
     if (isfinite(view->surrogate_error))
@@ -87,10 +76,10 @@ Status study_log_generation(RunStore *store, const SearchView *view, double seco
                  view->n_left_out);
     return store_log(store, err,
                      "generation %zu: %zu simulated%s, %zu failed, front %zu, hypervolume %.4f (standard error %.4f), "
-                     "IGD+ against the front at 90 %% of the evaluations %s, predictions kept %zu, surrogate error %s, "
+                     "predictions kept %zu, surrogate error %s, "
                      "%.1f s",
                      view->generation_now, view->n, repeats, view->n_failed, view->n_front, hypervolume,
-                     hypervolume_error(hypervolume), improvement, view->n_predicted, surrogate, seconds);
+                     hypervolume_error(hypervolume), view->n_predicted, surrogate, seconds);
 }
 
 /* What surrogate and search cost beside the simulations. */
@@ -111,21 +100,16 @@ static Status log_costs(RunStore *store, const StudySummary *sum, int threads, E
 
 void screening_words(const StudySummary *sum, char text[SCREENING_WORDS])
 {
-    const char *level = sum->is_by_levels ? "cheap level" : "first replicate";
-    const int n =
-        snprintf(text, SCREENING_WORDS,
-                 "%zu designs were screened by their %s (search.fidelity), and %zu finished or "
-                 "simulated at once, as much as %zu of %ld evaluations; ",
-                 sum->n_screened, level, sum->n_simulated - sum->n_screened, sum->n_evaluations, sum->max_evals);
+    const int n = snprintf(text, SCREENING_WORDS,
+                           "%zu designs were screened by their first replicate (search.fidelity), and %zu finished or "
+                           "simulated at once, as much as %zu of %ld evaluations; ",
+                           sum->n_screened, sum->n_simulated - sum->n_screened, sum->n_evaluations, sum->max_evals);
     if (isnan(sum->level_agreement))
         snprintf(text + n, SCREENING_WORDS - (size_t)n,
-                 "too few were simulated at both levels to know how well the %s ranks designs", level);
-    else if (sum->levels_are_same)
-        snprintf(text + n, SCREENING_WORDS - (size_t)n,
-                 "every answer at level 0 was that at level 1: the worker may ignore `level`");
+                 "too few were finished to know how well the first replicate ranks designs");
     else
-        snprintf(text + n, SCREENING_WORDS - (size_t)n, "the %s ranks designs as %s by a Kendall's tau of %.2f%s",
-                 level, sum->is_by_levels ? "the whole evaluation does" : "all do", sum->level_agreement,
+        snprintf(text + n, SCREENING_WORDS - (size_t)n,
+                 "the first replicate ranks designs as all do by a Kendall's tau of %.2f%s", sum->level_agreement,
                  sum->has_left_screening ? ": too little, so that screening ended" : "");
 }
 

@@ -13,9 +13,8 @@
 /* n: evaluations that the run holds already. */
 Status study_log_start(RunStore *store, const Adapter *adapter, const SearchOptions *used, size_t n, Err *err);
 
-/* seconds: of work on the run so far, all sessions. n_improvement: evaluations from which the improvement of the front is
- * measured again, 0 in the beginning. */
-Status study_log_generation(RunStore *store, const SearchView *view, double seconds, size_t *n_improvement, Err *err);
+/* seconds: of work on the run so far, all sessions. */
+Status study_log_generation(RunStore *store, const SearchView *view, double seconds, Err *err);
 
 /* threads: of the simulations. */
 Status study_log_end(RunStore *store, const StudySummary *sum, int threads, int is_final, Err *err);

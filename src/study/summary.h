@@ -20,8 +20,6 @@ typedef struct {
     size_t n_screened;    /* as in SearchView, of this session's last generation; 0: none, or not known */
     size_t n_evaluations; /* with n_screened: of max_evals */
     double level_agreement;
-    int levels_are_same;
-    int is_by_levels; /* screened by a cheap level (problem.costs), not by the first replicate */
     int has_left_screening;
     int has_baselines; /* of a tower whose front has a knee; of its core */
     Baseline baseline[N_BASELINES];

@@ -37,7 +37,7 @@ function gainAndPrice(raw, b) {
 
 function sentence(d) {
   const whose = run.chosen === run.knee ? `the knee, design ${run.chosen}` : `design ${run.chosen}`;
-  const done = `${run.evaluated ? `${count(run.evaluated)} designs ${d ? "simulated" : "evaluated"}, ${count(run.failed)} failed; ` : ""}${count(run.front)} on the front${run.confident === null ? "" : ` (${count(run.confident)} with a probability of 90 % or more)`}${run.front > n ? `, ${count(n)} of them on this page` : ""}`;
+  const done = `${run.evaluated ? `${count(run.evaluated)} designs ${d ? "simulated" : "evaluated"}, ${count(run.failed)} failed; ` : ""}${count(run.front)} on the front${run.front > n ? `, ${count(n)} of them on this page` : ""}`;
   if (!d) return `${done}. ${whose[0].toUpperCase()}${whose.slice(1)}, is nearest to the best of every objective.`;
   const alone = overlays.find((o) => o.key === "no_core"), more = run.robust ? ", with further motions or replicates" : "";
   const what = alone && gainAndPrice(run.chosen_f, alone);
