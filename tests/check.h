@@ -19,6 +19,19 @@
 #define SANITIZED 0
 #endif
 
+/* A test puts itself on the list of its program, in the order in which they stand: TEST(what_is_so) { ... } */
+enum { TESTS_MAX = 128 };
+static struct CMUnitTest all_tests[TESTS_MAX] __attribute__((unused));
+static size_t n_tests __attribute__((unused));
+#define TEST(name)                                                                                                     \
+    static void test_##name(void **state);                                                                             \
+    __attribute__((constructor(200 + __LINE__))) static void add_##name(void)                                          \
+    {                                                                                                                  \
+        all_tests[n_tests++] = (struct CMUnitTest){"test_" #name, test_##name, NULL, NULL, NULL};                      \
+    }                                                                                                                  \
+    static void test_##name(__attribute__((unused)) void **state)
+#define RUN_TESTS(setup, teardown) _cmocka_run_group_tests("tests", all_tests, n_tests, setup, teardown)
+
 /* |actual - wanted| <= tolerance |wanted|; NaN fails. */
 static inline void check_close(double actual, double wanted, double tolerance, const char *what, const char *file,
                                int line)

@@ -182,9 +182,8 @@ static void assert_all_different(const Seen *s)
             assert_memory_not_equal(s->X + i * n_var, s->X + j * n_var, n_var * sizeof *s->X);
 }
 
-static void test_one_worker_makes_the_bytes_of_a_search_in_batches(void **state)
+TEST(one_worker_makes_the_bytes_of_a_search_in_batches)
 {
-    (void)state;
     world(6, 3, 1);
     SearchConfig c = config(20, 90);
     search(&c, NULL, &whole);
@@ -195,9 +194,8 @@ static void test_one_worker_makes_the_bytes_of_a_search_in_batches(void **state)
     forget_it(&rest_of_it);
 }
 
-static void test_the_same_order_of_arrival_makes_the_same_bytes_whatever_the_time(void **state)
+TEST(the_same_order_of_arrival_makes_the_same_bytes_whatever_the_time)
 {
-    (void)state;
     world(6, 3, 4);
     const SearchConfig c = config(20, 120);
     search(&c, NULL, &whole);
@@ -216,9 +214,8 @@ static void test_the_same_order_of_arrival_makes_the_same_bytes_whatever_the_tim
     forget_it(&rest_of_it);
 }
 
-static void test_every_design_has_the_objectives_of_a_search_in_batches(void **state)
+TEST(every_design_has_the_objectives_of_a_search_in_batches)
 {
-    (void)state;
     double f[OBJ_MAX];
     world(6, 3, 4);
     const SearchConfig c = config(20, 80);
@@ -232,9 +229,8 @@ static void test_every_design_has_the_objectives_of_a_search_in_batches(void **s
 }
 
 /* Killed after any result: the state of the last generation, and results that came after it. */
-static void test_results_after_the_last_state_are_taken_up_in_their_order(void **state)
+TEST(results_after_the_last_state_are_taken_up_in_their_order)
 {
-    (void)state;
     const SearchConfig c = config(20, 90);
     world(6, 3, 4);
     search(&c, NULL, &whole);
@@ -263,9 +259,8 @@ static void test_results_after_the_last_state_are_taken_up_in_their_order(void *
 }
 
 /* Results that the search would not have asked for, of another program, say, are results all the same. */
-static void test_results_that_nobody_asked_for_join_the_archive(void **state)
+TEST(results_that_nobody_asked_for_join_the_archive)
 {
-    (void)state;
     double X[2 * 6], F[2 * 3];
     const unsigned char ok[2] = {1, 1}, kind[2] = {KIND_INFILL, KIND_INFILL};
     world(6, 3, 4);
@@ -305,9 +300,8 @@ static double volume(const Seen *s)
 }
 
 /* Beside eight workers, most of what a batch is chosen from is known a little later. */
-static void test_the_search_is_nearly_as_good_as_one_in_batches(void **state)
+TEST(the_search_is_nearly_as_good_as_one_in_batches)
 {
-    (void)state;
     world(12, 3, 8);
     SearchConfig c = config(40, 200);
     search(&c, NULL, &whole);
@@ -327,9 +321,8 @@ static void test_the_search_is_nearly_as_good_as_one_in_batches(void **state)
 }
 
 /* What is under way when the search ends is taken in, what only waits is not simulated. */
-static void test_every_limit_ends_with_all_that_was_simulated(void **state)
+TEST(every_limit_ends_with_all_that_was_simulated)
 {
-    (void)state;
     world(6, 3, 4);
     here.problem.executor = &EXECUTOR_THREADS;
     SearchConfig c = config(20, 200);
@@ -347,9 +340,8 @@ static void test_every_limit_ends_with_all_that_was_simulated(void **state)
     forget_it(&whole);
 }
 
-static void test_a_fault_of_the_simulations_ends_the_search(void **state)
+TEST(a_fault_of_the_simulations_ends_the_search)
 {
-    (void)state;
     Err err = {0};
     StopReason reason;
     const SearchConfig c = config(20, 200);
@@ -389,9 +381,8 @@ static double seconds_of(const char *folder)
 }
 
 /* In batches of 4 one slow answer keeps three workers waiting: near 37 ms a batch, against 14.5 for four designs. */
-static void test_workers_of_uneven_speed_do_not_wait_for_each_other(void **state)
+TEST(workers_of_uneven_speed_do_not_wait_for_each_other)
 {
-    (void)state;
     write_in_place("uneven.ini", UNEVEN("120"));
     optimize("batches", "");
     optimize("turns", "--set search.asynchronous=on");
@@ -399,9 +390,8 @@ static void test_workers_of_uneven_speed_do_not_wait_for_each_other(void **state
 }
 
 /* Long enough that it does not end between two commits. */
-static void test_a_killed_run_goes_on_with_every_result_it_had(void **state)
+TEST(a_killed_run_goes_on_with_every_result_it_had)
 {
-    (void)state;
     char path[PATH_MAX];
     Run before, after;
     Err err = {0};
@@ -438,17 +428,5 @@ static void test_a_killed_run_goes_on_with_every_result_it_had(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_one_worker_makes_the_bytes_of_a_search_in_batches),
-        cmocka_unit_test(test_the_same_order_of_arrival_makes_the_same_bytes_whatever_the_time),
-        cmocka_unit_test(test_every_design_has_the_objectives_of_a_search_in_batches),
-        cmocka_unit_test(test_results_after_the_last_state_are_taken_up_in_their_order),
-        cmocka_unit_test(test_results_that_nobody_asked_for_join_the_archive),
-        cmocka_unit_test(test_the_search_is_nearly_as_good_as_one_in_batches),
-        cmocka_unit_test(test_every_limit_ends_with_all_that_was_simulated),
-        cmocka_unit_test(test_a_fault_of_the_simulations_ends_the_search),
-        cmocka_unit_test(test_workers_of_uneven_speed_do_not_wait_for_each_other),
-        cmocka_unit_test(test_a_killed_run_goes_on_with_every_result_it_had),
-    };
-    return cmocka_run_group_tests_name("async", tests, prepare, clear_place);
+    return RUN_TESTS(prepare, clear_place);
 }

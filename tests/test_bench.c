@@ -29,9 +29,8 @@ static void ground_open(Ground *g)
     CHECK_OK(motion_prepare(&g->m, s.motion.pga_g, s.motion.stretch, &err), &err);
 }
 
-static void test_irregular_gaps_are_the_same_every_time_and_within_their_bounds(void **state)
+TEST(irregular_gaps_are_the_same_every_time_and_within_their_bounds)
 {
-    (void)state;
     double first[20], again[20], other[20];
     bench_irregular_gaps(3, 20, first);
     bench_irregular_gaps(3, 20, again);
@@ -42,9 +41,8 @@ static void test_irregular_gaps_are_the_same_every_time_and_within_their_bounds(
         assert_true(first[j] >= 0.01 && first[j] <= 0.2);
 }
 
-static void test_scenes_have_as_many_impacts_as_their_names_say(void **state)
+TEST(scenes_have_as_many_impacts_as_their_names_say)
 {
-    (void)state;
     static const long LEAST[] = {0, 1, 20, 10, 20}, MOST[] = {0, 1, 100000, 100000, 100000};
     Ground g;
     ground_open(&g);
@@ -62,9 +60,8 @@ static void test_scenes_have_as_many_impacts_as_their_names_say(void **state)
     motion_free(&g.m);
 }
 
-static void test_an_error_is_zero_against_itself_and_first_order_in_a_change(void **state)
+TEST(an_error_is_zero_against_itself_and_first_order_in_a_change)
 {
-    (void)state;
     static TimedRun o, changed;
     BenchCase bench_case = {0};
     Ground g;
@@ -86,9 +83,8 @@ static void test_an_error_is_zero_against_itself_and_first_order_in_a_change(voi
     motion_free(&g.m);
 }
 
-static void test_the_distance_of_two_samples_is_that_of_their_steps(void **state)
+TEST(the_distance_of_two_samples_is_that_of_their_steps)
 {
-    (void)state;
     double a[] = {4, 1, 3, 2}, b[] = {8, 5, 7, 6}, c[] = {2.5, 3.5, 4.5, 5.5}, d[] = {3, 2, 1, 4};
     assert_close(ks_distance(4, a, 4, b), 1, 1e-15);
     assert_close(ks_distance(4, a, 4, c), 0.5, 1e-15);
@@ -97,9 +93,8 @@ static void test_the_distance_of_two_samples_is_that_of_their_steps(void **state
     assert_close(ks_critical(64), 0.24, 1e-2);
 }
 
-static void test_a_sweep_has_a_row_for_every_setting_and_a_known_floor(void **state)
+TEST(a_sweep_has_a_row_for_every_setting_and_a_known_floor)
 {
-    (void)state;
     if (SANITIZED) /* the engines go through the stability table */
         skip();
     const SweepPlan plan = {1u << ENGINE_FAST | 1u << ENGINE_NEWMARK, 0.2};
@@ -133,9 +128,8 @@ static void test_a_sweep_has_a_row_for_every_setting_and_a_known_floor(void **st
     motion_free(&g.m);
 }
 
-static void test_windows_of_the_promise_lie_in_their_record_and_repeat(void **state)
+TEST(windows_of_the_promise_lie_in_their_record_and_repeat)
 {
-    (void)state;
     Ground g;
     PromiseCase c, again;
     ground_open(&g);
@@ -154,17 +148,15 @@ static void test_windows_of_the_promise_lie_in_their_record_and_repeat(void **st
     motion_free(&g.m);
 }
 
-static void test_quantiles_are_the_least_that_a_share_does_not_exceed(void **state)
+TEST(quantiles_are_the_least_that_a_share_does_not_exceed)
 {
-    (void)state;
     double x[] = {4, 1, 3, 2, 5, 6, 8, 7, 10, 9};
     assert_true(bench_quantile(10, x, 0.9) == 9 && bench_quantile(10, x, 0.95) == 10 && bench_quantile(10, x, 0) == 1);
     assert_true(bench_median(10, x) == 5.5 && bench_median(9, x) == 5 && isnan(bench_median(0, x)));
 }
 
-static void test_the_table_of_the_promise_has_a_row_for_every_accuracy(void **state)
+TEST(the_table_of_the_promise_has_a_row_for_every_accuracy)
 {
-    (void)state;
     if (SANITIZED) /* many runs of code that the other tests go through */
         skip();
     Ground g;
@@ -188,9 +180,8 @@ static void test_the_table_of_the_promise_has_a_row_for_every_accuracy(void **st
 }
 
 /* Gaps that scatter by millimetres spread the results, gaps that scatter by 1e-8 of themselves do so far less. */
-static void test_the_distribution_test_draws_replicates_by_the_tolerance_of_the_settings(void **state)
+TEST(the_distribution_test_draws_replicates_by_the_tolerance_of_the_settings)
 {
-    (void)state;
     if (SANITIZED) /* many runs of code that the other tests go through */
         skip();
     double spread[2];
@@ -236,9 +227,8 @@ static void check_nothing_is_beyond(const Course *reference, const Course *found
         }
 }
 
-static void test_no_plain_search_gets_beyond_the_references_of_a_problem(void **state)
+TEST(no_plain_search_gets_beyond_the_references_of_a_problem)
 {
-    (void)state;
     if (SANITIZED) /* searches go through the next test */
         skip();
     Err err;
@@ -272,9 +262,8 @@ static double sum_of(const Course *c, size_t i)
 }
 
 /* Of slab3: the least sum of objectives among the designs that succeed, after 200 evaluations and after the first 52. */
-static void test_a_search_makes_as_many_evaluations_as_it_may_and_betters_its_first_sample(void **state)
+TEST(a_search_makes_as_many_evaluations_as_it_may_and_betters_its_first_sample)
 {
-    (void)state;
     Err err;
     Settings s;
     settings_defaults(&s);
@@ -301,9 +290,8 @@ static void test_a_search_makes_as_many_evaluations_as_it_may_and_betters_its_fi
     }
 }
 
-static void test_a_course_is_read_as_it_was_written_and_another_one_is_not(void **state)
+TEST(a_course_is_read_as_it_was_written_and_another_one_is_not)
 {
-    (void)state;
     Err err;
     Course c, back = {0};
     int found;
@@ -328,19 +316,5 @@ static void test_a_course_is_read_as_it_was_written_and_another_one_is_not(void 
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_irregular_gaps_are_the_same_every_time_and_within_their_bounds),
-        cmocka_unit_test(test_scenes_have_as_many_impacts_as_their_names_say),
-        cmocka_unit_test(test_an_error_is_zero_against_itself_and_first_order_in_a_change),
-        cmocka_unit_test(test_the_distance_of_two_samples_is_that_of_their_steps),
-        cmocka_unit_test(test_the_distribution_test_draws_replicates_by_the_tolerance_of_the_settings),
-        cmocka_unit_test(test_a_sweep_has_a_row_for_every_setting_and_a_known_floor),
-        cmocka_unit_test(test_windows_of_the_promise_lie_in_their_record_and_repeat),
-        cmocka_unit_test(test_quantiles_are_the_least_that_a_share_does_not_exceed),
-        cmocka_unit_test(test_the_table_of_the_promise_has_a_row_for_every_accuracy),
-        cmocka_unit_test(test_no_plain_search_gets_beyond_the_references_of_a_problem),
-        cmocka_unit_test(test_a_search_makes_as_many_evaluations_as_it_may_and_betters_its_first_sample),
-        cmocka_unit_test(test_a_course_is_read_as_it_was_written_and_another_one_is_not),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return RUN_TESTS(NULL, NULL);
 }

@@ -75,9 +75,8 @@ static int prepared_record(int k, Motion *m)
 
 /* ---- tests ----------------------------------------------------------------------------------------------------- */
 
-static void test_generated_motions_have_the_stated_peak_and_duration(void **state)
+TEST(generated_motions_have_the_stated_peak_and_duration)
 {
-    (void)state;
     for (int k = 0; k < N_MOTIONS; k++) {
         Motion m;
         Err err;
@@ -94,9 +93,8 @@ static void test_generated_motions_have_the_stated_peak_and_duration(void **stat
     }
 }
 
-static void test_generated_motions_leave_the_ground_at_rest(void **state)
+TEST(generated_motions_leave_the_ground_at_rest)
 {
-    (void)state;
     for (int k = 0; k < N_MOTIONS; k++) {
         Motion m;
         Err err;
@@ -113,9 +111,8 @@ static void test_generated_motions_leave_the_ground_at_rest(void **state)
     }
 }
 
-static void test_a_generated_motion_is_the_same_every_time(void **state)
+TEST(a_generated_motion_is_the_same_every_time)
 {
-    (void)state;
     uint64_t hash[N_MOTIONS];
     for (int k = 0; k < N_MOTIONS; k++) {
         Motion m[2];
@@ -131,9 +128,8 @@ static void test_a_generated_motion_is_the_same_every_time(void **state)
     assert_true(hash[0] != hash[1] && hash[1] != hash[2] && hash[0] != hash[2]);
 }
 
-static void test_an_unknown_name_is_refused_with_the_known_ones(void **state)
+TEST(an_unknown_name_is_refused_with_the_known_ones)
 {
-    (void)state;
     Motion m;
     Err err;
     assert_int_equal(motion_load(&m, "builtin:kobe", UNIT_FROM_FILE, &err), STATUS_BAD_DATA);
@@ -141,9 +137,8 @@ static void test_an_unknown_name_is_refused_with_the_known_ones(void **state)
     motion_free(&m);
 }
 
-static void test_the_building_alone_answers_as_it_does_to_the_records(void **state)
+TEST(the_building_alone_answers_as_it_does_to_the_records)
 {
-    (void)state;
     for (int k = 0; k < N_MOTIONS; k++) {
         Motion m = prepared(k);
         for (int b = 0; b < N_BUILDINGS; b++) {
@@ -158,9 +153,8 @@ static void test_the_building_alone_answers_as_it_does_to_the_records(void **sta
     }
 }
 
-static void test_the_answers_listed_above_are_those_of_the_records(void **state)
+TEST(the_answers_listed_above_are_those_of_the_records)
 {
-    (void)state;
     int n_read = 0;
     for (int k = 0; k < N_MOTIONS; k++) {
         Motion m;
@@ -181,9 +175,8 @@ static void test_the_answers_listed_above_are_those_of_the_records(void **state)
     }
 }
 
-static void test_spectra_are_near_those_of_the_records(void **state)
+TEST(spectra_are_near_those_of_the_records)
 {
-    (void)state;
     double T[N_PERIODS], psa[2][N_PERIODS];
     int n_read = 0;
     for (int i = 0; i < N_PERIODS; i++)
@@ -216,14 +209,5 @@ static void test_spectra_are_near_those_of_the_records(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_generated_motions_have_the_stated_peak_and_duration),
-        cmocka_unit_test(test_generated_motions_leave_the_ground_at_rest),
-        cmocka_unit_test(test_a_generated_motion_is_the_same_every_time),
-        cmocka_unit_test(test_an_unknown_name_is_refused_with_the_known_ones),
-        cmocka_unit_test(test_the_building_alone_answers_as_it_does_to_the_records),
-        cmocka_unit_test(test_the_answers_listed_above_are_those_of_the_records),
-        cmocka_unit_test(test_spectra_are_near_those_of_the_records),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return RUN_TESTS(NULL, NULL);
 }

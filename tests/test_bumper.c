@@ -56,9 +56,8 @@ static Blow random_blow(uint32_t i)
     return b;
 }
 
-static void test_the_force_is_that_of_steel_and_spring_in_series_with_its_slopes(void **state)
+TEST(the_force_is_that_of_steel_and_spring_in_series_with_its_slopes)
 {
-    (void)state;
     for (uint32_t i = 0; i < 2000; i++) {
         const Blow b = random_blow(i);
         Random r = random_stream(8, RANDOM_REPLICATE, 0, i);
@@ -80,9 +79,8 @@ static void test_the_force_is_that_of_steel_and_spring_in_series_with_its_slopes
     }
 }
 
-static void test_the_stored_energy_is_the_integral_of_the_elastic_force(void **state)
+TEST(the_stored_energy_is_the_integral_of_the_elastic_force)
 {
-    (void)state;
     for (uint32_t i = 0; i < 200; i++) {
         const Blow b = random_blow(i);
         enum { N = 2000 };
@@ -96,9 +94,8 @@ static void test_the_stored_energy_is_the_integral_of_the_elastic_force(void **s
     }
 }
 
-static void test_a_hard_bumper_is_none_and_a_soft_one_is_a_spring(void **state)
+TEST(a_hard_bumper_is_none_and_a_soft_one_is_a_spring)
 {
-    (void)state;
     const Contact steel = {.k = STEEL, .a = 0.45}, hard = {STEEL, 0.45, 0, 0, 1e18, 0.1};
     const Contact soft = {STEEL, 0.45, 0, 0, 1e3, 0.1};
     for (double p = 1e-6; p < 0.1; p *= 3) {
@@ -174,9 +171,8 @@ static double kept_share(const Blow *b, const SimResult *r)
     return 1 - (r->contact_loss_j + r->clamp_j) / (0.5 * m * b->v * b->v);
 }
 
-static void test_impacts_are_those_of_an_independent_integration(void **state)
+TEST(impacts_are_those_of_an_independent_integration)
 {
-    (void)state;
     if (SANITIZED) /* long, and the code is that of the tests beside it */
         skip();
     double worst[3] = {0};
@@ -203,9 +199,8 @@ static void test_impacts_are_those_of_an_independent_integration(void **state)
                   worst[2]);
 }
 
-static void test_steel_and_bumper_of_the_same_damping_rebound_as_either_alone(void **state)
+TEST(steel_and_bumper_of_the_same_damping_rebound_as_either_alone)
 {
-    (void)state;
     for (double bumper = 1e4; bumper < 1e13; bumper *= 10)
         for (int i = 1; i < 4; i++) {
             const double a = 0.3 * i;
@@ -215,9 +210,8 @@ static void test_steel_and_bumper_of_the_same_damping_rebound_as_either_alone(vo
         }
 }
 
-static void test_a_soft_bumper_rebounds_by_its_own_damping_ratio(void **state)
+TEST(a_soft_bumper_rebounds_by_its_own_damping_ratio)
 {
-    (void)state;
     SceneOptions s = paper_scene();
     Err err = {0};
     s.contact.bumper_stiffness_n_m = 1e4;
@@ -232,9 +226,8 @@ static void test_a_soft_bumper_rebounds_by_its_own_damping_ratio(void **state)
 }
 
 /* A spring meets a mass for half a period, and is compressed by v sqrt(m/k). */
-static void test_an_undamped_soft_bumper_is_a_spring_in_depth_and_force(void **state)
+TEST(an_undamped_soft_bumper_is_a_spring_in_depth_and_force)
 {
-    (void)state;
     const Blow b = {{STEEL, 0, 0, 1e-300, 1e5, 0}, 1e5, 0, 0.4};
     const SimResult r = strike(&b, ENGINE_FAST, ACCURACY_FINE);
     assert_close(r.bumper_compression_m, 0.4, 1e-3);
@@ -266,9 +259,8 @@ static void run_tower(const SceneOptions *o, SimResult *r)
     assert_int_equal(r->outcome, RUN_OK);
 }
 
-static void test_softer_bumpers_press_less_and_a_thin_one_bottoms_out(void **state)
+TEST(softer_bumpers_press_less_and_a_thin_one_bottoms_out)
 {
-    (void)state;
     SceneOptions s = paper_scene();
     SimResult r;
     double force = HUGE_VAL;
@@ -292,15 +284,5 @@ static void test_softer_bumpers_press_less_and_a_thin_one_bottoms_out(void **sta
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_the_force_is_that_of_steel_and_spring_in_series_with_its_slopes),
-        cmocka_unit_test(test_the_stored_energy_is_the_integral_of_the_elastic_force),
-        cmocka_unit_test(test_a_hard_bumper_is_none_and_a_soft_one_is_a_spring),
-        cmocka_unit_test(test_impacts_are_those_of_an_independent_integration),
-        cmocka_unit_test(test_steel_and_bumper_of_the_same_damping_rebound_as_either_alone),
-        cmocka_unit_test(test_a_soft_bumper_rebounds_by_its_own_damping_ratio),
-        cmocka_unit_test(test_an_undamped_soft_bumper_is_a_spring_in_depth_and_force),
-        cmocka_unit_test(test_softer_bumpers_press_less_and_a_thin_one_bottoms_out),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return RUN_TESTS(NULL, NULL);
 }

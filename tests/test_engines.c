@@ -52,9 +52,8 @@ static double worst_of(const SimResult *r, const SimResult *wanted)
 }
 
 /* 0.8 s of two sines, sampled every 50 ms; gaps of 2 mm j. */
-static void test_every_engine_agrees_with_the_fast_one_where_there_are_impacts(void **state)
+TEST(every_engine_agrees_with_the_fast_one_where_there_are_impacts)
 {
-    (void)state;
     static CoreBeam core;
     SceneOptions s = paper_scene();
     Building b;
@@ -101,9 +100,8 @@ static SimModel pair_of_masses(double a)
 }
 
 /* lost = m v^2 (1 - e^2) / 2 with the reduced mass m, and e from a (1+e) = ln((1+a)/(1-a e)). */
-static void test_every_engine_loses_in_an_isolated_impact_what_the_law_says(void **state)
+TEST(every_engine_loses_in_an_isolated_impact_what_the_law_says)
 {
-    (void)state;
     double pulse[] = {0, -1, 0};
     const Motion m = {.accel = pulse, .n = 3, .dt_s = 1};
     SimModel model = pair_of_masses(0.45);
@@ -121,9 +119,8 @@ static void test_every_engine_loses_in_an_isolated_impact_what_the_law_says(void
     model_free(&model);
 }
 
-static void test_every_engine_is_listed_under_its_name(void **state)
+TEST(every_engine_is_listed_under_its_name)
 {
-    (void)state;
     static const char *const NAMES[] = {
 #define X(upper, lower, ...) #lower,
         ENGINE_LIST(X) REFERENCE_ENGINES(X)
@@ -139,10 +136,5 @@ static void test_every_engine_is_listed_under_its_name(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_every_engine_agrees_with_the_fast_one_where_there_are_impacts),
-        cmocka_unit_test(test_every_engine_loses_in_an_isolated_impact_what_the_law_says),
-        cmocka_unit_test(test_every_engine_is_listed_under_its_name),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return RUN_TESTS(NULL, NULL);
 }

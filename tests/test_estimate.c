@@ -9,9 +9,8 @@
 #include "sim/sim.h"
 #include "analysis/estimate.h"
 
-static void test_a_second_run_has_twice_the_steps_of_the_first(void **state)
+TEST(a_second_run_has_twice_the_steps_of_the_first)
 {
-    (void)state;
     SceneOptions o = paper_scene();
     SimOptions finer;
     assert_true(estimate_options(&o.sim, &finer));
@@ -22,9 +21,8 @@ static void test_a_second_run_has_twice_the_steps_of_the_first(void **state)
     assert_false(estimate_options(&o.sim, &finer));
 }
 
-static void test_a_tolerance_chooses_the_steps(void **state)
+TEST(a_tolerance_chooses_the_steps)
 {
-    (void)state;
     SimOptions o = paper_scene().sim, finer;
     assert_same_number(sim_steps_per_contact(&o), 0);
     o.tolerance = 0.01;
@@ -41,9 +39,8 @@ static void errors_of(const SimResult *result, const SimResult *finer, double er
     estimate_errors(&as_set, &again, error);
 }
 
-static void test_equal_results_have_no_error_and_failed_ones_an_unknown_one(void **state)
+TEST(equal_results_have_no_error_and_failed_ones_an_unknown_one)
 {
-    (void)state;
     static SimResult a, b;
     double error[N_MEASURES];
     a.j1_m = b.j1_m = 0.7;
@@ -75,9 +72,8 @@ static SimResult run_window(const SceneOptions *o, const PromiseCase *c)
     return r;
 }
 
-static void test_the_error_is_below_its_estimate_in_nine_of_ten_results(void **state)
+TEST(the_error_is_below_its_estimate_in_nine_of_ten_results)
 {
-    (void)state;
     if (SANITIZED) /* long, and the code is that of any window */
         skip();
     static const int RESULTS[] = {MEASURE_J1, MEASURE_J2, MEASURE_J3, MEASURE_ED1, MEASURE_ED5_10, MEASURE_EDCS};
@@ -106,11 +102,5 @@ static void test_the_error_is_below_its_estimate_in_nine_of_ten_results(void **s
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a_second_run_has_twice_the_steps_of_the_first),
-        cmocka_unit_test(test_a_tolerance_chooses_the_steps),
-        cmocka_unit_test(test_equal_results_have_no_error_and_failed_ones_an_unknown_one),
-        cmocka_unit_test(test_the_error_is_below_its_estimate_in_nine_of_ten_results),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return RUN_TESTS(NULL, NULL);
 }

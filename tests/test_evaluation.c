@@ -6,9 +6,8 @@
 
 #include "evaluate/evaluation.h"
 
-static void test_every_outcome_and_kind_is_found_by_its_word(void **state)
+TEST(every_outcome_and_kind_is_found_by_its_word)
 {
-    (void)state;
     for (int k = 0; k < OUTCOME_COUNT; k++)
         assert_int_equal(outcome_of_word(outcome_word((Outcome)k)), k);
     for (int k = 0; k < KIND_COUNT; k++)
@@ -18,9 +17,8 @@ static void test_every_outcome_and_kind_is_found_by_its_word(void **state)
     assert_int_equal(OUTCOME_OK, 0);
 }
 
-static void test_rows_keep_their_numbers_while_the_table_grows(void **state)
+TEST(rows_keep_their_numbers_while_the_table_grows)
 {
-    (void)state;
     enum { N = 1000 };
     EvaluationTable t = evaluation_table(3, 2, 1);
     Evaluation *e;
@@ -45,9 +43,8 @@ static void test_rows_keep_their_numbers_while_the_table_grows(void **state)
     assert_true(t.n == 0 && t.n_var == 3);
 }
 
-static void test_an_appended_row_is_a_copy_and_what_it_lacks_is_not_known(void **state)
+TEST(an_appended_row_is_a_copy_and_what_it_lacks_is_not_known)
 {
-    (void)state;
     EvaluationTable t = evaluation_table(2, 2, 0);
     double x[2] = {1.0, 2.0}, f[2] = {3.0, 4.0};
     Evaluation e = {.id = 7, .kind = KIND_REPEAT, .replicates = 3, .violation = 0.25, .x = x, .f = f};
@@ -67,10 +64,5 @@ static void test_an_appended_row_is_a_copy_and_what_it_lacks_is_not_known(void *
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_every_outcome_and_kind_is_found_by_its_word),
-        cmocka_unit_test(test_rows_keep_their_numbers_while_the_table_grows),
-        cmocka_unit_test(test_an_appended_row_is_a_copy_and_what_it_lacks_is_not_known),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return RUN_TESTS(NULL, NULL);
 }

@@ -52,9 +52,8 @@ static void bounce(const Ball *ball, double until, Bounce *b)
     model_free(&model);
 }
 
-static void test_rebound_has_its_closed_form_over_twelve_decades_of_mass_stiffness_and_speed(void **state)
+TEST(rebound_has_its_closed_form_over_twelve_decades_of_mass_stiffness_and_speed)
 {
-    (void)state;
     const double table[][2] = {{.3, .58128804}, {.5, .66296220}, {.7, .76799979}, {.9, .90901574}};
     const double decades[] = {1e-6, 1e-3, 1, 1e3, 1e6};
     for (int r = 0; r < 4; r++)
@@ -73,9 +72,8 @@ static void test_rebound_has_its_closed_form_over_twelve_decades_of_mass_stiffne
             }
 }
 
-static void test_hertz_impact_has_its_penetration_force_and_duration(void **state)
+TEST(hertz_impact_has_its_penetration_force_and_duration)
 {
-    (void)state;
     Ball ball = {280000, 4.865e10, 0.4, 1, fast_tolerances(ACCURACY_FINE)};
     Bounce b;
     bounce(&ball, -1, &b);
@@ -88,9 +86,8 @@ static void test_hertz_impact_has_its_penetration_force_and_duration(void **stat
     assert_same_number(b.result.contact_stored_j, 0);
 }
 
-static void test_damped_impact_has_its_known_penetration_force_and_duration(void **state)
+TEST(damped_impact_has_its_known_penetration_force_and_duration)
 {
-    (void)state;
     Ball ball = {280000, 4.865e10, 0.4, 0.7, fast_tolerances(ACCURACY_FINE)};
     Bounce b;
     bounce(&ball, -1, &b);
@@ -102,9 +99,8 @@ static void test_damped_impact_has_its_known_penetration_force_and_duration(void
     assert_same_number(b.result.contact_stored_j, 0);
 }
 
-static void test_rebound_converges_with_at_least_third_order(void **state)
+TEST(rebound_converges_with_at_least_third_order)
 {
-    (void)state;
     const double exact = contact_rebound(0.45);
     double worst[2] = {0};
     for (int fine = 0; fine < 2; fine++)
@@ -121,9 +117,8 @@ static void test_rebound_converges_with_at_least_third_order(void **state)
     }
 }
 
-static void test_at_every_accuracy_an_impact_rebounds_right_wherever_it_falls_in_a_step(void **state)
+TEST(at_every_accuracy_an_impact_rebounds_right_wherever_it_falls_in_a_step)
 {
-    (void)state;
     const double allowed[] = {[ACCURACY_COARSE] = 2e-2, [ACCURACY_STANDARD] = 3e-3, [ACCURACY_FINE] = 1e-6};
     for (int accuracy = ACCURACY_COARSE; accuracy <= ACCURACY_FINE; accuracy++)
         for (int i = 0; i < 200; i++) {
@@ -137,9 +132,8 @@ static void test_at_every_accuracy_an_impact_rebounds_right_wherever_it_falls_in
 }
 
 /* A heavy floor flies freely and holds a million times the energy of the blow. */
-static void test_a_blow_too_weak_for_the_books_still_has_its_largest_acceleration(void **state)
+TEST(a_blow_too_weak_for_the_books_still_has_its_largest_acceleration)
 {
-    (void)state;
     Err err = {0};
     const Contact contact = {.k = 4.865e10, .v0_floor = 1e-300};
     for (int i = 0; i < 60; i++) {
@@ -209,9 +203,8 @@ static int record_is_there(const char *path)
     return 0;
 }
 
-static void test_early_window_has_the_digits_that_independent_integrators_share(void **state)
+TEST(early_window_has_the_digits_that_independent_integrators_share)
 {
-    (void)state;
     Tower t = {0};
     paper_defaults(&t.settings);
     snprintf(t.settings.motion.record, OPTION_TEXT_MAX, "../shared/records/northridge_sylmar_ns.csv");
@@ -244,9 +237,8 @@ static void test_early_window_has_the_digits_that_independent_integrators_share(
     tower_close(&t);
 }
 
-static void test_kobe_without_a_core_has_its_known_response(void **state)
+TEST(kobe_without_a_core_has_its_known_response)
 {
-    (void)state;
     Tower t = {0};
     paper_defaults(&t.settings);
     snprintf(t.settings.motion.record, OPTION_TEXT_MAX, "../shared/records/kobe_jma_ns.csv");
@@ -270,9 +262,8 @@ static void builtin_tower(Tower *t)
     tower_open(t);
 }
 
-static void test_energy_balance_closes_and_damping_never_gives(void **state)
+TEST(energy_balance_closes_and_damping_never_gives)
 {
-    (void)state;
     Tower t;
     builtin_tower(&t);
     const SimResult r = tower_run(&t, SCENE_IMPACT);
@@ -287,9 +278,8 @@ static void test_energy_balance_closes_and_damping_never_gives(void **state)
     tower_close(&t);
 }
 
-static void test_a_mirrored_motion_mirrors_the_response_to_the_last_bit(void **state)
+TEST(a_mirrored_motion_mirrors_the_response_to_the_last_bit)
 {
-    (void)state;
     Tower t;
     builtin_tower(&t);
     const SimResult there = tower_run(&t, SCENE_IMPACT);
@@ -301,9 +291,8 @@ static void test_a_mirrored_motion_mirrors_the_response_to_the_last_bit(void **s
     tower_close(&t);
 }
 
-static void test_a_worker_gives_the_same_bytes_whatever_it_did_before(void **state)
+TEST(a_worker_gives_the_same_bytes_whatever_it_did_before)
 {
-    (void)state;
     Tower t;
     builtin_tower(&t);
     SimResult first = tower_run(&t, SCENE_IMPACT);
@@ -317,9 +306,8 @@ static void test_a_worker_gives_the_same_bytes_whatever_it_did_before(void **sta
     tower_close(&t);
 }
 
-static void test_motion_that_is_not_a_number_fails_the_run_and_says_so(void **state)
+TEST(motion_that_is_not_a_number_fails_the_run_and_says_so)
 {
-    (void)state;
     Tower t;
     builtin_tower(&t);
     t.motion.accel[40] = NAN;
@@ -329,9 +317,8 @@ static void test_motion_that_is_not_a_number_fails_the_run_and_says_so(void **st
     tower_close(&t);
 }
 
-static void test_a_negative_gap_is_no_design(void **state)
+TEST(a_negative_gap_is_no_design)
 {
-    (void)state;
     Tower t;
     Err err = {0};
     SimResult r;
@@ -344,20 +331,5 @@ static void test_a_negative_gap_is_no_design(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_rebound_has_its_closed_form_over_twelve_decades_of_mass_stiffness_and_speed),
-        cmocka_unit_test(test_hertz_impact_has_its_penetration_force_and_duration),
-        cmocka_unit_test(test_damped_impact_has_its_known_penetration_force_and_duration),
-        cmocka_unit_test(test_rebound_converges_with_at_least_third_order),
-        cmocka_unit_test(test_at_every_accuracy_an_impact_rebounds_right_wherever_it_falls_in_a_step),
-        cmocka_unit_test(test_a_blow_too_weak_for_the_books_still_has_its_largest_acceleration),
-        cmocka_unit_test(test_early_window_has_the_digits_that_independent_integrators_share),
-        cmocka_unit_test(test_kobe_without_a_core_has_its_known_response),
-        cmocka_unit_test(test_energy_balance_closes_and_damping_never_gives),
-        cmocka_unit_test(test_a_mirrored_motion_mirrors_the_response_to_the_last_bit),
-        cmocka_unit_test(test_a_worker_gives_the_same_bytes_whatever_it_did_before),
-        cmocka_unit_test(test_motion_that_is_not_a_number_fails_the_run_and_says_so),
-        cmocka_unit_test(test_a_negative_gap_is_no_design),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return RUN_TESTS(NULL, NULL);
 }

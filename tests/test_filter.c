@@ -38,10 +38,9 @@ static void check_harmonic(FilterKind kind, double hz, double cutoff, double dt)
     free(x);
 }
 
-static void test_gain_is_that_of_two_passes_of_fourth_order_and_the_phase_is_zero(void **state)
+TEST(gain_is_that_of_two_passes_of_fourth_order_and_the_phase_is_zero)
 {
     static const double RATIOS[] = {0.25, 0.5, 0.8, 1, 1.25, 2, 4};
-    (void)state;
     for (int kind = FILTER_LOW_PASS; kind <= FILTER_HIGH_PASS; kind++)
         for (size_t i = 0; i < sizeof RATIOS / sizeof RATIOS[0]; i++) {
             check_harmonic(kind, 10 * RATIOS[i], 10, 0.002);
@@ -49,18 +48,16 @@ static void test_gain_is_that_of_two_passes_of_fourth_order_and_the_phase_is_zer
         }
 }
 
-static void test_the_gain_at_the_cutoff_is_one_half(void **state)
+TEST(the_gain_at_the_cutoff_is_one_half)
 {
-    (void)state;
     assert_close(gain(FILTER_LOW_PASS, 25, 25, 0.005), 0.5, 1e-15);
     check_harmonic(FILTER_LOW_PASS, 25, 25, 0.005);
     check_harmonic(FILTER_HIGH_PASS, 0.05, 0.05, 0.005);
 }
 
-static void test_low_and_high_pass_of_an_impulse_add_up_in_area(void **state)
+TEST(low_and_high_pass_of_an_impulse_add_up_in_area)
 {
     enum { N = 20001 };
-    (void)state;
     for (int kind = FILTER_LOW_PASS; kind <= FILTER_HIGH_PASS; kind++) {
         Filter f;
         Err err = {0};
@@ -77,10 +74,9 @@ static void test_low_and_high_pass_of_an_impulse_add_up_in_area(void **state)
     }
 }
 
-static void test_the_padding_takes_up_what_rings_on(void **state)
+TEST(the_padding_takes_up_what_rings_on)
 {
     enum { N = 400 };
-    (void)state;
     for (int kind = FILTER_LOW_PASS; kind <= FILTER_HIGH_PASS; kind++) {
         Filter f;
         Err err = {0};
@@ -98,13 +94,12 @@ static void test_the_padding_takes_up_what_rings_on(void **state)
     }
 }
 
-static void test_signals_side_by_side_are_filtered_as_each_alone(void **state)
+TEST(signals_side_by_side_are_filtered_as_each_alone)
 {
     enum { N = 300, WIDTH = 21 };
     Filter f;
     Err err = {0};
     double *all = malloc(N * WIDTH * sizeof *all), one[N];
-    (void)state;
     CHECK_OK(filter_butterworth(&f, FILTER_LOW_PASS, 3, 0.01, &err), &err);
     for (int i = 0; i < N * WIDTH; i++)
         all[i] = sin(0.37 * i * i);
@@ -122,12 +117,11 @@ static void test_signals_side_by_side_are_filtered_as_each_alone(void **state)
     free(all);
 }
 
-static void test_a_cutoff_beyond_half_the_sampling_rate_is_refused(void **state)
+TEST(a_cutoff_beyond_half_the_sampling_rate_is_refused)
 {
     static const double BAD[] = {0, -1, 50, 80, NAN, INFINITY};
     Filter f;
     Err err = {0};
-    (void)state;
     for (size_t i = 0; i < sizeof BAD / sizeof BAD[0]; i++) {
         assert_int_equal(filter_butterworth(&f, FILTER_LOW_PASS, BAD[i], 0.01, &err), STATUS_BAD_DATA);
         assert_non_null(strstr(err.text, "50 Hz"));
@@ -136,13 +130,5 @@ static void test_a_cutoff_beyond_half_the_sampling_rate_is_refused(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_gain_is_that_of_two_passes_of_fourth_order_and_the_phase_is_zero),
-        cmocka_unit_test(test_the_gain_at_the_cutoff_is_one_half),
-        cmocka_unit_test(test_low_and_high_pass_of_an_impulse_add_up_in_area),
-        cmocka_unit_test(test_the_padding_takes_up_what_rings_on),
-        cmocka_unit_test(test_signals_side_by_side_are_filtered_as_each_alone),
-        cmocka_unit_test(test_a_cutoff_beyond_half_the_sampling_rate_is_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return RUN_TESTS(NULL, NULL);
 }

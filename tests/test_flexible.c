@@ -52,9 +52,8 @@ static SimResult run_with(Stage *t, const PromiseCase *c, double flexibility, in
     return r;
 }
 
-static void test_few_core_modes_and_springs_give_what_all_modes_give(void **state)
+TEST(few_core_modes_and_springs_give_what_all_modes_give)
 {
-    (void)state;
     static const double ALLOWED[RESULTS] = {3e-5, 2e-4, 1e-3}; /* without the springs 1e-4, 1e-3, 2e-3 */
     const SceneOptions o = paper_scene();
     double error[RESULTS][WINDOWS];
@@ -86,9 +85,8 @@ static void test_few_core_modes_and_springs_give_what_all_modes_give(void **stat
     motion_free(&m);
 }
 
-static void test_so_many_core_modes_are_kept_as_are_asked_for(void **state)
+TEST(so_many_core_modes_are_kept_as_are_asked_for)
 {
-    (void)state;
     const SceneOptions o = paper_scene();
     Motion m;
     Stage t;
@@ -109,9 +107,5 @@ static void test_so_many_core_modes_are_kept_as_are_asked_for(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_few_core_modes_and_springs_give_what_all_modes_give),
-        cmocka_unit_test(test_so_many_core_modes_are_kept_as_are_asked_for),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return RUN_TESTS(NULL, NULL);
 }

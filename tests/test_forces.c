@@ -74,9 +74,8 @@ static void push_core(Frame *f, const double push[], int modes, SimForces *out)
     force_monitor_report(f->monitor, 1, out);
 }
 
-static void test_a_push_at_the_top_makes_the_shear_moment_and_stress_of_a_cantilever(void **state)
+TEST(a_push_at_the_top_makes_the_shear_moment_and_stress_of_a_cantilever)
 {
-    (void)state;
     Frame f;
     SimForces r;
     const double P = 3e6, t = 0.02;
@@ -107,9 +106,8 @@ static void test_a_push_at_the_top_makes_the_shear_moment_and_stress_of_a_cantil
     frame_close(&f);
 }
 
-static void test_a_push_in_the_middle_leaves_the_storeys_above_it_alone(void **state)
+TEST(a_push_in_the_middle_leaves_the_storeys_above_it_alone)
 {
-    (void)state;
     Frame f;
     SimForces r;
     double push[N] = {[7] = 2e6, [3] = -5e5}, z = 0, z_of[N + 1] = {0};
@@ -129,9 +127,8 @@ static void test_a_push_in_the_middle_leaves_the_storeys_above_it_alone(void **s
     frame_close(&f);
 }
 
-static void test_modes_that_are_left_out_answer_a_static_push_in_full(void **state)
+TEST(modes_that_are_left_out_answer_a_static_push_in_full)
 {
-    (void)state;
     Frame f;
     SimForces all, few;
     double push[N] = {[2] = 4e6, [11] = 1e6, [18] = -2e6};
@@ -145,9 +142,8 @@ static void test_modes_that_are_left_out_answer_a_static_push_in_full(void **sta
     frame_close(&f);
 }
 
-static void test_floors_pushed_by_their_own_weight_have_a_base_shear_of_one(void **state)
+TEST(floors_pushed_by_their_own_weight_have_a_base_shear_of_one)
 {
-    (void)state;
     Frame f;
     SimForces r;
     double F[N], q[N], zero[N] = {0}, moment = 0, z = 0;
@@ -169,9 +165,8 @@ static void test_floors_pushed_by_their_own_weight_have_a_base_shear_of_one(void
     frame_close(&f);
 }
 
-static void test_a_peak_between_points_is_found_by_the_parabola(void **state)
+TEST(a_peak_between_points_is_found_by_the_parabola)
 {
-    (void)state;
     Frame f;
     SimForces r;
     double F[N] = {[N - 1] = 1e6}, q[N], now[N], zero[N] = {0};
@@ -250,9 +245,8 @@ static void bounce(Accuracy accuracy, double speed, double r, int side, ContactL
     model_free(&model);
 }
 
-static void test_an_impact_has_its_closed_force_impulse_duration_and_loss(void **state)
+TEST(an_impact_has_its_closed_force_impulse_duration_and_loss)
 {
-    (void)state;
     const double allowed[] = {[ACCURACY_COARSE] = 0.04, [ACCURACY_STANDARD] = 6e-3, [ACCURACY_FINE] = 1e-5};
     for (int accuracy = ACCURACY_COARSE; accuracy <= ACCURACY_FINE; accuracy++)
         for (int side = -1; side <= 1; side += 2) {
@@ -280,9 +274,8 @@ static void test_an_impact_has_its_closed_force_impulse_duration_and_loss(void *
 }
 
 /* Two floors strike a core that is a free mass: what they gave it is its momentum. */
-static void test_impulses_add_up_to_the_change_of_momentum(void **state)
+TEST(impulses_add_up_to_the_change_of_momentum)
 {
-    (void)state;
     Err err = {0};
     for (int accuracy = ACCURACY_COARSE; accuracy <= ACCURACY_FINE; accuracy++) {
         SimModel model;
@@ -382,18 +375,16 @@ static void same_forces(const SimForces *a, const SimForces *b, double tolerance
     assert_close(impulse[0], impulse[1], tolerance);
 }
 
-static void test_fast_and_cvode_agree_in_every_force_before_the_horizon(void **state)
+TEST(fast_and_cvode_agree_in_every_force_before_the_horizon)
 {
-    (void)state;
     const SimResult fine = tower_run(ENGINE_FAST, ACCURACY_FINE, SCENE_IMPACT, 1, SANITIZED ? 7 : 8);
     const SimResult cvode = tower_run(ENGINE_CVODE, ACCURACY_FINE, SCENE_IMPACT, 1, SANITIZED ? 7 : 8);
     assert_less(5, fine.impacts);
     same_forces(&fine.forces, &cvode.forces, 5e-3);
 }
 
-static void test_standard_accuracy_is_near_fine_in_every_force(void **state)
+TEST(standard_accuracy_is_near_fine_in_every_force)
 {
-    (void)state;
     const SimResult fine = tower_run(ENGINE_FAST, ACCURACY_FINE, SCENE_IMPACT, 1, 8);
     const SimResult standard = tower_run(ENGINE_FAST, ACCURACY_STANDARD, SCENE_IMPACT, 1, 8);
     same_forces(&standard.forces, &fine.forces, 5e-2);
@@ -431,9 +422,8 @@ static int by_size(const void *a, const void *b)
 }
 
 /* What lies between the points of a run and what it leaves out, at standard accuracy. */
-static void test_peaks_are_those_of_points_every_quarter_of_a_millisecond(void **state)
+TEST(peaks_are_those_of_points_every_quarter_of_a_millisecond)
 {
-    (void)state;
     Err err = {0};
     Motion motion;
     Scene *scene;
@@ -476,9 +466,8 @@ static void test_peaks_are_those_of_points_every_quarter_of_a_millisecond(void *
     frame_close(&f);
 }
 
-static void test_what_measures_do_not_need_is_left_out_and_changes_none(void **state)
+TEST(what_measures_do_not_need_is_left_out_and_changes_none)
 {
-    (void)state;
     const SimForces whole = tower_forces(0), few = tower_forces(1);
     assert_true(isnan(few.building_shear_n[1]) && isnan(few.peak_velocity_m_s[0]));
     assert_true(few.building_shear_n[0] == whole.building_shear_n[0] && whole.building_shear_n[1] > 0);
@@ -488,9 +477,8 @@ static void test_what_measures_do_not_need_is_left_out_and_changes_none(void **s
     assert_memory_equal(few.contact_force_n, whole.contact_force_n, sizeof few.contact_force_n);
 }
 
-static void test_asking_for_forces_changes_no_other_figure(void **state)
+TEST(asking_for_forces_changes_no_other_figure)
 {
-    (void)state;
     for (int kind = SCENE_IMPACT; kind <= SCENE_RIGID; kind++) {
         const SimResult without = tower_run(ENGINE_FAST, ACCURACY_STANDARD, (SceneKind)kind, 0, 20);
         SimResult with = tower_run(ENGINE_FAST, ACCURACY_STANDARD, (SceneKind)kind, 1, 20);
@@ -501,9 +489,8 @@ static void test_asking_for_forces_changes_no_other_figure(void **state)
     }
 }
 
-static void test_the_rigid_pair_has_the_base_shear_of_its_parts(void **state)
+TEST(the_rigid_pair_has_the_base_shear_of_its_parts)
 {
-    (void)state;
     const SimResult r = tower_run(ENGINE_FAST, ACCURACY_FINE, SCENE_RIGID, 1, 20);
     const SimForces *f = &r.forces;
     assert_true(f->base_shear_n > 0 && f->base_shear_n <= f->core_base_shear_n + f->building_base_shear_n);
@@ -513,20 +500,5 @@ static void test_the_rigid_pair_has_the_base_shear_of_its_parts(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a_push_at_the_top_makes_the_shear_moment_and_stress_of_a_cantilever),
-        cmocka_unit_test(test_a_push_in_the_middle_leaves_the_storeys_above_it_alone),
-        cmocka_unit_test(test_modes_that_are_left_out_answer_a_static_push_in_full),
-        cmocka_unit_test(test_floors_pushed_by_their_own_weight_have_a_base_shear_of_one),
-        cmocka_unit_test(test_a_peak_between_points_is_found_by_the_parabola),
-        cmocka_unit_test(test_an_impact_has_its_closed_force_impulse_duration_and_loss),
-        cmocka_unit_test(test_impulses_add_up_to_the_change_of_momentum),
-        cmocka_unit_test(test_fast_and_cvode_agree_in_every_force_before_the_horizon),
-        cmocka_unit_test(test_standard_accuracy_is_near_fine_in_every_force),
-        cmocka_unit_test(test_peaks_are_those_of_points_every_quarter_of_a_millisecond),
-        cmocka_unit_test(test_what_measures_do_not_need_is_left_out_and_changes_none),
-        cmocka_unit_test(test_asking_for_forces_changes_no_other_figure),
-        cmocka_unit_test(test_the_rigid_pair_has_the_base_shear_of_its_parts),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return RUN_TESTS(NULL, NULL);
 }

@@ -22,9 +22,8 @@ static void open_scenario(Scenario *w, double x[22], double gap_m)
     x[21] = 0.0064;
 }
 
-static void test_the_horizon_is_never_reached_without_contact(void **state)
+TEST(the_horizon_is_never_reached_without_contact)
 {
-    (void)state;
     Scenario w;
     Horizon h;
     Err err = {0};
@@ -38,9 +37,8 @@ static void test_the_horizon_is_never_reached_without_contact(void **state)
     scenario_close(&w);
 }
 
-static void test_larger_changes_part_sooner_and_levels_are_reached_in_order(void **state)
+TEST(larger_changes_part_sooner_and_levels_are_reached_in_order)
 {
-    (void)state;
     Scenario w;
     Horizon early, late;
     Err err = {0};
@@ -58,9 +56,5 @@ static void test_larger_changes_part_sooner_and_levels_are_reached_in_order(void
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_the_horizon_is_never_reached_without_contact),
-        cmocka_unit_test(test_larger_changes_part_sooner_and_levels_are_reached_in_order),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return RUN_TESTS(NULL, NULL);
 }

@@ -3,9 +3,8 @@
 
 #include "analysis/evaluations.h"
 
-static void test_a_range_of_intensities_ends_at_its_end_in_round_numbers(void **state)
+TEST(a_range_of_intensities_ends_at_its_end_in_round_numbers)
 {
-    (void)state;
     double levels[IDA_LEVELS_MAX];
     size_t n;
     Err err = {0};
@@ -43,9 +42,8 @@ static double fractile_of(size_t n, const double j1[], double p)
     return value;
 }
 
-static void test_fractiles_are_straight_lines_between_the_sorted_values(void **state)
+TEST(fractiles_are_straight_lines_between_the_sorted_values)
 {
-    (void)state;
     const double five[] = {5, 1, 4, 2, 3};
     assert_close(fractile_of(5, five, 0.5), 3, 1e-15);
     assert_close(fractile_of(5, five, 0.16), 1.64, 1e-14);
@@ -55,9 +53,8 @@ static void test_fractiles_are_straight_lines_between_the_sorted_values(void **s
     assert_close(fractile_of(5, five, 1), 5, 1e-15);
 }
 
-static void test_a_failed_simulation_counts_as_infinite(void **state)
+TEST(a_failed_simulation_counts_as_infinite)
 {
-    (void)state;
     const double values[] = {3, INFINITY, 1, 2, INFINITY};
     assert_close(fractile_of(5, values, 0.5), 3, 1e-15);
     assert_true(isinf(fractile_of(5, values, 0.84)));
@@ -88,9 +85,8 @@ static double value_at(const json_t *o, size_t i, const char *scene, const char 
     return number(json_object_get(record_at(o, i), scene), key);
 }
 
-static void test_every_record_is_simulated_at_every_intensity(void **state)
+TEST(every_record_is_simulated_at_every_intensity)
 {
-    (void)state;
     json_t *all = json_of(RANGE "--json");
     assert_int_equal(json_array_size(json_object_get(all, "records")), 6);
     for (size_t i = 0; i < 6; i++) {
@@ -107,9 +103,8 @@ static void test_every_record_is_simulated_at_every_intensity(void **state)
     json_decref(all);
 }
 
-static void test_scenes_without_impacts_grow_in_proportion(void **state)
+TEST(scenes_without_impacts_grow_in_proportion)
 {
-    (void)state;
     json_t *o = json_of(RANGE "--json");
     for (size_t i = 1; i < 3; i++) {
         assert_close(value_at(o, i, "no_core", "j1_m"), (double)(i + 1) * value_at(o, 0, "no_core", "j1_m"), 1e-9);
@@ -118,9 +113,8 @@ static void test_scenes_without_impacts_grow_in_proportion(void **state)
     json_decref(o);
 }
 
-static void test_the_csv_has_every_run_and_the_fractiles_at_any_number_of_threads(void **state)
+TEST(the_csv_has_every_run_and_the_fractiles_at_any_number_of_threads)
 {
-    (void)state;
     free(output_of(RANGE "--csv @/one.csv --threads 1"));
     free(output_of(RANGE "--csv @/three.csv --threads 3"));
     char *one = read_in_place("one.csv"), *three = read_in_place("three.csv");
@@ -137,9 +131,8 @@ static void test_the_csv_has_every_run_and_the_fractiles_at_any_number_of_thread
     free(three);
 }
 
-static void test_the_table_and_the_picture_show_the_three_scenes(void **state)
+TEST(the_table_and_the_picture_show_the_three_scenes)
 {
-    (void)state;
     char *table = output_of(RANGE);
     static const char *const WORDS[] = {"with core, 2 records: median", "rigidly connected, 2 records", "no core, 2"};
     for (int i = 0; i < 3; i++)
@@ -154,18 +147,16 @@ static void test_the_table_and_the_picture_show_the_three_scenes(void **state)
     }
 }
 
-static void test_a_range_does_not_go_with_another_scaling(void **state)
+TEST(a_range_does_not_go_with_another_scaling)
 {
-    (void)state;
     expect(2, "motion.sa_g does not go with it", RANGE "--set motion.sa_g=0.5");
     expect(2, "a range is FROM:STEP:TO", "evaluate @/run --design knee --pga 0.1:0.1");
     expect(2, "--svg draws an incremental dynamic analysis", "evaluate @/run --design knee --svg @/no.svg");
     expect(65, "motion.pga_g", "evaluate @/run --design knee --pga 0.3 --set motion.factor=2");
 }
 
-static void test_names_of_records_are_whole_and_rows_go_to_csv(void **state)
+TEST(names_of_records_are_whole_and_rows_go_to_csv)
 {
-    (void)state;
     static const char NAME[] = "a_record_with_a_name_that_is_much_longer_than_forty_characters.csv";
     char name[128];
     char *folder = in_place("many");
@@ -187,9 +178,8 @@ static void test_names_of_records_are_whole_and_rows_go_to_csv(void **state)
 }
 
 /* Of the only record, in the row of the design; the other scenes have none. */
-static void test_the_csv_has_mean_and_deviation_of_the_replicates_as_the_json_has(void **state)
+TEST(the_csv_has_mean_and_deviation_of_the_replicates_as_the_json_has)
 {
-    (void)state;
 #define REPLICATED "evaluate @/run --design knee --set sim.gap_tolerance_m=0.01 "
     json_t *o = json_of(REPLICATED "--replicates 3 --json"), *r = json_object_get(record_at(o, 0), "replicates");
     free(output_of(REPLICATED "--set sim.replicates=3 --csv @/replicates.csv"));
@@ -220,17 +210,5 @@ static void test_the_csv_has_mean_and_deviation_of_the_replicates_as_the_json_ha
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a_range_of_intensities_ends_at_its_end_in_round_numbers),
-        cmocka_unit_test(test_fractiles_are_straight_lines_between_the_sorted_values),
-        cmocka_unit_test(test_a_failed_simulation_counts_as_infinite),
-        cmocka_unit_test(test_every_record_is_simulated_at_every_intensity),
-        cmocka_unit_test(test_scenes_without_impacts_grow_in_proportion),
-        cmocka_unit_test(test_the_csv_has_every_run_and_the_fractiles_at_any_number_of_threads),
-        cmocka_unit_test(test_the_table_and_the_picture_show_the_three_scenes),
-        cmocka_unit_test(test_a_range_does_not_go_with_another_scaling),
-        cmocka_unit_test(test_names_of_records_are_whole_and_rows_go_to_csv),
-        cmocka_unit_test(test_the_csv_has_mean_and_deviation_of_the_replicates_as_the_json_has),
-    };
-    return cmocka_run_group_tests(tests, make_run, clear_place);
+    return RUN_TESTS(make_run, clear_place);
 }

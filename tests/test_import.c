@@ -42,9 +42,8 @@ static const char PORTAL[] = "# a portal in kip and inches\n"
                              "element elasticBeamColumn 3 3 4 1e6 $E 5e2 1 -mass 1e-4\n";
 
 /* Chopra, Dynamics of Structures, section 1.3. */
-static void test_a_portal_in_kip_and_inches_has_its_textbook_stiffness_in_newtons(void **state)
+TEST(a_portal_in_kip_and_inches_has_its_textbook_stiffness_in_newtons)
 {
-    (void)state;
     const double kip_in = 4448.2216152605 / 0.0254, h = 156, EI = 29000.0 * 1000, rho = (500.0 / 240) / (2 * 1000 / h);
     Building b = import(PORTAL, BUILDING_KIP_IN);
     assert_int_equal(b.n, 1);
@@ -79,9 +78,8 @@ static char *write_model(const Frame *f)
     return text;
 }
 
-static void test_the_20_storey_frame_as_a_model_gives_the_same_matrices(void **state)
+TEST(the_20_storey_frame_as_a_model_gives_the_same_matrices)
 {
-    (void)state;
     Frame f;
     Building wanted;
     BuildingOptions o = scene_defaults().building;
@@ -107,9 +105,8 @@ static void test_the_20_storey_frame_as_a_model_gives_the_same_matrices(void **s
     building_free(&wanted);
 }
 
-static void test_loops_procedures_and_sections_give_the_frame_written_out(void **state)
+TEST(loops_procedures_and_sections_give_the_frame_written_out)
 {
-    (void)state;
     static const char HEAD[] = "model basic -ndm 2\nset n [expr 7/2]; # 3, as in Tcl\ngeomTransf PDelta 1\n";
     static const char LOOPS[] =
         "proc column {tag i j} { global A\n element elasticBeamColumn $tag $i $j $A 2e8 1e-3 1 }\n"
@@ -148,9 +145,8 @@ static void test_loops_procedures_and_sections_give_the_frame_written_out(void *
 }
 
 /* Those of OpenSees' verification manual carry masses of 1e-10 along z and about the node. */
-static void test_negligible_masses_leave_the_lowest_periods_of_the_full_model(void **state)
+TEST(negligible_masses_leave_the_lowest_periods_of_the_full_model)
 {
-    (void)state;
     char text[2048];
     snprintf(text, sizeof text, "%s\nmass 3 0.2 1e-10 1e-10\n", PORTAL);
     BuildingOptions o = options_of(text, BUILDING_KIP_IN);
@@ -164,9 +160,8 @@ static void test_negligible_masses_leave_the_lowest_periods_of_the_full_model(vo
     building_free(&full);
 }
 
-static void test_loads_analysis_and_output_are_skipped_with_one_note(void **state)
+TEST(loads_analysis_and_output_are_skipped_with_one_note)
 {
-    (void)state;
     Said s;
     char text[2048];
     snprintf(text, sizeof text,
@@ -183,9 +178,8 @@ static void test_loads_analysis_and_output_are_skipped_with_one_note(void **stat
     forget(&s);
 }
 
-static void test_whatever_is_not_read_is_refused_with_its_line(void **state)
+TEST(whatever_is_not_read_is_refused_with_its_line)
 {
-    (void)state;
 #define NODES "model b -ndm 2 -ndf 3\nnode 1 0 0\nnode 2 0 1\ngeomTransf Linear 1\n"
     static const char *const BAD[][2] = {
         {"\n\nset x 1\nfor {set i 0} {$i < 3} {incr i} {\nnode 1 0 0\n}\n", "model.tcl:5: node: 'model BasicBuilder"},
@@ -238,13 +232,5 @@ static void test_whatever_is_not_read_is_refused_with_its_line(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a_portal_in_kip_and_inches_has_its_textbook_stiffness_in_newtons),
-        cmocka_unit_test(test_the_20_storey_frame_as_a_model_gives_the_same_matrices),
-        cmocka_unit_test(test_loops_procedures_and_sections_give_the_frame_written_out),
-        cmocka_unit_test(test_negligible_masses_leave_the_lowest_periods_of_the_full_model),
-        cmocka_unit_test(test_loads_analysis_and_output_are_skipped_with_one_note),
-        cmocka_unit_test(test_whatever_is_not_read_is_refused_with_its_line),
-    };
-    return cmocka_run_group_tests(tests, make_place, clear_place);
+    return RUN_TESTS(make_place, clear_place);
 }

@@ -6,9 +6,8 @@
 
 #include "study/job_limit.h"
 
-static void test_the_environment_says_when_the_job_ends(void **state)
+TEST(the_environment_says_when_the_job_ends)
 {
-    (void)state;
     Err err = {0};
     char end[32];
     double seconds;
@@ -19,9 +18,8 @@ static void test_the_environment_says_when_the_job_ends(void **state)
     unsetenv("SLURM_JOB_END_TIME");
 }
 
-static void test_else_scontrol_does(void **state)
+TEST(else_scontrol_does)
 {
-    (void)state;
     Err err = {0};
     double seconds;
     char path[4096], text[512], day[64], *scontrol = in_place("scontrol");
@@ -47,9 +45,8 @@ static void test_else_scontrol_does(void **state)
     unsetenv("SLURM_JOB_ID");
 }
 
-static void test_without_a_job_or_with_too_short_a_one_it_is_refused(void **state)
+TEST(without_a_job_or_with_too_short_a_one_it_is_refused)
 {
-    (void)state;
     expect(65, "this is no job of Slurm", "optimize configs/quick.ini --out @/none --max-hours auto");
     char end[32];
     snprintf(end, sizeof end, "%ld", (long)time(NULL) + 60);
@@ -59,9 +56,8 @@ static void test_without_a_job_or_with_too_short_a_one_it_is_refused(void **stat
 }
 
 /* 122 s from now, of which 120 are kept back; resumed with the same words, which are no other limit. */
-static void test_a_run_ends_before_its_job_and_goes_on_in_the_next(void **state)
+TEST(a_run_ends_before_its_job_and_goes_on_in_the_next)
 {
-    (void)state;
     char end[32];
     write_in_place("slow.ini", "[problem]\nkind = external\ncommand = sh tests/worker.sh steady\nvariables = 3\n"
                                "objectives = 2\n[search]\nmax_evals = 4000\nsurrogate = off\nmax_hours = auto\n");
@@ -78,11 +74,5 @@ static void test_a_run_ends_before_its_job_and_goes_on_in_the_next(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_the_environment_says_when_the_job_ends),
-        cmocka_unit_test(test_else_scontrol_does),
-        cmocka_unit_test(test_without_a_job_or_with_too_short_a_one_it_is_refused),
-        cmocka_unit_test(test_a_run_ends_before_its_job_and_goes_on_in_the_next),
-    };
-    return cmocka_run_group_tests(tests, make_place, clear_place);
+    return RUN_TESTS(make_place, clear_place);
 }

@@ -74,9 +74,8 @@ static double amplitude(double w1, double mu, LinearDevice d, double w)
     return cabs((-c + b * mu) / (a * c - b * b));
 }
 
-static void test_a_tuned_mass_answers_a_harmonic_as_its_transfer_function(void **state)
+TEST(a_tuned_mass_answers_a_harmonic_as_its_transfer_function)
 {
-    (void)state;
     enum { SAMPLES = 60001 };
     const SceneOptions o = paper_scene();
     const double w1 = 2 * M_PI, ratios[] = {0.85, 0.95, 1.1, 1.3};
@@ -110,9 +109,8 @@ static double variance(double mu, LinearDevice d)
     return sum;
 }
 
-static void test_warburtons_device_has_the_least_variance_under_white_noise(void **state)
+TEST(warburtons_device_has_the_least_variance_under_white_noise)
 {
-    (void)state;
     for (double mu = 0.02; mu < 0.3; mu *= 2) {
         const LinearDevice best = warburton_device(1, mu);
         const double least = variance(mu, best);
@@ -272,9 +270,8 @@ static void make_shaking(double accel[SHAKES])
         accel[i] = 3 * sin(0.13 * i) * cos(0.031 * i * i * 0.05) * (i < 250 ? 1 : 0);
 }
 
-static void test_tuned_mass_and_links_agree_with_runge_and_kutta_in_the_displacements(void **state)
+TEST(tuned_mass_and_links_agree_with_runge_and_kutta_in_the_displacements)
 {
-    (void)state;
     SceneOptions o = paper_scene();
     double accel[SHAKES], J[3];
     Frame f;
@@ -302,9 +299,8 @@ static void test_tuned_mass_and_links_agree_with_runge_and_kutta_in_the_displace
     free(core);
 }
 
-static void test_links_without_damping_are_no_links_and_with_much_of_it_the_rigid_connection(void **state)
+TEST(links_without_damping_are_no_links_and_with_much_of_it_the_rigid_connection)
 {
-    (void)state;
     const SceneOptions o = paper_scene();
     double accel[SHAKES], J[3];
     Frame f;
@@ -352,9 +348,8 @@ static void rigid_design(double x[22])
         x[j] = j < 20 ? 1e-6 : j == 20 ? 0.03 : 0.01;
 }
 
-static void test_baselines_are_of_the_records_by_the_rule_of_the_study_on_any_number_of_threads(void **state)
+TEST(baselines_are_of_the_records_by_the_rule_of_the_study_on_any_number_of_threads)
 {
-    (void)state;
     Problem p;
     Err err = {0};
     double x[22];
@@ -388,9 +383,8 @@ static double goal(const Baseline *b, const Baseline *no_core)
     return sum;
 }
 
-static void test_devices_are_better_than_none_and_than_their_neighbours(void **state)
+TEST(devices_are_better_than_none_and_than_their_neighbours)
 {
-    (void)state;
     Problem p;
     Err err = {0};
     double x[22];
@@ -420,9 +414,8 @@ static void test_devices_are_better_than_none_and_than_their_neighbours(void **s
     problem_close(&p);
 }
 
-static void test_the_rigid_connection_is_the_limit_of_gaps_that_vanish(void **state)
+TEST(the_rigid_connection_is_the_limit_of_gaps_that_vanish)
 {
-    (void)state;
     Problem p;
     Err err = {0};
     double x[22];
@@ -439,14 +432,5 @@ static void test_the_rigid_connection_is_the_limit_of_gaps_that_vanish(void **st
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a_tuned_mass_answers_a_harmonic_as_its_transfer_function),
-        cmocka_unit_test(test_warburtons_device_has_the_least_variance_under_white_noise),
-        cmocka_unit_test(test_tuned_mass_and_links_agree_with_runge_and_kutta_in_the_displacements),
-        cmocka_unit_test(test_links_without_damping_are_no_links_and_with_much_of_it_the_rigid_connection),
-        cmocka_unit_test(test_baselines_are_of_the_records_by_the_rule_of_the_study_on_any_number_of_threads),
-        cmocka_unit_test(test_devices_are_better_than_none_and_than_their_neighbours),
-        cmocka_unit_test(test_the_rigid_connection_is_the_limit_of_gaps_that_vanish),
-    };
-    return cmocka_run_group_tests_name("linear", tests, NULL, NULL);
+    return RUN_TESTS(NULL, NULL);
 }

@@ -25,9 +25,8 @@ static void coarse_points(uint32_t seed, size_t n, size_t m, double F[])
 /* -- dominance ----------------------------------------------------------------------------------------------------- */
 
 /* Peeling by definition: rank r are those that only points of lower rank dominate. */
-static void test_nondominated_sort_equals_peeling_by_definition(void **state)
+TEST(nondominated_sort_equals_peeling_by_definition)
 {
-    (void)state;
     enum { N = 60, SEEDS = 200 };
     double F[N * 4], violation[N];
     size_t rank[N], scratch[3 * N];
@@ -62,9 +61,8 @@ static double exact(size_t n, size_t m, const double F[], double reference)
     return wfg_hypervolume(n, m, F, corner);
 }
 
-static void test_hypervolume_of_boxes_and_of_a_known_union(void **state)
+TEST(hypervolume_of_boxes_and_of_a_known_union)
 {
-    (void)state;
     const double box[] = {0.5, 0.25, 0.0, 0.75};
     assert_close(exact(1, 4, box, 1.0), 0.5 * 0.75 * 1.0 * 0.25, 1e-14);
     const double stairs[] = {1, 3, 2, 2, 3, 1};
@@ -78,9 +76,8 @@ static void test_hypervolume_of_boxes_and_of_a_known_union(void **state)
 }
 
 /* On integer coordinates the volume is the number of unit cells that some point covers. */
-static void test_hypervolume_counts_the_cells_of_a_grid(void **state)
+TEST(hypervolume_counts_the_cells_of_a_grid)
 {
-    (void)state;
     double F[12 * 4];
     for (uint32_t seed = 0; seed < 100; seed++) {
         coarse_points(seed, 12, 4, F);
@@ -111,9 +108,8 @@ static void sphere_points(uint32_t seed, size_t n, size_t m, double F[])
     }
 }
 
-static void test_hypervolume_ignores_order_and_never_shrinks_when_a_point_is_added(void **state)
+TEST(hypervolume_ignores_order_and_never_shrinks_when_a_point_is_added)
 {
-    (void)state;
     enum { N = 20, M = 5 };
     double F[N * M], G[N * M];
     for (uint32_t seed = 0; seed < 20; seed++) {
@@ -130,9 +126,8 @@ static void test_hypervolume_ignores_order_and_never_shrinks_when_a_point_is_add
     }
 }
 
-static void test_the_estimate_is_within_four_standard_errors_of_the_exact_hypervolume(void **state)
+TEST(the_estimate_is_within_four_standard_errors_of_the_exact_hypervolume)
 {
-    (void)state;
     enum { N = 25, M = 7 };
     double F[N * M], lower[M] = {0}, reference[M];
     for (size_t k = 0; k < M; k++)
@@ -153,9 +148,8 @@ static void test_the_estimate_is_within_four_standard_errors_of_the_exact_hyperv
 
 /* -- directions ---------------------------------------------------------------------------------------------------- */
 
-static void test_reference_directions_are_as_many_as_binomials_say_and_lie_on_the_simplex(void **state)
+TEST(reference_directions_are_as_many_as_binomials_say_and_lie_on_the_simplex)
 {
-    (void)state;
     const struct {
         size_t m, outer, inner, n;
     } cases[] = {{2, 4, 0, 5}, {3, 12, 0, 91}, {7, 3, 1, 84 + 7}, {8, 3, 2, 120 + 36}, {1, 1, 0, 1}};
@@ -188,9 +182,8 @@ static size_t n_directions(size_t n_obj, size_t outer, size_t inner)
     return d.n;
 }
 
-static void test_directions_fill_the_population_asked_for(void **state)
+TEST(directions_fill_the_population_asked_for)
 {
-    (void)state;
     const size_t objectives[] = {2, 3, 5, 7, 10}, populations[] = {20, 92, 300};
     for (size_t i = 0; i < 5; i++)
         for (size_t j = 0; j < 3; j++) {
@@ -206,9 +199,8 @@ static void test_directions_fill_the_population_asked_for(void **state)
 
 /* A pair that is far from its bounds is spread evenly to both sides, so the mean of the children is that of the
  * parents; bounds one-sided would move it. */
-static void test_crossover_stays_in_bounds_and_keeps_the_mean_of_the_parents(void **state)
+TEST(crossover_stays_in_bounds_and_keeps_the_mean_of_the_parents)
 {
-    (void)state;
     enum { PAIRS = 20000 };
     const double lower[] = {-5.0, 0.0, 2.0}, upper[] = {7.0, 1.0, 2.0};
     const double mother[] = {0.0, 0.0, 2.0}, father[] = {2.0, 0.9, 2.0};
@@ -228,9 +220,8 @@ static void test_crossover_stays_in_bounds_and_keeps_the_mean_of_the_parents(voi
     assert_less(fabs((double)moved / PAIRS - 0.5), 0.02);
 }
 
-static void test_mutation_stays_in_bounds_and_touches_the_wanted_share_of_variables(void **state)
+TEST(mutation_stays_in_bounds_and_touches_the_wanted_share_of_variables)
 {
-    (void)state;
     enum { TRIES = 20000 };
     const double lower[] = {-5.0, 0.0, 2.0}, upper[] = {7.0, 1.0, 2.0};
     Random r = random_stream(1, RANDOM_TEST, 0, 0);
@@ -248,9 +239,8 @@ static void test_mutation_stays_in_bounds_and_touches_the_wanted_share_of_variab
     assert_less(fabs(shift), 1e-3);
 }
 
-static void test_a_latin_hypercube_has_one_sample_in_every_slice_of_every_variable(void **state)
+TEST(a_latin_hypercube_has_one_sample_in_every_slice_of_every_variable)
 {
-    (void)state;
     enum { N = 50, D = 6 };
     double X[N * D];
     size_t slices[N];
@@ -268,9 +258,8 @@ static void test_a_latin_hypercube_has_one_sample_in_every_slice_of_every_variab
 /* -- environmental selection --------------------------------------------------------------------------------------- */
 
 /* The intercepts of points on the plane f1/2 + f2/4 + f3/10 = 1 are 2, 4 and 10, also after a shift. */
-static void test_normalisation_finds_the_intercepts_of_a_plane(void **state)
+TEST(normalisation_finds_the_intercepts_of_a_plane)
 {
-    (void)state;
     const double F[] = {12, 100, -5, 10, 104, -5, 10, 100, 5, 10.5, 101, 0};
     const size_t list[] = {0, 1, 2, 3};
     double ideal[3], width[3], plane[12];
@@ -282,9 +271,8 @@ static void test_normalisation_finds_the_intercepts_of_a_plane(void **state)
     assert_close(ideal[2], -5, 1e-12);
 }
 
-static void test_selection_keeps_the_wanted_number_the_best_layers_and_the_corners_of_the_front(void **state)
+TEST(selection_keeps_the_wanted_number_the_best_layers_and_the_corners_of_the_front)
 {
-    (void)state;
     enum { N = 200, M = 3, KEEP = 40 };
     double F[N * M];
     size_t chosen[N], rank[N], scratch[3 * N];
@@ -324,9 +312,8 @@ static void test_selection_keeps_the_wanted_number_the_best_layers_and_the_corne
     directions_free(&d);
 }
 
-static void test_feasible_designs_survive_before_infeasible_ones(void **state)
+TEST(feasible_designs_survive_before_infeasible_ones)
 {
-    (void)state;
     enum { N = 30, M = 2 };
     double F[N * M], violation[N];
     size_t chosen[N];
@@ -350,9 +337,8 @@ static void test_feasible_designs_survive_before_infeasible_ones(void **state)
 }
 
 /* n^2 of them at most: it was n^3. */
-static void test_thousands_of_designs_are_selected_in_seconds(void **state)
+TEST(thousands_of_designs_are_selected_in_seconds)
 {
-    (void)state;
     enum { M = 7, WANTED = 3000, N = 2 * WANTED };
     double *F = calloc(N * M, sizeof *F);
     size_t *selected = calloc(N, sizeof *selected), outer, inner;
@@ -429,9 +415,8 @@ static NdTree *filled_tree(size_t m, const double F[], size_t n, const unsigned 
     return t;
 }
 
-static void test_the_tree_of_the_front_equals_brute_force_on_200_streams_filled_at_any_time(void **state)
+TEST(the_tree_of_the_front_equals_brute_force_on_200_streams_filled_at_any_time)
 {
-    (void)state;
     enum { N = 400, M_MAX = 10 };
     static double F[N * M_MAX];
     for (uint32_t seed = 0; seed < 200; seed++) {
@@ -460,9 +445,8 @@ static void test_the_tree_of_the_front_equals_brute_force_on_200_streams_filled_
     }
 }
 
-static void test_front_flags_equal_a_brute_force_filter_after_every_insertion(void **state)
+TEST(front_flags_equal_a_brute_force_filter_after_every_insertion)
 {
-    (void)state;
     enum { N = 80, M = 3 };
     double F[N * M], G[N], X[N];
     unsigned char ok[N];
@@ -497,9 +481,8 @@ static void test_front_flags_equal_a_brute_force_filter_after_every_insertion(vo
 }
 
 /* Some designs fail, some are infeasible; the first half of the rows restored, the rest inserted. */
-static void test_an_archive_that_is_restored_with_its_front_goes_on_as_the_one_it_was(void **state)
+TEST(an_archive_that_is_restored_with_its_front_goes_on_as_the_one_it_was)
 {
-    (void)state;
     enum { N = 400, M = 4 };
     static double F[N * M], X[N], G[N];
     unsigned char ok[N];
@@ -535,9 +518,8 @@ static void test_an_archive_that_is_restored_with_its_front_goes_on_as_the_one_i
     }
 }
 
-static void test_a_batch_spreads_over_the_directions_instead_of_crowding(void **state)
+TEST(a_batch_spreads_over_the_directions_instead_of_crowding)
 {
-    (void)state;
     const double front[] = {2, 0, 0, 2, 1.5, 1.5};
     const size_t rows[] = {0, 1, 2};
     /* two twins near the middle, one smaller gain elsewhere, one without any gain, one that is infeasible */
@@ -591,9 +573,8 @@ static size_t pick_by_definition(Infill *q, size_t n, size_t m, const double F[]
     return best;
 }
 
-static void test_picks_are_those_of_gains_computed_anew_each_time(void **state)
+TEST(picks_are_those_of_gains_computed_anew_each_time)
 {
-    (void)state;
     enum { N = 60, M = 3, SEEDS = 200 };
     double F[N * M], violation[N], uncertainty[N];
     size_t rows[N];
@@ -625,9 +606,8 @@ static void test_picks_are_those_of_gains_computed_anew_each_time(void **state)
     }
 }
 
-static void test_spread_directions_have_the_axes_and_keep_apart(void **state)
+TEST(spread_directions_have_the_axes_and_keep_apart)
 {
-    (void)state;
     for (size_t m = 2; m <= 7; m++) {
         Directions d;
         Err err = {0};
@@ -657,9 +637,8 @@ static void test_spread_directions_have_the_axes_and_keep_apart(void **state)
 
 /* The mean over rays of length^m, spread over the positive sphere, is the hypervolume up to a constant: of two sets the
  * one with the greater rays has the greater hypervolume. Here the ratio is known: boxes of edge 1 and 1/2. */
-static void test_the_lengths_of_rays_measure_the_hypervolume(void **state)
+TEST(the_lengths_of_rays_measure_the_hypervolume)
 {
-    (void)state;
     const double front[] = {0, 0.5, 1, 1, 0, 0.5, 0.5, 1, 0}; /* 0..1 in every objective */
     Directions d;
     Infill *q;
@@ -679,9 +658,8 @@ static void test_the_lengths_of_rays_measure_the_hypervolume(void **state)
     directions_free(&d);
 }
 
-static void test_the_slope_of_pbi_equals_differences(void **state)
+TEST(the_slope_of_pbi_equals_differences)
 {
-    (void)state;
     enum { M = 4, ROWS = 30 };
     double F[ROWS * M], slope[M];
     size_t rows[ROWS];
@@ -719,29 +697,5 @@ static void test_the_slope_of_pbi_equals_differences(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_nondominated_sort_equals_peeling_by_definition),
-        cmocka_unit_test(test_hypervolume_of_boxes_and_of_a_known_union),
-        cmocka_unit_test(test_hypervolume_counts_the_cells_of_a_grid),
-        cmocka_unit_test(test_hypervolume_ignores_order_and_never_shrinks_when_a_point_is_added),
-        cmocka_unit_test(test_the_estimate_is_within_four_standard_errors_of_the_exact_hypervolume),
-        cmocka_unit_test(test_reference_directions_are_as_many_as_binomials_say_and_lie_on_the_simplex),
-        cmocka_unit_test(test_directions_fill_the_population_asked_for),
-        cmocka_unit_test(test_crossover_stays_in_bounds_and_keeps_the_mean_of_the_parents),
-        cmocka_unit_test(test_mutation_stays_in_bounds_and_touches_the_wanted_share_of_variables),
-        cmocka_unit_test(test_a_latin_hypercube_has_one_sample_in_every_slice_of_every_variable),
-        cmocka_unit_test(test_normalisation_finds_the_intercepts_of_a_plane),
-        cmocka_unit_test(test_selection_keeps_the_wanted_number_the_best_layers_and_the_corners_of_the_front),
-        cmocka_unit_test(test_thousands_of_designs_are_selected_in_seconds),
-        cmocka_unit_test(test_feasible_designs_survive_before_infeasible_ones),
-        cmocka_unit_test(test_the_tree_of_the_front_equals_brute_force_on_200_streams_filled_at_any_time),
-        cmocka_unit_test(test_front_flags_equal_a_brute_force_filter_after_every_insertion),
-        cmocka_unit_test(test_an_archive_that_is_restored_with_its_front_goes_on_as_the_one_it_was),
-        cmocka_unit_test(test_a_batch_spreads_over_the_directions_instead_of_crowding),
-        cmocka_unit_test(test_picks_are_those_of_gains_computed_anew_each_time),
-        cmocka_unit_test(test_spread_directions_have_the_axes_and_keep_apart),
-        cmocka_unit_test(test_the_slope_of_pbi_equals_differences),
-        cmocka_unit_test(test_the_lengths_of_rays_measure_the_hypervolume),
-    };
-    return cmocka_run_group_tests_name("moga", tests, NULL, NULL);
+    return RUN_TESTS(NULL, NULL);
 }

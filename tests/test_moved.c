@@ -42,9 +42,8 @@ static int make_run(void **state)
     return 0;
 }
 
-static void test_every_command_says_which_record_was_moved_and_what_to_do(void **state)
+TEST(every_command_says_which_record_was_moved_and_what_to_do)
 {
-    (void)state;
     static const char *const COMMANDS[] = {"report @/run", "plot @/run", "polish @/run --design knee",
                                            "optimize @/run --max-evals 32 --force-settings"};
     for (size_t i = 0; i < sizeof COMMANDS / sizeof COMMANDS[0]; i++) {
@@ -56,9 +55,8 @@ static void test_every_command_says_which_record_was_moved_and_what_to_do(void *
     }
 }
 
-static void test_a_finished_run_is_shown_without_its_records(void **state)
+TEST(a_finished_run_is_shown_without_its_records)
 {
-    (void)state;
     Said s;
     run(&s, "optimize @/run");
     assert_int_equal(s.code, 0);
@@ -69,9 +67,8 @@ static void test_a_finished_run_is_shown_without_its_records(void **state)
     forget(&s);
 }
 
-static void test_another_content_does_not_take_the_place_of_a_record(void **state)
+TEST(another_content_does_not_take_the_place_of_a_record)
 {
-    (void)state;
     expect(65, "does not hold what the run's record",
            "report @/run --set motion.record=@/two.csv --set motion.records=@/two.csv,builtin:sylmar-like");
     expect(65, "do not hold what the run's records",
@@ -83,9 +80,8 @@ static void test_another_content_does_not_take_the_place_of_a_record(void **stat
     expect(2, "only motion.record=PATH and motion.records", "report @/run --set motion.pga_g=1");
 }
 
-static void test_records_are_taken_from_where_they_are_now(void **state)
+TEST(records_are_taken_from_where_they_are_now)
 {
-    (void)state;
     free(output_of("report @/run " BOTH));
     free(output_of("polish @/run --design knee --evals 6 --members 1 " BOTH));
     free(output_of("optimize @/run --max-evals 32 --force-settings " BOTH));
@@ -95,11 +91,5 @@ static void test_records_are_taken_from_where_they_are_now(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_every_command_says_which_record_was_moved_and_what_to_do),
-        cmocka_unit_test(test_a_finished_run_is_shown_without_its_records),
-        cmocka_unit_test(test_another_content_does_not_take_the_place_of_a_record),
-        cmocka_unit_test(test_records_are_taken_from_where_they_are_now),
-    };
-    return cmocka_run_group_tests(tests, make_run, clear_place);
+    return RUN_TESTS(make_run, clear_place);
 }

@@ -65,9 +65,8 @@ static Status polish(Toy *w, const double weight[], const double bound[], size_t
     return status;
 }
 
-static void test_an_objective_is_lowered_to_what_the_bound_on_the_other_allows(void **state)
+TEST(an_objective_is_lowered_to_what_the_bound_on_the_other_allows)
 {
-    (void)state;
     Toy w = {0};
     Polished r;
     Err err = {0};
@@ -78,9 +77,8 @@ static void test_an_objective_is_lowered_to_what_the_bound_on_the_other_allows(v
 }
 
 /* Least f1: (1, 0, 0); least 2 f1 + f2: x1 = 3/4, f = 1/16, 7/4. */
-static void test_without_anything_to_keep_the_free_minimum_of_a_weighted_sum_is_found(void **state)
+TEST(without_anything_to_keep_the_free_minimum_of_a_weighted_sum_is_found)
 {
-    (void)state;
     const double both[OBJ] = {2, 1};
     Toy w = {0};
     Polished r;
@@ -92,9 +90,8 @@ static void test_without_anything_to_keep_the_free_minimum_of_a_weighted_sum_is_
 }
 
 /* Teeth as high as a tenth of the start, much closer to each other than the steps. */
-static void test_on_a_jagged_objective_there_is_a_gain_and_the_bound_is_kept_again_and_again(void **state)
+TEST(on_a_jagged_objective_there_is_a_gain_and_the_bound_is_kept_again_and_again)
 {
-    (void)state;
     const double bound[OBJ] = {INFINITY, 1.2};
     double first[VAR];
     for (int again = 0; again < 2; again++) {
@@ -110,9 +107,8 @@ static void test_on_a_jagged_objective_there_is_a_gain_and_the_bound_is_kept_aga
     }
 }
 
-static void test_no_more_simulations_are_made_than_allowed(void **state)
+TEST(no_more_simulations_are_made_than_allowed)
 {
-    (void)state;
     for (int keeps = 0; keeps < 2; keeps++)
         for (size_t evals = 0; evals < 40; evals += 13) {
             Toy w = {0};
@@ -124,9 +120,8 @@ static void test_no_more_simulations_are_made_than_allowed(void **state)
         }
 }
 
-static void test_failed_simulations_are_a_finite_wall_and_never_the_answer(void **state)
+TEST(failed_simulations_are_a_finite_wall_and_never_the_answer)
 {
-    (void)state;
     for (int fails = 1; fails <= 2; fails++)
         for (int keeps = 0; keeps < 2; keeps++) {
             Toy w = {.fails = fails};
@@ -141,9 +136,8 @@ static void test_failed_simulations_are_a_finite_wall_and_never_the_answer(void 
         }
 }
 
-static void test_a_program_fault_ends_it_with_its_message(void **state)
+TEST(a_program_fault_ends_it_with_its_message)
 {
-    (void)state;
     Toy w = {.breaks = 1};
     Polished r;
     Err err = {0};
@@ -151,9 +145,8 @@ static void test_a_program_fault_ends_it_with_its_message(void **state)
     assert_non_null(strstr(err.text, "disk"));
 }
 
-static void test_a_gain_counts_beyond_twice_its_error_where_the_rest_is_kept(void **state)
+TEST(a_gain_counts_beyond_twice_its_error_where_the_rest_is_kept)
 {
-    (void)state;
     const struct {
         int has_changed, keeps;
         double gain, error, finer;
@@ -173,14 +166,5 @@ static void test_a_gain_counts_beyond_twice_its_error_where_the_rest_is_kept(voi
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_an_objective_is_lowered_to_what_the_bound_on_the_other_allows),
-        cmocka_unit_test(test_without_anything_to_keep_the_free_minimum_of_a_weighted_sum_is_found),
-        cmocka_unit_test(test_on_a_jagged_objective_there_is_a_gain_and_the_bound_is_kept_again_and_again),
-        cmocka_unit_test(test_no_more_simulations_are_made_than_allowed),
-        cmocka_unit_test(test_failed_simulations_are_a_finite_wall_and_never_the_answer),
-        cmocka_unit_test(test_a_program_fault_ends_it_with_its_message),
-        cmocka_unit_test(test_a_gain_counts_beyond_twice_its_error_where_the_rest_is_kept),
-    };
-    return cmocka_run_group_tests_name("polish", tests, NULL, NULL);
+    return RUN_TESTS(NULL, NULL);
 }

@@ -73,9 +73,8 @@ static void check_vector(const char *problem, const double x[], const double f[]
         assert_less(fabs(got[k] - f[k]), 1e-9);
 }
 
-static void test_textbook_problems_give_the_numbers_of_an_independent_program(void **state)
+TEST(textbook_problems_give_the_numbers_of_an_independent_program)
 {
-    (void)state;
     for (size_t i = 0; i < sizeof VECTORS / sizeof VECTORS[0]; i++)
         check_vector(VECTORS[i].problem, VECTORS[i].x, VECTORS[i].f);
 }
@@ -88,9 +87,8 @@ static void take(const json_t *list, size_t n, double v[])
 }
 
 /* IMTET_VECTORS: a file of {"problem","x","f"} lines. */
-static void test_textbook_problems_agree_with_a_file_of_vectors_where_there_is_one(void **state)
+TEST(textbook_problems_agree_with_a_file_of_vectors_where_there_is_one)
 {
-    (void)state;
     const char *path = getenv("IMTET_VECTORS");
     FILE *file = fopen(path ? path : "../shared/moo/test_vectors.jsonl", "r");
     char line[16384];
@@ -108,9 +106,8 @@ static void test_textbook_problems_agree_with_a_file_of_vectors_where_there_is_o
 }
 
 /* On the front of DTLZ2 sum f^2 = 1, of WFG4 sum (f_k / 2 k)^2 = 1; off it both are larger. */
-static void test_optimal_designs_lie_on_the_known_fronts(void **state)
+TEST(optimal_designs_lie_on_the_known_fronts)
 {
-    (void)state;
     for (uint32_t seed = 0; seed < 200; seed++) {
         Random r = random_stream(seed, RANDOM_TEST, 0, 0);
         double x[VAR], z[VAR], f[OBJ], sphere = 0.0, ellipsoid = 0.0;
@@ -207,9 +204,8 @@ static void expect_every_third(const char *mode, Outcome third, const char *reas
     }
 }
 
-static void test_a_good_worker_answers_every_design(void **state)
+TEST(a_good_worker_answers_every_design)
 {
-    (void)state;
     expect_every_third("good", OUTCOME_OK, "", 20);
     expect_every_third("spaced", OUTCOME_OK, "", 20);
     expect_every_third("slowly", OUTCOME_OK, "", 20);
@@ -218,43 +214,37 @@ static void test_a_good_worker_answers_every_design(void **state)
     expect_every_third("largest", OUTCOME_OK, "", 20); /* a number that is finite, but not from its 2nd digit on */
 }
 
-static void test_a_reported_error_fails_that_design_with_its_reason(void **state)
+TEST(a_reported_error_fails_that_design_with_its_reason)
 {
-    (void)state;
     expect_every_third("error", OUTCOME_ERROR, "no, \"never\" this one", 20);
 }
 
-static void test_a_worker_that_dies_fails_one_design_and_is_replaced(void **state)
+TEST(a_worker_that_dies_fails_one_design_and_is_replaced)
 {
-    (void)state;
     expect_every_third("dies", OUTCOME_DEAD, "ended", 20);
     expect_every_third("killed", OUTCOME_DEAD, "ended", 20);
 }
 
-static void test_a_silent_worker_fails_one_design_and_is_replaced(void **state)
+TEST(a_silent_worker_fails_one_design_and_is_replaced)
 {
-    (void)state;
     expect_every_third("silent", OUTCOME_TIMEOUT, "0.4 s", 0.4);
 }
 
 /* One that answers once and ends is gone when the next request comes, or going: no design is lost by that. */
-static void test_a_worker_that_ends_after_its_answer_costs_no_design(void **state)
+TEST(a_worker_that_ends_after_its_answer_costs_no_design)
 {
-    (void)state;
     for (int i = 0; i < 5; i++)
         expect_every_third("once", OUTCOME_OK, "", 20);
 }
 
 /* Its child holds the output open for a minute. */
-static void test_a_worker_that_leaves_a_child_behind_is_seen_to_be_dead(void **state)
+TEST(a_worker_that_leaves_a_child_behind_is_seen_to_be_dead)
 {
-    (void)state;
     expect_every_third("child", OUTCOME_DEAD, "ended", 20);
 }
 
-static void test_millions_of_blank_lines_are_passed_over_quickly(void **state)
+TEST(millions_of_blank_lines_are_passed_over_quickly)
 {
-    (void)state;
     struct rusage before, after;
     Batch a;
     getrusage(RUSAGE_SELF, &before);
@@ -265,9 +255,8 @@ static void test_millions_of_blank_lines_are_passed_over_quickly(void **state)
     assert_less(after.ru_utime.tv_sec - before.ru_utime.tv_sec, 3);
 }
 
-static void test_messages_are_cut_between_characters_and_shown_whatever_they_are(void **state)
+TEST(messages_are_cut_between_characters_and_shown_whatever_they_are)
 {
-    (void)state;
     expect_every_third("umlauts", OUTCOME_ERROR, "aääääääääää", 20);
     expect_every_third("latin", OUTCOME_GARBLED, "zu gro", 20);
     Evaluation e = {.room = (char[REASON_MAX]){0}};
@@ -287,9 +276,8 @@ static void test_messages_are_cut_between_characters_and_shown_whatever_they_are
     json_decref(string);
 }
 
-static void test_a_talkative_worker_fails_one_design_and_is_replaced(void **state)
+TEST(a_talkative_worker_fails_one_design_and_is_replaced)
 {
-    (void)state;
     expect_every_third("garbled", OUTCOME_GARBLED, "convergence reached", 20);
     expect_every_third("huge", OUTCOME_GARBLED, "more than", 20);
     expect_every_third("flood", OUTCOME_GARBLED, "iteration", 20);
@@ -297,9 +285,8 @@ static void test_a_talkative_worker_fails_one_design_and_is_replaced(void **stat
     expect_every_third("stranger", OUTCOME_GARBLED, "123456", 20);
 }
 
-static void test_answers_that_are_no_objectives_fail_the_design_alone(void **state)
+TEST(answers_that_are_no_objectives_fail_the_design_alone)
 {
-    (void)state;
     expect_every_third("null", OUTCOME_NOT_FINITE, "2 finite numbers", 20);
     expect_every_third("short", OUTCOME_NOT_FINITE, "2 finite numbers", 20);
     expect_every_third("nan", OUTCOME_NOT_FINITE, "2 finite numbers", 20);
@@ -307,9 +294,8 @@ static void test_answers_that_are_no_objectives_fail_the_design_alone(void **sta
     expect_every_third("infinity", OUTCOME_NOT_FINITE, "2 finite numbers", 20);
 }
 
-static void test_a_worker_that_never_behaves_fails_every_design_and_nothing_hangs(void **state)
+TEST(a_worker_that_never_behaves_fails_every_design_and_nothing_hangs)
 {
-    (void)state;
     Batch a;
     ask(&a, "sh tests/worker.sh unasked", 2, 5);
     for (size_t i = 0; i < N; i++)
@@ -322,9 +308,8 @@ static void test_a_worker_that_never_behaves_fails_every_design_and_nothing_hang
         assert_int_equal(a.answers[i].outcome, OUTCOME_DEAD);
 }
 
-static void test_words_of_the_command_may_be_quoted_and_no_shell_reads_them(void **state)
+TEST(words_of_the_command_may_be_quoted_and_no_shell_reads_them)
 {
-    (void)state;
     Batch a;
     ask(&a, "  sh  'tests/worker.sh' \"go\\\"od\" '$(exit)' a\\ b  ", 1, 20);
     for (size_t i = 0; i < N; i++)
@@ -394,26 +379,23 @@ static void kill_and_expect_its_workers_to_end(pid_t pid, int end)
 static const char WITH_CHILDREN[] = "sh -c 'read -r line; sleep 60 & printf ! >&2; wait'";
 
 /* All at once, so that no guard can take the other's place. */
-static void test_workers_end_with_a_program_and_a_guard_that_are_killed_together(void **state)
+TEST(workers_end_with_a_program_and_a_guard_that_are_killed_together)
 {
-    (void)state;
     int end;
     const pid_t pid = start_with_workers("sh -c 'read -r line; printf ! >&2; exec sleep 60'", &end);
     kill(guard_of(pid), SIGKILL);
     kill_and_expect_its_workers_to_end(pid, end);
 }
 
-static void test_workers_end_with_a_program_that_is_killed(void **state)
+TEST(workers_end_with_a_program_that_is_killed)
 {
-    (void)state;
     int end;
     const pid_t pid = start_with_workers(WITH_CHILDREN, &end);
     kill_and_expect_its_workers_to_end(pid, end);
 }
 
-static void test_workers_end_with_a_program_whose_guard_was_killed_before(void **state)
+TEST(workers_end_with_a_program_whose_guard_was_killed_before)
 {
-    (void)state;
     int end;
     const pid_t pid = start_with_workers(WITH_CHILDREN, &end);
     kill(guard_of(pid), SIGKILL);
@@ -421,9 +403,8 @@ static void test_workers_end_with_a_program_whose_guard_was_killed_before(void *
     kill_and_expect_its_workers_to_end(pid, end);
 }
 
-static void test_a_command_that_does_not_exist_ends_the_search_by_name(void **state)
+TEST(a_command_that_does_not_exist_ends_the_search_by_name)
 {
-    (void)state;
     Err err = {0};
     Problem p;
     Queue *q;
@@ -477,9 +458,8 @@ static Status hear(const Evaluation *e, void *user, Err *err)
     return STATUS_OK;
 }
 
-static void test_an_external_problem_has_the_bounds_senses_names_and_limits_of_its_settings(void **state)
+TEST(an_external_problem_has_the_bounds_senses_names_and_limits_of_its_settings)
 {
-    (void)state;
     const Settings s = external_settings();
     Err err = {0};
     Adapter *adapter;
@@ -519,9 +499,8 @@ static void refused(const char *assignment, const char *said)
         fail_msg("%s: status %d, said '%s', wanted '%s'", assignment, (int)status, err.text, said);
 }
 
-static void test_lists_that_do_not_fit_are_refused_by_name(void **state)
+TEST(lists_that_do_not_fit_are_refused_by_name)
 {
-    (void)state;
     refused("problem.lower=0,1", "problem.lower: 2 numbers for 3");
     refused("problem.lower=0,,1", "problem.lower: number 2");
     refused("problem.upper=0,1,two", "problem.upper: 'two'");
@@ -535,9 +514,8 @@ static void test_lists_that_do_not_fit_are_refused_by_name(void **state)
     refused("search.limits=cost<=", "no number");
 }
 
-static void test_noise_has_the_spread_asked_for_and_the_same_seed_the_same_noise(void **state)
+TEST(noise_has_the_spread_asked_for_and_the_same_seed_the_same_noise)
 {
-    (void)state;
     enum { DRAWS = 2000 };
     Settings s;
     Err err = {0};
@@ -574,29 +552,5 @@ static void test_noise_has_the_spread_asked_for_and_the_same_seed_the_same_noise
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_textbook_problems_give_the_numbers_of_an_independent_program),
-        cmocka_unit_test(test_textbook_problems_agree_with_a_file_of_vectors_where_there_is_one),
-        cmocka_unit_test(test_optimal_designs_lie_on_the_known_fronts),
-        cmocka_unit_test(test_a_good_worker_answers_every_design),
-        cmocka_unit_test(test_a_reported_error_fails_that_design_with_its_reason),
-        cmocka_unit_test(test_a_worker_that_dies_fails_one_design_and_is_replaced),
-        cmocka_unit_test(test_a_silent_worker_fails_one_design_and_is_replaced),
-        cmocka_unit_test(test_a_worker_that_ends_after_its_answer_costs_no_design),
-        cmocka_unit_test(test_a_worker_that_leaves_a_child_behind_is_seen_to_be_dead),
-        cmocka_unit_test(test_millions_of_blank_lines_are_passed_over_quickly),
-        cmocka_unit_test(test_messages_are_cut_between_characters_and_shown_whatever_they_are),
-        cmocka_unit_test(test_workers_end_with_a_program_whose_guard_was_killed_before),
-        cmocka_unit_test(test_a_talkative_worker_fails_one_design_and_is_replaced),
-        cmocka_unit_test(test_answers_that_are_no_objectives_fail_the_design_alone),
-        cmocka_unit_test(test_a_worker_that_never_behaves_fails_every_design_and_nothing_hangs),
-        cmocka_unit_test(test_words_of_the_command_may_be_quoted_and_no_shell_reads_them),
-        cmocka_unit_test(test_workers_end_with_a_program_and_a_guard_that_are_killed_together),
-        cmocka_unit_test(test_workers_end_with_a_program_that_is_killed),
-        cmocka_unit_test(test_a_command_that_does_not_exist_ends_the_search_by_name),
-        cmocka_unit_test(test_an_external_problem_has_the_bounds_senses_names_and_limits_of_its_settings),
-        cmocka_unit_test(test_lists_that_do_not_fit_are_refused_by_name),
-        cmocka_unit_test(test_noise_has_the_spread_asked_for_and_the_same_seed_the_same_noise),
-    };
-    return cmocka_run_group_tests_name("problem", tests, NULL, NULL);
+    return RUN_TESTS(NULL, NULL);
 }

@@ -51,9 +51,8 @@ static double (*const DRIFTING[])(double t) = {noise, constant, ramp, parabola};
 
 /* Least squares: what a polynomial of its degree adds to a record changes nothing of the result, and a record that is
  * nothing but such a polynomial disappears. */
-static void test_a_base_line_of_its_degree_leaves_no_trace(void **state)
+TEST(a_base_line_of_its_degree_leaves_no_trace)
 {
-    (void)state;
     for (int degree = 0; degree <= 2; degree++) {
         Err err = {0};
         MotionOptions o = options();
@@ -75,9 +74,8 @@ static void test_a_base_line_of_its_degree_leaves_no_trace(void **state)
     }
 }
 
-static void test_a_motion_is_as_recorded_unless_it_is_asked_to_be_processed(void **state)
+TEST(a_motion_is_as_recorded_unless_it_is_asked_to_be_processed)
 {
-    (void)state;
     Err err = {0};
     Motion m = motion_of(200, 0.01, parabola);
     const MotionOptions o = options();
@@ -90,9 +88,8 @@ static void test_a_motion_is_as_recorded_unless_it_is_asked_to_be_processed(void
     motion_free(&m);
 }
 
-static void test_too_few_samples_for_a_base_line_are_refused(void **state)
+TEST(too_few_samples_for_a_base_line_are_refused)
 {
-    (void)state;
     Err err = {0};
     MotionOptions o = options();
     o.baseline = BASELINE_QUADRATIC;
@@ -110,9 +107,8 @@ static double offset_quake(double t)
     return 0.02 + 3 * exp(-pow((t - 12) / 4, 2)) * sin(2 * M_PI * 2 * t);
 }
 
-static void test_a_high_pass_brings_the_ground_to_rest_where_it_was(void **state)
+TEST(a_high_pass_brings_the_ground_to_rest_where_it_was)
 {
-    (void)state;
     for (double hz = 0.05; hz < 0.3; hz *= 2) {
         Err err = {0};
         MotionFigures before, after;
@@ -147,9 +143,8 @@ static double slow_tone(double t)
     return exp(-pow((t - 15) / 5, 2)) * sin(2 * M_PI * 2 * (t - 15));
 }
 
-static void test_a_low_pass_takes_the_high_tone_and_leaves_the_low_one_in_place(void **state)
+TEST(a_low_pass_takes_the_high_tone_and_leaves_the_low_one_in_place)
 {
-    (void)state;
     Err err = {0};
     MotionOptions o = options();
     o.lowpass_hz = 8;
@@ -161,9 +156,8 @@ static void test_a_low_pass_takes_the_high_tone_and_leaves_the_low_one_in_place(
     motion_free(&m);
 }
 
-static void test_a_cutoff_that_the_record_cannot_have_is_refused_by_its_key(void **state)
+TEST(a_cutoff_that_the_record_cannot_have_is_refused_by_its_key)
 {
-    (void)state;
     Err err = {0};
     MotionOptions o = options();
     Motion m = motion_of(100, 0.01, noise);
@@ -194,9 +188,8 @@ static Motion scaled(const MotionOptions *o)
     return m;
 }
 
-static void test_a_factor_multiplies_what_was_recorded(void **state)
+TEST(a_factor_multiplies_what_was_recorded)
 {
-    (void)state;
     MotionOptions o = options();
     o.factor = 1.75;
     Motion m = scaled(&o);
@@ -206,9 +199,8 @@ static void test_a_factor_multiplies_what_was_recorded(void **state)
     motion_free(&m);
 }
 
-static void test_a_spectral_value_is_reached_at_its_period_after_stretching(void **state)
+TEST(a_spectral_value_is_reached_at_its_period_after_stretching)
 {
-    (void)state;
     for (double stretch = 1; stretch < 4; stretch += 2.1)
         for (double T = 0.3; T < 5; T *= 2) {
             MotionOptions o = options();
@@ -231,9 +223,8 @@ static CodeSpectrum target_of(const char *text)
 }
 
 /* Of EN 1998-1 and ASCE 7 at corners and in between, by hand; ground type C has S = 1.15, TB = 0.2, TC = 0.6, TD = 2 s. */
-static void test_code_spectra_are_those_of_their_formulas(void **state)
+TEST(code_spectra_are_those_of_their_formulas)
 {
-    (void)state;
     CodeSpectrum c = target_of("none");
     assert_same_number(target_psa(&c, 1), 0);
     for (int in_numbers = 0; in_numbers < 2; in_numbers++) {
@@ -254,9 +245,8 @@ static void test_code_spectra_are_those_of_their_formulas(void **state)
     assert_same_number(c.to_s, 3);
 }
 
-static void test_the_scale_to_a_code_spectrum_makes_the_mean_square_least(void **state)
+TEST(the_scale_to_a_code_spectrum_makes_the_mean_square_least)
 {
-    (void)state;
     for (int k = 0; k < 2; k++) {
         MotionOptions o = options();
         strcpy(o.target, k ? "asce7 sds=1 sd1=0.6" : "eurocode8 ag=0.3 soil=B");
@@ -277,9 +267,8 @@ static void test_the_scale_to_a_code_spectrum_makes_the_mean_square_least(void *
     }
 }
 
-static void test_scalings_that_contradict_each_other_are_refused_and_named(void **state)
+TEST(scalings_that_contradict_each_other_are_refused_and_named)
 {
-    (void)state;
     static const char *const KEYS[] = {"motion.pga_g", "motion.factor", "motion.sa_g", "motion.target"};
     static const char *const SET[] = {"motion.pga_g=0.3", "motion.factor=2", "motion.sa_g=0.5",
                                       "motion.target=asce7 sds=1 sd1=0.6"};
@@ -299,9 +288,8 @@ static void test_scalings_that_contradict_each_other_are_refused_and_named(void 
         }
 }
 
-static void test_settings_of_a_motion_that_make_no_sense_together_are_refused(void **state)
+TEST(settings_of_a_motion_that_make_no_sense_together_are_refused)
 {
-    (void)state;
     static const char *const SET[] = {"motion.target=eurocode8 ag=0.3 soil=A from=3",
                                       "motion.target=eurocode8 ag=0.3 soil=A tb=1",
                                       "motion.target=eurocode8 ag=0.3 soil=A td=0.3",
@@ -331,9 +319,8 @@ static void test_settings_of_a_motion_that_make_no_sense_together_are_refused(vo
 
 #define PADDED "simulate configs/quick.ini --design none --set sim.duration_s=1 --set motion.highpass_hz=0.2 "
 
-static void test_a_scale_beyond_reason_is_warned_about_and_one_beyond_everything_refused(void **state)
+TEST(a_scale_beyond_reason_is_warned_about_and_one_beyond_everything_refused)
 {
-    (void)state;
     static const char GONE[] = "--set motion.lowpass_hz=0.0001 --set motion.pga_g=0.3";
     static const char *const COMMANDS[] = {"simulate configs/quick.ini --design none", "check configs/quick.ini",
                                            "optimize configs/quick.ini --out @/gone", "spectrum builtin:kobe-like"};
@@ -351,9 +338,8 @@ static void test_a_scale_beyond_reason_is_warned_about_and_one_beyond_everything
     free(output_of("spectrum builtin:kobe-like --set motion.factor=1e-4")); /* of one's own */
 }
 
-static void test_what_is_done_to_a_record_stands_below_its_line(void **state)
+TEST(what_is_done_to_a_record_stands_below_its_line)
 {
-    (void)state;
     char *text = output_of(PADDED);
     assert_non_null(
         strstr(text, "  high-pass 0.2 Hz (4th order Butterworth, zero phase), 15 s of zeros added at both ends\n"));
@@ -365,9 +351,8 @@ static void test_what_is_done_to_a_record_stands_below_its_line(void **state)
 
 /* ---- as printed -------------------------------------------------------------------------------------------------- */
 
-static void test_an_uncorrected_motion_is_called_so_and_a_corrected_one_shows_both_figures(void **state)
+TEST(an_uncorrected_motion_is_called_so_and_a_corrected_one_shows_both_figures)
 {
-    (void)state;
     char *text = output_of("spectrum builtin:elcentro-like");
     assert_non_null(strstr(text, "uncorrected"));
     free(text);
@@ -379,9 +364,8 @@ static void test_an_uncorrected_motion_is_called_so_and_a_corrected_one_shows_bo
     free(text);
 }
 
-static void test_the_figures_beside_processed_ones_are_those_of_the_record_at_the_same_scale(void **state)
+TEST(the_figures_beside_processed_ones_are_those_of_the_record_at_the_same_scale)
 {
-    (void)state;
     json_t *a = json_of("spectrum builtin:sylmar-like --json --set motion.baseline=linear --pga 0.3"),
            *r = json_object_get(a, "recorded");
     char arguments[128];
@@ -397,9 +381,8 @@ static void test_the_figures_beside_processed_ones_are_those_of_the_record_at_th
     json_decref(b);
 }
 
-static void test_several_motions_are_shown_with_their_mean_and_the_target(void **state)
+TEST(several_motions_are_shown_with_their_mean_and_the_target)
 {
-    (void)state;
     static const char ALL[] = "builtin:kobe-like builtin:elcentro-like builtin:sylmar-like";
     char arguments[256];
     snprintf(arguments, sizeof arguments, "spectrum %s --set 'motion.target=eurocode8 ag=0.3 soil=B' --csv @/all.csv",
@@ -430,9 +413,8 @@ static void test_several_motions_are_shown_with_their_mean_and_the_target(void *
     expect(2, "--history is of one motion", "spectrum builtin:kobe-like builtin:sylmar-like --history -");
 }
 
-static void test_a_study_keeps_in_its_provenance_what_was_done_to_the_record(void **state)
+TEST(a_study_keeps_in_its_provenance_what_was_done_to_the_record)
 {
-    (void)state;
     free(output_of("optimize configs/quick.ini --out @/run --max-evals 48 --set search.initial=48 --set "
                    "sim.duration_s=8 --set motion.highpass_hz=0.2 --set motion.baseline=mean"));
     char *text = read_in_place("run/provenance.json");
@@ -447,25 +429,5 @@ static void test_a_study_keeps_in_its_provenance_what_was_done_to_the_record(voi
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a_base_line_of_its_degree_leaves_no_trace),
-        cmocka_unit_test(test_a_motion_is_as_recorded_unless_it_is_asked_to_be_processed),
-        cmocka_unit_test(test_too_few_samples_for_a_base_line_are_refused),
-        cmocka_unit_test(test_a_high_pass_brings_the_ground_to_rest_where_it_was),
-        cmocka_unit_test(test_a_low_pass_takes_the_high_tone_and_leaves_the_low_one_in_place),
-        cmocka_unit_test(test_a_cutoff_that_the_record_cannot_have_is_refused_by_its_key),
-        cmocka_unit_test(test_a_factor_multiplies_what_was_recorded),
-        cmocka_unit_test(test_a_spectral_value_is_reached_at_its_period_after_stretching),
-        cmocka_unit_test(test_code_spectra_are_those_of_their_formulas),
-        cmocka_unit_test(test_the_scale_to_a_code_spectrum_makes_the_mean_square_least),
-        cmocka_unit_test(test_scalings_that_contradict_each_other_are_refused_and_named),
-        cmocka_unit_test(test_settings_of_a_motion_that_make_no_sense_together_are_refused),
-        cmocka_unit_test(test_a_scale_beyond_reason_is_warned_about_and_one_beyond_everything_refused),
-        cmocka_unit_test(test_what_is_done_to_a_record_stands_below_its_line),
-        cmocka_unit_test(test_an_uncorrected_motion_is_called_so_and_a_corrected_one_shows_both_figures),
-        cmocka_unit_test(test_the_figures_beside_processed_ones_are_those_of_the_record_at_the_same_scale),
-        cmocka_unit_test(test_several_motions_are_shown_with_their_mean_and_the_target),
-        cmocka_unit_test(test_a_study_keeps_in_its_provenance_what_was_done_to_the_record),
-    };
-    return cmocka_run_group_tests(tests, make_place, clear_place);
+    return RUN_TESTS(make_place, clear_place);
 }

@@ -129,9 +129,8 @@ static Status note_done(const Evaluation *e, void *user, Err *err)
     return STATUS_OK;
 }
 
-static void test_a_batch_has_the_same_numbers_at_any_number_of_workers(void **state)
+TEST(a_batch_has_the_same_numbers_at_any_number_of_workers)
 {
-    (void)state;
     for (size_t workers = 1; workers <= WORKERS; workers++) {
         Finished done;
         Err err = {0};
@@ -160,9 +159,8 @@ static void test_a_batch_has_the_same_numbers_at_any_number_of_workers(void **st
     }
 }
 
-static void test_a_single_design_keeps_as_many_workers_busy_as_it_has_parts(void **state)
+TEST(a_single_design_keeps_as_many_workers_busy_as_it_has_parts)
 {
-    (void)state;
     Finished done;
     Err err = {0};
     forget();
@@ -176,9 +174,8 @@ static void test_a_single_design_keeps_as_many_workers_busy_as_it_has_parts(void
     assert_int_equal(bench.most_under_way, PARTS);
 }
 
-static void test_as_arrived_every_design_comes_once_and_is_numbered_in_that_order(void **state)
+TEST(as_arrived_every_design_comes_once_and_is_numbered_in_that_order)
 {
-    (void)state;
     for (size_t workers = 1; workers <= WORKERS; workers += WORKERS - 1) {
         Finished done;
         Err err = {0};
@@ -205,9 +202,8 @@ static void test_as_arrived_every_design_comes_once_and_is_numbered_in_that_orde
 }
 
 /* Whichever worker is first, the fault of the design asked for first is the one that is told. */
-static void test_of_several_faults_the_first_design_is_named(void **state)
+TEST(of_several_faults_the_first_design_is_named)
 {
-    (void)state;
     for (size_t workers = 1; workers <= WORKERS; workers++)
         for (int turn = 0; turn < 10; turn++) {
             Finished done;
@@ -234,9 +230,8 @@ static int some_more(void *user)
     return b->tasks_left-- > 0;
 }
 
-static void test_a_stop_finishes_what_is_under_way_and_the_observer_hears_of_it(void **state)
+TEST(a_stop_finishes_what_is_under_way_and_the_observer_hears_of_it)
 {
-    (void)state;
     for (size_t workers = 1; workers <= WORKERS; workers += WORKERS - 1) {
         Finished done;
         Err err = {0};
@@ -263,9 +258,8 @@ static Status refuse_third(const Evaluation *e, void *user, Err *err)
     return ++b->n_heard < 3 ? STATUS_OK : (fail)(err, STATUS_IO, "the disk is full");
 }
 
-static void test_a_fault_of_the_observer_ends_everything(void **state)
+TEST(a_fault_of_the_observer_ends_everything)
 {
-    (void)state;
     Finished done;
     Err err = {0};
     Status status = STATUS_OK;
@@ -280,9 +274,8 @@ static void test_a_fault_of_the_observer_ends_everything(void **state)
     queue_close(q);
 }
 
-static void test_known_evaluations_are_not_simulated_again(void **state)
+TEST(known_evaluations_are_not_simulated_again)
 {
-    (void)state;
     EvaluationTable known = evaluation_table(VAR, OBJ, 0);
     Finished done;
     Err err = {0};
@@ -341,9 +334,8 @@ static void stop_none(void *self)
 
 static const Executor NONE = {start_none, NULL, stop_none};
 
-static void test_what_nobody_has_taken_can_be_withdrawn(void **state)
+TEST(what_nobody_has_taken_can_be_withdrawn)
 {
-    (void)state;
     Finished done;
     Task task[PARTS];
     Err err = {0};
@@ -370,9 +362,8 @@ static void test_what_nobody_has_taken_can_be_withdrawn(void **state)
     queue_close(q);
 }
 
-static void test_designs_without_end_need_no_more_memory_than_those_pending(void **state)
+TEST(designs_without_end_need_no_more_memory_than_those_pending)
 {
-    (void)state;
     Finished done;
     Err err = {0};
     forget();
@@ -389,16 +380,5 @@ static void test_designs_without_end_need_no_more_memory_than_those_pending(void
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a_batch_has_the_same_numbers_at_any_number_of_workers),
-        cmocka_unit_test(test_a_single_design_keeps_as_many_workers_busy_as_it_has_parts),
-        cmocka_unit_test(test_as_arrived_every_design_comes_once_and_is_numbered_in_that_order),
-        cmocka_unit_test(test_of_several_faults_the_first_design_is_named),
-        cmocka_unit_test(test_a_stop_finishes_what_is_under_way_and_the_observer_hears_of_it),
-        cmocka_unit_test(test_a_fault_of_the_observer_ends_everything),
-        cmocka_unit_test(test_known_evaluations_are_not_simulated_again),
-        cmocka_unit_test(test_what_nobody_has_taken_can_be_withdrawn),
-        cmocka_unit_test(test_designs_without_end_need_no_more_memory_than_those_pending),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return RUN_TESTS(NULL, NULL);
 }

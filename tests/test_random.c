@@ -3,9 +3,8 @@
 
 /* Random123's known answers for philox4x32-10: counter and key all zero, and digits of pi. The stream's counter is
  * (block, individual, generation, 0) and its key (seed, purpose), so both can be asked for by name. */
-static void test_the_first_numbers_are_the_published_known_answers(void **state)
+TEST(the_first_numbers_are_the_published_known_answers)
 {
-    (void)state;
     const uint32_t zero[4] = {0x6627e8d5, 0xe169c58d, 0xbc57ac4c, 0x9b00dbd8};
     const uint32_t pi[4] = {0xd16cfe09, 0x94fdcceb, 0x5001e420, 0x24126ea1};
     Random a = random_stream(0, (RandomPurpose)0, 0, 0);
@@ -16,9 +15,8 @@ static void test_the_first_numbers_are_the_published_known_answers(void **state)
     }
 }
 
-static void test_the_same_name_gives_the_same_numbers_and_another_name_others(void **state)
+TEST(the_same_name_gives_the_same_numbers_and_another_name_others)
 {
-    (void)state;
     Random a = random_stream(7, RANDOM_TEST, 3, 11), b = random_stream(7, RANDOM_TEST, 3, 11);
     Random others[] = {random_stream(8, RANDOM_TEST, 3, 11), random_stream(7, RANDOM_NICHING, 3, 11),
                        random_stream(7, RANDOM_TEST, 4, 11), random_stream(7, RANDOM_TEST, 3, 12)};
@@ -31,9 +29,8 @@ static void test_the_same_name_gives_the_same_numbers_and_another_name_others(vo
 }
 
 /* Mean 1/2 and variance 1/12 with standard errors of sqrt(1/12n) and sqrt(1/180n); wanted within five of them. */
-static void test_uniform_numbers_have_their_mean_and_variance_and_neighbouring_streams_no_correlation(void **state)
+TEST(uniform_numbers_have_their_mean_and_variance_and_neighbouring_streams_no_correlation)
 {
-    (void)state;
     enum { N = 100000 };
     double sum = 0, square = 0, product = 0;
     for (uint32_t i = 0; i < N; i++) {
@@ -50,9 +47,8 @@ static void test_uniform_numbers_have_their_mean_and_variance_and_neighbouring_s
 }
 
 /* Chi squared of 6 classes has 5 degrees of freedom: above 25 once in 7,000 seeds. */
-static void test_integers_below_n_are_equally_likely(void **state)
+TEST(integers_below_n_are_equally_likely)
 {
-    (void)state;
     enum { N = 60000 };
     size_t count[6] = {0};
     Random r = random_stream(5, RANDOM_TEST, 0, 0);
@@ -66,9 +62,8 @@ static void test_integers_below_n_are_equally_likely(void **state)
         assert_int_equal(random_below(&r, 1), 0);
 }
 
-static void test_normal_numbers_have_the_moments_of_a_normal(void **state)
+TEST(normal_numbers_have_the_moments_of_a_normal)
 {
-    (void)state;
     enum { N = 100000 };
     double moment[5] = {0};
     Random r = random_stream(5, RANDOM_TEST, 0, 0);
@@ -83,9 +78,8 @@ static void test_normal_numbers_have_the_moments_of_a_normal(void **state)
     assert_less(fabs(moment[4] - 3), 5 * sqrt(96.0 / N));
 }
 
-static void test_a_shuffle_keeps_every_item(void **state)
+TEST(a_shuffle_keeps_every_item)
 {
-    (void)state;
     size_t list[50], seen[50] = {0}, moved = 0;
     for (size_t i = 0; i < 50; i++)
         list[i] = i;
@@ -102,13 +96,5 @@ static void test_a_shuffle_keeps_every_item(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_the_first_numbers_are_the_published_known_answers),
-        cmocka_unit_test(test_the_same_name_gives_the_same_numbers_and_another_name_others),
-        cmocka_unit_test(test_uniform_numbers_have_their_mean_and_variance_and_neighbouring_streams_no_correlation),
-        cmocka_unit_test(test_integers_below_n_are_equally_likely),
-        cmocka_unit_test(test_normal_numbers_have_the_moments_of_a_normal),
-        cmocka_unit_test(test_a_shuffle_keeps_every_item),
-    };
-    return cmocka_run_group_tests_name("random", tests, NULL, NULL);
+    return RUN_TESTS(NULL, NULL);
 }

@@ -37,9 +37,8 @@ static Rbf *fitted(size_t n, const double X[], const double F[], int tune)
     return m;
 }
 
-static void test_the_surface_goes_through_its_data(void **state)
+TEST(the_surface_goes_through_its_data)
 {
-    (void)state;
     double X[N * D], F[N * OUT], f[OUT];
     scatter(1, N, X, F);
     for (int tune = 0; tune < 2; tune++) {
@@ -52,9 +51,8 @@ static void test_the_surface_goes_through_its_data(void **state)
     }
 }
 
-static void test_linear_functions_are_reproduced_everywhere(void **state)
+TEST(linear_functions_are_reproduced_everywhere)
 {
-    (void)state;
     double X[N * D], F[N * OUT], Y[N * D], wanted[N * OUT], f[OUT];
     scatter(1, N, X, F);
     scatter(2, N, Y, wanted);
@@ -67,9 +65,8 @@ static void test_linear_functions_are_reproduced_everywhere(void **state)
     rbf_free(m);
 }
 
-static void test_tuning_lowers_the_error_at_unseen_points(void **state)
+TEST(tuning_lowers_the_error_at_unseen_points)
 {
-    (void)state;
     double X[N * D], F[N * OUT], Y[N * D], wanted[N * OUT], f[OUT], square[2] = {0};
     scatter(1, N, X, F);
     scatter(2, N, Y, wanted);
@@ -95,9 +92,8 @@ static void set_shape(Rbf *m, size_t output, RbfForm form)
 /* Every kernel, tail and nugget, with answers of equal and of different variance, against surfaces that were each
  * fitted without one centre. Standardisation scales data and answer alike and the nugget is relative to the kernel, so
  * leaving a centre out changes neither. */
-static void test_closed_form_leave_one_out_errors_equal_refits(void **state)
+TEST(closed_form_leave_one_out_errors_equal_refits)
 {
-    (void)state;
     enum { FEW = 30 };
     double X[FEW * D], F[FEW * OUT], V[FEW * OUT], X1[FEW * D], F1[FEW * OUT], V1[FEW * OUT], f[OUT];
     scatter(3, FEW, X, F);
@@ -133,9 +129,8 @@ static void test_closed_form_leave_one_out_errors_equal_refits(void **state)
 
 /* Answers again of the same designs are centres that coincide, and the likelihood of a surface knows them by their mean
  * alone: i answers are as good as one with the i-th part of the variance. */
-static void test_a_mean_of_answers_with_its_part_of_the_variance_is_worth_all_of_them(void **state)
+TEST(a_mean_of_answers_with_its_part_of_the_variance_is_worth_all_of_them)
 {
-    (void)state;
     enum { FEW = 20 };
     double X[FEW * D], F[FEW * OUT], V[FEW * OUT], every_X[N * D], every_F[N * OUT], Y[FEW * D], ignored[FEW * OUT];
     double f[OUT], wanted[OUT];
@@ -177,9 +172,8 @@ static void test_a_mean_of_answers_with_its_part_of_the_variance_is_worth_all_of
 }
 
 /* Every other answer scatters ten times as much. The nugget is that of the rest. */
-static void test_tuning_finds_the_nugget_of_answers_of_different_variance(void **state)
+TEST(tuning_finds_the_nugget_of_answers_of_different_variance)
 {
-    (void)state;
     enum { MANY = 200 };
     const double deviation = 0.02;
     double X[MANY * D], F[MANY * OUT], V[MANY * OUT], Y[MANY * D], wanted[MANY * OUT], f[OUT], square[2] = {0};
@@ -206,9 +200,8 @@ static void test_tuning_finds_the_nugget_of_answers_of_different_variance(void *
                  sqrt(square[0]));
 }
 
-static void test_equal_designs_with_different_answers_are_averaged(void **state)
+TEST(equal_designs_with_different_answers_are_averaged)
 {
-    (void)state;
     double X[N * D], F[N * OUT], f[OUT];
     scatter(4, N, X, F);
     memcpy(X + D, X, D * sizeof *X);
@@ -219,9 +212,8 @@ static void test_equal_designs_with_different_answers_are_averaged(void **state)
     rbf_free(m);
 }
 
-static void test_the_error_estimate_is_of_the_size_of_the_true_error(void **state)
+TEST(the_error_estimate_is_of_the_size_of_the_true_error)
 {
-    (void)state;
     double X[N * D], F[N * OUT], Y[N * D], wanted[N * OUT], f[OUT], e[OUT], square = 0, estimate = 0;
     for (uint32_t seed = 1; seed <= 10; seed++) {
         scatter(seed, N, X, F);
@@ -238,9 +230,8 @@ static void test_the_error_estimate_is_of_the_size_of_the_true_error(void **stat
         fail_msg("estimate %g, true %g", estimate, square);
 }
 
-static void test_a_constant_output_is_predicted_without_error(void **state)
+TEST(a_constant_output_is_predicted_without_error)
 {
-    (void)state;
     double X[N * D], F[N * OUT], f[OUT], e[OUT];
     scatter(1, N, X, F);
     for (int i = 0; i < N; i++)
@@ -252,9 +243,8 @@ static void test_a_constant_output_is_predicted_without_error(void **state)
     rbf_free(m);
 }
 
-static void test_a_value_that_is_not_finite_is_refused(void **state)
+TEST(a_value_that_is_not_finite_is_refused)
 {
-    (void)state;
     double X[N * D], F[N * OUT];
     scatter(1, N, X, F);
     F[17 * OUT] = NAN;
@@ -267,9 +257,8 @@ static void test_a_value_that_is_not_finite_is_refused(void **state)
 }
 
 /* Without that centre nothing is known of its variable: its coefficient of the tail has no leave-one-out error. */
-static void test_a_centre_that_alone_moves_a_variable_is_fitted_all_the_same(void **state)
+TEST(a_centre_that_alone_moves_a_variable_is_fitted_all_the_same)
 {
-    (void)state;
     for (uint32_t seed = 1; seed <= 50; seed++) {
         double X[N * D], F[N * OUT], f[OUT], e[OUT];
         scatter(seed, N, X, F);
@@ -287,9 +276,8 @@ static void test_a_centre_that_alone_moves_a_variable_is_fitted_all_the_same(voi
     }
 }
 
-static void test_the_mean_stands_for_an_output_that_cannot_be_fitted(void **state)
+TEST(the_mean_stands_for_an_output_that_cannot_be_fitted)
 {
-    (void)state;
     double X[N * D], F[N * OUT], f[OUT], mean = 0.0;
     Err err = {0};
     scatter(1, N, X, F);
@@ -308,9 +296,8 @@ static void test_the_mean_stands_for_an_output_that_cannot_be_fitted(void **stat
     rbf_free(m);
 }
 
-static void test_the_slope_of_the_surface_equals_differences_for_every_form(void **state)
+TEST(the_slope_of_the_surface_equals_differences_for_every_form)
 {
-    (void)state;
     double X[N * D], F[N * OUT], f[OUT], up[OUT], down[OUT], J[OUT * D];
     scatter(7, N, X, F);
     enum { FORMS = RBF_N_KERNELS * RBF_N_TAILS };
@@ -342,9 +329,8 @@ static void test_the_slope_of_the_surface_equals_differences_for_every_form(void
 
 /* Two waves to the box in each of ten variables, higher in the last than in the others, on a slope: a product of ten would
  * need the waves in every corner. Of rings nothing is a sum over the variables. */
-static void test_waves_along_single_variables_are_found_from_few_designs_and_only_where_there_are_any(void **state)
+TEST(waves_along_single_variables_are_found_from_few_designs_and_only_where_there_are_any)
 {
-    (void)state;
     enum { MANY = 10, DESIGNS = 100 };
     static double X[DESIGNS * MANY], F[DESIGNS * 2];
     Random r = random_stream(11, RANDOM_TEST, 0, 0);
@@ -380,21 +366,5 @@ static void test_waves_along_single_variables_are_found_from_few_designs_and_onl
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_the_surface_goes_through_its_data),
-        cmocka_unit_test(test_linear_functions_are_reproduced_everywhere),
-        cmocka_unit_test(test_tuning_lowers_the_error_at_unseen_points),
-        cmocka_unit_test(test_closed_form_leave_one_out_errors_equal_refits),
-        cmocka_unit_test(test_a_mean_of_answers_with_its_part_of_the_variance_is_worth_all_of_them),
-        cmocka_unit_test(test_tuning_finds_the_nugget_of_answers_of_different_variance),
-        cmocka_unit_test(test_equal_designs_with_different_answers_are_averaged),
-        cmocka_unit_test(test_the_error_estimate_is_of_the_size_of_the_true_error),
-        cmocka_unit_test(test_a_constant_output_is_predicted_without_error),
-        cmocka_unit_test(test_a_value_that_is_not_finite_is_refused),
-        cmocka_unit_test(test_a_centre_that_alone_moves_a_variable_is_fitted_all_the_same),
-        cmocka_unit_test(test_the_mean_stands_for_an_output_that_cannot_be_fitted),
-        cmocka_unit_test(test_the_slope_of_the_surface_equals_differences_for_every_form),
-        cmocka_unit_test(test_waves_along_single_variables_are_found_from_few_designs_and_only_where_there_are_any),
-    };
-    return cmocka_run_group_tests_name("rbf", tests, NULL, NULL);
+    return RUN_TESTS(NULL, NULL);
 }

@@ -105,9 +105,8 @@ static SimResult single_impact(double a, double duration)
 }
 
 /* Hertz: p_max = (5 m v^2 / 4 k)^0.4, duration 2.943275184 p_max / v; with r = 0.7 0.902920 and 1.03332 times that. */
-static void test_an_isolated_impact_is_as_deep_and_as_long_as_hertz_says(void **state)
+TEST(an_isolated_impact_is_as_deep_and_as_long_as_hertz_says)
 {
-    (void)state;
     const struct {
         double a, depth, length, tolerance;
     } law[] = {{0, 1, 1, 1e-6}, {0.45, 0.902920, 1.03332, 1e-5}};
@@ -122,9 +121,8 @@ static void test_an_isolated_impact_is_as_deep_and_as_long_as_hertz_says(void **
     }
 }
 
-static void test_finer_tolerances_come_nearer_to_the_finest(void **state)
+TEST(finer_tolerances_come_nearer_to_the_finest)
 {
-    (void)state;
     Stage stage;
     double accel[SINES_N];
     const Motion m = sines(accel, 1);
@@ -141,9 +139,8 @@ static void test_finer_tolerances_come_nearer_to_the_finest(void **state)
     stage_free(&stage);
 }
 
-static void test_no_shaking_is_no_response(void **state)
+TEST(no_shaking_is_no_response)
 {
-    (void)state;
     Stage stage;
     double accel[SINES_N];
     const Motion m = sines(accel, 0);
@@ -156,9 +153,8 @@ static void test_no_shaking_is_no_response(void **state)
     stage_free(&stage);
 }
 
-static void test_a_motion_with_nan_is_a_failed_outcome(void **state)
+TEST(a_motion_with_nan_is_a_failed_outcome)
 {
-    (void)state;
     Stage stage;
     double accel[SINES_N];
     const Motion m = sines(accel, 1);
@@ -239,9 +235,8 @@ static void pair_shake(Pair *pair, const Motion *m)
     }
 }
 
-static void test_without_damping_the_tied_pair_is_a_sum_of_closed_forms(void **state)
+TEST(without_damping_the_tied_pair_is_a_sum_of_closed_forms)
 {
-    (void)state;
     Stage stage;
     Pair pair;
     double accel[SINES_N], energy = 0;
@@ -264,9 +259,8 @@ static void test_without_damping_the_tied_pair_is_a_sum_of_closed_forms(void **s
     stage_free(&stage);
 }
 
-static void test_the_books_of_the_tied_pair_close(void **state)
+TEST(the_books_of_the_tied_pair_close)
 {
-    (void)state;
     Stage stage;
     double accel[SINES_N];
     const Motion m = sines(accel, 1);
@@ -283,9 +277,8 @@ static void test_the_books_of_the_tied_pair_close(void **state)
 }
 
 /* A core of next to no stiffness and mass leaves the bare building; cut short between samples, and run past the end. */
-static void test_tied_to_next_to_nothing_the_building_is_the_bare_one(void **state)
+TEST(tied_to_next_to_nothing_the_building_is_the_bare_one)
 {
-    (void)state;
     Stage stage;
     Err err;
     double accel[SINES_N];
@@ -313,14 +306,5 @@ static void test_tied_to_next_to_nothing_the_building_is_the_bare_one(void **sta
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_an_isolated_impact_is_as_deep_and_as_long_as_hertz_says),
-        cmocka_unit_test(test_finer_tolerances_come_nearer_to_the_finest),
-        cmocka_unit_test(test_no_shaking_is_no_response),
-        cmocka_unit_test(test_a_motion_with_nan_is_a_failed_outcome),
-        cmocka_unit_test(test_without_damping_the_tied_pair_is_a_sum_of_closed_forms),
-        cmocka_unit_test(test_the_books_of_the_tied_pair_close),
-        cmocka_unit_test(test_tied_to_next_to_nothing_the_building_is_the_bare_one),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return RUN_TESTS(NULL, NULL);
 }

@@ -100,9 +100,8 @@ static int tear_down(void **state)
 
 /* ---- what is computed ------------------------------------------------------------------------------------------ */
 
-static void test_the_wavelet_of_a_steady_swing_is_its_amplitude_at_its_frequency(void **state)
+TEST(the_wavelet_of_a_steady_swing_is_its_amplitude_at_its_frequency)
 {
-    (void)state;
     enum { N = 4000 };
     const double dt = 0.02, f[] = {1.25, 2.5, 0.625}, t[] = {30, 40, 50}, a = 0.37;
     double u[N], amplitude[9];
@@ -117,9 +116,8 @@ static void test_the_wavelet_of_a_steady_swing_is_its_amplitude_at_its_frequency
 
 /* A Gauss-shaped burst of width d at frequency f: |W| = a s/sqrt(s^2 + d^2) ... over its own peak 1/sqrt(1 + (s/d)^2).
  */
-static void test_the_wavelet_of_a_burst_is_largest_at_its_instant_as_a_product_of_gaussians_says(void **state)
+TEST(the_wavelet_of_a_burst_is_largest_at_its_instant_as_a_product_of_gaussians_says)
 {
-    (void)state;
     enum { N = 6000 };
     const double dt = 0.01, f = 2, at = 30, d = 0.8, s = WAVELET_CYCLES / (2 * M_PI * f);
     const double t[] = {at, at + 1, at - 1};
@@ -155,9 +153,8 @@ static Importance importance_of_plane(double a, double b, double c)
 }
 
 /* Var (a x1 + b x2) = (a^2 + b^2) / 12; of x1 x2: Var 7/144, each alone 3/144, together 1/144. */
-static void test_importance_is_the_share_of_the_variance_that_a_variable_has_a_part_in(void **state)
+TEST(importance_is_the_share_of_the_variance_that_a_variable_has_a_part_in)
 {
-    (void)state;
     Importance sum = importance_of_plane(1, 2, 0), product = importance_of_plane(0, 0, 1);
     assert_true(sum.n_centres == 200 && sum.explained[0] > 0.999 && product.explained[0] > 0.99);
     assert_close(sum.total[0], 0.2, 0.1);
@@ -169,9 +166,8 @@ static void test_importance_is_the_share_of_the_variance_that_a_variable_has_a_p
     importance_free(&product);
 }
 
-static void test_energies_add_up_to_the_input_at_every_instant_and_end_as_the_result_says(void **state)
+TEST(energies_add_up_to_the_input_at_every_instant_and_end_as_the_result_says)
 {
-    (void)state;
     Scenario w;
     Err err = {0};
     History h;
@@ -204,9 +200,8 @@ static void test_energies_add_up_to_the_input_at_every_instant_and_end_as_the_re
     scenario_close(&w);
 }
 
-static void test_the_chosen_design_is_simulated_as_the_search_did(void **state)
+TEST(the_chosen_design_is_simulated_as_the_search_did)
 {
-    (void)state;
     const Detail *d = &report.detail;
     const double *f = run_f(&tower, report.chosen), *x = run_x(&tower, report.chosen);
     const SimResult *with_core = &d->result[SCENE_IMPACT], *tied = &d->result[SCENE_RIGID];
@@ -231,9 +226,8 @@ static char *between(const char *text, const char *open, const char *close)
     return strndup(start, (size_t)(end - start));
 }
 
-static void test_the_page_holds_the_rows_of_the_front_to_the_last_digit(void **state)
+TEST(the_page_holds_the_rows_of_the_front_to_the_last_digit)
 {
-    (void)state;
     static const char *const RUNS[] = {"tower", "dtlz"};
     for (int i = 0; i < 2; i++) {
         char path[256];
@@ -263,9 +257,8 @@ static json_t *run_of(const char *run)
 }
 
 /* 20000 samples of a box: the standard error of a share. */
-static void test_growth_is_the_hypervolume_that_status_tells(void **state)
+TEST(growth_is_the_hypervolume_that_status_tells)
 {
-    (void)state;
     Run run;
     Err err = {0};
     json_t *page = run_of("dtlz"), *growth = json_object_get(page, "convergence");
@@ -302,9 +295,8 @@ static double extreme(const Run *run, size_t n, const size_t rows[], size_t colu
     return most;
 }
 
-static void test_a_thinned_front_keeps_every_range_the_knee_and_what_is_asked_for(void **state)
+TEST(a_thinned_front_keeps_every_range_the_knee_and_what_is_asked_for)
 {
-    (void)state;
     Run run;
     Err err = {0};
     CHECK_OK(run_read(&run, in_folder("dtlz"), &err), &err);
@@ -351,9 +343,8 @@ static void expect_one_opening(const char *before, const char *run, const char *
 }
 
 /* report and plot: where their files are looked at. */
-static void test_a_command_opens_the_database_of_a_run_once(void **state)
+TEST(a_command_opens_the_database_of_a_run_once)
 {
-    (void)state;
     if (SANITIZED)
         skip();
     expect_one_opening("choose", "tower", "--weights j1_m=1");
@@ -364,9 +355,8 @@ static void test_a_command_opens_the_database_of_a_run_once(void **state)
     expect_one_opening("optimize", "tower", "");
 }
 
-static void test_the_policy_allows_nothing_but_hashes(void **state)
+TEST(the_policy_allows_nothing_but_hashes)
 {
-    (void)state;
     char path[256];
     snprintf(path, sizeof path, "%s/tower/report.html", folder);
     char *page = text_of(path), *policy = between(page, "Content-Security-Policy\" content=\"", "\"");
@@ -378,9 +368,8 @@ static void test_the_policy_allows_nothing_but_hashes(void **state)
     free(page);
 }
 
-static void test_a_run_of_another_problem_has_no_tower_in_its_report(void **state)
+TEST(a_run_of_another_problem_has_no_tower_in_its_report)
 {
-    (void)state;
     json_t *with = run_of("tower"), *dtlz = run_of("dtlz");
     assert_true(json_is_true(json_object_get(with, "tower")) && json_is_object(json_object_get(with, "detail")));
     assert_true(json_is_false(json_object_get(dtlz, "tower")) && json_is_null(json_object_get(dtlz, "detail")));
@@ -390,9 +379,8 @@ static void test_a_run_of_another_problem_has_no_tower_in_its_report(void **stat
 }
 
 /* Names of objectives are free text; what is written of them must neither end the script nor open a comment. */
-static void test_names_cannot_break_out_of_the_page(void **state)
+TEST(names_cannot_break_out_of_the_page)
 {
-    (void)state;
     char path[256], *settings;
     assert_int_equal(
         imtet_on("optimize configs/quick.ini --set problem.kind=dtlz2 --set problem.variables=5 --set "
@@ -412,9 +400,8 @@ static void test_names_cannot_break_out_of_the_page(void **state)
     json_decref(run);
 }
 
-static void test_designs_records_and_floors_that_are_not_there_are_refused(void **state)
+TEST(designs_records_and_floors_that_are_not_there_are_refused)
 {
-    (void)state;
     assert_int_equal(imtet_on("report", "tower", "--design 999999"), 65);
     assert_int_equal(imtet_on("report", "tower", "--design kne"), 65);
     assert_int_equal(imtet_on("report", "tower", "--floor 21"), 65);
@@ -426,9 +413,8 @@ static void test_designs_records_and_floors_that_are_not_there_are_refused(void 
     assert_int_equal(imtet_on("report", "dtlz", "--out /no/such/folder/x.html"), 74);
 }
 
-static void test_a_report_needs_the_database_alone(void **state)
+TEST(a_report_needs_the_database_alone)
 {
-    (void)state;
     char command[512];
     snprintf(command, sizeof command, "mkdir '%s/bare' && cp '%s'/tower/run.sqlite '%s/bare'", folder, folder, folder);
     assert_int_equal(shell(command), 0);
@@ -451,9 +437,8 @@ static long size_of(const char *run, const char *name)
     return stat(path, &s) == 0 ? (long)s.st_size : -1;
 }
 
-static void test_pictures_are_drawn_as_svg_and_png_each(void **state)
+TEST(pictures_are_drawn_as_svg_and_png_each)
 {
-    (void)state;
     static const char *const NAMES[] = {"front", "growth",   "gaps",         "peaks",
                                         "modes", "energies", "displacement", "elsewhere"};
     /* The front has short titles, units for people and every baseline. */
@@ -480,9 +465,8 @@ static void test_pictures_are_drawn_as_svg_and_png_each(void **state)
 }
 
 /* As a formula of gnuplot: the names of the run above. */
-static void test_names_that_begin_like_a_formula_are_labels_of_pictures(void **state)
+TEST(names_that_begin_like_a_formula_are_labels_of_pictures)
 {
-    (void)state;
     if (shell("command -v gnuplot >/dev/null") != 0)
         skip();
     assert_int_equal(imtet_on("plot", "names", ""), 0);
@@ -493,9 +477,8 @@ static void test_names_that_begin_like_a_formula_are_labels_of_pictures(void **s
 
 /* ---- a browser ------------------------------------------------------------------------------------------------- */
 
-static void test_a_browser_shows_a_tower_and_another_problem_brushes_and_downloads_the_selection(void **state)
+TEST(a_browser_shows_a_tower_and_another_problem_brushes_and_downloads_the_selection)
 {
-    (void)state;
     char command[512];
     if (SANITIZED) /* the page is the same, its browser no part of the program */
         skip();
@@ -511,9 +494,8 @@ static void test_a_browser_shows_a_tower_and_another_problem_brushes_and_downloa
 }
 
 /* The bundle is what its sources make of the libraries; they are there after `make web`. */
-static void test_the_bundle_of_charts_is_what_its_sources_give(void **state)
+TEST(the_bundle_of_charts_is_what_its_sources_give)
 {
-    (void)state;
     char command[512];
     if (access("web/node_modules/esbuild", F_OK) != 0) {
         print_message("web/node_modules is not there (make web): the bundle is not made again\n");
@@ -527,25 +509,5 @@ static void test_the_bundle_of_charts_is_what_its_sources_give(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_the_wavelet_of_a_steady_swing_is_its_amplitude_at_its_frequency),
-        cmocka_unit_test(test_the_wavelet_of_a_burst_is_largest_at_its_instant_as_a_product_of_gaussians_says),
-        cmocka_unit_test(test_importance_is_the_share_of_the_variance_that_a_variable_has_a_part_in),
-        cmocka_unit_test(test_energies_add_up_to_the_input_at_every_instant_and_end_as_the_result_says),
-        cmocka_unit_test(test_the_chosen_design_is_simulated_as_the_search_did),
-        cmocka_unit_test(test_growth_is_the_hypervolume_that_status_tells),
-        cmocka_unit_test(test_a_thinned_front_keeps_every_range_the_knee_and_what_is_asked_for),
-        cmocka_unit_test(test_the_page_holds_the_rows_of_the_front_to_the_last_digit),
-        cmocka_unit_test(test_the_policy_allows_nothing_but_hashes),
-        cmocka_unit_test(test_a_run_of_another_problem_has_no_tower_in_its_report),
-        cmocka_unit_test(test_names_cannot_break_out_of_the_page),
-        cmocka_unit_test(test_designs_records_and_floors_that_are_not_there_are_refused),
-        cmocka_unit_test(test_a_report_needs_the_database_alone),
-        cmocka_unit_test(test_a_command_opens_the_database_of_a_run_once),
-        cmocka_unit_test(test_pictures_are_drawn_as_svg_and_png_each),
-        cmocka_unit_test(test_names_that_begin_like_a_formula_are_labels_of_pictures),
-        cmocka_unit_test(test_a_browser_shows_a_tower_and_another_problem_brushes_and_downloads_the_selection),
-        cmocka_unit_test(test_the_bundle_of_charts_is_what_its_sources_give),
-    };
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    return RUN_TESTS(set_up, tear_down);
 }

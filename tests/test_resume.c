@@ -154,25 +154,22 @@ static void check_every_moment(const SearchConfig *c, size_t step)
     forget(&whole);
 }
 
-static void test_a_search_goes_on_from_any_generation_as_if_it_had_never_stopped(void **state)
+TEST(a_search_goes_on_from_any_generation_as_if_it_had_never_stopped)
 {
-    (void)state;
     world(&here, 6, 3, 0);
     const SearchConfig c = config(20, 60);
     check_every_moment(&c, 1);
 }
 
-static void test_seven_objectives_go_on_the_same(void **state)
+TEST(seven_objectives_go_on_the_same)
 {
-    (void)state;
     world(&here, 22, 7, 0);
     const SearchConfig c = config(30, 54);
     check_every_moment(&c, 3);
 }
 
-static void test_failed_and_infeasible_designs_do_not_change_that(void **state)
+TEST(failed_and_infeasible_designs_do_not_change_that)
 {
-    (void)state;
     world(&here, 5, 2, 1);
     here.fail_every = 4;
     const SearchConfig c = config(16, 52);
@@ -180,18 +177,16 @@ static void test_failed_and_infeasible_designs_do_not_change_that(void **state)
 }
 
 /* The surface foretells badly: what is remembered of that decides about the next batch. */
-static void test_a_surface_that_is_half_believed_goes_on_the_same(void **state)
+TEST(a_surface_that_is_half_believed_goes_on_the_same)
 {
-    (void)state;
     world(&here, 4, 2, 0);
     here.noise = 0.6;
     const SearchConfig c = config(16, 110);
     check_every_moment(&c, 8);
 }
 
-static void test_plain_children_and_a_world_where_everything_fails_go_on_the_same(void **state)
+TEST(plain_children_and_a_world_where_everything_fails_go_on_the_same)
 {
-    (void)state;
     world(&here, 6, 3, 0);
     SearchConfig c = config(20, 80);
     c.surrogate = SURROGATE_OFF;
@@ -200,9 +195,8 @@ static void test_plain_children_and_a_world_where_everything_fails_go_on_the_sam
     check_every_moment(&c, 1);
 }
 
-static void test_the_number_of_threads_may_change_in_between(void **state)
+TEST(the_number_of_threads_may_change_in_between)
 {
-    (void)state;
     const int threads = omp_get_max_threads();
     const SearchConfig c = config(20, 48);
     world(&here, 6, 3, 0);
@@ -218,9 +212,8 @@ static void test_the_number_of_threads_may_change_in_between(void **state)
 }
 
 /* With the same plan the shorter search is the beginning of the longer one. */
-static void test_more_simulations_than_planned_go_on_where_the_plan_ended(void **state)
+TEST(more_simulations_than_planned_go_on_where_the_plan_ended)
 {
-    (void)state;
     world(&here, 6, 3, 0);
     SearchConfig c = config(0, 40);
     c.planned_evals = 40;
@@ -241,9 +234,8 @@ static void test_more_simulations_than_planned_go_on_where_the_plan_ended(void *
     forget(&whole);
 }
 
-static void test_a_search_at_its_limit_simulates_nothing_more(void **state)
+TEST(a_search_at_its_limit_simulates_nothing_more)
 {
-    (void)state;
     world(&here, 6, 3, 0);
     const SearchConfig c = config(20, 32);
     run(&here, &c, NULL, &whole);
@@ -263,9 +255,8 @@ static void refuse(const SearchConfig *c, const SearchStart *start)
     assert_int_equal(rest.moments.n, 0);
 }
 
-static void test_a_state_that_is_cut_short_or_of_another_search_is_refused(void **state)
+TEST(a_state_that_is_cut_short_or_of_another_search_is_refused)
 {
-    (void)state;
     world(&here, 6, 3, 0);
     SearchConfig c = config(20, 32);
     run(&here, &c, NULL, &whole);
@@ -284,9 +275,8 @@ static void test_a_state_that_is_cut_short_or_of_another_search_is_refused(void 
     forget(&whole);
 }
 
-static void test_a_search_that_converges_stops_at_the_same_place_wherever_it_was_resumed(void **state)
+TEST(a_search_that_converges_stops_at_the_same_place_wherever_it_was_resumed)
 {
-    (void)state;
     world(&here, 3, 2, 0);
     SearchConfig c = config(20, 290);
     c.generations = 79;
@@ -328,18 +318,16 @@ static void check_this_is_refused_everywhere(double number, int asynchronous)
     forget(&whole);
 }
 
-static void test_a_state_with_a_number_anywhere_that_is_not_finite_is_refused(void **state)
+TEST(a_state_with_a_number_anywhere_that_is_not_finite_is_refused)
 {
-    (void)state;
     static const double NUMBERS[] = {NAN, INFINITY, -INFINITY};
     for (size_t i = 0; i < 6; i++)
         check_this_is_refused_everywhere(NUMBERS[i / 2], i % 2);
 }
 
 /* What a Pack reads is what it wrote; a fault stops it before anything is changed. */
-static void test_a_pack_reads_what_it_wrote_and_keeps_the_first_fault(void **state)
+TEST(a_pack_reads_what_it_wrote_and_keeps_the_first_fault)
 {
-    (void)state;
     double value = 0.1, back = 0.0;
     size_t count = 12, counted = 0;
     Pack out = {0};
@@ -375,19 +363,5 @@ static int quiet(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a_search_goes_on_from_any_generation_as_if_it_had_never_stopped),
-        cmocka_unit_test(test_seven_objectives_go_on_the_same),
-        cmocka_unit_test(test_failed_and_infeasible_designs_do_not_change_that),
-        cmocka_unit_test(test_a_surface_that_is_half_believed_goes_on_the_same),
-        cmocka_unit_test(test_plain_children_and_a_world_where_everything_fails_go_on_the_same),
-        cmocka_unit_test(test_the_number_of_threads_may_change_in_between),
-        cmocka_unit_test(test_more_simulations_than_planned_go_on_where_the_plan_ended),
-        cmocka_unit_test(test_a_search_at_its_limit_simulates_nothing_more),
-        cmocka_unit_test(test_a_state_that_is_cut_short_or_of_another_search_is_refused),
-        cmocka_unit_test(test_a_search_that_converges_stops_at_the_same_place_wherever_it_was_resumed),
-        cmocka_unit_test(test_a_state_with_a_number_anywhere_that_is_not_finite_is_refused),
-        cmocka_unit_test(test_a_pack_reads_what_it_wrote_and_keeps_the_first_fault),
-    };
-    return cmocka_run_group_tests_name("resume", tests, quiet, NULL);
+    return RUN_TESTS(quiet, NULL);
 }

@@ -24,9 +24,8 @@ static void go_to_a_place_of_its_own(char before[], size_t size)
     assert_same_number(symlink("elsewhere", "resultsx"), 0);
 }
 
-static void test_a_settings_file_writes_below_results_only(void **state)
+TEST(a_settings_file_writes_below_results_only)
 {
-    (void)state;
     static const char *const GOOD[] = {"results/study", "./results/a/b", "results/in/new", "results", "results/..a"};
     static const char *const BAD[] = {"../../etc/x", "/etc/x",          "results/../../x", "results/..", "resultsx/a",
                                       "elsewhere",   "results/out/new", "results/out",     "~/results",  "./../result"};
@@ -43,9 +42,8 @@ static void test_a_settings_file_writes_below_results_only(void **state)
     assert_int_equal(chdir(before), 0);
 }
 
-static void test_a_run_may_go_on_where_its_own_settings_lie(void **state)
+TEST(a_run_may_go_on_where_its_own_settings_lie)
 {
-    (void)state;
     char own[128], file[160];
     Err err = {0};
     snprintf(own, sizeof own, "%s/kept", place.folder);
@@ -55,9 +53,8 @@ static void test_a_run_may_go_on_where_its_own_settings_lie(void **state)
     assert_int_equal(output_place_check(place.folder, file, &err), STATUS_BAD_DATA);
 }
 
-static void test_a_study_is_not_sent_out_of_results_by_its_file_but_by_the_user(void **state)
+TEST(a_study_is_not_sent_out_of_results_by_its_file_but_by_the_user)
 {
-    (void)state;
     static const char STUDY[] = "[problem]\nkind = dtlz2\nvariables = 3\nobjectives = 2\n[search]\npopulation = 8\n"
                                 "initial = 8\nmax_evals = 8\n[run]\nout = ../../etc/x\n";
     write_in_place("foreign.ini", STUDY);
@@ -71,9 +68,8 @@ static void test_a_study_is_not_sent_out_of_results_by_its_file_but_by_the_user(
 
 /* ---- cells ----------------------------------------------------------------------------------------------------- */
 
-static void test_no_text_begins_a_cell_like_a_formula(void **state)
+TEST(no_text_begins_a_cell_like_a_formula)
 {
-    (void)state;
     static const char *const PAIRS[][2] = {
         {"=cmd()", "'=cmd()"},
         {"+1", "'+1"},
@@ -120,9 +116,8 @@ static void demand_harmless(const char *csv)
     }
 }
 
-static void test_names_and_reasons_of_users_are_harmless_in_every_table(void **state)
+TEST(names_and_reasons_of_users_are_harmless_in_every_table)
 {
-    (void)state;
     static const char STUDY[] =
         "[problem]\nkind = external\ncommand = sh tests/worker.sh formula\nvariables = 2\nobjectives = 2\n"
         "variable_names = =cmd(),+x\nobjective_names = -f,@g\n[search]\ninitial = 12\npopulation = 8\nmax_evals = 12\n";
@@ -142,9 +137,8 @@ static void test_names_and_reasons_of_users_are_harmless_in_every_table(void **s
 
 /* ---- commands -------------------------------------------------------------------------------------------------- */
 
-static void test_the_command_of_a_worker_sees_no_shell_unless_it_names_one(void **state)
+TEST(the_command_of_a_worker_sees_no_shell_unless_it_names_one)
 {
-    (void)state;
     char path[128], text[1024];
     snprintf(path, sizeof path, "%s/touched", place.folder);
     for (int with_shell = 0; with_shell < 2; with_shell++) {
@@ -172,9 +166,8 @@ static int count_files(const char *folder)
 }
 
 /* As a process leaves it that is killed before the file is whole. */
-static void test_a_file_half_written_has_no_name(void **state)
+TEST(a_file_half_written_has_no_name)
 {
-    (void)state;
     Output o;
     Err err = {0};
     char *folder = in_place("half"), *path = in_place("half/out.csv");
@@ -198,14 +191,5 @@ static void test_a_file_half_written_has_no_name(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a_settings_file_writes_below_results_only),
-        cmocka_unit_test(test_a_run_may_go_on_where_its_own_settings_lie),
-        cmocka_unit_test(test_a_study_is_not_sent_out_of_results_by_its_file_but_by_the_user),
-        cmocka_unit_test(test_no_text_begins_a_cell_like_a_formula),
-        cmocka_unit_test(test_names_and_reasons_of_users_are_harmless_in_every_table),
-        cmocka_unit_test(test_the_command_of_a_worker_sees_no_shell_unless_it_names_one),
-        cmocka_unit_test(test_a_file_half_written_has_no_name),
-    };
-    return cmocka_run_group_tests(tests, make_place, clear_place);
+    return RUN_TESTS(make_place, clear_place);
 }

@@ -45,9 +45,8 @@ static void scene_hz(const char *model, CoreSection section, double building[], 
     scene_free(scene);
 }
 
-static void test_the_effective_core_has_the_frequencies_of_table_1(void **state)
+TEST(the_effective_core_has_the_frequencies_of_table_1)
 {
-    (void)state;
     const double core_wanted[] = {2.29, 13.22, 36.19, 70.49, 116.25, 173.48, 242.24, 322.65, 414.91, 519.39};
     const double zero_gap_wanted[] = {0.75, 4.29, 11.82, 23.08, 38.12, 56.95, 79.55, 105.94, 136.07, 169.91};
     double building[FLOORS_MAX], core[FLOORS_MAX], zero_gap[FLOORS_MAX], mass;
@@ -66,9 +65,8 @@ static void list_of(char list[OPTION_TEXT_MAX], double first, double last)
                                  first + (last - first) * j / 19);
 }
 
-static void test_an_effective_core_may_be_given_storey_by_storey(void **state)
+TEST(an_effective_core_may_be_given_storey_by_storey)
 {
-    (void)state;
     CoreBeam linear, listed;
     SceneOptions s = paper_scene();
     Err err = {0};
@@ -88,9 +86,8 @@ static void test_an_effective_core_may_be_given_storey_by_storey(void **state)
     assert_non_null(strstr(err.text, "core.areas_m2: has 20 values; the building has 19 storeys"));
 }
 
-static void test_both_buildings_have_their_known_frequencies(void **state)
+TEST(both_buildings_have_their_known_frequencies)
 {
-    (void)state;
     const double guyan[] = {0.2643, 0.7599, 1.3113, 1.8448, 2.4209};
     const double appendix[] = {0.2729, 0.7800, 1.3388, 1.8946, 2.4977};
     double building[FLOORS_MAX], core[FLOORS_MAX], zero_gap[FLOORS_MAX], mass;
@@ -102,9 +99,8 @@ static void test_both_buildings_have_their_known_frequencies(void **state)
         assert_close(building[i], appendix[i], 1e-3);
 }
 
-static void test_the_box_core_has_its_known_mass_and_frequencies(void **state)
+TEST(the_box_core_has_its_known_mass_and_frequencies)
 {
-    (void)state;
     const double wanted[] = {2.492, 13.64, 36.69, 71.11, 117.0};
     double building[FLOORS_MAX], core[FLOORS_MAX], zero_gap[FLOORS_MAX], mass;
     scene_hz("guyan", CORE_BOX, building, core, zero_gap, &mass);
@@ -113,9 +109,8 @@ static void test_the_box_core_has_its_known_mass_and_frequencies(void **state)
         assert_close(core[i], wanted[i], 1e-3);
 }
 
-static void test_a_uniform_core_is_a_textbook_cantilever(void **state)
+TEST(a_uniform_core_is_a_textbook_cantilever)
 {
-    (void)state;
     CoreBeam core;
     SceneOptions s = paper_scene();
     Err err = {0};
@@ -130,9 +125,8 @@ static void test_a_uniform_core_is_a_textbook_cantilever(void **state)
     assert_close(core.mass_kg, m * L, 1e-12);
 }
 
-static void test_stiffness_of_the_plate_goes_with_thickness_cubed(void **state)
+TEST(stiffness_of_the_plate_goes_with_thickness_cubed)
 {
-    (void)state;
     CoreBeam thin, thick;
     make_core(&thin, CORE_PLATE, 0.01, 0.005);
     make_core(&thick, CORE_PLATE, 0.02, 0.01);
@@ -164,9 +158,8 @@ static Tube tube(const CoreOptions *o, double t)
     return (Tube){E * I, k * E / (2 * (1 + o->poisson)) * A, o->density_kg_m3 * A, A, I};
 }
 
-static void test_a_force_at_any_node_bends_and_shears_the_cantilever_as_the_closed_form(void **state)
+TEST(a_force_at_any_node_bends_and_shears_the_cantilever_as_the_closed_form)
 {
-    (void)state;
     enum { N = 7 };
     SceneOptions s = uniform_storeys(6, CORE_TIMOSHENKO);
     CoreBeam core;
@@ -184,9 +177,8 @@ static void test_a_force_at_any_node_bends_and_shears_the_cantilever_as_the_clos
     }
 }
 
-static void test_a_slender_core_vibrates_alike_by_both_theories(void **state)
+TEST(a_slender_core_vibrates_alike_by_both_theories)
 {
-    (void)state;
     CoreBeam with, without;
     Err err = {0};
     const double sides[] = {1.6, 0.4};
@@ -258,9 +250,8 @@ static void chain_frequencies(const Beam *beam, int n, double omega[])
     CHECK_OK(linalg_modes(size, K, M, omega, phi, &err), &err);
 }
 
-static void test_frequencies_converge_to_those_of_timoshenkos_beam(void **state)
+TEST(frequencies_converge_to_those_of_timoshenkos_beam)
 {
-    (void)state;
     const double L = 80;
     const SceneOptions s = uniform_storeys(11.3, CORE_TIMOSHENKO);
     const Tube a = tube(&s.core, 0.01);
@@ -279,9 +270,8 @@ static void test_frequencies_converge_to_those_of_timoshenkos_beam(void **state)
 }
 
 /* Rotations that follow the deflections statically leave out what rotary inertia does to the shape. */
-static void test_condensed_rotations_raise_the_first_frequencies_by_less_than_a_percent(void **state)
+TEST(condensed_rotations_raise_the_first_frequencies_by_less_than_a_percent)
 {
-    (void)state;
     const double L = 80, allowed[BEAM_MODES] = {1e-5, 6e-4, 3e-3, 7e-3};
     SceneOptions s = uniform_storeys(11.3, CORE_TIMOSHENKO);
     const Tube a = tube(&s.core, 0.01);
@@ -310,9 +300,8 @@ static double shear_effect_on_first_mode(CoreSection section, int n)
     return 1 - with.omega[0] / without.omega[0];
 }
 
-static void test_shear_softens_a_squat_core_much_more_than_a_tall_one(void **state)
+TEST(shear_softens_a_squat_core_much_more_than_a_tall_one)
 {
-    (void)state;
     const double tall = shear_effect_on_first_mode(CORE_BOX, 20), squat = shear_effect_on_first_mode(CORE_BOX, 6);
     print_message("first mode of the 11.3 m tube by shear and rotary inertia: -%.1f %% (20 storeys), -%.1f %% (6)\n",
                   100 * tall, 100 * squat);
@@ -321,9 +310,8 @@ static void test_shear_softens_a_squat_core_much_more_than_a_tall_one(void **sta
     assert_less(shear_effect_on_first_mode(CORE_PLATE, 20), 1e-6);
 }
 
-static void test_an_effective_section_shears_by_the_area_that_is_given(void **state)
+TEST(an_effective_section_shears_by_the_area_that_is_given)
 {
-    (void)state;
     SceneOptions s = uniform_storeys(6, CORE_TIMOSHENKO);
     CoreBeam box, effective;
     Err err = {0};
@@ -341,9 +329,8 @@ static void test_an_effective_section_shears_by_the_area_that_is_given(void **st
     assert_non_null(strstr(err.text, "core.shear_area"));
 }
 
-static void test_mode_shapes_are_mass_normalised_and_diagonalise_the_stiffness(void **state)
+TEST(mode_shapes_are_mass_normalised_and_diagonalise_the_stiffness)
 {
-    (void)state;
     Building b;
     Err err = {0};
     CHECK_OK(load_model(&b, "guyan", &err), &err);
@@ -361,9 +348,8 @@ static void test_mode_shapes_are_mass_normalised_and_diagonalise_the_stiffness(v
     building_free(&b);
 }
 
-static void test_participation_factors_add_up_to_the_whole_mass(void **state)
+TEST(participation_factors_add_up_to_the_whole_mass)
 {
-    (void)state;
     Building b;
     Err err = {0};
     CHECK_OK(load_model(&b, "appendix", &err), &err);
@@ -376,9 +362,8 @@ static void test_participation_factors_add_up_to_the_whole_mass(void **state)
     building_free(&b);
 }
 
-static void test_bad_buildings_are_refused_with_file_and_fault(void **state)
+TEST(bad_buildings_are_refused_with_file_and_fault)
 {
-    (void)state;
     static const char *const BAD[][2] = {
         {"not_square", "square"},
         {"not_symmetric", "not symmetric: row 2 column 1"},
@@ -402,9 +387,8 @@ static void test_bad_buildings_are_refused_with_file_and_fault(void **state)
     }
 }
 
-static void test_walls_that_do_not_fit_are_refused(void **state)
+TEST(walls_that_do_not_fit_are_refused)
 {
-    (void)state;
     CoreBeam core;
     SceneOptions s = paper_scene();
     Err err = {0};
@@ -413,9 +397,8 @@ static void test_walls_that_do_not_fit_are_refused(void **state)
     assert_int_equal(make_core_of(&core, &s, 20, -0.01, 0.02, &err), STATUS_BAD_DATA);
 }
 
-static void test_contact_stiffness_and_damping_are_those_of_the_paper(void **state)
+TEST(contact_stiffness_and_damping_are_those_of_the_paper)
 {
-    (void)state;
     SceneOptions s = paper_scene();
     Contact c;
     Err err = {0};
@@ -429,9 +412,8 @@ static void test_contact_stiffness_and_damping_are_those_of_the_paper(void **sta
     assert_int_equal(contact_make(&c, &s.contact, &err), STATUS_BAD_DATA);
 }
 
-static void test_rebound_formula_matches_its_table_and_its_inverse(void **state)
+TEST(rebound_formula_matches_its_table_and_its_inverse)
 {
-    (void)state;
     const double table[][2] = {{.3, .58128804}, {.5, .66296220}, {.7, .76799979}, {.9, .90901574}};
     for (int i = 0; i < 4; i++)
         assert_close(contact_rebound(1.5 * (1 - table[i][0])), table[i][1], 1e-7);
@@ -441,9 +423,8 @@ static void test_rebound_formula_matches_its_table_and_its_inverse(void **state)
         assert_close(contact_rebound(contact_damping(e)), e, 1e-12);
 }
 
-static void test_hertz_impact_of_two_steel_balls(void **state)
+TEST(hertz_impact_of_two_steel_balls)
 {
-    (void)state;
     const double E = 2.1e11, nu = 0.3, R = 0.01; /* two balls: E' = E/(2 (1-nu^2)), R' = R/2, m' = m/2 */
     const double k = 4.0 / 3 * E / (2 * (1 - nu * nu)) * sqrt(R / 2);
     const double m = 7850 * 4.0 / 3 * M_PI * R * R * R / 2, v = 1;
@@ -479,9 +460,8 @@ static void march(double w, double zeta, const double P[3], double q, double v, 
     memcpy(out, all, sizeof all);
 }
 
-static void test_modal_flow_is_exact_at_every_damping_and_stiffness(void **state)
+TEST(modal_flow_is_exact_at_every_damping_and_stiffness)
 {
-    (void)state;
     const double W[] = {0, 1e-3, 0.7, 1.99, 2.01, 9, 60}, Z[] = {0, 0.03, 0.5, 0.999, 1, 1.0001, 3};
     const double P[3] = {0.5, -1.1, 0.8}, q = 0.3, v = -0.7;
     for (size_t i = 0; i < 7; i++)
@@ -500,9 +480,8 @@ static void test_modal_flow_is_exact_at_every_damping_and_stiffness(void **state
         }
 }
 
-static void test_two_half_steps_of_flow_make_a_whole_one(void **state)
+TEST(two_half_steps_of_flow_make_a_whole_one)
 {
-    (void)state;
     for (double w = 1e-4; w < 1e5; w *= 3.3) {
         const double zeta = 0.03, h = 0.01;
         double whole[FLOW_ROWS], half[FLOW_ROWS];
@@ -518,28 +497,5 @@ static void test_two_half_steps_of_flow_make_a_whole_one(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_the_effective_core_has_the_frequencies_of_table_1),
-        cmocka_unit_test(test_an_effective_core_may_be_given_storey_by_storey),
-        cmocka_unit_test(test_both_buildings_have_their_known_frequencies),
-        cmocka_unit_test(test_the_box_core_has_its_known_mass_and_frequencies),
-        cmocka_unit_test(test_a_uniform_core_is_a_textbook_cantilever),
-        cmocka_unit_test(test_stiffness_of_the_plate_goes_with_thickness_cubed),
-        cmocka_unit_test(test_a_force_at_any_node_bends_and_shears_the_cantilever_as_the_closed_form),
-        cmocka_unit_test(test_a_slender_core_vibrates_alike_by_both_theories),
-        cmocka_unit_test(test_frequencies_converge_to_those_of_timoshenkos_beam),
-        cmocka_unit_test(test_condensed_rotations_raise_the_first_frequencies_by_less_than_a_percent),
-        cmocka_unit_test(test_shear_softens_a_squat_core_much_more_than_a_tall_one),
-        cmocka_unit_test(test_an_effective_section_shears_by_the_area_that_is_given),
-        cmocka_unit_test(test_mode_shapes_are_mass_normalised_and_diagonalise_the_stiffness),
-        cmocka_unit_test(test_participation_factors_add_up_to_the_whole_mass),
-        cmocka_unit_test(test_bad_buildings_are_refused_with_file_and_fault),
-        cmocka_unit_test(test_walls_that_do_not_fit_are_refused),
-        cmocka_unit_test(test_contact_stiffness_and_damping_are_those_of_the_paper),
-        cmocka_unit_test(test_rebound_formula_matches_its_table_and_its_inverse),
-        cmocka_unit_test(test_hertz_impact_of_two_steel_balls),
-        cmocka_unit_test(test_modal_flow_is_exact_at_every_damping_and_stiffness),
-        cmocka_unit_test(test_two_half_steps_of_flow_make_a_whole_one),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return RUN_TESTS(NULL, NULL);
 }

@@ -28,9 +28,8 @@ static const Sensitivity *named(const Sensitivity *list, size_t n, const char *n
 }
 
 /* Of a square tube the mass is quadratic in the thickness, so that the central difference is exact. */
-static void test_the_mass_changes_with_the_thickness_as_the_section_says(void **state)
+TEST(the_mass_changes_with_the_thickness_as_the_section_says)
 {
-    (void)state;
     Settings s;
     Err err = {0};
     Sensitivity *list;
@@ -51,9 +50,8 @@ static void test_the_mass_changes_with_the_thickness_as_the_section_says(void **
     free(list);
 }
 
-static void test_without_contact_only_the_building_matters_and_its_slope_is_that_of_the_building_alone(void **state)
+TEST(without_contact_only_the_building_matters_and_its_slope_is_that_of_the_building_alone)
 {
-    (void)state;
     Settings s;
     Err err = {0};
     Sensitivity *list;
@@ -81,9 +79,8 @@ static void test_without_contact_only_the_building_matters_and_its_slope_is_that
     free(list);
 }
 
-static void test_with_contact_the_slopes_are_differences_of_simulations_on_any_number_of_threads(void **state)
+TEST(with_contact_the_slopes_are_differences_of_simulations_on_any_number_of_threads)
 {
-    (void)state;
     Settings s;
     Err err = {0};
     Sensitivity *one, *two;
@@ -120,10 +117,5 @@ static void test_with_contact_the_slopes_are_differences_of_simulations_on_any_n
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_the_mass_changes_with_the_thickness_as_the_section_says),
-        cmocka_unit_test(test_without_contact_only_the_building_matters_and_its_slope_is_that_of_the_building_alone),
-        cmocka_unit_test(test_with_contact_the_slopes_are_differences_of_simulations_on_any_number_of_threads),
-    };
-    return cmocka_run_group_tests_name("sensitivity", tests, NULL, NULL);
+    return RUN_TESTS(NULL, NULL);
 }

@@ -25,9 +25,8 @@ static void check_start(const char *asynchronous)
     run_free(&h);
 }
 
-static void test_given_designs_come_first_inside_the_box_and_once(void **state)
+TEST(given_designs_come_first_inside_the_box_and_once)
 {
-    (void)state;
     write_in_place("begin.ini", BEGIN);
     write_in_place("given.csv", GIVEN);
     check_start("search.asynchronous=off");
@@ -45,9 +44,8 @@ static const char TOWER[] =
     "[sim]\nreplicates = 2\nduration_s = 20\n"
     "[search]\ninitial = 12\npopulation = 12\nmax_evals = 12\npolish = 0\n";
 
-static void test_a_design_of_the_tower_has_the_same_objectives_in_either_mode(void **state)
+TEST(a_design_of_the_tower_has_the_same_objectives_in_either_mode)
 {
-    (void)state;
     Run batches, turns;
     Err err = {0};
     char path[PATH_MAX];
@@ -73,9 +71,5 @@ static void test_a_design_of_the_tower_has_the_same_objectives_in_either_mode(vo
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_given_designs_come_first_inside_the_box_and_once),
-        cmocka_unit_test(test_a_design_of_the_tower_has_the_same_objectives_in_either_mode),
-    };
-    return cmocka_run_group_tests_name("start", tests, prepare, clear_place);
+    return RUN_TESTS(prepare, clear_place);
 }

@@ -25,9 +25,8 @@ static void expect_refusal(const char *text, int has_header, const char *wanted)
     table_free(&t);
 }
 
-static void test_numbers_come_out_as_they_were_written(void **state)
+TEST(numbers_come_out_as_they_were_written)
 {
-    (void)state;
     Err err = {0};
     Table t;
     CHECK_OK(parse(&t, "a,b,c\n1,-2.5,3e-7\n0.1,1e300,-0\n", 1, &err), &err);
@@ -38,9 +37,8 @@ static void test_numbers_come_out_as_they_were_written(void **state)
     table_free(&t);
 }
 
-static void test_comments_blank_lines_and_foreign_line_ends_are_skipped(void **state)
+TEST(comments_blank_lines_and_foreign_line_ends_are_skipped)
 {
-    (void)state;
     Err err = {0};
     Table t;
     CHECK_OK(parse(&t, "# who\r\n\r\n  # what\r\n 1 , 2 \r\n\r\n\t3\t,4\r\n# end", 0, &err), &err);
@@ -51,9 +49,8 @@ static void test_comments_blank_lines_and_foreign_line_ends_are_skipped(void **s
     table_free(&t);
 }
 
-static void test_a_column_is_found_by_its_name(void **state)
+TEST(a_column_is_found_by_its_name)
 {
-    (void)state;
     Err err = {0};
     Table t;
     CHECK_OK(parse(&t, " time_s , accel_m_s2\n0,1\n", 1, &err), &err);
@@ -63,9 +60,8 @@ static void test_a_column_is_found_by_its_name(void **state)
     table_free(&t);
 }
 
-static void test_a_last_line_without_an_end_counts(void **state)
+TEST(a_last_line_without_an_end_counts)
 {
-    (void)state;
     Err err = {0};
     Table t;
     CHECK_OK(parse(&t, "1\n2\n3", 0, &err), &err);
@@ -73,9 +69,8 @@ static void test_a_last_line_without_an_end_counts(void **state)
     table_free(&t);
 }
 
-static void test_each_fault_names_file_line_and_column(void **state)
+TEST(each_fault_names_file_line_and_column)
 {
-    (void)state;
     expect_refusal("1,2\n3\n", 0, "there.csv:2: column 2 of 2 is missing");
     expect_refusal("1,2\n3,4,5\n", 0, "there.csv:2: more than 2 columns");
     expect_refusal("1,2\n3,4,\n", 0, "there.csv:2: more than 2 columns");
@@ -98,15 +93,13 @@ static void test_each_fault_names_file_line_and_column(void **state)
 }
 
 /* A trailing comma must not fetch its number from the line below. */
-static void test_a_missing_last_number_is_not_taken_from_the_next_line(void **state)
+TEST(a_missing_last_number_is_not_taken_from_the_next_line)
 {
-    (void)state;
     expect_refusal("1,2,3\n4,5,\n6,7,8\n", 0, "there.csv:2: column 3 of 3 is missing");
 }
 
-static void test_a_missing_file_is_told_from_a_bad_one(void **state)
+TEST(a_missing_file_is_told_from_a_bad_one)
 {
-    (void)state;
     Err err = {0};
     Table t;
     assert_int_equal(table_read(&t, "tests/bad/not_there.csv", 0, &err), STATUS_MISSING);
@@ -115,9 +108,8 @@ static void test_a_missing_file_is_told_from_a_bad_one(void **state)
 }
 
 /* The same 2 x 3 numbers as a spreadsheet of several countries writes them. */
-static void test_the_forms_of_spreadsheets_hold_the_same_numbers(void **state)
+TEST(the_forms_of_spreadsheets_hold_the_same_numbers)
 {
-    (void)state;
     static const char *const FORMS[] = {
         "1.5,-2.25,3e-7\n0.1,4,5\n",
         "\xef\xbb\xbfsep=;\r\n1,5;-2,25;3e-7\r\n0,1;4;5\r\n",
@@ -142,9 +134,8 @@ static void test_the_forms_of_spreadsheets_hold_the_same_numbers(void **state)
     }
 }
 
-static void test_a_header_of_a_spreadsheet_loses_its_mark_and_its_quotes(void **state)
+TEST(a_header_of_a_spreadsheet_loses_its_mark_and_its_quotes)
 {
-    (void)state;
     static const char *const FORMS[] = {
         "\xef\xbb\xbfgap_01_m,t_base_m\n0.05,0.012\n",
         "\xef\xbb\xbfgap_01_m;t_base_m\r\n0,05;0,012\r\n",
@@ -163,9 +154,8 @@ static void test_a_header_of_a_spreadsheet_loses_its_mark_and_its_quotes(void **
     }
 }
 
-static void test_decimal_points_beside_decimal_commas_are_refused(void **state)
+TEST(decimal_points_beside_decimal_commas_are_refused)
 {
-    (void)state;
     expect_refusal("1,5;2\n3;4\n5;6.5\n", 0, "there.csv:3: decimal points and decimal commas are mixed; line 1");
     expect_refusal("1.234,5;2\n", 0, "there.csv:1: column 1 is not a number");
     expect_refusal("1;2\n3;;\n", 0, "there.csv:2: column 2 of 2 is missing");
@@ -176,9 +166,8 @@ static void test_decimal_points_beside_decimal_commas_are_refused(void **state)
                    0, "UTF-16");
 }
 
-static void test_an_invisible_character_is_named_in_a_message(void **state)
+TEST(an_invisible_character_is_named_in_a_message)
 {
-    (void)state;
     expect_refusal("1,2\xc2\xa0"
                    "000\n",
                    0, "column 2 is not a number: '2<U+00A0>000'");
@@ -220,9 +209,8 @@ static const DesignSpace *paper_space(int n_floors)
     return &space;
 }
 
-static void test_a_design_file_gives_its_rows_and_their_lines(void **state)
+TEST(a_design_file_gives_its_rows_and_their_lines)
 {
-    (void)state;
     Err err = {0};
     Designs d;
     char path[] = "/tmp/imtet-design-XXXXXX";
@@ -239,9 +227,8 @@ static void test_a_design_file_gives_its_rows_and_their_lines(void **state)
     remove(path);
 }
 
-static void test_variables_are_named_by_floor_from_the_bottom(void **state)
+TEST(variables_are_named_by_floor_from_the_bottom)
 {
-    (void)state;
     static const char *const WANT[] = {"gap_01_m", "gap_02_m", "gap_03_m", "t_base_m", "t_top_m"};
     char name[TABLE_NAME_MAX];
     for (int j = 0; j < 5; j++) {
@@ -258,15 +245,13 @@ static Status read_two_floors(const char *path, Err *err)
     return status;
 }
 
-static void test_every_bad_design_file_is_refused_with_its_fault(void **state)
+TEST(every_bad_design_file_is_refused_with_its_fault)
 {
-    (void)state;
     assert_at_most(15, all_refused("tests/bad/design", read_two_floors));
 }
 
-static void test_a_named_pipe_is_refused_before_it_is_waited_for(void **state)
+TEST(a_named_pipe_is_refused_before_it_is_waited_for)
 {
-    (void)state;
     char folder[] = "/tmp/imtet-pipe-XXXXXX", path[64], *text;
     size_t length;
     Err err = {0};
@@ -281,22 +266,5 @@ static void test_a_named_pipe_is_refused_before_it_is_waited_for(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a_named_pipe_is_refused_before_it_is_waited_for),
-        cmocka_unit_test(test_numbers_come_out_as_they_were_written),
-        cmocka_unit_test(test_comments_blank_lines_and_foreign_line_ends_are_skipped),
-        cmocka_unit_test(test_a_column_is_found_by_its_name),
-        cmocka_unit_test(test_a_last_line_without_an_end_counts),
-        cmocka_unit_test(test_each_fault_names_file_line_and_column),
-        cmocka_unit_test(test_a_missing_last_number_is_not_taken_from_the_next_line),
-        cmocka_unit_test(test_the_forms_of_spreadsheets_hold_the_same_numbers),
-        cmocka_unit_test(test_a_header_of_a_spreadsheet_loses_its_mark_and_its_quotes),
-        cmocka_unit_test(test_decimal_points_beside_decimal_commas_are_refused),
-        cmocka_unit_test(test_an_invisible_character_is_named_in_a_message),
-        cmocka_unit_test(test_a_missing_file_is_told_from_a_bad_one),
-        cmocka_unit_test(test_a_design_file_gives_its_rows_and_their_lines),
-        cmocka_unit_test(test_variables_are_named_by_floor_from_the_bottom),
-        cmocka_unit_test(test_every_bad_design_file_is_refused_with_its_fault),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return RUN_TESTS(NULL, NULL);
 }

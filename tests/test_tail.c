@@ -34,9 +34,8 @@ static SimResult run_with(const SceneOptions *o, const Motion *m, SceneKind kind
     return r;
 }
 
-static void test_what_is_left_of_a_motion_is_what_it_gives_to_the_building_at_rest(void **state)
+TEST(what_is_left_of_a_motion_is_what_it_gives_to_the_building_at_rest)
 {
-    (void)state;
     const SceneOptions o = paper_scene();
     Motion m = kobe_like();
     Building b;
@@ -61,9 +60,8 @@ static void test_what_is_left_of_a_motion_is_what_it_gives_to_the_building_at_re
     motion_free(&m);
 }
 
-static void test_contacts_end_where_they_can_change_nothing(void **state)
+TEST(contacts_end_where_they_can_change_nothing)
 {
-    (void)state;
     SceneOptions o = paper_scene(), never = o;
     Motion m = kobe_like();
     const double length = (double)(m.n - 1) * m.dt_s;
@@ -99,9 +97,8 @@ static SimResult run_engine(const SimModel *model, const Motion *m, const double
     return r;
 }
 
-static void test_a_run_without_its_end_has_the_peaks_and_nearly_the_shares_of_the_whole(void **state)
+TEST(a_run_without_its_end_has_the_peaks_and_nearly_the_shares_of_the_whole)
 {
-    (void)state;
     const SceneOptions o = paper_scene();
     Motion m = kobe_like();
     Building b;
@@ -130,9 +127,8 @@ static void test_a_run_without_its_end_has_the_peaks_and_nearly_the_shares_of_th
     motion_free(&m);
 }
 
-static void test_at_fine_accuracy_contacts_are_followed_to_the_end(void **state)
+TEST(at_fine_accuracy_contacts_are_followed_to_the_end)
 {
-    (void)state;
     SceneOptions o = paper_scene();
     Motion m = kobe_like();
     double x[FLOORS_MAX + 2];
@@ -146,9 +142,8 @@ static void test_at_fine_accuracy_contacts_are_followed_to_the_end(void **state)
     motion_free(&m);
 }
 
-static void test_shares_of_no_net_input_are_undefined(void **state)
+TEST(shares_of_no_net_input_are_undefined)
 {
-    (void)state;
     const SceneOptions o = paper_scene();
     double accel[50] = {0};
     const Motion still = {.accel = accel, .n = 50, .dt_s = 0.02, .name = "still"};
@@ -160,12 +155,5 @@ static void test_shares_of_no_net_input_are_undefined(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_what_is_left_of_a_motion_is_what_it_gives_to_the_building_at_rest),
-        cmocka_unit_test(test_contacts_end_where_they_can_change_nothing),
-        cmocka_unit_test(test_a_run_without_its_end_has_the_peaks_and_nearly_the_shares_of_the_whole),
-        cmocka_unit_test(test_at_fine_accuracy_contacts_are_followed_to_the_end),
-        cmocka_unit_test(test_shares_of_no_net_input_are_undefined),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return RUN_TESTS(NULL, NULL);
 }

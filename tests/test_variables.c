@@ -30,9 +30,8 @@ static void expect_names(const DesignSpace *s, const char *const names[], int n)
     }
 }
 
-static void test_the_default_is_a_gap_per_floor_and_two_thicknesses(void **state)
+TEST(the_default_is_a_gap_per_floor_and_two_thicknesses)
 {
-    (void)state;
     static const char *const WANT[] = {"gap_01_m", "gap_02_m", "gap_03_m", "t_base_m", "t_top_m"};
     const DesignSpace s = space_of("gaps, thickness", 0, 1, 3);
     double lower[5], upper[5];
@@ -42,9 +41,8 @@ static void test_the_default_is_a_gap_per_floor_and_two_thicknesses(void **state
     assert_true(lower[2] == 0.001 && upper[2] == 0.5 && lower[3] == 0.004 && upper[4] == 0.04);
 }
 
-static void test_a_core_of_given_areas_has_no_thickness_to_search(void **state)
+TEST(a_core_of_given_areas_has_no_thickness_to_search)
 {
-    (void)state;
     static const char *const WANT[] = {"gap_01_m", "gap_02_m", "bumper_log10_n_m"};
     DesignOptions o = scene_defaults().design;
     DesignSpace s;
@@ -62,9 +60,8 @@ static void test_a_core_of_given_areas_has_no_thickness_to_search(void **state)
     assert_close(d.bumper[1], 1e8, 1e-12);
 }
 
-static void test_zones_bumpers_and_side_are_columns_after_the_papers(void **state)
+TEST(zones_bumpers_and_side_are_columns_after_the_papers)
 {
-    (void)state;
     static const char *const ONE[] = {"gap_zone_1_m", "gap_zone_2_m",     "t_base_m",
                                       "t_top_m",      "bumper_log10_n_m", "side_m"};
     static const char *const ZONES[] = {"gap_m", "t_base_m", "t_top_m", "bumper_zone_1_log10_n_m",
@@ -78,9 +75,8 @@ static void test_zones_bumpers_and_side_are_columns_after_the_papers(void **stat
     expect_names(&floors, FLOORS, 5);
 }
 
-static void test_every_floor_has_the_gap_and_the_bumper_of_its_zone(void **state)
+TEST(every_floor_has_the_gap_and_the_bumper_of_its_zone)
 {
-    (void)state;
     for (int n = 2; n <= 40; n++)
         for (int zones = 1; zones <= n && zones < 9; zones++) {
             const DesignSpace s = space_of("gaps, thickness, bumper, side", zones, zones, n);
@@ -102,9 +98,8 @@ static void test_every_floor_has_the_gap_and_the_bumper_of_its_zone(void **state
         }
 }
 
-static void test_wrong_variables_are_refused_with_their_key(void **state)
+TEST(wrong_variables_are_refused_with_their_key)
 {
-    (void)state;
     static const char *const LISTS[] = {
         "gaps", "thickness, bumper", "gaps, thickness, bumpr", "gaps,,thickness", "gaps, thickness, symmetric", "none"};
     for (size_t i = 0; i < sizeof LISTS / sizeof LISTS[0]; i++) {
@@ -144,9 +139,8 @@ static SimResult simulate(const SceneOptions *o, const double x[])
     return r;
 }
 
-static void test_a_design_is_simulated_the_same_by_any_variables(void **state)
+TEST(a_design_is_simulated_the_same_by_any_variables)
 {
-    (void)state;
     SceneOptions plain = scene_defaults(), zoned = plain;
     double x[22], z[10] = {0.002, 0.004, 0.008, 0.012, 0.016, 0.012, 0.0064, 9, 8.5, 9.4};
     plain.sim.duration_s = zoned.sim.duration_s = 14;
@@ -184,9 +178,8 @@ static int make_run(void **state)
     return 0;
 }
 
-static void test_every_command_follows_the_variables_of_a_run(void **state)
+TEST(every_command_follows_the_variables_of_a_run)
 {
-    (void)state;
     static const char HEADER[] =
         "id,gap_zone_1_m,gap_zone_2_m,gap_zone_3_m,t_base_m,t_top_m,bumper_log10_n_m,side_m,j1_m,";
     static const char *const COMMANDS[] = {
@@ -216,9 +209,8 @@ static void test_every_command_follows_the_variables_of_a_run(void **state)
     }
 }
 
-static void test_designs_of_other_variables_are_refused(void **state)
+TEST(designs_of_other_variables_are_refused)
 {
-    (void)state;
     Said s;
     run(&s, "simulate configs/quick.ini " SHORT "--design @/run:knee");
     assert_int_not_equal(s.code, 0);
@@ -232,15 +224,5 @@ static void test_designs_of_other_variables_are_refused(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_the_default_is_a_gap_per_floor_and_two_thicknesses),
-        cmocka_unit_test(test_a_core_of_given_areas_has_no_thickness_to_search),
-        cmocka_unit_test(test_zones_bumpers_and_side_are_columns_after_the_papers),
-        cmocka_unit_test(test_every_floor_has_the_gap_and_the_bumper_of_its_zone),
-        cmocka_unit_test(test_wrong_variables_are_refused_with_their_key),
-        cmocka_unit_test(test_a_design_is_simulated_the_same_by_any_variables),
-        cmocka_unit_test(test_every_command_follows_the_variables_of_a_run),
-        cmocka_unit_test(test_designs_of_other_variables_are_refused),
-    };
-    return cmocka_run_group_tests(tests, make_run, clear_place);
+    return RUN_TESTS(make_run, clear_place);
 }

@@ -50,9 +50,8 @@ static void open_window(const Window *w, SceneOptions *s, Motion *m, BenchCase *
     bench_case->duration = w->seconds;
 }
 
-static void test_fine_and_standard_accuracy_are_what_they_promise(void **state)
+TEST(fine_and_standard_accuracy_are_what_they_promise)
 {
-    (void)state;
     static TimedRun reference, fine, standard;
     for (int i = 0; i < WINDOWS_N; i++) {
         SceneOptions s;
@@ -78,9 +77,8 @@ static void test_fine_and_standard_accuracy_are_what_they_promise(void **state)
     }
 }
 
-static void test_peaks_of_a_stiff_building_beside_a_core_are_those_of_fine_accuracy(void **state)
+TEST(peaks_of_a_stiff_building_beside_a_core_are_those_of_fine_accuracy)
 {
-    (void)state;
     static TimedRun fine, standard;
     for (int stiffer = 5; stiffer <= STIFFEST; stiffer *= 4) {
         SceneOptions s;
@@ -106,9 +104,5 @@ static void test_peaks_of_a_stiff_building_beside_a_core_are_those_of_fine_accur
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_peaks_of_a_stiff_building_beside_a_core_are_those_of_fine_accuracy),
-        cmocka_unit_test(test_fine_and_standard_accuracy_are_what_they_promise),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return RUN_TESTS(NULL, NULL);
 }
