@@ -30,7 +30,8 @@ typedef enum {
 typedef enum {
     SUB_NONE,
     SUB_DAMAGED,   /* a run's database that is not what was written */
-    SUB_NO_RUN,    /* ... that is empty, or none of a run */
+    SUB_NO_RUN,    /* ... that is none of a run */
+    SUB_EMPTY,     /* ... of no bytes */
     SUB_RAGGED,    /* a line of a table with another number of cells than those above */
     SUB_NO_NUMBER, /* a cell that is no number */
     SUB_NO_RECORD, /* a file that holds no acceleration */

@@ -185,15 +185,15 @@ static Status write_csv(const Run *run, const Picks *p, const char *path, Err *e
 {
     Output o;
     TRY(output_open(&o, path, err));
-    export_front_header(o.stream, &run->schema);
+    size_t n = 0, rows[PICKS_MAX];
     for (size_t i = 0; i < p->n; i++) {
         size_t before = 0;
-        while (before < i && p->pick[before].row != p->pick[i].row)
+        while (before < n && rows[before] != p->pick[i].row)
             before++;
-        if (before == i)
-            export_design(o.stream, run, p->pick[i].row);
+        if (before == n)
+            rows[n++] = p->pick[i].row;
     }
-    return output_close(&o, err);
+    return output_end(&o, export_designs(o.stream, run, EXPORT_FRONT, n, rows, err), err);
 }
 
 static json_t *json_values(size_t n, const Column columns[], const double values[])

@@ -13,44 +13,35 @@ static Status write_selected(const Args *args, const Run *run, FILE *f, Err *err
     size_t *rows = calloc((size_t)wanted, sizeof *rows);
     if (!rows)
         return fail(err, STATUS_NO_MEMORY, "no memory for %ld designs", wanted);
-    const size_t n = run_spread_out(run, (size_t)wanted, 1, rows);
-    export_front_header(f, &run->schema);
-    for (size_t i = 0; i < n; i++)
-        export_design(f, run, rows[i]);
+    const Status status = export_designs(f, run, EXPORT_FRONT, run_spread_out(run, (size_t)wanted, 1, rows), rows, err);
     free(rows);
-    return STATUS_OK;
-}
-
-static Status select_designs(const Args *args, FILE *f, Err *err)
-{
-    Run run;
-    TRY(run_read(&run, args->operand, err));
-    const Status status = write_selected(args, &run, f, err);
-    run_free(&run);
     return status;
 }
 
-/* Variables go from the database to the table as they are stored: they need no memory. */
-static Status write_table(const Args *args, Err *err)
+static Status write_table(const Args *args, const Run *run, Err *err)
 {
     Output o;
     TRY(output_open(&o, args_value(args, "--csv"), err));
-    const Status status = args_has(args, "--select") ? select_designs(args, o.stream, err)
+    const Status status = args_has(args, "--select") ? write_selected(args, run, o.stream, err)
                           : args_has(args, "--all")
-                              ? run_print_evaluations(args->operand, export_evaluations_header, o.stream, err)
-                              : export_front_of(o.stream, args->operand, err);
+                              ? export_designs(o.stream, run, EXPORT_ALL, run->table.n, NULL, err)
+                              : export_designs(o.stream, run, EXPORT_FRONT, run->n_front, run->front, err);
     return output_end(&o, status, err);
 }
 
 static Status run(const Args *args, Err *err)
 {
+    Run run;
     if (!args_has(args, "--csv") && !args_has(args, "--json"))
         return fail(err, STATUS_USAGE, "--csv FILE is missing: where the table goes (or --json)");
     if (args_has(args, "--all") && args_has(args, "--select"))
         return fail(err, STATUS_USAGE, "--all and --select: every design, or some of the front; choose one");
-    if (args_has(args, "--json"))
-        TRY(export_json_of(stdout, args->operand, err));
-    return args_has(args, "--csv") ? write_table(args, err) : STATUS_OK;
+    TRY(run_read(&run, args->operand, err));
+    Status status = args_has(args, "--json") ? export_json(stdout, &run, err) : STATUS_OK;
+    if (status == STATUS_OK && args_has(args, "--csv"))
+        status = write_table(args, &run, err);
+    run_free(&run);
+    return status;
 }
 
 static const ArgOption OPTIONS[] = {

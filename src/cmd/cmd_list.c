@@ -17,7 +17,7 @@ static void list_run(const char *name, const char *folder, json_t *list)
     Run run;
     Standing s;
     Err err = {0};
-    if (run_read_part(&run, folder, RUN_RESULTS, &err) != STATUS_OK) {
+    if (run_read(&run, folder, &err) != STATUS_OK) {
         if (list)
             json_array_append_new(list, json_pack("{s:o, s:s, s:o}", "run", json_words(folder), "state", "unreadable",
                                                   "reason", json_words(err.text)));

@@ -11,7 +11,7 @@
 #include "cmd/signals.h"
 #include "cmd/warnings.h"
 #include "settings/settings.h"
-#include "store/nearest.h"
+#include "store/export.h"
 #include "store/run_read.h"
 #include "study/improvement.h"
 #include "study/output_place.h"
@@ -169,15 +169,15 @@ static void print_nearest(const Run *run, size_t n, const size_t rows[])
 static Status report_no_front(const Run *run, const StudySummary *summary, Err *err)
 {
     size_t rows[NEAREST_MAX];
-    const size_t n = nearest_rows(run, rows);
+    const size_t n = run_nearest(run, rows);
     const int is_whole = run->settings->search.fidelity == FIDELITY_OFF, none_succeeded = n == 0 && run->table.n > 0;
-    TRY(nearest_write(summary->folder, run, n, rows, err));
+    TRY(export_nearest(summary->folder, run, n, rows, err));
     if (none_succeeded && is_whole)
         return fail(err, STATUS_INTERNAL,
-                    "none of %zu simulations succeeded; the first: %s; %s/evaluations.csv has all",
+                    "none of %zu simulations succeeded; the first: %s; `imtet export %s --all --csv FILE` has all",
                     summary->n_simulated, run->table.row[0].reason, summary->folder);
     if (none_succeeded || strcmp(run->settings->search.limits, "none") == 0)
-        return fail(err, STATUS_INTERNAL, "%s; %s/evaluations.csv says why",
+        return fail(err, STATUS_INTERNAL, "%s; `imtet export %s --all --csv FILE` says why",
                     is_whole ? "every design failed at least once" : "no evaluation of a design as a whole succeeded",
                     summary->folder);
     printf("nearest: %s/nearest.csv\n%zu simulated designs, %zu simulations failed, %.1f s (%s)\n\n", summary->folder,
@@ -191,7 +191,7 @@ static Status report(const Run *run, const StudySummary *summary, Err *err)
 {
     if (summary->n_front == 0)
         return report_no_front(run, summary, err);
-    TRY(nearest_write(summary->folder, NULL, 0, NULL, err));
+    TRY(export_nearest(summary->folder, NULL, 0, NULL, err));
     printf("front: %s/front.csv\n%zu nondominated of %zu simulated designs, %zu simulations failed, %.1f s (%s)\n",
            summary->folder, run->n_front, summary->n_simulated, summary->n_failed, summary->seconds,
            stop_reason_words(summary->stopped));
@@ -199,9 +199,9 @@ static Status report(const Run *run, const StudySummary *summary, Err *err)
     TRY(improvement_expected(run, &expected, err));
     show_expected_gain(expected);
     putchar('\n');
-    if (summary->n_repeats > 0)
+    if (run->n_repeats > 0)
         printf("%zu of the simulations repeat a design, to average the noise (search.replicate_share)\n\n",
-               summary->n_repeats);
+               run->n_repeats);
     if (summary->n_screened > 0) {
         char text[SCREENING_WORDS];
         screening_words(summary, text);
@@ -325,7 +325,8 @@ static const ArgOption OPTIONS[] = {
     OPTIONS_MOTION,
     {"--out", "DIR", "run.out", 0, "the run's folder; a run that it holds is resumed"},
     {"--new", NULL, NULL, 0, "a new run in any case: a number is added to a folder that holds one"},
-    {"--force-settings", NULL, NULL, 0, "resume with other limits (simulations, generations, hours)"},
+    {"--force-settings", NULL, NULL, 0,
+     "resume with lower limits (simulations, generations, hours); greater ones need no word"},
     {"--seed", "N", "search.seed", 0, "same seed, same settings: same front"},
     {"--threads", "N", "search.threads", 0, "0: one per processor"},
     {"--max-evals", "N", "search.max_evals", 0, "stop after so many simulations"},
@@ -343,7 +344,7 @@ const Command CMD_OPTIMIZE = {
     .example = "imtet optimize configs/quick.ini",
     .details =
         "Searches gaps and core thicknesses for the nondominated designs in search.objectives, and\n"
-        "writes them to DIR/front.csv generation by generation (results/README.md explains every file and\n"
+        "writes them to DIR/front.csv at its end, however it ends (results/README.md explains every file and\n"
         "column). A run that is there already is resumed, with the same result as if it had never stopped; its\n"
         "settings must be the same. `imtet optimize RUN` resumes a run with its own settings. Ctrl-C, SIGTERM and\n"
         "--max-hours store everything and end with status 75; a second signal, 0.2 s later or more, ends at\n"

@@ -214,7 +214,7 @@ static Status run(const Args *args, Err *err)
 {
     Run run;
     Standing standing;
-    TRY(run_read_part(&run, args->operand, RUN_REVIEWED, err));
+    TRY(run_read(&run, args->operand, err));
     standing_of(&standing, args->operand, &run);
     const Failures failures = failures_of(&run);
     double expected = NAN;

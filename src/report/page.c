@@ -28,18 +28,6 @@ static Status write_json(json_t *all, FILE *out, Err *err)
     return STATUS_OK;
 }
 
-/* One line per design as in front.csv: id, variables, objectives, limited results. */
-static void write_rows(const Report *r, FILE *out)
-{
-    const Run *run = r->run;
-    for (size_t i = 0; i < r->n_shown; i++) {
-        const size_t row = r->shown[i];
-        fprintf(out, "%ld", run->table.row[row].id);
-        export_numbers(out, run, row);
-        fputc('\n', out);
-    }
-}
-
 static Status write_page(const Report *r, const char *start, const char *end, FILE *out, Err *err)
 {
     const char *mark = memmem(start, (size_t)(end - start), MARK, sizeof MARK - 1);
@@ -49,7 +37,7 @@ static Status write_page(const Report *r, const char *start, const char *end, FI
     fputs("<script type=\"application/json\" id=\"run\">", out);
     TRY(write_json(report_json(r), out, err));
     fputs("</script>\n<script type=\"text/plain\" id=\"rows\">\n", out);
-    write_rows(r, out);
+    TRY(export_designs(out, r->run, EXPORT_PAGE, r->n_shown, r->shown, err));
     fputs("</script>\n", out);
     mark += sizeof MARK - 1;
     fwrite(mark, 1, (size_t)(end - mark), out);

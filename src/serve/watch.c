@@ -10,7 +10,7 @@
 #include <sys/stat.h>
 
 #include "base/clock.h"
-#include "store/lock.h"
+#include "store/folder.h"
 #include "store/run_read.h"
 
 enum { RUNS_MAX = 500 };

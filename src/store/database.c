@@ -18,26 +18,36 @@ enum { BUSY_MS = 3000, SHARED_BUSY_MS = 60000, KEPT_STATEMENTS = 12 };
 struct Database {
     sqlite3 *db;
     char path[PATH_MAX];
-    int format;
     int is_shared;                       /* with other machines: no WAL */
     sqlite3_stmt *kept[KEPT_STATEMENTS]; /* prepared, the one used last first */
     dev_t device; /* of the file that was opened for writing, and its number there; 0: none was */
     ino_t file;
 };
 
-int database_format(const Database *d)
-{
-    return d->format;
-}
-
-void database_set_format(Database *d, int format)
-{
-    d->format = format;
-}
-
 const char *database_path(const Database *d)
 {
     return d->path;
+}
+
+int database_in_transaction(const Database *d)
+{
+    return sqlite3_get_autocommit(d->db) == 0;
+}
+
+const char *column_text(sqlite3_stmt *row, int column)
+{
+    const char *text = (const char *)sqlite3_column_text(row, column);
+    return text ? text : "";
+}
+
+double column_number(sqlite3_stmt *row, int column)
+{
+    return sqlite3_column_type(row, column) == SQLITE_NULL ? NAN : sqlite3_column_double(row, column);
+}
+
+long column_whole(sqlite3_stmt *row, int column, long otherwise)
+{
+    return sqlite3_column_type(row, column) == SQLITE_NULL ? otherwise : (long)sqlite3_column_int64(row, column);
 }
 
 /* -- faults -------------------------------------------------------------------------------------------------------- */
@@ -57,9 +67,10 @@ static Status explain(const char *path, int code, const char *said, Err *err)
     case SQLITE_LOCKED:
         return fail(err, STATUS_IO, "%s: is busy: another program has kept it locked for %d s", path, BUSY_MS / 1000);
     case SQLITE_CORRUPT:
-        return fail(err, STATUS_IO, "%s: is damaged (%s); `sqlite3 FILE .recover` saves what can be read", path, said);
+        return fail_sub(err, STATUS_IO, SUB_DAMAGED,
+                        "%s: is damaged (%s); `sqlite3 FILE .recover` saves what can be read", path, said);
     case SQLITE_NOTADB:
-        return fail(err, STATUS_IO, "%s: is no database of a run", path);
+        return fail_sub(err, STATUS_IO, SUB_NO_RUN, "%s: is no database of a run", path);
     case SQLITE_CANTOPEN:
         return fail(err, STATUS_IO, "%s: cannot be opened: %s", path, said);
     default:
@@ -70,6 +81,16 @@ static Status explain(const char *path, int code, const char *said, Err *err)
 static Status complain(const Database *d, Err *err)
 {
     return explain(d->path, sqlite3_extended_errcode(d->db), sqlite3_errmsg(d->db), err);
+}
+
+Status database_damaged(const Database *d, Err *err, const char *format, ...)
+{
+    char what[200];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(what, sizeof what, format, args);
+    va_end(args);
+    return fail_sub(err, STATUS_IO, SUB_DAMAGED, "%s: is damaged: %s", d->path, what);
 }
 
 /* -- statements ---------------------------------------------------------------------------------------------------- */
@@ -95,7 +116,7 @@ static int bind_value(sqlite3_stmt *s, int i, char type, va_list *values)
 }
 
 /* The statement moves to the front; the one that was not used for longest goes. */
-static int take_statement(Database *d, const char *sql, sqlite3_stmt **s)
+Status database_statement(Database *d, const char *sql, sqlite3_stmt **s, Err *err)
 {
     size_t i = 0;
     while (i < KEPT_STATEMENTS - 1 && d->kept[i] && strcmp(sqlite3_sql(d->kept[i]), sql) != 0)
@@ -108,7 +129,7 @@ static int take_statement(Database *d, const char *sql, sqlite3_stmt **s)
     const int code = *s ? SQLITE_OK : sqlite3_prepare_v2(d->db, sql, -1, s, NULL);
     memmove(d->kept + 1, d->kept, i * sizeof *d->kept);
     d->kept[0] = *s;
-    return code;
+    return code == SQLITE_OK ? STATUS_OK : complain(d, err);
 }
 
 static void forget_statements(Database *d)
@@ -119,27 +140,32 @@ static void forget_statements(Database *d)
     }
 }
 
-Status database_do(Database *d, Err *err, const char *sql, const char *types, ...)
+Status database_run(Database *d, sqlite3_stmt *s, Err *err)
 {
-    sqlite3_stmt *s = NULL;
-    if (!types[0])
-        return sqlite3_exec(d->db, sql, NULL, NULL, NULL) == SQLITE_OK ? STATUS_OK : complain(d, err);
-    int code = take_statement(d, sql, &s);
-    va_list values;
-    va_start(values, types);
-    for (int i = 0; code == SQLITE_OK && types[i]; i++)
-        code = bind_value(s, i + 1, types[i], &values);
-    va_end(values);
-    if (code == SQLITE_OK)
-        code = sqlite3_step(s);
-    const Status status = code == SQLITE_DONE || code == SQLITE_ROW ? STATUS_OK : complain(d, err);
-    if (status != STATUS_OK) {
+    const int code = sqlite3_step(s);
+    if (code != SQLITE_DONE && code != SQLITE_ROW) {
+        const Status status = complain(d, err);
         forget_statements(d);
         return status;
     }
     sqlite3_reset(s);
     sqlite3_clear_bindings(s);
-    return status;
+    return STATUS_OK;
+}
+
+Status database_do(Database *d, Err *err, const char *sql, const char *types, ...)
+{
+    sqlite3_stmt *s;
+    int code = SQLITE_OK;
+    if (!types[0])
+        return sqlite3_exec(d->db, sql, NULL, NULL, NULL) == SQLITE_OK ? STATUS_OK : complain(d, err);
+    TRY(database_statement(d, sql, &s, err));
+    va_list values;
+    va_start(values, types);
+    for (int i = 0; code == SQLITE_OK && types[i]; i++)
+        code = bind_value(s, i + 1, types[i], &values);
+    va_end(values);
+    return code == SQLITE_OK ? database_run(d, s, err) : complain(d, err);
 }
 
 Status database_each(Database *d, const char *sql, DatabaseRowFn take, void *user, Err *err)
@@ -238,25 +264,11 @@ static Status take_word(sqlite3_stmt *row, void *user, Err *err)
     return STATUS_OK;
 }
 
-static Status check_format(Database *d, double format, Err *err)
-{
-    d->format = (int)format;
-    if (format > DATABASE_FORMAT)
-        return fail(err, STATUS_IO, "%s: has format %g, this program reads %d; a newer imtet wrote it", d->path, format,
-                    DATABASE_FORMAT);
-    if (format < DATABASE_FORMAT_OLDEST)
-        return fail(err, STATUS_IO,
-                    "%s: has format %g, this program reads %d; an older imtet wrote it: only that one can resume "
-                    "it, its front.csv and settings.ini can be read by anyone",
-                    d->path, format, DATABASE_FORMAT);
-    return STATUS_OK;
-}
-
 /* A view or a virtual table in the place of a table could compute rows without end. */
 static Status check_tables(Database *d, Err *err)
 {
-    static const char FOREIGN[] = "SELECT count(*) FROM sqlite_schema WHERE name <> 'designs' AND (type NOT IN "
-                                  "('table', 'index') OR coalesce(rootpage, 0) < 2 OR sql LIKE '%virtual%')";
+    static const char FOREIGN[] = "SELECT count(*) FROM sqlite_schema WHERE type <> 'table' OR "
+                                  "coalesce(rootpage, 0) < 2 OR sql LIKE '%virtual%'";
     double n;
     TRY(database_number(d, FOREIGN, 0, &n, err));
     return n == 0 ? STATUS_OK
@@ -271,8 +283,12 @@ static Status check(Database *d, DatabaseMode mode, Err *err)
     TRY(database_number(d, "PRAGMA application_id", 0, &application, err));
     TRY(database_number(d, "PRAGMA user_version", 0, &format, err));
     if (application != DATABASE_APPLICATION)
-        return fail(err, STATUS_IO, "%s: is no database of a run", d->path);
-    TRY(check_format(d, format, err));
+        return fail_sub(err, STATUS_IO, SUB_NO_RUN, "%s: is no database of a run", d->path);
+    if (format != DATABASE_FORMAT)
+        return fail(err, STATUS_IO,
+                    "%s: has format %g, this program reads %d; %s imtet wrote it: only that one can resume it, its "
+                    "front.csv and settings.ini can be read by anyone",
+                    d->path, format, DATABASE_FORMAT, format > DATABASE_FORMAT ? "a newer" : "an older");
     TRY(check_tables(d, err));
     TRY(database_each(d, mode == DATABASE_WRITE ? "PRAGMA integrity_check(1)" : "PRAGMA quick_check(1)", take_word,
                       word, err));
@@ -375,7 +391,7 @@ Status database_open(Database **out, const char *path, DatabaseMode mode, Err *e
     if (!S_ISREG(there.st_mode))
         return fail(err, STATUS_IO, "%s: is no file", path);
     if (there.st_size == 0)
-        return fail(err, STATUS_IO, "%s: is empty, no database of a run", path);
+        return fail_sub(err, STATUS_IO, SUB_EMPTY, "%s: is empty, no database of a run", path);
     TRY(open_file(out, path, real_path(path, real),
                   mode == DATABASE_WRITE ? SQLITE_OPEN_READWRITE : SQLITE_OPEN_READONLY, err));
     bound_rows(*out);

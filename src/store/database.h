@@ -24,8 +24,7 @@
 
 enum {
     DATABASE_APPLICATION = 0x494d5445 /* "IMTE" */,
-    DATABASE_FORMAT = 3,       /* raised with every change of the tables */
-    DATABASE_FORMAT_OLDEST = 2 /* that is still read; tables_upgrade makes the present one of it */
+    DATABASE_FORMAT = 4 /* raised with every change of the tables */
 };
 
 typedef struct Database Database;
@@ -38,8 +37,11 @@ Status database_open(Database **out, const char *path, DatabaseMode mode, Err *e
 void database_grow(Database *d);  /* what was there is read: from here on rows may be longer than the file was */
 void database_close(Database *d); /* NULL is fine; what was committed is on the disk already */
 const char *database_path(const Database *d);
-int database_format(const Database *d); /* of the file when it was opened, or since database_set_format */
-void database_set_format(Database *d, int format);
+
+/* A full disk or refused memory makes SQLite roll the whole transaction back by itself: asked after every fault. */
+int database_in_transaction(const Database *d);
+/* "FILE: is damaged: ...", STATUS_IO with SUB_DAMAGED. */
+__attribute__((format(printf, 3, 4))) Status database_damaged(const Database *d, Err *err, const char *format, ...);
 
 /* The file and its journal are still where they were opened. If not: STATUS_IO, after what the database holds was put back
  * where it was removed. Not within a transaction. */
@@ -52,11 +54,20 @@ void database_remove_journal(const char *path);
  * (not finite: NULL), t text (NULL: NULL), b bytes (const void *, size_t). */
 Status database_do(Database *d, Err *err, const char *sql, const char *types, ...);
 
+/* A statement that is kept prepared, its values bound by the caller, and done: no rows. */
+Status database_statement(Database *d, const char *sql, sqlite3_stmt **s, Err *err);
+Status database_run(Database *d, sqlite3_stmt *s, Err *err);
+
 /* `take` gets every row; a status that is not ok ends it. */
 typedef Status (*DatabaseRowFn)(sqlite3_stmt *row, void *user, Err *err);
 Status database_each(Database *d, const char *sql, DatabaseRowFn take, void *user, Err *err);
 
 /* The first column of the first row, or `otherwise` where there is none. */
 Status database_number(Database *d, const char *sql, double otherwise, double *value, Err *err);
+
+/* Columns of a row. */
+const char *column_text(sqlite3_stmt *row, int column);           /* NULL: "" */
+double column_number(sqlite3_stmt *row, int column);              /* NULL: NAN */
+long column_whole(sqlite3_stmt *row, int column, long otherwise); /* NULL: otherwise */
 
 #endif

@@ -1,140 +1,249 @@
 #include "store/export.h"
 
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
 
 #include "base/json.h"
-#include "store/output.h"
-#include "store/rows.h"
-#include "store/run_read.h"
 #include "settings/settings.h"
+#include "store/output.h"
 
-/* Variables and the first n results. */
-static void put_names(FILE *f, const char *before, const Schema *schema, size_t n)
+/* -- one design ---------------------------------------------------------------------------------------------------- */
+
+typedef enum {
+    PART_END,
+    PART_ID,
+    PART_ORIGIN,
+    PART_VIOLATION,
+    PART_X,
+    PART_F,
+    PART_MEANS,
+    PART_LIMITED,
+    PART_EXTRA,
+    PART_SD
+} Part;
+
+static const Part PARTS[][6] = {
+    [EXPORT_FRONT] = {PART_ID, PART_X, PART_MEANS, PART_LIMITED, PART_SD},
+    [EXPORT_ALL] = {PART_ID, PART_ORIGIN, PART_X, PART_F, PART_EXTRA},
+    [EXPORT_NEAREST] = {PART_ID, PART_VIOLATION, PART_X, PART_MEANS, PART_LIMITED},
+    [EXPORT_PAGE] = {PART_ID, PART_X, PART_MEANS, PART_LIMITED},
+};
+
+static void put_names(FILE *f, size_t n, const Column columns[], const char *end)
+{
+    for (size_t c = 0; c < n; c++)
+        fprintf(f, ",%s%s", columns[c].name, end);
+}
+
+static void put_heads(FILE *f, const Schema *s, Part part)
+{
+    switch (part) {
+    case PART_ID:
+        fputs("id", f);
+        break;
+    case PART_ORIGIN:
+        fputs(",generation,kind,outcome,reason", f);
+        break;
+    case PART_VIOLATION:
+        fputs(",violation", f);
+        break;
+    case PART_X:
+        put_names(f, s->n_var, s->column, "");
+        break;
+    case PART_F:
+    case PART_MEANS:
+        put_names(f, s->n_obj, schema_objective(s, 0), "");
+        break;
+    case PART_LIMITED:
+        for (size_t k = 0; k < s->n_limited; k++)
+            put_names(f, 1, schema_extra(s, s->limited[k]), "");
+        break;
+    case PART_EXTRA:
+        put_names(f, s->n_extra, schema_extra(s, 0), "");
+        break;
+    case PART_SD:
+        put_names(f, s->has_spread ? s->n_obj : 0, schema_objective(s, 0), "_sd");
+        fputs(s->has_spread ? ",replicates" : "", f);
+        break;
+    case PART_END:
+        break;
+    }
+}
+
+static void put_cells(FILE *f, const Run *run, size_t row, Part part)
+{
+    const Schema *s = &run->schema;
+    const Evaluation *e = &run->table.row[row];
+    double values[N_MEASURES];
+    switch (part) {
+    case PART_ID:
+        fprintf(f, "%ld", e->id);
+        break;
+    case PART_ORIGIN:
+        fprintf(f, ",%ld,%s,%s,%s", e->generation, kind_word(e->kind), outcome_word(e->outcome), e->reason);
+        break;
+    case PART_VIOLATION:
+        print_cells(f, 1, &e->violation);
+        break;
+    case PART_X:
+        print_cells(f, s->n_var, e->x);
+        break;
+    case PART_F:
+        print_cells(f, s->n_obj, e->f);
+        break;
+    case PART_MEANS:
+        print_cells(f, s->n_obj, run_f(run, row));
+        break;
+    case PART_LIMITED:
+        schema_limited(s, e->extra, values);
+        print_cells(f, s->n_limited, values);
+        break;
+    case PART_EXTRA:
+        print_cells(f, s->n_extra, e->extra);
+        break;
+    case PART_SD:
+        print_cells(f, s->has_spread ? s->n_obj : 0, e->sd);
+        if (s->has_spread)
+            print_cells(f, 1, &(double){e->replicates > 0 ? (double)e->replicates : (double)NAN});
+        break;
+    case PART_END:
+        break;
+    }
+}
+
+static void put_list(FILE *f, const char *key, size_t n, const double values[])
+{
+    size_t k = 0;
+    while (k < n && !isfinite(values[k]))
+        k++;
+    fputs(key, f);
+    if (k < n)
+        print_list(f, n, values);
+    else
+        fputs("null", f);
+}
+
+/* One value behind its separator. */
+static int put_value(FILE *f, const char *before, json_t *value)
 {
     fputs(before, f);
-    for (size_t c = 0; c < schema->n_var + n; c++)
-        fprintf(f, ",%s", schema->column[c].name);
+    const int failed = json_dumpf(value, f, JSON_COMPACT | JSON_ENCODE_ANY | JSON_REAL_PRECISION(17));
+    json_decref(value);
+    return failed;
 }
 
-void export_names(FILE *f, const char *before, const Schema *schema)
+static int put_object(FILE *f, const Run *run, size_t i)
 {
-    put_names(f, before, schema, schema->n_obj);
-    for (size_t k = 0; k < schema->n_limited; k++)
-        fprintf(f, ",%s", schema_extra(schema, schema->limited[k])->name);
-}
-
-void export_front_header(FILE *f, const Schema *schema)
-{
-    export_names(f, "id", schema);
-    for (size_t k = 0; schema->has_spread && k < schema->n_obj; k++)
-        fprintf(f, ",%s_sd", schema_objective(schema, k)->name);
-    fputs(schema->has_spread ? ",replicates\n" : "\n", f);
-}
-
-static void put_limited(FILE *f, const Schema *schema, const double extra[])
-{
-    double values[N_MEASURES];
-    schema_limited(schema, extra, values);
-    print_cells(f, schema->n_limited, values);
-}
-
-void export_numbers(FILE *f, const Run *run, size_t row)
-{
-    print_cells(f, run->schema.n_var, run_x(run, row));
-    print_cells(f, run->schema.n_obj, run_f(run, row));
-    put_limited(f, &run->schema, run->table.row[row].extra);
-}
-
-static void put_results(FILE *f, const Schema *schema, const Evaluation *e, const double means[])
-{
-    print_cells(f, schema->n_obj, means);
-    put_limited(f, schema, e->extra);
-    if (schema->has_spread) {
-        print_cells(f, schema->n_obj, e->sd);
-        fputc(',', f);
-        if (e->replicates > 0)
-            fprintf(f, "%d", e->replicates);
-    }
-    fputc('\n', f);
-}
-
-void export_design_as(FILE *f, const Schema *schema, const Evaluation *e, const double means[])
-{
-    fprintf(f, "%ld", e->id);
-    print_cells(f, schema->n_var, e->x);
-    put_results(f, schema, e, means);
-}
-
-void export_design(FILE *f, const Run *run, size_t row)
-{
-    export_design_as(f, &run->schema, &run->table.row[row], run_f(run, row));
-}
-
-void export_front(FILE *f, const Run *run)
-{
-    export_front_header(f, &run->schema);
-    for (size_t i = 0; i < run->n_front; i++)
-        export_design(f, run, run->front[i]);
-}
-
-static Status no_number(const Run *run, size_t row, Err *err)
-{
-    return fail(err, STATUS_IO, "%s: is damaged: a number of evaluation %ld cannot be read", run->folder,
-                run->table.row[row].id);
-}
-
-static Status begin_front(const Run *run, void *f, Err *err)
-{
-    (void)err;
-    export_front_header(f, &run->schema);
-    return STATUS_OK;
-}
-
-static Status visit_front(const Run *run, size_t row, const RowNumbers *stored, void *f, Err *err)
-{
-    Evaluation e = run->table.row[row];
-    double extra[N_MEASURES];
+    const Evaluation *e = &run->table.row[i];
     const Schema *s = &run->schema;
-    /* else means, deviations or some of the further results are wanted */
-    const int as_stored = !s->has_spread && s->n_limited == 0 && run->F == run->table.f;
-    if (!run->place[row].on_front)
-        return STATUS_OK;
-    fprintf(f, "%ld", e.id);
-    if (stored->x[0] != '[' || !rows_put_texts(f, stored->x, s->n_var, ",", "") ||
-        !(as_stored ? rows_put_texts(f, stored->f, s->n_obj, ",", "")
-                    : rows_numbers(stored->extra, 0, s->n_extra, e.extra = extra)))
-        return no_number(run, row, err);
-    if (as_stored)
-        fputc('\n', f);
-    else
-        put_results(f, s, &e, run_f(run, row));
-    return STATUS_OK;
-}
-
-Status export_front_of(FILE *f, const char *folder, Err *err)
-{
-    static const RunVisitor VISITOR = {begin_front, visit_front, NULL};
-    return run_visit(folder, &VISITOR, f, err);
-}
-
-void export_evaluations_header(FILE *f, const Schema *schema)
-{
-    put_names(f, "id,generation,kind,outcome,reason", schema, schema->n_obj + schema->n_extra);
-    fputc('\n', f);
-}
-
-void export_evaluations(FILE *f, const EvaluationTable *t)
-{
-    for (size_t i = 0; i < t->n; i++) {
-        const Evaluation *e = &t->row[i];
-        if (e->kind == KIND_UNFINISHED)
-            continue;
-        fprintf(f, "%ld,%ld,%s,%s,%s", e->id, e->generation, kind_word(e->kind), outcome_word(e->outcome), e->reason);
-        print_cells(f, t->n_var, e->x);
-        print_cells(f, t->n_obj, e->f);
-        print_cells(f, t->n_extra, e->extra);
-        fputc('\n', f);
+    fprintf(f, "%s{\"id\":%ld,\"generation\":%ld,\"kind\":\"%s\",\"outcome\":\"%s\"", i == 0 ? "\n" : ",\n", e->id,
+            e->generation, kind_word(e->kind), outcome_word(e->outcome));
+    const int failed = put_value(f, ",\"reason\":", json_words(e->reason));
+    fputs(",\"x\":", f);
+    print_list(f, s->n_var, e->x);
+    put_list(f, ",\"f\":", s->n_obj, e->f);
+    fputs(run->place[i].on_front ? ",\"on_front\":true" : ",\"on_front\":false", f);
+    put_list(f, ",\"sd\":", s->n_obj, e->sd);
+    if (e->replicates > run->settings->sim.replicates)
+        put_list(f, ",\"mean\":", s->n_obj, run_f(run, i));
+    if (s->has_spread)
+        fprintf(f, ",\"replicates\":%d", e->replicates);
+    if (s->n_extra > 0) {
+        fputs(",\"measures\":", f);
+        print_list(f, s->n_extra, e->extra);
     }
+    fputc('}', f);
+    return failed;
+}
+
+/* -- many ---------------------------------------------------------------------------------------------------------- */
+
+typedef struct {
+    const Run *run;
+    const Part *parts; /* NULL: objects of JSON */
+    const size_t *rows;
+} Many;
+
+static int put_some(FILE *f, const Many *m, size_t first, size_t end)
+{
+    int failed = 0;
+    for (size_t i = first; i < end; i++) {
+        const size_t row = m->rows ? m->rows[i] : i;
+        if (!m->parts)
+            failed |= put_object(f, m->run, row);
+        for (const Part *p = m->parts; p && *p; p++)
+            put_cells(f, m->run, row, *p);
+        if (m->parts)
+            fputc('\n', f);
+    }
+    return failed;
+}
+
+static int put_block(char **text, size_t *length, const Many *m, size_t first, size_t end)
+{
+    FILE *f = open_memstream(text, length);
+    const int failed = !f || put_some(f, m, first, end);
+    return (f && fclose(f) != 0) || failed;
+}
+
+/* Numbers become text in blocks, by all threads. */
+static Status put_all(FILE *f, const Many *m, size_t n, Err *err)
+{
+    enum { BLOCK = 2048 };
+    int failed = n <= BLOCK && put_some(f, m, 0, n);
+#pragma omp parallel for ordered schedule(static, 1) if (n > BLOCK)
+    for (size_t first = 0; first < (n > BLOCK ? n : 0); first += BLOCK) {
+        char *text = NULL;
+        size_t length = 0;
+        const int fault = put_block(&text, &length, m, first, first + BLOCK < n ? first + BLOCK : n);
+#pragma omp ordered
+        {
+            failed |= fault;
+            if (text)
+                fwrite(text, 1, length, f);
+        }
+        free(text);
+    }
+    return failed ? fail(err, STATUS_NO_MEMORY, "no memory for a table of %zu designs", n) : STATUS_OK;
+}
+
+Status export_designs(FILE *f, const Run *run, ExportTable table, size_t n, const size_t rows[], Err *err)
+{
+    const Part *parts = PARTS[table];
+    for (const Part *p = parts; table != EXPORT_PAGE && *p; p++)
+        put_heads(f, &run->schema, *p);
+    if (table != EXPORT_PAGE)
+        fputc('\n', f);
+    return put_all(f, &(Many){run, parts, rows}, n, err);
+}
+
+/* -- files of the run's folder ------------------------------------------------------------------------------------- */
+
+static Status write_inside(const char *folder, const char *name, const Run *run, ExportTable table, size_t n,
+                           const size_t rows[], Err *err)
+{
+    char path[PATH_MAX + 16];
+    Output o;
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    TRY(output_open_inside(&o, path, err));
+    return output_end(&o, export_designs(o.stream, run, table, n, rows, err), err);
+}
+
+Status export_front(const Run *run, Err *err)
+{
+    return write_inside(run->folder, "front.csv", run, EXPORT_FRONT, run->n_front, run->front, err);
+}
+
+Status export_nearest(const char *folder, const Run *run, size_t n, const size_t rows[], Err *err)
+{
+    char path[PATH_MAX + 16];
+    snprintf(path, sizeof path, "%s/nearest.csv", folder);
+    if (n > 0)
+        return write_inside(folder, "nearest.csv", run, EXPORT_NEAREST, n, rows, err);
+    unlink(path);
+    return STATUS_OK;
 }
 
 /* -- JSON ---------------------------------------------------------------------------------------------------------- */
@@ -168,74 +277,6 @@ static json_t *json_columns(const Schema *schema)
     return list;
 }
 
-static Status not_put(FILE *f, Err *err)
-{
-    return ferror(f) ? fail(err, STATUS_IO, "standard output: cannot be written")
-                     : fail(err, STATUS_NO_MEMORY, "no memory for the run as JSON");
-}
-
-/* One value behind its separator; a line each, so that a run of any size needs no memory here. */
-static int put_value(FILE *f, const char *before, json_t *value)
-{
-    fputs(before, f);
-    const int failed = json_dumpf(value, f, JSON_COMPACT | JSON_ENCODE_ANY | JSON_REAL_PRECISION(17));
-    json_decref(value);
-    return failed;
-}
-
-static int is_any_known(size_t n, const double values[])
-{
-    size_t k = 0;
-    while (k < n && !isfinite(values[k]))
-        k++;
-    return k < n;
-}
-
-static void put_list(FILE *f, const char *key, size_t n, const double values[], int known)
-{
-    fputs(key, f);
-    if (known)
-        print_list(f, n, values);
-    else
-        fputs("null", f);
-}
-
-/* Numbers in the fewest digits that read back as the same, as they are stored. */
-static Status visit_evaluation(const Run *run, size_t i, const RowNumbers *stored, void *user, Err *err)
-{
-    FILE *f = user;
-    const Evaluation *e = &run->table.row[i];
-    const Schema *s = &run->schema;
-    int failed = 0;
-    fprintf(f, "%s{\"id\":%ld,\"generation\":%ld,\"kind\":\"%s\",\"outcome\":\"%s\",\"reason\":", i == 0 ? "\n" : ",\n",
-            e->id, e->generation, kind_word(e->kind), outcome_word(e->outcome));
-    if (e->reason[0])
-        failed = put_value(f, "", json_words(e->reason));
-    else
-        fputs("\"\"", f);
-    fputs(",\"x\":", f);
-    int known = stored->x[0] == '[' && rows_put_texts(f, stored->x, s->n_var, "[", "null");
-    fputs("],\"f\":", f);
-    if (isfinite(e->f[0]))
-        known = rows_put_texts(f, stored->f, s->n_obj, "[", "null") && known;
-    fputs(isfinite(e->f[0]) ? "]" : "null", f);
-    fputs(run->place[i].on_front ? ",\"on_front\":true" : ",\"on_front\":false", f);
-    put_list(f, ",\"sd\":", s->n_obj, e->sd, is_any_known(s->n_obj, e->sd));
-    if (e->replicates > run->settings->sim.replicates)
-        put_list(f, ",\"mean\":", s->n_obj, run_f(run, i), 1);
-    if (s->has_spread)
-        fprintf(f, ",\"replicates\":%d", e->replicates);
-    if (s->n_extra > 0) {
-        fputs(",\"measures\":", f);
-        known = rows_put_texts(f, stored->extra, s->n_extra, "[", "null") && known;
-        fputc(']', f);
-    }
-    fputc('}', f);
-    if (!known)
-        return no_number(run, i, err);
-    return failed ? not_put(f, err) : STATUS_OK;
-}
-
 static json_t *json_generation(const RunGeneration *g)
 {
     return json_pack("{s:I, s:I, s:I, s:I, s:I, s:o, s:o}", "number", (json_int_t)g->number, "simulated",
@@ -244,28 +285,17 @@ static json_t *json_generation(const RunGeneration *g)
                      "hypervolume", json_number(g->hypervolume));
 }
 
-static Status begin_json(const Run *run, void *user, Err *err)
+Status export_json(FILE *f, const Run *run, Err *err)
 {
-    FILE *f = user;
     int failed = put_value(f, "{\"settings\":", json_settings(run->settings));
     failed |= put_value(f, ",\n\"columns\":", json_columns(&run->schema));
     fputs(",\n\"evaluations\":[", f);
-    return failed ? not_put(f, err) : STATUS_OK;
-}
-
-static Status end_json(const Run *run, void *user, Err *err)
-{
-    FILE *f = user;
-    int failed = 0;
+    TRY(put_all(f, &(Many){run, NULL, NULL}, run->table.n, err));
     fputs("],\n\"generations\":[", f);
     for (size_t g = 0; g < run->n_generations; g++)
         failed |= put_value(f, g == 0 ? "\n" : ",\n", json_generation(&run->generation[g]));
     fputs("]}\n", f);
-    return failed ? not_put(f, err) : STATUS_OK;
-}
-
-Status export_json_of(FILE *f, const char *folder, Err *err)
-{
-    static const RunVisitor VISITOR = {begin_json, visit_evaluation, end_json};
-    return run_visit(folder, &VISITOR, f, err);
+    if (ferror(f))
+        return fail(err, STATUS_IO, "standard output: cannot be written");
+    return failed ? fail(err, STATUS_NO_MEMORY, "no memory for the run as JSON") : STATUS_OK;
 }

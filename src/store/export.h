@@ -1,7 +1,10 @@
-/* store/export.h -- a run as CSV and as JSON; results/README.md explains the columns.
+/* store/export.h -- designs of a run as CSV and as JSON; results/README.md explains the columns.
  *
- * The same bytes for the same evaluations: nothing here depends on the clock or on the number of threads. Failures of
- * the stream are seen by whoever closes it (store/output.h). */
+ * One writer: a table is a list of parts, of which each knows its column heads and its cells. The same bytes for the same
+ * evaluations: nothing here depends on the clock or on the number of threads, which share many rows. Failures of the stream
+ * are seen by whoever closes it (store/output.h).
+ *
+ * Errors  STATUS_NO_MEMORY */
 #ifndef IMTET_STORE_EXPORT_H
 #define IMTET_STORE_EXPORT_H
 
@@ -9,24 +12,22 @@
 
 #include "store/run.h"
 
-/* Of variables (n_var), objectives (n_obj, natural, means over repeats) and the further results that are limited (n_limited, of
- * its first simulation): the names, and a design's numbers; each behind a comma, without an end of the line. */
-void export_names(FILE *f, const char *before, const Schema *schema);
-void export_numbers(FILE *f, const Run *run, size_t row);
+typedef enum {
+    EXPORT_FRONT, /* id, variables, objectives (natural, means over repeats), those further results that are limited; where
+                       designs are several simulations sd of the objectives and replicates */
+    EXPORT_ALL, /* id, generation, kind, outcome, reason, variables, objectives of this very evaluation, all further results */
+    EXPORT_NEAREST, /* id, violation, variables, objectives, limited results */
+    EXPORT_PAGE     /* id, variables, objectives, limited results, without column heads */
+} ExportTable;
 
-/* front.csv. A row: id and these; where the schema has them sd (n_obj) and replicates, empty where they are not known. */
-void export_front_header(FILE *f, const Schema *schema);
-void export_design(FILE *f, const Run *run, size_t row);
-void export_design_as(FILE *f, const Schema *schema, const Evaluation *e, const double means[]); /* means (n_obj) */
-void export_front(FILE *f, const Run *run);
+/* Those rows of the run, NULL: its first n. */
+Status export_designs(FILE *f, const Run *run, ExportTable table, size_t n, const size_t rows[], Err *err);
 
-/* evaluations.csv: rows of finished generations and polished designs, without the header. */
-void export_evaluations_header(FILE *f, const Schema *schema);
-void export_evaluations(FILE *f, const EvaluationTable *table);
+/* Settings, columns, evaluations, unfinished ones too, and generations as one object. */
+Status export_json(FILE *f, const Run *run, Err *err);
 
-/* The same of a run whose variables pass by; settings, columns, evaluations (unfinished ones too), front and generations as one
- * object of JSON. */
-Status export_front_of(FILE *f, const char *folder, Err *err);
-Status export_json_of(FILE *f, const char *folder, Err *err);
+/* front.csv, nearest.csv in the run's folder; with n = 0 the latter is removed: a run that was resumed may have a front now. */
+Status export_front(const Run *run, Err *err);
+Status export_nearest(const char *folder, const Run *run, size_t n, const size_t rows[], Err *err);
 
 #endif

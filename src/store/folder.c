@@ -2,13 +2,22 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
-#include "store/lock.h"
 #include "store/output.h"
+
+void utc_now(char text[24])
+{
+    struct tm parts;
+    const time_t now = time(NULL);
+    gmtime_r(&now, &parts);
+    strftime(text, 24, "%FT%TZ", &parts);
+}
 
 void folder_path(const Folder *folder, const char *name, char path[PATH_MAX])
 {
@@ -22,23 +31,6 @@ int folder_has(const Folder *folder, const char *name)
     return access(path, F_OK) == 0;
 }
 
-size_t folder_rows(const Folder *folder, const char *name)
-{
-    char path[PATH_MAX], bytes[1 << 16];
-    size_t lines = 0;
-    ssize_t n;
-    folder_path(folder, name, path);
-    const int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-    struct stat about;
-    if (fd < 0)
-        return 0;
-    while (fstat(fd, &about) == 0 && S_ISREG(about.st_mode) && (n = read(fd, bytes, sizeof bytes)) > 0)
-        for (const char *at = bytes; (at = memchr(at, '\n', (size_t)(bytes + n - at))); at++)
-            lines++;
-    close(fd);
-    return lines > 0 ? lines - 1 : 0;
-}
-
 int folder_is_run(const char *path)
 {
     Folder f = {.lock = -1};
@@ -48,8 +40,8 @@ int folder_is_run(const char *path)
 
 int folder_keeps(const char *path)
 {
-    static const char *const NAMES[] = {"settings.ini",    "provenance.json", "log.txt",     "log.jsonl", "lock",
-                                        "evaluations.csv", "front.csv",       "nearest.csv", "run.sqlite"};
+    static const char *const NAMES[] = {"settings.ini", "provenance.json", "log.txt",     "log.jsonl",
+                                        "lock",         "front.csv",       "nearest.csv", "run.sqlite"};
     char real[PATH_MAX];
     if (!realpath(path, real))
         snprintf(real, sizeof real, "%s%s", strchr(path, '/') ? "" : "./", path);
@@ -63,19 +55,16 @@ int folder_keeps(const char *path)
 
 Status folder_advise(const char *path, Status status, Err *err)
 {
-    Folder f = {.lock = -1};
-    const int is_empty = strstr(err->text, ": is empty") != NULL;
-    if (status != STATUS_IO ||
-        (!is_empty && !strstr(err->text, ": is damaged") && !strstr(err->text, ": is no database")))
+    char front[PATH_MAX];
+    if (status != STATUS_IO || (err->sub != SUB_DAMAGED && err->sub != SUB_NO_RUN && err->sub != SUB_EMPTY))
         return status;
-    snprintf(f.path, sizeof f.path, "%s", path);
-    const size_t n = folder_rows(&f, "evaluations.csv");
-    if (n > 0)
-        return fail(err, status,
-                    "%.250s; evaluations.csv beside it has %zu evaluations: --new --set "
-                    "search.start=%s/evaluations.csv begins another run with these designs",
-                    err->text, n, path);
-    return is_empty ? fail(err, status, "%.250s; remove it, and the run begins again", err->text) : status;
+    snprintf(front, sizeof front, "%s/front.csv", path);
+    if (access(front, R_OK) == 0)
+        return fail_sub(err, status, err->sub,
+                        "%.250s; --new --set search.start=%s begins another run with its last front", err->text, front);
+    return err->sub == SUB_EMPTY
+               ? fail_sub(err, status, err->sub, "%.250s; remove it, and the run begins again", err->text)
+               : status;
 }
 
 static Status make_folders(const char *folder, Err *err)
@@ -92,31 +81,125 @@ static Status make_folders(const char *folder, Err *err)
     }
 }
 
+/* -- the lock ------------------------------------------------------------------------------------------------------ */
+
+static void read_holder(int fd, LockHolder *holder)
+{
+    char text[96] = "";
+    *holder = (LockHolder){.host = "an unknown machine"};
+    if (pread(fd, text, sizeof text - 1, 0) > 0)
+        sscanf(text, "%ld %71s %zu", &holder->pid, holder->host, &holder->n_stored);
+}
+
+static int is_gone(const LockHolder *holder)
+{
+    char host[72] = "";
+    gethostname(host, sizeof host - 1);
+    return strcmp(host, holder->host) == 0 && kill((pid_t)holder->pid, 0) != 0 && errno == ESRCH;
+}
+
+/* The system takes moments to tear a killed process down, and one that is killed while it starts a worker leaves the
+ * lock to it until that one has begun its own program: every holder gets PATIENCE, 1.5 s, to let go. */
+static int try_lock(int fd)
+{
+    enum { PATIENCE = 75, PAUSE_NS = 20000000 };
+    struct flock whole = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
+    for (int i = 0; fcntl(fd, F_OFD_SETLK, &whole) != 0; i++) {
+        const int cause = errno;
+        if ((cause != EAGAIN && cause != EACCES) || i == PATIENCE)
+            return cause;
+        nanosleep(&(struct timespec){.tv_nsec = PAUSE_NS}, NULL);
+    }
+    return 0;
+}
+
+/* Padded, so that a later line is as long. */
+static Status write_holder(int fd, size_t n_stored)
+{
+    char host[65] = "", text[128];
+    gethostname(host, sizeof host - 1);
+    const int n = snprintf(text, sizeof text, "%ld %s %-12zu\n", (long)getpid(), host, n_stored);
+    return pwrite(fd, text, (size_t)n, 0) == n && ftruncate(fd, n) == 0 ? STATUS_OK : STATUS_IO;
+}
+
+static Status lock_take(Folder *folder, const char *path, Err *err)
+{
+    LockHolder holder;
+    const int fd = open(path, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
+    if (fd < 0)
+        return fail(err, STATUS_IO, "%s: cannot be written: %s", path, strerror(errno));
+    const int cause = try_lock(fd);
+    read_holder(fd, &holder);
+    if (cause != 0) {
+        close(fd);
+        return cause == EAGAIN || cause == EACCES
+                   ? fail(err, STATUS_IO, "%s: is in use by process %ld on %s", folder->path, holder.pid, holder.host)
+                   : fail(err, STATUS_IO, "%s: cannot be locked: %s", path, strerror(cause));
+    }
+    if (write_holder(fd, holder.n_stored) != STATUS_OK) {
+        const int why = errno;
+        close(fd);
+        return fail(err, STATUS_IO, "%s: cannot be written: %s", path, strerror(why));
+    }
+    folder->lock = fd;
+    folder->n_stored = holder.n_stored;
+    return STATUS_OK;
+}
+
+/* On a full disk the number before stays, which is no more than there are. */
+void folder_note(const Folder *folder, size_t n_stored)
+{
+    write_holder(folder->lock, n_stored);
+}
+
+void folder_release(Folder *folder)
+{
+    if (folder->lock >= 0)
+        close(folder->lock);
+    folder->lock = -1;
+}
+
+int lock_is_held(const char *path, LockHolder *holder)
+{
+    struct flock whole = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
+    const int fd = open(path, O_RDONLY | O_CLOEXEC);
+    if (fd < 0)
+        return 0;
+    const int held = fcntl(fd, F_OFD_GETLK, &whole) == 0 && whole.l_type != F_UNLCK;
+    read_holder(fd, holder);
+    close(fd);
+    return held && !is_gone(holder);
+}
+
+/* -- taking it ----------------------------------------------------------------------------------------------------- */
+
 static Status take_lock(Folder *folder, Err *err)
 {
     char path[PATH_MAX];
     TRY(make_folders(folder->path, err));
     folder_path(folder, "lock", path);
-    return lock_take(path, &folder->lock, err);
+    return lock_take(folder, path, err);
 }
 
-static int holds_run(const Folder *folder)
+/* Free: no run, nothing that one has left, and no process. */
+static int is_free(const Folder *folder, int is_own)
 {
-    return folder_has(folder, "run.sqlite") || folder_rows(folder, "evaluations.csv") > 0;
+    char lock[PATH_MAX];
+    LockHolder holder = {0};
+    folder_path(folder, "lock", lock);
+    const int is_held = lock_is_held(lock, &holder) && !is_own;
+    return !is_held && holder.n_stored == 0 && !folder_has(folder, "run.sqlite");
 }
 
 /* It is looked at again once the lock is held: another process may have had a whole run meanwhile. */
 static Status take_free_folder(Folder *folder, const char *path, Err *err)
 {
-    char lock[PATH_MAX];
-    LockHolder holder;
     for (int i = 2;; i++) {
-        folder_path(folder, "lock", lock);
-        if (!holds_run(folder) && !lock_is_held(lock, &holder)) {
+        if (is_free(folder, 0)) {
             const Status status = take_lock(folder, err);
-            if (status != STATUS_OK && !lock_is_held(lock, &holder))
+            if (status != STATUS_OK && is_free(folder, 0))
                 return status;
-            if (status == STATUS_OK && !holds_run(folder))
+            if (status == STATUS_OK && is_free(folder, 1))
                 return STATUS_OK;
             folder_release(folder);
         }
@@ -133,24 +216,7 @@ Status folder_take(Folder *folder, const char *path, int fresh, Err *err)
     return fresh ? take_free_folder(folder, path, err) : take_lock(folder, err);
 }
 
-void folder_release(Folder *folder)
-{
-    lock_release(folder->lock);
-    folder->lock = -1;
-}
-
 /* -- files --------------------------------------------------------------------------------------------------------- */
-
-Status folder_write(const Folder *folder, const char *name, WriteFn write, const void *content, Err *err)
-{
-    char path[PATH_MAX], room[1 << 16];
-    Output o;
-    folder_path(folder, name, path);
-    TRY(output_open_inside(&o, path, err));
-    setvbuf(o.stream, room, _IOFBF, sizeof room);
-    write(o.stream, content);
-    return output_close(&o, err);
-}
 
 Status append_open(Append *a, const Folder *folder, const char *name, Err *err)
 {

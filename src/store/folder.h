@@ -1,6 +1,10 @@
-/* store/folder.h -- the folder of a run, its lock, and files in it that are replaced whole or appended to.
+/* store/folder.h -- the folder of a run: which process works on it, and files in it that are replaced whole or appended to.
  *
- * Life cycle  folder_take -> folder_write, append_open ... -> folder_release ({.lock = -1} is fine)
+ * The file `lock` holds "PID HOST N": the process, and how many evaluations the database has; the lock itself is the system's
+ * (an open file description lock) and ends with its process, so that a file left behind by one that was killed locks
+ * nothing. Across machines as far as the file system passes locks on.
+ *
+ * Life cycle  folder_take -> append_open ... -> folder_release ({.lock = -1} is fine)
  * Links       in it are not followed when writing: the folder may come from elsewhere
  * Errors      STATUS_IO with path and cause */
 #ifndef IMTET_STORE_FOLDER_H
@@ -13,30 +17,37 @@
 
 typedef struct {
     char path[PATH_MAX - 64];
-    int lock; /* -1: not taken */
+    int lock;        /* -1: not taken */
+    size_t n_stored; /* evaluations that the database had when the folder was taken, as the lock says */
 } Folder;
 
-/* Made where it is not there, and locked (store/lock.h). fresh: the first of path, path-2, path-3, ... that holds no run
- * and that no process works on. */
+/* Made where it is not there, and locked; held by another process, and still so 1.5 s later: STATUS_IO, its id and machine.
+ * fresh: the first of path, path-2, path-3, ... that holds no run and that no process works on. */
 Status folder_take(Folder *folder, const char *path, int fresh, Err *err);
 void folder_release(Folder *folder);
 
+/* So many evaluations are on the disk: a database with fewer has lost its journal. */
+void folder_note(const Folder *folder, size_t n_stored);
+
+typedef struct {
+    long pid;
+    char host[72];
+    size_t n_stored;
+} LockHolder;
+
+/* Whether a process holds that lock, and which. */
+int lock_is_held(const char *path, LockHolder *holder);
+
 void folder_path(const Folder *folder, const char *name, char path[PATH_MAX]);
 int folder_has(const Folder *folder, const char *name);
-size_t folder_rows(const Folder *folder, const char *name); /* of a CSV file, its header left out; no file: 0 */
 
 /* Has it held a run? */
 int folder_is_run(const char *path);
 /* Is it a file that a run keeps in its folder? What leads there by a link is. */
 int folder_keeps(const char *path);
 
-/* Behind the message of a run.sqlite that is damaged or empty: what to do, by what evaluations.csv beside it still knows.
- * Returns status. */
+/* Behind the message of a run.sqlite that is damaged or empty: what to do. Returns status. */
 Status folder_advise(const char *path, Status status, Err *err);
-
-/* The file replaced as a whole (store/output.h). */
-typedef void (*WriteFn)(FILE *f, const void *content);
-Status folder_write(const Folder *folder, const char *name, WriteFn write, const void *content, Err *err);
 
 /* A file that only grows. {0} may be freed. */
 typedef struct {
@@ -47,5 +58,8 @@ Status append_open(Append *a, const Folder *folder, const char *name, Err *err);
 Status append_flush(const Append *a, Err *err); /* an earlier write that failed is an error too */
 Status append_close(Append *a, Err *err);       /* on the disk */
 void append_free(Append *a);
+
+/* 2026-01-31T23:59:59Z, now */
+void utc_now(char text[24]);
 
 #endif

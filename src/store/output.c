@@ -8,8 +8,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "base/number.h"
-
 static void folder_of(const char *path, char folder[PATH_MAX])
 {
     const char *slash = strrchr(path, '/');
@@ -144,35 +142,39 @@ Status output_end(Output *o, Status status, Err *err)
     return status;
 }
 
-void print_number(FILE *stream, double value)
+/* 15 digits where they give back the same number, as of what people write; else 17, which always do. A multiple of a
+ * millionth below 1e9, or of a billionth below 1e6, has no more than 15. */
+static int put_number(FILE *stream, double value)
 {
-    char text[NUMBER_TEXT_MAX];
-    if (isfinite(value))
-        fwrite(text, 1, number_text(value, text), stream);
+    const double millions = rint(1e6 * value), billions = rint(1e9 * value);
+    const int is_short =
+        (fabs(millions) < 1e15 && millions / 1e6 == value) || (fabs(billions) < 1e15 && billions / 1e9 == value);
+    return fprintf(stream, is_short ? "%.15g" : "%.17g", value);
 }
 
-/* `missing` stands for what is not finite; some numbers at a time go to the stream. */
-static void print_each(FILE *stream, size_t n, const double values[], const char *before, const char *missing)
+static void put_each(FILE *stream, size_t n, const double values[], const char *before, const char *missing)
 {
-    enum { SOME = 16 };
-    char text[SOME * (NUMBER_TEXT_MAX + 8)], *to = text;
     for (size_t j = 0; j < n; j++) {
-        to = stpcpy(to, j == 0 ? before : ",");
-        to = isfinite(values[j]) ? to + number_text(values[j], to) : stpcpy(to, missing);
-        if (j % SOME == SOME - 1 || j == n - 1) {
-            fwrite(text, 1, (size_t)(to - text), stream);
-            to = text;
-        }
+        fputs_unlocked(j == 0 ? before : ",", stream);
+        if (isfinite(values[j]))
+            put_number(stream, values[j]);
+        else
+            fputs_unlocked(missing, stream);
     }
+}
+
+void print_number(FILE *stream, double value)
+{
+    put_each(stream, 1, &value, "", "");
 }
 
 void print_cells(FILE *stream, size_t n, const double values[])
 {
-    print_each(stream, n, values, ",", "");
+    put_each(stream, n, values, ",", "");
 }
 
 void print_list(FILE *stream, size_t n, const double values[])
 {
-    print_each(stream, n, values, "[", "null");
+    put_each(stream, n, values, "[", "null");
     fputs(n > 0 ? "]" : "[]", stream);
 }

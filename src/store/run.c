@@ -25,6 +25,7 @@ void run_free(Run *run)
     free(run->generation);
     free(run->session);
     free(run->state);
+    free(run->mark);
     memset(run, 0, sizeof *run);
 }
 
@@ -42,15 +43,10 @@ const double *run_f(const Run *run, size_t row)
 
 size_t run_find(const Run *run, long id)
 {
-    size_t low = 0, high = run->table.n;
-    while (low < high) {
-        const size_t middle = low + (high - low) / 2;
-        if (run->table.row[middle].id < id)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low < run->table.n && run->table.row[low].id == id ? low : run->table.n;
+    size_t row = 0;
+    while (row < run->table.n && run->table.row[row].id != id)
+        row++;
+    return row;
 }
 
 size_t run_first_polished(const Run *run)
@@ -59,14 +55,6 @@ size_t run_first_polished(const Run *run)
     while (n > 0 && run->table.row[n - 1].kind == KIND_POLISHED)
         n--;
     return n;
-}
-
-size_t run_n_finished(const Run *run)
-{
-    size_t n = 0;
-    while (n < run->table.n && run->table.row[n].kind != KIND_UNFINISHED && run->table.row[n].kind != KIND_POLISHED)
-        n++;
-    return run->n_ahead + n;
 }
 
 static double minimised(const Run *run, size_t row, size_t k)
@@ -258,6 +246,24 @@ size_t run_spread_out(const Run *run, size_t n, int with_polished, size_t rows[]
         rows[chosen] = found;
     }
     return chosen;
+}
+
+size_t run_nearest(const Run *run, size_t rows[NEAREST_MAX])
+{
+    size_t n = 0;
+    for (size_t i = 0; i < run->table.n; i++) {
+        size_t at = n;
+        if (!run->place[i].ok || run->table.row[i].kind == KIND_SCREENED)
+            continue;
+        while (at > 0 && run->table.row[i].violation < run->table.row[rows[at - 1]].violation)
+            at--;
+        if (at == NEAREST_MAX)
+            continue;
+        n += n < NEAREST_MAX;
+        memmove(rows + at + 1, rows + at, (n - 1 - at) * sizeof *rows);
+        rows[at] = i;
+    }
+    return n;
 }
 
 /* -- a design by its name ------------------------------------------------------------------------------------------ */

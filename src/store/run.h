@@ -1,10 +1,12 @@
 /* store/run.h -- a run as its database has it: settings, every evaluation, the front, how it came about.
  *
- * Read once by a command (store/run_read.h) and handed on as const Run *. Rows are in the order of their ids: designs
- * of the search are numbered 1, 2, ... as they were asked for, polished ones from POLISHED_FIRST on. A simulation of a
- * generation that is under way, or was cut short, has kind KIND_UNFINISHED; it is on no front yet.
+ * Read once by a command (store/run_read.h) and handed on as const Run *. Rows: first those of the search, in the order of
+ * their ids, as they were asked for; then the polished ones (KIND_POLISHED). An id is the next one when its row is stored:
+ * those of the search are 1, 2, ... but for polished ones between sessions. A simulation of a generation that is under
+ * way, or was cut short, has kind KIND_UNFINISHED; it is on no front yet.
  *
- * Replicates  a design that was simulated again has the mean of its simulations in F (store/repeats.h)
+ * Replicates  a design that was simulated again has in F the mean of its simulations, and sd is estimated from all repeats
+ *             of the run (moga/noise.h); one with a simulation that failed keeps its first
  * Values      natural signs and units, as in front.csv; NAN where there is none (failed, or deviation not known)
  * Front       feasible, ok and nondominated, polished designs included; entered <= g < left are the generations of the
  *             search in which a design was on the search's own front
@@ -22,8 +24,7 @@
 
 typedef struct Settings Settings;
 
-/* Of runs planned for more than a million simulations the second. */
-enum { POLISHED_FIRST = 1000001, POLISHED_FIRST_OF_MANY = 100000001, NEVER = -1 };
+enum { NEVER = -1 };
 
 /* Of an evaluation. */
 typedef struct {
@@ -38,6 +39,12 @@ typedef struct {
     double seconds;         /* of work on the run until then, all sessions together */
     char finished[24];      /* UTC */
 } RunGeneration;
+
+/* When a design was on the search's front. */
+typedef struct {
+    long id;
+    int entered, left; /* NEVER: it still is */
+} RunMark;
 
 /* One start of `imtet optimize`. */
 typedef struct {
@@ -54,11 +61,13 @@ typedef struct {
     Settings *settings;
     Schema schema;
     size_t n_front, n_failed, n_repeats, n_generations, n_sessions;
-    size_t n_ahead;            /* evaluations before those of the table, left out: number i has id i + 1 (RUN_ENDED) */
-    EvaluationTable table;     /* f: of this very evaluation; sd, replicates: joined (store/repeats.h) */
-    double *F;                 /* (table.n, n_obj) joined; without repeats table.f */
-    RunPlace *place;           /* (n_ahead + table.n) */
-    size_t *front;             /* (n_front) rows, ascending */
+    size_t n_finished;     /* evaluations of the search whose generation is finished: the first rows */
+    EvaluationTable table; /* f: of this very evaluation; sd, replicates: of the design */
+    double *F;             /* (table.n, n_obj) joined; without repeats table.f */
+    RunPlace *place;       /* (table.n) */
+    size_t *front;         /* (n_front) rows, ascending */
+    size_t n_marks;
+    RunMark *mark;             /* (n_marks) in the order of the ids; of a run whose rows are not read */
     RunGeneration *generation; /* (n_generations) */
     RunSession *session;       /* (n_sessions) */
     long planned_evals;
@@ -78,9 +87,6 @@ const double *run_f(const Run *run, size_t row); /* (n_obj) */
 
 /* Row of that design, or run->table.n. */
 size_t run_find(const Run *run, long id);
-
-/* Evaluations of the search whose generation is finished: the first rows. */
-size_t run_n_finished(const Run *run);
 
 /* The front of the search joined by the polished designs, and `front`; the table, F and place are all that has to be there. */
 Status run_settle_front(Run *run, Err *err);
@@ -120,6 +126,11 @@ size_t run_spread_out(const Run *run, size_t n, int with_polished, size_t rows[]
 /* `word`: the id of any design that the run has, on its front or not, failed or not; "knee"; "best_NAME" of an objective.
  * An empty front has neither of the last two: run_why_empty. */
 Status run_pick(const Run *run, const char *word, size_t *row, Err *err);
+
+/* Rows with the least violation of search.limits, the least first, ties by number; none that is screened only. Returns how
+ * many; 0: all of those failed. */
+enum { NEAREST_MAX = 10 };
+size_t run_nearest(const Run *run, size_t rows[NEAREST_MAX]);
 
 /* Why a front is empty, and what to do; never STATUS_OK. STATUS_UNMET: nothing keeps search.limits. */
 Status run_why_empty(const Run *run, Err *err);

@@ -1,6 +1,7 @@
 #include "study/differences.h"
 
 #include <inttypes.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/visible.h"
@@ -9,8 +10,8 @@
 
 typedef struct {
     FILE *lines;
-    size_t n_limits, n_others;
-    char first[sizeof((Err *)0)->text]; /* of the others, else of the limits */
+    size_t n_limits, n_lowered, n_others; /* n_lowered: of the limits */
+    char first[sizeof((Err *)0)->text];   /* of the others, else of the limits */
 } Differences;
 
 enum { SHOWN = 120, BEFORE = 40 }; /* bytes of a long value, and of them before where two differ */
@@ -27,6 +28,13 @@ static void show_part(char out[SHOWN + 8], const char *value, size_t at)
              from + (size_t)n < length ? "..." : "");
 }
 
+/* A limit of 0, or a word, is none. */
+static int is_lower(const char *is, const char *was)
+{
+    const double now = strtod(is, NULL), before = strtod(was, NULL);
+    return now > 0.0 && (now < before || !(before > 0.0));
+}
+
 static void add_difference(Differences *d, const char *key, int is_limit, const char *was, const char *is)
 {
     char before[SHOWN + 8], now[SHOWN + 8];
@@ -38,6 +46,7 @@ static void add_difference(Differences *d, const char *key, int is_limit, const 
     if (d->n_others == 0 && (!is_limit || d->n_limits == 0))
         snprintf(d->first, sizeof d->first, "%s is %s there, now %s", key, before, now);
     d->n_limits += is_limit;
+    d->n_lowered += is_limit && is_lower(is, was);
     d->n_others += !is_limit;
     if (d->lines)
         fprintf(d->lines, "%s: %s in the run, now %s%s\n", key, was, is, is_limit ? " (a limit)" : "");
@@ -88,9 +97,9 @@ Status differences_check(const Comparison *c, size_t n_there, int *has_new_limit
     TRY(compare_inputs(c, &d, err));
     const size_t n = d.n_limits + d.n_others;
     *has_new_limits = d.n_limits > 0;
-    if (n == 0 || (d.n_others == 0 && c->force))
+    if (d.n_others == 0 && (c->force || d.n_lowered == 0))
         return check_limit(c, n_there, err);
     return fail(err, STATUS_BAD_DATA, "%s: holds a run with other settings: %s%s; %s", c->run->folder, d.first,
                 n > 1 ? ", and more" : "",
-                d.n_others == 0 ? "--force-settings changes limits" : "choose another --out, or --new");
+                d.n_others == 0 ? "--force-settings lowers limits" : "choose another --out, or --new");
 }

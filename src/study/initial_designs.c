@@ -20,7 +20,7 @@ static Status copy_columns(const Sheet *t, const char *path, const Schema *schem
     return STATUS_OK;
 }
 
-/* Columns beside the variables may hold anything, as in evaluations.csv. */
+/* Columns beside the variables may hold anything, as of exported evaluations. */
 static Status read_table(const char *path, const Schema *schema, double **X, size_t *n, Err *err)
 {
     Sheet t = {0};

@@ -76,11 +76,11 @@ static void count(Standing *out, const Run *run)
 /* Thread-seconds of a session's simulations. */
 static double simulated_seconds(const Run *run, size_t number)
 {
-    const long first = run->session[number].simulated_before + 1;
-    const long end = number + 1 < run->n_sessions ? run->session[number + 1].simulated_before + 1 : LONG_MAX;
+    const size_t n = run_first_polished(run), first = (size_t)run->session[number].simulated_before;
+    const size_t next = number + 1 < run->n_sessions ? (size_t)run->session[number + 1].simulated_before : n;
     double seconds = 0.0;
-    for (size_t i = 0; i < run_first_polished(run); i++)
-        if (run->table.row[i].id >= first && run->table.row[i].id < end && isfinite(run->table.row[i].seconds))
+    for (size_t i = first; i < next && i < n; i++)
+        if (isfinite(run->table.row[i].seconds))
             seconds += run->table.row[i].seconds;
     return seconds;
 }

@@ -2,7 +2,7 @@
 #ifndef IMTET_STUDY_PROGRESS_H
 #define IMTET_STUDY_PROGRESS_H
 
-#include "store/lock.h"
+#include "store/folder.h"
 #include "store/run.h"
 #include "settings/options.h"
 

@@ -13,6 +13,7 @@
 #include "settings/settings.h"
 #include "evaluate/adapter.h"
 #include "analysis/estimate.h"
+#include "store/export.h"
 #include "store/provenance.h"
 #include "study/differences.h"
 #include "study/final_polish.h"
@@ -195,19 +196,13 @@ static Status begin(Study *study, Err *err)
     return status;
 }
 
-static void sum_up(StudySummary *sum, const Run *run)
+/* n_later: evaluations behind those of finished generations, n_failed of them failed. */
+static void sum_up(StudySummary *sum, const Run *run, size_t n_later, size_t n_failed)
 {
-    const size_t n_ahead = run->n_ahead;
-    sum->n_before = n_ahead;
-    sum->n_failed = n_ahead > 0 ? (size_t)run->generation[run->n_generations - 1].failed : 0;
-    for (size_t i = 0; i < run->table.n; i++)
-        if (run->table.row[i].kind != KIND_POLISHED) {
-            sum->n_before++;
-            sum->n_failed += !run->place[n_ahead + i].ok;
-        }
-    sum->n_simulated = sum->n_before;
-    sum->n_front = run->n_front;
-    sum->n_repeats = run->n_repeats;
+    const RunGeneration *last = run->n_generations > 0 ? &run->generation[run->n_generations - 1] : NULL;
+    sum->n_simulated = sum->n_before = run->n_finished + n_later;
+    sum->n_failed = n_failed + (last ? (size_t)last->failed : 0);
+    sum->n_front = last ? (size_t)last->front : 0;
     for (size_t i = 0; i < run->n_sessions; i++)
         sum->seconds += isfinite(run->session[i].seconds) ? run->session[i].seconds : 0.0;
 }
@@ -228,13 +223,6 @@ static Status check_state(const Study *study, const Run *run, Err *err)
 {
     StopReason unused;
     const int goes_on = study->has_new_limits || !came_to_its_end(run, &unused);
-    const size_t polished = run_first_polished(run);
-    if (polished < run->table.n && study->used.search.max_evals >= run->table.row[polished].id)
-        return fail(
-            err, STATUS_BAD_DATA,
-            "%s: search.max_evals = %ld: its polished designs are numbered from %ld; for more simulations begin anew "
-            "from its front: --new --set search.start=%s",
-            study->summary->folder, study->used.search.max_evals, run->table.row[polished].id, study->summary->folder);
     if (goes_on && run->state_is_damaged)
         return fail(err, STATUS_IO,
                     "%s: the state of the search is damaged; its evaluations are whole. Begin anew from its front: "
@@ -262,12 +250,29 @@ static Status leave_damaged_state(Study *study, Err *err)
     return store_step_back(study->store, err);
 }
 
+/* Of search.max_evals. */
+static Status count_evaluations(Study *study, Err *err)
+{
+    Run all;
+    study->evaluations_before = study->summary->n_before;
+    if (!run_is_screened(store_run(study->store)))
+        return STATUS_OK;
+    TRY(store_read(study->store, &all, err));
+    study->evaluations_before = run_evaluations(&all, 0);
+    run_free(&all);
+    return STATUS_OK;
+}
+
 static Status resume(Study *study, Err *err)
 {
     const Run *run = store_run(study->store);
+    const EvaluationTable *later = store_unfinished(study->store);
     StudySummary *sum = study->summary;
-    sum_up(sum, run);
-    study->evaluations_before = run_evaluations(run, 0);
+    size_t n_failed = 0;
+    for (size_t i = 0; i < later->n; i++)
+        n_failed += later->row[i].outcome != OUTCOME_OK;
+    sum_up(sum, run, later->n, n_failed);
+    TRY(count_evaluations(study, err));
     TRY(differences_check(&(Comparison){.run = run,
                                         .used = &study->used,
                                         .adapter = study->adapter,
@@ -327,42 +332,20 @@ SearchConfig study_search_config(const Settings *s)
 /* -- the search, from where it stands ------------------------------------------------------------------------------ */
 
 /* What the run has of the search, as the search takes it up: the finished generations, then the evaluations of the one
- * that was cut short. */
-static Status each_finished(EvaluationFn take, void *search, void *store, Err *err)
-{
-    return store_each_finished(store, take, search, err);
-}
-
-static Status find_start(const Study *study, SearchStart *start, Err *err)
+ * that was cut short; with the search's own front, as the run's digest has proved it. */
+static SearchStart find_start(const Study *study)
 {
     const Run *run = store_run(study->store);
-    size_t n = run->n_ahead;
-    if (n > 0)
-        *start = (SearchStart){.n = n, .each = each_finished, .user = study->store};
-    for (const Evaluation *e = run->table.row; n < run->n_ahead + run->table.n && e->kind != KIND_POLISHED; n++, e++) {
-        start->n += run->state && start->n == n && e->kind != KIND_UNFINISHED;
-        if ((start->n > n || study->used.search.asynchronous) && e->id != (long)n + 1)
-            return fail(err, STATUS_IO, "%s/run.sqlite: is damaged: evaluation %zu is missing", study->summary->folder,
-                        n + 1);
-    }
-    start->n_later = n - start->n;
-    start->row = run->table.row;
-    start->state = run->state;
-    start->n_state = run->n_state;
-    return STATUS_OK;
-}
-
-/* The search's own front, as the run's digest has proved it; NULL: not known. */
-static Status find_front(const Study *study, const SearchStart *start, unsigned char **on_front, Err *err)
-{
-    const Run *run = store_run(study->store);
-    *on_front = NULL;
-    if (!run || run->schema.is_noisy || study->left_generation != 0)
-        return STATUS_OK;
-    *on_front = calloc(start->n + 1, 1);
-    for (size_t i = 0; *on_front && i < start->n; i++)
-        (*on_front)[i] = run->place[i].entered != NEVER && run->place[i].left == NEVER;
-    return *on_front ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for %zu designs", start->n);
+    const EvaluationTable *later = store_unfinished(study->store);
+    return (SearchStart){.n = run->n_finished,
+                         .n_later = later->n,
+                         .row = later->row,
+                         .state = run->state,
+                         .n_state = run->n_state,
+                         .on_front =
+                             run->schema.is_noisy || study->left_generation != 0 ? NULL : store_on_front(study->store),
+                         .each = run->n_finished > 0 ? store_each_finished : NULL,
+                         .user = study->store};
 }
 
 /* Of surrogate and search: beside running simulations a quarter. */
@@ -389,7 +372,6 @@ static Status run_search(Study *study, Err *err)
     SearchConfig config = study_search_config(&study->used);
     SearchStart start = {0};
     double *given = NULL;
-    unsigned char *on_front = NULL;
     config.max_seconds = 0.0; /* the study has a clock of its own, which it looks at more often */
     if (run) {
         const long initial = study->used.search.initial;
@@ -399,16 +381,13 @@ static Status run_search(Study *study, Err *err)
     omp_set_num_threads(search_threads(study));
     TRY(initial_designs_read(study->used.search.start, adapter_schema(study->adapter), &given, &config.n_given, err));
     config.given = given;
-    Status status = run ? find_start(study, &start, err) : STATUS_OK;
+    if (run)
+        start = find_start(study);
     adapter_observe(study->adapter, &(Observer){may_go_on, evaluation_done, study});
-    if (status == STATUS_OK)
-        status = find_front(study, &start, &on_front, err);
-    start.on_front = on_front;
-    if (status == STATUS_OK)
-        status = search_resume(adapter_problem(study->adapter), &config, start.n + start.n_later > 0 ? &start : NULL,
-                               observe, study, &study->summary->stopped, err);
+    const Status status =
+        search_resume(adapter_problem(study->adapter), &config, start.n + start.n_later > 0 ? &start : NULL, observe,
+                      study, &study->summary->stopped, err);
     free(given);
-    free(on_front);
     return note_stop(study, status, err);
 }
 
@@ -464,11 +443,11 @@ int study_finished(RunStore *store, StudySummary *summary, Run *run)
     *summary = (StudySummary){0};
     if (!store_run(store) || !came_to_its_end(store_run(store), &summary->stopped))
         return 0;
-    if (store_give_run(store, run, &(Err){0}) != STATUS_OK)
+    if (store_read(store, run, &(Err){0}) != STATUS_OK)
         return 0;
     snprintf(summary->folder, sizeof summary->folder, "%s", store_folder(store));
     summary->max_evals = run->settings->search.max_evals;
-    sum_up(summary, run);
+    sum_up(summary, run, 0, 0);
     return 1;
 }
 
@@ -546,6 +525,13 @@ static Status work(Study *study, Err *err)
     return finish(study, err);
 }
 
+/* Its front.csv may have been removed. */
+static Status take_finished(Study *study, Err *err)
+{
+    TRY(store_read(study->store, study->options->run, err));
+    return export_front(study->options->run, err);
+}
+
 Status study_run(const Settings *s, const StudyOptions *options, StudySummary *summary, FILE *differences, Err *err)
 {
     memset(summary, 0, sizeof *summary);
@@ -557,7 +543,7 @@ Status study_run(const Settings *s, const StudyOptions *options, StudySummary *s
     if (status == STATUS_OK && !is_over(&study))
         status = work(&study, err);
     else if (status == STATUS_OK && options->run)
-        status = store_give_run(study.store, options->run, err);
+        status = take_finished(&study, err);
     if (status == STATUS_OK)
         status = find_baselines(&study, err);
     if (status != STATUS_OK && study.store) {

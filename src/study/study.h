@@ -7,8 +7,8 @@
  * on the front.
  *
  * Resumes       a run that is there already is resumed, however it stopped: from the state at the end of its last finished
- *               generation, evaluations made after that taken from the database. front.csv, evaluations.csv and the JSON
- *               export are then the same bytes as of a run that was never interrupted
+ *               generation, evaluations made after that taken from the database. front.csv and the exports are then
+ *               the same bytes as of a run that was never interrupted
  * Settings      must be those of the run (study/differences.h). What the first search.max_evals decides beside the end
  *               (size of the first sample, directions of infill) stays as planned: with 1500 raised to 3000 the first
  *               1500 designs are those of the shorter run
@@ -17,7 +17,7 @@
  *               and everything is stored
  * Polishes      search.polish spread-out designs of a finished run (study/final_polish.h), with a tenth of its
  *               simulations; not where that is too little to be of use
- * Reproducible  front.csv and evaluations.csv are the same bytes at any thread count; times stand elsewhere. */
+ * Reproducible  front.csv and the exports are the same bytes at any thread count; times stand elsewhere. */
 #ifndef IMTET_STUDY_STUDY_H
 #define IMTET_STUDY_STUDY_H
 
