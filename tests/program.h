@@ -90,6 +90,29 @@ static inline char *output_of(const char *arguments)
     return s.out;
 }
 
+/* Every evaluation of a run, as `imtet export --all` writes them; to be freed. */
+static inline char *all_of(const char *run)
+{
+    char arguments[512];
+    snprintf(arguments, sizeof arguments, "export @/%s --all --csv -", run);
+    return output_of(arguments);
+}
+
+/* Evaluations of its finished generations; 0: there is no run yet. */
+static inline size_t finished_in(const char *name)
+{
+    Said s;
+    size_t n = 0;
+    run(&s, "export @/%s --all --csv -", name);
+    for (const char *line = s.code == 0 ? strchr(s.out, '\n') : NULL; line && line[1]; line = strchr(line + 1, '\n')) {
+        const char *end = strchr(line + 1, '\n'), *open = strstr(line, ",unfinished,");
+        n += !open || (end && open > end);
+    }
+    free(s.out);
+    free(s.err);
+    return n;
+}
+
 static inline json_t *json_of(const char *arguments)
 {
     json_error_t error;

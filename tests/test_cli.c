@@ -167,7 +167,7 @@ static void test_a_setting_without_effect_is_named(void **state)
     assert_int_equal(mkdir(keeps, 0755), 0);
     write_in_place("keeps/run.sqlite", "");
     expect(2, "which a run needs", "spectrum builtin:kobe-like --csv @/keeps/settings.ini");
-    expect(2, "which a run needs", "report @/keeps --out @/keeps/evaluations.csv");
+    expect(2, "which a run needs", "report @/keeps --out @/keeps/front.csv");
     expect(0, "warning: building.damping_table: has no effect",
            "check configs/quick.ini --set building.damping_table=1");
     expect(65, "problem.kind: is no tower", "simulate configs/quick.ini --design none --set problem.kind=dtlz2");

@@ -6,8 +6,7 @@
 #include <sqlite3.h>
 #include <sys/stat.h>
 
-#include "store/digest.h"
-#include "store/lock.h"
+#include "store/folder.h"
 
 /* Generations of some ten designs, which take 10 ms each. */
 static const char SLOW[] = "[problem]\nkind = external\ncommand = sh tests/worker.sh steady\nvariables = 3\n"
@@ -36,26 +35,11 @@ static void sql(const char *database, const char *statements)
     sqlite3_close(db);
 }
 
-static size_t rows_of(const char *name)
-{
-    char path[PATH_MAX];
-    size_t lines = 0;
-    if (access(path_of(name, path), F_OK) != 0)
-        return 0;
-    char *text = text_of(path);
-    for (const char *at = text; (at = strchr(at, '\n')); at++)
-        lines++;
-    free(text);
-    return lines > 0 ? lines - 1 : 0;
-}
-
 /* A study that has finished a generation or two and is at work. */
 static pid_t start_and_wait(const char *out)
 {
-    char name[64];
-    snprintf(name, sizeof name, "%s/evaluations.csv", out);
     const pid_t pid = start("slow.ini", out);
-    while (rows_of(name) < 20)
+    while (finished_in(out) < 20)
         rest(0.02);
     return pid;
 }
@@ -74,13 +58,13 @@ static void test_a_run_that_appears_while_the_lock_is_waited_for_is_not_overwrit
 {
     (void)state;
     char path[PATH_MAX], host[65] = "", text[96];
-    int fd;
+    Folder folder;
     Err err = {0};
     gethostname(host, sizeof host - 1);
     shell("mkdir race");
-    CHECK_OK(lock_take(path_of("race/lock", path), &fd, &err), &err);
+    CHECK_OK(folder_take(&folder, path_of("race", path), 0, &err), &err);
     snprintf(text, sizeof text, "%d %s\n", 0x3fffff, host);
-    assert_int_equal(pwrite(fd, text, strlen(text), 0), strlen(text));
+    assert_int_equal(pwrite(folder.lock, text, strlen(text), 0), strlen(text));
     const pid_t pid = fork();
     if (pid == 0) {
         char *words[] = {getenv("IMTET"),  "optimize", in_place("textbook.ini"), "--new", "--out",
@@ -89,7 +73,7 @@ static void test_a_run_that_appears_while_the_lock_is_waited_for_is_not_overwrit
     }
     rest(0.3);
     shell("cp sound/run.sqlite race/");
-    lock_release(fd);
+    folder_release(&folder);
     assert_int_equal(wait_end(pid), 0);
     shell("cmp sound/run.sqlite race/run.sqlite && test -f race-2/front.csv");
 }
@@ -97,15 +81,14 @@ static void test_a_run_that_appears_while_the_lock_is_waited_for_is_not_overwrit
 static void test_a_folder_with_evaluations_and_no_database_is_never_overwritten(void **state)
 {
     (void)state;
-    shell(
-        "mkdir half && head -1 sound/evaluations.csv > half/evaluations.csv"); /* killed before anything was simulated */
+    shell("mkdir half && echo 1 here 0 > half/lock"); /* killed before anything was simulated */
     free(output_of("optimize @/textbook.ini --out @/half"));
     assert_same_run("sound", "half");
-    shell("mkdir bare && cp sound/evaluations.csv bare");
-    expect(74, "bare: evaluations.csv has 40 evaluations, run.sqlite is not there",
+    shell("mkdir bare && cp sound/lock bare");
+    expect(74, "bare: 40 evaluations were stored, as its file `lock` says; run.sqlite is not there",
            "optimize @/textbook.ini --out @/bare");
     free(output_of("optimize @/textbook.ini --new --out @/bare"));
-    shell("cmp sound/evaluations.csv bare/evaluations.csv && test -f bare-2/front.csv && test ! -f bare/run.sqlite");
+    shell("test -f bare-2/front.csv && test ! -f bare/run.sqlite");
 }
 
 /* -- journals ------------------------------------------------------------------------------------------------------ */
@@ -115,11 +98,11 @@ static void test_a_lost_journal_is_noticed(void **state)
     (void)state;
     killed_run("lost");
     shell("mv lost/run.sqlite-wal kept && cp -r lost other");
-    expect(74, "lost: evaluations.csv has ", "optimize @/lost");
+    expect(74, "evaluations were stored, as its file `lock` says; run.sqlite has", "optimize @/lost");
     shell("mv kept lost/run.sqlite-wal");
     free(output_of("optimize @/lost"));
     assert_same_run("slow", "lost");
-    shell("mv other/evaluations.csv other/before.csv"); /* as the message says */
+    shell("rm other/lock"); /* as the message says */
     free(output_of("optimize @/slow.ini --out @/other"));
     assert_same_run("slow", "other");
 }
@@ -170,9 +153,8 @@ static void test_another_database_in_the_place_of_a_run_ends_it(void **state)
 static void test_links_in_a_foreign_folder_are_not_followed(void **state)
 {
     (void)state;
-    static const char *const FILES[] = {"front.csv",     "evaluations.csv", "settings.ini", "provenance.json",
-                                        "report.html",   "log.txt",         "log.jsonl",    "lock",
-                                        "run.sqlite.tmp"};
+    static const char *const FILES[] = {"front.csv", "settings.ini", "provenance.json", "report.html", "log.txt",
+                                        "log.jsonl", "lock",         "run.sqlite.tmp"};
     for (size_t i = 0; i < sizeof FILES / sizeof FILES[0]; i++) {
         Said said;
         shell("rm -rf foreign && cp -r sound foreign && echo mine > victim && ln -sf ../victim foreign/%s", FILES[i]);
@@ -193,20 +175,18 @@ static void test_what_was_edited_in_the_exports_does_not_survive_a_resume(void *
 {
     (void)state;
     static const char *const EDITS[] = {
-        "sed -i '5s/[0-9]$/7/' evaluations.csv && sed -i '3s/[0-9]$/7/' front.csv", /* last digits */
-        "sed -i '1s/f1/g1/' evaluations.csv front.csv",
-        "sed -i '/^7,/d' evaluations.csv && sed -i 2d front.csv",
-        "rm evaluations.csv front.csv",
+        "sed -i '3s/[0-9]$/7/' front.csv", /* a last digit */
+        "rm front.csv",
     };
     shell("cp -r sound longer");
     free(output_of("optimize @/longer --max-evals 44 --force-settings"));
     for (size_t i = 0; i < sizeof EDITS / sizeof EDITS[0]; i++) {
         shell("rm -rf edited && cp -r sound edited && cd edited && %s", EDITS[i]);
         free(output_of("optimize @/edited")); /* it is over */
-        shell("cmp sound/front.csv edited/front.csv && cmp sound/evaluations.csv edited/evaluations.csv");
+        shell("cmp sound/front.csv edited/front.csv");
         shell("cd edited && %s", EDITS[i]);
         free(output_of("optimize @/edited --max-evals 44 --force-settings"));
-        shell("cmp longer/front.csv edited/front.csv && cmp longer/evaluations.csv edited/evaluations.csv");
+        shell("cmp longer/front.csv edited/front.csv");
     }
 }
 
@@ -222,8 +202,7 @@ static void test_a_damaged_state_gives_way_to_the_one_before_with_the_same_end(v
     static const char FURTHER[] = "optimize @/%s --max-evals 60 --force-settings";
     shell("cp -r sound whole && cp -r sound damaged && cp -r sound hopeless");
     sql("damaged/run.sqlite", DAMAGE_LAST);
-    sql("hopeless/run.sqlite", "UPDATE state SET bytes = zeroblob(length(bytes)), "
-                               "digest = nullif(digest, (SELECT digest FROM state ORDER BY generation LIMIT 1))");
+    sql("hopeless/run.sqlite", "UPDATE state SET bytes = zeroblob(length(bytes))");
     run(&said, FURTHER, "whole");
     assert_int_equal(said.code, 0);
     forget(&said);
@@ -255,18 +234,17 @@ static void test_a_bit_in_the_text_of_a_table_is_found(void **state)
     assert_int_equal(fseek(f, at - bytes, SEEK_SET), 0);
     fputc('P' ^ 4, f);
     assert_int_equal(fclose(f), 0);
-    expect(74, "1 of its 6 tables", "export @/bit --csv -");
-    expect(74, "1 of its 6 tables", "optimize @/bit --max-evals 50 --force-settings");
+    expect(74, "1 of its 7 tables", "export @/bit --csv -");
+    expect(74, "1 of its 7 tables", "optimize @/bit --max-evals 50 --force-settings");
 }
 
 static void test_a_damaged_run_says_what_its_tables_still_know_and_another_begins_with_it(void **state)
 {
     (void)state;
     char advice[PATH_MAX], words[PATH_MAX];
-    snprintf(advice, sizeof advice, "evaluations.csv beside it has 40 evaluations: --new --set search.start=%s/hurt/",
-             place.folder);
+    snprintf(advice, sizeof advice, "; --new --set search.start=%s/hurt/front.csv begins another run", place.folder);
     shell("cp -r sound hurt");
-    sql("hurt/run.sqlite", "UPDATE evaluation SET f = '[0,0,0]' WHERE id = 2");
+    sql("hurt/run.sqlite", "UPDATE evaluation SET f1 = 0 WHERE id = 2");
     expect(74, advice, "status @/hurt");
     expect(74, advice, "optimize @/hurt");
     expect(74, advice, "optimize @/hurt --max-evals 60 --force-settings"); /* read while the search is built of it */
@@ -275,61 +253,19 @@ static void test_a_damaged_run_says_what_its_tables_still_know_and_another_begin
     shell("rm hurt/run.sqlite* && touch hurt/run.sqlite");
     expect(74, advice, "export @/hurt --csv -");
     snprintf(words, sizeof words,
-             "optimize @/textbook.ini --new --out @/hurt --set search.start=%s/hurt/evaluations.csv --max-evals 60",
+             "optimize @/textbook.ini --new --out @/hurt --set search.start=%s/hurt/front.csv --max-evals 60",
              place.folder);
     free(output_of(words));
-    shell("cut -d, -f6-11 sound/evaluations.csv | head -13 > was; cut -d, -f6-11 hurt-2/evaluations.csv | head -13 | "
+    char *all = all_of("hurt-2");
+    write_in_place("all.csv", all);
+    free(all);
+    shell("cut -d, -f2-7 sound/front.csv | tail -n +2 | head -5 > was; cut -d, -f6-11 all.csv | tail -n +2 | head -5 | "
           "diff was -");
-    shell("rm hurt/evaluations.csv");
-    expect(74, "is empty, no database of a run; remove it, and the run begins again", "status @/hurt");
-    shell("rm hurt/run.sqlite");
+    shell("rm hurt/front.csv");
+    expect(74, "is empty, no database of a run; remove it and `lock`, and the run begins again", "status @/hurt");
+    shell("rm hurt/run.sqlite hurt/lock");
     free(output_of("optimize @/textbook.ini --out @/hurt"));
     assert_same_run("sound", "hurt");
-}
-
-/* -- an earlier format --------------------------------------------------------------------------------------------- */
-
-/* As it was before states and generations had digests, and those of evaluations were without kind and generation. */
-static void make_format_2(const char *name)
-{
-    char path[PATH_MAX], database[PATH_MAX], change[256];
-    Run run;
-    Err err = {0};
-    CHECK_OK(run_read(&run, path_of(name, path), &err), &err);
-    snprintf(database, sizeof database, "%s/run.sqlite", name);
-    for (size_t i = 0; i < run.table.n; i++) {
-        const long mark = (long)digest_kind(run.table.row[i].kind, run.table.row[i].generation);
-        snprintf(change, sizeof change, "UPDATE evaluation SET digest = (digest | %ld) - (digest & %ld) WHERE id = %ld",
-                 mark, mark, run.table.row[i].id);
-        sql(database, change);
-    }
-    run_free(&run);
-    sql(database,
-        "ALTER TABLE run DROP COLUMN digest; ALTER TABLE generation DROP COLUMN digest;"
-        "ALTER TABLE state RENAME TO new;"
-        "CREATE TABLE state(id INTEGER PRIMARY KEY CHECK (id = 1), generation INTEGER NOT NULL, bytes BLOB NOT "
-        "NULL); INSERT INTO state SELECT 1, generation, bytes FROM new ORDER BY generation DESC LIMIT 1;"
-        "DROP TABLE new; PRAGMA user_version = 2");
-}
-
-static void test_a_run_of_the_format_before_is_read_and_resumed(void **state)
-{
-    (void)state;
-    Said said;
-    shell("cp -r sound new && cp -r sound old");
-    make_format_2("old");
-    free(output_of("status @/old"));
-    assert_same_run("sound", "old");
-    run(&said, "optimize @/new --max-evals 60 --force-settings");
-    assert_int_equal(said.code, 0);
-    forget(&said);
-    run(&said, "optimize @/old --max-evals 60 --force-settings");
-    if (said.code != 0)
-        fail_msg("%s", said.err);
-    forget(&said);
-    assert_same_run("new", "old");
-    sql("old/run.sqlite", "UPDATE evaluation SET kind = 'infill' WHERE id = 2");
-    expect(74, "evaluation 2 is not what was written", "status @/old");
 }
 
 static int make_sound(void **state)
@@ -357,7 +293,6 @@ int main(void)
         cmocka_unit_test(test_a_damaged_state_gives_way_to_the_one_before_with_the_same_end),
         cmocka_unit_test(test_a_bit_in_the_text_of_a_table_is_found),
         cmocka_unit_test(test_a_damaged_run_says_what_its_tables_still_know_and_another_begins_with_it),
-        cmocka_unit_test(test_a_run_of_the_format_before_is_read_and_resumed),
     };
     return cmocka_run_group_tests_name("damage", tests, make_sound, clear_place);
 }

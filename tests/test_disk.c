@@ -6,7 +6,7 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 
-#include "store/lock.h"
+#include "store/folder.h"
 
 /* -- other processes, full disks, damage --------------------------------------------------------------------------- */
 
@@ -228,14 +228,14 @@ static void test_damage_is_found_on_opening_whatever_was_hit(void **state)
     overwrite("hurt/run.sqlite", 0, "this is a letter", 16);
     expect(74, "is no database of a run", "status @/hurt");
     assert_int_equal(truncate(path_of("hurt/run.sqlite", path), 0), 0);
-    expect(74, "is empty, no database of a run; evaluations.csv beside it has ", "optimize @/hurt");
+    expect(74, "is empty, no database of a run; --new --set search.start=", "optimize @/hurt");
     assert_int_equal(unlink(path_of("hurt/run.sqlite", path)), 0);
     assert_int_equal(mkdir(path, 0777), 0);
     expect(74, "hurt/run.sqlite: is no file", "status @/hurt");
     overwrite("sound/run.sqlite", 60, "\0\0\0\x63", 4); /* user_version */
-    expect(74, "has format 99, this program reads 3; a newer imtet wrote it", "status @/sound");
+    expect(74, "has format 99, this program reads 4; a newer imtet wrote it", "status @/sound");
     overwrite("sound/run.sqlite", 60, "\0\0\0\1", 4);
-    expect(74, "has format 1, this program reads 3; an older imtet wrote it", "status @/sound");
+    expect(74, "has format 1, this program reads 4; an older imtet wrote it", "status @/sound");
     expect(74, "an older imtet wrote it: only that one can resume it", "optimize @/sound");
     char *list = output_of("list @");
     assert_non_null(strstr(list, "unreadable"));
@@ -257,7 +257,7 @@ static void test_a_database_runs_nothing_and_needs_no_more_memory_than_its_size(
         "ALTER TABLE evaluation RENAME TO was; CREATE VIEW evaluation AS WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL "
         "SELECT i + 1 FROM n) SELECT i AS id, 0 AS generation, 'sampled' AS kind, 'ok' AS outcome, '' AS reason, 0.1 "
         "AS "
-        "seconds, x, f, spread, violation, extra FROM n, was WHERE was.id = 1",
+        "seconds, 0 AS violation, 0 AS digest, was.x1 FROM n, was WHERE was.id = 1",
         "ALTER TABLE state RENAME TO was; CREATE VIEW state AS SELECT 1 AS id, 0 AS generation, zeroblob(900000000) AS "
         "bytes",
         "CREATE TRIGGER more AFTER INSERT ON session BEGIN DELETE FROM evaluation; END",
@@ -319,7 +319,7 @@ static void test_readers_need_the_database_alone_and_the_files_come_back(void **
     (void)state;
     char command[512];
     free(output_of("optimize @/textbook.ini --max-evals 30 --set problem.noise=0 --out @/alone"));
-    char *front = read_in_place("alone/front.csv"), *all = read_in_place("alone/evaluations.csv");
+    char *front = read_in_place("alone/front.csv"), *all = all_of("alone");
     char *settings = read_in_place("alone/settings.ini"), *provenance = read_in_place("alone/provenance.json");
     snprintf(command, sizeof command, "cd '%s/alone' && rm *.csv *.ini *.json", place.folder);
     assert_int_equal(system(command), 0);
@@ -331,8 +331,8 @@ static void test_readers_need_the_database_alone_and_the_files_come_back(void **
     assert_int_equal(system(command), 0);
     free(output_of("polish @/another --design knee --evals 24"));
     free(output_of("optimize @/alone"));
-    char *again[] = {read_in_place("alone/front.csv"), read_in_place("alone/evaluations.csv"),
-                     read_in_place("alone/settings.ini"), read_in_place("alone/provenance.json")};
+    char *again[] = {read_in_place("alone/front.csv"), all_of("alone"), read_in_place("alone/settings.ini"),
+                     read_in_place("alone/provenance.json")};
     const char *const WANTED[] = {front, all, settings, provenance};
     for (int i = 0; i < 4; i++) {
         assert_string_equal(again[i], WANTED[i]);

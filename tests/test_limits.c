@@ -1,7 +1,7 @@
 /* search.limits that nothing keeps: an outcome with a name, not a failure of the program. */
 #include "runs.h"
 
-#include "store/nearest.h"
+#include "store/run.h"
 #include "study/study.h"
 
 /* f1 + f2 + f3 of dtlz2 is 1 at least on and above its front, the unit sphere: these limits cannot be kept. */
@@ -87,10 +87,10 @@ static void test_the_nearest_are_in_the_order_of_what_they_miss_without_failed_a
         at[i] = (RunPlace){.ok = i != 6};
     }
     const Run h = {.table = {.n = N, .row = row}, .place = at};
-    assert_int_equal(nearest_rows(&h, rows), NEAREST_MAX);
+    assert_int_equal(run_nearest(&h, rows), NEAREST_MAX);
     assert_memory_equal(rows, WANTED, sizeof WANTED);
     const Run few = {.table = {.n = 3, .row = row}, .place = at};
-    assert_int_equal(nearest_rows(&few, rows), 3);
+    assert_int_equal(run_nearest(&few, rows), 3);
     assert_int_equal(rows[0], 1);
     assert_int_equal(rows[2], 2);
 }

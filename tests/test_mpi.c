@@ -96,17 +96,11 @@ static void expect_not_said(const char *words)
 
 static void assert_same_files(const char *a, const char *b)
 {
-    static const char *const FILES[] = {"front.csv", "evaluations.csv"};
-    for (size_t i = 0; i < sizeof FILES / sizeof FILES[0]; i++) {
-        char name[2][64];
-        snprintf(name[0], sizeof name[0], "%s/%s", a, FILES[i]);
-        snprintf(name[1], sizeof name[1], "%s/%s", b, FILES[i]);
-        char *first = read_in_place(name[0]), *second = read_in_place(name[1]);
-        if (strcmp(first, second) != 0)
-            fail_msg("%s differs from %s", name[1], name[0]);
-        free(first);
-        free(second);
-    }
+    char *first = all_of(a), *second = all_of(b);
+    if (strcmp(first, second) != 0)
+        fail_msg("%s differs from %s", b, a);
+    free(first);
+    free(second);
 }
 
 /* The ranks are mpirun's children, in their order; how many there are. */
@@ -143,15 +137,13 @@ static size_t lines_in(const char *name)
     return n;
 }
 
-/* Until the run has a generation: evaluations.csv has a header and more. */
+/* Until the run has a generation. */
 static void wait_for_evaluations(const char *run)
 {
-    char name[64];
     const double until = now_s() + 60;
-    snprintf(name, sizeof name, "%s/evaluations.csv", run);
-    while (lines_in(name) < 10 && now_s() < until)
+    while (finished_in(run) < 9 && now_s() < until)
         rest(0.02);
-    assert_at_most(10, lines_in(name));
+    assert_at_most(9, finished_in(run));
     rest(0.3); /* into the next generation */
 }
 
@@ -218,7 +210,7 @@ static void test_asynchronous_with_one_worker_is_the_run_in_batches(void **state
     expect_code(launch(2, "optimize @/steady.ini --out @/one --set search.asynchronous=on"), 0);
     assert_same_files("batches", "one");
     expect_code(launch(4, "optimize @/steady.ini --out @/several --set search.asynchronous=on"), 0);
-    assert_int_equal(lines_in("several/evaluations.csv"), 151);
+    assert_int_equal(finished_in("several"), 150);
 }
 
 static void test_other_commands_give_their_tasks_to_the_ranks(void **state)
@@ -273,11 +265,11 @@ static void kill_and_resume(const char *study, int rank, int code)
     assert_int_equal(system(command), 0);
     const pid_t mpirun = launch(4, "optimize @/killed.ini --out @/killed");
     wait_for_evaluations("killed");
-    const size_t before = lines_in("killed/evaluations.csv");
+    const size_t before = finished_in("killed");
     kill(rank == MPIRUN ? mpirun : process_of(mpirun, rank), SIGKILL);
     assert_int_equal(code_of(mpirun), code);
     rest(rank == MPIRUN ? 2.0 : 0.0);
-    assert_at_most(before, lines_in("killed/evaluations.csv"));
+    assert_at_most(before, finished_in("killed"));
     if (rank > 0)
         expect_said("process rank 2");
     expect_not_said("stopped on request");
@@ -330,7 +322,7 @@ static void test_a_simulator_that_does_not_answer_is_a_timeout_on_a_rank_that_li
                                "objectives = 2\ntimeout_s = 0.5\n[search]\nmax_evals = 12\ninitial = 12\n"
                                "population = 12\nthreads = 1\n");
     expect_code(launch(4, "optimize @/deaf.ini --out @/deaf"), 0);
-    char *all = read_in_place("deaf/evaluations.csv");
+    char *all = all_of("deaf");
     int n = 0;
     for (const char *at = all; (at = strstr(at, ",timeout,")); at++)
         n++;

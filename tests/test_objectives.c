@@ -3,7 +3,6 @@
 
 #include <sys/stat.h>
 
-#include "store/database.h"
 #include "study/front_review.h"
 
 /* A short, cheap study of the tower. */
@@ -278,38 +277,6 @@ static void test_columns_stand_below_their_names_however_long_these_are(void **s
     free(said);
 }
 
-static void test_a_run_with_fewer_measures_is_read_and_goes_on(void **state)
-{
-    (void)state;
-    Database *d;
-    Err err = {0};
-    char path[PATH_MAX];
-    Run run;
-    CHECK_OK(database_open(&d, path_of("plain/run.sqlite", path), DATABASE_WRITE, &err), &err);
-    CHECK_OK(database_do(d, &err,
-                         "UPDATE evaluation SET digest = NULL, extra = '[' || json_extract(extra, '$[0]') || ',' || "
-                         "json_extract(extra, '$[1]') || ',' || json_extract(extra, '$[2]') || ']'",
-                         ""),
-             &err);
-    CHECK_OK(database_do(
-                 d, &err,
-                 "UPDATE run SET settings = replace(settings, 'objectives = auto' || char(10), ''), digest = NULL", ""),
-             &err);
-    database_close(d);
-    read_run("plain", &run);
-    assert_string_equal(run.settings->search.objectives, "auto");
-    for (size_t i = 0; i < run.table.n; i++) {
-        assert_true(extra_of(&run, i, "input_energy_j") > 0.0 && extra_of(&run, i, "impacts") >= 0.0);
-        assert_true(isnan(extra_of(&run, i, "drift_ratio")));
-    }
-    run_free(&run);
-    free(output_of("optimize @/plain --max-evals 34 --force-settings"));
-    read_run("plain", &run);
-    assert_int_equal(run.table.n, 34);
-    assert_less(0.0, extra_of(&run, 33, "drift_ratio"));
-    run_free(&run);
-}
-
 /* ---- the end of a study ------------------------------------------------------------------------------------------- */
 
 static void test_the_end_of_a_study_names_gaps_that_never_close(void **state)
@@ -375,7 +342,6 @@ int main(void)
         cmocka_unit_test(test_names_that_are_no_results_are_refused_with_the_words_there_are),
         cmocka_unit_test(test_four_storeys_are_not_searched_for_modes_that_they_do_not_have),
         cmocka_unit_test(test_columns_stand_below_their_names_however_long_these_are),
-        cmocka_unit_test(test_a_run_with_fewer_measures_is_read_and_goes_on),
         cmocka_unit_test(test_the_end_of_a_study_names_gaps_that_never_close),
         cmocka_unit_test(test_gaps_on_their_bounds_are_counted_floor_by_floor),
     };

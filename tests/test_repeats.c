@@ -87,7 +87,7 @@ static void test_the_exports_and_status_tell_of_repeats(void **state)
     assert_non_null(strstr(front, ",f1,f2,f1_sd,f2_sd,replicates\n"));
     free(front);
     free(exported);
-    char *all = read_in_place("whole/evaluations.csv"), *said = output_of("status @/whole");
+    char *all = all_of("whole"), *said = output_of("status @/whole");
     size_t n = 0;
     for (const char *at = all; (at = strstr(at, ",repeat,")); at++)
         n++;

@@ -52,14 +52,7 @@ static int is_there(const char *name)
 /* A run in which nothing was evaluated is begun again. */
 static int has_evaluations(const char *run)
 {
-    char name[64];
-    snprintf(name, sizeof name, "%s/evaluations.csv", run);
-    if (!is_there(name))
-        return 0;
-    char *text = read_in_place(name), *end = strchr(text, '\n');
-    const int has = end && end[1];
-    free(text);
-    return has;
+    return finished_in(run) > 0;
 }
 
 static void finish_alone(void)

@@ -115,22 +115,20 @@ static void test_more_simulations_go_on_the_same_whenever_they_are_granted(void 
     StudySummary summary;
     Err err = {0};
     int left = 17;
-    const StudyOptions forced = {.force = 1}, stopped = {.stop = stop_after, .user = &left};
+    const StudyOptions stopped = {.stop = stop_after, .user = &left};
     Settings late = settings_of(TEXTBOOK, "late"), early = settings_of(TEXTBOOK, "early");
     assert_int_equal(run_by_pieces(&late, INT_MAX, &summary), 1);
     assert_int_equal(study_run(&early, &stopped, &summary, NULL, &err), STATUS_STOPPED);
     late.search.max_evals = early.search.max_evals = 60;
-    assert_int_equal(study_run(&late, &(StudyOptions){0}, &summary, NULL, &err), STATUS_BAD_DATA);
-    assert_non_null(strstr(err.text, "search.max_evals is 40 there, now 60; --force-settings"));
-    CHECK_OK(study_run(&late, &forced, &summary, NULL, &err), &err);
+    CHECK_OK(study_run(&late, &(StudyOptions){0}, &summary, NULL, &err), &err);
     assert_int_equal(summary.n_simulated, 60);
     early.search.threads = 2;
-    CHECK_OK(study_run(&early, &forced, &summary, NULL, &err), &err);
+    CHECK_OK(study_run(&early, &(StudyOptions){0}, &summary, NULL, &err), &err);
     assert_int_equal(summary.n_simulated, 60);
     grant_and_die(&late, 62);
     CHECK_OK(study_run(&late, &(StudyOptions){0}, &summary, NULL, &err), &err);
     assert_int_equal(summary.n_simulated, 62);
-    char *a = read_in_place("late/evaluations.csv"), *b = read_in_place("early/evaluations.csv");
+    char *a = all_of("late"), *b = all_of("early");
     const char *end = a;
     for (int i = 0; i <= 40; i++)
         end = strchr(end, '\n') + 1;
@@ -167,10 +165,14 @@ static void test_a_search_that_another_version_interrupted_is_refused_before_any
     const Settings s = settings_of(TEXTBOOK, "version");
     assert_int_equal(study_run(&s, &(StudyOptions){.stop = stop_after, .user = &left}, &summary, NULL, &err),
                      STATUS_STOPPED);
+    Run stopped;
+    CHECK_OK(run_read(&stopped, path_of("version", path), &err), &err);
+    snprintf(command, sizeof command,
+             "DELETE FROM state WHERE generation < %ld; UPDATE state SET bytes = x'0100000000000000', digest = %ld",
+             stopped.state_generation, run_state_digest(stopped.state_generation, "\1\0\0\0\0\0\0", 8));
+    run_free(&stopped);
     assert_int_equal(sqlite3_open(path_of("version/run.sqlite", path), &db), SQLITE_OK);
-    assert_int_equal(
-        sqlite3_exec(db, "UPDATE state SET bytes = x'0100000000000000', digest = NULL, front = NULL", NULL, NULL, NULL),
-        SQLITE_OK);
+    assert_int_equal(sqlite3_exec(db, command, NULL, NULL, NULL), SQLITE_OK);
     assert_int_equal(sqlite3_close(db), SQLITE_OK);
     snprintf(command, sizeof command, "cp -r %s/version %s/as-it-was", place.folder, place.folder);
     assert_int_equal(system(command), 0);
@@ -190,7 +192,7 @@ static void test_other_settings_are_refused_key_by_key_and_limits_can_be_forced(
                  "search.generations: 1000 in the run, now 900 (a limit)\n");
     refused_with(&s, 1, "search.seed is 1 there", "search.seed: 1 in the run, now 5\n");
     s.search.seed = 1;
-    refused_with(&s, 0, "--force-settings changes limits", "search.generations");
+    refused_with(&s, 0, "--force-settings lowers limits", "search.generations");
     s.search.max_evals = 39;
     refused_with(&s, 1, "search.max_evals = 39 is less than the 40 simulations that it holds", "search.max_evals");
     s.search.max_evals = 40;
@@ -384,6 +386,30 @@ static void test_hours_are_obeyed_within_a_batch(void **state)
 
 /* -- readers, designs from outside, failures ----------------------------------------------------------------------- */
 
+/* The designs of two searches are the same; the first has n_polished more, with ids of their own. */
+static void assert_searched_as(const char *a, const char *b, size_t n_polished)
+{
+    Run first, second;
+    Err err = {0};
+    char path[PATH_MAX];
+    CHECK_OK(run_read(&first, path_of(a, path), &err), &err);
+    CHECK_OK(run_read(&second, path_of(b, path), &err), &err);
+    const size_t n = run_first_polished(&first), polished = first.table.n - n;
+    assert_int_equal(polished, n_polished);
+    assert_int_equal(n, first.n_finished);
+    const size_t common = n < second.table.n ? n : second.table.n;
+    assert_memory_equal(first.table.x, second.table.x, common * first.schema.n_var * sizeof *first.table.x);
+    assert_memory_equal(first.table.f, second.table.f, common * first.schema.n_obj * sizeof *first.table.f);
+    for (size_t i = 0; i < n; i++) {
+        long id = (long)i + 1;
+        for (size_t p = n; p < first.table.n; p++)
+            id += first.table.row[p].id <= id;
+        assert_int_equal(first.table.row[i].id, id);
+    }
+    run_free(&first);
+    run_free(&second);
+}
+
 /* One that beats everything, one that is beaten, one that failed; then the run goes on as if they were not there. */
 static void test_polished_designs_join_the_front_but_not_the_search(void **state)
 {
@@ -404,8 +430,11 @@ static void test_polished_designs_join_the_front_but_not_the_search(void **state
         {.x = x, .f = worse, .outcome = OUTCOME_OK},
         {.x = x, .outcome = OUTCOME_DEAD, .reason = "it died"},
     };
-    CHECK_OK(add_to_run(path_of("polished", path), 3, designs, &first, &err), &err);
-    assert_int_equal(first, POLISHED_FIRST);
+    CHECK_OK(run_read(&saved, path_of("polished", path), &err), &err);
+    const long last = saved.table.row[saved.table.n - 1].id;
+    run_free(&saved);
+    CHECK_OK(add_to_run(path, 3, designs, &first, &err), &err);
+    assert_int_equal(first, last + 1);
     char *front = output_of("export @/polished --csv -");
     snprintf(id, sizeof id, "\n%ld,", first);
     assert_non_null(strstr(front, id));
@@ -419,42 +448,18 @@ static void test_polished_designs_join_the_front_but_not_the_search(void **state
     run_free(&saved);
 
     CHECK_OK(study_run(&s, &(StudyOptions){0}, &summary, NULL, &err), &err);
-    char *all = read_in_place("polished/evaluations.csv"), *without = read_in_place("textbook-whole/evaluations.csv");
-    assert_memory_equal(all, without, strlen(without));
-    assert_non_null(strstr(all, ",polished,dead,it died,0.5,"));
-    free(all);
-    free(without);
-    char *end = output_of("export @/polished --csv -");
-    assert_int_equal(strtol(strchr(end, '\n'), NULL, 10), POLISHED_FIRST);
+    assert_searched_as("polished", "textbook-whole", 3);
+    char *end = output_of("export @/polished --csv -"), *all = read_in_place("polished/front.csv");
+    assert_int_equal(strtol(strchr(end, '\n'), NULL, 10), first);
     assert_ptr_equal(strchr(strstr(end, id) + 1, '\n')[1], 0);
-    free(end);
-    all = read_in_place("polished/front.csv");
     assert_string_equal(all, front);
+    free(end);
     free(all);
     free(front);
-    s.search.max_evals = 2000000; /* numbers of simulations would reach those of the polished designs */
-    assert_int_equal(study_run(&s, &(StudyOptions){.force = 1}, &summary, NULL, &err), STATUS_BAD_DATA);
-    assert_non_null(strstr(err.text, "its polished designs are numbered from 1000001"));
-}
-
-static void test_polished_designs_of_a_run_planned_for_more_than_a_million_are_numbered_beyond(void **state)
-{
-    (void)state;
-    char path[PATH_MAX];
-    long first;
-    Err err = {0};
-    StudySummary summary;
-    int left = 20;
-    double x[6] = {0.5, 0.5, 0.5, 0.5, 0.5, 0.5}, f[3] = {-9, -9, -9};
-    Settings s = settings_of(TEXTBOOK, "many");
-    s.search.max_evals = 2000000;
-    assert_int_equal(study_run(&s, &(StudyOptions){.stop = stop_after, .user = &left}, &summary, NULL, &err),
-                     STATUS_STOPPED);
-    const Evaluation design = {.x = x, .f = f, .outcome = OUTCOME_OK};
-    for (long i = 0; i < 2; i++) {
-        CHECK_OK(add_to_run(path_of("many", path), 1, &design, &first, &err), &err);
-        assert_int_equal(first, POLISHED_FIRST_OF_MANY + i);
-    }
+    s.search.max_evals = 60; /* a finished run with polished designs goes on */
+    CHECK_OK(study_run(&s, &(StudyOptions){0}, &summary, NULL, &err), &err);
+    assert_int_equal(summary.n_simulated, 60);
+    assert_searched_as("polished", "early", 3);
 }
 
 static void test_one_failure_in_ten_is_survived_and_never_on_the_front(void **state)
@@ -560,7 +565,6 @@ int main(void)
         cmocka_unit_test(test_more_simulations_go_on_the_same_whenever_they_are_granted),
         cmocka_unit_test(test_the_front_of_every_generation_can_be_told),
         cmocka_unit_test(test_polished_designs_join_the_front_but_not_the_search),
-        cmocka_unit_test(test_polished_designs_of_a_run_planned_for_more_than_a_million_are_numbered_beyond),
         cmocka_unit_test(test_a_search_that_another_version_interrupted_is_refused_before_anything_is_changed),
         cmocka_unit_test(test_other_settings_are_refused_key_by_key_and_limits_can_be_forced),
         cmocka_unit_test(test_a_record_that_has_changed_is_another_setting),

@@ -13,6 +13,7 @@
 #include "motion/motion_scale.h"
 #include "motion/motion_source.h"
 #include "settings/settings.h"
+#include "store/tables.h"
 #include "sim/sim.h"
 #include "evaluate/adapter.h"
 
@@ -321,6 +322,7 @@ static void open_study(Check *c, const Settings *s)
     if (!note(c, adapter_open(&adapter, s, &e), s->problem.kind == PROBLEM_TOWER ? "scene" : "problem", &e))
         return;
     const Schema *schema = adapter_schema(adapter);
+    note(c, tables_have_room(schema, &e), "store", &e);
     if (s->problem.kind == PROBLEM_TOWER) {
         describe_objectives(c, schema, s->search.objectives,
                             schema->design.n_bumpers > 0 || s->contact.bumper_stiffness_n_m > 0);

@@ -34,6 +34,11 @@ int database_in_transaction(const Database *d)
     return sqlite3_get_autocommit(d->db) == 0;
 }
 
+int database_changes(const Database *d)
+{
+    return sqlite3_changes(d->db);
+}
+
 const char *column_text(sqlite3_stmt *row, int column)
 {
     const char *text = (const char *)sqlite3_column_text(row, column);

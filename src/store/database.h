@@ -40,6 +40,7 @@ const char *database_path(const Database *d);
 
 /* A full disk or refused memory makes SQLite roll the whole transaction back by itself: asked after every fault. */
 int database_in_transaction(const Database *d);
+int database_changes(const Database *d); /* rows that the last statement changed */
 /* "FILE: is damaged: ...", STATUS_IO with SUB_DAMAGED. */
 __attribute__((format(printf, 3, 4))) Status database_damaged(const Database *d, Err *err, const char *format, ...);
 

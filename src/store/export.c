@@ -290,7 +290,7 @@ Status export_json(FILE *f, const Run *run, Err *err)
     int failed = put_value(f, "{\"settings\":", json_settings(run->settings));
     failed |= put_value(f, ",\n\"columns\":", json_columns(&run->schema));
     fputs(",\n\"evaluations\":[", f);
-    TRY(put_all(f, &(Many){run, NULL, NULL}, run->table.n, err));
+    failed |= put_all(f, &(Many){run, NULL, NULL}, run->table.n, err) != STATUS_OK;
     fputs("],\n\"generations\":[", f);
     for (size_t g = 0; g < run->n_generations; g++)
         failed |= put_value(f, g == 0 ? "\n" : ",\n", json_generation(&run->generation[g]));

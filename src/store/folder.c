@@ -63,7 +63,7 @@ Status folder_advise(const char *path, Status status, Err *err)
         return fail_sub(err, status, err->sub,
                         "%.250s; --new --set search.start=%s begins another run with its last front", err->text, front);
     return err->sub == SUB_EMPTY
-               ? fail_sub(err, status, err->sub, "%.250s; remove it, and the run begins again", err->text)
+               ? fail_sub(err, status, err->sub, "%.250s; remove it and `lock`, and the run begins again", err->text)
                : status;
 }
 

@@ -272,10 +272,13 @@ Status rows_insert(Database *db, const Schema *schema, const Evaluation *e, Err 
 Status rows_finish(Database *db, long id, EvaluationKind kind, long generation, Err *err)
 {
     const long digest = (long)digest_kind(kind, generation);
-    return database_do(db, err,
-                       "UPDATE evaluation SET kind = ?, generation = ?, digest = (digest | ?) - (digest & ?) "
-                       "WHERE id = ?",
-                       "tiiii", kind_word(kind), generation, digest, digest, id);
+    TRY(database_do(db, err,
+                    "UPDATE evaluation SET kind = ?, generation = ?, digest = (digest | ?) - (digest & ?) WHERE id = ?",
+                    "tiiii", kind_word(kind), generation, digest, digest, id));
+    return database_changes(db) == 1
+               ? STATUS_OK
+               : fail(err, STATUS_INTERNAL, "%s: the search knows of evaluation %ld, which is not stored",
+                      database_path(db), id);
 }
 
 Status rows_unfinish(Database *db, long generation, Err *err)

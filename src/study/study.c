@@ -528,8 +528,14 @@ static Status work(Study *study, Err *err)
 /* Its front.csv may have been removed. */
 static Status take_finished(Study *study, Err *err)
 {
-    TRY(store_read(study->store, study->options->run, err));
-    return export_front(study->options->run, err);
+    Run run;
+    TRY(store_read(study->store, &run, err));
+    const Status status = export_front(&run, err);
+    if (status == STATUS_OK && study->options->run)
+        *study->options->run = run;
+    else
+        run_free(&run);
+    return status;
 }
 
 Status study_run(const Settings *s, const StudyOptions *options, StudySummary *summary, FILE *differences, Err *err)
@@ -542,7 +548,7 @@ Status study_run(const Settings *s, const StudyOptions *options, StudySummary *s
     Status status = prepare(&study, s, err);
     if (status == STATUS_OK && !is_over(&study))
         status = work(&study, err);
-    else if (status == STATUS_OK && options->run)
+    else if (status == STATUS_OK)
         status = take_finished(&study, err);
     if (status == STATUS_OK)
         status = find_baselines(&study, err);
