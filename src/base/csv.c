@@ -29,7 +29,7 @@ static Status read_stream(FILE *f, const char *path, size_t largest, char **text
         (*text)[*length] = 0;
         if (ferror(f))
             return fail(err, STATUS_MISSING, "%s: cannot be read: %s", path, strerror(errno));
-        if (*length < capacity)
+        if (*length < capacity && *length <= largest)
             return STATUS_OK;
     }
     return fail(err, STATUS_BAD_DATA, "%s: larger than %zu MiB; is it the right file?", path, largest >> 20);
