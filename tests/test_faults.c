@@ -28,7 +28,7 @@ static const Deed DEEDS[] = {
     {"export @/done --csv @/run", "run"},
     {"export @/done --json", NULL},
     {"report @/done --out @/run --record builtin:sylmar-like", "run"},
-    {"plot @/done --out @/run --record builtin:sylmar-like", "run/gaps.svg"},
+    {"report @/done --pictures @/run --record builtin:sylmar-like", "run/gaps.svg"},
     {"status @/done", NULL},
     {STUDY("@/run"), "run/front.csv"},
 };

@@ -53,7 +53,7 @@ static void test_limits_that_nothing_keeps_end_with_the_nearest_designs(void **s
     char *front = read_in_place("unmet/front.csv");
     assert_string_equal(strchr(front, '\n'), "\n");
     free(front);
-    static const char *const USES[] = {"choose @/unmet", "report @/unmet", "plot @/unmet"};
+    static const char *const USES[] = {"choose @/unmet", "report @/unmet", "report @/unmet --pictures @/p"};
     for (size_t i = 0; i < sizeof USES / sizeof USES[0]; i++) {
         expect(69, "none of 40 designs keeps f1<=0.2,f2<=0.2,f3<=0.2", USES[i]);
         expect(69, "unmet/nearest.csv", USES[i]);

@@ -44,7 +44,7 @@ static int make_run(void **state)
 
 TEST(every_command_says_which_record_was_moved_and_what_to_do)
 {
-    static const char *const COMMANDS[] = {"report @/run", "plot @/run", "polish @/run --design knee",
+    static const char *const COMMANDS[] = {"report @/run", "report @/run --pictures @/run/pictures", "polish @/run --design knee",
                                            "optimize @/run --max-evals 32 --force-settings"};
     for (size_t i = 0; i < sizeof COMMANDS / sizeof COMMANDS[0]; i++) {
         char with_one[256];
@@ -83,7 +83,7 @@ TEST(another_content_does_not_take_the_place_of_a_record)
 TEST(records_are_taken_from_where_they_are_now)
 {
     free(output_of("report @/run " BOTH));
-    free(output_of("polish @/run --design knee --evals 6 --members 1 " BOTH));
+    free(output_of("polish @/run --design knee --evals 6 --replicates 1 " BOTH));
     free(output_of("optimize @/run --max-evals 32 --force-settings " BOTH));
     free(output_of("report @/run")); /* the run knows its new places from there on */
     free(output_of("optimize @/run"));

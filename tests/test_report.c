@@ -342,7 +342,7 @@ static void expect_one_opening(const char *before, const char *run, const char *
         fail_msg("%s: opens run.sqlite %zu times", arguments, n);
 }
 
-/* report and plot: where their files are looked at. */
+/* report: where its files are looked at. */
 TEST(a_command_opens_the_database_of_a_run_once)
 {
     if (SANITIZED)
@@ -448,8 +448,11 @@ TEST(pictures_are_drawn_as_svg_and_png_each)
         print_message("gnuplot is not installed: no pictures to look at\n");
         skip();
     }
-    expect_one_opening("plot", "tower", "");
-    assert_int_equal(imtet_on("plot", "dtlz", ""), 0);
+    char pictures[300];
+    snprintf(pictures, sizeof pictures, "--pictures %s/tower/pictures", folder);
+    expect_one_opening("report", "tower", pictures);
+    snprintf(pictures, sizeof pictures, "--pictures %s/dtlz/pictures", folder);
+    assert_int_equal(imtet_on("report", "dtlz", pictures), 0);
     for (size_t i = 0; i < sizeof NAMES / sizeof NAMES[0]; i++) {
         char svg[32], png[32];
         snprintf(svg, sizeof svg, "%s.svg", NAMES[i]);
@@ -469,7 +472,9 @@ TEST(names_that_begin_like_a_formula_are_labels_of_pictures)
 {
     if (shell("command -v gnuplot >/dev/null") != 0)
         skip();
-    assert_int_equal(imtet_on("plot", "names", ""), 0);
+    char pictures[300];
+    snprintf(pictures, sizeof pictures, "--pictures %s/names/pictures", folder);
+    assert_int_equal(imtet_on("report", "names", pictures), 0);
     char *svg = text_of(in_folder("names/pictures/front.svg"));
     assert_non_null(strstr(svg, ">-d<"));
     free(svg);

@@ -15,7 +15,6 @@
     X(POLISH)                                                                                                          \
     X(REPORT)                                                                                                          \
     X(SERVE)                                                                                                           \
-    X(PLOT)                                                                                                            \
     X(BUILDING)                                                                                                        \
     X(SPECTRUM)                                                                                                        \
     X(PROBLEM)                                                                                                         \
