@@ -72,6 +72,50 @@ TEST(a_run_ends_before_its_job_and_goes_on_in_the_next)
     free(settings);
 }
 
+static void write_program(const char *name, const char *text)
+{
+    char *path = in_place(name);
+    write_in_place(name, text);
+    assert_int_equal(chmod(path, 0755), 0);
+    free(path);
+}
+
+static int status_of_wrapper(int mpirun_status)
+{
+    char command[4096];
+    snprintf(
+        command, sizeof command,
+        "STATUS=%d PATH='%s':\"$PATH\" scripts/imtet-mpirun -n 2 '%s/imtet_mpi' optimize x.ini --out '%s/lost_run' "
+        ">/dev/null 2>&1",
+        mpirun_status, place.folder, place.folder, place.folder);
+    const int status = system(command);
+    assert_true(WIFEXITED(status));
+    return WEXITSTATUS(status);
+}
+
+/* 205: Open MPI, where the daemon of a node is gone. */
+TEST(a_lost_node_is_75_until_three_attempts_have_brought_no_evaluation)
+{
+    static const int LISTED[] = {0, 2, 65, 66, 69, 70, 71, 74, 75};
+    char *folder = in_place("lost_run");
+    assert_int_equal(mkdir(folder, 0755), 0);
+    free(folder);
+    write_program("mpirun", "#!/bin/sh\nexit $STATUS\n");
+    write_program("imtet_mpi", "#!/bin/sh\n[ \"$1\" = status ] && cat \"$2/n\"\n");
+    write_in_place("lost_run/n", "{\n  \"simulated\": 40,\n}\n");
+    for (int i = 0; i < 3; i++)
+        assert_int_equal(status_of_wrapper(205), 75);
+    assert_int_equal(status_of_wrapper(137), 70);
+    write_in_place("lost_run/n", "{\n  \"simulated\": 41,\n}\n");
+    assert_int_equal(status_of_wrapper(1), 75);
+    assert_int_equal(status_of_wrapper(139), 70);
+    for (size_t i = 0; i < sizeof LISTED / sizeof LISTED[0]; i++)
+        assert_int_equal(status_of_wrapper(LISTED[i]), LISTED[i]);
+    for (int i = 0; i < 3; i++)
+        assert_int_equal(status_of_wrapper(205), 75);
+    assert_int_equal(status_of_wrapper(205), 70);
+}
+
 int main(void)
 {
     return RUN_TESTS(make_place, clear_place);

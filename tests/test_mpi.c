@@ -474,28 +474,13 @@ static void test_a_message_that_is_cut_or_of_no_ticket_is_none(void **state)
 {
     (void)state;
     enum { PART = 24, TICKETS = 4 };
-    char bytes[4096];
     const size_t whole = sizeof(DoneMessage) + PART;
     const DoneMessage right = {.ticket = 3, .status = STATUS_OK}, bad = {.ticket = 1, .status = STATUS_BAD_DATA};
-    Buffer b = {.bytes = bytes, .n_max = sizeof bytes};
-    DoneMessage m;
-    const char *part;
-    memset(bytes, 0, sizeof bytes);
-    buffer_put(&b, &right, sizeof right);
-    b.n = 0;
-    assert_int_equal(buffer_get_done(&b, whole, PART, TICKETS, &m, &part), 1);
-    assert_true(m.ticket == 3 && part == bytes + sizeof m);
-    assert_int_equal(buffer_get_done(&b, whole, PART, TICKETS, &m, &part), 0);
-    for (size_t n = 1; n < whole; n++) {
-        b.n = 0;
-        assert_int_equal(buffer_get_done(&b, n, PART, TICKETS, &m, &part), -1);
-    }
-    b.n = 0;
-    assert_int_equal(buffer_get_done(&b, whole, PART, 3, &m, &part), -1);
-    b.n = 0;
-    buffer_put(&b, &bad, sizeof bad); /* its reason is longer than a part */
-    b.n = 0;
-    assert_int_equal(buffer_get_done(&b, whole, PART, TICKETS, &m, &part), -1);
+    for (size_t n = 0; n < whole + 2; n++)
+        assert_int_equal(is_done_message(&right, n, PART, TICKETS), n == whole);
+    assert_false(is_done_message(&right, whole, PART, 3));
+    assert_false(is_done_message(&bad, whole, PART, TICKETS)); /* its reason is longer than a part */
+    assert_true(is_done_message(&bad, sizeof bad + WHY_BYTES, PART, TICKETS));
 }
 
 static int prepare(void **state)

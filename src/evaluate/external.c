@@ -7,11 +7,9 @@
 #include <math.h>
 #include <poll.h>
 #include <signal.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/pidfd.h>
-#include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -19,8 +17,7 @@
 #include "base/list.h"
 #include "base/visible.h"
 #include "evaluate/threads.h"
-#include "evaluate/guard.h"
-#include "evaluate/spawner.h"
+#include "evaluate/helper.h"
 
 enum { LINE_MAX_BYTES = 1 << 20, READ_BYTES = 1 << 16, WORDS_MAX = 128, GRACE_MS = 1000, LOOK_MS = 200 };
 
@@ -33,8 +30,6 @@ static const double LAST_ANSWERS_S = 5.0;
 typedef struct {
     pid_t pid;   /* 0: not running */
     int its_end; /* readable when the process has ended (pidfd); -1: the system has none */
-    Guard *guard;
-    size_t slot; /* the guard's for its process group */
     int in, out;
     char *line; /* (LINE_MAX_BYTES) what has come of an answer */
     size_t n_line;
@@ -51,12 +46,10 @@ typedef struct {
 typedef struct {
     char *words[WORDS_MAX + 1], *text; /* the command, NULL at its end */
     size_t n_var, n_obj, n_workers, part_size;
-    int has_levels;
     double timeout_s;
     double *lower, *upper; /* (n_var) */
     Worker *worker;        /* (n_workers) */
-    Guard guard;
-    Spawner spawner;
+    Helper helper;
 } External;
 
 /* -- the command --------------------------------------------------------------------------------------------------- */
@@ -98,6 +91,17 @@ static Status split_command(External *e, const char *command, Err *err)
 
 /* -- one process --------------------------------------------------------------------------------------------------- */
 
+static size_t slot_of(const External *e, const Worker *w)
+{
+    return (size_t)(w - e->worker);
+}
+
+/* Where the system has no pidfd, the end of its output tells. */
+static int has_ended(const Worker *w)
+{
+    return w->its_end >= 0 && poll(&(struct pollfd){w->its_end, POLLIN, 0}, 1, 0) > 0;
+}
+
 static Status worker_start(External *e, Worker *w, Err *err)
 {
     int to_child[2], from_child[2];
@@ -108,7 +112,7 @@ static Status worker_start(External *e, Worker *w, Err *err)
         close(to_child[1]);
         return fail(err, STATUS_INTERNAL, "no pipe for a worker: %s", strerror(errno));
     }
-    const int failed = spawner_run(&e->spawner, e->words, to_child[0], from_child[1], &w->pid);
+    const int failed = helper_run(&e->helper, slot_of(e, w), to_child[0], from_child[1], &w->pid);
     close(to_child[0]);
     close(from_child[1]);
     w->in = to_child[1];
@@ -119,7 +123,6 @@ static Status worker_start(External *e, Worker *w, Err *err)
         close(w->out);
         return fail(err, STATUS_BAD_DATA, "problem.command: %s cannot be started: %s", e->words[0], strerror(failed));
     }
-    guard_tell(w->guard, w->slot, w->pid);
     w->its_end = pidfd_open(w->pid, 0);
     w->n_answered = 0;
     fcntl(w->in, F_SETFL, O_NONBLOCK);
@@ -127,25 +130,18 @@ static Status worker_start(External *e, Worker *w, Err *err)
     return STATUS_OK;
 }
 
-static void worker_forget(Worker *w)
+/* kill_it 0: it has ended by itself. */
+static void worker_end(External *e, Worker *w, int kill_it)
 {
-    guard_tell(w->guard, w->slot, 0);
+    if (w->pid == 0)
+        return;
+    helper_release(&e->helper, slot_of(e, w), kill_it);
     close(w->in);
     close(w->out);
     if (w->its_end >= 0)
         close(w->its_end);
     w->its_end = -1;
     w->pid = 0;
-}
-
-static void worker_kill(Worker *w)
-{
-    if (w->pid == 0)
-        return;
-    kill(-w->pid, SIGKILL);
-    while (waitpid(w->pid, NULL, 0) < 0 && errno == EINTR)
-        ;
-    worker_forget(w);
 }
 
 /* write() without SIGPIPE: a worker that has gone is an answer, not a signal for the program. */
@@ -169,8 +165,8 @@ static ssize_t write_quietly(int fd, const char *text, size_t n)
 
 /* -- one request --------------------------------------------------------------------------------------------------- */
 
-__attribute__((format(printf, 4, 5))) static void settle(Worker *w, Outcome outcome, int kill_it, const char *format,
-                                                         ...)
+__attribute__((format(printf, 5, 6))) static void settle(External *e, Worker *w, Outcome outcome, int kill_it,
+                                                         const char *format, ...)
 {
     ExternalAnswer *a = w->answer;
     va_list list;
@@ -181,7 +177,7 @@ __attribute__((format(printf, 4, 5))) static void settle(Worker *w, Outcome outc
     a->seconds = clock_seconds() - w->asked;
     w->answer = NULL;
     if (kill_it)
-        worker_kill(w);
+        worker_end(e, w, 1);
 }
 
 static Status write_request(External *e, Worker *w, const Task *task, Err *err)
@@ -192,14 +188,12 @@ static Status write_request(External *e, Worker *w, const Task *task, Err *err)
     FILE *f = open_memstream(&w->request, &size);
     if (!f)
         return fail(err, STATUS_NO_MEMORY, "no memory for a request");
-    fprintf(f, "{\"id\":%ld,", w->id);
-    if (e->has_levels)
-        fprintf(f, "\"level\":%zu,", task->part);
-    fputs("\"x\":[", f);
+    fprintf(f, "{\"id\":%ld,\"x\":[", w->id);
     for (size_t d = 0; d < e->n_var; d++)
         fprintf(f, "%s%.17g", d ? "," : "", task->x[d]);
     fputs("]}\n", f);
-    if (fclose(f) != 0)
+    const int is_cut = ferror(f);
+    if (fclose(f) != 0 || is_cut)
         return fail(err, STATUS_NO_MEMORY, "no memory for a request");
     w->n_request = size;
     w->n_sent = 0;
@@ -208,8 +202,8 @@ static Status write_request(External *e, Worker *w, const Task *task, Err *err)
 
 static Status send_request(External *e, Worker *w, const Task *task, Err *err)
 {
-    if (w->pid && waitpid(w->pid, NULL, WNOHANG) == w->pid)
-        worker_forget(w); /* it ended after its last answer: no fault of any design */
+    if (w->pid && has_ended(w))
+        worker_end(e, w, 0); /* it ended after its last answer: no fault of any design */
     if (w->pid == 0)
         TRY(worker_start(e, w, err));
     w->id = task->id;
@@ -284,7 +278,7 @@ static void blank_non_numbers(char *line)
     }
 }
 
-static void take_answer(const External *e, Worker *w, char *line, size_t length)
+static void take_answer(External *e, Worker *w, char *line, size_t length)
 {
     json_error_t error;
     blank_non_numbers(line);
@@ -293,23 +287,23 @@ static void take_answer(const External *e, Worker *w, char *line, size_t length)
     const char *reason = json_is_string(why) ? json_string_value(why) : "error";
     w->n_answered++;
     if (!json_is_object(o) || !json_is_number(id))
-        settle(w, OUTCOME_GARBLED, 1, "wrote what is no answer: %.*s", visible_cut(line, 60), line);
+        settle(e, w, OUTCOME_GARBLED, 1, "wrote what is no answer: %.*s", visible_cut(line, 60), line);
     else if (json_number_value(id) != (double)w->id)
-        settle(w, OUTCOME_GARBLED, 1, "answered id %.15g instead of %ld", json_number_value(id), w->id);
+        settle(e, w, OUTCOME_GARBLED, 1, "answered id %.15g instead of %ld", json_number_value(id), w->id);
     else if (why && !json_is_null(why))
-        settle(w, OUTCOME_ERROR, 0, "%.*s", visible_cut(reason, 120), reason);
+        settle(e, w, OUTCOME_ERROR, 0, "%.*s", visible_cut(reason, 120), reason);
     else if (!json_is_array(f))
-        settle(w, OUTCOME_GARBLED, 1, "neither f nor error in the answer: %.*s", visible_cut(line, 60), line);
+        settle(e, w, OUTCOME_GARBLED, 1, "neither f nor error in the answer: %.*s", visible_cut(line, 60), line);
     else if (!take_objectives(e, f, w->answer->f))
-        settle(w, OUTCOME_NOT_FINITE, 0, "f is not %zu finite numbers", e->n_obj);
+        settle(e, w, OUTCOME_NOT_FINITE, 0, "f is not %zu finite numbers", e->n_obj);
     else
-        settle(w, OUTCOME_OK, 0, "%s", "");
+        settle(e, w, OUTCOME_OK, 0, "%s", "");
     json_decref(o);
 }
 
 /* The first whole line in the buffer that is not blank is the answer; what follows it waits for the next request, which it
  * spoils. */
-static void look_for_answer(const External *e, Worker *w)
+static void look_for_answer(External *e, Worker *w)
 {
     size_t used = 0;
     for (char *end; w->answer && (end = memchr(w->line + used, '\n', w->n_line - used)) != NULL;) {
@@ -323,22 +317,22 @@ static void look_for_answer(const External *e, Worker *w)
     memmove(w->line, w->line + used, w->n_line - used);
     w->n_line -= used;
     if (w->answer && w->n_line == LINE_MAX_BYTES)
-        settle(w, OUTCOME_GARBLED, 1, "wrote a line of more than %d bytes", LINE_MAX_BYTES);
+        settle(e, w, OUTCOME_GARBLED, 1, "wrote a line of more than %d bytes", LINE_MAX_BYTES);
 }
 
 /* A process that ends after its answers, as one that starts itself anew now and then, may be asked once more before it is
  * gone: no fault of the design, which another process gets. */
-static void take_end(Worker *w)
+static void take_end(External *e, Worker *w)
 {
     const int was_leaving =
         w->n_answered > 0 && w->n_line == 0 && !w->is_second && clock_seconds() < w->asked + LEFT_BEFORE_S;
-    if (was_leaving)
+    if (was_leaving || helper_is_lost(&e->helper))
         w->again = 1;
     else
-        settle(w, OUTCOME_DEAD, 1, "the worker ended without an answer");
+        settle(e, w, OUTCOME_DEAD, 1, "the worker ended without an answer");
 }
 
-static void read_more(const External *e, Worker *w)
+static void read_more(External *e, Worker *w)
 {
     const size_t room = LINE_MAX_BYTES - w->n_line;
     const ssize_t n = read(w->out, w->line + w->n_line, room < READ_BYTES ? room : READ_BYTES);
@@ -346,13 +340,13 @@ static void read_more(const External *e, Worker *w)
         w->n_line += (size_t)n;
         look_for_answer(e, w);
     } else if (n == 0 || (errno != EAGAIN && errno != EINTR)) {
-        take_end(w);
+        take_end(e, w);
     }
 }
 
 static Status ask_again(External *e, Worker *w, Err *err)
 {
-    worker_kill(w);
+    worker_end(e, w, 1);
     TRY(worker_start(e, w, err));
     w->n_sent = 0;
     w->again = 0;
@@ -363,7 +357,7 @@ static Status ask_again(External *e, Worker *w, Err *err)
 /* -- as a simulator ------------------------------------------------------------------------------------------------ */
 
 /* The end of a process counts where it left nothing to be read: a child of it may hold its output open. */
-static void wait_for(const External *e, Worker *w)
+static void wait_for(External *e, Worker *w)
 {
     struct pollfd ends[3] = {
         {w->n_sent < w->n_request ? w->in : -1, POLLOUT, 0}, {w->out, POLLIN, 0}, {w->its_end, POLLIN, 0}};
@@ -372,13 +366,11 @@ static void wait_for(const External *e, Worker *w)
     if (came && ends[1].revents)
         read_more(e, w);
     else if (came && ends[2].revents)
-        take_end(w);
+        take_end(e, w);
     else if (came && ends[0].revents)
         send_more(w);
-    else
-        guard_look(w->guard);
     if (w->answer && clock_seconds() >= w->deadline)
-        settle(w, OUTCOME_TIMEOUT, 1, "no answer within %g s", e->timeout_s);
+        settle(e, w, OUTCOME_TIMEOUT, 1, "no answer within %g s", e->timeout_s);
 }
 
 static Status simulate(void *self, size_t worker, const Task *task, Err *err)
@@ -393,7 +385,7 @@ static Status simulate(void *self, size_t worker, const Task *task, Err *err)
             ending = clock_seconds();
         if (ending > 0.0 && clock_seconds() > ending + LAST_ANSWERS_S) {
             w->answer = NULL;
-            worker_kill(w);
+            worker_end(e, w, 1);
             return fail(err, STATUS_STOPPED, "stopped");
         }
         wait_for(e, w);
@@ -403,10 +395,10 @@ static Status simulate(void *self, size_t worker, const Task *task, Err *err)
     return STATUS_OK;
 }
 
-/* By the last part. */
 static void combine(const Problem *p, size_t n, const void *parts, Evaluation *evaluation)
 {
-    const ExternalAnswer *a = (const void *)((const char *)parts + (n - 1) * p->part_size);
+    (void)n;
+    const ExternalAnswer *a = parts;
     evaluation_set_outcome(evaluation, a->outcome, a->reason);
     memcpy(evaluation->f, a->f, p->n_obj * sizeof *a->f);
     evaluation->seconds = a->seconds;
@@ -426,8 +418,8 @@ static void farewell(External *e)
     for (int ms = 0; left > 0 && ms < GRACE_MS; ms += 5) {
         for (size_t i = 0; i < e->n_workers; i++) {
             Worker *w = &e->worker[i];
-            if (w->pid && waitpid(w->pid, NULL, WNOHANG) == w->pid) {
-                worker_forget(w);
+            if (w->pid && has_ended(w)) {
+                worker_end(e, w, 0);
                 left--;
             }
         }
@@ -441,12 +433,11 @@ static void external_close(void *self)
     External *e = self;
     farewell(e);
     for (size_t i = 0; i < e->n_workers; i++) {
-        worker_kill(&e->worker[i]);
+        worker_end(e, &e->worker[i], 1);
         free(e->worker[i].line);
         free(e->worker[i].request);
     }
-    spawner_end(&e->spawner);
-    guard_end(&e->guard);
+    helper_end(&e->helper);
     free(e->worker);
     free(e->lower);
     free(e->text);
@@ -489,28 +480,12 @@ static Status set_bounds(External *e, const ProblemOptions *o, Err *err)
     return STATUS_OK;
 }
 
-Status external_cheap_cost(const char *costs, double *cost, Err *err)
-{
-    double whole = 1.0;
-    *cost = 0.0;
-    if (list_count(costs) != 2)
-        return fail(err, STATUS_BAD_DATA, "problem.costs: %zu numbers; give the cost of a cheap level and 1, as 0.1,1",
-                    list_count(costs));
-    TRY(list_positive(costs, 0, "problem.costs", cost, err));
-    TRY(list_positive(costs, 1, "problem.costs", &whole, err));
-    if (whole != 1.0 || *cost >= 1.0)
-        return fail(err, STATUS_BAD_DATA,
-                    "problem.costs: %g, %g; the dearest level is the last and costs 1, the other one costs less", *cost,
-                    whole);
-    return STATUS_OK;
-}
-
 static Status create_workers(External *e, size_t n, Err *err)
 {
     e->worker = calloc(n, sizeof *e->worker);
     for (; e->worker && e->n_workers < n; e->n_workers++) {
         Worker *w = &e->worker[e->n_workers];
-        *w = (Worker){.guard = &e->guard, .its_end = -1, .slot = e->n_workers, .line = malloc(LINE_MAX_BYTES)};
+        *w = (Worker){.its_end = -1, .line = malloc(LINE_MAX_BYTES)};
         if (!w->line)
             break;
     }
@@ -522,29 +497,17 @@ static Status create(External *e, const ProblemOptions *o, size_t n_workers, Err
     TRY(split_command(e, o->command, err));
     TRY(set_bounds(e, o, err));
     TRY(create_workers(e, n_workers, err));
-    TRY(guard_start(&e->guard, n_workers, err));
-    return spawner_start(&e->spawner, err);
-}
-
-static void add_levels(Problem *p, double cheap_cost)
-{
-    p->n_parts = 2;
-    p->n_cheap = 1;
-    p->cheap_cost = cheap_cost;
+    return helper_start(&e->helper, e->words, n_workers, err);
 }
 
 Status external_open(Problem *p, const ProblemOptions *o, size_t n_workers, Err *err)
 {
-    double cheap_cost = 0.0;
-    if (list_is_given(o->costs))
-        TRY(external_cheap_cost(o->costs, &cheap_cost, err));
     External *e = calloc(1, sizeof *e);
     if (!e)
         return fail(err, STATUS_NO_MEMORY, "no memory for workers");
     e->n_var = (size_t)o->variables;
     e->n_obj = (size_t)o->objectives;
     e->part_size = sizeof(ExternalAnswer) + e->n_obj * sizeof(double);
-    e->has_levels = cheap_cost > 0.0;
     e->timeout_s = o->timeout_s;
     const Status status = create(e, o, n_workers, err);
     if (status != STATUS_OK) {
@@ -561,7 +524,5 @@ Status external_open(Problem *p, const ProblemOptions *o, size_t n_workers, Err 
                    .part_size = e->part_size,
                    .n_workers = e->n_workers,
                    .executor = executor_for(e->n_workers)};
-    if (e->has_levels)
-        add_levels(p, cheap_cost);
     return STATUS_OK;
 }

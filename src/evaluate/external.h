@@ -1,6 +1,6 @@
 /* evaluate/external.h -- any simulator, as worker processes that speak JSON lines (docs/external.md).
  *
- *   to its standard input      {"id":17,"x":[0.1,0.2]}      with problem.costs {"id":17,"level":0,"x":[0.1,0.2]}
+ *   to its standard input      {"id":17,"x":[0.1,0.2]}
  *   from its standard output   {"id":17,"f":[1.5,2.5]}   or   {"id":17,"error":"why"}
  *
  * One process per worker, started by the first design it gets and kept alive; one request at a time each. A
@@ -8,11 +8,10 @@
  * failed, and the next design gets a fresh worker. An answer with the wrong number of objectives, or one that is not
  * finite, fails the design alone.
  *
- * As a simulator  one part for each design, an ExternalAnswer; with problem.costs two, level 0 (cheap) and level 1, which is
- *                 the whole evaluation. Worker i of the queue has a process of its own
+ * As a simulator  one part for each design, an ExternalAnswer. Worker i of the queue has a process of its own
  * Life cycle      external_open -> search ... -> problem_close
  * Processes       started without a shell, each in its own process group; standard error is shared with ours; one more
- *                 kills them when we are killed (evaluate/guard.h)
+ *                 starts them, and kills them when we are killed (evaluate/helper.h)
  * Stops           a process at work gets some seconds more to answer, then it is killed and its design counts as never
  *                 asked for
  * Errors          a command that cannot be started at all is STATUS_BAD_DATA; whatever a worker does is not an error */
@@ -28,9 +27,6 @@ typedef struct {
     double seconds; /* from the request on */
     double f[];     /* (n_obj) as the worker gave them */
 } ExternalAnswer;
-
-/* Of the cheap level in the list problem.costs, which is given: two numbers, the second is 1. */
-Status external_cheap_cost(const char *costs, double *cost, Err *err);
 
 /* command: words apart by blanks; '...' and "..." keep blanks, a backslash outside '...' keeps the next character. lower
  * and upper: one number for all variables, or a list. */

@@ -6,8 +6,7 @@
  *
  *   task -> Simulator.simulate -> part (part_size bytes)      all parts of a design -> Simulator.combine -> Evaluation
  *
- * The first n_cheap parts may be a cheap level of the problem: an approximation of f and g. Where cheap_cost is 0 they are
- * parts of the whole evaluation too (the first replicates); else the whole is the parts behind them alone (a coarse model).
+ * The first n_cheap parts may be a cheap level of the problem, an approximation of f and g (the first replicates).
  *
  * A part is a plain record of fixed size, without pointers: it could come from another machine. What the simulator
  * answers is natural (units and signs of the files); `judge` makes the minimised f and the g of it.
@@ -85,8 +84,7 @@ struct Problem {
     const Simulator *simulator;
     void *self; /* of simulator and repair */
     size_t n_parts, part_size, n_workers;
-    size_t n_cheap;           /* the first parts, which are a cheap level of the same problem; 0: there is none */
-    double cheap_cost;        /* of the cheap level, a whole evaluation is 1; 0: its parts are parts of the whole */
+    size_t n_cheap;           /* 0: there is no cheap level */
     const Executor *executor; /* evaluate/threads.h */
     const void
         *recipe; /* (recipe_size) bytes without pointers, of which another process opens the same problem; NULL: none */
@@ -99,12 +97,6 @@ struct Problem {
 typedef struct {
     size_t cheap, rest, whole; /* the cheap level, what is left to the whole evaluation, one asked for at once */
 } LevelCosts;
-
-/* Of a level that is no part of the whole, to a thousandth. */
-static inline LevelCosts level_costs(double cheap_cost)
-{
-    return (LevelCosts){(size_t)fmax(1.0, round(1e3 * cheap_cost)), 1000, 1000};
-}
 
 /* Sum of max(0, g). */
 static inline double violation_of(size_t n_con, const double g[])

@@ -220,7 +220,7 @@ static void fill(Queue *q, Slot *s, const Asked *asked)
         s->request = s->e.id = ++q->last_request;
     if (!is_known && asked->cheap_parts)
         memcpy(s->parts, asked->cheap_parts, q->problem->n_cheap * q->problem->part_size);
-    if (asked->cheap_parts || (q->problem->cheap_cost > 0.0 && s->n_parts == q->problem->n_parts))
+    if (asked->cheap_parts)
         s->n_taken = s->n_given = q->problem->n_cheap;
     if (!is_known)
         return;

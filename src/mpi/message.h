@@ -3,9 +3,9 @@
  *   rank 0                                                  every other rank
  *   OPEN   OpenMessage, then the recipe by broadcast    ->  opens the problem
  *                                                       <-  OPENED  OpenedMessage
- *   TASKS  epoch, n times TaskMessage and x (n_var)     ->  does them
- *                                                       <-  DONE    epoch, n times DoneMessage and the part, or the
- *                                                                   reason of a status that is not ok
+ *   TASK   TaskMessage, then x (n_var)                  ->  does it
+ *                                                       <-  DONE    DoneMessage and the part, or the reason of a
+ *                                                                   status that is not ok
  *                                                       <-  ALIVE   while it has tasks, every ALIVE_S
  *   STOP   epoch                                        ->  tasks that are not begun come back at once, STATUS_STOPPED
  *   LEAVE                                               ->  ends
@@ -24,12 +24,9 @@
 
 #include "evaluate/cluster.h"
 
-enum { TAG_OPEN = 1, TAG_OPENED, TAG_TASKS, TAG_DONE, TAG_ALIVE, TAG_STOP, TAG_LEAVE, TAG_LEFT };
+enum { TAG_OPEN = 1, TAG_OPENED, TAG_TASK, TAG_DONE, TAG_ALIVE, TAG_STOP, TAG_LEAVE, TAG_LEFT };
 
 enum { HOST_MAX = 64 };
-
-/* A message of tasks, and one of parts, unless a single one is longer. */
-enum { TASKS_BYTES = 1 << 14, DONE_BYTES = 1 << 18 };
 
 /* A rank with tasks sends something so often; one that did not for SILENT_S of rank 0's own running time is given up. */
 static const double ALIVE_S = 2.0, SILENT_S = 20.0;
@@ -49,69 +46,29 @@ typedef struct {
 } OpenedMessage;
 
 typedef struct {
+    int64_t epoch;
     uint64_t ticket; /* rank 0's */
     int64_t id;
     uint64_t part, repeat;
     Variant variant;
+    double x[]; /* (n_var) */
 } TaskMessage;
 
 typedef struct {
+    int64_t epoch;
     uint64_t ticket;
     double seconds;
     int64_t status;
+    char part[]; /* or the reason */
 } DoneMessage;
 
-typedef struct {
-    char *bytes;
-    size_t n, n_max;
-} Buffer;
+enum { WHY_BYTES = sizeof((Err *)0)->text };
 
-static inline void *buffer_put(Buffer *b, const void *from, size_t n)
+/* Does a message of n bytes hold a result of one of n_tickets? */
+static inline int is_done_message(const DoneMessage *m, size_t n, size_t part_size, size_t n_tickets)
 {
-    void *at = b->bytes + b->n;
-    memcpy(at, from, n);
-    b->n += n;
-    return at;
-}
-
-/* The next n bytes; they are there: both sides are the same program. */
-static inline void buffer_get(Buffer *b, void *to, size_t n)
-{
-    memcpy(to, b->bytes + b->n, n);
-    b->n += n;
-}
-
-static inline size_t task_bytes(size_t n_var)
-{
-    return sizeof(TaskMessage) + n_var * sizeof(double);
-}
-
-static inline size_t done_bytes(size_t part_size)
-{
-    const size_t why = sizeof((Err *)0)->text;
-    return sizeof(DoneMessage) + (part_size > why ? part_size : why);
-}
-
-static inline size_t at_least(size_t bytes, size_t one)
-{
-    return sizeof(int64_t) + (bytes > one ? bytes : one);
-}
-
-/* The next result of a message of n bytes, its part or reason at *part: 1; 0: there is none more; -1: what follows is none. */
-static inline int buffer_get_done(Buffer *b, size_t n, size_t part_size, size_t n_tickets, DoneMessage *m,
-                                  const char **part)
-{
-    if (b->n == n)
-        return 0;
-    if (n - b->n < sizeof *m)
-        return -1;
-    buffer_get(b, m, sizeof *m);
-    const size_t size = m->status == STATUS_OK ? part_size : sizeof((Err *)0)->text;
-    if (m->ticket >= n_tickets || m->status < 0 || m->status >= STATUS_COUNT || n - b->n < size)
-        return -1;
-    *part = b->bytes + b->n;
-    b->n += size;
-    return 1;
+    return n >= sizeof *m && m->ticket < n_tickets && m->status >= 0 && m->status < STATUS_COUNT &&
+           n == sizeof *m + (m->status == STATUS_OK ? part_size : WHY_BYTES);
 }
 
 /* Pauses between looks at MPI, which has no way to wait without using a processor: longer ones the longer nothing comes. */

@@ -27,9 +27,6 @@ static const double OPEN_S = 600.0;
 enum { MESSAGES_AT_ONCE = 64 };
 
 typedef struct {
-    Buffer out; /* tasks to be sent, or being sent */
-    MPI_Request request;
-    int is_sending;
     size_t n_workers, n_under_way;
     double silent_s;
     char host[HOST_MAX];
@@ -37,7 +34,9 @@ typedef struct {
 
 typedef struct {
     Task task;
-    int rank; /* that does it; 0: none */
+    int rank;             /* that does it; 0: none */
+    MPI_Request request;  /* of the message, which has come when its result does */
+    TaskMessage *message; /* NULL: none was ever sent */
 } Ticket;
 
 typedef struct {
@@ -48,7 +47,8 @@ typedef struct {
     Ticket *ticket;
     size_t *idle; /* (n_idle) tickets */
     size_t n_tickets, n_idle, n_under_way;
-    Buffer in;
+    void *in; /* (in_max) bytes of the message at hand */
+    size_t in_max;
     int64_t epoch;
     double task_s; /* [s] a task takes, over the last ones */
     double looked_s, came_s;
@@ -85,58 +85,28 @@ static void give_up(Ranks *r, int rank, Status status, const char *words)
             give(r, &r->ticket[i], status, &why);
 }
 
-static void take_result(Ranks *r, const DoneMessage *m, const char *part)
+/* Of a task that was given up meanwhile nothing is taken. */
+static void take_result(Ranks *r, int from, size_t n)
 {
-    Ticket *t = &r->ticket[m->ticket];
+    const DoneMessage *m = r->in;
+    char words[HOST_MAX + 120];
     Err why = {0};
-    if (m->status == STATUS_OK)
-        memcpy(t->task.result, part, r->problem->part_size);
-    else
-        memcpy(why.text, part, sizeof why.text);
+    r->came_s = clock_seconds();
+    if (n >= sizeof m->epoch && m->epoch != r->epoch)
+        return;
+    Ticket *t = is_done_message(m, n, r->problem->part_size, r->n_tickets) ? &r->ticket[m->ticket] : NULL;
+    if (!t || (t->rank != from && t->rank != 0)) {
+        snprintf(words, sizeof words, "rank %d on %s sends results of tasks that it does not have", from,
+                 r->rank[from].host);
+        give_up(r, from, STATUS_INTERNAL, words);
+        return;
+    }
+    if (t->rank == 0)
+        return;
+    memcpy(m->status == STATUS_OK ? t->task.result : (void *)why.text, m->part, n - sizeof *m);
     t->task.taken = clock_seconds() - m->seconds;
     r->task_s = r->task_s > 0.0 ? 0.95 * r->task_s + 0.05 * m->seconds : m->seconds;
     give(r, t, (Status)m->status, &why);
-}
-
-/* Results of this rank's tasks, and of those that were given up meanwhile; 0: the message holds something else. */
-static int take_each(Ranks *r, int from, size_t n)
-{
-    DoneMessage m;
-    const char *part;
-    int kind;
-    while ((kind = buffer_get_done(&r->in, n, r->problem->part_size, r->n_tickets, &m, &part)) > 0) {
-        const int rank = r->ticket[m.ticket].rank;
-        if (rank != from && rank != 0)
-            return 0;
-        if (rank == from)
-            take_result(r, &m, part);
-    }
-    return kind == 0;
-}
-
-static void take_results(Ranks *r, int from, size_t n)
-{
-    int64_t epoch;
-    char words[HOST_MAX + 120];
-    r->in.n = 0;
-    r->came_s = clock_seconds();
-    if (n >= sizeof epoch) {
-        buffer_get(&r->in, &epoch, sizeof epoch);
-        if (epoch != r->epoch || take_each(r, from, n))
-            return;
-    }
-    snprintf(words, sizeof words, "rank %d on %s sends results of tasks that it does not have", from,
-             r->rank[from].host);
-    give_up(r, from, STATUS_INTERNAL, words);
-}
-
-static void widen(Buffer *b, size_t n)
-{
-    char *wider = n > b->n_max ? realloc(b->bytes, n) : b->bytes;
-    if (!wider)
-        MPI_Abort(MPI_COMM_WORLD, status_exit_code(STATUS_NO_MEMORY));
-    b->bytes = wider;
-    b->n_max = n > b->n_max ? n : b->n_max;
 }
 
 /* The next message, whatever it is, into r->in; its tag, or 0: there is none. */
@@ -149,10 +119,14 @@ static int receive(Ranks *r, int *from, size_t *n)
     if (!there)
         return 0;
     MPI_Get_count(&about, MPI_BYTE, &count);
-    widen(&r->in, (size_t)count);
-    MPI_Mrecv(r->in.bytes, count, MPI_BYTE, &message, &about);
-    *from = about.MPI_SOURCE;
     *n = (size_t)count;
+    void *wider = *n > r->in_max ? realloc(r->in, *n) : r->in;
+    if (!wider && *n > 0)
+        MPI_Abort(MPI_COMM_WORLD, status_exit_code(STATUS_NO_MEMORY));
+    r->in = wider;
+    r->in_max = *n > r->in_max ? *n : r->in_max;
+    MPI_Mrecv(r->in, count, MPI_BYTE, &message, &about);
+    *from = about.MPI_SOURCE;
     r->rank[*from].silent_s = 0.0;
     return about.MPI_TAG;
 }
@@ -164,7 +138,7 @@ static int receive_all(Ranks *r)
     while (moved < MESSAGES_AT_ONCE && (tag = receive(r, &from, &n)) != 0) {
         moved++;
         if (tag == TAG_DONE)
-            take_results(r, from, n);
+            take_result(r, from, n);
     }
     return moved;
 }
@@ -178,6 +152,11 @@ static size_t depth_of(const Ranks *r)
     return 1 + (size_t)fmin(ceil(AHEAD_S / r->task_s), DEPTH_MAX - 1);
 }
 
+static size_t message_bytes(const Ranks *r)
+{
+    return sizeof(TaskMessage) + r->problem->n_var * sizeof(double);
+}
+
 static Status more_tickets(Ranks *r, Err *err)
 {
     const size_t n = r->n_tickets > 0 ? 2 * r->n_tickets : 256;
@@ -187,76 +166,52 @@ static Status more_tickets(Ranks *r, Err *err)
     size_t *idle = realloc(r->idle, n * sizeof *idle);
     if (idle)
         r->idle = idle;
-    if (!ticket || !idle)
-        return fail(err, STATUS_NO_MEMORY, "no memory for %zu tasks under way", n);
-    for (; r->n_tickets < n; r->n_tickets++) {
-        r->ticket[r->n_tickets] = (Ticket){.rank = 0};
-        r->idle[r->n_idle++] = r->n_tickets;
+    for (; ticket && idle && r->n_tickets < n; r->n_tickets++) {
+        Ticket *t = &ticket[r->n_tickets];
+        *t = (Ticket){.request = MPI_REQUEST_NULL, .message = calloc(1, message_bytes(r))};
+        if (!t->message)
+            break;
+        idle[r->n_idle++] = r->n_tickets;
     }
-    return STATUS_OK;
+    return r->n_idle > 0 ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for %zu tasks under way", n);
 }
 
-static void append(Ranks *r, int to, const Task *task)
+static void send_task(Ranks *r, int to, const Task *task)
 {
-    Rank *rank = &r->rank[to];
     const size_t ticket = r->idle[--r->n_idle];
-    const TaskMessage m = {ticket, task->id, task->part, task->repeat, task->variant};
-    r->ticket[ticket] = (Ticket){*task, to};
-    if (rank->out.n == 0)
-        buffer_put(&rank->out, &r->epoch, sizeof r->epoch);
-    buffer_put(&rank->out, &m, sizeof m);
-    buffer_put(&rank->out, task->x, r->problem->n_var * sizeof *task->x);
-    if (rank->n_under_way++ == 0)
-        rank->silent_s = 0.0;
+    Ticket *t = &r->ticket[ticket];
+    TaskMessage *m = t->message;
+    t->task = *task;
+    t->rank = to;
+    *m = (TaskMessage){r->epoch, ticket, task->id, task->part, task->repeat, task->variant};
+    memcpy(m->x, task->x, r->problem->n_var * sizeof *task->x);
+    MPI_Wait(&t->request, MPI_STATUS_IGNORE); /* of before, whose result is there */
+    MPI_Isend(m, (int)message_bytes(r), MPI_BYTE, to, TAG_TASK, MPI_COMM_WORLD, &t->request);
+    if (r->rank[to].n_under_way++ == 0)
+        r->rank[to].silent_s = 0.0;
     r->n_under_way++;
 }
 
-static int has_room(const Ranks *r, const Rank *rank, size_t level)
-{
-    return !rank->is_sending && rank->n_under_way < level * rank->n_workers &&
-           rank->out.n + sizeof r->epoch + task_bytes(r->problem->n_var) <= rank->out.n_max;
-}
-
-/* Every rank gets one task for each of its workers before any gets a second, and so on. */
-static void deal(Ranks *r)
+/* Every rank gets one task for each of its workers before any gets a second, and so on. Returns how many. */
+static int deal(Ranks *r)
 {
     const size_t depth = depth_of(r);
+    int n = 0;
     Task task;
     Err why = {0};
     for (size_t level = 1; level <= depth; level = level < depth && 2 * level > depth ? depth : 2 * level)
         for (int i = 1; i <= r->n; i++)
-            while (has_room(r, &r->rank[i], level)) {
+            while (r->rank[i].n_under_way < level * r->rank[i].n_workers) {
                 if (!queue_take(r->queue, 0, &task))
-                    return;
+                    return n;
                 const Status status = r->n_idle > 0 ? STATUS_OK : more_tickets(r, &why);
                 if (status == STATUS_OK)
-                    append(r, i, &task);
+                    send_task(r, i, &task);
                 else
                     queue_give(r->queue, &task, status, &why);
+                n++;
             }
-}
-
-static int send_all(Ranks *r)
-{
-    int moved = 0;
-    for (int i = 1; i <= r->n; i++) {
-        Rank *rank = &r->rank[i];
-        int is_through = 1;
-        if (rank->is_sending)
-            MPI_Test(&rank->request, &is_through, MPI_STATUS_IGNORE);
-        if (rank->is_sending && is_through)
-            rank->is_sending = 0, rank->out.n = 0;
-    }
-    deal(r);
-    for (int i = 1; i <= r->n; i++) {
-        Rank *rank = &r->rank[i];
-        if (rank->is_sending || rank->out.n == 0)
-            continue;
-        MPI_Isend(rank->out.bytes, (int)rank->out.n, MPI_BYTE, i, TAG_TASKS, MPI_COMM_WORLD, &rank->request);
-        rank->is_sending = 1;
-        moved++;
-    }
-    return moved;
+    return n;
 }
 
 /* -- ranks that do not answer, and the end --------------------------------------------------------------------------- */
@@ -318,7 +273,7 @@ static void *exchange(void *user)
     Ranks *r = user;
     double pause = PAUSE_MIN_S;
     while (!r->ending || r->n_under_way > 0) {
-        const int moved = receive_all(r) + send_all(r);
+        const int moved = receive_all(r) + deal(r);
         look_after(r);
         pause = moved > 0 ? PAUSE_MIN_S : longer_pause(pause, PAUSE_MAX_S);
         if (moved == 0)
@@ -373,7 +328,7 @@ static Status wait_until_open(Ranks *r, Err *err)
         Err why = {0};
         TRY(receive_opened(r, until, n_open, &from, &tag, err));
         if (tag == TAG_OPENED)
-            memcpy(&m, r->in.bytes, sizeof m);
+            memcpy(&m, r->in, sizeof m);
         if (tag != TAG_OPENED || m.epoch != r->epoch)
             continue;
         n_open++;
@@ -395,34 +350,20 @@ static Status open_problem(Ranks *r, Err *err)
     return wait_until_open(r, err);
 }
 
-static Status make_room(Ranks *r, Err *err)
-{
-    r->rank = calloc((size_t)r->n + 1, sizeof *r->rank);
-    int is_there = r->rank != NULL;
-    for (int i = 1; is_there && i <= r->n; i++) {
-        Buffer *out = &r->rank[i].out;
-        out->n_max = at_least(TASKS_BYTES, task_bytes(r->problem->n_var));
-        out->bytes = malloc(out->n_max);
-        is_there = out->bytes != NULL;
-    }
-    return is_there ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no memory for %d ranks", r->n);
-}
-
 static void stop(void *self)
 {
     Ranks *r = self;
     r->ending = 1;
     if (r->is_running)
         pthread_join(r->thread, NULL);
-    for (int i = 1; r->rank && i <= r->n; i++) {
-        int is_through = 1;
-        if (r->rank[i].is_sending)
-            MPI_Test(&r->rank[i].request, &is_through, MPI_STATUS_IGNORE);
+    for (size_t i = 0; i < r->n_tickets; i++) {
+        int is_through;
+        MPI_Test(&r->ticket[i].request, &is_through, MPI_STATUS_IGNORE);
         if (is_through)
-            free(r->rank[i].out.bytes); /* else of a rank that is dead, and the program ends */
+            free(r->ticket[i].message); /* else of a rank that is dead, and the program ends */
     }
     free(r->rank);
-    free(r->in.bytes);
+    free(r->in);
     free(r->ticket);
     free(r->idle);
     free(r);
@@ -441,7 +382,9 @@ static Status start(void **self, Queue *q, Err *err)
     r->n = (int)n;
     r->epoch = (int64_t)(1e9 * clock_seconds());
     r->looked_s = clock_seconds();
-    TRY(make_room(r, err));
+    r->rank = calloc((size_t)r->n + 1, sizeof *r->rank);
+    if (!r->rank)
+        return fail(err, STATUS_NO_MEMORY, "no memory for %d ranks", r->n);
     TRY(open_problem(r, err));
     r->is_running = pthread_create(&r->thread, NULL, exchange, r) == 0;
     return r->is_running ? STATUS_OK : fail(err, STATUS_NO_MEMORY, "no thread for %d ranks", r->n);

@@ -37,7 +37,6 @@ typedef struct {
     char lower[OPTION_TEXT_MAX], upper[OPTION_TEXT_MAX]; /* one number or a comma list */
     char senses[OPTION_TEXT_MAX];                        /* min or max, one word or a list */
     char variable_names[OPTION_TEXT_MAX], objective_names[OPTION_TEXT_MAX];
-    char costs[OPTION_TEXT_MAX]; /* of the levels that the program answers at, or none */
     Noisy noisy;
     double noise; /* [-] of a textbook problem's answers */
 } ProblemOptions;

@@ -8,7 +8,6 @@
 #include "scene/design.h"
 #include "motion/motion_read.h"
 #include "motion/motion_scale.h"
-#include "evaluate/external.h"
 
 typedef struct {
     BrokenRuleFn broken;
@@ -130,15 +129,11 @@ static void check_fidelity(const SearchOptions *s, const Rules *r)
 void rules_check(const Settings *s, BrokenRuleFn broken, void *user)
 {
     const Rules rules = {broken, user}, *r = &rules;
-    Err err = {0};
-    double cost;
     check_bounds(s, r);
     check_motion(&s->motion, r);
     check_variables(s, r);
     check_replicates(s, r);
     check_fidelity(&s->search, r);
-    if (list_is_given(s->problem.costs) && external_cheap_cost(s->problem.costs, &cost, &err) != STATUS_OK)
-        break_rule(r, PAIR(problem.costs, problem.kind), "%s", err.text);
     if (s->problem.kind == PROBLEM_EXTERNAL && strcmp(s->problem.command, "none") == 0)
         break_rule(r, PAIR(problem.command, problem.kind),
                    "problem.command: is none; problem.kind = external needs the command of the simulator");

@@ -211,10 +211,6 @@ static const Option OPTIONS[] = {
     TEXT(problem.senses, "min", "external: min or max, one for all objectives or a comma list"),
     TEXT(problem.variable_names, "auto", "comma list; auto: x1, x2, ..."),
     TEXT(problem.objective_names, "auto", "comma list; auto: f1, f2, ..."),
-    TEXT(
-        problem.costs, "none",
-        "external: cost of a cheap level of the program and of the dearest, which is 1, as 0.1,1; requests then have a "
-        "level, 0 or 1 (docs/external.md)"),
     CHOICE(problem.noisy, Noisy, CHOICE_WORDS(NOISY_LIST), "auto",
            "whether evaluations of one design differ; auto: only with problem.noise"),
     REAL(problem.noise, "-", "0", 0, 1, "test problems: standard deviation of an objective, as a share of its value"),

@@ -94,7 +94,7 @@ Status run_settle_front(Run *run, Err *err);
 int run_is_screened(const Run *run); /* search.fidelity acts */
 
 /* Of search.max_evals, those of the rows from `first` on: a screened design is one of sim.replicates parts of an evaluation,
- * finished it is the rest; with problem.costs it is the share given there, and finished it is a whole one. Of a generation that is not finished no more than it will be: rows without spreads are
+ * finished it is the rest. Of a generation that is not finished no more than it will be: rows without spreads are
  * taken as screened. */
 size_t run_evaluations(const Run *run, size_t first);
 

@@ -12,7 +12,7 @@ static void demand_numbers(const ExternalAnswer *a)
             abort();
 }
 
-static void hear(const External *e, const uint8_t *data, size_t size)
+static void hear(External *e, const uint8_t *data, size_t size)
 {
     ExternalAnswer *answer = calloc(1, sizeof *answer + N_OBJ * sizeof *answer->f);
     Worker w = {.line = malloc(LINE_MAX_BYTES)};
