@@ -44,7 +44,8 @@ static int make_run(void **state)
 
 TEST(every_command_says_which_record_was_moved_and_what_to_do)
 {
-    static const char *const COMMANDS[] = {"report @/run", "report @/run --pictures @/run/pictures", "polish @/run --design knee",
+    static const char *const COMMANDS[] = {"report @/run", "report @/run --pictures @/run/pictures",
+                                           "polish @/run --design knee",
                                            "optimize @/run --max-evals 32 --force-settings"};
     for (size_t i = 0; i < sizeof COMMANDS / sizeof COMMANDS[0]; i++) {
         char with_one[256];
