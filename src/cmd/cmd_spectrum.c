@@ -1,101 +1,318 @@
+/* Spectra of ground motions: figures, histories and response spectra as text, CSV, JSON and pictures. */
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/json.h"
 #include "base/cell.h"
+#include "base/json.h"
+#include "base/stat.h"
 #include "base/units.h"
 #include "cmd/commands.h"
 #include "cmd/show.h"
-#include "cmd/spectrum.h"
 #include "motion/motion_process.h"
 #include "motion/motion_scale.h"
+#include "motion/motion_source.h"
+#include "motion/spectrum.h"
+#include "report/gnuplot.h"
 #include "settings/settings.h"
 #include "store/output.h"
 
-enum { PRINTED_EACH = 6 };
+enum { N_PERIODS = 121 /* 0.02 to 20 s, equally spaced in their logarithm */, PRINTED_EACH = 6, CURVES_MAX = 6 };
+static const double DAMPING = 0.05, SHORTEST_S = 0.02, LONGEST_S = 20, TWO_PI = 6.283185307179586;
+
+typedef struct {
+    Motion motion;
+    MotionOptions options;
+    CodeSpectrum code; /* motion.target */
+    MotionFigures figures, recorded;
+    double *time, *velocity, *displacement, *husid; /* (n of the motion) */
+    double T[N_PERIODS], psa[N_PERIODS], psv[N_PERIODS], sd[N_PERIODS];
+    double target[N_PERIODS]; /* [m/s2] of the code, else 0 */
+    int is_processed; /* by motion.baseline, highpass_hz or lowpass_hz; `recorded` is without them, same scale */
+    double recorded_psa[N_PERIODS];
+} Spectrum;
+
+/* ---- numbers ----------------------------------------------------------------------------------------------------- */
+
+/* The same motion without base line and filters, at the same scale. */
+static Status compare_recorded(Spectrum *s, Err *err)
+{
+    Motion m = {0};
+    MotionOptions o = s->options;
+    o.baseline = BASELINE_NONE;
+    o.highpass_hz = o.lowpass_hz = 0;
+    motion_unscale(&o);
+    o.factor = s->motion.scale;
+    TRY(motion_open(&m, &o, err));
+    const Status status = motion_scale(&m, &o, err);
+    if (status == STATUS_OK) {
+        motion_figures(&m, &s->recorded);
+        spectrum_psa(&m, DAMPING, N_PERIODS, s->T, s->recorded_psa);
+    }
+    motion_free(&m);
+    return status;
+}
+
+static Status compute(Spectrum *s, Err *err)
+{
+    const Motion *m = &s->motion;
+    s->time = malloc(4 * m->n * sizeof *s->time);
+    if (!s->time)
+        return fail(err, STATUS_NO_MEMORY, "no memory for the histories of %zu samples", m->n);
+    s->velocity = s->time + m->n;
+    s->displacement = s->velocity + m->n;
+    s->husid = s->displacement + m->n;
+    for (size_t i = 0; i < m->n; i++)
+        s->time[i] = (double)i * m->dt_s;
+    motion_histories(m, s->velocity, s->displacement, s->husid);
+    for (int i = 0; i < N_PERIODS; i++)
+        s->T[i] = SHORTEST_S * pow(LONGEST_S / SHORTEST_S, (double)i / (N_PERIODS - 1));
+    spectrum_psa(m, DAMPING, N_PERIODS, s->T, s->psa);
+    for (int i = 0; i < N_PERIODS; i++) {
+        const double w = TWO_PI / s->T[i];
+        s->psv[i] = s->psa[i] / w;
+        s->sd[i] = s->psa[i] / (w * w);
+        s->target[i] = target_psa(&s->code, s->T[i]);
+    }
+    motion_figures(m, &s->figures);
+    s->is_processed = motion_is_corrected(&s->options) || s->options.lowpass_hz > 0;
+    return s->is_processed ? compare_recorded(s, err) : STATUS_OK;
+}
+
+static Status spectrum_open(Spectrum *s, const MotionOptions *o, Err *err)
+{
+    *s = (Spectrum){.options = *o};
+    TRY(target_parse(o->target, &s->code, err));
+    TRY(motion_open(&s->motion, o, err));
+    TRY(motion_scale(&s->motion, o, err));
+    return compute(s, err);
+}
+
+static void spectrum_close(Spectrum *s)
+{
+    free(s->time);
+    s->time = NULL;
+    motion_free(&s->motion);
+}
+
+typedef struct {
+    const Spectrum *s;
+    int period;
+} AtPeriod;
+
+static double psa_of(size_t k, const void *user)
+{
+    const AtPeriod *at = user;
+    return at->s[k].psa[at->period];
+}
+
+static void average(size_t n, const Spectrum s[], double mean[N_PERIODS])
+{
+    for (int i = 0; i < N_PERIODS; i++)
+        mean_and_sd(n, psa_of, &(AtPeriod){s, i}, &mean[i], NULL);
+}
+
+static const char *name_of(const Spectrum *s) /* the last part of its path */
+{
+    const char *slash = strrchr(s->motion.name, '/');
+    return slash ? slash + 1 : s->motion.name;
+}
+
+/* ---- columns ------------------------------------------------------------------------------------------------------ */
+
+typedef struct {
+    char name[160], title[24]; /* of CSV and JSON; of the table on the screen */
+    double unit;               /* of the table */
+    const double *x;           /* NULL: not asked for */
+} Curve;
+
+static void curves_of_one(const Spectrum *s, Curve c[CURVES_MAX])
+{
+    c[0] = (Curve){"period_s", "period_s", 1, s->T};
+    c[1] = (Curve){"psa_m_s2", "psa_g", GRAVITY, s->psa};
+    c[2] = (Curve){"psv_m_s", "psv_m_s", 1, s->psv};
+    c[3] = (Curve){"sd_m", "sd_m", 1, s->sd};
+    c[4] = (Curve){"recorded_psa_m_s2", "recorded", GRAVITY, s->is_processed ? s->recorded_psa : NULL};
+    c[5] = (Curve){"target_psa_m_s2", "target", GRAVITY, s->code.kind ? s->target : NULL};
+}
+
+static void curves_of_all(size_t n, const Spectrum s[], const double mean[N_PERIODS], Curve c[])
+{
+    c[0] = (Curve){"period_s", "period_s", 1, s->T};
+    c[1] = (Curve){"mean_psa_m_s2", "mean", GRAVITY, mean};
+    c[2] = (Curve){"target_psa_m_s2", "target", GRAVITY, s->code.kind ? s->target : NULL};
+    for (size_t k = 0; k < n; k++) {
+        c[3 + k] = (Curve){.unit = GRAVITY, .x = s[k].psa};
+        cell_text(c[3 + k].name, 128, name_of(&s[k]));
+        strcat(c[3 + k].name, " psa_m_s2");
+        snprintf(c[3 + k].title, sizeof c->title, "%zu", k + 1);
+    }
+}
+
+static Status write_curves(const char *path, size_t n_rows, size_t n, const Curve c[], Err *err)
+{
+    Output o;
+    TRY(output_open(&o, path, err));
+    for (size_t k = 0; k < n; k++)
+        if (c[k].x)
+            fprintf(o.stream, "%s%s", k ? "," : "", c[k].name);
+    for (size_t i = 0; i < n_rows; i++) {
+        fputc('\n', o.stream);
+        print_number(o.stream, c->x[i]);
+        for (size_t k = 1; k < n; k++)
+            if (c[k].x)
+                print_cells(o.stream, 1, &c[k].x[i]);
+    }
+    fputc('\n', o.stream);
+    return output_close(&o, err);
+}
+
+static void print_curves(size_t n, const Curve c[])
+{
+    for (size_t k = 0; k < n; k++)
+        if (c[k].x)
+            printf(k ? " %9s" : "%8s", c[k].title);
+    for (int i = 0; i < N_PERIODS; i += PRINTED_EACH)
+        for (size_t k = 0; k < n; k++)
+            if (c[k].x)
+                printf(k ? " %9.4g" : "\n%8.4g", c[k].x[i] / c[k].unit);
+    putchar('\n');
+}
+
+/* ---- pictures ---------------------------------------------------------------------------------------------------- */
+
+enum { BINS = 4000 }; /* of a history: more samples are drawn as the least and the largest of each bin */
+
+/* Four histories on the left, under each other; on the right the spectra of acceleration and displacement. */
+static const char PANELS[] =
+    "set terminal svg size 1100,900 font 'sans,13' noenhanced background '#ffffff'\n"
+    "set grid lc '#d0d0d0'\nunset key\nset lmargin 0\nset rmargin 0\nset tmargin 0\nset bmargin 0\n"
+    "set multiplot\nset size 0.46,0.19\nset xrange [0:END]\nset format x ''\nset ytics nomirror\n"
+    "set origin 0.09,0.74\nset ylabel 'acceleration [g]' offset 0\n"
+    "plot $H using 1:2 with lines lc '#0072b2'\n"
+    "unset label 1\nset origin 0.09,0.52\nset ylabel 'velocity [m/s]'\nplot $H using 1:3 with lines lc '#0072b2'\n"
+    "set origin 0.09,0.30\nset ylabel 'displacement [m]'\nplot $H using 1:4 with lines lc '#0072b2'\n"
+    "set origin 0.09,0.08\nset format x '%g'\nset xlabel 'time [s]'\nset ylabel 'share of Arias (Husid)'\n"
+    "set yrange [0:1]\nplot $H using 1:5 with lines lc '#d55e00'\n"
+    "set autoscale y\nset logscale x\nset xrange [0.02:20]\nset size 0.33,0.41\n"
+    "set origin 0.65,0.52\nset format x ''\nunset xlabel\nset ylabel 'pseudo-acceleration [g], 5 % damping'\n"
+    "set yrange [0:*]\nplot $S using 1:2 with lines lw 2 lc '#0072b2', "
+    "'' using 1:($6 > 0 ? $6 : NaN) with lines dt (6,4) lc '#d55e00'\n"
+    "set origin 0.65,0.08\nset format x '%g'\nset xlabel 'period [s]'\nset ylabel 'displacement [m], 5 % damping'\n"
+    "plot $S using 1:4 with lines lw 2 lc '#0072b2'\nunset multiplot\n";
+
+static void write_sample(FILE *script, const Spectrum *s, size_t i)
+{
+    fprintf(script, "%.7g %.6g %.6g %.6g %.6g\n", (double)i * s->motion.dt_s, s->motion.accel[i] / GRAVITY,
+            s->velocity[i], s->displacement[i], s->husid[i]);
+}
+
+/* Of a long history two samples of each bin, the ones of the least and of the largest acceleration, in their order. */
+static void write_history(FILE *script, const Spectrum *s)
+{
+    const size_t n = s->motion.n, bin = n > 4 * BINS ? n / BINS : 1;
+    for (size_t begin = 0; begin < n; begin += bin) {
+        size_t low = begin, high = begin;
+        for (size_t i = begin; i < begin + bin && i < n; i++) {
+            low = s->motion.accel[i] < s->motion.accel[low] ? i : low;
+            high = s->motion.accel[i] > s->motion.accel[high] ? i : high;
+        }
+        write_sample(script, s, low < high ? low : high);
+        if (low != high)
+            write_sample(script, s, low < high ? high : low);
+    }
+}
+
+typedef struct {
+    const Spectrum *s;
+    size_t n;
+    const Curve *c; /* (n) over the periods */
+} Picture;
+
+/* $S: the curves in the units of the table, 0 where one is not asked for. */
+static void write_spectra(FILE *script, const Picture *p)
+{
+    fprintf(script, "$S << EOD\n");
+    for (int i = 0; i < N_PERIODS; i++)
+        for (size_t k = 0; k < p->n; k++)
+            fprintf(script, "%.6g%c", p->c[k].x ? p->c[k].x[i] / p->c[k].unit : 0, k + 1 < p->n ? ' ' : '\n');
+    fprintf(script, "EOD\n");
+}
+
+static void draw_one(FILE *script, const void *user)
+{
+    const Picture *p = user;
+    const Spectrum *s = p->s;
+    const Motion *m = &s->motion;
+    const MotionFigures *f = &s->figures;
+    char title[512];
+    write_spectra(script, p);
+    fprintf(script, "$H << EOD\n");
+    write_history(script, s);
+    snprintf(title, sizeof title, "%s%s%s: %.3f g, %.3f m/s, %.3f m%s; Arias %.3f m/s, 5 to 95 %% in %.1f s", m->name,
+             m->channel[0] ? ", " : "", m->channel, f->pga_m_s2 / GRAVITY, f->pgv_m_s, f->pgd_m,
+             motion_is_corrected(&s->options) ? "" : " (uncorrected)", f->arias_m_s, f->d5_95_s);
+    fprintf(script, "EOD\nEND = %.7g\nset label 1 ", f->duration_s);
+    gnuplot_quote(script, title);
+    fprintf(script, " at screen 0.5,0.965 center noenhanced\n%s", PANELS);
+}
+
+static void draw_all(FILE *script, const void *user)
+{
+    const Picture *p = user;
+    write_spectra(script, p);
+    fprintf(script, "set terminal svg size 1000,600 font 'sans,13' noenhanced background '#ffffff'\n"
+                    "set grid lc '#d0d0d0'\nset logscale x\nset xrange [0.02:20]\nset yrange [0:*]\nset tics nomirror\n"
+                    "set xlabel 'period [s]'\nset ylabel 'pseudo-acceleration [g], 5 %% damping'\n"
+                    "set key outside right top noenhanced\nplot ");
+    for (size_t k = 3; k < p->n; k++) {
+        fprintf(script, "$S using 1:%zu with lines title ", k + 1);
+        gnuplot_quote(script, name_of(&p->s[k - 3]));
+        fputs(", ", script);
+    }
+    fprintf(script, "$S using 1:2 with lines lw 3 lc 'black' title 'mean'%s\n",
+            p->s->code.kind ? ", $S using 1:3 with lines lw 3 dt (6,4) lc '#d55e00' title 'target'" : "");
+}
 
 /* ---- one motion -------------------------------------------------------------------------------------------------- */
 
-static json_t *describe_recorded(const Spectrum *s)
-{
-    return json_pack("{s:f, s:f, s:f, s:o}", "pga_m_s2", s->recorded.pga_m_s2, "pgv_m_s", s->recorded.pgv_m_s, "pgd_m",
-                     s->recorded.pgd_m, "psa_m_s2", json_numbers(N_PERIODS, s->recorded_psa));
-}
-
 static json_t *describe(const Spectrum *s)
 {
-    const MotionFigures *f = &s->figures;
+    const MotionFigures *f = &s->figures, *r = &s->recorded;
     const Motion *m = &s->motion;
-    json_t *o = json_object();
-    json_object_set_new(o, "motion", json_words(m->name));
-    json_object_set_new(o, "format", json_string(m->format));
-    json_object_set_new(o, "channel", json_words(m->channel));
-    json_object_set_new(o, "processed", json_words(m->processed));
-    json_object_set_new(o, "corrected", json_boolean(motion_is_corrected(&s->options)));
-    json_object_set_new(o, "warning", json_words(m->warning));
-    json_object_set_new(o, "scale", json_number(m->scale));
-    json_object_set_new(o, "stretch", json_number(m->stretch));
-    json_object_set_new(o, "samples", json_integer((json_int_t)m->n));
-    json_object_set_new(o, "step_s", json_number(m->dt_s));
-    json_object_set_new(o, "duration_s", json_number(f->duration_s));
-    json_object_set_new(o, "pga_g", json_number(f->pga_m_s2 / GRAVITY));
-    json_object_set_new(o, "pga_m_s2", json_number(f->pga_m_s2));
-    json_object_set_new(o, "pgv_m_s", json_number(f->pgv_m_s));
-    json_object_set_new(o, "pgd_m", json_number(f->pgd_m));
-    json_object_set_new(o, "arias_m_s", json_number(f->arias_m_s));
-    json_object_set_new(o, "cav_m_s", json_number(f->cav_m_s));
-    json_object_set_new(o, "d5_95_s", json_number(f->d5_95_s));
-    json_object_set_new(o, "damping", json_number(0.05));
-    json_object_set_new(o, "period_s", json_numbers(N_PERIODS, s->T));
-    json_object_set_new(o, "psa_m_s2", json_numbers(N_PERIODS, s->psa));
-    json_object_set_new(o, "psv_m_s", json_numbers(N_PERIODS, s->psv));
-    json_object_set_new(o, "sd_m", json_numbers(N_PERIODS, s->sd));
-    json_object_set_new(o, "accel_m_s2", json_numbers(m->n, m->accel));
-    json_object_set_new(o, "velocity_m_s", json_numbers(m->n, s->velocity));
-    json_object_set_new(o, "displacement_m", json_numbers(m->n, s->displacement));
-    json_object_set_new(o, "husid", json_numbers(m->n, s->husid));
+    const struct {
+        const char *key;
+        double x;
+    } NUMBERS[] = {{"scale", m->scale},       {"stretch", m->stretch},          {"step_s", m->dt_s},
+                   {"pga_m_s2", f->pga_m_s2}, {"pga_g", f->pga_m_s2 / GRAVITY}, {"pgv_m_s", f->pgv_m_s},
+                   {"pgd_m", f->pgd_m},       {"duration_s", f->duration_s},    {"arias_m_s", f->arias_m_s},
+                   {"cav_m_s", f->cav_m_s},   {"d5_95_s", f->d5_95_s},          {"damping", DAMPING}};
+    const struct {
+        const char *key;
+        size_t n;
+        const double *x;
+    } ARRAYS[] = {{"period_s", N_PERIODS, s->T},  {"psa_m_s2", N_PERIODS, s->psa},
+                  {"psv_m_s", N_PERIODS, s->psv}, {"sd_m", N_PERIODS, s->sd},
+                  {"accel_m_s2", m->n, m->accel}, {"velocity_m_s", m->n, s->velocity},
+                  {"husid", m->n, s->husid},      {"displacement_m", m->n, s->displacement}};
+    json_t *o =
+        json_pack("{s:o, s:s, s:o, s:o, s:b, s:o, s:I}", "motion", json_words(m->name), "format", m->format, "channel",
+                  json_words(m->channel), "processed", json_words(m->processed), "corrected",
+                  motion_is_corrected(&s->options), "warning", json_words(m->warning), "samples", (json_int_t)m->n);
+    for (size_t i = 0; i < sizeof NUMBERS / sizeof NUMBERS[0]; i++)
+        json_object_set_new(o, NUMBERS[i].key, json_number(NUMBERS[i].x));
+    for (size_t i = 0; i < sizeof ARRAYS / sizeof ARRAYS[0]; i++)
+        json_object_set_new(o, ARRAYS[i].key, json_numbers(ARRAYS[i].n, ARRAYS[i].x));
     if (s->is_processed)
-        json_object_set_new(o, "recorded", describe_recorded(s));
-    if (s->code.kind != TARGET_NONE) {
+        json_object_set_new(o, "recorded",
+                            json_pack("{s:f, s:f, s:f, s:o}", "pga_m_s2", r->pga_m_s2, "pgv_m_s", r->pgv_m_s, "pgd_m",
+                                      r->pgd_m, "psa_m_s2", json_numbers(N_PERIODS, s->recorded_psa)));
+    if (s->code.kind) {
         json_object_set_new(o, "target_psa_m_s2", json_numbers(N_PERIODS, s->target));
         json_object_set_new(o, "target_misfit", json_number(target_misfit(m, &s->code)));
     }
     return o;
-}
-
-static Status write_csv(const Spectrum *s, const char *path, Err *err)
-{
-    Output o;
-    TRY(output_open(&o, path, err));
-    fprintf(o.stream, "period_s,psa_m_s2,psv_m_s,sd_m%s%s\n", s->is_processed ? ",recorded_psa_m_s2" : "",
-            s->code.kind != TARGET_NONE ? ",target_psa_m_s2" : "");
-    for (int i = 0; i < N_PERIODS; i++) {
-        const double row[] = {s->psa[i], s->psv[i], s->sd[i]};
-        print_number(o.stream, s->T[i]);
-        print_cells(o.stream, 3, row);
-        if (s->is_processed)
-            print_cells(o.stream, 1, &s->recorded_psa[i]);
-        if (s->code.kind != TARGET_NONE)
-            print_cells(o.stream, 1, &s->target[i]);
-        fputc('\n', o.stream);
-    }
-    return output_close(&o, err);
-}
-
-static Status write_history(const Spectrum *s, const char *path, Err *err)
-{
-    const Motion *m = &s->motion;
-    Output o;
-    TRY(output_open(&o, path, err));
-    fprintf(o.stream, "time_s,accel_m_s2,velocity_m_s,displacement_m,husid\n");
-    for (size_t i = 0; i < m->n; i++) {
-        const double row[] = {m->accel[i], s->velocity[i], s->displacement[i], s->husid[i]};
-        print_number(o.stream, (double)i * m->dt_s);
-        print_cells(o.stream, 4, row);
-        fputc('\n', o.stream);
-    }
-    return output_close(&o, err);
 }
 
 static void print_head(const Spectrum *s)
@@ -109,7 +326,7 @@ static void print_head(const Spectrum *s)
         printf("processed %s\n", m->processed);
     if (motion_scalings(&s->options, scaling))
         printf("scaled    x %.5g: %s\n", m->scale, scaling);
-    if (s->code.kind != TARGET_NONE)
+    if (s->code.kind)
         printf("target    %g to %g s; ln(spectrum / target) is %.3g in the root mean square\n", s->code.from_s,
                s->code.to_s, target_misfit(m, &s->code));
     if (m->warning[0])
@@ -134,115 +351,68 @@ static void print_figures(const Spectrum *s)
            f->duration_s, f->d5_95_s, f->arias_m_s, f->cav_m_s);
 }
 
-static void print_table(const Spectrum *s)
-{
-    const int has_target = s->code.kind != TARGET_NONE;
-    print_head(s);
-    putchar('\n');
-    print_figures(s);
-    printf("response at 5 %% damping\nperiod_s     psa_g   psv_m_s      sd_m%s%s\n",
-           s->is_processed ? "  recorded" : "", has_target ? "    target" : "");
-    for (int i = 0; i < N_PERIODS; i += PRINTED_EACH) {
-        printf("%8.4g %9.4g %9.4g %9.4g", s->T[i], s->psa[i] / GRAVITY, s->psv[i], s->sd[i]);
-        if (s->is_processed)
-            printf(" %9.4g", s->recorded_psa[i] / GRAVITY);
-        if (has_target)
-            printf(" %9.4g", s->target[i] / GRAVITY);
-        putchar('\n');
-    }
-}
-
 /* All that is asked for; the table where nothing is. */
 static Status give_one(const Args *args, const Spectrum *s, Err *err)
 {
+    Curve c[CURVES_MAX];
+    const Curve history[] = {{"time_s", "", 1, s->time},
+                             {"accel_m_s2", "", 1, s->motion.accel},
+                             {"velocity_m_s", "", 1, s->velocity},
+                             {"displacement_m", "", 1, s->displacement},
+                             {"husid", "", 1, s->husid}};
+    curves_of_one(s, c);
     if (args_has(args, "--csv"))
-        TRY(write_csv(s, args_value(args, "--csv"), err));
+        TRY(write_curves(args_value(args, "--csv"), N_PERIODS, CURVES_MAX, c, err));
     if (args_has(args, "--history"))
-        TRY(write_history(s, args_value(args, "--history"), err));
+        TRY(write_curves(args_value(args, "--history"), s->motion.n, 5, history, err));
     if (args_has(args, "--svg"))
-        TRY(spectrum_draw(s, args_value(args, "--svg"), err));
+        TRY(gnuplot_draw(args_value(args, "--svg"), draw_one, &(Picture){s, CURVES_MAX, c}, err));
     if (args_has(args, "--json"))
         return show_json(describe(s), err);
-    if (!args_has(args, "--csv") && !args_has(args, "--history") && !args_has(args, "--svg"))
-        print_table(s);
+    if (!args_has(args, "--csv") && !args_has(args, "--history") && !args_has(args, "--svg")) {
+        print_head(s);
+        putchar('\n');
+        print_figures(s);
+        puts("response at 5 % damping");
+        print_curves(CURVES_MAX, c);
+    }
     return STATUS_OK;
 }
 
 /* ---- several ----------------------------------------------------------------------------------------------------- */
 
-static Status write_csv_of_all(size_t n, const Spectrum s[], const char *path, Err *err)
+static json_t *describe_all(size_t n, const Spectrum s[], const double mean[N_PERIODS])
 {
-    Output o;
-    double mean[N_PERIODS];
-    spectra_average(n, s, mean);
-    TRY(output_open(&o, path, err));
-    fprintf(o.stream, "period_s,mean_psa_m_s2%s", s->code.kind != TARGET_NONE ? ",target_psa_m_s2" : "");
-    for (size_t k = 0; k < n; k++) {
-        char name[128];
-        cell_text(name, sizeof name, spectrum_name(&s[k]));
-        fprintf(o.stream, ",%s psa_m_s2", name);
-    }
-    fputc('\n', o.stream);
-    for (int i = 0; i < N_PERIODS; i++) {
-        print_number(o.stream, s->T[i]);
-        print_cells(o.stream, 1, &mean[i]);
-        if (s->code.kind != TARGET_NONE)
-            print_cells(o.stream, 1, &s->target[i]);
-        for (size_t k = 0; k < n; k++)
-            print_cells(o.stream, 1, &s[k].psa[i]);
-        fputc('\n', o.stream);
-    }
-    return output_close(&o, err);
-}
-
-static json_t *describe_all(size_t n, const Spectrum s[])
-{
-    double mean[N_PERIODS];
     json_t *o = json_object(), *list = json_array();
-    spectra_average(n, s, mean);
     for (size_t k = 0; k < n; k++)
         json_array_append_new(list, describe(&s[k]));
     json_object_set_new(o, "motions", list);
     json_object_set_new(o, "period_s", json_numbers(N_PERIODS, s->T));
     json_object_set_new(o, "mean_psa_m_s2", json_numbers(N_PERIODS, mean));
-    if (s->code.kind != TARGET_NONE)
+    if (s->code.kind)
         json_object_set_new(o, "target_psa_m_s2", json_numbers(N_PERIODS, s->target));
     return o;
 }
 
-static void print_all(size_t n, const Spectrum s[])
+static Status give_all(const Args *args, size_t n, const Spectrum s[], Curve c[], Err *err)
 {
-    const int has_target = s->code.kind != TARGET_NONE;
     double mean[N_PERIODS];
-    spectra_average(n, s, mean);
+    average(n, s, mean);
+    curves_of_all(n, s, mean, c);
+    if (args_has(args, "--csv"))
+        TRY(write_curves(args_value(args, "--csv"), N_PERIODS, n + 3, c, err));
+    if (args_has(args, "--svg"))
+        TRY(gnuplot_draw(args_value(args, "--svg"), draw_all, &(Picture){s, n + 3, c}, err));
+    if (args_has(args, "--json"))
+        return show_json(describe_all(n, s, mean), err);
+    if (args_has(args, "--csv") || args_has(args, "--svg"))
+        return STATUS_OK;
     for (size_t k = 0; k < n; k++) {
         printf("%zu  ", k + 1);
         print_head(&s[k]);
     }
-    printf("\npseudo-acceleration [g] at 5 %% damping\nperiod_s      mean%s", has_target ? "    target" : "");
-    for (size_t k = 0; k < n; k++)
-        printf(" %9zu", k + 1);
-    putchar('\n');
-    for (int i = 0; i < N_PERIODS; i += PRINTED_EACH) {
-        printf("%8.4g %9.4g", s->T[i], mean[i] / GRAVITY);
-        if (has_target)
-            printf(" %9.4g", s->target[i] / GRAVITY);
-        for (size_t k = 0; k < n; k++)
-            printf(" %9.4g", s[k].psa[i] / GRAVITY);
-        putchar('\n');
-    }
-}
-
-static Status give_all(const Args *args, size_t n, const Spectrum s[], Err *err)
-{
-    if (args_has(args, "--csv"))
-        TRY(write_csv_of_all(n, s, args_value(args, "--csv"), err));
-    if (args_has(args, "--svg"))
-        TRY(spectra_draw(n, s, args_value(args, "--svg"), err));
-    if (args_has(args, "--json"))
-        return show_json(describe_all(n, s), err);
-    if (!args_has(args, "--csv") && !args_has(args, "--svg"))
-        print_all(n, s);
+    puts("\npseudo-acceleration [g] at 5 % damping");
+    print_curves(n + 3, c);
     return STATUS_OK;
 }
 
@@ -268,14 +438,15 @@ static Status run(const Args *args, Err *err)
     if (n > 1 && args_has(args, "--history"))
         return fail(err, STATUS_USAGE, "--history is of one motion, not of %zu", n);
     Spectrum *s = calloc(n, sizeof *s);
-    if (!s)
-        return fail(err, STATUS_NO_MEMORY, "no memory for %zu motions", n);
-    Status status = open_all(args, &settings, s, err);
+    Curve *c = calloc(n + 3, sizeof *c);
+    Status status =
+        s && c ? open_all(args, &settings, s, err) : fail(err, STATUS_NO_MEMORY, "no memory for %zu motions", n);
     if (status == STATUS_OK)
-        status = n == 1 ? give_one(args, s, err) : give_all(args, n, s, err);
-    for (size_t k = 0; k < n; k++)
+        status = n == 1 ? give_one(args, s, err) : give_all(args, n, s, c, err);
+    for (size_t k = 0; s && k < n; k++)
         spectrum_close(&s[k]);
     free(s);
+    free(c);
     return status;
 }
 
