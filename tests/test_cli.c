@@ -13,7 +13,7 @@
 
 #include "program.h"
 
-#include "motion/motion_source.h"
+#include "motion/motion.h"
 #include "motion/spectrum.h"
 
 /* A design file of 20 floors: gap_j = gap * j. */

@@ -2,9 +2,8 @@
 #include "program.h"
 
 #include "base/units.h"
-#include "motion/motion_process.h"
 #include "motion/motion_scale.h"
-#include "motion/motion_source.h"
+#include "motion/motion.h"
 #include "motion/spectrum.h"
 #include "settings/settings.h"
 

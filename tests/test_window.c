@@ -6,7 +6,7 @@
 
 #include "bench/timed_run.h"
 #include "motion/motion_read.h"
-#include "motion/motion_source.h"
+#include "motion/motion.h"
 #include "scene_options.h"
 
 typedef struct {

@@ -11,7 +11,7 @@
 #include "cmd/show.h"
 #include "cmd/warnings.h"
 #include "motion/motion_scale.h"
-#include "motion/motion_source.h"
+#include "motion/motion.h"
 #include "settings/settings.h"
 #include "store/tables.h"
 #include "sim/sim.h"

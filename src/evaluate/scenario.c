@@ -1,6 +1,6 @@
 #include "evaluate/scenario.h"
 #include "motion/motion_scale.h"
-#include "motion/motion_source.h"
+#include "motion/motion.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -10,7 +10,6 @@
 #include "base/hash.h"
 #include "base/csv.h"
 #include "base/units.h"
-#include "motion/formats/archive.h"
 #include "motion/formats/record.h"
 
 /* The strongest ground acceleration ever recorded is near 4 g; far beyond that a unit is wrong (El Centro in cm/s2
@@ -39,9 +38,8 @@ Status motion_unit_parse(const char *text, MotionUnit *unit, double *counts_per_
         return STATUS_OK;
     if (*unit < UNIT_COUNTS && !text[length])
         return STATUS_OK;
-    const char *near = nearest_word(text, UNIT_NAMES, UNIT_COUNTS);
-    return fail(err, STATUS_BAD_DATA, "motion.unit: '%.40s' is none of from_file, m_s2, cm_s2, g, counts=VALUE%s%s%s",
-                text, near ? "; did you mean " : "", near ? near : "", near ? "?" : "");
+    static const char *const WORDS[] = {"from_file", "m_s2", "cm_s2", "g", "counts=VALUE"};
+    return fail_no_word(err, STATUS_BAD_DATA, "motion.unit", text, "unit", WORDS, 5);
 }
 
 /* The one unit that file and setting agree on, and what a sample of the file is times to be in m/s2. */
@@ -124,25 +122,16 @@ static int count_named(const Record *r, const char *wanted, int exactly, const C
     return n;
 }
 
-static int any_acceleration(const Record *r)
+/* How many channels are accelerations; *found is the last of them. */
+static int count_accelerations(const Record *r, const Channel **found)
 {
-    size_t i = 0;
-    while (i < r->n_channels && !is_acceleration(&r->channel[i]))
-        i++;
-    return i < r->n_channels;
-}
-
-static const Channel *only_acceleration(const Record *r)
-{
-    const Channel *only = NULL;
-    for (size_t i = 0; i < r->n_channels; i++) {
-        if (!is_acceleration(&r->channel[i]))
-            continue;
-        if (only)
-            return NULL;
-        only = &r->channel[i];
-    }
-    return only;
+    int n = 0;
+    for (size_t i = 0; i < r->n_channels; i++)
+        if (is_acceleration(&r->channel[i])) {
+            *found = &r->channel[i];
+            n++;
+        }
+    return n;
 }
 
 /* A name comes before a number, for azimuths are names. */
@@ -161,11 +150,12 @@ static const Channel *named_or_numbered(const Record *r, const char *wanted)
 static Status choose_channel(const Record *r, const char *path, const char *wanted, const Channel **out, Err *err)
 {
     char list[LIST_MAX];
-    const int automatic = !wanted || strcmp(wanted, "auto") == 0;
-    *out = automatic ? only_acceleration(r) : named_or_numbered(r, wanted);
+    const int automatic = !wanted || strcmp(wanted, "auto") == 0, n = count_accelerations(r, out);
     list_channels(r, list);
-    if (automatic && !any_acceleration(r))
+    if (automatic && n == 0)
         return fail(err, STATUS_BAD_DATA, "%s: none of its channels is an acceleration: %s", path, list);
+    if (!automatic || n > 1)
+        *out = automatic ? NULL : named_or_numbered(r, wanted);
     if (!*out && automatic)
         return fail(err, STATUS_BAD_DATA, "%s: holds %zu channels: %s; choose one by motion.channel (--channel)", path,
                     r->n_channels, list);

@@ -6,7 +6,7 @@
 
 #include "base/list.h"
 #include "motion/builtin.h"
-#include "motion/motion_source.h"
+#include "motion/motion.h"
 #include "settings/options.h"
 #include "store/provenance.h"
 

@@ -10,9 +10,8 @@
 #include "scene/design.h"
 #include "settings/settings.h"
 #include "base/csv.h"
-#include "motion/motion_process.h"
-#include "motion/motion_read.h"
 #include "motion/motion_scale.h"
+#include "motion/motion_read.h"
 
 /* What must hold whatever the bytes are; a fuzzer and a test both notice an abort. */
 static void demand(int holds, const char *what)

@@ -1,4 +1,4 @@
-#include "motion/formats/archive.h"
+#include "motion/formats/record.h"
 
 #include <archive.h>
 #include <archive_entry.h>

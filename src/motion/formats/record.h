@@ -68,6 +68,18 @@ extern const BinaryFormat FORMAT_MSEED, FORMAT_SAC, FORMAT_EVT, FORMAT_SIMCENTER
 int sac_text_is(Lines l);
 Status sac_text_read(Record *r, Lines *l, Err *err);
 
+/* ---- archives ---------------------------------------------------------------------------------------------------- */
+
+/* Zip, tar, and gzip, bzip2, xz with or without tar, in memory: all of a member at a time, ARCHIVE_BYTES_MAX of all members.
+ * What unpacks to more is refused. */
+#define ARCHIVE_BYTES_MAX ((size_t)1 << 28)
+
+int archive_is(const unsigned char bytes[], size_t n);
+
+/* Calls take for every file in the order of the archive; name: with folders. */
+typedef Status (*ArchiveFn)(const char *name, const char *bytes, size_t n, void *user, Err *err);
+Status archive_each(const char *path, const char *bytes, size_t n, ArchiveFn take, void *user, Err *err);
+
 /* ---- rows and channels ------------------------------------------------------------------------------------------- */
 
 Status record_add(Record *r, const Lines *l, Row row, Err *err);
