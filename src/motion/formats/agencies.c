@@ -771,7 +771,8 @@ static Status read_all(const Format *f, Record *r, Lines *l, Err *err)
     if (f->read)
         return f->read(r, l, err);
     while (lines_next_filled(l)) {
-        if (r->n_channels > 0 && (f->within != 1 || f->is || !begins_channel(f, l)))
+        const int begins = f->within == 1 && !f->is && (f->begins ? is_any(l, f->begins, 0) : is_any(l, f->has, 1));
+        if (r->n_channels > 0 && !begins)
             continue;
         TRY(read_channel(f, r, l, err));
     }
