@@ -54,9 +54,8 @@ static void killed_run(const char *out)
 /* -- two at once, and starts that were cut short -------------------------------------------------------------------- */
 
 /* The lock's holder seems to be gone, so that the folder seems free; when it lets go there is a run. */
-static void test_a_run_that_appears_while_the_lock_is_waited_for_is_not_overwritten(void **state)
+TEST(a_run_that_appears_while_the_lock_is_waited_for_is_not_overwritten)
 {
-    (void)state;
     char path[PATH_MAX], host[65] = "", text[96];
     Folder folder;
     Err err = {0};
@@ -78,9 +77,8 @@ static void test_a_run_that_appears_while_the_lock_is_waited_for_is_not_overwrit
     shell("cmp sound/run.sqlite race/run.sqlite && test -f race-2/front.csv");
 }
 
-static void test_a_folder_with_evaluations_and_no_database_is_never_overwritten(void **state)
+TEST(a_folder_with_evaluations_and_no_database_is_never_overwritten)
 {
-    (void)state;
     shell("mkdir half && echo 1 here 0 > half/lock"); /* killed before anything was simulated */
     free(output_of("optimize @/textbook.ini --out @/half"));
     assert_same_run("sound", "half");
@@ -93,9 +91,8 @@ static void test_a_folder_with_evaluations_and_no_database_is_never_overwritten(
 
 /* -- journals ------------------------------------------------------------------------------------------------------ */
 
-static void test_a_lost_journal_is_noticed(void **state)
+TEST(a_lost_journal_is_noticed)
 {
-    (void)state;
     killed_run("lost");
     shell("mv lost/run.sqlite-wal kept && cp -r lost other");
     expect(74, "evaluations were stored, as its file `lock` says; run.sqlite has", "optimize @/lost");
@@ -107,9 +104,8 @@ static void test_a_lost_journal_is_noticed(void **state)
     assert_same_run("slow", "other");
 }
 
-static void test_the_journal_of_another_run_stays_out_of_a_new_database(void **state)
+TEST(the_journal_of_another_run_stays_out_of_a_new_database)
 {
-    (void)state;
     killed_run("left");
     shell("mkdir next && cp left/run.sqlite-wal left/run.sqlite-shm next");
     free(output_of("optimize @/textbook.ini --out @/next"));
@@ -118,9 +114,8 @@ static void test_the_journal_of_another_run_stays_out_of_a_new_database(void **s
 
 /* -- in flight ----------------------------------------------------------------------------------------------------- */
 
-static void test_a_database_that_is_removed_in_flight_is_put_back(void **state)
+TEST(a_database_that_is_removed_in_flight_is_put_back)
 {
-    (void)state;
     static const char *const FILES[] = {"run.sqlite", "run.sqlite-wal", "run.sqlite*"};
     for (size_t i = 0; i < sizeof FILES / sizeof FILES[0]; i++) {
         const pid_t pid = start_and_wait("flight");
@@ -136,9 +131,8 @@ static void test_a_database_that_is_removed_in_flight_is_put_back(void **state)
     }
 }
 
-static void test_another_database_in_the_place_of_a_run_ends_it(void **state)
+TEST(another_database_in_the_place_of_a_run_ends_it)
 {
-    (void)state;
     const pid_t pid = start_and_wait("taken");
     shell("cp sound/run.sqlite taken/new && mv taken/new taken/run.sqlite");
     const int status = wait_end(pid);
@@ -150,9 +144,8 @@ static void test_another_database_in_the_place_of_a_run_ends_it(void **state)
 
 /* -- links --------------------------------------------------------------------------------------------------------- */
 
-static void test_links_in_a_foreign_folder_are_not_followed(void **state)
+TEST(links_in_a_foreign_folder_are_not_followed)
 {
-    (void)state;
     static const char *const FILES[] = {"front.csv", "settings.ini", "provenance.json", "report.html", "log.txt",
                                         "log.jsonl", "lock",         "run.sqlite.tmp"};
     for (size_t i = 0; i < sizeof FILES / sizeof FILES[0]; i++) {
@@ -171,9 +164,8 @@ static void test_links_in_a_foreign_folder_are_not_followed(void **state)
 
 /* -- hands --------------------------------------------------------------------------------------------------------- */
 
-static void test_what_was_edited_in_the_exports_does_not_survive_a_resume(void **state)
+TEST(what_was_edited_in_the_exports_does_not_survive_a_resume)
 {
-    (void)state;
     static const char *const EDITS[] = {
         "sed -i '3s/[0-9]$/7/' front.csv", /* a last digit */
         "rm front.csv",
@@ -195,9 +187,8 @@ static void test_what_was_edited_in_the_exports_does_not_survive_a_resume(void *
 static const char DAMAGE_LAST[] = "UPDATE state SET bytes = zeroblob(length(bytes)) "
                                   "WHERE generation = (SELECT max(generation) FROM state)";
 
-static void test_a_damaged_state_gives_way_to_the_one_before_with_the_same_end(void **state)
+TEST(a_damaged_state_gives_way_to_the_one_before_with_the_same_end)
 {
-    (void)state;
     Said said;
     static const char FURTHER[] = "optimize @/%s --max-evals 60 --force-settings";
     shell("cp -r sound whole && cp -r sound damaged && cp -r sound hopeless");
@@ -220,9 +211,8 @@ static void test_a_damaged_state_gives_way_to_the_one_before_with_the_same_end(v
 }
 
 /* One bit of the statement that made a table: SQLite takes the column for another one. */
-static void test_a_bit_in_the_text_of_a_table_is_found(void **state)
+TEST(a_bit_in_the_text_of_a_table_is_found)
 {
-    (void)state;
     char path[PATH_MAX], bytes[8192];
     static const char WORDS[] = "PRIMARY KEY REFERENCES";
     shell("cp -r sound bit");
@@ -238,9 +228,8 @@ static void test_a_bit_in_the_text_of_a_table_is_found(void **state)
     expect(74, "1 of its 7 tables", "optimize @/bit --max-evals 50 --force-settings");
 }
 
-static void test_a_damaged_run_says_what_its_tables_still_know_and_another_begins_with_it(void **state)
+TEST(a_damaged_run_says_what_its_tables_still_know_and_another_begins_with_it)
 {
-    (void)state;
     char advice[PATH_MAX], words[PATH_MAX];
     snprintf(advice, sizeof advice, "; --new --set search.start=%s/hurt/front.csv begins another run", place.folder);
     shell("cp -r sound hurt");
@@ -281,18 +270,5 @@ static int make_sound(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a_run_that_appears_while_the_lock_is_waited_for_is_not_overwritten),
-        cmocka_unit_test(test_a_folder_with_evaluations_and_no_database_is_never_overwritten),
-        cmocka_unit_test(test_a_lost_journal_is_noticed),
-        cmocka_unit_test(test_the_journal_of_another_run_stays_out_of_a_new_database),
-        cmocka_unit_test(test_a_database_that_is_removed_in_flight_is_put_back),
-        cmocka_unit_test(test_another_database_in_the_place_of_a_run_ends_it),
-        cmocka_unit_test(test_links_in_a_foreign_folder_are_not_followed),
-        cmocka_unit_test(test_what_was_edited_in_the_exports_does_not_survive_a_resume),
-        cmocka_unit_test(test_a_damaged_state_gives_way_to_the_one_before_with_the_same_end),
-        cmocka_unit_test(test_a_bit_in_the_text_of_a_table_is_found),
-        cmocka_unit_test(test_a_damaged_run_says_what_its_tables_still_know_and_another_begins_with_it),
-    };
-    return cmocka_run_group_tests_name("damage", tests, make_sound, clear_place);
+    return RUN_TESTS(make_sound, clear_place);
 }

@@ -17,9 +17,8 @@ static double missed(const double f[])
     return sum;
 }
 
-static void test_limits_that_nothing_keeps_end_with_the_nearest_designs(void **state)
+TEST(limits_that_nothing_keeps_end_with_the_nearest_designs)
 {
-    (void)state;
     Said s;
     Table nearest;
     Run all;
@@ -60,9 +59,8 @@ static void test_limits_that_nothing_keeps_end_with_the_nearest_designs(void **s
     }
 }
 
-static void test_a_run_that_keeps_its_limits_has_no_nearest_designs(void **state)
+TEST(a_run_that_keeps_its_limits_has_no_nearest_designs)
 {
-    (void)state;
     write_in_place("met.ini", TEXTBOOK);
     free(output_of("optimize @/met.ini --out @/met --threads 1"));
     write_in_place("met/nearest.csv", "of an earlier session");
@@ -72,9 +70,8 @@ static void test_a_run_that_keeps_its_limits_has_no_nearest_designs(void **state
     free(path);
 }
 
-static void test_the_nearest_are_in_the_order_of_what_they_miss_without_failed_and_screened_ones(void **state)
+TEST(the_nearest_are_in_the_order_of_what_they_miss_without_failed_and_screened_ones)
 {
-    (void)state;
     static const double VIOLATION[] = {5, 3, 9, 3, 1, 8, 2, 7, 6, 4, 0.5, 11, 10, 2.5};
     static const size_t WANTED[] = {10, 4, 1, 3, 9, 0, 8, 7, 5, 2};
     enum { N = sizeof VIOLATION / sizeof VIOLATION[0] };
@@ -95,9 +92,8 @@ static void test_the_nearest_are_in_the_order_of_what_they_miss_without_failed_a
     assert_int_equal(rows[2], 2);
 }
 
-static void test_limits_that_contradict_each_other_are_refused_before_anything_is_simulated(void **state)
+TEST(limits_that_contradict_each_other_are_refused_before_anything_is_simulated)
 {
-    (void)state;
     write_in_place("both.ini", UNMET);
     expect(65, "search.limits: f1<=5 and >=7 contradict each other",
            "check @/both.ini --set 'search.limits=f1>=7,f1<=5'");
@@ -129,9 +125,8 @@ static void see_progress(const StudyProgress *p, void *user)
     simulated_shown = p->progress.simulated;
 }
 
-static void test_a_run_without_a_front_says_why_there_is_none(void **state)
+TEST(a_run_without_a_front_says_why_there_is_none)
 {
-    (void)state;
     const Settings s = settings_of(UNMET, "begun");
     StudySummary summary;
     Err err = {0};
@@ -154,12 +149,5 @@ static void test_a_run_without_a_front_says_why_there_is_none(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_limits_that_nothing_keeps_end_with_the_nearest_designs),
-        cmocka_unit_test(test_a_run_that_keeps_its_limits_has_no_nearest_designs),
-        cmocka_unit_test(test_the_nearest_are_in_the_order_of_what_they_miss_without_failed_and_screened_ones),
-        cmocka_unit_test(test_limits_that_contradict_each_other_are_refused_before_anything_is_simulated),
-        cmocka_unit_test(test_a_run_without_a_front_says_why_there_is_none),
-    };
-    return cmocka_run_group_tests_name("limits", tests, prepare, clear_place);
+    return RUN_TESTS(prepare, clear_place);
 }

@@ -83,9 +83,8 @@ static void specimen_path(const char *file, char path[128])
     snprintf(path, 128, "tests/motion/%s", file);
 }
 
-static void test_a_specimen_of_every_format_is_read_to_its_step_length_and_peak(void **state)
+TEST(a_specimen_of_every_format_is_read_to_its_step_length_and_peak)
 {
-    (void)state;
     for (int i = 0; i < N_SPECIMENS; i++) {
         char path[128];
         Motion m;
@@ -131,9 +130,8 @@ static const struct {
 };
 enum { N_BINARY = sizeof BINARY / sizeof *BINARY };
 
-static void test_binary_files_and_archives_are_read_to_their_samples(void **state)
+TEST(binary_files_and_archives_are_read_to_their_samples)
 {
-    (void)state;
     for (int i = 0; i < N_BINARY; i++) {
         char path[128];
         Motion m;
@@ -190,9 +188,8 @@ static Text changed(Text t, const char *from, const char *to, int all)
     return out;
 }
 
-static void test_line_ends_and_blanks_at_line_ends_do_not_matter(void **state)
+TEST(line_ends_and_blanks_at_line_ends_do_not_matter)
 {
-    (void)state;
     static const char *const ends[] = {"\n", "\r\n", "   \r\n", "\t\n", "\r"};
     for (int i = 0; i < N_SPECIMENS; i++)
         for (size_t k = 0; k < sizeof ends / sizeof *ends; k++) {
@@ -347,9 +344,8 @@ static const struct {
 /* What a wrong specimen is asked for: its first channel, unless several are the point. */
 static const MotionHow FIRST = {.channel = "1"};
 
-static void test_a_specimen_wrong_in_one_way_is_refused_with_line_and_reason(void **state)
+TEST(a_specimen_wrong_in_one_way_is_refused_with_line_and_reason)
 {
-    (void)state;
     int n_accepted = 0;
     for (size_t i = 0; i < sizeof WRONG / sizeof *WRONG; i++) {
         Text t = changed(read_specimen(WRONG[i].file), WRONG[i].from, WRONG[i].to, 0);
@@ -379,9 +375,8 @@ static Text repeated(Text one, size_t copies)
     return all;
 }
 
-static void test_a_file_of_too_many_channels_is_refused(void **state)
+TEST(a_file_of_too_many_channels_is_refused)
 {
-    (void)state;
     static const char *const FILES[] = {"one.cosmos.v1", "three.csmip.v1", "three.v1a"};
     for (size_t i = 0; i < sizeof FILES / sizeof *FILES; i++) {
         Text t = repeated(read_specimen(FILES[i]), 129);
@@ -399,9 +394,8 @@ static void test_a_file_of_too_many_channels_is_refused(void **state)
     assert_non_null(strstr(err.text, "row:1: more than 128 channels"));
 }
 
-static void test_words_without_numbers_are_no_known_format_and_their_first_line_is_quoted(void **state)
+TEST(words_without_numbers_are_no_known_format_and_their_first_line_is_quoted)
 {
-    (void)state;
     static const char *const TEXTS[] = {"W. 12 garbage\n", "alpha\nbeta\n", "time acceleration\nabc def\n",
                                         "W. station foo\n what\n1 2 3\n"};
     for (size_t i = 0; i < sizeof TEXTS / sizeof TEXTS[0]; i++) {
@@ -414,9 +408,8 @@ static void test_words_without_numbers_are_no_known_format_and_their_first_line_
     }
 }
 
-static void test_a_file_of_nothing_but_a_byte_order_mark_is_refused(void **state)
+TEST(a_file_of_nothing_but_a_byte_order_mark_is_refused)
 {
-    (void)state;
     Err err = {0};
     assert_int_equal(motion_parse(&(Motion){0}, "mark", "\xef\xbb\xbf", 3, &FIRST, &err), STATUS_BAD_DATA);
     assert_non_null(strstr(err.text, "mark: holds 0 samples"));
@@ -435,9 +428,8 @@ static void refused(const char *file, const MotionHow *how, const char *says)
         fail_msg("%s: the message should contain '%s' and is '%s'", path, says, err.text);
 }
 
-static void test_counts_are_refused_without_a_gain_and_what_is_no_record_by_its_name(void **state)
+TEST(counts_are_refused_without_a_gain_and_what_is_no_record_by_its_name)
 {
-    (void)state;
     static const char EVT[] = "K\1\1\11 the tags of a recorder";
     Motion m;
     Err err = {0};
@@ -454,9 +446,8 @@ static void test_counts_are_refused_without_a_gain_and_what_is_no_record_by_its_
 }
 
 /* Integers of little.sac [place] written over. */
-static void test_a_sac_header_of_velocities_or_of_fewer_samples_is_refused(void **state)
+TEST(a_sac_header_of_velocities_or_of_fewer_samples_is_refused)
 {
-    (void)state;
     static const struct {
         int place;
         char value;
@@ -499,9 +490,8 @@ static Text two_members(const char *first, const char *second, const Text *conte
     return out;
 }
 
-static void test_a_damaged_member_of_an_archive_is_named_and_files_of_one_name_have_their_folders(void **state)
+TEST(a_damaged_member_of_an_archive_is_named_and_files_of_one_name_have_their_folders)
 {
-    (void)state;
     Text one = read_specimen("one.knet");
     Text broken = two_members("a.NS", "b.NS", &one, one.length - 60);
     Text twins = two_members("x/a.NS", "y/a.NS", &one, one.length);
@@ -519,9 +509,8 @@ static void test_a_damaged_member_of_an_archive_is_named_and_files_of_one_name_h
     free(twins.text);
 }
 
-static void test_a_channel_must_be_chosen_where_there_are_several(void **state)
+TEST(a_channel_must_be_chosen_where_there_are_several)
 {
-    (void)state;
     refused("jma.csv", &(MotionHow){0}, "holds 3 channels: 1 'NS', 2 'EW', 3 'UD'; choose one by motion.channel");
     refused("jma.csv", &(MotionHow){.channel = "4"}, "'4' is not exactly one of its channels: 1 'NS'");
     refused("jma.csv", &(MotionHow){.channel = "vertical"}, "'vertical' is not exactly one of its channels");
@@ -529,9 +518,8 @@ static void test_a_channel_must_be_chosen_where_there_are_several(void **state)
     refused("one.knet", &(MotionHow){.channel = "E-W"}, "'E-W' is not exactly one of its channels: 1 'N-S'");
 }
 
-static void test_a_column_of_velocities_is_not_taken_for_an_acceleration(void **state)
+TEST(a_column_of_velocities_is_not_taken_for_an_acceleration)
 {
-    (void)state;
     static const char text[] = "time_s,accel_m_s2,velocity\n0.00,1.0,0.0\n0.02,2.0,0.1\n";
     Motion m;
     Err err;
@@ -541,9 +529,8 @@ static void test_a_column_of_velocities_is_not_taken_for_an_acceleration(void **
     motion_free(&m);
 }
 
-static void test_unequal_steps_are_resampled_by_straight_lines_only_when_asked(void **state)
+TEST(unequal_steps_are_resampled_by_straight_lines_only_when_asked)
 {
-    (void)state;
     refused("irregular.csv", &(MotionHow){0}, "breaks the uniform step");
     refused("irregular.csv", &(MotionHow){.dt_s = 1e-9}, "would make");
     static const char text[] = "t,a_m_s2\n0,0\n0.1,1\n0.3,3\n0.4,0\n1.0,6\n";
@@ -560,9 +547,8 @@ static void test_unequal_steps_are_resampled_by_straight_lines_only_when_asked(v
     motion_free(&m);
 }
 
-static void test_an_equal_step_is_left_alone_by_a_request_to_resample(void **state)
+TEST(an_equal_step_is_left_alone_by_a_request_to_resample)
 {
-    (void)state;
     Motion m;
     Err err;
     CHECK_OK(motion_read(&m, "tests/motion/two_columns.txt", &(MotionHow){.dt_s = 0.5}, &err), &err);
@@ -571,9 +557,8 @@ static void test_an_equal_step_is_left_alone_by_a_request_to_resample(void **sta
     motion_free(&m);
 }
 
-static void test_the_step_of_a_bare_column_can_be_given_and_of_no_other(void **state)
+TEST(the_step_of_a_bare_column_can_be_given_and_of_no_other)
 {
-    (void)state;
     static const char text[] = "1\n2\n-3\n0\n";
     Motion m;
     Err err;
@@ -590,9 +575,8 @@ static void test_the_step_of_a_bare_column_can_be_given_and_of_no_other(void **s
     motion_free(&m);
 }
 
-static void test_a_setting_may_not_contradict_the_unit_of_any_format(void **state)
+TEST(a_setting_may_not_contradict_the_unit_of_any_format)
 {
-    (void)state;
     for (int i = 0; i < N_SPECIMENS; i++) {
         const int in_g = strstr(SPECIMENS[i].file, ".at2") || strstr(SPECIMENS[i].file, "csmip.v1") ||
                          strstr(SPECIMENS[i].file, "bhrc") || strstr(SPECIMENS[i].file, "usc");
@@ -651,9 +635,8 @@ static void check_mutant(const char *file, const Text *t, const MotionHow *how)
     motion_free(&m);
 }
 
-static void test_five_thousand_mutants_are_read_or_refused(void **state)
+TEST(five_thousand_mutants_are_read_or_refused)
 {
-    (void)state;
     enum { EACH = 170 };
     uint64_t random = 1;
     for (int i = 0; i < N_SPECIMENS; i++) {
@@ -673,9 +656,8 @@ static void test_five_thousand_mutants_are_read_or_refused(void **state)
     }
 }
 
-static void test_a_mutated_binary_file_or_archive_is_read_or_refused(void **state)
+TEST(a_mutated_binary_file_or_archive_is_read_or_refused)
 {
-    (void)state;
     uint64_t random = 2;
     for (int i = 0; i < N_BINARY; i++) {
         const Text t = read_specimen(BINARY[i].file);
@@ -688,9 +670,8 @@ static void test_a_mutated_binary_file_or_archive_is_read_or_refused(void **stat
     }
 }
 
-static void test_the_offset_of_a_recorder_is_subtracted_and_said(void **state)
+TEST(the_offset_of_a_recorder_is_subtracted_and_said)
 {
-    (void)state;
     Motion m;
     Err err;
     CHECK_OK(motion_read(&m, "tests/motion/one.knet", &(MotionHow){0}, &err), &err);
@@ -712,9 +693,8 @@ static Status read_with_peak(const char *stated, Motion *m, Err *err)
     return status;
 }
 
-static void test_a_peak_that_misses_the_header_is_warned_about_above_1_percent_and_refused_above_5(void **state)
+TEST(a_peak_that_misses_the_header_is_warned_about_above_1_percent_and_refused_above_5)
 {
-    (void)state;
     Motion m;
     Err err;
     CHECK_OK(read_with_peak("124.400", &m, &err), &err); /* 0.8 % */
@@ -745,9 +725,8 @@ static Text rows_of(const char *first, int rows, int width)
     return t;
 }
 
-static void test_columns_without_names_are_asked_about_and_joined_only_where_a_count_fits(void **state)
+TEST(columns_without_names_are_asked_about_and_joined_only_where_a_count_fits)
 {
-    (void)state;
     static const struct {
         const char *first, *channel, *says; /* says: of the refusal */
         size_t n;
@@ -781,9 +760,8 @@ static void test_columns_without_names_are_asked_about_and_joined_only_where_a_c
     }
 }
 
-static void test_first_rows_of_number_and_step_are_no_samples(void **state)
+TEST(first_rows_of_number_and_step_are_no_samples)
 {
-    (void)state;
     static const struct {
         const char *first;
         int is_right;
@@ -825,9 +803,8 @@ static void expect_refusal(const char *text, const char *says)
         fail_msg("'%s' should be in '%s'", says, err.text);
 }
 
-static void test_an_unknown_format_is_said_to_be_unknown_and_its_first_line_is_quoted(void **state)
+TEST(an_unknown_format_is_said_to_be_unknown_and_its_first_line_is_quoted)
 {
-    (void)state;
     expect_refusal("A title of some agency\n16628 W. LOST CANYON RD.\n1 2 3\n",
                    "in no format that is known here (docs/motions.md lists them), and no plain columns of numbers; the "
                    "first line is 'A title of some agency'");
@@ -838,9 +815,8 @@ static void test_an_unknown_format_is_said_to_be_unknown_and_its_first_line_is_q
 }
 
 /* Twelve channels of one building, as CSMIP writes them. */
-static void test_the_location_tells_the_channels_of_a_building_apart(void **state)
+TEST(the_location_tells_the_channels_of_a_building_apart)
 {
-    (void)state;
     Text t = {NULL, 0};
     Motion m;
     Err err = {0};
@@ -868,9 +844,8 @@ static void test_the_location_tells_the_channels_of_a_building_apart(void **stat
     free(t.text);
 }
 
-static void test_quoted_cells_are_read(void **state)
+TEST(quoted_cells_are_read)
 {
-    (void)state;
     Motion m;
     Err err = {0};
     assert_int_equal(parse_text(&m, "\"time [s]\",\"acc [m/s^2]\"\n\"0.00\",\"0.1\"\n\"0.01\",\"-1.25\"\n", &err),
@@ -883,9 +858,8 @@ static void test_quoted_cells_are_read(void **state)
     assert_non_null(strstr(err.text, "there:3: 'one' is not a number"));
 }
 
-static void test_units_in_other_words_are_taken_or_named(void **state)
+TEST(units_in_other_words_are_taken_or_named)
 {
-    (void)state;
     Motion m;
     Err err = {0};
     assert_int_equal(parse_text(&m, "A\nB\nUNITS OF CM/SEC**2\nNPTS= 2, DT= .01 SEC\n1. 2.\n", &err), STATUS_OK);
@@ -907,9 +881,8 @@ static void test_units_in_other_words_are_taken_or_named(void **state)
 }
 
 /* Recorders of Kinemetrics: five tenths of a second at 100 Hz, 24 bits; the 43 samples and seven zeros. */
-static void test_a_file_of_a_kinemetrics_recorder_is_read_to_its_samples(void **state)
+TEST(a_file_of_a_kinemetrics_recorder_is_read_to_its_samples)
 {
-    (void)state;
     static const char *const NAMES[] = {"1 HNN", "2 HNE", "3 HNZ"};
     for (int k = 0; k < 3; k++) {
         Motion m;
@@ -924,9 +897,8 @@ static void test_a_file_of_a_kinemetrics_recorder_is_read_to_its_samples(void **
     }
 }
 
-static void test_what_is_wrong_in_a_file_of_a_kinemetrics_recorder_is_said(void **state)
+TEST(what_is_wrong_in_a_file_of_a_kinemetrics_recorder_is_said)
 {
-    (void)state;
     static const struct {
         size_t at;
         unsigned char byte;
@@ -955,9 +927,8 @@ static void test_what_is_wrong_in_a_file_of_a_kinemetrics_recorder_is_said(void 
 }
 
 /* A miniSEED of floats holds whatever four bytes are. */
-static void test_a_sample_of_a_binary_file_that_is_no_number_is_refused(void **state)
+TEST(a_sample_of_a_binary_file_that_is_no_number_is_refused)
 {
-    (void)state;
     static const unsigned char NOT_A_NUMBER[] = {0x7f, 0xc0, 0, 0};
     Text t = read_specimen("three.mseed");
     memcpy(t.text + 64 + 4 * 40, NOT_A_NUMBER, 4);
@@ -969,9 +940,8 @@ static void test_a_sample_of_a_binary_file_that_is_no_number_is_refused(void **s
     free(t.text);
 }
 
-static void test_a_miniseed_record_that_announces_more_samples_than_it_has_room_for_is_refused(void **state)
+TEST(a_miniseed_record_that_announces_more_samples_than_it_has_room_for_is_refused)
 {
-    (void)state;
     for (int second = 0; second < 2; second++) {
         Text t = read_specimen("three.mseed");
         t.text[30 + (second ? 512 : 0)] = 0x7f; /* the number of samples, first byte */
@@ -987,9 +957,8 @@ static void test_a_miniseed_record_that_announces_more_samples_than_it_has_room_
 /* ---- peaks of headers, format by format ------------------------------------------------------------------------- */
 
 /* Every format whose header states a peak: the stated one made 2 % and 8 % larger, in the width of the file. */
-static void test_every_format_with_a_peak_in_its_header_is_checked_against_it(void **state)
+TEST(every_format_with_a_peak_in_its_header_is_checked_against_it)
 {
-    (void)state;
     static const struct {
         const char *file, *from, *by_2, *by_8;
     } PEAKS[] = {
@@ -1029,9 +998,8 @@ static void write_over(char *at, const char *text)
 }
 
 /* Real numbers 30 and 32 of an SMC header are the extremes. */
-static void test_the_extremes_in_an_smc_header_are_checked(void **state)
+TEST(the_extremes_in_an_smc_header_are_checked)
 {
-    (void)state;
     for (int by_8 = 0; by_8 < 2; by_8++) {
         Text t = read_specimen("one.smc");
         char *at = t.text;
@@ -1053,9 +1021,8 @@ static void test_the_extremes_in_an_smc_header_are_checked(void **state)
 
 /* ---- what spreadsheets and data loggers write --------------------------------------------------------------------- */
 
-static void test_decimal_commas_are_read_whatever_parts_the_columns(void **state)
+TEST(decimal_commas_are_read_whatever_parts_the_columns)
 {
-    (void)state;
     static const char *const TEXTS[] = {
         "time_s;a_m_s2\n0,00;3,1\n0,01;0,5\n0,02;-1\n",
         "time_s\ta_m_s2\n0,00\t3,1\n0,01\t0,5\n0,02\t-1\n",
@@ -1079,9 +1046,8 @@ static void test_decimal_commas_are_read_whatever_parts_the_columns(void **state
     }
 }
 
-static void test_marks_of_thousands_and_commas_of_two_meanings_are_refused(void **state)
+TEST(marks_of_thousands_and_commas_of_two_meanings_are_refused)
 {
-    (void)state;
     expect_refusal("t;a_cm_s2\n0,00;1.234,5\n0,01;0,5\n", "there:2: '1.234,5' has a point and a comma");
     expect_refusal("t\ta_cm_s2\n0,00\t1.234,5\n0,01\t0,5\n", "there:2: '1.234,5' has a point and a comma");
     expect_refusal("# dt = 0.01\na_m_s2\n0.1\n#N/A\n0.2\n", "there:4: '#N/A' is not a number");
@@ -1099,9 +1065,8 @@ static void test_marks_of_thousands_and_commas_of_two_meanings_are_refused(void 
 }
 
 /* Nothing is taken from prose: a unit stands in a column's name or behind the key "unit" or "units". */
-static void test_a_unit_counts_where_it_is_stated_and_is_asked_for_elsewhere(void **state)
+TEST(a_unit_counts_where_it_is_stated_and_is_asked_for_elsewhere)
 {
-    (void)state;
     static const char *const IN_G[] = {"# units: g",       "# acc [g]\nacc [g]",
                                        "units=g",          "# unit = g; x",
                                        "Acceleration (g)", "acceleration (in g)",
@@ -1142,9 +1107,8 @@ static void test_a_unit_counts_where_it_is_stated_and_is_asked_for_elsewhere(voi
 }
 
 /* 2^20 columns are refused, and repeated records told apart, in a time that grows with their length. */
-static void test_a_long_line_and_many_records_take_no_square_of_their_length(void **state)
+TEST(a_long_line_and_many_records_take_no_square_of_their_length)
 {
-    (void)state;
     enum { COLUMNS = 1 << 20 };
     char *row = malloc(2 * COLUMNS + 16);
     const clock_t began = clock();
@@ -1166,9 +1130,8 @@ static void test_a_long_line_and_many_records_take_no_square_of_their_length(voi
     assert_less((double)(clock() - began) / CLOCKS_PER_SEC, 2); /* 0.1 s; by the square minutes */
 }
 
-static void test_steps_are_read_in_their_unit_and_contradictions_are_refused(void **state)
+TEST(steps_are_read_in_their_unit_and_contradictions_are_refused)
 {
-    (void)state;
     static const char *const STEPS[] = {"dt = 1/200 s",
                                         "dt=.5D-2",
                                         "dt = 5 ms",
@@ -1207,9 +1170,8 @@ static void test_steps_are_read_in_their_unit_and_contradictions_are_refused(voi
                    "2 columns are named, but the rows have 4 numbers: are its commas");
 }
 
-static void test_numbers_of_samples_are_no_seconds(void **state)
+TEST(numbers_of_samples_are_no_seconds)
 {
-    (void)state;
     static const char *const TEXTS[] = {"# units: m/s2\n%s0 1\n1 2\n2 -3\n", "# units: m/s2\n%s7,1\n8,2\n9,-3\n",
                                         "%si,a_m_s2\n1,1\n2,2\n3,-3\n", "%sNo.;a [m/s2]\n0;1\n1;2\n2;-3\n"};
     for (size_t i = 0; i < sizeof TEXTS / sizeof TEXTS[0]; i++) {
@@ -1236,9 +1198,8 @@ static void test_numbers_of_samples_are_no_seconds(void **state)
     motion_free(&m);
 }
 
-static void test_the_column_of_times_is_found_by_its_name(void **state)
+TEST(the_column_of_times_is_found_by_its_name)
 {
-    (void)state;
     static const char *const TEXTS[] = {"acc_g,time_s\n0.1,0\n0.2,0.01\n-.3,0.02\n",
                                         "acc (g) t [s]\n0.1 0\n0.2 0.01\n-.3 0.02\n",
                                         "NS_g;Time (sec);EW_g\n.1;0;1\n.2;.01;2\n-.3;.02;3\n"};
@@ -1255,9 +1216,8 @@ static void test_the_column_of_times_is_found_by_its_name(void **state)
 
 /* ---- names and headers that people have --------------------------------------------------------------------------- */
 
-static void test_kiknet_numbers_are_directions_and_what_is_no_direction_is_refused(void **state)
+TEST(kiknet_numbers_are_directions_and_what_is_no_direction_is_refused)
 {
-    (void)state;
     static const char *const NAMES[] = {"NS1", "EW1", "UD1", "NS2", "EW2", "UD2"};
     for (int k = 0; k < 6; k++) {
         char direction[32];
@@ -1284,9 +1244,8 @@ static void test_kiknet_numbers_are_directions_and_what_is_no_direction_is_refus
     refused("old.v1a", &(MotionHow){0}, "holds 3 channels: 1 (no name), 2 (no name), 3 (no name); choose one");
 }
 
-static void test_five_columns_without_a_step_ask_for_the_step_and_not_for_a_channel(void **state)
+TEST(five_columns_without_a_step_ask_for_the_step_and_not_for_a_channel)
 {
-    (void)state;
     Motion m;
     Err err = {0};
     Text t = rows_of("", 20, 5);
@@ -1297,9 +1256,8 @@ static void test_five_columns_without_a_step_ask_for_the_step_and_not_for_a_chan
     free(t.text);
 }
 
-static void test_the_body_of_a_file_of_three_components_is_asked_about_and_not_joined(void **state)
+TEST(the_body_of_a_file_of_three_components_is_asked_about_and_not_joined)
 {
-    (void)state;
     Motion m;
     Err err = {0};
     for (int width = 2; width <= 4; width++) {
@@ -1310,9 +1268,8 @@ static void test_the_body_of_a_file_of_three_components_is_asked_about_and_not_j
     }
 }
 
-static void test_a_step_in_the_first_line_above_words_is_found(void **state)
+TEST(a_step_in_the_first_line_above_words_is_found)
 {
-    (void)state;
     Motion m;
     Err err = {0};
     CHECK_OK(parse_text(&m, "Time Step: 0.005\nAcceleration (g)\n0.0\n0.01\n-0.02\n0.005\n", &err), &err);
@@ -1322,9 +1279,8 @@ static void test_a_step_in_the_first_line_above_words_is_found(void **state)
     motion_free(&m);
 }
 
-static void test_names_too_long_for_a_message_lose_their_middle(void **state)
+TEST(names_too_long_for_a_message_lose_their_middle)
 {
-    (void)state;
     char out[64];
     name_shorten(out, 20, "360 Deg, CE.23497.HNE.20160224.V2");
     assert_string_equal(out, "360 De...20160224.V2");
@@ -1334,51 +1290,5 @@ static void test_names_too_long_for_a_message_lose_their_middle(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a_miniseed_record_that_announces_more_samples_than_it_has_room_for_is_refused),
-        cmocka_unit_test(test_a_sample_of_a_binary_file_that_is_no_number_is_refused),
-        cmocka_unit_test(test_a_file_of_a_kinemetrics_recorder_is_read_to_its_samples),
-        cmocka_unit_test(test_what_is_wrong_in_a_file_of_a_kinemetrics_recorder_is_said),
-        cmocka_unit_test(test_every_format_with_a_peak_in_its_header_is_checked_against_it),
-        cmocka_unit_test(test_the_extremes_in_an_smc_header_are_checked),
-        cmocka_unit_test(test_kiknet_numbers_are_directions_and_what_is_no_direction_is_refused),
-        cmocka_unit_test(test_decimal_commas_are_read_whatever_parts_the_columns),
-        cmocka_unit_test(test_marks_of_thousands_and_commas_of_two_meanings_are_refused),
-        cmocka_unit_test(test_a_unit_counts_where_it_is_stated_and_is_asked_for_elsewhere),
-        cmocka_unit_test(test_a_long_line_and_many_records_take_no_square_of_their_length),
-        cmocka_unit_test(test_steps_are_read_in_their_unit_and_contradictions_are_refused),
-        cmocka_unit_test(test_numbers_of_samples_are_no_seconds),
-        cmocka_unit_test(test_the_column_of_times_is_found_by_its_name),
-        cmocka_unit_test(test_five_columns_without_a_step_ask_for_the_step_and_not_for_a_channel),
-        cmocka_unit_test(test_the_body_of_a_file_of_three_components_is_asked_about_and_not_joined),
-        cmocka_unit_test(test_a_step_in_the_first_line_above_words_is_found),
-        cmocka_unit_test(test_names_too_long_for_a_message_lose_their_middle),
-        cmocka_unit_test(test_binary_files_and_archives_are_read_to_their_samples),
-        cmocka_unit_test(test_counts_are_refused_without_a_gain_and_what_is_no_record_by_its_name),
-        cmocka_unit_test(test_a_mutated_binary_file_or_archive_is_read_or_refused),
-        cmocka_unit_test(test_an_unknown_format_is_said_to_be_unknown_and_its_first_line_is_quoted),
-        cmocka_unit_test(test_the_location_tells_the_channels_of_a_building_apart),
-        cmocka_unit_test(test_the_offset_of_a_recorder_is_subtracted_and_said),
-        cmocka_unit_test(test_a_peak_that_misses_the_header_is_warned_about_above_1_percent_and_refused_above_5),
-        cmocka_unit_test(test_columns_without_names_are_asked_about_and_joined_only_where_a_count_fits),
-        cmocka_unit_test(test_first_rows_of_number_and_step_are_no_samples),
-        cmocka_unit_test(test_quoted_cells_are_read),
-        cmocka_unit_test(test_units_in_other_words_are_taken_or_named),
-        cmocka_unit_test(test_a_specimen_of_every_format_is_read_to_its_step_length_and_peak),
-        cmocka_unit_test(test_line_ends_and_blanks_at_line_ends_do_not_matter),
-        cmocka_unit_test(test_a_specimen_wrong_in_one_way_is_refused_with_line_and_reason),
-        cmocka_unit_test(test_a_file_of_too_many_channels_is_refused),
-        cmocka_unit_test(test_words_without_numbers_are_no_known_format_and_their_first_line_is_quoted),
-        cmocka_unit_test(test_a_file_of_nothing_but_a_byte_order_mark_is_refused),
-        cmocka_unit_test(test_a_sac_header_of_velocities_or_of_fewer_samples_is_refused),
-        cmocka_unit_test(test_a_damaged_member_of_an_archive_is_named_and_files_of_one_name_have_their_folders),
-        cmocka_unit_test(test_a_channel_must_be_chosen_where_there_are_several),
-        cmocka_unit_test(test_a_column_of_velocities_is_not_taken_for_an_acceleration),
-        cmocka_unit_test(test_unequal_steps_are_resampled_by_straight_lines_only_when_asked),
-        cmocka_unit_test(test_an_equal_step_is_left_alone_by_a_request_to_resample),
-        cmocka_unit_test(test_the_step_of_a_bare_column_can_be_given_and_of_no_other),
-        cmocka_unit_test(test_a_setting_may_not_contradict_the_unit_of_any_format),
-        cmocka_unit_test(test_five_thousand_mutants_are_read_or_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return RUN_TESTS(NULL, NULL);
 }

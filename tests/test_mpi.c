@@ -147,9 +147,8 @@ static void wait_for_evaluations(const char *run)
     rest(0.3); /* into the next generation */
 }
 
-static void test_the_ordinary_program_does_not_link_mpi(void **state)
+TEST(the_ordinary_program_does_not_link_mpi)
 {
-    (void)state;
     char command[512];
     snprintf(command, sizeof command, "ldd '%s' | grep -q libc && ! ldd '%s' | grep -qi libmpi", getenv("IMTET"),
              getenv("IMTET"));
@@ -158,9 +157,8 @@ static void test_the_ordinary_program_does_not_link_mpi(void **state)
     assert_int_equal(system(command), 0);
 }
 
-static void test_a_batch_has_the_same_bytes_at_any_number_of_ranks_and_threads(void **state)
+TEST(a_batch_has_the_same_bytes_at_any_number_of_ranks_and_threads)
 {
-    (void)state;
     static const int RANKS[] = {1, 2, 3, 8};
     const int most = getenv("MPI_RANKS") ? atoi(getenv("MPI_RANKS")) : 4;
     program();
@@ -175,9 +173,8 @@ static void test_a_batch_has_the_same_bytes_at_any_number_of_ranks_and_threads(v
         }
 }
 
-static void test_polishing_goes_over_the_ranks(void **state)
+TEST(polishing_goes_over_the_ranks)
 {
-    (void)state;
     program();
     write_in_place("polish.ini",
                    "[motion]\nrecord = builtin:kobe-like\npga_g = 0.3\n[sim]\nduration_s = 6\nreplicates = 4\n"
@@ -190,9 +187,8 @@ static void test_polishing_goes_over_the_ranks(void **state)
     assert_same_files("polished", "polished-on-3");
 }
 
-static void test_an_external_simulator_runs_beside_every_rank(void **state)
+TEST(an_external_simulator_runs_beside_every_rank)
 {
-    (void)state;
     program();
     write_in_place("steady.ini", STEADY);
     free(output_of("optimize @/steady.ini --out @/steady --threads 3"));
@@ -201,9 +197,8 @@ static void test_an_external_simulator_runs_beside_every_rank(void **state)
 }
 
 /* One other rank of one thread is one worker: then the order of arrival is that of asking. */
-static void test_asynchronous_with_one_worker_is_the_run_in_batches(void **state)
+TEST(asynchronous_with_one_worker_is_the_run_in_batches)
 {
-    (void)state;
     program();
     write_in_place("steady.ini", STEADY);
     free(output_of("optimize @/steady.ini --out @/batches --threads 1 --set search.asynchronous=on"));
@@ -213,9 +208,8 @@ static void test_asynchronous_with_one_worker_is_the_run_in_batches(void **state
     assert_int_equal(finished_in("several"), 150);
 }
 
-static void test_other_commands_give_their_tasks_to_the_ranks(void **state)
+TEST(other_commands_give_their_tasks_to_the_ranks)
 {
-    (void)state;
     program();
     static const char SIMULATE[] = "simulate @/tower.ini --design @/designs.csv --replicates 3 --csv -";
     const char *variables = "gap_01_m,gap_02_m,gap_03_m,gap_04_m,gap_05_m,gap_06_m,gap_07_m,gap_08_m,gap_09_m,gap_10_m,"
@@ -278,9 +272,8 @@ static void kill_and_resume(const char *study, int rank, int code)
     assert_same_files("whole", "killed");
 }
 
-static void test_a_killed_rank_is_named_and_the_same_command_goes_on(void **state)
+TEST(a_killed_rank_is_named_and_the_same_command_goes_on)
 {
-    (void)state;
     static const char LONGER[] = "[motion]\nrecord = builtin:kobe-like\nrecords = builtin:elcentro-like\npga_g = 0.3\n"
                                  "[sim]\nduration_s = 12\nreplicates = 2\ngap_tolerance_m = 0.001\n"
                                  "[search]\ninitial = 24\npopulation = 16\nmax_evals = 160\nsurrogate = off\n"
@@ -288,21 +281,18 @@ static void test_a_killed_rank_is_named_and_the_same_command_goes_on(void **stat
     kill_and_resume(LONGER, 2, 128 + SIGKILL);
 }
 
-static void test_a_killed_rank_0_loses_nothing(void **state)
+TEST(a_killed_rank_0_loses_nothing)
 {
-    (void)state;
     kill_and_resume(STEADY, 0, 128 + SIGKILL);
 }
 
-static void test_a_killed_mpirun_loses_nothing(void **state)
+TEST(a_killed_mpirun_loses_nothing)
 {
-    (void)state;
     kill_and_resume(STEADY, MPIRUN, 128 + SIGKILL);
 }
 
-static void test_a_rank_that_hangs_is_taken_for_dead_and_named(void **state)
+TEST(a_rank_that_hangs_is_taken_for_dead_and_named)
 {
-    (void)state;
     program();
     write_in_place("steady.ini", STEADY);
     const pid_t mpirun = launch(3, "optimize @/steady.ini --out @/hangs");
@@ -314,9 +304,8 @@ static void test_a_rank_that_hangs_is_taken_for_dead_and_named(void **state)
     expect_said("Resume it with");
 }
 
-static void test_a_simulator_that_does_not_answer_is_a_timeout_on_a_rank_that_lives(void **state)
+TEST(a_simulator_that_does_not_answer_is_a_timeout_on_a_rank_that_lives)
 {
-    (void)state;
     program();
     write_in_place("deaf.ini", "[problem]\nkind = external\ncommand = sh tests/worker.sh silent\nvariables = 3\n"
                                "objectives = 2\ntimeout_s = 0.5\n[search]\nmax_evals = 12\ninitial = 12\n"
@@ -330,9 +319,8 @@ static void test_a_simulator_that_does_not_answer_is_a_timeout_on_a_rank_that_li
     assert_int_equal(n, 4);
 }
 
-static void test_a_stop_passed_on_by_mpirun_ends_with_75_and_goes_on(void **state)
+TEST(a_stop_passed_on_by_mpirun_ends_with_75_and_goes_on)
 {
-    (void)state;
     program();
     write_in_place("steady.ini", STEADY);
     const pid_t mpirun = launch(3, "optimize @/steady.ini --out @/stopped");
@@ -365,9 +353,8 @@ static pid_t child_of(pid_t parent)
 }
 
 /* What mpirun makes of it otherwise: 1, 143, 137. */
-static void test_under_imtet_mpirun_a_signal_and_a_killed_rank_end_with_75(void **state)
+TEST(under_imtet_mpirun_a_signal_and_a_killed_rank_end_with_75)
 {
-    (void)state;
     program();
     write_in_place("steady.ini", STEADY);
     launcher = "scripts/imtet-mpirun";
@@ -384,9 +371,8 @@ static void test_under_imtet_mpirun_a_signal_and_a_killed_rank_end_with_75(void 
     launcher = "mpirun";
 }
 
-static void test_another_program_or_record_on_a_rank_is_refused_by_name(void **state)
+TEST(another_program_or_record_on_a_rank_is_refused_by_name)
 {
-    (void)state;
     const char *other = getenv("IMTET_MPI_OTHER");
     char command[2048];
     program();
@@ -416,9 +402,8 @@ static void test_another_program_or_record_on_a_rank_is_refused_by_name(void **s
 }
 
 /* Rank 1 reads millions of samples, of which rank 0 knows nothing; without the stop it is refused for them. */
-static void test_a_stop_while_ranks_open_the_problem_ends_at_once(void **state)
+TEST(a_stop_while_ranks_open_the_problem_ends_at_once)
 {
-    (void)state;
     char command[2048], *said;
     int reads = 0;
     program();
@@ -446,9 +431,8 @@ static void test_a_stop_while_ranks_open_the_problem_ends_at_once(void **state)
 }
 
 /* A server for hours keeps no processor of a cluster. */
-static void test_of_a_command_without_evaluations_only_rank_0_goes_on(void **state)
+TEST(of_a_command_without_evaluations_only_rank_0_goes_on)
 {
-    (void)state;
     long pid[16];
     program();
     write_in_place("small.ini", "[problem]\nkind = dtlz2\nvariables = 4\nobjectives = 2\n[search]\ninitial = 12\n"
@@ -470,9 +454,8 @@ static void test_of_a_command_without_evaluations_only_rank_0_goes_on(void **sta
     expect_code(mpirun, 0);
 }
 
-static void test_a_message_that_is_cut_or_of_no_ticket_is_none(void **state)
+TEST(a_message_that_is_cut_or_of_no_ticket_is_none)
 {
-    (void)state;
     enum { PART = 24, TICKETS = 4 };
     const size_t whole = sizeof(DoneMessage) + PART;
     const DoneMessage right = {.ticket = 3, .status = STATUS_OK}, bad = {.ticket = 1, .status = STATUS_BAD_DATA};
@@ -496,26 +479,7 @@ static int prepare(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_the_ordinary_program_does_not_link_mpi),
-        cmocka_unit_test(test_a_batch_has_the_same_bytes_at_any_number_of_ranks_and_threads),
-        cmocka_unit_test(test_polishing_goes_over_the_ranks),
-        cmocka_unit_test(test_an_external_simulator_runs_beside_every_rank),
-        cmocka_unit_test(test_asynchronous_with_one_worker_is_the_run_in_batches),
-        cmocka_unit_test(test_other_commands_give_their_tasks_to_the_ranks),
-        cmocka_unit_test(test_a_killed_rank_is_named_and_the_same_command_goes_on),
-        cmocka_unit_test(test_a_killed_rank_0_loses_nothing),
-        cmocka_unit_test(test_a_killed_mpirun_loses_nothing),
-        cmocka_unit_test(test_a_rank_that_hangs_is_taken_for_dead_and_named),
-        cmocka_unit_test(test_a_simulator_that_does_not_answer_is_a_timeout_on_a_rank_that_lives),
-        cmocka_unit_test(test_a_stop_passed_on_by_mpirun_ends_with_75_and_goes_on),
-        cmocka_unit_test(test_under_imtet_mpirun_a_signal_and_a_killed_rank_end_with_75),
-        cmocka_unit_test(test_another_program_or_record_on_a_rank_is_refused_by_name),
-        cmocka_unit_test(test_a_stop_while_ranks_open_the_problem_ends_at_once),
-        cmocka_unit_test(test_of_a_command_without_evaluations_only_rank_0_goes_on),
-        cmocka_unit_test(test_a_message_that_is_cut_or_of_no_ticket_is_none),
-    };
     if (getenv("MPI_TEST"))
         cmocka_set_test_filter(getenv("MPI_TEST"));
-    return cmocka_run_group_tests(tests, prepare, clear_place);
+    return RUN_TESTS(prepare, clear_place);
 }

@@ -35,9 +35,8 @@ static double extra_of(const Run *run, size_t row, const char *name)
     return NAN;
 }
 
-static void test_what_is_not_asked_for_is_not_computed_and_left_empty(void **state)
+TEST(what_is_not_asked_for_is_not_computed_and_left_empty)
 {
-    (void)state;
     Run run;
     optimize("plain", "");
     read_run("plain", &run);
@@ -61,9 +60,8 @@ static void test_what_is_not_asked_for_is_not_computed_and_left_empty(void **sta
     run_free(&forces);
 }
 
-static void test_every_result_of_a_study_is_that_of_a_simulation_of_the_same_design(void **state)
+TEST(every_result_of_a_study_is_that_of_a_simulation_of_the_same_design)
 {
-    (void)state;
     Run run;
     char path[PATH_MAX];
     optimize("other", "--set 'search.objectives=core_stress_pa, impacts , j1_m'");
@@ -94,9 +92,8 @@ static void test_every_result_of_a_study_is_that_of_a_simulation_of_the_same_des
     run_free(&run);
 }
 
-static void test_every_file_and_command_follows_the_objectives_by_name(void **state)
+TEST(every_file_and_command_follows_the_objectives_by_name)
 {
-    (void)state;
     Table front = table_of("other/front.csv");
     assert_int_equal(front.n_cols, 1 + 22 + 3);
     assert_string_equal(front.names[23], "core_stress_pa");
@@ -134,9 +131,8 @@ static void test_every_file_and_command_follows_the_objectives_by_name(void **st
            "optimize @/tower.ini --out @/other");
 }
 
-static void test_a_limit_on_a_further_result_decides_what_is_on_the_front(void **state)
+TEST(a_limit_on_a_further_result_decides_what_is_on_the_front)
 {
-    (void)state;
     Run free_of, run;
     char more[128];
     read_run("forces", &free_of);
@@ -174,9 +170,8 @@ static void expect_limited_in(const char *name)
     run_free(&run);
 }
 
-static void test_limited_results_stand_beside_the_objectives(void **state)
+TEST(limited_results_stand_beside_the_objectives)
 {
-    (void)state;
     expect_limited_in("limited/front.csv");
     free(output_of("optimize @/limited --max-evals 40 --force-settings"));
     expect_limited_in("limited/front.csv");
@@ -195,9 +190,8 @@ static void test_limited_results_stand_beside_the_objectives(void **state)
     free(said);
 }
 
-static void test_names_that_are_no_results_are_refused_with_the_words_there_are(void **state)
+TEST(names_that_are_no_results_are_refused_with_the_words_there_are)
 {
-    (void)state;
     write_in_place("tower.ini", TOWER);
     expect(65, "search.objectives: core_stres_pa is no result; did you mean core_stress_pa?",
            "check @/tower.ini --set search.objectives=j1_m,core_stres_pa");
@@ -211,9 +205,8 @@ static void test_names_that_are_no_results_are_refused_with_the_words_there_are(
            "check @/tower.ini --set 'search.limits=drift_ratio<=0.01,drift_ratio>=0.02'");
 }
 
-static void test_four_storeys_are_not_searched_for_modes_that_they_do_not_have(void **state)
+TEST(four_storeys_are_not_searched_for_modes_that_they_do_not_have)
 {
-    (void)state;
     char *folder = in_place("four");
     assert_int_equal(mkdir(folder, 0777), 0);
     free(folder);
@@ -258,9 +251,8 @@ static char *line_from(char *text, const char *from, int n)
     return line;
 }
 
-static void test_columns_stand_below_their_names_however_long_these_are(void **state)
+TEST(columns_stand_below_their_names_however_long_these_are)
 {
-    (void)state;
     write_in_place("tower.ini", TOWER);
     char *said = output_of("optimize @/tower.ini --out @/long --set "
                            "search.objectives=j1_m,building_base_shear_n,contact_force_max_n,mcore_kg");
@@ -279,9 +271,8 @@ static void test_columns_stand_below_their_names_however_long_these_are(void **s
 
 /* ---- the end of a study ------------------------------------------------------------------------------------------- */
 
-static void test_the_end_of_a_study_names_gaps_that_never_close(void **state)
+TEST(the_end_of_a_study_names_gaps_that_never_close)
 {
-    (void)state;
     write_in_place("tower.ini", TOWER);
     char *said = output_of("optimize @/tower.ini --out @/calm --set motion.pga_g=0.0005");
     assert_non_null(strstr(said,
@@ -300,9 +291,8 @@ static void test_the_end_of_a_study_names_gaps_that_never_close(void **state)
     json_decref(o);
 }
 
-static void test_gaps_on_their_bounds_are_counted_floor_by_floor(void **state)
+TEST(gaps_on_their_bounds_are_counted_floor_by_floor)
 {
-    (void)state;
     enum { FLOORS = 3, DESIGNS = 4 };
     Settings s;
     Run run = {.settings = &s, .n_front = 3, .front = (size_t[]){0, 1, 3}};
@@ -333,17 +323,5 @@ static void test_gaps_on_their_bounds_are_counted_floor_by_floor(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_what_is_not_asked_for_is_not_computed_and_left_empty),
-        cmocka_unit_test(test_every_result_of_a_study_is_that_of_a_simulation_of_the_same_design),
-        cmocka_unit_test(test_every_file_and_command_follows_the_objectives_by_name),
-        cmocka_unit_test(test_a_limit_on_a_further_result_decides_what_is_on_the_front),
-        cmocka_unit_test(test_limited_results_stand_beside_the_objectives),
-        cmocka_unit_test(test_names_that_are_no_results_are_refused_with_the_words_there_are),
-        cmocka_unit_test(test_four_storeys_are_not_searched_for_modes_that_they_do_not_have),
-        cmocka_unit_test(test_columns_stand_below_their_names_however_long_these_are),
-        cmocka_unit_test(test_the_end_of_a_study_names_gaps_that_never_close),
-        cmocka_unit_test(test_gaps_on_their_bounds_are_counted_floor_by_floor),
-    };
-    return cmocka_run_group_tests_name("objectives", tests, prepare, clear_place);
+    return RUN_TESTS(prepare, clear_place);
 }

@@ -40,17 +40,15 @@ static Run saved_of(const char *out)
     return h;
 }
 
-static void test_a_noisy_run_stopped_after_every_kth_simulation_is_the_run_that_never_stopped(void **state)
+TEST(a_noisy_run_stopped_after_every_kth_simulation_is_the_run_that_never_stopped)
 {
-    (void)state;
     study(NOISY, "whole", 0);
     study(NOISY, "pieces", 7);
     assert_same_run("whole", "pieces");
 }
 
-static void test_the_front_has_means_spreads_and_members_of_what_was_simulated(void **state)
+TEST(the_front_has_means_spreads_and_members_of_what_was_simulated)
 {
-    (void)state;
     Run h = saved_of("whole");
     size_t repeats = 0, confirmed = 0;
     assert_true(h.schema.has_spread && h.table.n == SIMULATIONS);
@@ -78,9 +76,8 @@ static void test_the_front_has_means_spreads_and_members_of_what_was_simulated(v
     run_free(&h);
 }
 
-static void test_the_exports_and_status_tell_of_repeats(void **state)
+TEST(the_exports_and_status_tell_of_repeats)
 {
-    (void)state;
     free(output_of("export @/whole --csv @/exported.csv"));
     char *front = read_in_place("whole/front.csv"), *exported = read_in_place("exported.csv");
     assert_string_equal(front, exported);
@@ -97,9 +94,8 @@ static void test_the_exports_and_status_tell_of_repeats(void **state)
     free(said);
 }
 
-static void test_without_noise_nothing_is_repeated_and_the_tables_are_as_ever(void **state)
+TEST(without_noise_nothing_is_repeated_and_the_tables_are_as_ever)
 {
-    (void)state;
     char text[sizeof NOISY + 32];
     snprintf(text, sizeof text, "%s[problem]\nnoisy = no\n", NOISY);
     study(text, "quiet", 0);
@@ -113,11 +109,5 @@ static void test_without_noise_nothing_is_repeated_and_the_tables_are_as_ever(vo
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a_noisy_run_stopped_after_every_kth_simulation_is_the_run_that_never_stopped),
-        cmocka_unit_test(test_the_front_has_means_spreads_and_members_of_what_was_simulated),
-        cmocka_unit_test(test_the_exports_and_status_tell_of_repeats),
-        cmocka_unit_test(test_without_noise_nothing_is_repeated_and_the_tables_are_as_ever),
-    };
-    return cmocka_run_group_tests_name("repeats", tests, prepare, clear_place);
+    return RUN_TESTS(prepare, clear_place);
 }

@@ -28,9 +28,8 @@ static const char *changed(const char *sql, char folder[PATH_MAX])
     return path_of("other", folder);
 }
 
-static void test_what_is_wrong_in_one_cell_is_named(void **state)
+TEST(what_is_wrong_in_one_cell_is_named)
 {
-    (void)state;
     static const struct {
         const char *sql, *words;
         Status status;
@@ -71,18 +70,16 @@ static void test_what_is_wrong_in_one_cell_is_named(void **state)
     }
 }
 
-static void test_a_run_that_lost_an_evaluation_is_not_resumed(void **state)
+TEST(a_run_that_lost_an_evaluation_is_not_resumed)
 {
-    (void)state;
     free(output_of("optimize @/textbook.ini --set problem.noise=0 --out @/sound --new"));
     change("sound-2/run.sqlite", "DELETE FROM evaluation WHERE id = 20");
     expect(74, "evaluation 20 is missing; --new --set search.start=",
            "optimize @/textbook.ini --set problem.noise=0 --out @/sound-2 --max-evals 50");
 }
 
-static void test_json_for_which_there_is_no_room_is_an_output_that_cannot_be_written(void **state)
+TEST(json_for_which_there_is_no_room_is_an_output_that_cannot_be_written)
 {
-    (void)state;
     Err err = {0};
     char folder[PATH_MAX];
     FILE *full = fopen("/dev/full", "we");
@@ -97,9 +94,8 @@ static void test_json_for_which_there_is_no_room_is_an_output_that_cannot_be_wri
 }
 
 /* With three replicates; of the last generation, which is not finished, one row is whole but for its cheap part. */
-static void test_rows_of_a_generation_that_is_not_finished_count_as_what_is_simulated_of_them(void **state)
+TEST(rows_of_a_generation_that_is_not_finished_count_as_what_is_simulated_of_them)
 {
-    (void)state;
     Run h;
     Err err = {0};
     char folder[PATH_MAX];
@@ -142,9 +138,8 @@ static int belongs_on_front(const Run *h, size_t i)
     return h->place[i].ok && !(h->table.row[i].violation > 0);
 }
 
-static void test_polished_designs_compete_with_the_front_and_can_be_dropped(void **state)
+TEST(polished_designs_compete_with_the_front_and_can_be_dropped)
 {
-    (void)state;
     double x[6] = {0}, f[6][3] = {{0, 0, 0.9}, {0, 0, 1.5}, {0}, {0, 0, 0.1}, {9, 9, 9}, {0, 0, 0.9}};
     Evaluation designs[6];
     for (size_t i = 0; i < 6; i++)
@@ -176,9 +171,8 @@ static void test_polished_designs_compete_with_the_front_and_can_be_dropped(void
     run_free(&sound);
 }
 
-static void test_a_folder_without_a_run_or_with_too_long_a_name_is_told(void **state)
+TEST(a_folder_without_a_run_or_with_too_long_a_name_is_told)
 {
-    (void)state;
     char path[PATH_MAX], name[PATH_MAX + 64];
     Run run;
     Err err = {0};
@@ -192,9 +186,8 @@ static void test_a_folder_without_a_run_or_with_too_long_a_name_is_told(void **s
 }
 
 /* Names with quotes too; what SQLite has no room for is refused before anything is simulated. */
-static void test_every_number_has_a_column_of_its_name(void **state)
+TEST(every_number_has_a_column_of_its_name)
 {
-    (void)state;
     char path[PATH_MAX];
     sqlite3 *db;
     sqlite3_stmt *row;
@@ -220,9 +213,8 @@ static void test_every_number_has_a_column_of_its_name(void **state)
     expect(65, "a run has room for 1987 variables", "check @/many.ini --set problem.variables=1988");
 }
 
-static void test_a_lock_names_its_holder_and_who_cannot_have_one_is_told_why(void **state)
+TEST(a_lock_names_its_holder_and_who_cannot_have_one_is_told_why)
 {
-    (void)state;
     char path[PATH_MAX], lock[PATH_MAX];
     Folder first, second;
     LockHolder holder;
@@ -246,9 +238,8 @@ static void test_a_lock_names_its_holder_and_who_cannot_have_one_is_told_why(voi
 }
 
 /* As a killed process that the system still tears down. */
-static void test_who_lets_go_of_a_lock_within_a_second_is_waited_for(void **state)
+TEST(who_lets_go_of_a_lock_within_a_second_is_waited_for)
 {
-    (void)state;
     char path[PATH_MAX], word;
     int ends[2];
     Folder folder;
@@ -280,16 +271,5 @@ static int make_sound(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_what_is_wrong_in_one_cell_is_named),
-        cmocka_unit_test(test_a_run_that_lost_an_evaluation_is_not_resumed),
-        cmocka_unit_test(test_json_for_which_there_is_no_room_is_an_output_that_cannot_be_written),
-        cmocka_unit_test(test_rows_of_a_generation_that_is_not_finished_count_as_what_is_simulated_of_them),
-        cmocka_unit_test(test_polished_designs_compete_with_the_front_and_can_be_dropped),
-        cmocka_unit_test(test_a_folder_without_a_run_or_with_too_long_a_name_is_told),
-        cmocka_unit_test(test_every_number_has_a_column_of_its_name),
-        cmocka_unit_test(test_a_lock_names_its_holder_and_who_cannot_have_one_is_told_why),
-        cmocka_unit_test(test_who_lets_go_of_a_lock_within_a_second_is_waited_for),
-    };
-    return cmocka_run_group_tests_name("saved", tests, make_sound, clear_place);
+    return RUN_TESTS(make_sound, clear_place);
 }

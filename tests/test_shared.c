@@ -62,9 +62,8 @@ static void finish_alone(void)
         free(output_of("optimize @/steady.ini --out @/alone"));
 }
 
-static void test_every_such_file_system_gets_a_rollback_journal_and_no_other_does(void **state)
+TEST(every_such_file_system_gets_a_rollback_journal_and_no_other_does)
 {
-    (void)state;
     static const unsigned KINDS[] = {0x6969,     0x0bd00bd0, 0x47504653, 0x00c36400,
                                      0x19830326, 0xff534d42, 0xfe534d42, 0xef53};
     char path[PATH_MAX];
@@ -85,9 +84,8 @@ static void test_every_such_file_system_gets_a_rollback_journal_and_no_other_doe
     file_system = 0;
 }
 
-static void test_a_run_there_has_the_same_bytes(void **state)
+TEST(a_run_there_has_the_same_bytes)
 {
-    (void)state;
     finish_alone();
     file_system = NFS;
     assert_true(ended_well(study_in_child("there")));
@@ -96,9 +94,8 @@ static void test_a_run_there_has_the_same_bytes(void **state)
 }
 
 /* Others look without a pause; the run is killed again and again. */
-static void test_it_is_killed_and_read_at_any_moment(void **state)
+TEST(it_is_killed_and_read_at_any_moment)
 {
-    (void)state;
     int kills = 0, looks = 0;
     finish_alone();
     for (int is_done = 0; !is_done; kills++) {
@@ -125,9 +122,8 @@ static void test_it_is_killed_and_read_at_any_moment(void **state)
     assert_same_run("alone", "killed");
 }
 
-static void test_a_run_that_was_begun_on_a_disk_of_its_own_goes_on_there(void **state)
+TEST(a_run_that_was_begun_on_a_disk_of_its_own_goes_on_there)
 {
-    (void)state;
     finish_alone();
     const pid_t pid = study_in_child("moved");
     while (!is_there("moved/run.sqlite-wal"))
@@ -146,11 +142,5 @@ static void test_a_run_that_was_begun_on_a_disk_of_its_own_goes_on_there(void **
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_every_such_file_system_gets_a_rollback_journal_and_no_other_does),
-        cmocka_unit_test(test_a_run_there_has_the_same_bytes),
-        cmocka_unit_test(test_it_is_killed_and_read_at_any_moment),
-        cmocka_unit_test(test_a_run_that_was_begun_on_a_disk_of_its_own_goes_on_there),
-    };
-    return cmocka_run_group_tests(tests, prepare, clear_place);
+    return RUN_TESTS(prepare, clear_place);
 }

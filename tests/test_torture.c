@@ -197,9 +197,8 @@ static void torture(const Prey *prey, long kills)
     assert_int_equal(f.different, 0);
 }
 
-static void test_no_kill_loses_an_evaluation_or_changes_the_front(void **state)
+TEST(no_kill_loses_an_evaluation_or_changes_the_front)
 {
-    (void)state;
     setenv("OMP_WAIT_POLICY", "passive", 0); /* busy waiting costs more than it saves where processors are few */
     const char *kills = getenv("TORTURE_KILLS");
     const char *only = getenv("TORTURE_RUN");
@@ -215,8 +214,5 @@ static void test_no_kill_loses_an_evaluation_or_changes_the_front(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_no_kill_loses_an_evaluation_or_changes_the_front),
-    };
-    return cmocka_run_group_tests_name("torture", tests, make_place, clear_place);
+    return RUN_TESTS(make_place, clear_place);
 }
