@@ -82,7 +82,8 @@ static Status open_run(const Args *args, Work *w, Err *err)
 }
 
 /* One row in natural signs: the polished design as in front.csv but for the id of the design that it came from; then of
- * every objective how it was before, and where they are known the standard deviations of both and the estimated error. */
+ * every objective how it was before, and where they are known the standard deviations of both and the estimated
+ * error. */
 static Status write_csv(const Work *w, const char *path, Err *err)
 {
     const Schema *schema = &w->run->schema;

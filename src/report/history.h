@@ -1,5 +1,5 @@
-/* report/history.h -- one response over time, as the engine fast goes through it: a floor's displacement and where the input
- * energy has gone so far.
+/* report/history.h -- one response over time, as the engine fast goes through it: a floor's displacement and where
+ * the input energy has gone so far.
  *
  *   input = kinetic + strain (building) + core (kinetic and strain) + damped_building + damped_core + contacts
  *

@@ -4,13 +4,14 @@
  *        ~ 1/(2 N) sum_i (f_k(A_i) - f_k(A_i with B_ij in place j))^2 / Var f_k      A, B (N, n_var) uniform
  *
  * the share of the variance of objective k that x_j has a part in, alone or with others; the sum over j exceeds 1 where
- * variables act together. f is the RBF interpolant (rbf/rbf.h) of at most CENTRES designs that are spread evenly over the
- * order of evaluation; x is uniform between the least and the largest value of every variable that was evaluated.
+ * variables act together. f is the RBF interpolant (rbf/rbf.h) of at most CENTRES designs that are spread evenly over
+ * the order of evaluation; x is uniform between the least and the largest value of every variable that was evaluated.
  *
- * Error      where `explained` is small, the interpolant does not know the objective, nor its indices; the sampling error
- *            of an index is about sqrt(2 / N) of it
+ * Error      where `explained` is small, the interpolant does not know the objective, nor its indices; the sampling
+ *            error of an index is about sqrt(2 / N) of it
  * Ownership  importance_of allocates, importance_free releases (an empty Importance is fine)
- * Source     Jansen, Comput. Phys. Commun. 117 (1999) 35-43; Saltelli et al., Comput. Phys. Commun. 181 (2010) 259-270 */
+ * Source     Jansen, Comput. Phys. Commun. 117 (1999) 35-43; Saltelli et al., Comput. Phys. Commun. 181 (2010)
+ *            259-270 */
 #ifndef IMTET_REPORT_IMPORTANCE_H
 #define IMTET_REPORT_IMPORTANCE_H
 

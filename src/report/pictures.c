@@ -31,8 +31,8 @@ typedef struct {
     int is_png;
 } Drawing;
 
-/* Okabe and Ito's colours and viridis, readable without colour vision. CASE: the design and its baselines, each with words, a
- * colour, a symbol and a dash type of its own; CURVES draws columns of a block for some of them. */
+/* Okabe and Ito's colours and viridis, readable without colour vision. CASE: the design and its baselines, each with
+ * words, a colour, a symbol and a dash type of its own; CURVES draws columns of a block for some of them. */
 static const char STYLE[] =
     "set encoding utf8\n"
     "array CASE[5] = ['with core', 'without core', 'rigidly connected', 'tuned mass damper', 'viscous links']\n"

@@ -28,7 +28,8 @@ typedef struct {
 /* chosen: row of the run, on its front or not; the front may not be empty (run_why_empty). */
 Status report_open(Report *r, const Run *run, size_t chosen, const DetailOptions *options, Err *err);
 
-/* At most REPORT_DESIGNS_MAX designs of the front and what thin_front keeps beyond them: more are too many to be drawn. */
+/* At most REPORT_DESIGNS_MAX designs of the front and what thin_front keeps beyond them: more are too many to be
+ * drawn. */
 enum { REPORT_DESIGNS_MAX = 10000 };
 Status report_page(const Report *r, const char *path, Err *err);
 

@@ -28,7 +28,7 @@ static json_t *json_of_settings(const Settings *s)
 
 /* ---- the chosen design ----------------------------------------------------------------------------------------- */
 
-static json_t *json_of_result(const SimResult *r, const MeasureOrder *order)
+json_t *result_json(const SimResult *r, const MeasureOrder *order)
 {
     const size_t n = (size_t)r->n_floors, n_modes = (size_t)r->n_modes;
     if (r->outcome != RUN_OK)
@@ -50,14 +50,12 @@ static json_t *json_of_result(const SimResult *r, const MeasureOrder *order)
 
 static json_t *json_of_energies(const History *h, size_t step)
 {
-    return json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "kinetic",
-                     json_numbers_every(step, h->n, h->energy[ENERGY_KINETIC]), "strain",
-                     json_numbers_every(step, h->n, h->energy[ENERGY_STRAIN]), "damped_building",
-                     json_numbers_every(step, h->n, h->energy[ENERGY_DAMPED_BUILDING]), "core",
-                     json_numbers_every(step, h->n, h->energy[ENERGY_CORE]), "damped_core",
-                     json_numbers_every(step, h->n, h->energy[ENERGY_DAMPED_CORE]), "contacts",
-                     json_numbers_every(step, h->n, h->energy[ENERGY_CONTACTS]), "input",
-                     json_numbers_every(step, h->n, h->energy[ENERGY_INPUT]));
+    static const char *const KEYS[N_ENERGIES] = {"kinetic",  "strain", "damped_building", "core", "damped_core",
+                                                 "contacts", "input"};
+    json_t *o = json_object();
+    for (int k = 0; k < N_ENERGIES; k++)
+        json_object_set_new(o, KEYS[k], json_numbers_every(step, h->n, h->energy[k]));
+    return o;
 }
 
 static json_t *json_of_history(const History *h, const Spectrogram *s)
@@ -114,8 +112,8 @@ static json_t *json_of_loads(const Detail *d)
     return json_pack("{s:o, s:o}", "columns", columns, "rows", rows);
 }
 
-/* Of the design: the largest force on every floor by side of the core, stress of the core and of buckling by storey; null
- * where they were not computed. */
+/* Of the design: the largest force on every floor by side of the core, stress of the core and of buckling by storey;
+ * null where they were not computed. */
 static json_t *json_of_forces(const SimResult *r)
 {
     const SimForces *f = &r->forces;
@@ -130,28 +128,29 @@ static json_t *json_of_forces(const SimResult *r)
 
 json_t *detail_json(const Detail *d, const MeasureOrder *order)
 {
+    static const char *const KEYS[N_SCENES] = {"with_core", "no_core", "rigid", "tmd", "links"};
     const size_t n = (size_t)d->n_floors;
     json_t *others = json_array();
     for (size_t i = 0; i < d->n_elsewhere; i++) {
         const Elsewhere *e = &d->elsewhere[i];
-        others = json_append(others, json_pack("{s:o, s:f, s:f, s:f, s:o, s:o}", "record", json_words(e->record),
-                                               "pga_g", e->pga_g, "scale", e->scale, "stretch", e->stretch, "with_core",
-                                               json_of_result(&e->with_core, order), "no_core",
-                                               json_of_result(&e->no_core, order)));
+        others =
+            json_append(others, json_pack("{s:o, s:f, s:f, s:f, s:o, s:o}", "record", json_words(e->record), "pga_g",
+                                          e->pga_g, "scale", e->scale, "stretch", e->stretch, KEYS[0],
+                                          result_json(&e->with_core, order), KEYS[1], result_json(&e->no_core, order)));
     }
-    return json_pack(
-        "{s:i, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:f, s:f, s:f, s:f, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, "
-        "s:o, s:o}",
-        "floor", d->floor + 1, "storey_m", json_numbers(n, d->storey_m), "gap_m", json_numbers(n, d->gap_m),
-        "thickness_m", json_numbers(n, d->thickness_m), "bumper_n_m", json_numbers(n, d->bumper_n_m), "building_hz",
-        json_numbers(n, d->building_hz), "core_hz", json_numbers(n, d->core_hz), "record", json_words(d->record),
-        "pga_g", d->pga_g, "scale", d->scale, "stretch", d->stretch, "duration_s", d->duration_s, "with_core",
-        json_of_result(&d->result[SCENE_IMPACT], order), "no_core", json_of_result(&d->result[SCENE_NO_CORE], order),
-        "rigid", json_of_result(&d->result[SCENE_RIGID], order), "tmd", json_of_result(&d->result[SCENE_TMD], order),
-        "links", json_of_result(&d->result[SCENE_LINKS], order), "loads", json_of_loads(d), "baselines",
-        json_of_baselines(d->baseline, order), "history_with_core", json_of_history(&d->history[0], &d->spectrum[0]),
-        "history_no_core", json_of_history(&d->history[1], &d->spectrum[1]), "forces",
-        json_of_forces(&d->result[SCENE_IMPACT]), "elsewhere", others);
+    json_t *o =
+        json_pack("{s:i, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:f, s:f, s:f, s:f, s:o, s:o, s:o, s:o, s:o, s:o}", "floor",
+                  d->floor + 1, "storey_m", json_numbers(n, d->storey_m), "gap_m", json_numbers(n, d->gap_m),
+                  "thickness_m", json_numbers(n, d->thickness_m), "bumper_n_m", json_numbers(n, d->bumper_n_m),
+                  "building_hz", json_numbers(n, d->building_hz), "core_hz", json_numbers(n, d->core_hz), "record",
+                  json_words(d->record), "pga_g", d->pga_g, "scale", d->scale, "stretch", d->stretch, "duration_s",
+                  d->duration_s, "loads", json_of_loads(d), "baselines", json_of_baselines(d->baseline, order),
+                  "history_with_core", json_of_history(&d->history[0], &d->spectrum[0]), "history_no_core",
+                  json_of_history(&d->history[1], &d->spectrum[1]), "forces", json_of_forces(&d->result[SCENE_IMPACT]),
+                  "elsewhere", others);
+    for (int k = 0; k < N_SCENES; k++)
+        json_object_set_new(o, KEYS[k], result_json(&d->result[k], order));
+    return o;
 }
 
 /* ---- the run --------------------------------------------------------------------------------------------------- */
@@ -219,8 +218,7 @@ static json_t *json_of_importance(const Importance *m, const Schema *schema)
                      json_numbers(schema->n_obj, m->explained), "total", total);
 }
 
-/* Growth of the hypervolume, the generations that have one. */
-static json_t *json_of_growth(const Run *run)
+json_t *growth_json(const Run *run)
 {
     json_t *simulated = json_array(), *volume = json_array(), *error = json_array();
     for (size_t i = 0; i < run->n_generations; i++) {
@@ -260,7 +258,7 @@ json_t *report_json(const Report *r)
                      "chosen_f", json_numbers(run->schema.n_obj, run_f(run, r->chosen)), "evaluated",
                      (json_int_t)n_evaluated(run), "failed", (json_int_t)run->n_failed, "front",
                      (json_int_t)run->n_front, "schema", json_of_names(r), "beyond_law", json_of_beyond_law(r),
-                     "importance", json_of_importance(&r->importance, &run->schema), "convergence", json_of_growth(run),
+                     "importance", json_of_importance(&r->importance, &run->schema), "convergence", growth_json(run),
                      "detail", r->detail.n_floors > 0 ? detail_json(&r->detail, &run->schema.order) : json_null(),
                      "settings", json_of_settings(run->settings), "provenance", run->provenance);
 }

@@ -12,6 +12,13 @@
 
 json_t *report_json(const Report *r);
 
+/* Growth of the hypervolume: {"simulated": [], "volume": [], "error": []} of the generations that have one. */
+json_t *growth_json(const Run *run);
+
+/* One simulation: objectives, impacts, closings and peaks by floor, energies, shares of modes; {"reason"} where it
+ * failed. */
+json_t *result_json(const SimResult *r, const MeasureOrder *order);
+
 /* Of the tower: gaps, thickness, peaks and shares beside the baselines, histories, other earthquakes. */
 json_t *detail_json(const Detail *d, const MeasureOrder *order);
 

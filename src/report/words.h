@@ -1,4 +1,5 @@
-/* report/words.h -- how pages and pictures call an objective or another measure: short title, unit, factor to that unit.
+/* report/words.h -- how pages and pictures call an objective or another measure: short title, unit, factor to that
+ * unit.
  *
  *   shown = factor * natural value                    files keep their own names and units (evaluate/measures.h)
  *

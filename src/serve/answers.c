@@ -6,6 +6,7 @@
 
 #include "base/json.h"
 #include "moga/hypervolume.h"
+#include "report/report_json.h"
 
 static json_t *json_of_numbers(const Look *look, const char *name)
 {
@@ -41,20 +42,16 @@ static json_t *json_of_front(const Run *run)
 json_t *answer_front(const Look *look)
 {
     const Run *run = &look->run;
-    json_t *ids = json_array(), *simulated = json_array(), *volume = json_array();
+    json_t *ids = json_array(), *answer = growth_json(run);
     for (size_t i = 0; i < run->n_front; i++)
         ids = json_append(ids, json_integer(run->table.row[run->front[i]].id));
-    for (size_t i = 0; i < run->n_generations; i++) {
-        const RunGeneration *g = &run->generation[i];
-        if (!isfinite(g->hypervolume))
-            continue;
-        simulated = json_append(simulated, json_integer(g->simulated));
-        volume = json_append(volume, json_number(g->hypervolume));
-    }
     const long generation = run->n_generations > 0 ? run->generation[run->n_generations - 1].number : -1;
-    return json_pack("{s:I, s:o, s:o, s:o, s:o, s:o}", "generation", (json_int_t)generation, "knee",
-                     run->n_front > 0 ? json_integer(run->table.row[run_knee(run)].id) : json_null(), "simulated",
-                     simulated, "volume", volume, "ids", ids, "f", json_of_front(run));
+    json_object_set_new(answer, "generation", json_integer(generation));
+    json_object_set_new(answer, "knee",
+                        run->n_front > 0 ? json_integer(run->table.row[run_knee(run)].id) : json_null());
+    json_object_set_new(answer, "ids", ids);
+    json_object_set_new(answer, "f", json_of_front(run));
+    return answer;
 }
 
 /* -- two runs ------------------------------------------------------------------------------------------------------ */
@@ -89,7 +86,8 @@ static void box_of(const Look *const look[2], double lower[], double reference[]
     }
 }
 
-/* Rows by the generation in which they came onto the front: the first of each number (n), and the one after each row. */
+/* Rows by the generation in which they came onto the front: the first of each number (n), and the one after each row.
+ * */
 static size_t *rows_by_generation(const Run *run, size_t n)
 {
     const size_t none = run->table.n;

@@ -1,10 +1,10 @@
 /* serve/answers.h -- what the server says about runs, as JSON.
  *
- *   status   {"name", "state", "simulated", "max_evals", "failed", "front", "generation", "finished" (UTC), "hypervolume",
- *            "per_second", "seconds", "left_s"}; what is not known: null. A run that can no longer be read has the state
- *            "unreadable", the "reason", and its last numbers if there are any
- *   front    {"generation", "knee", "simulated": [], "volume": [] (of every generation that has one), "ids": [n_front],
- *            "f": [n_front][n_obj]} in natural signs and units
+ *   status   {"name", "state", "simulated", "max_evals", "failed", "front", "generation", "finished" (UTC),
+ *            "hypervolume", "per_second", "seconds", "left_s"}; what is not known: null. A run that can no longer be
+ *            read has the state "unreadable", the "reason", and its last numbers if there are any
+ *   front    {"generation", "knee", "ids": [n_front], "f": [n_front][n_obj]} in natural signs and units, and
+ *            growth_json (report/report_json.h)
  *   against  {"runs": [{"name", "f", "simulated", "volume"}, the same]}, both volumes in one
  *            box: from a fifth of the range of both fronts below their best to their worst, by fixed samples
  *            (moga/hypervolume.h), of the designs that were on a front so far

@@ -1,11 +1,12 @@
 /* serve/guard.h -- whom the server answers: who knows the token and asks this machine by its own name.
  *
  *   token    192 random bits (getrandom) in every path, compared in constant time
- *   Host     127.0.0.1 or localhost: a foreign name that resolves to the loopback (DNS rebinding) is refused. At any port: the
- *            browser at the other end of an ssh tunnel names that of the tunnel, and a page of another port has another Origin
+ *   Host     127.0.0.1 or localhost: a foreign name that resolves to the loopback (DNS rebinding) is refused. At any
+ *            port: the browser at the other end of an ssh tunnel names that of the tunnel, and a page of another port
+ *            has another Origin
  *   Origin   none, or http://HOST of the same request: other pages of the same browser are refused
- *   path     /TOKEN/WORD, /TOKEN/RUN/WORD or /TOKEN/RUN/WORD/NUMBER, RUN and NUMBER of digits: nothing of a request ever
- *            becomes a path of the disk
+ *   path     /TOKEN/WORD, /TOKEN/RUN/WORD or /TOKEN/RUN/WORD/NUMBER, RUN and NUMBER of digits: nothing of a request
+ *            ever becomes a path of the disk
  *
  * Threads  pure functions
  * Source   OWASP, Cross-Site Request Forgery Prevention; RFC 6454 (Origin), RFC 9110 (Host) */

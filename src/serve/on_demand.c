@@ -343,15 +343,6 @@ static int is_latest(OnDemand *o, const Question *q)
 
 /* -- the answer ---------------------------------------------------------------------------------------------------- */
 
-static json_t *json_of_peaks(const SimResult *r)
-{
-    const size_t n = (size_t)r->n_floors;
-    if (r->outcome != RUN_OK)
-        return json_null();
-    return json_pack("{s:o, s:o, s:o}", "displacement_m", json_numbers(n, r->peak_displacement_m), "drift_m",
-                     json_numbers(n, r->peak_drift_m), "acceleration_g", json_numbers(n, r->peak_acceleration_g));
-}
-
 /* Designs of the front that dominate f, and that it dominates. */
 static void set_place(const Run *run, const double natural[], json_t *answer)
 {
@@ -373,22 +364,21 @@ static void set_place(const Run *run, const double natural[], json_t *answer)
 static json_t *json_of_answer(const OnDemand *o, const Run *run, const Question *q)
 {
     const SimResult *r = &o->result;
-    const MeasureOrder *order = tower_measures(tower_of(&o->problem));
+    const Tower *tower = tower_of(&o->problem);
+    const MeasureOrder *order = tower_measures(tower);
     double natural[OBJECTIVES_MAX];
     Design design;
-    json_t *closings = json_array();
-    design_of(tower_design(tower_of(&o->problem)), q->x, &design);
+    design_of(tower_design(tower), q->x, &design);
     for (int k = 0; k < order->n_obj; k++)
         natural[k] = measure_value(r, order->of[k]);
-    for (int j = 0; j < r->n_floors; j++)
-        closings = json_append(closings, json_integer(r->closings[j]));
     const int ok = r->outcome == RUN_OK;
-    json_t *answer = json_pack("{s:I, s:s, s:s, s:o, s:o, s:o, s:o, s:o, s:I, s:b, s:f}", "turn", (json_int_t)q->turn,
-                               "outcome", outcome_word(measure_outcome(r->outcome)), "reason", r->reason, "objectives",
+    json_t *answer = json_pack("{s:I, s:s, s:s, s:o, s:o, s:o, s:o, s:b, s:f}", "turn", (json_int_t)q->turn, "outcome",
+                               outcome_word(measure_outcome(r->outcome)), "reason", r->reason, "objectives",
                                ok ? json_numbers((size_t)order->n_obj, natural) : json_null(), "gap_m",
-                               json_numbers((size_t)tower_n_floors(tower_of(&o->problem)), design.gap), "peaks",
-                               json_of_peaks(r), "no_core", json_of_peaks(&o->no_core), "closings", closings, "impacts",
-                               (json_int_t)r->impacts, "beyond_law", beyond_contact_law(r), "seconds", r->seconds);
+                               json_numbers((size_t)tower_n_floors(tower), design.gap), "peaks",
+                               ok ? result_json(r, order) : json_null(), "no_core",
+                               o->no_core.outcome == RUN_OK ? result_json(&o->no_core, order) : json_null(),
+                               "beyond_law", beyond_contact_law(r), "seconds", r->seconds);
     const int same_ground =
         q->ground.pga_g == 0 && q->ground.stretch == o->own.stretch && q->ground.restitution == o->own.restitution;
     if (ok && o->is_single && same_ground)

@@ -1,19 +1,20 @@
 /* serve/on_demand.h -- designs of a run simulated when a page asks for them, with the run's settings.
  *
- * Design   any of the run as report/detail.h has it: {"id", "objectives": [n_obj] as in the run, "detail"}. The knee stands
- *          beside all baselines; any other beside no core and rigidly connected, since the devices are searched for anew for
- *          each core. The last DESIGNS_KEPT are kept
+ * Design   any of the run as report/detail.h has it: {"id", "objectives": [n_obj] as in the run, "detail"}. The knee
+ *          stands beside all baselines; any other beside no core and rigidly connected, since the devices are
+ *          searched for anew for each core. The last DESIGNS_KEPT are kept
  * What if  a design changed a little: gaps, thicknesses, strength and length of the motion, restitution
  *
- *   question  {"page": P, "turn": T, "x": [n_var], "pga_g": G, "stretch": S, "restitution": R}      the last three null or
- *             left out: as in the run; x within the bounds of the search, the others within those of on_demand_bounds
- *   answer    {"turn", "outcome", "reason", "objectives": [n_obj] or null, "dominated_by": n, "dominates": n (designs of
- *             the front; null where the front is of another motion or of several simulations), "gap_m", "peaks" and
- *             "closings" by floor, "impacts", "beyond_law", "no_core": peaks, "seconds"}
+ *   question  {"page": P, "turn": T, "x": [n_var], "pga_g": G, "stretch": S, "restitution": R}      the last three
+ *             null or left out: as in the run; x within the bounds of the search, the others within those of
+ *             on_demand_bounds
+ *   answer    {"turn", "outcome", "reason", "objectives": [n_obj] or null, "dominated_by": n, "dominates": n (designs
+ *             of the front; null where the front is of another motion or of several simulations), "gap_m", "peaks" and
+ *             "no_core": result_json (report/report_json.h), "beyond_law", "seconds"}
  *
- * It is one simulation of the first record, the very one of `imtet simulate --design`. The latest wins: of one page P, a
- * question with a smaller turn than the latest is not simulated (STATUS_STOPPED). The scene is kept while the motion and
- * the restitution stay.
+ * It is one simulation of the first record, the very one of `imtet simulate --design`. The latest wins: of one page
+ * P, a question with a smaller turn than the latest is not simulated (STATUS_STOPPED). The scene is kept while the
+ * motion and the restitution stay.
  *
  * Life cycle  on_demand_open -> on_demand_share ... -> on_demand_close, once for each of both
  * Threads     any; one design and one what-if are simulated at a time, on one thread each

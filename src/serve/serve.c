@@ -305,40 +305,28 @@ static Status show_newest(Visit *v, Answer *a, Err *err)
 
 struct Stream {
     Server *server;
-    size_t run, n, at; /* text (n), sent up to `at` */
-    long seen;         /* version */
-    char text[EVENT_MAX];
+    size_t run;
+    long seen; /* version */
 };
 
-/* The next event, or a comment that keeps the connection alive. 0: the server ends. */
-static int next_event(Stream *e)
+/* The next event, or a comment that keeps the connection alive, in one piece: an event that has no room is left out. */
+static ssize_t read_events(void *user, uint64_t position, char *out, size_t room)
 {
+    Stream *e = user;
     Watch *w = e->server->watch;
+    (void)position;
     View view = watch_next(w, e->run, e->seen, BEAT_S);
     if (!view.look && watch_is_stopped(w))
-        return 0;
+        return MHD_CONTENT_READER_END_OF_STREAM;
     json_t *status = view.look ? answer_status(&view, watch_name(w, e->run)) : NULL;
     char *text = status ? json_dumps(status, JSON_COMPACT | JSON_REAL_PRECISION(6)) : NULL;
-    e->n = (size_t)snprintf(e->text, sizeof e->text, text ? "data: %s\n\n" : ": %s\n\n", text ? text : "");
-    e->n = e->n < sizeof e->text ? e->n : 0;
-    e->at = 0;
+    const size_t n = text ? strlen(text) : 0, whole = n + sizeof "data: \n\n";
+    const int sent = text && whole <= room ? snprintf(out, room, "data: %s\n\n", text) : snprintf(out, room, ":\n\n");
     e->seen = view.version;
     free(text);
     json_decref(status);
     watch_give(w, &view);
-    return 1;
-}
-
-static ssize_t read_events(void *user, uint64_t position, char *out, size_t room)
-{
-    Stream *e = user;
-    (void)position;
-    if (e->at == e->n && !next_event(e))
-        return MHD_CONTENT_READER_END_OF_STREAM;
-    const size_t left = e->n - e->at, n = left < room ? left : room;
-    memcpy(out, e->text + e->at, n);
-    e->at += n;
-    return (ssize_t)n;
+    return sent;
 }
 
 static Status show_events(Visit *v, Answer *a, Err *err)
@@ -471,7 +459,8 @@ static size_t leave_escaped(void *user, struct MHD_Connection *c, char *text)
     return strlen(text);
 }
 
-/* Where few files may be open (ulimit -n) there are fewer connections: at the limit of files nothing could be accepted. */
+/* Where few files may be open (ulimit -n) there are fewer connections: at the limit of files nothing could be
+ * accepted. */
 static unsigned n_connections(void)
 {
     struct rlimit files;

@@ -1,8 +1,8 @@
 /* serve/watch.h -- the runs that are served, each as it is now: read again when its files have changed.
  *
- * One thread reads, as `imtet status` does; it writes nothing and keeps no lock, so that the run does not know of it. It
- * looks every POLL_S for changes of the runs that are asked for and spends a tenth of a processor at most on reading one; a
- * run that is not asked for again in time is released, and what was simulated of it with it.
+ * One thread reads, as `imtet status` does; it writes nothing and keeps no lock, so that the run does not know of it.
+ * It looks every POLL_S for changes of the runs that are asked for and spends a tenth of a processor at most on
+ * reading one; a run that is not asked for again in time is released, and what was simulated of it with it.
  *
  * Life cycle  watch_open -> watch_take, watch_give ... -> watch_stop -> watch_close
  * Ownership   a Look is shared and read-only; it is released by the last watch_give
@@ -38,8 +38,8 @@ void watch_find(Watch *w);
 size_t watch_n(Watch *w);
 const char *watch_name(Watch *w, size_t i);
 
-/* Waits for the first reading; the run is kept for so many seconds more. One that could not be read is tried again after
- * AGAIN_S; until then the reason is the answer, or stands beside the look before. */
+/* Waits for the first reading; the run is kept for so many seconds more. One that could not be read is tried again
+ * after AGAIN_S; until then the reason is the answer, or stands beside the look before. */
 Status watch_take(Watch *w, size_t i, double seconds, View *view, Err *err);
 void watch_give(Watch *w, View *view); /* one without a look is fine */
 

@@ -1,10 +1,10 @@
 /* study/final_polish.h -- some designs of a finished run polished at its end (search.polish); of other problems
  * than the tower where they are not noisy.
  *
- * Designs that are spread over the front, the knee first (run_spread_out), each in all objectives at once, none of which
- * may get worse (study/refine.h). Together they take a tenth of the simulations of the search; where that leaves too
- * few for each there is no polishing. The better design is stored together with the note that this one was tried: a run
- * that is interrupted is resumed behind it.
+ * Designs that are spread over the front, the knee first (run_spread_out), each in all objectives at once, none of
+ * which may get worse (study/refine.h). Together they take a tenth of the simulations of the search; where that
+ * leaves too few for each there is no polishing. The better design is stored together with the note that this one was
+ * tried: a run that is interrupted is resumed behind it.
  *
  * Threads  one */
 #ifndef IMTET_STUDY_FINAL_POLISH_H

@@ -1,11 +1,12 @@
 /* study/polish.h -- a weighted sum of objectives lowered from a given design on, by NLopt on the simulator itself.
  *
- *   minimise   value(x) = sum_k weight_k f_k(x) / scale_k      while  f_k(x) <= bound_k,  g(x) <= 0,  lower <= x <= upper
+ *   minimise   value(x) = sum_k weight_k f_k(x) / scale_k      while  f_k(x) <= bound_k,  g(x) <= 0,  lower <= x <=
+ *              upper
  *
- * Method    in the unit cube of the box; COBYLA (Powell 1994: linear models of every function), where nothing is bounded
- *           BOBYQA (Powell 2009: a quadratic model). One that has converged begins again at its best design
- * Guards    a failed simulation is a finite wall, never NaN; the answer is the best allowed design that was seen, whatever
- *           NLopt returns, the start at worst; simulations are counted here
+ * Method    in the unit cube of the box; COBYLA (Powell 1994: linear models of every function), where nothing is
+ *           bounded BOBYQA (Powell 2009: a quadratic model). One that has converged begins again at its best design
+ * Guards    a failed simulation is a finite wall, never NaN; the answer is the best allowed design that was seen,
+ *           whatever NLopt returns, the start at worst; simulations are counted here
  * Repeats   both methods are deterministic
  * Threads   asks the queue for one design at a time */
 #ifndef IMTET_STUDY_POLISH_H

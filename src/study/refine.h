@@ -14,7 +14,8 @@
  * standard deviation is not known, and runs with noise are refused unless they are of the tower.
  *
  * Ownership  refine_design fills the caller's Refined; refined_free releases what it allocated
- * Threads    call it from one thread; replicates share the simulator's workers, the numbers do not depend on how many */
+ * Threads    call it from one thread; replicates share the simulator's workers, the numbers do not depend on how many
+ *            */
 #ifndef IMTET_STUDY_REFINE_H
 #define IMTET_STUDY_REFINE_H
 
