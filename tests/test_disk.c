@@ -112,6 +112,36 @@ static void test_a_full_disk_is_named_and_what_was_stored_stays_readable(void **
     assert_true(right && n > 12);
 }
 
+/* Disks that are full at some moment of a quick run: given more room, it goes on at once and to the same end. */
+static void test_a_run_on_a_disk_that_was_full_goes_on_at_once(void **state)
+{
+    (void)state;
+    static const char OFF[] = "[problem]\nkind = external\ncommand = sh tests/worker.sh good\nvariables = 3\n"
+                              "objectives = 2\n[search]\npopulation = 6\ninitial = 16\nmax_evals = 90\nthreads = 1\n";
+    char disk[PATH_MAX], size[32];
+    Said s;
+    write_in_place("off.ini", OFF);
+    free(output_of("optimize @/off.ini --out @/roomy"));
+    assert_int_equal(mkdir(path_of("tight", disk), 0777), 0);
+    for (int kb = 110; kb < 270; kb += SANITIZED ? 40 : 20) {
+        snprintf(size, sizeof size, "size=%dk", kb);
+        if (mount("none", disk, "tmpfs", 0, size) != 0)
+            skip();
+        run(&s, "optimize @/off.ini --out @/tight/run");
+        const int code = s.code;
+        forget(&s);
+        assert_int_equal(mount("none", disk, "tmpfs", MS_REMOUNT, "size=50m"), 0);
+        run(&s, "optimize @/off.ini --out @/tight/run");
+        if ((code != 0 && code != 74) || s.code != 0) {
+            umount2(disk, MNT_DETACH);
+            fail_msg("%d kB: exit %d, then %d: %s", kb, code, s.code, s.err);
+        }
+        forget(&s);
+        assert_same_run("roomy", "tight/run");
+        umount2(disk, MNT_DETACH);
+    }
+}
+
 static void test_a_folder_that_is_read_only_is_named(void **state)
 {
     (void)state;
@@ -237,7 +267,7 @@ static void test_damage_is_found_on_opening_whatever_was_hit(void **state)
     overwrite("sound/run.sqlite", 60, "\0\0\0\1", 4);
     expect(74, "has format 1, this program reads 4; an older imtet wrote it", "status @/sound");
     expect(74, "an older imtet wrote it: only that one can resume it", "optimize @/sound");
-    char *list = output_of("list @");
+    char *list = output_of("status @");
     assert_non_null(strstr(list, "unreadable"));
     free(list);
 }
@@ -295,7 +325,7 @@ static void test_a_run_is_named_by_its_database_or_through_the_root_too(void **s
     free(output_of("optimize @/named/run.sqlite"));
     snprintf(command, sizeof command, "status /../../../../../../../..%s", path_of("named", path));
     free(output_of(command));
-    expect(2, "imtet status: the RUN is an empty word", "status ''");
+    expect(2, "imtet status: the [RUN] is an empty word", "status ''");
 }
 
 /* The first files that are opened must not get the numbers of standard output and error. */
@@ -352,6 +382,7 @@ int main(void)
         cmocka_unit_test(test_a_second_process_is_refused_with_the_first_ones_number),
         cmocka_unit_test(test_a_run_that_can_write_no_more_says_so_and_goes_on_later),
         cmocka_unit_test(test_a_full_disk_is_named_and_what_was_stored_stays_readable),
+        cmocka_unit_test(test_a_run_on_a_disk_that_was_full_goes_on_at_once),
         cmocka_unit_test(test_a_folder_that_is_read_only_is_named),
         cmocka_unit_test(test_a_killed_run_in_a_read_only_folder_is_read_with_its_journal),
         cmocka_unit_test(test_a_database_that_somebody_keeps_locked_is_busy),

@@ -62,6 +62,10 @@ static void combine(const Problem *p, size_t n, const void *parts, Evaluation *e
         e->f[0] = 2.0 * e->f[0] + part[k].value;
     e->f[1] = part[0].repeat + 100.0 * part[2].variant;
     e->replicates = PARTS;
+    if (e->x[1] == 2.0) {
+        e->f[1] = -0.0;
+        e->sd[0] = INFINITY;
+    }
     if (e->x[1] < 0.0)
         evaluation_set_outcome(e, OUTCOME_ERROR, "negative");
 }
@@ -157,6 +161,23 @@ TEST(a_batch_has_the_same_numbers_at_any_number_of_workers)
         assert_int_equal(bench.n_heard, DESIGNS);
         assert_in_range(bench.most_under_way, 1, workers);
     }
+}
+
+/* SQLite keeps -0 as 0 and what is not finite as nothing: a search that is resumed must not see other numbers. */
+TEST(numbers_are_those_that_a_run_keeps)
+{
+    Finished done;
+    Err err = {0};
+    double x[VAR] = {-0.0, 2.0};
+    forget();
+    Queue *q = open_queue(1, QUEUE_AS_ASKED);
+    problem_repair(&bench.problem, x);
+    assert_int_equal(signbit(x[0]), 0);
+    CHECK_OK(queue_ask(q, &(Asked){.x = x, .note = &(double){0}}, &err), &err);
+    CHECK_OK(queue_next(q, &done, &err), &err);
+    assert_true(done.evaluation->f[1] == 0.0 && !signbit(done.evaluation->f[1]));
+    assert_true(isnan(done.evaluation->sd[0]));
+    queue_close(q);
 }
 
 TEST(a_single_design_keeps_as_many_workers_busy_as_it_has_parts)

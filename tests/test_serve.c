@@ -531,7 +531,7 @@ static void test_the_page_is_the_report_with_live_parts(void **state)
     assert_null(strstr(policy, "unsafe"));
     assert_null(strstr(page, server.token));
     free(page);
-    char *list = output_of("list @/runs --json");
+    char *list = output_of("status @/runs --json");
     assert_non_null(strstr(list, "\"finished\""));
     free(list);
 }

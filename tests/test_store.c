@@ -267,7 +267,7 @@ static void check_status_has_no_nan(const char *out)
 {
     char command[128];
     snprintf(command, sizeof command, "status @/%s", out);
-    char *said = output_of(command), *list = output_of("list @");
+    char *said = output_of(command), *list = output_of("status @");
     assert_null(strstr(said, "nan"));
     assert_null(strstr(said, "- simulations/s"));
     assert_null(strstr(list, "nan"));
@@ -493,7 +493,7 @@ static void test_one_failure_in_ten_is_survived_and_never_on_the_front(void **st
         before = volume;
     }
     json_decref(o);
-    o = json_of("list @ --json");
+    o = json_of("status @ --json");
     int found = 0;
     for (size_t i = 0; i < json_array_size(o); i++)
         found += strcmp(json_string_value(json_object_get(json_array_get(o, i), "run")), path) == 0;

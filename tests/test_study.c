@@ -153,11 +153,14 @@ static void test_a_design_of_the_front_is_evaluated_on_other_motions(void **stat
     free(table);
 }
 
-static void test_list_tells_a_run_from_a_folder_of_runs(void **state)
+static void test_status_tells_a_run_from_a_folder_of_runs(void **state)
 {
     (void)state;
-    char *said = output_of("list @/threads-1");
-    assert_non_null(strstr(said, "threads-1: is a run itself"));
+    char *said = output_of("status @/threads-1");
+    assert_non_null(strstr(said, "threads-1: finished"));
+    free(said);
+    said = output_of("status @");
+    assert_non_null(strstr(said, "\nthreads-1 "));
     free(said);
 }
 
@@ -438,7 +441,7 @@ int main(void)
         cmocka_unit_test(test_a_run_that_is_finished_is_shown_again_and_a_new_one_gets_a_number),
         cmocka_unit_test(test_the_export_is_the_front),
         cmocka_unit_test(test_a_design_of_the_front_is_evaluated_on_other_motions),
-        cmocka_unit_test(test_list_tells_a_run_from_a_folder_of_runs),
+        cmocka_unit_test(test_status_tells_a_run_from_a_folder_of_runs),
         cmocka_unit_test(test_a_design_is_evaluated_on_every_motion_of_a_folder),
         cmocka_unit_test(test_an_external_simulator_is_searched_and_every_design_exported),
         cmocka_unit_test(test_designs_are_chosen_by_limits_weights_and_a_reference_point_and_polished),

@@ -53,7 +53,7 @@ static void test_names_that_are_no_utf_8_are_shown(void **state)
     (void)state;
     write_in_place("textbook.ini", TEXTBOOK);
     free(output_of("optimize @/textbook.ini --out @/runs/stra\337e"));
-    json_t *status = json_of("status @/runs/stra\337e --json"), *list = json_of("list @/runs --json"),
+    json_t *status = json_of("status @/runs/stra\337e --json"), *list = json_of("status @/runs --json"),
            *all = json_of("export @/runs/stra\337e --json");
     assert_non_null(strstr(json_string_value(json_object_get(status, "run")), "stra\\xDFe"));
     assert_int_equal(json_array_size(list), 1);

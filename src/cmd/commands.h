@@ -10,7 +10,6 @@
     X(EVALUATE)                                                                                                        \
     X(EXPORT)                                                                                                          \
     X(STATUS)                                                                                                          \
-    X(LIST)                                                                                                            \
     X(CHOOSE)                                                                                                          \
     X(POLISH)                                                                                                          \
     X(REPORT)                                                                                                          \

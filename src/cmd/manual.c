@@ -24,9 +24,9 @@ const Command *command_at(int i)
 static const struct {
     const char *old, *now, *option;
 } OLD_NAMES[] = {
-    {"list", "status", NULL},
     {"modes", "building", NULL},
     {"import", "building", NULL},
+    {"list", "status", NULL},
     {"horizon", "simulate", "--horizon"},
     {"verify", "evaluate", "--full-model"},
     {"plot", "report", "--pictures=pictures"},

@@ -107,8 +107,11 @@ static inline double violation_of(size_t n_con, const double g[])
     return sum;
 }
 
+/* Into the set of designs that can be built; 0 has no sign, as in the run that it is stored in. */
 static inline void problem_repair(const Problem *p, double x[])
 {
+    for (size_t d = 0; d < p->n_var; d++)
+        x[d] += 0.0;
     if (p->repair)
         p->repair(x, p->self);
 }

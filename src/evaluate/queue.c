@@ -445,6 +445,13 @@ int queue_take(Queue *q, int wait, Task *task)
     return s != NULL;
 }
 
+/* As a run stores them: 0 has no sign, and what is not finite is not known. */
+static void make_canonical(size_t n, double values[])
+{
+    for (size_t i = 0; i < n; i++)
+        values[i] = isfinite(values[i]) ? values[i] + 0.0 : NAN;
+}
+
 static void complete(const Queue *q, Slot *s)
 {
     const Problem *p = q->problem;
@@ -452,6 +459,9 @@ static void complete(const Queue *q, Slot *s)
     p->simulator->combine(p, s->n_parts, s->parts, e);
     for (size_t k = 0; e->outcome != OUTCOME_OK && k < p->n_obj; k++)
         e->f[k] = NAN;
+    make_canonical(p->n_obj, e->f);
+    make_canonical(p->n_obj, e->sd);
+    make_canonical(p->n_extra, e->extra);
     problem_judge(p, e, s->f, s->g);
     e->violation = e->outcome == OUTCOME_OK ? violation_of(p->n_con, s->g) : INFINITY;
 }

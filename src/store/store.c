@@ -384,7 +384,12 @@ Status store_each_finished(EvaluationFn take, void *search, void *user, Err *err
 
 Status store_evaluation(RunStore *store, const Evaluation *e, Err *err)
 {
-    TRY(evaluation_table_append(&store->waiting, e, err));
+    const size_t n = store->waiting.n;
+    const Status status = evaluation_table_append(&store->waiting, e, err);
+    if (status != STATUS_OK) {
+        store->waiting.n = n; /* without the half of it */
+        return status;
+    }
     store->n_stored++;
     if (e->seconds >= COMMIT_S || clock_seconds() >= store->last_commit + COMMIT_S)
         TRY(store_flush(store, err));
