@@ -23,25 +23,32 @@ chart: $(BENCH) ## speed against accuracy of every engine
 	@scripts/plot-chart docs/measured/chart.csv docs/chart
 
 # CELLS and SEEDS choose a part, KEEP names a folder in which runs stay and are not repeated.
-compare: $(PROGRAM) $(BENCH) setup-figures ## docs/search.md: the search on textbook problems, other families and the tower, beside other methods
-	@scripts/compare --program ./$(PROGRAM) --bench $(BENCH) --out docs/search.md $(if $(CELLS),--cells $(CELLS)) $(if $(SEEDS),--seeds $(SEEDS)) $(if $(KEEP),--keep $(KEEP))
+compare: $(PROGRAM) $(BENCH) setup-figures ## the search on textbook problems, other families and the tower
+	@rm -f build/search.md
+	@scripts/compare --program ./$(PROGRAM) --bench $(BENCH) --out build/search.md $(if $(CELLS),--cells $(CELLS)) $(if $(SEEDS),--seeds $(SEEDS)) $(if $(KEEP),--keep $(KEEP))
+	@scripts/tables --from build/search.md search search-plain search-families search-aside
+	@cp build/search.svg docs
 
 paper: $(PROGRAM) ## docs/paper.md: the paper item by item, with its records where they are at hand; ARGS="--evals N"
 	@scripts/paper --program ./$(PROGRAM) $(ARGS)
 
 ablation: setup-figures ## what each tuned constant of the search earns: every one turned off; ARGS="--only NAME,..."
-	@scripts/ablation $(ARGS)
+	@rm -f build/constants.md
+	@scripts/ablation --out build/constants.md $(ARGS)
+	@if [ -e build/constants.md ]; then scripts/tables --from build/constants.md constants; fi
 
 fidelity: $(PROGRAM) setup-figures ## what search.fidelity = replicates saves on the tower under three records; ARGS="--seeds 1,2" or --short
 	@scripts/fidelity --program ./$(PROGRAM) $(ARGS)
 
 # SIZES chooses some; PLACE=FOLDER has the room for a run of 10^6 (2.5 GB).
-scale-cost: $(PROGRAM) ## docs/scale.md: what a study costs beside its simulations, from 10^3 to 10^6 of them; PART=plain or surrogate
-	@scripts/scale-cost --program ./$(PROGRAM) --out docs/scale.md $(if $(PART),--part $(PART)) $(if $(SIZES),--sizes $(SIZES)) $(if $(PLACE),--place $(PLACE))
+scale-cost: $(PROGRAM) ## what a study costs beside its simulations, from 10^3 to 10^6 of them; PART=plain or surrogate
+	@printf '<!-- %s -->\n<!-- end -->\n' measured surrogate > build/scale.md
+	@scripts/scale-cost --program ./$(PROGRAM) --out build/scale.md $(if $(PART),--part $(PART)) $(if $(SIZES),--sizes $(SIZES)) $(if $(PLACE),--place $(PLACE))
+	@if [ -e build/scale.svg ]; then cp build/scale.svg docs; fi
+	@scripts/tables --from build/scale.md $(if $(filter surrogate,$(PART)),,scale scale-commands) $(if $(filter plain,$(PART)),,scale-surrogate)
 
 pictures: $(PROGRAM) ## docs/pictures, those of a study: RUN=results/kobe RECORDS="elcentro.csv sylmar.csv"
-	@./$(PROGRAM) plot $(RUN) $(RECORDS:%=--record %) --out $(BUILD)/pictures
-	@./$(PROGRAM) report $(RUN) $(RECORDS:%=--record %) --out $(BUILD)/pictures/report.html
+	@./$(PROGRAM) report $(RUN) $(RECORDS:%=--record %) --out $(BUILD)/pictures/report.html --pictures $(BUILD)/pictures
 	@cp $(foreach p,front gaps peaks modes energies displacement elsewhere,$(BUILD)/pictures/$p.png) docs/pictures
 	@$(REPORT_PICTURE)/report-first.jpg '#summary' 880
 	@$(REPORT_PICTURE)/report-front.jpg '#front' 880 'J3 acceleration [g] to=6' 'J1 displacement [m] to=0.8'
